@@ -1,0 +1,149 @@
+"""What the array steppers share: gather -> detect -> solve -> scatter over a pymunk space."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from dataclasses import dataclass
+
+import numpy as np
+import pymunk
+
+from .bodies import ANGLE, ANGULAR_VELOCITY, FORCE, POSITION, TORQUE, VELOCITY, Bodies, FloatArray
+from .contacts import Contacts, Pairs
+from .detection import MarginTwin
+from .shapes import Shapes
+from .stepper import Stepper, StepReport, check_dt
+
+
+@dataclass(frozen=True)
+class Start:
+    """The N bodies at the start of a step: position, velocity (N, 2); force (N, 2) with gravity, 0 if not dynamic."""
+
+    dt: float
+    position: FloatArray
+    velocity: FloatArray
+    force: FloatArray
+    acceleration: FloatArray
+
+    @property
+    def free_displacement(self) -> FloatArray:
+        """(N, 2) displacement of the free flight over the step."""
+        return self.dt * self.velocity + (0.5 * self.dt**2) * self.acceleration
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Velocity and displacement (N, 2) of all bodies over a step, and its report."""
+
+    velocity: FloatArray
+    displacement: FloatArray
+    report: StepReport
+
+
+class ArrayStepper(Stepper):
+    """A stepper that replaces pymunk's solver; subclasses say how bodies move, in `advance`.
+
+    Args:
+        space: any pymunk space of disks and static walls.
+        sync: bring pymunk's own shapes and broad phase up to date after each step, for its queries and drawing.
+            False saves that time; `space.reindex_shapes_for_body(body)` does it for one body.
+    """
+
+    def __init__(self, space: pymunk.Space, *, sync: bool = True) -> None:
+        super().__init__(space)
+        self.sync = sync
+        self._twin: MarginTwin | None = None
+        self._gather()
+
+    def refresh(self) -> None:
+        self._twin = None
+
+    @abstractmethod
+    def advance(self, bodies: Bodies, start: Start, twin: MarginTwin) -> Motion:
+        """Move the bodies over one step; pure arrays, the space is not touched."""
+
+    def step(self, dt: float) -> StepReport:
+        dt = check_dt(dt)
+        if dt == 0.0:
+            return StepReport.without_contacts(self.time)
+        twin, state = self._gather()
+        start = self._start(twin.bodies, state, dt)
+        motion = self.advance(twin.bodies, start, twin)
+        self._scatter(twin.bodies, state, motion, dt)
+        self.time = motion.report.time
+        return motion.report
+
+    def _gather(self) -> tuple[MarginTwin, FloatArray]:
+        """The space's state, checked, and the twin that belongs to it."""
+        twin = self._twin
+        if twin is not None and twin.shapes.key == list(self.space.shapes):
+            state = twin.bodies.gather()
+            if state is not None and twin.is_current(state):
+                twin.bodies.check_finite(state)
+                return twin, state
+        bodies = Bodies(self.space)
+        state = bodies.gather()
+        assert state is not None  # read from these very bodies
+        bodies.check_finite(state)
+        self._twin = MarginTwin(bodies, Shapes(self.space, bodies), state)
+        return self._twin, state
+
+    def _start(self, bodies: Bodies, state: FloatArray, dt: float) -> Start:
+        force = np.where(bodies.dynamic[:, None], state[:, FORCE], 0.0)
+        if any(self.space.gravity):
+            force[bodies.dynamic] += bodies.mass[bodies.dynamic, None] * np.array(self.space.gravity)
+        velocity = np.where(bodies.static[:, None], 0.0, state[:, VELOCITY])
+        return Start(dt, state[:, POSITION], velocity, force, force * bodies.inverse_mass[:, None])
+
+    def _scatter(self, bodies: Bodies, state: FloatArray, motion: Motion, dt: float) -> None:
+        """Write the end of the step; forces are reset as pymunk does. Restores the state if pymunk refuses."""
+        end = state.copy()
+        end[:, POSITION] += motion.displacement
+        end[:, VELOCITY] = motion.velocity
+        turning = dt * state[:, TORQUE] * bodies.inverse_moment
+        end[:, ANGLE] += dt * (state[:, ANGULAR_VELOCITY] + 0.5 * turning)
+        end[:, ANGULAR_VELOCITY] += turning
+        end[:, FORCE] = 0.0
+        end[:, TORQUE] = 0.0
+        end[bodies.static] = state[bodies.static]
+        bodies.check_finite(end)
+        try:
+            if self.sync:
+                still = end.copy()
+                still[:, VELOCITY] = 0.0
+                still[:, ANGULAR_VELOCITY] = 0.0
+                bodies.scatter(still)
+                self._sync(dt)
+            bodies.scatter(end)
+        except BaseException:
+            bodies.scatter(state)
+            raise
+
+    def _sync(self, dt: float) -> None:
+        """Let pymunk see the new positions: its own step with everything at rest moves nothing.
+
+        With the real dt, so that `space.current_time_step` is right and a native step may follow: at rest pymunk
+        caches no impulse that it would scale by the ratio of the two steps.
+        """
+        space = self.space
+        gravity, iterations, bias = space.gravity, space.iterations, space.collision_bias
+        try:
+            space.gravity, space.iterations, space.collision_bias = (0.0, 0.0), 1, 1.0
+            space.step(dt)
+        finally:
+            space.gravity, space.iterations, space.collision_bias = gravity, iterations, bias
+
+    def contacts(self, bodies: Bodies, start: Start, pairs: Pairs, gap: FloatArray, time: FloatArray) -> Contacts:
+        """`Contacts` of pairs whose impulses act at (m,) `time` on the free flight."""
+        shape = pairs.between(*self.flight(start, pairs, time))
+        return Contacts(bodies.items, pairs.row_a, pairs.row_b, shape.normal, shape.point, gap, time)
+
+    @staticmethod
+    def flight(start: Start, pairs: Pairs, time: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """(m, 2) centres of a and of b on the free flight, every pair at its own (m,) instant."""
+        t = time[:, None]
+        a, b = (
+            start.position[r] + t * start.velocity[r] + (0.5 * t * t) * start.acceleration[r]
+            for r in (pairs.row_a, pairs.row_b)
+        )
+        return a, b

@@ -1,0 +1,116 @@
+"""Bodies: arrays of a space's bodies, gathered from pymunk and scattered back in one batch call each."""
+
+from __future__ import annotations
+
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+import pymunk
+from pymunk import batch
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+IntArray: TypeAlias = npt.NDArray[np.intp]
+BoolArray: TypeAlias = npt.NDArray[np.bool_]
+
+_FIELDS = batch.BodyFields
+_STATE = (
+    _FIELDS.POSITION
+    | _FIELDS.ANGLE
+    | _FIELDS.VELOCITY
+    | _FIELDS.ANGULAR_VELOCITY
+    | _FIELDS.FORCE
+    | _FIELDS.TORQUE
+)
+# Columns of one row of the state, in the order pymunk.batch writes them.
+POSITION, ANGLE, VELOCITY = slice(0, 2), 2, slice(3, 5)
+ANGULAR_VELOCITY, FORCE, TORQUE = 5, slice(6, 8), 8
+COLUMNS = 9
+COLUMN_NAMES = (
+    "position.x",
+    "position.y",
+    "angle",
+    "velocity.x",
+    "velocity.y",
+    "angular_velocity",
+    "force.x",
+    "force.y",
+    "torque",
+)
+
+
+class Bodies:
+    """The bodies of one space, one row each, in the order `pymunk.batch` walks them.
+
+    Masses, moments and kinds are read once; `Bodies.is_current` tells whether the space still has these bodies.
+
+    Attributes:
+        items: the pymunk bodies, by row.
+        mass, moment: (N,) mass and M L²; infinite for static and kinematic bodies.
+        inverse_mass: (N,) 1/mass, 0 for static and kinematic bodies.
+        dynamic: (N,) bool.  static: (N,) bool.
+        center_of_gravity: (N, 2) length, in body coordinates.
+    """
+
+    def __init__(self, space: pymunk.Space) -> None:
+        self.space = space
+        self._buffer = batch.Buffer()
+        self._out = batch.Buffer()
+        known = {body.id: body for body in (*space.bodies, space.static_body)}
+        self._ids = self._read_ids()
+        self.items: tuple[pymunk.Body, ...] = tuple(known[int(i)] for i in self._ids)
+        self.row = {body: i for i, body in enumerate(self.items)}
+        self.dynamic: BoolArray = np.array([b.body_type == pymunk.Body.DYNAMIC for b in self.items], bool)
+        self.static: BoolArray = np.array([b.body_type == pymunk.Body.STATIC for b in self.items], bool)
+        self.mass: FloatArray = np.array([b.mass for b in self.items], float)
+        self.moment: FloatArray = np.array([b.moment for b in self.items], float)
+        self.mass[~self.dynamic] = np.inf
+        self.moment[~self.dynamic] = np.inf
+        self.check_masses()
+        self.inverse_mass: FloatArray = 1.0 / self.mass
+        self.inverse_moment: FloatArray = 1.0 / self.moment
+        self.center_of_gravity: FloatArray = np.array([b.center_of_gravity for b in self.items], float).reshape(-1, 2)
+
+    def __len__(self) -> int:
+        return len(self.items)
+
+    def _read_ids(self) -> npt.NDArray[np.uintp]:
+        self._buffer.clear()
+        batch.get_space_bodies(self.space, _FIELDS.BODY_ID, self._buffer)
+        return np.frombuffer(self._buffer.int_buf(), dtype=np.uintp).copy()
+
+    def check_masses(self) -> None:
+        """Raise ValueError for a dynamic body whose mass or moment is not positive, or whose mass is not finite."""
+        mass_ok = (self.mass > 0) & np.isfinite(self.mass) & (self.moment > 0)
+        bad = self.dynamic & ~mass_ok
+        if bad.any():
+            i = int(np.argmax(bad))
+            raise ValueError(
+                f"{self.items[i]} has mass {self.mass[i]} and moment {self.moment[i]}: a dynamic body needs a finite "
+                "mass > 0 and a moment > 0; set body.mass and body.moment, or the mass or density of its shapes"
+            )
+
+    def gather(self) -> FloatArray | None:
+        """The (N, 9) state now: position, angle, velocity, angular velocity, force, torque (see COLUMN_NAMES).
+
+        None when the space's bodies are no longer these rows, so that a new `Bodies` is due.
+        """
+        self._buffer.clear()
+        batch.get_space_bodies(self.space, _FIELDS.BODY_ID | _STATE, self._buffer)
+        ids = np.frombuffer(self._buffer.int_buf(), dtype=np.uintp)
+        if len(ids) != len(self._ids) or not np.array_equal(ids, self._ids):
+            return None
+        return np.frombuffer(self._buffer.float_buf()).reshape(-1, COLUMNS).copy()
+
+    def check_finite(self, state: FloatArray) -> None:
+        """Raise ValueError naming the body and the value if anything in the state is NaN or infinite."""
+        if not np.isfinite(state).all():
+            i, j = np.argwhere(~np.isfinite(state))[0]
+            raise ValueError(
+                f"{COLUMN_NAMES[j]} of {self.items[i]} is {state[i, j]}: set a finite value before stepping"
+            )
+
+    def scatter(self, state: FloatArray) -> None:
+        """Write the whole (N, 9) state."""
+        self._out.set_float_buf(np.ascontiguousarray(state).reshape(-1))
+        batch.set_space_bodies(self.space, _STATE, self._out)

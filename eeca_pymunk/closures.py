@@ -1,0 +1,213 @@
+"""Closures: what chooses psi2, the one parameter that conservation leaves free (design section 4).
+
+Each solves the contacts of a step for the impulses and the motion; what it returns is exactly conservative.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Protocol
+
+import numpy as np
+
+from . import balance
+from .bodies import FloatArray, IntArray
+from .complementarity import Delassus, Impulses, islands, solve
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Active contacts of a step, on the R bodies they touch.
+
+    Attributes:
+        dt: time.  velocity: (R, 2) at n.  force: (R, 2) external.  mass, inverse_mass: (R,).
+        row_a, row_b, gap, elasticity: (m,) of the contacts.
+        normal_at: (m,) instants in the step to (m, 2) normals on the free flight at these instants.
+    """
+
+    dt: float
+    velocity: FloatArray
+    force: FloatArray
+    mass: FloatArray
+    inverse_mass: FloatArray
+    row_a: IntArray
+    row_b: IntArray
+    gap: FloatArray
+    elasticity: FloatArray
+    normal_at: Callable[[FloatArray], FloatArray]
+
+    def operator(self, time: FloatArray) -> Delassus:
+        """The contacts as an operator, with normals of the free flight at (m,) `time`."""
+        return Delassus(self.row_a, self.row_b, self.normal_at(time), self.inverse_mass)
+
+    @property
+    def external(self) -> FloatArray:
+        """(R, 2) momentum from external forces, dt f_ext."""
+        return self.dt * self.force
+
+    @cached_property
+    def island(self) -> IntArray:
+        """(m,) label of the island of every contact."""
+        return islands(self.row_a, self.row_b, self.inverse_mass)
+
+    @property
+    def larger_mass(self) -> FloatArray:
+        """(m,) M of Eq. 29: the larger of the two masses that move."""
+        mass = np.where(self.inverse_mass > 0, self.mass, 0.0)
+        return np.maximum(mass[self.row_a], mass[self.row_b])
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Impulses and motion of a step.
+
+    Attributes:
+        velocity: (R, 2) at n+1.  displacement: (R, 2) over the step.
+        impulse, psi1, psi2, gap_increment, time: (m,).  normal: (m, 2).
+        iterations: of the closure.  lock: the scale of the energy lock that lies farthest from 1.
+    """
+
+    velocity: FloatArray
+    displacement: FloatArray
+    impulse: FloatArray
+    psi1: FloatArray
+    psi2: FloatArray
+    gap_increment: FloatArray
+    time: FloatArray
+    normal: FloatArray
+    iterations: int
+    lock: float
+    converged: bool
+
+
+class Closure(Protocol):
+    """Chooses psi2. `solve` returns the motion of the bodies of `problem`, energy and momentum exact."""
+
+    def solve(self, problem: Problem) -> Solution: ...
+
+
+@dataclass(frozen=True)
+class Midstep:
+    """The rigid limit K, xi -> infinity: psi2 = 0, impulses at the middle of the step (design sections 2, 4).
+
+    Solves 0 <= lam _|_ A lam + (e u_n + u*) >= 0 on all active contacts at once, Newton's restitution. Second order
+    in free flight, first order at impacts. psi1 is reported as infinite, its limit.
+
+    Args:
+        tolerance: of the complementarity problem, relative to the largest approach speed. The energy lock makes
+            energy exact whatever it is.
+        max_iterations: of the complementarity problem.
+    """
+
+    tolerance: float = 1e-10
+    max_iterations: int = 2000
+
+    def solve(self, problem: Problem) -> Solution:
+        zero = np.zeros_like(problem.gap)
+        A = problem.operator(balance.impulse_time(zero, problem.dt))
+        impulses = _rigid(A, problem, self.tolerance, self.max_iterations)
+        weights = balance.Weights(np.full_like(zero, math.inf), zero, zero)
+        return _locked_motion(A, problem, impulses.lam, weights, impulses.iterations, impulses.converged)
+
+
+@dataclass(frozen=True)
+class Dashpot:
+    """The paper's closure: psi1 + psi2 = 4 xi / Omega (Eqs. 28-30), an enhanced penalty of spring and dashpot.
+
+    A fixed point over complementarity problems (design section 4): impulses give psi2, Delta g and the normals at the
+    kinks, these give the next problem. Islands in which no positive lock exists fall back to the rigid limit.
+
+    Args:
+        stiffness: K > 0, mass/time².
+        damping_ratio: xi >= 0.
+        tolerance: of the change of the impulses between iterations, relative to the largest, and of psi2.
+        max_iterations: of the fixed point; `StepReport.converged` tells whether they sufficed.
+    """
+
+    stiffness: float
+    damping_ratio: float
+    tolerance: float = 1e-10
+    max_iterations: int = 40
+
+    def __post_init__(self) -> None:
+        check_stiffness(self.stiffness)
+        if not (self.damping_ratio >= 0 and math.isfinite(self.damping_ratio)):
+            raise ValueError(f"damping_ratio = {self.damping_ratio}: give a finite number >= 0")
+
+    def solve(self, problem: Problem) -> Solution:
+        dt, K = problem.dt, self.stiffness
+        S = balance.dashpot_sum(self.damping_ratio, balance.reduced_frequency(K, problem.larger_mass, dt))
+        psi2, increment, lam = np.zeros_like(S), np.zeros_like(S), np.zeros_like(S)
+        A = problem.operator(balance.impulse_time(psi2, dt))
+        converged, iteration = False, 0
+        while not converged and iteration < self.max_iterations:
+            iteration += 1
+            p_c = balance.extra_momentum(A, psi2, problem.external + A.impulse(lam))
+            q = _restitution(A, problem) + 2.0 * (A.relative(p_c * A.inverse_mass[:, None]) - increment / dt)
+            impulses = solve(A, q, start=lam, tolerance=0.1 * self.tolerance)
+            w = balance.projected_increment(A, problem.external + A.impulse(impulses.lam))
+            new = balance.weights(impulses.lam, problem.gap, w, S, K, dt)
+            change = np.max(np.abs(impulses.lam - lam))
+            converged = bool(
+                impulses.converged
+                and change <= self.tolerance * np.max(impulses.lam)
+                and np.max(np.abs(new.psi2 - psi2)) <= self.tolerance
+            )
+            lam, psi2, increment = impulses.lam, new.psi2, new.gap_increment
+            # The motion takes these psi2 too: the kink it makes in a path lies where its normal was taken.
+            A = problem.operator(balance.impulse_time(psi2, dt))
+        return _locked_motion(A, problem, lam, balance.Weights(S - psi2, psi2, increment), iteration, converged)
+
+
+def check_stiffness(stiffness: float) -> None:
+    """Raise ValueError unless the penalty stiffness K is positive and finite."""
+    if not (stiffness > 0 and math.isfinite(stiffness)):
+        raise ValueError(f"stiffness = {stiffness}: give a finite number > 0, in mass/time²")
+
+
+def _restitution(A: Delassus, problem: Problem) -> FloatArray:
+    """(m,) e u_n + u*, u* with the external forces alone."""
+    u_n = A.relative(problem.velocity)
+    u_free = u_n + A.relative(problem.external * A.inverse_mass[:, None])
+    return balance.restitution_target(u_n, problem.elasticity) + u_free
+
+
+def _rigid(A: Delassus, problem: Problem, tolerance: float = 1e-10, max_iterations: int = 2000) -> Impulses:
+    return solve(A, _restitution(A, problem), tolerance=tolerance, max_iterations=max_iterations)
+
+
+def _lock(A: Delassus, problem: Problem, lam: FloatArray, psi2: FloatArray) -> balance.Lock:
+    u_n = A.relative(problem.velocity)
+    loss = 0.5 * lam * (u_n - balance.restitution_target(u_n, problem.elasticity))
+    return balance.energy_lock(A, problem.island, lam, psi2, problem.velocity, problem.external, loss)
+
+
+def _locked_motion(
+    A: Delassus, problem: Problem, lam: FloatArray, weights: balance.Weights, iterations: int, converged: bool
+) -> Solution:
+    """Scale the impulses by the energy lock, and move: Eq. 10 with v_np1 and p_c of the scaled impulses."""
+    dt, psi1, psi2, increment = problem.dt, weights.psi1, weights.psi2, weights.gap_increment
+    lock = _lock(A, problem, lam, psi2)
+    failed = ~lock.valid & (lam > 0)
+    if failed.any() and psi2.any():
+        psi1, psi2 = np.where(failed, math.inf, psi1), np.where(failed, 0.0, psi2)
+        increment, converged = np.where(failed, 0.0, increment), False
+        A = problem.operator(balance.impulse_time(psi2, dt))
+        lam = np.where(failed, _rigid(A, problem).lam, lam)
+        lock = _lock(A, problem, lam, psi2)
+    # In the rigid limit no impulse at all conserves energy too.
+    scale = np.where(lock.valid, lock.scale, 0.0)
+    worst = float(scale[np.argmax(np.abs(scale - 1.0) * (lam > 0))]) if (lam > 0).any() else 1.0
+    lam = scale * lam
+    m_inv = A.inverse_mass[:, None]
+    delta_p = problem.external + A.impulse(lam)
+    p_c = balance.extra_momentum(A, psi2, delta_p)
+    velocity = problem.velocity + delta_p * m_inv
+    displacement = dt * (problem.velocity + 0.5 * delta_p * m_inv + p_c * m_inv)
+    return Solution(
+        velocity, displacement, lam, psi1, psi2, increment, balance.impulse_time(psi2, dt), A.normal,
+        iterations, worst, converged,
+    )  # fmt: skip

@@ -1,0 +1,131 @@
+"""Pairs, gaps, normals and points of contact. Sole owner of the sign convention.
+
+The normal n points from body a to body b (pymunk's arbiters do the same), the gap is negative in overlap. Row a is
+the disk wherever the other shape is a wall.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import pymunk
+
+from .bodies import BoolArray, FloatArray, IntArray
+from .shapes import Shapes
+
+
+@dataclass(frozen=True)
+class Contacts:
+    """The contacts of one step as a struct of arrays; m contacts.
+
+    `body_a` and `body_b` are rows of `bodies`, the pymunk bodies. Normal, point and gap are those of the
+    instant `time` inside the step at which the impulse acts; `gap` is that of the start of the step.
+    """
+
+    bodies: tuple[pymunk.Body, ...]
+    body_a: IntArray  # (m,) rows of bodies
+    body_b: IntArray  # (m,) rows of bodies
+    normal: FloatArray  # (m, 2) unit, from a to b
+    point: FloatArray  # (m, 2) length, halfway between the two surfaces
+    gap: FloatArray  # (m,) length, at the start of the step, negative in overlap
+    time: FloatArray  # (m,) time of the impulse after the start of the step
+
+    def __len__(self) -> int:
+        return len(self.gap)
+
+
+@dataclass(frozen=True)
+class Geometry:
+    """Gap (m,) length, normal (m, 2) from a to b, and point (m, 2) of every pair at one configuration."""
+
+    gap: FloatArray
+    normal: FloatArray
+    point: FloatArray
+
+
+class Pairs:
+    """The pairs of shapes that may touch, disk-disk first, then disk-wall.
+
+    Args:
+        shapes: the shapes of the space.
+        first, second: (m,) indices of shapes; where one is a wall it is `second`.
+    """
+
+    def __init__(self, shapes: Shapes, first: IntArray, second: IntArray) -> None:
+        self.shapes, self.first, self.second = shapes, first, second
+        self.row_a: IntArray = shapes.row[first]
+        self.row_b: IntArray = shapes.row[second]
+        self.radius_a: FloatArray = shapes.radius[first]
+        self.radius_b: FloatArray = shapes.radius[second]
+        self.elasticity: FloatArray = shapes.elasticity[first] * shapes.elasticity[second]
+        self.wall: IntArray = shapes.wall[second]
+        self.disks = int(np.count_nonzero(self.wall < 0))
+
+    def __len__(self) -> int:
+        return len(self.first)
+
+    def take(self, which: BoolArray | IntArray) -> Pairs:
+        """The pairs selected by a mask or by increasing indices."""
+        return Pairs(self.shapes, self.first[which], self.second[which])
+
+    def at(self, position: FloatArray) -> Geometry:
+        """Geometry with the bodies at (N, 2) `position`."""
+        return self.between(position[self.row_a], position[self.row_b])
+
+    def between(self, center_a: FloatArray, center_b: FloatArray) -> Geometry:
+        """Geometry with the bodies of every pair at its own (m, 2) centres; walls stay where they are."""
+        k = self.disks
+        if k == len(self):
+            distance, toward = _disk_disk(center_a, center_b)
+        elif k == 0:
+            distance, toward = _disk_wall(self.shapes, self.wall, center_a)
+        else:
+            d_disk, n_disk = _disk_disk(center_a[:k], center_b[:k])
+            d_wall, n_wall = _disk_wall(self.shapes, self.wall[k:], center_a[k:])
+            distance, toward = np.concatenate((d_disk, d_wall)), np.concatenate((n_disk, n_wall))
+        gap = distance - self.radius_a - self.radius_b
+        point = center_a + (self.radius_a + 0.5 * gap)[:, None] * toward
+        return Geometry(gap, toward, point)
+
+
+def _disk_disk(a: FloatArray, b: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Distance (m,) of two centres and unit vector (m, 2) from a to b; coincident centres get the x axis."""
+    d = b - a
+    distance = np.sqrt(np.einsum("ij,ij->i", d, d))
+    coincident = distance == 0.0
+    if coincident.any():
+        d[coincident] = (1.0, 0.0)
+        return distance, d / np.where(coincident, 1.0, distance)[:, None]
+    return distance, d / distance[:, None]
+
+
+def _disk_wall(shapes: Shapes, wall: IntArray, center: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Signed distance (m,) of a centre from an outline, negative inside, and unit vector (m, 2) toward the outline.
+
+    The nearest feature decides: the side (exact normal of the edge) or the vertex (direction to it). A centre inside
+    a polygon leaves through the nearest side.
+    """
+    walls = shapes.walls
+    rel = center[:, None, :] - walls.start[wall]
+    edge, outward = walls.edge[wall], walls.outward[wall]
+    height = np.einsum("ikj,ikj->ik", rel, outward)
+    along = np.einsum("ikj,ikj->ik", rel, edge) / walls.length_squared[wall]
+    offset = rel - np.clip(along, 0.0, 1.0)[..., None] * edge
+    squared = np.einsum("ikj,ikj->ik", offset, offset)
+    i = np.arange(len(wall))
+    top = np.argmax(height, axis=1)
+    inside = height[i, top] < 0.0
+    j = np.where(inside, top, np.argmin(squared, axis=1))
+    side = inside | ((along[i, j] > 0.0) & (along[i, j] < 1.0))
+    to_vertex = np.sqrt(squared[i, j])
+    side |= to_vertex == 0.0
+    # Of a segment's two edges the first is picked on either side of it: the sign of the height tells which.
+    sign = np.where(inside | (height[i, j] >= 0.0), 1.0, -1.0)
+    distance = np.where(side, sign * height[i, j], to_vertex)
+    away = np.where(
+        side[:, None],
+        sign[:, None] * outward[i, j],
+        offset[i, j] / np.where(to_vertex > 0.0, to_vertex, 1.0)[:, None],
+    )
+    return distance, -away

@@ -1,0 +1,153 @@
+"""Detection: pymunk finds the pairs that may touch, in a private space with grown shapes (design section 7).
+
+pymunk reports a contact only where shapes overlap. The margin twin holds a copy of every solid shape, one twin body
+each, its radius grown by a margin of its own; the arbiters of the twin are then the pairs whose gap is below the sum
+of their margins. The list is a Verlet list: it stays complete until some shape has used its margin up.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pymunk
+from pymunk import batch
+
+from .bodies import BoolArray, Bodies, FloatArray, IntArray
+from .contacts import Pairs
+from .shapes import Shapes, shape_body
+
+_HASH_FROM = 200  # moving shapes from which a spatial hash pays (measured: equal cost near 150)
+_MOST_STATIC_CELLS = 200_000
+
+
+class MarginTwin:
+    """Candidate pairs of a space's shapes. Rebuild it when shapes come, go or change.
+
+    Margins are powers of two times a thousandth of the radius, and a disk's margin follows its own speed, so that one
+    fast disk does not make neighbours of everybody.
+    """
+
+    steps_ahead = 6.0  # steps a list should last where that asks for less than `lazy` radii
+    lazy = 0.3
+
+    def __init__(self, bodies: Bodies, shapes: Shapes, state: FloatArray) -> None:
+        self.bodies, self.shapes = bodies, shapes
+        self.detections = 0
+        self._static = state[bodies.static, :3]
+        self._disk: IntArray = np.flatnonzero(shapes.is_disk)
+        self._row: IntArray = shapes.row[self._disk]
+        self._unit: FloatArray = 1e-3 * np.maximum(shapes.radius[self._disk], np.finfo(float).tiny)
+        self._margin: FloatArray = np.zeros(len(self._disk))
+        self._center: FloatArray | None = None
+        self._pairs = Pairs(shapes, np.zeros(0, np.intp), np.zeros(0, np.intp))
+        self._buffer, self._out = batch.Buffer(), batch.Buffer()
+        self._build()
+
+    def _build(self) -> None:
+        space = pymunk.Space()
+        space.iterations = 1
+        # No push-out and no memory of old contacts: a step of the twin moves nothing and keeps only what it found.
+        space.collision_bias = 1.0
+        space.collision_persistence = 1
+        disks: list[tuple[pymunk.Body, pymunk.Circle]] = []
+        of_body: dict[int, int] = {}
+        twins: dict[int, pymunk.Body] = {}
+        for i, shape in enumerate(self.shapes.items):
+            owner = shape_body(shape)
+            disk = bool(self.shapes.is_disk[i])
+            twin = pymunk.Body(1.0, 1.0) if disk else pymunk.Body(body_type=pymunk.Body.STATIC)
+            twin.position, twin.angle = owner.position, owner.angle
+            copy = _copy(shape, twin)
+            copy.filter = shape.filter
+            space.add(twin, copy)
+            of_body[twin.id] = i
+            twins[i] = twin
+            if disk:
+                assert isinstance(copy, pymunk.Circle)  # check_shape lets only circles move
+                disks.append((twin, copy))
+        self._circles = [circle for _, circle in disks]
+        if len(disks) >= _HASH_FROM:
+            self._use_hash(space)
+        self._space = space
+        self._buffer.clear()
+        batch.get_space_bodies(space, batch.BodyFields.BODY_ID | batch.BodyFields.POSITION, self._buffer)
+        ids = np.frombuffer(self._buffer.int_buf(), dtype=np.uintp).astype(np.intp)
+        self._positions: FloatArray = np.frombuffer(self._buffer.float_buf()).reshape(-1, 2).copy()
+        order = np.array([of_body.get(int(i), -1) for i in ids], np.intp)
+        # Where each disk stands in pymunk's walk over the twin's bodies.
+        slot = {shape: place for place, shape in enumerate(order)}
+        self._slot: IntArray = np.array([slot[int(i)] for i in self._disk], np.intp)
+        self._sorted_ids = np.sort(ids)
+        self._shape_of: IntArray = order[np.argsort(ids)]
+
+    def _use_hash(self, space: pymunk.Space) -> None:
+        cell = 3.0 * float(np.median(self.shapes.radius[self._disk]))
+        boxes = [s.bb for s, disk in zip(self.shapes.items, self.shapes.is_disk, strict=True) if not disk]
+        cells = sum(((b.right - b.left) / cell + 1.0) * ((b.top - b.bottom) / cell + 1.0) for b in boxes)
+        # A hash puts a wall into every cell of its bounding box; where that is too many the tree is the better index.
+        if cells < _MOST_STATIC_CELLS:
+            space.use_spatial_hash(cell, 4 * len(self._disk))
+
+    def is_current(self, state: FloatArray) -> bool:
+        """False when a static body was moved since the twin was built."""
+        return bool(np.array_equal(self._static, state[self.bodies.static, :3]))
+
+    def candidates(self, position: FloatArray, reach: FloatArray) -> Pairs:
+        """Every pair whose gap can close within a step.
+
+        Args:
+            position: (N, 2) of the bodies at the start of the step.
+            reach: (N,) a bound of the length each body moves within the step.
+        """
+        center, reach = position[self._row], reach[self._row]
+        if self._center is None or self._used_up(center, reach):
+            self._detect(center, reach)
+        return self._pairs
+
+    def _used_up(self, center: FloatArray, reach: FloatArray) -> bool:
+        moved = center - self._center
+        used = np.sqrt(np.einsum("ij,ij->i", moved, moved)) + reach
+        return bool((used > self._margin).any())
+
+    def _detect(self, center: FloatArray, reach: FloatArray) -> None:
+        radius = self.shapes.radius[self._disk]
+        need = np.maximum(reach, np.minimum(self.steps_ahead * reach, self.lazy * radius))
+        # The relative 1e-9 keeps a pair that exactly reaches its margin, and covers round-off of far-away positions.
+        floor = 1e-9 * (np.abs(center).max(axis=1, initial=0.0) + radius)
+        need = np.maximum(need + floor, self._unit)
+        level = self._unit * np.exp2(np.ceil(np.log2(need / self._unit)))
+        changed = (level > self._margin) | (level < 0.25 * self._margin)
+        for i in np.flatnonzero(changed):
+            self._circles[i].unsafe_set_radius(float(radius[i] + level[i]))
+        self._margin[changed] = level[changed]
+        self._positions[self._slot] = center
+        self._out.set_float_buf(self._positions.reshape(-1))
+        batch.set_space_bodies(self._space, batch.BodyFields.POSITION, self._out)
+        self._space.step(1.0)
+        self._pairs = self._read_pairs()
+        self._center = center.copy()
+        self.detections += 1
+
+    def _read_pairs(self) -> Pairs:
+        self._buffer.clear()
+        fields = batch.ArbiterFields.BODY_A_ID | batch.ArbiterFields.BODY_B_ID
+        batch.get_space_arbiters(self._space, fields, self._buffer)
+        ids = np.frombuffer(self._buffer.int_buf(), dtype=np.uintp).astype(np.intp).reshape(-1, 2)
+        found = self._shape_of[np.searchsorted(self._sorted_ids, ids)]
+        low, high = found.min(axis=1), found.max(axis=1)
+        is_disk: BoolArray = self.shapes.is_disk
+        first = np.where(is_disk[low], low, high)
+        second = np.where(is_disk[low], high, low)
+        apart = self.shapes.row[first] != self.shapes.row[second]
+        first, second = first[apart], second[apart]
+        # Sorted, because the arbiters come in the order of memory addresses and results must not depend on it.
+        order = np.lexsort((second, first, ~is_disk[second]))
+        return Pairs(self.shapes, first[order], second[order])
+
+
+def _copy(shape: pymunk.Shape, twin: pymunk.Body) -> pymunk.Shape:
+    if isinstance(shape, pymunk.Circle):
+        return pymunk.Circle(twin, shape.radius, shape.offset)
+    if isinstance(shape, pymunk.Segment):
+        return pymunk.Segment(twin, shape.a, shape.b, shape.radius)
+    assert isinstance(shape, pymunk.Poly)  # check_shape let nothing else through
+    return pymunk.Poly(twin, shape.get_vertices(), radius=shape.radius)
