@@ -9,7 +9,7 @@ import numpy as np
 import pymunk
 
 from .bodies import ANGLE, ANGULAR_VELOCITY, FORCE, POSITION, TORQUE, VELOCITY, Bodies, FloatArray
-from .contacts import Contacts, Pairs
+from .contacts import Pairs
 from .detection import MarginTwin
 from .shapes import Shapes
 from .stepper import Stepper, StepReport, check_dt
@@ -132,11 +132,6 @@ class ArrayStepper(Stepper):
             space.step(dt)
         finally:
             space.gravity, space.iterations, space.collision_bias = gravity, iterations, bias
-
-    def contacts(self, bodies: Bodies, start: Start, pairs: Pairs, gap: FloatArray, time: FloatArray) -> Contacts:
-        """`Contacts` of pairs whose impulses act at (m,) `time` on the free flight."""
-        shape = pairs.between(*self.flight(start, pairs, time))
-        return Contacts(bodies.items, pairs.row_a, pairs.row_b, shape.normal, shape.point, gap, time)
 
     @staticmethod
     def flight(start: Start, pairs: Pairs, time: FloatArray) -> tuple[FloatArray, FloatArray]:

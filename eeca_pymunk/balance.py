@@ -29,12 +29,17 @@ def dashpot_sum(damping_ratio: float, reduced_frequency: FloatArray) -> FloatArr
     return 4.0 * damping_ratio / reduced_frequency
 
 
-def projected_increment(A: Delassus, delta_p: FloatArray) -> FloatArray:
-    """w (m,) = (n . Delta p_a)^2 / m_a + (n . Delta p_b)^2 / m_b of Eq. 20, energy; bodies at rest add nothing."""
-    along_a = np.einsum("ij,ij->i", A.normal, delta_p[A.row_a])
-    along_b = np.einsum("ij,ij->i", A.normal, delta_p[A.row_b])
-    result: FloatArray = along_a**2 * A.inverse_mass[A.row_a] + along_b**2 * A.inverse_mass[A.row_b]
-    return result
+def projected_product(A: Delassus, x: FloatArray, y: FloatArray) -> FloatArray:
+    """(m,) (n . x_a)(n . y_a) / m_a + (n . x_b)(n . y_b) / m_b of momenta x, y (R, 2); bodies at rest add nothing.
+
+    With x = y = Delta p this is w of Eq. 20, an energy.
+    """
+    total = np.zeros(A.size)
+    for rows in (A.row_a, A.row_b):
+        along_x = np.einsum("ij,ij->i", A.normal, x[rows])
+        along_y = along_x if y is x else np.einsum("ij,ij->i", A.normal, y[rows])
+        total += along_x * along_y * A.inverse_mass[rows]
+    return total
 
 
 @dataclass(frozen=True)
@@ -71,6 +76,8 @@ def weights(
 def extra_momentum(A: Delassus, psi2: FloatArray, delta_p: FloatArray) -> FloatArray:
     """p_c (R, 2) = sum over a body's contacts of 1/2 psi2 n n^T Delta p (Eq. 11)."""
     total = np.zeros_like(delta_p)
+    if not psi2.any():
+        return total
     for rows in (A.row_a, A.row_b):
         along = 0.5 * psi2 * np.einsum("ij,ij->i", A.normal, delta_p[rows])
         for axis in (0, 1):
@@ -97,52 +104,38 @@ class Lock:
 
 
 def energy_lock(
-    A: Delassus,
-    island: IntArray,
-    lam: FloatArray,
-    psi2: FloatArray,
-    velocity: FloatArray,
-    external: FloatArray,
-    loss: FloatArray,
+    A: Delassus, island: IntArray, lam: FloatArray, q: FloatArray, psi2: FloatArray, external: FloatArray
 ) -> Lock:
     """One scale s per island that makes the step exactly conservative whatever lam is (design section 5).
 
-    With J = G^T lam, F = dt f_ext, P x = sum_c 1/2 psi2 n n^T x and v_np1 = v_n + M^-1 (F + s J), the work balance
-    of the island, Delta E = s J . v_1/2 - F . M^-1 P (F + s J) - s `loss`, is the quadratic a s^2 + b s + c = 0 with
+    With J = G^T lam, F = dt f_ext and P x = sum_c 1/2 psi2 n n^T x, the bodies' energy changes over a step with the
+    impulses s J by s J . v_1/2 - F . M^-1 P (F + s J), where v_1/2 = v_n + 1/2 M^-1 (F + s J). Setting that equal to
+    the loss s 1/2 lam (1 - e) u_n of restitution gives a s^2 + b s + c = 0, a sum over the island's contacts, with
 
-        a = 1/2 J . M^-1 J,   b = J . (v_n + 1/2 M^-1 F) - F . M^-1 P J - loss,   c = -F . M^-1 P F.
+        a = 1/2 lam^T A lam,   b = 1/2 lam^T q - F . M^-1 P J,   c = -F . M^-1 P F.
 
-    Without psi2 this is s = -lam^T (e u_n + u*) / (lam^T A lam). The root nearer to 1 is taken.
+    Without psi2 or without external forces this is s = -lam^T q / (lam^T A lam). Of two roots the one nearer to 1 is
+    taken.
 
     Args:
-        velocity: (R, 2) v_n.  external: (R, 2) F, momentum.
-        loss: (m,) energy 1/2 lam (1 - e) u_n that restitution prescribes for each contact, <= 0.
+        q: (m,) e u_n + u*, velocity, of the rigid limit.
+        external: (R, 2) F, momentum.
     """
-    m_inv = A.inverse_mass[:, None]
-    J = A.impulse(lam)
-    PJ = extra_momentum(A, psi2, J)
-    PF = extra_momentum(A, psi2, external)
-    of_row = np.zeros(len(A.inverse_mass), np.intp)
     count = int(island.max(initial=-1)) + 1
-    for rows in (A.row_a, A.row_b):
-        moves = A.inverse_mass[rows] > 0
-        of_row[rows[moves]] = island[moves]
-
-    def per_island(x: FloatArray, y: FloatArray) -> FloatArray:
-        terms = np.einsum("ij,ij->i", x, y)
-        return np.bincount(of_row, terms, count)[:count]
-
-    a = 0.5 * per_island(J, J * m_inv)
-    b = per_island(J, (velocity + 0.5 * external * m_inv) * (m_inv > 0)) - per_island(external * m_inv, PJ)
-    b -= np.bincount(island, loss, count)
-    c = -per_island(external * m_inv, PF)
+    a = 0.5 * np.bincount(island, lam * (A @ lam), count)
+    b = 0.5 * np.bincount(island, lam * q, count)
     scale, valid = np.ones(count), np.zeros(count, bool)
-    real = (a > 0) & (b * b >= 4.0 * a * c)
-    a_, b_, c_ = a[real], b[real], c[real]
-    # Vieta's second root avoids the cancellation of the first.
-    larger = -0.5 * (b_ + np.copysign(np.sqrt(b_ * b_ - 4.0 * a_ * c_), b_))
-    r1 = larger / a_
-    r2 = np.divide(c_, larger, out=np.zeros_like(c_), where=larger != 0)
-    s = np.where(np.abs(r1 - 1.0) <= np.abs(r2 - 1.0), r1, r2)
-    scale[real], valid[real] = s, s > 0
+    if psi2.any() and external.any():
+        b -= np.bincount(island, 0.5 * psi2 * projected_product(A, external, A.impulse(lam)), count)
+        c = -np.bincount(island, 0.5 * psi2 * projected_product(A, external, external), count)
+        real = (a > 0) & (b * b >= 4.0 * a * c)
+        a, b, c = a[real], b[real], c[real]
+        # Vieta's second root avoids the cancellation of the first.
+        larger = -0.5 * (b + np.copysign(np.sqrt(b * b - 4.0 * a * c), b))
+        r1, r2 = larger / a, np.divide(c, larger, out=np.zeros_like(c), where=larger != 0)
+        scale[real] = np.where(np.abs(r1 - 1.0) <= np.abs(r2 - 1.0), r1, r2)
+    else:
+        real = a > 0
+        scale[real] = -b[real] / a[real]
+    valid[real] = scale[real] > 0
     return Lock(scale[island], valid[island])

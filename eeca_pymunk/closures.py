@@ -16,6 +16,7 @@ import numpy as np
 from . import balance
 from .bodies import FloatArray, IntArray
 from .complementarity import Delassus, Impulses, islands, solve
+from .contacts import Geometry
 
 
 @dataclass(frozen=True)
@@ -25,7 +26,7 @@ class Problem:
     Attributes:
         dt: time.  velocity: (R, 2) at n.  force: (R, 2) external.  mass, inverse_mass: (R,).
         row_a, row_b, gap, elasticity: (m,) of the contacts.
-        normal_at: (m,) instants in the step to (m, 2) normals on the free flight at these instants.
+        geometry_at: (m,) instants in the step to the geometry on the free flight at these instants.
     """
 
     dt: float
@@ -37,11 +38,11 @@ class Problem:
     row_b: IntArray
     gap: FloatArray
     elasticity: FloatArray
-    normal_at: Callable[[FloatArray], FloatArray]
+    geometry_at: Callable[[FloatArray], Geometry]
 
-    def operator(self, time: FloatArray) -> Delassus:
-        """The contacts as an operator, with normals of the free flight at (m,) `time`."""
-        return Delassus(self.row_a, self.row_b, self.normal_at(time), self.inverse_mass)
+    def operator(self, geometry: Geometry) -> Delassus:
+        """The contacts as an operator, with the normals of `geometry`."""
+        return Delassus(self.row_a, self.row_b, geometry.normal, self.inverse_mass)
 
     @property
     def external(self) -> FloatArray:
@@ -66,7 +67,8 @@ class Solution:
 
     Attributes:
         velocity: (R, 2) at n+1.  displacement: (R, 2) over the step.
-        impulse, psi1, psi2, gap_increment, time: (m,).  normal: (m, 2).
+        impulse, psi1, psi2, gap_increment, time: (m,).
+        geometry: normals and points where the impulses act.
         iterations: of the closure.  lock: the scale of the energy lock that lies farthest from 1.
     """
 
@@ -77,7 +79,7 @@ class Solution:
     psi2: FloatArray
     gap_increment: FloatArray
     time: FloatArray
-    normal: FloatArray
+    geometry: Geometry
     iterations: int
     lock: float
     converged: bool
@@ -102,15 +104,16 @@ class Midstep:
         max_iterations: of the complementarity problem.
     """
 
-    tolerance: float = 1e-10
+    tolerance: float = 1e-8
     max_iterations: int = 2000
 
     def solve(self, problem: Problem) -> Solution:
         zero = np.zeros_like(problem.gap)
-        A = problem.operator(balance.impulse_time(zero, problem.dt))
+        geometry = problem.geometry_at(balance.impulse_time(zero, problem.dt))
+        A = problem.operator(geometry)
         impulses = _rigid(A, problem, self.tolerance, self.max_iterations)
         weights = balance.Weights(np.full_like(zero, math.inf), zero, zero)
-        return _locked_motion(A, problem, impulses.lam, weights, impulses.iterations, impulses.converged)
+        return _locked_motion(A, geometry, problem, impulses.lam, weights, impulses.iterations, impulses.converged)
 
 
 @dataclass(frozen=True)
@@ -141,14 +144,16 @@ class Dashpot:
         dt, K = problem.dt, self.stiffness
         S = balance.dashpot_sum(self.damping_ratio, balance.reduced_frequency(K, problem.larger_mass, dt))
         psi2, increment, lam = np.zeros_like(S), np.zeros_like(S), np.zeros_like(S)
-        A = problem.operator(balance.impulse_time(psi2, dt))
+        geometry = problem.geometry_at(balance.impulse_time(psi2, dt))
+        A = problem.operator(geometry)
         converged, iteration = False, 0
         while not converged and iteration < self.max_iterations:
             iteration += 1
             p_c = balance.extra_momentum(A, psi2, problem.external + A.impulse(lam))
             q = _restitution(A, problem) + 2.0 * (A.relative(p_c * A.inverse_mass[:, None]) - increment / dt)
-            impulses = solve(A, q, start=lam, tolerance=0.1 * self.tolerance)
-            w = balance.projected_increment(A, problem.external + A.impulse(impulses.lam))
+            impulses = solve(A, q, problem.island, start=lam, tolerance=0.1 * self.tolerance)
+            delta_p = problem.external + A.impulse(impulses.lam)
+            w = balance.projected_product(A, delta_p, delta_p)
             new = balance.weights(impulses.lam, problem.gap, w, S, K, dt)
             change = np.max(np.abs(impulses.lam - lam))
             converged = bool(
@@ -158,8 +163,10 @@ class Dashpot:
             )
             lam, psi2, increment = impulses.lam, new.psi2, new.gap_increment
             # The motion takes these psi2 too: the kink it makes in a path lies where its normal was taken.
-            A = problem.operator(balance.impulse_time(psi2, dt))
-        return _locked_motion(A, problem, lam, balance.Weights(S - psi2, psi2, increment), iteration, converged)
+            geometry = problem.geometry_at(balance.impulse_time(psi2, dt))
+            A = problem.operator(geometry)
+        weights = balance.Weights(S - psi2, psi2, increment)
+        return _locked_motion(A, geometry, problem, lam, weights, iteration, converged)
 
 
 def check_stiffness(stiffness: float) -> None:
@@ -175,18 +182,23 @@ def _restitution(A: Delassus, problem: Problem) -> FloatArray:
     return balance.restitution_target(u_n, problem.elasticity) + u_free
 
 
-def _rigid(A: Delassus, problem: Problem, tolerance: float = 1e-10, max_iterations: int = 2000) -> Impulses:
-    return solve(A, _restitution(A, problem), tolerance=tolerance, max_iterations=max_iterations)
+def _rigid(A: Delassus, problem: Problem, tolerance: float = 1e-8, max_iterations: int = 2000) -> Impulses:
+    q = _restitution(A, problem)
+    return solve(A, q, problem.island, tolerance=tolerance, max_iterations=max_iterations)
 
 
 def _lock(A: Delassus, problem: Problem, lam: FloatArray, psi2: FloatArray) -> balance.Lock:
-    u_n = A.relative(problem.velocity)
-    loss = 0.5 * lam * (u_n - balance.restitution_target(u_n, problem.elasticity))
-    return balance.energy_lock(A, problem.island, lam, psi2, problem.velocity, problem.external, loss)
+    return balance.energy_lock(A, problem.island, lam, _restitution(A, problem), psi2, problem.external)
 
 
 def _locked_motion(
-    A: Delassus, problem: Problem, lam: FloatArray, weights: balance.Weights, iterations: int, converged: bool
+    A: Delassus,
+    geometry: Geometry,
+    problem: Problem,
+    lam: FloatArray,
+    weights: balance.Weights,
+    iterations: int,
+    converged: bool,
 ) -> Solution:
     """Scale the impulses by the energy lock, and move: Eq. 10 with v_np1 and p_c of the scaled impulses."""
     dt, psi1, psi2, increment = problem.dt, weights.psi1, weights.psi2, weights.gap_increment
@@ -195,19 +207,20 @@ def _locked_motion(
     if failed.any() and psi2.any():
         psi1, psi2 = np.where(failed, math.inf, psi1), np.where(failed, 0.0, psi2)
         increment, converged = np.where(failed, 0.0, increment), False
-        A = problem.operator(balance.impulse_time(psi2, dt))
+        geometry = problem.geometry_at(balance.impulse_time(psi2, dt))
+        A = problem.operator(geometry)
         lam = np.where(failed, _rigid(A, problem).lam, lam)
         lock = _lock(A, problem, lam, psi2)
     # In the rigid limit no impulse at all conserves energy too.
-    scale = np.where(lock.valid, lock.scale, 0.0)
-    worst = float(scale[np.argmax(np.abs(scale - 1.0) * (lam > 0))]) if (lam > 0).any() else 1.0
+    scale = np.where(lam > 0, np.where(lock.valid, lock.scale, 0.0), 1.0)
+    worst = float(scale[np.argmax(np.abs(scale - 1.0))])
     lam = scale * lam
     m_inv = A.inverse_mass[:, None]
     delta_p = problem.external + A.impulse(lam)
-    p_c = balance.extra_momentum(A, psi2, delta_p)
     velocity = problem.velocity + delta_p * m_inv
-    displacement = dt * (problem.velocity + 0.5 * delta_p * m_inv + p_c * m_inv)
+    displacement = (0.5 * dt) * (problem.velocity + velocity)
+    displacement += dt * balance.extra_momentum(A, psi2, delta_p) * m_inv
     return Solution(
-        velocity, displacement, lam, psi1, psi2, increment, balance.impulse_time(psi2, dt), A.normal,
+        velocity, displacement, lam, psi1, psi2, increment, balance.impulse_time(psi2, dt), geometry,
         iterations, worst, converged,
     )  # fmt: skip

@@ -12,7 +12,7 @@ import numpy as np
 import pymunk
 
 from .bodies import BoolArray, FloatArray, IntArray
-from .shapes import Shapes
+from .shapes import Shapes, Walls
 
 
 @dataclass(frozen=True)
@@ -43,6 +43,10 @@ class Geometry:
     normal: FloatArray
     point: FloatArray
 
+    def take(self, which: IntArray) -> Geometry:
+        """The geometry of the pairs `which`."""
+        return Geometry(self.gap[which], self.normal[which], self.point[which])
+
 
 class Pairs:
     """The pairs of shapes that may touch, disk-disk first, then disk-wall.
@@ -69,6 +73,15 @@ class Pairs:
         """The pairs selected by a mask or by increasing indices."""
         return Pairs(self.shapes, self.first[which], self.second[which])
 
+    def order(self, which: IntArray) -> IntArray:
+        """The indices `which` sorted by shapes: pymunk lists arbiters by memory address, results must not depend on it.
+
+        Disk-disk pairs stay before disk-wall pairs.
+        """
+        key = self.first[which] * len(self.shapes) + self.second[which]
+        key += np.where(which < self.disks, 0, len(self.shapes) ** 2)
+        return which[np.argsort(key)]
+
     def at(self, position: FloatArray) -> Geometry:
         """Geometry with the bodies at (N, 2) `position`."""
         return self.between(position[self.row_a], position[self.row_b])
@@ -92,7 +105,7 @@ class Pairs:
 def _disk_disk(a: FloatArray, b: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Distance (m,) of two centres and unit vector (m, 2) from a to b; coincident centres get the x axis."""
     d = b - a
-    distance = np.sqrt(np.einsum("ij,ij->i", d, d))
+    distance = np.sqrt((d * d).sum(axis=1))
     coincident = distance == 0.0
     if coincident.any():
         d[coincident] = (1.0, 0.0)
@@ -107,25 +120,35 @@ def _disk_wall(shapes: Shapes, wall: IntArray, center: FloatArray) -> tuple[Floa
     a polygon leaves through the nearest side.
     """
     walls = shapes.walls
-    rel = center[:, None, :] - walls.start[wall]
-    edge, outward = walls.edge[wall], walls.outward[wall]
-    height = np.einsum("ikj,ikj->ik", rel, outward)
-    along = np.einsum("ikj,ikj->ik", rel, edge) / walls.length_squared[wall]
-    offset = rel - np.clip(along, 0.0, 1.0)[..., None] * edge
-    squared = np.einsum("ikj,ikj->ik", offset, offset)
-    i = np.arange(len(wall))
-    top = np.argmax(height, axis=1)
-    inside = height[i, top] < 0.0
-    j = np.where(inside, top, np.argmin(squared, axis=1))
-    side = inside | ((along[i, j] > 0.0) & (along[i, j] < 1.0))
-    to_vertex = np.sqrt(squared[i, j])
-    side |= to_vertex == 0.0
-    # Of a segment's two edges the first is picked on either side of it: the sign of the height tells which.
-    sign = np.where(inside | (height[i, j] >= 0.0), 1.0, -1.0)
-    distance = np.where(side, sign * height[i, j], to_vertex)
-    away = np.where(
-        side[:, None],
-        sign[:, None] * outward[i, j],
-        offset[i, j] / np.where(to_vertex > 0.0, to_vertex, 1.0)[:, None],
-    )
+    edge_index, inside = _nearest_edge(walls, wall, center)
+    rel = center - walls.start[wall, edge_index]
+    edge, outward = walls.edge[wall, edge_index], walls.outward[wall, edge_index]
+    height = (rel * outward).sum(axis=1)
+    along = (rel * edge).sum(axis=1) / walls.length_squared[wall, edge_index]
+    side = inside | ((along > 0.0) & (along < 1.0))
+    # The first of a segment's two edges serves both its sides: the sign of the height tells which.
+    sign = np.where(inside | (height >= 0.0), 1.0, -1.0)
+    distance = sign * height
+    away = sign[:, None] * outward
+    corner = np.flatnonzero(~side)
+    if len(corner):
+        offset = rel[corner] - np.clip(along[corner], 0.0, 1.0)[:, None] * edge[corner]
+        to_vertex = np.sqrt((offset * offset).sum(axis=1))
+        distance[corner] = to_vertex
+        off = to_vertex > 0.0
+        away[corner[off]] = offset[off] / to_vertex[off, None]
     return distance, -away
+
+
+def _nearest_edge(walls: Walls, wall: IntArray, center: FloatArray) -> tuple[IntArray, BoolArray]:
+    """Index (m,) of the outline's edge nearest to the centre, and whether (m,) the centre is inside."""
+    if walls.start.shape[1] == 2:
+        return np.zeros(len(wall), np.intp), np.zeros(len(wall), bool)
+    rel = center[:, None, :] - walls.start[wall]
+    edge = walls.edge[wall]
+    height = (rel * walls.outward[wall]).sum(axis=2)
+    along = (rel * edge).sum(axis=2) / walls.length_squared[wall]
+    offset = rel - np.clip(along, 0.0, 1.0)[..., None] * edge
+    highest = np.argmax(height, axis=1)
+    inside: BoolArray = height[np.arange(len(wall)), highest] < 0.0
+    return np.where(inside, highest, np.argmin((offset * offset).sum(axis=2), axis=1)), inside

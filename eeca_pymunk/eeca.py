@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pymunk
 
 from .arrays import ArrayStepper, Motion, Start
-from .bodies import Bodies, BoolArray, FloatArray
+from .bodies import Bodies, BoolArray, FloatArray, IntArray
 from .closures import Closure, Midstep, Problem, Solution
 from .complementarity import restrict
 from .contacts import Contacts, Geometry, Pairs
@@ -39,15 +37,10 @@ class EECA(ArrayStepper):
     def advance(self, bodies: Bodies, start: Start, twin: MarginTwin) -> Motion:
         velocity = start.velocity + start.dt * start.acceleration
         displacement = start.free_displacement
-        reach = np.sqrt(np.einsum("ij,ij->i", displacement, displacement))
-        # The path of a thrown body can be longer than its chord.
-        reach += (0.125 * start.dt**2) * np.sqrt(np.einsum("ij,ij->i", start.acceleration, start.acceleration))
-        pairs = twin.candidates(start.position, reach)
         free = StepReport.without_contacts(self.time + start.dt, bodies.items)
-        if len(pairs) == 0:
-            return Motion(velocity, displacement, free)
-        before = pairs.at(start.position)
-        active = (before.gap <= touching(pairs, start)) | closing(pairs, before, start, displacement)
+        pairs, before = near_pairs(twin, start, displacement)
+        tolerance = touching(start.position)[pairs.row_a] + _TOUCHING * (pairs.radius_a + pairs.radius_b)
+        active = (before.gap <= tolerance) | closing(pairs, before, tolerance, start, displacement)
         if not active.any():
             return Motion(velocity, displacement, free)
         for _ in range(1 + self.passes):
@@ -56,31 +49,33 @@ class EECA(ArrayStepper):
             solution, rows = self._solve(bodies, start, chosen, before, which)
             moved = displacement.copy()
             moved[rows] = solution.displacement
-            joining = closing(pairs, before, start, moved) & ~active
+            joining = closing(pairs, before, tolerance, start, moved) & ~active
             if not joining.any():
                 break
             active |= joining
         velocity[rows] = solution.velocity
-        contacts = self.contacts(bodies, start, chosen, before.gap[which], solution.time)
-        contacts = replace(contacts, normal=solution.normal)
+        at = solution.geometry
+        contacts = Contacts(
+            bodies.items, chosen.row_a, chosen.row_b, at.normal, at.point, before.gap[which], solution.time
+        )
         return Motion(velocity, moved, self._report(free.time, contacts, solution))
 
     def _solve(
-        self, bodies: Bodies, start: Start, chosen: Pairs, before: Geometry, which: FloatArray
-    ) -> tuple[Solution, FloatArray]:
+        self, bodies: Bodies, start: Start, chosen: Pairs, before: Geometry, which: IntArray
+    ) -> tuple[Solution, IntArray]:
         rows, row_a, row_b = restrict(chosen.row_a, chosen.row_b)
         facing = before.normal[which]
 
-        def normal_at(time: FloatArray) -> FloatArray:
-            normal = chosen.between(*self.flight(start, chosen, time)).normal
+        def geometry_at(time: FloatArray) -> Geometry:
+            at = chosen.between(*self.flight(start, chosen, time))
             # A centre that has crossed a wall by then is still pushed back to the side it came from.
-            behind = np.einsum("ij,ij->i", normal, facing) < 0
-            normal[behind] = facing[behind]
-            return normal
+            behind = (at.normal * facing).sum(axis=1) < 0
+            at.normal[behind] = facing[behind]
+            return at
 
         problem = Problem(
             start.dt, start.velocity[rows], start.force[rows], bodies.mass[rows], bodies.inverse_mass[rows],
-            row_a, row_b, before.gap[which], chosen.elasticity, normal_at,
+            row_a, row_b, before.gap[which], chosen.elasticity, geometry_at,
         )  # fmt: skip
         return self.closure.solve(problem), rows
 
@@ -92,17 +87,34 @@ class EECA(ArrayStepper):
         )  # fmt: skip
 
 
-def touching(pairs: Pairs, start: Start) -> FloatArray:
-    """(m,) length below which a gap is round-off of positions and radii."""
-    extent = np.abs(start.position[pairs.row_a]).max(axis=1, initial=0.0) + pairs.radius_a + pairs.radius_b
-    return _TOUCHING * extent
+def near_pairs(twin: MarginTwin, start: Start, displacement: FloatArray) -> tuple[Pairs, Geometry]:
+    """The pairs that can meet within the step, and their geometry at its start.
+
+    A body's reach is the length of its free flight; impulses can send it twice as far (an elastic hit by a heavier
+    body), which the factor 2 covers for the contacts that impulses close.
+    """
+    # The path of a thrown body can be longer than its chord.
+    bow = (0.125 * start.dt**2) * np.sqrt((start.acceleration * start.acceleration).sum(axis=1))
+    reach = np.sqrt((displacement * displacement).sum(axis=1)) + bow + touching(start.position)
+    pairs = twin.candidates(start.position, reach)
+    before = pairs.at(start.position)
+    near = pairs.order(np.flatnonzero(before.gap <= 2.0 * (reach[pairs.row_a] + reach[pairs.row_b])))
+    return pairs.take(near), before.take(near)
 
 
-def closing(pairs: Pairs, before: Geometry, start: Start, displacement: FloatArray) -> BoolArray:
+def touching(position: FloatArray) -> FloatArray:
+    """(N,) length below which a gap is round-off of positions."""
+    result: FloatArray = _TOUCHING * np.maximum(np.abs(position[:, 0]), np.abs(position[:, 1]))
+    return result
+
+
+def closing(
+    pairs: Pairs, before: Geometry, tolerance: FloatArray, start: Start, displacement: FloatArray
+) -> BoolArray:
     """(m,) whether a displacement of the bodies closes the pair: overlap at its end, or the sides exchanged on the way."""
     after = pairs.at(start.position + displacement)
-    closed: BoolArray = after.gap < -touching(pairs, start)
-    crossed = np.einsum("ij,ij->i", before.normal, after.normal) < 0
+    closed: BoolArray = after.gap < -tolerance
+    crossed = (before.normal * after.normal).sum(axis=1) < 0
     if crossed.any():
         middle = pairs.at(start.position + 0.5 * displacement)
         closed |= crossed & (middle.gap < 0)

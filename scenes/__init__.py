@@ -1,0 +1,28 @@
+"""The paper's problems as pymunk spaces: `scenes.build(name, **parameters) -> Scene`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from . import carom, cradle, hopper, pool_break, signorini
+from .scene import Scene
+
+_BUILDERS: dict[str, Callable[..., Scene]] = {
+    "signorini": signorini.build,
+    "carom": carom.build,
+    "cradle": cradle.build,
+    "pool_break": pool_break.build,
+    "hopper": hopper.build,
+}
+NAMES = tuple(_BUILDERS)
+
+
+def build(name: str, **parameters: Any) -> Scene:
+    """Build a scene by name; ValueError for an unknown name or parameter value."""
+    if name not in _BUILDERS:
+        raise ValueError(f"unknown scene {name!r}: choose one of {', '.join(NAMES)}")
+    return _BUILDERS[name](**parameters)
+
+
+__all__ = ["NAMES", "Scene", "build"]
