@@ -1,4 +1,9 @@
-"""Energy and momentum conserving time stepping (EECA) for pymunk spaces."""
+"""Energy and momentum conserving time stepping (EECA) for pymunk spaces.
+
+`eeca_pymunk.render` draws; it is a module of its own because it imports matplotlib.
+"""
+
+from types import ModuleType
 
 from .closures import Closure, Dashpot, Midstep
 from .contacts import Contacts
@@ -6,6 +11,9 @@ from .eeca import EECA
 from .errors import UnsupportedFeature
 from .invariants import Invariants, measure
 from .native import Native
+from .newmark import Newmark
+from .penalty import PenaltyEnergyMomentum
+from .recording import Recording, record
 from .stepper import Stepper, StepReport
 
 __all__ = [
@@ -16,8 +24,22 @@ __all__ = [
     "Invariants",
     "Midstep",
     "Native",
+    "Newmark",
+    "PenaltyEnergyMomentum",
+    "Recording",
     "StepReport",
     "Stepper",
     "UnsupportedFeature",
     "measure",
+    "record",
+    "render",
 ]
+
+
+def __getattr__(name: str) -> ModuleType:
+    # matplotlib takes longer to import than everything else: only who draws pays for it.
+    if name == "render":
+        from importlib import import_module
+
+        return import_module(".render", __name__)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .bodies import FloatArray, IntArray
+from .bodies import BoolArray, FloatArray, IntArray
 from .complementarity import Delassus
 
 
@@ -51,9 +51,7 @@ class Weights:
     gap_increment: FloatArray
 
 
-def weights(
-    lam: FloatArray, gap: FloatArray, w: FloatArray, S: FloatArray, stiffness: float, dt: float
-) -> Weights:
+def weights(lam: FloatArray, gap: FloatArray, w: FloatArray, S: FloatArray, stiffness: float, dt: float) -> Weights:
     """Delta g, psi2 and psi1 from the impulse: the balance (Eq. 20) and the dashpot (Eq. 28) solved together.
 
     Inserting psi2 = kappa Delta g with kappa = 2 lam / (dt w), and psi1 = S - psi2, into the contact force gives
@@ -68,8 +66,10 @@ def weights(
     kappa = np.divide(2.0 * lam, dt * w, out=np.zeros_like(lam), where=closed)
     h = 2.0 * (lam / (dt * stiffness) + np.minimum(gap, 0.0))
     root = np.sqrt(np.maximum((1.0 + S) ** 2 + 4.0 * kappa * h, 0.0))
-    increment = np.where(closed, -2.0 * h / ((1.0 + S) + root), 0.0)
-    psi2 = np.clip(kappa * increment, -1.0, 1.0)
+    free = -2.0 * h / ((1.0 + S) + root)
+    psi2 = np.clip(kappa * free, -1.0, 1.0)
+    # Where psi2 is clamped the balance, not the dashpot, gives Delta g: energy comes before the penalty law.
+    increment = np.where(closed, np.divide(psi2, kappa, out=free, where=np.abs(psi2) == 1.0), 0.0)
     return Weights(S - psi2, psi2, increment)
 
 
@@ -100,7 +100,7 @@ class Lock:
     """The energy lock: `scale` (m,) for each contact's impulse, and `valid` (m,) where a positive scale exists."""
 
     scale: FloatArray
-    valid: FloatArray
+    valid: BoolArray
 
 
 def energy_lock(

@@ -14,14 +14,7 @@ IntArray: TypeAlias = npt.NDArray[np.intp]
 BoolArray: TypeAlias = npt.NDArray[np.bool_]
 
 _FIELDS = batch.BodyFields
-_STATE = (
-    _FIELDS.POSITION
-    | _FIELDS.ANGLE
-    | _FIELDS.VELOCITY
-    | _FIELDS.ANGULAR_VELOCITY
-    | _FIELDS.FORCE
-    | _FIELDS.TORQUE
-)
+_STATE = _FIELDS.POSITION | _FIELDS.ANGLE | _FIELDS.VELOCITY | _FIELDS.ANGULAR_VELOCITY | _FIELDS.FORCE | _FIELDS.TORQUE
 # Columns of one row of the state, in the order pymunk.batch writes them.
 POSITION, ANGLE, VELOCITY = slice(0, 2), 2, slice(3, 5)
 ANGULAR_VELOCITY, FORCE, TORQUE = 5, slice(6, 8), 8

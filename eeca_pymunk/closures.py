@@ -25,7 +25,7 @@ class Problem:
 
     Attributes:
         dt: time.  velocity: (R, 2) at n.  force: (R, 2) external.  mass, inverse_mass: (R,).
-        row_a, row_b, gap, elasticity: (m,) of the contacts.
+        row_a, row_b, gap, elasticity: (m,) of the contacts.  guess: (m,) of the impulses, 0 where unknown.
         geometry_at: (m,) instants in the step to the geometry on the free flight at these instants.
     """
 
@@ -38,6 +38,7 @@ class Problem:
     row_b: IntArray
     gap: FloatArray
     elasticity: FloatArray
+    guess: FloatArray
     geometry_at: Callable[[FloatArray], Geometry]
 
     def operator(self, geometry: Geometry) -> Delassus:
@@ -132,8 +133,8 @@ class Dashpot:
 
     stiffness: float
     damping_ratio: float
-    tolerance: float = 1e-10
-    max_iterations: int = 40
+    tolerance: float = 1e-8
+    max_iterations: int = 25
 
     def __post_init__(self) -> None:
         check_stiffness(self.stiffness)
@@ -143,7 +144,7 @@ class Dashpot:
     def solve(self, problem: Problem) -> Solution:
         dt, K = problem.dt, self.stiffness
         S = balance.dashpot_sum(self.damping_ratio, balance.reduced_frequency(K, problem.larger_mass, dt))
-        psi2, increment, lam = np.zeros_like(S), np.zeros_like(S), np.zeros_like(S)
+        psi2, increment, lam = np.zeros_like(S), np.zeros_like(S), problem.guess
         geometry = problem.geometry_at(balance.impulse_time(psi2, dt))
         A = problem.operator(geometry)
         converged, iteration = False, 0
@@ -151,7 +152,7 @@ class Dashpot:
             iteration += 1
             p_c = balance.extra_momentum(A, psi2, problem.external + A.impulse(lam))
             q = _restitution(A, problem) + 2.0 * (A.relative(p_c * A.inverse_mass[:, None]) - increment / dt)
-            impulses = solve(A, q, problem.island, start=lam, tolerance=0.1 * self.tolerance)
+            impulses = solve(A, q, problem.island, start=lam, tolerance=0.1 * self.tolerance, max_iterations=300)
             delta_p = problem.external + A.impulse(impulses.lam)
             w = balance.projected_product(A, delta_p, delta_p)
             new = balance.weights(impulses.lam, problem.gap, w, S, K, dt)
@@ -184,7 +185,7 @@ def _restitution(A: Delassus, problem: Problem) -> FloatArray:
 
 def _rigid(A: Delassus, problem: Problem, tolerance: float = 1e-8, max_iterations: int = 2000) -> Impulses:
     q = _restitution(A, problem)
-    return solve(A, q, problem.island, tolerance=tolerance, max_iterations=max_iterations)
+    return solve(A, q, problem.island, start=problem.guess, tolerance=tolerance, max_iterations=max_iterations)
 
 
 def _lock(A: Delassus, problem: Problem, lam: FloatArray, psi2: FloatArray) -> balance.Lock:

@@ -18,7 +18,7 @@ class Delassus:
 
     Args:
         row_a, row_b: (m,) rows of the bodies of each contact.
-        normal: (m, 2) unit vectors from a to b.
+        normal: (m, 2) vectors from a to b of length <= 1.
         inverse_mass: (R,) 1/mass, 0 for bodies that do not move.
     """
 
@@ -57,8 +57,8 @@ class Delassus:
         i = np.arange(m)
         G[i, :, self.row_b] += self.normal
         G[i, :, self.row_a] -= self.normal
-        G = G.reshape(m, 2 * count)
-        result: FloatArray = (G * np.tile(self.inverse_mass, 2)) @ G.T
+        flat = G.reshape(m, 2 * count)
+        result: FloatArray = (flat * np.tile(self.inverse_mass, 2)) @ flat.T
         return result
 
     def take(self, which: IntArray) -> Delassus:
@@ -68,7 +68,8 @@ class Delassus:
 
     def diagonal(self) -> FloatArray:
         """(m,) the diagonal of A, 1/mass."""
-        result: FloatArray = self.inverse_mass[self.row_a] + self.inverse_mass[self.row_b]
+        square = self._x * self._x + self._y * self._y
+        result: FloatArray = square * (self.inverse_mass[self.row_a] + self.inverse_mass[self.row_b])
         return result
 
     def row_bound(self) -> FloatArray:

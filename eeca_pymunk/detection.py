@@ -80,7 +80,7 @@ class MarginTwin:
         self._shape_of: IntArray = order[np.argsort(ids)]
 
     def _use_hash(self, space: pymunk.Space) -> None:
-        cell = 3.0 * float(np.median(self.shapes.radius[self._disk]))
+        cell = 5.0 * float(np.median(self.shapes.radius[self._disk]))
         boxes = [s.bb for s, disk in zip(self.shapes.items, self.shapes.is_disk, strict=True) if not disk]
         cells = sum(((b.right - b.left) / cell + 1.0) * ((b.top - b.bottom) / cell + 1.0) for b in boxes)
         # A hash puts a wall into every cell of its bounding box; where that is too many the tree is the better index.
@@ -99,11 +99,13 @@ class MarginTwin:
             reach: (N,) a bound of the length each body moves within the step.
         """
         center, reach = position[self._row], reach[self._row]
-        if self._center is None or self._used_up(center, reach):
+        if self._used_up(center, reach):
             self._detect(center, reach)
         return self._pairs
 
     def _used_up(self, center: FloatArray, reach: FloatArray) -> bool:
+        if self._center is None:
+            return True
         moved = center - self._center
         used = np.sqrt(np.einsum("ij,ij->i", moved, moved)) + reach
         return bool((used > self._margin).any())

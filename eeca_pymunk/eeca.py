@@ -43,16 +43,18 @@ class EECA(ArrayStepper):
         active = (before.gap <= tolerance) | closing(pairs, before, tolerance, start, displacement)
         if not active.any():
             return Motion(velocity, displacement, free)
+        guess = np.zeros(len(pairs))
         for _ in range(1 + self.passes):
             which = np.flatnonzero(active)
             chosen = pairs.take(which)
-            solution, rows = self._solve(bodies, start, chosen, before, which)
+            solution, rows = self._solve(bodies, start, chosen, before, which, guess[which])
             moved = displacement.copy()
             moved[rows] = solution.displacement
             joining = closing(pairs, before, tolerance, start, moved) & ~active
             if not joining.any():
                 break
             active |= joining
+            guess[which] = solution.impulse
         velocity[rows] = solution.velocity
         at = solution.geometry
         contacts = Contacts(
@@ -61,7 +63,7 @@ class EECA(ArrayStepper):
         return Motion(velocity, moved, self._report(free.time, contacts, solution))
 
     def _solve(
-        self, bodies: Bodies, start: Start, chosen: Pairs, before: Geometry, which: IntArray
+        self, bodies: Bodies, start: Start, chosen: Pairs, before: Geometry, which: IntArray, guess: FloatArray
     ) -> tuple[Solution, IntArray]:
         rows, row_a, row_b = restrict(chosen.row_a, chosen.row_b)
         facing = before.normal[which]
@@ -75,7 +77,7 @@ class EECA(ArrayStepper):
 
         problem = Problem(
             start.dt, start.velocity[rows], start.force[rows], bodies.mass[rows], bodies.inverse_mass[rows],
-            row_a, row_b, before.gap[which], chosen.elasticity, geometry_at,
+            row_a, row_b, before.gap[which], chosen.elasticity, guess, geometry_at,
         )  # fmt: skip
         return self.closure.solve(problem), rows
 
@@ -108,10 +110,8 @@ def touching(position: FloatArray) -> FloatArray:
     return result
 
 
-def closing(
-    pairs: Pairs, before: Geometry, tolerance: FloatArray, start: Start, displacement: FloatArray
-) -> BoolArray:
-    """(m,) whether a displacement of the bodies closes the pair: overlap at its end, or the sides exchanged on the way."""
+def closing(pairs: Pairs, before: Geometry, tolerance: FloatArray, start: Start, displacement: FloatArray) -> BoolArray:
+    """(m,) whether a displacement of the bodies closes the pair: overlap at its end, or sides exchanged on the way."""
     after = pairs.at(start.position + displacement)
     closed: BoolArray = after.gap < -tolerance
     crossed = (before.normal * after.normal).sum(axis=1) < 0

@@ -12,6 +12,10 @@ from .stepper import Stepper, StepReport, check_dt
 class Native(Stepper):
     """`space.step(dt)`, with bad input refused instead of accepted silently."""
 
+    def __init__(self, space: pymunk.Space) -> None:
+        super().__init__(space)
+        self._bodies: Bodies | None = None
+
     def step(self, dt: float) -> StepReport:
         dt = check_dt(dt)
         if dt == 0.0:
@@ -27,10 +31,6 @@ class Native(Stepper):
         self.space.step(dt)
         self.time += dt
         return StepReport.without_contacts(self.time, self._bodies.items)
-
-    def __init__(self, space: pymunk.Space) -> None:
-        super().__init__(space)
-        self._bodies: Bodies | None = None
 
 
 def tune(space: pymunk.Space, iterations: int = 50) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pymunk
 
-from .bodies import BoolArray, Bodies, FloatArray, IntArray
+from .bodies import Bodies, BoolArray, FloatArray, IntArray
 from .errors import UnsupportedFeature
 
 

@@ -9,7 +9,7 @@ import pymunk
 from .scene import Scene, add_disk, add_walls
 
 COLUMNS, LAYERS, RADIUS, SIDE, ANGLE, GRAVITY = 35, 19, 0.004, 1.0, math.radians(30.0), 9.81
-SPACING = 1.1  # centre distance of the staggered array in diameters: "slightly separated"
+SPACING = 1.05  # centre distance of the staggered array in diameters: "slightly separated"
 BOTTOM = 0.32  # height of the lowest layer above the apex, where the array is narrower than the hopper
 
 

@@ -1,0 +1,66 @@
+"""Where a comparison's results go: tables on the terminal, CSV and PNG in a folder."""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Mapping, Sequence
+from datetime import date
+from pathlib import Path
+
+from matplotlib.figure import Figure
+
+from eeca_pymunk.recording import versions
+
+Value = str | int | float | bool | None
+Row = Mapping[str, Value]
+
+
+class Output:
+    """The results of one comparison. OSError if the folder cannot be written, before anything runs."""
+
+    def __init__(self, name: str, folder: Path) -> None:
+        self.name, self.folder = name, folder
+        folder.mkdir(parents=True, exist_ok=True)
+        probe = folder / f".{name}.probe"
+        probe.touch()
+        probe.unlink()
+        used = ", ".join(f"{k} {v}" for k, v in versions().items())
+        print(f"# {name}, {date.today().isoformat()}: {used}")
+
+    def parameters(self, values: Mapping[str, object]) -> None:
+        """Print the parameters of the runs that follow."""
+        print("# " + ", ".join(f"{k} = {v}" for k, v in values.items()))
+
+    def table(self, title: str, rows: Sequence[Row], file: str = "") -> None:
+        """Print the rows as a table and write them to NAME[_file].csv."""
+        columns = list(rows[0])
+        cells = [columns] + [[_text(row[c]) for c in columns] for row in rows]
+        width = [max(len(line[i]) for line in cells) for i in range(len(columns))]
+        print(f"\n{title}")
+        for number, line in enumerate(cells):
+            print("  ".join(c.ljust(w) if i == 0 else c.rjust(w) for i, (c, w) in enumerate(zip(line, width))).rstrip())
+            if number == 0:
+                print("  ".join("-" * w for w in width))
+        path = self.path("csv", file)
+        with path.open("w", newline="") as stream:
+            writer = csv.DictWriter(stream, columns)
+            writer.writeheader()
+            writer.writerows(rows)
+        print(f"-> {path}")
+
+    def picture(self, figure: Figure, file: str = "") -> None:
+        """Write the figure to NAME[_file].png."""
+        path = self.path("png", file)
+        figure.savefig(path, dpi=110)
+        print(f"-> {path}")
+
+    def path(self, suffix: str, file: str = "") -> Path:
+        """The file of a result."""
+        return self.folder / f"{self.name}{'_' if file else ''}{file}.{suffix}"
+
+
+def _text(value: Value) -> str:
+    if value is None or (isinstance(value, float) and math.isnan(value)):
+        return "-"
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
