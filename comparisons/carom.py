@@ -37,8 +37,8 @@ class Track:
         self.turned = max(self.turned, abs(angle - self.first))
         if t <= SHOWN:
             self.time.append(t)
-            self.position.append(tuple(body.position))
-            self.velocity.append(tuple(body.velocity))
+            self.position.append(body.position)
+            self.velocity.append(body.velocity)
             self.energy.append(now.energy)
 
 

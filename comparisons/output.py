@@ -39,7 +39,9 @@ class Output:
         width = [max(len(line[i]) for line in cells) for i in range(len(columns))]
         print(f"\n{title}")
         for number, line in enumerate(cells):
-            print("  ".join(c.ljust(w) if i == 0 else c.rjust(w) for i, (c, w) in enumerate(zip(line, width))).rstrip())
+            padded = [c.rjust(w) for c, w in zip(line, width, strict=True)]
+            padded[0] = line[0].ljust(width[0])
+            print("  ".join(padded).rstrip())
             if number == 0:
                 print("  ".join("-" * w for w in width))
         path = self.path("csv", file)
@@ -52,7 +54,7 @@ class Output:
     def picture(self, figure: Figure, file: str = "") -> None:
         """Write the figure to NAME[_file].png."""
         path = self.path("png", file)
-        figure.savefig(path, dpi=110)
+        figure.savefig(path)
         print(f"-> {path}")
 
     def path(self, suffix: str, file: str = "") -> Path:

@@ -133,7 +133,8 @@ def run(
 
 def speeds(scene: Scene) -> FloatArray:
     """(N,) speed of the scene's bodies now, m/s."""
-    return np.linalg.norm(np.array([b.velocity for b in scene.bodies]), axis=1)
+    result: FloatArray = np.linalg.norm(np.array([b.velocity for b in scene.bodies]), axis=1)
+    return result
 
 
 def slope(x: FloatArray, y: FloatArray) -> float:

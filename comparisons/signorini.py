@@ -70,7 +70,12 @@ def run(output: Output, full: bool) -> None:
         history: list[tuple[float, float, float]] = []
 
         def observe(
-            k: int, t: float, s: Scene, report: ep.StepReport | None, now: Invariants, history: list[tuple[float, float, float]] = history
+            k: int,
+            t: float,
+            s: Scene,
+            report: ep.StepReport | None,
+            now: Invariants,
+            history: list[tuple[float, float, float]] = history,
         ) -> None:
             gap = min(s.bodies[0].position.y - scenes.signorini.RADIUS, 0.0)
             history.append((t, now.energy, 0.5 * s.stiffness * gap * gap))

@@ -11,7 +11,7 @@ import pymunk
 from .bodies import ANGLE, ANGULAR_VELOCITY, FORCE, POSITION, TORQUE, VELOCITY, Bodies, FloatArray
 from .contacts import Pairs
 from .detection import MarginTwin
-from .shapes import Shapes
+from .shapes import Shapes, check_space
 from .stepper import Stepper, StepReport, check_dt
 
 
@@ -75,6 +75,7 @@ class ArrayStepper(Stepper):
 
     def _gather(self) -> tuple[MarginTwin, FloatArray]:
         """The space's state, checked, and the twin that belongs to it."""
+        check_space(self.space)
         twin = self._twin
         if twin is not None and twin.shapes.key == list(self.space.shapes):
             state = twin.bodies.gather()

@@ -16,7 +16,7 @@ MOVING, STATIC, ARROW = "#0072b2", "#444444", "#d55e00"  # from the colour-blind
 
 def figure(width: float, height: float) -> Figure:
     """A figure of `width` x `height` inches that needs no display."""
-    result = Figure(figsize=(width, height), layout="constrained")
+    result = Figure(figsize=(width, height), dpi=110, layout="constrained")
     FigureCanvasAgg(result)
     return result
 
@@ -81,5 +81,5 @@ def snapshot(
         ax.set_ylim(view[2], view[3])
     ax.set_title(title)
     if path is not None:
-        ax.get_figure(root=True).savefig(path, dpi=110)  # type: ignore[union-attr]
+        ax.get_figure(root=True).savefig(path)  # type: ignore[union-attr]
     return ax

@@ -48,7 +48,6 @@ class Shapes:
     """
 
     def __init__(self, space: pymunk.Space, bodies: Bodies) -> None:
-        check_space(space)
         self.key: list[pymunk.Shape] = list(space.shapes)
         self.items: list[pymunk.Shape] = [s for s in self.key if not s.sensor]
         check_bodies(bodies, self.items)

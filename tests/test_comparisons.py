@@ -1,0 +1,116 @@
+"""The command line, scenes by name, and pictures."""
+
+from __future__ import annotations
+
+import csv
+import os
+import re
+import runpy
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import eeca_pymunk as ep
+import scenes
+from comparisons.__main__ import NAMES, main
+from comparisons.hopper import crossed, deepest_overlap
+
+
+def test_no_name_lists_all(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([]) == 0
+    listed = capsys.readouterr().out
+    assert all(name in listed for name in NAMES)
+
+
+def test_unknown_comparison(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["nonsense", "--out", str(tmp_path / "new")]) == 2
+    assert "unknown comparison 'nonsense': choose one of signorini" in capsys.readouterr().err
+    assert not (tmp_path / "new").exists()
+
+
+def test_unwritable_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "file").touch()
+    assert main(["carom", "--out", str(tmp_path / "file" / "below")]) == 2
+    assert "file" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", ["signorini", "cradle"])
+def test_comparison_writes_table_and_pictures(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([name, "--out", str(tmp_path)]) == 0
+    printed = capsys.readouterr().out
+    for stepper in ("EECA Midstep", "native default", "native tuned 50", "trapezoidal", "max dissipation"):
+        assert stepper in printed
+    assert f"pymunk {ep.recording.versions()['pymunk']}" in printed
+    with (tmp_path / f"{name}.csv").open() as stream:
+        rows = list(csv.DictReader(stream))
+    drift = {row["stepper"]: float(row["max |dE/E|"]) for row in rows}
+    assert drift["EECA Midstep"] <= 1e-13
+    assert drift["max dissipation"] > 0.1
+    pictures = list(tmp_path.glob("*.png"))
+    assert pictures
+    assert all(p.read_bytes()[:4] == b"\x89PNG" for p in pictures)
+
+
+def test_unknown_scene_and_parameters() -> None:
+    with pytest.raises(ValueError, match="unknown scene 'nonsense': choose one of signorini, carom"):
+        scenes.build("nonsense")
+    with pytest.raises(ValueError, match="hypothesis = 'iv'"):
+        scenes.build("cradle", hypothesis="iv")
+    with pytest.raises(ValueError, match="case = 'iv'"):
+        scenes.build("pool_break", case="iv")
+
+
+@pytest.mark.parametrize("name", scenes.NAMES)
+def test_scenes_start_without_overlap_and_on_their_exact_solution(name: str) -> None:
+    scene = scenes.build(name)
+    exact = scene.exact(0.0)
+    position = np.array([b.position for b in scene.bodies])
+    if exact is not None:
+        np.testing.assert_allclose(position, exact, atol=1e-15)
+    report = ep.EECA(scene.space).step(1e-9)
+    assert len(report.contacts) == 0 or report.contacts.gap.min() > -1e-12
+    assert scene.dt > 0
+    assert scene.duration > scene.dt
+
+
+def test_hopper_has_the_papers_665_disks() -> None:
+    assert len(scenes.build("hopper").bodies) == 665
+
+
+def test_leaks_and_overlaps_are_seen() -> None:
+    inside, outside = np.array([[0.0, 0.5]]), np.array([[0.5, 0.5]])
+    assert crossed(inside, outside).all()
+    assert not crossed(inside, inside + 0.01).any()
+    assert not crossed(np.array([[0.0, 1.0]]), np.array([[0.9, 1.0]])).any()  # over the rim
+    assert deepest_overlap(np.array([[0.0, 0.0], [0.006, 0.0]])) == pytest.approx(0.5)
+    assert deepest_overlap(np.array([[0.0, 0.0], [0.009, 0.0]])) == 0.0
+
+
+def test_snapshot_draws_disks_to_scale_without_display(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from matplotlib.image import imread
+
+    monkeypatch.delenv("DISPLAY", raising=False)
+    space = scenes.build("signorini").space
+    ax = ep.render.snapshot(space, path=tmp_path / "disk.png", momentum=True, view=(-0.5, 0.5, -0.1, 0.9))
+    image = imread(tmp_path / "disk.png")
+    x, y = ax.transData.transform((0.03, 0.1))
+    inside = image[image.shape[0] - 1 - round(float(y)), round(float(x)), :3]
+    x, y = ax.transData.transform((0.12, 0.1))
+    outside = image[image.shape[0] - 1 - round(float(y)), round(float(x)), :3]
+    np.testing.assert_allclose(inside, (0.0, 0x72 / 255, 0xB2 / 255), atol=0.02)
+    np.testing.assert_allclose(outside, 1.0)
+
+
+def test_readme_example_runs(tmp_path: Path) -> None:
+    readme = (Path(__file__).parents[1] / "README.md").read_text()
+    examples = re.findall(r"```python\n(.*?)```", readme, flags=re.DOTALL)
+    assert examples
+    folder = os.getcwd()
+    try:
+        os.chdir(tmp_path)
+        for i, code in enumerate(examples):
+            (tmp_path / f"example_{i}.py").write_text(code)
+            runpy.run_path(str(tmp_path / f"example_{i}.py"))
+    finally:
+        os.chdir(folder)

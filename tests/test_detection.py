@@ -1,0 +1,122 @@
+"""The margin twin: gaps against pymunk's arbiters, and completeness of the pair list."""
+
+from __future__ import annotations
+
+import numpy as np
+import pymunk
+import pytest
+from pymunk import batch
+
+from eeca_pymunk.bodies import Bodies
+from eeca_pymunk.detection import MarginTwin
+from eeca_pymunk.shapes import Shapes
+from scenes.scene import add_disk
+
+MARGIN = 2.0
+SQUARE = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)]
+
+
+def wall(space: pymunk.Space, kind: str, grown: float) -> pymunk.Shape:
+    body = pymunk.Body(body_type=pymunk.Body.STATIC)
+    body.position, body.angle = (0.3, -0.2), 0.7
+    shape: pymunk.Shape = {
+        "circle": lambda: pymunk.Circle(body, 0.4 + grown, (0.1, 0.2)),
+        "segment": lambda: pymunk.Segment(body, (-0.5, 0.0), (0.6, 0.1), grown),
+        "capsule": lambda: pymunk.Segment(body, (-0.5, 0.0), (0.6, 0.1), 0.15 + grown),
+        "box": lambda: pymunk.Poly(body, SQUARE, radius=grown),
+        "rounded": lambda: pymunk.Poly(body, SQUARE, radius=0.2 + grown),
+    }[kind]()
+    space.add(body, shape)
+    return shape
+
+
+@pytest.mark.parametrize("kind", ["circle", "segment", "capsule", "box", "rounded"])
+@pytest.mark.parametrize("seed", range(12))
+def test_gap_normal_and_point_are_those_of_grown_arbiters(kind: str, seed: int) -> None:
+    # pymunk reports distance, normal and points of the shapes grown by half a margin each: an independent geometry.
+    rng = np.random.default_rng(seed)
+    angle, distance = rng.uniform(0, 2 * np.pi), rng.uniform(0.75, 1.1)
+    position = (0.3 + distance * np.cos(angle), -0.2 + distance * np.sin(angle))
+    grown, plain = pymunk.Space(), pymunk.Space()
+    for space, growth in ((grown, MARGIN / 2), (plain, 0.0)):
+        add_disk(space, position, 0.1 + growth)
+        wall(space, kind, growth)
+    grown.step(1e-30)
+    buffer = batch.Buffer()
+    fields = batch.ArbiterFields
+    batch.get_space_arbiters(
+        grown, fields.BODY_A_ID | fields.NORMAL | fields.DISTANCE_1 | fields.POINT_A_1 | fields.POINT_B_1, buffer
+    )
+    data = np.frombuffer(buffer.float_buf())
+    disk = next(b for b in grown.bodies if b.body_type == pymunk.Body.DYNAMIC)
+    first = np.frombuffer(buffer.int_buf(), dtype=np.uintp)[0] == disk.id
+    normal = data[:2] if first else -data[:2]
+    # Fields come in the order of their declaration: normal, point a, point b, distance.
+    middle = 0.5 * (data[2:4] + data[4:6])
+
+    bodies = Bodies(plain)
+    state = bodies.gather()
+    assert state is not None
+    twin = MarginTwin(bodies, Shapes(plain, bodies), state)
+    pairs = twin.candidates(state[:, :2], np.full(len(bodies), 2.0))
+    at = pairs.at(state[:, :2])
+    assert len(pairs) == 1
+    assert at.gap[0] == pytest.approx(data[6] + MARGIN, abs=1e-12)
+    np.testing.assert_allclose(at.normal[0], normal, atol=1e-12)
+    np.testing.assert_allclose(at.point[0], middle, atol=1e-12)
+
+
+def test_disk_inside_polygon_leaves_through_nearest_side() -> None:
+    space = pymunk.Space()
+    space.add(pymunk.Poly(space.static_body, SQUARE))
+    add_disk(space, (0.4, 0.1), 0.05)
+    bodies = Bodies(space)
+    state = bodies.gather()
+    assert state is not None
+    pairs = MarginTwin(bodies, Shapes(space, bodies), state).candidates(state[:, :2], np.zeros(len(bodies)))
+    at = pairs.at(state[:, :2])
+    assert at.gap[0] == pytest.approx(-0.15)
+    np.testing.assert_allclose(at.normal[0], (-1.0, 0.0), atol=1e-15)
+
+
+@pytest.mark.parametrize("disks", [30, 400])  # tree and spatial hash
+def test_list_holds_every_pair_in_reach_while_disks_move(disks: int) -> None:
+    rng = np.random.default_rng(7)
+    space = pymunk.Space()
+    radius = rng.uniform(0.005, 0.02, disks)
+    x = rng.uniform(0, 1, (disks, 2))
+    v = rng.normal(size=(disks, 2)) * rng.choice([0.1, 10.0], (disks, 1))  # slow ones and a few fast ones
+    for xi, ri in zip(x, radius, strict=True):
+        add_disk(space, tuple(xi), ri)
+    bodies = Bodies(space)
+    state = bodies.gather()
+    assert state is not None
+    twin = MarginTwin(bodies, Shapes(space, bodies), state)
+    reach = 1e-3 * np.linalg.norm(v, axis=1)
+    rows = np.array([bodies.row[b] for b in space.bodies])
+    order = np.argsort(rows)
+    for _ in range(40):
+        pairs = twin.candidates(x[order], reach[order])
+        listed = {frozenset(p) for p in zip(pairs.row_a.tolist(), pairs.row_b.tolist(), strict=True)}
+        d = np.linalg.norm(x[:, None] - x[None], axis=2) - radius[:, None] - radius
+        near = d <= reach[:, None] + reach
+        for i, j in np.argwhere(np.triu(near, 1)):
+            assert frozenset((int(rows[i]), int(rows[j]))) in listed
+        x = x + 1e-3 * v
+    if disks == 30:
+        assert twin.detections <= 40
+
+
+def test_slow_scene_is_detected_rarely() -> None:
+    space = pymunk.Space()
+    for i in range(20):
+        add_disk(space, (i, 0.0), 0.1)
+    bodies = Bodies(space)
+    state = bodies.gather()
+    assert state is not None
+    twin = MarginTwin(bodies, Shapes(space, bodies), state)
+    x = state[:, :2].copy()
+    for _ in range(60):
+        twin.candidates(x, np.full(len(x), 1e-3))
+        x[:, 0] += 1e-3
+    assert twin.detections <= 12
