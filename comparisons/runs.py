@@ -22,6 +22,7 @@ from scenes import Scene
 
 FloatArray = npt.NDArray[np.float64]
 Make = Callable[[pymunk.Space], ep.Stepper]
+BLOWN_UP = 100.0  # change of the energy relative to the start
 Observe = Callable[[int, float, Scene, ep.StepReport | None, Invariants], None]
 
 
@@ -92,7 +93,7 @@ def run(
     observe: Observe | None = None,
 ) -> Run:
     """Step `scene` and measure it. `observe(step, time, scene, report, invariants)` is called at the start and after
-    every step, outside the clock. A run whose energy overflows stops there: the penalty baselines may blow up."""
+    every step, outside the clock. A run stops where its energy has blown up, as that of the penalty baselines may."""
     dt = scene.dt if dt is None else dt
     duration = scene.duration if duration is None else duration
     count = step_count(duration, dt)
@@ -122,7 +123,7 @@ def run(
         momentum = max(momentum, float(np.abs(end.linear_momentum - start.linear_momentum).max()) / scale_p)
         if observe:
             observe(k, k * dt, scene, report, end)
-        if drift > 1e6:
+        if drift > BLOWN_UP:
             failed = k * dt
             break
     exact = scene.exact(count * dt)

@@ -6,7 +6,6 @@ import numpy as np
 import pymunk
 
 from .bodies import FloatArray
-from .complementarity import solve
 from .penalty import PenaltyStepper, Springs
 
 
@@ -23,6 +22,8 @@ class Newmark(PenaltyStepper):
         beta: 0 < beta <= 1/2.  gamma: 0 <= gamma <= 1.
         sync: see `ArrayStepper`.
     """
+
+    tolerance = 1e-8
 
     def __init__(self, space: pymunk.Space, stiffness: float, beta: float, gamma: float, *, sync: bool = True) -> None:
         if not 0.0 < beta <= 0.5:
@@ -54,8 +55,9 @@ class Newmark(PenaltyStepper):
         for iteration in range(1, self.max_iterations + 1):
             # f = -K g_np1 where closed, with g_np1 linear in f about the trial: a problem with compliance.
             A = springs.operator(springs.after.normal)
+            on = np.flatnonzero((springs.after.gap < 0) | (f > 0))
             q = springs.after.gap / (beta * dt * dt) - A @ f
-            new = solve(A, q, springs.island, 1.0 / (K * beta * dt * dt), f, 1e-14).lam
+            new = springs.solve(A, on, q[on], 1.0 / (K * beta * dt * dt), f[on])
             change, f = np.max(np.abs(new - f)), new
             a_np1 = springs.acceleration + A.impulse(f) * m_inv
             velocity = springs.start_velocity + dt * ((1.0 - gamma) * a_n + gamma * a_np1)
