@@ -8,14 +8,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Protocol
 
 import numpy as np
 
 from . import balance
 from .bodies import FloatArray, IntArray
-from .complementarity import Delassus, Impulses, islands, solve
+from .complementarity import Delassus, islands, solve
 from .contacts import Geometry
 
 
@@ -49,11 +48,6 @@ class Problem:
     def external(self) -> FloatArray:
         """(R, 2) momentum from external forces, dt f_ext."""
         return self.dt * self.force
-
-    @cached_property
-    def island(self) -> IntArray:
-        """(m,) label of the island of every contact."""
-        return islands(self.row_a, self.row_b, self.inverse_mass)
 
     @property
     def larger_mass(self) -> FloatArray:
@@ -112,9 +106,10 @@ class Midstep:
         zero = np.zeros_like(problem.gap)
         geometry = problem.geometry_at(balance.impulse_time(zero, problem.dt))
         A = problem.operator(geometry)
-        impulses = _rigid(A, problem, self.tolerance, self.max_iterations)
+        q = _restitution(A, problem)
+        impulses = solve(A, q, start=problem.guess, tolerance=self.tolerance, max_iterations=self.max_iterations)
         weights = balance.Weights(np.full_like(zero, math.inf), zero, zero)
-        return _locked_motion(A, geometry, problem, impulses.lam, weights, impulses.iterations, impulses.converged)
+        return _locked_motion(A, geometry, problem, impulses.lam, weights, impulses.iterations, impulses.converged, q)
 
 
 @dataclass(frozen=True)
@@ -152,7 +147,7 @@ class Dashpot:
             iteration += 1
             p_c = balance.extra_momentum(A, psi2, problem.external + A.impulse(lam))
             q = _restitution(A, problem) + 2.0 * (A.relative(p_c * A.inverse_mass[:, None]) - increment / dt)
-            impulses = solve(A, q, problem.island, start=lam, tolerance=0.1 * self.tolerance, max_iterations=300)
+            impulses = solve(A, q, start=lam, tolerance=0.1 * self.tolerance, max_iterations=300)
             delta_p = problem.external + A.impulse(impulses.lam)
             w = balance.projected_product(A, delta_p, delta_p)
             new = balance.weights(impulses.lam, problem.gap, w, S, K, dt)
@@ -183,15 +178,6 @@ def _restitution(A: Delassus, problem: Problem) -> FloatArray:
     return balance.restitution_target(u_n, problem.elasticity) + u_free
 
 
-def _rigid(A: Delassus, problem: Problem, tolerance: float = 1e-8, max_iterations: int = 2000) -> Impulses:
-    q = _restitution(A, problem)
-    return solve(A, q, problem.island, start=problem.guess, tolerance=tolerance, max_iterations=max_iterations)
-
-
-def _lock(A: Delassus, problem: Problem, lam: FloatArray, psi2: FloatArray) -> balance.Lock:
-    return balance.energy_lock(A, problem.island, lam, _restitution(A, problem), psi2, problem.external)
-
-
 def _locked_motion(
     A: Delassus,
     geometry: Geometry,
@@ -200,18 +186,26 @@ def _locked_motion(
     weights: balance.Weights,
     iterations: int,
     converged: bool,
+    q: FloatArray | None = None,
 ) -> Solution:
-    """Scale the impulses by the energy lock, and move: Eq. 10 with v_np1 and p_c of the scaled impulses."""
+    """Scale the impulses by the energy lock, and move: Eq. 10 with v_np1 and p_c of the scaled impulses.
+
+    `q` (m,) is e u_n + u* of the rigid limit, computed if None.
+    """
     dt, psi1, psi2, increment = problem.dt, weights.psi1, weights.psi2, weights.gap_increment
-    lock = _lock(A, problem, lam, psi2)
+    q = _restitution(A, problem) if q is None else q
+    # Impulses that meet their tolerance need no lock of their own for each island: it would be 1 in all of them.
+    island = np.zeros(len(lam), np.intp) if converged else islands(problem.row_a, problem.row_b, problem.inverse_mass)
+    lock = balance.energy_lock(A, island, lam, q, psi2, problem.external)
     failed = ~lock.valid & (lam > 0)
     if failed.any() and psi2.any():
         psi1, psi2 = np.where(failed, math.inf, psi1), np.where(failed, 0.0, psi2)
         increment, converged = np.where(failed, 0.0, increment), False
         geometry = problem.geometry_at(balance.impulse_time(psi2, dt))
         A = problem.operator(geometry)
-        lam = np.where(failed, _rigid(A, problem).lam, lam)
-        lock = _lock(A, problem, lam, psi2)
+        q = _restitution(A, problem)
+        lam = np.where(failed, solve(A, q, tolerance=Midstep.tolerance).lam, lam)
+        lock = balance.energy_lock(A, island, lam, q, psi2, problem.external)
     # In the rigid limit no impulse at all conserves energy too.
     scale = np.where(lam > 0, np.where(lock.valid, lock.scale, 0.0), 1.0)
     worst = float(scale[np.argmax(np.abs(scale - 1.0))])

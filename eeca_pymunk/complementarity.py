@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .bodies import FloatArray, IntArray
+from .bodies import BoolArray, FloatArray, IntArray
 
 
 class Delassus:
@@ -52,13 +52,12 @@ class Delassus:
 
     def dense(self) -> FloatArray:
         """A as an (m, m) array."""
-        m, count = self.size, len(self.inverse_mass)
-        G = np.zeros((m, 2, count))
-        i = np.arange(m)
-        G[i, :, self.row_b] += self.normal
-        G[i, :, self.row_a] -= self.normal
-        flat = G.reshape(m, 2 * count)
-        result: FloatArray = (flat * np.tile(self.inverse_mass, 2)) @ flat.T
+        incidence = np.zeros((self.size, len(self.inverse_mass)))
+        i = np.arange(self.size)
+        incidence[i, self.row_b] += 1.0
+        incidence[i, self.row_a] -= 1.0
+        # A_ij = (n_i . n_j) times the signed inverse mass of the bodies that both contacts share.
+        result: FloatArray = ((incidence * self.inverse_mass) @ incidence.T) * (self.normal @ self.normal.T)
         return result
 
     def take(self, which: IntArray) -> Delassus:
@@ -70,6 +69,12 @@ class Delassus:
         """(m,) the diagonal of A, 1/mass."""
         square = self._x * self._x + self._y * self._y
         result: FloatArray = square * (self.inverse_mass[self.row_a] + self.inverse_mass[self.row_b])
+        return result
+
+    def shares_body(self) -> BoolArray:
+        """(m,) whether a moving body of the contact has other contacts too."""
+        degree = np.bincount(self._rows, minlength=len(self.inverse_mass)) * (self.inverse_mass > 0)
+        result: BoolArray = (degree[self.row_a] > 1) | (degree[self.row_b] > 1)
         return result
 
     def row_bound(self) -> FloatArray:
@@ -90,12 +95,12 @@ class Impulses:
 
 _DENSE = 160  # contacts up to which pivoting beats projected gradients (measured on the hopper)
 _PIVOTS = 25
+_SINGULAR = 1e8  # growth of a solution that tells a singular matrix
 
 
 def solve(
     A: Delassus,
     q: FloatArray,
-    island: IntArray,
     compliance: FloatArray | float = 0.0,
     start: FloatArray | None = None,
     tolerance: float = 1e-12,
@@ -107,7 +112,7 @@ def solve(
     where that fails (redundant contacts make A singular), and for many, by projected gradients.
 
     Args:
-        q: (m,) velocity.  island: (m,) labels from `islands`.  compliance: (m,) or scalar >= 0, 1/mass.
+        q: (m,) velocity.  compliance: (m,) or scalar >= 0, 1/mass.
         start: (m,) first guess of lam, 0 if None.
         tolerance: bound of the residual, a velocity, relative to max |q|.
         max_iterations: of the projected gradients.
@@ -116,12 +121,19 @@ def solve(
     if not approaching.any():
         return Impulses(np.zeros(A.size), 0, True)
     compliance = np.broadcast_to(compliance, A.size)
-    # Exact for a contact alone in its island; a start for nothing else.
+    # Exact for a contact that shares no moving body with another.
     lam = np.where(approaching, -q, 0.0) / (A.diagonal() + compliance)
-    coupled = np.flatnonzero((np.bincount(island)[island] > 1) & (np.bincount(island, approaching)[island] > 0))
+    coupled = np.flatnonzero(A.shares_body())
     if len(coupled) == 0:
         return Impulses(lam, 1, True)
-    part, limit = A.take(coupled), tolerance * float(np.abs(q).max())
+    part = A.take(coupled)
+    label = islands(part.row_a, part.row_b, part.inverse_mass)
+    # An island in which nothing approaches needs no impulse.
+    pressed = np.bincount(label, approaching[coupled])[label] > 0
+    if not pressed.all():
+        coupled = coupled[pressed]
+        part = A.take(coupled)
+    limit = tolerance * float(np.abs(q).max())
     q_part, c_part = q[coupled], compliance[coupled]
     result = pivot(part.dense() + np.diag(c_part), q_part, limit) if len(coupled) <= _DENSE else None
     if result is None:
@@ -143,16 +155,18 @@ def pivot(A: FloatArray, q: FloatArray, limit: float) -> Impulses | None:
     for iteration in range(1, _PIVOTS + 1):
         lam[:] = 0.0
         k = np.flatnonzero(closed)
+        # The second right-hand side is generic: it shows a singular matrix, whose impulses would be arbitrary.
+        right = np.stack((-q[k], diagonal[k] * np.cos(k)), axis=1)
         try:
-            lam[k] = np.linalg.solve(A[k[:, None], k], -q[k])
+            both = np.linalg.solve(A[k[:, None], k], right)
         except np.linalg.LinAlgError:
             return None
+        if np.abs(both[:, 1]).max(initial=0.0) > _SINGULAR:
+            return None
+        lam[k] = both[:, 0]
         wrong = np.where(closed, lam * diagonal, A @ lam + q) < -limit
         if not wrong.any():
-            lam = np.maximum(lam, 0.0)
-            # A nearly singular solve passes the signs and fails here.
-            residual = np.abs(np.minimum(lam * diagonal, A @ lam + q)).max()
-            return Impulses(lam, iteration, True) if residual <= limit else None
+            return Impulses(np.maximum(lam, 0.0), iteration, True)
         closed ^= wrong
     return None
 

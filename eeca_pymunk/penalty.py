@@ -10,7 +10,7 @@ import pymunk
 from .arrays import ArrayStepper, Motion, Start
 from .bodies import Bodies, FloatArray, IntArray
 from .closures import check_stiffness
-from .complementarity import Delassus, islands, restrict, solve
+from .complementarity import Delassus, restrict, solve
 from .contacts import Contacts, Geometry, Pairs
 from .detection import MarginTwin
 from .eeca import near_pairs
@@ -105,9 +105,8 @@ class Springs:
         result = np.zeros(A.size)
         if len(on):
             part = A.take(on)
-            island = islands(part.row_a, part.row_b, part.inverse_mass)
             # The next trial starts where this one ends, so it need not be finished.
-            result[on] = solve(part, q, island, compliance, guess, 1e-14, max_iterations=100).lam
+            result[on] = solve(part, q, compliance, guess, 1e-14, max_iterations=100).lam
         return result
 
     def discrete_normal(self) -> FloatArray:
