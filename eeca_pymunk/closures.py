@@ -99,7 +99,7 @@ class Midstep:
         max_iterations: of the complementarity problem.
     """
 
-    tolerance: float = 1e-8
+    tolerance: float = 1e-6
     max_iterations: int = 2000
 
     def solve(self, problem: Problem) -> Solution:

@@ -37,15 +37,25 @@ class Contacts:
 
 @dataclass(frozen=True)
 class Geometry:
-    """Gap (m,) length, normal (m, 2) from a to b, and point (m, 2) of every pair at one configuration."""
+    """Gap (m,) length and normal (m, 2) from a to b of every pair at one configuration; `center` (m, 2) is that of a.
+
+    `radius` (m,) is that of a.
+    """
 
     gap: FloatArray
     normal: FloatArray
-    point: FloatArray
+    center: FloatArray
+    radius: FloatArray
+
+    @property
+    def point(self) -> FloatArray:
+        """(m, 2) length, halfway between the two surfaces."""
+        result: FloatArray = self.center + (self.radius + 0.5 * self.gap)[:, None] * self.normal
+        return result
 
     def take(self, which: IntArray) -> Geometry:
         """The geometry of the pairs `which`."""
-        return Geometry(self.gap[which], self.normal[which], self.point[which])
+        return Geometry(self.gap[which], self.normal[which], self.center[which], self.radius[which])
 
 
 class Pairs:
@@ -61,13 +71,18 @@ class Pairs:
         self.row_a: IntArray = shapes.row[first]
         self.row_b: IntArray = shapes.row[second]
         self.radius_a: FloatArray = shapes.radius[first]
-        self.radius_b: FloatArray = shapes.radius[second]
-        self.elasticity: FloatArray = shapes.elasticity[first] * shapes.elasticity[second]
+        self.extent: FloatArray = self.radius_a + shapes.radius[second]
         self.wall: IntArray = shapes.wall[second]
         self.disks = int(np.count_nonzero(self.wall < 0))
 
     def __len__(self) -> int:
         return len(self.first)
+
+    @property
+    def elasticity(self) -> FloatArray:
+        """(m,) the product of the two shapes' elasticities, as in pymunk."""
+        result: FloatArray = self.shapes.elasticity[self.first] * self.shapes.elasticity[self.second]
+        return result
 
     def take(self, which: BoolArray | IntArray) -> Pairs:
         """The pairs selected by a mask or by increasing indices."""
@@ -97,15 +112,13 @@ class Pairs:
             d_disk, n_disk = _disk_disk(center_a[:k], center_b[:k])
             d_wall, n_wall = _disk_wall(self.shapes, self.wall[k:], center_a[k:])
             distance, toward = np.concatenate((d_disk, d_wall)), np.concatenate((n_disk, n_wall))
-        gap = distance - self.radius_a - self.radius_b
-        point = center_a + (self.radius_a + 0.5 * gap)[:, None] * toward
-        return Geometry(gap, toward, point)
+        return Geometry(distance - self.extent, toward, center_a, self.radius_a)
 
 
 def _disk_disk(a: FloatArray, b: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Distance (m,) of two centres and unit vector (m, 2) from a to b; coincident centres get the x axis."""
     d = b - a
-    distance = np.sqrt((d * d).sum(axis=1))
+    distance = np.sqrt(d[:, 0] * d[:, 0] + d[:, 1] * d[:, 1])
     coincident = distance == 0.0
     if coincident.any():
         d[coincident] = (1.0, 0.0)
@@ -120,11 +133,11 @@ def _disk_wall(shapes: Shapes, wall: IntArray, center: FloatArray) -> tuple[Floa
     a polygon leaves through the nearest side.
     """
     walls = shapes.walls
-    edge_index, inside = _nearest_edge(walls, wall, center)
-    rel = center - walls.start[wall, edge_index]
-    edge, outward = walls.edge[wall, edge_index], walls.outward[wall, edge_index]
-    height = (rel * outward).sum(axis=1)
-    along = (rel * edge).sum(axis=1) / walls.length_squared[wall, edge_index]
+    which, inside = _nearest_edge(walls, wall, center)
+    rel = center - walls.flat_start[which]
+    edge, outward = walls.flat_edge[which], walls.flat_outward[which]
+    height = rel[:, 0] * outward[:, 0] + rel[:, 1] * outward[:, 1]
+    along = (rel[:, 0] * edge[:, 0] + rel[:, 1] * edge[:, 1]) / walls.flat_length_squared[which]
     side = inside | ((along > 0.0) & (along < 1.0))
     # The first of a segment's two edges serves both its sides: the sign of the height tells which.
     sign = np.where(inside | (height >= 0.0), 1.0, -1.0)
@@ -141,9 +154,10 @@ def _disk_wall(shapes: Shapes, wall: IntArray, center: FloatArray) -> tuple[Floa
 
 
 def _nearest_edge(walls: Walls, wall: IntArray, center: FloatArray) -> tuple[IntArray, BoolArray]:
-    """Index (m,) of the outline's edge nearest to the centre, and whether (m,) the centre is inside."""
-    if walls.start.shape[1] == 2:
-        return np.zeros(len(wall), np.intp), np.zeros(len(wall), bool)
+    """Flat index (m,) of the outline's edge nearest to the centre, and whether (m,) the centre is inside."""
+    width = walls.start.shape[1]
+    if width == 2:
+        return width * wall, np.zeros(len(wall), bool)
     rel = center[:, None, :] - walls.start[wall]
     edge = walls.edge[wall]
     height = (rel * walls.outward[wall]).sum(axis=2)
@@ -151,4 +165,5 @@ def _nearest_edge(walls: Walls, wall: IntArray, center: FloatArray) -> tuple[Int
     offset = rel - np.clip(along, 0.0, 1.0)[..., None] * edge
     highest = np.argmax(height, axis=1)
     inside: BoolArray = height[np.arange(len(wall)), highest] < 0.0
-    return np.where(inside, highest, np.argmin((offset * offset).sum(axis=2), axis=1)), inside
+    nearest = np.argmin((offset * offset).sum(axis=2), axis=1)
+    return width * wall + np.where(inside, highest, nearest), inside

@@ -39,7 +39,7 @@ class EECA(ArrayStepper):
         displacement = start.free_displacement
         free = StepReport.without_contacts(self.time + start.dt, bodies.items)
         pairs, before = near_pairs(twin, start, displacement)
-        tolerance = touching(start.position)[pairs.row_a] + _TOUCHING * (pairs.radius_a + pairs.radius_b)
+        tolerance = touching(start.position)[pairs.row_a] + _TOUCHING * pairs.extent
         active = (before.gap <= tolerance) | closing(pairs, before, tolerance, start, displacement)
         if not active.any():
             return Motion(velocity, displacement, free)
@@ -71,8 +71,9 @@ class EECA(ArrayStepper):
         def geometry_at(time: FloatArray) -> Geometry:
             at = chosen.between(*self.flight(start, chosen, time))
             # A centre that has crossed a wall by then is still pushed back to the side it came from.
-            behind = (at.normal * facing).sum(axis=1) < 0
-            at.normal[behind] = facing[behind]
+            behind = at.normal[:, 0] * facing[:, 0] + at.normal[:, 1] * facing[:, 1] < 0
+            if behind.any():
+                at.normal[behind] = facing[behind]
             return at
 
         problem = Problem(
@@ -114,7 +115,7 @@ def closing(pairs: Pairs, before: Geometry, tolerance: FloatArray, start: Start,
     """(m,) whether a displacement of the bodies closes the pair: overlap at its end, or sides exchanged on the way."""
     after = pairs.at(start.position + displacement)
     closed: BoolArray = after.gap < -tolerance
-    crossed = (before.normal * after.normal).sum(axis=1) < 0
+    crossed = before.normal[:, 0] * after.normal[:, 0] + before.normal[:, 1] * after.normal[:, 1] < 0
     if crossed.any():
         middle = pairs.at(start.position + 0.5 * displacement)
         closed |= crossed & (middle.gap < 0)

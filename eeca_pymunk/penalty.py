@@ -78,7 +78,6 @@ class Springs:
         self.row_a, self.row_b, self.inverse_mass = row_a, row_b, inverse_mass
         self.start_position, self.start_velocity = start.position[rows], start.velocity[rows]
         self.acceleration = start.acceleration[rows]
-        self._extent = pairs.radius_a + pairs.radius_b
         self.move(start.free_displacement[rows], self.start_velocity + start.dt * self.acceleration)
 
     def move(self, displacement: FloatArray, velocity: FloatArray) -> None:
@@ -92,8 +91,8 @@ class Springs:
             middle = self.start_position + 0.5 * displacement
             through &= self.pairs.between(middle[self.row_a], middle[self.row_b]).gap < 0
         normal = np.where(through[:, None], -after.normal, after.normal)
-        gap = np.where(through, -after.gap - 2.0 * self._extent, after.gap)
-        self.after = Geometry(gap, normal, after.point)
+        gap = np.where(through, -after.gap - 2.0 * self.pairs.extent, after.gap)
+        self.after = Geometry(gap, normal, after.center, after.radius)
 
     def operator(self, normal: FloatArray) -> Delassus:
         return Delassus(self.row_a, self.row_b, normal, self.inverse_mass)
@@ -114,7 +113,7 @@ class Springs:
 
         The mean of the vectors between centres at both ends over their mean length; shorter than 1 if they turned.
         """
-        d_n, d_np1 = self.before.gap + self._extent, self.after.gap + self._extent
+        d_n, d_np1 = self.before.gap + self.pairs.extent, self.after.gap + self.pairs.extent
         total = np.abs(d_n) + np.abs(d_np1)
         weighted = d_n[:, None] * self.before.normal + d_np1[:, None] * self.after.normal
         return np.where((total > 0)[:, None], weighted / np.where(total > 0, total, 1.0)[:, None], self.before.normal)

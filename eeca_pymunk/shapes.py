@@ -19,7 +19,7 @@ class Walls:
 
     Attributes:
         start, edge, outward: (W, k, 2) first vertex, edge vector (length) and outward unit normal of every edge.
-        length_squared: (W, k) length².
+        length_squared: (W, k) length².  The same, prefixed `flat_`, as (W k,) edges.
     """
 
     def __init__(self, outlines: list[FloatArray]) -> None:
@@ -35,6 +35,10 @@ class Walls:
         length = np.sqrt(self.length_squared)[..., None]
         # Counter-clockwise outlines (pymunk's hulls) have their outside on the right of every edge.
         self.outward: FloatArray = np.stack((self.edge[..., 1], -self.edge[..., 0]), axis=2) / length
+        self.flat_start, self.flat_edge, self.flat_outward = (
+            x.reshape(-1, 2) for x in (self.start, self.edge, self.outward)
+        )
+        self.flat_length_squared = self.length_squared.ravel()
 
 
 class Shapes:
