@@ -91,9 +91,10 @@ def run(output: Output, full: bool) -> None:
     output.parameters({"K": scene.stiffness, "duration": scene.duration, **scene.parameters, "dt": STEPS})
     rows: list[Row] = []
     watches: dict[tuple[str, float], Watch] = {}
-    jobs = [(name, make, dt) for dt in STEPS for name, make in runs.steppers(scene.stiffness).items()]
+    makes = runs.steppers(scene.stiffness) | {"EECA Midstep, sync": runs.eeca(ep.Midstep(), sync=True)}
+    jobs = [(name, make, dt) for dt in STEPS for name, make in makes.items()]
     if full:
-        jobs.append(("max dissipation", runs.steppers(scene.stiffness)["max dissipation"], SMALLEST))
+        jobs.append(("max dissipation", makes["max dissipation"], SMALLEST))
         jobs += [("native tuned 1000", runs.native(1000), dt) for dt in STEPS]
     for name, make, dt in jobs:
         watch = watches[name, dt] = Watch(dt, scene.duration)

@@ -37,9 +37,9 @@ def native(iterations: int | None = None) -> Make:
     return make
 
 
-def eeca(closure: ep.Closure) -> Make:
-    """EECA with a closure."""
-    return lambda space: ep.EECA(space, closure)
+def eeca(closure: ep.Closure, *, sync: bool = False) -> Make:
+    """EECA with a closure. Comparisons query no shapes: without `sync` a step does only what they need."""
+    return lambda space: ep.EECA(space, closure, sync=sync)
 
 
 def steppers(stiffness: float, damping_ratios: tuple[float, ...] = (200.0,), thousand: bool = False) -> dict[str, Make]:
@@ -51,8 +51,8 @@ def steppers(stiffness: float, damping_ratios: tuple[float, ...] = (200.0,), tho
     found["native tuned 50"] = native(50)
     if thousand:
         found["native tuned 1000"] = native(1000)
-    found["trapezoidal"] = lambda space: ep.Newmark.trapezoidal(space, stiffness)
-    found["max dissipation"] = lambda space: ep.Newmark.max_dissipation(space, stiffness)
+    found["trapezoidal"] = lambda space: ep.Newmark.trapezoidal(space, stiffness, sync=False)
+    found["max dissipation"] = lambda space: ep.Newmark.max_dissipation(space, stiffness, sync=False)
     return found
 
 

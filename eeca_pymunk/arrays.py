@@ -17,12 +17,11 @@ from .stepper import Stepper, StepReport, check_dt
 
 @dataclass(frozen=True)
 class Start:
-    """The N bodies at the start of a step: position, velocity (N, 2); force (N, 2) with gravity, 0 if not dynamic."""
+    """The N bodies at the start of a step: position, velocity and acceleration (N, 2), the last with gravity."""
 
     dt: float
     position: FloatArray
     velocity: FloatArray
-    force: FloatArray
     acceleration: FloatArray
 
     @property
@@ -90,11 +89,12 @@ class ArrayStepper(Stepper):
         return self._twin, state
 
     def _start(self, bodies: Bodies, state: FloatArray, dt: float) -> Start:
-        force = np.where(bodies.dynamic[:, None], state[:, FORCE], 0.0)
-        if any(self.space.gravity):
-            force[bodies.dynamic] += bodies.mass[bodies.dynamic, None] * np.array(self.space.gravity)
-        velocity = np.where(bodies.static[:, None], 0.0, state[:, VELOCITY])
-        return Start(dt, state[:, POSITION], velocity, force, force * bodies.inverse_mass[:, None])
+        gravity = self.space.gravity
+        acceleration = state[:, FORCE] * bodies.inverse_mass[:, None]
+        if any(gravity):
+            acceleration += bodies.dynamic[:, None] * np.array(gravity)
+        velocity = state[:, VELOCITY] * ~bodies.static[:, None]
+        return Start(dt, state[:, POSITION], velocity, acceleration)
 
     def _scatter(self, bodies: Bodies, state: FloatArray, motion: Motion, dt: float) -> None:
         """Write the end of the step; forces are reset as pymunk does. Restores the state if pymunk refuses."""

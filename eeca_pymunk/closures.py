@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -17,20 +17,23 @@ from .bodies import FloatArray, IntArray
 from .complementarity import Delassus, islands, solve
 from .contacts import Geometry
 
+_DRAFT = 1e-2  # relative tolerance that suffices to see which contacts close
+
 
 @dataclass(frozen=True)
 class Problem:
     """Active contacts of a step, on the R bodies they touch.
 
     Attributes:
-        dt: time.  velocity: (R, 2) at n.  force: (R, 2) external.  mass, inverse_mass: (R,).
+        dt: time.  velocity: (R, 2) at n.  acceleration: (R, 2) of external forces.  mass, inverse_mass: (R,).
         row_a, row_b, gap, elasticity: (m,) of the contacts.  guess: (m,) of the impulses, 0 where unknown.
+        draft: whether the contacts may change after this solution, so that a rough one does.
         geometry_at: (m,) instants in the step to the geometry on the free flight at these instants.
     """
 
     dt: float
     velocity: FloatArray
-    force: FloatArray
+    acceleration: FloatArray
     mass: FloatArray
     inverse_mass: FloatArray
     row_a: IntArray
@@ -39,6 +42,7 @@ class Problem:
     elasticity: FloatArray
     guess: FloatArray
     geometry_at: Callable[[FloatArray], Geometry]
+    draft: bool = False
 
     def operator(self, geometry: Geometry) -> Delassus:
         """The contacts as an operator, with the normals of `geometry`."""
@@ -46,8 +50,8 @@ class Problem:
 
     @property
     def external(self) -> FloatArray:
-        """(R, 2) momentum from external forces, dt f_ext."""
-        return self.dt * self.force
+        """(R, 2) momentum from external forces, dt f_ext; 0 for bodies that do not move."""
+        return self.dt * np.where(self.inverse_mass > 0, self.mass, 0.0)[:, None] * self.acceleration
 
     @property
     def larger_mass(self) -> FloatArray:
@@ -64,6 +68,7 @@ class Solution:
         velocity: (R, 2) at n+1.  displacement: (R, 2) over the step.
         impulse, psi1, psi2, gap_increment, time: (m,).
         geometry: normals and points where the impulses act.
+        draft: whether the solution is rough and has to be solved for again.
         iterations: of the closure.  lock: the scale of the energy lock that lies farthest from 1.
     """
 
@@ -78,6 +83,7 @@ class Solution:
     iterations: int
     lock: float
     converged: bool
+    draft: bool = False
 
 
 class Closure(Protocol):
@@ -107,9 +113,13 @@ class Midstep:
         geometry = problem.geometry_at(balance.impulse_time(zero, problem.dt))
         A = problem.operator(geometry)
         q = _restitution(A, problem)
-        impulses = solve(A, q, start=problem.guess, tolerance=self.tolerance, max_iterations=self.max_iterations)
+        tolerance = max(self.tolerance, _DRAFT) if problem.draft else self.tolerance
+        impulses = solve(A, q, start=problem.guess, tolerance=tolerance, max_iterations=self.max_iterations)
         weights = balance.Weights(np.full_like(zero, math.inf), zero, zero)
-        return _locked_motion(A, geometry, problem, impulses.lam, weights, impulses.iterations, impulses.converged, q)
+        solution = _locked_motion(
+            A, geometry, problem, impulses.lam, weights, impulses.iterations, impulses.converged, q
+        )
+        return replace(solution, draft=problem.draft and not impulses.exact)
 
 
 @dataclass(frozen=True)
@@ -174,7 +184,7 @@ def check_stiffness(stiffness: float) -> None:
 def _restitution(A: Delassus, problem: Problem) -> FloatArray:
     """(m,) e u_n + u*, u* with the external forces alone."""
     u_n = A.relative(problem.velocity)
-    u_free = u_n + A.relative(problem.external * A.inverse_mass[:, None])
+    u_free = u_n + problem.dt * A.relative(problem.acceleration)
     return balance.restitution_target(u_n, problem.elasticity) + u_free
 
 

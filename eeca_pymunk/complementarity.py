@@ -86,15 +86,20 @@ class Delassus:
 
 @dataclass(frozen=True)
 class Impulses:
-    """Solution of a complementarity problem: `lam` (m,), the iterations taken, and whether the tolerance was met."""
+    """Solution of a complementarity problem.
+
+    `lam` (m,); the iterations taken; whether the tolerance was met; whether only round-off is left.
+    """
 
     lam: FloatArray
     iterations: int
     converged: bool
+    exact: bool
 
 
 _DENSE = 160  # contacts up to which pivoting beats projected gradients (measured on the hopper)
 _PIVOTS = 25
+_ROUND_OFF = 1e-10  # residual of a direct solution relative to the largest |q|
 _SINGULAR = 1e8  # growth of a solution that tells a singular matrix
 
 
@@ -119,13 +124,13 @@ def solve(
     """
     approaching = q < 0
     if not approaching.any():
-        return Impulses(np.zeros(A.size), 0, True)
+        return Impulses(np.zeros(A.size), 0, True, True)
     compliance = np.broadcast_to(compliance, A.size)
     # Exact for a contact that shares no moving body with another.
     lam = np.where(approaching, -q, 0.0) / (A.diagonal() + compliance)
     coupled = np.flatnonzero(A.shares_body())
     if len(coupled) == 0:
-        return Impulses(lam, 1, True)
+        return Impulses(lam, 1, True, True)
     part = A.take(coupled)
     label = islands(part.row_a, part.row_b, part.inverse_mass)
     # An island in which nothing approaches needs no impulse.
@@ -135,20 +140,20 @@ def solve(
         part = A.take(coupled)
     limit = tolerance * float(np.abs(q).max())
     q_part, c_part = q[coupled], compliance[coupled]
-    result = pivot(part.dense() + np.diag(c_part), q_part, limit) if len(coupled) <= _DENSE else None
+    result = pivot(part.dense() + np.diag(c_part), q_part) if len(coupled) <= _DENSE else None
     if result is None:
         first = np.zeros(len(coupled)) if start is None else np.maximum(start[coupled], 0.0)
         result = project(part, q_part, c_part, first, limit, max_iterations)
     lam[coupled] = result.lam
-    return Impulses(lam, result.iterations, result.converged)
+    return Impulses(lam, result.iterations, result.converged, result.exact)
 
 
-def pivot(A: FloatArray, q: FloatArray, limit: float) -> Impulses | None:
+def pivot(A: FloatArray, q: FloatArray) -> Impulses | None:
     """Block principal pivoting (Portugal, Judice, Vicente 1994) for a dense (m, m) A; None where it fails.
 
     Solves on a guess of the closed contacts, then exchanges every contact whose impulse or velocity has the wrong sign.
-    `limit` bounds the residual, a velocity.
     """
+    limit = _ROUND_OFF * float(np.abs(q).max())
     diagonal = A.diagonal()
     closed = q < 0
     lam = np.zeros(len(q))
@@ -166,7 +171,10 @@ def pivot(A: FloatArray, q: FloatArray, limit: float) -> Impulses | None:
         lam[k] = both[:, 0]
         wrong = np.where(closed, lam * diagonal, A @ lam + q) < -limit
         if not wrong.any():
-            return Impulses(np.maximum(lam, 0.0), iteration, True)
+            # A nearly singular matrix passes the signs and fails here.
+            if np.abs(np.where(closed, A @ lam + q, 0.0)).max() > limit:
+                return None
+            return Impulses(np.maximum(lam, 0.0), iteration, True, True)
         closed ^= wrong
     return None
 
@@ -186,7 +194,7 @@ def project(
         step = D * (new - y)
         # The residual is that of y; `new` is at least as good.
         if np.abs(step).max() <= limit:
-            return Impulses(new, iteration, True)
+            return Impulses(new, iteration, True, False)
         change = new - lam
         if np.dot(step, change) < 0.0:
             t, y = 1.0, new
@@ -195,7 +203,7 @@ def project(
             y = new + ((t - 1.0) / t_next) * change
             t = t_next
         lam = new
-    return Impulses(lam, max_iterations, False)
+    return Impulses(lam, max_iterations, False, False)
 
 
 def restrict(row_a: IntArray, row_b: IntArray) -> tuple[IntArray, IntArray, IntArray]:

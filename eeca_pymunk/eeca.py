@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pymunk
 
@@ -44,29 +46,35 @@ class EECA(ArrayStepper):
         if not active.any():
             return Motion(velocity, displacement, free)
         guess = np.zeros(len(pairs))
-        for _ in range(1 + self.passes):
+        for left in range(self.passes, -1, -1):
             which = np.flatnonzero(active)
             chosen = pairs.take(which)
-            solution, rows = self._solve(bodies, start, chosen, before, which, guess[which])
-            moved = displacement.copy()
-            moved[rows] = solution.displacement
-            joining = closing(pairs, before, tolerance, start, moved) & ~active
+            problem, rows = self._problem(bodies, start, chosen, before.take(which), guess[which], draft=left > 0)
+            solution = self.closure.solve(problem)
+            if left == 0:
+                break
+            trial = displacement.copy()
+            trial[rows] = solution.displacement
+            joining = closing(pairs, before, tolerance, start, trial) & ~active
             if not joining.any():
                 break
             active |= joining
             guess[which] = solution.impulse
-        velocity[rows] = solution.velocity
+        if solution.draft:
+            solution = self.closure.solve(replace(problem, guess=solution.impulse, draft=False))
+        velocity[rows], displacement[rows] = solution.velocity, solution.displacement
         at = solution.geometry
         contacts = Contacts(
             bodies.items, chosen.row_a, chosen.row_b, at.normal, at.point, before.gap[which], solution.time
         )
-        return Motion(velocity, moved, self._report(free.time, contacts, solution))
+        return Motion(velocity, displacement, self._report(free.time, contacts, solution))
 
-    def _solve(
-        self, bodies: Bodies, start: Start, chosen: Pairs, before: Geometry, which: IntArray, guess: FloatArray
-    ) -> tuple[Solution, IntArray]:
+    def _problem(
+        self, bodies: Bodies, start: Start, chosen: Pairs, before: Geometry, guess: FloatArray, *, draft: bool
+    ) -> tuple[Problem, IntArray]:
+        """The problem of the `chosen` contacts on the bodies they touch, and the rows of these bodies."""
         rows, row_a, row_b = restrict(chosen.row_a, chosen.row_b)
-        facing = before.normal[which]
+        facing = before.normal
 
         def geometry_at(time: FloatArray) -> Geometry:
             at = chosen.between(*self.flight(start, chosen, time))
@@ -77,10 +85,10 @@ class EECA(ArrayStepper):
             return at
 
         problem = Problem(
-            start.dt, start.velocity[rows], start.force[rows], bodies.mass[rows], bodies.inverse_mass[rows],
-            row_a, row_b, before.gap[which], chosen.elasticity, guess, geometry_at,
+            start.dt, start.velocity[rows], start.acceleration[rows], bodies.mass[rows], bodies.inverse_mass[rows],
+            row_a, row_b, before.gap, chosen.elasticity, guess, geometry_at, draft,
         )  # fmt: skip
-        return self.closure.solve(problem), rows
+        return problem, rows
 
     @staticmethod
     def _report(time: float, contacts: Contacts, solution: Solution) -> StepReport:

@@ -62,8 +62,7 @@ def snapshot(
                 offsets=centers,
                 offset_transform=ax.transData,
                 facecolors=MOVING,
-                edgecolors="white",
-                linewidths=0.2,
+                edgecolors="none",
             )
         )
         ax.update_datalim(np.concatenate((centers - widths[:, None] / 2, centers + widths[:, None] / 2)))
@@ -72,7 +71,11 @@ def snapshot(
     if momentum:
         moving = [b for b in space.bodies if b.body_type == pymunk.Body.DYNAMIC]
         x, p = np.array([b.position for b in moving]), np.array([b.mass * b.velocity for b in moving])
-        ax.quiver(x[:, 0], x[:, 1], p[:, 0], p[:, 1], color=ARROW, width=0.006, zorder=3)
+        # The longest arrow spans a fifth of the axes, whatever the momenta.
+        scale = 5.0 * max(float(np.linalg.norm(p, axis=1).max(initial=0.0)), np.finfo(float).tiny)
+        ax.quiver(
+            x[:, 0], x[:, 1], p[:, 0], p[:, 1], color=ARROW, width=0.006, scale=scale, scale_units="width", zorder=3
+        )
     ax.set_aspect("equal")
     if view is None:
         ax.autoscale_view()
