@@ -15,6 +15,7 @@ from tqdm import tqdm
 import eeca_pymunk as ep
 from comparisons.output import Row
 from eeca_pymunk.bodies import Bodies
+from eeca_pymunk.errors import NotFiniteError
 from eeca_pymunk.invariants import Invariants, invariants
 from eeca_pymunk.native import tune
 from eeca_pymunk.recording import step_count
@@ -114,7 +115,7 @@ def run(
         clock = time.perf_counter()
         try:
             report = stepper.step(dt)
-        except (ValueError, FloatingPointError):  # a state that is not finite: refused, as it should be
+        except NotFiniteError:  # overflow: refused, as it should be
             failed = k * dt
             break
         wall += time.perf_counter() - clock

@@ -9,6 +9,8 @@ import numpy.typing as npt
 import pymunk
 from pymunk import batch
 
+from .errors import NotFiniteError
+
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 IntArray: TypeAlias = npt.NDArray[np.intp]
 BoolArray: TypeAlias = npt.NDArray[np.bool_]
@@ -96,10 +98,10 @@ class Bodies:
         return np.frombuffer(self._buffer.float_buf()).reshape(-1, COLUMNS).copy()
 
     def check_finite(self, state: FloatArray) -> None:
-        """Raise ValueError naming the body and the value if anything in the state is NaN or infinite."""
+        """Raise NotFiniteError naming the body and the value if anything in the state is NaN or infinite."""
         if not np.isfinite(state).all():
             i, j = np.argwhere(~np.isfinite(state))[0]
-            raise ValueError(
+            raise NotFiniteError(
                 f"{COLUMN_NAMES[j]} of {self.items[i]} is {state[i, j]}: set a finite value before stepping"
             )
 

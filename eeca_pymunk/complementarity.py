@@ -135,6 +135,8 @@ def solve(
     label = islands(part.row_a, part.row_b, part.inverse_mass)
     # An island in which nothing approaches needs no impulse.
     pressed = np.bincount(label, approaching[coupled])[label] > 0
+    if not pressed.any():
+        return Impulses(lam, 1, True, True)
     if not pressed.all():
         coupled = coupled[pressed]
         part = A.take(coupled)

@@ -1,4 +1,4 @@
-"""The exception for scenes the package does not model."""
+"""The package's own exceptions, each a ValueError."""
 
 from __future__ import annotations
 
@@ -8,3 +8,7 @@ class UnsupportedFeature(ValueError):
 
     The message names the object and the remedy. It is raised before anything moves, so the space is as it was.
     """
+
+
+class NotFiniteError(ValueError):
+    """A body's state is NaN or infinite, or would be after the step. The space is as it was."""

@@ -71,8 +71,8 @@ def snapshot(
     if momentum:
         moving = [b for b in space.bodies if b.body_type == pymunk.Body.DYNAMIC]
         x, p = np.array([b.position for b in moving]), np.array([b.mass * b.velocity for b in moving])
-        # The longest arrow spans a fifth of the axes, whatever the momenta.
-        scale = 5.0 * max(float(np.linalg.norm(p, axis=1).max(initial=0.0)), np.finfo(float).tiny)
+        # The longest arrow spans two fifths of the axes, whatever the momenta.
+        scale = 2.5 * max(float(np.linalg.norm(p, axis=1).max(initial=0.0)), np.finfo(float).tiny)
         ax.quiver(
             x[:, 0], x[:, 1], p[:, 0], p[:, 1], color=ARROW, width=0.006, scale=scale, scale_units="width", zorder=3
         )

@@ -80,3 +80,10 @@ def test_long_chain_converges() -> None:
     expected = np.full(n, 2 / n)
     expected[0] = -2 * (n - 1) / n
     np.testing.assert_allclose(velocity, expected, atol=1e-5)
+
+
+def test_coupled_contacts_that_open_need_nothing_beside_a_lone_one_that_closes() -> None:
+    row_a, row_b = np.array([0, 1, 3]), np.array([1, 2, 4])
+    A = Delassus(row_a, row_b, np.tile((1.0, 0.0), (3, 1)), np.ones(5))
+    found = solve(A, np.array([1.0, 0.5, -2.0]))
+    np.testing.assert_array_equal(found.lam, (0.0, 0.0, 1.0))

@@ -26,6 +26,7 @@ every_closure = pytest.mark.parametrize("closure", CLOSURES.values(), ids=CLOSUR
 def test_carom_keeps_energy_and_angles_for_ten_seconds(closure: ep.Closure, dt: float) -> None:
     track = Track()
     result = runs.run(scenes.build("carom", dt=dt), runs.eeca(closure), observe=track)
+    assert result.failed is None
     assert result.energy_drift <= 1e-13
     assert track.turned <= 1e-12  # degrees
 
@@ -70,6 +71,7 @@ def test_carom_error_is_first_order(position: tuple[float, float]) -> None:
 def test_pool_break(case: str, closure: ep.Closure) -> None:
     watch = Watch(case)
     result = runs.run(scenes.build("pool_break", case=case), runs.eeca(closure), observe=watch)
+    assert result.failed is None
     assert result.energy_drift <= 1e-12
     assert result.momentum_drift <= 1e-12
     assert watch.end is not None
