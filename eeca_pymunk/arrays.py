@@ -11,8 +11,11 @@ import pymunk
 from .bodies import ANGLE, ANGULAR_VELOCITY, FORCE, POSITION, TORQUE, VELOCITY, Bodies, FloatArray
 from .contacts import Pairs
 from .detection import MarginTwin
+from .errors import NotFiniteError
 from .shapes import Shapes, check_space
 from .stepper import Stepper, StepReport, check_dt
+
+_OVERFLOW = "the step would overflow; take a smaller dt, or stop this run"
 
 
 @dataclass(frozen=True)
@@ -27,7 +30,8 @@ class Start:
     @property
     def free_displacement(self) -> FloatArray:
         """(N, 2) displacement of the free flight over the step."""
-        return self.dt * self.velocity + (0.5 * self.dt**2) * self.acceleration
+        with np.errstate(over="ignore", invalid="ignore"):  # refused before anything is made of it
+            return self.dt * self.velocity + (0.5 * self.dt**2) * self.acceleration
 
 
 @dataclass(frozen=True)
@@ -67,6 +71,8 @@ class ArrayStepper(Stepper):
             return StepReport.without_contacts(self.time)
         twin, state = self._gather()
         start = self._start(twin.bodies, state, dt)
+        if not np.isfinite(start.free_displacement).all():
+            raise NotFiniteError(f"a body would move an infinite distance within dt = {dt}: {_OVERFLOW}")
         motion = self.advance(twin.bodies, start, twin)
         self._scatter(twin.bodies, state, motion, dt)
         self.time = motion.report.time
@@ -88,6 +94,7 @@ class ArrayStepper(Stepper):
         self._twin = MarginTwin(bodies, Shapes(self.space, bodies), state)
         return self._twin, state
 
+    @np.errstate(over="ignore", invalid="ignore")  # what overflows is refused before it is written
     def _start(self, bodies: Bodies, state: FloatArray, dt: float) -> Start:
         gravity = self.space.gravity
         acceleration = state[:, FORCE] * bodies.inverse_mass[:, None]
@@ -107,7 +114,7 @@ class ArrayStepper(Stepper):
         end[:, FORCE] = 0.0
         end[:, TORQUE] = 0.0
         end[bodies.static] = state[bodies.static]
-        bodies.check_finite(end)
+        bodies.check_finite(end, _OVERFLOW)
         try:
             if self.sync:
                 still = end.copy()

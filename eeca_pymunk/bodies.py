@@ -97,13 +97,11 @@ class Bodies:
             return None
         return np.frombuffer(self._buffer.float_buf()).reshape(-1, COLUMNS).copy()
 
-    def check_finite(self, state: FloatArray) -> None:
+    def check_finite(self, state: FloatArray, remedy: str = "set a finite value before stepping") -> None:
         """Raise NotFiniteError naming the body and the value if anything in the state is NaN or infinite."""
         if not np.isfinite(state).all():
             i, j = np.argwhere(~np.isfinite(state))[0]
-            raise NotFiniteError(
-                f"{COLUMN_NAMES[j]} of {self.items[i]} is {state[i, j]}: set a finite value before stepping"
-            )
+            raise NotFiniteError(f"{COLUMN_NAMES[j]} of {self.items[i]} is {state[i, j]}: {remedy}")
 
     def scatter(self, state: FloatArray) -> None:
         """Write the whole (N, 9) state."""

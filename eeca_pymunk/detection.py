@@ -17,6 +17,7 @@ from .shapes import Shapes, shape_body
 
 _HASH_FROM = 200  # moving shapes from which a spatial hash pays (measured: equal cost near 150)
 _MOST_STATIC_CELLS = 200_000
+_WIDEST = 20.0  # cells that the margin of one disk may span in a hash
 
 
 class MarginTwin:
@@ -40,6 +41,8 @@ class MarginTwin:
         self._center: FloatArray | None = None
         self._pairs = Pairs(shapes, np.zeros(0, np.intp), np.zeros(0, np.intp))
         self._buffer, self._out = batch.Buffer(), batch.Buffer()
+        self._hashed = len(self._disk) >= _HASH_FROM
+        self._cell = 5.0 * float(np.median(self.shapes.radius[self._disk])) if self._hashed else 0.0
         self._build()
 
     def _build(self) -> None:
@@ -65,8 +68,8 @@ class MarginTwin:
                 assert isinstance(copy, pymunk.Circle)  # check_shape lets only circles move
                 disks.append((twin, copy))
         self._circles = [circle for _, circle in disks]
-        if len(disks) >= _HASH_FROM:
-            self._use_hash(space)
+        if self._hashed:
+            self._hashed = self._use_hash(space)
         self._space = space
         self._buffer.clear()
         batch.get_space_bodies(space, batch.BodyFields.BODY_ID | batch.BodyFields.POSITION, self._buffer)
@@ -79,13 +82,15 @@ class MarginTwin:
         self._sorted_ids = np.sort(ids)
         self._shape_of: IntArray = order[np.argsort(ids)]
 
-    def _use_hash(self, space: pymunk.Space) -> None:
-        cell = 5.0 * float(np.median(self.shapes.radius[self._disk]))
+    def _use_hash(self, space: pymunk.Space) -> bool:
+        cell = self._cell
         boxes = [s.bb for s, disk in zip(self.shapes.items, self.shapes.is_disk, strict=True) if not disk]
         cells = sum(((b.right - b.left) / cell + 1.0) * ((b.top - b.bottom) / cell + 1.0) for b in boxes)
         # A hash puts a wall into every cell of its bounding box; where that is too many the tree is the better index.
-        if cells < _MOST_STATIC_CELLS:
-            space.use_spatial_hash(cell, 4 * len(self._disk))
+        if cells >= _MOST_STATIC_CELLS:
+            return False
+        space.use_spatial_hash(cell, 4 * len(self._disk))
+        return True
 
     def is_current(self, state: FloatArray) -> bool:
         """False when a static body was moved since the twin was built."""
@@ -117,6 +122,11 @@ class MarginTwin:
         floor = 1e-9 * (np.abs(center).max(axis=1, initial=0.0) + radius)
         need = np.maximum(need + floor, self._unit)
         level = self._unit * np.exp2(np.ceil(np.log2(need / self._unit)))
+        if self._hashed and level.max(initial=0.0) > _WIDEST * self._cell:
+            # A hash would put a disk this fast into more cells than there is time for.
+            self._hashed = False
+            self._margin[:] = 0.0
+            self._build()
         changed = (level > self._margin) | (level < 0.25 * self._margin)
         for i in np.flatnonzero(changed):
             self._circles[i].unsafe_set_radius(float(radius[i] + level[i]))

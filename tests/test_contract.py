@@ -161,6 +161,34 @@ def test_native_may_follow_eeca_and_the_other_way_round() -> None:
     assert 0.0 < body.position.y < 1.2
 
 
+@arrays
+def test_fault_while_writing_leaves_the_space_as_it_was(make: Make, monkeypatch: pytest.MonkeyPatch) -> None:
+    space, body = one_disk(velocity=(0.3, -1.0), gravity=9.81)
+    body.force = (1.0, 0.0)
+    stepper, before = make(space), state(space)
+
+    def fail(self: pymunk.Space, dt: float) -> None:
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr(pymunk.Space, "step", fail)
+        with pytest.raises(KeyboardInterrupt):
+            stepper.step(0.01)
+    assert state(space) == before
+    assert stepper.time == 0.0
+    stepper.step(0.01)
+    assert body.position.x > 0.0
+
+
+@arrays
+def test_overflow_is_an_error_and_moves_nothing(make: Make) -> None:
+    space, _ = one_disk(velocity=(1e308, 0.0))
+    stepper, before = make(space), state(space)
+    with pytest.raises(ValueError, match="overflow"):
+        stepper.step(100.0)
+    assert state(space) == before
+
+
 def friction(space: pymunk.Space, body: pymunk.Body) -> object:
     for shape in space.shapes:
         shape.friction = 0.5

@@ -7,6 +7,7 @@ import pymunk
 import pytest
 from pymunk import batch
 
+import eeca_pymunk as ep
 from eeca_pymunk.bodies import Bodies
 from eeca_pymunk.detection import MarginTwin
 from eeca_pymunk.shapes import Shapes
@@ -120,3 +121,13 @@ def test_slow_scene_is_detected_rarely() -> None:
         twin.candidates(x, np.full(len(x), 1e-3))
         x[:, 0] += 1e-3
     assert twin.detections <= 12
+
+
+def test_one_disk_of_absurd_speed_among_many_does_not_hang_the_hash() -> None:
+    space = pymunk.Space()
+    for i in range(300):
+        add_disk(space, (0.3 * (i % 20), 0.3 * (i // 20)), 0.1)
+    bullet = add_disk(space, (-1.0, 0.15), 0.01, velocity=(1e9, 0.0))
+    stepper = ep.EECA(space)
+    stepper.step(1.0)
+    assert bullet.velocity.length > 0
