@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -62,7 +63,7 @@ class Delassus:
 
     def take(self, which: IntArray) -> Delassus:
         """The operator of the contacts `which`, on the bodies they touch."""
-        rows, row_a, row_b = restrict(self.row_a[which], self.row_b[which])
+        rows, row_a, row_b = restrict(self.row_a[which], self.row_b[which], len(self.inverse_mass))
         return Delassus(row_a, row_b, self.normal[which], self.inverse_mass[rows])
 
     def diagonal(self) -> FloatArray:
@@ -97,7 +98,8 @@ class Impulses:
     exact: bool
 
 
-_DENSE = 160  # contacts up to which pivoting beats projected gradients (measured on the hopper)
+_PIVOTED = 160  # contacts up to which pivoting beats projected gradients (measured on the hopper)
+_DENSE = 300  # contacts up to which a dense matrix beats the operator
 _PIVOTS = 25
 _ROUND_OFF = 1e-10  # residual of a direct solution relative to the largest |q|
 _SINGULAR = 1e8  # growth of a solution that tells a singular matrix
@@ -142,10 +144,15 @@ def solve(
         part = A.take(coupled)
     limit = tolerance * float(np.abs(q).max())
     q_part, c_part = q[coupled], compliance[coupled]
-    result = pivot(part.dense() + np.diag(c_part), q_part) if len(coupled) <= _DENSE else None
+    matrix = part.dense() + np.diag(c_part) if len(coupled) <= _DENSE else None
+    result = pivot(matrix, q_part) if matrix is not None and len(coupled) <= _PIVOTED else None
     if result is None:
         first = np.zeros(len(coupled)) if start is None else np.maximum(start[coupled], 0.0)
-        result = project(part, q_part, c_part, first, limit, max_iterations)
+        D = part.row_bound() + c_part
+        if matrix is None:
+            result = project(lambda lam: part @ lam + c_part * lam, D, q_part, first, limit, max_iterations)
+        else:
+            result = project(matrix.dot, D, q_part, first, limit, max_iterations)
     lam[coupled] = result.lam
     return Impulses(lam, result.iterations, result.converged, result.exact)
 
@@ -182,17 +189,21 @@ def pivot(A: FloatArray, q: FloatArray) -> Impulses | None:
 
 
 def project(
-    A: Delassus, q: FloatArray, compliance: FloatArray, start: FloatArray, limit: float, max_iterations: int
+    multiply: Callable[[FloatArray], FloatArray],
+    D: FloatArray,
+    q: FloatArray,
+    start: FloatArray,
+    limit: float,
+    max_iterations: int,
 ) -> Impulses:
     """Accelerated projected gradients (Nesterov) with the gradient restart of O'Donoghue and Candes.
 
-    The metric is diagonal, D = row_bound + compliance >= A + compliance, so that every step descends. `limit` bounds
-    the natural residual, a velocity.
+    The metric is diagonal, D >= A, so that every step descends. `multiply` is the product with A; `limit` bounds the
+    natural residual, a velocity.
     """
-    D = A.row_bound() + compliance
     y, t, lam = start, 1.0, start
     for iteration in range(1, max_iterations + 1):
-        new = np.maximum(y - (A @ y + compliance * y + q) / D, 0.0)
+        new = np.maximum(y - (multiply(y) + q) / D, 0.0)
         step = D * (new - y)
         # The residual is that of y; `new` is at least as good.
         if np.abs(step).max() <= limit:
@@ -208,10 +219,14 @@ def project(
     return Impulses(lam, max_iterations, False, False)
 
 
-def restrict(row_a: IntArray, row_b: IntArray) -> tuple[IntArray, IntArray, IntArray]:
-    """The rows that occur, and both arrays renumbered to them: work on a few contacts costs nothing in N."""
-    rows, inverse = np.unique(np.concatenate((row_a, row_b)), return_inverse=True)
-    return rows, inverse[: len(row_a)], inverse[len(row_a) :]
+def restrict(row_a: IntArray, row_b: IntArray, count: int) -> tuple[IntArray, IntArray, IntArray]:
+    """The rows of `count` that occur, increasing, and both arrays renumbered to them: few contacts, small arrays."""
+    occurs = np.zeros(count, bool)
+    occurs[row_a] = occurs[row_b] = True
+    rows = np.flatnonzero(occurs)
+    number = np.empty(count, np.intp)
+    number[rows] = np.arange(len(rows))
+    return rows, number[row_a], number[row_b]
 
 
 def islands(row_a: IntArray, row_b: IntArray, inverse_mass: FloatArray) -> IntArray:

@@ -73,7 +73,7 @@ class EECA(ArrayStepper):
         self, bodies: Bodies, start: Start, chosen: Pairs, before: Geometry, guess: FloatArray, *, draft: bool
     ) -> tuple[Problem, IntArray]:
         """The problem of the `chosen` contacts on the bodies they touch, and the rows of these bodies."""
-        rows, row_a, row_b = restrict(chosen.row_a, chosen.row_b)
+        rows, row_a, row_b = restrict(chosen.row_a, chosen.row_b, len(bodies))
         facing = before.normal
 
         def geometry_at(time: FloatArray) -> Geometry:

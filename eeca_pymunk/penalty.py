@@ -35,7 +35,7 @@ class PenaltyStepper(ArrayStepper):
         pairs, before = near_pairs(twin, start, displacement)
         if len(pairs) == 0:
             return Motion(velocity, displacement, StepReport.without_contacts(time, bodies.items))
-        rows, row_a, row_b = restrict(pairs.row_a, pairs.row_b)
+        rows, row_a, row_b = restrict(pairs.row_a, pairs.row_b, len(bodies))
         springs = Springs(start, pairs, before, rows, row_a, row_b, bodies.inverse_mass[rows])
         impulse, iterations, converged = self.load(springs)
         velocity[rows], displacement[rows] = springs.velocity, springs.displacement

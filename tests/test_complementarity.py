@@ -41,7 +41,7 @@ def test_agrees_with_enumeration(seed: int, compliance: float) -> None:
     found = solve(A, q, compliance)
     assert found.converged
     np.testing.assert_allclose(found.lam, exact, atol=1e-9)
-    gradients = project(A, q, np.full(A.size, compliance), np.zeros(A.size), 1e-11, 20_000)
+    gradients = project(dense.dot, A.row_bound() + compliance, q, np.zeros(A.size), 1e-11, 20_000)
     assert gradients.converged
     np.testing.assert_allclose(dense @ gradients.lam, dense @ exact, atol=1e-9)
 
