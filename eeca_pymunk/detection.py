@@ -7,6 +7,9 @@ of their margins. The list is a Verlet list: it stays complete until some shape 
 
 from __future__ import annotations
 
+import math
+from typing import TypeAlias
+
 import numpy as np
 import pymunk
 from pymunk import batch
@@ -15,8 +18,11 @@ from .bodies import Bodies, FloatArray, IntArray
 from .contacts import Pairs
 from .shapes import Shapes, shape_body
 
+Solid: TypeAlias = pymunk.Circle | pymunk.Segment | pymunk.Poly
+
 _HASH_FROM = 200  # moving shapes from which a spatial hash pays (measured: equal cost near 150)
 _MOST_STATIC_CELLS = 200_000
+_FOLLOWED_BY = 16  # walls up to which growing them costs less than following the mean motion saves
 _WIDEST = 20.0  # cells that the margin of one disk may span in a hash
 
 
@@ -37,7 +43,7 @@ class MarginTwin:
         self._disk: IntArray = np.flatnonzero(shapes.is_disk)
         self._row: IntArray = shapes.row[self._disk]
         self._unit: FloatArray = 1e-3 * np.maximum(shapes.radius[self._disk], np.finfo(float).tiny)
-        self._margin: FloatArray = np.zeros(len(self._disk))
+        self._follows = len(shapes) - len(self._disk) <= _FOLLOWED_BY < len(self._disk)
         self._center: FloatArray | None = None
         self._pairs = Pairs(shapes, np.zeros(0, np.intp), np.zeros(0, np.intp))
         self._buffer, self._out = batch.Buffer(), batch.Buffer()
@@ -46,6 +52,9 @@ class MarginTwin:
         self._build()
 
     def _build(self) -> None:
+        self._margin: FloatArray = np.zeros(len(self._disk))
+        self._wall_margin = 0.0
+        self._walls: list[tuple[int, Solid]] = []
         space = pymunk.Space()
         space.iterations = 1
         # No push-out and no memory of old contacts: a step of the twin moves nothing and keeps only what it found.
@@ -67,6 +76,8 @@ class MarginTwin:
             if disk:
                 assert isinstance(copy, pymunk.Circle)  # check_shape lets only circles move
                 disks.append((twin, copy))
+            else:
+                self._walls.append((i, copy))
         self._circles = [circle for _, circle in disks]
         if self._hashed:
             self._hashed = self._use_hash(space)
@@ -96,26 +107,33 @@ class MarginTwin:
         """False when a static body was moved since the twin was built."""
         return bool(np.array_equal(self._static, state[self.bodies.static, :3]))
 
-    def candidates(self, position: FloatArray, reach: FloatArray) -> Pairs:
+    def candidates(self, position: FloatArray, displacement: FloatArray, slack: FloatArray) -> Pairs:
         """Every pair whose gap can close within a step, in no particular order.
+
+        Gaps close by relative motion alone: reaches and margins are taken in the frame that moves with the disks on
+        average, in which a falling crowd hardly moves and the walls do.
 
         Args:
             position: (N, 2) of the bodies at the start of the step.
-            reach: (N,) a bound of the length each body moves within the step.
+            displacement: (N, 2) of the bodies over the step.
+            slack: (N,) length by which a path may leave the straight line of its displacement.
         """
-        center, reach = position[self._row], reach[self._row]
-        if self._used_up(center, reach):
-            self._detect(center, reach)
+        center, moving = position[self._row], displacement[self._row]
+        drift = moving.mean(axis=0) if self._follows and len(moving) else np.zeros(2)
+        reach = _length(moving - drift) + slack[self._row]
+        if self._used_up(center, reach, drift):
+            self._detect(center, reach, drift)
         return self._pairs
 
-    def _used_up(self, center: FloatArray, reach: FloatArray) -> bool:
+    def _used_up(self, center: FloatArray, reach: FloatArray, drift: FloatArray) -> bool:
         if self._center is None:
             return True
         moved = center - self._center
-        used = np.sqrt(np.einsum("ij,ij->i", moved, moved)) + reach
-        return bool((used > self._margin).any())
+        frame = moved.mean(axis=0) if self._follows and len(moved) else np.zeros(2)
+        walls = math.hypot(*frame) + math.hypot(*drift)
+        return walls > self._wall_margin or bool((_length(moved - frame) + reach > self._margin).any())
 
-    def _detect(self, center: FloatArray, reach: FloatArray) -> None:
+    def _detect(self, center: FloatArray, reach: FloatArray, drift: FloatArray) -> None:
         radius = self.shapes.radius[self._disk]
         need = np.maximum(reach, np.minimum(self.steps_ahead * reach, self.lazy * radius))
         # The relative 1e-9 keeps a pair that exactly reaches its margin, and covers round-off of far-away positions.
@@ -125,12 +143,12 @@ class MarginTwin:
         if self._hashed and level.max(initial=0.0) > _WIDEST * self._cell:
             # A hash would put a disk this fast into more cells than there is time for.
             self._hashed = False
-            self._margin[:] = 0.0
             self._build()
         changed = (level > self._margin) | (level < 0.25 * self._margin)
         for i in np.flatnonzero(changed):
             self._circles[i].unsafe_set_radius(float(radius[i] + level[i]))
         self._margin[changed] = level[changed]
+        self._grow_walls(math.hypot(*drift))
         self._positions[self._slot] = center
         self._out.set_float_buf(self._positions.reshape(-1))
         batch.set_space_bodies(self._space, batch.BodyFields.POSITION, self._out)
@@ -138,6 +156,15 @@ class MarginTwin:
         self._pairs = self._read_pairs()
         self._center = center.copy()
         self.detections += 1
+
+    def _grow_walls(self, drift: float) -> None:
+        """Give the walls the margin that the moving frame asks of them, for some steps of `drift` (length)."""
+        if drift <= self._wall_margin <= 64.0 * drift or drift == self._wall_margin:
+            return
+        self._wall_margin = 16.0 * drift
+        for i, wall in self._walls:
+            wall.unsafe_set_radius(float(self.shapes.radius[i]) + self._wall_margin)
+        self._space.reindex_static()
 
     def _read_pairs(self) -> Pairs:
         self._buffer.clear()
@@ -156,7 +183,11 @@ class MarginTwin:
         return Pairs(self.shapes, first[order], second[order])
 
 
-def _copy(shape: pymunk.Shape, twin: pymunk.Body) -> pymunk.Shape:
+def _length(vectors: FloatArray) -> FloatArray:
+    return np.sqrt(vectors[:, 0] * vectors[:, 0] + vectors[:, 1] * vectors[:, 1])
+
+
+def _copy(shape: pymunk.Shape, twin: pymunk.Body) -> Solid:
     if isinstance(shape, pymunk.Circle):
         return pymunk.Circle(twin, shape.radius, shape.offset)
     if isinstance(shape, pymunk.Segment):

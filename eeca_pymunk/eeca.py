@@ -106,8 +106,9 @@ def near_pairs(twin: MarginTwin, start: Start, displacement: FloatArray) -> tupl
     """
     # The path of a thrown body can be longer than its chord.
     bow = (0.125 * start.dt**2) * np.sqrt((start.acceleration * start.acceleration).sum(axis=1))
-    reach = np.sqrt((displacement * displacement).sum(axis=1)) + bow + touching(start.position)
-    pairs = twin.candidates(start.position, reach)
+    slack = bow + touching(start.position)
+    reach = np.sqrt((displacement * displacement).sum(axis=1)) + slack
+    pairs = twin.candidates(start.position, displacement, slack)
     before = pairs.at(start.position)
     near = pairs.order(np.flatnonzero(before.gap <= 2.0 * (reach[pairs.row_a] + reach[pairs.row_b])))
     return pairs.take(near), before.take(near)
