@@ -159,7 +159,7 @@ class MarginTwin:
 
     def _grow_walls(self, drift: float) -> None:
         """Give the walls the margin that the moving frame asks of them, for some steps of `drift` (length)."""
-        if drift <= self._wall_margin <= 64.0 * drift or drift == self._wall_margin:
+        if 4.0 * drift <= self._wall_margin <= 64.0 * drift:
             return
         self._wall_margin = 16.0 * drift
         for i, wall in self._walls:
