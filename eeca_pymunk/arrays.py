@@ -9,12 +9,13 @@ import numpy as np
 import pymunk
 
 from .bodies import ANGLE, ANGULAR_VELOCITY, FORCE, POSITION, TORQUE, VELOCITY, Bodies, FloatArray
-from .contacts import Pairs
+from .contacts import Geometry, Pairs
 from .detection import MarginTwin
 from .errors import NotFiniteError
 from .shapes import Shapes, check_space
 from .stepper import Stepper, StepReport, check_dt
 
+ROUND_OFF = 1e-12  # of lengths, relative to positions and radii
 _OVERFLOW = "the step would overflow; take a smaller dt, or stop this run"
 
 
@@ -48,8 +49,9 @@ class ArrayStepper(Stepper):
 
     Args:
         space: any pymunk space of disks and static walls.
-        sync: bring pymunk's own shapes and broad phase up to date after each step, for its queries and drawing.
-            False saves that time; `space.reindex_shapes_for_body(body)` does it for one body.
+        sync: bring pymunk's own shapes and broad phase up to date after each step, for its queries and drawing, and
+            run its post-step callbacks. False saves that time; `space.reindex_shapes_for_body(body)` does the first
+            for one body.
     """
 
     def __init__(self, space: pymunk.Space, *, sync: bool = True) -> None:
@@ -150,3 +152,25 @@ class ArrayStepper(Stepper):
             for r in (pairs.row_a, pairs.row_b)
         )
         return a, b
+
+
+def near_pairs(twin: MarginTwin, start: Start, displacement: FloatArray) -> tuple[Pairs, Geometry]:
+    """The pairs that can meet within the step, and their geometry at its start.
+
+    A body's reach is the length of its free flight; impulses can send it twice as far (an elastic hit by a heavier
+    body), which the factor 2 covers for the contacts that impulses close.
+    """
+    # The path of a thrown body leaves its chord.
+    bow = (0.125 * start.dt**2) * np.sqrt((start.acceleration * start.acceleration).sum(axis=1))
+    slack = bow + ROUND_OFF * np.abs(start.position).max(axis=1, initial=0.0)
+    reach = np.sqrt((displacement * displacement).sum(axis=1)) + slack
+    pairs = twin.candidates(start.position, displacement, slack)
+    before = pairs.at(start.position)
+    near = pairs.order(np.flatnonzero(before.gap <= 2.0 * (reach[pairs.row_a] + reach[pairs.row_b])))
+    return pairs.take(near), before.take(near)
+
+
+def touching(pairs: Pairs, position: FloatArray) -> FloatArray:
+    """(m,) length below which a gap is round-off of positions and radii: the pair touches exactly."""
+    far: FloatArray = np.abs(position[pairs.row_a]).max(axis=1, initial=0.0)
+    return ROUND_OFF * (far + pairs.extent)

@@ -104,6 +104,14 @@ class Bodies:
             raise NotFiniteError(f"{COLUMN_NAMES[j]} of {self.items[i]} is {state[i, j]}: {remedy}")
 
     def scatter(self, state: FloatArray) -> None:
-        """Write the whole (N, 9) state."""
+        """Write the whole (N, 9) state to the bodies of these rows that are still in the space."""
+        if not np.array_equal(self._read_ids(), self._ids):
+            # The batch writes by place: it would give rows to the wrong bodies.
+            for body, row in zip(self.items, state.tolist(), strict=True):
+                if body.space is self.space and body.body_type != pymunk.Body.STATIC:
+                    body.position, body.angle = (row[0], row[1]), row[2]
+                    body.velocity, body.angular_velocity = (row[3], row[4]), row[5]
+                    body.force, body.torque = (row[6], row[7]), row[8]
+            return
         self._out.set_float_buf(np.ascontiguousarray(state).reshape(-1))
         batch.set_space_bodies(self.space, _STATE, self._out)

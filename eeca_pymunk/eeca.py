@@ -7,15 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pymunk
 
-from .arrays import ArrayStepper, Motion, Start
+from .arrays import ArrayStepper, Motion, Start, near_pairs, touching
 from .bodies import Bodies, BoolArray, FloatArray, IntArray
 from .closures import Closure, Midstep, Problem, Solution
 from .complementarity import restrict
 from .contacts import Contacts, Geometry, Pairs
 from .detection import MarginTwin
 from .stepper import StepReport
-
-_TOUCHING = 1e-12  # gaps below this many length units of the pair's extent are round-off: exactly touching
 
 
 class EECA(ArrayStepper):
@@ -41,7 +39,7 @@ class EECA(ArrayStepper):
         displacement = start.free_displacement
         free = StepReport.without_contacts(self.time + start.dt, bodies.items)
         pairs, before = near_pairs(twin, start, displacement)
-        tolerance = touching(start.position)[pairs.row_a] + _TOUCHING * pairs.extent
+        tolerance = touching(pairs, start.position)
         active = (before.gap <= tolerance) | closing(pairs, before, tolerance, start, displacement)
         if not active.any():
             return Motion(velocity, displacement, free)
@@ -96,28 +94,6 @@ class EECA(ArrayStepper):
             time, contacts, solution.impulse, solution.psi1, solution.psi2, solution.gap_increment,
             iterations=solution.iterations, lock=solution.lock, converged=solution.converged,
         )  # fmt: skip
-
-
-def near_pairs(twin: MarginTwin, start: Start, displacement: FloatArray) -> tuple[Pairs, Geometry]:
-    """The pairs that can meet within the step, and their geometry at its start.
-
-    A body's reach is the length of its free flight; impulses can send it twice as far (an elastic hit by a heavier
-    body), which the factor 2 covers for the contacts that impulses close.
-    """
-    # The path of a thrown body can be longer than its chord.
-    bow = (0.125 * start.dt**2) * np.sqrt((start.acceleration * start.acceleration).sum(axis=1))
-    slack = bow + touching(start.position)
-    reach = np.sqrt((displacement * displacement).sum(axis=1)) + slack
-    pairs = twin.candidates(start.position, displacement, slack)
-    before = pairs.at(start.position)
-    near = pairs.order(np.flatnonzero(before.gap <= 2.0 * (reach[pairs.row_a] + reach[pairs.row_b])))
-    return pairs.take(near), before.take(near)
-
-
-def touching(position: FloatArray) -> FloatArray:
-    """(N,) length below which a gap is round-off of positions."""
-    result: FloatArray = _TOUCHING * np.maximum(np.abs(position[:, 0]), np.abs(position[:, 1]))
-    return result
 
 
 def closing(pairs: Pairs, before: Geometry, tolerance: FloatArray, start: Start, displacement: FloatArray) -> BoolArray:

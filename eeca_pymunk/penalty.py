@@ -7,13 +7,12 @@ from abc import abstractmethod
 import numpy as np
 import pymunk
 
-from .arrays import ArrayStepper, Motion, Start
+from .arrays import ArrayStepper, Motion, Start, near_pairs
 from .bodies import Bodies, FloatArray, IntArray
 from .closures import check_stiffness
 from .complementarity import Delassus, restrict, solve
 from .contacts import Contacts, Geometry, Pairs
 from .detection import MarginTwin
-from .eeca import near_pairs
 from .stepper import StepReport
 
 

@@ -162,6 +162,27 @@ def test_native_may_follow_eeca_and_the_other_way_round() -> None:
 
 
 @arrays
+def test_post_step_callback_may_remove_and_add_bodies(make: Make) -> None:
+    space, body = one_disk(velocity=(0.3, 1.0))
+    others = [add_disk(space, (float(i), 5.0), 0.1, velocity=(0.0, float(i))) for i in range(1, 6)]
+    stepper = make(space)
+    added: list[pymunk.Body] = []
+
+    def change(space: pymunk.Space) -> None:
+        space.remove(others[1], *others[1].shapes)
+        added.append(add_disk(space, (9.0, 9.0), 0.1, velocity=(7.0, 0.0)))
+
+    space.add_post_step_callback(lambda space, key: change(space), "change")
+    stepper.step(0.01)
+    assert others[1] not in space.bodies
+    assert body.velocity == (0.3, 1.0)
+    assert [b.velocity.y for i, b in enumerate(others) if i != 1] == [1.0, 3.0, 4.0, 5.0]
+    stepper.step(0.01)
+    assert added[0].position.x > 9.0
+    assert others[4].position.y == pytest.approx(5.1)
+
+
+@arrays
 def test_fault_while_writing_leaves_the_space_as_it_was(make: Make, monkeypatch: pytest.MonkeyPatch) -> None:
     space, body = one_disk(velocity=(0.3, -1.0), gravity=9.81)
     body.force = (1.0, 0.0)
