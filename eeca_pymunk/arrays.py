@@ -9,7 +9,7 @@ import numpy as np
 import pymunk
 
 from .bodies import ANGLE, ANGULAR_VELOCITY, FORCE, POSITION, TORQUE, VELOCITY, Bodies, FloatArray
-from .contacts import Geometry, Pairs
+from .contacts import Geometry, Pairs, distance_from_axes, length
 from .detection import MarginTwin
 from .errors import NotFiniteError
 from .shapes import Shapes, check_space
@@ -161,9 +161,9 @@ def near_pairs(twin: MarginTwin, start: Start, displacement: FloatArray) -> tupl
     body), which the factor 2 covers for the contacts that impulses close.
     """
     # The path of a thrown body leaves its chord.
-    bow = (0.125 * start.dt**2) * np.sqrt((start.acceleration * start.acceleration).sum(axis=1))
-    slack = bow + ROUND_OFF * np.abs(start.position).max(axis=1, initial=0.0)
-    reach = np.sqrt((displacement * displacement).sum(axis=1)) + slack
+    bow = (0.125 * start.dt**2) * length(start.acceleration)
+    slack = bow + ROUND_OFF * distance_from_axes(start.position)
+    reach = length(displacement) + slack
     pairs = twin.candidates(start.position, displacement, slack)
     before = pairs.at(start.position)
     near = pairs.order(np.flatnonzero(before.gap <= 2.0 * (reach[pairs.row_a] + reach[pairs.row_b])))
@@ -172,5 +172,4 @@ def near_pairs(twin: MarginTwin, start: Start, displacement: FloatArray) -> tupl
 
 def touching(pairs: Pairs, position: FloatArray) -> FloatArray:
     """(m,) length below which a gap is round-off of positions and radii: the pair touches exactly."""
-    far: FloatArray = np.abs(position[pairs.row_a]).max(axis=1, initial=0.0)
-    return ROUND_OFF * (far + pairs.extent)
+    return ROUND_OFF * (distance_from_axes(position[pairs.row_a]) + pairs.extent)

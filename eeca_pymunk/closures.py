@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
@@ -116,10 +116,10 @@ class Midstep:
         tolerance = max(self.tolerance, _DRAFT) if problem.draft else self.tolerance
         impulses = solve(A, q, start=problem.guess, tolerance=tolerance, max_iterations=self.max_iterations)
         weights = balance.Weights(np.full_like(zero, math.inf), zero, zero)
-        solution = _locked_motion(
-            A, geometry, problem, impulses.lam, weights, impulses.iterations, impulses.converged, q
+        draft = problem.draft and not impulses.exact
+        return _locked_motion(
+            A, geometry, problem, impulses.lam, weights, impulses.iterations, impulses.converged, q, draft
         )
-        return replace(solution, draft=problem.draft and not impulses.exact)
 
 
 @dataclass(frozen=True)
@@ -197,6 +197,7 @@ def _locked_motion(
     iterations: int,
     converged: bool,
     q: FloatArray | None = None,
+    draft: bool = False,
 ) -> Solution:
     """Scale the impulses by the energy lock, and move: Eq. 10 with v_np1 and p_c of the scaled impulses.
 
@@ -227,5 +228,5 @@ def _locked_motion(
     displacement += dt * balance.extra_momentum(A, psi2, delta_p) * m_inv
     return Solution(
         velocity, displacement, lam, psi1, psi2, increment, balance.impulse_time(psi2, dt), geometry,
-        iterations, worst, converged,
+        iterations, worst, converged, draft,
     )  # fmt: skip

@@ -53,12 +53,11 @@ class Delassus:
 
     def dense(self) -> FloatArray:
         """A as an (m, m) array."""
-        incidence = np.zeros((self.size, len(self.inverse_mass)))
-        i = np.arange(self.size)
-        incidence[i, self.row_b] += 1.0
-        incidence[i, self.row_a] -= 1.0
-        # A_ij = (n_i . n_j) times the signed inverse mass of the bodies that both contacts share.
-        result: FloatArray = ((incidence * self.inverse_mass) @ incidence.T) * (self.normal @ self.normal.T)
+        a, b = self.row_a, self.row_b
+        # A_ij = (n_i . n_j) times the inverse mass of the bodies both contacts share, negative between a and b.
+        shared = self.inverse_mass[a][:, None] * ((a[:, None] == a) * 1.0 - (a[:, None] == b))
+        shared += self.inverse_mass[b][:, None] * ((b[:, None] == b) * 1.0 - (b[:, None] == a))
+        result: FloatArray = shared * (self.normal @ self.normal.T)
         return result
 
     def take(self, which: IntArray) -> Delassus:
@@ -134,12 +133,10 @@ def solve(
     if len(coupled) == 0:
         return Impulses(lam, 1, True, True)
     part = A.take(coupled)
-    label = islands(part.row_a, part.row_b, part.inverse_mass)
-    # An island in which nothing approaches needs no impulse.
-    pressed = np.bincount(label, approaching[coupled])[label] > 0
-    if not pressed.any():
-        return Impulses(lam, 1, True, True)
-    if not pressed.all():
+    if len(coupled) > _PIVOTED:
+        # An island in which nothing approaches needs no impulse.
+        label = islands(part.row_a, part.row_b, part.inverse_mass)
+        pressed = np.bincount(label, approaching[coupled])[label] > 0
         coupled = coupled[pressed]
         part = A.take(coupled)
     limit = tolerance * float(np.abs(q).max())
@@ -162,7 +159,7 @@ def pivot(A: FloatArray, q: FloatArray) -> Impulses | None:
 
     Solves on a guess of the closed contacts, then exchanges every contact whose impulse or velocity has the wrong sign.
     """
-    limit = _ROUND_OFF * float(np.abs(q).max())
+    limit = _ROUND_OFF * float(np.abs(q).max(initial=0.0))
     diagonal = A.diagonal()
     closed = q < 0
     lam = np.zeros(len(q))

@@ -15,7 +15,7 @@ import pymunk
 from pymunk import batch
 
 from .bodies import Bodies, FloatArray, IntArray
-from .contacts import Pairs
+from .contacts import Pairs, distance_from_axes, length
 from .shapes import Shapes, shape_body
 
 Solid: TypeAlias = pymunk.Circle | pymunk.Segment | pymunk.Poly
@@ -23,6 +23,7 @@ Solid: TypeAlias = pymunk.Circle | pymunk.Segment | pymunk.Poly
 _HASH_FROM = 200  # moving shapes from which a spatial hash pays (measured: equal cost near 150)
 _MOST_STATIC_CELLS = 200_000
 _FOLLOWED_BY = 16  # walls up to which growing them costs less than following the mean motion saves
+_LARGEST_TABLE = 1_000_000
 _WIDEST = 20.0  # cells that the margin of one disk may span in a hash
 
 
@@ -90,8 +91,7 @@ class MarginTwin:
         # Where each disk stands in pymunk's walk over the twin's bodies.
         slot = {shape: place for place, shape in enumerate(order)}
         self._slot: IntArray = np.array([slot[int(i)] for i in self._disk], np.intp)
-        self._sorted_ids = np.sort(ids)
-        self._shape_of: IntArray = order[np.argsort(ids)]
+        self._shape_of = _Lookup(ids, order)
 
     def _use_hash(self, space: pymunk.Space) -> bool:
         cell = self._cell
@@ -120,7 +120,7 @@ class MarginTwin:
         """
         center, moving = position[self._row], displacement[self._row]
         drift = moving.mean(axis=0) if self._follows and len(moving) else np.zeros(2)
-        reach = _length(moving - drift) + slack[self._row]
+        reach = length(moving - drift) + slack[self._row]
         if self._used_up(center, reach, drift):
             self._detect(center, reach, drift)
         return self._pairs
@@ -131,13 +131,13 @@ class MarginTwin:
         moved = center - self._center
         frame = moved.mean(axis=0) if self._follows and len(moved) else np.zeros(2)
         walls = math.hypot(*frame) + math.hypot(*drift)
-        return walls > self._wall_margin or bool((_length(moved - frame) + reach > self._margin).any())
+        return walls > self._wall_margin or bool((length(moved - frame) + reach > self._margin).any())
 
     def _detect(self, center: FloatArray, reach: FloatArray, drift: FloatArray) -> None:
         radius = self.shapes.radius[self._disk]
         need = np.maximum(reach, np.minimum(self.steps_ahead * reach, self.lazy * radius))
         # The relative 1e-9 keeps a pair that exactly reaches its margin, and covers round-off of far-away positions.
-        floor = 1e-9 * (np.abs(center).max(axis=1, initial=0.0) + radius)
+        floor = 1e-9 * (distance_from_axes(center) + radius)
         need = np.maximum(need + floor, self._unit)
         level = self._unit * np.exp2(np.ceil(np.log2(need / self._unit)))
         if self._hashed and level.max(initial=0.0) > _WIDEST * self._cell:
@@ -171,7 +171,7 @@ class MarginTwin:
         fields = batch.ArbiterFields.BODY_A_ID | batch.ArbiterFields.BODY_B_ID
         batch.get_space_arbiters(self._space, fields, self._buffer)
         ids = np.frombuffer(self._buffer.int_buf(), dtype=np.uintp).astype(np.intp).reshape(-1, 2)
-        found = self._shape_of[np.searchsorted(self._sorted_ids, ids)]
+        found = self._shape_of(ids)
         # A disk comes before a wall, and the lower index before the higher; walls never meet.
         is_disk = self.shapes.is_disk
         low, high = np.minimum(found[:, 0], found[:, 1]), np.maximum(found[:, 0], found[:, 1])
@@ -183,8 +183,24 @@ class MarginTwin:
         return Pairs(self.shapes, first[order], second[order])
 
 
-def _length(vectors: FloatArray) -> FloatArray:
-    return np.sqrt(vectors[:, 0] * vectors[:, 0] + vectors[:, 1] * vectors[:, 1])
+class _Lookup:
+    """Maps pymunk's body ids to values. Ids are addresses: a table where they lie close together, else bisection."""
+
+    def __init__(self, ids: IntArray, values: IntArray) -> None:
+        order = np.argsort(ids)
+        self._ids, self._values = ids[order], values[order]
+        self._low = int(ids.min()) if len(ids) else 0
+        steps = ids - self._low
+        self._stride = max(int(np.gcd.reduce(steps)), 1) if len(ids) else 1
+        self._table: IntArray | None = None
+        if int(steps.max(initial=0)) // self._stride < _LARGEST_TABLE:
+            self._table = np.zeros(int(steps.max(initial=0)) // self._stride + 1, np.intp)
+            self._table[steps // self._stride] = values
+
+    def __call__(self, ids: IntArray) -> IntArray:
+        if self._table is not None:
+            return self._table[(ids - self._low) // self._stride]
+        return self._values[np.searchsorted(self._ids, ids)]
 
 
 def _copy(shape: pymunk.Shape, twin: pymunk.Body) -> Solid:
