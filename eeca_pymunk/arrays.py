@@ -122,9 +122,9 @@ class ArrayStepper(Stepper):
                 still = end.copy()
                 still[:, VELOCITY] = 0.0
                 still[:, ANGULAR_VELOCITY] = 0.0
-                bodies.scatter(still)
+                bodies.scatter(still, unchanged=True)
                 self._sync(dt)
-            bodies.scatter(end)
+            bodies.scatter(end, unchanged=not self.sync)
         except BaseException:
             bodies.scatter(state)
             raise

@@ -103,9 +103,12 @@ class Bodies:
             i, j = np.argwhere(~np.isfinite(state))[0]
             raise NotFiniteError(f"{COLUMN_NAMES[j]} of {self.items[i]} is {state[i, j]}: {remedy}")
 
-    def scatter(self, state: FloatArray) -> None:
-        """Write the whole (N, 9) state to the bodies of these rows that are still in the space."""
-        if not np.array_equal(self._read_ids(), self._ids):
+    def scatter(self, state: FloatArray, *, unchanged: bool = False) -> None:
+        """Write the whole (N, 9) state to the bodies of these rows that are still in the space.
+
+        `unchanged` promises that all are: no callback has run since the state was gathered.
+        """
+        if not unchanged and not np.array_equal(self._read_ids(), self._ids):
             # The batch writes by place: it would give rows to the wrong bodies.
             for body, row in zip(self.items, state.tolist(), strict=True):
                 if body.space is self.space and body.body_type != pymunk.Body.STATIC:

@@ -30,12 +30,12 @@ _WIDEST = 20.0  # cells that the margin of one disk may span in a hash
 class MarginTwin:
     """Candidate pairs of a space's shapes. Rebuild it when shapes come, go or change.
 
-    Margins are powers of two times a thousandth of the radius, and a disk's margin follows its own speed, so that one
+    Margins are powers of sqrt(2) times a thousandth of the radius, and a disk's margin follows its own speed, so that one
     fast disk does not make neighbours of everybody.
     """
 
     steps_ahead = 6.0  # steps a list should last where that asks for less than `lazy` radii
-    lazy = 0.3
+    lazy = 0.05
 
     def __init__(self, bodies: Bodies, shapes: Shapes, state: FloatArray) -> None:
         self.bodies, self.shapes = bodies, shapes
@@ -139,7 +139,7 @@ class MarginTwin:
         # The relative 1e-9 keeps a pair that exactly reaches its margin, and covers round-off of far-away positions.
         floor = 1e-9 * (distance_from_axes(center) + radius)
         need = np.maximum(need + floor, self._unit)
-        level = self._unit * np.exp2(np.ceil(np.log2(need / self._unit)))
+        level = self._unit * np.exp2(0.5 * np.ceil(2.0 * np.log2(need / self._unit)))
         if self._hashed and level.max(initial=0.0) > _WIDEST * self._cell:
             # A hash would put a disk this fast into more cells than there is time for.
             self._hashed = False
