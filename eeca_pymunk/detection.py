@@ -30,8 +30,8 @@ _WIDEST = 20.0  # cells that the margin of one disk may span in a hash
 class MarginTwin:
     """Candidate pairs of a space's shapes. Rebuild it when shapes come, go or change.
 
-    Margins are powers of sqrt(2) times a thousandth of the radius, and a disk's margin follows its own speed, so that one
-    fast disk does not make neighbours of everybody.
+    Margins are powers of sqrt(2) times a thousandth of the radius, and a disk's margin follows its own speed, so that
+    one fast disk does not make neighbours of everybody.
     """
 
     steps_ahead = 6.0  # steps a list should last where that asks for less than `lazy` radii
