@@ -79,7 +79,8 @@ def numerical_damping(frequency: FloatArray, beta: float, gamma: float) -> Float
         # Unknowns q, dt v; a_n = -w² q_n / dt², a_np1 likewise.
         left = np.array([[1.0 + beta * w * w, 0.0], [gamma * w * w, 1.0]])
         right = np.array([[1.0 - (0.5 - beta) * w * w, 1.0], [-(1.0 - gamma) * w * w, 1.0]])
-        root = np.linalg.eigvals(np.linalg.solve(left, right))[0]
+        roots = np.linalg.eigvals(np.linalg.solve(left, right))
+        root = roots[np.argmax(np.abs(roots))]  # the slower one where they are real
         decay, turn = -np.log(abs(root)), abs(np.angle(root))
         ratios.append(decay / np.hypot(decay, turn) if turn or decay else 0.0)
     return np.array(ratios)
