@@ -154,15 +154,17 @@ class ArrayStepper(Stepper):
         return a, b
 
 
-def near_pairs(twin: MarginTwin, start: Start, displacement: FloatArray) -> tuple[Pairs, Geometry]:
+def near_pairs(
+    twin: MarginTwin, start: Start, displacement: FloatArray, extra: FloatArray | float = 0.0
+) -> tuple[Pairs, Geometry]:
     """The pairs that can meet within the step, and their geometry at its start.
 
-    A body's reach is the length of its free flight; impulses can send it twice as far (an elastic hit by a heavier
-    body), which the factor 2 covers for the contacts that impulses close.
+    A body's reach is the length of its free flight and `extra` (N,). Impulses can send it twice as far (an elastic
+    hit by a heavier body), which the factor 2 covers for the contacts that impulses close.
     """
     # The path of a thrown body leaves its chord.
     bow = (0.125 * start.dt**2) * length(start.acceleration)
-    slack = bow + ROUND_OFF * distance_from_axes(start.position)
+    slack = bow + ROUND_OFF * distance_from_axes(start.position) + extra
     reach = length(displacement) + slack
     pairs = twin.candidates(start.position, displacement, slack)
     before = pairs.at(start.position)

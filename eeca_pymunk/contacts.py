@@ -88,14 +88,18 @@ class Pairs:
         """The pairs selected by a mask or by increasing indices."""
         return Pairs(self.shapes, self.first[which], self.second[which])
 
+    @property
+    def key(self) -> IntArray:
+        """(m,) one number per pair, the same in every list of these shapes; disk-disk pairs below disk-wall pairs."""
+        count = len(self.shapes)
+        return self.first * count + self.second + np.where(self.wall < 0, 0, count * count)
+
     def order(self, which: IntArray) -> IntArray:
         """The indices `which` sorted by shapes: pymunk lists arbiters by memory address, results must not depend on it.
 
         Disk-disk pairs stay before disk-wall pairs.
         """
-        key = self.first[which] * len(self.shapes) + self.second[which]
-        key += np.where(which < self.disks, 0, len(self.shapes) ** 2)
-        return which[np.argsort(key)]
+        return which[np.argsort(self.key[which])]
 
     def at(self, position: FloatArray) -> Geometry:
         """Geometry with the bodies at (N, 2) `position`."""

@@ -11,9 +11,11 @@ from .arrays import ArrayStepper, Motion, Start, near_pairs, touching
 from .bodies import Bodies, BoolArray, FloatArray, IntArray
 from .closures import Closure, Midstep, Problem, Solution
 from .complementarity import restrict
-from .contacts import Contacts, Geometry, Pairs
+from .contacts import Contacts, Geometry, Pairs, length
 from .detection import MarginTwin
 from .stepper import StepReport
+
+_STRUCK = 10.0  # ratio of displacements from which a body is looked after again: detection costs as much as a solution
 
 
 class EECA(ArrayStepper):
@@ -53,6 +55,13 @@ class EECA(ArrayStepper):
                 break
             trial = displacement.copy()
             trial[rows] = solution.displacement
+            if left == self.passes and (struck := length(trial) > _STRUCK * length(displacement)).any():
+                # Bodies that hardly moved until now reach pairs that were not near.
+                known = pairs.key[active]
+                pairs, before = near_pairs(twin, start, displacement, struck * length(trial - displacement))
+                tolerance = touching(pairs, start.position)
+                active = np.isin(pairs.key, known)
+                guess, which = np.zeros(len(pairs)), np.flatnonzero(active)
             joining = closing(pairs, before, tolerance, start, trial) & ~active
             if not joining.any():
                 break
