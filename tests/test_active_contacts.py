@@ -69,3 +69,16 @@ def test_walls_added_before_disks_make_no_difference(make: Make) -> None:
         assert ep.measure(space).energy == pytest.approx(energy, rel=1e-12)
         ends.append(np.array([b.position for b in bodies]))
     np.testing.assert_allclose(ends[0], ends[1], atol=1e-9)
+
+
+@every
+def test_wall_added_first_beside_two_disks_that_meet_in_the_same_step(make: Make) -> None:
+    # Sorted by shape the disk-wall pair (a, wall) would come before the disk-disk pair (a, b).
+    space = pymunk.Space()
+    add_walls(space, [((-2.0, 0.0), (2.0, 0.0))])
+    a = add_disk(space, (0.0, 0.1005), 0.1, velocity=(1.0, -1.0))
+    b = add_disk(space, (0.2005, 0.1005), 0.1, velocity=(-1.0, -1.0))
+    stepper = make(space)
+    for _ in range(3):
+        stepper.step(1e-3)
+    np.testing.assert_allclose((*a.velocity, *b.velocity), (-1.0, 1.0, 1.0, 1.0), atol=1e-2)
