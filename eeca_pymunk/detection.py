@@ -61,9 +61,8 @@ class MarginTwin:
         # No push-out and no memory of old contacts: a step of the twin moves nothing and keeps only what it found.
         space.collision_bias = 1.0
         space.collision_persistence = 1
-        disks: list[tuple[pymunk.Body, pymunk.Circle]] = []
+        self._circles: list[pymunk.Circle] = []
         of_body: dict[int, int] = {}
-        twins: dict[int, pymunk.Body] = {}
         for i, shape in enumerate(self.shapes.items):
             owner = shape_body(shape)
             disk = bool(self.shapes.is_disk[i])
@@ -73,13 +72,11 @@ class MarginTwin:
             copy.filter = shape.filter
             space.add(twin, copy)
             of_body[twin.id] = i
-            twins[i] = twin
             if disk:
                 assert isinstance(copy, pymunk.Circle)  # check_shape lets only circles move
-                disks.append((twin, copy))
+                self._circles.append(copy)
             else:
                 self._walls.append((i, copy))
-        self._circles = [circle for _, circle in disks]
         if self._hashed:
             self._hashed = self._use_hash(space)
         self._space = space
