@@ -5,9 +5,9 @@
 
 from types import ModuleType
 
-from .closures import Closure, Dashpot, Midstep
+from .closures import Dashpot, Midstep
 from .contacts import Contacts
-from .eeca import EECA
+from .eeca import EECA, Closure
 from .errors import UnsupportedFeature
 from .invariants import Invariants, measure
 from .native import Native

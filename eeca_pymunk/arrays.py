@@ -21,8 +21,12 @@ _OVERFLOW = "the step would overflow; take a smaller dt, or stop this run"
 
 @dataclass(frozen=True)
 class Start:
-    """The N bodies at the start of a step: position, velocity and acceleration (N, 2), the last with gravity."""
+    """The N bodies at the start of a step: position, velocity and acceleration (N, 2), the last with gravity.
 
+    `time` is that of the end of the step.
+    """
+
+    time: float
     dt: float
     position: FloatArray
     velocity: FloatArray
@@ -103,7 +107,7 @@ class ArrayStepper(Stepper):
         if any(gravity):
             acceleration += bodies.dynamic[:, None] * np.array(gravity)
         velocity = state[:, VELOCITY] * ~bodies.static[:, None]
-        return Start(dt, state[:, POSITION], velocity, acceleration)
+        return Start(self.time + dt, dt, state[:, POSITION], velocity, acceleration)
 
     def _scatter(self, bodies: Bodies, state: FloatArray, motion: Motion, dt: float) -> None:
         """Write the end of the step; forces are reset as pymunk does. Restores the state if pymunk refuses."""
@@ -143,15 +147,15 @@ class ArrayStepper(Stepper):
         finally:
             space.gravity, space.iterations, space.collision_bias = gravity, iterations, bias
 
-    @staticmethod
-    def flight(start: Start, pairs: Pairs, time: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """(m, 2) centres of a and of b on the free flight, every pair at its own (m,) instant."""
-        t = time[:, None]
-        a, b = (
-            start.position[r] + t * start.velocity[r] + (0.5 * t * t) * start.acceleration[r]
-            for r in (pairs.row_a, pairs.row_b)
-        )
-        return a, b
+
+def flight(start: Start, pairs: Pairs, time: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """(m, 2) centres of a and of b on the free flight, every pair at its own (m,) instant."""
+    t = time[:, None]
+    a, b = (
+        start.position[r] + t * start.velocity[r] + (0.5 * t * t) * start.acceleration[r]
+        for r in (pairs.row_a, pairs.row_b)
+    )
+    return a, b
 
 
 def near_pairs(
@@ -168,7 +172,7 @@ def near_pairs(
     reach = length(displacement) + slack
     pairs = twin.candidates(start.position, displacement, slack)
     before = pairs.at(start.position)
-    near = pairs.order(np.flatnonzero(before.gap <= 2.0 * (reach[pairs.row_a] + reach[pairs.row_b])))
+    near = np.flatnonzero(before.gap <= 2.0 * (reach[pairs.row_a] + reach[pairs.row_b]))
     return pairs.take(near), before.take(near)
 
 

@@ -1,4 +1,4 @@
-"""Closures: what chooses psi2, the one parameter that conservation leaves free (design section 4).
+"""The simultaneous closures Midstep and Dashpot: psi2 from a limit or from a law of the contact (design section 4).
 
 Each solves the contacts of a step for the impulses and the motion; what it returns is exactly conservative.
 """
@@ -6,94 +6,21 @@ Each solves the contacts of a step for the impulses and the motion; what it retu
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
 from . import balance
-from .bodies import FloatArray, IntArray
+from .bodies import FloatArray
 from .complementarity import Delassus, islands, solve
 from .contacts import Geometry
+from .simultaneous import Problem, Simultaneous, Solution
 
 _DRAFT = 1e-2  # relative tolerance that suffices to see which contacts close
 
 
 @dataclass(frozen=True)
-class Problem:
-    """Active contacts of a step, on the R bodies they touch.
-
-    Attributes:
-        dt: time.  velocity: (R, 2) at n.  acceleration: (R, 2) of external forces.  mass, inverse_mass: (R,).
-        row_a, row_b, gap, elasticity: (m,) of the contacts.  guess: (m,) of the impulses, 0 where unknown.
-        draft: whether the contacts may change after this solution, so that a rough one does.
-        geometry_at: (m,) instants in the step to the geometry on the free flight at these instants.
-    """
-
-    dt: float
-    velocity: FloatArray
-    acceleration: FloatArray
-    mass: FloatArray
-    inverse_mass: FloatArray
-    row_a: IntArray
-    row_b: IntArray
-    gap: FloatArray
-    elasticity: FloatArray
-    guess: FloatArray
-    geometry_at: Callable[[FloatArray], Geometry]
-    draft: bool = False
-
-    def operator(self, geometry: Geometry) -> Delassus:
-        """The contacts as an operator, with the normals of `geometry`."""
-        return Delassus(self.row_a, self.row_b, geometry.normal, self.inverse_mass)
-
-    @property
-    def external(self) -> FloatArray:
-        """(R, 2) momentum from external forces, dt f_ext; 0 for bodies that do not move."""
-        return self.dt * np.where(self.inverse_mass > 0, self.mass, 0.0)[:, None] * self.acceleration
-
-    @property
-    def larger_mass(self) -> FloatArray:
-        """(m,) M of Eq. 29: the larger of the two masses that move."""
-        mass = np.where(self.inverse_mass > 0, self.mass, 0.0)
-        return np.maximum(mass[self.row_a], mass[self.row_b])
-
-
-@dataclass(frozen=True)
-class Solution:
-    """Impulses and motion of a step.
-
-    Attributes:
-        velocity: (R, 2) at n+1.  displacement: (R, 2) over the step.
-        impulse, psi1, psi2, gap_increment, time: (m,).
-        geometry: normals and points where the impulses act.
-        draft: whether the solution is rough and has to be solved for again.
-        iterations: of the closure.  lock: the scale of the energy lock that lies farthest from 1.
-    """
-
-    velocity: FloatArray
-    displacement: FloatArray
-    impulse: FloatArray
-    psi1: FloatArray
-    psi2: FloatArray
-    gap_increment: FloatArray
-    time: FloatArray
-    geometry: Geometry
-    iterations: int
-    lock: float
-    converged: bool
-    draft: bool = False
-
-
-class Closure(Protocol):
-    """Chooses psi2. `solve` returns the motion of the bodies of `problem`, energy and momentum exact."""
-
-    def solve(self, problem: Problem) -> Solution: ...
-
-
-@dataclass(frozen=True)
-class Midstep:
+class Midstep(Simultaneous):
     """The rigid limit K, xi -> infinity: psi2 = 0, impulses at the middle of the step (design sections 2, 4).
 
     Solves 0 <= lam _|_ A lam + (e u_n + u*) >= 0 on all active contacts at once, Newton's restitution. Second order
@@ -123,7 +50,7 @@ class Midstep:
 
 
 @dataclass(frozen=True)
-class Dashpot:
+class Dashpot(Simultaneous):
     """The paper's closure: psi1 + psi2 = 4 xi / Omega (Eqs. 28-30), an enhanced penalty of spring and dashpot.
 
     A fixed point over complementarity problems (design section 4): impulses give psi2, Delta g and the normals at the

@@ -90,16 +90,8 @@ class Pairs:
 
     @property
     def key(self) -> IntArray:
-        """(m,) one number per pair, the same in every list of these shapes; disk-disk pairs below disk-wall pairs."""
-        count = len(self.shapes)
-        return self.first * count + self.second + np.where(self.wall < 0, 0, count * count)
-
-    def order(self, which: IntArray) -> IntArray:
-        """The indices `which` sorted by shapes: pymunk lists arbiters by memory address, results must not depend on it.
-
-        Disk-disk pairs stay before disk-wall pairs.
-        """
-        return which[np.argsort(self.key[which])]
+        """(m,) one number per pair, the same in every list of these shapes."""
+        return pair_key(self.shapes, self.first, self.second)
 
     def at(self, position: FloatArray) -> Geometry:
         """Geometry with the bodies at (N, 2) `position`."""
@@ -117,6 +109,13 @@ class Pairs:
             d_wall, n_wall = _disk_wall(self.shapes, self.wall[k:], center_a[k:])
             distance, toward = np.concatenate((d_disk, d_wall)), np.concatenate((n_disk, n_wall))
         return Geometry(distance - self.extent, toward, center_a, self.radius_a)
+
+
+def pair_key(shapes: Shapes, first: IntArray, second: IntArray) -> IntArray:
+    """(m,) one number per pair of shapes; every disk-disk pair comes before every disk-wall pair."""
+    count = len(shapes)
+    key: IntArray = first * count + second + np.where(shapes.is_disk[second], 0, count * count)
+    return key
 
 
 def length(vectors: FloatArray) -> FloatArray:

@@ -15,7 +15,7 @@ import pymunk
 from pymunk import batch
 
 from .bodies import Bodies, FloatArray, IntArray
-from .contacts import Pairs, distance_from_axes, length
+from .contacts import Pairs, distance_from_axes, length, pair_key
 from .shapes import Shapes, shape_body
 
 Solid: TypeAlias = pymunk.Circle | pymunk.Segment | pymunk.Poly
@@ -105,7 +105,7 @@ class MarginTwin:
         return bool(np.array_equal(self._static, state[self.bodies.static, :3]))
 
     def candidates(self, position: FloatArray, displacement: FloatArray, slack: FloatArray) -> Pairs:
-        """Every pair whose gap can close within a step, in no particular order.
+        """Every pair whose gap can close within a step, sorted by `Pairs.key`.
 
         Gaps close by relative motion alone: reaches and margins are taken in the frame that moves with the disks on
         average, in which a falling crowd hardly moves and the walls do.
@@ -174,9 +174,9 @@ class MarginTwin:
         low, high = np.minimum(found[:, 0], found[:, 1]), np.maximum(found[:, 0], found[:, 1])
         first = np.where(is_disk[low], low, high)
         second = low + high - first
-        keep = self.shapes.row[first] != self.shapes.row[second]
-        with_wall = keep & ~is_disk[second]
-        order = np.concatenate((np.flatnonzero(keep & ~with_wall), np.flatnonzero(with_wall)))
+        keep = np.flatnonzero(self.shapes.row[first] != self.shapes.row[second])
+        # pymunk lists arbiters by memory address, and results must not depend on it.
+        order = keep[np.argsort(pair_key(self.shapes, first[keep], second[keep]))]
         return Pairs(self.shapes, first[order], second[order])
 
 

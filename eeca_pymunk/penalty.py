@@ -30,7 +30,7 @@ class PenaltyStepper(ArrayStepper):
     def advance(self, bodies: Bodies, start: Start, twin: MarginTwin) -> Motion:
         velocity = start.velocity + start.dt * start.acceleration
         displacement = start.free_displacement
-        time = self.time + start.dt
+        time = start.time
         pairs, before = near_pairs(twin, start, displacement)
         if len(pairs) == 0:
             return Motion(velocity, displacement, StepReport.without_contacts(time, bodies.items))
