@@ -15,6 +15,7 @@ from .newmark import Newmark
 from .penalty import PenaltyEnergyMomentum
 from .recording import Recording, record
 from .stepper import Stepper, StepReport
+from .time_of_impact import TimeOfImpact
 
 __all__ = [
     "EECA",
@@ -29,6 +30,7 @@ __all__ = [
     "Recording",
     "StepReport",
     "Stepper",
+    "TimeOfImpact",
     "UnsupportedFeature",
     "measure",
     "record",

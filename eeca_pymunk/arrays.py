@@ -9,13 +9,12 @@ import numpy as np
 import pymunk
 
 from .bodies import ANGLE, ANGULAR_VELOCITY, FORCE, POSITION, TORQUE, VELOCITY, Bodies, FloatArray
-from .contacts import Geometry, Pairs, distance_from_axes, length
+from .contacts import ROUND_OFF, Geometry, Pairs, distance_from_axes, length
 from .detection import MarginTwin
 from .errors import NotFiniteError
 from .shapes import Shapes, check_space
 from .stepper import Stepper, StepReport, check_dt
 
-ROUND_OFF = 1e-12  # of lengths, relative to positions and radii
 _OVERFLOW = "the step would overflow; take a smaller dt, or stop this run"
 
 
@@ -174,8 +173,3 @@ def near_pairs(
     before = pairs.at(start.position)
     near = np.flatnonzero(before.gap <= 2.0 * (reach[pairs.row_a] + reach[pairs.row_b]))
     return pairs.take(near), before.take(near)
-
-
-def touching(pairs: Pairs, position: FloatArray) -> FloatArray:
-    """(m,) length below which a gap is round-off of positions and radii: the pair touches exactly."""
-    return ROUND_OFF * (distance_from_axes(position[pairs.row_a]) + pairs.extent)

@@ -226,11 +226,11 @@ def restrict(row_a: IntArray, row_b: IntArray, count: int) -> tuple[IntArray, In
     return rows, number[row_a], number[row_b]
 
 
-def islands(row_a: IntArray, row_b: IntArray, inverse_mass: FloatArray) -> IntArray:
-    """(m,) label of the connected component of every contact; bodies of infinite mass do not connect."""
-    label = np.arange(len(inverse_mass))
-    moves_a, moves_b = inverse_mass[row_a] > 0, inverse_mass[row_b] > 0
-    a, b = row_a[moves_a & moves_b], row_b[moves_a & moves_b]
+def components(row_a: IntArray, row_b: IntArray, moves: BoolArray) -> IntArray:
+    """(R,) label of the connected component of every body; bodies that do not move (moves (R,) bool) do not connect."""
+    label = np.arange(len(moves))
+    both = moves[row_a] & moves[row_b]
+    a, b = row_a[both], row_b[both]
     while True:
         before = label.copy()
         lowest = np.minimum(before[a], before[b])
@@ -239,4 +239,10 @@ def islands(row_a: IntArray, row_b: IntArray, inverse_mass: FloatArray) -> IntAr
         np.minimum.at(label, before[b], lowest)
         label = label[label]
         if np.array_equal(label, before):
-            return np.where(moves_a, label[row_a], label[row_b])
+            return label
+
+
+def islands(row_a: IntArray, row_b: IntArray, inverse_mass: FloatArray) -> IntArray:
+    """(m,) label of the connected component of every contact; bodies of infinite mass do not connect."""
+    label = components(row_a, row_b, inverse_mass > 0)
+    return np.where(inverse_mass[row_a] > 0, label[row_a], label[row_b])

@@ -14,6 +14,8 @@ import pymunk
 from .bodies import BoolArray, FloatArray, IntArray
 from .shapes import Shapes, Walls
 
+ROUND_OFF = 1e-12  # of lengths, relative to positions and radii
+
 
 @dataclass(frozen=True)
 class Contacts:
@@ -141,13 +143,34 @@ def _disk_disk(a: FloatArray, b: FloatArray) -> tuple[FloatArray, FloatArray]:
     return distance, d / distance[:, None]
 
 
-def _disk_wall(shapes: Shapes, wall: IntArray, center: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Signed distance (m,) of a centre from an outline, negative inside, and unit vector (m, 2) toward the outline.
+def touching(pairs: Pairs, position: FloatArray) -> FloatArray:
+    """(m,) length below which a gap is round-off of positions and radii: the pair touches exactly."""
+    return ROUND_OFF * (distance_from_axes(position[pairs.row_a]) + pairs.extent)
 
-    The nearest feature decides: the side (exact normal of the edge) or the vertex (direction to it). A centre inside
-    a polygon leaves through the nearest side.
+
+@dataclass(frozen=True)
+class Feature:
+    """What of a wall is nearest to a disk's centre, for m disks.
+
+    Attributes:
+        distance: (m,) signed, of the centre from the outline, negative inside.
+        away: (m, 2) unit vector from the outline to the centre (out of the outline where the centre is inside).
+        edge: (m,) flat index into `Walls` of the edge.  along: (m,) where on it, 0 at its start, 1 at its end.
+        side: (m,) whether the edge's side is nearest; otherwise a vertex is.
     """
-    walls = shapes.walls
+
+    distance: FloatArray
+    away: FloatArray
+    edge: IntArray
+    along: FloatArray
+    side: BoolArray
+
+
+def nearest_feature(walls: Walls, wall: IntArray, center: FloatArray) -> Feature:
+    """The side (exact normal of the edge) or the vertex (direction to it) of every wall nearest to a centre (m, 2).
+
+    A centre inside a polygon leaves through the nearest side.
+    """
     which, inside = _nearest_edge(walls, wall, center)
     rel = center - walls.flat_start[which]
     edge, outward = walls.flat_edge[which], walls.flat_outward[which]
@@ -165,7 +188,13 @@ def _disk_wall(shapes: Shapes, wall: IntArray, center: FloatArray) -> tuple[Floa
         distance[corner] = to_vertex
         off = to_vertex > 0.0
         away[corner[off]] = offset[off] / to_vertex[off, None]
-    return distance, -away
+    return Feature(distance, away, which, along, side)
+
+
+def _disk_wall(shapes: Shapes, wall: IntArray, center: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Signed distance (m,) of a centre from an outline, negative inside, and unit vector (m, 2) toward the outline."""
+    feature = nearest_feature(shapes.walls, wall, center)
+    return feature.distance, -feature.away
 
 
 def _nearest_edge(walls: Walls, wall: IntArray, center: FloatArray) -> tuple[IntArray, BoolArray]:

@@ -45,7 +45,14 @@ class MarginTwin:
         self._row: IntArray = shapes.row[self._disk]
         self._unit: FloatArray = 1e-3 * np.maximum(shapes.radius[self._disk], np.finfo(float).tiny)
         self._follows = len(shapes) - len(self._disk) <= _FOLLOWED_BY < len(self._disk)
+        # The disk of every body that has one; of several on one body the one whose margin is used up first is unknown,
+        # so all of them share the smallest.
+        self._disk_of: IntArray = np.zeros(len(bodies), np.intp)
+        self._disk_of[self._row] = np.arange(len(self._row))
         self._center: FloatArray | None = None
+        self._drift: FloatArray = np.zeros(2)
+        self._reach: FloatArray = np.zeros(len(self._row))
+        self._room = self._reach
         self._pairs = Pairs(shapes, np.zeros(0, np.intp), np.zeros(0, np.intp))
         self._buffer, self._out = batch.Buffer(), batch.Buffer()
         self._hashed = len(self._disk) >= _HASH_FROM
@@ -116,22 +123,40 @@ class MarginTwin:
             slack: (N,) length by which a path may leave the straight line of its displacement.
         """
         center, moving = position[self._row], displacement[self._row]
-        drift = moving.mean(axis=0) if self._follows and len(moving) else np.zeros(2)
-        reach = length(moving - drift) + slack[self._row]
-        if self._used_up(center, reach, drift):
-            self._detect(center, reach, drift)
+        self._drift = moving.mean(axis=0) if self._follows and len(moving) else np.zeros(2)
+        self._reach = length(moving - self._drift) + slack[self._row]
+        if self._used_up(center):
+            self._detect(center)
         return self._pairs
 
-    def _used_up(self, center: FloatArray, reach: FloatArray, drift: FloatArray) -> bool:
+    def covers(self, rows: IntArray, displacement: FloatArray, slack: FloatArray) -> bool:
+        """Whether the list stays complete when the bodies `rows` (m,) take other paths in the step it was asked for.
+
+        Args:
+            displacement: (m, 2) of these bodies over the step.  slack: (m,) length, as in `candidates`.
+        """
+        disk = self._disk_of[rows]
+        reach = length(displacement - self._drift) + slack
+        self._reach[disk] = np.maximum(self._reach[disk], reach)
+        return bool((reach <= self._room[disk]).all())
+
+    def widen(self, position: FloatArray) -> Pairs:
+        """The candidates of the step, bodies at `position` (N, 2) at its start, for all that `covers` was asked."""
+        self._detect(position[self._row])
+        return self._pairs
+
+    def _used_up(self, center: FloatArray) -> bool:
         if self._center is None:
             return True
         moved = center - self._center
         frame = moved.mean(axis=0) if self._follows and len(moved) else np.zeros(2)
-        walls = math.hypot(*frame) + math.hypot(*drift)
-        return walls > self._wall_margin or bool((length(moved - frame) + reach > self._margin).any())
+        walls = math.hypot(*frame) + math.hypot(*self._drift)
+        # What is left of every margin for the paths of this step.
+        self._room = self._margin - length(moved - frame)
+        return walls > self._wall_margin or bool((self._reach > self._room).any())
 
-    def _detect(self, center: FloatArray, reach: FloatArray, drift: FloatArray) -> None:
-        radius = self.shapes.radius[self._disk]
+    def _detect(self, center: FloatArray) -> None:
+        reach, radius = self._reach, self.shapes.radius[self._disk]
         need = np.maximum(reach, np.minimum(self.steps_ahead * reach, self.lazy * radius))
         # The relative 1e-9 keeps a pair that exactly reaches its margin, and covers round-off of far-away positions.
         floor = 1e-9 * (distance_from_axes(center) + radius)
@@ -145,13 +170,13 @@ class MarginTwin:
         for i in np.flatnonzero(changed):
             self._circles[i].unsafe_set_radius(float(radius[i] + level[i]))
         self._margin[changed] = level[changed]
-        self._grow_walls(math.hypot(*drift))
+        self._grow_walls(math.hypot(*self._drift))
         self._positions[self._slot] = center
         self._out.set_float_buf(self._positions.reshape(-1))
         batch.set_space_bodies(self._space, batch.BodyFields.POSITION, self._out)
         self._space.step(1.0)
         self._pairs = self._read_pairs()
-        self._center = center.copy()
+        self._center, self._room = center.copy(), self._margin
         self.detections += 1
 
     def _grow_walls(self, drift: float) -> None:
@@ -160,8 +185,10 @@ class MarginTwin:
             return
         self._wall_margin = 16.0 * drift
         for i, wall in self._walls:
+            # Added anew: pymunk's tree pairs a static shape that grew in place with no disk that stays in its leaf.
+            self._space.remove(wall)
             wall.unsafe_set_radius(float(self.shapes.radius[i]) + self._wall_margin)
-        self._space.reindex_static()
+            self._space.add(wall)
 
     def _read_pairs(self) -> Pairs:
         self._buffer.clear()

@@ -8,8 +8,8 @@ import pymunk
 
 from .arrays import ArrayStepper, Motion, Start
 from .bodies import Bodies
-from .closures import Midstep
 from .detection import MarginTwin
+from .time_of_impact import TimeOfImpact
 
 
 class Closure(Protocol):
@@ -26,12 +26,12 @@ class EECA(ArrayStepper):
 
     Args:
         space: a pymunk space.
-        closure: what chooses psi2; `Midstep()` if None.
+        closure: what chooses psi2; `TimeOfImpact()` if None.
         sync: see `ArrayStepper`.
     """
 
     def __init__(self, space: pymunk.Space, closure: Closure | None = None, *, sync: bool = True) -> None:
-        self.closure: Closure = Midstep() if closure is None else closure
+        self.closure: Closure = TimeOfImpact() if closure is None else closure
         super().__init__(space, sync=sync)
 
     def advance(self, bodies: Bodies, start: Start, twin: MarginTwin) -> Motion:

@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .arrays import Motion, Start, flight, near_pairs, touching
+from .arrays import Motion, Start, flight, near_pairs
 from .bodies import Bodies, BoolArray, FloatArray, IntArray
 from .complementarity import Delassus, restrict
-from .contacts import Contacts, Geometry, Pairs, length
+from .contacts import Contacts, Geometry, Pairs, length, touching
 from .detection import MarginTwin
 from .stepper import StepReport
 

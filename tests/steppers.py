@@ -12,6 +12,7 @@ from scenes.scene import add_disk, add_walls
 Make = Callable[[pymunk.Space], ep.Stepper]
 
 CLOSURES: dict[str, ep.Closure] = {
+    "time_of_impact": ep.TimeOfImpact(),
     "midstep": ep.Midstep(),
     "dashpot_0": ep.Dashpot(1e6, 0.0),
     "dashpot_1": ep.Dashpot(1e6, 1.0),

@@ -1,0 +1,96 @@
+"""Forecast: when the pairs of a step touch next if nothing else happens to their bodies."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from . import impact_times
+from .bodies import FloatArray, IntArray
+from .contacts import Pairs, length, nearest_feature, touching
+from .paths import Paths
+
+
+def next_impact(pairs: Pairs, paths: Paths, which: IntArray, dt: float) -> tuple[FloatArray, FloatArray]:
+    """(m,) instants, from the start of the step, of the next impacts of the pairs `which` (m, increasing).
+
+    Infinity, or an instant after dt, where there is none within the step. Each pair is looked at from the later of its
+    two bodies' latest kinks on; the second result is its gap (m,) there.
+    """
+    k = int(np.searchsorted(which, pairs.disks))
+    if k == len(which):
+        return _disk_disk(pairs, paths, which, dt)
+    if k == 0:
+        return _disk_wall(pairs, paths, which, dt)
+    disks, walls = _disk_disk(pairs, paths, which[:k], dt), _disk_wall(pairs, paths, which[k:], dt)
+    return np.concatenate((disks[0], walls[0])), np.concatenate((disks[1], walls[1]))
+
+
+def _disk_disk(pairs: Pairs, paths: Paths, which: IntArray, dt: float) -> tuple[FloatArray, FloatArray]:
+    a, b = pairs.row_a[which], pairs.row_b[which]
+    t = np.maximum(paths.since[a], paths.since[b])
+    u = paths.velocity[b] - paths.velocity[a]
+    d = paths.origin[b] - paths.origin[a] + t[:, None] * u
+    if not paths.uneven:
+        time, gap = impact_times.disk_disk(d, u, pairs.extent[which])
+        return t + time, gap
+    pull = paths.acceleration[b] - paths.acceleration[a]
+    d += (0.5 * t * t)[:, None] * pull
+    u += t[:, None] * pull
+    time, gap = impact_times.disk_disk(d, u, pairs.extent[which])
+    time += t
+    size = length(pull)
+    left = dt - t
+    bent = np.flatnonzero((size > 0.0) & (gap <= (length(u) + 0.5 * size * left) * left))
+    if len(bent):
+        time[bent] = _advance(pairs, paths, which[bent], t[bent], size[bent], dt)
+    return time, gap
+
+
+def _disk_wall(pairs: Pairs, paths: Paths, which: IntArray, dt: float) -> tuple[FloatArray, FloatArray]:
+    """Flat while the centre stays beside one edge, where a root in closed form exists; round ends and corners else."""
+    a = pairs.row_a[which]
+    t = paths.since[a]
+    v = paths.rate(a, t)
+    near = nearest_feature(pairs.shapes.walls, pairs.wall[which], paths.position(a, t))
+    gap = near.distance - pairs.extent[which]
+    left = dt - t
+    reach = length(v) * left
+    alpha: FloatArray | float = 0.0
+    size = np.zeros(len(a))
+    if paths.pulled:
+        pull = paths.acceleration[a]
+        alpha = pull[:, 0] * near.away[:, 0] + pull[:, 1] * near.away[:, 1]
+        size = length(pull)
+        reach += 0.5 * size * left * left
+    time: FloatArray = impact_times.flat(gap, v[:, 0] * near.away[:, 0] + v[:, 1] * near.away[:, 1], alpha)
+    s = np.minimum(time, left)
+    time += t
+    walls = pairs.shapes.walls
+    edge, squared = walls.flat_edge[near.edge], walls.flat_length_squared[near.edge]
+    # Bounds of where on the edge the centre is until then, as a fraction of its length.
+    along = s * (v[:, 0] * edge[:, 0] + v[:, 1] * edge[:, 1]) / squared
+    low, high = near.along + np.minimum(along, 0.0), near.along + np.maximum(along, 0.0)
+    if paths.pulled:
+        bow = (0.5 * s * s) * (pull[:, 0] * edge[:, 0] + pull[:, 1] * edge[:, 1]) / squared
+        low, high = low + np.minimum(bow, 0.0), high + np.maximum(bow, 0.0)
+    leaves = ~near.side | (low < 0.0) | (high > 1.0)
+    if leaves.any():
+        time[leaves] = np.inf
+        bent = np.flatnonzero(leaves & (gap <= reach))
+        if len(bent):
+            time[bent] = _advance(pairs, paths, which[bent], t[bent], size[bent], dt)
+    return time, gap
+
+
+def _advance(pairs: Pairs, paths: Paths, which: IntArray, t: FloatArray, pull: FloatArray, dt: float) -> FloatArray:
+    chosen = pairs.take(which)
+
+    def gap_and_rate(i: IntArray, s: FloatArray) -> tuple[FloatArray, FloatArray]:
+        now, some = t[i] + s, chosen.take(i)
+        at = some.between(paths.position(some.row_a, now), paths.position(some.row_b, now))
+        u = paths.rate(some.row_b, now) - paths.rate(some.row_a, now)
+        return at.gap, at.normal[:, 0] * u[:, 0] + at.normal[:, 1] * u[:, 1]
+
+    tolerance = touching(chosen, paths.origin)
+    result: FloatArray = t + impact_times.advance_to_contact(gap_and_rate, pull, dt - t, tolerance)
+    return result

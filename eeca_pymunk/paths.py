@@ -1,0 +1,57 @@
+"""Paths: where bodies are at every instant of a step, parabolas that impulses kink (design section 4)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .arrays import Start
+from .bodies import FloatArray, IntArray
+
+
+class Paths:
+    """x(t) = origin + velocity t + acceleration t^2 / 2 of N bodies, t from the start of the step.
+
+    An impulse at tau leaves x(tau) where it is and changes the branch that holds from then on, so that no instant of
+    the step needs a substep of its own.
+
+    Attributes:
+        origin, velocity, acceleration: (N, 2) of the latest branch, extrapolated to the start of the step.
+        since: (N,) time of the latest kink, from which the branch holds.
+        pulled: whether any body has an acceleration.  uneven: whether two bodies' accelerations may differ.
+    """
+
+    def __init__(self, start: Start, moves: IntArray) -> None:
+        self.origin, self.velocity = start.position.copy(), start.velocity.copy()
+        self.since: FloatArray = np.zeros(len(start.position))
+        self.pulled = bool(start.acceleration.any())
+        self.acceleration = start.acceleration.copy() if self.pulled else start.acceleration
+        self.uneven = self.pulled and bool((start.acceleration[moves] != start.acceleration[moves[0]]).any())
+
+    def position(self, rows: IntArray, t: FloatArray) -> FloatArray:
+        """(m, 2) positions of rows (m,) at (m,) instants."""
+        t = t[:, None]
+        at: FloatArray = self.origin[rows] + t * self.velocity[rows]
+        if self.pulled:
+            at += (0.5 * t * t) * self.acceleration[rows]
+        return at
+
+    def rate(self, rows: IntArray, t: FloatArray) -> FloatArray:
+        """(m, 2) velocities of rows (m,) at (m,) instants."""
+        result: FloatArray = self.velocity[rows]
+        if self.pulled:
+            result = result + t[:, None] * self.acceleration[rows]
+        return result
+
+    def kick(self, rows: IntArray, t: FloatArray, change: FloatArray) -> None:
+        """Change the velocities of distinct rows (m,) by (m, 2) at (m,) instants."""
+        self.velocity[rows] += change
+        self.origin[rows] -= t[:, None] * change
+        self.since[rows] = t
+
+    def pull(self, rows: IntArray, t: FloatArray, acceleration: FloatArray) -> None:
+        """Give distinct rows (m,) accelerations (m, 2) from (m,) instants on."""
+        t, change = t[:, None], acceleration - self.acceleration[rows]
+        self.acceleration[rows] = acceleration
+        self.velocity[rows] -= t * change
+        self.origin[rows] += (0.5 * t * t) * change
+        self.uneven = self.uneven or bool(change.any())
