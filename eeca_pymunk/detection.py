@@ -1,29 +1,23 @@
-"""Detection: pymunk finds the pairs that may touch, in a private space with grown shapes (design section 7).
+"""Detection: the margin twin finds the pairs that may touch, and keeps the list while it is complete (design 7).
 
-pymunk reports a contact only where shapes overlap. The margin twin holds a copy of every solid shape, one twin body
-each, its radius grown by a margin of its own; the arbiters of the twin are then the pairs whose gap is below the sum
-of their margins. The list is a Verlet list: it stays complete until some shape has used its margin up.
+pymunk reports a contact only where shapes overlap. The twin is a private space of grown shapes, each with a margin of
+its own; its arbiters are the pairs whose gap is below the sum of their margins. The list is a Verlet list: it stays
+complete until some shape has used its margin up.
 """
 
 from __future__ import annotations
 
 import math
-from typing import TypeAlias
 
 import numpy as np
-import pymunk
-from pymunk import batch
 
 from .bodies import Bodies, FloatArray, IntArray
-from .contacts import Pairs, distance_from_axes, length, pair_key
-from .shapes import Shapes, shape_body
-
-Solid: TypeAlias = pymunk.Circle | pymunk.Segment | pymunk.Poly
+from .contacts import Pairs, distance_from_axes, length
+from .grown import GrownSpace
+from .shapes import Shapes
 
 _HASH_FROM = 200  # moving shapes from which a spatial hash pays (measured: equal cost near 150)
-_MOST_STATIC_CELLS = 200_000
 _FOLLOWED_BY = 16  # walls up to which growing them costs less than following the mean motion saves
-_LARGEST_TABLE = 1_000_000
 _WIDEST = 20.0  # cells that the margin of one disk may span in a hash
 
 
@@ -34,8 +28,10 @@ class MarginTwin:
     one fast disk does not make neighbours of everybody.
     """
 
-    steps_ahead = 6.0  # steps a list should last where that asks for less than `lazy` radii
-    lazy = 0.05
+    # Steps that a margin should last at the disk's own speed, and at the mean speed, which an impulse may give to any
+    # disk; neither is worth more than so many radii, beyond which pairs cost more than finding them anew.
+    steps_ahead, most_ahead = 4.0, 2.0
+    steps_struck, most_struck = 5.0, 0.5
 
     def __init__(self, bodies: Bodies, shapes: Shapes, state: FloatArray) -> None:
         self.bodies, self.shapes = bodies, shapes
@@ -43,69 +39,23 @@ class MarginTwin:
         self._static = state[bodies.static, :3]
         self._disk: IntArray = np.flatnonzero(shapes.is_disk)
         self._row: IntArray = shapes.row[self._disk]
-        self._unit: FloatArray = 1e-3 * np.maximum(shapes.radius[self._disk], np.finfo(float).tiny)
+        self._radius: FloatArray = shapes.radius[self._disk]
+        self._unit: FloatArray = 1e-3 * np.maximum(self._radius, np.finfo(float).tiny)
         self._follows = len(shapes) - len(self._disk) <= _FOLLOWED_BY < len(self._disk)
-        # The disk of every body that has one; of several on one body the one whose margin is used up first is unknown,
-        # so all of them share the smallest.
-        self._disk_of: IntArray = np.zeros(len(bodies), np.intp)
-        self._disk_of[self._row] = np.arange(len(self._row))
+        self._one_disk_each = len(np.unique(self._row)) == len(self._row)
         self._center: FloatArray | None = None
         self._drift: FloatArray = np.zeros(2)
-        self._reach: FloatArray = np.zeros(len(self._row))
-        self._room = self._reach
+        # By body: how far it gets from its start in the step, and how far it may.
+        self._reach: FloatArray = np.zeros(len(bodies))
+        self._room: FloatArray = np.full(len(bodies), np.inf)
         self._pairs = Pairs(shapes, np.zeros(0, np.intp), np.zeros(0, np.intp))
-        self._buffer, self._out = batch.Buffer(), batch.Buffer()
-        self._hashed = len(self._disk) >= _HASH_FROM
-        self._cell = 5.0 * float(np.median(self.shapes.radius[self._disk])) if self._hashed else 0.0
-        self._build()
+        self._cell = 5.0 * float(np.median(self._radius)) if len(self._disk) >= _HASH_FROM else 0.0
+        self._build(state[self._row, :2])
 
-    def _build(self) -> None:
+    def _build(self, center: FloatArray) -> None:
+        self._space = GrownSpace(self.shapes, self._disk, center, self._cell)
         self._margin: FloatArray = np.zeros(len(self._disk))
         self._wall_margin = 0.0
-        self._walls: list[tuple[int, Solid]] = []
-        space = pymunk.Space()
-        space.iterations = 1
-        # No push-out and no memory of old contacts: a step of the twin moves nothing and keeps only what it found.
-        space.collision_bias = 1.0
-        space.collision_persistence = 1
-        self._circles: list[pymunk.Circle] = []
-        of_body: dict[int, int] = {}
-        for i, shape in enumerate(self.shapes.items):
-            owner = shape_body(shape)
-            disk = bool(self.shapes.is_disk[i])
-            twin = pymunk.Body(1.0, 1.0) if disk else pymunk.Body(body_type=pymunk.Body.STATIC)
-            twin.position, twin.angle = owner.position, owner.angle
-            copy = _copy(shape, twin)
-            copy.filter = shape.filter
-            space.add(twin, copy)
-            of_body[twin.id] = i
-            if disk:
-                assert isinstance(copy, pymunk.Circle)  # check_shape lets only circles move
-                self._circles.append(copy)
-            else:
-                self._walls.append((i, copy))
-        if self._hashed:
-            self._hashed = self._use_hash(space)
-        self._space = space
-        self._buffer.clear()
-        batch.get_space_bodies(space, batch.BodyFields.BODY_ID | batch.BodyFields.POSITION, self._buffer)
-        ids = np.frombuffer(self._buffer.int_buf(), dtype=np.uintp).astype(np.intp)
-        self._positions: FloatArray = np.frombuffer(self._buffer.float_buf()).reshape(-1, 2).copy()
-        order = np.array([of_body.get(int(i), -1) for i in ids], np.intp)
-        # Where each disk stands in pymunk's walk over the twin's bodies.
-        slot = {shape: place for place, shape in enumerate(order)}
-        self._slot: IntArray = np.array([slot[int(i)] for i in self._disk], np.intp)
-        self._shape_of = _Lookup(ids, order)
-
-    def _use_hash(self, space: pymunk.Space) -> bool:
-        cell = self._cell
-        boxes = [s.bb for s, disk in zip(self.shapes.items, self.shapes.is_disk, strict=True) if not disk]
-        cells = sum(((b.right - b.left) / cell + 1.0) * ((b.top - b.bottom) / cell + 1.0) for b in boxes)
-        # A hash puts a wall into every cell of its bounding box; where that is too many the tree is the better index.
-        if cells >= _MOST_STATIC_CELLS:
-            return False
-        space.use_spatial_hash(cell, 4 * len(self._disk))
-        return True
 
     def is_current(self, state: FloatArray) -> bool:
         """False when a static body was moved since the twin was built."""
@@ -123,10 +73,21 @@ class MarginTwin:
             slack: (N,) length by which a path may leave the straight line of its displacement.
         """
         center, moving = position[self._row], displacement[self._row]
-        self._drift = moving.mean(axis=0) if self._follows and len(moving) else np.zeros(2)
-        self._reach = length(moving - self._drift) + slack[self._row]
-        if self._used_up(center):
+        follows = self._follows and len(moving) > 0
+        self._drift = moving.mean(axis=0) if follows else np.zeros(2)
+        reach = length(moving - self._drift) + slack[self._row]
+        self._reach[self._row] = reach
+        if self._center is None:
             self._detect(center)
+            return self._pairs
+        moved = center - self._center
+        frame = moved.mean(axis=0) if follows else np.zeros(2)
+        room = self._margin - length(moved - frame)
+        walls = math.hypot(*frame) + math.hypot(*self._drift)
+        if walls > self._wall_margin or (reach > room).any():
+            self._detect(center)
+        else:
+            self._leave(room)
         return self._pairs
 
     def covers(self, rows: IntArray, displacement: FloatArray, slack: FloatArray) -> bool:
@@ -135,102 +96,50 @@ class MarginTwin:
         Args:
             displacement: (m, 2) of these bodies over the step.  slack: (m,) length, as in `candidates`.
         """
-        disk = self._disk_of[rows]
         reach = length(displacement - self._drift) + slack
-        self._reach[disk] = np.maximum(self._reach[disk], reach)
-        return bool((reach <= self._room[disk]).all())
+        self._reach[rows] = np.maximum(self._reach[rows], reach)
+        return bool((reach <= self._room[rows]).all())
 
     def widen(self, position: FloatArray) -> Pairs:
         """The candidates of the step, bodies at `position` (N, 2) at its start, for all that `covers` was asked."""
         self._detect(position[self._row])
         return self._pairs
 
-    def _used_up(self, center: FloatArray) -> bool:
-        if self._center is None:
-            return True
-        moved = center - self._center
-        frame = moved.mean(axis=0) if self._follows and len(moved) else np.zeros(2)
-        walls = math.hypot(*frame) + math.hypot(*self._drift)
-        # What is left of every margin for the paths of this step.
-        self._room = self._margin - length(moved - frame)
-        return walls > self._wall_margin or bool((self._reach > self._room).any())
+    def _leave(self, room: FloatArray) -> None:
+        """Note what the motion so far leaves of every margin (D,)."""
+        if self._one_disk_each:
+            self._room[self._row] = room
+        else:
+            self._room[self._row] = np.inf
+            np.minimum.at(self._room, self._row, room)
+
+    def _wanted(self, reach: FloatArray) -> FloatArray:
+        """(D,) margins: what the step needs, and more where some more makes the list last."""
+        mean = math.sqrt(float(np.mean(reach * reach)))
+        own = np.minimum(self.steps_ahead * reach, self.most_ahead * self._radius)
+        struck = np.minimum(self.steps_struck * mean, self.most_struck * self._radius)
+        return np.maximum(np.maximum(reach, own), struck)
 
     def _detect(self, center: FloatArray) -> None:
-        reach, radius = self._reach, self.shapes.radius[self._disk]
-        need = np.maximum(reach, np.minimum(self.steps_ahead * reach, self.lazy * radius))
-        # The relative 1e-9 keeps a pair that exactly reaches its margin, and covers round-off of far-away positions.
-        floor = 1e-9 * (distance_from_axes(center) + radius)
-        need = np.maximum(need + floor, self._unit)
-        level = self._unit * np.exp2(0.5 * np.ceil(2.0 * np.log2(need / self._unit)))
-        if self._hashed and level.max(initial=0.0) > _WIDEST * self._cell:
-            # A hash would put a disk this fast into more cells than there is time for.
-            self._hashed = False
-            self._build()
-        changed = (level > self._margin) | (level < 0.25 * self._margin)
-        for i in np.flatnonzero(changed):
-            self._circles[i].unsafe_set_radius(float(radius[i] + level[i]))
-        self._margin[changed] = level[changed]
-        self._grow_walls(math.hypot(*self._drift))
-        self._positions[self._slot] = center
-        self._out.set_float_buf(self._positions.reshape(-1))
-        batch.set_space_bodies(self._space, batch.BodyFields.POSITION, self._out)
-        self._space.step(1.0)
-        self._pairs = self._read_pairs()
-        self._center, self._room = center.copy(), self._margin
-        self.detections += 1
-
-    def _grow_walls(self, drift: float) -> None:
-        """Give the walls the margin that the moving frame asks of them, for some steps of `drift` (length)."""
-        if 4.0 * drift <= self._wall_margin <= 64.0 * drift:
+        if len(center) == 0:
             return
-        self._wall_margin = 16.0 * drift
-        for i, wall in self._walls:
-            # Added anew: pymunk's tree pairs a static shape that grew in place with no disk that stays in its leaf.
-            self._space.remove(wall)
-            wall.unsafe_set_radius(float(self.shapes.radius[i]) + self._wall_margin)
-            self._space.add(wall)
-
-    def _read_pairs(self) -> Pairs:
-        self._buffer.clear()
-        fields = batch.ArbiterFields.BODY_A_ID | batch.ArbiterFields.BODY_B_ID
-        batch.get_space_arbiters(self._space, fields, self._buffer)
-        ids = np.frombuffer(self._buffer.int_buf(), dtype=np.uintp).astype(np.intp).reshape(-1, 2)
-        found = self._shape_of(ids)
-        # A disk comes before a wall, and the lower index before the higher; walls never meet.
-        is_disk = self.shapes.is_disk
-        low, high = np.minimum(found[:, 0], found[:, 1]), np.maximum(found[:, 0], found[:, 1])
-        first = np.where(is_disk[low], low, high)
-        second = low + high - first
-        keep = np.flatnonzero(self.shapes.row[first] != self.shapes.row[second])
-        # pymunk lists arbiters by memory address, and results must not depend on it.
-        order = keep[np.argsort(pair_key(self.shapes, first[keep], second[keep]))]
-        return Pairs(self.shapes, first[order], second[order])
-
-
-class _Lookup:
-    """Maps pymunk's body ids to values. Ids are addresses: a table where they lie close together, else bisection."""
-
-    def __init__(self, ids: IntArray, values: IntArray) -> None:
-        order = np.argsort(ids)
-        self._ids, self._values = ids[order], values[order]
-        self._low = int(ids.min()) if len(ids) else 0
-        steps = ids - self._low
-        self._stride = max(int(np.gcd.reduce(steps)), 1) if len(ids) else 1
-        self._table: IntArray | None = None
-        if int(steps.max(initial=0)) // self._stride < _LARGEST_TABLE:
-            self._table = np.zeros(int(steps.max(initial=0)) // self._stride + 1, np.intp)
-            self._table[steps // self._stride] = values
-
-    def __call__(self, ids: IntArray) -> IntArray:
-        if self._table is not None:
-            return self._table[(ids - self._low) // self._stride]
-        return self._values[np.searchsorted(self._ids, ids)]
-
-
-def _copy(shape: pymunk.Shape, twin: pymunk.Body) -> Solid:
-    if isinstance(shape, pymunk.Circle):
-        return pymunk.Circle(twin, shape.radius, shape.offset)
-    if isinstance(shape, pymunk.Segment):
-        return pymunk.Segment(twin, shape.a, shape.b, shape.radius)
-    assert isinstance(shape, pymunk.Poly)  # check_shape let nothing else through
-    return pymunk.Poly(twin, shape.get_vertices(), radius=shape.radius)
+        # The relative 1e-9 keeps a pair that exactly reaches its margin, and covers round-off of far-away positions.
+        floor = 1e-9 * (distance_from_axes(center) + self._radius)
+        need = np.maximum(self._wanted(self._reach[self._row]) + floor, self._unit)
+        level = self._unit * np.exp2(0.5 * np.ceil(2.0 * np.log2(need / self._unit)))
+        if self._space.hashed and level.max() > _WIDEST * self._cell:
+            # A hash would put a disk this fast into more cells than there is time for.
+            self._cell = 0.0
+            self._build(center)
+        changed = np.flatnonzero((level > self._margin) | (level < 0.25 * self._margin))
+        self._space.grow_disks(changed, level[changed])
+        self._margin[changed] = level[changed]
+        drift = math.hypot(*self._drift)
+        if not 4.0 * drift <= self._wall_margin <= 64.0 * drift:
+            # Enough for some steps of the moving frame.
+            self._wall_margin = 16.0 * drift
+            self._space.grow_walls(self._wall_margin)
+        self._pairs = self._space.find(center)
+        self._center = center.copy()
+        self._leave(self._margin)
+        self.detections += 1
