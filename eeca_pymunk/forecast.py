@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from . import impact_times
-from .bodies import FloatArray, IntArray
+from .bodies import BoolArray, FloatArray, IntArray
 from .contacts import Pairs, length, nearest_feature, touching
 from .paths import Paths
 
@@ -23,6 +23,33 @@ def next_impact(pairs: Pairs, paths: Paths, which: IntArray, dt: float) -> tuple
         return _disk_wall(pairs, paths, which, dt)
     disks, walls = _disk_disk(pairs, paths, which[:k], dt), _disk_wall(pairs, paths, which[k:], dt)
     return np.concatenate((disks[0], walls[0])), np.concatenate((disks[1], walls[1]))
+
+
+def missed(pairs: Pairs, paths: Paths, which: IntArray, changed: BoolArray) -> bool:
+    """whether disks of the pairs `which` met before the later of their kinks, where it was not known yet.
+
+    A round takes impacts far apart at different instants. When a body is changed (changed (N,) bool) at an instant
+    before a neighbour's latest kink, it may meet the branch that this kink has ended.
+    """
+    which = which[: int(np.searchsorted(which, pairs.disks))]
+    since, before = paths.since, paths.before
+    a, b = pairs.row_a[which], pairs.row_b[which]
+    swap = since[a] > since[b]
+    early, late = np.where(swap, b, a), np.where(swap, a, b)
+    back = np.flatnonzero(changed[early] & (since[early] < since[late]))
+    if len(back) == 0:
+        return False
+    early, late = early[back], late[back]
+    extent = pairs.extent[which[back]]
+    t, kink = np.maximum(since[early], before.since[late]), since[late]
+    d = before.position(late, t) - paths.position(early, t)
+    u = before.rate(late, t) - paths.rate(early, t)
+    meets = t + impact_times.disk_disk(d, u, extent)[0] < kink
+    if paths.uneven:
+        # Different pulls bend the relative path: look at its end too.
+        d = before.position(late, kink) - paths.position(early, kink)
+        meets |= length(d) - extent < -1e-9 * extent
+    return bool(meets.any())
 
 
 def _disk_disk(pairs: Pairs, paths: Paths, which: IntArray, dt: float) -> tuple[FloatArray, FloatArray]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import copy
+
 import numpy as np
 
 from .arrays import Start
@@ -18,7 +20,10 @@ class Paths:
         origin, velocity, acceleration: (N, 2) of the latest branch, extrapolated to the start of the step.
         since: (N,) time of the latest kink, from which the branch holds.
         pulled: whether any body has an acceleration.  uneven: whether two bodies' accelerations may differ.
+        before: the paths with the branches that the latest kinks ended.
     """
+
+    before: Paths
 
     def __init__(self, start: Start, moves: IntArray) -> None:
         self.origin, self.velocity = start.position.copy(), start.velocity.copy()
@@ -26,6 +31,22 @@ class Paths:
         self.pulled = bool(start.acceleration.any())
         self.acceleration = start.acceleration.copy() if self.pulled else start.acceleration
         self.uneven = self.pulled and bool((start.acceleration[moves] != start.acceleration[moves[0]]).any())
+        self.before = self.copy()
+
+    def copy(self) -> Paths:
+        """The paths as they are now, without what was before."""
+        other = copy.copy(self)
+        other.origin, other.velocity, other.since = self.origin.copy(), self.velocity.copy(), self.since.copy()
+        if self.pulled:
+            other.acceleration = self.acceleration.copy()
+        return other
+
+    def assign(self, other: Paths) -> None:
+        """Take over the branches of `other`."""
+        self.origin[:], self.velocity[:], self.since[:] = other.origin, other.velocity, other.since
+        if self.pulled:
+            self.acceleration[:] = other.acceleration
+        self.uneven = other.uneven
 
     def position(self, rows: IntArray, t: FloatArray) -> FloatArray:
         """(m, 2) positions of rows (m,) at (m,) instants."""
@@ -44,6 +65,11 @@ class Paths:
 
     def kick(self, rows: IntArray, t: FloatArray, change: FloatArray) -> None:
         """Change the velocities of distinct rows (m,) by (m, 2) at (m,) instants."""
+        before = self.before
+        before.origin[rows], before.velocity[rows] = self.origin[rows], self.velocity[rows]
+        before.since[rows] = self.since[rows]
+        if self.pulled:
+            before.acceleration[rows] = self.acceleration[rows]
         self.velocity[rows] += change
         self.origin[rows] -= t[:, None] * change
         self.since[rows] = t

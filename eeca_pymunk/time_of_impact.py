@@ -7,15 +7,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from .arrays import Motion, Start
+from .blocks import Blocks, Resting
 from .bodies import Bodies, BoolArray, FloatArray, IntArray
 from .complementarity import components
 from .contacts import ROUND_OFF, Pairs, distance_from_axes, length, touching
 from .detection import MarginTwin
-from .forecast import next_impact
+from .forecast import missed, next_impact
 from .impacts import Impacts
 from .paths import Paths
 from .stepper import StepReport
 
+_WAIT = 6.0  # how much faster than now an impact may make a body, in the guess of `_mind_neighbours`
+_SHORTEST = 2.0**-20  # part of dt, of a window within which the order of impacts is checked
 _TIE = 1e-6  # part of dt within which two impacts of one body may be the same instant up to round-off of places
 _BOUNCES = 16  # of one contact within a step after which it stops if its elasticity is below 1
 
@@ -55,29 +58,28 @@ class Rounds:
         self.moves: BoolArray = bodies.dynamic
         self.paths = Paths(start, np.flatnonzero(bodies.dynamic))
         self.impacts = Impacts(bodies, start, self.paths)
+        self.blocks = Blocks(self.impacts)
         self.may_stop = self.paths.pulled or bool((twin.shapes.elasticity < 1.0).any())
         self.rows = np.arange(len(bodies))
-        none = np.zeros(0, np.intp)
-        near = self._list(pairs, none, none)
+        near = self._list(pairs, np.zeros(0, np.intp))
         if len(near):
             self._begin(near)
 
-    def _list(self, pairs: Pairs, touch: IntArray, rest: IntArray) -> IntArray:
-        """Take a list of pairs; `touch` and `rest` are the keys of those that touch and that rest on each other.
+    def _list(self, pairs: Pairs, touch: IntArray) -> IntArray:
+        """Take a list of pairs; `touch` are the keys of those that touch.
 
         Returns the contacts that are closed.
         """
         self.pairs = pairs
-        self.time, gap = next_impact(pairs, self.paths, np.arange(len(pairs)), self.start.dt)
+        self.time, self.gap = next_impact(pairs, self.paths, np.arange(len(pairs)), self.start.dt)
         self.bounces: IntArray = np.zeros(len(pairs), np.intp)
         self.touch: IntArray = np.searchsorted(pairs.key, touch)
-        self.rest: IntArray = np.searchsorted(pairs.key, rest)
-        self.time[self.touch] = np.inf
+        self._wait()
         self._join()
         position = self.start.position
         coarse = ROUND_OFF * (np.abs(position).max() + pairs.extent.max(initial=0.0))
-        near = np.flatnonzero(gap <= coarse)
-        return near[gap[near] <= touching(pairs.take(near), position)] if len(near) else near
+        near = np.flatnonzero(self.gap <= coarse)
+        return near[self.gap[near] <= touching(pairs.take(near), position)] if len(near) else near
 
     def _begin(self, near: IntArray) -> None:
         """The contacts that touch at the start form blocks with what hits them there, and may rest."""
@@ -95,13 +97,26 @@ class Rounds:
     def run(self, max_rounds: int) -> Motion:
         """Rounds until nothing is due within the step; the motion and its report."""
         start, paths = self.start, self.paths
-        rounds = 0
-        while len(due := np.flatnonzero(self.time < start.dt)) and rounds < max_rounds:
+        dt, rounds, windows = start.dt, 0, 1
+        begin, end = 0.0, dt
+        saved = self._save()
+        while rounds < max_rounds:
+            due = np.flatnonzero(self.time < end)
+            if len(due) == 0:
+                if end == dt:
+                    break
+                begin, end = end, min(dt, end + 2.0 * (end - begin))
+                windows += 1
+                saved = self._save()
+                continue
             rounds += 1
-            self._look_again(self._take(due))
-        t = np.full(len(self.rows), start.dt)
+            if not self._look_again(self._take(due)) and end - begin > _SHORTEST * dt:
+                self._restore(saved)
+                end = begin + 0.5 * (end - begin)
+        t = np.full(len(self.rows), dt)
         displacement = paths.position(self.rows, t) - start.position
-        report = self.impacts.report(self.pairs, rounds, converged=len(due) == 0)
+        self.blocks.finish()
+        report = self.impacts.report(self.pairs, rounds, windows, converged=len(due) == 0)
         return Motion(paths.rate(self.rows, t), displacement, report)
 
     def _take(self, due: IntArray) -> IntArray:
@@ -112,6 +127,7 @@ class Rounds:
         np.minimum.at(earliest, a, t)
         np.minimum.at(earliest, b, t)
         earliest[~self.moves] = np.inf  # a wall waits for nobody
+        self._mind_neighbours(earliest)
         wait = np.maximum(t - earliest[a], t - earliest[b])
         nearly = due[(wait > 0.0) & (wait <= _TIE * self.start.dt)]
         lone, block = self._split(due[wait <= 0.0], self._ties(nearly, earliest))
@@ -130,6 +146,21 @@ class Rounds:
             return lone
         self._strike(block, np.where(np.isin(block, due), self.time[block], np.inf))
         return np.concatenate((lone, block))
+
+    def _mind_neighbours(self, earliest: FloatArray) -> None:
+        """Let bodies wait for impacts of neighbours that may send these into them before their own: (N,) instants.
+
+        A guess from speeds and gaps, which saves rounds; `missed` finds what it did not foresee.
+        """
+        busy = earliest < np.inf
+        both = np.flatnonzero(busy[self.pairs.row_a] & busy[self.pairs.row_b])
+        row_a, row_b = self.pairs.row_a[both], self.pairs.row_b[both]
+        speed = length(self.paths.velocity[row_a]) + length(self.paths.velocity[row_b])
+        a, b = self.label[row_a], self.label[row_b]
+        t_a, t_b = earliest[a], earliest[b]
+        soon = np.flatnonzero(self.gap[both] < _WAIT * speed * np.abs(t_a - t_b))
+        np.minimum.at(earliest, a[soon], t_b[soon])
+        np.minimum.at(earliest, b[soon], t_a[soon])
 
     def _ties(self, nearly: IntArray, earliest: FloatArray) -> IntArray:
         """Those of the contacts that are closed already, up to round-off, at the earliest instant of their bodies."""
@@ -167,34 +198,80 @@ class Rounds:
         return self.label[self.pairs.row_a[contacts]], self.label[self.pairs.row_b[contacts]]
 
     def _strike(self, block: IntArray, seed: FloatArray) -> None:
-        """Solve blocks (contacts, increasing) hit at the instants `seed`, and remember what touches and rests on."""
-        resting = np.isin(block, self.rest, assume_unique=True)
-        on, rest = self.impacts.strike(self.pairs.take(block), seed, self._spent(block), resting)
+        """Solve blocks (contacts, increasing) hit at the instants `seed`, and remember what touches on."""
+        on = self.blocks.strike(self.pairs.take(block), seed, self._spent(block))
         self.touch = np.union1d(np.setdiff1d(self.touch, block), block[on])
-        self.rest = np.union1d(np.setdiff1d(self.rest, block), block[rest])
         self.bounces[block] += 1
         self._join()
+
+    def _wait(self) -> None:
+        """What touches does nothing until something hits it, or until the force it rests on has to be found anew."""
+        self.time[self.touch] = np.inf
+        resting = self.blocks.resting
+        if len(resting.key):
+            self.time[np.searchsorted(self.pairs.key, resting.key)] = resting.until
 
     def _spent(self, contacts: IntArray) -> BoolArray:
         """Whether a contact has bounced so often that it has to stop, so that no dissipating bounce goes on forever."""
         spent: BoolArray = (self.bounces[contacts] >= _BOUNCES) & (self.pairs.elasticity[contacts] < 1.0)
         return spent
 
-    def _look_again(self, taken: IntArray) -> None:
-        """Forecast anew what the bodies of the contacts just taken meet; these contacts do not act again at once."""
+    def _look_again(self, taken: IntArray) -> bool:
+        """Forecast anew what the bodies of the contacts just taken meet.
+
+        Returns False if one of them would have met a body before an impact of that body that was taken already.
+        """
         pairs, paths, dt = self.pairs, self.paths, self.start.dt
         both = np.concatenate((pairs.row_a[taken], pairs.row_b[taken]))
         rows = both[self.moves[both]]
+        changed = np.zeros(len(self.rows), bool)
+        changed[rows] = True
         moved = paths.position(rows, np.full(len(rows), dt)) - self.start.position[rows]
         if not self.twin.covers(rows, moved, self.slack[rows]):
             # An impulse sent a body farther than its margin: pairs that were not near may meet now.
-            touch, rest = pairs.key[self.touch], pairs.key[self.rest]
-            self._list(self.twin.widen(self.start.position), touch, rest)
-            return
-        changed = np.zeros(len(self.rows), bool)
-        changed[rows] = True
+            self._list(self.twin.widen(self.start.position), pairs.key[self.touch])
+            pairs = self.pairs
+            return not missed(pairs, paths, np.arange(len(pairs)), changed)
         again = np.flatnonzero(changed[pairs.row_a] | changed[pairs.row_b])
-        self.time[again] = next_impact(pairs, paths, again, dt)[0]
-        self.time[self.touch] = np.inf
+        if missed(pairs, paths, again, changed):
+            return False
+        self.time[again], self.gap[again] = next_impact(pairs, paths, again, dt)
         at_once = self.time[taken] <= np.maximum(paths.since[pairs.row_a[taken]], paths.since[pairs.row_b[taken]])
-        self.time[taken[at_once]] = np.inf
+        self.time[taken[at_once & (self.bounces[taken] >= _BOUNCES)]] = np.inf
+        self._wait()
+        return True
+
+    def _save(self) -> _Saved:
+        paths, before = self.paths.copy(), self.paths.before.copy()
+        return _Saved(
+            paths, before, self.pairs, self.time.copy(), self.bounces.copy(), self.touch, self.blocks.resting,
+            self.impacts.lock, len(self.impacts.log),
+        )  # fmt: skip
+
+    def _restore(self, saved: _Saved) -> None:
+        self.paths.assign(saved.paths)
+        self.paths.before.assign(saved.before)
+        self.touch, self.blocks.resting = saved.touch, saved.resting
+        self.impacts.lock = saved.lock
+        del self.impacts.log[saved.log :]
+        if self.pairs is saved.pairs:
+            self.time[:], self.bounces[:] = saved.time, saved.bounces
+            self._join()
+        else:
+            # The longer list serves the shorter paths as well.
+            self._list(self.pairs, saved.pairs.key[saved.touch])
+
+
+@dataclass(frozen=True)
+class _Saved:
+    """What a window of the step began with."""
+
+    paths: Paths
+    before: Paths
+    pairs: Pairs
+    time: FloatArray
+    bounces: IntArray
+    touch: IntArray
+    resting: Resting
+    lock: float
+    log: int
