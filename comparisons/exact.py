@@ -83,17 +83,3 @@ class Gas:
         with np.errstate(divide="ignore", invalid="ignore"):
             time = np.where(v > 0.0, (self.side - r - self.position) / v, (r - self.position) / v)
         return np.where(v != 0.0, np.maximum(time, 0.0), np.inf)
-
-
-def bouncing_ball(height: float, speed: float, gravity: float, t: float) -> tuple[float, float]:
-    """Height above the floor and velocity (upwards) after time t of a ball that bounces elastically, closed form.
-
-    Args:
-        height: at the start, >= 0.  speed: at the start, upwards positive.  gravity: > 0.
-    """
-    top = math.sqrt(speed * speed + 2.0 * gravity * height)  # speed at the floor
-    first = (speed + top) / gravity
-    if t <= first:
-        return height + speed * t - 0.5 * gravity * t * t, speed - gravity * t
-    s = math.fmod(t - first, 2.0 * top / gravity)
-    return top * s - 0.5 * gravity * s * s, top - gravity * s

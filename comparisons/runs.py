@@ -45,7 +45,10 @@ def eeca(closure: ep.Closure, *, sync: bool = False) -> Make:
 
 def steppers(stiffness: float, damping_ratios: tuple[float, ...] = (200.0,), thousand: bool = False) -> dict[str, Make]:
     """The steppers every comparison runs, by the names its table shows; natives with their iteration counts."""
-    found: dict[str, Make] = {"EECA Midstep": eeca(ep.Midstep())}
+    found: dict[str, Make] = {
+        "EECA TimeOfImpact": eeca(ep.TimeOfImpact()),
+        "EECA Midstep": eeca(ep.Midstep()),
+    }
     for xi in damping_ratios:
         found[f"EECA Dashpot xi={xi:g}"] = eeca(ep.Dashpot(stiffness, xi))
     found["native default"] = native()

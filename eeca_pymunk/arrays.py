@@ -22,7 +22,7 @@ _OVERFLOW = "the step would overflow; take a smaller dt, or stop this run"
 class Start:
     """The N bodies at the start of a step: position, velocity and acceleration (N, 2), the last with gravity.
 
-    `time` is that of the end of the step.
+    `time` is that of the end of the step; `pulled` tells whether anything accelerates.
     """
 
     time: float
@@ -30,12 +30,19 @@ class Start:
     position: FloatArray
     velocity: FloatArray
     acceleration: FloatArray
+    pulled: bool
+
+    @property
+    def free_velocity(self) -> FloatArray:
+        """(N, 2) velocity at the end of the free flight."""
+        return self.velocity + self.dt * self.acceleration if self.pulled else self.velocity.copy()
 
     @property
     def free_displacement(self) -> FloatArray:
         """(N, 2) displacement of the free flight over the step."""
         with np.errstate(over="ignore", invalid="ignore"):  # refused before anything is made of it
-            return self.dt * self.velocity + (0.5 * self.dt**2) * self.acceleration
+            way = self.dt * self.velocity
+            return way + (0.5 * self.dt**2) * self.acceleration if self.pulled else way
 
 
 @dataclass(frozen=True)
@@ -106,16 +113,15 @@ class ArrayStepper(Stepper):
         if any(gravity):
             acceleration += bodies.dynamic[:, None] * np.array(gravity)
         velocity = state[:, VELOCITY] * ~bodies.static[:, None]
-        return Start(self.time + dt, dt, state[:, POSITION], velocity, acceleration)
+        return Start(self.time + dt, dt, state[:, POSITION], velocity, acceleration, bool(acceleration.any()))
 
     def _scatter(self, bodies: Bodies, state: FloatArray, motion: Motion, dt: float) -> None:
         """Write the end of the step; forces are reset as pymunk does. Restores the state if pymunk refuses."""
         end = state.copy()
         end[:, POSITION] += motion.displacement
         end[:, VELOCITY] = motion.velocity
-        turning = dt * state[:, TORQUE] * bodies.inverse_moment
-        end[:, ANGLE] += dt * (state[:, ANGULAR_VELOCITY] + 0.5 * turning)
-        end[:, ANGULAR_VELOCITY] += turning
+        if _turns(state):
+            turn(end, bodies, dt)
         end[:, FORCE] = 0.0
         end[:, TORQUE] = 0.0
         end[bodies.static] = state[bodies.static]
@@ -132,6 +138,20 @@ class ArrayStepper(Stepper):
             bodies.scatter(state)
             raise
 
+    @property
+    def model(self) -> str:
+        twin, state = self._gather()
+        shapes = twin.shapes
+        walls = len(shapes.walls.start)
+        start = self._start(twin.bodies, state, 0.0)
+        parts = [
+            f"{len(shapes) - walls} disks, {walls} walls",
+            "gravity or forces" if start.pulled else "no forces",
+            "free rotation" if _turns(state) else "no rotation",
+            "loss" if shapes.lossy else "elastic",
+        ]
+        return "; ".join(parts)
+
     def _sync(self, dt: float) -> None:
         """Let pymunk see the new positions: its own step with everything at rest moves nothing.
 
@@ -145,6 +165,18 @@ class ArrayStepper(Stepper):
             space.step(dt)
         finally:
             space.gravity, space.iterations, space.collision_bias = gravity, iterations, bias
+
+
+def _turns(state: FloatArray) -> bool:
+    """Whether any body of an (N, 9) state turns or is made to."""
+    return bool(state[:, ANGULAR_VELOCITY].any() or state[:, TORQUE].any())
+
+
+def turn(end: FloatArray, bodies: Bodies, dt: float) -> None:
+    """Advance angles and angular velocities of an (N, 9) state by dt; contacts of centred disks have no arm."""
+    turning = dt * end[:, TORQUE] * bodies.inverse_moment
+    end[:, ANGLE] += dt * (end[:, ANGULAR_VELOCITY] + 0.5 * turning)
+    end[:, ANGULAR_VELOCITY] += turning
 
 
 def flight(start: Start, pairs: Pairs, time: FloatArray) -> tuple[FloatArray, FloatArray]:

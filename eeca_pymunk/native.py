@@ -32,6 +32,10 @@ class Native(Stepper):
         self.time += dt
         return StepReport.without_contacts(self.time, self._bodies.items)
 
+    @property
+    def model(self) -> str:
+        return "all that pymunk models, by its own solver"
+
 
 def tune(space: pymunk.Space, iterations: int = 50) -> None:
     """Native at its best on impacts: no slop, no memory of old contacts, more iterations (design section 7)."""

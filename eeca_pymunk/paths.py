@@ -28,7 +28,7 @@ class Paths:
     def __init__(self, start: Start, moves: IntArray) -> None:
         self.origin, self.velocity = start.position.copy(), start.velocity.copy()
         self.since: FloatArray = np.zeros(len(start.position))
-        self.pulled = bool(start.acceleration.any())
+        self.pulled = start.pulled
         self.acceleration = start.acceleration.copy() if self.pulled else start.acceleration
         self.uneven = self.pulled and bool((start.acceleration[moves] != start.acceleration[moves[0]]).any())
         self.before = self.copy()

@@ -28,7 +28,7 @@ class PenaltyStepper(ArrayStepper):
         super().__init__(space, sync=sync)
 
     def advance(self, bodies: Bodies, start: Start, twin: MarginTwin) -> Motion:
-        velocity = start.velocity + start.dt * start.acceleration
+        velocity = start.free_velocity
         displacement = start.free_displacement
         time = start.time
         pairs, before = near_pairs(twin, start, displacement)

@@ -48,7 +48,7 @@ class Shapes:
         items: the pymunk shapes, by index.
         row: (S,) the row of the shape's body in `Bodies`.
         radius: (S,) length; the rounding radius of a segment or polygon.
-        elasticity: (S,).  wall: (S,) index into `walls`, -1 for a disk.
+        elasticity: (S,).  lossy: whether any is below 1.  wall: (S,) index into `walls`, -1 for a disk.
     """
 
     def __init__(self, space: pymunk.Space, bodies: Bodies) -> None:
@@ -71,6 +71,7 @@ class Shapes:
                 outlines.append(_outline(shape, owner))
         self.walls = Walls(outlines)
         self.is_disk: BoolArray = self.wall < 0
+        self.lossy = bool((self.elasticity < 1.0).any())
 
     def __len__(self) -> int:
         return len(self.items)

@@ -98,7 +98,7 @@ class Simultaneous(ABC):
         """The motion of the bodies of `problem`, energy and momentum exact."""
 
     def advance(self, bodies: Bodies, start: Start, twin: MarginTwin) -> Motion:
-        velocity = start.velocity + start.dt * start.acceleration
+        velocity = start.free_velocity
         displacement = start.free_displacement
         free = StepReport.without_contacts(start.time, bodies.items)
         pairs, before = near_pairs(twin, start, displacement)

@@ -71,5 +71,10 @@ class Stepper(ABC):
         """Advance the space by dt >= 0; 0 is a no-op. ValueError for any other dt and for states that are not finite,
         UnsupportedFeature for what the stepper does not model."""
 
+    @property
+    @abstractmethod
+    def model(self) -> str:
+        """One line: what of the space as it is now is modelled, and therefore paid for."""
+
     def refresh(self) -> None:  # noqa: B027 - steppers that keep nothing have nothing to refresh
         """Read the space's shapes and masses anew at the next step."""

@@ -41,12 +41,13 @@ class TimeOfImpact:
 
     def advance(self, bodies: Bodies, start: Start, twin: MarginTwin) -> Motion:
         displacement = start.free_displacement
-        # The path of a thrown body leaves its chord.
-        slack = (0.125 * start.dt**2) * length(start.acceleration) + ROUND_OFF * distance_from_axes(start.position)
+        slack = ROUND_OFF * distance_from_axes(start.position)
+        if start.pulled:
+            # The path of a thrown body leaves its chord.
+            slack += (0.125 * start.dt**2) * length(start.acceleration)
         pairs = twin.candidates(start.position, displacement, slack)
         if len(pairs) == 0:
-            velocity = start.velocity + start.dt * start.acceleration
-            return Motion(velocity, displacement, StepReport.without_contacts(start.time, bodies.items))
+            return Motion(start.free_velocity, displacement, StepReport.without_contacts(start.time, bodies.items))
         return Rounds(bodies, start, twin, pairs, slack).run(self.max_rounds)
 
 
@@ -59,7 +60,7 @@ class Rounds:
         self.paths = Paths(start, np.flatnonzero(bodies.dynamic))
         self.impacts = Impacts(bodies, start, self.paths)
         self.blocks = Blocks(self.impacts)
-        self.may_stop = self.paths.pulled or bool((twin.shapes.elasticity < 1.0).any())
+        self.may_stop = start.pulled or twin.shapes.lossy
         self.rows = np.arange(len(bodies))
         near = self._list(pairs, np.zeros(0, np.intp))
         if len(near):

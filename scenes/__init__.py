@@ -1,17 +1,19 @@
-"""The paper's problems as pymunk spaces: `scenes.build(name, **parameters) -> Scene`."""
+"""The paper's problems and some with exact solutions as pymunk spaces: `scenes.build(name, **parameters) -> Scene`."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from typing import Any
 
-from . import carom, cradle, hopper, pool_break, signorini
+from . import ball, carom, cradle, gas, hopper, pool_break, signorini
 from .scene import Scene
 
 _BUILDERS: dict[str, Callable[..., Scene]] = {
     "signorini": signorini.build,
     "carom": carom.build,
     "cradle": cradle.build,
+    "ball": ball.build,
+    "gas": gas.build,
     "pool_break": pool_break.build,
     "hopper": hopper.build,
 }
