@@ -116,7 +116,9 @@ class MarginTwin:
     def _wanted(self, reach: FloatArray) -> FloatArray:
         """(D,) margins: what the step needs, and more where some more makes the list last."""
         mean = math.sqrt(float(np.mean(reach * reach)))
-        own = np.minimum(self.steps_ahead * reach, self.most_ahead * self._radius)
+        # Among few disks even wide margins make few pairs.
+        few = max(1.0, _HASH_FROM / len(reach))
+        own = np.minimum(min(few, 2.0) * self.steps_ahead * reach, few * self.most_ahead * self._radius)
         struck = np.minimum(self.steps_struck * mean, self.most_struck * self._radius)
         return np.maximum(np.maximum(reach, own), struck)
 

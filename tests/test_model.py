@@ -84,10 +84,11 @@ def test_model_is_one_line_for_every_stepper() -> None:
 
 def test_model_follows_the_space() -> None:
     s = space()
+    (body,) = s.bodies
     stepper = ep.EECA(s)
     s.gravity = (0.0, -1.0)
-    s.bodies[0].torque = 1.0
+    body.torque = 1.0
     assert "gravity or forces; free rotation" in stepper.model
     stepper.step(1e-3)
-    assert s.bodies[0].angle == pytest.approx(0.5 * 1e-6 / s.bodies[0].moment, rel=1e-9)
-    assert np.isfinite(s.bodies[0].position.y)
+    assert body.angle == pytest.approx(0.5 * 1e-6 / body.moment, rel=1e-9)
+    assert np.isfinite(body.position.y)
