@@ -32,6 +32,11 @@ class Start:
     acceleration: FloatArray
     pulled: bool
 
+    def at(self, time: float) -> FloatArray:
+        """(N, 2) positions on the free flight at one instant."""
+        way = self.position + time * self.velocity
+        return way + (0.5 * time * time) * self.acceleration if self.pulled else way
+
     @property
     def free_velocity(self) -> FloatArray:
         """(N, 2) velocity at the end of the free flight."""

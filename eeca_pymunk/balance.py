@@ -105,7 +105,7 @@ class Lock:
 
 def energy_lock(
     A: Delassus,
-    island: IntArray,
+    island: IntArray | None,
     lam: FloatArray,
     q: FloatArray,
     psi2: FloatArray,
@@ -124,13 +124,19 @@ def energy_lock(
     taken. A surplus of energy that the bodies came with is taken out as well: it adds to c.
 
     Args:
+        island: (m,) label of each contact's island, None if all are one.
         q: (m,) e u_n + u*, velocity, of the rigid limit.
         external: (R, 2) F, momentum.
         surplus: (m,) energy to take out by the contacts of an island together, None for none.
     """
-    count = int(island.max(initial=-1)) + 1
-    a = 0.5 * np.bincount(island, lam * (A @ lam), count)
-    b = 0.5 * np.bincount(island, lam * q, count)
+    if island is None:
+        island = np.zeros(len(lam), np.intp)
+        a, b = np.array([0.5 * np.dot(lam, A @ lam)]), np.array([0.5 * np.dot(lam, q)])
+        count = 1
+    else:
+        count = int(island.max(initial=-1)) + 1
+        a = 0.5 * np.bincount(island, lam * (A @ lam), count)
+        b = 0.5 * np.bincount(island, lam * q, count)
     scale, valid = np.ones(count), np.zeros(count, bool)
     pushed = bool(psi2.any() and external.any())
     if pushed or surplus is not None:

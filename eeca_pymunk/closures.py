@@ -37,7 +37,7 @@ class Midstep(Simultaneous):
 
     def solve(self, problem: Problem) -> Solution:
         zero = np.zeros_like(problem.gap)
-        geometry = problem.geometry_at(balance.impulse_time(zero, problem.dt))
+        geometry = problem.geometry_at(0.5 * problem.dt)
         A = problem.operator(geometry)
         q = _restitution(A, problem)
         tolerance = max(self.tolerance, _DRAFT) if problem.draft else self.tolerance
@@ -133,7 +133,7 @@ def _locked_motion(
     dt, psi1, psi2, increment = problem.dt, weights.psi1, weights.psi2, weights.gap_increment
     q = _restitution(A, problem) if q is None else q
     # Impulses that meet their tolerance need no lock of their own for each island: it would be 1 in all of them.
-    island = np.zeros(len(lam), np.intp) if converged else islands(problem.row_a, problem.row_b, problem.inverse_mass)
+    island = None if converged else islands(problem.row_a, problem.row_b, problem.inverse_mass)
     lock = balance.energy_lock(A, island, lam, q, psi2, problem.external)
     failed = ~lock.valid & (lam > 0)
     if failed.any() and psi2.any():

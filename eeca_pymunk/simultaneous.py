@@ -26,7 +26,7 @@ class Problem:
         dt: time.  velocity: (R, 2) at n.  acceleration: (R, 2) of external forces.  mass, inverse_mass: (R,).
         row_a, row_b, gap, elasticity: (m,) of the contacts.  guess: (m,) of the impulses, 0 where unknown.
         draft: whether the contacts may change after this solution, so that a rough one does.
-        geometry_at: (m,) instants in the step to the geometry on the free flight at these instants.
+        geometry_at: (m,) instants in the step, or one for all, to the geometry on the free flight at these instants.
     """
 
     dt: float
@@ -39,7 +39,7 @@ class Problem:
     gap: FloatArray
     elasticity: FloatArray
     guess: FloatArray
-    geometry_at: Callable[[FloatArray], Geometry]
+    geometry_at: Callable[[FloatArray | float], Geometry]
     draft: bool = False
 
     def operator(self, geometry: Geometry) -> Delassus:
@@ -123,10 +123,14 @@ class Simultaneous(ABC):
                 tolerance = touching(pairs, start.position)
                 active = np.isin(pairs.key, known)
                 guess, which = np.zeros(len(pairs)), np.flatnonzero(active)
-            joining = closing(pairs, before, tolerance, start, trial) & ~active
-            if not joining.any():
+            # Elsewhere the displacement is the free one, which closes nothing else.
+            changed = np.zeros(len(bodies), bool)
+            changed[rows] = True
+            may = np.flatnonzero((changed[pairs.row_a] | changed[pairs.row_b]) & ~active)
+            joining = may[closing(pairs.take(may), before.take(may), tolerance[may], start, trial)]
+            if len(joining) == 0:
                 break
-            active |= joining
+            active[joining] = True
             guess[which] = solution.impulse
         if solution.draft:
             solution = self.solve(replace(problem, guess=solution.impulse, draft=False))
@@ -144,8 +148,8 @@ class Simultaneous(ABC):
         rows, row_a, row_b = restrict(chosen.row_a, chosen.row_b, len(bodies))
         facing = before.normal
 
-        def geometry_at(time: FloatArray) -> Geometry:
-            at = chosen.between(*flight(start, chosen, time))
+        def geometry_at(time: FloatArray | float) -> Geometry:
+            at = chosen.at(start.at(time)) if isinstance(time, float) else chosen.between(*flight(start, chosen, time))
             # A centre that has crossed a wall by then is still pushed back to the side it came from.
             behind = at.normal[:, 0] * facing[:, 0] + at.normal[:, 1] * facing[:, 1] < 0
             if behind.any():
