@@ -17,6 +17,7 @@ from .grown import GrownSpace
 from .shapes import Shapes
 
 _HASH_FROM = 200  # moving shapes from which a spatial hash pays (measured: equal cost near 150)
+_MANY = 2000  # moving shapes from which detection waits for memory (measured)
 _FOLLOWED_BY = 16  # walls up to which growing them costs less than following the mean motion saves
 _WIDEST = 20.0  # cells that the margin of one disk may span in a hash
 
@@ -31,11 +32,12 @@ class MarginTwin:
     # Steps that a margin should last at the disk's own speed, and at the mean speed, which an impulse may give to any
     # disk; neither is worth more than so many radii, beyond which pairs cost more than finding them anew.
     steps_ahead, most_ahead = 4.0, 2.0
-    steps_struck, most_struck = 5.0, 0.5
+    steps_struck, most_struck = 5.0, 0.35
 
     def __init__(self, bodies: Bodies, shapes: Shapes, state: FloatArray) -> None:
         self.bodies, self.shapes = bodies, shapes
         self.detections = 0
+        self.memory: object = None  # what a closure keeps from step to step; gone with the shapes it is about
         self._static = state[bodies.static, :3]
         self._disk: IntArray = np.flatnonzero(shapes.is_disk)
         self._row: IntArray = shapes.row[self._disk]
@@ -119,7 +121,9 @@ class MarginTwin:
         # Among few disks even wide margins make few pairs.
         few = max(1.0, _HASH_FROM / len(reach))
         own = np.minimum(min(few, 2.0) * self.steps_ahead * reach, few * self.most_ahead * self._radius)
-        struck = np.minimum(self.steps_struck * mean, self.most_struck * self._radius)
+        # Where pymunk's bodies no longer fit the processor's cache, lists that last are worth more pairs.
+        most = self.most_struck if len(reach) < _MANY else math.sqrt(2.0) * self.most_struck
+        struck = np.minimum(self.steps_struck * mean, most * self._radius)
         return np.maximum(np.maximum(reach, own), struck)
 
     def _detect(self, center: FloatArray) -> None:

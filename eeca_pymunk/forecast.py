@@ -13,8 +13,8 @@ from .paths import Paths
 def next_impact(pairs: Pairs, paths: Paths, which: IntArray, dt: float) -> tuple[FloatArray, FloatArray]:
     """(m,) instants, from the start of the step, of the next impacts of the pairs `which` (m, increasing).
 
-    Infinity, or an instant after dt, where there is none within the step. Each pair is looked at from the later of its
-    two bodies' latest kinks on; the second result is its gap (m,) there.
+    Infinity where there is none, an instant after dt where that is known, NaN where only that it is after dt. Each
+    pair is looked at from the later of its two bodies' latest kinks on; the second result is its gap (m,) there.
     """
     k = int(np.searchsorted(which, pairs.disks))
     if k == len(which):
@@ -70,6 +70,7 @@ def _disk_disk(pairs: Pairs, paths: Paths, which: IntArray, dt: float) -> tuple[
     bent = np.flatnonzero((size > 0.0) & (gap <= (length(u) + 0.5 * size * left) * left))
     if len(bent):
         time[bent] = _advance(pairs, paths, which[bent], t[bent], size[bent], dt)
+    time[(size > 0.0) & (time >= dt)] = np.nan
     return time, gap
 
 
@@ -89,13 +90,16 @@ def _disk_wall(pairs: Pairs, paths: Paths, which: IntArray, dt: float) -> tuple[
         alpha = pull[:, 0] * near.away[:, 0] + pull[:, 1] * near.away[:, 1]
         size = length(pull)
         reach += 0.5 * size * left * left
-    time: FloatArray = impact_times.flat(gap, v[:, 0] * near.away[:, 0] + v[:, 1] * near.away[:, 1], alpha)
+    rate = v[:, 0] * near.away[:, 0] + v[:, 1] * near.away[:, 1]
+    time = impact_times.flat(gap, rate, alpha)
     s = np.minimum(time, left)
-    time += t
+    hit = time
+    time = t + time
     walls = pairs.shapes.walls
     edge, squared = walls.flat_edge[near.edge], walls.flat_length_squared[near.edge]
     # Bounds of where on the edge the centre is until then, as a fraction of its length.
-    along = s * (v[:, 0] * edge[:, 0] + v[:, 1] * edge[:, 1]) / squared
+    along_rate = (v[:, 0] * edge[:, 0] + v[:, 1] * edge[:, 1]) / squared
+    along = s * along_rate
     low, high = near.along + np.minimum(along, 0.0), near.along + np.maximum(along, 0.0)
     if paths.pulled:
         bow = (0.5 * s * s) * (pull[:, 0] * edge[:, 0] + pull[:, 1] * edge[:, 1]) / squared
@@ -106,6 +110,12 @@ def _disk_wall(pairs: Pairs, paths: Paths, which: IntArray, dt: float) -> tuple[
         bent = np.flatnonzero(leaves & (gap <= reach))
         if len(bent):
             time[bent] = _advance(pairs, paths, which[bent], t[bent], size[bent], dt)
+    later = time >= dt
+    if not paths.pulled:
+        # Straight, it never comes back to a convex wall it goes away from, and the hit may lie on the same edge.
+        at_hit = near.along + np.where(rate < 0.0, hit, 0.0) * along_rate
+        later &= (rate < 0.0) & ~(near.side & (at_hit >= 0.0) & (at_hit <= 1.0))
+    time[later] = np.nan
     return time, gap
 
 

@@ -49,6 +49,11 @@ def flat(h: FloatArray, w: FloatArray, alpha: FloatArray | float) -> FloatArray:
     Args:
         h: (m,) gap, length.  w: (m,) its rate.  alpha: (m,) or scalar, its constant second derivative.
     """
+    if isinstance(alpha, float) and alpha == 0.0:
+        straight = np.full(len(h), np.inf)
+        falling = np.flatnonzero(w < 0.0)
+        straight[falling] = np.maximum(h[falling] / -w[falling], 0.0)
+        return straight
     D = w * w - 2.0 * alpha * h
     # In overlap a gap that never opens closes again when it is back where it was.
     D = np.where((h <= 0.0) & (D < 0.0), w * w, D)

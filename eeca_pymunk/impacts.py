@@ -75,16 +75,16 @@ class Impacts:
         if not self.log:
             return StepReport.without_contacts(start.time, self.bodies.items, windows)
         first, second, normal, point, time, lam = (np.concatenate(part) for part in zip(*self.log, strict=True))
+        shapes = pairs.shapes
         # Pairs of two disks first, as `Pairs` wants it; the order of time after the gaps are known.
-        kind = np.argsort(pairs.shapes.wall[second] >= 0, kind="stable")
-        chosen = Pairs(pairs.shapes, first[kind], second[kind])
-        gap = chosen.at(start.position).gap
-        by_time = np.lexsort((chosen.second, chosen.first, time[kind]))
-        order = kind[by_time]
-        a, b, time, lam = chosen.row_a[by_time], chosen.row_b[by_time], time[order], lam[order]
+        kind = np.argsort(shapes.wall[second] >= 0, kind="stable")
+        gap = np.empty(len(time))
+        gap[kind] = Pairs(shapes, first[kind], second[kind]).at(start.position).gap
+        order = np.lexsort((second, first, time))
+        a, b, time, lam = shapes.row[first[order]], shapes.row[second[order]], time[order], lam[order]
         psi2 = 1.0 - 2.0 * time / start.dt
         increment = 0.5 * start.dt * psi2 * lam * (m_inv[a] + m_inv[b])
-        contacts = Contacts(self.bodies.items, a, b, normal[order], point[order], gap[by_time], time)
+        contacts = Contacts(self.bodies.items, a, b, normal[order], point[order], gap[order], time)
         return StepReport(
             start.time, contacts, lam, np.full_like(lam, math.inf), psi2, increment,
             iterations=rounds, substeps=windows, lock=self.lock, converged=converged,

@@ -62,7 +62,9 @@ class Rounds:
         self.blocks = Blocks(self.impacts)
         self.may_stop = start.pulled or twin.shapes.lossy
         self.rows = np.arange(len(bodies))
-        near = self._list(pairs, np.zeros(0, np.intp))
+        near = self._remember(pairs)
+        if near is None:
+            near = self._list(pairs, np.zeros(0, np.intp))
         if len(near):
             self._begin(near)
 
@@ -81,6 +83,33 @@ class Rounds:
         coarse = ROUND_OFF * (np.abs(position).max() + pairs.extent.max(initial=0.0))
         near = np.flatnonzero(self.gap <= coarse)
         return near[self.gap[near] <= touching(pairs.take(near), position)] if len(near) else near
+
+    def _remember(self, pairs: Pairs) -> IntArray | None:
+        """Take the forecasts of the last step, which hold for all bodies that nobody has touched since.
+
+        Returns the contacts that may be closed; None if there are no forecasts for this list of pairs.
+        """
+        last = self.twin.memory
+        if not isinstance(last, _Memory) or last.pairs is not pairs:
+            return None
+        start = self.start
+        self.pairs, self.time, self.gap = pairs, last.time, last.gap
+        self.bounces = np.zeros(len(pairs), np.intp)
+        self.touch = np.zeros(0, np.intp)
+        self._join()
+        same = (last.position == start.position) & (last.velocity == start.velocity)
+        if start.pulled or last.pulled:
+            same &= last.acceleration == start.acceleration
+        changed = ~(same[:, 0] & same[:, 1])
+        near = last.touch
+        again = np.flatnonzero(changed[pairs.row_a] | changed[pairs.row_b] | np.isnan(self.time))
+        if len(again):
+            self.time[again], self.gap[again] = next_impact(pairs, self.paths, again, start.dt)
+            near = np.union1d(near, again)
+        if len(near) == 0:
+            return near
+        some = pairs.take(near)
+        return near[some.at(start.position).gap <= touching(some, start.position)]
 
     def _begin(self, near: IntArray) -> None:
         """The contacts that touch at the start form blocks with what hits them there, and may rest."""
@@ -117,8 +146,13 @@ class Rounds:
         t = np.full(len(self.rows), dt)
         displacement = paths.position(self.rows, t) - start.position
         self.blocks.finish()
+        velocity = paths.rate(self.rows, t)
+        self.twin.memory = _Memory(
+            self.pairs, self.time - dt, self.gap, self.touch, start.position + displacement, velocity,
+            paths.acceleration, paths.pulled,
+        )  # fmt: skip
         report = self.impacts.report(self.pairs, rounds, windows, converged=len(due) == 0)
-        return Motion(paths.rate(self.rows, t), displacement, report)
+        return Motion(velocity, displacement, report)
 
     def _take(self, due: IntArray) -> IntArray:
         """One round: apply the impulses of the earliest contacts among `due`; the contacts it took."""
@@ -276,3 +310,17 @@ class _Saved:
     resting: Resting
     lock: float
     log: int
+
+
+@dataclass(frozen=True)
+class _Memory:
+    """What a step knows about the next: when its pairs meet, counted from the end, if the bodies go on as they are."""
+
+    pairs: Pairs
+    time: FloatArray
+    gap: FloatArray
+    touch: IntArray
+    position: FloatArray
+    velocity: FloatArray
+    acceleration: FloatArray
+    pulled: bool

@@ -112,8 +112,9 @@ def test_grazing_hit(depth: float) -> None:
     assert a.velocity.x + b.velocity.x == pytest.approx(3.0, rel=1e-15)
 
 
+@pytest.mark.parametrize("steps", [1, 7, 200])
 @pytest.mark.parametrize("kind", ["segment end", "capsule end", "box corner", "rounded box", "circle"])
-def test_round_features_are_hit_where_the_line_of_motion_meets_them(kind: str) -> None:
+def test_round_features_are_hit_where_the_line_of_motion_meets_them(kind: str, steps: int) -> None:
     # Each has its feature at the origin, or rounds it by .2: a vertex acts as a fixed disk of that radius.
     space, rounding = pymunk.Space(), 0.2 if kind in ("capsule end", "rounded box", "circle") else 0.0
     static = space.static_body
@@ -130,7 +131,9 @@ def test_round_features_are_hit_where_the_line_of_motion_meets_them(kind: str) -
     v = np.array([3.0, -1.0])
     x0 = np.array([-2.0, 0.75])
     disk = add_disk(space, tuple(x0), 0.1, velocity=tuple(v))
-    ep.EECA(space).step(1.0)
+    stepper = ep.EECA(space)
+    for _ in range(steps):
+        stepper.step(1.0 / steps)
     R = 0.1 + rounding
     roots = np.roots([v @ v, 2.0 * x0 @ v, x0 @ x0 - R * R])
     assert np.isreal(roots).all()
@@ -146,13 +149,16 @@ def first_root(coefficients: list[float]) -> float:
     return float(min(r.real for r in roots if abs(r.imag) < 1e-9 and r.real > 1e-9))
 
 
-def test_thrown_disk_meets_a_vertex_at_the_root_of_a_quartic() -> None:
+@pytest.mark.parametrize("steps", [1, 100])
+def test_thrown_disk_meets_a_vertex_at_the_root_of_a_quartic(steps: int) -> None:
     space = pymunk.Space()
     space.gravity = (0.0, -9.81)
     add_walls(space, [((0.0, 0.0), (0.3, -5.0))])
     x0, v0, g = np.array([-1.0, -0.2]), np.array([1.4, 4.0]), np.array([0.0, -9.81])
     disk = add_disk(space, tuple(x0), 0.25, velocity=tuple(v0))
-    ep.EECA(space).step(0.8)
+    stepper = ep.EECA(space)
+    for _ in range(steps):
+        stepper.step(0.8 / steps)
     # |x0 + v0 t + g t^2 / 2|^2 = R^2
     tau = first_root([0.25 * g @ g, v0 @ g, v0 @ v0 + x0 @ g, 2.0 * x0 @ v0, x0 @ x0 - 0.25**2])
     assert tau < 0.8
