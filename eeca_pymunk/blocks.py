@@ -101,7 +101,7 @@ class Blocks:
         paths.kick(rows[mine], t[mine], change[mine])
         hit = np.flatnonzero(lam > 0)
         time, point = np.maximum(t[a], t[b]), at.point
-        impacts.keep(chosen.first[hit], chosen.second[hit], at.normal[hit], point[hit], time[hit], lam[hit])
+        impacts.log.keep(chosen.first[hit], chosen.second[hit], at.normal[hit], point[hit], time[hit], lam[hit])
         on = np.flatnonzero(impacts.stays(chosen, np.abs(A.relative(v))))
         if paths.pulled and len(on):
             self._rest(chosen.take(on), at.take(on), rows, (a[on], b[on]), label, t, x, v)
@@ -176,9 +176,7 @@ class Blocks:
         zero = np.zeros(A.size)
         lock = balance.energy_lock(A, island, result.lam, q, zero, np.zeros((len(A.inverse_mass), 2)), surplus)
         scale = np.where(lock.valid, lock.scale, 1.0 if result.exact else 0.0)
-        worst = float(scale[np.argmax(np.abs(scale - 1.0) * (result.lam > 0))])
-        if abs(worst - 1.0) > abs(self.impacts.lock - 1.0):
-            self.impacts.lock = worst
+        self.impacts.log.locked(float(scale[np.argmax(np.abs(scale - 1.0) * (result.lam > 0))]))
         return scale * result.lam
 
     def finish(self) -> None:
@@ -187,6 +185,6 @@ class Blocks:
 
     def _keep(self, ended: Resting, t: FloatArray) -> None:
         lasted = t - ended.since
-        self.impacts.keep(
+        self.impacts.log.keep(
             ended.first, ended.second, ended.normal, ended.point, ended.since + 0.5 * lasted, ended.force * lasted
         )

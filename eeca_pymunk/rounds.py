@@ -1,0 +1,239 @@
+"""Rounds: the impacts of a step in vectorised rounds, each of which takes what no earlier impact can change."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .agenda import Agenda
+from .arrays import Start
+from .blocks import Blocks, Resting
+from .bodies import Bodies, BoolArray, FloatArray, IntArray
+from .contacts import ROUND_OFF, Pairs, touching
+from .detection import MarginTwin
+from .forecast import missed, next_impact
+from .impacts import Impacts, Log
+from .paths import Paths
+
+_SHORTEST = 2.0**-20  # part of dt, of a window within which the order of impacts is checked
+_BOUNCES = 16  # of one contact within a step after which it stops if its elasticity is below 1
+
+
+class Rounds:
+    """The impacts of one step, in rounds. Contacts are numbered by their place in the list of pairs."""
+
+    def __init__(
+        self, bodies: Bodies, start: Start, twin: MarginTwin, pairs: Pairs, slack: FloatArray, log: Log
+    ) -> None:
+        self.log = log
+        self.start, self.twin, self.slack = start, twin, slack
+        self.moves: BoolArray = bodies.dynamic
+        self.paths = Paths(start, np.flatnonzero(bodies.dynamic))
+        self.impacts = Impacts(bodies, start, self.paths, log)
+        self.blocks = Blocks(self.impacts)
+        self.may_stop = start.pulled or twin.shapes.lossy
+        self.agenda = Agenda(self.paths, self.moves, start.dt)
+        near = self._remember(pairs)
+        if near is None:
+            near = self._list(pairs, np.zeros(0, np.intp))
+        if len(near):
+            self._begin(near)
+
+    def _list(self, pairs: Pairs, touch: IntArray) -> IntArray:
+        """Take a list of pairs; `touch` are the keys of those that touch.
+
+        Returns the contacts that are closed.
+        """
+        self.agenda.pairs = pairs
+        self.agenda.time, self.agenda.gap = next_impact(pairs, self.paths, np.arange(len(pairs)), self.start.dt)
+        self.bounces: IntArray = np.zeros(len(pairs), np.intp)
+        self.agenda.touch = np.searchsorted(pairs.key, touch)
+        self._wait()
+        self.agenda.join()
+        position = self.start.position
+        coarse = ROUND_OFF * (np.abs(position).max() + pairs.extent.max(initial=0.0))
+        near = np.flatnonzero(self.agenda.gap <= coarse)
+        return near[self.agenda.gap[near] <= touching(pairs.take(near), position)] if len(near) else near
+
+    def _remember(self, pairs: Pairs) -> IntArray | None:
+        """Take the forecasts of the last step, which hold for all bodies that nobody has touched since.
+
+        Returns the contacts that may be closed; None if there are no forecasts for this list of pairs.
+        """
+        last = self.twin.memory
+        if not isinstance(last, _Memory) or last.pairs is not pairs:
+            return None
+        start = self.start
+        self.agenda.pairs, self.agenda.time, self.agenda.gap = pairs, last.time, last.gap
+        self.bounces = np.zeros(len(pairs), np.intp)
+        self.agenda.touch = np.zeros(0, np.intp)
+        self.agenda.join()
+        same = (last.position == start.position) & (last.velocity == start.velocity)
+        if start.pulled or last.pulled:
+            same &= last.acceleration == start.acceleration
+        changed = ~(same[:, 0] & same[:, 1])
+        near = last.touch
+        again = np.flatnonzero(changed[pairs.row_a] | changed[pairs.row_b] | np.isnan(self.agenda.time))
+        if len(again):
+            self.agenda.time[again], self.agenda.gap[again] = next_impact(pairs, self.paths, again, start.dt)
+            near = np.union1d(near, again)
+        if len(near) == 0:
+            return near
+        some = pairs.take(near)
+        return near[some.at(start.position).gap <= touching(some, start.position)]
+
+    def _begin(self, near: IntArray) -> None:
+        """The contacts that touch at the start form blocks with what hits them there, and may rest."""
+        self.agenda.touch = near
+        self.agenda.join()
+        self._strike(near, np.zeros(len(near)))
+        self._look_again(near)
+
+    def run(self, max_rounds: int) -> tuple[FloatArray, FloatArray]:
+        """Rounds until nothing is due within the step; velocities and displacements (N, 2)."""
+        start, paths = self.start, self.paths
+        dt, rounds, windows = start.dt, 0, 1
+        begin, end = 0.0, dt
+        saved = self._save()
+        while rounds < max_rounds:
+            due = np.flatnonzero(self.agenda.time < end)
+            if len(due) == 0:
+                if end == dt:
+                    break
+                begin, end = end, min(dt, end + 2.0 * (end - begin))
+                windows += 1
+                saved = self._save()
+                continue
+            rounds += 1
+            if not self._look_again(self._take(due)) and end - begin > _SHORTEST * dt:
+                self._restore(saved)
+                end = begin + 0.5 * (end - begin)
+        t = np.full(len(self.agenda.rows), dt)
+        displacement = paths.position(self.agenda.rows, t) - start.position
+        self.blocks.finish()
+        velocity = paths.rate(self.agenda.rows, t)
+        later = self.agenda.time - dt
+        later[self.agenda.touch] = np.nan
+        self.twin.memory = _Memory(
+            self.agenda.pairs, later, self.agenda.gap, self.agenda.touch, start.position + displacement, velocity,
+            paths.acceleration, paths.pulled,
+        )  # fmt: skip
+        self.log.rounds += rounds
+        self.log.windows += windows
+        self.log.converged &= len(due) == 0
+        return velocity, displacement
+
+    def _take(self, due: IntArray) -> IntArray:
+        """One round: apply the impulses of the earliest contacts among `due`; the contacts it took."""
+        lone, block = self.agenda.choose(due)
+        if len(lone):
+            chosen, time = self.agenda.pairs.take(lone), self.agenda.time[lone]
+            at, approach = self.impacts.meet(chosen, time)
+            if self.may_stop:
+                stops = self.impacts.stays(chosen, chosen.elasticity * approach) | self._spent(lone)
+                if stops.any():
+                    goes = np.flatnonzero(~stops)
+                    block, lone, time = np.union1d(block, lone[stops]), lone[goes], time[goes]
+                    chosen, at, approach = chosen.take(goes), at.take(goes), approach[goes]
+                self.bounces[lone] += 1
+            self.impacts.bounce(chosen, at, approach, time)
+        if len(block) == 0:
+            return lone
+        self._strike(block, np.where(np.isin(block, due), self.agenda.time[block], np.inf))
+        return np.concatenate((lone, block))
+
+    def _strike(self, block: IntArray, seed: FloatArray) -> None:
+        """Solve blocks (contacts, increasing) hit at the instants `seed`, and remember what touches on."""
+        on = self.blocks.strike(self.agenda.pairs.take(block), seed, self._spent(block))
+        self.agenda.touch = np.union1d(np.setdiff1d(self.agenda.touch, block), block[on])
+        self.bounces[block] += 1
+        self.agenda.join()
+
+    def _wait(self) -> None:
+        """What touches does nothing until something hits it, or until the force it rests on has to be found anew."""
+        self.agenda.time[self.agenda.touch] = np.nan
+        resting = self.blocks.resting
+        if len(resting.key):
+            self.agenda.time[np.searchsorted(self.agenda.pairs.key, resting.key)] = resting.until
+
+    def _spent(self, contacts: IntArray) -> BoolArray:
+        """Whether a contact has bounced so often that it has to stop, so that no dissipating bounce goes on forever."""
+        spent: BoolArray = (self.bounces[contacts] >= _BOUNCES) & (self.agenda.pairs.elasticity[contacts] < 1.0)
+        return spent
+
+    def _look_again(self, taken: IntArray) -> bool:
+        """Forecast anew what the bodies of the contacts just taken meet.
+
+        Returns False if one of them would have met a body before an impact of that body that was taken already.
+        """
+        pairs, paths, dt = self.agenda.pairs, self.paths, self.start.dt
+        both = np.concatenate((pairs.row_a[taken], pairs.row_b[taken]))
+        rows = both[self.moves[both]]
+        changed = np.zeros(len(self.agenda.rows), bool)
+        changed[rows] = True
+        moved = paths.position(rows, np.full(len(rows), dt)) - self.start.position[rows]
+        if not self.twin.covers(rows, moved, self.slack[rows]):
+            # An impulse sent a body farther than its margin: pairs that were not near may meet now.
+            self._list(self.twin.widen(self.start.position), pairs.key[self.agenda.touch])
+            pairs = self.agenda.pairs
+            return not missed(pairs, paths, np.arange(len(pairs)), changed)
+        again = np.flatnonzero(changed[pairs.row_a] | changed[pairs.row_b])
+        if missed(pairs, paths, again, changed):
+            return False
+        self.agenda.time[again], self.agenda.gap[again] = next_impact(pairs, paths, again, dt)
+        at_once = self.agenda.time[taken] <= np.maximum(
+            paths.since[pairs.row_a[taken]], paths.since[pairs.row_b[taken]]
+        )
+        self.agenda.time[taken[at_once & (self.bounces[taken] >= _BOUNCES)]] = np.nan
+        self._wait()
+        return True
+
+    def _save(self) -> _Saved:
+        paths, before, agenda = self.paths.copy(), self.paths.before.copy(), self.agenda
+        return _Saved(
+            paths, before, agenda.pairs, agenda.time.copy(), self.bounces.copy(), agenda.touch, self.blocks.resting,
+            self.log.lock, len(self.log),
+        )  # fmt: skip
+
+    def _restore(self, saved: _Saved) -> None:
+        self.paths.assign(saved.paths)
+        self.paths.before.assign(saved.before)
+        self.agenda.touch, self.blocks.resting = saved.touch, saved.resting
+        self.log.lock = saved.lock
+        self.log.forget(saved.log)
+        if self.agenda.pairs is saved.pairs:
+            self.agenda.time[:], self.bounces[:] = saved.time, saved.bounces
+            self.agenda.join()
+        else:
+            # The longer list serves the shorter paths as well.
+            self._list(self.agenda.pairs, saved.pairs.key[saved.touch])
+
+
+@dataclass(frozen=True)
+class _Saved:
+    """What a window of the step began with."""
+
+    paths: Paths
+    before: Paths
+    pairs: Pairs
+    time: FloatArray
+    bounces: IntArray
+    touch: IntArray
+    resting: Resting
+    lock: float
+    log: int
+
+
+@dataclass(frozen=True)
+class _Memory:
+    """What a step knows about the next: when its pairs meet, counted from the end, if the bodies go on as they are."""
+
+    pairs: Pairs
+    time: FloatArray
+    gap: FloatArray
+    touch: IntArray
+    position: FloatArray
+    velocity: FloatArray
+    acceleration: FloatArray
+    pulled: bool
