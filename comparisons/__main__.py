@@ -10,7 +10,7 @@ from pathlib import Path
 
 from .output import Output
 
-NAMES = ("signorini", "carom", "cradle", "pool_break", "hopper", "work_precision", "scaling")
+NAMES = ("signorini", "carom", "cradle", "pool_break", "hopper", "work_precision", "scaling", "soak")
 
 
 def main(arguments: list[str] | None = None) -> int:

@@ -65,7 +65,7 @@ class Rounds:
         if not isinstance(last, _Memory) or last.pairs is not pairs:
             return None
         start = self.start
-        self.agenda.pairs, self.agenda.time, self.agenda.gap = pairs, last.time, last.gap
+        self.agenda.pairs, self.agenda.time, self.agenda.gap = pairs, last.time.copy(), last.gap.copy()
         self.bounces = np.zeros(len(pairs), np.intp)
         self.agenda.touch = np.zeros(0, np.intp)
         self.agenda.join()

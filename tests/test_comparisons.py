@@ -13,8 +13,10 @@ import pytest
 
 import eeca_pymunk as ep
 import scenes
+from comparisons import runs, scaling, soak, work_precision
 from comparisons.__main__ import NAMES, main
 from comparisons.hopper import crossed, deepest_overlap
+from eeca_pymunk.detection import MarginTwin
 
 
 def test_no_name_lists_all(capsys: pytest.CaptureFixture[str]) -> None:
@@ -114,3 +116,37 @@ def test_readme_example_runs(tmp_path: Path) -> None:
             runpy.run_path(str(tmp_path / f"example_{i}.py"))
     finally:
         os.chdir(folder)
+
+
+def test_work_precision_finds_how_much_better_eeca_is() -> None:
+    problem = next(p for p in work_precision.problems() if p.name == "gas 20, T=0.1")
+    points = [
+        work_precision.measure(problem, name, make, dt)
+        for name, make in ((work_precision.EECA, runs.eeca(ep.TimeOfImpact())), ("native default", runs.native()))
+        for dt in (2e-2, 1e-3)
+    ]
+    row = work_precision.summary(problem.name, points)
+    assert row["native best (m)"] == min(p.error for p in points[2:])
+    assert max(p.error for p in points[:2]) < 1e-12
+    assert float(row["native best (m)"] or 0.0) > 1e-4
+
+
+def test_scaling_tells_ratios_and_shares() -> None:
+    rows = scaling.case(lambda: scenes.build("gas", count=30), 30, 1e-3, 2)
+    assert {row["stepper"] for row in rows} >= {"native", "native, hash", "EECA TimeOfImpact", "EECA Midstep"}
+    (base,) = (row for row in rows if row["stepper"] == "native")
+    assert base["x native"] == 1.0
+    (eeca,) = (row for row in rows if row["stepper"] == "EECA TimeOfImpact")
+    shares = [float(eeca[key] or 0.0) for key in ("detect %", "solve %", "transfer %")]
+    assert sum(shares) == pytest.approx(100.0)
+    assert min(shares) > 0.0
+    # The clocks are gone again.
+    assert MarginTwin.candidates.__name__ == "candidates"
+
+
+def test_short_soak_keeps_energy_and_disks() -> None:
+    last = soak.soak(2000, 2)[-1]
+    assert float(last["max |dE/E|"] or 0.0) < 1e-12
+    assert last["outside"] == 0
+    assert float(last["deepest overlap (r)"] or 0.0) < 1e-9
+    assert int(last["impacts"] or 0) > 100
