@@ -333,3 +333,48 @@ def test_report_of_a_lone_impact() -> None:
     assert report.psi2[0] == pytest.approx(0.5)
     assert report.gap_increment[0] == pytest.approx(scene.bodies[0].position.y - 0.1 - 0.5e-3)
     assert report.impulse[0] == pytest.approx(2.0)
+
+
+def test_what_the_user_changes_between_steps_is_seen() -> None:
+    # The disk would meet the floor in the fourth step; it is thrown up, moved, then pushed by a force instead.
+    space = pymunk.Space()
+    disk = add_disk(space, (0.0, 0.45), 0.1, velocity=(0.0, -1.0))
+    add_walls(space, [((-5.0, 0.0), (5.0, 0.0)), ((-5.0, 1.0), (5.0, 1.0))])
+    stepper = ep.EECA(space)
+    stepper.step(0.1)
+    disk.velocity = (0.0, 2.0)
+    for _ in range(3):
+        stepper.step(0.1)
+    assert disk.position.y == pytest.approx(0.9 - (0.6 - 0.55))
+    disk.position = (0.0, 0.25)
+    stepper.step(0.1)
+    assert disk.position.y == pytest.approx(0.1 + (0.2 - 0.15))
+    disk.force = (0.0, -100.0)
+    stepper.step(0.1)
+    assert ep.measure(space).kinetic > 2.0
+    assert disk.position.y >= 0.1
+
+
+def test_touching_pairs_that_part_slowly_are_hit_again() -> None:
+    # b and c touch, part at 1e-9 m/s for a while, and are then hit one after the other.
+    space = pymunk.Space()
+    a = add_disk(space, (-1.0, 0.0), 0.1, velocity=(1.0, 0.0))
+    b, c = add_disk(space, (0.0, 0.0), 0.1), add_disk(space, (0.2, 0.0), 0.1, velocity=(1e-9, 0.0))
+    stepper = ep.EECA(space)
+    for _ in range(20):
+        stepper.step(0.1)
+    np.testing.assert_allclose([a.velocity.x, b.velocity.x, c.velocity.x], [0.0, 1e-9, 1.0], atol=1e-8)
+
+
+def test_step_that_takes_a_crowd_across_the_box_is_split() -> None:
+    scene = scenes.build("gas", count=300, packing=0.2, seed=2)
+    stepper, energy = ep.EECA(scene.space), ep.measure(scene.space).energy
+    report = stepper.step(1.0)
+    assert report.substeps > 2
+    assert report.converged
+    assert (np.diff(report.contacts.time) >= 0.0).all()
+    assert 0.9 < report.contacts.time.max() < 1.0
+    assert ep.measure(scene.space).energy == pytest.approx(energy, rel=1e-12)
+    x, radius = positions(scene.bodies), scene.parameters["radius"]
+    assert (x >= radius - 1e-9).all()
+    assert (x <= 1.0 - radius + 1e-9).all()
