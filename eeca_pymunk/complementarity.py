@@ -97,8 +97,8 @@ class Impulses:
     exact: bool
 
 
-_PIVOTED = 160  # contacts up to which pivoting beats projected gradients (measured on the hopper)
-_DENSE = 300  # contacts up to which a dense matrix beats the operator
+_PIVOTED = 100  # contacts up to which pivoting beats projected gradients (measured on the hopper)
+_DENSE = 160  # contacts up to which a dense matrix beats the operator
 _PIVOTS = 25
 _ROUND_OFF = 1e-10  # residual of a direct solution relative to the largest |q|
 _SINGULAR = 1e8  # growth of a solution that tells a singular matrix
