@@ -113,11 +113,9 @@ class Rounds:
         displacement = paths.position(self.agenda.rows, t) - start.position
         self.blocks.finish()
         velocity = paths.rate(self.agenda.rows, t)
-        later = self.agenda.time - dt
-        later[self.agenda.touch] = np.nan
         self.twin.memory = _Memory(
-            self.agenda.pairs, later, self.agenda.gap, self.agenda.touch, start.position + displacement, velocity,
-            paths.acceleration, paths.pulled,
+            self.agenda.pairs, self.agenda.time - dt, self.agenda.gap, self.agenda.touch,
+            start.position + displacement, velocity, paths.acceleration, paths.pulled,
         )  # fmt: skip
         self.log.rounds += rounds
         self.log.windows += windows

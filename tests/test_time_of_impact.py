@@ -13,6 +13,7 @@ import scenes
 from comparisons.exact import Gas
 from comparisons.hopper import crossed, deepest_overlap
 from eeca_pymunk import impact_times
+from eeca_pymunk.agenda import Agenda
 from scenes.ball import bounce
 from scenes.scene import add_disk, add_walls
 
@@ -53,6 +54,37 @@ def test_steps_with_many_impacts_each_keep_their_order(count: int, dt: float) ->
     assert len(report.contacts) == exact.events
     assert exact.events > count
     np.testing.assert_allclose(positions(scene.bodies), exact.position, atol=1e-6)
+
+
+def test_order_of_impacts_is_checked_and_not_guessed(monkeypatch: pytest.MonkeyPatch) -> None:
+    # Without the guess of who may be sent into whom, only looking back keeps the order.
+    monkeypatch.setattr(Agenda, "_mind_neighbours", lambda self, earliest: None)
+    scene = scenes.build("gas", count=400, packing=0.3, seed=1)
+    exact = exact_gas(scene, 0.05)
+    report = ep.EECA(scene.space).step(0.05)
+    assert report.substeps > 1
+    assert len(report.contacts) == exact.events
+    np.testing.assert_allclose(positions(scene.bodies), exact.position, atol=1e-6)
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.7, 2.3])
+def test_two_hits_on_one_disk_at_one_instant_are_one_block(angle: float) -> None:
+    # In any frame: two disks, apart, are hit at the same time up to round-off. With n at angles t and -t to the motion,
+    # u' = -u for both at once is lam (1 + 2 cos^2 t) = 2 v cos t for equal masses.
+    c, s = math.cos(angle), math.sin(angle)
+
+    def turned(x: float, y: float) -> tuple[float, float]:
+        return (3.0 + c * x - s * y, -2.0 + s * x + c * y)
+
+    space = pymunk.Space()
+    a = add_disk(space, turned(-1.0, 0.0), 0.5, velocity=(2.0 * c, 2.0 * s))
+    b, d = add_disk(space, turned(0.3, 0.6), 0.5), add_disk(space, turned(0.3, -0.6), 0.5)
+    ep.EECA(space).step(1.0)
+    cos = 0.8  # of the angle of n: centres are .6 apart across, 1 in all
+    lam = 2.0 * 2.0 * cos / (1.0 + 2.0 * cos * cos)
+    np.testing.assert_allclose(a.velocity, np.array([c, s]) * (2.0 - 2.0 * lam * cos), atol=1e-12)
+    assert b.velocity.length == pytest.approx(lam, rel=1e-12)
+    assert d.velocity.length == pytest.approx(lam, rel=1e-12)
 
 
 @pytest.mark.parametrize("dt", [0.0017, 0.01, 0.05])
@@ -268,6 +300,20 @@ def test_resting_stack_stays_and_a_hit_on_it_keeps_energy() -> None:
     for _ in range(200):
         stepper.step(1 / 60)
         assert ep.measure(space).energy == pytest.approx(energy, rel=1e-12)
+
+
+def test_hit_on_a_ball_that_rests_with_some_speed_keeps_energy() -> None:
+    # The lower ball would bounce many times in a step: it rests on a force, which the hit from above interrupts.
+    space = pymunk.Space()
+    space.gravity = (0.0, -9.81)
+    add_disk(space, (0.0, 0.2), 0.2, velocity=(0.0, 3e-3))
+    above = add_disk(space, (0.0, 0.6 + 0.02), 0.2, velocity=(0.0, -2.0))
+    add_walls(space, [((-5.0, 0.0), (5.0, 0.0))])
+    stepper, energy = ep.EECA(space), ep.measure(space).energy
+    report = stepper.step(1 / 60)
+    assert above.velocity.y > 0.0
+    assert report.lock != 1.0
+    assert ep.measure(space).energy == pytest.approx(energy, rel=1e-13)
 
 
 def test_ball_slides_off_a_rounded_floor_without_bouncing() -> None:
