@@ -425,3 +425,20 @@ def test_step_that_takes_a_crowd_across_the_box_is_split() -> None:
     x, radius = positions(scene.bodies), scene.parameters["radius"]
     assert (x >= radius - 1e-9).all()
     assert (x <= 1.0 - radius + 1e-9).all()
+
+
+def test_resting_contact_on_a_curved_shape_is_second_order_in_dt() -> None:
+    def end(dt: float) -> np.ndarray:
+        space = pymunk.Space()
+        space.gravity = (0.0, -9.81)
+        space.add(pymunk.Circle(space.static_body, 1.0))
+        ball = add_disk(space, (1.1 * math.sin(0.2), 1.1 * math.cos(0.2)), 0.1)
+        next(iter(ball.shapes)).elasticity = 0.0
+        stepper = ep.EECA(space)
+        for _ in range(round(0.32 / dt)):
+            stepper.step(dt)
+        return np.array(ball.position)
+
+    coarse, middle, fine = end(8e-3), end(4e-3), end(2e-3)
+    order = math.log2(float(np.linalg.norm(coarse - middle) / np.linalg.norm(middle - fine)))
+    assert order == pytest.approx(2.0, abs=0.1)
