@@ -134,6 +134,8 @@ def _energies(watches: dict[tuple[str, float], Watch]) -> Figure:
     names = list(dict.fromkeys(name for name, _ in watches))
     figure = render.figure(12.0, 6.5)
     axes = figure.subplots(2, -(-len(names) // 2), sharex=True).flat
+    for ax in axes[len(names) :]:
+        ax.set_axis_off()
     for ax, name in zip(axes, names, strict=False):
         for dt in (dt for n, dt in watches if n == name):
             t, energy = np.array(watches[name, dt].energy).T

@@ -10,7 +10,9 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
+from eeca_pymunk.files import check_writable, whole_file
 from eeca_pymunk.recording import versions
+from eeca_pymunk.render import save_picture
 
 Value = str | int | float | bool | None
 Row = Mapping[str, Value]
@@ -21,12 +23,9 @@ class Output:
 
     def __init__(self, name: str, folder: Path) -> None:
         self.name, self.folder = name, folder
-        folder.mkdir(parents=True, exist_ok=True)
-        probe = folder / f".{name}.probe"
-        probe.touch()
-        probe.unlink()
-        used = ", ".join(f"{k} {v}" for k, v in versions().items())
-        print(f"# {name}, {date.today().isoformat()}: {used}")
+        check_writable(self.path("csv"))
+        self.made = f"{date.today().isoformat()}: " + ", ".join(f"{k} {v}" for k, v in versions().items())
+        print(f"# {name}, {self.made}")
 
     def parameters(self, values: Mapping[str, object]) -> None:
         """Print the parameters of the runs that follow."""
@@ -35,7 +34,7 @@ class Output:
     def table(self, title: str, rows: Sequence[Row], file: str = "") -> None:
         """Print the rows as a table and write them to NAME[_file].csv."""
         columns = list(rows[0])
-        cells = [columns] + [[_text(row[c]) for c in columns] for row in rows]
+        cells = [columns] + [[as_text(row[c]) for c in columns] for row in rows]
         width = [max(len(line[i]) for line in cells) for i in range(len(columns))]
         print(f"\n{title}")
         for number, line in enumerate(cells):
@@ -45,7 +44,7 @@ class Output:
             if number == 0:
                 print("  ".join("-" * w for w in width))
         path = self.path("csv", file)
-        with path.open("w", newline="") as stream:
+        with whole_file(path) as partial, partial.open("w", newline="") as stream:
             writer = csv.DictWriter(stream, columns)
             writer.writeheader()
             writer.writerows(rows)
@@ -54,7 +53,7 @@ class Output:
     def picture(self, figure: Figure, file: str = "") -> None:
         """Write the figure to NAME[_file].png."""
         path = self.path("png", file)
-        figure.savefig(path)
+        save_picture(figure, path)
         print(f"-> {path}")
 
     def path(self, suffix: str, file: str = "") -> Path:
@@ -62,7 +61,8 @@ class Output:
         return self.folder / f"{self.name}{'_' if file else ''}{file}.{suffix}"
 
 
-def _text(value: Value) -> str:
+def as_text(value: Value) -> str:
+    """A cell of a table: four digits, "-" where there is no value."""
     if value is None or (isinstance(value, float) and math.isnan(value)):
         return "-"
     return f"{value:.4g}" if isinstance(value, float) else str(value)

@@ -88,16 +88,24 @@ def _radius(shape: Any) -> float:
     return float(shape.radius)
 
 
-def _outline(shape: pymunk.Shape, owner: pymunk.Body) -> FloatArray:
-    """(k, 2) world vertices, counter-clockwise; a circle is its centre twice, a segment its ends."""
+def local_outline(shape: pymunk.Shape) -> FloatArray:
+    """(k, 2) vertices in body coordinates, counter-clockwise: k = 1 for a circle's centre, 2 for a segment's ends."""
     if isinstance(shape, pymunk.Circle):
-        local = [shape.offset, shape.offset]
+        vertices = [shape.offset]
     elif isinstance(shape, pymunk.Segment):
-        local = [shape.a, shape.b]
+        vertices = [shape.a, shape.b]
+    elif isinstance(shape, pymunk.Poly):
+        vertices = list(shape.get_vertices())
     else:
-        assert isinstance(shape, pymunk.Poly)  # check_shape let nothing else through
-        local = shape.get_vertices()
-    return np.array([owner.local_to_world(v) for v in local], float)
+        raise UnsupportedFeature(f"{shape}: only circles, segments and polygons are known")
+    return np.array(vertices, float)
+
+
+def _outline(shape: pymunk.Shape, owner: pymunk.Body) -> FloatArray:
+    """(k, 2) world vertices of at least two; a circle is its centre twice."""
+    local = local_outline(shape)
+    local = np.repeat(local, 2, axis=0) if len(local) == 1 else local
+    return np.array([owner.local_to_world((float(x), float(y))) for x, y in local], float)
 
 
 def check_space(space: pymunk.Space) -> None:

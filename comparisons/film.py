@@ -1,0 +1,126 @@
+"""The scene of a comparison under several steppers side by side, as a film with its table and pictures."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+
+import eeca_pymunk as ep
+import scenes
+from comparisons import runs
+from comparisons.output import Output, Row
+from eeca_pymunk import render
+from eeca_pymunk.errors import NotFiniteError
+from eeca_pymunk.files import check_writable
+from eeca_pymunk.recording import step_count
+from eeca_pymunk.render.encode import check_encoder
+from scenes import Scene
+
+STEPPERS = {
+    "eeca": "EECA",
+    "midstep": "EECA, Midstep",
+    "dashpot": "EECA, Dashpot",
+    "native": "pymunk",
+    "tuned": "pymunk tuned",
+    "trapezoidal": "trapezoidal",
+    "max_dissipation": "max dissipation",
+}
+_MOMENTS = 5  # kept for each frame
+FORMATS = ("gif", "mp4", "html")
+View = tuple[float, float, float, float]
+
+
+@dataclass(frozen=True)
+class Film:
+    """How a scene is filmed: what for, for how long (s, the scene's if None), and what of it (m, all if None)."""
+
+    steppers: tuple[str, ...] = ("eeca", "native")
+    duration: float | None = None
+    view: View | None = None
+    arrow: str | None = None
+
+
+FILMS = {
+    "carom": Film(("eeca", "native", "trapezoidal", "max_dissipation"), 1.5),
+    "pool_break": Film(duration=0.15, view=(-0.65, 0.65, -0.35, 0.95), arrow="momentum"),
+    "hopper": Film(view=(-0.7, 0.7, -0.15, 1.1)),
+}
+
+
+def options(steppers: str | None, suffix: str | None, name: str) -> tuple[list[str], str | None]:
+    """The steppers of a comma-separated list and the format, checked; ValueError with the remedy."""
+    if name not in scenes.NAMES:
+        raise ValueError(f"{name} has no single scene to show: choose one of {', '.join(scenes.NAMES)}")
+    chosen = list(FILMS.get(name, Film()).steppers) if steppers is None else steppers.split(",")
+    for stepper in chosen:
+        if stepper not in STEPPERS:
+            raise ValueError(f"unknown stepper {stepper!r}: choose from {', '.join(STEPPERS)}")
+    if suffix is not None:
+        check_encoder(f".{suffix}")
+        if len(chosen) > 4:
+            raise ValueError(f"{len(chosen)} steppers: a film shows one to four")
+    return chosen, suffix
+
+
+def make(name: str, stiffness: float) -> runs.Make:
+    """The stepper of a name in `STEPPERS`, as all comparisons make it."""
+    if name == "eeca":
+        return runs.eeca(ep.TimeOfImpact())
+    if name == "midstep":
+        return runs.eeca(ep.Midstep())
+    if name == "dashpot":
+        return runs.eeca(ep.Dashpot(stiffness, 200.0))
+    if name in ("native", "tuned"):
+        return runs.native(50 if name == "tuned" else None)
+    return runs.steppers(stiffness)[STEPPERS[name]]
+
+
+def run(
+    output: Output, steppers: list[str], suffix: str | None, dt: float | None, duration: float | None, frames: int,
+    fps: float,
+) -> None:  # fmt: skip
+    """Run the scene under each stepper; print the table, write CSV, PNG and, with a suffix, the film."""
+    settings = FILMS.get(output.name, Film())
+    scene = scenes.build(output.name)
+    dt = scene.dt if dt is None else dt
+    duration = (settings.duration or scene.duration) if duration is None else duration
+    # More moments than frames: paths are drawn through all of them.
+    every = max(1, step_count(duration, dt) // (_MOMENTS * frames))
+    path = check_writable(output.path(suffix)) if suffix is not None else None
+    output.parameters({**scene.parameters, "dt": dt, "duration": duration, "every": every})
+    recordings: list[ep.Recording] = []
+    for name in steppers:
+        # A scene may depend on its dt only through its default.
+        scene = scenes.build(output.name)
+        try:
+            recordings.append(ep.record(make(name, scene.stiffness)(scene.space), duration, dt, every, progress=True))
+        except NotFiniteError as error:
+            raise ValueError(
+                f"{STEPPERS[name]} blew up ({error}); leave it out, or give a shorter --duration"
+            ) from error
+    titles = [STEPPERS[name] for name in steppers]
+    output.table(f"{output.name}: dt = {dt:g} s, {duration:g} s", [
+        _row(title, recording, scene) for title, recording in zip(titles, recordings, strict=True)
+    ], "film")  # fmt: skip
+    times = np.linspace(0.0, float(recordings[0].time[-1]), 4).tolist()
+    for name, title, recording in zip(steppers, titles, recordings, strict=True):
+        output.picture(render.strip(recording, times, title=title, view=settings.view), f"film_{name}")
+    if path is not None:
+        begun = time.perf_counter()
+        render.animate(
+            recordings, path, fps, titles=titles, exact=scene.exact, view=settings.view, frames=frames,
+            arrow=settings.arrow, dpi=80, progress=True,
+        )  # fmt: skip
+        print(f"-> {path} ({frames} frames of {len(recordings)} panels in {time.perf_counter() - begun:.1f} s)")
+
+
+def _row(title: str, recording: ep.Recording, scene: Scene) -> Row:
+    drift = recording.energy / recording.energy[0] - 1.0 if recording.energy[0] else recording.energy
+    exact = scene.exact(float(recording.time[-1]))
+    error = None if exact is None else float(np.linalg.norm(recording.position[-1] - exact, axis=1).max())
+    return {
+        "stepper": title, "error (m)": error, "max |dE/E|": float(np.abs(drift).max()), "dE/E at end": float(drift[-1]),
+        "px at end": float(recording.momentum[-1, 0]), "py at end": float(recording.momentum[-1, 1]),
+    }  # fmt: skip

@@ -1,0 +1,137 @@
+"""Drawing: the shapes of a space on axes, made once and moved in place."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.collections import EllipseCollection, LineCollection, PolyCollection
+
+from eeca_pymunk.bodies import FloatArray, IntArray
+from eeca_pymunk.outlines import Outlines, place
+
+# From the colour-blind safe set of Okabe and Ito; they differ in lightness too.
+MOVING, STATIC, SENSOR, ARROW, GHOST = "#0072b2", "#444444", "#cc79a7", "#d55e00", "#e69f00"
+COLORS = (MOVING, STATIC, SENSOR, ARROW, GHOST)
+_ARC = 7  # points of the rounding of a corner
+
+
+class Drawing:
+    """Collections of disks, lines and polygons; `move` puts them where the bodies are.
+
+    Those of static shapes are final at once; `artists` lists the others.
+    """
+
+    def __init__(self, ax: Axes, outlines: Outlines, *, ghost: bool = False) -> None:
+        self.outlines = outlines
+        self._moving: list[_Part] = []
+        first = np.cumsum(outlines.count) - outlines.count
+        vertices = [outlines.vertex[i : i + k] for i, k in zip(first, outlines.count, strict=True)]
+        disk = outlines.count == 1
+        line = (outlines.count == 2) & (outlines.radius == 0)
+        for still in (False,) if ghost else (True, False):
+            for sensor in (True, False):
+                here = ((outlines.row < 0) == still) & (outlines.sensor == sensor)
+                color = SENSOR if sensor else STATIC if still else MOVING
+                for kind, which in ((_Disks, disk), (_Lines, line), (_Polygons, ~disk & ~line)):
+                    chosen = np.flatnonzero(here & which)
+                    if len(chosen) == 0:
+                        continue
+                    part = kind(ax, outlines, chosen, [vertices[i] for i in chosen], color, ghost)
+                    if still:
+                        part.draw(part.local)
+                    else:
+                        self._moving.append(part)
+
+    @property
+    def artists(self) -> list[Artist]:
+        return [part.artist for part in self._moving]
+
+    def move(self, position: FloatArray, angle: FloatArray) -> None:
+        """Draw the bodies at (N, 2) positions and (N,) angles; NaN leaves a body out."""
+        for part in self._moving:
+            part.move(position, angle)
+
+
+class _Part:
+    """One collection: points `local` of bodies `owner`, and how they become what is drawn."""
+
+    artist: EllipseCollection | LineCollection | PolyCollection
+
+    def __init__(self, local: list[FloatArray], row: IntArray) -> None:
+        self.local = np.concatenate(local)
+        lengths = [len(v) for v in local]
+        self.owner = np.repeat(row, lengths)
+        self.ends = np.cumsum(lengths)[:-1]
+
+    def move(self, position: FloatArray, angle: FloatArray) -> None:
+        self.draw(place(self.local, self.owner, position, angle))
+
+    def draw(self, world: FloatArray) -> None:
+        self.artist.set_verts(np.split(world, self.ends))  # type: ignore[union-attr]
+
+
+class _Disks(_Part):
+    def __init__(
+        self, ax: Axes, outlines: Outlines, chosen: IntArray, local: list[FloatArray], color: str, ghost: bool
+    ) -> None:
+        super().__init__(local, outlines.row[chosen])
+        width = 2.0 * outlines.radius[chosen]
+        self.artist = EllipseCollection(
+            width, width, np.zeros(len(chosen)), units="xy", offsets=np.zeros((len(chosen), 2)),
+            offset_transform=ax.transData, facecolors="none" if ghost else color,
+            edgecolors=GHOST if ghost else "none", linewidths=1.5 if ghost else 0.0, zorder=4 if ghost else 2,
+        )  # fmt: skip
+        ax.add_collection(self.artist, autolim=False)
+
+    def draw(self, world: FloatArray) -> None:
+        self.artist.set_offsets(world)
+
+
+class _Lines(_Part):
+    def __init__(
+        self, ax: Axes, outlines: Outlines, chosen: IntArray, local: list[FloatArray], color: str, ghost: bool
+    ) -> None:
+        super().__init__(local, outlines.row[chosen])
+        self.artist = LineCollection([], colors=GHOST if ghost else color, linewidths=1.5)
+        ax.add_collection(self.artist, autolim=False)
+
+
+class _Polygons(_Part):
+    def __init__(
+        self, ax: Axes, outlines: Outlines, chosen: IntArray, local: list[FloatArray], color: str, ghost: bool
+    ) -> None:
+        rounded = [_rounded(v, float(r)) for v, r in zip(local, outlines.radius[chosen], strict=True)]
+        super().__init__(rounded, outlines.row[chosen])
+        self.artist = PolyCollection(
+            [], facecolors="none" if ghost else color, edgecolors=GHOST if ghost else "white", linewidths=0.5
+        )
+        ax.add_collection(self.artist, autolim=False)
+
+
+def _rounded(vertices: FloatArray, radius: float) -> FloatArray:
+    """(k, 2) the boundary of the convex hull of counter-clockwise vertices, rounded by arcs at the corners."""
+    if radius == 0.0:
+        return vertices
+    edge = np.roll(vertices, -1, axis=0) - vertices
+    after = np.arctan2(-edge[:, 0], edge[:, 1])  # direction of the outward normal of the edge that leaves a corner
+    before = np.roll(after, 1)
+    turn = np.mod(after - before, 2.0 * np.pi)
+    angle = before[:, None] + turn[:, None] * np.linspace(0.0, 1.0, _ARC)
+    corner = vertices[:, None] + radius * np.stack((np.cos(angle), np.sin(angle)), axis=2)
+    return corner.reshape(-1, 2)
+
+
+def bounds(outlines: Outlines, position: FloatArray, angle: FloatArray) -> tuple[float, float, float, float]:
+    """(left, right, bottom, top) of all shapes with the bodies at (T, N, 2) positions and (T, N) angles."""
+    if len(outlines) == 0:
+        raise ValueError("there are no shapes to draw: the space, or the recording, has none")
+    radius = np.repeat(outlines.radius, outlines.count)[:, None]
+    low, high = np.full(2, np.inf), np.full(2, -np.inf)
+    for x, a in zip(position, angle, strict=True):
+        world = outlines.place(x, a)
+        here = np.isfinite(world).all(axis=1)
+        low = np.minimum(low, (world - radius)[here].min(axis=0, initial=np.inf))
+        high = np.maximum(high, (world + radius)[here].max(axis=0, initial=-np.inf))
+    pad = 0.03 * float(np.max(high - low))
+    return float(low[0]) - pad, float(high[0]) + pad, float(low[1]) - pad, float(high[1]) + pad

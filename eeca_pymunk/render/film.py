@@ -1,0 +1,232 @@
+"""Films: recordings side by side on one clock, with traces of energy and momentum."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import cast
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.lines import Line2D
+from matplotlib.quiver import Quiver
+from tqdm import tqdm
+
+from eeca_pymunk.bodies import FloatArray
+from eeca_pymunk.files import check_writable, whole_file
+from eeca_pymunk.recording import Recording
+
+from .drawing import ARROW, MOVING, Drawing, bounds
+from .encode import check_encoder, encoder, html_player
+from .pictures import ARROWS, View, arrows, figure, frame
+
+Image = npt.NDArray[np.uint8]  # (height, width, 3)
+Exact = Callable[[float], FloatArray | None]
+_MOST = 4  # panels
+_CEILING = 4.0  # of the traces, relative to the start: what gains more runs out of them
+_PREVIEW = 60  # frames of a notebook's player
+_TRAILED = 5  # bodies of which the paths are drawn too: of more they hide the picture
+_FONT = 12  # points: readable at half size too
+
+
+def animate(
+    recordings: Recording | Sequence[Recording],
+    path: str | Path,
+    fps: float = 30,
+    *,
+    titles: Sequence[str] | None = None,
+    exact: Exact | None = None,
+    view: View | None = None,
+    frames: int | None = None,
+    arrow: str | None = None,
+    dpi: float = 100,
+    progress: bool = False,
+) -> Path:
+    """Write a film of one to four recordings side by side; `.gif`, `.mp4` or `.html` by suffix.
+
+    All panels have one scale and one clock: a frame shows of each recording the moment nearest to its time. Below each
+    run the energy relative to the start and the size of the momentum relative to its largest.
+
+    Args:
+        recordings: what to show.  titles: of the panels; stepper and dt if None.
+        fps: frames per second, > 0; a GIF counts in hundredths of a second.
+        exact: time to the (N, 2) exact positions, None where unknown (`Scene.exact`): drawn as a ghost.
+        view: (left, right, bottom, top) lengths; everything that was recorded if None.
+        frames: evenly spaced in time; one per moment of the recording with most if None.
+        arrow: "velocity" or "momentum" of every body.
+        dpi: dots per inch; a panel is 4 inches wide.
+        progress: show a progress bar.
+
+    Raises ValueError or OSError, before anything is drawn, for bad arguments, a path that cannot be written, or an MP4
+    without ffmpeg (`pip install eeca-pymunk[video]`). The file is whole or absent.
+    """
+    path = Path(path)
+    check_encoder(path.suffix)
+    if not fps > 0:
+        raise ValueError(f"fps = {fps}: give a number > 0")
+    film = Film(recordings, titles=titles, exact=exact, view=view, frames=frames, arrow=arrow, dpi=dpi)
+    check_writable(path)
+    shots = tqdm(film.images(), desc=path.name, unit="frame", total=len(film), disable=not progress)
+    with whole_file(path) as partial:
+        encoder(path.suffix)(shots, partial, fps)
+    return path
+
+
+def player(recording: Recording, fps: float = 20) -> str:
+    """HTML of a small player of the recording, complete in itself."""
+    film = Film(recording, frames=min(len(recording), _PREVIEW), dpi=60)
+    name = html.escape(str(recording.parameters.get("stepper", "recording")))
+    return html_player(film.images(), fps, f"{name}, {len(recording)} moments")
+
+
+class Film:
+    """The frames of a film; `images` yields them. Artists are made once and moved."""
+
+    def __init__(
+        self,
+        recordings: Recording | Sequence[Recording],
+        *,
+        titles: Sequence[str] | None = None,
+        exact: Exact | None = None,
+        view: View | None = None,
+        frames: int | None = None,
+        arrow: str | None = None,
+        dpi: float = 100,
+    ) -> None:
+        shown = [recordings] if isinstance(recordings, Recording) else list(recordings)
+        if not 1 <= len(shown) <= _MOST:
+            raise ValueError(f"{len(shown)} recordings: give one to {_MOST}")
+        titles = [_title(r) for r in shown] if titles is None else list(titles)
+        if len(titles) != len(shown):
+            raise ValueError(f"{len(titles)} titles for {len(shown)} recordings: give one for each")
+        if frames is not None and frames < 1:
+            raise ValueError(f"frames = {frames}: give a whole number >= 1")
+        if arrow not in (None, *ARROWS):
+            raise ValueError(f"arrow = {arrow!r}: choose one of {', '.join(ARROWS)}, or None")
+        if view is None:
+            boxes = np.array([bounds(r.outlines, r.position, r.angle) for r in shown])
+            low, high = boxes.min(axis=0), boxes.max(axis=0)
+            view = (float(low[0]), float(high[1]), float(low[2]), float(high[3]))
+        end = max(float(r.time[-1]) for r in shown)
+        self.times = np.linspace(0.0, end, max(len(r) for r in shown) if frames is None else frames)
+        # Even numbers of pixels: video codecs ask for them.
+        tall = min(max(4.0 * (view[3] - view[2]) / (view[1] - view[0]), 2.0), 8.0) + 1.9
+        pixels = [2 * round(0.5 * dpi * inches) for inches in (4.0 * len(shown), tall)]
+        self.figure = figure(pixels[0] / dpi, pixels[1] / dpi, dpi)
+        axes = self.figure.subplots(2, len(shown), squeeze=False, height_ratios=(tall - 1.6, 1.2))
+        traces = [_Trace(ax, r) for ax, r in zip(axes[1], shown, strict=True)]
+        top = max(t.top for t in traces)
+        for trace in traces:
+            trace.ax.set(xlim=(0.0, end or 1.0), ylim=(-0.05 * top, 1.1 * top))
+        self.panels = [
+            _Panel(axes[0, k], r, traces[k], title, view, exact, arrow)
+            for k, (r, title) in enumerate(zip(shown, titles, strict=True))
+        ]
+        self.clock = self.figure.suptitle("t = 0", fontsize=_FONT + 1)
+
+    def __len__(self) -> int:
+        return len(self.times)
+
+    def images(self) -> Iterator[Image]:
+        """Each frame as (height, width, 3) bytes; what stands still is drawn once."""
+        canvas = cast(FigureCanvasAgg, self.figure.canvas)
+        moving = [(panel.ax, artist) for panel in self.panels for artist in panel.moving]
+        moving += [(panel.trace.ax, artist) for panel in self.panels for artist in panel.trace.moving]
+        canvas.draw()  # lays the axes out
+        self.figure.set_layout_engine("none")
+        for artist in (self.clock, *(a for _, a in moving)):
+            artist.set_animated(True)
+        canvas.draw()
+        still = canvas.copy_from_bbox(self.figure.bbox)
+        for t in self.times:
+            canvas.restore_region(still)
+            for panel in self.panels:
+                panel.show(float(t))
+            for ax, artist in moving:
+                ax.draw_artist(artist)
+            self.clock.set_text(f"t = {t:.4g} s")
+            self.figure.draw_artist(self.clock)
+            yield np.asarray(canvas.buffer_rgba())[..., :3].copy()
+
+
+class _Panel:
+    """The bodies of one recording, with the exact solution as a ghost and arrows where they are wanted."""
+
+    def __init__(
+        self, ax: Axes, recording: Recording, trace: _Trace, title: str, view: View, exact: Exact | None,
+        arrow: str | None,
+    ) -> None:  # fmt: skip
+        self.ax, self.recording, self.trace = ax, recording, trace
+        frame(ax, view, title)
+        _readable(ax)
+        self.drawing = Drawing(ax, recording.outlines)
+        self.moving = self.drawing.artists
+        self.trails: list[Line2D] = []
+        if recording.position.shape[1] <= _TRAILED:
+            self.trails = [ax.plot([], [], color=MOVING, linewidth=0.8)[0] for _ in range(recording.position.shape[1])]
+            self.moving += self.trails
+        self.exact = exact if exact is not None and exact(0.0) is not None else None
+        if self.exact is not None:
+            self.ghost = Drawing(ax, recording.outlines, ghost=True)
+            self.moving += self.ghost.artists
+        self.arrows: Quiver | None = None
+        if arrow is not None:
+            mass = recording.mass[:, None]
+            self.vectors = recording.velocity * mass if arrow == "momentum" else recording.velocity
+            self.vectors = np.where(np.isfinite(self.vectors), self.vectors, 0.0)
+            longest = float(np.linalg.norm(self.vectors, axis=2).max(initial=0.0))
+            self.arrows = arrows(ax, recording.position[0], self.vectors[0], longest)
+            self.moving.append(self.arrows)
+
+    def show(self, t: float) -> None:
+        i = int(np.argmin(np.abs(self.recording.time - t)))
+        x, angle = self.recording.position[i], self.recording.angle[i]
+        self.drawing.move(x, angle)
+        if self.exact is not None:
+            # The ghost is where the body should be at the moment shown, not at the frame's.
+            there = self.exact(float(self.recording.time[i]))
+            self.ghost.move(np.full_like(x, np.nan) if there is None else there, angle)
+        if self.arrows is not None:
+            self.arrows.set_offsets(x)
+            self.arrows.set_UVC(*self.vectors[i].T)
+        for k, trail in enumerate(self.trails):
+            trail.set_data(*self.recording.position[: i + 1, k].T)
+        self.trace.show(i)
+
+
+class _Trace:
+    """Energy and momentum of a recording up to the moment shown. `top` is the largest value to show."""
+
+    def __init__(self, ax: Axes, recording: Recording) -> None:
+        self.ax, self.time = ax, recording.time
+        size = np.linalg.norm(recording.momentum, axis=1)
+        start = abs(float(recording.energy[0])) or float(np.abs(recording.energy).max()) or 1.0
+        self.values = (recording.energy / start, size / (float(size.max()) or 1.0))
+        self.top = min(max(1.0, float(np.nanmax(self.values[0]))), _CEILING)
+        (energy,) = ax.plot([], [], color="black", linewidth=2, label="E / E(0)")
+        (momentum,) = ax.plot([], [], color=ARROW, linewidth=1.2, linestyle="--", label="|p| / max |p|")
+        self.moving = [energy, momentum]
+        _readable(ax)
+        ax.set_xlabel("time (s)", fontsize=_FONT)
+        ax.legend(
+            loc="lower left", bbox_to_anchor=(-0.05, 0.98), ncol=2, fontsize=_FONT, frameon=False, borderpad=0.0,
+            handlelength=1.5, columnspacing=1.0,
+        )  # fmt: skip
+
+    def show(self, i: int) -> None:
+        for line, value in zip(self.moving, self.values, strict=True):
+            line.set_data(self.time[: i + 1], value[: i + 1])
+
+
+def _readable(ax: Axes) -> None:
+    ax.tick_params(labelsize=_FONT)
+    ax.title.set_fontsize(_FONT + 1)
+    ax.locator_params(nbins=5)
+
+
+def _title(recording: Recording) -> str:
+    parameters = recording.parameters
+    return f"{parameters.get('stepper', 'recording')}, dt = {parameters['dt']:g} s" if "dt" in parameters else ""

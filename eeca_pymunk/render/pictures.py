@@ -1,0 +1,154 @@
+"""Pictures of single moments."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import pymunk
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.quiver import Quiver
+from PIL import Image
+
+from eeca_pymunk.bodies import FloatArray
+from eeca_pymunk.files import whole_file
+from eeca_pymunk.outlines import Outlines
+from eeca_pymunk.recording import Recording
+from eeca_pymunk.stepper import StepReport
+
+from .drawing import ARROW, GHOST, Drawing, bounds
+
+View = tuple[float, float, float, float]
+_COLORS = 128
+ARROWS = ("velocity", "momentum")
+
+
+def figure(width: float, height: float, dpi: float = 110) -> Figure:
+    """A figure of `width` x `height` inches that needs no display."""
+    result = Figure(figsize=(width, height), dpi=dpi, layout="constrained")
+    FigureCanvasAgg(result)
+    return result
+
+
+def snapshot(
+    subject: pymunk.Space | Recording,
+    ax: Axes | None = None,
+    *,
+    time: float = 0.0,
+    path: str | Path | None = None,
+    title: str = "",
+    velocity: bool = False,
+    momentum: bool = False,
+    report: StepReport | None = None,
+    view: View | None = None,
+) -> Axes:
+    """Draw the shapes of a space now, or of a recording at its moment nearest to `time`; disks to scale.
+
+    Args:
+        ax: where to draw; a new figure if None.  path: save the figure there, format by suffix.
+        velocity, momentum: an arrow for each moving body; momenta as in the paper's Figs. 8 and 9.
+        report: of the step that led here: its contacts are drawn, each impulse as a pair of arrows along the normal.
+        view: (left, right, bottom, top) lengths; all shapes if None.
+    """
+    ax = figure(5.0, 5.0).add_subplot() if ax is None else ax
+    if isinstance(subject, Recording):
+        i = moment(subject, time)
+        outlines, mass = subject.outlines, subject.mass
+        x, angle, v = subject.position[i], subject.angle[i], subject.velocity[i]
+    else:
+        bodies = [b for b in subject.bodies if b.body_type != pymunk.Body.STATIC]
+        outlines, mass = Outlines.of(subject, bodies), np.array([b.mass for b in bodies])
+        x, v = (np.array(a, float).reshape(-1, 2) for a in ([b.position for b in bodies], [b.velocity for b in bodies]))
+        angle = np.array([b.angle for b in bodies])
+    box = bounds(outlines, x[None], angle[None]) if view is None else view
+    frame(ax, box, title)
+    Drawing(ax, outlines).move(x, angle)
+    if velocity or momentum:
+        arrows(ax, x, v * mass[:, None] if momentum else v)
+    if report is not None:
+        _impulses(ax, report)
+    if path is not None:
+        root = ax.get_figure(root=True)
+        assert isinstance(root, Figure)  # axes are on a figure
+        save_picture(root, path)
+    return ax
+
+
+def strip(
+    recording: Recording,
+    times: Sequence[float],
+    *,
+    path: str | Path | None = None,
+    title: str = "",
+    velocity: bool = False,
+    momentum: bool = False,
+    view: View | None = None,
+) -> Figure:
+    """Several moments of a recording in a row, as in the paper's Fig. 12, with one scale; see `snapshot`."""
+    if len(times) == 0:
+        raise ValueError("times is empty: give one or more times to show")
+    shown = [moment(recording, t) for t in times]
+    box = bounds(recording.outlines, recording.position[shown], recording.angle[shown]) if view is None else view
+    row = figure(3.2 * len(times), 3.6)
+    for ax, t, i in zip(np.atleast_1d(row.subplots(1, len(times))), times, shown, strict=True):
+        label = f"{recording.time[i]:.4g} s"
+        snapshot(recording, ax, time=t, title=label, velocity=velocity, momentum=momentum, view=box)
+    row.suptitle(title)
+    if path is not None:
+        save_picture(row, path)
+    return row
+
+
+def save_picture(figure: Figure, path: str | Path) -> None:
+    """Write a figure, whole or not at all; format by suffix. PNGs get a palette: a third of the size."""
+    with whole_file(path) as partial:
+        figure.savefig(partial)
+        if partial.suffix == ".png":
+            with Image.open(partial) as full:
+                small = full.convert("RGB").quantize(_COLORS, dither=Image.Dither.NONE)
+            small.save(partial, optimize=True)
+
+
+def moment(recording: Recording, time: float) -> int:
+    """The index of the moment nearest to `time`; ValueError if the recording does not reach it."""
+    half = 0.5 * float(recording.time[1] - recording.time[0]) if len(recording) > 1 else 0.0
+    if not recording.time[0] - half <= time <= recording.time[-1] + half:
+        raise ValueError(f"time = {time}: the recording goes from {recording.time[0]} to {recording.time[-1]}")
+    return int(np.argmin(np.abs(recording.time - time)))
+
+
+def frame(ax: Axes, view: View, title: str) -> None:
+    """Axes of equal scale that show `view`."""
+    ax.set_aspect("equal")
+    ax.set_xlim(view[0], view[1])
+    ax.set_ylim(view[2], view[3])
+    ax.set_title(title)
+
+
+def arrows(ax: Axes, x: FloatArray, vector: FloatArray, longest: float | None = None) -> Quiver:
+    """An arrow for each (N, 2) vector at (N, 2) places. `longest` spans two fifths of the axes; the longest here if
+    None. Vectors that are not finite (a kinematic body's momentum) have none."""
+    size = np.linalg.norm(vector, axis=1)
+    shown = np.where(np.isfinite(size)[:, None], vector, 0.0)
+    length = float(np.linalg.norm(shown, axis=1).max(initial=0.0)) if longest is None else longest
+    scale = 2.5 * max(length, np.finfo(float).tiny)
+    return ax.quiver(
+        x[:, 0], x[:, 1], shown[:, 0], shown[:, 1], color=ARROW, width=0.006, scale=scale, scale_units="width", zorder=3
+    )
+
+
+def _impulses(ax: Axes, report: StepReport) -> None:
+    """A pair of arrows along the normal of each contact that acted, their length by its impulse."""
+    contacts, lam = report.contacts, report.impulse
+    acted = lam > 0
+    point, push = contacts.point[acted], (lam[:, None] * contacts.normal)[acted]
+    scale = 5.0 * max(float(lam.max(initial=0.0)), np.finfo(float).tiny)
+    for sign in (1.0, -1.0):
+        ax.quiver(
+            point[:, 0], point[:, 1], sign * push[:, 0], sign * push[:, 1],
+            color=GHOST, width=0.006, scale=scale, scale_units="width", zorder=5,
+        )  # fmt: skip
+    ax.plot(point[:, 0], point[:, 1], "k.", markersize=3, zorder=6)
