@@ -44,7 +44,7 @@ class Film:
 
 FILMS = {
     "carom": Film(("eeca", "native", "trapezoidal", "max_dissipation"), 1.5),
-    "pool_break": Film(duration=0.15, view=(-0.65, 0.65, -0.35, 0.95), arrow="momentum"),
+    "pool_break": Film(duration=0.1, view=(-0.6, 0.6, -0.3, 0.9), arrow="momentum"),
     "hopper": Film(view=(-0.7, 0.7, -0.15, 1.1)),
 }
 
@@ -111,7 +111,7 @@ def run(
         begun = time.perf_counter()
         render.animate(
             recordings, path, fps, titles=titles, exact=scene.exact, view=settings.view, frames=frames,
-            arrow=settings.arrow, dpi=80, progress=True,
+            arrow=settings.arrow, dpi=76, progress=True,
         )  # fmt: skip
         print(f"-> {path} ({frames} frames of {len(recordings)} panels in {time.perf_counter() - begun:.1f} s)")
 

@@ -31,6 +31,12 @@ def run(output: Output, full: bool) -> None:
     folder = output.folder / output.name
     for name in PARTS:
         import_module(f".{name}", __package__).run(Output(name, folder), full)
+    write_page(output)
+
+
+def write_page(output: Output) -> None:
+    """Write DIR/GALLERY.md from the results in DIR/gallery."""
+    folder = output.folder / output.name
     tables = {key: table(folder / f"{file}.csv", columns, rows) for key, (file, columns, rows) in _SHOWN.items()}
     page = output.folder / "GALLERY.md"
     text = Template(_PAGE.read_text(encoding="utf-8")).substitute(tables, dir=output.name, made=output.made)

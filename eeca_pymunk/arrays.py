@@ -9,10 +9,11 @@ import numpy as np
 import pymunk
 
 from .bodies import ANGLE, ANGULAR_VELOCITY, FORCE, POSITION, TORQUE, VELOCITY, Bodies, FloatArray
+from .checks import check_bodies, check_space
 from .contacts import ROUND_OFF, Geometry, Pairs, distance_from_axes, length
 from .detection import MarginTwin
-from .errors import NotFiniteError
-from .shapes import Shapes, check_space
+from .errors import NotFiniteError, UnsupportedFeature
+from .shapes import Shapes
 from .stepper import Stepper, StepReport, check_dt
 
 _OVERFLOW = "the step would overflow; take a smaller dt, or stop this run"
@@ -20,7 +21,10 @@ _OVERFLOW = "the step would overflow; take a smaller dt, or stop this run"
 
 @dataclass(frozen=True)
 class Start:
-    """The N bodies at the start of a step: position, velocity and acceleration (N, 2), the last with gravity.
+    """The N bodies at the start of a step: position, velocity and acceleration (N, d), the last with gravity.
+
+    d = 2 where bodies are centred disks and contacts have no arms. d = 3 otherwise: centres of mass, and the angle with
+    its derivatives.
 
     `time` is that of the end of the step; `pulled` tells whether anything accelerates.
     """
@@ -33,18 +37,18 @@ class Start:
     pulled: bool
 
     def at(self, time: float) -> FloatArray:
-        """(N, 2) positions on the free flight at one instant."""
+        """(N, d) positions on the free flight at one instant."""
         way = self.position + time * self.velocity
         return way + (0.5 * time * time) * self.acceleration if self.pulled else way
 
     @property
     def free_velocity(self) -> FloatArray:
-        """(N, 2) velocity at the end of the free flight."""
+        """(N, d) velocity at the end of the free flight."""
         return self.velocity + self.dt * self.acceleration if self.pulled else self.velocity.copy()
 
     @property
     def free_displacement(self) -> FloatArray:
-        """(N, 2) displacement of the free flight over the step."""
+        """(N, d) displacement of the free flight over the step."""
         with np.errstate(over="ignore", invalid="ignore"):  # refused before anything is made of it
             way = self.dt * self.velocity
             return way + (0.5 * self.dt**2) * self.acceleration if self.pulled else way
@@ -52,7 +56,7 @@ class Start:
 
 @dataclass(frozen=True)
 class Motion:
-    """Velocity and displacement (N, 2) of all bodies over a step, and its report."""
+    """Velocity and displacement (N, d) of all bodies over a step, and its report."""
 
     velocity: FloatArray
     displacement: FloatArray
@@ -62,12 +66,16 @@ class Motion:
 class ArrayStepper(Stepper):
     """A stepper that replaces pymunk's solver; subclasses say how bodies move, in `advance`.
 
+    `centred_disks` tells whether nothing else may move.
+
     Args:
         space: any pymunk space of disks and static walls.
         sync: bring pymunk's own shapes and broad phase up to date after each step, for its queries and drawing, and
             run its post-step callbacks. False saves that time; `space.reindex_shapes_for_body(body)` does the first
             for one body.
     """
+
+    centred_disks = True
 
     def __init__(self, space: pymunk.Space, *, sync: bool = True) -> None:
         super().__init__(space)
@@ -91,7 +99,7 @@ class ArrayStepper(Stepper):
         if not np.isfinite(start.free_displacement).all():
             raise NotFiniteError(f"a body would move an infinite distance within dt = {dt}: {_OVERFLOW}")
         motion = self.advance(twin.bodies, start, twin)
-        self._scatter(twin.bodies, state, motion, dt)
+        self._scatter(twin.bodies, state, start, motion, dt)
         self.time = motion.report.time
         return motion.report
 
@@ -108,25 +116,42 @@ class ArrayStepper(Stepper):
         state = bodies.gather()
         assert state is not None  # read from these very bodies
         bodies.check_finite(state)
-        self._twin = MarginTwin(bodies, Shapes(self.space, bodies), state)
+        check_bodies(bodies)
+        shapes = Shapes(self.space, bodies)
+        if shapes.general and self.centred_disks:
+            i = int(np.argmax((shapes.rank == 1) | (shapes.rank == 2)))
+            raise UnsupportedFeature(
+                f"{shapes.items[i]} of {bodies.items[shapes.row[i]]} moves and is not a disk about the centre of mass "
+                f"of a dynamic body, which is all that {type(self).__name__} moves here; use ep.EECA(space)"
+            )
+        self._twin = MarginTwin(bodies, shapes, state)
         return self._twin, state
 
     @np.errstate(over="ignore", invalid="ignore")  # what overflows is refused before it is written
     def _start(self, bodies: Bodies, state: FloatArray, dt: float) -> Start:
+        general = self._twin is not None and self._twin.shapes.general
         gravity = self.space.gravity
-        acceleration = state[:, FORCE] * bodies.inverse_mass[:, None]
+        columns = slice(FORCE.start, TORQUE + 1) if general else FORCE
+        acceleration = state[:, columns] * bodies.mobility(general)
         if any(gravity):
-            acceleration += bodies.dynamic[:, None] * np.array(gravity)
-        velocity = state[:, VELOCITY] * ~bodies.static[:, None]
-        return Start(self.time + dt, dt, state[:, POSITION], velocity, acceleration, bool(acceleration.any()))
+            acceleration[:, :2] += bodies.dynamic[:, None] * np.array(gravity)
+        columns = slice(VELOCITY.start, ANGULAR_VELOCITY + 1) if general else VELOCITY
+        velocity = state[:, columns] * ~bodies.static[:, None]
+        position = bodies.poses(state, general)
+        return Start(self.time + dt, dt, position, velocity, acceleration, bool(acceleration.any()))
 
-    def _scatter(self, bodies: Bodies, state: FloatArray, motion: Motion, dt: float) -> None:
+    def _scatter(self, bodies: Bodies, state: FloatArray, start: Start, motion: Motion, dt: float) -> None:
         """Write the end of the step; forces are reset as pymunk does. Restores the state if pymunk refuses."""
         end = state.copy()
-        end[:, POSITION] += motion.displacement
-        end[:, VELOCITY] = motion.velocity
-        if _turns(state):
-            turn(end, bodies, dt)
+        if start.position.shape[1] == 3:
+            pose = start.position + motion.displacement
+            end[:, POSITION], end[:, ANGLE] = bodies.positions(pose), pose[:, 2]
+            end[:, VELOCITY], end[:, ANGULAR_VELOCITY] = motion.velocity[:, :2], motion.velocity[:, 2]
+        else:
+            end[:, POSITION] += motion.displacement
+            end[:, VELOCITY] = motion.velocity
+            if _turns(state):
+                turn(end, bodies, dt)
         end[:, FORCE] = 0.0
         end[:, TORQUE] = 0.0
         end[bodies.static] = state[bodies.static]
@@ -149,12 +174,15 @@ class ArrayStepper(Stepper):
         shapes = twin.shapes
         walls = len(shapes.walls.start)
         start = self._start(twin.bodies, state, 0.0)
+        others = int(np.count_nonzero((shapes.rank == 1) | (shapes.rank == 2)))
         parts = [
-            f"{len(shapes) - walls} disks, {walls} walls",
+            f"{int(np.count_nonzero(shapes.is_disk))} disks" + (f", {others} other moving shapes" if others else ""),
+            f"{walls} walls",
             "gravity or forces" if start.pulled else "no forces",
-            "free rotation" if _turns(state) else "no rotation",
+            "rotation with contact arms" if others else "free rotation" if _turns(state) else "no rotation",
             "loss" if shapes.lossy else "elastic",
         ]
+        parts[:2] = [", ".join(parts[:2])]
         return "; ".join(parts)
 
     def _sync(self, dt: float) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 
 from . import balance
 from .bodies import BoolArray, FloatArray, IntArray
-from .complementarity import Delassus, components, restrict, solve
+from .complementarity import Delassus, components, operator, restrict, solve
 from .contacts import Geometry, Pairs, touching
 from .impacts import Impacts
 
@@ -17,14 +17,74 @@ _TURN = 0.1  # rad by which the normal of a resting contact may turn before its 
 _SHORTEST = 1 / 64  # part of the rest of the step for which a force is kept at least
 
 
+@dataclass(frozen=True)
+class Touching:
+    """k contacts between bodies that act at one instant: a pair of shapes has two where faces meet.
+
+    Attributes:
+        pairs: of the contacts.  pair: (k,) number of the pair in the block's list.  at: their geometry.
+        row_a, row_b: (k,) of the bodies among those of the block.  face: (k,) whether the pair has two contacts.
+        direction_a, direction_b: (k, d).
+    """
+
+    pairs: Pairs
+    pair: IntArray
+    at: Geometry
+    row_a: IntArray
+    row_b: IntArray
+    face: BoolArray
+    direction_a: FloatArray
+    direction_b: FloatArray
+
+    @staticmethod
+    def of(pairs: Pairs, at: Geometry, pair: IntArray, rows: tuple[IntArray, IntArray], pose: FloatArray) -> Touching:
+        """The contacts of `pairs` (m,) with geometry `at`, bodies `rows` (m,), (m,) at poses (R, d)."""
+        (row_a, row_b), single = rows, np.arange(len(pairs))
+        again, other = pairs.faces(at, pose[row_a], pose[row_b])
+        face = np.zeros(len(pairs), bool)
+        if len(again):
+            face[again] = True
+            which = np.concatenate((single, again))
+            order = np.argsort(which, kind="stable")
+            which = which[order]
+            at = at.joined(other).take(order)
+            pairs, pair, row_a, row_b, face = pairs.take(which), pair[which], row_a[which], row_b[which], face[which]
+        return Touching(pairs, pair, at, row_a, row_b, face, *pairs.directions(at, pose[row_a], pose[row_b]))
+
+    def moved(self, before: FloatArray, after: FloatArray) -> Touching:
+        """The same contacts when the bodies have gone from poses `before` to `after` (R, d)."""
+        a, b = self.row_a, self.row_b
+        at = self.pairs.between(after[a], after[b])
+        k = np.flatnonzero(self.face)
+        if len(k):
+            # The ends of a face stay with both bodies: with the mean of both where these slide on each other.
+            point = self.at.point[k]
+            mean = 0.5 * sum(_carried(point, before[r[k]], after[r[k]]) for r in (a, b))
+            at.center[k] = mean - (at.radius[k] + 0.5 * at.gap[k])[:, None] * at.normal[k]
+        directions = self.pairs.directions(at, after[a], after[b])
+        return Touching(self.pairs, self.pair, at, a, b, self.face, *directions)
+
+    def take(self, which: IntArray) -> Touching:
+        """The contacts number `which`, increasing."""
+        return Touching(
+            self.pairs.take(which), self.pair[which], self.at.take(which), self.row_a[which], self.row_b[which],
+            self.face[which], self.direction_a[which], self.direction_b[which],
+        )  # fmt: skip
+
+    def operator(self, mobility: FloatArray) -> Delassus:
+        """The contacts as an operator on bodies of mobility (R, d or 1)."""
+        return operator(self.row_a, self.row_b, (self.direction_a, self.direction_b), mobility)
+
+
 @dataclass
 class Resting:
     """The k contacts that rest on forces now; each lasts from `since` until `until` unless an impact ends it.
 
     Attributes:
-        key: (k,) of the pair, increasing.  first, second: (k,) shapes.
+        key: (k,) of the pair, not decreasing.  first, second: (k,) shapes.
         since, until: (k,) instants in the step.  force: (k,) mass length/time².
-        normal: (k, 2) its direction.  point: (k, 2).  apart: (k, 2) from a to b, at `since`.
+        normal: (k, 2) its direction.  point: (k, 2).  change: (k,) of the velocity by a unit impulse.
+        direction_a, direction_b: (k, d) of the force on the bodies.  pose_a, pose_b: (k, d) at `since`.
     """
 
     key: IntArray
@@ -35,13 +95,17 @@ class Resting:
     force: FloatArray
     normal: FloatArray
     point: FloatArray
-    apart: FloatArray
+    change: FloatArray
+    direction_a: FloatArray
+    direction_b: FloatArray
+    pose_a: FloatArray
+    pose_b: FloatArray
 
     @staticmethod
-    def none() -> Resting:
-        """No contact."""
-        i, x, v = np.zeros(0, np.intp), np.zeros(0), np.zeros((0, 2))
-        return Resting(i, i, i, x, x, x, v, v, v)
+    def none(columns: int) -> Resting:
+        """No contact of bodies with so many coordinates."""
+        i, x, v, w = np.zeros(0, np.intp), np.zeros(0), np.zeros((0, 2)), np.zeros((0, columns))
+        return Resting(i, i, i, x, x, x, v, v, x, w, w, w, w)
 
     def take(self, which: IntArray) -> Resting:
         """The contacts number `which`."""
@@ -50,7 +114,14 @@ class Resting:
     def joined(self, other: Resting) -> Resting:
         """Both, ordered by key."""
         both = Resting(*(np.concatenate((getattr(self, f.name), getattr(other, f.name))) for f in fields(self)))
-        return both.take(np.argsort(both.key))
+        return both.take(np.argsort(both.key, kind="stable"))
+
+    def work(self, pose_a: FloatArray, pose_b: FloatArray) -> FloatArray:
+        """(k,) energy that the forces have given, bodies now at (k, d)."""
+        way = (self.direction_b * (pose_b - self.pose_b)).sum(axis=1)
+        way -= (self.direction_a * (pose_a - self.pose_a)).sum(axis=1)
+        result: FloatArray = self.force * way
+        return result
 
 
 class Blocks:
@@ -65,18 +136,18 @@ class Blocks:
 
     def __init__(self, impacts: Impacts) -> None:
         self.impacts = impacts
-        self.resting = Resting.none()
+        self.resting = Resting.none(impacts.start.position.shape[1])
 
     def strike(self, pairs: Pairs, seed: FloatArray, spent: BoolArray) -> IntArray:
         """Solve blocks, each at one instant, and let rest what stays in touch.
 
         Args:
-            pairs: the m contacts of all blocks, ordered by key.
-            seed: (m,) time of impact of the contacts that cause a block, infinity for those that merely touch.
-            spent: (m,) whether the contact has bounced so often that it has to stop, if its elasticity is below 1.
+            pairs: the m pairs of all blocks, ordered by key.
+            seed: (m,) time of impact of the pairs that cause a block, infinity for those that merely touch.
+            spent: (m,) whether the pair has bounced so often that it has to stop, if its elasticity is below 1.
 
         Returns:
-            The contacts that touch on (indices into `pairs`).
+            The pairs that touch on (indices into `pairs`).
         """
         impacts, paths = self.impacts, self.impacts.paths
         rows, a, b = restrict(pairs.row_a, pairs.row_b, len(impacts.moves))
@@ -84,86 +155,101 @@ class Blocks:
         label = components(a, b, moves)
         instant = np.full(len(rows), np.inf)
         np.minimum.at(instant, np.where(moves[a], label[a], label[b]), seed)
-        t = np.where(moves, instant[label], 0.0)
+        # Bodies that are not moved by impulses, but move, are where they are at the instant of each of their blocks.
+        rows, a, b, label, moves = _own_walls(rows, a, b, label, moves, impacts.kinematic)
+        t = np.where(np.isfinite(instant[label]), instant[label], 0.0)
         x, v = paths.position(rows, t), paths.rate(rows, t)
+        surplus, rested = self._end(pairs, x[a], x[b], np.maximum(t[a], t[b]))
         at = pairs.between(x[a], x[b])
-        surplus, rested = self._end(pairs.key, x[b] - x[a], np.maximum(t[a], t[b]), pairs.elasticity)
         touch = np.flatnonzero(rested | (seed < np.inf) | (at.gap <= touching(pairs, paths.origin)))
-        chosen, at, a, b = pairs.take(touch), at.take(touch), a[touch], b[touch]
-        A = Delassus(a, b, at.normal, impacts.bodies.inverse_mass[rows])
+        now = Touching.of(pairs.take(touch), at.take(touch), touch, (a[touch], b[touch]), x)
+        chosen, mobility = now.pairs, impacts.mobility[rows]
+        A = now.operator(mobility)
         u = A.relative(v)
-        lossy = chosen.elasticity < 1.0
-        e = np.where(lossy & (spent[touch] | impacts.stays(chosen, chosen.elasticity * -u)), 0.0, chosen.elasticity)
-        lam = self._solve(A, balance.restitution_target(u, e) + u, surplus[touch] if rested.any() else None)
-        change = A.impulse(lam) * A.inverse_mass[:, None]
+        elasticity = chosen.elasticity
+        stops = (elasticity < 1.0) & (spent[now.pair] | impacts.stays(chosen, elasticity * -u))
+        lam = self._solve(
+            A,
+            balance.restitution_target(u, np.where(stops, 0.0, elasticity)) + u,
+            _shared(surplus, now.pair) if rested.any() else None,
+        )
+        change = A.change(lam)
         v += change
         mine = np.flatnonzero(moves)
         paths.kick(rows[mine], t[mine], change[mine])
         hit = np.flatnonzero(lam > 0)
-        time, point = np.maximum(t[a], t[b]), at.point
-        impacts.log.keep(chosen.first[hit], chosen.second[hit], at.normal[hit], point[hit], time[hit], lam[hit])
+        time, point = np.maximum(t[now.row_a], t[now.row_b])[hit], now.at.point[hit]
+        impacts.log.keep(
+            chosen.first[hit], chosen.second[hit], now.at.normal[hit], point, time, lam[hit],
+            (lam * A.diagonal())[hit],
+        )  # fmt: skip
         on = np.flatnonzero(impacts.stays(chosen, np.abs(A.relative(v))))
         if paths.pulled and len(on):
-            self._rest(chosen.take(on), at.take(on), rows, (a[on], b[on]), label, t, x, v)
-        return touch[on]
+            self._rest(now.take(on), rows, label, moves, t, x, v)
+        touches: IntArray = np.unique(now.pair[on])
+        return touches
 
-    def _end(
-        self, key: IntArray, apart: FloatArray, t: FloatArray, elasticity: FloatArray
-    ) -> tuple[FloatArray, BoolArray]:
-        """End the rest of the contacts `key` at instants t: the energy their forces gave (m,), and which did rest."""
+    def _end(self, pairs: Pairs, pose_a: FloatArray, pose_b: FloatArray, t: FloatArray) -> tuple[FloatArray, BoolArray]:
+        """End the rest of the pairs at instants t: the energy their forces gave (m,), and which did rest."""
+        key = pairs.key
         surplus, rested = np.zeros(len(key)), np.isin(key, self.resting.key)
         if not rested.any():
             return surplus, rested
         ends = np.isin(self.resting.key, key)
         now = self.resting.take(np.flatnonzero(ends))
-        way = apart[rested] - now.apart
-        work = now.force * (now.normal[:, 0] * way[:, 0] + now.normal[:, 1] * way[:, 1])
+        pair = np.searchsorted(key, now.key)
+        np.add.at(surplus, pair, now.work(pose_a[pair], pose_b[pair]))
         # What is not elastic may lose energy, but not gain it.
-        surplus[rested] = np.where(elasticity[rested] < 1.0, np.maximum(work, 0.0), work)
-        self._keep(now, t[rested])
+        surplus = np.where(pairs.elasticity < 1.0, np.maximum(surplus, 0.0), surplus)
+        self._keep(now, t[pair])
         self.resting = self.resting.take(np.flatnonzero(~ends))
         return surplus, rested
 
     def _rest(
-        self, pairs: Pairs, at: Geometry, rows: IntArray, ab: tuple[IntArray, IntArray], label: IntArray,
-        t: FloatArray, x: FloatArray, v: FloatArray,
+        self, now: Touching, rows: IntArray, label: IntArray, moves: BoolArray, t: FloatArray, x: FloatArray,
+        v: FloatArray,
     ) -> None:  # fmt: skip
         """Give contacts that touch the forces that keep them closed; all bodies of their blocks get new ones."""
-        impacts, (a, b) = self.impacts, ab
-        start, m_inv, moves = impacts.start, impacts.bodies.inverse_mass[rows], impacts.moves[rows]
+        impacts, a, b, pairs = self.impacts, now.row_a, now.row_b, now.pairs
+        start, mobility = impacts.start, impacts.mobility[rows]
         free = start.acceleration[rows]
         span = start.dt - t
 
-        def half_way() -> Geometry:
+        def half_way() -> Touching:
             # The normal at the kink of the rigid limit makes angular momentum exact.
             half = 0.5 * span[:, None]
             middle = x + half * v + (0.5 * half * half) * free
-            return pairs.between(middle[a], middle[b])
+            return now.moved(x, middle)
 
         of = np.where(moves[a], label[a], label[b])
         middle = half_way()
-        turn = 2.0 * np.abs(at.normal[:, 0] * middle.normal[:, 1] - at.normal[:, 1] * middle.normal[:, 0])
-        turn[(at.normal * middle.normal).sum(axis=1) < 0.0] = np.pi
+        n, m = now.at.normal, middle.at.normal
+        turn = 2.0 * np.abs(n[:, 0] * m[:, 1] - n[:, 1] * m[:, 0])
+        turn[(n * m).sum(axis=1) < 0.0] = np.pi
+        if x.shape[1] == 3:
+            # Arms turn with their bodies.
+            spin = np.abs(v[:, 2] * span)
+            turn = np.maximum(turn, np.where(np.arange(len(pairs)) >= pairs.flat, np.maximum(spin[a], spin[b]), 0.0))
         part = np.ones(len(rows))
         np.minimum.at(part, of, np.clip(_TURN / np.maximum(turn, _TURN), _SHORTEST, 1.0))
         if part.min() < 1.0:
             span = span * part[label]
             middle = half_way()
-        A = Delassus(a, b, middle.normal, m_inv)
+        A = middle.operator(mobility)
         u, lasts = A.relative(v), span[np.where(moves[a], a, b)]
         e = np.where(pairs.elasticity < 1.0, 0.0, 1.0)
         lam = self._solve(A, balance.restitution_target(u, e) + u + lasts * A.relative(free))
         pressed = np.flatnonzero((lam > 0) & (lasts > 0))
         force = np.divide(lam, lasts, out=np.zeros_like(lam), where=lasts > 0)
-        pull = free + A.impulse(force) * m_inv[:, None]
         mine = np.flatnonzero(moves)
-        impacts.paths.pull(rows[mine], t[mine], pull[mine])
+        impacts.paths.pull(rows[mine], t[mine], (free + A.change(force))[mine])
         since = t[np.where(moves[a], a, b)]
         # What lasts as long as the step does not end within it.
         until = np.where(part[of] < 1.0, since + lasts, np.inf)
         new = Resting(
-            pairs.key, pairs.first, pairs.second, since, until, force, middle.normal, middle.point, x[b] - x[a]
-        )
+            pairs.key, pairs.first, pairs.second, since, until, force, middle.at.normal, middle.at.point, A.diagonal(),
+            middle.direction_a, middle.direction_b, x[a], x[b],
+        )  # fmt: skip
         self.resting = self.resting.joined(new.take(pressed))
 
     def _solve(self, A: Delassus, q: FloatArray, surplus: FloatArray | None = None) -> FloatArray:
@@ -186,5 +272,39 @@ class Blocks:
     def _keep(self, ended: Resting, t: FloatArray) -> None:
         lasted = t - ended.since
         self.impacts.log.keep(
-            ended.first, ended.second, ended.normal, ended.point, ended.since + 0.5 * lasted, ended.force * lasted
-        )
+            ended.first, ended.second, ended.normal, ended.point, ended.since + 0.5 * lasted, ended.force * lasted,
+            ended.change * ended.force * lasted,
+        )  # fmt: skip
+
+
+def _carried(point: FloatArray, before: FloatArray, after: FloatArray) -> FloatArray:
+    """(k, 2) where points of bodies get when these go from poses `before` to `after` (k, d)."""
+    r = point - before[:, :2]
+    if before.shape[1] == 3:
+        turn = after[:, 2] - before[:, 2]
+        c, s = np.cos(turn), np.sin(turn)
+        r = np.stack((c * r[:, 0] - s * r[:, 1], s * r[:, 0] + c * r[:, 1]), axis=1)
+    result: FloatArray = after[:, :2] + r
+    return result
+
+
+def _shared(surplus: FloatArray, pair: IntArray) -> FloatArray:
+    """(k,) the surplus (m,) of pairs, divided among their contacts; `pair` (k,) does not decrease."""
+    result: FloatArray = surplus[pair] / np.bincount(pair, minlength=len(surplus))[pair]
+    return result
+
+
+def _own_walls(
+    rows: IntArray, a: IntArray, b: IntArray, label: IntArray, moves: BoolArray, kinematic: BoolArray
+) -> tuple[IntArray, IntArray, IntArray, IntArray, BoolArray]:
+    """Give every block a row of its own for each kinematic body it touches: the block's instant tells where that is."""
+    touched = np.flatnonzero(kinematic[rows[b]])
+    if len(touched) == 0:
+        return rows, a, b, label, moves
+    each, number = np.unique(label[a[touched]] * len(rows) + b[touched], return_inverse=True)
+    b = b.copy()
+    b[touched] = len(rows) + number
+    return (
+        np.concatenate((rows, rows[each % len(rows)])), a, b, np.concatenate((label, each // len(rows))),
+        np.concatenate((moves, np.zeros(len(each), bool))),
+    )  # fmt: skip

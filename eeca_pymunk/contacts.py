@@ -1,20 +1,25 @@
 """Pairs, gaps, normals and points of contact. Sole owner of the sign convention.
 
-The normal n points from body a to body b (pymunk's arbiters do the same), the gap is negative in overlap. Row a is
-the disk wherever the other shape is a wall.
+The normal n points from body a to body b (pymunk's arbiters do the same), the gap is negative in overlap. Body a is
+dynamic.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from typing import NamedTuple
 
 import numpy as np
 import pymunk
 
+from . import convex
 from .bodies import BoolArray, FloatArray, IntArray
 from .shapes import Shapes, Walls
 
 ROUND_OFF = 1e-12  # of lengths, relative to positions and radii
+_CORNERS = 4.0  # times that, of corners placed by their angle
+_ROCKING = 1e-6  # of the size, by which they may where the contact is not elastic
+_PARALLEL = 16.0  # times the round-off, by which the ends of parallel faces may differ
 
 
 @dataclass(frozen=True)
@@ -39,9 +44,8 @@ class Contacts:
 
 @dataclass(frozen=True)
 class Geometry:
-    """Gap (m,) length and normal (m, 2) from a to b of every pair at one configuration; `center` (m, 2) is that of a.
-
-    `radius` (m,) is that of a.
+    """Gap (m,) length and normal (m, 2) from a to b of every pair at one configuration; `center` (m, 2) is the point of
+    a's core, which `radius` (m,) rounds, that is nearest to b: of a disk its centre.
     """
 
     gap: FloatArray
@@ -59,13 +63,30 @@ class Geometry:
         """The geometry of the pairs `which`."""
         return Geometry(self.gap[which], self.normal[which], self.center[which], self.radius[which])
 
+    def joined(self, other: Geometry) -> Geometry:
+        """This geometry, and then the other."""
+        return Geometry(*(np.concatenate((getattr(self, f.name), getattr(other, f.name))) for f in fields(self)))
+
+
+class Axis(NamedTuple):
+    """A direction along which shapes may be apart: `gap` (m, q) of some points there, length, and their `rate`; the
+    least one bounds the gap of the shapes from below. `valid` (m,) where it is positive or the shapes touch along it.
+    """
+
+    gap: FloatArray
+    rate: FloatArray
+    valid: BoolArray
+
 
 class Pairs:
-    """The pairs of shapes that may touch, disk-disk first, then disk-wall.
+    """The pairs of shapes that may touch: disk-disk first, then disk-wall, then the others.
 
     Args:
         shapes: the shapes of the space.
-        first, second: (m,) indices of shapes; where one is a wall it is `second`.
+        first, second: (m,) indices of shapes; the first one's body is dynamic.
+
+    Attributes:
+        disks, flat: number of the disk-disk pairs, and of these and the disk-wall pairs.
     """
 
     def __init__(self, shapes: Shapes, first: IntArray, second: IntArray) -> None:
@@ -75,7 +96,11 @@ class Pairs:
         self.radius_a: FloatArray = shapes.radius[first]
         self.extent: FloatArray = self.radius_a + shapes.radius[second]
         self.wall: IntArray = shapes.wall[second]
-        self.disks = int(np.count_nonzero(self.wall < 0))
+        if shapes.general:
+            kind = _kind(shapes, first, second)
+            self.disks, self.flat = int(np.count_nonzero(kind == 0)), int(np.count_nonzero(kind < 2))
+        else:
+            self.disks, self.flat = int(np.count_nonzero(self.wall < 0)), len(first)
 
     def __len__(self) -> int:
         return len(self.first)
@@ -96,26 +121,117 @@ class Pairs:
         return pair_key(self.shapes, self.first, self.second)
 
     def at(self, position: FloatArray) -> Geometry:
-        """Geometry with the bodies at (N, 2) `position`."""
+        """Geometry with the bodies at (N, d) `position`."""
         return self.between(position[self.row_a], position[self.row_b])
 
-    def between(self, center_a: FloatArray, center_b: FloatArray) -> Geometry:
-        """Geometry with the bodies of every pair at its own (m, 2) centres; walls stay where they are."""
-        k = self.disks
+    def between(self, pose_a: FloatArray, pose_b: FloatArray) -> Geometry:
+        """Geometry with the bodies of every pair at its own (m, d) places; walls stay where they are."""
+        k, n = self.disks, self.flat
+        center = pose_a[:, :2]
         if k == len(self):
-            distance, toward = _disk_disk(center_a, center_b)
-        elif k == 0:
-            distance, toward = _disk_wall(self.shapes, self.wall, center_a)
+            distance, toward = _disk_disk(center, pose_b[:, :2])
+        elif k == 0 and n == len(self):
+            distance, toward = _disk_wall(self.shapes, self.wall, center)
         else:
-            d_disk, n_disk = _disk_disk(center_a[:k], center_b[:k])
-            d_wall, n_wall = _disk_wall(self.shapes, self.wall[k:], center_a[k:])
-            distance, toward = np.concatenate((d_disk, d_wall)), np.concatenate((n_disk, n_wall))
-        return Geometry(distance - self.extent, toward, center_a, self.radius_a)
+            distance, toward, center = np.empty(len(self)), np.empty((len(self), 2)), center.copy()
+            distance[:k], toward[:k] = _disk_disk(center[:k], pose_b[:k, :2])
+            distance[k:n], toward[k:n] = _disk_wall(self.shapes, self.wall[k:n], center[k:n])
+            if n < len(self):
+                a, b = self.cores(np.arange(n, len(self)), pose_a[n:], pose_b[n:])
+                distance[n:], toward[n:], center[n:] = convex.closest(a, b)[:3]
+        return Geometry(distance - self.extent, toward, center, self.radius_a)
+
+    def cores(self, which: IntArray, pose_a: FloatArray, pose_b: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """(k, K, 2) world vertices of both shapes of the pairs `which` (k,), bodies at (k, 3) poses."""
+        core = self.shapes.core
+        return convex.place(core[self.first[which]], pose_a), convex.place(core[self.second[which]], pose_b)
+
+    def axes(
+        self, pose_a: FloatArray, pose_b: FloatArray, rate_a: FloatArray, rate_b: FloatArray, tolerance: FloatArray
+    ) -> list[Axis]:
+        """Three axes along which general pairs may be apart: the normal as it stands in space, and the normals of the
+        edges of a and of b along which they are farthest apart, which turn with their bodies."""
+        a, b = self.cores(np.arange(len(self)), pose_a, pose_b)
+        near = convex.closest(a, b)
+        r_a, r_b = a - pose_a[:, None, :2], b - pose_b[:, None, :2]
+        v_a, v_b = (
+            rate[:, None, :2] + rate[:, None, 2:] * np.stack((-r[..., 1], r[..., 0]), axis=2)
+            for r, rate in ((r_a, rate_a), (r_b, rate_b))
+        )
+
+        def along(vectors: FloatArray, axis: FloatArray) -> FloatArray:
+            result: FloatArray = np.einsum("mki,mi->mk", vectors, axis)
+            return result
+
+        n = near.normal
+        gap = along(b, n)[:, None, :] - along(a, n)[:, :, None] - self.extent[:, None, None]
+        rate = along(v_b, n)[:, None, :] - along(v_a, n)[:, :, None]
+        m = len(self)
+        found = [Axis(gap.reshape(m, -1), rate.reshape(m, -1), np.ones(m, bool))]
+        least = np.minimum(near.distance - self.extent, 0.0) - tolerance
+        for axis, apart, other, speed, base, own in (
+            (near.axis_a, near.apart_a, b, v_b, pose_a, rate_a),
+            (near.axis_b, near.apart_b, a, v_a, pose_b, rate_b),
+        ):
+            away = other - base[:, None, :2]
+            height = along(away, axis)
+            # The vertex that is nearest is `apart` from the edge; the others by so much more.
+            gap = height - height.min(axis=1)[:, None] + (np.maximum(apart, -1e300) - self.extent)[:, None]
+            turning = own[:, 2, None] * np.stack((-axis[:, 1], axis[:, 0]), axis=1)
+            rate = along(speed - own[:, None, :2], axis) + along(away, turning)
+            found.append(Axis(gap, rate, apart - self.extent >= least))
+        return found
+
+    def directions(self, at: Geometry, pose_a: FloatArray, pose_b: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """(m, d) what a unit normal impulse is to bodies a (with the minus sign left out) and b: the normal and, with
+        d = 3, its arm about the centre of mass. The relative velocity is u = J_b . v_b - J_a . v_a."""
+        if pose_a.shape[1] == 2:
+            return at.normal, at.normal
+        point = at.point
+        found = []
+        for pose, shape in ((pose_a, self.first), (pose_b, self.second)):
+            r = point - pose[:, :2]
+            arm = r[:, 0] * at.normal[:, 1] - r[:, 1] * at.normal[:, 0]
+            arm[self.shapes.is_disk[shape]] = 0.0  # up to round-off it is
+            found.append(np.column_stack((at.normal, arm)))
+        return found[0], found[1]
+
+    def faces(self, at: Geometry, pose_a: FloatArray, pose_b: FloatArray) -> tuple[IntArray, Geometry]:
+        """The pairs (k,) that face each other in parallel, up to round-off, and touch at two points.
+
+        `at` is changed to the one end of the face; returns the geometry at the other end.
+        """
+        n = self.flat
+        if n == len(self):
+            return np.zeros(0, np.intp), at.take(np.zeros(0, np.intp))
+        a, b = self.cores(np.arange(n, len(self)), pose_a[n:], pose_b[n:])
+        size = self.larger_size[n:]
+        tolerance = ROUND_OFF * _PARALLEL * (distance_from_axes(pose_a[n:]) + size)
+        # A rocking that is lost anyway ends here; else it would end after infinitely many bounces.
+        tolerance = np.where(self.elasticity[n:] < 1.0, np.maximum(tolerance, _ROCKING * size), tolerance)
+        k, low, high = convex.common_face(a, b, at.normal[n:], tolerance)
+        k = k + n
+        at.center[k] = low
+        return k, Geometry(at.gap[k], at.normal[k], high, at.radius[k])
+
+    @property
+    def larger_size(self) -> FloatArray:
+        """(m,) the larger of the two shapes."""
+        return np.maximum(self.shapes.size[self.first], self.shapes.size[self.second])
+
+
+def _kind(shapes: Shapes, first: IntArray, second: IntArray) -> IntArray:
+    """(m,) 0 for two disks, 1 for a disk and a wall, 2 for others."""
+    disk = shapes.is_disk[first]
+    kind: IntArray = np.where(disk & shapes.is_disk[second], 0, np.where(disk & (shapes.wall[second] >= 0), 1, 2))
+    return kind
 
 
 def pair_key(shapes: Shapes, first: IntArray, second: IntArray) -> IntArray:
-    """(m,) one number per pair of shapes; every disk-disk pair comes before every disk-wall pair."""
+    """(m,) one number per pair of shapes, ordered as `Pairs` are."""
     count = len(shapes)
+    if shapes.general:
+        return first * count + second + _kind(shapes, first, second) * count**2
     key: IntArray = first * count + second + np.where(shapes.is_disk[second], 0, count * count)
     return key
 
@@ -145,7 +261,10 @@ def _disk_disk(a: FloatArray, b: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 def touching(pairs: Pairs, position: FloatArray) -> FloatArray:
     """(m,) length below which a gap is round-off of positions and radii: the pair touches exactly."""
-    return ROUND_OFF * (distance_from_axes(position[pairs.row_a]) + pairs.extent)
+    size = pairs.extent
+    if pairs.flat < len(pairs):
+        size = np.where(np.arange(len(pairs)) < pairs.flat, size, _CORNERS * (size + pairs.larger_size))
+    return ROUND_OFF * (distance_from_axes(position[pairs.row_a]) + size)
 
 
 @dataclass(frozen=True)

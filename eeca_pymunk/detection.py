@@ -39,24 +39,31 @@ class MarginTwin:
         self.detections = 0
         self.memory: object = None  # what a closure keeps from step to step; gone with the shapes it is about
         self._static = state[bodies.static, :3]
-        self._disk: IntArray = np.flatnonzero(shapes.is_disk)
-        self._row: IntArray = shapes.row[self._disk]
-        self._radius: FloatArray = shapes.radius[self._disk]
-        self._unit: FloatArray = 1e-3 * np.maximum(self._radius, np.finfo(float).tiny)
-        self._follows = len(shapes) - len(self._disk) <= _FOLLOWED_BY < len(self._disk)
-        self._one_disk_each = len(np.unique(self._row)) == len(self._row)
+        self._moving: IntArray = np.flatnonzero(shapes.wall < 0)
+        self._row: IntArray = shapes.row[self._moving]
+        self._size: FloatArray = shapes.size[self._moving]
+        self._unit: FloatArray = 1e-3 * np.maximum(self._size, np.finfo(float).tiny)
+        self._follows = len(shapes) - len(self._moving) <= _FOLLOWED_BY < len(self._moving)
+        # (N,) how far the farthest point of a body goes for each radian.
+        self._lever: FloatArray = np.zeros(len(bodies))
+        if shapes.general:
+            np.maximum.at(self._lever, self._row, self._size)
+        self._one_each = len(np.unique(self._row)) == len(self._row)
         self._center: FloatArray | None = None
         self._drift: FloatArray = np.zeros(2)
         # By body: how far it gets from its start in the step, and how far it may.
         self._reach: FloatArray = np.zeros(len(bodies))
         self._room: FloatArray = np.full(len(bodies), np.inf)
         self._pairs = Pairs(shapes, np.zeros(0, np.intp), np.zeros(0, np.intp))
-        self._cell = 5.0 * float(np.median(self._radius)) if len(self._disk) >= _HASH_FROM else 0.0
-        self._build(state[self._row, :2])
+        self._cell = 5.0 * float(np.median(self._size)) if len(self._moving) >= _HASH_FROM else 0.0
+        pose = bodies.poses(state, shapes.general)
+        self._build(pose[self._row])
 
     def _build(self, center: FloatArray) -> None:
-        self._space = GrownSpace(self.shapes, self._disk, center, self._cell)
-        self._margin: FloatArray = np.zeros(len(self._disk))
+        self._space = GrownSpace(
+            self.shapes, self._moving, self.bodies.center_of_gravity[self.shapes.row], center, self._cell
+        )
+        self._margin: FloatArray = np.zeros(len(self._moving))
         self._wall_margin = 0.0
 
     def is_current(self, state: FloatArray) -> bool:
@@ -70,21 +77,21 @@ class MarginTwin:
         average, in which a falling crowd hardly moves and the walls do.
 
         Args:
-            position: (N, 2) of the bodies at the start of the step.
-            displacement: (N, 2) of the bodies over the step.
+            position: (N, 2) of the bodies at the start of the step, or (N, 3) with the angle.
+            displacement: (N, 2 or 3) of the bodies over the step.
             slack: (N,) length by which a path may leave the straight line of its displacement.
         """
         center, moving = position[self._row], displacement[self._row]
         follows = self._follows and len(moving) > 0
-        self._drift = moving.mean(axis=0) if follows else np.zeros(2)
-        reach = length(moving - self._drift) + slack[self._row]
+        self._drift = moving[:, :2].mean(axis=0) if follows else np.zeros(2)
+        reach = self._sweep(moving, self._row, self._drift) + slack[self._row]
         self._reach[self._row] = reach
         if self._center is None:
             self._detect(center)
             return self._pairs
         moved = center - self._center
-        frame = moved.mean(axis=0) if follows else np.zeros(2)
-        room = self._margin - length(moved - frame)
+        frame = moved[:, :2].mean(axis=0) if follows else np.zeros(2)
+        room = self._margin - self._sweep(moved, self._row, frame)
         walls = math.hypot(*frame) + math.hypot(*self._drift)
         if walls > self._wall_margin or (reach > room).any():
             self._detect(center)
@@ -92,24 +99,30 @@ class MarginTwin:
             self._leave(room)
         return self._pairs
 
+    def _sweep(self, displacement: FloatArray, rows: IntArray, frame: FloatArray) -> FloatArray:
+        """(m,) how far points of the bodies `rows` get at most, in a frame that moves by (2,)."""
+        if displacement.shape[1] == 2:
+            return length(displacement - frame)
+        return length(displacement[:, :2] - frame) + self._lever[rows] * np.abs(displacement[:, 2])
+
     def covers(self, rows: IntArray, displacement: FloatArray, slack: FloatArray) -> bool:
         """Whether the list stays complete when the bodies `rows` (m,) take other paths in the step it was asked for.
 
         Args:
-            displacement: (m, 2) of these bodies over the step.  slack: (m,) length, as in `candidates`.
+            displacement: (m, 2 or 3) of these bodies over the step.  slack: (m,) length, as in `candidates`.
         """
-        reach = length(displacement - self._drift) + slack
+        reach = self._sweep(displacement, rows, self._drift) + slack
         self._reach[rows] = np.maximum(self._reach[rows], reach)
         return bool((reach <= self._room[rows]).all())
 
     def widen(self, position: FloatArray) -> Pairs:
-        """The candidates of the step, bodies at `position` (N, 2) at its start, for all that `covers` was asked."""
+        """The candidates of the step that starts at `position` (N, 2 or 3), for all that `covers` was asked."""
         self._detect(position[self._row])
         return self._pairs
 
     def _leave(self, room: FloatArray) -> None:
         """Note what the motion so far leaves of every margin (D,)."""
-        if self._one_disk_each:
+        if self._one_each:
             self._room[self._row] = room
         else:
             self._room[self._row] = np.inf
@@ -120,17 +133,17 @@ class MarginTwin:
         mean = math.sqrt(float(np.mean(reach * reach)))
         # Among few disks even wide margins make few pairs.
         few = max(1.0, _HASH_FROM / len(reach))
-        own = np.minimum(min(few, 2.0) * self.steps_ahead * reach, few * self.most_ahead * self._radius)
+        own = np.minimum(min(few, 2.0) * self.steps_ahead * reach, few * self.most_ahead * self._size)
         # Where pymunk's bodies no longer fit the processor's cache, lists that last are worth more pairs.
         most = self.most_struck if len(reach) < _MANY else math.sqrt(2.0) * self.most_struck
-        struck = np.minimum(self.steps_struck * mean, most * self._radius)
+        struck = np.minimum(self.steps_struck * mean, most * self._size)
         return np.maximum(np.maximum(reach, own), struck)
 
     def _detect(self, center: FloatArray) -> None:
         if len(center) == 0:
             return
         # The relative 1e-9 keeps a pair that exactly reaches its margin, and covers round-off of far-away positions.
-        floor = 1e-9 * (distance_from_axes(center) + self._radius)
+        floor = 1e-9 * (distance_from_axes(center) + self._size)
         need = np.maximum(self._wanted(self._reach[self._row]) + floor, self._unit)
         level = self._unit * np.exp2(0.5 * np.ceil(2.0 * np.log2(need / self._unit)))
         if self._space.hashed and level.max() > _WIDEST * self._cell:
@@ -138,7 +151,7 @@ class MarginTwin:
             self._cell = 0.0
             self._build(center)
         changed = np.flatnonzero((level > self._margin) | (level < 0.25 * self._margin))
-        self._space.grow_disks(changed, level[changed])
+        self._space.grow(changed, level[changed])
         self._margin[changed] = level[changed]
         drift = math.hypot(*self._drift)
         if not 4.0 * drift <= self._wall_margin <= 64.0 * drift:

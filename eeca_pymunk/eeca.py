@@ -30,6 +30,10 @@ class EECA(ArrayStepper):
         sync: see `ArrayStepper`.
     """
 
+    @property
+    def centred_disks(self) -> bool:  # type: ignore[override]
+        return not isinstance(self.closure, TimeOfImpact)
+
     def __init__(self, space: pymunk.Space, closure: Closure | None = None, *, sync: bool = True) -> None:
         self.closure: Closure = TimeOfImpact() if closure is None else closure
         super().__init__(space, sync=sync)

@@ -6,31 +6,38 @@ import numpy as np
 
 from . import impact_times
 from .bodies import BoolArray, FloatArray, IntArray
-from .contacts import Pairs, length, nearest_feature, touching
+from .contacts import Axis, Pairs, length, nearest_feature, touching
 from .paths import Paths
 
 
-def next_impact(pairs: Pairs, paths: Paths, which: IntArray, dt: float) -> tuple[FloatArray, FloatArray]:
+def next_impact(
+    pairs: Pairs, paths: Paths, which: IntArray, dt: float, held: FloatArray | None = None
+) -> tuple[FloatArray, FloatArray]:
     """(m,) instants, from the start of the step, of the next impacts of the pairs `which` (m, increasing).
 
     Infinity where there is none, an instant after dt where that is known, NaN where only that it is after dt. Each
     pair is looked at from the later of its two bodies' latest kinks on; the second result is its gap (m,) there.
+    Of general shapes points that touch and move no faster than `held` (number of pairs,) are left out.
     """
-    k = int(np.searchsorted(which, pairs.disks))
+    k, n = (int(i) for i in np.searchsorted(which, (pairs.disks, pairs.flat)))
     if k == len(which):
         return _disk_disk(pairs, paths, which, dt)
-    if k == 0:
+    if k == 0 and n == len(which):
         return _disk_wall(pairs, paths, which, dt)
-    disks, walls = _disk_disk(pairs, paths, which[:k], dt), _disk_wall(pairs, paths, which[k:], dt)
-    return np.concatenate((disks[0], walls[0])), np.concatenate((disks[1], walls[1]))
+    parts = [_disk_disk(pairs, paths, which[:k], dt), _disk_wall(pairs, paths, which[k:n], dt)]
+    if n < len(which):
+        parts.append(_general(pairs, paths, which[n:], dt, None if held is None else held[which[n:]]))
+    return np.concatenate([p[0] for p in parts]), np.concatenate([p[1] for p in parts])
 
 
 def missed(pairs: Pairs, paths: Paths, which: IntArray, changed: BoolArray) -> bool:
-    """whether disks of the pairs `which` met before the later of their kinks, where it was not known yet.
+    """Whether shapes of the pairs `which` met before the later of their kinks, where it was not known yet.
 
     A round takes impacts far apart at different instants. When a body is changed (changed (N,) bool) at an instant
     before a neighbour's latest kink, it may meet the branch that this kink has ended.
     """
+    if pairs.flat < len(pairs) and _general_missed(pairs, paths, which[np.searchsorted(which, pairs.flat) :], changed):
+        return True
     which = which[: int(np.searchsorted(which, pairs.disks))]
     since, before = paths.since, paths.before
     a, b = pairs.row_a[which], pairs.row_b[which]
@@ -79,7 +86,7 @@ def _disk_wall(pairs: Pairs, paths: Paths, which: IntArray, dt: float) -> tuple[
     a = pairs.row_a[which]
     t = paths.since[a]
     v = paths.rate(a, t)
-    near = nearest_feature(pairs.shapes.walls, pairs.wall[which], paths.position(a, t))
+    near = nearest_feature(pairs.shapes.walls, pairs.wall[which], paths.position(a, t)[:, :2])
     gap = near.distance - pairs.extent[which]
     left = dt - t
     reach = length(v) * left
@@ -130,4 +137,86 @@ def _advance(pairs: Pairs, paths: Paths, which: IntArray, t: FloatArray, pull: F
 
     tolerance = touching(chosen, paths.origin)
     result: FloatArray = t + impact_times.advance_to_contact(gap_and_rate, pull, dt - t, tolerance)
+    return result
+
+
+def _general(
+    pairs: Pairs, paths: Paths, which: IntArray, dt: float, held: FloatArray | None
+) -> tuple[FloatArray, FloatArray]:
+    """Shapes that turn, or are carried: from the motion of their vertices."""
+    a, b = pairs.row_a[which], pairs.row_b[which]
+    t = np.maximum(paths.since[a], paths.since[b])
+    gap = pairs.take(which).between(paths.position(a, t), paths.position(b, t)).gap
+    time = np.full(len(which), np.nan)  # after dt, if ever
+    sweep = gap - _sweep(pairs, paths, which, t, dt - t)
+    near = np.flatnonzero(sweep <= 0.0)
+    if len(near):
+        held = np.full(len(near), -np.inf) if held is None else held[near]
+        met = _meet(pairs, paths, paths, which[near], t[near], np.full(len(near), dt), held)
+        time[near] = np.where(met < dt, met, np.nan)
+    return time, gap
+
+
+def _sweep(pairs: Pairs, paths: Paths, which: IntArray, t: FloatArray, left: FloatArray) -> FloatArray:
+    """(m,) by how much a gap can fall within `left` (m,) from the instants t (m,) on."""
+    a, b = pairs.row_a[which], pairs.row_b[which]
+    u = paths.rate(b, t) - paths.rate(a, t)
+    way = length(u) * left
+    if paths.pulled:
+        way += (0.5 * left * left) * length(paths.acceleration[b] - paths.acceleration[a])
+    for row, shape in ((a, pairs.first[which]), (b, pairs.second[which])):
+        turn = np.abs(paths.rate(row, t)[:, 2]) * left + (0.5 * left * left) * np.abs(paths.acceleration[row, 2])
+        way += 2.0 * np.sin(np.minimum(0.5 * turn, 0.5 * np.pi)) * pairs.shapes.size[shape]
+    return way
+
+
+def _general_missed(pairs: Pairs, paths: Paths, which: IntArray, changed: BoolArray) -> bool:
+    """`missed` of the pairs `which` of general shapes."""
+    since, before = paths.since, paths.before
+    a, b = pairs.row_a[which], pairs.row_b[which]
+    found = False
+    for early, late, first in ((a, b, True), (b, a, False)):
+        back = np.flatnonzero(changed[early] & (since[early] < since[late]))
+        if len(back) == 0:
+            continue
+        t = np.maximum(since[early[back]], before.since[late[back]])
+        end = since[late[back]]
+        on = (paths, before) if first else (before, paths)
+        # At the kink itself the late body meets whom its own impact was with.
+        met = _meet(pairs, on[0], on[1], which[back], t, end, np.full(len(back), -np.inf))
+        found |= bool((met < end - 1e-9 * np.maximum(end - t, 0.0)).any())
+    return found
+
+
+def _meet(
+    pairs: Pairs, paths_a: Paths, paths_b: Paths, which: IntArray, t: FloatArray, end: FloatArray, held: FloatArray
+) -> FloatArray:
+    """(m,) instants at which general pairs meet, from t (m,) until `end` (m,), on the paths of a and of b."""
+    chosen, left = pairs.take(which), np.maximum(end - t, 0.0)
+    a, b = chosen.row_a, chosen.row_b
+    pull = length(paths_b.acceleration[b] - paths_a.acceleration[a])
+    # Bounds until `end`: spin, and the distance of the centres of mass and its rate.
+    alpha = [np.abs(paths.acceleration[row, 2]) for paths, row in ((paths_a, a), (paths_b, b))]
+    spin = [
+        np.abs(paths.rate(row, t)[:, 2]) + size * left
+        for paths, row, size in ((paths_a, a, alpha[0]), (paths_b, b, alpha[1]))
+    ]
+    size = [pairs.shapes.size[chosen.first], pairs.shapes.size[chosen.second]]
+    speed = length(paths_b.rate(b, t) - paths_a.rate(a, t)) + pull * left
+    away = length(paths_b.position(b, t) - paths_a.position(a, t)) + speed * left
+    around = [r * (w * w + q) for r, w, q in zip(size, spin, alpha, strict=True)]
+    bends = [pull + around[0] + around[1]]
+    for own, other in ((0, 1), (1, 0)):
+        # Seen along an axis that turns with the one body, points of the other one bend by Coriolis and so on.
+        w, q = spin[own], alpha[own]
+        point = 2.0 * w * (speed + spin[other] * size[other]) + (w * w + q) * (away + size[other])
+        bends.append(pull + around[other] + point)
+    tolerance = touching(chosen, paths_a.origin)
+
+    def axes(i: IntArray, s: FloatArray) -> list[Axis]:
+        now, some = t[i] + s, chosen.take(i)
+        pose_a, pose_b = paths_a.position(some.row_a, now), paths_b.position(some.row_b, now)
+        return some.axes(pose_a, pose_b, paths_a.rate(some.row_a, now), paths_b.rate(some.row_b, now), tolerance[i])
+
+    result: FloatArray = t + impact_times.advance_along_axes(axes, np.stack(bends, axis=1), left, tolerance, held)
     return result

@@ -9,12 +9,14 @@ import pymunk
 from pymunk import batch
 
 from .bodies import FloatArray, IntArray
+from .checks import shape_body
 from .contacts import Pairs, pair_key
-from .shapes import Shapes, shape_body
+from .shapes import Shapes, local_outline
 
 Solid: TypeAlias = pymunk.Circle | pymunk.Segment | pymunk.Poly
 
 _MOST_STATIC_CELLS = 200_000
+_KINEMATIC, _STATIC = 2, 3  # ranks of shapes
 _TABLE = 64  # entries per id up to which a table beats bisection
 
 
@@ -22,41 +24,51 @@ class GrownSpace:
     """A copy of every solid shape of a space, one body each, its radius grown by a margin of its own.
 
     Args:
-        shapes: the shapes to copy.  disk: (D,) indices of those that move.
+        shapes: the shapes to copy.  moving: (D,) indices of those that move.  offset: (S, 2) of their centres of mass.
+        pose: (D, 2) centres of mass, or (D, 3) with the angle.
         cell: length of the cells of a spatial hash; 0 for pymunk's tree.
 
     Attributes:
-        hashed: whether pymunk indexes the disks by a hash; a hash that walls would fill is not made.
+        hashed: whether pymunk indexes what moves by a hash; a hash that walls would fill is not made.
     """
 
-    def __init__(self, shapes: Shapes, disk: IntArray, center: FloatArray, cell: float) -> None:
-        self.shapes, self._disk = shapes, disk
+    def __init__(self, shapes: Shapes, moving: IntArray, offset: FloatArray, pose: FloatArray, cell: float) -> None:
+        self.shapes, self._moving = shapes, moving
         space = pymunk.Space()
         space.iterations = 1
         space.collision_persistence = 1  # no memory of old contacts
         self._space = space
         self._copies: dict[int, Solid] = {}
         of_body: dict[int, int] = {}
-        self._walls: IntArray = np.flatnonzero(~shapes.is_disk)
-        for i in (*disk[_along_space(center, cell)], *self._walls):
+        self._walls: IntArray = np.flatnonzero(shapes.rank == _STATIC)
+        for i in (*moving[_along_space(pose, cell)], *self._walls):
             shape = shapes.items[i]
-            owner = shape_body(shape)
-            body = pymunk.Body(1.0, 1.0) if shapes.is_disk[i] else pymunk.Body(body_type=pymunk.Body.STATIC)
-            body.position, body.angle = owner.position, owner.angle
-            copy = self._copies[int(i)] = _copy(shape, body)
+            if shapes.rank[i] == _STATIC:
+                owner = shape_body(shape)
+                body = pymunk.Body(body_type=pymunk.Body.STATIC)
+                body.position, body.angle = owner.position, owner.angle
+                copy = _copy(shape, body, np.zeros(2))
+            else:
+                # pymunk drops pairs of two bodies of infinite mass: kinematic ones are carried by dynamic ones here.
+                copy = _copy(shape, pymunk.Body(1.0, 1.0), offset[i])
+                body = copy.body  # type: ignore[assignment]
+            self._copies[int(i)] = copy
             copy.filter = shape.filter
             copy.sensor = True  # found, but not solved for
             space.add(body, copy)
             of_body[body.id] = int(i)
         self.hashed = cell > 0.0 and self._use_hash(cell)
         self._buffer, self._out = batch.Buffer(), batch.Buffer()
-        batch.get_space_bodies(space, batch.BodyFields.BODY_ID | batch.BodyFields.POSITION, self._buffer)
+        self._fields = batch.BodyFields.POSITION
+        if pose.shape[1] == 3:
+            self._fields |= batch.BodyFields.ANGLE
+        batch.get_space_bodies(space, batch.BodyFields.BODY_ID | self._fields, self._buffer)
         ids = np.frombuffer(self._buffer.int_buf(), dtype=np.uintp).astype(np.intp)
-        self._positions: FloatArray = np.frombuffer(self._buffer.float_buf()).reshape(-1, 2).copy()
+        self._poses: FloatArray = np.frombuffer(self._buffer.float_buf()).reshape(-1, pose.shape[1]).copy()
         order = np.array([of_body.get(int(i), -1) for i in ids], np.intp)
-        # Where each disk stands in pymunk's walk over the bodies.
+        # Where each moving shape stands in pymunk's walk over the bodies.
         slot = {shape: place for place, shape in enumerate(order)}
-        self._slot: IntArray = np.array([slot[int(i)] for i in disk], np.intp)
+        self._slot: IntArray = np.array([slot[int(i)] for i in moving], np.intp)
         self._shape_of = _Lookup(ids, order)
 
     def _use_hash(self, cell: float) -> bool:
@@ -65,12 +77,12 @@ class GrownSpace:
         # A hash puts a wall into every cell of its bounding box; where that is too many the tree is the better index.
         if cells >= _MOST_STATIC_CELLS:
             return False
-        self._space.use_spatial_hash(cell, 4 * len(self._disk))
+        self._space.use_spatial_hash(cell, 4 * len(self._moving))
         return True
 
-    def grow_disks(self, which: IntArray, margin: FloatArray) -> None:
-        """Give the disks number `which` (m,) margins (m,), length."""
-        index = self._disk[which]
+    def grow(self, which: IntArray, margin: FloatArray) -> None:
+        """Give the moving shapes number `which` (m,) margins (m,), length."""
+        index = self._moving[which]
         radius = self.shapes.radius[index] + margin
         for i, r in zip(index.tolist(), radius.tolist(), strict=True):
             self._copies[i].unsafe_set_radius(r)
@@ -84,23 +96,26 @@ class GrownSpace:
             wall.unsafe_set_radius(float(self.shapes.radius[i]) + margin)
             self._space.add(wall)
 
-    def find(self, center: FloatArray) -> Pairs:
-        """The pairs of overlapping grown shapes, disks at `center` (D, 2), sorted by `Pairs.key`."""
-        self._positions[self._slot] = center
-        self._out.set_float_buf(self._positions.reshape(-1))
-        batch.set_space_bodies(self._space, batch.BodyFields.POSITION, self._out)
+    def find(self, pose: FloatArray) -> Pairs:
+        """The pairs of overlapping grown shapes, those that move at `pose` (D, 2 or 3), sorted by `Pairs.key`."""
+        self._poses[self._slot] = pose
+        self._out.set_float_buf(self._poses.reshape(-1))
+        batch.set_space_bodies(self._space, self._fields, self._out)
         self._space.step(1.0)
         self._buffer.clear()
         fields = batch.ArbiterFields.BODY_A_ID | batch.ArbiterFields.BODY_B_ID
         batch.get_space_arbiters(self._space, fields, self._buffer)
         ids = np.frombuffer(self._buffer.int_buf(), dtype=np.uintp).astype(np.intp)
         found = self._shape_of(ids).reshape(-1, 2)
-        # A disk comes before a wall, and the lower index before the higher; walls never meet.
+        # What moves by itself comes before what does not, and the lower index before the higher; walls never meet.
         shapes = self.shapes
         low, high = np.minimum(found[:, 0], found[:, 1]), np.maximum(found[:, 0], found[:, 1])
-        first = np.where(shapes.is_disk[low], low, high)
+        first = np.where(shapes.rank[low] <= shapes.rank[high], low, high)
         second = low + high - first
-        keep = np.flatnonzero(shapes.row[first] != shapes.row[second])
+        keep = shapes.row[first] != shapes.row[second]
+        if shapes.general:
+            keep &= shapes.rank[first] < _KINEMATIC
+        keep = np.flatnonzero(keep)
         # pymunk lists arbiters by memory address, and results must not depend on it.
         order = keep[np.argsort(pair_key(shapes, first[keep], second[keep]))]
         return Pairs(shapes, first[order], second[order])
@@ -128,17 +143,19 @@ class _Lookup:
 
 
 def _along_space(center: FloatArray, cell: float) -> IntArray:
-    """(D,) an order of the disks in which neighbours in a hash are neighbours in memory, which its cache is for."""
+    """(D,) an order in which neighbours in a hash are neighbours in memory, which its cache is for."""
     if cell == 0.0:
         return np.arange(len(center))
-    column, row = np.floor(center / (4.0 * cell)).T
+    column, row = np.floor(center[:, :2] / (4.0 * cell)).T
     return np.lexsort((column, row))
 
 
-def _copy(shape: pymunk.Shape, body: pymunk.Body) -> Solid:
+def _copy(shape: pymunk.Shape, body: pymunk.Body, offset: FloatArray) -> Solid:
+    """The shape on another body, moved by minus `offset` in body coordinates."""
+    vertices = [(float(x), float(y)) for x, y in local_outline(shape) - offset]
     if isinstance(shape, pymunk.Circle):
-        return pymunk.Circle(body, shape.radius, shape.offset)
+        return pymunk.Circle(body, shape.radius, vertices[0])
     if isinstance(shape, pymunk.Segment):
-        return pymunk.Segment(body, shape.a, shape.b, shape.radius)
+        return pymunk.Segment(body, vertices[0], vertices[1], shape.radius)
     assert isinstance(shape, pymunk.Poly)  # check_shape let nothing else through
-    return pymunk.Poly(body, shape.get_vertices(), radius=shape.radius)
+    return pymunk.Poly(body, vertices, radius=shape.radius)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import pymunk
 
-from .bodies import ANGLE, ANGULAR_VELOCITY, POSITION, VELOCITY, Bodies, FloatArray
+from .bodies import ANGULAR_VELOCITY, VELOCITY, Bodies, FloatArray
 
 
 @dataclass(frozen=True)
@@ -40,12 +40,8 @@ def invariants(bodies: Bodies, state: FloatArray, gravity: tuple[float, float]) 
     """Energy and momenta of an (N, 9) state of `bodies`."""
     d = bodies.dynamic
     m, inertia = bodies.mass[d], bodies.moment[d]
-    v, omega, center = state[d, VELOCITY], state[d, ANGULAR_VELOCITY], state[d, POSITION]
-    offset = bodies.center_of_gravity[d]
-    if offset.any():
-        c, s = np.cos(state[d, ANGLE]), np.sin(state[d, ANGLE])
-        x, y = offset[:, 0], offset[:, 1]
-        center = center + np.stack((c * x - s * y, s * x + c * y), axis=1)
+    v, omega = state[d, VELOCITY], state[d, ANGULAR_VELOCITY]
+    center = bodies.poses(state, bool(bodies.center_of_gravity.any()))[d, :2]
     # A body of infinite moment does not turn; 0 * inf must not become NaN.
     spin = np.multiply(inertia, omega, out=np.zeros_like(omega), where=omega != 0)
     kinetic = 0.5 * float(np.sum(m * np.sum(v * v, axis=1)) + np.sum(spin * omega))

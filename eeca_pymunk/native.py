@@ -5,7 +5,7 @@ from __future__ import annotations
 import pymunk
 
 from .bodies import Bodies
-from .shapes import shape_body
+from .checks import shape_body
 from .stepper import Stepper, StepReport, check_dt
 
 

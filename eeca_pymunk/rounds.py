@@ -49,9 +49,13 @@ class Rounds:
         self.agenda.time, self.agenda.gap = next_impact(pairs, self.paths, np.arange(len(pairs)), self.start.dt)
         self.bounces: IntArray = np.zeros(len(pairs), np.intp)
         self.agenda.touch = np.searchsorted(pairs.key, touch)
+        if (held := self._held()) is not None:
+            self._forecast(np.flatnonzero(held >= 0.0))
         self._wait()
         self.agenda.join()
         position = self.start.position
+        if pairs.flat < len(pairs):
+            return np.flatnonzero(self.agenda.gap <= touching(pairs, position))
         coarse = ROUND_OFF * (np.abs(position).max() + pairs.extent.max(initial=0.0))
         near = np.flatnonzero(self.agenda.gap <= coarse)
         return near[self.agenda.gap[near] <= touching(pairs.take(near), position)] if len(near) else near
@@ -72,16 +76,28 @@ class Rounds:
         same = (last.position == start.position) & (last.velocity == start.velocity)
         if start.pulled or last.pulled:
             same &= last.acceleration == start.acceleration
-        changed = ~(same[:, 0] & same[:, 1])
+        changed = ~same.all(axis=1)
         near = last.touch
         again = np.flatnonzero(changed[pairs.row_a] | changed[pairs.row_b] | np.isnan(self.agenda.time))
-        if len(again):
-            self.agenda.time[again], self.agenda.gap[again] = next_impact(pairs, self.paths, again, start.dt)
-            near = np.union1d(near, again)
+        # General shapes that touch are looked at when it is known how they go on.
+        again = again[~np.isin(again, near[np.searchsorted(near, pairs.flat) :])]
+        self._forecast(again)
+        near = np.union1d(near, again) if len(again) else near
         if len(near) == 0:
             return near
         some = pairs.take(near)
-        return near[some.at(start.position).gap <= touching(some, start.position)]
+        touches = some.at(start.position).gap <= touching(some, start.position)
+        if pairs.flat < len(pairs):
+            self._forecast(near[~touches])
+        return near[touches]
+
+    def _forecast(self, which: IntArray) -> None:
+        """Look anew at the pairs `which` (increasing)."""
+        if len(which):
+            agenda = self.agenda
+            agenda.time[which], agenda.gap[which] = next_impact(
+                agenda.pairs, self.paths, which, self.start.dt, self._held()
+            )
 
     def _begin(self, near: IntArray) -> None:
         """The contacts that touch at the start form blocks with what hits them there, and may rest."""
@@ -126,16 +142,18 @@ class Rounds:
         """One round: apply the impulses of the earliest contacts among `due`; the contacts it took."""
         lone, block = self.agenda.choose(due)
         if len(lone):
-            chosen, time = self.agenda.pairs.take(lone), self.agenda.time[lone]
-            at, approach = self.impacts.meet(chosen, time)
+            meeting = self.impacts.meet(self.agenda.pairs.take(lone), self.agenda.time[lone])
+            stops = np.zeros(len(lone), bool)
+            stops[meeting.faces] = True  # which meet at two points
             if self.may_stop:
-                stops = self.impacts.stays(chosen, chosen.elasticity * approach) | self._spent(lone)
-                if stops.any():
-                    goes = np.flatnonzero(~stops)
-                    block, lone, time = np.union1d(block, lone[stops]), lone[goes], time[goes]
-                    chosen, at, approach = chosen.take(goes), at.take(goes), approach[goes]
+                elasticity = meeting.pairs.elasticity
+                stops |= self.impacts.stays(meeting.pairs, elasticity * meeting.approach) | self._spent(lone)
+            if stops.any():
+                block, lone = np.union1d(block, lone[stops]), lone[~stops]
+                meeting = meeting.take(np.flatnonzero(~stops))
+            if self.may_stop:
                 self.bounces[lone] += 1
-            self.impacts.bounce(chosen, at, approach, time)
+            self.impacts.bounce(meeting)
         if len(block) == 0:
             return lone
         self._strike(block, np.where(np.isin(block, due), self.agenda.time[block], np.inf))
@@ -149,11 +167,24 @@ class Rounds:
         self.agenda.join()
 
     def _wait(self) -> None:
-        """What touches does nothing until something hits it, or until the force it rests on has to be found anew."""
-        self.agenda.time[self.agenda.touch] = np.nan
-        resting = self.blocks.resting
+        """What touches does nothing until something hits it, or until the force it rests on has to be found anew, or
+        until another corner comes down."""
+        agenda, resting = self.agenda, self.blocks.resting
+        agenda.time[agenda.touch[: np.searchsorted(agenda.touch, agenda.pairs.flat)]] = np.nan
         if len(resting.key):
-            self.agenda.time[np.searchsorted(self.agenda.pairs.key, resting.key)] = resting.until
+            rests = np.searchsorted(agenda.pairs.key, resting.key)
+            agenda.time[rests] = np.fmin(agenda.time[rests], resting.until)
+
+    def _held(self) -> FloatArray | None:
+        """(P,) the speed below which points of pairs that touch stay in touch; None where no general pair does."""
+        touch, pairs = self.agenda.touch, self.agenda.pairs
+        touch = touch[np.searchsorted(touch, pairs.flat) :]
+        if len(touch) == 0:
+            return None
+        slow = self.impacts.slow
+        held = np.full(len(pairs), -np.inf)
+        held[touch] = np.maximum(slow[pairs.row_a[touch]], slow[pairs.row_b[touch]])
+        return held
 
     def _spent(self, contacts: IntArray) -> BoolArray:
         """Whether a contact has bounced so often that it has to stop, so that no dissipating bounce goes on forever."""
@@ -165,12 +196,12 @@ class Rounds:
 
         Returns False if one of them would have met a body before an impact of that body that was taken already.
         """
-        pairs, paths, dt = self.agenda.pairs, self.paths, self.start.dt
+        pairs, paths = self.agenda.pairs, self.paths
         both = np.concatenate((pairs.row_a[taken], pairs.row_b[taken]))
         rows = both[self.moves[both]]
         changed = np.zeros(len(self.agenda.rows), bool)
         changed[rows] = True
-        moved = paths.position(rows, np.full(len(rows), dt)) - self.start.position[rows]
+        moved = paths.position(rows, np.full(len(rows), self.start.dt)) - self.start.position[rows]
         if not self.twin.covers(rows, moved, self.slack[rows]):
             # An impulse sent a body farther than its margin: pairs that were not near may meet now.
             self._list(self.twin.widen(self.start.position), pairs.key[self.agenda.touch])
@@ -179,11 +210,12 @@ class Rounds:
         again = np.flatnonzero(changed[pairs.row_a] | changed[pairs.row_b])
         if missed(pairs, paths, again, changed):
             return False
-        self.agenda.time[again], self.agenda.gap[again] = next_impact(pairs, paths, again, dt)
+        self._forecast(again)
         at_once = self.agenda.time[taken] <= np.maximum(
             paths.since[pairs.row_a[taken]], paths.since[pairs.row_b[taken]]
         )
-        self.agenda.time[taken[at_once & (self.bounces[taken] >= _BOUNCES)]] = np.nan
+        at_once &= (self.bounces[taken] >= _BOUNCES) & (taken < pairs.flat)
+        self.agenda.time[taken[at_once]] = np.nan
         self._wait()
         return True
 

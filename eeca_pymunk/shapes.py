@@ -1,14 +1,12 @@
-"""Shapes: arrays of a space's shapes, and the refusal of what the steppers do not model."""
+"""Shapes: arrays of a space's shapes."""
 
 from __future__ import annotations
-
-import math
-from typing import Any
 
 import numpy as np
 import pymunk
 
 from .bodies import Bodies, BoolArray, FloatArray, IntArray
+from .checks import check_friction, check_shape, shape_body, shape_radius
 from .errors import UnsupportedFeature
 
 
@@ -42,50 +40,51 @@ class Walls:
 
 
 class Shapes:
-    """The solid shapes of a space, one index each: moving disks and static walls.
+    """The solid shapes of a space, one index each.
 
     Attributes:
         items: the pymunk shapes, by index.
         row: (S,) the row of the shape's body in `Bodies`.
         radius: (S,) length; the rounding radius of a segment or polygon.
-        elasticity: (S,).  lossy: whether any is below 1.  wall: (S,) index into `walls`, -1 for a disk.
+        elasticity: (S,).  lossy: whether any is below 1.
+        is_disk: (S,) whether it is a circle about the centre of mass of a dynamic body.
+        wall: (S,) index into `walls`, the outlines of static shapes; -1 for others.
+        general: whether anything moves that is not such a disk: contacts then have arms, and bodies turn.
+        rank: (S,) 0 disks, 1 other dynamic shapes, 2 kinematic and 3 static ones.
+        size: (S,) length, from the centre of mass to the farthest point.
+        core: (S, K, 2) vertices about the centre of mass, shorter outlines repeat their last one; K = 0 if not general.
     """
 
     def __init__(self, space: pymunk.Space, bodies: Bodies) -> None:
         self.key: list[pymunk.Shape] = list(space.shapes)
         self.items: list[pymunk.Shape] = [s for s in self.key if not s.sensor]
-        check_bodies(bodies, self.items)
         for shape in self.items:
             check_shape(shape, bodies)
         check_friction(self.items)
         owners = [shape_body(s) for s in self.items]
         self.row: IntArray = np.array([bodies.row[b] for b in owners], np.intp)
-        # Every kind of pymunk shape has a radius.
-        self.radius: FloatArray = np.array([_radius(s) for s in self.items], float)
+        self.radius: FloatArray = np.array([shape_radius(s) for s in self.items], float)
         self.elasticity: FloatArray = np.array([s.elasticity for s in self.items], float)
-        outlines: list[FloatArray] = []
-        self.wall: IntArray = np.full(len(self.items), -1, np.intp)
-        for i, (shape, owner) in enumerate(zip(self.items, owners, strict=True)):
-            if not bodies.dynamic[self.row[i]]:
-                self.wall[i] = len(outlines)
-                outlines.append(_outline(shape, owner))
-        self.walls = Walls(outlines)
-        self.is_disk: BoolArray = self.wall < 0
         self.lossy = bool((self.elasticity < 1.0).any())
+        static, dynamic = bodies.static[self.row], bodies.dynamic[self.row]
+        self.wall: IntArray = np.where(static, np.cumsum(static) - 1, -1)
+        cores = [local_outline(s) for s in self.items]
+        placed = zip(cores, owners, static, strict=True)
+        self.walls = Walls([_in_world(core, owner) for core, owner, still in placed if still])
+        cores = [core - bodies.center_of_gravity[row] for core, row in zip(cores, self.row, strict=True)]
+        self.is_disk: BoolArray = dynamic & np.array([len(c) == 1 and not c.any() for c in cores], bool)
+        self.rank: IntArray = np.where(self.is_disk, 0, np.where(dynamic, 1, np.where(static, 3, 2)))
+        self.general = bool(((self.rank == 1) | (self.rank == 2)).any())
+        away = [np.hypot(*c.T).max() for c in cores]
+        self.size: FloatArray = self.radius + np.array(away, float)
+        width = max(len(c) for c in cores) if self.general else 0
+        self.core: FloatArray = np.zeros((len(self.items), width, 2))
+        if self.general:
+            for padded, core in zip(self.core, cores, strict=True):
+                padded[: len(core)], padded[len(core) :] = core, core[-1]
 
     def __len__(self) -> int:
         return len(self.items)
-
-
-def shape_body(shape: pymunk.Shape) -> pymunk.Body:
-    """The body of a shape; ValueError if it has none."""
-    if shape.body is None:
-        raise ValueError(f"{shape} has no body: create it with its body, or remove it from the space")
-    return shape.body
-
-
-def _radius(shape: Any) -> float:
-    return float(shape.radius)
 
 
 def local_outline(shape: pymunk.Shape) -> FloatArray:
@@ -101,81 +100,7 @@ def local_outline(shape: pymunk.Shape) -> FloatArray:
     return np.array(vertices, float)
 
 
-def _outline(shape: pymunk.Shape, owner: pymunk.Body) -> FloatArray:
+def _in_world(local: FloatArray, owner: pymunk.Body) -> FloatArray:
     """(k, 2) world vertices of at least two; a circle is its centre twice."""
-    local = local_outline(shape)
     local = np.repeat(local, 2, axis=0) if len(local) == 1 else local
     return np.array([owner.local_to_world((float(x), float(y))) for x, y in local], float)
-
-
-def check_space(space: pymunk.Space) -> None:
-    """Refuse settings and objects of the space that the array steppers do not model."""
-    if space.constraints:
-        raise UnsupportedFeature(
-            f"{next(iter(space.constraints))}: constraints are not modelled; remove it or use ep.Native(space)"
-        )
-    if space.damping != 1.0:
-        raise UnsupportedFeature(f"space.damping = {space.damping} is not modelled; set it to 1 or use ep.Native")
-    if space.sleep_time_threshold != math.inf:
-        raise UnsupportedFeature(
-            f"space.sleep_time_threshold = {space.sleep_time_threshold}: sleeping is not modelled; set it to math.inf"
-        )
-    # pymunk offers no public way to ask for the handlers of a space.
-    if space._handlers:
-        raise UnsupportedFeature(
-            f"space.on_collision handlers for collision types {list(space._handlers)} are not called yet; "
-            "use ep.Native(space) for a scene that needs them"
-        )
-    if not all(math.isfinite(g) for g in space.gravity):
-        raise ValueError(f"space.gravity = {space.gravity}: set a finite gravity before stepping")
-
-
-def check_bodies(bodies: Bodies, shapes: list[pymunk.Shape]) -> None:
-    """Refuse user functions, off-centre centres of gravity, and kinematic bodies with shapes."""
-    owners = {s.body for s in shapes}
-    for i, body in enumerate(bodies.items):
-        # The public properties return bound C wrappers when unset; the private slots tell whether a user set them.
-        if body._velocity_func is not None or body._position_func is not None:
-            raise UnsupportedFeature(f"{body} has a velocity_func or position_func of its own, which is not called yet")
-        if body not in owners:
-            continue
-        if body.body_type == pymunk.Body.KINEMATIC:
-            raise UnsupportedFeature(
-                f"{body} is kinematic and has shapes: moving walls are not modelled yet; make it static or dynamic"
-            )
-        if bodies.dynamic[i] and bodies.center_of_gravity[i].any():
-            raise UnsupportedFeature(
-                f"{body} has its centre of gravity at {body.center_of_gravity}: only (0, 0) is modelled yet"
-            )
-
-
-def check_shape(shape: pymunk.Shape, bodies: Bodies) -> None:
-    """Refuse moving shapes other than centred disks, and surface velocity."""
-    body = shape_body(shape)
-    if any(shape.surface_velocity):
-        raise UnsupportedFeature(f"{shape} has surface velocity {shape.surface_velocity}; set it to (0, 0)")
-    if not isinstance(shape, (pymunk.Circle, pymunk.Segment, pymunk.Poly)):
-        raise UnsupportedFeature(f"{shape} is neither a Circle, a Segment nor a Poly; replace it by one of them")
-    if not 0.0 <= shape.elasticity <= 1.0:
-        raise ValueError(f"{shape} has elasticity {shape.elasticity}: set a value from 0 to 1")
-    if not math.isfinite(_radius(shape)):
-        raise ValueError(f"{shape} has radius {_radius(shape)}: set a finite radius")
-    if body not in bodies.row:
-        raise ValueError(f"the body of {shape} is not in the space; add it with space.add(body)")
-    if bodies.dynamic[bodies.row[body]]:
-        if not isinstance(shape, pymunk.Circle):
-            raise UnsupportedFeature(f"{shape} on the dynamic {body}: only disks move yet; use pymunk.Circle")
-        if any(shape.offset):
-            raise UnsupportedFeature(f"{shape} has offset {shape.offset} from the centre of {body}: only (0, 0) yet")
-
-
-def check_friction(shapes: list[pymunk.Shape]) -> None:
-    """Refuse friction > 0 on a moving shape and on some shape of another body (pymunk multiplies the two)."""
-    rough = [s for s in shapes if s.friction > 0]
-    for shape in rough:
-        body = shape_body(shape)
-        if body.body_type == pymunk.Body.DYNAMIC and any(other.body is not body for other in rough):
-            raise UnsupportedFeature(
-                f"{shape} has friction {shape.friction}, and so has a shape it may touch: friction is not modelled; "
-                "set shape.friction = 0"
-            )

@@ -72,7 +72,7 @@ def _parts(bodies: Bodies, start: Start, twin: MarginTwin) -> int:
     if len(moving) < _CROWD:
         return 1
     way = float(np.mean(length(start.free_displacement[moving])))
-    x = start.position[moving]
+    x = start.position[moving, :2]
     area = float(np.prod(x.max(axis=0) - x.min(axis=0) + 2.0 * way))
     # The way at which a disk can meet as many others as are worth one look.
     most = math.sqrt(_MEETINGS * area / (math.pi * len(moving)))

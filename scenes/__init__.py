@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from . import ball, carom, cradle, gas, hopper, pool_break, signorini
+from . import ball, carom, cradle, gas, hopper, mixed, pool_break, signorini
 from .scene import Scene
 
 _BUILDERS: dict[str, Callable[..., Scene]] = {
@@ -14,6 +14,7 @@ _BUILDERS: dict[str, Callable[..., Scene]] = {
     "cradle": cradle.build,
     "ball": ball.build,
     "gas": gas.build,
+    "mixed": mixed.build,
     "pool_break": pool_break.build,
     "hopper": hopper.build,
 }

@@ -13,7 +13,7 @@ import pytest
 
 import eeca_pymunk as ep
 import scenes
-from comparisons import runs, scaling, soak, work_precision
+from comparisons import gallery, runs, scaling, soak, work_precision
 from comparisons.__main__ import NAMES, main
 from comparisons.hopper import crossed, deepest_overlap
 from eeca_pymunk.detection import MarginTwin
@@ -150,3 +150,25 @@ def test_short_soak_keeps_energy_and_disks() -> None:
     assert last["outside"] == 0
     assert float(last["deepest overlap (r)"] or 0.0) < 1e-9
     assert int(last["impacts"] or 0) > 100
+
+
+def test_gallery_page_shows_every_figure_and_table(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = Path(__file__).parents[1] / "comparisons"
+    page = (folder / "GALLERY.md").read_text()
+    headings = "Fig. 1:|Figs. 4 and 5|Figs. 6 and 7|Figs. 8 and 9, Table II|Table III|Fig. 11|Figs. 12 to 14|Fig. 15"
+    for name in headings.split("|"):
+        assert f"## {name}" in page
+    pictures = re.findall(r"\]\((gallery/[^)]+)\)", page)
+    assert len(pictures) == 11
+    for picture in pictures:
+        assert 0 < (folder / picture).stat().st_size < 300_000
+    # A page written from one part's run holds that run's numbers.
+    monkeypatch.setattr(gallery, "PARTS", ("signorini",))
+    monkeypatch.setattr(gallery, "_SHOWN", {k: v for k, v in gallery._SHOWN.items() if v[0].startswith("signorini")})
+    template = tmp_path / "page.md"
+    template.write_text("$made $dir\n$fig_1\n$figs_4_5\n")
+    monkeypatch.setattr(gallery, "_PAGE", template)
+    assert main(["gallery", "--out", str(tmp_path)]) == 0
+    written = (tmp_path / "GALLERY.md").read_text()
+    assert "| energy-momentum | 0.5 | 0.08464 | 0.5 |" in written
+    assert (tmp_path / "gallery" / "signorini_fig_1.png").exists()

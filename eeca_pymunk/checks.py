@@ -1,0 +1,80 @@
+"""Checks: what a space must be for the array steppers, and the refusal of what they do not model."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pymunk
+
+from .bodies import Bodies
+from .errors import UnsupportedFeature
+
+
+def shape_body(shape: pymunk.Shape) -> pymunk.Body:
+    """The body of a shape; ValueError if it has none."""
+    if shape.body is None:
+        raise ValueError(f"{shape} has no body: create it with its body, or remove it from the space")
+    return shape.body
+
+
+def shape_radius(shape: Any) -> float:
+    """The radius that every kind of pymunk shape has."""
+    return float(shape.radius)
+
+
+def check_space(space: pymunk.Space) -> None:
+    """Refuse settings and objects of the space that the array steppers do not model."""
+    if space.constraints:
+        raise UnsupportedFeature(
+            f"{next(iter(space.constraints))}: constraints are not modelled; remove it or use ep.Native(space)"
+        )
+    if space.damping != 1.0:
+        raise UnsupportedFeature(f"space.damping = {space.damping} is not modelled; set it to 1 or use ep.Native")
+    if space.sleep_time_threshold != math.inf:
+        raise UnsupportedFeature(
+            f"space.sleep_time_threshold = {space.sleep_time_threshold}: sleeping is not modelled; set it to math.inf"
+        )
+    # pymunk offers no public way to ask for the handlers of a space.
+    if space._handlers:
+        raise UnsupportedFeature(
+            f"space.on_collision handlers for collision types {list(space._handlers)} are not called yet; "
+            "use ep.Native(space) for a scene that needs them"
+        )
+    if not all(math.isfinite(g) for g in space.gravity):
+        raise ValueError(f"space.gravity = {space.gravity}: set a finite gravity before stepping")
+
+
+def check_bodies(bodies: Bodies) -> None:
+    """Refuse functions of the user that move bodies."""
+    for body in bodies.items:
+        # The public properties return bound C wrappers when unset; the private slots tell whether a user set them.
+        if body._velocity_func is not None or body._position_func is not None:
+            raise UnsupportedFeature(f"{body} has a velocity_func or position_func of its own, which is not called yet")
+
+
+def check_shape(shape: pymunk.Shape, bodies: Bodies) -> None:
+    """Refuse surface velocity and numbers that no shape can have."""
+    body = shape_body(shape)
+    if any(shape.surface_velocity):
+        raise UnsupportedFeature(f"{shape} has surface velocity {shape.surface_velocity}; set it to (0, 0)")
+    if not isinstance(shape, (pymunk.Circle, pymunk.Segment, pymunk.Poly)):
+        raise UnsupportedFeature(f"{shape} is neither a Circle, a Segment nor a Poly; replace it by one of them")
+    if not 0.0 <= shape.elasticity <= 1.0:
+        raise ValueError(f"{shape} has elasticity {shape.elasticity}: set a value from 0 to 1")
+    if not math.isfinite(shape_radius(shape)):
+        raise ValueError(f"{shape} has radius {shape_radius(shape)}: set a finite radius")
+    if body not in bodies.row:
+        raise ValueError(f"the body of {shape} is not in the space; add it with space.add(body)")
+
+
+def check_friction(shapes: list[pymunk.Shape]) -> None:
+    """Refuse friction > 0 on a moving shape and on some shape of another body (pymunk multiplies the two)."""
+    rough = [s for s in shapes if s.friction > 0]
+    for shape in rough:
+        body = shape_body(shape)
+        if body.body_type == pymunk.Body.DYNAMIC and any(other.body is not body for other in rough):
+            raise UnsupportedFeature(
+                f"{shape} has friction {shape.friction}, and so has a shape it may touch: friction is not modelled; "
+                "set shape.friction = 0"
+            )
