@@ -19,7 +19,7 @@ import scenes
 from comparisons.output import Output, Row
 from comparisons.runs import slope
 from eeca_pymunk import eeca, render
-from eeca_pymunk.arrays import ArrayStepper
+from eeca_pymunk.array_stepper import ArrayStepper
 from eeca_pymunk.detection import MarginTwin
 from scenes import Scene
 

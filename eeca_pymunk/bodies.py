@@ -62,6 +62,11 @@ class Bodies:
         self.mass[~self.dynamic] = np.inf
         self.moment[~self.dynamic] = np.inf
         self.check_masses()
+        # Rows of the bodies with functions of their own; the public properties return pymunk's default when unset.
+        self.velocity_hooks: IntArray = np.flatnonzero([b._velocity_func is not None for b in self.items])
+        self.position_hooks: IntArray = np.flatnonzero([b._position_func is not None for b in self.items])
+        self.steered: BoolArray = np.zeros(len(self.items), bool)
+        self.steered[self.velocity_hooks] = True
         self.inverse_mass: FloatArray = 1.0 / self.mass
         self.inverse_moment: FloatArray = 1.0 / self.moment
         self.center_of_gravity: FloatArray = np.array([b.center_of_gravity for b in self.items], float).reshape(-1, 2)

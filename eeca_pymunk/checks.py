@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import pymunk
@@ -29,28 +30,23 @@ def check_space(space: pymunk.Space) -> None:
         raise UnsupportedFeature(
             f"{next(iter(space.constraints))}: constraints are not modelled; remove it or use ep.Native(space)"
         )
-    if space.damping != 1.0:
-        raise UnsupportedFeature(f"space.damping = {space.damping} is not modelled; set it to 1 or use ep.Native")
     if space.sleep_time_threshold != math.inf:
         raise UnsupportedFeature(
             f"space.sleep_time_threshold = {space.sleep_time_threshold}: sleeping is not modelled; set it to math.inf"
         )
-    # pymunk offers no public way to ask for the handlers of a space.
-    if space._handlers:
-        raise UnsupportedFeature(
-            f"space.on_collision handlers for collision types {list(space._handlers)} are not called yet; "
-            "use ep.Native(space) for a scene that needs them"
-        )
+    if not 0.0 < space.damping < math.inf:
+        raise ValueError(f"space.damping = {space.damping}: set a finite value > 0; 1 is none")
     if not all(math.isfinite(g) for g in space.gravity):
         raise ValueError(f"space.gravity = {space.gravity}: set a finite gravity before stepping")
 
 
-def check_bodies(bodies: Bodies) -> None:
-    """Refuse functions of the user that move bodies."""
-    for body in bodies.items:
-        # The public properties return bound C wrappers when unset; the private slots tell whether a user set them.
-        if body._velocity_func is not None or body._position_func is not None:
-            raise UnsupportedFeature(f"{body} has a velocity_func or position_func of its own, which is not called yet")
+def check_ignored(ignore: Sequence[str]) -> tuple[str, ...]:
+    """`ignore` as a tuple; ValueError for what cannot be ignored."""
+    names = (ignore,) if isinstance(ignore, str) else tuple(ignore)
+    for name in names:
+        if name != "friction":
+            raise ValueError(f"ignore = {name!r}: only 'friction' can be ignored")
+    return names
 
 
 def check_shape(shape: pymunk.Shape, bodies: Bodies) -> None:
@@ -68,13 +64,17 @@ def check_shape(shape: pymunk.Shape, bodies: Bodies) -> None:
         raise ValueError(f"the body of {shape} is not in the space; add it with space.add(body)")
 
 
-def check_friction(shapes: list[pymunk.Shape]) -> None:
-    """Refuse friction > 0 on a moving shape and on some shape of another body (pymunk multiplies the two)."""
+def check_friction(shapes: list[pymunk.Shape], ignored: bool) -> bool:
+    """Refuse friction > 0 on a moving shape and on some shape of another body (pymunk multiplies the two); tell
+    whether there is some that is ignored."""
     rough = [s for s in shapes if s.friction > 0]
     for shape in rough:
         body = shape_body(shape)
         if body.body_type == pymunk.Body.DYNAMIC and any(other.body is not body for other in rough):
+            if ignored:
+                return True
             raise UnsupportedFeature(
                 f"{shape} has friction {shape.friction}, and so has a shape it may touch: friction is not modelled; "
-                "set shape.friction = 0"
+                'set shape.friction = 0, or step on without it: ep.EECA(space, ignore=("friction",))'
             )
+    return False

@@ -107,8 +107,10 @@ class Pairs:
 
     @property
     def elasticity(self) -> FloatArray:
-        """(m,) the product of the two shapes' elasticities, as in pymunk."""
+        """(m,) the product of the two shapes' elasticities, as in pymunk, unless a collision handler says otherwise."""
         result: FloatArray = self.shapes.elasticity[self.first] * self.shapes.elasticity[self.second]
+        for (i, j), restitution in self.shapes.rules.restitution.items():
+            result[((self.first == i) & (self.second == j)) | ((self.first == j) & (self.second == i))] = restitution
         return result
 
     def take(self, which: BoolArray | IntArray) -> Pairs:
@@ -209,6 +211,8 @@ class Pairs:
         tolerance = ROUND_OFF * _PARALLEL * (distance_from_axes(pose_a[n:]) + size)
         # A rocking that is lost anyway ends here; else it would end after infinitely many bounces.
         tolerance = np.where(self.elasticity[n:] < 1.0, np.maximum(tolerance, _ROCKING * size), tolerance)
+        # In overlap every corner that is inside acts.
+        tolerance += np.maximum(-at.gap[n:], 0.0)
         k, low, high = convex.common_face(a, b, at.normal[n:], tolerance)
         k = k + n
         at.center[k] = low

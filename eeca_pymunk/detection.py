@@ -88,7 +88,7 @@ class MarginTwin:
         self._reach[self._row] = reach
         if self._center is None:
             self._detect(center)
-            return self._pairs
+            return self._allowed()
         moved = center - self._center
         frame = moved[:, :2].mean(axis=0) if follows else np.zeros(2)
         room = self._margin - self._sweep(moved, self._row, frame)
@@ -97,7 +97,17 @@ class MarginTwin:
             self._detect(center)
         else:
             self._leave(room)
-        return self._pairs
+        return self._allowed()
+
+    def _allowed(self) -> Pairs:
+        """The pairs of the list that collision handlers let collide."""
+        ignored = self.shapes.rules.ignored
+        if not ignored:
+            return self._pairs
+        first, second = self._pairs.first, self._pairs.second
+        low, high = np.minimum(first, second), np.maximum(first, second)
+        barred = np.array([(i, j) in ignored for i, j in zip(low.tolist(), high.tolist(), strict=True)], bool)
+        return self._pairs.take(np.flatnonzero(~barred))
 
     def _sweep(self, displacement: FloatArray, rows: IntArray, frame: FloatArray) -> FloatArray:
         """(m,) how far points of the bodies `rows` get at most, in a frame that moves by (2,)."""
@@ -118,7 +128,7 @@ class MarginTwin:
     def widen(self, position: FloatArray) -> Pairs:
         """The candidates of the step that starts at `position` (N, 2 or 3), for all that `covers` was asked."""
         self._detect(position[self._row])
-        return self._pairs
+        return self._allowed()
 
     def _leave(self, room: FloatArray) -> None:
         """Note what the motion so far leaves of every margin (D,)."""

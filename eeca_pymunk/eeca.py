@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Protocol
 
 import pymunk
 
-from .arrays import ArrayStepper, Motion, Start
+from .array_stepper import ArrayStepper
+from .arrays import Motion, Start
 from .bodies import Bodies
 from .detection import MarginTwin
 from .time_of_impact import TimeOfImpact
@@ -27,16 +29,18 @@ class EECA(ArrayStepper):
     Args:
         space: a pymunk space.
         closure: what chooses psi2; `TimeOfImpact()` if None.
-        sync: see `ArrayStepper`.
+        sync, ignore: see `ArrayStepper`.
     """
 
     @property
     def centred_disks(self) -> bool:  # type: ignore[override]
         return not isinstance(self.closure, TimeOfImpact)
 
-    def __init__(self, space: pymunk.Space, closure: Closure | None = None, *, sync: bool = True) -> None:
+    def __init__(
+        self, space: pymunk.Space, closure: Closure | None = None, *, sync: bool = True, ignore: Sequence[str] = ()
+    ) -> None:
         self.closure: Closure = TimeOfImpact() if closure is None else closure
-        super().__init__(space, sync=sync)
+        super().__init__(space, sync=sync, ignore=ignore)
 
     def advance(self, bodies: Bodies, start: Start, twin: MarginTwin) -> Motion:
         return self.closure.advance(bodies, start, twin)

@@ -7,7 +7,8 @@ from abc import abstractmethod
 import numpy as np
 import pymunk
 
-from .arrays import ArrayStepper, Motion, Start, near_pairs
+from .array_stepper import ArrayStepper
+from .arrays import Motion, Start, near_pairs
 from .bodies import Bodies, FloatArray, IntArray
 from .closures import check_stiffness
 from .complementarity import Delassus, restrict, solve

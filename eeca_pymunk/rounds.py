@@ -214,7 +214,7 @@ class Rounds:
         at_once = self.agenda.time[taken] <= np.maximum(
             paths.since[pairs.row_a[taken]], paths.since[pairs.row_b[taken]]
         )
-        at_once &= (self.bounces[taken] >= _BOUNCES) & (taken < pairs.flat)
+        at_once &= self.bounces[taken] >= _BOUNCES
         self.agenda.time[taken[at_once]] = np.nan
         self._wait()
         return True

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
 import numpy as np
 import pymunk
 
@@ -39,11 +42,23 @@ class Walls:
         self.flat_length_squared = self.length_squared.ravel()
 
 
+@dataclass(frozen=True)
+class Rules:
+    """What collision handlers decide about pairs of shapes, for one step; pairs as (smaller, larger) index.
+
+    `ignored`: pairs that do not collide.  `restitution`: of pairs that have another one than their shapes say.
+    """
+
+    ignored: frozenset[tuple[int, int]] = frozenset()
+    restitution: Mapping[tuple[int, int], float] = field(default_factory=dict)
+
+
 class Shapes:
     """The solid shapes of a space, one index each.
 
     Attributes:
-        items: the pymunk shapes, by index.
+        items: the pymunk shapes, by index.  rules: of this step.
+        smooth: whether no pair has friction; if one has, it was to be ignored.
         row: (S,) the row of the shape's body in `Bodies`.
         radius: (S,) length; the rounding radius of a segment or polygon.
         elasticity: (S,).  lossy: whether any is below 1.
@@ -55,12 +70,13 @@ class Shapes:
         core: (S, K, 2) vertices about the centre of mass, shorter outlines repeat their last one; K = 0 if not general.
     """
 
-    def __init__(self, space: pymunk.Space, bodies: Bodies) -> None:
+    def __init__(self, space: pymunk.Space, bodies: Bodies, ignore: Sequence[str] = ()) -> None:
+        self.rules = Rules()
         self.key: list[pymunk.Shape] = list(space.shapes)
         self.items: list[pymunk.Shape] = [s for s in self.key if not s.sensor]
         for shape in self.items:
             check_shape(shape, bodies)
-        check_friction(self.items)
+        self.smooth = not check_friction(self.items, "friction" in ignore)
         owners = [shape_body(s) for s in self.items]
         self.row: IntArray = np.array([bodies.row[b] for b in owners], np.intp)
         self.radius: FloatArray = np.array([shape_radius(s) for s in self.items], float)

@@ -246,33 +246,16 @@ def surface(space: pymunk.Space, body: pymunk.Body) -> object:
     return shape
 
 
-def velocity_function(space: pymunk.Space, body: pymunk.Body) -> object:
-    body.velocity_func = lambda body, gravity, damping, dt: None
-    return body
-
-
-def handler(space: pymunk.Space, body: pymunk.Body) -> object:
-    space.on_collision(1, 2, begin=lambda arbiter, space, data: None)
-    return [(1, 2)]
-
-
-def damping(space: pymunk.Space, body: pymunk.Body) -> object:
-    space.damping = 0.9
-    return "space.damping = 0.9"
-
-
 def sleeping(space: pymunk.Space, body: pymunk.Body) -> object:
     space.sleep_time_threshold = 0.5
     return "space.sleep_time_threshold = 0.5"
 
 
-UNMODELLED = (friction, offset, box, kinematic, joint, surface, velocity_function, handler, damping, sleeping)
+UNMODELLED = (friction, joint, surface, sleeping)
+TURNING = (offset, box, kinematic)
 
 
-@arrays
-@pytest.mark.parametrize("spoil", UNMODELLED)
-@pytest.mark.parametrize("when", ["before", "after"])
-def test_what_is_not_modelled_is_refused_by_name(make: Make, spoil, when: str) -> None:
+def refused(make: Make, spoil, when: str) -> None:
     space, body = one_disk()
     stepper = make(space) if when == "after" else None
     culprit = spoil(space, body)
@@ -285,7 +268,21 @@ def test_what_is_not_modelled_is_refused_by_name(make: Make, spoil, when: str) -
     assert state(space) == before
 
 
-@pytest.mark.parametrize("spoil", [joint, damping, sleeping, handler])
+@arrays
+@pytest.mark.parametrize("spoil", UNMODELLED)
+@pytest.mark.parametrize("when", ["before", "after"])
+def test_what_is_not_modelled_is_refused_by_name(make: Make, spoil, when: str) -> None:
+    refused(make, spoil, when)
+
+
+@pytest.mark.parametrize("make", [m for k, m in ARRAYS.items() if k != "time_of_impact"])
+@pytest.mark.parametrize("spoil", TURNING)
+@pytest.mark.parametrize("when", ["before", "after"])
+def test_what_turns_is_refused_by_those_who_move_disks(make: Make, spoil, when: str) -> None:
+    refused(make, spoil, when)
+
+
+@pytest.mark.parametrize("spoil", [joint, sleeping])
 def test_settings_changed_on_the_way_are_refused_without_refresh(spoil) -> None:
     space, body = one_disk()
     stepper = ep.EECA(space)

@@ -10,7 +10,7 @@ import pytest
 
 import eeca_pymunk as ep
 import scenes
-from eeca_pymunk import arrays, impact_times
+from eeca_pymunk import array_stepper, impact_times
 from eeca_pymunk.blocks import Blocks
 from eeca_pymunk.forecast import Pairs
 from eeca_pymunk.impacts import Impacts
@@ -29,7 +29,7 @@ def space(gravity: float = 0.0, elasticity: float = 1.0, spin: float = 0.0, touc
 
 
 PARTS: dict[str, tuple[object, str, dict[str, float], str, str]] = {
-    "rotation": (arrays, "turn", {"spin": 1.0}, "no rotation", "free rotation"),
+    "rotation": (array_stepper, "turn", {"spin": 1.0}, "no rotation", "free rotation"),
     "loss": (Impacts, "stays", {"elasticity": 0.5}, "elastic", "loss"),
     "forces": (Blocks, "_rest", {"gravity": 9.81, "touching": True}, "no forces", "gravity or forces"),
 }
