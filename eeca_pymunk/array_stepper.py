@@ -195,6 +195,13 @@ class ArrayStepper(Stepper):
             "loss" if shapes.lossy else "elastic",
         ]
         parts[:2] = [", ".join(parts[:2])]
+        hooks = Hooks(self.space, twin.bodies)
+        if self.space.damping != 1.0:
+            parts.append("damping")
+        if len(hooks.velocity) or len(hooks.position):
+            parts.append("functions of bodies")
+        if hooks.collisions:
+            parts.append("collision handlers, by a rehearsal")
         return "; ".join(parts)
 
     def _sync(self, dt: float) -> None:

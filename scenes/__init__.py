@@ -1,11 +1,24 @@
-"""The paper's problems and some with exact solutions as pymunk spaces: `scenes.build(name, **parameters) -> Scene`."""
+"""The paper's problems, some with exact solutions, and demonstrations: `scenes.build(name, **parameters) -> Scene`."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from typing import Any
 
-from . import ball, carom, cradle, gas, hopper, mixed, pool_break, signorini
+from . import (
+    ball,
+    balls_and_lines,
+    breakout,
+    carom,
+    colours,
+    cradle,
+    drum,
+    gas,
+    hopper,
+    mixed,
+    pool_break,
+    signorini,
+)
 from .scene import Scene
 
 _BUILDERS: dict[str, Callable[..., Scene]] = {
@@ -17,6 +30,10 @@ _BUILDERS: dict[str, Callable[..., Scene]] = {
     "mixed": mixed.build,
     "pool_break": pool_break.build,
     "hopper": hopper.build,
+    "breakout": breakout.build,
+    "balls_and_lines": balls_and_lines.build,
+    "colours": colours.build,
+    "drum": drum.build,
 }
 NAMES = tuple(_BUILDERS)
 

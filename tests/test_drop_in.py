@@ -348,3 +348,48 @@ def test_nothing_of_the_users_is_changed() -> None:
     assert body.velocity_func is function
     assert space.iterations == iterations
     np.testing.assert_allclose(space.point_query_nearest(body.position, 1.0, pymunk.ShapeFilter()).distance, -0.2)
+
+
+@pytest.mark.parametrize("name", ["breakout", "balls_and_lines", "colours", "drum"])
+def test_demonstrations_run_under_both(name: str) -> None:
+    for make in (ep.Native, ep.EECA):
+        scene = scenes.build(name)
+        stepper = make(scene.space)
+        start = ep.measure(scene.space).energy
+        for _ in range(90):
+            stepper.step(scene.dt)
+        position = np.array([b.position for b in scene.bodies])
+        assert np.isfinite(position).all()
+    energy = ep.measure(scene.space).energy
+    if name == "breakout":
+        assert scene.parameters["hit"]
+        assert scene.bodies[0].velocity.length == pytest.approx(5.0, rel=1e-12)
+        assert "collision handlers" in stepper.model
+        assert "functions of bodies" in stepper.model
+    elif name == "colours":
+        assert energy == pytest.approx(start, rel=1e-13)
+        assert ((position > 0.0) & (position < 10.0)).all()
+    elif name == "balls_and_lines":
+        assert energy <= start * (1 + 1e-9)
+        assert ((position > 0.0) & (position < (6.0, 8.0))).all()
+    else:
+        assert (np.hypot(*position.T) < 5.0).all()
+
+
+def test_work_of_a_kinematic_drum_is_what_the_boxes_gain() -> None:
+    scene = scenes.build("drum", count=4)
+    stepper = ep.EECA(scene.space)
+    drum = next(b for b in scene.space.bodies if b.body_type == pymunk.Body.KINEMATIC)
+    gained = 0.0
+    start = ep.measure(scene.space).energy
+    impacts = 0
+    for _ in range(150):
+        report = stepper.step(scene.dt)
+        at = report.contacts
+        for k in np.flatnonzero([at.bodies[b] is drum for b in at.body_b]):
+            # The drum's walls turn about the origin: the power of an impulse -lam n on a there is that of its arm.
+            x, y = at.point[k]
+            gained -= report.impulse[k] * (at.normal[k] @ (-drum.angular_velocity * y, drum.angular_velocity * x))
+            impacts += 1
+    assert impacts > 5
+    assert ep.measure(scene.space).energy - start == pytest.approx(gained, abs=1e-9)
