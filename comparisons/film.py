@@ -91,18 +91,22 @@ def run(
     path = check_writable(output.path(suffix)) if suffix is not None else None
     output.parameters({**scene.parameters, "dt": dt, "duration": duration, "every": every})
     recordings: list[ep.Recording] = []
+    times_taken: list[float] = []
     for name in steppers:
         # A scene may depend on its dt only through its default.
         scene = scenes.build(output.name)
         try:
+            begun = time.perf_counter()
             recordings.append(ep.record(make(name, scene.stiffness)(scene.space), duration, dt, every, progress=True))
+            times_taken.append((time.perf_counter() - begun) / step_count(duration, dt))
         except NotFiniteError as error:
             raise ValueError(
                 f"{STEPPERS[name]} blew up ({error}); leave it out, or give a shorter --duration"
             ) from error
     titles = [STEPPERS[name] for name in steppers]
     output.table(f"{output.name}: dt = {dt:g} s, {duration:g} s", [
-        _row(title, recording, scene) for title, recording in zip(titles, recordings, strict=True)
+        {**_row(title, recording, scene), "ms/step": 1e3 * seconds}
+        for title, recording, seconds in zip(titles, recordings, times_taken, strict=True)
     ], "film")  # fmt: skip
     times = np.linspace(0.0, float(recordings[0].time[-1]), 4).tolist()
     for name, title, recording in zip(steppers, titles, recordings, strict=True):

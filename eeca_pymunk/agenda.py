@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from .bodies import BoolArray, FloatArray, IntArray
-from .complementarity import components
-from .contacts import Pairs, length, touching
+from .contacts import Pairs, touching
+from .features import length
+from .graph import components
 from .paths import Paths
 
 _TIE = 1e-6  # part of dt within which two impacts of one body may be the same instant up to round-off of places

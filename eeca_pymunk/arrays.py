@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from .bodies import FloatArray
-from .contacts import ROUND_OFF, Geometry, Pairs, distance_from_axes, length
+from .contacts import ROUND_OFF, Geometry, Pairs
 from .detection import MarginTwin
+from .features import distance_from_axes, length
 from .stepper import StepReport
 
 

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .bodies import BoolArray, FloatArray, IntArray
-from .complementarity import Delassus
+from .delassus import Delassus
 
 
 def reduced_frequency(stiffness: float, mass: FloatArray, dt: float) -> FloatArray:

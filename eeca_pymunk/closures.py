@@ -12,8 +12,10 @@ import numpy as np
 
 from . import balance
 from .bodies import FloatArray
-from .complementarity import Delassus, islands, solve
+from .complementarity import solve
 from .contacts import Geometry
+from .delassus import Delassus
+from .graph import islands
 from .simultaneous import Problem, Simultaneous, Solution
 
 _DRAFT = 1e-2  # relative tolerance that suffices to see which contacts close

@@ -14,7 +14,8 @@ import pymunk
 
 from . import convex
 from .bodies import BoolArray, FloatArray, IntArray
-from .shapes import Shapes, Walls
+from .features import disk_wall, distance_from_axes, length
+from .shapes import Shapes
 
 ROUND_OFF = 1e-12  # of lengths, relative to positions and radii
 _CORNERS = 4.0  # times that, of corners placed by their angle
@@ -133,11 +134,11 @@ class Pairs:
         if k == len(self):
             distance, toward = _disk_disk(center, pose_b[:, :2])
         elif k == 0 and n == len(self):
-            distance, toward = _disk_wall(self.shapes, self.wall, center)
+            distance, toward = disk_wall(self.shapes, self.wall, center)
         else:
             distance, toward, center = np.empty(len(self)), np.empty((len(self), 2)), center.copy()
             distance[:k], toward[:k] = _disk_disk(center[:k], pose_b[:k, :2])
-            distance[k:n], toward[k:n] = _disk_wall(self.shapes, self.wall[k:n], center[k:n])
+            distance[k:n], toward[k:n] = disk_wall(self.shapes, self.wall[k:n], center[k:n])
             if n < len(self):
                 a, b = self.cores(np.arange(n, len(self)), pose_a[n:], pose_b[n:])
                 distance[n:], toward[n:], center[n:] = convex.closest(a, b)[:3]
@@ -240,18 +241,6 @@ def pair_key(shapes: Shapes, first: IntArray, second: IntArray) -> IntArray:
     return key
 
 
-def length(vectors: FloatArray) -> FloatArray:
-    """(m,) Euclidean length of (m, 2) vectors; by columns, which numpy does faster than reductions over pairs."""
-    result: FloatArray = np.sqrt(vectors[:, 0] * vectors[:, 0] + vectors[:, 1] * vectors[:, 1])
-    return result
-
-
-def distance_from_axes(points: FloatArray) -> FloatArray:
-    """(m,) the larger of |x| and |y|: what the round-off of a coordinate is relative to."""
-    result: FloatArray = np.maximum(np.abs(points[:, 0]), np.abs(points[:, 1]))
-    return result
-
-
 def _disk_disk(a: FloatArray, b: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Distance (m,) of two centres and unit vector (m, 2) from a to b; coincident centres get the x axis."""
     d = b - a
@@ -269,68 +258,3 @@ def touching(pairs: Pairs, position: FloatArray) -> FloatArray:
     if pairs.flat < len(pairs):
         size = np.where(np.arange(len(pairs)) < pairs.flat, size, _CORNERS * (size + pairs.larger_size))
     return ROUND_OFF * (distance_from_axes(position[pairs.row_a]) + size)
-
-
-@dataclass(frozen=True)
-class Feature:
-    """What of a wall is nearest to a disk's centre, for m disks.
-
-    Attributes:
-        distance: (m,) signed, of the centre from the outline, negative inside.
-        away: (m, 2) unit vector from the outline to the centre (out of the outline where the centre is inside).
-        edge: (m,) flat index into `Walls` of the edge.  along: (m,) where on it, 0 at its start, 1 at its end.
-        side: (m,) whether the edge's side is nearest; otherwise a vertex is.
-    """
-
-    distance: FloatArray
-    away: FloatArray
-    edge: IntArray
-    along: FloatArray
-    side: BoolArray
-
-
-def nearest_feature(walls: Walls, wall: IntArray, center: FloatArray) -> Feature:
-    """The side (exact normal of the edge) or the vertex (direction to it) of every wall nearest to a centre (m, 2).
-
-    A centre inside a polygon leaves through the nearest side.
-    """
-    which, inside = _nearest_edge(walls, wall, center)
-    rel = center - walls.flat_start[which]
-    edge, outward = walls.flat_edge[which], walls.flat_outward[which]
-    height = rel[:, 0] * outward[:, 0] + rel[:, 1] * outward[:, 1]
-    along = (rel[:, 0] * edge[:, 0] + rel[:, 1] * edge[:, 1]) / walls.flat_length_squared[which]
-    side = inside | ((along > 0.0) & (along < 1.0))
-    # The first of a segment's two edges serves both its sides: the sign of the height tells which.
-    sign = np.where(inside | (height >= 0.0), 1.0, -1.0)
-    distance = sign * height
-    away = sign[:, None] * outward
-    corner = np.flatnonzero(~side)
-    if len(corner):
-        offset = rel[corner] - np.clip(along[corner], 0.0, 1.0)[:, None] * edge[corner]
-        to_vertex = length(offset)
-        distance[corner] = to_vertex
-        off = to_vertex > 0.0
-        away[corner[off]] = offset[off] / to_vertex[off, None]
-    return Feature(distance, away, which, along, side)
-
-
-def _disk_wall(shapes: Shapes, wall: IntArray, center: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Signed distance (m,) of a centre from an outline, negative inside, and unit vector (m, 2) toward the outline."""
-    feature = nearest_feature(shapes.walls, wall, center)
-    return feature.distance, -feature.away
-
-
-def _nearest_edge(walls: Walls, wall: IntArray, center: FloatArray) -> tuple[IntArray, BoolArray]:
-    """Flat index (m,) of the outline's edge nearest to the centre, and whether (m,) the centre is inside."""
-    width = walls.start.shape[1]
-    if width == 2:
-        return width * wall, np.zeros(len(wall), bool)
-    rel = center[:, None, :] - walls.start[wall]
-    edge = walls.edge[wall]
-    height = (rel * walls.outward[wall]).sum(axis=2)
-    along = (rel * edge).sum(axis=2) / walls.length_squared[wall]
-    offset = rel - np.clip(along, 0.0, 1.0)[..., None] * edge
-    highest = np.argmax(height, axis=1)
-    inside: BoolArray = height[np.arange(len(wall)), highest] < 0.0
-    nearest = np.argmin((offset * offset).sum(axis=2), axis=1)
-    return width * wall + np.where(inside, highest, nearest), inside

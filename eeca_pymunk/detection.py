@@ -12,7 +12,8 @@ import math
 import numpy as np
 
 from .bodies import Bodies, FloatArray, IntArray
-from .contacts import Pairs, distance_from_axes, length
+from .contacts import Pairs
+from .features import distance_from_axes, length
 from .grown import GrownSpace
 from .shapes import Shapes
 

@@ -6,7 +6,8 @@ import numpy as np
 
 from . import impact_times
 from .bodies import BoolArray, FloatArray, IntArray
-from .contacts import Axis, Pairs, length, nearest_feature, touching
+from .contacts import Axis, Pairs, touching
+from .features import length, nearest_feature
 from .paths import Paths
 
 

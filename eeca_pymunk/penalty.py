@@ -11,9 +11,11 @@ from .array_stepper import ArrayStepper
 from .arrays import Motion, Start, near_pairs
 from .bodies import Bodies, FloatArray, IntArray
 from .closures import check_stiffness
-from .complementarity import Delassus, restrict, solve
+from .complementarity import solve
 from .contacts import Contacts, Geometry, Pairs
+from .delassus import Delassus
 from .detection import MarginTwin
+from .graph import restrict
 from .stepper import StepReport
 
 

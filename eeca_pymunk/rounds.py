@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from .agenda import Agenda
 from .arrays import Start
-from .blocks import Blocks, Resting
+from .blocks import Blocks
 from .bodies import Bodies, BoolArray, FloatArray, IntArray
 from .contacts import ROUND_OFF, Pairs, touching
 from .detection import MarginTwin
 from .forecast import missed, next_impact
 from .impacts import Impacts, Log
+from .memory import Memory, Saved
 from .paths import Paths
 
 _SHORTEST = 2.0**-20  # part of dt, of a window within which the order of impacts is checked
@@ -66,7 +65,7 @@ class Rounds:
         Returns the contacts that may be closed; None if there are no forecasts for this list of pairs.
         """
         last = self.twin.memory
-        if not isinstance(last, _Memory) or last.pairs is not pairs:
+        if not isinstance(last, Memory) or last.pairs is not pairs:
             return None
         start = self.start
         self.agenda.pairs, self.agenda.time, self.agenda.gap = pairs, last.time.copy(), last.gap.copy()
@@ -129,7 +128,7 @@ class Rounds:
         displacement = paths.position(self.agenda.rows, t) - start.position
         self.blocks.finish()
         velocity = paths.rate(self.agenda.rows, t)
-        self.twin.memory = _Memory(
+        self.twin.memory = Memory(
             self.agenda.pairs, self.agenda.time - dt, self.agenda.gap, self.agenda.touch,
             start.position + displacement, velocity, paths.acceleration, paths.pulled,
         )  # fmt: skip
@@ -219,14 +218,14 @@ class Rounds:
         self._wait()
         return True
 
-    def _save(self) -> _Saved:
+    def _save(self) -> Saved:
         paths, before, agenda = self.paths.copy(), self.paths.before.copy(), self.agenda
-        return _Saved(
+        return Saved(
             paths, before, agenda.pairs, agenda.time.copy(), self.bounces.copy(), agenda.touch, self.blocks.resting,
             self.log.lock, len(self.log),
         )  # fmt: skip
 
-    def _restore(self, saved: _Saved) -> None:
+    def _restore(self, saved: Saved) -> None:
         self.paths.assign(saved.paths)
         self.paths.before.assign(saved.before)
         self.agenda.touch, self.blocks.resting = saved.touch, saved.resting
@@ -238,32 +237,3 @@ class Rounds:
         else:
             # The longer list serves the shorter paths as well.
             self._list(self.agenda.pairs, saved.pairs.key[saved.touch])
-
-
-@dataclass(frozen=True)
-class _Saved:
-    """What a window of the step began with."""
-
-    paths: Paths
-    before: Paths
-    pairs: Pairs
-    time: FloatArray
-    bounces: IntArray
-    touch: IntArray
-    resting: Resting
-    lock: float
-    log: int
-
-
-@dataclass(frozen=True)
-class _Memory:
-    """What a step knows about the next: when its pairs meet, counted from the end, if the bodies go on as they are."""
-
-    pairs: Pairs
-    time: FloatArray
-    gap: FloatArray
-    touch: IntArray
-    position: FloatArray
-    velocity: FloatArray
-    acceleration: FloatArray
-    pulled: bool

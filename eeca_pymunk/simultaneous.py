@@ -10,9 +10,11 @@ import numpy as np
 
 from .arrays import Motion, Start, flight, near_pairs
 from .bodies import Bodies, BoolArray, FloatArray, IntArray
-from .complementarity import Delassus, restrict
-from .contacts import Contacts, Geometry, Pairs, length, touching
+from .contacts import Contacts, Geometry, Pairs, touching
+from .delassus import Delassus
 from .detection import MarginTwin
+from .features import length
+from .graph import restrict
 from .stepper import StepReport
 
 _STRUCK = 10.0  # ratio of displacements from which a body is looked after again: detection costs as much as a solution

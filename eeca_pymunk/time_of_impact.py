@@ -9,8 +9,9 @@ import numpy as np
 
 from .arrays import Motion, Start
 from .bodies import Bodies, FloatArray
-from .contacts import ROUND_OFF, distance_from_axes, length
+from .contacts import ROUND_OFF
 from .detection import MarginTwin
+from .features import distance_from_axes, length
 from .impacts import Log
 from .rounds import Rounds
 

@@ -7,7 +7,8 @@ from itertools import product
 import numpy as np
 import pytest
 
-from eeca_pymunk.complementarity import Delassus, pivot, project, solve
+from eeca_pymunk.complementarity import pivot, project, solve
+from eeca_pymunk.delassus import Delassus
 
 
 def random_contacts(seed: int, bodies: int = 6, contacts: int = 7) -> tuple[Delassus, np.ndarray]:

@@ -10,7 +10,8 @@ import scenes
 from comparisons.cradle import slopes
 from comparisons.signorini import closed_form
 from eeca_pymunk import balance
-from eeca_pymunk.complementarity import Delassus, islands
+from eeca_pymunk.delassus import Delassus
+from eeca_pymunk.graph import islands
 
 from .steppers import CLOSURES, two_disks
 

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 import eeca_pymunk as ep
 import scenes
 from eeca_pymunk import convex
-from eeca_pymunk.complementarity import ArmedDelassus
+from eeca_pymunk.delassus import ArmedDelassus
 
 
 def add_box(space: pymunk.Space, position: tuple[float, float], size=(1.0, 1.0), e: float = 1.0, angle: float = 0.0):
