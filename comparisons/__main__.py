@@ -14,7 +14,18 @@ import scenes
 from . import film
 from .output import Output
 
-NAMES = ("signorini", "carom", "cradle", "pool_break", "hopper", "work_precision", "scaling", "soak", "gallery")
+NAMES = (
+    "signorini",
+    "carom",
+    "cradle",
+    "pool_break",
+    "hopper",
+    "work_precision",
+    "scaling",
+    "soak",
+    "hard_cases",
+    "gallery",
+)
 
 
 def main(arguments: list[str] | None = None) -> int:

@@ -11,6 +11,7 @@ from .contacts import Pairs, touching
 from .delassus import Delassus
 from .graph import components, restrict
 from .impacts import Impacts
+from .islands import Island
 from .touching import Resting, Touching
 
 _TOLERANCE = 1e-12  # of the complementarity problems, relative to the largest approach speed
@@ -68,6 +69,14 @@ class Blocks:
             _shared(surplus, now.pair) if rested.any() else None,
         )
         change = A.change(lam)
+        if rested.any():
+            # What of that energy the impulses could not take out.
+            island = Island.of_bodies(rows, a, b, moves, pairs.elasticity < 1.0, label)
+            kinetic = [island.kinetic(w, mobility) for w in (v, v + change)]
+            left = island.sum(surplus) - (kinetic[0] - kinetic[1])
+            left = np.where(island.lossy, np.maximum(left, 0.0), left)
+            left[island.sum(rested) == 0] = 0.0
+            change = island.without(v + change, left, impacts.bodies.mass, impacts.mobility) - v
         v += change
         mine = np.flatnonzero(moves)
         paths.kick(rows[mine], t[mine], change[mine])
@@ -80,6 +89,9 @@ class Blocks:
         on = np.flatnonzero(impacts.stays(chosen, np.abs(A.relative(v))))
         if paths.pulled and len(on):
             self._rest(now.take(on), rows, label, moves, t, x, v)
+        elif rested.any():
+            # Who has left flies freely.
+            paths.pull(rows[mine], t[mine], impacts.start.acceleration[rows[mine]])
         touches: IntArray = np.unique(now.pair[on])
         return touches
 
@@ -160,8 +172,27 @@ class Blocks:
         return scale * result.lam
 
     def finish(self) -> None:
-        """The end of the step: note the forces that last until then."""
-        self._keep(self.resting, np.full(len(self.resting.key), self.impacts.start.dt))
+        """The end of the step: note the forces that last until then, and lock the energy of who rests on them.
+
+        Where shapes turn or slide on curves, constant forces do some work. The velocities of connected bodies, of
+        free ones about their common motion, are scaled so that it is gone; who dissipates may keep a loss.
+        """
+        resting, impacts, paths = self.resting, self.impacts, self.impacts.paths
+        dt, shapes = impacts.start.dt, impacts.shapes
+        self._keep(resting, np.full(len(resting.key), dt))
+        if len(resting.key) == 0:
+            return
+        a, b = shapes.row[resting.first], shapes.row[resting.second]
+        rows, a, b = restrict(a, b, len(impacts.moves))
+        moves = impacts.moves[rows]
+        t = np.full(len(rows), dt)
+        x, v = paths.position(rows, t), paths.rate(rows, t)
+        lossy = shapes.elasticity[resting.first] * shapes.elasticity[resting.second] < 1.0
+        island = Island.of_bodies(rows, a, b, moves, lossy, components(a, b, moves))
+        work = island.sum(resting.work(x[a], x[b]))
+        work = np.where(island.lossy, np.maximum(work, 0.0), work)
+        mine = np.flatnonzero(moves & (work[island.label] != 0.0))
+        paths.kick(rows[mine], t[mine], (island.without(v, work, impacts.bodies.mass, impacts.mobility) - v)[mine])
 
     def _keep(self, ended: Resting, t: FloatArray) -> None:
         lasted = t - ended.since

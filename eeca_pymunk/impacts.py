@@ -109,8 +109,8 @@ class Meeting:
 class Impacts:
     """Applies the impulses of lone contacts to the paths of the bodies: u' = -e u at the time of impact (design 4)."""
 
-    def __init__(self, bodies: Bodies, start: Start, paths: Paths, log: Log) -> None:
-        self.bodies, self.start, self.paths, self.log = bodies, start, paths, log
+    def __init__(self, bodies: Bodies, start: Start, paths: Paths, log: Log, shapes: Shapes) -> None:
+        self.bodies, self.start, self.paths, self.log, self.shapes = bodies, start, paths, log, shapes
         self.moves: BoolArray = bodies.dynamic
         self.kinematic: BoolArray = ~(bodies.dynamic | bodies.static)
         self.mobility: FloatArray = bodies.mobility(start.position.shape[1] == 3)

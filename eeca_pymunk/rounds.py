@@ -16,6 +16,7 @@ from .memory import Memory, Saved
 from .paths import Paths
 
 _SHORTEST = 2.0**-20  # part of dt, of a window within which the order of impacts is checked
+_SQUEEZED = 50  # impacts of one contact with a moving wall in a step
 _BOUNCES = 16  # of one contact within a step after which it stops if its elasticity is below 1
 
 
@@ -29,7 +30,7 @@ class Rounds:
         self.start, self.twin, self.slack = start, twin, slack
         self.moves: BoolArray = bodies.dynamic
         self.paths = Paths(start, np.flatnonzero(bodies.dynamic))
-        self.impacts = Impacts(bodies, start, self.paths, log)
+        self.impacts = Impacts(bodies, start, self.paths, log, twin.shapes)
         self.blocks = Blocks(self.impacts)
         self.may_stop = start.pulled or twin.shapes.lossy
         self.agenda = Agenda(self.paths, self.moves, start.dt)
@@ -150,8 +151,7 @@ class Rounds:
             if stops.any():
                 block, lone = np.union1d(block, lone[stops]), lone[~stops]
                 meeting = meeting.take(np.flatnonzero(~stops))
-            if self.may_stop:
-                self.bounces[lone] += 1
+            self.bounces[lone] += 1
             self.impacts.bounce(meeting)
         if len(block) == 0:
             return lone
@@ -210,11 +210,14 @@ class Rounds:
         if missed(pairs, paths, again, changed):
             return False
         self._forecast(again)
-        at_once = self.agenda.time[taken] <= np.maximum(
-            paths.since[pairs.row_a[taken]], paths.since[pairs.row_b[taken]]
-        )
-        at_once &= self.bounces[taken] >= _BOUNCES
-        self.agenda.time[taken[at_once]] = np.nan
+        if self.may_stop:
+            at_once = self.agenda.time[taken] <= np.maximum(
+                paths.since[pairs.row_a[taken]], paths.since[pairs.row_b[taken]]
+            )
+            at_once &= self.bounces[taken] >= _BOUNCES
+            self.agenda.time[taken[at_once]] = np.nan
+        # A body between moving walls that close in would be hit ever faster: what is left is for the next step.
+        self.agenda.time[self.impacts.kinematic[pairs.row_b] & (self.bounces >= _SQUEEZED)] = np.nan
         self._wait()
         return True
 
