@@ -359,7 +359,7 @@ def scales(make: runs.Make) -> float:
     return float(max(np.abs(end - ends[0]).max() for end in ends))
 
 
-@case("dt from 1e-5 to 1/15", "paths differ (m)", 1e-9)
+@case("dt from 3e-5 to 1/10", "paths differ (m)", 1e-9)
 def steps(make: runs.Make) -> float:
     ends = []
     for dt in (1 / 15, 1 / 60, 1e-5 * 10 / 3):

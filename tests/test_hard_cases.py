@@ -96,7 +96,7 @@ def no_rest(patch: pytest.MonkeyPatch) -> None:
     ("break_it", "name"),
     [
         (flipped_impulse, "swap of velocities"),
-        (late_impacts, "dt from 1e-5 to 1/15"),
+        (late_impacts, "dt from 3e-5 to 1/10"),
         (normal_of_the_start, "units from 1e-3 to 1e4 m"),
         (no_restitution_of_blocks, "touching line of three"),
         (arms_left_out, "rod onto its corner"),
