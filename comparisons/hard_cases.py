@@ -146,7 +146,7 @@ def parallel_contacts(make: runs.Make) -> float:
     rim = [(4.0 * math.cos(a), 4.0 * math.sin(a)) for a in angle]
     add_walls(space, pairwise(rim))
     stepper, worst = make(space), 0.0
-    for _ in range(6000):
+    for _ in range(15_000):
         stepper.step(0.01)
         worst = max(worst, abs(ep.measure(space).energy / 0.545 - 1.0))
     return worst
@@ -295,7 +295,7 @@ def mixed(make: runs.Make) -> float:
     )
 
 
-@case("crowd of 100 disks, 2000 steps", "energy off, or outside", 1e-11)
+@case("crowd of 100 disks, 20 000 steps", "energy off, or outside", 1e-11)
 def crowd(make: runs.Make) -> float:
     rng = np.random.default_rng(0)
     space = pymunk.Space()
@@ -305,7 +305,7 @@ def crowd(make: runs.Make) -> float:
     corners = [(0.0, 0.0), (20.0, 0.0), (20.0, 20.0), (0.0, 20.0)]
     add_walls(space, list(zip(corners, corners[1:] + corners[:1], strict=True)))
     start = ep.measure(space).energy
-    go(space, make, 2000)
+    go(space, make, 20_000)
     x = np.array([b.position for b in space.bodies])
     return math.inf if (x < 0.0).any() or (x > 20.0).any() else abs(ep.measure(space).energy / start - 1.0)
 

@@ -1,24 +1,34 @@
-"""Soak: one million steps of a gas of 20 disks; drift of energy, who is inside, and memory on the way."""
+"""Soak: a million steps of a gas, ten minutes of the hopper; drift of energy, who is inside, memory on the way."""
 
 from __future__ import annotations
 
 import sys
+import time
 
 import numpy as np
 from tqdm import tqdm
 
 import eeca_pymunk as ep
 import scenes
+from comparisons.hopper import crossed
 from comparisons.output import Output, Row
 
 STEPS, DT, RADIUS = 1_000_000, 1e-3, 0.03
 LOOKS = 10
+MINUTES = 10
+TURNS = 10_000
 
 
 def run(output: Output, full: bool) -> None:
     """Print the table; write CSV."""
     output.parameters({"steps": STEPS, "dt": DT, "radius": RADIUS})
     output.table(f"Gas, 20 disks, {STEPS} steps of EECA TimeOfImpact", soak(STEPS))
+    output.table(
+        f"Mixed shapes that turn, {TURNS} steps",
+        [mixed(TURNS, seed, bowl) for bowl in (False, True) for seed in (0, 1)],
+        "mixed",
+    )
+    output.table(f"Hopper, {MINUTES} minutes of EECA TimeOfImpact", hopper(60.0 * MINUTES), "hopper")
 
 
 def soak(steps: int, looks: int = LOOKS) -> list[Row]:
@@ -38,6 +48,45 @@ def soak(steps: int, looks: int = LOOKS) -> list[Row]:
                 "steps": k, "impacts": impacts, "max |dE/E|": drift, "outside": int(outside.sum()),
                 "deepest overlap (r)": max(0.0, 2.0 - float(apart.min()) / RADIUS), "memory (MB)": memory(),
             })  # fmt: skip
+    return rows
+
+
+def mixed(steps: int, seed: int, bowl: bool) -> Row:
+    """Measures of 20 boxes, capsules, compound bodies and disks in a box, or in a bowl under gravity."""
+    scene = scenes.build("mixed", seed=seed, bowl=bowl)
+    stepper, start = ep.EECA(scene.space, sync=False), ep.measure(scene.space).energy
+    drift, impacts = 0.0, 0
+    for _ in tqdm(range(steps), desc="mixed", unit="step", mininterval=1.0, disable=None):
+        impacts += len(stepper.step(scene.dt).contacts)
+        drift = max(drift, abs(ep.measure(scene.space).energy / start - 1.0))
+    x = np.array([b.position for b in scene.bodies])
+    low, high = (np.array((-4.0, -4.0)), np.array((8.0, 16.0))) if bowl else (np.zeros(2), np.full(2, 4.0))
+    outside = int(((x < low) | (x > high)).any(axis=1).sum())
+    return {"in": "bowl" if bowl else "box", "seed": seed, "impacts": impacts, "max |dE/E|": drift, "outside": outside}
+
+
+def hopper(seconds: float, looks: int = LOOKS) -> list[Row]:
+    """Rows of measures, `looks` of them over so many seconds of the clock on the wall."""
+    scene = scenes.build("hopper", dt=5e-4)
+    stepper, start = ep.EECA(scene.space), ep.measure(scene.space).energy
+    rows: list[Row] = []
+    leaked: set[int] = set()
+    drift, steps, begun = 0.0, 0, time.perf_counter()
+    x = np.array([b.position for b in scene.bodies])
+    with tqdm(total=looks, desc="hopper", unit="look", disable=None) as bar:
+        while len(rows) < looks:
+            stepper.step(scene.dt)
+            steps += 1
+            before, x = x, np.array([b.position for b in scene.bodies])
+            leaked |= set(np.flatnonzero(crossed(before, x)).tolist())
+            if time.perf_counter() - begun < seconds * (len(rows) + 1) / looks:
+                continue
+            drift = max(drift, abs(ep.measure(scene.space).energy / start - 1.0))
+            rows.append({
+                "steps": steps, "time (s)": steps * scene.dt, "max |dE/E|": drift, "leaked": len(leaked),
+                "memory (MB)": memory(),
+            })  # fmt: skip
+            bar.update()
     return rows
 
 

@@ -78,7 +78,9 @@ class Rounds:
             same &= last.acceleration == start.acceleration
         changed = ~same.all(axis=1)
         near = last.touch
-        again = np.flatnonzero(changed[pairs.row_a] | changed[pairs.row_b] | np.isnan(self.agenda.time))
+        # What is due is found anew too: a run that was saved and resumed, and remembers nothing, has the same instants.
+        known = (self.agenda.time >= start.dt) & ~(changed[pairs.row_a] | changed[pairs.row_b])
+        again = np.flatnonzero(~known)
         # General shapes that touch are looked at when it is known how they go on.
         again = again[~np.isin(again, near[np.searchsorted(near, pairs.flat) :])]
         self._forecast(again)

@@ -172,3 +172,10 @@ def test_gallery_page_shows_every_figure_and_table(tmp_path: Path, monkeypatch: 
     written = (tmp_path / "GALLERY.md").read_text()
     assert "| energy-momentum | 0.5 | 0.08464 | 0.5 |" in written
     assert (tmp_path / "gallery" / "signorini_fig_1.png").exists()
+
+
+def test_short_hopper_soak() -> None:
+    last = soak.hopper(0.5, 2)[-1]
+    assert float(last["max |dE/E|"] or 0.0) < 1e-12
+    assert last["leaked"] == 0
+    assert int(last["steps"] or 0) > 10

@@ -293,12 +293,14 @@ def test_two_runs_are_bitwise_equal_and_a_pickled_one_goes_on(name: str) -> None
         for _ in range(30):
             stepper.step(0.01)
     assert end(a) == end(b)
+    # A new stepper on a pickled space, and a pickled stepper.
+    fresh = ep.EECA(pickle.loads(pickle.dumps(b)))
     resumed = pickle.loads(pickle.dumps(stepper))
     assert resumed.space is not b
-    for one in (stepper, resumed):
+    for one in (stepper, resumed, fresh):
         for _ in range(20):
             one.step(0.01)
-    assert end(b) == end(resumed.space)
+    assert end(b) == end(resumed.space) == end(fresh.space)
     assert resumed.time == stepper.time
 
 
