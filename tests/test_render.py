@@ -259,3 +259,15 @@ def test_long_recordings_are_bounded_and_removed_bodies_are_nan() -> None:
     assert np.isnan(made.position[-1, 1:]).all()
     assert np.isfinite(made.position[:, 0]).all()
     assert np.isfinite(made.position[3]).all()
+
+
+def test_snapshot_draws_impulses_as_pairs_of_arrows_at_their_points() -> None:
+    scene = scenes.build("signorini")
+    report = ep.EECA(scene.space).step(0.01)
+    assert len(report.impulse) == 1
+    plain = render.snapshot(scene.space)
+    drawn = render.snapshot(scene.space, report=report)
+    assert len(drawn.collections) - len(plain.collections) == 2
+    up, down = drawn.collections[-2:]
+    np.testing.assert_allclose(up.get_offsets(), report.contacts.point, atol=1e-12)
+    assert up.V[0] == -down.V[0] != 0.0  # type: ignore[attr-defined]
