@@ -7,7 +7,7 @@ import copy
 import numpy as np
 
 from .arrays import Start
-from .bodies import FloatArray, IntArray
+from .bodies import BoolArray, FloatArray, IntArray
 
 
 class Paths:
@@ -47,6 +47,14 @@ class Paths:
         if self.pulled:
             self.acceleration[:] = other.acceleration
         self.uneven = other.uneven
+
+    def unchanged(self, start: Start) -> BoolArray:
+        """(N,) whether a path is that of the free flight."""
+        same = (self.origin == start.position) & (self.velocity == start.velocity)
+        if self.pulled:
+            same &= self.acceleration == start.acceleration
+        free: BoolArray = same.all(axis=1)
+        return free
 
     def position(self, rows: IntArray, t: FloatArray) -> FloatArray:
         """(m, 2) positions of rows (m,) at (m,) instants."""

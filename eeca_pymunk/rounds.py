@@ -129,6 +129,9 @@ class Rounds:
                 end = begin + 0.5 * (end - begin)
         t = np.full(len(self.agenda.rows), dt)
         displacement = paths.position(self.agenda.rows, t) - start.position
+        # Who met nobody moves by the same round-off whether others were near or not.
+        free = paths.unchanged(start)
+        displacement[free] = start.free_displacement[free]
         self.blocks.finish()
         velocity = paths.rate(self.agenda.rows, t)
         self.twin.memory = Memory(

@@ -282,25 +282,30 @@ def test_friction_is_refused_or_ignored_with_one_warning() -> None:
         ep.EECA(space, ignore=("gravity",))
 
 
-@pytest.mark.parametrize("name", ["gas", "mixed"])
+@pytest.mark.parametrize("name", ["gas", "mixed", "pool_break", "ball"])
 def test_two_runs_are_bitwise_equal_and_a_pickled_one_goes_on(name: str) -> None:
     def end(space: pymunk.Space) -> list[tuple[float, ...]]:
         return [(*b.position, b.angle, *b.velocity, b.angular_velocity) for b in space.bodies]
 
     a, b = (scenes.build(name).space for _ in range(2))
+    dt = scenes.build(name).dt
     for space in (a, b):
         stepper = ep.EECA(space)
-        for _ in range(30):
-            stepper.step(0.01)
+        for _ in range(60):
+            stepper.step(dt)
     assert end(a) == end(b)
     # A new stepper on a pickled space, and a pickled stepper.
     fresh = ep.EECA(pickle.loads(pickle.dumps(b)))
     resumed = pickle.loads(pickle.dumps(stepper))
     assert resumed.space is not b
+    # pymunk's pickles themselves round the places of bodies whose centre of mass is off their origin.
+    tolerance = 0.0 if end(resumed.space) == end(b) else 1e-12
+    assert (name == "mixed") == (tolerance > 0.0)
     for one in (stepper, resumed, fresh):
-        for _ in range(20):
-            one.step(0.01)
-    assert end(b) == end(resumed.space) == end(fresh.space)
+        for _ in range(25):
+            one.step(dt)
+    for other in (resumed, fresh):
+        np.testing.assert_allclose(end(other.space), end(b), rtol=0.0, atol=tolerance)
     assert resumed.time == stepper.time
 
 
