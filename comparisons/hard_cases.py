@@ -23,6 +23,7 @@ from eeca_pymunk import render
 from scenes.scene import add_disk, add_walls
 
 DT, G = 1 / 60, 9.81
+LONG = {"crowd": 20_000, "720-gon": 15_000}  # steps of the longest cases
 Measure = Callable[[runs.Make], float]
 
 
@@ -146,7 +147,7 @@ def parallel_contacts(make: runs.Make) -> float:
     rim = [(4.0 * math.cos(a), 4.0 * math.sin(a)) for a in angle]
     add_walls(space, pairwise(rim))
     stepper, worst = make(space), 0.0
-    for _ in range(15_000):
+    for _ in range(LONG["720-gon"]):
         stepper.step(0.01)
         worst = max(worst, abs(ep.measure(space).energy / 0.545 - 1.0))
     return worst
@@ -306,7 +307,7 @@ def crowd(make: runs.Make) -> float:
     corners = [(0.0, 0.0), (20.0, 0.0), (20.0, 20.0), (0.0, 20.0)]
     add_walls(space, list(zip(corners, corners[1:] + corners[:1], strict=True)))
     start = ep.measure(space).energy
-    go(space, make, 20_000)
+    go(space, make, LONG["crowd"])
     x = np.array([b.position for b in space.bodies])
     return math.inf if (x < 0.0).any() or (x > 20.0).any() else abs(ep.measure(space).energy / start - 1.0)
 
