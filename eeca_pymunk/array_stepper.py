@@ -73,7 +73,8 @@ class ArrayStepper(Stepper):
                 start = self._start(bodies, rehearsal.before, dt, hooks)
                 twin.shapes.rules = rehearsal.rules(twin.shapes)
             motion = self.advance(bodies, start, twin)
-            end = self._end(bodies, state, start, motion, dt, hooks)
+            began = state if rehearsal is None else rehearsal.before
+            end = self._end(bodies, began, start, motion, dt, hooks)
             if rehearsal is not None:
                 end += after
             bodies.check_finite(end, _OVERFLOW)
@@ -104,7 +105,7 @@ class ArrayStepper(Stepper):
             self._warned = True
             warnings.warn(f"{type(self).__name__} steps on without the friction of this space", stacklevel=4)
         if shapes.general and self.centred_disks:
-            i = int(np.argmax((shapes.rank == 1) | (shapes.rank == 2)))
+            i = int(np.argmax(shapes.turning))
             raise UnsupportedFeature(
                 f"{shapes.items[i]} of {bodies.items[shapes.row[i]]} moves and is not a disk about the centre of mass "
                 f"of a dynamic body, which is all that {type(self).__name__} moves here; use ep.EECA(space)"
@@ -123,18 +124,17 @@ class ArrayStepper(Stepper):
         columns = slice(VELOCITY.start, ANGULAR_VELOCITY + 1) if general else VELOCITY
         velocity = state[:, columns] * ~bodies.static[:, None]
         if hooks is not None:
-            if (damping := self._damping(dt)) != 1.0:
-                velocity *= np.where(bodies.dynamic & ~hooks.steered, damping, 1.0)[:, None]
+            velocity *= self._damping(bodies, hooks, dt)
             if len(hooks.velocity):
                 # What the user's function makes of a velocity within the step, spread over it.
-                change = hooks.velocities(dt) - state[hooks.velocity, VELOCITY.start : ANGULAR_VELOCITY + 1]
-                acceleration[hooks.velocity] = change[:, : acceleration.shape[1]] / dt
+                acceleration[hooks.velocity] = hooks.change(dt)[:, : acceleration.shape[1]] / dt
         position = bodies.poses(state, general)
         return Start(self.time + dt, dt, position, velocity, acceleration, bool(acceleration.any()))
 
-    def _damping(self, dt: float) -> float:
-        """What is left of a velocity after half a step: before and after the motion it is second order."""
-        return float(self.space.damping ** (0.5 * dt))
+    def _damping(self, bodies: Bodies, hooks: Hooks, dt: float) -> FloatArray | float:
+        """What is left of velocities (N, 1) after half a step: before and after the motion it is second order."""
+        left = self.space.damping ** (0.5 * dt)
+        return 1.0 if left == 1.0 else np.where(bodies.dynamic & ~hooks.steered, left, 1.0)[:, None]
 
     def _moved(self, bodies: Bodies, state: FloatArray, start: Start, displacement: FloatArray) -> FloatArray:
         """The (N, 9) state with its bodies displaced (N, d)."""
@@ -156,10 +156,7 @@ class ArrayStepper(Stepper):
             end[:, ANGULAR_VELOCITY] = motion.velocity[:, 2]
         elif _turns(state):
             turn(end, bodies, dt)
-        if (damping := self._damping(dt)) != 1.0:
-            end[:, VELOCITY.start : ANGULAR_VELOCITY + 1] *= np.where(bodies.dynamic & ~hooks.steered, damping, 1.0)[
-                :, None
-            ]
+        end[:, VELOCITY.start : ANGULAR_VELOCITY + 1] *= self._damping(bodies, hooks, dt)
         if len(hooks.position):
             hooks.positions(state, end, dt)
         end[:, FORCE] = 0.0
@@ -186,7 +183,7 @@ class ArrayStepper(Stepper):
         shapes = twin.shapes
         walls = len(shapes.walls.start)
         start = self._start(twin.bodies, state, 0.0)
-        others = int(np.count_nonzero((shapes.rank == 1) | (shapes.rank == 2)))
+        others = int(np.count_nonzero(shapes.turning))
         parts = [
             f"{int(np.count_nonzero(shapes.is_disk))} disks" + (f", {others} other moving shapes" if others else ""),
             f"{walls} walls",

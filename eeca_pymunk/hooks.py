@@ -23,7 +23,7 @@ _PHASES = ("_begin", "_pre_solve", "_post_solve", "_separate")
 
 
 class Hooks:
-    """The functions of a space and its bodies.
+    """The functions of a space and its bodies, for one step.
 
     Attributes:
         velocity, position: rows of the bodies with a function of their own.  steered: (N,) whether it is for velocity.
@@ -36,20 +36,22 @@ class Hooks:
         self.steered = bodies.steered
         # pymunk offers no public way to ask for the handlers of a space.
         self.collisions = bool(space._handlers)
+        self._change: FloatArray | None = None
 
-    def velocities(self, dt: float) -> FloatArray:
-        """(k, 3) velocity and spin that the functions make of those the bodies have, which keep theirs."""
-        gravity, damping = self.space.gravity, self.space.damping**dt
-        found = np.empty((len(self.velocity), 3))
-        for i, row in enumerate(self.velocity):
-            body = self.bodies.items[row]
-            velocity, spin = body.velocity, body.angular_velocity
-            try:
-                body.velocity_func(body, gravity, damping, dt)
-                found[i] = (*body.velocity, body.angular_velocity)
-            finally:
-                body.velocity, body.angular_velocity = velocity, spin
-        return found
+    def change(self, dt: float) -> FloatArray:
+        """(k, 3) what the functions add to velocity and spin of their bodies, which keep theirs; called once a step."""
+        if self._change is None:
+            gravity, damping = self.space.gravity, self.space.damping**dt
+            self._change = np.empty((len(self.velocity), 3))
+            for i, row in enumerate(self.velocity):
+                body = self.bodies.items[row]
+                velocity, spin = body.velocity, body.angular_velocity
+                try:
+                    body.velocity_func(body, gravity, damping, dt)
+                    self._change[i] = (*(body.velocity - velocity), body.angular_velocity - spin)
+                finally:
+                    body.velocity, body.angular_velocity = velocity, spin
+        return self._change
 
     def positions(self, state: FloatArray, end: FloatArray, dt: float) -> None:
         """Let the functions move their bodies from `state` with the velocity that leads to `end`, which they change."""

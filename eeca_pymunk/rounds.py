@@ -32,6 +32,7 @@ class Rounds:
         self.paths = Paths(start, np.flatnonzero(bodies.dynamic))
         self.impacts = Impacts(bodies, start, self.paths, log, twin.shapes)
         self.blocks = Blocks(self.impacts)
+        self.squeezes = bool(self.impacts.kinematic.any())
         self.may_stop = start.pulled or twin.shapes.lossy
         self.agenda = Agenda(self.paths, self.moves, start.dt)
         near = self._remember(pairs)
@@ -221,8 +222,9 @@ class Rounds:
             )
             at_once &= self.bounces[taken] >= _BOUNCES
             self.agenda.time[taken[at_once]] = np.nan
-        # A body between moving walls that close in would be hit ever faster: what is left is for the next step.
-        self.agenda.time[self.impacts.kinematic[pairs.row_b] & (self.bounces >= _SQUEEZED)] = np.nan
+        if self.squeezes:
+            # Between moving walls that close in a body would be hit ever faster: what is left is for the next step.
+            self.agenda.time[self.impacts.kinematic[pairs.row_b] & (self.bounces >= _SQUEEZED)] = np.nan
         self._wait()
         return True
 

@@ -64,7 +64,7 @@ class Shapes:
         elasticity: (S,).  lossy: whether any is below 1.
         is_disk: (S,) whether it is a circle about the centre of mass of a dynamic body.
         wall: (S,) index into `walls`, the outlines of static shapes; -1 for others.
-        general: whether anything moves that is not such a disk: contacts then have arms, and bodies turn.
+        turning: (S,) whether it moves and is not such a disk.  general: whether any is: contacts then have arms.
         rank: (S,) 0 disks, 1 other dynamic shapes, 2 kinematic and 3 static ones.
         size: (S,) length, from the centre of mass to the farthest point.
         core: (S, K, 2) vertices about the centre of mass, shorter outlines repeat their last one; K = 0 if not general.
@@ -90,7 +90,8 @@ class Shapes:
         cores = [core - bodies.center_of_gravity[row] for core, row in zip(cores, self.row, strict=True)]
         self.is_disk: BoolArray = dynamic & np.array([len(c) == 1 and not c.any() for c in cores], bool)
         self.rank: IntArray = np.where(self.is_disk, 0, np.where(dynamic, 1, np.where(static, 3, 2)))
-        self.general = bool(((self.rank == 1) | (self.rank == 2)).any())
+        self.turning: BoolArray = (self.rank == 1) | (self.rank == 2)
+        self.general = bool(self.turning.any())
         away = [np.hypot(*c.T).max() for c in cores]
         self.size: FloatArray = self.radius + np.array(away, float)
         width = max(len(c) for c in cores) if self.general else 0

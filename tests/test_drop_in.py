@@ -219,6 +219,29 @@ def test_velocity_function_is_called_once_with_the_real_dt() -> None:
     assert body.position == pytest.approx((2.0 + 3.0 * t, 3.0 - 0.5 * t * t))  # exact, where pymunk is first order
 
 
+def test_velocity_function_is_called_once_beside_collision_handlers_too() -> None:
+    space, body = ball_in_a_room()
+    seen: list[float] = []
+
+    def push(body: pymunk.Body, gravity: tuple[float, float], damping: float, dt: float) -> None:
+        seen.append(dt)
+        body.velocity += (0.0, 0.5)
+
+    def jump(arbiter: pymunk.Arbiter, space: pymunk.Space, data: object) -> None:
+        body.velocity += (1.0, 0.0)
+        body.position += (0.25, 0.0)
+
+    body.position = (1.3, 0.5)
+    body.velocity_func = push
+    space.on_collision(BALL, ZONE, begin=jump)
+    step = eeca(space)
+    for _ in range(12):
+        step(DT)
+    assert seen == [DT] * 12
+    assert body.velocity == pytest.approx((4.0, 6.0))
+    assert body.position.x > 1.3 + 12 * DT * 3.0 + 0.25
+
+
 def test_position_function_is_called_once_and_decides() -> None:
     space, body = ball_in_a_room()
     seen = []
