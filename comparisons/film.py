@@ -18,14 +18,15 @@ from eeca_pymunk.recording import step_count
 from eeca_pymunk.render.encode import check_encoder
 from scenes import Scene
 
+# By the names of the command line: the title, and the name in `runs.steppers`.
 STEPPERS = {
-    "eeca": "EECA",
-    "midstep": "EECA, Midstep",
-    "dashpot": "EECA, Dashpot",
-    "native": "pymunk",
-    "tuned": "pymunk tuned",
-    "trapezoidal": "trapezoidal",
-    "max_dissipation": "max dissipation",
+    "eeca": ("EECA", "EECA TimeOfImpact"),
+    "midstep": ("EECA, Midstep", "EECA Midstep"),
+    "dashpot": ("EECA, Dashpot", "EECA Dashpot xi=200"),
+    "native": ("pymunk", "native default"),
+    "tuned": ("pymunk tuned", "native tuned 50"),
+    "trapezoidal": ("trapezoidal", "trapezoidal"),
+    "max_dissipation": ("max dissipation", "max dissipation"),
 }
 _MOMENTS = 5  # kept for each frame
 FORMATS = ("gif", "mp4", "html")
@@ -64,19 +65,6 @@ def options(steppers: str | None, suffix: str | None, name: str) -> tuple[list[s
     return chosen, suffix
 
 
-def make(name: str, stiffness: float) -> runs.Make:
-    """The stepper of a name in `STEPPERS`, as all comparisons make it."""
-    if name == "eeca":
-        return runs.eeca(ep.TimeOfImpact())
-    if name == "midstep":
-        return runs.eeca(ep.Midstep())
-    if name == "dashpot":
-        return runs.eeca(ep.Dashpot(stiffness, 200.0))
-    if name in ("native", "tuned"):
-        return runs.native(50 if name == "tuned" else None)
-    return runs.steppers(stiffness)[STEPPERS[name]]
-
-
 def run(
     output: Output, steppers: list[str], suffix: str | None, dt: float | None, duration: float | None, frames: int,
     fps: float,
@@ -97,13 +85,17 @@ def run(
         scene = scenes.build(output.name)
         try:
             begun = time.perf_counter()
-            recordings.append(ep.record(make(name, scene.stiffness)(scene.space), duration, dt, every, progress=True))
+            recordings.append(
+                ep.record(
+                    runs.steppers(scene.stiffness)[STEPPERS[name][1]](scene.space), duration, dt, every, progress=True
+                )
+            )
             times_taken.append((time.perf_counter() - begun) / step_count(duration, dt))
         except NotFiniteError as error:
             raise ValueError(
-                f"{STEPPERS[name]} blew up ({error}); leave it out, or give a shorter --duration"
+                f"{STEPPERS[name][0]} blew up ({error}); leave it out, or give a shorter --duration"
             ) from error
-    titles = [STEPPERS[name] for name in steppers]
+    titles = [STEPPERS[name][0] for name in steppers]
     output.table(f"{output.name}: dt = {dt:g} s, {duration:g} s", [
         {**_row(title, recording, scene), "ms/step": 1e3 * seconds}
         for title, recording, seconds in zip(titles, recordings, times_taken, strict=True)

@@ -74,8 +74,7 @@ class Blocks:
             island = Island.of_bodies(rows, a, b, moves, pairs.elasticity < 1.0, label)
             kinetic = [island.kinetic(w, mobility) for w in (v, v + change)]
             left = island.sum(surplus) - (kinetic[0] - kinetic[1])
-            left = np.where(island.lossy, np.maximum(left, 0.0), left)
-            left[island.sum(rested) == 0] = 0.0
+            left = np.where(island.sum(rested) > 0, island.given(left), 0.0)
             change = island.without(v + change, left, impacts.bodies.mass, impacts.mobility) - v
         v += change
         mine = np.flatnonzero(moves)
@@ -189,8 +188,7 @@ class Blocks:
         x, v = paths.position(rows, t), paths.rate(rows, t)
         lossy = shapes.elasticity[resting.first] * shapes.elasticity[resting.second] < 1.0
         island = Island.of_bodies(rows, a, b, moves, lossy, components(a, b, moves))
-        work = island.sum(resting.work(x[a], x[b]))
-        work = np.where(island.lossy, np.maximum(work, 0.0), work)
+        work = island.given(island.sum(resting.work(x[a], x[b])))
         mine = np.flatnonzero(moves & (work[island.label] != 0.0))
         paths.kick(rows[mine], t[mine], (island.without(v, work, impacts.bodies.mass, impacts.mobility) - v)[mine])
 

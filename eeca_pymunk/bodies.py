@@ -122,9 +122,7 @@ class Bodies:
 
     def _arms(self, angle: FloatArray) -> FloatArray:
         """(N, 2) from the positions of the bodies to their centres of mass."""
-        c, s = np.cos(angle), np.sin(angle)
-        x, y = self.center_of_gravity.T
-        return np.stack((c * x - s * y, s * x + c * y), axis=1)
+        return rotated(self.center_of_gravity, angle)
 
     def positions(self, pose: FloatArray) -> FloatArray:
         """(N, 2) positions of the bodies whose centres of mass and angles are `pose` (N, 3)."""
@@ -148,3 +146,10 @@ class Bodies:
         # pymunk places a body whose centre of mass is elsewhere by the angle it has: the second time by the new one.
         for _ in range(2 if self.center_of_gravity.any() else 1):
             batch.set_space_bodies(self.space, _STATE, self._out)
+
+
+def rotated(vectors: FloatArray, angle: FloatArray) -> FloatArray:
+    """(..., 2) vectors turned by angles (...)."""
+    c, s = np.cos(angle), np.sin(angle)
+    x, y = vectors[..., 0], vectors[..., 1]
+    return np.stack((c * x - s * y, s * x + c * y), axis=-1)

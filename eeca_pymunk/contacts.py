@@ -140,21 +140,21 @@ class Pairs:
             distance[:k], toward[:k] = _disk_disk(center[:k], pose_b[:k, :2])
             distance[k:n], toward[k:n] = disk_wall(self.shapes, self.wall[k:n], center[k:n])
             if n < len(self):
-                a, b = self.cores(np.arange(n, len(self)), pose_a[n:], pose_b[n:])
+                a, b = self.cores(n, pose_a[n:], pose_b[n:])
                 distance[n:], toward[n:], center[n:] = convex.closest(a, b)[:3]
         return Geometry(distance - self.extent, toward, center, self.radius_a)
 
-    def cores(self, which: IntArray, pose_a: FloatArray, pose_b: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """(k, K, 2) world vertices of both shapes of the pairs `which` (k,), bodies at (k, 3) poses."""
+    def cores(self, start: int, pose_a: FloatArray, pose_b: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """(k, K, 2) world vertices of both shapes of the pairs from number `start` on, bodies at (k, 3) poses."""
         core = self.shapes.core
-        return convex.place(core[self.first[which]], pose_a), convex.place(core[self.second[which]], pose_b)
+        return convex.place(core[self.first[start:]], pose_a), convex.place(core[self.second[start:]], pose_b)
 
     def axes(
         self, pose_a: FloatArray, pose_b: FloatArray, rate_a: FloatArray, rate_b: FloatArray, tolerance: FloatArray
     ) -> list[Axis]:
         """Three axes along which general pairs may be apart: the normal as it stands in space, and the normals of the
         edges of a and of b along which they are farthest apart, which turn with their bodies."""
-        a, b = self.cores(np.arange(len(self)), pose_a, pose_b)
+        a, b = self.cores(0, pose_a, pose_b)
         near = convex.closest(a, b)
         r_a, r_b = a - pose_a[:, None, :2], b - pose_b[:, None, :2]
         v_a, v_b = (
@@ -207,7 +207,7 @@ class Pairs:
         n = self.flat
         if n == len(self):
             return np.zeros(0, np.intp), at.take(np.zeros(0, np.intp))
-        a, b = self.cores(np.arange(n, len(self)), pose_a[n:], pose_b[n:])
+        a, b = self.cores(n, pose_a[n:], pose_b[n:])
         size = self.larger_size[n:]
         tolerance = ROUND_OFF * _PARALLEL * (distance_from_axes(pose_a[n:]) + size)
         # A rocking that is lost anyway ends here; else it would end after infinitely many bounces.
@@ -235,10 +235,7 @@ def _kind(shapes: Shapes, first: IntArray, second: IntArray) -> IntArray:
 def pair_key(shapes: Shapes, first: IntArray, second: IntArray) -> IntArray:
     """(m,) one number per pair of shapes, ordered as `Pairs` are."""
     count = len(shapes)
-    if shapes.general:
-        return first * count + second + _kind(shapes, first, second) * count**2
-    key: IntArray = first * count + second + np.where(shapes.is_disk[second], 0, count * count)
-    return key
+    return first * count + second + _kind(shapes, first, second) * count**2
 
 
 def _disk_disk(a: FloatArray, b: FloatArray) -> tuple[FloatArray, FloatArray]:

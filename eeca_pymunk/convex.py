@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .bodies import BoolArray, FloatArray, IntArray
+from .bodies import BoolArray, FloatArray, IntArray, rotated
 
 _CLOSE = 1e-11  # distance relative to that of the shapes
 _WIDTH = 1e-6  # of a common face relative to the shapes, below which it is one point
@@ -34,11 +34,7 @@ class Closest(NamedTuple):
 
 def place(local: FloatArray, pose: FloatArray) -> FloatArray:
     """(m, K, 2) world vertices of outlines `local` (m, K, 2) about centres of mass at `pose` (m, 3): x, y, angle."""
-    c, s = np.cos(pose[:, 2, None]), np.sin(pose[:, 2, None])
-    world = np.empty_like(local)
-    world[..., 0] = pose[:, 0, None] + c * local[..., 0] - s * local[..., 1]
-    world[..., 1] = pose[:, 1, None] + s * local[..., 0] + c * local[..., 1]
-    return world
+    return pose[:, None, :2] + rotated(local, pose[:, 2, None])
 
 
 def closest(a: FloatArray, b: FloatArray) -> Closest:

@@ -25,7 +25,7 @@ def check_writable(path: str | Path) -> Path:
     path.parent.mkdir(parents=True, exist_ok=True)
     if path.is_dir():
         raise IsADirectoryError(f"{path} is a folder: give the name of a file")
-    with whole_file(path.with_name(f"{path.name}.probe")) as probe:
-        probe.touch()
-    path.with_name(f"{path.name}.probe").unlink()
+    probe = path.with_name(f".{path.name}.probe")
+    probe.touch()
+    probe.unlink()
     return path

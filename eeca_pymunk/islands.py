@@ -44,6 +44,10 @@ class Island:
         np.add.at(total, self.of, values)
         return total
 
+    def given(self, energy: FloatArray) -> FloatArray:
+        """(R,) what of an energy (R,) by island has to be taken back: who dissipates may keep a loss."""
+        return np.where(self.lossy, np.maximum(energy, 0.0), energy)
+
     def kinetic(self, v: FloatArray, mobility: FloatArray) -> FloatArray:
         """(R,) kinetic energy by island, bodies of mobility (R, d or 1) at velocities (R, d)."""
         weight = np.divide(1.0, mobility, out=np.zeros_like(mobility), where=mobility > 0.0)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import pymunk
 
-from .bodies import BoolArray, FloatArray, IntArray
+from .bodies import BoolArray, FloatArray, IntArray, rotated
 from .shapes import local_outline
 
 
@@ -66,7 +66,5 @@ def place(local: FloatArray, owner: IntArray, position: FloatArray, angle: Float
     world = local.copy()
     moved = np.flatnonzero(owner >= 0)
     row = owner[moved]
-    c, s = np.cos(angle[row]), np.sin(angle[row])
-    x, y = local[moved].T
-    world[moved] = position[row] + np.stack((c * x - s * y, s * x + c * y), axis=1)
+    world[moved] = position[row] + rotated(local[moved], angle[row])
     return world

@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from .bodies import BoolArray, FloatArray, IntArray
+from .bodies import BoolArray, FloatArray, IntArray, rotated
 from .contacts import Geometry, Pairs
 from .delassus import Delassus, operator
 
@@ -122,8 +122,6 @@ def _carried(point: FloatArray, before: FloatArray, after: FloatArray) -> FloatA
     """(k, 2) where points of bodies get when these go from poses `before` to `after` (k, d)."""
     r = point - before[:, :2]
     if before.shape[1] == 3:
-        turn = after[:, 2] - before[:, 2]
-        c, s = np.cos(turn), np.sin(turn)
-        r = np.stack((c * r[:, 0] - s * r[:, 1], s * r[:, 0] + c * r[:, 1]), axis=1)
+        r = rotated(r, after[:, 2] - before[:, 2])
     result: FloatArray = after[:, :2] + r
     return result
