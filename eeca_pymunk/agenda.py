@@ -62,7 +62,8 @@ class Agenda:
         busy = earliest < np.inf
         both = np.flatnonzero(busy[self.pairs.row_a] & busy[self.pairs.row_b])
         row_a, row_b = self.pairs.row_a[both], self.pairs.row_b[both]
-        speed = length(self.paths.velocity[row_a]) + length(self.paths.velocity[row_b])
+        fast = length(self.paths.velocity)
+        speed = fast[row_a] + fast[row_b]
         a, b = self.label[row_a], self.label[row_b]
         t_a, t_b = earliest[a], earliest[b]
         soon = np.flatnonzero(self.gap[both] < _WAIT * speed * np.abs(t_a - t_b))

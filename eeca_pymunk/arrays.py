@@ -61,7 +61,9 @@ def flight(start: Start, pairs: Pairs, time: FloatArray) -> tuple[FloatArray, Fl
     """(m, 2) centres of a and of b on the free flight, every pair at its own (m,) instant."""
     t = time[:, None]
     a, b = (
-        start.position[r] + t * start.velocity[r] + (0.5 * t * t) * start.acceleration[r]
+        start.position.take(r, axis=0)
+        + t * start.velocity.take(r, axis=0)
+        + (0.5 * t * t) * start.acceleration.take(r, axis=0)
         for r in (pairs.row_a, pairs.row_b)
     )
     return a, b

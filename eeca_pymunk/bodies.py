@@ -148,6 +148,13 @@ class Bodies:
             batch.set_space_bodies(self.space, _STATE, self._out)
 
 
+def put_rows(array: FloatArray, rows: IntArray, values: FloatArray) -> None:
+    """array[rows] = values for arrays (N, d) and (m, d), a row as one item: numpy's own way takes several times as
+    long, as `array[rows]` does beside `array.take(rows, axis=0)`."""
+    row = np.dtype((np.void, array.shape[1] * array.itemsize))
+    array.view(row)[:, 0][rows] = np.ascontiguousarray(values).view(row)[:, 0]
+
+
 def rotated(vectors: FloatArray, angle: FloatArray) -> FloatArray:
     """(..., 2) vectors turned by angles (...)."""
     c, s = np.cos(angle), np.sin(angle)

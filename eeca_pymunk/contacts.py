@@ -6,7 +6,10 @@ dynamic.
 
 from __future__ import annotations
 
+import weakref
+from collections.abc import Callable
 from dataclasses import dataclass, fields
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -61,8 +64,9 @@ class Geometry:
         return result
 
     def take(self, which: IntArray) -> Geometry:
-        """The geometry of the pairs `which`."""
-        return Geometry(self.gap[which], self.normal[which], self.center[which], self.radius[which])
+        """The geometry of the pairs number `which`."""
+        normal, center = self.normal.take(which, axis=0), self.center.take(which, axis=0)
+        return Geometry(self.gap[which], normal, center, self.radius[which])
 
     def joined(self, other: Geometry) -> Geometry:
         """This geometry, and then the other."""
@@ -92,6 +96,8 @@ class Pairs:
 
     def __init__(self, shapes: Shapes, first: IntArray, second: IntArray) -> None:
         self.shapes, self.first, self.second = shapes, first, second
+        # The list that `merged` made this one of, and where its pairs are.
+        self._older: tuple[Callable[[], Pairs | None], IntArray] = (lambda: None), first
         self.row_a: IntArray = shapes.row[first]
         self.row_b: IntArray = shapes.row[second]
         self.radius_a: FloatArray = shapes.radius[first]
@@ -118,14 +124,35 @@ class Pairs:
         """The pairs selected by a mask or by increasing indices."""
         return Pairs(self.shapes, self.first[which], self.second[which])
 
-    @property
+    @cached_property
     def key(self) -> IntArray:
         """(m,) one number per pair, the same in every list of these shapes."""
         return pair_key(self.shapes, self.first, self.second)
 
+    def places_in(self, other: Pairs) -> IntArray:
+        """(m,) where these pairs are in another list with increasing keys; -1 where it lacks one."""
+        older, place = other._older
+        if older() is self:
+            return place
+        if len(other) == 0:
+            return np.full(len(self), -1)
+        place = np.minimum(np.searchsorted(other.key, self.key), len(other) - 1)
+        return np.where(other.key[place] == self.key, place, -1)
+
+    def merged(self, more: Pairs) -> Pairs:
+        """These pairs and those of `more` that are new, keys increasing as they do in both."""
+        new = np.flatnonzero(more.places_in(self) < 0)
+        at = np.searchsorted(self.key, more.key[new])
+        first, second = np.insert(self.first, at, more.first[new]), np.insert(self.second, at, more.second[new])
+        result = Pairs(self.shapes, first, second)
+        result.key = np.insert(self.key, at, more.key[new])
+        place = np.arange(len(self)) + np.cumsum(np.bincount(at, minlength=len(self)))[: len(self)]
+        result._older = weakref.ref(self), place
+        return result
+
     def at(self, position: FloatArray) -> Geometry:
         """Geometry with the bodies at (N, d) `position`."""
-        return self.between(position[self.row_a], position[self.row_b])
+        return self.between(position.take(self.row_a, axis=0), position.take(self.row_b, axis=0))
 
     def between(self, pose_a: FloatArray, pose_b: FloatArray) -> Geometry:
         """Geometry with the bodies of every pair at its own (m, d) places; walls stay where they are."""
@@ -254,4 +281,4 @@ def touching(pairs: Pairs, position: FloatArray) -> FloatArray:
     size = pairs.extent
     if pairs.flat < len(pairs):
         size = np.where(np.arange(len(pairs)) < pairs.flat, size, _CORNERS * (size + pairs.larger_size))
-    return ROUND_OFF * (distance_from_axes(position[pairs.row_a]) + size)
+    return ROUND_OFF * (distance_from_axes(position.take(pairs.row_a, axis=0)) + size)

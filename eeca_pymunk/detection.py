@@ -12,6 +12,7 @@ import math
 import numpy as np
 
 from .bodies import Bodies, FloatArray, IntArray
+from .cells import CellList
 from .contacts import Pairs
 from .features import distance_from_axes, length
 from .grown import GrownSpace
@@ -20,6 +21,7 @@ from .shapes import Shapes
 _HASH_FROM = 200  # moving shapes from which a spatial hash pays (measured: equal cost near 150)
 _MANY = 2000  # moving shapes from which detection waits for memory (measured)
 _FOLLOWED_BY = 16  # walls up to which growing them costs less than following the mean motion saves
+_FEW = 0.05  # part of the disks of a crowd for which a list of pairs is made longer rather than anew
 _WIDEST = 20.0  # cells that the margin of one disk may span in a hash
 
 
@@ -34,6 +36,8 @@ class MarginTwin:
     # disk; neither is worth more than so many radii, beyond which pairs cost more than finding them anew.
     steps_ahead, most_ahead = 4.0, 2.0
     steps_struck, most_struck = 5.0, 0.35
+    # The same of a cell list, which costs less to make, and less still to make longer (measured).
+    steps_ahead_cells, most_struck_cells = 1.2, 0.8
 
     def __init__(self, bodies: Bodies, shapes: Shapes, state: FloatArray) -> None:
         self.bodies, self.shapes = bodies, shapes
@@ -61,9 +65,12 @@ class MarginTwin:
         self._build(pose[self._row])
 
     def _build(self, center: FloatArray) -> None:
-        self._space = GrownSpace(
-            self.shapes, self._moving, self.bodies.center_of_gravity[self.shapes.row], center, self._cell
-        )
+        self._space: CellList | GrownSpace
+        if self._cell > 0.0 and not self.shapes.general and len(self.shapes) - len(self._moving) <= _FOLLOWED_BY:
+            self._space = CellList(self.shapes, self._moving)
+        else:
+            offset = self.bodies.center_of_gravity[self.shapes.row]
+            self._space = GrownSpace(self.shapes, self._moving, offset, center, self._cell)
         self._margin: FloatArray = np.zeros(len(self._moving))
         self._wall_margin = 0.0
 
@@ -82,7 +89,7 @@ class MarginTwin:
             displacement: (N, 2 or 3) of the bodies over the step.
             slack: (N,) length by which a path may leave the straight line of its displacement.
         """
-        center, moving = position[self._row], displacement[self._row]
+        center, moving = position.take(self._row, axis=0), displacement.take(self._row, axis=0)
         follows = self._follows and len(moving) > 0
         self._drift = moving[:, :2].mean(axis=0) if follows else np.zeros(2)
         reach = self._sweep(moving, self._row, self._drift) + slack[self._row]
@@ -92,13 +99,27 @@ class MarginTwin:
             return self._allowed()
         moved = center - self._center
         frame = moved[:, :2].mean(axis=0) if follows else np.zeros(2)
-        room = self._margin - self._sweep(moved, self._row, frame)
+        self._moved = self._sweep(moved, self._row, frame)
         walls = math.hypot(*frame) + math.hypot(*self._drift)
-        if walls > self._wall_margin or (reach > room).any():
+        if walls > self._wall_margin:
             self._detect(center)
         else:
-            self._leave(room)
+            self._complete(center)
         return self._allowed()
+
+    def _complete(self, center: FloatArray) -> None:
+        """Find what the list lacks for the reaches of the disks."""
+        reach = self._reach[self._row]
+        short = np.flatnonzero(reach > self._margin - self._moved)
+        if len(short) > (_FEW * len(center) if isinstance(self._space, CellList) else 0):
+            self._detect(center)
+            return
+        if len(short):
+            assert isinstance(self._space, CellList)
+            self._margin[short] = self._moved[short] + self._needed(center)[short]
+            self._space.grow(short, self._margin[short])
+            self._pairs = self._space.find_more(short, self._pairs)
+        self._leave(self._margin - self._moved)
 
     def _allowed(self) -> Pairs:
         """The pairs of the list that collision handlers let collide."""
@@ -128,7 +149,7 @@ class MarginTwin:
 
     def widen(self, position: FloatArray) -> Pairs:
         """The candidates of the step that starts at `position` (N, 2 or 3), for all that `covers` was asked."""
-        self._detect(position[self._row])
+        self._complete(position.take(self._row, axis=0))
         return self._allowed()
 
     def _leave(self, room: FloatArray) -> None:
@@ -144,18 +165,24 @@ class MarginTwin:
         mean = math.sqrt(float(np.mean(reach * reach)))
         # Among few disks even wide margins make few pairs.
         few = max(1.0, _HASH_FROM / len(reach))
-        own = np.minimum(min(few, 2.0) * self.steps_ahead * reach, few * self.most_ahead * self._size)
-        # Where pymunk's bodies no longer fit the processor's cache, lists that last are worth more pairs.
-        most = self.most_struck if len(reach) < _MANY else math.sqrt(2.0) * self.most_struck
+        if isinstance(self._space, CellList):
+            ahead, most = self.steps_ahead_cells, self.most_struck_cells
+        else:
+            # Where pymunk's bodies no longer fit the processor's cache, lists that last are worth more pairs.
+            ahead, most = self.steps_ahead, self.most_struck * (1.0 if len(reach) < _MANY else math.sqrt(2.0))
+        own = np.minimum(min(few, 2.0) * ahead * reach, few * self.most_ahead * self._size)
         struck = np.minimum(self.steps_struck * mean, most * self._size)
         return np.maximum(np.maximum(reach, own), struck)
+
+    def _needed(self, center: FloatArray) -> FloatArray:
+        """(D,) margins, with a relative 1e-9 for pairs at its end and for the round-off of far-away positions."""
+        floor = 1e-9 * (distance_from_axes(center) + self._size)
+        return np.maximum(self._wanted(self._reach[self._row]) + floor, self._unit)
 
     def _detect(self, center: FloatArray) -> None:
         if len(center) == 0:
             return
-        # The relative 1e-9 keeps a pair that exactly reaches its margin, and covers round-off of far-away positions.
-        floor = 1e-9 * (distance_from_axes(center) + self._size)
-        need = np.maximum(self._wanted(self._reach[self._row]) + floor, self._unit)
+        need = self._needed(center)
         level = self._unit * np.exp2(0.5 * np.ceil(2.0 * np.log2(need / self._unit)))
         if self._space.hashed and level.max() > _WIDEST * self._cell:
             # A hash would put a disk this fast into more cells than there is time for.
@@ -170,6 +197,6 @@ class MarginTwin:
             self._wall_margin = 16.0 * drift
             self._space.grow_walls(self._wall_margin)
         self._pairs = self._space.find(center)
-        self._center = center.copy()
+        self._center, self._moved = center.copy(), np.zeros(len(center))
         self._leave(self._margin)
         self.detections += 1

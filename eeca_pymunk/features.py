@@ -46,8 +46,8 @@ def nearest_feature(walls: Walls, wall: IntArray, center: FloatArray) -> Feature
     A centre inside a polygon leaves through the nearest side.
     """
     which, inside = _nearest_edge(walls, wall, center)
-    rel = center - walls.flat_start[which]
-    edge, outward = walls.flat_edge[which], walls.flat_outward[which]
+    rel = center - walls.flat_start.take(which, axis=0)
+    edge, outward = walls.flat_edge.take(which, axis=0), walls.flat_outward.take(which, axis=0)
     height = rel[:, 0] * outward[:, 0] + rel[:, 1] * outward[:, 1]
     along = (rel[:, 0] * edge[:, 0] + rel[:, 1] * edge[:, 1]) / walls.flat_length_squared[which]
     side = inside | ((along > 0.0) & (along < 1.0))

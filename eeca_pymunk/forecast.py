@@ -63,12 +63,12 @@ def missed(pairs: Pairs, paths: Paths, which: IntArray, changed: BoolArray) -> b
 def _disk_disk(pairs: Pairs, paths: Paths, which: IntArray, dt: float) -> tuple[FloatArray, FloatArray]:
     a, b = pairs.row_a[which], pairs.row_b[which]
     t = np.maximum(paths.since[a], paths.since[b])
-    u = paths.velocity[b] - paths.velocity[a]
-    d = paths.origin[b] - paths.origin[a] + t[:, None] * u
+    u = paths.velocity.take(b, axis=0) - paths.velocity.take(a, axis=0)
+    d = paths.origin.take(b, axis=0) - paths.origin.take(a, axis=0) + t[:, None] * u
     if not paths.uneven:
         time, gap = impact_times.disk_disk(d, u, pairs.extent[which])
         return t + time, gap
-    pull = paths.acceleration[b] - paths.acceleration[a]
+    pull = paths.acceleration.take(b, axis=0) - paths.acceleration.take(a, axis=0)
     d += (0.5 * t * t)[:, None] * pull
     u += t[:, None] * pull
     time, gap = impact_times.disk_disk(d, u, pairs.extent[which])
@@ -94,7 +94,7 @@ def _disk_wall(pairs: Pairs, paths: Paths, which: IntArray, dt: float) -> tuple[
     alpha: FloatArray | float = 0.0
     size = np.zeros(len(a))
     if paths.pulled:
-        pull = paths.acceleration[a]
+        pull = paths.acceleration.take(a, axis=0)
         alpha = pull[:, 0] * near.away[:, 0] + pull[:, 1] * near.away[:, 1]
         size = length(pull)
         reach += 0.5 * size * left * left
@@ -104,7 +104,7 @@ def _disk_wall(pairs: Pairs, paths: Paths, which: IntArray, dt: float) -> tuple[
     hit = time
     time = t + time
     walls = pairs.shapes.walls
-    edge, squared = walls.flat_edge[near.edge], walls.flat_length_squared[near.edge]
+    edge, squared = walls.flat_edge.take(near.edge, axis=0), walls.flat_length_squared[near.edge]
     # Bounds of where on the edge the centre is until then, as a fraction of its length.
     along_rate = (v[:, 0] * edge[:, 0] + v[:, 1] * edge[:, 1]) / squared
     along = s * along_rate

@@ -98,8 +98,8 @@ class Meeting:
 
     def take(self, which: IntArray) -> Meeting:
         """The pairs number `which`, increasing."""
-        J_a = self.direction_a[which]
-        J_b = J_a if self.direction_b is self.direction_a else self.direction_b[which]
+        J_a = self.direction_a.take(which, axis=0)
+        J_b = J_a if self.direction_b is self.direction_a else self.direction_b.take(which, axis=0)
         return Meeting(
             self.pairs.take(which), self.time[which], self.at.take(which), J_a, J_b, self.approach[which],
             np.flatnonzero(np.isin(which, self.faces)),
@@ -143,11 +143,12 @@ class Impacts:
         J_b), which is (1 + e) |u| / (1/m_a + 1/m_b) without arms."""
         pairs, time, J_a, J_b = meeting.pairs, meeting.time, meeting.direction_a, meeting.direction_b
         a, b = pairs.row_a, pairs.row_b
-        m_a, m_b = self.mobility[a], self.mobility[b]
+        m_a, m_b = self.mobility.take(a, axis=0), self.mobility.take(b, axis=0)
         centred = J_a is J_b
         free = m_a[:, 0] + m_b[:, 0] if centred else (J_a * J_a * m_a).sum(axis=1) + (J_b * J_b * m_b).sum(axis=1)
         lam = (1.0 + pairs.elasticity) * np.maximum(meeting.approach, 0.0) / free
-        self.paths.kick(a, time, -m_a * (lam[:, None] * J_a))
         moves = np.flatnonzero(self.moves[b])
-        self.paths.kick(b[moves], time[moves], m_b[moves] * (lam[:, None] * J_b)[moves])
+        rows, instants = np.concatenate((a, b[moves])), np.concatenate((time, time[moves]))
+        change_a, change_b = -m_a * (lam[:, None] * J_a), m_b * (lam[:, None] * J_b)
+        self.paths.kick(rows, instants, np.concatenate((change_a, change_b.take(moves, axis=0))))
         self.log.keep(pairs.first, pairs.second, meeting.at.normal, meeting.at.point, time, lam, lam * free)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+
+import numpy as np
 
 from .bodies import FloatArray, IntArray
 from .contacts import Pairs
@@ -27,7 +29,8 @@ class Saved:
 
 @dataclass(frozen=True)
 class Memory:
-    """What a step knows about the next: when its pairs meet, counted from the end, if the bodies go on as they are."""
+    """What a step knows about the next: when its pairs meet, counted from the end, if the bodies go on as they are, and
+    the part of a step within which the order of impacts is likely to be found at once."""
 
     pairs: Pairs
     time: FloatArray
@@ -36,4 +39,15 @@ class Memory:
     position: FloatArray
     velocity: FloatArray
     acceleration: FloatArray
-    pulled: bool
+    window: float
+
+    def about(self, pairs: Pairs) -> Memory:
+        """What is known of another list of pairs: of those that are new nothing, their instants are NaN."""
+        if pairs is self.pairs:
+            return replace(self, time=self.time.copy(), gap=self.gap.copy())
+        place = self.pairs.places_in(pairs)
+        kept = np.flatnonzero(place >= 0)
+        time, gap = np.full(len(pairs), np.nan), np.full(len(pairs), np.inf)
+        time[place[kept]], gap[place[kept]] = self.time[kept], self.gap[kept]
+        touch = place[self.touch]
+        return replace(self, pairs=pairs, time=time, gap=gap, touch=touch[touch >= 0])

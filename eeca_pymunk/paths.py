@@ -7,7 +7,7 @@ import copy
 import numpy as np
 
 from .arrays import Start
-from .bodies import BoolArray, FloatArray, IntArray
+from .bodies import BoolArray, FloatArray, IntArray, put_rows
 
 
 class Paths:
@@ -48,38 +48,40 @@ class Paths:
             self.acceleration[:] = other.acceleration
         self.uneven = other.uneven
 
-    def unchanged(self, start: Start) -> BoolArray:
-        """(N,) whether a path is that of the free flight."""
-        same = (self.origin == start.position) & (self.velocity == start.velocity)
-        if self.pulled:
-            same &= self.acceleration == start.acceleration
-        free: BoolArray = same.all(axis=1)
-        return free
+    def changed(self, origin: FloatArray, velocity: FloatArray, acceleration: FloatArray) -> BoolArray:
+        """(N,) whether the latest branch is another one than that with these (N, d)."""
+        other: BoolArray = np.zeros(len(origin), bool)
+        for own, given in ((self.origin, origin), (self.velocity, velocity), (self.acceleration, acceleration)):
+            for k in range(origin.shape[1]):
+                other |= own[:, k] != given[:, k]
+        return other
 
     def position(self, rows: IntArray, t: FloatArray) -> FloatArray:
         """(m, 2) positions of rows (m,) at (m,) instants."""
         t = t[:, None]
-        at: FloatArray = self.origin[rows] + t * self.velocity[rows]
+        at: FloatArray = self.origin.take(rows, axis=0) + t * self.velocity.take(rows, axis=0)
         if self.pulled:
-            at += (0.5 * t * t) * self.acceleration[rows]
+            at += (0.5 * t * t) * self.acceleration.take(rows, axis=0)
         return at
 
     def rate(self, rows: IntArray, t: FloatArray) -> FloatArray:
         """(m, 2) velocities of rows (m,) at (m,) instants."""
-        result: FloatArray = self.velocity[rows]
+        result: FloatArray = self.velocity.take(rows, axis=0)
         if self.pulled:
-            result = result + t[:, None] * self.acceleration[rows]
+            result += t[:, None] * self.acceleration.take(rows, axis=0)
         return result
 
     def kick(self, rows: IntArray, t: FloatArray, change: FloatArray) -> None:
         """Change the velocities of distinct rows (m,) by (m, 2) at (m,) instants."""
         before = self.before
-        before.origin[rows], before.velocity[rows] = self.origin[rows], self.velocity[rows]
+        origin, velocity = self.origin.take(rows, axis=0), self.velocity.take(rows, axis=0)
+        put_rows(before.origin, rows, origin)
+        put_rows(before.velocity, rows, velocity)
         before.since[rows] = self.since[rows]
         if self.pulled:
-            before.acceleration[rows] = self.acceleration[rows]
-        self.velocity[rows] += change
-        self.origin[rows] -= t[:, None] * change
+            put_rows(before.acceleration, rows, self.acceleration.take(rows, axis=0))
+        put_rows(self.velocity, rows, velocity + change)
+        put_rows(self.origin, rows, origin - t[:, None] * change)
         self.since[rows] = t
 
     def pull(self, rows: IntArray, t: FloatArray, acceleration: FloatArray) -> None:

@@ -7,7 +7,7 @@ import numpy as np
 from .agenda import Agenda
 from .arrays import Start
 from .blocks import Blocks
-from .bodies import Bodies, BoolArray, FloatArray, IntArray
+from .bodies import Bodies, BoolArray, FloatArray, IntArray, put_rows
 from .contacts import ROUND_OFF, Pairs, touching
 from .detection import MarginTwin
 from .forecast import missed, next_impact
@@ -16,6 +16,7 @@ from .memory import Memory, Saved
 from .paths import Paths
 
 _SHORTEST = 2.0**-20  # part of dt, of a window within which the order of impacts is checked
+_COARSE = 16.0  # times the round-off of the largest lengths, above which no gap is that of shapes that touch
 _SQUEEZED = 50  # impacts of one contact with a moving wall in a step
 _BOUNCES = 16  # of one contact within a step after which it stops if its elasticity is below 1
 
@@ -35,6 +36,7 @@ class Rounds:
         self.squeezes = bool(self.impacts.kinematic.any())
         self.may_stop = start.pulled or twin.shapes.lossy
         self.agenda = Agenda(self.paths, self.moves, start.dt)
+        self.window = 1.0  # the first one, as part of the step
         near = self._remember(pairs)
         if near is None:
             near = self._list(pairs, np.zeros(0, np.intp))
@@ -54,30 +56,30 @@ class Rounds:
             self._forecast(np.flatnonzero(held >= 0.0))
         self._wait()
         self.agenda.join()
-        position = self.start.position
-        if pairs.flat < len(pairs):
-            return np.flatnonzero(self.agenda.gap <= touching(pairs, position))
-        coarse = ROUND_OFF * (np.abs(position).max() + pairs.extent.max(initial=0.0))
-        near = np.flatnonzero(self.agenda.gap <= coarse)
-        return near[self.agenda.gap[near] <= touching(pairs.take(near), position)] if len(near) else near
+        near = np.flatnonzero(self._may_touch(np.arange(len(pairs))))
+        return near[self.agenda.gap[near] <= touching(pairs.take(near), self.start.position)] if len(near) else near
+
+    def _may_touch(self, which: IntArray) -> BoolArray:
+        """(m,) whether the gaps of pairs `which`, just looked at, are round-off of the largest lengths there are."""
+        coarse = _COARSE * ROUND_OFF * (np.abs(self.start.position).max() + self.twin.shapes.size.max())
+        may: BoolArray = self.agenda.gap[which] <= coarse
+        return may
 
     def _remember(self, pairs: Pairs) -> IntArray | None:
         """Take the forecasts of the last step, which hold for all bodies that nobody has touched since.
 
-        Returns the contacts that may be closed; None if there are no forecasts for this list of pairs.
+        Returns the contacts that may be closed; None if nothing is remembered.
         """
         last = self.twin.memory
-        if not isinstance(last, Memory) or last.pairs is not pairs:
+        if not isinstance(last, Memory):
             return None
-        start = self.start
-        self.agenda.pairs, self.agenda.time, self.agenda.gap = pairs, last.time.copy(), last.gap.copy()
+        last, start = last.about(pairs), self.start
+        self.window = last.window
+        self.agenda.pairs, self.agenda.time, self.agenda.gap = pairs, last.time, last.gap
         self.bounces = np.zeros(len(pairs), np.intp)
         self.agenda.touch = np.zeros(0, np.intp)
         self.agenda.join()
-        same = (last.position == start.position) & (last.velocity == start.velocity)
-        if start.pulled or last.pulled:
-            same &= last.acceleration == start.acceleration
-        changed = ~same.all(axis=1)
+        changed = self.paths.changed(last.position, last.velocity, last.acceleration)
         near = last.touch
         # What is due is found anew too: a run that was saved and resumed, and remembers nothing, has the same instants.
         known = (self.agenda.time >= start.dt) & ~(changed[pairs.row_a] | changed[pairs.row_b])
@@ -85,7 +87,7 @@ class Rounds:
         # General shapes that touch are looked at when it is known how they go on.
         again = again[~np.isin(again, near[np.searchsorted(near, pairs.flat) :])]
         self._forecast(again)
-        near = np.union1d(near, again) if len(again) else near
+        near = np.union1d(near, again[self._may_touch(again)])
         if len(near) == 0:
             return near
         some = pairs.take(near)
@@ -93,6 +95,22 @@ class Rounds:
         if pairs.flat < len(pairs):
             self._forecast(near[~touches])
         return near[touches]
+
+    def _extend(self, pairs: Pairs, taken: IntArray) -> IntArray:
+        """Take another list of pairs, and forecast what is new in it; where the contacts `taken` are there."""
+        agenda = self.agenda
+        place = agenda.pairs.places_in(pairs)
+        kept = np.flatnonzero(place >= 0)
+        old_time, old_gap, old_bounces = agenda.time, agenda.gap, self.bounces
+        agenda.time, agenda.gap = np.full(len(pairs), np.nan), np.full(len(pairs), np.inf)
+        self.bounces = np.zeros(len(pairs), np.intp)
+        agenda.time[place[kept]], agenda.gap[place[kept]] = old_time[kept], old_gap[kept]
+        self.bounces[place[kept]] = old_bounces[kept]
+        agenda.pairs, agenda.touch = pairs, place[agenda.touch]
+        new = np.ones(len(pairs), bool)
+        new[place[kept]] = False
+        self._forecast(np.flatnonzero(new))
+        return place[taken]
 
     def _forecast(self, which: IntArray) -> None:
         """Look anew at the pairs `which` (increasing)."""
@@ -113,8 +131,8 @@ class Rounds:
         """Rounds until nothing is due within the step; velocities and displacements (N, 2)."""
         start, paths = self.start, self.paths
         dt, rounds, windows = start.dt, 0, 1
-        begin, end = 0.0, dt
-        saved = self._save()
+        begin, end = 0.0, dt * self.window
+        saved, shortest, restored = self._save(), end, False
         while rounds < max_rounds:
             due = np.flatnonzero(self.agenda.time < end)
             if len(due) == 0:
@@ -128,16 +146,18 @@ class Rounds:
             if not self._look_again(self._take(due)) and end - begin > _SHORTEST * dt:
                 self._restore(saved)
                 end = begin + 0.5 * (end - begin)
-        t = np.full(len(self.agenda.rows), dt)
-        displacement = paths.position(self.agenda.rows, t) - start.position
+                shortest, restored = min(shortest, end - begin), True
         # Who met nobody moves by the same round-off whether others were near or not.
-        free = paths.unchanged(start)
-        displacement[free] = start.free_displacement[free]
+        kinked = np.flatnonzero(paths.changed(start.position, start.velocity, start.acceleration))
+        displacement = start.free_displacement
+        moved = paths.position(kinked, np.full(len(kinked), dt)) - start.position.take(kinked, axis=0)
+        put_rows(displacement, kinked, moved)
         self.blocks.finish()
-        velocity = paths.rate(self.agenda.rows, t)
+        velocity = paths.rate(self.agenda.rows, np.full(len(self.agenda.rows), dt))
         self.twin.memory = Memory(
             self.agenda.pairs, self.agenda.time - dt, self.agenda.gap, self.agenda.touch,
-            start.position + displacement, velocity, paths.acceleration, paths.pulled,
+            start.position + displacement, velocity, paths.acceleration,
+            shortest / dt if restored else min(2.0 * shortest / dt, 1.0),
         )  # fmt: skip
         self.log.rounds += rounds
         self.log.windows += windows
@@ -206,12 +226,11 @@ class Rounds:
         rows = both[self.moves[both]]
         changed = np.zeros(len(self.agenda.rows), bool)
         changed[rows] = True
-        moved = paths.position(rows, np.full(len(rows), self.start.dt)) - self.start.position[rows]
+        moved = paths.position(rows, np.full(len(rows), self.start.dt)) - self.start.position.take(rows, axis=0)
         if not self.twin.covers(rows, moved, self.slack[rows]):
             # An impulse sent a body farther than its margin: pairs that were not near may meet now.
-            self._list(self.twin.widen(self.start.position), pairs.key[self.agenda.touch])
+            taken = self._extend(self.twin.widen(self.start.position), taken)
             pairs = self.agenda.pairs
-            return not missed(pairs, paths, np.arange(len(pairs)), changed)
         again = np.flatnonzero(changed[pairs.row_a] | changed[pairs.row_b])
         if missed(pairs, paths, again, changed):
             return False

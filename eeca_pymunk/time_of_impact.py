@@ -72,9 +72,9 @@ def _parts(bodies: Bodies, start: Start, twin: MarginTwin) -> int:
     moving = np.flatnonzero(bodies.dynamic)
     if len(moving) < _CROWD:
         return 1
-    way = float(np.mean(length(start.free_displacement[moving])))
-    x = start.position[moving, :2]
-    area = float(np.prod(x.max(axis=0) - x.min(axis=0) + 2.0 * way))
+    way = float(length(start.free_displacement)[moving].mean())
+    box = (float(np.ptp(start.position[:, k][moving])) + 2.0 * way for k in (0, 1))
+    area = math.prod(box)
     # The way at which a disk can meet as many others as are worth one look.
     most = math.sqrt(_MEETINGS * area / (math.pi * len(moving)))
     return max(1, min(math.ceil(2.0 * way / most), _PARTS)) if most > 0.0 else 1
