@@ -3,6 +3,9 @@
 pymunk reports a contact only where shapes overlap. The twin is a private space of grown shapes, each with a margin of
 its own; its arbiters are the pairs whose gap is below the sum of their margins. The list is a Verlet list: it stays
 complete until some shape has used its margin up.
+
+For a crowd of disks between few walls a cell list takes the place of the private space: it finds the same pairs. Of a
+step of 16 000 disks pymunk's detection was 58 to 70 %, five times what the cell list takes.
 """
 
 from __future__ import annotations
@@ -18,7 +21,7 @@ from .features import distance_from_axes, length
 from .grown import GrownSpace
 from .shapes import Shapes
 
-_HASH_FROM = 200  # moving shapes from which a spatial hash pays (measured: equal cost near 150)
+_HASH_FROM = 200  # moving shapes from which a spatial hash pays (measured: equal cost near 150), or a cell list
 _MANY = 2000  # moving shapes from which detection waits for memory (measured)
 _FOLLOWED_BY = 16  # walls up to which growing them costs less than following the mean motion saves
 _FEW = 0.05  # part of the disks of a crowd for which a list of pairs is made longer rather than anew
@@ -28,8 +31,8 @@ _WIDEST = 20.0  # cells that the margin of one disk may span in a hash
 class MarginTwin:
     """Candidate pairs of a space's shapes. Rebuild it when shapes come, go or change.
 
-    Margins are powers of sqrt(2) times a thousandth of the radius, and a disk's margin follows its own speed, so that
-    one fast disk does not make neighbours of everybody.
+    Found anew, margins are powers of sqrt(2) times a thousandth of the radius, and a disk's margin follows its own
+    speed, so that one fast disk does not make neighbours of everybody.
     """
 
     # Steps that a margin should last at the disk's own speed, and at the mean speed, which an impulse may give to any

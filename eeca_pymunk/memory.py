@@ -46,8 +46,14 @@ class Memory:
         if pairs is self.pairs:
             return replace(self, time=self.time.copy(), gap=self.gap.copy())
         place = self.pairs.places_in(pairs)
-        kept = np.flatnonzero(place >= 0)
-        time, gap = np.full(len(pairs), np.nan), np.full(len(pairs), np.inf)
-        time[place[kept]], gap[place[kept]] = self.time[kept], self.gap[kept]
+        time, gap = carried(self.time, place, len(pairs), np.nan), carried(self.gap, place, len(pairs), np.inf)
         touch = place[self.touch]
         return replace(self, pairs=pairs, time=time, gap=gap, touch=touch[touch >= 0])
+
+
+def carried(values: FloatArray, place: IntArray, count: int, new: float) -> FloatArray:
+    """(count,) `values` at the places (m,) where these are not negative, `new` elsewhere."""
+    result = np.full(count, new)
+    kept = place >= 0
+    result[place[kept]] = values[kept]
+    return result

@@ -12,7 +12,7 @@ from .contacts import ROUND_OFF, Pairs, touching
 from .detection import MarginTwin
 from .forecast import missed, next_impact
 from .impacts import Impacts, Log
-from .memory import Memory, Saved
+from .memory import Memory, Saved, carried
 from .paths import Paths
 
 _SHORTEST = 2.0**-20  # part of dt, of a window within which the order of impacts is checked
@@ -99,17 +99,13 @@ class Rounds:
     def _extend(self, pairs: Pairs, taken: IntArray) -> IntArray:
         """Take another list of pairs, and forecast what is new in it; where the contacts `taken` are there."""
         agenda = self.agenda
-        place = agenda.pairs.places_in(pairs)
-        kept = np.flatnonzero(place >= 0)
-        old_time, old_gap, old_bounces = agenda.time, agenda.gap, self.bounces
-        agenda.time, agenda.gap = np.full(len(pairs), np.nan), np.full(len(pairs), np.inf)
-        self.bounces = np.zeros(len(pairs), np.intp)
-        agenda.time[place[kept]], agenda.gap[place[kept]] = old_time[kept], old_gap[kept]
-        self.bounces[place[kept]] = old_bounces[kept]
+        place, count = agenda.pairs.places_in(pairs), len(pairs)
+        agenda.time, agenda.gap = carried(agenda.time, place, count, np.nan), carried(agenda.gap, place, count, np.inf)
+        self.bounces = carried(self.bounces.astype(float), place, count, -1.0).astype(np.intp)
         agenda.pairs, agenda.touch = pairs, place[agenda.touch]
-        new = np.ones(len(pairs), bool)
-        new[place[kept]] = False
-        self._forecast(np.flatnonzero(new))
+        new = np.flatnonzero(self.bounces < 0)
+        self.bounces[new] = 0
+        self._forecast(new)
         return place[taken]
 
     def _forecast(self, which: IntArray) -> None:
