@@ -6,9 +6,9 @@
 from types import ModuleType
 
 from .closures import Dashpot, Midstep
-from .contacts import Contacts
 from .eeca import EECA, Closure
 from .errors import UnsupportedFeature
+from .geometry import Contacts
 from .invariants import Invariants, measure
 from .native import Native
 from .newmark import Newmark

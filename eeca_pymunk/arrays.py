@@ -7,9 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from .bodies import FloatArray
-from .contacts import ROUND_OFF, Geometry, Pairs
+from .contacts import ROUND_OFF, Pairs
 from .detection import MarginTwin
 from .features import distance_from_axes, length
+from .geometry import Geometry
 from .stepper import StepReport
 
 

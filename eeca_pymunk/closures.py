@@ -13,8 +13,8 @@ import numpy as np
 from . import balance
 from .bodies import FloatArray
 from .complementarity import solve
-from .contacts import Geometry
 from .delassus import Delassus
+from .geometry import Geometry
 from .graph import islands
 from .simultaneous import Problem, Simultaneous, Solution
 

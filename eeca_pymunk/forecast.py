@@ -6,8 +6,9 @@ import numpy as np
 
 from . import impact_times
 from .bodies import BoolArray, FloatArray, IntArray
-from .contacts import Axis, Pairs, touching
+from .contacts import Pairs, touching
 from .features import length, nearest_feature
+from .geometry import Axis
 from .paths import Paths
 
 

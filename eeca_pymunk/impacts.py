@@ -9,8 +9,9 @@ import numpy as np
 
 from .arrays import Start
 from .bodies import Bodies, BoolArray, FloatArray, IntArray
-from .contacts import ROUND_OFF, Contacts, Geometry, Pairs, pair_key
+from .contacts import ROUND_OFF, Pairs, pair_key
 from .features import distance_from_axes, length
+from .geometry import Contacts, Geometry
 from .paths import Paths
 from .shapes import Shapes
 from .stepper import StepReport

@@ -12,9 +12,10 @@ from .arrays import Motion, Start, near_pairs
 from .bodies import Bodies, FloatArray, IntArray
 from .closures import check_stiffness
 from .complementarity import solve
-from .contacts import Contacts, Geometry, Pairs
+from .contacts import Pairs
 from .delassus import Delassus
 from .detection import MarginTwin
+from .geometry import Contacts, Geometry
 from .graph import restrict
 from .stepper import StepReport
 

@@ -10,10 +10,11 @@ import numpy as np
 
 from .arrays import Motion, Start, flight, near_pairs
 from .bodies import Bodies, BoolArray, FloatArray, IntArray
-from .contacts import Contacts, Geometry, Pairs, touching
+from .contacts import Pairs, touching
 from .delassus import Delassus
 from .detection import MarginTwin
 from .features import length
+from .geometry import Contacts, Geometry
 from .graph import restrict
 from .stepper import StepReport
 

@@ -10,7 +10,7 @@ import numpy as np
 import pymunk
 
 from .bodies import FloatArray
-from .contacts import Contacts
+from .geometry import Contacts
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,9 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from .bodies import BoolArray, FloatArray, IntArray, rotated
-from .contacts import Geometry, Pairs
+from .contacts import Pairs
 from .delassus import Delassus, operator
+from .geometry import Geometry
 
 
 @dataclass(frozen=True)
