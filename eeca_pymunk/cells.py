@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pymunk
 
 from .bodies import BoolArray, FloatArray, IntArray
 from .contacts import Pairs, pair_key
@@ -29,6 +30,9 @@ class CellList:
         self._size = self._radius.copy()
         self._walls: IntArray = np.flatnonzero(shapes.wall >= 0)
         self._wall_margin = 0.0
+        filters = [s.filter for s in shapes.items]
+        self._filtered = any(f != pymunk.ShapeFilter() for f in filters)
+        self._filter: IntArray = np.array(filters, np.intp)
         # (W, 2) corners of the walls' boxes.
         rounding = shapes.radius[self._walls, None]
         self._low, self._high = shapes.walls.start.min(axis=1) - rounding, shapes.walls.start.max(axis=1) + rounding
@@ -60,12 +64,19 @@ class CellList:
         first = np.concatenate((np.minimum(i, j), moving[disk]))
         second = np.concatenate((np.maximum(i, j), self._walls[wall]))
         keep = shapes.row[first] != shapes.row[second]
-        if shapes.filtered:
-            keep &= shapes.may_meet(first, second)
+        if self._filtered:
+            keep &= self._may_meet(first, second)
         if not keep.all():
             first, second = first[keep], second[keep]
         order = np.argsort(pair_key(shapes, first, second))
         return Pairs(shapes, first[order], second[order])
+
+    def _may_meet(self, first: IntArray, second: IntArray) -> BoolArray:
+        """(m,) whether the shapes' filters let them collide, as pymunk reads these."""
+        a, b = self._filter[first].T, self._filter[second].T
+        same_group = (a[0] != 0) & (a[0] == b[0])
+        meet: BoolArray = ~same_group & (a[1] & b[2] != 0) & (b[1] & a[2] != 0)
+        return meet
 
     def _at_walls(self, center: FloatArray, which: IntArray) -> tuple[IntArray, IntArray]:
         """Numbers (m,) of those of the disks `which` (k,) that are near walls, and of these walls."""

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
+import numpy.typing as npt
 
 from .bodies import FloatArray, IntArray
 from .contacts import Pairs
 from .paths import Paths
 from .touching import Resting
+
+Number = TypeVar("Number", np.float64, np.intp)
 
 
 @dataclass(frozen=True)
@@ -51,9 +55,9 @@ class Memory:
         return replace(self, pairs=pairs, time=time, gap=gap, touch=touch[touch >= 0])
 
 
-def carried(values: FloatArray, place: IntArray, count: int, new: float) -> FloatArray:
+def carried(values: npt.NDArray[Number], place: IntArray, count: int, new: float) -> npt.NDArray[Number]:
     """(count,) `values` at the places (m,) where these are not negative, `new` elsewhere."""
-    result = np.full(count, new)
+    result = np.full(count, new, values.dtype)
     kept = place >= 0
     result[place[kept]] = values[kept]
     return result

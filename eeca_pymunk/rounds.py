@@ -101,7 +101,7 @@ class Rounds:
         agenda = self.agenda
         place, count = agenda.pairs.places_in(pairs), len(pairs)
         agenda.time, agenda.gap = carried(agenda.time, place, count, np.nan), carried(agenda.gap, place, count, np.inf)
-        self.bounces = carried(self.bounces.astype(float), place, count, -1.0).astype(np.intp)
+        self.bounces = carried(self.bounces, place, count, -1)
         agenda.pairs, agenda.touch = pairs, place[agenda.touch]
         new = np.flatnonzero(self.bounces < 0)
         self.bounces[new] = 0

@@ -66,7 +66,6 @@ class Shapes:
         wall: (S,) index into `walls`, the outlines of static shapes; -1 for others.
         turning: (S,) whether it moves and is not such a disk.  general: whether any is: contacts then have arms.
         rank: (S,) 0 disks, 1 other dynamic shapes, 2 kinematic and 3 static ones.
-        filtered: whether any has a filter of its own; `may_meet` tells what these say.
         size: (S,) length, from the centre of mass to the farthest point.
         core: (S, K, 2) vertices about the centre of mass, shorter outlines repeat their last one; K = 0 if not general.
     """
@@ -93,9 +92,6 @@ class Shapes:
         self.rank: IntArray = np.where(self.is_disk, 0, np.where(dynamic, 1, np.where(static, 3, 2)))
         self.turning: BoolArray = (self.rank == 1) | (self.rank == 2)
         self.general = bool(self.turning.any())
-        filters = [s.filter for s in self.items]
-        self.filtered = any(f != pymunk.ShapeFilter() for f in filters)
-        self._filter: IntArray = np.array(filters, np.intp).reshape(-1, 3)
         away = [np.hypot(*c.T).max() for c in cores]
         self.size: FloatArray = self.radius + np.array(away, float)
         width = max(len(c) for c in cores) if self.general else 0
@@ -106,13 +102,6 @@ class Shapes:
 
     def __len__(self) -> int:
         return len(self.items)
-
-    def may_meet(self, first: IntArray, second: IntArray) -> BoolArray:
-        """(m,) whether the shapes' filters let them collide, as pymunk reads these."""
-        a, b = self._filter[first].T, self._filter[second].T
-        same_group = (a[0] != 0) & (a[0] == b[0])
-        meet: BoolArray = ~same_group & (a[1] & b[2] != 0) & (b[1] & a[2] != 0)
-        return meet
 
 
 def local_outline(shape: pymunk.Shape) -> FloatArray:

@@ -60,7 +60,7 @@ def test_cells_find_every_pair_once(kind: str, place: str) -> None:
     assert found(*cells.pairs_of(which)) == expected
 
 
-def crowd(disks: int) -> pymunk.Space:
+def crowd(disks: int) -> tuple[Bodies, NDArray[np.float64], Shapes]:
     """Disks of two sizes and three filters, some with two shapes, between walls; one wall is slanted, one a box."""
     rng = np.random.default_rng(5)
     space = pymunk.Space()
@@ -73,15 +73,14 @@ def crowd(disks: int) -> pymunk.Space:
             space.add(pymunk.Circle(body, 0.02))
     add_walls(space, [((0.0, 0.0), (1.0, 0.2)), ((0.0, 1.0), (1.0, 1.0))])
     space.add(pymunk.Poly(space.static_body, [(0.4, 0.4), (0.6, 0.4), (0.5, 0.6)]))
-    return space
-
-
-def test_cells_and_pymunk_find_the_same() -> None:
-    space = crowd(300)
     bodies = Bodies(space)
     state = bodies.gather()
     assert state is not None
-    shapes = Shapes(space, bodies)
+    return bodies, state, Shapes(space, bodies)
+
+
+def test_cells_and_pymunk_find_the_same() -> None:
+    bodies, state, shapes = crowd(300)
     moving = np.flatnonzero(shapes.wall < 0)
     center = state[shapes.row[moving], :2]
     backends: list[CellList | GrownSpace] = [
@@ -98,11 +97,7 @@ def test_cells_and_pymunk_find_the_same() -> None:
 
 
 def test_a_longer_list_is_the_list_found_anew() -> None:
-    space = crowd(300)
-    bodies = Bodies(space)
-    state = bodies.gather()
-    assert state is not None
-    shapes = Shapes(space, bodies)
+    bodies, state, shapes = crowd(300)
     still = np.zeros((len(bodies), 2))
     twins = [MarginTwin(bodies, shapes, state) for _ in range(2)]
     for twin in twins:

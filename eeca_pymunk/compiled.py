@@ -1,0 +1,119 @@
+"""The one decorator of compiled kernels: numba where it is installed, plain Python where it is not.
+
+A kernel takes arrays and numbers, returns numbers or a status, and knows nothing of pymunk. numba itself is imported at
+the first call of a kernel, never at import of the package. Machine code is kept on disk, in a folder named by a hash
+of the package's sources: numba notices an edit of a function, but not of what that function calls.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import os
+import sys
+import time
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, Generic, ParamSpec, TypeVar
+
+P = ParamSpec("P")
+R = TypeVar("R")
+_PACKAGE = Path(__file__).parent
+_OPTIONS = {"cache": True, "fastmath": False, "error_model": "numpy", "boundscheck": False, "nogil": True}
+
+_kernels: list[Kernel[Any, Any]] = []
+_ready = 0  # how many of these have been handed to numba
+
+
+class Kernel(Generic[P, R]):
+    """A function that numba compiles at its first call. `python` is the function as it was written."""
+
+    def __init__(self, python: Callable[P, R]) -> None:
+        functools.update_wrapper(self, python)
+        self.python = python
+        self.run: Callable[P, R] = python
+        _kernels.append(self)
+
+    def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
+        prepare()
+        return self.run(*args, **kwargs)
+
+
+def kernel(python: Callable[P, R]) -> Callable[P, R]:
+    """Compile this function when it is first called, together with all kernels that it calls."""
+    return Kernel(python)
+
+
+def disabled() -> bool:
+    """Whether kernels run as plain Python because NUMBA_DISABLE_JIT asks for it."""
+    return os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0")
+
+
+@functools.cache
+def compiler() -> Any:
+    """The numba module; None if it is missing (a warning says so, once) or disabled."""
+    if disabled():
+        return None
+    try:
+        import numba
+    except ImportError:
+        warnings.warn(
+            "numba is not installed: eeca_pymunk runs as plain Python, some hundred times slower; pip install numba",
+            stacklevel=4,
+        )
+        return None
+    return numba
+
+
+@functools.cache
+def cache_folder() -> Path:
+    """Where machine code of these very sources is kept: beside them, or in the user's cache if that is read-only."""
+    digest = hashlib.sha256()
+    for source in sorted(_PACKAGE.rglob("*.py")):
+        digest.update(source.relative_to(_PACKAGE).as_posix().encode())
+        digest.update(source.read_bytes())
+    name = f"kernels-{digest.hexdigest()[:16]}"
+    beside = _PACKAGE / "__pycache__" / name
+    try:
+        beside.mkdir(parents=True, exist_ok=True)
+        if os.access(beside, os.W_OK):
+            return beside
+    except OSError:
+        pass
+    home = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+    return home / "eeca_pymunk" / name
+
+
+def prepare() -> None:
+    """Hand every kernel to numba, and let the package's modules call the compiled ones directly."""
+    global _ready
+    if _ready == len(_kernels):
+        return
+    numba = compiler()
+    fresh = _kernels[_ready:]
+    _ready = len(_kernels)
+    if numba is None:
+        return
+    folder = cache_folder()
+    if not any(folder.rglob("*.nbi")) and (sys.stderr.isatty() or sys.flags.verbose):
+        print("compiling eeca_pymunk's kernels, once", file=sys.stderr)
+    before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(folder)
+    try:
+        for one in fresh:
+            one.run = numba.njit(**_OPTIONS)(one.python)
+    finally:
+        numba.config.CACHE_DIR = before
+    package = __name__.rpartition(".")[0]
+    for name, module in list(sys.modules.items()):
+        if name == package or name.startswith(package + "."):
+            for key, value in list(vars(module).items()):
+                if isinstance(value, Kernel) and value.run is not value.python:
+                    setattr(module, key, value.run)
+
+
+def warmup(step: Callable[[], object]) -> float:
+    """Seconds that `step`, which calls all kernels, takes."""
+    start = time.perf_counter()
+    step()
+    return time.perf_counter() - start

@@ -1,0 +1,40 @@
+"""The packed arrays that all kernels share: what their columns mean.
+
+BODY (n, 16) float: one row per body. Rows [0, disks) are dynamic bodies with one shape, a circle about the centre of
+mass; then the other dynamic bodies; then kinematic ones; the last row is the ground, on which all static shapes stand
+(pose and velocity 0, no mobility, shapes in world coordinates). A body's path from `SINCE` on, an instant counted from
+the start of the step, is the parabola
+
+    q(t) = q + v s + a s^2 / 2,   s = t - SINCE,   of each of x, y and the angle.
+
+SHAPE (k, 9) float and LINK (k, 6) int: one row per solid shape, ordered by body row, so that the shape of a lone disk
+has the number of its body. VERTEX (v, 4): the vertices of all shapes, counter-clockwise about the centre of mass in the
+body's frame, and the outward unit normal of the edge that begins there (0 for a point). One vertex is a disk, two are a
+segment (with two edges, one for each side), more a polygon; `ROUNDING` rounds them all.
+"""
+
+# BODY
+X, Y, ANGLE = 0, 1, 2  # pose of the centre of mass at SINCE: length, length, rad
+VX, VY, SPIN = 3, 4, 5  # velocity there: length/time, rad/time
+AX, AY, TWIST = 6, 7, 8  # acceleration, constant from then on: length/time², rad/time²
+SINCE = 9  # time after the start of the step
+IM, II = 10, 11  # 1/mass, 1/moment; 0 for what impulses do not move
+EXTENT = 12  # length from the centre of mass to the farthest point of the body's shapes; the radius of a lone disk
+BOUNCE, GRIP = 13, 14  # elasticity and friction of a lone disk
+DUE = 15  # time after the start of the step of the body's next event
+BODY_COLUMNS = 16
+
+# SHAPE
+ROUNDING = 0  # length, radius of a circle, of a segment's or polygon's rounding
+SIZE = 1  # length from the body's centre of mass to the shape's farthest point
+ELASTICITY, FRICTION = 2, 3
+SURFACE_X, SURFACE_Y = 4, 5  # surface velocity, length/time
+CENTRE_X, CENTRE_Y = 6, 7  # of the shape's bounding circle, in the body's frame: length
+BOUND = 8  # radius of that circle: length
+SHAPE_COLUMNS = 9
+
+# LINK
+OWNER = 0  # row of the body
+FIRST, COUNT = 1, 2  # first vertex, number of vertices
+GROUP, CATEGORIES, MASK = 3, 4, 5  # of the shape's filter
+LINK_COLUMNS = 6
