@@ -9,19 +9,29 @@ from __future__ import annotations
 
 import math
 
+from ..arrays import FlagArray, FloatArray, IntArray, PoolArray
 from ..compiled import kernel
-from ..geometry.meeting import disk_disk, disk_wall, meet
 from ..layout import (
-    ANGLE, AX, AY, BOUND, CENTRE_X, CENTRE_Y, DUE, EXTENT, SINCE, SPIN, TWIST, VX, VY, X, Y, FlagArray, FloatArray,
-    IntArray, PoolArray,
+    AX,
+    AY,
+    CENTRE_X,
+    CENTRE_Y,
+    DUE,
+    EXTENT,
+    SINCE,
+    SPIN,
+    TWIST,
+    VX,
+    VY,
+    X,
+    Y,
 )  # fmt: skip
 from ..pairs.layout import AT_X, AT_Y, MARGIN, NUMBER, START
 from ..pairs.lists import centre
 from .heap import push
+from .times import meet
 from .layout import CHECK, FIRST_SHAPE, HEAP, KINKS, KNOWN, LEAVE, NOTHING, OTHER, OWN, SHAPES
 
-_ROUND_OFF = 1e-13  # of speeds, below which what touches does not approach
-_CLOSE = 1e-9  # of the extent, within which that counts
 _INSIDE = 0.1  # of the margin that is left, above which a shape has not left its circle
 
 
@@ -84,8 +94,7 @@ def predict(
     """Forecast body i from its present path, at an instant `now` of the loop, and put what is due in this step on the
     heap."""
     best, own, other = math.inf, -1, NOTHING
-    x, y, vx, vy, ax, ay = BODY[i, X], BODY[i, Y], BODY[i, VX], BODY[i, VY], BODY[i, AX], BODY[i, AY]
-    since, first = BODY[i, SINCE], STATE[i, FIRST_SHAPE]
+    first = STATE[i, FIRST_SHAPE]
     for s in range(first, first + STATE[i, SHAPES]):
         t = leaves(BODY, SHAPE, LINK, MARK, i, s, now)
         if t < best:
@@ -97,39 +106,7 @@ def predict(
             o = POOL[q]
             if RULE.shape[0] > 0 and barred(RULE, s, o):
                 continue
-            certain = True
-            if i < disks and o < disks:
-                other_since = BODY[o, SINCE]
-                bx, by = BODY[o, AX], BODY[o, AY]
-                if ax != bx or ay != by:
-                    t, certain = meet(BODY, SHAPE, LINK, VERTEX, WORK, disks, s, o, end, 0.0)
-                else:
-                    h = since - other_since
-                    if h >= 0.0:
-                        t = since
-                        ux, uy = BODY[o, VX] + bx * h - vx, BODY[o, VY] + by * h - vy
-                        dx = BODY[o, X] + (BODY[o, VX] + 0.5 * bx * h) * h - x
-                        dy = BODY[o, Y] + (BODY[o, VY] + 0.5 * by * h) * h - y
-                    else:
-                        h = -h
-                        t = other_since
-                        ux, uy = BODY[o, VX] - (vx + ax * h), BODY[o, VY] - (vy + ay * h)
-                        dx = BODY[o, X] - (x + (vx + 0.5 * ax * h) * h)
-                        dy = BODY[o, Y] - (y + (vy + 0.5 * ay * h) * h)
-                    closing = -(dx * ux + dy * uy)
-                    if closing <= 0.0:
-                        continue
-                    extent = BODY[i, EXTENT] + BODY[o, EXTENT]
-                    if (
-                        closing < _ROUND_OFF * extent * (abs(vx) + abs(vy) + abs(BODY[o, VX]) + abs(BODY[o, VY]))
-                        and dx * dx + dy * dy < extent * extent * (1.0 + _CLOSE)
-                    ):
-                        continue
-                    t += disk_disk(dx, dy, ux, uy, extent)
-            elif i < disks and o >= moving:
-                t, certain = disk_wall(BODY, SHAPE, LINK, VERTEX, i, o, end)
-            else:
-                t, certain = meet(BODY, SHAPE, LINK, VERTEX, WORK, disks, s, o, end, 0.0)
+            t, certain = meet(BODY, SHAPE, LINK, VERTEX, WORK, s, o, disks, end, -1.0)
             if t < best or (t == best and other >= 0 and (s < own or (s == own and o < other))):
                 best, own, other = t, s, (o if certain else CHECK)
     best = max(best, now)

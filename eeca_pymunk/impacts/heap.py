@@ -3,8 +3,9 @@ its time is what the body says is due."""
 
 from __future__ import annotations
 
+from ..arrays import FloatArray, IntArray
 from ..compiled import kernel
-from ..layout import DUE, FloatArray, IntArray
+from ..layout import DUE
 
 
 @kernel

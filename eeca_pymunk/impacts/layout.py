@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from ..layout import FlagArray, FloatArray, IntArray, PoolArray
+from ..arrays import FlagArray, FloatArray, IntArray, PoolArray
 
 # STATE (n, 8) int: one row per body
 OWN, OTHER = 0, 1  # shapes of the next event; OTHER may be one of these:
@@ -65,6 +65,7 @@ class Scene(NamedTuple):
     HEAP_BODY: IntArray
     LOG: FloatArray
     START: FloatArray
+    PLACE: IntArray
     WORK: FloatArray
     PAR: FloatArray
     COUNT: IntArray

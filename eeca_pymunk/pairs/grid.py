@@ -11,11 +11,31 @@ from __future__ import annotations
 
 import math
 
+from ..arrays import FlagArray, FloatArray, IntArray, PoolArray
 from ..compiled import kernel
-from ..layout import BOUND, FloatArray, FlagArray, IntArray, PoolArray
+from ..layout import BOUND
 from .layout import (
-    AT_X, AT_Y, BUCKET, CELL_LENGTH, LEAVES, LEVEL, LEVEL_COUNT, LEVELS, MARGIN, MOVING, NEXT, NUMBER, POOL_END,
-    PREVIOUS, START, WALL_COLUMNS, WALL_LENGTH, WALL_ROWS, WALL_X, WALL_Y, CAPACITY,
+    AT_X,
+    AT_Y,
+    BUCKET,
+    CAPACITY,
+    CELL_LENGTH,
+    LEAVES,
+    LEVEL,
+    LEVEL_COUNT,
+    LEVELS,
+    MARGIN,
+    MOVING,
+    NEXT,
+    NUMBER,
+    POOL_END,
+    PREVIOUS,
+    START,
+    WALL_COLUMNS,
+    WALL_LENGTH,
+    WALL_ROWS,
+    WALL_X,
+    WALL_Y,
 )  # fmt: skip
 from .lists import append, centre, may_meet, remove
 
@@ -39,7 +59,9 @@ def level_of(radius: float, cell: float) -> int:
 
 
 @kernel
-def link(MARK: FloatArray, CELL: IntArray, HEAD: IntArray, GRID: FloatArray, INFO: IntArray, radius: float, s: int) -> None:
+def link(
+    MARK: FloatArray, CELL: IntArray, HEAD: IntArray, GRID: FloatArray, INFO: IntArray, radius: float, s: int
+) -> None:
     """Put shape s into the grid where its margin circle is."""
     level = level_of(radius + MARK[s, MARGIN], GRID[CELL_LENGTH])
     length = GRID[CELL_LENGTH] * 2.0**level
@@ -142,7 +164,10 @@ def seek_walls(
                     return False
         return True
     length = GRID[WALL_LENGTH]
-    west, east = cell_of(x - radius - GRID[WALL_X], length, columns), cell_of(x + radius - GRID[WALL_X], length, columns)
+    west, east = (
+        cell_of(x - radius - GRID[WALL_X], length, columns),
+        cell_of(x + radius - GRID[WALL_X], length, columns),
+    )
     south, north = cell_of(y - radius - GRID[WALL_Y], length, rows), cell_of(y + radius - GRID[WALL_Y], length, rows)
     for row in range(south, north + 1):
         for column in range(west, east + 1):
