@@ -13,6 +13,18 @@ body's frame, and the outward unit normal of the edge that begins there (0 for a
 segment (with two edges, one for each side), more a polygon; `ROUNDING` rounds them all.
 """
 
+from __future__ import annotations
+
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+IntArray: TypeAlias = npt.NDArray[np.int64]
+PoolArray: TypeAlias = npt.NDArray[np.int32]
+FlagArray: TypeAlias = npt.NDArray[np.uint8]
+
 # BODY
 X, Y, ANGLE = 0, 1, 2  # pose of the centre of mass at SINCE: length, length, rad
 VX, VY, SPIN = 3, 4, 5  # velocity there: length/time, rad/time

@@ -1,0 +1,70 @@
+"""The arrays of the event loop: what their columns mean."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from ..layout import FlagArray, FloatArray, IntArray, PoolArray
+
+# STATE (n, 8) int: one row per body
+OWN, OTHER = 0, 1  # shapes of the next event; OTHER may be one of these:
+LEAVE, CHECK, NOTHING = -1, -2, -3  # OWN leaves its margin circle; the body is to be forecast anew; no event
+KNOWN = 2  # KINKS of the other body when the event was forecast
+KINKS = 3  # how often the body's path has changed
+FIRST_SHAPE, SHAPES = 4, 5
+EVENTS = 6  # impacts of the body in this step
+ISLAND = 7  # first body of the island it is solved in, -1 for none
+STATE_COLUMNS = 8
+
+# LOG (l, 12) float: one row per impulse
+BY, ON = 0, 1  # shapes; the normal points from the first to the second
+INSTANT = 2  # time after the start of the step
+IMPULSE, TANGENTIAL = 3, 4  # mass length/time, along the normal n and t = (-n_y, n_x)
+NORMAL_X, NORMAL_Y, POINT_X, POINT_Y = 5, 6, 7, 8
+GAP = 9  # at the start of the step, length
+CHANGE = 10  # of the normal velocity by the impulse alone, length/time
+LOG_COLUMNS = 12
+
+# PAR float: of the step
+DT, NOW = 0, 1  # length of the step; instant at which the loop has stopped for more room
+GRAVITY_X, GRAVITY_Y = 2, 3
+DAMPING = 4  # what is left of velocities after half a step
+LOCK = 5  # scale of an energy lock that was farthest from 1
+LEDGER = 6  # energy: PAR[LEDGER + ...]
+RESTITUTION, FRICTIONAL, EXTERNAL, DAMPED, LIFTED = 0, 1, 2, 3, 4
+PAR_LENGTH = 12
+
+# COUNT int: of the step
+HEAP, LOGGED, IMPACTS, BLOCKS, FORECASTS, STALE, LIMIT, UNMET = 0, 1, 2, 3, 4, 5, 6, 7
+COUNT_LENGTH = 8
+
+# Status of a step
+DONE, POOL_FULL, LOG_FULL, HEAP_FULL, NOT_FINITE, CHANGED, BLOCK_FULL = 0, 1, 2, 3, 4, 5, 6
+
+
+class Scene(NamedTuple):
+    """All arrays of a scene: bodies and shapes (`..layout`), lists (`..pairs.layout`), and those of the loop."""
+
+    BODY: FloatArray
+    STATE: IntArray
+    SHAPE: FloatArray
+    LINK: IntArray
+    VERTEX: FloatArray
+    MARK: FloatArray
+    CELL: IntArray
+    LIST: IntArray
+    POOL: PoolArray
+    FLAG: FlagArray
+    HEAD: IntArray
+    GRID: FloatArray
+    INFO: IntArray
+    BOX: FloatArray
+    CSR: IntArray
+    RULE: FloatArray
+    HEAP_TIME: FloatArray
+    HEAP_BODY: IntArray
+    LOG: FloatArray
+    START: FloatArray
+    WORK: FloatArray
+    PAR: FloatArray
+    COUNT: IntArray
