@@ -30,9 +30,11 @@ DT, NOW = 0, 1  # length of the step; instant at which the loop has stopped for 
 GRAVITY_X, GRAVITY_Y = 2, 3
 DAMPING = 4  # what is left of velocities after half a step
 LOCK = 5  # scale of an energy lock that was farthest from 1
-LEDGER = 6  # energy: PAR[LEDGER + ...]
+LAST = 6  # length of the step before
+LEDGER = 7  # energy of the step: PAR[LEDGER + ...]
 RESTITUTION, FRICTIONAL, EXTERNAL, DAMPED, LIFTED = 0, 1, 2, 3, 4
-PAR_LENGTH = 12
+BEFORE, AFTER = 12, 13  # kinetic energy at both ends of the step, and -m g.x of gravity
+PAR_LENGTH = 14
 
 # COUNT int: of the step
 HEAP, LOGGED, IMPACTS, BLOCKS, FORECASTS, STALE, LIMIT, UNMET = 0, 1, 2, 3, 4, 5, 6, 7
@@ -40,6 +42,28 @@ COUNT_LENGTH = 8
 
 # Status of a step
 DONE, POOL_FULL, LOG_FULL, HEAP_FULL, NOT_FINITE, CHANGED, BLOCK_FULL = 0, 1, 2, 3, 4, 5, 6
+
+
+class Edge(NamedTuple):
+    """What passes between a space and the loop: N bodies in the space's order, n rows of BODY.
+
+    Attributes:
+        G: (N, 9) as read: position, angle, velocity, spin, force, torque.  IDS: (N,) pymunk's numbers of the bodies.
+        KNOWN: (N,) what these numbers were when the scene was read.
+        ROW: (N,) row in BODY; -1 for static bodies.
+        EXPECT: (N, 6) what was written last.  OUT: (N, 6) what is to be written.
+        COG: (n, 2) centre of mass in the body's frame.
+        EXTRA: (n, 4) whether the body's acceleration is given, and that acceleration.
+    """
+
+    G: FloatArray
+    IDS: IntArray
+    KNOWN: IntArray
+    ROW: IntArray
+    EXPECT: FloatArray
+    OUT: FloatArray
+    COG: FloatArray
+    EXTRA: FloatArray
 
 
 class Scene(NamedTuple):
