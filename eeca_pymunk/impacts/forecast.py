@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 from ..arrays import FlagArray, FloatArray, IntArray, PoolArray
-from ..compiled import kernel
+from ..compiled import uncounted
 from ..layout import (
     AX,
     AY,
@@ -29,13 +29,13 @@ from ..layout import (
 from ..pairs.layout import AT_X, AT_Y, MARGIN, NUMBER, START
 from ..pairs.lists import centre
 from .heap import push
-from .times import meet
+from .times import meet, one_pull
 from .layout import CHECK, FIRST_SHAPE, HEAP, KINKS, KNOWN, LEAVE, NOTHING, OTHER, OWN, SHAPES
 
 _INSIDE = 0.1  # of the margin that is left, above which a shape has not left its circle
 
 
-@kernel
+@uncounted
 def leaves(BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, MARK: FloatArray, i: int, s: int, now: float) -> float:
     """Instant before which the centre of shape s of body i stays within its margin circle; exact for straight paths."""
     m = MARK[s, MARGIN]
@@ -68,14 +68,14 @@ def leaves(BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, MARK: FloatArray
     return now + 2.0 * room / (u + math.sqrt(u * u + 2.0 * g * room))
 
 
-@kernel
+@uncounted
 def has_left(BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, MARK: FloatArray, s: int, now: float) -> bool:
     """Whether shape s is as good as out of its margin circle."""
     x, y = centre(BODY, SHAPE, LINK, s, now)
     return math.hypot(x - MARK[s, AT_X], y - MARK[s, AT_Y]) > (1.0 - _INSIDE) * MARK[s, MARGIN]
 
 
-@kernel
+@uncounted
 def barred(RULE: FloatArray, a: int, b: int) -> bool:
     """Whether a collision handler has said that shapes a and b pass through one another in this step."""
     low, high = float(min(a, b)), float(max(a, b))
@@ -85,7 +85,7 @@ def barred(RULE: FloatArray, a: int, b: int) -> bool:
     return False
 
 
-@kernel
+@uncounted
 def predict(
     BODY: FloatArray, STATE: IntArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, MARK: FloatArray,
     LIST: IntArray, POOL: PoolArray, FLAG: FlagArray, RULE: FloatArray, TIME: FloatArray, OF: IntArray,
@@ -94,7 +94,10 @@ def predict(
     """Forecast body i from its present path, at an instant `now` of the loop, and put what is due in this step on the
     heap."""
     best, own, other = math.inf, -1, NOTHING
-    first = STATE[i, FIRST_SHAPE]
+    since, x, y, vx, vy, ax, ay = (
+        BODY[i, SINCE], BODY[i, X], BODY[i, Y], BODY[i, VX], BODY[i, VY], BODY[i, AX], BODY[i, AY],
+    )  # fmt: skip
+    extent, first = BODY[i, EXTENT], STATE[i, FIRST_SHAPE]
     for s in range(first, first + STATE[i, SHAPES]):
         t = leaves(BODY, SHAPE, LINK, MARK, i, s, now)
         if t < best:
@@ -106,7 +109,14 @@ def predict(
             o = POOL[q]
             if RULE.shape[0] > 0 and barred(RULE, s, o):
                 continue
-            t, certain = meet(BODY, SHAPE, LINK, VERTEX, WORK, s, o, disks, end, -1.0)
+            certain = True
+            if i < disks and o < disks and BODY[o, AX] == ax and BODY[o, AY] == ay:
+                t = one_pull(
+                    since, x, y, vx, vy, BODY[o, SINCE], BODY[o, X], BODY[o, Y], BODY[o, VX], BODY[o, VY], ax, ay,
+                    extent + BODY[o, EXTENT],
+                )  # fmt: skip
+            else:
+                t, certain = meet(BODY, SHAPE, LINK, VERTEX, WORK, s, o, disks, end, -1.0)
             if t < best or (t == best and other >= 0 and (s < own or (s == own and o < other))):
                 best, own, other = t, s, (o if certain else CHECK)
     best = max(best, now)

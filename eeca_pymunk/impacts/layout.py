@@ -37,11 +37,11 @@ BEFORE, AFTER = 12, 13  # kinetic energy at both ends of the step, and -m g.x of
 PAR_LENGTH = 14
 
 # COUNT int: of the step
-HEAP, LOGGED, IMPACTS, BLOCKS, FORECASTS, STALE, LIMIT, UNMET = 0, 1, 2, 3, 4, 5, 6, 7
-COUNT_LENGTH = 8
+HEAP, LOGGED, IMPACTS, BLOCKS, FORECASTS, STALE, LIMIT, UNMET, STRUCK = 0, 1, 2, 3, 4, 5, 6, 7, 8
+COUNT_LENGTH = 9
 
 # Status of a step
-DONE, POOL_FULL, LOG_FULL, HEAP_FULL, NOT_FINITE, CHANGED, BLOCK_FULL = 0, 1, 2, 3, 4, 5, 6
+DONE, POOL_FULL, LOG_FULL, BLOCK_DUE, NOT_FINITE, CHANGED = 0, 1, 2, 3, 4, 5
 
 
 class Edge(NamedTuple):
@@ -90,6 +90,7 @@ class Scene(NamedTuple):
     LOG: FloatArray
     START: FloatArray
     PLACE: IntArray
+    BLOCK: IntArray
     WORK: FloatArray
     PAR: FloatArray
     COUNT: IntArray

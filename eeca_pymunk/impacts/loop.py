@@ -6,24 +6,22 @@ kinked since is forecast anew when it comes up; until then it can only be too ea
 
 from __future__ import annotations
 
-import numpy as np
-
-from ..compiled import kernel
+from ..compiled import kernel, uncounted
 from ..layout import BODY_COLUMNS, DUE, IM, OWNER
 from ..pairs.grid import renew
 from ..pairs.lists import mark_pair
 from .forecast import has_left, predict
 from .heap import pop, push, sweep_out
 from .layout import (
-    CHECK, DONE, DT, EVENTS, HEAP, HEAP_FULL, KINKS, KNOWN, LEAVE, LIMIT, LOG_FULL, LOGGED, NOTHING, NOW, OTHER, OWN,
-    POOL_FULL, UNMET, Scene,
+    CHECK, DONE, DT, EVENTS, HEAP, KINKS, KNOWN, LEAVE, LIMIT, LOG_FULL, LOGGED, NOW, OTHER, OWN,
+    BLOCK_DUE, POOL_FULL, STRUCK, UNMET, Scene,
 )  # fmt: skip
 from .strike import alone, strike, strike_disk
 
 _SQUEEZED = 50  # impacts of a body in a step, from which those with a kinematic one are left out: walls may close in
 
 
-@kernel
+@uncounted
 def forecast(A: Scene, disks: int, moving: int, i: int, t: float, end: float) -> None:
     """The next event of body i, seen from instant t of the loop."""
     predict(
@@ -32,7 +30,7 @@ def forecast(A: Scene, disks: int, moving: int, i: int, t: float, end: float) ->
     )  # fmt: skip
 
 
-@kernel
+@uncounted
 def give_up(A: Scene, i: int, j: int) -> bool:
     """Whether bodies i and j have met as often as a step allows."""
     limit = A.COUNT[LIMIT]
@@ -43,9 +41,9 @@ def give_up(A: Scene, i: int, j: int) -> bool:
     return carried and max(A.STATE[i, EVENTS], A.STATE[j, EVENTS]) >= _SQUEEZED
 
 
-@kernel
+@uncounted
 def run(A: Scene, disks: int, smooth: bool) -> int:
-    """Follow the events until the end of the step. After a status other than DONE, make room and call again.
+    """Follow the events until the end of the step, or the next one that is a block (BLOCK_DUE) or wants more room.
 
     Args:
         disks: the first so many bodies are lone disks.  smooth: whether nothing has friction.
@@ -53,7 +51,6 @@ def run(A: Scene, disks: int, smooth: bool) -> int:
     BODY, STATE, COUNT, TIME, OF = A.BODY, A.STATE, A.COUNT, A.HEAP_TIME, A.HEAP_BODY
     moving = A.LIST.shape[0]
     end = A.PAR[DT]
-    BODIES = np.empty(BODY.shape[0], np.int64)
     while COUNT[HEAP] > 0:
         t, i = TIME[0], OF[0]
         if t != BODY[i, DUE]:
@@ -96,10 +93,24 @@ def run(A: Scene, disks: int, smooth: bool) -> int:
             if o < disks:
                 forecast(A, disks, moving, j, t, end)
             continue
-        status, n = strike(A, disks, s, o, t, BODIES)
+        A.PAR[NOW], COUNT[STRUCK] = t, i
+        return BLOCK_DUE
+    return DONE
+
+
+@kernel
+def follow(A: Scene, disks: int, smooth: bool) -> int:
+    """The events of the step, blocks included. After a status other than DONE, make room and call again."""
+    COUNT = A.COUNT
+    moving, end = A.LIST.shape[0], A.PAR[DT]
+    while True:
+        status = run(A, disks, smooth)
+        if status != BLOCK_DUE:
+            return status
+        t, i = A.PAR[NOW], COUNT[STRUCK]
+        status, n = strike(A, disks, A.STATE[i, OWN], A.STATE[i, OTHER], t)
         if status != DONE:
-            COUNT[HEAP] = push(TIME, OF, COUNT[HEAP], t, i)
+            COUNT[HEAP] = push(A.HEAP_TIME, A.HEAP_BODY, COUNT[HEAP], t, i)
             return status
         for q in range(n):
-            forecast(A, disks, moving, BODIES[q], t, end)
-    return DONE
+            forecast(A, disks, moving, A.BLOCK[q], t, end)

@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel
+from ..compiled import kernel, uncounted
 from ..geometry.flight import pose, rate
 from ..geometry.gap import gap_at, touching
 from ..geometry.manifold import face
@@ -33,7 +33,7 @@ from .layout import (
 _FACES = 16.0  # times the tolerance of touching, by which the ends of parallel faces may differ
 
 
-@kernel
+@uncounted
 def move_to(BODY: FloatArray, i: int, t: float) -> None:
     """Let the path of body i begin at instant t."""
     s = t - BODY[i, SINCE]
@@ -44,7 +44,7 @@ def move_to(BODY: FloatArray, i: int, t: float) -> None:
         BODY[i, SINCE] = t
 
 
-@kernel
+@uncounted
 def restitution(SHAPE: FloatArray, RULE: FloatArray, a: int, b: int) -> tuple[float, float, float, float]:
     """Elasticity, friction, and surface velocity (x, y) of b relative to a: pymunk's products, or what a handler set."""
     for r in range(RULE.shape[0]):
@@ -59,7 +59,7 @@ def restitution(SHAPE: FloatArray, RULE: FloatArray, a: int, b: int) -> tuple[fl
     )
 
 
-@kernel
+@uncounted
 def touches(A: Scene, disks: int, a: int, b: int, t: float) -> bool:
     """Whether shapes a and b touch at instant t, up to round-off."""
     BODY = A.BODY
@@ -78,19 +78,31 @@ def touches(A: Scene, disks: int, a: int, b: int, t: float) -> bool:
     return gap_at(A.SHAPE, A.LINK, A.VERTEX, A.WORK, a, xa, ya, qa, b, xb, yb, qb)[0] <= tolerance
 
 
-@kernel
+@uncounted
 def alone(A: Scene, disks: int, i: int, other: int, t: float) -> bool:
     """Whether no shape but `other` touches the shapes of body i at instant t."""
+    BODY, POOL = A.BODY, A.POOL
+    x, y, _ = pose(BODY, i, t)
     for s in range(A.STATE[i, FIRST_SHAPE], A.STATE[i, FIRST_SHAPE] + A.STATE[i, SHAPES]):
         start = A.LIST[s, START]
         for q in range(start, start + A.LIST[s, NUMBER]):
-            o = A.POOL[q]
-            if o != other and touches(A, disks, s, o, t) and not barred(A.RULE, s, o):
+            o = POOL[q]
+            if o == other:
+                continue
+            if o < disks:
+                # Most are plainly apart.
+                h = t - BODY[o, SINCE]
+                dx = BODY[o, X] + (BODY[o, VX] + 0.5 * BODY[o, AX] * h) * h - x
+                dy = BODY[o, Y] + (BODY[o, VY] + 0.5 * BODY[o, AY] * h) * h - y
+                far = 1.001 * (BODY[i, EXTENT] + BODY[o, EXTENT]) + 1e-9 * (abs(x) + abs(y))
+                if dx * dx + dy * dy > far * far:
+                    continue
+            if touches(A, disks, s, o, t) and not barred(A.RULE, s, o):
                 return False
     return True
 
 
-@kernel
+@uncounted
 def note(
     LOG: FloatArray, n: int, a: int, b: int, t: float, lam: float, beta: float, nx: float, ny: float, px: float,
     py: float, change: float,
@@ -100,7 +112,7 @@ def note(
     LOG[n, NORMAL_X], LOG[n, NORMAL_Y], LOG[n, POINT_X], LOG[n, POINT_Y], LOG[n, CHANGE] = nx, ny, px, py, change
 
 
-@kernel
+@uncounted
 def strike_disk(A: Scene, i: int, o: int, t: float) -> None:
     """Frictionless impact of the lone disk i, with shape o, a lone disk or static: lam = (1 + e) |u| / (1/m_i + 1/m_j)."""
     BODY, LOG = A.BODY, A.LOG
@@ -137,10 +149,10 @@ def strike_disk(A: Scene, i: int, o: int, t: float) -> None:
 
 
 @kernel
-def gather(A: Scene, disks: int, a: int, b: int, t: float, BODIES: IntArray) -> tuple[int, int, IntArray]:
-    """The block that shapes a and b hit at instant t: its n bodies into BODIES, which move to that instant, and its m
+def gather(A: Scene, disks: int, a: int, b: int, t: float) -> tuple[int, int, IntArray]:
+    """The block that shapes a and b hit at instant t: its n bodies into A.BLOCK, which move to that instant, and its m
     pairs as numbers a k + b (k shapes) in increasing order. A.PLACE gives the place of each of these bodies."""
-    k = A.SHAPE.shape[0]
+    k, BODIES = A.SHAPE.shape[0], A.BLOCK
     PAIRS = np.empty(16, np.int64)
     PAIRS[0] = min(a, b) * k + max(a, b)
     n, m, q = 0, 1, 0
@@ -181,14 +193,14 @@ def gather(A: Scene, disks: int, a: int, b: int, t: float, BODIES: IntArray) -> 
 
 
 @kernel
-def strike(A: Scene, disks: int, a: int, b: int, t: float, BODIES: IntArray) -> tuple[int, int]:
-    """Impulses of the block of shapes a and b at instant t. Status, and the number of its bodies, in BODIES.
+def strike(A: Scene, disks: int, a: int, b: int, t: float) -> tuple[int, int]:
+    """Impulses of the block of shapes a and b at instant t. Status, and the number of its bodies, in A.BLOCK.
 
     LOG_FULL leaves everything as it was, but for the instants from which the paths count.
     """
-    BODY, LINK, COUNT = A.BODY, A.LINK, A.COUNT
+    BODY, LINK, COUNT, BODIES = A.BODY, A.LINK, A.COUNT, A.BLOCK
     k = A.SHAPE.shape[0]
-    n, m, PAIRS = gather(A, disks, a, b, t, BODIES)
+    n, m, PAIRS = gather(A, disks, a, b, t)
     BODIES[:n].sort()
     for q in range(n):
         A.PLACE[BODIES[q]] = q

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 
-from ..compiled import kernel
+from ..compiled import uncounted
 from ..geometry.gap import gap_at
 from ..layout import ANGLE, AX, AY, DUE, II, IM, OWNER, SINCE, SPIN, TWIST, VX, VY, X, Y
 from .layout import (
@@ -20,7 +20,7 @@ from .strike import move_to
 _X, _Y, _ANGLE, _VX, _VY, _SPIN, _FX, _FY, _TORQUE = range(9)  # columns of G
 
 
-@kernel
+@uncounted
 def energy(A: Scene, i: int) -> float:
     """Kinetic energy of body i, and potential energy -m g.x in the uniform gravity; 0 for what impulses do not move."""
     BODY = A.BODY
@@ -32,7 +32,7 @@ def energy(A: Scene, i: int) -> float:
     return kinetic / BODY[i, IM] + turning
 
 
-@kernel
+@uncounted
 def begin(A: Scene, E: Edge, disks: int, moving: int) -> int:
     """Take what was read from the space as the start of a step of PAR[DT]: paths, and forecasts of what is due in it.
 
@@ -109,7 +109,7 @@ def begin(A: Scene, E: Edge, disks: int, moving: int) -> int:
     return DONE
 
 
-@kernel
+@uncounted
 def finish(A: Scene, E: Edge) -> int:
     """Bring all bodies to the end of the step and write them out. NOT_FINITE if something overflows."""
     BODY, PAR, OUT = A.BODY, A.PAR, E.OUT
