@@ -49,6 +49,21 @@ OTHER_BODIES, MOVED_STATIC, NOT_FINITE, OVERFLOW = -1, -2, -3, -4
 
 
 @kernel
+def finite(a: float, b: float, c: float, d: float, e: float, f: float) -> bool:
+    """Whether all six are."""
+    # Comparing is what numba does fastest; NaN is not less than anything.
+    least, most = -math.inf, math.inf
+    return (
+        least < a < most
+        and least < b < most
+        and least < c < most
+        and least < d < most
+        and least < e < most
+        and least < f < most
+    )
+
+
+@kernel
 def take(
     STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, BODY: FloatArray, gx: float, gy: float, left: float
 ) -> int:
@@ -75,11 +90,11 @@ def take(
         moved = x != before[i, 0] or y != before[i, 1] or angle != before[i, 2]
         edited = moved or vx != before[i, 3] or vy != before[i, 4] or spin != before[i, 5]
         # What the step before has left was finite.
-        if edited and 0.0 * ((x + y) + (angle + vx) + (vy + spin)) != 0.0:
+        if edited and not finite(x, y, angle, vx, vy, spin):
             return NOT_FINITE
         if fx != 0.0 or fy != 0.0 or torque != 0.0:
             status |= FORCES
-            if 0.0 * (fx + fy + torque) != 0.0:
+            if not finite(fx, fy, torque, 0.0, 0.0, 0.0):
                 return NOT_FINITE
         row = WALK[BODY_ROW, i]
         if row < 0:
@@ -126,7 +141,6 @@ def give(
         `status` with what `lay` adds; OVERFLOW, with STATES written all the same, if a number is not finite.
     """
     after = STATES[LEFT]
-    finite = 0.0
     for i in range(WALK.shape[1]):
         row = WALK[BODY_ROW, i]
         if row < 0:
@@ -142,8 +156,9 @@ def give(
             c, s = math.cos(after[i, 2]), math.sin(after[i, 2])
             after[i, 0] -= c * kx - s * ky
             after[i, 1] -= s * kx + c * ky
-        finite += 0.0 * ((after[i, 0] + after[i, 1]) + (after[i, 2] + after[i, 3]) + (after[i, 4] + after[i, 5]))
-    if finite != 0.0:
+        if not finite(after[i, 0], after[i, 1], after[i, 2], after[i, 3], after[i, 4], after[i, 5]):
+            status = OVERFLOW
+    if status == OVERFLOW:
         return OVERFLOW
     return lay(STATES, WALK, ENDS, status)
 
