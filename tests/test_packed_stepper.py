@@ -149,6 +149,45 @@ def test_functions_set_after_the_stepper_was_made_need_a_refresh() -> None:
     assert body.velocity == velocity
 
 
+@pytest.mark.parametrize("phase", ["begin", "post_solve"])
+def test_what_handlers_change_is_kept(phase: str) -> None:
+    space = pymunk.Space()
+    a, b = (add_disk(space, (x, 0.0), 0.1, velocity=(1.0, 0.0)) for x in (0.0, 0.15))
+    stepper = FreeFlight(space)
+    done: list[pymunk.Body] = []
+
+    def lift(arbiter: pymunk.Arbiter, space: pymunk.Space, data: object) -> None:
+        if not done:
+            a.velocity += (0.0, 4.0)
+            done.append(a)
+
+    space.on_collision(**{phase: lift})  # type: ignore[arg-type]
+    stepper.step(DT)
+    # What begin changes takes part in the motion of the step, what post_solve changes comes after it.
+    assert (a.velocity, a.position.y) == ((1.0, 4.0), 4.0 * DT if phase == "begin" else 0.0)
+    assert (b.velocity, b.position) == ((1.0, 0.0), (0.15 + DT, 0.0))
+    stepper.step(DT)
+    assert a.position.y == (8.0 if phase == "begin" else 4.0) * DT
+
+
+@pytest.mark.parametrize("sync", [True, False])
+@pytest.mark.parametrize("kind", ["velocity", "position"])
+def test_functions_of_bodies_are_called_once_a_step(kind: str, sync: bool) -> None:
+    space = swarm()
+    calls: list[float] = []
+    own = {"velocity": pymunk.Body.update_velocity, "position": pymunk.Body.update_position}[kind]
+
+    def count(body: pymunk.Body, *arguments: object) -> None:
+        calls.append(float(arguments[-1]))  # type: ignore[arg-type]
+        own(body, *arguments)  # type: ignore[operator]
+
+    setattr(next(iter(space.bodies)), f"{kind}_func", count)
+    stepper = FreeFlight(space, sync=sync)
+    for _ in range(3):
+        stepper.step(DT)
+    assert calls == [DT] * 3
+
+
 def test_settings_bodies_and_walls_may_change_between_steps() -> None:
     space = pymunk.Space()
     body = add_disk(space, (0.0, 0.0), 0.1)
