@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel, uncounted
+from ..compiled import uncounted
 from ..geometry.gap import ROUND_OFF
 from ..layout import AX, AY, EXTENT, OWNER, ROUNDING, SINCE, VX, VY, X, Y
 from .circles import circle_circle, circle_outline
@@ -71,7 +71,7 @@ def disk_disk(BODY: FloatArray, i: int, j: int, horizon: float) -> tuple[float, 
     return start + t, certain or t == math.inf
 
 
-@kernel
+@uncounted
 def disk_wall(
     BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, i: int, b: int, horizon: float
 ) -> tuple[float, bool]:
@@ -86,7 +86,7 @@ def disk_wall(
     return since + t, certain or t == math.inf
 
 
-@kernel
+@uncounted
 def meet(
     BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray,
     a: int, b: int, disks: int, horizon: float, held: float,

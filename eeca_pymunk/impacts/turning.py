@@ -20,7 +20,7 @@ from __future__ import annotations
 import math
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel
+from ..compiled import uncounted
 from ..geometry.convex import closest, place, point_core
 from ..geometry.flight import pose, rate
 from ..geometry.gap import touching
@@ -29,7 +29,7 @@ from .circles import circle_circle, circle_outline
 from .roots import ADVANCES, STRIDE, flat
 
 
-@kernel
+@uncounted
 def first_close(
     best: float, near: float, closing: bool, g: float, w: float, bend: float, tolerance: float, held: float
 ) -> tuple[float, float, bool]:
@@ -46,7 +46,7 @@ def first_close(
     return best, near, closing
 
 
-@kernel
+@uncounted
 def fixed_axis(
     P: FloatArray, p: int, Q: FloatArray, q: int, nx: float, ny: float,
     x_a: float, y_a: float, ux_a: float, uy_a: float, w_a: float,
@@ -65,7 +65,7 @@ def fixed_axis(
     return best, near, closing
 
 
-@kernel
+@uncounted
 def turning_axis(
     P: FloatArray, edge: int, Q: FloatArray, q: int,
     x_a: float, y_a: float, ux_a: float, uy_a: float, w_a: float,
@@ -84,7 +84,7 @@ def turning_axis(
     return best, near, closing
 
 
-@kernel
+@uncounted
 def reach_of(BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, s: int) -> tuple[float, float, float]:
     """A point of the body of shape s, relative to its centre of mass, and the reach of the shape about it: the centre
     of mass itself, but for what stands on the ground the shape's own centre."""
@@ -93,7 +93,7 @@ def reach_of(BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, s: int) -> tup
     return 0.0, 0.0, SHAPE[s, SIZE]
 
 
-@kernel
+@uncounted
 def circles_meet(
     BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray,
     a: int, b: int, start: float, left: float, tolerance: float,
@@ -130,7 +130,7 @@ def circles_meet(
     return s, s == math.inf
 
 
-@kernel
+@uncounted
 def bends(
     BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, a: int, b: int, start: float, left: float
 ) -> tuple[float, float, float]:
@@ -154,7 +154,7 @@ def bends(
     return A + around_a + around_b, of_a, of_b
 
 
-@kernel
+@uncounted
 def general(
     BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray,
     a: int, b: int, disks: int, horizon: float, held: float,
