@@ -16,24 +16,16 @@ EVENTS = 6  # impacts of the body in this step
 ISLAND = 7  # first body of the island it is solved in, -1 for none
 STATE_COLUMNS = 8
 
-# LOG (l, 12) float: one row per impulse
-BY, ON = 0, 1  # shapes; the normal points from the first to the second
-INSTANT = 2  # time after the start of the step
-IMPULSE, TANGENTIAL = 3, 4  # mass length/time, along the normal n and t = (-n_y, n_x)
-NORMAL_X, NORMAL_Y, POINT_X, POINT_Y = 5, 6, 7, 8
-GAP = 9  # at the start of the step, length
-CHANGE = 10  # of the normal velocity by the impulse alone, length/time
-LOG_COLUMNS = 12
-
 # PAR float: of the step
 DT, NOW = 0, 1  # length of the step; instant at which the loop has stopped for more room
 GRAVITY_X, GRAVITY_Y = 2, 3
-DAMPING = 4  # what is left of velocities after half a step
+LEFT_OVER = 4  # what the damping of half a step leaves of velocities
 LOCK = 5  # scale of an energy lock that was farthest from 1
 LAST = 6  # length of the step before
 LEDGER = 7  # energy of the step: PAR[LEDGER + ...]
-RESTITUTION, FRICTIONAL, EXTERNAL, DAMPED, LIFTED = 0, 1, 2, 3, 4
-BEFORE, AFTER = 12, 13  # kinetic energy at both ends of the step, and -m g.x of gravity
+RESTITUTION, FRICTIONAL, EXTERNAL, DAMPED = 0, 1, 2, 3
+LEDGER_LENGTH = 4
+BEFORE, AFTER = 12, 13  # kinetic energy and -m g.x at both ends of the step
 PAR_LENGTH = 14
 
 # COUNT int: of the step
@@ -41,33 +33,16 @@ HEAP, LOGGED, IMPACTS, BLOCKS, FORECASTS, STALE, LIMIT, UNMET, STRUCK = 0, 1, 2,
 COUNT_LENGTH = 9
 
 # Status of a step
-DONE, POOL_FULL, LOG_FULL, BLOCK_DUE, NOT_FINITE, CHANGED = 0, 1, 2, 3, 4, 5
-
-
-class Edge(NamedTuple):
-    """What passes between a space and the loop: N bodies in the space's order, n rows of BODY.
-
-    Attributes:
-        G: (N, 9) as read: position, angle, velocity, spin, force, torque.  IDS: (N,) pymunk's numbers of the bodies.
-        KNOWN: (N,) what these numbers were when the scene was read.
-        ROW: (N,) row in BODY; -1 for static bodies.
-        EXPECT: (N, 6) what was written last.  OUT: (N, 6) what is to be written.
-        COG: (n, 2) centre of mass in the body's frame.
-        EXTRA: (n, 4) whether the body's acceleration is given, and that acceleration.
-    """
-
-    G: FloatArray
-    IDS: IntArray
-    KNOWN: IntArray
-    ROW: IntArray
-    EXPECT: FloatArray
-    OUT: FloatArray
-    COG: FloatArray
-    EXTRA: FloatArray
+DONE, POOL_FULL, LOG_FULL, BLOCK_DUE = 0, 1, 2, 3
 
 
 class Scene(NamedTuple):
-    """All arrays of a scene: bodies and shapes (`..layout`), lists (`..pairs.layout`), and those of the loop."""
+    """All arrays of a scene: bodies and shapes (`..layout`), lists (`..pairs.layout`), and those of the loop.
+
+    RULE (r, 6): what collision handlers say of pairs, a < b: shapes a, b, elasticity (below 0: none), friction, surface
+    velocity of b relative to a. LOG: EVENT rows. BEGAN (n, 3): poses at the start of the step. WORK (2, K, 4): scratch
+    for vertices. PLACE (n,): -1, or a body's place in the block in BLOCK (n,).
+    """
 
     BODY: FloatArray
     STATE: IntArray
@@ -88,7 +63,7 @@ class Scene(NamedTuple):
     HEAP_TIME: FloatArray
     HEAP_BODY: IntArray
     LOG: FloatArray
-    START: FloatArray
+    BEGAN: FloatArray
     PLACE: IntArray
     BLOCK: IntArray
     WORK: FloatArray

@@ -7,13 +7,13 @@ kinked since is forecast anew when it comes up; until then it can only be too ea
 from __future__ import annotations
 
 from ..compiled import kernel, uncounted
-from ..layout import BODY_COLUMNS, DUE, IM, OWNER
+from ..layout import DUE, IM, OWNER
 from ..pairs.grid import renew
 from ..pairs.lists import mark_pair
 from .forecast import has_left, predict
 from .heap import pop, push, sweep_out
 from .layout import (
-    CHECK, DONE, DT, EVENTS, HEAP, KINKS, KNOWN, LEAVE, LIMIT, LOG_FULL, LOGGED, NOW, OTHER, OWN,
+    DONE, DT, EVENTS, HEAP, KINKS, KNOWN, LEAVE, LIMIT, LOG_FULL, LOGGED, NOW, OTHER, OWN,
     BLOCK_DUE, POOL_FULL, STRUCK, UNMET, Scene,
 )  # fmt: skip
 from .strike import alone, strike, strike_disk

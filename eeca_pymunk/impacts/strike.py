@@ -16,8 +16,9 @@ from ..geometry.flight import pose, rate
 from ..geometry.gap import gap_at, touching
 from ..geometry.manifold import face
 from ..layout import (
-    ANGLE, AX, AY, BOUND, COUNT as VERTICES, ELASTICITY, EXTENT, FRICTION, II, IM, OWNER, SINCE, SPIN, SURFACE_X,
-    SURFACE_Y, TWIST, VX, VY, X, Y,
+    ANGLE, AX, AY, BOUND, CHANGE, COUNT as VERTICES, ELASTICITY, EXTENT, FIRST, FIRST_SHAPE as BY, FRICTION, II, IM,
+    IMPULSE, NORMAL_X, NORMAL_Y, OWNER, POINT_X, POINT_Y, SECOND_SHAPE as ON, SINCE, SPIN, SURFACE_X, SURFACE_Y,
+    TANGENTIAL, VX, VY, WHEN, X, Y,
 )  # fmt: skip
 from ..pairs.layout import NUMBER, START
 from ..pairs.lists import centre
@@ -26,8 +27,8 @@ from ..rows.build import place_row
 from ..rows.layout import K_N, NX, NY, ROW_COLUMNS
 from .forecast import barred
 from .layout import (
-    BLOCKS, BY, CHANGE, EVENTS, FIRST_SHAPE, FRICTIONAL, IMPACTS, IMPULSE, INSTANT, KINKS, LEDGER, LOCK, LOG_FULL,
-    DONE, LOGGED, NORMAL_X, NORMAL_Y, ON, POINT_X, POINT_Y, RESTITUTION, SHAPES, TANGENTIAL, UNMET, Scene,
+    BLOCKS, DONE, EVENTS, FIRST_SHAPE, FRICTIONAL, IMPACTS, KINKS, LEDGER, LOCK, LOG_FULL, LOGGED, RESTITUTION, SHAPES,
+    UNMET, Scene,
 )  # fmt: skip
 
 _FACES = 16.0  # times the tolerance of touching, by which the ends of parallel faces may differ
@@ -108,7 +109,7 @@ def note(
     py: float, change: float,
 ) -> None:  # fmt: skip
     """Row n of the log: an impulse between shapes a and b at instant t."""
-    LOG[n, BY], LOG[n, ON], LOG[n, INSTANT], LOG[n, IMPULSE], LOG[n, TANGENTIAL] = a, b, t, lam, beta
+    LOG[n, BY], LOG[n, ON], LOG[n, WHEN], LOG[n, IMPULSE], LOG[n, TANGENTIAL] = a, b, t, lam, beta
     LOG[n, NORMAL_X], LOG[n, NORMAL_Y], LOG[n, POINT_X], LOG[n, POINT_Y], LOG[n, CHANGE] = nx, ny, px, py, change
 
 
@@ -119,7 +120,7 @@ def strike_disk(A: Scene, i: int, o: int, t: float) -> None:
     j = A.LINK[o, OWNER]
     move_to(BODY, i, t)
     x, y = BODY[i, X], BODY[i, Y]
-    if A.VERTEX[A.LINK[o, 1], 0] == 0.0 and A.LINK[o, VERTICES] == 1 and BODY[j, IM] > 0.0:
+    if A.VERTEX[A.LINK[o, FIRST], 0] == 0.0 and A.LINK[o, VERTICES] == 1 and BODY[j, IM] > 0.0:
         move_to(BODY, j, t)
         nx, ny = BODY[j, X] - x, BODY[j, Y] - y
         d = math.sqrt(nx * nx + ny * ny)

@@ -13,6 +13,7 @@ from ..layout import (
     BODY_ROW,
     COG_X,
     COG_Y,
+    ELASTICITY,
     END,
     END_COLUMNS,
     EXTRA_COLUMNS,
@@ -20,6 +21,7 @@ from ..layout import (
     KNOWN,
     LEFT,
     NOW,
+    OWNER,
     PULL,
     PUSH_TWIST,
     PUSH_X,
@@ -29,7 +31,7 @@ from ..layout import (
     STILL,
 )  # fmt: skip
 from ..report import nothing
-from ..transfer import FORCES, TURNS, lay
+from ..transfer import FORCES, TURNS, lay, take
 from . import private
 from .bodies import Bodies
 from .checks import check_friction, check_shape, check_space
@@ -142,6 +144,33 @@ class World:
             return False
         still = self.bodies.static
         return np.array_equal(self.STATES[NOW, still, :3], self.STATES[LEFT, still, :3])
+
+    def load(self) -> None:
+        """Put what pymunk has now into BODY."""
+        self.gather()
+        take(self.STATES, self.WALK, self.EXTRA, self.BODY, 0.0, 0.0, 1.0)
+
+    def model(self) -> str:
+        """One line: what of the space as it is now is modelled."""
+        self.gather()
+        moving = ~self.bodies.static
+        pulled = any(self.gravity) or bool(self.state[moving, 6:].any()) or len(self.bodies.velocity_hooks) > 0
+        turning = bool(self.state[moving, 5].any() or self.state[moving, 8].any())
+        walls = int(np.count_nonzero(self.LINK[:, OWNER] == len(self.BODY) - 1))
+        others = len(self.SHAPE) - walls - self.disks
+        parts = [
+            f"{self.disks} disks" + (f", {others} other moving shapes" if others else "") + f", {walls} walls",
+            "gravity or forces" if pulled else "no forces",
+            "rotation with contact arms" if others else "free rotation" if turning else "no rotation",
+            "loss" if (self.SHAPE[:, ELASTICITY] < 1.0).any() else "elastic",
+        ]
+        if self.damping != 1.0:
+            parts.append("damping")
+        if len(self.bodies.velocity_hooks) or len(self.bodies.position_hooks):
+            parts.append("functions of bodies")
+        if self.collisions:
+            parts.append("collision handlers, by a rehearsal")
+        return "; ".join(parts)
 
     @property
     def state(self) -> FloatArray:
