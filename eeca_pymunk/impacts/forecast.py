@@ -36,13 +36,15 @@ _INSIDE = 0.1  # of the margin that is left, above which a shape has not left it
 
 
 @uncounted
-def leaves(BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, MARK: FloatArray, i: int, s: int, now: float) -> float:
+def leaves(
+    BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, MARK: FloatArray, disks: int, i: int, s: int, now: float
+) -> float:
     """Instant before which the centre of shape s of body i stays within its margin circle; exact for straight paths."""
     m = MARK[s, MARGIN]
     if m == math.inf:
         return math.inf
     since = BODY[i, SINCE]
-    arm = math.hypot(SHAPE[s, CENTRE_X], SHAPE[s, CENTRE_Y])
+    arm = 0.0 if s < disks else math.hypot(SHAPE[s, CENTRE_X], SHAPE[s, CENTRE_Y])
     ax, ay = BODY[i, AX], BODY[i, AY]
     if ax == 0.0 and ay == 0.0 and arm == 0.0:
         dx, dy = BODY[i, X] - MARK[s, AT_X], BODY[i, Y] - MARK[s, AT_Y]
@@ -99,7 +101,7 @@ def predict(
     )  # fmt: skip
     extent, first = BODY[i, EXTENT], STATE[i, FIRST_SHAPE]
     for s in range(first, first + STATE[i, SHAPES]):
-        t = leaves(BODY, SHAPE, LINK, MARK, i, s, now)
+        t = leaves(BODY, SHAPE, LINK, MARK, disks, i, s, now)
         if t < best:
             best, own, other = t, s, LEAVE
         start = LIST[s, START]

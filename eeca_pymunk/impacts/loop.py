@@ -13,8 +13,8 @@ from ..pairs.lists import mark_pair
 from .forecast import has_left, predict
 from .heap import pop, push, sweep_out
 from .layout import (
-    DONE, DT, EVENTS, HEAP, KINKS, KNOWN, LEAVE, LIMIT, LOG_FULL, LOGGED, NOW, OTHER, OWN,
-    BLOCK_DUE, POOL_FULL, STRUCK, UNMET, Scene,
+    DONE, DT, EVENTS, FORECASTS, HEAP, KINKS, KNOWN, LEAVE, LIMIT, LOG_FULL, LOGGED, NOW, OTHER, OWN,
+    BLOCK_DUE, POOL_FULL, STALE, STRUCK, UNMET, Scene,
 )  # fmt: skip
 from .strike import alone, strike, strike_disk
 
@@ -24,6 +24,7 @@ _SQUEEZED = 50  # impacts of a body in a step, from which those with a kinematic
 @uncounted
 def forecast(A: Scene, disks: int, moving: int, i: int, t: float, end: float) -> None:
     """The next event of body i, seen from instant t of the loop."""
+    A.COUNT[FORECASTS] += 1
     predict(
         A.BODY, A.STATE, A.SHAPE, A.LINK, A.VERTEX, A.MARK, A.LIST, A.POOL, A.FLAG, A.RULE, A.HEAP_TIME, A.HEAP_BODY,
         A.WORK, A.COUNT, disks, moving, i, t, end,
@@ -73,6 +74,7 @@ def run(A: Scene, disks: int, smooth: bool) -> int:
             forecast(A, disks, moving, i, t, end)
             continue
         if o < 0 or STATE[A.LINK[o, OWNER], KINKS] != STATE[i, KNOWN]:
+            COUNT[STALE] += 1
             forecast(A, disks, moving, i, t, end)
             continue
         j = A.LINK[o, OWNER]

@@ -51,8 +51,12 @@ def ball_point(dx: float, dy: float, ux: float, uy: float, extent: float) -> flo
     b = dx * ux + dy * uy
     if b >= 0.0:
         return math.inf
-    reach = math.sqrt(ux * ux + uy * uy) * extent
     cross = abs(dx * uy - dy * ux)
+    squared = ux * ux + uy * uy
+    # Most pass far from one another, which needs no root.
+    if cross * cross > 1.000001 * extent * extent * squared:
+        return math.inf
+    reach = math.sqrt(squared) * extent
     if cross >= reach:
         return math.inf
     d = math.sqrt(dx * dx + dy * dy)
