@@ -389,6 +389,23 @@ def test_corner_on_corner_meets_only_where_both_faces_close() -> None:
         assert (t == 0.0 and certain) if meets else t >= 0.5
 
 
+def test_corner_that_comes_back_where_the_other_face_has_left() -> None:
+    # x: 1 + t - t² / 2, back at 1 when y is at -5.
+    world = World([Thing(box(1.0, 1.0)), Thing(box(1.0, 1.0), (1.0, 1.0, 0.0), (1.0, -3.0, 0.0), (-1.0, 0.0, 0.0))])
+    assert next_impact(world, 0, 1, 5.0)[0] >= 5.0
+
+
+@pytest.mark.parametrize("twist", [0.0, 0.1])
+def test_wall_of_a_turning_drum(twist: float) -> None:
+    # The wall at distance 3 from the axis comes round to a box that rests inside, 0.1 from its circle.
+    wall = [([(3.0, -1.0), (3.0, 1.0)], 0.0)]
+    for w in (0.5, -3.0):
+        drum = Thing(wall, (0.0, 0.0, 0.3), (0.0, 0.0, w), (0.0, 0.0, twist), moves=False)
+        world = World([Thing(box(1.0, 1.0), (0.0, 2.55, 0.0)), drum])
+        assert check_by_sampling(world, 0, 1, 0.2) == "later"
+        assert check_by_sampling(world, 0, 1, 9.0) == "meets"
+
+
 def test_bounces_shorter_than_a_part_of_the_horizon_are_not_followed() -> None:
     # Pulled back after 2e-10: that a box rests is looked at again after a sixteenth of the horizon.
     at = {"pose": (0.0, 0.5, 0.0), "rate": (0.0, 1e-9, 0.0), "pull": (0.0, -10.0, 0.0)}
