@@ -17,6 +17,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Generic, ParamSpec, TypeVar
 
+import numpy as np
+
 P = ParamSpec("P")
 R = TypeVar("R")
 _PACKAGE = Path(__file__).parent
@@ -101,6 +103,9 @@ def prepare() -> None:
     fresh = _kernels[_ready:]
     _ready = len(_kernels)
     if numba is None:
+        for one in fresh:
+            # numpy warns of what machine code passes over in silence.
+            one.run = np.errstate(all="ignore")(one.python)
         return
     folder = cache_folder()
     if not any(folder.rglob("*.nbi")) and (sys.stderr.isatty() or sys.flags.verbose):
