@@ -44,9 +44,9 @@ def clip(
     if u_1 > u_0:
         slope = (h_1 - h_0) / (u_1 - u_0)
     count, points = 0, 2
-    if high <= low:  # beside each other: the end that is nearer
+    if high <= low:  # beside each other: the ends that are next to each other
         points = 1
-        low = u_0 if h_0 < h_1 else u_1
+        low = u_0 if u_0 >= width else u_1
     for k in range(points):
         # In the order of the tangent of the normal from a to b.
         u = low if (k == 0) == (sign > 0.0) or points == 1 else high

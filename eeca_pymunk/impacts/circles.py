@@ -99,7 +99,6 @@ def circle_outline(
                     return s + entry, True
                 if not straight:
                     corner, beside = beside_edge(VERTEX, first, count, near, px, py)
-            beside = beside or apart < 0.0
             nx, ny = VERTEX[first + near, 2], VERTEX[first + near, 3]
         if straight:
             if beside:  # in overlap

@@ -21,11 +21,11 @@ import math
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
-from ..geometry.convex import closest, place, point_core
+from ..geometry.convex import closest, place
 from ..geometry.flight import pose, rate
 from ..geometry.gap import touching
 from ..layout import AX, AY, BOUND, CENTRE_X, CENTRE_Y, OWNER, ROUNDING, SINCE, SIZE, TWIST
-from .circles import circle_circle, circle_outline
+from .apart import carried_circles_meet, circles_meet
 from .roots import ADVANCES, STRIDE, flat
 
 
@@ -94,43 +94,6 @@ def reach_of(BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, s: int) -> tup
 
 
 @uncounted
-def circles_meet(
-    BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray,
-    a: int, b: int, start: float, left: float, tolerance: float,
-) -> tuple[float, bool]:  # fmt: skip
-    """Time after `start` until which shapes a and b are apart for certain, as a circle about the centre of mass of the
-    one that moves is from the other's circle or, if that is static, its outline; and whether they never meet.
-
-    These circles do not turn. 0 where they overlap.
-    """
-    ground = BODY.shape[0] - 1
-    i, j = LINK[a, OWNER], LINK[b, OWNER]
-    if i == ground:
-        a, b, i, j = b, a, j, i
-    x_a, y_a, _ = pose(BODY, i, start)
-    ux_a, uy_a, _ = rate(BODY, i, start)
-    if j == ground:
-        q = place(LINK, VERTEX, b, 0.0, 0.0, 0.0, WORK[1])
-        extent = SHAPE[a, SIZE] + SHAPE[b, ROUNDING]
-        if point_core(x_a, y_a, WORK[1], q)[0] - extent <= tolerance:
-            return 0.0, False
-        s, _ = circle_outline(
-            x_a, y_a, ux_a, uy_a, BODY[i, AX], BODY[i, AY], extent, tolerance, LINK, VERTEX, b, left
-        )  # fmt: skip
-        return s, s == math.inf
-    x_b, y_b, _ = pose(BODY, j, start)
-    ux_b, uy_b, _ = rate(BODY, j, start)
-    dx, dy = x_b - x_a, y_b - y_a
-    extent = SHAPE[a, SIZE] + SHAPE[b, SIZE]
-    if math.sqrt(dx * dx + dy * dy) - extent <= tolerance:
-        return 0.0, False
-    s, _ = circle_circle(
-        dx, dy, ux_b - ux_a, uy_b - uy_a, BODY[j, AX] - BODY[i, AX], BODY[j, AY] - BODY[i, AY], extent, tolerance, left
-    )
-    return s, s == math.inf
-
-
-@uncounted
 def bends(
     BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, a: int, b: int, start: float, left: float
 ) -> tuple[float, float, float]:
@@ -177,6 +140,12 @@ def general(
     s, never = circles_meet(BODY, SHAPE, LINK, VERTEX, WORK, a, b, start, left, tolerance)
     if s > left:
         return start + s, never
+    if s == 0.0:
+        s = carried_circles_meet(BODY, SHAPE, LINK, a, b, start, left)
+        if s > left:
+            if BODY[i, TWIST] == 0.0 and BODY[j, TWIST] == 0.0:
+                return start + s, s == math.inf
+            return horizon, False
     bend, bend_a, bend_b = bends(BODY, SHAPE, LINK, a, b, start, left)
     extent = SHAPE[a, ROUNDING] + SHAPE[b, ROUNDING]
     P, Q = WORK[0], WORK[1]

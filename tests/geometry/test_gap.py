@@ -109,6 +109,12 @@ def test_shapes_that_touch_exactly_have_the_normal_of_the_face() -> None:
         g, nx, ny, _, _ = gap_at(*boxes.geometry, 0, 0.0, 0.0, 0.0, 1, 1.0 + close, 1.0 - 2.0 * close, 0.0)
         assert (nx, ny) in ((1.0, 0.0), (0.0, 1.0))
         assert abs(g) < 1e-14
+    # So for a centre at a corner, up to round-off.
+    point = World([Thing(disk(0.0)), Thing(box(1.0, 1.0))])
+    assert gap_at(*point.geometry, 0, 0.5 + 2e-16, 0.5 + 4e-16, 0.0, 1, 0.0, 0.0, 0.0)[1:3] in (
+        (-1.0, 0.0),
+        (0.0, -1.0),
+    )
     # A box on a segment, a corner on it, a segment's end on a face.
     assert gap_at(*boxes.geometry, 0, 0.0, 1.0, 0.0, 2, 0.0, 0.0, 0.0)[:3] == (0.0, 0.0, -1.0)
     g, nx, ny, px, py = gap_at(*boxes.geometry, 0, 0.0, 0.5 + math.sqrt(0.5), math.pi / 4, 2, 0.0, 0.0, 0.0)
@@ -128,6 +134,15 @@ def test_segments_in_one_line() -> None:
         assert abs(-s * nx + c * ny) == pytest.approx(1.0)
     crossed = World([Thing(rod), Thing(rod, (0.2, 0.0, math.pi / 2))])
     assert gap(*crossed.arrays, 0, 1, 0.0)[0] == pytest.approx(-0.8 - 0.5)
+
+
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_parallel_segments_that_overlap_in_part(side: float) -> None:
+    rod = [([(-1.0, 0.0), (1.0, 0.0)], 0.1)]
+    for x in (-1.5, 0.0, 1.5):
+        world = World([Thing(rod), Thing(rod, (x, 0.5 * side, 0.0))])
+        g, nx, ny, _, py = gap(*world.arrays, 0, 1, 0.0)
+        np.testing.assert_allclose((g, nx, ny, py), (0.3, 0.0, side, 0.25 * side), atol=1e-16)
 
 
 def test_coincident_points_and_depth() -> None:

@@ -69,6 +69,15 @@ def test_tilted_faces_and_single_corners() -> None:
     np.testing.assert_allclose(found[0, :4], (0.1 / math.hypot(0.1, 0.2), 0.2 / math.hypot(0.1, 0.2), 0.55, 0.6))
 
 
+@pytest.mark.parametrize(("x", "y"), [(1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)])
+def test_corners_that_touch_are_one_point(x: float, y: float) -> None:
+    for away in (0.0, 1e-13):
+        world = World([Thing(box(1.0, 1.0)), Thing(box(1.0, 1.0), (x * (1.0 + away), y * (1.0 + away), 0.0))])
+        found = rows(world, 0, 1, 1e-3)
+        assert len(found) == 1
+        np.testing.assert_allclose(found[0, 2:], (0.5 * x, 0.5 * y, away), atol=1e-12)
+
+
 def test_a_beam_longer_than_its_support_stands_on_the_support_s_corners() -> None:
     world = World([Thing(box(4.0, 0.2), (0.3, 0.6, 0.0)), Thing(box(1.0, 1.0))])
     for a, b, left in ((0, 1, -0.5), (1, 0, 0.5)):
