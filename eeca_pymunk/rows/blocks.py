@@ -12,10 +12,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..arrays import FloatArray, IntArray
 from ..compiled import kernel
 from .build import aim, rates
 from .energy import lock, works
-from .layout import ELASTICITY, FRICTION, FloatArray, IntArray
+from .layout import ELASTICITY, FRICTION
 from .polish import polish, segment
 from .sweeps import iterate, push, sweep
 

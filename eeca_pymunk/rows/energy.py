@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import math
 
+from ..arrays import FloatArray, IntArray
 from ..compiled import kernel
 from .build import normal_rate, tangent_rate
-from .layout import ARM_NA, ARM_NB, K_N, NX, NY, UN, UT, FloatArray, IntArray
+from .layout import ARM_NA, ARM_NB, K_N, NX, NY, UN, UT
 from .sweeps import push
 
 

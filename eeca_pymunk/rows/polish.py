@@ -12,6 +12,7 @@ import math
 
 import numpy as np
 
+from ..arrays import FloatArray, IntArray
 from ..compiled import kernel
 from .build import normal_rate, tangent_rate
 from .cholesky import assemble, factorise, substitute
@@ -29,8 +30,6 @@ from .layout import (
     TARGET,
     UN,
     UT,
-    FloatArray,
-    IntArray,
 )
 from .ordering import dissect, neighbours, pattern
 from .sweeps import push
