@@ -1,9 +1,9 @@
-"""The works of an island over a span, which close by identity, as impulses times the means of velocities before and after:
+"""The works of an island over a span: impulses times means of velocities before and after, which close by identity:
 
-    kinetic energy's change = FORCES + CARRIED - RESTITUTION - FRICTION,
+    change of energy = FORCES + CARRIED + LIFTED - RESTITUTION - FRICTION,
 
-RESTITUTION and FRICTION being >= 0 for each contact. LIFTED is the work against forces of lifting bodies out of each
-other, paid from these losses: it never exceeds them.
+of kinetic energy, and of potential energy as far as bodies are lifted. RESTITUTION and FRICTION are >= 0. LIFTED is the
+energy that lifting bodies out of each other costs; it never exceeds these losses, from which it is paid.
 """
 
 from __future__ import annotations
@@ -17,9 +17,7 @@ LEDGER_SIZE = 8
 
 
 @kernel
-def carried(
-    A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, IM: FloatArray, m: int
-) -> float:
+def carried(A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, IM: FloatArray, m: int) -> float:
     """Work of bodies that impulses do not move (kinematic ones, at their velocities in V) and of moving surfaces."""
     work = 0.0
     for i in range(m):

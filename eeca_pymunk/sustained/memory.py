@@ -45,12 +45,12 @@ def remember(
 
 
 @kernel
-def forget(KEYS: IntArray, FORCES: FloatArray, COUNT: IntArray, KEYS_2: IntArray, FORCES_2: FloatArray, stamp: float) -> None:
+def forget(
+    KEYS: IntArray, FORCES: FloatArray, COUNT: IntArray, KEYS_2: IntArray, FORCES_2: FloatArray, stamp: float
+) -> None:
     """Move rows with a stamp >= `stamp` to empty tables KEYS_2, FORCES_2 (of any size); COUNT becomes theirs."""
     COUNT[0] = 0
     KEYS_2[:] = -1
     for row in range(len(KEYS)):
         if KEYS[row] >= 0 and FORCES[row, 3] >= stamp:
-            remember(
-                KEYS_2, FORCES_2, COUNT, KEYS[row], FORCES[row, 0], FORCES[row, 1], FORCES[row, 2], FORCES[row, 3]
-            )
+            remember(KEYS_2, FORCES_2, COUNT, KEYS[row], FORCES[row, 0], FORCES[row, 1], FORCES[row, 2], FORCES[row, 3])

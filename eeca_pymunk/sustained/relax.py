@@ -22,7 +22,8 @@ _MOVING = 40  # sweeps of a moving island
 _REST = 10  # sweeps before the first direct solution
 _AFTER = 5  # sweeps after each
 _ROUNDS = 20
-_LARGE = 80  # contacts beyond which two rounds that do not pay end the solve
+_LARGE = 80  # contacts beyond which rounds that do not pay end the solve:
+_PATIENT, _IMPATIENT = 8, 2  # so many, the fewer where the last direct solutions failed as well
 _LONGEST = 32.0  # steps
 
 
@@ -81,7 +82,7 @@ def relax(
         if worst > 0.2 * last:
             fails += 1
         last = worst
-        if fails >= 2 and m > _LARGE:
+        if m > _LARGE and fails >= (_IMPATIENT if STATE[2] > 0.0 else _PATIENT):
             break
     if worst > max(fine, coarse) and m > _LARGE:
         STATE[2] = min(2.0 * STATE[2] + 2.0, _LONGEST)

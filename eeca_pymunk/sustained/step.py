@@ -10,7 +10,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel
 from ..rows.build import rates
 from ..rows.energy import lock, works
-from ..rows.layout import K_N, TARGET, UN
+from ..rows.layout import ELASTICITY, FRICTION, K_N, TARGET, UN
 from ..rows.sweeps import push
 from .contacts import gather
 from .ledger import against, carried
@@ -24,7 +24,8 @@ SWEEPS, POLISHES, RESIDUAL, LOCK, OWED, DEEPEST, CLOSED = 0, 1, 2, 3, 4, 5, 6
 OUT_SIZE = 8
 
 _FINE = 1e-12  # residual relative to |a| h
-_COARSE, _LOOSE = 1e-7, 1e-4  # residual of a moving island, relative to |a| h and to its speed
+_COARSE, _LOOSE = 1e-7, 1e-4  # residual of a large or moving island, relative to |a| h and to its speed
+_FEW = 16  # contacts up to which an island moves with the fine residual, too
 
 
 @kernel
@@ -83,7 +84,7 @@ def step_island(
     POSE: FloatArray, V: FloatArray, ACC: FloatArray, IM: FloatArray, II: FloatArray, EXTENT: FloatArray, n: int,
     PAIRS: IntArray, p: int, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray, h: float,
     owed: float, KEYS: IntArray, FORCES: FloatArray, COUNT: IntArray, stamp: float, STATE: FloatArray, A: IntArray,
-    B: IntArray, ROWS: FloatArray, KEY: IntArray, L: FloatArray, LOSS: FloatArray, VN: FloatArray, D: FloatArray,
+    B: IntArray, ROWS: FloatArray, KEY: IntArray, L: FloatArray, LOSS: FloatArray, VN: FloatArray, JUMP: FloatArray,
     LEDGER: FloatArray, OUT: FloatArray,
 ) -> int:  # fmt: skip
     """Solve an island over h from now.
@@ -96,7 +97,7 @@ def step_island(
         owed: energy >= 0 to take out at least.
         KEYS, FORCES, COUNT, stamp: memory of forces; the number of this step.  STATE: (3,) of `relax`.
         A, B, ROWS, KEY, L, LOSS: the m contact rows out, with impulses over h and losses (D_n, D_t).
-        VN: (k, 3) velocities at the end, out.  D: (k, 3) displacements to add to the end of the paths, out.
+        VN: (k, 3) velocities at the end, out.  JUMP: (k, 6) what to add to pose and velocity then, out.
         LEDGER: (8,) added to.  OUT: (8,) sweeps, direct solutions, residual, scale of the lock, energy still owed,
             deepest gap at the end before lifting, contacts that push.
     Returns:
@@ -117,7 +118,7 @@ def step_island(
         return -1
     FREE = V + h * ACC
     VN[:] = FREE
-    D[:] = 0.0
+    JUMP[:] = 0.0
     if m > 0:
         EXPECTED = np.empty(m)
         recall(KEY, m, KEYS, FORCES, stamp, h, L, EXPECTED)
@@ -125,9 +126,14 @@ def step_island(
         target(A, B, ROWS, m, ACC, EXPECTED, pull, h)
         push(A, B, ROWS, L, VN, IM, II, m)
         scale = pull * h if pull > 0.0 else 1e-3 * fast
+        elastic = True
+        for i in range(m):
+            if ROWS[i, ELASTICITY] < 1.0 or ROWS[i, FRICTION] > 0.0:
+                elastic = False
+        # Elastic crowds would melt away by the losses of a solve cut short.
         sweeps, polishes, worst = relax(
-            A, B, ROWS, L, VN, FREE, IM, II, POSE, n, m, slow < pull * h, _FINE * scale,
-            _COARSE * scale + _LOOSE * slow, STATE,
+            A, B, ROWS, L, VN, FREE, IM, II, POSE, n, m, elastic or slow < pull * h, _FINE * scale,
+            0.0 if elastic or m <= _FEW else _COARSE * scale + _LOOSE * slow, STATE,
         )  # fmt: skip
         # Sums over many sweeps have their own round-off: the velocities are those of the impulses.
         VN[:] = FREE
@@ -135,18 +141,18 @@ def step_island(
         OUT[0] = sweeps
         OUT[1] = polishes
         OUT[2] = worst
-        OUT[3], OUT[4] = lock(A, B, ROWS, L, VN, FREE, IM, II, m, owed, False)
+        OUT[3], OUT[4] = lock(A, B, ROWS, L, VN, FREE, IM, II, m, owed, elastic)
         normal, tangential = works(A, B, ROWS, L, VN, m, LOSS)
         size = np.inf
         for i in range(n):
             size = min(size, EXTENT[i])
         lifted, OUT[5] = lifting(
-            A, B, ROWS, VN, ACC, IM, II, n, m, h, size, normal + tangential - owed, D
+            A, B, ROWS, POSE + 0.5 * h * V, VN, ACC, IM, II, n, m, h, size, normal + tangential - owed, JUMP
         )  # fmt: skip
-        LEDGER[0] += normal
+        LEDGER[0] += normal - min(lifted, 0.0)
         LEDGER[1] += tangential
         LEDGER[2] += carried(A, B, ROWS, L, V, IM, m)
-        LEDGER[3] += lifted
+        LEDGER[3] += max(lifted, 0.0)
         for i in range(m):
             stopped = max(max(ROWS[i, TARGET], 0.0) - ROWS[i, UN], 0.0) * ROWS[i, K_N]
             load = max(L[i, 0] - stopped, 0.0)

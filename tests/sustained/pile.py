@@ -18,9 +18,10 @@ from ..packed import Thing, World
 
 @dataclass
 class Pile:
-    """Things on the ground under constant acceleration; the ground is the last local body, absent if it has no shape.
+    """Things on the ground under constant acceleration. The ground is the last local body, absent if it has no shape.
 
-    Things with `moves=False` are carried (kinematic); they come last. Masses and moments (n,) of those that move.
+    `elasticity` and `friction` are those of every contact. Things with `moves=False` are carried (kinematic); they
+    come last. Masses and moments (n,) of those that move.
     """
 
     world: World
@@ -42,7 +43,9 @@ class Pile:
         self.acc[: self.n, :2] = self.gravity
         self.im, self.ii = np.zeros(k), np.zeros(k)
         self.im[: self.n], self.ii[: self.n] = 1.0 / np.asarray(self.mass), 1.0 / np.asarray(self.moment)
-        world.shape[:, la.ELASTICITY], world.shape[:, la.FRICTION] = self.elasticity, self.friction
+        # Contacts have the product of both shapes' values.
+        world.shape[:, la.ELASTICITY] = np.sqrt(self.elasticity)
+        world.shape[:, la.FRICTION] = np.sqrt(self.friction)
         owner = world.link[:, la.OWNER]
         self.all = np.array(
             [(s, r, owner[s], owner[r]) for s in range(len(owner)) for r in range(s + 1, len(owner))
@@ -50,7 +53,7 @@ class Pile:
         ).reshape(-1, 4)  # fmt: skip
         self.state, self.stamp, self.m = np.array(FRESH), 0.0, 0
         self.keys, self.forces, self.count = np.full(64, -1), np.zeros((64, FORCE_COLUMNS)), np.zeros(1, np.int64)
-        self.d, self.out = np.zeros((k, 3)), np.zeros(OUT_SIZE)
+        self.jump, self.out = np.zeros((k, 6)), np.zeros(OUT_SIZE)
         self.room(64)
 
     def room(self, size: int) -> None:
@@ -69,7 +72,10 @@ class Pile:
         """One step; the ledger is added to, and `closes` is how far it misses the change of energy."""
         self.stamp += 1.0
         shape, link, vertex, work = self.world.geometry
-        x, far = self.pose[:, :2], self.extent + 2.5 * h * (np.hypot(*self.v[:, :2].T)) + h * h * np.hypot(*self.gravity)
+        x, far = (
+            self.pose[:, :2],
+            self.extent + 2.5 * h * (np.hypot(*self.v[:, :2].T)) + h * h * np.hypot(*self.gravity),
+        )
         a, b = self.all[:, 2], self.all[:, 3]
         near = (np.hypot(*(x[a] - x[b]).T) <= 1.1 * (far[a] + far[b])) | (b >= self.n)
         pairs = np.ascontiguousarray(self.all[near])
@@ -79,7 +85,7 @@ class Pile:
             self.m = step_island(
                 self.pose, self.v, self.acc, self.im, self.ii, self.extent, self.n, pairs, len(pairs), shape, link,
                 vertex, work, h, 0.0, self.keys, self.forces, self.count, self.stamp, self.state, self.A, self.B,
-                self.rows, self.key, self.L, self.loss, vn, self.d, self.ledger, self.out,
+                self.rows, self.key, self.L, self.loss, vn, self.jump, self.ledger, self.out,
             )  # fmt: skip
             if self.m >= 0:
                 break
@@ -87,10 +93,12 @@ class Pile:
                 self.clean(len(self.keys))
             else:
                 self.room(2 * len(self.A))
-        self.pose = self.pose + 0.5 * h * (self.v + vn) + self.d
-        self.v = vn
+        way = 0.5 * h * (self.v + vn)
+        self.pose = self.pose + way + self.jump[:, :3]
+        self.v = vn + self.jump[:, 3:]
         now = self.ledger - ledger
-        self.closes = self.kinetic() - before - (now[4] + now[2] - now[0] - now[1])
+        lifted = -((self.acc * self.jump[:, :3])[: self.n, :2] / self.im[: self.n, None]).sum()
+        self.closes = self.kinetic() + lifted - before - (now[4] + now[2] + now[3] - now[0] - now[1])
         self.losses = now[:2]
 
     def kinetic(self) -> float:
