@@ -66,6 +66,24 @@ def classify(
 
 
 @kernel
+def clamp(ROWS: FloatArray, L: FloatArray, m: int) -> int:
+    """Put impulses back into their cones; how many were outside."""
+    clamped = 0
+    for i in range(m):
+        most = ROWS[i, FRICTION] * L[i, 0]
+        if L[i, 0] < 0.0:
+            L[i, 0] = 0.0
+            L[i, 1] = 0.0
+            clamped += 1
+        elif abs(L[i, 1]) > most:
+            # Round-off of beta = mu lam is not outside.
+            if abs(L[i, 1]) > most * (1.0 + 1e-14):
+                clamped += 1
+            L[i, 1] = most if L[i, 1] > 0.0 else -most
+    return clamped
+
+
+@kernel
 def polish(
     A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, FREE: FloatArray, IM: FloatArray,
     II: FloatArray, POSE: FloatArray, n: int, m: int, R: float, passes: int, tolerance: float,
@@ -146,16 +164,7 @@ def polish(
                 L[i, 1] = slip[i] * L[i, 0]
         V[:] = FREE
         push(A, B, ROWS, L, V, IM, II, m)
-    clamped = 0
-    for i in range(m):
-        most = ROWS[i, FRICTION] * L[i, 0]
-        if L[i, 0] < 0.0:
-            L[i, 0] = 0.0
-            L[i, 1] = 0.0
-            clamped += 1
-        elif abs(L[i, 1]) > most:
-            L[i, 1] = most if L[i, 1] > 0.0 else -most
-            clamped += 1
+    clamped = clamp(ROWS, L, m)
     if clamped > 0:
         V[:] = FREE
         push(A, B, ROWS, L, V, IM, II, m)

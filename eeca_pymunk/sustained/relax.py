@@ -12,7 +12,7 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel
-from ..rows.polish import polish, segment
+from ..rows.direct import refine
 from ..rows.sweeps import iterate, sweep
 
 LOG_R, WAIT, BACKOFF = 0, 1, 2
@@ -20,7 +20,7 @@ FRESH = (8.0, 0.0, 0.0)  # STATE of a new island
 
 _MOVING = 40  # sweeps of a moving island
 _REST = 10  # sweeps before the first direct solution
-_AFTER = 5  # sweeps after each
+_AFTER = 4  # further sweeps after each
 _ROUNDS = 20
 _LARGE = 80  # contacts beyond which rounds that do not pay end the solve:
 _PATIENT, _IMPATIENT = 8, 2  # so many, the fewer where the last direct solutions failed as well
@@ -50,33 +50,19 @@ def relax(
         sweeps += 1
     if worst <= fine:
         return sweeps, 0, worst
-    L0 = np.empty((m, 2))
-    V0 = np.empty((len(IM), 3))
     fails = 0
     rounds = 0
     last = worst
     while rounds < _ROUNDS:
-        L0[:] = L[:m]
-        V0[:] = V
         passes = 6 if STATE[0] > 6.0 else 1
-        reached, clamped = polish(A, B, ROWS, L, V, FREE, IM, II, POSE, n, m, 10.0 ** STATE[0], passes, 0.1 * fine)
+        STATE[0], worst = refine(A, B, ROWS, L, V, FREE, IM, II, POSE, n, m, STATE[0], passes, 0.1 * fine, worst)
         rounds += 1
-        part = 1.0
-        if not reached < 1e3 * (worst + fine):
-            L[:m] = L0
-            V[:] = V0
-            part = 0.0
-        elif clamped > 0:
-            part = segment(A, B, ROWS, L, V, L0, V0, m)
-        if part > 0.9:
-            STATE[0] = min(STATE[0] + 2.0, 8.0)
-        elif part < 0.3:
-            STATE[0] = max(STATE[0] - 2.0, 2.0)
+        sweeps += 1
         for _ in range(_AFTER):
-            worst = sweep(A, B, ROWS, L, V, IM, II, m)
-            sweeps += 1
             if worst <= fine:
                 break
+            worst = sweep(A, B, ROWS, L, V, IM, II, m)
+            sweeps += 1
         if worst <= max(fine, coarse):
             break
         if worst > 0.2 * last:

@@ -132,7 +132,7 @@ def step_island(
                 elastic = False
         # Elastic crowds would melt away by the losses of a solve cut short.
         sweeps, polishes, worst = relax(
-            A, B, ROWS, L, VN, FREE, IM, II, POSE, n, m, elastic or slow < pull * h, _FINE * scale,
+            A, B, ROWS, L, VN, FREE, IM, II, POSE, n, m, elastic or m <= _FEW or slow < pull * h, _FINE * scale,
             0.0 if elastic or m <= _FEW else _COARSE * scale + _LOOSE * slow, STATE,
         )  # fmt: skip
         # Sums over many sweeps have their own round-off: the velocities are those of the impulses.
