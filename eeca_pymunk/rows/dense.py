@@ -83,7 +83,7 @@ def jacobian(
     N: int,
     W: FloatArray,
 ) -> None:
-    """W[i, j] = velocity along row i of a unit impulse along column j; kind 0 is normal (with its slip), 1 tangential."""
+    """W[i, j] = velocity along row i of a unit impulse along column j; kind 0 normal (with its slip), 1 tangential."""
     J = np.empty((N, 8))  # rows: n or t with arms a, b; then the columns' direction and arms
     for i in range(N):
         c = at[i]
@@ -137,13 +137,14 @@ def newton(
     m: int,
     passes: int,
     tolerance: float,
+    shared: bool,
 ) -> tuple[float, int]:
-    """Solve on the active contacts of L, as `polish`; the same results."""
+    """Solve on the active contacts of L, as `polish`; the same results. `shared` as in `classify`."""
     held = np.empty(m, np.int64)
     stuck = np.empty(m, np.int64)
     slip = np.empty(m)
     rest = np.empty(m)
-    classify(A, B, ROWS, L, V, m, held, stuck, slip, rest)
+    classify(A, B, ROWS, L, V, m, held, stuck, slip, rest, shared)
     at = np.empty(2 * m, np.int64)
     kind = np.empty(2 * m, np.int64)
     N = 0
@@ -152,7 +153,7 @@ def newton(
             at[N] = i
             kind[N] = 0
             N += 1
-            if slip[i] != 0.0:
+            if stuck[i] == 0:
                 L[i, 1] = slip[i] * L[i, 0]
             if stuck[i] != 0:
                 at[N] = i

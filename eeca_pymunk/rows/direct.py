@@ -39,7 +39,12 @@ def refine(
     L0 = L[:m].copy()
     V0 = V.copy()
     if m <= SMALL:
-        reached, clamped = newton(A, B, ROWS, L, V, FREE, IM, II, m, 4, tolerance)
+        reached, clamped = newton(A, B, ROWS, L, V, FREE, IM, II, m, 4, tolerance, False)
+        if reached > 1e-3 * worst:
+            # Held by two contacts at different velocities, or by none.
+            L[:m] = L0
+            V[:] = V0
+            reached, clamped = newton(A, B, ROWS, L, V, FREE, IM, II, m, 4, tolerance, True)
     else:
         reached, clamped = polish(A, B, ROWS, L, V, FREE, IM, II, POSE, n, m, 10.0**log_R, passes, tolerance)
     part = 1.0

@@ -38,11 +38,12 @@ from .sweeps import push
 @kernel
 def classify(
     A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, m: int, held: IntArray, stuck: IntArray,
-    slip: FloatArray, rest: FloatArray,
+    slip: FloatArray, rest: FloatArray, shared: bool,
 ) -> None:  # fmt: skip
     """Which normals are held, which tangents stuck (1 at u_t = 0, 2 at u_t = rest), which slip (beta = slip lam).
 
-    Friction that its energy limits has beta (u_t- + u_t+) = -lam (u_n- + b): rest is that u_t+.
+    Friction that its energy limits has beta (u_t- + u_t+) = -lam (u_n- + b). Either rest is that u_t+; or, if `shared`,
+    another contact of the same face holds u_t+ = 0, and slip is that beta / lam.
     """
     for i in range(m):
         lam = L[i, 0]
@@ -56,9 +57,13 @@ def classify(
             continue
         if abs(beta) < mu * lam * (1.0 - 1e-12):
             loss = lam * min(ROWS[i, UN] + ROWS[i, TARGET], 0.0)
+            if beta == 0.0 and loss == 0.0 and tangent_rate(A, B, ROWS, V, i) * ROWS[i, UT] < 0.0:
+                continue  # a slip that has reversed by less than its size: no friction without giving energy
             if beta * ROWS[i, UT] <= -loss:
                 stuck[i] = 1
-            elif beta != 0.0:
+            elif shared:
+                slip[i] = -min(ROWS[i, UN] + ROWS[i, TARGET], 0.0) / ROWS[i, UT]
+            else:
                 stuck[i] = 2
                 rest[i] = -ROWS[i, UT] - loss / beta
         elif beta != 0.0:
@@ -100,7 +105,7 @@ def polish(
     stuck = np.empty(m, np.int64)
     slip = np.empty(m)
     rest = np.empty(m)
-    classify(A, B, ROWS, L, V, m, held, stuck, slip, rest)
+    classify(A, B, ROWS, L, V, m, held, stuck, slip, rest, False)
     SCALE = np.empty((len(IM), 3))
     for i in range(len(IM)):
         SCALE[i, 0] = SCALE[i, 1] = math.sqrt(IM[i])

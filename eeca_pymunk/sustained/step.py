@@ -9,6 +9,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel
 from ..rows.build import rates
+from ..rows.direct import SMALL
 from ..rows.energy import lock, works
 from ..rows.layout import ELASTICITY, FRICTION, K_N, TARGET, UN
 from ..rows.sweeps import push
@@ -25,7 +26,8 @@ OUT_SIZE = 8
 
 _FINE = 1e-12  # residual relative to |a| h
 _COARSE, _LOOSE = 1e-7, 1e-4  # residual of a large or moving island, relative to |a| h and to its speed
-_FEW = 16  # contacts up to which an island moves with the fine residual, too
+_ROUNDS = 20  # direct solutions of an island near rest, or elastic
+_FEW_ROUNDS = 6  # of a moving island of few contacts
 
 
 @kernel
@@ -131,9 +133,11 @@ def step_island(
             if ROWS[i, ELASTICITY] < 1.0 or ROWS[i, FRICTION] > 0.0:
                 elastic = False
         # Elastic crowds would melt away by the losses of a solve cut short.
+        few = m <= SMALL
+        rounds = _ROUNDS if elastic or slow < pull * h else (_FEW_ROUNDS if few else 0)
+        coarse = 0.0 if elastic or few else _COARSE * scale + _LOOSE * slow
         sweeps, polishes, worst = relax(
-            A, B, ROWS, L, VN, FREE, IM, II, POSE, n, m, elastic or m <= _FEW or slow < pull * h, _FINE * scale,
-            0.0 if elastic or m <= _FEW else _COARSE * scale + _LOOSE * slow, STATE,
+            A, B, ROWS, L, VN, FREE, IM, II, POSE, n, m, rounds, _FINE * scale, coarse, STATE
         )  # fmt: skip
         # Sums over many sweeps have their own round-off: the velocities are those of the impulses.
         VN[:] = FREE

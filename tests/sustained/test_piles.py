@@ -154,7 +154,10 @@ def test_galilean_observers_agree() -> None:
 
 
 def test_mirror_images_stay_mirror_images() -> None:
-    """Two boxes with a third laid across them, in a state that settles."""
+    """Two boxes with a third laid across them, in a state that settles.
+
+    Until it slides and stops by round-off; there some solves are cut short, and sweeps know which contact comes first.
+    """
     mass = np.ones(3)
 
     def trestle(sign: float) -> Pile:
@@ -164,8 +167,11 @@ def test_mirror_images_stay_mirror_images() -> None:
         ]  # fmt: skip
         return Pile(World(things, floor(1.0)), mass, [1 / 6, 1 / 6, 16.25 / 12], (0.0, -G), 0.2, 0.4)
 
-    left, right = trestle(1.0).run(60, 1 / 60), trestle(-1.0).run(60, 1 / 60)
-    assert np.abs(left.pose * [-1, 1, -1] - right.pose).max() <= 1e-6
+    left, right = trestle(1.0), trestle(-1.0)
+    for steps, tolerance in ((7, 1e-14), (53, 1e-4)):
+        left.run(steps, 1 / 60)
+        right.run(steps, 1 / 60)
+        assert np.abs(left.pose * [-1, 1, -1] - right.pose).max() <= tolerance
 
 
 def test_steps_converge_to_one_another() -> None:
