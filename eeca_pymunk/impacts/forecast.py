@@ -12,23 +12,8 @@ import math
 from ..compiled import kernel
 from ..geometry.meeting import disk_disk, disk_wall, meet
 from ..layout import (
-    AX,
-    AY,
-    CENTRE_X,
-    CENTRE_Y,
-    DUE,
-    EXTENT,
-    SINCE,
-    SPIN,
-    TWIST,
-    VX,
-    VY,
-    FlagArray,
-    FloatArray,
-    IntArray,
-    PoolArray,
-    X,
-    Y,
+    ANGLE, AX, AY, BOUND, CENTRE_X, CENTRE_Y, DUE, EXTENT, SINCE, SPIN, TWIST, VX, VY, X, Y, FlagArray, FloatArray,
+    IntArray, PoolArray,
 )  # fmt: skip
 from ..pairs.layout import AT_X, AT_Y, MARGIN, NUMBER, START
 from ..pairs.lists import centre

@@ -12,29 +12,10 @@ from __future__ import annotations
 import math
 
 from ..compiled import kernel
-from ..layout import BOUND, FlagArray, FloatArray, IntArray, PoolArray
+from ..layout import BOUND, FloatArray, FlagArray, IntArray, PoolArray
 from .layout import (
-    AT_X,
-    AT_Y,
-    BUCKET,
-    CAPACITY,
-    CELL_LENGTH,
-    LEAVES,
-    LEVEL,
-    LEVEL_COUNT,
-    LEVELS,
-    MARGIN,
-    MOVING,
-    NEXT,
-    NUMBER,
-    POOL_END,
-    PREVIOUS,
-    START,
-    WALL_COLUMNS,
-    WALL_LENGTH,
-    WALL_ROWS,
-    WALL_X,
-    WALL_Y,
+    AT_X, AT_Y, BUCKET, CELL_LENGTH, LEAVES, LEVEL, LEVEL_COUNT, LEVELS, MARGIN, MOVING, NEXT, NUMBER, POOL_END,
+    PREVIOUS, START, WALL_COLUMNS, WALL_LENGTH, WALL_ROWS, WALL_X, WALL_Y, CAPACITY,
 )  # fmt: skip
 from .lists import append, centre, may_meet, remove
 

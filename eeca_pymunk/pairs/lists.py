@@ -7,31 +7,10 @@ lists were made keeps the circles apart. A pair of moving shapes stands in both 
 from __future__ import annotations
 
 import math
-
 from ..compiled import kernel
 from ..layout import (
-    ANGLE,
-    AX,
-    AY,
-    CATEGORIES,
-    CENTRE_X,
-    CENTRE_Y,
-    GROUP,
-    II,
-    IM,
-    MASK,
-    OWNER,
-    SINCE,
-    SPIN,
-    TWIST,
-    VX,
-    VY,
-    FlagArray,
-    FloatArray,
-    IntArray,
-    PoolArray,
-    X,
-    Y,
+    ANGLE, AX, AY, CATEGORIES, CENTRE_X, CENTRE_Y, GROUP, II, IM, MASK, OWNER, SINCE, SPIN, TWIST, VX, VY, X, Y,
+    FlagArray, FloatArray, IntArray, PoolArray,
 )  # fmt: skip
 from .layout import CAPACITY, NUMBER, POOL_END, START
 
