@@ -10,13 +10,12 @@ of elastic crowds melts away otherwise; what is left of it is taken out by one s
 
 from __future__ import annotations
 
-import numpy as np
-
+from ..arrays import FloatArray, IntArray
 from ..compiled import kernel
 from .build import aim, rates
+from .direct import refine
 from .energy import lock, works
-from .layout import ELASTICITY, FRICTION, FloatArray, IntArray
-from .polish import polish, segment
+from .layout import ELASTICITY, FRICTION
 from .sweeps import iterate, push, sweep
 
 CONVERGED, TRUNCATED = 0, 1  # statuses
@@ -26,7 +25,7 @@ OUT_SIZE = 8
 _PRECISE = 1e-14  # residual of convergence relative to the largest approach speed
 _RUBBED = 1e-10  # the same with friction, whose law is not that of a least energy
 _SWEEPS, _RUBBED_SWEEPS = 12, 100  # before the first direct solution
-_AFTER = 4  # sweeps after each
+_AFTER = 3  # sweeps after each
 _ROUNDS, _RUBBED_ROUNDS = 40, 8
 _LAST, _RUBBED_LAST = 400, 200  # sweeps where direct solutions have not converged
 _LITTLE = 16  # contacts up to which sweeps alone are cheaper than a direct solution at first
@@ -47,32 +46,17 @@ def resolve(
     OUT[POLISHES] = 0.0
     if worst <= tolerance:
         return worst
-    L0 = np.empty((m, 2))
-    V0 = np.empty((len(IM), 3))
     least = worst
     stalled = 0
-    R = 1e8
+    log_R = 8.0
     for _ in range(_RUBBED_ROUNDS if rubs else _ROUNDS):
-        L0[:] = L[:m]
-        V0[:] = V
-        reached, clamped = polish(A, B, ROWS, L, V, FREE, IM, II, POSE, n, m, R, 8, 0.1 * tolerance)
+        log_R, worst = refine(A, B, ROWS, L, V, FREE, IM, II, POSE, n, m, log_R, 8, 0.1 * tolerance, worst)
         OUT[POLISHES] += 1.0
-        part = 1.0
-        if not reached <= 1e3 * worst + 1e-9 * tolerance:
-            L[:m] = L0
-            V[:] = V0
-            part = 0.0
-        elif clamped > 0:
-            part = segment(A, B, ROWS, L, V, L0, V0, m)
-        if clamped == 0 or part > 0.9:
-            R = min(100.0 * R, 1e8)
-        elif part < 0.3:
-            R = max(0.01 * R, 1e2)
         for _ in range(_AFTER):
-            worst = sweep(A, B, ROWS, L, V, IM, II, m)
             OUT[SWEEPS] += 1.0
             if worst <= tolerance:
                 return worst
+            worst = sweep(A, B, ROWS, L, V, IM, II, m)
         if worst < 0.5 * least:
             least = worst
             stalled = 0

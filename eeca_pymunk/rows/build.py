@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..arrays import FloatArray, IntArray
 from ..compiled import kernel
 from .layout import (
     ARM_NA,
@@ -22,8 +23,6 @@ from .layout import (
     UN,
     UT,
     WAKE,
-    FloatArray,
-    IntArray,
 )
 
 

@@ -10,8 +10,9 @@ import math
 
 import numpy as np
 
+from ..arrays import FloatArray, IntArray
 from ..compiled import kernel
-from .layout import ARM_NA, ARM_NB, ARM_TA, ARM_TB, K_N, K_T, NX, NY, FloatArray, IntArray
+from .layout import ARM_NA, ARM_NB, ARM_TA, ARM_TB, K_N, K_T, NX, NY
 
 
 @kernel

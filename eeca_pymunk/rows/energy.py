@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import math
 
+from ..arrays import FloatArray, IntArray
 from ..compiled import kernel
 from .build import normal_rate, tangent_rate
-from .layout import ARM_NA, ARM_NB, K_N, NX, NY, UN, UT, FloatArray, IntArray
+from .layout import ARM_NA, ARM_NB, K_N, NX, NY, UN, UT
 from .sweeps import push
 
 
@@ -22,7 +23,7 @@ def works(
     """LOSS (m, 2) = D_n and D_t of each contact, energy, V being the velocities after; returns their sums.
 
     Where slip reverses, friction gives back a part of what restitution takes, D_n + D_t >= 0: a negative loss counts
-    against the same contact's other one.
+    against the same contact's other one. Likewise for the sums, where the solve was cut short.
     """
     normal = 0.0
     tangential = 0.0
@@ -42,6 +43,12 @@ def works(
             LOSS[i, 1] = 0.0
         normal += LOSS[i, 0]
         tangential += LOSS[i, 1]
+    if normal < 0.0:
+        tangential += normal
+        normal = 0.0
+    elif tangential < 0.0:
+        normal += tangential
+        tangential = 0.0
     return normal, tangential
 
 

@@ -11,16 +11,6 @@ unit normal from A to B, and t = (-n_y, n_x):
 L (m, 2): the normal impulse lam >= 0 and the tangential one on B. ROWS (m, 16):
 """
 
-from __future__ import annotations
-
-from typing import TypeAlias
-
-import numpy as np
-import numpy.typing as npt
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
-IntArray: TypeAlias = npt.NDArray[np.int64]
-
 NX, NY = 0, 1  # unit normal from A to B
 ARM_NA, ARM_NB = 2, 3  # arms of the normal impulse: length
 ARM_TA, ARM_TB = 4, 5  # arms of the tangential impulse: length

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..arrays import FloatArray, IntArray
 from ..compiled import kernel
-from .layout import FloatArray, IntArray
 
 _LEAF = 6  # bodies that are not divided further
 _MANY = 24  # neighbours from which a body is eliminated last

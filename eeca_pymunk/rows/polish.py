@@ -12,6 +12,7 @@ import math
 
 import numpy as np
 
+from ..arrays import FloatArray, IntArray
 from ..compiled import kernel
 from .build import normal_rate, tangent_rate
 from .cholesky import assemble, factorise, substitute
@@ -29,8 +30,6 @@ from .layout import (
     TARGET,
     UN,
     UT,
-    FloatArray,
-    IntArray,
 )
 from .ordering import dissect, neighbours, pattern
 from .sweeps import push
@@ -39,11 +38,12 @@ from .sweeps import push
 @kernel
 def classify(
     A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, m: int, held: IntArray, stuck: IntArray,
-    slip: FloatArray, rest: FloatArray,
+    slip: FloatArray, rest: FloatArray, shared: bool,
 ) -> None:  # fmt: skip
     """Which normals are held, which tangents stuck (1 at u_t = 0, 2 at u_t = rest), which slip (beta = slip lam).
 
-    Friction that its energy limits has beta (u_t- + u_t+) = -lam (u_n- + b): rest is that u_t+.
+    Friction that its energy limits has beta (u_t- + u_t+) = -lam (u_n- + b). Either rest is that u_t+; or, if `shared`,
+    another contact of the same face holds u_t+ = 0, and slip is that beta / lam.
     """
     for i in range(m):
         lam = L[i, 0]
@@ -57,13 +57,35 @@ def classify(
             continue
         if abs(beta) < mu * lam * (1.0 - 1e-12):
             loss = lam * min(ROWS[i, UN] + ROWS[i, TARGET], 0.0)
+            if beta == 0.0 and loss == 0.0 and tangent_rate(A, B, ROWS, V, i) * ROWS[i, UT] < 0.0:
+                continue  # a slip that has reversed by less than its size: no friction without giving energy
             if beta * ROWS[i, UT] <= -loss:
                 stuck[i] = 1
-            elif beta != 0.0:
+            elif shared:
+                slip[i] = -min(ROWS[i, UN] + ROWS[i, TARGET], 0.0) / ROWS[i, UT]
+            else:
                 stuck[i] = 2
                 rest[i] = -ROWS[i, UT] - loss / beta
         elif beta != 0.0:
             slip[i] = mu if beta > 0.0 else -mu
+
+
+@kernel
+def clamp(ROWS: FloatArray, L: FloatArray, m: int) -> int:
+    """Put impulses back into their cones; how many were outside."""
+    clamped = 0
+    for i in range(m):
+        most = ROWS[i, FRICTION] * L[i, 0]
+        if L[i, 0] < 0.0:
+            L[i, 0] = 0.0
+            L[i, 1] = 0.0
+            clamped += 1
+        elif abs(L[i, 1]) > most:
+            # Round-off of beta = mu lam is not outside.
+            if abs(L[i, 1]) > most * (1.0 + 1e-14):
+                clamped += 1
+            L[i, 1] = most if L[i, 1] > 0.0 else -most
+    return clamped
 
 
 @kernel
@@ -83,7 +105,7 @@ def polish(
     stuck = np.empty(m, np.int64)
     slip = np.empty(m)
     rest = np.empty(m)
-    classify(A, B, ROWS, L, V, m, held, stuck, slip, rest)
+    classify(A, B, ROWS, L, V, m, held, stuck, slip, rest, False)
     SCALE = np.empty((len(IM), 3))
     for i in range(len(IM)):
         SCALE[i, 0] = SCALE[i, 1] = math.sqrt(IM[i])
@@ -147,16 +169,7 @@ def polish(
                 L[i, 1] = slip[i] * L[i, 0]
         V[:] = FREE
         push(A, B, ROWS, L, V, IM, II, m)
-    clamped = 0
-    for i in range(m):
-        most = ROWS[i, FRICTION] * L[i, 0]
-        if L[i, 0] < 0.0:
-            L[i, 0] = 0.0
-            L[i, 1] = 0.0
-            clamped += 1
-        elif abs(L[i, 1]) > most:
-            L[i, 1] = most if L[i, 1] > 0.0 else -most
-            clamped += 1
+    clamped = clamp(ROWS, L, m)
     if clamped > 0:
         V[:] = FREE
         push(A, B, ROWS, L, V, IM, II, m)

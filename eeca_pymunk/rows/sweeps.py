@@ -15,6 +15,7 @@ import math
 
 import numpy as np
 
+from ..arrays import FloatArray, IntArray
 from ..compiled import kernel
 from .layout import (
     ARM_NA,
@@ -31,8 +32,6 @@ from .layout import (
     UN,
     UT,
     WAKE,
-    FloatArray,
-    IntArray,
 )
 
 
