@@ -108,7 +108,7 @@ def predict(
         for q in range(start, start + LIST[s, NUMBER]):
             if FLAG[q] != 0:
                 continue
-            o = POOL[q]
+            o = int(POOL[q])
             if RULE.shape[0] > 0 and barred(RULE, s, o):
                 continue
             certain = True

@@ -16,24 +16,56 @@ EVENTS = 6  # impacts of the body in this step
 ISLAND = 7  # first body of the island it is solved in, -1 for none
 STATE_COLUMNS = 8
 
+# MEMBER (n, 5) int: islands of bodies in sustained contact as chains from their first body, the root
+AFTER_ME, LAST_ONE, BODIES = 0, 1, 2  # next body of the chain, -1 for none; of the root: the last one, and how many
+HITS = 3  # of the root: how often the island was hit in this step
+BUSY = 4  # steps for which what comes near joins the island rather than hits it
+MEMBER_COLUMNS = 5
+
+# RESTING (n, 12) float: of a body in an island
+LIFT = 0  # RESTING[LIFT : LIFT + 6]: what to add to pose and velocity at the end of the span
+RELAX = 6  # of the root, RESTING[RELAX : RELAX + 3]: state of the solve
+LOST = 9  # of the root: energy lost in this step; below 0 it is owed
+SPENT = 10  # of the root: energy that lifting costs
+RESTING_COLUMNS = 12
+
+# PUSHED_BY (c, 3) int: the contacts of islands in their present spans
+PUSH_A, PUSH_B, ROOT = 0, 1, 2  # shapes, first body of the island; of a span that is over one of these:
+ENDED, LASTED = -1, -2  # before the end of the step, with it
+# PUSHED (c, 14) float
+LAM, BETA = 0, 1  # impulses over the span
+UN_BEFORE, UN_AFTER, UT_BEFORE, UT_AFTER = 2, 3, 4, 5  # velocities of the contact at both ends
+WORK_OF = 6  # energy that moving bodies and surfaces give over the span
+SPAN_FROM, SPAN = 7, 8  # instant and length of the span
+PUSH_NX, PUSH_NY, PUSH_X, PUSH_Y = 9, 10, 11, 12
+PUSH_CHANGE = 13  # of the normal velocity by the impulse alone
+PUSHED_COLUMNS = 14
+
 # PAR float: of the step
 DT, NOW = 0, 1  # length of the step; instant at which the loop has stopped for more room
 GRAVITY_X, GRAVITY_Y = 2, 3
 LEFT_OVER = 4  # what the damping of half a step leaves of velocities
 LOCK = 5  # scale of an energy lock that was farthest from 1
 LAST = 6  # length of the step before
+STAMP = 14  # number of the step
+PULLED = 15  # largest acceleration without contacts
 LEDGER = 7  # energy of the step: PAR[LEDGER + ...]
 RESTITUTION, FRICTIONAL, EXTERNAL, DAMPED = 0, 1, 2, 3
 LEDGER_LENGTH = 4
 BEFORE, AFTER = 12, 13  # kinetic energy and -m g.x at both ends of the step
-PAR_LENGTH = 14
+PAR_LENGTH = 16
 
 # COUNT int: of the step
 HEAP, LOGGED, IMPACTS, BLOCKS, FORECASTS, STALE, LIMIT, UNMET, STRUCK = 0, 1, 2, 3, 4, 5, 6, 7, 8
-COUNT_LENGTH = 9
+PUSHES = 9  # rows of PUSHED in use
+SOLVES, IGNORED = 10, 11
+PENDING, WAITING = 12, 13  # island whose span is to be begun, -1 for none; bodies in BLOCK to be forecast then
+PHASE = 14  # of the step that is to be resumed
+REMEMBERED = 15  # COUNT[REMEMBERED:]: rows of the memory of forces in use
+COUNT_LENGTH = 16
 
 # Status of a step
-DONE, POOL_FULL, LOG_FULL, BLOCK_DUE = 0, 1, 2, 3
+DONE, POOL_FULL, LOG_FULL, BLOCK_DUE, PUSHES_FULL = 0, 1, 2, 3, 4
 
 
 class Scene(NamedTuple):
@@ -41,7 +73,8 @@ class Scene(NamedTuple):
 
     RULE (r, 6): what collision handlers say of pairs, a < b: shapes a, b, elasticity (below 0: none), friction, surface
     velocity of b relative to a. LOG: EVENT rows. BEGAN (n, 3): poses at the start of the step. WORK (2, K, 4): scratch
-    for vertices. PLACE (n,): -1, or a body's place in the block in BLOCK (n,).
+    for vertices. PLACE (n,): -1, or a body's place in the block in BLOCK (n,). PULL (n, 3): accelerations
+    without contacts. KEYS, FORCES: memory of forces (`..sustained.memory`).
     """
 
     BODY: FloatArray
@@ -66,6 +99,13 @@ class Scene(NamedTuple):
     BEGAN: FloatArray
     PLACE: IntArray
     BLOCK: IntArray
+    PULL: FloatArray
+    MEMBER: IntArray
+    RESTING: FloatArray
+    PUSHED_BY: IntArray
+    PUSHED: FloatArray
+    KEYS: IntArray
+    FORCES: FloatArray
     WORK: FloatArray
     PAR: FloatArray
     COUNT: IntArray

@@ -13,10 +13,13 @@ from ..pairs.lists import mark_pair
 from .forecast import has_left, predict
 from .heap import pop, push, sweep_out
 from .layout import (
-    DONE, DT, EVENTS, FORECASTS, HEAP, KINKS, KNOWN, LEAVE, LIMIT, LOG_FULL, LOGGED, NOW, OTHER, OWN,
-    BLOCK_DUE, POOL_FULL, STALE, STRUCK, UNMET, Scene,
+    DONE, DT, EVENTS, FORECASTS, HEAP, ISLAND, KINKS, KNOWN, LEAVE, LIMIT, LOG_FULL, LOGGED, NOW, OTHER, OWN,
+    BLOCK_DUE, PENDING, POOL_FULL, PUSHES, WAITING, STALE, STRUCK, UNMET, Scene,
 )  # fmt: skip
-from .strike import alone, strike, strike_disk
+from .block import arrive, strike
+from .islands import solve
+from .settle import comes_to_rest, ignored
+from .strike import alone, strike_disk
 
 _SQUEEZED = 50  # impacts of a body in a step, from which those with a kinematic one are left out: walls may close in
 
@@ -43,11 +46,11 @@ def give_up(A: Scene, i: int, j: int) -> bool:
 
 
 @uncounted
-def run(A: Scene, disks: int, smooth: bool) -> int:
+def run(A: Scene, disks: int, may_rest: bool) -> int:
     """Follow the events until the end of the step, or the next one that is a block (BLOCK_DUE) or wants more room.
 
     Args:
-        disks: the first so many bodies are lone disks.  smooth: whether nothing has friction.
+        disks: the first so many bodies are lone disks.  may_rest: whether contacts may be sustained.
     """
     BODY, STATE, COUNT, TIME, OF = A.BODY, A.STATE, A.COUNT, A.HEAP_TIME, A.HEAP_BODY
     moving = A.LIST.shape[0]
@@ -84,9 +87,11 @@ def run(A: Scene, disks: int, smooth: bool) -> int:
             forecast(A, disks, moving, i, t, end)
             continue
         if (
-            smooth
+            STATE[i, ISLAND] < 0
+            and STATE[j, ISLAND] < 0
             and i < disks
             and (o < disks or o >= moving)
+            and not (may_rest and comes_to_rest(A, s, o, t))
             and alone(A, disks, i, o, t)
             and (o >= moving or alone(A, disks, j, i, t))
         ):
@@ -101,18 +106,41 @@ def run(A: Scene, disks: int, smooth: bool) -> int:
 
 
 @kernel
-def follow(A: Scene, disks: int, smooth: bool) -> int:
-    """The events of the step, blocks included. After a status other than DONE, make room and call again."""
-    COUNT = A.COUNT
+def follow(A: Scene, disks: int, may_rest: bool) -> int:
+    """The events of the step, blocks and islands included. After a status other than DONE, make room and call again."""
+    COUNT, STATE, BLOCK = A.COUNT, A.STATE, A.BLOCK
     moving, end = A.LIST.shape[0], A.PAR[DT]
+    if COUNT[PENDING] >= 0:
+        status = solve(A, COUNT[PENDING], A.PAR[NOW])
+        if status != DONE:
+            return status
+        COUNT[PENDING] = -1
+        for q in range(COUNT[WAITING]):
+            forecast(A, disks, moving, BLOCK[q], A.PAR[NOW], end)
     while True:
-        status = run(A, disks, smooth)
+        status = run(A, disks, may_rest)
         if status != BLOCK_DUE:
             return status
         t, i = A.PAR[NOW], COUNT[STRUCK]
-        status, n = strike(A, disks, A.STATE[i, OWN], A.STATE[i, OTHER], t)
-        if status != DONE:
+        s, o = STATE[i, OWN], STATE[i, OTHER]
+        j = A.LINK[o, OWNER]
+        if COUNT[LOGGED] + COUNT[PUSHES] + 8 * STATE.shape[0] > A.LOG.shape[0]:
             COUNT[HEAP] = push(A.HEAP_TIME, A.HEAP_BODY, COUNT[HEAP], t, i)
+            return LOG_FULL
+        if (STATE[i, ISLAND] >= 0 or STATE[j, ISLAND] >= 0) and ignored(A, s, o, t):
+            COUNT[UNMET] += 1
+            mark_pair(A.LIST, A.POOL, A.FLAG, moving, s, o, 1)
+            forecast(A, disks, moving, i, t, end)
+            continue
+        rest = False
+        if may_rest:
+            arrive(A, i, t)
+            if A.BODY[j, IM] > 0.0:
+                arrive(A, j, t)
+            rest = comes_to_rest(A, s, o, t)
+        status, n = strike(A, disks, s, o, t, rest)
+        COUNT[WAITING] = n
+        if status != DONE:
             return status
         for q in range(n):
-            forecast(A, disks, moving, A.BLOCK[q], t, end)
+            forecast(A, disks, moving, BLOCK[q], t, end)

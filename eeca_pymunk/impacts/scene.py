@@ -7,14 +7,18 @@ from collections.abc import Mapping
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..layout import COUNT as VERTICES, EVENT_COLUMNS, FRICTION, OWNER
+from ..layout import COUNT as VERTICES, ELASTICITY, EVENT_COLUMNS, OWNER
 from ..pairs.setup import near_lists, rebuilt
+from ..sustained.memory import FORCE_COLUMNS, forget
+from ..sustained.relax import FRESH
 from .layout import (
-    COUNT_LENGTH, FIRST_SHAPE, LIMIT, LOCK, LOGGED, NOW, PAR_LENGTH, SHAPES, STATE_COLUMNS, UNMET, Scene,
+    COUNT_LENGTH, FIRST_SHAPE, ISLAND, LIMIT, LOCK, LOGGED, MEMBER_COLUMNS, NOW, PAR_LENGTH, PUSHED_COLUMNS, RELAX, REMEMBERED,
+    RESTING_COLUMNS, SHAPES, STAMP, STATE_COLUMNS, UNMET, Scene,
 )  # fmt: skip
-from .step import ROOM_FOR_EVENTS, ROOM_FOR_LISTS, resume, step
+from .step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, resume, step
 
 RULE_COLUMNS = 6
+_CONTACTS = 256  # of islands, that there is room for at first; a power of 2
 
 
 class EventLoop:
@@ -35,34 +39,47 @@ class EventLoop:
         STATE = np.zeros((n, STATE_COLUMNS), np.int64)
         STATE[:, SHAPES] = np.bincount(LINK[:moving, OWNER], minlength=n)
         STATE[:, FIRST_SHAPE] = np.cumsum(STATE[:, SHAPES]) - STATE[:, SHAPES]
+        STATE[:, ISLAND] = -1
         near = near_lists(BODY, SHAPE, LINK, VERTEX, moving)
         vertices = max(2, int(LINK[:, VERTICES].max(initial=2)))
         self.scene = Scene(
             BODY, STATE, SHAPE, LINK, VERTEX, *near, np.zeros((0, RULE_COLUMNS)), np.zeros(8 * n + 64),
             np.zeros(8 * n + 64, np.int64), np.zeros((4 * n + 64, EVENT_COLUMNS)), np.zeros((n, 3)),
-            np.full(n, -1, np.int64), np.zeros(n, np.int64), np.zeros((2, vertices, 4)), np.zeros(PAR_LENGTH),
-            np.zeros(COUNT_LENGTH, np.int64),
+            np.full(n, -1, np.int64), np.zeros(n, np.int64), np.zeros((n, 3)), np.zeros((n, MEMBER_COLUMNS), np.int64),
+            np.zeros((n, RESTING_COLUMNS)), np.zeros((_CONTACTS, 3), np.int64), np.zeros((_CONTACTS, PUSHED_COLUMNS)),
+            np.full(4 * _CONTACTS, -1, np.int64), np.zeros((4 * _CONTACTS, FORCE_COLUMNS)),
+            np.zeros((2, vertices, 4)), np.zeros(PAR_LENGTH), np.zeros(COUNT_LENGTH, np.int64),
         )  # fmt: skip
         self.near = near
         self.scene.COUNT[LIMIT] = limit
-        self.smooth = not (SHAPE[:, FRICTION] > 0.0).any()
+        self.scene.RESTING[:, RELAX : RELAX + 3] = FRESH
+        self.lossy = bool((SHAPE[:, ELASTICITY] < 1.0).any())
 
     def step(
         self, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
         left: float,
     ) -> int:  # fmt: skip
         """See `step.step`; a negative answer is one of `transfer.py`."""
-        disks, smooth = self.disks, self.smooth
-        status = step(self.scene, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, disks, smooth)
+        disks, lossy = self.disks, self.lossy
+        status = step(self.scene, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, disks, lossy)
         while status <= ROOM_FOR_LISTS:
             self._grow(status)
-            status = resume(self.scene, STATES, WALK, EXTRA, ENDS, disks, smooth, 0)
+            status = resume(self.scene, STATES, WALK, EXTRA, ENDS, disks, lossy, 0)
         return status
 
     def _grow(self, wish: int) -> None:
         scene = self.scene
         if wish == ROOM_FOR_EVENTS:
             self.scene = scene._replace(LOG=np.concatenate((scene.LOG, np.zeros_like(scene.LOG))))
+            return
+        if wish == ROOM_FOR_CONTACTS:
+            KEYS, FORCES = np.full(2 * len(scene.KEYS), -1, np.int64), np.zeros((2 * len(scene.KEYS), FORCE_COLUMNS))
+            forget(scene.KEYS, scene.FORCES, scene.COUNT[REMEMBERED:], KEYS, FORCES, float(scene.PAR[STAMP]) - 1.0)
+            self.scene = scene._replace(
+                KEYS=KEYS, FORCES=FORCES,
+                PUSHED_BY=np.concatenate((scene.PUSHED_BY, np.zeros_like(scene.PUSHED_BY))),
+                PUSHED=np.concatenate((scene.PUSHED, np.zeros_like(scene.PUSHED))),
+            )  # fmt: skip
             return
         self.near = rebuilt(self.near.larger(), scene.BODY, scene.SHAPE, scene.LINK, float(scene.PAR[NOW]))
         self.scene = scene._replace(POOL=self.near.POOL, FLAG=self.near.FLAG)

@@ -13,13 +13,16 @@ from ..layout import (
 )  # fmt: skip
 from ..transfer import EVENTS as SOME, give, take
 from .layout import (
-    AFTER, BEFORE, BLOCKS, DAMPED, DT, EVENTS, EXTERNAL, FORECASTS, GRAVITY_X, GRAVITY_Y, HEAP, IMPACTS,
-    KINKS, LAST, LEDGER, LEDGER_LENGTH, LEFT_OVER, LOCK, LOG_FULL, LOGGED, POOL_FULL, STALE, UNMET, Scene,
+    AFTER, BEFORE, BLOCKS, BUSY, DAMPED, DONE, DT, EVENTS, EXTERNAL, FORECASTS, GRAVITY_X, GRAVITY_Y, HEAP, IMPACTS, ISLAND,
+    KINKS, LAST, LEDGER, LEDGER_LENGTH, LEFT_OVER, LOCK, LOG_FULL, LOGGED, PENDING, PHASE, POOL_FULL,
+    PULLED, PUSHES, PUSHES_FULL, ROOT, STALE, STAMP, UNMET, Scene,
 )  # fmt: skip
 from .loop import follow, forecast
+from .islands import book, lift_out
+from .settle import settle
 from .strike import move_to
 
-ROOM_FOR_LISTS, ROOM_FOR_EVENTS = -10, -11  # answers of a step that wants more memory: give some, and `resume`
+ROOM_FOR_LISTS, ROOM_FOR_EVENTS, ROOM_FOR_CONTACTS = -10, -11, -12  # answers of a step that wants more memory: give some, and `resume`
 
 
 @uncounted
@@ -44,7 +47,7 @@ def total(A: Scene) -> float:
 
 
 @uncounted
-def begin(A: Scene, WALK: IntArray, disks: int) -> None:
+def begin(A: Scene, WALK: IntArray) -> None:
     """Count from the start of this step; forecast the bodies that were edited, and all that is due."""
     BODY, STATE, PAR, COUNT = A.BODY, A.STATE, A.PAR, A.COUNT
     for c in (HEAP, LOGGED, IMPACTS, BLOCKS, FORECASTS, STALE):
@@ -64,17 +67,22 @@ def begin(A: Scene, WALK: IntArray, disks: int) -> None:
             if i >= 0 and WALK[STEERED, k] == 0:
                 PAR[LEDGER + DAMPED] += kinetic(BODY, i) * (1.0 / (left * left) - 1.0)
         PAR[BEFORE] += PAR[LEDGER + DAMPED]
-    n, last, dt = BODY.shape[0] - 1, PAR[LAST], PAR[DT]
+    PAR[STAMP] += 1.0
+    COUNT[PENDING], COUNT[PHASE] = -1, 0
+    n, last = BODY.shape[0] - 1, PAR[LAST]
+    pulled = 0.0
     for i in range(n):
         STATE[i, EVENTS] = 0
+        A.MEMBER[i, BUSY] = max(A.MEMBER[i, BUSY] - 1, 0)
+        ax, ay = BODY[i, AX], BODY[i, AY]
+        A.PULL[i, 0], A.PULL[i, 1], A.PULL[i, 2] = ax, ay, BODY[i, TWIST]
+        pulled = max(pulled, ax * ax + ay * ay)
         A.BEGAN[i, 0], A.BEGAN[i, 1], A.BEGAN[i, 2] = BODY[i, X], BODY[i, Y], BODY[i, ANGLE]
         if BODY[i, DUE] == -math.inf:
             STATE[i, KINKS] += 1
         else:
             BODY[i, DUE] = max(BODY[i, DUE] - last, 0.0)
-    for i in range(n):
-        if BODY[i, DUE] < dt:
-            forecast(A, disks, A.LIST.shape[0], i, 0.0, dt)
+    PAR[PULLED] = math.sqrt(pulled)
 
 
 @uncounted
@@ -88,13 +96,19 @@ def kinetic(BODY: FloatArray, i: int) -> float:
 
 @uncounted
 def close(A: Scene, WALK: IntArray) -> None:
-    """Bring all paths to the end of the step; the work of forces, the energy, and the gaps at the start of what met."""
-    BODY, PAR, LOG, BEGAN = A.BODY, A.PAR, A.LOG, A.BEGAN
+    """Bring all paths to the end of the step; book islands, the work of forces, the energy; gaps at the start."""
+    BODY, PAR, LOG, BEGAN, COUNT = A.BODY, A.PAR, A.LOG, A.BEGAN, A.COUNT
     end = PAR[DT]
+    for c in range(COUNT[PUSHES]):
+        if A.PUSHED_BY[c, ROOT] >= 0:
+            book(A, c, end)
     gx, gy = PAR[GRAVITY_X], PAR[GRAVITY_Y]
     for i in range(BODY.shape[0] - 1):
         move_to(BODY, i, end)
-        fx, fy, twist = BODY[i, AX] - gx, BODY[i, AY] - gy, BODY[i, TWIST]
+        if A.STATE[i, ISLAND] == i:
+            lift_out(A, i, end)
+    for i in range(BODY.shape[0] - 1):
+        fx, fy, twist = A.PULL[i, 0] - gx, A.PULL[i, 1] - gy, A.PULL[i, 2]
         if BODY[i, IM] > 0.0 and (fx != 0.0 or fy != 0.0 or twist != 0.0):
             work = (fx * (BODY[i, X] - BEGAN[i, 0]) + fy * (BODY[i, Y] - BEGAN[i, 1])) / BODY[i, IM]
             if BODY[i, II] > 0.0:
@@ -111,7 +125,7 @@ def close(A: Scene, WALK: IntArray) -> None:
         PAR[LEDGER + DAMPED] += lost
         PAR[AFTER] -= lost
     PAR[LAST] = end
-    for n in range(A.COUNT[LOGGED]):
+    for n in range(COUNT[LOGGED]):
         a, b = int(LOG[n, FIRST_OF]), int(LOG[n, SECOND_OF])
         i, j = A.LINK[a, OWNER], A.LINK[b, OWNER]
         LOG[n, GAP] = gap_at(
@@ -122,31 +136,46 @@ def close(A: Scene, WALK: IntArray) -> None:
 
 @kernel
 def resume(
-    A: Scene, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, disks: int, smooth: bool,
+    A: Scene, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, disks: int, lossy: bool,
     status: int,
 ) -> int:  # fmt: skip
     """The rest of a step, whose bits so far are `status`."""
-    met = follow(A, disks, smooth)
-    if met == POOL_FULL:
-        return ROOM_FOR_LISTS
-    if met == LOG_FULL:
+    COUNT, BODY = A.COUNT, A.BODY
+    dt = A.PAR[DT]
+    if COUNT[PHASE] == 0:
+        if COUNT[PUSHES] > 0 and settle(A) != DONE:
+            return ROOM_FOR_CONTACTS
+        COUNT[PHASE] = 1
+        for i in range(BODY.shape[0] - 1):
+            if BODY[i, DUE] < dt or A.STATE[i, ISLAND] >= 0:
+                forecast(A, disks, A.LIST.shape[0], i, 0.0, dt)
+    if COUNT[PHASE] == 1:
+        met = follow(A, disks, lossy or A.PAR[PULLED] > 0.0)
+        if met == POOL_FULL:
+            return ROOM_FOR_LISTS
+        if met == LOG_FULL:
+            return ROOM_FOR_EVENTS
+        if met == PUSHES_FULL:
+            return ROOM_FOR_CONTACTS
+        COUNT[PHASE] = 2
+    if COUNT[LOGGED] + COUNT[PUSHES] > A.LOG.shape[0]:
         return ROOM_FOR_EVENTS
     close(A, WALK)
-    if A.COUNT[LOGGED] > 0:
+    if COUNT[LOGGED] > 0:
         status |= SOME
-    return give(STATES, WALK, EXTRA, A.BODY, ENDS, A.PAR[DT], A.PAR[LEFT_OVER], status)
+    return give(STATES, WALK, EXTRA, BODY, ENDS, dt, A.PAR[LEFT_OVER], status)
 
 
 @kernel
 def step(
     A: Scene, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
-    left: float, disks: int, smooth: bool,
+    left: float, disks: int, lossy: bool,
 ) -> int:  # fmt: skip
     """From the states that were read to those that are to be written, see `transfer.py`.
 
     Args:
         dt: time, > 0.  gx, gy: gravity, length/time².  left: what half the step's damping leaves of velocities.
-        disks: the first so many rows of BODY are lone disks.  smooth: whether no pair has friction.
+        disks: the first so many rows of BODY are lone disks.  lossy: whether any shape's elasticity is below 1.
 
     Returns:
         the bits EVENTS, FORCES, TURNS, a negative code of `transfer.py`, or a wish for room.
@@ -155,5 +184,5 @@ def step(
     if status < 0:
         return status
     A.PAR[DT], A.PAR[GRAVITY_X], A.PAR[GRAVITY_Y], A.PAR[LEFT_OVER] = dt, gx, gy, left
-    begin(A, WALK, disks)
-    return resume(A, STATES, WALK, EXTRA, ENDS, disks, smooth, status)
+    begin(A, WALK)
+    return resume(A, STATES, WALK, EXTRA, ENDS, disks, lossy, status)

@@ -1,0 +1,363 @@
+"""Islands of sustained contacts within a step: who belongs to one, its span of time, and what was done in it.
+
+An island is solved from an instant to the end of the step; its bodies then follow parabolas, on which others may hit
+it. A hit ends the span: its works are booked up to there (exactly: forces are constant, velocities linear in time),
+and a new span begins. Forces of a span that was cut may have given energy (a soft landing pushes before it touches):
+that is owed, and taken out by what follows.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..arrays import IntArray
+from ..compiled import kernel, uncounted
+from ..geometry.gap import gap_at
+from ..layout import ANGLE, AX, AY, ELASTICITY, EXTENT, II, IM, OWNER, SINCE, SIZE, SPIN, TWIST, VX, VY, X, Y
+from ..pairs.layout import NUMBER, START
+from ..pairs.lists import mark_pair
+from ..rows.build import normal_rate, tangent_rate
+from ..rows.layout import ARM_NA, ARM_TA, K_N, NX, NY, ROW_COLUMNS, UN, UT
+from ..sustained.ledger import LEDGER_SIZE, LIFTED, carried
+from ..sustained.memory import find
+from ..sustained.step import LOCK as LOCK_OF, OUT_SIZE, step_island
+from .forecast import barred
+from .layout import (
+    AFTER_ME, BETA, BODIES, BUSY, DONE, DT, ENDED, EXTERNAL, FIRST_SHAPE, FRICTIONAL, HITS, ISLAND, KINKS, LAM,
+    LAST_ONE, LASTED, LEDGER, LIFT, LOCK, LOGGED, LOST, PULLED, PUSH_A, PUSH_B, PUSH_CHANGE, PUSH_NX, PUSH_NY, PUSH_X, PUSH_Y,
+    PUSHES, PUSHES_FULL, RELAX, REMEMBERED, RESTITUTION, ROOT, SHAPES, SOLVES, SPAN, SPAN_FROM, SPENT, STAMP, UN_AFTER,
+    UN_BEFORE, UT_AFTER, UT_BEFORE, WORK_OF, Scene,
+)  # fmt: skip
+from .strike import law, move_to, note
+
+TOUCH = 1e-7  # gap relative to the smaller shape, within which shapes are in touch
+_STILL, _WAS_STILL = 1e-6, 1e-3  # speed relative to |a| dt, below which elastic contacts rest; if they did before
+
+
+@uncounted
+def unite(A: Scene, i: int, j: int) -> int:
+    """Put bodies i and j, with their islands, into one; its root."""
+    MEMBER, STATE = A.MEMBER, A.STATE
+    for k in (i, j):
+        if STATE[k, ISLAND] < 0:
+            STATE[k, ISLAND] = k
+            MEMBER[k, AFTER_ME], MEMBER[k, LAST_ONE], MEMBER[k, BODIES], MEMBER[k, HITS] = -1, k, 1, 0
+            A.RESTING[k, LOST] = 0.0
+    a, b = STATE[i, ISLAND], STATE[j, ISLAND]
+    if a == b:
+        return a
+    if MEMBER[a, BODIES] < MEMBER[b, BODIES] or (MEMBER[a, BODIES] == MEMBER[b, BODIES] and b < a):
+        a, b = b, a
+    k = b
+    while k >= 0:
+        STATE[k, ISLAND] = a
+        k = MEMBER[k, AFTER_ME]
+    MEMBER[MEMBER[a, LAST_ONE], AFTER_ME] = b
+    MEMBER[a, LAST_ONE] = MEMBER[b, LAST_ONE]
+    MEMBER[a, BODIES] += MEMBER[b, BODIES]
+    MEMBER[a, HITS] = max(MEMBER[a, HITS], MEMBER[b, HITS])
+    A.RESTING[a, LOST] += A.RESTING[b, LOST]
+    return a
+
+
+@uncounted
+def remembered(A: Scene, a: int, b: int, since: float) -> tuple[float, float]:
+    """Normal force and load of a pair of shapes, of the steps from number `since` on; 0 if there is none."""
+    key = (min(a, b) * A.SHAPE.shape[0] + max(a, b)) << 1
+    force, load = 0.0, 0.0
+    for z in range(2):
+        row = find(A.KEYS, key + z)
+        if row >= 0 and A.FORCES[row, 3] >= since:
+            force += A.FORCES[row, 0]
+            load += A.FORCES[row, 2]
+    return force, load
+
+
+@uncounted
+def approach(A: Scene, a: int, b: int, t: float) -> tuple[float, float, float, float]:
+    """Gap of shapes a and b, whose paths begin at instant t or that move evenly; its rate; the acceleration with which
+    it closes without contacts; and the mass that it feels."""
+    BODY, LINK = A.BODY, A.LINK
+    i, j = LINK[a, OWNER], LINK[b, OWNER]
+    h = t - BODY[j, SINCE]
+    g, nx, ny, px, py = gap_at(
+        A.SHAPE, LINK, A.VERTEX, A.WORK, a, BODY[i, X], BODY[i, Y], BODY[i, ANGLE],
+        b, BODY[j, X] + BODY[j, VX] * h, BODY[j, Y] + BODY[j, VY] * h, BODY[j, ANGLE] + BODY[j, SPIN] * h,
+    )  # fmt: skip
+    xi, yi, xj, yj = px - BODY[i, X], py - BODY[i, Y], px - BODY[j, X] - BODY[j, VX] * h, py - BODY[j, Y] - BODY[j, VY] * h
+    arm_i, arm_j = xi * ny - yi * nx, xj * ny - yj * nx
+    u = nx * (BODY[j, VX] - BODY[i, VX]) + ny * (BODY[j, VY] - BODY[i, VY])
+    u += arm_j * BODY[j, SPIN] - arm_i * BODY[i, SPIN]
+    closing = nx * (A.PULL[i, 0] - A.PULL[j, 0]) + ny * (A.PULL[i, 1] - A.PULL[j, 1])
+    closing += arm_i * A.PULL[i, 2] - arm_j * A.PULL[j, 2]
+    mass = 1.0 / (
+        BODY[i, IM] + BODY[j, IM] + BODY[i, II] * arm_i * arm_i + BODY[j, II] * arm_j * arm_j
+    )
+    return g, u, closing, mass
+
+
+@uncounted
+def rests(A: Scene, a: int, b: int, t: float, lossy: bool) -> bool:
+    """Whether a pair whose bodies are at instant t is in sustained contact until the end of the step.
+
+    e < 1: iff its bounce e |u| is below half of what presses it together, P = max(a_n h, A_nn f h) with f the load it
+    carried, and it is in touch (u <= P) or carried a force and closes again. e = 1: iff it touches without speed and
+    against what does not move is pressed.
+    """
+    e = law(A.SHAPE, A.RULE, a, b)[0]
+    g, u, closing, mass = approach(A, a, b, t)
+    h = A.PAR[DT] - t
+    small = min(A.SHAPE[a, SIZE], A.SHAPE[b, SIZE])
+    force, load = remembered(A, a, b, A.PAR[STAMP] - 1.0)
+    if e >= 1.0 and not lossy:
+        limit = (_WAS_STILL if force > 0.0 else _STILL) * A.PAR[PULLED] * A.PAR[DT]
+        fixed = A.BODY[A.LINK[b, OWNER], IM] == 0.0 or A.BODY[A.LINK[a, OWNER], IM] == 0.0
+        return g <= TOUCH * small and abs(u) <= limit and (not fixed or closing > 0.0 or force > 0.0)
+    press = max(closing, load / mass) * h
+    if not -e * min(u, 0.0) < 0.5 * press:
+        return False
+    if g <= TOUCH * small:
+        return u <= press
+    return force > 0.0 and g + u * h - 0.5 * press * h <= 0.0
+
+
+@uncounted
+def members(A: Scene, root: int, MINE: IntArray) -> int:
+    """The bodies of an island into MINE; how many they are."""
+    i, n = root, 0
+    while i >= 0:
+        MINE[n] = i
+        n += 1
+        i = A.MEMBER[i, AFTER_ME]
+    return n
+
+
+@uncounted
+def book(A: Scene, c: int, t: float) -> None:
+    """Book what contact number c has done in its span until instant t, note its impulse, and end it.
+
+    Velocities go linearly through a span, so that after the part f of it D_n = -f lam (u_n + f (u_n+ - u_n) / 2). What
+    a contact's friction gives back counts against its restitution, and the other way round.
+    """
+    PAR, COUNT, R = A.PAR, A.COUNT, A.PUSHED[c]
+    root, a, b = A.PUSHED_BY[c, ROOT], A.PUSHED_BY[c, PUSH_A], A.PUSHED_BY[c, PUSH_B]
+    A.PUSHED_BY[c, ROOT] = LASTED if t == PAR[DT] else ENDED
+    mark_pair(A.LIST, A.POOL, A.FLAG, A.LIST.shape[0], a, b, 0)
+    f = (t - R[SPAN_FROM]) / R[SPAN]
+    if f <= 0.0 or (R[LAM] == 0.0 and R[BETA] == 0.0):
+        return
+    normal = -f * R[LAM] * (R[UN_BEFORE] + 0.5 * f * (R[UN_AFTER] - R[UN_BEFORE]))
+    tangential = -f * R[BETA] * (R[UT_BEFORE] + 0.5 * f * (R[UT_AFTER] - R[UT_BEFORE]))
+    both = normal + tangential
+    if normal < 0.0:
+        normal, tangential = min(both, 0.0), max(both, 0.0)
+    elif tangential < 0.0:
+        normal, tangential = both, 0.0
+    PAR[LEDGER + RESTITUTION] += normal
+    PAR[LEDGER + FRICTIONAL] += tangential
+    PAR[LEDGER + EXTERNAL] += f * R[WORK_OF]
+    A.RESTING[root, LOST] += both
+    if COUNT[LOGGED] < A.LOG.shape[0]:
+        note(
+            A.LOG, COUNT[LOGGED], a, b, R[SPAN_FROM] + 0.5 * f * R[SPAN], f * R[LAM], f * R[BETA], R[PUSH_NX],
+            R[PUSH_NY], R[PUSH_X], R[PUSH_Y], f * R[PUSH_CHANGE],
+        )  # fmt: skip
+        COUNT[LOGGED] += 1
+
+
+@uncounted
+def end_span(A: Scene, root: int, t: float) -> None:
+    """End the span of an island at instant t: book its contacts, and bring its bodies there."""
+    for c in range(A.COUNT[PUSHES]):
+        if A.PUSHED_BY[c, ROOT] == root:
+            book(A, c, t)
+    i = root
+    while i >= 0:
+        move_to(A.BODY, i, t)
+        i = A.MEMBER[i, AFTER_ME]
+
+
+@uncounted
+def lift_out(A: Scene, root: int, end: float) -> None:
+    """Lift the bodies of an island, at the end of its span, out of each other; the losses pay."""
+    PAR = A.PAR
+    i = root
+    while i >= 0:
+        move_to(A.BODY, i, end)
+        for c in range(6):
+            A.BODY[i, X + c] += A.RESTING[i, LIFT + c]
+        i = A.MEMBER[i, AFTER_ME]
+    spent = A.RESTING[root, SPENT]
+    PAR[LEDGER + RESTITUTION] -= spent
+    if PAR[LEDGER + RESTITUTION] < 0.0 and PAR[LEDGER + FRICTIONAL] > 0.0:
+        PAR[LEDGER + FRICTIONAL] += PAR[LEDGER + RESTITUTION]
+        PAR[LEDGER + RESTITUTION] = 0.0
+
+
+@kernel
+def pairs_of(A: Scene, root: int, t: float, lossy: bool, LOCAL: IntArray, MINE: IntArray, n: int) -> IntArray:
+    """(p, 2) pairs of shapes of an island, whose n bodies are MINE, that its solve takes over: what touches, and what
+    will rest within the span; where it is busy all that comes near. All others meet at their times of impact."""
+    found = np.empty((4 * n + 8, 2), np.int64)
+    p = 0
+    BODY, LINK, STATE = A.BODY, A.LINK, A.STATE
+    h = A.PAR[DT] - t
+    for q in range(n):
+        i = MINE[q]
+        for s in range(STATE[i, FIRST_SHAPE], STATE[i, FIRST_SHAPE] + STATE[i, SHAPES]):
+            for w in range(A.LIST[s, START], A.LIST[s, START] + A.LIST[s, NUMBER]):
+                o = int(A.POOL[w])
+                j = LINK[o, OWNER]
+                if BODY[j, IM] > 0.0 and (STATE[j, ISLAND] != root or j < i):
+                    continue
+                if barred(A.RULE, s, o):
+                    continue
+                g, u, closing, mass = approach(A, s, o, t)
+                small = min(A.SHAPE[s, SIZE], A.SHAPE[o, SIZE])
+                busy = A.MEMBER[i, BUSY] > 0 or A.MEMBER[j, BUSY] > 0
+                reach = 1.1 * (max(-u, 0.0) * h + A.PAR[PULLED] * h * h) + TOUCH * small
+                if busy:
+                    speed = math.hypot(BODY[i, VX], BODY[i, VY]) + math.hypot(BODY[j, VX], BODY[j, VY])
+                    speed += abs(BODY[i, SPIN]) * BODY[i, EXTENT] + abs(BODY[j, SPIN]) * BODY[j, EXTENT]
+                    reach = 1.1 * (speed * h + A.PAR[PULLED] * h * h) + TOUCH * small
+                if g > reach:
+                    continue
+                e = law(A.SHAPE, A.RULE, s, o)[0]
+                if e >= 1.0 and not lossy:
+                    if not rests(A, s, o, t, False):
+                        continue
+                elif g > TOUCH * small and not busy:
+                    press = max(closing, remembered(A, s, o, A.PAR[STAMP] - 1.0)[1] / mass) * h
+                    if not -e * min(u, 0.0) < 0.5 * press:
+                        continue
+                if p == found.shape[0]:
+                    more = np.empty((2 * p, 2), np.int64)
+                    more[:p] = found
+                    found = more
+                found[p, 0], found[p, 1] = s, o
+                p += 1
+    return found[:p]
+
+
+@kernel
+def solve(A: Scene, root: int, t: float) -> int:
+    """Begin a span of the island at instant t, at which all its bodies are. Bodies without contact leave it.
+
+    DONE, or PUSHES_FULL, which leaves everything as it was.
+    """
+    BODY, STATE, MEMBER, COUNT = A.BODY, A.STATE, A.MEMBER, A.COUNT
+    n = MEMBER[root, BODIES]
+    MINE = np.empty(n, np.int64)
+    members(A, root, MINE)
+    MINE.sort()
+    lossy = False
+    for q in range(n):
+        A.PLACE[MINE[q]] = q
+        for s in range(STATE[MINE[q], FIRST_SHAPE], STATE[MINE[q], FIRST_SHAPE] + STATE[MINE[q], SHAPES]):
+            lossy = lossy or A.SHAPE[s, ELASTICITY] < 1.0
+    found = pairs_of(A, root, t, lossy, A.PLACE, MINE, n)
+    p = len(found)
+    h = A.PAR[DT] - t
+    if COUNT[PUSHES] + 2 * p > A.PUSHED.shape[0] or 2 * (COUNT[REMEMBERED] + 2 * p) > A.KEYS.shape[0]:
+        for q in range(n):
+            A.PLACE[MINE[q]] = -1
+        return PUSHES_FULL
+    # Bodies that impulses do not move stand after those of the island.
+    FIXED, fixed = np.empty(p, np.int64), 0
+    for c in range(p):
+        j = A.LINK[found[c, 1], OWNER]
+        if A.PLACE[j] < 0:
+            A.PLACE[j] = n + fixed
+            FIXED[fixed] = j
+            fixed += 1
+    k = n + fixed
+    WHO = np.empty(k, np.int64)
+    POSE, V, ACC = np.empty((k, 3)), np.empty((k, 3)), np.zeros((k, 3))
+    IMS, IIS, SIZES = np.empty(k), np.empty(k), np.empty(k)
+    for q in range(k):
+        i = MINE[q] if q < n else FIXED[q - n]
+        WHO[q] = i
+        s = t - BODY[i, SINCE]
+        V[q, 0], V[q, 1], V[q, 2] = BODY[i, VX], BODY[i, VY], BODY[i, SPIN]
+        for c in range(3):
+            POSE[q, c] = BODY[i, X + c] + V[q, c] * s
+        IMS[q], IIS[q], SIZES[q] = BODY[i, IM], BODY[i, II], BODY[i, EXTENT]
+        if q < n:
+            for c in range(3):
+                ACC[q, c] = A.PULL[i, c]
+    PAIRS = np.empty((p, 4), np.int64)
+    for c in range(p):
+        PAIRS[c, 0], PAIRS[c, 1] = found[c, 0], found[c, 1]
+        PAIRS[c, 2], PAIRS[c, 3] = A.PLACE[A.LINK[found[c, 0], OWNER]], A.PLACE[A.LINK[found[c, 1], OWNER]]
+    for q in range(k):
+        A.PLACE[WHO[q]] = -1
+    room = 2 * p + 1
+    P, Q, KEY = np.empty(room, np.int64), np.empty(room, np.int64), np.empty(room, np.int64)
+    ROWS, L, LOSS = np.empty((room, ROW_COLUMNS)), np.zeros((room, 2)), np.zeros((room, 2))
+    VN, JUMP, BOOK, OUT = np.empty((k, 3)), np.zeros((k, 6)), np.zeros(LEDGER_SIZE), np.zeros(OUT_SIZE)
+    m = 0
+    if p > 0 and h > 0.0:
+        m = step_island(
+            POSE, V, ACC, IMS, IIS, SIZES, n, PAIRS, p, A.SHAPE, A.LINK, A.VERTEX, A.WORK, h,
+            max(-A.RESTING[root, LOST], 0.0), A.KEYS, A.FORCES, COUNT[REMEMBERED:], A.PAR[STAMP],
+            A.RESTING[MINE[0], RELAX : RELAX + 3], P, Q, ROWS, KEY, L, LOSS, VN, JUMP, BOOK, OUT,
+        )  # fmt: skip
+        if abs(OUT[LOCK_OF] - 1.0) > abs(A.PAR[LOCK] - 1.0):
+            A.PAR[LOCK] = OUT[LOCK_OF]
+    COUNT[SOLVES] += 1
+    shapes = A.SHAPE.shape[0]
+    first = COUNT[PUSHES]
+    moving = A.LIST.shape[0]
+    TOUCHED = np.zeros(k, np.uint8)
+    for z in range(m):
+        pair = KEY[z] >> 1
+        a, b = pair // shapes, pair % shapes
+        if A.LINK[a, OWNER] != WHO[P[z]]:
+            a, b = b, a
+        TOUCHED[P[z]], TOUCHED[Q[z]] = 1, 1
+        mark_pair(A.LIST, A.POOL, A.FLAG, moving, a, b, 1)
+        c = first + z
+        A.PUSHED_BY[c, PUSH_A], A.PUSHED_BY[c, PUSH_B] = a, b
+        ROW = A.PUSHED[c]
+        ROW[LAM], ROW[BETA], ROW[SPAN_FROM], ROW[SPAN] = L[z, 0], L[z, 1], t, h
+        ROW[UN_BEFORE], ROW[UT_BEFORE] = ROWS[z, UN], ROWS[z, UT]
+        ROW[UN_AFTER], ROW[UT_AFTER] = normal_rate(P, Q, ROWS, VN, z), tangent_rate(P, Q, ROWS, VN, z)
+        ROW[WORK_OF] = carried(P[z : z + 1], Q[z : z + 1], ROWS[z : z + 1], L[z : z + 1], V, IMS, 1)
+        ROW[PUSH_NX], ROW[PUSH_NY] = ROWS[z, NX], ROWS[z, NY]
+        # The point from its arms: r = arm_t n - arm_n t.
+        x, y = POSE[P[z], 0] + 0.5 * h * V[P[z], 0], POSE[P[z], 1] + 0.5 * h * V[P[z], 1]
+        ROW[PUSH_X] = x + ROWS[z, ARM_TA] * ROWS[z, NX] + ROWS[z, ARM_NA] * ROWS[z, NY]
+        ROW[PUSH_Y] = y + ROWS[z, ARM_TA] * ROWS[z, NY] - ROWS[z, ARM_NA] * ROWS[z, NX]
+        ROW[PUSH_CHANGE] = L[z, 0] / ROWS[z, K_N]
+    lost, hits = A.RESTING[root, LOST], MEMBER[root, HITS]
+    spent = BOOK[LIFTED]
+    head, tail, size = -1, -1, 0
+    for q in range(n):
+        i = MINE[q]
+        STATE[i, KINKS] += 1
+        for c in range(6):
+            A.RESTING[i, LIFT + c] = JUMP[q, c]
+        if TOUCHED[q] == 0:
+            STATE[i, ISLAND] = -1
+            BODY[i, AX], BODY[i, AY], BODY[i, TWIST] = A.PULL[i, 0], A.PULL[i, 1], A.PULL[i, 2]
+            continue
+        BODY[i, AX], BODY[i, AY] = (VN[q, 0] - V[q, 0]) / h, (VN[q, 1] - V[q, 1]) / h
+        BODY[i, TWIST] = (VN[q, 2] - V[q, 2]) / h
+        if head < 0:
+            head = i
+        else:
+            MEMBER[tail, AFTER_ME] = i
+        tail = i
+        size += 1
+        STATE[i, ISLAND], MEMBER[i, AFTER_ME] = head, -1
+    if head >= 0:
+        MEMBER[head, LAST_ONE], MEMBER[head, BODIES], MEMBER[head, HITS] = tail, size, hits
+        A.RESTING[head, LOST], A.RESTING[head, SPENT] = lost, spent
+        for z in range(m):
+            A.PUSHED_BY[first + z, ROOT] = head
+        COUNT[PUSHES] += m
+    return DONE
+
+

@@ -1,0 +1,155 @@
+"""What rests at the start of a step, and whether what meets within it comes to rest.
+
+Contacts that lasted to the end of the step before are looked at again; what touches an island joins it. New contacts
+come by events, and are sustained from the instant at which their bounces would all be over within the step.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..compiled import kernel, uncounted
+from ..layout import EXTENT, IM, OWNER, SIZE, SPIN, VX, VY
+from ..pairs.layout import NUMBER, START
+from .forecast import barred
+from .islands import TOUCH, approach, members, rests, solve, unite
+from .layout import (
+    BODIES, BUSY, DONE, DT, EVENTS, FIRST_SHAPE, HITS, IGNORED, ISLAND, LASTED, PULLED, PUSH_A, PUSH_B,
+    PUSHES, PUSHES_FULL, REMEMBERED, ROOT, SHAPES, Scene,
+)  # fmt: skip
+from .strike import law, move_to
+
+_OFTEN, _VERY_OFTEN = 16, 64  # impacts of a body in a step after which a lossy contact rests; a slow elastic one
+_SLOW = 1.0 / 64.0  # speed relative to |a| dt, below which that happens to elastic ones
+_BUSY_FOR = 8  # steps
+_HITS, _ELASTIC_HITS = 2, 64  # on an island in a step: a lossy one may be hit oftener the smaller it is
+_WORK = 64  # bodies times hits
+_DEEP = 0.2  # of the smaller shape, that a hit would go deep: it is taken up to four times as often
+
+
+@uncounted
+def join(A: Scene, i: int) -> int:
+    """Let what touches body i, which is in an island, join it; where it is busy, what comes near. How many have."""
+    BODY, STATE, LINK = A.BODY, A.STATE, A.LINK
+    dt, pulled = A.PAR[DT], A.PAR[PULLED]
+    joined = 0
+    for s in range(STATE[i, FIRST_SHAPE], STATE[i, FIRST_SHAPE] + STATE[i, SHAPES]):
+        for w in range(A.LIST[s, START], A.LIST[s, START] + A.LIST[s, NUMBER]):
+            o = int(A.POOL[w])
+            j = LINK[o, OWNER]
+            if BODY[j, IM] == 0.0 or STATE[j, ISLAND] == STATE[i, ISLAND] or barred(A.RULE, s, o):
+                continue
+            busy = A.MEMBER[i, BUSY] > 0 or A.MEMBER[j, BUSY] > 0
+            if law(A.SHAPE, A.RULE, s, o)[0] >= 1.0 and not busy:
+                continue
+            g, u, _, _ = approach(A, s, o, 0.0)
+            if g <= TOUCH * min(A.SHAPE[s, SIZE], A.SHAPE[o, SIZE]):
+                if u > pulled * dt or -u > pulled * dt and not busy:
+                    continue
+            elif not busy:
+                continue
+            else:
+                speed = math.hypot(BODY[i, VX], BODY[i, VY]) + math.hypot(BODY[j, VX], BODY[j, VY])
+                speed += abs(BODY[i, SPIN]) * BODY[i, EXTENT] + abs(BODY[j, SPIN]) * BODY[j, EXTENT]
+                if g > 1.1 * (speed + pulled * dt) * dt:
+                    continue
+            if STATE[j, ISLAND] < 0:
+                A.BLOCK[joined] = j
+                joined += 1
+            unite(A, i, j)
+            if busy:
+                A.MEMBER[i, BUSY] = max(A.MEMBER[i, BUSY], A.MEMBER[j, BUSY] - 1)
+                A.MEMBER[j, BUSY] = max(A.MEMBER[j, BUSY], A.MEMBER[i, BUSY] - 1)
+    return joined
+
+
+@kernel
+def settle(A: Scene) -> int:
+    """The islands of the start of a step, and their spans. DONE, or PUSHES_FULL, to be called again with more room."""
+    STATE, COUNT, BODY = A.STATE, A.COUNT, A.BODY
+    n = BODY.shape[0] - 1
+    for i in range(n):
+        STATE[i, ISLAND] = -1
+    for c in range(COUNT[PUSHES]):
+        a, b = A.PUSHED_BY[c, PUSH_A], A.PUSHED_BY[c, PUSH_B]
+        if A.PUSHED_BY[c, ROOT] != LASTED or barred(A.RULE, a, b):
+            continue
+        i, j = A.LINK[a, OWNER], A.LINK[b, OWNER]
+        if rests(A, a, b, 0.0, law(A.SHAPE, A.RULE, a, b)[0] < 1.0):
+            i = j if BODY[i, IM] == 0.0 else i
+            unite(A, i, i if BODY[j, IM] == 0.0 else j)
+    QUEUE = np.empty(n, np.int64)
+    queued = 0
+    for i in range(n):
+        if STATE[i, ISLAND] >= 0:
+            QUEUE[queued] = i
+            queued += 1
+    q, wanted = 0, 0
+    while q < queued:
+        i = QUEUE[q]
+        q += 1
+        for k in range(join(A, i)):
+            QUEUE[queued] = A.BLOCK[k]
+            queued += 1
+        for s in range(STATE[i, FIRST_SHAPE], STATE[i, FIRST_SHAPE] + STATE[i, SHAPES]):
+            wanted += 2 * A.LIST[s, NUMBER]
+    if wanted > A.PUSHED.shape[0] or 2 * (COUNT[REMEMBERED] + wanted) > A.KEYS.shape[0]:
+        return PUSHES_FULL
+    COUNT[PUSHES] = 0
+    for q in range(queued):
+        i = QUEUE[q]
+        if STATE[i, ISLAND] == i:
+            solve(A, i, 0.0)
+    return DONE
+
+
+@uncounted
+def comes_to_rest(A: Scene, a: int, b: int, t: float) -> bool:
+    """Whether shapes a and b, which meet at instant t, stay in contact from then on: bounces of e |u| under the closing
+    acceleration a_n are over within the step iff 2 e |u| <= a_n (1 - e) (dt - t)."""
+    i, j = A.LINK[a, OWNER], A.LINK[b, OWNER]
+    if A.BODY[i, IM] > 0.0:
+        move_to(A.BODY, i, t)
+    if A.BODY[j, IM] > 0.0:
+        move_to(A.BODY, j, t)
+    e = law(A.SHAPE, A.RULE, a, b)[0]
+    _, u, closing, _ = approach(A, a, b, t)
+    end = A.PAR[DT]
+    met = max(A.STATE[i, EVENTS], A.STATE[j, EVENTS])
+    if e < 1.0:
+        return met >= _OFTEN or (closing > 0.0 and 2.0 * e * max(-u, 0.0) <= closing * (1.0 - e) * (end - t))
+    if met >= _VERY_OFTEN and closing > 0.0 and -u < _SLOW * A.PAR[PULLED] * end:
+        return True
+    return A.PAR[PULLED] > 0.0 and rests(A, a, b, t, False)
+
+
+@kernel
+def ignored(A: Scene, a: int, b: int, t: float) -> bool:
+    """Whether a hit on an island at instant t is beyond its budget; the island then is busy for some steps."""
+    STATE, MEMBER = A.STATE, A.MEMBER
+    i, j = A.LINK[a, OWNER], A.LINK[b, OWNER]
+    hits, size, lossy = 0, 1, law(A.SHAPE, A.RULE, a, b)[0] < 1.0
+    for k in (i, j):
+        root = STATE[k, ISLAND]
+        if root >= 0:
+            hits, size = max(hits, MEMBER[root, HITS]), max(size, MEMBER[root, BODIES])
+    most = max(_HITS, _WORK // size) if lossy else _ELASTIC_HITS
+    if hits < most:
+        return False
+    if hits < 4 * most:
+        h = A.PAR[DT] - t
+        speed = math.hypot(A.BODY[i, VX] - A.BODY[j, VX], A.BODY[i, VY] - A.BODY[j, VY])
+        if speed * h > _DEEP * min(A.SHAPE[a, SIZE], A.SHAPE[b, SIZE]):
+            return False
+    A.COUNT[IGNORED] += 1
+    if lossy:
+        MINE = np.empty(A.BODY.shape[0], np.int64)
+        for k in (i, j):
+            if A.BODY[k, IM] > 0.0:
+                A.MEMBER[k, BUSY] = _BUSY_FOR
+            if STATE[k, ISLAND] >= 0:
+                for q in range(members(A, STATE[k, ISLAND], MINE)):
+                    A.MEMBER[MINE[q], BUSY] = _BUSY_FOR
+    return True
