@@ -77,7 +77,7 @@ class ArrayStepper(Stepper):
                 rehearsal = Rehearsal(self.space, hooks, state)
                 after = rehearsal.run(self._moved(bodies, state, start, start.free_displacement), dt)
                 start = self._start(bodies, rehearsal.before, dt, hooks)
-                twin.shapes.rules = rehearsal.rules(twin.shapes)
+                twin.shapes.rules = rehearsal.rules(twin.shapes.items, twin.shapes.elasticity)
             motion = self.advance(bodies, start, twin)
             began = state if rehearsal is None else rehearsal.before
             end = self._end(bodies, began, start, motion, dt, hooks)

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..closures.motion import Start
-from ..report import Contacts, StepReport
+from ..report import Contacts, Details, StepReport
 from ..space.bodies import Bodies
 from ..space.shapes import Shapes
 from .contacts import ROUND_OFF, Pairs, pair_key
@@ -78,7 +78,7 @@ class Log:
         increment = 0.5 * start.dt * psi2 * change[order]
         contacts = Contacts(self.bodies.items, a, b, normal[order], point[order], gap[order], time)
         return StepReport(
-            start.time, contacts, lam, np.full_like(lam, math.inf), psi2, increment,
+            start.time, Details(contacts, lam, np.full_like(lam, math.inf), psi2, increment),
             iterations=self.rounds, substeps=self.windows, lock=self.lock, converged=self.converged,
         )  # fmt: skip
 

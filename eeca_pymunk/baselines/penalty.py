@@ -16,7 +16,7 @@ from ..closures.motion import Motion, Start, near_pairs
 from ..energy.complementarity import solve
 from ..energy.delassus import Delassus
 from ..energy.graph import restrict
-from ..report import Contacts, StepReport
+from ..report import Contacts, Details, StepReport
 from ..space.bodies import Bodies
 from ..space.twin import MarginTwin
 
@@ -59,7 +59,7 @@ class PenaltyStepper(ArrayStepper):
         )
         psi, increment = np.zeros(len(on)), at.gap - before.gap[on]
         report = StepReport(
-            time, contacts, impulse[on], psi, psi, increment, iterations=iterations, converged=converged
+            time, Details(contacts, impulse[on], psi, psi, increment), iterations=iterations, converged=converged
         )
         return Motion(velocity, displacement, report)
 

@@ -14,7 +14,7 @@ from .._rounds.geometry import Geometry
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..energy.delassus import Delassus
 from ..energy.graph import restrict
-from ..report import Contacts, StepReport
+from ..report import Contacts, Details, StepReport
 from ..space.bodies import Bodies
 from ..space.twin import MarginTwin
 from .motion import Motion, Start, flight, near_pairs
@@ -168,9 +168,9 @@ class Simultaneous(ABC):
 
     @staticmethod
     def _report(time: float, contacts: Contacts, solution: Solution) -> StepReport:
+        details = Details(contacts, solution.impulse, solution.psi1, solution.psi2, solution.gap_increment)
         return StepReport(
-            time, contacts, solution.impulse, solution.psi1, solution.psi2, solution.gap_increment,
-            iterations=solution.iterations, lock=solution.lock, converged=solution.converged,
+            time, details, iterations=solution.iterations, lock=solution.lock, converged=solution.converged,
         )  # fmt: skip
 
 

@@ -18,7 +18,7 @@ from __future__ import annotations
 import math
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel
+from ..compiled import uncounted
 from ..layout import COUNT, FIRST
 
 CLOSE = 1e-12  # distance relative to coordinates and sizes, below which its direction is round-off
@@ -27,13 +27,14 @@ _LONGER = 1.0 + 1e-9  # squared lengths of edges: less is round-off
 _FAR = math.inf
 
 
-@kernel
+@uncounted
 def place(LINK: IntArray, VERTEX: FloatArray, s: int, x: float, y: float, angle: float, OUT: FloatArray) -> int:
     """Vertices and outward normals of shape s, its body at (x, y, angle), into OUT (at least as many, 4); how many.
 
     Exact for angle 0 and for a vertex at the centre of mass.
     """
-    first, count = LINK[s, FIRST], LINK[s, COUNT]
+    first: int = LINK[s, FIRST]
+    count: int = LINK[s, COUNT]
     if angle == 0.0 or (count == 1 and VERTEX[first, 0] == 0.0 and VERTEX[first, 1] == 0.0):
         for k in range(count):
             OUT[k, 0] = x + VERTEX[first + k, 0]
@@ -51,7 +52,7 @@ def place(LINK: IntArray, VERTEX: FloatArray, s: int, x: float, y: float, angle:
     return count
 
 
-@kernel
+@uncounted
 def separation(P: FloatArray, p: int, Q: FloatArray, q: int) -> tuple[float, int, int]:
     """How far Q (q vertices) is from P (p vertices) along the best edge normal of P, that edge, and Q's vertex that is
     nearest along it; (-inf, 0, 0) for a point P."""
@@ -70,7 +71,7 @@ def separation(P: FloatArray, p: int, Q: FloatArray, q: int) -> tuple[float, int
     return best, edge, vertex
 
 
-@kernel
+@uncounted
 def along_edge(P: FloatArray, p: int, edge: int, x: float, y: float) -> tuple[float, float]:
     """Where on an edge the foot of (x, y) is, times the edge's length, and that length squared."""
     end = edge + 1 if edge + 1 < p else 0
@@ -78,7 +79,7 @@ def along_edge(P: FloatArray, p: int, edge: int, x: float, y: float) -> tuple[fl
     return (x - P[edge, 0]) * ex + (y - P[edge, 1]) * ey, ex * ex + ey * ey
 
 
-@kernel
+@uncounted
 def vertex_edge(P: FloatArray, p: int, Q: FloatArray, q: int) -> tuple[float, int, int, float, float, bool]:
     """The vertex of P closest to the outline of Q, q > 1: squared distance, vertex, edge, the point of the edge, and
     whether that is inside the edge."""
@@ -105,7 +106,7 @@ def vertex_edge(P: FloatArray, p: int, Q: FloatArray, q: int) -> tuple[float, in
     return best, vertex, edge, fx, fy, inside
 
 
-@kernel
+@uncounted
 def prefers_second(
     P: FloatArray, p: int, edge_p: int, apart_p: float, Q: FloatArray, q: int, edge_q: int, apart_q: float, tie: float
 ) -> bool:
@@ -122,7 +123,7 @@ def prefers_second(
     return length_q > length_p * _LONGER
 
 
-@kernel
+@uncounted
 def point_core(x: float, y: float, Q: FloatArray, q: int) -> tuple[float, float, float, bool, int, float]:
     """A point and a core: distance, unit normal toward the core, whether that is an edge's, the edge along which the
     core is farthest apart, and how far (-inf without edges)."""
@@ -150,7 +151,7 @@ def point_core(x: float, y: float, Q: FloatArray, q: int) -> tuple[float, float,
     return apart, -Q[edge, 2], -Q[edge, 3], True, edge, apart
 
 
-@kernel
+@uncounted
 def closest(
     P: FloatArray, p: int, Q: FloatArray, q: int
 ) -> tuple[float, float, float, float, float, bool, int, float, int, float]:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from ..arrays import FloatArray
-from ..compiled import kernel
+from ..compiled import uncounted
 from ..layout import ANGLE, AX, AY, SINCE, SPIN, TWIST, VX, VY, X, Y
 
 
-@kernel
+@uncounted
 def pose(BODY: FloatArray, i: int, t: float) -> tuple[float, float, float]:
     """Position (length) and angle (rad) of body i at instant t; at t = SINCE the stored ones exactly."""
     s = t - BODY[i, SINCE]
@@ -19,7 +19,7 @@ def pose(BODY: FloatArray, i: int, t: float) -> tuple[float, float, float]:
     )
 
 
-@kernel
+@uncounted
 def rate(BODY: FloatArray, i: int, t: float) -> tuple[float, float, float]:
     """Velocity (length/time) and spin (rad/time) of body i at instant t; at t = SINCE the stored ones exactly."""
     s = t - BODY[i, SINCE]

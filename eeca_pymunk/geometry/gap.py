@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel
+from ..compiled import uncounted
 from ..layout import BOUND, COUNT, FIRST, OWNER, ROUNDING, SIZE, X, Y
 from .convex import closest, place, point_core
 from .flight import pose
@@ -22,7 +22,7 @@ ROUND_OFF = 1e-12  # of lengths, relative to positions and sizes
 CORNERS = 4.0  # times that, of corners placed by their angle
 
 
-@kernel
+@uncounted
 def centre(LINK: IntArray, VERTEX: FloatArray, s: int, x: float, y: float, angle: float) -> tuple[float, float]:
     """World position of the one vertex of disk s; that of the body, to the last digit, if it is the centre of mass."""
     px, py = VERTEX[LINK[s, FIRST], 0], VERTEX[LINK[s, FIRST], 1]
@@ -34,7 +34,7 @@ def centre(LINK: IntArray, VERTEX: FloatArray, s: int, x: float, y: float, angle
     return x + (c * px - z * py), y + (z * px + c * py)
 
 
-@kernel
+@uncounted
 def ordered_gap(
     SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray,
     a: int, x_a: float, y_a: float, angle_a: float, b: int, x_b: float, y_b: float, angle_b: float,
@@ -62,19 +62,21 @@ def ordered_gap(
     return g, nx, ny, x + away * nx, y + away * ny
 
 
-@kernel
+@uncounted
 def gap_at(
     SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray,
     a: int, x_a: float, y_a: float, angle_a: float, b: int, x_b: float, y_b: float, angle_b: float,
 ) -> tuple[float, float, float, float, float]:  # fmt: skip
     """Gap (length), unit normal (2) from a to b and point (2) of shapes a and b, their bodies at the given poses."""
-    if a <= b:
-        return ordered_gap(SHAPE, LINK, VERTEX, WORK, a, x_a, y_a, angle_a, b, x_b, y_b, angle_b)
-    g, nx, ny, px, py = ordered_gap(SHAPE, LINK, VERTEX, WORK, b, x_b, y_b, angle_b, a, x_a, y_a, angle_a)
-    return g, -nx, -ny, px, py
+    sign = 1.0
+    if a > b:
+        sign = -1.0
+        a, x_a, y_a, angle_a, b, x_b, y_b, angle_b = b, x_b, y_b, angle_b, a, x_a, y_a, angle_a
+    g, nx, ny, px, py = ordered_gap(SHAPE, LINK, VERTEX, WORK, a, x_a, y_a, angle_a, b, x_b, y_b, angle_b)
+    return g, sign * nx, sign * ny, px, py
 
 
-@kernel
+@uncounted
 def gap(
     BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray, a: int, b: int, t: float
 ) -> tuple[float, float, float, float, float]:
@@ -84,7 +86,7 @@ def gap(
     return gap_at(SHAPE, LINK, VERTEX, WORK, a, x_a, y_a, angle_a, b, x_b, y_b, angle_b)
 
 
-@kernel
+@uncounted
 def gaps(
     POSES: FloatArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, A: IntArray, B: IntArray,
     WORK: FloatArray, OUT: FloatArray,
@@ -99,7 +101,7 @@ def gaps(
         )  # fmt: skip
 
 
-@kernel
+@uncounted
 def touching(BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, a: int, b: int, disks: int) -> float:
     """Length up to which a gap of shapes a and b is round-off of positions and sizes: they touch exactly.
 
@@ -109,8 +111,8 @@ def touching(BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, a: int, b: int
     """
     ground = BODY.shape[0] - 1
     i, j = LINK[a, OWNER], LINK[b, OWNER]
-    far = max(max(abs(BODY[i, X]), abs(BODY[i, Y])), max(abs(BODY[j, X]), abs(BODY[j, Y])))
-    size = SHAPE[a, ROUNDING] + SHAPE[b, ROUNDING]
+    far: float = max(max(abs(BODY[i, X]), abs(BODY[i, Y])), max(abs(BODY[j, X]), abs(BODY[j, Y])))
+    size: float = SHAPE[a, ROUNDING] + SHAPE[b, ROUNDING]
     if not ((a < disks and (b < disks or j == ground)) or (b < disks and i == ground)):
         extent_a = SHAPE[a, BOUND] if i == ground else SHAPE[a, SIZE]
         extent_b = SHAPE[b, BOUND] if j == ground else SHAPE[b, SIZE]

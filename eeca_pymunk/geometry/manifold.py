@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel
+from ..compiled import uncounted
 from ..layout import COUNT, ROUNDING
 from .convex import closest, place, prefers_second
 from .gap import ordered_gap
@@ -19,7 +19,7 @@ from .gap import ordered_gap
 _WIDTH = 1e-6  # of a common face relative to the shapes, below which it is one point
 
 
-@kernel
+@uncounted
 def clip(
     P: FloatArray, p: int, edge: int, Q: FloatArray, q: int, r_p: float, r_q: float, sign: float, reach: float,
     OUT: FloatArray,
@@ -44,9 +44,9 @@ def clip(
     if u_1 > u_0:
         slope = (h_1 - h_0) / (u_1 - u_0)
     count, points = 0, 2
-    if high <= low:  # beside each other: the end that is nearer
+    if high <= low:  # beside each other: the ends that are next to each other
         points = 1
-        low = u_0 if h_0 < h_1 else u_1
+        low = u_0 if u_0 >= width else u_1
     for k in range(points):
         # In the order of the tangent of the normal from a to b.
         u = low if (k == 0) == (sign > 0.0) or points == 1 else high
@@ -61,7 +61,7 @@ def clip(
     return count
 
 
-@kernel
+@uncounted
 def reverse(OUT: FloatArray, count: int) -> None:
     """The rows seen from b: normals turned round, and with them the order along the tangent."""
     for k in range(count):
@@ -71,7 +71,7 @@ def reverse(OUT: FloatArray, count: int) -> None:
             OUT[0, c], OUT[1, c] = OUT[1, c], OUT[0, c]
 
 
-@kernel
+@uncounted
 def ordered_manifold(
     SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray,
     a: int, x_a: float, y_a: float, angle_a: float, b: int, x_b: float, y_b: float, angle_b: float,
@@ -101,7 +101,7 @@ def ordered_manifold(
     return clip(P, p, edge_p, Q, q, r_a, r_b, 1.0, reach, OUT)
 
 
-@kernel
+@uncounted
 def manifold(
     SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray,
     a: int, x_a: float, y_a: float, angle_a: float, b: int, x_b: float, y_b: float, angle_b: float,
@@ -114,18 +114,18 @@ def manifold(
             which two corners must be farther apart than the faces beside them to be a contact of their own.
         OUT: rows (n_x, n_y, p_x, p_y, g), the gap along the reference face's normal.
     """
-    if a <= b:
-        return ordered_manifold(
-            SHAPE, LINK, VERTEX, WORK, a, x_a, y_a, angle_a, b, x_b, y_b, angle_b, reach, tolerance, OUT
-        )
+    swapped = a > b
+    if swapped:
+        a, x_a, y_a, angle_a, b, x_b, y_b, angle_b = b, x_b, y_b, angle_b, a, x_a, y_a, angle_a
     count = ordered_manifold(
-        SHAPE, LINK, VERTEX, WORK, b, x_b, y_b, angle_b, a, x_a, y_a, angle_a, reach, tolerance, OUT
+        SHAPE, LINK, VERTEX, WORK, a, x_a, y_a, angle_a, b, x_b, y_b, angle_b, reach, tolerance, OUT
     )
-    reverse(OUT, count)
+    if swapped:
+        reverse(OUT, count)
     return count
 
 
-@kernel
+@uncounted
 def support_range(P: FloatArray, p: int, nx: float, ny: float, tolerance: float) -> tuple[float, float, float, float]:
     """Of a core's vertices no more than `tolerance` below the highest along n: the least and greatest place along
     t = (-n_y, n_x); then that height, and the extent of the whole core along t."""
@@ -142,7 +142,7 @@ def support_range(P: FloatArray, p: int, nx: float, ny: float, tolerance: float)
     return low, high, top, right - left
 
 
-@kernel
+@uncounted
 def face(
     SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray,
     a: int, x_a: float, y_a: float, angle_a: float, b: int, x_b: float, y_b: float, angle_b: float,
@@ -153,18 +153,13 @@ def face(
 
     In overlap every corner that is inside acts: the tolerance grows by the depth.
     """
-    first, second = (a, b) if a <= b else (b, a)
-    if a <= b:
-        g, nx, ny, px, py = ordered_gap(
-            SHAPE, LINK, VERTEX, WORK, a, x_a, y_a, angle_a, b, x_b, y_b, angle_b
-        )  # fmt: skip
-    else:
-        g, nx, ny, px, py = ordered_gap(
-            SHAPE, LINK, VERTEX, WORK, b, x_b, y_b, angle_b, a, x_a, y_a, angle_a
-        )  # fmt: skip
+    swapped = a > b
+    if swapped:
+        a, x_a, y_a, angle_a, b, x_b, y_b, angle_b = b, x_b, y_b, angle_b, a, x_a, y_a, angle_a
+    g, nx, ny, px, py = ordered_gap(SHAPE, LINK, VERTEX, WORK, a, x_a, y_a, angle_a, b, x_b, y_b, angle_b)
     count = 1
     OUT[0, 0], OUT[0, 1], OUT[0, 2], OUT[0, 3], OUT[0, 4] = nx, ny, px, py, g
-    p, q = LINK[first, COUNT], LINK[second, COUNT]
+    p, q = LINK[a, COUNT], LINK[b, COUNT]
     if p > 1 and q > 1:
         slack = tolerance + max(-g, 0.0)
         low_p, high_p, top, size_p = support_range(WORK[0], p, nx, ny, slack)
@@ -172,11 +167,11 @@ def face(
         low, high = max(low_p, -high_q), min(high_p, -low_q)
         if high - low > _WIDTH * max(size_p, size_q):
             count = 2
-            top += SHAPE[first, ROUNDING] + 0.5 * g
+            top += SHAPE[a, ROUNDING] + 0.5 * g
             for k in range(2):
                 u = low if k == 0 else high
                 OUT[k, 0], OUT[k, 1], OUT[k, 4] = nx, ny, g
                 OUT[k, 2], OUT[k, 3] = top * nx - u * ny, top * ny + u * nx
-    if a > b:
+    if swapped:
         reverse(OUT, count)
     return count

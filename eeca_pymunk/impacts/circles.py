@@ -11,12 +11,12 @@ from __future__ import annotations
 import math
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel
+from ..compiled import uncounted
 from ..layout import COUNT, FIRST
 from .roots import ADVANCES, STRIDE, ball_point, flat
 
 
-@kernel
+@uncounted
 def circle_circle(
     dx: float, dy: float, ux: float, uy: float, ax: float, ay: float, extent: float, tolerance: float, left: float
 ) -> tuple[float, bool]:
@@ -49,7 +49,7 @@ def circle_circle(
     return left, False
 
 
-@kernel
+@uncounted
 def circle_outline(
     x: float, y: float, vx: float, vy: float, ax: float, ay: float, extent: float, tolerance: float,
     LINK: IntArray, VERTEX: FloatArray, b: int, left: float,
@@ -99,7 +99,6 @@ def circle_outline(
                     return s + entry, True
                 if not straight:
                     corner, beside = beside_edge(VERTEX, first, count, near, px, py)
-            beside = beside or apart < 0.0
             nx, ny = VERTEX[first + near, 2], VERTEX[first + near, 3]
         if straight:
             if beside:  # in overlap
@@ -124,7 +123,7 @@ def circle_outline(
     return left, False
 
 
-@kernel
+@uncounted
 def beside_edge(VERTEX: FloatArray, first: int, count: int, edge: int, x: float, y: float) -> tuple[int, bool]:
     """The end of an outline's edge (row of VERTEX) on whose side a point is, and whether it is beside the edge."""
     start = first + edge

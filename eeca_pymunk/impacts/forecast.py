@@ -9,30 +9,42 @@ from __future__ import annotations
 
 import math
 
-from ..compiled import kernel
-from ..geometry.meeting import disk_disk, disk_wall, meet
+from ..arrays import FlagArray, FloatArray, IntArray, PoolArray
+from ..compiled import uncounted
 from ..layout import (
-    ANGLE, AX, AY, BOUND, CENTRE_X, CENTRE_Y, DUE, EXTENT, SINCE, SPIN, TWIST, VX, VY, X, Y, FlagArray, FloatArray,
-    IntArray, PoolArray,
+    AX,
+    AY,
+    CENTRE_X,
+    CENTRE_Y,
+    DUE,
+    EXTENT,
+    SINCE,
+    SPIN,
+    TWIST,
+    VX,
+    VY,
+    X,
+    Y,
 )  # fmt: skip
 from ..pairs.layout import AT_X, AT_Y, MARGIN, NUMBER, START
 from ..pairs.lists import centre
 from .heap import push
+from .times import meet, one_pull
 from .layout import CHECK, FIRST_SHAPE, HEAP, KINKS, KNOWN, LEAVE, NOTHING, OTHER, OWN, SHAPES
 
-_ROUND_OFF = 1e-13  # of speeds, below which what touches does not approach
-_CLOSE = 1e-9  # of the extent, within which that counts
 _INSIDE = 0.1  # of the margin that is left, above which a shape has not left its circle
 
 
-@kernel
-def leaves(BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, MARK: FloatArray, i: int, s: int, now: float) -> float:
+@uncounted
+def leaves(
+    BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, MARK: FloatArray, disks: int, i: int, s: int, now: float
+) -> float:
     """Instant before which the centre of shape s of body i stays within its margin circle; exact for straight paths."""
     m = MARK[s, MARGIN]
     if m == math.inf:
         return math.inf
     since = BODY[i, SINCE]
-    arm = math.hypot(SHAPE[s, CENTRE_X], SHAPE[s, CENTRE_Y])
+    arm = 0.0 if s < disks else math.hypot(SHAPE[s, CENTRE_X], SHAPE[s, CENTRE_Y])
     ax, ay = BODY[i, AX], BODY[i, AY]
     if ax == 0.0 and ay == 0.0 and arm == 0.0:
         dx, dy = BODY[i, X] - MARK[s, AT_X], BODY[i, Y] - MARK[s, AT_Y]
@@ -58,14 +70,14 @@ def leaves(BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, MARK: FloatArray
     return now + 2.0 * room / (u + math.sqrt(u * u + 2.0 * g * room))
 
 
-@kernel
+@uncounted
 def has_left(BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, MARK: FloatArray, s: int, now: float) -> bool:
     """Whether shape s is as good as out of its margin circle."""
     x, y = centre(BODY, SHAPE, LINK, s, now)
     return math.hypot(x - MARK[s, AT_X], y - MARK[s, AT_Y]) > (1.0 - _INSIDE) * MARK[s, MARGIN]
 
 
-@kernel
+@uncounted
 def barred(RULE: FloatArray, a: int, b: int) -> bool:
     """Whether a collision handler has said that shapes a and b pass through one another in this step."""
     low, high = float(min(a, b)), float(max(a, b))
@@ -75,7 +87,7 @@ def barred(RULE: FloatArray, a: int, b: int) -> bool:
     return False
 
 
-@kernel
+@uncounted
 def predict(
     BODY: FloatArray, STATE: IntArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, MARK: FloatArray,
     LIST: IntArray, POOL: PoolArray, FLAG: FlagArray, RULE: FloatArray, TIME: FloatArray, OF: IntArray,
@@ -84,10 +96,12 @@ def predict(
     """Forecast body i from its present path, at an instant `now` of the loop, and put what is due in this step on the
     heap."""
     best, own, other = math.inf, -1, NOTHING
-    x, y, vx, vy, ax, ay = BODY[i, X], BODY[i, Y], BODY[i, VX], BODY[i, VY], BODY[i, AX], BODY[i, AY]
-    since, first = BODY[i, SINCE], STATE[i, FIRST_SHAPE]
+    since, x, y, vx, vy, ax, ay = (
+        BODY[i, SINCE], BODY[i, X], BODY[i, Y], BODY[i, VX], BODY[i, VY], BODY[i, AX], BODY[i, AY],
+    )  # fmt: skip
+    extent, first = BODY[i, EXTENT], STATE[i, FIRST_SHAPE]
     for s in range(first, first + STATE[i, SHAPES]):
-        t = leaves(BODY, SHAPE, LINK, MARK, i, s, now)
+        t = leaves(BODY, SHAPE, LINK, MARK, disks, i, s, now)
         if t < best:
             best, own, other = t, s, LEAVE
         start = LIST[s, START]
@@ -98,38 +112,13 @@ def predict(
             if RULE.shape[0] > 0 and barred(RULE, s, o):
                 continue
             certain = True
-            if i < disks and o < disks:
-                other_since = BODY[o, SINCE]
-                bx, by = BODY[o, AX], BODY[o, AY]
-                if ax != bx or ay != by:
-                    t, certain = meet(BODY, SHAPE, LINK, VERTEX, WORK, disks, s, o, end, 0.0)
-                else:
-                    h = since - other_since
-                    if h >= 0.0:
-                        t = since
-                        ux, uy = BODY[o, VX] + bx * h - vx, BODY[o, VY] + by * h - vy
-                        dx = BODY[o, X] + (BODY[o, VX] + 0.5 * bx * h) * h - x
-                        dy = BODY[o, Y] + (BODY[o, VY] + 0.5 * by * h) * h - y
-                    else:
-                        h = -h
-                        t = other_since
-                        ux, uy = BODY[o, VX] - (vx + ax * h), BODY[o, VY] - (vy + ay * h)
-                        dx = BODY[o, X] - (x + (vx + 0.5 * ax * h) * h)
-                        dy = BODY[o, Y] - (y + (vy + 0.5 * ay * h) * h)
-                    closing = -(dx * ux + dy * uy)
-                    if closing <= 0.0:
-                        continue
-                    extent = BODY[i, EXTENT] + BODY[o, EXTENT]
-                    if (
-                        closing < _ROUND_OFF * extent * (abs(vx) + abs(vy) + abs(BODY[o, VX]) + abs(BODY[o, VY]))
-                        and dx * dx + dy * dy < extent * extent * (1.0 + _CLOSE)
-                    ):
-                        continue
-                    t += disk_disk(dx, dy, ux, uy, extent)
-            elif i < disks and o >= moving:
-                t, certain = disk_wall(BODY, SHAPE, LINK, VERTEX, i, o, end)
+            if i < disks and o < disks and BODY[o, AX] == ax and BODY[o, AY] == ay:
+                t = one_pull(
+                    since, x, y, vx, vy, BODY[o, SINCE], BODY[o, X], BODY[o, Y], BODY[o, VX], BODY[o, VY], ax, ay,
+                    extent + BODY[o, EXTENT],
+                )  # fmt: skip
             else:
-                t, certain = meet(BODY, SHAPE, LINK, VERTEX, WORK, disks, s, o, end, 0.0)
+                t, certain = meet(BODY, SHAPE, LINK, VERTEX, WORK, s, o, disks, end, -1.0)
             if t < best or (t == best and other >= 0 and (s < own or (s == own and o < other))):
                 best, own, other = t, s, (o if certain else CHECK)
     best = max(best, now)

@@ -3,11 +3,12 @@ its time is what the body says is due."""
 
 from __future__ import annotations
 
-from ..compiled import kernel
-from ..layout import DUE, FloatArray, IntArray
+from ..arrays import FloatArray, IntArray
+from ..compiled import uncounted
+from ..layout import DUE
 
 
-@kernel
+@uncounted
 def push(TIME: FloatArray, OF: IntArray, n: int, time: float, body: int) -> int:
     """Add an event to a heap of n; how many there are then."""
     k = n
@@ -21,7 +22,7 @@ def push(TIME: FloatArray, OF: IntArray, n: int, time: float, body: int) -> int:
     return n + 1
 
 
-@kernel
+@uncounted
 def pop(TIME: FloatArray, OF: IntArray, n: int) -> int:
     """Remove the first event of a heap of n; how many there are then."""
     n -= 1
@@ -42,7 +43,7 @@ def pop(TIME: FloatArray, OF: IntArray, n: int) -> int:
     return n
 
 
-@kernel
+@uncounted
 def sweep_out(TIME: FloatArray, OF: IntArray, n: int, BODY: FloatArray) -> int:
     """Drop the entries that are not valid any more; how many there are then."""
     kept = 0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from ..layout import FlagArray, FloatArray, IntArray, PoolArray
+from ..arrays import FlagArray, FloatArray, IntArray, PoolArray
 
 # STATE (n, 8) int: one row per body
 OWN, OTHER = 0, 1  # shapes of the next event; OTHER may be one of these:
@@ -16,34 +16,33 @@ EVENTS = 6  # impacts of the body in this step
 ISLAND = 7  # first body of the island it is solved in, -1 for none
 STATE_COLUMNS = 8
 
-# LOG (l, 12) float: one row per impulse
-BY, ON = 0, 1  # shapes; the normal points from the first to the second
-INSTANT = 2  # time after the start of the step
-IMPULSE, TANGENTIAL = 3, 4  # mass length/time, along the normal n and t = (-n_y, n_x)
-NORMAL_X, NORMAL_Y, POINT_X, POINT_Y = 5, 6, 7, 8
-GAP = 9  # at the start of the step, length
-CHANGE = 10  # of the normal velocity by the impulse alone, length/time
-LOG_COLUMNS = 12
-
 # PAR float: of the step
 DT, NOW = 0, 1  # length of the step; instant at which the loop has stopped for more room
 GRAVITY_X, GRAVITY_Y = 2, 3
-DAMPING = 4  # what is left of velocities after half a step
+LEFT_OVER = 4  # what the damping of half a step leaves of velocities
 LOCK = 5  # scale of an energy lock that was farthest from 1
-LEDGER = 6  # energy: PAR[LEDGER + ...]
-RESTITUTION, FRICTIONAL, EXTERNAL, DAMPED, LIFTED = 0, 1, 2, 3, 4
-PAR_LENGTH = 12
+LAST = 6  # length of the step before
+LEDGER = 7  # energy of the step: PAR[LEDGER + ...]
+RESTITUTION, FRICTIONAL, EXTERNAL, DAMPED = 0, 1, 2, 3
+LEDGER_LENGTH = 4
+BEFORE, AFTER = 12, 13  # kinetic energy and -m g.x at both ends of the step
+PAR_LENGTH = 14
 
 # COUNT int: of the step
-HEAP, LOGGED, IMPACTS, BLOCKS, FORECASTS, STALE, LIMIT, UNMET = 0, 1, 2, 3, 4, 5, 6, 7
-COUNT_LENGTH = 8
+HEAP, LOGGED, IMPACTS, BLOCKS, FORECASTS, STALE, LIMIT, UNMET, STRUCK = 0, 1, 2, 3, 4, 5, 6, 7, 8
+COUNT_LENGTH = 9
 
 # Status of a step
-DONE, POOL_FULL, LOG_FULL, HEAP_FULL, NOT_FINITE, CHANGED, BLOCK_FULL = 0, 1, 2, 3, 4, 5, 6
+DONE, POOL_FULL, LOG_FULL, BLOCK_DUE = 0, 1, 2, 3
 
 
 class Scene(NamedTuple):
-    """All arrays of a scene: bodies and shapes (`..layout`), lists (`..pairs.layout`), and those of the loop."""
+    """All arrays of a scene: bodies and shapes (`..layout`), lists (`..pairs.layout`), and those of the loop.
+
+    RULE (r, 6): what collision handlers say of pairs, a < b: shapes a, b, elasticity (below 0: none), friction, surface
+    velocity of b relative to a. LOG: EVENT rows. BEGAN (n, 3): poses at the start of the step. WORK (2, K, 4): scratch
+    for vertices. PLACE (n,): -1, or a body's place in the block in BLOCK (n,).
+    """
 
     BODY: FloatArray
     STATE: IntArray
@@ -64,7 +63,9 @@ class Scene(NamedTuple):
     HEAP_TIME: FloatArray
     HEAP_BODY: IntArray
     LOG: FloatArray
-    START: FloatArray
+    BEGAN: FloatArray
+    PLACE: IntArray
+    BLOCK: IntArray
     WORK: FloatArray
     PAR: FloatArray
     COUNT: IntArray

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 
-from ..compiled import kernel
+from ..compiled import uncounted
 
 ADVANCES = 1000  # looks at one pair in one forecast; a double root halves its error in each, a single root squares it
 STRIDE = 1 / 16  # least part of the horizon between looks at shapes that touch: what bounces faster rests
 
 
-@kernel
+@uncounted
 def flat(g: float, w: float, alpha: float) -> float:
     """First root of g + w s + alpha s² / 2 = 0 in s >= 0 with the gap falling; 0 in overlap that deepens.
 
@@ -37,7 +37,7 @@ def flat(g: float, w: float, alpha: float) -> float:
     return math.inf
 
 
-@kernel
+@uncounted
 def ball_point(dx: float, dy: float, ux: float, uy: float, extent: float) -> float:
     """First root of |d + u s| = extent in s >= 0 with the distance falling; 0 for circles that overlap and approach.
 
@@ -51,8 +51,12 @@ def ball_point(dx: float, dy: float, ux: float, uy: float, extent: float) -> flo
     b = dx * ux + dy * uy
     if b >= 0.0:
         return math.inf
-    reach = math.sqrt(ux * ux + uy * uy) * extent
     cross = abs(dx * uy - dy * ux)
+    squared = ux * ux + uy * uy
+    # Most pass far from one another, which needs no root.
+    if cross * cross > 1.000001 * extent * extent * squared:
+        return math.inf
+    reach = math.sqrt(squared) * extent
     if cross >= reach:
         return math.inf
     d = math.sqrt(dx * dx + dy * dy)

@@ -10,42 +10,68 @@ from __future__ import annotations
 import math
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel
+from ..compiled import uncounted
 from ..geometry.gap import ROUND_OFF
 from ..layout import AX, AY, EXTENT, OWNER, ROUNDING, SINCE, VX, VY, X, Y
 from .circles import circle_circle, circle_outline
 from .roots import ball_point
 from .turning import general
 
+_SLOW = 1e-13  # of speeds, below which what touches does not approach
+_NEAR = 1e-9  # of the squared extent, within which that counts
 
-@kernel
+
+@uncounted
+def one_pull(
+    since_i: float, x_i: float, y_i: float, vx_i: float, vy_i: float, since_j: float, x_j: float, y_j: float,
+    vx_j: float, vy_j: float, ax: float, ay: float, extent: float,
+) -> float:  # fmt: skip
+    """Instant at which two disks meet that one acceleration pulls, which cancels; closed form. Disks that touch and
+    approach by the round-off of their speeds do not: they part."""
+    s = since_i - since_j
+    if s < 0.0:
+        start, h = since_j, -s
+        dx, dy = x_j - (x_i + (vx_i + 0.5 * h * ax) * h), y_j - (y_i + (vy_i + 0.5 * h * ay) * h)
+        ux, uy = vx_j - (vx_i + h * ax), vy_j - (vy_i + h * ay)
+    else:
+        start = since_i
+        dx, dy = (x_j + (vx_j + 0.5 * s * ax) * s) - x_i, (y_j + (vy_j + 0.5 * s * ay) * s) - y_i
+        ux, uy = (vx_j + s * ax) - vx_i, (vy_j + s * ay) - vy_i
+    closing = -(dx * ux + dy * uy)
+    if closing <= 0.0:
+        return math.inf
+    if closing < _SLOW * extent * (abs(vx_i) + abs(vy_i) + abs(vx_j) + abs(vy_j)):
+        if dx * dx + dy * dy < extent * extent * (1.0 + _NEAR):
+            return math.inf
+    return start + ball_point(dx, dy, ux, uy, extent)
+
+
+@uncounted
 def disk_disk(BODY: FloatArray, i: int, j: int, horizon: float) -> tuple[float, bool]:
-    """Lone disks i and j: in closed form where one acceleration pulls both, which then cancels."""
+    """Lone disks i and j: in closed form where one acceleration pulls both."""
     since_i, since_j = BODY[i, SINCE], BODY[j, SINCE]
     x_i, y_i, vx_i, vy_i, ax_i, ay_i = BODY[i, X], BODY[i, Y], BODY[i, VX], BODY[i, VY], BODY[i, AX], BODY[i, AY]
     x_j, y_j, vx_j, vy_j, ax_j, ay_j = BODY[j, X], BODY[j, Y], BODY[j, VX], BODY[j, VY], BODY[j, AX], BODY[j, AY]
-    if since_i < since_j:
-        start = since_j
-        s = since_j - since_i
-        x_i, y_i = x_i + (vx_i + 0.5 * s * ax_i) * s, y_i + (vy_i + 0.5 * s * ay_i) * s
-        vx_i, vy_i = vx_i + s * ax_i, vy_i + s * ay_i
-    else:
-        start = since_i
-        s = since_i - since_j
-        x_j, y_j = x_j + (vx_j + 0.5 * s * ax_j) * s, y_j + (vy_j + 0.5 * s * ay_j) * s
-        vx_j, vy_j = vx_j + s * ax_j, vy_j + s * ay_j
-    dx, dy, ux, uy = x_j - x_i, y_j - y_i, vx_j - vx_i, vy_j - vy_i
     extent = BODY[i, EXTENT] + BODY[j, EXTENT]
     if ax_i == ax_j and ay_i == ay_j:
-        return start + ball_point(dx, dy, ux, uy, extent), True
+        t = one_pull(since_i, x_i, y_i, vx_i, vy_i, since_j, x_j, y_j, vx_j, vy_j, ax_i, ay_i, extent)
+        return t, True
+    start = max(since_i, since_j)
+    s = start - since_i
+    x_i, y_i = x_i + (vx_i + 0.5 * s * ax_i) * s, y_i + (vy_i + 0.5 * s * ay_i) * s
+    vx_i, vy_i = vx_i + s * ax_i, vy_i + s * ay_i
+    s = start - since_j
+    x_j, y_j = x_j + (vx_j + 0.5 * s * ax_j) * s, y_j + (vy_j + 0.5 * s * ay_j) * s
+    vx_j, vy_j = vx_j + s * ax_j, vy_j + s * ay_j
     far = max(max(abs(x_i), abs(y_i)), max(abs(x_j), abs(y_j)))
     t, certain = circle_circle(
-        dx, dy, ux, uy, ax_j - ax_i, ay_j - ay_i, extent, ROUND_OFF * (far + extent), max(horizon - start, 0.0)
-    )
+        x_j - x_i, y_j - y_i, vx_j - vx_i, vy_j - vy_i, ax_j - ax_i, ay_j - ay_i, extent, ROUND_OFF * (far + extent),
+        max(horizon - start, 0.0),
+    )  # fmt: skip
     return start + t, certain or t == math.inf
 
 
-@kernel
+@uncounted
 def disk_wall(
     BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, i: int, b: int, horizon: float
 ) -> tuple[float, bool]:
@@ -60,7 +86,7 @@ def disk_wall(
     return since + t, certain or t == math.inf
 
 
-@kernel
+@uncounted
 def meet(
     BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray,
     a: int, b: int, disks: int, horizon: float, held: float,

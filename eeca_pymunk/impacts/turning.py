@@ -20,16 +20,16 @@ from __future__ import annotations
 import math
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel
-from ..geometry.convex import closest, place, point_core
+from ..compiled import uncounted
+from ..geometry.convex import closest, place
 from ..geometry.flight import pose, rate
 from ..geometry.gap import touching
 from ..layout import AX, AY, BOUND, CENTRE_X, CENTRE_Y, OWNER, ROUNDING, SINCE, SIZE, TWIST
-from .circles import circle_circle, circle_outline
+from .apart import carried_circles_meet, circles_meet
 from .roots import ADVANCES, STRIDE, flat
 
 
-@kernel
+@uncounted
 def first_close(
     best: float, near: float, closing: bool, g: float, w: float, bend: float, tolerance: float, held: float
 ) -> tuple[float, float, bool]:
@@ -46,7 +46,7 @@ def first_close(
     return best, near, closing
 
 
-@kernel
+@uncounted
 def fixed_axis(
     P: FloatArray, p: int, Q: FloatArray, q: int, nx: float, ny: float,
     x_a: float, y_a: float, ux_a: float, uy_a: float, w_a: float,
@@ -65,7 +65,7 @@ def fixed_axis(
     return best, near, closing
 
 
-@kernel
+@uncounted
 def turning_axis(
     P: FloatArray, edge: int, Q: FloatArray, q: int,
     x_a: float, y_a: float, ux_a: float, uy_a: float, w_a: float,
@@ -84,7 +84,7 @@ def turning_axis(
     return best, near, closing
 
 
-@kernel
+@uncounted
 def reach_of(BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, s: int) -> tuple[float, float, float]:
     """A point of the body of shape s, relative to its centre of mass, and the reach of the shape about it: the centre
     of mass itself, but for what stands on the ground the shape's own centre."""
@@ -93,44 +93,7 @@ def reach_of(BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, s: int) -> tup
     return 0.0, 0.0, SHAPE[s, SIZE]
 
 
-@kernel
-def circles_meet(
-    BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray,
-    a: int, b: int, start: float, left: float, tolerance: float,
-) -> tuple[float, bool]:  # fmt: skip
-    """Time after `start` until which shapes a and b are apart for certain, as a circle about the centre of mass of the
-    one that moves is from the other's circle or, if that is static, its outline; and whether they never meet.
-
-    These circles do not turn. 0 where they overlap.
-    """
-    ground = BODY.shape[0] - 1
-    i, j = LINK[a, OWNER], LINK[b, OWNER]
-    if i == ground:
-        a, b, i, j = b, a, j, i
-    x_a, y_a, _ = pose(BODY, i, start)
-    ux_a, uy_a, _ = rate(BODY, i, start)
-    if j == ground:
-        q = place(LINK, VERTEX, b, 0.0, 0.0, 0.0, WORK[1])
-        extent = SHAPE[a, SIZE] + SHAPE[b, ROUNDING]
-        if point_core(x_a, y_a, WORK[1], q)[0] - extent <= tolerance:
-            return 0.0, False
-        s, _ = circle_outline(
-            x_a, y_a, ux_a, uy_a, BODY[i, AX], BODY[i, AY], extent, tolerance, LINK, VERTEX, b, left
-        )  # fmt: skip
-        return s, s == math.inf
-    x_b, y_b, _ = pose(BODY, j, start)
-    ux_b, uy_b, _ = rate(BODY, j, start)
-    dx, dy = x_b - x_a, y_b - y_a
-    extent = SHAPE[a, SIZE] + SHAPE[b, SIZE]
-    if math.sqrt(dx * dx + dy * dy) - extent <= tolerance:
-        return 0.0, False
-    s, _ = circle_circle(
-        dx, dy, ux_b - ux_a, uy_b - uy_a, BODY[j, AX] - BODY[i, AX], BODY[j, AY] - BODY[i, AY], extent, tolerance, left
-    )
-    return s, s == math.inf
-
-
-@kernel
+@uncounted
 def bends(
     BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, a: int, b: int, start: float, left: float
 ) -> tuple[float, float, float]:
@@ -154,7 +117,7 @@ def bends(
     return A + around_a + around_b, of_a, of_b
 
 
-@kernel
+@uncounted
 def general(
     BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray,
     a: int, b: int, disks: int, horizon: float, held: float,
@@ -177,6 +140,12 @@ def general(
     s, never = circles_meet(BODY, SHAPE, LINK, VERTEX, WORK, a, b, start, left, tolerance)
     if s > left:
         return start + s, never
+    if s == 0.0:
+        s = carried_circles_meet(BODY, SHAPE, LINK, a, b, start, left)
+        if s > left:
+            if BODY[i, TWIST] == 0.0 and BODY[j, TWIST] == 0.0:
+                return start + s, s == math.inf
+            return horizon, False
     bend, bend_a, bend_b = bends(BODY, SHAPE, LINK, a, b, start, left)
     extent = SHAPE[a, ROUNDING] + SHAPE[b, ROUNDING]
     P, Q = WORK[0], WORK[1]

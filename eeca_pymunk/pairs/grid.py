@@ -11,24 +11,46 @@ from __future__ import annotations
 
 import math
 
-from ..compiled import kernel
-from ..layout import BOUND, FloatArray, FlagArray, IntArray, PoolArray
+from ..arrays import FlagArray, FloatArray, IntArray, PoolArray
+from ..compiled import uncounted
+from ..layout import BOUND
 from .layout import (
-    AT_X, AT_Y, BUCKET, CELL_LENGTH, LEAVES, LEVEL, LEVEL_COUNT, LEVELS, MARGIN, MOVING, NEXT, NUMBER, POOL_END,
-    PREVIOUS, START, WALL_COLUMNS, WALL_LENGTH, WALL_ROWS, WALL_X, WALL_Y, CAPACITY,
+    AT_X,
+    AT_Y,
+    BUCKET,
+    COLUMN,
+    ROW,
+    CAPACITY,
+    CELL_LENGTH,
+    LEAVES,
+    LEVEL,
+    LEVEL_COUNT,
+    LEVELS,
+    MARGIN,
+    MOVING,
+    NEXT,
+    NUMBER,
+    POOL_END,
+    PREVIOUS,
+    START,
+    WALL_COLUMNS,
+    WALL_LENGTH,
+    WALL_ROWS,
+    WALL_X,
+    WALL_Y,
 )  # fmt: skip
 from .lists import append, centre, may_meet, remove
 
 _FIRST_CAPACITY = 8
 
 
-@kernel
+@uncounted
 def bucket(level: int, column: int, row: int, mask: int) -> int:
     """Place of a cell in the hash table."""
     return ((column * 73856093) ^ (row * 19349663) ^ (level * 83492791)) & mask
 
 
-@kernel
+@uncounted
 def level_of(radius: float, cell: float) -> int:
     """The lowest level whose cells are at least twice as long as the radius."""
     level, length = 0, cell
@@ -38,12 +60,15 @@ def level_of(radius: float, cell: float) -> int:
     return level
 
 
-@kernel
-def link(MARK: FloatArray, CELL: IntArray, HEAD: IntArray, GRID: FloatArray, INFO: IntArray, radius: float, s: int) -> None:
+@uncounted
+def link(
+    MARK: FloatArray, CELL: IntArray, HEAD: IntArray, GRID: FloatArray, INFO: IntArray, radius: float, s: int
+) -> None:
     """Put shape s into the grid where its margin circle is."""
     level = level_of(radius + MARK[s, MARGIN], GRID[CELL_LENGTH])
     length = GRID[CELL_LENGTH] * 2.0**level
-    k = bucket(level, math.floor(MARK[s, AT_X] / length), math.floor(MARK[s, AT_Y] / length), HEAD.shape[0] - 1)
+    CELL[s, COLUMN], CELL[s, ROW] = math.floor(MARK[s, AT_X] / length), math.floor(MARK[s, AT_Y] / length)
+    k = bucket(level, CELL[s, COLUMN], CELL[s, ROW], HEAD.shape[0] - 1)
     head = HEAD[k]
     CELL[s, LEVEL], CELL[s, BUCKET], CELL[s, NEXT], CELL[s, PREVIOUS] = level, k, head, -1
     if head >= 0:
@@ -52,7 +77,7 @@ def link(MARK: FloatArray, CELL: IntArray, HEAD: IntArray, GRID: FloatArray, INF
     INFO[LEVELS + level] += 1
 
 
-@kernel
+@uncounted
 def unlink(CELL: IntArray, HEAD: IntArray, INFO: IntArray, s: int) -> None:
     """Take shape s out of the grid."""
     after, before = CELL[s, NEXT], CELL[s, PREVIOUS]
@@ -65,20 +90,25 @@ def unlink(CELL: IntArray, HEAD: IntArray, INFO: IntArray, s: int) -> None:
     INFO[LEVELS + CELL[s, LEVEL]] -= 1
 
 
-@kernel
-def take(
-    BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, MARK: FloatArray, LIST: IntArray, POOL: PoolArray,
-    FLAG: FlagArray, INFO: IntArray, s: int, o: int, radius: float,
-) -> bool:  # fmt: skip
-    """Put the moving shape o into the list of s and s into that of o if their margin circles overlap. False if full."""
-    dx, dy = MARK[o, AT_X] - MARK[s, AT_X], MARK[o, AT_Y] - MARK[s, AT_Y]
+@uncounted
+def near(MARK: FloatArray, SHAPE: FloatArray, o: int, x: float, y: float, radius: float) -> bool:
+    """Whether the margin circle of shape o overlaps that of centre (x, y)."""
+    dx, dy = MARK[o, AT_X] - x, MARK[o, AT_Y] - y
     reach = radius + SHAPE[o, BOUND] + MARK[o, MARGIN]
-    if dx * dx + dy * dy > reach * reach or not may_meet(BODY, LINK, s, o):
-        return True
-    return append(LIST, POOL, FLAG, INFO, s, o) and append(LIST, POOL, FLAG, INFO, o, s)
+    return dx * dx + dy * dy <= reach * reach
 
 
-@kernel
+@uncounted
+def join(
+    BODY: FloatArray, LINK: IntArray, LIST: IntArray, POOL: PoolArray, FLAG: FlagArray, INFO: IntArray, s: int, o: int
+) -> bool:
+    """Put two moving shapes that may meet into each other's lists. False if the pool is full."""
+    return not may_meet(BODY, LINK, s, o) or (
+        append(LIST, POOL, FLAG, INFO, s, o) and append(LIST, POOL, FLAG, INFO, o, s)
+    )
+
+
+@uncounted
 def seek_moving(
     BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, MARK: FloatArray, CELL: IntArray, LIST: IntArray,
     POOL: PoolArray, FLAG: FlagArray, HEAD: IntArray, GRID: FloatArray, INFO: IntArray, s: int,
@@ -98,8 +128,9 @@ def seek_moving(
         south, north = math.floor((y - reach) / length), math.floor((y + reach) / length)
         if float(east - west + 1) * float(north - south + 1) > 4.0 * left + 16.0:
             for o in range(INFO[MOVING]):
-                if CELL[o, LEVEL] == level and CELL[o, BUCKET] >= 0 and o != s:
-                    if not take(BODY, SHAPE, LINK, MARK, LIST, POOL, FLAG, INFO, s, o, radius):
+                listed = CELL[o, LEVEL] == level and CELL[o, BUCKET] >= 0 and o != s
+                if listed and near(MARK, SHAPE, o, x, y, radius):
+                    if not join(BODY, LINK, LIST, POOL, FLAG, INFO, s, o):
                         return False
             continue
         for column in range(west, east + 1):
@@ -107,18 +138,15 @@ def seek_moving(
                 o = HEAD[bucket(level, column, row, mask)]
                 while o >= 0:
                     # Cells may share a place of the table: a shape counts in its own cell alone.
-                    if (
-                        CELL[o, LEVEL] == level
-                        and math.floor(MARK[o, AT_X] / length) == column
-                        and math.floor(MARK[o, AT_Y] / length) == row
-                    ):
-                        if not take(BODY, SHAPE, LINK, MARK, LIST, POOL, FLAG, INFO, s, o, radius):
+                    here = CELL[o, LEVEL] == level and CELL[o, COLUMN] == column and CELL[o, ROW] == row
+                    if here and near(MARK, SHAPE, o, x, y, radius):
+                        if not join(BODY, LINK, LIST, POOL, FLAG, INFO, s, o):
                             return False
                     o = CELL[o, NEXT]
     return True
 
 
-@kernel
+@uncounted
 def near_wall(BOX: FloatArray, w: int, x: float, y: float, radius: float) -> bool:
     """Whether a circle overlaps the box of static shape number w: (W, 4) left, bottom, right, top."""
     dx = max(BOX[w, 0] - x, x - BOX[w, 2], 0.0)
@@ -126,7 +154,7 @@ def near_wall(BOX: FloatArray, w: int, x: float, y: float, radius: float) -> boo
     return dx * dx + dy * dy <= radius * radius
 
 
-@kernel
+@uncounted
 def seek_walls(
     BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, MARK: FloatArray, LIST: IntArray, POOL: PoolArray,
     FLAG: FlagArray, GRID: FloatArray, INFO: IntArray, BOX: FloatArray, CSR: IntArray, s: int,
@@ -142,7 +170,10 @@ def seek_walls(
                     return False
         return True
     length = GRID[WALL_LENGTH]
-    west, east = cell_of(x - radius - GRID[WALL_X], length, columns), cell_of(x + radius - GRID[WALL_X], length, columns)
+    west, east = (
+        cell_of(x - radius - GRID[WALL_X], length, columns),
+        cell_of(x + radius - GRID[WALL_X], length, columns),
+    )
     south, north = cell_of(y - radius - GRID[WALL_Y], length, rows), cell_of(y + radius - GRID[WALL_Y], length, rows)
     for row in range(south, north + 1):
         for column in range(west, east + 1):
@@ -160,14 +191,14 @@ def seek_walls(
     return True
 
 
-@kernel
+@uncounted
 def cell_of(distance: float, length: float, count: int) -> int:
     """Column or row, the outermost ones reaching to infinity."""
     place = distance / length
     return 0 if not place > 0.0 else (count - 1 if place >= count else int(place))
 
 
-@kernel
+@uncounted
 def clear(LIST: IntArray, POOL: PoolArray, FLAG: FlagArray, INFO: IntArray, s: int) -> None:
     """Empty the list of s, and take s out of those of the others."""
     start = LIST[s, START]
@@ -177,7 +208,7 @@ def clear(LIST: IntArray, POOL: PoolArray, FLAG: FlagArray, INFO: IntArray, s: i
     LIST[s, NUMBER] = 0
 
 
-@kernel
+@uncounted
 def renew(
     BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, MARK: FloatArray, CELL: IntArray, LIST: IntArray,
     POOL: PoolArray, FLAG: FlagArray, HEAD: IntArray, GRID: FloatArray, INFO: IntArray, BOX: FloatArray,
@@ -196,7 +227,7 @@ def renew(
     return found
 
 
-@kernel
+@uncounted
 def build(
     BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, MARK: FloatArray, CELL: IntArray, LIST: IntArray,
     POOL: PoolArray, FLAG: FlagArray, HEAD: IntArray, GRID: FloatArray, INFO: IntArray, BOX: FloatArray,
@@ -220,9 +251,7 @@ def build(
             return False
         if everybody:
             for o in range(s):
-                if may_meet(BODY, LINK, s, o) and not (
-                    append(LIST, POOL, FLAG, INFO, s, o) and append(LIST, POOL, FLAG, INFO, o, s)
-                ):
+                if not join(BODY, LINK, LIST, POOL, FLAG, INFO, s, o):
                     return False
         else:
             # Each pair once: s seeks among those that were put in before it.
@@ -232,7 +261,7 @@ def build(
     return True
 
 
-@kernel
+@uncounted
 def wall_grid(BOX: FloatArray, GRID: FloatArray, INFO: IntArray, CSR: IntArray) -> int:
     """Lay static shapes, of boxes (W, 4), into the cells of their grid, whose numbers stand in INFO and GRID.
 

@@ -1,6 +1,6 @@
 """The arrays of the near lists: what their columns mean.
 
-MARK (k, 3) float: the margin circle of each shape, drawn about where its list was made. CELL (k, 4) int: its place in the
+MARK (k, 3) float: the margin circle of each shape, drawn about where its list was made. CELL (k, 6) int: its place in the
 grid. LIST (k, 3) int: where in POOL its neighbours stand. POOL int32: numbers of shapes, all lists one after the other;
 FLAG, of the same length, 1 where an island's solve has taken the pair over, so that it makes no events.
 INFO int: counters of the lists.
@@ -12,8 +12,8 @@ MARGIN = 2  # how far it may go from there: length; infinite where every shape i
 MARK_COLUMNS = 3
 
 # CELL
-LEVEL, BUCKET, NEXT, PREVIOUS = 0, 1, 2, 3
-CELL_COLUMNS = 4
+LEVEL, BUCKET, NEXT, PREVIOUS, COLUMN, ROW = 0, 1, 2, 3, 4, 5
+CELL_COLUMNS = 6
 
 # LIST
 START, CAPACITY, NUMBER = 0, 1, 2

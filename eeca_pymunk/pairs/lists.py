@@ -7,15 +7,33 @@ lists were made keeps the circles apart. A pair of moving shapes stands in both 
 from __future__ import annotations
 
 import math
-from ..compiled import kernel
+
+from ..arrays import FlagArray, FloatArray, IntArray, PoolArray
+from ..compiled import uncounted
 from ..layout import (
-    ANGLE, AX, AY, CATEGORIES, CENTRE_X, CENTRE_Y, GROUP, II, IM, MASK, OWNER, SINCE, SPIN, TWIST, VX, VY, X, Y,
-    FlagArray, FloatArray, IntArray, PoolArray,
+    ANGLE,
+    AX,
+    AY,
+    CATEGORIES,
+    CENTRE_X,
+    CENTRE_Y,
+    GROUP,
+    II,
+    IM,
+    MASK,
+    OWNER,
+    SINCE,
+    SPIN,
+    TWIST,
+    VX,
+    VY,
+    X,
+    Y,
 )  # fmt: skip
 from .layout import CAPACITY, NUMBER, POOL_END, START
 
 
-@kernel
+@uncounted
 def centre(BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, s: int, t: float) -> tuple[float, float]:
     """Centre of the bounding circle of shape s at instant t."""
     i = LINK[s, OWNER]
@@ -31,7 +49,7 @@ def centre(BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, s: int, t: float
     return x, y
 
 
-@kernel
+@uncounted
 def may_meet(BODY: FloatArray, LINK: IntArray, a: int, b: int) -> bool:
     """Whether two shapes may collide: of two bodies, one of which impulses move, and let through by pymunk's filters."""
     i, j = LINK[a, OWNER], LINK[b, OWNER]
@@ -42,7 +60,7 @@ def may_meet(BODY: FloatArray, LINK: IntArray, a: int, b: int) -> bool:
     return (LINK[a, CATEGORIES] & LINK[b, MASK]) != 0 and (LINK[b, CATEGORIES] & LINK[a, MASK]) != 0
 
 
-@kernel
+@uncounted
 def append(LIST: IntArray, POOL: PoolArray, FLAG: FlagArray, INFO: IntArray, a: int, b: int) -> bool:
     """Put b at the end of a's list, which moves to the end of the pool when it is full. False if that is full too."""
     start, n = LIST[a, START], LIST[a, NUMBER]
@@ -62,7 +80,7 @@ def append(LIST: IntArray, POOL: PoolArray, FLAG: FlagArray, INFO: IntArray, a: 
     return True
 
 
-@kernel
+@uncounted
 def remove(LIST: IntArray, POOL: PoolArray, FLAG: FlagArray, a: int, b: int) -> None:
     """Take b out of a's list; the last one takes its place."""
     start, last = LIST[a, START], LIST[a, START] + LIST[a, NUMBER] - 1
@@ -73,7 +91,7 @@ def remove(LIST: IntArray, POOL: PoolArray, FLAG: FlagArray, a: int, b: int) -> 
             return
 
 
-@kernel
+@uncounted
 def mark_pair(LIST: IntArray, POOL: PoolArray, FLAG: FlagArray, moving: int, a: int, b: int, value: int) -> None:
     """Set the flags of the pair in the lists that it stands in."""
     if a < moving:

@@ -41,7 +41,7 @@ class Bodies:
     Masses, moments and kinds are read once; `Bodies.is_current` tells whether the space still has these bodies.
 
     Attributes:
-        items: the pymunk bodies, by row.
+        items: the pymunk bodies, by row.  ids: (N,) pymunk's numbers of them.
         mass, moment: (N,) mass and M L²; infinite for static and kinematic bodies.
         inverse_mass: (N,) 1/mass, 0 for static and kinematic bodies.
         dynamic: (N,) bool.  static: (N,) bool.
@@ -53,8 +53,8 @@ class Bodies:
         self._buffer = batch.Buffer()
         self._out = batch.Buffer()
         known = {body.id: body for body in (*space.bodies, space.static_body)}
-        self._ids = self._read_ids()
-        self.items: tuple[pymunk.Body, ...] = tuple(known[int(i)] for i in self._ids)
+        self.ids = self._read_ids()
+        self.items: tuple[pymunk.Body, ...] = tuple(known[int(i)] for i in self.ids)
         self.row = {body: i for i, body in enumerate(self.items)}
         self.dynamic: BoolArray = np.array([b.body_type == pymunk.Body.DYNAMIC for b in self.items], bool)
         self.static: BoolArray = np.array([b.body_type == pymunk.Body.STATIC for b in self.items], bool)
@@ -99,7 +99,7 @@ class Bodies:
         self._buffer.clear()
         batch.get_space_bodies(self.space, _FIELDS.BODY_ID | _STATE, self._buffer)
         ids = np.frombuffer(self._buffer.int_buf(), dtype=np.uintp)
-        if len(ids) != len(self._ids) or not np.array_equal(ids, self._ids):
+        if len(ids) != len(self.ids) or not np.array_equal(ids, self.ids):
             return None
         return np.frombuffer(self._buffer.float_buf()).reshape(-1, COLUMNS).copy()
 
@@ -135,7 +135,7 @@ class Bodies:
 
         `unchanged` promises that all are: no callback has run since the state was gathered.
         """
-        if not unchanged and not np.array_equal(self._read_ids(), self._ids):
+        if not unchanged and not np.array_equal(self._read_ids(), self.ids):
             # The batch writes by place: it would give rows to the wrong bodies.
             for body, row in zip(self.items, state.tolist(), strict=True):
                 if body.space is self.space and body.body_type != pymunk.Body.STATIC:

@@ -8,7 +8,7 @@ they decide (collisions to ignore, restitution, changed velocities) goes into ou
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
@@ -18,7 +18,7 @@ import pymunk
 from ..arrays import FloatArray
 from . import private
 from .bodies import ANGLE, ANGULAR_VELOCITY, POSITION, VELOCITY, Bodies
-from .shapes import Rules, Shapes
+from .shapes import Rules
 
 
 class Hooks:
@@ -137,9 +137,9 @@ class Rehearsal:
 
         return call
 
-    def rules(self, shapes: Shapes) -> Rules:
-        """What the arbiters of the step say of pairs of shapes."""
-        index = {shape: i for i, shape in enumerate(shapes.items)}
+    def rules(self, shapes: Sequence[pymunk.Shape], elasticity: FloatArray) -> Rules:
+        """What the arbiters of the step say of pairs of these shapes, of (k,) elasticity."""
+        index = {shape: i for i, shape in enumerate(shapes)}
         ignored, restitution = set(), {}
         for arbiter in private.arbiters(self.space):
             a, b = (index.get(shape, -1) for shape in arbiter.shapes)
@@ -148,7 +148,7 @@ class Rehearsal:
             pair = (min(a, b), max(a, b))
             if not arbiter.process_collision:
                 ignored.add(pair)
-            elif arbiter.restitution != shapes.elasticity[a] * shapes.elasticity[b]:
+            elif arbiter.restitution != elasticity[a] * elasticity[b]:
                 restitution[pair] = arbiter.restitution
         return Rules(frozenset(ignored), restitution)
 

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import gc
 import math
 
+import numpy as np
 import pymunk
+import pymunk.batch
 import pytest
 
 from eeca_pymunk.space import private
@@ -127,3 +130,78 @@ def test_step_alone_and_finish_step_are_a_step(threaded: bool) -> None:
         space.add(pymunk.Body(1.0, 1.0))  # not locked any more
         found.append([(*b.position, *b.velocity) for b in bodies])
     assert found[0] == found[1]
+
+
+def test_watch_and_count_of_shapes() -> None:
+    space, bodies = meeting()
+    assert private.shapes_ever(space) == 2
+    current = private.watch(space)
+    space.step(0.001)
+    bodies[0].velocity = (9.0, 9.0)
+    space.iterations = 3
+    assert current()
+    for change in (
+        lambda: setattr(space, "gravity", (0.0, 1e-9)),
+        lambda: setattr(space, "gravity", (1e-9, 1e-9)),
+        lambda: setattr(space, "damping", 0.5),
+        lambda: setattr(space, "sleep_time_threshold", 1.0),
+        lambda: space.add(pymunk.PivotJoint(*bodies, (0.0, 0.0))),
+        lambda: space.on_collision(begin=lambda *_: None),
+        lambda: space.add(pymunk.Body(1.0, 1.0)),
+        lambda: space.remove(*bodies[0].shapes),
+        lambda: space.add(pymunk.Circle(bodies[0], 1.0)),
+    ):
+        current = private.watch(space)
+        assert current()
+        change()
+        assert not current()
+    assert private.shapes_ever(space) == 3
+
+
+def test_reader_and_writer_are_the_batch_calls_in_memory_of_ours() -> None:
+    space, bodies = meeting()
+    bodies[1].angle = 0.5
+    fields = pymunk.batch.BodyFields.BODY_ID | pymunk.batch.BodyFields.POSITION | pymunk.batch.BodyFields.ANGLE
+    floats, ids = np.full(9, -1.0), np.full(3, -1, np.int64)
+    read = private.reader(space, fields, floats, ids)
+    for _ in range(3):
+        read()
+        assert ids.tolist() == [bodies[0].id, bodies[1].id, -1]
+        assert floats.tolist() == [-0.09, 0.0, 0.0, 0.09, 0.0, 0.5, -1.0, -1.0, -1.0]
+    floats[:6] = range(1, 7)
+    write = private.writer(space, pymunk.batch.BodyFields.POSITION | pymunk.batch.BodyFields.ANGLE, floats)
+    for _ in range(3):
+        write()
+        assert [(*b.position, b.angle) for b in bodies] == [(1.0, 2.0, 3.0), (4.0, 5.0, 6.0)]
+        bodies[0].position = (9.0, 9.0)
+
+
+def test_memory_of_readers_and_writers_lives_as_long_as_they() -> None:
+    space, bodies = meeting()
+    read = private.reader(space, pymunk.batch.BodyFields.POSITION, np.zeros(8), np.zeros(8, np.int64))
+    write = private.writer(space, pymunk.batch.BodyFields.POSITION, np.arange(4.0))
+    gc.collect()
+    held = [np.full(8, 7.0) for _ in range(100)]
+    for _ in range(100):
+        read()
+        write()
+    assert [tuple(b.position) for b in bodies] == [(0.0, 1.0), (2.0, 3.0)]
+    assert all((h == 7.0).all() for h in held)
+
+
+def test_timestamp_counts_the_steps_of_pymunk() -> None:
+    space, _ = meeting()
+    now = private.timestamp(space)
+    start = now()
+    space.step(0.001)
+    space.step(0.001)
+    assert now() == start + 2
+
+
+def test_waits() -> None:
+    space, _ = meeting()
+    assert not private.waits(space)
+    space.add_post_step_callback(lambda *_: None, 1)
+    assert private.waits(space)
+    space.step(0.001)
+    assert not private.waits(space)
