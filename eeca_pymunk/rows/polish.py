@@ -90,7 +90,7 @@ def polish(
     A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, FREE: FloatArray, IM: FloatArray,
     II: FloatArray, POSE: FloatArray, n: int, m: int, R: float, passes: int, tolerance: float,
 ) -> tuple[float, int]:  # fmt: skip
-    """Solve on the active contacts of L; L and V = FREE + M^-1 (G^T lam + T^T beta) are replaced.
+    """Solve on the active contacts of L; L and V = FREE + M^-1 (G^T lam + T^T beta), also on entry, are replaced.
 
     Args:
         FREE: (k, 3) velocities without impulses.  R: stiffness of the augmentation, dimensionless, 1e2 ... 1e8.
