@@ -12,11 +12,10 @@ from __future__ import annotations
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel
-from .build import aim, rates
+from .build import aim, conserves, rates, rubs
 from .direct import refine
 from .energy import lock, works
-from .layout import ELASTICITY, FRICTION
-from .sweeps import iterate, push, sweep
+from .sweeps import iterate, push, sweep, velocities
 
 CONVERGED, TRUNCATED = 0, 1  # statuses
 D_NORMAL, D_TANGENTIAL, SCALE_LOCK, OWED, RESIDUAL, SWEEPS, POLISHES = 0, 1, 2, 3, 4, 5, 6  # of OUT
@@ -34,13 +33,13 @@ _LITTLE = 16  # contacts up to which sweeps alone are cheaper than a direct solu
 @kernel
 def resolve(
     A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, FREE: FloatArray, IM: FloatArray,
-    II: FloatArray, POSE: FloatArray, n: int, m: int, rubs: bool, tolerance: float, OUT: FloatArray,
+    II: FloatArray, POSE: FloatArray, n: int, m: int, rough: bool, tolerance: float, OUT: FloatArray,
 ) -> float:  # fmt: skip
     """Impulses for given targets; returns the change of velocity that a last sweep made.
 
     With friction direct solutions help where contacts stick; where many slip only sweeps converge: more of them.
     """
-    most = _RUBBED_SWEEPS if rubs else (4 * _SWEEPS if m <= _LITTLE else _SWEEPS)
+    most = _RUBBED_SWEEPS if rough else (4 * _SWEEPS if m <= _LITTLE else _SWEEPS)
     taken, worst = iterate(A, B, ROWS, L, V, IM, II, m, tolerance, most)
     OUT[SWEEPS] = taken
     OUT[POLISHES] = 0.0
@@ -49,7 +48,7 @@ def resolve(
     least = worst
     stalled = 0
     log_R = 8.0
-    for _ in range(_RUBBED_ROUNDS if rubs else _ROUNDS):
+    for _ in range(_RUBBED_ROUNDS if rough else _ROUNDS):
         log_R, worst = refine(A, B, ROWS, L, V, FREE, IM, II, POSE, n, m, log_R, 8, 0.1 * tolerance, worst)
         OUT[POLISHES] += 1.0
         for _ in range(_AFTER):
@@ -64,7 +63,7 @@ def resolve(
             stalled += 1
             if stalled >= 8:
                 break
-    taken, worst = iterate(A, B, ROWS, L, V, IM, II, m, tolerance, _RUBBED_LAST if rubs else _LAST)
+    taken, worst = iterate(A, B, ROWS, L, V, IM, II, m, tolerance, _RUBBED_LAST if rough else _LAST)
     OUT[SWEEPS] += taken
     return worst
 
@@ -86,31 +85,28 @@ def solve_block(
     Returns:
         CONVERGED (residual <= 1e-14 of the largest b - u_n, with friction 1e-10) or TRUNCATED. Energy is right in both.
     """
-    OUT[:] = 0.0
+    for i in range(len(OUT)):
+        OUT[i] = 0.0
     OUT[SCALE_LOCK] = 1.0
     OUT[OWED] = owed
-    LOSS[:m] = 0.0
+    for i in range(m):
+        LOSS[i, 0] = 0.0
+        LOSS[i, 1] = 0.0
     rates(A, B, ROWS, V, m)
     speed = aim(ROWS, m)
     if not speed > 0.0:
-        L[:m] = 0.0
+        for i in range(m):
+            L[i, 0] = 0.0
+            L[i, 1] = 0.0
         return CONVERGED
     FREE = V.copy()
     push(A, B, ROWS, L, V, IM, II, m)
-    rubs = False
-    for i in range(m):
-        if ROWS[i, FRICTION] > 0.0:
-            rubs = True
-    tolerance = speed * (_RUBBED if rubs else _PRECISE)
-    worst = resolve(A, B, ROWS, L, V, FREE, IM, II, POSE, n, m, rubs, tolerance, OUT)
+    rough = rubs(ROWS, m)
+    tolerance = speed * (_RUBBED if rough else _PRECISE)
+    worst = resolve(A, B, ROWS, L, V, FREE, IM, II, POSE, n, m, rough, tolerance, OUT)
     # Sums over many sweeps have their own round-off: the velocities are those of the impulses.
-    V[:] = FREE
-    push(A, B, ROWS, L, V, IM, II, m)
-    exact = True
-    for i in range(m):
-        if L[i, 0] > 0.0 and (ROWS[i, ELASTICITY] < 1.0 or ROWS[i, FRICTION] > 0.0):
-            exact = False
-    scale, left = lock(A, B, ROWS, L, V, FREE, IM, II, m, owed, exact)
+    velocities(A, B, ROWS, L, FREE, IM, II, m, V)
+    scale, left = lock(A, B, ROWS, L, V, FREE, IM, II, m, owed, conserves(ROWS, m))
     normal, tangential = works(A, B, ROWS, L, V, m, LOSS)
     OUT[0] = normal
     OUT[1] = tangential

@@ -113,3 +113,23 @@ def aim(ROWS: FloatArray, m: int) -> float:
         ROWS[i, TARGET] = -ROWS[i, ELASTICITY] * u if u < 0.0 else -u
         worst = max(worst, ROWS[i, TARGET] - u)
     return worst
+
+
+@kernel
+def conserves(ROWS: FloatArray, m: int) -> bool:
+    """Whether all contacts are elastic and without friction."""
+    lossy = 0
+    for i in range(m):
+        if ROWS[i, ELASTICITY] < 1.0 or ROWS[i, FRICTION] > 0.0:
+            lossy += 1
+    return lossy == 0
+
+
+@kernel
+def rubs(ROWS: FloatArray, m: int) -> bool:
+    """Whether any contact has friction."""
+    rough = 0
+    for i in range(m):
+        if ROWS[i, FRICTION] > 0.0:
+            rough += 1
+    return rough > 0

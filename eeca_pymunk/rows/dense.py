@@ -26,7 +26,7 @@ from .layout import (
     UT,
 )
 from .polish import clamp, classify
-from .sweeps import push
+from .sweeps import velocities
 
 _R = 1e8
 
@@ -125,6 +125,35 @@ def jacobian(
 
 
 @kernel
+def unknowns(
+    ROWS: FloatArray, L: FloatArray, m: int, held: IntArray, stuck: IntArray, slip: FloatArray, shared: bool,
+    at: IntArray, kind: IntArray,
+) -> int:  # fmt: skip
+    """List the unknowns: contact and kind (0 normal, 1 tangential); returns how many.
+
+    Friction that its energy limits, beta (u_t- + u_t+) = -lam (u_n- + b): if `shared`, another contact of the same face
+    holds u_t+ = 0, and it follows lam as slip does. Impulses that do so are set.
+    """
+    N = 0
+    for i in range(m):
+        if held[i] == 0:
+            continue
+        if shared and stuck[i] == 2:
+            stuck[i] = 0
+            slip[i] = -min(ROWS[i, UN] + ROWS[i, TARGET], 0.0) / ROWS[i, UT]
+        at[N] = i
+        kind[N] = 0
+        N += 1
+        if stuck[i] != 0:
+            at[N] = i
+            kind[N] = 1
+            N += 1
+        else:
+            L[i, 1] = slip[i] * L[i, 0]
+    return N
+
+
+@kernel
 def newton(
     A: IntArray,
     B: IntArray,
@@ -139,34 +168,22 @@ def newton(
     tolerance: float,
     shared: bool,
 ) -> tuple[float, int]:
-    """Solve on the active contacts of L, as `polish`; the same results. `shared` as in `classify`."""
+    """Solve on the active contacts of L, as `polish`; the same results. `shared` as in `unknowns`."""
     held = np.empty(m, np.int64)
     stuck = np.empty(m, np.int64)
     slip = np.empty(m)
     rest = np.empty(m)
-    classify(A, B, ROWS, L, V, m, held, stuck, slip, rest, shared)
+    classify(A, B, ROWS, L, V, m, held, stuck, slip, rest)
     at = np.empty(2 * m, np.int64)
     kind = np.empty(2 * m, np.int64)
-    N = 0
-    for i in range(m):
-        if held[i] != 0:
-            at[N] = i
-            kind[N] = 0
-            N += 1
-            if stuck[i] == 0:
-                L[i, 1] = slip[i] * L[i, 0]
-            if stuck[i] != 0:
-                at[N] = i
-                kind[N] = 1
-                N += 1
+    N = unknowns(ROWS, L, m, held, stuck, slip, shared, at, kind)
     W = np.empty((N, N))
     order = np.empty(N, np.int64)
     jacobian(A, B, ROWS, slip, IM, II, at, kind, N, W)
     decompose(W, N, order)
     r = np.empty(N)
     x = np.empty(N)
-    V[:] = FREE
-    push(A, B, ROWS, L, V, IM, II, m)
+    velocities(A, B, ROWS, L, FREE, IM, II, m, V)
     worst = np.inf
     for done in range(passes + 1):
         last = worst
@@ -188,10 +205,8 @@ def newton(
             L[i, kind[k]] += x[k]
             if kind[k] == 0 and stuck[i] == 0:
                 L[i, 1] = slip[i] * L[i, 0]
-        V[:] = FREE
-        push(A, B, ROWS, L, V, IM, II, m)
+        velocities(A, B, ROWS, L, FREE, IM, II, m, V)
     clamped = clamp(ROWS, L, m)
     if clamped > 0:
-        V[:] = FREE
-        push(A, B, ROWS, L, V, IM, II, m)
+        velocities(A, B, ROWS, L, FREE, IM, II, m, V)
     return worst, clamped

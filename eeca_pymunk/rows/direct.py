@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel
 from .dense import newton
 from .polish import polish, segment
-from .sweeps import sweep
+from .sweeps import keep, sweep
 
 SMALL = 20  # contacts up to which an island's matrix is dense
+_PASSES = 4  # of its refinement
 
 
 @kernel
@@ -36,32 +39,33 @@ def refine(
     Returns:
         log_R for the next round, and what a sweep after this one changed.
     """
-    L0 = L[:m].copy()
-    V0 = V.copy()
+    L0 = np.empty((m, 2))
+    V0 = np.empty_like(V)
+    keep(L, V, m, L0, V0)
+    reached = np.inf
+    clamped = 0
     if m <= SMALL:
-        reached, clamped = newton(A, B, ROWS, L, V, FREE, IM, II, m, 4, tolerance, False)
-        if reached > 1e-3 * worst:
-            # Held by two contacts at different velocities, or by none.
-            L[:m] = L0
-            V[:] = V0
-            reached, clamped = newton(A, B, ROWS, L, V, FREE, IM, II, m, 4, tolerance, True)
+        for attempt in range(2):
+            # Friction that its energy limits: on its own, then together with other contacts of its face.
+            if reached > 1e-3 * worst:
+                keep(L0, V0, m, L, V)
+                reached, clamped = newton(A, B, ROWS, L, V, FREE, IM, II, m, _PASSES, tolerance, attempt == 1)
     else:
         reached, clamped = polish(A, B, ROWS, L, V, FREE, IM, II, POSE, n, m, 10.0**log_R, passes, tolerance)
     part = 1.0
     if not reached <= 1e3 * worst + tolerance:
-        L[:m] = L0
-        V[:] = V0
+        keep(L0, V0, m, L, V)
         part = 0.0
     elif clamped > 0:
         # Slip has no energy that is least at the answer: what a sweep leaves decides there, the energy elsewhere.
         if m <= SMALL:
-            L1 = L[:m].copy()
-            V1 = V.copy()
+            L1 = np.empty((m, 2))
+            V1 = np.empty_like(V)
+            keep(L, V, m, L1, V1)
             after = sweep(A, B, ROWS, L, V, IM, II, m)
             if after < worst:
                 return log_R, after
-            L[:m] = L1
-            V[:] = V1
+            keep(L1, V1, m, L, V)
         part = segment(A, B, ROWS, L, V, L0, V0, m)
     if part > 0.9:
         log_R = min(log_R + 2.0, 8.0)

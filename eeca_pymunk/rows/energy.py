@@ -13,7 +13,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel
 from .build import normal_rate, tangent_rate
 from .layout import ARM_NA, ARM_NB, K_N, NX, NY, UN, UT
-from .sweeps import push
+from .sweeps import velocities
 
 
 @kernel
@@ -97,8 +97,7 @@ def lock(
     for i in range(m):
         L[i, 0] *= s
         L[i, 1] *= s
-    V[:] = FREE
-    push(A, B, ROWS, L, V, IM, II, m)
+    velocities(A, B, ROWS, L, FREE, IM, II, m, V)
     return s, left
 
 

@@ -32,18 +32,17 @@ from .layout import (
     UT,
 )
 from .ordering import dissect, neighbours, pattern
-from .sweeps import push
+from .sweeps import velocities
 
 
 @kernel
 def classify(
     A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, m: int, held: IntArray, stuck: IntArray,
-    slip: FloatArray, rest: FloatArray, shared: bool,
+    slip: FloatArray, rest: FloatArray,
 ) -> None:  # fmt: skip
     """Which normals are held, which tangents stuck (1 at u_t = 0, 2 at u_t = rest), which slip (beta = slip lam).
 
-    Friction that its energy limits has beta (u_t- + u_t+) = -lam (u_n- + b). Either rest is that u_t+; or, if `shared`,
-    another contact of the same face holds u_t+ = 0, and slip is that beta / lam.
+    Friction that its energy limits has beta (u_t- + u_t+) = -lam (u_n- + b): rest is that u_t+.
     """
     for i in range(m):
         lam = L[i, 0]
@@ -61,8 +60,6 @@ def classify(
                 continue  # a slip that has reversed by less than its size: no friction without giving energy
             if beta * ROWS[i, UT] <= -loss:
                 stuck[i] = 1
-            elif shared:
-                slip[i] = -min(ROWS[i, UN] + ROWS[i, TARGET], 0.0) / ROWS[i, UT]
             else:
                 stuck[i] = 2
                 rest[i] = -ROWS[i, UT] - loss / beta
@@ -93,7 +90,7 @@ def polish(
     A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, FREE: FloatArray, IM: FloatArray,
     II: FloatArray, POSE: FloatArray, n: int, m: int, R: float, passes: int, tolerance: float,
 ) -> tuple[float, int]:  # fmt: skip
-    """Solve on the active contacts of L; L and V = FREE + M^-1 (G^T lam + T^T beta) are replaced.
+    """Solve on the active contacts of L; L and V = FREE + M^-1 (G^T lam + T^T beta), also on entry, are replaced.
 
     Args:
         FREE: (k, 3) velocities without impulses.  R: stiffness of the augmentation, dimensionless, 1e2 ... 1e8.
@@ -105,7 +102,7 @@ def polish(
     stuck = np.empty(m, np.int64)
     slip = np.empty(m)
     rest = np.empty(m)
-    classify(A, B, ROWS, L, V, m, held, stuck, slip, rest, False)
+    classify(A, B, ROWS, L, V, m, held, stuck, slip, rest)
     SCALE = np.empty((len(IM), 3))
     for i in range(len(IM)):
         SCALE[i, 0] = SCALE[i, 1] = math.sqrt(IM[i])
@@ -167,12 +164,10 @@ def polish(
                     rest[i] = -ROWS[i, UT] - L[i, 0] * min(ROWS[i, UN] + ROWS[i, TARGET], 0.0) / L[i, 1]
             else:
                 L[i, 1] = slip[i] * L[i, 0]
-        V[:] = FREE
-        push(A, B, ROWS, L, V, IM, II, m)
+        velocities(A, B, ROWS, L, FREE, IM, II, m, V)
     clamped = clamp(ROWS, L, m)
     if clamped > 0:
-        V[:] = FREE
-        push(A, B, ROWS, L, V, IM, II, m)
+        velocities(A, B, ROWS, L, FREE, IM, II, m, V)
     return worst, clamped
 
 

@@ -170,6 +170,29 @@ def push(
 
 
 @kernel
+def velocities(
+    A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, FREE: FloatArray, IM: FloatArray, II: FloatArray, m: int,
+    V: FloatArray,
+) -> None:  # fmt: skip
+    """V = FREE + M^-1 (G^T lam + T^T beta)."""
+    for i in range(len(IM)):
+        for c in range(3):
+            V[i, c] = FREE[i, c]
+    push(A, B, ROWS, L, V, IM, II, m)
+
+
+@kernel
+def keep(L: FloatArray, V: FloatArray, m: int, L0: FloatArray, V0: FloatArray) -> None:
+    """Copy m impulses and all velocities to (L0, V0)."""
+    for i in range(m):
+        L0[i, 0] = L[i, 0]
+        L0[i, 1] = L[i, 1]
+    for i in range(len(V)):
+        for c in range(3):
+            V0[i, c] = V[i, c]
+
+
+@kernel
 def iterate(
     A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, IM: FloatArray, II: FloatArray, m: int,
     tolerance: float, most: int,
@@ -188,8 +211,7 @@ def iterate(
     done = 0
     worst = np.inf
     while done < most:
-        L0[:] = L[:m]
-        V0[:] = V
+        keep(L, V, m, L0, V0)
         worst = sweep(A, B, ROWS, L, V, IM, II, m)
         done += 1
         if worst <= tolerance or done >= most:

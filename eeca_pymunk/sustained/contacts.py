@@ -80,17 +80,20 @@ def gather(
                     ahead = False
         if not ahead:
             centre = POSE
-            THEN[:] = NOW
+            for z in range(count):
+                for q in range(5):
+                    THEN[z, q] = NOW[z, q]
         friction = SHAPE[s, FRICTION] * SHAPE[r, FRICTION]
         elasticity = SHAPE[s, ELASTICITY] * SHAPE[r, ELASTICITY]
         for z in range(count):
+            i = m + z
             place_row(
-                A, B, ROWS, m, a, b, THEN[z, 0], THEN[z, 1], THEN[z, 2], THEN[z, 3], NOW[z, 4], centre, IM, II,
+                A, B, ROWS, i, a, b, THEN[z, 0], THEN[z, 1], THEN[z, 2], THEN[z, 3], NOW[z, 4], centre, IM, II,
                 elasticity, friction, 0.0,
             )  # fmt: skip
-            ROWS[m, SURFACE] = ROWS[m, NX] * (SHAPE[r, SURFACE_Y] - SHAPE[s, SURFACE_Y]) - ROWS[m, NY] * (
+            ROWS[i, SURFACE] = ROWS[i, NX] * (SHAPE[r, SURFACE_Y] - SHAPE[s, SURFACE_Y]) - ROWS[i, NY] * (
                 SHAPE[r, SURFACE_X] - SHAPE[s, SURFACE_X]
             )
-            KEY[m] = ((min(s, r) * shapes + max(s, r)) << 1) + z
-            m += 1
+            KEY[i] = ((min(s, r) * shapes + max(s, r)) << 1) + z
+        m += count
     return m

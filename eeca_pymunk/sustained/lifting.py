@@ -34,7 +34,9 @@ def lifting(
     Returns:
         The energy spent (<= budget, negative if more was lost), and the deepest gap before (negative in overlap).
     """
-    JUMP[:] = 0.0
+    for i in range(len(JUMP)):
+        for c in range(6):
+            JUMP[i, c] = 0.0
     GAPS = np.empty(m)
     deepest = 0.0
     for i in range(m):

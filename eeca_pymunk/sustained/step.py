@@ -8,11 +8,11 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel
-from ..rows.build import rates
+from ..rows.build import conserves, rates
 from ..rows.direct import SMALL
 from ..rows.energy import lock, works
-from ..rows.layout import ELASTICITY, FRICTION, K_N, TARGET, UN
-from ..rows.sweeps import push
+from ..rows.layout import K_N, TARGET, UN
+from ..rows.sweeps import velocities
 from .contacts import gather
 from .ledger import against, carried
 from .lifting import lifting
@@ -82,6 +82,16 @@ def speeds(
 
 
 @kernel
+def moved(X: FloatArray, V: FloatArray, s: float) -> FloatArray:
+    """X + s V, all (k, 3)."""
+    Y = np.empty_like(X)
+    for i in range(len(X)):
+        for c in range(3):
+            Y[i, c] = X[i, c] + s * V[i, c]
+    return Y
+
+
+@kernel
 def step_island(
     POSE: FloatArray, V: FloatArray, ACC: FloatArray, IM: FloatArray, II: FloatArray, EXTENT: FloatArray, n: int,
     PAIRS: IntArray, p: int, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray, h: float,
@@ -105,12 +115,13 @@ def step_island(
     Returns:
         m, or -1 if the arrays of rows (or the memory) are too small; nothing is changed then.
     """
-    OUT[:] = 0.0
+    for i in range(len(OUT)):
+        OUT[i] = 0.0
     OUT[3] = 1.0
     k = len(IM)
     REACH = np.empty(k)
     slow, fast, pull = speeds(V, ACC, EXTENT, IM, n, h, REACH)
-    MIDDLE = POSE + 0.5 * h * V
+    MIDDLE = moved(POSE, V, 0.5 * h)
     NOW = np.empty((2, 5))
     THEN = np.empty((2, 5))
     m = gather(
@@ -118,20 +129,20 @@ def step_island(
     )  # fmt: skip
     if m < 0 or 2 * (COUNT[0] + m) > len(KEYS):
         return -1
-    FREE = V + h * ACC
-    VN[:] = FREE
-    JUMP[:] = 0.0
+    FREE = moved(V, ACC, h)
+    for i in range(k):
+        for c in range(3):
+            VN[i, c] = FREE[i, c]
+            JUMP[i, c] = 0.0
+            JUMP[i, 3 + c] = 0.0
     if m > 0:
         EXPECTED = np.empty(m)
         recall(KEY, m, KEYS, FORCES, stamp, h, L, EXPECTED)
         rates(A, B, ROWS, V, m)
         target(A, B, ROWS, m, ACC, EXPECTED, pull, h)
-        push(A, B, ROWS, L, VN, IM, II, m)
+        velocities(A, B, ROWS, L, FREE, IM, II, m, VN)
         scale = pull * h if pull > 0.0 else 1e-3 * fast
-        elastic = True
-        for i in range(m):
-            if ROWS[i, ELASTICITY] < 1.0 or ROWS[i, FRICTION] > 0.0:
-                elastic = False
+        elastic = conserves(ROWS, m)
         # Elastic crowds would melt away by the losses of a solve cut short.
         few = m <= SMALL
         rounds = _ROUNDS if elastic or slow < pull * h else (_FEW_ROUNDS if few else 0)
@@ -140,8 +151,7 @@ def step_island(
             A, B, ROWS, L, VN, FREE, IM, II, POSE, n, m, rounds, _FINE * scale, coarse, STATE
         )  # fmt: skip
         # Sums over many sweeps have their own round-off: the velocities are those of the impulses.
-        VN[:] = FREE
-        push(A, B, ROWS, L, VN, IM, II, m)
+        velocities(A, B, ROWS, L, FREE, IM, II, m, VN)
         OUT[0] = sweeps
         OUT[1] = polishes
         OUT[2] = worst
@@ -151,7 +161,7 @@ def step_island(
         for i in range(n):
             size = min(size, EXTENT[i])
         lifted, OUT[5] = lifting(
-            A, B, ROWS, POSE + 0.5 * h * V, VN, ACC, IM, II, n, m, h, size, normal + tangential - owed, JUMP
+            A, B, ROWS, MIDDLE, VN, ACC, IM, II, n, m, h, size, normal + tangential - owed, JUMP
         )  # fmt: skip
         LEDGER[0] += normal - min(lifted, 0.0)
         LEDGER[1] += tangential

@@ -21,6 +21,18 @@ _FAST = 2.0  # approach speed relative to |a| h from which a contact is an impac
 
 
 @kernel
+def sustained(elasticity: float, u: float, along: float, mass: float, expected: float, h: float) -> bool:
+    """Whether a contact with e < 1 would bounce back within h, so that no single impact can resolve it.
+
+    Args:
+        u: normal velocity.  along: a_n, acceleration of the gap without impulses.
+        mass: 1 / A_nn.  expected: lam_w, the impulse over h of the loads that the contact carries.
+    """
+    bounce = elasticity * max(-u, 0.0)
+    return elasticity < 1.0 and bounce < 0.5 * max(-along * h, expected / mass)
+
+
+@kernel
 def target(
     A: IntArray, B: IntArray, ROWS: FloatArray, m: int, ACC: FloatArray, EXPECTED: FloatArray, pull: float, h: float
 ) -> None:
@@ -38,12 +50,12 @@ def target(
         close = -u - 2.0 * ROWS[i, GAP] / h  # end velocity that closes the gap
         bounce = -e * u if u < 0.0 else 0.0
         ROWS[i, WAKE] = np.inf
-        if e < 1.0:
-            along = ROWS[i, NX] * (ACC[b, 0] - ACC[a, 0]) + ROWS[i, NY] * (ACC[b, 1] - ACC[a, 1])
-            if bounce < 0.5 * max(-along * h, EXPECTED[i] / ROWS[i, K_N]):
-                bounce = 0.0
-        elif u >= 0.0:
+        if e >= 1.0:
             bounce = -u
+        else:
+            along = ROWS[i, NX] * (ACC[b, 0] - ACC[a, 0]) + ROWS[i, NY] * (ACC[b, 1] - ACC[a, 1])
+            if sustained(e, u, along, ROWS[i, K_N], EXPECTED[i], h):
+                bounce = 0.0
         if u < -_FAST * pull * h or (e >= 1.0 and ROWS[i, GAP] > 0.0):
             ROWS[i, TARGET] = bounce
             ROWS[i, WAKE] = close

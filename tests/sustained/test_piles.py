@@ -99,6 +99,16 @@ def test_heaps_only_lose_energy(kind: str, e: float, mu: float) -> None:
     assert (np.abs(inside[:, 0] - 2.5) < 3.6).all()
 
 
+def test_push_out_takes_no_more_energy_than_was_lost() -> None:
+    """Boxes that begin deep in each other on a floor: nothing moves up without losses to pay for it."""
+    things = [Thing(box(1, 1), (0.0, 0.4, 0.0)), Thing(box(1, 1), (0.1, 1.2, 0.05), (0.0, -0.5, 0.0))]
+    pile = Pile(World(things, floor(1.0)), [1.0, 1.0], [1 / 6, 1 / 6], (0.0, -G), 0.0, 0.5)
+    energy = pile.energy()
+    pile.run(100, 1 / 60)
+    check(pile, energy)
+    assert 0.0 < pile.ledger[3] <= pile.ledger[:2].sum() * (1 + 1e-12)
+
+
 @pytest.mark.parametrize("unit", UNITS)
 def test_heaps_do_not_know_their_unit(unit: float) -> None:
     pile = heap("box", 12, 0.2, 0.4, unit)

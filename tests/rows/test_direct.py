@@ -1,0 +1,133 @@
+"""The parts of the solver one by one: the local law, the sparse factor, direct solutions."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from eeca_pymunk.rows.build import normal_rate, rates, tangent_rate
+from eeca_pymunk.rows.cholesky import assemble, factorise, substitute
+from eeca_pymunk.rows.dense import newton
+from eeca_pymunk.rows.layout import K_N, TARGET
+from eeca_pymunk.rows.ordering import dissect, neighbours, pattern
+from eeca_pymunk.rows.polish import polish
+from eeca_pymunk.rows.sweeps import coulomb, sweep, velocities
+
+from .block import Block
+
+
+@pytest.mark.parametrize("seed", range(200))
+def test_local_law_holds_for_one_contact(seed: int) -> None:
+    """Sticking, slipping against the slip, or friction at the bound of its energy; never a gain."""
+    rng = np.random.default_rng(seed)
+    ann, att = np.exp(rng.normal(size=2))
+    mu, ant = np.exp(rng.normal()), rng.uniform(-1, 1) * np.sqrt(ann * att)
+    un, ut, e = -abs(rng.normal()), rng.normal(), rng.choice([0.0, 0.5, 1.0])
+    target = -e * un
+    # Without its own impulse the contact moves as before, but for what others push.
+    qn, qt = un - target + 0.3 * rng.normal(), ut + rng.normal()
+    lam, beta = coulomb(qn, qt, ann, ant, att, mu, un, ut, target)
+    if qn >= 0:
+        assert lam == beta == 0.0
+        return
+    normal, slip = target + qn + ann * lam + ant * beta, qt + ant * lam + att * beta
+    loss = -0.5 * lam * (un + target) - 0.5 * beta * (ut + slip)
+    assert lam >= 0
+    assert abs(beta) <= mu * lam * (1 + 1e-12)
+    assert loss >= -1e-12
+    if lam > 0:
+        assert normal == pytest.approx(target, abs=1e-12)
+        sticks, slips = abs(slip) <= 1e-12, abs(beta) >= mu * lam * (1 - 1e-12) and beta * slip <= 1e-12
+        jammed = beta == 0.0 and abs(ant) * mu > ann
+        assert sticks or slips or jammed or (loss <= 1e-12 and beta * ut > 0) or (beta == 0.0 and e == 1.0)
+
+
+def test_jammed_contact_sticks() -> None:
+    """Painleve: where slipping on would press ever deeper, the impulse is that of sticking."""
+    for qt in (1.0, -1.0):
+        ant = 0.9 * qt
+        lam, beta = coulomb(-1.0, qt, 1.0, ant, 4.0, 8.0, -1.0, qt, 0.0)
+        assert -1.0 + lam + ant * beta == pytest.approx(0.0, abs=1e-14)
+        assert qt + ant * lam + 4.0 * beta == pytest.approx(0.0, abs=1e-14)
+
+
+def crowd(seed: int, count: int) -> Block:
+    rng = np.random.default_rng(seed)
+    points = np.array([(2.0 * i, 2.0 * j) for i in range(count) for j in range(count)])
+    return Block.disks(points, rng.normal(size=(count**2, 3)), np.exp(rng.normal(size=count**2)), np.ones(count**2))
+
+
+@pytest.mark.parametrize("count", [2, 5, 9])
+def test_sparse_factor_is_that_of_the_dense_matrix(count: int) -> None:
+    """B^-1 f against numpy, with a body that touches all others eliminated last."""
+    block = crowd(1, count)
+    n = count**2
+    block.contacts += [(0, k, 0.6, 0.8, 0.1 * k, -0.2) for k in range(1, n)]
+    block.solve(0.5, 0.5)
+    m, k = len(block.contacts), n + 1
+    held, stuck = np.ones(m, np.int64), (np.arange(m) % 2).astype(np.int64)
+    scale = np.sqrt(np.stack((block.im, block.im, block.ii), axis=1))
+    start, other = neighbours(block.A, block.B, m, n, held)
+    place = np.empty(n, np.int64)
+    dissect(block.pose, n, start, other, place)
+    assert sorted(place) == list(range(n))
+    columns, rows = pattern(n, start, other, place)
+    D, X, R = np.empty((n, 3, 3)), np.empty((len(rows), 3, 3)), 100.0
+    assemble(
+        block.A, block.B, block.rows, m, n, held, stuck, scale, place, columns, rows, R, D, X
+    )  # fmt: skip
+    dense = np.eye(3 * n)
+    for i in range(m):
+        for rate, column in ((normal_rate, K_N), (tangent_rate, K_N + 1)):
+            if rate is tangent_rate and not stuck[i]:
+                continue
+            j = np.zeros(3 * k)
+            for p in range(3 * k):
+                unit = np.zeros((k, 3))
+                unit.flat[p] = 1.0
+                j[p] = rate(block.A, block.B, block.rows, unit, i)
+            j = (j.reshape(k, 3) * scale)[:n].ravel()
+            dense += R * block.rows[i, column] * np.outer(j, j)
+    right = np.random.default_rng(0).normal(size=(n, 3))
+    f = np.empty((n, 3))
+    f[place] = right
+    factorise(n, columns, rows, D, X)
+    substitute(n, columns, rows, D, X, f)
+    expected = np.linalg.solve(dense, right.ravel()).reshape(n, 3)
+    assert np.abs(f[place] - expected).max() <= 1e-11 * np.abs(expected).max()
+
+
+@pytest.mark.parametrize("dense", [False, True])
+@pytest.mark.parametrize("sliding", [False, True])
+def test_direct_solution_needs_no_sweeps(dense: bool, sliding: bool) -> None:
+    """A box pressed to the floor at two corners, sticking or sliding: redundant rows, known forces."""
+    mu, h, g = 0.3, 0.01, 10.0
+    pull = 0.5 if sliding else 0.2
+    # All turned by an angle, about the box's centre.
+    c, d = np.cos(0.5), np.sin(0.5)
+    turn = np.array([[c, -d], [d, c]])
+    block = Block(np.zeros((2, 3)), np.zeros((2, 3)), np.array([1.0, 0]), np.array([6.0, 0]))
+    block.contacts = [(0, 1, *(turn @ [0.0, -1.0]), *(turn @ [x, -0.5])) for x in (-0.5, 0.5)]
+    block.solve(0.0, mu)
+    block.rows[:, TARGET] = 0.0
+    rates(block.A, block.B, block.rows, block.velocity, 2)
+    free = np.zeros((2, 3))
+    free[0, :2] = turn @ [g * h * pull, -g * h]
+    # A guess whose active contacts are right: friction on the floor is positive.
+    part = mu if sliding else 0.1
+    L, V = np.array([[0.03, part * 0.03], [0.03, part * 0.03]]), free.copy()
+    velocities(block.A, block.B, block.rows, L, free, block.im, block.ii, 2, V)
+    if dense:
+        reached, _ = newton(
+            block.A, block.B, block.rows, L, V, free, block.im, block.ii, 2, 4, 1e-16, False
+        )  # fmt: skip
+    else:
+        reached, _ = polish(
+            block.A, block.B, block.rows, L, V, free, block.im, block.ii, block.pose, 1, 2, 1e8, 40, 1e-16
+        )  # fmt: skip
+    if dense or not sliding:
+        assert reached <= 1e-14
+        assert np.abs(V[0, :2] - turn @ [g * h * max(pull - mu, 0.0), 0.0]).max() <= 1e-14
+        assert abs(V[0, 2]) <= 1e-14
+        assert sweep(block.A, block.B, block.rows, L, V, block.im, block.ii, 2) <= 1e-14
+        assert L[:, 0].sum() == pytest.approx(g * h, rel=1e-13)
