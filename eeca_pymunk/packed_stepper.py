@@ -85,8 +85,7 @@ class PackedStepper(Stepper):
         left = 1.0 if world.damping == 1.0 else world.damping ** (0.5 * dt)
         status = self.advance(world, dt, left)
         if status in (OTHER_BODIES, MOVED_STATIC):
-            self._world = None
-            world = self._look()
+            world = self._look(anew=True)
             world.gather()
             status = self.advance(world, dt, left)
         if status < 0:
@@ -129,8 +128,7 @@ class PackedStepper(Stepper):
         """A step of a space in which functions of bodies or collision handlers are called."""
         world.gather()
         if not world.is_current():
-            self._world = None
-            world = self._look()
+            world = self._look(anew=True)
             world.gather()
         bodies, state = world.bodies, world.state.copy()
         bodies.check_finite(state)
@@ -187,14 +185,14 @@ class PackedStepper(Stepper):
         details = partial(of_events, self.events(world), dt, world.bodies.items, world.owner)
         return StepReport(self.time, details)
 
-    def _look(self) -> World:
-        """The space as it is now, checked."""
+    def _look(self, anew: bool = False) -> World:
+        """The space as it is now, checked; with all its shapes if `anew` or if some came or went."""
         world = self._world
-        if world is not None and world.same_contents():
+        if world is not None and not anew and world.same_contents():
             world.read_settings()
             return world
         self._world = None
-        world = World(self.space, self.ignore)
+        world = World(self.space, self.ignore, world)
         if not (world.smooth or self._warned):
             self._warned = True
             warnings.warn(f"{type(self).__name__} steps on without the friction of this space", stacklevel=4)

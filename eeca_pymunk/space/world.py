@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import TypeAlias
 
 import numpy as np
 import pymunk
@@ -17,8 +18,10 @@ from ..layout import (
     END_COLUMNS,
     EXTRA_COLUMNS,
     FOUND,
+    GROUP,
     KNOWN,
     LEFT,
+    MASK,
     NOW,
     PULL,
     PUSH_TWIST,
@@ -33,12 +36,15 @@ from ..transfer import FORCES, TURNS, lay
 from . import private
 from .bodies import Bodies
 from .checks import check_friction, check_shape, check_space
-from .packing import pack
+from .packing import Record, pack, read
 from .shapes import Rules
 
 _F = batch.BodyFields
 _MOTION = _F.POSITION | _F.ANGLE | _F.VELOCITY | _F.ANGULAR_VELOCITY
 _STATE = _MOTION | _F.FORCE | _F.TORQUE
+_COLLIDES_WITH_ALL = tuple(pymunk.ShapeFilter())
+
+Records: TypeAlias = dict[pymunk.Shape, Record | None]
 
 
 class World:
@@ -50,8 +56,10 @@ class World:
 
     Args:
         space: any pymunk space.  ignore: what to step on without, see `check_ignored`.
+        before: the world of the same space before shapes came or went, whose shapes are not read again.
 
     Attributes:
+        records: what the shapes of the space say of themselves, None for sensors.
         bodies: in pymunk's order, N with the static ones.  shapes: by row of SHAPE.
         owner: (k,) place in `bodies.items` of the body of every shape.
         BODY, SHAPE, LINK, VERTEX: see `layout.py`.  disks, dynamic: rows of BODY below which there are lone disks, and
@@ -64,27 +72,40 @@ class World:
         empty: the arrays of a report without contacts.
     """
 
-    def __init__(self, space: pymunk.Space, ignore: Sequence[str] = ()) -> None:
+    def __init__(self, space: pymunk.Space, ignore: Sequence[str] = (), before: World | None = None) -> None:
         check_space(space)
         self.space = space
         self.bodies = bodies = Bodies(space)
         state = bodies.gather()
         assert state is not None  # read from these very bodies
         bodies.check_finite(state)
-        solid = [s for s in space.shapes if not s.sensor]
-        for shape in solid:
-            check_shape(shape, bodies)
+        self.records: Records = self._records({} if before is None else before.records)
+        solid = [s for s, record in self.records.items() if record is not None]
         self.smooth = not check_friction(solid, "friction" in ignore)
-        packed = pack(bodies, solid)
-        self.shapes = packed.shapes
-        self.owner: IntArray = np.array([bodies.row[s.body] for s in self.shapes if s.body is not None], np.intp)
+        packed = pack(bodies, state, solid, [r for r in self.records.values() if r is not None])
+        self.shapes, self.owner = packed.shapes, packed.owner
         self.BODY, self.SHAPE, self.LINK, self.VERTEX = packed.BODY, packed.SHAPE, packed.LINK, packed.VERTEX
         self.disks, self.dynamic = packed.disks, packed.dynamic
-        self.filtered = any(s.filter != pymunk.ShapeFilter() for s in self.shapes)
+        self.filtered = bool((self.LINK[:, GROUP : MASK + 1] != _COLLIDES_WITH_ALL).any())
         self.rules = Rules()
         self.empty = nothing(bodies.items)
         self._allocate(packed.row, state)
         self.read_settings()
+
+    def _records(self, known: Records) -> Records:
+        """What every shape says, None for sensors; those that are known are not asked again."""
+        records: Records = {}
+        for shape in self.space.shapes:
+            if shape in known:
+                records[shape] = known[shape]
+                if shape.body not in self.bodies.row:
+                    check_shape(shape, self.bodies)
+            elif shape.sensor:
+                records[shape] = None
+            else:
+                check_shape(shape, self.bodies)
+                records[shape] = read(shape)
+        return records
 
     def _allocate(self, row: IntArray, state: FloatArray) -> None:
         bodies, space, N = self.bodies, self.space, len(self.bodies)
