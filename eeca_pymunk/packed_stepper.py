@@ -13,6 +13,7 @@ from .errors import NotFiniteError
 from .layout import ELASTICITY
 from .report import StepReport, of_events
 from .space.checks import check_ignored
+from .space.describe import describe
 from .space.hooks import Hooks, Rehearsal
 from .space.sync import Sync
 from .space.world import World
@@ -180,6 +181,13 @@ class PackedStepper(Stepper):
     def _fly(world: World, dt: float, left: float) -> int:
         gx, gy = world.gravity
         return fly(world.STATES, world.WALK, world.EXTRA, world.BODY, world.ENDS, dt, gx, gy, left)
+
+    @property
+    def model(self) -> str:
+        world = self._world
+        if world is None or not world.current():
+            world = self._look()
+        return describe(world)
 
     def _report(self, world: World, dt: float) -> StepReport:
         details = partial(of_events, self.events(world), dt, world.bodies.items, world.owner)

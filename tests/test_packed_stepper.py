@@ -28,7 +28,6 @@ class FreeFlight(PackedStepper):
     """Bodies that meet nothing; `told` are the EVENT rows it reports."""
 
     told: FloatArray | None = None
-    model = "free flight"
 
     def advance(self, world: World, dt: float, left: float) -> int:
         status = self._fly(world, dt, left)
@@ -257,6 +256,41 @@ def test_a_failure_leaves_the_space_as_it_was(when: str, monkeypatch: pytest.Mon
     if when in ("rest step", "reindex"):
         stepper.step(DT)
         assert stepper.time > time
+
+
+@pytest.mark.parametrize("part", PARTS.values(), ids=PARTS.keys())
+def test_the_model_is_told_as_by_eeca(part: Callable[[pymunk.Space], None]) -> None:
+    space = swarm()
+    shape = next(iter(space.shapes))
+    for elasticity in (1.0, 0.5):
+        for one in space.shapes:
+            one.elasticity = 1.0
+        shape.elasticity = elasticity
+        part(space)
+        assert FreeFlight(space).model == ep.EECA(space).model
+    still = pymunk.Space()
+    disk = add_disk(still, (0.0, 0.0), 0.1)
+    for spin in (0.0, 1.0):
+        disk.angular_velocity = spin
+        assert FreeFlight(still).model == ep.EECA(still).model
+
+
+def test_shapes_that_stay_are_not_read_again_until_refresh() -> None:
+    space = swarm()
+    for shape in space.shapes:
+        shape.elasticity = 1.0
+    stepper = FreeFlight(space)
+    shape.elasticity = 0.5
+    added = pymunk.Circle(space.static_body, 1.0, (700.0, 700.0))
+    added.elasticity = 1.0
+    space.add(added)
+    stepper.step(DT)
+    assert "elastic" in stepper.model
+    stepper.refresh()
+    assert "loss" in stepper.model
+    space.remove(shape)
+    stepper.step(DT)
+    assert "elastic" in stepper.model
 
 
 def test_errors_come_before_anything_moves() -> None:
