@@ -169,6 +169,32 @@ def test_what_handlers_change_is_kept(phase: str) -> None:
     assert a.position.y == (8.0 if phase == "begin" else 4.0) * DT
 
 
+def test_what_handlers_decide_about_pairs_is_told_for_one_step() -> None:
+    space = pymunk.Space()
+    for x in (0.0, 0.15, 0.3):
+        add_disk(space, (x, 0.0), 0.1)
+    third = list(space.shapes)[2]
+    third.collision_type = 3
+    stepper = FreeFlight(space)
+    world = stepper._look()
+    assert (world.RULE_PAIR.shape, world.RULE.shape) == ((0, 2), (0,))
+
+    def ignore(arbiter: pymunk.Arbiter, space: pymunk.Space, data: object) -> None:
+        arbiter.process_collision = False
+
+    def soften(arbiter: pymunk.Arbiter, space: pymunk.Space, data: object) -> None:
+        arbiter.restitution = 0.25
+
+    space.on_collision(0, 0, begin=ignore)
+    space.on_collision(0, 3, pre_solve=soften)
+    stepper.step(DT)
+    assert stepper._world is world
+    assert [[world.shapes[i] for i in pair] for pair in world.RULE_PAIR] == [
+        list(space.shapes)[:2], list(space.shapes)[1:]
+    ]  # fmt: skip
+    assert world.RULE.tolist() == [-1.0, 0.25]
+
+
 @pytest.mark.parametrize("sync", [True, False])
 @pytest.mark.parametrize("kind", ["velocity", "position"])
 def test_functions_of_bodies_are_called_once_a_step(kind: str, sync: bool) -> None:

@@ -68,7 +68,8 @@ class World:
         gravity: length/time².  damping: pymunk's, 1 is none.
         smooth: False if there is friction that is ignored.  filtered: whether any shape has a filter.
         collisions: whether the space has collision handlers.  hooked: whether it or its bodies have functions.
-        rules: what collision handlers decided about pairs of rows of SHAPE for this step.
+        RULE_PAIR: (r, 2) rows of SHAPE, the lower first, in lexical order, of which collision handlers decided for this
+            step.  RULE: (r,) the restitution of these pairs, -1 where they do not collide.
         empty: the arrays of a report without contacts.
     """
 
@@ -87,7 +88,6 @@ class World:
         self.BODY, self.SHAPE, self.LINK, self.VERTEX = packed.BODY, packed.SHAPE, packed.LINK, packed.VERTEX
         self.disks, self.dynamic = packed.disks, packed.dynamic
         self.filtered = bool((self.LINK[:, GROUP : MASK + 1] != _COLLIDES_WITH_ALL).any())
-        self.rules = Rules()
         self.empty = nothing(bodies.items)
         self._allocate(packed.row, state)
         self.read_settings()
@@ -145,6 +145,7 @@ class World:
         self.gravity = tuple(self.space.gravity)
         self.damping = self.space.damping
         self.collisions = bool(private.handlers(self.space))
+        self.decide(Rules())
         bodies = self.bodies
         self.hooked = self.collisions or len(bodies.velocity_hooks) > 0 or len(bodies.position_hooks) > 0
         self._contents = self._count()
@@ -173,6 +174,13 @@ class World:
     def push(self, change: FloatArray, dt: float) -> None:
         """Let the bodies with velocity functions accelerate: velocities change by (k, 3) within dt."""
         self.EXTRA[self.bodies.velocity_hooks, PUSH_X : PUSH_TWIST + 1] = change / dt
+
+    def decide(self, rules: Rules) -> None:
+        """Take what collision handlers say for this step."""
+        decided = {**dict.fromkeys(rules.ignored, -1.0), **rules.restitution}
+        pairs = sorted(decided)
+        self.RULE_PAIR: IntArray = np.array(pairs, np.int64).reshape(-1, 2)
+        self.RULE: FloatArray = np.array([decided[pair] for pair in pairs], float)
 
     def put(self, end: FloatArray) -> int:
         """Take (N, 9) as the end of the step in the place of what the step gave; its bits."""
