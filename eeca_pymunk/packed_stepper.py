@@ -153,7 +153,6 @@ class PackedStepper(Stepper):
                 hooks.positions(world.state, end, dt)
             bodies.check_finite(end, _OVERFLOW)
             status = status & EVENTS | world.put(end)
-            world.forget()
             world.reset_forces()
             if not self.sync or rehearsal is not None:
                 world.scatter(status)
@@ -163,6 +162,7 @@ class PackedStepper(Stepper):
             else:
                 with hooks.silent():
                     self._rest(world, dt, status)
+            world.forget()
         except BaseException:
             self._undo(world, state)
             raise

@@ -169,6 +169,24 @@ def test_what_handlers_change_is_kept(phase: str) -> None:
     assert a.position.y == (8.0 if phase == "begin" else 4.0) * DT
 
 
+def test_nothing_of_the_rehearsal_is_left() -> None:
+    """pymunk's own solver spins rubbing disks, which must not stay."""
+    space = pymunk.Space()
+    disks = [add_disk(space, (x, 0.0), 0.1, velocity=(-10.0 * x, 10.0 * x)) for x in (-0.09, 0.09)]
+    for shape in space.shapes:
+        shape.friction = 1.0
+    spins: list[float] = []
+    space.on_collision(post_solve=lambda arbiter, space, data: spins.append(disks[0].angular_velocity))
+    with pytest.warns(UserWarning, match="friction"):
+        stepper = FreeFlight(space, ignore=("friction",))
+    stepper.step(DT)
+    assert spins
+    assert spins[0] != 0.0
+    for disk, x in zip(disks, (-0.09, 0.09), strict=True):
+        assert (disk.angle, disk.angular_velocity) == (0.0, 0.0)
+        assert disk.velocity == (-10.0 * x, 10.0 * x)
+
+
 def test_what_handlers_decide_about_pairs_is_told_for_one_step() -> None:
     space = pymunk.Space()
     for x in (0.0, 0.15, 0.3):

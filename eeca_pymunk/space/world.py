@@ -14,6 +14,7 @@ from ..layout import (
     BODY_ROW,
     COG_X,
     COG_Y,
+    ECCENTRIC,
     END,
     END_COLUMNS,
     EXTRA_COLUMNS,
@@ -26,13 +27,14 @@ from ..layout import (
     PULL,
     PUSH_TWIST,
     PUSH_X,
+    SPECIAL,
     SPEED,
     STATE_COLUMNS,
     STEERED,
     STILL,
 )  # fmt: skip
 from ..report import nothing
-from ..transfer import FORCES, TURNS, lay
+from ..transfer import FORCES, TURNS, lay, lay_rest
 from . import private
 from .bodies import Bodies
 from .checks import check_friction, check_shape, check_space
@@ -117,7 +119,7 @@ class World:
         self.ENDS: FloatArray = np.zeros(END_COLUMNS * N)
         self.WALK[KNOWN] = bodies.ids
         self.WALK[BODY_ROW] = row
-        self.WALK[STEERED] = bodies.steered
+        self.WALK[SPECIAL] = STEERED * bodies.steered + ECCENTRIC * bodies.center_of_gravity.any(axis=1)
         self.EXTRA[:, COG_X : COG_Y + 1] = bodies.center_of_gravity
         self.STATES[LEFT] = np.where(bodies.static[:, None], state, np.nan)
         self.gather = private.reader(space, _F.BODY_ID | _STATE, floats, ids)
@@ -183,9 +185,9 @@ class World:
         self.RULE: FloatArray = np.array([decided[pair] for pair in pairs], float)
 
     def put(self, end: FloatArray) -> int:
-        """Take (N, 9) as the end of the step in the place of what the step gave; its bits."""
+        """Take (N, 9) as the end of the step in the place of what the step gave, whatever pymunk has now; its bits."""
         self.STATES[LEFT] = end
-        return lay(self.STATES, self.WALK, self.ENDS, FORCES)
+        return lay(self.STATES, self.WALK, self.ENDS, FORCES | TURNS)
 
     def ended(self) -> FloatArray:
         """(N, 9) the end of the step; forces are reset as pymunk does."""
@@ -205,7 +207,8 @@ class World:
             self._scatter[status & TURNS]()
 
     def scatter_still(self, status: int) -> None:
-        """Write the poses, and velocity 0."""
+        """Write the poses, and velocity 0; `scatter_speed` must follow."""
+        lay_rest(self.STATES, self.ENDS, status)
         self._scatter_still[status & TURNS]()
         if self._twice:
             self._scatter_still[status & TURNS]()
