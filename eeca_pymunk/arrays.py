@@ -10,6 +10,8 @@ import numpy.typing as npt
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 IntArray: TypeAlias = npt.NDArray[np.intp]
 BoolArray: TypeAlias = npt.NDArray[np.bool_]
+PoolArray: TypeAlias = npt.NDArray[np.int32]
+FlagArray: TypeAlias = npt.NDArray[np.uint8]
 
 
 def put_rows(array: FloatArray, rows: IntArray, values: FloatArray) -> None:

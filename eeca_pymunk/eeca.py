@@ -2,40 +2,51 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Protocol
 
-from .array_stepper import ArrayStepper
-from .closures.motion import Motion, Start
+from .arrays import FloatArray, IntArray
 from .closures.time_of_impact import TimeOfImpact
-from .space.bodies import Bodies
-from .space.twin import MarginTwin
+from .packed_stepper import PackedStepper
+from .space.world import World
 
 if TYPE_CHECKING:
     import pymunk
 
 
+class Method(Protocol):
+    """Steps the arrays of one world; what it keeps from step to step is gone with the world."""
+
+    def step(
+        self, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
+        left: float,
+    ) -> int:  # fmt: skip
+        """From the states that were read to those that are to be written: bits or a code of `transfer.py`."""
+
+    def rule(self, rules: Mapping[tuple[int, int], tuple[float, float, float, float]]) -> None:
+        """What collision handlers have said of pairs of shapes (a < b) for the next step: elasticity (below 0: they
+        pass), friction, and surface velocity of b relative to a."""
+
+    @property
+    def events(self) -> FloatArray:
+        """(m, 11) EVENT rows of the last step, a copy."""
+
+
 class Closure(Protocol):
-    """Chooses psi2, the one parameter that conservation leaves free: when impulses act (design sections 3, 4).
+    """Chooses psi2, the one parameter that conservation leaves free: when impulses act."""
 
-    `advance` moves the bodies over one step, energy and momentum exact; pure arrays, the space is not touched.
-    """
-
-    def advance(self, bodies: Bodies, start: Start, twin: MarginTwin) -> Motion: ...
+    def prepare(self, world: World) -> Method:
+        """What steps this world, energy and momentum exact; ValueError for what the closure does not move."""
 
 
-class EECA(ArrayStepper):
-    """Conserves energy, linear and angular momentum through every contact, at any dt (paper; design section 2).
+class EECA(PackedStepper):
+    """Conserves energy, linear and angular momentum through every contact, at any dt (paper).
 
     Args:
         space: a pymunk space.
         closure: what chooses psi2; `TimeOfImpact()` if None.
-        sync, ignore: see `ArrayStepper`.
+        sync, ignore: see `PackedStepper`.
     """
-
-    @property
-    def centred_disks(self) -> bool:  # type: ignore[override]
-        return not isinstance(self.closure, TimeOfImpact)
 
     def __init__(
         self, space: pymunk.Space, closure: Closure | None = None, *, sync: bool = True, ignore: Sequence[str] = ()
@@ -43,5 +54,15 @@ class EECA(ArrayStepper):
         self.closure: Closure = TimeOfImpact() if closure is None else closure
         super().__init__(space, sync=sync, ignore=ignore)
 
-    def advance(self, bodies: Bodies, start: Start, twin: MarginTwin) -> Motion:
-        return self.closure.advance(bodies, start, twin)
+    def prepare(self, world: World) -> None:
+        world.load()
+        self._method = self.closure.prepare(world)
+
+    def advance(self, world: World, dt: float, left: float) -> int:
+        gx, gy = world.gravity
+        if world.collisions:
+            self._method.rule(world.rules.of_pairs(world.SHAPE))
+        return self._method.step(world.STATES, world.WALK, world.EXTRA, world.ENDS, dt, gx, gy, left)
+
+    def events(self, world: World) -> FloatArray:
+        return self._method.events

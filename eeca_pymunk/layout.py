@@ -39,7 +39,7 @@ FIRST, COUNT = 1, 2  # first vertex, number of vertices
 GROUP, CATEGORIES, MASK = 3, 4, 5  # of the shape's filter
 LINK_COLUMNS = 6
 
-# EVENT (m, 10) float: one row per impulse of a step
+# EVENT (m, 11) float: one row per impulse of a step
 FIRST_SHAPE, SECOND_SHAPE = 0, 1  # rows of SHAPE of a and of b
 WHEN = 2  # time after the start of the step
 IMPULSE = 3  # normal impulse, mass length/time, >= 0
@@ -47,7 +47,8 @@ NORMAL_X, NORMAL_Y = 4, 5  # unit, from a to b
 POINT_X, POINT_Y = 6, 7  # length, halfway between the surfaces at that instant
 GAP = 8  # length, at the start of the step, negative in overlap
 CHANGE = 9  # of the contact's normal velocity by this impulse alone, length/time
-EVENT_COLUMNS = 10
+TANGENTIAL = 10  # impulse along t = (-n_y, n_x), mass length/time
+EVENT_COLUMNS = 11
 
 # What crosses the edge to pymunk, one row or column per body in the order in which pymunk walks its bodies, static ones
 # included.

@@ -143,7 +143,7 @@ class PackedStepper(Stepper):
                 self._checked(world, dt, self._fly(world, dt, left))
                 after = rehearsal.run(world.ended(), dt)
                 world.state[:] = rehearsal.before
-                world.decide(rehearsal.rules(world.shapes, world.SHAPE[:, ELASTICITY]))
+                world.rules = rehearsal.rules(world.shapes, world.SHAPE[:, ELASTICITY])
             world.forget()
             status = self._checked(world, dt, self.advance(world, dt, left))
             end = world.ended()

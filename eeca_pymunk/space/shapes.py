@@ -10,6 +10,7 @@ import pymunk
 
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..errors import UnsupportedFeature
+from ..layout import FRICTION, SURFACE_X, SURFACE_Y
 from .bodies import Bodies
 from .checks import check_friction, check_shape, shape_body, shape_radius
 
@@ -52,6 +53,16 @@ class Rules:
 
     ignored: frozenset[tuple[int, int]] = frozenset()
     restitution: Mapping[tuple[int, int], float] = field(default_factory=dict)
+
+    def of_pairs(self, SHAPE: FloatArray) -> dict[tuple[int, int], tuple[float, float, float, float]]:
+        """By pair of rows of SHAPE: elasticity (-1: they pass), friction, surface velocity of b relative to a."""
+        told = {}
+        for pair in (*self.ignored, *self.restitution):
+            a, b = (SHAPE[i] for i in pair)
+            vx, vy = b[SURFACE_X] - a[SURFACE_X], b[SURFACE_Y] - a[SURFACE_Y]
+            e = -1.0 if pair in self.ignored else self.restitution[pair]
+            told[pair] = (e, float(a[FRICTION] * b[FRICTION]), float(vx), float(vy))
+        return told
 
 
 class Shapes:

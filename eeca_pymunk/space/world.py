@@ -34,7 +34,7 @@ from ..layout import (
     STILL,
 )  # fmt: skip
 from ..report import nothing
-from ..transfer import FORCES, TURNS, lay, lay_rest
+from ..transfer import FORCES, TURNS, lay, lay_rest, take
 from . import private
 from .bodies import Bodies
 from .checks import check_friction, check_shape, check_space
@@ -70,8 +70,7 @@ class World:
         gravity: length/time².  damping: pymunk's, 1 is none.
         smooth: False if there is friction that is ignored.  filtered: whether any shape has a filter.
         collisions: whether the space has collision handlers.  hooked: whether it or its bodies have functions.
-        RULE_PAIR: (r, 2) rows of SHAPE, the lower first, in lexical order, of which collision handlers decided for this
-            step.  RULE: (r,) the restitution of these pairs, -1 where they do not collide.
+        rules: what collision handlers decided about pairs of rows of SHAPE for this step.
         empty: the arrays of a report without contacts.
     """
 
@@ -147,7 +146,7 @@ class World:
         self.gravity = tuple(self.space.gravity)
         self.damping = self.space.damping
         self.collisions = bool(private.handlers(self.space))
-        self.decide(Rules())
+        self.rules = Rules()
         bodies = self.bodies
         self.hooked = self.collisions or len(bodies.velocity_hooks) > 0 or len(bodies.position_hooks) > 0
         self._contents = self._count()
@@ -167,6 +166,11 @@ class World:
         still = self.bodies.static
         return np.array_equal(self.STATES[NOW, still, :3], self.STATES[LEFT, still, :3])
 
+    def load(self) -> None:
+        """Put what pymunk has now into BODY."""
+        self.gather()
+        take(self.STATES, self.WALK, self.EXTRA, self.BODY, 0.0, 0.0, 1.0)
+
     @property
     def state(self) -> FloatArray:
         """(N, 9) what `gather` read: position, angle, velocity, spin, force and torque of `bodies`."""
@@ -176,13 +180,6 @@ class World:
     def push(self, change: FloatArray, dt: float) -> None:
         """Let the bodies with velocity functions accelerate: velocities change by (k, 3) within dt."""
         self.EXTRA[self.bodies.velocity_hooks, PUSH_X : PUSH_TWIST + 1] = change / dt
-
-    def decide(self, rules: Rules) -> None:
-        """Take what collision handlers say for this step."""
-        decided = {**dict.fromkeys(rules.ignored, -1.0), **rules.restitution}
-        pairs = sorted(decided)
-        self.RULE_PAIR: IntArray = np.array(pairs, np.int64).reshape(-1, 2)
-        self.RULE: FloatArray = np.array([decided[pair] for pair in pairs], float)
 
     def put(self, end: FloatArray) -> int:
         """Take (N, 9) as the end of the step in the place of what the step gave, whatever pymunk has now; its bits."""

@@ -1,0 +1,89 @@
+"""The arrays of the event loop for one world, and a step on them that gets the room it wants."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
+from ..layout import COUNT as VERTICES, EVENT_COLUMNS, FRICTION, OWNER
+from ..pairs.setup import near_lists, rebuilt
+from .layout import (
+    COUNT_LENGTH, FIRST_SHAPE, LIMIT, LOCK, LOGGED, NOW, PAR_LENGTH, SHAPES, STATE_COLUMNS, UNMET, Scene,
+)  # fmt: skip
+from .step import ROOM_FOR_EVENTS, ROOM_FOR_LISTS, resume, step
+
+RULE_COLUMNS = 6
+
+
+class EventLoop:
+    """Steps the packed bodies and shapes of a world from impact to impact.
+
+    Args:
+        BODY, SHAPE, LINK, VERTEX: see `..layout`; BODY has the poses of now.
+        disks: the first so many rows of BODY are lone disks.
+        limit: impacts that a body may have in a step.
+    """
+
+    def __init__(
+        self, BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, disks: int, limit: int
+    ) -> None:
+        n = len(BODY)
+        self.disks = disks
+        moving = int(np.count_nonzero(LINK[:, OWNER] < n - 1))
+        STATE = np.zeros((n, STATE_COLUMNS), np.int64)
+        STATE[:, SHAPES] = np.bincount(LINK[:moving, OWNER], minlength=n)
+        STATE[:, FIRST_SHAPE] = np.cumsum(STATE[:, SHAPES]) - STATE[:, SHAPES]
+        near = near_lists(BODY, SHAPE, LINK, VERTEX, moving)
+        vertices = max(2, int(LINK[:, VERTICES].max(initial=2)))
+        self.scene = Scene(
+            BODY, STATE, SHAPE, LINK, VERTEX, *near, np.zeros((0, RULE_COLUMNS)), np.zeros(8 * n + 64),
+            np.zeros(8 * n + 64, np.int64), np.zeros((4 * n + 64, EVENT_COLUMNS)), np.zeros((n, 3)),
+            np.full(n, -1, np.int64), np.zeros(n, np.int64), np.zeros((2, vertices, 4)), np.zeros(PAR_LENGTH),
+            np.zeros(COUNT_LENGTH, np.int64),
+        )  # fmt: skip
+        self.near = near
+        self.scene.COUNT[LIMIT] = limit
+        self.smooth = not (SHAPE[:, FRICTION] > 0.0).any()
+
+    def step(
+        self, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
+        left: float,
+    ) -> int:  # fmt: skip
+        """See `step.step`; a negative answer is one of `transfer.py`."""
+        disks, smooth = self.disks, self.smooth
+        status = step(self.scene, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, disks, smooth)
+        while status <= ROOM_FOR_LISTS:
+            self._grow(status)
+            status = resume(self.scene, STATES, WALK, EXTRA, ENDS, disks, smooth, 0)
+        return status
+
+    def _grow(self, wish: int) -> None:
+        scene = self.scene
+        if wish == ROOM_FOR_EVENTS:
+            self.scene = scene._replace(LOG=np.concatenate((scene.LOG, np.zeros_like(scene.LOG))))
+            return
+        self.near = rebuilt(self.near.larger(), scene.BODY, scene.SHAPE, scene.LINK, float(scene.PAR[NOW]))
+        self.scene = scene._replace(POOL=self.near.POOL, FLAG=self.near.FLAG)
+
+    def rule(self, rules: Mapping[tuple[int, int], tuple[float, float, float, float]]) -> None:
+        """Let pairs of shapes (a < b) have this elasticity (below 0: they pass), friction and surface velocity from now on."""
+        table = np.array([(*pair, *what) for pair, what in rules.items()], float).reshape(-1, RULE_COLUMNS)
+        if len(table) or len(self.scene.RULE):
+            self.scene = self.scene._replace(RULE=table)
+
+    @property
+    def events(self) -> FloatArray:
+        """(m, 11) EVENT rows of the last step, a copy."""
+        return self.scene.LOG[: self.scene.COUNT[LOGGED]].copy()
+
+    @property
+    def lock(self) -> float:
+        """Scale of the energy lock of the last step that was farthest from 1."""
+        return float(self.scene.PAR[LOCK])
+
+    @property
+    def converged(self) -> bool:
+        """Whether the last step left nothing undone."""
+        return self.scene.COUNT[UNMET] == 0

@@ -1,0 +1,159 @@
+"""A step of bodies that meet at computed times of impact: the stages between what pymunk holds before and after."""
+
+from __future__ import annotations
+
+import math
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import kernel, uncounted
+from ..geometry.gap import gap_at
+from ..layout import (
+    BODY_ROW, DUE, FIRST_SHAPE as FIRST_OF, GAP, II, IM, OWNER, SECOND_SHAPE as SECOND_OF, SPECIAL, SPIN, STEERED,
+    VX, VY, X, Y, AX, AY, TWIST, ANGLE,
+)  # fmt: skip
+from ..transfer import EVENTS as SOME, give, take
+from .layout import (
+    AFTER, BEFORE, BLOCKS, DAMPED, DT, EVENTS, EXTERNAL, FORECASTS, GRAVITY_X, GRAVITY_Y, HEAP, IMPACTS,
+    KINKS, LAST, LEDGER, LEDGER_LENGTH, LEFT_OVER, LOCK, LOG_FULL, LOGGED, POOL_FULL, STALE, UNMET, Scene,
+)  # fmt: skip
+from .loop import follow, forecast
+from .strike import move_to
+
+ROOM_FOR_LISTS, ROOM_FOR_EVENTS = -10, -11  # answers of a step that wants more memory: give some, and `resume`
+
+
+@uncounted
+def energy(A: Scene, i: int) -> float:
+    """Kinetic energy of body i, and potential energy -m g.x in the uniform gravity; 0 for what impulses do not move."""
+    BODY = A.BODY
+    if BODY[i, IM] == 0.0:
+        return 0.0
+    vx, vy, spin = BODY[i, VX], BODY[i, VY], BODY[i, SPIN]
+    linear = 0.5 * (vx * vx + vy * vy) - A.PAR[GRAVITY_X] * BODY[i, X] - A.PAR[GRAVITY_Y] * BODY[i, Y]
+    turning = 0.5 * spin * spin / BODY[i, II] if BODY[i, II] > 0.0 else 0.0
+    return linear / BODY[i, IM] + turning
+
+
+@uncounted
+def total(A: Scene) -> float:
+    """Energy of all bodies."""
+    whole = 0.0
+    for i in range(A.BODY.shape[0] - 1):
+        whole += energy(A, i)
+    return whole
+
+
+@uncounted
+def begin(A: Scene, WALK: IntArray, disks: int) -> None:
+    """Count from the start of this step; forecast the bodies that were edited, and all that is due."""
+    BODY, STATE, PAR, COUNT = A.BODY, A.STATE, A.PAR, A.COUNT
+    for c in (HEAP, LOGGED, IMPACTS, BLOCKS, FORECASTS, STALE):
+        COUNT[c] = 0
+    if COUNT[UNMET] > 0:
+        A.FLAG[:] = 0
+        COUNT[UNMET] = 0
+    for c in range(LEDGER_LENGTH):
+        PAR[LEDGER + c] = 0.0
+    PAR[LOCK] = 1.0
+    PAR[BEFORE] = total(A)
+    left = PAR[LEFT_OVER]
+    if left != 1.0:
+        # `take` has damped velocities already, by half a step's worth.
+        for k in range(WALK.shape[1]):
+            i = WALK[BODY_ROW, k]
+            if i >= 0 and not WALK[SPECIAL, k] & STEERED:
+                PAR[LEDGER + DAMPED] += kinetic(BODY, i) * (1.0 / (left * left) - 1.0)
+        PAR[BEFORE] += PAR[LEDGER + DAMPED]
+    n, last, dt = BODY.shape[0] - 1, PAR[LAST], PAR[DT]
+    for i in range(n):
+        STATE[i, EVENTS] = 0
+        A.BEGAN[i, 0], A.BEGAN[i, 1], A.BEGAN[i, 2] = BODY[i, X], BODY[i, Y], BODY[i, ANGLE]
+        if BODY[i, DUE] == -math.inf:
+            STATE[i, KINKS] += 1
+        else:
+            BODY[i, DUE] = max(BODY[i, DUE] - last, 0.0)
+    for i in range(n):
+        if BODY[i, DUE] < dt:
+            forecast(A, disks, A.LIST.shape[0], i, 0.0, dt)
+
+
+@uncounted
+def kinetic(BODY: FloatArray, i: int) -> float:
+    """Kinetic energy of body i; 0 for what impulses do not move."""
+    if BODY[i, IM] == 0.0:
+        return 0.0
+    vx, vy, spin = BODY[i, VX], BODY[i, VY], BODY[i, SPIN]
+    return 0.5 * (vx * vx + vy * vy) / BODY[i, IM] + (0.5 * spin * spin / BODY[i, II] if BODY[i, II] > 0.0 else 0.0)
+
+
+@uncounted
+def close(A: Scene, WALK: IntArray) -> None:
+    """Bring all paths to the end of the step; the work of forces, the energy, and the gaps at the start of what met."""
+    BODY, PAR, LOG, BEGAN = A.BODY, A.PAR, A.LOG, A.BEGAN
+    end = PAR[DT]
+    gx, gy = PAR[GRAVITY_X], PAR[GRAVITY_Y]
+    for i in range(BODY.shape[0] - 1):
+        move_to(BODY, i, end)
+        fx, fy, twist = BODY[i, AX] - gx, BODY[i, AY] - gy, BODY[i, TWIST]
+        if BODY[i, IM] > 0.0 and (fx != 0.0 or fy != 0.0 or twist != 0.0):
+            work = (fx * (BODY[i, X] - BEGAN[i, 0]) + fy * (BODY[i, Y] - BEGAN[i, 1])) / BODY[i, IM]
+            if BODY[i, II] > 0.0:
+                work += twist * (BODY[i, ANGLE] - BEGAN[i, 2]) / BODY[i, II]
+            PAR[LEDGER + EXTERNAL] += work
+    PAR[AFTER] = total(A)
+    left = PAR[LEFT_OVER]
+    if left != 1.0:
+        lost = 0.0
+        for k in range(WALK.shape[1]):
+            i = WALK[BODY_ROW, k]
+            if i >= 0 and not WALK[SPECIAL, k] & STEERED:
+                lost += kinetic(BODY, i) * (1.0 - left * left)
+        PAR[LEDGER + DAMPED] += lost
+        PAR[AFTER] -= lost
+    PAR[LAST] = end
+    for n in range(A.COUNT[LOGGED]):
+        a, b = int(LOG[n, FIRST_OF]), int(LOG[n, SECOND_OF])
+        i, j = A.LINK[a, OWNER], A.LINK[b, OWNER]
+        LOG[n, GAP] = gap_at(
+            A.SHAPE, A.LINK, A.VERTEX, A.WORK, a, BEGAN[i, 0], BEGAN[i, 1], BEGAN[i, 2],
+            b, BEGAN[j, 0], BEGAN[j, 1], BEGAN[j, 2],
+        )[0]  # fmt: skip
+
+
+@kernel
+def resume(
+    A: Scene, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, disks: int, smooth: bool,
+    status: int,
+) -> int:  # fmt: skip
+    """The rest of a step, whose bits so far are `status`."""
+    met = follow(A, disks, smooth)
+    if met == POOL_FULL:
+        return ROOM_FOR_LISTS
+    if met == LOG_FULL:
+        return ROOM_FOR_EVENTS
+    close(A, WALK)
+    if A.COUNT[LOGGED] > 0:
+        status |= SOME
+    return give(STATES, WALK, EXTRA, A.BODY, ENDS, A.PAR[DT], A.PAR[LEFT_OVER], status)
+
+
+@kernel
+def step(
+    A: Scene, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
+    left: float, disks: int, smooth: bool,
+) -> int:  # fmt: skip
+    """From the states that were read to those that are to be written, see `transfer.py`.
+
+    Args:
+        dt: time, > 0.  gx, gy: gravity, length/time².  left: what half the step's damping leaves of velocities.
+        disks: the first so many rows of BODY are lone disks.  smooth: whether no pair has friction.
+
+    Returns:
+        the bits EVENTS, FORCES, TURNS, a negative code of `transfer.py`, or a wish for room.
+    """
+    status = take(STATES, WALK, EXTRA, A.BODY, gx, gy, left)
+    if status < 0:
+        return status
+    A.PAR[DT], A.PAR[GRAVITY_X], A.PAR[GRAVITY_Y], A.PAR[LEFT_OVER] = dt, gx, gy, left
+    begin(A, WALK, disks)
+    return resume(A, STATES, WALK, EXTRA, ENDS, disks, smooth, status)

@@ -1,0 +1,118 @@
+"""The first near lists of a scene: margins, the lengths of both grids, and room for the lists."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..arrays import FlagArray, FloatArray, IntArray, PoolArray
+from ..layout import BOUND, COUNT, FIRST, ROUNDING
+from .grid import build, wall_grid
+from .layout import (
+    CELL_COLUMNS, CELL_LENGTH, GRID_LENGTH, INFO_LENGTH, LIST_COLUMNS, MARGIN, MARK_COLUMNS, MOVING, WALL_COLUMNS,
+    WALL_LENGTH, WALL_ROWS, WALL_X, WALL_Y,
+)  # fmt: skip
+
+EVERYBODY = 16  # shapes that move up to which each is in the list of every other one
+_NEIGHBOURS = 8.0  # that a list is to hold: the least cost over packings from .05 to .65
+_MARGINS = (0.1, 20.0)  # least and most, in radii
+_FEW_WALLS = 16  # static shapes up to which all are looked at
+
+
+class Near(NamedTuple):
+    """The arrays of the near lists, see `layout.py`; BOX (W, 4) and CSR are those of the static shapes."""
+
+    MARK: FloatArray
+    CELL: IntArray
+    LIST: IntArray
+    POOL: PoolArray
+    FLAG: FlagArray
+    HEAD: IntArray
+    GRID: FloatArray
+    INFO: IntArray
+    BOX: FloatArray
+    CSR: IntArray
+
+    def larger(self) -> Near:
+        """The same with twice the room for lists, which are to be made anew."""
+        room = 2 * len(self.POOL)
+        return self._replace(POOL=np.zeros(room, np.int32), FLAG=np.zeros(room, np.uint8))
+
+
+def margins(bound: FloatArray, centre: FloatArray) -> FloatArray:
+    """(m,) how far shapes of radius `bound` (m,) at `centre` (m, 2) may go before their lists are made anew.
+
+    (2 + 2 m / r)² phi is the number of neighbours at the packing phi. Small shapes among large ones do not get more
+    than twice their own share, large ones no more than the median's.
+    """
+    if len(bound) <= EVERYBODY:
+        return np.full(len(bound), np.inf)
+    low, high = (centre - bound[:, None]).min(axis=0), (centre + bound[:, None]).max(axis=0)
+    area = max(float(np.prod(high - low)), 1e-300)
+    phi = math.pi * float(bound @ bound) / area
+    factor = min(max(math.sqrt(0.25 * _NEIGHBOURS / phi) - 1.0, _MARGINS[0]), _MARGINS[1])
+    result: FloatArray = factor * np.minimum(2.0 * bound, np.median(bound))
+    return result
+
+
+def boxes(SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, moving: int) -> FloatArray:
+    """(W, 4) left, bottom, right and top of the static shapes, which are those from number `moving` on."""
+    result = np.zeros((len(SHAPE) - moving, 4))
+    if len(result):
+        first, count = LINK[moving:, FIRST], LINK[moving:, COUNT]
+        points = VERTEX[first[0] : first[-1] + count[-1], :2]
+        result[:, :2] = np.minimum.reduceat(points, first - first[0]) - SHAPE[moving:, ROUNDING, None]
+        result[:, 2:] = np.maximum.reduceat(points, first - first[0]) + SHAPE[moving:, ROUNDING, None]
+    return result
+
+
+def near_lists(BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, moving: int) -> Near:
+    """Lists of the shapes [0, moving), where BODY has them now."""
+    bound = SHAPE[:moving, BOUND]
+    MARK = np.zeros((moving, MARK_COLUMNS))
+    MARK[:, MARGIN] = margins(bound, BODY[LINK[:moving, 0], :2])
+    INFO, GRID = np.zeros(INFO_LENGTH, np.int64), np.zeros(GRID_LENGTH)
+    INFO[MOVING] = moving
+    reach = bound + MARK[:, MARGIN]
+    GRID[CELL_LENGTH] = 2.0 * max(float(reach.min(initial=math.inf)), 1e-300) if moving > EVERYBODY else 1.0
+    BOX = boxes(SHAPE, LINK, VERTEX, moving)
+    CSR = _wall_cells(BOX, GRID, INFO)
+    room = 32 * moving + 1024
+    near = Near(
+        MARK, np.zeros((moving, CELL_COLUMNS), np.int64), np.zeros((moving, LIST_COLUMNS), np.int64),
+        np.zeros(room, np.int32), np.zeros(room, np.uint8),
+        np.full(1 << max(1, math.ceil(math.log2(2 * moving + 2))), -1, np.int64), GRID, INFO, BOX, CSR,
+    )  # fmt: skip
+    return rebuilt(near, BODY, SHAPE, LINK, 0.0)
+
+
+def rebuilt(near: Near, BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, t: float) -> Near:
+    """The lists made anew at instant t, with more room if they want it."""
+    while not build(
+        BODY, SHAPE, LINK, near.MARK, near.CELL, near.LIST, near.POOL, near.FLAG, near.HEAD, near.GRID, near.INFO,
+        near.BOX, near.CSR, t,
+    ):  # fmt: skip
+        near = near.larger()
+    return near
+
+
+def _wall_cells(BOX: FloatArray, GRID: FloatArray, INFO: IntArray) -> IntArray:
+    """The grid of static shapes: about as many cells as shapes, fewer where large ones would fill too many."""
+    if len(BOX) <= _FEW_WALLS:
+        return np.zeros(1, np.int64)
+    low, high = BOX[:, :2].min(axis=0), BOX[:, 2:].max(axis=0)
+    wide, tall = np.maximum(high - low, 1e-300)
+    length = max(math.sqrt(wide * tall / len(BOX)), max(wide, tall) / (4.0 * len(BOX)))
+    GRID[WALL_X], GRID[WALL_Y] = low
+    while True:
+        GRID[WALL_LENGTH] = length
+        INFO[WALL_COLUMNS], INFO[WALL_ROWS] = max(1, math.ceil(wide / length)), max(1, math.ceil(tall / length))
+        cells = int(INFO[WALL_COLUMNS] * INFO[WALL_ROWS])
+        entries = wall_grid(BOX, GRID, INFO, np.zeros(1, np.int64))
+        if entries <= 32 * len(BOX) or cells == 1:
+            CSR = np.zeros(cells + 1 + entries, np.int64)
+            wall_grid(BOX, GRID, INFO, CSR)
+            return CSR
+        length *= 2.0

@@ -1,0 +1,197 @@
+"""Direct solution on the active contacts of a small island: Newton's step of the law, in the space of contacts.
+
+As `polish.py`, with slip in the matrix: a slipping contact pushes along n +- mu t, so that the matrix is not symmetric
+and a few steps find the answer where active contacts are the right ones. A + diag(A) / R with refinement (the proximal
+point method) bears redundant contacts.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import kernel
+from .build import normal_rate, tangent_rate
+from .layout import (
+    ARM_NA,
+    ARM_NB,
+    ARM_TA,
+    ARM_TB,
+    K_N,
+    K_T,
+    NX,
+    NY,
+    TARGET,
+    UN,
+    UT,
+)
+from .polish import clamp, classify
+from .sweeps import push
+
+_R = 1e8
+
+
+@kernel
+def decompose(W: FloatArray, N: int, order: IntArray) -> None:
+    """LU with partial pivoting of W[:N, :N] in place; order (N,) of its rows."""
+    for j in range(N):
+        order[j] = j
+    for j in range(N):
+        p = j
+        for i in range(j + 1, N):
+            if abs(W[i, j]) > abs(W[p, j]):
+                p = i
+        if p != j:
+            order[j], order[p] = order[p], order[j]
+            for k in range(N):
+                W[j, k], W[p, k] = W[p, k], W[j, k]
+        if W[j, j] == 0.0:
+            W[j, j] = 1e-300
+        for i in range(j + 1, N):
+            if W[i, j] != 0.0:
+                W[i, j] /= W[j, j]
+                factor = W[i, j]
+                for k in range(j + 1, N):
+                    W[i, k] -= factor * W[j, k]
+
+
+@kernel
+def back(W: FloatArray, N: int, order: IntArray, r: FloatArray, x: FloatArray) -> None:
+    """x = W^-1 r from `decompose`."""
+    for i in range(N):
+        s = r[order[i]]
+        for k in range(i):
+            s -= W[i, k] * x[k]
+        x[i] = s
+    for i in range(N - 1, -1, -1):
+        s = x[i]
+        for k in range(i + 1, N):
+            s -= W[i, k] * x[k]
+        x[i] = s / W[i, i]
+
+
+@kernel
+def jacobian(
+    A: IntArray,
+    B: IntArray,
+    ROWS: FloatArray,
+    slip: FloatArray,
+    IM: FloatArray,
+    II: FloatArray,
+    at: IntArray,
+    kind: IntArray,
+    N: int,
+    W: FloatArray,
+) -> None:
+    """W[i, j] = velocity along row i of a unit impulse along column j; kind 0 normal (with its slip), 1 tangential."""
+    J = np.empty((N, 8))  # rows: n or t with arms a, b; then the columns' direction and arms
+    for i in range(N):
+        c = at[i]
+        nx = ROWS[c, NX]
+        ny = ROWS[c, NY]
+        if kind[i] == 0:
+            J[i, 0] = nx
+            J[i, 1] = ny
+            J[i, 2] = ROWS[c, ARM_NA]
+            J[i, 3] = ROWS[c, ARM_NB]
+            J[i, 4] = nx - slip[c] * ny
+            J[i, 5] = ny + slip[c] * nx
+            J[i, 6] = ROWS[c, ARM_NA] + slip[c] * ROWS[c, ARM_TA]
+            J[i, 7] = ROWS[c, ARM_NB] + slip[c] * ROWS[c, ARM_TB]
+        else:
+            J[i, 0] = -ny
+            J[i, 1] = nx
+            J[i, 2] = ROWS[c, ARM_TA]
+            J[i, 3] = ROWS[c, ARM_TB]
+            for k in range(4):
+                J[i, 4 + k] = J[i, k]
+    for i in range(N):
+        for j in range(N):
+            along = J[i, 0] * J[j, 4] + J[i, 1] * J[j, 5]
+            a = A[at[i]]
+            b = B[at[i]]
+            w = 0.0
+            if a == A[at[j]]:
+                w += IM[a] * along + II[a] * J[i, 2] * J[j, 6]
+            elif a == B[at[j]]:
+                w -= IM[a] * along + II[a] * J[i, 2] * J[j, 7]
+            if b == B[at[j]]:
+                w += IM[b] * along + II[b] * J[i, 3] * J[j, 7]
+            elif b == A[at[j]]:
+                w -= IM[b] * along + II[b] * J[i, 3] * J[j, 6]
+            W[i, j] = w
+        c = at[i]
+        W[i, i] += 1.0 / (_R * (ROWS[c, K_N] if kind[i] == 0 else ROWS[c, K_T]))
+
+
+@kernel
+def newton(
+    A: IntArray,
+    B: IntArray,
+    ROWS: FloatArray,
+    L: FloatArray,
+    V: FloatArray,
+    FREE: FloatArray,
+    IM: FloatArray,
+    II: FloatArray,
+    m: int,
+    passes: int,
+    tolerance: float,
+    shared: bool,
+) -> tuple[float, int]:
+    """Solve on the active contacts of L, as `polish`; the same results. `shared` as in `classify`."""
+    held = np.empty(m, np.int64)
+    stuck = np.empty(m, np.int64)
+    slip = np.empty(m)
+    rest = np.empty(m)
+    classify(A, B, ROWS, L, V, m, held, stuck, slip, rest, shared)
+    at = np.empty(2 * m, np.int64)
+    kind = np.empty(2 * m, np.int64)
+    N = 0
+    for i in range(m):
+        if held[i] != 0:
+            at[N] = i
+            kind[N] = 0
+            N += 1
+            if stuck[i] == 0:
+                L[i, 1] = slip[i] * L[i, 0]
+            if stuck[i] != 0:
+                at[N] = i
+                kind[N] = 1
+                N += 1
+    W = np.empty((N, N))
+    order = np.empty(N, np.int64)
+    jacobian(A, B, ROWS, slip, IM, II, at, kind, N, W)
+    decompose(W, N, order)
+    r = np.empty(N)
+    x = np.empty(N)
+    V[:] = FREE
+    push(A, B, ROWS, L, V, IM, II, m)
+    worst = np.inf
+    for done in range(passes + 1):
+        last = worst
+        worst = 0.0
+        for k in range(N):
+            i = at[k]
+            if kind[k] == 0:
+                r[k] = ROWS[i, TARGET] - normal_rate(A, B, ROWS, V, i)
+            else:
+                if stuck[i] == 2 and L[i, 1] != 0.0:
+                    rest[i] = -ROWS[i, UT] - L[i, 0] * min(ROWS[i, UN] + ROWS[i, TARGET], 0.0) / L[i, 1]
+                r[k] = rest[i] - tangent_rate(A, B, ROWS, V, i)
+            worst = max(worst, abs(r[k]))
+        if worst <= tolerance or done == passes or not worst <= 0.5 * last:
+            break
+        back(W, N, order, r, x)
+        for k in range(N):
+            i = at[k]
+            L[i, kind[k]] += x[k]
+            if kind[k] == 0 and stuck[i] == 0:
+                L[i, 1] = slip[i] * L[i, 0]
+        V[:] = FREE
+        push(A, B, ROWS, L, V, IM, II, m)
+    clamped = clamp(ROWS, L, m)
+    if clamped > 0:
+        V[:] = FREE
+        push(A, B, ROWS, L, V, IM, II, m)
+    return worst, clamped

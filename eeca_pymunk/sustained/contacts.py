@@ -1,0 +1,96 @@
+"""Contact rows of an island from the geometry of its pairs, for a span h from now.
+
+Normals and arms are those at the predicted middle q + (h/2) v, gaps those now: with u = G(middle) v the gap at the end
+is g + (h/2)(u- + u+) to third order in h, so that bodies follow curved surfaces to second order without a loss; and
+an island without forces keeps its angular momentum exactly, as its middle and the predicted one differ by multiples of
+the impulses. Where a pair moves far in half a span (an impact at high speed) its rows are those now.
+"""
+
+from __future__ import annotations
+
+import math
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import kernel
+from ..geometry.manifold import manifold
+from ..layout import ELASTICITY, FRICTION, SIZE, SURFACE_X, SURFACE_Y
+from ..rows.build import place_row
+from ..rows.layout import NX, NY, SURFACE
+
+_FAR = 0.25  # half-way of a pair relative to the smaller shape, beyond which its middle is not predicted
+_NEAR = 1e-7  # the same, below which now and the middle are the same
+_ALIKE = 0.5  # cosine between a normal now and at the middle, below which the middle is not believed
+_SLACK = 1e-9  # relative to the smaller shape: tolerance of the manifold
+
+PAIR_COLUMNS = 4  # PAIRS: shape a, shape b, and their local bodies
+
+
+@kernel
+def gather(
+    PAIRS: IntArray, p: int, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray, POSE: FloatArray,
+    MIDDLE: FloatArray, V: FloatArray, REACH: FloatArray, EXTENT: FloatArray, IM: FloatArray, II: FloatArray, h: float,
+    A: IntArray, B: IntArray, ROWS: FloatArray, KEY: IntArray, NOW: FloatArray, THEN: FloatArray,
+) -> int:  # fmt: skip
+    """Rows of all contacts of p pairs no farther apart than the sum of their bodies' REACH.
+
+    Args:
+        PAIRS: (p, 4) shapes a and b, local bodies of a and b.
+        POSE, MIDDLE, V: (k, 3) now, predicted for h/2, velocities.  REACH, EXTENT: (k,) length.
+        A, B, ROWS, KEY: rows out; KEY int64 tells pair and place, the same as long as the shapes stay on each other.
+        NOW, THEN: (2, 5) scratch.
+    Returns:
+        How many rows, or -1 if there is no room for them.
+    """
+    m = 0
+    shapes = len(SHAPE)
+    half = 0.5 * h
+    for c in range(p):
+        s = PAIRS[c, 0]
+        r = PAIRS[c, 1]
+        a = PAIRS[c, 2]
+        b = PAIRS[c, 3]
+        if IM[a] == 0.0 and IM[b] == 0.0:
+            continue
+        small = min(SHAPE[s, SIZE], SHAPE[r, SIZE])
+        reach = REACH[a] + REACH[b]
+        count = manifold(
+            SHAPE, LINK, VERTEX, WORK, s, POSE[a, 0], POSE[a, 1], POSE[a, 2], r, POSE[b, 0], POSE[b, 1], POSE[b, 2],
+            reach, _SLACK * small, NOW,
+        )  # fmt: skip
+        if count == 0:
+            continue
+        if m + count > len(A):
+            return -1
+        way = half * (
+            math.sqrt((V[b, 0] - V[a, 0]) ** 2 + (V[b, 1] - V[a, 1]) ** 2)
+            + abs(V[a, 2]) * EXTENT[a]
+            + abs(V[b, 2]) * EXTENT[b]
+        )
+        centre = MIDDLE
+        ahead = _NEAR * small < way <= _FAR * small
+        if ahead:
+            again = manifold(
+                SHAPE, LINK, VERTEX, WORK,
+                s, MIDDLE[a, 0], MIDDLE[a, 1], MIDDLE[a, 2], r, MIDDLE[b, 0], MIDDLE[b, 1], MIDDLE[b, 2],
+                reach + way, _SLACK * small, THEN,
+            )  # fmt: skip
+            ahead = again == count
+            for z in range(count):
+                if ahead and THEN[z, 0] * NOW[z, 0] + THEN[z, 1] * NOW[z, 1] < _ALIKE:
+                    ahead = False
+        if not ahead:
+            centre = POSE
+            THEN[:] = NOW
+        friction = SHAPE[s, FRICTION] * SHAPE[r, FRICTION]
+        elasticity = SHAPE[s, ELASTICITY] * SHAPE[r, ELASTICITY]
+        for z in range(count):
+            place_row(
+                A, B, ROWS, m, a, b, THEN[z, 0], THEN[z, 1], THEN[z, 2], THEN[z, 3], NOW[z, 4], centre, IM, II,
+                elasticity, friction, 0.0,
+            )  # fmt: skip
+            ROWS[m, SURFACE] = ROWS[m, NX] * (SHAPE[r, SURFACE_Y] - SHAPE[s, SURFACE_Y]) - ROWS[m, NY] * (
+                SHAPE[r, SURFACE_X] - SHAPE[s, SURFACE_X]
+            )
+            KEY[m] = ((min(s, r) * shapes + max(s, r)) << 1) + z
+            m += 1
+    return m

@@ -1,0 +1,50 @@
+"""The works of an island over a span: impulses times means of velocities before and after, which close by identity:
+
+    change of energy = FORCES + CARRIED + LIFTED - RESTITUTION - FRICTION,
+
+of kinetic energy, and of potential energy as far as bodies are lifted. RESTITUTION and FRICTION are >= 0. LIFTED is the
+energy that lifting bodies out of each other costs; it never exceeds these losses, from which it is paid.
+"""
+
+from __future__ import annotations
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import kernel
+from ..rows.layout import ARM_NA, ARM_NB, ARM_TA, ARM_TB, NX, NY, SURFACE
+
+RESTITUTION, FRICTION, CARRIED, LIFTED, FORCES = 0, 1, 2, 3, 4
+LEDGER_SIZE = 8
+
+
+@kernel
+def carried(A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, IM: FloatArray, m: int) -> float:
+    """Work of bodies that impulses do not move (kinematic ones, at their velocities in V) and of moving surfaces."""
+    work = 0.0
+    for i in range(m):
+        lam = L[i, 0]
+        beta = L[i, 1]
+        if lam == 0.0 and beta == 0.0:
+            continue
+        work -= beta * ROWS[i, SURFACE]
+        fx = lam * ROWS[i, NX] - beta * ROWS[i, NY]
+        fy = lam * ROWS[i, NY] + beta * ROWS[i, NX]
+        a = A[i]
+        b = B[i]
+        if IM[b] == 0.0:
+            turn = lam * ROWS[i, ARM_NB] + beta * ROWS[i, ARM_TB]
+            work -= fx * V[b, 0] + fy * V[b, 1] + turn * V[b, 2]
+        if IM[a] == 0.0:
+            turn = lam * ROWS[i, ARM_NA] + beta * ROWS[i, ARM_TA]
+            work += fx * V[a, 0] + fy * V[a, 1] + turn * V[a, 2]
+    return work
+
+
+@kernel
+def against(ACC: FloatArray, IM: FloatArray, II: FloatArray, n: int, D: FloatArray) -> float:
+    """Work of the forces behind accelerations ACC over displacements D (k, 3) of the first n bodies."""
+    work = 0.0
+    for i in range(n):
+        work += (ACC[i, 0] * D[i, 0] + ACC[i, 1] * D[i, 1]) / IM[i]
+        if II[i] > 0.0:
+            work += ACC[i, 2] * D[i, 2] / II[i]
+    return work

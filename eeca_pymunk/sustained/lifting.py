@@ -1,0 +1,106 @@
+"""Lifting bodies out of each other at the end of a span, paid from the losses of the same island and span.
+
+delta = M^-1 G^T mu with 0 <= mu _|_ g + A mu >= 0 for the gaps g at the end, scaled so that the potential energy it
+costs is at most the losses: no energy comes from push-out. Gaps above -1e-9 of the size are left alone.
+
+Moving bodies apart changes their orbital angular momentum by sum m delta x v. Where an island is free (nothing without
+mobility in it) a common turn of its velocities about the centre of mass takes that back.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import kernel
+from ..rows.build import normal_rate
+from ..rows.energy import lift
+from ..rows.layout import GAP, UN
+from .ledger import against
+
+_DEEP = 1e-9  # overlap relative to the size that is left alone
+
+
+@kernel
+def lifting(
+    A: IntArray, B: IntArray, ROWS: FloatArray, POSE: FloatArray, VN: FloatArray, ACC: FloatArray, IM: FloatArray,
+    II: FloatArray, n: int, m: int, h: float, size: float, budget: float, JUMP: FloatArray,
+) -> tuple[float, float]:  # fmt: skip
+    """JUMP (k, 6) = changes of pose and velocity at the end of the span.
+
+    Args:
+        POSE: (k, 3) at the middle of the span.  VN: (k, 3) velocities at the end.  size: length.
+        budget: energy that may be spent.
+    Returns:
+        The energy spent (<= budget, negative if more was lost), and the deepest gap before (negative in overlap).
+    """
+    JUMP[:] = 0.0
+    GAPS = np.empty(m)
+    deepest = 0.0
+    for i in range(m):
+        GAPS[i] = ROWS[i, GAP] + 0.5 * h * (ROWS[i, UN] + normal_rate(A, B, ROWS, VN, i))
+        deepest = min(deepest, GAPS[i])
+    if deepest >= -_DEEP * size or not budget > 0.0:
+        return 0.0, deepest
+    D = np.zeros((len(IM), 3))
+    lift(A, B, ROWS, GAPS, np.zeros(m), D, IM, II, m, 0.1 * _DEEP * size, 20 + 4000 // m)
+    work = -against(ACC, IM, II, n, D)
+    turn = 0.0
+    square = 0.0
+    x = 0.0
+    y = 0.0
+    if len(IM) == n:
+        turn, x, y, spin, inertia = unturn(POSE, VN, D, IM, II, n, h)
+        work += turn * spin
+        square = 0.5 * inertia * turn * turn
+    part = 1.0
+    if work + square > budget:
+        part = budget / (max(work, 0.0) + square)
+    turn *= part
+    for i in range(n):
+        for c in range(3):
+            JUMP[i, c] = part * D[i, c]
+        if turn != 0.0:
+            JUMP[i, 3] = -turn * (POSE[i, 1] + 0.5 * h * VN[i, 1] + JUMP[i, 1] - y)
+            JUMP[i, 4] = turn * (POSE[i, 0] + 0.5 * h * VN[i, 0] + JUMP[i, 0] - x)
+            JUMP[i, 5] = turn
+    return part * (work + part * square), deepest
+
+
+@kernel
+def unturn(
+    POSE: FloatArray, VN: FloatArray, D: FloatArray, IM: FloatArray, II: FloatArray, n: int, h: float
+) -> tuple[float, float, float, float, float]:
+    """The common spin that takes back the angular momentum of displacements D at the end poses POSE + (h/2) VN.
+
+    Returns it with the centre of mass (x, y), the angular momentum about it and the moment of inertia.
+    """
+    mass = 0.0
+    x = 0.0
+    y = 0.0
+    vx = 0.0
+    vy = 0.0
+    for i in range(n):
+        if II[i] == 0.0:
+            return 0.0, 0.0, 0.0, 0.0, 0.0
+        mass += 1.0 / IM[i]
+        x += (POSE[i, 0] + 0.5 * h * VN[i, 0] + D[i, 0]) / IM[i]
+        y += (POSE[i, 1] + 0.5 * h * VN[i, 1] + D[i, 1]) / IM[i]
+        vx += VN[i, 0] / IM[i]
+        vy += VN[i, 1] / IM[i]
+    x /= mass
+    y /= mass
+    vx /= mass
+    vy /= mass
+    gained = 0.0
+    spin = 0.0
+    inertia = 0.0
+    for i in range(n):
+        rx = POSE[i, 0] + 0.5 * h * VN[i, 0] + D[i, 0] - x
+        ry = POSE[i, 1] + 0.5 * h * VN[i, 1] + D[i, 1] - y
+        wx = VN[i, 0] - vx
+        wy = VN[i, 1] - vy
+        gained += (D[i, 0] * wy - D[i, 1] * wx) / IM[i]
+        spin += (rx * wy - ry * wx) / IM[i] + VN[i, 2] / II[i]
+        inertia += (rx * rx + ry * ry) / IM[i] + 1.0 / II[i]
+    return -gained / inertia, x, y, spin, inertia

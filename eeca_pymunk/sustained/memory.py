@@ -1,0 +1,56 @@
+"""What is remembered of contacts across steps: a hash table from keys to forces, with open addressing.
+
+KEYS (c,) int64, -1 where free, c a power of 2; FORCES (c, 4): normal force, tangential force, load (the normal force
+without what stopped an impact), and the stamp of the step that wrote the row. Rows of older steps than the last are
+forgotten, and cleared by `forget` when the table fills. COUNT (1,) rows in use.
+"""
+
+from __future__ import annotations
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import kernel
+
+NORMAL, TANGENTIAL, LOAD, STAMP = 0, 1, 2, 3
+FORCE_COLUMNS = 4
+
+
+@kernel
+def find(KEYS: IntArray, key: int) -> int:
+    """Row of the key, or -1 - (the free row where it would be)."""
+    mask = len(KEYS) - 1
+    # Fibonacci hashing of both halves.
+    row = ((key ^ (key >> 21)) * 11400714819323 >> 7) & mask
+    while KEYS[row] != key:
+        if KEYS[row] < 0:
+            return -1 - row
+        row = (row + 1) & mask
+    return row
+
+
+@kernel
+def remember(
+    KEYS: IntArray, FORCES: FloatArray, COUNT: IntArray, key: int, normal: float, tangential: float, load: float,
+    stamp: float,
+) -> None:  # fmt: skip
+    """Write a contact's forces. The table must have a free row."""
+    row = find(KEYS, key)
+    if row < 0:
+        row = -1 - row
+        KEYS[row] = key
+        COUNT[0] += 1
+    FORCES[row, 0] = normal
+    FORCES[row, 1] = tangential
+    FORCES[row, 2] = load
+    FORCES[row, 3] = stamp
+
+
+@kernel
+def forget(
+    KEYS: IntArray, FORCES: FloatArray, COUNT: IntArray, KEYS_2: IntArray, FORCES_2: FloatArray, stamp: float
+) -> None:
+    """Move rows with a stamp >= `stamp` to empty tables KEYS_2, FORCES_2 (of any size); COUNT becomes theirs."""
+    COUNT[0] = 0
+    KEYS_2[:] = -1
+    for row in range(len(KEYS)):
+        if KEYS[row] >= 0 and FORCES[row, 3] >= stamp:
+            remember(KEYS_2, FORCES_2, COUNT, KEYS[row], FORCES[row, 0], FORCES[row, 1], FORCES[row, 2], FORCES[row, 3])

@@ -1,0 +1,78 @@
+"""The bounded solve of an island: sweeps while it moves; sweeps and direct solutions in turn while it is near rest.
+
+Sweeps alone never carry a stack's weight to its floor; a direct solution does in one go, once the sweeps have found
+which contacts carry. Disordered moving piles change these with every step: there sweeps alone are the better bargain.
+STATE (3,) of an island lasts across steps: log10 of the augmentation R, steps to wait before the next direct solution,
+and the wait that its next failure brings.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import kernel
+from ..rows.direct import refine
+from ..rows.sweeps import iterate, sweep
+
+LOG_R, WAIT, BACKOFF = 0, 1, 2
+FRESH = (8.0, 0.0, 0.0)  # STATE of a new island
+
+_MOVING = 40  # sweeps of a moving island
+_REST = 10  # sweeps before the first direct solution
+_AFTER = 4  # further sweeps after each
+_LARGE = 80  # contacts beyond which rounds that did not pay are not tried again for some steps
+_PATIENT, _IMPATIENT = 8, 2  # rounds that do not pay end the solve; fewer where the last ones failed as well
+_LONGEST = 32.0  # steps
+
+
+@kernel
+def relax(
+    A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, FREE: FloatArray, IM: FloatArray,
+    II: FloatArray, POSE: FloatArray, n: int, m: int, rounds: int, fine: float, coarse: float, STATE: FloatArray,
+) -> tuple[int, int, float]:  # fmt: skip
+    """Impulses L (m, 2) and velocities V, warm-started by what they hold.
+
+    Args:
+        rounds: direct solutions at most; 0 for a moving island.
+        fine: change of velocity by a sweep at which all is done; coarse: at which a round or a moving island is.
+    Returns:
+        Sweeps, direct solutions, and the last sweep's change.
+    """
+    if rounds == 0 or STATE[1] > 0.0:
+        STATE[1] = max(STATE[1] - 1.0, 0.0)
+        sweeps, worst = iterate(A, B, ROWS, L, V, IM, II, m, max(fine, coarse), _MOVING)
+        return sweeps, 0, worst
+    sweeps = 0
+    worst = np.inf
+    while sweeps < _REST and worst > fine:
+        worst = sweep(A, B, ROWS, L, V, IM, II, m)
+        sweeps += 1
+    if worst <= fine:
+        return sweeps, 0, worst
+    fails = 0
+    done = 0
+    last = worst
+    while done < rounds:
+        passes = 6 if STATE[0] > 6.0 else 1
+        STATE[0], worst = refine(A, B, ROWS, L, V, FREE, IM, II, POSE, n, m, STATE[0], passes, 0.1 * fine, worst)
+        done += 1
+        sweeps += 1
+        for _ in range(_AFTER):
+            if worst <= fine:
+                break
+            worst = sweep(A, B, ROWS, L, V, IM, II, m)
+            sweeps += 1
+        if worst <= max(fine, coarse):
+            break
+        if worst > 0.2 * last:
+            fails += 1
+        last = worst
+        if fails >= (_IMPATIENT if STATE[2] > 0.0 else _PATIENT):
+            break
+    if worst > max(fine, coarse) and m > _LARGE:
+        STATE[2] = min(2.0 * STATE[2] + 2.0, _LONGEST)
+        STATE[1] = STATE[2]
+    else:
+        STATE[2] = 0.0
+    return sweeps, done, worst

@@ -1,0 +1,169 @@
+"""One span of one island: v+ = v + h a + M^-1 (G^T lam + T^T beta), each body on the parabola between v and v+."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import kernel
+from ..rows.build import rates
+from ..rows.direct import SMALL
+from ..rows.energy import lock, works
+from ..rows.layout import ELASTICITY, FRICTION, K_N, TARGET, UN
+from ..rows.sweeps import push
+from .contacts import gather
+from .ledger import against, carried
+from .lifting import lifting
+from .memory import find, remember
+from .relax import relax
+from .targets import target
+
+# Of OUT (8,)
+SWEEPS, POLISHES, RESIDUAL, LOCK, OWED, DEEPEST, CLOSED = 0, 1, 2, 3, 4, 5, 6
+OUT_SIZE = 8
+
+_FINE = 1e-12  # residual relative to |a| h
+_COARSE, _LOOSE = 1e-7, 1e-4  # residual of a large or moving island, relative to |a| h and to its speed
+_ROUNDS = 20  # direct solutions of an island near rest, or elastic
+_FEW_ROUNDS = 6  # of a moving island of few contacts
+
+
+@kernel
+def recall(
+    KEY: IntArray, m: int, KEYS: IntArray, FORCES: FloatArray, stamp: float, h: float, L: FloatArray,
+    EXPECTED: FloatArray,
+) -> None:  # fmt: skip
+    """First guesses L (m, 2) of the impulses, and those of loads (m,), from forces of this step or the last."""
+    for i in range(m):
+        L[i, 0] = 0.0
+        L[i, 1] = 0.0
+        EXPECTED[i] = 0.0
+        row = find(KEYS, KEY[i])
+        if row >= 0 and FORCES[row, 3] >= stamp - 1.0:
+            L[i, 0] = h * FORCES[row, 0]
+            L[i, 1] = h * FORCES[row, 1]
+            EXPECTED[i] = h * FORCES[row, 2]
+
+
+@kernel
+def speeds(
+    V: FloatArray, ACC: FloatArray, EXTENT: FloatArray, IM: FloatArray, n: int, h: float, REACH: FloatArray
+) -> tuple[float, float, float]:
+    """Root mean square and largest speed of points of the n bodies, and their largest acceleration |a|.
+
+    An island on nothing has no frame: speeds are relative to its common motion. REACH (k,) = how far a body's points
+    may come in h, with some room.
+    """
+    x = 0.0
+    y = 0.0
+    if len(IM) == n:
+        mass = 0.0
+        for i in range(n):
+            mass += 1.0 / IM[i]
+            x += V[i, 0] / IM[i]
+            y += V[i, 1] / IM[i]
+        x /= mass
+        y /= mass
+    square = 0.0
+    most = 0.0
+    pull = 0.0
+    for i in range(n):
+        pull = max(pull, math.sqrt(ACC[i, 0] ** 2 + ACC[i, 1] ** 2))
+    for i in range(len(IM)):
+        speed = math.sqrt((V[i, 0] - x) ** 2 + (V[i, 1] - y) ** 2) + abs(V[i, 2]) * EXTENT[i]
+        REACH[i] = 1.1 * speed * h
+        if i < n:
+            REACH[i] += 1.1 * pull * h * h + 1e-9 * EXTENT[i]
+            square += speed * speed
+            most = max(most, speed)
+    return math.sqrt(square / n), most, pull
+
+
+@kernel
+def step_island(
+    POSE: FloatArray, V: FloatArray, ACC: FloatArray, IM: FloatArray, II: FloatArray, EXTENT: FloatArray, n: int,
+    PAIRS: IntArray, p: int, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray, h: float,
+    owed: float, KEYS: IntArray, FORCES: FloatArray, COUNT: IntArray, stamp: float, STATE: FloatArray, A: IntArray,
+    B: IntArray, ROWS: FloatArray, KEY: IntArray, L: FloatArray, LOSS: FloatArray, VN: FloatArray, JUMP: FloatArray,
+    LEDGER: FloatArray, OUT: FloatArray,
+) -> int:  # fmt: skip
+    """Solve an island over h from now.
+
+    Args:
+        POSE, V, ACC: (k, 3) pose, velocity, acceleration without contacts.  IM, II, EXTENT: (k,).
+        n: bodies that impulses move, the first of k; the others keep their velocities. A body without mobility that
+            rests (the ground) is among the k as well; an island without any is free.
+        PAIRS: (p, 4) as `contacts.gather`.  WORK: scratch of the geometry.
+        owed: energy >= 0 to take out at least.
+        KEYS, FORCES, COUNT, stamp: memory of forces; the number of this step.  STATE: (3,) of `relax`.
+        A, B, ROWS, KEY, L, LOSS: the m contact rows out, with impulses over h and losses (D_n, D_t).
+        VN: (k, 3) velocities at the end, out.  JUMP: (k, 6) what to add to pose and velocity then, out.
+        LEDGER: (8,) added to.  OUT: (8,) sweeps, direct solutions, residual, scale of the lock, energy still owed,
+            deepest gap at the end before lifting, contacts that push.
+    Returns:
+        m, or -1 if the arrays of rows (or the memory) are too small; nothing is changed then.
+    """
+    OUT[:] = 0.0
+    OUT[3] = 1.0
+    k = len(IM)
+    REACH = np.empty(k)
+    slow, fast, pull = speeds(V, ACC, EXTENT, IM, n, h, REACH)
+    MIDDLE = POSE + 0.5 * h * V
+    NOW = np.empty((2, 5))
+    THEN = np.empty((2, 5))
+    m = gather(
+        PAIRS, p, SHAPE, LINK, VERTEX, WORK, POSE, MIDDLE, V, REACH, EXTENT, IM, II, h, A, B, ROWS, KEY, NOW, THEN
+    )  # fmt: skip
+    if m < 0 or 2 * (COUNT[0] + m) > len(KEYS):
+        return -1
+    FREE = V + h * ACC
+    VN[:] = FREE
+    JUMP[:] = 0.0
+    if m > 0:
+        EXPECTED = np.empty(m)
+        recall(KEY, m, KEYS, FORCES, stamp, h, L, EXPECTED)
+        rates(A, B, ROWS, V, m)
+        target(A, B, ROWS, m, ACC, EXPECTED, pull, h)
+        push(A, B, ROWS, L, VN, IM, II, m)
+        scale = pull * h if pull > 0.0 else 1e-3 * fast
+        elastic = True
+        for i in range(m):
+            if ROWS[i, ELASTICITY] < 1.0 or ROWS[i, FRICTION] > 0.0:
+                elastic = False
+        # Elastic crowds would melt away by the losses of a solve cut short.
+        few = m <= SMALL
+        rounds = _ROUNDS if elastic or slow < pull * h else (_FEW_ROUNDS if few else 0)
+        coarse = 0.0 if elastic or few else _COARSE * scale + _LOOSE * slow
+        sweeps, polishes, worst = relax(
+            A, B, ROWS, L, VN, FREE, IM, II, POSE, n, m, rounds, _FINE * scale, coarse, STATE
+        )  # fmt: skip
+        # Sums over many sweeps have their own round-off: the velocities are those of the impulses.
+        VN[:] = FREE
+        push(A, B, ROWS, L, VN, IM, II, m)
+        OUT[0] = sweeps
+        OUT[1] = polishes
+        OUT[2] = worst
+        OUT[3], OUT[4] = lock(A, B, ROWS, L, VN, FREE, IM, II, m, owed, elastic)
+        normal, tangential = works(A, B, ROWS, L, VN, m, LOSS)
+        size = np.inf
+        for i in range(n):
+            size = min(size, EXTENT[i])
+        lifted, OUT[5] = lifting(
+            A, B, ROWS, POSE + 0.5 * h * V, VN, ACC, IM, II, n, m, h, size, normal + tangential - owed, JUMP
+        )  # fmt: skip
+        LEDGER[0] += normal - min(lifted, 0.0)
+        LEDGER[1] += tangential
+        LEDGER[2] += carried(A, B, ROWS, L, V, IM, m)
+        LEDGER[3] += max(lifted, 0.0)
+        for i in range(m):
+            stopped = max(max(ROWS[i, TARGET], 0.0) - ROWS[i, UN], 0.0) * ROWS[i, K_N]
+            load = max(L[i, 0] - stopped, 0.0)
+            if L[i, 0] > 0.0:
+                OUT[6] += 1.0
+                remember(KEYS, FORCES, COUNT, KEY[i], L[i, 0] / h, L[i, 1] / h, load / h, stamp)
+    else:
+        OUT[4] = owed
+    LEDGER[4] += 0.5 * h * (against(ACC, IM, II, n, V) + against(ACC, IM, II, n, VN))
+    return m

@@ -1,0 +1,51 @@
+"""What a contact's normal velocity is to be at the end of the span: targets b of 0 <= lam _|_ u_n+ - b >= 0.
+
+Let u = u_n now, g the gap, a_n the acceleration of the gap without impulses, lam_w the impulse expected from the last
+solve. The bounce is e max(-u, 0).
+
+* e < 1 and the bounce below (1/2) max(-a_n h, A_nn lam_w): it would return within the span. The contact is sustained:
+  its bounce is 0 (the ledger books the rest of the bounces as restitution at once).
+* e = 1, or u < -2 |a| h: an impact. b is the bounce, from when the gap would be closed without it.
+* Else the surface is reached softly at the end of the span: b = min(bounce, -u - 2 max(g, 0)/h).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import kernel
+from ..rows.layout import ELASTICITY, GAP, K_N, NX, NY, TARGET, UN, WAKE
+
+_FAST = 2.0  # approach speed relative to |a| h from which a contact is an impact
+
+
+@kernel
+def target(
+    A: IntArray, B: IntArray, ROWS: FloatArray, m: int, ACC: FloatArray, EXPECTED: FloatArray, pull: float, h: float
+) -> None:
+    """Set TARGET and WAKE of m rows.
+
+    Args:
+        ACC: (k, 3) accelerations without impulses.  pull: |a|, the largest of them.
+        EXPECTED: (m,) normal impulses lam_w that carry loads.
+    """
+    for i in range(m):
+        a = A[i]
+        b = B[i]
+        u = ROWS[i, UN]
+        e = ROWS[i, ELASTICITY]
+        close = -u - 2.0 * ROWS[i, GAP] / h  # end velocity that closes the gap
+        bounce = -e * u if u < 0.0 else 0.0
+        ROWS[i, WAKE] = np.inf
+        if e < 1.0:
+            along = ROWS[i, NX] * (ACC[b, 0] - ACC[a, 0]) + ROWS[i, NY] * (ACC[b, 1] - ACC[a, 1])
+            if bounce < 0.5 * max(-along * h, EXPECTED[i] / ROWS[i, K_N]):
+                bounce = 0.0
+        elif u >= 0.0:
+            bounce = -u
+        if u < -_FAST * pull * h or (e >= 1.0 and ROWS[i, GAP] > 0.0):
+            ROWS[i, TARGET] = bounce
+            ROWS[i, WAKE] = close
+        else:
+            ROWS[i, TARGET] = min(bounce, min(-u, close))
