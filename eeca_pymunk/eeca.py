@@ -66,7 +66,3 @@ class EECA(PackedStepper):
 
     def events(self, world: World) -> FloatArray:
         return self._method.events
-
-    @property
-    def model(self) -> str:
-        return self._look().model()

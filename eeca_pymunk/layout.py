@@ -59,13 +59,14 @@ STATE_COLUMNS = 9
 # WALK (4, N) int
 FOUND, KNOWN = 0, 1  # pymunk's ids of the bodies as read, and as they were when the rows were made
 BODY_ROW = 2  # row of BODY, -1 for static bodies
-STEERED = 3  # 1 where the body's own function has chosen its acceleration
+SPECIAL = 3  # 0 for most; bits of what EXTRA has to say
+STEERED, ECCENTRIC = 1, 2  # the body's own function has chosen its acceleration; its centre of mass is not its origin
 # EXTRA (N, 5) float
 COG_X, COG_Y = 0, 1  # centre of mass in the body's coordinates: length
 PUSH_X, PUSH_Y, PUSH_TWIST = 2, 3, 4  # acceleration of a steered body: length/time², rad/time²
 EXTRA_COLUMNS = 5
 # ENDS (18 N) float: four tables as pymunk's batch calls want them: (N, 6) pose and velocity at the end of the step;
-# (N, 6) that pose with velocity 0; (N, 3) that velocity; (N, 3) forces, reset. Where nothing turns the first three have
-# no columns of angle and spin.
+# (N, 6) that pose with velocity 0, and (N, 3) that velocity, for a step of pymunk in between; (N, 3) forces, reset.
+# Where nothing turns the first three have no columns of angle and spin.
 END, STILL, SPEED, PULL = 0, 6, 12, 15  # where each begins, in N
 END_COLUMNS = 18

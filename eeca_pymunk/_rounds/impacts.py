@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..closures.motion import Start
 from ..report import Contacts, Details, StepReport
-from ..space.bodies import Bodies
-from ..space.shapes import Shapes
 from .contacts import ROUND_OFF, Pairs, pair_key
 from .features import distance_from_axes, length
 from .geometry import Geometry
 from .paths import Paths
+
+if TYPE_CHECKING:
+    from ..space.bodies import Bodies
+    from ..space.shapes import Shapes
 
 _SLOW = 0.05  # contacts slower than this part of |a| dt rest: they would bounce 1 / _SLOW times in a step
 

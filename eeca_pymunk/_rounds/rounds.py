@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray, put_rows
 from ..closures.motion import Start
-from ..space.bodies import Bodies
-from ..space.twin import MarginTwin
 from .agenda import Agenda
 from .blocks import Blocks
 from .contacts import ROUND_OFF, Pairs, touching
@@ -15,6 +15,10 @@ from .forecast import missed, next_impact
 from .impacts import Impacts, Log
 from .memory import Memory, Saved, carried
 from .paths import Paths
+
+if TYPE_CHECKING:
+    from ..space.bodies import Bodies
+    from ..space.twin import MarginTwin
 
 _SHORTEST = 2.0**-20  # part of dt, of a window within which the order of impacts is checked
 _COARSE = 16.0  # times the round-off of the largest lengths, above which no gap is that of shapes that touch

@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..arrays import FloatArray
 from ..closures.motion import Motion, Start
-from ..space.bodies import Bodies
-from ..space.twin import MarginTwin
 from .contacts import ROUND_OFF
 from .features import distance_from_axes, length
 from .impacts import Log
 from .rounds import Rounds
+
+if TYPE_CHECKING:
+    from ..space.bodies import Bodies
+    from ..space.twin import MarginTwin
 
 _CROWD, _MEETINGS, _PARTS = 200, 60.0, 10_000  # moving bodies from which a step is split, by what, and at most
 

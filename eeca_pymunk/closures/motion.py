@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,7 +12,9 @@ from .._rounds.features import distance_from_axes, length
 from .._rounds.geometry import Geometry
 from ..arrays import FloatArray
 from ..report import StepReport
-from ..space.twin import MarginTwin
+
+if TYPE_CHECKING:
+    from ..space.twin import MarginTwin
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,9 +16,11 @@ from ..arrays import BoolArray, FloatArray, IntArray
 from ..energy.delassus import Delassus
 from ..energy.graph import restrict
 from ..report import Contacts, Details, StepReport
-from ..space.bodies import Bodies
-from ..space.twin import MarginTwin
 from .motion import Motion, Start, flight, near_pairs
+
+if TYPE_CHECKING:
+    from ..space.bodies import Bodies
+    from ..space.twin import MarginTwin
 
 _STRUCK = 10.0  # ratio of displacements from which a body is looked after again: detection costs as much as a solution
 

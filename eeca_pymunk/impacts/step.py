@@ -8,8 +8,8 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..geometry.gap import gap_at
 from ..layout import (
-    BODY_ROW, DUE, FIRST_SHAPE as FIRST_OF, GAP, II, IM, OWNER, SECOND_SHAPE as SECOND_OF, SPIN, STEERED, VX, VY, X, Y,
-    AX, AY, TWIST, ANGLE,
+    BODY_ROW, DUE, FIRST_SHAPE as FIRST_OF, GAP, II, IM, OWNER, SECOND_SHAPE as SECOND_OF, SPECIAL, SPIN, STEERED,
+    VX, VY, X, Y, AX, AY, TWIST, ANGLE,
 )  # fmt: skip
 from ..transfer import EVENTS as SOME, give, take
 from .layout import (
@@ -64,7 +64,7 @@ def begin(A: Scene, WALK: IntArray) -> None:
         # `take` has damped velocities already, by half a step's worth.
         for k in range(WALK.shape[1]):
             i = WALK[BODY_ROW, k]
-            if i >= 0 and WALK[STEERED, k] == 0:
+            if i >= 0 and not WALK[SPECIAL, k] & STEERED:
                 PAR[LEDGER + DAMPED] += kinetic(BODY, i) * (1.0 / (left * left) - 1.0)
         PAR[BEFORE] += PAR[LEDGER + DAMPED]
     PAR[STAMP] += 1.0
@@ -120,7 +120,7 @@ def close(A: Scene, WALK: IntArray) -> None:
         lost = 0.0
         for k in range(WALK.shape[1]):
             i = WALK[BODY_ROW, k]
-            if i >= 0 and WALK[STEERED, k] == 0:
+            if i >= 0 and not WALK[SPECIAL, k] & STEERED:
                 lost += kinetic(BODY, i) * (1.0 - left * left)
         PAR[LEDGER + DAMPED] += lost
         PAR[AFTER] -= lost

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import pymunk
 
-from ..arrays import BoolArray, FloatArray, IntArray
+from ..arrays import BoolArray, FloatArray, IntArray, rotated
 from ..layout import (
     BODY_COLUMNS,
     BOUNCE,
     BOUND,
-    CATEGORIES,
     CENTRE_X,
     CENTRE_Y,
     COUNT,
@@ -32,14 +32,38 @@ from ..layout import (
     ROUNDING,
     SHAPE_COLUMNS,
     SIZE,
-    SURFACE_X,
     SURFACE_Y,
 )  # fmt: skip
-from .bodies import Bodies
+from .bodies import ANGLE, POSITION, Bodies
 from .checks import shape_body, shape_radius
-from .shapes import local_outline
 
 _WORD = (1 << 64) - 1  # of a filter's numbers as 64 bits: equality and `&` ask for no more
+
+
+class Record(NamedTuple):
+    """What a shape says of itself, read once.
+
+    `vertices`: in body coordinates, counter-clockwise.  `numbers`: the columns of SHAPE from ROUNDING to SURFACE_Y,
+    SIZE still 0.  `filter`: those of LINK from GROUP to MASK.
+    """
+
+    vertices: list[tuple[float, ...]]
+    numbers: tuple[float, ...]
+    filter: tuple[int, int, int]
+
+
+def read(shape: pymunk.Shape) -> Record:
+    """The record of a shape that has been checked."""
+    if isinstance(shape, pymunk.Circle):
+        vertices = [tuple(shape.offset)]
+    elif isinstance(shape, pymunk.Segment):
+        vertices = [tuple(shape.a), tuple(shape.b)]
+    else:
+        assert isinstance(shape, pymunk.Poly)  # check_shape let nothing else through
+        vertices = [tuple(v) for v in shape.get_vertices()]
+    group, categories, mask = shape.filter
+    numbers = (shape_radius(shape), 0.0, shape.elasticity, shape.friction, *shape.surface_velocity)
+    return Record(vertices, numbers, (group & _WORD, categories & _WORD, mask & _WORD))
 
 
 @dataclass(frozen=True)
@@ -47,13 +71,14 @@ class Packed:
     """Rows of a space's bodies and solid shapes.
 
     Attributes:
-        shapes: the pymunk shapes, by row of SHAPE.
+        shapes: the pymunk shapes, by row of SHAPE.  owner: (k,) places of their bodies in pymunk's order.
         row: (N,) row of BODY of each body in pymunk's order, -1 for static ones.
         BODY, SHAPE, LINK, VERTEX: see `layout.py`; poses and velocities are still 0.
         disks, dynamic: rows of BODY below which there are lone disks, and dynamic bodies.
     """
 
     shapes: tuple[pymunk.Shape, ...]
+    owner: IntArray
     row: IntArray
     BODY: FloatArray
     SHAPE: FloatArray
@@ -63,34 +88,60 @@ class Packed:
     dynamic: int
 
 
-def pack(bodies: Bodies, shapes: Sequence[pymunk.Shape]) -> Packed:
-    """The rows of `bodies` and of their solid `shapes`, which have been checked."""
+def pack(bodies: Bodies, state: FloatArray, shapes: Sequence[pymunk.Shape], records: Sequence[Record]) -> Packed:
+    """The rows of `bodies` in the (N, 9) `state` and of their solid `shapes`."""
     owner: IntArray = np.array([bodies.row[shape_body(s)] for s in shapes], np.intp)
-    outlines = [_outline(s, bodies, int(i)) for s, i in zip(shapes, owner, strict=True)]
-    row, disks = _rows(bodies, owner, outlines)
+    vertex, of_shape = _outlines(bodies, state, owner, records)
+    count = np.bincount(of_shape, minlength=len(shapes))
+    first = np.cumsum(count) - count
+    centred = (count == 1) & ~vertex[first].any(axis=1) if len(shapes) else np.zeros(0, bool)
+    row, disks = _rows(bodies, owner, centred)
     ground = int(row.max(initial=-1)) + 1
     body_of = np.where(row[owner] < 0, ground, row[owner])
     order = np.argsort(body_of, kind="stable")
-    ordered = tuple(shapes[i] for i in order.tolist())
-    outlines = [outlines[i] for i in order.tolist()]
-    SHAPE, LINK = np.zeros((len(order), SHAPE_COLUMNS)), np.zeros((len(order), LINK_COLUMNS), np.int64)
-    LINK[:, OWNER] = body_of[order]
-    LINK[:, COUNT] = [len(o) for o in outlines]
-    LINK[:, FIRST] = np.cumsum(LINK[:, COUNT]) - LINK[:, COUNT]
-    VERTEX = np.concatenate([_edges(o) for o in outlines]) if outlines else np.zeros((0, 4))
-    _describe(ordered, outlines, SHAPE, LINK)
+    rank = np.empty_like(order)
+    rank[order] = np.arange(len(order))
+    by_row = np.argsort(rank[of_shape], kind="stable")
+    LINK = np.zeros((len(order), LINK_COLUMNS), np.int64)
+    LINK[:, OWNER], LINK[:, COUNT] = body_of[order], count[order]
+    LINK[:, FIRST] = np.cumsum(count[order]) - count[order]
+    filters = np.array([r.filter for r in records], np.uint64).reshape(-1, 3)
+    LINK[:, GROUP : MASK + 1] = filters.view(np.int64)[order]
+    VERTEX = _with_normals(vertex[by_row], LINK)
+    SHAPE = np.zeros((len(order), SHAPE_COLUMNS))
+    SHAPE[:, : SURFACE_Y + 1] = np.array([r.numbers for r in records], float).reshape(-1, SURFACE_Y + 1)[order]
+    _bound(VERTEX[:, :2], LINK, SHAPE)
     BODY = np.zeros((ground + 1, BODY_COLUMNS))
     moving = np.flatnonzero(row >= 0)
     BODY[row[moving], IM], BODY[row[moving], II] = bodies.inverse_mass[moving], bodies.inverse_moment[moving]
     BODY[:, DUE] = -np.inf
     np.maximum.at(BODY[:, EXTENT], LINK[:, OWNER], SHAPE[:, SIZE])
     BODY[:disks, BOUNCE], BODY[:disks, GRIP] = SHAPE[:disks, ELASTICITY], SHAPE[:disks, FRICTION]
-    return Packed(ordered, row, BODY, SHAPE, LINK, VERTEX, disks, int(np.count_nonzero(bodies.dynamic)))
+    ordered = tuple(shapes[i] for i in order.tolist())
+    dynamic = int(np.count_nonzero(bodies.dynamic))
+    return Packed(ordered, owner[order], row, BODY, SHAPE, LINK, VERTEX, disks, dynamic)
 
 
-def _rows(bodies: Bodies, owner: IntArray, outlines: list[FloatArray]) -> tuple[IntArray, int]:
+def _outlines(
+    bodies: Bodies, state: FloatArray, owner: IntArray, records: Sequence[Record]
+) -> tuple[FloatArray, IntArray]:
+    """(v, 2) vertices about the centres of mass, of static shapes in world coordinates, and (v,) their shapes."""
+    vertex = np.array([v for r in records for v in r.vertices], float).reshape(-1, 2)
+    of_shape = np.repeat(np.arange(len(records)), [len(r.vertices) for r in records])
+    body = owner[of_shape]
+    still = np.flatnonzero(bodies.static[body])
+    placed = state[body[still]]
+    world = placed[:, POSITION] + rotated(vertex[still], placed[:, ANGLE])
+    vertex = vertex - bodies.center_of_gravity[body]
+    vertex[still] = world
+    # A segment of no length is a disk.
+    repeats = (vertex[1:] == vertex[:-1]).all(axis=1) & (of_shape[1:] == of_shape[:-1])
+    keep = np.flatnonzero(~np.concatenate((np.zeros(min(len(vertex), 1), bool), repeats)))
+    return vertex[keep], of_shape[keep]
+
+
+def _rows(bodies: Bodies, owner: IntArray, centred: BoolArray) -> tuple[IntArray, int]:
     """(N,) rows: lone disks, other dynamic bodies, kinematic ones, each in pymunk's order; and how many lone disks."""
-    centred = np.array([len(o) == 1 and not o.any() for o in outlines], bool)
     lone: BoolArray = bodies.dynamic & (np.bincount(owner, minlength=len(bodies)) == 1)
     lone[owner[~centred]] = False
     rank = np.where(lone, 0, np.where(bodies.dynamic, 1, 2))
@@ -100,42 +151,24 @@ def _rows(bodies: Bodies, owner: IntArray, outlines: list[FloatArray]) -> tuple[
     return row, int(np.count_nonzero(lone))
 
 
-def _outline(shape: pymunk.Shape, bodies: Bodies, i: int) -> FloatArray:
-    """(k, 2) vertices, counter-clockwise, about the centre of mass of body number i; in world coordinates if static."""
-    local = local_outline(shape)
-    if bodies.static[i]:
-        owner = bodies.items[i]
-        return _simple(np.array([owner.local_to_world((float(x), float(y))) for x, y in local]))
-    return _simple(local - bodies.center_of_gravity[i])
-
-
-def _simple(outline: FloatArray) -> FloatArray:
-    """Without vertices that stand on the one before: a segment of no length is a disk."""
-    if len(outline) == 1:
-        return outline
-    return outline[[True, *(outline[1:] != outline[:-1]).any(axis=1)]]
-
-
-def _edges(outline: FloatArray) -> FloatArray:
-    """(k, 4) vertices and the outward unit normals of the edges that begin there."""
-    edge = np.roll(outline, -1, axis=0) - outline
+def _with_normals(vertex: FloatArray, LINK: IntArray) -> FloatArray:
+    """(v, 4) vertices and the outward unit normals of the edges that begin there."""
+    following = np.arange(1, len(vertex) + 1)
+    following[LINK[:, FIRST] + LINK[:, COUNT] - 1] = LINK[:, FIRST]
+    edge = vertex[following] - vertex
     length = np.hypot(edge[:, 0], edge[:, 1])
     # Counter-clockwise outlines (pymunk's hulls) have their outside on the right of every edge.
     normal = np.stack((edge[:, 1], -edge[:, 0]), axis=1) / np.where(length > 0, length, 1.0)[:, None]
-    return np.concatenate((outline, normal), axis=1)
+    return np.concatenate((vertex, normal), axis=1)
 
 
-def _describe(shapes: Sequence[pymunk.Shape], outlines: list[FloatArray], SHAPE: FloatArray, LINK: IntArray) -> None:
-    """Fill in what the shapes themselves say."""
-    filters = [s.filter for s in shapes]
-    for column, name in ((GROUP, "group"), (CATEGORIES, "categories"), (MASK, "mask")):
-        LINK[:, column] = np.array([getattr(f, name) & _WORD for f in filters], np.uint64).view(np.int64)
-    SHAPE[:, ROUNDING] = [shape_radius(s) for s in shapes]
-    SHAPE[:, ELASTICITY] = [s.elasticity for s in shapes]
-    SHAPE[:, FRICTION] = [s.friction for s in shapes]
-    SHAPE[:, SURFACE_X : SURFACE_Y + 1] = np.array([s.surface_velocity for s in shapes], float).reshape(-1, 2)
-    for i, outline in enumerate(outlines):
-        centre = 0.5 * (outline.min(axis=0) + outline.max(axis=0))
-        SHAPE[i, CENTRE_X : CENTRE_Y + 1] = centre
-        SHAPE[i, BOUND] = SHAPE[i, ROUNDING] + np.hypot(*(outline - centre).T).max()
-        SHAPE[i, SIZE] = SHAPE[i, ROUNDING] + np.hypot(*outline.T).max()
+def _bound(vertex: FloatArray, LINK: IntArray, SHAPE: FloatArray) -> None:
+    """Fill in the sizes of shapes and the circles about the boxes of their vertices."""
+    if len(SHAPE) == 0:
+        return
+    first = LINK[:, FIRST]
+    centre = 0.5 * (np.minimum.reduceat(vertex, first) + np.maximum.reduceat(vertex, first))
+    away = vertex - np.repeat(centre, LINK[:, COUNT], axis=0)
+    SHAPE[:, CENTRE_X : CENTRE_Y + 1] = centre
+    SHAPE[:, BOUND] = SHAPE[:, ROUNDING] + np.maximum.reduceat(np.hypot(away[:, 0], away[:, 1]), first)
+    SHAPE[:, SIZE] = SHAPE[:, ROUNDING] + np.maximum.reduceat(np.hypot(vertex[:, 0], vertex[:, 1]), first)

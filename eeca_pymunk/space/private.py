@@ -32,7 +32,7 @@ _OF_SPACE = (
     "_remove_later", "_removed_shapes", "_post_step_callbacks",
 )  # fmt: skip
 _OF_BODY = ("_velocity_func", "_position_func")
-_OF_BUFFER = ("_float_arr", "_int_arr")
+_TYPES = ("pmBatchedData *", "pmFloatArray *", "pmIntArray *")
 
 
 def missing() -> list[str]:
@@ -44,10 +44,15 @@ def missing() -> list[str]:
         ("pymunk._chipmunk_cffi.lib", lib, _OF_LIBRARY),
         ("pymunk.Space", space, _OF_SPACE),
         ("pymunk.Body", body, _OF_BODY),
-        ("pymunk.batch.Buffer", batch.Buffer(), _OF_BUFFER),
         *(("pymunk.CollisionHandler", one, PHASES) for one in getattr(space, "_handlers", {}).values()),
     ]
-    return [f"{name}.{one}" for name, owner, names in owners for one in names if not hasattr(owner, one)]
+    absent = [f"{name}.{one}" for name, owner, names in owners for one in names if not hasattr(owner, one)]
+    for kind in _TYPES:
+        try:
+            ffi.new(kind)
+        except (TypeError, ffi.error):
+            absent.append(f"pymunk._chipmunk_cffi.ffi: {kind}")
+    return absent
 
 
 def check() -> None:
@@ -155,15 +160,12 @@ def reader(space: pymunk.Space, fields: batch.BodyFields, floats: FloatArray, id
     pymunk would take memory that is too small for one of its own, and free it: `floats` and `ids`, flat and contiguous,
     need room for all bodies of the space at every call, which the caller has to make sure.
     """
-    buffer = batch.Buffer()
-    buffer.set_float_buf(floats)
-    buffer.set_int_buf(ids)
-    data = _batched(fields, buffer)
-    values, numbers = buffer._float_arr, buffer._int_arr
+    values, numbers = _array("pmFloatArray *", "cpFloat[]", floats), _array("pmIntArray *", "uintptr_t[]", ids)
+    data = _batched(fields, values, numbers)
     c, each = space._space, lib.cpSpaceEachBody
     function = ffi.addressof(lib, "pmSpaceBodyGetIteratorFuncBatched")
 
-    def read(held: object = (buffer, floats, ids)) -> None:
+    def read(held: object = (floats, ids)) -> None:
         values.num = 0
         numbers.num = 0
         each(c, function, data)
@@ -173,23 +175,29 @@ def reader(space: pymunk.Space, fields: batch.BodyFields, floats: FloatArray, id
 
 def writer(space: pymunk.Space, fields: batch.BodyFields, floats: FloatArray) -> Callable[[], None]:
     """`batch.set_space_bodies` from memory of ours, flat and contiguous, that has a row for every body of the space."""
-    buffer = batch.Buffer()
-    buffer.set_float_buf(floats)
-    data = _batched(fields, buffer)
-    values = buffer._float_arr
+    values, numbers = _array("pmFloatArray *", "cpFloat[]", floats), ffi.new("pmIntArray *")
+    data = _batched(fields, values, numbers)
     c, each = space._space, lib.cpSpaceEachBody
     function = ffi.addressof(lib, "pmSpaceBodySetIteratorFuncBatched")
 
-    def write(held: object = (buffer, floats)) -> None:
+    def write(held: object = (floats, numbers)) -> None:
         values.num = 0
         each(c, function, data)
 
     return write
 
 
-def _batched(fields: batch.BodyFields, buffer: batch.Buffer) -> Any:
+def _array(kind: str, items: str, memory: FloatArray | IntArray) -> Any:
+    """pymunk's array over memory of ours; `batch.Buffer` has the same, and leaves what it had before to nobody."""
+    array = ffi.new(kind)
+    array.arr = ffi.from_buffer(items, memory)
+    array.num, array.max = 0, memory.size
+    return array
+
+
+def _batched(fields: batch.BodyFields, floats: Any, ints: Any) -> Any:
     data = ffi.new("pmBatchedData *")
-    data.fields, data.floatArray, data.intArray = fields.value, buffer._float_arr, buffer._int_arr
+    data.fields, data.floatArray, data.intArray = fields.value, floats, ints
     return data
 
 

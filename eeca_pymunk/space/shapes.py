@@ -9,8 +9,8 @@ import numpy as np
 import pymunk
 
 from ..arrays import BoolArray, FloatArray, IntArray
-from ..layout import FRICTION, SURFACE_X, SURFACE_Y
 from ..errors import UnsupportedFeature
+from ..layout import FRICTION, SURFACE_X, SURFACE_Y
 from .bodies import Bodies
 from .checks import check_friction, check_shape, shape_body, shape_radius
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import TypeAlias
 
 import numpy as np
 import pymunk
@@ -13,34 +14,39 @@ from ..layout import (
     BODY_ROW,
     COG_X,
     COG_Y,
-    ELASTICITY,
+    ECCENTRIC,
     END,
     END_COLUMNS,
     EXTRA_COLUMNS,
     FOUND,
+    GROUP,
     KNOWN,
     LEFT,
+    MASK,
     NOW,
-    OWNER,
     PULL,
     PUSH_TWIST,
     PUSH_X,
+    SPECIAL,
     SPEED,
     STATE_COLUMNS,
     STEERED,
     STILL,
 )  # fmt: skip
 from ..report import nothing
-from ..transfer import FORCES, TURNS, lay, take
+from ..transfer import FORCES, TURNS, lay, lay_rest, take
 from . import private
 from .bodies import Bodies
 from .checks import check_friction, check_shape, check_space
-from .packing import pack
+from .packing import Record, pack, read
 from .shapes import Rules
 
 _F = batch.BodyFields
 _MOTION = _F.POSITION | _F.ANGLE | _F.VELOCITY | _F.ANGULAR_VELOCITY
 _STATE = _MOTION | _F.FORCE | _F.TORQUE
+_COLLIDES_WITH_ALL = tuple(pymunk.ShapeFilter())
+
+Records: TypeAlias = dict[pymunk.Shape, Record | None]
 
 
 class World:
@@ -52,8 +58,10 @@ class World:
 
     Args:
         space: any pymunk space.  ignore: what to step on without, see `check_ignored`.
+        before: the world of the same space before shapes came or went, whose shapes are not read again.
 
     Attributes:
+        records: what the shapes of the space say of themselves, None for sensors.
         bodies: in pymunk's order, N with the static ones.  shapes: by row of SHAPE.
         owner: (k,) place in `bodies.items` of the body of every shape.
         BODY, SHAPE, LINK, VERTEX: see `layout.py`.  disks, dynamic: rows of BODY below which there are lone disks, and
@@ -66,27 +74,39 @@ class World:
         empty: the arrays of a report without contacts.
     """
 
-    def __init__(self, space: pymunk.Space, ignore: Sequence[str] = ()) -> None:
+    def __init__(self, space: pymunk.Space, ignore: Sequence[str] = (), before: World | None = None) -> None:
         check_space(space)
         self.space = space
         self.bodies = bodies = Bodies(space)
         state = bodies.gather()
         assert state is not None  # read from these very bodies
         bodies.check_finite(state)
-        solid = [s for s in space.shapes if not s.sensor]
-        for shape in solid:
-            check_shape(shape, bodies)
+        self.records: Records = self._records({} if before is None else before.records)
+        solid = [s for s, record in self.records.items() if record is not None]
         self.smooth = not check_friction(solid, "friction" in ignore)
-        packed = pack(bodies, solid)
-        self.shapes = packed.shapes
-        self.owner: IntArray = np.array([bodies.row[s.body] for s in self.shapes if s.body is not None], np.intp)
+        packed = pack(bodies, state, solid, [r for r in self.records.values() if r is not None])
+        self.shapes, self.owner = packed.shapes, packed.owner
         self.BODY, self.SHAPE, self.LINK, self.VERTEX = packed.BODY, packed.SHAPE, packed.LINK, packed.VERTEX
         self.disks, self.dynamic = packed.disks, packed.dynamic
-        self.filtered = any(s.filter != pymunk.ShapeFilter() for s in self.shapes)
-        self.rules = Rules()
+        self.filtered = bool((self.LINK[:, GROUP : MASK + 1] != _COLLIDES_WITH_ALL).any())
         self.empty = nothing(bodies.items)
         self._allocate(packed.row, state)
         self.read_settings()
+
+    def _records(self, known: Records) -> Records:
+        """What every shape says, None for sensors; those that are known are not asked again."""
+        records: Records = {}
+        for shape in self.space.shapes:
+            if shape in known:
+                records[shape] = known[shape]
+                if shape.body not in self.bodies.row:
+                    check_shape(shape, self.bodies)
+            elif shape.sensor:
+                records[shape] = None
+            else:
+                check_shape(shape, self.bodies)
+                records[shape] = read(shape)
+        return records
 
     def _allocate(self, row: IntArray, state: FloatArray) -> None:
         bodies, space, N = self.bodies, self.space, len(self.bodies)
@@ -98,7 +118,7 @@ class World:
         self.ENDS: FloatArray = np.zeros(END_COLUMNS * N)
         self.WALK[KNOWN] = bodies.ids
         self.WALK[BODY_ROW] = row
-        self.WALK[STEERED] = bodies.steered
+        self.WALK[SPECIAL] = STEERED * bodies.steered + ECCENTRIC * bodies.center_of_gravity.any(axis=1)
         self.EXTRA[:, COG_X : COG_Y + 1] = bodies.center_of_gravity
         self.STATES[LEFT] = np.where(bodies.static[:, None], state, np.nan)
         self.gather = private.reader(space, _F.BODY_ID | _STATE, floats, ids)
@@ -126,6 +146,7 @@ class World:
         self.gravity = tuple(self.space.gravity)
         self.damping = self.space.damping
         self.collisions = bool(private.handlers(self.space))
+        self.rules = Rules()
         bodies = self.bodies
         self.hooked = self.collisions or len(bodies.velocity_hooks) > 0 or len(bodies.position_hooks) > 0
         self._contents = self._count()
@@ -150,28 +171,6 @@ class World:
         self.gather()
         take(self.STATES, self.WALK, self.EXTRA, self.BODY, 0.0, 0.0, 1.0)
 
-    def model(self) -> str:
-        """One line: what of the space as it is now is modelled."""
-        self.gather()
-        moving = ~self.bodies.static
-        pulled = any(self.gravity) or bool(self.state[moving, 6:].any()) or len(self.bodies.velocity_hooks) > 0
-        turning = bool(self.state[moving, 5].any() or self.state[moving, 8].any())
-        walls = int(np.count_nonzero(self.LINK[:, OWNER] == len(self.BODY) - 1))
-        others = len(self.SHAPE) - walls - self.disks
-        parts = [
-            f"{self.disks} disks" + (f", {others} other moving shapes" if others else "") + f", {walls} walls",
-            "gravity or forces" if pulled else "no forces",
-            "rotation with contact arms" if others else "free rotation" if turning else "no rotation",
-            "loss" if (self.SHAPE[:, ELASTICITY] < 1.0).any() else "elastic",
-        ]
-        if self.damping != 1.0:
-            parts.append("damping")
-        if len(self.bodies.velocity_hooks) or len(self.bodies.position_hooks):
-            parts.append("functions of bodies")
-        if self.collisions:
-            parts.append("collision handlers, by a rehearsal")
-        return "; ".join(parts)
-
     @property
     def state(self) -> FloatArray:
         """(N, 9) what `gather` read: position, angle, velocity, spin, force and torque of `bodies`."""
@@ -183,9 +182,9 @@ class World:
         self.EXTRA[self.bodies.velocity_hooks, PUSH_X : PUSH_TWIST + 1] = change / dt
 
     def put(self, end: FloatArray) -> int:
-        """Take (N, 9) as the end of the step in the place of what the step gave; its bits."""
+        """Take (N, 9) as the end of the step in the place of what the step gave, whatever pymunk has now; its bits."""
         self.STATES[LEFT] = end
-        return lay(self.STATES, self.WALK, self.ENDS, FORCES)
+        return lay(self.STATES, self.WALK, self.ENDS, FORCES | TURNS)
 
     def ended(self) -> FloatArray:
         """(N, 9) the end of the step; forces are reset as pymunk does."""
@@ -205,7 +204,8 @@ class World:
             self._scatter[status & TURNS]()
 
     def scatter_still(self, status: int) -> None:
-        """Write the poses, and velocity 0."""
+        """Write the poses, and velocity 0; `scatter_speed` must follow."""
+        lay_rest(self.STATES, self.ENDS, status)
         self._scatter_still[status & TURNS]()
         if self._twice:
             self._scatter_still[status & TURNS]()

@@ -30,6 +30,11 @@ def test_a_name_that_is_gone_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
         private.check()
 
 
+def test_a_type_that_is_gone_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(private, "_TYPES", ("pmBatchedData *", "pmSparseArray *"))
+    assert private.missing() == ["pymunk._chipmunk_cffi.ffi: pmSparseArray *"]
+
+
 def test_handlers() -> None:
     space, _ = meeting()
     assert private.handlers(space) == []

@@ -1,0 +1,36 @@
+"""Describe: one line that tells what of a space is modelled."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..layout import COUNT, ELASTICITY, FIRST, OWNER
+from .bodies import ANGULAR_VELOCITY, FORCE, TORQUE
+from .world import World
+
+
+def describe(world: World) -> str:
+    """What of the space as it is now is modelled, and therefore paid for."""
+    world.gather()
+    state, bodies = world.state, world.bodies
+    owner = world.LINK[:, OWNER]
+    moving = owner < len(world.BODY) - 1
+    centred = (world.LINK[:, COUNT] == 1) & ~world.VERTEX[world.LINK[:, FIRST], :2].any(axis=1)
+    disks = int(np.count_nonzero(centred & (owner < world.dynamic)))
+    others = int(np.count_nonzero(moving)) - disks
+    pulled = any(world.gravity) or state[:, FORCE].any() or (others > 0 and state[:, TORQUE].any())
+    turns = state[:, ANGULAR_VELOCITY].any() or state[:, TORQUE].any()
+    shapes = f"{disks} disks" + (f", {others} other moving shapes" if others else "")
+    parts = [
+        f"{shapes}, {int(np.count_nonzero(~moving))} walls",
+        "gravity or forces" if pulled else "no forces",
+        "rotation with contact arms" if others else "free rotation" if turns else "no rotation",
+        "loss" if (world.SHAPE[:, ELASTICITY] < 1.0).any() else "elastic",
+    ]
+    if world.damping != 1.0:
+        parts.append("damping")
+    if len(bodies.velocity_hooks) or len(bodies.position_hooks):
+        parts.append("functions of bodies")
+    if world.collisions:
+        parts.append("collision handlers, by a rehearsal")
+    return "; ".join(parts)

@@ -1,0 +1,104 @@
+"""The cut of the package: imports go down only, pymunk stays at the edge, its private names in one file."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import eeca_pymunk
+
+PACKAGE = Path(eeca_pymunk.__file__).parent
+FILES = sorted(PACKAGE.rglob("*.py"))
+# From the bottom to the top; a room may import what stands on an earlier line, and itself.
+FLOORS = (
+    "arrays layout errors files",
+    "compiled",
+    "transfer report",
+    "geometry",
+    "rows",
+    "pairs",
+    "impacts",
+    "energy",
+    "sustained joints",
+    "closures",
+    "space",
+    "stepper",
+    "array_stepper packed_stepper",
+    "eeca baselines",
+    "recording",
+    "render",
+    "__init__",
+)
+FLOOR = {room: number for number, line in enumerate(FLOORS) for room in line.split()}
+GOING = "_rounds"  # stands between the floors until the compiled event loop takes its place
+PYMUNK = {"space", "baselines/native", GOING}
+
+
+def name(path: Path) -> str:
+    return path.relative_to(PACKAGE).with_suffix("").as_posix()
+
+
+def room(path: Path) -> str:
+    return path.relative_to(PACKAGE).with_suffix("").parts[0]
+
+
+def imports(path: Path) -> Iterator[tuple[str, ...]]:
+    """The modules that a file imports when it runs, those of this package without its name."""
+    tree = ast.parse(path.read_text())
+    for node in list(ast.walk(tree)):
+        if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING":
+            node.body = []
+    here = path.relative_to(PACKAGE).with_suffix("").parts
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            yield from (tuple(alias.name.split(".")) for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            base = here[: len(here) - node.level] if node.level else ()
+            parts = (*base, *(node.module or "").split("."))
+            parts = tuple(p for p in parts if p)
+            if parts[:1] == ("eeca_pymunk",):
+                parts = parts[1:]
+            yield from ((*parts, alias.name) for alias in node.names)
+
+
+@pytest.mark.parametrize("path", [p for p in FILES if room(p) != GOING], ids=name)
+def test_imports_go_down(path: Path) -> None:
+    own = room(path)
+    assert own in FLOOR, f"say in FLOORS where {own} stands"
+    for parts in imports(path):
+        other = parts[0]
+        if other in FLOOR and other != own:
+            assert FLOOR[other] < FLOOR[own], f"{name(path)} imports {'.'.join(parts)}"
+
+
+@pytest.mark.parametrize("path", FILES, ids=name)
+def test_pymunk_stays_at_the_edge(path: Path) -> None:
+    if any(parts[0] == "pymunk" for parts in imports(path)):
+        assert PYMUNK & {room(path), name(path)}
+
+
+PRIVATE = re.compile(
+    r"_chipmunk|\._(space|handlers|get_arbiters|locked|add_later|remove_later|removed_shapes|post_step_callbacks"
+    r"|velocity_func|position_func|begin|pre_solve|post_solve|separate|float_arr|int_arr|constraints|bodies_to_check)\b"
+)
+
+
+@pytest.mark.parametrize("path", [p for p in FILES if name(p) != "space/private"], ids=name)
+def test_private_names_of_pymunk_stand_in_one_file(path: Path) -> None:
+    text = re.sub(r"self\._\w+", "", path.read_text())
+    assert PRIVATE.findall(text) == []
+
+
+@pytest.mark.parametrize("path", sorted(p for p in PACKAGE.iterdir() if (p / "__init__.py").exists()), ids=name)
+def test_rooms_introduce_themselves(path: Path) -> None:
+    text = ast.get_docstring(ast.parse((path / "__init__.py").read_text()))
+    assert text is not None
+    if room(path) not in ("render",):
+        assert "In:" in text
+        assert re.search(r"Open (first|`\w+\.py` first)", text)
+    for file in re.findall(r"`(\w+\.py)`", text):
+        assert (path / file).exists() or (PACKAGE / file).exists()
