@@ -29,18 +29,34 @@ _ready = 0  # how many of these have been handed to numba
 
 
 class Kernel(Generic[P, R]):
-    """A function that numba compiles at its first call. `python` is the function as it was written."""
+    """A function that numba compiles at its first call. `python` is the function as it was written.
+
+    numba makes machine code of it twice: for other kernels, which take it for `inner`, and, only if Python calls it,
+    for Python. What lets Python call a kernel takes longer to compile than many a kernel.
+    """
 
     def __init__(self, python: Callable[P, R], counted: bool = True) -> None:
         functools.update_wrapper(self, python)
         self.python = python
         self.counted = counted
-        self.run: Callable[P, R] = python
+        self.run: Callable[P, R] = self._first
+        self.inner: Any = None
         _kernels.append(self)
 
-    def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
+    def _first(self, *args: P.args, **kwargs: P.kwargs) -> R:
         prepare()
         return self.run(*args, **kwargs)
+
+    def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
+        return self.run(*args, **kwargs)
+
+    @property
+    def _numba_type_(self) -> Any:
+        # What numba asks a global of a kernel for.
+        from numba import types
+
+        prepare()
+        return types.Dispatcher(self.inner)
 
 
 def kernel(python: Callable[P, R]) -> Callable[P, R]:
@@ -110,18 +126,16 @@ def prepare() -> None:
     folder = cache_folder()
     if not any(folder.rglob("*.nbi")) and (sys.stderr.isatty() or sys.flags.verbose):
         print("compiling eeca_pymunk's kernels, once", file=sys.stderr)
-    before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(folder)
+    before = numba.config.CACHE_DIR
     try:
         for one in fresh:
-            one.run = numba.njit(**_OPTIONS, **({} if one.counted else {"_nrt": False}))(one.python)
+            options = _OPTIONS if one.counted else {**_OPTIONS, "_nrt": False}
+            numba.config.CACHE_DIR = str(folder / "python")
+            one.run = numba.njit(**options)(one.python)
+            numba.config.CACHE_DIR = str(folder / "kernels")
+            one.inner = numba.njit(**options, no_cpython_wrapper=True, no_cfunc_wrapper=True)(one.python)
     finally:
         numba.config.CACHE_DIR = before
-    package = __name__.rpartition(".")[0]
-    for name, module in list(sys.modules.items()):
-        if name == package or name.startswith(package + "."):
-            for key, value in list(vars(module).items()):
-                if isinstance(value, Kernel) and value.run is not value.python:
-                    setattr(module, key, value.run)
 
 
 def warmup(step: Callable[[], object]) -> float:
