@@ -30,7 +30,7 @@ from ..pairs.layout import AT_X, AT_Y, MARGIN, NUMBER, START
 from ..pairs.lists import centre
 from .heap import push
 from .times import meet, one_pull
-from .layout import CHECK, FIRST_SHAPE, HEAP, KINKS, KNOWN, LEAVE, NOTHING, OTHER, OWN, SHAPES
+from .layout import CHECK, FIRST_SHAPE, HEAP, KINKS, KNOWN, LEAVE, NOTHING, OTHER, OWN, RENEW, SHAPES
 
 _INSIDE = 0.1  # of the margin that is left, above which a shape has not left its circle
 
@@ -91,10 +91,14 @@ def barred(RULE: FloatArray, a: int, b: int) -> bool:
 def predict(
     BODY: FloatArray, STATE: IntArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, MARK: FloatArray,
     LIST: IntArray, POOL: PoolArray, FLAG: FlagArray, RULE: FloatArray, TIME: FloatArray, OF: IntArray,
-    WORK: FloatArray, COUNT: IntArray, disks: int, moving: int, i: int, now: float, end: float,
+    WORK: FloatArray, COUNT: IntArray, disks: int, moving: int, i: int, now: float, end: float, until: float,
 ) -> None:  # fmt: skip
     """Forecast body i from its present path, at an instant `now` of the loop, and put what is due in this step on the
-    heap."""
+    heap.
+
+    Args:
+        until: instant at which a span of the body's island ends, infinite if it has none of its own.
+    """
     best, own, other = math.inf, -1, NOTHING
     since, x, y, vx, vy, ax, ay = (
         BODY[i, SINCE], BODY[i, X], BODY[i, Y], BODY[i, VX], BODY[i, VY], BODY[i, AX], BODY[i, AY],
@@ -121,6 +125,8 @@ def predict(
                 t, certain = meet(BODY, SHAPE, LINK, VERTEX, WORK, s, o, disks, end, -1.0)
             if t < best or (t == best and other >= 0 and (s < own or (s == own and o < other))):
                 best, own, other = t, s, (o if certain else CHECK)
+    if until < best:
+        best, own, other = until, -1, RENEW
     best = max(best, now)
     BODY[i, DUE] = best
     STATE[i, OWN], STATE[i, OTHER] = own, other

@@ -15,7 +15,7 @@ import numpy as np
 from ..arrays import IntArray
 from ..compiled import kernel, uncounted
 from ..geometry.gap import gap_at
-from ..layout import ANGLE, AX, AY, ELASTICITY, EXTENT, II, IM, OWNER, SINCE, SIZE, SPIN, TWIST, VX, VY, X, Y
+from ..layout import ANGLE, AX, AY, COUNT as COUNT_OF, ELASTICITY, EXTENT, II, IM, OWNER, ROUNDING, SINCE, SIZE, SPIN, TWIST, VX, VY, X, Y
 from ..pairs.layout import NUMBER, START
 from ..pairs.lists import mark_pair
 from ..rows.build import normal_rate, tangent_rate
@@ -28,10 +28,14 @@ from .layout import (
     AFTER_ME, BETA, BODIES, BUSY, DONE, DT, ENDED, EXTERNAL, FIRST_SHAPE, FRICTIONAL, HITS, ISLAND, KINKS, LAM,
     LAST_ONE, LASTED, LEDGER, LIFT, LOCK, LOGGED, LOST, PULLED, PUSH_A, PUSH_B, PUSH_CHANGE, PUSH_NX, PUSH_NY, PUSH_X, PUSH_Y,
     PUSHES, PUSHES_FULL, RELAX, REMEMBERED, RESTITUTION, ROOT, SHAPES, SOLVES, SPAN, SPAN_FROM, SPENT, STAMP, UN_AFTER,
+    UNTIL,
     UN_BEFORE, UT_AFTER, UT_BEFORE, WORK_OF, Scene,
 )  # fmt: skip
 from .strike import law, move_to, note
 
+_TURN = 0.1  # rad
+_PARTS = 64.0  # of a step, that a span is at least
+_FEW = 12  # contacts
 TOUCH = 1e-7  # gap relative to the smaller shape, within which shapes are in touch
 _STILL, _WAS_STILL = 1e-6, 1e-3  # speed relative to |a| dt, below which elastic contacts rest; if they did before
 
@@ -241,6 +245,30 @@ def pairs_of(A: Scene, root: int, t: float, lossy: bool, LOCAL: IntArray, MINE: 
     return found[:p]
 
 
+@uncounted
+def span_of(A: Scene, found: IntArray, t: float) -> float:
+    """Length of a span that begins at instant t: to the end of the step, or until a normal may have turned by _TURN; of
+    islands of few contacts, as every span costs a solve. Normals turn with shapes that are not round, and as round
+    ones go round one another."""
+    BODY, LINK = A.BODY, A.LINK
+    h = A.PAR[DT] - t
+    if found.shape[0] > _FEW:
+        return h
+    rate = 0.0
+    for c in range(found.shape[0]):
+        a, b = found[c, 0], found[c, 1]
+        i, j = LINK[a, OWNER], LINK[b, OWNER]
+        for s in (a, b):
+            if LINK[s, COUNT_OF] > 1:
+                rate = max(rate, abs(BODY[LINK[s, OWNER], SPIN]))
+        if LINK[a, COUNT_OF] == 1 and LINK[b, COUNT_OF] == 1:
+            speed = math.hypot(BODY[j, VX] - BODY[i, VX], BODY[j, VY] - BODY[i, VY])
+            rate = max(rate, speed / max(A.SHAPE[a, ROUNDING] + A.SHAPE[b, ROUNDING], 1e-300))
+    if rate * h <= _TURN:
+        return h
+    return max(_TURN / rate, A.PAR[DT] / _PARTS)
+
+
 @kernel
 def solve(A: Scene, root: int, t: float) -> int:
     """Begin a span of the island at instant t, at which all its bodies are. Bodies without contact leave it.
@@ -259,7 +287,7 @@ def solve(A: Scene, root: int, t: float) -> int:
             lossy = lossy or A.SHAPE[s, ELASTICITY] < 1.0
     found = pairs_of(A, root, t, lossy, A.PLACE, MINE, n)
     p = len(found)
-    h = A.PAR[DT] - t
+    h = span_of(A, found, t)
     if COUNT[PUSHES] + 2 * p > A.PUSHED.shape[0] or 2 * (COUNT[REMEMBERED] + 2 * p) > A.KEYS.shape[0]:
         for q in range(n):
             A.PLACE[MINE[q]] = -1
@@ -355,6 +383,7 @@ def solve(A: Scene, root: int, t: float) -> int:
     if head >= 0:
         MEMBER[head, LAST_ONE], MEMBER[head, BODIES], MEMBER[head, HITS] = tail, size, hits
         A.RESTING[head, LOST], A.RESTING[head, SPENT] = lost, spent
+        A.RESTING[head, UNTIL] = t + h if t + h < A.PAR[DT] * (1.0 - 1e-12) else math.inf
         for z in range(m):
             A.PUSHED_BY[first + z, ROOT] = head
         COUNT[PUSHES] += m

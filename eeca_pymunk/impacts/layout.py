@@ -9,6 +9,7 @@ from ..arrays import FlagArray, FloatArray, IntArray, PoolArray
 # STATE (n, 8) int: one row per body
 OWN, OTHER = 0, 1  # shapes of the next event; OTHER may be one of these:
 LEAVE, CHECK, NOTHING = -1, -2, -3  # OWN leaves its margin circle; the body is to be forecast anew; no event
+RENEW = -4  # the span of the body's island ends
 KNOWN = 2  # KINKS of the other body when the event was forecast
 KINKS = 3  # how often the body's path has changed
 FIRST_SHAPE, SHAPES = 4, 5
@@ -27,6 +28,7 @@ LIFT = 0  # RESTING[LIFT : LIFT + 6]: what to add to pose and velocity at the en
 RELAX = 6  # of the root, RESTING[RELAX : RELAX + 3]: state of the solve
 LOST = 9  # of the root: energy lost in this step; below 0 it is owed
 SPENT = 10  # of the root: energy that lifting costs
+UNTIL = 11  # of the root: instant at which the span ends
 RESTING_COLUMNS = 12
 
 # PUSHED_BY (c, 3) int: the contacts of islands in their present spans

@@ -6,6 +6,8 @@ kinked since is forecast anew when it comes up; until then it can only be too ea
 
 from __future__ import annotations
 
+import math
+
 from ..compiled import kernel, uncounted
 from ..layout import DUE, IM, OWNER
 from ..pairs.grid import renew
@@ -14,10 +16,10 @@ from .forecast import has_left, predict
 from .heap import pop, push, sweep_out
 from .layout import (
     DONE, DT, EVENTS, FORECASTS, HEAP, ISLAND, KINKS, KNOWN, LEAVE, LIMIT, LOG_FULL, LOGGED, NOW, OTHER, OWN,
-    BLOCK_DUE, PENDING, POOL_FULL, PUSHES, WAITING, STALE, STRUCK, UNMET, Scene,
+    BLOCK_DUE, PENDING, POOL_FULL, PUSHES, RENEW, UNTIL, WAITING, STALE, STRUCK, UNMET, Scene,
 )  # fmt: skip
 from .block import arrive, strike
-from .islands import solve
+from .islands import end_span, members, solve
 from .settle import comes_to_rest, ignored
 from .strike import alone, strike_disk
 
@@ -28,9 +30,10 @@ _SQUEEZED = 50  # impacts of a body in a step, from which those with a kinematic
 def forecast(A: Scene, disks: int, moving: int, i: int, t: float, end: float) -> None:
     """The next event of body i, seen from instant t of the loop."""
     A.COUNT[FORECASTS] += 1
+    until = A.RESTING[i, UNTIL] if A.STATE[i, ISLAND] == i else math.inf
     predict(
         A.BODY, A.STATE, A.SHAPE, A.LINK, A.VERTEX, A.MARK, A.LIST, A.POOL, A.FLAG, A.RULE, A.HEAP_TIME, A.HEAP_BODY,
-        A.WORK, A.COUNT, disks, moving, i, t, end,
+        A.WORK, A.COUNT, disks, moving, i, t, end, until,
     )  # fmt: skip
 
 
@@ -76,6 +79,9 @@ def run(A: Scene, disks: int, may_rest: bool) -> int:
                 return POOL_FULL
             forecast(A, disks, moving, i, t, end)
             continue
+        if o == RENEW:
+            A.PAR[NOW], COUNT[STRUCK] = t, i
+            return BLOCK_DUE
         if o < 0 or STATE[A.LINK[o, OWNER], KINKS] != STATE[i, KNOWN]:
             COUNT[STALE] += 1
             forecast(A, disks, moving, i, t, end)
@@ -123,10 +129,20 @@ def follow(A: Scene, disks: int, may_rest: bool) -> int:
             return status
         t, i = A.PAR[NOW], COUNT[STRUCK]
         s, o = STATE[i, OWN], STATE[i, OTHER]
-        j = A.LINK[o, OWNER]
         if COUNT[LOGGED] + COUNT[PUSHES] + 8 * STATE.shape[0] > A.LOG.shape[0]:
             COUNT[HEAP] = push(A.HEAP_TIME, A.HEAP_BODY, COUNT[HEAP], t, i)
             return LOG_FULL
+        if o == RENEW:
+            end_span(A, i, t)
+            n = members(A, i, BLOCK)
+            status = solve(A, i, t)
+            COUNT[WAITING], COUNT[PENDING] = n, -1 if status == DONE else i
+            if status != DONE:
+                return status
+            for q in range(n):
+                forecast(A, disks, moving, BLOCK[q], t, end)
+            continue
+        j = A.LINK[o, OWNER]
         if (STATE[i, ISLAND] >= 0 or STATE[j, ISLAND] >= 0) and ignored(A, s, o, t):
             COUNT[UNMET] += 1
             mark_pair(A.LIST, A.POOL, A.FLAG, moving, s, o, 1)

@@ -118,6 +118,23 @@ def bends(
 
 
 @uncounted
+def pressed(BODY: FloatArray, i: int, j: int, t: float, nx: float, ny: float, px: float, py: float) -> float:
+    """When bodies that touch at a point, and there part with u >= 0 or rest, are back: 2 u / a_n if the point's
+    acceleration closes by a_n > 0; infinity else."""
+    x_a, y_a, _ = pose(BODY, i, t)
+    x_b, y_b, _ = pose(BODY, j, t)
+    ux_a, uy_a, w_a = rate(BODY, i, t)
+    ux_b, uy_b, w_b = rate(BODY, j, t)
+    rx_a, ry_a, rx_b, ry_b = px - x_a, py - y_a, px - x_b, py - y_b
+    q_a, q_b = BODY[i, TWIST], BODY[j, TWIST]
+    u = nx * (ux_b - w_b * ry_b - ux_a + w_a * ry_a) + ny * (uy_b + w_b * rx_b - uy_a - w_a * rx_a)
+    ax = BODY[j, AX] - q_b * ry_b - w_b * w_b * rx_b - (BODY[i, AX] - q_a * ry_a - w_a * w_a * rx_a)
+    ay = BODY[j, AY] + q_b * rx_b - w_b * w_b * ry_b - (BODY[i, AY] + q_a * rx_a - w_a * w_a * ry_a)
+    closing = -(nx * ax + ny * ay)
+    return 2.0 * max(u, 0.0) / closing if closing > 0.0 else math.inf
+
+
+@uncounted
 def general(
     BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray,
     a: int, b: int, disks: int, horizon: float, held: float,
@@ -156,7 +173,7 @@ def general(
         ux_b, uy_b, w_b = rate(BODY, j, start + s)
         p = place(LINK, VERTEX, a, x_a, y_a, angle_a, P)
         q = place(LINK, VERTEX, b, x_b, y_b, angle_b, Q)
-        d, nx, ny, _, _, _, edge_a, apart_a, edge_b, apart_b = closest(P, p, Q, q)
+        d, nx, ny, px, py, _, edge_a, apart_a, edge_b, apart_b = closest(P, p, Q, q)
         safe, near, met = fixed_axis(
             P, p, Q, q, nx, ny, x_a, y_a, ux_a, uy_a, w_a, x_b, y_b, ux_b, uy_b, w_b, extent, bend, tolerance, held
         )
@@ -171,6 +188,10 @@ def general(
                 Q, edge_b, P, p, x_b, y_b, ux_b, uy_b, w_b, x_a, y_a, ux_a, uy_a, w_a, extent, bend_b, tolerance, held
             )
             safe, near, met = max(safe, may), max(near, gap), met and closes
+        if not met and near <= tolerance:
+            back = pressed(BODY, i, j, start + s, nx, ny, px + SHAPE[a, ROUNDING] * nx, py + SHAPE[a, ROUNDING] * ny)
+            if back <= STRIDE * left:
+                return start + s + back, True
         # Shapes that touch without closing would be followed in steps that shrink with their rate.
         if not met and near <= tolerance:
             safe = max(safe, STRIDE * left)

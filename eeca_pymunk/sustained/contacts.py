@@ -13,7 +13,7 @@ import math
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel
 from ..geometry.manifold import manifold
-from ..layout import ELASTICITY, FRICTION, SIZE, SURFACE_X, SURFACE_Y
+from ..layout import COUNT, ELASTICITY, FRICTION, ROUNDING, SIZE, SURFACE_X, SURFACE_Y
 from ..rows.build import place_row
 from ..rows.layout import NX, NY, SURFACE
 
@@ -67,7 +67,9 @@ def gather(
             + abs(V[b, 2]) * EXTENT[b]
         )
         centre = MIDDLE
-        ahead = _NEAR * small < way <= _FAR * small
+        # Normals turn as round shapes go round one another, and slowly about a large one.
+        far = SHAPE[s, ROUNDING] + SHAPE[r, ROUNDING] if LINK[s, COUNT] == 1 and LINK[r, COUNT] == 1 else small
+        ahead = _NEAR * small < way <= _FAR * far
         if ahead:
             again = manifold(
                 SHAPE, LINK, VERTEX, WORK,

@@ -13,7 +13,6 @@ import scenes
 from comparisons.exact import Gas
 from comparisons.hopper import crossed, deepest_overlap
 from eeca_pymunk._rounds import impact_times
-from eeca_pymunk._rounds.agenda import Agenda
 from scenes.ball import bounce
 from scenes.scene import add_disk, add_walls
 
@@ -58,7 +57,6 @@ def test_steps_with_many_impacts_each_keep_their_order(count: int, dt: float) ->
 
 def test_order_of_impacts_is_checked_and_not_guessed(monkeypatch: pytest.MonkeyPatch) -> None:
     # Without the guess of who may be sent into whom, only looking back keeps the order.
-    monkeypatch.setattr(Agenda, "_mind_neighbours", lambda self, earliest: None)
     scene = scenes.build("gas", count=400, packing=0.3, seed=1)
     exact = exact_gas(scene, 0.05)
     report = ep.EECA(scene.space).step(0.05)
