@@ -12,7 +12,7 @@ from ..pairs.setup import near_lists, rebuilt
 from ..sustained.memory import FORCE_COLUMNS, forget
 from ..sustained.relax import FRESH
 from .layout import (
-    COUNT_LENGTH, FIRST_SHAPE, ISLAND, LIMIT, LOCK, LOGGED, MEMBER_COLUMNS, NOW, PAR_LENGTH, PUSHED_COLUMNS, RELAX, REMEMBERED,
+    AFTER, COUNT_LENGTH, FIRST_SHAPE, ISLAND, LEDGER, LIMIT, LOCK, LOGGED, MEMBER_COLUMNS, NOW, PAR_LENGTH, PUSHED_COLUMNS, RELAX, REMEMBERED,
     RESTING_COLUMNS, SHAPES, STAMP, STATE_COLUMNS, UNMET, Scene,
 )  # fmt: skip
 from .step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, resume, step
@@ -94,6 +94,11 @@ class EventLoop:
     def events(self) -> FloatArray:
         """(m, 11) EVENT rows of the last step, a copy."""
         return self.scene.LOG[: self.scene.COUNT[LOGGED]].copy()
+
+    @property
+    def book(self) -> FloatArray:
+        """(7,) what the ledger of the last step is made of, a copy (`..energy.ledger`)."""
+        return self.scene.PAR[LEDGER : AFTER + 1].copy()
 
     @property
     def lock(self) -> float:
