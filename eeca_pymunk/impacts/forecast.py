@@ -50,18 +50,21 @@ def leaves(
         dx, dy = BODY[i, X] - MARK[s, AT_X], BODY[i, Y] - MARK[s, AT_Y]
         vx, vy = BODY[i, VX], BODY[i, VY]
         squared = vx * vx + vy * vy
-        if squared == 0.0:
-            return math.inf
         b = dx * vx + dy * vy
         c = m * m - dx * dx - dy * dy
-        D = b * b + squared * c
-        if D <= 0.0:
+        # What the user has put elsewhere is outside, even at rest or on its way back.
+        if c <= 0.0:
             return now
+        if squared == 0.0:
+            return math.inf
+        D = b * b + squared * c
         root = math.sqrt(D)
         return max(since + ((root - b) / squared if b <= 0.0 else c / (root + b)), now)
     # The length of the way bounds the distance: u s + g s^2 / 2 until the room is used up.
     x, y = centre(BODY, SHAPE, LINK, s, now)
-    room = max(m - math.hypot(x - MARK[s, AT_X], y - MARK[s, AT_Y]), 0.0)
+    room = m - math.hypot(x - MARK[s, AT_X], y - MARK[s, AT_Y])
+    if room <= 0.0:
+        return now
     h = now - since
     u = math.hypot(BODY[i, VX] + ax * h, BODY[i, VY] + ay * h) + abs(BODY[i, SPIN] + BODY[i, TWIST] * h) * arm
     g = math.hypot(ax, ay) + abs(BODY[i, TWIST]) * arm
