@@ -43,12 +43,12 @@ def leaves(
     m = MARK[s, MARGIN]
     if m == math.inf:
         return math.inf
-    since = BODY[i, SINCE]
+    h = now - BODY[i, SINCE]
     arm = 0.0 if s < disks else math.hypot(SHAPE[s, CENTRE_X], SHAPE[s, CENTRE_Y])
     ax, ay = BODY[i, AX], BODY[i, AY]
     if ax == 0.0 and ay == 0.0 and arm == 0.0:
-        dx, dy = BODY[i, X] - MARK[s, AT_X], BODY[i, Y] - MARK[s, AT_Y]
         vx, vy = BODY[i, VX], BODY[i, VY]
+        dx, dy = BODY[i, X] + vx * h - MARK[s, AT_X], BODY[i, Y] + vy * h - MARK[s, AT_Y]
         squared = vx * vx + vy * vy
         b = dx * vx + dy * vy
         c = m * m - dx * dx - dy * dy
@@ -57,15 +57,13 @@ def leaves(
             return now
         if squared == 0.0:
             return math.inf
-        D = b * b + squared * c
-        root = math.sqrt(D)
-        return max(since + ((root - b) / squared if b <= 0.0 else c / (root + b)), now)
+        root = math.sqrt(b * b + squared * c)
+        return now + ((root - b) / squared if b <= 0.0 else c / (root + b))
     # The length of the way bounds the distance: u s + g s^2 / 2 until the room is used up.
     x, y = centre(BODY, SHAPE, LINK, s, now)
     room = m - math.hypot(x - MARK[s, AT_X], y - MARK[s, AT_Y])
     if room <= 0.0:
         return now
-    h = now - since
     u = math.hypot(BODY[i, VX] + ax * h, BODY[i, VY] + ay * h) + abs(BODY[i, SPIN] + BODY[i, TWIST] * h) * arm
     g = math.hypot(ax, ay) + abs(BODY[i, TWIST]) * arm
     if u + g == 0.0:

@@ -87,7 +87,7 @@ def test_nobody_leaves_before_the_instant_told(turning: bool, pulled: bool, unit
     for _ in range(50):
         world = wanderer(rng, turning, pulled, unit)
         margin = unit * float(10.0 ** rng.uniform(-2.0, 0.0))
-        now = float(world.body[0, la.SINCE])
+        now = float(world.body[0, la.SINCE]) + (float(rng.uniform(0.0, 3.0)) if rng.uniform() < 0.7 else 0.0)
         place = centre_at(world, now) + margin * rng.uniform(-0.6, 0.6, 2)
         mark = mark_of(world, float(place[0]), float(place[1]), margin)
         looks = 0
