@@ -66,7 +66,7 @@ def test_sizes_of_one_to_a_thousand(sizes: Callable[[int], np.ndarray], dt: floa
         for _ in range(round(0.1 / dt)):
             impacts += len(stepper.step(dt).contacts)
             assert deepest(bodies, 1.0) < 1e-8
-        assert impacts == exact.events > 20
+        assert impacts == exact.events >= (10 if SHORT else 40)
         assert ep.measure(space).energy == pytest.approx(energy, rel=1e-13)
         # Each impact makes errors larger by about the way to it over the radius, up to a thousand times for dust.
         np.testing.assert_allclose(np.median(np.abs(positions(bodies) - exact.position)), 0.0, atol=1e-10)
@@ -124,7 +124,7 @@ def test_another_force_on_each_body(unit: float) -> None:
             work = float(np.sum(forces * (positions(bodies) - start)))
             assert ep.measure(space).energy - work == pytest.approx(energy, rel=1e-12)
             assert deepest(bodies, unit) < 1e-9
-        assert impacts > 10
+        assert impacts > (5 if SHORT else 20)
         ends.append((impacts, positions(bodies) / unit))
     assert ends[0][0] == ends[1][0]
     np.testing.assert_allclose(ends[0][1], ends[1][1], atol=1e-7)
@@ -269,5 +269,5 @@ def test_terrain_of_a_thousand_segments(count: int) -> None:
         to_corners = np.hypot(place[:, :1] - x, place[:, 1:] - y).min(axis=1)
         assert (to_corners > 0.1 * (1.0 - 1e-9)).all()
         assert (place[:, 1] > np.interp(place[:, 0], x, y)).all()
-    assert impacts > count // 2
+    assert SHORT or impacts > count
     assert ep.measure(space).energy == pytest.approx(energy, rel=1e-12)
