@@ -56,35 +56,41 @@ def dust(seed: int) -> np.ndarray:
 
 
 @pytest.mark.parametrize("sizes", [one_giant, dust])
-@pytest.mark.parametrize("dt", [2e-3, 0.1])
+@pytest.mark.parametrize("dt", [2e-3, 0.04])
 def test_sizes_of_one_to_a_thousand(sizes: Callable[[int], np.ndarray], dt: float) -> None:
     for seed in range(2):
         space, bodies = box_of(sizes(seed), seed)
         exact, energy = reference(bodies), ep.measure(space).energy
-        exact.run(0.1)
+        exact.run(0.04)
         stepper, impacts = ep.EECA(space, sync=False), 0
-        for _ in range(round(0.1 / dt)):
+        for _ in range(round(0.04 / dt)):
             impacts += len(stepper.step(dt).contacts)
             assert deepest(bodies, 1.0) < 1e-8
-        assert impacts == exact.events >= (10 if SHORT else 40)
+        assert impacts == exact.events >= (2 if SHORT else 40)
         assert ep.measure(space).energy == pytest.approx(energy, rel=1e-13)
-        # Each impact makes errors larger by about the way to it over the radius, up to a thousand times for dust.
-        np.testing.assert_allclose(np.median(np.abs(positions(bodies) - exact.position)), 0.0, atol=1e-10)
+        # Each impact makes an error larger by about the way to it over the radius, up to a thousand times for dust.
+        error = np.abs(positions(bodies) - exact.position)
+        assert np.median(error) < 1e-13
+        assert error.max() < 1e-6
 
 
 @pytest.mark.parametrize("speed", [10.0, 1e4])
 def test_a_fast_disk_across_a_sparse_crowd(speed: float) -> None:
     # Many margin circles are crossed in one step, and not one disk on the way is passed over.
-    for seed in range(5):
+    # Errors grow 50 times from one to the next, so that the way must be short.
+    impacts = 0
+    for seed in range(4 if SHORT else 20):
         space, bodies = box_of(np.full(40 if SHORT else 300, 0.004), seed)
         for body in bodies:
             body.velocity = 0.001 * body.velocity
         bodies[0].velocity = (speed, 0.7 * speed)
         exact = reference(bodies)
-        exact.run(3.0 / speed)
-        report = ep.EECA(space, sync=False).step(3.0 / speed)
-        assert len(report.contacts) == exact.events > 2
-        np.testing.assert_allclose(positions(bodies), exact.position, atol=1e-6)
+        exact.run(0.6 / speed)
+        report = ep.EECA(space, sync=False).step(0.6 / speed)
+        assert len(report.contacts) == exact.events
+        impacts += exact.events
+        np.testing.assert_allclose(positions(bodies), exact.position, atol=1e-7)
+    assert impacts > (4 if SHORT else 60)
 
 
 @pytest.mark.parametrize("dt", [0.01, 0.5])
