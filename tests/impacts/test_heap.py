@@ -75,9 +75,7 @@ def centre_at(world: World, t: float) -> np.ndarray:
     s = t - world.body[0, la.SINCE]
     x, y, angle = world.body[0, :3] + (world.body[0, 3:6] + 0.5 * world.body[0, 6:9] * s) * s
     kx, ky = world.shape[0, [la.CENTRE_X, la.CENTRE_Y]]
-    return np.array(
-        [x + math.cos(angle) * kx - math.sin(angle) * ky, y + math.sin(angle) * kx + math.cos(angle) * ky]
-    )
+    return np.array([x + math.cos(angle) * kx - math.sin(angle) * ky, y + math.sin(angle) * kx + math.cos(angle) * ky])
 
 
 @pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])

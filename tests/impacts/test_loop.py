@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import pickle
 from collections.abc import Callable
+from itertools import pairwise
 
 import numpy as np
 import pymunk
@@ -140,9 +141,11 @@ def test_another_force_on_each_body(unit: float) -> None:
 def test_nobody_meets_unseen_in_a_pulled_crowd(origin: float) -> None:
     space, bodies = box_of(np.full(40 if SHORT else 300, 0.015), 6, gravity=30.0)
     for body in bodies:
-        body.position += (origin, 0.0)
+        body.position += pymunk.Vec2d(origin, 0.0)
     for wall in space.static_body.shapes:
-        wall.unsafe_set_endpoints(wall.a + (origin, 0.0), wall.b + (origin, 0.0))  # type: ignore[attr-defined]
+        assert isinstance(wall, pymunk.Segment)
+        shift = pymunk.Vec2d(origin, 0.0)
+        wall.unsafe_set_endpoints(wall.a + shift, wall.b + shift)
     energy, stepper = ep.measure(space).energy, ep.EECA(space, sync=False)
     for _ in range(8 if SHORT else 40):
         stepper.step(0.01)
@@ -259,7 +262,7 @@ def test_terrain_of_a_thousand_segments(count: int) -> None:
     outline = [(0.0, 30.0), *zip(x.tolist(), y.tolist(), strict=True), (width, 30.0)]
     space = pymunk.Space()
     space.gravity = (0.0, -9.81)
-    add_walls(space, list(zip(outline[:-1], outline[1:], strict=True)))
+    add_walls(space, list(pairwise(outline)))
     rng = np.random.default_rng(1)
     bodies = [
         add_disk(space, (0.3 + 0.45 * i, 3.0), 0.1, velocity=tuple((2.0 * rng.normal(size=2)).tolist()))

@@ -149,9 +149,7 @@ def test_flags_follow_their_pairs_and_new_pairs_have_none() -> None:
     }
     assert flagged == {pair, pair[::-1]}
     near.renew(pair[0])
-    assert not any(
-        n.FLAG[start : start + count].any() for start, count in n.LIST[:, [at.START, at.NUMBER]].tolist()
-    )
+    assert not any(n.FLAG[start : start + count].any() for start, count in n.LIST[:, [at.START, at.NUMBER]].tolist())
 
 
 @pytest.mark.parametrize("spread", ["field", "line", "long ones", "one place"])
