@@ -197,7 +197,8 @@ def case(name: str, build: Build, steps: int = STEPS, dt: float = DT, looks: int
     listed, pairs = lists.pairs(), as_set(twin.find(pose), moving)
     find, build_all = statistics.median(finds), statistics.median(builds)
     return {
-        "scene": name, "shapes": moving, "margin/radius": float(np.median(lists.margin / world.SHAPE[:moving, la.BOUND])),
+        "scene": name, "shapes": moving,
+        "margin/radius": float(np.median(lists.margin / world.SHAPE[:moving, la.BOUND])),
         "lists: pairs": len(listed), "twin: pairs": len(pairs), "lists, all at once (us)": 1e6 * build_all,
         "twin, all at once (us)": 1e6 * find, "lists made/step": made / steps, "twin found/step": found_anew / steps,
         "lists (us/step)": 1e6 * spent / steps, "twin (us/step)": 1e6 * find * found_anew / steps,

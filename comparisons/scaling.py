@@ -1,4 +1,4 @@
-"""Scaling: whole steps against `space.step` for 1 to 64 000 disks, turning shapes and the hopper; first use and import."""
+"""Scaling: whole steps against `space.step` for 1 to 64 000 disks, turning shapes and the hopper; first use."""
 
 from __future__ import annotations
 
@@ -98,12 +98,11 @@ def interleave(steppers: dict[str, Runner], dt: float, warm: int, rounds: int) -
 
 def collisions_of_a_step(build: Callable[[], Scene], dt: float) -> float:
     """Mean number of impulses in a step."""
-    stepper, count = ep.EECA(build().space, sync=False), 0
-    for k in range(1, 1001):
+    stepper, count, steps = ep.EECA(build().space, sync=False), 0, 0
+    while steps < 1000 and count < COUNTED:
         count += len(stepper.step(dt).contacts)
-        if count >= COUNTED:
-            break
-    return count / k
+        steps += 1
+    return count / steps
 
 
 def case(

@@ -60,7 +60,7 @@ def box_of(sizes: np.ndarray, seed: int, side: float = 1.0, gravity: float = 0.0
 
 
 def deepest(bodies: Bodies, side: float = math.inf) -> float:
-    """The deepest overlap of two disks, or of one with the walls x, y = 0 and `side`, relative to the smaller radius."""
+    """The deepest overlap of two disks, or of one with the walls x, y = 0 and `side`, over the smaller radius."""
     place, radius = positions(bodies), radii(bodies)
     d = place[:, None] - place
     overlap = radius[:, None] + radius - np.hypot(d[..., 0], d[..., 1])

@@ -79,7 +79,8 @@ class Crowd:
         return sets
 
     def check(self) -> None:
-        """Lists hold all they must and nothing else, each once."""
+        """Lists hold all they must and nothing else, each once; and everybody has somewhere to go."""
+        assert (self.near.MARK[:, at.MARGIN] > 0.0).all()
         for s, (found, expected) in enumerate(zip(self.listed(), self.expected(), strict=True)):
             assert len(set(found)) == len(found), f"list of {s} holds somebody twice"
             assert set(found) == expected, f"list of {s}"

@@ -16,11 +16,28 @@ from tests.packed import Thing, World, disk
 from .scenes import Crowd, crowd
 
 Make = Callable[[np.random.Generator], World]
+
+
+def absurd(rng: np.random.Generator) -> World:
+    """A giant too large for all levels, whose centre is far from the others."""
+    world = crowd(rng, np.where(np.arange(20) == 7, 1e200, 1e-3), side=1.0)
+    world.body[7, la.X] = 1e30
+    return world
+
+
+def pivots(rng: np.random.Generator) -> World:
+    """Bodies that impulses turn but do not shift, among others."""
+    world = crowd(rng, np.full(30, 0.1), boxes=6, kinematic=4, walls=8)
+    world.body[5:20, la.IM] = 0.0
+    return world
+
+
 CROWDS: dict[str, Make] = {
     "disks": lambda rng: crowd(rng, np.full(60, 0.1)),
     "one to a thousand": lambda rng: crowd(rng, 10.0 ** rng.uniform(-3.0, 0.0, 50)),
     "one giant": lambda rng: crowd(rng, np.where(np.arange(50) == 7, 1.0, 1e-3), side=2.5),
-    "absurd giant": lambda rng: crowd(rng, np.where(np.arange(20) == 7, 1e200, 1e-3), side=1.0),
+    "absurd giant": absurd,
+    "pivots": pivots,
     "points": lambda rng: crowd(rng, np.where(np.arange(40) % 2, 0.0, 0.1), side=2.0),
     "all points": lambda rng: crowd(rng, np.zeros(20), side=1.0),
     "boxes that turn": lambda rng: crowd(rng, np.full(6, 0.1), boxes=30),
