@@ -58,7 +58,7 @@ def leaves(
         if squared == 0.0:
             return math.inf
         root = math.sqrt(b * b + squared * c)
-        return now + ((root - b) / squared if b <= 0.0 else c / (root + b))
+        return float(now + ((root - b) / squared if b <= 0.0 else c / (root + b)))
     # The length of the way bounds the distance: u s + g s^2 / 2 until the room is used up.
     x, y = centre(BODY, SHAPE, LINK, s, now)
     room = m - math.hypot(x - MARK[s, AT_X], y - MARK[s, AT_Y])
@@ -68,14 +68,14 @@ def leaves(
     g = math.hypot(ax, ay) + abs(BODY[i, TWIST]) * arm
     if u + g == 0.0:
         return math.inf
-    return now + 2.0 * room / (u + math.sqrt(u * u + 2.0 * g * room))
+    return float(now + 2.0 * room / (u + math.sqrt(u * u + 2.0 * g * room)))
 
 
 @uncounted
 def has_left(BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, MARK: FloatArray, s: int, now: float) -> bool:
     """Whether shape s is as good as out of its margin circle."""
     x, y = centre(BODY, SHAPE, LINK, s, now)
-    return math.hypot(x - MARK[s, AT_X], y - MARK[s, AT_Y]) > (1.0 - _INSIDE) * MARK[s, MARGIN]
+    return bool(math.hypot(x - MARK[s, AT_X], y - MARK[s, AT_Y]) > (1.0 - _INSIDE) * MARK[s, MARGIN])
 
 
 @uncounted
@@ -84,7 +84,7 @@ def barred(RULE: FloatArray, a: int, b: int) -> bool:
     low, high = float(min(a, b)), float(max(a, b))
     for r in range(RULE.shape[0]):
         if RULE[r, 0] == low and RULE[r, 1] == high:
-            return RULE[r, 2] < 0.0
+            return bool(RULE[r, 2] < 0.0)
     return False
 
 

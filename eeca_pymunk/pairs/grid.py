@@ -102,7 +102,7 @@ def near(MARK: FloatArray, SHAPE: FloatArray, o: int, x: float, y: float, radius
     """Whether the margin circle of shape o overlaps that of centre (x, y)."""
     dx, dy = MARK[o, AT_X] - x, MARK[o, AT_Y] - y
     reach = radius + SHAPE[o, BOUND] + MARK[o, MARGIN]
-    return dx * dx + dy * dy <= reach * reach
+    return bool(dx * dx + dy * dy <= reach * reach)
 
 
 @uncounted
@@ -160,7 +160,7 @@ def near_wall(BOX: FloatArray, w: int, x: float, y: float, radius: float) -> boo
     """Whether a circle overlaps the box of static shape number w: (W, 4) left, bottom, right, top."""
     dx = max(BOX[w, 0] - x, x - BOX[w, 2], 0.0)
     dy = max(BOX[w, 1] - y, y - BOX[w, 3], 0.0)
-    return dx * dx + dy * dy <= radius * radius
+    return bool(dx * dx + dy * dy <= radius * radius)
 
 
 @uncounted
