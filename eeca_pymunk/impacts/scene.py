@@ -7,12 +7,14 @@ from collections.abc import Mapping
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..layout import COUNT as VERTICES, ELASTICITY, EVENT_COLUMNS, OWNER
+from ..layout import COUNT as VERTICES, DUE, ELASTICITY, EVENT_COLUMNS, NOW as READ, OWNER
 from ..pairs.setup import near_lists, rebuilt
 from ..sustained.memory import FORCE_COLUMNS, forget
 from ..sustained.relax import FRESH
+from ..transfer import FORCES
+from .islands import flag_again
 from .layout import (
-    AFTER, COUNT_LENGTH, FIRST_SHAPE, ISLAND, LEDGER, LIMIT, LOCK, LOGGED, MEMBER_COLUMNS, NOW, PAR_LENGTH, PUSHED_COLUMNS, RELAX, REMEMBERED,
+    AFTER, CHECK, COUNT_LENGTH, FIRST_SHAPE, HEAP, ISLAND, LEDGER, LIMIT, LOCK, LOGGED, MEMBER_COLUMNS, NOW, OTHER, PAR_LENGTH, PUSHED_COLUMNS, RELAX, REMEMBERED,
     RESTING_COLUMNS, SHAPES, STAMP, STATE_COLUMNS, UNMET, Scene,
 )  # fmt: skip
 from .step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, resume, step
@@ -64,7 +66,8 @@ class EventLoop:
         status = step(self.scene, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, disks, lossy)
         while status <= ROOM_FOR_LISTS:
             self._grow(status)
-            status = resume(self.scene, STATES, WALK, EXTRA, ENDS, disks, lossy, 0)
+            bits = FORCES if STATES[READ, :, 6:].any() else 0
+            status = resume(self.scene, STATES, WALK, EXTRA, ENDS, disks, lossy, bits)
         return status
 
     def _grow(self, wish: int) -> None:
@@ -83,6 +86,11 @@ class EventLoop:
             return
         self.near = rebuilt(self.near.larger(), scene.BODY, scene.SHAPE, scene.LINK, float(scene.PAR[NOW]))
         self.scene = scene._replace(POOL=self.near.POOL, FLAG=self.near.FLAG)
+        flag_again(self.scene)
+        # Margin circles are drawn about other places now: everybody is forecast anew.
+        n, now = len(scene.BODY) - 1, float(scene.PAR[NOW])
+        scene.BODY[:n, DUE], scene.STATE[:n, OTHER] = now, CHECK
+        scene.HEAP_TIME[:n], scene.HEAP_BODY[:n], scene.COUNT[HEAP] = now, np.arange(n), n
 
     def rule(self, rules: Mapping[tuple[int, int], tuple[float, float, float, float]]) -> None:
         """Let pairs of shapes (a < b) have this elasticity (below 0: they pass), friction and surface velocity from now on."""
