@@ -15,22 +15,44 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..geometry.gap import gap_at
-from ..layout import ANGLE, AX, AY, ELASTICITY, EXTENT, II, IM, OWNER, ROUNDING, SINCE, SIZE, SPIN, TWIST, VX, VY, X, Y, BOUND
+from ..layout import (
+    ANGLE,
+    AX,
+    AY,
+    BOUND,
+    ELASTICITY,
+    EXTENT,
+    II,
+    IM,
+    OWNER,
+    ROUNDING,
+    SINCE,
+    SIZE,
+    SPIN,
+    TWIST,
+    VX,
+    VY,
+    X,
+    Y,
+)
 from ..layout import COUNT as COUNT_OF
 from ..pairs.layout import NUMBER, START
-from ..pairs.lists import mark_pair, centre
+from ..pairs.lists import centre, mark_pair
+from ..pairs.rules import barred, law
 from ..rows.build import normal_rate, tangent_rate
 from ..rows.layout import ARM_NA, ARM_TA, FRICTION, K_N, K_T, NX, NY, ROW_COLUMNS, UN, UT
 from ..sustained.ledger import LEDGER_SIZE, LIFTED, carried
 from ..sustained.memory import find
-from ..sustained.step import LOCK as LOCK_OF, SWEEPS as SWEEPS_OF, POLISHES as POLISHES_OF
+from ..sustained.step import LOCK as LOCK_OF
 from ..sustained.step import OUT_SIZE, step_island
-from .forecast import barred
+from ..sustained.step import POLISHES as POLISHES_OF
+from ..sustained.step import SWEEPS as SWEEPS_OF
 from .layout import (
     AFTER_ME,
     BETA,
     BODIES,
     BUSY,
+    DIRECT,
     DONE,
     DT,
     ENDED,
@@ -68,15 +90,16 @@ from .layout import (
     SPAN_FROM,
     SPENT,
     STAMP,
+    SWEEPS,
     UN_AFTER,
     UN_BEFORE,
     UNTIL,
     UT_AFTER,
     UT_BEFORE,
     WORK_OF,
-    Scene, SWEEPS, DIRECT,
+    Scene,
 )  # fmt: skip
-from .strike import law, move_to, note
+from .strike import move_to, note
 
 _TURN = 0.1  # rad
 _PARTS = 64.0  # of a step, that a span is at least
@@ -423,7 +446,7 @@ def solve(A: Scene, root: int, t: float) -> int:
     m = 0
     if p > 0 and h > 0.0:
         m = step_island(
-            POSE, V, ACC, IMS, IIS, SIZES, n, PAIRS, p, A.SHAPE, A.LINK, A.VERTEX, A.WORK, h,
+            POSE, V, ACC, IMS, IIS, SIZES, n, PAIRS, p, A.SHAPE, A.RULE, A.LINK, A.VERTEX, A.WORK, h,
             max(-A.RESTING[root, LOST], 0.0), A.KEYS, A.FORCES, COUNT[REMEMBERED:], A.PAR[STAMP],
             A.RESTING[MINE[0], RELAX : RELAX + 3], P, Q, ROWS, KEY, L, LOSS, VN, JUMP, BOOK, OUT,
         )  # fmt: skip
@@ -433,7 +456,7 @@ def solve(A: Scene, root: int, t: float) -> int:
             h = max(stuck, A.PAR[DT] / _PARTS)
             BOOK[:] = 0.0
             m = step_island(
-                POSE, V, ACC, IMS, IIS, SIZES, n, PAIRS, p, A.SHAPE, A.LINK, A.VERTEX, A.WORK, h,
+                POSE, V, ACC, IMS, IIS, SIZES, n, PAIRS, p, A.SHAPE, A.RULE, A.LINK, A.VERTEX, A.WORK, h,
                 max(-A.RESTING[root, LOST], 0.0), A.KEYS, A.FORCES, COUNT[REMEMBERED:], A.PAR[STAMP],
                 A.RESTING[MINE[0], RELAX : RELAX + 3], P, Q, ROWS, KEY, L, LOSS, VN, JUMP, BOOK, OUT,
             )  # fmt: skip

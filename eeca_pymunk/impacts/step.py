@@ -41,6 +41,7 @@ from .layout import (
     BLOCKS,
     BUSY,
     DAMPED,
+    DIRECT,
     DONE,
     DT,
     EVENTS,
@@ -49,6 +50,7 @@ from .layout import (
     GRAVITY_X,
     GRAVITY_Y,
     HEAP,
+    IGNORED,
     IMPACTS,
     ISLAND,
     KINKS,
@@ -66,10 +68,12 @@ from .layout import (
     PUSHES,
     PUSHES_FULL,
     ROOT,
+    SOLVES,
     STALE,
     STAMP,
+    SWEEPS,
     UNMET,
-    Scene, SOLVES, IGNORED, SWEEPS, DIRECT,
+    Scene,
 )  # fmt: skip
 from .loop import follow, forecast
 from .settle import settle
