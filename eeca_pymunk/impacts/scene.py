@@ -8,14 +8,17 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..layout import COUNT as VERTICES, ELASTICITY, EVENT_COLUMNS, OWNER
+from ..pairs.layout import MARGIN
 from ..pairs.setup import near_lists, rebuilt
 from ..sustained.memory import FORCE_COLUMNS, forget
 from ..sustained.relax import FRESH
+from ..transfer import FORCES
 from .layout import (
     COUNT_LENGTH, FIRST_SHAPE, ISLAND, LIMIT, LOCK, LOGGED, MEMBER_COLUMNS, NOW, PAR_LENGTH, PUSHED_COLUMNS, RELAX, REMEMBERED,
     RESTING_COLUMNS, SHAPES, STAMP, STATE_COLUMNS, UNMET, Scene,
 )  # fmt: skip
 from .step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, resume, step
+from .together import resume_together, step_together
 
 RULE_COLUMNS = 6
 _CONTACTS = 256  # of islands, that there is room for at first; a power of 2
@@ -64,7 +67,8 @@ class EventLoop:
         status = step(self.scene, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, disks, lossy)
         while status <= ROOM_FOR_LISTS:
             self._grow(status)
-            status = resume(self.scene, STATES, WALK, EXTRA, ENDS, disks, lossy, 0)
+            # Whether there are forces is not known any more; to reset none does no harm.
+            status = resume(self.scene, STATES, WALK, EXTRA, ENDS, disks, lossy, FORCES)
         return status
 
     def _grow(self, wish: int) -> None:
@@ -73,16 +77,25 @@ class EventLoop:
             self.scene = scene._replace(LOG=np.concatenate((scene.LOG, np.zeros_like(scene.LOG))))
             return
         if wish == ROOM_FOR_CONTACTS:
-            KEYS, FORCES = np.full(2 * len(scene.KEYS), -1, np.int64), np.zeros((2 * len(scene.KEYS), FORCE_COLUMNS))
-            forget(scene.KEYS, scene.FORCES, scene.COUNT[REMEMBERED:], KEYS, FORCES, float(scene.PAR[STAMP]) - 1.0)
-            self.scene = scene._replace(
-                KEYS=KEYS, FORCES=FORCES,
+            size, count = len(scene.KEYS), int(scene.COUNT[REMEMBERED])
+            self._clean(size)
+            if count - scene.COUNT[REMEMBERED] >= size // 8:
+                return
+            self._clean(2 * size)
+            self.scene = self.scene._replace(
                 PUSHED_BY=np.concatenate((scene.PUSHED_BY, np.zeros_like(scene.PUSHED_BY))),
                 PUSHED=np.concatenate((scene.PUSHED, np.zeros_like(scene.PUSHED))),
             )  # fmt: skip
             return
         self.near = rebuilt(self.near.larger(), scene.BODY, scene.SHAPE, scene.LINK, float(scene.PAR[NOW]))
         self.scene = scene._replace(POOL=self.near.POOL, FLAG=self.near.FLAG)
+
+    def _clean(self, size: int) -> None:
+        """Forget the forces of steps before the last one, in tables of so many rows."""
+        scene = self.scene
+        KEYS, TABLE = np.full(size, -1, np.int64), np.zeros((size, FORCE_COLUMNS))
+        forget(scene.KEYS, scene.FORCES, scene.COUNT[REMEMBERED:], KEYS, TABLE, float(scene.PAR[STAMP]) - 1.0)
+        self.scene = scene._replace(KEYS=KEYS, FORCES=TABLE)
 
     def rule(self, rules: Mapping[tuple[int, int], tuple[float, float, float, float]]) -> None:
         """Let pairs of shapes (a < b) have this elasticity (below 0: they pass), friction and surface velocity from now on."""
@@ -104,3 +117,23 @@ class EventLoop:
     def converged(self) -> bool:
         """Whether the last step left nothing undone."""
         return self.scene.COUNT[UNMET] == 0
+
+
+class Together(EventLoop):
+    """Steps the same arrays with all contacts of a step acting together at its middle (`together.py`)."""
+
+    def __init__(self, BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, disks: int) -> None:
+        super().__init__(BODY, SHAPE, LINK, VERTEX, disks, 0)
+        self._usual: FloatArray = self.near.MARK[:, MARGIN].copy()
+
+    def step(
+        self, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
+        left: float,
+    ) -> int:  # fmt: skip
+        """See `together.step_together`; a negative answer is one of `transfer.py`."""
+        usual = self._usual
+        status = step_together(self.scene, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, usual)
+        while status <= ROOM_FOR_LISTS:
+            self._grow(status)
+            status = resume_together(self.scene, STATES, WALK, EXTRA, ENDS, usual, FORCES)
+        return status

@@ -95,7 +95,7 @@ def moved(X: FloatArray, V: FloatArray, s: float) -> FloatArray:
 def step_island(
     POSE: FloatArray, V: FloatArray, ACC: FloatArray, IM: FloatArray, II: FloatArray, EXTENT: FloatArray, n: int,
     PAIRS: IntArray, p: int, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray, h: float,
-    owed: float, KEYS: IntArray, FORCES: FloatArray, COUNT: IntArray, stamp: float, STATE: FloatArray, A: IntArray,
+    least: float, owed: float, KEYS: IntArray, FORCES: FloatArray, COUNT: IntArray, stamp: float, STATE: FloatArray, A: IntArray,
     B: IntArray, ROWS: FloatArray, KEY: IntArray, L: FloatArray, LOSS: FloatArray, VN: FloatArray, JUMP: FloatArray,
     LEDGER: FloatArray, OUT: FloatArray,
 ) -> int:  # fmt: skip
@@ -106,6 +106,7 @@ def step_island(
         n: bodies that impulses move, the first of k; the others keep their velocities. A body without mobility that
             rests (the ground) is among the k as well; an island without any is free.
         PAIRS: (p, 4) as `contacts.gather`.  WORK: scratch of the geometry.
+        least: length that every body's points may come at least, 0 if their velocities tell.
         owed: energy >= 0 to take out at least.
         KEYS, FORCES, COUNT, stamp: memory of forces; the number of this step.  STATE: (3,) of `relax`.
         A, B, ROWS, KEY, L, LOSS: the m contact rows out, with impulses over h and losses (D_n, D_t).
@@ -121,6 +122,8 @@ def step_island(
     k = len(IM)
     REACH = np.empty(k)
     slow, fast, pull = speeds(V, ACC, EXTENT, IM, n, h, REACH)
+    for i in range(k):
+        REACH[i] = max(REACH[i], least)
     MIDDLE = moved(POSE, V, 0.5 * h)
     NOW = np.empty((2, 5))
     THEN = np.empty((2, 5))
