@@ -22,6 +22,7 @@ NAMES = (
     "hopper",
     "work_precision",
     "scaling",
+    "detection",
     "soak",
     "hard_cases",
     "gallery",

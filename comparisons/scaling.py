@@ -1,13 +1,17 @@
-"""Scaling: ms per step and us per collision of each stepper against native, for 100 to 16 000 disks and the hopper."""
+"""Scaling: whole steps against `space.step` for 1 to 64 000 disks, turning shapes and the hopper; first use."""
 
 from __future__ import annotations
 
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Any
+from pathlib import Path
 
 import numpy as np
 import pymunk
@@ -18,146 +22,205 @@ import eeca_pymunk as ep
 import scenes
 from comparisons.output import Output, Row
 from comparisons.runs import slope
-from eeca_pymunk import eeca, render
-from eeca_pymunk.array_stepper import ArrayStepper
-from eeca_pymunk.space.twin import MarginTwin
+from eeca_pymunk import render
 from scenes import Scene
 
-COUNTS = (100, 1000, 4000, 16_000)
+COUNTS = (1, 10, 100, 1000, 4000, 16_000, 64_000)
 STEPS = (2e-4, 1e-3)
-HOPPER_DT, HOPPER_WARM = 5e-4, 600  # steps until the disks have met the walls and each other
+PACKING = 0.3
+HASH_FROM = 50  # bodies from which native has its spatial hash
+MIDSTEP_TO = 1000  # disks up to which a step of a simultaneous closure is worth waiting for
+HOPPER_DT, HOPPER_DURATION = 5e-4, 1.0
 WARM = 10  # steps before the clock runs: lists are made, caches are filled
-SECONDS = 1.5  # of wall time that each measurement may take
-LEAST, MOST = 5, 400  # steps of a measurement
+BLOCK = 4e-3  # s of work that a block of steps takes, if not the least
+ROUNDS, LEAST = 15, 2  # rounds over all steppers; steps of a block, at least
+COUNTED = 4000  # collisions that are counted for the cost of one, at most 1000 steps
 
 
 @dataclass
-class Clock:
-    """Wall time spent in the parts of a step (s)."""
+class Runner:
+    """One way of stepping one scene, with the seconds per step of each block so far (of this process, not the wall:
+    other programs do not count)."""
 
-    parts: dict[str, float] = field(default_factory=dict)
+    step: Callable[[float], object]
+    block: int = LEAST
+    seconds: list[float] = field(default_factory=list)
 
-    def timed(self, name: str, function: Callable[..., Any]) -> Callable[..., Any]:
-        """`function`, its time added to a part."""
+    def run(self, dt: float, steps: int) -> float:
+        """Seconds that so many steps take."""
+        step, begin = self.step, time.process_time()
+        for _ in range(steps):
+            step(dt)
+        return time.process_time() - begin
 
-        def call(*args: Any, **kwargs: Any) -> Any:
-            clock = time.perf_counter()
-            try:
-                return function(*args, **kwargs)
-            finally:
-                self.parts[name] = self.parts.get(name, 0.0) + time.perf_counter() - clock
-
-        return call
-
-
-@contextmanager
-def parts() -> Iterator[Clock]:
-    """Measures detection and transfer of the array steppers; what is left of a step is solving."""
-    clock = Clock()
-    watched: list[tuple[type, str, str]] = [
-        (MarginTwin, "candidates", "detect"), (MarginTwin, "widen", "detect"),
-        (ArrayStepper, "_gather", "transfer"), (ArrayStepper, "_scatter", "transfer"),
-    ]  # fmt: skip
-    originals = [(owner, name, getattr(owner, name)) for owner, name, _ in watched]
-    try:
-        for owner, name, part in watched:
-            setattr(owner, name, clock.timed(part, getattr(owner, name)))
-        yield clock
-    finally:
-        for owner, name, original in originals:
-            setattr(owner, name, original)
+    @property
+    def median(self) -> float:
+        """Seconds per step."""
+        return statistics.median(self.seconds)
 
 
-def closures(count: int) -> dict[str, tuple[eeca.Closure, bool]]:
-    """Closures to measure, with `sync` or without; the simultaneous ones only where a step stays affordable."""
-    found: dict[str, tuple[eeca.Closure, bool]] = {
-        "EECA TimeOfImpact": (ep.TimeOfImpact(), False),
-        "EECA TimeOfImpact, sync": (ep.TimeOfImpact(), True),
-        "EECA Midstep": (ep.Midstep(), False),
+def native(scene: Scene, hashed: bool) -> Runner:
+    """`space.step` itself, with or without a spatial hash."""
+    if hashed:
+        sizes = [s.radius for s in scene.space.shapes if isinstance(s, pymunk.Circle)]
+        scene.space.use_spatial_hash(3.0 * min(sizes), 2 * len(scene.bodies))
+    return Runner(scene.space.step)
+
+
+def eeca(scene: Scene, closure: ep.Closure, sync: bool, hashed: bool) -> Runner:
+    """EECA on a space like native's: with `sync` its broad phase is kept up too."""
+    if hashed:
+        native(scene, True)
+    return Runner(ep.EECA(scene.space, closure, sync=sync).step)
+
+
+def runners(build: Callable[[], Scene], hashed: bool, midstep: bool) -> dict[str, Runner]:
+    """Native first; every stepper on a scene of its own."""
+    found = {
+        "native": native(build(), hashed),
+        "EECA": eeca(build(), ep.TimeOfImpact(), False, hashed),
+        "EECA, sync": eeca(build(), ep.TimeOfImpact(), True, hashed),
     }
-    if count <= 1000:
-        found["EECA Dashpot xi=200"] = (ep.Dashpot(1e6, 200.0), False)
+    if midstep:
+        found["EECA Midstep"] = eeca(build(), ep.Midstep(), False, hashed)
     return found
 
 
-def measure(stepper: ep.Stepper, dt: float, warm: int) -> tuple[float, int]:
-    """Seconds per step, and how many steps were measured."""
-    for _ in range(warm):
-        stepper.step(dt)
-    steps, begin = 0, time.perf_counter()
-    while steps < LEAST or (time.perf_counter() - begin < SECONDS and steps < MOST):
-        stepper.step(dt)
+def interleave(steppers: dict[str, Runner], dt: float, warm: int, rounds: int) -> None:
+    """Blocks of steps in turn, so that whatever slows the machine down slows all of them down."""
+    for runner in steppers.values():
+        runner.run(dt, warm)
+        runner.block = max(LEAST, min(2000, int(BLOCK / max(runner.run(dt, LEAST) / LEAST, 1e-7))))
+    for _ in range(rounds):
+        for runner in steppers.values():
+            runner.seconds.append(runner.run(dt, runner.block) / runner.block)
+
+
+def collisions_of_a_step(build: Callable[[], Scene], dt: float) -> float:
+    """Mean number of impulses in a step."""
+    stepper, count, steps = ep.EECA(build().space, sync=False), 0, 0
+    while steps < 1000 and count < COUNTED:
+        count += len(stepper.step(dt).contacts)
         steps += 1
-    return (time.perf_counter() - begin) / steps, steps
+    return count / steps
 
 
-def case(build: Callable[[], Scene], count: int, dt: float, warm: int) -> list[Row]:
-    """All steppers on one scene, and their ratios to both natives."""
-    seconds: dict[str, float] = {}
-    shares: dict[str, Row] = {}
-    scene = build()
-    radius = min(shape.radius for shape in scene.space.shapes if isinstance(shape, pymunk.Circle))
-    for name, hashed in (("native", False), ("native, hash", True)):
-        scene = build()
-        if hashed:
-            scene.space.use_spatial_hash(3.0 * radius, 2 * count)
-        seconds[name] = measure(ep.Native(scene.space), dt, warm)[0]
-    collisions = 0.0
-    for name, (closure, sync) in closures(count).items():
-        scene = build()
-        stepper = ep.EECA(scene.space, closure, sync=sync)
-        for _ in range(warm):
-            stepper.step(dt)
-        with parts() as clock:
-            seconds[name], steps = measure(stepper, dt, 0)
-        total = seconds[name] * steps
-        detect, transfer = clock.parts.get("detect", 0.0) / total, clock.parts.get("transfer", 0.0) / total
-        shares[name] = {
-            "detect %": 100 * detect,
-            "solve %": 100 * (1 - detect - transfer),
-            "transfer %": 100 * transfer,
-        }
-        if name == "EECA TimeOfImpact":
-            reports = [stepper.step(dt) for _ in range(LEAST)]
-            collisions = float(np.mean([len(r.contacts) for r in reports]))
-    empty: Row = {"detect %": None, "solve %": None, "transfer %": None}
+def case(
+    build: Callable[[], Scene], count: int, dt: float, warm: int = WARM, rounds: int = ROUNDS, midstep: bool = False
+) -> list[Row]:  # fmt: skip
+    """All steppers on one scene, in one run."""
+    hashed = count >= HASH_FROM
+    steppers = runners(build, hashed, midstep)
+    interleave(steppers, dt, warm, rounds)
+    collisions = collisions_of_a_step(build, dt)
+    base = steppers["native"]
     return [
         {
-            "scene": scene.name, "N": count, "dt (s)": dt, "stepper": name, "ms/step": 1e3 * wall,
-            "us/collision": 1e6 * wall / collisions if collisions else None,
-            "x native": wall / seconds["native"], "x native, hash": wall / seconds["native, hash"],
-            **shares.get(name, empty),
+            "N": count, "dt (s)": dt, "stepper": name, "us/step": 1e6 * runner.median,
+            # Of blocks that were run one after the other.
+            "x native": statistics.median(a / b for a, b in zip(runner.seconds, base.seconds, strict=True)),
+            "collisions/step": collisions,
+            "us/collision": 1e6 * runner.median / collisions if collisions and name.startswith("EECA") else None,
         }
-        for name, wall in seconds.items()
+        for name, runner in steppers.items()
     ]  # fmt: skip
+
+
+def hopper(dt: float = HOPPER_DT, duration: float = HOPPER_DURATION, parts: int = 4) -> list[Row]:
+    """The whole filling from its first step, EECA with sync beside native as it is shipped; parts of the way."""
+    chunk = 25
+    chunks = round(duration / dt / chunk)
+    ours, theirs = eeca(scenes.build("hopper"), ep.TimeOfImpact(), True, False), native(scenes.build("hopper"), False)
+    ours_took, theirs_took = np.zeros(chunks), np.zeros(chunks)
+    for k in tqdm(range(chunks), desc="hopper", leave=False, disable=None):
+        ours_took[k], theirs_took[k] = ours.run(dt, chunk), theirs.run(dt, chunk)
+    rows: list[Row] = []
+    for first, last in [*((p * chunks // parts, (p + 1) * chunks // parts) for p in range(parts)), (0, chunks)]:
+        a, b = float(ours_took[first:last].sum()), float(theirs_took[first:last].sum())
+        steps = chunk * (last - first)
+        rows.append({
+            "from (s)": first * chunk * dt, "to (s)": last * chunk * dt, "EECA, sync (us/step)": 1e6 * a / steps,
+            "native (us/step)": 1e6 * b / steps, "x native": a / b,
+        })  # fmt: skip
+    return rows
+
+
+_FIRST_USE = """
+import time
+start = time.perf_counter()
+import numpy, pymunk
+base = time.perf_counter() - start
+import eeca_pymunk as ep
+print(base, time.perf_counter() - start - base)
+if {step}:
+    import scenes
+    for scene in (scenes.build("gas", count=20), scenes.build("mixed", bowl=True)):
+        begin = time.perf_counter()
+        ep.EECA(scene.space).step(1e-3)
+        print(time.perf_counter() - begin)
+"""
+
+
+def _fresh(folder: Path, step: bool) -> list[float]:
+    """Seconds in a process of its own: numpy and pymunk, the package after them, and the first steps."""
+    call = [sys.executable, "-c", _FIRST_USE.format(step=step)]
+    answer = subprocess.run(call, cwd=folder, capture_output=True, text=True, check=True)
+    return [float(word) for word in answer.stdout.split()]
+
+
+def first_use(looks: int = 5) -> list[Row]:
+    """Seconds of a first step after installation, with machine code on disk, and of an import alone."""
+    root = Path(ep.__file__).parents[1]
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        for package in ("eeca_pymunk", "scenes"):
+            shutil.copytree(root / package, folder / package, ignore=shutil.ignore_patterns("__pycache__"))
+        cold = _fresh(folder, True)
+        warm = np.median([_fresh(folder, True) for _ in range(looks)], axis=0)
+        imports = np.median([_fresh(folder, False) for _ in range(looks)], axis=0)
+    return [
+        {"what": "first step of disks after installation: compiling", "s": cold[2]},
+        {"what": "first step of turning shapes after that", "s": cold[3]},
+        {"what": "first step of disks, machine code on disk", "s": float(warm[2])},
+        {"what": "first step of turning shapes after that", "s": float(warm[3])},
+        {"what": "import numpy, pymunk", "s": float(imports[0])},
+        {"what": "import eeca_pymunk after them", "s": float(imports[1])},
+    ]
 
 
 def run(output: Output, full: bool) -> None:
     """Print the tables; write CSV and a picture."""
-    output.parameters({"N": COUNTS, "packing": 0.3, "dt": STEPS, "hopper dt": HOPPER_DT})
+    output.parameters({"N": COUNTS, "packing": PACKING, "dt": STEPS, "hopper dt": HOPPER_DT})
     rows: list[Row] = []
     for count in tqdm(COUNTS, desc="scaling", unit="N", disable=None):
         for dt in STEPS:
-            rows += case(partial(scenes.build, "gas", count=count), count, dt, WARM)
-    output.table("Elastic gas in a box, cost at equal dt", rows, "gas")
-    hopper = case(partial(scenes.build, "hopper"), 665, HOPPER_DT, HOPPER_WARM)
-    output.table(f"Hopper, from step {HOPPER_WARM} on", hopper, "hopper")
-    output.table("Slope of the cost in N, from 1000 disks on", _slopes(rows), "slope")
+            build = partial(scenes.build, "gas", count=count, packing=PACKING)
+            rounds = ROUNDS if count <= 4000 else 7
+            rows += case(build, count, dt, rounds=rounds, midstep=full and count <= MIDSTEP_TO)
+    output.table("Elastic gas in a box, cost at equal dt (native with a spatial hash from 50 bodies)", rows, "gas")
+    output.table("Slope of the cost in N, from 1000 disks on", slopes(rows), "slope")
+    mixed: list[Row] = []
+    for dt in (1e-3, 1e-2):
+        mixed += case(partial(scenes.build, "mixed", count=20, bowl=True), 20, dt, warm=round(0.5 / dt))
+    output.table("20 turning shapes under gravity in a bowl", mixed, "mixed")
+    output.table("Hopper of 665 disks from the first step, native as shipped", hopper(), "hopper")
+    output.table("First use", first_use(), "first_use")
     output.picture(_picture(rows))
 
 
 def _series(rows: list[Row], dt: float) -> dict[str, tuple[list[float], list[float]]]:
-    """N and ms per step of every stepper at one dt."""
+    """N and us per step of every stepper at one dt."""
     found: dict[str, tuple[list[float], list[float]]] = {}
     for row in rows:
         if row["dt (s)"] == dt:
             count, cost = found.setdefault(str(row["stepper"]), ([], []))
             count.append(float(row["N"] or 0))
-            cost.append(float(row["ms/step"] or 0.0))
+            cost.append(float(row["us/step"] or 0.0))
     return found
 
 
-def _slopes(rows: list[Row]) -> list[Row]:
+def slopes(rows: list[Row]) -> list[Row]:
+    """Exponents of the cost in N, over 1000 disks and more."""
     found: list[Row] = []
     for dt in STEPS:
         for name, (count, cost) in _series(rows, dt).items():
@@ -174,7 +237,7 @@ def _picture(rows: list[Row]) -> Figure:
         for name, (count, cost) in _series(rows, dt).items():
             style = {"linestyle": "--", "color": "#777777"} if name.startswith("native") else {}
             ax.loglog(count, cost, "o", linestyle=style.get("linestyle", "-"), color=style.get("color"), label=name)
-        ax.set(xlabel="disks", ylabel="ms per step", title=f"dt = {dt:g} s")
+        ax.set(xlabel="disks", ylabel="us per step", title=f"dt = {dt:g} s")
         ax.legend(fontsize=7)
     figure.suptitle("Elastic gas, packing .3: cost of a step")
     return figure

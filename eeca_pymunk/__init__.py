@@ -13,6 +13,7 @@ from .closures.midstep import Midstep
 from .closures.time_of_impact import TimeOfImpact
 from .eeca import EECA, Closure
 from .energy.invariants import Invariants
+from .energy.ledger import Ledger
 from .errors import UnsupportedFeature
 from .recording import Recording, record
 from .report import Contacts, StepReport
@@ -25,6 +26,7 @@ __all__ = [
     "Contacts",
     "Dashpot",
     "Invariants",
+    "Ledger",
     "Midstep",
     "Native",
     "Newmark",

@@ -31,6 +31,18 @@ class Method(Protocol):
     def events(self) -> FloatArray:
         """(m, 11) EVENT rows of the last step, a copy."""
 
+    @property
+    def book(self) -> FloatArray:
+        """(7,) what the ledger of the last step is made of, a copy (`energy.ledger`)."""
+
+    @property
+    def lock(self) -> float:
+        """Scale of the energy lock of the last step that was farthest from 1."""
+
+    @property
+    def converged(self) -> bool:
+        """Whether the last step left nothing undone."""
+
 
 class Closure(Protocol):
     """Chooses psi2, the one parameter that conservation leaves free: when impulses act."""
@@ -66,3 +78,9 @@ class EECA(PackedStepper):
 
     def events(self, world: World) -> FloatArray:
         return self._method.events
+
+    def book(self) -> FloatArray | None:
+        return self._method.book
+
+    def outcome(self) -> tuple[float, bool]:
+        return self._method.lock, self._method.converged

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 
 from .arrays import FloatArray
 from .errors import NotFiniteError
-from .layout import ELASTICITY
 from .report import StepReport, of_events
 from .space.checks import check_ignored
 from .space.describe import describe
@@ -73,6 +72,14 @@ class PackedStepper(Stepper):
         """(m, 10) EVENT rows of the step that has just answered EVENTS, a copy."""
         raise NotImplementedError
 
+    def book(self) -> FloatArray | None:
+        """(7,) what the ledger of the last step is made of, see `energy.ledger`; None if the stepper keeps none."""
+        return None
+
+    def outcome(self) -> tuple[float, bool]:
+        """Scale of the energy lock of the last step that was farthest from 1, and whether all tolerances were met."""
+        return 1.0, True
+
     def step(self, dt: float) -> StepReport:
         dt = check_dt(dt)
         if dt == 0.0:
@@ -107,7 +114,7 @@ class PackedStepper(Stepper):
         self.time += dt
         if status & EVENTS:
             return self._report(world, dt)
-        return StepReport(self.time, world.empty)
+        return StepReport(self.time, world.empty, book=self.book())
 
     def _rest(self, world: World, dt: float, status: int) -> None:
         """Write the end of the step with a rest step at it."""
@@ -143,7 +150,7 @@ class PackedStepper(Stepper):
                 self._checked(world, dt, self._fly(world, dt, left))
                 after = rehearsal.run(world.ended(), dt)
                 world.state[:] = rehearsal.before
-                world.rules = rehearsal.rules(world.shapes, world.SHAPE[:, ELASTICITY])
+                world.rules = rehearsal.rules(world.shapes, world.SHAPE)
             world.forget()
             status = self._checked(world, dt, self.advance(world, dt, left))
             end = world.ended()
@@ -167,7 +174,7 @@ class PackedStepper(Stepper):
             self._undo(world, state)
             raise
         self.time += dt
-        report = self._report(world, dt) if status & EVENTS else StepReport(self.time, world.empty)
+        report = self._report(world, dt) if status & EVENTS else StepReport(self.time, world.empty, book=self.book())
         if rehearsal is not None:
             rehearsal.finish(bodies)
         return report
@@ -191,7 +198,8 @@ class PackedStepper(Stepper):
 
     def _report(self, world: World, dt: float) -> StepReport:
         details = partial(of_events, self.events(world), dt, world.bodies.items, world.owner)
-        return StepReport(self.time, details)
+        lock, converged = self.outcome()
+        return StepReport(self.time, details, lock=lock, converged=converged, book=self.book())
 
     def _look(self, anew: bool = False) -> World:
         """The space as it is now, checked; with all its shapes if `anew` or if some came or went."""
@@ -201,7 +209,7 @@ class PackedStepper(Stepper):
             return world
         self._world = None
         world = World(self.space, self.ignore, world)
-        if not (world.smooth or self._warned):
+        if world.ignores and not self._warned:
             self._warned = True
             warnings.warn(f"{type(self).__name__} steps on without the friction of this space", stacklevel=4)
         self._sync = Sync(self.space, world.bodies)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from .arrays import FloatArray, IntArray
+from .energy.ledger import Ledger, ledger
 from .layout import CHANGE, FIRST_SHAPE, GAP, IMPULSE, NORMAL_X, POINT_X, SECOND_SHAPE, WHEN
 
 if TYPE_CHECKING:
@@ -52,10 +53,10 @@ class StepReport:
     Args:
         time: simulated time at the end of the step, since the stepper was made.
         details: the arrays, or what makes them when one is asked for.
-        iterations, substeps, lock, converged: see the properties.
+        iterations, substeps, lock, converged: see the properties.  book: (7,) of `energy.ledger`.
     """
 
-    __slots__ = ("_converged", "_details", "_iterations", "_lock", "_substeps", "_time")
+    __slots__ = ("_book", "_converged", "_details", "_iterations", "_lock", "_substeps", "_time")
 
     def __init__(
         self,
@@ -65,6 +66,7 @@ class StepReport:
         substeps: int = 1,
         lock: float = 1.0,
         converged: bool = True,
+        book: FloatArray | None = None,
     ) -> None:
         self._time = time
         self._details = details
@@ -72,6 +74,7 @@ class StepReport:
         self._substeps = substeps
         self._lock = lock
         self._converged = converged
+        self._book = book
 
     @staticmethod
     def without_contacts(time: float, bodies: tuple[pymunk.Body, ...] = (), substeps: int = 1) -> StepReport:
@@ -130,6 +133,11 @@ class StepReport:
         return self._lock
 
     @property
+    def ledger(self) -> Ledger | None:
+        """Where the energy of the step has gone; None if the stepper does not tell."""
+        return None if self._book is None else ledger(self._book)
+
+    @property
     def converged(self) -> bool:
         """Whether the solver met its tolerance. Energy and momentum are exact either way."""
         return self._converged
@@ -140,7 +148,7 @@ class StepReport:
     def __reduce__(self) -> tuple[type[StepReport], tuple[object, ...]]:
         # What would make the arrays holds the stepper: a copy holds the arrays.
         return StepReport, (
-            self.time, self._made(), self.iterations, self.substeps, self.lock, self.converged,
+            self.time, self._made(), self.iterations, self.substeps, self.lock, self.converged, self._book,
         )  # fmt: skip
 
 

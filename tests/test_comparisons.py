@@ -13,10 +13,9 @@ import pytest
 
 import eeca_pymunk as ep
 import scenes
-from comparisons import gallery, runs, scaling, soak, work_precision
+from comparisons import detection, gallery, runs, scaling, soak, work_precision
 from comparisons.__main__ import NAMES, main
 from comparisons.hopper import crossed, deepest_overlap
-from eeca_pymunk.space.twin import MarginTwin
 
 
 def test_no_name_lists_all(capsys: pytest.CaptureFixture[str]) -> None:
@@ -131,17 +130,31 @@ def test_work_precision_finds_how_much_better_eeca_is() -> None:
     assert float(row["native best (m)"] or 0.0) > 1e-4
 
 
-def test_scaling_tells_ratios_and_shares() -> None:
-    rows = scaling.case(lambda: scenes.build("gas", count=30), 30, 1e-3, 2)
-    assert {row["stepper"] for row in rows} >= {"native", "native, hash", "EECA TimeOfImpact", "EECA Midstep"}
-    (base,) = (row for row in rows if row["stepper"] == "native")
-    assert base["x native"] == 1.0
-    (eeca,) = (row for row in rows if row["stepper"] == "EECA TimeOfImpact")
-    shares = [float(eeca[key] or 0.0) for key in ("detect %", "solve %", "transfer %")]
-    assert sum(shares) == pytest.approx(100.0)
-    assert min(shares) > 0.0
-    # The clocks are gone again.
-    assert MarginTwin.candidates.__name__ == "candidates"
+def test_scaling_tells_ratios_of_one_interleaved_run() -> None:
+    rows = scaling.case(lambda: scenes.build("gas", count=60), 60, 1e-3, warm=2, rounds=3)
+    assert [row["stepper"] for row in rows] == ["native", "EECA", "EECA, sync"]
+    assert rows[0]["x native"] == 1.0
+    assert all(float(row["us/step"] or 0.0) > 0.0 for row in rows)
+    assert float(rows[1]["us/collision"] or 0.0) > 0.0
+    assert rows[0]["us/collision"] is None
+    hopper = scaling.hopper(dt=2.5e-3, duration=0.25, parts=2)
+    assert [row["to (s)"] for row in hopper] == pytest.approx([0.125, 0.25, 0.25])
+    slopes = scaling.slopes(
+        [{"N": n, "dt (s)": dt, "stepper": "x", "us/step": n**1.5} for n in (100, 1000, 4000, 16_000) for dt in (1e-3,)]
+    )
+    assert [row["slope"] for row in slopes] == pytest.approx([1.5])
+
+
+def test_detection_finds_what_pymunk_finds() -> None:
+    for name in ("100 disks", "20 boxes", "100 disks 1:30"):
+        row = detection.case(name, detection.cases()[name], steps=6, dt=0.01, looks=3)
+        assert int(row["lists: pairs"] or 0) >= int(row["twin: pairs"] or 0) > 20
+
+
+def test_detection_notices_a_pair_that_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(detection.Lists, "pairs", lambda self: set())
+    with pytest.raises(ValueError, match="lists lack"):
+        detection.case("gas", detection.cases()["100 disks"], steps=1)
 
 
 def test_short_soak_keeps_energy_and_disks() -> None:

@@ -43,38 +43,39 @@ def leaves(
     m = MARK[s, MARGIN]
     if m == math.inf:
         return math.inf
-    since = BODY[i, SINCE]
+    h = now - BODY[i, SINCE]
     arm = 0.0 if s < disks else math.hypot(SHAPE[s, CENTRE_X], SHAPE[s, CENTRE_Y])
     ax, ay = BODY[i, AX], BODY[i, AY]
     if ax == 0.0 and ay == 0.0 and arm == 0.0:
-        dx, dy = BODY[i, X] - MARK[s, AT_X], BODY[i, Y] - MARK[s, AT_Y]
         vx, vy = BODY[i, VX], BODY[i, VY]
+        dx, dy = BODY[i, X] + vx * h - MARK[s, AT_X], BODY[i, Y] + vy * h - MARK[s, AT_Y]
         squared = vx * vx + vy * vy
-        if squared == 0.0:
-            return math.inf
         b = dx * vx + dy * vy
         c = m * m - dx * dx - dy * dy
-        D = b * b + squared * c
-        if D <= 0.0:
+        # What the user has put elsewhere is outside, even at rest or on its way back.
+        if c <= 0.0:
             return now
-        root = math.sqrt(D)
-        return max(since + ((root - b) / squared if b <= 0.0 else c / (root + b)), now)
+        if squared == 0.0:
+            return math.inf
+        root = math.sqrt(b * b + squared * c)
+        return float(now + ((root - b) / squared if b <= 0.0 else c / (root + b)))
     # The length of the way bounds the distance: u s + g s^2 / 2 until the room is used up.
     x, y = centre(BODY, SHAPE, LINK, s, now)
-    room = max(m - math.hypot(x - MARK[s, AT_X], y - MARK[s, AT_Y]), 0.0)
-    h = now - since
+    room = m - math.hypot(x - MARK[s, AT_X], y - MARK[s, AT_Y])
+    if room <= 0.0:
+        return now
     u = math.hypot(BODY[i, VX] + ax * h, BODY[i, VY] + ay * h) + abs(BODY[i, SPIN] + BODY[i, TWIST] * h) * arm
     g = math.hypot(ax, ay) + abs(BODY[i, TWIST]) * arm
     if u + g == 0.0:
         return math.inf
-    return now + 2.0 * room / (u + math.sqrt(u * u + 2.0 * g * room))
+    return float(now + 2.0 * room / (u + math.sqrt(u * u + 2.0 * g * room)))
 
 
 @uncounted
 def has_left(BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, MARK: FloatArray, s: int, now: float) -> bool:
     """Whether shape s is as good as out of its margin circle."""
     x, y = centre(BODY, SHAPE, LINK, s, now)
-    return math.hypot(x - MARK[s, AT_X], y - MARK[s, AT_Y]) > (1.0 - _INSIDE) * MARK[s, MARGIN]
+    return bool(math.hypot(x - MARK[s, AT_X], y - MARK[s, AT_Y]) > (1.0 - _INSIDE) * MARK[s, MARGIN])
 
 
 @uncounted
@@ -83,7 +84,7 @@ def barred(RULE: FloatArray, a: int, b: int) -> bool:
     low, high = float(min(a, b)), float(max(a, b))
     for r in range(RULE.shape[0]):
         if RULE[r, 0] == low and RULE[r, 1] == high:
-            return RULE[r, 2] < 0.0
+            return bool(RULE[r, 2] < 0.0)
     return False
 
 

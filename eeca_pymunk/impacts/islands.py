@@ -138,6 +138,15 @@ def members(A: Scene, root: int, MINE: IntArray) -> int:
 
 
 @uncounted
+def flag_again(A: Scene) -> None:
+    """Flag the pairs of all spans, in lists that were made anew."""
+    for c in range(A.COUNT[PUSHES]):
+        if A.PUSHED_BY[c, ROOT] >= 0:
+            a, b = A.PUSHED_BY[c, PUSH_A], A.PUSHED_BY[c, PUSH_B]
+            mark_pair(A.LIST, A.POOL, A.FLAG, A.LIST.shape[0], a, b, 1)
+
+
+@uncounted
 def book(A: Scene, c: int, t: float) -> None:
     """Book what contact number c has done in its span until instant t, note its impulse, and end it.
 

@@ -7,14 +7,15 @@ from collections.abc import Mapping
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..layout import COUNT as VERTICES, ELASTICITY, EVENT_COLUMNS, OWNER
+from ..layout import COUNT as VERTICES, DUE, ELASTICITY, EVENT_COLUMNS, NOW as READ, OWNER
 from ..pairs.layout import MARGIN
 from ..pairs.setup import near_lists, rebuilt
 from ..sustained.memory import FORCE_COLUMNS, forget
 from ..sustained.relax import FRESH
 from ..transfer import FORCES
+from .islands import flag_again
 from .layout import (
-    COUNT_LENGTH, FIRST_SHAPE, ISLAND, LIMIT, LOCK, LOGGED, MEMBER_COLUMNS, NOW, PAR_LENGTH, PUSHED_COLUMNS, RELAX, REMEMBERED,
+    AFTER, CHECK, COUNT_LENGTH, FIRST_SHAPE, HEAP, ISLAND, LEDGER, LIMIT, LOCK, LOGGED, MEMBER_COLUMNS, NOW, OTHER, PAR_LENGTH, PUSHED_COLUMNS, RELAX, REMEMBERED,
     RESTING_COLUMNS, SHAPES, STAMP, STATE_COLUMNS, UNMET, Scene,
 )  # fmt: skip
 from .step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, resume, step
@@ -67,8 +68,8 @@ class EventLoop:
         status = step(self.scene, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, disks, lossy)
         while status <= ROOM_FOR_LISTS:
             self._grow(status)
-            # Whether there are forces is not known any more; to reset none does no harm.
-            status = resume(self.scene, STATES, WALK, EXTRA, ENDS, disks, lossy, FORCES)
+            bits = FORCES if STATES[READ, :, 6:].any() else 0
+            status = resume(self.scene, STATES, WALK, EXTRA, ENDS, disks, lossy, bits)
         return status
 
     def _grow(self, wish: int) -> None:
@@ -89,6 +90,11 @@ class EventLoop:
             return
         self.near = rebuilt(self.near.larger(), scene.BODY, scene.SHAPE, scene.LINK, float(scene.PAR[NOW]))
         self.scene = scene._replace(POOL=self.near.POOL, FLAG=self.near.FLAG)
+        flag_again(self.scene)
+        # Margin circles are drawn about other places now: everybody is forecast anew.
+        n, now = len(scene.BODY) - 1, float(scene.PAR[NOW])
+        scene.BODY[:n, DUE], scene.STATE[:n, OTHER] = now, CHECK
+        scene.HEAP_TIME[:n], scene.HEAP_BODY[:n], scene.COUNT[HEAP] = now, np.arange(n), n
 
     def _clean(self, size: int) -> None:
         """Forget the forces of steps before the last one, in tables of so many rows."""
@@ -107,6 +113,11 @@ class EventLoop:
     def events(self) -> FloatArray:
         """(m, 11) EVENT rows of the last step, a copy."""
         return self.scene.LOG[: self.scene.COUNT[LOGGED]].copy()
+
+    @property
+    def book(self) -> FloatArray:
+        """(7,) what the ledger of the last step is made of, a copy (`..energy.ledger`)."""
+        return self.scene.PAR[LEDGER : AFTER + 1].copy()
 
     @property
     def lock(self) -> float:
@@ -135,5 +146,6 @@ class Together(EventLoop):
         status = step_together(self.scene, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, usual)
         while status <= ROOM_FOR_LISTS:
             self._grow(status)
-            status = resume_together(self.scene, STATES, WALK, EXTRA, ENDS, usual, FORCES)
+            bits = FORCES if STATES[READ, :, 6:].any() else 0
+            status = resume_together(self.scene, STATES, WALK, EXTRA, ENDS, usual, bits)
         return status

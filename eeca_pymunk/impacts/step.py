@@ -55,6 +55,9 @@ def begin(A: Scene, WALK: IntArray) -> None:
     if COUNT[UNMET] > 0:
         A.FLAG[:] = 0
         COUNT[UNMET] = 0
+        # Pairs that were passed over are in nobody's forecast.
+        for i in range(BODY.shape[0] - 1):
+            BODY[i, DUE] = min(BODY[i, DUE], 0.0)
     for c in range(LEDGER_LENGTH):
         PAR[LEDGER + c] = 0.0
     PAR[LOCK] = 1.0

@@ -42,12 +42,19 @@ from .layout import (
 from .lists import append, centre, may_meet, remove
 
 _FIRST_CAPACITY = 8
+_FAR = 2.0**50  # cells from the origin, beyond which all are one: numbers of cells stay whole
 
 
 @uncounted
 def bucket(level: int, column: int, row: int, mask: int) -> int:
     """Place of a cell in the hash table."""
     return ((column * 73856093) ^ (row * 19349663) ^ (level * 83492791)) & mask
+
+
+@uncounted
+def cell_at(x: float, length: float) -> int:
+    """Column or row of a cell of the grid of moving shapes."""
+    return math.floor(min(max(x / length, -_FAR), _FAR))
 
 
 @uncounted
@@ -67,7 +74,7 @@ def link(
     """Put shape s into the grid where its margin circle is."""
     level = level_of(radius + MARK[s, MARGIN], GRID[CELL_LENGTH])
     length = GRID[CELL_LENGTH] * 2.0**level
-    CELL[s, COLUMN], CELL[s, ROW] = math.floor(MARK[s, AT_X] / length), math.floor(MARK[s, AT_Y] / length)
+    CELL[s, COLUMN], CELL[s, ROW] = cell_at(MARK[s, AT_X], length), cell_at(MARK[s, AT_Y], length)
     k = bucket(level, CELL[s, COLUMN], CELL[s, ROW], HEAD.shape[0] - 1)
     head = HEAD[k]
     CELL[s, LEVEL], CELL[s, BUCKET], CELL[s, NEXT], CELL[s, PREVIOUS] = level, k, head, -1
@@ -95,7 +102,7 @@ def near(MARK: FloatArray, SHAPE: FloatArray, o: int, x: float, y: float, radius
     """Whether the margin circle of shape o overlaps that of centre (x, y)."""
     dx, dy = MARK[o, AT_X] - x, MARK[o, AT_Y] - y
     reach = radius + SHAPE[o, BOUND] + MARK[o, MARGIN]
-    return dx * dx + dy * dy <= reach * reach
+    return bool(dx * dx + dy * dy <= reach * reach)
 
 
 @uncounted
@@ -124,9 +131,11 @@ def seek_moving(
         if left == 0:
             continue
         reach = radius + 0.5 * length
-        west, east = math.floor((x - reach) / length), math.floor((x + reach) / length)
-        south, north = math.floor((y - reach) / length), math.floor((y + reach) / length)
-        if float(east - west + 1) * float(north - south + 1) > 4.0 * left + 16.0:
+        west, east = cell_at(x - reach, length), cell_at(x + reach, length)
+        south, north = cell_at(y - reach, length), cell_at(y + reach, length)
+        # Circles that are too large for the last level stand there too.
+        last = level == LEVEL_COUNT - 1
+        if last or float(east - west + 1) * float(north - south + 1) > 4.0 * left + 16.0:
             for o in range(INFO[MOVING]):
                 listed = CELL[o, LEVEL] == level and CELL[o, BUCKET] >= 0 and o != s
                 if listed and near(MARK, SHAPE, o, x, y, radius):
@@ -151,7 +160,7 @@ def near_wall(BOX: FloatArray, w: int, x: float, y: float, radius: float) -> boo
     """Whether a circle overlaps the box of static shape number w: (W, 4) left, bottom, right, top."""
     dx = max(BOX[w, 0] - x, x - BOX[w, 2], 0.0)
     dy = max(BOX[w, 1] - y, y - BOX[w, 3], 0.0)
-    return dx * dx + dy * dy <= radius * radius
+    return bool(dx * dx + dy * dy <= radius * radius)
 
 
 @uncounted
@@ -170,11 +179,9 @@ def seek_walls(
                     return False
         return True
     length = GRID[WALL_LENGTH]
-    west, east = (
-        cell_of(x - radius - GRID[WALL_X], length, columns),
-        cell_of(x + radius - GRID[WALL_X], length, columns),
-    )
-    south, north = cell_of(y - radius - GRID[WALL_Y], length, rows), cell_of(y + radius - GRID[WALL_Y], length, rows)
+    left, bottom = x - GRID[WALL_X], y - GRID[WALL_Y]
+    west, east = cell_of(left - radius, length, columns), cell_of(left + radius, length, columns)
+    south, north = cell_of(bottom - radius, length, rows), cell_of(bottom + radius, length, rows)
     for row in range(south, north + 1):
         for column in range(west, east + 1):
             c = row * columns + column
@@ -216,6 +223,8 @@ def renew(
 ) -> bool:  # fmt: skip
     """Draw the margin circle of s about where it is at instant t, and make its list anew. False if the pool is full:
     then `build` is due."""
+    if MARK[s, MARGIN] == math.inf:
+        return True
     clear(LIST, POOL, FLAG, INFO, s)
     unlink(CELL, HEAD, INFO, s)
     MARK[s, AT_X], MARK[s, AT_Y] = centre(BODY, SHAPE, LINK, s, t)

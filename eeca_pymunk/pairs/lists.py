@@ -57,7 +57,7 @@ def may_meet(BODY: FloatArray, LINK: IntArray, a: int, b: int) -> bool:
         return False
     if LINK[a, GROUP] != 0 and LINK[a, GROUP] == LINK[b, GROUP]:
         return False
-    return (LINK[a, CATEGORIES] & LINK[b, MASK]) != 0 and (LINK[b, CATEGORIES] & LINK[a, MASK]) != 0
+    return bool((LINK[a, CATEGORIES] & LINK[b, MASK]) != 0 and (LINK[b, CATEGORIES] & LINK[a, MASK]) != 0)
 
 
 @uncounted

@@ -8,16 +8,18 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arrays import FlagArray, FloatArray, IntArray, PoolArray
-from ..layout import BOUND, COUNT, FIRST, ROUNDING
+from ..layout import BOUND, COUNT, FIRST, OWNER, ROUNDING
 from .grid import build, wall_grid
 from .layout import (
-    CELL_COLUMNS, CELL_LENGTH, GRID_LENGTH, INFO_LENGTH, LIST_COLUMNS, MARGIN, MARK_COLUMNS, MOVING, WALL_COLUMNS,
-    WALL_LENGTH, WALL_ROWS, WALL_X, WALL_Y,
+    CELL_COLUMNS, CELL_LENGTH, GRID_LENGTH, INFO_LENGTH, LIST_COLUMNS, MARGIN, MARK_COLUMNS, MOVING, NUMBER,
+    WALL_COLUMNS, WALL_LENGTH, WALL_ROWS, WALL_X, WALL_Y,
 )  # fmt: skip
 
 EVERYBODY = 16  # shapes that move up to which each is in the list of every other one
 _NEIGHBOURS = 8.0  # that a list is to hold: the least cost over packings from .05 to .65
 _MARGINS = (0.1, 20.0)  # least and most, in radii
+_CROWDED = 20.0  # neighbours, above which margins are too large for how shapes stand
+_HALVINGS = 8  # of margins, at most
 _FEW_WALLS = 16  # static shapes up to which all are looked at
 
 
@@ -41,19 +43,24 @@ class Near(NamedTuple):
         return self._replace(POOL=np.zeros(room, np.int32), FLAG=np.zeros(room, np.uint8))
 
 
-def margins(bound: FloatArray, centre: FloatArray) -> FloatArray:
+def margins(bound: FloatArray, centre: FloatArray, walls: int) -> FloatArray:
     """(m,) how far shapes of radius `bound` (m,) at `centre` (m, 2) may go before their lists are made anew.
 
-    (2 + 2 m / r)² phi is the number of neighbours at the packing phi. Small shapes among large ones do not get more
-    than twice their own share, large ones no more than the median's.
+    (2 + 2 m / r)² phi is the number of neighbours at the packing phi, if shapes are spread evenly; `near_lists` takes
+    less where they are not. Small shapes among large ones do not get more than twice their own share, large ones no
+    more than the median's. Few shapes among few walls stand in all lists.
     """
-    if len(bound) <= EVERYBODY:
+    if len(bound) <= EVERYBODY and walls <= _FEW_WALLS:
         return np.full(len(bound), np.inf)
     low, high = (centre - bound[:, None]).min(axis=0), (centre + bound[:, None]).max(axis=0)
-    area = max(float(np.prod(high - low)), 1e-300)
-    phi = math.pi * float(bound @ bound) / area
-    factor = min(max(math.sqrt(0.25 * _NEIGHBOURS / phi) - 1.0, _MARGINS[0]), _MARGINS[1])
-    result: FloatArray = factor * np.minimum(2.0 * bound, np.median(bound))
+    wide, tall = np.maximum(high - low, 1e-300)
+    phi = max(math.pi * float((bound / wide) @ (bound / tall)), 1e-6)
+    few = len(bound) <= EVERYBODY
+    factor = _MARGINS[1] if few else min(max(math.sqrt(0.25 * _NEIGHBOURS / phi) - 1.0, _MARGINS[0]), _MARGINS[1])
+    median = float(np.median(bound))
+    # Points have a margin too; where all are points, any length will do.
+    least = 1e-3 * (median or float(bound.max()) or 1.0)
+    result: FloatArray = factor * np.maximum(np.minimum(2.0 * bound, median), least)
     return result
 
 
@@ -71,21 +78,27 @@ def boxes(SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, moving: int) ->
 def near_lists(BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, moving: int) -> Near:
     """Lists of the shapes [0, moving), where BODY has them now."""
     bound = SHAPE[:moving, BOUND]
-    MARK = np.zeros((moving, MARK_COLUMNS))
-    MARK[:, MARGIN] = margins(bound, BODY[LINK[:moving, 0], :2])
-    INFO, GRID = np.zeros(INFO_LENGTH, np.int64), np.zeros(GRID_LENGTH)
+    INFO, GRID, MARK = np.zeros(INFO_LENGTH, np.int64), np.zeros(GRID_LENGTH), np.zeros((moving, MARK_COLUMNS))
     INFO[MOVING] = moving
-    reach = bound + MARK[:, MARGIN]
-    GRID[CELL_LENGTH] = 2.0 * max(float(reach.min(initial=math.inf)), 1e-300) if moving > EVERYBODY else 1.0
     BOX = boxes(SHAPE, LINK, VERTEX, moving)
     CSR = _wall_cells(BOX, GRID, INFO)
+    MARK[:, MARGIN] = margins(bound, BODY[LINK[:moving, OWNER], :2], len(BOX)) if moving else 0.0
     room = 32 * moving + 1024
     near = Near(
         MARK, np.zeros((moving, CELL_COLUMNS), np.int64), np.zeros((moving, LIST_COLUMNS), np.int64),
         np.zeros(room, np.int32), np.zeros(room, np.uint8),
         np.full(1 << max(1, math.ceil(math.log2(2 * moving + 2))), -1, np.int64), GRID, INFO, BOX, CSR,
     )  # fmt: skip
-    return rebuilt(near, BODY, SHAPE, LINK, 0.0)
+    for _ in range(_HALVINGS):
+        GRID[CELL_LENGTH] = 2.0 * float((bound + MARK[:, MARGIN]).min(initial=1e300))
+        near = rebuilt(near, BODY, SHAPE, LINK, 0.0)
+        # What is crowded in places needs less, unless that is next to nothing, or everybody knows all.
+        if moving == 0 or near.LIST[:, NUMBER].mean() <= _CROWDED or math.isinf(MARK[0, MARGIN]):
+            break
+        if np.median(MARK[:, MARGIN]) <= _MARGINS[0] * np.median(bound):
+            break
+        MARK[:, MARGIN] *= 0.5
+    return near
 
 
 def rebuilt(near: Near, BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, t: float) -> Near:

@@ -50,10 +50,12 @@ def check_ignored(ignore: Sequence[str]) -> tuple[str, ...]:
 
 
 def check_shape(shape: pymunk.Shape, bodies: Bodies) -> None:
-    """Refuse surface velocity and numbers that no shape can have."""
+    """Refuse numbers that no shape can have."""
     body = shape_body(shape)
-    if any(shape.surface_velocity):
-        raise UnsupportedFeature(f"{shape} has surface velocity {shape.surface_velocity}; set it to (0, 0)")
+    if not all(math.isfinite(v) for v in shape.surface_velocity):
+        raise ValueError(f"{shape} has surface velocity {shape.surface_velocity}: set a finite one")
+    if not 0.0 <= shape.friction < math.inf:
+        raise ValueError(f"{shape} has friction {shape.friction}: set a finite value >= 0")
     if not isinstance(shape, (pymunk.Circle, pymunk.Segment, pymunk.Poly)):
         raise UnsupportedFeature(f"{shape} is neither a Circle, a Segment nor a Poly; replace it by one of them")
     if not 0.0 <= shape.elasticity <= 1.0:
@@ -64,17 +66,21 @@ def check_shape(shape: pymunk.Shape, bodies: Bodies) -> None:
         raise ValueError(f"the body of {shape} is not in the space; add it with space.add(body)")
 
 
-def check_friction(shapes: list[pymunk.Shape], ignored: bool) -> bool:
-    """Refuse friction > 0 on a moving shape and on some shape of another body (pymunk multiplies the two); tell
-    whether there is some that is ignored."""
+def rough_pair(shapes: Sequence[pymunk.Shape]) -> pymunk.Shape | None:
+    """A moving shape with friction that may touch one of another body with friction (pymunk multiplies the two)."""
     rough = [s for s in shapes if s.friction > 0]
     for shape in rough:
         body = shape_body(shape)
         if body.body_type == pymunk.Body.DYNAMIC and any(other.body is not body for other in rough):
-            if ignored:
-                return True
-            raise UnsupportedFeature(
-                f"{shape} has friction {shape.friction}, and so has a shape it may touch: friction is not modelled; "
-                'set shape.friction = 0, or step on without it: ep.EECA(space, ignore=("friction",))'
-            )
-    return False
+            return shape
+    return None
+
+
+def check_smooth(shapes: Sequence[pymunk.Shape], stepper: str) -> None:
+    """Refuse friction and surface velocity where a stepper does not model them."""
+    shape = rough_pair(shapes)
+    if shape is not None:
+        raise UnsupportedFeature(
+            f"{shape} has friction {shape.friction}, and so has a shape it may touch: {stepper} does not model it; "
+            "use ep.EECA(space), or set shape.friction = 0"
+        )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..layout import COUNT, ELASTICITY, FIRST, OWNER
+from ..layout import COUNT, ELASTICITY, FIRST, FRICTION, OWNER, SURFACE_X, SURFACE_Y
 from .bodies import ANGULAR_VELOCITY, FORCE, TORQUE
 from .world import World
 
@@ -27,6 +27,12 @@ def describe(world: World) -> str:
         "rotation with contact arms" if others else "free rotation" if turns else "no rotation",
         "loss" if (world.SHAPE[:, ELASTICITY] < 1.0).any() else "elastic",
     ]
+    if (world.SHAPE[:, FRICTION] > 0.0).any():
+        parts.append("friction")
+    if world.SHAPE[:, SURFACE_X : SURFACE_Y + 1].any():
+        parts.append("moving surfaces")
+    if pulled or parts[-1] != "elastic":
+        parts.append("sustained contacts")
     if world.damping != 1.0:
         parts.append("damping")
     if len(bodies.velocity_hooks) or len(bodies.position_hooks):

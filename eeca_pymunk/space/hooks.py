@@ -18,6 +18,7 @@ import pymunk
 from ..arrays import FloatArray
 from . import private
 from .bodies import ANGLE, ANGULAR_VELOCITY, POSITION, VELOCITY, Bodies
+from ..layout import ELASTICITY, FRICTION
 from .shapes import Rules
 
 
@@ -137,20 +138,22 @@ class Rehearsal:
 
         return call
 
-    def rules(self, shapes: Sequence[pymunk.Shape], elasticity: FloatArray) -> Rules:
-        """What the arbiters of the step say of pairs of these shapes, of (k,) elasticity."""
+    def rules(self, shapes: Sequence[pymunk.Shape], SHAPE: FloatArray) -> Rules:
+        """What the arbiters of the step say of pairs of these shapes, which are the rows of SHAPE."""
         index = {shape: i for i, shape in enumerate(shapes)}
-        ignored, restitution = set(), {}
+        ignored, changed = set(), {}
         for arbiter in private.arbiters(self.space):
             a, b = (index.get(shape, -1) for shape in arbiter.shapes)
             if min(a, b) < 0:
                 continue
             pair = (min(a, b), max(a, b))
+            e, mu = (float(SHAPE[a, k] * SHAPE[b, k]) for k in (ELASTICITY, FRICTION))
+            said = arbiter.restitution, arbiter.friction
             if not arbiter.process_collision:
                 ignored.add(pair)
-            elif arbiter.restitution != elasticity[a] * elasticity[b]:
-                restitution[pair] = arbiter.restitution
-        return Rules(frozenset(ignored), restitution)
+            elif said != (e, mu):
+                changed[pair] = said[0], said[1]
+        return Rules(frozenset(ignored), changed)
 
     def finish(self, bodies: Bodies) -> None:
         """What pymunk does when its step has ended: shapes where the bodies are, additions, removals, callbacks."""

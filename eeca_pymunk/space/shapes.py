@@ -10,9 +10,9 @@ import pymunk
 
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..errors import UnsupportedFeature
-from ..layout import FRICTION, SURFACE_X, SURFACE_Y
+from ..layout import SURFACE_X, SURFACE_Y
 from .bodies import Bodies
-from .checks import check_friction, check_shape, shape_body, shape_radius
+from .checks import check_shape, rough_pair, shape_body, shape_radius
 
 
 class Walls:
@@ -48,20 +48,20 @@ class Walls:
 class Rules:
     """What collision handlers decide about pairs of shapes, for one step; pairs as (smaller, larger) index.
 
-    `ignored`: pairs that do not collide.  `restitution`: of pairs that have another one than their shapes say.
+    `ignored`: pairs that do not collide.  `changed`: elasticity and friction of pairs that have others than their
+    shapes say.
     """
 
     ignored: frozenset[tuple[int, int]] = frozenset()
-    restitution: Mapping[tuple[int, int], float] = field(default_factory=dict)
+    changed: Mapping[tuple[int, int], tuple[float, float]] = field(default_factory=dict)
 
     def of_pairs(self, SHAPE: FloatArray) -> dict[tuple[int, int], tuple[float, float, float, float]]:
         """By pair of rows of SHAPE: elasticity (-1: they pass), friction, surface velocity of b relative to a."""
         told = {}
-        for pair in (*self.ignored, *self.restitution):
+        for pair in (*self.ignored, *self.changed):
             a, b = (SHAPE[i] for i in pair)
-            vx, vy = b[SURFACE_X] - a[SURFACE_X], b[SURFACE_Y] - a[SURFACE_Y]
-            e = -1.0 if pair in self.ignored else self.restitution[pair]
-            told[pair] = (e, float(a[FRICTION] * b[FRICTION]), float(vx), float(vy))
+            e, mu = self.changed.get(pair, (-1.0, 0.0))
+            told[pair] = (e, mu, float(b[SURFACE_X] - a[SURFACE_X]), float(b[SURFACE_Y] - a[SURFACE_Y]))
         return told
 
 
@@ -88,7 +88,7 @@ class Shapes:
         self.items: list[pymunk.Shape] = [s for s in self.key if not s.sensor]
         for shape in self.items:
             check_shape(shape, bodies)
-        self.smooth = not check_friction(self.items, "friction" in ignore)
+        self.smooth = rough_pair(self.items) is None
         owners = [shape_body(s) for s in self.items]
         self.row: IntArray = np.array([bodies.row[b] for b in owners], np.intp)
         self.radius: FloatArray = np.array([shape_radius(s) for s in self.items], float)

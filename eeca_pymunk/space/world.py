@@ -19,6 +19,8 @@ from ..layout import (
     END_COLUMNS,
     EXTRA_COLUMNS,
     FOUND,
+    FRICTION,
+    GRIP,
     GROUP,
     KNOWN,
     LEFT,
@@ -37,7 +39,7 @@ from ..report import nothing
 from ..transfer import FORCES, TURNS, lay, lay_rest, take
 from . import private
 from .bodies import Bodies
-from .checks import check_friction, check_shape, check_space
+from .checks import check_shape, check_space, rough_pair
 from .packing import Record, pack, read
 from .shapes import Rules
 
@@ -68,7 +70,7 @@ class World:
             dynamic bodies; the rows from there to the last one, the ground, are kinematic.
         STATES, WALK, EXTRA, ENDS: what crosses the edge, see `layout.py`.
         gravity: length/time².  damping: pymunk's, 1 is none.
-        smooth: False if there is friction that is ignored.  filtered: whether any shape has a filter.
+        ignores: whether there is friction that is ignored.  filtered: whether any shape has a filter.
         collisions: whether the space has collision handlers.  hooked: whether it or its bodies have functions.
         rules: what collision handlers decided about pairs of rows of SHAPE for this step.
         empty: the arrays of a report without contacts.
@@ -83,10 +85,13 @@ class World:
         bodies.check_finite(state)
         self.records: Records = self._records({} if before is None else before.records)
         solid = [s for s, record in self.records.items() if record is not None]
-        self.smooth = not check_friction(solid, "friction" in ignore)
+        self.ignores = "friction" in ignore and rough_pair(solid) is not None
         packed = pack(bodies, state, solid, [r for r in self.records.values() if r is not None])
         self.shapes, self.owner = packed.shapes, packed.owner
         self.BODY, self.SHAPE, self.LINK, self.VERTEX = packed.BODY, packed.SHAPE, packed.LINK, packed.VERTEX
+        if "friction" in ignore:
+            self.SHAPE[:, FRICTION] = 0.0
+            self.BODY[:, GRIP] = 0.0
         self.disks, self.dynamic = packed.disks, packed.dynamic
         self.filtered = bool((self.LINK[:, GROUP : MASK + 1] != _COLLIDES_WITH_ALL).any())
         self.empty = nothing(bodies.items)

@@ -1,0 +1,68 @@
+"""Steps that want more room than they have: they go on as if they had had it from the start."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pymunk
+import pytest
+
+import eeca_pymunk as ep
+from eeca_pymunk.pairs import layout as at
+from eeca_pymunk.pairs import setup
+from scenes.scene import add_disk, add_walls
+
+from .crowds import box_of, deepest, positions, reference
+
+
+def test_forces_are_reset_after_a_step_of_more_impacts_than_there_was_room_for() -> None:
+    space = pymunk.Space()
+    add_walls(space, [((-1.0, 0.0), (-1.0, 1.0)), ((1.0, 0.0), (1.0, 1.0))])
+    disk = add_disk(space, (0.0, 0.5), 0.1, velocity=(100.0, 0.0))
+    disk.angular_velocity = 1.0
+    disk.force = (1.0, 0.0)
+    report = ep.EECA(space, sync=False).step(5.0)
+    assert len(report.contacts) > 200
+    assert disk.force == (0.0, 0.0)
+    assert disk.angle == pytest.approx(5.0, rel=1e-12)
+
+
+@pytest.mark.parametrize("seed", [2, 3])
+def test_lists_that_grow_on_the_way_miss_nobody(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    # Little room is given each time, so that it is wanted again and again.
+    def little(self: setup.Near) -> setup.Near:
+        room = len(self.POOL) + 40
+        return self._replace(POOL=np.zeros(room, np.int32), FLAG=np.zeros(room, np.uint8))
+
+    monkeypatch.setattr(setup.Near, "larger", little)
+    space, bodies = box_of(np.full(150, math.sqrt(0.3 / math.pi / 150)), seed)
+    stepper = ep.EECA(space, sync=False)
+    stepper.step(1e-3)
+    loop = stepper._method
+    room = int(loop.near.INFO[at.POOL_END]) + 40  # type: ignore[attr-defined]
+    pool, flag = loop.near.POOL[:room].copy(), loop.near.FLAG[:room].copy()  # type: ignore[attr-defined]
+    loop.near = loop.near._replace(POOL=pool, FLAG=flag)  # type: ignore[attr-defined]
+    loop.scene = loop.scene._replace(POOL=pool, FLAG=flag)  # type: ignore[attr-defined]
+    exact = reference(bodies)
+    exact.run(0.1)
+    assert len(stepper.step(0.1).contacts) == exact.events
+    assert len(loop.scene.POOL) > room  # type: ignore[attr-defined]
+    assert deepest(bodies, 1.0) < 1e-9
+    assert np.median(np.abs(positions(bodies) - exact.position)) < 1e-9
+
+
+def test_pairs_that_were_given_up_are_met_again_in_the_next_step() -> None:
+    # A kinematic body drives a disk into a wall: each step tries anew, whether the stepper is new or not.
+    space = pymunk.Space()
+    add_disk(space, (-1.0, 0.0), 0.5)
+    add_walls(space, [((-0.5, -3.0), (-0.5, 3.0))])
+    driver = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    driver.position, driver.velocity = (-2.1, 0.0), (1.0, 0.0)
+    shape = pymunk.Circle(driver, 0.5)
+    shape.elasticity = 1.0
+    space.add(driver, shape)
+    stepper = ep.EECA(space, sync=False)
+    impacts = [len(stepper.step(0.1).contacts) for _ in range(5)]
+    assert impacts[2:] == [impacts[2]] * 3
+    assert impacts[2] > 0

@@ -1,0 +1,200 @@
+"""Near lists against brute force: at the start, and as shapes are listed anew one at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from eeca_pymunk import layout as la
+from eeca_pymunk.pairs import grid, setup
+from eeca_pymunk.pairs import layout as at
+from eeca_pymunk.pairs.lists import mark_pair
+from tests.packed import Thing, World, disk
+
+from .scenes import Crowd, crowd
+
+Make = Callable[[np.random.Generator], World]
+
+
+def absurd(rng: np.random.Generator) -> World:
+    """A giant too large for all levels, whose centre is far from the others."""
+    world = crowd(rng, np.where(np.arange(20) == 7, 1e200, 1e-3), side=1.0)
+    world.body[7, la.X] = 1e30
+    return world
+
+
+def pivots(rng: np.random.Generator) -> World:
+    """Bodies that impulses turn but do not shift, among others."""
+    world = crowd(rng, np.full(30, 0.1), boxes=6, kinematic=4, walls=8)
+    world.body[5:20, la.IM] = 0.0
+    return world
+
+
+CROWDS: dict[str, Make] = {
+    "disks": lambda rng: crowd(rng, np.full(60, 0.1)),
+    "one to a thousand": lambda rng: crowd(rng, 10.0 ** rng.uniform(-3.0, 0.0, 50)),
+    "one giant": lambda rng: crowd(rng, np.where(np.arange(50) == 7, 1.0, 1e-3), side=2.5),
+    "absurd giant": absurd,
+    "pivots": pivots,
+    "points": lambda rng: crowd(rng, np.where(np.arange(40) % 2, 0.0, 0.1), side=2.0),
+    "all points": lambda rng: crowd(rng, np.zeros(20), side=1.0),
+    "boxes that turn": lambda rng: crowd(rng, np.full(6, 0.1), boxes=30),
+    "few walls": lambda rng: crowd(rng, np.full(40, 0.1), walls=8),
+    "a grid of walls": lambda rng: crowd(rng, np.full(30, 0.1), boxes=6, walls=60),
+    "sixteen": lambda rng: crowd(rng, np.full(10, 0.1), boxes=4, walls=8),
+    "few among many walls": lambda rng: crowd(rng, np.full(4, 0.1), boxes=2, walls=60, side=4.0),
+    "one body": lambda rng: crowd(rng, np.full(1, 0.1), walls=40, side=3.0),
+    "kinematic": lambda rng: crowd(rng, np.full(20, 0.1), boxes=6, kinematic=8, walls=8),
+    "filters": lambda rng: crowd(rng, np.full(40, 0.1), boxes=10, walls=30, kinematic=4, filters=True),
+    "small units": lambda rng: crowd(rng, 10.0 ** rng.uniform(-2.0, 0.0, 40), boxes=4, walls=20, unit=1e-3),
+    "large units": lambda rng: crowd(rng, 10.0 ** rng.uniform(-2.0, 0.0, 40), boxes=4, walls=20, unit=1e3),
+    "far away": lambda rng: crowd(rng, np.full(40, 0.1), boxes=4, walls=20, origin=1e6),
+}
+every_crowd = pytest.mark.parametrize("kind", CROWDS)
+
+
+@every_crowd
+def test_first_lists_are_complete(kind: str) -> None:
+    for seed in range(3):
+        Crowd.of(CROWDS[kind](np.random.default_rng(seed))).check()
+
+
+@every_crowd
+def test_lists_stay_complete_as_shapes_leave_one_by_one(kind: str) -> None:
+    # Each goes on along its path and is listed anew there, while the others stand where they were listed.
+    rng = np.random.default_rng(4)
+    near = Crowd.of(CROWDS[kind](rng))
+    for turn, s in enumerate(rng.integers(0, near.moving, 150).tolist()):
+        near.renew(s, t := 2.0 * float(rng.uniform()))
+        if not np.isinf(near.near.MARK[s, at.MARGIN]):
+            exact = near.centres(t)[s]
+            near_round_off = 1e-14 * float(np.abs(exact).max() + near.world.shape[s, la.SIZE])
+            np.testing.assert_allclose(near.near.MARK[s, :2], exact, rtol=0.0, atol=near_round_off)
+        if turn % 10 == 9:
+            near.check()
+
+
+@pytest.mark.parametrize("speed", [1.0, 1e9, 1e18, 1e60, 1e300])
+def test_one_that_flew_away_neither_breaks_the_grid_nor_fills_the_lists(speed: float) -> None:
+    # Beyond 2^50 cells all cells are one.
+    world = crowd(np.random.default_rng(1), np.full(200, 0.1))
+    world.body[11, la.VX : la.SPIN] = (speed, -2.0 * speed)
+    near = Crowd.of(world)
+    for s in (11, 12, 11, 5):
+        near.renew(s, 1.0)
+    world.body[12, la.X : la.ANGLE] = near.centres(1.0)[11]  # somebody else goes there
+    world.body[12, la.VX : la.TWIST + 1] = 0.0
+    near.renew(12, 1.0)
+    if speed >= 1e9:
+        assert near.listed()[12] == [11]
+    away = setup.near_lists(world.body, world.shape, world.link, world.vertex, near.moving)
+    assert away.LIST[:, at.NUMBER].mean() <= 30
+    Crowd(world, away).check()
+
+
+def test_half_full_places_are_crowded_too() -> None:
+    # Two dense clouds far from one another: margins follow from how shapes stand, not from the empty place between.
+    world = crowd(np.random.default_rng(1), np.full(200, 0.1))
+    world.body[:100, la.X] += 1e4
+    near = Crowd.of(world)
+    near.check()
+    assert near.near.LIST[:, at.NUMBER].mean() <= 30
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1e3])
+def test_units_and_place_do_not_matter(unit: float) -> None:
+    lists = [
+        Crowd.of(crowd(np.random.default_rng(2), np.full(50, 0.1), boxes=10, walls=30, unit=u, origin=o)).listed()
+        for u, o in ((1.0, 0.0), (unit, 0.0))
+    ]
+    assert [set(one) for one in lists[0]] == [set(one) for one in lists[1]]
+
+
+def test_the_same_lists_bit_by_bit_a_second_time() -> None:
+    found = []
+    for _ in range(2):
+        rng = np.random.default_rng(9)
+        near = Crowd.of(crowd(rng, 10.0 ** rng.uniform(-1.0, 0.0, 60), boxes=10, walls=30))
+        for s in rng.integers(0, near.moving, 100).tolist():
+            near.renew(s, float(rng.uniform()))
+        found.append((near.listed(), near.near.MARK.tobytes()))
+    assert found[0] == found[1]
+
+
+def test_a_full_pool_is_told_and_more_room_helps() -> None:
+    world = crowd(np.random.default_rng(3), np.full(40, 0.1), walls=30)
+    near = Crowd.of(world)
+    w, n = world, near.near
+    for room in (0, 8 * near.moving - 1, 8 * near.moving):
+        small = n._replace(POOL=np.zeros(room, np.int32), FLAG=np.zeros(room, np.uint8))
+        assert not grid.build(
+            w.body, w.shape, w.link, small.MARK, small.CELL, small.LIST, small.POOL, small.FLAG, small.HEAD, small.GRID,
+            small.INFO, small.BOX, small.CSR, 0.0,
+        )  # fmt: skip
+    small = n._replace(POOL=np.zeros(8 * near.moving, np.int32), FLAG=np.zeros(8 * near.moving, np.uint8))
+    Crowd(world, setup.rebuilt(small.larger(), w.body, w.shape, w.link, 0.0)).check()
+
+
+def test_room_runs_out_as_lists_grow_and_wander() -> None:
+    rng = np.random.default_rng(5)
+    near = Crowd.of(crowd(rng, np.full(40, 0.1)))
+    near.world.body[:, la.VX : la.SPIN] *= 10.0
+    room = len(near.near.POOL)
+    for turn in range(3000):
+        near.renew(int(rng.integers(0, near.moving)), float(rng.uniform()) if turn < 1500 else 0.0)
+    assert int(near.near.INFO[at.POOL_END]) <= len(near.near.POOL)
+    assert len(near.near.POOL) <= 4 * room
+    near.check()
+
+
+def test_flags_follow_their_pairs_and_new_pairs_have_none() -> None:
+    world = crowd(np.random.default_rng(6), np.full(40, 0.1), walls=10)
+    near = Crowd.of(world)
+    pair = next((s, o) for s, found in enumerate(near.listed()) for o in found if o < near.moving)
+    n = near.near
+    mark_pair(n.LIST, n.POOL, n.FLAG, near.moving, *pair, 1)
+    for s in range(near.moving):
+        if s not in pair:
+            near.renew(s)
+    flagged = {
+        (s, int(o))
+        for s, (start, count) in enumerate(n.LIST[:, [at.START, at.NUMBER]].tolist())
+        for o, flag in zip(n.POOL[start : start + count], n.FLAG[start : start + count], strict=True)
+        if flag
+    }
+    assert flagged == {pair, pair[::-1]}
+    near.renew(pair[0])
+    assert not any(n.FLAG[start : start + count].any() for start, count in n.LIST[:, [at.START, at.NUMBER]].tolist())
+
+
+@pytest.mark.parametrize("spread", ["field", "line", "long ones", "one place"])
+def test_the_grid_of_walls_holds_what_looking_at_all_finds(spread: str) -> None:
+    rng = np.random.default_rng(7)
+    start = rng.uniform(0.0, 10.0, (200, 2))
+    end = start + rng.normal(size=(200, 2)) * (3.0 if spread == "long ones" else 0.1)
+    if spread == "line":
+        start[:, 1] = end[:, 1] = 2.0
+    elif spread == "one place":
+        start[:], end[:] = (1.0, 1.0), (2.0, 1.5)
+    ground = [([tuple(a), tuple(b)], 0.01) for a, b in zip(start.tolist(), end.tolist(), strict=True)]
+    things = [Thing(disk(r), (x, y, 0.0)) for x, y, r in rng.uniform((-2, -2, 0.01), (12, 12, 1.0), (30, 3)).tolist()]
+    world = World(things, ground)
+    world.link[:, [la.CATEGORIES, la.MASK]] = -1
+    gridded = Crowd.of(world)
+    assert gridded.near.INFO[at.WALL_COLUMNS] > 0
+    assert len(gridded.near.CSR) < 40 * len(ground) + 2
+    gridded.check()
+    gridded.near.INFO[at.WALL_COLUMNS] = 0
+    plain = setup.rebuilt(gridded.near, world.body, world.shape, world.link, 0.0)
+    assert [sorted(found) for found in Crowd(world, plain).listed()] == [sorted(found) for found in gridded.listed()]
+
+
+def test_levels_hold_circles_of_up_to_half_their_cell() -> None:
+    for exponent in np.linspace(-3.0, 16.0, 200):
+        radius = 10.0**exponent
+        level = grid.level_of(radius, 1e-2)
+        assert 1e-2 * 2.0**level >= 2.0 * radius
+        assert level == 0 or 1e-2 * 2.0 ** (level - 1) < 2.0 * radius
+    assert grid.level_of(1e300, 1e-2) == at.LEVEL_COUNT - 1
