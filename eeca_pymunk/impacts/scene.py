@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,16 +12,20 @@ from ..arrays import FloatArray, IntArray
 from ..layout import COUNT as VERTICES, DUE, ELASTICITY, EVENT_COLUMNS, NOW as READ, OWNER
 from ..pairs.layout import MARGIN
 from ..pairs.setup import near_lists, rebuilt
+from ..report import Details, of_events
 from ..sustained.memory import FORCE_COLUMNS, forget
 from ..sustained.relax import FRESH
 from ..transfer import FORCES
 from .islands import flag_again
 from .layout import (
-    AFTER, CHECK, COUNT_LENGTH, FIRST_SHAPE, HEAP, ISLAND, LEDGER, LIMIT, LOCK, LOGGED, MEMBER_COLUMNS, NOW, OTHER, PAR_LENGTH, PUSHED_COLUMNS, RELAX, REMEMBERED,
-    RESTING_COLUMNS, SHAPES, STAMP, STATE_COLUMNS, UNMET, Scene,
+    AFTER, BLOCKS, CHECK, COUNT_LENGTH, FIRST_SHAPE, HEAP, ISLAND, LEDGER, LIMIT, LOCK, LOGGED, MEMBER_COLUMNS, NOW, OTHER,
+    PAR_LENGTH, PUSHED_COLUMNS, RELAX, REMEMBERED, RESTING_COLUMNS, SHAPES, SOLVES, STAMP, STATE_COLUMNS, UNMET, Scene,
 )  # fmt: skip
 from .step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, resume, step
 from .together import resume_together, step_together
+
+if TYPE_CHECKING:
+    import pymunk
 
 RULE_COLUMNS = 6
 _CONTACTS = 256  # of islands, that there is room for at first; a power of 2
@@ -114,6 +120,13 @@ class EventLoop:
         """(m, 11) EVENT rows of the last step, a copy."""
         return self.scene.LOG[: self.scene.COUNT[LOGGED]].copy()
 
+    def details(
+        self, dt: float, bodies: tuple[pymunk.Body, ...], owner: IntArray
+    ) -> Callable[[], Details]:  # fmt: skip
+        """What makes the arrays of the report of the last step; `owner` (k,) is the place of every shape's body in
+        `bodies`."""
+        return partial(of_events, self.events, dt, bodies, owner)
+
     @property
     def book(self) -> FloatArray:
         """(7,) what the ledger of the last step is made of, a copy (`..energy.ledger`)."""
@@ -127,7 +140,12 @@ class EventLoop:
     @property
     def converged(self) -> bool:
         """Whether the last step left nothing undone."""
-        return self.scene.COUNT[UNMET] == 0
+        return bool(self.scene.COUNT[UNMET] == 0)
+
+    @property
+    def iterations(self) -> int:
+        """Solves of islands and of blocks in the last step."""
+        return int(self.scene.COUNT[SOLVES] + self.scene.COUNT[BLOCKS])
 
 
 class Together(EventLoop):

@@ -15,7 +15,7 @@ from ..transfer import EVENTS as SOME, give, take
 from .layout import (
     AFTER, BEFORE, BLOCKS, BUSY, DAMPED, DONE, DT, EVENTS, EXTERNAL, FORECASTS, GRAVITY_X, GRAVITY_Y, HEAP, IMPACTS, ISLAND,
     KINKS, LAST, LEDGER, LEDGER_LENGTH, LEFT_OVER, LOCK, LOG_FULL, LOGGED, PENDING, PHASE, POOL_FULL,
-    PULLED, PUSHES, PUSHES_FULL, ROOT, STALE, STAMP, UNMET, Scene,
+    PULLED, PUSHES, PUSHES_FULL, ROOT, SOLVES, STALE, STAMP, UNMET, Scene,
 )  # fmt: skip
 from .loop import follow, forecast
 from .islands import book, lift_out
@@ -50,7 +50,7 @@ def total(A: Scene) -> float:
 def begin(A: Scene, WALK: IntArray) -> None:
     """Count from the start of this step; forecast the bodies that were edited, and all that is due."""
     BODY, STATE, PAR, COUNT = A.BODY, A.STATE, A.PAR, A.COUNT
-    for c in (HEAP, LOGGED, IMPACTS, BLOCKS, FORECASTS, STALE):
+    for c in (HEAP, LOGGED, IMPACTS, BLOCKS, FORECASTS, STALE, SOLVES):
         COUNT[c] = 0
     if COUNT[UNMET] > 0:
         A.FLAG[:] = 0
