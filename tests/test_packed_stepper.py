@@ -6,6 +6,7 @@ import copy
 import math
 import pickle
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 import pymunk
@@ -16,6 +17,7 @@ from eeca_pymunk import layout as at
 from eeca_pymunk import transfer
 from eeca_pymunk.arrays import FloatArray
 from eeca_pymunk.packed_stepper import PackedStepper
+from eeca_pymunk.report import Details, of_events
 from eeca_pymunk.space.world import World
 from scenes.scene import add_disk
 
@@ -33,9 +35,9 @@ class FreeFlight(PackedStepper):
         status = self._fly(world, dt, left)
         return status if self.told is None or status < 0 else status | transfer.EVENTS
 
-    def events(self, world: World) -> FloatArray:
+    def details(self, world: World, dt: float) -> Callable[[], Details]:
         assert self.told is not None
-        return self.told
+        return partial(of_events, self.told, dt, world.bodies.items, world.owner)
 
 
 def swarm() -> pymunk.Space:
