@@ -31,8 +31,8 @@ class Method(Protocol):
     def details(
         self, dt: float, bodies: tuple[pymunk.Body, ...], owner: IntArray
     ) -> Details | Callable[[], Details]:  # fmt: skip
-        """The arrays of the report of the last step, or what makes them; `owner` (k,) is the place of every shape's body
-        in `bodies`."""
+        """The arrays of the report of the last step, or what makes them; `owner` (k,) is the place in `bodies` of the
+        body of every shape."""
 
     @property
     def book(self) -> FloatArray | None:

@@ -6,13 +6,13 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from eeca_pymunk._rounds import blocks, impact_times, impacts
+from eeca_pymunk._rounds.contacts import Pairs
 
 import eeca_pymunk as ep
 from comparisons import hard_cases
 from comparisons.hard_cases import CASES, Case
 from comparisons.output import Output
-from eeca_pymunk._rounds import blocks, impact_times, impacts
-from eeca_pymunk._rounds.contacts import Pairs
 from eeca_pymunk.energy import balance
 
 BY_NAME = {one.name: one for one in CASES}

@@ -197,7 +197,7 @@ def test_what_handlers_decide_about_pairs_is_told_for_one_step() -> None:
     third.collision_type = 3
     stepper = FreeFlight(space)
     world = stepper._look()
-    assert not world.rules.ignored | set(world.rules.restitution)
+    assert not world.rules.ignored | set(world.rules.changed)
 
     def ignore(arbiter: pymunk.Arbiter, space: pymunk.Space, data: object) -> None:
         arbiter.process_collision = False
@@ -306,12 +306,12 @@ def test_the_model_says_what_there_is() -> None:
     for shape in space.shapes:
         shape.elasticity = 1.0
     whole = "4 disks, 3 other moving shapes, 1 walls; {}; rotation with contact arms; {}"
-    assert FreeFlight(space).model == whole.format("gravity or forces", "elastic")
+    assert FreeFlight(space).model == whole.format("gravity or forces", "elastic; sustained contacts")
     space.gravity = (0.0, 0.0)
     assert FreeFlight(space).model == whole.format("no forces", "elastic")
     push(space)
     shape.elasticity = 0.5
-    assert FreeFlight(space).model == whole.format("gravity or forces", "loss")
+    assert FreeFlight(space).model == whole.format("gravity or forces", "loss; sustained contacts")
     for part in (damp, steer, handle):
         part(space)
     assert FreeFlight(space).model.endswith("; damping; functions of bodies; collision handlers, by a rehearsal")

@@ -23,7 +23,8 @@ if TYPE_CHECKING:
 
 
 class PenaltyStepper(PackedStepper):
-    """A stepper of lone disks between static shapes whose contacts are springs of stiffness K > 0 (mass/time²); subclasses say how springs act in time."""
+    """Moves lone disks between static shapes whose contacts are springs of stiffness K > 0 (mass/time²); subclasses say
+    how springs act in time."""
 
     max_iterations = 30
     tolerance = 1e-12  # of the change of impulses between iterations, relative to the largest

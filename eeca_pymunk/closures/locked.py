@@ -33,9 +33,7 @@ def locked_motion(
     iterations: int,
     converged: bool,
 ) -> Solution:
-    """Scale the impulses by the energy lock, and move: Eq. 10 with v_np1 and p_c of the scaled impulses.
-
-    """
+    """Scale the impulses by the energy lock, and move: Eq. 10 with v_np1 and p_c of the scaled impulses."""
     dt, psi1, psi2, increment = problem.dt, weights.psi1, weights.psi2, weights.gap_increment
     q = restitution(A, problem)
     # Impulses that meet their tolerance need no lock of their own for each island: it would be 1 in all of them.

@@ -16,7 +16,23 @@ from ..arrays import BoolArray, FloatArray, IntArray
 from ..errors import UnsupportedFeature
 from ..geometry.gap import ROUND_OFF, gaps
 from ..layout import (
-    ANGLE, AX, AY, COUNT, ELASTICITY, FIRST, FRICTION, IM, OWNER, ROUNDING, SINCE, SPIN, TWIST, VX, VY, X, Y,
+    ANGLE,
+    AX,
+    AY,
+    COUNT,
+    ELASTICITY,
+    FIRST,
+    FRICTION,
+    IM,
+    OWNER,
+    ROUNDING,
+    SINCE,
+    SPIN,
+    TWIST,
+    VX,
+    VY,
+    X,
+    Y,
 )  # fmt: skip
 from ..pairs.candidates import candidates
 from ..pairs.layout import MARGIN
@@ -227,12 +243,12 @@ def _check(world: World, moving: int, mover: str) -> None:
         other = np.flatnonzero(~(centred & (world.BODY[owner, IM] > 0.0)))
         i = int(other[0]) if len(other) else world.disks
         raise UnsupportedFeature(
-            f"{world.shapes[i]} of {world.bodies.items[world.owner[i]]} moves and is not a disk about the centre of mass "
-            f"of a dynamic body with no other shape, which is all that {mover} moves; use ep.EECA(space)"
+            f"{world.shapes[i]} of {world.bodies.items[world.owner[i]]} moves and is not a disk about the centre of "
+            f"mass of a dynamic body with no other shape, which is all that {mover} moves; use ep.EECA(space)"
         )
     rough = np.flatnonzero(world.SHAPE[:, FRICTION] > 0.0)
     if len(rough) > 1 and rough[0] < moving:
         raise UnsupportedFeature(
-            f"{world.shapes[rough[0]]} has friction {world.SHAPE[rough[0], FRICTION]}, and so has a shape it may touch: "
-            f"{mover} does not model it; use ep.EECA(space), or set shape.friction = 0"
+            f"{world.shapes[rough[0]]} has friction {world.SHAPE[rough[0], FRICTION]}, and so has a shape it may "
+            f"touch: {mover} does not model it; use ep.EECA(space), or set shape.friction = 0"
         )

@@ -146,9 +146,7 @@ class Simultaneous(ABC):
         details = Details(contacts, solution.impulse, solution.psi1, solution.psi2, solution.gap_increment)
         return Motion(velocity, displacement, details, solution.lock, solution.converged, solution.iterations)
 
-    def _problem(
-        self, start: Start, chosen: Pairs, before: Geometry, guess: FloatArray
-    ) -> tuple[Problem, IntArray]:
+    def _problem(self, start: Start, chosen: Pairs, before: Geometry, guess: FloatArray) -> tuple[Problem, IntArray]:
         """The problem of the `chosen` contacts on the bodies they touch, and the rows of these bodies."""
         rows, row_a, row_b = restrict(chosen.row_a, chosen.row_b, len(start.position))
         facing = before.normal

@@ -96,7 +96,8 @@ def gaps(
     for k in range(PAIRS.shape[0]):
         OUT[k, 0], OUT[k, 1], OUT[k, 2], OUT[k, 3], OUT[k, 4] = gap_at(
             SHAPE, LINK, VERTEX, WORK,
-            PAIRS[k, 0], POSE_A[k, 0], POSE_A[k, 1], POSE_A[k, 2], PAIRS[k, 1], POSE_B[k, 0], POSE_B[k, 1], POSE_B[k, 2],
+            PAIRS[k, 0], POSE_A[k, 0], POSE_A[k, 1], POSE_A[k, 2],
+            PAIRS[k, 1], POSE_B[k, 0], POSE_B[k, 1], POSE_B[k, 2],
         )  # fmt: skip
 
 

@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..layout import COUNT as VERTICES, DUE, ELASTICITY, EVENT_COLUMNS, NOW as READ, OWNER
+from ..layout import COUNT as VERTICES
+from ..layout import DUE, ELASTICITY, EVENT_COLUMNS, OWNER
+from ..layout import NOW as READ
 from ..pairs.layout import MARGIN
 from ..pairs.setup import near_lists, rebuilt
 from ..report import Details, of_events
@@ -18,8 +20,31 @@ from ..sustained.relax import FRESH
 from ..transfer import FORCES
 from .islands import flag_again
 from .layout import (
-    AFTER, BLOCKS, CHECK, COUNT_LENGTH, FIRST_SHAPE, HEAP, ISLAND, LEDGER, LIMIT, LOCK, LOGGED, MEMBER_COLUMNS, NOW, OTHER,
-    PAR_LENGTH, PUSHED_COLUMNS, RELAX, REMEMBERED, RESTING_COLUMNS, SHAPES, SOLVES, STAMP, STATE_COLUMNS, UNMET, Scene,
+    AFTER,
+    BLOCKS,
+    CHECK,
+    COUNT_LENGTH,
+    FIRST_SHAPE,
+    HEAP,
+    ISLAND,
+    LEDGER,
+    LIMIT,
+    LOCK,
+    LOGGED,
+    MEMBER_COLUMNS,
+    NOW,
+    OTHER,
+    PAR_LENGTH,
+    PUSHED_COLUMNS,
+    RELAX,
+    REMEMBERED,
+    RESTING_COLUMNS,
+    SHAPES,
+    SOLVES,
+    STAMP,
+    STATE_COLUMNS,
+    UNMET,
+    Scene,
 )  # fmt: skip
 from .step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, resume, step
 from .together import resume_together, step_together
@@ -110,7 +135,8 @@ class EventLoop:
         self.scene = scene._replace(KEYS=KEYS, FORCES=TABLE)
 
     def rule(self, rules: Mapping[tuple[int, int], tuple[float, float, float, float]]) -> None:
-        """Let pairs of shapes (a < b) have this elasticity (below 0: they pass), friction and surface velocity from now on."""
+        """Let pairs of shapes (a < b) have this elasticity (below 0: they pass), friction and surface velocity from now
+        on."""
         table = np.array([(*pair, *what) for pair, what in rules.items()], float).reshape(-1, RULE_COLUMNS)
         if len(table) or len(self.scene.RULE):
             self.scene = self.scene._replace(RULE=table)

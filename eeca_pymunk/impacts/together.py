@@ -1,8 +1,8 @@
 """A step whose contacts act together at its middle, psi2 = 0: the bounded solve of islands on all contacts.
 
-No event is followed. Every pair that may close within the step is a contact of an island, and every island has one span,
-the step. Who may be reached depends on whom impulses make fast: a body of mass m that moves at v gives one of mass M up
-to 2 m v / (m + M), and so on from body to body; the product of these factors on the way round a loop is at most 1.
+No event is followed. Every pair that may close within the step is a contact of an island, and every island has one
+span, the step. Who may be reached depends on whom impulses make fast: a body of mass m that moves at v gives one of
+mass M up to 2 m v / (m + M), and so on from body to body; the product of these factors round a loop is at most 1.
 """
 
 from __future__ import annotations
@@ -16,11 +16,25 @@ from ..compiled import kernel, uncounted
 from ..layout import EXTENT, IM, OWNER, SIZE, SPIN, VX, VY
 from ..pairs.candidates import cover
 from ..pairs.layout import NUMBER, START
-from ..transfer import EVENTS as SOME, give, take
+from ..transfer import EVENTS as SOME
+from ..transfer import give, take
 from .forecast import barred
 from .islands import TOUCH, approach, solve, unite, way_of
 from .layout import (
-    DONE, DT, FIRST_SHAPE, GRAVITY_X, GRAVITY_Y, ISLAND, LEFT_OVER, LOGGED, NOW, PUSHES, SHAPES, SPEED, TOGETHER, Scene,
+    DONE,
+    DT,
+    FIRST_SHAPE,
+    GRAVITY_X,
+    GRAVITY_Y,
+    ISLAND,
+    LEFT_OVER,
+    LOGGED,
+    NOW,
+    PUSHES,
+    SHAPES,
+    SPEED,
+    TOGETHER,
+    Scene,
 )  # fmt: skip
 from .step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, begin, close
 
@@ -50,7 +64,7 @@ def meet(A: Scene, i: int, QUEUE: IntArray, WAITS: IntArray, first: int, count: 
         for w in range(A.LIST[s, START], A.LIST[s, START] + A.LIST[s, NUMBER]):
             o = int(A.POOL[w])
             j = LINK[o, OWNER]
-            if BODY[i, IM] == 0.0 and BODY[j, IM] == 0.0 or barred(A.RULE, s, o):
+            if (BODY[i, IM] == 0.0 and BODY[j, IM] == 0.0) or barred(A.RULE, s, o):
                 continue
             touch = TOUCH * min(A.SHAPE[s, SIZE], A.SHAPE[o, SIZE])
             if approach(A, s, o, 0.0)[0] > way_of(A, i, dt) + way_of(A, j, dt) + touch:

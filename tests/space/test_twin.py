@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pymunk
 import pytest
+from eeca_pymunk.space.twin import MarginTwin
 from pymunk import batch
 
 import eeca_pymunk as ep
 import scenes
 from eeca_pymunk.space.bodies import Bodies
 from eeca_pymunk.space.shapes import Shapes
-from eeca_pymunk.space.twin import MarginTwin
 from scenes.scene import add_disk, add_walls
 
 MARGIN = 2.0
