@@ -163,13 +163,13 @@ def step_island(
         size = np.inf
         for i in range(n):
             size = min(size, EXTENT[i])
-        lifted, OUT[5] = lifting(
-            A, B, ROWS, MIDDLE, VN, ACC, IM, II, n, m, h, size, normal + tangential - owed, JUMP
-        )  # fmt: skip
-        LEDGER[0] += normal - min(lifted, 0.0)
+        # Losses pay for lifting; what is elastic has none, whatever round-off says.
+        budget = 0.0 if elastic else normal + tangential - owed
+        lifted, OUT[5] = lifting(A, B, ROWS, MIDDLE, VN, ACC, IM, II, n, m, h, size, budget, JUMP)
+        LEDGER[0] += normal
         LEDGER[1] += tangential
         LEDGER[2] += carried(A, B, ROWS, L, V, IM, m)
-        LEDGER[3] += max(lifted, 0.0)
+        LEDGER[3] += lifted
         for i in range(m):
             stopped = max(max(ROWS[i, TARGET], 0.0) - ROWS[i, UN], 0.0) * ROWS[i, K_N]
             load = max(L[i, 0] - stopped, 0.0)

@@ -73,9 +73,9 @@ def test_a_fast_disk_sends_one_at_rest_into_another_at_rest() -> None:
     # Light ones behind a heavy one are faster than anything was before; nobody may be overrun within the step.
     space = pymunk.Space()
     a = add_disk(space, (0.0, 0.0), 0.1, 100.0, (1.0, 0.0))
-    others = [add_disk(space, (0.2 + 0.2 * i + 1e-3 * i, 0.0), 0.1, 0.01) for i in range(1, 30)]
+    others = [add_disk(space, (0.2 + 0.2 * i + 1e-3 * i, 0.0), 0.1, 0.01) for i in range(1, 5)]
     stepper, energy = ep.EECA(space, ep.Midstep()), ep.measure(space).energy
-    for _ in range(5):
+    for _ in range(3):
         stepper.step(0.1)
         x = np.array([a.position.x] + [b.position.x for b in others])
         assert np.diff(x).min() >= 0.2 - 1e-9
