@@ -41,7 +41,7 @@ from ..pairs.lists import centre, mark_pair
 from ..pairs.rules import barred, law
 from ..rows.build import normal_rate, tangent_rate
 from ..rows.layout import ARM_NA, ARM_TA, FRICTION, K_N, K_T, NX, NY, ROW_COLUMNS, UN, UT
-from ..sustained.ledger import LEDGER_SIZE, LIFTED, carried
+from ..sustained.ledger import LEDGER_SIZE, carried
 from ..sustained.memory import find
 from ..sustained.step import LOCK as LOCK_OF
 from ..sustained.step import OUT_SIZE, step_island
@@ -89,7 +89,6 @@ from .layout import (
     SPAN,
     SPAN_FROM,
     SPEED,
-    SPENT,
     STAMP,
     SWEEPS,
     TOGETHER,
@@ -267,15 +266,23 @@ def end_span(A: Scene, root: int, t: float) -> None:
 
 @uncounted
 def lift_out(A: Scene, root: int, end: float) -> None:
-    """Lift the bodies of an island, at the end of its span, out of each other; the losses pay."""
-    PAR = A.PAR
+    """Lift the bodies of an island, at the end of its span, out of each other; the losses pay what that costs beyond
+    the work of forces: the change of kinetic energy, less m a.D + I alpha dtheta for displacements D."""
+    PAR, BODY, PULL, JUMP = A.PAR, A.BODY, A.PULL, A.RESTING
+    spent = 0.0
     i = root
     while i >= 0:
-        move_to(A.BODY, i, end)
+        move_to(BODY, i, end)
+        linear = PULL[i, 0] * JUMP[i, LIFT] + PULL[i, 1] * JUMP[i, LIFT + 1]
+        for c in range(2):
+            linear -= JUMP[i, LIFT + 3 + c] * (BODY[i, VX + c] + 0.5 * JUMP[i, LIFT + 3 + c])
+        spent -= linear / BODY[i, IM]
+        if BODY[i, II] > 0.0:
+            turning = JUMP[i, LIFT + 5] * (BODY[i, SPIN] + 0.5 * JUMP[i, LIFT + 5])
+            spent += (turning - PULL[i, 2] * JUMP[i, LIFT + 2]) / BODY[i, II]
         for c in range(6):
-            A.BODY[i, X + c] += A.RESTING[i, LIFT + c]
+            BODY[i, X + c] += JUMP[i, LIFT + c]
         i = A.MEMBER[i, AFTER_ME]
-    spent = A.RESTING[root, SPENT]
     PAR[LEDGER + RESTITUTION] -= spent
     if PAR[LEDGER + RESTITUTION] < 0.0 and PAR[LEDGER + FRICTIONAL] > 0.0:
         PAR[LEDGER + FRICTIONAL] += PAR[LEDGER + RESTITUTION]
@@ -509,7 +516,6 @@ def solve(A: Scene, root: int, t: float) -> int:
         ROW[PUSH_Y] = y + ROWS[z, ARM_TA] * ROWS[z, NY] - ROWS[z, ARM_NA] * ROWS[z, NX]
         ROW[PUSH_CHANGE] = L[z, 0] / ROWS[z, K_N]
     lost, hits = A.RESTING[root, LOST], MEMBER[root, HITS]
-    spent = BOOK[LIFTED]
     head, tail, size = -1, -1, 0
     for q in range(n):
         i = MINE[q]
@@ -531,7 +537,7 @@ def solve(A: Scene, root: int, t: float) -> int:
         STATE[i, ISLAND], MEMBER[i, AFTER_ME] = head, -1
     if head >= 0:
         MEMBER[head, LAST_ONE], MEMBER[head, BODIES], MEMBER[head, HITS] = tail, size, hits
-        A.RESTING[head, LOST], A.RESTING[head, SPENT] = lost, spent
+        A.RESTING[head, LOST] = lost
         A.RESTING[head, UNTIL] = t + h if t + h < A.PAR[DT] * (1.0 - 1e-12) else math.inf
         for z in range(m):
             A.PUSHED_BY[first + z, ROOT] = head

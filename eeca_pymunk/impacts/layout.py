@@ -27,8 +27,7 @@ MEMBER_COLUMNS = 5
 LIFT = 0  # RESTING[LIFT : LIFT + 6]: what to add to pose and velocity at the end of the span
 RELAX = 6  # of the root, RESTING[RELAX : RELAX + 3]: state of the solve
 LOST = 9  # of the root: energy lost in this step; below 0 it is owed
-SPENT = 10  # of the root: energy that lifting costs
-UNTIL = 11  # of the root: instant at which the span ends
+UNTIL = 10  # of the root: instant at which the span ends
 SPEED = 12  # that points of the body may get in the step, where all contacts act together
 RESTING_COLUMNS = 13
 
