@@ -41,6 +41,7 @@ from .layout import (
     BLOCKS,
     BUSY,
     DAMPED,
+    DIRECT,
     DONE,
     DT,
     EVENTS,
@@ -49,6 +50,7 @@ from .layout import (
     GRAVITY_X,
     GRAVITY_Y,
     HEAP,
+    IGNORED,
     IMPACTS,
     ISLAND,
     KINKS,
@@ -69,6 +71,7 @@ from .layout import (
     SOLVES,
     STALE,
     STAMP,
+    SWEEPS,
     UNMET,
     Scene,
 )  # fmt: skip
@@ -105,7 +108,7 @@ def total(A: Scene) -> float:
 def begin(A: Scene, WALK: IntArray) -> None:
     """Count from the start of this step; forecast the bodies that were edited, and all that is due."""
     BODY, STATE, PAR, COUNT = A.BODY, A.STATE, A.PAR, A.COUNT
-    for c in (HEAP, LOGGED, IMPACTS, BLOCKS, FORECASTS, STALE, SOLVES):
+    for c in (HEAP, LOGGED, IMPACTS, BLOCKS, FORECASTS, STALE, SOLVES, IGNORED, SWEEPS, DIRECT):
         COUNT[c] = 0
     if COUNT[UNMET] > 0:
         A.FLAG[:] = 0
