@@ -76,7 +76,8 @@ def join_all(A: Scene, USUAL: FloatArray) -> bool:
             if (moves and o < s) or barred(A.RULE, s, o):
                 continue
             touch = TOUCH * min(A.SHAPE[s, SIZE], A.SHAPE[o, SIZE])
-            if approach(A.BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, A.PULL, s, o, 0.0)[0] <= way_of(A, i, dt) + way_of(A, j, dt) + touch:
+            g = approach(BODY, A.SHAPE, LINK, A.VERTEX, A.WORK, A.PULL, s, o, 0.0)[0]
+            if g <= way_of(A, i, dt) + way_of(A, j, dt) + touch:
                 unite(A, i, j if moves else i)
     return True
 
