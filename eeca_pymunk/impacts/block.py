@@ -18,14 +18,38 @@ from ..layout import ANGLE, II, IM, OWNER, SINCE, SIZE, SPIN, VX, VY, X
 from ..pairs.layout import NUMBER, START
 from ..rows.blocks import CONVERGED, D_NORMAL, D_TANGENTIAL, OUT_SIZE, SCALE_LOCK, solve_block
 from ..rows.build import normal_rate, place_row
-from ..rows.layout import ELASTICITY as ELASTIC, K_N, NX, NY, ROW_COLUMNS
+from ..rows.layout import ELASTICITY as ELASTIC
+from ..rows.layout import K_N, NX, NY, ROW_COLUMNS
 from ..sustained.ledger import carried
 from .forecast import barred
 from .islands import end_span, members, remembered, solve, unite
 from .layout import (
-    BLOCKS, BODIES as SIZE_OF, DONE, DT, EVENTS, EXTERNAL, FIRST_SHAPE, FRICTIONAL, HITS, IMPACTS, ISLAND, KINKS,
-    LEDGER, LOCK, LOGGED, LOST, PENDING, RESTITUTION, SHAPES, STAMP, UNMET, Scene,
+    BLOCKS,
+    DONE,
+    DT,
+    EVENTS,
+    EXTERNAL,
+    FIRST_SHAPE,
+    FRICTIONAL,
+    HITS,
+    IMPACTS,
+    ISLAND,
+    KINKS,
+    LEDGER,
+    LOCK,
+    LOGGED,
+    LOST,
+    PENDING,
+    RESTITUTION,
+    SHAPES,
+    STAMP,
+    UNMET,
+    Scene,
 )  # fmt: skip
+from .layout import (
+    BODIES as SIZE_OF,
+)
+from .settle import spread
 from .strike import law, move_to, note, touches
 
 _FACES = 16.0  # times the tolerance of touching, by which the ends of parallel faces may differ
@@ -211,10 +235,17 @@ def rejoin(A: Scene, a: int, b: int, t: float, n: int, rest: bool, lost: float) 
             root = unite(A, BODIES[q], BODIES[q] if root < 0 else root)
     if root < 0 and not rest:
         return DONE, n
+    QUEUE = np.empty(A.BODY.shape[0], np.int64)
+    queued = 0
     for s in (a, b):
         i = A.LINK[s, OWNER]
         if A.BODY[i, IM] > 0.0:
+            if STATE[i, ISLAND] < 0:
+                QUEUE[queued] = i
+                queued += 1
             root = unite(A, i, i if root < 0 else root)
+    spread(A, QUEUE, queued, t)
+    root = STATE[root, ISLAND]
     A.RESTING[root, LOST] += lost
     A.MEMBER[root, HITS] += 1
     # The bodies of the block that are in no island are forecast too.

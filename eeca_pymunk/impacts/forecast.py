@@ -29,8 +29,8 @@ from ..layout import (
 from ..pairs.layout import AT_X, AT_Y, MARGIN, NUMBER, START
 from ..pairs.lists import centre
 from .heap import push
-from .times import meet, one_pull
 from .layout import CHECK, FIRST_SHAPE, HEAP, KINKS, KNOWN, LEAVE, NOTHING, OTHER, OWN, RENEW, SHAPES
+from .times import meet, one_pull
 
 _INSIDE = 0.1  # of the margin that is left, above which a shape has not left its circle
 

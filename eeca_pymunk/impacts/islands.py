@@ -12,30 +12,76 @@ import math
 
 import numpy as np
 
-from ..arrays import IntArray
+from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..geometry.gap import gap_at
-from ..layout import ANGLE, AX, AY, COUNT as COUNT_OF, ELASTICITY, EXTENT, II, IM, OWNER, ROUNDING, SINCE, SIZE, SPIN, TWIST, VX, VY, X, Y
+from ..layout import ANGLE, AX, AY, ELASTICITY, EXTENT, II, IM, OWNER, ROUNDING, SINCE, SIZE, SPIN, TWIST, VX, VY, X, Y
+from ..layout import COUNT as COUNT_OF
 from ..pairs.layout import NUMBER, START
 from ..pairs.lists import mark_pair
 from ..rows.build import normal_rate, tangent_rate
-from ..rows.layout import ARM_NA, ARM_TA, K_N, NX, NY, ROW_COLUMNS, UN, UT
+from ..rows.layout import ARM_NA, ARM_TA, FRICTION, K_N, K_T, NX, NY, ROW_COLUMNS, UN, UT
 from ..sustained.ledger import LEDGER_SIZE, LIFTED, carried
 from ..sustained.memory import find
-from ..sustained.step import LOCK as LOCK_OF, OUT_SIZE, step_island
+from ..sustained.step import LOCK as LOCK_OF
+from ..sustained.step import OUT_SIZE, step_island
 from .forecast import barred
 from .layout import (
-    AFTER_ME, BETA, BODIES, BUSY, DONE, DT, ENDED, EXTERNAL, FIRST_SHAPE, FRICTIONAL, HITS, ISLAND, KINKS, LAM,
-    LAST_ONE, LASTED, LEDGER, LIFT, LOCK, LOGGED, LOST, PULLED, PUSH_A, PUSH_B, PUSH_CHANGE, PUSH_NX, PUSH_NY, PUSH_X, PUSH_Y,
-    PUSHES, PUSHES_FULL, RELAX, REMEMBERED, RESTITUTION, ROOT, SHAPES, SOLVES, SPAN, SPAN_FROM, SPENT, STAMP, UN_AFTER,
+    AFTER_ME,
+    BETA,
+    BODIES,
+    BUSY,
+    DONE,
+    DT,
+    ENDED,
+    EXTERNAL,
+    FIRST_SHAPE,
+    FRICTIONAL,
+    HITS,
+    ISLAND,
+    KINKS,
+    LAM,
+    LAST_ONE,
+    LASTED,
+    LEDGER,
+    LIFT,
+    LOCK,
+    LOGGED,
+    LOST,
+    PULLED,
+    PUSH_A,
+    PUSH_B,
+    PUSH_CHANGE,
+    PUSH_NX,
+    PUSH_NY,
+    PUSH_X,
+    PUSH_Y,
+    PUSHES,
+    PUSHES_FULL,
+    RELAX,
+    REMEMBERED,
+    RESTITUTION,
+    ROOT,
+    SHAPES,
+    SOLVES,
+    SPAN,
+    SPAN_FROM,
+    SPENT,
+    STAMP,
+    UN_AFTER,
+    UN_BEFORE,
     UNTIL,
-    UN_BEFORE, UT_AFTER, UT_BEFORE, WORK_OF, Scene,
+    UT_AFTER,
+    UT_BEFORE,
+    WORK_OF,
+    Scene,
 )  # fmt: skip
 from .strike import law, move_to, note
 
 _TURN = 0.1  # rad
 _PARTS = 64.0  # of a step, that a span is at least
 _FEW = 12  # contacts
+_STICKS = 1e-6  # relative to the friction there can be, and to the slip, below which there is none
 TOUCH = 1e-7  # gap relative to the smaller shape, within which shapes are in touch
 _STILL, _WAS_STILL = 1e-6, 1e-3  # speed relative to |a| dt, below which elastic contacts rest; if they did before
 
@@ -279,6 +325,38 @@ def span_of(A: Scene, found: IntArray, t: float) -> float:
 
 
 @kernel
+def stick_time(
+    P: IntArray, Q: IntArray, ROWS: FloatArray, L: FloatArray, FREE: FloatArray, VN: FloatArray, m: int, h: float
+) -> float:
+    """When, within a span h of few contacts, those that slip come to stick; h if none does.
+
+    The solve ends their slip u_t with frictions beta, which change it by F, beside a_t h by other forces. Full friction
+    changes it by F sum mu lam / sum |beta| (single ones of a body's contacts are not unique): so fast the slip is over
+    after h |u_t| / (|F| sum mu lam / sum |beta| - a_t h).
+    """
+    if m > _FEW:
+        return h
+    limit, beta, slip, others = 0.0, 0.0, 0.0, 0.0
+    for z in range(m):
+        most = ROWS[z, FRICTION] * L[z, 0]
+        before = abs(ROWS[z, UT])
+        # What sticks all along has no slip but round-off before.
+        if most == 0.0 or before <= _STICKS * most / ROWS[z, K_T]:
+            continue
+        if abs(tangent_rate(P, Q, ROWS, VN, z)) > _STICKS * before:
+            continue
+        sign = 1.0 if ROWS[z, UT] > 0.0 else -1.0
+        limit += most
+        beta -= sign * L[z, 1]
+        if before > slip:
+            slip, others = before, sign * (tangent_rate(P, Q, ROWS, FREE, z) - ROWS[z, UT])
+    if beta <= _STICKS * limit or beta >= (1.0 - _STICKS) * limit:
+        return h
+    rate = (slip + others) * limit / beta - others
+    return h * slip / rate if rate > slip else h
+
+
+@kernel
 def solve(A: Scene, root: int, t: float) -> int:
     """Begin a span of the island at instant t, at which all its bodies are. Bodies without contact leave it.
 
@@ -341,6 +419,16 @@ def solve(A: Scene, root: int, t: float) -> int:
             max(-A.RESTING[root, LOST], 0.0), A.KEYS, A.FORCES, COUNT[REMEMBERED:], A.PAR[STAMP],
             A.RESTING[MINE[0], RELAX : RELAX + 3], P, Q, ROWS, KEY, L, LOSS, VN, JUMP, BOOK, OUT,
         )  # fmt: skip
+        stuck = stick_time(P, Q, ROWS, L, V + h * ACC, VN, m, h)
+        if stuck < h:
+            # Where slip ends on the way, so does the span: friction changes its law there.
+            h = max(stuck, A.PAR[DT] / _PARTS)
+            BOOK[:] = 0.0
+            m = step_island(
+                POSE, V, ACC, IMS, IIS, SIZES, n, PAIRS, p, A.SHAPE, A.LINK, A.VERTEX, A.WORK, h,
+                max(-A.RESTING[root, LOST], 0.0), A.KEYS, A.FORCES, COUNT[REMEMBERED:], A.PAR[STAMP],
+                A.RESTING[MINE[0], RELAX : RELAX + 3], P, Q, ROWS, KEY, L, LOSS, VN, JUMP, BOOK, OUT,
+            )  # fmt: skip
         if abs(OUT[LOCK_OF] - 1.0) > abs(A.PAR[LOCK] - 1.0):
             A.PAR[LOCK] = OUT[LOCK_OF]
     COUNT[SOLVES] += 1

@@ -12,14 +12,38 @@ from ..compiled import kernel, uncounted
 from ..layout import DUE, IM, OWNER
 from ..pairs.grid import renew
 from ..pairs.lists import mark_pair
+from .block import arrive, strike
 from .forecast import has_left, predict
 from .heap import pop, push, sweep_out
-from .layout import (
-    DONE, DT, EVENTS, FORECASTS, HEAP, ISLAND, KINKS, KNOWN, LEAVE, LIMIT, LOG_FULL, LOGGED, NOW, OTHER, OWN,
-    BLOCK_DUE, PENDING, POOL_FULL, PUSHES, RENEW, UNTIL, WAITING, STALE, STRUCK, UNMET, Scene,
-)  # fmt: skip
-from .block import arrive, strike
 from .islands import end_span, members, solve
+from .layout import (
+    BLOCK_DUE,
+    DONE,
+    DT,
+    EVENTS,
+    FORECASTS,
+    HEAP,
+    ISLAND,
+    KINKS,
+    KNOWN,
+    LEAVE,
+    LIMIT,
+    LOG_FULL,
+    LOGGED,
+    NOW,
+    OTHER,
+    OWN,
+    PENDING,
+    POOL_FULL,
+    PUSHES,
+    RENEW,
+    STALE,
+    STRUCK,
+    UNMET,
+    UNTIL,
+    WAITING,
+    Scene,
+)  # fmt: skip
 from .settle import comes_to_rest, ignored
 from .strike import alone, strike_disk
 

@@ -7,15 +7,38 @@ from collections.abc import Mapping
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..layout import COUNT as VERTICES, DUE, ELASTICITY, EVENT_COLUMNS, NOW as READ, OWNER
+from ..layout import COUNT as VERTICES
+from ..layout import DUE, ELASTICITY, EVENT_COLUMNS, OWNER
+from ..layout import NOW as READ
 from ..pairs.setup import near_lists, rebuilt
 from ..sustained.memory import FORCE_COLUMNS, forget
 from ..sustained.relax import FRESH
 from ..transfer import FORCES
 from .islands import flag_again
 from .layout import (
-    AFTER, CHECK, COUNT_LENGTH, FIRST_SHAPE, HEAP, ISLAND, LEDGER, LIMIT, LOCK, LOGGED, MEMBER_COLUMNS, NOW, OTHER, PAR_LENGTH, PUSHED_COLUMNS, RELAX, REMEMBERED,
-    RESTING_COLUMNS, SHAPES, STAMP, STATE_COLUMNS, UNMET, Scene,
+    AFTER,
+    CHECK,
+    COUNT_LENGTH,
+    FIRST_SHAPE,
+    HEAP,
+    ISLAND,
+    LEDGER,
+    LIMIT,
+    LOCK,
+    LOGGED,
+    MEMBER_COLUMNS,
+    NOW,
+    OTHER,
+    PAR_LENGTH,
+    PUSHED_COLUMNS,
+    RELAX,
+    REMEMBERED,
+    RESTING_COLUMNS,
+    SHAPES,
+    STAMP,
+    STATE_COLUMNS,
+    UNMET,
+    Scene,
 )  # fmt: skip
 from .step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, resume, step
 

@@ -10,14 +10,35 @@ import math
 
 import numpy as np
 
+from ..arrays import IntArray
 from ..compiled import kernel, uncounted
-from ..layout import EXTENT, IM, OWNER, SIZE, SPIN, VX, VY
+from ..geometry.flight import pose
+from ..geometry.gap import gap_at
+from ..layout import BOUND, EXTENT, IM, OWNER, SINCE, SIZE, SPIN, VX, VY
 from ..pairs.layout import NUMBER, START
+from ..pairs.lists import centre
 from .forecast import barred
-from .islands import TOUCH, approach, members, rests, solve, unite
+from .islands import TOUCH, approach, end_span, members, rests, solve, unite
 from .layout import (
-    BODIES, BUSY, DONE, DT, EVENTS, FIRST_SHAPE, HITS, IGNORED, ISLAND, LASTED, PULLED, PUSH_A, PUSH_B,
-    PUSHES, PUSHES_FULL, REMEMBERED, ROOT, SHAPES, Scene,
+    BODIES,
+    BUSY,
+    DONE,
+    DT,
+    EVENTS,
+    FIRST_SHAPE,
+    HITS,
+    IGNORED,
+    ISLAND,
+    LASTED,
+    PULLED,
+    PUSH_A,
+    PUSH_B,
+    PUSHES,
+    PUSHES_FULL,
+    REMEMBERED,
+    ROOT,
+    SHAPES,
+    Scene,
 )  # fmt: skip
 from .strike import law, move_to
 
@@ -30,10 +51,12 @@ _DEEP = 0.2  # of the smaller shape, that a hit would go deep: it is taken up to
 
 
 @uncounted
-def join(A: Scene, i: int) -> int:
-    """Let what touches body i, which is in an island, join it; where it is busy, what comes near. How many have."""
+def join(A: Scene, i: int, t: float, FOUND: IntArray) -> int:
+    """At instant t, let what touches body i, which is in an island, join it; where it is busy, what comes near. The
+    bodies that were in none go into FOUND; how many."""
     BODY, STATE, LINK = A.BODY, A.STATE, A.LINK
     dt, pulled = A.PAR[DT], A.PAR[PULLED]
+    h = dt - t
     joined = 0
     for s in range(STATE[i, FIRST_SHAPE], STATE[i, FIRST_SHAPE] + STATE[i, SHAPES]):
         for w in range(A.LIST[s, START], A.LIST[s, START] + A.LIST[s, NUMBER]):
@@ -44,25 +67,48 @@ def join(A: Scene, i: int) -> int:
             busy = A.MEMBER[i, BUSY] > 0 or A.MEMBER[j, BUSY] > 0
             if law(A.SHAPE, A.RULE, s, o)[0] >= 1.0 and not busy:
                 continue
-            g, u, _, _ = approach(A, s, o, 0.0)
-            if g <= TOUCH * min(A.SHAPE[s, SIZE], A.SHAPE[o, SIZE]):
-                if u > pulled * dt or -u > pulled * dt and not busy:
-                    continue
-            elif not busy:
-                continue
-            else:
+            small = min(A.SHAPE[s, SIZE], A.SHAPE[o, SIZE])
+            reach = TOUCH * small
+            if busy:
                 speed = math.hypot(BODY[i, VX], BODY[i, VY]) + math.hypot(BODY[j, VX], BODY[j, VY])
                 speed += abs(BODY[i, SPIN]) * BODY[i, EXTENT] + abs(BODY[j, SPIN]) * BODY[j, EXTENT]
-                if g > 1.1 * (speed + pulled * dt) * dt:
-                    continue
+                reach += 1.1 * (speed + pulled * dt) * h
+            ax, ay = centre(BODY, A.SHAPE, LINK, s, t)
+            bx, by = centre(BODY, A.SHAPE, LINK, o, t)
+            apart = A.SHAPE[s, BOUND] + A.SHAPE[o, BOUND] + reach + TOUCH * small
+            if (bx - ax) * (bx - ax) + (by - ay) * (by - ay) > apart * apart:
+                continue
             if STATE[j, ISLAND] < 0:
-                A.BLOCK[joined] = j
+                move_to(BODY, j, t)
+            elif BODY[j, SINCE] != t:
+                xi, yi, qi = pose(BODY, i, t)
+                xj, yj, qj = pose(BODY, j, t)
+                if gap_at(A.SHAPE, LINK, A.VERTEX, A.WORK, s, xi, yi, qi, o, xj, yj, qj)[0] > reach:
+                    continue
+                end_span(A, STATE[j, ISLAND], t)
+            g, u, _, _ = approach(A, s, o, t)
+            if g > reach:
+                continue
+            if g <= TOUCH * small and (u > pulled * dt or (-u > pulled * dt and not busy)):
+                continue
+            if STATE[j, ISLAND] < 0:
+                FOUND[joined] = j
                 joined += 1
             unite(A, i, j)
             if busy:
                 A.MEMBER[i, BUSY] = max(A.MEMBER[i, BUSY], A.MEMBER[j, BUSY] - 1)
                 A.MEMBER[j, BUSY] = max(A.MEMBER[j, BUSY], A.MEMBER[i, BUSY] - 1)
     return joined
+
+
+@uncounted
+def spread(A: Scene, QUEUE: IntArray, queued: int, t: float) -> int:
+    """`join` from the bodies of QUEUE on, and from those that join; how many bodies are in QUEUE then."""
+    q = 0
+    while q < queued:
+        queued += join(A, QUEUE[q], t, QUEUE[queued:])
+        q += 1
+    return queued
 
 
 @kernel
@@ -86,13 +132,10 @@ def settle(A: Scene) -> int:
         if STATE[i, ISLAND] >= 0:
             QUEUE[queued] = i
             queued += 1
-    q, wanted = 0, 0
-    while q < queued:
+    queued = spread(A, QUEUE, queued, 0.0)
+    wanted = 0
+    for q in range(queued):
         i = QUEUE[q]
-        q += 1
-        for k in range(join(A, i)):
-            QUEUE[queued] = A.BLOCK[k]
-            queued += 1
         for s in range(STATE[i, FIRST_SHAPE], STATE[i, FIRST_SHAPE] + STATE[i, SHAPES]):
             wanted += 2 * A.LIST[s, NUMBER]
     if wanted > A.PUSHED.shape[0] or 2 * (COUNT[REMEMBERED] + wanted) > A.KEYS.shape[0]:

@@ -8,17 +8,70 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..geometry.gap import gap_at
 from ..layout import (
-    BODY_ROW, DUE, FIRST_SHAPE as FIRST_OF, GAP, II, IM, OWNER, SECOND_SHAPE as SECOND_OF, SPECIAL, SPIN, STEERED,
-    VX, VY, X, Y, AX, AY, TWIST, ANGLE,
+    ANGLE,
+    AX,
+    AY,
+    BODY_ROW,
+    DUE,
+    GAP,
+    II,
+    IM,
+    OWNER,
+    SPECIAL,
+    SPIN,
+    STEERED,
+    TWIST,
+    VX,
+    VY,
+    X,
+    Y,
 )  # fmt: skip
-from ..transfer import EVENTS as SOME, give, take
+from ..layout import (
+    FIRST_SHAPE as FIRST_OF,
+)
+from ..layout import (
+    SECOND_SHAPE as SECOND_OF,
+)
+from ..transfer import EVENTS as SOME
+from ..transfer import give, take
+from .islands import book, lift_out
 from .layout import (
-    AFTER, BEFORE, BLOCKS, BUSY, DAMPED, DONE, DT, EVENTS, EXTERNAL, FORECASTS, GRAVITY_X, GRAVITY_Y, HEAP, IMPACTS, ISLAND,
-    KINKS, LAST, LEDGER, LEDGER_LENGTH, LEFT_OVER, LOCK, LOG_FULL, LOGGED, PENDING, PHASE, POOL_FULL,
-    PULLED, PUSHES, PUSHES_FULL, ROOT, STALE, STAMP, UNMET, Scene,
+    AFTER,
+    BEFORE,
+    BLOCKS,
+    BUSY,
+    DAMPED,
+    DONE,
+    DT,
+    EVENTS,
+    EXTERNAL,
+    FORECASTS,
+    GRAVITY_X,
+    GRAVITY_Y,
+    HEAP,
+    IMPACTS,
+    ISLAND,
+    KINKS,
+    LAST,
+    LEDGER,
+    LEDGER_LENGTH,
+    LEFT_OVER,
+    LOCK,
+    LOG_FULL,
+    LOGGED,
+    PENDING,
+    PHASE,
+    POOL_FULL,
+    PULLED,
+    PUSHES,
+    PUSHES_FULL,
+    ROOT,
+    STALE,
+    STAMP,
+    UNMET,
+    Scene,
 )  # fmt: skip
 from .loop import follow, forecast
-from .islands import book, lift_out
 from .settle import settle
 from .strike import move_to
 

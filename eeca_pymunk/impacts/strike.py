@@ -9,15 +9,54 @@ from ..compiled import uncounted
 from ..geometry.flight import pose
 from ..geometry.gap import gap_at, touching
 from ..layout import (
-    ANGLE, AX, AY, BOUND, CHANGE, ELASTICITY, EXTENT, FIRST_SHAPE as BY, FRICTION, II, IM,
-    IMPULSE, NORMAL_X, NORMAL_Y, OWNER, POINT_X, POINT_Y, SECOND_SHAPE as ON, SINCE, SPIN, SURFACE_X, SURFACE_Y,
-    TANGENTIAL, VX, VY, WHEN, X, Y,
+    ANGLE,
+    AX,
+    AY,
+    BOUND,
+    CHANGE,
+    ELASTICITY,
+    EXTENT,
+    FRICTION,
+    II,
+    IM,
+    IMPULSE,
+    NORMAL_X,
+    NORMAL_Y,
+    OWNER,
+    POINT_X,
+    POINT_Y,
+    SINCE,
+    SPIN,
+    SURFACE_X,
+    SURFACE_Y,
+    TANGENTIAL,
+    VX,
+    VY,
+    WHEN,
+    X,
+    Y,
 )  # fmt: skip
+from ..layout import (
+    FIRST_SHAPE as BY,
+)
+from ..layout import (
+    SECOND_SHAPE as ON,
+)
 from ..pairs.layout import NUMBER, START
 from ..pairs.lists import centre
 from .forecast import barred
 from .layout import (
-    EVENTS, EXTERNAL, FIRST_SHAPE, FRICTIONAL, IMPACTS, KINKS, LEDGER, LOGGED, RESTITUTION, SHAPES, Scene,
+    EVENTS,
+    EXTERNAL,
+    FIRST_SHAPE,
+    FRICTIONAL,
+    IMPACTS,
+    KINKS,
+    LEDGER,
+    LOGGED,
+    RESTITUTION,
+    SHAPES,
+    Scene,
 )  # fmt: skip
 
 
