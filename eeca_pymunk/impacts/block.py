@@ -66,7 +66,7 @@ def takes_part(A: Scene, disks: int, s: int, o: int, t: float) -> bool:
     i, j = A.LINK[s, OWNER], A.LINK[o, OWNER]
     if A.STATE[i, ISLAND] < 0 or not (A.STATE[j, ISLAND] == A.STATE[i, ISLAND] or A.BODY[j, IM] == 0.0):
         return False
-    return remembered(A, s, o, A.PAR[STAMP])[0] > 0.0
+    return remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], s, o, A.PAR[STAMP])[0] > 0.0
 
 
 @uncounted
@@ -180,7 +180,7 @@ def strike(A: Scene, disks: int, a: int, b: int, t: float, rest: bool) -> tuple[
             tolerance = max(tolerance, _ROCKING * small)
         if rest and PAIRS[z] == hit:
             e = 0.0
-        load = remembered(A, sa, sb, A.PAR[STAMP] - 1.0)[1]
+        load = remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], sa, sb, A.PAR[STAMP] - 1.0)[1]
         count = face(
             A.SHAPE, LINK, A.VERTEX, A.WORK, sa, POSE[p, 0], POSE[p, 1], POSE[p, 2],
             sb, POSE[q, 0], POSE[q, 1], POSE[q, 2], tolerance, found,

@@ -86,7 +86,7 @@ def join(A: Scene, i: int, t: float, FOUND: IntArray) -> int:
                 if gap_at(A.SHAPE, LINK, A.VERTEX, A.WORK, s, xi, yi, qi, o, xj, yj, qj)[0] > reach:
                     continue
                 end_span(A, STATE[j, ISLAND], t)
-            g, u, _, _ = approach(A, s, o, t)
+            g, u, _, _ = approach(A.BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, A.PULL, s, o, t)
             if g > reach:
                 continue
             if g <= TOUCH * small and (u > pulled * dt or (-u > pulled * dt and not busy)):
@@ -122,6 +122,8 @@ def settle(A: Scene) -> int:
         a, b = A.PUSHED_BY[c, PUSH_A], A.PUSHED_BY[c, PUSH_B]
         if A.PUSHED_BY[c, ROOT] != LASTED or barred(A.RULE, a, b):
             continue
+        if c > 0 and a == A.PUSHED_BY[c - 1, PUSH_A] and b == A.PUSHED_BY[c - 1, PUSH_B]:
+            continue  # the other end of a face
         i, j = A.LINK[a, OWNER], A.LINK[b, OWNER]
         if rests(A, a, b, 0.0, law(A.SHAPE, A.RULE, a, b)[0] < 1.0):
             i = j if BODY[i, IM] == 0.0 else i
@@ -158,7 +160,7 @@ def comes_to_rest(A: Scene, a: int, b: int, t: float) -> bool:
     if A.BODY[j, IM] > 0.0:
         move_to(A.BODY, j, t)
     e = law(A.SHAPE, A.RULE, a, b)[0]
-    _, u, closing, _ = approach(A, a, b, t)
+    _, u, closing, _ = approach(A.BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, A.PULL, a, b, t)
     end = A.PAR[DT]
     met = max(A.STATE[i, EVENTS], A.STATE[j, EVENTS])
     if e < 1.0:

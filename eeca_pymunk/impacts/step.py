@@ -69,7 +69,7 @@ from .layout import (
     STALE,
     STAMP,
     UNMET,
-    Scene,
+    Scene, SOLVES, IGNORED, SWEEPS, DIRECT,
 )  # fmt: skip
 from .loop import follow, forecast
 from .settle import settle
@@ -103,7 +103,7 @@ def total(A: Scene) -> float:
 def begin(A: Scene, WALK: IntArray) -> None:
     """Count from the start of this step; forecast the bodies that were edited, and all that is due."""
     BODY, STATE, PAR, COUNT = A.BODY, A.STATE, A.PAR, A.COUNT
-    for c in (HEAP, LOGGED, IMPACTS, BLOCKS, FORECASTS, STALE):
+    for c in (HEAP, LOGGED, IMPACTS, BLOCKS, FORECASTS, STALE, SOLVES, IGNORED, SWEEPS, DIRECT):
         COUNT[c] = 0
     if COUNT[UNMET] > 0:
         A.FLAG[:] = 0

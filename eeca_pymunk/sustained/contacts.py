@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel
+from ..compiled import uncounted
 from ..geometry.manifold import manifold
 from ..layout import COUNT, ELASTICITY, FRICTION, ROUNDING, SIZE, SURFACE_X, SURFACE_Y
 from ..rows.build import place_row
@@ -25,7 +25,7 @@ _SLACK = 1e-9  # relative to the smaller shape: tolerance of the manifold
 PAIR_COLUMNS = 4  # PAIRS: shape a, shape b, and their local bodies
 
 
-@kernel
+@uncounted
 def gather(
     PAIRS: IntArray, p: int, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray, POSE: FloatArray,
     MIDDLE: FloatArray, V: FloatArray, REACH: FloatArray, EXTENT: FloatArray, IM: FloatArray, II: FloatArray, h: float,

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel
+from ..compiled import kernel, uncounted
 from ..rows.build import conserves, rates
 from ..rows.direct import SMALL
 from ..rows.energy import lock, works
@@ -30,7 +30,7 @@ _ROUNDS = 20  # direct solutions of an island near rest, or elastic
 _FEW_ROUNDS = 6  # of a moving island of few contacts
 
 
-@kernel
+@uncounted
 def recall(
     KEY: IntArray, m: int, KEYS: IntArray, FORCES: FloatArray, stamp: float, h: float, L: FloatArray,
     EXPECTED: FloatArray,
@@ -47,7 +47,7 @@ def recall(
             EXPECTED[i] = h * FORCES[row, 2]
 
 
-@kernel
+@uncounted
 def speeds(
     V: FloatArray, ACC: FloatArray, EXTENT: FloatArray, IM: FloatArray, n: int, h: float, REACH: FloatArray
 ) -> tuple[float, float, float]:
