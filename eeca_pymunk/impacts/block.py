@@ -16,12 +16,12 @@ from ..geometry.gap import touching
 from ..geometry.manifold import face
 from ..layout import ANGLE, II, IM, OWNER, SINCE, SIZE, SPIN, VX, VY, X
 from ..pairs.layout import NUMBER, START
+from ..pairs.rules import barred, law
 from ..rows.blocks import CONVERGED, D_NORMAL, D_TANGENTIAL, OUT_SIZE, SCALE_LOCK, solve_block
 from ..rows.build import normal_rate, place_row
 from ..rows.layout import ELASTICITY as ELASTIC
 from ..rows.layout import K_N, NX, NY, ROW_COLUMNS
 from ..sustained.ledger import carried
-from .forecast import barred
 from .islands import end_span, members, remembered, solve, unite
 from .layout import (
     BLOCKS,
@@ -50,7 +50,7 @@ from .layout import (
     BODIES as SIZE_OF,
 )
 from .settle import spread
-from .strike import law, move_to, note, touches
+from .strike import move_to, note, touches
 
 _FACES = 16.0  # times the tolerance of touching, by which the ends of parallel faces may differ
 _ROCKING = 1e-6  # of the size, by which they may where the contact is not elastic: a rocking that is lost anyway ends

@@ -14,10 +14,10 @@ from ..arrays import IntArray
 from ..compiled import kernel, uncounted
 from ..geometry.flight import pose
 from ..geometry.gap import gap_at
-from ..layout import BOUND, EXTENT, IM, OWNER, SINCE, SIZE, SPIN, VX, VY
+from ..layout import BOUND, DUE, EXTENT, IM, OWNER, SINCE, SIZE, SPIN, VX, VY
 from ..pairs.layout import NUMBER, START
 from ..pairs.lists import centre
-from .forecast import barred
+from ..pairs.rules import barred, law
 from .islands import TOUCH, approach, end_span, members, rests, solve, unite
 from .layout import (
     BODIES,
@@ -40,7 +40,7 @@ from .layout import (
     SHAPES,
     Scene,
 )  # fmt: skip
-from .strike import law, move_to
+from .strike import move_to
 
 _OFTEN, _VERY_OFTEN = 16, 64  # impacts of a body in a step after which a lossy contact rests; a slow elastic one
 _SLOW = 1.0 / 64.0  # speed relative to |a| dt, below which that happens to elastic ones
@@ -117,7 +117,10 @@ def settle(A: Scene) -> int:
     STATE, COUNT, BODY = A.STATE, A.COUNT, A.BODY
     n = BODY.shape[0] - 1
     for i in range(n):
-        STATE[i, ISLAND] = -1
+        if STATE[i, ISLAND] >= 0:
+            # Its forecast left out the pairs of its span.
+            BODY[i, DUE] = min(BODY[i, DUE], 0.0)
+            STATE[i, ISLAND] = -1
     for c in range(COUNT[PUSHES]):
         a, b = A.PUSHED_BY[c, PUSH_A], A.PUSHED_BY[c, PUSH_B]
         if A.PUSHED_BY[c, ROOT] != LASTED or barred(A.RULE, a, b):

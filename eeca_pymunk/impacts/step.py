@@ -41,6 +41,7 @@ from .layout import (
     BLOCKS,
     BUSY,
     DAMPED,
+    DIRECT,
     DONE,
     DT,
     EVENTS,
@@ -49,6 +50,7 @@ from .layout import (
     GRAVITY_X,
     GRAVITY_Y,
     HEAP,
+    IGNORED,
     IMPACTS,
     ISLAND,
     KINKS,
@@ -66,16 +68,19 @@ from .layout import (
     PUSHES,
     PUSHES_FULL,
     ROOT,
+    SOLVES,
     STALE,
     STAMP,
+    SWEEPS,
     UNMET,
-    Scene, SOLVES, IGNORED, SWEEPS, DIRECT,
+    Scene,
 )  # fmt: skip
 from .loop import follow, forecast
 from .settle import settle
 from .strike import move_to
 
-ROOM_FOR_LISTS, ROOM_FOR_EVENTS, ROOM_FOR_CONTACTS = -10, -11, -12  # answers of a step that wants more memory: give some, and `resume`
+# Answers of a step that wants more memory: give some, and `resume`.
+ROOM_FOR_LISTS, ROOM_FOR_EVENTS, ROOM_FOR_CONTACTS = -10, -11, -12
 
 
 @uncounted
