@@ -52,7 +52,7 @@ def go(space: pymunk.Space, make: runs.Make, steps: int, dt: float = DT) -> ep.S
 
 
 def heavy(gravity: float = G, slope: float = 0.0) -> pymunk.Space:
-    """A space in which things fall; with the floor along x, gravity is turned so as to pull down a slope (rad) to +x."""
+    """A space in which things fall; the floor is along x, and gravity is turned to pull down a slope (rad) to +x."""
     space = pymunk.Space()
     space.gravity = (gravity * math.sin(slope), -gravity * math.cos(slope))
     return space

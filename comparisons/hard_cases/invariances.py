@@ -1,4 +1,4 @@
-"""What needs no literature: a scene and its mirror image, in other units, another order, another frame, are the same."""
+"""What needs no literature: a scene and its mirror image, in other units, order or frame, are the same."""
 
 from __future__ import annotations
 

@@ -170,7 +170,7 @@ def painleve(make: runs.Make) -> float:
     """Beyond mu = 4/3 at tan = 2 no force is consistent with sliding; an impulse must do."""
     worst = 0.0
     for degrees, mu, v in ((63.0, 1.5, -3.0), (63.4, 1.4, -1.0), (60.0, 2.5, -4.0), (63.0, 1.5, 3.0)):
-        c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+        s = math.sin(math.radians(degrees))
         space = heavy()
         add_walls(space, FLOOR)
         body = pymunk.Body(1.0, 1.0 / 3.0)
@@ -186,7 +186,6 @@ def painleve(make: runs.Make) -> float:
             highest = now
         low = min(body.position.y - abs(math.sin(body.angle)), 0.0)
         worst = worst if low > -1e-2 else math.inf
-        del c
     return worst
 
 

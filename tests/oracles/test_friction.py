@@ -93,7 +93,7 @@ def test_belt_moves_things_as_native_does(speed: float) -> None:
 
 def test_belt_works() -> None:
     """External work m V^2, half of it friction's heat: V times the momentum that the block gets."""
-    space, body = moving.belt(1.5, 0.25)
+    space, _ = moving.belt(1.5, 0.25)
     stepper = Audit(space)
     for _ in range(90):
         stepper.step(DT)

@@ -1,4 +1,4 @@
-"""The ledger: closed in every step of every hard case, no loss negative, and its work that of an independent balance."""
+"""The ledger: closed in every step of every hard case, no loss negative; its work is that of an independent balance."""
 
 from __future__ import annotations
 
