@@ -17,7 +17,9 @@ from . import (
     hopper,
     mixed,
     pool_break,
+    pyramid,
     signorini,
+    slope,
 )
 from .scene import Scene
 
@@ -34,6 +36,8 @@ _BUILDERS: dict[str, Callable[..., Scene]] = {
     "balls_and_lines": balls_and_lines.build,
     "colours": colours.build,
     "drum": drum.build,
+    "slope": slope.build,
+    "pyramid": pyramid.build,
 }
 NAMES = tuple(_BUILDERS)
 

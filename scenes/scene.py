@@ -54,3 +54,15 @@ def add_walls(space: pymunk.Space, lines: Iterable[tuple[Point, Point]]) -> None
         shape = pymunk.Segment(space.static_body, a, b, 0.0)
         shape.elasticity, shape.friction = 1.0, 0.0
         space.add(shape)
+
+
+def add_box(
+    space: pymunk.Space, position: Point, width: float, height: float, mass: float = 1.0, velocity: Point = (0.0, 0.0)
+) -> pymunk.Body:
+    """Add an inelastic box with friction 1 and return its body."""
+    body = pymunk.Body(mass, pymunk.moment_for_box(mass, (width, height)))
+    body.position, body.velocity = position, velocity
+    shape = pymunk.Poly.create_box(body, (width, height))
+    shape.elasticity, shape.friction = 0.0, 1.0
+    space.add(body, shape)
+    return body

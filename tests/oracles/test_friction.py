@@ -1,0 +1,110 @@
+"""Friction of one body on planes and on floors that move; friction as pymunk's callbacks and options set it."""
+
+from __future__ import annotations
+
+import math
+import warnings
+
+import pymunk
+import pytest
+
+import eeca_pymunk as ep
+from comparisons.hard_cases import Case, friction, moving
+from comparisons.hard_cases.case import DT, G, heavy, matter
+from scenes.scene import add_box, add_walls
+
+from .audit import Audit
+from .running import check, of
+
+SLOPE, MU = math.radians(30.0), 0.3
+
+
+@pytest.mark.parametrize("one", of(friction, moving), ids=lambda one: one.name)
+def test_case(one: Case, monkeypatch: pytest.MonkeyPatch) -> None:
+    check(one, monkeypatch)
+
+
+def slope(mu: float = MU) -> friction.Plane:
+    return friction.on_plane(SLOPE, mu, "box")
+
+
+def slid(mu: float) -> float:
+    """Way down in a second."""
+    return 0.5 * G * (math.sin(SLOPE) - mu * math.cos(SLOPE))
+
+
+def test_pre_solve_sets_friction() -> None:
+    """arbiter.friction = 0 on a rough slope: smooth; and 0.5 for the shapes' .3."""
+    for mu in (0.0, 0.5):
+        space, body = slope()
+        for shape in space.shapes:
+            shape.collision_type = 1
+
+        def pre_solve(arbiter: pymunk.Arbiter, space: pymunk.Space, data: object, mu: float = mu) -> None:
+            arbiter.friction = mu
+
+        space.on_collision(1, 1, pre_solve=pre_solve)
+        stepper = ep.EECA(space)
+        for _ in range(60):
+            stepper.step(DT)
+        assert body.position.x == pytest.approx(slid(mu), rel=1e-9)
+
+
+def test_friction_can_be_ignored() -> None:
+    space, body = slope()
+    stepper = ep.EECA(space, ignore=("friction",))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)  # which says so once
+        stepper.step(DT)
+    for _ in range(59):
+        stepper.step(DT)
+    assert body.position.x == pytest.approx(slid(0.0), rel=1e-12)
+
+
+def test_pair_has_the_product_of_both_frictions() -> None:
+    space, body = slope()
+    for shape, mu in zip(space.shapes, (0.5, 0.6), strict=True):
+        shape.friction = mu
+    stepper = ep.EECA(space)
+    for _ in range(60):
+        stepper.step(DT)
+    assert body.position.x == pytest.approx(slid(0.3), rel=1e-12)
+
+
+@pytest.mark.parametrize("speed", [1.5, -0.7])
+def test_belt_moves_things_as_native_does(speed: float) -> None:
+    """Surface velocity of the floor, then of the box: the same sense as pymunk's own step."""
+    for of_box in (False, True):
+        ways = []
+        for make in (ep.EECA, ep.Native):
+            space = heavy()
+            add_walls(space, [((-50.0, 0.0), (50.0, 0.0))])
+            floor = next(iter(space.shapes))
+            body = add_box(space, (0.0, 0.5), 1.0, 1.0)
+            matter(space, 0.5)
+            (next(iter(body.shapes)) if of_box else floor).surface_velocity = (speed, 0.0)
+            stepper = make(space)
+            for _ in range(60):
+                stepper.step(DT)
+            ways.append(body.velocity.x)
+        assert abs(ways[0]) == pytest.approx(abs(speed), rel=1e-9)
+        assert ways[0] == pytest.approx(ways[1], rel=1e-2)
+
+
+def test_belt_works() -> None:
+    """External work m V^2, half of it friction's heat: V times the momentum that the block gets."""
+    space, _ = moving.belt(1.5, 0.25)
+    stepper = Audit(space)
+    for _ in range(90):
+        stepper.step(DT)
+    assert stepper.total["external"] == pytest.approx(1.5**2, rel=1e-12)
+    assert stepper.total["friction"] == pytest.approx(0.5 * 1.5**2, rel=1e-12)
+
+
+def test_turning_shapes_carry_no_loss_when_rolling() -> None:
+    space, body = friction.on_plane(SLOPE, 0.3, "disk")
+    stepper = Audit(space)
+    for _ in range(60):
+        stepper.step(DT)
+    assert abs(body.angular_velocity) > 1.0
+    assert max(abs(stepper.total["friction"]), abs(stepper.total["restitution"])) <= 1e-12 * G
