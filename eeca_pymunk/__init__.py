@@ -13,12 +13,13 @@ from .closures.midstep import Midstep
 from .closures.time_of_impact import TimeOfImpact
 from .eeca import EECA, Closure
 from .energy.invariants import Invariants
-from .energy.ledger import Ledger
+from .energy.ledger import Ledger, LedgerTrace
 from .errors import UnsupportedFeature
 from .recording import Recording, record
 from .report import Contacts, StepReport
 from .space.measure import measure
 from .stepper import Stepper
+from .warming import warmup
 
 __all__ = [
     "EECA",
@@ -27,6 +28,7 @@ __all__ = [
     "Dashpot",
     "Invariants",
     "Ledger",
+    "LedgerTrace",
     "Midstep",
     "Native",
     "Newmark",
@@ -39,6 +41,7 @@ __all__ = [
     "measure",
     "record",
     "render",
+    "warmup",
 ]
 
 
