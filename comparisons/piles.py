@@ -153,7 +153,8 @@ def case(
         crept = np.hypot(*(run.place() - run.places[-1]).T) / R
         rows.append({
             "kind": kind, "N": count, "e": elasticity, "mu": friction, "stepper": run.name,
-            "us/step": 1e6 * spent, f"x native {ITERATIONS[0]}": spent / mean, f"x native {ITERATIONS[-1]}": spent / slow,
+            "us/step": 1e6 * spent, f"x native {ITERATIONS[0]}": spent / mean,
+            f"x native {ITERATIONS[-1]}": spent / slow,
             "worst step (native means)": max(run.seconds) / mean,
             "settled, x native": statistics.mean(run.seconds[-settled:]) / late,
             "deepest (r)": run.depth,
