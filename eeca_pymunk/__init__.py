@@ -13,7 +13,8 @@ from .closures.midstep import Midstep
 from .closures.time_of_impact import TimeOfImpact
 from .eeca import EECA, Closure
 from .energy.invariants import Invariants
-from .energy.ledger import Ledger, LedgerTrace
+from .energy.ledger import Ledger
+from .energy.ledger_trace import LedgerTrace
 from .errors import UnsupportedFeature
 from .recording import Recording, record
 from .report import Contacts, StepReport

@@ -13,7 +13,7 @@ import numpy as np
 from tqdm import tqdm
 
 from .arrays import FloatArray, IntArray
-from .energy.ledger import LedgerTrace, entries
+from .energy.ledger_trace import LedgerTrace, entries
 from .files import whole_file
 from .report import StepReport
 from .space.bodies import ANGLE, POSITION, VELOCITY, Bodies, moving
