@@ -34,10 +34,10 @@ class Kernel(Generic[P, R]):
     for Python. What lets Python call a kernel takes longer to compile than many a kernel.
     """
 
-    def __init__(self, python: Callable[P, R], counted: bool = True) -> None:
+    def __init__(self, python: Callable[P, R], **options: Any) -> None:
         functools.update_wrapper(self, python)
         self.python = python
-        self.counted = counted
+        self.options = options
         self.run: Callable[P, R] = self._first
         self.inner: Any = None
         _kernels.append(self)
@@ -66,7 +66,13 @@ def kernel(python: Callable[P, R]) -> Callable[P, R]:
 def uncounted(python: Callable[P, R]) -> Callable[P, R]:
     """A kernel that makes no arrays, views of its arguments excepted: numba then leaves out its count of references to
     arrays, two locked instructions for each argument at every call, which would take longer than a small kernel."""
-    return Kernel(python, counted=False)
+    return Kernel(python, _nrt=False)
+
+
+def inlined(python: Callable[P, R]) -> Callable[P, R]:
+    """An uncounted kernel that becomes part of its callers, before they are compiled: for what is called once in a hot
+    loop with many arrays, which take longer to pass than they take to be worked on."""
+    return Kernel(python, _nrt=False, inline="always")
 
 
 def disabled() -> bool:
@@ -128,7 +134,7 @@ def prepare() -> None:
     before = numba.config.CACHE_DIR
     try:
         for one in fresh:
-            options = _OPTIONS if one.counted else {**_OPTIONS, "_nrt": False}
+            options = {**_OPTIONS, **one.options}
             numba.config.CACHE_DIR = str(folder / "python")
             one.run = numba.njit(**options)(one.python)
             numba.config.CACHE_DIR = str(folder / "kernels")

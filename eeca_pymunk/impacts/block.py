@@ -16,12 +16,12 @@ from ..geometry.gap import touching
 from ..geometry.manifold import face
 from ..layout import ANGLE, II, IM, OWNER, SINCE, SIZE, SPIN, VX, VY, X
 from ..pairs.layout import NUMBER, START
+from ..pairs.rules import barred, law
 from ..rows.blocks import CONVERGED, D_NORMAL, D_TANGENTIAL, OUT_SIZE, SCALE_LOCK, solve_block
 from ..rows.build import normal_rate, place_row
 from ..rows.layout import ELASTICITY as ELASTIC
 from ..rows.layout import K_N, NX, NY, ROW_COLUMNS
 from ..sustained.ledger import carried
-from .forecast import barred
 from .islands import end_span, members, remembered, solve, unite
 from .layout import (
     BLOCKS,
@@ -50,7 +50,7 @@ from .layout import (
     BODIES as SIZE_OF,
 )
 from .settle import spread
-from .strike import law, move_to, note, touches
+from .strike import move_to, note, touches
 
 _FACES = 16.0  # times the tolerance of touching, by which the ends of parallel faces may differ
 _ROCKING = 1e-6  # of the size, by which they may where the contact is not elastic: a rocking that is lost anyway ends
@@ -66,7 +66,7 @@ def takes_part(A: Scene, disks: int, s: int, o: int, t: float) -> bool:
     i, j = A.LINK[s, OWNER], A.LINK[o, OWNER]
     if A.STATE[i, ISLAND] < 0 or not (A.STATE[j, ISLAND] == A.STATE[i, ISLAND] or A.BODY[j, IM] == 0.0):
         return False
-    return remembered(A, s, o, A.PAR[STAMP])[0] > 0.0
+    return remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], s, o, A.PAR[STAMP])[0] > 0.0
 
 
 @uncounted
@@ -180,7 +180,7 @@ def strike(A: Scene, disks: int, a: int, b: int, t: float, rest: bool) -> tuple[
             tolerance = max(tolerance, _ROCKING * small)
         if rest and PAIRS[z] == hit:
             e = 0.0
-        load = remembered(A, sa, sb, A.PAR[STAMP] - 1.0)[1]
+        load = remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], sa, sb, A.PAR[STAMP] - 1.0)[1]
         count = face(
             A.SHAPE, LINK, A.VERTEX, A.WORK, sa, POSE[p, 0], POSE[p, 1], POSE[p, 2],
             sb, POSE[q, 0], POSE[q, 1], POSE[q, 2], tolerance, found,

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 from ..arrays import FlagArray, FloatArray, IntArray, PoolArray
-from ..compiled import uncounted
+from ..compiled import inlined, uncounted
 from ..layout import (
     AX,
     AY,
@@ -28,6 +28,7 @@ from ..layout import (
 )  # fmt: skip
 from ..pairs.layout import AT_X, AT_Y, MARGIN, NUMBER, START
 from ..pairs.lists import centre
+from ..pairs.rules import barred
 from .heap import push
 from .layout import CHECK, FIRST_SHAPE, HEAP, KINKS, KNOWN, LEAVE, NOTHING, OTHER, OWN, RENEW, SHAPES
 from .times import meet, one_pull
@@ -78,17 +79,7 @@ def has_left(BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, MARK: FloatArr
     return bool(math.hypot(x - MARK[s, AT_X], y - MARK[s, AT_Y]) > (1.0 - _INSIDE) * MARK[s, MARGIN])
 
 
-@uncounted
-def barred(RULE: FloatArray, a: int, b: int) -> bool:
-    """Whether a collision handler has said that shapes a and b pass through one another in this step."""
-    low, high = float(min(a, b)), float(max(a, b))
-    for r in range(RULE.shape[0]):
-        if RULE[r, 0] == low and RULE[r, 1] == high:
-            return bool(RULE[r, 2] < 0.0)
-    return False
-
-
-@uncounted
+@inlined
 def predict(
     BODY: FloatArray, STATE: IntArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, MARK: FloatArray,
     LIST: IntArray, POOL: PoolArray, FLAG: FlagArray, RULE: FloatArray, TIME: FloatArray, OF: IntArray,

@@ -15,22 +15,44 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..geometry.gap import gap_at
-from ..layout import ANGLE, AX, AY, ELASTICITY, EXTENT, II, IM, OWNER, ROUNDING, SINCE, SIZE, SPIN, TWIST, VX, VY, X, Y
+from ..layout import (
+    ANGLE,
+    AX,
+    AY,
+    BOUND,
+    ELASTICITY,
+    EXTENT,
+    II,
+    IM,
+    OWNER,
+    ROUNDING,
+    SINCE,
+    SIZE,
+    SPIN,
+    TWIST,
+    VX,
+    VY,
+    X,
+    Y,
+)
 from ..layout import COUNT as COUNT_OF
 from ..pairs.layout import NUMBER, START
-from ..pairs.lists import mark_pair
+from ..pairs.lists import centre, mark_pair
+from ..pairs.rules import barred, law
 from ..rows.build import normal_rate, tangent_rate
 from ..rows.layout import ARM_NA, ARM_TA, FRICTION, K_N, K_T, NX, NY, ROW_COLUMNS, UN, UT
 from ..sustained.ledger import LEDGER_SIZE, LIFTED, carried
 from ..sustained.memory import find
 from ..sustained.step import LOCK as LOCK_OF
 from ..sustained.step import OUT_SIZE, step_island
-from .forecast import barred
+from ..sustained.step import POLISHES as POLISHES_OF
+from ..sustained.step import SWEEPS as SWEEPS_OF
 from .layout import (
     AFTER_ME,
     BETA,
     BODIES,
     BUSY,
+    DIRECT,
     DONE,
     DT,
     ENDED,
@@ -68,6 +90,7 @@ from .layout import (
     SPAN_FROM,
     SPENT,
     STAMP,
+    SWEEPS,
     UN_AFTER,
     UN_BEFORE,
     UNTIL,
@@ -76,7 +99,7 @@ from .layout import (
     WORK_OF,
     Scene,
 )  # fmt: skip
-from .strike import law, move_to, note
+from .strike import move_to, note
 
 _TURN = 0.1  # rad
 _PARTS = 64.0  # of a step, that a span is at least
@@ -113,35 +136,37 @@ def unite(A: Scene, i: int, j: int) -> int:
 
 
 @uncounted
-def remembered(A: Scene, a: int, b: int, since: float) -> tuple[float, float]:
+def remembered(KEYS: IntArray, FORCES: FloatArray, shapes: int, a: int, b: int, since: float) -> tuple[float, float]:
     """Normal force and load of a pair of shapes, of the steps from number `since` on; 0 if there is none."""
-    key = (min(a, b) * A.SHAPE.shape[0] + max(a, b)) << 1
+    key = (min(a, b) * shapes + max(a, b)) << 1
     force, load = 0.0, 0.0
     for z in range(2):
-        row = find(A.KEYS, key + z)
-        if row >= 0 and A.FORCES[row, 3] >= since:
-            force += A.FORCES[row, 0]
-            load += A.FORCES[row, 2]
+        row = find(KEYS, key + z)
+        if row >= 0 and FORCES[row, 3] >= since:
+            force += FORCES[row, 0]
+            load += FORCES[row, 2]
     return force, load
 
 
 @uncounted
-def approach(A: Scene, a: int, b: int, t: float) -> tuple[float, float, float, float]:
+def approach(
+    BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray, PULL: FloatArray,
+    a: int, b: int, t: float,
+) -> tuple[float, float, float, float]:  # fmt: skip
     """Gap of shapes a and b, whose paths begin at instant t or that move evenly; its rate; the acceleration with which
     it closes without contacts; and the mass that it feels."""
-    BODY, LINK = A.BODY, A.LINK
     i, j = LINK[a, OWNER], LINK[b, OWNER]
     h = t - BODY[j, SINCE]
     g, nx, ny, px, py = gap_at(
-        A.SHAPE, LINK, A.VERTEX, A.WORK, a, BODY[i, X], BODY[i, Y], BODY[i, ANGLE],
+        SHAPE, LINK, VERTEX, WORK, a, BODY[i, X], BODY[i, Y], BODY[i, ANGLE],
         b, BODY[j, X] + BODY[j, VX] * h, BODY[j, Y] + BODY[j, VY] * h, BODY[j, ANGLE] + BODY[j, SPIN] * h,
     )  # fmt: skip
     xi, yi, xj, yj = px - BODY[i, X], py - BODY[i, Y], px - BODY[j, X] - BODY[j, VX] * h, py - BODY[j, Y] - BODY[j, VY] * h
     arm_i, arm_j = xi * ny - yi * nx, xj * ny - yj * nx
     u = nx * (BODY[j, VX] - BODY[i, VX]) + ny * (BODY[j, VY] - BODY[i, VY])
     u += arm_j * BODY[j, SPIN] - arm_i * BODY[i, SPIN]
-    closing = nx * (A.PULL[i, 0] - A.PULL[j, 0]) + ny * (A.PULL[i, 1] - A.PULL[j, 1])
-    closing += arm_i * A.PULL[i, 2] - arm_j * A.PULL[j, 2]
+    closing = nx * (PULL[i, 0] - PULL[j, 0]) + ny * (PULL[i, 1] - PULL[j, 1])
+    closing += arm_i * PULL[i, 2] - arm_j * PULL[j, 2]
     mass = 1.0 / (
         BODY[i, IM] + BODY[j, IM] + BODY[i, II] * arm_i * arm_i + BODY[j, II] * arm_j * arm_j
     )
@@ -157,10 +182,10 @@ def rests(A: Scene, a: int, b: int, t: float, lossy: bool) -> bool:
     against what does not move is pressed.
     """
     e = law(A.SHAPE, A.RULE, a, b)[0]
-    g, u, closing, mass = approach(A, a, b, t)
+    g, u, closing, mass = approach(A.BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, A.PULL, a, b, t)
     h = A.PAR[DT] - t
     small = min(A.SHAPE[a, SIZE], A.SHAPE[b, SIZE])
-    force, load = remembered(A, a, b, A.PAR[STAMP] - 1.0)
+    force, load = remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], a, b, A.PAR[STAMP] - 1.0)
     if e >= 1.0 and not lossy:
         limit = (_WAS_STILL if force > 0.0 else _STILL) * A.PAR[PULLED] * A.PAR[DT]
         fixed = A.BODY[A.LINK[b, OWNER], IM] == 0.0 or A.BODY[A.LINK[a, OWNER], IM] == 0.0
@@ -273,14 +298,20 @@ def pairs_of(A: Scene, root: int, t: float, lossy: bool, LOCAL: IntArray, MINE: 
                     continue
                 if barred(A.RULE, s, o):
                     continue
-                g, u, closing, mass = approach(A, s, o, t)
                 small = min(A.SHAPE[s, SIZE], A.SHAPE[o, SIZE])
                 busy = A.MEMBER[i, BUSY] > 0 or A.MEMBER[j, BUSY] > 0
-                reach = 1.1 * (max(-u, 0.0) * h + A.PAR[PULLED] * h * h) + TOUCH * small
-                if busy:
-                    speed = math.hypot(BODY[i, VX], BODY[i, VY]) + math.hypot(BODY[j, VX], BODY[j, VY])
-                    speed += abs(BODY[i, SPIN]) * BODY[i, EXTENT] + abs(BODY[j, SPIN]) * BODY[j, EXTENT]
-                    reach = 1.1 * (speed * h + A.PAR[PULLED] * h * h) + TOUCH * small
+                speed = math.hypot(BODY[i, VX], BODY[i, VY]) + math.hypot(BODY[j, VX], BODY[j, VY])
+                speed += abs(BODY[i, SPIN]) * BODY[i, EXTENT] + abs(BODY[j, SPIN]) * BODY[j, EXTENT]
+                reach = 1.1 * (speed * h + A.PAR[PULLED] * h * h) + TOUCH * small
+                if o < A.LIST.shape[0]:
+                    ax, ay = centre(BODY, A.SHAPE, LINK, s, t)
+                    bx, by = centre(BODY, A.SHAPE, LINK, o, t)
+                    apart = A.SHAPE[s, BOUND] + A.SHAPE[o, BOUND] + reach
+                    if (bx - ax) * (bx - ax) + (by - ay) * (by - ay) > apart * apart:
+                        continue
+                g, u, closing, mass = approach(A.BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, A.PULL, s, o, t)
+                if not busy:
+                    reach = 1.1 * (max(-u, 0.0) * h + A.PAR[PULLED] * h * h) + TOUCH * small
                 if g > reach:
                     continue
                 e = law(A.SHAPE, A.RULE, s, o)[0]
@@ -288,7 +319,7 @@ def pairs_of(A: Scene, root: int, t: float, lossy: bool, LOCAL: IntArray, MINE: 
                     if not rests(A, s, o, t, False):
                         continue
                 elif g > TOUCH * small and not busy:
-                    press = max(closing, remembered(A, s, o, A.PAR[STAMP] - 1.0)[1] / mass) * h
+                    press = max(closing, remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], s, o, A.PAR[STAMP] - 1.0)[1] / mass) * h
                     if not -e * min(u, 0.0) < 0.5 * press:
                         continue
                 if p == found.shape[0]:
@@ -415,7 +446,7 @@ def solve(A: Scene, root: int, t: float) -> int:
     m = 0
     if p > 0 and h > 0.0:
         m = step_island(
-            POSE, V, ACC, IMS, IIS, SIZES, n, PAIRS, p, A.SHAPE, A.LINK, A.VERTEX, A.WORK, h,
+            POSE, V, ACC, IMS, IIS, SIZES, n, PAIRS, p, A.SHAPE, A.RULE, A.LINK, A.VERTEX, A.WORK, h,
             max(-A.RESTING[root, LOST], 0.0), A.KEYS, A.FORCES, COUNT[REMEMBERED:], A.PAR[STAMP],
             A.RESTING[MINE[0], RELAX : RELAX + 3], P, Q, ROWS, KEY, L, LOSS, VN, JUMP, BOOK, OUT,
         )  # fmt: skip
@@ -425,13 +456,15 @@ def solve(A: Scene, root: int, t: float) -> int:
             h = max(stuck, A.PAR[DT] / _PARTS)
             BOOK[:] = 0.0
             m = step_island(
-                POSE, V, ACC, IMS, IIS, SIZES, n, PAIRS, p, A.SHAPE, A.LINK, A.VERTEX, A.WORK, h,
+                POSE, V, ACC, IMS, IIS, SIZES, n, PAIRS, p, A.SHAPE, A.RULE, A.LINK, A.VERTEX, A.WORK, h,
                 max(-A.RESTING[root, LOST], 0.0), A.KEYS, A.FORCES, COUNT[REMEMBERED:], A.PAR[STAMP],
                 A.RESTING[MINE[0], RELAX : RELAX + 3], P, Q, ROWS, KEY, L, LOSS, VN, JUMP, BOOK, OUT,
             )  # fmt: skip
         if abs(OUT[LOCK_OF] - 1.0) > abs(A.PAR[LOCK] - 1.0):
             A.PAR[LOCK] = OUT[LOCK_OF]
     COUNT[SOLVES] += 1
+    COUNT[SWEEPS] += int(OUT[SWEEPS_OF])
+    COUNT[DIRECT] += int(OUT[POLISHES_OF])
     shapes = A.SHAPE.shape[0]
     first = COUNT[PUSHES]
     moving = A.LIST.shape[0]

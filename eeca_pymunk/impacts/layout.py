@@ -63,8 +63,9 @@ PUSHES = 9  # rows of PUSHED in use
 SOLVES, IGNORED = 10, 11
 PENDING, WAITING = 12, 13  # island whose span is to be begun, -1 for none; bodies in BLOCK to be forecast then
 PHASE = 14  # of the step that is to be resumed
-REMEMBERED = 15  # COUNT[REMEMBERED:]: rows of the memory of forces in use
-COUNT_LENGTH = 16
+SWEEPS, DIRECT = 15, 16  # of all solves: sweeps, direct solutions
+REMEMBERED = 17  # COUNT[REMEMBERED:]: rows of the memory of forces in use
+COUNT_LENGTH = 18
 
 # Status of a step
 DONE, POOL_FULL, LOG_FULL, BLOCK_DUE, PUSHES_FULL = 0, 1, 2, 3, 4

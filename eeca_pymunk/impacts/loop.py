@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from ..compiled import kernel, uncounted
+from ..compiled import inlined, kernel, uncounted
 from ..layout import DUE, IM, OWNER
 from ..pairs.grid import renew
 from ..pairs.lists import mark_pair
@@ -61,7 +61,7 @@ def forecast(A: Scene, disks: int, moving: int, i: int, t: float, end: float) ->
     )  # fmt: skip
 
 
-@uncounted
+@inlined
 def give_up(A: Scene, i: int, j: int) -> bool:
     """Whether bodies i and j have met as often as a step allows."""
     limit = A.COUNT[LIMIT]
@@ -82,7 +82,13 @@ def run(A: Scene, disks: int, may_rest: bool) -> int:
     BODY, STATE, COUNT, TIME, OF = A.BODY, A.STATE, A.COUNT, A.HEAP_TIME, A.HEAP_BODY
     moving = A.LIST.shape[0]
     end = A.PAR[DT]
-    while COUNT[HEAP] > 0:
+    one, two, t = -1, -1, 0.0  # bodies to be forecast
+    while True:
+        while one >= 0:
+            forecast(A, disks, moving, one, t, end)
+            one, two = two, -1
+        if COUNT[HEAP] == 0:
+            return DONE
         t, i = TIME[0], OF[0]
         if t != BODY[i, DUE]:
             COUNT[HEAP] = pop(TIME, OF, COUNT[HEAP])
@@ -101,38 +107,34 @@ def run(A: Scene, disks: int, may_rest: bool) -> int:
                 A.PAR[NOW] = t
                 COUNT[HEAP] = push(TIME, OF, COUNT[HEAP], t, i)
                 return POOL_FULL
-            forecast(A, disks, moving, i, t, end)
+            one = i
             continue
         if o == RENEW:
             A.PAR[NOW], COUNT[STRUCK] = t, i
             return BLOCK_DUE
         if o < 0 or STATE[A.LINK[o, OWNER], KINKS] != STATE[i, KNOWN]:
             COUNT[STALE] += 1
-            forecast(A, disks, moving, i, t, end)
+            one = i
             continue
         j = A.LINK[o, OWNER]
         if give_up(A, i, j):
             COUNT[UNMET] += 1
             mark_pair(A.LIST, A.POOL, A.FLAG, moving, s, o, 1)
-            forecast(A, disks, moving, i, t, end)
+            one = i
             continue
-        if (
-            STATE[i, ISLAND] < 0
-            and STATE[j, ISLAND] < 0
-            and i < disks
-            and (o < disks or o >= moving)
-            and not (may_rest and comes_to_rest(A, s, o, t))
-            and alone(A, disks, i, o, t)
-            and (o >= moving or alone(A, disks, j, i, t))
-        ):
-            strike_disk(A, i, o, t)
-            forecast(A, disks, moving, i, t, end)
-            if o < disks:
-                forecast(A, disks, moving, j, t, end)
-            continue
-        A.PAR[NOW], COUNT[STRUCK] = t, i
-        return BLOCK_DUE
-    return DONE
+        single = STATE[i, ISLAND] < 0 and STATE[j, ISLAND] < 0 and i < disks and (o < disks or o >= moving)
+        if single and may_rest:
+            single = not comes_to_rest(A, s, o, t)
+        body, other = i, o
+        for _ in range(2):
+            if single and body >= 0:
+                single = alone(A, disks, body, other, t)
+            body, other = (j, i) if o < disks else (-1, -1)
+        if not single:
+            A.PAR[NOW], COUNT[STRUCK] = t, i
+            return BLOCK_DUE
+        strike_disk(A, i, o, t)
+        one, two = i, j if o < disks else -1
 
 
 @kernel

@@ -14,10 +14,10 @@ from ..arrays import IntArray
 from ..compiled import kernel, uncounted
 from ..geometry.flight import pose
 from ..geometry.gap import gap_at
-from ..layout import BOUND, EXTENT, IM, OWNER, SINCE, SIZE, SPIN, VX, VY
+from ..layout import BOUND, DUE, EXTENT, IM, OWNER, SINCE, SIZE, SPIN, VX, VY
 from ..pairs.layout import NUMBER, START
 from ..pairs.lists import centre
-from .forecast import barred
+from ..pairs.rules import barred, law
 from .islands import TOUCH, approach, end_span, members, rests, solve, unite
 from .layout import (
     BODIES,
@@ -40,7 +40,7 @@ from .layout import (
     SHAPES,
     Scene,
 )  # fmt: skip
-from .strike import law, move_to
+from .strike import move_to
 
 _OFTEN, _VERY_OFTEN = 16, 64  # impacts of a body in a step after which a lossy contact rests; a slow elastic one
 _SLOW = 1.0 / 64.0  # speed relative to |a| dt, below which that happens to elastic ones
@@ -86,7 +86,7 @@ def join(A: Scene, i: int, t: float, FOUND: IntArray) -> int:
                 if gap_at(A.SHAPE, LINK, A.VERTEX, A.WORK, s, xi, yi, qi, o, xj, yj, qj)[0] > reach:
                     continue
                 end_span(A, STATE[j, ISLAND], t)
-            g, u, _, _ = approach(A, s, o, t)
+            g, u, _, _ = approach(A.BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, A.PULL, s, o, t)
             if g > reach:
                 continue
             if g <= TOUCH * small and (u > pulled * dt or (-u > pulled * dt and not busy)):
@@ -117,11 +117,16 @@ def settle(A: Scene) -> int:
     STATE, COUNT, BODY = A.STATE, A.COUNT, A.BODY
     n = BODY.shape[0] - 1
     for i in range(n):
-        STATE[i, ISLAND] = -1
+        if STATE[i, ISLAND] >= 0:
+            # Its forecast left out the pairs of its span.
+            BODY[i, DUE] = min(BODY[i, DUE], 0.0)
+            STATE[i, ISLAND] = -1
     for c in range(COUNT[PUSHES]):
         a, b = A.PUSHED_BY[c, PUSH_A], A.PUSHED_BY[c, PUSH_B]
         if A.PUSHED_BY[c, ROOT] != LASTED or barred(A.RULE, a, b):
             continue
+        if c > 0 and a == A.PUSHED_BY[c - 1, PUSH_A] and b == A.PUSHED_BY[c - 1, PUSH_B]:
+            continue  # the other end of a face
         i, j = A.LINK[a, OWNER], A.LINK[b, OWNER]
         if rests(A, a, b, 0.0, law(A.SHAPE, A.RULE, a, b)[0] < 1.0):
             i = j if BODY[i, IM] == 0.0 else i
@@ -158,7 +163,7 @@ def comes_to_rest(A: Scene, a: int, b: int, t: float) -> bool:
     if A.BODY[j, IM] > 0.0:
         move_to(A.BODY, j, t)
     e = law(A.SHAPE, A.RULE, a, b)[0]
-    _, u, closing, _ = approach(A, a, b, t)
+    _, u, closing, _ = approach(A.BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, A.PULL, a, b, t)
     end = A.PAR[DT]
     met = max(A.STATE[i, EVENTS], A.STATE[j, EVENTS])
     if e < 1.0:

@@ -41,6 +41,7 @@ from .layout import (
     BLOCKS,
     BUSY,
     DAMPED,
+    DIRECT,
     DONE,
     DT,
     EVENTS,
@@ -49,6 +50,7 @@ from .layout import (
     GRAVITY_X,
     GRAVITY_Y,
     HEAP,
+    IGNORED,
     IMPACTS,
     ISLAND,
     KINKS,
@@ -66,8 +68,10 @@ from .layout import (
     PUSHES,
     PUSHES_FULL,
     ROOT,
+    SOLVES,
     STALE,
     STAMP,
+    SWEEPS,
     UNMET,
     Scene,
 )  # fmt: skip
@@ -103,7 +107,7 @@ def total(A: Scene) -> float:
 def begin(A: Scene, WALK: IntArray) -> None:
     """Count from the start of this step; forecast the bodies that were edited, and all that is due."""
     BODY, STATE, PAR, COUNT = A.BODY, A.STATE, A.PAR, A.COUNT
-    for c in (HEAP, LOGGED, IMPACTS, BLOCKS, FORECASTS, STALE):
+    for c in (HEAP, LOGGED, IMPACTS, BLOCKS, FORECASTS, STALE, SOLVES, IGNORED, SWEEPS, DIRECT):
         COUNT[c] = 0
     if COUNT[UNMET] > 0:
         A.FLAG[:] = 0

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from ..arrays import FloatArray
-from ..compiled import uncounted
+from ..compiled import inlined, uncounted
 from ..geometry.flight import pose
 from ..geometry.gap import gap_at, touching
 from ..layout import (
@@ -14,9 +14,7 @@ from ..layout import (
     AY,
     BOUND,
     CHANGE,
-    ELASTICITY,
     EXTENT,
-    FRICTION,
     II,
     IM,
     IMPULSE,
@@ -27,8 +25,6 @@ from ..layout import (
     POINT_Y,
     SINCE,
     SPIN,
-    SURFACE_X,
-    SURFACE_Y,
     TANGENTIAL,
     VX,
     VY,
@@ -44,7 +40,7 @@ from ..layout import (
 )
 from ..pairs.layout import NUMBER, START
 from ..pairs.lists import centre
-from .forecast import barred
+from ..pairs.rules import barred, law
 from .layout import (
     EVENTS,
     EXTERNAL,
@@ -72,21 +68,6 @@ def move_to(BODY: FloatArray, i: int, t: float) -> None:
 
 
 @uncounted
-def law(SHAPE: FloatArray, RULE: FloatArray, a: int, b: int) -> tuple[float, float, float, float]:
-    """Elasticity, friction, and surface velocity (x, y) of b relative to a: pymunk's products, or what a handler set."""
-    for r in range(RULE.shape[0]):
-        if RULE[r, 0] == min(a, b) and RULE[r, 1] == max(a, b):
-            sign = 1.0 if a < b else -1.0
-            return RULE[r, 2], RULE[r, 3], sign * RULE[r, 4], sign * RULE[r, 5]
-    return (
-        SHAPE[a, ELASTICITY] * SHAPE[b, ELASTICITY],
-        SHAPE[a, FRICTION] * SHAPE[b, FRICTION],
-        SHAPE[b, SURFACE_X] - SHAPE[a, SURFACE_X],
-        SHAPE[b, SURFACE_Y] - SHAPE[a, SURFACE_Y],
-    )
-
-
-@uncounted
 def touches(A: Scene, disks: int, a: int, b: int, t: float) -> bool:
     """Whether shapes a and b touch at instant t, up to round-off."""
     BODY = A.BODY
@@ -105,7 +86,7 @@ def touches(A: Scene, disks: int, a: int, b: int, t: float) -> bool:
     return gap_at(A.SHAPE, A.LINK, A.VERTEX, A.WORK, a, xa, ya, qa, b, xb, yb, qb)[0] <= tolerance
 
 
-@uncounted
+@inlined
 def alone(A: Scene, disks: int, i: int, other: int, t: float) -> bool:
     """Whether no shape but `other` touches the shapes of body i at instant t."""
     BODY, POOL = A.BODY, A.POOL
@@ -139,7 +120,7 @@ def note(
     LOG[n, NORMAL_X], LOG[n, NORMAL_Y], LOG[n, POINT_X], LOG[n, POINT_Y], LOG[n, CHANGE] = nx, ny, px, py, change
 
 
-@uncounted
+@inlined
 def strike_disk(A: Scene, i: int, o: int, t: float) -> None:
     """Impact of the lone disk i with shape o, a lone disk or static.
 

@@ -11,8 +11,20 @@ from ..arrays import FlagArray, FloatArray, IntArray, PoolArray
 from ..layout import BOUND, COUNT, FIRST, OWNER, ROUNDING
 from .grid import build, wall_grid
 from .layout import (
-    CELL_COLUMNS, CELL_LENGTH, GRID_LENGTH, INFO_LENGTH, LIST_COLUMNS, MARGIN, MARK_COLUMNS, MOVING, NUMBER,
-    WALL_COLUMNS, WALL_LENGTH, WALL_ROWS, WALL_X, WALL_Y,
+    CELL_COLUMNS,
+    CELL_LENGTH,
+    GRID_LENGTH,
+    INFO_LENGTH,
+    LIST_COLUMNS,
+    MARGIN,
+    MARK_COLUMNS,
+    MOVING,
+    NUMBER,
+    WALL_COLUMNS,
+    WALL_LENGTH,
+    WALL_ROWS,
+    WALL_X,
+    WALL_Y,
 )  # fmt: skip
 
 EVERYBODY = 16  # shapes that move up to which each is in the list of every other one

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel
+from ..compiled import uncounted
 from .layout import (
     ARM_NA,
     ARM_NB,
@@ -26,7 +26,7 @@ from .layout import (
 )
 
 
-@kernel
+@uncounted
 def place_row(
     A: IntArray, B: IntArray, ROWS: FloatArray, i: int, a: int, b: int, nx: float, ny: float, px: float, py: float,
     gap: float, POSE: FloatArray, IM: FloatArray, II: FloatArray, elasticity: float, friction: float, surface: float,
@@ -66,7 +66,7 @@ def place_row(
     ROWS[i, WAKE] = np.inf
 
 
-@kernel
+@uncounted
 def normal_rate(A: IntArray, B: IntArray, ROWS: FloatArray, V: FloatArray, i: int) -> float:
     """u_n of contact i at velocities V."""
     a = A[i]
@@ -79,7 +79,7 @@ def normal_rate(A: IntArray, B: IntArray, ROWS: FloatArray, V: FloatArray, i: in
     return rate
 
 
-@kernel
+@uncounted
 def tangent_rate(A: IntArray, B: IntArray, ROWS: FloatArray, V: FloatArray, i: int) -> float:
     """u_t of contact i at velocities V, relative to moving surfaces."""
     a = A[i]
@@ -93,7 +93,7 @@ def tangent_rate(A: IntArray, B: IntArray, ROWS: FloatArray, V: FloatArray, i: i
     return rate
 
 
-@kernel
+@uncounted
 def rates(A: IntArray, B: IntArray, ROWS: FloatArray, V: FloatArray, m: int) -> None:
     """Set u_n and u_t before the impulses of all contacts from V."""
     for i in range(m):
@@ -101,7 +101,7 @@ def rates(A: IntArray, B: IntArray, ROWS: FloatArray, V: FloatArray, m: int) -> 
         ROWS[i, UT] = tangent_rate(A, B, ROWS, V, i)
 
 
-@kernel
+@uncounted
 def aim(ROWS: FloatArray, m: int) -> float:
     """Targets of impacts at one instant: b = -e u_n where the contact approaches, -u_n where it opens.
 
@@ -115,7 +115,7 @@ def aim(ROWS: FloatArray, m: int) -> float:
     return worst
 
 
-@kernel
+@uncounted
 def conserves(ROWS: FloatArray, m: int) -> bool:
     """Whether all contacts are elastic and without friction."""
     lossy = 0
@@ -125,7 +125,7 @@ def conserves(ROWS: FloatArray, m: int) -> bool:
     return lossy == 0
 
 
-@kernel
+@uncounted
 def rubs(ROWS: FloatArray, m: int) -> bool:
     """Whether any contact has friction."""
     rough = 0

@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel
+from ..compiled import kernel, uncounted
 from .layout import ARM_NA, ARM_NB, ARM_TA, ARM_TB, K_N, K_T, NX, NY
 
 
@@ -157,7 +157,7 @@ def factorise(n: int, columns: IntArray, rows: IntArray, D: FloatArray, X: Float
             head[r] = j
 
 
-@kernel
+@uncounted
 def substitute(n: int, columns: IntArray, rows: IntArray, D: FloatArray, X: FloatArray, f: FloatArray) -> None:
     """f (n, 3), in order of elimination, becomes B^-1 f."""
     for j in range(n):

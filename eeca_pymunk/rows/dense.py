@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel
+from ..compiled import kernel, uncounted
 from .build import normal_rate, tangent_rate
 from .layout import (
     ARM_NA,
@@ -31,7 +31,7 @@ from .sweeps import velocities
 _R = 1e8
 
 
-@kernel
+@uncounted
 def decompose(W: FloatArray, N: int, order: IntArray) -> None:
     """LU with partial pivoting of W[:N, :N] in place; order (N,) of its rows."""
     for j in range(N):
@@ -55,7 +55,7 @@ def decompose(W: FloatArray, N: int, order: IntArray) -> None:
                     W[i, k] -= factor * W[j, k]
 
 
-@kernel
+@uncounted
 def back(W: FloatArray, N: int, order: IntArray, r: FloatArray, x: FloatArray) -> None:
     """x = W^-1 r from `decompose`."""
     for i in range(N):
@@ -124,7 +124,7 @@ def jacobian(
         W[i, i] += 1.0 / (_R * (ROWS[c, K_N] if kind[i] == 0 else ROWS[c, K_T]))
 
 
-@kernel
+@uncounted
 def unknowns(
     ROWS: FloatArray, L: FloatArray, m: int, held: IntArray, stuck: IntArray, slip: FloatArray, shared: bool,
     at: IntArray, kind: IntArray,

@@ -10,13 +10,13 @@ from __future__ import annotations
 import math
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel
+from ..compiled import uncounted
 from .build import normal_rate, tangent_rate
 from .layout import ARM_NA, ARM_NB, K_N, NX, NY, UN, UT
 from .sweeps import velocities
 
 
-@kernel
+@uncounted
 def works(
     A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, m: int, LOSS: FloatArray
 ) -> tuple[float, float]:
@@ -52,7 +52,7 @@ def works(
     return normal, tangential
 
 
-@kernel
+@uncounted
 def lock(
     A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, FREE: FloatArray, IM: FloatArray,
     II: FloatArray, m: int, owed: float, exact: bool,
@@ -101,7 +101,7 @@ def lock(
     return s, left
 
 
-@kernel
+@uncounted
 def lift(
     A: IntArray, B: IntArray, ROWS: FloatArray, GAPS: FloatArray, MU: FloatArray, D: FloatArray, IM: FloatArray,
     II: FloatArray, m: int, tolerance: float, most: int,

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel
+from ..compiled import kernel, uncounted
 
 _LEAF = 6  # bodies that are not divided further
 _MANY = 24  # neighbours from which a body is eliminated last
@@ -117,7 +117,7 @@ def dissect(POSE: FloatArray, n: int, start: IntArray, other: IntArray, place: I
             top += 1
 
 
-@kernel
+@uncounted
 def ascend(values: IntArray, low: int, high: int) -> None:
     """Sort values[low:high] (Shell's sort: short columns, and little to compile)."""
     gap = 1

@@ -13,7 +13,7 @@ import math
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel
+from ..compiled import kernel, uncounted
 from .build import normal_rate, tangent_rate
 from .cholesky import assemble, factorise, substitute
 from .layout import (
@@ -35,7 +35,7 @@ from .ordering import dissect, neighbours, pattern
 from .sweeps import velocities
 
 
-@kernel
+@uncounted
 def classify(
     A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, m: int, held: IntArray, stuck: IntArray,
     slip: FloatArray, rest: FloatArray,
@@ -67,7 +67,7 @@ def classify(
             slip[i] = mu if beta > 0.0 else -mu
 
 
-@kernel
+@uncounted
 def clamp(ROWS: FloatArray, L: FloatArray, m: int) -> int:
     """Put impulses back into their cones; how many were outside."""
     clamped = 0
@@ -171,7 +171,7 @@ def polish(
     return worst, clamped
 
 
-@kernel
+@uncounted
 def segment(
     A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, L0: FloatArray, V0: FloatArray, m: int
 ) -> float:

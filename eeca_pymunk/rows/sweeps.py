@@ -16,7 +16,7 @@ import math
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel
+from ..compiled import kernel, uncounted
 from .layout import (
     ARM_NA,
     ARM_NB,
@@ -35,7 +35,7 @@ from .layout import (
 )
 
 
-@kernel
+@uncounted
 def coulomb(
     qn: float, qt: float, ann: float, ant: float, att: float, mu: float, un: float, ut: float, target: float
 ) -> tuple[float, float]:
@@ -88,7 +88,7 @@ def coulomb(
     return lam, beta
 
 
-@kernel
+@uncounted
 def sweep(
     A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, IM: FloatArray, II: FloatArray, m: int
 ) -> float:
@@ -147,7 +147,7 @@ def sweep(
     return worst
 
 
-@kernel
+@uncounted
 def push(
     A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, IM: FloatArray, II: FloatArray, m: int
 ) -> None:
@@ -169,7 +169,7 @@ def push(
         V[b, 2] += II[b] * (lam * ROWS[i, ARM_NB] + beta * ROWS[i, ARM_TB])
 
 
-@kernel
+@uncounted
 def velocities(
     A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, FREE: FloatArray, IM: FloatArray, II: FloatArray, m: int,
     V: FloatArray,
@@ -181,7 +181,7 @@ def velocities(
     push(A, B, ROWS, L, V, IM, II, m)
 
 
-@kernel
+@uncounted
 def keep(L: FloatArray, V: FloatArray, m: int, L0: FloatArray, V0: FloatArray) -> None:
     """Copy m impulses and all velocities to (L0, V0)."""
     for i in range(m):

@@ -16,9 +16,9 @@ import numpy as np
 import pymunk
 
 from ..arrays import FloatArray
+from ..layout import ELASTICITY, FRICTION
 from . import private
 from .bodies import ANGLE, ANGULAR_VELOCITY, POSITION, VELOCITY, Bodies
-from ..layout import ELASTICITY, FRICTION
 from .shapes import Rules
 
 

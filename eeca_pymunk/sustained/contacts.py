@@ -11,9 +11,10 @@ from __future__ import annotations
 import math
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel
+from ..compiled import uncounted
 from ..geometry.manifold import manifold
-from ..layout import COUNT, ELASTICITY, FRICTION, ROUNDING, SIZE, SURFACE_X, SURFACE_Y
+from ..layout import COUNT, ROUNDING, SIZE
+from ..pairs.rules import law
 from ..rows.build import place_row
 from ..rows.layout import NX, NY, SURFACE
 
@@ -25,9 +26,9 @@ _SLACK = 1e-9  # relative to the smaller shape: tolerance of the manifold
 PAIR_COLUMNS = 4  # PAIRS: shape a, shape b, and their local bodies
 
 
-@kernel
+@uncounted
 def gather(
-    PAIRS: IntArray, p: int, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray, POSE: FloatArray,
+    PAIRS: IntArray, p: int, SHAPE: FloatArray, RULE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray, POSE: FloatArray,
     MIDDLE: FloatArray, V: FloatArray, REACH: FloatArray, EXTENT: FloatArray, IM: FloatArray, II: FloatArray, h: float,
     A: IntArray, B: IntArray, ROWS: FloatArray, KEY: IntArray, NOW: FloatArray, THEN: FloatArray,
 ) -> int:  # fmt: skip
@@ -85,17 +86,14 @@ def gather(
             for z in range(count):
                 for q in range(5):
                     THEN[z, q] = NOW[z, q]
-        friction = SHAPE[s, FRICTION] * SHAPE[r, FRICTION]
-        elasticity = SHAPE[s, ELASTICITY] * SHAPE[r, ELASTICITY]
+        elasticity, friction, sx, sy = law(SHAPE, RULE, s, r)
         for z in range(count):
             i = m + z
             place_row(
                 A, B, ROWS, i, a, b, THEN[z, 0], THEN[z, 1], THEN[z, 2], THEN[z, 3], NOW[z, 4], centre, IM, II,
                 elasticity, friction, 0.0,
             )  # fmt: skip
-            ROWS[i, SURFACE] = ROWS[i, NX] * (SHAPE[r, SURFACE_Y] - SHAPE[s, SURFACE_Y]) - ROWS[i, NY] * (
-                SHAPE[r, SURFACE_X] - SHAPE[s, SURFACE_X]
-            )
+            ROWS[i, SURFACE] = ROWS[i, NX] * sy - ROWS[i, NY] * sx
             KEY[i] = ((min(s, r) * shapes + max(s, r)) << 1) + z
         m += count
     return m

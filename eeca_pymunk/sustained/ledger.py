@@ -9,14 +9,14 @@ energy that lifting bodies out of each other costs; it never exceeds these losse
 from __future__ import annotations
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel
+from ..compiled import uncounted
 from ..rows.layout import ARM_NA, ARM_NB, ARM_TA, ARM_TB, NX, NY, SURFACE
 
 RESTITUTION, FRICTION, CARRIED, LIFTED, FORCES = 0, 1, 2, 3, 4
 LEDGER_SIZE = 8
 
 
-@kernel
+@uncounted
 def carried(A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, IM: FloatArray, m: int) -> float:
     """Work of bodies that impulses do not move (kinematic ones, at their velocities in V) and of moving surfaces."""
     work = 0.0
@@ -39,7 +39,7 @@ def carried(A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatA
     return work
 
 
-@kernel
+@uncounted
 def against(ACC: FloatArray, IM: FloatArray, II: FloatArray, n: int, D: FloatArray) -> float:
     """Work of the forces behind accelerations ACC over displacements D (k, 3) of the first n bodies."""
     work = 0.0

@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel
+from ..compiled import kernel, uncounted
 from ..rows.build import normal_rate
 from ..rows.energy import lift
 from ..rows.layout import GAP, UN
@@ -69,7 +69,7 @@ def lifting(
     return part * (work + part * square), deepest
 
 
-@kernel
+@uncounted
 def unturn(
     POSE: FloatArray, VN: FloatArray, D: FloatArray, IM: FloatArray, II: FloatArray, n: int, h: float
 ) -> tuple[float, float, float, float, float]:

@@ -8,13 +8,13 @@ forgotten, and cleared by `forget` when the table fills. COUNT (1,) rows in use.
 from __future__ import annotations
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel
+from ..compiled import uncounted
 
 NORMAL, TANGENTIAL, LOAD, STAMP = 0, 1, 2, 3
 FORCE_COLUMNS = 4
 
 
-@kernel
+@uncounted
 def find(KEYS: IntArray, key: int) -> int:
     """Row of the key, or -1 - (the free row where it would be)."""
     mask = len(KEYS) - 1
@@ -27,7 +27,7 @@ def find(KEYS: IntArray, key: int) -> int:
     return row
 
 
-@kernel
+@uncounted
 def remember(
     KEYS: IntArray, FORCES: FloatArray, COUNT: IntArray, key: int, normal: float, tangential: float, load: float,
     stamp: float,
@@ -44,7 +44,7 @@ def remember(
     FORCES[row, 3] = stamp
 
 
-@kernel
+@uncounted
 def forget(
     KEYS: IntArray, FORCES: FloatArray, COUNT: IntArray, KEYS_2: IntArray, FORCES_2: FloatArray, stamp: float
 ) -> None:

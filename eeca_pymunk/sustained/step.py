@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel
+from ..compiled import kernel, uncounted
 from ..rows.build import conserves, rates
 from ..rows.direct import SMALL
 from ..rows.energy import lock, works
@@ -30,7 +30,7 @@ _ROUNDS = 20  # direct solutions of an island near rest, or elastic
 _FEW_ROUNDS = 6  # of a moving island of few contacts
 
 
-@kernel
+@uncounted
 def recall(
     KEY: IntArray, m: int, KEYS: IntArray, FORCES: FloatArray, stamp: float, h: float, L: FloatArray,
     EXPECTED: FloatArray,
@@ -47,7 +47,7 @@ def recall(
             EXPECTED[i] = h * FORCES[row, 2]
 
 
-@kernel
+@uncounted
 def speeds(
     V: FloatArray, ACC: FloatArray, EXTENT: FloatArray, IM: FloatArray, n: int, h: float, REACH: FloatArray
 ) -> tuple[float, float, float]:
@@ -94,7 +94,7 @@ def moved(X: FloatArray, V: FloatArray, s: float) -> FloatArray:
 @kernel
 def step_island(
     POSE: FloatArray, V: FloatArray, ACC: FloatArray, IM: FloatArray, II: FloatArray, EXTENT: FloatArray, n: int,
-    PAIRS: IntArray, p: int, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray, h: float,
+    PAIRS: IntArray, p: int, SHAPE: FloatArray, RULE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray, h: float,
     owed: float, KEYS: IntArray, FORCES: FloatArray, COUNT: IntArray, stamp: float, STATE: FloatArray, A: IntArray,
     B: IntArray, ROWS: FloatArray, KEY: IntArray, L: FloatArray, LOSS: FloatArray, VN: FloatArray, JUMP: FloatArray,
     LEDGER: FloatArray, OUT: FloatArray,
@@ -105,7 +105,7 @@ def step_island(
         POSE, V, ACC: (k, 3) pose, velocity, acceleration without contacts.  IM, II, EXTENT: (k,).
         n: bodies that impulses move, the first of k; the others keep their velocities. A body without mobility that
             rests (the ground) is among the k as well; an island without any is free.
-        PAIRS: (p, 4) as `contacts.gather`.  WORK: scratch of the geometry.
+        PAIRS: (p, 4) as `contacts.gather`.  RULE: see `..pairs.rules`.  WORK: scratch of the geometry.
         owed: energy >= 0 to take out at least.
         KEYS, FORCES, COUNT, stamp: memory of forces; the number of this step.  STATE: (3,) of `relax`.
         A, B, ROWS, KEY, L, LOSS: the m contact rows out, with impulses over h and losses (D_n, D_t).
@@ -125,7 +125,7 @@ def step_island(
     NOW = np.empty((2, 5))
     THEN = np.empty((2, 5))
     m = gather(
-        PAIRS, p, SHAPE, LINK, VERTEX, WORK, POSE, MIDDLE, V, REACH, EXTENT, IM, II, h, A, B, ROWS, KEY, NOW, THEN
+        PAIRS, p, SHAPE, RULE, LINK, VERTEX, WORK, POSE, MIDDLE, V, REACH, EXTENT, IM, II, h, A, B, ROWS, KEY, NOW, THEN
     )  # fmt: skip
     if m < 0 or 2 * (COUNT[0] + m) > len(KEYS):
         return -1

@@ -14,13 +14,13 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel
+from ..compiled import uncounted
 from ..rows.layout import ELASTICITY, GAP, K_N, NX, NY, TARGET, UN, WAKE
 
 _FAST = 2.0  # approach speed relative to |a| h from which a contact is an impact
 
 
-@kernel
+@uncounted
 def sustained(elasticity: float, u: float, along: float, mass: float, expected: float, h: float) -> bool:
     """Whether a contact with e < 1 would bounce back within h, so that no single impact can resolve it.
 
@@ -32,7 +32,7 @@ def sustained(elasticity: float, u: float, along: float, mass: float, expected: 
     return elasticity < 1.0 and bounce < 0.5 * max(-along * h, expected / mass)
 
 
-@kernel
+@uncounted
 def target(
     A: IntArray, B: IntArray, ROWS: FloatArray, m: int, ACC: FloatArray, EXPECTED: FloatArray, pull: float, h: float
 ) -> None:

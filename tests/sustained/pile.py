@@ -83,7 +83,7 @@ class Pile:
         vn = np.empty_like(self.v)
         while True:
             self.m = step_island(
-                self.pose, self.v, self.acc, self.im, self.ii, self.extent, self.n, pairs, len(pairs), shape, link,
+                self.pose, self.v, self.acc, self.im, self.ii, self.extent, self.n, pairs, len(pairs), shape, np.zeros((0, 6)), link,
                 vertex, work, h, 0.0, self.keys, self.forces, self.count, self.stamp, self.state, self.A, self.B,
                 self.rows, self.key, self.L, self.loss, vn, self.jump, self.ledger, self.out,
             )  # fmt: skip
