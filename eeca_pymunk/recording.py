@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     import pymunk
 
 _PER_BODY = 5 * 8  # bytes kept of a body and moment: position, angle, velocity
-_PER_MOMENT = 12 * 8  # bytes besides: time, energies, momentum, ledger
+_PER_MOMENT = 11 * 8  # bytes besides: time, energies, momentum, ledger
 MEMORY = 2.0**30  # bytes
 _PARTS: dict[str, type[Any]] = {"outlines": Outlines, "ledger": LedgerTrace}  # of a recording: arrays with names
 

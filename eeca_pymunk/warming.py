@@ -7,10 +7,13 @@ import time
 from .closures.dashpot import Dashpot
 from .closures.midstep import Midstep
 from .closures.time_of_impact import TimeOfImpact
+from .compiled import compiler
 from .eeca import EECA, Closure
+from .impacts.islands import flag_again
+from .impacts.scene import EventLoop
 from .space.sample import sample
 
-_DT = 0.02  # s: bodies of the sample meet within a step
+_DT = 0.02  # s: bodies of the samples meet within a step
 
 
 def warmup() -> float:
@@ -23,9 +26,12 @@ def warmup() -> float:
         python -c "import eeca_pymunk as ep; print(ep.warmup())"
     """
     start = time.perf_counter()
-    closures: tuple[Closure, ...] = (TimeOfImpact(), Midstep(), Dashpot(1e4, 1.0))
-    for closure in closures:
-        for turning in (False, True) if isinstance(closure, TimeOfImpact) else (False,):
-            stepper = EECA(sample(turning), closure, sync=False)
+    if compiler() is not None:
+        closures: tuple[Closure, ...] = (TimeOfImpact(), Midstep(), Dashpot(1e4, 1.0))
+        for kind, closure in [("disks", c) for c in closures] + [("boxes", closures[0]), ("hooked", closures[0])]:
+            stepper = EECA(sample(kind), closure)
             stepper.step(_DT)
+            if isinstance(stepper._method, EventLoop):
+                # Called only where lists outgrow their room within a step.
+                flag_again(stepper._method.scene)
     return time.perf_counter() - start
