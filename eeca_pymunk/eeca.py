@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Protocol
 
 from .arrays import FloatArray, IntArray
 from .closures.time_of_impact import TimeOfImpact
 from .packed_stepper import PackedStepper
+from .report import Details
 from .space.world import World
 
 if TYPE_CHECKING:
@@ -27,13 +28,15 @@ class Method(Protocol):
         """What collision handlers have said of pairs of shapes (a < b) for the next step: elasticity (below 0: they
         pass), friction, and surface velocity of b relative to a."""
 
-    @property
-    def events(self) -> FloatArray:
-        """(m, 11) EVENT rows of the last step, a copy."""
+    def details(
+        self, dt: float, bodies: tuple[pymunk.Body, ...], owner: IntArray
+    ) -> Details | Callable[[], Details]:  # fmt: skip
+        """The arrays of the report of the last step, or what makes them; `owner` (k,) is the place in `bodies` of the
+        body of every shape."""
 
     @property
-    def book(self) -> FloatArray:
-        """(7,) what the ledger of the last step is made of, a copy (`energy.ledger`)."""
+    def book(self) -> FloatArray | None:
+        """(7,) what the ledger of the last step is made of, a copy (`energy.ledger`); None if it keeps none."""
 
     @property
     def lock(self) -> float:
@@ -42,6 +45,10 @@ class Method(Protocol):
     @property
     def converged(self) -> bool:
         """Whether the last step left nothing undone."""
+
+    @property
+    def iterations(self) -> int:
+        """Of the solver in the last step, 0 where they are not counted."""
 
 
 class Closure(Protocol):
@@ -76,11 +83,11 @@ class EECA(PackedStepper):
             self._method.rule(world.rules.of_pairs(world.SHAPE))
         return self._method.step(world.STATES, world.WALK, world.EXTRA, world.ENDS, dt, gx, gy, left)
 
-    def events(self, world: World) -> FloatArray:
-        return self._method.events
+    def details(self, world: World, dt: float) -> Details | Callable[[], Details]:
+        return self._method.details(dt, world.bodies.items, world.owner)
 
     def book(self) -> FloatArray | None:
         return self._method.book
 
-    def outcome(self) -> tuple[float, bool]:
-        return self._method.lock, self._method.converged
+    def outcome(self) -> tuple[float, bool, int]:
+        return self._method.lock, self._method.converged, self._method.iterations

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import warnings
 from abc import abstractmethod
-from collections.abc import Sequence
-from functools import partial
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from .arrays import FloatArray
 from .errors import NotFiniteError
-from .report import StepReport, of_events
+from .report import Details, StepReport
 from .space.checks import check_ignored
 from .space.describe import describe
 from .space.hooks import Hooks, Rehearsal
@@ -68,17 +67,18 @@ class PackedStepper(Stepper):
             the bits EVENTS and FORCES, or a negative code, of `transfer.py`.
         """
 
-    def events(self, world: World) -> FloatArray:
-        """(m, 10) EVENT rows of the step that has just answered EVENTS, a copy."""
-        raise NotImplementedError
+    @abstractmethod
+    def details(self, world: World, dt: float) -> Details | Callable[[], Details]:
+        """The arrays of the report of the step that has just answered EVENTS, or what makes them."""
 
     def book(self) -> FloatArray | None:
         """(7,) what the ledger of the last step is made of, see `energy.ledger`; None if the stepper keeps none."""
         return None
 
-    def outcome(self) -> tuple[float, bool]:
-        """Scale of the energy lock of the last step that was farthest from 1, and whether all tolerances were met."""
-        return 1.0, True
+    def outcome(self) -> tuple[float, bool, int]:
+        """Scale of the energy lock of the last step that was farthest from 1, whether all tolerances were met, and the
+        iterations of the solver."""
+        return 1.0, True, 0
 
     def step(self, dt: float) -> StepReport:
         dt = check_dt(dt)
@@ -197,9 +197,10 @@ class PackedStepper(Stepper):
         return describe(world)
 
     def _report(self, world: World, dt: float) -> StepReport:
-        details = partial(of_events, self.events(world), dt, world.bodies.items, world.owner)
-        lock, converged = self.outcome()
-        return StepReport(self.time, details, lock=lock, converged=converged, book=self.book())
+        lock, converged, iterations = self.outcome()
+        return StepReport(
+            self.time, self.details(world, dt), iterations, lock=lock, converged=converged, book=self.book()
+        )  # fmt: skip
 
     def _look(self, anew: bool = False) -> World:
         """The space as it is now, checked; with all its shapes if `anew` or if some came or went."""

@@ -2,78 +2,67 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 import pymunk
 import pytest
 
 import eeca_pymunk as ep
 import scenes
-from eeca_pymunk import array_stepper
-from eeca_pymunk._rounds import impact_times
-from eeca_pymunk._rounds.blocks import Blocks
-from eeca_pymunk._rounds.forecast import Pairs
-from eeca_pymunk._rounds.impacts import Impacts
+from eeca_pymunk.impacts.layout import FORECASTS
+from eeca_pymunk.impacts.scene import EventLoop
+from eeca_pymunk.pairs.layout import LEAVES
 from scenes.scene import add_disk, add_walls
 
 
-def space(gravity: float = 0.0, elasticity: float = 1.0, spin: float = 0.0, touching: bool = False) -> pymunk.Space:
+def space(
+    gravity: float = 0.0, elasticity: float = 1.0, spin: float = 0.0, friction: float = 0.0, touching: bool = False
+) -> pymunk.Space:  # fmt: skip
     """A disk that meets the floor within a step of .1 s, or rests on it."""
     result = pymunk.Space()
     result.gravity = (0.0, -gravity)
     disk = add_disk(result, (0.0, 0.1 if touching else 0.15), 0.1, velocity=(0.0, 0.0 if touching else -1.0))
     disk.angular_velocity = spin
-    next(iter(disk.shapes)).elasticity = elasticity
     add_walls(result, [((-1.0, 0.0), (1.0, 0.0))])
+    next(iter(disk.shapes)).elasticity = elasticity
+    for shape in result.shapes:
+        shape.friction = friction
     return result
 
 
-PARTS: dict[str, tuple[object, str, dict[str, float], str, str]] = {
-    "rotation": (array_stepper, "turn", {"spin": 1.0}, "no rotation", "free rotation"),
-    "loss": (Impacts, "stays", {"elasticity": 0.5}, "elastic", "loss"),
-    "forces": (Blocks, "_rest", {"gravity": 9.81, "touching": True}, "no forces", "gravity or forces"),
-}
+@pytest.mark.parametrize(
+    ("needs", "having", "without"),
+    [
+        ({"spin": 1.0}, "free rotation", "no rotation"),
+        ({"elasticity": 0.5}, "loss", "elastic"),
+        ({"gravity": 9.81}, "gravity or forces", "no forces"),
+        ({"friction": 0.5}, "friction", "friction"),
+    ],
+)
+def test_model_names_a_part_only_where_it_is_needed(needs: dict[str, float], having: str, without: str) -> None:
+    plain, scene = ep.EECA(space()).model, ep.EECA(space(**needs)).model  # type: ignore[arg-type]
+    assert having in scene
+    assert having not in plain
+    assert (without in plain) == (without != having)
 
 
-@pytest.mark.parametrize("part", PARTS.values(), ids=PARTS.keys())
-def test_part_is_there_only_where_needed(
-    part: tuple[object, str, dict[str, float], str, str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    owner, name, needs, without, having = part
-    calls: list[str] = []
-    original: Callable[..., object] = getattr(owner, name)
-    monkeypatch.setattr(owner, name, lambda *args: (calls.append(name), original(*args))[1])
-    plain = ep.EECA(space())
-    assert len(plain.step(0.1).contacts) == 1
-    assert not calls
-    assert without in plain.model
-    scene = ep.EECA(space(**needs))  # type: ignore[arg-type]
-    assert having in scene.model
-    scene.step(0.1)
-    assert calls
+def test_islands_are_solved_only_where_something_rests() -> None:
+    hit = ep.EECA(space()).step(0.1)
+    assert len(hit.contacts) == 1
+    assert hit.iterations == 0  # the closed law of one impact
+    assert ep.EECA(space(gravity=9.81, elasticity=0.0, touching=True)).step(0.1).iterations == 1
 
 
-@pytest.mark.parametrize("gravity", [0.0, 9.81])
-def test_gravity_terms_of_times_of_impact(gravity: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    pulls: list[object] = []
-    flat = impact_times.flat
-    monkeypatch.setattr(impact_times, "flat", lambda h, w, alpha: (pulls.append(alpha), flat(h, w, alpha))[1])
-    ep.EECA(space(gravity)).step(0.1)
-    assert pulls
-    assert all(isinstance(alpha, float) and alpha == 0.0 for alpha in pulls) == (gravity == 0.0)
-
-
-def test_no_detection_and_no_forecast_where_nothing_is_near(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_list_and_no_forecast_is_made_where_nothing_is_near() -> None:
     scene = scenes.build("carom", dt=1e-4)
     stepper = ep.EECA(scene.space)
     stepper.step(1e-4)
-    assert stepper._twin is not None
-    detections = stepper._twin.detections
-    monkeypatch.setattr(Pairs, "between", lambda *args: pytest.fail("geometry of a pair"))
+    method = stepper._method
+    assert isinstance(method, EventLoop)
+    lists = method.scene.INFO[LEAVES]
     for _ in range(3):
         stepper.step(1e-4)
-    assert stepper._twin.detections == detections
+        assert method.scene.COUNT[FORECASTS] == 0
+    assert method.scene.INFO[LEAVES] == lists
 
 
 def test_model_is_one_line_for_every_stepper() -> None:

@@ -6,6 +6,7 @@ import copy
 import math
 import pickle
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 import pymunk
@@ -16,6 +17,7 @@ from eeca_pymunk import layout as at
 from eeca_pymunk import transfer
 from eeca_pymunk.arrays import FloatArray
 from eeca_pymunk.packed_stepper import PackedStepper
+from eeca_pymunk.report import Details, of_events
 from eeca_pymunk.space.world import World
 from scenes.scene import add_disk
 
@@ -33,9 +35,9 @@ class FreeFlight(PackedStepper):
         status = self._fly(world, dt, left)
         return status if self.told is None or status < 0 else status | transfer.EVENTS
 
-    def events(self, world: World) -> FloatArray:
+    def details(self, world: World, dt: float) -> Callable[[], Details]:
         assert self.told is not None
-        return self.told
+        return partial(of_events, self.told, dt, world.bodies.items, world.owner)
 
 
 def swarm() -> pymunk.Space:
@@ -195,7 +197,7 @@ def test_what_handlers_decide_about_pairs_is_told_for_one_step() -> None:
     third.collision_type = 3
     stepper = FreeFlight(space)
     world = stepper._look()
-    assert not world.rules.ignored | set(world.rules.restitution)
+    assert not world.rules.ignored | set(world.rules.changed)
 
     def ignore(arbiter: pymunk.Arbiter, space: pymunk.Space, data: object) -> None:
         arbiter.process_collision = False
@@ -304,12 +306,12 @@ def test_the_model_says_what_there_is() -> None:
     for shape in space.shapes:
         shape.elasticity = 1.0
     whole = "4 disks, 3 other moving shapes, 1 walls; {}; rotation with contact arms; {}"
-    assert FreeFlight(space).model == whole.format("gravity or forces", "elastic")
+    assert FreeFlight(space).model == whole.format("gravity or forces", "elastic; sustained contacts")
     space.gravity = (0.0, 0.0)
     assert FreeFlight(space).model == whole.format("no forces", "elastic")
     push(space)
     shape.elasticity = 0.5
-    assert FreeFlight(space).model == whole.format("gravity or forces", "loss")
+    assert FreeFlight(space).model == whole.format("gravity or forces", "loss; sustained contacts")
     for part in (damp, steer, handle):
         part(space)
     assert FreeFlight(space).model.endswith("; damping; functions of bodies; collision handlers, by a rehearsal")

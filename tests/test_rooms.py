@@ -17,25 +17,24 @@ FILES = sorted(PACKAGE.rglob("*.py"))
 FLOORS = (
     "arrays layout errors files",
     "compiled",
+    "energy",
     "transfer report",
     "geometry",
     "rows",
     "pairs",
-    "impacts",
-    "energy",
     "sustained joints",
+    "impacts",
     "closures",
     "space",
     "stepper",
-    "array_stepper packed_stepper",
+    "packed_stepper",
     "eeca baselines",
     "recording warming",
     "render",
     "__init__",
 )
 FLOOR = {room: number for number, line in enumerate(FLOORS) for room in line.split()}
-GOING = "_rounds"  # stands between the floors until the compiled event loop takes its place
-PYMUNK = {"space", "baselines/native", GOING}
+PYMUNK = {"space", "baselines/native"}
 
 
 def name(path: Path) -> str:
@@ -65,7 +64,7 @@ def imports(path: Path) -> Iterator[tuple[str, ...]]:
             yield from ((*parts, alias.name) for alias in node.names)
 
 
-@pytest.mark.parametrize("path", [p for p in FILES if room(p) != GOING], ids=name)
+@pytest.mark.parametrize("path", FILES, ids=name)
 def test_imports_go_down(path: Path) -> None:
     own = room(path)
     assert own in FLOOR, f"say in FLOORS where {own} stands"

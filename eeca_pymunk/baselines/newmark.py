@@ -24,7 +24,7 @@ class Newmark(PenaltyStepper):
     Args:
         space: a pymunk space.  stiffness: K > 0, mass/time².
         beta: 0 < beta <= 1/2.  gamma: 0 <= gamma <= 1.
-        sync: see `ArrayStepper`.
+        sync: see `PackedStepper`.
     """
 
     tolerance = 1e-8

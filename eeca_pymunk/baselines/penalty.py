@@ -7,25 +7,24 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .._rounds.contacts import Pairs
-from .._rounds.geometry import Geometry
-from ..array_stepper import ArrayStepper
 from ..arrays import FloatArray, IntArray
 from ..closures.dashpot import check_stiffness
-from ..closures.motion import Motion, Start, near_pairs
+from ..closures.motion import Disks, Geometry, Motion, Pairs, Start
 from ..energy.complementarity import solve
 from ..energy.delassus import Delassus
 from ..energy.graph import restrict
-from ..report import Contacts, Details, StepReport
-from ..space.bodies import Bodies
-from ..space.twin import MarginTwin
+from ..packed_stepper import PackedStepper
+from ..report import Details
 
 if TYPE_CHECKING:
     import pymunk
 
+    from ..space.world import World
 
-class PenaltyStepper(ArrayStepper):
-    """A stepper whose contacts are springs of stiffness K > 0 (mass/time²); subclasses say how springs act in time."""
+
+class PenaltyStepper(PackedStepper):
+    """Moves lone disks between static shapes whose contacts are springs of stiffness K > 0 (mass/time²); subclasses say
+    how springs act in time."""
 
     max_iterations = 30
     tolerance = 1e-12  # of the change of impulses between iterations, relative to the largest
@@ -35,33 +34,42 @@ class PenaltyStepper(ArrayStepper):
         self.stiffness = float(stiffness)
         super().__init__(space, sync=sync)
 
-    def advance(self, bodies: Bodies, start: Start, twin: MarginTwin) -> Motion:
+    def prepare(self, world: World) -> None:
+        world.load()
+        self._disks = Disks(world, type(self).__name__)
+
+    def advance(self, world: World, dt: float, left: float) -> int:
+        gx, gy = world.gravity
+        if world.collisions:
+            self._disks.rules = world.rules.of_pairs(world.SHAPE)
+        return self._disks.step(world.STATES, world.WALK, world.EXTRA, world.ENDS, dt, gx, gy, left, self._move)
+
+    def details(self, world: World, dt: float) -> Details:
+        motion = self._disks.motion
+        assert motion is not None
+        assert motion.details is not None
+        return motion.details
+
+    def outcome(self) -> tuple[float, bool, int]:
+        motion = self._disks.motion
+        return (1.0, True, 0) if motion is None else (1.0, motion.converged, motion.iterations)
+
+    def _move(self, start: Start) -> Motion:
         velocity = start.free_velocity
         displacement = start.free_displacement
-        time = start.time
-        pairs, before = near_pairs(twin, start, displacement)
+        pairs, before, _ = self._disks.near(start, displacement)
         if len(pairs) == 0:
-            return Motion(velocity, displacement, StepReport.without_contacts(time, bodies.items))
-        rows, row_a, row_b = restrict(pairs.row_a, pairs.row_b, len(bodies))
-        springs = Springs(start, pairs, before, rows, row_a, row_b, bodies.inverse_mass[rows])
+            return Motion(velocity, displacement)
+        rows, row_a, row_b = restrict(pairs.row_a, pairs.row_b, len(velocity))
+        springs = Springs(start, pairs, before, rows, row_a, row_b)
         impulse, iterations, converged = self.load(springs)
         velocity[rows], displacement[rows] = springs.velocity, springs.displacement
         on = np.flatnonzero(impulse > 0)
-        chosen, at = pairs.take(on), springs.after.take(on)
-        contacts = Contacts(
-            bodies.items,
-            chosen.row_a,
-            chosen.row_b,
-            at.normal,
-            at.point,
-            before.gap[on],
-            np.full(len(on), start.dt / 2),
-        )
+        at = springs.after.take(on)
+        contacts = pairs.take(on).contacts(at, before.gap[on], np.full(len(on), start.dt / 2))
         psi, increment = np.zeros(len(on)), at.gap - before.gap[on]
-        report = StepReport(
-            time, Details(contacts, impulse[on], psi, psi, increment), iterations=iterations, converged=converged
-        )
-        return Motion(velocity, displacement, report)
+        details = Details(contacts, impulse[on], psi, psi, increment)
+        return Motion(velocity, displacement, details, converged=converged, iterations=iterations)
 
     @abstractmethod
     def load(self, springs: Springs) -> tuple[FloatArray, int, bool]:
@@ -79,10 +87,9 @@ class Springs:
         rows: IntArray,
         row_a: IntArray,
         row_b: IntArray,
-        inverse_mass: FloatArray,
     ) -> None:
         self.dt, self.pairs, self.before = start.dt, pairs, before
-        self.row_a, self.row_b, self.inverse_mass = row_a, row_b, inverse_mass
+        self.row_a, self.row_b, self.inverse_mass = row_a, row_b, start.inverse_mass[rows]
         self.start_position, self.start_velocity = start.position[rows], start.velocity[rows]
         self.acceleration = start.acceleration[rows]
         self.move(start.free_displacement[rows], self.start_velocity + start.dt * self.acceleration)
@@ -93,13 +100,13 @@ class Springs:
         position = self.start_position + displacement
         after = self.pairs.between(position[self.row_a], position[self.row_b])
         # Through a wall the gap goes on falling, and the normal stays on the side the centre came from.
-        through = (self.pairs.wall >= 0) & ((after.normal * self.before.normal).sum(axis=1) < 0)
+        through = self.pairs.walls & ((after.normal * self.before.normal).sum(axis=1) < 0)
         if through.any():
             middle = self.start_position + 0.5 * displacement
             through &= self.pairs.between(middle[self.row_a], middle[self.row_b]).gap < 0
         normal = np.where(through[:, None], -after.normal, after.normal)
         gap = np.where(through, -after.gap - 2.0 * self.pairs.extent, after.gap)
-        self.after = Geometry(gap, normal, after.center, after.radius)
+        self.after = Geometry(gap, normal, after.point)
 
     def operator(self, normal: FloatArray) -> Delassus:
         return Delassus(self.row_a, self.row_b, normal, self.inverse_mass)

@@ -1,8 +1,8 @@
 """Closures: the paper's free choice of psi2, which says when in the step impulses act. One file each.
 
-In: the bodies at the start of a step and the pairs that may meet (`motion.py`). Out: how the bodies moved, with energy
-and momentum exact, and the report of the step.
+In: a world that was read anew. Out: the method that steps its arrays, with energy and momentum exact, and reports.
 
-Open first `time_of_impact.py`, the default. `simultaneous.py` is the frame of the two closures that solve all contacts
-of a step at once, `midstep.py` and `dashpot.py`; `locked.py` is what those share: restitution and the locked motion.
+Open first `time_of_impact.py`, the default, and `midstep.py`: both hand over to compiled kernels. `dashpot.py`, the
+paper's closure, moves lone disks on numpy arrays (`motion.py`: start, near pairs, motion); `simultaneous.py` is its
+frame, one impulse for each contact of a step, `locked.py` restitution and the locked motion.
 """

@@ -1,4 +1,4 @@
-"""What Midstep and Dashpot share: Newton's restitution, and the motion with impulses scaled by the energy lock."""
+"""Newton's restitution, and the motion with impulses scaled by the energy lock: exact whatever the impulses are."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ import math
 
 import numpy as np
 
-from .._rounds.geometry import Geometry
 from ..arrays import FloatArray
 from ..energy import balance
 from ..energy.complementarity import solve
 from ..energy.delassus import Delassus
 from ..energy.graph import islands
+from .motion import Geometry
 from .simultaneous import Problem, Solution
 
 TOLERANCE = 1e-6  # of the rigid limit's complementarity problem, relative to the largest approach speed
@@ -32,15 +32,10 @@ def locked_motion(
     weights: balance.Weights,
     iterations: int,
     converged: bool,
-    q: FloatArray | None = None,
-    draft: bool = False,
 ) -> Solution:
-    """Scale the impulses by the energy lock, and move: Eq. 10 with v_np1 and p_c of the scaled impulses.
-
-    `q` (m,) is e u_n + u* of the rigid limit, computed if None.
-    """
+    """Scale the impulses by the energy lock, and move: Eq. 10 with v_np1 and p_c of the scaled impulses."""
     dt, psi1, psi2, increment = problem.dt, weights.psi1, weights.psi2, weights.gap_increment
-    q = restitution(A, problem) if q is None else q
+    q = restitution(A, problem)
     # Impulses that meet their tolerance need no lock of their own for each island: it would be 1 in all of them.
     island = None if converged else islands(problem.row_a, problem.row_b, problem.inverse_mass)
     lock = balance.energy_lock(A, island, lam, q, psi2, problem.external)
@@ -64,5 +59,5 @@ def locked_motion(
     displacement += dt * balance.extra_momentum(A, psi2, delta_p) * m_inv
     return Solution(
         velocity, displacement, lam, psi1, psi2, increment, balance.impulse_time(psi2, dt), geometry,
-        iterations, worst, converged, draft,
+        iterations, worst, converged,
     )  # fmt: skip

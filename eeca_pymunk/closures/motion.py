@@ -1,91 +1,254 @@
-"""Arrays of a step: its start, its motion, and the pairs that are near."""
+"""Steps of lone disks on numpy arrays: their start, the pairs that are near, and how the bodies moved.
+
+What the simultaneous closures and the penalty steppers share. All arrays of bodies have the rows of BODY, the ground,
+on which all static shapes stand, last.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 
-from .._rounds.contacts import ROUND_OFF, Pairs
-from .._rounds.features import distance_from_axes, length
-from .._rounds.geometry import Geometry
-from ..arrays import FloatArray
-from ..report import StepReport
+from ..arrays import BoolArray, FloatArray, IntArray
+from ..errors import UnsupportedFeature
+from ..geometry.gap import ROUND_OFF, gaps
+from ..layout import (
+    ANGLE,
+    AX,
+    AY,
+    COUNT,
+    ELASTICITY,
+    FIRST,
+    FRICTION,
+    IM,
+    OWNER,
+    ROUNDING,
+    SINCE,
+    SPIN,
+    TWIST,
+    VX,
+    VY,
+    X,
+    Y,
+)  # fmt: skip
+from ..pairs.candidates import candidates
+from ..pairs.layout import MARGIN
+from ..pairs.setup import near_lists, rebuilt
+from ..report import Contacts, Details
+from ..transfer import EVENTS, OVERFLOW, give, take
 
 if TYPE_CHECKING:
-    from ..space.twin import MarginTwin
+    from ..space.world import World
 
 
 @dataclass(frozen=True)
 class Start:
-    """The N bodies at the start of a step: position, velocity and acceleration (N, d), the last with gravity.
+    """The n bodies at the start of a step: position, velocity and acceleration (n, 2), the last with gravity."""
 
-    d = 2 where bodies are centred disks and contacts have no arms. d = 3 otherwise: centres of mass, and the angle with
-    its derivatives.
-
-    `time` is that of the end of the step; `pulled` tells whether anything accelerates.
-    """
-
-    time: float
     dt: float
     position: FloatArray
     velocity: FloatArray
     acceleration: FloatArray
-    pulled: bool
-
-    def at(self, time: float) -> FloatArray:
-        """(N, d) positions on the free flight at one instant."""
-        way = self.position + time * self.velocity
-        return way + (0.5 * time * time) * self.acceleration if self.pulled else way
+    inverse_mass: FloatArray
 
     @property
     def free_velocity(self) -> FloatArray:
-        """(N, d) velocity at the end of the free flight."""
-        return self.velocity + self.dt * self.acceleration if self.pulled else self.velocity.copy()
+        """(n, 2) velocity at the end of the free flight."""
+        return self.velocity + self.dt * self.acceleration
 
     @property
     def free_displacement(self) -> FloatArray:
-        """(N, d) displacement of the free flight over the step."""
+        """(n, 2) displacement of the free flight over the step."""
         with np.errstate(over="ignore", invalid="ignore"):  # refused before anything is made of it
-            way = self.dt * self.velocity
-            return way + (0.5 * self.dt**2) * self.acceleration if self.pulled else way
+            return self.dt * self.velocity + (0.5 * self.dt**2) * self.acceleration
+
+    def at(self, rows: IntArray, time: FloatArray | float) -> FloatArray:
+        """(m, 2) positions of the bodies `rows` on the free flight, at one instant or each at its own (m,)."""
+        t = time[:, None] if isinstance(time, np.ndarray) else time
+        return self.position[rows] + t * self.velocity[rows] + (0.5 * t * t) * self.acceleration[rows]
 
 
 @dataclass(frozen=True)
 class Motion:
-    """Velocity and displacement (N, d) of all bodies over a step, and its report."""
+    """Velocity and displacement (n, 2) of all bodies over a step, and what to report of it; no details, no contacts."""
 
     velocity: FloatArray
     displacement: FloatArray
-    report: StepReport
+    details: Details | None = None
+    lock: float = 1.0
+    converged: bool = True
+    iterations: int = 0
 
 
-def flight(start: Start, pairs: Pairs, time: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """(m, 2) centres of a and of b on the free flight, every pair at its own (m,) instant."""
-    t = time[:, None]
-    a, b = (
-        start.position.take(r, axis=0)
-        + t * start.velocity.take(r, axis=0)
-        + (0.5 * t * t) * start.acceleration.take(r, axis=0)
-        for r in (pairs.row_a, pairs.row_b)
-    )
-    return a, b
+Move: TypeAlias = Callable[[Start], Motion]
 
 
-def near_pairs(
-    twin: MarginTwin, start: Start, displacement: FloatArray, extra: FloatArray | float = 0.0
-) -> tuple[Pairs, Geometry]:
-    """The pairs that can meet within the step, and their geometry at its start.
+class Geometry(NamedTuple):
+    """Gap (m,) length, normal (m, 2) from a to b, and point (m, 2) halfway between the surfaces, of every pair."""
 
-    A body's reach is the length of its free flight and `extra` (N,). Impulses can send it twice as far (an elastic
-    hit by a heavier body), which the factor 2 covers for the contacts that impulses close.
+    gap: FloatArray
+    normal: FloatArray
+    point: FloatArray
+
+    def take(self, which: IntArray) -> Geometry:
+        """That of the pairs number `which`."""
+        return Geometry(self.gap[which], self.normal[which], self.point[which])
+
+
+class Pairs:
+    """m pairs of shapes, of a lone disk and a lone disk or static shape.
+
+    Attributes:
+        shapes: (m, 2) shapes a < b.  row_a, row_b: (m,) bodies.  walls: (m,) whether b is static.
+        extent: (m,) length, sum of the roundings.
     """
-    # The path of a thrown body leaves its chord.
-    bow = (0.125 * start.dt**2) * length(start.acceleration)
-    slack = bow + ROUND_OFF * distance_from_axes(start.position) + extra
-    reach = length(displacement) + slack
-    pairs = twin.candidates(start.position, displacement, slack)
-    before = pairs.at(start.position)
-    near = np.flatnonzero(before.gap <= 2.0 * (reach[pairs.row_a] + reach[pairs.row_b]))
-    return pairs.take(near), before.take(near)
+
+    def __init__(self, disks: Disks, shapes: IntArray) -> None:
+        self._disks, self.shapes = disks, shapes
+        world = disks.world
+        self.row_a: IntArray = world.LINK[shapes[:, 0], OWNER]
+        self.row_b: IntArray = world.LINK[shapes[:, 1], OWNER]
+        self.walls: BoolArray = self.row_b == len(world.BODY) - 1
+        self.extent: FloatArray = world.SHAPE[shapes[:, 0], ROUNDING] + world.SHAPE[shapes[:, 1], ROUNDING]
+
+    def __len__(self) -> int:
+        return len(self.shapes)
+
+    @property
+    def key(self) -> IntArray:
+        """(m,) one number per pair, the same in every list."""
+        result: IntArray = self.shapes[:, 0] * len(self._disks.world.SHAPE) + self.shapes[:, 1]
+        return result
+
+    @property
+    def elasticity(self) -> FloatArray:
+        """(m,) the product of the two shapes' elasticities, as in pymunk, unless a collision handler says otherwise."""
+        SHAPE = self._disks.world.SHAPE
+        result: FloatArray = SHAPE[self.shapes[:, 0], ELASTICITY] * SHAPE[self.shapes[:, 1], ELASTICITY]
+        for pair, (e, *_) in self._disks.rules.items():
+            result[(self.shapes == pair).all(axis=1)] = e
+        return result
+
+    def take(self, which: BoolArray | IntArray) -> Pairs:
+        """The pairs selected by a mask or by indices."""
+        return Pairs(self._disks, self.shapes[which])
+
+    def between(self, position_a: FloatArray, position_b: FloatArray) -> Geometry:
+        """Geometry with the bodies of every pair at its own (m, 2) places."""
+        world, m = self._disks.world, len(self)
+        POSE_A, POSE_B, OUT = np.zeros((m, 3)), np.zeros((m, 3)), np.empty((m, 5))
+        POSE_A[:, :2], POSE_B[:, :2] = position_a, position_b
+        gaps(self.shapes, POSE_A, POSE_B, world.SHAPE, world.LINK, world.VERTEX, self._disks.work, OUT)
+        return Geometry(OUT[:, 0].copy(), OUT[:, 1:3].copy(), OUT[:, 3:5].copy())
+
+    def at(self, position: FloatArray) -> Geometry:
+        """Geometry with the bodies at (n, 2) `position`."""
+        return self.between(position[self.row_a], position[self.row_b])
+
+    def contacts(self, at: Geometry, gap: FloatArray, time: FloatArray) -> Contacts:
+        """What to report of these pairs: geometry where impulses act, (m,) gaps at the start of the step, instants."""
+        world = self._disks.world
+        a, b = world.owner[self.shapes[:, 0]], world.owner[self.shapes[:, 1]]
+        return Contacts(world.bodies.items, a, b, at.normal, at.point, gap, time)
+
+
+class Disks:
+    """The lone disks and static shapes of a world; UnsupportedFeature if something else moves or has friction.
+
+    Args:
+        world: read anew, with the poses of now in BODY.  mover: who moves them, for messages.
+    """
+
+    def __init__(self, world: World, mover: str) -> None:
+        moving = int(np.count_nonzero(world.LINK[:, OWNER] < len(world.BODY) - 1))
+        _check(world, moving, mover)
+        self.world = world
+        self.rules: Mapping[tuple[int, int], tuple[float, float, float, float]] = {}
+        self.motion: Motion | None = None
+        self.work: FloatArray = np.zeros((2, max(2, int(world.LINK[:, COUNT].max(initial=2))), 4))
+        self._near = near_lists(world.BODY, world.SHAPE, world.LINK, world.VERTEX, moving)
+        self._usual: FloatArray = self._near.MARK[:, MARGIN].copy()
+        self._found, self._out = np.zeros((4 * moving + 16, 2), np.int64), np.zeros((4 * moving + 16, 6))
+
+    def step(
+        self, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
+        left: float, move: Move,
+    ) -> int:  # fmt: skip
+        """From the states that were read to those that are to be written, see `transfer.py`; disks turn freely."""
+        BODY = self.world.BODY
+        status = take(STATES, WALK, EXTRA, BODY, gx, gy, left)
+        if status < 0:
+            return status
+        start = Start(
+            dt, BODY[:, X : Y + 1].copy(), BODY[:, VX : VY + 1].copy(), BODY[:, AX : AY + 1].copy(), BODY[:, IM].copy()
+        )  # fmt: skip
+        if not np.isfinite(start.free_displacement).all():
+            give(STATES, WALK, EXTRA, BODY, ENDS, dt, left, status)
+            return OVERFLOW
+        self.motion = motion = move(start)
+        BODY[:, X : Y + 1] += motion.displacement
+        BODY[:, VX : VY + 1] = motion.velocity
+        BODY[:, ANGLE] += dt * (BODY[:, SPIN] + 0.5 * dt * BODY[:, TWIST])
+        BODY[:, SPIN] += dt * BODY[:, TWIST]
+        BODY[:, SINCE] = dt
+        if motion.details is not None:
+            status |= EVENTS
+        return give(STATES, WALK, EXTRA, BODY, ENDS, dt, left, status)
+
+    def near(
+        self, start: Start, displacement: FloatArray, extra: FloatArray | float = 0.0
+    ) -> tuple[Pairs, Geometry, FloatArray]:
+        """The pairs that can meet within the step, their geometry at its start, and (m,) the lengths up to which their
+        gaps are round-off.
+
+        A body's reach is the length of its free flight and `extra` (n,). Impulses can send it twice as far (an elastic
+        hit by a heavier body), which the factor 2 covers for the contacts that impulses close.
+        """
+        # The path of a thrown body leaves its chord.
+        bow = (0.125 * start.dt**2) * np.hypot(*start.acceleration.T)
+        far = np.abs(start.position).max(axis=1)
+        reach = 2.0 * (np.hypot(*displacement.T) + bow + ROUND_OFF * far + extra)
+        found, out = self._candidates(reach)
+        order = np.lexsort((found[:, 1], found[:, 0]))
+        found, out = found[order], out[order]
+        ignored = [pair for pair, (e, *_) in self.rules.items() if e < 0.0]
+        if ignored:
+            keep = ~(found[:, None] == np.array(ignored)).all(axis=2).any(axis=1)
+            found, out = found[keep], out[keep]
+        return Pairs(self, found), Geometry(out[:, 0], out[:, 1:3], out[:, 3:5]), out[:, 5]
+
+    def _candidates(self, reach: FloatArray) -> tuple[IntArray, FloatArray]:
+        world = self.world
+        while True:
+            count = candidates(
+                world.BODY, world.SHAPE, world.LINK, world.VERTEX, self.work, *self._near, self._usual, world.disks,
+                reach, self._found, self._out,
+            )  # fmt: skip
+            if count < 0:
+                self._near = rebuilt(self._near.larger(), world.BODY, world.SHAPE, world.LINK, 0.0)
+            elif count > len(self._found):
+                self._found, self._out = np.zeros((2 * count, 2), np.int64), np.zeros((2 * count, 6))
+            else:
+                return self._found[:count], self._out[:count]
+
+
+def _check(world: World, moving: int, mover: str) -> None:
+    """Refuse what is not a lone disk or static, and friction between what is."""
+    owner = world.LINK[:moving, OWNER]
+    if moving > world.disks:
+        centred = (world.LINK[:moving, COUNT] == 1) & ~world.VERTEX[world.LINK[:moving, FIRST], :2].any(axis=1)
+        other = np.flatnonzero(~(centred & (world.BODY[owner, IM] > 0.0)))
+        i = int(other[0]) if len(other) else world.disks
+        raise UnsupportedFeature(
+            f"{world.shapes[i]} of {world.bodies.items[world.owner[i]]} moves and is not a disk about the centre of "
+            f"mass of a dynamic body with no other shape, which is all that {mover} moves; use ep.EECA(space)"
+        )
+    rough = np.flatnonzero(world.SHAPE[:, FRICTION] > 0.0)
+    if len(rough) > 1 and rough[0] < moving:
+        raise UnsupportedFeature(
+            f"{world.shapes[rough[0]]} has friction {world.SHAPE[rough[0], FRICTION]}, and so has a shape it may "
+            f"touch: {mover} does not model it; use ep.EECA(space), or set shape.friction = 0"
+        )

@@ -3,24 +3,23 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .._rounds.contacts import Pairs, touching
-from .._rounds.features import length
-from .._rounds.geometry import Geometry
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..energy.delassus import Delassus
 from ..energy.graph import restrict
-from ..report import Contacts, Details, StepReport
-from .motion import Motion, Start, flight, near_pairs
+from ..report import Details
+from .motion import Disks, Geometry, Motion, Pairs, Start
 
 if TYPE_CHECKING:
-    from ..space.bodies import Bodies
-    from ..space.twin import MarginTwin
+    import pymunk
+
+    from ..space.world import World
 
 _STRUCK = 10.0  # ratio of displacements from which a body is looked after again: detection costs as much as a solution
 
@@ -30,16 +29,14 @@ class Problem:
     """Active contacts of a step, on the R bodies they touch.
 
     Attributes:
-        dt: time.  velocity: (R, 2) at n.  acceleration: (R, 2) of external forces.  mass, inverse_mass: (R,).
+        dt: time.  velocity: (R, 2) at n.  acceleration: (R, 2) of external forces.  inverse_mass: (R,).
         row_a, row_b, gap, elasticity: (m,) of the contacts.  guess: (m,) of the impulses, 0 where unknown.
-        draft: whether the contacts may change after this solution, so that a rough one does.
         geometry_at: (m,) instants in the step, or one for all, to the geometry on the free flight at these instants.
     """
 
     dt: float
     velocity: FloatArray
     acceleration: FloatArray
-    mass: FloatArray
     inverse_mass: FloatArray
     row_a: IntArray
     row_b: IntArray
@@ -47,7 +44,6 @@ class Problem:
     elasticity: FloatArray
     guess: FloatArray
     geometry_at: Callable[[FloatArray | float], Geometry]
-    draft: bool = False
 
     def operator(self, geometry: Geometry) -> Delassus:
         """The contacts as an operator, with the normals of `geometry`."""
@@ -56,13 +52,18 @@ class Problem:
     @property
     def external(self) -> FloatArray:
         """(R, 2) momentum from external forces, dt f_ext; 0 for bodies that do not move."""
-        return self.dt * np.where(self.inverse_mass > 0, self.mass, 0.0)[:, None] * self.acceleration
+        return self.dt * self.mass[:, None] * self.acceleration
+
+    @property
+    def mass(self) -> FloatArray:
+        """(R,) of the bodies that move, 0 of the others."""
+        moves = self.inverse_mass > 0
+        return np.divide(1.0, self.inverse_mass, out=np.zeros_like(self.inverse_mass), where=moves)
 
     @property
     def larger_mass(self) -> FloatArray:
         """(m,) M of Eq. 29: the larger of the two masses that move."""
-        mass = np.where(self.inverse_mass > 0, self.mass, 0.0)
-        return np.maximum(mass[self.row_a], mass[self.row_b])
+        return np.maximum(self.mass[self.row_a], self.mass[self.row_b])
 
 
 @dataclass(frozen=True)
@@ -73,7 +74,6 @@ class Solution:
         velocity: (R, 2) at n+1.  displacement: (R, 2) over the step.
         impulse, psi1, psi2, gap_increment, time: (m,).
         geometry: normals and points where the impulses act.
-        draft: whether the solution is rough and has to be solved for again.
         iterations: of the closure.  lock: the scale of the energy lock that lies farthest from 1.
     """
 
@@ -88,7 +88,6 @@ class Solution:
     iterations: int
     lock: float
     converged: bool
-    draft: bool = False
 
 
 class Simultaneous(ABC):
@@ -104,34 +103,36 @@ class Simultaneous(ABC):
     def solve(self, problem: Problem) -> Solution:
         """The motion of the bodies of `problem`, energy and momentum exact."""
 
-    def advance(self, bodies: Bodies, start: Start, twin: MarginTwin) -> Motion:
+    def prepare(self, world: World) -> SimultaneousStep:
+        """What steps a world of lone disks and static shapes."""
+        return SimultaneousStep(self, Disks(world, type(self).__name__))
+
+    def advance(self, disks: Disks, start: Start) -> Motion:
+        """The motion of all disks over a step."""
         velocity = start.free_velocity
         displacement = start.free_displacement
-        free = StepReport.without_contacts(start.time, bodies.items)
-        pairs, before = near_pairs(twin, start, displacement)
-        tolerance = touching(pairs, start.position)
+        pairs, before, tolerance = disks.near(start, displacement)
         active = (before.gap <= tolerance) | closing(pairs, before, tolerance, start, displacement)
         if not active.any():
-            return Motion(velocity, displacement, free)
+            return Motion(velocity, displacement)
         guess = np.zeros(len(pairs))
         for left in range(self.passes, -1, -1):
             which = np.flatnonzero(active)
             chosen = pairs.take(which)
-            problem, rows = self._problem(bodies, start, chosen, before.take(which), guess[which], draft=left > 0)
+            problem, rows = self._problem(start, chosen, before.take(which), guess[which])
             solution = self.solve(problem)
             if left == 0:
                 break
             trial = displacement.copy()
             trial[rows] = solution.displacement
-            if left == self.passes and (struck := length(trial) > _STRUCK * length(displacement)).any():
+            if left == self.passes and (struck := _length(trial) > _STRUCK * _length(displacement)).any():
                 # Bodies that hardly moved until now reach pairs that were not near.
                 known = pairs.key[active]
-                pairs, before = near_pairs(twin, start, displacement, struck * length(trial - displacement))
-                tolerance = touching(pairs, start.position)
+                pairs, before, tolerance = disks.near(start, displacement, struck * _length(trial - displacement))
                 active = np.isin(pairs.key, known)
                 guess, which = np.zeros(len(pairs)), np.flatnonzero(active)
             # Elsewhere the displacement is the free one, which closes nothing else.
-            changed = np.zeros(len(bodies), bool)
+            changed = np.zeros(len(velocity), bool)
             changed[rows] = True
             may = np.flatnonzero((changed[pairs.row_a] | changed[pairs.row_b]) & ~active)
             joining = may[closing(pairs.take(may), before.take(may), tolerance[may], start, trial)]
@@ -139,24 +140,19 @@ class Simultaneous(ABC):
                 break
             active[joining] = True
             guess[which] = solution.impulse
-        if solution.draft:
-            solution = self.solve(replace(problem, guess=solution.impulse, draft=False))
         velocity[rows], displacement[rows] = solution.velocity, solution.displacement
         at = solution.geometry
-        contacts = Contacts(
-            bodies.items, chosen.row_a, chosen.row_b, at.normal, at.point, before.gap[which], solution.time
-        )
-        return Motion(velocity, displacement, self._report(free.time, contacts, solution))
+        contacts = chosen.contacts(at, before.gap[which], solution.time)
+        details = Details(contacts, solution.impulse, solution.psi1, solution.psi2, solution.gap_increment)
+        return Motion(velocity, displacement, details, solution.lock, solution.converged, solution.iterations)
 
-    def _problem(
-        self, bodies: Bodies, start: Start, chosen: Pairs, before: Geometry, guess: FloatArray, *, draft: bool
-    ) -> tuple[Problem, IntArray]:
+    def _problem(self, start: Start, chosen: Pairs, before: Geometry, guess: FloatArray) -> tuple[Problem, IntArray]:
         """The problem of the `chosen` contacts on the bodies they touch, and the rows of these bodies."""
-        rows, row_a, row_b = restrict(chosen.row_a, chosen.row_b, len(bodies))
+        rows, row_a, row_b = restrict(chosen.row_a, chosen.row_b, len(start.position))
         facing = before.normal
 
         def geometry_at(time: FloatArray | float) -> Geometry:
-            at = chosen.at(start.at(time)) if isinstance(time, float) else chosen.between(*flight(start, chosen, time))
+            at = chosen.between(start.at(chosen.row_a, time), start.at(chosen.row_b, time))
             # A centre that has crossed a wall by then is still pushed back to the side it came from.
             behind = at.normal[:, 0] * facing[:, 0] + at.normal[:, 1] * facing[:, 1] < 0
             if behind.any():
@@ -164,17 +160,62 @@ class Simultaneous(ABC):
             return at
 
         problem = Problem(
-            start.dt, start.velocity[rows], start.acceleration[rows], bodies.mass[rows], bodies.inverse_mass[rows],
-            row_a, row_b, before.gap, chosen.elasticity, guess, geometry_at, draft,
+            start.dt, start.velocity[rows], start.acceleration[rows], start.inverse_mass[rows], row_a, row_b,
+            before.gap, chosen.elasticity, guess, geometry_at,
         )  # fmt: skip
         return problem, rows
 
-    @staticmethod
-    def _report(time: float, contacts: Contacts, solution: Solution) -> StepReport:
-        details = Details(contacts, solution.impulse, solution.psi1, solution.psi2, solution.gap_increment)
-        return StepReport(
-            time, details, iterations=solution.iterations, lock=solution.lock, converged=solution.converged,
-        )  # fmt: skip
+
+class SimultaneousStep:
+    """A simultaneous closure on the disks of one world."""
+
+    def __init__(self, closure: Simultaneous, disks: Disks) -> None:
+        self.closure, self.disks = closure, disks
+
+    def step(
+        self, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
+        left: float,
+    ) -> int:  # fmt: skip
+        """See `Disks.step`."""
+        move = partial(self.closure.advance, self.disks)
+        return self.disks.step(STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, move)
+
+    def rule(self, rules: Mapping[tuple[int, int], tuple[float, float, float, float]]) -> None:
+        """Let pairs of shapes (a < b) have this elasticity (below 0: they pass) from now on."""
+        self.disks.rules = rules
+
+    def details(self, dt: float, bodies: tuple[pymunk.Body, ...], owner: IntArray) -> Details:
+        """The arrays of the report of the last step, which had contacts."""
+        motion = self.disks.motion
+        assert motion is not None
+        assert motion.details is not None
+        return motion.details
+
+    @property
+    def book(self) -> None:
+        """No ledger is kept."""
+        return None
+
+    @property
+    def lock(self) -> float:
+        """Scale of the energy lock of the last step that was farthest from 1."""
+        return self.disks.motion.lock if self.disks.motion else 1.0
+
+    @property
+    def converged(self) -> bool:
+        """Whether the last step met the tolerance."""
+        return self.disks.motion.converged if self.disks.motion else True
+
+    @property
+    def iterations(self) -> int:
+        """Of the closure in the last step."""
+        return self.disks.motion.iterations if self.disks.motion else 0
+
+
+def _length(vectors: FloatArray) -> FloatArray:
+    """(n,) of (n, 2) vectors."""
+    result: FloatArray = np.hypot(vectors[:, 0], vectors[:, 1])
+    return result
 
 
 def closing(pairs: Pairs, before: Geometry, tolerance: FloatArray, start: Start, displacement: FloatArray) -> BoolArray:

@@ -110,7 +110,6 @@ def energy_lock(
     q: FloatArray,
     psi2: FloatArray,
     external: FloatArray,
-    surplus: FloatArray | None = None,
 ) -> Lock:
     """One scale s per island that makes the step exactly conservative whatever lam is (design section 5).
 
@@ -121,13 +120,12 @@ def energy_lock(
         a = 1/2 lam^T A lam,   b = 1/2 lam^T q - F . M^-1 P J,   c = -F . M^-1 P F.
 
     Without psi2 or without external forces this is s = -lam^T q / (lam^T A lam). Of two roots the one nearer to 1 is
-    taken. A surplus of energy that the bodies came with is taken out as well: it adds to c.
+    taken.
 
     Args:
         island: (m,) label of each contact's island, None if all are one.
         q: (m,) e u_n + u*, velocity, of the rigid limit.
         external: (R, 2) F, momentum.
-        surplus: (m,) energy to take out by the contacts of an island together, None for none.
     """
     if island is None:
         island = np.zeros(len(lam), np.intp)
@@ -138,12 +136,9 @@ def energy_lock(
         a = 0.5 * np.bincount(island, lam * (A @ lam), count)
         b = 0.5 * np.bincount(island, lam * q, count)
     scale, valid = np.ones(count), np.zeros(count, bool)
-    pushed = bool(psi2.any() and external.any())
-    if pushed or surplus is not None:
-        c = np.zeros(count) if surplus is None else np.bincount(island, surplus, count)
-        if pushed:
-            b -= np.bincount(island, 0.5 * psi2 * projected_product(A, external, A.impulse(lam)), count)
-            c -= np.bincount(island, 0.5 * psi2 * projected_product(A, external, external), count)
+    if psi2.any() and external.any():
+        b -= np.bincount(island, 0.5 * psi2 * projected_product(A, external, A.impulse(lam)), count)
+        c = -np.bincount(island, 0.5 * psi2 * projected_product(A, external, external), count)
         real = (a > 0) & (b * b >= 4.0 * a * c)
         a, b, c = a[real], b[real], c[real]
         # Vieta's second root avoids the cancellation of the first.

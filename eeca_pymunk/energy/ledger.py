@@ -39,4 +39,5 @@ def ledger(book: FloatArray) -> Ledger:
     """The ledger of a step from its (7,) book."""
     restitution, friction, external, damping, _, before, after = (float(x) for x in book)
     change = after - before
-    return Ledger(change, external, restitution, friction, damping, change - (external - restitution - friction - damping))
+    residual = change - (external - restitution - friction - damping)
+    return Ledger(change, external, restitution, friction, damping, residual)

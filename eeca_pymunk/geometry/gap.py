@@ -88,16 +88,16 @@ def gap(
 
 @uncounted
 def gaps(
-    POSES: FloatArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, A: IntArray, B: IntArray,
+    PAIRS: IntArray, POSE_A: FloatArray, POSE_B: FloatArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray,
     WORK: FloatArray, OUT: FloatArray,
 ) -> None:  # fmt: skip
-    """`gap_at` of shapes A (m,) and B (m,) with all bodies at POSES (n, 3): rows (g, n_x, n_y, p_x, p_y) of OUT."""
-    for k in range(A.shape[0]):
-        a, b = A[k], B[k]
-        i, j = LINK[a, OWNER], LINK[b, OWNER]
+    """`gap_at` of PAIRS (m, 2) of shapes with their bodies at POSE_A and POSE_B (m, 3): rows (g, n_x, n_y, p_x, p_y) of
+    OUT."""
+    for k in range(PAIRS.shape[0]):
         OUT[k, 0], OUT[k, 1], OUT[k, 2], OUT[k, 3], OUT[k, 4] = gap_at(
             SHAPE, LINK, VERTEX, WORK,
-            a, POSES[i, 0], POSES[i, 1], POSES[i, 2], b, POSES[j, 0], POSES[j, 1], POSES[j, 2],
+            PAIRS[k, 0], POSE_A[k, 0], POSE_A[k, 1], POSE_A[k, 2],
+            PAIRS[k, 1], POSE_B[k, 0], POSE_B[k, 1], POSE_B[k, 2],
         )  # fmt: skip
 
 

@@ -1,5 +1,5 @@
-"""The heap of events: the earliest on top, ties by the number of the body. Entries are never removed: one is valid while
-its time is what the body says is due."""
+"""The heap of events: the earliest on top, ties by the number of the body. Entries are never removed: one is valid
+while its time is what the body says is due."""
 
 from __future__ import annotations
 

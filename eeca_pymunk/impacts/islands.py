@@ -88,9 +88,11 @@ from .layout import (
     SOLVES,
     SPAN,
     SPAN_FROM,
+    SPEED,
     SPENT,
     STAMP,
     SWEEPS,
+    TOGETHER,
     UN_AFTER,
     UN_BEFORE,
     UNTIL,
@@ -280,14 +282,23 @@ def lift_out(A: Scene, root: int, end: float) -> None:
         PAR[LEDGER + RESTITUTION] = 0.0
 
 
+@uncounted
+def way_of(A: Scene, i: int, h: float) -> float:
+    """How far points of body i may come in h, with some room, where all contacts act together."""
+    pulled = 0.5 * A.PAR[PULLED] * h if A.BODY[i, IM] > 0.0 else 0.0
+    return 1.1 * (A.RESTING[i, SPEED] + pulled) * h
+
+
 @kernel
 def pairs_of(A: Scene, root: int, t: float, lossy: bool, LOCAL: IntArray, MINE: IntArray, n: int) -> IntArray:
     """(p, 2) pairs of shapes of an island, whose n bodies are MINE, that its solve takes over: what touches, and what
-    will rest within the span; where it is busy all that comes near. All others meet at their times of impact."""
+    will rest within the span; where it is busy all that comes near. All others meet at their times of impact, unless
+    all contacts act together."""
     found = np.empty((4 * n + 8, 2), np.int64)
     p = 0
     BODY, LINK, STATE = A.BODY, A.LINK, A.STATE
     h = A.PAR[DT] - t
+    together = A.COUNT[TOGETHER] > 0
     for q in range(n):
         i = MINE[q]
         for s in range(STATE[i, FIRST_SHAPE], STATE[i, FIRST_SHAPE] + STATE[i, SHAPES]):
@@ -303,6 +314,8 @@ def pairs_of(A: Scene, root: int, t: float, lossy: bool, LOCAL: IntArray, MINE: 
                 speed = math.hypot(BODY[i, VX], BODY[i, VY]) + math.hypot(BODY[j, VX], BODY[j, VY])
                 speed += abs(BODY[i, SPIN]) * BODY[i, EXTENT] + abs(BODY[j, SPIN]) * BODY[j, EXTENT]
                 reach = 1.1 * (speed * h + A.PAR[PULLED] * h * h) + TOUCH * small
+                if together:
+                    reach = way_of(A, i, h) + way_of(A, j, h) + TOUCH * small
                 if o < A.LIST.shape[0]:
                     ax, ay = centre(BODY, A.SHAPE, LINK, s, t)
                     bx, by = centre(BODY, A.SHAPE, LINK, o, t)
@@ -310,12 +323,14 @@ def pairs_of(A: Scene, root: int, t: float, lossy: bool, LOCAL: IntArray, MINE: 
                     if (bx - ax) * (bx - ax) + (by - ay) * (by - ay) > apart * apart:
                         continue
                 g, u, closing, mass = approach(A.BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, A.PULL, s, o, t)
-                if not busy:
+                if not busy and not together:
                     reach = 1.1 * (max(-u, 0.0) * h + A.PAR[PULLED] * h * h) + TOUCH * small
                 if g > reach:
                     continue
                 e = law(A.SHAPE, A.RULE, s, o)[0]
-                if e >= 1.0 and not lossy:
+                if together:
+                    pass
+                elif e >= 1.0 and not lossy:
                     if not rests(A, s, o, t, False):
                         continue
                 elif g > TOUCH * small and not busy:
@@ -338,7 +353,7 @@ def span_of(A: Scene, found: IntArray, t: float) -> float:
     ones go round one another."""
     BODY, LINK = A.BODY, A.LINK
     h = A.PAR[DT] - t
-    if found.shape[0] > _FEW:
+    if found.shape[0] > _FEW or A.COUNT[TOGETHER] > 0:
         return h
     rate = 0.0
     for c in range(found.shape[0]):
@@ -443,21 +458,25 @@ def solve(A: Scene, root: int, t: float) -> int:
     P, Q, KEY = np.empty(room, np.int64), np.empty(room, np.int64), np.empty(room, np.int64)
     ROWS, L, LOSS = np.empty((room, ROW_COLUMNS)), np.zeros((room, 2)), np.zeros((room, 2))
     VN, JUMP, BOOK, OUT = np.empty((k, 3)), np.zeros((k, 6)), np.zeros(LEDGER_SIZE), np.zeros(OUT_SIZE)
+    least = 0.0
+    if COUNT[TOGETHER] > 0:
+        for q in range(k):
+            least = max(least, way_of(A, WHO[q], h))
     m = 0
     if p > 0 and h > 0.0:
         m = step_island(
             POSE, V, ACC, IMS, IIS, SIZES, n, PAIRS, p, A.SHAPE, A.RULE, A.LINK, A.VERTEX, A.WORK, h,
-            max(-A.RESTING[root, LOST], 0.0), A.KEYS, A.FORCES, COUNT[REMEMBERED:], A.PAR[STAMP],
+            least, max(-A.RESTING[root, LOST], 0.0), A.KEYS, A.FORCES, COUNT[REMEMBERED:], A.PAR[STAMP],
             A.RESTING[MINE[0], RELAX : RELAX + 3], P, Q, ROWS, KEY, L, LOSS, VN, JUMP, BOOK, OUT,
         )  # fmt: skip
-        stuck = stick_time(P, Q, ROWS, L, V + h * ACC, VN, m, h)
+        stuck = h if COUNT[TOGETHER] > 0 else stick_time(P, Q, ROWS, L, V + h * ACC, VN, m, h)
         if stuck < h:
             # Where slip ends on the way, so does the span: friction changes its law there.
             h = max(stuck, A.PAR[DT] / _PARTS)
             BOOK[:] = 0.0
             m = step_island(
                 POSE, V, ACC, IMS, IIS, SIZES, n, PAIRS, p, A.SHAPE, A.RULE, A.LINK, A.VERTEX, A.WORK, h,
-                max(-A.RESTING[root, LOST], 0.0), A.KEYS, A.FORCES, COUNT[REMEMBERED:], A.PAR[STAMP],
+                least, max(-A.RESTING[root, LOST], 0.0), A.KEYS, A.FORCES, COUNT[REMEMBERED:], A.PAR[STAMP],
                 A.RESTING[MINE[0], RELAX : RELAX + 3], P, Q, ROWS, KEY, L, LOSS, VN, JUMP, BOOK, OUT,
             )  # fmt: skip
         if abs(OUT[LOCK_OF] - 1.0) > abs(A.PAR[LOCK] - 1.0):

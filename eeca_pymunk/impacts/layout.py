@@ -23,13 +23,14 @@ HITS = 3  # of the root: how often the island was hit in this step
 BUSY = 4  # steps for which what comes near joins the island rather than hits it
 MEMBER_COLUMNS = 5
 
-# RESTING (n, 12) float: of a body in an island
+# RESTING (n, 13) float: of a body in an island
 LIFT = 0  # RESTING[LIFT : LIFT + 6]: what to add to pose and velocity at the end of the span
 RELAX = 6  # of the root, RESTING[RELAX : RELAX + 3]: state of the solve
 LOST = 9  # of the root: energy lost in this step; below 0 it is owed
 SPENT = 10  # of the root: energy that lifting costs
 UNTIL = 11  # of the root: instant at which the span ends
-RESTING_COLUMNS = 12
+SPEED = 12  # that points of the body may get in the step, where all contacts act together
+RESTING_COLUMNS = 13
 
 # PUSHED_BY (c, 3) int: the contacts of islands in their present spans
 PUSH_A, PUSH_B, ROOT = 0, 1, 2  # shapes, first body of the island; of a span that is over one of these:
@@ -65,7 +66,8 @@ PENDING, WAITING = 12, 13  # island whose span is to be begun, -1 for none; bodi
 PHASE = 14  # of the step that is to be resumed
 SWEEPS, DIRECT = 15, 16  # of all solves: sweeps, direct solutions
 REMEMBERED = 17  # COUNT[REMEMBERED:]: rows of the memory of forces in use
-COUNT_LENGTH = 18
+TOGETHER = 18  # 1 where all contacts of a step act together, and no events are followed
+COUNT_LENGTH = 19
 
 # Status of a step
 DONE, POOL_FULL, LOG_FULL, BLOCK_DUE, PUSHES_FULL = 0, 1, 2, 3, 4

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,13 +12,16 @@ from ..arrays import FloatArray, IntArray
 from ..layout import COUNT as VERTICES
 from ..layout import DUE, ELASTICITY, EVENT_COLUMNS, OWNER
 from ..layout import NOW as READ
+from ..pairs.layout import MARGIN
 from ..pairs.setup import near_lists, rebuilt
+from ..report import Details, of_events
 from ..sustained.memory import FORCE_COLUMNS, forget
 from ..sustained.relax import FRESH
 from ..transfer import FORCES
 from .islands import flag_again
 from .layout import (
     AFTER,
+    BLOCKS,
     CHECK,
     COUNT_LENGTH,
     FIRST_SHAPE,
@@ -35,12 +40,17 @@ from .layout import (
     REMEMBERED,
     RESTING_COLUMNS,
     SHAPES,
+    SOLVES,
     STAMP,
     STATE_COLUMNS,
     UNMET,
     Scene,
 )  # fmt: skip
 from .step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, resume, step
+from .together import resume_together, step_together
+
+if TYPE_CHECKING:
+    import pymunk
 
 RULE_COLUMNS = 6
 _CONTACTS = 256  # of islands, that there is room for at first; a power of 2
@@ -99,10 +109,12 @@ class EventLoop:
             self.scene = scene._replace(LOG=np.concatenate((scene.LOG, np.zeros_like(scene.LOG))))
             return
         if wish == ROOM_FOR_CONTACTS:
-            KEYS, FORCES = np.full(2 * len(scene.KEYS), -1, np.int64), np.zeros((2 * len(scene.KEYS), FORCE_COLUMNS))
-            forget(scene.KEYS, scene.FORCES, scene.COUNT[REMEMBERED:], KEYS, FORCES, float(scene.PAR[STAMP]) - 1.0)
-            self.scene = scene._replace(
-                KEYS=KEYS, FORCES=FORCES,
+            size, count = len(scene.KEYS), int(scene.COUNT[REMEMBERED])
+            self._clean(size)
+            if count - scene.COUNT[REMEMBERED] >= size // 8:
+                return
+            self._clean(2 * size)
+            self.scene = self.scene._replace(
                 PUSHED_BY=np.concatenate((scene.PUSHED_BY, np.zeros_like(scene.PUSHED_BY))),
                 PUSHED=np.concatenate((scene.PUSHED, np.zeros_like(scene.PUSHED))),
             )  # fmt: skip
@@ -115,8 +127,16 @@ class EventLoop:
         scene.BODY[:n, DUE], scene.STATE[:n, OTHER] = now, CHECK
         scene.HEAP_TIME[:n], scene.HEAP_BODY[:n], scene.COUNT[HEAP] = now, np.arange(n), n
 
+    def _clean(self, size: int) -> None:
+        """Forget the forces of steps before the last one, in tables of so many rows."""
+        scene = self.scene
+        KEYS, TABLE = np.full(size, -1, np.int64), np.zeros((size, FORCE_COLUMNS))
+        forget(scene.KEYS, scene.FORCES, scene.COUNT[REMEMBERED:], KEYS, TABLE, float(scene.PAR[STAMP]) - 1.0)
+        self.scene = scene._replace(KEYS=KEYS, FORCES=TABLE)
+
     def rule(self, rules: Mapping[tuple[int, int], tuple[float, float, float, float]]) -> None:
-        """Let pairs of shapes (a < b) have this elasticity (below 0: they pass), friction and surface velocity from now on."""
+        """Let pairs of shapes (a < b) have this elasticity (below 0: they pass), friction and surface velocity from now
+        on."""
         table = np.array([(*pair, *what) for pair, what in rules.items()], float).reshape(-1, RULE_COLUMNS)
         if len(table) or len(self.scene.RULE):
             self.scene = self.scene._replace(RULE=table)
@@ -125,6 +145,13 @@ class EventLoop:
     def events(self) -> FloatArray:
         """(m, 11) EVENT rows of the last step, a copy."""
         return self.scene.LOG[: self.scene.COUNT[LOGGED]].copy()
+
+    def details(
+        self, dt: float, bodies: tuple[pymunk.Body, ...], owner: IntArray
+    ) -> Callable[[], Details]:  # fmt: skip
+        """What makes the arrays of the report of the last step; `owner` (k,) is the place of every shape's body in
+        `bodies`."""
+        return partial(of_events, self.events, dt, bodies, owner)
 
     @property
     def book(self) -> FloatArray:
@@ -139,4 +166,30 @@ class EventLoop:
     @property
     def converged(self) -> bool:
         """Whether the last step left nothing undone."""
-        return self.scene.COUNT[UNMET] == 0
+        return bool(self.scene.COUNT[UNMET] == 0)
+
+    @property
+    def iterations(self) -> int:
+        """Solves of islands and of blocks in the last step."""
+        return int(self.scene.COUNT[SOLVES] + self.scene.COUNT[BLOCKS])
+
+
+class Together(EventLoop):
+    """Steps the same arrays with all contacts of a step acting together at its middle (`together.py`)."""
+
+    def __init__(self, BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, disks: int) -> None:
+        super().__init__(BODY, SHAPE, LINK, VERTEX, disks, 0)
+        self._usual: FloatArray = self.near.MARK[:, MARGIN].copy()
+
+    def step(
+        self, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
+        left: float,
+    ) -> int:  # fmt: skip
+        """See `together.step_together`; a negative answer is one of `transfer.py`."""
+        usual = self._usual
+        status = step_together(self.scene, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, usual)
+        while status <= ROOM_FOR_LISTS:
+            self._grow(status)
+            bits = FORCES if STATES[READ, :, 6:].any() else 0
+            status = resume_together(self.scene, STATES, WALK, EXTRA, ENDS, usual, bits)
+        return status

@@ -79,7 +79,8 @@ from .loop import follow, forecast
 from .settle import settle
 from .strike import move_to
 
-ROOM_FOR_LISTS, ROOM_FOR_EVENTS, ROOM_FOR_CONTACTS = -10, -11, -12  # answers of a step that wants more memory: give some, and `resume`
+# Answers of a step that wants more memory: give some, and `resume`.
+ROOM_FOR_LISTS, ROOM_FOR_EVENTS, ROOM_FOR_CONTACTS = -10, -11, -12
 
 
 @uncounted

@@ -1,8 +1,8 @@
 """The arrays of the near lists: what their columns mean.
 
-MARK (k, 3) float: the margin circle of each shape, drawn about where its list was made. CELL (k, 6) int: its place in the
-grid. LIST (k, 3) int: where in POOL its neighbours stand. POOL int32: numbers of shapes, all lists one after the other;
-FLAG, of the same length, 1 where an island's solve has taken the pair over, so that it makes no events.
+MARK (k, 3) float: the margin circle of each shape, drawn about where its list was made. CELL (k, 6) int: its place in
+the grid. LIST (k, 3) int: where in POOL its neighbours stand. POOL int32: numbers of shapes, all lists one after the
+other; FLAG, of the same length, 1 where an island's solve has taken the pair over, so that it makes no events.
 INFO int: counters of the lists.
 """
 

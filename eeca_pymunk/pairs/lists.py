@@ -1,7 +1,8 @@
 """Near lists: of every shape that moves the shapes it may meet before one of the two leaves its margin circle.
 
-A list is complete while the centres of the bounding circles stay within their margins: |d| > R_a + m_a + R_b + m_b where
-lists were made keeps the circles apart. A pair of moving shapes stands in both lists, a static one in that of the other.
+A list is complete while the centres of the bounding circles stay within their margins: |d| > R_a + m_a + R_b + m_b
+where lists were made keeps the circles apart. A pair of moving shapes stands in both lists, a static shape in that of
+the other.
 """
 
 from __future__ import annotations
@@ -51,7 +52,7 @@ def centre(BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, s: int, t: float
 
 @uncounted
 def may_meet(BODY: FloatArray, LINK: IntArray, a: int, b: int) -> bool:
-    """Whether two shapes may collide: of two bodies, one of which impulses move, and let through by pymunk's filters."""
+    """Whether two shapes may collide: of two bodies, one of which impulses move, let through by pymunk's filters."""
     i, j = LINK[a, OWNER], LINK[b, OWNER]
     if i == j or (BODY[i, IM] == 0.0 and BODY[j, IM] == 0.0 and BODY[i, II] == 0.0 and BODY[j, II] == 0.0):
         return False

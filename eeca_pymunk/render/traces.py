@@ -104,7 +104,9 @@ class Stack(Trace):
             if float(np.abs(part).max()) > _WORTH * float(np.abs(given).max()):
                 self.levels.append((below, below + part / scale))
                 below = self.levels[-1][1]
-                self.layers.append(ax.add_patch(Polygon(np.zeros((1, 2)), color=_COLOURS[name], lw=0, label=name)))
+                layer = Polygon(np.zeros((1, 2)), color=_COLOURS[name], lw=0, label=name)
+                ax.add_patch(layer)
+                self.layers.append(layer)
         self.given = given / scale
         label = "start + external" if float(np.abs(held.external).max()) > _WORTH * abs(scale) else "start"
         self.lines = ax.plot([], [], color="black", linewidth=1.5, linestyle="--", label=label)

@@ -109,26 +109,12 @@ class Bodies:
             i, j = np.argwhere(~np.isfinite(state))[0]
             raise NotFiniteError(f"{COLUMN_NAMES[j]} of {self.items[i]} is {state[i, j]}: {remedy}")
 
-    def mobility(self, turning: bool) -> FloatArray:
-        """(N, 1) 1/mass; if `turning`, (N, 3) 1/mass twice and 1/moment: what turns impulses into velocities."""
-        if not turning:
-            return self.inverse_mass[:, None]
-        return np.column_stack((self.inverse_mass, self.inverse_mass, self.inverse_moment))
-
-    def poses(self, state: FloatArray, turning: bool) -> FloatArray:
-        """(N, 2) positions of an (N, 9) state; if `turning`, (N, 3) centres of mass and angles."""
-        if not turning:
-            return state[:, POSITION]
-        return np.column_stack((state[:, POSITION] + self._arms(state[:, ANGLE]), state[:, ANGLE]))
-
-    def _arms(self, angle: FloatArray) -> FloatArray:
-        """(N, 2) from the positions of the bodies to their centres of mass."""
-        return rotated(self.center_of_gravity, angle)
-
-    def positions(self, pose: FloatArray) -> FloatArray:
-        """(N, 2) positions of the bodies whose centres of mass and angles are `pose` (N, 3)."""
-        result: FloatArray = pose[:, :2] - self._arms(pose[:, 2])
-        return result
+    def centers(self, state: FloatArray) -> FloatArray:
+        """(N, 2) centres of mass in an (N, 9) state."""
+        center: FloatArray = state[:, POSITION]
+        if self.center_of_gravity.any():
+            center = center + rotated(self.center_of_gravity, state[:, ANGLE])
+        return center
 
     def scatter(self, state: FloatArray, *, unchanged: bool = False) -> None:
         """Write the whole (N, 9) state to the bodies of these rows that are still in the space.

@@ -74,13 +74,3 @@ def rough_pair(shapes: Sequence[pymunk.Shape]) -> pymunk.Shape | None:
         if body.body_type == pymunk.Body.DYNAMIC and any(other.body is not body for other in rough):
             return shape
     return None
-
-
-def check_smooth(shapes: Sequence[pymunk.Shape], stepper: str) -> None:
-    """Refuse friction and surface velocity where a stepper does not model them."""
-    shape = rough_pair(shapes)
-    if shape is not None:
-        raise UnsupportedFeature(
-            f"{shape} has friction {shape.friction}, and so has a shape it may touch: {stepper} does not model it; "
-            "use ep.EECA(space), or set shape.friction = 0"
-        )

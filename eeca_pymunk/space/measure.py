@@ -20,5 +20,5 @@ def measure(space: pymunk.Space) -> Invariants:
 def invariants(bodies: Bodies, state: FloatArray, gravity: tuple[float, float]) -> Invariants:
     """Energy and momenta of an (N, 9) state of `bodies`."""
     d = bodies.dynamic
-    center = bodies.poses(state, bool(bodies.center_of_gravity.any()))[d, :2]
+    center = bodies.centers(state)[d]
     return sums(bodies.mass[d], bodies.moment[d], center, state[d, VELOCITY], state[d, ANGULAR_VELOCITY], gravity)

@@ -39,7 +39,7 @@ class Outlines:
         shapes = [(s, s.body) for s in space.shapes if s.body is not None]
         vertices: list[FloatArray] = []
         for shape, body in shapes:
-            local = local_outline(shape)
+            local = np.array(local_outline(shape), float)
             if body not in place:
                 local = np.array([body.local_to_world((float(x), float(y))) for x, y in local])
             vertices.append(local)

@@ -36,6 +36,7 @@ from ..layout import (
 )  # fmt: skip
 from .bodies import ANGLE, POSITION, Bodies
 from .checks import shape_body, shape_radius
+from .shapes import local_outline
 
 _WORD = (1 << 64) - 1  # of a filter's numbers as 64 bits: equality and `&` ask for no more
 
@@ -54,16 +55,9 @@ class Record(NamedTuple):
 
 def read(shape: pymunk.Shape) -> Record:
     """The record of a shape that has been checked."""
-    if isinstance(shape, pymunk.Circle):
-        vertices = [tuple(shape.offset)]
-    elif isinstance(shape, pymunk.Segment):
-        vertices = [tuple(shape.a), tuple(shape.b)]
-    else:
-        assert isinstance(shape, pymunk.Poly)  # check_shape let nothing else through
-        vertices = [tuple(v) for v in shape.get_vertices()]
     group, categories, mask = shape.filter
     numbers = (shape_radius(shape), 0.0, shape.elasticity, shape.friction, *shape.surface_velocity)
-    return Record(vertices, numbers, (group & _WORD, categories & _WORD, mask & _WORD))
+    return Record(local_outline(shape), numbers, (group & _WORD, categories & _WORD, mask & _WORD))
 
 
 @dataclass(frozen=True)

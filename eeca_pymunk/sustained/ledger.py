@@ -3,7 +3,8 @@
     change of energy = FORCES + CARRIED + LIFTED - RESTITUTION - FRICTION,
 
 of kinetic energy, and of potential energy as far as bodies are lifted. RESTITUTION and FRICTION are >= 0. LIFTED is the
-energy that lifting bodies out of each other costs; it never exceeds these losses, from which it is paid.
+energy that lifting bodies out of each other costs; it never exceeds these losses, from which it is paid, and is below
+0 where bodies sink by it.
 """
 
 from __future__ import annotations

@@ -94,10 +94,11 @@ def moved(X: FloatArray, V: FloatArray, s: float) -> FloatArray:
 @kernel
 def step_island(
     POSE: FloatArray, V: FloatArray, ACC: FloatArray, IM: FloatArray, II: FloatArray, EXTENT: FloatArray, n: int,
-    PAIRS: IntArray, p: int, SHAPE: FloatArray, RULE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray, h: float,
-    owed: float, KEYS: IntArray, FORCES: FloatArray, COUNT: IntArray, stamp: float, STATE: FloatArray, A: IntArray,
-    B: IntArray, ROWS: FloatArray, KEY: IntArray, L: FloatArray, LOSS: FloatArray, VN: FloatArray, JUMP: FloatArray,
-    LEDGER: FloatArray, OUT: FloatArray,
+    PAIRS: IntArray, p: int, SHAPE: FloatArray, RULE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray,
+    h: float,
+    least: float, owed: float, KEYS: IntArray, FORCES: FloatArray, COUNT: IntArray, stamp: float, STATE: FloatArray,
+    A: IntArray, B: IntArray, ROWS: FloatArray, KEY: IntArray, L: FloatArray, LOSS: FloatArray, VN: FloatArray,
+    JUMP: FloatArray, LEDGER: FloatArray, OUT: FloatArray,
 ) -> int:  # fmt: skip
     """Solve an island over h from now.
 
@@ -106,6 +107,7 @@ def step_island(
         n: bodies that impulses move, the first of k; the others keep their velocities. A body without mobility that
             rests (the ground) is among the k as well; an island without any is free.
         PAIRS: (p, 4) as `contacts.gather`.  RULE: see `..pairs.rules`.  WORK: scratch of the geometry.
+        least: length that every body's points may come at least, 0 if their velocities tell.
         owed: energy >= 0 to take out at least.
         KEYS, FORCES, COUNT, stamp: memory of forces; the number of this step.  STATE: (3,) of `relax`.
         A, B, ROWS, KEY, L, LOSS: the m contact rows out, with impulses over h and losses (D_n, D_t).
@@ -121,6 +123,8 @@ def step_island(
     k = len(IM)
     REACH = np.empty(k)
     slow, fast, pull = speeds(V, ACC, EXTENT, IM, n, h, REACH)
+    for i in range(k):
+        REACH[i] = max(REACH[i], least)
     MIDDLE = moved(POSE, V, 0.5 * h)
     NOW = np.empty((2, 5))
     THEN = np.empty((2, 5))
@@ -160,13 +164,13 @@ def step_island(
         size = np.inf
         for i in range(n):
             size = min(size, EXTENT[i])
-        lifted, OUT[5] = lifting(
-            A, B, ROWS, MIDDLE, VN, ACC, IM, II, n, m, h, size, normal + tangential - owed, JUMP
-        )  # fmt: skip
-        LEDGER[0] += normal - min(lifted, 0.0)
+        # Losses pay for lifting; what is elastic has none, whatever round-off says.
+        budget = 0.0 if elastic else normal + tangential - owed
+        lifted, OUT[5] = lifting(A, B, ROWS, MIDDLE, VN, ACC, IM, II, n, m, h, size, budget, JUMP)
+        LEDGER[0] += normal
         LEDGER[1] += tangential
         LEDGER[2] += carried(A, B, ROWS, L, V, IM, m)
-        LEDGER[3] += max(lifted, 0.0)
+        LEDGER[3] += lifted
         for i in range(m):
             stopped = max(max(ROWS[i, TARGET], 0.0) - ROWS[i, UN], 0.0) * ROWS[i, K_N]
             load = max(L[i, 0] - stopped, 0.0)

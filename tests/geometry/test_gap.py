@@ -162,7 +162,7 @@ def test_many_pairs_at_once() -> None:
     poses = np.concatenate((rng.normal(size=(3, 3)), np.zeros((1, 3))))
     a, b = np.array([0, 0, 1, 2, 1]), np.array([1, 3, 2, 0, 3])
     out = np.zeros((5, 5))
-    gaps(poses, world.shape, world.link, world.vertex, a, b, world.work, out)
+    gaps(np.stack((a, b), axis=1), poses[a], poses[b], *world.geometry, out)
     for k in range(5):
         assert tuple(out[k]) == gap_at(*world.geometry, a[k], *poses[a[k]], b[k], *poses[b[k]])
 

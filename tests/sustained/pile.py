@@ -15,6 +15,8 @@ from eeca_pymunk.sustained.step import OUT_SIZE, step_island
 
 from ..packed import Thing, World
 
+NO_RULE = np.zeros((0, 6))
+
 
 @dataclass
 class Pile:
@@ -83,8 +85,8 @@ class Pile:
         vn = np.empty_like(self.v)
         while True:
             self.m = step_island(
-                self.pose, self.v, self.acc, self.im, self.ii, self.extent, self.n, pairs, len(pairs), shape, np.zeros((0, 6)), link,
-                vertex, work, h, 0.0, self.keys, self.forces, self.count, self.stamp, self.state, self.A, self.B,
+                self.pose, self.v, self.acc, self.im, self.ii, self.extent, self.n, pairs, len(pairs), shape, NO_RULE, link,
+                vertex, work, h, 0.0, 0.0, self.keys, self.forces, self.count, self.stamp, self.state, self.A, self.B,
                 self.rows, self.key, self.L, self.loss, vn, self.jump, self.ledger, self.out,
             )  # fmt: skip
             if self.m >= 0:

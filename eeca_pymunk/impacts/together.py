@@ -1,0 +1,175 @@
+"""A step whose contacts act together at its middle, psi2 = 0: the bounded solve of islands on all contacts.
+
+No event is followed. Every pair that may close within the step is a contact of an island, and every island has one
+span, the step. How far a body may go its own speed tells; where impulses send it farther, and into others, these are
+made contacts too, and all is solved again, a few times at most.
+"""
+
+from __future__ import annotations
+
+import math
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import kernel, uncounted
+from ..geometry.flight import pose
+from ..geometry.gap import gap
+from ..layout import ANGLE, AX, AY, EXTENT, IM, OWNER, SIZE, SPIN, TWIST, VX, VY, X, Y
+from ..pairs.candidates import cover
+from ..pairs.layout import NUMBER, START
+from ..pairs.lists import mark_pair
+from ..transfer import EVENTS as SOME
+from ..transfer import give, take
+from .forecast import barred
+from .islands import TOUCH, approach, solve, unite, way_of
+from .layout import (
+    DONE,
+    DT,
+    FIRST_SHAPE,
+    GRAVITY_X,
+    GRAVITY_Y,
+    ISLAND,
+    LEFT_OVER,
+    LOGGED,
+    NOW,
+    PUSH_A,
+    PUSH_B,
+    PUSHES,
+    SHAPES,
+    SPEED,
+    TOGETHER,
+    Scene,
+)
+from .step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, begin, close
+
+_PASSES = 3  # further solves for bodies that impulses send into others
+
+
+@uncounted
+def reaches(A: Scene, USUAL: FloatArray, i: int) -> bool:
+    """Make the lists of body i complete for what it may reach within the step. False if there is no room."""
+    way = way_of(A, i, A.PAR[DT])
+    for s in range(A.STATE[i, FIRST_SHAPE], A.STATE[i, FIRST_SHAPE] + A.STATE[i, SHAPES]):
+        if not cover(
+            A.BODY, A.SHAPE, A.LINK, A.MARK, A.CELL, A.LIST, A.POOL, A.FLAG, A.HEAD, A.GRID, A.INFO, A.BOX, A.CSR,
+            USUAL, s, way,
+        ):  # fmt: skip
+            return False
+    return True
+
+
+@uncounted
+def join_all(A: Scene, USUAL: FloatArray) -> bool:
+    """The islands of all bodies that may touch within the step. False if there is no room for lists."""
+    BODY, LINK = A.BODY, A.LINK
+    n, dt = BODY.shape[0] - 1, A.PAR[DT]
+    for i in range(n):
+        if not reaches(A, USUAL, i):
+            return False
+    for s in range(A.LIST.shape[0]):
+        i = LINK[s, OWNER]
+        if BODY[i, IM] == 0.0:
+            continue
+        for w in range(A.LIST[s, START], A.LIST[s, START] + A.LIST[s, NUMBER]):
+            o = int(A.POOL[w])
+            j = LINK[o, OWNER]
+            moves = BODY[j, IM] > 0.0
+            if (moves and o < s) or barred(A.RULE, s, o):
+                continue
+            touch = TOUCH * min(A.SHAPE[s, SIZE], A.SHAPE[o, SIZE])
+            if approach(A.BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, A.PULL, s, o, 0.0)[0] <= way_of(A, i, dt) + way_of(A, j, dt) + touch:
+                unite(A, i, j if moves else i)
+    return True
+
+
+@uncounted
+def anew(A: Scene) -> None:
+    """Undo the spans that were begun: nobody is in an island, and impulses have changed no path."""
+    for c in range(A.COUNT[PUSHES]):
+        mark_pair(A.LIST, A.POOL, A.FLAG, A.LIST.shape[0], A.PUSHED_BY[c, PUSH_A], A.PUSHED_BY[c, PUSH_B], 0)
+    A.COUNT[PUSHES] = 0
+    for i in range(A.BODY.shape[0] - 1):
+        A.STATE[i, ISLAND] = -1
+        A.BODY[i, AX], A.BODY[i, AY], A.BODY[i, TWIST] = A.PULL[i, 0], A.PULL[i, 1], A.PULL[i, 2]
+
+
+@uncounted
+def overrun(A: Scene, USUAL: FloatArray) -> int:
+    """How many bodies went farther than was thought, and into others that are no contacts of the solve; they have the
+    speed now that they got. -1 if there is no room for lists."""
+    BODY, LINK, RESTING = A.BODY, A.LINK, A.RESTING
+    dt, found = A.PAR[DT], 0
+    for i in range(BODY.shape[0] - 1):
+        if A.STATE[i, ISLAND] < 0:
+            continue
+        x, y, angle = pose(BODY, i, dt)
+        way = math.hypot(x - BODY[i, X], y - BODY[i, Y]) + abs(angle - BODY[i, ANGLE]) * BODY[i, EXTENT]
+        if way <= way_of(A, i, dt):
+            continue
+        before, RESTING[i, SPEED] = RESTING[i, SPEED], way / dt
+        if not reaches(A, USUAL, i):
+            return -1
+        into = 0
+        for s in range(A.STATE[i, FIRST_SHAPE], A.STATE[i, FIRST_SHAPE] + A.STATE[i, SHAPES]):
+            for w in range(A.LIST[s, START], A.LIST[s, START] + A.LIST[s, NUMBER]):
+                o = int(A.POOL[w])
+                if A.FLAG[w] != 0 or barred(A.RULE, s, o):
+                    continue
+                small = min(A.SHAPE[s, SIZE], A.SHAPE[o, SIZE])
+                if gap(BODY, A.SHAPE, LINK, A.VERTEX, A.WORK, s, o, dt)[0] < -TOUCH * small:
+                    into += 1
+        if into > 0:
+            found += 1
+        else:
+            RESTING[i, SPEED] = before
+    return found
+
+
+@kernel
+def resume_together(
+    A: Scene, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, USUAL: FloatArray, status: int
+) -> int:
+    """The rest of a step, whose bits so far are `status`; from its start, if it has been broken off for more room."""
+    COUNT, BODY = A.COUNT, A.BODY
+    n = BODY.shape[0] - 1
+    A.RESTING[n, SPEED] = 0.0
+    for i in range(n):
+        A.RESTING[i, SPEED] = math.hypot(BODY[i, VX], BODY[i, VY]) + abs(BODY[i, SPIN]) * BODY[i, EXTENT]
+    for solves in range(_PASSES + 1):
+        anew(A)
+        if not join_all(A, USUAL):
+            return ROOM_FOR_LISTS
+        for i in range(n):
+            if A.STATE[i, ISLAND] == i and solve(A, i, 0.0) != DONE:
+                return ROOM_FOR_CONTACTS
+        if COUNT[PUSHES] > A.LOG.shape[0]:
+            return ROOM_FOR_EVENTS
+        if solves == _PASSES:
+            break
+        more = overrun(A, USUAL)
+        if more < 0:
+            return ROOM_FOR_LISTS
+        if more == 0:
+            break
+    close(A, WALK)
+    if COUNT[LOGGED] > 0:
+        status |= SOME
+    return give(STATES, WALK, EXTRA, BODY, ENDS, A.PAR[DT], A.PAR[LEFT_OVER], status)
+
+
+@kernel
+def step_together(
+    A: Scene, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
+    left: float, USUAL: FloatArray,
+) -> int:  # fmt: skip
+    """From the states that were read to those that are to be written: arguments and answer as of `step.step`.
+
+    Args:
+        USUAL: (k,) margins of shapes that are not fast, length.
+    """
+    status = take(STATES, WALK, EXTRA, A.BODY, gx, gy, left)
+    if status < 0:
+        return status
+    A.PAR[DT], A.PAR[GRAVITY_X], A.PAR[GRAVITY_Y], A.PAR[LEFT_OVER] = dt, gx, gy, left
+    A.COUNT[TOGETHER], A.PAR[NOW] = 1, 0.0
+    begin(A, WALK)
+    return resume_together(A, STATES, WALK, EXTRA, ENDS, USUAL, status)
