@@ -23,6 +23,7 @@ NAMES = (
     "work_precision",
     "scaling",
     "detection",
+    "piles",
     "soak",
     "hard_cases",
     "gallery",

@@ -14,11 +14,13 @@ from .closures.time_of_impact import TimeOfImpact
 from .eeca import EECA, Closure
 from .energy.invariants import Invariants
 from .energy.ledger import Ledger
+from .energy.ledger_trace import LedgerTrace
 from .errors import UnsupportedFeature
 from .recording import Recording, record
 from .report import Contacts, StepReport
 from .space.measure import measure
 from .stepper import Stepper
+from .warming import warmup
 
 __all__ = [
     "EECA",
@@ -27,6 +29,7 @@ __all__ = [
     "Dashpot",
     "Invariants",
     "Ledger",
+    "LedgerTrace",
     "Midstep",
     "Native",
     "Newmark",
@@ -39,6 +42,7 @@ __all__ = [
     "measure",
     "record",
     "render",
+    "warmup",
 ]
 
 

@@ -13,7 +13,9 @@ import numpy as np
 from tqdm import tqdm
 
 from .arrays import FloatArray, IntArray
+from .energy.ledger_trace import LedgerTrace, entries
 from .files import whole_file
+from .report import StepReport
 from .space.bodies import ANGLE, POSITION, VELOCITY, Bodies, moving
 from .space.measure import invariants
 from .space.outlines import Outlines
@@ -23,7 +25,9 @@ if TYPE_CHECKING:
     import pymunk
 
 _PER_BODY = 5 * 8  # bytes kept of a body and moment: position, angle, velocity
+_PER_MOMENT = 11 * 8  # bytes besides: time, energies, momentum, ledger
 MEMORY = 2.0**30  # bytes
+_PARTS: dict[str, type[Any]] = {"outlines": Outlines, "ledger": LedgerTrace}  # of a recording: arrays with names
 
 
 def versions() -> dict[str, str]:
@@ -44,7 +48,8 @@ class Recording:
 
     Attributes:
         time: (T,).  position: (T, N, 2) length.  angle: (T, N) rad.  velocity: (T, N, 2) length/time.
-        energy: (T,) kinetic plus gravity.  momentum: (T, 2).
+        energy: (T,) kinetic plus gravity.  kinetic: (T,) its first part.  momentum: (T, 2).
+        ledger: where energy has gone since the start, arrays (T,); NaN for steppers that keep none.
         mass: (N,) infinite for kinematic bodies.  outlines: the shapes, as they were at the start.
         parameters: what the run was made with, and the versions.
     """
@@ -58,16 +63,27 @@ class Recording:
     mass: FloatArray = field(default_factory=lambda: np.zeros(0))
     outlines: Outlines = field(default_factory=Outlines)
     parameters: dict[str, Any] = field(default_factory=dict)
+    kinetic: FloatArray = field(default_factory=lambda: np.zeros(0))
+    ledger: LedgerTrace = field(default_factory=LedgerTrace)
+
+    def __post_init__(self) -> None:
+        # What files of older versions do not tell.
+        if len(self.kinetic) != len(self.time):
+            self.kinetic = np.full(len(self.time), np.nan)
+        if len(self.ledger.change) != len(self.time):
+            self.ledger = LedgerTrace.unknown(len(self.time))
 
     def __len__(self) -> int:
         return len(self.time)
 
     def save(self, path: str | Path) -> None:
         """Write to `path` as npz, whole or not at all."""
-        arrays = {f.name: getattr(self, f.name) for f in fields(self) if f.name not in ("outlines", "parameters")}
-        shapes = {f"outlines.{f.name}": getattr(self.outlines, f.name) for f in fields(self.outlines)}
+        arrays = {f.name: getattr(self, f.name) for f in fields(self) if f.name not in ("parameters", *_PARTS)}
+        for part in _PARTS:
+            held = getattr(self, part)
+            arrays |= {f"{part}.{f.name}": getattr(held, f.name) for f in fields(held)}
         with whole_file(path) as partial, partial.open("wb") as file:
-            np.savez_compressed(file, parameters=np.array(json.dumps(self.parameters)), **arrays, **shapes)
+            np.savez_compressed(file, parameters=np.array(json.dumps(self.parameters)), **arrays)
 
     @staticmethod
     def load(path: str | Path) -> Recording:
@@ -76,9 +92,13 @@ class Recording:
             with np.load(path) as data:
                 found = {name: data[name] for name in data.files}
             parameters = json.loads(str(found.pop("parameters")))
-            names = [name for name in found if name.startswith("outlines.")]
-            outlines = Outlines(**{name.removeprefix("outlines."): found.pop(name) for name in names})
-            return Recording(**found, outlines=outlines, parameters=parameters)
+            parts = {
+                part: kind(
+                    **{n.removeprefix(f"{part}."): found.pop(n) for n in list(found) if n.startswith(f"{part}.")}
+                )
+                for part, kind in _PARTS.items()
+            }
+            return Recording(**found, **parts, parameters=parameters)
         except (KeyError, TypeError, AttributeError, ValueError) as error:
             raise ValueError(f"{path} is not a recording that Recording.save wrote ({error})") from error
 
@@ -110,7 +130,7 @@ def record(
     count = step_count(duration, dt)
     kept = moving(stepper.space)
     moments = 1 + count // every
-    needed = moments * (len(kept) * _PER_BODY + 32)
+    needed = moments * (len(kept) * _PER_BODY + _PER_MOMENT)
     if needed > memory:
         raise ValueError(
             f"{moments} moments of {len(kept)} bodies take {needed:.2g} bytes, more than memory = {memory:.2g}: "
@@ -119,7 +139,7 @@ def record(
     film = _Moments(stepper.space, kept, moments)
     film.keep(0)
     for k in tqdm(range(1, count + 1), desc=type(stepper).__name__, unit="step", disable=not progress):
-        stepper.step(dt)
+        film.book(stepper.step(dt))
         if k % every == 0:
             film.keep(k // every)
     film.recording.time[:] = (dt * every) * np.arange(moments)
@@ -138,14 +158,18 @@ class _Moments:
         self._read()
         self.recording = Recording(
             np.zeros(T), np.empty((T, N, 2)), np.empty((T, N)), np.empty((T, N, 2)), np.empty(T), np.empty((T, 2)),
-            self.bodies.mass[self.rows], Outlines.of(space, kept),
+            self.bodies.mass[self.rows], Outlines.of(space, kept), kinetic=np.empty(T), ledger=LedgerTrace.unknown(T),
         )  # fmt: skip
+        self.total = np.zeros(6)  # of the ledgers so far
 
     def _read(self) -> None:
         """The rows of the kept bodies among those the space has now."""
         self.bodies = Bodies(self.space)
         self.present: IntArray = np.array([i for i, b in enumerate(self.kept) if b in self.bodies.row], np.intp)
         self.rows: IntArray = np.array([self.bodies.row[self.kept[i]] for i in self.present], np.intp)
+
+    def book(self, report: StepReport) -> None:
+        self.total += entries(report.ledger)
 
     def keep(self, i: int) -> None:
         state = self.bodies.gather()
@@ -159,4 +183,5 @@ class _Moments:
         for array, column in ((to.position, POSITION), (to.angle, ANGLE), (to.velocity, VELOCITY)):
             array[i] = np.nan
             array[i, self.present] = state[self.rows, column]
-        to.energy[i], to.momentum[i] = now.energy, now.linear_momentum
+        to.energy[i], to.kinetic[i], to.momentum[i] = now.energy, now.kinetic, now.linear_momentum
+        to.ledger.put(i, self.total)

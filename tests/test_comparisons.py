@@ -9,11 +9,12 @@ import runpy
 from pathlib import Path
 
 import numpy as np
+import pymunk
 import pytest
 
 import eeca_pymunk as ep
 import scenes
-from comparisons import detection, gallery, runs, scaling, soak, work_precision
+from comparisons import detection, gallery, pile_precision, piles, runs, scaling, soak, work_precision
 from comparisons.__main__ import NAMES, main
 from comparisons.hopper import crossed, deepest_overlap
 
@@ -192,3 +193,37 @@ def test_short_hopper_soak() -> None:
     assert float(last["max |dE/E|"] or 0.0) < 1e-12
     assert last["leaked"] == 0
     assert int(last["steps"] or 0) > 10
+
+
+def test_short_piles_keep_their_books() -> None:
+    rows = piles.quick()
+    assert [row["stepper"] for row in rows] == ["native 10", "native 100", "EECA"] * 3
+    ours = [row for row in rows if row["stepper"] == "EECA"]
+    for row in ours:
+        assert float(row["ledger residual"] or 0.0) <= 1e-12
+        assert float(row["energy rise"] or 0.0) <= 1e-12
+        assert float(row["deepest (r)"] or 0.0) <= 0.1
+        assert float(row["us/step"] or 0.0) > 0.0
+    assert all(row["x native 10"] == 1.0 for row in rows if row["stepper"] == "native 10")
+    shown = piles.summary([{**row, "N": piles.COUNTS[0]} for row in rows])
+    assert [row["kind"] for row in shown] == list(piles.KINDS)
+
+
+def test_depths_of_piles_are_seen() -> None:
+    space = pymunk.Space()
+    for x in (0.0, 0.8, 3.0):
+        body = pymunk.Body(1.0, 1.0)
+        body.position = (x, 0.0)
+        space.add(body, pymunk.Circle(body, piles.R))
+    assert piles.deepest(space) == pytest.approx(0.2 / piles.R)
+
+
+def test_lasting_contacts_are_exact_and_pymunks_fall_with_dt() -> None:
+    points = []
+    for problem in pile_precision.problems()[:3]:
+        found, _ = pile_precision.measure(problem, steps=(1 / 30, 1 / 60, 1 / 120))
+        assert max(p.error for p in found if p.stepper == "EECA") < 1e-9
+        assert min(p.error for p in found if p.stepper == "native 10") > 1e-5
+        points += found
+    slopes = {r["problem"]: r["slope in dt"] for r in pile_precision.slopes(points) if r["stepper"] == "native 10"}
+    assert 0.5 < float(slopes["column that lands"] or 0.0) < 1.5

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from dataclasses import fields
 from pathlib import Path
 
 import numpy as np
+import pymunk
 import pytest
 
 import eeca_pymunk as ep
@@ -40,8 +42,6 @@ def test_bad_arguments(duration: float, dt: float, every: int) -> None:
 
 
 def test_measure_counts_rotation_gravity_and_offset_mass() -> None:
-    import pymunk
-
     space = pymunk.Space()
     space.gravity = (0.0, -10.0)
     body = pymunk.Body(2.0, 3.0)
@@ -53,3 +53,61 @@ def test_measure_counts_rotation_gravity_and_offset_mass() -> None:
     assert found.potential == pytest.approx(2 * 10 * 1.5)
     assert found.linear_momentum == pytest.approx((6.0, 0.0))
     assert found.angular_momentum == pytest.approx(-1.5 * 6 + 3 * 2)
+
+
+def lossy() -> pymunk.Space:
+    """A disk thrown onto a floor that runs like a belt: bounces, friction, external work."""
+    space = pymunk.Space()
+    space.gravity = (0.0, -10.0)
+    floor = pymunk.Segment(space.static_body, (-50.0, 0.0), (50.0, 0.0), 0.0)
+    floor.elasticity, floor.friction, floor.surface_velocity = 0.5, 1.0, (3.0, 0.0)
+    body = pymunk.Body(1.0, 0.125)
+    body.position = (0.0, 1.5)
+    disk = pymunk.Circle(body, 0.5)
+    disk.elasticity, disk.friction = 1.0, 0.3
+    space.add(floor, body, disk)
+    return space
+
+
+def test_ledger_of_a_recording_is_the_sum_of_the_steps(tmp_path: Path) -> None:
+    recording = ep.record(ep.EECA(lossy()), 2.0, 1 / 60, every=3)
+    stepper = ep.EECA(lossy())
+    ledgers = [stepper.step(1 / 60).ledger for _ in range(120)]
+    assert recording.ledger.kept
+    for f in fields(ep.Ledger):
+        sums = np.cumsum([0.0] + [getattr(one, f.name) for one in ledgers])[::3]
+        np.testing.assert_allclose(getattr(recording.ledger, f.name), sums, rtol=0.0, atol=1e-14)
+    held = recording.ledger
+    np.testing.assert_allclose(held.change, recording.energy - recording.energy[0], rtol=0.0, atol=1e-12)
+    given = held.external - held.restitution - held.friction - held.damping
+    np.testing.assert_allclose(held.change, given + held.residual, rtol=0.0, atol=1e-13)
+    assert held.restitution[-1] > 1.0
+    assert held.friction[-1] > 0.1
+    assert held.external[-1] != 0.0
+    np.testing.assert_allclose(
+        recording.kinetic, recording.energy - 10.0 * recording.position[:, 0, 1], rtol=0.0, atol=1e-12
+    )
+    recording.save(tmp_path / "run.npz")
+    again = ep.Recording.load(tmp_path / "run.npz")
+    for f in fields(ep.Ledger):
+        np.testing.assert_array_equal(getattr(again.ledger, f.name), getattr(held, f.name))
+    np.testing.assert_array_equal(again.kinetic, recording.kinetic)
+
+
+def test_a_stepper_without_ledger_has_none(tmp_path: Path) -> None:
+    recording = ep.record(ep.Native(lossy()), 0.1, 1 / 60)
+    assert not recording.ledger.kept
+    assert recording.ledger.friction.shape == recording.time.shape
+    assert np.isnan(recording.ledger.friction[1:]).all()
+    recording.save(tmp_path / "run.npz")
+    assert np.isnan(ep.Recording.load(tmp_path / "run.npz").ledger.change[1:]).all()
+
+
+def test_files_of_older_versions_have_no_ledger(tmp_path: Path) -> None:
+    ep.record(ep.EECA(lossy()), 0.1, 1 / 60).save(tmp_path / "run.npz")
+    with np.load(tmp_path / "run.npz") as data:
+        old = {name: data[name] for name in data.files if name != "kinetic" and not name.startswith("ledger.")}
+    np.savez(tmp_path / "old.npz", **old)
+    again = ep.Recording.load(tmp_path / "old.npz")
+    assert not again.ledger.kept
+    assert again.kinetic.shape == again.time.shape

@@ -12,15 +12,18 @@ from pathlib import Path
 import numpy as np
 import pymunk
 import pytest
+from matplotlib.colors import to_rgb
 from PIL import Image
 
 import eeca_pymunk as ep
 import scenes
 from comparisons.__main__ import main
 from eeca_pymunk import render
-from eeca_pymunk.render import encode, film
+from eeca_pymunk.render import encode, film, traces
 from eeca_pymunk.render.drawing import MOVING
 from eeca_pymunk.space.outlines import Outlines
+
+from .test_recording import lossy
 
 BLUE = tuple(int(MOVING[i : i + 2], 16) for i in (1, 3, 5))
 
@@ -271,3 +274,29 @@ def test_snapshot_draws_impulses_as_pairs_of_arrows_at_their_points() -> None:
     up, down = drawn.collections[-2:]
     np.testing.assert_allclose(up.get_offsets(), report.contacts.point, atol=1e-12)
     assert up.V[0] == -down.V[0] != 0.0  # type: ignore[attr-defined]
+
+
+def test_a_ledger_is_stacked_up_to_the_start_and_what_came_from_outside() -> None:
+    space = lossy()
+    recording = ep.record(ep.EECA(space), 1.5, 1 / 60)
+    made = film.Film([recording, ep.record(ep.Native(lossy()), 1.5, 1 / 60)], frames=3)
+    last = list(made.images())[-1]
+    stack, lines = (panel.trace for panel in made.panels)
+    assert isinstance(stack, traces.Stack)
+    assert isinstance(lines, traces.Lines)
+    assert [layer.get_label() for layer in stack.layers] == ["kinetic", "potential", "bounces", "friction"]
+    start = recording.energy[0]
+    np.testing.assert_allclose(stack.given, 1.0 + recording.ledger.external / start, atol=1e-14)
+    np.testing.assert_allclose(stack.levels[-1][1], stack.given, atol=1e-12)
+    np.testing.assert_allclose(stack.levels[1][1], recording.energy / start, atol=1e-14)
+    # Its colours are in the picture, where its axes are.
+    for k in (1, 2):
+        low, high = (level[-2] for level in stack.levels[k])
+        x, y = stack.ax.transData.transform((recording.time[-2], 0.5 * (low + high)))
+        expected = np.array(to_rgb(stack.layers[k].get_facecolor())) * 255
+        assert np.abs(last[last.shape[0] - 1 - round(y), round(x)] - expected).max() <= 3
+
+
+def test_a_ledger_that_tells_of_nothing_is_not_stacked(recording: ep.Recording) -> None:
+    assert recording.ledger.kept
+    assert isinstance(film.Film(recording).panels[0].trace, traces.Lines)

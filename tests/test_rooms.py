@@ -29,7 +29,7 @@ FLOORS = (
     "stepper",
     "packed_stepper",
     "eeca baselines",
-    "recording",
+    "recording warming",
     "render",
     "__init__",
 )

@@ -1,4 +1,4 @@
-"""Films: recordings side by side on one clock, with traces of energy and momentum."""
+"""Films: recordings side by side on one clock, with traces of energy and momentum, or of the ledger."""
 
 from __future__ import annotations
 
@@ -19,17 +19,16 @@ from eeca_pymunk.arrays import FloatArray
 from eeca_pymunk.files import check_writable, whole_file
 from eeca_pymunk.recording import Recording
 
-from .drawing import ARROW, MOVING, Drawing, bounds
+from .drawing import MOVING, Drawing, bounds
 from .encode import check_encoder, encoder, html_player
 from .pictures import ARROWS, View, arrows, figure, frame
+from .traces import FONT, Trace, readable, trace
 
 Image = npt.NDArray[np.uint8]  # (height, width, 3)
 Exact = Callable[[float], FloatArray | None]
 _MOST = 4  # panels
-_CEILING = 4.0  # of the traces, relative to the start: what gains more runs out of them
 _PREVIEW = 60  # frames of a notebook's player
 _TRAILED = 5  # bodies of which the paths are drawn too: of more they hide the picture
-_FONT = 12  # points: readable at half size too
 
 
 def animate(
@@ -48,7 +47,8 @@ def animate(
     """Write a film of one to four recordings side by side; `.gif`, `.mp4` or `.html` by suffix.
 
     All panels have one scale and one clock: a frame shows of each recording the moment nearest to its time. Below each
-    run the energy relative to the start and the size of the momentum relative to its largest.
+    run the energy relative to the start and the size of the momentum relative to its largest; of a run whose ledger
+    tells of losses or external work, the energies it has and has lost, stacked (`traces.py`).
 
     Args:
         recordings: what to show.  titles: of the panels; stepper and dt if None.
@@ -117,15 +117,15 @@ class Film:
         pixels = [2 * round(0.5 * dpi * inches) for inches in (4.0 * len(shown), tall)]
         self.figure = figure(pixels[0] / dpi, pixels[1] / dpi, dpi)
         axes = self.figure.subplots(2, len(shown), squeeze=False, height_ratios=(tall - 1.6, 1.2))
-        traces = [_Trace(ax, r) for ax, r in zip(axes[1], shown, strict=True)]
+        traces = [trace(ax, r) for ax, r in zip(axes[1], shown, strict=True)]
         top = max(t.top for t in traces)
-        for trace in traces:
-            trace.ax.set(xlim=(0.0, end or 1.0), ylim=(-0.05 * top, 1.1 * top))
+        for one in traces:
+            one.ax.set(xlim=(0.0, end or 1.0), ylim=(-0.05 * top, 1.1 * top))
         self.panels = [
             _Panel(axes[0, k], r, traces[k], title, view, exact, arrow)
             for k, (r, title) in enumerate(zip(shown, titles, strict=True))
         ]
-        self.clock = self.figure.suptitle("t = 0", fontsize=_FONT + 1)
+        self.clock = self.figure.suptitle("t = 0", fontsize=FONT + 1)
 
     def __len__(self) -> int:
         return len(self.times)
@@ -156,12 +156,12 @@ class _Panel:
     """The bodies of one recording, with the exact solution as a ghost and arrows where they are wanted."""
 
     def __init__(
-        self, ax: Axes, recording: Recording, trace: _Trace, title: str, view: View, exact: Exact | None,
+        self, ax: Axes, recording: Recording, trace: Trace, title: str, view: View, exact: Exact | None,
         arrow: str | None,
     ) -> None:  # fmt: skip
         self.ax, self.recording, self.trace = ax, recording, trace
         frame(ax, view, title)
-        _readable(ax)
+        readable(ax)
         self.drawing = Drawing(ax, recording.outlines)
         self.moving = self.drawing.artists
         self.trails: list[Line2D] = []
@@ -195,36 +195,6 @@ class _Panel:
         for k, trail in enumerate(self.trails):
             trail.set_data(*self.recording.position[: i + 1, k].T)
         self.trace.show(i)
-
-
-class _Trace:
-    """Energy and momentum of a recording up to the moment shown. `top` is the largest value to show."""
-
-    def __init__(self, ax: Axes, recording: Recording) -> None:
-        self.ax, self.time = ax, recording.time
-        size = np.linalg.norm(recording.momentum, axis=1)
-        start = abs(float(recording.energy[0])) or float(np.abs(recording.energy).max()) or 1.0
-        self.values = (recording.energy / start, size / (float(size.max()) or 1.0))
-        self.top = min(max(1.0, float(np.nanmax(self.values[0]))), _CEILING)
-        (energy,) = ax.plot([], [], color="black", linewidth=2, label="E / E(0)")
-        (momentum,) = ax.plot([], [], color=ARROW, linewidth=1.2, linestyle="--", label="|p| / max |p|")
-        self.moving = [energy, momentum]
-        _readable(ax)
-        ax.set_xlabel("time (s)", fontsize=_FONT)
-        ax.legend(
-            loc="lower left", bbox_to_anchor=(-0.05, 0.98), ncol=2, fontsize=_FONT, frameon=False, borderpad=0.0,
-            handlelength=1.5, columnspacing=1.0,
-        )  # fmt: skip
-
-    def show(self, i: int) -> None:
-        for line, value in zip(self.moving, self.values, strict=True):
-            line.set_data(self.time[: i + 1], value[: i + 1])
-
-
-def _readable(ax: Axes) -> None:
-    ax.tick_params(labelsize=_FONT)
-    ax.title.set_fontsize(_FONT + 1)
-    ax.locator_params(nbins=5)
 
 
 def _title(recording: Recording) -> str:

@@ -1,0 +1,71 @@
+"""Compiling: everything at a warmup, nothing more afterwards, and the package without numba."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+import eeca_pymunk as ep
+from eeca_pymunk import compiled
+
+STEP = """
+import sys, warnings
+{hide}
+with warnings.catch_warnings(record=True) as caught:
+    warnings.simplefilter("always")
+    import eeca_pymunk as ep
+    assert "numba" not in sys.modules or sys.modules["numba"] is None, "numba was imported with the package"
+    assert not caught, caught[0].message
+    from eeca_pymunk.space.sample import sample
+    for kind in ("disks", "boxes"):
+        space = sample(kind)
+        stepper = ep.EECA(space)
+        contacts = sum(len(stepper.step(0.02).contacts) for _ in range(3))
+        assert contacts > 0
+        print([tuple(b.position) for b in space.bodies])
+print([str(w.message) for w in caught])
+"""
+
+
+def run(code: str) -> list[str]:
+    return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.splitlines()
+
+
+def test_without_numba_one_warning_and_the_same_motion() -> None:
+    *places, warned = run(STEP.format(hide='sys.modules["numba"] = None'))
+    assert warned.startswith("['numba is not installed: eeca_pymunk runs as plain Python")
+    assert warned.count("numba is not installed") == 1
+    *compiled_places, silence = run(STEP.format(hide=""))
+    assert silence == "[]"
+    for line, other in zip(places, compiled_places, strict=True):
+        for one, two in zip(eval(line), eval(other), strict=True):
+            assert one == pytest.approx(two, rel=1e-12, abs=1e-12)
+
+
+def test_warmup_compiles_everything() -> None:
+    code = """
+import eeca_pymunk as ep, scenes
+from eeca_pymunk import compiled
+import pymunk
+seconds = ep.warmup()
+assert seconds > 0.0
+before = compiled.compilations()
+spaces = [scenes.build("gas", count=n).space for n in (3, 40)] + [scenes.build("mixed", bowl=True).space]
+spaces.append(scenes.build("colours").space)
+for space in spaces:
+    for shape in list(space.shapes)[::2]:
+        shape.elasticity = 0.5
+    for _ in range(10):
+        ep.EECA(space).step(0.01)
+print(compiled.disabled() or compiled.compiler() is None, before, compiled.compilations())
+"""
+    off, before, after = run(code)[-1].split()
+    assert before == after
+    assert off == "True" or int(before) > 20
+
+
+def test_a_warmup_touches_no_space_of_the_caller() -> None:
+    assert ep.warmup() > 0.0
+    assert compiled.compilations() >= 0
