@@ -162,15 +162,18 @@ def approach(
         SHAPE, LINK, VERTEX, WORK, a, BODY[i, X], BODY[i, Y], BODY[i, ANGLE],
         b, BODY[j, X] + BODY[j, VX] * h, BODY[j, Y] + BODY[j, VY] * h, BODY[j, ANGLE] + BODY[j, SPIN] * h,
     )  # fmt: skip
-    xi, yi, xj, yj = px - BODY[i, X], py - BODY[i, Y], px - BODY[j, X] - BODY[j, VX] * h, py - BODY[j, Y] - BODY[j, VY] * h
+    xi, yi, xj, yj = (
+        px - BODY[i, X],
+        py - BODY[i, Y],
+        px - BODY[j, X] - BODY[j, VX] * h,
+        py - BODY[j, Y] - BODY[j, VY] * h,
+    )
     arm_i, arm_j = xi * ny - yi * nx, xj * ny - yj * nx
     u = nx * (BODY[j, VX] - BODY[i, VX]) + ny * (BODY[j, VY] - BODY[i, VY])
     u += arm_j * BODY[j, SPIN] - arm_i * BODY[i, SPIN]
     closing = nx * (PULL[i, 0] - PULL[j, 0]) + ny * (PULL[i, 1] - PULL[j, 1])
     closing += arm_i * PULL[i, 2] - arm_j * PULL[j, 2]
-    mass = 1.0 / (
-        BODY[i, IM] + BODY[j, IM] + BODY[i, II] * arm_i * arm_i + BODY[j, II] * arm_j * arm_j
-    )
+    mass = 1.0 / (BODY[i, IM] + BODY[j, IM] + BODY[i, II] * arm_i * arm_i + BODY[j, II] * arm_j * arm_j)
     return g, u, closing, mass
 
 
@@ -341,7 +344,10 @@ def pairs_of(A: Scene, root: int, t: float, lossy: bool, LOCAL: IntArray, MINE: 
                     if not rests(A, s, o, t, False):
                         continue
                 elif g > TOUCH * small and not busy:
-                    press = max(closing, remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], s, o, A.PAR[STAMP] - 1.0)[1] / mass) * h
+                    press = (
+                        max(closing, remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], s, o, A.PAR[STAMP] - 1.0)[1] / mass)
+                        * h
+                    )
                     if not -e * min(u, 0.0) < 0.5 * press:
                         continue
                 if p == found.shape[0]:
@@ -543,5 +549,3 @@ def solve(A: Scene, root: int, t: float) -> int:
             A.PUSHED_BY[first + z, ROOT] = head
         COUNT[PUSHES] += m
     return DONE
-
-

@@ -17,9 +17,9 @@ from ..layout import ANGLE, AX, AY, EXTENT, IM, OWNER, SIZE, SPIN, TWIST, VX, VY
 from ..pairs.candidates import cover
 from ..pairs.layout import NUMBER, START
 from ..pairs.lists import mark_pair
+from ..pairs.rules import barred
 from ..transfer import EVENTS as SOME
 from ..transfer import give, take
-from .forecast import barred
 from .islands import TOUCH, approach, solve, unite, way_of
 from .layout import (
     DONE,
