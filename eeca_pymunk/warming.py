@@ -9,7 +9,7 @@ from .closures.midstep import Midstep
 from .closures.time_of_impact import TimeOfImpact
 from .compiled import compiler
 from .eeca import EECA, Closure
-from .impacts.islands import flag_again
+from .impacts.booking import flag_again
 from .impacts.scene import EventLoop
 from .space.sample import sample
 

@@ -22,7 +22,8 @@ from ..rows.build import normal_rate, place_row
 from ..rows.layout import ELASTICITY as ELASTIC
 from ..rows.layout import K_N, NX, NY, ROW_COLUMNS
 from ..sustained.ledger import carried
-from .islands import end_span, members, remembered, solve, unite
+from .booking import end_span
+from .islands import members, remembered, unite
 from .layout import (
     BLOCKS,
     DONE,
@@ -50,6 +51,7 @@ from .layout import (
     BODIES as SIZE_OF,
 )
 from .settle import spread
+from .spans import solve
 from .strike import move_to, note, touches
 
 _FACES = 16.0  # times the tolerance of touching, by which the ends of parallel faces may differ

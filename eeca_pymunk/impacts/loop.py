@@ -13,9 +13,10 @@ from ..layout import DUE, IM, OWNER
 from ..pairs.grid import renew
 from ..pairs.lists import mark_pair
 from .block import arrive, strike
+from .booking import end_span
 from .forecast import has_left, predict
 from .heap import pop, push, sweep_out
-from .islands import end_span, members, solve
+from .islands import members
 from .layout import (
     BLOCK_DUE,
     DONE,
@@ -45,6 +46,7 @@ from .layout import (
     Scene,
 )  # fmt: skip
 from .settle import comes_to_rest, ignored
+from .spans import solve
 from .strike import alone, strike_disk
 
 _SQUEEZED = 50  # impacts of a body in a step, from which those with a kinematic one are left out: walls may close in

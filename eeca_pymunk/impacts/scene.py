@@ -18,7 +18,7 @@ from ..report import Details, of_events
 from ..sustained.memory import FORCE_COLUMNS, forget
 from ..sustained.relax import FRESH
 from ..transfer import FORCES
-from .islands import flag_again
+from .booking import flag_again
 from .layout import (
     AFTER,
     BLOCKS,

@@ -18,7 +18,8 @@ from ..layout import BOUND, DUE, EXTENT, IM, OWNER, SINCE, SIZE, SPIN, VX, VY
 from ..pairs.layout import NUMBER, START
 from ..pairs.lists import centre
 from ..pairs.rules import barred, law
-from .islands import TOUCH, approach, end_span, members, rests, solve, unite
+from .booking import end_span
+from .islands import TOUCH, approach, members, rests, unite
 from .layout import (
     BODIES,
     BUSY,
@@ -40,6 +41,7 @@ from .layout import (
     SHAPES,
     Scene,
 )  # fmt: skip
+from .spans import solve
 from .strike import move_to
 
 _OFTEN, _VERY_OFTEN = 16, 64  # impacts of a body in a step after which a lossy contact rests; a slow elastic one

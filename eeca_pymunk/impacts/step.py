@@ -34,7 +34,7 @@ from ..layout import (
 )
 from ..transfer import EVENTS as SOME
 from ..transfer import give, take
-from .islands import book, lift_out
+from .booking import book, lift_out
 from .layout import (
     AFTER,
     BEFORE,

@@ -140,7 +140,7 @@ def strike_disk(A: Scene, i: int, o: int, t: float) -> None:
         nx, ny = nx / d, ny / d
         px, py = x + BODY[i, EXTENT] * nx, y + BODY[i, EXTENT] * ny
     else:
-        g, nx, ny, px, py = gap_at(
+        _, nx, ny, px, py = gap_at(
             A.SHAPE, A.LINK, A.VERTEX, A.WORK, i, x, y, BODY[i, ANGLE], o, BODY[j, X], BODY[j, Y], BODY[j, ANGLE]
         )
     e, mu, sx, sy = law(A.SHAPE, A.RULE, i, o)

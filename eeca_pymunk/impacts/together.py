@@ -20,7 +20,8 @@ from ..pairs.lists import mark_pair
 from ..pairs.rules import barred
 from ..transfer import EVENTS as SOME
 from ..transfer import give, take
-from .islands import TOUCH, approach, solve, unite, way_of
+from .coming import way_of
+from .islands import TOUCH, approach, unite
 from .layout import (
     DONE,
     DT,
@@ -39,6 +40,7 @@ from .layout import (
     TOGETHER,
     Scene,
 )
+from .spans import solve
 from .step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, begin, close
 
 _PASSES = 3  # further solves for bodies that impulses send into others

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..arrays import FlagArray, FloatArray, IntArray, PoolArray
 from ..layout import BOUND, COUNT, FIRST, OWNER, ROUNDING
-from .grid import build, wall_grid
+from .grid import build
 from .layout import (
     CELL_COLUMNS,
     CELL_LENGTH,
@@ -26,6 +26,7 @@ from .layout import (
     WALL_X,
     WALL_Y,
 )  # fmt: skip
+from .walls import wall_grid
 
 EVERYBODY = 16  # shapes that move up to which each is in the list of every other one
 _NEIGHBOURS = 8.0  # that a list is to hold: the least cost over packings from .05 to .65

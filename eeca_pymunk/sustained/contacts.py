@@ -28,7 +28,8 @@ PAIR_COLUMNS = 4  # PAIRS: shape a, shape b, and their local bodies
 
 @uncounted
 def gather(
-    PAIRS: IntArray, p: int, SHAPE: FloatArray, RULE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray, POSE: FloatArray,
+    PAIRS: IntArray, p: int, SHAPE: FloatArray, RULE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray,
+    POSE: FloatArray,
     MIDDLE: FloatArray, V: FloatArray, REACH: FloatArray, EXTENT: FloatArray, IM: FloatArray, II: FloatArray, h: float,
     A: IntArray, B: IntArray, ROWS: FloatArray, KEY: IntArray, NOW: FloatArray, THEN: FloatArray,
 ) -> int:  # fmt: skip

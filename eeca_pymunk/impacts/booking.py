@@ -1,0 +1,129 @@
+"""The end of an island's span: its works up to there are booked, exactly, as forces are constant and velocities linear.
+
+Forces of a span that was cut may have given energy (a soft landing pushes before it touches): that is owed, and taken
+out by what follows.
+"""
+
+from __future__ import annotations
+
+from ..compiled import uncounted
+from ..layout import (
+    II,
+    IM,
+    SPIN,
+    VX,
+    X,
+)
+from ..pairs.lists import mark_pair
+from .layout import (
+    AFTER_ME,
+    BETA,
+    DT,
+    ENDED,
+    EXTERNAL,
+    FRICTIONAL,
+    LAM,
+    LASTED,
+    LEDGER,
+    LIFT,
+    LOGGED,
+    LOST,
+    PUSH_A,
+    PUSH_B,
+    PUSH_CHANGE,
+    PUSH_NX,
+    PUSH_NY,
+    PUSH_X,
+    PUSH_Y,
+    PUSHES,
+    RESTITUTION,
+    ROOT,
+    SPAN,
+    SPAN_FROM,
+    UN_AFTER,
+    UN_BEFORE,
+    UT_AFTER,
+    UT_BEFORE,
+    WORK_OF,
+    Scene,
+)  # fmt: skip
+from .strike import move_to, note
+
+
+@uncounted
+def flag_again(A: Scene) -> None:
+    """Flag the pairs of all spans, in lists that were made anew."""
+    for c in range(A.COUNT[PUSHES]):
+        if A.PUSHED_BY[c, ROOT] >= 0:
+            a, b = A.PUSHED_BY[c, PUSH_A], A.PUSHED_BY[c, PUSH_B]
+            mark_pair(A.LIST, A.POOL, A.FLAG, A.LIST.shape[0], a, b, 1)
+
+
+@uncounted
+def book(A: Scene, c: int, t: float) -> None:
+    """Book what contact number c has done in its span until instant t, note its impulse, and end it.
+
+    Velocities go linearly through a span, so that after the part f of it D_n = -f lam (u_n + f (u_n+ - u_n) / 2). What
+    a contact's friction gives back counts against its restitution, and the other way round.
+    """
+    PAR, COUNT, R = A.PAR, A.COUNT, A.PUSHED[c]
+    root, a, b = A.PUSHED_BY[c, ROOT], A.PUSHED_BY[c, PUSH_A], A.PUSHED_BY[c, PUSH_B]
+    A.PUSHED_BY[c, ROOT] = LASTED if t == PAR[DT] else ENDED
+    mark_pair(A.LIST, A.POOL, A.FLAG, A.LIST.shape[0], a, b, 0)
+    f = (t - R[SPAN_FROM]) / R[SPAN]
+    if f <= 0.0 or (R[LAM] == 0.0 and R[BETA] == 0.0):
+        return
+    normal = -f * R[LAM] * (R[UN_BEFORE] + 0.5 * f * (R[UN_AFTER] - R[UN_BEFORE]))
+    tangential = -f * R[BETA] * (R[UT_BEFORE] + 0.5 * f * (R[UT_AFTER] - R[UT_BEFORE]))
+    both = normal + tangential
+    if normal < 0.0:
+        normal, tangential = min(both, 0.0), max(both, 0.0)
+    elif tangential < 0.0:
+        normal, tangential = both, 0.0
+    PAR[LEDGER + RESTITUTION] += normal
+    PAR[LEDGER + FRICTIONAL] += tangential
+    PAR[LEDGER + EXTERNAL] += f * R[WORK_OF]
+    A.RESTING[root, LOST] += both
+    if COUNT[LOGGED] < A.LOG.shape[0]:
+        note(
+            A.LOG, COUNT[LOGGED], a, b, R[SPAN_FROM] + 0.5 * f * R[SPAN], f * R[LAM], f * R[BETA], R[PUSH_NX],
+            R[PUSH_NY], R[PUSH_X], R[PUSH_Y], f * R[PUSH_CHANGE],
+        )  # fmt: skip
+        COUNT[LOGGED] += 1
+
+
+@uncounted
+def end_span(A: Scene, root: int, t: float) -> None:
+    """End the span of an island at instant t: book its contacts, and bring its bodies there."""
+    for c in range(A.COUNT[PUSHES]):
+        if A.PUSHED_BY[c, ROOT] == root:
+            book(A, c, t)
+    i = root
+    while i >= 0:
+        move_to(A.BODY, i, t)
+        i = A.MEMBER[i, AFTER_ME]
+
+
+@uncounted
+def lift_out(A: Scene, root: int, end: float) -> None:
+    """Lift the bodies of an island, at the end of its span, out of each other; the losses pay what that costs beyond
+    the work of forces: the change of kinetic energy, less m a.D + I alpha dtheta for displacements D."""
+    PAR, BODY, PULL, JUMP = A.PAR, A.BODY, A.PULL, A.RESTING
+    spent = 0.0
+    i = root
+    while i >= 0:
+        move_to(BODY, i, end)
+        linear = PULL[i, 0] * JUMP[i, LIFT] + PULL[i, 1] * JUMP[i, LIFT + 1]
+        for c in range(2):
+            linear -= JUMP[i, LIFT + 3 + c] * (BODY[i, VX + c] + 0.5 * JUMP[i, LIFT + 3 + c])
+        spent -= linear / BODY[i, IM]
+        if BODY[i, II] > 0.0:
+            turning = JUMP[i, LIFT + 5] * (BODY[i, SPIN] + 0.5 * JUMP[i, LIFT + 5])
+            spent += (turning - PULL[i, 2] * JUMP[i, LIFT + 2]) / BODY[i, II]
+        for c in range(6):
+            BODY[i, X + c] += JUMP[i, LIFT + c]
+        i = A.MEMBER[i, AFTER_ME]
+    PAR[LEDGER + RESTITUTION] -= spent
+    if PAR[LEDGER + RESTITUTION] < 0.0 and PAR[LEDGER + FRICTIONAL] > 0.0:
+        PAR[LEDGER + FRICTIONAL] += PAR[LEDGER + RESTITUTION]
+        PAR[LEDGER + RESTITUTION] = 0.0

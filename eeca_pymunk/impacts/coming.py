@@ -1,0 +1,168 @@
+"""Which pairs of an island its span takes over, and how long the span is."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import kernel, uncounted
+from ..layout import (
+    BOUND,
+    EXTENT,
+    IM,
+    OWNER,
+    ROUNDING,
+    SIZE,
+    SPIN,
+    VX,
+    VY,
+)
+from ..layout import COUNT as COUNT_OF
+from ..pairs.layout import NUMBER, START
+from ..pairs.lists import centre
+from ..pairs.rules import barred, law
+from ..rows.build import tangent_rate
+from ..rows.layout import FRICTION, K_T, UT
+from .islands import TOUCH, approach, remembered, rests
+from .layout import (
+    BUSY,
+    DT,
+    FIRST_SHAPE,
+    ISLAND,
+    PULLED,
+    SHAPES,
+    SPEED,
+    STAMP,
+    TOGETHER,
+    Scene,
+)  # fmt: skip
+
+_TURN = 0.1  # rad
+PARTS = 64.0  # of a step, that a span is at least
+_FEW = 12  # contacts
+_STICKS = 1e-6  # relative to the friction there can be, and to the slip, below which there is none
+
+
+@uncounted
+def way_of(A: Scene, i: int, h: float) -> float:
+    """How far points of body i may come in h, with some room, where all contacts act together."""
+    pulled = 0.5 * A.PAR[PULLED] * h if A.BODY[i, IM] > 0.0 else 0.0
+    return 1.1 * (A.RESTING[i, SPEED] + pulled) * h
+
+
+@kernel
+def pairs_of(A: Scene, root: int, t: float, lossy: bool, LOCAL: IntArray, MINE: IntArray, n: int) -> IntArray:
+    """(p, 2) pairs of shapes of an island, whose n bodies are MINE, that its solve takes over: what touches, and what
+    will rest within the span; where it is busy all that comes near. All others meet at their times of impact, unless
+    all contacts act together."""
+    found = np.empty((4 * n + 8, 2), np.int64)
+    p = 0
+    BODY, LINK, STATE = A.BODY, A.LINK, A.STATE
+    h = A.PAR[DT] - t
+    together = A.COUNT[TOGETHER] > 0
+    for q in range(n):
+        i = MINE[q]
+        for s in range(STATE[i, FIRST_SHAPE], STATE[i, FIRST_SHAPE] + STATE[i, SHAPES]):
+            for w in range(A.LIST[s, START], A.LIST[s, START] + A.LIST[s, NUMBER]):
+                o = int(A.POOL[w])
+                j = LINK[o, OWNER]
+                if BODY[j, IM] > 0.0 and (STATE[j, ISLAND] != root or j < i):
+                    continue
+                if barred(A.RULE, s, o):
+                    continue
+                small = min(A.SHAPE[s, SIZE], A.SHAPE[o, SIZE])
+                busy = A.MEMBER[i, BUSY] > 0 or A.MEMBER[j, BUSY] > 0
+                speed = math.hypot(BODY[i, VX], BODY[i, VY]) + math.hypot(BODY[j, VX], BODY[j, VY])
+                speed += abs(BODY[i, SPIN]) * BODY[i, EXTENT] + abs(BODY[j, SPIN]) * BODY[j, EXTENT]
+                reach = 1.1 * (speed * h + A.PAR[PULLED] * h * h) + TOUCH * small
+                if together:
+                    reach = way_of(A, i, h) + way_of(A, j, h) + TOUCH * small
+                if o < A.LIST.shape[0]:
+                    ax, ay = centre(BODY, A.SHAPE, LINK, s, t)
+                    bx, by = centre(BODY, A.SHAPE, LINK, o, t)
+                    apart = A.SHAPE[s, BOUND] + A.SHAPE[o, BOUND] + reach
+                    if (bx - ax) * (bx - ax) + (by - ay) * (by - ay) > apart * apart:
+                        continue
+                g, u, closing, mass = approach(A.BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, A.PULL, s, o, t)
+                if not busy and not together:
+                    reach = 1.1 * (max(-u, 0.0) * h + A.PAR[PULLED] * h * h) + TOUCH * small
+                if g > reach:
+                    continue
+                e = law(A.SHAPE, A.RULE, s, o)[0]
+                if together:
+                    pass
+                elif e >= 1.0 and not lossy:
+                    if not rests(A, s, o, t, False):
+                        continue
+                elif g > TOUCH * small and not busy:
+                    press = (
+                        max(closing, remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], s, o, A.PAR[STAMP] - 1.0)[1] / mass)
+                        * h
+                    )
+                    if not -e * min(u, 0.0) < 0.5 * press:
+                        continue
+                if p == found.shape[0]:
+                    more = np.empty((2 * p, 2), np.int64)
+                    more[:p] = found
+                    found = more
+                found[p, 0], found[p, 1] = s, o
+                p += 1
+    return found[:p]
+
+
+@uncounted
+def span_of(A: Scene, found: IntArray, t: float) -> float:
+    """Length of a span that begins at instant t: to the end of the step, or until a normal may have turned by _TURN; of
+    islands of few contacts, as every span costs a solve. Normals turn with shapes that are not round, and as round
+    ones go round one another."""
+    BODY, LINK = A.BODY, A.LINK
+    h = A.PAR[DT] - t
+    if found.shape[0] > _FEW or A.COUNT[TOGETHER] > 0:
+        return h
+    rate = 0.0
+    for c in range(found.shape[0]):
+        a, b = found[c, 0], found[c, 1]
+        i, j = LINK[a, OWNER], LINK[b, OWNER]
+        for s in (a, b):
+            if LINK[s, COUNT_OF] > 1:
+                rate = max(rate, abs(BODY[LINK[s, OWNER], SPIN]))
+        if LINK[a, COUNT_OF] == 1 and LINK[b, COUNT_OF] == 1:
+            speed = math.hypot(BODY[j, VX] - BODY[i, VX], BODY[j, VY] - BODY[i, VY])
+            rate = max(rate, speed / max(A.SHAPE[a, ROUNDING] + A.SHAPE[b, ROUNDING], 1e-300))
+    if rate * h <= _TURN:
+        return h
+    return max(_TURN / rate, A.PAR[DT] / PARTS)
+
+
+@kernel
+def stick_time(
+    P: IntArray, Q: IntArray, ROWS: FloatArray, L: FloatArray, FREE: FloatArray, VN: FloatArray, m: int, h: float
+) -> float:
+    """When, within a span h of few contacts, those that slip come to stick; h if none does.
+
+    The solve ends their slip u_t with frictions beta, which change it by F, beside a_t h by other forces. Full friction
+    changes it by F sum mu lam / sum |beta| (single ones of a body's contacts are not unique): so fast the slip is over
+    after h |u_t| / (|F| sum mu lam / sum |beta| - a_t h).
+    """
+    if m > _FEW:
+        return h
+    limit, beta, slip, others = 0.0, 0.0, 0.0, 0.0
+    for z in range(m):
+        most = ROWS[z, FRICTION] * L[z, 0]
+        before = abs(ROWS[z, UT])
+        # What sticks all along has no slip but round-off before.
+        if most == 0.0 or before <= _STICKS * most / ROWS[z, K_T]:
+            continue
+        if abs(tangent_rate(P, Q, ROWS, VN, z)) > _STICKS * before:
+            continue
+        sign = 1.0 if ROWS[z, UT] > 0.0 else -1.0
+        limit += most
+        beta -= sign * L[z, 1]
+        if before > slip:
+            slip, others = before, sign * (tangent_rate(P, Q, ROWS, FREE, z) - ROWS[z, UT])
+    if beta <= _STICKS * limit or beta >= (1.0 - _STICKS) * limit:
+        return h
+    rate = (slip + others) * limit / beta - others
+    return h * slip / rate if rate > slip else h

@@ -1,0 +1,213 @@
+"""The span of an island: from an instant on its bodies follow parabolas, on which others may hit it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..compiled import kernel
+from ..layout import (
+    AX,
+    AY,
+    ELASTICITY,
+    EXTENT,
+    II,
+    IM,
+    OWNER,
+    SINCE,
+    SPIN,
+    TWIST,
+    VX,
+    VY,
+    X,
+)
+from ..pairs.lists import mark_pair
+from ..rows.build import normal_rate, tangent_rate
+from ..rows.layout import ARM_NA, ARM_TA, K_N, NX, NY, ROW_COLUMNS, UN, UT
+from ..sustained.ledger import LEDGER_SIZE, carried
+from ..sustained.step import LOCK as LOCK_OF
+from ..sustained.step import OUT_SIZE, step_island
+from ..sustained.step import POLISHES as POLISHES_OF
+from ..sustained.step import SWEEPS as SWEEPS_OF
+from .coming import PARTS, pairs_of, span_of, stick_time, way_of
+from .islands import members
+from .layout import (
+    AFTER_ME,
+    BETA,
+    BODIES,
+    DIRECT,
+    DONE,
+    DT,
+    FIRST_SHAPE,
+    HITS,
+    ISLAND,
+    KINKS,
+    LAM,
+    LAST_ONE,
+    LIFT,
+    LOCK,
+    LOST,
+    PUSH_A,
+    PUSH_B,
+    PUSH_CHANGE,
+    PUSH_NX,
+    PUSH_NY,
+    PUSH_X,
+    PUSH_Y,
+    PUSHES,
+    PUSHES_FULL,
+    RELAX,
+    REMEMBERED,
+    ROOT,
+    SHAPES,
+    SOLVES,
+    SPAN,
+    SPAN_FROM,
+    STAMP,
+    SWEEPS,
+    TOGETHER,
+    UN_AFTER,
+    UN_BEFORE,
+    UNTIL,
+    UT_AFTER,
+    UT_BEFORE,
+    WORK_OF,
+    Scene,
+)  # fmt: skip
+
+
+@kernel
+def solve(A: Scene, root: int, t: float) -> int:
+    """Begin a span of the island at instant t, at which all its bodies are. Bodies without contact leave it.
+
+    DONE, or PUSHES_FULL, which leaves everything as it was.
+    """
+    BODY, STATE, MEMBER, COUNT = A.BODY, A.STATE, A.MEMBER, A.COUNT
+    n = MEMBER[root, BODIES]
+    MINE = np.empty(n, np.int64)
+    members(A, root, MINE)
+    MINE.sort()
+    lossy = False
+    for q in range(n):
+        A.PLACE[MINE[q]] = q
+        for s in range(STATE[MINE[q], FIRST_SHAPE], STATE[MINE[q], FIRST_SHAPE] + STATE[MINE[q], SHAPES]):
+            lossy = lossy or A.SHAPE[s, ELASTICITY] < 1.0
+    found = pairs_of(A, root, t, lossy, A.PLACE, MINE, n)
+    p = len(found)
+    h = span_of(A, found, t)
+    if COUNT[PUSHES] + 2 * p > A.PUSHED.shape[0] or 2 * (COUNT[REMEMBERED] + 2 * p) > A.KEYS.shape[0]:
+        for q in range(n):
+            A.PLACE[MINE[q]] = -1
+        return PUSHES_FULL
+    # Bodies that impulses do not move stand after those of the island.
+    FIXED, fixed = np.empty(p, np.int64), 0
+    for c in range(p):
+        j = A.LINK[found[c, 1], OWNER]
+        if A.PLACE[j] < 0:
+            A.PLACE[j] = n + fixed
+            FIXED[fixed] = j
+            fixed += 1
+    k = n + fixed
+    WHO = np.empty(k, np.int64)
+    POSE, V, ACC = np.empty((k, 3)), np.empty((k, 3)), np.zeros((k, 3))
+    IMS, IIS, SIZES = np.empty(k), np.empty(k), np.empty(k)
+    for q in range(k):
+        i = MINE[q] if q < n else FIXED[q - n]
+        WHO[q] = i
+        s = t - BODY[i, SINCE]
+        V[q, 0], V[q, 1], V[q, 2] = BODY[i, VX], BODY[i, VY], BODY[i, SPIN]
+        for c in range(3):
+            POSE[q, c] = BODY[i, X + c] + V[q, c] * s
+        IMS[q], IIS[q], SIZES[q] = BODY[i, IM], BODY[i, II], BODY[i, EXTENT]
+        if q < n:
+            for c in range(3):
+                ACC[q, c] = A.PULL[i, c]
+    PAIRS = np.empty((p, 4), np.int64)
+    for c in range(p):
+        PAIRS[c, 0], PAIRS[c, 1] = found[c, 0], found[c, 1]
+        PAIRS[c, 2], PAIRS[c, 3] = A.PLACE[A.LINK[found[c, 0], OWNER]], A.PLACE[A.LINK[found[c, 1], OWNER]]
+    for q in range(k):
+        A.PLACE[WHO[q]] = -1
+    room = 2 * p + 1
+    P, Q, KEY = np.empty(room, np.int64), np.empty(room, np.int64), np.empty(room, np.int64)
+    ROWS, L, LOSS = np.empty((room, ROW_COLUMNS)), np.zeros((room, 2)), np.zeros((room, 2))
+    VN, JUMP, BOOK, OUT = np.empty((k, 3)), np.zeros((k, 6)), np.zeros(LEDGER_SIZE), np.zeros(OUT_SIZE)
+    least = 0.0
+    if COUNT[TOGETHER] > 0:
+        for q in range(k):
+            least = max(least, way_of(A, WHO[q], h))
+    m = 0
+    if p > 0 and h > 0.0:
+        m = step_island(
+            POSE, V, ACC, IMS, IIS, SIZES, n, PAIRS, p, A.SHAPE, A.RULE, A.LINK, A.VERTEX, A.WORK, h,
+            least, max(-A.RESTING[root, LOST], 0.0), A.KEYS, A.FORCES, COUNT[REMEMBERED:], A.PAR[STAMP],
+            A.RESTING[MINE[0], RELAX : RELAX + 3], P, Q, ROWS, KEY, L, LOSS, VN, JUMP, BOOK, OUT,
+        )  # fmt: skip
+        stuck = h if COUNT[TOGETHER] > 0 else stick_time(P, Q, ROWS, L, V + h * ACC, VN, m, h)
+        if stuck < h:
+            # Where slip ends on the way, so does the span: friction changes its law there.
+            h = max(stuck, A.PAR[DT] / PARTS)
+            BOOK[:] = 0.0
+            m = step_island(
+                POSE, V, ACC, IMS, IIS, SIZES, n, PAIRS, p, A.SHAPE, A.RULE, A.LINK, A.VERTEX, A.WORK, h,
+                least, max(-A.RESTING[root, LOST], 0.0), A.KEYS, A.FORCES, COUNT[REMEMBERED:], A.PAR[STAMP],
+                A.RESTING[MINE[0], RELAX : RELAX + 3], P, Q, ROWS, KEY, L, LOSS, VN, JUMP, BOOK, OUT,
+            )  # fmt: skip
+        if abs(OUT[LOCK_OF] - 1.0) > abs(A.PAR[LOCK] - 1.0):
+            A.PAR[LOCK] = OUT[LOCK_OF]
+    COUNT[SOLVES] += 1
+    COUNT[SWEEPS] += int(OUT[SWEEPS_OF])
+    COUNT[DIRECT] += int(OUT[POLISHES_OF])
+    shapes = A.SHAPE.shape[0]
+    first = COUNT[PUSHES]
+    moving = A.LIST.shape[0]
+    TOUCHED = np.zeros(k, np.uint8)
+    for z in range(m):
+        pair = KEY[z] >> 1
+        a, b = pair // shapes, pair % shapes
+        if A.LINK[a, OWNER] != WHO[P[z]]:
+            a, b = b, a
+        TOUCHED[P[z]], TOUCHED[Q[z]] = 1, 1
+        mark_pair(A.LIST, A.POOL, A.FLAG, moving, a, b, 1)
+        c = first + z
+        A.PUSHED_BY[c, PUSH_A], A.PUSHED_BY[c, PUSH_B] = a, b
+        ROW = A.PUSHED[c]
+        ROW[LAM], ROW[BETA], ROW[SPAN_FROM], ROW[SPAN] = L[z, 0], L[z, 1], t, h
+        ROW[UN_BEFORE], ROW[UT_BEFORE] = ROWS[z, UN], ROWS[z, UT]
+        ROW[UN_AFTER], ROW[UT_AFTER] = normal_rate(P, Q, ROWS, VN, z), tangent_rate(P, Q, ROWS, VN, z)
+        ROW[WORK_OF] = carried(P[z : z + 1], Q[z : z + 1], ROWS[z : z + 1], L[z : z + 1], V, IMS, 1)
+        ROW[PUSH_NX], ROW[PUSH_NY] = ROWS[z, NX], ROWS[z, NY]
+        # The point from its arms: r = arm_t n - arm_n t.
+        x, y = POSE[P[z], 0] + 0.5 * h * V[P[z], 0], POSE[P[z], 1] + 0.5 * h * V[P[z], 1]
+        ROW[PUSH_X] = x + ROWS[z, ARM_TA] * ROWS[z, NX] + ROWS[z, ARM_NA] * ROWS[z, NY]
+        ROW[PUSH_Y] = y + ROWS[z, ARM_TA] * ROWS[z, NY] - ROWS[z, ARM_NA] * ROWS[z, NX]
+        ROW[PUSH_CHANGE] = L[z, 0] / ROWS[z, K_N]
+    lost, hits = A.RESTING[root, LOST], MEMBER[root, HITS]
+    head, tail, size = -1, -1, 0
+    for q in range(n):
+        i = MINE[q]
+        STATE[i, KINKS] += 1
+        for c in range(6):
+            A.RESTING[i, LIFT + c] = JUMP[q, c]
+        if TOUCHED[q] == 0:
+            STATE[i, ISLAND] = -1
+            BODY[i, AX], BODY[i, AY], BODY[i, TWIST] = A.PULL[i, 0], A.PULL[i, 1], A.PULL[i, 2]
+            continue
+        BODY[i, AX], BODY[i, AY] = (VN[q, 0] - V[q, 0]) / h, (VN[q, 1] - V[q, 1]) / h
+        BODY[i, TWIST] = (VN[q, 2] - V[q, 2]) / h
+        if head < 0:
+            head = i
+        else:
+            MEMBER[tail, AFTER_ME] = i
+        tail = i
+        size += 1
+        STATE[i, ISLAND], MEMBER[i, AFTER_ME] = head, -1
+    if head >= 0:
+        MEMBER[head, LAST_ONE], MEMBER[head, BODIES], MEMBER[head, HITS] = tail, size, hits
+        A.RESTING[head, LOST] = lost
+        A.RESTING[head, UNTIL] = t + h if t + h < A.PAR[DT] * (1.0 - 1e-12) else math.inf
+        for z in range(m):
+            A.PUSHED_BY[first + z, ROOT] = head
+        COUNT[PUSHES] += m
+    return DONE
