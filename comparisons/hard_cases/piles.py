@@ -94,7 +94,7 @@ def _impulse(body: pymunk.Body) -> float:
     found: list[float] = []
 
     def note(arbiter: pymunk.Arbiter) -> None:
-        if any(s.body.body_type == pymunk.Body.STATIC for s in arbiter.shapes):
+        if any(s.body is not None and s.body.body_type == pymunk.Body.STATIC for s in arbiter.shapes):
             found.append(arbiter.total_impulse.length)
 
     body.each_arbiter(note)
