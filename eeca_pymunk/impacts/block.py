@@ -14,7 +14,7 @@ from ..compiled import kernel, uncounted
 from ..geometry.flight import pose, rate
 from ..geometry.gap import touching
 from ..geometry.manifold import face
-from ..layout import ANGLE, II, IM, OWNER, SINCE, SIZE, SPIN, VX, VY, X
+from ..layout import ANGLE, II, IM, OWNER, SIZE, SPIN, VX, VY, X
 from ..pairs.layout import NUMBER, START
 from ..pairs.rules import barred, law
 from ..rows.blocks import CONVERGED, D_NORMAL, D_TANGENTIAL, OUT_SIZE, SCALE_LOCK, solve_block
@@ -40,6 +40,7 @@ from .layout import (
     LOCK,
     LOGGED,
     LOST,
+    OPEN,
     PENDING,
     RESTITUTION,
     SHAPES,
@@ -74,8 +75,9 @@ def takes_part(A: Scene, disks: int, s: int, o: int, t: float) -> bool:
 @uncounted
 def arrive(A: Scene, i: int, t: float) -> None:
     """Bring body i, with its island, to instant t."""
-    if A.STATE[i, ISLAND] >= 0 and A.BODY[i, SINCE] != t:
-        end_span(A, A.STATE[i, ISLAND], t)
+    root = A.STATE[i, ISLAND]
+    if root >= 0 and A.MEMBER[root, OPEN] > 0:
+        end_span(A, root, t)
     move_to(A.BODY, i, t)
 
 

@@ -28,6 +28,7 @@ from .layout import (
     LIFT,
     LOGGED,
     LOST,
+    OPEN,
     PUSH_A,
     PUSH_B,
     PUSH_CHANGE,
@@ -98,6 +99,7 @@ def end_span(A: Scene, root: int, t: float) -> None:
     for c in range(A.COUNT[PUSHES]):
         if A.PUSHED_BY[c, ROOT] == root:
             book(A, c, t)
+    A.MEMBER[root, OPEN] = 0
     i = root
     while i >= 0:
         move_to(A.BODY, i, t)
@@ -127,3 +129,8 @@ def lift_out(A: Scene, root: int, end: float) -> None:
     if PAR[LEDGER + RESTITUTION] < 0.0 and PAR[LEDGER + FRICTIONAL] > 0.0:
         PAR[LEDGER + FRICTIONAL] += PAR[LEDGER + RESTITUTION]
         PAR[LEDGER + RESTITUTION] = 0.0
+    for c in (RESTITUTION, FRICTIONAL):
+        # Walls that have moved into bodies do the work of moving them out.
+        if PAR[LEDGER + c] < 0.0 and PAR[LEDGER + EXTERNAL] != 0.0:
+            PAR[LEDGER + EXTERNAL] -= PAR[LEDGER + c]
+            PAR[LEDGER + c] = 0.0

@@ -28,6 +28,7 @@ from .layout import (
     ISLAND,
     LAST_ONE,
     LOST,
+    OPEN,
     PULLED,
     STAMP,
     Scene,
@@ -45,6 +46,7 @@ def unite(A: Scene, i: int, j: int) -> int:
         if STATE[k, ISLAND] < 0:
             STATE[k, ISLAND] = k
             MEMBER[k, AFTER_ME], MEMBER[k, LAST_ONE], MEMBER[k, BODIES], MEMBER[k, HITS] = -1, k, 1, 0
+            MEMBER[k, OPEN] = 0
             A.RESTING[k, LOST] = 0.0
     a, b = STATE[i, ISLAND], STATE[j, ISLAND]
     if a == b:

@@ -17,11 +17,12 @@ EVENTS = 6  # impacts of the body in this step
 ISLAND = 7  # first body of the island it is solved in, -1 for none
 STATE_COLUMNS = 8
 
-# MEMBER (n, 5) int: islands of bodies in sustained contact as chains from their first body, the root
+# MEMBER (n, 6) int: islands of bodies in sustained contact as chains from their first body, the root
 AFTER_ME, LAST_ONE, BODIES = 0, 1, 2  # next body of the chain, -1 for none; of the root: the last one, and how many
 HITS = 3  # of the root: how often the island was hit in this step
 BUSY = 4  # steps for which what comes near joins the island rather than hits it
-MEMBER_COLUMNS = 5
+OPEN = 5  # of the root: 1 while contacts of its span are not booked
+MEMBER_COLUMNS = 6
 
 # RESTING (n, 13) float: of a body in an island
 LIFT = 0  # RESTING[LIFT : LIFT + 6]: what to add to pose and velocity at the end of the span

@@ -14,7 +14,7 @@ from ..arrays import IntArray
 from ..compiled import kernel, uncounted
 from ..geometry.flight import pose
 from ..geometry.gap import gap_at
-from ..layout import BOUND, DUE, EXTENT, IM, OWNER, SINCE, SIZE, SPIN, VX, VY
+from ..layout import BOUND, DUE, EXTENT, IM, OWNER, SIZE, SPIN, VX, VY
 from ..pairs.layout import NUMBER, START
 from ..pairs.lists import centre
 from ..pairs.rules import barred, law
@@ -31,6 +31,7 @@ from .layout import (
     IGNORED,
     ISLAND,
     LASTED,
+    OPEN,
     PULLED,
     PUSH_A,
     PUSH_B,
@@ -82,7 +83,7 @@ def join(A: Scene, i: int, t: float, FOUND: IntArray) -> int:
                 continue
             if STATE[j, ISLAND] < 0:
                 move_to(BODY, j, t)
-            elif BODY[j, SINCE] != t:
+            elif A.MEMBER[STATE[j, ISLAND], OPEN] > 0:
                 xi, yi, qi = pose(BODY, i, t)
                 xj, yj, qj = pose(BODY, j, t)
                 if gap_at(A.SHAPE, LINK, A.VERTEX, A.WORK, s, xi, yi, qi, o, xj, yj, qj)[0] > reach:

@@ -48,6 +48,7 @@ from .layout import (
     LIFT,
     LOCK,
     LOST,
+    OPEN,
     PUSH_A,
     PUSH_B,
     PUSH_CHANGE,
@@ -206,6 +207,7 @@ def solve(A: Scene, root: int, t: float) -> int:
     if head >= 0:
         MEMBER[head, LAST_ONE], MEMBER[head, BODIES], MEMBER[head, HITS] = tail, size, hits
         A.RESTING[head, LOST] = lost
+        MEMBER[head, OPEN] = 1
         A.RESTING[head, UNTIL] = t + h if t + h < A.PAR[DT] * (1.0 - 1e-12) else math.inf
         for z in range(m):
             A.PUSHED_BY[first + z, ROOT] = head
