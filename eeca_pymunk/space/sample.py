@@ -13,7 +13,7 @@ def sample(kind: str) -> pymunk.Space:
     boxes with friction on a floor ("boxes"); disks under collision handlers ("hooked")."""
     space = pymunk.Space()
     space.gravity = (0.0, -10.0)
-    _wall(space, (-9.0, 0.0), (99.0, 0.0))
+    _wall(space, (-9.0, 0.0), (999.0, 0.0))
     for x, speed in ((0.0, 2.0), (1.01, 0.0)):
         _disk(space, (x, 2.0), (speed, 0.0), 0.5)
     if kind == "disks":
