@@ -291,12 +291,10 @@ def test_different_walls_of_one_body_keep_their_elasticity() -> None:
     assert body.velocity.x == pytest.approx(1.5)  # off the right wall with half the speed, off the left with all
 
 
-def test_friction_is_refused_or_ignored_with_one_warning() -> None:
+def test_friction_is_ignored_with_one_warning() -> None:
     space, _ = ball_in_a_room()
     for shape in space.shapes:
         shape.friction = 0.7
-    with pytest.raises(ep.UnsupportedFeature, match=r'ignore=\("friction",\)'):
-        ep.EECA(space)
     with pytest.warns(UserWarning, match="without the friction"):
         stepper = ep.EECA(space, ignore=("friction",))
     stepper.refresh()

@@ -141,10 +141,11 @@ def strike(A: Scene, disks: int, a: int, b: int, t: float, rest: bool) -> tuple[
     BODIES[:n].sort()
     for q in range(n):
         A.PLACE[BODIES[q]] = q
-    owed = 0.0
+    owed, piled = 0.0, False
     for q in range(n):
         root = A.STATE[BODIES[q], ISLAND]
         if root >= 0:
+            piled = True
             # What spans that were cut short have given is taken out here.
             owes = max(-A.RESTING[root, LOST], 0.0)
             A.RESTING[root, LOST] += owes
@@ -202,7 +203,7 @@ def strike(A: Scene, disks: int, a: int, b: int, t: float, rest: bool) -> tuple[
             POINTS[rows, 0], POINTS[rows, 1], OF[rows] = found[c, 2], found[c, 3], PAIRS[z]
             rows += 1
     L, LOSS, OUT = np.zeros((rows, 2)), np.zeros((rows, 2)), np.zeros(OUT_SIZE)
-    status = solve_block(P, Q, ROWS, L, V, IMS, IIS, POSE, n, rows, owed, LOSS, OUT)
+    status = solve_block(P, Q, ROWS, L, V, IMS, IIS, POSE, n, rows, owed, piled, LOSS, OUT)
     if status != CONVERGED:
         COUNT[UNMET] += 1
     if abs(OUT[SCALE_LOCK] - 1.0) > abs(A.PAR[LOCK] - 1.0):

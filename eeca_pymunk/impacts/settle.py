@@ -149,10 +149,14 @@ def settle(A: Scene) -> int:
     if wanted > A.PUSHED.shape[0] or 2 * (COUNT[REMEMBERED] + wanted) > A.KEYS.shape[0]:
         return PUSHES_FULL
     COUNT[PUSHES] = 0
+    # A solve may make another body the root of its island, which then would be solved again.
+    roots = 0
     for q in range(queued):
-        i = QUEUE[q]
-        if STATE[i, ISLAND] == i:
-            solve(A, i, 0.0)
+        if STATE[QUEUE[q], ISLAND] == QUEUE[q]:
+            QUEUE[roots] = QUEUE[q]
+            roots += 1
+    for q in range(roots):
+        solve(A, QUEUE[q], 0.0)
     return DONE
 
 

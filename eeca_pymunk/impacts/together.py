@@ -141,8 +141,14 @@ def resume_together(
         anew(A)
         if not join_all(A, USUAL):
             return ROOM_FOR_LISTS
+        # A solve may make another body the root of its island, which then would be solved again.
+        roots = 0
         for i in range(n):
-            if A.STATE[i, ISLAND] == i and solve(A, i, 0.0) != DONE:
+            if A.STATE[i, ISLAND] == i:
+                A.BLOCK[roots] = i
+                roots += 1
+        for q in range(roots):
+            if solve(A, A.BLOCK[q], 0.0) != DONE:
                 return ROOM_FOR_CONTACTS
         if COUNT[PUSHES] > A.LOG.shape[0]:
             return ROOM_FOR_EVENTS

@@ -76,7 +76,7 @@ def resolve(
 @kernel
 def solve_block(
     A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, IM: FloatArray, II: FloatArray,
-    POSE: FloatArray, n: int, m: int, owed: float, LOSS: FloatArray, OUT: FloatArray,
+    POSE: FloatArray, n: int, m: int, owed: float, hasty: bool, LOSS: FloatArray, OUT: FloatArray,
 ) -> int:  # fmt: skip
     """Impulses of m contacts at one instant; V (k, 3) becomes the velocities after.
 
@@ -85,6 +85,7 @@ def solve_block(
         L: (m, 2) first guess of the impulses in (0 for none), the impulses out.
         POSE: (k, 3), for the order of elimination alone.  n: bodies that impulses move, the first of k.
         owed: energy >= 0 that the block has to take out beyond its own losses' sign: its loss is at least that.
+        hasty: whether a lossy crowd may be solved roughly: a hit on a pile.
         LOSS: (m, 2) out, D_n and D_t of each contact.
         OUT: (8,) out: sums of D_n and D_t, the lock's scale, energy still owed, residual (velocity), sweeps, polishes.
     Returns:
@@ -110,7 +111,7 @@ def solve_block(
     rough = rubs(ROWS, m)
     tolerance = speed * (_RUBBED if rough else _PRECISE)
     exact = conserves(ROWS, m)
-    if m > _CROWD and not exact:
+    if hasty and m > _CROWD and not exact:
         # A hit on a pile, which loses energy anyway: what follows it matters more than its last digits.
         tolerance = _CROWDED * speed
         taken, worst = iterate(A, B, ROWS, L, V, IM, II, m, tolerance, _CROWD_SWEEPS)

@@ -54,8 +54,8 @@ class Block:
             place_row(self.A, self.B, self.rows, i, a, b, nx, ny, px, py, 0.0, self.pose, self.im, self.ii, e, mu, 0.0)
         self.after, self.out = self.velocity.copy(), np.zeros(OUT_SIZE)
         self.status = solve_block(
-            self.A, self.B, self.rows, self.impulses, self.after, self.im, self.ii, self.pose, n, m, owed, self.loss,
-            self.out,
+            self.A, self.B, self.rows, self.impulses, self.after, self.im, self.ii, self.pose, n, m, owed, False,
+            self.loss, self.out,
         )  # fmt: skip
 
     def energy(self, v: Floats) -> float:

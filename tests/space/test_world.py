@@ -208,7 +208,7 @@ def edit(name: str, value: object) -> Callable[[pymunk.Space], None]:
         (set_gravity, ValueError, "space.gravity"),
         (set_damping, ValueError, "space.damping = 0.0"),
         (add_joint, ep.UnsupportedFeature, "constraints are not modelled"),
-        (edit("surface_velocity", (1.0, 0.0)), ep.UnsupportedFeature, "surface velocity"),
+        (edit("surface_velocity", (math.nan, 0.0)), ValueError, "surface velocity"),
         (edit("elasticity", 1.5), ValueError, "elasticity 1.5"),
     ],
 )
@@ -227,14 +227,15 @@ def test_what_cannot_be_stepped_is_refused(
             world.read_settings()
 
 
-def test_friction_is_refused_or_ignored() -> None:
+def test_friction_is_read_or_ignored() -> None:
     space = pymunk.Space()
     for x in (0.0, 1.0):
         for shape in add_disk(space, (x, 0.0), 0.1).shapes:
             shape.friction = 0.5
-    with pytest.raises(ep.UnsupportedFeature, match="friction"):
-        World(space)
-    assert not World(space, ("friction",)).smooth
+    assert World(space).SHAPE[:, at.FRICTION].tolist() == [0.5, 0.5]
+    ignoring = World(space, ("friction",))
+    assert ignoring.ignores
+    assert not ignoring.SHAPE[:, at.FRICTION].any()
 
 
 def test_masses_that_no_body_can_have_are_refused() -> None:
