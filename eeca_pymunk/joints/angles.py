@@ -1,0 +1,101 @@
+"""Rows of joints that act on angles alone; the equations stand in `rows`."""
+
+from __future__ import annotations
+
+from ..compiled import kernel
+from .layout import GEAR, LOWER, NOTCH, PHASE, PUSH, RATCHET, RATIO, REST, ROTARY_SPRING, UPPER
+from .layout import STIFFNESS as SPRING_STIFFNESS
+from .scratch import (
+    AFTER,
+    ARM_A,
+    ARM_B,
+    BEGAN,
+    BEND,
+    CAYLEY,
+    DRAG,
+    ENDED,
+    FORCE,
+    FULL_BEND,
+    LAM,
+    NO_BEND,
+    PER,
+    ROWS,
+    SLOPE,
+    SLOPES,
+    STIFFNESS,
+    TARGET,
+    TURNED,
+    VALUE,
+    WAY,
+    FloatArray,
+)  # fmt: skip
+
+
+@kernel
+def shared_turn(local: FloatArray, a: int, b: int) -> float:
+    """(turned_b - turned_a) / (chi_b - chi_a): the one factor with which torques are opposite and energy is kept."""
+    chi_a, chi_b = local[a, WAY + 2], local[b, WAY + 2]
+    if abs(chi_b - chi_a) > 0.1:
+        return (local[b, TURNED] - local[a, TURNED]) / (chi_b - chi_a)
+    product = 1.0 + 0.25 * chi_a * chi_b
+    y = 0.5 * (chi_b - chi_a) / product
+    return (1.0 - y * y / 3.0 + y**4 / 5.0 - y**6 / 7.0 + y**8 / 9.0) / product
+
+
+@kernel
+def angle_rows(
+    kind: int, side: int, soft: bool, h: float, joint: FloatArray, j: int, hinge: FloatArray, k: int,
+    local: FloatArray, a: int, b: int, one: FloatArray,
+) -> int:  # fmt: skip
+    """`joint_rows` of gears, rotary limits, ratchets, motors and rotary springs."""
+    for r in range(STIFFNESS):
+        for c in range(6):
+            one[r, c] = 0.0
+    lam = hinge[k, LAM]
+    angle_a, angle_b = hinge[k, ARM_A] + local[a, TURNED], hinge[k, ARM_B] + local[b, TURNED]
+    share = 1.0 / joint[j, RATIO] if kind == GEAR else 1.0
+    if soft:
+        one[ROWS, 2], one[ROWS, 5] = -share, 1.0
+        one[SLOPES, 2], one[SLOPES, 5] = -share, 1.0
+        one[FORCE, 2], one[FORCE, 5] = -share * lam, lam
+        one[VALUE, 0] = 0.5 * h * (local[b, AFTER + 2] - share * local[a, AFTER + 2] - hinge[k, TARGET])
+        return NO_BEND
+    both = local[a, CAYLEY] > 0.0 and local[b, CAYLEY] > 0.0 and kind != GEAR
+    factor = shared_turn(local, a, b) if both else 0.0
+    per_a = factor if both else local[a, PER]
+    per_b = factor if both else local[b, PER]
+    if kind == ROTARY_SPRING:
+        phi = angle_a - angle_b
+        began = hinge[k, BEGAN]
+        stiffness, drag = joint[j, SPRING_STIFFNESS], hinge[k, DRAG]
+        lam = h * (joint[j, PUSH] + stiffness * (0.5 * (began + phi) - joint[j, REST])) + drag * (phi - began)
+        hinge[k, LAM], hinge[k, ENDED] = lam, phi
+        slope = 0.5 * h * stiffness + drag
+        one[FORCE, 2], one[FORCE, 5] = -lam * per_a, lam * per_b
+    else:
+        slope = 0.0
+        one[ROWS, 2], one[ROWS, 5] = -share * per_a, per_b
+        one[SLOPES, 2], one[SLOPES, 5] = -share * local[a, SLOPE], local[b, SLOPE]
+        one[FORCE, 2], one[FORCE, 5] = -share * per_a * lam, per_b * lam
+        if kind == GEAR:
+            one[VALUE, 0] = angle_b - (angle_a + joint[j, PHASE]) * share
+        elif kind == RATCHET:
+            one[VALUE, 0] = angle_b - angle_a - joint[j, NOTCH]
+        else:
+            one[VALUE, 0] = angle_b - angle_a - joint[j, UPPER if side > 0 else LOWER]
+    for r in range(STIFFNESS, STIFFNESS + 6):
+        for c in range(6):
+            one[r, c] = 0.0
+    if both:  # d s/d chi_a, d s/d chi_b: half the second derivative of 2 atan(chi/2) halfway
+        t = 0.25 * (local[a, WAY + 2] + local[b, WAY + 2])
+        bend_a = bend_b = -0.5 * t / (1.0 + t * t) ** 2
+        one[STIFFNESS + 2, 5], one[STIFFNESS + 5, 2] = -share * lam * bend_b, lam * bend_a
+    else:
+        bend_a, bend_b = local[a, BEND], local[b, BEND]
+    one[STIFFNESS + 2, 2], one[STIFFNESS + 5, 5] = -share * lam * bend_a, lam * bend_b
+    if slope != 0.0:
+        one[STIFFNESS + 2, 2] -= slope * per_a * local[a, SLOPE]
+        one[STIFFNESS + 2, 5] += slope * per_a * local[b, SLOPE]
+        one[STIFFNESS + 5, 2] += slope * per_b * local[a, SLOPE]
+        one[STIFFNESS + 5, 5] -= slope * per_b * local[b, SLOPE]
+    return FULL_BEND
