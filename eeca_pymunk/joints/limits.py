@@ -77,7 +77,10 @@ def approach(link: IntArray, k: int, side: int, local: FloatArray, column: int, 
 @kernel
 def standing(link: IntArray, joints: int) -> bool:
     """Whether a joint stands on a limit."""
-    return any(link[k, L_SIDE] != 0 for k in range(joints))
+    count = 0
+    for k in range(joints):
+        count += abs(link[k, L_SIDE])
+    return count > 0
 
 
 @kernel
