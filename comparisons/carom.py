@@ -12,7 +12,7 @@ import scenes
 from comparisons import runs
 from comparisons.output import Output
 from eeca_pymunk import render
-from eeca_pymunk.invariants import Invariants
+from eeca_pymunk.energy.invariants import Invariants
 from scenes import Scene
 
 STEPS = (0.0025, 0.0017)

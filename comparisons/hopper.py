@@ -14,7 +14,7 @@ import scenes
 from comparisons import runs
 from comparisons.output import Output, Row
 from eeca_pymunk import render
-from eeca_pymunk.invariants import Invariants
+from eeca_pymunk.energy.invariants import Invariants
 from scenes import Scene
 from scenes.hopper import RADIUS, walls
 

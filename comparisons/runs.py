@@ -14,11 +14,12 @@ from tqdm import tqdm
 
 import eeca_pymunk as ep
 from comparisons.output import Row
-from eeca_pymunk.bodies import Bodies
+from eeca_pymunk.baselines.native import tune
+from eeca_pymunk.energy.invariants import Invariants
 from eeca_pymunk.errors import NotFiniteError
-from eeca_pymunk.invariants import Invariants, invariants
-from eeca_pymunk.native import tune
 from eeca_pymunk.recording import step_count
+from eeca_pymunk.space.bodies import Bodies
+from eeca_pymunk.space.measure import invariants
 from scenes import Scene
 
 FloatArray = npt.NDArray[np.float64]

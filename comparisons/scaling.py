@@ -20,7 +20,7 @@ from comparisons.output import Output, Row
 from comparisons.runs import slope
 from eeca_pymunk import eeca, render
 from eeca_pymunk.array_stepper import ArrayStepper
-from eeca_pymunk.detection import MarginTwin
+from eeca_pymunk.space.twin import MarginTwin
 from scenes import Scene
 
 COUNTS = (100, 1000, 4000, 16_000)

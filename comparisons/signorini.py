@@ -11,7 +11,7 @@ import scenes.signorini
 from comparisons import runs
 from comparisons.output import Output
 from eeca_pymunk import render
-from eeca_pymunk.invariants import Invariants
+from eeca_pymunk.energy.invariants import Invariants
 from scenes import Scene
 
 RATIOS = np.arange(0.0, 161.0, 4.0)

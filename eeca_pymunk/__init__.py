@@ -5,17 +5,19 @@
 
 from types import ModuleType
 
-from .closures import Dashpot, Midstep
+from .baselines.native import Native
+from .baselines.newmark import Newmark
+from .baselines.penalty import PenaltyEnergyMomentum
+from .closures.dashpot import Dashpot
+from .closures.midstep import Midstep
+from .closures.time_of_impact import TimeOfImpact
 from .eeca import EECA, Closure
+from .energy.invariants import Invariants
 from .errors import UnsupportedFeature
-from .geometry import Contacts
-from .invariants import Invariants, measure
-from .native import Native
-from .newmark import Newmark
-from .penalty import PenaltyEnergyMomentum
 from .recording import Recording, record
-from .stepper import Stepper, StepReport
-from .time_of_impact import TimeOfImpact
+from .report import Contacts, StepReport
+from .space.measure import measure
+from .stepper import Stepper
 
 __all__ = [
     "EECA",

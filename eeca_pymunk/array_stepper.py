@@ -5,18 +5,24 @@ from __future__ import annotations
 import warnings
 from abc import abstractmethod
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
-import pymunk
 
-from .arrays import Motion, Start
-from .bodies import ANGLE, ANGULAR_VELOCITY, FORCE, POSITION, TORQUE, VELOCITY, Bodies, FloatArray
-from .checks import check_ignored, check_space
-from .detection import MarginTwin
+from .arrays import FloatArray
+from .closures.motion import Motion, Start
 from .errors import NotFiniteError, UnsupportedFeature
-from .hooks import Hooks, Rehearsal
-from .shapes import Shapes
-from .stepper import Stepper, StepReport, check_dt
+from .report import StepReport
+from .space.bodies import ANGLE, ANGULAR_VELOCITY, FORCE, POSITION, TORQUE, VELOCITY, Bodies
+from .space.checks import check_ignored, check_space
+from .space.hooks import Hooks, Rehearsal
+from .space.shapes import Shapes
+from .space.sync import rest_step
+from .space.twin import MarginTwin
+from .stepper import Stepper, check_dt
+
+if TYPE_CHECKING:
+    import pymunk
 
 _OVERFLOW = "the step would overflow; take a smaller dt, or stop this run"
 
@@ -71,7 +77,7 @@ class ArrayStepper(Stepper):
                 rehearsal = Rehearsal(self.space, hooks, state)
                 after = rehearsal.run(self._moved(bodies, state, start, start.free_displacement), dt)
                 start = self._start(bodies, rehearsal.before, dt, hooks)
-                twin.shapes.rules = rehearsal.rules(twin.shapes)
+                twin.shapes.rules = rehearsal.rules(twin.shapes.items, twin.shapes.elasticity)
             motion = self.advance(bodies, start, twin)
             began = state if rehearsal is None else rehearsal.before
             end = self._end(bodies, began, start, motion, dt, hooks)
@@ -174,7 +180,7 @@ class ArrayStepper(Stepper):
         still[:, ANGULAR_VELOCITY] = 0.0
         bodies.scatter(still, unchanged=True)
         with hooks.silent():
-            self._sync(dt)
+            rest_step(self.space, dt)
         bodies.scatter(end)
 
     @property
@@ -200,20 +206,6 @@ class ArrayStepper(Stepper):
         if hooks.collisions:
             parts.append("collision handlers, by a rehearsal")
         return "; ".join(parts)
-
-    def _sync(self, dt: float) -> None:
-        """Let pymunk see the new positions: its own step with everything at rest moves nothing.
-
-        With the real dt, so that `space.current_time_step` is right and a native step may follow: at rest pymunk
-        caches no impulse that it would scale by the ratio of the two steps.
-        """
-        space = self.space
-        gravity, iterations, bias = space.gravity, space.iterations, space.collision_bias
-        try:
-            space.gravity, space.iterations, space.collision_bias = (0.0, 0.0), 1, 1.0
-            space.step(dt)
-        finally:
-            space.gravity, space.iterations, space.collision_bias = gravity, iterations, bias
 
 
 def _turns(state: FloatArray) -> bool:

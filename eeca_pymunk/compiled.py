@@ -17,6 +17,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Generic, ParamSpec, TypeVar
 
+import numpy as np
+
 P = ParamSpec("P")
 R = TypeVar("R")
 _PACKAGE = Path(__file__).parent
@@ -29,9 +31,10 @@ _ready = 0  # how many of these have been handed to numba
 class Kernel(Generic[P, R]):
     """A function that numba compiles at its first call. `python` is the function as it was written."""
 
-    def __init__(self, python: Callable[P, R]) -> None:
+    def __init__(self, python: Callable[P, R], counted: bool = True) -> None:
         functools.update_wrapper(self, python)
         self.python = python
+        self.counted = counted
         self.run: Callable[P, R] = python
         _kernels.append(self)
 
@@ -43,6 +46,12 @@ class Kernel(Generic[P, R]):
 def kernel(python: Callable[P, R]) -> Callable[P, R]:
     """Compile this function when it is first called, together with all kernels that it calls."""
     return Kernel(python)
+
+
+def uncounted(python: Callable[P, R]) -> Callable[P, R]:
+    """A kernel that makes no arrays, views of its arguments excepted: numba then leaves out its count of references to
+    arrays, two locked instructions for each argument at every call, which would take longer than a small kernel."""
+    return Kernel(python, counted=False)
 
 
 def disabled() -> bool:
@@ -94,6 +103,9 @@ def prepare() -> None:
     fresh = _kernels[_ready:]
     _ready = len(_kernels)
     if numba is None:
+        for one in fresh:
+            # numpy warns of what machine code passes over in silence.
+            one.run = np.errstate(all="ignore")(one.python)
         return
     folder = cache_folder()
     if not any(folder.rglob("*.nbi")) and (sys.stderr.isatty() or sys.flags.verbose):
@@ -101,7 +113,7 @@ def prepare() -> None:
     before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(folder)
     try:
         for one in fresh:
-            one.run = numba.njit(**_OPTIONS)(one.python)
+            one.run = numba.njit(**_OPTIONS, **({} if one.counted else {"_nrt": False}))(one.python)
     finally:
         numba.config.CACHE_DIR = before
     package = __name__.rpartition(".")[0]

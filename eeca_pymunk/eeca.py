@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Protocol
-
-import pymunk
+from typing import TYPE_CHECKING, Protocol
 
 from .array_stepper import ArrayStepper
-from .arrays import Motion, Start
-from .bodies import Bodies
-from .detection import MarginTwin
-from .time_of_impact import TimeOfImpact
+from .closures.motion import Motion, Start
+from .closures.time_of_impact import TimeOfImpact
+from .space.bodies import Bodies
+from .space.twin import MarginTwin
+
+if TYPE_CHECKING:
+    import pymunk
 
 
 class Closure(Protocol):

@@ -38,3 +38,33 @@ OWNER = 0  # row of the body
 FIRST, COUNT = 1, 2  # first vertex, number of vertices
 GROUP, CATEGORIES, MASK = 3, 4, 5  # of the shape's filter
 LINK_COLUMNS = 6
+
+# EVENT (m, 10) float: one row per impulse of a step
+FIRST_SHAPE, SECOND_SHAPE = 0, 1  # rows of SHAPE of a and of b
+WHEN = 2  # time after the start of the step
+IMPULSE = 3  # normal impulse, mass length/time, >= 0
+NORMAL_X, NORMAL_Y = 4, 5  # unit, from a to b
+POINT_X, POINT_Y = 6, 7  # length, halfway between the surfaces at that instant
+GAP = 8  # length, at the start of the step, negative in overlap
+CHANGE = 9  # of the contact's normal velocity by this impulse alone, length/time
+EVENT_COLUMNS = 10
+
+# What crosses the edge to pymunk, one row or column per body in the order in which pymunk walks its bodies, static ones
+# included.
+# STATES (2, N, 9) float: the state that was read, and what the step before has left there (NaN: nobody knows); columns
+# position, angle, velocity, spin, force, torque.
+NOW, LEFT = 0, 1
+STATE_COLUMNS = 9
+# WALK (4, N) int
+FOUND, KNOWN = 0, 1  # pymunk's ids of the bodies as read, and as they were when the rows were made
+BODY_ROW = 2  # row of BODY, -1 for static bodies
+STEERED = 3  # 1 where the body's own function has chosen its acceleration
+# EXTRA (N, 5) float
+COG_X, COG_Y = 0, 1  # centre of mass in the body's coordinates: length
+PUSH_X, PUSH_Y, PUSH_TWIST = 2, 3, 4  # acceleration of a steered body: length/time², rad/time²
+EXTRA_COLUMNS = 5
+# ENDS (18 N) float: four tables as pymunk's batch calls want them: (N, 6) pose and velocity at the end of the step;
+# (N, 6) that pose with velocity 0; (N, 3) that velocity; (N, 3) forces, reset. Where nothing turns the first three have
+# no columns of angle and spin.
+END, STILL, SPEED, PULL = 0, 6, 12, 15  # where each begins, in N
+END_COLUMNS = 18

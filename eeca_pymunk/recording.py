@@ -6,17 +6,20 @@ import json
 import sys
 from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pymunk
 from tqdm import tqdm
 
-from .bodies import ANGLE, POSITION, VELOCITY, Bodies, FloatArray, IntArray
+from .arrays import FloatArray, IntArray
 from .files import whole_file
-from .invariants import invariants
-from .outlines import Outlines
+from .space.bodies import ANGLE, POSITION, VELOCITY, Bodies, moving
+from .space.measure import invariants
+from .space.outlines import Outlines
 from .stepper import Stepper, check_dt
+
+if TYPE_CHECKING:
+    import pymunk
 
 _PER_BODY = 5 * 8  # bytes kept of a body and moment: position, angle, velocity
 MEMORY = 2.0**30  # bytes
@@ -105,7 +108,7 @@ def record(
     if every < 1:
         raise ValueError(f"every = {every}: give a whole number >= 1")
     count = step_count(duration, dt)
-    kept = [b for b in stepper.space.bodies if b.body_type != pymunk.Body.STATIC]
+    kept = moving(stepper.space)
     moments = 1 + count // every
     needed = moments * (len(kept) * _PER_BODY + 32)
     if needed > memory:

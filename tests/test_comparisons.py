@@ -16,7 +16,7 @@ import scenes
 from comparisons import gallery, runs, scaling, soak, work_precision
 from comparisons.__main__ import NAMES, main
 from comparisons.hopper import crossed, deepest_overlap
-from eeca_pymunk.detection import MarginTwin
+from eeca_pymunk.space.twin import MarginTwin
 
 
 def test_no_name_lists_all(capsys: pytest.CaptureFixture[str]) -> None:

@@ -11,8 +11,9 @@ import eeca_pymunk as ep
 from comparisons import hard_cases
 from comparisons.hard_cases import CASES, Case
 from comparisons.output import Output
-from eeca_pymunk import balance, blocks, impact_times, impacts
-from eeca_pymunk.contacts import Pairs
+from eeca_pymunk._rounds import blocks, impact_times, impacts
+from eeca_pymunk._rounds.contacts import Pairs
+from eeca_pymunk.energy import balance
 
 BY_NAME = {one.name: one for one in CASES}
 

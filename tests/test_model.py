@@ -10,10 +10,11 @@ import pytest
 
 import eeca_pymunk as ep
 import scenes
-from eeca_pymunk import array_stepper, impact_times
-from eeca_pymunk.blocks import Blocks
-from eeca_pymunk.forecast import Pairs
-from eeca_pymunk.impacts import Impacts
+from eeca_pymunk import array_stepper
+from eeca_pymunk._rounds import impact_times
+from eeca_pymunk._rounds.blocks import Blocks
+from eeca_pymunk._rounds.forecast import Pairs
+from eeca_pymunk._rounds.impacts import Impacts
 from scenes.scene import add_disk, add_walls
 
 

@@ -18,9 +18,9 @@ import eeca_pymunk as ep
 import scenes
 from comparisons.__main__ import main
 from eeca_pymunk import render
-from eeca_pymunk.outlines import Outlines
 from eeca_pymunk.render import encode, film
 from eeca_pymunk.render.drawing import MOVING
+from eeca_pymunk.space.outlines import Outlines
 
 BLUE = tuple(int(MOVING[i : i + 2], 16) for i in (1, 3, 5))
 

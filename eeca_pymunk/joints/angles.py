@@ -55,10 +55,10 @@ def angle_rows(
     angle_a, angle_b = hinge[k, ARM_A] + local[a, TURNED], hinge[k, ARM_B] + local[b, TURNED]
     share = 1.0 / joint[j, RATIO] if kind == GEAR else 1.0
     if soft:
-        one[ROWS, 2], one[ROWS, 5] = -share, 1.0
-        one[SLOPES, 2], one[SLOPES, 5] = -share, 1.0
-        one[FORCE, 2], one[FORCE, 5] = -share * lam, lam
-        one[VALUE, 0] = 0.5 * h * (local[b, AFTER + 2] - share * local[a, AFTER + 2] - hinge[k, TARGET])
+        hinge[k, ROWS + 2], hinge[k, ROWS + 5] = -share, 1.0
+        hinge[k, SLOPES + 2], hinge[k, SLOPES + 5] = -share, 1.0
+        hinge[k, FORCE + 2], hinge[k, FORCE + 5] = -share * lam, lam
+        hinge[k, VALUE] = 0.5 * h * (local[b, AFTER + 2] - share * local[a, AFTER + 2] - hinge[k, TARGET])
         return NO_BEND
     both = local[a, CAYLEY] > 0.0 and local[b, CAYLEY] > 0.0 and kind != GEAR
     factor = shared_turn(local, a, b) if both else 0.0
@@ -71,31 +71,31 @@ def angle_rows(
         lam = h * (joint[j, PUSH] + stiffness * (0.5 * (began + phi) - joint[j, REST])) + drag * (phi - began)
         hinge[k, LAM], hinge[k, ENDED] = lam, phi
         slope = 0.5 * h * stiffness + drag
-        one[FORCE, 2], one[FORCE, 5] = -lam * per_a, lam * per_b
+        hinge[k, FORCE + 2], hinge[k, FORCE + 5] = -lam * per_a, lam * per_b
     else:
         slope = 0.0
-        one[ROWS, 2], one[ROWS, 5] = -share * per_a, per_b
-        one[SLOPES, 2], one[SLOPES, 5] = -share * local[a, SLOPE], local[b, SLOPE]
-        one[FORCE, 2], one[FORCE, 5] = -share * per_a * lam, per_b * lam
+        hinge[k, ROWS + 2], hinge[k, ROWS + 5] = -share * per_a, per_b
+        hinge[k, SLOPES + 2], hinge[k, SLOPES + 5] = -share * local[a, SLOPE], local[b, SLOPE]
+        hinge[k, FORCE + 2], hinge[k, FORCE + 5] = -share * per_a * lam, per_b * lam
         if kind == GEAR:
-            one[VALUE, 0] = angle_b - (angle_a + joint[j, PHASE]) * share
+            hinge[k, VALUE] = angle_b - (angle_a + joint[j, PHASE]) * share
         elif kind == RATCHET:
-            one[VALUE, 0] = angle_b - angle_a - joint[j, NOTCH]
+            hinge[k, VALUE] = angle_b - angle_a - joint[j, NOTCH]
         else:
-            one[VALUE, 0] = angle_b - angle_a - joint[j, UPPER if side > 0 else LOWER]
+            hinge[k, VALUE] = angle_b - angle_a - joint[j, UPPER if side > 0 else LOWER]
     for r in range(STIFFNESS, STIFFNESS + 6):
         for c in range(6):
             one[r, c] = 0.0
     if both:  # d s/d chi_a, d s/d chi_b: half the second derivative of 2 atan(chi/2) halfway
         t = 0.25 * (local[a, WAY + 2] + local[b, WAY + 2])
         bend_a = bend_b = -0.5 * t / (1.0 + t * t) ** 2
-        one[STIFFNESS + 2, 5], one[STIFFNESS + 5, 2] = -share * lam * bend_b, lam * bend_a
+        one[2, 5], one[5, 2] = -share * lam * bend_b, lam * bend_a
     else:
         bend_a, bend_b = local[a, BEND], local[b, BEND]
-    one[STIFFNESS + 2, 2], one[STIFFNESS + 5, 5] = -share * lam * bend_a, lam * bend_b
+    one[2, 2], one[5, 5] = -share * lam * bend_a, lam * bend_b
     if slope != 0.0:
-        one[STIFFNESS + 2, 2] -= slope * per_a * local[a, SLOPE]
-        one[STIFFNESS + 2, 5] += slope * per_a * local[b, SLOPE]
-        one[STIFFNESS + 5, 2] += slope * per_b * local[a, SLOPE]
-        one[STIFFNESS + 5, 5] -= slope * per_b * local[b, SLOPE]
+        one[2, 2] -= slope * per_a * local[a, SLOPE]
+        one[2, 5] += slope * per_a * local[b, SLOPE]
+        one[5, 2] += slope * per_b * local[a, SLOPE]
+        one[5, 5] -= slope * per_b * local[b, SLOPE]
     return FULL_BEND

@@ -52,15 +52,15 @@ def point_rows(
     uax, uay, ubx, uby = slope_a * ray1, -slope_a * rax1, -slope_b * rby1, slope_b * rbx1
     if kind == PIVOT:
         fx, fy = hinge[k, LAM], hinge[k, LAM + 1]
-        one[VALUE, 0], one[VALUE, 1] = dx1, dy1
-        one[ROWS, 0], one[ROWS, 1], one[ROWS, 2] = -1.0, 0.0, lever_a * ray
-        one[ROWS, 3], one[ROWS, 4], one[ROWS, 5] = 1.0, 0.0, -lever_b * rby
-        one[ROWS + 1, 0], one[ROWS + 1, 1], one[ROWS + 1, 2] = 0.0, -1.0, -lever_a * rax
-        one[ROWS + 1, 3], one[ROWS + 1, 4], one[ROWS + 1, 5] = 0.0, 1.0, lever_b * rbx
-        one[SLOPES, 0], one[SLOPES, 1], one[SLOPES, 2] = -1.0, 0.0, uax
-        one[SLOPES, 3], one[SLOPES, 4], one[SLOPES, 5] = 1.0, 0.0, ubx
-        one[SLOPES + 1, 0], one[SLOPES + 1, 1], one[SLOPES + 1, 2] = 0.0, -1.0, uay
-        one[SLOPES + 1, 3], one[SLOPES + 1, 4], one[SLOPES + 1, 5] = 0.0, 1.0, uby
+        hinge[k, VALUE], hinge[k, VALUE + 1] = dx1, dy1
+        hinge[k, ROWS], hinge[k, ROWS + 1], hinge[k, ROWS + 2] = -1.0, 0.0, lever_a * ray
+        hinge[k, ROWS + 3], hinge[k, ROWS + 4], hinge[k, ROWS + 5] = 1.0, 0.0, -lever_b * rby
+        hinge[k, ROWS + 6], hinge[k, ROWS + 7], hinge[k, ROWS + 8] = 0.0, -1.0, -lever_a * rax
+        hinge[k, ROWS + 9], hinge[k, ROWS + 10], hinge[k, ROWS + 11] = 0.0, 1.0, lever_b * rbx
+        hinge[k, SLOPES], hinge[k, SLOPES + 1], hinge[k, SLOPES + 2] = -1.0, 0.0, uax
+        hinge[k, SLOPES + 3], hinge[k, SLOPES + 4], hinge[k, SLOPES + 5] = 1.0, 0.0, ubx
+        hinge[k, SLOPES + 6], hinge[k, SLOPES + 7], hinge[k, SLOPES + 8] = 0.0, -1.0, uay
+        hinge[k, SLOPES + 9], hinge[k, SLOPES + 10], hinge[k, SLOPES + 11] = 0.0, 1.0, uby
         bend = OWN_TURN
     else:
         bend = FULL_BEND
@@ -86,11 +86,11 @@ def point_rows(
             lam = hinge[k, LAM]
             fx, fy = lam * mx, lam * my
             hxx = hyy = 0.5 * lam * over
-            one[VALUE, 0] = 0.5 * (dx1 * dx1 + dy1 * dy1) / length - 0.5 * length
-            one[ROWS, 0], one[ROWS, 1], one[ROWS, 2] = -mx, -my, -lever_a * (rax * my - ray * mx)
-            one[ROWS, 3], one[ROWS, 4], one[ROWS, 5] = mx, my, lever_b * (rbx * my - rby * mx)
-            one[SLOPES, 0], one[SLOPES, 1], one[SLOPES, 2] = -nx, -ny, nx * uax + ny * uay
-            one[SLOPES, 3], one[SLOPES, 4], one[SLOPES, 5] = nx, ny, nx * ubx + ny * uby
+            hinge[k, VALUE] = 0.5 * (dx1 * dx1 + dy1 * dy1) / length - 0.5 * length
+            hinge[k, ROWS], hinge[k, ROWS + 1], hinge[k, ROWS + 2] = -mx, -my, -lever_a * (rax * my - ray * mx)
+            hinge[k, ROWS + 3], hinge[k, ROWS + 4], hinge[k, ROWS + 5] = mx, my, lever_b * (rbx * my - rby * mx)
+            hinge[k, SLOPES], hinge[k, SLOPES + 1], hinge[k, SLOPES + 2] = -nx, -ny, nx * uax + ny * uay
+            hinge[k, SLOPES + 3], hinge[k, SLOPES + 4], hinge[k, SLOPES + 5] = nx, ny, nx * ubx + ny * uby
         for c in range(6):
             if c == 0 or c == 3:
                 ux, uy = hxx, hyx
@@ -102,16 +102,16 @@ def point_rows(
                 ux, uy = hxx * ubx + hxy * uby, hyx * ubx + hyy * uby
             if c < 2:
                 ux, uy = -ux, -uy
-            one[STIFFNESS, c], one[STIFFNESS + 1, c] = -ux, -uy
-            one[STIFFNESS + 2, c] = -lever_a * (rax * uy - ray * ux)
-            one[STIFFNESS + 3, c], one[STIFFNESS + 4, c] = ux, uy
-            one[STIFFNESS + 5, c] = lever_b * (rbx * uy - rby * ux)
+            one[0, c], one[1, c] = -ux, -uy
+            one[2, c] = -lever_a * (rax * uy - ray * ux)
+            one[3, c], one[4, c] = ux, uy
+            one[5, c] = lever_b * (rbx * uy - rby * ux)
     if bend == OWN_TURN:
-        one[STIFFNESS + 2, 2] = one[STIFFNESS + 5, 5] = 0.0
-    one[STIFFNESS + 2, 2] += 0.5 * slope_a * (rax1 * fx + ray1 * fy)
-    one[STIFFNESS + 5, 5] -= 0.5 * slope_b * (rbx1 * fx + rby1 * fy)
-    one[FORCE, 0], one[FORCE, 1], one[FORCE, 2] = -fx, -fy, -lever_a * (rax * fy - ray * fx)
-    one[FORCE, 3], one[FORCE, 4], one[FORCE, 5] = fx, fy, lever_b * (rbx * fy - rby * fx)
+        one[2, 2] = one[5, 5] = 0.0
+    one[2, 2] += 0.5 * slope_a * (rax1 * fx + ray1 * fy)
+    one[5, 5] -= 0.5 * slope_b * (rbx1 * fx + rby1 * fy)
+    hinge[k, FORCE], hinge[k, FORCE + 1], hinge[k, FORCE + 2] = -fx, -fy, -lever_a * (rax * fy - ray * fx)
+    hinge[k, FORCE + 3], hinge[k, FORCE + 4], hinge[k, FORCE + 5] = fx, fy, lever_b * (rbx * fy - rby * fx)
     return bend
 
 
@@ -134,7 +134,7 @@ def groove_rows(
         for c in range(6):
             one[r, c] = 0.0
     for c in range(6):
-        one[FORCE, c] = 0.0
+        hinge[k, FORCE + c] = 0.0
     for r in range(2):
         nx0, ny0 = hinge[k, NORMAL], hinge[k, NORMAL + 1]
         offset = joint[j, OFFSET]
@@ -144,28 +144,28 @@ def groove_rows(
         nx1, ny1 = ca * nx0 - sa * ny0, sa * nx0 + ca * ny0
         nx, ny = 0.5 * (nx0 + nx1), 0.5 * (ny0 + ny1)
         lam = hinge[k, LAM + r]
-        one[VALUE, r] = nx1 * yx1 + ny1 * yy1 - offset
-        one[ROWS + r, 0], one[ROWS + r, 1], one[ROWS + r, 2] = -nx, -ny, -lever_a * (yx * ny - yy * nx)
-        one[ROWS + r, 3], one[ROWS + r, 4], one[ROWS + r, 5] = nx, ny, lever_b * (rbx * ny - rby * nx)
-        one[SLOPES + r, 0], one[SLOPES + r, 1] = -nx1, -ny1
-        one[SLOPES + r, 2] = -slope_a * (yx1 * ny1 - yy1 * nx1)
-        one[SLOPES + r, 3], one[SLOPES + r, 4] = nx1, ny1
-        one[SLOPES + r, 5] = slope_b * (rbx1 * ny1 - rby1 * nx1)
+        hinge[k, VALUE + r] = nx1 * yx1 + ny1 * yy1 - offset
+        hinge[k, ROWS + 6 * r + 0], hinge[k, ROWS + 6 * r + 1], hinge[k, ROWS + 6 * r + 2] = -nx, -ny, -lever_a * (yx * ny - yy * nx)
+        hinge[k, ROWS + 6 * r + 3], hinge[k, ROWS + 6 * r + 4], hinge[k, ROWS + 6 * r + 5] = nx, ny, lever_b * (rbx * ny - rby * nx)
+        hinge[k, SLOPES + 6 * r + 0], hinge[k, SLOPES + 6 * r + 1] = -nx1, -ny1
+        hinge[k, SLOPES + 6 * r + 2] = -slope_a * (yx1 * ny1 - yy1 * nx1)
+        hinge[k, SLOPES + 6 * r + 3], hinge[k, SLOPES + 6 * r + 4] = nx1, ny1
+        hinge[k, SLOPES + 6 * r + 5] = slope_b * (rbx1 * ny1 - rby1 * nx1)
         if r == 1 and side == 0:
             break
         for c in range(6):
-            one[FORCE, c] += lam * one[ROWS + r, c]
+            hinge[k, FORCE + c] += lam * hinge[k, ROWS + 6 * r + c]
         half_a, half_b = 0.5 * lam * slope_a, 0.5 * lam * slope_b
-        one[STIFFNESS, 2] += half_a * ny1
-        one[STIFFNESS + 1, 2] -= half_a * nx1
-        one[STIFFNESS + 3, 2] -= half_a * ny1
-        one[STIFFNESS + 4, 2] += half_a * nx1
-        one[STIFFNESS + 5, 5] -= half_b * (rbx1 * nx + rby1 * ny)
-        one[STIFFNESS + 5, 2] += half_a * (rbx * nx1 + rby * ny1)
-        one[STIFFNESS + 2, 0] += 0.5 * lam * ny
-        one[STIFFNESS + 2, 1] -= 0.5 * lam * nx
-        one[STIFFNESS + 2, 3] -= 0.5 * lam * ny
-        one[STIFFNESS + 2, 4] += 0.5 * lam * nx
-        one[STIFFNESS + 2, 5] += half_b * (rbx1 * nx + rby1 * ny)
-        one[STIFFNESS + 2, 2] -= half_a * (yx * nx1 + yy * ny1)
+        one[0, 2] += half_a * ny1
+        one[1, 2] -= half_a * nx1
+        one[3, 2] -= half_a * ny1
+        one[4, 2] += half_a * nx1
+        one[5, 5] -= half_b * (rbx1 * nx + rby1 * ny)
+        one[5, 2] += half_a * (rbx * nx1 + rby * ny1)
+        one[2, 0] += 0.5 * lam * ny
+        one[2, 1] -= 0.5 * lam * nx
+        one[2, 3] -= 0.5 * lam * ny
+        one[2, 4] += 0.5 * lam * nx
+        one[2, 5] += half_b * (rbx1 * nx + rby1 * ny)
+        one[2, 2] -= half_a * (yx * nx1 + yy * ny1)
     return FULL_BEND

@@ -82,10 +82,10 @@ def joint_rows(
         for r in range(link[k, L_ROWS]):
             speed = -hinge[k, TARGET + r]
             for c in range(3):
-                speed += one[ROWS + r, c] * local[a, AFTER + c] + one[ROWS + r, 3 + c] * local[b, AFTER + c]
+                speed += hinge[k, ROWS + 6 * r + c] * local[a, AFTER + c] + hinge[k, ROWS + 6 * r + 3 + c] * local[b, AFTER + c]
             for c in range(6):
-                one[SLOPES + r, c] = one[ROWS + r, c]
-            one[VALUE, r] = 0.5 * h * speed
+                hinge[k, SLOPES + 6 * r + c] = hinge[k, ROWS + 6 * r + c]
+            hinge[k, VALUE + r] = 0.5 * h * speed
     return bend
 
 

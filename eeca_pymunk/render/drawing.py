@@ -7,8 +7,8 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection, LineCollection, PolyCollection
 
-from eeca_pymunk.bodies import FloatArray, IntArray
-from eeca_pymunk.outlines import Outlines, place
+from eeca_pymunk.arrays import FloatArray, IntArray
+from eeca_pymunk.space.outlines import Outlines, place
 
 # From the colour-blind safe set of Okabe and Ito; they differ in lightness too.
 MOVING, STATIC, SENSOR, ARROW, GHOST = "#0072b2", "#444444", "#cc79a7", "#d55e00", "#e69f00"

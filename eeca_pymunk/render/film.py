@@ -15,7 +15,7 @@ from matplotlib.lines import Line2D
 from matplotlib.quiver import Quiver
 from tqdm import tqdm
 
-from eeca_pymunk.bodies import FloatArray
+from eeca_pymunk.arrays import FloatArray
 from eeca_pymunk.files import check_writable, whole_file
 from eeca_pymunk.recording import Recording
 

@@ -4,22 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-import pymunk
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.quiver import Quiver
 from PIL import Image
 
-from eeca_pymunk.bodies import FloatArray
+from eeca_pymunk.arrays import FloatArray
 from eeca_pymunk.files import whole_file
-from eeca_pymunk.outlines import Outlines
 from eeca_pymunk.recording import Recording
-from eeca_pymunk.stepper import StepReport
+from eeca_pymunk.report import StepReport
+from eeca_pymunk.space.bodies import moving
+from eeca_pymunk.space.outlines import Outlines
 
 from .drawing import ARROW, GHOST, Drawing, bounds
+
+if TYPE_CHECKING:
+    import pymunk
 
 View = tuple[float, float, float, float]
 _COLORS = 128
@@ -59,7 +63,7 @@ def snapshot(
         outlines, mass = subject.outlines, subject.mass
         x, angle, v = subject.position[i], subject.angle[i], subject.velocity[i]
     else:
-        bodies = [b for b in subject.bodies if b.body_type != pymunk.Body.STATIC]
+        bodies = moving(subject)
         outlines, mass = Outlines.of(subject, bodies), np.array([b.mass for b in bodies])
         x, v = (np.array(a, float).reshape(-1, 2) for a in ([b.position for b in bodies], [b.velocity for b in bodies]))
         angle = np.array([b.angle for b in bodies])

@@ -1,0 +1,72 @@
+"""Dashpot: psi2 from a spring with a dashpot, the paper's closure (design section 4)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..energy import balance
+from ..energy.complementarity import solve
+from .locked import locked_motion, restitution
+from .simultaneous import Problem, Simultaneous, Solution
+
+
+@dataclass(frozen=True)
+class Dashpot(Simultaneous):
+    """The paper's closure: psi1 + psi2 = 4 xi / Omega (Eqs. 28-30), an enhanced penalty of spring and dashpot.
+
+    A fixed point over complementarity problems (design section 4): impulses give psi2, Delta g and the normals at the
+    kinks, these give the next problem. Islands in which no positive lock exists fall back to the rigid limit.
+
+    Args:
+        stiffness: K > 0, mass/time².
+        damping_ratio: xi >= 0.
+        tolerance: of the change of the impulses between iterations, relative to the largest, and of psi2.
+        max_iterations: of the fixed point; `StepReport.converged` tells whether they sufficed.
+    """
+
+    stiffness: float
+    damping_ratio: float
+    tolerance: float = 1e-8
+    max_iterations: int = 25
+
+    def __post_init__(self) -> None:
+        check_stiffness(self.stiffness)
+        if not (self.damping_ratio >= 0 and math.isfinite(self.damping_ratio)):
+            raise ValueError(f"damping_ratio = {self.damping_ratio}: give a finite number >= 0")
+
+    def solve(self, problem: Problem) -> Solution:
+        dt, K = problem.dt, self.stiffness
+        S = balance.dashpot_sum(self.damping_ratio, balance.reduced_frequency(K, problem.larger_mass, dt))
+        psi2, increment, lam = np.zeros_like(S), np.zeros_like(S), problem.guess
+        geometry = problem.geometry_at(balance.impulse_time(psi2, dt))
+        A = problem.operator(geometry)
+        converged, iteration = False, 0
+        while not converged and iteration < self.max_iterations:
+            iteration += 1
+            p_c = balance.extra_momentum(A, psi2, problem.external + A.impulse(lam))
+            q = restitution(A, problem) + 2.0 * (A.relative(p_c * A.inverse_mass[:, None]) - increment / dt)
+            impulses = solve(A, q, start=lam, tolerance=0.1 * self.tolerance, max_iterations=300)
+            delta_p = problem.external + A.impulse(impulses.lam)
+            w = balance.projected_product(A, delta_p, delta_p)
+            new = balance.weights(impulses.lam, problem.gap, w, S, K, dt)
+            change = np.max(np.abs(impulses.lam - lam))
+            converged = bool(
+                impulses.converged
+                and change <= self.tolerance * np.max(impulses.lam)
+                and np.max(np.abs(new.psi2 - psi2)) <= self.tolerance
+            )
+            lam, psi2, increment = impulses.lam, new.psi2, new.gap_increment
+            # The motion takes these psi2 too: the kink it makes in a path lies where its normal was taken.
+            geometry = problem.geometry_at(balance.impulse_time(psi2, dt))
+            A = problem.operator(geometry)
+        weights = balance.Weights(S - psi2, psi2, increment)
+        return locked_motion(A, geometry, problem, lam, weights, iteration, converged)
+
+
+def check_stiffness(stiffness: float) -> None:
+    """Raise ValueError unless the penalty stiffness K is positive and finite."""
+    if not (stiffness > 0 and math.isfinite(stiffness)):
+        raise ValueError(f"stiffness = {stiffness}: give a finite number > 0, in mass/time²")

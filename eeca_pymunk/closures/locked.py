@@ -1,0 +1,68 @@
+"""What Midstep and Dashpot share: Newton's restitution, and the motion with impulses scaled by the energy lock."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from .._rounds.geometry import Geometry
+from ..arrays import FloatArray
+from ..energy import balance
+from ..energy.complementarity import solve
+from ..energy.delassus import Delassus
+from ..energy.graph import islands
+from .simultaneous import Problem, Solution
+
+TOLERANCE = 1e-6  # of the rigid limit's complementarity problem, relative to the largest approach speed
+
+
+def restitution(A: Delassus, problem: Problem) -> FloatArray:
+    """(m,) e u_n + u*, u* with the external forces alone."""
+    u_n = A.relative(problem.velocity)
+    u_free = u_n + problem.dt * A.relative(problem.acceleration)
+    return balance.restitution_target(u_n, problem.elasticity) + u_free
+
+
+def locked_motion(
+    A: Delassus,
+    geometry: Geometry,
+    problem: Problem,
+    lam: FloatArray,
+    weights: balance.Weights,
+    iterations: int,
+    converged: bool,
+    q: FloatArray | None = None,
+    draft: bool = False,
+) -> Solution:
+    """Scale the impulses by the energy lock, and move: Eq. 10 with v_np1 and p_c of the scaled impulses.
+
+    `q` (m,) is e u_n + u* of the rigid limit, computed if None.
+    """
+    dt, psi1, psi2, increment = problem.dt, weights.psi1, weights.psi2, weights.gap_increment
+    q = restitution(A, problem) if q is None else q
+    # Impulses that meet their tolerance need no lock of their own for each island: it would be 1 in all of them.
+    island = None if converged else islands(problem.row_a, problem.row_b, problem.inverse_mass)
+    lock = balance.energy_lock(A, island, lam, q, psi2, problem.external)
+    failed = ~lock.valid & (lam > 0)
+    if failed.any() and psi2.any():
+        psi1, psi2 = np.where(failed, math.inf, psi1), np.where(failed, 0.0, psi2)
+        increment, converged = np.where(failed, 0.0, increment), False
+        geometry = problem.geometry_at(balance.impulse_time(psi2, dt))
+        A = problem.operator(geometry)
+        q = restitution(A, problem)
+        lam = np.where(failed, solve(A, q, tolerance=TOLERANCE).lam, lam)
+        lock = balance.energy_lock(A, island, lam, q, psi2, problem.external)
+    # In the rigid limit no impulse at all conserves energy too.
+    scale = np.where(lam > 0, np.where(lock.valid, lock.scale, 0.0), 1.0)
+    worst = float(scale[np.argmax(np.abs(scale - 1.0))])
+    lam = scale * lam
+    m_inv = A.inverse_mass[:, None]
+    delta_p = problem.external + A.impulse(lam)
+    velocity = problem.velocity + delta_p * m_inv
+    displacement = (0.5 * dt) * (problem.velocity + velocity)
+    displacement += dt * balance.extra_momentum(A, psi2, delta_p) * m_inv
+    return Solution(
+        velocity, displacement, lam, psi1, psi2, increment, balance.impulse_time(psi2, dt), geometry,
+        iterations, worst, converged, draft,
+    )  # fmt: skip

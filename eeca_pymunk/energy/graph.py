@@ -1,0 +1,39 @@
+"""The graph of bodies and contacts: which bodies contacts touch, and which hang together."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..arrays import BoolArray, FloatArray, IntArray
+
+
+def restrict(row_a: IntArray, row_b: IntArray, count: int) -> tuple[IntArray, IntArray, IntArray]:
+    """The rows of `count` that occur, increasing, and both arrays renumbered to them: few contacts, small arrays."""
+    occurs = np.zeros(count, bool)
+    occurs[row_a] = occurs[row_b] = True
+    rows = np.flatnonzero(occurs)
+    number = np.empty(count, np.intp)
+    number[rows] = np.arange(len(rows))
+    return rows, number[row_a], number[row_b]
+
+
+def components(row_a: IntArray, row_b: IntArray, moves: BoolArray) -> IntArray:
+    """(R,) label of the connected component of every body; bodies that do not move (moves (R,) bool) do not connect."""
+    label = np.arange(len(moves))
+    both = moves[row_a] & moves[row_b]
+    a, b = row_a[both], row_b[both]
+    while True:
+        before = label.copy()
+        lowest = np.minimum(before[a], before[b])
+        # Hook the roots, not only the ends, so that labels travel along whole trees at once.
+        np.minimum.at(label, before[a], lowest)
+        np.minimum.at(label, before[b], lowest)
+        label = label[label]
+        if np.array_equal(label, before):
+            return label
+
+
+def islands(row_a: IntArray, row_b: IntArray, inverse_mass: FloatArray) -> IntArray:
+    """(m,) label of the connected component of every contact; bodies of infinite mass do not connect."""
+    label = components(row_a, row_b, inverse_mass > 0)
+    return np.where(inverse_mass[row_a] > 0, label[row_a], label[row_b])

@@ -1,0 +1,203 @@
+"""Distances of convex cores: points, segments and polygons, which the shapes' radii round.
+
+A core is rows (x, y, n_x, n_y) in the world: a vertex and the outward unit normal of the edge that begins there,
+counter-clockwise. Apart along the normal n_j of edge j of P are
+
+    s_j = min_i (q_i - p_j) . n_j,
+
+and the largest of all s_j of both cores is their depth where it is negative. Where it is positive it bounds the
+distance from below, and is the distance if the foot of the nearest vertex lies inside that edge (all other edges are
+less far apart). Else some vertex and some edge of the other core are closest. Two parallel segments, and cores that
+share a corner, need the second way also where s = 0.
+
+Directions between points that are closer than `CLOSE` of the coordinates are round-off: there the edge's normal holds.
+"""
+
+from __future__ import annotations
+
+import math
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import kernel
+from ..layout import COUNT, FIRST
+
+CLOSE = 1e-12  # distance relative to coordinates and sizes, below which its direction is round-off
+_TIE = 1e-14  # by which the axis of a longer edge may be less far apart, relative likewise
+_LONGER = 1.0 + 1e-9  # squared lengths of edges: less is round-off
+_FAR = math.inf
+
+
+@kernel
+def place(LINK: IntArray, VERTEX: FloatArray, s: int, x: float, y: float, angle: float, OUT: FloatArray) -> int:
+    """Vertices and outward normals of shape s, its body at (x, y, angle), into OUT (at least as many, 4); how many.
+
+    Exact for angle 0 and for a vertex at the centre of mass.
+    """
+    first, count = LINK[s, FIRST], LINK[s, COUNT]
+    if angle == 0.0 or (count == 1 and VERTEX[first, 0] == 0.0 and VERTEX[first, 1] == 0.0):
+        for k in range(count):
+            OUT[k, 0] = x + VERTEX[first + k, 0]
+            OUT[k, 1] = y + VERTEX[first + k, 1]
+            OUT[k, 2] = VERTEX[first + k, 2]
+            OUT[k, 3] = VERTEX[first + k, 3]
+        return count
+    c, z = math.cos(angle), math.sin(angle)
+    for k in range(count):
+        px, py, nx, ny = VERTEX[first + k, 0], VERTEX[first + k, 1], VERTEX[first + k, 2], VERTEX[first + k, 3]
+        OUT[k, 0] = x + (c * px - z * py)
+        OUT[k, 1] = y + (z * px + c * py)
+        OUT[k, 2] = c * nx - z * ny
+        OUT[k, 3] = z * nx + c * ny
+    return count
+
+
+@kernel
+def separation(P: FloatArray, p: int, Q: FloatArray, q: int) -> tuple[float, int, int]:
+    """How far Q (q vertices) is from P (p vertices) along the best edge normal of P, that edge, and Q's vertex that is
+    nearest along it; (-inf, 0, 0) for a point P."""
+    best, edge, vertex = -_FAR, 0, 0
+    if p > 1:
+        for j in range(p):
+            nx, ny = P[j, 2], P[j, 3]
+            px, py = P[j, 0], P[j, 1]
+            least, lowest = _FAR, 0
+            for i in range(q):
+                height = (Q[i, 0] - px) * nx + (Q[i, 1] - py) * ny
+                if height < least:
+                    least, lowest = height, i
+            if least > best:
+                best, edge, vertex = least, j, lowest
+    return best, edge, vertex
+
+
+@kernel
+def along_edge(P: FloatArray, p: int, edge: int, x: float, y: float) -> tuple[float, float]:
+    """Where on an edge the foot of (x, y) is, times the edge's length, and that length squared."""
+    end = edge + 1 if edge + 1 < p else 0
+    ex, ey = P[end, 0] - P[edge, 0], P[end, 1] - P[edge, 1]
+    return (x - P[edge, 0]) * ex + (y - P[edge, 1]) * ey, ex * ex + ey * ey
+
+
+@kernel
+def vertex_edge(P: FloatArray, p: int, Q: FloatArray, q: int) -> tuple[float, int, int, float, float, bool]:
+    """The vertex of P closest to the outline of Q, q > 1: squared distance, vertex, edge, the point of the edge, and
+    whether that is inside the edge."""
+    best, vertex, edge, fx, fy, inside = _FAR, 0, 0, 0.0, 0.0, False
+    for j in range(q):
+        end = j + 1 if j + 1 < q else 0
+        bx, by = Q[j, 0], Q[j, 1]
+        ex, ey = Q[end, 0] - bx, Q[end, 1] - by
+        squared = ex * ex + ey * ey
+        for i in range(p):
+            x, y = P[i, 0], P[i, 1]
+            along = (x - bx) * ex + (y - by) * ey
+            within = 0.0 < along < squared
+            if within:
+                along /= squared
+                px, py = bx + along * ex, by + along * ey
+            elif along <= 0.0:
+                px, py = bx, by
+            else:
+                px, py = Q[end, 0], Q[end, 1]
+            d = (x - px) * (x - px) + (y - py) * (y - py)
+            if d < best:
+                best, vertex, edge, fx, fy, inside = d, i, j, px, py, within
+    return best, vertex, edge, fx, fy, inside
+
+
+@kernel
+def prefers_second(
+    P: FloatArray, p: int, edge_p: int, apart_p: float, Q: FloatArray, q: int, edge_q: int, apart_q: float, tie: float
+) -> bool:
+    """Whether Q's edge is the axis of two cores: the one farther apart, of two alike (within `tie`) the longer edge.
+
+    Lengths are no round-off: parallel faces keep their axis however they shake.
+    """
+    if apart_q > apart_p + tie:
+        return True
+    if apart_p > apart_q + tie:
+        return False
+    length_p = along_edge(P, p, edge_p, 0.0, 0.0)[1]
+    length_q = along_edge(Q, q, edge_q, 0.0, 0.0)[1]
+    return length_q > length_p * _LONGER
+
+
+@kernel
+def point_core(x: float, y: float, Q: FloatArray, q: int) -> tuple[float, float, float, bool, int, float]:
+    """A point and a core: distance, unit normal toward the core, whether that is an edge's, the edge along which the
+    core is farthest apart, and how far (-inf without edges)."""
+    if q == 1:
+        dx, dy = Q[0, 0] - x, Q[0, 1] - y
+        d = math.sqrt(dx * dx + dy * dy)
+        if d == 0.0:
+            return 0.0, 1.0, 0.0, False, 0, -_FAR
+        return d, dx / d, dy / d, False, 0, -_FAR
+    apart, edge = -_FAR, 0
+    for j in range(q):
+        height = (x - Q[j, 0]) * Q[j, 2] + (y - Q[j, 1]) * Q[j, 3]
+        if height > apart:
+            apart, edge = height, j
+    if apart >= 0.0:
+        along, squared = along_edge(Q, q, edge, x, y)
+        if along < 0.0 or along > squared:
+            corner = edge
+            if along > 0.0:
+                corner = edge + 1 if edge + 1 < q else 0
+            dx, dy = Q[corner, 0] - x, Q[corner, 1] - y
+            d = math.sqrt(dx * dx + dy * dy)
+            if d > CLOSE * (abs(x) + abs(y) + math.sqrt(squared)):
+                return d, dx / d, dy / d, False, edge, apart
+    return apart, -Q[edge, 2], -Q[edge, 3], True, edge, apart
+
+
+@kernel
+def closest(
+    P: FloatArray, p: int, Q: FloatArray, q: int
+) -> tuple[float, float, float, float, float, bool, int, float, int, float]:
+    """Closest points of cores P and Q, or in overlap the shortest way out.
+
+    Returns distance (length, negative in overlap), unit normal (2) from P to Q, point (2) of P, whether the normal is
+    that of an edge, then the edge of P along which the cores are farthest apart and how far (-inf for a point), and
+    the same of Q. Coincident points get the normal (1, 0).
+    """
+    if p == 1:
+        d, nx, ny, flat, edge, apart = point_core(P[0, 0], P[0, 1], Q, q)
+        return d, nx, ny, P[0, 0], P[0, 1], flat, 0, -_FAR, edge, apart
+    if q == 1:
+        d, nx, ny, flat, edge, apart = point_core(Q[0, 0], Q[0, 1], P, p)
+        return d, -nx, -ny, Q[0, 0] + d * nx, Q[0, 1] + d * ny, flat, edge, apart, 0, -_FAR
+    apart_p, edge_p, vertex_q = separation(P, p, Q, q)
+    apart_q, edge_q, vertex_p = separation(Q, q, P, p)
+    size = abs(P[0, 0]) + abs(P[0, 1]) + abs(Q[0, 0]) + abs(Q[0, 1])
+    size += abs(P[1, 0] - P[0, 0]) + abs(P[1, 1] - P[0, 1]) + abs(Q[1, 0] - Q[0, 0]) + abs(Q[1, 1] - Q[0, 1])
+    near = CLOSE * size
+    second = prefers_second(P, p, edge_p, apart_p, Q, q, edge_q, apart_q, _TIE * size)
+    apart = apart_q if second else apart_p
+    if apart > -near:
+        # The face nearest to a vertex; without one, any vertex and edge.
+        if second:
+            along, squared = along_edge(Q, q, edge_q, P[vertex_p, 0], P[vertex_p, 1])
+        else:
+            along, squared = along_edge(P, p, edge_p, Q[vertex_q, 0], Q[vertex_q, 1])
+        if along < 0.0 or along > squared:
+            d2, i, j, fx, fy, inside = vertex_edge(P, p, Q, q)
+            e2, k, m, gx, gy, within = vertex_edge(Q, q, P, p)
+            d = math.sqrt(min(d2, e2))
+            if d > near:
+                if d2 <= e2:
+                    x, y, dx, dy = P[i, 0], P[i, 1], fx - P[i, 0], fy - P[i, 1]
+                    nx, ny = -Q[j, 2], -Q[j, 3]
+                else:
+                    x, y, dx, dy = gx, gy, Q[k, 0] - gx, Q[k, 1] - gy
+                    nx, ny, inside = P[m, 2], P[m, 3], within
+                if not inside:
+                    return d, dx / d, dy / d, x, y, False, edge_p, apart_p, edge_q, apart_q
+                if nx * dx + ny * dy < 0.0:  # the other side of a segment
+                    nx, ny = -nx, -ny
+                return d, nx, ny, x, y, True, edge_p, apart_p, edge_q, apart_q
+    if second:
+        nx, ny, x, y = -Q[edge_q, 2], -Q[edge_q, 3], P[vertex_p, 0], P[vertex_p, 1]
+    else:
+        nx, ny = P[edge_p, 2], P[edge_p, 3]
+        x, y = Q[vertex_q, 0] - apart * nx, Q[vertex_q, 1] - apart * ny
+    return apart, nx, ny, x, y, True, edge_p, apart_p, edge_q, apart_q

@@ -1,0 +1,182 @@
+"""Contact points of two shapes at one configuration: two where faces are opposite each other, one elsewhere.
+
+The reference face is the edge along which the cores are farthest apart. The other core's edge that looks at it most
+is clipped to its length, along the tangent; both ends of what is left are contacts, with heights above the reference
+as gaps. Rows are (n_x, n_y, p_x, p_y, g), normals from a to b, points halfway between the surfaces, in the order of
+p . t with t = (-n_y, n_x): the key "pair and place in its rows" lasts while the shapes stay on each other.
+"""
+
+from __future__ import annotations
+
+import math
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import kernel
+from ..layout import COUNT, ROUNDING
+from .convex import closest, place, prefers_second
+from .gap import ordered_gap
+
+_WIDTH = 1e-6  # of a common face relative to the shapes, below which it is one point
+
+
+@kernel
+def clip(
+    P: FloatArray, p: int, edge: int, Q: FloatArray, q: int, r_p: float, r_q: float, sign: float, reach: float,
+    OUT: FloatArray,
+) -> int:  # fmt: skip
+    """Rows of OUT for the edge of P as reference face; sign is 1 if the normal from a to b is P's, else -1."""
+    nx, ny = P[edge, 2], P[edge, 3]
+    tx, ty = -ny, nx
+    end = edge + 1 if edge + 1 < p else 0
+    x, y = P[edge, 0], P[edge, 1]
+    width = (P[end, 0] - x) * tx + (P[end, 1] - y) * ty
+    best, other = math.inf, 0
+    for j in range(q):
+        d = Q[j, 2] * nx + Q[j, 3] * ny
+        if d < best:
+            best, other = d, j
+    last = other + 1 if other + 1 < q else 0
+    # Counter-clockwise outlines: along P's edge, the opposite one runs backwards.
+    u_0, h_0 = (Q[last, 0] - x) * tx + (Q[last, 1] - y) * ty, (Q[last, 0] - x) * nx + (Q[last, 1] - y) * ny
+    u_1, h_1 = (Q[other, 0] - x) * tx + (Q[other, 1] - y) * ty, (Q[other, 0] - x) * nx + (Q[other, 1] - y) * ny
+    low, high = max(u_0, 0.0), min(u_1, width)
+    slope = 0.0
+    if u_1 > u_0:
+        slope = (h_1 - h_0) / (u_1 - u_0)
+    count, points = 0, 2
+    if high <= low:  # beside each other: the end that is nearer
+        points = 1
+        low = u_0 if h_0 < h_1 else u_1
+    for k in range(points):
+        # In the order of the tangent of the normal from a to b.
+        u = low if (k == 0) == (sign > 0.0) or points == 1 else high
+        h = h_0 if u == u_0 else (h_1 if u == u_1 else h_0 + slope * (u - u_0))
+        g = h - r_p - r_q
+        if g <= reach:
+            away = r_p + 0.5 * g
+            OUT[count, 0], OUT[count, 1] = sign * nx, sign * ny
+            OUT[count, 2], OUT[count, 3] = x + u * tx + away * nx, y + u * ty + away * ny
+            OUT[count, 4] = g
+            count += 1
+    return count
+
+
+@kernel
+def reverse(OUT: FloatArray, count: int) -> None:
+    """The rows seen from b: normals turned round, and with them the order along the tangent."""
+    for k in range(count):
+        OUT[k, 0], OUT[k, 1] = -OUT[k, 0], -OUT[k, 1]
+    if count == 2:
+        for c in range(5):
+            OUT[0, c], OUT[1, c] = OUT[1, c], OUT[0, c]
+
+
+@kernel
+def ordered_manifold(
+    SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray,
+    a: int, x_a: float, y_a: float, angle_a: float, b: int, x_b: float, y_b: float, angle_b: float,
+    reach: float, tolerance: float, OUT: FloatArray,
+) -> int:  # fmt: skip
+    """`manifold` of shapes in the order of their numbers."""
+    r_a, r_b = SHAPE[a, ROUNDING], SHAPE[b, ROUNDING]
+    if LINK[a, COUNT] == 1 or LINK[b, COUNT] == 1:
+        g, nx, ny, px, py = ordered_gap(
+            SHAPE, LINK, VERTEX, WORK, a, x_a, y_a, angle_a, b, x_b, y_b, angle_b
+        )  # fmt: skip
+        OUT[0, 0], OUT[0, 1], OUT[0, 2], OUT[0, 3], OUT[0, 4] = nx, ny, px, py, g
+        return 1 if g <= reach else 0
+    P, Q = WORK[0], WORK[1]
+    p = place(LINK, VERTEX, a, x_a, y_a, angle_a, P)
+    q = place(LINK, VERTEX, b, x_b, y_b, angle_b, Q)
+    d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q = closest(P, p, Q, q)
+    g = d - r_a - r_b
+    if g > reach:
+        return 0
+    if not flat and d > max(apart_p, apart_q) + tolerance:  # two corners
+        away = r_a + 0.5 * g
+        OUT[0, 0], OUT[0, 1], OUT[0, 2], OUT[0, 3], OUT[0, 4] = nx, ny, x + away * nx, y + away * ny, g
+        return 1
+    if prefers_second(P, p, edge_p, apart_p, Q, q, edge_q, apart_q, tolerance):
+        return clip(Q, q, edge_q, P, p, r_b, r_a, -1.0, reach, OUT)
+    return clip(P, p, edge_p, Q, q, r_a, r_b, 1.0, reach, OUT)
+
+
+@kernel
+def manifold(
+    SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray,
+    a: int, x_a: float, y_a: float, angle_a: float, b: int, x_b: float, y_b: float, angle_b: float,
+    reach: float, tolerance: float, OUT: FloatArray,
+) -> int:  # fmt: skip
+    """How many (0, 1 or 2) points of shapes a and b are no farther apart than `reach` (length), into OUT (2, 5).
+
+    Args:
+        tolerance: length, by which the shapes may be less far apart along the longer of two reference faces, and by
+            which two corners must be farther apart than the faces beside them to be a contact of their own.
+        OUT: rows (n_x, n_y, p_x, p_y, g), the gap along the reference face's normal.
+    """
+    if a <= b:
+        return ordered_manifold(
+            SHAPE, LINK, VERTEX, WORK, a, x_a, y_a, angle_a, b, x_b, y_b, angle_b, reach, tolerance, OUT
+        )
+    count = ordered_manifold(
+        SHAPE, LINK, VERTEX, WORK, b, x_b, y_b, angle_b, a, x_a, y_a, angle_a, reach, tolerance, OUT
+    )
+    reverse(OUT, count)
+    return count
+
+
+@kernel
+def support_range(P: FloatArray, p: int, nx: float, ny: float, tolerance: float) -> tuple[float, float, float, float]:
+    """Of a core's vertices no more than `tolerance` below the highest along n: the least and greatest place along
+    t = (-n_y, n_x); then that height, and the extent of the whole core along t."""
+    top, left, right = -math.inf, math.inf, -math.inf
+    for k in range(p):
+        top = max(top, P[k, 0] * nx + P[k, 1] * ny)
+        u = P[k, 1] * nx - P[k, 0] * ny
+        left, right = min(left, u), max(right, u)
+    low, high = math.inf, -math.inf
+    for k in range(p):
+        if P[k, 0] * nx + P[k, 1] * ny >= top - tolerance:
+            u = P[k, 1] * nx - P[k, 0] * ny
+            low, high = min(low, u), max(high, u)
+    return low, high, top, right - left
+
+
+@kernel
+def face(
+    SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray,
+    a: int, x_a: float, y_a: float, angle_a: float, b: int, x_b: float, y_b: float, angle_b: float,
+    tolerance: float, OUT: FloatArray,
+) -> int:  # fmt: skip
+    """The contact of shapes that meet, into OUT as `manifold` does: 2 rows, the ends of their common face, where both
+    have an edge across the normal within `tolerance` (length), else 1. The gap is the same at both ends.
+
+    In overlap every corner that is inside acts: the tolerance grows by the depth.
+    """
+    first, second = (a, b) if a <= b else (b, a)
+    if a <= b:
+        g, nx, ny, px, py = ordered_gap(
+            SHAPE, LINK, VERTEX, WORK, a, x_a, y_a, angle_a, b, x_b, y_b, angle_b
+        )  # fmt: skip
+    else:
+        g, nx, ny, px, py = ordered_gap(
+            SHAPE, LINK, VERTEX, WORK, b, x_b, y_b, angle_b, a, x_a, y_a, angle_a
+        )  # fmt: skip
+    count = 1
+    OUT[0, 0], OUT[0, 1], OUT[0, 2], OUT[0, 3], OUT[0, 4] = nx, ny, px, py, g
+    p, q = LINK[first, COUNT], LINK[second, COUNT]
+    if p > 1 and q > 1:
+        slack = tolerance + max(-g, 0.0)
+        low_p, high_p, top, size_p = support_range(WORK[0], p, nx, ny, slack)
+        low_q, high_q, _, size_q = support_range(WORK[1], q, -nx, -ny, slack)
+        low, high = max(low_p, -high_q), min(high_p, -low_q)
+        if high - low > _WIDTH * max(size_p, size_q):
+            count = 2
+            top += SHAPE[first, ROUNDING] + 0.5 * g
+            for k in range(2):
+                u = low if k == 0 else high
+                OUT[k, 0], OUT[k, 1], OUT[k, 4] = nx, ny, g
+                OUT[k, 2], OUT[k, 3] = top * nx - u * ny, top * ny + u * nx
+    if a > b:
+        reverse(OUT, count)
+    return count

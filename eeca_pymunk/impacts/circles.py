@@ -1,0 +1,136 @@
+"""When a circle meets another one, or a static outline, on parabolic paths.
+
+Straight relative paths, and flat sides under a constant pull, have closed forms. Round ends under a pull have none
+that is cheap (a quartic): there the bound g + g' s - |pull| s² / 2 <= gap(s), which holds because the distance of
+convex sets is a convex function of a translation, leads to the first root from below. None is jumped over, and the
+iteration converges quadratically: Newton's method from the safe side.
+"""
+
+from __future__ import annotations
+
+import math
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import kernel
+from ..layout import COUNT, FIRST
+from .roots import ADVANCES, STRIDE, ball_point, flat
+
+
+@kernel
+def circle_circle(
+    dx: float, dy: float, ux: float, uy: float, ax: float, ay: float, extent: float, tolerance: float, left: float
+) -> tuple[float, bool]:
+    """Time until |d + u s + a s² / 2| = extent with the distance falling, and whether that is when, or a lower bound.
+
+    Args:
+        dx, dy: from centre to centre, length.  ux, uy: relative velocity.  ax, ay: relative acceleration.
+        extent: sum of the radii.  tolerance: length, a gap that counts as closed.
+        left: time; a bound is at least that. With infinity there is none.
+    """
+    if ax == 0.0 and ay == 0.0:
+        return ball_point(dx, dy, ux, uy, extent), True
+    pull = math.sqrt(ax * ax + ay * ay)
+    stride = STRIDE * left if left < math.inf else 0.0
+    s = 0.0
+    for _ in range(ADVANCES):
+        x, y = dx + (ux + 0.5 * ax * s) * s, dy + (uy + 0.5 * ay * s) * s
+        vx, vy = ux + ax * s, uy + ay * s
+        d = math.sqrt(x * x + y * y)
+        gap = d - extent
+        w = (x * vx + y * vy) / d if d > 0.0 else math.sqrt(vx * vx + vy * vy)
+        step = flat(gap, w, -pull)
+        if gap <= tolerance:
+            if w < 0.0:
+                return s + step, True
+            step = max(step, stride)
+        s += step
+        if s > left:
+            return s, False
+    return left, False
+
+
+@kernel
+def circle_outline(
+    x: float, y: float, vx: float, vy: float, ax: float, ay: float, extent: float, tolerance: float,
+    LINK: IntArray, VERTEX: FloatArray, b: int, left: float,
+) -> tuple[float, bool]:  # fmt: skip
+    """Time until a circle meets the static shape b, and whether that is when it does, or a lower bound.
+
+    The outline is the part of the plane inside all its sides, moved out by `extent`, with the corners cut round. So
+    the circle is apart at least until it has entered behind all sides it is now before, each of which is a quadratic
+    equation. If the last one is entered beside its edge that is the impact; else it may be at the corner, straight in
+    closed form too, bent by the bound above. Centres inside a polygon leave through the nearest side.
+
+    Args:
+        x, y: centre, length.  vx, vy: velocity.  ax, ay: acceleration.  extent: radius and b's rounding together.
+        tolerance, left: as in `circle_circle`.
+    """
+    first, count = LINK[b, FIRST], LINK[b, COUNT]
+    sides = count if count > 1 else 0
+    straight = ax == 0.0 and ay == 0.0
+    pull = math.sqrt(ax * ax + ay * ay)
+    stride = STRIDE * left if left < math.inf else 0.0
+    s = 0.0
+    for _ in range(ADVANCES):
+        px, py = x + (vx + 0.5 * ax * s) * s, y + (vy + 0.5 * ay * s) * s
+        ux, uy = vx + ax * s, vy + ay * s
+        entry, last = 0.0, -1
+        apart, near = -math.inf, 0
+        for j in range(sides):
+            nx, ny = VERTEX[first + j, 2], VERTEX[first + j, 3]
+            h = (px - VERTEX[first + j, 0]) * nx + (py - VERTEX[first + j, 1]) * ny
+            if h > apart:
+                apart, near = h, j
+            if h - extent >= -tolerance:
+                enters = flat(h - extent, ux * nx + uy * ny, ax * nx + ay * ny)
+                if enters == math.inf:
+                    return math.inf, True
+                if enters >= entry:
+                    entry, last = enters, j
+        corner, beside = first, False
+        nx, ny = 0.0, 0.0
+        if sides > 0:
+            edge, qx, qy = near, px, py
+            if last >= 0:
+                edge, qx, qy = last, px + (ux + 0.5 * ax * entry) * entry, py + (uy + 0.5 * ay * entry) * entry
+            corner, beside = beside_edge(VERTEX, first, count, edge, qx, qy)
+            if last >= 0:
+                if beside:
+                    return s + entry, True
+                if not straight:
+                    corner, beside = beside_edge(VERTEX, first, count, near, px, py)
+            beside = beside or apart < 0.0
+            nx, ny = VERTEX[first + near, 2], VERTEX[first + near, 3]
+        if straight:
+            if beside:  # in overlap
+                return (0.0 if ux * nx + uy * ny < 0.0 else math.inf), True
+            return ball_point(px - VERTEX[corner, 0], py - VERTEX[corner, 1], ux, uy, extent), True
+        gap = apart - extent
+        if not beside:
+            dx, dy = px - VERTEX[corner, 0], py - VERTEX[corner, 1]
+            d = math.sqrt(dx * dx + dy * dy)
+            gap = d - extent
+            if d > 0.0:
+                nx, ny = dx / d, dy / d
+        w = ux * nx + uy * ny
+        step = flat(gap, w, -pull)
+        if gap <= tolerance:
+            if w < 0.0:
+                return s + step, True
+            step = max(step, stride)
+        s += max(step, entry)
+        if s > left:
+            return s, False
+    return left, False
+
+
+@kernel
+def beside_edge(VERTEX: FloatArray, first: int, count: int, edge: int, x: float, y: float) -> tuple[int, bool]:
+    """The end of an outline's edge (row of VERTEX) on whose side a point is, and whether it is beside the edge."""
+    start = first + edge
+    end = start + 1 if edge + 1 < count else first
+    ex, ey = VERTEX[end, 0] - VERTEX[start, 0], VERTEX[end, 1] - VERTEX[start, 1]
+    along = (x - VERTEX[start, 0]) * ex + (y - VERTEX[start, 1]) * ey
+    if along < 0.0:
+        return start, False
+    return end, along <= ex * ex + ey * ey

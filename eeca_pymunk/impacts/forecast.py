@@ -1,0 +1,128 @@
+"""Forecasts: the next event of a body on its present path, among the shapes of its lists.
+
+A forecast is a function of the two paths alone, not of when it is made: times are counted from the later of the two
+bodies' kinks. Paths of equal acceleration give times that hold beyond the step; others are looked at to its end, and
+give a time before which nothing happens: the body is forecast anew then.
+"""
+
+from __future__ import annotations
+
+import math
+
+from ..arrays import FlagArray, FloatArray, IntArray, PoolArray
+from ..compiled import uncounted
+from ..layout import (
+    AX,
+    AY,
+    CENTRE_X,
+    CENTRE_Y,
+    DUE,
+    EXTENT,
+    SINCE,
+    SPIN,
+    TWIST,
+    VX,
+    VY,
+    X,
+    Y,
+)  # fmt: skip
+from ..pairs.layout import AT_X, AT_Y, MARGIN, NUMBER, START
+from ..pairs.lists import centre
+from .heap import push
+from .times import meet, one_pull
+from .layout import CHECK, FIRST_SHAPE, HEAP, KINKS, KNOWN, LEAVE, NOTHING, OTHER, OWN, SHAPES
+
+_INSIDE = 0.1  # of the margin that is left, above which a shape has not left its circle
+
+
+@uncounted
+def leaves(BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, MARK: FloatArray, i: int, s: int, now: float) -> float:
+    """Instant before which the centre of shape s of body i stays within its margin circle; exact for straight paths."""
+    m = MARK[s, MARGIN]
+    if m == math.inf:
+        return math.inf
+    since = BODY[i, SINCE]
+    arm = math.hypot(SHAPE[s, CENTRE_X], SHAPE[s, CENTRE_Y])
+    ax, ay = BODY[i, AX], BODY[i, AY]
+    if ax == 0.0 and ay == 0.0 and arm == 0.0:
+        dx, dy = BODY[i, X] - MARK[s, AT_X], BODY[i, Y] - MARK[s, AT_Y]
+        vx, vy = BODY[i, VX], BODY[i, VY]
+        squared = vx * vx + vy * vy
+        if squared == 0.0:
+            return math.inf
+        b = dx * vx + dy * vy
+        c = m * m - dx * dx - dy * dy
+        D = b * b + squared * c
+        if D <= 0.0:
+            return now
+        root = math.sqrt(D)
+        return max(since + ((root - b) / squared if b <= 0.0 else c / (root + b)), now)
+    # The length of the way bounds the distance: u s + g s^2 / 2 until the room is used up.
+    x, y = centre(BODY, SHAPE, LINK, s, now)
+    room = max(m - math.hypot(x - MARK[s, AT_X], y - MARK[s, AT_Y]), 0.0)
+    h = now - since
+    u = math.hypot(BODY[i, VX] + ax * h, BODY[i, VY] + ay * h) + abs(BODY[i, SPIN] + BODY[i, TWIST] * h) * arm
+    g = math.hypot(ax, ay) + abs(BODY[i, TWIST]) * arm
+    if u + g == 0.0:
+        return math.inf
+    return now + 2.0 * room / (u + math.sqrt(u * u + 2.0 * g * room))
+
+
+@uncounted
+def has_left(BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, MARK: FloatArray, s: int, now: float) -> bool:
+    """Whether shape s is as good as out of its margin circle."""
+    x, y = centre(BODY, SHAPE, LINK, s, now)
+    return math.hypot(x - MARK[s, AT_X], y - MARK[s, AT_Y]) > (1.0 - _INSIDE) * MARK[s, MARGIN]
+
+
+@uncounted
+def barred(RULE: FloatArray, a: int, b: int) -> bool:
+    """Whether a collision handler has said that shapes a and b pass through one another in this step."""
+    low, high = float(min(a, b)), float(max(a, b))
+    for r in range(RULE.shape[0]):
+        if RULE[r, 0] == low and RULE[r, 1] == high:
+            return RULE[r, 2] < 0.0
+    return False
+
+
+@uncounted
+def predict(
+    BODY: FloatArray, STATE: IntArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, MARK: FloatArray,
+    LIST: IntArray, POOL: PoolArray, FLAG: FlagArray, RULE: FloatArray, TIME: FloatArray, OF: IntArray,
+    WORK: FloatArray, COUNT: IntArray, disks: int, moving: int, i: int, now: float, end: float,
+) -> None:  # fmt: skip
+    """Forecast body i from its present path, at an instant `now` of the loop, and put what is due in this step on the
+    heap."""
+    best, own, other = math.inf, -1, NOTHING
+    since, x, y, vx, vy, ax, ay = (
+        BODY[i, SINCE], BODY[i, X], BODY[i, Y], BODY[i, VX], BODY[i, VY], BODY[i, AX], BODY[i, AY],
+    )  # fmt: skip
+    extent, first = BODY[i, EXTENT], STATE[i, FIRST_SHAPE]
+    for s in range(first, first + STATE[i, SHAPES]):
+        t = leaves(BODY, SHAPE, LINK, MARK, i, s, now)
+        if t < best:
+            best, own, other = t, s, LEAVE
+        start = LIST[s, START]
+        for q in range(start, start + LIST[s, NUMBER]):
+            if FLAG[q] != 0:
+                continue
+            o = POOL[q]
+            if RULE.shape[0] > 0 and barred(RULE, s, o):
+                continue
+            certain = True
+            if i < disks and o < disks and BODY[o, AX] == ax and BODY[o, AY] == ay:
+                t = one_pull(
+                    since, x, y, vx, vy, BODY[o, SINCE], BODY[o, X], BODY[o, Y], BODY[o, VX], BODY[o, VY], ax, ay,
+                    extent + BODY[o, EXTENT],
+                )  # fmt: skip
+            else:
+                t, certain = meet(BODY, SHAPE, LINK, VERTEX, WORK, s, o, disks, end, -1.0)
+            if t < best or (t == best and other >= 0 and (s < own or (s == own and o < other))):
+                best, own, other = t, s, (o if certain else CHECK)
+    best = max(best, now)
+    BODY[i, DUE] = best
+    STATE[i, OWN], STATE[i, OTHER] = own, other
+    if other >= 0:
+        STATE[i, KNOWN] = STATE[LINK[other, 0], KINKS]
+    if best < end:
+        COUNT[HEAP] = push(TIME, OF, COUNT[HEAP], best, i)

@@ -1,0 +1,53 @@
+"""The heap of events: the earliest on top, ties by the number of the body. Entries are never removed: one is valid while
+its time is what the body says is due."""
+
+from __future__ import annotations
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import uncounted
+from ..layout import DUE
+
+
+@uncounted
+def push(TIME: FloatArray, OF: IntArray, n: int, time: float, body: int) -> int:
+    """Add an event to a heap of n; how many there are then."""
+    k = n
+    while k > 0:
+        up = (k - 1) >> 1
+        if TIME[up] < time or (TIME[up] == time and OF[up] <= body):
+            break
+        TIME[k], OF[k] = TIME[up], OF[up]
+        k = up
+    TIME[k], OF[k] = time, body
+    return n + 1
+
+
+@uncounted
+def pop(TIME: FloatArray, OF: IntArray, n: int) -> int:
+    """Remove the first event of a heap of n; how many there are then."""
+    n -= 1
+    time, body = TIME[n], OF[n]
+    k = 0
+    while True:
+        down = 2 * k + 1
+        if down >= n:
+            break
+        right = down + 1
+        if right < n and (TIME[right] < TIME[down] or (TIME[right] == TIME[down] and OF[right] < OF[down])):
+            down = right
+        if time < TIME[down] or (time == TIME[down] and body <= OF[down]):
+            break
+        TIME[k], OF[k] = TIME[down], OF[down]
+        k = down
+    TIME[k], OF[k] = time, body
+    return n
+
+
+@uncounted
+def sweep_out(TIME: FloatArray, OF: IntArray, n: int, BODY: FloatArray) -> int:
+    """Drop the entries that are not valid any more; how many there are then."""
+    kept = 0
+    for k in range(n):
+        if TIME[k] == BODY[OF[k], DUE]:
+            kept = push(TIME, OF, kept, TIME[k], OF[k])
+    return kept

@@ -1,0 +1,108 @@
+"""When two shapes meet next if nothing else happens to their bodies.
+
+A forecast is a function of the two paths alone, from the later of their two SINCE on, and the same for (a, b) and
+(b, a). The second result tells whether the instant is when they meet (infinity: never), or only one before which
+they do not, to be looked at again then; it is no earlier than the horizon. Instants count from the start of the step.
+"""
+
+from __future__ import annotations
+
+import math
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import kernel, uncounted
+from ..geometry.gap import ROUND_OFF
+from ..layout import AX, AY, EXTENT, OWNER, ROUNDING, SINCE, VX, VY, X, Y
+from .circles import circle_circle, circle_outline
+from .roots import ball_point
+from .turning import general
+
+_SLOW = 1e-13  # of speeds, below which what touches does not approach
+_NEAR = 1e-9  # of the squared extent, within which that counts
+
+
+@uncounted
+def one_pull(
+    since_i: float, x_i: float, y_i: float, vx_i: float, vy_i: float, since_j: float, x_j: float, y_j: float,
+    vx_j: float, vy_j: float, ax: float, ay: float, extent: float,
+) -> float:  # fmt: skip
+    """Instant at which two disks meet that one acceleration pulls, which cancels; closed form. Disks that touch and
+    approach by the round-off of their speeds do not: they part."""
+    s = since_i - since_j
+    if s < 0.0:
+        start, h = since_j, -s
+        dx, dy = x_j - (x_i + (vx_i + 0.5 * h * ax) * h), y_j - (y_i + (vy_i + 0.5 * h * ay) * h)
+        ux, uy = vx_j - (vx_i + h * ax), vy_j - (vy_i + h * ay)
+    else:
+        start = since_i
+        dx, dy = (x_j + (vx_j + 0.5 * s * ax) * s) - x_i, (y_j + (vy_j + 0.5 * s * ay) * s) - y_i
+        ux, uy = (vx_j + s * ax) - vx_i, (vy_j + s * ay) - vy_i
+    closing = -(dx * ux + dy * uy)
+    if closing <= 0.0:
+        return math.inf
+    if closing < _SLOW * extent * (abs(vx_i) + abs(vy_i) + abs(vx_j) + abs(vy_j)):
+        if dx * dx + dy * dy < extent * extent * (1.0 + _NEAR):
+            return math.inf
+    return start + ball_point(dx, dy, ux, uy, extent)
+
+
+@uncounted
+def disk_disk(BODY: FloatArray, i: int, j: int, horizon: float) -> tuple[float, bool]:
+    """Lone disks i and j: in closed form where one acceleration pulls both."""
+    since_i, since_j = BODY[i, SINCE], BODY[j, SINCE]
+    x_i, y_i, vx_i, vy_i, ax_i, ay_i = BODY[i, X], BODY[i, Y], BODY[i, VX], BODY[i, VY], BODY[i, AX], BODY[i, AY]
+    x_j, y_j, vx_j, vy_j, ax_j, ay_j = BODY[j, X], BODY[j, Y], BODY[j, VX], BODY[j, VY], BODY[j, AX], BODY[j, AY]
+    extent = BODY[i, EXTENT] + BODY[j, EXTENT]
+    if ax_i == ax_j and ay_i == ay_j:
+        t = one_pull(since_i, x_i, y_i, vx_i, vy_i, since_j, x_j, y_j, vx_j, vy_j, ax_i, ay_i, extent)
+        return t, True
+    start = max(since_i, since_j)
+    s = start - since_i
+    x_i, y_i = x_i + (vx_i + 0.5 * s * ax_i) * s, y_i + (vy_i + 0.5 * s * ay_i) * s
+    vx_i, vy_i = vx_i + s * ax_i, vy_i + s * ay_i
+    s = start - since_j
+    x_j, y_j = x_j + (vx_j + 0.5 * s * ax_j) * s, y_j + (vy_j + 0.5 * s * ay_j) * s
+    vx_j, vy_j = vx_j + s * ax_j, vy_j + s * ay_j
+    far = max(max(abs(x_i), abs(y_i)), max(abs(x_j), abs(y_j)))
+    t, certain = circle_circle(
+        x_j - x_i, y_j - y_i, vx_j - vx_i, vy_j - vy_i, ax_j - ax_i, ay_j - ay_i, extent, ROUND_OFF * (far + extent),
+        max(horizon - start, 0.0),
+    )  # fmt: skip
+    return start + t, certain or t == math.inf
+
+
+@kernel
+def disk_wall(
+    BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, i: int, b: int, horizon: float
+) -> tuple[float, bool]:
+    """Lone disk i and a static shape b: in closed form, but for round ends under a pull."""
+    x, y, since = BODY[i, X], BODY[i, Y], BODY[i, SINCE]
+    extent = BODY[i, EXTENT] + SHAPE[b, ROUNDING]
+    tolerance = ROUND_OFF * (max(abs(x), abs(y)) + extent)
+    t, certain = circle_outline(
+        x, y, BODY[i, VX], BODY[i, VY], BODY[i, AX], BODY[i, AY], extent, tolerance, LINK, VERTEX, b,
+        max(horizon - since, 0.0),
+    )  # fmt: skip
+    return since + t, certain or t == math.inf
+
+
+@kernel
+def meet(
+    BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray,
+    a: int, b: int, disks: int, horizon: float, held: float,
+) -> tuple[float, bool]:  # fmt: skip
+    """Instant at which shapes a and b meet next, and whether they do; `disks` lone disks have the first numbers.
+
+    Args:
+        WORK: (2, K, 4) scratch, K the most vertices of a shape.
+        horizon: instant until which the caller wants to know; finite, but for lone disks.
+        held: speed up to which corners that touch stay where they are, as forces hold them; below 0 for none.
+    """
+    if a > b:
+        a, b = b, a
+    if a < disks:
+        if b < disks:
+            return disk_disk(BODY, a, b, horizon)
+        if LINK[b, OWNER] == BODY.shape[0] - 1:
+            return disk_wall(BODY, SHAPE, LINK, VERTEX, a, b, horizon)
+    return general(BODY, SHAPE, LINK, VERTEX, WORK, a, b, disks, horizon, held)

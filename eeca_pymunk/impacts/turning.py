@@ -1,0 +1,213 @@
+"""When shapes that turn, or are carried, meet: from bounds of the motion of their vertices.
+
+Shapes are apart where they are apart along some axis. Along an axis n the least gap of some points bounds that of the
+shapes, and a point's gap g with rate g' stays above g + g' s - B s² / 2 if nothing on the path bends it by more than
+B. So each axis gives an instant before which the shapes are apart, and the latest of these is a safe place to look
+again. Three axes: the normal as it stands in space now, with the vertices of both shapes; and the normals of the
+edges of a and of b along which they are farthest apart, which turn with their bodies, with the other one's vertices.
+
+Bounds until the horizon, with r the reach of a core about its centre of mass, w the spin, q its rate, A the relative
+acceleration of the centres, V their relative speed, and L their distance:
+
+    fixed axis        B = A + sum of r (w² + q) of both,
+    axis of body a    B = A + r_b (w_b² + q_b) + 2 w_a (V + w_b r_b) + (w_a² + q_a) (L + r_b).
+
+Shapes have met where points close along all axes on which they touch.
+"""
+
+from __future__ import annotations
+
+import math
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import kernel
+from ..geometry.convex import closest, place, point_core
+from ..geometry.flight import pose, rate
+from ..geometry.gap import touching
+from ..layout import AX, AY, BOUND, CENTRE_X, CENTRE_Y, OWNER, ROUNDING, SINCE, SIZE, TWIST
+from .circles import circle_circle, circle_outline
+from .roots import ADVANCES, STRIDE, flat
+
+
+@kernel
+def first_close(
+    best: float, near: float, closing: bool, g: float, w: float, bend: float, tolerance: float, held: float
+) -> tuple[float, float, bool]:
+    """Take one more point with gap g and rate w into an axis: the first instant at which one may close, the least gap,
+    and whether one touches and closes. A point that touches and moves no faster than `held` stays where it is."""
+    near = min(near, g)
+    if g <= tolerance:
+        if abs(w) <= held:
+            return best, near, closing
+        closing = closing or w < 0.0
+    # The bound's one root is before `best` where the bound is negative there.
+    if best == math.inf or g + (w - 0.5 * bend * best) * best < 0.0:
+        best = min(best, flat(g, w, -bend))
+    return best, near, closing
+
+
+@kernel
+def fixed_axis(
+    P: FloatArray, p: int, Q: FloatArray, q: int, nx: float, ny: float,
+    x_a: float, y_a: float, ux_a: float, uy_a: float, w_a: float,
+    x_b: float, y_b: float, ux_b: float, uy_b: float, w_b: float,
+    extent: float, bend: float, tolerance: float, held: float,
+) -> tuple[float, float, bool]:  # fmt: skip
+    """`first_close` of all vertices of a against all of b along the normal as it stands."""
+    best, near, closing = math.inf, math.inf, False
+    for i in range(p):
+        x, y = P[i, 0], P[i, 1]
+        vx, vy = ux_a - w_a * (y - y_a), uy_a + w_a * (x - x_a)
+        for j in range(q):
+            g = (Q[j, 0] - x) * nx + (Q[j, 1] - y) * ny - extent
+            w = (ux_b - w_b * (Q[j, 1] - y_b) - vx) * nx + (uy_b + w_b * (Q[j, 0] - x_b) - vy) * ny
+            best, near, closing = first_close(best, near, closing, g, w, bend, tolerance, held)
+    return best, near, closing
+
+
+@kernel
+def turning_axis(
+    P: FloatArray, edge: int, Q: FloatArray, q: int,
+    x_a: float, y_a: float, ux_a: float, uy_a: float, w_a: float,
+    x_b: float, y_b: float, ux_b: float, uy_b: float, w_b: float,
+    extent: float, bend: float, tolerance: float, held: float,
+) -> tuple[float, float, bool]:  # fmt: skip
+    """`first_close` of the vertices of b against an edge of a: rates are relative to a's matter at that place."""
+    best, near, closing = math.inf, math.inf, False
+    nx, ny = P[edge, 2], P[edge, 3]
+    for j in range(q):
+        x, y = Q[j, 0], Q[j, 1]
+        g = (x - P[edge, 0]) * nx + (y - P[edge, 1]) * ny - extent
+        w = (ux_b - w_b * (y - y_b) - (ux_a - w_a * (y - y_a))) * nx
+        w += (uy_b + w_b * (x - x_b) - (uy_a + w_a * (x - x_a))) * ny
+        best, near, closing = first_close(best, near, closing, g, w, bend, tolerance, held)
+    return best, near, closing
+
+
+@kernel
+def reach_of(BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, s: int) -> tuple[float, float, float]:
+    """A point of the body of shape s, relative to its centre of mass, and the reach of the shape about it: the centre
+    of mass itself, but for what stands on the ground the shape's own centre."""
+    if LINK[s, OWNER] == BODY.shape[0] - 1:
+        return SHAPE[s, CENTRE_X], SHAPE[s, CENTRE_Y], SHAPE[s, BOUND]
+    return 0.0, 0.0, SHAPE[s, SIZE]
+
+
+@kernel
+def circles_meet(
+    BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray,
+    a: int, b: int, start: float, left: float, tolerance: float,
+) -> tuple[float, bool]:  # fmt: skip
+    """Time after `start` until which shapes a and b are apart for certain, as a circle about the centre of mass of the
+    one that moves is from the other's circle or, if that is static, its outline; and whether they never meet.
+
+    These circles do not turn. 0 where they overlap.
+    """
+    ground = BODY.shape[0] - 1
+    i, j = LINK[a, OWNER], LINK[b, OWNER]
+    if i == ground:
+        a, b, i, j = b, a, j, i
+    x_a, y_a, _ = pose(BODY, i, start)
+    ux_a, uy_a, _ = rate(BODY, i, start)
+    if j == ground:
+        q = place(LINK, VERTEX, b, 0.0, 0.0, 0.0, WORK[1])
+        extent = SHAPE[a, SIZE] + SHAPE[b, ROUNDING]
+        if point_core(x_a, y_a, WORK[1], q)[0] - extent <= tolerance:
+            return 0.0, False
+        s, _ = circle_outline(
+            x_a, y_a, ux_a, uy_a, BODY[i, AX], BODY[i, AY], extent, tolerance, LINK, VERTEX, b, left
+        )  # fmt: skip
+        return s, s == math.inf
+    x_b, y_b, _ = pose(BODY, j, start)
+    ux_b, uy_b, _ = rate(BODY, j, start)
+    dx, dy = x_b - x_a, y_b - y_a
+    extent = SHAPE[a, SIZE] + SHAPE[b, SIZE]
+    if math.sqrt(dx * dx + dy * dy) - extent <= tolerance:
+        return 0.0, False
+    s, _ = circle_circle(
+        dx, dy, ux_b - ux_a, uy_b - uy_a, BODY[j, AX] - BODY[i, AX], BODY[j, AY] - BODY[i, AY], extent, tolerance, left
+    )
+    return s, s == math.inf
+
+
+@kernel
+def bends(
+    BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, a: int, b: int, start: float, left: float
+) -> tuple[float, float, float]:
+    """The bounds B (length/time²) of the fixed axis and those of a and b, from `start` on for `left`."""
+    i, j = LINK[a, OWNER], LINK[b, OWNER]
+    x_a, y_a, _ = pose(BODY, i, start)
+    x_b, y_b, _ = pose(BODY, j, start)
+    ux_a, uy_a, w_a = rate(BODY, i, start)
+    ux_b, uy_b, w_b = rate(BODY, j, start)
+    q_a, q_b = abs(BODY[i, TWIST]), abs(BODY[j, TWIST])
+    w_a, w_b = abs(w_a) + q_a * left, abs(w_b) + q_b * left
+    px_a, py_a, r_a = reach_of(BODY, SHAPE, LINK, a)
+    px_b, py_b, r_b = reach_of(BODY, SHAPE, LINK, b)
+    r_a, r_b = max(r_a - SHAPE[a, ROUNDING], 0.0), max(r_b - SHAPE[b, ROUNDING], 0.0)
+    A = math.sqrt((BODY[j, AX] - BODY[i, AX]) ** 2 + (BODY[j, AY] - BODY[i, AY]) ** 2)
+    V = math.sqrt((ux_b - ux_a) ** 2 + (uy_b - uy_a) ** 2) + A * left
+    L = math.sqrt((x_b + px_b - x_a - px_a) ** 2 + (y_b + py_b - y_a - py_a) ** 2) + V * left
+    around_a, around_b = r_a * (w_a * w_a + q_a), r_b * (w_b * w_b + q_b)
+    of_a = A + around_b + 2.0 * w_a * (V + w_b * r_b) + (w_a * w_a + q_a) * (L + r_b)
+    of_b = A + around_a + 2.0 * w_b * (V + w_a * r_a) + (w_b * w_b + q_b) * (L + r_a)
+    return A + around_a + around_b, of_a, of_b
+
+
+@kernel
+def general(
+    BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray,
+    a: int, b: int, disks: int, horizon: float, held: float,
+) -> tuple[float, bool]:  # fmt: skip
+    """Instant at which any two shapes meet next, and whether they do, or are only known to be apart until then.
+
+    A function of the two paths from the later SINCE on, whatever the order of a and b. Shapes that touch and close
+    meet then, shapes that touch and part do not.
+
+    Args:
+        horizon: finite instant; lower bounds are no earlier. What lasts more than 1000 looks is given up there.
+        held: speed up to which points that touch stay where they are, as forces hold them; below 0 for none.
+    """
+    if a > b:
+        a, b = b, a
+    i, j = LINK[a, OWNER], LINK[b, OWNER]
+    start = max(BODY[i, SINCE], BODY[j, SINCE])
+    left = max(horizon - start, 0.0)
+    tolerance = touching(BODY, SHAPE, LINK, a, b, disks)
+    s, never = circles_meet(BODY, SHAPE, LINK, VERTEX, WORK, a, b, start, left, tolerance)
+    if s > left:
+        return start + s, never
+    bend, bend_a, bend_b = bends(BODY, SHAPE, LINK, a, b, start, left)
+    extent = SHAPE[a, ROUNDING] + SHAPE[b, ROUNDING]
+    P, Q = WORK[0], WORK[1]
+    for _ in range(ADVANCES):
+        x_a, y_a, angle_a = pose(BODY, i, start + s)
+        x_b, y_b, angle_b = pose(BODY, j, start + s)
+        ux_a, uy_a, w_a = rate(BODY, i, start + s)
+        ux_b, uy_b, w_b = rate(BODY, j, start + s)
+        p = place(LINK, VERTEX, a, x_a, y_a, angle_a, P)
+        q = place(LINK, VERTEX, b, x_b, y_b, angle_b, Q)
+        d, nx, ny, _, _, _, edge_a, apart_a, edge_b, apart_b = closest(P, p, Q, q)
+        safe, near, met = fixed_axis(
+            P, p, Q, q, nx, ny, x_a, y_a, ux_a, uy_a, w_a, x_b, y_b, ux_b, uy_b, w_b, extent, bend, tolerance, held
+        )
+        least = min(d - extent, 0.0) - tolerance
+        if apart_a - extent >= least:
+            may, gap, closes = turning_axis(
+                P, edge_a, Q, q, x_a, y_a, ux_a, uy_a, w_a, x_b, y_b, ux_b, uy_b, w_b, extent, bend_a, tolerance, held
+            )
+            safe, near, met = max(safe, may), max(near, gap), met and closes
+        if apart_b - extent >= least:
+            may, gap, closes = turning_axis(
+                Q, edge_b, P, p, x_b, y_b, ux_b, uy_b, w_b, x_a, y_a, ux_a, uy_a, w_a, extent, bend_b, tolerance, held
+            )
+            safe, near, met = max(safe, may), max(near, gap), met and closes
+        # Shapes that touch without closing would be followed in steps that shrink with their rate.
+        if not met and near <= tolerance:
+            safe = max(safe, STRIDE * left)
+        s += safe
+        if met:
+            return start + s, True
+        if s > left:
+            return horizon, False
+    return horizon, False

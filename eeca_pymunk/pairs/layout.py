@@ -1,0 +1,34 @@
+"""The arrays of the near lists: what their columns mean.
+
+MARK (k, 3) float: the margin circle of each shape, drawn about where its list was made. CELL (k, 6) int: its place in the
+grid. LIST (k, 3) int: where in POOL its neighbours stand. POOL int32: numbers of shapes, all lists one after the other;
+FLAG, of the same length, 1 where an island's solve has taken the pair over, so that it makes no events.
+INFO int: counters of the lists.
+"""
+
+# MARK
+AT_X, AT_Y = 0, 1  # centre of the shape's bounding circle when its list was made, length
+MARGIN = 2  # how far it may go from there: length; infinite where every shape is in every list
+MARK_COLUMNS = 3
+
+# CELL
+LEVEL, BUCKET, NEXT, PREVIOUS, COLUMN, ROW = 0, 1, 2, 3, 4, 5
+CELL_COLUMNS = 6
+
+# LIST
+START, CAPACITY, NUMBER = 0, 1, 2
+LIST_COLUMNS = 3
+
+# INFO
+POOL_END = 0  # first free place of POOL
+MOVING = 1  # shapes [0, MOVING) move and have lists, the others are static
+WALL_COLUMNS, WALL_ROWS = 2, 3  # cells of the grid of static shapes; 0 where all of them are looked at
+LEAVES = 4  # lists made anew, of one shape each
+LEVELS = 5  # INFO[LEVELS + l]: shapes on level l of the grid
+LEVEL_COUNT = 64
+INFO_LENGTH = LEVELS + LEVEL_COUNT
+
+# GRID float: lengths of the two grids
+CELL_LENGTH = 0  # of level 0; level l has cells twice as long as l - 1
+WALL_X, WALL_Y, WALL_LENGTH = 1, 2, 3  # corner and cell of the grid of static shapes
+GRID_LENGTH = 4

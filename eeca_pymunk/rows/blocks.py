@@ -1,0 +1,136 @@
+"""Simultaneous impacts: contacts that act at one instant because they share bodies or touch.
+
+With b = -e u_n- where a contact approaches and -u_n- where it opens,
+
+    0 <= lam  _|_  u_n+ - b >= 0,   friction as in `sweeps.py`,
+
+so that without friction sum D = (1/2) sum lam (1 - e)(-u_n-) >= 0, and 0 for e = 1. Solved to round-off, as the energy
+of elastic crowds melts away otherwise; what is left of it is taken out by one scale of all impulses (`lock`).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..compiled import kernel
+from .build import aim, rates
+from .energy import lock, works
+from .layout import ELASTICITY, FRICTION, FloatArray, IntArray
+from .polish import polish, segment
+from .sweeps import iterate, push, sweep
+
+CONVERGED, TRUNCATED = 0, 1  # statuses
+D_NORMAL, D_TANGENTIAL, SCALE_LOCK, OWED, RESIDUAL, SWEEPS, POLISHES = 0, 1, 2, 3, 4, 5, 6  # of OUT
+OUT_SIZE = 8
+
+_PRECISE = 1e-14  # residual of convergence relative to the largest approach speed
+_RUBBED = 1e-10  # the same with friction, whose law is not that of a least energy
+_SWEEPS, _RUBBED_SWEEPS = 12, 100  # before the first direct solution
+_AFTER = 4  # sweeps after each
+_ROUNDS, _RUBBED_ROUNDS = 40, 8
+_LAST, _RUBBED_LAST = 400, 200  # sweeps where direct solutions have not converged
+_LITTLE = 16  # contacts up to which sweeps alone are cheaper than a direct solution at first
+
+
+@kernel
+def resolve(
+    A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, FREE: FloatArray, IM: FloatArray,
+    II: FloatArray, POSE: FloatArray, n: int, m: int, rubs: bool, tolerance: float, OUT: FloatArray,
+) -> float:  # fmt: skip
+    """Impulses for given targets; returns the change of velocity that a last sweep made.
+
+    With friction direct solutions help where contacts stick; where many slip only sweeps converge: more of them.
+    """
+    most = _RUBBED_SWEEPS if rubs else (4 * _SWEEPS if m <= _LITTLE else _SWEEPS)
+    taken, worst = iterate(A, B, ROWS, L, V, IM, II, m, tolerance, most)
+    OUT[SWEEPS] = taken
+    OUT[POLISHES] = 0.0
+    if worst <= tolerance:
+        return worst
+    L0 = np.empty((m, 2))
+    V0 = np.empty((len(IM), 3))
+    least = worst
+    stalled = 0
+    R = 1e8
+    for _ in range(_RUBBED_ROUNDS if rubs else _ROUNDS):
+        L0[:] = L[:m]
+        V0[:] = V
+        reached, clamped = polish(A, B, ROWS, L, V, FREE, IM, II, POSE, n, m, R, 8, 0.1 * tolerance)
+        OUT[POLISHES] += 1.0
+        part = 1.0
+        if not reached <= 1e3 * worst + 1e-9 * tolerance:
+            L[:m] = L0
+            V[:] = V0
+            part = 0.0
+        elif clamped > 0:
+            part = segment(A, B, ROWS, L, V, L0, V0, m)
+        if clamped == 0 or part > 0.9:
+            R = min(100.0 * R, 1e8)
+        elif part < 0.3:
+            R = max(0.01 * R, 1e2)
+        for _ in range(_AFTER):
+            worst = sweep(A, B, ROWS, L, V, IM, II, m)
+            OUT[SWEEPS] += 1.0
+            if worst <= tolerance:
+                return worst
+        if worst < 0.5 * least:
+            least = worst
+            stalled = 0
+        else:
+            stalled += 1
+            if stalled >= 8:
+                break
+    taken, worst = iterate(A, B, ROWS, L, V, IM, II, m, tolerance, _RUBBED_LAST if rubs else _LAST)
+    OUT[SWEEPS] += taken
+    return worst
+
+
+@kernel
+def solve_block(
+    A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, IM: FloatArray, II: FloatArray,
+    POSE: FloatArray, n: int, m: int, owed: float, LOSS: FloatArray, OUT: FloatArray,
+) -> int:  # fmt: skip
+    """Impulses of m contacts at one instant; V (k, 3) becomes the velocities after.
+
+    Args:
+        ROWS: (m, 16) of `place_row`; u_n, u_t and the targets are set here, from V and the elasticities.
+        L: (m, 2) first guess of the impulses in (0 for none), the impulses out.
+        POSE: (k, 3), for the order of elimination alone.  n: bodies that impulses move, the first of k.
+        owed: energy >= 0 that the block has to take out beyond its own losses' sign: its loss is at least that.
+        LOSS: (m, 2) out, D_n and D_t of each contact.
+        OUT: (8,) out: sums of D_n and D_t, the lock's scale, energy still owed, residual (velocity), sweeps, polishes.
+    Returns:
+        CONVERGED (residual <= 1e-14 of the largest b - u_n, with friction 1e-10) or TRUNCATED. Energy is right in both.
+    """
+    OUT[:] = 0.0
+    OUT[SCALE_LOCK] = 1.0
+    OUT[OWED] = owed
+    LOSS[:m] = 0.0
+    rates(A, B, ROWS, V, m)
+    speed = aim(ROWS, m)
+    if not speed > 0.0:
+        L[:m] = 0.0
+        return CONVERGED
+    FREE = V.copy()
+    push(A, B, ROWS, L, V, IM, II, m)
+    rubs = False
+    for i in range(m):
+        if ROWS[i, FRICTION] > 0.0:
+            rubs = True
+    tolerance = speed * (_RUBBED if rubs else _PRECISE)
+    worst = resolve(A, B, ROWS, L, V, FREE, IM, II, POSE, n, m, rubs, tolerance, OUT)
+    # Sums over many sweeps have their own round-off: the velocities are those of the impulses.
+    V[:] = FREE
+    push(A, B, ROWS, L, V, IM, II, m)
+    exact = True
+    for i in range(m):
+        if L[i, 0] > 0.0 and (ROWS[i, ELASTICITY] < 1.0 or ROWS[i, FRICTION] > 0.0):
+            exact = False
+    scale, left = lock(A, B, ROWS, L, V, FREE, IM, II, m, owed, exact)
+    normal, tangential = works(A, B, ROWS, L, V, m, LOSS)
+    OUT[0] = normal
+    OUT[1] = tangential
+    OUT[SCALE_LOCK] = scale
+    OUT[OWED] = left
+    OUT[RESIDUAL] = worst
+    return CONVERGED if worst <= tolerance else TRUNCATED

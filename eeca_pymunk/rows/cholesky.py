@@ -1,0 +1,177 @@
+"""Sparse Cholesky factor of B = 1 + sum R j j^T / A_jj over held rows j, in blocks of one body.
+
+Bodies are scaled by the roots of their mobilities: j = sqrt(M^-1) times the row of G or T. So B is 1 for what impulses
+do not move, dimensionless, and insensitive to mass ratios.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..compiled import kernel
+from .layout import ARM_NA, ARM_NB, ARM_TA, ARM_TB, K_N, K_T, NX, NY, FloatArray, IntArray
+
+
+@kernel
+def assemble(
+    A: IntArray, B: IntArray, ROWS: FloatArray, m: int, n: int, held: IntArray, stuck: IntArray, SCALE: FloatArray,
+    place: IntArray, columns: IntArray, rows: IntArray, R: float, DIAGONAL: FloatArray, BELOW: FloatArray,
+) -> None:  # fmt: skip
+    """Blocks of B: DIAGONAL (n, 3, 3) and BELOW (len(rows), 3, 3), of rows held (normal) and stuck (tangential)."""
+    DIAGONAL[:] = 0.0
+    BELOW[:] = 0.0
+    for j in range(n):
+        for p in range(3):
+            DIAGONAL[j, p, p] = 1.0
+    ja = np.empty(3)
+    jb = np.empty(3)
+    for i in range(m):
+        a = A[i]
+        b = B[i]
+        nx = ROWS[i, NX]
+        ny = ROWS[i, NY]
+        for kind in range(2):
+            if kind == 0:
+                if held[i] == 0:
+                    continue
+                weight = R * ROWS[i, K_N]
+                ja[0] = -nx
+                ja[1] = -ny
+                ja[2] = -ROWS[i, ARM_NA]
+                jb[0] = nx
+                jb[1] = ny
+                jb[2] = ROWS[i, ARM_NB]
+            else:
+                if stuck[i] == 0:
+                    continue
+                weight = R * ROWS[i, K_T]
+                ja[0] = ny
+                ja[1] = -nx
+                ja[2] = -ROWS[i, ARM_TA]
+                jb[0] = -ny
+                jb[1] = nx
+                jb[2] = ROWS[i, ARM_TB]
+            for p in range(3):
+                ja[p] *= SCALE[a, p]
+                jb[p] *= SCALE[b, p]
+            if a < n:
+                k = place[a]
+                for p in range(3):
+                    for q in range(3):
+                        DIAGONAL[k, p, q] += weight * ja[p] * ja[q]
+            if b < n:
+                k = place[b]
+                for p in range(3):
+                    for q in range(3):
+                        DIAGONAL[k, p, q] += weight * jb[p] * jb[q]
+            if a < n and b < n:
+                low = min(place[a], place[b])
+                high = max(place[a], place[b])
+                s = columns[low]
+                e = columns[low + 1]
+                while s < e:
+                    h = (s + e) // 2
+                    if rows[h] < high:
+                        s = h + 1
+                    else:
+                        e = h
+                for p in range(3):
+                    for q in range(3):
+                        if high == place[b]:
+                            BELOW[s, p, q] += weight * jb[p] * ja[q]
+                        else:
+                            BELOW[s, p, q] += weight * ja[p] * jb[q]
+
+
+@kernel
+def factorise(n: int, columns: IntArray, rows: IntArray, D: FloatArray, X: FloatArray) -> None:
+    """Left-looking Cholesky in place: D gets lower triangles, X the blocks below them."""
+    head = np.full(n, -1, np.int64)
+    after = np.full(n, -1, np.int64)
+    first = np.zeros(n, np.int64)  # next block of a column that is still to be used
+    where = np.full(n, -1, np.int64)
+    for j in range(n):
+        for q in range(columns[j], columns[j + 1]):
+            where[rows[q]] = q
+        k = head[j]
+        while k != -1:
+            follower = after[k]
+            f = first[k]
+            x00 = X[f, 0, 0]
+            x01 = X[f, 0, 1]
+            x02 = X[f, 0, 2]
+            x10 = X[f, 1, 0]
+            x11 = X[f, 1, 1]
+            x12 = X[f, 1, 2]
+            x20 = X[f, 2, 0]
+            x21 = X[f, 2, 1]
+            x22 = X[f, 2, 2]
+            D[j, 0, 0] -= x00 * x00 + x01 * x01 + x02 * x02
+            D[j, 1, 0] -= x10 * x00 + x11 * x01 + x12 * x02
+            D[j, 1, 1] -= x10 * x10 + x11 * x11 + x12 * x12
+            D[j, 2, 0] -= x20 * x00 + x21 * x01 + x22 * x02
+            D[j, 2, 1] -= x20 * x10 + x21 * x11 + x22 * x12
+            D[j, 2, 2] -= x20 * x20 + x21 * x21 + x22 * x22
+            for q in range(f + 1, columns[k + 1]):
+                t = where[rows[q]]
+                for p in range(3):
+                    y0 = X[q, p, 0]
+                    y1 = X[q, p, 1]
+                    y2 = X[q, p, 2]
+                    X[t, p, 0] -= y0 * x00 + y1 * x01 + y2 * x02
+                    X[t, p, 1] -= y0 * x10 + y1 * x11 + y2 * x12
+                    X[t, p, 2] -= y0 * x20 + y1 * x21 + y2 * x22
+            if f + 1 < columns[k + 1]:
+                first[k] = f + 1
+                r = rows[f + 1]
+                after[k] = head[r]
+                head[r] = k
+            k = follower
+        # B >= 1; round-off of R may have eaten that.
+        d00 = math.sqrt(max(D[j, 0, 0], 1e-3))
+        d10 = D[j, 1, 0] / d00
+        d20 = D[j, 2, 0] / d00
+        d11 = math.sqrt(max(D[j, 1, 1] - d10 * d10, 1e-3))
+        d21 = (D[j, 2, 1] - d20 * d10) / d11
+        d22 = math.sqrt(max(D[j, 2, 2] - d20 * d20 - d21 * d21, 1e-3))
+        D[j, 0, 0] = d00
+        D[j, 1, 0] = d10
+        D[j, 2, 0] = d20
+        D[j, 1, 1] = d11
+        D[j, 2, 1] = d21
+        D[j, 2, 2] = d22
+        for q in range(columns[j], columns[j + 1]):
+            for p in range(3):
+                y0 = X[q, p, 0] / d00
+                y1 = (X[q, p, 1] - y0 * d10) / d11
+                X[q, p, 2] = (X[q, p, 2] - y0 * d20 - y1 * d21) / d22
+                X[q, p, 0] = y0
+                X[q, p, 1] = y1
+        if columns[j] < columns[j + 1]:
+            first[j] = columns[j]
+            r = rows[columns[j]]
+            after[j] = head[r]
+            head[r] = j
+
+
+@kernel
+def substitute(n: int, columns: IntArray, rows: IntArray, D: FloatArray, X: FloatArray, f: FloatArray) -> None:
+    """f (n, 3), in order of elimination, becomes B^-1 f."""
+    for j in range(n):
+        f[j, 0] /= D[j, 0, 0]
+        f[j, 1] = (f[j, 1] - D[j, 1, 0] * f[j, 0]) / D[j, 1, 1]
+        f[j, 2] = (f[j, 2] - D[j, 2, 0] * f[j, 0] - D[j, 2, 1] * f[j, 1]) / D[j, 2, 2]
+        for q in range(columns[j], columns[j + 1]):
+            i = rows[q]
+            for p in range(3):
+                f[i, p] -= X[q, p, 0] * f[j, 0] + X[q, p, 1] * f[j, 1] + X[q, p, 2] * f[j, 2]
+    for j in range(n - 1, -1, -1):
+        for q in range(columns[j], columns[j + 1]):
+            i = rows[q]
+            for p in range(3):
+                f[j, p] -= X[q, 0, p] * f[i, 0] + X[q, 1, p] * f[i, 1] + X[q, 2, p] * f[i, 2]
+        f[j, 2] /= D[j, 2, 2]
+        f[j, 1] = (f[j, 1] - D[j, 2, 1] * f[j, 2]) / D[j, 1, 1]
+        f[j, 0] = (f[j, 0] - D[j, 1, 0] * f[j, 1] - D[j, 2, 0] * f[j, 2]) / D[j, 0, 0]

@@ -1,0 +1,196 @@
+"""Direct solution on the active contacts, as an augmented Lagrangian in the space of bodies.
+
+Active normals (lam > 0) are to reach u_n = b, sticking tangents u_t = 0; slipping ones follow beta = +-mu lam. With
+the residual r = target - u, one pass solves (M + sum R j j^T / A_jj) dv = sum R j r / A_jj and adds R (r - j.dv) / A_jj
+to the impulses: the error falls about by R times the smallest eigenvalue of A scaled to diagonal 1. Redundant contacts
+make A singular but not this. Impulses are clamped to their cones at the end; `segment` then finds how far to go.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..compiled import kernel
+from .build import normal_rate, tangent_rate
+from .cholesky import assemble, factorise, substitute
+from .layout import (
+    ARM_NA,
+    ARM_NB,
+    ARM_TA,
+    ARM_TB,
+    FRICTION,
+    K_N,
+    K_T,
+    NX,
+    NY,
+    SURFACE,
+    TARGET,
+    UN,
+    UT,
+    FloatArray,
+    IntArray,
+)
+from .ordering import dissect, neighbours, pattern
+from .sweeps import push
+
+
+@kernel
+def classify(
+    A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, m: int, held: IntArray, stuck: IntArray,
+    slip: FloatArray, rest: FloatArray,
+) -> None:  # fmt: skip
+    """Which normals are held, which tangents stuck (1 at u_t = 0, 2 at u_t = rest), which slip (beta = slip lam).
+
+    Friction that its energy limits has beta (u_t- + u_t+) = -lam (u_n- + b): rest is that u_t+.
+    """
+    for i in range(m):
+        lam = L[i, 0]
+        beta = L[i, 1]
+        mu = ROWS[i, FRICTION]
+        held[i] = 1 if lam > 0.0 else 0
+        stuck[i] = 0
+        slip[i] = 0.0
+        rest[i] = 0.0
+        if lam <= 0.0 or mu <= 0.0:
+            continue
+        if abs(beta) < mu * lam * (1.0 - 1e-12):
+            loss = lam * min(ROWS[i, UN] + ROWS[i, TARGET], 0.0)
+            if beta * ROWS[i, UT] <= -loss:
+                stuck[i] = 1
+            elif beta != 0.0:
+                stuck[i] = 2
+                rest[i] = -ROWS[i, UT] - loss / beta
+        elif beta != 0.0:
+            slip[i] = mu if beta > 0.0 else -mu
+
+
+@kernel
+def polish(
+    A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, FREE: FloatArray, IM: FloatArray,
+    II: FloatArray, POSE: FloatArray, n: int, m: int, R: float, passes: int, tolerance: float,
+) -> tuple[float, int]:  # fmt: skip
+    """Solve on the active contacts of L; L and V = FREE + M^-1 (G^T lam + T^T beta) are replaced.
+
+    Args:
+        FREE: (k, 3) velocities without impulses.  R: stiffness of the augmentation, dimensionless, 1e2 ... 1e8.
+        passes: refinements at most.  tolerance: velocity at which they end.
+    Returns:
+        The residual before the impulses were clamped (velocity), and how many were clamped.
+    """
+    held = np.empty(m, np.int64)
+    stuck = np.empty(m, np.int64)
+    slip = np.empty(m)
+    rest = np.empty(m)
+    classify(A, B, ROWS, L, V, m, held, stuck, slip, rest)
+    SCALE = np.empty((len(IM), 3))
+    for i in range(len(IM)):
+        SCALE[i, 0] = SCALE[i, 1] = math.sqrt(IM[i])
+        SCALE[i, 2] = math.sqrt(II[i])
+    start, other = neighbours(A, B, m, n, held)
+    place = np.empty(n, np.int64)
+    dissect(POSE, n, start, other, place)
+    columns, rows = pattern(n, start, other, place)
+    DIAGONAL = np.empty((n, 3, 3))
+    BELOW = np.empty((len(rows), 3, 3))
+    assemble(A, B, ROWS, m, n, held, stuck, SCALE, place, columns, rows, R, DIAGONAL, BELOW)
+    factorise(n, columns, rows, DIAGONAL, BELOW)
+    f = np.empty((n, 3))
+    dv = np.zeros((len(IM), 3))
+    r = np.zeros((m, 2))
+    worst = np.inf
+    for done in range(passes + 1):
+        last = worst
+        worst = 0.0
+        f[:] = 0.0
+        for i in range(m):
+            if held[i] == 0:
+                continue
+            r[i, 0] = ROWS[i, TARGET] - normal_rate(A, B, ROWS, V, i)
+            worst = max(worst, abs(r[i, 0]))
+            fn = R * ROWS[i, K_N] * r[i, 0]
+            ft = 0.0
+            if stuck[i] != 0:
+                r[i, 1] = rest[i] - tangent_rate(A, B, ROWS, V, i)
+                worst = max(worst, abs(r[i, 1]))
+                ft = R * ROWS[i, K_T] * r[i, 1]
+            a = A[i]
+            b = B[i]
+            fx = fn * ROWS[i, NX] - ft * ROWS[i, NY]
+            fy = fn * ROWS[i, NY] + ft * ROWS[i, NX]
+            if a < n:
+                k = place[a]
+                f[k, 0] -= SCALE[a, 0] * fx
+                f[k, 1] -= SCALE[a, 1] * fy
+                f[k, 2] -= SCALE[a, 2] * (fn * ROWS[i, ARM_NA] + ft * ROWS[i, ARM_TA])
+            if b < n:
+                k = place[b]
+                f[k, 0] += SCALE[b, 0] * fx
+                f[k, 1] += SCALE[b, 1] * fy
+                f[k, 2] += SCALE[b, 2] * (fn * ROWS[i, ARM_NB] + ft * ROWS[i, ARM_TB])
+        if worst <= tolerance or done == passes or worst > 0.5 * last:
+            break
+        substitute(n, columns, rows, DIAGONAL, BELOW, f)
+        for i in range(n):
+            for p in range(3):
+                dv[i, p] = SCALE[i, p] * f[place[i], p]
+        for i in range(m):
+            if held[i] == 0:
+                continue
+            L[i, 0] += R * ROWS[i, K_N] * (r[i, 0] - normal_rate(A, B, ROWS, dv, i))
+            if stuck[i] != 0:
+                L[i, 1] += R * ROWS[i, K_T] * (r[i, 1] - tangent_rate(A, B, ROWS, dv, i) + ROWS[i, SURFACE])
+                if stuck[i] == 2 and L[i, 1] != 0.0:
+                    rest[i] = -ROWS[i, UT] - L[i, 0] * min(ROWS[i, UN] + ROWS[i, TARGET], 0.0) / L[i, 1]
+            else:
+                L[i, 1] = slip[i] * L[i, 0]
+        V[:] = FREE
+        push(A, B, ROWS, L, V, IM, II, m)
+    clamped = 0
+    for i in range(m):
+        most = ROWS[i, FRICTION] * L[i, 0]
+        if L[i, 0] < 0.0:
+            L[i, 0] = 0.0
+            L[i, 1] = 0.0
+            clamped += 1
+        elif abs(L[i, 1]) > most:
+            L[i, 1] = most if L[i, 1] > 0.0 else -most
+            clamped += 1
+    if clamped > 0:
+        V[:] = FREE
+        push(A, B, ROWS, L, V, IM, II, m)
+    return worst, clamped
+
+
+@kernel
+def segment(
+    A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, L0: FloatArray, V0: FloatArray, m: int
+) -> float:
+    """Go back from (L, V) towards (L0, V0) to the least lam.(u_n - b) + beta.u_t - (1/2) lam^T A lam between them.
+
+    That is the energy that the frictionless contact problem minimises. Returns the part of the way that is kept.
+    """
+    slope = 0.0
+    curvature = 0.0
+    for i in range(m):
+        dn = L[i, 0] - L0[i, 0]
+        dt = L[i, 1] - L0[i, 1]
+        if dn == 0.0 and dt == 0.0:
+            continue
+        un = normal_rate(A, B, ROWS, V0, i)
+        ut = tangent_rate(A, B, ROWS, V0, i)
+        slope += dn * (un - ROWS[i, TARGET]) + dt * ut
+        curvature += dn * (normal_rate(A, B, ROWS, V, i) - un) + dt * (tangent_rate(A, B, ROWS, V, i) - ut)
+    part = 0.0
+    if curvature > 0.0:
+        part = max(-slope / curvature, 0.0)
+    if part >= 1.0:
+        return 1.0
+    for i in range(m):
+        for j in range(2):
+            L[i, j] = L0[i, j] + part * (L[i, j] - L0[i, j])
+    for i in range(len(V)):
+        for j in range(3):
+            V[i, j] = V0[i, j] + part * (V[i, j] - V0[i, j])
+    return part

@@ -1,0 +1,221 @@
+"""Projected Gauss-Seidel sweeps over contact rows with the exact local law of Coulomb friction.
+
+Each contact in turn solves, with the others' impulses frozen,
+
+    0 <= lam  _|_  u_n - b >= 0,   |beta| <= mu lam,   u_t = 0 or beta = -mu lam sign(u_t),
+
+its own 2 x 2 matrix ((A_nn, A_nt), (A_nt, A_tt)) included: sticking, else slipping one way or the other, else no
+friction. Newton's law with friction creates energy where the slip reverses; therefore each contact's loss
+D_n + D_t = -lam (u_n- + b)/2 - beta (u_t- + u_t+)/2 is kept from being negative (friction is cut where it would be).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..compiled import kernel
+from .layout import (
+    ARM_NA,
+    ARM_NB,
+    ARM_TA,
+    ARM_TB,
+    FRICTION,
+    K_N,
+    K_T,
+    NX,
+    NY,
+    SURFACE,
+    TARGET,
+    UN,
+    UT,
+    WAKE,
+    FloatArray,
+    IntArray,
+)
+
+
+@kernel
+def coulomb(
+    qn: float, qt: float, ann: float, ant: float, att: float, mu: float, un: float, ut: float, target: float
+) -> tuple[float, float]:
+    """(lam, beta) of one contact whose velocities without impulse are u_n = target + qn and u_t = qt.
+
+    `un`, `ut` are its velocities before the step (or impact), from which the loss counts. Closed form.
+    """
+    if qn >= 0.0:
+        return 0.0, 0.0
+    det = ann * att - ant * ant
+    lam = 0.0
+    beta = 0.0
+    done = False
+    if det > 1e-12 * ann * att:
+        lam = (qt * ant - qn * att) / det
+        beta = (qn * ant - qt * ann) / det
+        done = lam >= 0.0 and abs(beta) <= mu * lam
+    if not done:
+        # Slipping against the motion there would be without friction, then the other way (Painleve: neither).
+        sign = -1.0 if qt - qn * ant / ann > 0.0 else 1.0
+        for _ in range(2):
+            den = ann + sign * mu * ant
+            if den > 1e-9 * ann:
+                lam = -qn / den
+                beta = sign * mu * lam
+                if sign * (qt + ant * lam + att * beta) <= 0.0:
+                    done = True
+                    break
+            sign = -sign
+        if not done:
+            return -qn / ann, 0.0
+    if beta * ut > 0.0:
+        # With lam = -(qn + ant beta) / ann the loss is a quadratic in T = |beta|: s T^2 + p T + c <= 0, c <= 0.
+        sign = 1.0 if beta > 0.0 else -1.0
+        loss = min(un + target, 0.0) / ann
+        s = max(det, 0.0) / ann
+        p = sign * (ut + qt - ant * qn / ann - ant * loss)
+        c = -qn * loss
+        T = abs(beta)
+        if T * (s * T + p) + c > 0.0:
+            root = math.sqrt(max(p * p - 4.0 * s * c, 0.0))
+            most = -2.0 * c / (p + root) if p > 0.0 else (root - p) / (2.0 * s)
+            beta = sign * min(T, max(most, 0.0))
+            lam = -(qn + ant * beta) / ann
+            if lam < 0.0:
+                return 0.0, 0.0
+            if abs(beta) > mu * lam:
+                lam = -qn / (ann + sign * mu * ant)
+                beta = sign * mu * lam
+    return lam, beta
+
+
+@kernel
+def sweep(
+    A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, IM: FloatArray, II: FloatArray, m: int
+) -> float:
+    """One sweep over the m contacts; L and V are updated. Returns the largest change of a contact's velocity."""
+    worst = 0.0
+    for i in range(m):
+        a = A[i]
+        b = B[i]
+        nx = ROWS[i, NX]
+        ny = ROWS[i, NY]
+        na = ROWS[i, ARM_NA]
+        nb = ROWS[i, ARM_NB]
+        lam0 = L[i, 0]
+        beta0 = L[i, 1]
+        k = ROWS[i, K_N]
+        dx = V[b, 0] - V[a, 0]
+        dy = V[b, 1] - V[a, 1]
+        free = nx * dx + ny * dy + (nb * V[b, 2] - na * V[a, 2]) - lam0 / k  # own normal impulse taken away
+        lam = 0.0
+        beta = 0.0
+        mu = ROWS[i, FRICTION]
+        ta = ROWS[i, ARM_TA]
+        tb = ROWS[i, ARM_TB]
+        if free < ROWS[i, WAKE]:
+            ROWS[i, WAKE] = np.inf
+            if mu <= 0.0:
+                lam = max(k * (ROWS[i, TARGET] - free), 0.0)
+            else:
+                att = 1.0 / ROWS[i, K_T]
+                ant = II[a] * na * ta + II[b] * nb * tb
+                ut = nx * dy - ny * dx + (tb * V[b, 2] - ta * V[a, 2]) + ROWS[i, SURFACE]
+                lam, beta = coulomb(
+                    free - ROWS[i, TARGET] - beta0 * ant, ut - beta0 * att - lam0 * ant,
+                    1.0 / k, ant, att, mu, ROWS[i, UN], ROWS[i, UT], ROWS[i, TARGET],
+                )  # fmt: skip
+        dn = lam - lam0
+        dt = beta - beta0
+        if dn == 0.0 and dt == 0.0:
+            continue
+        L[i, 0] = lam
+        L[i, 1] = beta
+        fx = dn * nx - dt * ny
+        fy = dn * ny + dt * nx
+        V[a, 0] -= IM[a] * fx
+        V[a, 1] -= IM[a] * fy
+        V[b, 0] += IM[b] * fx
+        V[b, 1] += IM[b] * fy
+        if dt == 0.0:
+            V[a, 2] -= II[a] * (dn * na)
+            V[b, 2] += II[b] * (dn * nb)
+        else:
+            V[a, 2] -= II[a] * (dn * na + dt * ta)
+            V[b, 2] += II[b] * (dn * nb + dt * tb)
+            worst = max(worst, abs(dt) / ROWS[i, K_T])
+        worst = max(worst, abs(dn) / k)
+    return worst
+
+
+@kernel
+def push(
+    A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, IM: FloatArray, II: FloatArray, m: int
+) -> None:
+    """V += M^-1 (G^T lam + T^T beta)."""
+    for i in range(m):
+        lam = L[i, 0]
+        beta = L[i, 1]
+        if lam == 0.0 and beta == 0.0:
+            continue
+        a = A[i]
+        b = B[i]
+        fx = lam * ROWS[i, NX] - beta * ROWS[i, NY]
+        fy = lam * ROWS[i, NY] + beta * ROWS[i, NX]
+        V[a, 0] -= IM[a] * fx
+        V[a, 1] -= IM[a] * fy
+        V[a, 2] -= II[a] * (lam * ROWS[i, ARM_NA] + beta * ROWS[i, ARM_TA])
+        V[b, 0] += IM[b] * fx
+        V[b, 1] += IM[b] * fy
+        V[b, 2] += II[b] * (lam * ROWS[i, ARM_NB] + beta * ROWS[i, ARM_TB])
+
+
+@kernel
+def iterate(
+    A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, IM: FloatArray, II: FloatArray, m: int,
+    tolerance: float, most: int,
+) -> tuple[int, float]:  # fmt: skip
+    """Sweeps with nonlinear conjugate gradients on top, until one changes no contact's velocity by > tolerance.
+
+    A sweep's change is the gradient; the directions of Fletcher and Reeves, forgotten where the change grows
+    (Silcowitz, Niebe, Erleben 2009). The last sweep is plain. Returns the sweeps taken (<= most) and its change.
+    """
+    k = len(IM)
+    L0 = np.empty((m, 2))
+    V0 = np.empty((k, 3))
+    PL = np.zeros((m, 2))
+    PV = np.zeros((k, 3))
+    before = -1.0
+    done = 0
+    worst = np.inf
+    while done < most:
+        L0[:] = L[:m]
+        V0[:] = V
+        worst = sweep(A, B, ROWS, L, V, IM, II, m)
+        done += 1
+        if worst <= tolerance or done >= most:
+            break
+        change = 0.0
+        for i in range(m):
+            change += (L[i, 0] - L0[i, 0]) ** 2 + (L[i, 1] - L0[i, 1]) ** 2
+        ratio = change / before if before > 0.0 else 2.0
+        if ratio > 1.0:
+            for i in range(m):
+                for j in range(2):
+                    PL[i, j] = L[i, j] - L0[i, j]
+            for i in range(k):
+                for j in range(3):
+                    PV[i, j] = V[i, j] - V0[i, j]
+        elif done < most - 1:
+            for i in range(m):
+                for j in range(2):
+                    step = L[i, j] - L0[i, j]
+                    L[i, j] += ratio * PL[i, j]
+                    PL[i, j] = ratio * PL[i, j] + step
+            for i in range(k):
+                for j in range(3):
+                    step = V[i, j] - V0[i, j]
+                    V[i, j] += ratio * PV[i, j]
+                    PV[i, j] = ratio * PV[i, j] + step
+        before = change
+    return done, worst

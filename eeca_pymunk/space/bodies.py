@@ -1,0 +1,149 @@
+"""Bodies: arrays of a space's bodies, gathered from pymunk and scattered back in one batch call each."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+import pymunk
+from pymunk import batch
+
+from ..arrays import BoolArray, FloatArray, IntArray, rotated
+from ..errors import NotFiniteError
+from . import private
+
+_FIELDS = batch.BodyFields
+_STATE = _FIELDS.POSITION | _FIELDS.ANGLE | _FIELDS.VELOCITY | _FIELDS.ANGULAR_VELOCITY | _FIELDS.FORCE | _FIELDS.TORQUE
+# Columns of one row of the state, in the order pymunk.batch writes them.
+POSITION, ANGLE, VELOCITY = slice(0, 2), 2, slice(3, 5)
+ANGULAR_VELOCITY, FORCE, TORQUE = 5, slice(6, 8), 8
+COLUMNS = 9
+COLUMN_NAMES = (
+    "position.x",
+    "position.y",
+    "angle",
+    "velocity.x",
+    "velocity.y",
+    "angular_velocity",
+    "force.x",
+    "force.y",
+    "torque",
+)
+
+
+def moving(space: pymunk.Space) -> list[pymunk.Body]:
+    """The bodies of a space that are not static, in pymunk's order."""
+    return [b for b in space.bodies if b.body_type != pymunk.Body.STATIC]
+
+
+class Bodies:
+    """The bodies of one space, one row each, in the order `pymunk.batch` walks them.
+
+    Masses, moments and kinds are read once; `Bodies.is_current` tells whether the space still has these bodies.
+
+    Attributes:
+        items: the pymunk bodies, by row.  ids: (N,) pymunk's numbers of them.
+        mass, moment: (N,) mass and M L²; infinite for static and kinematic bodies.
+        inverse_mass: (N,) 1/mass, 0 for static and kinematic bodies.
+        dynamic: (N,) bool.  static: (N,) bool.
+        center_of_gravity: (N, 2) length, in body coordinates.
+    """
+
+    def __init__(self, space: pymunk.Space) -> None:
+        self.space = space
+        self._buffer = batch.Buffer()
+        self._out = batch.Buffer()
+        known = {body.id: body for body in (*space.bodies, space.static_body)}
+        self.ids = self._read_ids()
+        self.items: tuple[pymunk.Body, ...] = tuple(known[int(i)] for i in self.ids)
+        self.row = {body: i for i, body in enumerate(self.items)}
+        self.dynamic: BoolArray = np.array([b.body_type == pymunk.Body.DYNAMIC for b in self.items], bool)
+        self.static: BoolArray = np.array([b.body_type == pymunk.Body.STATIC for b in self.items], bool)
+        self.mass: FloatArray = np.array([b.mass for b in self.items], float)
+        self.moment: FloatArray = np.array([b.moment for b in self.items], float)
+        self.mass[~self.dynamic] = np.inf
+        self.moment[~self.dynamic] = np.inf
+        self.check_masses()
+        # Rows of the bodies with functions of their own; the public properties return pymunk's default when unset.
+        self.velocity_hooks: IntArray = np.flatnonzero([private.velocity_function(b) is not None for b in self.items])
+        self.position_hooks: IntArray = np.flatnonzero([private.position_function(b) is not None for b in self.items])
+        self.steered: BoolArray = np.zeros(len(self.items), bool)
+        self.steered[self.velocity_hooks] = True
+        self.inverse_mass: FloatArray = 1.0 / self.mass
+        self.inverse_moment: FloatArray = 1.0 / self.moment
+        self.center_of_gravity: FloatArray = np.array([b.center_of_gravity for b in self.items], float).reshape(-1, 2)
+
+    def __len__(self) -> int:
+        return len(self.items)
+
+    def _read_ids(self) -> npt.NDArray[np.uintp]:
+        self._buffer.clear()
+        batch.get_space_bodies(self.space, _FIELDS.BODY_ID, self._buffer)
+        return np.frombuffer(self._buffer.int_buf(), dtype=np.uintp).copy()
+
+    def check_masses(self) -> None:
+        """Raise ValueError for a dynamic body whose mass or moment is not positive, or whose mass is not finite."""
+        mass_ok = (self.mass > 0) & np.isfinite(self.mass) & (self.moment > 0)
+        bad = self.dynamic & ~mass_ok
+        if bad.any():
+            i = int(np.argmax(bad))
+            raise ValueError(
+                f"{self.items[i]} has mass {self.mass[i]} and moment {self.moment[i]}: a dynamic body needs a finite "
+                "mass > 0 and a moment > 0; set body.mass and body.moment, or the mass or density of its shapes"
+            )
+
+    def gather(self) -> FloatArray | None:
+        """The (N, 9) state now: position, angle, velocity, angular velocity, force, torque (see COLUMN_NAMES).
+
+        None when the space's bodies are no longer these rows, so that a new `Bodies` is due.
+        """
+        self._buffer.clear()
+        batch.get_space_bodies(self.space, _FIELDS.BODY_ID | _STATE, self._buffer)
+        ids = np.frombuffer(self._buffer.int_buf(), dtype=np.uintp)
+        if len(ids) != len(self.ids) or not np.array_equal(ids, self.ids):
+            return None
+        return np.frombuffer(self._buffer.float_buf()).reshape(-1, COLUMNS).copy()
+
+    def check_finite(self, state: FloatArray, remedy: str = "set a finite value before stepping") -> None:
+        """Raise NotFiniteError naming the body and the value if anything in the state is NaN or infinite."""
+        if not np.isfinite(state).all():
+            i, j = np.argwhere(~np.isfinite(state))[0]
+            raise NotFiniteError(f"{COLUMN_NAMES[j]} of {self.items[i]} is {state[i, j]}: {remedy}")
+
+    def mobility(self, turning: bool) -> FloatArray:
+        """(N, 1) 1/mass; if `turning`, (N, 3) 1/mass twice and 1/moment: what turns impulses into velocities."""
+        if not turning:
+            return self.inverse_mass[:, None]
+        return np.column_stack((self.inverse_mass, self.inverse_mass, self.inverse_moment))
+
+    def poses(self, state: FloatArray, turning: bool) -> FloatArray:
+        """(N, 2) positions of an (N, 9) state; if `turning`, (N, 3) centres of mass and angles."""
+        if not turning:
+            return state[:, POSITION]
+        return np.column_stack((state[:, POSITION] + self._arms(state[:, ANGLE]), state[:, ANGLE]))
+
+    def _arms(self, angle: FloatArray) -> FloatArray:
+        """(N, 2) from the positions of the bodies to their centres of mass."""
+        return rotated(self.center_of_gravity, angle)
+
+    def positions(self, pose: FloatArray) -> FloatArray:
+        """(N, 2) positions of the bodies whose centres of mass and angles are `pose` (N, 3)."""
+        result: FloatArray = pose[:, :2] - self._arms(pose[:, 2])
+        return result
+
+    def scatter(self, state: FloatArray, *, unchanged: bool = False) -> None:
+        """Write the whole (N, 9) state to the bodies of these rows that are still in the space.
+
+        `unchanged` promises that all are: no callback has run since the state was gathered.
+        """
+        if not unchanged and not np.array_equal(self._read_ids(), self.ids):
+            # The batch writes by place: it would give rows to the wrong bodies.
+            for body, row in zip(self.items, state.tolist(), strict=True):
+                if body.space is self.space and body.body_type != pymunk.Body.STATIC:
+                    body.position, body.angle = (row[0], row[1]), row[2]
+                    body.velocity, body.angular_velocity = (row[3], row[4]), row[5]
+                    body.force, body.torque = (row[6], row[7]), row[8]
+            return
+        self._out.set_float_buf(np.ascontiguousarray(state).reshape(-1))
+        # pymunk places a body whose centre of mass is elsewhere by the angle it has: the second time by the new one.
+        for _ in range(2 if self.center_of_gravity.any() else 1):
+            batch.set_space_bodies(self.space, _STATE, self._out)

@@ -1,0 +1,80 @@
+"""Checks: what a space must be for the array steppers, and the refusal of what they do not model."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import pymunk
+
+from ..errors import UnsupportedFeature
+from .bodies import Bodies
+
+
+def shape_body(shape: pymunk.Shape) -> pymunk.Body:
+    """The body of a shape; ValueError if it has none."""
+    if shape.body is None:
+        raise ValueError(f"{shape} has no body: create it with its body, or remove it from the space")
+    return shape.body
+
+
+def shape_radius(shape: Any) -> float:
+    """The radius that every kind of pymunk shape has."""
+    return float(shape.radius)
+
+
+def check_space(space: pymunk.Space) -> None:
+    """Refuse settings and objects of the space that the array steppers do not model."""
+    if space.constraints:
+        raise UnsupportedFeature(
+            f"{next(iter(space.constraints))}: constraints are not modelled; remove it or use ep.Native(space)"
+        )
+    if space.sleep_time_threshold != math.inf:
+        raise UnsupportedFeature(
+            f"space.sleep_time_threshold = {space.sleep_time_threshold}: sleeping is not modelled; set it to math.inf"
+        )
+    if not 0.0 < space.damping < math.inf:
+        raise ValueError(f"space.damping = {space.damping}: set a finite value > 0; 1 is none")
+    if not all(math.isfinite(g) for g in space.gravity):
+        raise ValueError(f"space.gravity = {space.gravity}: set a finite gravity before stepping")
+
+
+def check_ignored(ignore: Sequence[str]) -> tuple[str, ...]:
+    """`ignore` as a tuple; ValueError for what cannot be ignored."""
+    names = (ignore,) if isinstance(ignore, str) else tuple(ignore)
+    for name in names:
+        if name != "friction":
+            raise ValueError(f"ignore = {name!r}: only 'friction' can be ignored")
+    return names
+
+
+def check_shape(shape: pymunk.Shape, bodies: Bodies) -> None:
+    """Refuse surface velocity and numbers that no shape can have."""
+    body = shape_body(shape)
+    if any(shape.surface_velocity):
+        raise UnsupportedFeature(f"{shape} has surface velocity {shape.surface_velocity}; set it to (0, 0)")
+    if not isinstance(shape, (pymunk.Circle, pymunk.Segment, pymunk.Poly)):
+        raise UnsupportedFeature(f"{shape} is neither a Circle, a Segment nor a Poly; replace it by one of them")
+    if not 0.0 <= shape.elasticity <= 1.0:
+        raise ValueError(f"{shape} has elasticity {shape.elasticity}: set a value from 0 to 1")
+    if not math.isfinite(shape_radius(shape)):
+        raise ValueError(f"{shape} has radius {shape_radius(shape)}: set a finite radius")
+    if body not in bodies.row:
+        raise ValueError(f"the body of {shape} is not in the space; add it with space.add(body)")
+
+
+def check_friction(shapes: list[pymunk.Shape], ignored: bool) -> bool:
+    """Refuse friction > 0 on a moving shape and on some shape of another body (pymunk multiplies the two); tell
+    whether there is some that is ignored."""
+    rough = [s for s in shapes if s.friction > 0]
+    for shape in rough:
+        body = shape_body(shape)
+        if body.body_type == pymunk.Body.DYNAMIC and any(other.body is not body for other in rough):
+            if ignored:
+                return True
+            raise UnsupportedFeature(
+                f"{shape} has friction {shape.friction}, and so has a shape it may touch: friction is not modelled; "
+                'set shape.friction = 0, or step on without it: ep.EECA(space, ignore=("friction",))'
+            )
+    return False

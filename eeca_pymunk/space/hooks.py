@@ -1,0 +1,161 @@
+"""Hooks: what a user's program has hung into a space, called once a step as pymunk calls it.
+
+Velocity and position functions are called with the real dt. Collision handlers need pymunk's own arbiters: a
+*rehearsal* lets pymunk take the step from the same start to where the bodies would fly freely, with its own detection
+and solver, so that begin, pre_solve, post_solve and separate come in pymunk's order and with pymunk's numbers. What
+they decide (collisions to ignore, restitution, changed velocities) goes into our step, which then takes its place.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+import pymunk
+
+from ..arrays import FloatArray
+from . import private
+from .bodies import ANGLE, ANGULAR_VELOCITY, POSITION, VELOCITY, Bodies
+from .shapes import Rules
+
+
+class Hooks:
+    """The functions of a space and its bodies, for one step.
+
+    Attributes:
+        velocity, position: rows of the bodies with a function of their own.  steered: (N,) whether it is for velocity.
+        collisions: whether the space has collision handlers.
+    """
+
+    def __init__(self, space: pymunk.Space, bodies: Bodies) -> None:
+        self.space, self.bodies = space, bodies
+        self.velocity, self.position = bodies.velocity_hooks, bodies.position_hooks
+        self.steered = bodies.steered
+        self.collisions = bool(private.handlers(space))
+        self._change: FloatArray | None = None
+
+    def change(self, dt: float) -> FloatArray:
+        """(k, 3) what the functions add to velocity and spin of their bodies, which keep theirs; called once a step."""
+        if self._change is None:
+            gravity, damping = self.space.gravity, self.space.damping**dt
+            self._change = np.empty((len(self.velocity), 3))
+            for i, row in enumerate(self.velocity):
+                body = self.bodies.items[row]
+                velocity, spin = body.velocity, body.angular_velocity
+                try:
+                    body.velocity_func(body, gravity, damping, dt)
+                    self._change[i] = (*(body.velocity - velocity), body.angular_velocity - spin)
+                finally:
+                    body.velocity, body.angular_velocity = velocity, spin
+        return self._change
+
+    def positions(self, state: FloatArray, end: FloatArray, dt: float) -> None:
+        """Let the functions move their bodies from `state` with the velocity that leads to `end`, which they change."""
+        for row in self.position:
+            body = self.bodies.items[row]
+            way, turn = end[row, POSITION] - state[row, POSITION], end[row, ANGLE] - state[row, ANGLE]
+            body.velocity, body.angular_velocity = tuple(way / dt), float(turn / dt)
+            body.position_func(body, dt)
+            end[row, POSITION], end[row, ANGLE] = body.position, body.angle
+
+    @contextmanager
+    def silent(self) -> Iterator[None]:
+        """Within, pymunk's default functions stand in for the bodies' own."""
+        items = self.bodies.items
+        velocity = [(items[i], private.velocity_function(items[i])) for i in self.velocity]
+        position = [(items[i], private.position_function(items[i])) for i in self.position]
+        try:
+            for body, _ in velocity:
+                private.replace_functions(body, pymunk.Body.update_velocity, None)
+            for body, _ in position:
+                private.replace_functions(body, None, pymunk.Body.update_position)
+            yield
+        finally:
+            for body, function in velocity:
+                private.replace_functions(body, function, None)
+            for body, place in position:
+                private.replace_functions(body, None, place)
+
+
+class Rehearsal:
+    """pymunk's own step from the start of ours, for its collision handlers.
+
+    Attributes:
+        before: (N, 9) the state of the start with what begin and pre_solve have changed in it.
+    """
+
+    def __init__(self, space: pymunk.Space, hooks: Hooks, state: FloatArray) -> None:
+        self.space, self.hooks, self.bodies = space, hooks, hooks.bodies
+        self._state = state
+        self.before = state.copy()
+        self._after = np.zeros_like(state)
+        self._failure: BaseException | None = None
+
+    def run(self, free: FloatArray, dt: float) -> FloatArray:
+        """Take pymunk's step to the (N, 9) state `free`; what post_solve and separate change (N, 9). Raises what a
+        handler raises, once pymunk has finished."""
+        going = self._state.copy()
+        going[:, VELOCITY] = (free[:, POSITION] - self._state[:, POSITION]) / dt
+        going[:, ANGULAR_VELOCITY] = (free[:, ANGLE] - self._state[:, ANGLE]) / dt
+        self.bodies.scatter(going, unchanged=True)
+        with self.hooks.silent(), self._watched():
+            private.step_alone(self.space, dt)
+        if self._failure is not None:
+            raise self._failure
+        return self._after
+
+    @contextmanager
+    def _watched(self) -> Iterator[None]:
+        """Within, the handlers' functions tell what they change and what they raise."""
+        handlers = private.handlers(self.space)
+        functions = [(h, phase, getattr(h, phase)) for h in handlers for phase in private.PHASES]
+        functions = [(h, phase, f) for h, phase, f in functions if f is not None]
+        try:
+            for handler, phase, function in functions:
+                changes = self.before if phase in private.PHASES[:2] else self._after
+                setattr(handler, phase, self._watch(function, changes))
+            yield
+        finally:
+            for handler, phase, function in functions:
+                setattr(handler, phase, function)
+
+    def _watch(self, function: Callable[..., Any], changes: FloatArray) -> Callable[..., None]:
+        def call(*arguments: Any) -> None:
+            if self._failure is not None:
+                return
+            was = self.bodies.gather()
+            try:
+                function(*arguments)
+            except BaseException as error:
+                # It would end in pymunk's C code, which cannot pass it on.
+                self._failure = error
+            now = self.bodies.gather()
+            if was is not None and now is not None:
+                changes[:] += now - was
+
+        return call
+
+    def rules(self, shapes: Sequence[pymunk.Shape], elasticity: FloatArray) -> Rules:
+        """What the arbiters of the step say of pairs of these shapes, of (k,) elasticity."""
+        index = {shape: i for i, shape in enumerate(shapes)}
+        ignored, restitution = set(), {}
+        for arbiter in private.arbiters(self.space):
+            a, b = (index.get(shape, -1) for shape in arbiter.shapes)
+            if min(a, b) < 0:
+                continue
+            pair = (min(a, b), max(a, b))
+            if not arbiter.process_collision:
+                ignored.add(pair)
+            elif arbiter.restitution != elasticity[a] * elasticity[b]:
+                restitution[pair] = arbiter.restitution
+        return Rules(frozenset(ignored), restitution)
+
+    def finish(self, bodies: Bodies) -> None:
+        """What pymunk does when its step has ended: shapes where the bodies are, additions, removals, callbacks."""
+        space = self.space
+        for body in bodies.items:
+            if body.body_type != pymunk.Body.STATIC:
+                space.reindex_shapes_for_body(body)
+        private.finish_step(space)

@@ -1,0 +1,24 @@
+"""Measure: energy and momenta of a space as it is now."""
+
+from __future__ import annotations
+
+import pymunk
+
+from ..arrays import FloatArray
+from ..energy.invariants import Invariants, sums
+from .bodies import ANGULAR_VELOCITY, VELOCITY, Bodies
+
+
+def measure(space: pymunk.Space) -> Invariants:
+    """Energy and momenta of the space now."""
+    bodies = Bodies(space)
+    state = bodies.gather()
+    assert state is not None  # read from these very bodies
+    return invariants(bodies, state, space.gravity)
+
+
+def invariants(bodies: Bodies, state: FloatArray, gravity: tuple[float, float]) -> Invariants:
+    """Energy and momenta of an (N, 9) state of `bodies`."""
+    d = bodies.dynamic
+    center = bodies.poses(state, bool(bodies.center_of_gravity.any()))[d, :2]
+    return sums(bodies.mass[d], bodies.moment[d], center, state[d, VELOCITY], state[d, ANGULAR_VELOCITY], gravity)

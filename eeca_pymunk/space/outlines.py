@@ -1,0 +1,70 @@
+"""Outlines: the shapes of a space as plain arrays, to draw them where a recording says they were."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import pymunk
+
+from ..arrays import BoolArray, FloatArray, IntArray, rotated
+from .shapes import local_outline
+
+
+@dataclass
+class Outlines:
+    """S shapes: the convex hulls of their vertices, rounded by their radius. One vertex is a disk, two a segment.
+
+    Attributes:
+        row: (S,) place of the shape's body among the recorded ones, -1 for static shapes.
+        radius: (S,) length.  sensor: (S,) bool.
+        count: (S,) vertices of each shape.
+        vertex: (sum of count, 2) of all shapes one after the other, in body coordinates; in world ones if static.
+    """
+
+    row: IntArray = field(default_factory=lambda: np.zeros(0, np.intp))
+    radius: FloatArray = field(default_factory=lambda: np.zeros(0))
+    sensor: BoolArray = field(default_factory=lambda: np.zeros(0, bool))
+    count: IntArray = field(default_factory=lambda: np.zeros(0, np.intp))
+    vertex: FloatArray = field(default_factory=lambda: np.zeros((0, 2)))
+
+    def __len__(self) -> int:
+        return len(self.row)
+
+    @staticmethod
+    def of(space: pymunk.Space, bodies: Sequence[pymunk.Body]) -> Outlines:
+        """The shapes of a space now; those of `bodies` move with them, all others stay."""
+        place = {body: i for i, body in enumerate(bodies)}
+        shapes = [(s, s.body) for s in space.shapes if s.body is not None]
+        vertices: list[FloatArray] = []
+        for shape, body in shapes:
+            local = local_outline(shape)
+            if body not in place:
+                local = np.array([body.local_to_world((float(x), float(y))) for x, y in local])
+            vertices.append(local)
+        return Outlines(
+            np.array([place.get(body, -1) for _, body in shapes], np.intp),
+            np.array([getattr(shape, "radius", 0.0) for shape, _ in shapes], float),
+            np.array([shape.sensor for shape, _ in shapes], bool),
+            np.array([len(v) for v in vertices], np.intp),
+            np.concatenate(vertices) if vertices else np.zeros((0, 2)),
+        )
+
+    @property
+    def owner(self) -> IntArray:
+        """The `row` of every vertex."""
+        return np.repeat(self.row, self.count)
+
+    def place(self, position: FloatArray, angle: FloatArray) -> FloatArray:
+        """World coordinates of all vertices with the bodies at (N, 2) positions and (N,) angles."""
+        return place(self.vertex, self.owner, position, angle)
+
+
+def place(local: FloatArray, owner: IntArray, position: FloatArray, angle: FloatArray) -> FloatArray:
+    """(V, 2) world coordinates of points of the bodies `owner` (V,); those of owner -1 are there already."""
+    world = local.copy()
+    moved = np.flatnonzero(owner >= 0)
+    row = owner[moved]
+    world[moved] = position[row] + rotated(local[moved], angle[row])
+    return world

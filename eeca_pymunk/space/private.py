@@ -1,0 +1,212 @@
+"""Private names of pymunk: all that this package uses of them, one function each.
+
+Each has a test of its own in `tests/space/test_private.py`, and all are looked up when the package is imported, so that
+a pymunk which has renamed one is refused at once and by name.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Any
+
+import pymunk
+from pymunk import batch
+
+from ..arrays import FloatArray, IntArray
+
+try:
+    from pymunk._chipmunk_cffi import ffi, lib
+except ImportError as error:  # pragma: no cover - needs another pymunk
+    raise ImportError(f"pymunk {pymunk.version} has no pymunk._chipmunk_cffi: pip install 'pymunk>=7.0,<8'") from error
+
+# Functions of a handler, in the order in which pymunk calls them.
+PHASES = ("_begin", "_pre_solve", "_post_solve", "_separate")
+
+_OF_LIBRARY = (
+    "cpSpaceStep", "cpHastySpaceStep", "cpSpaceEachBody", "cpSpaceGetGravity", "cpSpaceGetDamping",
+    "cpSpaceGetSleepTimeThreshold", "cpSpaceGetShapeIDCounter", "cpSpaceGetTimestamp",
+    "pmSpaceBodyGetIteratorFuncBatched", "pmSpaceBodySetIteratorFuncBatched",
+)  # fmt: skip
+_OF_SPACE = (
+    "_space", "_bodies", "_shapes", "_constraints", "_handlers", "_get_arbiters", "_locked", "_add_later",
+    "_remove_later", "_removed_shapes", "_post_step_callbacks",
+)  # fmt: skip
+_OF_BODY = ("_velocity_func", "_position_func")
+_OF_BUFFER = ("_float_arr", "_int_arr")
+
+
+def missing() -> list[str]:
+    """Names that this package needs and that the installed pymunk lacks."""
+    space = pymunk.Space()
+    body = pymunk.Body(1.0, 1.0)
+    space.on_collision(begin=lambda arbiter, space, data: None)
+    owners: list[tuple[str, Any, Iterable[str]]] = [
+        ("pymunk._chipmunk_cffi.lib", lib, _OF_LIBRARY),
+        ("pymunk.Space", space, _OF_SPACE),
+        ("pymunk.Body", body, _OF_BODY),
+        ("pymunk.batch.Buffer", batch.Buffer(), _OF_BUFFER),
+        *(("pymunk.CollisionHandler", one, PHASES) for one in getattr(space, "_handlers", {}).values()),
+    ]
+    return [f"{name}.{one}" for name, owner, names in owners for one in names if not hasattr(owner, one)]
+
+
+def check() -> None:
+    """ImportError unless the installed pymunk has all private names."""
+    if absent := missing():
+        raise ImportError(
+            f"pymunk {pymunk.version} lacks {', '.join(absent)}, which eeca_pymunk needs: pip install 'pymunk>=7.0,<8'"
+        )
+
+
+def handlers(space: pymunk.Space) -> list[Any]:
+    """The collision handlers of a space; pymunk offers no public way to ask for them."""
+    return list(space._handlers.values())
+
+
+def arbiters(space: pymunk.Space) -> list[pymunk.Arbiter]:
+    """All arbiters of the space's last step."""
+    return [pymunk.Arbiter(one, space) for one in space._get_arbiters()]
+
+
+def velocity_function(body: pymunk.Body) -> Callable[..., None] | None:
+    """The body's own velocity function, None if it has pymunk's; the public property tells no difference."""
+    return body._velocity_func
+
+
+def position_function(body: pymunk.Body) -> Callable[..., None] | None:
+    """The body's own position function, None if it has pymunk's."""
+    return body._position_func
+
+
+def replace_functions(
+    body: pymunk.Body, velocity: Callable[..., None] | None, position: Callable[..., None] | None
+) -> None:
+    """Let pymunk call these functions in the place of the body's own, where that has one; None leaves it.
+
+    The public setters would also tell Chipmunk, which then no longer asks the body.
+    """
+    if velocity is not None:
+        body._velocity_func = velocity
+    if position is not None:
+        body._position_func = position
+
+
+def step_alone(space: pymunk.Space, dt: float) -> None:
+    """pymunk's step without what it does afterwards: additions, removals and callbacks wait for `finish_step`."""
+    space._locked = True
+    try:
+        (lib.cpHastySpaceStep if space.threaded else lib.cpSpaceStep)(space._space, dt)
+        space._removed_shapes.clear()
+    finally:
+        space._locked = False
+
+
+def finish_step(space: pymunk.Space) -> None:
+    """Add and remove what callbacks of the last step asked for, and call its post-step callbacks."""
+    added, removed = list(space._add_later), list(space._remove_later)
+    space._add_later.clear()
+    space._remove_later.clear()
+    space.add(*added)
+    for thing in reversed(removed):
+        space.remove(thing)
+    callbacks = dict(space._post_step_callbacks)
+    for callback in callbacks.values():
+        callback(space)
+    space._post_step_callbacks.clear()
+
+
+def watch(space: pymunk.Space) -> Callable[[], bool]:
+    """A function that tells whether the space's settings, and what is in it, are still as they are now.
+
+    Every addition of a shape changes pymunk's count of all shapes ever added, every removal the number of those there.
+    A body that was exchanged for another shows in the ids that the batch call reads, and what was edited in place
+    nowhere. The public properties take three times as long.
+    """
+    c = space._space
+    bodies, shapes, constraints, handlers = space._bodies, space._shapes, space._constraints, space._handlers
+    body_count, shape_count, constraint_count = len(bodies), len(shapes), len(constraints)
+    handler_count = len(handlers)
+    counter, added = lib.cpSpaceGetShapeIDCounter, lib.cpSpaceGetShapeIDCounter(c)
+    gravity_of, gravity = lib.cpSpaceGetGravity, lib.cpSpaceGetGravity(c)
+    gx, gy = gravity.x, gravity.y
+    damping_of, damping = lib.cpSpaceGetDamping, lib.cpSpaceGetDamping(c)
+    threshold_of, threshold = lib.cpSpaceGetSleepTimeThreshold, lib.cpSpaceGetSleepTimeThreshold(c)
+
+    def unchanged() -> bool:
+        g = gravity_of(c)
+        return (
+            g.x == gx
+            and g.y == gy
+            and counter(c) == added
+            and len(shapes) == shape_count
+            and len(bodies) == body_count
+            and damping_of(c) == damping
+            and threshold_of(c) == threshold
+            and len(constraints) == constraint_count
+            and len(handlers) == handler_count
+        )
+
+    return unchanged
+
+
+def reader(space: pymunk.Space, fields: batch.BodyFields, floats: FloatArray, ids: IntArray) -> Callable[[], None]:
+    """`batch.get_space_bodies` into memory of ours, at a quarter of its cost.
+
+    pymunk would take memory that is too small for one of its own, and free it: `floats` and `ids`, flat and contiguous,
+    need room for all bodies of the space at every call, which the caller has to make sure.
+    """
+    buffer = batch.Buffer()
+    buffer.set_float_buf(floats)
+    buffer.set_int_buf(ids)
+    data = _batched(fields, buffer)
+    values, numbers = buffer._float_arr, buffer._int_arr
+    c, each = space._space, lib.cpSpaceEachBody
+    function = ffi.addressof(lib, "pmSpaceBodyGetIteratorFuncBatched")
+
+    def read(held: object = (buffer, floats, ids)) -> None:
+        values.num = 0
+        numbers.num = 0
+        each(c, function, data)
+
+    return read
+
+
+def writer(space: pymunk.Space, fields: batch.BodyFields, floats: FloatArray) -> Callable[[], None]:
+    """`batch.set_space_bodies` from memory of ours, flat and contiguous, that has a row for every body of the space."""
+    buffer = batch.Buffer()
+    buffer.set_float_buf(floats)
+    data = _batched(fields, buffer)
+    values = buffer._float_arr
+    c, each = space._space, lib.cpSpaceEachBody
+    function = ffi.addressof(lib, "pmSpaceBodySetIteratorFuncBatched")
+
+    def write(held: object = (buffer, floats)) -> None:
+        values.num = 0
+        each(c, function, data)
+
+    return write
+
+
+def _batched(fields: batch.BodyFields, buffer: batch.Buffer) -> Any:
+    data = ffi.new("pmBatchedData *")
+    data.fields, data.floatArray, data.intArray = fields.value, buffer._float_arr, buffer._int_arr
+    return data
+
+
+def timestamp(space: pymunk.Space) -> Callable[[], int]:
+    """A function that tells how many steps pymunk itself has taken in this space."""
+    c, read = space._space, lib.cpSpaceGetTimestamp
+    return lambda: int(read(c))
+
+
+def shapes_ever(space: pymunk.Space) -> int:
+    """How many shapes were ever added to the space."""
+    return int(lib.cpSpaceGetShapeIDCounter(space._space))
+
+
+def waits(space: pymunk.Space) -> bool:
+    """Whether callbacks wait for the end of pymunk's next step."""
+    return bool(space._post_step_callbacks)
+
+
+check()

@@ -1,0 +1,227 @@
+"""Simultaneous impacts: known answers, symmetry, conservation, and an independent solver."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy.optimize import nnls
+
+from eeca_pymunk.rows.blocks import CONVERGED, OWED, RESIDUAL, SCALE_LOCK
+
+from .block import Block, Floats
+
+UNITS = [1e-3, 1.0, 1e3]
+
+
+def at(*points: tuple[float, float]) -> Floats:
+    return np.array(points, dtype=float)
+
+
+def check_books(block: Block, single: float = 1e-14, tolerance: float = 1e-14) -> None:
+    """The ledger closes, no contact gives energy, momentum is kept where nothing touches the ground.
+
+    A single contact's loss has the sign of its law as far as that is solved: friction to `single`.
+    """
+    n = len(block.pose) - 1
+    before, after = block.energy(block.velocity), block.energy(block.after)
+    assert abs(after - before + block.out[0] + block.out[1]) <= tolerance * before
+    assert block.loss.min(initial=0.0) >= -single * before
+    if max((b for _, b, *_ in block.contacts), default=0) < n:
+        momentum = ((block.after - block.velocity)[:n, :2] / block.im[:n, None]).sum(axis=0)
+        assert np.abs(momentum).max() <= tolerance * np.abs(block.velocity[:n, :2] / block.im[:n, None]).sum()
+
+
+@pytest.mark.parametrize("unit", UNITS)
+def test_cradle_of_touching_disks_shares_the_impact(unit: float) -> None:
+    block = Block.disks(unit * at((0, 0), (2, 0), (4, 0)), at((1, 0), (0, 0), (0, 0)), np.ones(3), unit * np.ones(3))
+    block.solve(1.0, 0.0)
+    assert block.status == CONVERGED
+    assert np.abs(block.after[:3, 0] - [-1 / 3, 2 / 3, 2 / 3]).max() <= 1e-14
+    check_books(block)
+
+
+@pytest.mark.parametrize(("e", "expected"), [(0.0, 0.4), (0.5, 0.1), (1.0, -0.2)])
+def test_disk_onto_two_touching_ones(e: float, expected: float) -> None:
+    """Scene of SCISim: v1'/v = .4, .1, -.2, symmetric."""
+    high = math.sqrt(3) / 2
+    block = Block.disks(at((0, 0), (high, 0.5), (high, -0.5)), at((1, 0), (0, 0), (0, 0)), np.ones(3), np.full(3, 0.5))
+    block.solve(e, 0.0)
+    assert block.after[0, 0] == pytest.approx(expected, abs=2e-15)
+    assert np.abs(block.after[1, :2] - block.after[2, :2] * [1, -1]).max() <= 2e-15
+    check_books(block)
+
+
+def test_corner_reverses_a_disk() -> None:
+    block = Block.disks(at((0, 0)), at((3, -2)), np.ones(1), np.ones(1))
+    block.wall(0, (1.0, 0.0), 1.0)
+    block.wall(0, (0.0, -1.0), 1.0)
+    block.solve(1.0, 0.0)
+    assert np.abs(block.after[0] - [-3, 2, 0]).max() <= 1e-15
+
+
+@pytest.mark.parametrize("e", [0.0, 0.7, 1.0])
+def test_box_on_two_corners(e: float) -> None:
+    """A box that lands flat bounces flat, whatever its moment: the row of both corners is redundant in rotation."""
+    pose = np.array([[0, 0, 0], [0, 0, 0]], float)
+    block = Block(pose, np.array([[0.3, -2.0, 0], [0, 0, 0]]), np.array([0.5, 0]), np.array([7.0, 0]))
+    block.contacts = [(0, 1, 0.0, -1.0, -1.0, -0.5), (0, 1, 0.0, -1.0, 1.0, -0.5)]
+    block.solve(e, 0.0)
+    assert np.abs(block.after[0] - [0.3, 2 * e, 0]).max() <= 2e-14
+    assert np.abs(block.impulses[:, 0] - 2 * (1 + e)).max() <= 1e-13
+
+
+def rack(rows: int) -> Block:
+    """A disk hits the tip of a triangle of touching disks: redundant contacts, and 18 angles of 60 degrees."""
+    points = [(-2.0, 0.0)] + [(math.sqrt(3) * i, 2.0 * j - i) for i in range(rows) for j in range(i + 1)]
+    velocity = np.zeros((len(points), 2))
+    velocity[0, 0] = 1.0
+    return Block.disks(np.array(points), velocity, np.ones(len(points)), np.ones(len(points)))
+
+
+def mirrored(block: Block) -> Floats:
+    """Velocities after, of the mirror images in y."""
+    n = len(block.pose) - 1
+    image = [int(np.argmin(np.hypot(*(block.pose[:n, :2] - p * [1, -1]).T))) for p in block.pose[:n, :2]]
+    mirror: Floats = block.after[image] * [1, -1, -1]
+    return mirror
+
+
+@pytest.mark.parametrize("e", [0.0, 0.5, 1.0])
+def test_rack_breaks_symmetrically(e: float) -> None:
+    block = rack(10)
+    block.solve(e, 0.0)
+    assert block.status == CONVERGED
+    assert np.abs(block.after[:-1] - mirrored(block)).max() <= 1e-14
+    check_books(block)
+
+
+@pytest.mark.parametrize("mu", [0.05, 0.3])
+def test_rack_with_friction_keeps_its_books(mu: float) -> None:
+    block = rack(6)
+    block.solve(0.9, mu)
+    assert np.abs(block.after[:-1] - mirrored(block)).max() <= 1e-5
+    check_books(block, 1e-8)
+
+
+def test_square_of_four_disks_hit_in_the_middle() -> None:
+    """Four touching disks in a square: the matrix is singular; the answer has both mirror symmetries."""
+    points = at((-1, -1), (1, -1), (1, 1), (-1, 1))
+    block = Block.disks(points, -points, np.ones(4), np.ones(4))
+    block.solve(1.0, 0.0)
+    assert block.status == CONVERGED
+    assert np.abs(block.after[:4, :2] - points).max() <= 1e-14
+
+
+@pytest.mark.parametrize("e", [0.5, 1.0])
+@pytest.mark.parametrize("mass", [1.0, 1e3])
+def test_a_thousand_contacts_on_one_body(e: float, mass: float) -> None:
+    angle = 2 * np.pi * np.arange(1000) / 1000
+    points = np.concatenate((np.zeros((1, 2)), 1.003 * np.stack((np.cos(angle), np.sin(angle)), axis=1)))
+    rng = np.random.default_rng(5)
+    block = Block.disks(
+        points, rng.normal(size=(1001, 2)), np.append(mass, np.ones(1000)), np.append(1.0, np.full(1000, 0.003))
+    )
+    assert len(block.contacts) == 1000
+    block.solve(e, 0.0)
+    assert block.status == CONVERGED
+    check_books(block)
+
+
+def reference(block: Block, e: float) -> Floats:
+    """Velocities by non-negative least squares: min |C^T lam + d| in the metric of the masses (dual of the law)."""
+    n = len(block.pose) - 1
+    G = np.zeros((len(block.contacts), 3 * n))
+    for i, (a, b, nx, ny, px, py) in enumerate(block.contacts):
+        for body, sign in ((a, -1.0), (b, 1.0)):
+            if body < n:
+                x, y = px - block.pose[body, 0], py - block.pose[body, 1]
+                G[i, 3 * body : 3 * body + 3] = sign * nx, sign * ny, sign * (x * ny - y * nx)
+    root = np.sqrt(np.stack((block.im[:n], block.im[:n], block.ii[:n]), axis=1).ravel())
+    v = block.velocity[:n].ravel()
+    u = G @ v
+    q = u - np.where(u < 0, -e * u, -u)
+    # 0 <= lam _|_ A lam + q with A = C C^T, q = C d (d exists also where A is singular if the law has a solution).
+    C = G * root
+    d = np.linalg.lstsq(C, q, rcond=None)[0]
+    lam, _ = nnls(C.T, -d)
+    return (v + root * (C.T @ lam)).reshape(n, 3)
+
+
+@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("unit", UNITS)
+def test_velocities_are_those_of_an_independent_solver(seed: int, unit: float) -> None:
+    """Touching disks of random masses on a floor, and boxes' corners as contacts with arms; random velocities."""
+    rng = np.random.default_rng(seed)
+    side = 4
+    points = np.array([(2.0 * i + (j % 2), math.sqrt(3) * j) for j in range(side) for i in range(side)])
+    keep = rng.random(len(points)) < 0.8
+    points = points[keep]
+    n = len(points)
+    block = Block.disks(
+        unit * points, unit * rng.normal(size=(n, 3)), np.exp(rng.normal(size=n)), unit * np.ones(n), 1e-9
+    )
+    block.velocity[:n, 2] /= unit
+    for i in np.flatnonzero(points[:, 1] == 0.0):
+        block.wall(int(i), (0.0, -1.0), unit)
+    # Shapes need not be disks: move every other point along its tangent, which gives normal impulses arms.
+    block.contacts = [
+        (a, b, nx, ny, px - 0.3 * unit * (k % 2) * ny, py + 0.3 * unit * (k % 2) * nx)
+        for k, (a, b, nx, ny, px, py) in enumerate(block.contacts)
+    ]
+    e = float(rng.choice([0.0, 0.6, 1.0]))
+    block.solve(e, 0.0)
+    assert block.status == CONVERGED
+    scale = unit * np.array([1.0, 1.0, 1 / unit])
+    assert np.abs((block.after[:n] - reference(block, e)) / scale).max() <= 1e-11
+    check_books(block)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_friction_obeys_coulomb_and_the_books(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    points = np.array([(2.0 * i, 2.0 * j) for i in range(4) for j in range(3)])
+    block = Block.disks(points, rng.normal(size=(12, 3)), np.exp(rng.normal(size=12)), np.ones(12))
+    mu = float(rng.uniform(0.1, 1.0))
+    block.solve(float(rng.uniform(0, 1)), mu)
+    lam, beta = block.impulses.T
+    assert (lam >= 0).all()
+    assert (np.abs(beta) <= mu * lam * (1 + 1e-12)).all()
+    check_books(block, 1e-8)
+
+
+@pytest.mark.parametrize("mu", [0.1, 0.2, 0.4])
+@pytest.mark.parametrize("e", [0.0, 0.7, 1.0])
+def test_disk_on_a_wall_sticks_or_slips(e: float, mu: float) -> None:
+    """Sticks iff |u| <= 3 mu (1 + e) v with p_t = -(m/3) u, else p_t = -mu (1 + e) m v sign u."""
+    block = Block.disks(at((0, 0)), at((1.0, -1.0)), np.full(1, 2.0), np.full(1, 0.5))
+    block.wall(0, (0.0, -1.0), 0.5)
+    block.solve(e, mu)
+    p = -2.0 / 3.0 if 3 * mu * (1 + e) >= 1.0 else -mu * (1 + e) * 2.0
+    assert block.after[0, 0] == pytest.approx(1.0 + p / 2.0, abs=1e-15)
+    assert block.after[0, 1] == pytest.approx(e, abs=1e-15)
+    check_books(block)
+
+
+def test_a_debt_is_paid_by_the_block() -> None:
+    """An energy that forces have put in before is taken out together with the impact, exactly."""
+    block = rack(4)
+    block.solve(1.0, 0.0, owed=0.01)
+    assert block.out[OWED] == 0.0
+    assert 0.5 < block.out[SCALE_LOCK] < 1.5
+    assert block.energy(block.velocity) - block.energy(block.after) == pytest.approx(0.01, abs=1e-15)
+
+
+def test_a_debt_too_large_is_paid_as_far_as_it_goes() -> None:
+    block = Block.disks(at((0, 0), (2, 0)), at((1, 0), (0, 0)), np.ones(2), np.ones(2))
+    block.solve(1.0, 0.0, owed=1.0)
+    assert block.energy(block.velocity) - block.energy(block.after) == pytest.approx(0.25, abs=1e-15)
+    assert block.out[OWED] == pytest.approx(0.75, abs=1e-15)
+
+
+def test_what_separates_is_left_alone() -> None:
+    block = Block.disks(at((0, 0), (2, 0)), at((-1, 0), (1, 0)), np.ones(2), np.ones(2))
+    block.solve(1.0, 0.0)
+    assert (block.after == block.velocity).all()
+    assert block.out[RESIDUAL] == 0.0

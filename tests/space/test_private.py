@@ -1,0 +1,207 @@
+"""Every private name of pymunk does what this package takes it to do."""
+
+from __future__ import annotations
+
+import gc
+import math
+
+import numpy as np
+import pymunk
+import pymunk.batch
+import pytest
+
+from eeca_pymunk.space import private
+from scenes.scene import add_disk
+
+
+def meeting() -> tuple[pymunk.Space, list[pymunk.Body]]:
+    """Two disks that overlap and approach."""
+    space = pymunk.Space()
+    return space, [add_disk(space, (x, 0.0), 0.1, velocity=(-10.0 * x, 0.0)) for x in (-0.09, 0.09)]
+
+
+def test_all_names_are_there() -> None:
+    assert private.missing() == []
+
+
+def test_a_name_that_is_gone_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(private, "_OF_BODY", ("_velocity_func", "_flight_func"))
+    with pytest.raises(ImportError, match=r"pymunk\.Body\._flight_func.*pip install"):
+        private.check()
+
+
+def test_handlers() -> None:
+    space, _ = meeting()
+    assert private.handlers(space) == []
+    space.on_collision(1, 2, begin=lambda arbiter, space, data: None)
+    space.on_collision(3, post_solve=lambda arbiter, space, data: None)
+    space.on_collision(1, 2, separate=lambda arbiter, space, data: None)
+    assert len(private.handlers(space)) == 2
+
+
+def test_phases_are_the_functions_of_a_handler() -> None:
+    space, _ = meeting()
+    calls: list[str] = []
+    space.on_collision(
+        begin=lambda *_: calls.append("_begin"),
+        pre_solve=lambda *_: calls.append("_pre_solve"),
+        post_solve=lambda *_: calls.append("_post_solve"),
+        separate=lambda *_: calls.append("_separate"),
+    )
+    space.step(0.001)
+    for body in space.bodies:
+        body.position *= 100.0
+    space.step(0.001)
+    assert tuple(dict.fromkeys(calls)) == private.PHASES
+    # What is put in the place of one is called.
+    (handler,) = private.handlers(space)
+    assert all(callable(getattr(handler, phase)) for phase in private.PHASES)
+    other: list[int] = []
+    handler._begin = lambda *_: other.append(1)
+    for body in space.bodies:
+        body.position *= 0.01
+    space.step(0.001)
+    assert other == [1]
+
+
+def test_arbiters() -> None:
+    space, bodies = meeting()
+    assert private.arbiters(space) == []
+    space.step(0.001)
+    (arbiter,) = private.arbiters(space)
+    assert {shape.body for shape in arbiter.shapes} == set(bodies)
+
+
+@pytest.mark.parametrize("kind", ["velocity", "position"])
+def test_functions_of_bodies(kind: str) -> None:
+    body = pymunk.Body(1.0, 1.0)
+    read = getattr(private, f"{kind}_function")
+    assert read(body) is None
+    function = {"velocity": pymunk.Body.update_velocity, "position": pymunk.Body.update_position}[kind]
+
+    def own(*arguments: object) -> None:
+        function(*arguments)  # type: ignore[operator]
+
+    setattr(body, f"{kind}_func", own)
+    assert read(body) is own
+    setattr(body, f"{kind}_func", function)
+    assert read(body) is None
+
+
+@pytest.mark.parametrize("kind", ["velocity", "position"])
+def test_replaced_functions_are_called_in_the_place_of_the_bodys_own(kind: str) -> None:
+    space, (body, _) = meeting()
+    calls: list[str] = []
+    setattr(body, f"{kind}_func", lambda *_: calls.append("own"))
+    own = getattr(private, f"{kind}_function")(body)
+    private.replace_functions(body, **{"velocity": None, "position": None, kind: lambda *_: calls.append("other")})
+    space.step(0.001)
+    private.replace_functions(body, **{"velocity": None, "position": None, kind: own})
+    space.step(0.001)
+    assert calls == ["other", "own"]
+
+
+@pytest.mark.parametrize("threaded", [False, True])
+def test_step_alone_and_finish_step_are_a_step(threaded: bool) -> None:
+    found = []
+    for whole in (True, False):
+        space = pymunk.Space(threaded=threaded)
+        bodies = [add_disk(space, (x, 0.0), 0.1, velocity=(-10.0 * x, 0.0)) for x in (-0.09, 0.09)]
+        late: list[str] = []
+
+        def begin(arbiter: pymunk.Arbiter, space: pymunk.Space, data: object, late: list[str] = late) -> None:
+            space.add(pymunk.Body(3.0, 1.0))
+            space.remove(*arbiter.shapes[0].body.shapes)  # type: ignore[union-attr]
+            space.add_post_step_callback(lambda *_: late.append("called"), "key")
+
+        space.on_collision(begin=begin)
+        if whole:
+            space.step(0.001)
+        else:
+            private.step_alone(space, 0.001)
+            assert len(space.bodies) == 2
+            assert len(space.shapes) == 2
+            assert late == []
+            private.finish_step(space)
+        assert math.isclose(space.current_time_step, 0.001)
+        assert len(space.shapes) == 1
+        assert len(space.bodies) == 3
+        assert late == ["called"]
+        space.add(pymunk.Body(1.0, 1.0))  # not locked any more
+        found.append([(*b.position, *b.velocity) for b in bodies])
+    assert found[0] == found[1]
+
+
+def test_watch_and_count_of_shapes() -> None:
+    space, bodies = meeting()
+    assert private.shapes_ever(space) == 2
+    current = private.watch(space)
+    space.step(0.001)
+    bodies[0].velocity = (9.0, 9.0)
+    space.iterations = 3
+    assert current()
+    for change in (
+        lambda: setattr(space, "gravity", (0.0, 1e-9)),
+        lambda: setattr(space, "gravity", (1e-9, 1e-9)),
+        lambda: setattr(space, "damping", 0.5),
+        lambda: setattr(space, "sleep_time_threshold", 1.0),
+        lambda: space.add(pymunk.PivotJoint(*bodies, (0.0, 0.0))),
+        lambda: space.on_collision(begin=lambda *_: None),
+        lambda: space.add(pymunk.Body(1.0, 1.0)),
+        lambda: space.remove(*bodies[0].shapes),
+        lambda: space.add(pymunk.Circle(bodies[0], 1.0)),
+    ):
+        current = private.watch(space)
+        assert current()
+        change()
+        assert not current()
+    assert private.shapes_ever(space) == 3
+
+
+def test_reader_and_writer_are_the_batch_calls_in_memory_of_ours() -> None:
+    space, bodies = meeting()
+    bodies[1].angle = 0.5
+    fields = pymunk.batch.BodyFields.BODY_ID | pymunk.batch.BodyFields.POSITION | pymunk.batch.BodyFields.ANGLE
+    floats, ids = np.full(9, -1.0), np.full(3, -1, np.int64)
+    read = private.reader(space, fields, floats, ids)
+    for _ in range(3):
+        read()
+        assert ids.tolist() == [bodies[0].id, bodies[1].id, -1]
+        assert floats.tolist() == [-0.09, 0.0, 0.0, 0.09, 0.0, 0.5, -1.0, -1.0, -1.0]
+    floats[:6] = range(1, 7)
+    write = private.writer(space, pymunk.batch.BodyFields.POSITION | pymunk.batch.BodyFields.ANGLE, floats)
+    for _ in range(3):
+        write()
+        assert [(*b.position, b.angle) for b in bodies] == [(1.0, 2.0, 3.0), (4.0, 5.0, 6.0)]
+        bodies[0].position = (9.0, 9.0)
+
+
+def test_memory_of_readers_and_writers_lives_as_long_as_they() -> None:
+    space, bodies = meeting()
+    read = private.reader(space, pymunk.batch.BodyFields.POSITION, np.zeros(8), np.zeros(8, np.int64))
+    write = private.writer(space, pymunk.batch.BodyFields.POSITION, np.arange(4.0))
+    gc.collect()
+    held = [np.full(8, 7.0) for _ in range(100)]
+    for _ in range(100):
+        read()
+        write()
+    assert [tuple(b.position) for b in bodies] == [(0.0, 1.0), (2.0, 3.0)]
+    assert all((h == 7.0).all() for h in held)
+
+
+def test_timestamp_counts_the_steps_of_pymunk() -> None:
+    space, _ = meeting()
+    now = private.timestamp(space)
+    start = now()
+    space.step(0.001)
+    space.step(0.001)
+    assert now() == start + 2
+
+
+def test_waits() -> None:
+    space, _ = meeting()
+    assert not private.waits(space)
+    space.add_post_step_callback(lambda *_: None, 1)
+    assert private.waits(space)
+    space.step(0.001)
+    assert not private.waits(space)
