@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from ..compiled import kernel
-from .layout import GEAR, LOWER, NOTCH, PHASE, PUSH, RATCHET, RATIO, REST, ROTARY_SPRING, UPPER
-from .layout import STIFFNESS as SPRING_STIFFNESS
+from ..arrays import FloatArray
+from ..compiled import uncounted
+from .layout import GEAR, NOTCH, PHASE, PUSH, RATCHET, RATIO, REST, ROTARY_SPRING, STIFFNESS, UPPER
 from .scratch import (
     AFTER,
     ARM_A,
@@ -17,21 +17,21 @@ from .scratch import (
     FORCE,
     FULL_BEND,
     LAM,
+    MEASURE,
     NO_BEND,
     PER,
     ROWS,
     SLOPE,
     SLOPES,
-    STIFFNESS,
     TARGET,
     TURNED,
     VALUE,
     WAY,
-    FloatArray,
-)  # fmt: skip
+    WEIGHT,
+)
 
 
-@kernel
+@uncounted
 def shared_turn(local: FloatArray, a: int, b: int) -> float:
     """(turned_b - turned_a) / (chi_b - chi_a): the one factor with which torques are opposite and energy is kept."""
     chi_a, chi_b = local[a, WAY + 2], local[b, WAY + 2]
@@ -42,17 +42,17 @@ def shared_turn(local: FloatArray, a: int, b: int) -> float:
     return (1.0 - y * y / 3.0 + y**4 / 5.0 - y**6 / 7.0 + y**8 / 9.0) / product
 
 
-@kernel
+@uncounted
 def angle_rows(
     kind: int, side: int, soft: bool, h: float, joint: FloatArray, j: int, hinge: FloatArray, k: int,
-    local: FloatArray, a: int, b: int, one: FloatArray,
+    local: FloatArray, a: int, b: int, stiff: FloatArray,
 ) -> int:  # fmt: skip
     """`joint_rows` of gears, rotary limits, ratchets, motors and rotary springs."""
-    for r in range(STIFFNESS):
-        for c in range(6):
-            one[r, c] = 0.0
+    for c in range(VALUE, WEIGHT):
+        hinge[k, c] = 0.0
     lam = hinge[k, LAM]
     angle_a, angle_b = hinge[k, ARM_A] + local[a, TURNED], hinge[k, ARM_B] + local[b, TURNED]
+    hinge[k, MEASURE] = angle_b - angle_a
     share = 1.0 / joint[j, RATIO] if kind == GEAR else 1.0
     if soft:
         hinge[k, ROWS + 2], hinge[k, ROWS + 5] = -share, 1.0
@@ -67,7 +67,7 @@ def angle_rows(
     if kind == ROTARY_SPRING:
         phi = angle_a - angle_b
         began = hinge[k, BEGAN]
-        stiffness, drag = joint[j, SPRING_STIFFNESS], hinge[k, DRAG]
+        stiffness, drag = joint[j, STIFFNESS], hinge[k, DRAG]
         lam = h * (joint[j, PUSH] + stiffness * (0.5 * (began + phi) - joint[j, REST])) + drag * (phi - began)
         hinge[k, LAM], hinge[k, ENDED] = lam, phi
         slope = 0.5 * h * stiffness + drag
@@ -79,23 +79,22 @@ def angle_rows(
         hinge[k, FORCE + 2], hinge[k, FORCE + 5] = -share * per_a * lam, per_b * lam
         if kind == GEAR:
             hinge[k, VALUE] = angle_b - (angle_a + joint[j, PHASE]) * share
-        elif kind == RATCHET:
-            hinge[k, VALUE] = angle_b - angle_a - joint[j, NOTCH]
         else:
-            hinge[k, VALUE] = angle_b - angle_a - joint[j, UPPER if side > 0 else LOWER]
-    for r in range(STIFFNESS, STIFFNESS + 6):
+            bound = joint[j, NOTCH] if kind == RATCHET or side < 0 else joint[j, UPPER]
+            hinge[k, VALUE] = angle_b - angle_a - bound
+    for r in range(6):
         for c in range(6):
-            one[r, c] = 0.0
+            stiff[r, c] = 0.0
     if both:  # d s/d chi_a, d s/d chi_b: half the second derivative of 2 atan(chi/2) halfway
         t = 0.25 * (local[a, WAY + 2] + local[b, WAY + 2])
         bend_a = bend_b = -0.5 * t / (1.0 + t * t) ** 2
-        one[2, 5], one[5, 2] = -share * lam * bend_b, lam * bend_a
+        stiff[2, 5], stiff[5, 2] = -share * lam * bend_b, lam * bend_a
     else:
         bend_a, bend_b = local[a, BEND], local[b, BEND]
-    one[2, 2], one[5, 5] = -share * lam * bend_a, lam * bend_b
+    stiff[2, 2], stiff[5, 5] = -share * lam * bend_a, lam * bend_b
     if slope != 0.0:
-        one[2, 2] -= slope * per_a * local[a, SLOPE]
-        one[2, 5] += slope * per_a * local[b, SLOPE]
-        one[5, 2] += slope * per_b * local[a, SLOPE]
-        one[5, 5] -= slope * per_b * local[b, SLOPE]
+        stiff[2, 2] -= slope * per_a * local[a, SLOPE]
+        stiff[2, 5] += slope * per_a * local[b, SLOPE]
+        stiff[5, 2] += slope * per_b * local[a, SLOPE]
+        stiff[5, 5] -= slope * per_b * local[b, SLOPE]
     return FULL_BEND

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from ..compiled import kernel
-from .scratch import FloatArray
+from ..arrays import FloatArray
+from ..compiled import uncounted
 
 
-@kernel
+@uncounted
 def solve_banded(matrix: FloatArray, size: int, band: int, right: FloatArray) -> bool:
     """Solve A x = b in place of `right` (size,); False if a pivot vanishes.
 

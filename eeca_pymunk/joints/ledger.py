@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from ..compiled import kernel
+from ..arrays import FloatArray, IntArray
+from ..compiled import uncounted
 from .layout import (
     CLAMPED,
     CLOSED,
@@ -10,6 +11,7 @@ from .layout import (
     LIMITED,
     MOTOR,
     MOTORS,
+    PROJECTED,
     PUSH,
     REST,
     ROTARY_SPRING,
@@ -18,14 +20,15 @@ from .layout import (
     STORED,
     SUPPORTS,
     WORK,
-)  # fmt: skip
+)
 from .newton import held
-from .rows import joint_rows
 from .scratch import (
+    BEFORE,
     BEGAN,
     DRAG,
     ENDED,
     FORCE,
+    FREE,
     L_A,
     L_JOINT,
     L_KIND,
@@ -33,18 +36,17 @@ from .scratch import (
     L_SOFT,
     LAM,
     MOBILITY,
+    POSE,
+    SAVED,
     TOTAL,
     WAY,
-    FloatArray,
-    IntArray,
-)  # fmt: skip
+)
 
 
-@kernel
+@uncounted
 def book(
-    joint: FloatArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, bodies: int, h: float,
-    one: FloatArray, ledger: FloatArray,
-) -> None:  # fmt: skip
+    joint: FloatArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, h: float, ledger: FloatArray
+) -> None:
     """Add the works of a solved part of the step to `ledger` (see `layout`), and its impulses to TOTAL.
 
     A joint's work on its bodies is F . x / h. Of that, F . x / h of a body that it cannot move is taken from a support.
@@ -54,12 +56,11 @@ def book(
         spring = kind in (SPRING, ROTARY_SPRING)
         if not spring and not held(link, k, 0):
             continue
-        joint_rows(joint, hinge, link, k, local, h, one)
         total, moved = 0.0, 0.0
         for end in range(2):
             i = link[k, L_A + end]
             for c in range(3):
-                work = one[FORCE, 3 * end + c] * local[i, WAY + c] / h
+                work = hinge[k, FORCE + 3 * end + c] * local[i, WAY + c] / h
                 total += work
                 if local[i, MOBILITY + c] > 0.0:
                     moved += work
@@ -84,3 +85,31 @@ def book(
             ledger[LIMITED] -= total
         else:
             ledger[CLOSED] += total
+
+
+@uncounted
+def springs_hold(joint: FloatArray, hinge: FloatArray, link: IntArray, joints: int) -> float:
+    """The energy that springs hold at the start."""
+    total = 0.0
+    for k in range(joints):
+        j, kind = link[k, L_JOINT], link[k, L_KIND]
+        if kind in (SPRING, ROTARY_SPRING):
+            at = hinge[k, BEGAN]
+            total += 0.5 * joint[j, STIFFNESS] * (at - joint[j, REST]) ** 2
+            total += joint[j, PUSH] * at * (-1.0 if kind == SPRING else 1.0)
+    return total
+
+
+@uncounted
+def close_ledger(local: FloatArray, bodies: int, ledger: FloatArray) -> None:
+    """Book as CLOSED what the ledger misses of a step from SAVED to the present: after linear steps."""
+    gained = 0.0
+    for i in range(bodies):
+        for c in range(3):
+            if local[i, MOBILITY + c] > 0.0:
+                before, after = local[i, SAVED + 3 + c], local[i, BEFORE + c]
+                way = local[i, POSE + c] - local[i, SAVED + c]
+                gained += (0.5 * (after * after - before * before) - local[i, FREE + c] * way) / local[i, MOBILITY + c]
+    known = ledger[MOTORS] + ledger[SUPPORTS] + ledger[CLOSED] - ledger[STORED]
+    known -= ledger[DAMPED] + ledger[LIMITED] + ledger[CLAMPED] + ledger[PROJECTED]
+    ledger[CLOSED] += gained - known

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compiled import kernel
+from ..arrays import FloatArray
+from ..compiled import uncounted
 from .scratch import (
     AFTER,
     BEFORE,
@@ -23,11 +24,10 @@ from .scratch import (
     TURN_SIN,
     TURNED,
     WAY,
-    FloatArray,
-)  # fmt: skip
+)
 
 
-@kernel
+@uncounted
 def move(local: FloatArray, bodies: int, h: float) -> None:
     """Fill in WAY and what follows from it, of the present velocities at the end."""
     for i in range(bodies):
@@ -59,7 +59,7 @@ def move(local: FloatArray, bodies: int, h: float) -> None:
             local[i, BEND] = 0.0
 
 
-@kernel
+@uncounted
 def settle(local: FloatArray, bodies: int, h: float) -> None:
     """Velocities at the end from the balance of momentum, to round-off, and the way that they make."""
     for i in range(bodies):
@@ -69,7 +69,7 @@ def settle(local: FloatArray, bodies: int, h: float) -> None:
     move(local, bodies, h)
 
 
-@kernel
+@uncounted
 def advance(local: FloatArray, bodies: int) -> None:
     """Make the end of a part of the step the start of the next."""
     for i in range(bodies):

@@ -9,30 +9,23 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..arrays import FloatArray, IntArray
 from ..compiled import kernel
 from ..layout import II, IM
-from .layout import (
-    ANCHOR_AX,
-    ANCHOR_AY,
-    ANCHOR_BX,
-    ANCHOR_BY,
-    BODY_A,
-    BODY_B,
-    GEAR,
-    GROOVE,
-    KIND,
-    PIVOT,
-)  # fmt: skip
+from .layout import ANCHOR_AX, ANCHOR_AY, ANCHOR_BX, ANCHOR_BY, BODY_A, BODY_B, GEAR, GROOVE, KIND, PIVOT, SOFT
 from .rows import row_count
-from .scratch import L_A, L_B, L_JOINT, L_KIND, L_ROW, L_ROWS, FloatArray, IntArray
+from .scratch import L_A, L_B, L_JOINT, L_KIND, L_ROW, L_ROWS
 
 # SPAN: one row per island.
 BODY_0, BODY_1, JOINT_0, JOINT_1 = 0, 1, 2, 3  # its slices of MEMBER and LINK
 UNKNOWNS, BAND, LOOPS = 4, 5, 6  # size and half-width of its matrix; number of independent cycles of its graph
-SPAN_COLUMNS = 7
+CONDENSED = 7  # 1 if the matrix has the bodies' unknowns alone
+ROWS_OF = 8  # number of unknowns beside the matrix
+SPAN_COLUMNS = 9
 # MEMBER: one row per body of each island.
 M_BODY, M_COLUMN, M_FREEDOMS, M_CAYLEY = 0, 1, 2, 3
 MEMBER_COLUMNS = 4
+WIDE = 14  # half-width of the band from which on an island is condensed
 
 
 @kernel
@@ -149,32 +142,35 @@ def order_nodes(start: IntArray, near: IntArray, nodes: int, order: IntArray) ->
 
 
 @kernel
-def order_unknowns(span: IntArray, member: IntArray, link: IntArray, s: int) -> None:
-    """Give the bodies and joints of island s their unknowns; fill in its size and band."""
+def order_unknowns(span: IntArray, member: IntArray, link: IntArray, s: int, condensed: bool) -> None:
+    """Give the bodies and joints of island s their unknowns; fill in its size and band.
+
+    In a condensed system the bodies come first, and joints are the edges between them.
+    """
     b0, b1, j0, j1 = span[s, BODY_0], span[s, BODY_1], span[s, JOINT_0], span[s, JOINT_1]
     bodies, joints = b1 - b0, j1 - j0
-    nodes = bodies + joints
-    width = np.zeros(nodes, np.int64)
+    nodes = bodies if condensed else bodies + joints
+    width = np.zeros(bodies + joints, np.int64)
     for i in range(bodies):
         width[i] = member[b0 + i, M_FREEDOMS]
+    for k in range(joints):
+        width[bodies + k] = link[j0 + k, L_ROWS]
     start = np.zeros(nodes + 1, np.int64)
     near = np.empty(6 * joints, np.int64)
     for fill in range(2):
         at = start.copy()
         for k in range(joints):
             a, b = link[j0 + k, L_A], link[j0 + k, L_B]
-            width[bodies + k] = link[j0 + k, L_ROWS]
-            kind = link[j0 + k, L_KIND]
-            for p in range(3):
-                u, v = (bodies + k, a) if p == 0 else (bodies + k, b) if p == 1 else (a, b)
-                if width[u] == 0 or width[v] == 0 or (p == 2 and kind == PIVOT):
+            for p in range(2 if condensed else 0, 3):
+                u, v = (a, b) if p == 2 else (bodies + k, a if p == 0 else b)
+                uncoupled = p == 2 and not condensed and link[j0 + k, L_KIND] == PIVOT
+                if width[u] == 0 or width[v] == 0 or uncoupled:
                     continue
                 if fill == 0:
                     start[u + 1] += 1
                     start[v + 1] += 1
                 else:
-                    near[at[u]] = v
-                    near[at[v]] = u
+                    near[at[u]], near[at[v]] = v, u
                     at[u] += 1
                     at[v] += 1
         if fill == 0:
@@ -182,7 +178,7 @@ def order_unknowns(span: IntArray, member: IntArray, link: IntArray, s: int) -> 
                 start[i + 1] += start[i]
     order = np.empty(nodes, np.int64)
     order_nodes(start, near, nodes, order)
-    first = np.zeros(nodes, np.int64)
+    first = np.zeros(bodies + joints, np.int64)
     total = 0
     for x in range(nodes):
         first[order[x]] = total
@@ -192,11 +188,16 @@ def order_unknowns(span: IntArray, member: IntArray, link: IntArray, s: int) -> 
         for t in range(start[u], start[u + 1]):
             v = near[t]
             band = max(band, max(first[u] + width[u], first[v] + width[v]) - 1 - min(first[u], first[v]))
+    span[s, UNKNOWNS], span[s, BAND], span[s, CONDENSED] = total, band, 1 if condensed else 0
+    if condensed:
+        for k in range(joints):
+            first[bodies + k] = total
+            total += width[bodies + k]
     for i in range(bodies):
         member[b0 + i, M_COLUMN] = first[i]
     for k in range(joints):
         link[j0 + k, L_ROW] = first[bodies + k]
-    span[s, UNKNOWNS], span[s, BAND] = total, band
+    span[s, ROWS_OF] = total - span[s, UNKNOWNS]
 
 
 @kernel
@@ -245,8 +246,19 @@ def make_plan(
                 link[k, L_A + end] = place[body] - span[s, BODY_0]
         span[s, BODY_1] = used
         span[s, LOOPS] = cycles(link, member, span, s)
-        order_unknowns(span, member, link, s)
+        for way in range(2):
+            if way == 0 or (span[s, BAND] > WIDE and not discs(tie, link, span, s)):
+                order_unknowns(span, member, link, s, way > 0)
     return count
+
+
+@kernel
+def discs(tie: IntArray, link: IntArray, span: IntArray, s: int) -> bool:
+    """Whether a joint with two bounded impulses is in island s: condensed systems do not have those."""
+    for k in range(span[s, JOINT_0], span[s, JOINT_1]):
+        if tie[link[k, L_JOINT], SOFT] != 0 and link[k, L_ROWS] == 2:
+            return True
+    return False
 
 
 @kernel

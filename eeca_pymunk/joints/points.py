@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compiled import kernel
-from .layout import LENGTH, LOWER, OFFSET, PIN, PIVOT, PUSH, REST, SPRING, UPPER
-from .layout import STIFFNESS as SPRING_STIFFNESS
+from ..arrays import FloatArray
+from ..compiled import uncounted
+from .layout import LENGTH, LOWER, OFFSET, PIVOT, PUSH, REST, SLIDE, SPRING, STIFFNESS, UPPER
 from .scratch import (
     APART,
     ARM_A,
@@ -18,24 +18,23 @@ from .scratch import (
     FULL_BEND,
     LAM,
     LEVER,
+    MEASURE,
     NORMAL,
     OWN_TURN,
     ROWS,
     SLOPE,
     SLOPES,
-    STIFFNESS,
     TURN_COS,
     TURN_SIN,
     VALUE,
     WAY,
-    FloatArray,
-)  # fmt: skip
+)
 
 
-@kernel
+@uncounted
 def point_rows(
     kind: int, side: int, soft: bool, h: float, joint: FloatArray, j: int, hinge: FloatArray, k: int,
-    local: FloatArray, a: int, b: int, one: FloatArray,
+    local: FloatArray, a: int, b: int, stiff: FloatArray,
 ) -> int:  # fmt: skip
     """`joint_rows` of pins, slides, pivots and springs."""
     ca, sa, slope_a, lever_a = local[a, TURN_COS], local[a, TURN_SIN], local[a, SLOPE], local[a, LEVER]
@@ -67,7 +66,7 @@ def point_rows(
         hxx = hxy = hyx = hyy = 0.0  # dF/dd1
         if kind == SPRING:
             began, ended = hinge[k, BEGAN], np.sqrt(dx1 * dx1 + dy1 * dy1)
-            mean, stiffness, drag = 0.5 * (began + ended), joint[j, SPRING_STIFFNESS], hinge[k, DRAG]
+            mean, stiffness, drag = 0.5 * (began + ended), joint[j, STIFFNESS], hinge[k, DRAG]
             lam = h * (joint[j, PUSH] - stiffness * (mean - joint[j, REST])) - drag * (ended - began)
             over = 1.0 / mean if mean > 0.0 else 0.0
             fx, fy = lam * over * dx, lam * over * dy
@@ -77,16 +76,18 @@ def point_rows(
             hyy = 0.5 * lam * over + steep * dy * dy1
             hinge[k, LAM], hinge[k, ENDED] = lam, ended
         else:
-            length = joint[j, LENGTH] if kind == PIN or side < 0 else joint[j, UPPER]
-            over = 1.0 / length
-            if soft:
-                far = np.sqrt(dx * dx + dy * dy)
-                over = 1.0 / far if far > 0.0 else 0.0
+            length = joint[j, LENGTH]  # or LOWER, which is the same column
+            if kind == SLIDE:
+                hinge[k, MEASURE] = np.sqrt(dx1 * dx1 + dy1 * dy1)
+                length = joint[j, UPPER] if side > 0 else length if side < 0 else hinge[k, MEASURE]
+            if soft or length == 0.0:
+                length = np.sqrt(dx * dx + dy * dy)
+            over = 1.0 / length if length > 0.0 else 0.0
             nx, ny, mx, my = dx1 * over, dy1 * over, dx * over, dy * over
             lam = hinge[k, LAM]
             fx, fy = lam * mx, lam * my
             hxx = hyy = 0.5 * lam * over
-            hinge[k, VALUE] = 0.5 * (dx1 * dx1 + dy1 * dy1) / length - 0.5 * length
+            hinge[k, VALUE] = 0.5 * (dx1 * dx1 + dy1 * dy1) * over - 0.5 * length
             hinge[k, ROWS], hinge[k, ROWS + 1], hinge[k, ROWS + 2] = -mx, -my, -lever_a * (rax * my - ray * mx)
             hinge[k, ROWS + 3], hinge[k, ROWS + 4], hinge[k, ROWS + 5] = mx, my, lever_b * (rbx * my - rby * mx)
             hinge[k, SLOPES], hinge[k, SLOPES + 1], hinge[k, SLOPES + 2] = -nx, -ny, nx * uax + ny * uay
@@ -102,23 +103,23 @@ def point_rows(
                 ux, uy = hxx * ubx + hxy * uby, hyx * ubx + hyy * uby
             if c < 2:
                 ux, uy = -ux, -uy
-            one[0, c], one[1, c] = -ux, -uy
-            one[2, c] = -lever_a * (rax * uy - ray * ux)
-            one[3, c], one[4, c] = ux, uy
-            one[5, c] = lever_b * (rbx * uy - rby * ux)
+            stiff[0, c], stiff[1, c] = -ux, -uy
+            stiff[2, c] = -lever_a * (rax * uy - ray * ux)
+            stiff[3, c], stiff[4, c] = ux, uy
+            stiff[5, c] = lever_b * (rbx * uy - rby * ux)
     if bend == OWN_TURN:
-        one[2, 2] = one[5, 5] = 0.0
-    one[2, 2] += 0.5 * slope_a * (rax1 * fx + ray1 * fy)
-    one[5, 5] -= 0.5 * slope_b * (rbx1 * fx + rby1 * fy)
+        stiff[2, 2] = stiff[5, 5] = 0.0
+    stiff[2, 2] += 0.5 * slope_a * (rax1 * fx + ray1 * fy)
+    stiff[5, 5] -= 0.5 * slope_b * (rbx1 * fx + rby1 * fy)
     hinge[k, FORCE], hinge[k, FORCE + 1], hinge[k, FORCE + 2] = -fx, -fy, -lever_a * (rax * fy - ray * fx)
     hinge[k, FORCE + 3], hinge[k, FORCE + 4], hinge[k, FORCE + 5] = fx, fy, lever_b * (rbx * fy - rby * fx)
     return bend
 
 
-@kernel
+@uncounted
 def groove_rows(
     side: int, joint: FloatArray, j: int, hinge: FloatArray, k: int,
-    local: FloatArray, a: int, b: int, one: FloatArray,
+    local: FloatArray, a: int, b: int, stiff: FloatArray,
 ) -> int:  # fmt: skip
     """`joint_rows` of a groove: row 0 keeps the point on its line, row 1 inside the end at `side`."""
     ca, sa, slope_a, lever_a = local[a, TURN_COS], local[a, TURN_SIN], local[a, SLOPE], local[a, LEVER]
@@ -130,9 +131,9 @@ def groove_rows(
     yx1 = yx0 + local[b, WAY] - local[a, WAY] + (rbx1 - rbx0)
     yy1 = yy0 + local[b, WAY + 1] - local[a, WAY + 1] + (rby1 - rby0)
     yx, yy = 0.5 * (yx0 + yx1), 0.5 * (yy0 + yy1)
-    for r in range(STIFFNESS, STIFFNESS + 6):
+    for r in range(6):
         for c in range(6):
-            one[r, c] = 0.0
+            stiff[r, c] = 0.0
     for c in range(6):
         hinge[k, FORCE + c] = 0.0
     for r in range(2):
@@ -145,27 +146,29 @@ def groove_rows(
         nx, ny = 0.5 * (nx0 + nx1), 0.5 * (ny0 + ny1)
         lam = hinge[k, LAM + r]
         hinge[k, VALUE + r] = nx1 * yx1 + ny1 * yy1 - offset
-        hinge[k, ROWS + 6 * r + 0], hinge[k, ROWS + 6 * r + 1], hinge[k, ROWS + 6 * r + 2] = -nx, -ny, -lever_a * (yx * ny - yy * nx)
-        hinge[k, ROWS + 6 * r + 3], hinge[k, ROWS + 6 * r + 4], hinge[k, ROWS + 6 * r + 5] = nx, ny, lever_b * (rbx * ny - rby * nx)
-        hinge[k, SLOPES + 6 * r + 0], hinge[k, SLOPES + 6 * r + 1] = -nx1, -ny1
-        hinge[k, SLOPES + 6 * r + 2] = -slope_a * (yx1 * ny1 - yy1 * nx1)
-        hinge[k, SLOPES + 6 * r + 3], hinge[k, SLOPES + 6 * r + 4] = nx1, ny1
-        hinge[k, SLOPES + 6 * r + 5] = slope_b * (rbx1 * ny1 - rby1 * nx1)
+        hinge[k, MEASURE] = nx1 * yx1 + ny1 * yy1
+        row, slope = ROWS + 6 * r, SLOPES + 6 * r
+        hinge[k, row], hinge[k, row + 1], hinge[k, row + 3], hinge[k, row + 4] = -nx, -ny, nx, ny
+        hinge[k, row + 2] = -lever_a * (yx * ny - yy * nx)
+        hinge[k, row + 5] = lever_b * (rbx * ny - rby * nx)
+        hinge[k, slope], hinge[k, slope + 1], hinge[k, slope + 3], hinge[k, slope + 4] = -nx1, -ny1, nx1, ny1
+        hinge[k, slope + 2] = -slope_a * (yx1 * ny1 - yy1 * nx1)
+        hinge[k, slope + 5] = slope_b * (rbx1 * ny1 - rby1 * nx1)
         if r == 1 and side == 0:
             break
         for c in range(6):
             hinge[k, FORCE + c] += lam * hinge[k, ROWS + 6 * r + c]
         half_a, half_b = 0.5 * lam * slope_a, 0.5 * lam * slope_b
-        one[0, 2] += half_a * ny1
-        one[1, 2] -= half_a * nx1
-        one[3, 2] -= half_a * ny1
-        one[4, 2] += half_a * nx1
-        one[5, 5] -= half_b * (rbx1 * nx + rby1 * ny)
-        one[5, 2] += half_a * (rbx * nx1 + rby * ny1)
-        one[2, 0] += 0.5 * lam * ny
-        one[2, 1] -= 0.5 * lam * nx
-        one[2, 3] -= 0.5 * lam * ny
-        one[2, 4] += 0.5 * lam * nx
-        one[2, 5] += half_b * (rbx1 * nx + rby1 * ny)
-        one[2, 2] -= half_a * (yx * nx1 + yy * ny1)
+        stiff[0, 2] += half_a * ny1
+        stiff[1, 2] -= half_a * nx1
+        stiff[3, 2] -= half_a * ny1
+        stiff[4, 2] += half_a * nx1
+        stiff[5, 5] -= half_b * (rbx1 * nx + rby1 * ny)
+        stiff[5, 2] += half_a * (rbx * nx1 + rby * ny1)
+        stiff[2, 0] += 0.5 * lam * ny
+        stiff[2, 1] -= 0.5 * lam * nx
+        stiff[2, 3] -= 0.5 * lam * ny
+        stiff[2, 4] += 0.5 * lam * nx
+        stiff[2, 5] += half_b * (rbx1 * nx + rby1 * ny)
+        stiff[2, 2] -= half_a * (yx * nx1 + yy * ny1)
     return FULL_BEND

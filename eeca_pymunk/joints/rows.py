@@ -4,7 +4,7 @@ With x = h v_m the way of a body, r its arm, d = anchor b - anchor a, subscript 
 
     pin, slide     g = (|d|^2 - R^2) / 2R            J_b = (d_m, r_mb x d_m) / R
     pivot          g = d                             J_b = (1, z x r_mb)
-    groove, ends   g = n.(x_b + r_b - x_a) - c       J_b = (n_m, r_mb x n_m), J_a = -(n_m, y_m x n_m), y = x_b + r_b - x_a
+    groove, ends   g = n.y - c, y = x_b + r_b - x_a  J_b = (n_m, r_mb x n_m), J_a = -(n_m, y_m x n_m)
     gear           g = angle_b - (angle_a + phase)/ratio   J = (-1/ratio, 1) turned/chi
     limits         g = angle_b - angle_a - bound     J = (-1, 1) s, one s = (turned_b - turned_a)/(chi_b - chi_a)
 
@@ -19,7 +19,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compiled import kernel
+from ..arrays import FloatArray, IntArray
+from ..compiled import uncounted
 from .angles import angle_rows
 from .layout import (
     ANCHOR_AX,
@@ -34,7 +35,7 @@ from .layout import (
     PIVOT,
     ROTARY_SPRING,
     SPRING,
-)  # fmt: skip
+)
 from .points import groove_rows, point_rows
 from .scratch import (
     AFTER,
@@ -60,36 +61,37 @@ from .scratch import (
     SLOPES,
     TARGET,
     VALUE,
-    FloatArray,
-    IntArray,
-)  # fmt: skip
+)
 
 
-@kernel
+@uncounted
 def joint_rows(
-    joint: FloatArray, hinge: FloatArray, link: IntArray, k: int, local: FloatArray, h: float, one: FloatArray
+    joint: FloatArray, hinge: FloatArray, link: IntArray, k: int, local: FloatArray, h: float, stiff: FloatArray
 ) -> int:
-    """Fill in `one` for joint k of the island at the present iterate (see `scratch`); what of STIFFNESS is there."""
+    """Joint k at the present iterate: VALUE to SLOPES of `hinge`, and `stiff` as far as the result says (`scratch`)."""
     kind, a, b, side = link[k, L_KIND], link[k, L_A], link[k, L_B], link[k, L_SIDE]
     soft, j = link[k, L_SOFT] != 0, link[k, L_JOINT]
     if kind >= GEAR:
-        return angle_rows(kind, side, soft, h, joint, j, hinge, k, local, a, b, one)
+        return angle_rows(kind, side, soft, h, joint, j, hinge, k, local, a, b, stiff)
     if kind == GROOVE:
-        bend = groove_rows(side, joint, j, hinge, k, local, a, b, one)
+        bend = groove_rows(side, joint, j, hinge, k, local, a, b, stiff)
     else:
-        bend = point_rows(kind, side, soft, h, joint, j, hinge, k, local, a, b, one)
+        bend = point_rows(kind, side, soft, h, joint, j, hinge, k, local, a, b, stiff)
     if soft:
         for r in range(link[k, L_ROWS]):
             speed = -hinge[k, TARGET + r]
             for c in range(3):
-                speed += hinge[k, ROWS + 6 * r + c] * local[a, AFTER + c] + hinge[k, ROWS + 6 * r + 3 + c] * local[b, AFTER + c]
+                speed += (
+                    hinge[k, ROWS + 6 * r + c] * local[a, AFTER + c]
+                    + hinge[k, ROWS + 6 * r + 3 + c] * local[b, AFTER + c]
+                )
             for c in range(6):
                 hinge[k, SLOPES + 6 * r + c] = hinge[k, ROWS + 6 * r + c]
             hinge[k, VALUE + r] = 0.5 * h * speed
     return bend
 
 
-@kernel
+@uncounted
 def start_joint(joint: FloatArray, hinge: FloatArray, link: IntArray, k: int, local: FloatArray, h: float) -> None:
     """What stays the same over the iterations: arms, distance and normal at the start, a spring's damping."""
     kind, a, b, j = link[k, L_KIND], link[k, L_A], link[k, L_B], link[k, L_JOINT]
@@ -123,7 +125,7 @@ def start_joint(joint: FloatArray, hinge: FloatArray, link: IntArray, k: int, lo
         hinge[k, DRAG] = drag(joint[j, DAMPING], mobility, h)
 
 
-@kernel
+@uncounted
 def drag(damping: float, mobility: float, h: float) -> float:
     """The damping for which the midpoint rule slows a free pair by exp(-damping mobility h), as native does.
 
@@ -133,7 +135,7 @@ def drag(damping: float, mobility: float, h: float) -> float:
     return np.tanh(damping * rate) / rate if rate > 0.0 else damping
 
 
-@kernel
+@uncounted
 def row_count(kind: int) -> int:
     """Number of impulses of a joint of this kind that are unknowns."""
     if kind in (SPRING, ROTARY_SPRING):

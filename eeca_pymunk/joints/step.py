@@ -1,20 +1,17 @@
 """One step of an island of jointed bodies without contacts, and its ladder when Newton's method does not converge.
 
 Order 2 (midpoint with discrete gradients), or 4 by Suzuki's composition (s, s, 1 - 4s, s, s) h, s = 1/(4 - 4^(1/3)),
-where nothing in the island dissipates, drives or stands on a limit. The ladder: the step in 2, 4, 8 parts; joints that
-give way elastically, by 1e-6 and 1e-4 of their stiffest; one linear system. No rung takes unbounded work.
+where nothing in the island dissipates, drives or meets a limit. The ladder: the step whole, in 2, 4, 8 parts; in 8 with
+joints that give way elastically, by 1e-6 and 1e-4 of their stiffest; one linear system. No rung takes unbounded work.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from ..compiled import kernel
-from .correct import kinetic, stand_still
+from ..arrays import FloatArray, IntArray
+from ..compiled import uncounted
 from .layout import (
-    CLAMPED,
-    CLOSED,
-    DAMPED,
     DAMPING,
     ELASTIC,
     EXACT,
@@ -25,24 +22,21 @@ from .layout import (
     LEDGER_COLUMNS,
     LENGTH_0,
     LENGTH_1,
-    LIMITED,
     LINEAR,
-    MOTORS,
     NOTCH,
-    PROJECTED,
     RATCHET,
     ROTARY_SPRING,
     SIDE,
     SPRING,
-    STORED,
-    SUPPORTS,
     TOOTH,
     TOOTH_PHASE,
     TOUCHED,
-)  # fmt: skip
-from .ledger import book
-from .limits import TOUCH, bounded, gap, step_with_limits
-from .motion import advance
+    WORK,
+)
+from .ledger import close_ledger
+from .limits import step_with_limits
+from .motion import advance, move
+from .rows import start_joint
 from .scratch import (
     AFTER,
     BEFORE,
@@ -54,26 +48,24 @@ from .scratch import (
     L_B,
     L_JOINT,
     L_KIND,
+    L_ROWS,
     L_SIDE,
     L_SOFT,
     LAM,
-    MOBILITY,
+    LINEAR_STEP,
     POSE,
     SAVED,
     SIN,
-    SIZE,
+    STEP,
     TOTAL,
-    WAY,
-    FloatArray,
-    IntArray,
-)  # fmt: skip
-from .solve import linear_step, newton_step
-from .start import fit, read_joints, soft_targets
+)
+from .start import fit, look, read_joints, soft_targets
 
-SHARE = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))
+SUZUKI = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))
+FIRST_RUNG, LAST_RUNG = 0, 6  # rung -1 is order 4
 
 
-@kernel
+@uncounted
 def save(local: FloatArray, bodies: int) -> None:
     """Keep the start of the step."""
     for i in range(bodies):
@@ -81,8 +73,10 @@ def save(local: FloatArray, bodies: int) -> None:
             local[i, SAVED + c] = local[i, POSE + c]
 
 
-@kernel
-def restore(tie: IntArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, bodies: int) -> None:
+@uncounted
+def restore(
+    joint: FloatArray, tie: IntArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, bodies: int
+) -> None:
     """Back to the start of the step, without impulses."""
     for i in range(bodies):
         for c in range(6):
@@ -90,104 +84,21 @@ def restore(tie: IntArray, hinge: FloatArray, link: IntArray, joints: int, local
         local[i, COS], local[i, SIN] = np.cos(local[i, POSE + 2]), np.sin(local[i, POSE + 2])
     for k in range(joints):
         hinge[k, LAM] = hinge[k, LAM + 1] = hinge[k, TOTAL] = hinge[k, TOTAL + 1] = 0.0
-        if link[k, L_SOFT] == 0:
-            link[k, L_SIDE] = tie[link[k, L_JOINT], SIDE]
+        joint[link[k, L_JOINT], WORK] = 0.0
+        link[k, L_SIDE] = tie[link[k, L_JOINT], SIDE]
 
 
-@kernel
+@uncounted
 def smooth(joint: FloatArray, link: IntArray, joints: int) -> bool:
     """Whether order 4 may be had: no damping, no motor, no finite max_force, nobody on a limit."""
     for k in range(joints):
-        spring = link[k, L_KIND] == SPRING or link[k, L_KIND] == ROTARY_SPRING
+        spring = link[k, L_KIND] in (SPRING, ROTARY_SPRING)
         if link[k, L_SOFT] != 0 or link[k, L_SIDE] != 0 or (spring and joint[link[k, L_JOINT], DAMPING] != 0.0):
             return False
     return True
 
 
-@kernel
-def passes_bound(
-    joint: FloatArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, h: float, one: FloatArray
-) -> bool:
-    """Whether a free limit is passed at the end of the present iterate."""
-    for k in range(joints):
-        for side in (-1, 1):
-            if (
-                bounded(joint, link, k, side)
-                and gap(joint, hinge, link, k, side, local, h, one) < -TOUCH * hinge[k, SIZE]
-            ):
-                return True
-    return False
-
-
-@kernel
-def fourth_order_step(
-    joint: FloatArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray, bodies: int,
-    h: float, length: float, loops: bool, band: int, size: int, matrix: FloatArray, right: FloatArray,
-    one: FloatArray, ledger: FloatArray,
-) -> bool:  # fmt: skip
-    """Suzuki's five parts of a step; False if one fails or passes a limit (the state is then that of a part)."""
-    last = h
-    for part in range(5):
-        step = (1.0 - 4.0 * SHARE) * h if part == 2 else SHARE * h
-        for k in range(joints):
-            warm = 0.0 if loops else step / last
-            hinge[k, LAM] *= warm
-            hinge[k, LAM + 1] *= warm
-        last = step
-        if (
-            newton_step(
-                joint,
-                hinge,
-                link,
-                joints,
-                local,
-                node,
-                bodies,
-                step,
-                length,
-                loops,
-                0.0,
-                band,
-                size,
-                matrix,
-                right,
-                one,
-            )
-            < 0
-        ):
-            return False
-        if passes_bound(joint, hinge, link, joints, local, step, one):
-            return False
-        book(joint, hinge, link, joints, local, bodies, step, one, ledger)
-        advance(local, bodies)
-    return True
-
-
-@kernel
-def linear_rung(
-    joint: FloatArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray, bodies: int,
-    h: float, band: int, size: int, matrix: FloatArray, right: FloatArray, one: FloatArray, ledger: FloatArray,
-) -> None:  # fmt: skip
-    """The linear step; what its work misses is booked as CLOSED. If even that fails, free flight."""
-    if not linear_step(joint, hinge, link, joints, local, node, bodies, h, band, size, matrix, right, one):
-        for i in range(bodies):
-            for c in range(3):
-                local[i, AFTER + c] = local[i, BEFORE + c] + h * local[i, FREE + c]
-        for k in range(joints):
-            hinge[k, LAM] = hinge[k, LAM + 1] = 0.0
-    book(joint, hinge, link, joints, local, bodies, h, one, ledger)
-    gained = kinetic(local, bodies, AFTER) - kinetic(local, bodies, BEFORE)
-    for i in range(bodies):
-        for c in range(3):
-            if local[i, MOBILITY + c] > 0.0:
-                gained -= local[i, FREE + c] * local[i, WAY + c] / local[i, MOBILITY + c]
-    known = ledger[MOTORS] + ledger[SUPPORTS] + ledger[CLOSED] - ledger[STORED]
-    known -= ledger[DAMPED] + ledger[LIMITED] + ledger[CLAMPED] + ledger[PROJECTED]
-    ledger[CLOSED] += gained - known
-    advance(local, bodies)
-
-
-@kernel
+@uncounted
 def write_joints(
     joint: FloatArray, tie: IntArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, h: float,
     loose: bool,
@@ -210,60 +121,77 @@ def write_joints(
                 tie[j, SIDE] = 0
 
 
-@kernel
+@uncounted
 def island_step(
     joint: FloatArray, tie: IntArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray,
-    node: IntArray, bodies: int, h: float, order: int, length: float, loops: bool, band: int, size: int,
-    matrix: FloatArray, right: FloatArray, one: FloatArray, found: FloatArray, ledger: FloatArray,
+    node: IntArray, bodies: int, h: float, order: int, length: float, loops: bool, condensed: bool, band: int,
+    size: int, matrix: FloatArray, right: FloatArray, stiff: FloatArray, found: FloatArray, part: FloatArray,
+    ledger: FloatArray,
 ) -> int:  # fmt: skip
     """Step one island by h; its status (see `layout`).
 
     `local` holds poses, velocities, accelerations and mobilities at the start and, on return, poses and velocities
-    (BEFORE) at the end. `ledger` (LEDGER_COLUMNS,) is that of the step, `length` the size of the island.
+    (BEFORE) at the end. `ledger` (LEDGER_COLUMNS,) is that of the step, `part` scratch for another; `length` is the
+    size of the island, `loops` whether rows may be redundant, and `matrix` has `size` rows of 3 band + 1 entries, of
+    2 band + 1 if it is `condensed`.
     """
     for c in range(LEDGER_COLUMNS):
         ledger[c] = 0.0
-    touched = read_joints(joint, tie, hinge, link, joints, h, length, loops)
+    needs = read_joints(joint, tie, hinge, link, joints, h, length, loops)
     save(local, bodies)
-    if touched:
-        fit(joint, tie, hinge, link, joints, local, node, bodies, h, band, size, matrix, right, one, ledger)
+    if needs % 2 == 1:
+        fit(
+            joint, tie, hinge, link, joints, local, node, bodies, h, length, condensed, band, size, matrix, right,
+            stiff, found, ledger,
+        )  # fmt: skip
         save(local, bodies)
-    stand_still(joint, hinge, link, joints, local, bodies)
-    soft_targets(joint, hinge, link, joints, local, h, one)
+    if needs >= 2:
+        look(joint, hinge, link, joints, local, node, bodies, stiff)
+        soft_targets(joint, hinge, link, joints, local, h)
     for k in range(joints):
-        tie[link[k, L_JOINT], SIDE] = link[k, L_SIDE]
-        joint[link[k, L_JOINT], LENGTH_0] = hinge[k, BEGAN]
-    before = ledger.copy()
-    status = EXACT
-    if order == 4 and smooth(joint, link, joints):
-        if fourth_order_step(
-            joint, hinge, link, joints, local, node, bodies, h, length, loops, band, size, matrix, right, one, ledger
-        ):
-            write_joints(joint, tie, hinge, link, joints, local, h, False)
-            return EXACT
-        restore(tie, hinge, link, joints, local, bodies)
-        ledger[:] = before
-    for rung in range(7):
-        parts = 1 << rung if rung < 4 else 8
-        give = 0.0 if rung < 4 else 1e-6 if rung == 4 else 1e-4
-        status = EXACT if rung == 0 else HALVED if rung < 4 else ELASTIC if rung < 6 else LINEAR
-        if rung == 6:
-            linear_rung(joint, hinge, link, joints, local, node, bodies, h, band, size, matrix, right, one, ledger)
-            break
-        left = 0.0
-        for part in range(parts):
-            if part > 0 and loops:
-                for k in range(joints):
-                    hinge[k, LAM] = hinge[k, LAM + 1] = 0.0
-            left = step_with_limits(
-                joint, hinge, link, joints, local, node, bodies, h / parts, length, loops, give, band, size, matrix,
-                right, one, found, ledger,
+        j = link[k, L_JOINT]
+        tie[j, SIDE] = link[k, L_SIDE]
+        if link[k, L_ROWS] == 0:
+            start_joint(joint, hinge, link, k, local, h)
+            joint[j, LENGTH_0] = hinge[k, BEGAN]
+    status = LINEAR
+    rung = -1 if order == 4 and smooth(joint, link, joints) else FIRST_RUNG
+    while rung <= LAST_RUNG:
+        parts = 5 if rung < 0 else 1 << rung if rung < 4 else 8 if rung < LAST_RUNG else 1
+        give = 0.0 if rung < 4 or rung == LAST_RUNG else 1e-6 if rung == 4 else 1e-4
+        what = LINEAR_STEP if rung == LAST_RUNG else STEP
+        for c in range(LEDGER_COLUMNS):
+            part[c] = 0.0
+        done, before = True, h
+        for p in range(parts):
+            piece = h / parts if rung >= 0 else (1.0 - 4.0 * SUZUKI) * h if p == 2 else SUZUKI * h
+            for k in range(joints):
+                warm = 0.0 if loops or rung == LAST_RUNG else piece / before
+                hinge[k, LAM] *= warm
+                hinge[k, LAM + 1] *= warm
+            before = piece
+            done = step_with_limits(
+                what, joint, hinge, link, joints, local, node, bodies, piece, length, loops, give, rung < 0, condensed,
+                band, size, matrix, right, stiff, found, part,
             )  # fmt: skip
-            if left != 0.0:
+            if not done:
                 break
-        if left == 0.0:
+        if done:
+            status = EXACT if rung <= 0 else HALVED if rung < 4 else ELASTIC if rung < LAST_RUNG else LINEAR
             break
-        restore(tie, hinge, link, joints, local, bodies)
-        ledger[:] = before
+        restore(joint, tie, hinge, link, joints, local, bodies)
+        rung += 1
+    if status == LINEAR:
+        if rung > LAST_RUNG:  # not even that: free flight
+            for i in range(bodies):
+                for c in range(3):
+                    local[i, AFTER + c] = local[i, BEFORE + c] + h * local[i, FREE + c]
+            move(local, bodies, h)
+            advance(local, bodies)
+            for c in range(LEDGER_COLUMNS):
+                part[c] = 0.0
+        close_ledger(local, bodies, part)
+    for c in range(LEDGER_COLUMNS):
+        ledger[c] += part[c]
     write_joints(joint, tie, hinge, link, joints, local, h, status >= ELASTIC)
     return status

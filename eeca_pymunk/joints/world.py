@@ -6,13 +6,15 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..compiled import kernel
+from ..arrays import FloatArray, IntArray
+from ..compiled import uncounted
 from ..layout import ANGLE, AX, II, IM, VX, X
 from .layout import ANCHOR_AX, LEDGER_COLUMNS
 from .plan import (
     BAND,
     BODY_0,
     BODY_1,
+    CONDENSED,
     JOINT_0,
     JOINT_1,
     LOOPS,
@@ -21,10 +23,11 @@ from .plan import (
     M_COLUMN,
     M_FREEDOMS,
     MEMBER_COLUMNS,
+    ROWS_OF,
     SPAN_COLUMNS,
     UNKNOWNS,
     make_plan,
-)  # fmt: skip
+)
 from .scratch import (
     BEFORE,
     CAYLEY,
@@ -38,16 +41,14 @@ from .scratch import (
     LOCAL_COLUMNS,
     MOBILITY,
     NODE_COLUMNS,
-    ONE_ROWS,
     POSE,
+    ROOT,
     SIN,
-    FloatArray,
-    IntArray,
-)  # fmt: skip
+)
 from .step import island_step
 
 
-@kernel
+@uncounted
 def gather_island(
     bodies: FloatArray, joint: FloatArray, span: IntArray, s: int, member: IntArray, link: IntArray, h: float,
     local: FloatArray, node: IntArray,
@@ -62,6 +63,7 @@ def gather_island(
             local[i, BEFORE + c] = bodies[body, VX + c]
             local[i, FREE + c] = bodies[body, AX + c]
             local[i, MOBILITY + c] = bodies[body, IM] if c < 2 else bodies[body, II]
+            local[i, ROOT + c] = np.sqrt(local[i, MOBILITY + c])
         local[i, COS], local[i, SIN] = np.cos(bodies[body, ANGLE]), np.sin(bodies[body, ANGLE])
         local[i, CAYLEY] = member[b0 + i, M_CAYLEY]
         node[i, COLUMN], node[i, FREEDOMS] = member[b0 + i, M_COLUMN], member[b0 + i, M_FREEDOMS]
@@ -73,11 +75,11 @@ def gather_island(
     return length if length > 0.0 else 1.0
 
 
-@kernel
+@uncounted
 def step_all(
     bodies: FloatArray, joint: FloatArray, tie: IntArray, span: IntArray, member: IntArray, link: IntArray,
     islands: int, h: float, order: int, hinge: FloatArray, local: FloatArray, node: IntArray, matrix: FloatArray,
-    right: FloatArray, one: FloatArray, found: FloatArray, ledger: FloatArray, status: IntArray,
+    right: FloatArray, stiff: FloatArray, found: FloatArray, part: FloatArray, ledger: FloatArray, status: IntArray,
 ) -> int:  # fmt: skip
     """Step all islands of a plan by h, in place of X .. SPIN of `bodies`; the worst status.
 
@@ -89,10 +91,11 @@ def step_all(
         j0, j1 = span[s, JOINT_0], span[s, JOINT_1]
         length = gather_island(bodies, joint, span, s, member, link, h, local, node)
         band, size = span[s, BAND], span[s, UNKNOWNS]
-        wide = matrix[: size * (3 * band + 1)].reshape((size, 3 * band + 1))
+        condensed = span[s, CONDENSED] != 0
+        width = 2 * band + 1 if condensed else 3 * band + 1
         status[s] = island_step(
-            joint, tie, hinge, link[j0:j1], j1 - j0, local, node, n, h, order, length, span[s, LOOPS] > 0, band, size,
-            wide, right, one, found, ledger[s],
+            joint, tie, hinge, link[j0:j1], j1 - j0, local, node, n, h, order, length, span[s, LOOPS] > 0,
+            condensed, band, size, matrix[: size * width].reshape((size, width)), right, stiff, found, part, ledger[s],
         )  # fmt: skip
         worst = max(worst, status[s])
         for i in range(n):
@@ -134,14 +137,14 @@ class Islands:
         self._local = np.zeros((most_bodies, LOCAL_COLUMNS))
         self._node = np.zeros((most_bodies, NODE_COLUMNS), np.int64)
         self._matrix = np.zeros(int((span[:, UNKNOWNS] * (3 * span[:, BAND] + 1)).max(initial=1)))
-        self._right = np.zeros(int(span[:, UNKNOWNS].max(initial=1)))
-        self._one, self._found = np.zeros((ONE_ROWS, 6)), np.zeros(2)
+        self._right = np.zeros(int((2 * span[:, UNKNOWNS] + span[:, ROWS_OF]).max(initial=1)))
+        self._stiff, self._found, self._part = np.zeros((6, 6)), np.zeros(3), np.zeros(LEDGER_COLUMNS)
         self.ledger, self.status = np.zeros((self.islands, LEDGER_COLUMNS)), np.zeros(self.islands, np.int64)
 
     def step(self, bodies: FloatArray, h: float) -> int:
         """Step all islands of `bodies` (n, BODY_COLUMNS) by h; the worst status."""
         return step_all(
             bodies, self.joint, self.tie, self._span, self._member, self._link, self.islands, h, self.order,
-            self._hinge, self._local, self._node, self._matrix, self._right, self._one, self._found, self.ledger,
-            self.status,
+            self._hinge, self._local, self._node, self._matrix, self._right, self._stiff, self._found,
+            self._part, self.ledger, self.status,
         )  # fmt: skip

@@ -5,10 +5,16 @@ from __future__ import annotations
 import numpy as np
 import pymunk
 
+from ..arrays import FloatArray, IntArray
 from ..joints.layout import (
-    CLAMPED, CLOSED, DAMPED, LIMITED, MOTORS, PROJECTED, SUPPORTS,
+    CLAMPED,
+    CLOSED,
+    DAMPED,
+    LIMITED,
+    MOTORS,
+    PROJECTED,
+    SUPPORTS,
 )  # fmt: skip
-from ..joints.scratch import FloatArray, IntArray
 from ..joints.world import Islands
 from ..layout import ANGLE, AX, AY, BODY_COLUMNS, II, IM, SPIN, VX, VY, X, Y
 from .joints import JointRows

@@ -12,12 +12,47 @@ from typing import Any
 import numpy as np
 import pymunk
 
+from ..arrays import FloatArray, IntArray
 from ..joints.layout import (
-    ANCHOR_AX, BODY_A, BODY_B, DAMPING, ERROR_BIAS, GEAR, GROOVE, IMPULSE_1, IMPULSE_2, JOINT_COLUMNS, KIND, LENGTH,
-    LOWER, MAX_BIAS, MAX_FORCE, MOTOR, NORMAL_X, NOTCH, OFFSET, PHASE, PIN, PIVOT, RATCHET, RATE, RATIO, REST,
-    ROTARY_LIMIT, ROTARY_SPRING, SIDE, SLIDE, SOFT, SPRING, STIFFNESS, TIE_COLUMNS, TOOTH, TOOTH_PHASE, TOUCHED, UPPER,
+    ANCHOR_AX,
+    BODY_A,
+    BODY_B,
+    DAMPING,
+    ERROR_BIAS,
+    GEAR,
+    GROOVE,
+    IMPULSE_1,
+    IMPULSE_2,
+    JOINT_COLUMNS,
+    KIND,
+    LENGTH,
+    LOWER,
+    MAX_BIAS,
+    MAX_FORCE,
+    MOTOR,
+    NORMAL_X,
+    NOTCH,
+    OFFSET,
+    PHASE,
+    PIN,
+    PIVOT,
+    RATCHET,
+    RATE,
+    RATIO,
+    REST,
+    ROTARY_LIMIT,
+    ROTARY_SPRING,
+    SIDE,
+    SLIDE,
+    SOFT,
+    SPRING,
+    STIFFNESS,
+    TIE_COLUMNS,
+    TOOTH,
+    TOOTH_PHASE,
+    TOUCHED,
+    UPPER,
 )  # fmt: skip
-from ..joints.scratch import FloatArray, IntArray
 
 _SMALL = 1e-9  # a pin shorter than this, over its anchors' distances, is a pivot
 
