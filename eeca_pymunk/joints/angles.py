@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..arrays import FloatArray
 from ..compiled import uncounted
-from .layout import GEAR, NOTCH, PHASE, PUSH, RATCHET, RATIO, REST, ROTARY_SPRING, STIFFNESS, UPPER
+from .layout import GEAR, MAX_FORCE, NOTCH, PHASE, PUSH, RATCHET, RATIO, REST, ROTARY_SPRING, STIFFNESS, UPPER
 from .scratch import (
     AFTER,
     ARM_A,
@@ -29,6 +29,7 @@ from .scratch import (
     WAY,
     WEIGHT,
 )
+from .springs import mean_force
 
 
 @uncounted
@@ -36,10 +37,10 @@ def shared_turn(local: FloatArray, a: int, b: int) -> float:
     """(turned_b - turned_a) / (chi_b - chi_a): the one factor with which torques are opposite and energy is kept."""
     chi_a, chi_b = local[a, WAY + 2], local[b, WAY + 2]
     if abs(chi_b - chi_a) > 0.1:
-        return (local[b, TURNED] - local[a, TURNED]) / (chi_b - chi_a)
+        return float((local[b, TURNED] - local[a, TURNED]) / (chi_b - chi_a))
     product = 1.0 + 0.25 * chi_a * chi_b
     y = 0.5 * (chi_b - chi_a) / product
-    return (1.0 - y * y / 3.0 + y**4 / 5.0 - y**6 / 7.0 + y**8 / 9.0) / product
+    return float((1.0 - y * y / 3.0 + y**4 / 5.0 - y**6 / 7.0 + y**8 / 9.0) / product)
 
 
 @uncounted
@@ -68,7 +69,12 @@ def angle_rows(
         phi = angle_a - angle_b
         began = hinge[k, BEGAN]
         stiffness, drag = joint[j, STIFFNESS], hinge[k, DRAG]
-        lam = h * (joint[j, PUSH] + stiffness * (0.5 * (began + phi) - joint[j, REST])) + drag * (phi - began)
+        rest, bound = joint[j, REST], joint[j, MAX_FORCE]
+        pull = mean_force(joint[j, PUSH], stiffness, bound, began - rest, phi - rest)
+        lam = h * max(-bound, min(bound, pull + drag * (phi - began) / h))
+        hinge[k, MEASURE] = pull
+        if abs(lam) >= abs(h) * bound:
+            stiffness = drag = 0.0
         hinge[k, LAM], hinge[k, ENDED] = lam, phi
         slope = 0.5 * h * stiffness + drag
         hinge[k, FORCE + 2], hinge[k, FORCE + 5] = -lam * per_a, lam * per_b

@@ -16,11 +16,11 @@ def bounded(joint: FloatArray, link: IntArray, k: int, side: int) -> bool:
     """Whether joint k has a bound at this side."""
     kind, j = link[k, L_KIND], link[k, L_JOINT]
     if kind == RATCHET:
-        return side * joint[j, TOOTH] < 0.0
+        return bool(side * joint[j, TOOTH] < 0.0)
     if kind == SLIDE and side < 0:
-        return joint[j, LOWER] > 0.0
+        return bool(joint[j, LOWER] > 0.0)
     if kind in (SLIDE, ROTARY_LIMIT, GROOVE):
-        return abs(joint[j, UPPER if side > 0 else LOWER]) < 1e300
+        return bool(abs(joint[j, UPPER if side > 0 else LOWER]) < 1e300)
     return False
 
 
@@ -31,7 +31,7 @@ def gap(joint: FloatArray, hinge: FloatArray, link: IntArray, k: int, side: int)
     bound = joint[j, UPPER if side > 0 else LOWER]
     if link[k, L_KIND] == RATCHET:
         bound = joint[j, NOTCH]
-    return side * (bound - hinge[k, MEASURE])
+    return float(side * (bound - hinge[k, MEASURE]))
 
 
 @uncounted

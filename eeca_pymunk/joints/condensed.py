@@ -74,7 +74,7 @@ def reach_of(
         for c in range(node[i, FREEDOMS]):
             entry = hinge[k, slopes + 6 * r + 3 * end + c] * local[i, ROOT + c]
             total += entry * right[at + node[i, COLUMN] + c]
-    return total * hinge[k, SCALE + r]
+    return float(total * hinge[k, SCALE + r])
 
 
 @uncounted

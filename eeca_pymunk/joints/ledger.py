@@ -9,6 +9,7 @@ from .layout import (
     CLOSED,
     DAMPED,
     LIMITED,
+    MAX_FORCE,
     MOTOR,
     MOTORS,
     PROJECTED,
@@ -25,7 +26,6 @@ from .newton import held
 from .scratch import (
     BEFORE,
     BEGAN,
-    DRAG,
     ENDED,
     FORCE,
     FREE,
@@ -35,12 +35,14 @@ from .scratch import (
     L_SIDE,
     L_SOFT,
     LAM,
+    MEASURE,
     MOBILITY,
     POSE,
     SAVED,
     TOTAL,
     WAY,
 )
+from .springs import held_energy
 
 
 @uncounted
@@ -70,12 +72,11 @@ def book(
         hinge[k, TOTAL + 1] += hinge[k, LAM + 1]
         if spring:
             began, ended = hinge[k, BEGAN], hinge[k, ENDED]
-            sign = -1.0 if kind == SPRING else 1.0
-            pull = joint[j, STIFFNESS] * (0.5 * (began + ended) - joint[j, REST]) + sign * joint[j, PUSH]
-            lost = hinge[k, DRAG] * (ended - began) ** 2 / h
-            ledger[STORED] += pull * (ended - began)
+            stretch = ended - began if kind == SPRING else began - ended
+            lost = (hinge[k, MEASURE] - hinge[k, LAM] / h) * stretch
+            ledger[STORED] -= hinge[k, MEASURE] * stretch
             ledger[DAMPED] += lost
-            ledger[CLOSED] += total + pull * (ended - began) + lost
+            ledger[CLOSED] += total - hinge[k, MEASURE] * stretch + lost
         elif kind == MOTOR or link[k, L_SOFT] != 0:
             if kind == MOTOR or total > 0.0:
                 ledger[MOTORS] += total
@@ -94,9 +95,9 @@ def springs_hold(joint: FloatArray, hinge: FloatArray, link: IntArray, joints: i
     for k in range(joints):
         j, kind = link[k, L_JOINT], link[k, L_KIND]
         if kind in (SPRING, ROTARY_SPRING):
-            at = hinge[k, BEGAN]
-            total += 0.5 * joint[j, STIFFNESS] * (at - joint[j, REST]) ** 2
-            total += joint[j, PUSH] * at * (-1.0 if kind == SPRING else 1.0)
+            sign = 1.0 if kind == SPRING else -1.0
+            at = sign * (hinge[k, BEGAN] - joint[j, REST])
+            total += held_energy(joint[j, PUSH], -joint[j, STIFFNESS], joint[j, MAX_FORCE], at)
     return total
 
 

@@ -68,7 +68,7 @@ def find_islands(bodies: FloatArray, tie: IntArray, parent: IntArray, island: In
 @kernel
 def moved(bodies: FloatArray, i: int) -> bool:
     """Whether joints can move body i."""
-    return bodies[i, IM] > 0.0 or bodies[i, II] > 0.0
+    return bool(bodies[i, IM] > 0.0 or bodies[i, II] > 0.0)
 
 
 @kernel

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..compiled import uncounted
-from .layout import LENGTH, LOWER, OFFSET, PIVOT, PUSH, REST, SLIDE, SPRING, STIFFNESS, UPPER
+from .layout import LENGTH, LOWER, MAX_FORCE, OFFSET, PIVOT, PUSH, REST, SLIDE, SPRING, STIFFNESS, UPPER
 from .scratch import (
     APART,
     ARM_A,
@@ -29,6 +29,7 @@ from .scratch import (
     VALUE,
     WAY,
 )
+from .springs import mean_force
 
 
 @uncounted
@@ -36,7 +37,7 @@ def point_rows(
     kind: int, side: int, soft: bool, h: float, joint: FloatArray, j: int, hinge: FloatArray, k: int,
     local: FloatArray, a: int, b: int, stiff: FloatArray,
 ) -> int:  # fmt: skip
-    """`joint_rows` of pins, slides, pivots and springs."""
+    """`joint_rows` of pins, slides, pivots and springs; MEASURE of a spring is its mean force without damping."""
     ca, sa, slope_a, lever_a = local[a, TURN_COS], local[a, TURN_SIN], local[a, SLOPE], local[a, LEVER]
     cb, sb, slope_b, lever_b = local[b, TURN_COS], local[b, TURN_SIN], local[b, SLOPE], local[b, LEVER]
     rax0, ray0, rbx0, rby0 = hinge[k, ARM_A], hinge[k, ARM_A + 1], hinge[k, ARM_B], hinge[k, ARM_B + 1]
@@ -67,7 +68,12 @@ def point_rows(
         if kind == SPRING:
             began, ended = hinge[k, BEGAN], np.sqrt(dx1 * dx1 + dy1 * dy1)
             mean, stiffness, drag = 0.5 * (began + ended), joint[j, STIFFNESS], hinge[k, DRAG]
-            lam = h * (joint[j, PUSH] - stiffness * (mean - joint[j, REST])) - drag * (ended - began)
+            rest, bound = joint[j, REST], joint[j, MAX_FORCE]
+            pull = mean_force(joint[j, PUSH], -stiffness, bound, began - rest, ended - rest)
+            lam = h * max(-bound, min(bound, pull - drag * (ended - began) / h))
+            hinge[k, MEASURE] = pull
+            if abs(lam) >= abs(h) * bound:
+                stiffness = drag = 0.0
             over = 1.0 / mean if mean > 0.0 else 0.0
             fx, fy = lam * over * dx, lam * over * dy
             steep = (-(0.5 * h * stiffness + drag) - 0.5 * lam * over) * over / ended if ended > 0.0 else 0.0

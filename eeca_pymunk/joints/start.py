@@ -111,7 +111,7 @@ def look(
 def share(joint: FloatArray, j: int, error: float, h: float) -> float:
     """The share of an error that native takes back in a step h: 1 - error_bias^h, not faster than max_bias."""
     part = 1.0 - joint[j, ERROR_BIAS] ** h
-    return min(part, joint[j, MAX_BIAS] * h / error) if error > 0.0 else part
+    return float(min(part, joint[j, MAX_BIAS] * h / error)) if error > 0.0 else part
 
 
 @uncounted

@@ -157,7 +157,7 @@ def island_step(
     status = LINEAR
     rung = -1 if order == 4 and smooth(joint, link, joints) else FIRST_RUNG
     while rung <= LAST_RUNG:
-        parts = 5 if rung < 0 else 1 << rung if rung < 4 else 8 if rung < LAST_RUNG else 1
+        parts = 5 if rung < 0 else 1 << rung if rung < 3 else 1 if rung == LAST_RUNG else 7
         give = 0.0 if rung < 4 or rung == LAST_RUNG else 1e-6 if rung == 4 else 1e-4
         what = LINEAR_STEP if rung == LAST_RUNG else STEP
         for c in range(LEDGER_COLUMNS):

@@ -7,17 +7,25 @@ import pymunk
 
 from ..arrays import FloatArray, IntArray
 from ..joints.layout import (
+    BODY_A,
+    BODY_B,
     CLAMPED,
     CLOSED,
     DAMPED,
     LIMITED,
     MOTORS,
     PROJECTED,
+    PUSH,
+    REST,
+    STIFFNESS,
     SUPPORTS,
 )  # fmt: skip
 from ..joints.world import Islands
-from ..layout import ANGLE, AX, AY, BODY_COLUMNS, II, IM, SPIN, VX, VY, X, Y
+from ..layout import ANGLE, AX, AY, BODY_COLUMNS, II, IM, SPIN, TWIST, VX, VY, X, Y
 from .joints import JointRows
+from .spring_functions import MOST_REPEATS, Laws
+
+LAW = [PUSH, STIFFNESS, REST]
 
 
 class JointedSpace:
@@ -34,6 +42,7 @@ class JointedSpace:
         self._items: list[pymunk.Body] = []
         self._joints: tuple[pymunk.Constraint, ...] = ()
         self.ledger: FloatArray = np.zeros(8)
+        self.rows = JointRows((), {})
         self._plan()
 
     def _plan(self) -> None:
@@ -46,12 +55,16 @@ class JointedSpace:
         self._items = list(items)
         self._inside = set(space.bodies)
         self._joints = tuple(space.constraints)
-        self.rows = JointRows(self._joints, {body: i for i, body in enumerate(self._items)})
+        row = {body: i for i, body in enumerate(self._items)}
+        self.rows = JointRows(self._joints, row, self.rows)
         self.bodies: FloatArray = np.zeros((len(self._items), BODY_COLUMNS))
         self._written: FloatArray = np.full((len(self._items), 6), np.nan)
         self._mobility()
         self.islands = Islands(self.rows.joint, self.rows.tie, self.order)
         self.islands.plan(self.bodies)
+        bound = self.rows.tie[:, BODY_A : BODY_B + 1].ravel()
+        self._free = self._moving.copy()
+        self._free[bound] &= ~self._dynamic[bound]
 
     def _mobility(self) -> None:
         self._centre = np.array([tuple(b.center_of_gravity) for b in self._items]).reshape(-1, 2)
@@ -79,21 +92,41 @@ class JointedSpace:
         """Step the space by dt."""
         if tuple(self.space.constraints) != self._joints:
             self._plan()
-        for c in self._joints:
+        for c in self.rows.before:
             if c.pre_solve is not None:
                 c.pre_solve(c, self.space)
         self._gather()
         if self.rows.refresh():
             self.islands.plan(self.bodies)
-        self.status = self.islands.step(self.bodies, dt)
+        self.status = self._step(dt)
         self.ledger += self.islands.ledger.sum(axis=0)
-        kinematic = self._moving & ~self._dynamic
-        self.bodies[kinematic, X : ANGLE + 1] += dt * self.bodies[kinematic, VX : SPIN + 1]
+        self.bodies[self._free, VX : SPIN + 1] += 0.5 * dt * self.bodies[self._free, AX : TWIST + 1]
+        self.bodies[self._free, X : ANGLE + 1] += dt * self.bodies[self._free, VX : SPIN + 1]
+        self.bodies[self._free, VX : SPIN + 1] += 0.5 * dt * self.bodies[self._free, AX : TWIST + 1]
         self._scatter()
         self.rows.write()
-        for c in self._joints:
+        for c in self.rows.after:
             if c.post_solve is not None:
                 c.post_solve(c, self.space)
+
+    def _step(self, dt: float) -> int:
+        """Step all islands, repeatedly where springs have functions of their own."""
+        rows, bodies = self.rows, self.bodies
+        if not rows.functions:
+            return self.islands.step(bodies, dt)
+        start = [_stretch(rows.items[j]) for j in rows.functions]
+        laws = Laws(rows.items, rows.functions, rows.joint, start)
+        keep = bodies.copy(), rows.joint.copy(), rows.tie.copy()
+        for _ in range(MOST_REPEATS):
+            status = self.islands.step(bodies, dt)
+            if laws.settled():
+                break
+            law = rows.joint[:, LAW].copy()
+            bodies[:], rows.joint[:], rows.tie[:] = keep
+            rows.joint[:, LAW] = law
+        else:
+            status = self.islands.step(bodies, dt)
+        return status
 
     def _scatter(self) -> None:
         bodies = self.bodies
@@ -102,7 +135,9 @@ class JointedSpace:
         y = bodies[:, Y] - s * self._centre[:, 0] - c * self._centre[:, 1]
         for i in np.flatnonzero(self._moving):
             body = self._items[i]
-            body.position, body.angle = (x[i], y[i]), bodies[i, ANGLE]
+            # pymunk places the centre of mass from the position by the angle it has at that moment.
+            body.angle = bodies[i, ANGLE]
+            body.position = x[i], y[i]
             body.velocity, body.angular_velocity = (bodies[i, VX], bodies[i, VY]), bodies[i, SPIN]
         self._written = np.array([(*b.position, b.angle, *b.velocity, b.angular_velocity) for b in self._items])
 
@@ -127,3 +162,10 @@ class JointedSpace:
         book = self.ledger
         lost = book[DAMPED] + book[LIMITED] + book[CLAMPED] + book[PROJECTED]
         return float(book[MOTORS] + book[SUPPORTS] + book[CLOSED] - lost)
+
+
+def _stretch(c: pymunk.Constraint) -> float:
+    """The length of a spring, or the angle of a rotary one."""
+    if isinstance(c, pymunk.DampedSpring):
+        return (c.b.local_to_world(c.anchor_b) - c.a.local_to_world(c.anchor_a)).length
+    return c.a.angle - c.b.angle

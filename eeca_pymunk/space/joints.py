@@ -6,7 +6,7 @@ Anchors of pymunk stand relative to the body, ours to its centre of mass.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -53,42 +53,62 @@ from ..joints.layout import (
     TOUCHED,
     UPPER,
 )  # fmt: skip
+from .edits import Edits, show_impulses
+from .spring_functions import own_function
 
+ANCHORS = slice(ANCHOR_AX, ANCHOR_AX + 4)
 _SMALL = 1e-9  # a pin shorter than this, over its anchors' distances, is a pivot
 
 
 class JointRows:
-    """The constraints of a space as JOINT and TIE rows.
+    """The constraints of a space as JOINT and TIE rows, kept up to date with what the user changes.
 
     Attributes:
         items: the constraints, in the order of the rows.  joint: (j, JOINT_COLUMNS).  tie: (j, TIE_COLUMNS).
+        row: the row of each constraint.  functions: springs that have a force or torque function of the user's own.
+        before, after: constraints with a `pre_solve`, with a `post_solve`.
     """
 
-    def __init__(self, constraints: Sequence[pymunk.Constraint], row: Mapping[pymunk.Body, int]) -> None:
+    def __init__(
+        self, constraints: Iterable[pymunk.Constraint], row: Mapping[pymunk.Body, int], past: JointRows | None = None
+    ) -> None:
+        """The rows of `constraints` between bodies with these rows; what `past` knows of them is kept."""
         self.items = list(constraints)
         self.joint: FloatArray = np.zeros((len(self.items), JOINT_COLUMNS))
         self.tie: IntArray = np.zeros((len(self.items), TIE_COLUMNS), np.int64)
-        self._seen: list[tuple[Any, ...]] = []
-        self._functions: list[int] = []
         for j, item in enumerate(self.items):
             self.tie[j, BODY_A], self.tie[j, BODY_B] = row[item.a], row[item.b]
-            seen = _look(item)
-            self._seen.append(seen)
             _read(item, self.joint[j], self.tie[j])
             self.tie[j, TOUCHED] = 1
+        if past is not None:
+            past.refresh()
+            for j, item in enumerate(self.items):
+                if item in past.row:
+                    i = past.row[item]
+                    self.joint[j], self.tie[j, SIDE:] = past.joint[i], past.tie[i, SIDE:]
+        self.row: dict[pymunk.Constraint, int] = {item: j for j, item in enumerate(self.items)}
+        self._edits = Edits(self.row)
+        self._ratchets = np.flatnonzero(self.tie[:, KIND] == RATCHET)
+        self._find_functions()
+
+    def _find_functions(self) -> None:
+        self.functions = [j for j, item in enumerate(self.items) if own_function(item)]
+        self.before = [item for item in self.items if item.pre_solve is not None]
+        self.after = [item for item in self.items if item.post_solve is not None]
 
     def refresh(self) -> bool:
         """Read anew the constraints that the user changed; whether the islands must be planned anew."""
+        edited = self._edits.take()
+        if not edited:
+            return False
         replan = False
-        for j, item in enumerate(self.items):
-            seen = _look(item)
-            if seen != self._seen[j]:
-                self._seen[j] = seen
-                before = self.joint[j, ANCHOR_AX : ANCHOR_AX + 4].copy(), self.tie[j, KIND]
-                _read(item, self.joint[j], self.tie[j])
-                self.tie[j, TOUCHED] = 1
-                offset = (before[0] != 0.0) != (self.joint[j, ANCHOR_AX : ANCHOR_AX + 4] != 0.0)
-                replan = replan or before[1] != self.tie[j, KIND] or bool(offset.any())
+        for j in sorted(edited):
+            off_before, kind, soft = self.joint[j, ANCHORS] != 0.0, self.tie[j, KIND], self.tie[j, SOFT]
+            _read(self.items[j], self.joint[j], self.tie[j])
+            self.tie[j, TOUCHED] = 1
+            off = self.joint[j, ANCHORS] != 0.0
+            replan = replan or kind != self.tie[j, KIND] or soft != self.tie[j, SOFT] or bool((off != off_before).any())
+        self._find_functions()
         return replan
 
     def touch(self, rows: IntArray) -> None:
@@ -96,41 +116,23 @@ class JointRows:
         hit = np.isin(self.tie[:, BODY_A], rows) | np.isin(self.tie[:, BODY_B], rows)
         self.tie[hit, TOUCHED] = 1
 
-    def impulse(self, constraint: pymunk.Constraint) -> float:
-        """What `constraint.impulse` is after native's step: of springs with its sign (positive pushes), else >= 0."""
-        j = self.items.index(constraint)
-        first, second = float(self.joint[j, IMPULSE_1]), float(self.joint[j, IMPULSE_2])
-        if isinstance(constraint, (pymunk.DampedSpring, pymunk.DampedRotarySpring)):
-            return first
+    def impulse(self, j: int) -> float:
+        """What `constraint.impulse` would be after native's step: of springs signed (positive pushes), else >= 0."""
+        first, second = self.joint[j, IMPULSE_1], self.joint[j, IMPULSE_2]
+        if self.tie[j, KIND] == SPRING:
+            return float(first)
+        if self.tie[j, KIND] == ROTARY_SPRING:
+            return float(first)
         return math.hypot(first, second)
 
     def write(self) -> None:
-        """Give ratchets the notch they have reached."""
-        for j in np.flatnonzero(self.tie[:, KIND] == RATCHET):
+        """Give ratchets the notch they have reached, and let `constraint.impulse` read ours."""
+        for j in self._ratchets:
             item = self.items[j]
             if item.angle != self.joint[j, NOTCH]:
                 item.angle = float(self.joint[j, NOTCH])
-                self._seen[j] = _look(item)
-
-
-def _look(c: Any) -> tuple[Any, ...]:
-    """What the user may have changed of a constraint, to compare."""
-    return (c.max_force, c.error_bias, c.max_bias, *_LOOKS[type(c)](c))
-
-
-_ANCHORS: Callable[[Any], tuple[Any, ...]] = lambda c: (c.anchor_a, c.anchor_b)  # noqa: E731
-_LOOKS: dict[type, Callable[[Any], tuple[Any, ...]]] = {
-    pymunk.PinJoint: lambda c: (c.anchor_a, c.anchor_b, c.distance),
-    pymunk.SlideJoint: lambda c: (c.anchor_a, c.anchor_b, c.min, c.max),
-    pymunk.PivotJoint: _ANCHORS,
-    pymunk.GrooveJoint: lambda c: (c.groove_a, c.groove_b, c.anchor_b),
-    pymunk.DampedSpring: lambda c: (c.anchor_a, c.anchor_b, c.rest_length, c.stiffness, c.damping),
-    pymunk.DampedRotarySpring: lambda c: (c.rest_angle, c.stiffness, c.damping),
-    pymunk.RotaryLimitJoint: lambda c: (c.min, c.max),
-    pymunk.RatchetJoint: lambda c: (c.angle, c.phase, c.ratchet),
-    pymunk.GearJoint: lambda c: (c.phase, c.ratio),
-    pymunk.SimpleMotor: lambda c: (c.rate,),
-}
+                self._edits.forget(int(j))
+        show_impulses(self.items, self.impulse)
 
 
 def _read(c: Any, joint: FloatArray, tie: IntArray) -> None:
