@@ -91,9 +91,10 @@ def angle_rows(
     for r in range(6):
         for c in range(6):
             stiff[r, c] = 0.0
-    if both:  # d s/d chi_a, d s/d chi_b: half the second derivative of 2 atan(chi/2) halfway
-        t = 0.25 * (local[a, WAY + 2] + local[b, WAY + 2])
-        bend_a = bend_b = -0.5 * t / (1.0 + t * t) ** 2
+    if both:  # d s/d chi_b = half the second derivative of 2 atan(chi/2) at two thirds of the way from chi_a to chi_b
+        t_a, t_b = local[a, WAY + 2] / 6.0, local[b, WAY + 2] / 6.0
+        bend_a = -0.5 * (2.0 * t_a + t_b) / (1.0 + (2.0 * t_a + t_b) ** 2) ** 2
+        bend_b = -0.5 * (t_a + 2.0 * t_b) / (1.0 + (t_a + 2.0 * t_b) ** 2) ** 2
         stiff[2, 5], stiff[5, 2] = -share * lam * bend_b, lam * bend_a
     else:
         bend_a, bend_b = local[a, BEND], local[b, BEND]

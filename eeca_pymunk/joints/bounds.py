@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
+from .entries import along
 from .layout import GROOVE, LOWER, NOTCH, RATCHET, ROTARY_LIMIT, SLIDE, TOOTH, UPPER
-from .newton import along
 from .scratch import AFTER, BEFORE, L_JOINT, L_KIND, L_ROWS, L_SIDE, L_SOFT, LAM, MEASURE, ROWS, SIZE
 
 TOUCH = 1e-12  # a gap below this, over the size of the island, is closed

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
+from .entries import held
 from .layout import (
     CLAMPED,
     CLOSED,
@@ -22,7 +23,6 @@ from .layout import (
     SUPPORTS,
     WORK,
 )
-from .newton import held
 from .scratch import (
     BEFORE,
     BEGAN,

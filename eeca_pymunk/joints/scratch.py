@@ -63,6 +63,16 @@ L_ROWS = 6  # number of rows
 L_JOINT = 7  # its row in JOINT
 LINK_COLUMNS = 8
 
+# SPAN: one row per island.
+BODY_0, BODY_1, JOINT_0, JOINT_1 = 0, 1, 2, 3  # its slices of MEMBER and LINK
+UNKNOWNS, BAND, LOOPS = 4, 5, 6  # size and half-width of its matrix; number of independent cycles of its graph
+CONDENSED = 7  # 1 if the matrix has the bodies' unknowns alone
+ROWS_OF = 8  # number of unknowns beside the matrix
+SPAN_COLUMNS = 9
+# MEMBER: one row per body of each island.
+M_BODY, M_COLUMN, M_FREEDOMS, M_CAYLEY = 0, 1, 2, 3
+MEMBER_COLUMNS = 4
+
 NO_BEND, OWN_TURN, FULL_BEND = 0, 1, 2  # what of STIFF is there: nothing, [2, 2] and [5, 5], all
 
 # What is solved for: the implicit step; poses or velocities that fit the joints; the step with rows of the start.

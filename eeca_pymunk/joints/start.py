@@ -8,6 +8,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
 from .bounds import approach, bounded, gap
 from .correct import project_velocities
+from .entries import held
 from .layout import (
     CLOSED,
     ERROR_BIAS,
@@ -34,7 +35,6 @@ from .layout import (
     WORK,
 )
 from .ledger import springs_hold
-from .newton import held
 from .rows import joint_rows
 from .scratch import (
     APART,

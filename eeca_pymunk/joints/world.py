@@ -10,40 +10,38 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
 from ..layout import ANGLE, AX, II, IM, VX, X
 from .layout import ANCHOR_AX, LEDGER_COLUMNS
-from .plan import (
+from .plan import make_plan
+from .scratch import (
     BAND,
+    BEFORE,
     BODY_0,
     BODY_1,
+    CAYLEY,
+    COLUMN,
     CONDENSED,
+    COS,
+    FREE,
+    FREEDOMS,
+    HINGE_COLUMNS,
     JOINT_0,
     JOINT_1,
+    L_JOINT,
+    LINK_COLUMNS,
+    LOCAL_COLUMNS,
     LOOPS,
     M_BODY,
     M_CAYLEY,
     M_COLUMN,
     M_FREEDOMS,
     MEMBER_COLUMNS,
-    ROWS_OF,
-    SPAN_COLUMNS,
-    UNKNOWNS,
-    make_plan,
-)
-from .scratch import (
-    BEFORE,
-    CAYLEY,
-    COLUMN,
-    COS,
-    FREE,
-    FREEDOMS,
-    HINGE_COLUMNS,
-    L_JOINT,
-    LINK_COLUMNS,
-    LOCAL_COLUMNS,
     MOBILITY,
     NODE_COLUMNS,
     POSE,
     ROOT,
+    ROWS_OF,
     SIN,
+    SPAN_COLUMNS,
+    UNKNOWNS,
 )
 from .step import island_step
 
