@@ -135,3 +135,64 @@ def cloth(side: int = 15, mesh: float = 0.1) -> pymunk.Space:
     for i in (0, side - 1):
         space.add(pymunk.PivotJoint(space.static_body, knots[i, 0], knots[i, 0].position, (0.0, 0.0)))
     return space
+
+
+# Andrews' squeezing mechanism (Test Set for IVP Solvers, problem andrews): angles at the start and after .03 s.
+SQUEEZER_START = {
+    "beta": -0.0617138900142764496358948458001,
+    "theta": 0.0,
+    "gamma": 0.455279819163070380255912382449,
+    "phi": 0.222668390165885884674473185609,
+    "delta": 0.487364979543842550225598953530,
+    "omega": -0.222668390165885884674473185609,
+    "epsilon": 1.23054744454982119249735015568,
+}
+SQUEEZER_AT_003 = {
+    "beta": 15.81077119629904,
+    "theta": -15.75637105984298,
+    "gamma": 0.04082224013073101,
+    "phi": -0.5347301163226948,
+    "delta": 0.5244099658805304,
+    "omega": 0.5347301163226948,
+    "epsilon": 1.048080741042263,
+}
+SQUEEZER_WORK = 0.5237920078  # J, torque .033 over the turn of beta
+
+
+def squeezer() -> pymunk.Space:
+    """Andrews' squeezing mechanism, SI units: seven bodies, ten pivots, a spring, and a motor of torque .033 on K1."""
+    space = empty(0.0)
+    ground, s = space.static_body, SQUEEZER_START
+    rr, d, ss, e, zf, zt, u = 7e-3, 28e-3, 35e-3, 2e-2, 2e-2, 4e-2, 4e-2
+    at_a, at_b, at_c = pymunk.Vec2d(-0.06934, -0.00227), pymunk.Vec2d(-0.03635, 0.03273), pymunk.Vec2d(0.014, 0.072)
+    beta, gamma, delta, epsilon = s["beta"], s["gamma"], s["delta"], s["epsilon"]
+    k2, k4, k6 = beta + s["theta"], s["phi"] + delta, s["omega"] + epsilon
+
+    def along(angle: float, x: float, y: float) -> pymunk.Vec2d:
+        return pymunk.Vec2d(x, y).rotated(angle)
+
+    knee = along(beta, rr, 0.0)
+    point = knee - along(k2, d, 0.0)
+    elbow_4, elbow_6 = at_a + along(delta, zt, 0.0), at_a + along(epsilon, 0.0, -u)
+    parts = [
+        (0.04325, 2.194e-6, along(beta, 92e-5, 0.0), beta),
+        (0.00365, 4.410e-7, knee - along(k2, 115e-4, 0.0), k2),
+        (0.02373, 5.255e-6, at_b + along(gamma, 1043e-5, -1874e-5), gamma),
+        (0.00706, 5.667e-7, elbow_4 + along(k4, 0.0, -(e - 1421e-5)), k4),
+        (0.07050, 1.169e-5, at_a + along(delta, 2308e-5, 916e-5), delta),
+        (0.00706, 5.667e-7, elbow_6 + along(k6, zf - 1421e-5, 0.0), k6),
+        (0.05498, 1.912e-5, at_a + along(epsilon, -449e-5, -1228e-5), epsilon),
+    ]
+    bodies = [body(space, mass, moment, centre, angle) for mass, moment, centre, angle in parts]
+    k = [ground, *bodies]
+    for a, b, where in (
+        (0, 1, pymunk.Vec2d(0.0, 0.0)), (1, 2, knee), (2, 3, point), (2, 4, point), (2, 6, point), (0, 3, at_b),
+        (4, 5, elbow_4), (0, 5, at_a), (6, 7, elbow_6), (0, 7, at_a),
+    ):  # fmt: skip
+        space.add(pymunk.PivotJoint(k[a], k[b], k[a].world_to_local(where), k[b].world_to_local(where)))
+    hook = k[3].world_to_local(at_b + along(gamma, 2e-2, -18e-3))
+    space.add(pymunk.DampedSpring(ground, k[3], at_c, hook, 7785e-5, 4530.0, 0.0))
+    motor = pymunk.SimpleMotor(ground, k[1], -1e6)
+    motor.max_force = 0.033
+    space.add(motor)
+    return space

@@ -8,7 +8,7 @@ import numpy as np
 import pymunk
 import pytest
 
-from eeca_pymunk.joints.layout import EXACT, LINEAR
+from eeca_pymunk.joints.layout import EXACT, LINEAR, MOTORS
 from eeca_pymunk.space.jointed import JointedSpace
 from scenes import linkages
 
@@ -151,6 +151,43 @@ def test_cloth_falls_with_its_pins_kept() -> None:
     assert stepper.status == EXACT
     assert off < 1e-11
     assert apart < 1e-10
+
+
+def test_forty_four_bars_after_ten_seconds() -> None:
+    space = linkages.four_bars(40)
+    stepper = JointedSpace(space, 4)
+    stepper.step(0.01)
+    start, worst = stepper.energy(), 0.0
+    for _ in range(999):
+        stepper.islands.step(stepper.bodies, 0.01)
+        worst = max(worst, abs(stepper.energy() - start))
+    stepper._scatter()
+    end = next(iter(space.bodies)).local_to_world((0.5, 0.0))
+    np.testing.assert_allclose(end, linkages.FOUR_BAR_AT_10[40], atol=5e-5)
+    assert worst < 1e-7  # Exudyn's is .114
+
+
+def test_squeezer_of_andrews() -> None:
+    # Published digits by order 2, the spring's energy stored, the motor's work in the ledger.
+    errors, dts = [], (1e-5, 5e-6)
+    for dt in dts:
+        space = linkages.squeezer()
+        stepper = JointedSpace(space)
+        stepper._gather()
+        start = stepper.energy()
+        for _ in range(round(0.03 / dt)):
+            stepper.islands.step(stepper.bodies, dt)
+            stepper.ledger += stepper.islands.ledger.sum(axis=0)
+        stepper._scatter()
+        k1, k2, k3, _, k5, _, k7 = space.bodies
+        known = linkages.SQUEEZER_AT_003
+        reached = np.array([k1.angle, k2.angle - k1.angle, k3.angle, k5.angle, k7.angle])
+        errors.append(reached - [known[name] for name in ("beta", "theta", "gamma", "delta", "epsilon")])
+        assert stepper.ledger[MOTORS] == pytest.approx(linkages.SQUEEZER_WORK, abs=3e-7)
+        assert abs(stepper.energy() - start - stepper.gain()) < 1e-12
+        assert error(space) < 1e-15
+    assert np.abs(errors[0]).max() < 1e-4
+    np.testing.assert_allclose(np.log2(errors[0] / errors[1]), 2.0, atol=0.1)
 
 
 @pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
