@@ -163,7 +163,7 @@ def squeezer() -> pymunk.Space:
     """Andrews' squeezing mechanism, SI units: seven bodies, ten pivots, a spring, and a motor of torque .033 on K1."""
     space = empty(0.0)
     ground, s = space.static_body, SQUEEZER_START
-    rr, d, ss, e, zf, zt, u = 7e-3, 28e-3, 35e-3, 2e-2, 2e-2, 4e-2, 4e-2
+    rr, d, e, zf, zt, u = 7e-3, 28e-3, 2e-2, 2e-2, 4e-2, 4e-2
     at_a, at_b, at_c = pymunk.Vec2d(-0.06934, -0.00227), pymunk.Vec2d(-0.03635, 0.03273), pymunk.Vec2d(0.014, 0.072)
     beta, gamma, delta, epsilon = s["beta"], s["gamma"], s["delta"], s["epsilon"]
     k2, k4, k6 = beta + s["theta"], s["phi"] + delta, s["omega"] + epsilon

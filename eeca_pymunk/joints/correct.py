@@ -1,12 +1,14 @@
-"""Velocities made to fit the joints, as an impact does at which nothing bounces."""
+"""Velocities made to fit the joints, as an impact does at which nothing bounces; `solve` makes the passes.
+
+Kinetic energy only falls, and momentum stays, for the change is M^-1 G^T times impulses that bring G v to 0.
+"""
 
 from __future__ import annotations
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
 from .bounds import TOUCH, approach, bounded, gap
-from .scratch import BEFORE, KEPT, L_ROWS, L_SIDE, L_SOFT, MOBILITY, PUSHED, SIZE, SPEEDS
-from .solve import solve
+from .scratch import BEFORE, KEPT, L_ROWS, L_SIDE, L_SOFT, MOBILITY, PUSHED, SIZE
 
 
 @uncounted
@@ -21,55 +23,47 @@ def kinetic(local: FloatArray, bodies: int, column: int) -> float:
 
 
 @uncounted
-def project_velocities(
-    joint: FloatArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray, bodies: int,
-    length: float, condensed: bool, band: int, size: int, matrix: FloatArray, right: FloatArray, stiff: FloatArray,
-    found: FloatArray,
-) -> float:  # fmt: skip
-    """Take from BEFORE what violates held rows, let go of limits that would pull; the kinetic energy lost, >= 0.
-
-    Limits that are closed and closing are held first. Kinetic energy only falls, and momentum stays.
-    """
-    energy = kinetic(local, bodies, BEFORE)
+def keep(hinge: FloatArray, joints: int, local: FloatArray, bodies: int, found: FloatArray) -> None:
+    """Before velocities are corrected: remember them, and count passes and tries in found[3] and found[4]."""
+    found[3] = found[4] = 0.0
     for i in range(bodies):
         for c in range(3):
             local[i, KEPT + c] = local[i, BEFORE + c]
-    tries, passes = 0, 0
-    while tries <= joints:
-        if passes == 0:
-            for k in range(joints):
-                hinge[k, PUSHED] = hinge[k, PUSHED + 1] = 0.0
-        if solve(
-            int(SPEEDS), joint, hinge, link, joints, local, node, bodies, 2.0, length, condensed, 0.0, condensed, band,
-            size, matrix, right, stiff, found,
-        ) < 0:  # fmt: skip
-            break
-        passes += 1
-        if passes == 1 and tries == 0 and touch(joint, hinge, link, joints, local):
-            back(local, bodies)
-            passes, tries = 0, 1
-            continue
-        if passes < 3 and found[2] > 0.0:  # the later ones take back what epsilon left
-            continue
+    for k in range(joints):
+        hinge[k, PUSHED] = hinge[k, PUSHED + 1] = 0.0
+
+
+@uncounted
+def goes_on(
+    joint: FloatArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, bodies: int,
+    found: FloatArray,
+) -> bool:  # fmt: skip
+    """After a pass of correcting velocities: whether another is due. Limits that pull are let go, closing ones held.
+
+    The first pass shows which free limits are closed and closing; three passes take back what epsilon left; then, as
+    long as a limit pulls, all begins again without it. There are at most joints + 1 tries.
+    """
+    found[3] += 1.0
+    changed = found[3] == 1.0 and found[4] == 0.0 and touch(joint, hinge, link, joints, local)
+    if not changed:
+        if found[3] < 3.0 and found[2] > 0.0:
+            return True
         pulling, pull = -1, 0.0
         for k in range(joints):
             last = link[k, L_ROWS] - 1
             if last >= 0 and hinge[k, PUSHED + last] * link[k, L_SIDE] > pull and link[k, L_SOFT] == 0:
                 pulling, pull = k, hinge[k, PUSHED + last] * link[k, L_SIDE]
-        if pulling < 0:
-            break
+        if pulling < 0 or found[4] > joints:
+            return False
         link[pulling, L_SIDE] = 0
-        back(local, bodies)
-        passes, tries = 0, tries + 1
-    return energy - kinetic(local, bodies, BEFORE)
-
-
-@uncounted
-def back(local: FloatArray, bodies: int) -> None:
-    """Take the velocities that were kept."""
+    found[3] = 0.0
+    found[4] += 1.0
     for i in range(bodies):
         for c in range(3):
             local[i, BEFORE + c] = local[i, KEPT + c]
+    for k in range(joints):
+        hinge[k, PUSHED] = hinge[k, PUSHED + 1] = 0.0
+    return True
 
 
 @uncounted

@@ -12,11 +12,11 @@ from __future__ import annotations
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
 from .bounds import TOUCH, approach, first_bound, gap, release, standing
-from .correct import project_velocities
+from .correct import kinetic
 from .layout import LIMITED
 from .ledger import book
 from .motion import advance
-from .scratch import AFTER, L_SIDE, LAM, LINEAR_STEP, SIZE, STEP
+from .scratch import AFTER, BEFORE, KEPT, L_SIDE, LAM, LINEAR_STEP, SIZE, SPEEDS, STEP
 from .solve import solve
 
 MOST_EVENTS = 12
@@ -75,9 +75,11 @@ def step_with_limits(
             advance(local, bodies)
             left -= when
         link[meeting, L_SIDE] = side
-        ledger[LIMITED] += project_velocities(
-            joint, hinge, link, joints, local, node, bodies, length, condensed, band, size, matrix, right, stiff, found
-        )
+        solve(
+            int(SPEEDS), joint, hinge, link, joints, local, node, bodies, 2.0, length, loops, 0.0, condensed, band,
+            size, matrix, right, stiff, found,
+        )  # fmt: skip
+        ledger[LIMITED] += kinetic(local, bodies, KEPT) - kinetic(local, bodies, BEFORE)
         for k in range(joints):
             hinge[k, LAM] = hinge[k, LAM + 1] = 0.0
         if left <= 1e-13 * h:

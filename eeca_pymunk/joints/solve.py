@@ -12,6 +12,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
 from .banded import solve_banded
 from .condensed import PASSES, solve_condensed
+from .correct import goes_on, keep
 from .motion import move, settle
 from .newton import assemble
 from .rows import start_joint
@@ -44,6 +45,8 @@ TOLERANCE = 2e-15  # of joints, over the size of the island
 FLOOR = 1e-11  # below this, an error that no longer halves is round-off
 MOST_ITERATIONS = 25
 LEAST_EPSILON = 1e-10
+MOST_CLOSINGS = 8
+MOST_PASSES = 12
 
 
 @uncounted
@@ -103,12 +106,15 @@ def solve(
 
     STEP: at convergence g is within 2e-15 of the island's size (or at round-off) of its targets, and the balance of
     momentum holds to round-off. Given up after 25 iterations, or 6 in which the error did not fall.
-    Others: one linear system, whose error before goes to found[2]; corrections take h = 2.
+    LINEAR_STEP: one linear system. POSES: until g is on its targets, at most 8 times. SPEEDS: see `correct`; what was
+    before stays at KEPT. These two take h = 2. found[2:5] are scratch.
     """
     width = 2 * band + 1 if condensed else 3 * band + 1
     begin(what, joint, hinge, link, joints, local, node, bodies, h)
     best, stalls = 1e300, 0
-    for iteration in range(MOST_ITERATIONS + 1):
+    if what == SPEEDS:
+        keep(hinge, joints, local, bodies, found)
+    for iteration in range(MOST_ITERATIONS + 1 if what == STEP else MOST_PASSES + 3 * joints):
         for i in range(size):
             for c in range(width):
                 matrix[i, c] = 0.0
@@ -144,6 +150,8 @@ def solve(
                 stalls += 1
             if not worst < 1e100 or stalls > 6 or iteration == MOST_ITERATIONS:
                 return -1
+        elif what == POSES and (worst <= 1e-14 or iteration == MOST_CLOSINGS):
+            return iteration
         if condensed:
             slopes = SLOPES if what == STEP else ROWS
             passes = 1 if give > 0.0 else PASSES
@@ -161,7 +169,10 @@ def solve(
                 return -1
         apply(what, link, hinge, joints, local, node, bodies, right)
         if what in (POSES, SPEEDS):
-            return 0
+            if what == SPEEDS and not goes_on(joint, hinge, link, joints, local, bodies, found):
+                return iteration
+            begin(what, joint, hinge, link, joints, local, node, bodies, h)
+            continue
         move(local, bodies, h)
         if what == LINEAR_STEP:
             for i in range(bodies):

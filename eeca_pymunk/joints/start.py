@@ -7,7 +7,6 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
 from .bounds import approach, bounded, gap
-from .correct import project_velocities
 from .entries import held
 from .layout import (
     CLOSED,
@@ -22,7 +21,6 @@ from .layout import (
     MAX_FORCE,
     MOTOR,
     PIN,
-    PROJECTED,
     RATCHET,
     RATE,
     ROTARY_LIMIT,
@@ -34,7 +32,6 @@ from .layout import (
     TOUCHED,
     WORK,
 )
-from .ledger import springs_hold
 from .rows import joint_rows
 from .scratch import (
     APART,
@@ -56,10 +53,9 @@ from .scratch import (
     TOTAL,
     VALUE,
 )
-from .solve import begin, solve
+from .solve import begin
 
 APART_FROM = 1e-10  # joints farther apart than this, over the size of the island, close at their own rate
-MOST_CLOSINGS = 8
 
 
 @uncounted
@@ -149,22 +145,20 @@ def soft_targets(
 
 
 @uncounted
-def fit(
-    joint: FloatArray, tie: IntArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray,
-    node: IntArray, bodies: int, h: float, length: float, condensed: bool, band: int, size: int, matrix: FloatArray,
-    right: FloatArray, stiff: FloatArray, found: FloatArray, ledger: FloatArray,
-) -> None:  # fmt: skip
-    """After the user's changes: close what is apart by one step's share, and take velocities that violate joints.
+def find_apart(
+    joint: FloatArray, tie: IntArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, h: float,
+    stiff: FloatArray,
+) -> int:  # fmt: skip
+    """After the user's changes: targets of joints that are apart, one step's share nearer, and limits that are passed.
 
-    Joints still apart keep TOUCHED = 2 and hold the rest of their error over the step, so that it does no work.
-    Bodies move along M^-1 G^T; what that costs in potential energy is booked.
+    Rows must be those of the present poses. Joints that will still be apart keep TOUCHED = 2, and hold the rest of
+    their error over the step, so that it does no work. Returns 1 if a touch is fresh, plus 2 if a joint is apart.
     """
-    look(joint, hinge, link, joints, local, node, bodies, stiff)
-    stored = springs_hold(joint, hinge, link, joints)
-    fresh, apart = False, False
+    fresh, apart = 0, 0
     for k in range(joints):
         j, rows = link[k, L_JOINT], link[k, L_ROWS]
-        fresh = fresh or tie[j, TOUCHED] == 1
+        if tie[j, TOUCHED] == 1:
+            fresh = 1
         tie[j, TOUCHED] = 0
         if link[k, L_SOFT] != 0 or rows == 0:
             continue
@@ -182,31 +176,25 @@ def fit(
                 error += hinge[k, VALUE + r] ** 2
         error = np.sqrt(error)
         if error > APART_FROM * hinge[k, SIZE]:
-            apart = True
+            apart = 2
             left = 1.0 - share(joint, j, error, h)
             for r in range(rows):
                 hinge[k, TARGET + r] = hinge[k, VALUE + r] * left
             tie[j, TOUCHED] = 2 if left > 0.0 else 0
-    if apart:
-        for _ in range(MOST_CLOSINGS):
-            failed = solve(
-                int(POSES), joint, hinge, link, joints, local, node, bodies, 2.0, length, condensed, 0.0, condensed,
-                band, size, matrix, right, stiff, found,
-            )  # fmt: skip
-            if failed < 0 or not found[2] > 1e-14:
-                break
-        look(joint, hinge, link, joints, local, node, bodies, stiff)
-        for i in range(bodies):
-            for c in range(3):
-                if local[i, MOBILITY + c] > 0.0:
-                    way = local[i, POSE + c] - local[i, SAVED + c]
-                    ledger[CLOSED] -= local[i, FREE + c] * way / local[i, MOBILITY + c]
-        ledger[CLOSED] += springs_hold(joint, hinge, link, joints) - stored
-        for k in range(joints):  # hold what closing reached
-            for r in range(link[k, L_ROWS]):
-                if hinge[k, TARGET + r] != 0.0 and link[k, L_SOFT] == 0 and held(link, k, r):
-                    hinge[k, TARGET + r] = hinge[k, VALUE + r]
-    if fresh:
-        ledger[PROJECTED] += project_velocities(
-            joint, hinge, link, joints, local, node, bodies, length, condensed, band, size, matrix, right, stiff, found
-        )
+    return fresh + apart
+
+
+@uncounted
+def book_closing(
+    hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, bodies: int, ledger: FloatArray
+) -> None:
+    """Book the work of closing against the bodies' accelerations, and let joints hold what it reached."""
+    for i in range(bodies):
+        for c in range(3):
+            if local[i, MOBILITY + c] > 0.0:
+                way = local[i, POSE + c] - local[i, SAVED + c]
+                ledger[CLOSED] -= local[i, FREE + c] * way / local[i, MOBILITY + c]
+    for k in range(joints):
+        for r in range(link[k, L_ROWS]):
+            if hinge[k, TARGET + r] != 0.0 and link[k, L_SOFT] == 0 and held(link, k, r):
+                hinge[k, TARGET + r] = hinge[k, VALUE + r]

@@ -11,7 +11,9 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
+from .correct import kinetic
 from .layout import (
+    CLOSED,
     DAMPING,
     ELASTIC,
     EXACT,
@@ -24,6 +26,7 @@ from .layout import (
     LENGTH_1,
     LINEAR,
     NOTCH,
+    PROJECTED,
     RATCHET,
     ROTARY_SPRING,
     SIDE,
@@ -33,7 +36,7 @@ from .layout import (
     TOUCHED,
     WORK,
 )
-from .ledger import close_ledger
+from .ledger import close_ledger, springs_hold
 from .limits import step_with_limits
 from .motion import advance, move
 from .rows import start_joint
@@ -44,6 +47,7 @@ from .scratch import (
     COS,
     ENDED,
     FREE,
+    KEPT,
     L_A,
     L_B,
     L_JOINT,
@@ -54,12 +58,15 @@ from .scratch import (
     LAM,
     LINEAR_STEP,
     POSE,
+    POSES,
     SAVED,
     SIN,
+    SPEEDS,
     STEP,
     TOTAL,
 )
-from .start import fit, look, read_joints, soft_targets
+from .solve import solve
+from .start import book_closing, find_apart, look, read_joints, soft_targets
 
 SUZUKI = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))
 FIRST_RUNG, LAST_RUNG = 0, 6  # rung -1 is order 4
@@ -140,10 +147,22 @@ def island_step(
     needs = read_joints(joint, tie, hinge, link, joints, h, length, loops)
     save(local, bodies)
     if needs % 2 == 1:
-        fit(
-            joint, tie, hinge, link, joints, local, node, bodies, h, length, condensed, band, size, matrix, right,
-            stiff, found, ledger,
-        )  # fmt: skip
+        look(joint, hinge, link, joints, local, node, bodies, stiff)
+        stored = springs_hold(joint, hinge, link, joints)
+        changes = find_apart(joint, tie, hinge, link, joints, local, h, stiff)
+        for what in (POSES, SPEEDS):
+            if (what == POSES and changes < 2) or (what == SPEEDS and changes % 2 == 0):
+                continue
+            solve(
+                what, joint, hinge, link, joints, local, node, bodies, 2.0, length, loops, 0.0, condensed, band, size,
+                matrix, right, stiff, found,
+            )  # fmt: skip
+            if what == POSES:
+                look(joint, hinge, link, joints, local, node, bodies, stiff)
+                book_closing(hinge, link, joints, local, bodies, ledger)
+                ledger[CLOSED] += springs_hold(joint, hinge, link, joints) - stored
+            else:
+                ledger[PROJECTED] += kinetic(local, bodies, KEPT) - kinetic(local, bodies, BEFORE)
         save(local, bodies)
     if needs >= 2:
         look(joint, hinge, link, joints, local, node, bodies, stiff)

@@ -136,7 +136,7 @@ class Islands:
         self._node = np.zeros((most_bodies, NODE_COLUMNS), np.int64)
         self._matrix = np.zeros(int((span[:, UNKNOWNS] * (3 * span[:, BAND] + 1)).max(initial=1)))
         self._right = np.zeros(int((2 * span[:, UNKNOWNS] + span[:, ROWS_OF]).max(initial=1)))
-        self._stiff, self._found, self._part = np.zeros((6, 6)), np.zeros(3), np.zeros(LEDGER_COLUMNS)
+        self._stiff, self._found, self._part = np.zeros((6, 6)), np.zeros(5), np.zeros(LEDGER_COLUMNS)
         self.ledger, self.status = np.zeros((self.islands, LEDGER_COLUMNS)), np.zeros(self.islands, np.int64)
 
     def step(self, bodies: FloatArray, h: float) -> int:

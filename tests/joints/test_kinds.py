@@ -151,6 +151,17 @@ def test_rope_is_never_longer_than_its_length() -> None:
     ledger_closes(stepper, 0.0, 20.0)
 
 
+def test_a_taut_rope_does_not_hold_what_is_thrown_inwards() -> None:
+    space = empty()
+    weight = body(space, 2.0, 0.5, (0.0, -1.0))
+    space.add(pymunk.SlideJoint(space.static_body, weight, (0, 0), (0, 0), 0.0, 1.0))
+    stepper = run(space, 1 / 60, 10)
+    weight.velocity = (0.0, 3.0)
+    stepper.step(1 / 60)
+    assert weight.position.y == pytest.approx(-1.0 + 3.0 / 60.0 - 0.5 * 9.81 / 3600.0, abs=1e-12)
+    assert stepper.ledger[PROJECTED] == 0.0
+
+
 def test_door_stops_at_its_limit_and_rests_there() -> None:
     space = empty()
     door = body(space, 2.0, 0.5, (0.8, 0.0))
