@@ -16,7 +16,7 @@ from .correct import kinetic
 from .layout import LIMITED
 from .ledger import book
 from .motion import advance
-from .scratch import AFTER, BEFORE, KEPT, L_SIDE, LAM, LINEAR_STEP, SIZE, SPEEDS, STEP
+from .scratch import AFTER, BEFORE, KEPT, L_SIDE, LAM, LINEAR_STEP, SIZE, SPEEDS
 from .solve import solve
 
 MOST_EVENTS = 12
@@ -45,7 +45,7 @@ def step_with_limits(
                 return False
             solves += 1
             if meeting < 0:  # a step to the end
-                if what == STEP and solves < 2 * joints + 100 and release(link, hinge, joints):
+                if solves < 2 * joints + 100 and release(link, hinge, joints):
                     continue
                 k = first_bound(joint, hinge, link, joints, local, when, found)
                 if k < 0 or solves > 4 * joints + 200 or what == LINEAR_STEP:

@@ -45,6 +45,7 @@ TOLERANCE = 2e-15  # of joints, over the size of the island
 FLOOR = 1e-11  # below this, an error that no longer halves is round-off
 MOST_ITERATIONS = 25
 LEAST_EPSILON = 1e-10
+CLOSING_EPSILON = 1e-5
 MOST_CLOSINGS = 8
 MOST_PASSES = 12
 
@@ -162,6 +163,8 @@ def solve(
         else:
             if loops or what != STEP:
                 epsilon = max(LEAST_EPSILON, min(1e-2, worst)) if what == STEP else LEAST_EPSILON
+                if what == POSES:  # rows that contradict each other must not move bodies far
+                    epsilon = CLOSING_EPSILON
                 for k in range(joints):
                     for r in range(link[k, L_ROWS]):
                         matrix[link[k, L_ROW] + r, band] += epsilon

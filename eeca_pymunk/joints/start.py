@@ -185,6 +185,17 @@ def find_apart(
 
 
 @uncounted
+def farthest(hinge: FloatArray, link: IntArray, joints: int) -> float:
+    """The largest error of a held row, over the size of the island. Rows must be those of the present poses."""
+    worst = 0.0
+    for k in range(joints):
+        for r in range(link[k, L_ROWS]):
+            if link[k, L_SOFT] == 0 and held(link, k, r):
+                worst = max(worst, abs(hinge[k, VALUE + r]) / hinge[k, SIZE])
+    return worst
+
+
+@uncounted
 def book_closing(
     hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, bodies: int, ledger: FloatArray
 ) -> None:

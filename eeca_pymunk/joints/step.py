@@ -31,6 +31,7 @@ from .layout import (
     ROTARY_SPRING,
     SIDE,
     SPRING,
+    STORED,
     TOOTH,
     TOOTH_PHASE,
     TOUCHED,
@@ -66,7 +67,7 @@ from .scratch import (
     TOTAL,
 )
 from .solve import solve
-from .start import book_closing, find_apart, look, read_joints, soft_targets
+from .start import book_closing, farthest, find_apart, look, read_joints, soft_targets
 
 SUZUKI = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))
 FIRST_RUNG, LAST_RUNG = 0, 6  # rung -1 is order 4
@@ -81,14 +82,20 @@ def save(local: FloatArray, bodies: int) -> None:
 
 
 @uncounted
-def restore(
-    joint: FloatArray, tie: IntArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, bodies: int
-) -> None:
-    """Back to the start of the step, without impulses."""
+def back(local: FloatArray, bodies: int) -> None:
+    """Back to the poses and velocities at the start of the step."""
     for i in range(bodies):
         for c in range(6):
             local[i, POSE + c] = local[i, SAVED + c]
         local[i, COS], local[i, SIN] = np.cos(local[i, POSE + 2]), np.sin(local[i, POSE + 2])
+
+
+@uncounted
+def restore(
+    joint: FloatArray, tie: IntArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, bodies: int
+) -> None:
+    """Back to the start of the step, without impulses."""
+    back(local, bodies)
     for k in range(joints):
         hinge[k, LAM] = hinge[k, LAM + 1] = hinge[k, TOTAL] = hinge[k, TOTAL + 1] = 0.0
         joint[link[k, L_JOINT], WORK] = 0.0
@@ -150,6 +157,7 @@ def island_step(
         look(joint, hinge, link, joints, local, node, bodies, stiff)
         stored = springs_hold(joint, hinge, link, joints)
         changes = find_apart(joint, tie, hinge, link, joints, local, h, stiff)
+        apart = farthest(hinge, link, joints)
         for what in (POSES, SPEEDS):
             if (what == POSES and changes < 2) or (what == SPEEDS and changes % 2 == 0):
                 continue
@@ -159,6 +167,9 @@ def island_step(
             )  # fmt: skip
             if what == POSES:
                 look(joint, hinge, link, joints, local, node, bodies, stiff)
+                if not farthest(hinge, link, joints) <= apart:  # rows that contradict each other: stay
+                    back(local, bodies)
+                    look(joint, hinge, link, joints, local, node, bodies, stiff)
                 book_closing(hinge, link, joints, local, bodies, ledger)
                 ledger[CLOSED] += springs_hold(joint, hinge, link, joints) - stored
             else:
@@ -173,7 +184,7 @@ def island_step(
         if link[k, L_ROWS] == 0:
             start_joint(joint, hinge, link, k, local, h)
             joint[j, LENGTH_0] = hinge[k, BEGAN]
-    status = LINEAR
+    status, stored = LINEAR, 0.0
     rung = -1 if order == 4 and smooth(joint, link, joints) else FIRST_RUNG
     while rung <= LAST_RUNG:
         parts = 5 if rung < 0 else 1 << rung if rung < 3 else 1 if rung == LAST_RUNG else 7
@@ -181,6 +192,9 @@ def island_step(
         what = LINEAR_STEP if rung == LAST_RUNG else STEP
         for c in range(LEDGER_COLUMNS):
             part[c] = 0.0
+        if rung == LAST_RUNG:
+            look(joint, hinge, link, joints, local, node, bodies, stiff)
+            stored = springs_hold(joint, hinge, link, joints)
         done, before = True, h
         for p in range(parts):
             piece = h / parts if rung >= 0 else (1.0 - 4.0 * SUZUKI) * h if p == 2 else SUZUKI * h
@@ -209,6 +223,8 @@ def island_step(
             advance(local, bodies)
             for c in range(LEDGER_COLUMNS):
                 part[c] = 0.0
+        look(joint, hinge, link, joints, local, node, bodies, stiff)
+        part[STORED] = springs_hold(joint, hinge, link, joints) - stored
         close_ledger(local, bodies, part)
     for c in range(LEDGER_COLUMNS):
         ledger[c] += part[c]
