@@ -6,7 +6,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
 from .entries import along
 from .layout import GROOVE, LOWER, NOTCH, RATCHET, ROTARY_LIMIT, SLIDE, TOOTH, UPPER
-from .scratch import AFTER, BEFORE, L_JOINT, L_KIND, L_ROWS, L_SIDE, L_SOFT, LAM, MEASURE, ROWS, SIZE
+from .scratch import AFTER, BEFORE, L_JOINT, L_KIND, L_ROWS, L_SIDE, L_SOFT, LAM, MEASURE, ROWS, SIZE, TARGET
 
 TOUCH = 1e-12  # a gap below this, over the size of the island, is closed
 
@@ -32,6 +32,19 @@ def gap(joint: FloatArray, hinge: FloatArray, link: IntArray, k: int, side: int)
     if link[k, L_KIND] == RATCHET:
         bound = joint[j, NOTCH]
     return float(side * (bound - hinge[k, MEASURE]))
+
+
+@uncounted
+def hold(joint: FloatArray, hinge: FloatArray, link: IntArray, k: int) -> None:
+    """Hold joint k, which stands on a limit, where it is for the rest of the step, however little is left of that.
+
+    To close a gap of round-off in a part as short would take any force. Rows must be those of the present poses.
+    """
+    side = link[k, L_SIDE]
+    at = hinge[k, MEASURE]
+    bound = at + side * gap(joint, hinge, link, k, side)
+    off = 0.5 * (at * at / bound - bound) if link[k, L_KIND] == SLIDE else at - bound
+    hinge[k, TARGET + link[k, L_ROWS] - 1] = off
 
 
 @uncounted

@@ -11,12 +11,12 @@ from __future__ import annotations
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
-from .bounds import TOUCH, approach, first_bound, gap, release, standing
+from .bounds import TOUCH, approach, first_bound, gap, hold, release, standing
 from .correct import kinetic
 from .layout import LIMITED
 from .ledger import book
 from .motion import advance
-from .scratch import AFTER, BEFORE, KEPT, L_SIDE, LAM, LINEAR_STEP, SIZE, SPEEDS
+from .scratch import AFTER, BEFORE, KEPT, L_SIDE, L_SOFT, LAM, LINEAR_STEP, SIZE, SPEEDS
 from .solve import solve
 
 MOST_EVENTS = 12
@@ -82,6 +82,8 @@ def step_with_limits(
         ledger[LIMITED] += kinetic(local, bodies, KEPT) - kinetic(local, bodies, BEFORE)
         for k in range(joints):
             hinge[k, LAM] = hinge[k, LAM + 1] = 0.0
+            if link[k, L_SIDE] != 0 and link[k, L_SOFT] == 0:
+                hold(joint, hinge, link, k)
         if left <= 1e-13 * h:
             return True
         meeting, when = -1, left
