@@ -42,7 +42,8 @@ from .scratch import (
 )
 
 TOLERANCE = 2e-15  # of joints, over the size of the island
-FLOOR = 1e-11  # below this, an error that no longer halves is round-off
+ROUND_OFF = 3e-14  # below this, an error that no longer halves is round-off
+FLOOR = 1e-11  # below this, it is if it has not fallen twice
 MOST_ITERATIONS = 25
 LEAST_EPSILON = 1e-10
 CLOSING_EPSILON = 1e-5
@@ -142,7 +143,8 @@ def solve(
         if what not in (POSES, SPEEDS):
             worst = max(worst, balance(local, node, bodies, h, length, right))
         if what == STEP:
-            if iteration > 0 and (worst <= TOLERANCE or (iteration > 1 and worst > 0.5 * best and best < FLOOR)):
+            at_floor = iteration > 1 and worst > 0.5 * best and (best < ROUND_OFF or (best < FLOOR and stalls > 1))
+            if iteration > 0 and (worst <= TOLERANCE or at_floor):
                 settle(local, bodies, h)
                 return iteration
             if worst < best:

@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 import pymunk
 
-from eeca_pymunk.joints.layout import CLOSED
+from eeca_pymunk.joints.layout import CLAMPED, CLOSED, DAMPED, LIMITED, PROJECTED
 from eeca_pymunk.space.jointed import JointedSpace
 
 
@@ -70,3 +70,10 @@ def momenta(space: pymunk.Space) -> tuple[float, float, float]:
         centre = b.local_to_world(b.center_of_gravity)
         spin += b.mass * centre.cross(b.velocity) + b.moment * b.angular_velocity
     return px, py, spin
+
+
+def ledger_closes(stepper: JointedSpace, start: float, scale: float) -> None:
+    """Assert that energy changed by what the ledger says, that nothing is unexplained, and losses are losses."""
+    assert abs(stepper.energy() - start - stepper.gain()) < 1e-12 * scale
+    assert abs(stepper.ledger[CLOSED]) < 1e-12 * scale
+    assert (stepper.ledger[[DAMPED, LIMITED, CLAMPED, PROJECTED]] >= -1e-15 * scale).all()
