@@ -1,0 +1,83 @@
+"""Velocities made to fit the joints, as an impact does at which nothing bounces; `solve` makes the passes.
+
+Kinetic energy only falls, and momentum stays, for the change is M^-1 G^T times impulses that bring G v to 0.
+"""
+
+from __future__ import annotations
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import uncounted
+from .bounds import TOUCH, approach, bounded, gap
+from .scratch import BEFORE, KEPT, L_ROWS, L_SIDE, L_SOFT, MOBILITY, PUSHED, SIZE
+
+
+@uncounted
+def kinetic(local: FloatArray, bodies: int, column: int) -> float:
+    """Kinetic energy of what joints can move, of the velocities at `column`."""
+    total = 0.0
+    for i in range(bodies):
+        for c in range(3):
+            if local[i, MOBILITY + c] > 0.0:
+                total += 0.5 * local[i, column + c] ** 2 / local[i, MOBILITY + c]
+    return total
+
+
+@uncounted
+def keep(hinge: FloatArray, joints: int, local: FloatArray, bodies: int, found: FloatArray) -> None:
+    """Before velocities are corrected: remember them, and count passes and tries in found[3] and found[4]."""
+    found[3] = found[4] = 0.0
+    for i in range(bodies):
+        for c in range(3):
+            local[i, KEPT + c] = local[i, BEFORE + c]
+    for k in range(joints):
+        hinge[k, PUSHED] = hinge[k, PUSHED + 1] = 0.0
+
+
+@uncounted
+def goes_on(
+    joint: FloatArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, bodies: int,
+    found: FloatArray,
+) -> bool:  # fmt: skip
+    """After a pass of correcting velocities: whether another is due. Limits that pull are let go, closing ones held.
+
+    The first pass shows which free limits are closed and closing; three passes take back what epsilon left; then, as
+    long as a limit pulls, all begins again without it. There are at most joints + 1 tries.
+    """
+    found[3] += 1.0
+    changed = found[3] == 1.0 and found[4] == 0.0 and touch(joint, hinge, link, joints, local)
+    if not changed:
+        if found[3] < 3.0 and found[2] > 0.0:
+            return True
+        pulling, pull = -1, 0.0
+        for k in range(joints):
+            last = link[k, L_ROWS] - 1
+            if last >= 0 and hinge[k, PUSHED + last] * link[k, L_SIDE] > pull and link[k, L_SOFT] == 0:
+                pulling, pull = k, hinge[k, PUSHED + last] * link[k, L_SIDE]
+        if pulling < 0 or found[4] > joints:
+            return False
+        link[pulling, L_SIDE] = 0
+    found[3] = 0.0
+    found[4] += 1.0
+    for i in range(bodies):
+        for c in range(3):
+            local[i, BEFORE + c] = local[i, KEPT + c]
+    for k in range(joints):
+        hinge[k, PUSHED] = hinge[k, PUSHED + 1] = 0.0
+    return True
+
+
+@uncounted
+def touch(joint: FloatArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray) -> bool:
+    """Hold all free limits whose gap is closed and was closing with the kept velocities; whether there were any.
+
+    Rows are those of the present poses.
+    """
+    found = False
+    for k in range(joints):
+        if link[k, L_SIDE] == 0 and link[k, L_SOFT] == 0:
+            for side in (-1, 1):
+                closed = bounded(joint, link, k, side) and gap(joint, hinge, link, k, side) <= TOUCH * hinge[k, SIZE]
+                if closed and approach(hinge, link, k, side, local, KEPT) < 0.0:
+                    link[k, L_SIDE] = side
+                    found = True
+    return found

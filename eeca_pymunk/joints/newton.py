@@ -1,0 +1,105 @@
+"""The linear systems of Newton's method for the implicit step of an island.
+
+Unknowns: velocities v1 of the bodies and impulses lam of the rows, the way being x = h (v0 + v1)/2:
+
+    M (v1 - v0) = h M a + F(x) + J(x)^T lam,      g(x) = target.
+
+Systems are scaled by sqrt(M) and by the diagonal of G M^-1 G^T. `give` > 0 makes rows elastic:
+g - target + (give h / 2 SCALE^2) lam = 0. Soft rows follow Alart and Curnier: with p = lam - u/A, A = 1/SCALE^2, either
+|p| <= bound and u = 0, or lam = bound p/|p|.
+
+The same systems with `still` bodies (h v_m = 0) correct poses, M dq = G^T mu, g(q + dq) = target, and velocities,
+M dv = G^T lam, G (v + dv) = 0. A *condensed* system has the bodies' unknowns alone: see `condensed`.
+"""
+
+from __future__ import annotations
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import uncounted
+from .entries import along, held, put_condensed, put_free, put_rows, put_stiffness, scale_rows
+from .rows import joint_rows
+from .scratch import (
+    BEFORE,
+    COLUMN,
+    FORCE,
+    FREEDOMS,
+    GOT,
+    L_A,
+    L_B,
+    L_ROW,
+    L_ROWS,
+    L_SOFT,
+    LAM,
+    LINEAR_STEP,
+    NO_BEND,
+    POSES,
+    ROWS,
+    SCALE,
+    SIZE,
+    SLOPES,
+    SPEEDS,
+    STEP,
+    STIFFEST,
+    TARGET,
+    VALUE,
+    WAY,
+    WEIGHT,
+)
+from .soft import put_soft
+
+
+@uncounted
+def assemble(
+    what: int, joint: FloatArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray,
+    bodies: int, h: float, give: float, first: bool, condensed: bool, band: int, matrix: FloatArray,
+    right: FloatArray, stiff: FloatArray,
+) -> float:  # fmt: skip
+    """The scaled linear system for `what` (see `scratch`), and the joints' rows in `hinge`.
+
+    Returns how far rows are from their targets, over the size of the island; for SPEEDS, the worst G v.
+    """
+    worst = 0.0
+    still = what in (POSES, SPEEDS)
+    slopes = SLOPES if what == STEP else ROWS
+    for i in range(bodies):
+        for c in range(3):
+            local[i, GOT + c] = 0.0
+        for c in range(node[i, FREEDOMS]):
+            matrix[node[i, COLUMN] + c, band] += 1.0
+    for k in range(joints):
+        bend = joint_rows(joint, hinge, link, k, local, h, stiff)
+        a, b = link[k, L_A], link[k, L_B]
+        if first:
+            scale_rows(link, hinge, local, k)
+        if not still and (link[k, L_ROWS] == 0 or held(link, k, 0)):
+            for c in range(3):
+                local[a, GOT + c] += hinge[k, FORCE + c]
+                local[b, GOT + c] += hinge[k, FORCE + 3 + c]
+            if bend != NO_BEND:
+                put_stiffness(link, local, node, k, stiff, bend, h, band, matrix)
+        soft = link[k, L_SOFT] != 0
+        if soft and not still and held(link, k, 0):
+            worst = max(
+                worst, put_soft(link, hinge, local, node, k, slopes, h, condensed, band, matrix, right) / hinge[k, SIZE]
+            )
+            continue
+        for r in range(link[k, L_ROWS]):
+            if soft or not held(link, k, r):
+                put_free(link, hinge, k, r, condensed, band, matrix, right)
+                continue
+            scale = hinge[k, SCALE + r]
+            if what == SPEEDS:
+                error = along(hinge, link, k, ROWS + 6 * r, local, BEFORE)
+            elif what == LINEAR_STEP:
+                error = along(hinge, link, k, ROWS + 6 * r, local, WAY)
+            else:
+                error = hinge[k, VALUE + r] - hinge[k, TARGET + r] + give * 0.5 * h * hinge[k, LAM + r] / scale**2
+            right[link[k, L_ROW] + r] = -error * scale * 2.0 / h
+            worst = max(worst, abs(error) / hinge[k, SIZE])
+            if condensed:
+                hinge[k, WEIGHT + r] = min(STIFFEST, 1.0 / give) if give > 0.0 else STIFFEST
+                put_condensed(link, hinge, local, node, k, r, slopes, band, matrix)
+            else:
+                put_rows(link, hinge, local, node, k, r, slopes, 1.0, band, matrix)
+                matrix[link[k, L_ROW] + r, band] += give
+    return worst

@@ -1,0 +1,129 @@
+"""The order of an island's unknowns in its banded matrix: reverse Cuthill-McKee of the graph of bodies and joints."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..arrays import IntArray
+from ..compiled import kernel
+from .layout import PIVOT
+from .scratch import (
+    BAND,
+    BODY_0,
+    BODY_1,
+    CONDENSED,
+    JOINT_0,
+    JOINT_1,
+    L_A,
+    L_B,
+    L_KIND,
+    L_ROW,
+    L_ROWS,
+    M_COLUMN,
+    M_FREEDOMS,
+    ROWS_OF,
+    UNKNOWNS,
+)
+
+
+@kernel
+def order_nodes(start: IntArray, near: IntArray, nodes: int, order: IntArray) -> None:
+    """Reverse Cuthill-McKee order of a graph in compressed rows, from a node far out, ties by number."""
+    level = np.empty(nodes, np.int64)
+    placed = np.zeros(nodes, np.int64)
+    count = 0
+    for seed in range(nodes):
+        if placed[seed] == 1:
+            continue
+        first = seed
+        for sweep in range(4):  # the last sweep places
+            for i in range(nodes):
+                level[i] = -1
+            head, tail = count, count + 1
+            order[count] = first
+            level[first] = 0
+            while head < tail:
+                i = order[head]
+                head += 1
+                begin = tail
+                for s in range(start[i], start[i + 1]):
+                    n = near[s]
+                    if level[n] < 0:
+                        level[n] = level[i] + 1
+                        order[tail] = n
+                        tail += 1
+                for x in range(begin + 1, tail):  # by degree
+                    n, y = order[x], x
+                    while y > begin and start[order[y - 1] + 1] - start[order[y - 1]] > start[n + 1] - start[n]:
+                        order[y] = order[y - 1]
+                        y -= 1
+                    order[y] = n
+            if sweep == 3:
+                for x in range(count, tail):
+                    placed[order[x]] = 1
+                count = tail
+            else:
+                first = order[tail - 1]
+    for x in range(nodes // 2):
+        keep = order[x]
+        order[x] = order[nodes - 1 - x]
+        order[nodes - 1 - x] = keep
+
+
+@kernel
+def order_unknowns(span: IntArray, member: IntArray, link: IntArray, s: int, condensed: bool) -> None:
+    """Give the bodies and joints of island s their unknowns; fill in its size and band.
+
+    In a condensed system the bodies come first, and joints are the edges between them.
+    """
+    b0, b1, j0, j1 = span[s, BODY_0], span[s, BODY_1], span[s, JOINT_0], span[s, JOINT_1]
+    bodies, joints = b1 - b0, j1 - j0
+    nodes = bodies if condensed else bodies + joints
+    width = np.zeros(bodies + joints, np.int64)
+    for i in range(bodies):
+        width[i] = member[b0 + i, M_FREEDOMS]
+    for k in range(joints):
+        width[bodies + k] = link[j0 + k, L_ROWS]
+    start = np.zeros(nodes + 1, np.int64)
+    near = np.empty(6 * joints, np.int64)
+    for fill in range(2):
+        at = start.copy()
+        for k in range(joints):
+            a, b = link[j0 + k, L_A], link[j0 + k, L_B]
+            for p in range(2 if condensed else 0, 3):
+                u, v = (a, b) if p == 2 else (bodies + k, a if p == 0 else b)
+                uncoupled = p == 2 and not condensed and link[j0 + k, L_KIND] == PIVOT
+                if width[u] == 0 or width[v] == 0 or uncoupled:
+                    continue
+                if fill == 0:
+                    start[u + 1] += 1
+                    start[v + 1] += 1
+                else:
+                    near[at[u]], near[at[v]] = v, u
+                    at[u] += 1
+                    at[v] += 1
+        if fill == 0:
+            for i in range(nodes):
+                start[i + 1] += start[i]
+    order = np.empty(nodes, np.int64)
+    order_nodes(start, near, nodes, order)
+    first = np.zeros(bodies + joints, np.int64)
+    total = 0
+    for x in range(nodes):
+        first[order[x]] = total
+        total += width[order[x]]
+    band = 2
+    for u in range(nodes):
+        for t in range(start[u], start[u + 1]):
+            v = near[t]
+            band = max(band, max(first[u] + width[u], first[v] + width[v]) - 1 - min(first[u], first[v]))
+    span[s, UNKNOWNS], span[s, BAND], span[s, CONDENSED] = total, band, 1 if condensed else 0
+    if condensed:
+        for k in range(joints):
+            first[bodies + k] = total
+            total += width[bodies + k]
+    for i in range(bodies):
+        member[b0 + i, M_COLUMN] = first[i]
+    for k in range(joints):
+        link[j0 + k, L_ROW] = first[bodies + k]
+    span[s, ROWS_OF] = total - span[s, UNKNOWNS]

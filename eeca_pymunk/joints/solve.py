@@ -1,0 +1,188 @@
+"""The implicit step of an island by Newton's iteration; the linear step that always succeeds; corrections.
+
+Arguments that choose are never constants in calls (`int(POSES)`): numba would compile the whole anew for each.
+`epsilon` on the impulses' block takes redundant rows: it acts on increments alone, so what is solved stays the same.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import uncounted
+from .banded import solve_banded
+from .condensed import PASSES, solve_condensed
+from .correct import goes_on, keep
+from .motion import move, settle
+from .newton import assemble
+from .rows import start_joint
+from .scratch import (
+    AFTER,
+    BEFORE,
+    COLUMN,
+    COS,
+    FREE,
+    FREEDOMS,
+    GOT,
+    L_ROW,
+    L_ROWS,
+    LAM,
+    LINEAR_STEP,
+    MOBILITY,
+    POSE,
+    POSES,
+    PUSHED,
+    ROOT,
+    ROWS,
+    SCALE,
+    SIN,
+    SLOPES,
+    SPEEDS,
+    STEP,
+)
+
+TOLERANCE = 2e-15  # of joints, over the size of the island
+ROUND_OFF = 3e-14  # below this, an error that no longer halves is round-off
+FLOOR = 1e-11  # below this, it is if it has not fallen twice
+MOST_ITERATIONS = 25
+LEAST_EPSILON = 1e-10
+CLOSING_EPSILON = 1e-5
+MOST_CLOSINGS = 8
+MOST_PASSES = 12
+
+
+@uncounted
+def begin(
+    what: int, joint: FloatArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray,
+    bodies: int, h: float,
+) -> None:  # fmt: skip
+    """What stays the same over the iterations, and the first iterate: free motion, or no motion where joints act."""
+    for k in range(joints):
+        start_joint(joint, hinge, link, k, local, h)
+    for i in range(bodies):
+        for c in range(3):
+            local[i, AFTER + c] = local[i, BEFORE + c] + h * local[i, FREE + c]
+            if what in (POSES, SPEEDS) or (what == LINEAR_STEP and c < node[i, FREEDOMS]):
+                local[i, AFTER + c] = -local[i, BEFORE + c]
+    move(local, bodies, h)
+
+
+@uncounted
+def balance(local: FloatArray, node: IntArray, bodies: int, h: float, length: float, right: FloatArray) -> float:
+    """Residuals of the balance of momentum, scaled, into `right`; the worst as a way, over length or as an angle."""
+    worst = 0.0
+    for i in range(bodies):
+        for c in range(node[i, FREEDOMS]):
+            mobility = local[i, MOBILITY + c]
+            off = local[i, AFTER + c] - local[i, BEFORE + c] - h * local[i, FREE + c] - mobility * local[i, GOT + c]
+            right[node[i, COLUMN] + c] = -off / local[i, ROOT + c] if mobility > 0.0 else 0.0
+            worst = max(worst, abs(off * h) / (length if c < 2 else 1.0))
+    return worst
+
+
+@uncounted
+def apply(
+    what: int, link: IntArray, hinge: FloatArray, joints: int, local: FloatArray, node: IntArray, bodies: int,
+    right: FloatArray,
+) -> None:  # fmt: skip
+    """Add the solution of a scaled system to what was solved for, and to impulses."""
+    column = POSE if what == POSES else BEFORE if what == SPEEDS else AFTER
+    for i in range(bodies):
+        for c in range(node[i, FREEDOMS]):
+            local[i, column + c] += right[node[i, COLUMN] + c] * local[i, ROOT + c]
+        if what == POSES:
+            local[i, COS], local[i, SIN] = np.cos(local[i, POSE + 2]), np.sin(local[i, POSE + 2])
+    impulse = PUSHED if what in (POSES, SPEEDS) else LAM
+    for k in range(joints):
+        for r in range(link[k, L_ROWS]):
+            hinge[k, impulse + r] += right[link[k, L_ROW] + r] * hinge[k, SCALE + r]
+
+
+@uncounted
+def solve(
+    what: int, joint: FloatArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray,
+    bodies: int, h: float, length: float, loops: bool, give: float, condensed: bool, band: int, size: int,
+    matrix: FloatArray, right: FloatArray, stiff: FloatArray, found: FloatArray,
+) -> int:  # fmt: skip
+    """Solve for `what` (see `scratch`) from the present LAM; the number of iterations, -1 if that fails.
+
+    STEP: at convergence g is within 2e-15 of the island's size (or at round-off) of its targets, and the balance of
+    momentum holds to round-off. Given up after 25 iterations, or 6 in which the error did not fall.
+    LINEAR_STEP: one linear system. POSES: until g is on its targets, at most 8 times. SPEEDS: see `correct`; what was
+    before stays at KEPT. These two take h = 2. found[2:5] are scratch.
+    """
+    width = 2 * band + 1 if condensed else 3 * band + 1
+    begin(what, joint, hinge, link, joints, local, node, bodies, h)
+    best, stalls = 1e300, 0
+    if what == SPEEDS:
+        keep(hinge, joints, local, bodies, found)
+    for iteration in range(MOST_ITERATIONS + 1 if what == STEP else MOST_PASSES + 3 * joints):
+        for i in range(size):
+            for c in range(width):
+                matrix[i, c] = 0.0
+            right[i] = 0.0
+        worst = assemble(
+            what,
+            joint,
+            hinge,
+            link,
+            joints,
+            local,
+            node,
+            bodies,
+            h,
+            give,
+            iteration == 0,
+            condensed,
+            band,
+            matrix,
+            right,
+            stiff,
+        )
+        found[2] = worst
+        if what not in (POSES, SPEEDS):
+            worst = max(worst, balance(local, node, bodies, h, length, right))
+        if what == STEP:
+            at_floor = iteration > 1 and worst > 0.5 * best and (best < ROUND_OFF or (best < FLOOR and stalls > 1))
+            if iteration > 0 and (worst <= TOLERANCE or at_floor):
+                settle(local, bodies, h)
+                return iteration
+            if worst < best:
+                best = worst
+            elif iteration > 3:
+                stalls += 1
+            if not worst < 1e100 or stalls > 6 or iteration == MOST_ITERATIONS:
+                return -1
+        elif what == POSES and (worst <= 1e-14 or iteration == MOST_CLOSINGS):
+            return iteration
+        if condensed:
+            slopes = SLOPES if what == STEP else ROWS
+            passes = 1 if give > 0.0 else PASSES
+            if not solve_condensed(
+                hinge, link, joints, local, node, slopes, passes, size, band, matrix, right, len(right) - size
+            ):
+                return -1
+        else:
+            if loops or what != STEP:
+                epsilon = max(LEAST_EPSILON, min(1e-2, worst)) if what == STEP else LEAST_EPSILON
+                if what == POSES:  # rows that contradict each other must not move bodies far
+                    epsilon = CLOSING_EPSILON
+                for k in range(joints):
+                    for r in range(link[k, L_ROWS]):
+                        matrix[link[k, L_ROW] + r, band] += epsilon
+            if not solve_banded(matrix, size, band, right):
+                return -1
+        apply(what, link, hinge, joints, local, node, bodies, right)
+        if what in (POSES, SPEEDS):
+            if what == SPEEDS and not goes_on(joint, hinge, link, joints, local, bodies, found):
+                return iteration
+            begin(what, joint, hinge, link, joints, local, node, bodies, h)
+            continue
+        move(local, bodies, h)
+        if what == LINEAR_STEP:
+            for i in range(bodies):
+                for c in range(3):
+                    if not abs(local[i, AFTER + c]) < 1e100:
+                        return -1
+            return 0
+    return -1

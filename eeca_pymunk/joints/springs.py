@@ -1,0 +1,37 @@
+"""The law of springs: a force linear in length or angle, capped at max_force; its mean over a step, its potential.
+
+With f(x) = push + slope (x - rest) capped at +-bound, the mean of f over [x0, x1] is (Psi(f1) - Psi(f0)) / (f1 - f0),
+Psi the integral of the cap; the step's work is then exactly what the potential Psi(f)/|slope| gives or takes. A
+`force_func` of the user is entered as such a law that has its mean over the step (see `space.springs`).
+"""
+
+from __future__ import annotations
+
+from ..compiled import uncounted
+
+
+@uncounted
+def cap_integral(f: float, bound: float) -> float:
+    """The integral from 0 to f of a force capped at +-bound."""
+    if abs(f) <= bound:
+        return 0.5 * f * f
+    return bound * (abs(f) - 0.5 * bound)
+
+
+@uncounted
+def mean_force(push: float, slope: float, bound: float, began: float, ended: float) -> float:
+    """The mean over [began, ended] of push + slope x, capped; both ends are counted from rest."""
+    f0, f1 = push + slope * began, push + slope * ended
+    if abs(f0) <= bound and abs(f1) <= bound:
+        return 0.5 * (f0 + f1)
+    if abs(f1 - f0) <= 1e-7 * bound:
+        return max(-bound, min(bound, 0.5 * (f0 + f1)))
+    return (cap_integral(f1, bound) - cap_integral(f0, bound)) / (f1 - f0)
+
+
+@uncounted
+def held_energy(push: float, slope: float, bound: float, at: float) -> float:
+    """The potential of that law at a length or angle counted from rest, of a spring whose force falls with it."""
+    if slope == 0.0:
+        return -max(-bound, min(bound, push)) * at
+    return cap_integral(push + slope * at, bound) / -slope

@@ -1,0 +1,232 @@
+"""One step of an island of jointed bodies without contacts, and its ladder when Newton's method does not converge.
+
+Order 2 (midpoint with discrete gradients), or 4 by Suzuki's composition (s, s, 1 - 4s, s, s) h, s = 1/(4 - 4^(1/3)),
+where nothing in the island dissipates, drives or meets a limit. The ladder: the step whole, in 2, 4, 8 parts; in 8 with
+joints that give way elastically, by 1e-6 and 1e-4 of their stiffest; one linear system. No rung takes unbounded work.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import uncounted
+from .correct import kinetic
+from .layout import (
+    CLOSED,
+    DAMPING,
+    ELASTIC,
+    EXACT,
+    HALVED,
+    IMPULSE_1,
+    IMPULSE_2,
+    LAST_STEP,
+    LEDGER_COLUMNS,
+    LENGTH_0,
+    LENGTH_1,
+    LINEAR,
+    NOTCH,
+    PROJECTED,
+    RATCHET,
+    ROTARY_SPRING,
+    SIDE,
+    SPRING,
+    STORED,
+    TOOTH,
+    TOOTH_PHASE,
+    TOUCHED,
+    WORK,
+)
+from .ledger import close_ledger, springs_hold
+from .limits import step_with_limits
+from .motion import advance, move
+from .rows import start_joint
+from .scratch import (
+    AFTER,
+    BEFORE,
+    BEGAN,
+    COS,
+    ENDED,
+    FREE,
+    KEPT,
+    L_A,
+    L_B,
+    L_JOINT,
+    L_KIND,
+    L_ROWS,
+    L_SIDE,
+    L_SOFT,
+    LAM,
+    LINEAR_STEP,
+    POSE,
+    POSES,
+    SAVED,
+    SIN,
+    SPEEDS,
+    STEP,
+    TOTAL,
+)
+from .solve import solve
+from .start import book_closing, farthest, find_apart, look, read_joints, soft_targets
+
+SUZUKI = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))
+FIRST_RUNG, LAST_RUNG = 0, 6  # rung -1 is order 4
+
+
+@uncounted
+def save(local: FloatArray, bodies: int) -> None:
+    """Keep the start of the step."""
+    for i in range(bodies):
+        for c in range(6):
+            local[i, SAVED + c] = local[i, POSE + c]
+
+
+@uncounted
+def back(local: FloatArray, bodies: int) -> None:
+    """Back to the poses and velocities at the start of the step."""
+    for i in range(bodies):
+        for c in range(6):
+            local[i, POSE + c] = local[i, SAVED + c]
+        local[i, COS], local[i, SIN] = np.cos(local[i, POSE + 2]), np.sin(local[i, POSE + 2])
+
+
+@uncounted
+def restore(
+    joint: FloatArray, tie: IntArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, bodies: int
+) -> None:
+    """Back to the start of the step, without impulses."""
+    back(local, bodies)
+    for k in range(joints):
+        hinge[k, LAM] = hinge[k, LAM + 1] = hinge[k, TOTAL] = hinge[k, TOTAL + 1] = 0.0
+        joint[link[k, L_JOINT], WORK] = 0.0
+        link[k, L_SIDE] = tie[link[k, L_JOINT], SIDE]
+
+
+@uncounted
+def smooth(joint: FloatArray, link: IntArray, joints: int) -> bool:
+    """Whether order 4 may be had: no damping, no motor, no finite max_force, nobody on a limit."""
+    for k in range(joints):
+        spring = link[k, L_KIND] in (SPRING, ROTARY_SPRING)
+        if link[k, L_SOFT] != 0 or link[k, L_SIDE] != 0 or (spring and joint[link[k, L_JOINT], DAMPING] != 0.0):
+            return False
+    return True
+
+
+@uncounted
+def write_joints(
+    joint: FloatArray, tie: IntArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, h: float,
+    loose: bool,
+) -> None:  # fmt: skip
+    """Leave impulses, limits and notches in the joints' own rows."""
+    for k in range(joints):
+        j = link[k, L_JOINT]
+        joint[j, IMPULSE_1], joint[j, IMPULSE_2] = hinge[k, TOTAL], hinge[k, TOTAL + 1]
+        joint[j, LAST_STEP] = h
+        joint[j, LENGTH_1] = hinge[k, ENDED]
+        tie[j, SIDE] = link[k, L_SIDE]
+        if loose:
+            tie[j, TOUCHED] = 2
+        if link[k, L_KIND] == RATCHET:
+            tooth, phase = joint[j, TOOTH], joint[j, TOOTH_PHASE]
+            turned = local[link[k, L_B], POSE + 2] - local[link[k, L_A], POSE + 2]
+            notch = np.floor((turned - phase) / tooth) * tooth + phase
+            if (notch - joint[j, NOTCH]) * tooth > 1e-12 * tooth * tooth:
+                joint[j, NOTCH] = notch
+                tie[j, SIDE] = 0
+
+
+@uncounted
+def island_step(
+    joint: FloatArray, tie: IntArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray,
+    node: IntArray, bodies: int, h: float, order: int, length: float, loops: bool, condensed: bool, band: int,
+    size: int, matrix: FloatArray, right: FloatArray, stiff: FloatArray, found: FloatArray, part: FloatArray,
+    ledger: FloatArray,
+) -> int:  # fmt: skip
+    """Step one island by h; its status (see `layout`).
+
+    `local` holds poses, velocities, accelerations and mobilities at the start and, on return, poses and velocities
+    (BEFORE) at the end. `ledger` (LEDGER_COLUMNS,) is that of the step, `part` scratch for another; `length` is the
+    size of the island, `loops` whether rows may be redundant, and `matrix` has `size` rows of 3 band + 1 entries, of
+    2 band + 1 if it is `condensed`.
+    """
+    for c in range(LEDGER_COLUMNS):
+        ledger[c] = 0.0
+    needs = read_joints(joint, tie, hinge, link, joints, h, length, loops)
+    save(local, bodies)
+    if needs % 2 == 1:
+        look(joint, hinge, link, joints, local, node, bodies, stiff)
+        stored = springs_hold(joint, hinge, link, joints)
+        changes = find_apart(joint, tie, hinge, link, joints, local, h, stiff)
+        apart = farthest(hinge, link, joints)
+        for what in (POSES, SPEEDS):
+            if (what == POSES and changes < 2) or (what == SPEEDS and changes % 2 == 0):
+                continue
+            solve(
+                what, joint, hinge, link, joints, local, node, bodies, 2.0, length, loops, 0.0, condensed, band, size,
+                matrix, right, stiff, found,
+            )  # fmt: skip
+            if what == POSES:
+                look(joint, hinge, link, joints, local, node, bodies, stiff)
+                if not farthest(hinge, link, joints) <= apart:  # rows that contradict each other: stay
+                    back(local, bodies)
+                    look(joint, hinge, link, joints, local, node, bodies, stiff)
+                book_closing(hinge, link, joints, local, bodies, ledger)
+                ledger[CLOSED] += springs_hold(joint, hinge, link, joints) - stored
+            else:
+                ledger[PROJECTED] += kinetic(local, bodies, KEPT) - kinetic(local, bodies, BEFORE)
+        save(local, bodies)
+    if needs >= 2:
+        look(joint, hinge, link, joints, local, node, bodies, stiff)
+        soft_targets(joint, hinge, link, joints, local, h)
+    for k in range(joints):
+        j = link[k, L_JOINT]
+        tie[j, SIDE] = link[k, L_SIDE]
+        if link[k, L_ROWS] == 0:
+            start_joint(joint, hinge, link, k, local, h)
+            joint[j, LENGTH_0] = hinge[k, BEGAN]
+    status, stored = LINEAR, 0.0
+    rung = -1 if order == 4 and smooth(joint, link, joints) else FIRST_RUNG
+    while rung <= LAST_RUNG:
+        parts = 5 if rung < 0 else 1 << rung if rung < 3 else 1 if rung == LAST_RUNG else 7
+        give = 0.0 if rung < 4 or rung == LAST_RUNG else 1e-6 if rung == 4 else 1e-4
+        what = LINEAR_STEP if rung == LAST_RUNG else STEP
+        for c in range(LEDGER_COLUMNS):
+            part[c] = 0.0
+        if rung == LAST_RUNG:
+            look(joint, hinge, link, joints, local, node, bodies, stiff)
+            stored = springs_hold(joint, hinge, link, joints)
+        done, before = True, h
+        for p in range(parts):
+            piece = h / parts if rung >= 0 else (1.0 - 4.0 * SUZUKI) * h if p == 2 else SUZUKI * h
+            for k in range(joints):
+                warm = 0.0 if loops or rung == LAST_RUNG else piece / before
+                hinge[k, LAM] *= warm
+                hinge[k, LAM + 1] *= warm
+            before = piece
+            done = step_with_limits(
+                what, joint, hinge, link, joints, local, node, bodies, piece, length, loops, give, rung < 0, condensed,
+                band, size, matrix, right, stiff, found, part,
+            )  # fmt: skip
+            if not done:
+                break
+        if done:
+            status = EXACT if rung <= 0 else HALVED if rung < 4 else ELASTIC if rung < LAST_RUNG else LINEAR
+            break
+        restore(joint, tie, hinge, link, joints, local, bodies)
+        rung += 1
+    if status == LINEAR:
+        if rung > LAST_RUNG:  # not even that: free flight
+            for i in range(bodies):
+                for c in range(3):
+                    local[i, AFTER + c] = local[i, BEFORE + c] + h * local[i, FREE + c]
+            move(local, bodies, h)
+            advance(local, bodies)
+            for c in range(LEDGER_COLUMNS):
+                part[c] = 0.0
+        look(joint, hinge, link, joints, local, node, bodies, stiff)
+        part[STORED] = springs_hold(joint, hinge, link, joints) - stored
+        close_ledger(local, bodies, part)
+    for c in range(LEDGER_COLUMNS):
+        ledger[c] += part[c]
+    write_joints(joint, tie, hinge, link, joints, local, h, status >= ELASTIC)
+    return status

@@ -1,0 +1,148 @@
+"""All islands of a set of bodies, stepped by one call."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import uncounted
+from ..layout import ANGLE, AX, II, IM, VX, X
+from .layout import ANCHOR_AX, LEDGER_COLUMNS
+from .plan import make_plan
+from .scratch import (
+    BAND,
+    BEFORE,
+    BODY_0,
+    BODY_1,
+    CAYLEY,
+    COLUMN,
+    CONDENSED,
+    COS,
+    FREE,
+    FREEDOMS,
+    HINGE_COLUMNS,
+    JOINT_0,
+    JOINT_1,
+    L_JOINT,
+    LINK_COLUMNS,
+    LOCAL_COLUMNS,
+    LOOPS,
+    M_BODY,
+    M_CAYLEY,
+    M_COLUMN,
+    M_FREEDOMS,
+    MEMBER_COLUMNS,
+    MOBILITY,
+    NODE_COLUMNS,
+    POSE,
+    ROOT,
+    ROWS_OF,
+    SIN,
+    SPAN_COLUMNS,
+    UNKNOWNS,
+)
+from .step import island_step
+
+
+@uncounted
+def gather_island(
+    bodies: FloatArray, joint: FloatArray, span: IntArray, s: int, member: IntArray, link: IntArray, h: float,
+    local: FloatArray, node: IntArray,
+) -> float:  # fmt: skip
+    """Copy the bodies of island s into its scratch; the size of the island, the length that errors are measured by."""
+    length = 0.0
+    b0 = span[s, BODY_0]
+    for i in range(span[s, BODY_1] - b0):
+        body = member[b0 + i, M_BODY]
+        for c in range(3):
+            local[i, POSE + c] = bodies[body, X + c]
+            local[i, BEFORE + c] = bodies[body, VX + c]
+            local[i, FREE + c] = bodies[body, AX + c]
+            local[i, MOBILITY + c] = bodies[body, IM] if c < 2 else bodies[body, II]
+            local[i, ROOT + c] = np.sqrt(local[i, MOBILITY + c])
+        local[i, COS], local[i, SIN] = np.cos(bodies[body, ANGLE]), np.sin(bodies[body, ANGLE])
+        local[i, CAYLEY] = member[b0 + i, M_CAYLEY]
+        node[i, COLUMN], node[i, FREEDOMS] = member[b0 + i, M_COLUMN], member[b0 + i, M_FREEDOMS]
+        for c in range(2):
+            length = max(length, abs(local[i, POSE + c]), abs(h * local[i, BEFORE + c]))
+    for k in range(span[s, JOINT_0], span[s, JOINT_1]):
+        for c in range(4):
+            length = max(length, abs(joint[link[k, L_JOINT], ANCHOR_AX + c]))
+    return length if length > 0.0 else 1.0
+
+
+@uncounted
+def step_all(
+    bodies: FloatArray, joint: FloatArray, tie: IntArray, span: IntArray, member: IntArray, link: IntArray,
+    islands: int, h: float, order: int, hinge: FloatArray, local: FloatArray, node: IntArray, matrix: FloatArray,
+    right: FloatArray, stiff: FloatArray, found: FloatArray, part: FloatArray, ledger: FloatArray, status: IntArray,
+) -> int:  # fmt: skip
+    """Step all islands of a plan by h, in place of X .. SPIN of `bodies`; the worst status.
+
+    Bodies outside islands are not moved. `ledger` (islands, LEDGER_COLUMNS) and `status` (islands,) are filled in.
+    """
+    worst = 0
+    for s in range(islands):
+        b0, n = span[s, BODY_0], span[s, BODY_1] - span[s, BODY_0]
+        j0, j1 = span[s, JOINT_0], span[s, JOINT_1]
+        length = gather_island(bodies, joint, span, s, member, link, h, local, node)
+        band, size = span[s, BAND], span[s, UNKNOWNS]
+        condensed = span[s, CONDENSED] != 0
+        width = 2 * band + 1 if condensed else 3 * band + 1
+        status[s] = island_step(
+            joint, tie, hinge, link[j0:j1], j1 - j0, local, node, n, h, order, length, span[s, LOOPS] > 0,
+            condensed, band, size, matrix[: size * width].reshape((size, width)), right, stiff, found, part, ledger[s],
+        )  # fmt: skip
+        worst = max(worst, status[s])
+        for i in range(n):
+            body = member[b0 + i, M_BODY]
+            for c in range(3):
+                if bodies[body, IM] > 0.0 or bodies[body, II] > 0.0:
+                    bodies[body, X + c] = local[i, POSE + c]
+                    bodies[body, VX + c] = local[i, BEFORE + c]
+    return worst
+
+
+@dataclass
+class Islands:
+    """A plan of the islands of some joints, with the scratch that stepping them needs.
+
+    Attributes:
+        joint: (j, JOINT_COLUMNS) and tie: (j, TIE_COLUMNS) the joints.  order: 2, or 4 where an island allows it.
+        ledger: (islands, LEDGER_COLUMNS) energies of the last step.  status: (islands,) of the last step.
+    """
+
+    joint: FloatArray
+    tie: IntArray
+    order: int = 2
+    islands: int = 0
+    ledger: FloatArray = field(default_factory=lambda: np.zeros((0, LEDGER_COLUMNS)))
+    status: IntArray = field(default_factory=lambda: np.zeros(0, np.int64))
+
+    def plan(self, bodies: FloatArray) -> None:
+        """Find the islands of `bodies` (n, BODY_COLUMNS), and make room."""
+        joints = len(self.tie)
+        self._span = np.zeros((joints, SPAN_COLUMNS), np.int64)
+        self._member = np.zeros((2 * joints, MEMBER_COLUMNS), np.int64)
+        self._link = np.zeros((joints, LINK_COLUMNS), np.int64)
+        self.islands = make_plan(bodies, self.joint, self.tie, self._span, self._member, self._link)
+        span = self._span[: self.islands]
+        most_bodies = int((span[:, BODY_1] - span[:, BODY_0]).max(initial=1))
+        most_joints = int((span[:, JOINT_1] - span[:, JOINT_0]).max(initial=1))
+        self._hinge = np.zeros((most_joints, HINGE_COLUMNS))
+        self._local = np.zeros((most_bodies, LOCAL_COLUMNS))
+        self._node = np.zeros((most_bodies, NODE_COLUMNS), np.int64)
+        self._matrix = np.zeros(int((span[:, UNKNOWNS] * (3 * span[:, BAND] + 1)).max(initial=1)))
+        self._right = np.zeros(int((2 * span[:, UNKNOWNS] + span[:, ROWS_OF]).max(initial=1)))
+        self._stiff, self._found, self._part = np.zeros((6, 6)), np.zeros(5), np.zeros(LEDGER_COLUMNS)
+        self.ledger, self.status = np.zeros((self.islands, LEDGER_COLUMNS)), np.zeros(self.islands, np.int64)
+
+    def step(self, bodies: FloatArray, h: float) -> int:
+        """Step all islands of `bodies` (n, BODY_COLUMNS) by h; the worst status."""
+        return step_all(
+            bodies, self.joint, self.tie, self._span, self._member, self._link, self.islands, h, self.order,
+            self._hinge, self._local, self._node, self._matrix, self._right, self._stiff, self._found,
+            self._part, self.ledger, self.status,
+        )  # fmt: skip

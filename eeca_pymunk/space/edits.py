@@ -1,0 +1,75 @@
+"""What the user changes of constraints, found without looking, and `constraint.impulse` that tells of our steps.
+
+pymunk has neither: all setters write into Chipmunk at once, and `impulse` has no setter. All attributes of pymunk's
+constraints are set through Python, though, so one hook on the class `pymunk.Constraint` hears of each; and its property
+`impulse` asks us first. Both are put in place when the first constraint is watched, and change nothing for
+constraints that nobody watches: one look into a dictionary of weak references.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+from weakref import WeakKeyDictionary, WeakMethod, WeakSet
+
+import pymunk
+
+_watching: WeakSet[Edits] = WeakSet()
+_readings: WeakKeyDictionary[pymunk.Constraint, tuple[Any, int]] = WeakKeyDictionary()
+_native_impulse: Any = pymunk.Constraint.impulse
+_native_setattr = pymunk.Constraint.__setattr__
+
+
+class Edits:
+    """Which of some constraints had an attribute set since last asked."""
+
+    def __init__(self, row: dict[pymunk.Constraint, int]) -> None:
+        self._row = row
+        self._edited: set[int] = set()
+        _watching.add(self)
+        pymunk.Constraint.__setattr__ = _set  # type: ignore[method-assign, assignment]
+
+    def take(self) -> set[int]:
+        """Their rows; then none."""
+        if not self._edited:
+            return self._edited
+        edited, self._edited = self._edited, set()
+        return edited
+
+    def forget(self, row: int) -> None:
+        """Take no notice of what was set just now."""
+        self._edited.discard(int(row))
+
+    def hear(self, constraint: pymunk.Constraint) -> None:
+        """An attribute of a constraint was set."""
+        row = self._row.get(constraint)
+        if row is not None:
+            self._edited.add(row)
+
+
+def _set(self: pymunk.Constraint, name: str, value: Any) -> None:
+    _native_setattr(self, name, value)
+    for edits in _watching:
+        edits.hear(self)
+
+
+def show_impulses(items: Sequence[pymunk.Constraint], read: Callable[[int], float]) -> None:
+    """Let `impulse` of these constraints be `read(row)`, a method, as long as its object lives."""
+    if items and _readings.get(items[0], (None, 0))[0] == WeakMethod(read):
+        return
+    method = WeakMethod(read)
+    for j, item in enumerate(items):
+        _readings[item] = method, j
+    pymunk.Constraint.impulse = property(_impulse, doc=_native_impulse.__doc__)  # type: ignore[method-assign, assignment]
+
+
+def hide_impulses(items: Sequence[pymunk.Constraint]) -> None:
+    """Let `impulse` of these constraints be native's again."""
+    for item in items:
+        _readings.pop(item, None)
+
+
+def _impulse(self: pymunk.Constraint) -> float:
+    method, row = _readings.get(self, (None, 0))
+    read = method() if method is not None else None
+    return float(_native_impulse.fget(self) if read is None else read(row))

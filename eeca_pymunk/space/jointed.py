@@ -1,0 +1,171 @@
+"""A space of jointed bodies without shapes, stepped through gather, `Islands.step` and scatter."""
+
+from __future__ import annotations
+
+import numpy as np
+import pymunk
+
+from ..arrays import FloatArray, IntArray
+from ..joints.layout import (
+    BODY_A,
+    BODY_B,
+    CLAMPED,
+    CLOSED,
+    DAMPED,
+    LIMITED,
+    MOTORS,
+    PROJECTED,
+    PUSH,
+    REST,
+    STIFFNESS,
+    SUPPORTS,
+)  # fmt: skip
+from ..joints.world import Islands
+from ..layout import ANGLE, AX, AY, BODY_COLUMNS, II, IM, SPIN, TWIST, VX, VY, X, Y
+from .joints import JointRows
+from .spring_functions import MOST_REPEATS, Laws
+
+LAW = [PUSH, STIFFNESS, REST]
+
+
+class JointedSpace:
+    """Steps the bodies and constraints of a space that has no contacts.
+
+    Attributes:
+        order: 2 or 4 (where an island allows it).  status: the worst of the last step.
+        ledger: (LEDGER_COLUMNS,) energies summed over all steps and islands.
+    """
+
+    def __init__(self, space: pymunk.Space, order: int = 2) -> None:
+        self.space, self.order = space, order
+        self.status = 0
+        self._items: list[pymunk.Body] = []
+        self._joints: tuple[pymunk.Constraint, ...] = ()
+        self.ledger: FloatArray = np.zeros(8)
+        self.rows = JointRows((), {})
+        self._plan()
+
+    def _plan(self) -> None:
+        """Number bodies and joints, and find the islands."""
+        space = self.space
+        items = dict.fromkeys(space.bodies)
+        for c in space.constraints:
+            items.setdefault(c.a)
+            items.setdefault(c.b)
+        self._items = list(items)
+        self._inside = set(space.bodies)
+        self._joints = tuple(space.constraints)
+        row = {body: i for i, body in enumerate(self._items)}
+        self.rows = JointRows(self._joints, row, self.rows)
+        self.bodies: FloatArray = np.zeros((len(self._items), BODY_COLUMNS))
+        self._written: FloatArray = np.full((len(self._items), 6), np.nan)
+        self._mobility()
+        self.islands = Islands(self.rows.joint, self.rows.tie, self.order)
+        self.islands.plan(self.bodies)
+        bound = self.rows.tie[:, BODY_A : BODY_B + 1].ravel()
+        self._free = self._moving.copy()
+        self._free[bound] &= ~self._dynamic[bound]
+
+    def _mobility(self) -> None:
+        self._centre = np.array([tuple(b.center_of_gravity) for b in self._items]).reshape(-1, 2)
+        for i, body in enumerate(self._items):
+            if body.body_type == pymunk.Body.DYNAMIC:
+                self.bodies[i, IM], self.bodies[i, II] = 1.0 / body.mass, 1.0 / body.moment
+        self._dynamic = np.array([b.body_type == pymunk.Body.DYNAMIC for b in self._items])
+        self._moving = np.array([b.body_type != pymunk.Body.STATIC and b in self._inside for b in self._items])
+
+    def _gather(self) -> None:
+        bodies = self.bodies
+        state = np.array([(*b.position, b.angle, *b.velocity, b.angular_velocity) for b in self._items])
+        changed = (state != self._written).any(axis=1)
+        if changed.any():
+            new: IntArray = np.flatnonzero(changed)
+            self.rows.touch(new)
+            bodies[new, X : SPIN + 1] = state[new]
+            c, s = np.cos(state[new, 2]), np.sin(state[new, 2])
+            bodies[new, X] += c * self._centre[new, 0] - s * self._centre[new, 1]
+            bodies[new, Y] += s * self._centre[new, 0] + c * self._centre[new, 1]
+            bodies[~self._moving, VX : SPIN + 1] = 0.0
+        bodies[self._dynamic, AX : AY + 1] = tuple(self.space.gravity)
+
+    def step(self, dt: float) -> None:
+        """Step the space by dt."""
+        if tuple(self.space.constraints) != self._joints:
+            self._plan()
+        for c in self.rows.before:
+            if c.pre_solve is not None:
+                c.pre_solve(c, self.space)
+        self._gather()
+        if self.rows.refresh():
+            self.islands.plan(self.bodies)
+        self.status = self._step(dt)
+        self.ledger += self.islands.ledger.sum(axis=0)
+        self.bodies[self._free, VX : SPIN + 1] += 0.5 * dt * self.bodies[self._free, AX : TWIST + 1]
+        self.bodies[self._free, X : ANGLE + 1] += dt * self.bodies[self._free, VX : SPIN + 1]
+        self.bodies[self._free, VX : SPIN + 1] += 0.5 * dt * self.bodies[self._free, AX : TWIST + 1]
+        self._scatter()
+        self.rows.write()
+        for c in self.rows.after:
+            if c.post_solve is not None:
+                c.post_solve(c, self.space)
+
+    def _step(self, dt: float) -> int:
+        """Step all islands, repeatedly where springs have functions of their own."""
+        rows, bodies = self.rows, self.bodies
+        if not rows.functions:
+            return self.islands.step(bodies, dt)
+        start = [_stretch(rows.items[j]) for j in rows.functions]
+        laws = Laws(rows.items, rows.functions, rows.joint, start)
+        keep = bodies.copy(), rows.joint.copy(), rows.tie.copy()
+        for _ in range(MOST_REPEATS):
+            status = self.islands.step(bodies, dt)
+            if laws.settled():
+                break
+            law = rows.joint[:, LAW].copy()
+            bodies[:], rows.joint[:], rows.tie[:] = keep
+            rows.joint[:, LAW] = law
+        else:
+            status = self.islands.step(bodies, dt)
+        return status
+
+    def _scatter(self) -> None:
+        bodies = self.bodies
+        c, s = np.cos(bodies[:, ANGLE]), np.sin(bodies[:, ANGLE])
+        x = bodies[:, X] - c * self._centre[:, 0] + s * self._centre[:, 1]
+        y = bodies[:, Y] - s * self._centre[:, 0] - c * self._centre[:, 1]
+        for i in np.flatnonzero(self._moving):
+            body = self._items[i]
+            # pymunk places the centre of mass from the position by the angle it has at that moment.
+            body.angle = bodies[i, ANGLE]
+            body.position = x[i], y[i]
+            body.velocity, body.angular_velocity = (bodies[i, VX], bodies[i, VY]), bodies[i, SPIN]
+        self._written = np.array([(*b.position, b.angle, *b.velocity, b.angular_velocity) for b in self._items])
+
+    def energy(self) -> float:
+        """Kinetic energy, potential energy of gravity, and what linear springs hold."""
+        bodies, total = self.bodies[self._dynamic], 0.0
+        with np.errstate(divide="ignore"):
+            mass, moment = 1.0 / bodies[:, IM], np.where(bodies[:, II] > 0.0, 1.0 / bodies[:, II], 0.0)
+        total += float((0.5 * mass * (bodies[:, VX] ** 2 + bodies[:, VY] ** 2)).sum())
+        total += float((0.5 * moment * bodies[:, SPIN] ** 2).sum())
+        total -= float((mass * (bodies[:, AX] * bodies[:, X] + bodies[:, AY] * bodies[:, Y])).sum())
+        for c in self._joints:
+            if isinstance(c, pymunk.DampedSpring):
+                length = (c.b.local_to_world(c.anchor_b) - c.a.local_to_world(c.anchor_a)).length
+                total += 0.5 * c.stiffness * (length - c.rest_length) ** 2
+            elif isinstance(c, pymunk.DampedRotarySpring):
+                total += 0.5 * c.stiffness * (c.a.angle - c.b.angle - c.rest_angle) ** 2
+        return total
+
+    def gain(self) -> float:
+        """Energy that the ledger says has come in since the start, without STORED, which `energy` counts."""
+        book = self.ledger
+        lost = book[DAMPED] + book[LIMITED] + book[CLAMPED] + book[PROJECTED]
+        return float(book[MOTORS] + book[SUPPORTS] + book[CLOSED] - lost)
+
+
+def _stretch(c: pymunk.Constraint) -> float:
+    """The length of a spring, or the angle of a rotary one."""
+    if isinstance(c, pymunk.DampedSpring):
+        return (c.b.local_to_world(c.anchor_b) - c.a.local_to_world(c.anchor_a)).length
+    return c.a.angle - c.b.angle

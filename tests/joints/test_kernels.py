@@ -1,0 +1,240 @@
+"""Kernels of joints against numpy: banded and condensed systems, rows and their derivatives, islands and orders."""
+
+from __future__ import annotations
+
+import numpy as np
+import pymunk
+import pytest
+
+from eeca_pymunk.arrays import FloatArray
+from eeca_pymunk.joints import scratch
+from eeca_pymunk.joints.banded import solve_banded
+from eeca_pymunk.joints.condensed import factor, substitute
+from eeca_pymunk.joints.layout import PUSH
+from eeca_pymunk.joints.motion import move
+from eeca_pymunk.joints.ordering import order_unknowns
+from eeca_pymunk.joints.rows import joint_rows, start_joint
+from eeca_pymunk.joints.world import gather_island
+from eeca_pymunk.space.jointed import JointedSpace
+from scenes import linkages
+from scenes.linkages import body, empty
+
+
+def band_of(matrix: FloatArray, band: int, width: int) -> FloatArray:
+    n = len(matrix)
+    packed = np.zeros((n, width))
+    for i in range(n):
+        for j in range(max(0, i - band), min(n, i + band + 1)):
+            packed[i, j - i + band] = matrix[i, j]
+    return packed
+
+
+@pytest.mark.parametrize(("n", "band"), [(1, 2), (5, 2), (17, 4), (40, 11)])
+def test_banded_systems_with_zeros_on_the_diagonal(n: int, band: int) -> None:
+    rng = np.random.default_rng(n)
+    full = rng.normal(size=(n, n))
+    full[np.abs(np.subtract.outer(np.arange(n), np.arange(n))) > band] = 0.0
+    if n > 2:
+        full[::3, ::3] = 0.0
+    right = rng.normal(size=n)
+    expected = np.linalg.solve(full, right)
+    assert solve_banded(band_of(full, band, 3 * band + 1), n, band, right)
+    np.testing.assert_allclose(right, expected, rtol=1e-9, atol=1e-11 * np.abs(expected).max())
+
+
+def test_banded_tells_of_singular_systems() -> None:
+    assert not solve_banded(np.zeros((3, 7)), 3, 2, np.ones(3))
+
+
+def test_factors_without_pivots() -> None:
+    rng = np.random.default_rng(2)
+    full = rng.normal(size=(30, 30)) + 30.0 * np.eye(30)
+    full[np.abs(np.subtract.outer(np.arange(30), np.arange(30))) > 6] = 0.0
+    right = np.concatenate((np.zeros(4), rng.normal(size=30)))
+    expected = np.linalg.solve(full, right[4:])
+    packed = band_of(full, 6, 13)
+    assert factor(packed, 30, 6)
+    substitute(packed, 30, 6, right, 4)
+    np.testing.assert_allclose(right[4:], expected, rtol=1e-12)
+    assert (right[:4] == 0.0).all()
+
+
+def every_joint() -> pymunk.Space:
+    """Two bodies with all joints between them, off their centres."""
+    space = empty()
+    a, b = body(space, 1.3, 0.7, (0.2, 0.1), 0.3), body(space, 0.8, 0.4, (1.1, -0.6), -0.5)
+    a.velocity, a.angular_velocity, b.velocity, b.angular_velocity = (0.3, 1.0), 2.0, (-0.5, 0.4), -3.0
+    p, q = (0.3, 0.2), (-0.1, 0.25)
+    space.add(
+        pymunk.PinJoint(a, b, p, q), pymunk.SlideJoint(a, b, p, q, 0.5, 0.9), pymunk.PivotJoint(a, b, p, q),
+        pymunk.GrooveJoint(a, b, (-0.3, 0.1), (1.0, 0.4), q), pymunk.DampedSpring(a, b, p, q, 0.7, 20.0, 3.0),
+        pymunk.DampedRotarySpring(a, b, 0.2, 7.0, 2.0), pymunk.RotaryLimitJoint(a, b, -1.0, 0.4),
+        pymunk.RatchetJoint(a, b, 0.1, 0.4), pymunk.GearJoint(a, b, 0.3, 2.5), pymunk.SimpleMotor(a, b, 1.5),
+    )  # fmt: skip
+    return space
+
+
+class Iterate:
+    """The island of `every_joint`, at an iterate of its step."""
+
+    def __init__(self, h: float, soft: bool = False, static: bool = False) -> None:
+        space = every_joint()
+        if static:
+            next(iter(space.bodies)).body_type = pymunk.Body.KINEMATIC
+        self.h, stepper = h, JointedSpace(space)
+        stepper._gather()
+        world = stepper.islands
+        self.joint, self.tie, self.link, self.hinge = world.joint, world.tie, world._link, world._hinge
+        self.local, self.node = world._local, world._node
+        gather_island(stepper.bodies, self.joint, world._span, 0, world._member, self.link, h, self.local, self.node)
+        rng = np.random.default_rng(5)
+        self.hinge[:, scratch.LAM : scratch.LAM + 2] = rng.normal(size=(10, 2))
+        self.joint[[4, 5], PUSH] = 0.5
+        for k in range(10):
+            self.link[k, scratch.L_SIDE] = -1 if k in (1, 7) else 1 if k in (3, 6) else 0
+            self.link[k, scratch.L_SOFT] = int(soft or k == 9)
+        change = rng.normal(size=(2, 3))
+        self.local[:, scratch.AFTER : scratch.AFTER + 3] = self.local[:, scratch.BEFORE : scratch.BEFORE + 3] + change
+        if static:
+            self.local[0, scratch.AFTER : scratch.AFTER + 3] = self.local[0, scratch.BEFORE : scratch.BEFORE + 3]
+        self.stiff = np.zeros((6, 6))
+
+    def at(self, k: int, shift: FloatArray | None = None) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, int]:
+        """VALUE, FORCE, ROWS, SLOPES of joint k with its bodies' ways shifted, and what of `stiff` is there."""
+        keep = self.local.copy()
+        if shift is not None:
+            self.local[:, scratch.AFTER : scratch.AFTER + 3] += shift.reshape(2, 3) * 2.0 / self.h
+        move(self.local, 2, self.h)
+        start_joint(self.joint, self.hinge, self.link, k, self.local, self.h)
+        lam = self.hinge[k, scratch.LAM : scratch.LAM + 2].copy()
+        bend = joint_rows(self.joint, self.hinge, self.link, k, self.local, self.h, self.stiff)
+        row = self.hinge[k].copy()
+        self.way = self.local[:, scratch.WAY : scratch.WAY + 3].copy()
+        self.local[:] = keep
+        self.hinge[k, scratch.LAM : scratch.LAM + 2] = lam
+        return row[24:26], row[26:32], row[32:44].reshape(2, 6), row[44:56].reshape(2, 6), bend
+
+
+NAMES = ["pin", "slide", "pivot", "groove", "spring", "rotary spring", "limit", "ratchet", "gear", "motor"]
+COUNTS = [1, 1, 2, 2, 0, 0, 1, 1, 1, 1]
+
+
+@pytest.mark.parametrize("static", [False, True], ids=["free", "kinematic"])
+@pytest.mark.parametrize("k", range(9), ids=NAMES[:9])
+def test_rows_are_discrete_gradients(k: int, static: bool) -> None:
+    # g1 - g0 = J x for any x, large ones too; and F = J^T lam.
+    one = Iterate(0.4, static=static)
+    value, force, rows, _, _ = one.at(k)
+    way = one.way.ravel()
+    if COUNTS[k] == 0:
+        held, damping, stiffness, rest = one.hinge[k, [9, 8]].tolist() + one.joint[k, [4, 6]].tolist()
+        ended = one.hinge[k, scratch.ENDED]
+        sign = 1.0 if k == 4 else -1.0
+        stretch = sign * (ended - held)
+        pull = 0.5 - sign * stiffness * (0.5 * (held + ended) - rest) - damping * stretch / one.h
+        assert force @ way == pytest.approx(one.h * pull * stretch, rel=1e-12)
+        return
+    still = Iterate(0.4, static=static)
+    still.local[:, scratch.AFTER : scratch.AFTER + 3] = -still.local[:, scratch.BEFORE : scratch.BEFORE + 3]
+    before = still.at(k)[0]
+    for r in range(COUNTS[k]):
+        assert value[r] - before[r] == pytest.approx(rows[r] @ way, abs=1e-14)
+    lam = one.hinge[k, scratch.LAM : scratch.LAM + COUNTS[k]]
+    np.testing.assert_allclose(force, rows[: COUNTS[k]].T @ lam, atol=1e-14)
+
+
+@pytest.mark.parametrize("k", range(10), ids=NAMES)
+def test_slopes_and_stiffness_are_derivatives(k: int) -> None:
+    # The derivative of torques' common factor is good to the square of the difference of both turns.
+    one = Iterate(0.05)
+    _, _, _, slopes, bend = one.at(k)
+    stiff = one.stiff.copy() if bend != scratch.NO_BEND else np.zeros((6, 6))
+    if bend == scratch.OWN_TURN:
+        keep = np.zeros((6, 6))
+        keep[2, 2], keep[5, 5] = stiff[2, 2], stiff[5, 5]
+        stiff = keep
+    e = 1e-6
+    for c in range(6):
+        shift = np.zeros(6)
+        shift[c] = e
+        up, down = one.at(k, shift), one.at(k, -shift)
+        for r in range(COUNTS[k]):
+            assert slopes[r, c] == pytest.approx((up[0][r] - down[0][r]) / (2.0 * e), abs=1e-8)
+        np.testing.assert_allclose(stiff[:, c], (up[1] - down[1]) / (2.0 * e), atol=1e-4 if k in (5, 6, 7) else 1e-7)
+
+
+def test_torques_of_angles_are_opposite() -> None:
+    one = Iterate(0.4)
+    for k in (5, 6, 7, 9):
+        force = one.at(k)[1]
+        assert force[2] == -force[5]
+        assert (force[[0, 1, 3, 4]] == 0.0).all()
+
+
+def test_forces_between_points_keep_angular_momentum() -> None:
+    # Total angular momentum over the step: sum of x_m x F + torque, with x_m the centres at mid-way.
+    one = Iterate(0.4)
+    for k in (0, 1, 3, 4):  # a pivot's acts at two points if these are apart, as here
+        force = one.at(k)[1]
+        middle = one.local[:, scratch.POSE : scratch.POSE + 2] + 0.5 * one.way[:, :2]
+        moment = sum(middle[i, 0] * force[3 * i + 1] - middle[i, 1] * force[3 * i] + force[3 * i + 2] for i in (0, 1))
+        assert abs(moment) < 1e-14
+        np.testing.assert_allclose(force[:2], -force[3:5], atol=1e-15)
+
+
+def test_islands_are_the_components_of_the_graph() -> None:
+    rng = np.random.default_rng(1)
+    space = empty()
+    bodies = [body(space, 1.0, 1.0, (float(i), 0.0)) for i in range(60)]
+    for _ in range(45):
+        i, j = rng.choice(60, 2, replace=False)
+        other = space.static_body if rng.random() < 0.2 else bodies[j]
+        space.add(pymunk.DampedSpring(bodies[i], other, (0, 0), (0, 0), 1.0, 1.0, 0.0))
+    stepper = JointedSpace(space)
+    label = {b: i for i, b in enumerate(bodies)}
+    for _ in range(60):
+        for c in space.constraints:
+            if c.b is not space.static_body:
+                label[c.a] = label[c.b] = min(label[c.a], label[c.b])
+    bound = {c.a for c in space.constraints} | {c.b for c in space.constraints} - {space.static_body}
+    assert stepper.islands.islands == len({label[b] for b in bound if b is not space.static_body})
+    seen: list[int] = []
+    for s in range(stepper.islands.islands):
+        b0, b1, j0, j1 = stepper.islands._span[s, :4]
+        own = [stepper._items[stepper.islands._member[i, 0]] for i in range(b0, b1)]
+        assert len({label[b] for b in own if b is not space.static_body}) == 1
+        seen += stepper.islands._link[j0:j1, scratch.L_JOINT].tolist()
+    assert sorted(seen) == list(range(45))
+
+
+def test_bands_are_as_narrow_as_their_graphs() -> None:
+    spans = {}
+    for name, make in (("chain", lambda: linkages.chain(30)), ("cloth", lambda: linkages.cloth(12))):
+        world = JointedSpace(make()).islands
+        spans[name] = world._span[0]
+    assert spans["chain"][[scratch.UNKNOWNS, scratch.BAND, scratch.CONDENSED]].tolist() == [150, 4, 0]
+    assert spans["cloth"][scratch.CONDENSED] == 1
+    assert spans["cloth"][scratch.UNKNOWNS] == 288
+    assert spans["cloth"][scratch.BAND] <= 2 * 13
+
+
+def test_condensed_islands_step_as_full_ones() -> None:
+    ends = []
+    for wide in (False, True):
+        space = linkages.cloth(5)
+        stepper = JointedSpace(space)
+        arrange(stepper, wide)
+        for _ in range(20):
+            stepper.step(1 / 120)
+        assert stepper.status == 0
+        ends.append(np.array([tuple(b.position) for b in space.bodies]))
+    np.testing.assert_allclose(ends[0], ends[1], atol=1e-10)
+
+
+def arrange(stepper: JointedSpace, condensed: bool) -> None:
+    """Have the stepper's only island in the bodies' unknowns alone, or not."""
+    world = stepper.islands
+    order_unknowns(world._span, world._member, world._link, 0, condensed)
+    span = world._span[0]
+    world._right = np.zeros(2 * span[scratch.UNKNOWNS] + span[scratch.ROWS_OF])
+    world._matrix = np.zeros(span[scratch.UNKNOWNS] * (3 * span[scratch.BAND] + 1))

@@ -1,0 +1,116 @@
+"""Ratchets, grooves, ropes, doors: what limits take and bear, against closed forms."""
+
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pymunk
+import pytest
+
+from eeca_pymunk.joints.layout import LIMITED, PROJECTED
+from eeca_pymunk.space.jointed import JointedSpace
+from scenes.linkages import body, chain, empty
+
+from .driving import error, ledger_closes, run
+
+
+@pytest.mark.parametrize("ratchet", [0.5, -0.5])
+def test_ratchet_goes_one_way(ratchet: float) -> None:
+    # A torsion spring carries it to its largest angle sqrt(I/k) w = sqrt(.5) * 2, and it falls back to the last notch.
+    space = empty(0.0)
+    wheel = body(space, 2.0, 0.5, (0.0, 0.0))
+    wheel.angular_velocity = math.copysign(2.0, ratchet)
+    ground = space.static_body
+    pawl = pymunk.RatchetJoint(ground, wheel, 0.1, ratchet)
+    space.add(pymunk.PivotJoint(ground, wheel, (0, 0), (0, 0)), pawl, pymunk.DampedRotarySpring(ground, wheel, 0, 1, 0))
+    stepper = run(space, 1 / 60, 240)
+    farthest = math.sqrt(2.0)
+    notch = math.floor((math.copysign(farthest, ratchet) - 0.1) / ratchet) * ratchet + 0.1
+    assert wheel.angle == pytest.approx(notch, abs=1e-12)
+    assert pawl.angle == pytest.approx(notch, abs=1e-12)
+    assert abs(wheel.angular_velocity) < 1e-10
+    ledger_closes(stepper, 1.0, 1.0)
+    assert stepper.ledger[LIMITED] == pytest.approx(1.0 - 0.5 * notch**2, rel=1e-12)
+
+
+def test_bead_slides_down_its_groove_and_stops_at_the_end() -> None:
+    space = empty()
+    bead = body(space, 2.0, 0.5, (0.4, -0.3))
+    space.add(pymunk.GrooveJoint(space.static_body, bead, (0, 0), (4, -3), (0, 0)))
+    stepper = JointedSpace(space)
+    stepper._gather()
+    start = stepper.energy()
+    for _ in range(60):
+        stepper.step(1 / 60)
+    assert bead.position.length == pytest.approx(0.5 + 0.5 * 9.81 * 0.6, abs=1e-12)
+    for _ in range(60):
+        stepper.step(1 / 60)
+    np.testing.assert_allclose(bead.position, (4.0, -3.0), atol=1e-11)
+    assert bead.velocity.length < 1e-11
+    assert stepper.ledger[LIMITED] == pytest.approx(2.0 * 9.81 * 2.7, rel=1e-12)
+    ledger_closes(stepper, start, 60.0)
+
+
+def test_rope_is_never_longer_than_its_length() -> None:
+    # Dropped from (.8, 0): taut at depth .6 with vertical speed v; the radial part v .6 is lost, exactly.
+    space = empty()
+    weight = body(space, 2.0, 0.5, (0.8, 0.0))
+    space.add(pymunk.SlideJoint(space.static_body, weight, (0, 0), (0, 0), 0.0, 1.0))
+    stepper = JointedSpace(space)
+    for _ in range(120):
+        stepper.step(1 / 60)
+        assert weight.position.length < 1.0 + 1e-11
+    assert stepper.ledger[LIMITED] == pytest.approx(2.0 * 9.81 * 0.6 * 0.36, rel=1e-3)
+    ledger_closes(stepper, 0.0, 20.0)
+
+
+def test_a_taut_rope_does_not_hold_what_is_thrown_inwards() -> None:
+    space = empty()
+    weight = body(space, 2.0, 0.5, (0.0, -1.0))
+    space.add(pymunk.SlideJoint(space.static_body, weight, (0, 0), (0, 0), 0.0, 1.0))
+    stepper = run(space, 1 / 60, 10)
+    weight.velocity = (0.0, 3.0)
+    stepper.step(1 / 60)
+    assert weight.position.y == pytest.approx(-1.0 + 3.0 / 60.0 - 0.5 * 9.81 / 3600.0, abs=1e-12)
+    assert stepper.ledger[PROJECTED] == 0.0
+
+
+def test_door_stops_at_its_limit_and_rests_there() -> None:
+    space = empty()
+    door = body(space, 2.0, 0.5, (0.8, 0.0))
+    ground = space.static_body
+    space.add(pymunk.PivotJoint(ground, door, (0, 0), (-0.8, 0)), pymunk.RotaryLimitJoint(ground, door, -0.9, 0.5))
+    stepper = JointedSpace(space)
+    for _ in range(120):
+        stepper.step(1 / 60)
+        assert door.angle > -0.9 - 1e-12
+    assert door.angle == pytest.approx(-0.9, abs=1e-12)
+    assert stepper.ledger[LIMITED] == pytest.approx(2.0 * 9.81 * 0.8 * math.sin(0.9), rel=1e-12)
+    ledger_closes(stepper, 0.0, 20.0)
+
+
+def test_hanging_weight_reads_its_weight() -> None:
+    space = empty()
+    weight = body(space, 3.0, 1.0, (0.0, -2.0))
+    pin = pymunk.PinJoint(space.static_body, weight)
+    space.add(pin)
+    stepper = run(space, 1 / 60, 5)
+    assert pin.impulse * 60.0 == pytest.approx(3.0 * 9.81, rel=1e-12)
+    del stepper
+    assert pin.impulse == 0.0  # native has not stepped
+
+
+def test_a_straight_taut_chain_between_walls_does_not_stop_the_step() -> None:
+    # Singular: straight links exactly as long as the gap bear no weight at first order.
+    space = chain(4)
+    end = list(space.bodies)[-1]
+    space.add(pymunk.PivotJoint(space.static_body, end, (4.0, 0.0), (0.5, 0.0)))
+    stepper = JointedSpace(space)
+    stepper._gather()
+    start = stepper.energy()
+    for _ in range(20):
+        stepper.step(1 / 60)
+        assert error(space) < 1e-2
+    assert abs(stepper.energy() - start - stepper.gain()) < 1e-10 * 40.0
