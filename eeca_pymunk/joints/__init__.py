@@ -1,7 +1,8 @@
-"""Joints: the energy-momentum step of islands of jointed bodies without contacts.
+"""Joints: the energy-momentum step of islands of jointed bodies without contacts. No stepper uses it yet: `EECA`
+refuses joints by name.
 
 In: BODY rows (poses, velocities, accelerations, mobilities), JOINT and TIE rows, a step. Out: poses and velocities at
-its end, impulses, the ledger of each island, a status. Open `rows` first (the equations of all ten joints), then
+its end, impulses, the ledger of each island, a status. Open `rows.py` first (the equations of all ten joints), then
 `newton` and `solve` (the implicit step), `limits` (bounds met at their instant), `step` (one island, its ladder, order
 4), `plan` (islands, order of unknowns), `world` (all islands in one call). `start` and `correct` mend what users break.
 """

@@ -164,7 +164,7 @@ def step_island(
         size = np.inf
         for i in range(n):
             size = min(size, EXTENT[i])
-        # Losses pay for lifting; what is elastic has none, whatever round-off says. Walls that move into bodies pay too.
+        # Losses pay for lifting, and walls that move into bodies; what is elastic has none, whatever round-off says.
         work = carried(A, B, ROWS, L, V, IM, m)
         budget = 0.0 if elastic else normal + tangential - owed + abs(work)
         lifted, OUT[5] = lifting(A, B, ROWS, MIDDLE, VN, ACC, IM, II, n, m, h, size, budget, JUMP)

@@ -289,7 +289,7 @@ def test_hit_on_a_ball_that_rests_with_some_speed_keeps_energy() -> None:
     above = add_disk(space, (0.0, 0.6 + 0.02), 0.2, velocity=(0.0, -2.0))
     add_walls(space, [((-5.0, 0.0), (5.0, 0.0))])
     stepper, energy = ep.EECA(space), ep.measure(space).energy
-    report = stepper.step(1 / 60)
+    stepper.step(1 / 60)
     assert above.velocity.y > 0.0
     assert ep.measure(space).energy == pytest.approx(energy, rel=1e-13)
 

@@ -1,6 +1,5 @@
 """Ratchets, grooves, ropes, doors: what limits take and bear, against closed forms."""
 
-
 from __future__ import annotations
 
 import math
