@@ -129,8 +129,3 @@ def lift_out(A: Scene, root: int, end: float) -> None:
     if PAR[LEDGER + RESTITUTION] < 0.0 and PAR[LEDGER + FRICTIONAL] > 0.0:
         PAR[LEDGER + FRICTIONAL] += PAR[LEDGER + RESTITUTION]
         PAR[LEDGER + RESTITUTION] = 0.0
-    for c in (RESTITUTION, FRICTIONAL):
-        # Walls that have moved into bodies do the work of moving them out.
-        if PAR[LEDGER + c] < 0.0 and PAR[LEDGER + EXTERNAL] != 0.0:
-            PAR[LEDGER + EXTERNAL] -= PAR[LEDGER + c]
-            PAR[LEDGER + c] = 0.0

@@ -164,13 +164,12 @@ def step_island(
         size = np.inf
         for i in range(n):
             size = min(size, EXTENT[i])
-        # Losses pay for lifting, and walls that move into bodies; what is elastic has none, whatever round-off says.
-        work = carried(A, B, ROWS, L, V, IM, m)
-        budget = 0.0 if elastic else normal + tangential - owed + abs(work)
+        # Losses pay for lifting; what is elastic has none, whatever round-off says.
+        budget = 0.0 if elastic else normal + tangential - owed
         lifted, OUT[5] = lifting(A, B, ROWS, MIDDLE, VN, ACC, IM, II, n, m, h, size, budget, JUMP)
         LEDGER[0] += normal
         LEDGER[1] += tangential
-        LEDGER[2] += work
+        LEDGER[2] += carried(A, B, ROWS, L, V, IM, m)
         LEDGER[3] += lifted
         for i in range(m):
             stopped = max(max(ROWS[i, TARGET], 0.0) - ROWS[i, UN], 0.0) * ROWS[i, K_N]

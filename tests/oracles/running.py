@@ -23,6 +23,14 @@ def of(*kinds: types.ModuleType) -> list[Case]:
     return [one for one in CASES if one.run.__module__ in {kind.__name__ for kind in kinds}]
 
 
+# What does not hold yet, and is among the limits that the README states.
+OPEN = {
+    "drum of disks and boxes, 8 s": "walls that turn into a crowd are not lifted out of it, so that bodies get through",
+    "frictional gas, free cluster": "inelastic contacts that go far within a step turn their clusters a little",
+    "stack of 50": "leans by millimetres in ten seconds",
+}
+
+
 def check(one: Case, patch: pytest.MonkeyPatch, *, audit: bool = True) -> None:
     """The figure is within its limit; every ledger closes, and no loss is negative."""
     for name, count in SHORT.items():
