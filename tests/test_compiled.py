@@ -63,7 +63,7 @@ print(compiled.disabled() or compiled.compiler() is None, before, compiled.compi
 """
     off, before, after = run(code)[-1].split()
     assert before == after
-    assert off == "True" or int(before) > 20
+    assert off == "True" or int(before) > 0
 
 
 def test_a_warmup_touches_no_space_of_the_caller() -> None:
