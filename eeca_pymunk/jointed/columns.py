@@ -36,8 +36,8 @@ _STRUT, _NOTHING = 1e-3, 1e-7  # share of its free mobility below which a contac
 
 
 class Groups(NamedTuple):
-    """GROUP (k,): the group of a body, -1 for what impulses do not move; BODY (n,): bodies by group, those of group g at
-    FIRST[g] : FIRST[g + 1]; COMPONENT (groups,): that of a group, -1 for a free body."""
+    """GROUP (k,): the group of a body, -1 for what impulses do not move; BODY (n,): bodies by group, those of group g
+    at FIRST[g] : FIRST[g + 1]; COMPONENT (groups,): that of a group, -1 for a free body."""
 
     GROUP: IntArray
     FIRST: IntArray
@@ -46,8 +46,8 @@ class Groups(NamedTuple):
 
 
 class Columns(NamedTuple):
-    """Of contact i: AT[i] : AT[i + 1] the entries BODY, N and T (., 3) of its columns; COUPLED (m,) its A_nt; OUT (m,) 1
-    if it is left out."""
+    """Of contact i: AT[i] : AT[i + 1] the entries BODY, N and T (., 3) of its columns; COUPLED (m,) its A_nt; OUT (m,)
+    1 if it is left out."""
 
     AT: IntArray
     BODY: IntArray

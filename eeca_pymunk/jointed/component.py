@@ -152,8 +152,7 @@ def ready(J: Joints, s: int, h: float, about_step: bool) -> bool:
     what = STEP if about_step else SPEEDS
     return prepare(
         what, J.JOINT, J.HINGE, J.LINK[j0:j1], j1 - j0, J.LOCAL, J.NODE, J.SPAN[s, BODY_1] - b0, h,
-        J.SPAN[s, LOOPS] > 0, condensed, band, size, J.MATRIX[: size * width].reshape((size, width)), J.RIGHT, J.STIFF,
-        J.PIVOTS,
+        condensed, band, size, J.MATRIX[: size * width].reshape((size, width)), J.RIGHT, J.STIFF, J.PIVOTS,
     )  # fmt: skip
 
 
@@ -167,5 +166,5 @@ def answer(J: Joints, s: int, about_step: bool, PUSH: FloatArray) -> None:
     what = STEP if about_step else SPEEDS
     respond(
         what, J.HINGE, J.LINK[j0:j1], j1 - j0, J.LOCAL, J.NODE, J.SPAN[s, BODY_1] - b0, condensed, band, size,
-        J.MATRIX[: size * width].reshape((size, width)), J.RIGHT, J.PIVOTS, PUSH,
+        J.MATRIX[: size * width].reshape((size, width)), J.RIGHT, J.MORE, J.PIVOTS, PUSH,
     )  # fmt: skip

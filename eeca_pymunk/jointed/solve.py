@@ -96,10 +96,11 @@ def find_places(A: Scene, J: Joints, s: int, INDEX: IntArray) -> int:
 @uncounted
 def is_hit(groups: Groups, P: IntArray, Q: IntArray, m: int, g: int) -> bool:
     """Whether any contact is on group g."""
+    hits = 0
     for i in range(m):
         if groups.GROUP[P[i]] == g or groups.GROUP[Q[i]] == g:
-            return True
-    return False
+            hits += 1
+    return hits > 0
 
 
 @kernel

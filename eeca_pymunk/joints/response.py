@@ -34,6 +34,8 @@ from .scratch import (
 )
 from .solve import LEAST_EPSILON, begin
 
+_REFINE = 2  # passes that take back what epsilon, for redundant rows, has changed
+
 
 @uncounted
 def factor_banded(matrix: FloatArray, size: int, band: int, pivots: IntArray) -> bool:
@@ -83,7 +85,7 @@ def back_banded(matrix: FloatArray, size: int, band: int, pivots: IntArray, righ
 @uncounted
 def prepare(
     what: int, joint: FloatArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray,
-    bodies: int, h: float, loops: bool, condensed: bool, band: int, size: int, matrix: FloatArray, right: FloatArray,
+    bodies: int, h: float, condensed: bool, band: int, size: int, matrix: FloatArray, right: FloatArray,
     stiff: FloatArray, pivots: IntArray,
 ) -> bool:  # fmt: skip
     """Factors of the matrix that `respond` needs, in `matrix` and `pivots`; False if there are none.
@@ -112,19 +114,19 @@ def prepare(
     )  # fmt: skip
     if condensed:
         return factor(matrix, size, band)
-    if loops or what != STEP:
-        for k in range(joints):
-            for r in range(link[k, L_ROWS]):
-                matrix[link[k, L_ROW] + r, band] += LEAST_EPSILON
+    for k in range(joints):
+        for r in range(link[k, L_ROWS]):
+            matrix[link[k, L_ROW] + r, band] += LEAST_EPSILON
     return factor_banded(matrix, size, band, pivots)
 
 
 @uncounted
 def respond(
     what: int, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray, bodies: int,
-    condensed: bool, band: int, size: int, matrix: FloatArray, right: FloatArray, pivots: IntArray, push: FloatArray,
+    condensed: bool, band: int, size: int, matrix: FloatArray, right: FloatArray, more: FloatArray, pivots: IntArray,
+    push: FloatArray,
 ) -> None:  # fmt: skip
-    """push (bodies, 3): impulses in (mass length/time, mass length²/time), changes of velocity out."""
+    """push (bodies, 3): impulses in (mass length/time, mass length²/time), changes of velocity out. `more`: scratch."""
     for i in range(len(right)):
         right[i] = 0.0
     for i in range(bodies):
@@ -137,6 +139,16 @@ def respond(
         )  # fmt: skip
     else:
         back_banded(matrix, size, band, pivots, right)
+        for _ in range(_REFINE):
+            # (A + epsilon) x = b leaves b - A x = epsilon x in the rows.
+            for i in range(size):
+                more[i] = 0.0
+            for k in range(joints):
+                for r in range(link[k, L_ROWS]):
+                    more[link[k, L_ROW] + r] = LEAST_EPSILON * right[link[k, L_ROW] + r]
+            back_banded(matrix, size, band, pivots, more)
+            for i in range(size):
+                right[i] += more[i]
     for i in range(bodies):
         for c in range(3):
             if c < node[i, FREEDOMS]:
