@@ -28,9 +28,11 @@ from ..joints.scratch import (
     UNKNOWNS,
 )
 from ..layout import NOW as READ
+from ..pairs.layout import MARGIN
 from ..transfer import FORCES
 from .layout import COMPONENTS, ORDER, STEPPED_COLUMNS, TALLY_LENGTH, Joints
 from .loop import resume_jointed, step_jointed
+from .together import resume_together_jointed, step_together_jointed
 
 
 class JointedLoop(EventLoop):
@@ -40,15 +42,18 @@ class JointedLoop(EventLoop):
         BODY, SHAPE, LINK, VERTEX, disks, limit: as `EventLoop`.
         joint, tie: (j, ...) the joints, see `..joints.layout`; kept, not copied. Bodies are rows of BODY, or len(BODY)
             + row of PARTNER (x, BODY_COLUMNS), which joints cannot move.
+        together: whether all contacts of a step act together at its middle, rather than at their instants.
         order: 4 where nothing in a component dissipates, drives, or touches something; or 2.
     """
 
     def __init__(
         self, BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, disks: int, limit: int,
-        joint: FloatArray, tie: IntArray, PARTNER: FloatArray, order: int = 4,
+        joint: FloatArray, tie: IntArray, PARTNER: FloatArray, together: bool = False, order: int = 4,
     ) -> None:  # fmt: skip
         super().__init__(BODY, SHAPE, LINK, VERTEX, disks, limit)
         self._joint, self._tie, self._partner, self._order = joint, tie, PARTNER, order
+        self._together = together
+        self._usual: FloatArray = self.near.MARK[:, MARGIN].copy()
         self.plan()
 
     def plan(self) -> None:
@@ -87,10 +92,16 @@ class JointedLoop(EventLoop):
         left: float,
     ) -> int:  # fmt: skip
         """See `loop.step_jointed`; a negative answer is one of `..transfer`."""
-        disks, lossy = self.disks, self.lossy
-        status = step_jointed(self.scene, self.joints, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, disks, lossy)
+        disks, lossy, usual = self.disks, self.lossy, self._usual
+        if self._together:
+            status = step_together_jointed(self.scene, self.joints, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, usual)
+        else:
+            status = step_jointed(self.scene, self.joints, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, disks, lossy)
         while status <= ROOM_FOR_LISTS:
             self._grow(status)
             bits = FORCES if STATES[READ, :, 6:].any() else 0
-            status = resume_jointed(self.scene, self.joints, STATES, WALK, EXTRA, ENDS, disks, lossy, bits)
+            if self._together:
+                status = resume_together_jointed(self.scene, self.joints, STATES, WALK, EXTRA, ENDS, usual, bits)
+            else:
+                status = resume_jointed(self.scene, self.joints, STATES, WALK, EXTRA, ENDS, disks, lossy, bits)
         return status

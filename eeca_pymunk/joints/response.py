@@ -139,13 +139,16 @@ def respond(
         )  # fmt: skip
     else:
         back_banded(matrix, size, band, pivots, right)
+        # (A + epsilon) x = b leaves b - A x = epsilon x in the rows, and each correction d leaves epsilon d.
+        for i in range(size):
+            more[i] = right[i]
         for _ in range(_REFINE):
-            # (A + epsilon) x = b leaves b - A x = epsilon x in the rows.
-            for i in range(size):
-                more[i] = 0.0
+            for i in range(bodies):
+                for c in range(node[i, FREEDOMS]):
+                    more[node[i, COLUMN] + c] = 0.0
             for k in range(joints):
                 for r in range(link[k, L_ROWS]):
-                    more[link[k, L_ROW] + r] = LEAST_EPSILON * right[link[k, L_ROW] + r]
+                    more[link[k, L_ROW] + r] *= LEAST_EPSILON
             back_banded(matrix, size, band, pivots, more)
             for i in range(size):
                 right[i] += more[i]
