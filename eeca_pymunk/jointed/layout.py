@@ -18,8 +18,8 @@ STEPPED_COLUMNS = 9
 class Joints(NamedTuple):
     """JOINT, TIE: see `..joints.layout`; bodies as rows of BODY (n rows) or n + row of PARTNER (x, BODY_COLUMNS), which
     joints cannot move. SPAN, MEMBER, LINK: the plan (`..joints.scratch`), a component per row of SPAN. HINGE, LOCAL,
-    NODE, MATRIX, RIGHT, MORE, STIFF, FOUND, PART, PIVOTS: scratch for the largest component. OF (n,): the component of a
-    body, -1 for none. KEPT (j, JOINT_COLUMNS), SIDES (j, TIE_COLUMNS): the joints at the start of a span. STEPPED
+    NODE, MATRIX, RIGHT, MORE, STIFF, FOUND, PART, PIVOTS: scratch for the largest component. OF (n,): the component of
+    a body, -1 for none. KEPT (j, JOINT_COLUMNS), SIDES (j, TIE_COLUMNS): the joints at the start of a span. STEPPED
     (components, 9): their ledgers in their spans."""
 
     JOINT: FloatArray

@@ -82,8 +82,8 @@ class JointedLoop(EventLoop):
             joint, tie, self._partner, span, member, link, np.zeros((most_joints, HINGE_COLUMNS)),
             np.zeros((most_bodies, LOCAL_COLUMNS)), np.zeros((most_bodies, NODE_COLUMNS), np.int64),
             np.zeros(int((used[:, UNKNOWNS] * (3 * used[:, BAND] + 1)).max(initial=1))),
-            np.zeros(int((2 * used[:, UNKNOWNS] + used[:, ROWS_OF]).max(initial=1))), np.zeros(size), np.zeros((6, 6)), np.zeros(5),
-            np.zeros(8), np.zeros(size, np.int64), of, np.zeros((count, JOINT_COLUMNS)),
+            np.zeros(int((2 * used[:, UNKNOWNS] + used[:, ROWS_OF]).max(initial=1))), np.zeros(size),
+            np.zeros((6, 6)), np.zeros(5), np.zeros(8), np.zeros(size, np.int64), of, np.zeros((count, JOINT_COLUMNS)),
             np.zeros((count, TIE_COLUMNS), np.int64), np.zeros((max(components, 1), STEPPED_COLUMNS)), tally,
         )  # fmt: skip
 

@@ -35,7 +35,6 @@ from ..impacts.layout import (
     SHAPES,
     SOLVES,
     STAMP,
-    SWEEPS,
     UN_AFTER,
     UN_BEFORE,
     UNMET,
@@ -61,16 +60,16 @@ from .columns import (
     find_groups,
     make_columns,
     push_columns,
-    relax_columns,
     weigh,
 )
 from .component import gather_component, keep_joints, ready, restore_joints, step_component
 from .layout import TURNED_WORK, Joints
+from .newton import solve_columns
 
 _OUTER, _ELASTIC_OUTER = 4, 12  # steps of the components
-_AGREE, _ELASTIC_AGREE = 1e-6, 1e-13  # velocities of both solutions, over |a| h and the speed
+_AGREE, _REST_AGREE, _ELASTIC_AGREE = 1e-6, 1e-13, 1e-13  # velocities of both solutions, over |a| h and the speed
 _SWEEPS, _FEW_SWEEPS, _FEW, _ELASTIC_SWEEPS = 60, 200, 24, 400
-_FINE = 1e-9  # residual of the sweeps, likewise
+_FINE, _REST_FINE = 1e-9, 1e-13  # residual of the sweeps, likewise
 _LOCKS = 4
 
 
@@ -179,8 +178,9 @@ def press(
     rates(P, Q, ROWS, isle.V, m)
     elastic = conserves(ROWS, m)
     scale = pull * h + (fast if elastic else slow)
-    agree = (_ELASTIC_AGREE if elastic else _AGREE) * scale
-    fine = (1e-15 if elastic else _FINE) * scale
+    rests = not elastic and slow < pull * h
+    agree = (_ELASTIC_AGREE if elastic else (_REST_AGREE if rests else _AGREE)) * scale
+    fine = (1e-15 if elastic else (_REST_FINE if rests else _FINE)) * scale
     most = _ELASTIC_SWEEPS if elastic else (_FEW_SWEEPS if m <= _FEW else _SWEEPS)
     FORESEEN = np.empty((len(isle.IM), 3))
     converged = False
@@ -198,8 +198,7 @@ def press(
                     EFFECT[q, c] = (EFFECT[q, c] - isle.V[q, c]) / h
             target(P, Q, ROWS, m, EFFECT, EXPECTED, pull, h)
         FORESEEN[:] = motion.V
-        worst = relax_columns(C, P, Q, ROWS, L, FORESEEN, m, fine, most)[1]
-        A.COUNT[SWEEPS] += most
+        worst = solve_columns(C, P, Q, ROWS, L, FORESEEN, m, fine, most)
         converged = worst <= 10.0 * max(fine, agree)
         if farthest_apart(motion.V, FORESEEN, isle.EXTENT, n) <= 1e-3 * agree:
             break

@@ -45,9 +45,10 @@ from ..pairs.lists import mark_pair
 from ..rows.blocks import CONVERGED, D_NORMAL, D_TANGENTIAL, OUT_SIZE, SCALE_LOCK, TRUNCATED
 from ..rows.build import aim, conserves, rates
 from ..rows.energy import scale_of, works
-from .columns import fill_free, fill_group, find_groups, make_columns, push_columns, relax_columns, weigh
+from .columns import fill_free, fill_group, find_groups, make_columns, push_columns, weigh
 from .component import answer, gather_component, ready, restore_joints
 from .layout import TURNED_WORK, Joints
+from .newton import solve_columns
 from .solve import begin_span, find_places
 
 _MEET = 1e-13  # gap at an impact, over the smaller shape
@@ -274,7 +275,7 @@ def collide(A: Scene, J: Joints, disks: int, a: int, b: int, t: float) -> tuple[
         FREE = V.copy()
         elastic = conserves(ROWS, rows)
         tolerance = (1e-15 if elastic else 1e-10) * speed
-        worst = relax_columns(C, P, Q, ROWS, L, V, rows, tolerance, _SWEEPS)[1]
+        worst = solve_columns(C, P, Q, ROWS, L, V, rows, tolerance, _SWEEPS)
         V[:] = FREE
         push_columns(C, L, rows, 1.0, V)
         scale, _ = scale_of(P, Q, ROWS, L, V, FREE, rows, owed, elastic)

@@ -1,5 +1,7 @@
-"""A step whose contacts act together at its middle, in a scene with joints: as `..impacts.together`, without the further
-passes for bodies that impulses send into others."""
+"""A step whose contacts act together at its middle, in a scene with joints.
+
+As `..impacts.together`, without the further passes for bodies that impulses send into others.
+"""
 
 from __future__ import annotations
 
