@@ -8,7 +8,8 @@ from ..arrays import FloatArray
 from ..compiled import uncounted
 from ..geometry.flight import pose, rate
 from ..impacts.layout import Scene
-from ..joints.layout import ANCHOR_AX, JOINT_COLUMNS, TIE_COLUMNS
+from ..joints.correct import kinetic
+from ..joints.layout import ANCHOR_AX, GEAR, JOINT_COLUMNS, TIE_COLUMNS
 from ..joints.response import prepare, respond
 from ..joints.scratch import (
     BAND,
@@ -23,7 +24,9 @@ from ..joints.scratch import (
     FREEDOMS,
     JOINT_0,
     JOINT_1,
+    KEPT,
     L_JOINT,
+    L_KIND,
     LOOPS,
     M_BODY,
     M_CAYLEY,
@@ -33,11 +36,13 @@ from ..joints.scratch import (
     POSE,
     ROOT,
     SIN,
+    SIZE,
     SPEEDS,
     STEP,
     TRAVEL,
     UNKNOWNS,
 )
+from ..joints.solve import solve
 from ..joints.step import island_step
 from ..layout import ANGLE, SPIN, VX, VY, X, Y
 from .layout import ORDER, REPEATS, WORST, Joints
@@ -139,6 +144,24 @@ def step_component(
             for c in range(3):
                 VN[q, c], END[q, c], WAY[q, c] = J.LOCAL[i, BEFORE + c], J.LOCAL[i, POSE + c], J.LOCAL[i, TRAVEL + c]
     return status
+
+
+@uncounted
+def fit_speeds(A: Scene, J: Joints, s: int, length: float) -> float:
+    """Make the velocities that `gather_component` has put into the scratch fit the joints, closed limits included, as an
+    impact at which nothing bounces; the kinetic energy that this costs."""
+    j0, j1, b0 = J.SPAN[s, JOINT_0], J.SPAN[s, JOINT_1], J.SPAN[s, BODY_0]
+    n = J.SPAN[s, BODY_1] - b0
+    band, size = J.SPAN[s, BAND], J.SPAN[s, UNKNOWNS]
+    condensed = J.SPAN[s, CONDENSED] != 0
+    width = 2 * band + 1 if condensed else 3 * band + 1
+    for k in range(j1 - j0):
+        J.HINGE[k, SIZE] = 1.0 if J.LINK[j0 + k, L_KIND] >= GEAR else length
+    solve(
+        int(SPEEDS), J.JOINT, J.HINGE, J.LINK[j0:j1], j1 - j0, J.LOCAL, J.NODE, n, 2.0, length, J.SPAN[s, LOOPS] > 0,
+        0.0, condensed, band, size, J.MATRIX[: size * width].reshape((size, width)), J.RIGHT, J.STIFF, J.FOUND,
+    )  # fmt: skip
+    return kinetic(J.LOCAL, n, KEPT) - kinetic(J.LOCAL, n, BEFORE)
 
 
 @uncounted

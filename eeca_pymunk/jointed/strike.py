@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import IntArray
+from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..geometry.flight import pose
 from ..geometry.gap import gap_at
-from ..impacts.block import gather, lay_out, owing
+from ..impacts.block import Block, gather, lay_out, owing
 from ..impacts.booking import book
 from ..impacts.collide import finish, rejoin
 from ..impacts.islands import members
@@ -200,6 +200,17 @@ def path_rate(A: Scene, i: int, t: float, nx: float, ny: float, x: float, y: flo
 
 
 @uncounted
+def energy_of(block: Block, V: FloatArray, n: int) -> float:
+    """Kinetic energy of the n bodies of a block at velocities V."""
+    total = 0.0
+    for q in range(n):
+        total += 0.5 * (V[q, 0] * V[q, 0] + V[q, 1] * V[q, 1]) / block.IM[q]
+        if block.II[q] > 0.0:
+            total += 0.5 * V[q, 2] * V[q, 2] / block.II[q]
+    return total
+
+
+@uncounted
 def carried_along(J: Joints, s: int) -> bool:
     """Whether component s hangs on something that moves; its bodies are in the scratch."""
     for i in range(J.SPAN[s, BODY_1] - J.SPAN[s, BODY_0]):
@@ -267,6 +278,7 @@ def collide(A: Scene, J: Joints, disks: int, a: int, b: int, t: float) -> tuple[
             if groups.GROUP[q] == g:
                 for c in range(3):
                     V[q, c] = PUSH[INDEX[q], c]
+    FITTED = V.copy()
     weigh(groups, C, P, Q, ROWS, rows)
     rates(P, Q, ROWS, V, rows)
     speed = aim(ROWS, rows)
@@ -286,8 +298,11 @@ def collide(A: Scene, J: Joints, disks: int, a: int, b: int, t: float) -> tuple[
         OUT[SCALE_LOCK] = scale
         OUT[D_NORMAL], OUT[D_TANGENTIAL] = works(P, Q, ROWS, L, V, rows, LOSS)
         status = CONVERGED if worst <= 10.0 * tolerance else TRUNCATED
-    V[:] = BEFORE
-    push_columns(C, L, rows, 1.0, V)
+    if conserves(ROWS, rows):
+        V[:] = BEFORE
+        push_columns(C, L, rows, 1.0, V)
+    else:
+        OUT[D_NORMAL] += energy_of(block, BEFORE, n) - energy_of(block, FITTED, n)
     finish(A, block, n, m, L, OUT, status, t)
     A.STATE[i, KINKS] += 1
     if A.BODY[j, IM] > 0.0:
