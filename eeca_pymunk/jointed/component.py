@@ -148,8 +148,8 @@ def step_component(
 
 @uncounted
 def fit_speeds(A: Scene, J: Joints, s: int, length: float) -> float:
-    """Make the velocities that `gather_component` has put into the scratch fit the joints, closed limits included, as an
-    impact at which nothing bounces; the kinetic energy that this costs."""
+    """Make the velocities that `gather_component` has put into the scratch fit the joints, closed limits included, as
+    an impact at which nothing bounces; the kinetic energy that this costs."""
     j0, j1, b0 = J.SPAN[s, JOINT_0], J.SPAN[s, JOINT_1], J.SPAN[s, BODY_0]
     n = J.SPAN[s, BODY_1] - b0
     band, size = J.SPAN[s, BAND], J.SPAN[s, UNKNOWNS]

@@ -323,8 +323,8 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
     if m == 0:
         C = make_columns(groups, P, Q, 0)
         advance(A, J, isle, groups, P, Q, ROWS, L, 0, t, h, motion, C, False)
-        if lossy:
-            fit(A, J, isle, groups, P, Q, L, m, motion, t + h, h)
+    if lossy:
+        fit(A, J, isle, groups, P, Q, L, m, motion, t + h, h)
     dismiss(A, MINE, n)
     COUNT[SOLVES] += 1
     first = COUNT[PUSHES]
