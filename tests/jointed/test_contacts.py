@@ -1,0 +1,128 @@
+"""Jointed bodies that lie, slide, roll and are pushed: contacts and joints in one solve."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pymunk
+import pytest
+
+import eeca_pymunk as ep
+
+from .measures import apart, energy, moving
+
+
+def ground(space: pymunk.Space, friction: float = 0.5, elasticity: float = 0.0, unit: float = 1.0) -> pymunk.Segment:
+    line = pymunk.Segment(space.static_body, (-60.0 * unit, 0.0), (60.0 * unit, 0.0), 0.1 * unit)
+    line.friction, line.elasticity = friction, elasticity
+    space.add(line)
+    return line
+
+
+def chain(links: int, height: float, tilt: float = 0.2, unit: float = 1.0) -> pymunk.Space:
+    """Boxes held end to end by pivots, above a rough floor."""
+    space = pymunk.Space()
+    space.gravity = 0.0, -9.81 * unit
+    ground(space, unit=unit)
+    last = None
+    half = 0.5 * math.hypot(1.0, tilt) * unit
+    for i in range(links):
+        body = pymunk.Body(1.0, pymunk.moment_for_box(1.0, (unit, 0.2 * unit)))
+        body.position, body.angle = (i * unit, (height + tilt * i) * unit), math.atan(tilt)
+        box = pymunk.Poly.create_box(body, (0.8 * unit, 0.2 * unit))
+        box.friction, box.filter = 1.0, pymunk.ShapeFilter(group=1)
+        space.add(body, box)
+        if last is not None:
+            space.add(pymunk.PivotJoint(last, body, (half, 0.0), (-half, 0.0)))
+        last = body
+    return space
+
+
+@pytest.mark.parametrize("unit", [1e-2, 1.0, 1e2])
+def test_dropped_chain_comes_to_rest(unit: float) -> None:
+    space = chain(4, 0.5, unit=unit)
+    stepper = ep.EECA(space)
+    start, last = energy(space), energy(space)
+    for _ in range(120):
+        report = stepper.step(1.0 / 60.0)
+        now = energy(space)
+        assert now - last < 1e-12 * start
+        assert abs(report.ledger.residual) < 1e-12 * start
+        assert report.ledger.restitution > -1e-13 * start
+        assert report.ledger.friction > -1e-13 * start
+        last = now
+    places = [b.position for b in moving(space)]
+    held = 0.0
+    for _ in range(60):
+        report = stepper.step(1.0 / 60.0)
+        held = float(report.impulse.sum())
+    for body, place in zip(moving(space), places, strict=True):
+        assert (body.position - place).length < 1e-9 * unit
+    assert held == pytest.approx(4.0 * 9.81 * unit / 60.0, rel=1e-9)
+    assert apart(space) < 1e-11 * unit
+    for shape in space.shapes:
+        if shape.body in moving(space):
+            assert shape.bb.bottom > (0.1 - 1e-3) * unit
+
+
+def test_motor_rolls_a_wheel() -> None:
+    # torque T on a disk that rolls: a = (T/r) / (m + I/r^2)
+    space = pymunk.Space()
+    space.gravity = 0.0, -10.0
+    ground(space, friction=1.0)
+    wheel = pymunk.Body(2.0, 0.3)
+    wheel.position = 0.0, 0.6
+    disk = pymunk.Circle(wheel, 0.5)
+    disk.friction = 1.0
+    motor = pymunk.SimpleMotor(wheel, space.static_body, -1000.0)
+    motor.max_force = 1.5
+    space.add(wheel, disk, motor)
+    stepper = ep.EECA(space)
+    work = 0.0
+    for _ in range(60):
+        report = stepper.step(1.0 / 60.0)
+        work += report.ledger.external
+    a = (1.5 / 0.5) / (2.0 + 0.3 / 0.25)
+    assert abs(wheel.velocity.x) == pytest.approx(a, rel=1e-6)
+    assert abs(wheel.velocity.x + wheel.angular_velocity * 0.5) < 1e-9
+    assert work == pytest.approx(wheel.kinetic_energy, rel=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_random_figures_lose_and_never_gain(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    space = pymunk.Space()
+    space.gravity = 0.0, -9.81
+    ground(space, friction=0.7, elasticity=0.4)
+    last = None
+    for i in range(4):
+        body = pymunk.Body(float(rng.uniform(0.5, 2.0)), 0.1)
+        body.position, body.angle = (0.6 * i, 1.5), float(rng.uniform(-1.0, 1.0))
+        shape = (
+            pymunk.Poly.create_box(body, (0.3, 0.4)) if rng.random() < 0.5 else pymunk.Circle(body, 0.2, (0.05, 0.0))
+        )
+        shape.friction, shape.elasticity = 0.8, float(rng.uniform(0.0, 0.9))
+        space.add(body, shape)
+        body.velocity = tuple(rng.normal(size=2))
+        if last is not None:
+            kind = int(rng.integers(3))
+            if kind == 0:
+                space.add(pymunk.PivotJoint(last, body, (0.6 * i - 0.3, 1.5)))
+            elif kind == 1:
+                space.add(pymunk.DampedSpring(last, body, (0.0, 0.0), (0.0, 0.0), 0.5, 40.0, 0.5))
+            else:
+                space.add(pymunk.PinJoint(last, body, (0.1, 0.0), (-0.1, 0.0)))
+        last = body
+    stepper = ep.EECA(space)
+    start = abs(energy(space)) + sum(b.kinetic_energy for b in moving(space))
+    before = energy(space)
+    for _ in range(90):
+        report = stepper.step(1.0 / 60.0)
+        book = report.ledger
+        now = energy(space)
+        assert abs(now - before - book.change) < 1e-11 * start
+        assert abs(book.residual) < 1e-11 * start
+        assert now - before - max(book.external, 0.0) < 1e-9 * start
+        before = now
+    assert apart(space) < 1e-8

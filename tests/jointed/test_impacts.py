@@ -1,0 +1,111 @@
+"""Impacts on jointed bodies, through the public stepper: at their instants, passed on by joints, energy exact."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pymunk
+import pytest
+from scipy.integrate import solve_ivp
+
+import eeca_pymunk as ep
+
+from .measures import angular_momentum, apart, energy, momentum
+
+
+def pendulum_at_wall(scale: float = 1.0) -> tuple[pymunk.Space, pymunk.Body]:
+    """A bob on a rod of length 1, released level, and a wall that it touches where it hangs straight."""
+    space = pymunk.Space()
+    space.gravity = 0.0, -9.81 * scale
+    bob = pymunk.Body(1.0, 0.1 * scale**2)
+    bob.position = scale, 0.0
+    disk = pymunk.Circle(bob, 0.1 * scale)
+    disk.elasticity = 1.0
+    wall = pymunk.Segment(space.static_body, (-0.2 * scale, -3.0 * scale), (-0.2 * scale, 0.0), 0.1 * scale)
+    wall.elasticity = 1.0
+    space.add(bob, disk, wall, pymunk.PinJoint(space.static_body, bob))
+    return space, bob
+
+
+@pytest.mark.parametrize("scale", [1e-3, 1.0, 1e3])
+def test_pendulum_bounces_without_loss(scale: float) -> None:
+    space, bob = pendulum_at_wall(scale)
+    stepper = ep.EECA(space)
+    start, bounces = energy(space), 0
+    for _ in range(400):
+        report = stepper.step(1.0 / 60.0)
+        bounces += report.impulse.size
+        assert abs(report.ledger.residual) < 1e-13 * 9.81 * scale**2
+        assert abs(bob.position.length - scale) < 1e-13 * scale
+        assert bob.position.x > -1e-12 * scale
+    assert bounces >= 5
+    assert abs(energy(space) - start) < 1e-12 * 9.81 * scale**2
+
+
+def test_order_through_impacts() -> None:
+    # What bounces where it hangs straight is the mirror image of what swings on: |angle| of the free pendulum.
+    duration = 2.0
+    exact = solve_ivp(
+        lambda _, y: (y[1], -9.81 * math.sin(y[0])), (0.0, duration), (0.5 * math.pi, 0.0), rtol=1e-12, atol=1e-13
+    )
+    angle = abs(exact.y[0, -1])
+    errors = []
+    for steps in (40, 80, 160):
+        space, bob = pendulum_at_wall()
+        stepper = ep.EECA(space)
+        for _ in range(steps):
+            stepper.step(duration / steps)
+        errors.append(abs(math.atan2(bob.position.x, -bob.position.y) - angle))
+    slopes = -np.diff(np.log2(errors))
+    assert slopes.min() > 3.5, errors
+
+
+@pytest.mark.parametrize("elasticity", [1.0, 0.5])
+def test_free_pair_is_hit(elasticity: float) -> None:
+    space = pymunk.Space()
+    bodies = [pymunk.Body(1.0 + 0.5 * i, 0.3) for i in range(3)]
+    for body, at in zip(bodies, [(0.0, 0.0), (1.0, 0.1), (-3.0, 0.3)], strict=True):
+        body.position = at
+        disk = pymunk.Circle(body, 0.3)
+        disk.elasticity, disk.friction = math.sqrt(elasticity), 0.0 if elasticity == 1.0 else 0.8
+        space.add(body, disk)
+    bodies[2].velocity = 4.0, 0.0
+    space.add(pymunk.PivotJoint(bodies[0], bodies[1], (0.5, 0.2)))
+    stepper = ep.EECA(space)
+    start, linear, angular = energy(space), momentum(space), angular_momentum(space)
+    lost = 0.0
+    for _ in range(100):
+        report = stepper.step(0.02)
+        lost += report.ledger.restitution + report.ledger.friction
+        assert abs(report.ledger.residual) < 1e-13 * start
+    assert np.abs(momentum(space) - linear).max() < 1e-12 * np.abs(linear).max()
+    assert abs(angular_momentum(space) - angular) < 1e-11 * abs(angular)
+    assert abs(energy(space) + lost - start) < 1e-12 * start
+    assert (lost > 0.01 * start) == (elasticity < 1.0)
+    assert apart(space) < 1e-12
+
+
+def test_cradle_on_rods() -> None:
+    space = pymunk.Space()
+    space.gravity = 0.0, -9.81
+    bodies = []
+    for i in range(5):
+        bob = pymunk.Body(1.0, 0.1)
+        swing = math.radians(30.0) if i == 0 else 0.0
+        bob.position = i - 3.0 * math.sin(swing), -3.0 * math.cos(swing)
+        disk = pymunk.Circle(bob, 0.5)
+        disk.elasticity = 1.0
+        space.add(bob, disk, pymunk.PinJoint(space.static_body, bob, (float(i), 0.0)))
+        bodies.append(bob)
+    stepper = ep.EECA(space)
+    start, quiet, far = energy(space), 0.0, 0.0
+    for n in range(200):
+        stepper.step(1.0 / 60.0)
+        if n < 100:  # one swing of the last bob
+            quiet = max(quiet, *(abs(b.velocity) for b in bodies[1:4]))
+            far = max(far, bodies[4].position.x - 4.0)
+    assert quiet < 1e-12
+    assert far == pytest.approx(3.0 * math.sin(math.radians(30.0)), rel=1e-3)
+    assert abs(energy(space) - start) < 1e-12 * start.__abs__()
+    assert apart(space) < 1e-12
