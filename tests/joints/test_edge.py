@@ -9,10 +9,10 @@ import pymunk
 import pytest
 
 from eeca_pymunk.joints.layout import CLOSED, PROJECTED
-from eeca_pymunk.space.jointed import JointedSpace
 from scenes.linkages import bars, body, chain, empty, pendulum
 
 from .driving import error, run
+from .jointed import JointedSpace
 
 
 @pytest.mark.parametrize(
