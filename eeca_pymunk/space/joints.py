@@ -32,7 +32,7 @@ from . import private
 from .constraints import check_constraint, read
 from .edits import Edits, show_impulses
 from .partners import Partners
-from .spring_functions import Motion, law, own_function, put_law
+from .spring_functions import Motion, Rate, law, own_function, put_law
 
 ANCHORS = slice(ANCHOR_AX, ANCHOR_AX + 4)
 
@@ -79,6 +79,7 @@ class JointRows:
         self._ratchets = np.flatnonzero(self.tie[:, KIND] == RATCHET)
         self._timestamp = private.timestamp(space)
         self._ours = -1
+        self._rates: dict[pymunk.Constraint, Rate] = {} if past is None else past._rates
         self.replan = True
         self._find_functions()
 
@@ -152,7 +153,7 @@ class JointRows:
         for j in self.functions:
             item = self.items[j]
             a, b = (self._motion(body, state, place) for body in (item.a, item.b))
-            put_law(item, a, b, dt, self.joint[j])
+            self._rates[item] = put_law(item, a, b, dt, self.joint[j], self._rates.get(item))
 
     def _motion(self, body: pymunk.Body, state: FloatArray, place: Mapping[pymunk.Body, int]) -> Motion:
         row = self._row_of[body]

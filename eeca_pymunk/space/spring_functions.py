@@ -1,11 +1,11 @@
 """`force_func` and `torque_func`: forces of the user's own, as one linear law for the step.
 
-From its length l0, changing at the rate l0', a spring will about reach l1 = l0 + h l0'. It pushes with the mean of f
-over [l0, l1] (Gauss, 2 points) at their middle, and changes with the secant of f, where that pulls back:
+From its length l0, changing at the rate r0, which was r a step of h' ago, a spring will about reach
 
-    push + k (l - (l0 + l1)/2),   k = min(0, (f(l0) - f(l1)) / (l0 - l1)),
+    l1 = l0 + h r0 + h^2 (r0 - r) / 2h'.
 
-which is second order. What such a spring gives is not stored anywhere that the ledger knows: it is external work.
+It pushes with the mean of f over [l0, l1] (Gauss, 2 points) at their middle m, and changes with the secant k of f there
+where that pulls back: f(m) + k (l - m). This is second order, its energy fourth. What such a spring gives is not stored anywhere that the ledger knows: it is external work.
 Rotary springs likewise, with the angle of a less that of b.
 """
 
@@ -26,6 +26,7 @@ _NEAR = 1e-6  # an interval shorter than this, over the length it is at, has no 
 
 # Position of the body's origin, angle, velocity of its centre of mass, spin.
 Motion = tuple[float, float, float, float, float, float]
+Rate = tuple[float, float]
 
 
 def own_function(item: Any) -> Callable[[Any, float], float] | None:
@@ -37,12 +38,17 @@ def own_function(item: Any) -> Callable[[Any, float], float] | None:
     return None
 
 
-def put_law(item: Any, a: Motion, b: Motion, dt: float, row: FloatArray) -> None:
-    """Write the law of a spring with a function of its own between bodies moving so into its row of JOINT."""
+def put_law(item: Any, a: Motion, b: Motion, dt: float, row: FloatArray, past: Rate | None) -> Rate:
+    """Write the law of a spring with a function of its own between bodies moving so into its row of JOINT.
+
+    `past` is what the step before was answered: r and h'.
+    """
     function = own_function(item)
     assert function is not None
     at, rate, size = _stretch(item, a, b)
     end = at + dt * rate
+    if past is not None:
+        end += 0.5 * dt * dt * (rate - past[0]) / past[1]
     if isinstance(item, pymunk.DampedSpring):
         end = abs(end)
     middle, way = 0.5 * (at + end), end - at
@@ -57,6 +63,7 @@ def put_law(item: Any, a: Motion, b: Motion, dt: float, row: FloatArray) -> None
     # A force that grows with the length is taken at the middle alone: it would not bring the step to an end.
     sign = 1.0 if isinstance(item, pymunk.DampedSpring) else -1.0
     row[PUSH], row[STIFFNESS], row[REST] = push, max(0.0, -sign * slope), middle
+    return rate, dt
 
 
 def law(item: Any, row: FloatArray) -> Callable[[Any, float], float]:
