@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Protocol
 
 from .arrays import FloatArray, IntArray
 from .closures.time_of_impact import TimeOfImpact
+from .jointed.scene import JointedLoop
 from .packed_stepper import PackedStepper
 from .report import Details
 from .space.world import World
@@ -76,11 +77,28 @@ class EECA(PackedStepper):
     def prepare(self, world: World) -> None:
         world.load()
         self._method = self.closure.prepare(world)
+        if world.joints is not None:
+            world.joints.planned()
+            world.part()
+            self._method.rule(world.told())
+
+    def _adjust(self, world: World, dt: float) -> None:
+        """Tell the method what joints and collision handlers have to say about this step."""
+        parted = False
+        if world.joints is not None:
+            world.joints.look(world.state, world.bodies.row, dt)
+            if world.joints.replan:
+                assert isinstance(self._method, JointedLoop)
+                self._method.plan()
+                world.joints.planned()
+            parted = world.part()
+        if world.collisions or parted:
+            self._method.rule(world.told())
 
     def advance(self, world: World, dt: float, left: float) -> int:
         gx, gy = world.gravity
-        if world.collisions:
-            self._method.rule(world.rules.of_pairs(world.SHAPE))
+        if not world.plain:
+            self._adjust(world, dt)
         return self._method.step(world.STATES, world.WALK, world.EXTRA, world.ENDS, dt, gx, gy, left)
 
     def details(self, world: World, dt: float) -> Details | Callable[[], Details]:

@@ -13,6 +13,7 @@ from .report import Details, StepReport
 from .space.checks import check_ignored
 from .space.describe import describe
 from .space.hooks import Hooks, Rehearsal
+from .space.joints import JointRows
 from .space.sync import Sync
 from .space.world import World
 from .stepper import Stepper, check_dt
@@ -41,16 +42,21 @@ class PackedStepper(Stepper):
         self.ignore = check_ignored(ignore)
         self._warned = False
         self._world: World | None = None
+        self._past: JointRows | None = None  # what the world before a refresh knew of joints
+        self._told: JointRows | None = None  # what `constraint.impulse` reads
         self._look()
 
     def __getstate__(self) -> dict[str, object]:
         # Original and copy go on from the same: without what was remembered of earlier steps.
-        self._world = None
+        self._world = self._past = None
         state = self.__dict__.copy()
         state.pop("_sync", None)
+        state["_told"] = None
         return state
 
     def refresh(self) -> None:
+        if self._world is not None:
+            self._past = self._world.joints
         self._world = None
 
     def prepare(self, world: World) -> None:
@@ -87,8 +93,16 @@ class PackedStepper(Stepper):
         world = self._world
         if world is None or not world.current():
             world = self._look()
-        if world.hooked:
+        if world.plain:
+            return self._plain_step(world, dt)
+        if world.hooked or (world.joints is not None and world.joints.calls_back()):
             return self._hooked_step(world, dt)
+        report = self._plain_step(world, dt)
+        self._tell_joints()
+        return report
+
+    def _plain_step(self, world: World, dt: float) -> StepReport:
+        """A step of a space in which nothing is called."""
         world.gather()
         left = 1.0 if world.damping == 1.0 else world.damping ** (0.5 * dt)
         status = self.advance(world, dt, left)
@@ -107,7 +121,7 @@ class PackedStepper(Stepper):
                 world.scatter(status)
                 self._sync.reindex()
             else:
-                self._rest(world, dt, status)
+                self._sync.land(world, dt, status)
         except BaseException:
             self._undo(world, world.state)
             raise
@@ -116,44 +130,38 @@ class PackedStepper(Stepper):
             return self._report(world, dt)
         return StepReport(self.time, world.empty, book=self.book())
 
-    def _rest(self, world: World, dt: float, status: int) -> None:
-        """Write the end of the step with a rest step at it."""
-        world.scatter_still(status)
-        end = world.ended() if self._sync.calls_back() else None
-        self._sync.rest(dt)
-        if end is not None:
-            # Callbacks may have added or removed bodies, so that rows are not theirs any more.
-            world.bodies.scatter(end)
-        else:
-            world.scatter_speed(status)
-
     def _undo(self, world: World, state: FloatArray) -> None:
         """Put the space back where it was."""
-        self._world = None
+        self._world = self._past = None
         world.bodies.scatter(state)
 
     def _hooked_step(self, world: World, dt: float) -> StepReport:
-        """A step of a space in which functions of bodies or collision handlers are called."""
+        """A step of a space in which functions of bodies or constraints, or collision handlers, are called."""
         world.gather()
         if not world.is_current():
             world = self._look(anew=True)
             world.gather()
         bodies, state = world.bodies, world.state.copy()
         bodies.check_finite(state)
-        hooks, left = Hooks(self.space, bodies), world.damping ** (0.5 * dt)
+        hooks, left = Hooks(self.space, bodies, world.joints), world.damping ** (0.5 * dt)
         rehearsal: Rehearsal | None = None
+        given = world.given()
         try:
+            if world.joints is not None:
+                hooks.before()
+                world.gather()
             if len(hooks.velocity):
                 world.push(hooks.change(dt), dt)
             if hooks.collisions:
-                rehearsal = Rehearsal(self.space, hooks, state)
+                rehearsal = Rehearsal(self.space, hooks, world.state.copy())
                 self._checked(world, dt, self._fly(world, dt, left))
                 after = rehearsal.run(world.ended(), dt)
                 world.state[:] = rehearsal.before
                 world.rules = rehearsal.rules(world.shapes, world.SHAPE)
-            world.forget()
+            world.void_forecasts()
+            world.give(given)
             status = self._checked(world, dt, self.advance(world, dt, left))
-            end = world.ended()
+            given, end = world.given(), world.ended()
             if rehearsal is not None:
                 end += after
             if len(hooks.position):
@@ -161,23 +169,38 @@ class PackedStepper(Stepper):
             bodies.check_finite(end, _OVERFLOW)
             status = status & EVENTS | world.put(end)
             world.reset_forces()
-            if not self.sync or rehearsal is not None:
+            if world.joints is not None and world.joints.calling:
+                world.scatter(status)
+                world.joints.write()
+                hooks.after()
+                if rehearsal is None:
+                    with hooks.silent():
+                        self._sync.settle(bodies, world.joints, dt, self.sync)
+            elif not self.sync or rehearsal is not None:
                 world.scatter(status)
             elif self._sync.reindexes(dt):
                 world.scatter(status)
                 self._sync.reindex()
             else:
                 with hooks.silent():
-                    self._rest(world, dt, status)
-            world.forget()
+                    self._sync.land(world, dt, status)
+            # What functions have changed since the step is found next time.
+            world.give(given)
         except BaseException:
             self._undo(world, state)
             raise
         self.time += dt
         report = self._report(world, dt) if status & EVENTS else StepReport(self.time, world.empty, book=self.book())
+        self._tell_joints()
         if rehearsal is not None:
             rehearsal.finish(bodies)
         return report
+
+    def _tell_joints(self) -> None:
+        """Give constraints what the step has to say of them."""
+        if self._world is not None:
+            self._told = self._world.joints
+            self._world.settle()
 
     def _checked(self, world: World, dt: float, status: int) -> int:
         if status < 0:
@@ -205,11 +228,15 @@ class PackedStepper(Stepper):
     def _look(self, anew: bool = False) -> World:
         """The space as it is now, checked; with all its shapes if `anew` or if some came or went."""
         world = self._world
-        if world is not None and not anew and world.same_contents():
-            world.read_settings()
-            return world
         self._world = None
-        world = World(self.space, self.ignore, world)
+        if world is not None and not anew and world.same_contents():
+            joints = world.joints
+            world.read_settings()
+            if world.joints is not joints:
+                self.prepare(world)
+            self._world = world
+            return world
+        world = World(self.space, self.ignore, world, self._past)
         if world.ignores and not self._warned:
             self._warned = True
             warnings.warn(f"{type(self).__name__} steps on without the friction of this space", stacklevel=4)
@@ -220,7 +247,7 @@ class PackedStepper(Stepper):
 
     def _fail(self, world: World, dt: float, status: int) -> None:
         """Raise what a negative answer means."""
-        self._world = None
+        self._world = self._past = None
         if status == NOT_FINITE:
             world.bodies.check_finite(world.state)
         if status == OVERFLOW:

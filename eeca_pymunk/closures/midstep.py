@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ..impacts.scene import Together
+from ..impacts.scene import EventLoop, Together
+from ..jointed.scene import JointedLoop
 
 if TYPE_CHECKING:
     from ..space.world import World
@@ -24,6 +25,11 @@ class Midstep:
     impacts. psi1 is reported as infinite, its limit.
     """
 
-    def prepare(self, world: World) -> Together:
+    def prepare(self, world: World) -> EventLoop:
         """The arrays of the solve for a world that was read anew."""
+        if world.joints is not None:
+            return JointedLoop(
+                world.BODY, world.SHAPE, world.LINK, world.VERTEX, world.disks, 0, world.joints.joint,
+                world.joints.tie, world.PARTNER, together=True,
+            )  # fmt: skip
         return Together(world.BODY, world.SHAPE, world.LINK, world.VERTEX, world.disks)

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
-from ..errors import UnsupportedFeature
 from ..geometry.gap import ROUND_OFF, gaps
 from ..layout import (
     ANGLE,
@@ -21,8 +20,6 @@ from ..layout import (
     AY,
     COUNT,
     ELASTICITY,
-    FIRST,
-    FRICTION,
     IM,
     OWNER,
     ROUNDING,
@@ -39,6 +36,7 @@ from ..pairs.layout import MARGIN
 from ..pairs.setup import near_lists, rebuilt
 from ..report import Contacts, Details
 from ..transfer import EVENTS, OVERFLOW, give, take
+from .refusals import check_disks
 
 if TYPE_CHECKING:
     from ..space.world import World
@@ -156,7 +154,7 @@ class Pairs:
 
 
 class Disks:
-    """The lone disks and static shapes of a world; UnsupportedFeature if something else moves or has friction.
+    """The lone disks and static shapes of a world; UnsupportedFeature for joints, other moving shapes, and friction.
 
     Args:
         world: read anew, with the poses of now in BODY.  mover: who moves them, for messages.
@@ -164,7 +162,7 @@ class Disks:
 
     def __init__(self, world: World, mover: str) -> None:
         moving = int(np.count_nonzero(world.LINK[:, OWNER] < len(world.BODY) - 1))
-        _check(world, moving, mover)
+        check_disks(world, moving, mover)
         self.world = world
         self.rules: Mapping[tuple[int, int], tuple[float, float, float, float]] = {}
         self.motion: Motion | None = None
@@ -233,22 +231,3 @@ class Disks:
                 self._found, self._out = np.zeros((2 * count, 2), np.int64), np.zeros((2 * count, 6))
             else:
                 return self._found[:count], self._out[:count]
-
-
-def _check(world: World, moving: int, mover: str) -> None:
-    """Refuse what is not a lone disk or static, and friction between what is."""
-    owner = world.LINK[:moving, OWNER]
-    if moving > world.disks:
-        centred = (world.LINK[:moving, COUNT] == 1) & ~world.VERTEX[world.LINK[:moving, FIRST], :2].any(axis=1)
-        other = np.flatnonzero(~(centred & (world.BODY[owner, IM] > 0.0)))
-        i = int(other[0]) if len(other) else world.disks
-        raise UnsupportedFeature(
-            f"{world.shapes[i]} of {world.bodies.items[world.owner[i]]} moves and is not a disk about the centre of "
-            f"mass of a dynamic body with no other shape, which is all that {mover} moves; use ep.EECA(space)"
-        )
-    rough = np.flatnonzero(world.SHAPE[:, FRICTION] > 0.0)
-    if len(rough) > 1 and rough[0] < moving:
-        raise UnsupportedFeature(
-            f"{world.shapes[rough[0]]} has friction {world.SHAPE[rough[0], FRICTION]}, and so has a shape it may "
-            f"touch: {mover} does not model it; use ep.EECA(space), or set shape.friction = 0"
-        )

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ..impacts.scene import EventLoop
+from ..jointed.scene import JointedLoop
 
 if TYPE_CHECKING:
     from ..space.world import World
@@ -28,4 +29,9 @@ class TimeOfImpact:
 
     def prepare(self, world: World) -> EventLoop:
         """The arrays of the loop for a world that was read anew."""
-        return EventLoop(world.BODY, world.SHAPE, world.LINK, world.VERTEX, world.disks, self.max_impacts)
+        if world.joints is None:
+            return EventLoop(world.BODY, world.SHAPE, world.LINK, world.VERTEX, world.disks, self.max_impacts)
+        return JointedLoop(
+            world.BODY, world.SHAPE, world.LINK, world.VERTEX, world.disks, self.max_impacts, world.joints.joint,
+            world.joints.tie, world.PARTNER, together=False,
+        )  # fmt: skip

@@ -26,10 +26,6 @@ def shape_radius(shape: Any) -> float:
 
 def check_space(space: pymunk.Space) -> None:
     """Refuse settings and objects of the space that the array steppers do not model."""
-    if space.constraints:
-        raise UnsupportedFeature(
-            f"{next(iter(space.constraints))}: constraints are not modelled; remove it or use ep.Native(space)"
-        )
     if space.sleep_time_threshold != math.inf:
         raise UnsupportedFeature(
             f"space.sleep_time_threshold = {space.sleep_time_threshold}: sleeping is not modelled; set it to math.inf"

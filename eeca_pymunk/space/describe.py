@@ -4,8 +4,20 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..joints.layout import (
+    GROOVE,
+    KIND,
+    MOTOR,
+    RATCHET,
+    ROTARY_LIMIT,
+    ROTARY_SPRING,
+    SLIDE,
+    SOFT,
+    SPRING,
+)
 from ..layout import COUNT, ELASTICITY, FIRST, FRICTION, OWNER, SURFACE_X, SURFACE_Y
 from .bodies import ANGULAR_VELOCITY, FORCE, TORQUE
+from .joints import JointRows
 from .world import World
 
 
@@ -33,10 +45,30 @@ def describe(world: World) -> str:
         parts.append("moving surfaces")
     if pulled or parts[-1] != "elastic":
         parts.append("sustained contacts")
+    if world.joints is not None:
+        parts.append(_joints(world.joints))
     if world.damping != 1.0:
         parts.append("damping")
     if len(bodies.velocity_hooks) or len(bodies.position_hooks):
         parts.append("functions of bodies")
+    if world.joints is not None and world.joints.calls_back():
+        parts.append("functions of constraints")
     if world.collisions:
         parts.append("collision handlers, by a rehearsal")
     return "; ".join(parts)
+
+
+def _joints(joints: JointRows) -> str:
+    """How many constraints of which kind, the commonest first, and what of them is more than bodies held together."""
+    joints.refresh()
+    names = [type(item).__name__ for item in joints.items]
+    kinds = sorted(set(names), key=lambda kind: (-names.count(kind), kind))
+    text = f"{len(names)} joints ({', '.join(f'{names.count(kind)} {kind}' for kind in kinds)})"
+    kind = joints.tie[:, KIND]
+    having = [
+        ("limits", np.isin(kind, (SLIDE, GROOVE, ROTARY_LIMIT, RATCHET))),
+        ("motors", kind == MOTOR),
+        ("springs", np.isin(kind, (SPRING, ROTARY_SPRING))),
+        ("limited forces", (joints.tie[:, SOFT] != 0) & (kind != MOTOR)),
+    ]
+    return ", ".join([text, *(word for word, which in having if which.any())])

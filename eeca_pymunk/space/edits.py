@@ -8,7 +8,7 @@ constraints that nobody watches: one look into a dictionary of weak references.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 from weakref import WeakKeyDictionary, WeakMethod, WeakSet
 
@@ -36,6 +36,10 @@ class Edits:
         edited, self._edited = self._edited, set()
         return edited
 
+    def add(self, rows: Iterable[int]) -> None:
+        """As if these had been set."""
+        self._edited.update(rows)
+
     def forget(self, row: int) -> None:
         """Take no notice of what was set just now."""
         self._edited.discard(int(row))
@@ -53,8 +57,8 @@ def _set(self: pymunk.Constraint, name: str, value: Any) -> None:
         edits.hear(self)
 
 
-def show_impulses(items: Sequence[pymunk.Constraint], read: Callable[[int], float]) -> None:
-    """Let `impulse` of these constraints be `read(row)`, a method, as long as its object lives."""
+def show_impulses(items: Sequence[pymunk.Constraint], read: Callable[[int], float | None]) -> None:
+    """Let `impulse` of these constraints be `read(row)`, a method, as long as its object lives and it knows one."""
     if items and _readings.get(items[0], (None, 0))[0] == WeakMethod(read):
         return
     method = WeakMethod(read)
@@ -63,13 +67,8 @@ def show_impulses(items: Sequence[pymunk.Constraint], read: Callable[[int], floa
     pymunk.Constraint.impulse = property(_impulse, doc=_native_impulse.__doc__)  # type: ignore[method-assign, assignment]
 
 
-def hide_impulses(items: Sequence[pymunk.Constraint]) -> None:
-    """Let `impulse` of these constraints be native's again."""
-    for item in items:
-        _readings.pop(item, None)
-
-
 def _impulse(self: pymunk.Constraint) -> float:
     method, row = _readings.get(self, (None, 0))
     read = method() if method is not None else None
-    return float(_native_impulse.fget(self) if read is None else read(row))
+    value = None if read is None else read(row)
+    return float(_native_impulse.fget(self)) if value is None else value

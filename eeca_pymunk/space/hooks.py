@@ -4,12 +4,15 @@ Velocity and position functions are called with the real dt. Collision handlers 
 *rehearsal* lets pymunk take the step from the same start to where the bodies would fly freely, with its own detection
 and solver, so that begin, pre_solve, post_solve and separate come in pymunk's order and with pymunk's numbers. What
 they decide (collisions to ignore, restitution, changed velocities) goes into our step, which then takes its place.
+
+`pre_solve` of constraints comes in its place there too, before our step where there is no rehearsal. `post_solve` of
+constraints comes after our step, whose impulses they can read; then so does that of collisions, which come after it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from typing import Any
 
 import numpy as np
@@ -17,25 +20,57 @@ import pymunk
 
 from ..arrays import FloatArray
 from ..layout import ELASTICITY, FRICTION
-from . import private
+from . import private, private_joints
 from .bodies import ANGLE, ANGULAR_VELOCITY, POSITION, VELOCITY, Bodies
+from .joints import JointRows
 from .shapes import Rules
 
 
 class Hooks:
     """The functions of a space and its bodies, for one step.
 
+    Args:
+        joints: the constraints of the space, None if it has none.
+
     Attributes:
         velocity, position: rows of the bodies with a function of their own.  steered: (N,) whether it is for velocity.
         collisions: whether the space has collision handlers.
     """
 
-    def __init__(self, space: pymunk.Space, bodies: Bodies) -> None:
-        self.space, self.bodies = space, bodies
+    def __init__(self, space: pymunk.Space, bodies: Bodies, joints: JointRows | None = None) -> None:
+        self.space, self.bodies, self.joints = space, bodies, joints
         self.velocity, self.position = bodies.velocity_hooks, bodies.position_hooks
         self.steered = bodies.steered
         self.collisions = bool(private.handlers(space))
         self._change: FloatArray | None = None
+        self._late: list[Callable[[], None]] = []
+
+    def before(self) -> None:
+        """Call `pre_solve` of the constraints that no rehearsal calls. pymunk calls none whose first body is outside
+        the space, and complains."""
+        if self.joints is not None:
+            with private.locked(self.space):
+                for item in self.joints.before:
+                    if not self.collisions or item.a.space is None:
+                        assert item.pre_solve is not None
+                        item.pre_solve(item, self.space)
+
+    def after(self) -> None:
+        """Call `post_solve` of the constraints, then that of collisions if it had to wait for this."""
+        with private.locked(self.space):
+            for item in () if self.joints is None else self.joints.after:
+                assert item.post_solve is not None
+                item.post_solve(item, self.space)
+            for call in self._late:
+                call()
+
+    def later(self, function: Callable[..., Any]) -> Callable[..., None]:
+        """What lets `after` call a function with the arguments it is called with now."""
+
+        def call(*arguments: Any) -> None:
+            self._late.append(lambda: function(*arguments))
+
+        return call
 
     def change(self, dt: float) -> FloatArray:
         """(k, 3) what the functions add to velocity and spin of their bodies, which keep theirs; called once a step."""
@@ -110,17 +145,40 @@ class Rehearsal:
     @contextmanager
     def _watched(self) -> Iterator[None]:
         """Within, the handlers' functions tell what they change and what they raise."""
-        handlers = private.handlers(self.space)
+        handlers, joints = private.handlers(self.space), self.hooks.joints
         functions = [(h, phase, getattr(h, phase)) for h in handlers for phase in private.PHASES]
         functions = [(h, phase, f) for h, phase, f in functions if f is not None]
+        with ExitStack() as stack:
+            if joints is not None:
+                mute = [item for item in joints.calling if item.pre_solve is None or item.a.space is None]
+                stack.enter_context(private_joints.silent(mute))
+                stack.enter_context(private_joints.with_laws(joints.own, joints.laws()))
+                stack.enter_context(self._watched_joints([item for item in joints.before if item not in mute]))
+            try:
+                for handler, phase, function in functions:
+                    changes = self.before if phase in private.PHASES[:2] else self._after
+                    watched = self._watch(function, changes)
+                    if phase == private.PHASES[2] and joints is not None and joints.after:
+                        watched = self.hooks.later(function)
+                    setattr(handler, phase, watched)
+                yield
+            finally:
+                for handler, phase, function in functions:
+                    setattr(handler, phase, function)
+
+    @contextmanager
+    def _watched_joints(self, items: Sequence[pymunk.Constraint]) -> Iterator[None]:
+        """Within, `pre_solve` of constraints tells what it changes and raises, and `post_solve` is not called."""
+        functions = [(item, item.pre_solve, item.post_solve) for item in items]
         try:
-            for handler, phase, function in functions:
-                changes = self.before if phase in private.PHASES[:2] else self._after
-                setattr(handler, phase, self._watch(function, changes))
+            for item, before, after in functions:
+                assert before is not None
+                nothing = None if after is None else _nothing
+                private_joints.replace_functions(item, self._watch(before, self.before), nothing)
             yield
         finally:
-            for handler, phase, function in functions:
-                setattr(handler, phase, function)
+            for item, before, after in functions:
+                private_joints.replace_functions(item, before, after)
 
     def _watch(self, function: Callable[..., Any], changes: FloatArray) -> Callable[..., None]:
         def call(*arguments: Any) -> None:
@@ -162,3 +220,7 @@ class Rehearsal:
             if body.body_type != pymunk.Body.STATIC:
                 space.reindex_shapes_for_body(body)
         private.finish_step(space)
+
+
+def _nothing(*arguments: Any) -> None:
+    pass

@@ -1,12 +1,9 @@
-"""pymunk's constraints in packed arrays: what they are, what the user changed since, and what goes back.
-
-Anchors of pymunk stand relative to the body, ours to its centre of mass.
-"""
+"""Joints: the constraints of a space in packed arrays, what the user changed since, and what goes back."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -17,47 +14,27 @@ from ..joints.layout import (
     ANCHOR_AX,
     BODY_A,
     BODY_B,
-    DAMPING,
-    ERROR_BIAS,
-    GEAR,
-    GROOVE,
     IMPULSE_1,
     IMPULSE_2,
     JOINT_COLUMNS,
     KIND,
-    LENGTH,
-    LOWER,
-    MAX_BIAS,
-    MAX_FORCE,
     MOTOR,
-    NORMAL_X,
     NOTCH,
-    OFFSET,
-    PHASE,
-    PIN,
-    PIVOT,
     RATCHET,
-    RATE,
-    RATIO,
-    REST,
-    ROTARY_LIMIT,
     ROTARY_SPRING,
     SIDE,
-    SLIDE,
     SOFT,
     SPRING,
-    STIFFNESS,
     TIE_COLUMNS,
-    TOOTH,
-    TOOTH_PHASE,
     TOUCHED,
-    UPPER,
-)  # fmt: skip
+)
+from . import private
+from .constraints import check_constraint, read
 from .edits import Edits, show_impulses
-from .spring_functions import own_function
+from .partners import Partners
+from .spring_functions import Motion, Rate, law, own_function, put_law
 
 ANCHORS = slice(ANCHOR_AX, ANCHOR_AX + 4)
-_SMALL = 1e-9  # a pin shorter than this, over its anchors' distances, is a pivot
 
 
 class JointRows:
@@ -65,20 +42,30 @@ class JointRows:
 
     Attributes:
         items: the constraints, in the order of the rows.  joint: (j, JOINT_COLUMNS).  tie: (j, TIE_COLUMNS).
-        row: the row of each constraint.  functions: springs that have a force or torque function of the user's own.
-        before, after: constraints with a `pre_solve`, with a `post_solve`.
+        row: the row of each constraint.
+        functions: rows of springs that have a force or torque function of the user's own.  own: these springs.
+        before, after, calling: constraints with a `pre_solve`, with a `post_solve`, with either.
+        partners: bodies of joints that have no row of their own; theirs are n + row of PARTNER.
+        parted: pairs of bodies whose shapes pass through one another, by `collide_bodies`; None where nobody has looked
+            since that changed.
+        replan: whether kinds, places or softness of joints have changed since `planned` was called.
     """
 
     def __init__(
-        self, constraints: Iterable[pymunk.Constraint], row: Mapping[pymunk.Body, int], past: JointRows | None = None
+        self, space: pymunk.Space, row: Mapping[pymunk.Body, int], n: int, past: JointRows | None = None
     ) -> None:
-        """The rows of `constraints` between bodies with these rows; what `past` knows of them is kept."""
-        self.items = list(constraints)
+        """The rows of the constraints of `space`, whose bodies have these rows of n; what `past` knows is kept."""
+        self.space, self._n = space, n
+        self.items = list(space.constraints)
         self.joint: FloatArray = np.zeros((len(self.items), JOINT_COLUMNS))
         self.tie: IntArray = np.zeros((len(self.items), TIE_COLUMNS), np.int64)
+        others = [body for item in self.items for body in (item.a, item.b) if body not in row]
+        self.partners: Partners = Partners(tuple(dict.fromkeys(others)), space, None if past is None else past.partners)
+        self._row_of = {**row, **{body: n + i for i, body in enumerate(self.partners.items)}}
         for j, item in enumerate(self.items):
-            self.tie[j, BODY_A], self.tie[j, BODY_B] = row[item.a], row[item.b]
-            _read(item, self.joint[j], self.tie[j])
+            check_constraint(item)
+            self.tie[j, BODY_A], self.tie[j, BODY_B] = self._row_of[item.a], self._row_of[item.b]
+            read(item, self.joint[j], self.tie[j])
             self.tie[j, TOUCHED] = 1
         if past is not None:
             past.refresh()
@@ -86,108 +73,125 @@ class JointRows:
                 if item in past.row:
                     i = past.row[item]
                     self.joint[j], self.tie[j, SIDE:] = past.joint[i], past.tie[i, SIDE:]
+        self.touch(n + self.partners.changed)
         self.row: dict[pymunk.Constraint, int] = {item: j for j, item in enumerate(self.items)}
         self._edits = Edits(self.row)
         self._ratchets = np.flatnonzero(self.tie[:, KIND] == RATCHET)
+        self._timestamp = private.timestamp(space)
+        self._ours = -1
+        self._rates: dict[pymunk.Constraint, Rate] = {} if past is None else past._rates
+        self.replan = True
         self._find_functions()
+
+    def is_of(self, space: pymunk.Space) -> bool:
+        """Whether these are the constraints that the space has now."""
+        return self.items == list(space.constraints)
 
     def _find_functions(self) -> None:
         self.functions = [j for j, item in enumerate(self.items) if own_function(item)]
+        self.own = [self.items[j] for j in self.functions]
         self.before = [item for item in self.items if item.pre_solve is not None]
         self.after = [item for item in self.items if item.post_solve is not None]
+        self.calling = list(dict.fromkeys((*self.before, *self.after)))
+        self._pushing = [item for j, item in enumerate(self.items) if self._push(j)]
+        self.parted: frozenset[tuple[pymunk.Body, pymunk.Body]] | None = None
 
     def refresh(self) -> bool:
-        """Read anew the constraints that the user changed; whether the islands must be planned anew."""
+        """Read anew the constraints that the user changed; whether joints must be planned anew."""
         edited = self._edits.take()
-        if not edited:
-            return False
-        replan = False
+        try:
+            for j in edited:
+                check_constraint(self.items[j])
+        except ValueError:
+            self._edits.add(edited)
+            raise
         for j in sorted(edited):
             off_before, kind, soft = self.joint[j, ANCHORS] != 0.0, self.tie[j, KIND], self.tie[j, SOFT]
-            _read(self.items[j], self.joint[j], self.tie[j])
+            read(self.items[j], self.joint[j], self.tie[j])
             self.tie[j, TOUCHED] = 1
             off = self.joint[j, ANCHORS] != 0.0
-            replan = replan or kind != self.tie[j, KIND] or soft != self.tie[j, SOFT] or bool((off != off_before).any())
-        self._find_functions()
-        return replan
+            if kind != self.tie[j, KIND] or soft != self.tie[j, SOFT] or bool((off != off_before).any()):
+                self.replan = True
+        if edited:
+            self._find_functions()
+        return self.replan
+
+    def laws(self) -> list[Callable[[Any, float], float]]:
+        """The laws of the springs with functions of their own in the last step."""
+        return [law(self.items[j], self.joint[j]) for j in self.functions]
+
+    def pushing(self) -> list[pymunk.Constraint]:
+        """The constraints that push, in a step of pymunk, where everything is at rest: springs, motors, joints that are
+        apart or may be, and those of bodies that the batch calls do not reach."""
+        apart = np.flatnonzero(self.tie[:, TOUCHED])
+        return [*self._pushing, *(self.items[j] for j in apart.tolist())]
+
+    def _push(self, j: int) -> bool:
+        item, kind = self.items[j], self.tie[j, KIND]
+        out = any(body in self.partners.items and body.body_type == pymunk.Body.DYNAMIC for body in (item.a, item.b))
+        return out or self.tie[j, SOFT] != 0 or kind in (SPRING, ROTARY_SPRING, MOTOR)
+
+    def planned(self) -> None:
+        """The joints have been planned as they are."""
+        self.replan = False
+
+    def calls_back(self) -> bool:
+        """Whether a constraint has a function that is called once a step."""
+        self.refresh()
+        return bool(self.before or self.after)
+
+    def look(self, state: FloatArray, place: Mapping[pymunk.Body, int], dt: float) -> None:
+        """Bring what the step needs up to date: edits, places of partners, laws of springs with functions.
+
+        Args:
+            state: (N, 9) the start of the step.  place: the rows of bodies there.  dt: time.
+        """
+        self.refresh()
+        moved = self.partners.read()
+        if len(moved):
+            self.touch(self._n + moved)
+        for j in self.functions:
+            item = self.items[j]
+            a, b = (self._motion(body, state, place) for body in (item.a, item.b))
+            self._rates[item] = put_law(item, a, b, dt, self.joint[j], self._rates.get(item))
+
+    def _motion(self, body: pymunk.Body, state: FloatArray, place: Mapping[pymunk.Body, int]) -> Motion:
+        row = self._row_of[body]
+        if row >= self._n:
+            return self.partners.motion(row - self._n)
+        x, y, angle, vx, vy, spin = state[place[body], :6].tolist()
+        return x, y, angle, vx, vy, spin
+
+    def part(self) -> frozenset[tuple[pymunk.Body, pymunk.Body]]:
+        """`parted`, looked for if need be."""
+        if self.parted is None:
+            self.parted = frozenset((item.a, item.b) for item in self.items if not item.collide_bodies)
+        return self.parted
 
     def touch(self, rows: IntArray) -> None:
         """Mark the joints of bodies (rows) that the user has moved or pushed."""
-        hit = np.isin(self.tie[:, BODY_A], rows) | np.isin(self.tie[:, BODY_B], rows)
-        self.tie[hit, TOUCHED] = 1
+        if len(rows):
+            hit = np.isin(self.tie[:, BODY_A], rows) | np.isin(self.tie[:, BODY_B], rows)
+            self.tie[hit, TOUCHED] = 1
 
-    def impulse(self, j: int) -> float:
-        """What `constraint.impulse` would be after native's step: of springs signed (positive pushes), else >= 0."""
+    def impulse(self, j: int) -> float | None:
+        """What `constraint.impulse` would be after native's step: of springs signed (positive pushes), else >= 0.
+
+        None if native has taken a step of its own since.
+        """
+        if self._timestamp() != self._ours:
+            return None
         first, second = self.joint[j, IMPULSE_1], self.joint[j, IMPULSE_2]
-        if self.tie[j, KIND] == SPRING:
-            return float(first)
-        if self.tie[j, KIND] == ROTARY_SPRING:
+        if self.tie[j, KIND] in (SPRING, ROTARY_SPRING):
             return float(first)
         return math.hypot(first, second)
 
     def write(self) -> None:
         """Give ratchets the notch they have reached, and let `constraint.impulse` read ours."""
+        self._ours = self._timestamp()
         for j in self._ratchets:
             item = self.items[j]
             if item.angle != self.joint[j, NOTCH]:
                 item.angle = float(self.joint[j, NOTCH])
                 self._edits.forget(int(j))
         show_impulses(self.items, self.impulse)
-
-
-def _read(c: Any, joint: FloatArray, tie: IntArray) -> None:
-    """Fill in the parameters of one row."""
-    joint[MAX_FORCE], joint[ERROR_BIAS], joint[MAX_BIAS] = c.max_force, c.error_bias, c.max_bias
-    tie[SOFT] = int(math.isfinite(c.max_force))
-    tie[SIDE] = 0
-    if hasattr(c, "anchor_a"):
-        joint[ANCHOR_AX : ANCHOR_AX + 2] = c.anchor_a - c.a.center_of_gravity
-    if hasattr(c, "anchor_b"):
-        joint[ANCHOR_AX + 2 : ANCHOR_AX + 4] = c.anchor_b - c.b.center_of_gravity
-    if isinstance(c, pymunk.PinJoint):
-        _pin(c.distance, joint, tie)
-    elif isinstance(c, pymunk.SlideJoint):
-        if c.min == c.max:
-            _pin(c.max, joint, tie)
-        else:
-            tie[KIND], joint[LOWER], joint[UPPER] = SLIDE, c.min, c.max
-    elif isinstance(c, pymunk.PivotJoint):
-        tie[KIND] = PIVOT
-    elif isinstance(c, pymunk.GrooveJoint):
-        tie[KIND] = GROOVE
-        first, last = c.groove_a - c.a.center_of_gravity, c.groove_b - c.a.center_of_gravity
-        along = (last - first).normalized()
-        normal = along.perpendicular()
-        joint[NORMAL_X : NORMAL_X + 2] = normal
-        joint[OFFSET], joint[LOWER], joint[UPPER] = normal.dot(first), along.dot(first), along.dot(last)
-    elif isinstance(c, pymunk.DampedSpring):
-        tie[KIND], joint[STIFFNESS], joint[DAMPING], joint[REST] = SPRING, c.stiffness, c.damping, c.rest_length
-    elif isinstance(c, pymunk.DampedRotarySpring):
-        tie[KIND], joint[STIFFNESS], joint[DAMPING], joint[REST] = ROTARY_SPRING, c.stiffness, c.damping, c.rest_angle
-    elif isinstance(c, pymunk.RotaryLimitJoint):
-        if c.min == c.max:
-            tie[KIND], joint[RATIO], joint[PHASE] = GEAR, 1.0, c.min
-        else:
-            tie[KIND], joint[LOWER], joint[UPPER] = ROTARY_LIMIT, c.min, c.max
-    elif isinstance(c, pymunk.RatchetJoint):
-        tie[KIND], joint[TOOTH], joint[TOOTH_PHASE] = RATCHET, c.ratchet, c.phase
-        joint[NOTCH] = _notch(c)
-    elif isinstance(c, pymunk.GearJoint):
-        tie[KIND], joint[RATIO], joint[PHASE] = GEAR, c.ratio, c.phase
-    elif isinstance(c, pymunk.SimpleMotor):
-        tie[KIND], joint[RATE] = MOTOR, c.rate
-
-
-def _pin(length: float, joint: FloatArray, tie: IntArray) -> None:
-    """A pin, or a pivot if it has no length: there a pin has no direction."""
-    scale = float(np.abs(joint[ANCHOR_AX : ANCHOR_AX + 4]).max())
-    tie[KIND] = PIVOT if length <= _SMALL * max(scale, 1e-300) or length == 0.0 else PIN
-    joint[LENGTH] = length
-
-
-def _notch(c: pymunk.RatchetJoint) -> float:
-    """The notch as native's step finds it: kept while the angle is short of it, else the last one passed."""
-    turned = c.b.angle - c.a.angle
-    if (c.angle - turned) * c.ratchet > 0.0:
-        return float(c.angle)
-    return math.floor((turned - c.phase) / c.ratchet) * c.ratchet + c.phase

@@ -1,4 +1,4 @@
-"""Private names of pymunk: all that this package uses of them, one function each.
+"""Private names of pymunk: all that this package uses of them, one function each; of constraints in `private_joints`.
 
 Each has a test of its own in `tests/space/test_private.py`, and all are looked up when the package is imported, so that
 a pymunk which has renamed one is refused at once and by name.
@@ -6,13 +6,15 @@ a pymunk which has renamed one is refused at once and by name.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import pymunk
 from pymunk import batch
 
 from ..arrays import FloatArray, IntArray
+from . import private_joints
 
 try:
     from pymunk._chipmunk_cffi import ffi, lib
@@ -26,6 +28,7 @@ _OF_LIBRARY = (
     "cpSpaceStep", "cpHastySpaceStep", "cpSpaceEachBody", "cpSpaceGetGravity", "cpSpaceGetDamping",
     "cpSpaceGetSleepTimeThreshold", "cpSpaceGetShapeIDCounter", "cpSpaceGetTimestamp",
     "pmSpaceBodyGetIteratorFuncBatched", "pmSpaceBodySetIteratorFuncBatched",
+    *private_joints.OF_LIBRARY,
 )  # fmt: skip
 _OF_SPACE = (
     "_space", "_bodies", "_shapes", "_constraints", "_handlers", "_get_arbiters", "_locked", "_add_later",
@@ -44,6 +47,8 @@ def missing() -> list[str]:
         ("pymunk._chipmunk_cffi.lib", lib, _OF_LIBRARY),
         ("pymunk.Space", space, _OF_SPACE),
         ("pymunk.Body", body, _OF_BODY),
+        ("pymunk.Constraint", pymunk.PinJoint(body, space.static_body), private_joints.OF_CONSTRAINT),
+        *((f"pymunk.{kind.__name__}", kind, (function,)) for kind, function in private_joints.OF_SPRINGS),
         *(("pymunk.CollisionHandler", one, PHASES) for one in getattr(space, "_handlers", {}).values()),
     ]
     absent = [f"{name}.{one}" for name, owner, names in owners for one in names if not hasattr(owner, one)]
@@ -96,6 +101,16 @@ def replace_functions(
         body._position_func = position
 
 
+@contextmanager
+def locked(space: pymunk.Space) -> Iterator[None]:
+    """Within, what is added and removed waits for `finish_step` or the end of pymunk's next step."""
+    space._locked = True
+    try:
+        yield
+    finally:
+        space._locked = False
+
+
 def step_alone(space: pymunk.Space, dt: float) -> None:
     """pymunk's step without what it does afterwards: additions, removals and callbacks wait for `finish_step`."""
     space._locked = True
@@ -125,7 +140,7 @@ def watch(space: pymunk.Space) -> Callable[[], bool]:
 
     Every addition of a shape changes pymunk's count of all shapes ever added, every removal the number of those there.
     A body that was exchanged for another shows in the ids that the batch call reads, and what was edited in place
-    nowhere. The public properties take three times as long.
+    nowhere. Constraints, which have neither, are compared one by one. The public properties take three times as long.
     """
     c = space._space
     bodies, shapes, constraints, handlers = space._bodies, space._shapes, space._constraints, space._handlers
@@ -136,6 +151,8 @@ def watch(space: pymunk.Space) -> Callable[[], bool]:
     gx, gy = gravity.x, gravity.y
     damping_of, damping = lib.cpSpaceGetDamping, lib.cpSpaceGetDamping(c)
     threshold_of, threshold = lib.cpSpaceGetSleepTimeThreshold, lib.cpSpaceGetSleepTimeThreshold(c)
+
+    joints = list(constraints)
 
     def unchanged() -> bool:
         g = gravity_of(c)
@@ -149,6 +166,7 @@ def watch(space: pymunk.Space) -> Callable[[], bool]:
             and threshold_of(c) == threshold
             and len(constraints) == constraint_count
             and len(handlers) == handler_count
+            and (constraint_count == 0 or list(constraints) == joints)
         )
 
     return unchanged
@@ -213,8 +231,8 @@ def shapes_ever(space: pymunk.Space) -> int:
 
 
 def waits(space: pymunk.Space) -> bool:
-    """Whether callbacks wait for the end of pymunk's next step."""
-    return bool(space._post_step_callbacks)
+    """Whether callbacks, additions or removals wait for the end of pymunk's next step."""
+    return bool(space._post_step_callbacks or space._add_later or space._remove_later)
 
 
 check()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 import pymunk
@@ -23,12 +23,16 @@ class Rules:
     ignored: frozenset[tuple[int, int]] = frozenset()
     changed: Mapping[tuple[int, int], tuple[float, float]] = field(default_factory=dict)
 
-    def of_pairs(self, SHAPE: FloatArray) -> dict[tuple[int, int], tuple[float, float, float, float]]:
-        """By pair of rows of SHAPE: elasticity (-1: they pass), friction, surface velocity of b relative to a."""
+    def of_pairs(
+        self, SHAPE: FloatArray, parted: Iterable[tuple[int, int]] = ()
+    ) -> dict[tuple[int, int], tuple[float, float, float, float]]:
+        """By pair of rows of SHAPE, in their order: elasticity (-1: they pass), friction, surface velocity of b
+        relative to a. `parted` pairs pass, whatever handlers say."""
         told = {}
-        for pair in (*self.ignored, *self.changed):
+        never = self.ignored.union(parted)
+        for pair in sorted(never.union(self.changed)):
             a, b = (SHAPE[i] for i in pair)
-            e, mu = self.changed.get(pair, (-1.0, 0.0))
+            e, mu = (-1.0, 0.0) if pair in never else self.changed[pair]
             told[pair] = (e, mu, float(b[SURFACE_X] - a[SURFACE_X]), float(b[SURFACE_Y] - a[SURFACE_Y]))
         return told
 

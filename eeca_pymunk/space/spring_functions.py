@@ -1,24 +1,32 @@
-"""`force_func` and `torque_func`: forces of the user's own, as linear laws that have their mean over the step.
+"""`force_func` and `torque_func`: forces of the user's own, as one linear law for the step.
 
-Over a step from length l0 to l1 a spring pushes with the mean of f over [l0, l1] (Gauss, 5 points), so that its work is
-what the integral of f says and energy is kept whatever f is. Since l1 is not known before, the step is repeated with
-f's mean and secant until that no longer changes; functions are called outside the kernels.
+From its length l0, changing at the rate r0, which was r a step of h' ago, a spring will about reach
+
+    l1 = l0 + h r0 + h^2 (r0 - r) / 2h'.
+
+It pushes with the mean of f over [l0, l1] (Gauss, 2 points) at their middle m, and changes with the secant k of f there
+where that pulls back: f(m) + k (l - m). This is second order, its energy fourth. What such a spring gives is not stored anywhere that the ledger knows: it is external work.
+Rotary springs likewise, with the angle of a less that of b.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
 import pymunk
 
 from ..arrays import FloatArray
-from ..joints.layout import LENGTH_0, LENGTH_1, PUSH, REST, STIFFNESS
+from ..errors import NotFiniteError
+from ..joints.layout import PUSH, REST, STIFFNESS
 
-MOST_REPEATS = 12
-_TOLERANCE = 1e-14
-_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(5)
+_POINT = 0.5 / math.sqrt(3.0)  # of Gauss, from the middle, over the length of the interval
+_NEAR = 1e-6  # an interval shorter than this, over the length it is at, has no secant
+
+# Position of the body's origin, angle, velocity of its centre of mass, spin.
+Motion = tuple[float, float, float, float, float, float]
+Rate = tuple[float, float]
 
 
 def own_function(item: Any) -> Callable[[Any, float], float] | None:
@@ -30,45 +38,56 @@ def own_function(item: Any) -> Callable[[Any, float], float] | None:
     return None
 
 
-class Laws:
-    """The linear laws of the springs with functions of their own, during one step.
+def put_law(item: Any, a: Motion, b: Motion, dt: float, row: FloatArray, past: Rate | None) -> Rate:
+    """Write the law of a spring with a function of its own between bodies moving so into its row of JOINT.
 
-    `joint` (j, JOINT_COLUMNS) are their rows, `rows` which of them, `begin` their lengths or angles at the start.
+    `past` is what the step before was answered: r and h'.
     """
+    function = own_function(item)
+    assert function is not None
+    at, rate, size = _stretch(item, a, b)
+    end = at + dt * rate
+    if past is not None:
+        end += 0.5 * dt * dt * (rate - past[0]) / past[1]
+    if isinstance(item, pymunk.DampedSpring):
+        end = abs(end)
+    middle, way = 0.5 * (at + end), end - at
+    if abs(way) <= _NEAR * size:
+        push, slope = float(function(item, middle)), 0.0
+    else:
+        first = float(function(item, middle - _POINT * way))
+        last = float(function(item, middle + _POINT * way))
+        push, slope = 0.5 * (first + last), (last - first) / (2.0 * _POINT * way)
+    if not (math.isfinite(push) and math.isfinite(slope)):
+        raise NotFiniteError(f"the function of {item} answers {push} at {middle}: let it answer a finite number")
+    # A force that grows with the length is taken at the middle alone: it would not bring the step to an end.
+    sign = 1.0 if isinstance(item, pymunk.DampedSpring) else -1.0
+    row[PUSH], row[STIFFNESS], row[REST] = push, max(0.0, -sign * slope), middle
+    return rate, dt
 
-    def __init__(self, items: list[Any], rows: list[int], joint: FloatArray, begin: list[float]) -> None:
-        self._items, self._rows, self._joint = items, rows, joint
-        self._sign = [1.0 if isinstance(items[j], pymunk.DampedSpring) else -1.0 for j in rows]
-        self._last: list[tuple[float, float]] = []
-        for j, at in zip(rows, begin, strict=True):
-            mean = self._mean(j, at, at)
-            joint[j, PUSH], joint[j, STIFFNESS], joint[j, REST] = mean, 0.0, at
-            self._last.append((at, mean))
 
-    def _mean(self, j: int, start: float, end: float) -> float:
-        function = own_function(self._items[j])
-        assert function is not None
-        if start == end:
-            return float(function(self._items[j], start))
-        half, middle = 0.5 * (end - start), 0.5 * (end + start)
-        values = [function(self._items[j], float(middle + half * x)) for x in _POINTS]
-        return float(0.5 * np.dot(_WEIGHTS, values))
+def law(item: Any, row: FloatArray) -> Callable[[Any, float], float]:
+    """The law in a spring's row of JOINT as a function like the spring's own."""
+    slope = -row[STIFFNESS] if isinstance(item, pymunk.DampedSpring) else row[STIFFNESS]
+    return lambda spring, at: float(row[PUSH] + slope * (at - row[REST]))
 
-    def settled(self) -> bool:
-        """Whether the step just taken used the means over its lengths; else the laws are corrected."""
-        done = True
-        for n, j in enumerate(self._rows):
-            row = self._joint[j]
-            start, end = float(row[LENGTH_0]), float(row[LENGTH_1])
-            middle, mean = 0.5 * (start + end), self._mean(j, start, end)
-            used = row[PUSH] - self._sign[n] * row[STIFFNESS] * (middle - row[REST])
-            if abs(mean - used) > _TOLERANCE * max(abs(mean), abs(used)):
-                done = False
-            else:
-                continue
-            before, force = self._last[n]
-            if abs(middle - before) > 1e-9 * abs(end - start):
-                row[STIFFNESS] = max(0.0, self._sign[n] * (force - mean) / (middle - before))
-            row[PUSH], row[REST] = mean, middle
-            self._last[n] = middle, mean
-        return done
+
+def _stretch(item: Any, a: Motion, b: Motion) -> tuple[float, float, float]:
+    """The length of a spring, its rate, and a length to compare with; of a rotary one angles."""
+    if isinstance(item, pymunk.DampedRotarySpring):
+        return a[2] - b[2], a[5] - b[5], 1.0
+    (ax, ay, avx, avy), (bx, by, bvx, bvy) = _anchor(item.anchor_a, item.a, a), _anchor(item.anchor_b, item.b, b)
+    dx, dy = bx - ax, by - ay
+    length = math.hypot(dx, dy)
+    speed = math.hypot(bvx - avx, bvy - avy)
+    rate = (dx * (bvx - avx) + dy * (bvy - avy)) / length if length > 0.0 else speed
+    return length, rate, max(length, item.rest_length)
+
+
+def _anchor(anchor: tuple[float, float], body: pymunk.Body, motion: Motion) -> tuple[float, float, float, float]:
+    """Place and velocity of an anchor."""
+    x, y, angle, vx, vy, spin = motion
+    c, s = math.cos(angle), math.sin(angle)
+    (px, py), (kx, ky) = anchor, body.center_of_gravity
+    rx, ry = c * (px - kx) - s * (py - ky), s * (px - kx) + c * (py - ky)
+    return x + c * px - s * py, y + s * px + c * py, vx - spin * ry, vy + spin * rx

@@ -9,11 +9,17 @@ behind, which the next rest step clears, so there is one every so many steps.
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import pymunk
 
 from . import private
-from .bodies import Bodies
+from .bodies import ANGULAR_VELOCITY, VELOCITY, Bodies
+from .joints import JointRows
+from .private_joints import inert, silent, with_laws
+
+if TYPE_CHECKING:
+    from .world import World
 
 FEW = (
     12  # moving shapes up to which reindexing costs less than a rest step (measured: up to 20 in a tree, 10 in a hash)
@@ -21,18 +27,31 @@ FEW = (
 _RENEW = 32  # steps after which reindexing gives way to a rest step
 
 
-def rest_step(space: pymunk.Space, dt: float) -> None:
+def rest_step(space: pymunk.Space, dt: float, joints: JointRows | None = None, forget: bool = True) -> None:
     """Let pymunk see the new positions: its own step with everything at rest moves nothing.
 
     With the real dt, so that `space.current_time_step` is right and a native step may follow: at rest pymunk
-    caches no impulse that it would scale by the ratio of the two steps. All bodies must have velocity 0.
+    caches no impulse that it would scale by the ratio of the two steps. All bodies must have velocity 0; those of
+    joints may end with another, of round-off.
+
+    Args:
+        joints: the constraints of the space, which call no functions meanwhile, and push with nothing where they would.
+        forget: whether pymunk remembers impulses of joints, which would push too.
     """
     gravity, iterations, bias = space.gravity, space.iterations, space.collision_bias
     try:
         space.gravity, space.iterations, space.collision_bias = (0.0, 0.0), 1, 1.0
-        space.step(dt)
+        if joints is None:
+            space.step(dt)
+        else:
+            push = inert(joints.items if forget else joints.pushing())
+            with silent(joints.calling), with_laws(joints.own, joints.laws()), push:
+                private.step_alone(space, dt)
     finally:
         space.gravity, space.iterations, space.collision_bias = gravity, iterations, bias
+    if joints is not None:
+        # Not before constraints have their forces and functions back, which callbacks may read and change.
+        private.finish_step(space)
 
 
 class Sync:
@@ -63,7 +82,37 @@ class Sync:
         """Whether a rest step will call post-step callbacks."""
         return private.waits(self.space)
 
-    def rest(self, dt: float) -> None:
-        """A rest step; all bodies must have velocity 0."""
-        rest_step(self.space, dt)
+    def rest(self, dt: float, joints: JointRows | None = None) -> None:
+        """A rest step; all bodies must have velocity 0, and may have another of round-off if there are joints."""
+        rest_step(self.space, dt, joints, forget=self._timestamp() != self._renewed)
         self._renewed, self._dt, self._left = self._timestamp(), dt, _RENEW
+
+    def land(self, world: World, dt: float, status: int) -> None:
+        """Write the end of the step of a world with a rest step at it."""
+        if world.joints is not None:
+            status = world.turning(status)  # joints leave round-off in spins
+        world.scatter_still(status)
+        end = world.ended() if self.calls_back() else None
+        self.rest(dt, world.joints)
+        if end is not None:
+            # Callbacks may have added or removed bodies, so that rows are not theirs any more.
+            world.bodies.scatter(end)
+        else:
+            world.scatter_speed(status)
+
+    def settle(self, bodies: Bodies, joints: JointRows, dt: float, whole: bool) -> None:
+        """Let pymunk see the end of the step that has been written already, and which functions may have changed since;
+        add and remove what they asked for. If not `whole`, only that."""
+        if not whole:
+            if self.calls_back():
+                private.finish_step(self.space)
+        elif self.reindexes(dt):
+            self.reindex()
+        else:
+            end = bodies.gather()
+            assert end is not None  # what functions add and remove is still waiting
+            still = end.copy()
+            still[:, VELOCITY], still[:, ANGULAR_VELOCITY] = 0.0, 0.0
+            bodies.scatter(still, unchanged=True)
+            self.rest(dt, joints)
+            bodies.scatter(end)

@@ -2,56 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import TypeAlias
 
 import numpy as np
 import pymunk
-from pymunk import batch
 
-from ..arrays import FloatArray, IntArray
-from ..layout import (
-    BODY_ROW,
-    COG_X,
-    COG_Y,
-    ECCENTRIC,
-    END,
-    END_COLUMNS,
-    EXTRA_COLUMNS,
-    FOUND,
-    FRICTION,
-    GRIP,
-    GROUP,
-    KNOWN,
-    LEFT,
-    MASK,
-    NOW,
-    PULL,
-    PUSH_TWIST,
-    PUSH_X,
-    SPECIAL,
-    SPEED,
-    STATE_COLUMNS,
-    STEERED,
-    STILL,
-)  # fmt: skip
+from ..arrays import FloatArray
+from ..layout import BODY_COLUMNS, BODY_ROW, FRICTION, GRIP, GROUP, MASK
 from ..report import nothing
-from ..transfer import FORCES, TURNS, lay, lay_rest, take
+from ..transfer import take
 from . import private
 from .bodies import Bodies
 from .checks import check_shape, check_space, rough_pair
+from .crossing import Crossing
+from .joints import JointRows
 from .packing import Record, pack, read
 from .shapes import Rules
 
-_F = batch.BodyFields
-_MOTION = _F.POSITION | _F.ANGLE | _F.VELOCITY | _F.ANGULAR_VELOCITY
-_STATE = _MOTION | _F.FORCE | _F.TORQUE
 _COLLIDES_WITH_ALL = tuple(pymunk.ShapeFilter())
 
 Records: TypeAlias = dict[pymunk.Shape, Record | None]
 
 
-class World:
+class World(Crossing):
     """The bodies and solid shapes of one space; ValueError or UnsupportedFeature for what cannot be stepped.
 
     Masses, shapes and functions of bodies are read once. `current()` tells, in half a microsecond, whether settings and
@@ -61,6 +35,7 @@ class World:
     Args:
         space: any pymunk space.  ignore: what to step on without, see `check_ignored`.
         before: the world of the same space before shapes came or went, whose shapes are not read again.
+        joints: the joints of the same space before, whose memory of earlier steps is kept.
 
     Attributes:
         records: what the shapes of the space say of themselves, None for sensors.
@@ -72,90 +47,97 @@ class World:
         gravity: length/time².  damping: pymunk's, 1 is none.
         ignores: whether there is friction that is ignored.  filtered: whether any shape has a filter.
         collisions: whether the space has collision handlers.  hooked: whether it or its bodies have functions.
+        plain: whether it has neither functions nor joints.
         rules: what collision handlers decided about pairs of rows of SHAPE for this step.
+        joints: the constraints of the space, None if it has none.  PARTNER: bodies of joints that have no row of BODY.
+        parted: pairs of rows of SHAPE that pass through one another because joints of their bodies say so.
         empty: the arrays of a report without contacts.
     """
 
-    def __init__(self, space: pymunk.Space, ignore: Sequence[str] = (), before: World | None = None) -> None:
+    def __init__(
+        self, space: pymunk.Space, ignore: Sequence[str] = (), before: World | None = None,
+        joints: JointRows | None = None,
+    ) -> None:  # fmt: skip
         check_space(space)
-        self.space = space
-        self.bodies = bodies = Bodies(space)
+        bodies = Bodies(space)
         state = bodies.gather()
         assert state is not None  # read from these very bodies
         bodies.check_finite(state)
-        self.records: Records = self._records({} if before is None else before.records)
+        self.records: Records = _records(space, bodies, {} if before is None else before.records)
         solid = [s for s, record in self.records.items() if record is not None]
         self.ignores = "friction" in ignore and rough_pair(solid) is not None
         packed = pack(bodies, state, solid, [r for r in self.records.values() if r is not None])
+        super().__init__(space, bodies, packed.BODY, packed.row, state)
         self.shapes, self.owner = packed.shapes, packed.owner
-        self.BODY, self.SHAPE, self.LINK, self.VERTEX = packed.BODY, packed.SHAPE, packed.LINK, packed.VERTEX
+        self.SHAPE, self.LINK, self.VERTEX = packed.SHAPE, packed.LINK, packed.VERTEX
         if "friction" in ignore:
             self.SHAPE[:, FRICTION] = 0.0
             self.BODY[:, GRIP] = 0.0
         self.disks, self.dynamic = packed.disks, packed.dynamic
         self.filtered = bool((self.LINK[:, GROUP : MASK + 1] != _COLLIDES_WITH_ALL).any())
         self.empty = nothing(bodies.items)
-        self._allocate(packed.row, state)
-        self.read_settings()
+        self.parted: set[tuple[int, int]] = set()
+        self.joints: JointRows | None = joints if before is None else before.joints
+        if before is not None and before.joints is not None:
+            self.recall(before)
+        self.read_settings(anew=True)
 
-    def _records(self, known: Records) -> Records:
-        """What every shape says, None for sensors; those that are known are not asked again."""
-        records: Records = {}
-        for shape in self.space.shapes:
-            if shape in known:
-                records[shape] = known[shape]
-                if shape.body not in self.bodies.row:
-                    check_shape(shape, self.bodies)
-            elif shape.sensor:
-                records[shape] = None
-            else:
-                check_shape(shape, self.bodies)
-                records[shape] = read(shape)
-        return records
-
-    def _allocate(self, row: IntArray, state: FloatArray) -> None:
-        bodies, space, N = self.bodies, self.space, len(self.bodies)
-        # One body more than there are: pymunk must never find this memory too small.
-        floats, ids = np.zeros(max(2 * N, N + 1) * STATE_COLUMNS), np.zeros(max(4 * N, N + 1), np.int64)
-        self.STATES: FloatArray = floats[: 2 * N * STATE_COLUMNS].reshape(2, N, STATE_COLUMNS)
-        self.WALK: IntArray = ids[: 4 * N].reshape(4, N)
-        self.EXTRA: FloatArray = np.zeros((N, EXTRA_COLUMNS))
-        self.ENDS: FloatArray = np.zeros(END_COLUMNS * N)
-        self.WALK[KNOWN] = bodies.ids
-        self.WALK[BODY_ROW] = row
-        self.WALK[SPECIAL] = STEERED * bodies.steered + ECCENTRIC * bodies.center_of_gravity.any(axis=1)
-        self.EXTRA[:, COG_X : COG_Y + 1] = bodies.center_of_gravity
-        self.STATES[LEFT] = np.where(bodies.static[:, None], state, np.nan)
-        self.gather = private.reader(space, _F.BODY_ID | _STATE, floats, ids)
-        self._restore = private.writer(space, _STATE, floats)
-        self.reset_forces = private.writer(space, _F.FORCE | _F.TORQUE, self.ENDS[PULL * N :])
-        # By whether angles and spins are to be written.
-        self._scatter = self._writers(_F.POSITION | _F.VELOCITY, END)
-        self._scatter_still = self._writers(_F.POSITION | _F.VELOCITY, STILL)
-        self._scatter_speed = self._writers(_F.VELOCITY, SPEED)
-        # pymunk places a body whose centre of mass is elsewhere by the angle it has: the second time by the new one.
-        self._twice = bool(bodies.center_of_gravity.any())
-
-    def _writers(self, fields: batch.BodyFields, start: int) -> dict[int, Callable[[], None]]:
-        """What writes the fields from the table that begins at `start` in ENDS, by the bit TURNS of a step's answer."""
-        N, turning = len(self.bodies), fields
-        for straight, turned in ((_F.POSITION, _F.ANGLE), (_F.VELOCITY, _F.ANGULAR_VELOCITY)):
-            if straight in fields:
-                turning |= turned
-        table = self.ENDS[start * N :]
-        return {0: private.writer(self.space, fields, table), TURNS: private.writer(self.space, turning, table)}
-
-    def read_settings(self) -> None:
-        """Read the settings of the space, checked, and watch them from now on."""
+    def read_settings(self, anew: bool = False) -> None:
+        """Read the settings of the space, checked, and its joints if these are others, or if `anew`; and watch both
+        from now on."""
         check_space(self.space)
+        self._read_joints(anew)
         self.gravity = tuple(self.space.gravity)
         self.damping = self.space.damping
         self.collisions = bool(private.handlers(self.space))
         self.rules = Rules()
         bodies = self.bodies
         self.hooked = self.collisions or len(bodies.velocity_hooks) > 0 or len(bodies.position_hooks) > 0
+        self.plain = not self.hooked and self.joints is None
         self._contents = self._count()
         self.current = private.watch(self.space)
+
+    def _read_joints(self, anew: bool) -> None:
+        past = self.joints
+        if not self.space.constraints:
+            self.joints, self.parted = None, set()
+        elif anew or past is None or not past.is_of(self.space):
+            rows = {b: r for b, r in zip(self.bodies.items, self.WALK[BODY_ROW].tolist(), strict=True) if r >= 0}
+            self.joints = JointRows(self.space, rows, len(self.BODY), past)
+
+    def settle(self) -> None:
+        """Let joints tell of the step, and take no notice of how pymunk rounds what was written to it."""
+        if self.joints is not None:
+            self.joints.write()
+            if self.eccentric and self.current():
+                self.gather()
+                self.left_as_read()
+
+    @property
+    def PARTNER(self) -> FloatArray:
+        """(x, BODY_COLUMNS) bodies of joints that have no row of BODY."""
+        return np.zeros((0, BODY_COLUMNS)) if self.joints is None else self.joints.partners.PARTNER
+
+    def part(self) -> bool:
+        """Find out whose shapes pass through one another because joints of their bodies say so; whether others than
+        before do."""
+        joints = self.joints
+        if joints is None or joints.parted is not None:
+            return False
+        of = [self.bodies.items[i] for i in self.owner]
+        parted: set[tuple[int, int]] = set()
+        for a, b in joints.part():
+            first, second = ([k for k, body in enumerate(of) if body is one] for one in (a, b))
+            parted.update((min(i, j), max(i, j)) for i in first for j in second)
+        if parted == self.parted:
+            return False
+        self.parted = parted
+        self.void_forecasts()
+        return True
+
+    def told(self) -> dict[tuple[int, int], tuple[float, float, float, float]]:
+        """What handlers and joints say of pairs of rows of SHAPE, see `Rules.of_pairs`."""
+        return self.rules.of_pairs(self.SHAPE, self.parted)
 
     def _count(self) -> tuple[int, int, int]:
         return private.shapes_ever(self.space), len(self.space.shapes), len(self.space.bodies)
@@ -164,63 +146,23 @@ class World:
         """Whether shapes have neither come nor gone, so that new settings are all there is to read."""
         return self._contents == self._count()
 
-    def is_current(self) -> bool:
-        """Whether what `gather` read is of these very bodies, and no static one was moved."""
-        if not np.array_equal(self.WALK[FOUND], self.WALK[KNOWN]):
-            return False
-        still = self.bodies.static
-        return np.array_equal(self.STATES[NOW, still, :3], self.STATES[LEFT, still, :3])
-
     def load(self) -> None:
         """Put what pymunk has now into BODY."""
         self.gather()
         take(self.STATES, self.WALK, self.EXTRA, self.BODY, 0.0, 0.0, 1.0)
 
-    @property
-    def state(self) -> FloatArray:
-        """(N, 9) what `gather` read: position, angle, velocity, spin, force and torque of `bodies`."""
-        now: FloatArray = self.STATES[NOW]
-        return now
 
-    def push(self, change: FloatArray, dt: float) -> None:
-        """Let the bodies with velocity functions accelerate: velocities change by (k, 3) within dt."""
-        self.EXTRA[self.bodies.velocity_hooks, PUSH_X : PUSH_TWIST + 1] = change / dt
-
-    def put(self, end: FloatArray) -> int:
-        """Take (N, 9) as the end of the step in the place of what the step gave, whatever pymunk has now; its bits."""
-        self.STATES[LEFT] = end
-        return lay(self.STATES, self.WALK, self.ENDS, FORCES | TURNS)
-
-    def ended(self) -> FloatArray:
-        """(N, 9) the end of the step; forces are reset as pymunk does."""
-        state = self.state.copy()
-        moving = ~self.bodies.static
-        state[moving, :6], state[moving, 6:] = self.STATES[LEFT, moving, :6], 0.0
-        return state
-
-    def forget(self) -> None:
-        """Whatever the bodies have next is new: what the last step left in pymunk is not what it gave."""
-        self.STATES[LEFT][~self.bodies.static] = np.nan
-
-    def scatter(self, status: int) -> None:
-        """Write poses and velocities at the end of the step to the space, angles and spins if the bit TURNS is set."""
-        self._scatter[status & TURNS]()
-        if self._twice:
-            self._scatter[status & TURNS]()
-
-    def scatter_still(self, status: int) -> None:
-        """Write the poses, and velocity 0; `scatter_speed` must follow."""
-        lay_rest(self.STATES, self.ENDS, status)
-        self._scatter_still[status & TURNS]()
-        if self._twice:
-            self._scatter_still[status & TURNS]()
-
-    def scatter_speed(self, status: int) -> None:
-        """Write the velocities."""
-        self._scatter_speed[status & TURNS]()
-
-    def restore(self) -> None:
-        """Write back what `gather` read: the space as it was."""
-        self._restore()
-        if self._twice:
-            self._restore()
+def _records(space: pymunk.Space, bodies: Bodies, known: Records) -> Records:
+    """What every shape says, None for sensors; those that are known are not asked again."""
+    records: Records = {}
+    for shape in space.shapes:
+        if shape in known:
+            records[shape] = known[shape]
+            if shape.body not in bodies.row:
+                check_shape(shape, bodies)
+        elif shape.sensor:
+            records[shape] = None
+        else:
+            check_shape(shape, bodies)
+            records[shape] = read(shape)
+    return records

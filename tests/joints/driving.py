@@ -9,7 +9,8 @@ import numpy as np
 import pymunk
 
 from eeca_pymunk.joints.layout import CLAMPED, CLOSED, DAMPED, LIMITED, PROJECTED
-from eeca_pymunk.space.jointed import JointedSpace
+
+from .jointed import JointedSpace
 
 
 def run(space: pymunk.Space, dt: float, steps: int, order: int = 2) -> JointedSpace:

@@ -15,9 +15,10 @@ from eeca_pymunk.joints.motion import move
 from eeca_pymunk.joints.ordering import order_unknowns
 from eeca_pymunk.joints.rows import joint_rows, start_joint
 from eeca_pymunk.joints.world import gather_island
-from eeca_pymunk.space.jointed import JointedSpace
 from scenes import linkages
 from scenes.linkages import body, empty
+
+from .jointed import JointedSpace
 
 
 def band_of(matrix: FloatArray, band: int, width: int) -> FloatArray:

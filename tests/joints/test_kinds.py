@@ -9,10 +9,10 @@ import pymunk
 import pytest
 
 from eeca_pymunk.joints.layout import CLAMPED, MOTORS, PROJECTED, SUPPORTS
-from eeca_pymunk.space.jointed import JointedSpace
 from scenes.linkages import body, empty, pendulum, point_double
 
 from .driving import error, ledger_closes, run
+from .jointed import JointedSpace
 
 
 @pytest.mark.parametrize("damping", [0.0, 1.5])

@@ -9,10 +9,10 @@ import pymunk
 import pytest
 
 from eeca_pymunk.joints.layout import LIMITED, PROJECTED
-from eeca_pymunk.space.jointed import JointedSpace
 from scenes.linkages import body, chain, empty
 
 from .driving import error, ledger_closes, run
+from .jointed import JointedSpace
 
 
 @pytest.mark.parametrize("ratchet", [0.5, -0.5])

@@ -9,10 +9,10 @@ import pymunk
 import pytest
 
 from eeca_pymunk.joints.layout import EXACT, LINEAR, MOTORS
-from eeca_pymunk.space.jointed import JointedSpace
 from scenes import linkages
 
 from .driving import drift, error, momenta, run, slopes
+from .jointed import JointedSpace
 
 
 def first(space: pymunk.Space) -> tuple[float, float]:

@@ -7,8 +7,9 @@ import pymunk
 import pytest
 
 from eeca_pymunk.joints.layout import CLAMPED, DAMPED, EXACT, LIMITED, LINEAR, PROJECTED
-from eeca_pymunk.space.jointed import JointedSpace
 from scenes.linkages import body, empty
+
+from .jointed import JointedSpace
 
 
 def mixture(seed: int, count: int = 8) -> pymunk.Space:

@@ -28,7 +28,7 @@ def counted(stepper: FreeFlight, monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """The ways taken from now on."""
     ways: list[str] = []
     rest, reindex = sync.rest_step, sync.Sync.reindex
-    monkeypatch.setattr(sync, "rest_step", lambda space, dt: (ways.append("rest"), rest(space, dt))[1])
+    monkeypatch.setattr(sync, "rest_step", lambda *how, **more: (ways.append("rest"), rest(*how, **more))[1])
     monkeypatch.setattr(sync.Sync, "reindex", lambda self: (ways.append("reindex"), reindex(self))[1])
     return ways
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pymunk
 
-from ..arrays import FloatArray, IntArray
-from ..joints.layout import (
+from eeca_pymunk.arrays import FloatArray, IntArray
+from eeca_pymunk.joints.layout import (
     BODY_A,
     BODY_B,
     CLAMPED,
@@ -15,17 +15,11 @@ from ..joints.layout import (
     LIMITED,
     MOTORS,
     PROJECTED,
-    PUSH,
-    REST,
-    STIFFNESS,
     SUPPORTS,
 )  # fmt: skip
-from ..joints.world import Islands
-from ..layout import ANGLE, AX, AY, BODY_COLUMNS, II, IM, SPIN, TWIST, VX, VY, X, Y
-from .joints import JointRows
-from .spring_functions import MOST_REPEATS, Laws
-
-LAW = [PUSH, STIFFNESS, REST]
+from eeca_pymunk.joints.world import Islands
+from eeca_pymunk.layout import ANGLE, AX, AY, BODY_COLUMNS, II, IM, SPIN, TWIST, VX, VY, X, Y
+from eeca_pymunk.space.joints import JointRows
 
 
 class JointedSpace:
@@ -42,7 +36,7 @@ class JointedSpace:
         self._items: list[pymunk.Body] = []
         self._joints: tuple[pymunk.Constraint, ...] = ()
         self.ledger: FloatArray = np.zeros(8)
-        self.rows = JointRows((), {})
+        self._past: JointRows | None = None
         self._plan()
 
     def _plan(self) -> None:
@@ -55,8 +49,9 @@ class JointedSpace:
         self._items = list(items)
         self._inside = set(space.bodies)
         self._joints = tuple(space.constraints)
-        row = {body: i for i, body in enumerate(self._items)}
-        self.rows = JointRows(self._joints, row, self.rows)
+        self._place: dict[pymunk.Body, int] = {body: i for i, body in enumerate(self._items)}
+        self.rows: JointRows = JointRows(space, self._place, len(self._items), self._past)
+        self._past = self.rows
         self.bodies: FloatArray = np.zeros((len(self._items), BODY_COLUMNS))
         self._written: FloatArray = np.full((len(self._items), 6), np.nan)
         self._mobility()
@@ -77,6 +72,7 @@ class JointedSpace:
     def _gather(self) -> None:
         bodies = self.bodies
         state = np.array([(*b.position, b.angle, *b.velocity, b.angular_velocity) for b in self._items])
+        self._state = state
         changed = (state != self._written).any(axis=1)
         if changed.any():
             new: IntArray = np.flatnonzero(changed)
@@ -96,9 +92,11 @@ class JointedSpace:
             if c.pre_solve is not None:
                 c.pre_solve(c, self.space)
         self._gather()
-        if self.rows.refresh():
+        self.rows.look(self._state, self._place, dt)
+        if self.rows.replan:
             self.islands.plan(self.bodies)
-        self.status = self._step(dt)
+            self.rows.planned()
+        self.status = self.islands.step(self.bodies, dt)
         self.ledger += self.islands.ledger.sum(axis=0)
         self.bodies[self._free, VX : SPIN + 1] += 0.5 * dt * self.bodies[self._free, AX : TWIST + 1]
         self.bodies[self._free, X : ANGLE + 1] += dt * self.bodies[self._free, VX : SPIN + 1]
@@ -108,25 +106,6 @@ class JointedSpace:
         for c in self.rows.after:
             if c.post_solve is not None:
                 c.post_solve(c, self.space)
-
-    def _step(self, dt: float) -> int:
-        """Step all islands, repeatedly where springs have functions of their own."""
-        rows, bodies = self.rows, self.bodies
-        if not rows.functions:
-            return self.islands.step(bodies, dt)
-        start = [_stretch(rows.items[j]) for j in rows.functions]
-        laws = Laws(rows.items, rows.functions, rows.joint, start)
-        keep = bodies.copy(), rows.joint.copy(), rows.tie.copy()
-        for _ in range(MOST_REPEATS):
-            status = self.islands.step(bodies, dt)
-            if laws.settled():
-                break
-            law = rows.joint[:, LAW].copy()
-            bodies[:], rows.joint[:], rows.tie[:] = keep
-            rows.joint[:, LAW] = law
-        else:
-            status = self.islands.step(bodies, dt)
-        return status
 
     def _scatter(self) -> None:
         bodies = self.bodies
@@ -162,10 +141,3 @@ class JointedSpace:
         book = self.ledger
         lost = book[DAMPED] + book[LIMITED] + book[CLAMPED] + book[PROJECTED]
         return float(book[MOTORS] + book[SUPPORTS] + book[CLOSED] - lost)
-
-
-def _stretch(c: pymunk.Constraint) -> float:
-    """The length of a spring, or the angle of a rotary one."""
-    if isinstance(c, pymunk.DampedSpring):
-        return (c.b.local_to_world(c.anchor_b) - c.a.local_to_world(c.anchor_a)).length
-    return c.a.angle - c.b.angle

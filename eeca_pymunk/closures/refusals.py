@@ -1,0 +1,40 @@
+"""Refusals: what closures and penalties that move lone disks do not move, each with a remedy."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..errors import UnsupportedFeature
+from ..layout import COUNT, FIRST, FRICTION, IM, OWNER
+
+if TYPE_CHECKING:
+    from ..space.world import World
+
+
+def check_disks(world: World, moving: int, mover: str) -> None:
+    """Refuse joints, what is not a lone disk or static, and friction between what is.
+
+    Args:
+        moving: shapes that move, the first rows of SHAPE.  mover: who moves them, for messages.
+    """
+    if world.joints is not None:
+        raise UnsupportedFeature(
+            f"{world.joints.items[0]}: constraints are not modelled by {mover}; remove it or use ep.EECA(space)"
+        )
+    owner = world.LINK[:moving, OWNER]
+    if moving > world.disks:
+        centred = (world.LINK[:moving, COUNT] == 1) & ~world.VERTEX[world.LINK[:moving, FIRST], :2].any(axis=1)
+        other = np.flatnonzero(~(centred & (world.BODY[owner, IM] > 0.0)))
+        i = int(other[0]) if len(other) else world.disks
+        raise UnsupportedFeature(
+            f"{world.shapes[i]} of {world.bodies.items[world.owner[i]]} moves and is not a disk about the centre of "
+            f"mass of a dynamic body with no other shape, which is all that {mover} moves; use ep.EECA(space)"
+        )
+    rough = np.flatnonzero(world.SHAPE[:, FRICTION] > 0.0)
+    if len(rough) > 1 and rough[0] < moving:
+        raise UnsupportedFeature(
+            f"{world.shapes[rough[0]]} has friction {world.SHAPE[rough[0], FRICTION]}, and so has a shape it may "
+            f"touch: {mover} does not model it; use ep.EECA(space), or set shape.friction = 0"
+        )

@@ -1,0 +1,160 @@
+"""Constraints: what pymunk's ten constraints are as rows of JOINT and TIE, and numbers that no joint can have.
+
+Anchors of pymunk stand relative to the body, ours to its centre of mass. A pin without length, a slide or rotary limit
+whose limits are one, and a groove that is a point hold as what they then are: pivots, pins, gears.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pymunk
+
+from ..arrays import FloatArray, IntArray
+from ..errors import UnsupportedFeature
+from ..joints.layout import (
+    ANCHOR_AX,
+    ANCHOR_BX,
+    DAMPING,
+    ERROR_BIAS,
+    GEAR,
+    GROOVE,
+    KIND,
+    LENGTH,
+    LOWER,
+    MAX_BIAS,
+    MAX_FORCE,
+    MOTOR,
+    NORMAL_X,
+    NOTCH,
+    OFFSET,
+    PHASE,
+    PIN,
+    PIVOT,
+    PUSH,
+    RATCHET,
+    RATE,
+    RATIO,
+    REST,
+    ROTARY_LIMIT,
+    ROTARY_SPRING,
+    SIDE,
+    SLIDE,
+    SOFT,
+    SPRING,
+    STIFFNESS,
+    TOOTH,
+    TOOTH_PHASE,
+    UPPER,
+)  # fmt: skip
+
+_SMALL = 1e-9  # a pin shorter than this, over its anchors' distances, is a pivot
+_KINDS = (
+    pymunk.PinJoint, pymunk.SlideJoint, pymunk.PivotJoint, pymunk.GrooveJoint, pymunk.DampedSpring,
+    pymunk.DampedRotarySpring, pymunk.RotaryLimitJoint, pymunk.RatchetJoint, pymunk.GearJoint, pymunk.SimpleMotor,
+)  # fmt: skip
+# Attributes that must be finite, and those that may be infinite but have a sign.
+_FINITE = (
+    "distance", "stiffness", "damping", "rest_length", "rest_angle", "phase", "ratchet", "ratio", "rate", "anchor_a",
+    "anchor_b", "groove_a", "groove_b",
+)  # fmt: skip
+_POSITIVE = ("max_force", "max_bias", "error_bias", "damping")
+
+
+def check_constraint(c: Any) -> None:
+    """Refuse numbers that no joint can have: ValueError with the remedy."""
+    if not isinstance(c, _KINDS):
+        raise UnsupportedFeature(f"{name(c)} is none of pymunk's constraints; remove it or use ep.Native(space)")
+    for attribute in _FINITE:
+        value = getattr(c, attribute, 0.0)
+        if not all(math.isfinite(v) for v in (value if isinstance(value, tuple) else (value,))):
+            raise ValueError(f"{name(c)} has {attribute} = {value}: set a finite one")
+    for attribute in _POSITIVE:
+        value = getattr(c, attribute, 0.0)
+        if not value >= 0.0:
+            raise ValueError(f"{name(c)} has {attribute} = {value}: set a value >= 0")
+    if not c.error_bias <= 1.0:
+        raise ValueError(f"{name(c)} has error_bias = {c.error_bias}: set a value from 0 to 1")
+    for attribute in ("ratio", "ratchet"):
+        if getattr(c, attribute, 1.0) == 0.0:
+            raise ValueError(f"{name(c)} has {attribute} = 0: set another one")
+    if isinstance(c, (pymunk.SlideJoint, pymunk.RotaryLimitJoint)):
+        if not c.min <= c.max or (c.min == c.max and math.isinf(c.min)):
+            raise ValueError(f"{name(c)} has min = {c.min} and max = {c.max}, which contradict: set min <= max")
+        if isinstance(c, pymunk.SlideJoint) and c.max < 0.0:
+            raise ValueError(f"{name(c)} has max = {c.max}, less than any distance: set a value >= 0")
+
+
+def name(c: Any) -> str:
+    """How messages call a constraint: pymunk gives it no number and no `repr` of its own."""
+    return f"{c} between {c.a} and {c.b}"
+
+
+def read(c: Any, joint: FloatArray, tie: IntArray) -> None:
+    """Fill in the parameters of one row of JOINT and TIE; `check_constraint` has passed it."""
+    joint[MAX_FORCE], joint[ERROR_BIAS], joint[MAX_BIAS] = c.max_force, c.error_bias, c.max_bias
+    tie[SOFT] = int(math.isfinite(c.max_force))
+    tie[SIDE] = 0
+    if hasattr(c, "anchor_a"):
+        joint[ANCHOR_AX : ANCHOR_AX + 2] = c.anchor_a - c.a.center_of_gravity
+    if hasattr(c, "anchor_b"):
+        joint[ANCHOR_BX : ANCHOR_BX + 2] = c.anchor_b - c.b.center_of_gravity
+    if isinstance(c, pymunk.PinJoint):
+        _pin(c.distance, joint, tie)
+    elif isinstance(c, pymunk.SlideJoint):
+        if c.min == c.max:
+            _pin(c.max, joint, tie)
+        else:
+            tie[KIND], joint[LOWER], joint[UPPER] = SLIDE, c.min, c.max
+    elif isinstance(c, pymunk.PivotJoint):
+        tie[KIND] = PIVOT
+    elif isinstance(c, pymunk.GrooveJoint):
+        _groove(c, joint, tie)
+    elif isinstance(c, pymunk.DampedSpring):
+        tie[KIND], joint[STIFFNESS], joint[DAMPING], joint[REST] = SPRING, c.stiffness, c.damping, c.rest_length
+        joint[PUSH] = 0.0
+    elif isinstance(c, pymunk.DampedRotarySpring):
+        tie[KIND], joint[STIFFNESS], joint[DAMPING], joint[REST] = ROTARY_SPRING, c.stiffness, c.damping, c.rest_angle
+        joint[PUSH] = 0.0
+    elif isinstance(c, pymunk.RotaryLimitJoint):
+        if c.min == c.max:
+            tie[KIND], joint[RATIO], joint[PHASE] = GEAR, 1.0, c.min
+        else:
+            tie[KIND], joint[LOWER], joint[UPPER] = ROTARY_LIMIT, c.min, c.max
+    elif isinstance(c, pymunk.RatchetJoint):
+        tie[KIND], joint[TOOTH], joint[TOOTH_PHASE] = RATCHET, c.ratchet, c.phase
+        joint[NOTCH] = _notch(c)
+    elif isinstance(c, pymunk.GearJoint):
+        tie[KIND], joint[RATIO], joint[PHASE] = GEAR, c.ratio, c.phase
+    elif isinstance(c, pymunk.SimpleMotor):
+        tie[KIND], joint[RATE] = MOTOR, c.rate
+
+
+def _pin(length: float, joint: FloatArray, tie: IntArray) -> None:
+    """A pin, or a pivot if it has no length: there a pin has no direction."""
+    scale = float(np.abs(joint[ANCHOR_AX : ANCHOR_AX + 4]).max())
+    tie[KIND] = PIVOT if length <= _SMALL * max(scale, 1e-300) or length == 0.0 else PIN
+    joint[LENGTH] = length
+
+
+def _groove(c: pymunk.GrooveJoint, joint: FloatArray, tie: IntArray) -> None:
+    """A groove, or a pivot if its ends are one point: there a groove has no direction."""
+    first, last = c.groove_a - c.a.center_of_gravity, c.groove_b - c.a.center_of_gravity
+    if c.groove_a == c.groove_b:
+        tie[KIND], joint[ANCHOR_AX : ANCHOR_AX + 2] = PIVOT, first
+        return
+    along = (last - first).normalized()
+    normal = along.perpendicular()
+    tie[KIND], joint[ANCHOR_AX : ANCHOR_AX + 2] = GROOVE, 0.0
+    joint[NORMAL_X : NORMAL_X + 2] = normal
+    joint[OFFSET], joint[LOWER], joint[UPPER] = normal.dot(first), along.dot(first), along.dot(last)
+
+
+def _notch(c: pymunk.RatchetJoint) -> float:
+    """The notch as native's step finds it: kept while the angle is short of it, else the last one passed."""
+    turned = c.b.angle - c.a.angle
+    if (c.angle - turned) * c.ratchet > 0.0:
+        return float(c.angle)
+    return math.floor((turned - c.phase) / c.ratchet) * c.ratchet + c.phase

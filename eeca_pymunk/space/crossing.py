@@ -1,0 +1,166 @@
+"""Crossing: the state of a space's bodies as it crosses the edge, in one batch call each way and step."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pymunk
+from pymunk import batch
+
+from ..arrays import FloatArray, IntArray
+from ..layout import (
+    BODY_ROW,
+    COG_X,
+    COG_Y,
+    DUE,
+    ECCENTRIC,
+    END,
+    END_COLUMNS,
+    EXTRA_COLUMNS,
+    FOUND,
+    KNOWN,
+    LEFT,
+    NOW,
+    PULL,
+    PUSH_TWIST,
+    PUSH_X,
+    SPECIAL,
+    SPEED,
+    STATE_COLUMNS,
+    STEERED,
+    STILL,
+)  # fmt: skip
+from ..transfer import FORCES, TURNS, lay, lay_rest
+from . import private
+from .bodies import Bodies
+
+_F = batch.BodyFields
+_STATE = _F.POSITION | _F.ANGLE | _F.VELOCITY | _F.ANGULAR_VELOCITY | _F.FORCE | _F.TORQUE
+
+
+class Crossing:
+    """What is read of the bodies of a space, and what is written to them.
+
+    Attributes:
+        bodies: in pymunk's order, N with the static ones.
+        BODY: (n, BODY_COLUMNS).  STATES, WALK, EXTRA, ENDS: what crosses the edge, see `layout.py`.
+        gather: reads the state of all bodies into STATES[NOW].
+        eccentric: whether the centre of mass of any body is not its origin.
+    """
+
+    def __init__(self, space: pymunk.Space, bodies: Bodies, BODY: FloatArray, row: IntArray, state: FloatArray) -> None:
+        """Room for `bodies` that have these rows (N,) of BODY and this (N, 9) state."""
+        self.space, self.bodies, self.BODY = space, bodies, BODY
+        N = len(bodies)
+        # One body more than there are: pymunk must never find this memory too small.
+        floats, ids = np.zeros(max(2 * N, N + 1) * STATE_COLUMNS), np.zeros(max(4 * N, N + 1), np.int64)
+        self.STATES: FloatArray = floats[: 2 * N * STATE_COLUMNS].reshape(2, N, STATE_COLUMNS)
+        self.WALK: IntArray = ids[: 4 * N].reshape(4, N)
+        self.EXTRA: FloatArray = np.zeros((N, EXTRA_COLUMNS))
+        self.ENDS: FloatArray = np.zeros(END_COLUMNS * N)
+        self.WALK[KNOWN] = bodies.ids
+        self.WALK[BODY_ROW] = row
+        self.WALK[SPECIAL] = STEERED * bodies.steered + ECCENTRIC * bodies.center_of_gravity.any(axis=1)
+        self.EXTRA[:, COG_X : COG_Y + 1] = bodies.center_of_gravity
+        self.STATES[LEFT] = np.where(bodies.static[:, None], state, np.nan)
+        self.gather = private.reader(space, _F.BODY_ID | _STATE, floats, ids)
+        self._restore = private.writer(space, _STATE, floats)
+        self.reset_forces = private.writer(space, _F.FORCE | _F.TORQUE, self.ENDS[PULL * N :])
+        # By whether angles and spins are to be written.
+        self._scatter = self._writers(_F.POSITION | _F.VELOCITY, END)
+        self._scatter_still = self._writers(_F.POSITION | _F.VELOCITY, STILL)
+        self._scatter_speed = self._writers(_F.VELOCITY, SPEED)
+        # pymunk places a body whose centre of mass is elsewhere by the angle it has: the second time by the new one.
+        self.eccentric = bool(bodies.center_of_gravity.any())
+
+    def _writers(self, fields: batch.BodyFields, start: int) -> dict[int, Callable[[], None]]:
+        """What writes the fields from the table that begins at `start` in ENDS, by the bit TURNS of a step's answer."""
+        N, turning = len(self.bodies), fields
+        for straight, turned in ((_F.POSITION, _F.ANGLE), (_F.VELOCITY, _F.ANGULAR_VELOCITY)):
+            if straight in fields:
+                turning |= turned
+        table = self.ENDS[start * N :]
+        return {0: private.writer(self.space, fields, table), TURNS: private.writer(self.space, turning, table)}
+
+    def is_current(self) -> bool:
+        """Whether what `gather` read is of these very bodies, and no static one was moved."""
+        if not np.array_equal(self.WALK[FOUND], self.WALK[KNOWN]):
+            return False
+        still = self.bodies.static
+        return np.array_equal(self.STATES[NOW, still, :3], self.STATES[LEFT, still, :3])
+
+    @property
+    def state(self) -> FloatArray:
+        """(N, 9) what `gather` read: position, angle, velocity, spin, force and torque of `bodies`."""
+        now: FloatArray = self.STATES[NOW]
+        return now
+
+    def push(self, change: FloatArray, dt: float) -> None:
+        """Let the bodies with velocity functions accelerate: velocities change by (k, 3) within dt."""
+        self.EXTRA[self.bodies.velocity_hooks, PUSH_X : PUSH_TWIST + 1] = change / dt
+
+    def put(self, end: FloatArray) -> int:
+        """Take (N, 9) as the end of the step in the place of what the step gave, whatever pymunk has now; its bits."""
+        self.STATES[LEFT] = end
+        return lay(self.STATES, self.WALK, self.ENDS, FORCES | TURNS)
+
+    def ended(self) -> FloatArray:
+        """(N, 9) the end of the step; forces are reset as pymunk does."""
+        state = self.state.copy()
+        moving = ~self.bodies.static
+        state[moving, :6], state[moving, 6:] = self.STATES[LEFT, moving, :6], 0.0
+        return state
+
+    def given(self) -> FloatArray:
+        """(N, 9) what the step has given, a copy."""
+        left: FloatArray = self.STATES[LEFT].copy()
+        return left
+
+    def give(self, given: FloatArray) -> None:
+        """Take (N, 9) as what the step before has given: bodies that differ from it have been moved since."""
+        self.STATES[LEFT] = given
+
+    def recall(self, before: Crossing) -> None:
+        """Take over what the step before has given from another crossing of the same space."""
+        for i, body in enumerate(self.bodies.items):
+            if body in before.bodies.row and not self.bodies.static[i]:
+                self.STATES[LEFT, i] = before.STATES[LEFT, before.bodies.row[body]]
+
+    def turning(self, status: int) -> int:
+        """Lay out the end of the step anew with angles and spins if they were left out; its bits."""
+        return status if status & TURNS else lay(self.STATES, self.WALK, self.ENDS, status | TURNS)
+
+    def left_as_read(self) -> None:
+        """Take what was just gathered as what the step gave, where pymunk rounds the places of bodies written to it."""
+        now, left = self.STATES[NOW, :, :2], self.STATES[LEFT, :, :2]
+        size = np.abs(now).max(axis=1) + np.abs(self.bodies.center_of_gravity).max(axis=1)
+        near = np.abs(now - left).max(axis=1) <= 1e-14 * size
+        left[near] = now[near]
+
+    def void_forecasts(self) -> None:
+        """Let the next step look at all bodies as if they had been moved, though they are where it left them."""
+        self.BODY[:, DUE] = -np.inf
+
+    def scatter(self, status: int) -> None:
+        """Write poses and velocities at the end of the step to the space, angles and spins if the bit TURNS is set."""
+        self._scatter[status & TURNS]()
+        if self.eccentric:
+            self._scatter[status & TURNS]()
+
+    def scatter_still(self, status: int) -> None:
+        """Write the poses, and velocity 0; `scatter_speed` must follow."""
+        lay_rest(self.STATES, self.ENDS, status)
+        self._scatter_still[status & TURNS]()
+        if self.eccentric:
+            self._scatter_still[status & TURNS]()
+
+    def scatter_speed(self, status: int) -> None:
+        """Write the velocities."""
+        self._scatter_speed[status & TURNS]()
+
+    def restore(self) -> None:
+        """Write back what `gather` read: the space as it was."""
+        self._restore()
+        if self.eccentric:
+            self._restore()

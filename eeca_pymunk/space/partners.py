@@ -1,0 +1,73 @@
+"""Partners: bodies at the other end of joints that have no row of their own among the bodies that a step moves.
+
+Static bodies, `space.static_body`, and bodies outside the space, whatever their type: joints act from where they are
+and do not move them. A kinematic one outside the space that the user gives a velocity holds with it, as under native;
+it gets nowhere by itself.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+import pymunk
+
+from ..arrays import FloatArray, IntArray
+from ..errors import NotFiniteError
+from ..layout import BODY_COLUMNS, SPIN, X
+
+_MOTION = slice(X, SPIN + 1)
+
+
+class Partners:
+    """The rows of some bodies.
+
+    Attributes:
+        items: the bodies, by row.  PARTNER: (x, BODY_COLUMNS) their poses and, of kinematic ones, velocities.
+    """
+
+    def __init__(self, items: Sequence[pymunk.Body], space: pymunk.Space, past: Partners | None = None) -> None:
+        self.items = tuple(items)
+        self.PARTNER: FloatArray = np.zeros((len(self.items), BODY_COLUMNS))
+        self._known: list[tuple[float, ...] | None] = [None] * len(self.items)
+        if past is not None:
+            before = {body: i for i, body in enumerate(past.items)}
+            for i, body in enumerate(self.items):
+                if body in before:
+                    self._known[i] = past._known[before[body]]
+                    self.PARTNER[i] = past.PARTNER[before[body]]
+        # Static bodies of the space are looked after where the state of all its bodies is read.
+        self._outside = [i for i, body in enumerate(self.items) if body.space is not space]
+        self.changed: IntArray = self._read(range(len(self.items)))
+
+    def read(self) -> IntArray:
+        """Look where those are that may have moved; the rows of those that have."""
+        return self._read(self._outside)
+
+    def _read(self, rows: Sequence[int]) -> IntArray:
+        changed = []
+        for i in rows:
+            body = self.items[i]
+            (x, y), angle, (vx, vy), spin = body.position, body.angle, body.velocity, body.angular_velocity
+            if body.body_type != pymunk.Body.KINEMATIC:
+                vx = vy = spin = 0.0
+            state = (x, y, angle, vx, vy, spin, *body.center_of_gravity)
+            if state == self._known[i]:
+                continue
+            if not all(math.isfinite(v) for v in state):
+                raise NotFiniteError(
+                    f"{body}, which a constraint holds, has position {body.position}, angle {angle}, velocity "
+                    f"{body.velocity} and angular velocity {spin}: set finite values before stepping"
+                )
+            changed.append(i)
+            self._known[i] = state
+            c, s, kx, ky = math.cos(angle), math.sin(angle), *body.center_of_gravity
+            self.PARTNER[i, _MOTION] = (x + c * kx - s * ky, y + s * kx + c * ky, angle, vx, vy, spin)
+        return np.array(changed, np.int64)
+
+    def motion(self, i: int) -> tuple[float, float, float, float, float, float]:
+        """Position, angle, velocity and spin of one, as last read."""
+        known = self._known[i]
+        assert known is not None  # read when these rows were made
+        return known[:6]  # type: ignore[return-value]

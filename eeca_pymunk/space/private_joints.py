@@ -1,0 +1,80 @@
+"""Private names of pymunk's constraints, one function each; see `private`, which looks them up."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+import pymunk
+
+OF_LIBRARY = (
+    "cpConstraintGetMaxForce", "cpConstraintSetMaxForce", "cpConstraintGetPreSolveFunc", "cpConstraintSetPreSolveFunc",
+    "cpConstraintGetPostSolveFunc", "cpConstraintSetPostSolveFunc",
+)  # fmt: skip
+BEFORE, AFTER, FORCE, TORQUE = "_pre_solve_func", "_post_solve_func", "_force_func", "_torque_func"
+OF_CONSTRAINT = ("_constraint", BEFORE, AFTER)
+OF_SPRINGS = ((pymunk.DampedSpring, FORCE), (pymunk.DampedRotarySpring, TORQUE))
+
+
+def replace_functions(
+    constraint: pymunk.Constraint, before: Callable[..., None] | None, after: Callable[..., None] | None
+) -> None:
+    """Let pymunk call these in the place of the constraint's `pre_solve` and `post_solve`.
+
+    The public setters would also tell Chipmunk, and who watches the attributes of constraints.
+    """
+    constraint.__dict__["_pre_solve_func"], constraint.__dict__["_post_solve_func"] = before, after
+
+
+@contextmanager
+def inert(constraints: Iterable[Any]) -> Iterator[None]:
+    """Within, these constraints push with no force in pymunk's steps, which forget what they pushed with before."""
+    lib = _library()[1]
+    limit, read = lib.cpConstraintSetMaxForce, lib.cpConstraintGetMaxForce
+    held = [(one._constraint, read(one._constraint)) for one in constraints]
+    try:
+        for c, _ in held:
+            limit(c, 0.0)
+        yield
+    finally:
+        for c, most in held:
+            limit(c, most)
+
+
+@contextmanager
+def silent(constraints: Iterable[Any]) -> Iterator[None]:
+    """Within, pymunk calls neither `pre_solve` nor `post_solve` of these constraints."""
+    ffi, lib = _library()
+    functions: list[tuple[Any, Any, Any]] = []
+    try:
+        for one in constraints:
+            c = one._constraint
+            functions.append((c, lib.cpConstraintGetPreSolveFunc(c), lib.cpConstraintGetPostSolveFunc(c)))
+            lib.cpConstraintSetPreSolveFunc(c, ffi.NULL)
+            lib.cpConstraintSetPostSolveFunc(c, ffi.NULL)
+        yield
+    finally:
+        for c, before, after in functions:
+            lib.cpConstraintSetPreSolveFunc(c, before)
+            lib.cpConstraintSetPostSolveFunc(c, after)
+
+
+@contextmanager
+def with_laws(springs: Sequence[Any], laws: Sequence[Callable[[Any, float], float]]) -> Iterator[None]:
+    """Within, these springs, which have a force or torque function of their own, push by other laws."""
+    names = [FORCE if isinstance(one, pymunk.DampedSpring) else TORQUE for one in springs]
+    own = [one.__dict__[name] for one, name in zip(springs, names, strict=True)]
+    try:
+        for one, name, law in zip(springs, names, laws, strict=True):
+            one.__dict__[name] = law
+        yield
+    finally:
+        for one, name, function in zip(springs, names, own, strict=True):
+            one.__dict__[name] = function
+
+
+def _library() -> tuple[Any, Any]:
+    from pymunk._chipmunk_cffi import ffi, lib  # `private` says what to do if it is not there
+
+    return ffi, lib
