@@ -47,6 +47,7 @@ from .layout import (
     EVENTS,
     EXTERNAL,
     FORECASTS,
+    FRICTIONAL,
     GRAVITY_X,
     GRAVITY_Y,
     HEAP,
@@ -67,6 +68,7 @@ from .layout import (
     PULLED,
     PUSHES,
     PUSHES_FULL,
+    RESTITUTION,
     ROOT,
     SOLVES,
     STALE,
@@ -176,6 +178,11 @@ def close(A: Scene, WALK: IntArray) -> None:
             if BODY[i, II] > 0.0:
                 work += twist * (BODY[i, ANGLE] - BEGAN[i, 2]) / BODY[i, II]
             PAR[LEDGER + EXTERNAL] += work
+    # What friction gives back counts against restitution, and the other way round.
+    for one, other in ((RESTITUTION, FRICTIONAL), (FRICTIONAL, RESTITUTION)):
+        if PAR[LEDGER + one] < 0.0 and PAR[LEDGER + other] > 0.0:
+            PAR[LEDGER + other] += PAR[LEDGER + one]
+            PAR[LEDGER + one] = 0.0
     PAR[AFTER] = total(A) + PAR[STORED]
     left = PAR[LEFT_OVER]
     if left != 1.0:

