@@ -37,9 +37,10 @@ from .scratch import (
     LAM,
     MEASURE,
     MOBILITY,
-    POSE,
     SAVED,
+    SHIFT,
     TOTAL,
+    TRAVEL,
     WAY,
 )
 from .springs import held_energy
@@ -109,7 +110,7 @@ def close_ledger(local: FloatArray, bodies: int, ledger: FloatArray) -> None:
         for c in range(3):
             if local[i, MOBILITY + c] > 0.0:
                 before, after = local[i, SAVED + 3 + c], local[i, BEFORE + c]
-                way = local[i, POSE + c] - local[i, SAVED + c]
+                way = local[i, TRAVEL + c] - local[i, SHIFT + c]
                 gained += (0.5 * (after * after - before * before) - local[i, FREE + c] * way) / local[i, MOBILITY + c]
     known = ledger[MOTORS] + ledger[SUPPORTS] + ledger[CLOSED] - ledger[STORED]
     known -= ledger[DAMPED] + ledger[LIMITED] + ledger[CLAMPED] + ledger[PROJECTED]

@@ -48,6 +48,7 @@ from .scratch import (
     POSE,
     POSES,
     SAVED,
+    SHIFT,
     SIZE,
     TARGET,
     TOTAL,
@@ -204,6 +205,7 @@ def book_closing(
         for c in range(3):
             if local[i, MOBILITY + c] > 0.0:
                 way = local[i, POSE + c] - local[i, SAVED + c]
+                local[i, SHIFT + c] = way
                 ledger[CLOSED] -= local[i, FREE + c] * way / local[i, MOBILITY + c]
     for k in range(joints):
         for r in range(link[k, L_ROWS]):

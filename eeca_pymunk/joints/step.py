@@ -61,6 +61,7 @@ from .scratch import (
     POSE,
     POSES,
     SAVED,
+    SHIFT,
     SIN,
     SPEEDS,
     STEP,
@@ -81,7 +82,7 @@ def save(local: FloatArray, bodies: int) -> None:
         for c in range(6):
             local[i, SAVED + c] = local[i, POSE + c]
         for c in range(3):
-            local[i, TRAVEL + c] = 0.0
+            local[i, TRAVEL + c] = local[i, SHIFT + c]
 
 
 @uncounted
@@ -91,7 +92,7 @@ def back(local: FloatArray, bodies: int) -> None:
         for c in range(6):
             local[i, POSE + c] = local[i, SAVED + c]
         for c in range(3):
-            local[i, TRAVEL + c] = 0.0
+            local[i, TRAVEL + c] = local[i, SHIFT + c]
         local[i, COS], local[i, SIN] = np.cos(local[i, POSE + 2]), np.sin(local[i, POSE + 2])
 
 
@@ -157,6 +158,9 @@ def island_step(
     for c in range(LEDGER_COLUMNS):
         ledger[c] = 0.0
     needs = read_joints(joint, tie, hinge, link, joints, h, length, loops)
+    for i in range(bodies):
+        for c in range(3):
+            local[i, SHIFT + c] = 0.0
     save(local, bodies)
     if needs % 2 == 1:
         look(joint, hinge, link, joints, local, node, bodies, stiff)
