@@ -132,13 +132,14 @@ def prepare() -> None:
     if not any(folder.rglob("*.nbi")) and (sys.stderr.isatty() or sys.flags.verbose):
         print("compiling eeca_pymunk's kernels, once", file=sys.stderr)
     before = numba.config.CACHE_DIR
+    whole, part = pipelines()
     try:
         for one in fresh:
             options = {**_OPTIONS, **one.options}
             numba.config.CACHE_DIR = str(folder / "python")
-            one.run = numba.njit(**options)(one.python)
+            one.run = numba.njit(**{**options, **whole})(one.python)
             numba.config.CACHE_DIR = str(folder / "kernels")
-            one.inner = numba.njit(**options, no_cpython_wrapper=True, no_cfunc_wrapper=True)(one.python)
+            one.inner = numba.njit(**{**options, **part}, no_cpython_wrapper=True, no_cfunc_wrapper=True)(one.python)
     finally:
         numba.config.CACHE_DIR = before
 
