@@ -18,6 +18,8 @@ from typing import Any, Generic, ParamSpec, TypeVar
 
 import numpy as np
 
+from .linking import pipelines
+
 P = ParamSpec("P")
 R = TypeVar("R")
 _PACKAGE = Path(__file__).parent
