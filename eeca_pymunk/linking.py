@@ -10,6 +10,7 @@ after a longer wait.
 
 from __future__ import annotations
 
+import functools
 from typing import Any
 
 _NEEDS = (
@@ -23,6 +24,7 @@ _NEEDS = (
 )
 
 
+@functools.cache
 def pipelines() -> tuple[dict[str, Any], dict[str, Any]]:
     """Options of numba.njit for a kernel that Python calls, and for one that is part of others; both empty where numba
     is not as known."""
