@@ -74,7 +74,16 @@ def pipelines() -> tuple[dict[str, Any], dict[str, Any]]:
                 if id(one) not in found:
                     found[id(one)] = one
                     waiting += one._linking_libraries if isinstance(one, Part) else ()
-            self._linking_libraries = list(found.values())
+            parts = [one for one in found.values() if isinstance(one, Part)]
+            home = {f.name: one for one in parts for f in one._final_module.functions if not f.is_declaration}
+            # LLVM takes in what is asked for when it links, and nothing else: callers come before what they call.
+            asked = True
+            while asked:
+                names = [f.name for f in self._final_module.functions if f.is_declaration and f.name in home]
+                for one in {id(home[name]): home[name] for name in names}.values():
+                    self._final_module.link_in(one._get_module_for_linking(), preserve=True)
+                asked = bool(names)
+            self._linking_libraries = [one for one in found.values() if not isinstance(one, Part)]
             super().finalize()
 
     class PartCompiler(compiler.Compiler):  # type: ignore[misc]
