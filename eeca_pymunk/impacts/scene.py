@@ -48,8 +48,8 @@ from .layout import (
     UNMET,
     Scene,
 )  # fmt: skip
-from .step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, resume, step
-from .together import resume_together, step_together
+from .step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, step
+from .together import step_together
 
 if TYPE_CHECKING:
     import pymunk
@@ -99,11 +99,11 @@ class EventLoop:
     ) -> int:  # fmt: skip
         """See `step.step`; a negative answer is one of `transfer.py`."""
         disks, lossy = self.disks, self.lossy
-        status = step(self.scene, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, disks, lossy)
+        status = step(self.scene, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, disks, lossy, -1)
         while status <= ROOM_FOR_LISTS:
             self._grow(status)
             bits = FORCES if STATES[READ, :, 6:].any() else 0
-            status = resume(self.scene, STATES, WALK, EXTRA, ENDS, disks, lossy, bits)
+            status = step(self.scene, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, disks, lossy, bits)
         return status
 
     def _grow(self, wish: int) -> None:
@@ -190,9 +190,9 @@ class Together(EventLoop):
     ) -> int:  # fmt: skip
         """See `together.step_together`; a negative answer is one of `transfer.py`."""
         usual = self._usual
-        status = step_together(self.scene, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, usual)
+        status = step_together(self.scene, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, usual, -1)
         while status <= ROOM_FOR_LISTS:
             self._grow(status)
             bits = FORCES if STATES[READ, :, 6:].any() else 0
-            status = resume_together(self.scene, STATES, WALK, EXTRA, ENDS, usual, bits)
+            status = step_together(self.scene, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, usual, bits)
         return status

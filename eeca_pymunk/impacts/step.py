@@ -238,17 +238,20 @@ def resume(
 @kernel
 def step(
     A: Scene, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
-    left: float, disks: int, lossy: bool,
+    left: float, disks: int, lossy: bool, bits: int,
 ) -> int:  # fmt: skip
     """From the states that were read to those that are to be written, see `transfer.py`.
 
     Args:
         dt: time, > 0.  gx, gy: gravity, length/time².  left: what half the step's damping leaves of velocities.
         disks: the first so many rows of BODY are lone disks.  lossy: whether any shape's elasticity is below 1.
+        bits: negative for a new step; those of one that wished for room and goes on.
 
     Returns:
         the bits EVENTS, FORCES, TURNS, a negative code of `transfer.py`, or a wish for room.
     """
+    if bits >= 0:
+        return resume(A, STATES, WALK, EXTRA, ENDS, disks, lossy, bits)
     status = take(STATES, WALK, EXTRA, A.BODY, gx, gy, left)
     if status < 0:
         return status

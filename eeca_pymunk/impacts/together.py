@@ -168,13 +168,15 @@ def resume_together(
 @kernel
 def step_together(
     A: Scene, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
-    left: float, USUAL: FloatArray,
+    left: float, USUAL: FloatArray, bits: int,
 ) -> int:  # fmt: skip
     """From the states that were read to those that are to be written: arguments and answer as of `step.step`.
 
     Args:
         USUAL: (k,) margins of shapes that are not fast, length.
     """
+    if bits >= 0:
+        return resume_together(A, STATES, WALK, EXTRA, ENDS, USUAL, bits)
     status = take(STATES, WALK, EXTRA, A.BODY, gx, gy, left)
     if status < 0:
         return status

@@ -85,6 +85,7 @@ def lift(
     part = min(1.0, _MOST / far) if far > 0.0 else 0.0
     if cost * part > 0.5 * budget:
         part = 0.5 * budget / cost
+    HELD = np.zeros(len(groups.COMPONENT))
     for _ in range(4):
         spent = 0.0
         NEW = END.copy()
@@ -94,14 +95,15 @@ def lift(
         for g in range(len(groups.COMPONENT)):
             s = groups.COMPONENT[g]
             if s >= 0:
-                spent += close_joints(A, J, s, END, NEW, V, isle.IM, isle.II, end, h)
+                HELD[g] = close_joints(A, J, s, END, NEW, V, isle.IM, isle.II, end, h)
+                spent += HELD[g]
         for q in range(n):
             spent -= (isle.ACC[q, 0] * (NEW[q, 0] - END[q, 0]) + isle.ACC[q, 1] * (NEW[q, 1] - END[q, 1])) / isle.IM[q]
         if spent <= budget:
             for g in range(len(groups.COMPONENT)):
                 s = groups.COMPONENT[g]
                 if s >= 0:
-                    J.STEPPED[s, STORED] += close_joints(A, J, s, END, NEW, V, isle.IM, isle.II, end, h)
+                    J.STEPPED[s, STORED] += HELD[g]
             END[:] = NEW
             return spent
         part *= 0.25

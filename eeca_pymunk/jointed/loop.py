@@ -157,9 +157,11 @@ def resume_jointed(
 @kernel
 def step_jointed(
     A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float,
-    gy: float, left: float, disks: int, lossy: bool,
+    gy: float, left: float, disks: int, lossy: bool, bits: int,
 ) -> int:  # fmt: skip
     """From the states that were read to those that are to be written: arguments and answer as `..impacts.step.step`."""
+    if bits >= 0:
+        return resume_jointed(A, J, STATES, WALK, EXTRA, ENDS, disks, lossy, bits)
     feel(A, J, STATES, WALK)
     status = take(STATES, WALK, EXTRA, A.BODY, gx, gy, left)
     if status < 0:

@@ -31,8 +31,8 @@ from ..layout import NOW as READ
 from ..pairs.layout import MARGIN
 from ..transfer import FORCES
 from .layout import COMPONENTS, ORDER, STEPPED_COLUMNS, TALLY_LENGTH, Joints
-from .loop import resume_jointed, step_jointed
-from .together import resume_together_jointed, step_together_jointed
+from .loop import step_jointed
+from .together import step_together_jointed
 
 
 class JointedLoop(EventLoop):
@@ -93,15 +93,13 @@ class JointedLoop(EventLoop):
     ) -> int:  # fmt: skip
         """See `loop.step_jointed`; a negative answer is one of `..transfer`."""
         disks, lossy, usual = self.disks, self.lossy, self._usual
-        if self._together:
-            status = step_together_jointed(self.scene, self.joints, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, usual)
-        else:
-            status = step_jointed(self.scene, self.joints, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, disks, lossy)
-        while status <= ROOM_FOR_LISTS:
+        edge, bits = (STATES, WALK, EXTRA, ENDS, dt, gx, gy, left), -1
+        while True:
+            if self._together:
+                status = step_together_jointed(self.scene, self.joints, *edge, usual, bits)
+            else:
+                status = step_jointed(self.scene, self.joints, *edge, disks, lossy, bits)
+            if status > ROOM_FOR_LISTS:
+                return status
             self._grow(status)
             bits = FORCES if STATES[READ, :, 6:].any() else 0
-            if self._together:
-                status = resume_together_jointed(self.scene, self.joints, STATES, WALK, EXTRA, ENDS, usual, bits)
-            else:
-                status = resume_jointed(self.scene, self.joints, STATES, WALK, EXTRA, ENDS, disks, lossy, bits)
-        return status

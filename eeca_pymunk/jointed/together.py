@@ -83,10 +83,12 @@ def resume_together_jointed(
 @kernel
 def step_together_jointed(
     A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float,
-    gy: float, left: float, USUAL: FloatArray,
+    gy: float, left: float, USUAL: FloatArray, bits: int,
 ) -> int:  # fmt: skip
     """From the states that were read to those that are to be written: arguments and answer as
     `..impacts.together.step_together`."""
+    if bits >= 0:
+        return resume_together_jointed(A, J, STATES, WALK, EXTRA, ENDS, USUAL, bits)
     feel(A, J, STATES, WALK)
     status = take(STATES, WALK, EXTRA, A.BODY, gx, gy, left)
     if status < 0:
