@@ -148,6 +148,7 @@ class PackedStepper(Stepper):
         given = world.given()
         try:
             if world.joints is not None:
+                world.joints.refresh()
                 hooks.before()
                 world.gather()
             if len(hooks.velocity):
