@@ -230,22 +230,22 @@ def test_functions_are_called_once_a_step_with_what_belongs_to_it(shapes: int, s
     assert rope.max_force == math.inf
 
 
+def notes(calls: list[str], name: str) -> Callable[..., None]:
+    return lambda *_: calls.append(name)
+
+
 def test_functions_come_in_native_s_order_beside_collisions() -> None:
     found = []
     for ours in (False, True):
-        space, calls = empty(0.0), []
+        space = empty(0.0)
+        calls: list[str] = []
         space.collision_slop = 0.0
         a, b = body(space, 1.0, 1.0, (0.0, 0.0)), body(space, 1.0, 1.0, (0.95, 0.0))
         space.add(pymunk.Circle(a, 0.5), pymunk.Circle(b, 0.5))
         pin = pymunk.PinJoint(a, space.static_body, (0, 0), (-5.0, 0.0))
-        pin.pre_solve = lambda c, s, calls=calls: calls.append("joint before")
-        pin.post_solve = lambda c, s, calls=calls: calls.append("joint after")
+        pin.pre_solve, pin.post_solve = (notes(calls, name) for name in ("joint before", "joint after"))
         space.add(pin)
-        space.on_collision(
-            begin=lambda *_, calls=calls: calls.append("begin"),
-            pre_solve=lambda *_, calls=calls: calls.append("pre"),
-            post_solve=lambda *_, calls=calls: calls.append("post"),
-        )
+        space.on_collision(begin=notes(calls, "begin"), pre_solve=notes(calls, "pre"), post_solve=notes(calls, "post"))
         step = ep.EECA(space).step if ours else space.step
         step(DT)
         found.append(calls)
@@ -370,7 +370,7 @@ def test_only_joints_of_partners_that_move_are_touched() -> None:
             world.gather()
         assert world.joints is not None
         world.joints.look(world.state, world.bodies.row, DT)
-        return world.joints.tie[:, TOUCHED].tolist()
+        return [int(mark) for mark in world.joints.tie[:, TOUCHED]]
 
     assert touched() == [0, 0, 0]
     hand.position = (1.0, 0.01)
