@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from .arrays import FloatArray
+from .energy.ledger import AFTER, DAMPED
 from .errors import NotFiniteError
 from .report import Details, StepReport
 from .space.checks import check_ignored
@@ -90,7 +91,7 @@ class PackedStepper(Stepper):
         if world.hooked:
             return self._hooked_step(world, dt)
         world.gather()
-        left = 1.0 if world.damping == 1.0 else world.damping ** (0.5 * dt)
+        left = world.left(dt)
         status = self.advance(world, dt, left)
         if status in (OTHER_BODIES, MOVED_STATIC):
             world = self._look(anew=True)
@@ -112,20 +113,16 @@ class PackedStepper(Stepper):
             self._undo(world, world.state)
             raise
         self.time += dt
-        if status & EVENTS:
-            return self._report(world, dt)
-        return StepReport(self.time, world.empty, book=self.book())
+        report = self._made(world, dt, status)
+        if self.sync:
+            self._sync.call_back()
+        return report
 
     def _rest(self, world: World, dt: float, status: int) -> None:
         """Write the end of the step with a rest step at it."""
         world.scatter_still(status)
-        end = world.ended() if self._sync.calls_back() else None
         self._sync.rest(dt)
-        if end is not None:
-            # Callbacks may have added or removed bodies, so that rows are not theirs any more.
-            world.bodies.scatter(end)
-        else:
-            world.scatter_speed(status)
+        world.scatter_speed(status)
 
     def _undo(self, world: World, state: FloatArray) -> None:
         """Put the space back where it was."""
@@ -140,8 +137,9 @@ class PackedStepper(Stepper):
             world.gather()
         bodies, state = world.bodies, world.state.copy()
         bodies.check_finite(state)
-        hooks, left = Hooks(self.space, bodies), world.damping ** (0.5 * dt)
+        hooks, left = Hooks(self.space, bodies), world.left(dt)
         rehearsal: Rehearsal | None = None
+        lost = 0.0
         try:
             if len(hooks.velocity):
                 world.push(hooks.change(dt), dt)
@@ -154,6 +152,8 @@ class PackedStepper(Stepper):
             world.forget()
             status = self._checked(world, dt, self.advance(world, dt, left))
             end = world.ended()
+            if world.damping == 0.0:
+                lost = world.stop(end)
             if rehearsal is not None:
                 end += after
             if len(hooks.position):
@@ -174,9 +174,11 @@ class PackedStepper(Stepper):
             self._undo(world, state)
             raise
         self.time += dt
-        report = self._report(world, dt) if status & EVENTS else StepReport(self.time, world.empty, book=self.book())
+        report = self._made(world, dt, status, lost)
         if rehearsal is not None:
             rehearsal.finish(bodies)
+        elif self.sync:
+            self._sync.call_back()
         return report
 
     def _checked(self, world: World, dt: float, status: int) -> int:
@@ -196,11 +198,16 @@ class PackedStepper(Stepper):
             world = self._look()
         return describe(world)
 
-    def _report(self, world: World, dt: float) -> StepReport:
+    def _made(self, world: World, dt: float, status: int, lost: float = 0.0) -> StepReport:
+        """The report of the step; `lost` is the energy that damping has taken since."""
+        book = self.book()
+        if lost and book is not None:
+            book[DAMPED] += lost
+            book[AFTER] -= lost
+        if not status & EVENTS:
+            return StepReport(self.time, world.empty, book=book)
         lock, converged, iterations = self.outcome()
-        return StepReport(
-            self.time, self.details(world, dt), iterations, lock=lock, converged=converged, book=self.book()
-        )  # fmt: skip
+        return StepReport(self.time, self.details(world, dt), iterations, lock=lock, converged=converged, book=book)
 
     def _look(self, anew: bool = False) -> World:
         """The space as it is now, checked; with all its shapes if `anew` or if some came or went."""

@@ -108,16 +108,22 @@ def step_alone(space: pymunk.Space, dt: float) -> None:
 
 def finish_step(space: pymunk.Space) -> None:
     """Add and remove what callbacks of the last step asked for, and call its post-step callbacks."""
-    added, removed = list(space._add_later), list(space._remove_later)
+    added = list(space._add_later)
     space._add_later.clear()
-    space._remove_later.clear()
     space.add(*added)
-    for thing in reversed(removed):
-        space.remove(thing)
-    callbacks = dict(space._post_step_callbacks)
-    for callback in callbacks.values():
-        callback(space)
+    # What is removed while it touches something calls `separate`, which may remove more, and the same again.
+    remove, gone = getattr(space, "_remove", space.remove), set()
+    while space._remove_later:
+        things = list(space._remove_later)
+        space._remove_later.clear()
+        for thing in reversed(things):
+            if thing not in gone:
+                gone.add(thing)
+                remove(thing)
+    callbacks = list(space._post_step_callbacks.values())
     space._post_step_callbacks.clear()
+    for callback in callbacks:
+        callback(space)
 
 
 def watch(space: pymunk.Space) -> Callable[[], bool]:
@@ -213,8 +219,8 @@ def shapes_ever(space: pymunk.Space) -> int:
 
 
 def waits(space: pymunk.Space) -> bool:
-    """Whether callbacks wait for the end of pymunk's next step."""
-    return bool(space._post_step_callbacks)
+    """Whether anything waits for the end of a step."""
+    return bool(space._post_step_callbacks or space._add_later or space._remove_later)
 
 
 check()

@@ -1,9 +1,9 @@
 """Sync: pymunk's own shapes and broad phase where a step has put the bodies, for its queries and drawing.
 
-Two ways, both by public calls. A *rest step*, pymunk's own step with everything at rest, moves nothing, renews the
-broad phase, forgets old contacts, notes dt and calls post-step callbacks. *Reindexing* moves the shapes of one body
-after the other; it costs less for a few bodies, and leaves all the rest as it is. In a spatial hash it leaves handles
-behind, which the next rest step clears, so there is one every so many steps.
+Two ways. A *rest step*, pymunk's own step with everything at rest, moves nothing, renews the broad phase, forgets old
+contacts, and notes dt. *Reindexing* moves the shapes of one body after the other; it costs less for a few bodies, and
+leaves all the rest as it is. In a spatial hash it leaves handles behind, which the next rest step clears, so there is
+one every so many steps. Post-step callbacks come after either, when bodies have their velocities.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def rest_step(space: pymunk.Space, dt: float) -> None:
     gravity, iterations, bias = space.gravity, space.iterations, space.collision_bias
     try:
         space.gravity, space.iterations, space.collision_bias = (0.0, 0.0), 1, 1.0
-        space.step(dt)
+        private.step_alone(space, dt)
     finally:
         space.gravity, space.iterations, space.collision_bias = gravity, iterations, bias
 
@@ -46,11 +46,10 @@ class Sync:
         self._renewed, self._dt, self._left = -1, 0.0, 0
 
     def reindexes(self, dt: float) -> bool:
-        """Whether reindexing does for this step: pymunk has taken no step since our last rest step, which knows this
-        dt, and no callback waits for the end of one."""
+        """Whether reindexing does for this step: pymunk took no step since our last rest step, which knows this dt."""
         if self._moving is None or dt != self._dt or self._left == 0:
             return False
-        return self._timestamp() == self._renewed and not private.waits(self.space)
+        return self._timestamp() == self._renewed
 
     def reindex(self) -> None:
         """Move the shapes to where their bodies are."""
@@ -59,9 +58,10 @@ class Sync:
         for body in self._moving or ():
             move(body)
 
-    def calls_back(self) -> bool:
-        """Whether a rest step will call post-step callbacks."""
-        return private.waits(self.space)
+    def call_back(self) -> None:
+        """Do what waits for the end of a step: post-step callbacks."""
+        if private.waits(self.space):
+            private.finish_step(self.space)
 
     def rest(self, dt: float) -> None:
         """A rest step; all bodies must have velocity 0."""

@@ -38,7 +38,7 @@ from ..layout import (
 from ..report import nothing
 from ..transfer import FORCES, TURNS, lay, lay_rest, take
 from . import private
-from .bodies import Bodies
+from .bodies import ANGULAR_VELOCITY, VELOCITY, Bodies
 from .checks import check_shape, check_space, rough_pair
 from .packing import Record, pack, read
 from .shapes import Rules
@@ -71,7 +71,8 @@ class World:
         STATES, WALK, EXTRA, ENDS: what crosses the edge, see `layout.py`.
         gravity: length/time².  damping: pymunk's, 1 is none.
         ignores: whether there is friction that is ignored.  filtered: whether any shape has a filter.
-        collisions: whether the space has collision handlers.  hooked: whether it or its bodies have functions.
+        collisions: whether the space has collision handlers.  hooked: whether it or its bodies have functions, or
+            velocities are gone after each step.
         rules: what collision handlers decided about pairs of rows of SHAPE for this step.
         empty: the arrays of a report without contacts.
     """
@@ -153,7 +154,8 @@ class World:
         self.collisions = bool(private.handlers(self.space))
         self.rules = Rules()
         bodies = self.bodies
-        self.hooked = self.collisions or len(bodies.velocity_hooks) > 0 or len(bodies.position_hooks) > 0
+        functions = len(bodies.velocity_hooks) > 0 or len(bodies.position_hooks) > 0
+        self.hooked = self.collisions or functions or self.damping == 0.0
         self._contents = self._count()
         self.current = private.watch(self.space)
 
@@ -181,6 +183,24 @@ class World:
         """(N, 9) what `gather` read: position, angle, velocity, spin, force and torque of `bodies`."""
         now: FloatArray = self.STATES[NOW]
         return now
+
+    def left(self, dt: float) -> float:
+        """What half a step's damping leaves of velocities; all where nothing is left at the end, see `stop`."""
+        return self.damping ** (0.5 * dt) if self.damping > 0.0 else 1.0
+
+    def stop(self, end: FloatArray) -> float:
+        """Take all velocities from the (N, 9) `end`, as damping 0 does; the energy that is lost.
+
+        Within the step bodies keep them, else nothing would ever move: pymunk moves bodies before it damps them.
+        """
+        bodies = self.bodies
+        stops = bodies.dynamic & ~bodies.steered
+        speed, spin = end[stops, VELOCITY], end[stops, ANGULAR_VELOCITY]
+        turning = np.where(spin == 0.0, 0.0, bodies.moment[stops])
+        turning[np.isinf(turning)] = 0.0
+        lost = 0.5 * float(np.sum(bodies.mass[stops] * (speed * speed).sum(axis=1)) + np.sum(turning * spin * spin))
+        end[stops, VELOCITY], end[stops, ANGULAR_VELOCITY] = 0.0, 0.0
+        return lost
 
     def push(self, change: FloatArray, dt: float) -> None:
         """Let the bodies with velocity functions accelerate: velocities change by (k, 3) within dt."""
