@@ -216,7 +216,7 @@ class PackedStepper(Stepper):
             world.read_settings()
             return world
         self._world = None
-        world = World(self.space, self.ignore, world)
+        world = World(self.space, self.ignore, None if world is None or world.edited() else world)
         if world.ignores and not self._warned:
             self._warned = True
             warnings.warn(f"{type(self).__name__} steps on without the friction of this space", stacklevel=4)

@@ -45,8 +45,10 @@ class Hooks:
             for i, row in enumerate(self.velocity):
                 body = self.bodies.items[row]
                 velocity, spin = body.velocity, body.angular_velocity
+                function = private.velocity_function(body)
+                assert function is not None  # this is one of the bodies that have one
                 try:
-                    body.velocity_func(body, gravity, damping, dt)
+                    function(body, gravity, damping, dt)
                     self._change[i] = (*(body.velocity - velocity), body.angular_velocity - spin)
                 finally:
                     body.velocity, body.angular_velocity = velocity, spin
@@ -56,9 +58,11 @@ class Hooks:
         """Let the functions move their bodies from `state` with the velocity that leads to `end`, which they change."""
         for row in self.position:
             body = self.bodies.items[row]
+            function = private.position_function(body)
+            assert function is not None
             way, turn = end[row, POSITION] - state[row, POSITION], end[row, ANGLE] - state[row, ANGLE]
             body.velocity, body.angular_velocity = tuple(way / dt), float(turn / dt)
-            body.position_func(body, dt)
+            function(body, dt)
             end[row, POSITION], end[row, ANGLE] = body.position, body.angle
 
     @contextmanager

@@ -126,12 +126,14 @@ def finish_step(space: pymunk.Space) -> None:
         callback(space)
 
 
-def watch(space: pymunk.Space) -> Callable[[], bool]:
+def watch(space: pymunk.Space, edits: list[int]) -> Callable[[], bool]:
     """A function that tells whether the space's settings, and what is in it, are still as they are now.
 
+    Args:
+        edits: grows when something of the space is edited in place.
+
     Every addition of a shape changes pymunk's count of all shapes ever added, every removal the number of those there.
-    A body that was exchanged for another shows in the ids that the batch call reads, and what was edited in place
-    nowhere. The public properties take three times as long.
+    A body that was exchanged for another shows in the ids that the batch call reads. The public properties take three times as long.
     """
     c = space._space
     bodies, shapes, constraints, handlers = space._bodies, space._shapes, space._constraints, space._handlers
@@ -139,7 +141,7 @@ def watch(space: pymunk.Space) -> Callable[[], bool]:
     handler_count = len(handlers)
     counter, added = lib.cpSpaceGetShapeIDCounter, lib.cpSpaceGetShapeIDCounter(c)
     gravity_of, gravity = lib.cpSpaceGetGravity, lib.cpSpaceGetGravity(c)
-    gx, gy = gravity.x, gravity.y
+    gx, gy, known = gravity.x, gravity.y, edits[0]
     damping_of, damping = lib.cpSpaceGetDamping, lib.cpSpaceGetDamping(c)
     threshold_of, threshold = lib.cpSpaceGetSleepTimeThreshold, lib.cpSpaceGetSleepTimeThreshold(c)
 
@@ -149,6 +151,7 @@ def watch(space: pymunk.Space) -> Callable[[], bool]:
             g.x == gx
             and g.y == gy
             and counter(c) == added
+            and edits[0] == known
             and len(shapes) == shape_count
             and len(bodies) == body_count
             and damping_of(c) == damping

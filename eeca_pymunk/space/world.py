@@ -40,6 +40,7 @@ from ..transfer import FORCES, TURNS, lay, lay_rest, take
 from . import private
 from .bodies import ANGULAR_VELOCITY, VELOCITY, Bodies
 from .checks import check_shape, check_space, rough_pair
+from .noticed import edits
 from .packing import Record, pack, read
 from .shapes import Rules
 
@@ -55,8 +56,8 @@ class World:
     """The bodies and solid shapes of one space; ValueError or UnsupportedFeature for what cannot be stepped.
 
     Masses, shapes and functions of bodies are read once. `current()` tells, in half a microsecond, whether settings and
-    contents of the space are still those; moved static bodies and exchanged bodies show in what `gather` reads, which
-    `transfer.take` tells. A shape edited in place shows nowhere.
+    contents of the space are still those, and whether shapes and bodies were edited in place (`noticed.py`); moved
+    static bodies and exchanged bodies show in what `gather` reads, which `transfer.take` tells.
 
     Args:
         space: any pymunk space.  ignore: what to step on without, see `check_ignored`.
@@ -80,6 +81,8 @@ class World:
     def __init__(self, space: pymunk.Space, ignore: Sequence[str] = (), before: World | None = None) -> None:
         check_space(space)
         self.space = space
+        self._edits = edits(space)
+        self._known = self._edits[0]
         self.bodies = bodies = Bodies(space)
         state = bodies.gather()
         assert state is not None  # read from these very bodies
@@ -157,14 +160,18 @@ class World:
         functions = len(bodies.velocity_hooks) > 0 or len(bodies.position_hooks) > 0
         self.hooked = self.collisions or functions or self.damping == 0.0
         self._contents = self._count()
-        self.current = private.watch(self.space)
+        self.current = private.watch(self.space, self._edits)
 
     def _count(self) -> tuple[int, int, int]:
         return private.shapes_ever(self.space), len(self.space.shapes), len(self.space.bodies)
 
     def same_contents(self) -> bool:
-        """Whether shapes have neither come nor gone, so that new settings are all there is to read."""
-        return self._contents == self._count()
+        """Whether shapes have neither come nor gone nor changed, so that new settings are all there is to read."""
+        return self._contents == self._count() and not self.edited()
+
+    def edited(self) -> bool:
+        """Whether a shape or body was edited in place."""
+        return self._edits[0] != self._known
 
     def is_current(self) -> bool:
         """Whether what `gather` read is of these very bodies, and no static one was moved."""
