@@ -24,7 +24,27 @@ import eeca_pymunk as ep
 _HELD = 12  # frames for which a key is held
 _IDLE = 6  # and none after it
 # Not those that end an example (escape, q) or write pictures (p).
-_KEYS = ("RIGHT", "UP", "LEFT", "SPACE", "SPACE", "RIGHT", "DOWN", "d", "j", "f", "b", "c", "g", "k", "u", "w", "a", "z", "x")
+_KEYS = (
+    "RIGHT",
+    "UP",
+    "LEFT",
+    "SPACE",
+    "SPACE",
+    "RIGHT",
+    "DOWN",
+    "d",
+    "j",
+    "f",
+    "b",
+    "c",
+    "g",
+    "k",
+    "u",
+    "w",
+    "a",
+    "z",
+    "x",
+)
 _ENDED_BY_KEYS = ("newtons_cradle",)
 
 

@@ -104,7 +104,7 @@ class PackedStepper(Stepper):
                 world.reset_forces()
             if not self.sync:
                 world.scatter(status)
-            elif self._sync.reindexes(dt):
+            elif self._sync.reindexes(dt, bool(status & EVENTS)):
                 world.scatter(status)
                 self._sync.reindex()
             else:
@@ -163,7 +163,7 @@ class PackedStepper(Stepper):
             world.reset_forces()
             if not self.sync or rehearsal is not None:
                 world.scatter(status)
-            elif self._sync.reindexes(dt):
+            elif self._sync.reindexes(dt, bool(status & EVENTS)):
                 world.scatter(status)
                 self._sync.reindex()
             else:

@@ -44,10 +44,12 @@ class Sync:
         self._moving = moving if sum(len(b.shapes) for b in moving) <= FEW else None
         self._timestamp: Callable[[], int] = private.timestamp(space)
         self._renewed, self._dt, self._left = -1, 0.0, 0
+        self._touched = False
 
-    def reindexes(self, dt: float) -> bool:
-        """Whether reindexing does for this step: pymunk took no step since our last rest step, which knows this dt."""
-        if self._moving is None or dt != self._dt or self._left == 0:
+    def reindexes(self, dt: float, contacts: bool) -> bool:
+        """Whether reindexing does for this step: pymunk took no step since our last rest step, which knows this dt, and
+        nothing touched in either, so that `each_arbiter` has nothing to tell."""
+        if self._moving is None or dt != self._dt or self._left == 0 or contacts or self._touched:
             return False
         return self._timestamp() == self._renewed
 
@@ -67,3 +69,5 @@ class Sync:
         """A rest step; all bodies must have velocity 0."""
         rest_step(self.space, dt)
         self._renewed, self._dt, self._left = self._timestamp(), dt, _RENEW
+        if self._moving is not None:
+            self._touched = bool(private.arbiters(self.space))

@@ -4,7 +4,9 @@ The same list stands in docs/pymunk.md. A test that begins to pass has to leave 
 """
 
 FIRST_ORDER = "digits of pymunk's first-order path; ours is the exact one"
-REHEARSED = "numbers of an arbiter at the end of pymunk's first-order path; a rehearsal goes to the end of the exact one"
+REHEARSED = (
+    "numbers of an arbiter at the end of pymunk's first-order path; a rehearsal goes to the end of the exact one"
+)
 NAMED = "expects AssertionError for bodies without mass; ours is a ValueError that tells the remedy"
 
 DIFFERS = {
