@@ -43,9 +43,7 @@ def run(output: Output, full: bool) -> None:
     output.table("pymunk's examples, Space.step replaced", rows)
     ran = [row for row in rows if row["ours"] == "runs"]
     slow = [row["example"] for row in ran if float(row["worst ms"] or 0.0) > _FRAME]
-    print(
-        f"{len(ran)} of {len(rows)} run; {len(slow)} have a step of more than {_FRAME:g} ms: {', '.join(map(str, slow))}"
-    )
+    print(f"{len(ran)} of {len(rows)} run; a step of more than {_FRAME:g} ms: {', '.join(map(str, slow)) or 'none'}")
 
 
 def example(name: str, frames: int, folder: Path, output: Output | None = None) -> Row:

@@ -23,7 +23,7 @@ def check_dt(dt: float) -> float:
 class Stepper(ABC):
     """Steps a pymunk space: `stepper.step(dt)` in the place of `space.step(dt)`.
 
-    A step completes or raises with the space as it was. Shapes and bodies may be added, removed and edited between steps.
+    A step completes or raises with the space as it was. Between steps shapes and bodies may be added, removed, edited.
     """
 
     def __init__(self, space: pymunk.Space) -> None:

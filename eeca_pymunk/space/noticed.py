@@ -15,6 +15,8 @@ from weakref import WeakKeyDictionary
 
 import pymunk
 
+from . import private
+
 _PROPERTIES: tuple[tuple[type, tuple[str, ...]], ...] = (
     (pymunk.Shape, ("mass", "density", "sensor", "filter", "elasticity", "friction", "surface_velocity", "body")),
     (pymunk.Body, ("mass", "moment", "center_of_gravity", "body_type", "velocity_func", "position_func")),
@@ -35,7 +37,7 @@ def edits(space: pymunk.Space) -> list[int]:
         _wrapped = True
         for owner, names in _PROPERTIES:
             for name in names:
-                setattr(owner, name, _property(vars(owner)[name]))
+                setattr(owner, name, _property(name, vars(owner)[name]))
         for owner, names in _METHODS:
             for name in names:
                 setattr(owner, name, _method(vars(owner)[name]))
@@ -49,12 +51,14 @@ def _note(thing: Any) -> None:
         count[0] += 1
 
 
-def _property(native: Any) -> property:
+def _property(name: str, native: Any) -> property:
     read, write = native.fget, native.fset
 
     def set_and_note(self: Any, value: Any) -> None:
         before = None if read is None else read(self)
         write(self, value)
+        if name in private.DEFAULTS:
+            private.forget_function(self, name, value)
         if read is None or read(self) != before:
             _note(self)
 

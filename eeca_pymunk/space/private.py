@@ -22,6 +22,9 @@ except ImportError as error:  # pragma: no cover - needs another pymunk
 # Functions of a handler, in the order in which pymunk calls them.
 PHASES = ("_begin", "_pre_solve", "_post_solve", "_separate")
 
+# What bodies have that have no function of their own.
+DEFAULTS = {"velocity_func": pymunk.Body.update_velocity, "position_func": pymunk.Body.update_position}
+
 _OF_LIBRARY = (
     "cpSpaceStep", "cpHastySpaceStep", "cpSpaceEachBody", "cpSpaceGetGravity", "cpSpaceGetDamping",
     "cpSpaceGetSleepTimeThreshold", "cpSpaceGetShapeIDCounter", "cpSpaceGetTimestamp",
@@ -83,6 +86,12 @@ def position_function(body: pymunk.Body) -> Callable[..., None] | None:
     return body._position_func
 
 
+def forget_function(body: pymunk.Body, name: str, function: Callable[..., None]) -> None:
+    """What pymunk before 7.3 leaves undone when its default is set again: the body's own function is none any more."""
+    if function is DEFAULTS[name]:
+        setattr(body, f"_{name}", None)
+
+
 def replace_functions(
     body: pymunk.Body, velocity: Callable[..., None] | None, position: Callable[..., None] | None
 ) -> None:
@@ -133,7 +142,8 @@ def watch(space: pymunk.Space, edits: list[int]) -> Callable[[], bool]:
         edits: grows when something of the space is edited in place.
 
     Every addition of a shape changes pymunk's count of all shapes ever added, every removal the number of those there.
-    A body that was exchanged for another shows in the ids that the batch call reads. The public properties take three times as long.
+    A body that was exchanged for another shows in the ids that the batch call reads. The public properties take three
+    times as long.
     """
     c = space._space
     bodies, shapes, constraints, handlers = space._bodies, space._shapes, space._constraints, space._handlers

@@ -1,4 +1,4 @@
-"""What programs do from within callbacks, as pymunk allows it: removing twice, removing in `separate`, post-step calls."""
+"""What programs do from within callbacks, as pymunk allows it: removing twice, or in `separate`; post-step calls."""
 
 from __future__ import annotations
 
@@ -83,6 +83,7 @@ def test_a_body_with_many_contacts_is_removed_by_each_of_them(make: Make) -> Non
     assert len(space.bodies) == len(space.shapes) == 3
 
 
+@pytest.mark.skipif(not hasattr(pymunk.Space, "_remove"), reason="pymunk 7.0.0 keeps this for its next step")
 @both
 def test_separate_outside_a_step_may_remove_more(make: Make) -> None:
     space, a, b = meeting()
@@ -158,7 +159,7 @@ def test_post_step_callbacks_see_velocities_and_may_change_them(make: Make, crow
 
 def test_a_post_step_callback_may_ask_for_another() -> None:
     """pymunk raises RuntimeError here, as its dictionary grows while it is walked."""
-    space, a, _ = meeting()
+    space, _a, _ = meeting()
     seen: list[str] = []
 
     def first(space: pymunk.Space, key: str) -> None:

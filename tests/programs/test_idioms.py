@@ -69,7 +69,7 @@ def test_bodies_teleported_into_one_another_come_apart_without_energy(count: int
     boxes = [box_on(space, 1.5 * k) for k in range(count + 1)]
     stepper = ep.EECA(space)
     run(stepper, 5)
-    boxes[0].position = boxes[1].position + (0.3, 0.2)
+    boxes[0].position = boxes[1].position + pymunk.Vec2d(0.3, 0.2)
     start = ep.measure(space).energy
     run(stepper, 120)
     assert ep.measure(space).energy <= start + 1e-9
@@ -107,7 +107,7 @@ def test_impulses_act_at_once(make: Make) -> None:
 @both
 def test_a_one_way_platform(make: Make) -> None:
     """Up through it, and down onto it."""
-    space, floor = ground()
+    space, _floor = ground()
     platform = pymunk.Segment(space.static_body, (-1.0, 2.0), (1.0, 2.0), 0.1)
     platform.collision_type = 2
     hero = pymunk.Body(1.0, math.inf)
@@ -156,7 +156,7 @@ def test_bullets_are_made_hit_and_go(make: Make) -> None:
 @pytest.mark.parametrize("handled", [False, True])
 def test_each_arbiter_finds_the_ground(make: Make, handled: bool) -> None:
     """How a platform game tells that its hero stands."""
-    space, floor = ground()
+    space, _floor = ground()
     hero = pymunk.Body(1.0, math.inf)
     hero.position = (0.0, 1.0)
     space.add(hero, pymunk.Circle(hero, 0.3))

@@ -10,7 +10,7 @@ import pymunk
 import pymunk.batch
 import pytest
 
-from eeca_pymunk.space import private
+from eeca_pymunk.space import noticed, private
 from scenes.scene import add_disk
 
 
@@ -79,6 +79,7 @@ def test_arbiters() -> None:
 
 @pytest.mark.parametrize("kind", ["velocity", "position"])
 def test_functions_of_bodies(kind: str) -> None:
+    noticed.edits(pymunk.Space())  # pymunk before 7.3 needs it
     body = pymunk.Body(1.0, 1.0)
     read = getattr(private, f"{kind}_function")
     assert read(body) is None
