@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from abc import abstractmethod
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from .arrays import FloatArray
 from .energy.ledger import AFTER, DAMPED
@@ -22,6 +22,7 @@ from .transfer import EVENTS, FORCES, MOVED_STATIC, NOT_FINITE, OTHER_BODIES, OV
 if TYPE_CHECKING:
     import pymunk
 
+Own = TypeVar("Own", bound="PackedStepper")
 _OVERFLOW = "the step would overflow; take a smaller dt, or stop this run"
 
 
@@ -50,6 +51,16 @@ class PackedStepper(Stepper):
         state = self.__dict__.copy()
         state.pop("_sync", None)
         return state
+
+    def __enter__(self: Own) -> Own:
+        """Within `with stepper:` the call `space.step(dt)` of this one space is `stepper.step(dt)`."""
+        if "step" in vars(self.space):
+            raise ValueError(f"{self.space} has a step of its own already: leave the other `with` first")
+        self.space.step = self.step  # type: ignore[method-assign, assignment]
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        del self.space.step
 
     def refresh(self) -> None:
         self._world = None

@@ -203,8 +203,8 @@ class World:
         bodies = self.bodies
         stops = bodies.dynamic & ~bodies.steered
         speed, spin = end[stops, VELOCITY], end[stops, ANGULAR_VELOCITY]
-        turning = np.where(spin == 0.0, 0.0, bodies.moment[stops])
-        turning[np.isinf(turning)] = 0.0
+        moment = bodies.moment[stops]
+        turning = np.where(np.isfinite(moment), moment, 0.0)
         lost = 0.5 * float(np.sum(bodies.mass[stops] * (speed * speed).sum(axis=1)) + np.sum(turning * spin * spin))
         end[stops, VELOCITY], end[stops, ANGULAR_VELOCITY] = 0.0, 0.0
         return lost

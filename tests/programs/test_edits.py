@@ -169,3 +169,16 @@ def test_a_callback_may_edit_what_it_meets() -> None:
         for _ in range(40):
             stepper.step(DT)
         assert ball.position.x == pytest.approx(40 * DT * 4.0)
+
+
+def test_bodies_of_infinite_moment_that_spin_count_for_nothing_infinite() -> None:
+    space = pymunk.Space()
+    for spin in (1.0, -2.0):
+        body = pymunk.Body(1.0, math.inf)
+        body.angular_velocity, body.velocity = spin, (0.0, 1.0)
+        space.add(body)
+    stepper = ep.EECA(space)
+    stepper.step(DT)
+    assert ep.measure(space).kinetic == 1.0
+    assert ep.measure(space).angular_momentum == 0.0
+    assert [b.angular_velocity for b in space.bodies] == [1.0, -2.0]
