@@ -209,7 +209,8 @@ class Program:
     def play(self, length: int) -> None:
         actions: tuple[Callable[[], None], ...] = (
             self.add, self.add, self.add, self.step, self.step, self.step, self.step, self.remove, self.remove_shape,
-            self.teleport, self.drive, self.push, self.edit, self.turn_kind, self.set_space, self.listen, self.functions,
+            self.teleport, self.drive, self.push, self.edit, self.turn_kind, self.set_space, self.listen,
+            self.functions,
             self.after, self.ask, self.save, self.native, self.bad,
         )  # fmt: skip
         for _ in range(length):

@@ -26,7 +26,7 @@ def test_every_class_and_property_has_its_row() -> None:
 
 
 def test_every_test_that_is_named_exists() -> None:
-    named = re.findall(r"`(?:tests/)?([\w/]+\.py)(?:::(\w+))?`", PAGE)
+    named = re.findall(r"`(?!eeca_pymunk)(?:tests/)?([\w/]+\.py)(?:::(\w+))?`", PAGE)
     assert len(named) > 30
     for file, function in named:
         text = (TESTS / file).read_text()
