@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
 from ..geometry.flight import pose, rate
 from ..impacts.layout import Scene
 from ..joints.correct import kinetic
 from ..joints.layout import ANCHOR_AX, GEAR, JOINT_COLUMNS, TIE_COLUMNS
+from ..joints.ledger import springs_hold
 from ..joints.response import prepare, respond
 from ..joints.scratch import (
     BAND,
@@ -27,6 +28,7 @@ from ..joints.scratch import (
     KEPT,
     L_JOINT,
     L_KIND,
+    L_ROWS,
     LOOPS,
     M_BODY,
     M_CAYLEY,
@@ -34,15 +36,19 @@ from ..joints.scratch import (
     M_FREEDOMS,
     MOBILITY,
     POSE,
+    POSES,
     ROOT,
     SIN,
     SIZE,
     SPEEDS,
     STEP,
+    TARGET,
     TRAVEL,
     UNKNOWNS,
+    VALUE,
 )
 from ..joints.solve import solve
+from ..joints.start import look
 from ..joints.step import island_step
 from ..layout import ANGLE, SPIN, VX, VY, X, Y
 from .layout import ORDER, REPEATS, WORST, Joints
@@ -148,8 +154,8 @@ def step_component(
 
 @uncounted
 def fit_speeds(A: Scene, J: Joints, s: int, length: float) -> float:
-    """Make the velocities that `gather_component` has put into the scratch fit the joints, closed limits included, as an
-    impact at which nothing bounces; the kinetic energy that this costs."""
+    """Make the velocities that `gather_component` has put into the scratch fit the joints, closed limits included, as
+    an impact at which nothing bounces; the kinetic energy that this costs."""
     j0, j1, b0 = J.SPAN[s, JOINT_0], J.SPAN[s, JOINT_1], J.SPAN[s, BODY_0]
     n = J.SPAN[s, BODY_1] - b0
     band, size = J.SPAN[s, BAND], J.SPAN[s, UNKNOWNS]
@@ -162,6 +168,58 @@ def fit_speeds(A: Scene, J: Joints, s: int, length: float) -> float:
         0.0, condensed, band, size, J.MATRIX[: size * width].reshape((size, width)), J.RIGHT, J.STIFF, J.FOUND,
     )  # fmt: skip
     return kinetic(J.LOCAL, n, KEPT) - kinetic(J.LOCAL, n, BEFORE)
+
+
+@uncounted
+def find_places(A: Scene, J: Joints, s: int, INDEX: IntArray) -> int:
+    """INDEX (k,) of the moved bodies of component s: their places in its scratch; how many bodies that has."""
+    b0, size = J.SPAN[s, BODY_0], J.SPAN[s, BODY_1] - J.SPAN[s, BODY_0]
+    for w in range(size):
+        body = J.MEMBER[b0 + w, M_BODY]
+        if body < A.PLACE.shape[0] and A.PLACE[body] >= 0:
+            INDEX[A.PLACE[body]] = w
+    return int(size)
+
+
+@uncounted
+def springs_of(J: Joints, s: int, bodies: int) -> float:
+    """The energy that the springs of component s hold at the poses in the scratch."""
+    j0, j1 = J.SPAN[s, JOINT_0], J.SPAN[s, JOINT_1]
+    look(J.JOINT, J.HINGE, J.LINK[j0:j1], j1 - j0, J.LOCAL, J.NODE, bodies, J.STIFF)
+    return springs_hold(J.JOINT, J.HINGE, J.LINK[j0:j1], j1 - j0)
+
+
+@uncounted
+def close_joints(
+    A: Scene, J: Joints, s: int, OLD: FloatArray, NEW: FloatArray, V: FloatArray, IM: FloatArray, II: FloatArray,
+    t: float, h: float,
+) -> float:  # fmt: skip
+    """Close the joints of component s at the poses NEW (k, 3) of an island, along M^-1 G^T; how much more its springs
+    hold there than at OLD."""
+    j0, j1, b0 = J.SPAN[s, JOINT_0], J.SPAN[s, JOINT_1], J.SPAN[s, BODY_0]
+    n = J.SPAN[s, BODY_1] - b0
+    band, size = J.SPAN[s, BAND], J.SPAN[s, UNKNOWNS]
+    condensed = J.SPAN[s, CONDENSED] != 0
+    width = 2 * band + 1 if condensed else 3 * band + 1
+    length = gather_component(A, J, s, OLD, V, V, IM, II, t, h)
+    for k in range(j1 - j0):
+        J.HINGE[k, SIZE] = 1.0 if J.LINK[j0 + k, L_KIND] >= GEAR else length
+    held = springs_of(J, s, n)
+    for k in range(j1 - j0):
+        # What is apart stays as far apart.
+        for r in range(J.LINK[j0 + k, L_ROWS]):
+            J.HINGE[k, TARGET + r] = J.HINGE[k, VALUE + r]
+    gather_component(A, J, s, NEW, V, V, IM, II, t, h)
+    solve(
+        int(POSES), J.JOINT, J.HINGE, J.LINK[j0:j1], j1 - j0, J.LOCAL, J.NODE, n, 2.0, length, J.SPAN[s, LOOPS] > 0,
+        0.0, condensed, band, size, J.MATRIX[: size * width].reshape((size, width)), J.RIGHT, J.STIFF, J.FOUND,
+    )  # fmt: skip
+    for i in range(n):
+        if J.NODE[i, FREEDOMS] > 0:
+            q = A.PLACE[J.MEMBER[b0 + i, M_BODY]]
+            for c in range(3):
+                NEW[q, c] = J.LOCAL[i, POSE + c]
+    return springs_of(J, s, n) - held
 
 
 @uncounted

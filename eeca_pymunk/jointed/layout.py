@@ -10,9 +10,10 @@ from ..arrays import FloatArray, IntArray
 COMPONENTS, ORDER, WORST, REPEATS = 0, 1, 2, 3  # how many; 2 or 4; worst status of the step; steps of components
 TALLY_LENGTH = 8
 
-# STEPPED (components, 9): the ledger of a component in its span, and
+# STEPPED (components, 10): the ledger of a component in its span, and
 TURNED_WORK = 8  # work of torques beyond that along the angle
-STEPPED_COLUMNS = 9
+LIFTED = 9  # energy that lifting bodies out of each other costs, paid from the losses of contacts
+STEPPED_COLUMNS = 10
 
 
 class Joints(NamedTuple):
@@ -20,7 +21,7 @@ class Joints(NamedTuple):
     joints cannot move. SPAN, MEMBER, LINK: the plan (`..joints.scratch`), a component per row of SPAN. HINGE, LOCAL,
     NODE, MATRIX, RIGHT, MORE, STIFF, FOUND, PART, PIVOTS: scratch for the largest component. OF (n,): the component of
     a body, -1 for none. KEPT (j, JOINT_COLUMNS), SIDES (j, TIE_COLUMNS): the joints at the start of a span. STEPPED
-    (components, 9): their ledgers in their spans."""
+    (components, 10): their ledgers in their spans."""
 
     JOINT: FloatArray
     TIE: IntArray

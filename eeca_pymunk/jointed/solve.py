@@ -63,14 +63,15 @@ from .columns import (
     push_columns,
     weigh,
 )
-from .component import fit_speeds, gather_component, keep_joints, ready, restore_joints, step_component
-from .layout import TURNED_WORK, Joints
+from .component import find_places, fit_speeds, gather_component, keep_joints, ready, restore_joints, step_component
+from .layout import LIFTED, TURNED_WORK, Joints
+from .lifting import lift
 from .newton import solve_columns
 
 _OUTER, _ELASTIC_OUTER = 4, 12  # steps of the components
-_AGREE, _REST_AGREE, _ELASTIC_AGREE = 1e-6, 1e-13, 1e-13  # velocities of both solutions, over |a| h and the speed
+_AGREE, _REST_AGREE, _ELASTIC_AGREE = 1e-6, 1e-11, 1e-13  # velocities of both solutions, over |a| h and the speed
 _SWEEPS, _FEW_SWEEPS, _FEW, _ELASTIC_SWEEPS = 60, 200, 24, 400
-_FINE, _REST_FINE = 1e-9, 1e-13  # residual of the sweeps, likewise
+_FINE, _REST_FINE = 1e-9, 1e-12  # residual of the sweeps, likewise
 _LOCKS = 4
 
 
@@ -80,17 +81,6 @@ class Motion(NamedTuple):
     V: FloatArray
     WAY: FloatArray
     END: FloatArray
-
-
-@uncounted
-def find_places(A: Scene, J: Joints, s: int, INDEX: IntArray) -> int:
-    """INDEX (k,) of the moved bodies of component s: their places in its scratch; how many bodies that has."""
-    b0, size = J.SPAN[s, BODY_0], J.SPAN[s, BODY_1] - J.SPAN[s, BODY_0]
-    for w in range(size):
-        body = J.MEMBER[b0 + w, M_BODY]
-        if body < A.PLACE.shape[0] and A.PLACE[body] >= 0:
-            INDEX[A.PLACE[body]] = w
-    return int(size)
 
 
 @uncounted
@@ -208,7 +198,7 @@ def press(
         converged = False
     energy = 0.0
     for q in range(n):
-        energy += 0.5 * (isle.V[q, 0] ** 2 + isle.V[q, 1] ** 2) / isle.IM[q]
+        energy += (isle.V[q, 0] ** 2 + isle.V[q, 1] ** 2 + (pull * h) ** 2) / isle.IM[q]
     bearable = 1e-15 * energy
     for tries in range(_LOCKS + 1):
         loss = lost(P, Q, ROWS, L, motion.WAY, m, h)
@@ -323,8 +313,15 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
     if m == 0:
         C = make_columns(groups, P, Q, 0)
         advance(A, J, isle, groups, P, Q, ROWS, L, 0, t, h, motion, C, False)
-        if lossy:
-            fit(A, J, isle, groups, P, Q, L, m, motion, t + h, h)
+    book_turning(A, J, isle, groups, motion, n)
+    if lossy and m > 0:
+        budget = lost(P, Q, ROWS, L, motion.WAY, m, h) + A.RESTING[root, LOST]
+        spent = lift(A, J, isle, groups, P, Q, ROWS, m, n, motion.V, motion.WAY, motion.END, t + h, h, budget)
+        for g in range(len(groups.COMPONENT)):
+            if groups.COMPONENT[g] >= 0:
+                J.STEPPED[groups.COMPONENT[g], LIFTED] = spent
+                break
+        fit(A, J, isle, groups, P, Q, L, m, motion, t + h, h)
     dismiss(A, MINE, n)
     COUNT[SOLVES] += 1
     first = COUNT[PUSHES]
@@ -344,7 +341,6 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
             BODY[i, AX + c] = 2.0 * (motion.END[q, c] - isle.POSE[q, c] - h * isle.V[q, c]) / (h * h)
             A.RESTING[i, LIFT + c] = 0.0
             A.RESTING[i, LIFT + 3 + c] = motion.V[q, c] - isle.V[q, c] - h * BODY[i, AX + c]
-    book_turning(A, J, isle, groups, motion, n)
     MEMBER[root, OPEN] = 1
     A.RESTING[root, UNTIL] = math.inf
     return DONE
@@ -356,6 +352,7 @@ def book_turning(A: Scene, J: Joints, isle: Local, groups: Groups, motion: Motio
     for g in range(len(groups.COMPONENT)):
         if groups.COMPONENT[g] >= 0:
             J.STEPPED[groups.COMPONENT[g], TURNED_WORK] = 0.0
+            J.STEPPED[groups.COMPONENT[g], LIFTED] = 0.0
     for q in range(n):
         s = groups.COMPONENT[groups.GROUP[q]]
         if s >= 0 and isle.II[q] > 0.0 and isle.ACC[q, 2] != 0.0:

@@ -23,6 +23,7 @@ from ..impacts.layout import (
     KINKS,
     LEDGER,
     LIFT,
+    LOST,
     OPEN,
     PUSH_A,
     PUSH_B,
@@ -46,13 +47,13 @@ from ..rows.blocks import CONVERGED, D_NORMAL, D_TANGENTIAL, OUT_SIZE, SCALE_LOC
 from ..rows.build import aim, conserves, rates
 from ..rows.energy import scale_of, works
 from .columns import fill_free, fill_group, find_groups, make_columns, push_columns, weigh
-from .component import answer, gather_component, ready, restore_joints
-from .layout import TURNED_WORK, Joints
+from .component import answer, find_places, gather_component, ready, restore_joints
+from .layout import LIFTED, TURNED_WORK, Joints
 from .newton import solve_columns
-from .solve import begin_span, find_places
+from .solve import begin_span
 
 _MEET = 1e-13  # gap at an impact, over the smaller shape
-_SECANTS = 5
+_SECANTS, _LOADED_SECANTS = 5, 2  # also where other contacts push
 _SWEEPS = 1000
 
 
@@ -62,7 +63,7 @@ def book_component(A: Scene, J: Joints, s: int) -> None:
     PAR, B = A.PAR, J.STEPPED[s]
     PAR[LEDGER + EXTERNAL] += B[MOTORS] + B[SUPPORTS] + B[CLOSED] + B[TURNED_WORK]
     PAR[LEDGER + DAMPED] += B[DAMPED_JOINTS]
-    PAR[LEDGER + RESTITUTION] += B[LIMITED] + B[PROJECTED]
+    PAR[LEDGER + RESTITUTION] += B[LIMITED] + B[PROJECTED] - B[LIFTED]
     PAR[LEDGER + FRICTIONAL] += B[CLAMPED]
     PAR[STORED] += B[STORED_JOINTS]
     for c in range(len(B)):
@@ -137,6 +138,7 @@ def end_here(A: Scene, J: Joints, root: int, t: float) -> None:
         if empty:
             for w in range(J.STEPPED.shape[1]):
                 J.STEPPED[found[c], w] = 0.0
+        A.RESTING[root, LOST] -= J.STEPPED[found[c], LIFTED]
         book_component(A, J, found[c])
     A.MEMBER[root, OPEN] = 0
     MINE = np.empty(A.MEMBER[root, BODIES], np.int64)
@@ -162,14 +164,14 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> float:
             least = max(least, A.BODY[root, SINCE])
     small = min(A.SHAPE[a, SIZE], A.SHAPE[b, SIZE])
     before, gap_before = -1.0, 0.0
-    for _ in range(_SECANTS):
+    for tries in range(_SECANTS):
         loaded = shorten(A, J, roots[0], t)
         if roots[1] != roots[0]:
             loaded = shorten(A, J, roots[1], t) or loaded
         xi, yi, qi = pose(A.BODY, i, t)
         xj, yj, qj = pose(A.BODY, j, t)
         g, nx, ny, px, py = gap_at(A.SHAPE, A.LINK, A.VERTEX, A.WORK, a, xi, yi, qi, b, xj, yj, qj)
-        if loaded or abs(g) <= _MEET * small:
+        if (loaded and tries + 1 >= _LOADED_SECANTS) or abs(g) <= _MEET * small:
             break
         slope = 0.0
         if before >= 0.0 and t != before:
