@@ -1,4 +1,4 @@
-"""What a pair of shapes is to each other: pymunk's products, or what handlers have set for this step and joints for all.
+"""What a pair of shapes is to each other: pymunk's products, or what handlers have set for this step, or joints.
 
 RULE (r, 6): shapes a < b, elasticity (below 0: they pass through one another), friction, surface velocity of b relative
 to a (x, y). Rows are in the order of their pairs.

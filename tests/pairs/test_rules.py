@@ -17,7 +17,7 @@ def test_rules_are_found_as_in_a_dictionary(count: int) -> None:
     every = [(a, b) for a in range(shapes) for b in range(a + 1, shapes)]
     chosen = [every[i] for i in random.permutation(len(every))[:count]]
     ignored, rest = chosen[: count // 3], chosen[count // 3 :]
-    rules = Rules(frozenset(ignored), {pair: (*random.random(2),) for pair in rest})  # type: ignore[misc]
+    rules = Rules(frozenset(ignored), {pair: (*random.random(2),) for pair in rest})
     parted = set(chosen[count // 3 : count // 2])
     told = rules.of_pairs(SHAPE, parted)
     RULE = np.array([(*pair, *what) for pair, what in told.items()], float).reshape(-1, 6)
