@@ -25,6 +25,7 @@ NAMES = (
     "detection",
     "piles",
     "soak",
+    "pymunk_examples",
     "hard_cases",
     "gallery",
 )
@@ -47,7 +48,7 @@ def main(arguments: list[str] | None = None) -> int:
     if options.name is None:
         for name in NAMES:
             title = (import_module(f".{name}", __package__).__doc__ or "").splitlines()[0]
-            print(f"{name:14} {title}")
+            print(f"{name:16} {title}")
         print("\nRun one with: python -m comparisons NAME --out DIR; film its scene with --animate gif")
         return 0
     side_by_side = any(x is not None for x in (options.animate, options.steppers, options.dt, options.duration))

@@ -5,11 +5,13 @@ from __future__ import annotations
 import warnings
 from abc import abstractmethod
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from .arrays import FloatArray
+from .energy.ledger import AFTER, DAMPED
 from .errors import NotFiniteError
 from .report import Details, StepReport
+from .space.bodies import ANGULAR_VELOCITY, VELOCITY
 from .space.checks import check_ignored
 from .space.describe import describe
 from .space.hooks import Hooks, Rehearsal
@@ -22,6 +24,7 @@ from .transfer import EVENTS, FORCES, MOVED_STATIC, NOT_FINITE, OTHER_BODIES, OV
 if TYPE_CHECKING:
     import pymunk
 
+Own = TypeVar("Own", bound="PackedStepper")
 _OVERFLOW = "the step would overflow; take a smaller dt, or stop this run"
 
 
@@ -42,7 +45,7 @@ class PackedStepper(Stepper):
         self.ignore = check_ignored(ignore)
         self._warned = False
         self._world: World | None = None
-        self._past: JointRows | None = None  # what the world before a refresh knew of joints
+        self._past: World | None = None  # before a refresh
         self._told: JointRows | None = None  # what `constraint.impulse` reads
         self._look()
 
@@ -54,9 +57,19 @@ class PackedStepper(Stepper):
         state["_told"] = None
         return state
 
+    def __enter__(self: Own) -> Own:
+        """Within `with stepper:` the call `space.step(dt)` of this one space is `stepper.step(dt)`."""
+        if "step" in vars(self.space):
+            raise ValueError(f"{self.space} has a step of its own already: leave the other `with` first")
+        self.space.step = self.step  # type: ignore[method-assign, assignment]
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        del self.space.step
+
     def refresh(self) -> None:
         if self._world is not None:
-            self._past = self._world.joints
+            self._past = self._world
         self._world = None
 
     def prepare(self, world: World) -> None:
@@ -93,18 +106,10 @@ class PackedStepper(Stepper):
         world = self._world
         if world is None or not world.current():
             world = self._look()
-        if world.plain:
-            return self._plain_step(world, dt)
-        if world.hooked or (world.joints is not None and world.joints.calls_back()):
+        if not world.plain and (world.hooked or (world.joints is not None and world.joints.calls_back())):
             return self._hooked_step(world, dt)
-        report = self._plain_step(world, dt)
-        self._tell_joints()
-        return report
-
-    def _plain_step(self, world: World, dt: float) -> StepReport:
-        """A step of a space in which nothing is called."""
         world.gather()
-        left = 1.0 if world.damping == 1.0 else world.damping ** (0.5 * dt)
+        left = world.left(dt)
         status = self.advance(world, dt, left)
         if status in (OTHER_BODIES, MOVED_STATIC):
             world = self._look(anew=True)
@@ -117,7 +122,7 @@ class PackedStepper(Stepper):
                 world.reset_forces()
             if not self.sync:
                 world.scatter(status)
-            elif self._sync.reindexes(dt):
+            elif self._sync.reindexes(dt, bool(status & EVENTS)):
                 world.scatter(status)
                 self._sync.reindex()
             else:
@@ -126,9 +131,12 @@ class PackedStepper(Stepper):
             self._undo(world, world.state)
             raise
         self.time += dt
-        if status & EVENTS:
-            return self._report(world, dt)
-        return StepReport(self.time, world.empty, book=self.book())
+        report = self._made(world, dt, status)
+        if not world.plain:
+            self._tell_joints(world)
+        if self.sync:
+            self._sync.call_back()
+        return report
 
     def _undo(self, world: World, state: FloatArray) -> None:
         """Put the space back where it was."""
@@ -143,11 +151,12 @@ class PackedStepper(Stepper):
             world.gather()
         bodies, state = world.bodies, world.state.copy()
         bodies.check_finite(state)
-        hooks, left = Hooks(self.space, bodies, world.joints), world.damping ** (0.5 * dt)
+        hooks, left = Hooks(self.space, bodies, world.joints), world.left(dt)
         rehearsal: Rehearsal | None = None
-        given = world.given()
+        given, lost = world.given(), 0.0
         try:
             if world.joints is not None:
+                world.joints.refresh()
                 hooks.before()
                 world.gather()
             if len(hooks.velocity):
@@ -162,6 +171,9 @@ class PackedStepper(Stepper):
             world.give(given)
             status = self._checked(world, dt, self.advance(world, dt, left))
             given, end = world.given(), world.ended()
+            if world.damping == 0.0:
+                lost = world.stop(end)
+                given[:, VELOCITY], given[:, ANGULAR_VELOCITY] = end[:, VELOCITY], end[:, ANGULAR_VELOCITY]
             if rehearsal is not None:
                 end += after
             if len(hooks.position):
@@ -173,12 +185,12 @@ class PackedStepper(Stepper):
                 world.scatter(status)
                 world.joints.write()
                 hooks.after()
-                if rehearsal is None:
+                if self.sync and rehearsal is None:
                     with hooks.silent():
-                        self._sync.settle(bodies, world.joints, dt, self.sync)
+                        self._sync.settle(bodies, world.joints, dt, bool(status & EVENTS))
             elif not self.sync or rehearsal is not None:
                 world.scatter(status)
-            elif self._sync.reindexes(dt):
+            elif self._sync.reindexes(dt, bool(status & EVENTS)):
                 world.scatter(status)
                 self._sync.reindex()
             else:
@@ -190,17 +202,18 @@ class PackedStepper(Stepper):
             self._undo(world, state)
             raise
         self.time += dt
-        report = self._report(world, dt) if status & EVENTS else StepReport(self.time, world.empty, book=self.book())
-        self._tell_joints()
+        report = self._made(world, dt, status, lost)
+        self._tell_joints(world)
         if rehearsal is not None:
             rehearsal.finish(bodies)
+        elif self.sync or (world.joints is not None and world.joints.calling):
+            self._sync.call_back()
         return report
 
-    def _tell_joints(self) -> None:
+    def _tell_joints(self, world: World) -> None:
         """Give constraints what the step has to say of them."""
-        if self._world is not None:
-            self._told = self._world.joints
-            self._world.settle()
+        self._told = world.joints
+        world.settle()
 
     def _checked(self, world: World, dt: float, status: int) -> int:
         if status < 0:
@@ -219,11 +232,16 @@ class PackedStepper(Stepper):
             world = self._look()
         return describe(world)
 
-    def _report(self, world: World, dt: float) -> StepReport:
+    def _made(self, world: World, dt: float, status: int, lost: float = 0.0) -> StepReport:
+        """The report of the step; `lost` is the energy that damping has taken since."""
+        book = self.book()
+        if lost and book is not None:
+            book[DAMPED] += lost
+            book[AFTER] -= lost
+        if not status & EVENTS:
+            return StepReport(self.time, world.empty, book=book)
         lock, converged, iterations = self.outcome()
-        return StepReport(
-            self.time, self.details(world, dt), iterations, lock=lock, converged=converged, book=self.book()
-        )  # fmt: skip
+        return StepReport(self.time, self.details(world, dt), iterations, lock=lock, converged=converged, book=book)
 
     def _look(self, anew: bool = False) -> World:
         """The space as it is now, checked; with all its shapes if `anew` or if some came or went."""
@@ -236,13 +254,14 @@ class PackedStepper(Stepper):
                 self.prepare(world)
             self._world = world
             return world
-        world = World(self.space, self.ignore, world, self._past)
+        past = self._past if world is None else world
+        world = World(self.space, self.ignore, None if world is None or world.edited() else world, past)
         if world.ignores and not self._warned:
             self._warned = True
             warnings.warn(f"{type(self).__name__} steps on without the friction of this space", stacklevel=4)
         self._sync = Sync(self.space, world.bodies)
         self.prepare(world)
-        self._world = world
+        self._world, self._past = world, None
         return world
 
     def _fail(self, world: World, dt: float, status: int) -> None:

@@ -23,8 +23,7 @@ def check_dt(dt: float) -> float:
 class Stepper(ABC):
     """Steps a pymunk space: `stepper.step(dt)` in the place of `space.step(dt)`.
 
-    A step completes or raises with the space as it was. Shapes and bodies may be added and removed between steps; call
-    `refresh()` after editing one in place (radius, elasticity, friction, filter, mass, moment, body type).
+    A step completes or raises with the space as it was. Between steps shapes and bodies may be added, removed, edited.
     """
 
     def __init__(self, space: pymunk.Space) -> None:
@@ -42,4 +41,4 @@ class Stepper(ABC):
         """One line: what of the space as it is now is modelled, and therefore paid for."""
 
     def refresh(self) -> None:  # noqa: B027 - steppers that keep nothing have nothing to refresh
-        """Read the space's shapes and masses anew at the next step."""
+        """Read the space's shapes and masses anew at the next step; for what was edited behind pymunk's setters."""

@@ -14,6 +14,7 @@ import pytest
 
 import eeca_pymunk as ep
 import scenes
+from eeca_pymunk.space import private
 
 Step = Callable[[float], object]
 DT = 1 / 60
@@ -365,7 +366,7 @@ def test_nothing_of_the_users_is_changed() -> None:
     calls = recorded(space)
     handlers = {key: (h._begin, h._separate) for key, h in space._handlers.items()}
     body.velocity_func = lambda body, g, d, dt: pymunk.Body.update_velocity(body, g, d, dt)
-    function, iterations = body.velocity_func, space.iterations
+    function, iterations = private.velocity_function(body), space.iterations
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         step = eeca(space)
@@ -373,7 +374,7 @@ def test_nothing_of_the_users_is_changed() -> None:
             step(DT)
     assert calls
     assert {key: (h._begin, h._separate) for key, h in space._handlers.items()} == handlers
-    assert body.velocity_func is function
+    assert private.velocity_function(body) is function
     assert space.iterations == iterations
     np.testing.assert_allclose(space.point_query_nearest(body.position, 1.0, pymunk.ShapeFilter()).distance, -0.2)
 

@@ -18,6 +18,8 @@ from eeca_pymunk import transfer
 from eeca_pymunk.arrays import FloatArray
 from eeca_pymunk.packed_stepper import PackedStepper
 from eeca_pymunk.report import Details, of_events
+from eeca_pymunk.space import private
+from eeca_pymunk.space import world as world_of_space
 from eeca_pymunk.space.world import World
 from scenes.scene import add_disk
 
@@ -139,12 +141,11 @@ def test_a_step_without_functions_calls_none_and_asks_no_property(monkeypatch: p
     assert report.contacts.bodies == stepper._look().bodies.items
 
 
-def test_functions_set_after_the_stepper_was_made_need_a_refresh() -> None:
+def test_functions_set_after_the_stepper_was_made_are_called() -> None:
     space = swarm()
     stepper = FreeFlight(space)
     body = next(iter(space.bodies))
     body.velocity_func = lambda *_: None
-    stepper.refresh()
     velocity = body.velocity
     stepper.step(DT)
     assert body.velocity == velocity
@@ -285,7 +286,7 @@ def test_a_failure_leaves_the_space_as_it_was(when: str, monkeypatch: pytest.Mon
         list(space.bodies)[1].position_func = fail
         stepper.refresh()
     elif when == "rest step":
-        monkeypatch.setattr(pymunk.Space, "step", fail)
+        monkeypatch.setattr(private, "step_alone", fail)
     else:
         stepper.step(DT)
         push(space)
@@ -323,22 +324,27 @@ def test_the_model_says_what_there_is() -> None:
     assert stepper.model == "1 disks, 0 walls; no forces; free rotation; elastic"
 
 
-def test_shapes_that_stay_are_not_read_again_until_refresh() -> None:
+def test_shapes_that_stay_are_not_read_again(monkeypatch: pytest.MonkeyPatch) -> None:
     space = swarm()
     for shape in space.shapes:
         shape.elasticity = 1.0
     stepper = FreeFlight(space)
-    shape.elasticity = 0.5
+    asked: list[pymunk.Shape] = []
+    read = world_of_space.read
+    monkeypatch.setattr(world_of_space, "read", lambda shape: (asked.append(shape), read(shape))[1])
     added = pymunk.Circle(space.static_body, 1.0, (700.0, 700.0))
     added.elasticity = 1.0
     space.add(added)
     stepper.step(DT)
+    assert asked == [added]
     assert "elastic" in stepper.model
-    stepper.refresh()
+    shape.elasticity = 0.5
     assert "loss" in stepper.model
+    assert asked == [added, *space.shapes]
     space.remove(shape)
     stepper.step(DT)
     assert "elastic" in stepper.model
+    assert len(asked) == 2 + len(space.shapes)
 
 
 def test_errors_come_before_anything_moves() -> None:

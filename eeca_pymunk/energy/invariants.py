@@ -36,8 +36,8 @@ def sums(
     gravity: tuple[float, float],
 ) -> Invariants:
     """Of n bodies with masses and moments (n,), centres of mass (n, 2), velocities (n, 2) and spins (n,) rad/time."""
-    # A body of infinite moment does not turn; 0 * inf must not become NaN.
-    turning = np.multiply(moment, spin, out=np.zeros_like(spin), where=spin != 0)
+    # A body of infinite moment keeps its spin whatever happens: what is constant, and infinite, is not counted.
+    turning = np.multiply(moment, spin, out=np.zeros_like(spin), where=np.isfinite(moment))
     kinetic = 0.5 * float(np.sum(mass * np.sum(velocity * velocity, axis=1)) + np.sum(turning * spin))
     potential = -float(np.sum(mass * (center @ np.asarray(gravity, float))))
     p = mass[:, None] * velocity

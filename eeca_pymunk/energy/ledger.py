@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from ..arrays import FloatArray
 
 BOOK = 7  # entries of a book: restitution, friction, external, damping, (free), energy before and after
+DAMPED, AFTER = 3, 6
 
 
 @dataclass(frozen=True)

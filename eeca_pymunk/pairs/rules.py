@@ -1,7 +1,7 @@
-"""What a pair of shapes is to each other: pymunk's products, or what a collision handler has set for this step.
+"""What a pair of shapes is to each other: pymunk's products, or what handlers have set for this step, or joints.
 
 RULE (r, 6): shapes a < b, elasticity (below 0: they pass through one another), friction, surface velocity of b relative
-to a (x, y).
+to a (x, y). Rows are in the order of their pairs.
 """
 
 from __future__ import annotations
@@ -12,22 +12,37 @@ from ..layout import ELASTICITY, FRICTION, SURFACE_X, SURFACE_Y
 
 
 @uncounted
+def row_of(RULE: FloatArray, a: int, b: int) -> int:
+    """The row of shapes a and b in either order, -1 if there is none; by bisection."""
+    low, high = 0, RULE.shape[0]
+    if high == 0:
+        return -1
+    first, second = float(min(a, b)), float(max(a, b))
+    while low < high:
+        middle = (low + high) // 2
+        if RULE[middle, 0] < first or (RULE[middle, 0] == first and RULE[middle, 1] < second):
+            low = middle + 1
+        else:
+            high = middle
+    if low < RULE.shape[0] and RULE[low, 0] == first and RULE[low, 1] == second:
+        return low
+    return -1
+
+
+@uncounted
 def barred(RULE: FloatArray, a: int, b: int) -> bool:
-    """Whether a collision handler has said that shapes a and b pass through one another in this step."""
-    low, high = float(min(a, b)), float(max(a, b))
-    for r in range(RULE.shape[0]):
-        if RULE[r, 0] == low and RULE[r, 1] == high:
-            return RULE[r, 2] < 0.0
-    return False
+    """Whether shapes a and b pass through one another in this step, as a handler or a joint has said."""
+    r = row_of(RULE, a, b)
+    return bool(r >= 0 and RULE[r, 2] < 0.0)
 
 
 @uncounted
 def law(SHAPE: FloatArray, RULE: FloatArray, a: int, b: int) -> tuple[float, float, float, float]:
     """Elasticity, friction, and surface velocity (x, y) of b relative to a."""
-    for r in range(RULE.shape[0]):
-        if RULE[r, 0] == min(a, b) and RULE[r, 1] == max(a, b):
-            sign = 1.0 if a < b else -1.0
-            return RULE[r, 2], RULE[r, 3], sign * RULE[r, 4], sign * RULE[r, 5]
+    r = row_of(RULE, a, b)
+    if r >= 0:
+        sign = 1.0 if a < b else -1.0
+        return RULE[r, 2], RULE[r, 3], sign * RULE[r, 4], sign * RULE[r, 5]
     return (
         SHAPE[a, ELASTICITY] * SHAPE[b, ELASTICITY],
         SHAPE[a, FRICTION] * SHAPE[b, FRICTION],

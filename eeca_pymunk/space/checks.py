@@ -30,8 +30,8 @@ def check_space(space: pymunk.Space) -> None:
         raise UnsupportedFeature(
             f"space.sleep_time_threshold = {space.sleep_time_threshold}: sleeping is not modelled; set it to math.inf"
         )
-    if not 0.0 < space.damping < math.inf:
-        raise ValueError(f"space.damping = {space.damping}: set a finite value > 0; 1 is none")
+    if not 0.0 <= space.damping < math.inf:
+        raise ValueError(f"space.damping = {space.damping}: set a finite value >= 0; 1 is none")
     if not all(math.isfinite(g) for g in space.gravity):
         raise ValueError(f"space.gravity = {space.gravity}: set a finite gravity before stepping")
 

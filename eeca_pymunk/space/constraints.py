@@ -57,8 +57,8 @@ _KINDS = (
 )  # fmt: skip
 # Attributes that must be finite, and those that may be infinite but have a sign.
 _FINITE = (
-    "distance", "stiffness", "damping", "rest_length", "rest_angle", "phase", "ratchet", "ratio", "rate", "anchor_a",
-    "anchor_b", "groove_a", "groove_b",
+    "anchor_a", "anchor_b", "groove_a", "groove_b", "distance", "stiffness", "damping", "rest_length", "rest_angle",
+    "phase", "ratchet", "ratio", "rate",
 )  # fmt: skip
 _POSITIVE = ("max_force", "max_bias", "error_bias", "damping")
 

@@ -122,10 +122,14 @@ class Crossing:
         self.STATES[LEFT] = given
 
     def recall(self, before: Crossing) -> None:
-        """Take over what the step before has given from another crossing of the same space."""
-        for i, body in enumerate(self.bodies.items):
-            if body in before.bodies.row and not self.bodies.static[i]:
-                self.STATES[LEFT, i] = before.STATES[LEFT, before.bodies.row[body]]
+        """Take over what the step before has given to bodies that are what they were then."""
+        new, old = self.bodies, before.bodies
+        for i, body in enumerate(new.items):
+            k = old.row.get(body, -1)
+            if k < 0 or new.static[i] or new.mass[i] != old.mass[k] or new.moment[i] != old.moment[k]:
+                continue
+            if np.array_equal(new.center_of_gravity[i], old.center_of_gravity[k]):
+                self.STATES[LEFT, i] = before.STATES[LEFT, k]
 
     def turning(self, status: int) -> int:
         """Lay out the end of the step anew with angles and spins if they were left out; its bits."""

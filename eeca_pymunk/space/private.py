@@ -24,6 +24,9 @@ except ImportError as error:  # pragma: no cover - needs another pymunk
 # Functions of a handler, in the order in which pymunk calls them.
 PHASES = ("_begin", "_pre_solve", "_post_solve", "_separate")
 
+# What bodies have that have no function of their own.
+DEFAULTS = {"velocity_func": pymunk.Body.update_velocity, "position_func": pymunk.Body.update_position}
+
 _OF_LIBRARY = (
     "cpSpaceStep", "cpHastySpaceStep", "cpSpaceEachBody", "cpSpaceGetGravity", "cpSpaceGetDamping",
     "cpSpaceGetSleepTimeThreshold", "cpSpaceGetShapeIDCounter", "cpSpaceGetTimestamp",
@@ -88,6 +91,12 @@ def position_function(body: pymunk.Body) -> Callable[..., None] | None:
     return body._position_func
 
 
+def forget_function(body: pymunk.Body, name: str, function: Callable[..., None]) -> None:
+    """What pymunk before 7.3 leaves undone when its default is set again: the body's own function is none any more."""
+    if function is DEFAULTS[name]:
+        setattr(body, f"_{name}", None)
+
+
 def replace_functions(
     body: pymunk.Body, velocity: Callable[..., None] | None, position: Callable[..., None] | None
 ) -> None:
@@ -123,24 +132,33 @@ def step_alone(space: pymunk.Space, dt: float) -> None:
 
 def finish_step(space: pymunk.Space) -> None:
     """Add and remove what callbacks of the last step asked for, and call its post-step callbacks."""
-    added, removed = list(space._add_later), list(space._remove_later)
+    added = list(space._add_later)
     space._add_later.clear()
-    space._remove_later.clear()
     space.add(*added)
-    for thing in reversed(removed):
-        space.remove(thing)
-    callbacks = dict(space._post_step_callbacks)
-    for callback in callbacks.values():
-        callback(space)
+    # What is removed while it touches something calls `separate`, which may remove more, and the same again.
+    remove, gone = getattr(space, "_remove", space.remove), set()
+    while space._remove_later:
+        things = list(space._remove_later)
+        space._remove_later.clear()
+        for thing in reversed(things):
+            if thing not in gone:
+                gone.add(thing)
+                remove(thing)
+    callbacks = list(space._post_step_callbacks.values())
     space._post_step_callbacks.clear()
+    for callback in callbacks:
+        callback(space)
 
 
-def watch(space: pymunk.Space) -> Callable[[], bool]:
+def watch(space: pymunk.Space, edits: list[int]) -> Callable[[], bool]:
     """A function that tells whether the space's settings, and what is in it, are still as they are now.
 
+    Args:
+        edits: grows when something of the space is edited in place.
+
     Every addition of a shape changes pymunk's count of all shapes ever added, every removal the number of those there.
-    A body that was exchanged for another shows in the ids that the batch call reads, and what was edited in place
-    nowhere. Constraints, which have neither, are compared one by one. The public properties take three times as long.
+    A body that was exchanged for another shows in the ids that the batch call reads. Constraints, which have neither,
+    are compared one by one. The public properties take three times as long.
     """
     c = space._space
     bodies, shapes, constraints, handlers = space._bodies, space._shapes, space._constraints, space._handlers
@@ -148,7 +166,7 @@ def watch(space: pymunk.Space) -> Callable[[], bool]:
     handler_count = len(handlers)
     counter, added = lib.cpSpaceGetShapeIDCounter, lib.cpSpaceGetShapeIDCounter(c)
     gravity_of, gravity = lib.cpSpaceGetGravity, lib.cpSpaceGetGravity(c)
-    gx, gy = gravity.x, gravity.y
+    gx, gy, known = gravity.x, gravity.y, edits[0]
     damping_of, damping = lib.cpSpaceGetDamping, lib.cpSpaceGetDamping(c)
     threshold_of, threshold = lib.cpSpaceGetSleepTimeThreshold, lib.cpSpaceGetSleepTimeThreshold(c)
 
@@ -160,6 +178,7 @@ def watch(space: pymunk.Space) -> Callable[[], bool]:
             g.x == gx
             and g.y == gy
             and counter(c) == added
+            and edits[0] == known
             and len(shapes) == shape_count
             and len(bodies) == body_count
             and damping_of(c) == damping
@@ -231,7 +250,7 @@ def shapes_ever(space: pymunk.Space) -> int:
 
 
 def waits(space: pymunk.Space) -> bool:
-    """Whether callbacks, additions or removals wait for the end of pymunk's next step."""
+    """Whether anything waits for the end of a step."""
     return bool(space._post_step_callbacks or space._add_later or space._remove_later)
 
 

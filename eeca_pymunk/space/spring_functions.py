@@ -4,9 +4,9 @@ From its length l0, changing at the rate r0, which was r a step of h' ago, a spr
 
     l1 = l0 + h r0 + h^2 (r0 - r) / 2h'.
 
-It pushes with the mean of f over [l0, l1] (Gauss, 2 points) at their middle m, and changes with the secant k of f there
-where that pulls back: f(m) + k (l - m). This is second order, its energy fourth. What such a spring gives is not stored anywhere that the ledger knows: it is external work.
-Rotary springs likewise, with the angle of a less that of b.
+It pushes with the mean of f over [l0, l1] (Gauss, 2 points) at their middle m, and changes with the secant k of f
+there where that pulls back: f(m) + k (l - m). This is second order, its energy fourth. What such a spring gives is not
+stored anywhere that the ledger knows: it is external work. Rotary springs likewise, with the angle of a less that of b.
 """
 
 from __future__ import annotations

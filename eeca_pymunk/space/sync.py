@@ -1,9 +1,9 @@
 """Sync: pymunk's own shapes and broad phase where a step has put the bodies, for its queries and drawing.
 
-Two ways, both by public calls. A *rest step*, pymunk's own step with everything at rest, moves nothing, renews the
-broad phase, forgets old contacts, notes dt and calls post-step callbacks. *Reindexing* moves the shapes of one body
-after the other; it costs less for a few bodies, and leaves all the rest as it is. In a spatial hash it leaves handles
-behind, which the next rest step clears, so there is one every so many steps.
+Two ways. A *rest step*, pymunk's own step with everything at rest, moves nothing, renews the broad phase, forgets old
+contacts, and notes dt. *Reindexing* moves the shapes of one body after the other; it costs less for a few bodies, and
+leaves all the rest as it is. In a spatial hash it leaves handles behind, which the next rest step clears, so there is
+one every so many steps. Post-step callbacks come after either, when bodies have their velocities.
 """
 
 from __future__ import annotations
@@ -42,16 +42,13 @@ def rest_step(space: pymunk.Space, dt: float, joints: JointRows | None = None, f
     try:
         space.gravity, space.iterations, space.collision_bias = (0.0, 0.0), 1, 1.0
         if joints is None:
-            space.step(dt)
+            private.step_alone(space, dt)
         else:
             push = inert(joints.items if forget else joints.pushing())
             with silent(joints.calling), with_laws(joints.own, joints.laws()), push:
                 private.step_alone(space, dt)
     finally:
         space.gravity, space.iterations, space.collision_bias = gravity, iterations, bias
-    if joints is not None:
-        # Not before constraints have their forces and functions back, which callbacks may read and change.
-        private.finish_step(space)
 
 
 class Sync:
@@ -63,13 +60,14 @@ class Sync:
         self._moving = moving if sum(len(b.shapes) for b in moving) <= FEW else None
         self._timestamp: Callable[[], int] = private.timestamp(space)
         self._renewed, self._dt, self._left = -1, 0.0, 0
+        self._touched = False
 
-    def reindexes(self, dt: float) -> bool:
-        """Whether reindexing does for this step: pymunk has taken no step since our last rest step, which knows this
-        dt, and no callback waits for the end of one."""
-        if self._moving is None or dt != self._dt or self._left == 0:
+    def reindexes(self, dt: float, contacts: bool) -> bool:
+        """Whether reindexing does for this step: pymunk took no step since our last rest step, which knows this dt, and
+        nothing touched in either, so that `each_arbiter` has nothing to tell."""
+        if self._moving is None or dt != self._dt or self._left == 0 or contacts or self._touched:
             return False
-        return self._timestamp() == self._renewed and not private.waits(self.space)
+        return self._timestamp() == self._renewed
 
     def reindex(self) -> None:
         """Move the shapes to where their bodies are."""
@@ -78,41 +76,35 @@ class Sync:
         for body in self._moving or ():
             move(body)
 
-    def calls_back(self) -> bool:
-        """Whether a rest step will call post-step callbacks."""
-        return private.waits(self.space)
+    def call_back(self) -> None:
+        """Do what waits for the end of a step: post-step callbacks."""
+        if private.waits(self.space):
+            private.finish_step(self.space)
 
     def rest(self, dt: float, joints: JointRows | None = None) -> None:
         """A rest step; all bodies must have velocity 0, and may have another of round-off if there are joints."""
         rest_step(self.space, dt, joints, forget=self._timestamp() != self._renewed)
         self._renewed, self._dt, self._left = self._timestamp(), dt, _RENEW
+        if self._moving is not None:
+            self._touched = bool(private.arbiters(self.space))
 
     def land(self, world: World, dt: float, status: int) -> None:
         """Write the end of the step of a world with a rest step at it."""
         if world.joints is not None:
             status = world.turning(status)  # joints leave round-off in spins
         world.scatter_still(status)
-        end = world.ended() if self.calls_back() else None
         self.rest(dt, world.joints)
-        if end is not None:
-            # Callbacks may have added or removed bodies, so that rows are not theirs any more.
-            world.bodies.scatter(end)
-        else:
-            world.scatter_speed(status)
+        world.scatter_speed(status)
 
-    def settle(self, bodies: Bodies, joints: JointRows, dt: float, whole: bool) -> None:
-        """Let pymunk see the end of the step that has been written already, and which functions may have changed since;
-        add and remove what they asked for. If not `whole`, only that."""
-        if not whole:
-            if self.calls_back():
-                private.finish_step(self.space)
-        elif self.reindexes(dt):
+    def settle(self, bodies: Bodies, joints: JointRows, dt: float, contacts: bool) -> None:
+        """Let pymunk see the end of a step that has been written already, which functions may have changed since."""
+        if self.reindexes(dt, contacts):
             self.reindex()
-        else:
-            end = bodies.gather()
-            assert end is not None  # what functions add and remove is still waiting
-            still = end.copy()
-            still[:, VELOCITY], still[:, ANGULAR_VELOCITY] = 0.0, 0.0
-            bodies.scatter(still, unchanged=True)
-            self.rest(dt, joints)
-            bodies.scatter(end)
+            return
+        end = bodies.gather()
+        assert end is not None  # what functions add and remove is still waiting
+        still = end.copy()
+        still[:, VELOCITY], still[:, ANGULAR_VELOCITY] = 0.0, 0.0
+        bodies.scatter(still, unchanged=True)
+        self.rest(dt, joints)
+        bodies.scatter(end, unchanged=True)

@@ -13,10 +13,11 @@ from ..layout import BODY_COLUMNS, BODY_ROW, FRICTION, GRIP, GROUP, MASK
 from ..report import nothing
 from ..transfer import take
 from . import private
-from .bodies import Bodies
+from .bodies import ANGULAR_VELOCITY, VELOCITY, Bodies
 from .checks import check_shape, check_space, rough_pair
 from .crossing import Crossing
 from .joints import JointRows
+from .noticed import edits
 from .packing import Record, pack, read
 from .shapes import Rules
 
@@ -29,13 +30,13 @@ class World(Crossing):
     """The bodies and solid shapes of one space; ValueError or UnsupportedFeature for what cannot be stepped.
 
     Masses, shapes and functions of bodies are read once. `current()` tells, in half a microsecond, whether settings and
-    contents of the space are still those; moved static bodies and exchanged bodies show in what `gather` reads, which
-    `transfer.take` tells. A shape edited in place shows nowhere.
+    contents of the space are still those, and whether shapes and bodies were edited in place (`noticed.py`); moved
+    static bodies and exchanged bodies show in what `gather` reads, which `transfer.take` tells.
 
     Args:
         space: any pymunk space.  ignore: what to step on without, see `check_ignored`.
         before: the world of the same space before shapes came or went, whose shapes are not read again.
-        joints: the joints of the same space before, whose memory of earlier steps is kept.
+        past: the world of the same space before, of which is kept what joints remember of earlier steps.
 
     Attributes:
         records: what the shapes of the space say of themselves, None for sensors.
@@ -46,8 +47,8 @@ class World(Crossing):
         STATES, WALK, EXTRA, ENDS: what crosses the edge, see `layout.py`.
         gravity: length/time².  damping: pymunk's, 1 is none.
         ignores: whether there is friction that is ignored.  filtered: whether any shape has a filter.
-        collisions: whether the space has collision handlers.  hooked: whether it or its bodies have functions.
-        plain: whether it has neither functions nor joints.
+        collisions: whether the space has collision handlers.  hooked: whether it or its bodies have functions, or
+            velocities are gone after each step.  plain: whether there is nothing of that, and no joints.
         rules: what collision handlers decided about pairs of rows of SHAPE for this step.
         joints: the constraints of the space, None if it has none.  PARTNER: bodies of joints that have no row of BODY.
         parted: pairs of rows of SHAPE that pass through one another because joints of their bodies say so.
@@ -56,9 +57,11 @@ class World(Crossing):
 
     def __init__(
         self, space: pymunk.Space, ignore: Sequence[str] = (), before: World | None = None,
-        joints: JointRows | None = None,
+        past: World | None = None,
     ) -> None:  # fmt: skip
         check_space(space)
+        self._edits = edits(space)
+        self._known = self._edits[0]
         bodies = Bodies(space)
         state = bodies.gather()
         assert state is not None  # read from these very bodies
@@ -77,9 +80,10 @@ class World(Crossing):
         self.filtered = bool((self.LINK[:, GROUP : MASK + 1] != _COLLIDES_WITH_ALL).any())
         self.empty = nothing(bodies.items)
         self.parted: set[tuple[int, int]] = set()
-        self.joints: JointRows | None = joints if before is None else before.joints
-        if before is not None and before.joints is not None:
-            self.recall(before)
+        self.joints: JointRows | None = None
+        if past is not None and past.joints is not None:
+            self.joints = past.joints
+            self.recall(past)
         self.read_settings(anew=True)
 
     def read_settings(self, anew: bool = False) -> None:
@@ -92,10 +96,11 @@ class World(Crossing):
         self.collisions = bool(private.handlers(self.space))
         self.rules = Rules()
         bodies = self.bodies
-        self.hooked = self.collisions or len(bodies.velocity_hooks) > 0 or len(bodies.position_hooks) > 0
+        functions = len(bodies.velocity_hooks) > 0 or len(bodies.position_hooks) > 0
+        self.hooked = self.collisions or functions or self.damping == 0.0
         self.plain = not self.hooked and self.joints is None
         self._contents = self._count()
-        self.current = private.watch(self.space)
+        self.current = private.watch(self.space, self._edits)
 
     def _read_joints(self, anew: bool) -> None:
         past = self.joints
@@ -143,13 +148,35 @@ class World(Crossing):
         return private.shapes_ever(self.space), len(self.space.shapes), len(self.space.bodies)
 
     def same_contents(self) -> bool:
-        """Whether shapes have neither come nor gone, so that new settings are all there is to read."""
-        return self._contents == self._count()
+        """Whether shapes have neither come nor gone nor changed, so that new settings are all there is to read."""
+        return self._contents == self._count() and not self.edited()
+
+    def edited(self) -> bool:
+        """Whether a shape or body was edited in place."""
+        return self._edits[0] != self._known
 
     def load(self) -> None:
         """Put what pymunk has now into BODY."""
         self.gather()
         take(self.STATES, self.WALK, self.EXTRA, self.BODY, 0.0, 0.0, 1.0)
+
+    def left(self, dt: float) -> float:
+        """What half a step's damping leaves of velocities; all where nothing is left at the end, see `stop`."""
+        return self.damping ** (0.5 * dt) if self.damping > 0.0 else 1.0
+
+    def stop(self, end: FloatArray) -> float:
+        """Take all velocities from the (N, 9) `end`, as damping 0 does; the energy that is lost.
+
+        Within the step bodies keep them, else nothing would ever move: pymunk moves bodies before it damps them.
+        """
+        bodies = self.bodies
+        stops = bodies.dynamic & ~bodies.steered
+        speed, spin = end[stops, VELOCITY], end[stops, ANGULAR_VELOCITY]
+        moment = bodies.moment[stops]
+        turning = np.where(np.isfinite(moment), moment, 0.0)
+        lost = 0.5 * float(np.sum(bodies.mass[stops] * (speed * speed).sum(axis=1)) + np.sum(turning * spin * spin))
+        end[stops, VELOCITY], end[stops, ANGULAR_VELOCITY] = 0.0, 0.0
+        return lost
 
 
 def _records(space: pymunk.Space, bodies: Bodies, known: Records) -> Records:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
 import pymunk
 import pytest
 
-from eeca_pymunk.joints.layout import CLOSED, PROJECTED
+from eeca_pymunk.joints.layout import PROJECTED
 from scenes.linkages import bars, body, chain, empty, pendulum
 
 from .driving import error, run
@@ -129,7 +130,7 @@ def swing(steps: int, time: float) -> float:
 def test_energy_of_an_own_law_of_a_spring_is_of_fourth_order() -> None:
     errors = [swing(steps, 4.0) for steps in (120, 240, 480)]
     assert errors[0] < 1e-2
-    for coarse, fine in zip(errors, errors[1:], strict=False):
+    for coarse, fine in itertools.pairwise(errors):
         assert 3.9 < math.log2(coarse / fine) < 4.1
 
 

@@ -94,9 +94,10 @@ def test_impulse_of_a_hanging_weight_is_m_g_dt(make: Callable[..., pymunk.Constr
     for _ in range(3):
         stepper.step(DT)
     assert joint.impulse == pytest.approx(3.0 * 10.0 * DT, rel=1e-9)
-    # A step of native tells its own, also of a joint that ours has held until now.
+    # A step of native tells its own, which is none of a rope at its very length.
     space.step(0.5 * DT)
-    assert joint.impulse == pytest.approx(3.0 * 10.0 * 0.5 * DT, rel=1e-6)
+    rope = isinstance(joint, pymunk.SlideJoint)
+    assert joint.impulse == pytest.approx(0.0 if rope else 3.0 * 10.0 * 0.5 * DT, rel=1e-6)
     stepper.step(DT)
     assert joint.impulse == pytest.approx(3.0 * 10.0 * DT, rel=1e-6)
     del stepper
@@ -199,7 +200,7 @@ def test_a_joint_breaks_from_its_own_post_solve() -> None:
     assert 6 <= len(felt) <= 7
     assert len(space.constraints) == 0
     assert len(space.bodies) == 2
-    assert weight.position.y < -2.05
+    assert weight.position.y < -2.04
 
 
 @pytest.mark.parametrize("shapes", [0, 3, 20], ids=["bare", "reindexed", "rest steps"])
@@ -229,22 +230,22 @@ def test_functions_are_called_once_a_step_with_what_belongs_to_it(shapes: int, s
     assert rope.max_force == math.inf
 
 
+def notes(calls: list[str], name: str) -> Callable[..., None]:
+    return lambda *_: calls.append(name)
+
+
 def test_functions_come_in_native_s_order_beside_collisions() -> None:
     found = []
     for ours in (False, True):
-        space, calls = empty(0.0), []
+        space = empty(0.0)
+        calls: list[str] = []
         space.collision_slop = 0.0
         a, b = body(space, 1.0, 1.0, (0.0, 0.0)), body(space, 1.0, 1.0, (0.95, 0.0))
         space.add(pymunk.Circle(a, 0.5), pymunk.Circle(b, 0.5))
         pin = pymunk.PinJoint(a, space.static_body, (0, 0), (-5.0, 0.0))
-        pin.pre_solve = lambda c, s, calls=calls: calls.append("joint before")
-        pin.post_solve = lambda c, s, calls=calls: calls.append("joint after")
+        pin.pre_solve, pin.post_solve = (notes(calls, name) for name in ("joint before", "joint after"))
         space.add(pin)
-        space.on_collision(
-            begin=lambda *_, calls=calls: calls.append("begin"),
-            pre_solve=lambda *_, calls=calls: calls.append("pre"),
-            post_solve=lambda *_, calls=calls: calls.append("post"),
-        )
+        space.on_collision(begin=notes(calls, "begin"), pre_solve=notes(calls, "pre"), post_solve=notes(calls, "post"))
         step = ep.EECA(space).step if ours else space.step
         step(DT)
         found.append(calls)
@@ -369,7 +370,7 @@ def test_only_joints_of_partners_that_move_are_touched() -> None:
             world.gather()
         assert world.joints is not None
         world.joints.look(world.state, world.bodies.row, DT)
-        return world.joints.tie[:, TOUCHED].tolist()
+        return [int(mark) for mark in world.joints.tie[:, TOUCHED]]
 
     assert touched() == [0, 0, 0]
     hand.position = (1.0, 0.01)
@@ -554,4 +555,91 @@ def test_those_who_move_disks_alone_refuse_joints(make: Callable[[pymunk.Space],
     with pytest.raises(ep.UnsupportedFeature, match="PinJoint"):
         make(space)
     space.remove(pin)
+    stepper.step(DT)
+
+
+def touching(collide: bool) -> tuple[pymunk.Space, Bodies, pymunk.Constraint]:
+    """Two disks that would fall apart at once if they collided, on a pin, above a floor."""
+    space = empty(10.0)
+    a, b = body(space, 1.0, 0.1, (0.0, 1.0)), body(space, 1.0, 0.1, (0.4, 1.0))
+    space.add(*(pymunk.Circle(one, 0.5) for one in (a, b)))
+    floor = pymunk.Segment(space.static_body, (-9.0, 0.0), (9.0, 0.0), 0.0)
+    for shape in (*space.shapes, floor):
+        shape.friction = 0.5
+    pin = pymunk.PinJoint(a, b)
+    pin.collide_bodies = collide
+    space.add(floor, pin)
+    return space, [a, b], pin
+
+
+@pytest.mark.parametrize("handlers", [False, True])
+@pytest.mark.parametrize("closure", [ep.TimeOfImpact(), ep.Midstep()], ids=["time_of_impact", "midstep"])
+def test_bodies_of_a_joint_pass_through_one_another_where_it_says_so(handlers: bool, closure: ep.Closure) -> None:
+    space, (a, b), pin = touching(False)
+    met: list[int] = []
+    if handlers:
+        space.on_collision(begin=lambda arbiter, *_: met.append(len({s.body for s in arbiter.shapes} & {a, b})))
+    stepper = ep.EECA(space, closure)
+    for _ in range(60):
+        report = stepper.step(DT)
+        contacts = report.contacts
+        pairs = {
+            frozenset((contacts.bodies[i], contacts.bodies[j]))
+            for i, j in zip(contacts.body_a, contacts.body_b, strict=True)
+        }
+        assert frozenset((a, b)) not in pairs
+    assert max(met, default=1) == 1
+    assert (a.position - b.position).length == pytest.approx(0.4, abs=1e-9)
+    # They rest on the floor all the same.
+    assert a.position.y == pytest.approx(0.5, abs=1e-3)
+    # Another joint that lets them collide does not change it; native looks for any that does not.
+    space.add(pymunk.DampedSpring(a, b, (0, 0), (0, 0), 0.4, 1.0, 0.0))
+    stepper.step(DT)
+    assert (a.position - b.position).length == pytest.approx(0.4, abs=1e-9)
+    # Edited: now they push each other, on what is left of the pin.
+    pin.distance, pin.collide_bodies = 1.2, True
+    a.position, b.position = (0.0, 0.5), (1.2, 0.5)
+    for _ in range(5):
+        stepper.step(DT)
+    space.remove(pin)
+    a.velocity, b.velocity = (1.0, 0.0), (-1.0, 0.0)
+    for _ in range(30):
+        stepper.step(DT)
+    assert (a.position - b.position).length > 1.0 - 1e-3
+    if handlers:
+        assert max(met) == 2
+
+
+def test_bodies_of_a_joint_collide_where_it_does_not_forbid_it() -> None:
+    space, (a, b), pin = touching(True)
+    space.remove(pin)
+    space.add(pymunk.DampedSpring(a, b, (0, 0), (0, 0), 0.4, 1.0, 0.0))
+    a.position, b.position = (0.0, 2.0), (1.01, 2.0)
+    a.velocity, b.velocity = (1.0, 0.0), (-1.0, 0.0)
+    stepper = ep.EECA(space)
+    for _ in range(10):
+        stepper.step(DT)
+        assert (a.position - b.position).length > 1.0 - 1e-9
+
+
+def test_joints_are_added_from_collisions_and_removed_from_post_step_callbacks() -> None:
+    space = empty(0.0)
+    a, b = body(space, 1.0, 0.1, (0.0, 0.0)), body(space, 1.0, 0.1, (2.0, 0.0))
+    space.add(pymunk.Circle(a, 0.5), pymunk.Circle(b, 0.5))
+    a.velocity = (3.0, 0.0)
+
+    def stick(arbiter: pymunk.Arbiter, space: pymunk.Space, data: object) -> None:
+        if not space.constraints:
+            space.add(pymunk.PivotJoint(a, b, (0.5, 0.0), (-0.5, 0.0)), pymunk.GearJoint(a, b, 0.0, 1.0))
+
+    space.on_collision(post_solve=stick)
+    stepper = ep.EECA(space)
+    for _ in range(60):
+        stepper.step(DT)
+    assert len(space.constraints) == 2
+    assert a.velocity == pytest.approx(b.velocity, abs=1e-9)
+    assert a.velocity.x == pytest.approx(1.5, abs=1e-9)
+    space.add_post_step_callback(lambda space, key: space.remove(*space.constraints), "break")
+    stepper.step(DT)
+    assert len(space.constraints) == 0
     stepper.step(DT)

@@ -10,7 +10,7 @@ import pymunk
 import pymunk.batch
 import pytest
 
-from eeca_pymunk.space import private
+from eeca_pymunk.space import noticed, private
 from scenes.scene import add_disk
 
 
@@ -79,6 +79,7 @@ def test_arbiters() -> None:
 
 @pytest.mark.parametrize("kind", ["velocity", "position"])
 def test_functions_of_bodies(kind: str) -> None:
+    noticed.edits(pymunk.Space())  # pymunk before 7.3 needs it
     body = pymunk.Body(1.0, 1.0)
     read = getattr(private, f"{kind}_function")
     assert read(body) is None
@@ -140,7 +141,8 @@ def test_step_alone_and_finish_step_are_a_step(threaded: bool) -> None:
 def test_watch_and_count_of_shapes() -> None:
     space, bodies = meeting()
     assert private.shapes_ever(space) == 2
-    current = private.watch(space)
+    edits = [0]
+    current = private.watch(space, edits)
     space.step(0.001)
     bodies[0].velocity = (9.0, 9.0)
     space.iterations = 3
@@ -155,8 +157,9 @@ def test_watch_and_count_of_shapes() -> None:
         lambda: space.add(pymunk.Body(1.0, 1.0)),
         lambda: space.remove(*bodies[0].shapes),
         lambda: space.add(pymunk.Circle(bodies[0], 1.0)),
+        lambda: edits.append(edits.pop() + 1),
     ):
-        current = private.watch(space)
+        current = private.watch(space, edits)
         assert current()
         change()
         assert not current()

@@ -80,7 +80,7 @@ def test_what_only_a_step_of_pymunk_does_is_done(monkeypatch: pytest.MonkeyPatch
     space.add_post_step_callback(lambda space, key: called.append(key), "key")
     stepper.step(0.5 * DT)
     assert called == ["key"]
-    assert ways == ["rest", "reindex", "rest", "reindex", "rest", "reindex", "rest"]
+    assert ways == ["rest", "reindex", "rest", "reindex", "rest", "reindex", "reindex"]
 
 
 @pytest.mark.parametrize("count", [1, 30])

@@ -190,7 +190,7 @@ def set_gravity(space: pymunk.Space) -> None:
 
 
 def set_damping(space: pymunk.Space) -> None:
-    space.damping = 0.0
+    space.damping = math.inf
 
 
 def add_joint(space: pymunk.Space) -> None:
@@ -206,7 +206,7 @@ def edit(name: str, value: object) -> Callable[[pymunk.Space], None]:
     [
         (set_sleeping, ep.UnsupportedFeature, "sleep_time_threshold = 1.0"),
         (set_gravity, ValueError, "space.gravity"),
-        (set_damping, ValueError, "space.damping = 0.0"),
+        (set_damping, ValueError, "space.damping = inf"),
         (add_joint, ValueError, "PivotJoint.* has anchor_a"),
         (edit("surface_velocity", (math.nan, 0.0)), ValueError, "surface velocity"),
         (edit("elasticity", 1.5), ValueError, "elasticity 1.5"),

@@ -1,0 +1,76 @@
+"""What a program changes in place of shapes and bodies, noticed without looking.
+
+pymunk's setters write into Chipmunk at once and tell nobody, and to read all shapes anew takes longer than most steps.
+So the setters of what a `World` reads once are wrapped, on pymunk's classes, when the first space is watched: each
+first does what it did, then adds one to the count of the space of its shape or body, if that is watched and the value
+is another one. Reading, and what a `World` does not read (positions, velocities, forces, colours), is as before.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import wraps
+from typing import Any
+from weakref import WeakKeyDictionary
+
+import pymunk
+
+from . import private
+
+_PROPERTIES: tuple[tuple[type, tuple[str, ...]], ...] = (
+    (pymunk.Shape, ("mass", "density", "sensor", "filter", "elasticity", "friction", "surface_velocity", "body")),
+    (pymunk.Body, ("mass", "moment", "center_of_gravity", "body_type", "velocity_func", "position_func")),
+)
+_METHODS: tuple[tuple[type, tuple[str, ...]], ...] = (
+    (pymunk.Circle, ("unsafe_set_radius", "unsafe_set_offset")),
+    (pymunk.Segment, ("unsafe_set_radius", "unsafe_set_endpoints")),
+    (pymunk.Poly, ("unsafe_set_radius", "unsafe_set_vertices")),
+)
+_counts: WeakKeyDictionary[pymunk.Space, list[int]] = WeakKeyDictionary()
+_wrapped = False
+
+
+def edits(space: pymunk.Space) -> list[int]:
+    """A list whose one item grows with every edit of a shape or body of the space from now on."""
+    global _wrapped
+    if not _wrapped:
+        _wrapped = True
+        for owner, names in _PROPERTIES:
+            for name in names:
+                setattr(owner, name, _property(name, vars(owner)[name]))
+        for owner, names in _METHODS:
+            for name in names:
+                setattr(owner, name, _method(vars(owner)[name]))
+    return _counts.setdefault(space, [0])
+
+
+def _note(thing: Any) -> None:
+    space = thing.space
+    count = None if space is None else _counts.get(space)
+    if count is not None:
+        count[0] += 1
+
+
+def _property(name: str, native: Any) -> property:
+    read, write = native.fget, native.fset
+
+    def set_and_note(self: Any, value: Any) -> None:
+        before = None if read is None else read(self)
+        write(self, value)
+        if name in private.DEFAULTS:
+            private.forget_function(self, name, value)
+        if read is None or read(self) != before:
+            _note(self)
+
+    return property(read, set_and_note, native.fdel, native.__doc__)
+
+
+def _method(native: Callable[..., Any]) -> Callable[..., Any]:
+    @wraps(native)
+    def call_and_note(self: Any, *args: Any, **kwargs: Any) -> Any:
+        try:
+            return native(self, *args, **kwargs)
+        finally:
+            _note(self)
+
+    return call_and_note

@@ -1,0 +1,32 @@
+"""Rules of pairs: found as a dictionary finds them, in either order of the two shapes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from eeca_pymunk.layout import ELASTICITY, FRICTION, SHAPE_COLUMNS, SURFACE_X, SURFACE_Y
+from eeca_pymunk.pairs.rules import barred, law
+from eeca_pymunk.space.shapes import Rules
+
+
+@pytest.mark.parametrize("count", [0, 1, 2, 7, 40])
+def test_rules_are_found_as_in_a_dictionary(count: int) -> None:
+    random, shapes = np.random.default_rng(count), 12
+    SHAPE = random.random((shapes, SHAPE_COLUMNS))
+    every = [(a, b) for a in range(shapes) for b in range(a + 1, shapes)]
+    chosen = [every[i] for i in random.permutation(len(every))[:count]]
+    ignored, rest = chosen[: count // 3], chosen[count // 3 :]
+    rules = Rules(frozenset(ignored), {pair: (*random.random(2),) for pair in rest})
+    parted = set(chosen[count // 3 : count // 2])
+    told = rules.of_pairs(SHAPE, parted)
+    RULE = np.array([(*pair, *what) for pair, what in told.items()], float).reshape(-1, 6)
+    for a, b in every:
+        assert barred(RULE, a, b) == barred(RULE, b, a) == ((a, b) in parted.union(ignored))
+        e, mu, sx, sy = law(SHAPE, RULE, a, b)
+        assert law(SHAPE, RULE, b, a) == (e, mu, -sx, -sy)
+        assert (sx, sy) == tuple(SHAPE[b, SURFACE_X : SURFACE_Y + 1] - SHAPE[a, SURFACE_X : SURFACE_Y + 1])
+        if (a, b) not in told:
+            assert (e, mu) == (SHAPE[a, ELASTICITY] * SHAPE[b, ELASTICITY], SHAPE[a, FRICTION] * SHAPE[b, FRICTION])
+        elif (a, b) not in parted.union(ignored):
+            assert (e, mu) == rules.changed[a, b]

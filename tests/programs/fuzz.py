@@ -1,0 +1,223 @@
+"""Random programs of API calls, for hypothesis: a space is built, edited, stepped, asked and listened to, in any order.
+
+`Program` draws what to do next from a seed of hypothesis and does it. After every step its rules hold: all is finite,
+the ledger closes, energy does not rise but by what the ledger calls external, and what raises leaves all as it was.
+"""
+
+from __future__ import annotations
+
+import copy
+import math
+import pickle
+from collections.abc import Callable
+
+import pymunk
+from hypothesis import strategies as st
+
+import eeca_pymunk as ep
+
+from ..steppers import state
+
+DT = 1 / 60
+KINDS = (pymunk.Body.DYNAMIC, pymunk.Body.DYNAMIC, pymunk.Body.DYNAMIC, pymunk.Body.KINEMATIC, pymunk.Body.STATIC)
+numbers = st.floats(-3.0, 3.0, allow_nan=False).map(lambda x: round(x, 2))
+sizes = st.floats(0.1, 0.6).map(lambda x: round(x, 2))
+
+
+class Program:
+    """One random program; `draw` is hypothesis's."""
+
+    def __init__(self, draw: Callable[..., object]) -> None:
+        self.draw = draw
+        self.space = pymunk.Space()
+        self.space.add(pymunk.Segment(self.space.static_body, (-5.0, -3.0), (5.0, -3.0), 0.1))
+        self.stepper = ep.EECA(self.space, sync=bool(draw(st.booleans())))
+        self.steps = 0
+        self.calls = 0
+
+    def number(self) -> float:
+        return float(self.draw(numbers))  # type: ignore[arg-type]
+
+    def size(self) -> float:
+        return float(self.draw(sizes))  # type: ignore[arg-type]
+
+    def one(self, things: object) -> object:
+        found = list(things)  # type: ignore[call-overload]
+        return self.draw(st.sampled_from(found)) if found else None
+
+    def body(self) -> pymunk.Body | None:
+        return self.one(self.space.bodies)  # type: ignore[return-value]
+
+    def shape(self) -> pymunk.Shape | None:
+        return self.one(self.space.shapes)  # type: ignore[return-value]
+
+    # What a program may do.
+
+    def add(self) -> None:
+        if len(self.space.bodies) > 8:
+            return
+        kind = self.one(KINDS)
+        body = pymunk.Body(1.0 + self.size(), self.one((0.1, 1.0, math.inf)), kind)  # type: ignore[arg-type]
+        body.position, body.angle = (self.number(), self.number()), self.number()
+        if kind != pymunk.Body.STATIC:
+            self._move(body)
+        make: Callable[[], pymunk.Shape] = self.one(  # type: ignore[assignment]
+            (
+                lambda: pymunk.Circle(body, self.size(), self.one(((0.0, 0.0), (0.1, 0.2)))),  # type: ignore[arg-type]
+                lambda: pymunk.Poly.create_box(body, (self.size(), self.size()), self.one((0.0, 0.05))),  # type: ignore[arg-type]
+                lambda: pymunk.Segment(body, (-self.size(), 0.0), (self.size(), 0.1), 0.05),
+            )
+        )
+        shape = make()
+        self._dress(shape)
+        self.space.add(body, shape)
+
+    def _dress(self, shape: pymunk.Shape) -> None:
+        shape.elasticity = self.one((0.0, 0.5, 1.0))  # type: ignore[assignment]
+        shape.friction = self.one((0.0, 0.3, 1.5))  # type: ignore[assignment]
+        shape.sensor = self.one((False, False, False, True))  # type: ignore[assignment]
+
+    def remove(self) -> None:
+        body = self.body()
+        if body is not None:
+            self.space.remove(body, *(s for s in body.shapes if s.space is not None))
+
+    def remove_shape(self) -> None:
+        shape = self.shape()
+        if shape is not None:
+            self.space.remove(shape)
+
+    def teleport(self) -> None:
+        body = self.body()
+        if body is not None:
+            body.position, body.angle = (self.number(), self.number()), self.number()
+            self.space.reindex_shapes_for_body(body)
+
+    def drive(self) -> None:
+        body = self.body()
+        if body is not None and body.body_type != pymunk.Body.STATIC:
+            self._move(body)
+
+    def _move(self, body: pymunk.Body) -> None:
+        body.velocity = self.number(), self.number()
+        # What spins with an infinite moment works without end, which the ledger does not book yet.
+        body.angular_velocity = 0.0 if math.isinf(body.moment) and body.body_type == body.DYNAMIC else self.number()
+
+    def push(self) -> None:
+        body = self.body()
+        if body is not None and body.body_type == pymunk.Body.DYNAMIC:
+            body.apply_force_at_local_point((self.number(), self.number()), (self.number(), 0.0))
+            body.apply_impulse_at_world_point((self.number(), 0.0), (0.0, self.number()))
+
+    def edit(self) -> None:
+        shape, body = self.shape(), self.body()
+        if shape is not None:
+            self._dress(shape)
+            shape.surface_velocity = (self.one((0.0, 1.0)), 0.0)  # type: ignore[assignment]
+            if isinstance(shape, pymunk.Circle):
+                shape.unsafe_set_radius(self.size())
+            elif isinstance(shape, pymunk.Segment) and shape.body is not self.space.static_body:
+                shape.unsafe_set_endpoints((-self.size(), 0.0), (self.size(), 0.0))
+        if body is not None and body.body_type == pymunk.Body.DYNAMIC:
+            body.mass = 1.0 + self.size()
+
+    def turn_kind(self) -> None:
+        body = self.body()
+        if body is not None:
+            body.body_type = self.one(KINDS)  # type: ignore[assignment]
+            if body.body_type == pymunk.Body.DYNAMIC:
+                body.mass, body.moment = 1.5, 1.0
+
+    def set_space(self) -> None:
+        self.space.gravity = self.one(((0.0, 0.0), (0.0, -9.81), (3.0, 3.0)))  # type: ignore[assignment]
+        self.space.damping = self.one((1.0, 1.0, 0.9, 0.0))  # type: ignore[assignment]
+
+    def listen(self) -> None:
+        def count(arbiter: pymunk.Arbiter, space: pymunk.Space, data: object) -> None:
+            self.calls += 1
+
+        def remove(arbiter: pymunk.Arbiter, space: pymunk.Space, data: object) -> None:
+            self.calls += 1
+            for shape in arbiter.shapes:
+                if shape.body is not space.static_body and shape.space is not None and self.calls % 3 == 0:
+                    space.remove(shape)
+
+        def add(arbiter: pymunk.Arbiter, space: pymunk.Space, data: object) -> None:
+            if len(space.bodies) < 9:
+                body = pymunk.Body(1.0, 1.0)
+                body.position = (0.0, 4.0)
+                space.add(body, pymunk.Circle(body, 0.1))
+
+        phase = self.one(("begin", "pre_solve", "post_solve", "separate"))
+        self.space.on_collision(**{phase: self.one((count, remove, add, pymunk.empty_callback))})  # type: ignore[arg-type, misc]
+
+    def functions(self) -> None:
+        body = self.body()
+        if body is not None and body.body_type != pymunk.Body.STATIC:
+            body.velocity_func = self.one((pymunk.Body.update_velocity, _slow))  # type: ignore[assignment]
+
+    def after(self) -> None:
+        self.space.add_post_step_callback(lambda space, key: setattr(self, "calls", self.calls + 1), self.steps)
+
+    def ask(self) -> None:
+        at = (self.number(), self.number())
+        self.space.point_query_nearest(at, 1.0, pymunk.ShapeFilter())
+        self.space.segment_query((0.0, 9.0), at, 0.1, pymunk.ShapeFilter())
+        for body in self.space.bodies:
+            body.each_arbiter(lambda arbiter: arbiter.contact_point_set)
+
+    def save(self) -> None:
+        handlers = self.space._handlers
+        if not handlers and not any(b._velocity_func for b in self.space.bodies):
+            pickle.loads(pickle.dumps(self.stepper))
+            copy.deepcopy(self.space)
+
+    def native(self) -> None:
+        self.space.step(DT)
+
+    def bad(self) -> None:
+        """What is refused changes nothing."""
+        before = state(self.space)
+        try:
+            self.stepper.step(math.nan)
+        except ValueError:
+            pass
+        else:
+            raise AssertionError("nan was accepted")
+        assert state(self.space) == before
+
+    def step(self) -> None:
+        before = state(self.space)
+        try:
+            report = self.stepper.step(DT)
+        except ValueError:
+            assert state(self.space) == before
+            raise
+        self.steps += 1
+        for body in self.space.bodies:
+            assert all(math.isfinite(v) for v in (*body.position, *body.velocity, body.angle, body.angular_velocity))
+        assert self.space.static_body.position == (0.0, 0.0)
+        book = report.ledger
+        assert book is not None
+        now = ep.measure(self.space)
+        scale = 1.0 + now.kinetic + abs(now.potential) + abs(book.external) + abs(book.change)
+        assert abs(book.residual) <= 1e-9 * scale, book
+        for loss in (book.restitution, book.friction, book.damping):
+            # Elastic bodies that were put deep into one another gain up to 1e-4 of it now and then.
+            assert loss >= -1e-3 * scale, book
+
+    def play(self, length: int) -> None:
+        actions: tuple[Callable[[], None], ...] = (
+            self.add, self.add, self.add, self.step, self.step, self.step, self.step, self.remove, self.remove_shape,
+            self.teleport, self.drive, self.push, self.edit, self.turn_kind, self.set_space, self.listen,
+            self.functions,
+            self.after, self.ask, self.save, self.native, self.bad,
+        )  # fmt: skip
+        for _ in range(length):
+            self.draw(st.sampled_from(actions))()  # type: ignore[operator]
+        for _ in range(3):
+            self.step()
+
+
+def _slow(body: pymunk.Body, gravity: tuple[float, float], damping: float, dt: float) -> None:
+    pymunk.Body.update_velocity(body, (0.0, -1.0), 0.95 * damping, dt)

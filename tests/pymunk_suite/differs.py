@@ -1,0 +1,41 @@
+"""Tests of pymunk's own suite that do not pass when `Space.step` is ours, each with its reason.
+
+The same list stands in docs/pymunk.md. A test that begins to pass has to leave it.
+"""
+
+FIRST_ORDER = "digits of pymunk's first-order path; ours is the exact one"
+REHEARSED = (
+    "numbers of an arbiter at the end of pymunk's first-order path; a rehearsal goes to the end of the exact one"
+)
+NAMED = "expects AssertionError for bodies without mass; ours is a ValueError that tells the remedy"
+
+DIFFERS = {
+    "test_arbiter.UnitTestArbiter.testContactPointSet": REHEARSED,
+    "test_arbiter.UnitTestArbiter.testFriction": (
+        "the disk sticks where it lands, as Coulomb's law says; pymunk's slides for its first step"
+    ),
+    "test_arbiter.UnitTestArbiter.testImpulse": REHEARSED,
+    "test_arbiter.UnitTestArbiter.testNormal": REHEARSED,
+    "test_arbiter.UnitTestArbiter.testRestitution": FIRST_ORDER,
+    "test_arbiter.UnitTestArbiter.testSurfaceVelocity": REHEARSED,
+    "test_arbiter.UnitTestArbiter.testTotalKE": REHEARSED,
+    "test_batch.UnitTestBatch.test_get_arbiters": (
+        "shapes that lie deep in one another lose energy at once, and are lifted apart by it within one step"
+    ),
+    "test_body.UnitTestBody.test_mass": NAMED,
+    "test_body.UnitTestBody.test_moment": NAMED,
+    "test_space.UnitTestSpace.testReindexStaticCollision": (
+        "expects that a wall made longer is not felt before reindex_static; ours is felt at once"
+    ),
+}
+
+# Refused by name for now: what needs joints or sleeping. These shrink.
+REFUSED = {
+    "test_constraint.UnitTestConstraint.testImpulse",
+    "test_constraint.UnitTestConstraint.testPostSolve",
+    "test_constraint.UnitTestConstraint.testPrePostSolveOrder",
+    "test_constraint.UnitTestConstraint.testPreSolve",
+    "test_constraint.UnitTestDampedRotarySpring.testTorqueFunc",
+    "test_constraint.UnitTestDampedSpring.testForceFunc",
+    "test_space.UnitTestSpace.testProperties",
+}
