@@ -14,7 +14,7 @@ import pytest
 
 import eeca_pymunk as ep
 import scenes
-from comparisons import detection, gallery, pile_precision, piles, runs, scaling, soak, work_precision
+from comparisons import detection, gallery, maxwell, pile_precision, piles, runs, scaling, soak, work_precision
 from comparisons.__main__ import NAMES, main
 from comparisons.hopper import crossed, deepest_overlap
 
@@ -144,6 +144,30 @@ def test_scaling_tells_ratios_of_one_interleaved_run() -> None:
         [{"N": n, "dt (s)": dt, "stepper": "x", "us/step": n**1.5} for n in (100, 1000, 4000, 16_000) for dt in (1e-3,)]
     )
     assert [row["slope"] for row in slopes] == pytest.approx([1.5])
+
+
+def test_workers_are_refused_where_times_are_measured(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["scaling", "--workers", "2", "--out", str(tmp_path)]) == 2
+    assert "scaling measures times or runs few cases: leave --workers out" in capsys.readouterr().err
+    assert main(["maxwell", "--workers", "0", "--out", str(tmp_path)]) == 2
+    assert "--workers 0: give a number >= 1" in capsys.readouterr().err
+
+
+def test_speeds_of_gases_become_those_of_a_shared_energy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(maxwell, "STEPPERS", {"EECA": maxwell.STEPPERS["EECA"]})
+    monkeypatch.setattr(maxwell, "SEEDS", 30)
+    assert main(["maxwell", "--workers", "2", "--out", str(tmp_path)]) == 0
+    with (tmp_path / "maxwell.csv").open() as stream:
+        (row,) = csv.DictReader(stream)
+    assert float(row["max |dE/E|"]) < 1e-13
+    # 600 speeds: one in a thousand sets drawn by chance is farther away than .08; the start is by .63.
+    assert float(row["distance to finite"]) < 0.08
+    assert maxwell.distance(np.ones(600), maxwell.finite(np.ones(600))) > 0.6
+    assert (tmp_path / "maxwell.png").exists()
+    # Two disks share their energy evenly between no and all of it: v² is uniform.
+    v = np.linspace(0.0, 2.0**0.5, 9)
+    np.testing.assert_allclose(maxwell.finite(v, 2), v**2 / 2.0, atol=1e-15)
+    np.testing.assert_allclose(maxwell.finite(v, 10**7), maxwell.maxwell(v), atol=1e-6)
 
 
 def test_detection_finds_what_pymunk_finds() -> None:

@@ -1,4 +1,4 @@
-"""What is released: a wheel with the package alone, a source archive with all, and what `python -m eeca_pymunk` says."""
+"""What is released: a wheel with the package alone, a source archive with all; what `python -m eeca_pymunk` says."""
 
 from __future__ import annotations
 
@@ -40,7 +40,8 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_wheel_has_the_package_and_nothing_else(built: Path) -> None:
     (wheel,) = built.glob("*.whl")
-    names = zipfile.ZipFile(wheel).namelist()
+    with zipfile.ZipFile(wheel) as held:
+        names = held.namelist()
     assert wheel.name.startswith(f"eeca_pymunk-{declared()}-")
     assert {name.split("/")[0] for name in names} == {"eeca_pymunk", f"eeca_pymunk-{declared()}.dist-info"}
     package = Path(eeca_pymunk.__file__).parent
@@ -50,7 +51,8 @@ def test_wheel_has_the_package_and_nothing_else(built: Path) -> None:
 
 def test_source_archive_has_scenes_comparisons_and_tests(built: Path) -> None:
     (archive,) = built.glob("*.tar.gz")
-    names = {name.split("/", 1)[1] for name in tarfile.open(archive).getnames() if "/" in name}
+    with tarfile.open(archive) as held:
+        names = {name.split("/", 1)[1] for name in held.getnames() if "/" in name}
     assert {"README.md", "CHANGELOG.md", "pyproject.toml", "LICENSE"} <= names
     for folder in ("scenes", "comparisons", "tests"):
         assert {p.relative_to(ROOT).as_posix() for p in (ROOT / folder).rglob("*.py")} <= names
