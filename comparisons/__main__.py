@@ -16,6 +16,7 @@ from . import film
 from .output import Output
 
 NAMES = (
+    "tour",
     "signorini",
     "carom",
     "cradle",

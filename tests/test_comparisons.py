@@ -11,12 +11,14 @@ from pathlib import Path
 import numpy as np
 import pymunk
 import pytest
+from tqdm import tqdm
 
 import eeca_pymunk as ep
 import scenes
-from comparisons import detection, gallery, maxwell, pile_precision, piles, runs, scaling, soak, work_precision
+from comparisons import detection, gallery, maxwell, pile_precision, piles, runs, scaling, soak, tour, work_precision
 from comparisons.__main__ import NAMES, main
 from comparisons.hopper import crossed, deepest_overlap
+from scenes import linkages, pendulum
 
 
 def test_no_name_lists_all(capsys: pytest.CaptureFixture[str]) -> None:
@@ -168,6 +170,55 @@ def test_speeds_of_gases_become_those_of_a_shared_energy(tmp_path: Path, monkeyp
     v = np.linspace(0.0, 2.0**0.5, 9)
     np.testing.assert_allclose(maxwell.finite(v, 2), v**2 / 2.0, atol=1e-15)
     np.testing.assert_allclose(maxwell.finite(v, 10**7), maxwell.maxwell(v), atol=1e-6)
+
+
+def test_tour_finds_how_much_smaller_errors_are_in_equal_time() -> None:
+    # Little time for each curve: not what it takes, but what comes out is tested.
+    bar = tqdm(disable=True)
+    for problem in tour.problems():
+        points = [tour.measure(problem, name, problem.dt / 4) for name in tour.STEPPERS]
+        ours, native, tuned = points
+        assert ours.energy < 1e-11
+        assert ours.error < (1e-2 if problem.name == "pendulum" else 1e-9)
+        assert min(native.error, tuned.error) > 10 * ours.error
+    made = {problem.name: tour.curve(problem, "pymunk", bar) for problem in tour.problems()[3:]}
+    assert all(points[-1].error < 0.1 * points[0].error for points in made.values())
+
+
+def test_tour_says_where_pymunk_is_better(tmp_path: Path) -> None:
+    def point(stepper: str, error: float, wall: float) -> tour.Point:
+        return tour.Point(stepper, 0.1, error, 0.0, wall)
+
+    better = [point("EECA", 1e-3, 0.02), point("EECA", 1e-4, 0.04), point("pymunk", 1e-2, 0.005)]
+    worse = [point("EECA", 1e-3, 0.02), point("pymunk", 1e-5, 0.01), point("pymunk tuned", 1e-6, 0.03)]
+    found = {"stack": better, "slope": worse}
+    shown = [tour.summary(name, points) for name, points in found.items()]
+    assert [row["x smaller error"] for row in shown] == pytest.approx([10.0, 0.01])
+    told = "\n".join(tour.closing(shown, 8.0))
+    assert "as good or better: slope." in told
+    assert "stack 4, slope 2" in told
+    assert "Next: python -m comparisons" in told
+    picture = tmp_path / "tour.png"
+    ep.render.save_picture(tour.picture(found, shown), picture)
+    assert picture.exists()
+
+
+def test_pendulums_swing_as_the_digits_say() -> None:
+    scene = pendulum.build()
+    for t, place in linkages.PENDULUM_AT.items():
+        np.testing.assert_allclose(scene.exact(t), [place], atol=1e-13)
+    assert pendulum.period(np.pi / 2, 1.0) == pytest.approx(linkages.PENDULUM_PERIOD, rel=1e-13)
+    # Small swings are harmonic.
+    assert pendulum.swing(1e-4, 2.0, 0.7) == pytest.approx(1e-4 * np.cos(0.7 * (9.81 / 2.0) ** 0.5), rel=1e-8)
+    # One ball swings while the other hangs; after a period all is as at the start.
+    cradle, whole = pendulum.cradle(), pendulum.period(np.pi / 6, 1.0)
+    at = [cradle.exact(t) for t in (0.0, 0.5 * whole, whole)]
+    assert at[0] is not None
+    assert at[1] is not None
+    np.testing.assert_allclose(at[1], at[0][::-1] * (-1.0, 1.0), atol=1e-13)
+    np.testing.assert_allclose(at[2], at[0], atol=1e-13)
+    with pytest.raises(ValueError, match="degrees = 180"):
+        pendulum.build(degrees=180)
 
 
 def test_detection_finds_what_pymunk_finds() -> None:
