@@ -29,6 +29,7 @@ NAMES = (
     "soak",
     "hard_cases",
     "maxwell",
+    "engines",
     "gallery",
 )
 
