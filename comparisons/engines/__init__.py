@@ -23,7 +23,6 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-import pymunk
 from tqdm import tqdm
 
 import eeca_pymunk as ep

@@ -5,6 +5,7 @@ import sys
 import time
 
 from Box2D import (
+    b2_dynamicBody,
     b2BodyDef,
     b2CircleShape,
     b2DistanceJointDef,
@@ -13,7 +14,6 @@ from Box2D import (
     b2MassData,
     b2PolygonShape,
     b2World,
-    b2_dynamicBody,
 )
 
 job = json.load(sys.stdin)

@@ -27,7 +27,7 @@ def xml():
         d = math.hypot(u - x, v - y)
         n = f"{-(v - y) / d} 0 {(u - x) / d}"
         parts.append(f'<geom type="plane" size="0 0 1" pos="{x} 0 {y}" zaxis="{n}" {contact}/>')
-    for (x, y, angle, *_), radius, moment in zip(job["start"], job["radius"], job["moment"], strict=True):
+    for (x, y, *_), radius, moment in zip(job["start"], job["radius"], job["moment"], strict=True):
         shape = f'type="sphere" size="{radius}"' if radius else 'type="box" size=".5 .5 .5"'
         if job["rod"]:
             parts.append(
