@@ -30,6 +30,7 @@ NAMES = (
     "hard_cases",
     "maxwell",
     "engines",
+    "films",
     "gallery",
 )
 

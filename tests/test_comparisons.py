@@ -15,7 +15,19 @@ from tqdm import tqdm
 
 import eeca_pymunk as ep
 import scenes
-from comparisons import detection, gallery, maxwell, pile_precision, piles, runs, scaling, soak, tour, work_precision
+from comparisons import (
+    detection,
+    gallery,
+    jointed,
+    maxwell,
+    pile_precision,
+    piles,
+    runs,
+    scaling,
+    soak,
+    tour,
+    work_precision,
+)
 from comparisons.__main__ import NAMES, main
 from comparisons.hopper import crossed, deepest_overlap
 from scenes import linkages, pendulum
@@ -72,7 +84,7 @@ def test_scenes_start_without_overlap_and_on_their_exact_solution(name: str) -> 
     position = np.array([b.position for b in scene.bodies])
     if exact is not None:
         np.testing.assert_allclose(position, exact, atol=1e-15)
-    report = ep.EECA(scene.space).step(1e-9)
+    report = jointed.eeca(scene.space).step(1e-9)
     assert len(report.contacts) == 0 or report.contacts.gap.min() > -1e-12
     assert scene.dt > 0
     assert scene.duration > scene.dt
