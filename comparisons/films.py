@@ -26,8 +26,9 @@ def one(folder: Path, name: str) -> tuple[str, int]:
     for stepper in settings.steppers:
         scene = scenes.build(name)
         recordings.append(ep.record(film.stepper(stepper, scene), duration, dt, every))
+    titles = [film.STEPPERS[s][0] for s in settings.steppers]
     path = render.animate(
-        recordings, folder / f"{name}.gif", 20, titles=[film.STEPPERS[s][0] for s in settings.steppers], view=settings.view,
+        recordings, folder / f"{name}.gif", 20, titles=titles, view=settings.view,
         exact=scenes.build(name).exact, frames=settings.frames, arrow=settings.arrow, dpi=settings.dpi,
     )  # fmt: skip
     return str(path), path.stat().st_size
