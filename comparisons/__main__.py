@@ -35,8 +35,8 @@ NAMES = (
 )
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Run the command line; the exit status."""
+def command_line() -> argparse.ArgumentParser:
+    """What the command line takes."""
     parser = argparse.ArgumentParser(prog="python -m comparisons", description="Run a comparison of time steppers.")
     parser.add_argument("name", nargs="?", help="the comparison; none lists them")
     parser.add_argument("--out", type=Path, default=Path("out"), help="folder for CSV and PNG (default: out)")
@@ -49,7 +49,12 @@ def main(arguments: list[str] | None = None) -> int:
     shown.add_argument("--duration", type=float, help="simulated time (s)")
     shown.add_argument("--frames", type=int, default=48, help="of the film, about (default: 48)")
     shown.add_argument("--fps", type=float, default=20.0, help="frames per second (default: 20)")
-    options = parser.parse_args(arguments)
+    return parser
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the command line; the exit status."""
+    options = command_line().parse_args(arguments)
     if options.name is None:
         for name in NAMES:
             title = (import_module(f".{name}", __package__).__doc__ or "").splitlines()[0]
@@ -63,7 +68,7 @@ def main(arguments: list[str] | None = None) -> int:
             return 0
         if options.name not in NAMES:
             raise ValueError(f"unknown comparison {options.name!r}: choose one of {', '.join(NAMES)}")
-        run, extra = _chosen(options)
+        run, extra = chosen(options)
         output = Output(options.name, options.out)
     except (ValueError, OSError) as error:
         print(f"python -m comparisons: {error}", file=sys.stderr)
@@ -77,7 +82,7 @@ def main(arguments: list[str] | None = None) -> int:
     return 0
 
 
-def _chosen(options: argparse.Namespace) -> tuple[Callable[..., None], dict[str, int]]:
+def chosen(options: argparse.Namespace) -> tuple[Callable[..., None], dict[str, int]]:
     """What runs the comparison, `run(output, full)`, and what it takes besides."""
     run: Callable[..., None] = import_module(f".{options.name}", __package__).run
     if options.workers is None:

@@ -1,14 +1,18 @@
-"""EECA for spaces with joints: the one place that says which stepper takes them."""
+"""The steps that are compared, EECA's for spaces with joints too: the one place that says which stepper takes them."""
 
 from __future__ import annotations
 
 import functools
+from collections.abc import Callable
 
 import pymunk
 
 import eeca_pymunk as ep
+from eeca_pymunk.baselines.native import tune
 from eeca_pymunk.space.jointed import JointedSpace
 from scenes import pendulum
+
+Step = Callable[[float], object]
 
 
 class Jointed(ep.Stepper):
@@ -41,3 +45,24 @@ def wired() -> bool:
 def eeca(space: pymunk.Space) -> ep.Stepper:
     """EECA, whatever the space holds."""
     return Jointed(space) if space.constraints and not wired() else ep.EECA(space, sync=False)
+
+
+def eeca_step(space: pymunk.Space) -> Step:
+    """The step of EECA."""
+    return eeca(space).step
+
+
+def pymunk_step(space: pymunk.Space) -> Step:
+    """pymunk's own step as shipped; the checks of `ep.Native` would take longer than it does in a small scene."""
+    return space.step
+
+
+def tuned_step(space: pymunk.Space) -> Step:
+    """The same with no slop, no contact memory, 50 iterations."""
+    tune(space, 50)
+    return space.step
+
+
+STEPS: dict[str, Callable[[pymunk.Space], Step]] = {
+    "EECA": eeca_step, "pymunk": pymunk_step, "pymunk tuned": tuned_step,
+}  # fmt: skip

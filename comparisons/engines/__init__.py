@@ -26,16 +26,18 @@ import numpy.typing as npt
 from tqdm import tqdm
 
 import eeca_pymunk as ep
-from comparisons import jointed, runs
-from comparisons.engines.problems import Problem, problems
+from comparisons import jointed
+from comparisons.engines import problems
+from comparisons.engines.problems import Problem
 from comparisons.output import Output, Row
 
 FloatArray = npt.NDArray[np.float64]
 DRIVERS = Path(__file__).parent / "drivers"
 LOOKS = 50  # at the energy of a run
+ENOUGH = 0.3  # s of runs that are short
 FINER = 10  # the second dt of each scene is so many times smaller
 LIMIT = 300  # s for a run
-OURS: dict[str, runs.Make] = {"EECA": jointed.eeca, "pymunk": runs.native(), "pymunk tuned": runs.native(50)}
+OURS = jointed.STEPS
 OTHERS = {
     "Box2D": "box_2d.py", "MuJoCo": "mujoco_.py", "DART": "dart_.py", "planck": "planck_.js", "matter-js": "matter.js",
 }  # fmt: skip
@@ -43,21 +45,28 @@ OTHERS = {
 
 @dataclass(frozen=True)
 class Ended:
-    """(T, N, 6) x, y, angle and their rates at the looks, the last at the end; seconds of all steps."""
+    """(T, N, 6) x, y, angle and their rates at the looks, the last at the end; seconds of the process in all steps."""
 
     states: FloatArray
     seconds: float
 
 
 def ours(name: str, problem: Problem, dt: float, steps: int, every: int) -> Ended:
-    """A run of this package or of pymunk."""
+    """A run of this package or of pymunk, the quickest of some where it is short."""
+    ended = [_once(name, problem, dt, steps, every)]
+    while sum(one.seconds for one in ended) < ENOUGH and len(ended) < 9:
+        ended.append(_once(name, problem, dt, steps, every))
+    return Ended(ended[0].states, min(one.seconds for one in ended))
+
+
+def _once(name: str, problem: Problem, dt: float, steps: int, every: int) -> Ended:
     space, bodies = problem.space()
-    stepper, seconds, states = OURS[name](space), 0.0, []
+    step, seconds, states = OURS[name](space), 0.0, []
     for k in range(0, steps, every):
-        begun = time.perf_counter()
+        begun = time.process_time()
         for _ in range(min(every, steps - k)):
-            stepper.step(dt)
-        seconds += time.perf_counter() - begun
+            step(dt)
+        seconds += time.process_time() - begun
         states.append([(*b.position, b.angle, *b.velocity, b.angular_velocity) for b in bodies])
     return Ended(np.array(states), seconds)
 
@@ -72,7 +81,7 @@ def other(name: str, folder: Path, problem: Problem, dt: float, steps: int, ever
     else:
         python = folder / "venv" / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
         command = [str(python.absolute()), str(driver)]
-    job = json.dumps({**problem.described(), "dt": dt, "steps": steps, "every": every})
+    job = json.dumps({**problem.described(), "dt": dt, "steps": steps, "every": every, "enough": ENOUGH})
     try:
         done = subprocess.run(command, input=job, env=environment, capture_output=True, text=True, timeout=LIMIT)
     except FileNotFoundError:
@@ -103,6 +112,11 @@ def row(problem: Problem, name: str, dt: float, steps: int, ended: Ended) -> Row
     }  # fmt: skip
 
 
+def listed() -> list[Problem]:
+    """The scenes."""
+    return problems.problems()
+
+
 def run(output: Output, full: bool) -> None:
     """Print the table; write CSV."""
     folder = Path(os.environ.get("EECA_ENGINES", "engines"))
@@ -110,7 +124,7 @@ def run(output: Output, full: bool) -> None:
     ep.warmup()
     skipped: dict[str, str] = {}
     rows: list[Row] = []
-    jobs = [(p, dt, name) for p in problems() for dt in (p.dt, p.dt / FINER) for name in (*OURS, *OTHERS)]
+    jobs = [(p, dt, name) for p in listed() for dt in (p.dt, p.dt / FINER) for name in (*OURS, *OTHERS)]
     for problem, dt, name in tqdm(jobs, desc="engines", unit="run", disable=None):
         steps = round(problem.duration / dt)
         every = max(1, steps // LOOKS)
@@ -125,6 +139,6 @@ def run(output: Output, full: bool) -> None:
             rows.append(row(problem, name, dt, steps, found))
     native = {(r["scene"], r["dt (s)"]): float(r["us/step"] or 0.0) for r in rows if r["engine"] == "pymunk"}
     rows = [{**r, "x pymunk": float(r["us/step"] or 0.0) / native[r["scene"], r["dt (s)"]]} for r in rows]
-    output.table("Errors of places at the end, largest errors of the energy, wall time of a step", rows)
+    output.table("Errors of places at the end, largest errors of the energy, time of a step", rows)
     for name, why in skipped.items():
         print(f"skipped {name}: {why}")

@@ -48,15 +48,17 @@ def run(steps):
     world, bodies = build()
     seconds, states = 0.0, []
     for k in range(0, steps, job["every"]):
-        begun = time.perf_counter()
+        begun = time.process_time()
         for _ in range(min(job["every"], steps - k)):
             world.Step(job["dt"], *ITERATIONS)
             world.ClearForces()
-        seconds += time.perf_counter() - begun
+        seconds += time.process_time() - begun
         states.append([(*b.position, b.angle, *b.linearVelocity, b.angularVelocity) for b in bodies])
     return states, seconds
 
 
 run(min(3, job["steps"]))
-states, seconds = run(job["steps"])
-print(json.dumps({"states": states, "seconds": seconds}))
+ended = [run(job["steps"])]
+while sum(seconds for _, seconds in ended) < job["enough"] and len(ended) < 9:
+    ended.append(run(job["steps"]))
+print(json.dumps({"states": ended[0][0], "seconds": min(seconds for _, seconds in ended)}))

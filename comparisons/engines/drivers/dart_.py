@@ -82,14 +82,16 @@ def run(steps):
     world, skeletons = build()
     seconds, states = 0.0, []
     for k in range(0, steps, job["every"]):
-        begun = time.perf_counter()
+        begun = time.process_time()
         for _ in range(min(job["every"], steps - k)):
             world.step()
-        seconds += time.perf_counter() - begun
+        seconds += time.process_time() - begun
         states.append(state(skeletons))
     return states, seconds
 
 
 run(min(3, job["steps"]))
-states, seconds = run(job["steps"])
-print(json.dumps({"states": states, "seconds": seconds}))
+ended = [run(job["steps"])]
+while sum(seconds for _, seconds in ended) < job["enough"] and len(ended) < 9:
+    ended.append(run(job["steps"]))
+print(json.dumps({"states": ended[0][0], "seconds": min(seconds for _, seconds in ended)}))

@@ -43,9 +43,9 @@ function run(steps) {
   const [engine, bodies] = build(), states = [], rate = 1000 / BASE / PIXELS;
   let seconds = 0;
   for (let k = 0; k < steps; k += job.every) {
-    const begun = performance.now();
+    const begun = process.cpuUsage();
     for (let i = 0; i < Math.min(job.every, steps - k); i++) Engine.update(engine, 1000 * job.dt);
-    seconds += (performance.now() - begun) / 1000;
+    seconds += process.cpuUsage(begun).user / 1e6;
     states.push(bodies.map((b) => {
       const v = Body.getVelocity(b);
       return [b.position.x / PIXELS, -b.position.y / PIXELS, -b.angle, v.x * rate, -v.y * rate,
@@ -56,4 +56,6 @@ function run(steps) {
 }
 
 for (const until = performance.now() + 500; performance.now() < until; ) run(Math.min(100, job.steps)); // gets it compiled
-console.log(JSON.stringify(run(job.steps)));
+const ended = [run(job.steps)];
+while (ended.reduce((sum, one) => sum + one.seconds, 0) < job.enough && ended.length < 9) ended.push(run(job.steps));
+console.log(JSON.stringify({ states: ended[0].states, seconds: Math.min(...ended.map((one) => one.seconds)) }));

@@ -66,15 +66,17 @@ def run(model, steps):
         data.qvel[:] = np.array([s[3:] for s in job["start"]]).ravel()
     seconds, states = 0.0, []
     for k in range(0, steps, job["every"]):
-        begun = time.perf_counter()
+        begun = time.process_time()
         for _ in range(min(job["every"], steps - k)):
             mujoco.mj_step(model, data)
-        seconds += time.perf_counter() - begun
+        seconds += time.process_time() - begun
         states.append(state(data))
     return states, seconds
 
 
 model = mujoco.MjModel.from_xml_string(xml())
 run(model, min(3, job["steps"]))
-states, seconds = run(model, job["steps"])
-print(json.dumps({"states": states, "seconds": seconds}))
+ended = [run(model, job["steps"])]
+while sum(seconds for _, seconds in ended) < job["enough"] and len(ended) < 9:
+    ended.append(run(model, job["steps"]))
+print(json.dumps({"states": ended[0][0], "seconds": min(seconds for _, seconds in ended)}))

@@ -24,9 +24,9 @@ function run(steps) {
   const [world, bodies] = build(), states = [];
   let seconds = 0;
   for (let k = 0; k < steps; k += job.every) {
-    const begun = performance.now();
+    const begun = process.cpuUsage();
     for (let i = 0; i < Math.min(job.every, steps - k); i++) world.step(job.dt, 8, 3);
-    seconds += (performance.now() - begun) / 1000;
+    seconds += process.cpuUsage(begun).user / 1e6;
     states.push(bodies.map((b) => {
       const p = b.getPosition(), v = b.getLinearVelocity();
       return [p.x, p.y, b.getAngle(), v.x, v.y, b.getAngularVelocity()];
@@ -36,4 +36,6 @@ function run(steps) {
 }
 
 for (const until = performance.now() + 500; performance.now() < until; ) run(Math.min(100, job.steps)); // gets it compiled
-console.log(JSON.stringify(run(job.steps)));
+const ended = [run(job.steps)];
+while (ended.reduce((sum, one) => sum + one.seconds, 0) < job.enough && ended.length < 9) ended.push(run(job.steps));
+console.log(JSON.stringify({ states: ended[0].states, seconds: Math.min(...ended.map((one) => one.seconds)) }));
