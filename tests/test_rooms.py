@@ -24,6 +24,7 @@ FLOORS = (
     "pairs",
     "sustained joints",
     "impacts",
+    "jointed",
     "closures",
     "space",
     "stepper",

@@ -1,59 +1,31 @@
-"""Blocks: impacts at one instant of all shapes that touch, and of islands that are hit.
+"""Blocks: who takes part in an impact at one instant: all shapes that touch, islands that are hit.
 
 Contacts that touch at the instant of an impact take part in it, and so on from body to body: the impulses of a rack of
-disks are simultaneous. So do contacts that carry a load in an island. Bodies that impulses do not move carry nothing
-on. Islands that take part end their spans, become one with the bodies of the impact, and begin anew.
+disks are simultaneous. So do contacts that carry a load in an island, and all bodies that hang on one by joints. Bodies
+that impulses do not move carry nothing on.
 """
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
-from ..arrays import IntArray
+from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..geometry.flight import pose, rate
 from ..geometry.gap import touching
 from ..geometry.manifold import face
-from ..layout import ANGLE, II, IM, OWNER, SIZE, SPIN, VX, VY, X
+from ..layout import ANGLE, II, IM, OWNER, SIZE, SPIN, VX, X
 from ..pairs.layout import NUMBER, START
 from ..pairs.rules import barred, law
-from ..rows.blocks import CONVERGED, D_NORMAL, D_TANGENTIAL, OUT_SIZE, SCALE_LOCK, solve_block
 from ..rows.build import normal_rate, place_row
 from ..rows.layout import ELASTICITY as ELASTIC
-from ..rows.layout import K_N, NX, NY, ROW_COLUMNS
-from ..sustained.ledger import carried
+from ..rows.layout import K_N, ROW_COLUMNS
 from .booking import end_span
-from .islands import members, remembered, unite
-from .layout import (
-    BLOCKS,
-    DONE,
-    DT,
-    EVENTS,
-    EXTERNAL,
-    FIRST_SHAPE,
-    FRICTIONAL,
-    HITS,
-    IMPACTS,
-    ISLAND,
-    KINKS,
-    LEDGER,
-    LOCK,
-    LOGGED,
-    LOST,
-    OPEN,
-    PENDING,
-    RESTITUTION,
-    SHAPES,
-    STAMP,
-    UNMET,
-    Scene,
-)  # fmt: skip
-from .layout import (
-    BODIES as SIZE_OF,
-)
-from .settle import spread
-from .spans import solve
-from .strike import move_to, note, touches
+from .islands import remembered
+from .layout import DT, FIRST_SHAPE, ISLAND, JOINTED, LOST, NEXT_TIED, OPEN, SHAPES, STAMP, TIED, Scene
+from .strike import move_to, touches
 
 _FACES = 16.0  # times the tolerance of touching, by which the ends of parallel faces may differ
 _ROCKING = 1e-6  # of the size, by which they may where the contact is not elastic: a rocking that is lost anyway ends
@@ -74,11 +46,27 @@ def takes_part(A: Scene, disks: int, s: int, o: int, t: float) -> bool:
 
 @uncounted
 def arrive(A: Scene, i: int, t: float) -> None:
-    """Bring body i, with its island, to instant t."""
+    """Bring body i, with its island, to instant t; not one whose island has joints and is under way."""
     root = A.STATE[i, ISLAND]
     if root >= 0 and A.MEMBER[root, OPEN] > 0:
+        if A.MEMBER[root, JOINTED] > 0:
+            return
         end_span(A, root, t)
     move_to(A.BODY, i, t)
+
+
+@uncounted
+def admit(A: Scene, i: int, n: int, t: float) -> int:
+    """Take body i, and all that hangs on it by joints, into A.BLOCK, where there are n bodies; how many there are."""
+    j = i
+    while A.PLACE[j] < 0:
+        A.BLOCK[n], A.PLACE[j] = j, n
+        n += 1
+        arrive(A, j, t)
+        if A.MEMBER[j, TIED] < 0:
+            break
+        j = A.MEMBER[j, NEXT_TIED]
+    return n
 
 
 @kernel
@@ -92,9 +80,8 @@ def gather(A: Scene, disks: int, a: int, b: int, t: float) -> tuple[int, int, In
     for s in (a, b):
         i = A.LINK[s, OWNER]
         if A.BODY[i, IM] > 0.0:
-            BODIES[n], A.PLACE[i] = i, n
-            n += 1
-            arrive(A, i, t)
+            if A.PLACE[i] < 0:
+                n = admit(A, i, n, t)
     while q < n:
         i = BODIES[q]
         q += 1
@@ -111,9 +98,7 @@ def gather(A: Scene, disks: int, a: int, b: int, t: float) -> tuple[int, int, In
                 if not takes_part(A, disks, s, o, t):
                     continue
                 if moves and A.PLACE[j] < 0:
-                    BODIES[n], A.PLACE[j] = j, n
-                    n += 1
-                    arrive(A, j, t)
+                    n = admit(A, j, n, t)
                 if m == PAIRS.shape[0]:
                     more = np.empty(2 * m, np.int64)
                     more[:m] = PAIRS
@@ -125,32 +110,48 @@ def gather(A: Scene, disks: int, a: int, b: int, t: float) -> tuple[int, int, In
     return n, m, PAIRS
 
 
-@kernel
-def strike(A: Scene, disks: int, a: int, b: int, t: float, rest: bool) -> tuple[int, int]:
-    """Impulses of the block of shapes a and b at instant t. Status, and the number of bodies to be forecast anew, in
-    A.BLOCK.
-
-    PUSHES_FULL leaves the new span of the island COUNT[PENDING] to be begun.
-
-    Args:
-        rest: whether the contact of a and b stays closed from now on.
-    """
-    BODY, LINK, COUNT, BODIES = A.BODY, A.LINK, A.COUNT, A.BLOCK
-    k = A.SHAPE.shape[0]
-    n, m, PAIRS = gather(A, disks, a, b, t)
-    BODIES[:n].sort()
-    for q in range(n):
-        A.PLACE[BODIES[q]] = q
+@uncounted
+def owing(A: Scene, n: int) -> tuple[float, bool]:
+    """What the islands of the n bodies in A.BLOCK owe, which is taken out by their block; whether there are any."""
     owed, piled = 0.0, False
     for q in range(n):
-        root = A.STATE[BODIES[q], ISLAND]
+        root = A.STATE[A.BLOCK[q], ISLAND]
         if root >= 0:
             piled = True
             # What spans that were cut short have given is taken out here.
             owes = max(-A.RESTING[root, LOST], 0.0)
             A.RESTING[root, LOST] += owes
             owed += owes
-    hit = min(a, b) * k + max(a, b)
+    return owed, piled
+
+
+class Block(NamedTuple):
+    """What a block is made of: POSE, V (k, 3), IM, II (k,), rows of contacts (`..rows.layout`) between A and B, POINTS
+    (m, 2) where they are, and OF (m,) the pairs that they are of, as numbers a k + b."""
+
+    POSE: FloatArray
+    V: FloatArray
+    IM: FloatArray
+    II: FloatArray
+    A: IntArray
+    B: IntArray
+    ROWS: FloatArray
+    POINTS: FloatArray
+    OF: IntArray
+
+
+@kernel
+def lay_out(A: Scene, disks: int, n: int, m: int, PAIRS: IntArray, hit: int, rest: bool, t: float) -> Block:
+    """The block of the n bodies in A.BLOCK, sorted, and of m PAIRS, at instant t.
+
+    Args:
+        hit: the pair that meets now.  rest: whether it stays closed from now on.
+    """
+    BODY, LINK, BODIES = A.BODY, A.LINK, A.BLOCK
+    k = A.SHAPE.shape[0]
+    BODIES[:n].sort()
+    for q in range(n):
+        A.PLACE[BODIES[q]] = q
     POSE, V = np.zeros((n + m, 3)), np.zeros((n + m, 3))
     IMS, IIS = np.zeros(n + m), np.zeros(n + m)
     for q in range(n):
@@ -202,68 +203,4 @@ def strike(A: Scene, disks: int, a: int, b: int, t: float, rest: bool) -> tuple[
                 ROWS[rows, ELASTIC] = 0.0
             POINTS[rows, 0], POINTS[rows, 1], OF[rows] = found[c, 2], found[c, 3], PAIRS[z]
             rows += 1
-    L, LOSS, OUT = np.zeros((rows, 2)), np.zeros((rows, 2)), np.zeros(OUT_SIZE)
-    status = solve_block(P, Q, ROWS, L, V, IMS, IIS, POSE, n, rows, owed, piled, LOSS, OUT)
-    if status != CONVERGED:
-        COUNT[UNMET] += 1
-    if abs(OUT[SCALE_LOCK] - 1.0) > abs(A.PAR[LOCK] - 1.0):
-        A.PAR[LOCK] = OUT[SCALE_LOCK]
-    A.PAR[LEDGER + RESTITUTION] += OUT[D_NORMAL]
-    A.PAR[LEDGER + FRICTIONAL] += OUT[D_TANGENTIAL]
-    A.PAR[LEDGER + EXTERNAL] += carried(P, Q, ROWS, L, V, IMS, rows)
-    for q in range(n):
-        i = BODIES[q]
-        BODY[i, VX], BODY[i, VY], BODY[i, SPIN] = V[q, 0], V[q, 1], V[q, 2]
-        A.STATE[i, KINKS] += 1
-        A.STATE[i, EVENTS] += 1
-        A.PLACE[i] = -1
-    for z in range(rows):
-        if L[z, 0] > 0.0 and COUNT[LOGGED] < A.LOG.shape[0]:
-            note(
-                A.LOG, COUNT[LOGGED], OF[z] // k, OF[z] % k, t, L[z, 0], L[z, 1], ROWS[z, NX], ROWS[z, NY],
-                POINTS[z, 0], POINTS[z, 1], L[z, 0] / ROWS[z, K_N],
-            )  # fmt: skip
-            COUNT[LOGGED] += 1
-    COUNT[IMPACTS] += 1
-    COUNT[BLOCKS] += 1 if m > 1 else 0
-    return rejoin(A, a, b, t, n, rest, OUT[D_NORMAL] + OUT[D_TANGENTIAL] - owed)
-
-
-@kernel
-def rejoin(A: Scene, a: int, b: int, t: float, n: int, rest: bool, lost: float) -> tuple[int, int]:
-    """After the impulses of a block of n bodies in A.BLOCK: its islands become one and begin a new span; so do the two
-    bodies of shapes a and b if they rest on each other. Status and number of bodies as `strike`."""
-    STATE, BODIES = A.STATE, A.BLOCK
-    root = -1
-    for q in range(n):
-        if STATE[BODIES[q], ISLAND] >= 0:
-            root = unite(A, BODIES[q], BODIES[q] if root < 0 else root)
-    if root < 0 and not rest:
-        return DONE, n
-    QUEUE = np.empty(A.BODY.shape[0], np.int64)
-    queued = 0
-    for s in (a, b):
-        i = A.LINK[s, OWNER]
-        if A.BODY[i, IM] > 0.0:
-            if STATE[i, ISLAND] < 0:
-                QUEUE[queued] = i
-                queued += 1
-            root = unite(A, i, i if root < 0 else root)
-    spread(A, QUEUE, queued, t)
-    root = STATE[root, ISLAND]
-    A.RESTING[root, LOST] += lost
-    A.MEMBER[root, HITS] += 1
-    # The bodies of the block that are in no island are forecast too.
-    free = 0
-    for q in range(n):
-        if STATE[BODIES[q], ISLAND] != root:
-            BODIES[free] = BODIES[q]
-            free += 1
-    MINE = np.empty(A.MEMBER[root, SIZE_OF], np.int64)
-    more = members(A, root, MINE)
-    for q in range(more):
-        BODIES[free + q] = MINE[q]
-    status = solve(A, root, t)
-    if status != DONE:
-        A.COUNT[PENDING] = root
-    return status, free + more
+    return Block(POSE, V, IMS, IIS, P[:rows], Q[:rows], ROWS[:rows], POINTS[:rows], OF[:rows])

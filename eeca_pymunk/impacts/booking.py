@@ -22,6 +22,7 @@ from .layout import (
     ENDED,
     EXTERNAL,
     FRICTIONAL,
+    JOINTED,
     LAM,
     LASTED,
     LEDGER,
@@ -112,6 +113,7 @@ def lift_out(A: Scene, root: int, end: float) -> None:
     the work of forces: the change of kinetic energy, less m a.D + I alpha dtheta for displacements D."""
     PAR, BODY, PULL, JUMP = A.PAR, A.BODY, A.PULL, A.RESTING
     spent = 0.0
+    paid = A.MEMBER[root, JOINTED] == 0  # what joints do beside the path is in their own books
     i = root
     while i >= 0:
         move_to(BODY, i, end)
@@ -125,6 +127,8 @@ def lift_out(A: Scene, root: int, end: float) -> None:
         for c in range(6):
             BODY[i, X + c] += JUMP[i, LIFT + c]
         i = A.MEMBER[i, AFTER_ME]
+    if not paid:
+        return
     PAR[LEDGER + RESTITUTION] -= spent
     if PAR[LEDGER + RESTITUTION] < 0.0 and PAR[LEDGER + FRICTIONAL] > 0.0:
         PAR[LEDGER + FRICTIONAL] += PAR[LEDGER + RESTITUTION]

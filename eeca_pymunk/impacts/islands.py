@@ -26,11 +26,13 @@ from .layout import (
     DT,
     HITS,
     ISLAND,
+    JOINTED,
     LAST_ONE,
     LOST,
     OPEN,
     PULLED,
     STAMP,
+    TIED,
     Scene,
 )  # fmt: skip
 
@@ -47,6 +49,7 @@ def unite(A: Scene, i: int, j: int) -> int:
             STATE[k, ISLAND] = k
             MEMBER[k, AFTER_ME], MEMBER[k, LAST_ONE], MEMBER[k, BODIES], MEMBER[k, HITS] = -1, k, 1, 0
             MEMBER[k, OPEN] = 0
+            MEMBER[k, JOINTED] = 1 if MEMBER[k, TIED] >= 0 else 0
             A.RESTING[k, LOST] = 0.0
     a, b = STATE[i, ISLAND], STATE[j, ISLAND]
     if a == b:
@@ -61,6 +64,7 @@ def unite(A: Scene, i: int, j: int) -> int:
     MEMBER[a, LAST_ONE] = MEMBER[b, LAST_ONE]
     MEMBER[a, BODIES] += MEMBER[b, BODIES]
     MEMBER[a, HITS] = max(MEMBER[a, HITS], MEMBER[b, HITS])
+    MEMBER[a, JOINTED] = max(MEMBER[a, JOINTED], MEMBER[b, JOINTED])
     A.RESTING[a, LOST] += A.RESTING[b, LOST]
     return a
 

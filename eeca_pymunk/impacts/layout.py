@@ -17,12 +17,14 @@ EVENTS = 6  # impacts of the body in this step
 ISLAND = 7  # first body of the island it is solved in, -1 for none
 STATE_COLUMNS = 8
 
-# MEMBER (n, 6) int: islands of bodies in sustained contact as chains from their first body, the root
+# MEMBER (n, 9) int: islands of bodies in sustained contact as chains from their first body, the root
 AFTER_ME, LAST_ONE, BODIES = 0, 1, 2  # next body of the chain, -1 for none; of the root: the last one, and how many
 HITS = 3  # of the root: how often the island was hit in this step
 BUSY = 4  # steps for which what comes near joins the island rather than hits it
 OPEN = 5  # of the root: 1 while contacts of its span are not booked
-MEMBER_COLUMNS = 6
+TIED, NEXT_TIED = 6, 7  # of a body held by joints: the first body of those it hangs together with, else -1; the next
+JOINTED = 8  # of the root: 1 if bodies of its island are held by joints
+MEMBER_COLUMNS = 9
 
 # RESTING (n, 13) float: of a body in an island
 LIFT = 0  # RESTING[LIFT : LIFT + 6]: what to add to pose and velocity at the end of the span
@@ -55,6 +57,7 @@ PULLED = 15  # largest acceleration without contacts
 LEDGER = 7  # energy of the step: PAR[LEDGER + ...]
 RESTITUTION, FRICTIONAL, EXTERNAL, DAMPED = 0, 1, 2, 3
 LEDGER_LENGTH = 4
+STORED = 11  # change of what springs hold
 BEFORE, AFTER = 12, 13  # kinetic energy and -m g.x at both ends of the step
 PAR_LENGTH = 16
 
@@ -71,6 +74,7 @@ COUNT_LENGTH = 19
 
 # Status of a step
 DONE, POOL_FULL, LOG_FULL, BLOCK_DUE, PUSHES_FULL = 0, 1, 2, 3, 4
+JOINTS_DUE = 5  # a span or an impact of an island that is held by joints: `..jointed`
 
 
 class Scene(NamedTuple):

@@ -12,8 +12,9 @@ from ..compiled import inlined, kernel, uncounted
 from ..layout import DUE, IM, OWNER
 from ..pairs.grid import renew
 from ..pairs.lists import mark_pair
-from .block import arrive, strike
+from .block import arrive
 from .booking import end_span
+from .collide import strike
 from .forecast import has_left, predict
 from .heap import pop, push, sweep_out
 from .islands import members
@@ -25,6 +26,8 @@ from .layout import (
     FORECASTS,
     HEAP,
     ISLAND,
+    JOINTED,
+    JOINTS_DUE,
     KINKS,
     KNOWN,
     LEAVE,
@@ -61,6 +64,13 @@ def forecast(A: Scene, disks: int, moving: int, i: int, t: float, end: float) ->
         A.BODY, A.STATE, A.SHAPE, A.LINK, A.VERTEX, A.MARK, A.LIST, A.POOL, A.FLAG, A.RULE, A.HEAP_TIME, A.HEAP_BODY,
         A.WORK, A.COUNT, disks, moving, i, t, end, until,
     )  # fmt: skip
+
+
+@uncounted
+def jointed(A: Scene, i: int) -> bool:
+    """Whether body i is in an island that is held by joints."""
+    root = A.STATE[i, ISLAND]
+    return bool(root >= 0 and A.MEMBER[root, JOINTED] > 0)
 
 
 @inlined
@@ -141,7 +151,10 @@ def run(A: Scene, disks: int, may_rest: bool) -> int:
 
 @kernel
 def follow(A: Scene, disks: int, may_rest: bool) -> int:
-    """The events of the step, blocks and islands included. After a status other than DONE, make room and call again."""
+    """The events of the step, blocks and islands included. After a status other than DONE, make room and call again.
+
+    JOINTS_DUE: the span of island COUNT[PENDING], or if there is none the impact of body COUNT[STRUCK], is to be done.
+    """
     COUNT, STATE, BLOCK = A.COUNT, A.STATE, A.BLOCK
     moving, end = A.LIST.shape[0], A.PAR[DT]
     if COUNT[PENDING] >= 0:
@@ -176,6 +189,8 @@ def follow(A: Scene, disks: int, may_rest: bool) -> int:
             mark_pair(A.LIST, A.POOL, A.FLAG, moving, s, o, 1)
             forecast(A, disks, moving, i, t, end)
             continue
+        if jointed(A, i) or jointed(A, j):
+            return JOINTS_DUE
         rest = False
         if may_rest:
             arrive(A, i, t)

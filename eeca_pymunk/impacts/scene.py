@@ -32,6 +32,7 @@ from .layout import (
     LOCK,
     LOGGED,
     MEMBER_COLUMNS,
+    NEXT_TIED,
     NOW,
     OTHER,
     PAR_LENGTH,
@@ -43,6 +44,7 @@ from .layout import (
     SOLVES,
     STAMP,
     STATE_COLUMNS,
+    TIED,
     UNMET,
     Scene,
 )  # fmt: skip
@@ -87,6 +89,7 @@ class EventLoop:
         )  # fmt: skip
         self.near = near
         self.scene.COUNT[LIMIT] = limit
+        self.scene.MEMBER[:, TIED : NEXT_TIED + 1] = -1
         self.scene.RESTING[:, RELAX : RELAX + 3] = FRESH
         self.lossy = bool((SHAPE[:, ELASTICITY] < 1.0).any())
 

@@ -30,6 +30,7 @@ from .layout import (
     HITS,
     IGNORED,
     ISLAND,
+    JOINTED,
     LASTED,
     OPEN,
     PULLED,
@@ -40,6 +41,7 @@ from .layout import (
     REMEMBERED,
     ROOT,
     SHAPES,
+    TIED,
     Scene,
 )  # fmt: skip
 from .spans import solve
@@ -84,6 +86,8 @@ def join(A: Scene, i: int, t: float, FOUND: IntArray) -> int:
             if STATE[j, ISLAND] < 0:
                 move_to(BODY, j, t)
             elif A.MEMBER[STATE[j, ISLAND], OPEN] > 0:
+                if A.MEMBER[STATE[j, ISLAND], JOINTED] > 0:
+                    continue  # it is hit when they meet
                 xi, yi, qi = pose(BODY, i, t)
                 xj, yj, qj = pose(BODY, j, t)
                 if gap_at(A.SHAPE, LINK, A.VERTEX, A.WORK, s, xi, yi, qi, o, xj, yj, qj)[0] > reach:
@@ -134,6 +138,9 @@ def settle(A: Scene) -> int:
         if rests(A, a, b, 0.0, law(A.SHAPE, A.RULE, a, b)[0] < 1.0):
             i = j if BODY[i, IM] == 0.0 else i
             unite(A, i, i if BODY[j, IM] == 0.0 else j)
+    for i in range(n):
+        if A.MEMBER[i, TIED] >= 0:
+            unite(A, i, A.MEMBER[i, TIED])
     QUEUE = np.empty(n, np.int64)
     queued = 0
     for i in range(n):

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
-from ..compiled import kernel
+from ..arrays import FlagArray, FloatArray, IntArray
+from ..compiled import kernel, uncounted
 from ..layout import (
     AX,
     AY,
@@ -42,6 +44,8 @@ from .layout import (
     FIRST_SHAPE,
     HITS,
     ISLAND,
+    JOINTED,
+    JOINTS_DUE,
     KINKS,
     LAM,
     LAST_ONE,
@@ -78,29 +82,25 @@ from .layout import (
 )  # fmt: skip
 
 
-@kernel
-def solve(A: Scene, root: int, t: float) -> int:
-    """Begin a span of the island at instant t, at which all its bodies are. Bodies without contact leave it.
+class Local(NamedTuple):
+    """The bodies of an island, n that impulses move and then those that they do not: WHO (k,) rows of BODY, POSE, V,
+    ACC (k, 3) and IM, II, EXTENT (k,) at the start of its span; PAIRS (p, 4) as `..sustained.contacts.gather`."""
 
-    DONE, or PUSHES_FULL, which leaves everything as it was.
-    """
-    BODY, STATE, MEMBER, COUNT = A.BODY, A.STATE, A.MEMBER, A.COUNT
-    n = MEMBER[root, BODIES]
-    MINE = np.empty(n, np.int64)
-    members(A, root, MINE)
-    MINE.sort()
-    lossy = False
-    for q in range(n):
-        A.PLACE[MINE[q]] = q
-        for s in range(STATE[MINE[q], FIRST_SHAPE], STATE[MINE[q], FIRST_SHAPE] + STATE[MINE[q], SHAPES]):
-            lossy = lossy or A.SHAPE[s, ELASTICITY] < 1.0
-    found = pairs_of(A, root, t, lossy, A.PLACE, MINE, n)
+    WHO: IntArray
+    POSE: FloatArray
+    V: FloatArray
+    ACC: FloatArray
+    IM: FloatArray
+    II: FloatArray
+    EXTENT: FloatArray
+    PAIRS: IntArray
+
+
+@kernel
+def lay_out_island(A: Scene, MINE: IntArray, n: int, found: IntArray, t: float) -> Local:
+    """The island of the n bodies MINE, which are at instant t and have A.PLACE, with (p, 2) pairs of shapes `found`."""
+    BODY = A.BODY
     p = len(found)
-    h = span_of(A, found, t)
-    if COUNT[PUSHES] + 2 * p > A.PUSHED.shape[0] or 2 * (COUNT[REMEMBERED] + 2 * p) > A.KEYS.shape[0]:
-        for q in range(n):
-            A.PLACE[MINE[q]] = -1
-        return PUSHES_FULL
     # Bodies that impulses do not move stand after those of the island.
     FIXED, fixed = np.empty(p, np.int64), 0
     for c in range(p):
@@ -128,8 +128,75 @@ def solve(A: Scene, root: int, t: float) -> int:
     for c in range(p):
         PAIRS[c, 0], PAIRS[c, 1] = found[c, 0], found[c, 1]
         PAIRS[c, 2], PAIRS[c, 3] = A.PLACE[A.LINK[found[c, 0], OWNER]], A.PLACE[A.LINK[found[c, 1], OWNER]]
-    for q in range(k):
+    for q in range(n, k):
         A.PLACE[WHO[q]] = -1
+    return Local(WHO, POSE, V, ACC, IMS, IIS, SIZES, PAIRS)
+
+
+@kernel
+def open_contacts(
+    A: Scene, isle: Local, P: IntArray, Q: IntArray, ROWS: FloatArray, KEY: IntArray, L: FloatArray, VN: FloatArray,
+    m: int, t: float, h: float, TOUCHED: FlagArray,
+) -> None:  # fmt: skip
+    """Write the m contacts of a span of length h after those of other islands; TOUCHED (k,): bodies that have any."""
+    shapes, first, moving = A.SHAPE.shape[0], A.COUNT[PUSHES], A.LIST.shape[0]
+    for z in range(m):
+        pair = KEY[z] >> 1
+        a, b = pair // shapes, pair % shapes
+        if A.LINK[a, OWNER] != isle.WHO[P[z]]:
+            a, b = b, a
+        TOUCHED[P[z]], TOUCHED[Q[z]] = 1, 1
+        mark_pair(A.LIST, A.POOL, A.FLAG, moving, a, b, 1)
+        c = first + z
+        A.PUSHED_BY[c, PUSH_A], A.PUSHED_BY[c, PUSH_B] = a, b
+        ROW = A.PUSHED[c]
+        ROW[LAM], ROW[BETA], ROW[SPAN_FROM], ROW[SPAN] = L[z, 0], L[z, 1], t, h
+        ROW[UN_BEFORE], ROW[UT_BEFORE] = ROWS[z, UN], ROWS[z, UT]
+        ROW[UN_AFTER], ROW[UT_AFTER] = normal_rate(P, Q, ROWS, VN, z), tangent_rate(P, Q, ROWS, VN, z)
+        ROW[WORK_OF] = carried(P[z : z + 1], Q[z : z + 1], ROWS[z : z + 1], L[z : z + 1], isle.V, isle.IM, 1)
+        ROW[PUSH_NX], ROW[PUSH_NY] = ROWS[z, NX], ROWS[z, NY]
+        # The point from its arms: r = arm_t n - arm_n t.
+        x, y = isle.POSE[P[z], 0] + 0.5 * h * isle.V[P[z], 0], isle.POSE[P[z], 1] + 0.5 * h * isle.V[P[z], 1]
+        ROW[PUSH_X] = x + ROWS[z, ARM_TA] * ROWS[z, NX] + ROWS[z, ARM_NA] * ROWS[z, NY]
+        ROW[PUSH_Y] = y + ROWS[z, ARM_TA] * ROWS[z, NY] - ROWS[z, ARM_NA] * ROWS[z, NX]
+        ROW[PUSH_CHANGE] = L[z, 0] / ROWS[z, K_N]
+
+
+@uncounted
+def dismiss(A: Scene, MINE: IntArray, n: int) -> None:
+    """Forget the places of n bodies."""
+    for q in range(n):
+        A.PLACE[MINE[q]] = -1
+
+
+@kernel
+def solve(A: Scene, root: int, t: float) -> int:
+    """Begin a span of the island at instant t, at which all its bodies are. Bodies without contact leave it.
+
+    DONE, or PUSHES_FULL, which leaves everything as it was.
+    """
+    BODY, STATE, MEMBER, COUNT = A.BODY, A.STATE, A.MEMBER, A.COUNT
+    n = MEMBER[root, BODIES]
+    MINE = np.empty(n, np.int64)
+    members(A, root, MINE)
+    if MEMBER[root, JOINTED] > 0:
+        return JOINTS_DUE
+    MINE.sort()
+    lossy = False
+    for q in range(n):
+        A.PLACE[MINE[q]] = q
+        for s in range(STATE[MINE[q], FIRST_SHAPE], STATE[MINE[q], FIRST_SHAPE] + STATE[MINE[q], SHAPES]):
+            lossy = lossy or A.SHAPE[s, ELASTICITY] < 1.0
+    found = pairs_of(A, root, t, lossy, A.PLACE, MINE, n)
+    p = len(found)
+    h = span_of(A, found, t)
+    if COUNT[PUSHES] + 2 * p > A.PUSHED.shape[0] or 2 * (COUNT[REMEMBERED] + 2 * p) > A.KEYS.shape[0]:
+        dismiss(A, MINE, n)
+        return PUSHES_FULL
+    isle = lay_out_island(A, MINE, n, found, t)
+    dismiss(A, MINE, n)
+    k, WHO, POSE, V, ACC = len(isle.WHO), isle.WHO, isle.POSE, isle.V, isle.ACC
+    IMS, IIS, SIZES, PAIRS = isle.IM, isle.II, isle.EXTENT, isle.PAIRS
     room = 2 * p + 1
     P, Q, KEY = np.empty(room, np.int64), np.empty(room, np.int64), np.empty(room, np.int64)
     ROWS, L, LOSS = np.empty((room, ROW_COLUMNS)), np.zeros((room, 2)), np.zeros((room, 2))
@@ -160,30 +227,9 @@ def solve(A: Scene, root: int, t: float) -> int:
     COUNT[SOLVES] += 1
     COUNT[SWEEPS] += int(OUT[SWEEPS_OF])
     COUNT[DIRECT] += int(OUT[POLISHES_OF])
-    shapes = A.SHAPE.shape[0]
     first = COUNT[PUSHES]
-    moving = A.LIST.shape[0]
     TOUCHED = np.zeros(k, np.uint8)
-    for z in range(m):
-        pair = KEY[z] >> 1
-        a, b = pair // shapes, pair % shapes
-        if A.LINK[a, OWNER] != WHO[P[z]]:
-            a, b = b, a
-        TOUCHED[P[z]], TOUCHED[Q[z]] = 1, 1
-        mark_pair(A.LIST, A.POOL, A.FLAG, moving, a, b, 1)
-        c = first + z
-        A.PUSHED_BY[c, PUSH_A], A.PUSHED_BY[c, PUSH_B] = a, b
-        ROW = A.PUSHED[c]
-        ROW[LAM], ROW[BETA], ROW[SPAN_FROM], ROW[SPAN] = L[z, 0], L[z, 1], t, h
-        ROW[UN_BEFORE], ROW[UT_BEFORE] = ROWS[z, UN], ROWS[z, UT]
-        ROW[UN_AFTER], ROW[UT_AFTER] = normal_rate(P, Q, ROWS, VN, z), tangent_rate(P, Q, ROWS, VN, z)
-        ROW[WORK_OF] = carried(P[z : z + 1], Q[z : z + 1], ROWS[z : z + 1], L[z : z + 1], V, IMS, 1)
-        ROW[PUSH_NX], ROW[PUSH_NY] = ROWS[z, NX], ROWS[z, NY]
-        # The point from its arms: r = arm_t n - arm_n t.
-        x, y = POSE[P[z], 0] + 0.5 * h * V[P[z], 0], POSE[P[z], 1] + 0.5 * h * V[P[z], 1]
-        ROW[PUSH_X] = x + ROWS[z, ARM_TA] * ROWS[z, NX] + ROWS[z, ARM_NA] * ROWS[z, NY]
-        ROW[PUSH_Y] = y + ROWS[z, ARM_TA] * ROWS[z, NY] - ROWS[z, ARM_NA] * ROWS[z, NX]
-        ROW[PUSH_CHANGE] = L[z, 0] / ROWS[z, K_N]
+    open_contacts(A, isle, P, Q, ROWS, KEY, L, VN, m, t, h, TOUCHED)
     lost, hits = A.RESTING[root, LOST], MEMBER[root, HITS]
     head, tail, size = -1, -1, 0
     for q in range(n):

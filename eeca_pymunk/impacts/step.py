@@ -71,6 +71,7 @@ from .layout import (
     SOLVES,
     STALE,
     STAMP,
+    STORED,
     SWEEPS,
     UNMET,
     Scene,
@@ -118,7 +119,7 @@ def begin(A: Scene, WALK: IntArray) -> None:
             BODY[i, DUE] = min(BODY[i, DUE], 0.0)
     for c in range(LEDGER_LENGTH):
         PAR[LEDGER + c] = 0.0
-    PAR[LOCK] = 1.0
+    PAR[LOCK], PAR[STORED] = 1.0, 0.0
     PAR[BEFORE] = total(A)
     left = PAR[LEFT_OVER]
     if left != 1.0:
@@ -175,7 +176,7 @@ def close(A: Scene, WALK: IntArray) -> None:
             if BODY[i, II] > 0.0:
                 work += twist * (BODY[i, ANGLE] - BEGAN[i, 2]) / BODY[i, II]
             PAR[LEDGER + EXTERNAL] += work
-    PAR[AFTER] = total(A)
+    PAR[AFTER] = total(A) + PAR[STORED]
     left = PAR[LEFT_OVER]
     if left != 1.0:
         lost = 0.0

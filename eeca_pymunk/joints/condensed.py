@@ -85,6 +85,16 @@ def solve_condensed(
     """Solve the condensed system in place of `right`: bodies first, then rows; right[room : room + size] is scratch."""
     if not factor(matrix, size, band):
         return False
+    back_condensed(hinge, link, joints, local, node, slopes, passes, size, band, matrix, right, room)
+    return True
+
+
+@uncounted
+def back_condensed(
+    hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray, slopes: int, passes: int,
+    size: int, band: int, matrix: FloatArray, right: FloatArray, room: int,
+) -> None:  # fmt: skip
+    """`solve_condensed` with the factors of the matrix in its place."""
     for i in range(size):
         right[room + i] = right[i]
         right[i] = 0.0
@@ -111,4 +121,3 @@ def solve_condensed(
         for i in range(size):
             right[i] += right[room + i]
             right[room + i] = 0.0
-    return True

@@ -20,6 +20,7 @@ from .scratch import (
     POSE,
     SIN,
     SLOPE,
+    TRAVEL,
     TURN_COS,
     TURN_SIN,
     TURNED,
@@ -73,6 +74,8 @@ def settle(local: FloatArray, bodies: int, h: float) -> None:
 def advance(local: FloatArray, bodies: int) -> None:
     """Make the end of a part of the step the start of the next."""
     for i in range(bodies):
+        for c in range(3):
+            local[i, TRAVEL + c] += local[i, WAY + c]
         local[i, POSE] += local[i, WAY]
         local[i, POSE + 1] += local[i, WAY + 1]
         local[i, POSE + 2] += local[i, TURNED]

@@ -1,6 +1,6 @@
 """The scratch arrays of one island: what their columns mean.
 
-LOCAL (n, 43) float and NODE (n, 2) int: one row per body of the island, those that joints cannot move included.
+LOCAL (n, 46) float and NODE (n, 2) int: one row per body of the island, those that joints cannot move included.
 HINGE (m, 64) float and LINK (m, 8) int: one row per joint. Row vectors have six entries: 0-2 are for body a, 3-5 for
 body b, along x, along y, about the centre of mass. STIFF (6, 6) is that of one joint.
 
@@ -27,7 +27,8 @@ GOT = 28  # 28-30: impulse of the joints
 KEPT = 31  # 31-33: velocities to come back to
 SAVED = 34  # 34-39: pose and velocity at the start of the whole step
 ROOT = 40  # 40-42: square roots of the mobilities
-LOCAL_COLUMNS = 43
+TRAVEL = 43  # 43-45: the sum of WAY over all parts of the step
+LOCAL_COLUMNS = 46
 
 # NODE
 COLUMN, FREEDOMS = 0, 1  # first unknown of the body, number of its unknowns: 0, 2 (joints do not turn it) or 3

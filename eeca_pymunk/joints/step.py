@@ -65,6 +65,7 @@ from .scratch import (
     SPEEDS,
     STEP,
     TOTAL,
+    TRAVEL,
 )
 from .solve import solve
 from .start import book_closing, farthest, find_apart, look, read_joints, soft_targets
@@ -79,6 +80,8 @@ def save(local: FloatArray, bodies: int) -> None:
     for i in range(bodies):
         for c in range(6):
             local[i, SAVED + c] = local[i, POSE + c]
+        for c in range(3):
+            local[i, TRAVEL + c] = 0.0
 
 
 @uncounted
@@ -87,6 +90,8 @@ def back(local: FloatArray, bodies: int) -> None:
     for i in range(bodies):
         for c in range(6):
             local[i, POSE + c] = local[i, SAVED + c]
+        for c in range(3):
+            local[i, TRAVEL + c] = 0.0
         local[i, COS], local[i, SIN] = np.cos(local[i, POSE + 2]), np.sin(local[i, POSE + 2])
 
 

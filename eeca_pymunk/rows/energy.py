@@ -53,11 +53,11 @@ def works(
 
 
 @uncounted
-def lock(
-    A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, FREE: FloatArray, IM: FloatArray,
-    II: FloatArray, m: int, owed: float, exact: bool,
+def scale_of(
+    A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, FREE: FloatArray, m: int, owed: float,
+    exact: bool,
 ) -> tuple[float, float]:  # fmt: skip
-    """Scale all impulses by one s, so that the island loses `owed` at least; exactly that if `exact`.
+    """One scale s for all impulses, so that the island loses `owed` at least; exactly that if `exact`.
 
     With u* the velocities of FREE, s L loses D(s) = -s lam.(u- + u*)/2 - s^2 lam.A.lam/2 (tangents likewise). Of the
     two roots of D(s) = owed the one nearer to 1 is taken; s = 1 if nothing has to change. Without a root s loses the
@@ -92,12 +92,21 @@ def lock(
         other = owed / large if large > 0.0 else 0.0
         if abs(other - 1.0) < abs(s - 1.0):
             s = other
-    if s == 1.0:
-        return s, left
-    for i in range(m):
-        L[i, 0] *= s
-        L[i, 1] *= s
-    velocities(A, B, ROWS, L, FREE, IM, II, m, V)
+    return s, left
+
+
+@uncounted
+def lock(
+    A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, FREE: FloatArray, IM: FloatArray,
+    II: FloatArray, m: int, owed: float, exact: bool,
+) -> tuple[float, float]:  # fmt: skip
+    """Scale all impulses by `scale_of`, and V with them; its results."""
+    s, left = scale_of(A, B, ROWS, L, V, FREE, m, owed, exact)
+    if s != 1.0:
+        for i in range(m):
+            L[i, 0] *= s
+            L[i, 1] *= s
+        velocities(A, B, ROWS, L, FREE, IM, II, m, V)
     return s, left
 
 

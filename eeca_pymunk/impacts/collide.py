@@ -1,0 +1,150 @@
+"""Impulses of a block, and what follows: islands that take part become one with the bodies of the impact, and begin
+anew."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..compiled import kernel, uncounted
+from ..layout import IM, OWNER, SPIN, VX, VY
+from ..rows.blocks import CONVERGED, D_NORMAL, D_TANGENTIAL, OUT_SIZE, SCALE_LOCK, solve_block
+from ..rows.layout import K_N, NX, NY
+from ..sustained.ledger import carried
+from .block import Block, gather, lay_out, owing
+from .islands import members, unite
+from .layout import (
+    BLOCKS,
+    DONE,
+    EVENTS,
+    EXTERNAL,
+    FRICTIONAL,
+    HITS,
+    IMPACTS,
+    ISLAND,
+    JOINTED,
+    JOINTS_DUE,
+    KINKS,
+    LEDGER,
+    LOCK,
+    LOGGED,
+    LOST,
+    PENDING,
+    RESTITUTION,
+    TIED,
+    UNMET,
+    Scene,
+)  # fmt: skip
+from .layout import (
+    BODIES as SIZE_OF,
+)
+from .settle import spread
+from .spans import dismiss, solve
+from .strike import note
+
+
+@uncounted
+def finish(A: Scene, block: Block, n: int, m: int, L: FloatArray, OUT: FloatArray, status: int, t: float) -> None:
+    """Write what the impulses L of a block of n bodies and m pairs have made of V, and book it."""
+    BODY, COUNT = A.BODY, A.COUNT
+    V, ROWS, k = block.V, block.ROWS, A.SHAPE.shape[0]
+    if status != CONVERGED:
+        COUNT[UNMET] += 1
+    if abs(OUT[SCALE_LOCK] - 1.0) > abs(A.PAR[LOCK] - 1.0):
+        A.PAR[LOCK] = OUT[SCALE_LOCK]
+    A.PAR[LEDGER + RESTITUTION] += OUT[D_NORMAL]
+    A.PAR[LEDGER + FRICTIONAL] += OUT[D_TANGENTIAL]
+    A.PAR[LEDGER + EXTERNAL] += carried(block.A, block.B, ROWS, L, V, block.IM, len(ROWS))
+    for q in range(n):
+        i = A.BLOCK[q]
+        BODY[i, VX], BODY[i, VY], BODY[i, SPIN] = V[q, 0], V[q, 1], V[q, 2]
+        A.STATE[i, KINKS] += 1
+        A.STATE[i, EVENTS] += 1
+    dismiss(A, A.BLOCK, n)
+    for z in range(len(ROWS)):
+        if L[z, 0] > 0.0 and COUNT[LOGGED] < A.LOG.shape[0]:
+            note(
+                A.LOG, COUNT[LOGGED], block.OF[z] // k, block.OF[z] % k, t, L[z, 0], L[z, 1], ROWS[z, NX], ROWS[z, NY],
+                block.POINTS[z, 0], block.POINTS[z, 1], L[z, 0] / ROWS[z, K_N],
+            )  # fmt: skip
+            COUNT[LOGGED] += 1
+    COUNT[IMPACTS] += 1
+    COUNT[BLOCKS] += 1 if m > 1 else 0
+
+
+@uncounted
+def holds_joints(A: Scene, n: int) -> bool:
+    """Whether any of the n bodies in A.BLOCK is held by joints, or in an island with such."""
+    for q in range(n):
+        i = A.BLOCK[q]
+        root = A.STATE[i, ISLAND]
+        if A.MEMBER[i, TIED] >= 0 or (root >= 0 and A.MEMBER[root, JOINTED] > 0):
+            return True
+    return False
+
+
+@kernel
+def strike(A: Scene, disks: int, a: int, b: int, t: float, rest: bool) -> tuple[int, int]:
+    """Impulses of the block of shapes a and b at instant t. Status, and the number of bodies to be forecast anew, in
+    A.BLOCK.
+
+    PUSHES_FULL and JOINTS_DUE leave the new span of the island COUNT[PENDING] to be begun; JOINTS_DUE with none
+    pending leaves the impact itself.
+
+    Args:
+        rest: whether the contact of a and b stays closed from now on.
+    """
+    k = A.SHAPE.shape[0]
+    n, m, PAIRS = gather(A, disks, a, b, t)
+    if holds_joints(A, n):
+        dismiss(A, A.BLOCK, n)
+        return JOINTS_DUE, 0
+    owed, piled = owing(A, n)
+    block = lay_out(A, disks, n, m, PAIRS, min(a, b) * k + max(a, b), rest, t)
+    rows = len(block.ROWS)
+    L, LOSS, OUT = np.zeros((rows, 2)), np.zeros((rows, 2)), np.zeros(OUT_SIZE)
+    status = solve_block(
+        block.A, block.B, block.ROWS, L, block.V, block.IM, block.II, block.POSE, n, rows, owed, piled, LOSS, OUT
+    )  # fmt: skip
+    finish(A, block, n, m, L, OUT, status, t)
+    return rejoin(A, a, b, t, n, rest, OUT[D_NORMAL] + OUT[D_TANGENTIAL] - owed)
+
+
+@kernel
+def rejoin(A: Scene, a: int, b: int, t: float, n: int, rest: bool, lost: float) -> tuple[int, int]:
+    """After the impulses of a block of n bodies in A.BLOCK: its islands become one and begin a new span; so do the two
+    bodies of shapes a and b if they rest on each other. Status and number of bodies as `strike`."""
+    STATE, BODIES = A.STATE, A.BLOCK
+    root = -1
+    for q in range(n):
+        if STATE[BODIES[q], ISLAND] >= 0:
+            root = unite(A, BODIES[q], BODIES[q] if root < 0 else root)
+    if root < 0 and not rest:
+        return DONE, n
+    QUEUE = np.empty(A.BODY.shape[0], np.int64)
+    queued = 0
+    for s in (a, b):
+        i = A.LINK[s, OWNER]
+        if A.BODY[i, IM] > 0.0:
+            if STATE[i, ISLAND] < 0:
+                QUEUE[queued] = i
+                queued += 1
+            root = unite(A, i, i if root < 0 else root)
+    spread(A, QUEUE, queued, t)
+    root = STATE[root, ISLAND]
+    A.RESTING[root, LOST] += lost
+    A.MEMBER[root, HITS] += 1
+    # The bodies of the block that are in no island are forecast too.
+    free = 0
+    for q in range(n):
+        if STATE[BODIES[q], ISLAND] != root:
+            BODIES[free] = BODIES[q]
+            free += 1
+    MINE = np.empty(A.MEMBER[root, SIZE_OF], np.int64)
+    more = members(A, root, MINE)
+    for q in range(more):
+        BODIES[free + q] = MINE[q]
+    status = solve(A, root, t)
+    if status != DONE:
+        A.COUNT[PENDING] = root
+    return status, free + more

@@ -1,0 +1,253 @@
+"""Contact laws with the answers of components in the place of masses: Y (., 3), the change of velocities per impulse.
+
+An impulse on one body moves all that hang together with it. Every contact has two columns, one for its normal and one
+for its tangential impulse, over the *groups* of its two bodies: a component, or one body that no joint holds.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import kernel, uncounted
+from ..rows.build import normal_rate, tangent_rate
+from ..rows.layout import (
+    ARM_NA,
+    ARM_NB,
+    ARM_TA,
+    ARM_TB,
+    FRICTION,
+    K_N,
+    K_T,
+    NX,
+    NY,
+    TARGET,
+    UN,
+    UT,
+    WAKE,
+)
+from ..rows.sweeps import coulomb
+from .component import answer
+from .layout import Joints
+
+_STRUT, _NOTHING = 1e-3, 1e-7  # share of its free mobility below which a contact is left out: of one group, of two
+
+
+class Groups(NamedTuple):
+    """GROUP (k,): the group of a body, -1 for what impulses do not move; BODY (n,): bodies by group, those of group g
+    at FIRST[g] : FIRST[g + 1]; COMPONENT (groups,): that of a group, -1 for a free body."""
+
+    GROUP: IntArray
+    FIRST: IntArray
+    BODY: IntArray
+    COMPONENT: IntArray
+
+
+class Columns(NamedTuple):
+    """Of contact i: AT[i] : AT[i + 1] the entries BODY, N and T (., 3) of its columns; COUPLED (m,) its A_nt; OUT (m,)
+    1 if it is left out."""
+
+    AT: IntArray
+    BODY: IntArray
+    N: FloatArray
+    T: FloatArray
+    COUPLED: FloatArray
+    OUT: IntArray
+
+
+@kernel
+def find_groups(WHO: IntArray, IM: FloatArray, OF: IntArray) -> Groups:
+    """The groups of bodies WHO (k,), rows of BODY, of which OF tells the components."""
+    k = len(WHO)
+    GROUP, NEXT = np.full(k, -1, np.int64), np.full(k, -1, np.int64)
+    FIRST, COMPONENT, BODY = np.zeros(k + 1, np.int64), np.empty(k, np.int64), np.empty(k, np.int64)
+    groups = 0
+    for q in range(k):
+        if IM[q] == 0.0 or GROUP[q] >= 0:
+            continue
+        GROUP[q], COMPONENT[groups] = groups, OF[WHO[q]]
+        if OF[WHO[q]] >= 0:
+            for p in range(q + 1, k):
+                if IM[p] > 0.0 and OF[WHO[p]] == OF[WHO[q]]:
+                    GROUP[p] = groups
+        groups += 1
+    for q in range(k):
+        if GROUP[q] >= 0:
+            FIRST[GROUP[q] + 1] += 1
+    for g in range(groups):
+        FIRST[g + 1] += FIRST[g]
+        NEXT[g] = FIRST[g]
+    for q in range(k):
+        if GROUP[q] >= 0:
+            BODY[NEXT[GROUP[q]]] = q
+            NEXT[GROUP[q]] += 1
+    return Groups(GROUP, FIRST[: groups + 1], BODY, COMPONENT[:groups])
+
+
+@kernel
+def make_columns(groups: Groups, A: IntArray, B: IntArray, m: int) -> Columns:
+    """Room for the columns of m contacts, zero."""
+    AT, BODY = np.zeros(m + 1, np.int64), np.empty(0, np.int64)
+    for way in range(2):
+        if way == 1:
+            BODY = np.empty(AT[m], np.int64)
+        for i in range(m):
+            at = AT[i]
+            a, b = groups.GROUP[A[i]], groups.GROUP[B[i]]
+            for g in (a, b):
+                if g < 0 or (g == a and g == b and at > AT[i]):
+                    continue
+                for w in range(groups.FIRST[g], groups.FIRST[g + 1]):
+                    if way == 1:
+                        BODY[at] = groups.BODY[w]
+                    at += 1
+            if way == 0:
+                AT[i + 1] = at
+    return Columns(AT, BODY, np.zeros((AT[m], 3)), np.zeros((AT[m], 3)), np.zeros(m), np.zeros(m, np.int64))
+
+
+@uncounted
+def fill_free(
+    groups: Groups, C: Columns, A: IntArray, B: IntArray, ROWS: FloatArray, IM: FloatArray, II: FloatArray, m: int
+) -> None:
+    """The columns' entries on bodies that no joint holds."""
+    for i in range(m):
+        for w in range(C.AT[i], C.AT[i + 1]):
+            q = C.BODY[w]
+            if groups.COMPONENT[groups.GROUP[q]] >= 0:
+                continue
+            sign = 1.0 if q == B[i] else -1.0
+            arm_n, arm_t = (ARM_NB, ARM_TB) if q == B[i] else (ARM_NA, ARM_TA)
+            C.N[w, 0], C.N[w, 1] = sign * IM[q] * ROWS[i, NX], sign * IM[q] * ROWS[i, NY]
+            C.T[w, 0], C.T[w, 1] = -sign * IM[q] * ROWS[i, NY], sign * IM[q] * ROWS[i, NX]
+            C.N[w, 2], C.T[w, 2] = sign * II[q] * ROWS[i, arm_n], sign * II[q] * ROWS[i, arm_t]
+
+
+@uncounted
+def fill_group(
+    J: Joints, groups: Groups, C: Columns, g: int, INDEX: IntArray, about_step: bool, A: IntArray, B: IntArray,
+    ROWS: FloatArray, m: int, PUSH: FloatArray,
+) -> None:  # fmt: skip
+    """The columns' entries on the bodies of group g, whose component is `ready`.
+
+    Args:
+        INDEX: (k,) places of bodies in the scratch of their component.  PUSH: (bodies of the component, 3) scratch.
+    """
+    s = groups.COMPONENT[g]
+    for i in range(m):
+        a, b = A[i], B[i]
+        on_a, on_b = groups.GROUP[a] == g, groups.GROUP[b] == g
+        if not on_a and not on_b:
+            continue
+        for tangent in range(2):
+            for w in range(len(PUSH)):
+                for c in range(3):
+                    PUSH[w, c] = 0.0
+            x, y = (ROWS[i, NX], ROWS[i, NY]) if tangent == 0 else (-ROWS[i, NY], ROWS[i, NX])
+            arm_a, arm_b = (ARM_NA, ARM_NB) if tangent == 0 else (ARM_TA, ARM_TB)
+            if on_a:
+                q = INDEX[a]
+                PUSH[q, 0], PUSH[q, 1], PUSH[q, 2] = -x, -y, -ROWS[i, arm_a]
+            if on_b:
+                q = INDEX[b]
+                PUSH[q, 0], PUSH[q, 1], PUSH[q, 2] = PUSH[q, 0] + x, PUSH[q, 1] + y, PUSH[q, 2] + ROWS[i, arm_b]
+            answer(J, s, about_step, PUSH)
+            for w in range(C.AT[i], C.AT[i + 1]):
+                if groups.GROUP[C.BODY[w]] == g:
+                    for c in range(3):
+                        if tangent == 0:
+                            C.N[w, c] = PUSH[INDEX[C.BODY[w]], c]
+                        else:
+                            C.T[w, c] = PUSH[INDEX[C.BODY[w]], c]
+
+
+@uncounted
+def along(C: Columns, A: IntArray, B: IntArray, ROWS: FloatArray, i: int, D: FloatArray, tangent: bool) -> float:
+    """Rate of contact i along n (or t) of its own column D."""
+    x, y = (-ROWS[i, NY], ROWS[i, NX]) if tangent else (ROWS[i, NX], ROWS[i, NY])
+    arm_a, arm_b = (ARM_TA, ARM_TB) if tangent else (ARM_NA, ARM_NB)
+    total = 0.0
+    for w in range(C.AT[i], C.AT[i + 1]):
+        if C.BODY[w] == A[i]:
+            total -= x * D[w, 0] + y * D[w, 1] + ROWS[i, arm_a] * D[w, 2]
+        if C.BODY[w] == B[i]:
+            total += x * D[w, 0] + y * D[w, 1] + ROWS[i, arm_b] * D[w, 2]
+    return total
+
+
+@uncounted
+def weigh(groups: Groups, C: Columns, A: IntArray, B: IntArray, ROWS: FloatArray, m: int) -> None:
+    """Let K_N and K_T be 1/A_nn and 1/A_tt of the columns; leave out what hardly can be moved."""
+    for i in range(m):
+        normal, tangential = along(C, A, B, ROWS, i, C.N, False), along(C, A, B, ROWS, i, C.T, True)
+        C.COUPLED[i] = 0.5 * (along(C, A, B, ROWS, i, C.N, True) + along(C, A, B, ROWS, i, C.T, False))
+        least = _STRUT if groups.GROUP[A[i]] == groups.GROUP[B[i]] else _NOTHING
+        C.OUT[i] = 0 if normal * ROWS[i, K_N] > least else 1
+        if C.OUT[i] == 0:
+            ROWS[i, K_N] = 1.0 / normal
+        if tangential * ROWS[i, K_T] > least:
+            ROWS[i, K_T] = 1.0 / tangential
+        else:
+            ROWS[i, FRICTION], C.COUPLED[i] = 0.0, 0.0
+
+
+@uncounted
+def push_columns(C: Columns, L: FloatArray, m: int, factor: float, V: FloatArray) -> None:
+    """V += factor Y L."""
+    for i in range(m):
+        lam, beta = factor * L[i, 0], factor * L[i, 1]
+        if lam == 0.0 and beta == 0.0:
+            continue
+        for w in range(C.AT[i], C.AT[i + 1]):
+            for c in range(3):
+                V[C.BODY[w], c] += lam * C.N[w, c] + beta * C.T[w, c]
+
+
+@uncounted
+def sweep_columns(
+    C: Columns, A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, m: int
+) -> float:
+    """One sweep over the m contacts as `..rows.sweeps.sweep`; the largest change of a contact's velocity."""
+    worst = 0.0
+    for i in range(m):
+        if C.OUT[i] != 0:
+            continue
+        lam0, beta0 = L[i, 0], L[i, 1]
+        lam, beta = 0.0, 0.0
+        ant = C.COUPLED[i]
+        free = normal_rate(A, B, ROWS, V, i) - lam0 / ROWS[i, K_N]
+        if free < ROWS[i, WAKE]:
+            ROWS[i, WAKE] = np.inf
+            if ROWS[i, FRICTION] <= 0.0:
+                lam = max(ROWS[i, K_N] * (ROWS[i, TARGET] - free), 0.0)
+            else:
+                ann, att = 1.0 / ROWS[i, K_N], 1.0 / ROWS[i, K_T]
+                slip = tangent_rate(A, B, ROWS, V, i) - beta0 * att - lam0 * ant
+                lam, beta = coulomb(
+                    free - ROWS[i, TARGET] - beta0 * ant, slip, ann, ant, att, ROWS[i, FRICTION], ROWS[i, UN],
+                    ROWS[i, UT], ROWS[i, TARGET],
+                )  # fmt: skip
+        dn, dt = lam - lam0, beta - beta0
+        if dn == 0.0 and dt == 0.0:
+            continue
+        L[i, 0], L[i, 1] = lam, beta
+        for w in range(C.AT[i], C.AT[i + 1]):
+            for c in range(3):
+                V[C.BODY[w], c] += dn * C.N[w, c] + dt * C.T[w, c]
+        worst = max(worst, abs(dn) / ROWS[i, K_N], abs(dt) / ROWS[i, K_T])
+    return worst
+
+
+@uncounted
+def relax_columns(
+    C: Columns, A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, m: int, tolerance: float,
+    most: int,
+) -> tuple[int, float]:  # fmt: skip
+    """Sweeps until one changes no contact's velocity by more than the tolerance; how many, and the last change."""
+    done, worst = 0, np.inf
+    while done < most and worst > tolerance:
+        worst = sweep_columns(C, A, B, ROWS, L, V, m)
+        done += 1
+    return done, worst

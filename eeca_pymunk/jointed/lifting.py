@@ -1,0 +1,108 @@
+"""Lifting the bodies of an island with joints out of each other, paid from what its contacts have just lost."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import kernel, uncounted
+from ..impacts.layout import Scene
+from ..impacts.spans import Local
+from ..joints.layout import STORED
+from ..rows.build import normal_rate
+from ..rows.layout import GAP, K_N
+from .columns import Columns, Groups, fill_free, fill_group, make_columns, weigh
+from .component import close_joints, find_places, gather_component, ready
+from .layout import Joints
+
+_SLOP = 1e-9  # overlap over the size of the bodies, that is left alone
+_SWEEPS = 40
+_MOST = 0.1  # of the size of a body, that a step may lift it
+
+
+@uncounted
+def raise_gaps(
+    C: Columns, P: IntArray, Q: IntArray, ROWS: FloatArray, GAPS: FloatArray, D: FloatArray, m: int, tolerance: float
+) -> None:
+    """Displacements D (k, 3) = Y mu, 0 <= mu _|_ g + G D >= 0, by sweeps."""
+    MU = np.zeros(m)
+    for _ in range(_SWEEPS):
+        worst = 0.0
+        for i in range(m):
+            if C.OUT[i] != 0:
+                continue
+            g = GAPS[i] + normal_rate(P, Q, ROWS, D, i)
+            mu = max(MU[i] - ROWS[i, K_N] * g, 0.0)
+            change = mu - MU[i]
+            MU[i] = mu
+            for w in range(C.AT[i], C.AT[i + 1]):
+                for c in range(3):
+                    D[C.BODY[w], c] += change * C.N[w, c]
+            worst = max(worst, abs(change) / ROWS[i, K_N])
+        if worst <= tolerance:
+            return
+
+
+@kernel
+def lift(
+    A: Scene, J: Joints, isle: Local, groups: Groups, P: IntArray, Q: IntArray, ROWS: FloatArray, m: int, n: int,
+    V: FloatArray, WAY: FloatArray, END: FloatArray, end: float, h: float, budget: float,
+) -> float:  # fmt: skip
+    """Lift the poses END of an island by at most what `budget` pays; the energy that it costs.
+
+    The cost is -m a.D for displacements D, and what springs hold more. Joints hold: D goes along them, and what is left
+    of second order is closed.
+    """
+    size = np.inf
+    for q in range(n):
+        size = min(size, isle.EXTENT[q])
+    GAPS, deepest = np.empty(m), 0.0
+    for i in range(m):
+        GAPS[i] = ROWS[i, GAP] + normal_rate(P, Q, ROWS, WAY, i)
+        deepest = min(deepest, GAPS[i])
+    if deepest >= -_SLOP * size or not budget > 0.0:
+        return 0.0
+    C = make_columns(groups, P, Q, m)
+    fill_free(groups, C, P, Q, ROWS, isle.IM, isle.II, m)
+    NOTHING, INDEX = np.zeros_like(V), np.full(len(isle.IM), -1, np.int64)
+    for g in range(len(groups.COMPONENT)):
+        s = groups.COMPONENT[g]
+        if s >= 0:
+            gather_component(A, J, s, END, V, NOTHING, isle.IM, isle.II, end, h)
+            places = find_places(A, J, s, INDEX)
+            if ready(J, s, 2.0, False):
+                fill_group(J, groups, C, g, INDEX, False, P, Q, ROWS, m, np.empty((places, 3)))
+    KEEP = ROWS[:m].copy()
+    weigh(groups, C, P, Q, KEEP, m)
+    D = np.zeros_like(V)
+    raise_gaps(C, P, Q, KEEP, GAPS, D, m, 1e-3 * -deepest)
+    cost, far = 0.0, 0.0
+    for q in range(n):
+        far = max(far, (math.sqrt(D[q, 0] ** 2 + D[q, 1] ** 2) + abs(D[q, 2]) * isle.EXTENT[q]) / isle.EXTENT[q])
+        cost -= (isle.ACC[q, 0] * D[q, 0] + isle.ACC[q, 1] * D[q, 1]) / isle.IM[q]
+    part = min(1.0, _MOST / far) if far > 0.0 else 0.0
+    if cost * part > 0.5 * budget:
+        part = 0.5 * budget / cost
+    for _ in range(4):
+        spent = 0.0
+        NEW = END.copy()
+        for q in range(n):
+            for c in range(3):
+                NEW[q, c] += part * D[q, c]
+        for g in range(len(groups.COMPONENT)):
+            s = groups.COMPONENT[g]
+            if s >= 0:
+                spent += close_joints(A, J, s, END, NEW, V, isle.IM, isle.II, end, h)
+        for q in range(n):
+            spent -= (isle.ACC[q, 0] * (NEW[q, 0] - END[q, 0]) + isle.ACC[q, 1] * (NEW[q, 1] - END[q, 1])) / isle.IM[q]
+        if spent <= budget:
+            for g in range(len(groups.COMPONENT)):
+                s = groups.COMPONENT[g]
+                if s >= 0:
+                    J.STEPPED[s, STORED] += close_joints(A, J, s, END, NEW, V, isle.IM, isle.II, end, h)
+            END[:] = NEW
+            return spent
+        part *= 0.25
+    return 0.0

@@ -1,0 +1,104 @@
+"""Contact laws of few contacts to round-off: sweeps find which act, a direct solution on these does the rest."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import kernel, uncounted
+from ..rows.build import normal_rate, tangent_rate
+from ..rows.dense import back, decompose, unknowns
+from ..rows.layout import SURFACE, TARGET, UN, UT
+from ..rows.polish import clamp, classify
+from .columns import Columns, push_columns, relax_columns
+
+FEW = 40  # contacts up to which this pays
+_FIRST, _AFTER = 12, 4  # sweeps before the first direct solution and after each
+_ROUNDS = 8
+_R = 1e10  # of a proximal term, for contacts that are redundant
+
+
+@uncounted
+def entries(C: Columns, j: int, tangent: bool, slip: float, D: FloatArray) -> None:
+    """D (k, 3): the change of velocities per tangential impulse of contact j, or per normal one with its slip."""
+    for q in range(len(D)):
+        for c in range(3):
+            D[q, c] = 0.0
+    for w in range(C.AT[j], C.AT[j + 1]):
+        for c in range(3):
+            D[C.BODY[w], c] = C.T[w, c] if tangent else C.N[w, c] + slip * C.T[w, c]
+
+
+@kernel
+def direct(
+    C: Columns, A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, m: int, shared: bool
+) -> None:
+    """Newton's step of the law on the contacts that act in L, which are kept in their cones; V follows."""
+    held, stuck = np.empty(m, np.int64), np.empty(m, np.int64)
+    slip, rest = np.empty(m), np.empty(m)
+    classify(A, B, ROWS, L, V, m, held, stuck, slip, rest)
+    at, kind = np.empty(2 * m, np.int64), np.empty(2 * m, np.int64)
+    push_columns(C, L, m, -1.0, V)
+    N = unknowns(ROWS, L, m, held, stuck, slip, shared, at, kind)
+    push_columns(C, L, m, 1.0, V)
+    W, D, order = np.empty((N, N)), np.empty_like(V), np.empty(N, np.int64)
+    for j in range(N):
+        entries(C, at[j], kind[j] == 1, slip[at[j]], D)
+        for i in range(N):
+            if kind[i] == 0:
+                W[i, j] = normal_rate(A, B, ROWS, D, at[i])
+            else:
+                W[i, j] = tangent_rate(A, B, ROWS, D, at[i]) - ROWS[at[i], SURFACE]
+        W[j, j] += abs(W[j, j]) / _R
+    decompose(W, N, order)
+    r, x = np.empty(N), np.empty(N)
+    for _ in range(2):
+        for k in range(N):
+            i = at[k]
+            if kind[k] == 0:
+                r[k] = ROWS[i, TARGET] - normal_rate(A, B, ROWS, V, i)
+            else:
+                if stuck[i] == 2 and L[i, 1] != 0.0:
+                    rest[i] = -ROWS[i, UT] - L[i, 0] * min(ROWS[i, UN] + ROWS[i, TARGET], 0.0) / L[i, 1]
+                r[k] = rest[i] - tangent_rate(A, B, ROWS, V, i)
+        back(W, N, order, r, x)
+        push_columns(C, L, m, -1.0, V)
+        for k in range(N):
+            i = at[k]
+            L[i, kind[k]] += x[k]
+            if kind[k] == 0 and stuck[i] == 0:
+                L[i, 1] = slip[i] * L[i, 0]
+        push_columns(C, L, m, 1.0, V)
+    push_columns(C, L, m, -1.0, V)
+    clamp(ROWS, L, m)
+    push_columns(C, L, m, 1.0, V)
+
+
+@kernel
+def solve_columns(
+    C: Columns, A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, m: int, tolerance: float,
+    most: int,
+) -> float:  # fmt: skip
+    """Impulses L and velocities V by sweeps, at most `most`, and for few contacts by direct solutions between them.
+
+    Returns the last sweep's largest change of a contact's velocity.
+    """
+    if m > FEW:
+        return relax_columns(C, A, B, ROWS, L, V, m, tolerance, most)[1]
+    worst = relax_columns(C, A, B, ROWS, L, V, m, tolerance, _FIRST)[1]
+    best, L0, V0 = worst, L.copy(), V.copy()
+    for turn in range(_ROUNDS):
+        if worst <= tolerance:
+            return worst
+        direct(C, A, B, ROWS, L, V, m, turn % 2 == 1)
+        worst = relax_columns(C, A, B, ROWS, L, V, m, tolerance, _AFTER)[1]
+        if worst < best:
+            best = worst
+            L0[:], V0[:] = L, V
+        elif not worst < 100.0 * best:
+            L[:], V[:] = L0, V0
+            break
+    if worst > tolerance:
+        L[:], V[:] = L0, V0
+        worst = relax_columns(C, A, B, ROWS, L, V, m, tolerance, most)[1]
+    return worst

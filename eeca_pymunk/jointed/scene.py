@@ -1,0 +1,107 @@
+"""The event loop of a world with joints: the arrays of both."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
+from ..impacts.layout import NEXT_TIED, TIED
+from ..impacts.scene import EventLoop
+from ..impacts.step import ROOM_FOR_LISTS
+from ..joints.layout import JOINT_COLUMNS, TIE_COLUMNS
+from ..joints.plan import make_plan
+from ..joints.scratch import (
+    BAND,
+    BODY_0,
+    BODY_1,
+    HINGE_COLUMNS,
+    JOINT_0,
+    JOINT_1,
+    LINK_COLUMNS,
+    LOCAL_COLUMNS,
+    M_BODY,
+    M_FREEDOMS,
+    MEMBER_COLUMNS,
+    NODE_COLUMNS,
+    ROWS_OF,
+    SPAN_COLUMNS,
+    UNKNOWNS,
+)
+from ..layout import NOW as READ
+from ..pairs.layout import MARGIN
+from ..transfer import FORCES
+from .layout import COMPONENTS, ORDER, STEPPED_COLUMNS, TALLY_LENGTH, Joints
+from .loop import resume_jointed, step_jointed
+from .together import resume_together_jointed, step_together_jointed
+
+
+class JointedLoop(EventLoop):
+    """Steps the packed bodies, shapes and joints of a world.
+
+    Args:
+        BODY, SHAPE, LINK, VERTEX, disks, limit: as `EventLoop`.
+        joint, tie: (j, ...) the joints, see `..joints.layout`; kept, not copied. Bodies are rows of BODY, or len(BODY)
+            + row of PARTNER (x, BODY_COLUMNS), which joints cannot move.
+        together: whether all contacts of a step act together at its middle, rather than at their instants.
+        order: 4 where nothing in a component dissipates, drives, or touches something; or 2.
+    """
+
+    def __init__(
+        self, BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, disks: int, limit: int,
+        joint: FloatArray, tie: IntArray, PARTNER: FloatArray, together: bool = False, order: int = 4,
+    ) -> None:  # fmt: skip
+        super().__init__(BODY, SHAPE, LINK, VERTEX, disks, limit)
+        self._joint, self._tie, self._partner, self._order = joint, tie, PARTNER, order
+        self._together = together
+        self._usual: FloatArray = self.near.MARK[:, MARGIN].copy()
+        self.plan()
+
+    def plan(self) -> None:
+        """Find the components anew: after changes of joints' kinds, bodies, anchors off centre, or of mobilities."""
+        joint, tie, n = self._joint, self._tie, len(self.scene.BODY)
+        count = len(tie)
+        span, member = np.zeros((count, SPAN_COLUMNS), np.int64), np.zeros((2 * count, MEMBER_COLUMNS), np.int64)
+        link = np.zeros((count, LINK_COLUMNS), np.int64)
+        bodies = np.concatenate((self.scene.BODY, self._partner))
+        components = make_plan(bodies, joint, tie, span, member, link)
+        used = span[:components]
+        most_bodies = int((used[:, BODY_1] - used[:, BODY_0]).max(initial=1))
+        most_joints = int((used[:, JOINT_1] - used[:, JOINT_0]).max(initial=1))
+        size = int(used[:, UNKNOWNS].max(initial=1))
+        tally = np.zeros(TALLY_LENGTH, np.int64)
+        tally[COMPONENTS], tally[ORDER] = components, self._order
+        of = np.full(n, -1, np.int64)
+        ring = self.scene.MEMBER
+        ring[:, TIED : NEXT_TIED + 1] = -1
+        for s in range(components):
+            rows = member[span[s, BODY_0] : span[s, BODY_1]]
+            moved = np.sort(rows[rows[:, M_FREEDOMS] > 0, M_BODY])
+            of[moved] = s
+            ring[moved, TIED], ring[moved, NEXT_TIED] = moved[0], np.roll(moved, -1)
+        self.joints = Joints(
+            joint, tie, self._partner, span, member, link, np.zeros((most_joints, HINGE_COLUMNS)),
+            np.zeros((most_bodies, LOCAL_COLUMNS)), np.zeros((most_bodies, NODE_COLUMNS), np.int64),
+            np.zeros(int((used[:, UNKNOWNS] * (3 * used[:, BAND] + 1)).max(initial=1))),
+            np.zeros(int((2 * used[:, UNKNOWNS] + used[:, ROWS_OF]).max(initial=1))), np.zeros(size),
+            np.zeros((6, 6)), np.zeros(5), np.zeros(8), np.zeros(size, np.int64), of, np.zeros((count, JOINT_COLUMNS)),
+            np.zeros((count, TIE_COLUMNS), np.int64), np.zeros((max(components, 1), STEPPED_COLUMNS)), tally,
+        )  # fmt: skip
+
+    def step(
+        self, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
+        left: float,
+    ) -> int:  # fmt: skip
+        """See `loop.step_jointed`; a negative answer is one of `..transfer`."""
+        disks, lossy, usual = self.disks, self.lossy, self._usual
+        if self._together:
+            status = step_together_jointed(self.scene, self.joints, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, usual)
+        else:
+            status = step_jointed(self.scene, self.joints, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, disks, lossy)
+        while status <= ROOM_FOR_LISTS:
+            self._grow(status)
+            bits = FORCES if STATES[READ, :, 6:].any() else 0
+            if self._together:
+                status = resume_together_jointed(self.scene, self.joints, STATES, WALK, EXTRA, ENDS, usual, bits)
+            else:
+                status = resume_jointed(self.scene, self.joints, STATES, WALK, EXTRA, ENDS, disks, lossy, bits)
+        return status

@@ -1,0 +1,99 @@
+"""A step whose contacts act together at its middle, in a scene with joints.
+
+As `..impacts.together`, without the further passes for bodies that impulses send into others.
+"""
+
+from __future__ import annotations
+
+import math
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import kernel
+from ..impacts.islands import unite
+from ..impacts.layout import (
+    DONE,
+    DT,
+    GRAVITY_X,
+    GRAVITY_Y,
+    ISLAND,
+    JOINTED,
+    LEFT_OVER,
+    LOGGED,
+    NOW,
+    PUSHES,
+    SPEED,
+    TIED,
+    TOGETHER,
+    UNMET,
+    Scene,
+)
+from ..impacts.spans import solve
+from ..impacts.step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, begin, close
+from ..impacts.together import anew, join_all
+from ..joints.layout import ELASTIC
+from ..layout import EXTENT, SPIN, VX, VY
+from ..transfer import EVENTS as SOME
+from ..transfer import give, take
+from .layout import COMPONENTS, REPEATS, WORST, Joints
+from .loop import feel
+from .solve import begin_span
+from .strike import book_component
+
+
+@kernel
+def resume_together_jointed(
+    A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, USUAL: FloatArray,
+    status: int,
+) -> int:  # fmt: skip
+    """The rest of a step, whose bits so far are `status`; from its start, if it has been broken off for more room."""
+    COUNT, BODY = A.COUNT, A.BODY
+    n = BODY.shape[0] - 1
+    A.RESTING[n, SPEED] = 0.0
+    for i in range(n):
+        A.RESTING[i, SPEED] = math.hypot(BODY[i, VX], BODY[i, VY]) + abs(BODY[i, SPIN]) * BODY[i, EXTENT]
+    anew(A)
+    if not join_all(A, USUAL):
+        return ROOM_FOR_LISTS
+    for i in range(n):
+        if A.MEMBER[i, TIED] >= 0:
+            unite(A, i, A.MEMBER[i, TIED])
+    # A solve may make another body the root of its island, which then would be solved again.
+    roots = 0
+    for i in range(n):
+        if A.STATE[i, ISLAND] == i:
+            A.BLOCK[roots] = i
+            roots += 1
+    for q in range(roots):
+        root = A.BLOCK[q]
+        jointed = A.MEMBER[root, JOINTED] > 0
+        if (begin_span(A, J, root, 0.0, A.PAR[DT]) if jointed else solve(A, root, 0.0)) != DONE:
+            return ROOM_FOR_CONTACTS
+    if COUNT[PUSHES] > A.LOG.shape[0]:
+        return ROOM_FOR_EVENTS
+    for s in range(J.TALLY[COMPONENTS]):
+        book_component(A, J, s)
+    if J.TALLY[WORST] >= ELASTIC:
+        COUNT[UNMET] += 1
+    close(A, WALK)
+    if COUNT[LOGGED] > 0:
+        status |= SOME
+    return give(STATES, WALK, EXTRA, BODY, ENDS, A.PAR[DT], A.PAR[LEFT_OVER], status)
+
+
+@kernel
+def step_together_jointed(
+    A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float,
+    gy: float, left: float, USUAL: FloatArray,
+) -> int:  # fmt: skip
+    """From the states that were read to those that are to be written: arguments and answer as
+    `..impacts.together.step_together`."""
+    feel(A, J, STATES, WALK)
+    status = take(STATES, WALK, EXTRA, A.BODY, gx, gy, left)
+    if status < 0:
+        return status
+    A.PAR[DT], A.PAR[GRAVITY_X], A.PAR[GRAVITY_Y], A.PAR[LEFT_OVER] = dt, gx, gy, left
+    A.COUNT[TOGETHER], A.PAR[NOW] = 1, 0.0
+    begin(A, WALK)
+    J.TALLY[WORST] = J.TALLY[REPEATS] = 0
+    J.STEPPED[:] = 0.0
+    return resume_together_jointed(A, J, STATES, WALK, EXTRA, ENDS, USUAL, status)
