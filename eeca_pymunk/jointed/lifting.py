@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel, uncounted
+from ..compiled import kernel
 from ..impacts.layout import Scene
 from ..impacts.spans import Local
 from ..joints.layout import STORED
@@ -22,7 +22,7 @@ _SWEEPS = 40
 _MOST = 0.1  # of the size of a body, that a step may lift it
 
 
-@uncounted
+@kernel
 def raise_gaps(
     C: Columns, P: IntArray, Q: IntArray, ROWS: FloatArray, GAPS: FloatArray, D: FloatArray, m: int, tolerance: float
 ) -> None:
