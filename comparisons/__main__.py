@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import inspect
 import math
 import sys
 from collections.abc import Callable
@@ -15,6 +16,7 @@ from . import film
 from .output import Output
 
 NAMES = (
+    "tour",
     "signorini",
     "carom",
     "cradle",
@@ -27,16 +29,20 @@ NAMES = (
     "soak",
     "pymunk_examples",
     "hard_cases",
+    "maxwell",
+    "engines",
+    "films",
     "gallery",
 )
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Run the command line; the exit status."""
+def command_line() -> argparse.ArgumentParser:
+    """What the command line takes."""
     parser = argparse.ArgumentParser(prog="python -m comparisons", description="Run a comparison of time steppers.")
     parser.add_argument("name", nargs="?", help="the comparison; none lists them")
     parser.add_argument("--out", type=Path, default=Path("out"), help="folder for CSV and PNG (default: out)")
     parser.add_argument("--full", action="store_true", help="also the runs that take minutes each")
+    parser.add_argument("--workers", type=int, help="processes, for comparisons that run many cases (default: 1)")
     shown = parser.add_argument_group("the comparison's scene side by side, instead of the whole comparison")
     shown.add_argument("--animate", choices=film.FORMATS, help="write a film in this format")
     shown.add_argument("--steppers", help=f"from {','.join(film.STEPPERS)}; a film shows up to four")
@@ -44,7 +50,12 @@ def main(arguments: list[str] | None = None) -> int:
     shown.add_argument("--duration", type=float, help="simulated time (s)")
     shown.add_argument("--frames", type=int, default=48, help="of the film, about (default: 48)")
     shown.add_argument("--fps", type=float, default=20.0, help="frames per second (default: 20)")
-    options = parser.parse_args(arguments)
+    return parser
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the command line; the exit status."""
+    options = command_line().parse_args(arguments)
     if options.name is None:
         for name in NAMES:
             title = (import_module(f".{name}", __package__).__doc__ or "").splitlines()[0]
@@ -58,18 +69,30 @@ def main(arguments: list[str] | None = None) -> int:
             return 0
         if options.name not in NAMES:
             raise ValueError(f"unknown comparison {options.name!r}: choose one of {', '.join(NAMES)}")
+        run, extra = chosen(options)
         output = Output(options.name, options.out)
     except (ValueError, OSError) as error:
         print(f"python -m comparisons: {error}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         return _interrupted()
-    run: Callable[[Output, bool], None] = import_module(f".{options.name}", __package__).run
     try:
-        run(output, options.full)
+        run(output, options.full, **extra)
     except KeyboardInterrupt:
         return _interrupted()
     return 0
+
+
+def chosen(options: argparse.Namespace) -> tuple[Callable[..., None], dict[str, int]]:
+    """What runs the comparison, `run(output, full)`, and what it takes besides."""
+    run: Callable[..., None] = import_module(f".{options.name}", __package__).run
+    if options.workers is None:
+        return run, {}
+    if options.workers < 1:
+        raise ValueError(f"--workers {options.workers}: give a number >= 1")
+    if "workers" not in inspect.signature(run).parameters:
+        raise ValueError(f"{options.name} measures times or runs few cases: leave --workers out")
+    return run, {"workers": options.workers}
 
 
 def _film(options: argparse.Namespace) -> None:

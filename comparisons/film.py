@@ -9,7 +9,7 @@ import numpy as np
 
 import eeca_pymunk as ep
 import scenes
-from comparisons import runs
+from comparisons import jointed, runs
 from comparisons.output import Output, Row
 from eeca_pymunk import render
 from eeca_pymunk.errors import NotFiniteError
@@ -41,12 +41,21 @@ class Film:
     duration: float | None = None
     view: View | None = None
     arrow: str | None = None
+    dt: float | None = None
+    frames: int = 48
+    dpi: float = 76
 
 
 FILMS = {
     "carom": Film(("eeca", "native", "trapezoidal", "max_dissipation"), 1.5),
     "pool_break": Film(duration=0.1, view=(-0.6, 0.6, -0.3, 0.9), arrow="momentum"),
-    "hopper": Film(view=(-0.7, 0.7, -0.15, 1.1)),
+    "hopper": Film(view=(-0.7, 0.7, -0.15, 1.1), dt=0.001),
+    "pile": Film(duration=3.0, view=(-0.5, 9.5, -0.3, 11.0), frames=36, dpi=68),
+    "drum": Film(duration=3.0, frames=40, dpi=66),
+    "billiard": Film(duration=1.0, view=(-0.05, 2.6, -0.05, 1.32)),
+    "cradle": Film(duration=0.3, view=(-0.25, 0.4, -0.15, 0.15), dt=0.001, frames=40),
+    "double_pendulum": Film(duration=6.0, view=(-2.1, 2.1, -0.1, 3.2)),
+    "chain": Film(duration=3.0, view=(-3.1, 3.1, -0.6, 3.4)),
 }
 
 
@@ -72,7 +81,7 @@ def run(
     """Run the scene under each stepper; print the table, write CSV, PNG and, with a suffix, the film."""
     settings = FILMS.get(output.name, Film())
     scene = scenes.build(output.name)
-    dt = scene.dt if dt is None else dt
+    dt = (settings.dt or scene.dt) if dt is None else dt
     duration = (settings.duration or scene.duration) if duration is None else duration
     # More moments than frames: paths are drawn through all of them.
     every = max(1, step_count(duration, dt) // (_MOMENTS * frames))
@@ -85,11 +94,7 @@ def run(
         scene = scenes.build(output.name)
         try:
             begun = time.perf_counter()
-            recordings.append(
-                ep.record(
-                    runs.steppers(scene.stiffness)[STEPPERS[name][1]](scene.space), duration, dt, every, progress=True
-                )
-            )
+            recordings.append(ep.record(stepper(name, scene), duration, dt, every, progress=True))
             times_taken.append((time.perf_counter() - begun) / step_count(duration, dt))
         except NotFiniteError as error:
             raise ValueError(
@@ -107,9 +112,15 @@ def run(
         begun = time.perf_counter()
         render.animate(
             recordings, path, fps, titles=titles, exact=scene.exact, view=settings.view, frames=frames,
-            arrow=settings.arrow, dpi=76, progress=True,
+            arrow=settings.arrow, dpi=settings.dpi, progress=True,
         )  # fmt: skip
         print(f"-> {path} ({frames} frames of {len(recordings)} panels in {time.perf_counter() - begun:.1f} s)")
+
+
+def stepper(name: str, scene: Scene) -> ep.Stepper:
+    """A stepper for a scene, by its name on the command line."""
+    make = jointed.eeca if name == "eeca" else runs.steppers(scene.stiffness)[STEPPERS[name][1]]
+    return make(scene.space)
 
 
 def _row(title: str, recording: ep.Recording, scene: Scene) -> Row:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Mapping, Sequence
+from csv import DictWriter
 from datetime import date
 from pathlib import Path
 
@@ -43,9 +43,13 @@ class Output:
             print("  ".join(padded).rstrip())
             if number == 0:
                 print("  ".join("-" * w for w in width))
+        self.csv(rows, file)
+
+    def csv(self, rows: Sequence[Row], file: str = "") -> None:
+        """Write the rows to NAME[_file].csv."""
         path = self.path("csv", file)
         with whole_file(path) as partial, partial.open("w", newline="") as stream:
-            writer = csv.DictWriter(stream, columns)
+            writer = DictWriter(stream, list(rows[0]))
             writer.writeheader()
             writer.writerows(rows)
         print(f"-> {path}")

@@ -14,7 +14,7 @@ from tqdm import tqdm
 
 import eeca_pymunk as ep
 import scenes
-from comparisons import runs
+from comparisons import pool, runs
 from comparisons.exact import Gas
 from comparisons.output import Output, Row
 from comparisons.runs import Make
@@ -122,8 +122,8 @@ def _penalty(stiffness: float, space: pymunk.Space) -> ep.Stepper:
     return ep.PenaltyEnergyMomentum(space, stiffness, sync=False)
 
 
-def run(output: Output, full: bool) -> None:
-    """Print the tables; write CSV and a picture for each problem."""
+def run(output: Output, full: bool, workers: int = 1) -> None:
+    """Print the tables; write CSV and a picture for each problem. Runs that are timed go one after the other."""
     output.parameters({"dt": STEPS, "problems": [p.name for p in problems()], "seeds": SEEDS})
     points: dict[str, list[Point]] = {p.name: [] for p in problems()}
     for problem, name, make, dt in tqdm(list(jobs(full)), desc="work_precision", unit="run", disable=None):
@@ -141,7 +141,9 @@ def run(output: Output, full: bool) -> None:
         [summary(problem, found) for problem, found in points.items()],
         "summary",
     )
-    output.table(f"Gas, 20 disks, r = .03, T = .4, {SEEDS} seeds: error of positions against the exact end", seeds())
+    output.table(
+        f"Gas, 20 disks, r = .03, T = .4, {SEEDS} seeds: error of positions against the exact end", seeds(workers)
+    )
     for title, found in points.items():
         output.picture(_picture(title, found), title.replace(", ", "_").replace(" ", "_").replace("=", ""))
 
@@ -164,26 +166,31 @@ def summary(problem: str, points: list[Point]) -> Row:
     }
 
 
-def seeds() -> list[Row]:
-    """Twenty starts of the gas at large steps."""
-    rows: list[Row] = []
-    makes = {
+def _seed_steppers() -> dict[str, Make]:
+    return {
         EECA: runs.eeca(ep.TimeOfImpact()), "EECA Midstep": runs.eeca(ep.Midstep()),
         "native default": runs.native(), "native tuned 50": runs.native(50),
     }  # fmt: skip
-    starts = [gas(20, 0.03, 0.4, seed) for seed in range(SEEDS)]
-    for dt in TABLE_STEPS:
-        for name, make in makes.items():
-            errors, drifts = [], []
-            for seed, start in enumerate(starts):
-                scene = replace(scenes.build("gas", count=20, radius=0.03, seed=seed), exact=start.exact)
-                result = runs.run(scene, make, dt=dt, duration=0.4, label=name)
-                errors.append(result.error)
-                drifts.append(result.energy_drift)
-            rows.append({
-                "stepper": name, "dt (s)": dt, "largest error (m)": max(errors),
-                "median error (m)": float(np.median(errors)), "max |dE/E|": max(drifts),
-            })  # fmt: skip
+
+
+def one_seed(case: tuple[str, float, int]) -> tuple[float, float]:
+    """Error and drift of a stepper, at a dt, from a start of the gas."""
+    name, dt, seed = case
+    result = runs.run(gas(20, 0.03, 0.4, seed), _seed_steppers()[name], dt=dt, duration=0.4, label=name)
+    return result.error, result.energy_drift
+
+
+def seeds(workers: int = 1) -> list[Row]:
+    """Twenty starts of the gas at large steps."""
+    kinds = [(name, dt) for dt in TABLE_STEPS for name in _seed_steppers()]
+    found = pool.over(one_seed, [(*kind, seed) for kind in kinds for seed in range(SEEDS)], workers)
+    rows: list[Row] = []
+    for i, (name, dt) in enumerate(kinds):
+        errors, drifts = zip(*found[i * SEEDS : (i + 1) * SEEDS], strict=True)
+        rows.append({
+            "stepper": name, "dt (s)": dt, "largest error (m)": max(errors),
+            "median error (m)": float(np.median(errors)), "max |dE/E|": max(drifts),
+        })  # fmt: skip
     return rows
 
 

@@ -20,6 +20,7 @@ from .recording import Recording, record
 from .report import Contacts, StepReport
 from .space.measure import measure
 from .stepper import Stepper
+from .sweep import SweepError, sweep
 from .warming import warmup
 
 __all__ = [
@@ -37,11 +38,13 @@ __all__ = [
     "Recording",
     "StepReport",
     "Stepper",
+    "SweepError",
     "TimeOfImpact",
     "UnsupportedFeature",
     "measure",
     "record",
     "render",
+    "sweep",
     "warmup",
 ]
 

@@ -8,6 +8,7 @@ from typing import Any
 from . import (
     ball,
     balls_and_lines,
+    billiard,
     breakout,
     carom,
     colours,
@@ -15,7 +16,10 @@ from . import (
     drum,
     gas,
     hopper,
+    linked,
     mixed,
+    pendulum,
+    pile,
     pool_break,
     pyramid,
     signorini,
@@ -38,6 +42,11 @@ _BUILDERS: dict[str, Callable[..., Scene]] = {
     "drum": drum.build,
     "slope": slope.build,
     "pyramid": pyramid.build,
+    "pile": pile.build,
+    "billiard": billiard.build,
+    "pendulum": pendulum.build,
+    "double_pendulum": linked.double_pendulum,
+    "chain": linked.chain,
 }
 NAMES = tuple(_BUILDERS)
 

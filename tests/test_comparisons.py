@@ -11,12 +11,26 @@ from pathlib import Path
 import numpy as np
 import pymunk
 import pytest
+from tqdm import tqdm
 
 import eeca_pymunk as ep
 import scenes
-from comparisons import detection, gallery, pile_precision, piles, runs, scaling, soak, work_precision
+from comparisons import (
+    detection,
+    gallery,
+    jointed,
+    maxwell,
+    pile_precision,
+    piles,
+    runs,
+    scaling,
+    soak,
+    tour,
+    work_precision,
+)
 from comparisons.__main__ import NAMES, main
 from comparisons.hopper import crossed, deepest_overlap
+from scenes import linkages, pendulum
 
 
 def test_no_name_lists_all(capsys: pytest.CaptureFixture[str]) -> None:
@@ -27,7 +41,7 @@ def test_no_name_lists_all(capsys: pytest.CaptureFixture[str]) -> None:
 
 def test_unknown_comparison(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["nonsense", "--out", str(tmp_path / "new")]) == 2
-    assert "unknown comparison 'nonsense': choose one of signorini" in capsys.readouterr().err
+    assert "unknown comparison 'nonsense': choose one of tour" in capsys.readouterr().err
     assert not (tmp_path / "new").exists()
 
 
@@ -70,7 +84,7 @@ def test_scenes_start_without_overlap_and_on_their_exact_solution(name: str) -> 
     position = np.array([b.position for b in scene.bodies])
     if exact is not None:
         np.testing.assert_allclose(position, exact, atol=1e-15)
-    report = ep.EECA(scene.space).step(1e-9)
+    report = jointed.eeca(scene.space).step(1e-9)
     assert len(report.contacts) == 0 or report.contacts.gap.min() > -1e-12
     assert scene.dt > 0
     assert scene.duration > scene.dt
@@ -144,6 +158,81 @@ def test_scaling_tells_ratios_of_one_interleaved_run() -> None:
         [{"N": n, "dt (s)": dt, "stepper": "x", "us/step": n**1.5} for n in (100, 1000, 4000, 16_000) for dt in (1e-3,)]
     )
     assert [row["slope"] for row in slopes] == pytest.approx([1.5])
+
+
+def test_workers_are_refused_where_times_are_measured(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["scaling", "--workers", "2", "--out", str(tmp_path)]) == 2
+    assert "scaling measures times or runs few cases: leave --workers out" in capsys.readouterr().err
+    assert main(["maxwell", "--workers", "0", "--out", str(tmp_path)]) == 2
+    assert "--workers 0: give a number >= 1" in capsys.readouterr().err
+
+
+def test_speeds_of_gases_become_those_of_a_shared_energy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(maxwell, "STEPPERS", {"EECA": maxwell.STEPPERS["EECA"]})
+    monkeypatch.setattr(maxwell, "SEEDS", 30)
+    assert main(["maxwell", "--workers", "2", "--out", str(tmp_path)]) == 0
+    with (tmp_path / "maxwell.csv").open() as stream:
+        (row,) = csv.DictReader(stream)
+    assert float(row["max |dE/E|"]) < 1e-13
+    # 600 speeds: one in a thousand sets drawn by chance is farther away than .08; the start is by .63.
+    assert float(row["distance to finite"]) < 0.08
+    assert maxwell.distance(np.ones(600), maxwell.finite(np.ones(600))) > 0.6
+    assert (tmp_path / "maxwell.png").exists()
+    # Two disks share their energy evenly between no and all of it: v² is uniform.
+    v = np.linspace(0.0, 2.0**0.5, 9)
+    np.testing.assert_allclose(maxwell.finite(v, 2), v**2 / 2.0, atol=1e-15)
+    np.testing.assert_allclose(maxwell.finite(v, 10**7), maxwell.maxwell(v), atol=1e-6)
+
+
+def test_tour_finds_how_much_smaller_errors_are_in_equal_time() -> None:
+    # Little time for each curve: not what it takes, but what comes out is tested.
+    bar = tqdm(disable=True)
+    for problem in tour.problems():
+        points = [tour.measure(problem, name, problem.dt / 4) for name in tour.STEPPERS]
+        ours, native, tuned = points
+        assert ours.energy < 1e-11
+        assert ours.error < (1e-2 if problem.name == "pendulum" else 1e-9)
+        assert min(native.error, tuned.error) > 10 * ours.error
+    made = {problem.name: tour.curve(problem, "pymunk", bar) for problem in tour.problems()[3:]}
+    assert all(points[-1].error < 0.1 * points[0].error for points in made.values())
+
+
+def test_tour_says_where_pymunk_is_better(tmp_path: Path) -> None:
+    def point(stepper: str, error: float, wall: float) -> tour.Point:
+        return tour.Point(stepper, 0.1, error, 0.0, wall)
+
+    better = [point("EECA", 1e-3, 0.02), point("EECA", 1e-4, 0.04), point("pymunk", 1e-2, 0.005)]
+    worse = [point("EECA", 1e-3, 0.02), point("pymunk", 1e-5, 0.01), point("pymunk tuned", 1e-6, 0.03)]
+    found = {"stack": better, "slope": worse}
+    cheap = tour.summary("gas", [point("EECA", 1e-3, 0.001), point("pymunk", 1e-1, 0.01)])
+    assert cheap["x smaller error"] == pytest.approx(100.0)  # where pymunk has no run as short, its shortest counts
+    shown = [tour.summary(name, points) for name, points in found.items()]
+    assert [row["x smaller error"] for row in shown] == pytest.approx([10.0, 0.01])
+    told = "\n".join(tour.closing(shown, 8.0))
+    assert "as good or better: slope." in told
+    assert "stack 4, slope 2" in told
+    assert "Next: python -m comparisons" in told
+    picture = tmp_path / "tour.png"
+    ep.render.save_picture(tour.picture(found, shown), picture)
+    assert picture.exists()
+
+
+def test_pendulums_swing_as_the_digits_say() -> None:
+    scene = pendulum.build()
+    for t, place in linkages.PENDULUM_AT.items():
+        np.testing.assert_allclose(scene.exact(t), [place], atol=1e-13)
+    assert pendulum.period(np.pi / 2, 1.0) == pytest.approx(linkages.PENDULUM_PERIOD, rel=1e-13)
+    # Small swings are harmonic.
+    assert pendulum.swing(1e-4, 2.0, 0.7) == pytest.approx(1e-4 * np.cos(0.7 * (9.81 / 2.0) ** 0.5), rel=1e-8)
+    # One ball swings while the other hangs; after a period all is as at the start.
+    cradle, whole = pendulum.cradle(), pendulum.period(np.pi / 6, 1.0)
+    at = [cradle.exact(t) for t in (0.0, 0.5 * whole, whole)]
+    assert at[0] is not None
+    assert at[1] is not None
+    np.testing.assert_allclose(at[1], at[0][::-1] * (-1.0, 1.0), atol=1e-13)
+    np.testing.assert_allclose(at[2], at[0], atol=1e-13)
+    with pytest.raises(ValueError, match="degrees = 180"):
+        pendulum.build(degrees=180)
 
 
 def test_detection_finds_what_pymunk_finds() -> None:

@@ -31,9 +31,9 @@ FLOORS = (
     "stepper",
     "packed_stepper",
     "eeca baselines",
-    "recording warming",
+    "recording warming sweep",
     "render",
-    "__init__",
+    "__init__ __main__",
 )
 FLOOR = {room: number for number, line in enumerate(FLOORS) for room in line.split()}
 PYMUNK = {"space", "baselines/native"}

@@ -1,6 +1,9 @@
-"""Bodies held by joints in the event loop: their islands, contacts among them, and impacts on them.
+"""Jointed: bodies held by joints in the event loop: their islands, contacts among them, and impacts on them.
 
-`layout` arrays of the joints; `component` steps what hangs together by joints and finds how it answers impulses;
-`columns` solves contact laws with these answers in the place of masses; `solve` the span of an island, `strike` an
-impact at one instant, `loop` the step, `scene` its arrays. A scene without joints knows nothing of this room.
+In: the arrays of a scene (`..impacts`) and of its joints (`..joints`). Out: the same at the end of a step.
+
+Open first `loop.py`, the step; then `solve.py`, the span of an island, and `strike.py`, an impact at one instant.
+`component.py` steps what hangs together by joints and finds how it answers impulses; `columns.py` and `newton.py` solve
+contact laws with these answers in the place of masses; `lifting.py` lifts overlaps. `layout.py` names the arrays,
+`scene.py` owns them. A scene without joints knows nothing of this room.
 """

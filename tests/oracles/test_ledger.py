@@ -11,7 +11,7 @@ import pytest
 from comparisons.hard_cases import Case, crowds, guards, impacts
 from comparisons.hard_cases.case import DT, G, heavy, matter
 from comparisons.hard_cases.moving import drum
-from scenes.scene import add_box, add_disk
+from scenes.scene import add_box, add_disk, add_walls
 
 from .audit import Audit
 from .running import check, of
@@ -61,6 +61,20 @@ def test_work_of_a_drum_is_its_spin_times_the_angular_momentum_that_it_gives() -
         stepper.step(DT)
     assert stepper.total["external"] == pytest.approx(whirl() - start, rel=1e-9)
     assert abs(whirl() - start) > 1e-3
+
+
+def test_friction_of_a_box_that_is_hit_while_it_slides_is_booked() -> None:
+    space = heavy()
+    add_walls(space, [((-9.0, 0.0), (9.0, 0.0))])
+    box = add_box(space, (-2.0, 0.5), 1.0, 1.0, velocity=(4.0, 0.0))
+    add_disk(space, (-1.0, 2.0), 0.3, 0.2)
+    matter(space, 0.3, 0.5)
+    stepper, hits = Audit(space), 0
+    for _ in range(60):
+        hits += stepper.step(1 / 30).lock == 1.0 and box.velocity.x > 0.1
+    assert hits > 10
+    assert stepper.total["friction"] > 1.0
+    assert stepper.residual <= 1e-12
 
 
 def test_damping_is_booked() -> None:

@@ -41,6 +41,17 @@ def test_box_sticks_on_a_slope(unit: float) -> None:
 
 
 @pytest.mark.parametrize("unit", UNITS)
+def test_a_box_that_comes_down_slowly_stands_on_its_floor_at_the_end_of_the_step(unit: float) -> None:
+    h, gap, speed = 1 / 60, 1e-3 * unit, 0.05 * unit  # it would be 1 mm deep without the floor
+    pile = on_plane(
+        0.0, 0.0, Thing(box(unit, unit), (0.0, 0.5 * unit + gap, 0.0), (0.0, -speed, 0.0)), unit**2 / 6, unit
+    )
+    pile.step(h)
+    assert pile.pose[0, 1] == pytest.approx(0.5 * unit, abs=1e-14 * unit)
+    assert pile.v[0, 1] == pytest.approx(speed - 2.0 * gap / h, rel=1e-11)
+
+
+@pytest.mark.parametrize("unit", UNITS)
 @pytest.mark.parametrize("h", [1 / 30, 1 / 1000])
 def test_box_slides_on_a_steeper_one(unit: float, h: float) -> None:
     """s = (1/2) g (sin - mu cos) t^2."""

@@ -1,0 +1,159 @@
+"""sweep: one function over many cases, in this process or on any executor, without losing what is done."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import (
+    FIRST_COMPLETED,
+    BrokenExecutor,
+    CancelledError,
+    Executor,
+    Future,
+    ProcessPoolExecutor,
+    wait,
+)
+from typing import Any, Generic, TypeVar
+
+from tqdm import tqdm
+
+Case = TypeVar("Case")
+Result = TypeVar("Result")
+_SHOWN = 3  # failed cases that a message names
+_LONGEST = 80  # characters of a case in a message
+_AHEAD = 2  # cases handed out for each worker of a pool that may break: those in doubt if it does
+
+
+class SweepError(RuntimeError):
+    """Some cases have no result; those of all others are here.
+
+    Attributes:
+        results: in the order of the cases, None where there is none.
+        failed: what each case without a result raised, by its place among the cases.
+    """
+
+    def __init__(self, cases: Sequence[Any], results: list[Any], failed: dict[int, BaseException]) -> None:
+        self.results, self.failed = results, failed
+        named = [f"case {i} ({_short(cases[i])}): {_reason(failed[i])}" for i in sorted(failed)[:_SHOWN]]
+        rest = f"; and {len(failed) - _SHOWN} more" if len(failed) > _SHOWN else ""
+        done = len(cases) - len(failed)
+        super().__init__(f"{'; '.join(named)}{rest}. {done} of {len(cases)} cases are done: see .results and .failed")
+
+
+def sweep(
+    function: Callable[[Case], Result], cases: Iterable[Case], executor: Executor | None = None, progress: bool = False
+) -> list[Result]:
+    """`[function(case) for case in cases]`, in order; on the workers of an executor if one is given.
+
+    Results do not depend on where they are computed: a case that builds its own space gives the same bits in this
+    process, in a pool of processes or on a cluster of machines of one kind.
+
+    Args:
+        function: takes a case, gives its result. For processes and clusters: a function of a module.
+        cases: what it is called with.
+        executor: any `concurrent.futures.Executor`: `ProcessPoolExecutor(4)`, dask's `Client(...).get_executor()`,
+            `mpi4py.futures.MPIPoolExecutor()`. Call `warmup()` before, or each worker compiles the kernels.
+        progress: show a progress bar.
+
+    A case that raises does not stop the others; `SweepError` then names it and holds all results. A case whose worker
+    process dies is tried once more, on its own in a new process: if that dies too, the case has failed. The rest goes
+    on, in a new pool of as many processes. Executors of other kinds see to that themselves, as dask does; if one
+    breaks, the cases it has not done are named.
+    """
+    held = list(cases)
+    work = _Work(function, held, tqdm(total=len(held), desc="sweep", unit="case", disable=not progress))
+    with work.bar:
+        if executor is None:
+            work.here()
+        elif isinstance(executor, ProcessPoolExecutor):
+            work.on_processes(executor)
+        else:
+            if broken := work.on(executor, range(len(held)), len(held)):
+                for i in work.left():
+                    work.failed[i] = work.failed[broken[0]]
+    if work.failed:
+        found = [work.done.get(i) for i in range(len(held))]
+        raise SweepError(held, found, work.failed) from work.failed[min(work.failed)]
+    return [work.done[i] for i in range(len(held))]
+
+
+class _Work(Generic[Case, Result]):
+    """What is done and what has failed of a sweep so far."""
+
+    def __init__(self, function: Callable[[Case], Result], cases: Sequence[Case], bar: tqdm[Any]) -> None:
+        self.function, self.cases, self.bar = function, cases, bar
+        self.done: dict[int, Result] = {}
+        self.failed: dict[int, BaseException] = {}
+
+    def here(self) -> None:
+        """All cases in this process."""
+        for i, case in enumerate(self.cases):
+            try:
+                self.done[i] = self.function(case)
+            except Exception as error:
+                self.failed[i] = error
+            self.bar.update()
+
+    def on_processes(self, executor: ProcessPoolExecutor) -> None:
+        """All cases in the processes of a pool, which breaks as a whole when one of them dies."""
+        workers = int(getattr(executor, "_max_workers", 1))
+        doubtful = self.on(executor, range(len(self.cases)), _AHEAD * workers)
+        while doubtful:
+            for i in doubtful:
+                del self.failed[i]
+                self.bar.update(-1)
+                # Alone: whose process dies now has done that by itself.
+                with _like(executor, 1) as alone:
+                    self.on(alone, [i], 1)
+            with _like(executor, workers) as another:
+                doubtful = self.on(another, self.left(), _AHEAD * workers)
+
+    def left(self) -> list[int]:
+        """Cases that are neither done nor failed."""
+        return [i for i in range(len(self.cases)) if i not in self.done and i not in self.failed]
+
+    def on(self, executor: Executor, places: Iterable[int], most: int) -> list[int]:
+        """Cases by their places, at most so many of them handed out at a time; those handed out when it broke."""
+        waiting, out = deque(places), dict[Future[Result], int]()
+        broken: list[int] = []
+        try:
+            while out or (waiting and not broken):
+                while waiting and len(out) < most and not broken:
+                    try:
+                        out[executor.submit(self.function, self.cases[waiting[0]])] = waiting[0]
+                    except BrokenExecutor as error:
+                        broken.append(waiting[0])
+                        self._fail(waiting[0], error)
+                    waiting.popleft()
+                for future in wait(out, return_when=FIRST_COMPLETED).done:
+                    i, raised = out.pop(future), CancelledError() if future.cancelled() else future.exception()
+                    if raised is None:
+                        self.done[i] = future.result()
+                        self.bar.update()
+                        continue
+                    self._fail(i, raised)
+                    if isinstance(raised, BrokenExecutor):
+                        broken.append(i)
+        finally:
+            for future in out:
+                future.cancel()
+        return broken
+
+    def _fail(self, i: int, error: BaseException) -> None:
+        self.failed[i] = error
+        self.bar.update()
+
+
+def _like(executor: ProcessPoolExecutor, workers: int) -> ProcessPoolExecutor:
+    """A new pool that starts its processes as this one does."""
+    context, start = getattr(executor, "_mp_context", None), getattr(executor, "_initializer", None)
+    return ProcessPoolExecutor(workers, context, start, getattr(executor, "_initargs", ()))
+
+
+def _short(case: object) -> str:
+    text = repr(case)
+    return text if len(text) <= _LONGEST else text[: _LONGEST - 3] + "..."
+
+
+def _reason(error: BaseException) -> str:
+    return f"{type(error).__name__}: {error}" if str(error) else type(error).__name__

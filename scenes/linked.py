@@ -1,0 +1,66 @@
+"""Jointed bodies to look at: a double pendulum, a chain that is let go, a bridge that is loaded."""
+
+from __future__ import annotations
+
+import math
+
+import pymunk
+
+from .scene import Scene, add_box
+
+GRAVITY = 9.81
+_NOBODY = pymunk.ShapeFilter(mask=0)
+
+
+def double_pendulum(degrees: float = 120.0, dt: float = 1 / 60, duration: float = 10.0) -> Scene:
+    """Two bars of 1 m and 1 kg that hang at 2 m, let go at rest, both `degrees` from the vertical."""
+    space = _space()
+    bodies = _bars(space, (0.0, 2.0), math.radians(degrees - 90.0), 2, 1.0)
+    return Scene("double_pendulum", space, bodies, dt, duration, 1e6, parameters={"degrees": degrees, "dt": dt})
+
+
+def chain(count: int = 20, dt: float = 1 / 60, duration: float = 5.0) -> Scene:
+    """`count` links of 3 m in all and 1 kg each, held at one end at 3 m, let go horizontally."""
+    if count < 1:
+        raise ValueError(f"count = {count}: give a number >= 1")
+    space = _space()
+    bodies = _bars(space, (0.0, 3.0), 0.0, count, 3.0 / count)
+    return Scene("chain", space, bodies, dt, duration, 1e6, parameters={"count": count, "dt": dt})
+
+
+def bridge(planks: int = 12, load: float = 20.0, dt: float = 1 / 60, duration: float = 5.0) -> Scene:
+    """`planks` of .5 m and 1 kg on pivots between two banks; a box of `load` kg falls on the middle."""
+    if planks < 2 or not load > 0.0:
+        raise ValueError(f"planks = {planks}, load = {load}: give planks >= 2 and load > 0")
+    space = _space()
+    bodies = _bars(space, (0.0, 0.0), 0.0, planks, 0.5, deck=True)
+    last = bodies[-1]
+    space.add(pymunk.PivotJoint(last, space.static_body, (0.25, 0.0), (0.5 * planks, 0.0)))
+    bodies.append(add_box(space, (0.25 * planks, 1.0), 0.6, 0.6, load))
+    for shape in space.shapes:
+        shape.elasticity, shape.friction = 0.3, 0.8
+    return Scene("bridge", space, bodies, dt, duration, 1e6, parameters={"planks": planks, "load": load, "dt": dt})
+
+
+def _space() -> pymunk.Space:
+    space = pymunk.Space()
+    space.gravity = (0.0, -GRAVITY)
+    return space
+
+
+def _bars(
+    space: pymunk.Space, start: tuple[float, float], angle: float, count: int, length: float, deck: bool = False
+) -> list[pymunk.Body]:
+    """Bars of 1 kg in a line on pivots, the first on the ground at `start`; those of a deck carry things."""
+    bodies: list[pymunk.Body] = []
+    before, anchor = space.static_body, start
+    for i in range(count):
+        bar = pymunk.Body(1.0, length**2 / 12.0)
+        middle = (i + 0.5) * length
+        bar.position, bar.angle = (start[0] + middle * math.cos(angle), start[1] + middle * math.sin(angle)), angle
+        shape = pymunk.Segment(bar, (-0.5 * length, 0.0), (0.5 * length, 0.0), 0.04)
+        shape.filter = pymunk.ShapeFilter(group=1) if deck else _NOBODY
+        space.add(bar, shape, pymunk.PivotJoint(before, bar, anchor, (-0.5 * length, 0.0)))
+        bodies.append(bar)
+        before, anchor = bar, (0.5 * length, 0.0)
+    return bodies

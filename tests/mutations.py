@@ -1,0 +1,191 @@
+"""Breaks kernels one at a time, in a copy of the package, and shows that a named quick test fails for each.
+
+By hand, not in CI:    python tests/mutations.py [WORD]    (only those whose name has this word)
+
+Kernels run as plain Python, so that nothing is compiled. All named tests have to pass in the whole copy first. The
+exit status is the number of mutations that no test has noticed, or that no longer fit the sources.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+COPIED = ("eeca_pymunk", "scenes", "comparisons", "tests", "pyproject.toml")
+LIMIT = 100  # s for a test; what is broken may never end
+
+
+@dataclass(frozen=True)
+class Mutation:
+    """Where `old` stands in a file of the package, once, and `new` is wrong; the test (file, and -k) that must fail."""
+
+    name: str
+    file: str
+    old: str
+    new: str
+    test: str
+    only: str
+
+
+MUTATIONS = (
+    # Flight and times of impact.
+    Mutation("flight: a half is missing", "geometry/flight.py", "half = 0.5 * s", "half = s",
+             "geometry/test_gap.py", "parabola"),
+    Mutation("flight: sign of an acceleration", "impacts/strike.py", "BODY[i, VX + c] += BODY[i, AX + c] * s",
+             "BODY[i, VX + c] -= BODY[i, AX + c] * s", "closures/test_time_of_impact.py", "thrown_disk"),
+    Mutation("times: a clock's way is missing", "impacts/times.py",
+             "ux, uy = vx_j - (vx_i + h * ax), vy_j - (vy_i + h * ay)", "ux, uy = vx_j - vx_i, vy_j - vy_i",
+             "impacts/test_times.py", "own_clocks"),
+    Mutation("times: factor 2 of a parabola's root", "impacts/roots.py", "return 2.0 * g / (math.sqrt(D) - w)",
+             "return g / (math.sqrt(D) - w)", "impacts/test_times.py", "flat_root"),
+    Mutation("times: sign in the root of two disks", "impacts/roots.py", "(reach + cross)) - b)",
+             "(reach + cross)) + b)", "impacts/test_times.py", "grazing"),
+    # Loop.
+    Mutation("loop: what has kinked is not forecast anew", "impacts/loop.py",
+             "if o < 0 or STATE[A.LINK[o, OWNER], KINKS] != STATE[i, KNOWN]:", "if o < 0:",
+             "impacts/test_loop.py", "twenty_disks"),
+    Mutation("loop: the partner of an impact is not forecast", "impacts/loop.py",
+             "one, two = i, j if o < disks else -1", "one, two = i, -1", "impacts/test_loop.py", "twenty_disks"),
+    Mutation("loop: margins are left too late", "impacts/forecast.py", "(root - b) / squared", "(root + b) / squared",
+             "impacts/test_heap.py", "nobody_leaves"),
+    # Impact law.
+    Mutation("impact: e squared", "impacts/strike.py", "lam = (1.0 + e) *", "lam = (1.0 + e * e) *",
+             "closures/test_time_of_impact.py", "inelastic_bounce"),
+    Mutation("impact: opening contacts are not kept open", "rows/build.py",
+             "ROWS[i, TARGET] = -ROWS[i, ELASTICITY] * u if u < 0.0 else -u",
+             "ROWS[i, TARGET] = -ROWS[i, ELASTICITY] * u if u < 0.0 else 0.0", "rows/test_blocks.py", "independent"),
+    Mutation("impact: sign of an arm", "rows/build.py", "arm = xb * ny - yb * nx", "arm = yb * nx - xb * ny",
+             "rows/test_build.py", "rigid"),
+    # Friction.
+    Mutation("friction: the spin of a disk counts the wrong way", "impacts/strike.py", "- r_i * BODY[i, SPIN]",
+             "+ r_i * BODY[i, SPIN]", "oracles/test_impacts.py", "rough and floor"),
+    Mutation("friction: no bound mu lam", "impacts/strike.py", "beta = min(max(-slip / turning, -mu * lam), mu * lam)",
+             "beta = -slip / turning", "oracles/test_impacts.py", "rough and floor"),
+    Mutation("friction: sign of a tangential arm", "rows/build.py", "ROWS[i, ARM_TA] = xa * nx + ya * ny",
+             "ROWS[i, ARM_TA] = xa * nx - ya * ny", "rows/test_build.py", "rigid"),
+    Mutation("friction: slips against less than mu lam", "rows/sweeps.py",
+             "beta = sign * mu * lam\n                if sign", "beta = 0.9 * sign * mu * lam\n                if sign",
+             "rows/test_direct.py", "local_law"),
+    Mutation("friction: may give energy", "rows/sweeps.py", "if T * (s * T + p) + c > 0.0:", "if False:",
+             "rows/test_blocks.py", "coulomb"),
+    # Sustained contacts.
+    Mutation("sustained: bounces never end", "sustained/targets.py", "bounce < 0.5 * max(", "bounce < 0.0 * max(",
+             "sustained/test_one_body.py", "bounces_end"),
+    Mutation("sustained: soft landing by half a gap", "sustained/targets.py", "close = -u - 2.0 * ROWS[i, GAP] / h",
+             "close = -u - ROWS[i, GAP] / h", "sustained/test_one_body.py", "comes_down_slowly"),
+    Mutation("sustained: half of the pull", "sustained/step.py", "FREE = moved(V, ACC, h)",
+             "FREE = moved(V, ACC, 0.5 * h)", "sustained/test_one_body.py", "slides"),
+    Mutation("sustained: geometry of the start", "sustained/step.py", "MIDDLE = moved(POSE, V, 0.5 * h)",
+             "MIDDLE = moved(POSE, V, 0.0)", "sustained/test_one_body.py", "second_order"),
+    Mutation("sustained: push-out for nothing", "sustained/lifting.py", "if work + square > budget:", "if False:",
+             "sustained/test_piles.py", "push_out"),
+    Mutation("sustained: push-out turns a free island", "sustained/lifting.py", "JUMP[i, 5] = turn",
+             "JUMP[i, 5] = -turn", "sustained/test_piles.py", "free_island"),
+    # Joints.
+    Mutation("joints: sign of a lever", "joints/points.py",
+             "hinge[k, ROWS], hinge[k, ROWS + 1], hinge[k, ROWS + 2] = -mx, -my, -lever_a * (rax * my - ray * mx)",
+             "hinge[k, ROWS], hinge[k, ROWS + 1], hinge[k, ROWS + 2] = -mx, -my, lever_a * (rax * my - ray * mx)",
+             "joints/test_kernels.py", "discrete_gradients"),
+    Mutation("joints: end instead of mean velocity", "joints/motion.py",
+             "local[i, WAY + c] = 0.5 * h * (local[i, 3 + c] + local[i, AFTER + c])",
+             "local[i, WAY + c] = h * local[i, AFTER + c]", "joints/test_linkages.py", "published_place"),
+    Mutation("joints: force of a spring at the end", "joints/springs.py", "return 0.5 * (f0 + f1)", "return f1",
+             "joints/test_kinds.py", "spring_on_a_line"),
+    Mutation("joints: damping as of the midpoint rule", "joints/rows.py",
+             "return np.tanh(damping * rate) / rate if rate > 0.0 else damping", "return damping",
+             "joints/test_kinds.py", "stiff_damper"),
+    Mutation("joints: a rope that pushes", "joints/bounds.py", "if pull > worst:", "if -pull > worst:",
+             "joints/test_limits.py", "bead"),
+    Mutation("joints: parts of order 4", "joints/step.py", "(1.0 - 4.0 * SUZUKI) * h", "(1.0 - 3.0 * SUZUKI) * h",
+             "joints/test_linkages.py", "published_place"),
+    # Ledger and lock.
+    Mutation("ledger: factor 1/2 of a bounce", "impacts/strike.py",
+             "PAR[LEDGER + RESTITUTION] += 0.5 * lam", "PAR[LEDGER + RESTITUTION] += lam",
+             "oracles/test_impacts.py", "comes_to_rest_is_booked"),
+    Mutation("ledger: factor 1/2 of friction", "rows/energy.py", "LOSS[i, 1] = -0.5 * L[i, 1]", "LOSS[i, 1] = -L[i, 1]",
+             "rows/test_blocks.py", "coulomb"),
+    Mutation("ledger: the part of a span that was cut", "impacts/booking.py",
+             "tangential = -f * R[BETA] * (R[UT_BEFORE] + 0.5 * f *",
+             "tangential = -f * R[BETA] * (R[UT_BEFORE] + 0.5 *", "oracles/test_ledger.py", "hit_while_it_slides"),
+    Mutation("ledger: sign of the work of forces", "impacts/step.py", "PAR[LEDGER + EXTERNAL] += work",
+             "PAR[LEDGER + EXTERNAL] -= work", "oracles/test_ledger.py", "forces_on_bodies"),
+    Mutation("ledger: sign of the work of a surface", "sustained/ledger.py", "work -= beta * ROWS[i, SURFACE]",
+             "work += beta * ROWS[i, SURFACE]", "oracles/test_friction.py", "belt_works"),
+    Mutation("ledger: damping of speeds, not energies", "impacts/step.py", "(1.0 / (left * left) - 1.0)",
+             "(1.0 / left - 1.0)", "oracles/test_ledger.py", "damping"),
+    Mutation("ledger: sign of the work of a support", "joints/ledger.py", "ledger[SUPPORTS] += moved - total",
+             "ledger[SUPPORTS] += total - moved", "joints/test_kinds.py", "support"),
+    Mutation("lock: no scale", "rows/energy.py", "s = large / q", "s = 1.0", "rows/test_blocks.py", "debt"),
+    Mutation("lock: factor 1/2 of the paper's closures", "energy/balance.py",
+             "0.5 * np.bincount(island, lam * (A @ lam)", "np.bincount(island, lam * (A @ lam)",
+             "energy/test_equations.py", "lock"),
+    Mutation("paper: psi1 + psi2 = 2 xi / Omega", "energy/balance.py", "return 4.0 * damping_ratio / reduced_frequency",
+             "return 2.0 * damping_ratio / reduced_frequency", "energy/test_equations.py", "signorini_closed"),
+)  # fmt: skip
+
+
+def passes(copy: Path, tests: list[tuple[str, str]]) -> tuple[bool, str]:
+    """Whether all these tests pass in the copy; what pytest says last."""
+    said = ""
+    for file, only in tests:
+        try:
+            done = subprocess.run(
+                [sys.executable, "-m", "pytest", "-x", "-p", "no:cacheprovider", f"tests/{file}", "-k", only],
+                cwd=copy, env=os.environ | {"NUMBA_DISABLE_JIT": "1", "PYTHONDONTWRITEBYTECODE": "1"},
+                capture_output=True, text=True, timeout=LIMIT,
+            )  # fmt: skip
+        except subprocess.TimeoutExpired:
+            return False, f"it does not end within {LIMIT} s"
+        said = (done.stdout.strip().splitlines() or [""])[-1]
+        if done.returncode == 1:
+            return False, said
+        if done.returncode != 0:  # no test of that name, say
+            raise SystemExit(f"{file} -k {only!r}: {done.stdout}{done.stderr}")
+    return True, said
+
+
+def tried(copy: Path, one: Mutation) -> str:
+    """What came of a mutation; its first word is "noticed", "SURVIVES" or "UNFIT"."""
+    path = copy / "eeca_pymunk" / one.file
+    text = path.read_text()
+    if text.count(one.old) != 1:
+        return f"UNFIT: {one.old!r} stands {text.count(one.old)} times in {one.file}"
+    try:
+        path.write_text(text.replace(one.old, one.new))
+        passed, said = passes(copy, [(one.test, one.only)])
+    finally:
+        path.write_text(text)
+    return f"SURVIVES tests/{one.test} -k {one.only!r}" if passed else f"noticed by tests/{one.test}: {said}"
+
+
+def main(words: list[str]) -> int:
+    """Try the mutations whose names have all these words; how many were not noticed."""
+    chosen = [one for one in MUTATIONS if all(word in one.name for word in words)]
+    with tempfile.TemporaryDirectory() as folder:
+        copy = Path(folder)
+        for name in COPIED:
+            if (ROOT / name).is_dir():
+                shutil.copytree(ROOT / name, copy / name, ignore=shutil.ignore_patterns("__pycache__", "figures"))
+            else:
+                shutil.copy(ROOT / name, copy / name)
+        whole, said = passes(copy, list(dict.fromkeys((one.test, one.only) for one in chosen)))
+        if not whole:
+            raise SystemExit(f"a test fails without any mutation: {said}")
+        print("all named tests pass without mutations", flush=True)
+        missed = 0
+        for number, one in enumerate(chosen, 1):
+            found = tried(copy, one)
+            missed += not found.startswith("noticed")
+            print(f"{number:2}/{len(chosen)} {one.name}: {found}", flush=True)
+    print(f"{len(chosen) - missed} of {len(chosen)} mutations noticed")
+    return missed
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

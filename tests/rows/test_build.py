@@ -1,0 +1,37 @@
+"""A contact row from a point and a normal: rates are those of points of rigid bodies, masses those of pushes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from eeca_pymunk.rows.build import normal_rate, place_row, tangent_rate
+from eeca_pymunk.rows.layout import K_N, K_T, ROW_COLUMNS
+
+
+def cross(x: np.ndarray, y: np.ndarray) -> float:
+    return float(x[0] * y[1] - x[1] * y[0])
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
+@pytest.mark.parametrize("seed", range(5))
+def test_rates_and_masses_are_those_of_points_of_rigid_bodies(seed: int, unit: float) -> None:
+    rng = np.random.default_rng(seed)
+    pose, v = rng.normal(size=(2, 3)), rng.normal(size=(2, 3))
+    pose[:, :2] *= unit
+    v[:, :2] *= unit
+    im, ii = rng.uniform(0.1, 2.0, 2), rng.uniform(0.1, 2.0, 2) / unit**2
+    angle, surface = rng.uniform(0.0, 6.0), unit * rng.normal()
+    n, t = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
+    point = unit * rng.normal(size=2)
+    A, B, rows = np.zeros(1, np.int64), np.zeros(1, np.int64), np.zeros((1, ROW_COLUMNS))
+    place_row(A, B, rows, 0, 0, 1, *n, *point, 0.0, pose, im, ii, 0.5, 0.3, surface)
+
+    arm = point - pose[:, :2]
+    speed = v[:, :2] + v[:, 2:] * np.stack((-arm[:, 1], arm[:, 0]), axis=1)
+    apart = speed[1] - speed[0]
+    assert normal_rate(A, B, rows, v, 0) == pytest.approx(n @ apart, rel=1e-12, abs=1e-13 * unit)
+    assert tangent_rate(A, B, rows, v, 0) == pytest.approx(t @ apart + surface, rel=1e-12, abs=1e-13 * unit)
+    for direction, column in ((n, K_N), (t, K_T)):
+        given = sum(im[i] + ii[i] * cross(arm[i], direction) ** 2 for i in range(2))
+        assert rows[0, column] == pytest.approx(1.0 / given, rel=1e-12)

@@ -1,0 +1,127 @@
+"""What README and docs print exists: commands run, in a short form, and pictures are there and small."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+import scenes
+from comparisons import engines, film, films, tour
+from comparisons.__main__ import NAMES, chosen, command_line, main
+
+ROOT = Path(__file__).parents[1]
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
+LARGEST = 300_000  # bytes of a picture
+# Where the short form of each comparison is run.
+SHORT = {
+    "tour": "test_docs.py::test_tour_runs",
+    "signorini": "test_comparisons.py::test_comparison_writes_table_and_pictures",
+    "carom": "test_docs.py::test_films_run",
+    "cradle": "test_comparisons.py::test_comparison_writes_table_and_pictures",
+    "pool_break": "test_docs.py::test_films_run",
+    "hopper": "test_docs.py::test_films_run",
+    "work_precision": "test_comparisons.py::test_work_precision_finds_how_much_better_eeca_is",
+    "scaling": "test_comparisons.py::test_scaling_tells_ratios_of_one_interleaved_run",
+    "detection": "test_comparisons.py::test_detection_finds_what_pymunk_finds",
+    "piles": "test_comparisons.py::test_short_piles_keep_their_books",
+    "soak": "test_comparisons.py::test_short_soak_keeps_energy_and_disks",
+    "hard_cases": "test_hard_cases.py::test_matrix_tells_passes_failures_and_refusals",
+    "maxwell": "test_comparisons.py::test_speeds_of_gases_become_those_of_a_shared_energy",
+    "engines": "test_docs.py::test_engines_that_are_missing_are_skipped_with_a_word",
+    "films": "test_docs.py::test_films_run",
+    "gallery": "test_comparisons.py::test_gallery_page_shows_every_figure_and_table",
+}
+
+
+def text(page: Path) -> str:
+    return page.read_text(encoding="utf-8")
+
+
+def commands() -> list[str]:
+    """What follows `python -m comparisons`, wherever it is printed."""
+    printed = (re.findall(r"python -m comparisons((?: [^\s`.;,)|]+(?:\.\w+)?)*)", text(page)) for page in PAGES)
+    return sorted({one.strip() for found in printed for one in found})
+
+
+def filmed() -> list[str]:
+    return [one.split()[0] for one in commands() if "--animate" in one and one.split()[0] in scenes.NAMES]
+
+
+@pytest.mark.parametrize("command", commands())
+def test_printed_commands_exist(command: str) -> None:
+    options = command_line().parse_args(shlex.split(command))
+    if options.name is None or options.name == "NAME":
+        return
+    if options.animate is not None:
+        assert film.options(options.steppers, options.animate, options.name)
+        return
+    run, _ = chosen(options)
+    assert callable(run)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_comparison_is_run_in_a_short_form(name: str) -> None:
+    file, test = SHORT[name].split("::")
+    assert f"def {test}(" in text(Path(__file__).parent / file)
+
+
+def test_tour_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    for name, short in (("BUDGET", 0.0), ("REPEATS", 1), ("PILE_STEPS", 4), ("MOMENTS", 4), ("FRAMES", 2)):
+        monkeypatch.setattr(tour, name, short)
+    assert main(["tour", "--out", str(tmp_path)]) == 0
+    printed = capsys.readouterr().out
+    for scene in ("gas", "pendulum", "stack", "slope", "cradle"):
+        assert re.search(rf"^{scene} .* \d", printed, flags=re.MULTILINE)
+    assert "Where pymunk is better:" in printed
+    assert printed.strip().splitlines()[-1].startswith("and your own space")
+    assert {p.name for p in tmp_path.iterdir()} >= {"tour.png", "tour.gif", "tour.csv"}
+
+
+@pytest.mark.parametrize("name", sorted(set(filmed())))
+def test_films_run(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    settings = film.FILMS[name]
+    dt = settings.dt or scenes.build(name).dt
+    monkeypatch.setitem(film.FILMS, name, replace(settings, duration=3 * dt, frames=2, dpi=40))
+    path, size = films.one(tmp_path, name)
+    assert name in films.NAMES
+    assert 0 < size == Path(path).stat().st_size
+
+
+def test_engines_that_are_missing_are_skipped_with_a_word(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("EECA_ENGINES", str(tmp_path / "none"))
+    problems = [one for one in engines.problems.problems() if one.name in ("slope", "pendulum")]
+    monkeypatch.setattr(engines, "listed", lambda: [replace(one, duration=0.1) for one in problems])
+    assert main(["engines", "--out", str(tmp_path)]) == 0
+    printed = capsys.readouterr().out
+    for name in engines.OTHERS:
+        assert f"skipped {name}: " in printed
+    row = re.search(r"^slope +EECA +0.01667 +(\S+) +(\S+)", printed, flags=re.MULTILINE)
+    assert row is not None
+    assert max(float(row[1]), float(row[2])) < 1e-12
+
+
+def test_pictures_exist_and_are_small() -> None:
+    shown = [
+        (page.parent / link).resolve() for page in PAGES for link in re.findall(r"!\[[^\]]*\]\(([^)]+)\)", text(page))
+    ]
+    assert len(shown) > 10
+    for picture in shown:
+        assert 0 < picture.stat().st_size < LARGEST, picture
+    kept = {p.resolve() for folder in ("comparisons/figures", "docs/films") for p in (ROOT / folder).iterdir()}
+    assert kept <= set(shown)
+
+
+def test_readme_is_short_and_has_one_command_of_tests() -> None:
+    lines = text(ROOT / "README.md").splitlines()
+    assert len(lines) < 200
+    assert [line for line in lines if "python -m pytest" in line] == [
+        'python3 -m venv .venv && .venv/bin/pip install -e ".[test]" && .venv/bin/python -m pytest'
+    ]
+    first = next(line for line in lines if "python -m comparisons" in line and line.startswith("python3"))
+    assert first.endswith("-m comparisons tour")
