@@ -9,7 +9,7 @@ import numpy as np
 
 import eeca_pymunk as ep
 import scenes
-from comparisons import jointed, runs
+from comparisons import runs
 from comparisons.output import Output, Row
 from eeca_pymunk import render
 from eeca_pymunk.errors import NotFiniteError
@@ -119,7 +119,7 @@ def run(
 
 def stepper(name: str, scene: Scene) -> ep.Stepper:
     """A stepper for a scene, by its name on the command line."""
-    make = jointed.eeca if name == "eeca" else runs.steppers(scene.stiffness)[STEPPERS[name][1]]
+    make = ep.EECA if name == "eeca" else runs.steppers(scene.stiffness)[STEPPERS[name][1]]
     return make(scene.space)
 
 

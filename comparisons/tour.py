@@ -13,14 +13,14 @@ from matplotlib.figure import Figure
 from tqdm import tqdm
 
 import eeca_pymunk as ep
-from comparisons import jointed, piles, runs
+from comparisons import piles, runs, steps
 from comparisons.output import Output, Row
 from comparisons.tour_problems import Problem, problems
 from eeca_pymunk import render
 from eeca_pymunk.compiled import cache_folder, compiler
 from eeca_pymunk.recording import step_count
 
-STEPPERS = jointed.STEPS
+STEPPERS = steps.STEPS
 STYLE = {"EECA": ("black", 2.0), "pymunk": ("#d55e00", 1.2), "pymunk tuned": ("#0072b2", 1.2)}
 FINER = 2.0  # from one step size to the next
 BUDGET = 0.25  # s: a run that takes longer is the last of its stepper
@@ -112,7 +112,7 @@ def warm() -> None:
         print("compiling the kernels: some minutes, once; later runs start at once", flush=True)
     ep.warmup()
     for problem in problems():
-        jointed.eeca(problem.build().space).step(problem.dt)
+        ep.EECA(problem.build().space).step(problem.dt)
     print(f"kernels are ready ({time.perf_counter() - begun:.1f} s, not counted below)", flush=True)
 
 
@@ -181,7 +181,7 @@ def filmed(output: Output) -> str:
     """The gas under EECA and pymunk beside each other, with rings where the disks are."""
     gas = problems()[0]
     exact = gas.build().exact
-    steppers = [jointed.eeca(gas.build().space), ep.Native(gas.build().space)]
+    steppers = [ep.EECA(gas.build().space), ep.Native(gas.build().space)]
     recordings = [ep.record(stepper, FILM, FILM / MOMENTS) for stepper in steppers]
     path = output.path("gif")
     render.animate(

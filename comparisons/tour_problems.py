@@ -10,7 +10,6 @@ import numpy as np
 import numpy.typing as npt
 
 import scenes
-from comparisons import jointed
 from comparisons.exact import Gas
 from scenes import Scene, pendulum
 
@@ -38,11 +37,7 @@ def problems() -> list[Problem]:
     gravity, angle, friction = 9.81, math.radians(20.0), 0.2
     lost = friction * gravity * math.cos(angle)  # J/m: what friction takes of the block
     pull = gravity * (math.sin(angle) - friction * math.cos(angle))
-    cradle = (
-        Problem("cradle", pendulum.cradle, 1 / 60, 2.0, gravity * (1.0 - math.cos(math.radians(30.0))))
-        if jointed.wired()
-        else Problem("cradle", lambda: scenes.build("cradle", hypothesis="ii"), 1e-3, 0.02, 0.5)
-    )
+    cradle = Problem("cradle", pendulum.cradle, 1 / 60, 2.0, gravity * (1.0 - math.cos(math.radians(30.0))))
     return [
         Problem("gas", gas, 1e-2, 0.2, gas_energy()),
         Problem("pendulum", pendulum.build, 1 / 60, 10.0, gravity),

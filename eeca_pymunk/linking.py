@@ -32,6 +32,7 @@ def pipelines() -> tuple[dict[str, Any], dict[str, Any]]:
         from numba.core import codegen, compiler
 
         library: Any = codegen.JITCodeLibrary
+        base: Any = compiler.Compiler
         probe = library.__init__.__code__.co_names + library.__mro__[1].__init__.__code__.co_names
         known = all(hasattr(library, name) or name in probe for name in _NEEDS)
     except (ImportError, AttributeError):
@@ -52,6 +53,8 @@ def pipelines() -> tuple[dict[str, Any], dict[str, Any]]:
             """A part has no environment of its own."""
 
     class Part(library):  # type: ignore[misc]
+        _linking_libraries: list[Any]
+
         @property
         def codegen(self) -> Any:
             return Quiet(self._codegen)
@@ -66,9 +69,11 @@ def pipelines() -> tuple[dict[str, Any], dict[str, Any]]:
             return 0
 
     class Whole(library):  # type: ignore[misc]
+        _linking_libraries: list[Any]
+
         def finalize(self) -> None:
             found: dict[int, Any] = {}
-            waiting = list(self._linking_libraries)
+            waiting: list[Any] = list(self._linking_libraries)
             while waiting:
                 one = waiting.pop()
                 if id(one) not in found:
@@ -86,11 +91,11 @@ def pipelines() -> tuple[dict[str, Any], dict[str, Any]]:
             self._linking_libraries = [one for one in found.values() if not isinstance(one, Part)]
             super().finalize()
 
-    class PartCompiler(compiler.Compiler):  # type: ignore[misc]
+    class PartCompiler(base):  # type: ignore[misc]
         def __init__(self, typing: Any, target: Any, _: Any, *rest: Any) -> None:
             super().__init__(typing, target, Part(target.codegen(), "part"), *rest)
 
-    class WholeCompiler(compiler.Compiler):  # type: ignore[misc]
+    class WholeCompiler(base):  # type: ignore[misc]
         def __init__(self, typing: Any, target: Any, _: Any, *rest: Any) -> None:
             whole = Whole(target.codegen(), "whole")
             whole.enable_object_caching()

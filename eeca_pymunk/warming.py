@@ -28,7 +28,12 @@ def warmup() -> float:
     start = time.perf_counter()
     if compiler() is not None:
         closures: tuple[Closure, ...] = (TimeOfImpact(), Midstep(), Dashpot(1e4, 1.0))
-        for kind, closure in [("disks", c) for c in closures] + [("boxes", closures[0]), ("hooked", closures[0])]:
+        for kind, closure in [("disks", c) for c in closures] + [
+            ("boxes", closures[0]),
+            ("hooked", closures[0]),
+            ("joints", closures[0]),
+            ("joints", closures[1]),
+        ]:
             stepper = EECA(sample(kind), closure)
             stepper.step(_DT)
             if isinstance(stepper._method, EventLoop):

@@ -26,7 +26,7 @@ import numpy.typing as npt
 from tqdm import tqdm
 
 import eeca_pymunk as ep
-from comparisons import jointed
+from comparisons import steps
 from comparisons.engines import problems
 from comparisons.engines.problems import Problem
 from comparisons.output import Output, Row
@@ -37,7 +37,7 @@ LOOKS = 50  # at the energy of a run
 ENOUGH = 0.3  # s of runs that are short
 FINER = 10  # the second dt of each scene is so many times smaller
 LIMIT = 300  # s for a run
-OURS = jointed.STEPS
+OURS = steps.STEPS
 OTHERS = {
     "Box2D": "box_2d.py", "MuJoCo": "mujoco_.py", "DART": "dart_.py", "planck": "planck_.js", "matter-js": "matter.js",
 }  # fmt: skip

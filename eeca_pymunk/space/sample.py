@@ -5,12 +5,14 @@ from __future__ import annotations
 import pymunk
 
 _WALLS = 20  # more than are looked at one by one
+_LINKS = 3
 _BOXES = 140  # more contacts than there is room for at first
 
 
 def sample(kind: str) -> pymunk.Space:
     """Elastic disks that hit each other, of which one also bounces in a slit, a hundred times within 20 ms ("disks");
-    boxes with friction on a floor ("boxes"); disks under collision handlers ("hooked")."""
+    boxes with friction on a floor ("boxes"); boxes held together by pivots, that land ("joints");
+    disks under collision handlers ("hooked")."""
     space = pymunk.Space()
     space.gravity = (0.0, -10.0)
     _wall(space, (-9.0, 0.0), (999.0, 0.0))
@@ -28,6 +30,17 @@ def sample(kind: str) -> pymunk.Space:
             box = pymunk.Poly.create_box(body, (1.0, 1.0))
             box.friction = 0.5
             space.add(body, box)
+    elif kind == "joints":
+        last = None
+        for i in range(_LINKS):
+            body = pymunk.Body(1.0, 1.0 / 6.0)
+            body.position, body.velocity = (3.0 + i, 0.5 + 0.01 * (i % 2)), (0.0, -1.0)
+            box = pymunk.Poly.create_box(body, (0.8, 0.8))
+            box.friction = 0.5
+            space.add(body, box)
+            if last is not None:
+                space.add(pymunk.PivotJoint(last, body, (2.5 + i, 0.5)))
+            last = body
     elif kind == "hooked":
         space.on_collision(pre_solve=lambda arbiter, space, data: None)
     return space
