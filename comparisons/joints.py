@@ -17,6 +17,7 @@ from tqdm import tqdm
 
 import eeca_pymunk as ep
 from comparisons import runs, scaling
+from comparisons.hard_cases.joints import apart
 from comparisons.minimal import Bars, FloatArray
 from comparisons.output import Output, Row
 from eeca_pymunk import render
@@ -93,16 +94,6 @@ def everywhere(space: pymunk.Space) -> FloatArray:
 def crank(space: pymunk.Space) -> FloatArray:
     """(2,) end of the first crank."""
     return np.array(next(iter(space.bodies)).local_to_world((0.5, 0.0)))
-
-
-def apart(space: pymunk.Space) -> float:
-    """How far pivots and pins are from what they hold, m."""
-    worst = 0.0
-    for c in space.constraints:
-        if isinstance(c, pymunk.PivotJoint | pymunk.PinJoint):
-            length = (c.b.local_to_world(c.anchor_b) - c.a.local_to_world(c.anchor_a)).length
-            worst = max(worst, abs(length - (c.distance if isinstance(c, pymunk.PinJoint) else 0.0)))
-    return worst
 
 
 def steppers(build: Callable[[], pymunk.Space]) -> dict[str, tuple[pymunk.Space, scaling.Runner]]:

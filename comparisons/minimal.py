@@ -26,11 +26,12 @@ class Bars:
     ) -> None:
         count = len(mass)
         # (N, N) how far angle k moves the centre of bar i.
-        self.lever = np.tril(np.broadcast_to(far, (count, count)), -1) + np.diag(near)
+        self.lever: FloatArray = np.tril(np.broadcast_to(far, (count, count)), -1) + np.diag(near)
         self._coupling = self.lever.T @ (mass[:, None] * self.lever)
         self._moment = np.diag(moment)
         self._weight = gravity * (mass @ self.lever)
-        self.angle, self.rate = angle.astype(float), np.zeros(count)
+        self.angle: FloatArray = angle.astype(float)
+        self.rate: FloatArray = np.zeros(count)
 
     def acceleration(self, angle: FloatArray, rate: FloatArray) -> FloatArray:
         """(N,) rad/s²: C cos(a_k - a_j) a_j'' + C sin(a_k - a_j) a_j'^2 + J a_k'' = -w_k cos a_k."""

@@ -64,8 +64,8 @@ def heap(groups: int = 40, dt: float = 1 / 60, duration: float = 5.0, seed: int 
         loose = body(x, y + 0.5), body(x + 0.7, y + 0.5)
         if k % 2:
             space.add(pymunk.SlideJoint(*loose, (0.0, 0.0), (0.0, 0.0), 0.0, 0.9))
-    for a, b in (((-9.0, 0.0), (9.0, 0.0)), ((-4.5, 0.0), (-4.5, 40.0)), ((4.5, 0.0), (4.5, 40.0))):
-        space.add(pymunk.Segment(space.static_body, a, b, 0.0))
+    for start, end in (((-9.0, 0.0), (9.0, 0.0)), ((-4.5, 0.0), (-4.5, 40.0)), ((4.5, 0.0), (4.5, 40.0))):
+        space.add(pymunk.Segment(space.static_body, start, end, 0.0))
     for shape in space.shapes:
         shape.elasticity, shape.friction = 0.0, math.sqrt(0.5)
     return Scene("heap", space, bodies, dt, duration, 1e6, parameters={"groups": groups, "seed": seed, "dt": dt})

@@ -28,7 +28,7 @@ def energy(space: pymunk.Space) -> float:
 
 
 def apart(space: pymunk.Space) -> float:
-    """How far pivots and pins are from what they hold, and ropes longer than they may be."""
+    """How far pivots and pins are from what they hold, and ropes longer or shorter than they may be."""
     worst = 0.0
     for c in space.constraints:
         if isinstance(c, pymunk.PivotJoint | pymunk.PinJoint | pymunk.SlideJoint):
@@ -37,7 +37,14 @@ def apart(space: pymunk.Space) -> float:
                 worst = max(worst, length - c.max, c.min - length)
             else:
                 worst = max(worst, abs(length - (c.distance if isinstance(c, pymunk.PinJoint) else 0.0)))
-        elif isinstance(c, pymunk.RotaryLimitJoint):
+    return worst
+
+
+def past(space: pymunk.Space) -> float:
+    """How far bodies have turned past the limits of their joints (rad)."""
+    worst = 0.0
+    for c in space.constraints:
+        if isinstance(c, pymunk.RotaryLimitJoint):
             turned = c.b.angle - c.a.angle
             worst = max(worst, turned - c.max, c.min - turned)
     return worst
@@ -58,7 +65,7 @@ def not_gained(space: pymunk.Space, make: runs.Make, steps: int, scale: float, d
     for _ in range(steps):
         stepper.step(dt)
         now = energy(space)
-        worst, before = max(worst, apart(space), (now - before) / scale), now
+        worst, before = max(worst, apart(space), past(space), (now - before) / scale), now
     return worst if math.isfinite(worst) else math.inf
 
 
