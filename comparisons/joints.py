@@ -18,11 +18,12 @@ from tqdm import tqdm
 import eeca_pymunk as ep
 from comparisons import runs, scaling
 from comparisons.hard_cases.joints import apart
-from comparisons.minimal import Bars, FloatArray
 from comparisons.output import Output, Row
 from eeca_pymunk import render
 from eeca_pymunk.recording import step_count
 from scenes import linkages, pendulum, rods
+from scenes.bars import Bars
+from scenes.scene import FloatArray
 
 EECA = "EECA"
 ITERATIONS = (10, 100)

@@ -31,15 +31,15 @@ def cradle(
     bodies = []
     for i, x in enumerate(hung):
         angle = 0.0 if i else amplitude
-        bodies.append(add_disk(space, (x - length * math.sin(angle), -length * math.cos(angle)), RADIUS))
-        space.add(pymunk.PinJoint(space.static_body, bodies[-1], (x, 0.0), (0.0, 0.0)))
+        bodies.append(add_disk(space, (x - length * math.sin(angle), length * (1.0 - math.cos(angle))), RADIUS))
+        space.add(pymunk.PinJoint(space.static_body, bodies[-1], (x, length), (0.0, 0.0)))
     quarter = 0.25 * period(amplitude, length)
 
     def exact(t: float) -> FloatArray:
-        places = np.array([(x, -length) for x in hung])
+        places = np.array([(x, 0.0) for x in hung])
         angle = -swing(amplitude, length, t)
         i = (count - 1) * (int((t + quarter) // (2.0 * quarter)) % 2)
-        places[i] = hung[i] + length * math.sin(angle), -length * math.cos(angle)
+        places[i] = hung[i] + length * math.sin(angle), length * (1.0 - math.cos(angle))
         return places
 
     return Scene("rods", space, bodies, dt, duration, 1e6, exact, {"count": count, "gap": gap, "dt": dt})

@@ -21,7 +21,6 @@ from comparisons import (
     gallery,
     joints,
     maxwell,
-    minimal,
     pile_precision,
     piles,
     pymunk_examples,
@@ -34,6 +33,7 @@ from comparisons import (
 from comparisons.__main__ import NAMES, main
 from comparisons.hopper import crossed, deepest_overlap
 from scenes import linkages, pendulum
+from scenes.bars import Bars
 
 
 def test_no_name_lists_all(capsys: pytest.CaptureFixture[str]) -> None:
@@ -342,7 +342,7 @@ def test_joints_tell_errors_and_costs(tmp_path: Path) -> None:
 
 
 def test_bars_by_their_angles_keep_their_energy_and_swing_as_the_digits_say() -> None:
-    bars = minimal.Bars(np.ones(2), np.ones(2), np.full(2, 0.5), np.ones(2), np.zeros(2), 10.0)
+    bars = Bars(np.ones(2), np.ones(2), np.full(2, 0.5), np.ones(2), np.zeros(2), 10.0)
     bars.run(1.0, 500)
     np.testing.assert_allclose(bars.places()[1], linkages.RODS_AT[1.0], atol=1e-10)
 

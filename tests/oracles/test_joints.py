@@ -12,8 +12,8 @@ import pytest
 import eeca_pymunk as ep
 from comparisons.hard_cases import Case, joints, linked
 from comparisons.hard_cases.joints import apart, energy
-from comparisons.minimal import Bars
 from scenes import linkages
+from scenes.bars import Bars
 
 from .audit import Audit
 from .running import check, of

@@ -5,10 +5,12 @@ Joints cannot come apart there, so that it is a reference that shares nothing wi
 
 from __future__ import annotations
 
-import numpy as np
-import numpy.typing as npt
+import math
+from collections.abc import Callable
 
-FloatArray = npt.NDArray[np.float64]
+import numpy as np
+
+from .scene import FloatArray
 
 
 class Bars:
@@ -30,15 +32,14 @@ class Bars:
         self._coupling = self.lever.T @ (mass[:, None] * self.lever)
         self._moment = np.diag(moment)
         self._weight = gravity * (mass @ self.lever)
-        self.angle: FloatArray = angle.astype(float)
+        self.angle: FloatArray = np.array(angle, np.float64)
         self.rate: FloatArray = np.zeros(count)
 
     def acceleration(self, angle: FloatArray, rate: FloatArray) -> FloatArray:
         """(N,) rad/s²: C cos(a_k - a_j) a_j'' + C sin(a_k - a_j) a_j'^2 + J a_k'' = -w_k cos a_k."""
         apart = angle[:, None] - angle[None]
         pull = -self._weight * np.cos(angle) - (self._coupling * np.sin(apart)) @ rate**2
-        found: FloatArray = np.linalg.solve(self._coupling * np.cos(apart) + self._moment, pull)
-        return found
+        return np.asarray(np.linalg.solve(self._coupling * np.cos(apart) + self._moment, pull), np.float64)
 
     def run(self, duration: float, steps: int) -> None:
         """Go on for `duration` (s) in so many steps."""
@@ -55,3 +56,19 @@ class Bars:
     def places(self) -> FloatArray:
         """(N, 2) centres of mass."""
         return np.column_stack((self.lever @ np.cos(self.angle), self.lever @ np.sin(self.angle)))
+
+
+def exact(make: Callable[[], Bars], step: float = 1e-3) -> Callable[[float], FloatArray]:
+    """Places of bars at any time t >= 0, in steps of at most `step` (s) from the last time that was asked for."""
+    bars, now = make(), 0.0
+
+    def at(t: float) -> FloatArray:
+        nonlocal bars, now
+        if t < now:
+            bars, now = make(), 0.0
+        if t > now:
+            bars.run(t - now, math.ceil((t - now) / step))
+            now = t
+        return bars.places()
+
+    return at
