@@ -28,6 +28,8 @@ SHORT = {
     "scaling": "test_comparisons.py::test_scaling_tells_ratios_of_one_interleaved_run",
     "detection": "test_comparisons.py::test_detection_finds_what_pymunk_finds",
     "piles": "test_comparisons.py::test_short_piles_keep_their_books",
+    "joints": "test_comparisons.py::test_joints_tell_errors_and_costs",
+    "pymunk_examples": "test_comparisons.py::test_pymunks_examples_are_run_under_both",
     "soak": "test_comparisons.py::test_short_soak_keeps_energy_and_disks",
     "hard_cases": "test_hard_cases.py::test_matrix_tells_passes_failures_and_refusals",
     "maxwell": "test_comparisons.py::test_speeds_of_gases_become_those_of_a_shared_energy",
