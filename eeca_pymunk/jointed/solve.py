@@ -68,7 +68,7 @@ from .layout import LIFTED, TURNED_WORK, Joints
 from .lifting import lift
 from .newton import solve_columns
 
-_OUTER, _ELASTIC_OUTER = 4, 12  # steps of the components
+_OUTER, _ELASTIC_OUTER = 6, 12  # steps of the components
 _AGREE, _REST_AGREE, _ELASTIC_AGREE = 1e-6, 1e-11, 1e-13  # velocities of both solutions, over |a| h and the speed
 _SWEEPS, _FEW_SWEEPS, _FEW, _ELASTIC_SWEEPS = 60, 200, 24, 400
 _FINE, _REST_FINE = 1e-9, 1e-12  # residual of the sweeps, likewise
