@@ -18,7 +18,6 @@ import scenes
 from comparisons import (
     detection,
     gallery,
-    jointed,
     maxwell,
     pile_precision,
     piles,
@@ -84,7 +83,7 @@ def test_scenes_start_without_overlap_and_on_their_exact_solution(name: str) -> 
     position = np.array([b.position for b in scene.bodies])
     if exact is not None:
         np.testing.assert_allclose(position, exact, atol=1e-15)
-    report = jointed.eeca(scene.space).step(1e-9)
+    report = ep.EECA(scene.space).step(1e-9)
     assert len(report.contacts) == 0 or report.contacts.gap.min() > -1e-12
     assert scene.dt > 0
     assert scene.duration > scene.dt

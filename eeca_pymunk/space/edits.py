@@ -57,14 +57,18 @@ def _set(self: pymunk.Constraint, name: str, value: Any) -> None:
         edits.hear(self)
 
 
-def show_impulses(items: Sequence[pymunk.Constraint], read: Callable[[int], float | None]) -> None:
+def shown(item: pymunk.Constraint) -> Any:
+    """Whose reading `impulse` of a constraint is: what `show_impulses` has answered, None for native's."""
+    return _readings.get(item, (None, 0))[0]
+
+
+def show_impulses(items: Sequence[pymunk.Constraint], read: Callable[[int], float | None]) -> Any:
     """Let `impulse` of these constraints be `read(row)`, a method, as long as its object lives and it knows one."""
-    if items and _readings.get(items[0], (None, 0))[0] == WeakMethod(read):
-        return
     method = WeakMethod(read)
     for j, item in enumerate(items):
         _readings[item] = method, j
     pymunk.Constraint.impulse = property(_impulse, doc=_native_impulse.__doc__)  # type: ignore[method-assign, assignment]
+    return method
 
 
 def _impulse(self: pymunk.Constraint) -> float:

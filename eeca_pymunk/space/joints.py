@@ -30,7 +30,7 @@ from ..joints.layout import (
 )
 from . import private
 from .constraints import check_constraint, read
-from .edits import Edits, show_impulses
+from .edits import Edits, show_impulses, shown
 from .partners import Partners
 from .spring_functions import Motion, Rate, law, own_function, put_law
 
@@ -56,6 +56,7 @@ class JointRows:
     ) -> None:
         """The rows of the constraints of `space`, whose bodies have these rows of n; what `past` knows is kept."""
         self.space, self._n = space, n
+        self._shown: Any = None
         self.items = list(space.constraints)
         self.joint: FloatArray = np.zeros((len(self.items), JOINT_COLUMNS))
         self.tie: IntArray = np.zeros((len(self.items), TIE_COLUMNS), np.int64)
@@ -194,4 +195,5 @@ class JointRows:
             if item.angle != self.joint[j, NOTCH]:
                 item.angle = float(self.joint[j, NOTCH])
                 self._edits.forget(int(j))
-        show_impulses(self.items, self.impulse)
+        if self._shown is None or shown(self.items[0]) is not self._shown:
+            self._shown = show_impulses(self.items, self.impulse)
