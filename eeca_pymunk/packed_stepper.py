@@ -292,11 +292,14 @@ class PackedStepper(Stepper):
         """The space as it is now, checked; with all its shapes if `anew` or if some came or went."""
         world = self._world
         self._world = None
+        if self._sleep is not None and self.space.sleep_time_threshold == math.inf:
+            self._sleep.wake()
+            self._sleep, anew = None, True
         if world is not None and not anew and world.same_contents():
             joints = world.joints
             world.read_settings()
-            if (self.space.sleep_time_threshold < math.inf) != (self._sleep is not None):
-                self._sleep = Sleep(world, None) if self._sleep is None else None
+            if self._sleep is None and self.space.sleep_time_threshold < math.inf:
+                self._sleep = Sleep(world, None)
             if world.joints is not joints:
                 self.prepare(world)
             self._world = world

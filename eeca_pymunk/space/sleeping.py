@@ -9,8 +9,8 @@ rest for `space.sleep_time_threshold`. At rest is a body with a certificate of s
     |v|, |spin| size <= AT_REST |g| dt     and     |x - x0| <= AT_REST |g| dt^2 + round-off,
 
 without forces of the user's. The impulse of the step's contacts and joints, each inside its cone of friction, then
-balances gravity's to AT_REST: the solver's tolerance. A body at the apex of a swing, which is merely slow for a moment, has
-|g| dt of a velocity one step later. Where there is no gravity, nothing but no motion at all will do.
+balances gravity's to AT_REST: the solver's tolerance. A body at the apex of a swing, which is merely slow for a moment,
+has a velocity of |g| dt one step later. Where there is no gravity, nothing but no motion at all will do.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ class Sleep:
         if past is not None:
             before = past.world.bodies.row
             for i, body in enumerate(bodies.items):
-                if body in before:
+                if body in before and not past.world.bodies.asleep[before[body]]:
                     self._rested[i] = past._rested[before[body]]
         self._steps, self._dt = self.space.collision_persistence + 2, 0.0
         self._wait = 0
@@ -125,7 +125,7 @@ class Sleep:
                 low, high = (shape.bb.left - room, shape.bb.bottom - room), (shape.bb.right + room, shape.bb.top + room)
                 self._wake_within(pymunk.BB(*low, *high))
         moved = np.array_equal(self.world.WALK[FOUND], self.world.WALK[KNOWN]) and not self.world.is_current()
-        if moved or self.world.edited() or self.space.sleep_time_threshold == math.inf:
+        if moved or self.world.edited():
             self.wake()
 
     def _wake_within(self, box: pymunk.BB) -> bool:
@@ -194,6 +194,7 @@ class Sleep:
             if (lead := root(i)) not in stay:
                 islands.setdefault(lead, []).append(bodies.items[i])
         for first, *others in islands.values():
+            self._rested[[bodies.row[body] for body in (first, *others)]] = 0.0
             first.sleep()
             for body in others:
                 body.sleep_with_group(first)
