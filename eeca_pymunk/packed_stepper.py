@@ -19,7 +19,7 @@ from .space.checks import check_ignored
 from .space.describe import describe
 from .space.hooks import Hooks, Rehearsal
 from .space.joints import JointRows
-from .space.sleeping import Sleep, rouse_jointed
+from .space.sleeping import Sleep, rouse
 from .space.sync import Sync
 from .space.world import World
 from .stepper import Stepper, check_dt
@@ -307,7 +307,7 @@ class PackedStepper(Stepper):
         past = self._past if world is None else world
         if self._sleep is not None:
             self._sleep.part()
-            rouse_jointed(self.space)
+            rouse(self.space)
         world = World(self.space, self.ignore, None if world is None or world.edited() else world, past)
         if world.ignores and not self._warned:
             self._warned = True

@@ -83,6 +83,11 @@ def arbiters(space: pymunk.Space) -> list[pymunk.Arbiter]:
     return [pymunk.Arbiter(one, space) for one in space._get_arbiters()]
 
 
+def touching(space: pymunk.Space) -> list[tuple[pymunk.Body, pymunk.Body]]:
+    """Pairs of bodies that touched in pymunk's last step."""
+    return [arbiter.bodies for arbiter in arbiters(space)]
+
+
 def velocity_function(body: pymunk.Body) -> Callable[..., None] | None:
     """The body's own velocity function, None if it has pymunk's; the public property tells no difference."""
     return body._velocity_func

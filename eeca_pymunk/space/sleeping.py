@@ -8,9 +8,9 @@ rest for `space.sleep_time_threshold`. At rest is a body with a certificate of s
 
     |v|, |spin| size <= AT_REST |g| dt     and     |x - x0| <= AT_REST |g| dt^2 + round-off,
 
-without forces of the user's. The impulse of the step's contacts and joints, each inside its cone of friction, then
-balances gravity's to AT_REST: the solver's tolerance. A body at the apex of a swing, which is merely slow for a moment,
-has a velocity of |g| dt one step later. Where there is no gravity, nothing but no motion at all will do.
+and round-off of the fastest body's, without forces of the user's. The impulse of the step's contacts and joints, each
+inside its cone of friction, then balances gravity's to AT_REST: the solver's tolerance. A body at the apex of a swing,
+which is merely slow for a moment, has a velocity of |g| dt one step later. Without gravity only round-off will do.
 """
 
 from __future__ import annotations
@@ -32,8 +32,9 @@ if TYPE_CHECKING:
     from .world import World
 
 AT_REST = 1e-6
-_ROUND = 1e-14  # of coordinates
+_ROUND = 1e-14  # of coordinates, and of the largest speed
 _AGAIN = 16  # steps after which islands that could not fall asleep are looked at again
+_SHARE, _PATIENCE = 8, 120  # islands fall asleep that are this part of who is awake, or after so many steps
 
 
 class Sleep:
@@ -60,14 +61,15 @@ class Sleep:
         )
         self._timestamp = private.timestamp(self.space)
         self._left = self._timestamp()
+        self._wait, self._since = 0, _PATIENCE
         self._rested: FloatArray = np.zeros(len(bodies))  # seconds
         if past is not None:
+            self._wait, self._since = past._wait, past._since
             before = past.world.bodies.row
             for i, body in enumerate(bodies.items):
                 if body in before and not past.world.bodies.asleep[before[body]]:
                     self._rested[i] = past._rested[before[body]]
         self._steps, self._dt = self.space.collision_persistence + 2, 0.0
-        self._wait = 0
         self._tired: BoolArray = np.zeros(len(bodies), bool)
         row = world.WALK[BODY_ROW]
         self._size: FloatArray = np.where(row >= 0, world.BODY[row, EXTENT], 0.0)
@@ -104,7 +106,7 @@ class Sleep:
         pull = math.hypot(*self.space.gravity)
         for i in np.flatnonzero(moves):
             x, y, _, vx, vy, spin, fx, fy, _ = world.state[i]
-            if not bodies.dynamic[i] and vx == vy == spin == 0.0:
+            if self._size[i] == 0.0 or (not bodies.dynamic[i] and vx == vy == spin == 0.0):
                 continue
             force = math.hypot(fx, fy) * bodies.inverse_mass[i]
             reach = self._size[i] + float(np.hypot(*bodies.center_of_gravity[i]))
@@ -145,8 +147,9 @@ class Sleep:
         """Count how long bodies have been at rest, after a step; whether any may fall asleep."""
         self._left = self._timestamp()
         world, bodies = self.world, self.world.bodies
-        limit = AT_REST * math.hypot(*self.space.gravity) * dt
         before, after = world.STATES[NOW], world.STATES[LEFT]
+        fastest = float(np.hypot(after[:, 3], after[:, 4]).max(initial=0.0))
+        limit = AT_REST * math.hypot(*self.space.gravity) * dt + _ROUND * fastest
         size = self._size
         way = np.abs(after[:, :3] - before[:, :3])
         way[:, 2] *= size
@@ -160,6 +163,7 @@ class Sleep:
         self._rested[rests] += dt
         self._rested[~rests] = 0.0
         self._wait = max(self._wait - 1, 0)
+        self._since += 1
         # Sums of dt fall short of the threshold by round-off.
         tired = rests & (self._rested >= self.space.sleep_time_threshold * (1.0 - 1e-9))
         if self._wait > 0 or not tired.any():
@@ -179,35 +183,42 @@ class Sleep:
 
         kept: BoolArray = bodies.dynamic & ~tired
         pairs = list(zip(contacts.body_a.tolist(), contacts.body_b.tolist(), strict=True))
-        for item in self.space.constraints:
-            if item.a in bodies.row and item.b in bodies.row:
-                pairs.append((bodies.row[item.a], bodies.row[item.b]))
+        # pymunk keeps a contact with who sleeps for good, so that one must not sleep without the other.
+        for one, two in (*((c.a, c.b) for c in self.space.constraints), *private.touching(self.space)):
+            if one in bodies.row and two in bodies.row:
+                pairs.append((bodies.row[one], bodies.row[two]))
         for a, b in pairs:
             if bodies.dynamic[a] and bodies.dynamic[b]:
                 groups[root(a)] = root(b)
             for one, other in ((a, b), (b, a)):
                 # What lies on a kinematic body, or hangs from it, stays awake.
                 kept[one] |= bodies.dynamic[one] and not (bodies.dynamic[other] or bodies.static[other])
+        self._wait = _AGAIN
         stay = {root(int(i)) for i in np.flatnonzero(kept)}
         islands: dict[int, list[pymunk.Body]] = {}
         for i in np.flatnonzero(tired).tolist():
             if (lead := root(i)) not in stay:
                 islands.setdefault(lead, []).append(bodies.items[i])
+        # All others start anew, without what their solver knew: not for every box that rests beside a pile.
+        falling = sum(map(len, islands.values()))
+        if falling * _SHARE < np.count_nonzero(bodies.dynamic) and self._since < _PATIENCE:
+            return
+        self._since = 0
         for first, *others in islands.values():
             self._rested[[bodies.row[body] for body in (first, *others)]] = 0.0
             first.sleep()
             for body in others:
                 body.sleep_with_group(first)
-        self._wait = _AGAIN
 
 
-def rouse_jointed(space: pymunk.Space) -> None:
-    """Wake who is jointed to a body that is awake."""
+def rouse(space: pymunk.Space) -> None:
+    """Wake who is jointed to a body that is awake, or touches one in pymunk's eyes."""
+    pairs = [*((c.a, c.b) for c in space.constraints), *private.touching(space)]
     again = True
     while again:
         again = False
-        for item in space.constraints:
-            for one, other in ((item.a, item.b), (item.b, item.a)):
+        for first, second in pairs:
+            for one, other in ((first, second), (second, first)):
                 if one.is_sleeping and not other.is_sleeping and other.body_type != pymunk.Body.STATIC:
                     if other.space is space:
                         one.activate()

@@ -50,13 +50,22 @@ def rest_step(
         if joints is None:
             private.step_alone(space, dt)
         else:
-            push = inert(joints.items if forget else joints.pushing())
-            with silent(joints.calling), with_laws(joints.own, joints.laws()), push:
+            push, calling = joints.items if forget else joints.pushing(), joints.calling
+            own, laws = joints.own, joints.laws()
+            if asleep:  # pymunk has put their joints away, and any change of one would wake its bodies
+                push, calling = _awake(push), _awake(calling)
+                laws = [law for item, law in zip(own, laws, strict=True) if _awake([item])]
+                own = _awake(own)
+            with silent(calling), with_laws(own, laws), inert(push):
                 private.step_alone(space, dt)
     finally:
         if not asleep:
             space.gravity = gravity
         space.iterations, space.collision_bias = iterations, bias
+
+
+def _awake(items: list[pymunk.Constraint]) -> list[pymunk.Constraint]:
+    return [item for item in items if not (item.a.is_sleeping or item.b.is_sleeping)]
 
 
 class Sync:

@@ -167,6 +167,31 @@ def test_what_hangs_at_rest_sleeps_and_an_impulse_wakes_it() -> None:
     assert body.velocity.x == pytest.approx(math.cos(DT), abs=3e-3)
 
 
+def test_what_is_jointed_sleeps_on_beside_others() -> None:
+    """Also where joints, of bodies that sleep and of others, have forces, laws and functions of their own."""
+    space = pymunk.Space()
+    space.sleep_time_threshold = 0.1
+    held = [box(space, 3.0 * i, 0.0) for i in range(3)]
+    for body in held:
+        pivot = pymunk.PivotJoint(space.static_body, body, body.position)
+        pivot.max_force = 1000.0
+        spring = pymunk.DampedRotarySpring(space.static_body, body, 0.0, 1.0, 0.0)
+        spring.torque_func = lambda spring, angle: -angle
+        space.add(pivot, spring)
+    held[2].angular_velocity = 1.0
+    flying = ball(space, (0.0, 5.0), (1.0, 0.0))
+    stepper = ep.EECA(space)
+    for _ in range(20):
+        stepper.step(DT)
+    assert [body.is_sleeping for body in held] == [True, True, False]
+    assert flying.position.x == pytest.approx(20 * DT)
+    flying.velocity = -3.0, -30.0
+    for _ in range(20):
+        stepper.step(DT)
+    assert not held[0].is_sleeping
+    assert held[1].is_sleeping
+
+
 def remove_ground(space: pymunk.Space) -> None:
     space.remove(*space.static_body.shapes)
 
