@@ -26,6 +26,7 @@ NAMES = (
     "scaling",
     "detection",
     "piles",
+    "joints",
     "soak",
     "pymunk_examples",
     "hard_cases",

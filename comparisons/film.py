@@ -55,6 +55,7 @@ FILMS = {
     "billiard": Film(duration=1.0, view=(-0.05, 2.6, -0.05, 1.32)),
     "cradle": Film(duration=0.3, view=(-0.25, 0.4, -0.15, 0.15), dt=0.001, frames=40),
     "double_pendulum": Film(duration=6.0, view=(-2.1, 2.1, -0.1, 3.2)),
+    "rods": Film(duration=8.0, view=(-1.2, 1.2, -0.2, 0.6), frames=56),
     "chain": Film(duration=3.0, view=(-3.1, 3.1, -0.6, 3.4)),
 }
 

@@ -12,7 +12,7 @@ from comparisons.output import Output
 from eeca_pymunk import render
 from eeca_pymunk.recording import step_count
 
-NAMES = ("carom", "pile", "drum", "billiard", "hopper", "cradle", "pool_break", "double_pendulum", "chain")
+NAMES = ("carom", "pile", "drum", "billiard", "hopper", "cradle", "pool_break", "double_pendulum", "rods", "chain")
 LARGEST = 300_000  # bytes
 
 

@@ -1,4 +1,4 @@
-"""Soak: a million steps of a gas, ten minutes of the hopper; drift of energy, who is inside, memory on the way."""
+"""Soak: a million steps of a gas, linkages, ten minutes of the hopper; drift of energy, who is inside, memory."""
 
 from __future__ import annotations
 
@@ -10,13 +10,16 @@ from tqdm import tqdm
 
 import eeca_pymunk as ep
 import scenes
+from comparisons.hard_cases.joints import apart
 from comparisons.hopper import crossed
 from comparisons.output import Output, Row
+from scenes import linkages
 
 STEPS, DT, RADIUS = 1_000_000, 1e-3, 0.03
 LOOKS = 10
 MINUTES = 10
 TURNS = 10_000
+SWINGS = 100_000
 
 
 def run(output: Output, full: bool) -> None:
@@ -28,6 +31,7 @@ def run(output: Output, full: bool) -> None:
         [mixed(TURNS, seed, bowl) for bowl in (False, True) for seed in (0, 1)],
         "mixed",
     )
+    output.table(f"Joints, {SWINGS} steps of 1/60 s", jointed(SWINGS), "joints")
     output.table(f"Hopper, {MINUTES} minutes of EECA TimeOfImpact", hopper(60.0 * MINUTES), "hopper")
 
 
@@ -63,6 +67,27 @@ def mixed(steps: int, seed: int, bowl: bool) -> Row:
     low, high = (np.array((-4.0, -4.0)), np.array((8.0, 16.0))) if bowl else (np.zeros(2), np.full(2, 4.0))
     outside = int(((x < low) | (x > high)).any(axis=1).sum())
     return {"in": "bowl" if bowl else "box", "seed": seed, "impacts": impacts, "max |dE/E|": drift, "outside": outside}
+
+
+def jointed(steps: int) -> list[Row]:
+    """Pendulum, double pendulum, a four-bar with redundant rows: drift of the energy, by how far joints come apart."""
+    rows: list[Row] = []
+    for name, build in (
+        ("pendulum", linkages.pendulum), ("double pendulum", linkages.bars), ("four-bar", linkages.braced_four_bar),
+    ):  # fmt: skip
+        row: dict[str, str | float] = {"scene": name}
+        for stepper in ("EECA", "native"):
+            space = build()
+            step = ep.EECA(space).step if stepper == "EECA" else space.step
+            scale = sum(body.mass for body in space.bodies) * linkages.GRAVITY
+            start, drift, gap = ep.measure(space).energy, 0.0, 0.0
+            for k in tqdm(range(1, steps + 1), desc=f"{name}, {stepper}", unit="step", mininterval=1.0, disable=None):
+                step(1 / 60)
+                if k % 20 == 0:
+                    drift, gap = max(drift, abs(ep.measure(space).energy - start)), max(gap, apart(space))
+            row |= {f"{stepper}: |dE|/mgl": drift / scale, f"{stepper}: joints apart (m)": gap}
+        rows.append(row)
+    return rows
 
 
 def hopper(seconds: float, looks: int = LOOKS) -> list[Row]:

@@ -206,7 +206,8 @@ def picture(found: dict[str, list[Point]], shown: list[Row]) -> Figure:
             mine = [p for p in points if p.stepper == stepper]
             error = np.array([max(p.error, FLOOR) for p in mine])
             wall = np.array([p.wall for p in mine])
-            order = f", slope {runs.slope(wall, error):.1f}" if len(mine) > 2 and error.min() > 1e-9 else ""
+            seen = error > 1e-9  # the rest is round-off
+            order = f", slope {runs.slope(wall[seen], error[seen]):.1f}" if seen.sum() > 2 else ""
             ax.loglog(1e3 * wall, error, "o-", color=color, linewidth=width, markersize=4, label=f"{stepper}{order}")
         told = f"in equal time {_power(float(row['x smaller error'] or 0.0))}"
         ax.set(xlabel="time of all steps (ms)", title=f"{name}\n{told}")

@@ -22,6 +22,7 @@ from . import (
     pile,
     pool_break,
     pyramid,
+    rods,
     signorini,
     slope,
 )
@@ -47,6 +48,8 @@ _BUILDERS: dict[str, Callable[..., Scene]] = {
     "pendulum": pendulum.build,
     "double_pendulum": linked.double_pendulum,
     "chain": linked.chain,
+    "rods": rods.cradle,
+    "heap": rods.heap,
 }
 NAMES = tuple(_BUILDERS)
 

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import pymunk
 
-from .scene import Scene, add_box
+from .bars import Bars, exact
+from .scene import FloatArray, Scene, add_box
 
 GRAVITY = 9.81
 _NOBODY = pymunk.ShapeFilter(mask=0)
@@ -15,8 +17,17 @@ _NOBODY = pymunk.ShapeFilter(mask=0)
 def double_pendulum(degrees: float = 120.0, dt: float = 1 / 60, duration: float = 10.0) -> Scene:
     """Two bars of 1 m and 1 kg that hang at 2 m, let go at rest, both `degrees` from the vertical."""
     space = _space()
-    bodies = _bars(space, (0.0, 2.0), math.radians(degrees - 90.0), 2, 1.0)
-    return Scene("double_pendulum", space, bodies, dt, duration, 1e6, parameters={"degrees": degrees, "dt": dt})
+    angle = math.radians(degrees - 90.0)
+    bodies = _bars(space, (0.0, 2.0), angle, 2, 1.0)
+    moment, half, whole = np.full(2, 1.0 / 12.0), np.full(2, 0.5), np.ones(2)
+    swung = exact(lambda: Bars(whole, moment, half, whole, np.full(2, angle), GRAVITY))
+
+    def places(t: float) -> FloatArray:
+        found: FloatArray = swung(t) + np.array((0.0, 2.0))
+        return found
+
+    parameters = {"degrees": degrees, "dt": dt}
+    return Scene("double_pendulum", space, bodies, dt, duration, 1e6, places, parameters)
 
 
 def chain(count: int = 20, dt: float = 1 / 60, duration: float = 5.0) -> Scene:

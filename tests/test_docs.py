@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import re
 import shlex
 from dataclasses import replace
@@ -11,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import scenes
-from comparisons import engines, film, films, pymunk_examples, tour
+from comparisons import engines, film, films, tour
 from comparisons.__main__ import NAMES, chosen, command_line, main
 
 ROOT = Path(__file__).parents[1]
@@ -29,12 +28,13 @@ SHORT = {
     "scaling": "test_comparisons.py::test_scaling_tells_ratios_of_one_interleaved_run",
     "detection": "test_comparisons.py::test_detection_finds_what_pymunk_finds",
     "piles": "test_comparisons.py::test_short_piles_keep_their_books",
+    "joints": "test_comparisons.py::test_joints_tell_errors_and_costs",
+    "pymunk_examples": "test_comparisons.py::test_pymunks_examples_are_run_under_both",
     "soak": "test_comparisons.py::test_short_soak_keeps_energy_and_disks",
     "hard_cases": "test_hard_cases.py::test_matrix_tells_passes_failures_and_refusals",
     "maxwell": "test_comparisons.py::test_speeds_of_gases_become_those_of_a_shared_energy",
     "engines": "test_docs.py::test_engines_that_are_missing_are_skipped_with_a_word",
     "films": "test_docs.py::test_films_run",
-    "pymunk_examples": "test_docs.py::test_examples_of_pymunk_say_what_they_need",
     "gallery": "test_comparisons.py::test_gallery_page_shows_every_figure_and_table",
 }
 
@@ -127,17 +127,3 @@ def test_readme_is_short_and_has_one_command_of_tests() -> None:
     ]
     first = next(line for line in lines if "python -m comparisons" in line and line.startswith("python3"))
     assert first.endswith("-m comparisons tour")
-
-
-def test_examples_of_pymunk_say_what_they_need(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setattr(pymunk_examples.importlib.util, "find_spec", lambda name: None)
-    assert main(["pymunk_examples", "--out", str(tmp_path)]) == 0
-    assert 'pip install "eeca-pymunk[examples]"' in capsys.readouterr().out
-
-
-@pytest.mark.skipif(importlib.util.find_spec("pygame") is None, reason="needs pygame-ce")
-def test_an_example_of_pymunk_runs(tmp_path: Path) -> None:
-    row = pymunk_examples.example("basic_test", 10, tmp_path)
-    assert row["native"] == row["ours"] == "runs"

@@ -62,6 +62,16 @@ BROKEN = {
         "lambda of: lambda *a: False",
         "touching line of three",
     ),
+    "jointed bodies a millionth too far": (
+        "motion.move",
+        "lambda of: lambda local, bodies, h: of(local, bodies, 1.000001 * h)",
+        "bead in a groove",
+    ),
+    "limits a millionth too late": (
+        "bounds.gap",
+        "lambda of: lambda *a: of(*a) + 1e-6",
+        "ratchet",
+    ),
 }
 _BREAK = """
 import sys
@@ -69,6 +79,7 @@ from comparisons import hard_cases
 import eeca_pymunk as ep
 from eeca_pymunk import compiled
 from eeca_pymunk.impacts import strike, times
+from eeca_pymunk.joints import bounds, motion
 from eeca_pymunk.rows import build
 from eeca_pymunk.rows.layout import ARM_NA, ARM_NB, ARM_TA, ARM_TB
 ARMS = [ARM_NA, ARM_NB, ARM_TA, ARM_TB]

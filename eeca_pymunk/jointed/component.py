@@ -8,7 +8,9 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
 from ..geometry.flight import pose, rate
 from ..impacts.layout import Scene
+from ..joints.bounds import bounded, gap
 from ..joints.correct import kinetic
+from ..joints.entries import held as stands
 from ..joints.layout import ANCHOR_AX, GEAR, JOINT_COLUMNS, TIE_COLUMNS
 from ..joints.ledger import springs_hold
 from ..joints.response import prepare, respond
@@ -29,6 +31,8 @@ from ..joints.scratch import (
     L_JOINT,
     L_KIND,
     L_ROWS,
+    L_SIDE,
+    L_SOFT,
     LOOPS,
     M_BODY,
     M_CAYLEY,
@@ -52,6 +56,8 @@ from ..joints.start import look
 from ..joints.step import island_step
 from ..layout import ANGLE, SPIN, VX, VY, X, Y
 from .layout import ORDER, REPEATS, WORST, Joints
+
+_CLOSED = 1e-11  # of the size of a component, that joints may be off where bodies are lifted
 
 
 @uncounted
@@ -195,7 +201,7 @@ def close_joints(
     t: float, h: float,
 ) -> float:  # fmt: skip
     """Close the joints of component s at the poses NEW (k, 3) of an island, along M^-1 G^T; how much more its springs
-    hold there than at OLD."""
+    hold there than at OLD, infinite if joints do not close or limits are passed."""
     j0, j1, b0 = J.SPAN[s, JOINT_0], J.SPAN[s, JOINT_1], J.SPAN[s, BODY_0]
     n = J.SPAN[s, BODY_1] - b0
     band, size = J.SPAN[s, BAND], J.SPAN[s, UNKNOWNS]
@@ -219,7 +225,19 @@ def close_joints(
             q = A.PLACE[J.MEMBER[b0 + i, M_BODY]]
             for c in range(3):
                 NEW[q, c] = J.LOCAL[i, POSE + c]
-    return springs_of(J, s, n) - held
+    held = springs_of(J, s, n) - held
+    for k in range(j1 - j0):
+        link, small = J.LINK[j0 + k], _CLOSED * J.HINGE[k, SIZE]
+        if link[L_SOFT] != 0:
+            continue
+        for r in range(link[L_ROWS]):
+            if stands(J.LINK, j0 + k, r) and abs(J.HINGE[k, VALUE + r] - J.HINGE[k, TARGET + r]) > small:
+                return math.inf
+        for side in (-1, 1):
+            passed = bounded(J.JOINT, J.LINK[j0:j1], k, side) and link[L_SIDE] != side
+            if passed and gap(J.JOINT, J.HINGE, J.LINK[j0:j1], k, side) < -small:
+                return math.inf
+    return held
 
 
 @uncounted

@@ -68,11 +68,12 @@ from .layout import LIFTED, TURNED_WORK, Joints
 from .lifting import lift
 from .newton import solve_columns
 
-_OUTER, _ELASTIC_OUTER = 4, 12  # steps of the components
+_OUTER, _ELASTIC_OUTER = 6, 12  # steps of the components
 _AGREE, _REST_AGREE, _ELASTIC_AGREE = 1e-6, 1e-11, 1e-13  # velocities of both solutions, over |a| h and the speed
 _SWEEPS, _FEW_SWEEPS, _FEW, _ELASTIC_SWEEPS = 60, 200, 24, 400
 _FINE, _REST_FINE = 1e-9, 1e-12  # residual of the sweeps, likewise
 _LOCKS = 4
+_CHORD = 3  # steps of the components between which their answers are taken to be the same
 
 
 class Motion(NamedTuple):
@@ -174,14 +175,25 @@ def press(
     fine = (1e-15 if elastic else (_REST_FINE if rests else _FINE)) * scale
     most = _ELASTIC_SWEEPS if elastic else (_FEW_SWEEPS if m <= _FEW else _SWEEPS)
     FORESEEN = np.empty((len(isle.IM), 3))
-    converged = False
+    converged, best, LEAST = False, np.inf, L.copy()
     for outer in range(_ELASTIC_OUTER if elastic else _OUTER):
-        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, True)
-        if outer > 0 and farthest_apart(motion.V, FORESEEN, isle.EXTENT, n) <= agree:
-            converged = True
-            break
-        if outer == 0:
+        anew = outer % _CHORD == 0
+        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, anew)
+        if outer > 0:
+            off = farthest_apart(motion.V, FORESEEN, isle.EXTENT, n)
+            if off <= agree:
+                converged = True
+                break
+            if off < best:
+                best = off
+                LEAST[:] = L
+            else:
+                # Too far: the components do not answer as they did.
+                L[:] = 0.5 * (L + LEAST)
+                advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, anew)
+        if anew:
             weigh(groups, C, P, Q, ROWS, m)
+        if outer == 0:
             EFFECT = motion.V.copy()
             push_columns(C, L, m, -1.0, EFFECT)
             for q in range(len(EFFECT)):
@@ -195,6 +207,9 @@ def press(
             break
     else:
         advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, False)
+        if not farthest_apart(motion.V, FORESEEN, isle.EXTENT, n) <= best:
+            L[:] = LEAST
+            advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, False)
         converged = False
     energy = 0.0
     for q in range(n):
@@ -222,8 +237,8 @@ def press(
         if tries == _LOCKS or not 0.0 < s < 2.0:
             s = 0.0
         for i in range(m):
-            L[i, 0] *= s
-            L[i, 1] *= s
+            L[i, 0] = s * L[i, 0] if s > 0.0 else 0.0
+            L[i, 1] = s * L[i, 1] if s > 0.0 else 0.0
         advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, False)
         converged = False
         if s == 0.0:

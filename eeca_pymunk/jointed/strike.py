@@ -11,7 +11,7 @@ from ..geometry.gap import gap_at
 from ..impacts.block import Block, gather, lay_out, owing
 from ..impacts.booking import book
 from ..impacts.collide import finish, rejoin
-from ..impacts.islands import members
+from ..impacts.islands import members, unite
 from ..impacts.layout import (
     BODIES,
     DAMPED,
@@ -25,6 +25,7 @@ from ..impacts.layout import (
     LIFT,
     LOST,
     OPEN,
+    PENDING,
     PUSH_A,
     PUSH_B,
     PUSHES,
@@ -55,6 +56,7 @@ from .solve import begin_span
 _MEET = 1e-13  # gap at an impact, over the smaller shape
 _SECANTS, _LOADED_SECANTS = 5, 2  # also where other contacts push
 _SWEEPS = 1000
+_INSTANT = 1e-12  # of a step, below which a span is none
 
 
 @uncounted
@@ -119,7 +121,7 @@ def shorten(A: Scene, J: Joints, root: int, t: float) -> bool:
     found = components_of(A, J, root)
     for c in range(len(found)):
         restore_joints(J, found[c])
-    if t > began:
+    if t - began > _INSTANT * A.PAR[DT]:
         begin_span(A, J, root, began, t - began)
     return some
 
@@ -132,7 +134,7 @@ def end_here(A: Scene, J: Joints, root: int, t: float) -> None:
     for c in range(A.COUNT[PUSHES]):
         if A.PUSHED_BY[c, ROOT] == root:
             book(A, c, t)
-    empty = t <= A.BODY[root, SINCE]
+    empty = t - A.BODY[root, SINCE] <= _INSTANT * A.PAR[DT]
     found = components_of(A, J, root)
     for c in range(len(found)):
         if empty:
@@ -230,7 +232,8 @@ def collide(A: Scene, J: Joints, disks: int, a: int, b: int, t: float) -> tuple[
     i, j = A.LINK[a, OWNER], A.LINK[b, OWNER]
     t = meet(A, J, a, b, t)
     n, m, PAIRS = gather(A, disks, a, b, t)
-    again = True
+    again, ended = True, 0
+    ENDED = np.empty(A.BODY.shape[0], np.int64)
     while again:
         again = False
         for q in range(n):
@@ -238,6 +241,8 @@ def collide(A: Scene, J: Joints, disks: int, a: int, b: int, t: float) -> tuple[
             if root >= 0 and A.MEMBER[root, OPEN] > 0 and A.MEMBER[root, JOINTED] > 0:
                 shorten(A, J, root, t)
                 end_here(A, J, root, t)
+                ENDED[ended] = root
+                ended += 1
                 again = True
         if again:
             dismiss(A, A.BLOCK, n)
@@ -309,4 +314,13 @@ def collide(A: Scene, J: Joints, disks: int, a: int, b: int, t: float) -> tuple[
     A.STATE[i, KINKS] += 1
     if A.BODY[j, IM] > 0.0:
         A.STATE[j, KINKS] += 1
-    return rejoin(A, a, b, t, n, rest, OUT[D_NORMAL] + OUT[D_TANGENTIAL] - owed)
+    status, n = rejoin(A, a, b, t, n, rest, OUT[D_NORMAL] + OUT[D_TANGENTIAL] - owed)
+    # Islands that were brought here, and do not touch after all, begin anew with those that do.
+    root = A.STATE[i if A.BODY[i, IM] > 0.0 else j, ISLAND]
+    for c in range(ended):
+        other = A.STATE[ENDED[c], ISLAND]
+        if other != root:
+            n += members(A, other, A.BLOCK[n:])
+            root = unite(A, root, other)
+    A.COUNT[PENDING] = root
+    return status, n

@@ -35,6 +35,7 @@ def step_with_limits(
     """
     left, when, low, high = h, h, 0.0, h
     events, solves, secants, meeting, side = 0, 0, 0, -1, 0
+    last, before = 0.0, 0.0
     while True:
         redundant = loops or standing(link, joints)
         if when > 1e-13 * abs(h) or h < 0.0:
@@ -68,8 +69,16 @@ def step_with_limits(
                 else:
                     high = when
                 rate = approach(hinge, link, meeting, side, local, AFTER)
+                if secants > 1 and when != last:
+                    rate = (distance - before) / (when - last)
+                last, before = when, distance
                 step = when - distance / rate if rate < 0.0 else 0.5 * (low + high)
                 when = step if low < step < high else 0.5 * (low + high)
+                continue
+            k = first_bound(joint, hinge, link, joints, local, when, found)
+            if k >= 0 and k != meeting and events < MOST_EVENTS:  # another one is passed before
+                meeting, side, low, high, secants, events = k, int(found[0]), 0.0, when, 0, events + 1
+                when = found[1]
                 continue
             book(joint, hinge, link, joints, local, when, ledger)
             advance(local, bodies)

@@ -1,8 +1,9 @@
 """How an island of joints answers impulses on its bodies: the change of velocities per impulse.
 
-About a solved step, d v1 = S p for impulses p spread over the step, S the inverse of Newton's matrix: exact to first
-order, springs, bounded joints and the bending of rows included. At one instant (an impact), S = M^-1 - M^-1 G^T (G M^-1
-G^T)^-1 G M^-1: joints that hold exactly let no velocity through, and all others no impulse.
+About a solved step, d v1 = S p for impulses p spread over the step, S the inverse of Newton's matrix with springs and
+bounded joints, but without the bending of rows, by which S would not be positive where joints press. At one instant (an
+impact), S = M^-1 - M^-1 G^T (G M^-1 G^T)^-1 G M^-1: joints that hold exactly let no velocity through, and all others no
+impulse.
 """
 
 from __future__ import annotations
@@ -23,6 +24,8 @@ from .scratch import (
     FREEDOMS,
     L_ROW,
     L_ROWS,
+    L_SOFT,
+    LAM,
     MOBILITY,
     POSE,
     ROOT,
@@ -100,6 +103,9 @@ def prepare(
             local[i, COS], local[i, SIN] = np.cos(local[i, POSE + 2]), np.sin(local[i, POSE + 2])
         for k in range(joints):
             start_joint(joint, hinge, link, k, local, h)
+            # Without the bending of rows, S is symmetric and positive up to first order in h.
+            if link[k, L_ROWS] > 0 and link[k, L_SOFT] == 0:
+                hinge[k, LAM] = hinge[k, LAM + 1] = 0.0
         move(local, bodies, h)
     else:
         begin(what, joint, hinge, link, joints, local, node, bodies, h)
