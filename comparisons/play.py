@@ -46,6 +46,7 @@ _KEYS = (
     "x",
 )
 _ENDED_BY_KEYS = ("newtons_cradle",)
+_ARGUMENTS = {"newtons_cradle": ("/s",)}  # without any it only tells how to call it
 
 
 class Done(BaseException):
@@ -186,7 +187,7 @@ def main(arguments: list[str]) -> int:
     random.seed(1)
     hands, clocked = Hands(pygame, frames, name in _ENDED_BY_KEYS), Clocked(solver)
     says = "runs"
-    sys.argv = [name]
+    sys.argv = [name, *_ARGUMENTS.get(name, ())]
     try:
         with played(pygame, hands, clocked):
             runpy.run_module(f"pymunk.examples.{name}", run_name="__main__", alter_sys=True)

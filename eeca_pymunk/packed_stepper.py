@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from abc import abstractmethod
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, TypeVar
+
+import numpy as np
 
 from .arrays import FloatArray
 from .energy.ledger import AFTER, DAMPED
@@ -16,6 +19,7 @@ from .space.checks import check_ignored
 from .space.describe import describe
 from .space.hooks import Hooks, Rehearsal
 from .space.joints import JointRows
+from .space.sleeping import Sleep, rouse
 from .space.sync import Sync
 from .space.world import World
 from .stepper import Stepper, check_dt
@@ -47,11 +51,13 @@ class PackedStepper(Stepper):
         self._world: World | None = None
         self._past: World | None = None  # before a refresh
         self._told: JointRows | None = None  # what `constraint.impulse` reads
+        self._sleep: Sleep | None = None  # None where nobody can
+        self._idle_book: FloatArray | None = None  # of a step in which everyone sleeps
         self._look()
 
     def __getstate__(self) -> dict[str, object]:
         # Original and copy go on from the same: without what was remembered of earlier steps.
-        self._world = self._past = None
+        self._world = self._past = self._sleep = None
         state = self.__dict__.copy()
         state.pop("_sync", None)
         state["_told"] = None
@@ -106,6 +112,43 @@ class PackedStepper(Stepper):
         world = self._world
         if world is None or not world.current():
             world = self._look()
+        return self._step(world, dt) if self._sleep is None else self._drowsy_step(self._sleep, world, dt)
+
+    def _drowsy_step(self, sleep: Sleep, world: World, dt: float) -> StepReport:
+        """A step of a space whose bodies may sleep."""
+        changed = sleep.changed()
+        if not changed and sleep.nothing_moves():
+            sleep.step(dt)
+            self.time += dt
+            if self.sync:
+                self._sync.call_back()
+            return StepReport(self.time, world.empty, book=self._idle_book)
+        if changed or (sleep.some and sleep.meet(dt)):
+            world = self._look(anew=True)
+        report = self._step(world, dt)
+        now = self._sleep
+        if now is not None and now.world is self._world:
+            if now.some:
+                now.wake(now.touched(report.contacts))  # by what functions have done
+            if now.rest(dt) and now.world.current():
+                now.fall_asleep(report.contacts)
+        return report
+
+    def _awake(self, world: World, dt: float, left: float, status: int) -> tuple[World, int]:
+        """Take the step again, with those awake that it has touched asleep."""
+        while self._sleep is not None and self._sleep.some and status >= 0 and status & EVENTS:
+            details = self.details(world, dt)
+            touched = self._sleep.touched((details if isinstance(details, Details) else details()).contacts)
+            if not touched:
+                break
+            self._sleep.wake(touched)
+            world = self._look(anew=True)
+            world.gather()
+            status = self.advance(world, dt, left)
+        return world, status
+
+    def _step(self, world: World, dt: float) -> StepReport:
+        """A step of the bodies that are awake."""
         if not world.plain and (world.hooked or (world.joints is not None and world.joints.calls_back())):
             return self._hooked_step(world, dt)
         world.gather()
@@ -115,6 +158,8 @@ class PackedStepper(Stepper):
             world = self._look(anew=True)
             world.gather()
             status = self.advance(world, dt, left)
+        if self._sleep is not None:
+            world, status = self._awake(world, dt, left, status)
         if status < 0:
             self._fail(world, dt, status)
         try:
@@ -247,20 +292,31 @@ class PackedStepper(Stepper):
         """The space as it is now, checked; with all its shapes if `anew` or if some came or went."""
         world = self._world
         self._world = None
+        if self._sleep is not None and self.space.sleep_time_threshold == math.inf:
+            self._sleep.wake()
+            self._sleep, anew = None, True
         if world is not None and not anew and world.same_contents():
             joints = world.joints
             world.read_settings()
+            if self._sleep is None and self.space.sleep_time_threshold < math.inf:
+                self._sleep = Sleep(world, None)
             if world.joints is not joints:
                 self.prepare(world)
             self._world = world
             return world
         past = self._past if world is None else world
+        if self._sleep is not None:
+            self._sleep.part()
+            rouse(self.space)
         world = World(self.space, self.ignore, None if world is None or world.edited() else world, past)
         if world.ignores and not self._warned:
             self._warned = True
             warnings.warn(f"{type(self).__name__} steps on without the friction of this space", stacklevel=4)
         self._sync = Sync(self.space, world.bodies)
+        self._sleep = Sleep(world, self._sleep) if self.space.sleep_time_threshold < math.inf else None
         self.prepare(world)
+        if self._sleep is not None and (book := self.book()) is not None:
+            self._idle_book = np.zeros_like(book)
         self._world, self._past = world, None
         return world
 

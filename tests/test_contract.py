@@ -241,12 +241,6 @@ def joint(space: pymunk.Space, body: pymunk.Body) -> object:
     return constraint
 
 
-def sleeping(space: pymunk.Space, body: pymunk.Body) -> object:
-    space.sleep_time_threshold = 0.5
-    return "space.sleep_time_threshold = 0.5"
-
-
-UNMODELLED = (sleeping,)
 TURNING = (offset, box, kinematic)
 DISKS_ALONE = [make for name, make in ARRAYS.items() if name not in ("time_of_impact", "midstep")]
 
@@ -264,28 +258,11 @@ def refused(make: Make, spoil, when: str) -> None:
     assert state(space) == before
 
 
-@arrays
-@pytest.mark.parametrize("spoil", UNMODELLED)
-@pytest.mark.parametrize("when", ["before", "after"])
-def test_what_is_not_modelled_is_refused_by_name(make: Make, spoil, when: str) -> None:
-    refused(make, spoil, when)
-
-
 @pytest.mark.parametrize("make", DISKS_ALONE)
 @pytest.mark.parametrize("spoil", [*TURNING, friction, joint])
 @pytest.mark.parametrize("when", ["before", "after"])
 def test_what_turns_and_friction_are_refused_by_those_who_move_disks(make: Make, spoil, when: str) -> None:
     refused(make, spoil, when)
-
-
-@pytest.mark.parametrize("spoil", [sleeping])
-def test_settings_changed_on_the_way_are_refused_without_refresh(spoil) -> None:
-    space, body = one_disk()
-    stepper = ep.EECA(space)
-    stepper.step(0.01)
-    spoil(space, body)
-    with pytest.raises(ep.UnsupportedFeature):
-        stepper.step(0.01)
 
 
 @every

@@ -40,15 +40,18 @@ class Bodies:
 
     Masses, moments and kinds are read once; `Bodies.is_current` tells whether the space still has these bodies.
 
+    Args:
+        space: a pymunk space.  fixed: whether bodies that sleep count as static ones.
+
     Attributes:
         items: the pymunk bodies, by row.  ids: (N,) pymunk's numbers of them.
         mass, moment: (N,) mass and M L²; infinite for static and kinematic bodies.
         inverse_mass: (N,) 1/mass, 0 for static and kinematic bodies.
-        dynamic: (N,) bool.  static: (N,) bool.
+        dynamic: (N,) bool.  static: (N,) bool.  asleep: (N,) bool, none unless `fixed`.
         center_of_gravity: (N, 2) length, in body coordinates.
     """
 
-    def __init__(self, space: pymunk.Space) -> None:
+    def __init__(self, space: pymunk.Space, *, fixed: bool = False) -> None:
         self.space = space
         self._buffer = batch.Buffer()
         self._out = batch.Buffer()
@@ -58,14 +61,22 @@ class Bodies:
         self.row = {body: i for i, body in enumerate(self.items)}
         self.dynamic: BoolArray = np.array([b.body_type == pymunk.Body.DYNAMIC for b in self.items], bool)
         self.static: BoolArray = np.array([b.body_type == pymunk.Body.STATIC for b in self.items], bool)
+        self.asleep: BoolArray = np.zeros(len(self.items), bool)
+        if fixed:
+            self.asleep[:] = [b.is_sleeping for b in self.items]
+        self.dynamic &= ~self.asleep
+        self.static |= self.asleep
         self.mass: FloatArray = np.array([b.mass for b in self.items], float)
         self.moment: FloatArray = np.array([b.moment for b in self.items], float)
         self.mass[~self.dynamic] = np.inf
         self.moment[~self.dynamic] = np.inf
         self.check_masses()
         # Rows of the bodies with functions of their own; the public properties return pymunk's default when unset.
-        self.velocity_hooks: IntArray = np.flatnonzero([private.velocity_function(b) is not None for b in self.items])
-        self.position_hooks: IntArray = np.flatnonzero([private.position_function(b) is not None for b in self.items])
+        # A body that sleeps is not asked, as under pymunk.
+        velocity = [private.velocity_function(b) is not None for b in self.items]
+        position = [private.position_function(b) is not None for b in self.items]
+        self.velocity_hooks: IntArray = np.flatnonzero(np.array(velocity, bool) & ~self.asleep)
+        self.position_hooks: IntArray = np.flatnonzero(np.array(position, bool) & ~self.asleep)
         self.steered: BoolArray = np.zeros(len(self.items), bool)
         self.steered[self.velocity_hooks] = True
         self.inverse_mass: FloatArray = 1.0 / self.mass
@@ -74,6 +85,11 @@ class Bodies:
 
     def __len__(self) -> int:
         return len(self.items)
+
+    @property
+    def reached(self) -> tuple[pymunk.Body, ...] | None:
+        """Those that may be written to without waking any: None for all. pymunk's order has those asleep at the end."""
+        return self.items[: int(np.argmax(self.asleep))] if self.asleep.any() else None
 
     def _read_ids(self) -> npt.NDArray[np.uintp]:
         self._buffer.clear()
@@ -121,10 +137,10 @@ class Bodies:
 
         `unchanged` promises that all are: no callback has run since the state was gathered.
         """
-        if not unchanged and not np.array_equal(self._read_ids(), self.ids):
-            # The batch writes by place: it would give rows to the wrong bodies.
-            for body, row in zip(self.items, state.tolist(), strict=True):
-                if body.space is self.space and body.body_type != pymunk.Body.STATIC:
+        if self.asleep.any() or (not unchanged and not np.array_equal(self._read_ids(), self.ids)):
+            # The batch writes by place: it would give rows to the wrong bodies, and it wakes all.
+            for body, still, row in zip(self.items, self.static.tolist(), state.tolist(), strict=True):
+                if body.space is self.space and not still:
                     body.position, body.angle = (row[0], row[1]), row[2]
                     body.velocity, body.angular_velocity = (row[3], row[4]), row[5]
                     body.force, body.torque = (row[6], row[7]), row[8]

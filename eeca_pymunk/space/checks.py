@@ -26,10 +26,6 @@ def shape_radius(shape: Any) -> float:
 
 def check_space(space: pymunk.Space) -> None:
     """Refuse settings and objects of the space that the array steppers do not model."""
-    if space.sleep_time_threshold != math.inf:
-        raise UnsupportedFeature(
-            f"space.sleep_time_threshold = {space.sleep_time_threshold}: sleeping is not modelled; set it to math.inf"
-        )
     if not 0.0 <= space.damping < math.inf:
         raise ValueError(f"space.damping = {space.damping}: set a finite value >= 0; 1 is none")
     if not all(math.isfinite(g) for g in space.gravity):
@@ -54,8 +50,8 @@ def check_shape(shape: pymunk.Shape, bodies: Bodies) -> None:
         raise ValueError(f"{shape} has friction {shape.friction}: set a finite value >= 0")
     if not isinstance(shape, (pymunk.Circle, pymunk.Segment, pymunk.Poly)):
         raise UnsupportedFeature(f"{shape} is neither a Circle, a Segment nor a Poly; replace it by one of them")
-    if not 0.0 <= shape.elasticity <= 1.0:
-        raise ValueError(f"{shape} has elasticity {shape.elasticity}: set a value from 0 to 1")
+    if not 0.0 <= shape.elasticity < math.inf:
+        raise ValueError(f"{shape} has elasticity {shape.elasticity}: set a finite value >= 0")
     if not math.isfinite(shape_radius(shape)):
         raise ValueError(f"{shape} has radius {shape_radius(shape)}: set a finite radius")
     if body not in bodies.row:

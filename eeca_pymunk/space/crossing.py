@@ -65,8 +65,8 @@ class Crossing:
         self.EXTRA[:, COG_X : COG_Y + 1] = bodies.center_of_gravity
         self.STATES[LEFT] = np.where(bodies.static[:, None], state, np.nan)
         self.gather = private.reader(space, _F.BODY_ID | _STATE, floats, ids)
-        self._restore = private.writer(space, _STATE, floats)
-        self.reset_forces = private.writer(space, _F.FORCE | _F.TORQUE, self.ENDS[PULL * N :])
+        self._restore = private.writer(space, _STATE, floats, bodies.reached)
+        self.reset_forces = private.writer(space, _F.FORCE | _F.TORQUE, self.ENDS[PULL * N :], bodies.reached)
         # By whether angles and spins are to be written.
         self._scatter = self._writers(_F.POSITION | _F.VELOCITY, END)
         self._scatter_still = self._writers(_F.POSITION | _F.VELOCITY, STILL)
@@ -80,8 +80,8 @@ class Crossing:
         for straight, turned in ((_F.POSITION, _F.ANGLE), (_F.VELOCITY, _F.ANGULAR_VELOCITY)):
             if straight in fields:
                 turning |= turned
-        table = self.ENDS[start * N :]
-        return {0: private.writer(self.space, fields, table), TURNS: private.writer(self.space, turning, table)}
+        table, to = self.ENDS[start * N :], self.bodies.reached
+        return {0: private.writer(self.space, fields, table, to), TURNS: private.writer(self.space, turning, table, to)}
 
     def is_current(self) -> bool:
         """Whether what `gather` read is of these very bodies, and no static one was moved."""

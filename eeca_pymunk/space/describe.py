@@ -47,6 +47,9 @@ def describe(world: World) -> str:
         parts.append("sustained contacts")
     if world.joints is not None:
         parts.append(_joints(world.joints))
+    if bodies.asleep.any():
+        asleep = int(np.count_nonzero(bodies.asleep))
+        parts.append(f"{asleep} of {asleep + int(np.count_nonzero(bodies.dynamic))} bodies asleep")
     if world.damping != 1.0:
         parts.append("damping")
     if len(bodies.velocity_hooks) or len(bodies.position_hooks):

@@ -4,10 +4,13 @@ pymunk's setters write into Chipmunk at once and tell nobody, and to read all sh
 So the setters of what a `World` reads once are wrapped, on pymunk's classes, when the first space is watched: each
 first does what it did, then adds one to the count of the space of its shape or body, if that is watched and the value
 is another one. Reading, and what a `World` does not read (positions, velocities, forces, colours), is as before.
+Putting bodies to sleep is counted too, and who sleeps with whom is kept, from the import of this package on: Chipmunk
+tells neither.
 """
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Callable
 from functools import wraps
 from typing import Any
@@ -26,12 +29,15 @@ _METHODS: tuple[tuple[type, tuple[str, ...]], ...] = (
     (pymunk.Segment, ("unsafe_set_radius", "unsafe_set_endpoints")),
     (pymunk.Poly, ("unsafe_set_radius", "unsafe_set_vertices")),
 )
+_SLEEP = ("sleep", "sleep_with_group")
+_leaders: WeakKeyDictionary[pymunk.Body, weakref.ref[pymunk.Body]] = WeakKeyDictionary()
 _counts: WeakKeyDictionary[pymunk.Space, list[int]] = WeakKeyDictionary()
 _wrapped = False
 
 
 def edits(space: pymunk.Space) -> list[int]:
-    """A list whose one item grows with every edit of a shape or body of the space from now on."""
+    """Two counts that grow from now on: of edits of a shape or body of the space and of bodies put to sleep; and of the
+    latter alone."""
     global _wrapped
     if not _wrapped:
         _wrapped = True
@@ -41,14 +47,33 @@ def edits(space: pymunk.Space) -> list[int]:
         for owner, names in _METHODS:
             for name in names:
                 setattr(owner, name, _method(vars(owner)[name]))
-    return _counts.setdefault(space, [0])
+    return _counts.setdefault(space, [0, 0])
 
 
-def _note(thing: Any) -> None:
+def _note(thing: Any, of: tuple[int, ...] = (0,)) -> None:
     space = thing.space
     count = None if space is None else _counts.get(space)
     if count is not None:
-        count[0] += 1
+        for k in of:
+            count[k] += 1
+
+
+def leader(body: pymunk.Body) -> pymunk.Body:
+    """A body that wakes whenever this one does, which sleeps: itself, or one of its group."""
+    lead = _leaders.get(body)
+    found = None if lead is None else lead()
+    return found if found is not None and found.space is body.space and found.is_sleeping else body
+
+
+def _sleep(native: Callable[..., None]) -> Callable[..., None]:
+    @wraps(native)
+    def sleep_and_note(self: pymunk.Body, *group: pymunk.Body) -> None:
+        lead = leader(group[0]) if group else self
+        native(self, *group)
+        _leaders[self] = weakref.ref(lead)
+        _note(self, of=(0, 1))
+
+    return sleep_and_note
 
 
 def _property(name: str, native: Any) -> property:
@@ -74,3 +99,7 @@ def _method(native: Callable[..., Any]) -> Callable[..., Any]:
             _note(self)
 
     return call_and_note
+
+
+for _name in _SLEEP:
+    setattr(pymunk.Body, _name, _sleep(vars(pymunk.Body)[_name]))

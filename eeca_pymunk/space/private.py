@@ -6,7 +6,9 @@ a pymunk which has renamed one is refused at once and by name.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+import math
+import sys
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
@@ -14,7 +16,7 @@ import pymunk
 from pymunk import batch
 
 from ..arrays import FloatArray, IntArray
-from . import private_joints
+from . import private_joints, private_sleep
 
 try:
     from pymunk._chipmunk_cffi import ffi, lib
@@ -29,9 +31,9 @@ DEFAULTS = {"velocity_func": pymunk.Body.update_velocity, "position_func": pymun
 
 _OF_LIBRARY = (
     "cpSpaceStep", "cpHastySpaceStep", "cpSpaceEachBody", "cpSpaceGetGravity", "cpSpaceGetDamping",
-    "cpSpaceGetSleepTimeThreshold", "cpSpaceGetShapeIDCounter", "cpSpaceGetTimestamp",
+    "cpSpaceGetSleepTimeThreshold", "cpSpaceSetSleepTimeThreshold", "cpSpaceGetShapeIDCounter", "cpSpaceGetTimestamp",
     "pmSpaceBodyGetIteratorFuncBatched", "pmSpaceBodySetIteratorFuncBatched",
-    *private_joints.OF_LIBRARY,
+    *private_joints.OF_LIBRARY, *private_sleep.OF_LIBRARY,
 )  # fmt: skip
 _OF_SPACE = (
     "_space", "_bodies", "_shapes", "_constraints", "_handlers", "_get_arbiters", "_locked", "_add_later",
@@ -81,6 +83,11 @@ def arbiters(space: pymunk.Space) -> list[pymunk.Arbiter]:
     return [pymunk.Arbiter(one, space) for one in space._get_arbiters()]
 
 
+def touching(space: pymunk.Space) -> list[tuple[pymunk.Body, pymunk.Body]]:
+    """Pairs of bodies that touched in pymunk's last step."""
+    return [arbiter.bodies for arbiter in arbiters(space)]
+
+
 def velocity_function(body: pymunk.Body) -> Callable[..., None] | None:
     """The body's own velocity function, None if it has pymunk's; the public property tells no difference."""
     return body._velocity_func
@@ -121,13 +128,22 @@ def locked(space: pymunk.Space) -> Iterator[None]:
 
 
 def step_alone(space: pymunk.Space, dt: float) -> None:
-    """pymunk's step without what it does afterwards: additions, removals and callbacks wait for `finish_step`."""
+    """pymunk's step without what it does afterwards: additions, removals and callbacks wait for `finish_step`.
+
+    Nobody falls asleep in it. Bodies that sleep and are touched wake: an infinite threshold would leave them asleep
+    with a contact that pymunk then has twice.
+    """
+    c, threshold = space._space, lib.cpSpaceGetSleepTimeThreshold(space._space)
     space._locked = True
     try:
-        (lib.cpHastySpaceStep if space.threaded else lib.cpSpaceStep)(space._space, dt)
+        if threshold != math.inf:
+            lib.cpSpaceSetSleepTimeThreshold(c, sys.float_info.max)
+        (lib.cpHastySpaceStep if space.threaded else lib.cpSpaceStep)(c, dt)
         space._removed_shapes.clear()
     finally:
         space._locked = False
+        if threshold != math.inf:
+            lib.cpSpaceSetSleepTimeThreshold(c, threshold)
 
 
 def finish_step(space: pymunk.Space) -> None:
@@ -210,8 +226,13 @@ def reader(space: pymunk.Space, fields: batch.BodyFields, floats: FloatArray, id
     return read
 
 
-def writer(space: pymunk.Space, fields: batch.BodyFields, floats: FloatArray) -> Callable[[], None]:
-    """`batch.set_space_bodies` from memory of ours, flat and contiguous, that has a row for every body of the space."""
+def writer(
+    space: pymunk.Space, fields: batch.BodyFields, floats: FloatArray, bodies: Sequence[pymunk.Body] | None = None
+) -> Callable[[], None]:
+    """`batch.set_space_bodies` from memory of ours, flat and contiguous, that has a row for every body of the space.
+
+    With `bodies`, the first of the space in pymunk's order, only these are written to, one after the other.
+    """
     values, numbers = _array("pmFloatArray *", "cpFloat[]", floats), ffi.new("pmIntArray *")
     data = _batched(fields, values, numbers)
     c, each = space._space, lib.cpSpaceEachBody
@@ -221,7 +242,16 @@ def writer(space: pymunk.Space, fields: batch.BodyFields, floats: FloatArray) ->
         values.num = 0
         each(c, function, data)
 
-    return write
+    if bodies is None:
+        return write
+    one, pointers = lib.pmSpaceBodySetIteratorFuncBatched, [body._body for body in bodies]
+
+    def write_some(held: object = (floats, numbers)) -> None:
+        values.num = 0
+        for pointer in pointers:
+            one(pointer, data)
+
+    return write_some
 
 
 def _array(kind: str, items: str, memory: FloatArray | IntArray) -> Any:

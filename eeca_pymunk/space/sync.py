@@ -27,7 +27,9 @@ FEW = (
 _RENEW = 32  # steps after which reindexing gives way to a rest step
 
 
-def rest_step(space: pymunk.Space, dt: float, joints: JointRows | None = None, forget: bool = True) -> None:
+def rest_step(
+    space: pymunk.Space, dt: float, joints: JointRows | None = None, forget: bool = True, asleep: bool = False
+) -> None:
     """Let pymunk see the new positions: its own step with everything at rest moves nothing.
 
     With the real dt, so that `space.current_time_step` is right and a native step may follow: at rest pymunk
@@ -37,18 +39,33 @@ def rest_step(space: pymunk.Space, dt: float, joints: JointRows | None = None, f
     Args:
         joints: the constraints of the space, which call no functions meanwhile, and push with nothing where they would.
         forget: whether pymunk remembers impulses of joints, which would push too.
+        asleep: whether there are bodies that sleep, whom a change of gravity would wake. Then it stays, and leaves
+            velocities, which are of no use.
     """
     gravity, iterations, bias = space.gravity, space.iterations, space.collision_bias
     try:
-        space.gravity, space.iterations, space.collision_bias = (0.0, 0.0), 1, 1.0
+        if not asleep:
+            space.gravity = (0.0, 0.0)
+        space.iterations, space.collision_bias = 1, 1.0
         if joints is None:
             private.step_alone(space, dt)
         else:
-            push = inert(joints.items if forget else joints.pushing())
-            with silent(joints.calling), with_laws(joints.own, joints.laws()), push:
+            push, calling = joints.items if forget else joints.pushing(), joints.calling
+            own, laws = joints.own, joints.laws()
+            if asleep:  # pymunk has put their joints away, and any change of one would wake its bodies
+                push, calling = _awake(push), _awake(calling)
+                laws = [law for item, law in zip(own, laws, strict=True) if _awake([item])]
+                own = _awake(own)
+            with silent(calling), with_laws(own, laws), inert(push):
                 private.step_alone(space, dt)
     finally:
-        space.gravity, space.iterations, space.collision_bias = gravity, iterations, bias
+        if not asleep:
+            space.gravity = gravity
+        space.iterations, space.collision_bias = iterations, bias
+
+
+def _awake(items: list[pymunk.Constraint]) -> list[pymunk.Constraint]:
+    return [item for item in items if not (item.a.is_sleeping or item.b.is_sleeping)]
 
 
 class Sync:
@@ -56,7 +73,8 @@ class Sync:
 
     def __init__(self, space: pymunk.Space, bodies: Bodies) -> None:
         self.space = space
-        moving = [b for b in bodies.items if b.body_type != pymunk.Body.STATIC and b.shapes]
+        moving = [b for b, still in zip(bodies.items, bodies.static.tolist(), strict=True) if b.shapes and not still]
+        self._asleep = bool(bodies.asleep.any())
         self._moving = moving if sum(len(b.shapes) for b in moving) <= FEW else None
         self._timestamp: Callable[[], int] = private.timestamp(space)
         self._renewed, self._dt, self._left = -1, 0.0, 0
@@ -83,15 +101,15 @@ class Sync:
 
     def rest(self, dt: float, joints: JointRows | None = None) -> None:
         """A rest step; all bodies must have velocity 0, and may have another of round-off if there are joints."""
-        rest_step(self.space, dt, joints, forget=self._timestamp() != self._renewed)
+        rest_step(self.space, dt, joints, forget=self._timestamp() != self._renewed, asleep=self._asleep)
         self._renewed, self._dt, self._left = self._timestamp(), dt, _RENEW
         if self._moving is not None:
             self._touched = bool(private.arbiters(self.space))
 
     def land(self, world: World, dt: float, status: int) -> None:
         """Write the end of the step of a world with a rest step at it."""
-        if world.joints is not None:
-            status = world.turning(status)  # joints leave round-off in spins
+        if world.joints is not None or self._asleep:
+            status = world.turning(status)  # joints leave round-off in spins, gravity more
         world.scatter_still(status)
         self.rest(dt, world.joints)
         world.scatter_speed(status)

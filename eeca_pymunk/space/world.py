@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TypeAlias
 
@@ -61,8 +62,8 @@ class World(Crossing):
     ) -> None:  # fmt: skip
         check_space(space)
         self._edits = edits(space)
-        self._known = self._edits[0]
-        bodies = Bodies(space)
+        self._known = self._edits[0] - self._edits[1]
+        bodies = Bodies(space, fixed=space.sleep_time_threshold < math.inf)
         state = bodies.gather()
         assert state is not None  # read from these very bodies
         bodies.check_finite(state)
@@ -144,8 +145,8 @@ class World(Crossing):
         """What handlers and joints say of pairs of rows of SHAPE, see `Rules.of_pairs`."""
         return self.rules.of_pairs(self.SHAPE, self.parted)
 
-    def _count(self) -> tuple[int, int, int]:
-        return private.shapes_ever(self.space), len(self.space.shapes), len(self.space.bodies)
+    def _count(self) -> tuple[int, int, int, int]:
+        return private.shapes_ever(self.space), len(self.space.shapes), len(self.space.bodies), self._edits[1]
 
     def same_contents(self) -> bool:
         """Whether shapes have neither come nor gone nor changed, so that new settings are all there is to read."""
@@ -153,7 +154,7 @@ class World(Crossing):
 
     def edited(self) -> bool:
         """Whether a shape or body was edited in place."""
-        return self._edits[0] != self._known
+        return self._edits[0] - self._edits[1] != self._known
 
     def load(self) -> None:
         """Put what pymunk has now into BODY."""

@@ -139,9 +139,9 @@ def test_an_edit_that_cannot_be_is_refused_and_taken_back() -> None:
     space = scene()
     stepper = ep.EECA(space)
     stepper.step(DT)
-    parts(space)[0].elasticity = 1.5
+    parts(space)[0].elasticity = math.inf
     before = state(space)
-    with pytest.raises(ValueError, match=r"elasticity 1\.5"):
+    with pytest.raises(ValueError, match="elasticity inf"):
         stepper.step(DT)
     assert state(space) == before
     parts(space)[0].elasticity = 0.5

@@ -14,7 +14,7 @@ import pytest
 
 from comparisons.replaced import replaced
 
-from .differs import DIFFERS, REFUSED
+from .differs import DIFFERS
 
 ROOT = Path(__file__).parents[2]
 
@@ -43,7 +43,7 @@ def outcome(name: str) -> tuple[bool, str]:
     return not told, "\n".join(told)
 
 
-@pytest.mark.parametrize("name", sorted(CASES.keys() - DIFFERS.keys() - REFUSED))
+@pytest.mark.parametrize("name", sorted(CASES.keys() - DIFFERS.keys()))
 def test_of_pymunk_passes(name: str) -> None:
     passes, told = outcome(name)
     assert passes, told
@@ -56,17 +56,9 @@ def test_of_pymunk_differs_and_is_listed(name: str) -> None:
     assert "UnsupportedFeature" not in told
 
 
-@pytest.mark.parametrize("name", sorted(REFUSED))
-def test_of_pymunk_is_refused_by_name(name: str) -> None:
-    passes, told = outcome(name)
-    assert not passes, f"{name} passes now: take it out of differs.py and docs/pymunk.md"
-    assert "UnsupportedFeature" in told
-
-
 def test_lists_are_of_tests_that_there_are() -> None:
     assert len(CASES) > 150
-    assert not (DIFFERS.keys() | REFUSED) - CASES.keys()
-    assert not DIFFERS.keys() & REFUSED
+    assert not DIFFERS.keys() - CASES.keys()
 
 
 def test_docs_give_every_reason() -> None:
@@ -74,5 +66,3 @@ def test_docs_give_every_reason() -> None:
     for name, reason in DIFFERS.items():
         assert f"`{name.split('.', 1)[1]}`" in page, name
         assert reason in page, name
-    for name in REFUSED:
-        assert f"`{name.split('.', 1)[1]}`" in page, name

@@ -1,0 +1,225 @@
+"""Sleeping: which bodies of a space sleep, when others fall asleep, and what wakes them.
+
+A body that sleeps stands like a wall: it takes part in no step. If something touches it within a step, it and its
+group wake, and the step is taken again from its start with them awake; so nothing is ever thrown back by a sleeper.
+
+Bodies fall asleep by `body.sleep()`, or as an island of bodies that touch or are jointed, all of which have been at
+rest for `space.sleep_time_threshold`. At rest is a body with a certificate of statics: at both ends of a step
+
+    |v|, |spin| size <= AT_REST |g| dt     and     |x - x0| <= AT_REST |g| dt^2 + round-off,
+
+and round-off of the fastest body's, without forces of the user's. The impulse of the step's contacts and joints, each
+inside its cone of friction, then balances gravity's to AT_REST: the solver's tolerance. A body at the apex of a swing,
+which is merely slow for a moment, has a velocity of |g| dt one step later. Without gravity only round-off will do.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pymunk
+
+from ..arrays import BoolArray, FloatArray
+from ..layout import BODY_ROW, EXTENT, FOUND, KNOWN, LEFT, NOW
+from ..report import Contacts
+from . import private, private_sleep
+from .noticed import leader
+
+if TYPE_CHECKING:
+    from .world import World
+
+AT_REST = 1e-6
+_ROUND = 1e-14  # of coordinates, and of the largest speed
+_AGAIN = 16  # steps after which islands that could not fall asleep are looked at again
+_SHARE, _PATIENCE = 8, 120  # islands fall asleep that are this part of who is awake, or after so many steps
+
+
+class Sleep:
+    """Who sleeps in a world, and who is about to.
+
+    Args:
+        world: of a space whose `sleep_time_threshold` is finite.  past: that of the world of this space before.
+
+    Attributes:
+        some, everyone: whether any body sleeps, and whether all dynamic ones do.
+    """
+
+    def __init__(self, world: World, past: Sleep | None) -> None:
+        self.world, self.space, bodies = world, world.space, world.bodies
+        self._sleepers = [body for body, asleep in zip(bodies.items, bodies.asleep, strict=True) if asleep]
+        self.some = bool(self._sleepers)
+        self.everyone = self.some and not bodies.dynamic.any()
+        leaders = dict.fromkeys(leader(body) for body in self._sleepers)
+        self._asleep = private_sleep.asleep(leaders)
+        self._unmoved = private_sleep.unmoved(
+            [self.space.static_body, *(b for b in bodies.items if b not in leaders and not b.is_sleeping)]
+            if self.everyone
+            else []
+        )
+        self._timestamp = private.timestamp(self.space)
+        self._left = self._timestamp()
+        self._wait, self._since = 0, _PATIENCE
+        self._rested: FloatArray = np.zeros(len(bodies))  # seconds
+        if past is not None:
+            self._wait, self._since = past._wait, past._since
+            before = past.world.bodies.row
+            for i, body in enumerate(bodies.items):
+                if body in before and not past.world.bodies.asleep[before[body]]:
+                    self._rested[i] = past._rested[before[body]]
+        self._steps, self._dt = self.space.collision_persistence + 2, 0.0
+        self._tired: BoolArray = np.zeros(len(bodies), bool)
+        row = world.WALK[BODY_ROW]
+        self._size: FloatArray = np.where(row >= 0, world.BODY[row, EXTENT], 0.0)
+
+    def changed(self) -> bool:
+        """Whether others sleep now than when this was made, as far as one knows: pymunk may have taken a step."""
+        return self._timestamp() != self._left or not self._asleep()
+
+    def nothing_moves(self) -> bool:
+        """Whether, if everyone sleeps, the rest of the space is at rest and where it was, too."""
+        return self.everyone and self._unmoved()
+
+    def step(self, dt: float) -> None:
+        """Take a step in which nothing moves: pymunk's own, until it has forgotten all contacts of earlier ones; then
+        none, for a step of this dt would change nothing."""
+        if self._steps > 0 or dt != self._dt:
+            self._steps, self._dt = self._steps - 1, dt
+            private.step_alone(self.space, dt)
+            self._left = self._timestamp()
+
+    def wake(self, bodies: Iterable[pymunk.Body] | None = None) -> None:
+        """Wake these, and all in their groups; all bodies if None."""
+        for body in self._sleepers if bodies is None else bodies:
+            body.activate()
+
+    def meet(self, dt: float) -> bool:
+        """Wake whom a body may meet that is moved by others than the solver: a kinematic one; where functions are
+        called, which a step cannot do twice, any body. Whether there was any."""
+        world, bodies, found = self.world, self.world.bodies, False
+        moves = ~bodies.static if world.hooked or not world.plain else ~bodies.static & ~bodies.dynamic
+        if not moves.any():
+            return False
+        world.gather()
+        pull = math.hypot(*self.space.gravity)
+        for i in np.flatnonzero(moves):
+            x, y, _, vx, vy, spin, fx, fy, _ = world.state[i]
+            if self._size[i] == 0.0 or (not bodies.dynamic[i] and vx == vy == spin == 0.0):
+                continue
+            force = math.hypot(fx, fy) * bodies.inverse_mass[i]
+            reach = self._size[i] + float(np.hypot(*bodies.center_of_gravity[i]))
+            reach += dt * (math.hypot(vx, vy) + dt * (pull + force))
+            if not math.isfinite(x + y + reach):
+                continue  # the step will say so
+            box = pymunk.BB(x - reach, y - reach, x + reach, y + reach)
+            found |= self._wake_within(box)
+        return found
+
+    def part(self) -> None:
+        """Wake what may have touched a shape that is no longer there, and what is jointed to a body that is awake."""
+        if not self.some:
+            return
+        for shape in self.world.records.keys() - set(self.space.shapes):
+            if self.world.records[shape] is not None:
+                room = 1e-3 * (shape.bb.right - shape.bb.left + shape.bb.top - shape.bb.bottom)
+                low, high = (shape.bb.left - room, shape.bb.bottom - room), (shape.bb.right + room, shape.bb.top + room)
+                self._wake_within(pymunk.BB(*low, *high))
+        moved = np.array_equal(self.world.WALK[FOUND], self.world.WALK[KNOWN]) and not self.world.is_current()
+        if moved or self.world.edited():
+            self.wake()
+
+    def _wake_within(self, box: pymunk.BB) -> bool:
+        woken = {s.body for s in self.space.bb_query(box, pymunk.ShapeFilter()) if s.body is not None}
+        woken = {body for body in woken if body.is_sleeping}
+        self.wake(woken)
+        return bool(woken)
+
+    def touched(self, contacts: Contacts) -> list[pymunk.Body]:
+        """Whom something that moves has touched."""
+        asleep, moves = self.world.bodies.asleep, ~self.world.bodies.static
+        a, b = contacts.body_a, contacts.body_b
+        hit = np.concatenate((a[asleep[a] & moves[b]], b[asleep[b] & moves[a]]))
+        return [self.world.bodies.items[i] for i in np.unique(hit)]
+
+    def rest(self, dt: float) -> bool:
+        """Count how long bodies have been at rest, after a step; whether any may fall asleep."""
+        self._left = self._timestamp()
+        world, bodies = self.world, self.world.bodies
+        before, after = world.STATES[NOW], world.STATES[LEFT]
+        fastest = float(np.hypot(after[:, 3], after[:, 4]).max(initial=0.0))
+        limit = AT_REST * math.hypot(*self.space.gravity) * dt + _ROUND * fastest
+        size = self._size
+        way = np.abs(after[:, :3] - before[:, :3])
+        way[:, 2] *= size
+        place = np.abs(after[:, :3])
+        place[:, 2] *= size
+        rests = bodies.dynamic & (way <= limit * dt + _ROUND * place).all(axis=1)
+        for state in (before, after):
+            rests &= np.hypot(state[:, 3], state[:, 4]) <= limit
+            rests &= np.abs(state[:, 5]) * np.where(size > 0.0, size, 1.0) <= limit
+        rests &= ~before[:, 6:].any(axis=1)
+        self._rested[rests] += dt
+        self._rested[~rests] = 0.0
+        self._wait = max(self._wait - 1, 0)
+        self._since += 1
+        # Sums of dt fall short of the threshold by round-off.
+        tired = rests & (self._rested >= self.space.sleep_time_threshold * (1.0 - 1e-9))
+        if self._wait > 0 or not tired.any():
+            return False
+        self._tired = tired
+        return True
+
+    def fall_asleep(self, contacts: Contacts) -> None:
+        """Put the islands to sleep all of whose bodies have rested long enough, each a group, as pymunk does."""
+        bodies, tired, groups = self.world.bodies, self._tired, list(range(len(self.world.bodies)))
+
+        def root(i: int) -> int:
+            while groups[i] != i:
+                groups[i] = groups[groups[i]]
+                i = groups[i]
+            return i
+
+        kept: BoolArray = bodies.dynamic & ~tired
+        pairs = list(zip(contacts.body_a.tolist(), contacts.body_b.tolist(), strict=True))
+        # pymunk keeps a contact with who sleeps for good, so that one must not sleep without the other.
+        for one, two in (*((c.a, c.b) for c in self.space.constraints), *private.touching(self.space)):
+            if one in bodies.row and two in bodies.row:
+                pairs.append((bodies.row[one], bodies.row[two]))
+        for a, b in pairs:
+            if bodies.dynamic[a] and bodies.dynamic[b]:
+                groups[root(a)] = root(b)
+            for one, other in ((a, b), (b, a)):
+                # What lies on a kinematic body, or hangs from it, stays awake.
+                kept[one] |= bodies.dynamic[one] and not (bodies.dynamic[other] or bodies.static[other])
+        self._wait = _AGAIN
+        stay = {root(int(i)) for i in np.flatnonzero(kept)}
+        islands: dict[int, list[pymunk.Body]] = {}
+        for i in np.flatnonzero(tired).tolist():
+            if (lead := root(i)) not in stay:
+                islands.setdefault(lead, []).append(bodies.items[i])
+        # All others start anew, without what their solver knew: not for every box that rests beside a pile.
+        falling = sum(map(len, islands.values()))
+        if falling * _SHARE < np.count_nonzero(bodies.dynamic) and self._since < _PATIENCE:
+            return
+        self._since = 0
+        for first, *others in islands.values():
+            self._rested[[bodies.row[body] for body in (first, *others)]] = 0.0
+            first.sleep()
+            for body in others:
+                body.sleep_with_group(first)
+
+
+def rouse(space: pymunk.Space) -> None:
+    """Wake who is jointed to a body that is awake, or touches one in pymunk's eyes."""
+    pairs = [*((c.a, c.b) for c in space.constraints), *private.touching(space)]
+    again = True
+    while again:
+        again = False
+        for first, second in pairs:
+            for one, other in ((first, second), (second, first)):
+                if one.is_sleeping and not other.is_sleeping and other.body_type != pymunk.Body.STATIC:
+                    if other.space is space:
+                        one.activate()
+                        again = True

@@ -1,0 +1,312 @@
+"""Bodies fall asleep with a certificate of statics, sleep like walls, and wake in the step that touches them."""
+
+from __future__ import annotations
+
+import math
+import pickle
+
+import pymunk
+import pytest
+
+import eeca_pymunk as ep
+
+DT = 1.0 / 60.0
+
+
+def ground(space: pymunk.Space) -> pymunk.Segment:
+    segment = pymunk.Segment(space.static_body, (-20.0, 0.0), (20.0, 0.0), 0.1)
+    segment.friction = 0.5
+    space.add(segment)
+    return segment
+
+
+def box(space: pymunk.Space, x: float, y: float, size: float = 1.0) -> pymunk.Body:
+    body = pymunk.Body(1.0, size * size / 6.0)
+    body.position = x, y
+    shape = pymunk.Poly.create_box(body, (size, size))
+    shape.friction = 0.5
+    space.add(body, shape)
+    return body
+
+
+def ball(space: pymunk.Space, place: tuple[float, float], velocity: tuple[float, float]) -> pymunk.Body:
+    body = pymunk.Body(0.5, 0.01)
+    body.position, body.velocity = place, velocity
+    shape = pymunk.Circle(body, 0.2)
+    shape.elasticity = 1.0
+    space.add(body, shape)
+    return body
+
+
+def stack(n: int = 3, threshold: float = 0.2) -> tuple[pymunk.Space, list[pymunk.Body]]:
+    space = pymunk.Space()
+    space.gravity, space.sleep_time_threshold = (0.0, -10.0), threshold
+    ground(space)
+    return space, [box(space, 0.0, 0.6 + i) for i in range(n)]
+
+
+def asleep(n: int = 3) -> tuple[pymunk.Space, list[pymunk.Body], ep.EECA]:
+    space, bodies = stack(n)
+    stepper = ep.EECA(space)
+    for _ in range(30):
+        stepper.step(DT)
+    assert all(body.is_sleeping for body in bodies)
+    return space, bodies, stepper
+
+
+def still(bodies: list[pymunk.Body]) -> list[tuple[float, ...]]:
+    return [(*body.position, body.angle) for body in bodies]
+
+
+def test_a_stack_at_rest_falls_asleep_after_the_threshold_and_stays_where_it_is() -> None:
+    space, bodies = stack(threshold=0.2)
+    stepper = ep.EECA(space)
+    steps = 0
+    while not bodies[0].is_sleeping:
+        stepper.step(DT)
+        steps += 1
+        assert steps < 30
+    assert steps >= 0.2 / DT
+    assert all(body.is_sleeping for body in bodies)
+    before = still(bodies)
+    for _ in range(20):
+        book = stepper.step(DT).ledger
+        assert book is not None
+        assert book.change == book.residual == 0.0
+    assert still(bodies) == before
+    assert "3 of 3 bodies asleep" in stepper.model
+    assert stepper.time == pytest.approx((steps + 20) * DT)
+
+
+@pytest.mark.parametrize("sync", [True, False])
+def test_a_sleeper_is_like_a_wall_until_it_is_touched_and_then_takes_the_whole_impulse(sync: bool) -> None:
+    """Two boxes sleep in the air: a ball passes, hits one of them, and no momentum is lost; nothing falls before."""
+    space = pymunk.Space()
+    space.gravity, space.sleep_time_threshold = (0.0, -10.0), 10.0
+    hit, other = box(space, 0.0, 5.0), box(space, 0.0, 9.0)
+    hit.sleep()
+    other.sleep()
+    flying = ball(space, (2.0, 5.0), (-15.0, 1.0))
+    stepper = ep.EECA(space, sync=sync)
+    for _ in range(20):
+        was_asleep, start = hit.is_sleeping, hit.position
+        stepper.step(DT)
+        if hit.is_sleeping:
+            assert hit.position == start
+        elif was_asleep:
+            assert flying.velocity.x > -15.0
+            assert hit.velocity.x < 0.0
+        assert hit.velocity.x + 0.5 * flying.velocity.x == pytest.approx(-7.5, rel=1e-12)
+        assert hit.is_sleeping or other.is_sleeping
+    assert not hit.is_sleeping
+    assert other.is_sleeping
+    assert other.position == (0.0, 9.0)
+    assert "1 of 3 bodies asleep" in stepper.model
+
+
+def test_it_wakes_as_it_would_have_been_hit_awake() -> None:
+    """The step in which a sleeping stack is hit ends as that of the same stack awake."""
+    space, _, stepper = asleep()
+    twin, _ = stack(threshold=math.inf)
+    other = ep.EECA(twin)
+    for one in (space, twin):
+        ball(one, (3.0, 1.1), (-20.0, 0.0))
+    for _ in range(8):
+        stepper.step(DT)
+        other.step(DT)
+    mine, theirs = ([*one.bodies] for one in (space, twin))
+    assert not any(body.is_sleeping for body in mine)
+    for a, b in zip(mine, theirs, strict=True):
+        assert tuple(a.position) == pytest.approx(tuple(b.position), abs=1e-6)
+        assert tuple(a.velocity) == pytest.approx(tuple(b.velocity), abs=1e-5)
+
+
+def pendulum() -> tuple[pymunk.Space, pymunk.Body]:
+    space = pymunk.Space()
+    body = pymunk.Body(1.0, 0.1)
+    body.position = 1.0, 0.0
+    space.add(body, pymunk.Circle(body, 0.1), pymunk.PinJoint(space.static_body, body))
+    return space, body
+
+
+def thrown() -> tuple[pymunk.Space, pymunk.Body]:
+    space = pymunk.Space()
+    body = pymunk.Body(1.0, 0.1)
+    body.velocity = 0.0, 1.0
+    space.add(body, pymunk.Circle(body, 0.1))
+    return space, body
+
+
+@pytest.mark.parametrize("make", [pendulum, thrown])
+@pytest.mark.parametrize("phase", [0.0, 0.5])
+def test_nobody_falls_asleep_at_the_apex(make, phase: float) -> None:
+    """Not at the threshold of one step either, whether the apex is at the end of a step or in the middle of one."""
+    space, body = make()
+    space.gravity, space.sleep_time_threshold = (0.0, -10.0), 1e-9
+    if phase:
+        body.velocity *= 1.05
+    stepper = ep.EECA(space)
+    for _ in range(300):
+        stepper.step(0.01)
+        assert not body.is_sleeping
+
+
+def test_what_hangs_at_rest_sleeps_and_an_impulse_wakes_it() -> None:
+    space = pymunk.Space()
+    space.gravity, space.sleep_time_threshold = (0.0, -10.0), 0.1
+    body = pymunk.Body(1.0, 0.1)
+    body.position = 0.0, -1.0
+    space.add(body, pymunk.Circle(body, 0.1), pymunk.PinJoint(space.static_body, body))
+    stepper = ep.EECA(space)
+    for _ in range(12):
+        stepper.step(DT)
+    assert body.is_sleeping
+    body.apply_impulse_at_local_point((1.0, 0.0))
+    stepper.step(DT)
+    assert not body.is_sleeping
+    assert body.velocity.x == pytest.approx(math.cos(DT), abs=3e-3)
+
+
+def test_what_is_jointed_sleeps_on_beside_others() -> None:
+    """Also where joints, of bodies that sleep and of others, have forces, laws and functions of their own."""
+    space = pymunk.Space()
+    space.sleep_time_threshold = 0.1
+    held = [box(space, 3.0 * i, 0.0) for i in range(3)]
+    for body in held:
+        pivot = pymunk.PivotJoint(space.static_body, body, body.position)
+        pivot.max_force = 1000.0
+        spring = pymunk.DampedRotarySpring(space.static_body, body, 0.0, 1.0, 0.0)
+        spring.torque_func = lambda spring, angle: -angle
+        space.add(pivot, spring)
+    held[2].angular_velocity = 1.0
+    flying = ball(space, (0.0, 5.0), (1.0, 0.0))
+    stepper = ep.EECA(space)
+    for _ in range(20):
+        stepper.step(DT)
+    assert [body.is_sleeping for body in held] == [True, True, False]
+    assert flying.position.x == pytest.approx(20 * DT)
+    flying.velocity = -3.0, -30.0
+    for _ in range(20):
+        stepper.step(DT)
+    assert not held[0].is_sleeping
+    assert held[1].is_sleeping
+
+
+def remove_ground(space: pymunk.Space) -> None:
+    space.remove(*space.static_body.shapes)
+
+
+def lower_ground(space: pymunk.Space) -> None:
+    space.static_body.position = 0.0, -1.0
+
+
+def shorten_ground(space: pymunk.Space) -> None:
+    next(iter(space.static_body.shapes)).unsafe_set_endpoints((-20.0, 0.0), (-10.0, 0.0))  # type: ignore[attr-defined]
+
+
+def turn_gravity(space: pymunk.Space) -> None:
+    space.gravity = 0.0, 10.0
+
+
+def call(space: pymunk.Space) -> None:
+    next(b for b in space.bodies if b.body_type == pymunk.Body.DYNAMIC).activate()
+
+
+def forget_sleep(space: pymunk.Space) -> None:
+    space.sleep_time_threshold = math.inf
+
+
+@pytest.mark.parametrize(
+    ("change", "falls"),
+    [
+        (remove_ground, True), (lower_ground, True), (shorten_ground, True), (turn_gravity, True), (call, False),
+        (forget_sleep, False),
+    ],
+)  # fmt: skip
+def test_what_wakes_a_body_wakes_its_group_in_the_same_step(change, falls: bool) -> None:
+    space, bodies, stepper = asleep()
+    change(space)
+    stepper.step(DT)
+    assert not any(body.is_sleeping for body in bodies)
+    for body in bodies:
+        assert abs(body.velocity.y) == pytest.approx(10.0 * DT if falls else 0.0, abs=1e-9)
+
+
+def test_a_ball_far_away_wakes_nobody() -> None:
+    space, bodies, stepper = asleep()
+    thrown = ball(space, (10.0, 3.0), (1.0, 0.0))
+    for _ in range(10):
+        stepper.step(DT)
+    assert all(body.is_sleeping for body in bodies)
+    assert thrown.position.y == pytest.approx(3.0 - 5.0 * (10 * DT) ** 2, rel=1e-12)
+
+
+def test_a_kinematic_body_keeps_awake_what_it_carries_and_wakes_what_it_meets() -> None:
+    space = pymunk.Space()
+    space.gravity, space.sleep_time_threshold = (0.0, -10.0), 0.1
+    lift = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    floor = pymunk.Poly.create_box(lift, (4.0, 1.0))
+    space.add(lift, floor)
+    body = box(space, 0.0, 1.0)
+    stepper = ep.EECA(space)
+    for _ in range(20):
+        stepper.step(DT)
+    assert not body.is_sleeping
+    lift.position, body.position = (-10.0, 0.0), (0.0, 0.6)
+    ground(space)
+    for _ in range(20):
+        stepper.step(DT)
+    assert body.is_sleeping
+    lift.velocity = 20.0, 0.0
+    for _ in range(20):
+        stepper.step(DT)
+    assert body.is_sleeping
+    while body.velocity.x < 1.0:
+        stepper.step(DT)
+    assert not body.is_sleeping
+    assert lift.position.x + 2.0 <= body.position.x
+
+
+def test_handlers_see_a_sleeper_hit_awake() -> None:
+    space, bodies, stepper = asleep(1)
+    begun: list[bool] = []
+    space.on_collision(begin=lambda arbiter, space, data: begun.append(True))
+    ball(space, (3.0, 0.6), (-20.0, 0.0))
+    for _ in range(10):
+        stepper.step(DT)
+    assert begun
+    assert not bodies[0].is_sleeping
+    assert bodies[0].velocity.x < -1.0
+
+
+def test_islands_sleep_one_by_one() -> None:
+    space, bodies = stack(2)
+    late = box(space, 6.0, 2.0)
+    stepper = ep.EECA(space)
+    seen = set()
+    for _ in range(120):
+        stepper.step(DT)
+        seen.add((bodies[0].is_sleeping and bodies[1].is_sleeping, late.is_sleeping))
+    assert (True, False) in seen
+    assert (True, True) in seen
+    assert late.position.y == pytest.approx(0.6, abs=1e-9)
+
+
+def test_a_step_of_sleepers_asks_pymunk_for_nothing() -> None:
+    space, _, stepper = asleep()
+    for _ in range(space.collision_persistence + 3):
+        stepper.step(DT)
+    taken = stepper._sleep._timestamp() if stepper._sleep else -1
+    for _ in range(5):
+        stepper.step(DT)
+    assert stepper._sleep is not None
+    assert stepper._sleep._timestamp() == taken
+
+
+def test_a_pickled_stepper_of_sleepers_goes_on() -> None:
+    space, _, stepper = asleep()
+    copy = pickle.loads(pickle.dumps(stepper))
+    for one in (stepper, copy):
+        one.step(DT)
+    heights = [sorted(body.position.y for body in one.bodies) for one in (space, copy.space)]
+    assert heights[0] == pytest.approx(heights[1], abs=1e-12)
