@@ -45,9 +45,21 @@ def pop(TIME: FloatArray, OF: IntArray, n: int) -> int:
 
 @uncounted
 def sweep_out(TIME: FloatArray, OF: IntArray, n: int, BODY: FloatArray) -> int:
-    """Drop the entries that are not valid any more; how many there are then."""
-    kept = 0
-    for k in range(n):
-        if TIME[k] == BODY[OF[k], DUE]:
-            kept = push(TIME, OF, kept, TIME[k], OF[k])
+    """Drop the entries that are not valid any more, and all but one of those that are alike; how many there are then."""
+    size, first = n, n
+    while n > 0:
+        time, body = TIME[0], OF[0]
+        n = pop(TIME, OF, n)
+        alike = first < size and time == TIME[first] and body == OF[first]
+        if time == BODY[body, DUE] and not alike:
+            first -= 1
+            TIME[first], OF[first] = time, body
+    # The latest stands first: in the order of time they are a heap.
+    kept = size - first
+    for k in range(kept // 2):
+        a, b = first + k, size - 1 - k
+        TIME[a], TIME[b] = TIME[b], TIME[a]
+        OF[a], OF[b] = OF[b], OF[a]
+    for k in range(kept):
+        TIME[k], OF[k] = TIME[first + k], OF[first + k]
     return kept

@@ -320,7 +320,15 @@ def collide(A: Scene, J: Joints, disks: int, a: int, b: int, t: float) -> tuple[
     for c in range(ended):
         other = A.STATE[ENDED[c], ISLAND]
         if other != root:
-            n += members(A, other, A.BLOCK[n:])
+            MINE = np.empty(A.MEMBER[other, BODIES], np.int64)
+            members(A, other, MINE)
+            for q in range(len(MINE)):
+                known = False
+                for p in range(n):
+                    known = known or A.BLOCK[p] == MINE[q]
+                if not known:
+                    A.BLOCK[n] = MINE[q]
+                    n += 1
             root = unite(A, root, other)
     A.COUNT[PENDING] = root
     return status, n

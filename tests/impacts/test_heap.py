@@ -119,3 +119,20 @@ def test_who_rests_or_knows_everybody_never_leaves() -> None:
     for margin in (1.0, math.inf):
         mark = mark_of(world, 0.0, 0.0, margin)
         assert leaves(world.body, world.shape, world.link, mark, 1, 0, 0, 0.0) == math.inf
+
+
+def test_entries_that_are_alike_are_swept_out() -> None:
+    rng = np.random.default_rng(1)
+    body = np.zeros((20, la.BODY_COLUMNS))
+    body[:, la.DUE] = rng.integers(0, 8, 20) / 8.0
+    time, of, n = np.zeros(400), np.zeros(400, np.int64), 0
+    for _ in range(400):
+        i = int(rng.integers(20))
+        n = push(time, of, n, float(body[i, la.DUE] if rng.random() < 0.7 else rng.random()), i)
+    valid = {(float(time[k]), int(of[k])) for k in range(n) if time[k] == body[of[k], la.DUE]}
+    n = sweep_out(time, of, n, body)
+    out = []
+    while n > 0:
+        out.append((float(time[0]), int(of[0])))
+        n = pop(time, of, n)
+    assert out == sorted(valid)
