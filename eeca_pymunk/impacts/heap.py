@@ -45,7 +45,7 @@ def pop(TIME: FloatArray, OF: IntArray, n: int) -> int:
 
 @uncounted
 def sweep_out(TIME: FloatArray, OF: IntArray, n: int, BODY: FloatArray) -> int:
-    """Drop the entries that are not valid any more, and all but one of those that are alike; how many there are then."""
+    """Drop entries that are not valid any more, and all but one of those that are alike; how many there are then."""
     size, first = n, n
     while n > 0:
         time, body = TIME[0], OF[0]
