@@ -181,7 +181,8 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> float:
         else:
             vi = path_rate(A, i, t, nx, ny, px - xi, py - yi)
             slope = path_rate(A, j, t, nx, ny, px - xj, py - yj) - vi
-        if not slope < 0.0:
+        # The islands end where they were brought last.
+        if not slope < 0.0 or tries + 1 == _SECANTS:
             break
         before, gap_before = t, g
         then = min(max(t - g / slope, least), A.PAR[DT])
