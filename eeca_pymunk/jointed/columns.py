@@ -206,6 +206,17 @@ def push_columns(C: Columns, L: FloatArray, m: int, factor: float, V: FloatArray
 
 
 @uncounted
+def leave_out(C: Columns, L: FloatArray, m: int, V: FloatArray) -> None:
+    """Let contacts that are left out have no impulse, and V follow."""
+    for i in range(m):
+        if C.OUT[i] != 0:
+            for w in range(C.AT[i], C.AT[i + 1]):
+                for c in range(3):
+                    V[C.BODY[w], c] -= L[i, 0] * C.N[w, c] + L[i, 1] * C.T[w, c]
+            L[i, 0] = L[i, 1] = 0.0
+
+
+@uncounted
 def sweep_columns(
     C: Columns, A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, m: int
 ) -> float:

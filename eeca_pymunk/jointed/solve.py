@@ -59,6 +59,7 @@ from .columns import (
     fill_free,
     fill_group,
     find_groups,
+    leave_out,
     make_columns,
     push_columns,
     weigh,
@@ -175,7 +176,7 @@ def press(
     fine = (1e-15 if elastic else (_REST_FINE if rests else _FINE)) * scale
     most = _ELASTIC_SWEEPS if elastic else (_FEW_SWEEPS if m <= _FEW else _SWEEPS)
     FORESEEN = np.empty((len(isle.IM), 3))
-    converged, best, LEAST = False, np.inf, L.copy()
+    converged, best, LEAST, USED = False, np.inf, L.copy(), L.copy()
     for outer in range(_ELASTIC_OUTER if elastic else _OUTER):
         anew = outer % _CHORD == 0
         advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, anew)
@@ -201,9 +202,13 @@ def press(
                     EFFECT[q, c] = (EFFECT[q, c] - isle.V[q, c]) / h
             target(P, Q, ROWS, m, EFFECT, EXPECTED, pull, h)
         FORESEEN[:] = motion.V
+        USED[:] = L
+        leave_out(C, L, m, FORESEEN)
         worst = solve_columns(C, P, Q, ROWS, L, FORESEEN, m, fine, most)
         converged = worst <= 10.0 * max(fine, agree)
         if farthest_apart(motion.V, FORESEEN, isle.EXTENT, n) <= 1e-3 * agree:
+            # The motion is that of the impulses before: others may do as little by these answers, and yet do much.
+            L[:] = USED
             break
     else:
         advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, False)
