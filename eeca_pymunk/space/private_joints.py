@@ -14,7 +14,8 @@ OF_LIBRARY = (
 )  # fmt: skip
 BEFORE, AFTER, FORCE, TORQUE = "_pre_solve_func", "_post_solve_func", "_force_func", "_torque_func"
 OF_CONSTRAINT = ("_constraint", BEFORE, AFTER)
-OF_SPRINGS = ((pymunk.DampedSpring, FORCE), (pymunk.DampedRotarySpring, TORQUE))
+# pymunk 7.0.0 has `_force_func` only where it was set: what is looked up is the setter.
+OF_SPRINGS = ((pymunk.DampedSpring, FORCE[1:]), (pymunk.DampedRotarySpring, TORQUE[1:]))
 
 
 def replace_functions(
@@ -25,6 +26,14 @@ def replace_functions(
     The public setters would also tell Chipmunk, and who watches the attributes of constraints.
     """
     constraint.__dict__["_pre_solve_func"], constraint.__dict__["_post_solve_func"] = before, after
+
+
+def law_of(spring: Any) -> Callable[[Any, float], float] | None:
+    """The force or torque function of a spring, None if none was ever set."""
+    law: Callable[[Any, float], float] | None = getattr(
+        spring, FORCE if isinstance(spring, pymunk.DampedSpring) else TORQUE, None
+    )
+    return law
 
 
 @contextmanager

@@ -20,6 +20,7 @@ import pymunk
 from ..arrays import FloatArray
 from ..errors import NotFiniteError
 from ..joints.layout import PUSH, REST, STIFFNESS
+from . import private_joints
 
 _POINT = 0.5 / math.sqrt(3.0)  # of Gauss, from the middle, over the length of the interval
 _NEAR = 1e-6  # an interval shorter than this, over the length it is at, has no secant
@@ -31,11 +32,15 @@ Rate = tuple[float, float]
 
 def own_function(item: Any) -> Callable[[Any, float], float] | None:
     """The spring's force or torque function if it is the user's own."""
-    if isinstance(item, pymunk.DampedSpring) and item.force_func is not pymunk.DampedSpring.spring_force:
-        return item.force_func
-    if isinstance(item, pymunk.DampedRotarySpring) and item.torque_func is not pymunk.DampedRotarySpring.spring_torque:
-        return item.torque_func
-    return None
+    usual: Any
+    if isinstance(item, pymunk.DampedSpring):
+        usual = pymunk.DampedSpring.spring_force
+    elif isinstance(item, pymunk.DampedRotarySpring):
+        usual = pymunk.DampedRotarySpring.spring_torque
+    else:
+        return None
+    law = private_joints.law_of(item)
+    return None if law is usual else law
 
 
 def put_law(item: Any, a: Motion, b: Motion, dt: float, row: FloatArray, past: Rate | None) -> Rate:
