@@ -67,7 +67,6 @@ from .layout import (
     POOL_FULL,
     PULLED,
     PUSHES,
-    PUSHES_FULL,
     RESTITUTION,
     ROOT,
     SOLVES,
@@ -204,6 +203,37 @@ def close(A: Scene, WALK: IntArray) -> None:
 
 
 @kernel
+def start(
+    A: Scene, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, dt: float, gx: float, gy: float, left: float
+) -> int:
+    """Take the states that were read, and begin a step of length dt on them; the bits so far, or a negative code."""
+    status = take(STATES, WALK, EXTRA, A.BODY, gx, gy, left)
+    if status >= 0:
+        A.PAR[DT], A.PAR[GRAVITY_X], A.PAR[GRAVITY_Y], A.PAR[LEFT_OVER] = dt, gx, gy, left
+        begin(A, WALK)
+    return status
+
+
+@kernel
+def finish(
+    A: Scene, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, status: int
+) -> int:  # fmt: skip
+    """Close the step, and give the states at its end; the bits of the step, or a negative code."""
+    close(A, WALK)
+    if A.COUNT[LOGGED] > 0:
+        status |= SOME
+    return give(STATES, WALK, EXTRA, A.BODY, ENDS, A.PAR[DT], A.PAR[LEFT_OVER], status)
+
+
+@uncounted
+def wish(met: int) -> int:
+    """The room that the loop wants, which has answered with one of its arrays being full."""
+    if met == POOL_FULL:
+        return ROOM_FOR_LISTS
+    return ROOM_FOR_EVENTS if met == LOG_FULL else ROOM_FOR_CONTACTS
+
+
+@kernel
 def resume(
     A: Scene, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, disks: int, lossy: bool,
     status: int,
@@ -220,19 +250,12 @@ def resume(
                 forecast(A, disks, A.LIST.shape[0], i, 0.0, dt)
     if COUNT[PHASE] == 1:
         met = follow(A, disks, lossy or A.PAR[PULLED] > 0.0)
-        if met == POOL_FULL:
-            return ROOM_FOR_LISTS
-        if met == LOG_FULL:
-            return ROOM_FOR_EVENTS
-        if met == PUSHES_FULL:
-            return ROOM_FOR_CONTACTS
+        if met != DONE:
+            return wish(met)
         COUNT[PHASE] = 2
     if COUNT[LOGGED] + COUNT[PUSHES] > A.LOG.shape[0]:
         return ROOM_FOR_EVENTS
-    close(A, WALK)
-    if COUNT[LOGGED] > 0:
-        status |= SOME
-    return give(STATES, WALK, EXTRA, BODY, ENDS, dt, A.PAR[LEFT_OVER], status)
+    return finish(A, STATES, WALK, EXTRA, ENDS, status)
 
 
 @kernel
@@ -252,9 +275,7 @@ def step(
     """
     if bits >= 0:
         return resume(A, STATES, WALK, EXTRA, ENDS, disks, lossy, bits)
-    status = take(STATES, WALK, EXTRA, A.BODY, gx, gy, left)
+    status = start(A, STATES, WALK, EXTRA, dt, gx, gy, left)
     if status < 0:
         return status
-    A.PAR[DT], A.PAR[GRAVITY_X], A.PAR[GRAVITY_Y], A.PAR[LEFT_OVER] = dt, gx, gy, left
-    begin(A, WALK)
     return resume(A, STATES, WALK, EXTRA, ENDS, disks, lossy, status)

@@ -18,19 +18,13 @@ from ..pairs.candidates import cover
 from ..pairs.layout import NUMBER, START
 from ..pairs.lists import mark_pair
 from ..pairs.rules import barred
-from ..transfer import EVENTS as SOME
-from ..transfer import give, take
 from .coming import way_of
 from .islands import TOUCH, approach, unite
 from .layout import (
     DONE,
     DT,
     FIRST_SHAPE,
-    GRAVITY_X,
-    GRAVITY_Y,
     ISLAND,
-    LEFT_OVER,
-    LOGGED,
     NOW,
     PUSH_A,
     PUSH_B,
@@ -41,7 +35,7 @@ from .layout import (
     Scene,
 )
 from .spans import solve
-from .step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, begin, close
+from .step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, finish, start
 
 _PASSES = 3  # further solves for bodies that impulses send into others
 
@@ -159,10 +153,7 @@ def resume_together(
             return ROOM_FOR_LISTS
         if more == 0:
             break
-    close(A, WALK)
-    if COUNT[LOGGED] > 0:
-        status |= SOME
-    return give(STATES, WALK, EXTRA, BODY, ENDS, A.PAR[DT], A.PAR[LEFT_OVER], status)
+    return finish(A, STATES, WALK, EXTRA, ENDS, status)
 
 
 @kernel
@@ -177,10 +168,8 @@ def step_together(
     """
     if bits >= 0:
         return resume_together(A, STATES, WALK, EXTRA, ENDS, USUAL, bits)
-    status = take(STATES, WALK, EXTRA, A.BODY, gx, gy, left)
+    status = start(A, STATES, WALK, EXTRA, dt, gx, gy, left)
     if status < 0:
         return status
-    A.PAR[DT], A.PAR[GRAVITY_X], A.PAR[GRAVITY_Y], A.PAR[LEFT_OVER] = dt, gx, gy, left
     A.COUNT[TOGETHER], A.PAR[NOW] = 1, 0.0
-    begin(A, WALK)
     return resume_together(A, STATES, WALK, EXTRA, ENDS, USUAL, status)

@@ -12,14 +12,10 @@ from ..impacts.heap import push
 from ..impacts.layout import (
     DONE,
     DT,
-    GRAVITY_X,
-    GRAVITY_Y,
     HEAP,
     ISLAND,
     JOINTED,
     JOINTS_DUE,
-    LEFT_OVER,
-    LOG_FULL,
     LOGGED,
     NOW,
     OPEN,
@@ -27,7 +23,6 @@ from ..impacts.layout import (
     OWN,
     PENDING,
     PHASE,
-    POOL_FULL,
     PULLED,
     PUSHES,
     PUSHES_FULL,
@@ -39,12 +34,10 @@ from ..impacts.layout import (
 )  # fmt: skip
 from ..impacts.loop import follow, forecast
 from ..impacts.settle import settle
-from ..impacts.step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, begin, close
+from ..impacts.step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, finish, start, wish
 from ..joints.layout import BODY_A, BODY_B, ELASTIC, TOUCHED
 from ..layout import BODY_ROW, DUE, LEFT, SINCE
 from ..layout import NOW as READ
-from ..transfer import EVENTS as SOME
-from ..transfer import give, take
 from .layout import COMPONENTS, REPEATS, WORST, Joints
 from .solve import begin_span
 from .strike import book_component, collide
@@ -63,10 +56,34 @@ def feel(A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray) -> None:
         same = True
         for c in range(6):
             same = same and now[k, c] == before[k, c]
-        if not same:
-            for j in range(J.TIE.shape[0]):
-                if J.TIE[j, BODY_A] == i or J.TIE[j, BODY_B] == i:
-                    J.TIE[j, TOUCHED] = 1
+        A.PLACE[i] = -1 if same else 1
+    n = A.PLACE.shape[0]
+    for j in range(J.TIE.shape[0]):
+        a, b = J.TIE[j, BODY_A], J.TIE[j, BODY_B]
+        if (a < n and A.PLACE[a] > 0) or (b < n and A.PLACE[b] > 0):
+            J.TIE[j, TOUCHED] = 1
+    A.PLACE[:] = -1
+
+
+@kernel
+def start_jointed(
+    A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, dt: float, gx: float, gy: float,
+    left: float,
+) -> int:  # fmt: skip
+    """As `..impacts.step.start`, with the joints."""
+    feel(A, J, STATES, WALK)
+    J.TALLY[WORST] = J.TALLY[REPEATS] = 0
+    J.STEPPED[:] = 0.0
+    return start(A, STATES, WALK, EXTRA, dt, gx, gy, left)
+
+
+@uncounted
+def book_joints(A: Scene, J: Joints) -> None:
+    """Book what all joints have done until the end of the step."""
+    for s in range(J.TALLY[COMPONENTS]):
+        book_component(A, J, s)
+    if J.TALLY[WORST] >= ELASTIC:
+        A.COUNT[UNMET] += 1
 
 
 @uncounted
@@ -135,23 +152,13 @@ def resume_jointed(
                 forecast(A, disks, A.LIST.shape[0], i, 0.0, dt)
     if COUNT[PHASE] == 1:
         met = follow_jointed(A, J, disks, lossy or A.PAR[PULLED] > 0.0)
-        if met == POOL_FULL:
-            return ROOM_FOR_LISTS
-        if met == LOG_FULL:
-            return ROOM_FOR_EVENTS
-        if met == PUSHES_FULL:
-            return ROOM_FOR_CONTACTS
+        if met != DONE:
+            return wish(met)
         COUNT[PHASE] = 2
     if COUNT[LOGGED] + COUNT[PUSHES] > A.LOG.shape[0]:
         return ROOM_FOR_EVENTS
-    for s in range(J.TALLY[COMPONENTS]):
-        book_component(A, J, s)
-    if J.TALLY[WORST] >= ELASTIC:
-        COUNT[UNMET] += 1
-    close(A, WALK)
-    if COUNT[LOGGED] > 0:
-        status |= SOME
-    return give(STATES, WALK, EXTRA, BODY, ENDS, dt, A.PAR[LEFT_OVER], status)
+    book_joints(A, J)
+    return finish(A, STATES, WALK, EXTRA, ENDS, status)
 
 
 @kernel
@@ -162,12 +169,7 @@ def step_jointed(
     """From the states that were read to those that are to be written: arguments and answer as `..impacts.step.step`."""
     if bits >= 0:
         return resume_jointed(A, J, STATES, WALK, EXTRA, ENDS, disks, lossy, bits)
-    feel(A, J, STATES, WALK)
-    status = take(STATES, WALK, EXTRA, A.BODY, gx, gy, left)
+    status = start_jointed(A, J, STATES, WALK, EXTRA, dt, gx, gy, left)
     if status < 0:
         return status
-    A.PAR[DT], A.PAR[GRAVITY_X], A.PAR[GRAVITY_Y], A.PAR[LEFT_OVER] = dt, gx, gy, left
-    begin(A, WALK)
-    J.TALLY[WORST] = J.TALLY[REPEATS] = 0
-    J.STEPPED[:] = 0.0
     return resume_jointed(A, J, STATES, WALK, EXTRA, ENDS, disks, lossy, status)

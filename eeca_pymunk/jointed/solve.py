@@ -145,13 +145,17 @@ def farthest_apart(V: FloatArray, W: FloatArray, EXTENT: FloatArray, n: int) -> 
 
 
 @uncounted
+def slip_of(P: IntArray, Q: IntArray, ROWS: FloatArray, WAY: FloatArray, i: int, h: float) -> float:
+    """How far contact i slips in h while bodies go WAY: its surfaces move at a rate, bodies by ways."""
+    return tangent_rate(P, Q, ROWS, WAY, i) + (h - 1.0) * ROWS[i, SURFACE]
+
+
+@uncounted
 def lost(P: IntArray, Q: IntArray, ROWS: FloatArray, L: FloatArray, WAY: FloatArray, m: int, h: float) -> float:
     """What contacts lose with impulses L while bodies go WAY: their part in the energy of the island, exactly."""
     total = 0.0
     for i in range(m):
-        # Surfaces move at a rate, bodies by ways.
-        slip = tangent_rate(P, Q, ROWS, WAY, i) + (h - 1.0) * ROWS[i, SURFACE]
-        total -= (L[i, 0] * normal_rate(P, Q, ROWS, WAY, i) + L[i, 1] * slip) / h
+        total -= (L[i, 0] * normal_rate(P, Q, ROWS, WAY, i) + L[i, 1] * slip_of(P, Q, ROWS, WAY, i, h)) / h
     return total
 
 
@@ -349,8 +353,7 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
     for z in range(m):
         R = A.PUSHED[first + z]
         R[UN_BEFORE] = R[UN_AFTER] = normal_rate(P, Q, ROWS, motion.WAY, z) / h
-        slip = tangent_rate(P, Q, ROWS, motion.WAY, z) + (h - 1.0) * ROWS[z, SURFACE]
-        R[UT_BEFORE] = R[UT_AFTER] = slip / h
+        R[UT_BEFORE] = R[UT_AFTER] = slip_of(P, Q, ROWS, motion.WAY, z, h) / h
         A.PUSHED_BY[first + z, ROOT] = root
     COUNT[PUSHES] += m
     for q in range(n):

@@ -13,31 +13,22 @@ from ..impacts.islands import unite
 from ..impacts.layout import (
     DONE,
     DT,
-    GRAVITY_X,
-    GRAVITY_Y,
     ISLAND,
     JOINTED,
-    LEFT_OVER,
-    LOGGED,
     NOW,
     PUSHES,
     SPEED,
     TIED,
     TOGETHER,
-    UNMET,
     Scene,
 )
 from ..impacts.spans import solve
-from ..impacts.step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, begin, close
+from ..impacts.step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, finish
 from ..impacts.together import anew, join_all
-from ..joints.layout import ELASTIC
 from ..layout import EXTENT, SPIN, VX, VY
-from ..transfer import EVENTS as SOME
-from ..transfer import give, take
-from .layout import COMPONENTS, REPEATS, WORST, Joints
-from .loop import feel
+from .layout import Joints
+from .loop import book_joints, start_jointed
 from .solve import begin_span
-from .strike import book_component
 
 
 @kernel
@@ -70,14 +61,8 @@ def resume_together_jointed(
             return ROOM_FOR_CONTACTS
     if COUNT[PUSHES] > A.LOG.shape[0]:
         return ROOM_FOR_EVENTS
-    for s in range(J.TALLY[COMPONENTS]):
-        book_component(A, J, s)
-    if J.TALLY[WORST] >= ELASTIC:
-        COUNT[UNMET] += 1
-    close(A, WALK)
-    if COUNT[LOGGED] > 0:
-        status |= SOME
-    return give(STATES, WALK, EXTRA, BODY, ENDS, A.PAR[DT], A.PAR[LEFT_OVER], status)
+    book_joints(A, J)
+    return finish(A, STATES, WALK, EXTRA, ENDS, status)
 
 
 @kernel
@@ -89,13 +74,8 @@ def step_together_jointed(
     `..impacts.together.step_together`."""
     if bits >= 0:
         return resume_together_jointed(A, J, STATES, WALK, EXTRA, ENDS, USUAL, bits)
-    feel(A, J, STATES, WALK)
-    status = take(STATES, WALK, EXTRA, A.BODY, gx, gy, left)
+    status = start_jointed(A, J, STATES, WALK, EXTRA, dt, gx, gy, left)
     if status < 0:
         return status
-    A.PAR[DT], A.PAR[GRAVITY_X], A.PAR[GRAVITY_Y], A.PAR[LEFT_OVER] = dt, gx, gy, left
     A.COUNT[TOGETHER], A.PAR[NOW] = 1, 0.0
-    begin(A, WALK)
-    J.TALLY[WORST] = J.TALLY[REPEATS] = 0
-    J.STEPPED[:] = 0.0
     return resume_together_jointed(A, J, STATES, WALK, EXTRA, ENDS, USUAL, status)
