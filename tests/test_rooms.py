@@ -18,6 +18,8 @@ FLOORS = (
     "arrays layout errors files",
     "linking",
     "compiled",
+    "tables",
+    "pointers",
     "energy",
     "transfer report",
     "geometry",

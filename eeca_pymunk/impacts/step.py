@@ -32,6 +32,7 @@ from ..layout import (
 from ..layout import (
     SECOND_SHAPE as SECOND_OF,
 )
+from ..tables import Table
 from ..transfer import EVENTS as SOME
 from ..transfer import give, take
 from .booking import book, lift_out
@@ -76,6 +77,7 @@ from .layout import (
     SWEEPS,
     UNMET,
     Scene,
+    scene_of,
 )  # fmt: skip
 from .loop import follow, forecast
 from .settle import settle
@@ -260,12 +262,13 @@ def resume(
 
 @kernel
 def step(
-    A: Scene, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
+    TABLE: Table, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
     left: float, disks: int, lossy: bool, bits: int,
 ) -> int:  # fmt: skip
     """From the states that were read to those that are to be written, see `transfer.py`.
 
     Args:
+        TABLE: `table_of` a Scene.
         dt: time, > 0.  gx, gy: gravity, length/time².  left: what half the step's damping leaves of velocities.
         disks: the first so many rows of BODY are lone disks.  lossy: whether any shape's elasticity is below 1.
         bits: negative for a new step; those of one that wished for room and goes on.
@@ -273,6 +276,7 @@ def step(
     Returns:
         the bits EVENTS, FORCES, TURNS, a negative code of `transfer.py`, or a wish for room.
     """
+    A = scene_of(TABLE)
     if bits >= 0:
         return resume(A, STATES, WALK, EXTRA, ENDS, disks, lossy, bits)
     status = start(A, STATES, WALK, EXTRA, dt, gx, gy, left)

@@ -31,6 +31,7 @@ from ..impacts.layout import (
     UNMET,
     WAITING,
     Scene,
+    scene_of,
 )  # fmt: skip
 from ..impacts.loop import follow, forecast
 from ..impacts.settle import settle
@@ -38,7 +39,8 @@ from ..impacts.step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, finish, start, wi
 from ..joints.layout import BODY_A, BODY_B, ELASTIC, TOUCHED
 from ..layout import BODY_ROW, DUE, LEFT, SINCE
 from ..layout import NOW as READ
-from .layout import COMPONENTS, REPEATS, WORST, Joints
+from ..tables import Table
+from .layout import COMPONENTS, REPEATS, WORST, Joints, joints_of
 from .solve import begin_span
 from .strike import book_component, collide
 
@@ -163,10 +165,11 @@ def resume_jointed(
 
 @kernel
 def step_jointed(
-    A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float,
+    TABLE: Table, JOINTS: Table, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float,
     gy: float, left: float, disks: int, lossy: bool, bits: int,
 ) -> int:  # fmt: skip
     """From the states that were read to those that are to be written: arguments and answer as `..impacts.step.step`."""
+    A, J = scene_of(TABLE), joints_of(JOINTS)
     if bits >= 0:
         return resume_jointed(A, J, STATES, WALK, EXTRA, ENDS, disks, lossy, bits)
     status = start_jointed(A, J, STATES, WALK, EXTRA, dt, gx, gy, left)
