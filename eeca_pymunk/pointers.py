@@ -13,15 +13,15 @@ import numpy as np
 from llvmlite import ir
 from numba.core import cgutils, types
 from numba.core.imputils import lower_getattr_generic
-from numba.core.typing.templates import AttributeTemplate
 from numba.core.registry import cpu_target
+from numba.core.typing.templates import AttributeTemplate
 from numba.extending import infer_getattr, intrinsic, models, register_model
 from numba.np.numpy_support import from_dtype
 
 from .tables import WORDS, fields
 
 
-class TableType(types.Type):  # type: ignore[misc]
+class TableType(types.Type):
     """The type of an opened table: a pointer; `arrays` are the (name, dtype, dimensions) of its arrays."""
 
     def __init__(self, kind: str, arrays: tuple[tuple[str, str, int], ...]) -> None:
@@ -37,19 +37,19 @@ class TableType(types.Type):  # type: ignore[misc]
 
 
 @register_model(TableType)
-class _Model(models.OpaqueModel):  # type: ignore[misc]
+class _Model(models.OpaqueModel):
     """A pointer that nobody counts."""
 
 
 @infer_getattr
-class _Attributes(AttributeTemplate):  # type: ignore[misc]
+class _Attributes(AttributeTemplate):
     key = TableType
 
-    def generic_resolve(self, table: TableType, name: str) -> Any:
+    def generic_resolve(self, table: Any, name: Any) -> Any:  # type: ignore[override]
         return table.array(name)[1]
 
 
-@lower_getattr_generic(TableType)
+@lower_getattr_generic(TableType)  # type: ignore[untyped-decorator, no-untyped-call, unused-ignore]
 def _attribute(context: Any, builder: Any, table: TableType, value: Any, name: str) -> Any:
     place, kind = table.array(name)
     word = ir.IntType(64)
@@ -81,7 +81,7 @@ def _attribute(context: Any, builder: Any, table: TableType, value: Any, name: s
 def opener(kind: str) -> Any:
     """The numba type of the function that opens tables of this kind; what is no table, it hands on as it is."""
 
-    @intrinsic  # type: ignore[untyped-decorator]
+    @intrinsic
     def opened(typing: Any, table: Any) -> Any:
         if not isinstance(table, types.Array):
             return table(table), lambda context, builder, signature, args: args[0]

@@ -165,8 +165,8 @@ def resume_jointed(
 
 @kernel
 def step_jointed(
-    TABLE: Table, JOINTS: Table, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float,
-    gy: float, left: float, disks: int, lossy: bool, bits: int,
+    TABLE: Table, JOINTS: Table, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float,
+    gx: float, gy: float, left: float, disks: int, lossy: bool, bits: int,
 ) -> int:  # fmt: skip
     """From the states that were read to those that are to be written: arguments and answer as `..impacts.step.step`."""
     A, J = scene_of(TABLE), joints_of(JOINTS)

@@ -69,8 +69,8 @@ def resume_together_jointed(
 
 @kernel
 def step_together_jointed(
-    TABLE: Table, JOINTS: Table, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float,
-    gy: float, left: float, USUAL: FloatArray, bits: int,
+    TABLE: Table, JOINTS: Table, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float,
+    gx: float, gy: float, left: float, USUAL: FloatArray, bits: int,
 ) -> int:  # fmt: skip
     """From the states that were read to those that are to be written: arguments and answer as
     `..impacts.together.step_together`."""
