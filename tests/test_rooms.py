@@ -19,7 +19,6 @@ FLOORS = (
     "linking",
     "compiled",
     "tables",
-    "pointers",
     "energy",
     "transfer report",
     "geometry",

@@ -12,7 +12,7 @@ from typing import Any, Generic, TypeAlias, TypeVar
 
 import numpy as np
 
-from .compiled import compiler
+from ..compiled import compiler
 
 T = TypeVar("T")
 Table: TypeAlias = Any  # of `table_of`

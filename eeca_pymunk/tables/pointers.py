@@ -1,4 +1,4 @@
-"""What numba has to know of `tables.py`. It is imported when kernels are compiled, and only then.
+"""What numba has to know of `table.py`. It is imported when kernels are compiled, and only then.
 
 A table is a pointer to words of 64 bits, WORDS for each array: where its data are, its size, its last two lengths.
 Nothing of this changes while a kernel runs, which LLVM is told: it reads a word once, however often it is asked for.
@@ -18,7 +18,7 @@ from numba.core.typing.templates import AttributeTemplate
 from numba.extending import infer_getattr, intrinsic, models, register_model
 from numba.np.numpy_support import from_dtype
 
-from .tables import WORDS, fields
+from .table import WORDS, fields
 
 
 class TableType(types.Type):
