@@ -49,7 +49,7 @@ def takes_part(A: Scene, disks: int, s: int, o: int, t: float) -> bool:
 
 @uncounted
 def crowded(A: Scene, a: int, b: int) -> bool:
-    """Whether shapes a and b meet in a crowd: their hit spreads from the nearest bodies by the new span of the island."""
+    """Whether shapes a and b meet in a crowd: their hit spreads from the nearest bodies by its new span."""
     if law(A.SHAPE, A.RULE, a, b)[0] >= 1.0:
         return False
     size = 0

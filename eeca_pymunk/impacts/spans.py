@@ -82,7 +82,6 @@ from .layout import (
     Scene,
 )  # fmt: skip
 
-
 _SWEEPS, _AGAIN = 40, 15  # of an island that moves: at the start of a step; of a crowd within it
 
 

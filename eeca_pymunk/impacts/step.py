@@ -79,7 +79,7 @@ from .layout import (
     Scene,
     scene_of,
 )  # fmt: skip
-from .loop import follow, forecast
+from .loop import follow, forecast_due
 from .settle import settle
 from .strike import move_to
 
@@ -241,15 +241,12 @@ def resume(
     status: int,
 ) -> int:  # fmt: skip
     """The rest of a step, whose bits so far are `status`."""
-    COUNT, BODY = A.COUNT, A.BODY
-    dt = A.PAR[DT]
+    COUNT = A.COUNT
     if COUNT[PHASE] == 0:
         if COUNT[PUSHES] > 0 and settle(A) != DONE:
             return ROOM_FOR_CONTACTS
         COUNT[PHASE] = 1
-        for i in range(BODY.shape[0] - 1):
-            if BODY[i, DUE] < dt or A.STATE[i, ISLAND] >= 0:
-                forecast(A, disks, A.LIST.shape[0], i, 0.0, dt)
+        forecast_due(A, disks)
     if COUNT[PHASE] == 1:
         met = follow(A, disks, lossy or A.PAR[PULLED] > 0.0)
         if met != DONE:

@@ -20,6 +20,7 @@ FRESH = (8.0, 0.0, 0.0)  # STATE of a new island
 
 _REST = 10  # sweeps before the first direct solution
 _AFTER = 4  # further sweeps after each
+_QUIET = 100.0  # times the residual at which all is done: enough where a large island begins with it
 _LARGE = 80  # contacts beyond which rounds that did not pay are not tried again for some steps
 _PATIENT, _IMPATIENT = 8, 2  # rounds that do not pay end the solve; fewer where the last ones failed as well
 _LONGEST = 32.0  # steps
@@ -45,10 +46,11 @@ def relax(
         return sweeps, 0, worst
     sweeps = 0
     worst = np.inf
-    while sweeps < _REST and worst > fine:
+    enough = _QUIET * fine if m > _LARGE else fine
+    while sweeps < _REST and worst > enough:
         worst = sweep(A, B, ROWS, L, V, IM, II, m)
         sweeps += 1
-    if worst <= fine:
+    if worst <= enough:
         return sweeps, 0, worst
     fails = 0
     done = 0
