@@ -34,6 +34,7 @@ from .layout import (
     PUSH_A,
     PUSH_B,
     PUSH_CHANGE,
+    PUSH_GAP,
     PUSH_NX,
     PUSH_NY,
     PUSH_X,
@@ -99,7 +100,7 @@ def book(A: Scene, c: int, t: float) -> None:
     if COUNT[LOGGED] < A.LOG.shape[0]:
         note(
             A.LOG, COUNT[LOGGED], a, b, R[SPAN_FROM] + 0.5 * f * R[SPAN], f * R[LAM], f * R[BETA], R[PUSH_NX],
-            R[PUSH_NY], R[PUSH_X], R[PUSH_Y], f * R[PUSH_CHANGE],
+            R[PUSH_NY], R[PUSH_X], R[PUSH_Y], f * R[PUSH_CHANGE], R[PUSH_GAP],
         )  # fmt: skip
         COUNT[LOGGED] += 1
 

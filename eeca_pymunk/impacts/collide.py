@@ -3,6 +3,8 @@ anew."""
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from ..arrays import FloatArray
@@ -65,7 +67,7 @@ def finish(A: Scene, block: Block, n: int, m: int, L: FloatArray, OUT: FloatArra
         if L[z, 0] > 0.0 and COUNT[LOGGED] < A.LOG.shape[0]:
             note(
                 A.LOG, COUNT[LOGGED], block.OF[z] // k, block.OF[z] % k, t, L[z, 0], L[z, 1], ROWS[z, NX], ROWS[z, NY],
-                block.POINTS[z, 0], block.POINTS[z, 1], L[z, 0] / ROWS[z, K_N],
+                block.POINTS[z, 0], block.POINTS[z, 1], L[z, 0] / ROWS[z, K_N], math.nan,
             )  # fmt: skip
             COUNT[LOGGED] += 1
     COUNT[IMPACTS] += 1

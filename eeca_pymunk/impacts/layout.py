@@ -40,14 +40,15 @@ RESTING_COLUMNS = 14
 # PUSHED_BY (c, 3) int: the contacts of islands in their present spans
 PUSH_A, PUSH_B, ROOT = 0, 1, 2  # shapes, first body of the island; of a span that is over one of these:
 ENDED, LASTED = -1, -2  # before the end of the step, with it
-# PUSHED (c, 14) float
+# PUSHED (c, 15) float
 LAM, BETA = 0, 1  # impulses over the span
 UN_BEFORE, UN_AFTER, UT_BEFORE, UT_AFTER = 2, 3, 4, 5  # velocities of the contact at both ends
 WORK_OF = 6  # energy that moving bodies and surfaces give over the span
 SPAN_FROM, SPAN = 7, 8  # instant and length of the span
 PUSH_NX, PUSH_NY, PUSH_X, PUSH_Y = 9, 10, 11, 12
 PUSH_CHANGE = 13  # of the normal velocity by the impulse alone
-PUSHED_COLUMNS = 14
+PUSH_GAP = 14  # at the start of the step, nan where the span began later
+PUSHED_COLUMNS = 15
 
 # PAR float: of the step
 DT, NOW = 0, 1  # length of the step; instant at which the loop has stopped for more room

@@ -26,7 +26,7 @@ from ..layout import (
 )
 from ..pairs.lists import mark_pair
 from ..rows.build import normal_rate, tangent_rate
-from ..rows.layout import ARM_NA, ARM_TA, K_N, NX, NY, ROW_COLUMNS, UN, UT
+from ..rows.layout import ARM_NA, ARM_TA, GAP, K_N, NX, NY, ROW_COLUMNS, UN, UT
 from ..sustained.ledger import LEDGER_SIZE, carried
 from ..sustained.step import LOCK as LOCK_OF
 from ..sustained.step import OUT_SIZE, step_island
@@ -57,6 +57,7 @@ from .layout import (
     PUSH_A,
     PUSH_B,
     PUSH_CHANGE,
+    PUSH_GAP,
     PUSH_NX,
     PUSH_NY,
     PUSH_X,
@@ -82,7 +83,7 @@ from .layout import (
     Scene,
 )  # fmt: skip
 
-_SWEEPS, _AGAIN = 40, 15  # of an island that moves: at the start of a step; of a crowd within it
+_SWEEPS, _OF_CROWD, _AGAIN = 40, 24, 12  # of an island that moves; of a crowd, and of one that was hit in this step
 
 
 class Local(NamedTuple):
@@ -163,6 +164,7 @@ def open_contacts(
         ROW[PUSH_X] = x + ROWS[z, ARM_TA] * ROWS[z, NX] + ROWS[z, ARM_NA] * ROWS[z, NY]
         ROW[PUSH_Y] = y + ROWS[z, ARM_TA] * ROWS[z, NY] - ROWS[z, ARM_NA] * ROWS[z, NX]
         ROW[PUSH_CHANGE] = L[z, 0] / ROWS[z, K_N]
+        ROW[PUSH_GAP] = ROWS[z, GAP] if t == 0.0 else math.nan
 
 
 @uncounted
@@ -209,7 +211,7 @@ def solve(A: Scene, root: int, t: float) -> int:
         for q in range(k):
             least = max(least, way_of(A, WHO[q], h))
     # After a hit the forces of the span that it has cut short are a good beginning.
-    sweeps = _SWEEPS if t == 0.0 or n < CROWD else _AGAIN
+    sweeps = _SWEEPS if n < CROWD else (_OF_CROWD if t == 0.0 else _AGAIN)
     m = 0
     if p > 0 and h > 0.0:
         m = step_island(

@@ -213,6 +213,8 @@ def close(A: Scene, WALK: IntArray) -> None:
         PAR[AFTER] -= lost
     PAR[LAST] = end
     for n in range(COUNT[LOGGED]):
+        if not math.isnan(LOG[n, GAP]):
+            continue
         a, b = int(LOG[n, FIRST_OF]), int(LOG[n, SECOND_OF])
         i, j = A.LINK[a, OWNER], A.LINK[b, OWNER]
         LOG[n, GAP] = gap_at(

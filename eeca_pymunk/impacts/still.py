@@ -39,6 +39,7 @@ from .layout import (
     PUSH_A,
     PUSH_B,
     PUSH_CHANGE,
+    PUSH_GAP,
     PUSH_NX,
     PUSH_NY,
     PUSH_X,
@@ -237,7 +238,7 @@ def stand(A: Scene, c: int) -> None:
     if A.COUNT[LOGGED] < A.LOG.shape[0] and (R[LAM] != 0.0 or R[BETA] != 0.0):
         note(
             A.LOG, A.COUNT[LOGGED], A.PUSHED_BY[c, PUSH_A], A.PUSHED_BY[c, PUSH_B], 0.5 * A.PAR[DT], R[LAM], R[BETA],
-            R[PUSH_NX], R[PUSH_NY], R[PUSH_X], R[PUSH_Y], R[PUSH_CHANGE],
+            R[PUSH_NX], R[PUSH_NY], R[PUSH_X], R[PUSH_Y], R[PUSH_CHANGE], R[PUSH_GAP],
         )  # fmt: skip
         A.COUNT[LOGGED] += 1
 

@@ -15,6 +15,7 @@ from ..layout import (
     BOUND,
     CHANGE,
     EXTENT,
+    GAP,
     II,
     IM,
     IMPULSE,
@@ -113,11 +114,13 @@ def alone(A: Scene, disks: int, i: int, other: int, t: float) -> bool:
 @uncounted
 def note(
     LOG: FloatArray, n: int, a: int, b: int, t: float, lam: float, beta: float, nx: float, ny: float, px: float,
-    py: float, change: float,
+    py: float, change: float, gap: float,
 ) -> None:  # fmt: skip
-    """Row n of the log: an impulse between shapes a and b at instant t."""
+    """Row n of the log: an impulse between shapes a and b at instant t; `gap` at the start of the step, nan if that is
+    to be found out."""
     LOG[n, BY], LOG[n, ON], LOG[n, WHEN], LOG[n, IMPULSE], LOG[n, TANGENTIAL] = a, b, t, lam, beta
     LOG[n, NORMAL_X], LOG[n, NORMAL_Y], LOG[n, POINT_X], LOG[n, POINT_Y], LOG[n, CHANGE] = nx, ny, px, py, change
+    LOG[n, GAP] = gap
 
 
 @inlined
@@ -170,6 +173,6 @@ def strike_disk(A: Scene, i: int, o: int, t: float) -> None:
         A.STATE[j, KINKS] += 1
         A.STATE[j, EVENTS] += 1
     PAR[LEDGER + RESTITUTION] += 0.5 * lam * (1.0 - e) * max(-u, 0.0)
-    note(A.LOG, A.COUNT[LOGGED], i, o, t, lam, beta, nx, ny, px, py, lam * free)
+    note(A.LOG, A.COUNT[LOGGED], i, o, t, lam, beta, nx, ny, px, py, lam * free, math.nan)
     A.COUNT[LOGGED] += 1
     A.COUNT[IMPACTS] += 1
