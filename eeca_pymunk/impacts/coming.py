@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
+from ..geometry.flight import norm
 from ..layout import (
     BOUND,
     EXTENT,
@@ -65,6 +64,7 @@ def pairs_of(A: Scene, root: int, t: float, lossy: bool, LOCAL: IntArray, MINE: 
     together = A.COUNT[TOGETHER] > 0
     for q in range(n):
         i = MINE[q]
+        own = norm(BODY[i, VX], BODY[i, VY]) + abs(BODY[i, SPIN]) * BODY[i, EXTENT]
         for s in range(STATE[i, FIRST_SHAPE], STATE[i, FIRST_SHAPE] + STATE[i, SHAPES]):
             for w in range(A.LIST[s, START], A.LIST[s, START] + A.LIST[s, NUMBER]):
                 o = int(A.POOL[w])
@@ -75,8 +75,7 @@ def pairs_of(A: Scene, root: int, t: float, lossy: bool, LOCAL: IntArray, MINE: 
                     continue
                 small = min(A.SHAPE[s, SIZE], A.SHAPE[o, SIZE])
                 busy = A.MEMBER[i, BUSY] > 0 or A.MEMBER[j, BUSY] > 0
-                speed = math.hypot(BODY[i, VX], BODY[i, VY]) + math.hypot(BODY[j, VX], BODY[j, VY])
-                speed += abs(BODY[i, SPIN]) * BODY[i, EXTENT] + abs(BODY[j, SPIN]) * BODY[j, EXTENT]
+                speed = own + norm(BODY[j, VX], BODY[j, VY]) + abs(BODY[j, SPIN]) * BODY[j, EXTENT]
                 reach = 1.1 * (speed * h + A.PAR[PULLED] * h * h) + TOUCH * small
                 if together:
                     reach = way_of(A, i, h) + way_of(A, j, h) + TOUCH * small
@@ -129,7 +128,7 @@ def span_of(A: Scene, found: IntArray, t: float) -> float:
             if LINK[s, COUNT_OF] > 1:
                 rate = max(rate, abs(BODY[LINK[s, OWNER], SPIN]))
         if LINK[a, COUNT_OF] == 1 and LINK[b, COUNT_OF] == 1:
-            speed = math.hypot(BODY[j, VX] - BODY[i, VX], BODY[j, VY] - BODY[i, VY])
+            speed = norm(BODY[j, VX] - BODY[i, VX], BODY[j, VY] - BODY[i, VY])
             rate = max(rate, speed / max(A.SHAPE[a, ROUNDING] + A.SHAPE[b, ROUNDING], 1e-300))
     if rate * h <= _TURN:
         return h

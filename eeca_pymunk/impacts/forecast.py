@@ -11,6 +11,7 @@ import math
 
 from ..arrays import FlagArray, FloatArray, IntArray, PoolArray
 from ..compiled import inlined, uncounted
+from ..geometry.flight import norm
 from ..layout import (
     AX,
     AY,
@@ -46,7 +47,7 @@ def leaves(
     if m == math.inf:
         return math.inf
     h = now - BODY[i, SINCE]
-    arm = 0.0 if s < disks else math.hypot(SHAPE[s, CENTRE_X], SHAPE[s, CENTRE_Y])
+    arm = 0.0 if s < disks else norm(SHAPE[s, CENTRE_X], SHAPE[s, CENTRE_Y])
     ax, ay = BODY[i, AX], BODY[i, AY]
     if ax == 0.0 and ay == 0.0 and arm == 0.0:
         vx, vy = BODY[i, VX], BODY[i, VY]
@@ -63,11 +64,11 @@ def leaves(
         return float(now + ((root - b) / squared if b <= 0.0 else c / (root + b)))
     # The length of the way bounds the distance: u s + g s^2 / 2 until the room is used up.
     x, y = centre(BODY, SHAPE, LINK, s, now)
-    room = m - math.hypot(x - MARK[s, AT_X], y - MARK[s, AT_Y])
+    room = m - norm(x - MARK[s, AT_X], y - MARK[s, AT_Y])
     if room <= 0.0:
         return now
-    u = math.hypot(BODY[i, VX] + ax * h, BODY[i, VY] + ay * h) + abs(BODY[i, SPIN] + BODY[i, TWIST] * h) * arm
-    g = math.hypot(ax, ay) + abs(BODY[i, TWIST]) * arm
+    u = norm(BODY[i, VX] + ax * h, BODY[i, VY] + ay * h) + abs(BODY[i, SPIN] + BODY[i, TWIST] * h) * arm
+    g = norm(ax, ay) + abs(BODY[i, TWIST]) * arm
     if u + g == 0.0:
         return math.inf
     return float(now + 2.0 * room / (u + math.sqrt(u * u + 2.0 * g * room)))
@@ -77,7 +78,7 @@ def leaves(
 def has_left(BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, MARK: FloatArray, s: int, now: float) -> bool:
     """Whether shape s is as good as out of its margin circle."""
     x, y = centre(BODY, SHAPE, LINK, s, now)
-    return bool(math.hypot(x - MARK[s, AT_X], y - MARK[s, AT_Y]) > (1.0 - _INSIDE) * MARK[s, MARGIN])
+    return bool(norm(x - MARK[s, AT_X], y - MARK[s, AT_Y]) > (1.0 - _INSIDE) * MARK[s, MARGIN])
 
 
 @inlined

@@ -6,13 +6,11 @@ come by events, and are sustained from the instant at which their bounces would 
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from ..arrays import IntArray
 from ..compiled import kernel, uncounted
-from ..geometry.flight import pose
+from ..geometry.flight import norm, pose
 from ..geometry.gap import gap_at
 from ..layout import BOUND, EXTENT, IM, OWNER, SIZE, SPIN, VX, VY
 from ..pairs.layout import NUMBER, START
@@ -77,7 +75,7 @@ def join(A: Scene, i: int, t: float, FOUND: IntArray) -> int:
             small = min(A.SHAPE[s, SIZE], A.SHAPE[o, SIZE])
             reach = TOUCH * small
             if busy:
-                speed = math.hypot(BODY[i, VX], BODY[i, VY]) + math.hypot(BODY[j, VX], BODY[j, VY])
+                speed = norm(BODY[i, VX], BODY[i, VY]) + norm(BODY[j, VX], BODY[j, VY])
                 speed += abs(BODY[i, SPIN]) * BODY[i, EXTENT] + abs(BODY[j, SPIN]) * BODY[j, EXTENT]
                 reach += 1.1 * (speed + pulled * dt) * h
             ax, ay = centre(BODY, A.SHAPE, LINK, s, t)
@@ -211,7 +209,7 @@ def ignored(A: Scene, a: int, b: int, t: float) -> bool:
         return False
     if hits < 4 * most:
         h = A.PAR[DT] - t
-        speed = math.hypot(A.BODY[i, VX] - A.BODY[j, VX], A.BODY[i, VY] - A.BODY[j, VY])
+        speed = norm(A.BODY[i, VX] - A.BODY[j, VX], A.BODY[i, VY] - A.BODY[j, VY])
         if speed * h > _DEEP * min(A.SHAPE[a, SIZE], A.SHAPE[b, SIZE]):
             return False
     A.COUNT[IGNORED] += 1

@@ -7,11 +7,9 @@ made contacts too, and all is solved again, a few times at most.
 
 from __future__ import annotations
 
-import math
-
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
-from ..geometry.flight import pose
+from ..geometry.flight import norm, pose
 from ..geometry.gap import gap
 from ..layout import ANGLE, AX, AY, EXTENT, IM, OWNER, SIZE, SPIN, TWIST, VX, VY, X, Y
 from ..pairs.candidates import cover
@@ -101,7 +99,7 @@ def overrun(A: Scene, USUAL: FloatArray) -> int:
         if A.STATE[i, ISLAND] < 0:
             continue
         x, y, angle = pose(BODY, i, dt)
-        way = math.hypot(x - BODY[i, X], y - BODY[i, Y]) + abs(angle - BODY[i, ANGLE]) * BODY[i, EXTENT]
+        way = norm(x - BODY[i, X], y - BODY[i, Y]) + abs(angle - BODY[i, ANGLE]) * BODY[i, EXTENT]
         if way <= way_of(A, i, dt):
             continue
         before, RESTING[i, SPEED] = RESTING[i, SPEED], way / dt
@@ -132,7 +130,7 @@ def resume_together(
     n = BODY.shape[0] - 1
     A.RESTING[n, SPEED] = 0.0
     for i in range(n):
-        A.RESTING[i, SPEED] = math.hypot(BODY[i, VX], BODY[i, VY]) + abs(BODY[i, SPIN]) * BODY[i, EXTENT]
+        A.RESTING[i, SPEED] = norm(BODY[i, VX], BODY[i, VY]) + abs(BODY[i, SPIN]) * BODY[i, EXTENT]
     for solves in range(_PASSES + 1):
         anew(A)
         if not join_all(A, USUAL):

@@ -10,6 +10,7 @@ import math
 
 from ..arrays import FlagArray, FloatArray, IntArray, PoolArray
 from ..compiled import uncounted
+from ..geometry.flight import norm
 from ..geometry.gap import gap, touching
 from ..layout import OWNER
 from .grid import renew
@@ -37,7 +38,7 @@ def cover(
         return True
     reach = min(reach, _ABSURD * GRID[CELL_LENGTH])
     x, y = centre(BODY, SHAPE, LINK, s, 0.0)
-    if math.hypot(x - MARK[s, AT_X], y - MARK[s, AT_Y]) + reach <= margin:
+    if norm(x - MARK[s, AT_X], y - MARK[s, AT_Y]) + reach <= margin:
         return True
     MARK[s, MARGIN] = max(USUAL[s], _LASTS * reach)
     return renew(BODY, SHAPE, LINK, MARK, CELL, LIST, POOL, FLAG, HEAD, GRID, INFO, BOX, CSR, s, 0.0)
