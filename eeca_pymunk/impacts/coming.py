@@ -33,6 +33,7 @@ from .layout import (
     ISLAND,
     PULLED,
     SHAPES,
+    SOLVES,
     SPEED,
     STAMP,
     TOGETHER,
@@ -112,13 +113,21 @@ def pairs_of(A: Scene, root: int, t: float, lossy: bool, LOCAL: IntArray, MINE: 
 
 
 @uncounted
+def hurried(A: Scene) -> bool:
+    """Whether spans are to last to the end of the step: where all contacts act together, and once the step has had
+    about as many as there are bodies."""
+    bodies = A.BODY.shape[0]
+    return A.COUNT[TOGETHER] > 0 or A.COUNT[SOLVES] >= max(PARTS - 2.0 * bodies, bodies)
+
+
+@uncounted
 def span_of(A: Scene, found: IntArray, t: float) -> float:
     """Length of a span that begins at instant t: to the end of the step, or until a normal may have turned by _TURN; of
     islands of few contacts, as every span costs a solve. Normals turn with shapes that are not round, and as round
     ones go round one another."""
     BODY, LINK = A.BODY, A.LINK
     h = A.PAR[DT] - t
-    if found.shape[0] > _FEW or A.COUNT[TOGETHER] > 0:
+    if found.shape[0] > _FEW or hurried(A):
         return h
     rate = 0.0
     for c in range(found.shape[0]):

@@ -33,7 +33,7 @@ from ..sustained.step import OUT_SIZE, step_island
 from ..sustained.step import POLISHES as POLISHES_OF
 from ..sustained.step import SWEEPS as SWEEPS_OF
 from .block import CROWD
-from .coming import PARTS, pairs_of, span_of, stick_time, way_of
+from .coming import PARTS, hurried, pairs_of, span_of, stick_time, way_of
 from .islands import members
 from .layout import (
     AFTER_ME,
@@ -219,7 +219,7 @@ def solve(A: Scene, root: int, t: float) -> int:
             least, max(-A.RESTING[root, LOST], 0.0), A.KEYS, A.FORCES, COUNT[REMEMBERED:], A.PAR[STAMP],
             A.RESTING[MINE[0], RELAX : RELAX + 3], P, Q, ROWS, KEY, L, LOSS, VN, JUMP, BOOK, OUT,
         )  # fmt: skip
-        stuck = h if COUNT[TOGETHER] > 0 else stick_time(P, Q, ROWS, L, V + h * ACC, VN, m, h)
+        stuck = h if hurried(A) else stick_time(P, Q, ROWS, L, V + h * ACC, VN, m, h)
         if stuck < h:
             # Where slip ends on the way, so does the span: friction changes its law there.
             h = max(stuck, A.PAR[DT] / PARTS)

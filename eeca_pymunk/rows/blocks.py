@@ -27,11 +27,8 @@ _SWEEPS, _RUBBED_SWEEPS = 12, 100  # before the first direct solution
 _AFTER = 3  # sweeps after each
 _ROUNDS, _RUBBED_ROUNDS = 40, 8
 _LAST, _RUBBED_LAST = 400, 200  # sweeps where direct solutions have not converged
-_CROWD, _CROWD_SWEEPS, _CROWDED = (
-    40,
-    40,
-    1e-4,
-)  # contacts beyond which a lossy block gets so many sweeps, to this residual
+# Contacts beyond which a lossy block gets so many sweeps, to this residual.
+_CROWD, _CROWD_SWEEPS, _CROWDED = 20, 40, 1e-4
 _LITTLE = 16  # contacts up to which sweeps alone are cheaper than a direct solution at first
 
 
