@@ -9,7 +9,6 @@ from typing import Any
 import pymunk
 
 from ..errors import UnsupportedFeature
-from .bodies import Bodies
 
 
 def shape_body(shape: pymunk.Shape) -> pymunk.Body:
@@ -41,9 +40,9 @@ def check_ignored(ignore: Sequence[str]) -> tuple[str, ...]:
     return names
 
 
-def check_shape(shape: pymunk.Shape, bodies: Bodies) -> None:
-    """Refuse numbers that no shape can have."""
-    body = shape_body(shape)
+def check_shape(shape: pymunk.Shape) -> None:
+    """Refuse numbers that no shape can have, and a shape without a body."""
+    shape_body(shape)
     if not all(math.isfinite(v) for v in shape.surface_velocity):
         raise ValueError(f"{shape} has surface velocity {shape.surface_velocity}: set a finite one")
     if not 0.0 <= shape.friction < math.inf:
@@ -54,8 +53,6 @@ def check_shape(shape: pymunk.Shape, bodies: Bodies) -> None:
         raise ValueError(f"{shape} has elasticity {shape.elasticity}: set a finite value >= 0")
     if not math.isfinite(shape_radius(shape)):
         raise ValueError(f"{shape} has radius {shape_radius(shape)}: set a finite radius")
-    if body not in bodies.row:
-        raise ValueError(f"the body of {shape} is not in the space; add it with space.add(body)")
 
 
 def rough_pair(shapes: Sequence[pymunk.Shape]) -> pymunk.Shape | None:

@@ -45,19 +45,25 @@ class Record(NamedTuple):
     """What a shape says of itself, read once.
 
     `vertices`: in body coordinates, counter-clockwise.  `numbers`: the columns of SHAPE from ROUNDING to SURFACE_Y,
-    SIZE still 0.  `filter`: those of LINK from GROUP to MASK.
+    SIZE still 0.  `filter`: those of LINK from GROUP to MASK.  `outside`: whether its body is not in the space, so that
+    the vertices are in coordinates of the space's static body.
     """
 
     vertices: list[tuple[float, ...]]
     numbers: tuple[float, ...]
     filter: tuple[int, int, int]
+    outside: bool = False
 
 
-def read(shape: pymunk.Shape) -> Record:
-    """The record of a shape that has been checked."""
+def read(shape: pymunk.Shape, ground: pymunk.Body | None = None) -> Record:
+    """The record of a shape that has been checked; one that stands where it is as a shape of `ground`, if given."""
     group, categories, mask = shape.filter
     numbers = (shape_radius(shape), 0.0, shape.elasticity, shape.friction, *shape.surface_velocity)
-    return Record(local_outline(shape), numbers, (group & _WORD, categories & _WORD, mask & _WORD))
+    outline = local_outline(shape)
+    if ground is not None:
+        place, taken = shape_body(shape).local_to_world, ground.world_to_local
+        outline = [tuple(taken(place((v[0], v[1])))) for v in outline]
+    return Record(outline, numbers, (group & _WORD, categories & _WORD, mask & _WORD), ground is not None)
 
 
 @dataclass(frozen=True)
@@ -84,7 +90,8 @@ class Packed:
 
 def pack(bodies: Bodies, state: FloatArray, shapes: Sequence[pymunk.Shape], records: Sequence[Record]) -> Packed:
     """The rows of `bodies` in the (N, 9) `state` and of their solid `shapes`."""
-    owner: IntArray = np.array([bodies.row[shape_body(s)] for s in shapes], np.intp)
+    ground_itself = bodies.row[bodies.space.static_body]
+    owner: IntArray = np.array([bodies.row.get(shape_body(s), ground_itself) for s in shapes], np.intp)
     vertex, of_shape = _outlines(bodies, state, owner, records)
     count = np.bincount(of_shape, minlength=len(shapes))
     first = np.cumsum(count) - count

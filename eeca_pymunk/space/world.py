@@ -181,16 +181,19 @@ class World(Crossing):
 
 
 def _records(space: pymunk.Space, bodies: Bodies, known: Records) -> Records:
-    """What every shape says, None for sensors; those that are known are not asked again."""
+    """What every shape says, None for sensors; those that are known are not asked again.
+
+    A shape whose body was taken out of the space is left as a wall where it is: pymunk too finds it there.
+    """
     records: Records = {}
     for shape in space.shapes:
-        if shape in known:
-            records[shape] = known[shape]
-            if shape.body not in bodies.row:
-                check_shape(shape, bodies)
+        here = shape.body is None or shape.body in bodies.row
+        before = known.get(shape)
+        if shape in known and (before is None or (here and not before.outside)):
+            records[shape] = before
         elif shape.sensor:
             records[shape] = None
         else:
-            check_shape(shape, bodies)
-            records[shape] = read(shape)
+            check_shape(shape)
+            records[shape] = read(shape, None if here else space.static_body)
     return records

@@ -1,30 +1,62 @@
-"""Ten thousand random programs of API calls: `python -m tests.programs.soak [COUNT]`."""
+"""Ten thousand random programs of API calls: `python -m tests.programs.soak [COUNT] [--minutes M] [--seed S]`.
+
+Goes on after a failure, and prints the shortest program that fails in the same way: the calls by name, in each what
+was drawn for it. `--gain 1e-5` takes a gain of energy above that part of the scale for a failure (see `fuzz.Program`).
+"""
 
 from __future__ import annotations
 
-import sys
+import argparse
 import time
 from collections.abc import Callable
 
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, given, seed, settings
 from hypothesis import strategies as st
+from tqdm import tqdm
 
-from .fuzz import Program
+from .fuzz import GAIN, Program
+
+_BATCH = 100  # programs between two looks at the clock
 
 
-def soak(count: int) -> None:
-    """Play so many; AssertionError, with the shortest program that fails, if a rule is broken."""
+def batch(count: int, start: int, gain: float, length: int) -> str:
+    """Play so many programs that begin at a seed; what fails, empty if nothing does."""
 
-    @settings(max_examples=count, deadline=None, suppress_health_check=list(HealthCheck))
+    @seed(start)
+    @settings(max_examples=count, deadline=None, database=None, suppress_health_check=list(HealthCheck))
     @given(st.data())
     def programs(data: st.DataObject) -> None:
         draw: Callable[..., object] = data.draw
-        Program(draw).play(40)
+        Program(draw, gain).play(length)
 
-    start = time.perf_counter()
-    programs()
-    print(f"{count} programs in {time.perf_counter() - start:.0f} s")
+    try:
+        programs()
+    except Exception as error:
+        return "\n".join((f"{type(error).__name__}: {error}", *getattr(error, "__notes__", ())))
+    return ""
+
+
+def soak(count: int, minutes: float, start: int, gain: float, length: int = 40) -> int:
+    """Play so many programs, or for so long; how many batches fail."""
+    clock, failed, done = time.perf_counter(), 0, 0
+    with tqdm(total=count, unit="program", desc="soak") as bar:
+        while done < count and time.perf_counter() - clock < 60.0 * minutes:
+            size = min(_BATCH, count - done)
+            if told := batch(size, start + done, gain, length):
+                failed += 1
+                tqdm.write(f"seed {start + done}, gain {gain:g}:\n{told}\n")
+            done += size
+            bar.update(size)
+            bar.set_postfix_str(f"{failed} batches fail")
+    print(f"{done} programs in {time.perf_counter() - clock:.0f} s, {failed} batches of {_BATCH} fail")
+    return failed
 
 
 if __name__ == "__main__":
-    soak(int(sys.argv[1]) if len(sys.argv) > 1 else 10_000)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("count", type=int, nargs="?", default=10_000)
+    parser.add_argument("--minutes", type=float, default=float("inf"))
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--gain", type=float, default=GAIN)
+    given_by = parser.parse_args()
+    raise SystemExit(min(soak(given_by.count, given_by.minutes, given_by.seed, given_by.gain), 1))
