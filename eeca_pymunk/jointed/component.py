@@ -11,18 +11,17 @@ from ..impacts.layout import Scene
 from ..joints.bounds import bounded, gap
 from ..joints.correct import kinetic
 from ..joints.entries import held as stands
-from ..joints.layout import ANCHOR_AX, GEAR, JOINT_COLUMNS, TIE_COLUMNS
+from ..joints.layout import ANCHOR_AX, GEAR, JOINT_COLUMNS, NOTCH, RATCHET, SIDE, TIE_COLUMNS, TOUCHED
 from ..joints.ledger import springs_hold
 from ..joints.response import prepare, respond
 from ..joints.scratch import (
-    BAND,
     BEFORE,
     BODY_0,
     BODY_1,
     CAYLEY,
     COLUMN,
-    CONDENSED,
     COS,
+    FIRST,
     FREE,
     FREEDOMS,
     JOINT_0,
@@ -33,10 +32,12 @@ from ..joints.scratch import (
     L_ROWS,
     L_SIDE,
     L_SOFT,
+    LEAD,
     LOOPS,
     M_BODY,
     M_CAYLEY,
     M_COLUMN,
+    M_FIRST,
     M_FREEDOMS,
     MOBILITY,
     POSE,
@@ -48,14 +49,13 @@ from ..joints.scratch import (
     STEP,
     TARGET,
     TRAVEL,
-    UNKNOWNS,
     VALUE,
 )
 from ..joints.solve import solve
 from ..joints.start import look
 from ..joints.step import island_step
 from ..layout import ANGLE, SPIN, VX, VY, X, Y
-from .layout import ORDER, REPEATS, WORST, Joints
+from .layout import ANSWERS, ORDER, REPEATS, WORST, Joints
 
 _CLOSED = 1e-11  # of the size of a component, that joints may be off where bodies are lifted
 
@@ -83,6 +83,16 @@ def restore_joints(J: Joints, s: int) -> None:
 
 
 @uncounted
+def rewind_joints(J: Joints, s: int) -> None:
+    """What `keep_joints` remembers, but for impulses, with which the next solution begins."""
+    for k in range(J.SPAN[s, JOINT_0], J.SPAN[s, JOINT_1]):
+        j = J.LINK[k, L_JOINT]
+        if J.LINK[k, L_KIND] == RATCHET:
+            J.JOINT[j, NOTCH] = J.KEPT[j, NOTCH]
+        J.TIE[j, SIDE], J.TIE[j, TOUCHED] = J.SIDES[j, SIDE], J.SIDES[j, TOUCHED]
+
+
+@uncounted
 def gather_component(
     A: Scene, J: Joints, s: int, POSE_OF: FloatArray, V: FloatArray, ACC: FloatArray, IM: FloatArray, II: FloatArray,
     t: float, h: float,
@@ -97,7 +107,7 @@ def gather_component(
     for i in range(J.SPAN[s, BODY_1] - b0):
         body = int(J.MEMBER[b0 + i, M_BODY])
         NODE[i, COLUMN], NODE[i, FREEDOMS] = J.MEMBER[b0 + i, M_COLUMN], J.MEMBER[b0 + i, M_FREEDOMS]
-        LOCAL[i, CAYLEY] = J.MEMBER[b0 + i, M_CAYLEY]
+        NODE[i, FIRST], LOCAL[i, CAYLEY] = J.MEMBER[b0 + i, M_FIRST], J.MEMBER[b0 + i, M_CAYLEY]
         if NODE[i, FREEDOMS] > 0:
             q = A.PLACE[body]
             for c in range(3):
@@ -118,6 +128,7 @@ def gather_component(
                 LOCAL[i, MOBILITY + c] = 0.0
         for c in range(3):
             LOCAL[i, ROOT + c] = math.sqrt(LOCAL[i, MOBILITY + c])
+            LOCAL[i, LEAD + c] = J.LED[b0 + i, c]
         LOCAL[i, COS], LOCAL[i, SIN] = math.cos(LOCAL[i, POSE + 2]), math.sin(LOCAL[i, POSE + 2])
         for c in range(2):
             length = max(length, abs(LOCAL[i, POSE + c]), abs(h * LOCAL[i, BEFORE + c]))
@@ -139,14 +150,10 @@ def step_component(
     """
     j0, j1, b0 = J.SPAN[s, JOINT_0], J.SPAN[s, JOINT_1], J.SPAN[s, BODY_0]
     n = J.SPAN[s, BODY_1] - b0
-    band, size = J.SPAN[s, BAND], J.SPAN[s, UNKNOWNS]
-    condensed = J.SPAN[s, CONDENSED] != 0
-    width = 2 * band + 1 if condensed else 3 * band + 1
     order = J.TALLY[ORDER] if whole else 2
     status = island_step(
-        J.JOINT, J.TIE, J.HINGE, J.LINK[j0:j1], j1 - j0, J.LOCAL, J.NODE, n, h, order, length, J.SPAN[s, LOOPS] > 0,
-        condensed, band, size, J.MATRIX[: size * width].reshape((size, width)), J.RIGHT, J.STIFF, J.FOUND, J.PART,
-        J.STEPPED[s],
+        J.JOINT, J.TIE, J.HINGE, J.LINK[j0:j1], j1 - j0, J.LOCAL, J.NODE, n, h, order, length, J.SPAN[s], J.MATRIX,
+        J.RIGHT, J.MORE, J.PIVOTS, J.STIFF, J.FOUND, J.PART, J.STEPPED[s],
     )  # fmt: skip
     J.TALLY[REPEATS] += 1
     J.TALLY[WORST] = max(J.TALLY[WORST], status)
@@ -154,6 +161,7 @@ def step_component(
         if J.NODE[i, FREEDOMS] > 0:
             q = A.PLACE[J.MEMBER[b0 + i, M_BODY]]
             for c in range(3):
+                J.LED[b0 + i, c] = J.LOCAL[i, LEAD + c]
                 VN[q, c], END[q, c], WAY[q, c] = J.LOCAL[i, BEFORE + c], J.LOCAL[i, POSE + c], J.LOCAL[i, TRAVEL + c]
     return status
 
@@ -164,14 +172,11 @@ def fit_speeds(A: Scene, J: Joints, s: int, length: float) -> float:
     an impact at which nothing bounces; the kinetic energy that this costs."""
     j0, j1, b0 = J.SPAN[s, JOINT_0], J.SPAN[s, JOINT_1], J.SPAN[s, BODY_0]
     n = J.SPAN[s, BODY_1] - b0
-    band, size = J.SPAN[s, BAND], J.SPAN[s, UNKNOWNS]
-    condensed = J.SPAN[s, CONDENSED] != 0
-    width = 2 * band + 1 if condensed else 3 * band + 1
     for k in range(j1 - j0):
         J.HINGE[k, SIZE] = 1.0 if J.LINK[j0 + k, L_KIND] >= GEAR else length
     solve(
         int(SPEEDS), J.JOINT, J.HINGE, J.LINK[j0:j1], j1 - j0, J.LOCAL, J.NODE, n, 2.0, length, J.SPAN[s, LOOPS] > 0,
-        0.0, condensed, band, size, J.MATRIX[: size * width].reshape((size, width)), J.RIGHT, J.STIFF, J.FOUND,
+        0.0, J.SPAN[s], J.MATRIX, J.RIGHT, J.MORE, J.PIVOTS, J.STIFF, J.FOUND,
     )  # fmt: skip
     return kinetic(J.LOCAL, n, KEPT) - kinetic(J.LOCAL, n, BEFORE)
 
@@ -204,9 +209,6 @@ def close_joints(
     hold there than at OLD, infinite if joints do not close or limits are passed."""
     j0, j1, b0 = J.SPAN[s, JOINT_0], J.SPAN[s, JOINT_1], J.SPAN[s, BODY_0]
     n = J.SPAN[s, BODY_1] - b0
-    band, size = J.SPAN[s, BAND], J.SPAN[s, UNKNOWNS]
-    condensed = J.SPAN[s, CONDENSED] != 0
-    width = 2 * band + 1 if condensed else 3 * band + 1
     length = gather_component(A, J, s, OLD, V, V, IM, II, t, h)
     for k in range(j1 - j0):
         J.HINGE[k, SIZE] = 1.0 if J.LINK[j0 + k, L_KIND] >= GEAR else length
@@ -218,7 +220,7 @@ def close_joints(
     gather_component(A, J, s, NEW, V, V, IM, II, t, h)
     solve(
         int(POSES), J.JOINT, J.HINGE, J.LINK[j0:j1], j1 - j0, J.LOCAL, J.NODE, n, 2.0, length, J.SPAN[s, LOOPS] > 0,
-        0.0, condensed, band, size, J.MATRIX[: size * width].reshape((size, width)), J.RIGHT, J.STIFF, J.FOUND,
+        0.0, J.SPAN[s], J.MATRIX, J.RIGHT, J.MORE, J.PIVOTS, J.STIFF, J.FOUND,
     )  # fmt: skip
     for i in range(n):
         if J.NODE[i, FREEDOMS] > 0:
@@ -245,25 +247,20 @@ def ready(J: Joints, s: int, h: float, about_step: bool) -> bool:
     """Whether component s can answer impulses: about the step that `step_component` has just taken (its scratch is back
     at the start then), or at the poses that `gather_component` has put there."""
     j0, j1, b0 = J.SPAN[s, JOINT_0], J.SPAN[s, JOINT_1], J.SPAN[s, BODY_0]
-    band, size = J.SPAN[s, BAND], J.SPAN[s, UNKNOWNS]
-    condensed = J.SPAN[s, CONDENSED] != 0
-    width = 2 * band + 1 if condensed else 3 * band + 1
     what = STEP if about_step else SPEEDS
-    return prepare(
-        what, J.JOINT, J.HINGE, J.LINK[j0:j1], j1 - j0, J.LOCAL, J.NODE, J.SPAN[s, BODY_1] - b0, h,
-        condensed, band, size, J.MATRIX[: size * width].reshape((size, width)), J.RIGHT, J.STIFF, J.PIVOTS,
+    J.TALLY[ANSWERS] = prepare(
+        what, J.JOINT, J.HINGE, J.LINK[j0:j1], j1 - j0, J.LOCAL, J.NODE, J.SPAN[s, BODY_1] - b0, h, J.SPAN[s],
+        J.MATRIX, J.RIGHT, J.STIFF, J.PIVOTS,
     )  # fmt: skip
+    return bool(J.TALLY[ANSWERS] >= 0)
 
 
 @uncounted
 def answer(J: Joints, s: int, about_step: bool, PUSH: FloatArray) -> None:
     """PUSH (bodies of the component, 3): impulses in, changes of velocity out."""
     j0, j1, b0 = J.SPAN[s, JOINT_0], J.SPAN[s, JOINT_1], J.SPAN[s, BODY_0]
-    band, size = J.SPAN[s, BAND], J.SPAN[s, UNKNOWNS]
-    condensed = J.SPAN[s, CONDENSED] != 0
-    width = 2 * band + 1 if condensed else 3 * band + 1
     what = STEP if about_step else SPEEDS
     respond(
-        what, J.HINGE, J.LINK[j0:j1], j1 - j0, J.LOCAL, J.NODE, J.SPAN[s, BODY_1] - b0, condensed, band, size,
-        J.MATRIX[: size * width].reshape((size, width)), J.RIGHT, J.MORE, J.PIVOTS, PUSH,
+        what, J.HINGE, J.LINK[j0:j1], j1 - j0, J.LOCAL, J.NODE, J.SPAN[s, BODY_1] - b0, J.TALLY[ANSWERS],
+        J.SPAN[s], J.MATRIX, J.RIGHT, J.MORE, J.PIVOTS, PUSH,
     )  # fmt: skip

@@ -8,6 +8,7 @@ from ..arrays import FloatArray, IntArray
 
 # TALLY (8,) int
 COMPONENTS, ORDER, WORST, REPEATS = 0, 1, 2, 3  # how many; 2 or 4; worst status of the step; steps of components
+ANSWERS = 4  # the system with which the component that is `ready` answers
 TALLY_LENGTH = 8
 
 # STEPPED (components, 10): the ledger of a component in its span, and
@@ -21,7 +22,7 @@ class Joints(NamedTuple):
     joints cannot move. SPAN, MEMBER, LINK: the plan (`..joints.scratch`), a component per row of SPAN. HINGE, LOCAL,
     NODE, MATRIX, RIGHT, MORE, STIFF, FOUND, PART, PIVOTS: scratch for the largest component. OF (n,): the component of
     a body, -1 for none. KEPT (j, JOINT_COLUMNS), SIDES (j, TIE_COLUMNS): the joints at the start of a span. STEPPED
-    (components, 10): their ledgers in their spans."""
+    (components, 10): their ledgers in their spans. LED (as MEMBER, 3): accelerations that joints gave last."""
 
     JOINT: FloatArray
     TIE: IntArray
@@ -43,4 +44,5 @@ class Joints(NamedTuple):
     KEPT: FloatArray
     SIDES: IntArray
     STEPPED: FloatArray
+    LED: FloatArray
     TALLY: IntArray

@@ -64,7 +64,7 @@ from .columns import (
     push_columns,
     weigh,
 )
-from .component import find_places, fit_speeds, gather_component, keep_joints, ready, restore_joints, step_component
+from .component import find_places, fit_speeds, gather_component, keep_joints, ready, rewind_joints, step_component
 from .layout import LIFTED, TURNED_WORK, Joints
 from .lifting import lift
 from .newton import solve_columns
@@ -118,7 +118,7 @@ def advance(
         s = groups.COMPONENT[g]
         if s < 0:
             continue
-        restore_joints(J, s)
+        rewind_joints(J, s)
         length = gather_component(A, J, s, isle.POSE, isle.V, ACC, isle.IM, isle.II, t, h)
         step_component(A, J, s, h, length, m == 0, motion.V, motion.WAY, motion.END)
         if fill and is_hit(groups, P, Q, m, g):

@@ -100,7 +100,7 @@ def look(
     for k in range(joints):
         soft = link[k, L_SOFT]
         link[k, L_SOFT] = 0
-        joint_rows(joint, hinge, link, k, local, 2.0, stiff)
+        joint_rows(joint, hinge, link, k, local, 2.0, False, stiff)
         link[k, L_SOFT] = soft
 
 
@@ -170,7 +170,7 @@ def find_apart(
                     link[k, L_SIDE] = side
                 elif link[k, L_SIDE] == side and room > APART_FROM * hinge[k, SIZE]:
                     link[k, L_SIDE] = 0
-        joint_rows(joint, hinge, link, k, local, 2.0, stiff)
+        joint_rows(joint, hinge, link, k, local, 2.0, False, stiff)
         error = 0.0
         for r in range(rows):
             if held(link, k, r):
