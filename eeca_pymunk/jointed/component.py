@@ -32,7 +32,6 @@ from ..joints.scratch import (
     L_ROWS,
     L_SIDE,
     L_SOFT,
-    LEAD,
     LOOPS,
     M_BODY,
     M_CAYLEY,
@@ -128,7 +127,6 @@ def gather_component(
                 LOCAL[i, MOBILITY + c] = 0.0
         for c in range(3):
             LOCAL[i, ROOT + c] = math.sqrt(LOCAL[i, MOBILITY + c])
-            LOCAL[i, LEAD + c] = J.LED[b0 + i, c]
         LOCAL[i, COS], LOCAL[i, SIN] = math.cos(LOCAL[i, POSE + 2]), math.sin(LOCAL[i, POSE + 2])
         for c in range(2):
             length = max(length, abs(LOCAL[i, POSE + c]), abs(h * LOCAL[i, BEFORE + c]))
@@ -161,7 +159,6 @@ def step_component(
         if J.NODE[i, FREEDOMS] > 0:
             q = A.PLACE[J.MEMBER[b0 + i, M_BODY]]
             for c in range(3):
-                J.LED[b0 + i, c] = J.LOCAL[i, LEAD + c]
                 VN[q, c], END[q, c], WAY[q, c] = J.LOCAL[i, BEFORE + c], J.LOCAL[i, POSE + c], J.LOCAL[i, TRAVEL + c]
     return status
 

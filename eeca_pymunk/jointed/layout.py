@@ -22,7 +22,7 @@ class Joints(NamedTuple):
     joints cannot move. SPAN, MEMBER, LINK: the plan (`..joints.scratch`), a component per row of SPAN. HINGE, LOCAL,
     NODE, MATRIX, RIGHT, MORE, STIFF, FOUND, PART, PIVOTS: scratch for the largest component. OF (n,): the component of
     a body, -1 for none. KEPT (j, JOINT_COLUMNS), SIDES (j, TIE_COLUMNS): the joints at the start of a span. STEPPED
-    (components, 10): their ledgers in their spans. LED (as MEMBER, 3): accelerations that joints gave last."""
+    (components, 10): their ledgers in their spans."""
 
     JOINT: FloatArray
     TIE: IntArray
@@ -44,5 +44,4 @@ class Joints(NamedTuple):
     KEPT: FloatArray
     SIDES: IntArray
     STEPPED: FloatArray
-    LED: FloatArray
     TALLY: IntArray

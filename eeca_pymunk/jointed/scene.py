@@ -76,7 +76,7 @@ class JointedLoop(EventLoop):
             np.zeros(room.matrix), np.zeros(room.right), np.zeros(room.rows), np.zeros((6, 6)), np.zeros(5),
             np.zeros(8), np.zeros(room.rows, np.int64), of, np.zeros((count, JOINT_COLUMNS)),
             np.zeros((count, TIE_COLUMNS), np.int64), np.zeros((max(components, 1), STEPPED_COLUMNS)),
-            np.zeros((2 * count, 3)), tally,
+            tally,
         )  # fmt: skip
 
     def step(

@@ -21,7 +21,6 @@ from .scratch import (
     BAND,
     BODY_0,
     BODY_1,
-    DUAL,
     DUAL_BAND,
     DUAL_SIZE,
     JOINT_0,
@@ -35,10 +34,9 @@ from .scratch import (
     M_BODY,
     M_CAYLEY,
     M_FREEDOMS,
+    RIGID,
     ROWS_OF,
-    SYSTEM,
     UNKNOWNS,
-    WHOLE,
 )
 
 WIDE = 14  # half-width of the band from which on an island is condensed
@@ -163,8 +161,9 @@ def make_plan(
             if way == 0 or (span[s, BAND] > WIDE and not discs(tie, link, span, s)):
                 order_unknowns(span, member, link, s, way > 0)
         order_rows(span, member, link, s)
-        if span[s, SYSTEM] == WHOLE and span[s, DUAL_BAND] < span[s, BAND] and hard(tie, link, span, s):
-            span[s, SYSTEM] = DUAL
+        cost = span[s, UNKNOWNS] * span[s, BAND] ** 2
+        pays = 0 < span[s, DUAL_SIZE] * span[s, DUAL_BAND] ** 2 <= cost
+        span[s, RIGID] = 0 if not pays else 2 if hard(tie, link, span, s) else 1
     return count
 
 
@@ -225,6 +224,6 @@ def room_for(span: IntArray) -> Room:
         int((span[:, BODY_1] - span[:, BODY_0]).max(initial=1)),
         int((span[:, JOINT_1] - span[:, JOINT_0]).max(initial=1)),
         int(np.maximum(span[:, UNKNOWNS], span[:, DUAL_SIZE]).max(initial=1)),
-        int(np.where(span[:, SYSTEM] == DUAL, np.maximum(whole, dual), whole).max(initial=1)),
-        int((2 * span[:, UNKNOWNS] + span[:, ROWS_OF]).max(initial=1)),
+        int(np.where(span[:, RIGID] > 0, np.maximum(whole, dual), whole).max(initial=1)),
+        int(2 * (span[:, UNKNOWNS] + span[:, ROWS_OF]).max(initial=1)),
     )

@@ -30,6 +30,7 @@ from .scratch import (
     LAM,
     MOBILITY,
     POSE,
+    RIGID,
     ROOT,
     ROWS_OF,
     SAVED,
@@ -37,7 +38,6 @@ from .scratch import (
     STEP,
     SYSTEM,
     UNKNOWNS,
-    WHOLE,
 )
 from .solve import LEAST_EPSILON, back, begin, decompose
 
@@ -68,7 +68,7 @@ def prepare(
         move(local, bodies, h)
     else:
         begin(what, joint, hinge, link, joints, local, node, bodies, h)
-    system = span[SYSTEM]
+    system = DUAL if span[RIGID] > (1 if what == STEP else 0) else span[SYSTEM]
     while True:
         for i in range(span[UNKNOWNS] + span[ROWS_OF]):
             right[i] = 0.0
@@ -82,7 +82,7 @@ def prepare(
             return int(system)
         if system != DUAL:
             return -1
-        system = WHOLE
+        system = span[SYSTEM]
 
 
 @uncounted
@@ -96,8 +96,8 @@ def respond(
     Args:
         system: that of the factors, from `prepare`.
     """
-    size = span[UNKNOWNS]
-    for i in range(size + span[ROWS_OF]):
+    size = span[UNKNOWNS] + span[ROWS_OF]
+    for i in range(size):
         right[i] = 0.0
     for i in range(bodies):
         for c in range(node[i, FREEDOMS]):

@@ -74,10 +74,11 @@ LINK_COLUMNS = 11
 # SPAN: one row per island.
 BODY_0, BODY_1, JOINT_0, JOINT_1 = 0, 1, 2, 3  # its slices of MEMBER and LINK
 UNKNOWNS, BAND, LOOPS = 4, 5, 6  # size and half-width of its matrix; number of independent cycles of its graph
-SYSTEM = 7  # below
+SYSTEM = 7  # below, WHOLE or CONDENSED
 ROWS_OF = 8  # number of unknowns beside the matrix
 DUAL_SIZE, DUAL_BAND = 9, 10  # of its matrix in the rows alone
-SPAN_COLUMNS = 11
+RIGID = 11  # what a dual system is taken for: 2 everything, 1 what happens at an instant, 0 nothing
+SPAN_COLUMNS = 12
 # MEMBER: one row per body of each island.
 M_BODY, M_COLUMN, M_FREEDOMS, M_CAYLEY, M_FIRST = 0, 1, 2, 3, 4
 MEMBER_COLUMNS = 5

@@ -38,6 +38,7 @@ from .scratch import (
     POSE,
     POSES,
     PUSHED,
+    RIGID,
     ROOT,
     ROWS,
     ROWS_OF,
@@ -48,11 +49,11 @@ from .scratch import (
     STEP,
     SYSTEM,
     UNKNOWNS,
-    WHOLE,
 )
 
 TOLERANCE = 3e-16  # of joints and momenta, over the size of the island
 ROUND_OFF = 3e-14  # below this, an error that no longer halves is round-off
+LASTING_ROUND_OFF = 2e-15  # likewise with lasting factors
 _FALLS = 0.03  # of an error, that an iteration with factors of an earlier one may leave
 FLOOR = 1e-11  # below this, it is if it has not fallen twice
 MOST_ITERATIONS = 25
@@ -166,7 +167,7 @@ def solve(
 
     STEP: at convergence g is within 3e-16 of the island's size (or at round-off) of its targets, and the balance of
     momentum holds to round-off. Given up after 25 iterations, or 6 in which the error did not fall. Factors serve for
-    as long as errors fall by _FALLS with them.
+    as long as errors fall by _FALLS with them, the dual system where they do with fresh ones.
     LINEAR_STEP: one linear system. POSES: until g is on its targets, at most 8 times. SPEEDS: see `correct`; what was
     before stays at KEPT. These two take h = 2. found[2:5] are scratch.
     """
@@ -174,9 +175,9 @@ def solve(
     best, last, stalls = 1e300, 1e300, 0
     if what == SPEEDS:
         keep(hinge, joints, local, bodies, found)
-    system = span[SYSTEM]
+    system = DUAL if span[RIGID] > (1 if what in (STEP, LINEAR_STEP) else 0) else span[SYSTEM]
     lasting = what == STEP and not (system != DUAL and bounded_rows(link, joints))
-    ready, fresh = False, False
+    ready, fresh, since = False, False, 0
     for iteration in range(MOST_ITERATIONS + 1 if what == STEP else MOST_PASSES + 3 * joints):
         for i in range(span[UNKNOWNS] + span[ROWS_OF]):
             right[i] = 0.0
@@ -189,23 +190,30 @@ def solve(
         if what not in (POSES, SPEEDS):
             worst = max(worst, balance(local, node, bodies, h, length, right))
         if what == STEP:
-            at_floor = best < ROUND_OFF or (best < FLOOR and stalls > 1)
-            at_floor = at_floor and iteration > 1 and fresh and system != DUAL and worst > 0.5 * best
+            floor = LASTING_ROUND_OFF if lasting else FLOOR if stalls > 1 else ROUND_OFF
+            at_floor = iteration > since + 1 and worst > 0.5 * best and best < floor
             if iteration > 0 and (worst <= TOLERANCE or at_floor):
                 settle(local, bodies, h)
                 return iteration
             slow = not worst <= _FALLS * last
             if worst < best:
                 best = worst
-            elif iteration > 3:
+            elif iteration > since + 3:
                 stalls += 1
             if not worst < 1e100 or stalls > 6 or iteration == MOST_ITERATIONS:
                 return -1
             last = worst
             if ready and slow:
-                if system == DUAL and fresh:
-                    system = WHOLE
                 ready = False
+                if fresh:
+                    # Hardly any step that is not nearly singular, or long, comes here: full Newton from now on.
+                    lasting, system, since = False, span[SYSTEM], iteration
+                    best, stalls = worst, 0
+                    if loops:
+                        for k in range(joints):
+                            hinge[k, LAM] = hinge[k, LAM + 1] = 0.0
+                        begin(what, joint, hinge, link, joints, local, node, bodies, h)
+                        best = 1e300
         elif what == POSES and (worst <= 1e-14 or iteration == MOST_CLOSINGS):
             return iteration
         epsilon = 0.0
@@ -229,7 +237,7 @@ def solve(
             ):  # fmt: skip
                 ready = True
             elif system == DUAL:
-                system, build = WHOLE, False
+                system, build = span[SYSTEM], False
             else:
                 return -1
         passes = 1 if give > 0.0 or not fresh else PASSES

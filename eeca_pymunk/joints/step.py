@@ -21,6 +21,7 @@ from .layout import (
     IMPULSE_1,
     IMPULSE_2,
     LAST_STEP,
+    LED,
     LEDGER_COLUMNS,
     LENGTH_0,
     LENGTH_1,
@@ -135,6 +136,9 @@ def write_joints(
         joint[j, LAST_STEP] = h
         joint[j, LENGTH_1] = hinge[k, ENDED]
         tie[j, SIDE] = link[k, L_SIDE]
+        for end in range(2):
+            for c in range(3):
+                joint[j, LED + 3 * end + c] = local[link[k, L_A + end], LEAD + c]
         if loose:
             tie[j, TOUCHED] = 2
         if link[k, L_KIND] == RATCHET:
@@ -162,7 +166,7 @@ def island_step(
     for c in range(LEDGER_COLUMNS):
         ledger[c] = 0.0
     loops = span[LOOPS] > 0
-    needs = read_joints(joint, tie, hinge, link, joints, h, length, loops)
+    needs = read_joints(joint, tie, hinge, link, joints, local, h, length, loops)
     for i in range(bodies):
         for c in range(3):
             local[i, SHIFT + c] = 0.0

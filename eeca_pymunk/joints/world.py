@@ -25,7 +25,6 @@ from .scratch import (
     JOINT_0,
     JOINT_1,
     L_JOINT,
-    LEAD,
     LINK_COLUMNS,
     LOCAL_COLUMNS,
     M_BODY,
@@ -47,7 +46,7 @@ from .step import island_step
 @uncounted
 def gather_island(
     bodies: FloatArray, joint: FloatArray, span: IntArray, s: int, member: IntArray, link: IntArray, h: float,
-    lead: FloatArray, local: FloatArray, node: IntArray,
+    local: FloatArray, node: IntArray,
 ) -> float:  # fmt: skip
     """Copy the bodies of island s into its scratch; the size of the island, the length that errors are measured by."""
     length = 0.0
@@ -58,7 +57,6 @@ def gather_island(
             local[i, POSE + c] = bodies[body, X + c]
             local[i, BEFORE + c] = bodies[body, VX + c]
             local[i, FREE + c] = bodies[body, AX + c]
-            local[i, LEAD + c] = lead[b0 + i, c]
             local[i, MOBILITY + c] = bodies[body, IM] if c < 2 else bodies[body, II]
             local[i, ROOT + c] = np.sqrt(local[i, MOBILITY + c])
         local[i, COS], local[i, SIN] = np.cos(bodies[body, ANGLE]), np.sin(bodies[body, ANGLE])
@@ -76,7 +74,7 @@ def gather_island(
 @uncounted
 def step_all(
     bodies: FloatArray, joint: FloatArray, tie: IntArray, span: IntArray, member: IntArray, link: IntArray,
-    islands: int, h: float, order: int, lead: FloatArray, hinge: FloatArray, local: FloatArray, node: IntArray,
+    islands: int, h: float, order: int, hinge: FloatArray, local: FloatArray, node: IntArray,
     matrix: FloatArray, right: FloatArray, more: FloatArray, pivots: IntArray, stiff: FloatArray, found: FloatArray,
     part: FloatArray, ledger: FloatArray, status: IntArray,
 ) -> int:  # fmt: skip
@@ -88,7 +86,7 @@ def step_all(
     for s in range(islands):
         b0, n = span[s, BODY_0], span[s, BODY_1] - span[s, BODY_0]
         j0, j1 = span[s, JOINT_0], span[s, JOINT_1]
-        length = gather_island(bodies, joint, span, s, member, link, h, lead, local, node)
+        length = gather_island(bodies, joint, span, s, member, link, h, local, node)
         status[s] = island_step(
             joint, tie, hinge, link[j0:j1], j1 - j0, local, node, n, h, order, length, span[s], matrix, right, more,
             pivots, stiff, found, part, ledger[s],
@@ -97,7 +95,6 @@ def step_all(
         for i in range(n):
             body = member[b0 + i, M_BODY]
             for c in range(3):
-                lead[b0 + i, c] = local[i, LEAD + c]
                 if bodies[body, IM] > 0.0 or bodies[body, II] > 0.0:
                     bodies[body, X + c] = local[i, POSE + c]
                     bodies[body, VX + c] = local[i, BEFORE + c]
@@ -127,7 +124,6 @@ class Islands:
         self._member = np.zeros((2 * joints, MEMBER_COLUMNS), np.int64)
         self._link = np.zeros((joints, LINK_COLUMNS), np.int64)
         self.islands = make_plan(bodies, self.joint, self.tie, self._span, self._member, self._link)
-        self._lead = np.zeros((2 * joints, 3))
         room = room_for(self._span[: self.islands])
         self._hinge = np.zeros((room.joints, HINGE_COLUMNS))
         self._local = np.zeros((room.bodies, LOCAL_COLUMNS))
@@ -141,6 +137,6 @@ class Islands:
         """Step all islands of `bodies` (n, BODY_COLUMNS) by h; the worst status."""
         return step_all(
             bodies, self.joint, self.tie, self._span, self._member, self._link, self.islands, h, self.order,
-            self._lead, self._hinge, self._local, self._node, self._matrix, self._right, self._more, self._pivots,
+            self._hinge, self._local, self._node, self._matrix, self._right, self._more, self._pivots,
             self._stiff, self._found, self._part, self.ledger, self.status,
         )  # fmt: skip

@@ -90,9 +90,7 @@ class Iterate:
         world = stepper.islands
         self.joint, self.tie, self.link, self.hinge = world.joint, world.tie, world._link, world._hinge
         self.local, self.node = world._local, world._node
-        gather_island(
-            stepper.bodies, self.joint, world._span, 0, world._member, self.link, h, world._lead, self.local, self.node
-        )
+        gather_island(stepper.bodies, self.joint, world._span, 0, world._member, self.link, h, self.local, self.node)
         rng = np.random.default_rng(5)
         self.hinge[:, scratch.LAM : scratch.LAM + 2] = rng.normal(size=(10, 2))
         self.joint[[4, 5], PUSH] = 0.5
@@ -218,7 +216,7 @@ def test_bands_are_as_narrow_as_their_graphs() -> None:
     for name, make in (("chain", lambda: linkages.chain(30)), ("cloth", lambda: linkages.cloth(12))):
         world = JointedSpace(make()).islands
         spans[name] = world._span[0]
-    assert spans["chain"][[scratch.UNKNOWNS, scratch.BAND, scratch.SYSTEM]].tolist() == [150, 4, scratch.DUAL]
+    assert spans["chain"][[scratch.UNKNOWNS, scratch.BAND, scratch.RIGID]].tolist() == [150, 4, 2]
     assert spans["chain"][[scratch.DUAL_SIZE, scratch.DUAL_BAND]].tolist() == [60, 3]
     assert spans["cloth"][scratch.SYSTEM] == scratch.CONDENSED
     assert spans["cloth"][scratch.UNKNOWNS] == 288
@@ -252,10 +250,11 @@ def linked() -> pymunk.Space:
     """A chain of pivots and pins with a branch, a closed loop, a gear and limits that are met; no springs or motors."""
     space = linkages.chain(6, lean=0.4)
     links = [b for b in space.bodies if b is not space.static_body]
-    side = body(space, 0.5, 0.2, links[2].position + (0.3, 0.6), 0.2)
+    side = body(space, 0.5, 0.2, (2.7, 0.9), 0.2)
     space.add(
-        pymunk.PinJoint(links[2], side, (0.1, 0.1), (0.0, -0.2)), pymunk.PinJoint(links[3], side, (0.0, 0.1), (0.1, 0.0)),
-        pymunk.RotaryLimitJoint(links[0], links[1], -0.2, 0.3), pymunk.GearJoint(links[4], links[5], 0.0, 2.0),
+        pymunk.PinJoint(links[2], side, (0.1, 0.1), (0.0, -0.2)),
+        pymunk.PinJoint(links[3], side, (0.0, 0.1), (0.1, 0.0)), pymunk.RotaryLimitJoint(links[0], links[1], -0.2, 0.3),
+        pymunk.GearJoint(links[4], links[5], 0.0, 2.0),
         pymunk.SlideJoint(space.static_body, links[5], links[5].position, (0.0, 0.0), 0.0, 0.4),
     )  # fmt: skip
     return space
@@ -263,11 +262,11 @@ def linked() -> pymunk.Space:
 
 def test_all_systems_step_an_island_alike() -> None:
     ends = []
-    for system in (scratch.WHOLE, scratch.DUAL):
+    for rigid in (0, 2):
         space = linked()
         stepper = JointedSpace(space)
-        assert stepper.islands._span[0, scratch.SYSTEM] == scratch.DUAL
-        stepper.islands._span[0, scratch.SYSTEM] = system
+        assert stepper.islands._span[0, scratch.RIGID] == 2
+        stepper.islands._span[0, scratch.RIGID] = rigid
         for _ in range(60):
             stepper.step(1 / 60)
             assert stepper.status <= 1
