@@ -39,8 +39,9 @@ from ..joints.layout import BODY_A, BODY_B, ELASTIC, TOUCHED
 from ..layout import BODY_ROW, DUE, LEFT, SINCE
 from ..layout import NOW as READ
 from .layout import COMPONENTS, REPEATS, WORST, Joints
+from .meet import book_component
 from .solve import begin_span
-from .strike import book_component, collide
+from .strike import collide
 
 _ROOM = 64  # contacts more than there are, that there must be room for before an impact
 

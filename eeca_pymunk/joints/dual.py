@@ -40,6 +40,7 @@ def factor_dual(
 
     Args:
         slopes: where the rows G stand in `hinge`.  span: the island's row of SPAN.
+        local: INERTIA, the diagonal of A as `newton.assemble` left it; its reciprocal on return.
     """
     size, band = span[DUAL_SIZE], span[DUAL_BAND]
     width = 2 * band + 1
@@ -53,6 +54,7 @@ def factor_dual(
         for c in range(freedoms):
             if not local[i, INERTIA + c] > LEAST:
                 return False
+            local[i, INERTIA + c] = 1.0 / local[i, INERTIA + c]
         one = node[i, FIRST]
         while one >= 0:
             k, end = one >> 1, one & 1
@@ -61,10 +63,10 @@ def factor_dual(
                     continue
                 g = slopes + 6 * r + 3 * end
                 scale, y = hinge[k, SCALE + r], 0.0
-                x = scale * hinge[k, g] * local[i, ROOT] ** 2 / local[i, INERTIA]
+                x = scale * hinge[k, g] * local[i, ROOT] ** 2 * local[i, INERTIA]
                 if freedoms > 1:
-                    y = scale * hinge[k, g + 1] * local[i, ROOT + 1] ** 2 / local[i, INERTIA + 1]
-                w = scale * hinge[k, g + 2] * local[i, ROOT + 2] ** 2 / local[i, INERTIA + 2] if freedoms > 2 else 0.0
+                    y = scale * hinge[k, g + 1] * local[i, ROOT + 1] ** 2 * local[i, INERTIA + 1]
+                w = scale * hinge[k, g + 2] * local[i, ROOT + 2] ** 2 * local[i, INERTIA + 2] if freedoms > 2 else 0.0
                 row = link[k, L_DUAL] + r
                 other = node[i, FIRST]
                 while other >= 0:
@@ -87,7 +89,7 @@ def back_dual(
     """Solve with the factors of `factor_dual` in place of `right`, bodies and rows; `more` is scratch for the rows."""
     for i in range(bodies):
         for c in range(node[i, FREEDOMS]):
-            right[node[i, COLUMN] + c] /= local[i, INERTIA + c]
+            right[node[i, COLUMN] + c] *= local[i, INERTIA + c]
     for k in range(joints):
         for r in range(link[k, L_ROWS]):
             total = 0.0
@@ -109,4 +111,4 @@ def back_dual(
                     i = link[k, L_A + end]
                     for c in range(node[i, FREEDOMS]):
                         entry = hinge[k, ROWS + 6 * r + 3 * end + c] * local[i, ROOT + c]
-                        right[node[i, COLUMN] + c] += push * entry / local[i, INERTIA + c]
+                        right[node[i, COLUMN] + c] += push * entry * local[i, INERTIA + c]

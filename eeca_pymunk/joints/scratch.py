@@ -30,7 +30,7 @@ ROOT = 40  # 40-42: square roots of the mobilities
 SHIFT = 43  # 43-45: how far closing of joints moved it at the start
 TRAVEL = 46  # 46-48: SHIFT and the sum of WAY over all parts of the step
 LEAD = 49  # 49-51: acceleration by joints that Newton's method begins with
-INERTIA = 52  # 52-54: diagonal of the bodies' part of a system in the rows alone
+INERTIA = 52  # 52-54: diagonal of the bodies' part of a dual system, scaled; with its factors, the reciprocal
 LOCAL_COLUMNS = 55
 
 # NODE

@@ -240,7 +240,7 @@ def solve(
                 system, build = span[SYSTEM], False
             else:
                 return -1
-        passes = 1 if give > 0.0 or not fresh else PASSES
+        passes = 1 if give > 0.0 or not fresh else PASSES - 1 if lasting else PASSES
         back(
             what, hinge, link, joints, local, node, bodies, system, passes, span, matrix, right, more, pivots
         )  # fmt: skip
