@@ -31,9 +31,9 @@ from .layout import Joints
 from .newton import FEW, solve_columns
 
 _OUTER, _ELASTIC_OUTER = 6, 12  # steps of the components
-_MANY_OUTER, _PART_OUTER = 3, 1  # of islands of many contacts, whose sweeps do not come to an end; before an impact
+_MANY_OUTER, _PART_OUTER = 2, 1  # of islands of many contacts, whose sweeps do not come to an end; before an impact
 _AGREE, _REST_AGREE, _ELASTIC_AGREE = 1e-6, 1e-11, 1e-13  # velocities of both solutions, over |a| h and the speed
-_SWEEPS, _FEW_SWEEPS, _FEW, _ELASTIC_SWEEPS = 60, 200, 24, 400
+_SWEEPS, _FEW_SWEEPS, _FEW, _ELASTIC_SWEEPS = 40, 200, 24, 400
 _FINE, _REST_FINE = 1e-9, 1e-12  # residual of the sweeps, likewise
 _LOCKS = 4
 _CHORD = 3  # steps of the components between which their answers are taken to be the same
