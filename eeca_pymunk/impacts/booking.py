@@ -43,6 +43,7 @@ from .layout import (
     ROOT,
     SPAN,
     SPAN_FROM,
+    STILL,
     UN_AFTER,
     UN_BEFORE,
     UT_AFTER,
@@ -51,13 +52,19 @@ from .layout import (
     Scene,
     scene_of,
 )  # fmt: skip
+from .still import disturb
 from .strike import move_to, note
 
 
 @uncounted
 def flag_again(TABLE: Table) -> None:
     """Flag the pairs of all spans, in lists that were made anew. TABLE: `table_of` a Scene."""
-    A = scene_of(TABLE)
+    flag_spans(scene_of(TABLE))
+
+
+@uncounted
+def flag_spans(A: Scene) -> None:
+    """Flag the pairs of all spans, whose flags are not set."""
     for c in range(A.COUNT[PUSHES]):
         if A.PUSHED_BY[c, ROOT] >= 0:
             a, b = A.PUSHED_BY[c, PUSH_A], A.PUSHED_BY[c, PUSH_B]
@@ -100,6 +107,8 @@ def book(A: Scene, c: int, t: float) -> None:
 @uncounted
 def end_span(A: Scene, root: int, t: float) -> None:
     """End the span of an island at instant t: book its contacts, and bring its bodies there."""
+    if A.MEMBER[root, STILL] == 1:
+        disturb(A, root)
     for c in range(A.COUNT[PUSHES]):
         if A.PUSHED_BY[c, ROOT] == root:
             book(A, c, t)

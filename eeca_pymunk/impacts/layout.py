@@ -18,22 +18,24 @@ EVENTS = 6  # impacts of the body in this step
 ISLAND = 7  # first body of the island it is solved in, -1 for none
 STATE_COLUMNS = 8
 
-# MEMBER (n, 9) int: islands of bodies in sustained contact as chains from their first body, the root
+# MEMBER (n, 10) int: islands of bodies in sustained contact as chains from their first body, the root
 AFTER_ME, LAST_ONE, BODIES = 0, 1, 2  # next body of the chain, -1 for none; of the root: the last one, and how many
 HITS = 3  # of the root: how often the island was hit in this step
 BUSY = 4  # steps for which what comes near joins the island rather than hits it
 OPEN = 5  # of the root: 1 while contacts of its span are not booked
 TIED, NEXT_TIED = 6, 7  # of a body held by joints: the first body of those it hangs together with, else -1; the next
 JOINTED = 8  # of the root: 1 if bodies of its island are held by joints
-MEMBER_COLUMNS = 9
+STILL = 9  # 1 if the body's island goes on as it was (`still.py`)
+MEMBER_COLUMNS = 10
 
-# RESTING (n, 13) float: of a body in an island
+# RESTING (n, 14) float: of a body in an island
 LIFT = 0  # RESTING[LIFT : LIFT + 6]: what to add to pose and velocity at the end of the span
 RELAX = 6  # of the root, RESTING[RELAX : RELAX + 3]: state of the solve
 LOST = 9  # of the root: energy lost in this step; below 0 it is owed
 UNTIL = 10  # of the root: instant at which the span ends
 SPEED = 12  # that points of the body may get in the step, where all contacts act together
-RESTING_COLUMNS = 13
+STILL_DUE = 13  # DUE of a still body at the end of the last step
+RESTING_COLUMNS = 14
 
 # PUSHED_BY (c, 3) int: the contacts of islands in their present spans
 PUSH_A, PUSH_B, ROOT = 0, 1, 2  # shapes, first body of the island; of a span that is over one of these:

@@ -42,6 +42,7 @@ from .layout import (
     PUSHES,
     RENEW,
     STALE,
+    STILL,
     STRUCK,
     UNMET,
     UNTIL,
@@ -83,7 +84,7 @@ def forecast_due(A: Scene, disks: int) -> None:
     """The next events, at the start of a step, of all bodies whose last forecast is no good."""
     n, dt = 0, A.PAR[DT]
     for i in range(A.BODY.shape[0] - 1):
-        if A.BODY[i, DUE] < dt or A.STATE[i, ISLAND] >= 0:
+        if A.BODY[i, DUE] < dt or (A.STATE[i, ISLAND] >= 0 and A.MEMBER[i, STILL] != 1):
             A.BLOCK[n] = i
             n += 1
     forecast_all(A, disks, n, 0.0, dt)

@@ -14,7 +14,7 @@ from ..arrays import IntArray
 from ..compiled import kernel, uncounted
 from ..geometry.flight import pose
 from ..geometry.gap import gap_at
-from ..layout import BOUND, DUE, EXTENT, IM, OWNER, SIZE, SPIN, VX, VY
+from ..layout import BOUND, EXTENT, IM, OWNER, SIZE, SPIN, VX, VY
 from ..pairs.layout import NUMBER, START
 from ..pairs.lists import centre
 from ..pairs.rules import barred, law
@@ -41,10 +41,12 @@ from .layout import (
     REMEMBERED,
     ROOT,
     SHAPES,
+    STILL,
     TIED,
     Scene,
 )  # fmt: skip
 from .spans import solve
+from .still import rouse
 from .strike import move_to
 
 _OFTEN, _VERY_OFTEN = 16, 64  # impacts of a body in a step after which a lossy contact rests; a slow elastic one
@@ -123,11 +125,7 @@ def settle(A: Scene) -> int:
     """The islands of the start of a step, and their spans. DONE, or PUSHES_FULL, to be called again with more room."""
     STATE, COUNT, BODY = A.STATE, A.COUNT, A.BODY
     n = BODY.shape[0] - 1
-    for i in range(n):
-        if STATE[i, ISLAND] >= 0:
-            # Its forecast left out the pairs of its span.
-            BODY[i, DUE] = min(BODY[i, DUE], 0.0)
-            STATE[i, ISLAND] = -1
+    rouse(A)
     for c in range(COUNT[PUSHES]):
         a, b = A.PUSHED_BY[c, PUSH_A], A.PUSHED_BY[c, PUSH_B]
         if A.PUSHED_BY[c, ROOT] != LASTED or barred(A.RULE, a, b):
@@ -144,23 +142,34 @@ def settle(A: Scene) -> int:
     QUEUE = np.empty(n, np.int64)
     queued = 0
     for i in range(n):
-        if STATE[i, ISLAND] >= 0:
+        if STATE[i, ISLAND] >= 0 and A.MEMBER[i, STILL] != 1:
             QUEUE[queued] = i
             queued += 1
     queued = spread(A, QUEUE, queued, 0.0)
-    wanted = 0
-    for q in range(queued):
-        i = QUEUE[q]
+    kept, wanted = 0, 0
+    for c in range(COUNT[PUSHES]):
+        kept += 1 if A.PUSHED_BY[c, ROOT] >= 0 else 0
+    for i in range(n):
+        if STATE[i, ISLAND] < 0 or A.MEMBER[i, STILL] == 1:
+            continue
         for s in range(STATE[i, FIRST_SHAPE], STATE[i, FIRST_SHAPE] + STATE[i, SHAPES]):
             wanted += 2 * A.LIST[s, NUMBER]
-    if wanted > A.PUSHED.shape[0] or 2 * (COUNT[REMEMBERED] + wanted) > A.KEYS.shape[0]:
+    if kept + wanted > A.PUSHED.shape[0] or 2 * (COUNT[REMEMBERED] + wanted) > A.KEYS.shape[0]:
         return PUSHES_FULL
-    COUNT[PUSHES] = 0
+    kept = 0
+    for c in range(COUNT[PUSHES]):
+        if A.PUSHED_BY[c, ROOT] >= 0:
+            for column in range(A.PUSHED_BY.shape[1]):
+                A.PUSHED_BY[kept, column] = A.PUSHED_BY[c, column]
+            for column in range(A.PUSHED.shape[1]):
+                A.PUSHED[kept, column] = A.PUSHED[c, column]
+            kept += 1
+    COUNT[PUSHES] = kept
     # A solve may make another body the root of its island, which then would be solved again.
     roots = 0
-    for q in range(queued):
-        if STATE[QUEUE[q], ISLAND] == QUEUE[q]:
-            QUEUE[roots] = QUEUE[q]
+    for i in range(n):
+        if STATE[i, ISLAND] == i and A.MEMBER[i, STILL] != 1:
+            QUEUE[roots] = i
             roots += 1
     for q in range(roots):
         solve(A, QUEUE[q], 0.0)

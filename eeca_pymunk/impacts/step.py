@@ -35,7 +35,7 @@ from ..layout import (
 from ..tables import Table
 from ..transfer import EVENTS as SOME
 from ..transfer import give, take
-from .booking import book, lift_out
+from .booking import book, flag_spans, lift_out
 from .layout import (
     AFTER,
     BEFORE,
@@ -73,6 +73,8 @@ from .layout import (
     SOLVES,
     STALE,
     STAMP,
+    STILL,
+    STILL_DUE,
     STORED,
     SWEEPS,
     UNMET,
@@ -81,6 +83,7 @@ from .layout import (
 )  # fmt: skip
 from .loop import follow, forecast_due
 from .settle import settle
+from .still import LIKELY, find_still, halt, keep, leave, stand, stays, watch
 from .strike import move_to
 
 # Answers of a step that wants more memory: give some, and `resume`.
@@ -119,7 +122,8 @@ def begin(A: Scene, WALK: IntArray) -> None:
         COUNT[UNMET] = 0
         # Pairs that were passed over are in nobody's forecast.
         for i in range(BODY.shape[0] - 1):
-            BODY[i, DUE] = min(BODY[i, DUE], 0.0)
+            BODY[i, DUE], A.RESTING[i, STILL_DUE] = min(BODY[i, DUE], 0.0), 0.0
+        flag_spans(A)
     for c in range(LEDGER_LENGTH):
         PAR[LEDGER + c] = 0.0
     PAR[LOCK], PAR[STORED] = 1.0, 0.0
@@ -139,6 +143,11 @@ def begin(A: Scene, WALK: IntArray) -> None:
     for i in range(n):
         STATE[i, EVENTS] = 0
         A.MEMBER[i, BUSY] = max(A.MEMBER[i, BUSY] - 1, 0)
+        if A.MEMBER[i, STILL] == 1 and stays(A, i, last):
+            pulled = max(pulled, A.PULL[i, 0] * A.PULL[i, 0] + A.PULL[i, 1] * A.PULL[i, 1])
+            continue
+        if BODY[i, IM] == 0.0:
+            watch(A, i)
         ax, ay = BODY[i, AX], BODY[i, AY]
         A.PULL[i, 0], A.PULL[i, 1], A.PULL[i, 2] = ax, ay, BODY[i, TWIST]
         pulled = max(pulled, ax * ax + ay * ay)
@@ -164,14 +173,22 @@ def close(A: Scene, WALK: IntArray) -> None:
     """Bring all paths to the end of the step; book islands, the work of forces, the energy; gaps at the start."""
     BODY, PAR, LOG, BEGAN, COUNT = A.BODY, A.PAR, A.LOG, A.BEGAN, A.COUNT
     end = PAR[DT]
+    find_still(A)
     for c in range(COUNT[PUSHES]):
-        if A.PUSHED_BY[c, ROOT] >= 0:
+        root = A.PUSHED_BY[c, ROOT]
+        if root >= 0 and A.MEMBER[root, STILL] == 1:
+            stand(A, c)
+        elif root >= 0:
             book(A, c, end)
+            if A.MEMBER[root, STILL] == LIKELY:
+                keep(A, c, root)
     gx, gy = PAR[GRAVITY_X], PAR[GRAVITY_Y]
     for i in range(BODY.shape[0] - 1):
         move_to(BODY, i, end)
         if A.STATE[i, ISLAND] == i:
             lift_out(A, i, end)
+            if A.MEMBER[i, STILL] == LIKELY:
+                halt(A, i)
     for i in range(BODY.shape[0] - 1):
         fx, fy, twist = A.PULL[i, 0] - gx, A.PULL[i, 1] - gy, A.PULL[i, 2]
         if BODY[i, IM] > 0.0 and (fx != 0.0 or fy != 0.0 or twist != 0.0):
@@ -202,6 +219,7 @@ def close(A: Scene, WALK: IntArray) -> None:
             A.SHAPE, A.LINK, A.VERTEX, A.WORK, a, BEGAN[i, 0], BEGAN[i, 1], BEGAN[i, 2],
             b, BEGAN[j, 0], BEGAN[j, 1], BEGAN[j, 2],
         )[0]  # fmt: skip
+    leave(A)
 
 
 @kernel

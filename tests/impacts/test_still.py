@@ -1,0 +1,146 @@
+"""Islands that stand still are not solved again, keep their forces, and wake in the step in which something happens."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pymunk
+import pytest
+
+import eeca_pymunk as ep
+
+DT, G = 1 / 60, 9.81
+UNITS = (1e-3, 1.0, 1e3)
+
+
+def stack(count: int = 3, unit: float = 1.0) -> tuple[pymunk.Space, list[pymunk.Body], pymunk.Body]:
+    """Boxes of mass 1 and side `unit` on a kinematic floor, with gravity G unit; the floor."""
+    space = pymunk.Space()
+    space.gravity = (0.0, -G * unit)
+    floor = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    ground = pymunk.Segment(floor, (-20 * unit, 0.0), (20 * unit, 0.0), 0.0)
+    ground.friction = 0.7
+    space.add(floor, ground)
+    bodies = []
+    for i in range(count):
+        body = pymunk.Body(1.0, unit * unit / 6)
+        body.position = (0.0, (0.5 + i) * unit)
+        shape = pymunk.Poly.create_box(body, (unit, unit))
+        shape.friction = 0.7
+        space.add(body, shape)
+        bodies.append(body)
+    return space, bodies, floor
+
+
+def at_rest(count: int = 3, unit: float = 1.0) -> tuple[ep.EECA, list[pymunk.Body], pymunk.Body]:
+    space, bodies, floor = stack(count, unit)
+    stepper = ep.EECA(space)
+    for _ in range(5):
+        report = stepper.step(DT)
+    assert report.iterations == 0, "the stack is solved though nothing happens"
+    return stepper, bodies, floor
+
+
+@pytest.mark.parametrize("unit", UNITS)
+def test_a_stack_stands_exactly_and_its_contacts_bear_its_weight(unit: float) -> None:
+    stepper, bodies, _ = at_rest(10, unit)
+    places = [(tuple(b.position), b.angle) for b in bodies]
+    for _ in range(100):
+        report = stepper.step(DT)
+        assert report.iterations == 0
+        assert report.ledger is not None
+        assert report.ledger.residual == 0.0
+    assert [(tuple(b.position), b.angle) for b in bodies] == places
+    assert sum(report.impulse) == pytest.approx(G * unit * DT * 55, rel=1e-9)
+    report = stepper.step(DT / 2)
+    assert report.iterations == 0
+    assert sum(report.impulse) == pytest.approx(G * unit * DT / 2 * 55, rel=1e-9)
+
+
+@pytest.mark.parametrize("unit", UNITS)
+def test_coming_to_a_stand_closes_the_ledger(unit: float) -> None:
+    space, bodies, _ = stack(3, unit)
+    bodies[2].position += (0.0, 0.01 * unit)
+    stepper, scale = ep.EECA(space), 0.01 * G * unit * unit
+    solved = []
+    for _ in range(60):
+        report = stepper.step(DT)
+        solved.append(report.iterations)
+        assert report.ledger is not None
+        assert abs(report.ledger.residual) <= 1e-11 * scale
+        assert min(report.ledger.restitution, report.ledger.friction) >= -1e-13 * scale
+    assert solved[0] > 0
+    assert solved[-1] == 0
+
+
+def push(stepper: ep.EECA, bodies: list[pymunk.Body], floor: pymunk.Body) -> None:
+    bodies[1].velocity = (1.0, 0.0)
+
+
+def pull(stepper: ep.EECA, bodies: list[pymunk.Body], floor: pymunk.Body) -> None:
+    bodies[1].apply_force_at_local_point((30.0, 0.0))
+
+
+def weigh(stepper: ep.EECA, bodies: list[pymunk.Body], floor: pymunk.Body) -> None:
+    stepper.space.gravity = (8.0, -G)
+
+
+def place(stepper: ep.EECA, bodies: list[pymunk.Body], floor: pymunk.Body) -> None:
+    bodies[2].position += (0.1, 0.1)
+
+
+def carry(stepper: ep.EECA, bodies: list[pymunk.Body], floor: pymunk.Body) -> None:
+    floor.velocity = (0.5, 0.0)
+
+
+def grease(stepper: ep.EECA, bodies: list[pymunk.Body], floor: pymunk.Body) -> None:
+    stepper.space.gravity = (1.0, -G)
+    next(iter(bodies[0].shapes)).friction = 0.0
+
+
+def remove(stepper: ep.EECA, bodies: list[pymunk.Body], floor: pymunk.Body) -> None:
+    stepper.space.remove(bodies[0], *bodies[0].shapes)
+
+
+@pytest.mark.parametrize("act", [push, pull, weigh, place, carry, grease, remove])
+def test_it_wakes_at_once(act: Callable[[ep.EECA, list[pymunk.Body], pymunk.Body], None]) -> None:
+    stepper, bodies, floor = at_rest()
+    act(stepper, bodies, floor)
+    before = bodies[1].position
+    report = stepper.step(DT)
+    assert bodies[1].position != before or report.iterations > 0
+    for _ in range(3):
+        stepper.step(DT)
+    assert max(b.velocity.length for b in bodies[1:]) > 1e-3
+
+
+def test_a_body_that_hits_it_hits_it_in_the_same_step() -> None:
+    stepper, bodies, _ = at_rest()
+    ball = pymunk.Body(1.0, 0.1)
+    ball.position = (3.05, 2.5)
+    ball.velocity = (-6.0, 0.0)
+    shape = pymunk.Circle(ball, 0.3)
+    shape.elasticity = 1.0
+    stepper.space.add(ball, shape)
+    # The gap of 2.25 closes after .375 s, which is 22.5 steps.
+    for step in range(30):
+        before = ball.velocity.x
+        report = stepper.step(DT)
+        if ball.velocity.x != before:
+            break
+        assert report.iterations == 0 or step < 5
+    assert step == 22
+    assert bodies[2].velocity.x < -1e-2
+    assert report.ledger is not None
+    assert abs(report.ledger.residual) < 1e-11
+
+
+def test_without_weight_nothing_comes_to_a_stand() -> None:
+    space, bodies, _ = stack()
+    space.gravity = (0.0, 0.0)
+    for body in bodies:
+        body.velocity = (0.0, 1e-12)
+    stepper = ep.EECA(space)
+    for _ in range(20):
+        stepper.step(DT)
+    assert all(b.velocity.y == 1e-12 for b in bodies)
