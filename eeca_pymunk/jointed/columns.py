@@ -12,8 +12,11 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
-from ..rows.build import normal_rate, tangent_rate
+from ..rows.build import SINGULAR, normal_rate, tangent_rate
 from ..rows.layout import (
+    A_NN,
+    A_NT,
+    A_TT,
     ARM_NA,
     ARM_NB,
     ARM_TA,
@@ -26,64 +29,27 @@ from ..rows.layout import (
     TARGET,
     UN,
     UT,
+    W_NN,
+    W_NT,
+    W_TT,
     WAKE,
 )
 from ..rows.sweeps import coulomb
 from .component import answer
+from .groups import Groups
 from .layout import Joints
 
 _STRUT, _NOTHING = 1e-3, 1e-7  # share of its free mobility below which a contact is left out: of one group, of two
 
 
-class Groups(NamedTuple):
-    """GROUP (k,): the group of a body, -1 for what impulses do not move; BODY (n,): bodies by group, those of group g
-    at FIRST[g] : FIRST[g + 1]; COMPONENT (groups,): that of a group, -1 for a free body."""
-
-    GROUP: IntArray
-    FIRST: IntArray
-    BODY: IntArray
-    COMPONENT: IntArray
-
-
 class Columns(NamedTuple):
-    """Of contact i: AT[i] : AT[i + 1] the entries BODY, N and T (., 3) of its columns; COUPLED (m,) its A_nt; OUT (m,)
-    1 if it is left out."""
+    """Of contact i: AT[i] : AT[i + 1] the entries BODY, N and T (., 3) of its columns; OUT (m,) 1 if it is left out."""
 
     AT: IntArray
     BODY: IntArray
     N: FloatArray
     T: FloatArray
-    COUPLED: FloatArray
     OUT: IntArray
-
-
-@kernel
-def find_groups(WHO: IntArray, IM: FloatArray, OF: IntArray) -> Groups:
-    """The groups of bodies WHO (k,), rows of BODY, of which OF tells the components."""
-    k = len(WHO)
-    GROUP, NEXT = np.full(k, -1, np.int64), np.full(k, -1, np.int64)
-    FIRST, COMPONENT, BODY = np.zeros(k + 1, np.int64), np.empty(k, np.int64), np.empty(k, np.int64)
-    groups = 0
-    for q in range(k):
-        if IM[q] == 0.0 or GROUP[q] >= 0:
-            continue
-        GROUP[q], COMPONENT[groups] = groups, OF[WHO[q]]
-        if OF[WHO[q]] >= 0:
-            for p in range(q + 1, k):
-                if IM[p] > 0.0 and OF[WHO[p]] == OF[WHO[q]]:
-                    GROUP[p] = groups
-        groups += 1
-    for q in range(k):
-        if GROUP[q] >= 0:
-            FIRST[GROUP[q] + 1] += 1
-    for g in range(groups):
-        FIRST[g + 1] += FIRST[g]
-        NEXT[g] = FIRST[g]
-    for q in range(k):
-        if GROUP[q] >= 0:
-            BODY[NEXT[GROUP[q]]] = q
-            NEXT[GROUP[q]] += 1
-    return Groups(GROUP, FIRST[: groups + 1], BODY, COMPONENT[:groups])
 
 
 @kernel
@@ -105,7 +71,7 @@ def make_columns(groups: Groups, A: IntArray, B: IntArray, m: int) -> Columns:
                     at += 1
             if way == 0:
                 AT[i + 1] = at
-    return Columns(AT, BODY, np.zeros((AT[m], 3)), np.zeros((AT[m], 3)), np.zeros(m), np.zeros(m, np.int64))
+    return Columns(AT, BODY, np.zeros((AT[m], 3)), np.zeros((AT[m], 3)), np.zeros(m, np.int64))
 
 
 @uncounted
@@ -179,18 +145,24 @@ def along(C: Columns, A: IntArray, B: IntArray, ROWS: FloatArray, i: int, D: Flo
 
 @uncounted
 def weigh(groups: Groups, C: Columns, A: IntArray, B: IntArray, ROWS: FloatArray, m: int) -> None:
-    """Let K_N and K_T be 1/A_nn and 1/A_tt of the columns; leave out what hardly can be moved."""
+    """Let K, A and W of the rows be those of the columns; leave out what hardly can be moved."""
     for i in range(m):
-        normal, tangential = along(C, A, B, ROWS, i, C.N, False), along(C, A, B, ROWS, i, C.T, True)
-        C.COUPLED[i] = 0.5 * (along(C, A, B, ROWS, i, C.N, True) + along(C, A, B, ROWS, i, C.T, False))
+        nn, tt = along(C, A, B, ROWS, i, C.N, False), along(C, A, B, ROWS, i, C.T, True)
+        nt = 0.5 * (along(C, A, B, ROWS, i, C.N, True) + along(C, A, B, ROWS, i, C.T, False))
         least = _STRUT if groups.GROUP[A[i]] == groups.GROUP[B[i]] else _NOTHING
-        C.OUT[i] = 0 if normal * ROWS[i, K_N] > least else 1
+        C.OUT[i] = 0 if nn * ROWS[i, K_N] > least else 1
         if C.OUT[i] == 0:
-            ROWS[i, K_N] = 1.0 / normal
-        if tangential * ROWS[i, K_T] > least:
-            ROWS[i, K_T] = 1.0 / tangential
+            ROWS[i, K_N], ROWS[i, A_NN] = 1.0 / nn, nn
+        if tt * ROWS[i, K_T] > least:
+            ROWS[i, K_T], ROWS[i, A_TT], ROWS[i, A_NT] = 1.0 / tt, tt, nt
         else:
-            ROWS[i, FRICTION], C.COUPLED[i] = 0.0, 0.0
+            ROWS[i, FRICTION], ROWS[i, A_NT] = 0.0, 0.0
+        if ROWS[i, FRICTION] > 0.0:
+            det = nn * tt - nt * nt
+            regular = det > SINGULAR * nn * tt
+            ROWS[i, W_NN] = tt / det if regular else np.nan
+            ROWS[i, W_NT] = -nt / det if regular else 0.0
+            ROWS[i, W_TT] = nn / det if regular else 0.0
 
 
 @uncounted
@@ -226,20 +198,28 @@ def sweep_columns(
         if C.OUT[i] != 0:
             continue
         lam0, beta0 = L[i, 0], L[i, 1]
-        lam, beta = 0.0, 0.0
-        ant = C.COUPLED[i]
-        free = normal_rate(A, B, ROWS, V, i) - lam0 / ROWS[i, K_N]
-        if free < ROWS[i, WAKE]:
-            ROWS[i, WAKE] = np.inf
-            if ROWS[i, FRICTION] <= 0.0:
-                lam = max(ROWS[i, K_N] * (ROWS[i, TARGET] - free), 0.0)
+        lam, beta, ann = 0.0, 0.0, ROWS[i, A_NN]
+        short = normal_rate(A, B, ROWS, V, i) - ROWS[i, TARGET]
+        if ROWS[i, WAKE] < np.inf:
+            if short + ROWS[i, TARGET] - lam0 * ann < ROWS[i, WAKE]:
+                ROWS[i, WAKE] = np.inf
             else:
-                ann, att = 1.0 / ROWS[i, K_N], 1.0 / ROWS[i, K_T]
-                slip = tangent_rate(A, B, ROWS, V, i) - beta0 * att - lam0 * ant
-                lam, beta = coulomb(
-                    free - ROWS[i, TARGET] - beta0 * ant, slip, ann, ant, att, ROWS[i, FRICTION], ROWS[i, UN],
-                    ROWS[i, UT], ROWS[i, TARGET],
-                )  # fmt: skip
+                short = np.inf
+        if ROWS[i, FRICTION] <= 0.0:
+            lam = max(lam0 - ROWS[i, K_N] * short, 0.0)
+        else:
+            qn = short - lam0 * ann - beta0 * ROWS[i, A_NT]
+            if qn < 0.0:
+                ut = tangent_rate(A, B, ROWS, V, i)
+                # Most stick, and need no more than this.
+                lam = lam0 - (ROWS[i, W_NN] * short + ROWS[i, W_NT] * ut)
+                beta = beta0 - (ROWS[i, W_NT] * short + ROWS[i, W_TT] * ut)
+                if not (abs(beta) <= ROWS[i, FRICTION] * lam and beta * ROWS[i, UT] <= 0.0):
+                    ant, att = ROWS[i, A_NT], ROWS[i, A_TT]
+                    lam, beta = coulomb(
+                        qn, ut - beta0 * att - lam0 * ant, ann, ant, att, ROWS[i, FRICTION], ROWS[i, UN], ROWS[i, UT],
+                        ROWS[i, TARGET],
+                    )  # fmt: skip
         dn, dt = lam - lam0, beta - beta0
         if dn == 0.0 and dt == 0.0:
             continue
@@ -247,7 +227,7 @@ def sweep_columns(
         for w in range(C.AT[i], C.AT[i + 1]):
             for c in range(3):
                 V[C.BODY[w], c] += dn * C.N[w, c] + dt * C.T[w, c]
-        worst = max(worst, abs(dn) / ROWS[i, K_N], abs(dt) / ROWS[i, K_T])
+        worst = max(worst, abs(dn) * ann, abs(dt) * ROWS[i, A_TT])
     return worst
 
 

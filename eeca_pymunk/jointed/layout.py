@@ -9,6 +9,7 @@ from ..tables import Opener
 
 # TALLY (8,) int
 COMPONENTS, ORDER, WORST, REPEATS = 0, 1, 2, 3  # how many; 2 or 4; worst status of the step; steps of components
+ANSWERS = 4  # the system with which the component that is `ready` answers
 TALLY_LENGTH = 8
 
 # STEPPED (components, 10): the ledger of a component in its span, and

@@ -13,8 +13,10 @@ from ..impacts.spans import Local
 from ..joints.layout import STORED
 from ..rows.build import normal_rate
 from ..rows.layout import GAP, K_N
-from .columns import Columns, Groups, fill_free, fill_group, make_columns, weigh
-from .component import close_joints, find_places, gather_component, ready
+from .columns import Columns, fill_free, fill_group, make_columns, weigh
+from .component import close_joints, ready
+from .gathered import find_places, gather_component
+from .groups import Groups
 from .layout import Joints
 
 _SLOP = 1e-9  # overlap over the size of the bodies, that is left alone

@@ -41,8 +41,9 @@ from ..layout import BODY_ROW, LEFT, SINCE
 from ..layout import NOW as READ
 from ..tables import Table
 from .layout import COMPONENTS, REPEATS, WORST, Joints, joints_of
+from .meet import book_component
 from .solve import begin_span
-from .strike import book_component, collide
+from .strike import collide
 
 _ROOM = 64  # contacts more than there are, that there must be room for before an impact
 

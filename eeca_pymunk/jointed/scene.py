@@ -9,23 +9,18 @@ from ..impacts.layout import NEXT_TIED, TIED
 from ..impacts.scene import EventLoop
 from ..impacts.step import ROOM_FOR_LISTS
 from ..joints.layout import JOINT_COLUMNS, TIE_COLUMNS
-from ..joints.plan import make_plan
+from ..joints.plan import make_plan, room_for
 from ..joints.scratch import (
-    BAND,
     BODY_0,
     BODY_1,
     HINGE_COLUMNS,
-    JOINT_0,
-    JOINT_1,
     LINK_COLUMNS,
     LOCAL_COLUMNS,
     M_BODY,
     M_FREEDOMS,
     MEMBER_COLUMNS,
     NODE_COLUMNS,
-    ROWS_OF,
     SPAN_COLUMNS,
-    UNKNOWNS,
 )
 from ..layout import NOW as READ
 from ..pairs.layout import MARGIN
@@ -65,10 +60,7 @@ class JointedLoop(EventLoop):
         link = np.zeros((count, LINK_COLUMNS), np.int64)
         bodies = np.concatenate((self.scene.BODY, self._partner))
         components = make_plan(bodies, joint, tie, span, member, link)
-        used = span[:components]
-        most_bodies = int((used[:, BODY_1] - used[:, BODY_0]).max(initial=1))
-        most_joints = int((used[:, JOINT_1] - used[:, JOINT_0]).max(initial=1))
-        size = int(used[:, UNKNOWNS].max(initial=1))
+        room = room_for(span[:components])
         tally = np.zeros(TALLY_LENGTH, np.int64)
         tally[COMPONENTS], tally[ORDER] = components, self._order
         of = np.full(n, -1, np.int64)
@@ -80,12 +72,12 @@ class JointedLoop(EventLoop):
             of[moved] = s
             ring[moved, TIED], ring[moved, NEXT_TIED] = moved[0], np.roll(moved, -1)
         self.joints = Joints(
-            joint, tie, self._partner, span, member, link, np.zeros((most_joints, HINGE_COLUMNS)),
-            np.zeros((most_bodies, LOCAL_COLUMNS)), np.zeros((most_bodies, NODE_COLUMNS), np.int64),
-            np.zeros(int((used[:, UNKNOWNS] * (3 * used[:, BAND] + 1)).max(initial=1))),
-            np.zeros(int((2 * used[:, UNKNOWNS] + used[:, ROWS_OF]).max(initial=1))), np.zeros(size),
-            np.zeros((6, 6)), np.zeros(5), np.zeros(8), np.zeros(size, np.int64), of, np.zeros((count, JOINT_COLUMNS)),
-            np.zeros((count, TIE_COLUMNS), np.int64), np.zeros((max(components, 1), STEPPED_COLUMNS)), tally,
+            joint, tie, self._partner, span, member, link, np.zeros((room.joints, HINGE_COLUMNS)),
+            np.zeros((room.bodies, LOCAL_COLUMNS)), np.zeros((room.bodies, NODE_COLUMNS), np.int64),
+            np.zeros(room.matrix), np.zeros(room.right), np.zeros(room.rows), np.zeros((6, 6)), np.zeros(5),
+            np.zeros(8), np.zeros(room.rows, np.int64), of, np.zeros((count, JOINT_COLUMNS)),
+            np.zeros((count, TIE_COLUMNS), np.int64), np.zeros((max(components, 1), STEPPED_COLUMNS)),
+            tally,
         )  # fmt: skip
         self._ties = table_of(self.joints)
 

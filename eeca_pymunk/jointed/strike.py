@@ -1,207 +1,32 @@
-"""An impact on an island with joints: to its instant on the island's own path, then impulses that joints pass on."""
+"""An impact on islands with joints, at its instant (`meet`): impulses that joints pass on."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FloatArray
 from ..compiled import kernel, uncounted
-from ..geometry.flight import pose
-from ..geometry.gap import gap_at
 from ..impacts.block import Block, gather, lay_out, owing
-from ..impacts.booking import book
 from ..impacts.collide import finish, rejoin
 from ..impacts.islands import members, unite
-from ..impacts.layout import (
-    BODIES,
-    DAMPED,
-    DT,
-    EXTERNAL,
-    FRICTIONAL,
-    ISLAND,
-    JOINTED,
-    KINKS,
-    LEDGER,
-    LIFT,
-    LOST,
-    OPEN,
-    PENDING,
-    PUSH_A,
-    PUSH_B,
-    PUSHES,
-    RESTITUTION,
-    ROOT,
-    STORED,
-    Scene,
-)  # fmt: skip
+from ..impacts.layout import BODIES, ISLAND, JOINTED, KINKS, OPEN, PENDING, Scene
 from ..impacts.settle import comes_to_rest
 from ..impacts.spans import dismiss
-from ..impacts.strike import move_to
-from ..joints.layout import CLAMPED, CLOSED, LIMITED, MOTORS, PROJECTED, SUPPORTS
-from ..joints.layout import DAMPED as DAMPED_JOINTS
-from ..joints.layout import STORED as STORED_JOINTS
 from ..joints.scratch import BEFORE as LOCAL_BEFORE
 from ..joints.scratch import BODY_0, BODY_1, FREEDOMS
-from ..layout import AX, AY, IM, OWNER, SINCE, SIZE, SPIN, TWIST, VX, VY
-from ..pairs.lists import mark_pair
+from ..layout import IM, OWNER
 from ..rows.blocks import CONVERGED, D_NORMAL, D_TANGENTIAL, OUT_SIZE, SCALE_LOCK, TRUNCATED
 from ..rows.build import aim, conserves, rates
 from ..rows.energy import scale_of, works
-from .columns import fill_free, fill_group, find_groups, make_columns, push_columns, weigh
-from .component import answer, find_places, gather_component, ready, restore_joints
-from .layout import LIFTED, TURNED_WORK, Joints
+from .columns import fill_free, fill_group, make_columns, push_columns, weigh
+from .component import answer, ready
+from .gathered import find_places, gather_component
+from .groups import find_groups
+from .layout import Joints
+from .meet import end_here, meet, shorten
 from .newton import solve_columns
-from .solve import begin_span
 
-_MEET = 1e-13  # gap at an impact, over the smaller shape
-_SECANTS, _LOADED_SECANTS = 5, 2  # also where other contacts push
 _SWEEPS = 1000
-_INSTANT = 1e-12  # of a step, below which a span is none
-
-
-@uncounted
-def book_component(A: Scene, J: Joints, s: int) -> None:
-    """Book what the joints of component s have done in their span."""
-    PAR, B = A.PAR, J.STEPPED[s]
-    PAR[LEDGER + EXTERNAL] += B[MOTORS] + B[SUPPORTS] + B[CLOSED] + B[TURNED_WORK]
-    PAR[LEDGER + DAMPED] += B[DAMPED_JOINTS]
-    PAR[LEDGER + RESTITUTION] += B[LIMITED] + B[PROJECTED] - B[LIFTED]
-    PAR[LEDGER + FRICTIONAL] += B[CLAMPED]
-    PAR[STORED] += B[STORED_JOINTS]
-    for c in range(len(B)):
-        B[c] = 0.0
-
-
-@kernel
-def components_of(A: Scene, J: Joints, root: int) -> IntArray:
-    """The components in an island."""
-    MINE = np.empty(A.MEMBER[root, BODIES], np.int64)
-    n = members(A, root, MINE)
-    found = np.empty(n, np.int64)
-    count = 0
-    for q in range(n):
-        s = J.OF[MINE[q]]
-        if s < 0:
-            continue
-        known = False
-        for c in range(count):
-            known = known or found[c] == s
-        if not known:
-            found[count] = s
-            count += 1
-    return found[:count]
-
-
-@uncounted
-def take_back(A: Scene, root: int) -> None:
-    """Forget the contacts of the span that an island has begun."""
-    c = 0
-    while c < A.COUNT[PUSHES]:
-        if A.PUSHED_BY[c, ROOT] == root:
-            mark_pair(A.LIST, A.POOL, A.FLAG, A.LIST.shape[0], A.PUSHED_BY[c, PUSH_A], A.PUSHED_BY[c, PUSH_B], 0)
-            last = A.COUNT[PUSHES] - 1
-            for w in range(A.PUSHED.shape[1]):
-                A.PUSHED[c, w] = A.PUSHED[last, w]
-            for w in range(3):
-                A.PUSHED_BY[c, w] = A.PUSHED_BY[last, w]
-            A.COUNT[PUSHES] = last
-        else:
-            c += 1
-
-
-@kernel
-def shorten(A: Scene, J: Joints, root: int, t: float) -> bool:
-    """Let the span of an island end at instant t, not booked yet; whether it has contacts. Nothing if it is over."""
-    if root < 0 or A.MEMBER[root, JOINTED] == 0 or A.MEMBER[root, OPEN] == 0:
-        return False
-    before = A.COUNT[PUSHES]
-    take_back(A, root)
-    began = A.BODY[root, SINCE]
-    some = before != A.COUNT[PUSHES]
-    found = components_of(A, J, root)
-    for c in range(len(found)):
-        restore_joints(J, found[c])
-    if t - began > _INSTANT * A.PAR[DT]:
-        begin_span(A, J, root, began, t - began)
-    return some
-
-
-@kernel
-def end_here(A: Scene, J: Joints, root: int, t: float) -> None:
-    """End the span of an island at instant t, its own end: book it, and bring its bodies there."""
-    if root < 0 or A.MEMBER[root, JOINTED] == 0 or A.MEMBER[root, OPEN] == 0:
-        return
-    for c in range(A.COUNT[PUSHES]):
-        if A.PUSHED_BY[c, ROOT] == root:
-            book(A, c, t)
-    empty = t - A.BODY[root, SINCE] <= _INSTANT * A.PAR[DT]
-    found = components_of(A, J, root)
-    for c in range(len(found)):
-        if empty:
-            for w in range(J.STEPPED.shape[1]):
-                J.STEPPED[found[c], w] = 0.0
-        A.RESTING[root, LOST] -= J.STEPPED[found[c], LIFTED]
-        book_component(A, J, found[c])
-    A.MEMBER[root, OPEN] = 0
-    MINE = np.empty(A.MEMBER[root, BODIES], np.int64)
-    n = members(A, root, MINE)
-    for q in range(n):
-        i = MINE[q]
-        A.STATE[i, KINKS] += 1
-        if not empty:
-            move_to(A.BODY, i, t)
-            for c in range(3):
-                A.BODY[i, VX + c] += A.RESTING[i, LIFT + 3 + c]
-                A.RESTING[i, LIFT + 3 + c] = 0.0
-
-
-@kernel
-def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> float:
-    """Bring the islands of shapes a and b, which are seen to meet at instant t, to the instant at which they do."""
-    i, j = A.LINK[a, OWNER], A.LINK[b, OWNER]
-    roots = (A.STATE[i, ISLAND], A.STATE[j, ISLAND] if A.BODY[j, IM] > 0.0 else -1)
-    least = 0.0
-    for root in roots:
-        if root >= 0 and A.MEMBER[root, OPEN] > 0 and A.MEMBER[root, JOINTED] > 0:
-            least = max(least, A.BODY[root, SINCE])
-    small = min(A.SHAPE[a, SIZE], A.SHAPE[b, SIZE])
-    before, gap_before = -1.0, 0.0
-    for tries in range(_SECANTS):
-        loaded = shorten(A, J, roots[0], t)
-        if roots[1] != roots[0]:
-            loaded = shorten(A, J, roots[1], t) or loaded
-        xi, yi, qi = pose(A.BODY, i, t)
-        xj, yj, qj = pose(A.BODY, j, t)
-        g, nx, ny, px, py = gap_at(A.SHAPE, A.LINK, A.VERTEX, A.WORK, a, xi, yi, qi, b, xj, yj, qj)
-        if (loaded and tries + 1 >= _LOADED_SECANTS) or abs(g) <= _MEET * small:
-            break
-        slope = 0.0
-        if before >= 0.0 and t != before:
-            slope = (g - gap_before) / (t - before)
-        else:
-            vi = path_rate(A, i, t, nx, ny, px - xi, py - yi)
-            slope = path_rate(A, j, t, nx, ny, px - xj, py - yj) - vi
-        # The islands end where they were brought last.
-        if not slope < 0.0 or tries + 1 == _SECANTS:
-            break
-        before, gap_before = t, g
-        then = min(max(t - g / slope, least), A.PAR[DT])
-        if then == t:
-            break
-        t = then
-    end_here(A, J, roots[0], t)
-    if roots[1] != roots[0]:
-        end_here(A, J, roots[1], t)
-    return t
-
-
-@uncounted
-def path_rate(A: Scene, i: int, t: float, nx: float, ny: float, x: float, y: float) -> float:
-    """Velocity along n of the point at (x, y) from body i on its path."""
-    BODY, s = A.BODY, t - A.BODY[i, SINCE]
-    vx, vy = BODY[i, VX] + s * BODY[i, AX], BODY[i, VY] + s * BODY[i, AY]
-    spin = BODY[i, SPIN] + s * BODY[i, TWIST]
-    return float(nx * vx + ny * vy + (x * ny - y * nx) * spin)
 
 
 @uncounted

@@ -1,48 +1,65 @@
-"""Dense and banded systems of the Newton steps: elimination with partial pivoting inside the band."""
+"""Banded systems of bodies and rows together: elimination with partial pivoting inside the band."""
 
 from __future__ import annotations
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
 
 
 @uncounted
-def solve_banded(matrix: FloatArray, size: int, band: int, right: FloatArray) -> bool:
-    """Solve A x = b in place of `right` (size,); False if a pivot vanishes.
+def factor_banded(matrix: FloatArray, size: int, band: int, pivots: IntArray) -> bool:
+    """LU factors in place of `matrix`; False if a pivot vanishes.
 
-    `matrix` (size or more, 3 band + 1 or more): A[i, j] at [i, j - i + band] for |i - j| <= band; the last `band`
-    columns are room for what rows swap in, and begin at 0. It is overwritten. Cost: size band^2 operations.
+    `matrix` (size (3 band + 1) or more,): A[i, j] at i (3 band + 1) + j - i + band for |i - j| <= band; the last `band`
+    entries of each row are room for what rows swap in, and begin at 0. Cost: size band^2 operations.
     """
+    width = 3 * band + 1
     for k in range(size):
         last = min(size, k + band + 1)
-        pivot, largest = k, abs(matrix[k, band])
+        at = k * width + band
+        pivot, largest = k, abs(matrix[at])
         for i in range(k + 1, last):
-            entry = abs(matrix[i, k - i + band])
+            entry = abs(matrix[i * width + k - i + band])
             if entry > largest:
                 pivot, largest = i, entry
+        pivots[k] = pivot
         if not largest > 1e-300:
             return False
         reach = min(2 * band + 1, size - k)  # columns k .. k + 2 band
         if pivot != k:
-            shift = k - pivot + band
+            other = pivot * width + k - pivot + band
             for j in range(reach):
-                keep = matrix[k, band + j]
-                matrix[k, band + j] = matrix[pivot, shift + j]
-                matrix[pivot, shift + j] = keep
+                keep = matrix[at + j]
+                matrix[at + j] = matrix[other + j]
+                matrix[other + j] = keep
+        inverse = 1.0 / matrix[at]
+        for i in range(k + 1, last):
+            to = i * width + k - i + band
+            below = matrix[to]
+            if below != 0.0:
+                below *= inverse
+                matrix[to] = below
+                for j in range(1, reach):
+                    matrix[to + j] -= below * matrix[at + j]
+    return True
+
+
+@uncounted
+def back_banded(matrix: FloatArray, size: int, band: int, pivots: IntArray, right: FloatArray) -> None:
+    """Solve with the factors of `factor_banded`, in place of `right`."""
+    width = 3 * band + 1
+    for k in range(size):
+        pivot = pivots[k]
+        if pivot != k:
             keep = right[k]
             right[k] = right[pivot]
             right[pivot] = keep
-        inverse = 1.0 / matrix[k, band]
-        for i in range(k + 1, last):
-            shift = k - i + band
-            factor = matrix[i, shift] * inverse
-            if factor != 0.0:
-                for j in range(1, reach):
-                    matrix[i, shift + j] -= factor * matrix[k, band + j]
-                right[i] -= factor * right[k]
+        if right[k] != 0.0:
+            for i in range(k + 1, min(size, k + band + 1)):
+                right[i] -= matrix[i * width + k - i + band] * right[k]
     for k in range(size - 1, -1, -1):
         total = right[k]
+        at = k * width + band
         for j in range(1, min(2 * band + 1, size - k)):
-            total -= matrix[k, band + j] * right[k + j]
-        right[k] = total / matrix[k, band]
-    return True
+            total -= matrix[at + j] * right[k + j]
+        right[k] = total / matrix[at]

@@ -3,98 +3,137 @@
 [A  -J^T; G  give] [x; mu] = [b; c] becomes (A + R J^T G) dx = b + R J^T (c - G x), dmu = R (c - G x - G dx), and again
 with what is left of c: the balance of the bodies holds after the first pass, each further one takes the rows' error by
 1/(1 + R s), s the least eigenvalue of G A^-1 J^T. Redundant rows do no harm. The band is that of the bodies' graph,
-and needs no pivots.
+and needs no pivots. Rows are those of the factors (FROZEN), also where these serve for a later iterate.
 """
 
 from __future__ import annotations
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import uncounted
-from .scratch import COLUMN, FREEDOMS, L_A, L_ROW, L_ROWS, MISSING, ROOT, ROWS, SCALE, WEIGHT
+from ..compiled import inlined, uncounted
+from .scratch import COLUMN, FREEDOMS, FROZEN, L_A, L_ROW, L_ROWS, MISSING, ROOT, ROWS, SCALE, WEIGHT
 
 PASSES = 3
+_WIDE = 8  # band from which on rows are worth a view
+
+
+@uncounted
+def subtract(row: FloatArray, other: FloatArray, amount: float) -> None:
+    """row -= amount other, as far as the shorter of both reaches."""
+    for j in range(min(len(row), len(other))):
+        row[j] -= amount * other[j]
+
+
+@uncounted
+def dot(row: FloatArray, other: FloatArray) -> float:
+    """The product of two arrays of one length, in four sums that do not wait for each other."""
+    n = len(row)
+    a = b = c = d = 0.0
+    for j in range(0, n - 3, 4):
+        a += row[j] * other[j]
+        b += row[j + 1] * other[j + 1]
+        c += row[j + 2] * other[j + 2]
+        d += row[j + 3] * other[j + 3]
+    for j in range(n - n % 4, n):
+        a += row[j] * other[j]
+    return float((a + b) + (c + d))
 
 
 @uncounted
 def factor(matrix: FloatArray, size: int, band: int) -> bool:
-    """LU factors without pivots in place of `matrix`, A[i, j] at [i, j - i + band]; False if a pivot vanishes."""
+    """LU factors without pivots in place of `matrix`, A[i, j] at i (2 band + 1) + j - i + band; False if a pivot
+    vanishes."""
+    width = 2 * band + 1
     for k in range(size):
-        pivot = matrix[k, band]
+        at = k * width + band
+        pivot = matrix[at]
         if not abs(pivot) > 1e-300:
             return False
+        inverse = 1.0 / pivot
         reach = min(band + 1, size - k)
         for i in range(k + 1, k + reach):
-            shift = k - i + band
-            below = matrix[i, shift]
+            to = i * width + k - i + band
+            below = matrix[to]
             if below != 0.0:
-                below /= pivot
-                matrix[i, shift] = below
-                for j in range(1, reach):
-                    matrix[i, shift + j] -= below * matrix[k, band + j]
+                below *= inverse
+                matrix[to] = below
+                if band >= _WIDE:
+                    subtract(matrix[to + 1 : to + reach], matrix[at + 1 : at + reach], below)
+                else:
+                    for j in range(1, reach):
+                        matrix[to + j] -= below * matrix[at + j]
     return True
 
 
 @uncounted
 def substitute(matrix: FloatArray, size: int, band: int, right: FloatArray, at: int) -> None:
     """Solve with the factors, in place of right[at : at + size]."""
+    width = 2 * band + 1
     for i in range(size):
-        total = right[at + i]
-        for j in range(max(0, i - band), i):
-            total -= matrix[i, j - i + band] * right[at + j]
-        right[at + i] = total
+        n = min(band, i)
+        begin = i * width + band - n
+        if band >= _WIDE:
+            right[at + i] -= dot(matrix[begin : begin + n], right[at + i - n : at + i])
+        else:
+            total = right[at + i]
+            for j in range(n):
+                total -= matrix[begin + j] * right[at + i - n + j]
+            right[at + i] = total
     for i in range(size - 1, -1, -1):
+        n = min(band, size - 1 - i)
+        begin = i * width + band
         total = right[at + i]
-        for j in range(i + 1, min(size, i + band + 1)):
-            total -= matrix[i, j - i + band] * right[at + j]
-        right[at + i] = total / matrix[i, band]
+        if band >= _WIDE:
+            total -= dot(matrix[begin + 1 : begin + 1 + n], right[at + i + 1 : at + i + 1 + n])
+        else:
+            for j in range(1, n + 1):
+                total -= matrix[begin + j] * right[at + i + j]
+        right[at + i] = total / matrix[begin]
 
 
 @uncounted
-def spread(
-    hinge: FloatArray, link: IntArray, local: FloatArray, node: IntArray, k: int, r: int, amount: float,
-    right: FloatArray, at: int,
+def freeze(
+    hinge: FloatArray, link: IntArray, local: FloatArray, node: IntArray, k: int, r: int, slopes: int
 ) -> None:  # fmt: skip
-    """Add `amount` of the scaled column J^T of row r of joint k to right[at :]."""
-    amount *= hinge[k, SCALE + r]
+    """Keep the scaled rows J and G of row r of joint k."""
     for end in range(2):
         i = link[k, L_A + end]
         for c in range(node[i, FREEDOMS]):
-            right[at + node[i, COLUMN] + c] += amount * hinge[k, ROWS + 6 * r + 3 * end + c] * local[i, ROOT + c]
+            at, scale = 6 * r + 3 * end + c, hinge[k, SCALE + r] * local[i, ROOT + c]
+            hinge[k, FROZEN + at] = scale * hinge[k, ROWS + at]
+            hinge[k, FROZEN + 12 + at] = scale * hinge[k, slopes + at]
 
 
-@uncounted
+@inlined
+def spread(
+    hinge: FloatArray, link: IntArray, node: IntArray, k: int, r: int, amount: float, right: FloatArray, at: int
+) -> None:
+    """Add `amount` of the scaled column J^T of row r of joint k to right[at :]."""
+    for end in range(2):
+        i = link[k, L_A + end]
+        for c in range(node[i, FREEDOMS]):
+            right[at + node[i, COLUMN] + c] += amount * hinge[k, FROZEN + 6 * r + 3 * end + c]
+
+
+@inlined
 def reach_of(
-    hinge: FloatArray, link: IntArray, local: FloatArray, node: IntArray, k: int, r: int, slopes: int,
-    right: FloatArray, at: int,
+    hinge: FloatArray, link: IntArray, node: IntArray, k: int, r: int, right: FloatArray, at: int
 ) -> float:  # fmt: skip
     """The scaled row G of row r of joint k times right[at :]."""
     total = 0.0
     for end in range(2):
         i = link[k, L_A + end]
         for c in range(node[i, FREEDOMS]):
-            entry = hinge[k, slopes + 6 * r + 3 * end + c] * local[i, ROOT + c]
-            total += entry * right[at + node[i, COLUMN] + c]
-    return float(total * hinge[k, SCALE + r])
-
-
-@uncounted
-def solve_condensed(
-    hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray, slopes: int, passes: int,
-    size: int, band: int, matrix: FloatArray, right: FloatArray, room: int,
-) -> bool:  # fmt: skip
-    """Solve the condensed system in place of `right`: bodies first, then rows; right[room : room + size] is scratch."""
-    if not factor(matrix, size, band):
-        return False
-    back_condensed(hinge, link, joints, local, node, slopes, passes, size, band, matrix, right, room)
-    return True
+            total += hinge[k, FROZEN + 12 + 6 * r + 3 * end + c] * right[at + node[i, COLUMN] + c]
+    return total
 
 
 @uncounted
 def back_condensed(
-    hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray, slopes: int, passes: int,
-    size: int, band: int, matrix: FloatArray, right: FloatArray, room: int,
+    hinge: FloatArray, link: IntArray, joints: int, node: IntArray, passes: int, size: int, band: int,
+    matrix: FloatArray, right: FloatArray, room: int,
 ) -> None:  # fmt: skip
-    """`solve_condensed` with the factors of the matrix in its place."""
+    """Solve the condensed system with the factors of its matrix in place of `right`: bodies first, then rows;
+    right[room : room + size] is scratch."""
     for i in range(size):
         right[room + i] = right[i]
         right[i] = 0.0
@@ -102,7 +141,7 @@ def back_condensed(
         for r in range(link[k, L_ROWS]):
             row = link[k, L_ROW] + r
             if hinge[k, WEIGHT + r] < 0.0:
-                spread(hinge, link, local, node, k, r, right[row], right, room)
+                spread(hinge, link, node, k, r, right[row], right, room)
             elif hinge[k, WEIGHT + r] > 0.0:
                 hinge[k, MISSING + r] = right[row]
                 right[row] = 0.0
@@ -111,12 +150,12 @@ def back_condensed(
             for r in range(link[k, L_ROWS]):
                 if hinge[k, WEIGHT + r] > 0.0:
                     amount = hinge[k, WEIGHT + r] * hinge[k, MISSING + r]
-                    spread(hinge, link, local, node, k, r, amount, right, room)
+                    spread(hinge, link, node, k, r, amount, right, room)
         substitute(matrix, size, band, right, room)
         for k in range(joints):
             for r in range(link[k, L_ROWS]):
                 if hinge[k, WEIGHT + r] > 0.0:
-                    hinge[k, MISSING + r] -= reach_of(hinge, link, local, node, k, r, slopes, right, room)
+                    hinge[k, MISSING + r] -= reach_of(hinge, link, node, k, r, right, room)
                     right[link[k, L_ROW] + r] += hinge[k, WEIGHT + r] * hinge[k, MISSING + r]
         for i in range(size):
             right[i] += right[room + i]

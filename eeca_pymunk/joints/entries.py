@@ -9,8 +9,11 @@ from ..compiled import uncounted
 from .layout import GROOVE, RATCHET, ROTARY_LIMIT, SLIDE
 from .scratch import (
     COLUMN,
+    DUAL,
     FREEDOMS,
+    FROZEN,
     FULL_BEND,
+    INERTIA,
     L_A,
     L_B,
     L_KIND,
@@ -23,6 +26,7 @@ from .scratch import (
     ROWS,
     SCALE,
     WEIGHT,
+    WHOLE,
 )
 
 
@@ -50,46 +54,50 @@ def put_rows(
     link: IntArray, hinge: FloatArray, local: FloatArray, node: IntArray, k: int, r: int, slopes: int, weight: float,
     band: int, matrix: FloatArray,
 ) -> None:  # fmt: skip
-    """Scaled row G (at `slopes` of `hinge`, times `weight`) and, with weight 1, column -J^T of row r of joint k."""
-    row, scale = link[k, L_ROW] + r, hinge[k, SCALE + r]
+    """Scaled row G (at `slopes` of `hinge`, times `weight`) and column -J^T of row r of joint k in a whole system."""
+    row, scale, width = link[k, L_ROW] + r, hinge[k, SCALE + r], 3 * band + 1
     for end in range(2):
         i = link[k, L_A + end]
         for c in range(node[i, FREEDOMS]):
             root = scale * local[i, ROOT + c]
             d = node[i, COLUMN] + c - row
             at = 6 * r + 3 * end + c
-            matrix[row, d + band] += weight * hinge[k, slopes + at] * root
-            matrix[row + d, band - d] -= hinge[k, ROWS + at] * root
+            matrix[row * width + d + band] += weight * hinge[k, slopes + at] * root
+            matrix[(row + d) * width + band - d] -= hinge[k, ROWS + at] * root
 
 
 @uncounted
 def put_condensed(
-    link: IntArray, hinge: FloatArray, local: FloatArray, node: IntArray, k: int, r: int, slopes: int, band: int,
-    matrix: FloatArray,
-) -> None:  # fmt: skip
-    """WEIGHT J^T G of row r of joint k, scaled, into the bodies' unknowns."""
-    weight = hinge[k, WEIGHT + r] * hinge[k, SCALE + r] ** 2
+    link: IntArray, hinge: FloatArray, node: IntArray, k: int, r: int, band: int, matrix: FloatArray
+) -> None:
+    """WEIGHT J^T G of row r of joint k, as it has been frozen, into a condensed system."""
+    weight, width = hinge[k, WEIGHT + r], 2 * band + 1
     for end in range(2):
         i = link[k, L_A + end]
         for c in range(node[i, FREEDOMS]):
-            factor = weight * hinge[k, ROWS + 6 * r + 3 * end + c] * local[i, ROOT + c]
+            factor = weight * hinge[k, FROZEN + 6 * r + 3 * end + c]
             row = node[i, COLUMN] + c
             for other in range(2):
                 m = link[k, L_A + other]
-                at, first = slopes + 6 * r + 3 * other, node[m, COLUMN] - row + band
+                at, first = FROZEN + 12 + 6 * r + 3 * other, row * width + node[m, COLUMN] - row + band
                 for d in range(node[m, FREEDOMS]):
-                    matrix[row, first + d] += factor * hinge[k, at + d] * local[m, ROOT + d]
+                    matrix[first + d] += factor * hinge[k, at + d]
 
 
 @uncounted
 def put_stiffness(
-    link: IntArray, local: FloatArray, node: IntArray, k: int, stiff: FloatArray, bend: int, h: float, band: int,
-    matrix: FloatArray,
+    link: IntArray, local: FloatArray, node: IntArray, k: int, stiff: FloatArray, bend: int, h: float, system: int,
+    band: int, matrix: FloatArray,
 ) -> None:  # fmt: skip
-    """-(h/2) dF/dx of joint k, scaled."""
+    """-(h/2) dF/dx of joint k, scaled; in a dual system what is on the diagonal, into INERTIA."""
     low = 0 if bend == FULL_BEND else 2
+    width = 3 * band + 1 if system == WHOLE else 2 * band + 1
     for end in range(2):
         i = link[k, L_A + end]
+        if system == DUAL:
+            for c in range(low, node[i, FREEDOMS]):
+                local[i, INERTIA + c] -= stiff[3 * end + c, 3 * end + c] * 0.5 * h * local[i, ROOT + c] ** 2
+            continue
         for other in range(2):
             if bend != FULL_BEND and end != other:
                 continue
@@ -97,22 +105,22 @@ def put_stiffness(
             for c in range(low, node[i, FREEDOMS]):
                 factor = 0.5 * h * local[i, ROOT + c]
                 row = node[i, COLUMN] + c
-                first = node[m, COLUMN] - row + band
+                first = row * width + node[m, COLUMN] - row + band
                 for d in range(low, node[m, FREEDOMS]):
-                    matrix[row, first + d] -= stiff[3 * end + c, 3 * other + d] * factor * local[m, ROOT + d]
+                    matrix[first + d] -= stiff[3 * end + c, 3 * other + d] * factor * local[m, ROOT + d]
 
 
 @uncounted
 def put_free(
-    link: IntArray, hinge: FloatArray, k: int, r: int, condensed: bool, band: int, matrix: FloatArray,
+    link: IntArray, hinge: FloatArray, k: int, r: int, system: int, build: bool, band: int, matrix: FloatArray,
     right: FloatArray,
 ) -> None:  # fmt: skip
     """A row that does not act: its impulse becomes 0."""
     row = link[k, L_ROW] + r
     hinge[k, WEIGHT + r] = 0.0
     right[row] = -hinge[k, LAM + r] / hinge[k, SCALE + r]
-    if not condensed:
-        matrix[row, band] = 1.0
+    if build and system == WHOLE:
+        matrix[row * (3 * band + 1) + band] = 1.0
 
 
 @uncounted

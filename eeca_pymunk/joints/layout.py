@@ -1,6 +1,6 @@
 """The packed arrays of joints: what their columns mean.
 
-JOINT (j, 18) float and TIE (j, 6) int: one row per joint, in the order of the space. Anchors stand in the frame of
+JOINT (j, 24) float and TIE (j, 6) int: one row per joint, in the order of the space. Anchors stand in the frame of
 their body, from its centre of mass. A joint's impulse `lam` acts along its rows J, which are the *discrete* gradient of
 its function g over a step: g1 - g0 = J . (h v_m), v_m = (v0 + v1)/2, so that J^T lam does no work where g keeps still.
 
@@ -24,7 +24,8 @@ IMPULSE_1, IMPULSE_2 = 12, 13  # impulse of the last step along the rows; of a s
 LAST_STEP = 14  # its dt; 0 if none
 LENGTH_0, LENGTH_1 = 15, 16  # of springs: length, or angle_a - angle_b, at the ends of the last step
 WORK = 17  # energy that the joint gave to its bodies in the last step
-JOINT_COLUMNS = 18
+LED = 18  # 18-20, 21-23: accelerations that joints gave to bodies a and b last
+JOINT_COLUMNS = 24
 
 # TIE
 KIND = 0  # below

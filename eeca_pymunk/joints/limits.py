@@ -26,8 +26,8 @@ MOST_SECANTS = 12
 @uncounted
 def step_with_limits(
     what: int, joint: FloatArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray,
-    bodies: int, h: float, length: float, loops: bool, give: float, whole: bool, condensed: bool, band: int,
-    size: int, matrix: FloatArray, right: FloatArray, stiff: FloatArray, found: FloatArray, ledger: FloatArray,
+    bodies: int, h: float, length: float, loops: bool, give: float, whole: bool, span: IntArray, matrix: FloatArray,
+    right: FloatArray, more: FloatArray, pivots: IntArray, stiff: FloatArray, found: FloatArray, ledger: FloatArray,
 ) -> bool:  # fmt: skip
     """Take the step h in parts between instants at which limits are met; False if Newton fails.
 
@@ -40,8 +40,8 @@ def step_with_limits(
         redundant = loops or standing(link, joints)
         if when > 1e-13 * abs(h) or h < 0.0:
             if solve(
-                what, joint, hinge, link, joints, local, node, bodies, when, length, redundant, give, condensed, band,
-                size, matrix, right, stiff, found,
+                what, joint, hinge, link, joints, local, node, bodies, when, length, redundant, give, span, matrix,
+                right, more, pivots, stiff, found,
             ) < 0:  # fmt: skip
                 return False
             solves += 1
@@ -51,7 +51,7 @@ def step_with_limits(
                 k = first_bound(joint, hinge, link, joints, local, when, found)
                 if k < 0 or solves > 4 * joints + 200 or what == LINEAR_STEP:
                     book(joint, hinge, link, joints, local, when, ledger)
-                    advance(local, bodies)
+                    advance(local, bodies, when)
                     return True
                 if whole:
                     return False
@@ -81,12 +81,12 @@ def step_with_limits(
                 when = found[1]
                 continue
             book(joint, hinge, link, joints, local, when, ledger)
-            advance(local, bodies)
+            advance(local, bodies, when)
             left -= when
         link[meeting, L_SIDE] = side
         solve(
-            int(SPEEDS), joint, hinge, link, joints, local, node, bodies, 2.0, length, loops, 0.0, condensed, band,
-            size, matrix, right, stiff, found,
+            int(SPEEDS), joint, hinge, link, joints, local, node, bodies, 2.0, length, loops, 0.0, span, matrix, right,
+            more, pivots, stiff, found,
         )  # fmt: skip
         ledger[LIMITED] += kinetic(local, bodies, KEPT) - kinetic(local, bodies, BEFORE)
         for k in range(joints):

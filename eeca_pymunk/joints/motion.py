@@ -14,6 +14,7 @@ from .scratch import (
     COS,
     FREE,
     GOT,
+    LEAD,
     LEVER,
     MOBILITY,
     PER,
@@ -71,10 +72,11 @@ def settle(local: FloatArray, bodies: int, h: float) -> None:
 
 
 @uncounted
-def advance(local: FloatArray, bodies: int) -> None:
-    """Make the end of a part of the step the start of the next."""
+def advance(local: FloatArray, bodies: int, h: float) -> None:
+    """Make the end of a part h of the step the start of the next."""
     for i in range(bodies):
         for c in range(3):
+            local[i, LEAD + c] = (local[i, AFTER + c] - local[i, BEFORE + c]) / h - local[i, FREE + c]
             local[i, TRAVEL + c] += local[i, WAY + c]
         local[i, POSE] += local[i, WAY]
         local[i, POSE + 1] += local[i, WAY + 1]

@@ -9,21 +9,27 @@ g - target + (give h / 2 SCALE^2) lam = 0. Soft rows follow Alart and Curnier: w
 |p| <= bound and u = 0, or lam = bound p/|p|.
 
 The same systems with `still` bodies (h v_m = 0) correct poses, M dq = G^T mu, g(q + dq) = target, and velocities,
-M dv = G^T lam, G (v + dv) = 0. A *condensed* system has the bodies' unknowns alone: see `condensed`.
+M dv = G^T lam, G (v + dv) = 0. The whole system has bodies and rows; a *condensed* one the bodies alone (`condensed`),
+a *dual* one the rows alone (`dual`).
 """
 
 from __future__ import annotations
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
+from .condensed import freeze
 from .entries import along, held, put_condensed, put_free, put_rows, put_stiffness, scale_rows
 from .rows import joint_rows
 from .scratch import (
+    BAND,
     BEFORE,
     COLUMN,
+    CONDENSED,
+    DUAL,
     FORCE,
     FREEDOMS,
     GOT,
+    INERTIA,
     L_A,
     L_B,
     L_ROW,
@@ -41,9 +47,11 @@ from .scratch import (
     STEP,
     STIFFEST,
     TARGET,
+    UNKNOWNS,
     VALUE,
     WAY,
     WEIGHT,
+    WHOLE,
 )
 from .soft import put_soft
 
@@ -51,23 +59,31 @@ from .soft import put_soft
 @uncounted
 def assemble(
     what: int, joint: FloatArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray,
-    bodies: int, h: float, give: float, first: bool, condensed: bool, band: int, matrix: FloatArray,
+    bodies: int, h: float, give: float, first: bool, system: int, build: bool, span: IntArray, matrix: FloatArray,
     right: FloatArray, stiff: FloatArray,
 ) -> float:  # fmt: skip
-    """The scaled linear system for `what` (see `scratch`), and the joints' rows in `hinge`.
+    """Residuals of the rows for `what` (see `scratch`), scaled, in `right`, and the joints' rows in `hinge`.
 
+    Where it is to `build`, the matrix of the `system` too, or of a dual one what it is made of.
     Returns how far rows are from their targets, over the size of the island; for SPEEDS, the worst G v.
     """
     worst = 0.0
     still = what in (POSES, SPEEDS)
     slopes = SLOPES if what == STEP else ROWS
+    band = span[BAND]
+    width = 3 * band + 1 if system == WHOLE else 2 * band + 1
+    if build and system != DUAL:
+        for i in range(span[UNKNOWNS] * width):
+            matrix[i] = 0.0
     for i in range(bodies):
         for c in range(3):
             local[i, GOT + c] = 0.0
-        for c in range(node[i, FREEDOMS]):
-            matrix[node[i, COLUMN] + c, band] += 1.0
+            local[i, INERTIA + c] = 1.0 if build else local[i, INERTIA + c]
+        if build and system != DUAL:
+            for c in range(node[i, FREEDOMS]):
+                matrix[(node[i, COLUMN] + c) * width + band] = 1.0
     for k in range(joints):
-        bend = joint_rows(joint, hinge, link, k, local, h, stiff)
+        bend = joint_rows(joint, hinge, link, k, local, h, build and not still, stiff)
         a, b = link[k, L_A], link[k, L_B]
         if first:
             scale_rows(link, hinge, local, k)
@@ -75,17 +91,16 @@ def assemble(
             for c in range(3):
                 local[a, GOT + c] += hinge[k, FORCE + c]
                 local[b, GOT + c] += hinge[k, FORCE + 3 + c]
-            if bend != NO_BEND:
-                put_stiffness(link, local, node, k, stiff, bend, h, band, matrix)
+            if build and bend != NO_BEND:
+                put_stiffness(link, local, node, k, stiff, bend, h, system, band, matrix)
         soft = link[k, L_SOFT] != 0
         if soft and not still and held(link, k, 0):
-            worst = max(
-                worst, put_soft(link, hinge, local, node, k, slopes, h, condensed, band, matrix, right) / hinge[k, SIZE]
-            )
+            off = put_soft(link, hinge, local, node, k, slopes, h, system, build, band, matrix, right)
+            worst = max(worst, off / hinge[k, SIZE])
             continue
         for r in range(link[k, L_ROWS]):
             if soft or not held(link, k, r):
-                put_free(link, hinge, k, r, condensed, band, matrix, right)
+                put_free(link, hinge, k, r, system, build, band, matrix, right)
                 continue
             scale = hinge[k, SCALE + r]
             if what == SPEEDS:
@@ -96,10 +111,11 @@ def assemble(
                 error = hinge[k, VALUE + r] - hinge[k, TARGET + r] + give * 0.5 * h * hinge[k, LAM + r] / scale**2
             right[link[k, L_ROW] + r] = -error * scale * 2.0 / h
             worst = max(worst, abs(error) / hinge[k, SIZE])
-            if condensed:
-                hinge[k, WEIGHT + r] = min(STIFFEST, 1.0 / give) if give > 0.0 else STIFFEST
-                put_condensed(link, hinge, local, node, k, r, slopes, band, matrix)
-            else:
+            hinge[k, WEIGHT + r] = min(STIFFEST, 1.0 / give) if give > 0.0 else STIFFEST
+            if build and system == CONDENSED:
+                freeze(hinge, link, local, node, k, r, slopes)
+                put_condensed(link, hinge, node, k, r, band, matrix)
+            elif build and system == WHOLE:
                 put_rows(link, hinge, local, node, k, r, slopes, 1.0, band, matrix)
-                matrix[link[k, L_ROW] + r, band] += give
+                matrix[(link[k, L_ROW] + r) * width + band] += give
     return worst

@@ -12,17 +12,24 @@ from .scratch import (
     BODY_0,
     BODY_1,
     CONDENSED,
+    DUAL_BAND,
+    DUAL_SIZE,
     JOINT_0,
     JOINT_1,
     L_A,
     L_B,
+    L_DUAL,
     L_KIND,
+    L_NEXT,
     L_ROW,
     L_ROWS,
     M_COLUMN,
+    M_FIRST,
     M_FREEDOMS,
     ROWS_OF,
+    SYSTEM,
     UNKNOWNS,
+    WHOLE,
 )
 
 
@@ -117,7 +124,7 @@ def order_unknowns(span: IntArray, member: IntArray, link: IntArray, s: int, con
         for t in range(start[u], start[u + 1]):
             v = near[t]
             band = max(band, max(first[u] + width[u], first[v] + width[v]) - 1 - min(first[u], first[v]))
-    span[s, UNKNOWNS], span[s, BAND], span[s, CONDENSED] = total, band, 1 if condensed else 0
+    span[s, UNKNOWNS], span[s, BAND], span[s, SYSTEM] = total, band, CONDENSED if condensed else WHOLE
     if condensed:
         for k in range(joints):
             first[bodies + k] = total
@@ -127,3 +134,52 @@ def order_unknowns(span: IntArray, member: IntArray, link: IntArray, s: int, con
     for k in range(joints):
         link[j0 + k, L_ROW] = first[bodies + k]
     span[s, ROWS_OF] = total - span[s, UNKNOWNS]
+
+
+@kernel
+def order_rows(span: IntArray, member: IntArray, link: IntArray, s: int) -> None:
+    """Give the joints of island s their unknowns in a system of rows alone, in which joints of one body are coupled;
+    fill in its size and band, and the lists of the joints on each body."""
+    b0, b1, j0, j1 = span[s, BODY_0], span[s, BODY_1], span[s, JOINT_0], span[s, JOINT_1]
+    joints = j1 - j0
+    for i in range(b0, b1):
+        member[i, M_FIRST] = -1
+    for k in range(joints - 1, -1, -1):
+        for end in range(2):
+            i = b0 + link[j0 + k, L_A + end]
+            link[j0 + k, L_NEXT + end] = -1
+            if link[j0 + k, L_ROWS] > 0 and member[i, M_FREEDOMS] > 0:
+                link[j0 + k, L_NEXT + end] = member[i, M_FIRST]
+                member[i, M_FIRST] = 2 * k + end
+    start = np.zeros(joints + 1, np.int64)
+    near = np.empty(0, np.int64)
+    for fill in range(2):
+        at = start.copy()
+        for i in range(b0, b1):
+            one = member[i, M_FIRST]
+            while one >= 0:
+                other = member[i, M_FIRST]
+                while other >= 0:
+                    if other != one and fill == 0:
+                        start[(one >> 1) + 1] += 1
+                    elif other != one:
+                        near[at[one >> 1]] = other >> 1
+                        at[one >> 1] += 1
+                    other = link[j0 + (other >> 1), L_NEXT + (other & 1)]
+                one = link[j0 + (one >> 1), L_NEXT + (one & 1)]
+        if fill == 0:
+            for k in range(joints):
+                start[k + 1] += start[k]
+            near = np.empty(start[joints], np.int64)
+    order = np.empty(joints, np.int64)
+    order_nodes(start, near, joints, order)
+    total, band = 0, 1
+    for x in range(joints):
+        link[j0 + order[x], L_DUAL] = total
+        total += link[j0 + order[x], L_ROWS]
+    for k in range(joints):
+        for t in range(start[k], start[k + 1]):
+            one, other = j0 + k, j0 + near[t]
+            reach = link[one, L_DUAL] + link[one, L_ROWS] - 1 - link[other, L_DUAL]
+            band = max(band, reach)
+    span[s, DUAL_SIZE], span[s, DUAL_BAND] = total, band

@@ -7,18 +7,22 @@ moved bodies (two or three unknowns) and its joints with impulses; they are orde
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel
 from ..layout import II, IM
-from .layout import ANCHOR_AX, ANCHOR_AY, ANCHOR_BX, ANCHOR_BY, BODY_A, BODY_B, GEAR, GROOVE, KIND, SOFT
-from .ordering import order_unknowns
+from .layout import ANCHOR_AX, ANCHOR_AY, ANCHOR_BX, ANCHOR_BY, BODY_A, BODY_B, GEAR, GROOVE, KIND, MOTOR, SOFT
+from .ordering import order_rows, order_unknowns
 from .rows import row_count
 from .scratch import (
     BAND,
     BODY_0,
     BODY_1,
+    DUAL_BAND,
+    DUAL_SIZE,
     JOINT_0,
     JOINT_1,
     L_A,
@@ -30,6 +34,9 @@ from .scratch import (
     M_BODY,
     M_CAYLEY,
     M_FREEDOMS,
+    RIGID,
+    ROWS_OF,
+    UNKNOWNS,
 )
 
 WIDE = 14  # half-width of the band from which on an island is condensed
@@ -153,6 +160,10 @@ def make_plan(
         for way in range(2):
             if way == 0 or (span[s, BAND] > WIDE and not discs(tie, link, span, s)):
                 order_unknowns(span, member, link, s, way > 0)
+        order_rows(span, member, link, s)
+        cost = span[s, UNKNOWNS] * span[s, BAND] ** 2
+        pays = 0 < span[s, DUAL_SIZE] * span[s, DUAL_BAND] ** 2 <= cost
+        span[s, RIGID] = 0 if not pays else 2 if hard(tie, link, span, s) else 1
     return count
 
 
@@ -163,6 +174,16 @@ def discs(tie: IntArray, link: IntArray, span: IntArray, s: int) -> bool:
         if tie[link[k, L_JOINT], SOFT] != 0 and link[k, L_ROWS] == 2:
             return True
     return False
+
+
+@kernel
+def hard(tie: IntArray, link: IntArray, span: IntArray, s: int) -> bool:
+    """Whether all joints of island s hold exactly, those with limits included."""
+    for k in range(span[s, JOINT_0], span[s, JOINT_1]):
+        j = link[k, L_JOINT]
+        if link[k, L_ROWS] == 0 or tie[j, KIND] == MOTOR or tie[j, SOFT] != 0:
+            return False
+    return True
 
 
 @kernel
@@ -182,3 +203,27 @@ def cycles(link: IntArray, member: IntArray, span: IntArray, s: int) -> int:
         else:
             parent[p] = q
     return count
+
+
+class Room(NamedTuple):
+    """The most of anything that an island of a plan needs: bodies, joints, rows of a matrix, its entries, entries of a
+    right side."""
+
+    bodies: int
+    joints: int
+    rows: int
+    matrix: int
+    right: int
+
+
+def room_for(span: IntArray) -> Room:
+    """Room for the largest islands of SPAN rows."""
+    whole = span[:, UNKNOWNS] * (3 * span[:, BAND] + 1)
+    dual = span[:, DUAL_SIZE] * (2 * span[:, DUAL_BAND] + 1)
+    return Room(
+        int((span[:, BODY_1] - span[:, BODY_0]).max(initial=1)),
+        int((span[:, JOINT_1] - span[:, JOINT_0]).max(initial=1)),
+        int(np.maximum(span[:, UNKNOWNS], span[:, DUAL_SIZE]).max(initial=1)),
+        int(np.where(span[:, RIGID] > 0, np.maximum(whole, dual), whole).max(initial=1)),
+        int(2 * (span[:, UNKNOWNS] + span[:, ROWS_OF]).max(initial=1)),
+    )

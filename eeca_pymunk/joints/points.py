@@ -35,7 +35,7 @@ from .springs import mean_force
 @uncounted
 def point_rows(
     kind: int, side: int, soft: bool, h: float, joint: FloatArray, j: int, hinge: FloatArray, k: int,
-    local: FloatArray, a: int, b: int, stiff: FloatArray,
+    local: FloatArray, a: int, b: int, bends: bool, stiff: FloatArray,
 ) -> int:  # fmt: skip
     """`joint_rows` of pins, slides, pivots and springs; MEASURE of a spring is its mean force without damping."""
     ca, sa, slope_a, lever_a = local[a, TURN_COS], local[a, TURN_SIN], local[a, SLOPE], local[a, LEVER]
@@ -98,7 +98,7 @@ def point_rows(
             hinge[k, ROWS + 3], hinge[k, ROWS + 4], hinge[k, ROWS + 5] = mx, my, lever_b * (rbx * my - rby * mx)
             hinge[k, SLOPES], hinge[k, SLOPES + 1], hinge[k, SLOPES + 2] = -nx, -ny, nx * uax + ny * uay
             hinge[k, SLOPES + 3], hinge[k, SLOPES + 4], hinge[k, SLOPES + 5] = nx, ny, nx * ubx + ny * uby
-        for c in range(6):
+        for c in range(6 if bends else 0):
             if c == 0 or c == 3:
                 ux, uy = hxx, hyx
             elif c == 1 or c == 4:

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
-from .condensed import PASSES, back_condensed, factor
+from .condensed import PASSES
 from .motion import move
 from .newton import assemble
 from .rows import start_joint
@@ -20,7 +20,9 @@ from .scratch import (
     AFTER,
     BEFORE,
     COLUMN,
+    CONDENSED,
     COS,
+    DUAL,
     FREEDOMS,
     L_ROW,
     L_ROWS,
@@ -28,70 +30,27 @@ from .scratch import (
     LAM,
     MOBILITY,
     POSE,
+    RIGID,
     ROOT,
-    ROWS,
+    ROWS_OF,
     SAVED,
     SIN,
-    SLOPES,
     STEP,
+    SYSTEM,
+    UNKNOWNS,
 )
-from .solve import LEAST_EPSILON, begin
+from .solve import LEAST_EPSILON, back, begin, decompose
 
 _REFINE = 2  # passes that take back what epsilon, for redundant rows, has changed
 
 
 @uncounted
-def factor_banded(matrix: FloatArray, size: int, band: int, pivots: IntArray) -> bool:
-    """LU factors with partial pivoting in place of `matrix` (layout of `banded`); False if a pivot vanishes."""
-    for k in range(size):
-        last = min(size, k + band + 1)
-        pivot, largest = k, abs(matrix[k, band])
-        for i in range(k + 1, last):
-            entry = abs(matrix[i, k - i + band])
-            if entry > largest:
-                pivot, largest = i, entry
-        pivots[k] = pivot
-        if not largest > 1e-300:
-            return False
-        reach = min(2 * band + 1, size - k)
-        if pivot != k:
-            shift = k - pivot + band
-            for j in range(reach):
-                matrix[k, band + j], matrix[pivot, shift + j] = matrix[pivot, shift + j], matrix[k, band + j]
-        for i in range(k + 1, last):
-            shift = k - i + band
-            below = matrix[i, shift] / matrix[k, band]
-            matrix[i, shift] = below
-            if below != 0.0:
-                for j in range(1, reach):
-                    matrix[i, shift + j] -= below * matrix[k, band + j]
-    return True
-
-
-@uncounted
-def back_banded(matrix: FloatArray, size: int, band: int, pivots: IntArray, right: FloatArray) -> None:
-    """Solve with the factors of `factor_banded`, in place of `right`."""
-    for k in range(size):
-        pivot = pivots[k]
-        if pivot != k:
-            right[k], right[pivot] = right[pivot], right[k]
-        if right[k] != 0.0:
-            for i in range(k + 1, min(size, k + band + 1)):
-                right[i] -= matrix[i, k - i + band] * right[k]
-    for k in range(size - 1, -1, -1):
-        total = right[k]
-        for j in range(1, min(2 * band + 1, size - k)):
-            total -= matrix[k, band + j] * right[k + j]
-        right[k] = total / matrix[k, band]
-
-
-@uncounted
 def prepare(
     what: int, joint: FloatArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray,
-    bodies: int, h: float, condensed: bool, band: int, size: int, matrix: FloatArray, right: FloatArray,
-    stiff: FloatArray, pivots: IntArray,
-) -> bool:  # fmt: skip
-    """Factors of the matrix that `respond` needs, in `matrix` and `pivots`; False if there are none.
+    bodies: int, h: float, span: IntArray, matrix: FloatArray, right: FloatArray, stiff: FloatArray,
+    pivots: IntArray,
+) -> int:  # fmt: skip
+    """Factors of the matrix that `respond` needs, in `matrix` and `pivots`; their system, -1 if there are none.
 
     `what` is STEP, after `island_step` (whose start becomes that of `local` again), or SPEEDS, at the present poses.
     """
@@ -109,55 +68,56 @@ def prepare(
         move(local, bodies, h)
     else:
         begin(what, joint, hinge, link, joints, local, node, bodies, h)
-    width = 2 * band + 1 if condensed else 3 * band + 1
-    for i in range(size):
-        for c in range(width):
-            matrix[i, c] = 0.0
-    for i in range(len(right)):
-        right[i] = 0.0
-    assemble(
-        what, joint, hinge, link, joints, local, node, bodies, h, 0.0, True, condensed, band, matrix, right, stiff
-    )  # fmt: skip
-    if condensed:
-        return factor(matrix, size, band)
-    for k in range(joints):
-        for r in range(link[k, L_ROWS]):
-            matrix[link[k, L_ROW] + r, band] += LEAST_EPSILON
-    return factor_banded(matrix, size, band, pivots)
+    system = DUAL if span[RIGID] > (1 if what == STEP else 0) else span[SYSTEM]
+    while True:
+        for i in range(span[UNKNOWNS] + span[ROWS_OF]):
+            right[i] = 0.0
+        assemble(
+            what, joint, hinge, link, joints, local, node, bodies, h, 0.0, True, system, True, span, matrix, right,
+            stiff,
+        )  # fmt: skip
+        if decompose(
+            what, hinge, link, joints, local, node, bodies, system, LEAST_EPSILON, 0.0, span, matrix, pivots
+        ):  # fmt: skip
+            return int(system)
+        if system != DUAL:
+            return -1
+        system = span[SYSTEM]
 
 
 @uncounted
 def respond(
     what: int, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray, bodies: int,
-    condensed: bool, band: int, size: int, matrix: FloatArray, right: FloatArray, more: FloatArray, pivots: IntArray,
+    system: int, span: IntArray, matrix: FloatArray, right: FloatArray, more: FloatArray, pivots: IntArray,
     push: FloatArray,
 ) -> None:  # fmt: skip
-    """push (bodies, 3): impulses in (mass length/time, mass length²/time), changes of velocity out. `more`: scratch."""
-    for i in range(len(right)):
+    """push (bodies, 3): impulses in (mass length/time, mass length²/time), changes of velocity out. `more`: scratch.
+
+    Args:
+        system: that of the factors, from `prepare`.
+    """
+    size = span[UNKNOWNS] + span[ROWS_OF]
+    for i in range(size):
         right[i] = 0.0
     for i in range(bodies):
         for c in range(node[i, FREEDOMS]):
             right[node[i, COLUMN] + c] = push[i, c] * local[i, ROOT + c]
-    if condensed:
-        slopes = SLOPES if what == STEP else ROWS
-        back_condensed(
-            hinge, link, joints, local, node, slopes, PASSES, size, band, matrix, right, len(right) - size
-        )  # fmt: skip
-    else:
-        back_banded(matrix, size, band, pivots, right)
-        # (A + epsilon) x = b leaves b - A x = epsilon x in the rows, and each correction d leaves epsilon d.
+    back(what, hinge, link, joints, local, node, bodies, system, PASSES, span, matrix, right, more, pivots)
+    # (A + epsilon) x = b leaves b - A x = epsilon x in the rows, and each correction d leaves epsilon d.
+    for turn in range(0 if system == CONDENSED else _REFINE):
+        rest = right[size : 2 * size] if turn > 0 else right[:size]
         for i in range(size):
-            more[i] = right[i]
-        for _ in range(_REFINE):
-            for i in range(bodies):
-                for c in range(node[i, FREEDOMS]):
-                    more[node[i, COLUMN] + c] = 0.0
-            for k in range(joints):
-                for r in range(link[k, L_ROWS]):
-                    more[link[k, L_ROW] + r] *= LEAST_EPSILON
-            back_banded(matrix, size, band, pivots, more)
-            for i in range(size):
-                right[i] += more[i]
+            right[size + i] = rest[i]
+        rest = right[size : 2 * size]
+        for i in range(bodies):
+            for c in range(node[i, FREEDOMS]):
+                rest[node[i, COLUMN] + c] = 0.0
+        for k in range(joints):
+            for r in range(link[k, L_ROWS]):
+                rest[link[k, L_ROW] + r] *= LEAST_EPSILON
+        back(what, hinge, link, joints, local, node, bodies, system, PASSES, span, matrix, rest, more, pivots)
+        for i in range(size):
+            right[i] += rest[i]
     for i in range(bodies):
         for c in range(3):
             if c < node[i, FREEDOMS]:

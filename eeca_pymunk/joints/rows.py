@@ -66,9 +66,11 @@ from .scratch import (
 
 @uncounted
 def joint_rows(
-    joint: FloatArray, hinge: FloatArray, link: IntArray, k: int, local: FloatArray, h: float, stiff: FloatArray
-) -> int:
-    """Joint k at the present iterate: VALUE to SLOPES of `hinge`, and `stiff` as far as the result says (`scratch`)."""
+    joint: FloatArray, hinge: FloatArray, link: IntArray, k: int, local: FloatArray, h: float, bends: bool,
+    stiff: FloatArray,
+) -> int:  # fmt: skip
+    """Joint k at the present iterate: VALUE to SLOPES of `hinge`, and `stiff`, if how rows bend is asked for, as far as
+    the result says (`scratch`)."""
     kind, a, b, side = link[k, L_KIND], link[k, L_A], link[k, L_B], link[k, L_SIDE]
     soft, j = link[k, L_SOFT] != 0, link[k, L_JOINT]
     if kind >= GEAR:
@@ -76,7 +78,7 @@ def joint_rows(
     if kind == GROOVE:
         bend = groove_rows(side, joint, j, hinge, k, local, a, b, stiff)
     else:
-        bend = point_rows(kind, side, soft, h, joint, j, hinge, k, local, a, b, stiff)
+        bend = point_rows(kind, side, soft, h, joint, j, hinge, k, local, a, b, bends, stiff)
     if soft:
         for r in range(link[k, L_ROWS]):
             speed = -hinge[k, TARGET + r]

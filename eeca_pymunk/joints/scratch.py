@@ -1,7 +1,7 @@
 """The scratch arrays of one island: what their columns mean.
 
-LOCAL (n, 49) float and NODE (n, 2) int: one row per body of the island, those that joints cannot move included.
-HINGE (m, 64) float and LINK (m, 8) int: one row per joint. Row vectors have six entries: 0-2 are for body a, 3-5 for
+LOCAL (n, 55) float and NODE (n, 3) int: one row per body of the island, those that joints cannot move included.
+HINGE (m, 84) float and LINK (m, 11) int: one row per joint. Row vectors have six entries: 0-2 are for body a, 3-5 for
 body b, along x, along y, about the centre of mass. STIFF (6, 6) is that of one joint.
 
 Over a step h the bodies take the way h v_m = h (v0 + v1)/2 and turn by 2 atan(chi/2), chi = h w_m (Cayley), for then
@@ -29,11 +29,14 @@ SAVED = 34  # 34-39: pose and velocity at the start of the whole step
 ROOT = 40  # 40-42: square roots of the mobilities
 SHIFT = 43  # 43-45: how far closing of joints moved it at the start
 TRAVEL = 46  # 46-48: SHIFT and the sum of WAY over all parts of the step
-LOCAL_COLUMNS = 49
+LEAD = 49  # 49-51: acceleration by joints that Newton's method begins with
+INERTIA = 52  # 52-54: diagonal of the bodies' part of a dual system, scaled; with its factors, the reciprocal
+LOCAL_COLUMNS = 55
 
 # NODE
 COLUMN, FREEDOMS = 0, 1  # first unknown of the body, number of its unknowns: 0, 2 (joints do not turn it) or 3
-NODE_COLUMNS = 2
+FIRST = 2  # 2 (a joint with impulses on it) + (which end), -1 for none
+NODE_COLUMNS = 3
 
 # HINGE
 ARM_A, ARM_B = 0, 2  # 0-1, 2-3: arms at the start; of joints of angles: 0, 2 are the angles at the start
@@ -56,27 +59,34 @@ ROWS = 32  # 32-43: two rows J
 SLOPES = 44  # 44-55: dg/d(h v_m)
 WEIGHT = 56  # 56-57: of the rows in a condensed system; 0 if they do not act, -1 if their impulse is known
 MISSING = 58  # 58-59: what a condensed system still lacks of its rows
-HINGE_COLUMNS = 64
+FROZEN = 60  # 60-71, 72-83: scaled ROWS and scaled slopes of the factors of a condensed system
+HINGE_COLUMNS = 84
 
 # LINK
 L_KIND, L_A, L_B, L_SIDE, L_SOFT = 0, 1, 2, 3, 4  # bodies as rows of LOCAL
 L_ROW = 5  # first unknown of its impulses
 L_ROWS = 6  # number of rows
 L_JOINT = 7  # its row in JOINT
-LINK_COLUMNS = 8
+L_DUAL = 8  # its first unknown in a system in the rows alone
+L_NEXT = 9  # 9, 10: as FIRST, the next joint on its body a, on its body b
+LINK_COLUMNS = 11
 
 # SPAN: one row per island.
 BODY_0, BODY_1, JOINT_0, JOINT_1 = 0, 1, 2, 3  # its slices of MEMBER and LINK
 UNKNOWNS, BAND, LOOPS = 4, 5, 6  # size and half-width of its matrix; number of independent cycles of its graph
-CONDENSED = 7  # 1 if the matrix has the bodies' unknowns alone
+SYSTEM = 7  # below, WHOLE or CONDENSED
 ROWS_OF = 8  # number of unknowns beside the matrix
-SPAN_COLUMNS = 9
+DUAL_SIZE, DUAL_BAND = 9, 10  # of its matrix in the rows alone
+RIGID = 11  # what a dual system is taken for: 2 everything, 1 what happens at an instant, 0 nothing
+SPAN_COLUMNS = 12
 # MEMBER: one row per body of each island.
-M_BODY, M_COLUMN, M_FREEDOMS, M_CAYLEY = 0, 1, 2, 3
-MEMBER_COLUMNS = 4
+M_BODY, M_COLUMN, M_FREEDOMS, M_CAYLEY, M_FIRST = 0, 1, 2, 3, 4
+MEMBER_COLUMNS = 5
 
 NO_BEND, OWN_TURN, FULL_BEND = 0, 1, 2  # what of STIFF is there: nothing, [2, 2] and [5, 5], all
 
 # What is solved for: the implicit step; poses or velocities that fit the joints; the step with rows of the start.
 STEP, POSES, SPEEDS, LINEAR_STEP = 0, 1, 2, 3
+# Systems: of bodies and rows; of bodies alone (`condensed`); of rows alone (`dual`).
+WHOLE, CONDENSED, DUAL = 0, 1, 2
 STIFFEST = 1e7  # rows in a condensed system, over the bodies' inertia

@@ -10,39 +10,51 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
-from .banded import solve_banded
-from .condensed import PASSES, solve_condensed
+from .banded import back_banded, factor_banded
+from .condensed import PASSES, back_condensed, factor
 from .correct import goes_on, keep
+from .dual import back_dual, factor_dual
 from .motion import move, settle
 from .newton import assemble
 from .rows import start_joint
 from .scratch import (
     AFTER,
+    BAND,
     BEFORE,
     COLUMN,
+    CONDENSED,
     COS,
+    DUAL,
     FREE,
     FREEDOMS,
     GOT,
     L_ROW,
     L_ROWS,
+    L_SOFT,
     LAM,
+    LEAD,
     LINEAR_STEP,
     MOBILITY,
     POSE,
     POSES,
     PUSHED,
+    RIGID,
     ROOT,
     ROWS,
+    ROWS_OF,
     SCALE,
     SIN,
     SLOPES,
     SPEEDS,
     STEP,
+    SYSTEM,
+    UNKNOWNS,
 )
 
-TOLERANCE = 2e-15  # of joints, over the size of the island
+TOLERANCE = 3e-16  # of joints and momenta, over the size of the island
 ROUND_OFF = 3e-14  # below this, an error that no longer halves is round-off
+LASTING_ROUND_OFF = 2e-15  # likewise with lasting factors
+_FALLS = 0.03  # of an error, that an iteration with factors of an earlier one may leave
 FLOOR = 1e-11  # below this, it is if it has not fallen twice
 MOST_ITERATIONS = 25
 LEAST_EPSILON = 1e-10
@@ -56,12 +68,13 @@ def begin(
     what: int, joint: FloatArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray,
     bodies: int, h: float,
 ) -> None:  # fmt: skip
-    """What stays the same over the iterations, and the first iterate: free motion, or no motion where joints act."""
+    """What stays the same over the iterations, and the first iterate: motion with the accelerations that joints gave
+    before (LEAD), or no motion where joints act."""
     for k in range(joints):
         start_joint(joint, hinge, link, k, local, h)
     for i in range(bodies):
         for c in range(3):
-            local[i, AFTER + c] = local[i, BEFORE + c] + h * local[i, FREE + c]
+            local[i, AFTER + c] = local[i, BEFORE + c] + h * (local[i, FREE + c] + local[i, LEAD + c])
             if what in (POSES, SPEEDS) or (what == LINEAR_STEP and c < node[i, FREEDOMS]):
                 local[i, AFTER + c] = -local[i, BEFORE + c]
     move(local, bodies, h)
@@ -99,79 +112,139 @@ def apply(
 
 
 @uncounted
+def decompose(
+    what: int, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray, bodies: int,
+    system: int, epsilon: float, give: float, span: IntArray, matrix: FloatArray, pivots: IntArray,
+) -> bool:  # fmt: skip
+    """Factors in the place of what `assemble` has built, with `epsilon` on the rows' block; False if there are none."""
+    size, band = span[UNKNOWNS], span[BAND]
+    if system == CONDENSED:
+        return factor(matrix, size, band)
+    if system == DUAL:
+        slopes = SLOPES if what == STEP else ROWS
+        return factor_dual(hinge, link, joints, local, node, bodies, slopes, epsilon + give, span, matrix)
+    if epsilon > 0.0:
+        for k in range(joints):
+            for r in range(link[k, L_ROWS]):
+                matrix[(link[k, L_ROW] + r) * (3 * band + 1) + band] += epsilon
+    return factor_banded(matrix, size, band, pivots)
+
+
+@uncounted
+def back(
+    what: int, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray, bodies: int,
+    system: int, passes: int, span: IntArray, matrix: FloatArray, right: FloatArray, more: FloatArray,
+    pivots: IntArray,
+) -> None:  # fmt: skip
+    """Solve with the factors of `decompose` in place of `right`: changes of velocities, and of impulses. `more` is
+    scratch, as long as the largest matrix has rows."""
+    size, band = span[UNKNOWNS], span[BAND]
+    if system == CONDENSED:
+        back_condensed(hinge, link, joints, node, passes, size, band, matrix, right, len(right) - size)
+    elif system == DUAL:
+        slopes = SLOPES if what == STEP else ROWS
+        back_dual(hinge, link, joints, local, node, bodies, slopes, span, matrix, right, more)
+    else:
+        back_banded(matrix, size, band, pivots, right)
+
+
+@uncounted
+def bounded_rows(link: IntArray, joints: int) -> bool:
+    """Whether any joint is soft."""
+    count = 0
+    for k in range(joints):
+        count += link[k, L_SOFT]
+    return count > 0
+
+
+@uncounted
 def solve(
     what: int, joint: FloatArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray,
-    bodies: int, h: float, length: float, loops: bool, give: float, condensed: bool, band: int, size: int,
-    matrix: FloatArray, right: FloatArray, stiff: FloatArray, found: FloatArray,
+    bodies: int, h: float, length: float, loops: bool, give: float, span: IntArray, matrix: FloatArray,
+    right: FloatArray, more: FloatArray, pivots: IntArray, stiff: FloatArray, found: FloatArray,
 ) -> int:  # fmt: skip
     """Solve for `what` (see `scratch`) from the present LAM; the number of iterations, -1 if that fails.
 
-    STEP: at convergence g is within 2e-15 of the island's size (or at round-off) of its targets, and the balance of
-    momentum holds to round-off. Given up after 25 iterations, or 6 in which the error did not fall.
+    STEP: at convergence g is within 3e-16 of the island's size (or at round-off) of its targets, and the balance of
+    momentum holds to round-off. Given up after 25 iterations, or 6 in which the error did not fall. Factors serve for
+    as long as errors fall by _FALLS with them, the dual system where they do with fresh ones.
     LINEAR_STEP: one linear system. POSES: until g is on its targets, at most 8 times. SPEEDS: see `correct`; what was
     before stays at KEPT. These two take h = 2. found[2:5] are scratch.
     """
-    width = 2 * band + 1 if condensed else 3 * band + 1
     begin(what, joint, hinge, link, joints, local, node, bodies, h)
-    best, stalls = 1e300, 0
+    best, last, stalls = 1e300, 1e300, 0
     if what == SPEEDS:
         keep(hinge, joints, local, bodies, found)
+    system = DUAL if span[RIGID] > (1 if what in (STEP, LINEAR_STEP) else 0) else span[SYSTEM]
+    lasting = what == STEP and not (system != DUAL and bounded_rows(link, joints))
+    ready, fresh, since = False, False, 0
     for iteration in range(MOST_ITERATIONS + 1 if what == STEP else MOST_PASSES + 3 * joints):
-        for i in range(size):
-            for c in range(width):
-                matrix[i, c] = 0.0
+        for i in range(span[UNKNOWNS] + span[ROWS_OF]):
             right[i] = 0.0
+        build = not ready
         worst = assemble(
-            what,
-            joint,
-            hinge,
-            link,
-            joints,
-            local,
-            node,
-            bodies,
-            h,
-            give,
-            iteration == 0,
-            condensed,
-            band,
-            matrix,
-            right,
-            stiff,
-        )
+            what, joint, hinge, link, joints, local, node, bodies, h, give, iteration == 0, system, build, span,
+            matrix, right, stiff,
+        )  # fmt: skip
         found[2] = worst
         if what not in (POSES, SPEEDS):
             worst = max(worst, balance(local, node, bodies, h, length, right))
         if what == STEP:
-            at_floor = iteration > 1 and worst > 0.5 * best and (best < ROUND_OFF or (best < FLOOR and stalls > 1))
+            floor = LASTING_ROUND_OFF if lasting else FLOOR if stalls > 1 else ROUND_OFF
+            at_floor = iteration > since + 1 and worst > 0.5 * best and best < floor
             if iteration > 0 and (worst <= TOLERANCE or at_floor):
                 settle(local, bodies, h)
                 return iteration
+            slow = not worst <= _FALLS * last
             if worst < best:
                 best = worst
-            elif iteration > 3:
+            elif iteration > since + 3:
                 stalls += 1
             if not worst < 1e100 or stalls > 6 or iteration == MOST_ITERATIONS:
                 return -1
+            last = worst
+            if ready and slow:
+                ready = False
+                if fresh:
+                    # Hardly any step that is not nearly singular, or long, comes here: full Newton from now on.
+                    lasting, system, since = False, span[SYSTEM], iteration
+                    best, stalls = worst, 0
+                    if loops:
+                        for k in range(joints):
+                            hinge[k, LAM] = hinge[k, LAM + 1] = 0.0
+                        begin(what, joint, hinge, link, joints, local, node, bodies, h)
+                        best = 1e300
         elif what == POSES and (worst <= 1e-14 or iteration == MOST_CLOSINGS):
             return iteration
-        if condensed:
-            slopes = SLOPES if what == STEP else ROWS
-            passes = 1 if give > 0.0 else PASSES
-            if not solve_condensed(
-                hinge, link, joints, local, node, slopes, passes, size, band, matrix, right, len(right) - size
-            ):
+        epsilon = 0.0
+        if loops or what != STEP:
+            epsilon = max(LEAST_EPSILON, min(1e-2, worst)) if what == STEP else LEAST_EPSILON
+            if what == POSES:  # rows that contradict each other must not move bodies far
+                epsilon = CLOSING_EPSILON
+        fresh = not ready
+        while not ready:
+            if not build:
+                for i in range(span[UNKNOWNS] + span[ROWS_OF]):
+                    right[i] = 0.0
+                assemble(
+                    what, joint, hinge, link, joints, local, node, bodies, h, give, False, system, True, span, matrix,
+                    right, stiff,
+                )  # fmt: skip
+                if what not in (POSES, SPEEDS):
+                    balance(local, node, bodies, h, length, right)
+            if decompose(
+                what, hinge, link, joints, local, node, bodies, system, epsilon, give, span, matrix, pivots
+            ):  # fmt: skip
+                ready = True
+            elif system == DUAL:
+                system, build = span[SYSTEM], False
+            else:
                 return -1
-        else:
-            if loops or what != STEP:
-                epsilon = max(LEAST_EPSILON, min(1e-2, worst)) if what == STEP else LEAST_EPSILON
-                if what == POSES:  # rows that contradict each other must not move bodies far
-                    epsilon = CLOSING_EPSILON
-                for k in range(joints):
-                    for r in range(link[k, L_ROWS]):
-                        matrix[link[k, L_ROW] + r, band] += epsilon
-            if not solve_banded(matrix, size, band, right):
-                return -1
+        passes = 1 if give > 0.0 or not fresh else PASSES - 1 if lasting else PASSES
+        back(
+            what, hinge, link, joints, local, node, bodies, system, passes, span, matrix, right, more, pivots
+        )  # fmt: skip
+        ready = lasting
         apply(what, link, hinge, joints, local, node, bodies, right)
         if what in (POSES, SPEEDS):
             if what == SPEEDS and not goes_on(joint, hinge, link, joints, local, bodies, found):

@@ -16,6 +16,7 @@ from .layout import (
     IMPULSE_1,
     IMPULSE_2,
     LAST_STEP,
+    LED,
     LENGTH,
     MAX_BIAS,
     MAX_FORCE,
@@ -38,12 +39,14 @@ from .scratch import (
     BEFORE,
     BOUND,
     FREE,
+    L_A,
     L_JOINT,
     L_KIND,
     L_ROWS,
     L_SIDE,
     L_SOFT,
     LAM,
+    LEAD,
     MOBILITY,
     POSE,
     POSES,
@@ -61,8 +64,8 @@ APART_FROM = 1e-10  # joints farther apart than this, over the size of the islan
 
 @uncounted
 def read_joints(
-    joint: FloatArray, tie: IntArray, hinge: FloatArray, link: IntArray, joints: int, h: float, length: float,
-    loops: bool,
+    joint: FloatArray, tie: IntArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, h: float,
+    length: float, loops: bool,
 ) -> int:  # fmt: skip
     """Fill in what the joints bring from before. Redundant rows begin without impulse.
 
@@ -81,6 +84,9 @@ def read_joints(
         hinge[k, BOUND] = joint[j, MAX_FORCE]
         hinge[k, SIZE] = 1.0 if kind >= GEAR else length
         joint[j, WORK] = 0.0
+        for end in range(2):
+            for c in range(3):
+                local[link[k, L_A + end], LEAD + c] = joint[j, LED + 3 * end + c]
         if kind == MOTOR:
             hinge[k, TARGET] = -joint[j, RATE]
         elif is_soft:
@@ -100,7 +106,7 @@ def look(
     for k in range(joints):
         soft = link[k, L_SOFT]
         link[k, L_SOFT] = 0
-        joint_rows(joint, hinge, link, k, local, 2.0, stiff)
+        joint_rows(joint, hinge, link, k, local, 2.0, False, stiff)
         link[k, L_SOFT] = soft
 
 
@@ -170,7 +176,7 @@ def find_apart(
                     link[k, L_SIDE] = side
                 elif link[k, L_SIDE] == side and room > APART_FROM * hinge[k, SIZE]:
                     link[k, L_SIDE] = 0
-        joint_rows(joint, hinge, link, k, local, 2.0, stiff)
+        joint_rows(joint, hinge, link, k, local, 2.0, False, stiff)
         error = 0.0
         for r in range(rows):
             if held(link, k, r):

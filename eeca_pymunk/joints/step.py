@@ -21,6 +21,7 @@ from .layout import (
     IMPULSE_1,
     IMPULSE_2,
     LAST_STEP,
+    LED,
     LEDGER_COLUMNS,
     LENGTH_0,
     LENGTH_1,
@@ -57,7 +58,9 @@ from .scratch import (
     L_SIDE,
     L_SOFT,
     LAM,
+    LEAD,
     LINEAR_STEP,
+    LOOPS,
     POSE,
     POSES,
     SAVED,
@@ -102,6 +105,9 @@ def restore(
 ) -> None:
     """Back to the start of the step, without impulses."""
     back(local, bodies)
+    for i in range(bodies):
+        for c in range(3):
+            local[i, LEAD + c] = 0.0
     for k in range(joints):
         hinge[k, LAM] = hinge[k, LAM + 1] = hinge[k, TOTAL] = hinge[k, TOTAL + 1] = 0.0
         joint[link[k, L_JOINT], WORK] = 0.0
@@ -130,6 +136,9 @@ def write_joints(
         joint[j, LAST_STEP] = h
         joint[j, LENGTH_1] = hinge[k, ENDED]
         tie[j, SIDE] = link[k, L_SIDE]
+        for end in range(2):
+            for c in range(3):
+                joint[j, LED + 3 * end + c] = local[link[k, L_A + end], LEAD + c]
         if loose:
             tie[j, TOUCHED] = 2
         if link[k, L_KIND] == RATCHET:
@@ -144,20 +153,20 @@ def write_joints(
 @uncounted
 def island_step(
     joint: FloatArray, tie: IntArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray,
-    node: IntArray, bodies: int, h: float, order: int, length: float, loops: bool, condensed: bool, band: int,
-    size: int, matrix: FloatArray, right: FloatArray, stiff: FloatArray, found: FloatArray, part: FloatArray,
+    node: IntArray, bodies: int, h: float, order: int, length: float, span: IntArray, matrix: FloatArray,
+    right: FloatArray, more: FloatArray, pivots: IntArray, stiff: FloatArray, found: FloatArray, part: FloatArray,
     ledger: FloatArray,
 ) -> int:  # fmt: skip
     """Step one island by h; its status (see `layout`).
 
     `local` holds poses, velocities, accelerations and mobilities at the start and, on return, poses and velocities
     (BEFORE) at the end. `ledger` (LEDGER_COLUMNS,) is that of the step, `part` scratch for another; `length` is the
-    size of the island, `loops` whether rows may be redundant, and `matrix` has `size` rows of 3 band + 1 entries, of
-    2 band + 1 if it is `condensed`.
+    size of the island, `span` its row of SPAN.
     """
     for c in range(LEDGER_COLUMNS):
         ledger[c] = 0.0
-    needs = read_joints(joint, tie, hinge, link, joints, h, length, loops)
+    loops = span[LOOPS] > 0
+    needs = read_joints(joint, tie, hinge, link, joints, local, h, length, loops)
     for i in range(bodies):
         for c in range(3):
             local[i, SHIFT + c] = 0.0
@@ -171,8 +180,8 @@ def island_step(
             if (what == POSES and changes < 2) or (what == SPEEDS and changes % 2 == 0):
                 continue
             solve(
-                what, joint, hinge, link, joints, local, node, bodies, 2.0, length, loops, 0.0, condensed, band, size,
-                matrix, right, stiff, found,
+                what, joint, hinge, link, joints, local, node, bodies, 2.0, length, loops, 0.0, span, matrix, right,
+                more, pivots, stiff, found,
             )  # fmt: skip
             if what == POSES:
                 look(joint, hinge, link, joints, local, node, bodies, stiff)
@@ -213,8 +222,8 @@ def island_step(
                 hinge[k, LAM + 1] *= warm
             before = piece
             done = step_with_limits(
-                what, joint, hinge, link, joints, local, node, bodies, piece, length, loops, give, rung < 0, condensed,
-                band, size, matrix, right, stiff, found, part,
+                what, joint, hinge, link, joints, local, node, bodies, piece, length, loops, give, rung < 0, span,
+                matrix, right, more, pivots, stiff, found, part,
             )  # fmt: skip
             if not done:
                 break
@@ -229,7 +238,7 @@ def island_step(
                 for c in range(3):
                     local[i, AFTER + c] = local[i, BEFORE + c] + h * local[i, FREE + c]
             move(local, bodies, h)
-            advance(local, bodies)
+            advance(local, bodies, h)
             for c in range(LEDGER_COLUMNS):
                 part[c] = 0.0
         look(joint, hinge, link, joints, local, node, bodies, stiff)

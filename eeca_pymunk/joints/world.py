@@ -10,16 +10,15 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
 from ..layout import ANGLE, AX, II, IM, VX, X
 from .layout import ANCHOR_AX, LEDGER_COLUMNS
-from .plan import make_plan
+from .plan import make_plan, room_for
 from .scratch import (
-    BAND,
     BEFORE,
     BODY_0,
     BODY_1,
     CAYLEY,
     COLUMN,
-    CONDENSED,
     COS,
+    FIRST,
     FREE,
     FREEDOMS,
     HINGE_COLUMNS,
@@ -28,20 +27,18 @@ from .scratch import (
     L_JOINT,
     LINK_COLUMNS,
     LOCAL_COLUMNS,
-    LOOPS,
     M_BODY,
     M_CAYLEY,
     M_COLUMN,
+    M_FIRST,
     M_FREEDOMS,
     MEMBER_COLUMNS,
     MOBILITY,
     NODE_COLUMNS,
     POSE,
     ROOT,
-    ROWS_OF,
     SIN,
     SPAN_COLUMNS,
-    UNKNOWNS,
 )
 from .step import island_step
 
@@ -65,6 +62,7 @@ def gather_island(
         local[i, COS], local[i, SIN] = np.cos(bodies[body, ANGLE]), np.sin(bodies[body, ANGLE])
         local[i, CAYLEY] = member[b0 + i, M_CAYLEY]
         node[i, COLUMN], node[i, FREEDOMS] = member[b0 + i, M_COLUMN], member[b0 + i, M_FREEDOMS]
+        node[i, FIRST] = member[b0 + i, M_FIRST]
         for c in range(2):
             length = max(length, abs(local[i, POSE + c]), abs(h * local[i, BEFORE + c]))
     for k in range(span[s, JOINT_0], span[s, JOINT_1]):
@@ -76,8 +74,9 @@ def gather_island(
 @uncounted
 def step_all(
     bodies: FloatArray, joint: FloatArray, tie: IntArray, span: IntArray, member: IntArray, link: IntArray,
-    islands: int, h: float, order: int, hinge: FloatArray, local: FloatArray, node: IntArray, matrix: FloatArray,
-    right: FloatArray, stiff: FloatArray, found: FloatArray, part: FloatArray, ledger: FloatArray, status: IntArray,
+    islands: int, h: float, order: int, hinge: FloatArray, local: FloatArray, node: IntArray,
+    matrix: FloatArray, right: FloatArray, more: FloatArray, pivots: IntArray, stiff: FloatArray, found: FloatArray,
+    part: FloatArray, ledger: FloatArray, status: IntArray,
 ) -> int:  # fmt: skip
     """Step all islands of a plan by h, in place of X .. SPIN of `bodies`; the worst status.
 
@@ -88,12 +87,9 @@ def step_all(
         b0, n = span[s, BODY_0], span[s, BODY_1] - span[s, BODY_0]
         j0, j1 = span[s, JOINT_0], span[s, JOINT_1]
         length = gather_island(bodies, joint, span, s, member, link, h, local, node)
-        band, size = span[s, BAND], span[s, UNKNOWNS]
-        condensed = span[s, CONDENSED] != 0
-        width = 2 * band + 1 if condensed else 3 * band + 1
         status[s] = island_step(
-            joint, tie, hinge, link[j0:j1], j1 - j0, local, node, n, h, order, length, span[s, LOOPS] > 0,
-            condensed, band, size, matrix[: size * width].reshape((size, width)), right, stiff, found, part, ledger[s],
+            joint, tie, hinge, link[j0:j1], j1 - j0, local, node, n, h, order, length, span[s], matrix, right, more,
+            pivots, stiff, found, part, ledger[s],
         )  # fmt: skip
         worst = max(worst, status[s])
         for i in range(n):
@@ -128,14 +124,12 @@ class Islands:
         self._member = np.zeros((2 * joints, MEMBER_COLUMNS), np.int64)
         self._link = np.zeros((joints, LINK_COLUMNS), np.int64)
         self.islands = make_plan(bodies, self.joint, self.tie, self._span, self._member, self._link)
-        span = self._span[: self.islands]
-        most_bodies = int((span[:, BODY_1] - span[:, BODY_0]).max(initial=1))
-        most_joints = int((span[:, JOINT_1] - span[:, JOINT_0]).max(initial=1))
-        self._hinge = np.zeros((most_joints, HINGE_COLUMNS))
-        self._local = np.zeros((most_bodies, LOCAL_COLUMNS))
-        self._node = np.zeros((most_bodies, NODE_COLUMNS), np.int64)
-        self._matrix = np.zeros(int((span[:, UNKNOWNS] * (3 * span[:, BAND] + 1)).max(initial=1)))
-        self._right = np.zeros(int((2 * span[:, UNKNOWNS] + span[:, ROWS_OF]).max(initial=1)))
+        room = room_for(self._span[: self.islands])
+        self._hinge = np.zeros((room.joints, HINGE_COLUMNS))
+        self._local = np.zeros((room.bodies, LOCAL_COLUMNS))
+        self._node = np.zeros((room.bodies, NODE_COLUMNS), np.int64)
+        self._matrix, self._right = np.zeros(room.matrix), np.zeros(room.right)
+        self._more, self._pivots = np.zeros(room.rows), np.zeros(room.rows, np.int64)
         self._stiff, self._found, self._part = np.zeros((6, 6)), np.zeros(5), np.zeros(LEDGER_COLUMNS)
         self.ledger, self.status = np.zeros((self.islands, LEDGER_COLUMNS)), np.zeros(self.islands, np.int64)
 
@@ -143,6 +137,6 @@ class Islands:
         """Step all islands of `bodies` (n, BODY_COLUMNS) by h; the worst status."""
         return step_all(
             bodies, self.joint, self.tie, self._span, self._member, self._link, self.islands, h, self.order,
-            self._hinge, self._local, self._node, self._matrix, self._right, self._stiff, self._found,
-            self._part, self.ledger, self.status,
+            self._hinge, self._local, self._node, self._matrix, self._right, self._more, self._pivots,
+            self._stiff, self._found, self._part, self.ledger, self.status,
         )  # fmt: skip

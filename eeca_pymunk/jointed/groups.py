@@ -1,0 +1,49 @@
+"""Which bodies of an island move together when one of them is pushed."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import kernel
+
+
+class Groups(NamedTuple):
+    """GROUP (k,): the group of a body, -1 for what impulses do not move; BODY (n,): bodies by group, those of group g
+    at FIRST[g] : FIRST[g + 1]; COMPONENT (groups,): that of a group, -1 for a free body."""
+
+    GROUP: IntArray
+    FIRST: IntArray
+    BODY: IntArray
+    COMPONENT: IntArray
+
+
+@kernel
+def find_groups(WHO: IntArray, IM: FloatArray, OF: IntArray) -> Groups:
+    """The groups of bodies WHO (k,), rows of BODY, of which OF tells the components."""
+    k = len(WHO)
+    GROUP, NEXT = np.full(k, -1, np.int64), np.full(k, -1, np.int64)
+    FIRST, COMPONENT, BODY = np.zeros(k + 1, np.int64), np.empty(k, np.int64), np.empty(k, np.int64)
+    groups = 0
+    for q in range(k):
+        if IM[q] == 0.0 or GROUP[q] >= 0:
+            continue
+        GROUP[q], COMPONENT[groups] = groups, OF[WHO[q]]
+        if OF[WHO[q]] >= 0:
+            for p in range(q + 1, k):
+                if IM[p] > 0.0 and OF[WHO[p]] == OF[WHO[q]]:
+                    GROUP[p] = groups
+        groups += 1
+    for q in range(k):
+        if GROUP[q] >= 0:
+            FIRST[GROUP[q] + 1] += 1
+    for g in range(groups):
+        FIRST[g + 1] += FIRST[g]
+        NEXT[g] = FIRST[g]
+    for q in range(k):
+        if GROUP[q] >= 0:
+            BODY[NEXT[GROUP[q]]] = q
+            NEXT[GROUP[q]] += 1
+    return Groups(GROUP, FIRST[: groups + 1], BODY, COMPONENT[:groups])

@@ -1,0 +1,220 @@
+"""Contacts of an island with joints in one bounded solve, joints exact.
+
+    M (v+ - v) = h M a + F_s + J^T Lam + G^T lam + T^T beta,    J, F_s the discrete rows of the joints,
+
+contact rows at the predicted middle, as `..sustained.contacts`. The contacts' impulses act on the components as forces
+that are constant over the span, so that joints, springs, limits and motors are those of `..joints` to round-off however
+badly contacts are truncated, and a contact loses -lam . (way of its row)/h exactly. Impulses follow from Newton's
+method in the space of contacts: components are stepped with the present impulses, answer by their columns, and the
+contacts' laws are solved with these; until the velocities of both agree.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import kernel, uncounted
+from ..impacts.layout import DT, Scene
+from ..impacts.spans import Local
+from ..rows.build import conserves, normal_rate, rates, tangent_rate
+from ..rows.layout import ARM_NA, ARM_NB, ARM_TA, ARM_TB, NX, NY, SURFACE, UN, UT
+from ..sustained.targets import target
+from .columns import Columns, fill_free, fill_group, leave_out, make_columns, push_columns, weigh
+from .component import ready, step_component
+from .gathered import find_places, gather_component, rewind_joints
+from .groups import Groups
+from .layout import Joints
+from .newton import FEW, solve_columns
+
+_OUTER, _ELASTIC_OUTER = 6, 12  # steps of the components
+_MANY_OUTER, _PART_OUTER = 2, 1  # of islands of many contacts, whose sweeps do not come to an end; before an impact
+_AGREE, _REST_AGREE, _ELASTIC_AGREE = 1e-6, 1e-11, 1e-13  # velocities of both solutions, over |a| h and the speed
+_SWEEPS, _FEW_SWEEPS, _FEW, _ELASTIC_SWEEPS = 40, 200, 24, 400
+_FINE, _REST_FINE = 1e-9, 1e-12  # residual of the sweeps, likewise
+_LOCKS = 4
+_CHORD = 3  # steps of the components between which their answers are taken to be the same
+
+
+class Motion(NamedTuple):
+    """Of the bodies of an island, (k, 3) each: velocities V and poses END at the end, ways WAY (sums of h v_m)."""
+
+    V: FloatArray
+    WAY: FloatArray
+    END: FloatArray
+
+
+@uncounted
+def is_hit(groups: Groups, P: IntArray, Q: IntArray, m: int, g: int) -> bool:
+    """Whether any contact is on group g."""
+    hits = 0
+    for i in range(m):
+        if groups.GROUP[P[i]] == g or groups.GROUP[Q[i]] == g:
+            hits += 1
+    return hits > 0
+
+
+@kernel
+def advance(
+    A: Scene, J: Joints, isle: Local, groups: Groups, P: IntArray, Q: IntArray, ROWS: FloatArray, L: FloatArray, m: int,
+    t: float, h: float, motion: Motion, C: Columns, fill: bool,
+) -> None:  # fmt: skip
+    """Step all bodies of an island by h under the impulses L of its contacts, from where its joints were; `fill` the
+    columns C about that step."""
+    k = len(isle.IM)
+    ACC = isle.ACC.copy()
+    for i in range(m):
+        fx = (L[i, 0] * ROWS[i, NX] - L[i, 1] * ROWS[i, NY]) / h
+        fy = (L[i, 0] * ROWS[i, NY] + L[i, 1] * ROWS[i, NX]) / h
+        for side in range(2):
+            q, sign = (P[i], -1.0) if side == 0 else (Q[i], 1.0)
+            arm_n, arm_t = (ARM_NA, ARM_TA) if side == 0 else (ARM_NB, ARM_TB)
+            ACC[q, 0] += sign * isle.IM[q] * fx
+            ACC[q, 1] += sign * isle.IM[q] * fy
+            ACC[q, 2] += sign * isle.II[q] * (L[i, 0] * ROWS[i, arm_n] + L[i, 1] * ROWS[i, arm_t]) / h
+    INDEX = np.full(k, -1, np.int64)
+    for g in range(len(groups.COMPONENT)):
+        s = groups.COMPONENT[g]
+        if s < 0:
+            continue
+        rewind_joints(J, s)
+        length = gather_component(A, J, s, isle.POSE, isle.V, ACC, isle.IM, isle.II, t, h)
+        step_component(A, J, s, h, length, m == 0, motion.V, motion.WAY, motion.END)
+        if fill and is_hit(groups, P, Q, m, g):
+            size = find_places(A, J, s, INDEX)
+            if ready(J, s, h, True):
+                fill_group(J, groups, C, g, INDEX, True, P, Q, ROWS, m, np.empty((size, 3)))
+    for q in range(k):
+        if groups.GROUP[q] >= 0 and groups.COMPONENT[groups.GROUP[q]] >= 0:
+            continue
+        for c in range(3):
+            motion.V[q, c] = isle.V[q, c] + h * ACC[q, c]
+            motion.WAY[q, c] = 0.5 * h * (isle.V[q, c] + motion.V[q, c])
+            motion.END[q, c] = isle.POSE[q, c] + motion.WAY[q, c]
+
+
+@uncounted
+def farthest_apart(V: FloatArray, W: FloatArray, EXTENT: FloatArray, n: int) -> float:
+    """Largest difference of two sets of velocities, of points of the bodies."""
+    worst = 0.0
+    for q in range(n):
+        change = math.sqrt((V[q, 0] - W[q, 0]) ** 2 + (V[q, 1] - W[q, 1]) ** 2)
+        worst = max(worst, change + abs(V[q, 2] - W[q, 2]) * EXTENT[q])
+    return worst
+
+
+@uncounted
+def slip_of(P: IntArray, Q: IntArray, ROWS: FloatArray, WAY: FloatArray, i: int, h: float) -> float:
+    """How far contact i slips in h while bodies go WAY: its surfaces move at a rate, bodies by ways."""
+    return tangent_rate(P, Q, ROWS, WAY, i) + (h - 1.0) * ROWS[i, SURFACE]
+
+
+@uncounted
+def lost(P: IntArray, Q: IntArray, ROWS: FloatArray, L: FloatArray, WAY: FloatArray, m: int, h: float) -> float:
+    """What contacts lose with impulses L while bodies go WAY: their part in the energy of the island, exactly."""
+    total = 0.0
+    for i in range(m):
+        total -= (L[i, 0] * normal_rate(P, Q, ROWS, WAY, i) + L[i, 1] * slip_of(P, Q, ROWS, WAY, i, h)) / h
+    return total
+
+
+@kernel
+def press(
+    A: Scene, J: Joints, isle: Local, groups: Groups, P: IntArray, Q: IntArray, ROWS: FloatArray, L: FloatArray,
+    EXPECTED: FloatArray, m: int, n: int, t: float, h: float, slow: float, fast: float, pull: float, owed: float,
+    motion: Motion,
+) -> bool:  # fmt: skip
+    """Impulses L (in: guesses) of the m contacts of an island, and the motion under them; whether they have converged.
+
+    Args:
+        slow, fast, pull: speeds and acceleration of the island.  owed: energy >= 0 that it has to lose at least.
+    """
+    C = make_columns(groups, P, Q, m)
+    fill_free(groups, C, P, Q, ROWS, isle.IM, isle.II, m)
+    rates(P, Q, ROWS, isle.V, m)
+    elastic = conserves(ROWS, m)
+    scale = pull * h + (fast if elastic else slow)
+    rests = not elastic and slow < pull * h
+    agree = (_ELASTIC_AGREE if elastic else (_REST_AGREE if rests else _AGREE)) * scale
+    fine = (1e-15 if elastic else (_REST_FINE if rests else _FINE)) * scale
+    most = _ELASTIC_SWEEPS if elastic else (_FEW_SWEEPS if m <= _FEW else _SWEEPS)
+    rounds = _ELASTIC_OUTER if elastic else _OUTER
+    if m > FEW and not elastic:
+        rounds = _MANY_OUTER if t + h >= A.PAR[DT] * (1.0 - 1e-12) else _PART_OUTER
+    FORESEEN = np.empty((len(isle.IM), 3))
+    converged, best, LEAST, USED = False, np.inf, L.copy(), L.copy()
+    for outer in range(rounds):
+        anew = outer % _CHORD == 0
+        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, anew)
+        if outer > 0:
+            off = farthest_apart(motion.V, FORESEEN, isle.EXTENT, n)
+            if off <= agree:
+                converged = True
+                break
+            if off < best:
+                best = off
+                LEAST[:] = L
+            else:
+                # Too far: the components do not answer as they did.
+                L[:] = 0.5 * (L + LEAST)
+                advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, anew)
+        if anew:
+            weigh(groups, C, P, Q, ROWS, m)
+        if outer == 0:
+            EFFECT = motion.V.copy()
+            push_columns(C, L, m, -1.0, EFFECT)
+            for q in range(len(EFFECT)):
+                for c in range(3):
+                    EFFECT[q, c] = (EFFECT[q, c] - isle.V[q, c]) / h
+            target(P, Q, ROWS, m, EFFECT, EXPECTED, pull, h)
+        FORESEEN[:] = motion.V
+        USED[:] = L
+        leave_out(C, L, m, FORESEEN)
+        worst = solve_columns(C, P, Q, ROWS, L, FORESEEN, m, fine, most)
+        converged = worst <= 10.0 * max(fine, agree)
+        if farthest_apart(motion.V, FORESEEN, isle.EXTENT, n) <= 1e-3 * agree:
+            # The motion is that of the impulses before: others may do as little by these answers, and yet do much.
+            L[:] = USED
+            break
+    else:
+        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, False)
+        if not farthest_apart(motion.V, FORESEEN, isle.EXTENT, n) <= best:
+            L[:] = LEAST
+            advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, False)
+        converged = False
+    energy = 0.0
+    for q in range(n):
+        energy += (isle.V[q, 0] ** 2 + isle.V[q, 1] ** 2 + (pull * h) ** 2) / isle.IM[q]
+    bearable = 1e-15 * energy
+    for tries in range(_LOCKS + 1):
+        loss = lost(P, Q, ROWS, L, motion.WAY, m, h)
+        if loss >= owed - bearable and (not elastic or loss <= owed + bearable):
+            break
+        p, q2 = 0.0, 0.0
+        FREE = motion.V.copy()
+        push_columns(C, L, m, -1.0, FREE)
+        for i in range(m):
+            for tangent in range(2):
+                before = ROWS[i, UT if tangent == 1 else UN]
+                if tangent == 1:
+                    free, after = tangent_rate(P, Q, ROWS, FREE, i), tangent_rate(P, Q, ROWS, motion.V, i)
+                else:
+                    free, after = normal_rate(P, Q, ROWS, FREE, i), normal_rate(P, Q, ROWS, motion.V, i)
+                p -= 0.5 * L[i, tangent] * (before + free)
+                q2 += 0.5 * L[i, tangent] * (after - free)
+        # D(s) = s p - s^2 q: by its slope at s = 1.
+        slope = p - 2.0 * q2
+        s = 1.0 + (owed - loss) / slope if slope < 0.0 else 0.0
+        if tries == _LOCKS or not 0.0 < s < 2.0:
+            s = 0.0
+        for i in range(m):
+            L[i, 0] = s * L[i, 0] if s > 0.0 else 0.0
+            L[i, 1] = s * L[i, 1] if s > 0.0 else 0.0
+        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, False)
+        converged = False
+        if s == 0.0:
+            break
+    return converged
