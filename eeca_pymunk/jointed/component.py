@@ -11,7 +11,17 @@ from ..impacts.layout import Scene
 from ..joints.bounds import bounded, gap
 from ..joints.correct import kinetic
 from ..joints.entries import held as stands
-from ..joints.layout import ANCHOR_AX, GEAR, JOINT_COLUMNS, TIE_COLUMNS
+from ..joints.layout import (
+    ANCHOR_AX,
+    GEAR,
+    JOINT_COLUMNS,
+    MAX_FORCE,
+    MOTOR,
+    ROTARY_SPRING,
+    SOFT,
+    SPRING,
+    TIE_COLUMNS,
+)
 from ..joints.ledger import springs_hold
 from ..joints.response import prepare, respond
 from ..joints.scratch import (
@@ -19,12 +29,14 @@ from ..joints.scratch import (
     BEFORE,
     BODY_0,
     BODY_1,
+    BOUNDED,
     CAYLEY,
     COLUMN,
     CONDENSED,
     COS,
     FREE,
     FREEDOMS,
+    GIVEN,
     JOINT_0,
     JOINT_1,
     KEPT,
@@ -238,6 +250,33 @@ def close_joints(
             if passed and gap(J.JOINT, J.HINGE, J.LINK[j0:j1], k, side) < -small:
                 return math.inf
     return held
+
+
+@uncounted
+def drives(J: Joints, s: int) -> bool:
+    """Whether the joints of component s move its bodies by themselves: springs, motors, joints with a max_force."""
+    some = False
+    for k in range(J.SPAN[s, JOINT_0], J.SPAN[s, JOINT_1]):
+        kind = J.LINK[k, L_KIND]
+        some = some or kind in (SPRING, ROTARY_SPRING, MOTOR) or J.TIE[J.LINK[k, L_JOINT], SOFT] != 0
+    return some
+
+
+@uncounted
+def may_slip(J: Joints, s: int) -> bool:
+    """Whether component s has motors, or joints with a finite max_force, that enough impulse on its bodies moves."""
+    some = False
+    for k in range(J.SPAN[s, JOINT_0], J.SPAN[s, JOINT_1]):
+        some = some or (J.LINK[k, L_SOFT] != 0 and J.JOINT[J.LINK[k, L_JOINT], MAX_FORCE] < 1e300)
+    return some
+
+
+@uncounted
+def let_slip(J: Joints, s: int, slips: bool) -> None:
+    """Let the impulses of such joints count as given in answers, or no longer."""
+    for k in range(J.SPAN[s, JOINT_0], J.SPAN[s, JOINT_1]):
+        if J.LINK[k, L_SOFT] != 0 and J.JOINT[J.LINK[k, L_JOINT], MAX_FORCE] < 1e300:
+            J.LINK[k, L_SOFT] = GIVEN if slips else BOUNDED
 
 
 @uncounted

@@ -64,7 +64,18 @@ from .columns import (
     push_columns,
     weigh,
 )
-from .component import find_places, fit_speeds, gather_component, keep_joints, ready, restore_joints, step_component
+from .component import (
+    drives,
+    find_places,
+    fit_speeds,
+    gather_component,
+    keep_joints,
+    let_slip,
+    may_slip,
+    ready,
+    restore_joints,
+    step_component,
+)
 from .layout import LIFTED, TURNED_WORK, Joints
 from .lifting import lift
 from .newton import solve_columns
@@ -74,6 +85,8 @@ _AGREE, _REST_AGREE, _ELASTIC_AGREE = 1e-6, 1e-11, 1e-13  # velocities of both s
 _SWEEPS, _FEW_SWEEPS, _FEW, _ELASTIC_SWEEPS = 60, 200, 24, 400
 _FINE, _REST_FINE = 1e-9, 1e-12  # residual of the sweeps, likewise
 _LOCKS = 4
+_DOUBLINGS = 30  # of an impulse against a motor
+NOT_AT_ALL, AS_IT_IS, AS_IF_SLIPPING = 0, 1, 2  # what columns are filled with
 _CHORD = 3  # steps of the components between which their answers are taken to be the same
 
 
@@ -98,10 +111,10 @@ def is_hit(groups: Groups, P: IntArray, Q: IntArray, m: int, g: int) -> bool:
 @kernel
 def advance(
     A: Scene, J: Joints, isle: Local, groups: Groups, P: IntArray, Q: IntArray, ROWS: FloatArray, L: FloatArray, m: int,
-    t: float, h: float, motion: Motion, C: Columns, fill: bool,
+    t: float, h: float, motion: Motion, C: Columns, fill: int,
 ) -> None:  # fmt: skip
     """Step all bodies of an island by h under the impulses L of its contacts, from where its joints were; `fill` the
-    columns C about that step."""
+    columns C about that step: not at all, as joints stand, or as if motors and the like were at their max_force."""
     k = len(isle.IM)
     ACC = isle.ACC.copy()
     for i in range(m):
@@ -121,10 +134,12 @@ def advance(
         restore_joints(J, s)
         length = gather_component(A, J, s, isle.POSE, isle.V, ACC, isle.IM, isle.II, t, h)
         step_component(A, J, s, h, length, m == 0, motion.V, motion.WAY, motion.END)
-        if fill and is_hit(groups, P, Q, m, g):
+        if fill != NOT_AT_ALL and is_hit(groups, P, Q, m, g):
             size = find_places(A, J, s, INDEX)
+            let_slip(J, s, fill == AS_IF_SLIPPING)
             if ready(J, s, h, True):
                 fill_group(J, groups, C, g, INDEX, True, P, Q, ROWS, m, np.empty((size, 3)))
+            let_slip(J, s, False)
     for q in range(k):
         if groups.GROUP[q] >= 0 and groups.COMPONENT[groups.GROUP[q]] >= 0:
             continue
@@ -159,6 +174,64 @@ def lost(P: IntArray, Q: IntArray, ROWS: FloatArray, L: FloatArray, WAY: FloatAr
     return total
 
 
+@uncounted
+def driven(J: Joints, groups: Groups, C: Columns, P: IntArray, Q: IntArray, m: int, HELD: IntArray) -> bool:
+    """HELD (m,): 1 for contacts that are left out, though joints with bounds hold against them; whether there are any."""
+    some = False
+    for i in range(m):
+        HELD[i] = 0
+        for q in (P[i], Q[i]):
+            g = groups.GROUP[q]
+            if C.OUT[i] != 0 and g >= 0 and groups.COMPONENT[g] >= 0 and may_slip(J, groups.COMPONENT[g]):
+                HELD[i] = 1
+                some = True
+    return some
+
+
+@kernel
+def overcome(
+    A: Scene, J: Joints, isle: Local, groups: Groups, P: IntArray, Q: IntArray, ROWS: FloatArray, L: FloatArray, m: int,
+    t: float, h: float, small: float, motion: Motion, C: Columns,
+) -> None:  # fmt: skip
+    """Where a motor below its max_force pushes a body into another one, no small impulse changes the body's velocity: the
+    motor makes up for it. Find one that does, by doubling, so that the answers C are those of a motor at its max_force.
+    """
+    HELD = np.empty(m, np.int64)
+    if not driven(J, groups, C, P, Q, m, HELD):
+        return
+    START = np.zeros(m)
+    waiting = 0
+    for i in range(m):
+        START[i] = normal_rate(P, Q, ROWS, motion.V, i)
+        if not ROWS[i, TARGET] - START[i] > small:
+            HELD[i] = 0
+        waiting += HELD[i]
+    if waiting == 0:
+        return
+    advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, AS_IF_SLIPPING)
+    weigh(groups, C, P, Q, ROWS, m)
+    for i in range(m):
+        if C.OUT[i] != 0:
+            HELD[i] = 0
+        if HELD[i] != 0:
+            L[i, 0] += ROWS[i, K_N] * (ROWS[i, TARGET] - START[i])
+    for doubling in range(_DOUBLINGS):
+        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, NOT_AT_ALL)
+        waiting = 0
+        for i in range(m):
+            if HELD[i] == 0:
+                continue
+            if normal_rate(P, Q, ROWS, motion.V, i) > START[i] + 0.1 * (ROWS[i, TARGET] - START[i]):
+                HELD[i] = 0
+                continue
+            L[i, 0] *= 2.0 if doubling + 1 < _DOUBLINGS else 0.0
+            waiting += 1
+        if waiting == 0:
+            break
+    advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, AS_IT_IS)
+    weigh(groups, C, P, Q, ROWS, m)
+
+
 @kernel
 def press(
     A: Scene, J: Joints, isle: Local, groups: Groups, P: IntArray, Q: IntArray, ROWS: FloatArray, L: FloatArray,
@@ -182,7 +255,7 @@ def press(
     FORESEEN = np.empty((len(isle.IM), 3))
     converged, best, LEAST, USED = False, np.inf, L.copy(), L.copy()
     for outer in range(_ELASTIC_OUTER if elastic else _OUTER):
-        anew = outer % _CHORD == 0
+        anew = AS_IT_IS if outer % _CHORD == 0 else NOT_AT_ALL
         advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, anew)
         if outer > 0:
             off = farthest_apart(motion.V, FORESEEN, isle.EXTENT, n)
@@ -196,7 +269,7 @@ def press(
                 # Too far: the components do not answer as they did.
                 L[:] = 0.5 * (L + LEAST)
                 advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, anew)
-        if anew:
+        if anew != NOT_AT_ALL:
             weigh(groups, C, P, Q, ROWS, m)
         if outer == 0:
             EFFECT = motion.V.copy()
@@ -205,6 +278,7 @@ def press(
                 for c in range(3):
                     EFFECT[q, c] = (EFFECT[q, c] - isle.V[q, c]) / h
             target(P, Q, ROWS, m, EFFECT, EXPECTED, pull, h)
+            overcome(A, J, isle, groups, P, Q, ROWS, L, m, t, h, agree, motion, C)
         FORESEEN[:] = motion.V
         USED[:] = L
         leave_out(C, L, m, FORESEEN)
@@ -215,10 +289,10 @@ def press(
             L[:] = USED
             break
     else:
-        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, False)
+        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, NOT_AT_ALL)
         if not farthest_apart(motion.V, FORESEEN, isle.EXTENT, n) <= best:
             L[:] = LEAST
-            advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, False)
+            advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, NOT_AT_ALL)
         converged = False
     energy = 0.0
     for q in range(n):
@@ -248,7 +322,7 @@ def press(
         for i in range(m):
             L[i, 0] = s * L[i, 0] if s > 0.0 else 0.0
             L[i, 1] = s * L[i, 1] if s > 0.0 else 0.0
-        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, False)
+        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, NOT_AT_ALL)
         converged = False
         if s == 0.0:
             break
@@ -281,6 +355,28 @@ def fit(
             if body < A.PLACE.shape[0] and A.PLACE[body] >= 0:
                 for c in range(3):
                     motion.V[A.PLACE[body], c] = J.LOCAL[w, BEFORE + c]
+
+
+@uncounted
+def foresee(
+    A: Scene, J: Joints, isle: Local, groups: Groups, t: float, h: float, motion: Motion, REACH: FloatArray
+) -> float:
+    """Add to REACH (k,) how far springs and motors move points of bodies in h; the largest such acceleration."""
+    most = 0.0
+    for g in range(len(groups.COMPONENT)):
+        s = groups.COMPONENT[g]
+        if s < 0 or not drives(J, s):
+            continue
+        length = gather_component(A, J, s, isle.POSE, isle.V, isle.ACC, isle.IM, isle.II, t, h)
+        step_component(A, J, s, h, length, False, motion.V, motion.WAY, motion.END)
+        restore_joints(J, s)
+        for w in range(groups.FIRST[g], groups.FIRST[g + 1]):
+            q = groups.BODY[w]
+            x, y = motion.WAY[q, 0] - h * isle.V[q, 0], motion.WAY[q, 1] - h * isle.V[q, 1]
+            way = math.sqrt(x * x + y * y) + abs(motion.WAY[q, 2] - h * isle.V[q, 2]) * isle.EXTENT[q]
+            REACH[q] += 1.1 * way
+            most = max(most, 2.0 * way / (h * h))
+    return most
 
 
 @kernel
@@ -317,6 +413,7 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
     slow, fast, pull = speeds(isle.V, isle.ACC, isle.EXTENT, isle.IM, n, h, REACH)
     m = 0
     if p > 0:
+        pull = max(pull, foresee(A, J, isle, groups, t, h, motion, REACH))
         NOW, THEN = np.empty((2, 5)), np.empty((2, 5))
         m = gather(
             isle.PAIRS, p, A.SHAPE, A.RULE, A.LINK, A.VERTEX, A.WORK, isle.POSE, moved(isle.POSE, isle.V, 0.5 * h),
@@ -336,7 +433,7 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
                 remember(A.KEYS, A.FORCES, COUNT[REMEMBERED:], KEY[i], L[i, 0] / h, L[i, 1] / h, load / h, A.PAR[STAMP])
     if m == 0:
         C = make_columns(groups, P, Q, 0)
-        advance(A, J, isle, groups, P, Q, ROWS, L, 0, t, h, motion, C, False)
+        advance(A, J, isle, groups, P, Q, ROWS, L, 0, t, h, motion, C, NOT_AT_ALL)
     book_turning(A, J, isle, groups, motion, n)
     if lossy and m > 0:
         budget = lost(P, Q, ROWS, L, motion.WAY, m, h) + A.RESTING[root, LOST]

@@ -20,6 +20,7 @@ from .entries import along, held, put_condensed, put_free, put_rows, put_stiffne
 from .rows import joint_rows
 from .scratch import (
     BEFORE,
+    BOUNDED,
     COLUMN,
     FORCE,
     FREEDOMS,
@@ -78,7 +79,7 @@ def assemble(
             if bend != NO_BEND:
                 put_stiffness(link, local, node, k, stiff, bend, h, band, matrix)
         soft = link[k, L_SOFT] != 0
-        if soft and not still and held(link, k, 0):
+        if link[k, L_SOFT] == BOUNDED and not still and held(link, k, 0):
             worst = max(
                 worst, put_soft(link, hinge, local, node, k, slopes, h, condensed, band, matrix, right) / hinge[k, SIZE]
             )

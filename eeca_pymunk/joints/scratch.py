@@ -64,6 +64,8 @@ L_ROW = 5  # first unknown of its impulses
 L_ROWS = 6  # number of rows
 L_JOINT = 7  # its row in JOINT
 LINK_COLUMNS = 8
+# L_SOFT: 0 for rows that hold exactly; 1 for impulses within bounds; 2 where these count as given, for an answer.
+BOUNDED, GIVEN = 1, 2
 
 # SPAN: one row per island.
 BODY_0, BODY_1, JOINT_0, JOINT_1 = 0, 1, 2, 3  # its slices of MEMBER and LINK
