@@ -85,7 +85,7 @@ _AGREE, _REST_AGREE, _ELASTIC_AGREE = 1e-6, 1e-11, 1e-13  # velocities of both s
 _SWEEPS, _FEW_SWEEPS, _FEW, _ELASTIC_SWEEPS = 60, 200, 24, 400
 _FINE, _REST_FINE = 1e-9, 1e-12  # residual of the sweeps, likewise
 _LOCKS = 4
-_DOUBLINGS = 30  # of an impulse against a motor
+_TRIES, _MORE = 12, 4.0  # impulses against a motor, each so many times the last
 NOT_AT_ALL, AS_IT_IS, AS_IF_SLIPPING = 0, 1, 2  # what columns are filled with
 _CHORD = 3  # steps of the components between which their answers are taken to be the same
 
@@ -176,7 +176,7 @@ def lost(P: IntArray, Q: IntArray, ROWS: FloatArray, L: FloatArray, WAY: FloatAr
 
 @uncounted
 def driven(J: Joints, groups: Groups, C: Columns, P: IntArray, Q: IntArray, m: int, HELD: IntArray) -> bool:
-    """HELD (m,): 1 for contacts that are left out, though joints with bounds hold against them; whether there are any."""
+    """HELD (m,): 1 for contacts that are left out, though joints with bounds hold against them; if there are any."""
     some = False
     for i in range(m):
         HELD[i] = 0
@@ -193,8 +193,8 @@ def overcome(
     A: Scene, J: Joints, isle: Local, groups: Groups, P: IntArray, Q: IntArray, ROWS: FloatArray, L: FloatArray, m: int,
     t: float, h: float, small: float, motion: Motion, C: Columns,
 ) -> None:  # fmt: skip
-    """Where a motor below its max_force pushes a body into another one, no small impulse changes the body's velocity: the
-    motor makes up for it. Find one that does, by doubling, so that the answers C are those of a motor at its max_force.
+    """Where a motor below its max_force pushes a body into another one, no small impulse changes the body's velocity:
+    the motor makes up for it. Find one that does, so that the answers C are those of a motor at its max_force.
     """
     HELD = np.empty(m, np.int64)
     if not driven(J, groups, C, P, Q, m, HELD):
@@ -215,7 +215,7 @@ def overcome(
             HELD[i] = 0
         if HELD[i] != 0:
             L[i, 0] += ROWS[i, K_N] * (ROWS[i, TARGET] - START[i])
-    for doubling in range(_DOUBLINGS):
+    for tries in range(_TRIES):
         advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, NOT_AT_ALL)
         waiting = 0
         for i in range(m):
@@ -224,7 +224,7 @@ def overcome(
             if normal_rate(P, Q, ROWS, motion.V, i) > START[i] + 0.1 * (ROWS[i, TARGET] - START[i]):
                 HELD[i] = 0
                 continue
-            L[i, 0] *= 2.0 if doubling + 1 < _DOUBLINGS else 0.0
+            L[i, 0] *= _MORE if tries + 1 < _TRIES else 0.0
             waiting += 1
         if waiting == 0:
             break
