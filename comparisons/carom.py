@@ -79,4 +79,4 @@ def _draw(left: Axes, right: Axes, name: str, track: Track) -> None:
     energy.set_ylabel("energy (J)")
     energy.set_ylim(0, 1.25 * max(track.energy))
     right.plot([], [], label="E", color="black")
-    right.legend(loc="lower left", fontsize=8)
+    right.legend(loc="lower right", bbox_to_anchor=(1.0, 0.99), ncol=3, fontsize=8, frameon=False, borderpad=0.0)

@@ -71,7 +71,7 @@ def run(output: Output, full: bool) -> None:
     for K, both in sweeps.items():
         for line, (variable, points) in zip(axes, both.items(), strict=True):
             data = np.array(points)
-            for ax, column, name in zip(line, (1, 2), ("a", "b, c"), strict=True):
+            for ax, column, name in zip(line, (1, 2), ("disk a", "disks b and c"), strict=True):
                 ax.loglog(data[:, 0], data[:, column], marker="o", markersize=3, label=f"K = {K:.0e} N/m")
                 ax.set(
                     xlabel={"dt": "time step (s)", "xi": "damping ratio xi"}[variable], ylabel="error (%)", title=name

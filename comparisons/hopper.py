@@ -133,9 +133,11 @@ def _strip(name: str, watches: dict[tuple[str, float], Watch]) -> Figure:
 def _energies(watches: dict[tuple[str, float], Watch]) -> Figure:
     names = list(dict.fromkeys(name for name, _ in watches))
     figure = render.figure(12.0, 6.5)
-    axes = figure.subplots(2, -(-len(names) // 2), sharex=True).flat
-    for ax in axes[len(names) :]:
-        ax.set_axis_off()
+    columns = -(-len(names) // 2)
+    axes = figure.subplots(2, columns, sharex=True).flat
+    for k in range(len(names), len(axes)):
+        axes[k].set_axis_off()
+        axes[k - columns].tick_params(labelbottom=True)
     for ax, name in zip(axes, names, strict=False):
         for dt in (dt for n, dt in watches if n == name):
             t, energy = np.array(watches[name, dt].energy).T
@@ -143,7 +145,9 @@ def _energies(watches: dict[tuple[str, float], Watch]) -> Figure:
         ax.set_title(name)
         ax.set_ylim(0.0, 3.0)
         ax.set(xlabel="time (s)", ylabel="E / E at start")
-    axes[0].legend(fontsize=8)
+    most = max(axes, key=lambda ax: len(ax.lines))
+    spare = axes[len(names)] if len(names) < len(axes) else axes[0]
+    spare.legend(*most.get_legend_handles_labels(), loc="center", fontsize=9)
     figure.suptitle("Hopper: energy of the bodies (paper Figs. 13, 14)")
     return figure
 

@@ -30,6 +30,7 @@ ITERATIONS = (10, 100)
 BUDGET = 0.35  # s: a run that takes longer is the last of its stepper
 FINEST = {EECA: 1 / 960, "native 10": 1 / 30_720, "native 100": 1 / 30_720}
 FLOOR = 1e-15  # m, for pictures
+_LABEL = {f"native {n}": f"pymunk, {n} iterations" for n in (10, 100)}
 STYLE = {EECA: ("black", "o"), "native 10": ("#d55e00", "s"), "native 100": ("#0072b2", "^")}
 LINKS = 20
 
@@ -232,7 +233,7 @@ def picture(found: list[Problem], rows: list[Row]) -> Figure:
             wall = [number(r, "time (ms)") for r in mine]
             for ax, column in ((top, "error (m)"), (low, "energy error")):
                 values = np.maximum([number(r, column) for r in mine], FLOOR)
-                ax.loglog(wall, values, f"{mark}-", color=colour, markersize=4, label=name)
+                ax.loglog(wall, values, f"{mark}-", color=colour, markersize=4, label=_LABEL.get(name, name))
         top.set_title(problem.name)
         low.set_xlabel("time of all steps (ms)")
     axes[0, 0].set_ylabel("error of places (m)")

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from PIL import Image
+from tqdm import tqdm
 
 from .output import Output, Row
 
@@ -39,7 +40,8 @@ def run(output: Output, full: bool) -> None:
     frames = FRAMES * (10 if full else 1)
     output.parameters({"frames": frames, "limit of a step (ms)": _FRAME})
     with tempfile.TemporaryDirectory() as folder:
-        rows = [example(name, frames, Path(folder), output) for name in EXAMPLES]
+        bar = tqdm(EXAMPLES, desc="examples", unit="example", disable=None)
+        rows = [example(name, frames, Path(folder), output) for name in bar]
     output.table("pymunk's examples, Space.step replaced", rows)
     ran = [row for row in rows if row["ours"] == "runs"]
     slow = [row["example"] for row in ran if float(row["worst ms"] or 0.0) > _FRAME]
@@ -90,4 +92,3 @@ def _side_by_side(left: Path, right: Path, path: Path) -> None:
     both.paste(pictures[0], (0, 0))
     both.paste(pictures[1], (pictures[0].width + 4, 0))
     both.save(path)
-    print(f"-> {path}")

@@ -104,7 +104,9 @@ def _draw_ratios(rows: list[dict[str, float]]) -> Figure:
         twin = len(names) == 2 and names[0] != "dE p_c (J)"
         for i, name in enumerate(names):
             target = ax.twinx() if twin and i else ax
-            target.plot(xi, [row[name] for row in rows], color=f"C{i}", label=name)
+            target.plot(
+                xi, [row[name] for row in rows], color=f"C{i}", linestyle="--" if twin and i else "-", label=name
+            )
             target.set_ylabel(name if twin else names[0].split("(")[1].rstrip(")"), color=f"C{i}" if twin else "black")
         if not twin:
             ax.legend()

@@ -16,6 +16,8 @@ from eeca_pymunk import render
 
 from .case import CASES, Case
 
+_SHADES = {"pass": "#56b4e9", "FAIL": "#d55e00", "refused": "#dddddd"}
+
 
 def columns() -> dict[str, runs.Make]:
     """The steppers of the matrix."""
@@ -78,15 +80,26 @@ def run(output: Output, full: bool, workers: int = 1) -> None:
 
 
 def _matrix(rows: list[Row], names: list[str]) -> Figure:
-    picture = render.figure(9.5, 0.3 * len(rows) + 1.0)
-    ax = picture.add_subplot()
-    shades = {"pass": to_rgb("#56b4e9"), "FAIL": to_rgb("#d55e00"), "refused": to_rgb("#dddddd")}
-    cells = [[str(row[name]).split() for name in names] for row in rows]
-    ax.imshow([[shades[c[0]] for c in line] for line in cells], aspect="auto")
-    for i, line in enumerate(cells):
-        for j, c in enumerate(line):
-            ax.text(j, i, " ".join(c), ha="center", va="center", fontsize=8)
-    ax.set_xticks(range(len(names)), names)
-    ax.set_yticks(range(len(rows)), [str(row["case"]) for row in rows])
-    ax.xaxis.tick_top()
+    half = -(-len(rows) // 2)
+    picture = render.figure(16.0, 0.21 * half + 0.8)
+    for ax, part in zip(picture.subplots(1, 2), (rows[:half], rows[half:]), strict=True):
+        cells = [[str(row[name]).split() for name in names] for row in part]
+        ax.imshow([[to_rgb(_SHADES[c[0]]) for c in line] for line in cells], aspect="auto")
+        for i, line in enumerate(cells):
+            for j, c in enumerate(line):
+                ax.text(j, i, _short(c), ha="center", va="center", fontsize=8)
+        ax.set_xticks(range(len(names)), names)
+        ax.set_yticks(range(len(part)), [str(row["case"]) for row in part], fontsize=9)
+        ax.xaxis.tick_top()
+        # Both halves have rows of one height.
+        ax.set_ylim(half - 0.5, -0.5)
+        ax.spines[:].set_visible(False)
     return picture
+
+
+def _short(cell: list[str]) -> str:
+    """A figure of two digits, with a word if it does not pass."""
+    if cell[0] == "refused":
+        return "refused"
+    value = float(cell[1])
+    return f"{'' if cell[0] == 'pass' else 'FAIL '}{value:{'.0f' if 10.0 <= value < 1e5 else '.2g'}}"
