@@ -38,5 +38,5 @@ def warmup() -> float:
             stepper.step(_DT)
             if isinstance(stepper._method, EventLoop):
                 # Called only where lists outgrow their room within a step.
-                flag_again(stepper._method.scene)
+                flag_again(stepper._method.table)
     return time.perf_counter() - start

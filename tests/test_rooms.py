@@ -18,6 +18,7 @@ FLOORS = (
     "arrays layout errors files",
     "linking",
     "compiled",
+    "tables",
     "energy",
     "transfer report",
     "geometry",

@@ -24,10 +24,13 @@ from ..rows.layout import ELASTICITY as ELASTIC
 from ..rows.layout import K_N, ROW_COLUMNS
 from .booking import end_span
 from .islands import remembered
+from .layout import BODIES as SIZE_OF
 from .layout import DT, FIRST_SHAPE, ISLAND, JOINTED, LOST, NEXT_TIED, OPEN, SHAPES, STAMP, TIED, Scene
 from .strike import move_to, touches
 
 _FACES = 16.0  # times the tolerance of touching, by which the ends of parallel faces may differ
+CROWD = 24  # bodies of a lossy island, from which a hit on it acts at once on the nearest _NEAREST only
+_NEAREST = 16
 _ROCKING = 1e-6  # of the size, by which they may where the contact is not elastic: a rocking that is lost anyway ends
 
 
@@ -42,6 +45,19 @@ def takes_part(A: Scene, disks: int, s: int, o: int, t: float) -> bool:
     if A.STATE[i, ISLAND] < 0 or not (A.STATE[j, ISLAND] == A.STATE[i, ISLAND] or A.BODY[j, IM] == 0.0):
         return False
     return remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], s, o, A.PAR[STAMP])[0] > 0.0
+
+
+@uncounted
+def crowded(A: Scene, a: int, b: int) -> bool:
+    """Whether shapes a and b meet in a crowd: their hit spreads from the nearest bodies by its new span."""
+    if law(A.SHAPE, A.RULE, a, b)[0] >= 1.0:
+        return False
+    size = 0
+    for s in (a, b):
+        root = A.STATE[A.LINK[s, OWNER], ISLAND]
+        if root >= 0:
+            size = max(size, A.MEMBER[root, SIZE_OF])
+    return size >= CROWD
 
 
 @uncounted
@@ -77,6 +93,7 @@ def gather(A: Scene, disks: int, a: int, b: int, t: float) -> tuple[int, int, In
     PAIRS = np.empty(16, np.int64)
     PAIRS[0] = min(a, b) * k + max(a, b)
     n, m, q = 0, 1, 0
+    most = _NEAREST if crowded(A, a, b) else A.BLOCK.shape[0]
     for s in (a, b):
         i = A.LINK[s, OWNER]
         if A.BODY[i, IM] > 0.0:
@@ -95,7 +112,7 @@ def gather(A: Scene, disks: int, a: int, b: int, t: float) -> tuple[int, int, In
                 # The pairs with bodies that have been looked at before stand there already.
                 if key == PAIRS[0] or (moves and 0 <= A.PLACE[j] < q - 1):
                     continue
-                if not takes_part(A, disks, s, o, t):
+                if (moves and A.PLACE[j] < 0 and n >= most) or not takes_part(A, disks, s, o, t):
                     continue
                 if moves and A.PLACE[j] < 0:
                     n = admit(A, j, n, t)

@@ -15,6 +15,7 @@ from ..layout import (
     X,
 )
 from ..pairs.lists import mark_pair
+from ..tables import Table
 from .layout import (
     AFTER_ME,
     BETA,
@@ -48,13 +49,15 @@ from .layout import (
     UT_BEFORE,
     WORK_OF,
     Scene,
+    scene_of,
 )  # fmt: skip
 from .strike import move_to, note
 
 
 @uncounted
-def flag_again(A: Scene) -> None:
-    """Flag the pairs of all spans, in lists that were made anew."""
+def flag_again(TABLE: Table) -> None:
+    """Flag the pairs of all spans, in lists that were made anew. TABLE: `table_of` a Scene."""
+    A = scene_of(TABLE)
     for c in range(A.COUNT[PUSHES]):
         if A.PUSHED_BY[c, ROOT] >= 0:
             a, b = A.PUSHED_BY[c, PUSH_A], A.PUSHED_BY[c, PUSH_B]

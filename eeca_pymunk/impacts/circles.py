@@ -15,6 +15,8 @@ from ..compiled import uncounted
 from ..layout import COUNT, FIRST
 from .roots import ADVANCES, STRIDE, ball_point, flat
 
+_FAR = 1.5  # times the time that is left: circles that cannot meet until then need no root
+
 
 @uncounted
 def circle_circle(
@@ -29,6 +31,11 @@ def circle_circle(
     """
     if ax == 0.0 and ay == 0.0:
         return ball_point(dx, dy, ux, uy, extent), True
+    if 0.0 < left < math.inf:
+        later = _FAR * left
+        reach = extent + (abs(ux) + abs(uy) + 0.5 * (abs(ax) + abs(ay)) * later) * later
+        if dx * dx + dy * dy > reach * reach:
+            return later, False
     pull = math.sqrt(ax * ax + ay * ay)
     stride = STRIDE * left if left < math.inf else 0.0
     s = 0.0

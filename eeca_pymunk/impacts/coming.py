@@ -25,6 +25,7 @@ from ..pairs.lists import centre
 from ..pairs.rules import barred, law
 from ..rows.build import tangent_rate
 from ..rows.layout import FRICTION, K_T, UT
+from .block import CROWD
 from .islands import TOUCH, approach, remembered, rests
 from .layout import (
     BUSY,
@@ -97,11 +98,10 @@ def pairs_of(A: Scene, root: int, t: float, lossy: bool, LOCAL: IntArray, MINE: 
                     if not rests(A, s, o, t, False):
                         continue
                 elif g > TOUCH * small and not busy:
-                    press = (
-                        max(closing, remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], s, o, A.PAR[STAMP] - 1.0)[1] / mass)
-                        * h
-                    )
-                    if not -e * min(u, 0.0) < 0.5 * press:
+                    force, load = remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], s, o, A.PAR[STAMP] - 1.0)
+                    # What a crowd has carried goes on being carried: hits on it spread by its spans.
+                    carried = n >= CROWD and force > 0.0
+                    if not carried and not -e * min(u, 0.0) < 0.5 * max(closing, load / mass) * h:
                         continue
                 if p == found.shape[0]:
                     more = np.empty((2 * p, 2), np.int64)

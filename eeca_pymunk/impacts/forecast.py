@@ -18,6 +18,7 @@ from ..layout import (
     CENTRE_Y,
     DUE,
     EXTENT,
+    OWNER,
     SINCE,
     SPIN,
     TWIST,
@@ -83,12 +84,14 @@ def has_left(BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, MARK: FloatArr
 def predict(
     BODY: FloatArray, STATE: IntArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, MARK: FloatArray,
     LIST: IntArray, POOL: PoolArray, FLAG: FlagArray, RULE: FloatArray, TIME: FloatArray, OF: IntArray,
-    WORK: FloatArray, COUNT: IntArray, disks: int, moving: int, i: int, now: float, end: float, until: float,
+    WORK: FloatArray, PLACE: IntArray, COUNT: IntArray, disks: int, moving: int, i: int, now: float, end: float,
+    until: float,
 ) -> None:  # fmt: skip
     """Forecast body i from its present path, at an instant `now` of the loop, and put what is due in this step on the
     heap.
 
     Args:
+        PLACE: (n,) 0 or more for bodies that are forecast together, the first of a pair of which sees it; else -1.
         until: instant at which a span of the body's island ends, infinite if it has none of its own.
     """
     best, own, other = math.inf, -1, NOTHING
@@ -105,6 +108,8 @@ def predict(
             if FLAG[q] != 0:
                 continue
             o = int(POOL[q])
+            if PLACE[LINK[o, OWNER]] >= 0 and LINK[o, OWNER] < i:
+                continue
             if RULE.shape[0] > 0 and barred(RULE, s, o):
                 continue
             certain = True

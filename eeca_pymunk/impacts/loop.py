@@ -62,8 +62,31 @@ def forecast(A: Scene, disks: int, moving: int, i: int, t: float, end: float) ->
     until = A.RESTING[i, UNTIL] if A.STATE[i, ISLAND] == i else math.inf
     predict(
         A.BODY, A.STATE, A.SHAPE, A.LINK, A.VERTEX, A.MARK, A.LIST, A.POOL, A.FLAG, A.RULE, A.HEAP_TIME, A.HEAP_BODY,
-        A.WORK, A.COUNT, disks, moving, i, t, end, until,
+        A.WORK, A.PLACE, A.COUNT, disks, moving, i, t, end, until,
     )  # fmt: skip
+
+
+@uncounted
+def forecast_all(A: Scene, disks: int, n: int, t: float, end: float) -> None:
+    """The next events of the n bodies in A.BLOCK, seen from instant t: each pair of them is looked at once. That is
+    enough, as either body is forecast anew with all others after its next event."""
+    for q in range(n):
+        A.PLACE[A.BLOCK[q]] = q
+    for q in range(n):
+        forecast(A, disks, A.LIST.shape[0], A.BLOCK[q], t, end)
+    for q in range(n):
+        A.PLACE[A.BLOCK[q]] = -1
+
+
+@uncounted
+def forecast_due(A: Scene, disks: int) -> None:
+    """The next events, at the start of a step, of all bodies whose last forecast is no good."""
+    n, dt = 0, A.PAR[DT]
+    for i in range(A.BODY.shape[0] - 1):
+        if A.BODY[i, DUE] < dt or A.STATE[i, ISLAND] >= 0:
+            A.BLOCK[n] = i
+            n += 1
+    forecast_all(A, disks, n, 0.0, dt)
 
 
 @uncounted
@@ -162,8 +185,7 @@ def follow(A: Scene, disks: int, may_rest: bool) -> int:
         if status != DONE:
             return status
         COUNT[PENDING] = -1
-        for q in range(COUNT[WAITING]):
-            forecast(A, disks, moving, BLOCK[q], A.PAR[NOW], end)
+        forecast_all(A, disks, COUNT[WAITING], A.PAR[NOW], end)
     while True:
         status = run(A, disks, may_rest)
         if status != BLOCK_DUE:
@@ -180,8 +202,7 @@ def follow(A: Scene, disks: int, may_rest: bool) -> int:
             COUNT[WAITING], COUNT[PENDING] = n, -1 if status == DONE else i
             if status != DONE:
                 return status
-            for q in range(n):
-                forecast(A, disks, moving, BLOCK[q], t, end)
+            forecast_all(A, disks, n, t, end)
             continue
         j = A.LINK[o, OWNER]
         if (STATE[i, ISLAND] >= 0 or STATE[j, ISLAND] >= 0) and ignored(A, s, o, t):
@@ -201,5 +222,4 @@ def follow(A: Scene, disks: int, may_rest: bool) -> int:
         COUNT[WAITING] = n
         if status != DONE:
             return status
-        for q in range(n):
-            forecast(A, disks, moving, BLOCK[q], t, end)
+        forecast_all(A, disks, n, t, end)

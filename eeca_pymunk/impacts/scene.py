@@ -17,6 +17,7 @@ from ..pairs.setup import near_lists, rebuilt
 from ..report import Details, of_events
 from ..sustained.memory import FORCE_COLUMNS, forget
 from ..sustained.relax import FRESH
+from ..tables import table_of
 from ..transfer import FORCES
 from .booking import flag_again
 from .layout import (
@@ -93,17 +94,26 @@ class EventLoop:
         self.scene.RESTING[:, RELAX : RELAX + 3] = FRESH
         self.lossy = bool((SHAPE[:, ELASTICITY] < 1.0).any())
 
+    @property
+    def scene(self) -> Scene:
+        """All arrays; replace some by setting another."""
+        return self._scene
+
+    @scene.setter
+    def scene(self, arrays: Scene) -> None:
+        self._scene, self.table = arrays, table_of(arrays)
+
     def step(
         self, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
         left: float,
     ) -> int:  # fmt: skip
         """See `step.step`; a negative answer is one of `transfer.py`."""
         disks, lossy = self.disks, self.lossy
-        status = step(self.scene, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, disks, lossy, -1)
+        status = step(self.table, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, disks, lossy, -1)
         while status <= ROOM_FOR_LISTS:
             self._grow(status)
             bits = FORCES if STATES[READ, :, 6:].any() else 0
-            status = step(self.scene, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, disks, lossy, bits)
+            status = step(self.table, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, disks, lossy, bits)
         return status
 
     def _grow(self, wish: int) -> None:
@@ -124,7 +134,7 @@ class EventLoop:
             return
         self.near = rebuilt(self.near.larger(), scene.BODY, scene.SHAPE, scene.LINK, float(scene.PAR[NOW]))
         self.scene = scene._replace(POOL=self.near.POOL, FLAG=self.near.FLAG)
-        flag_again(self.scene)
+        flag_again(self.table)
         # Margin circles are drawn about other places now: everybody is forecast anew.
         n, now = len(scene.BODY) - 1, float(scene.PAR[NOW])
         scene.BODY[:n, DUE], scene.STATE[:n, OTHER] = now, CHECK
@@ -190,9 +200,9 @@ class Together(EventLoop):
     ) -> int:  # fmt: skip
         """See `together.step_together`; a negative answer is one of `transfer.py`."""
         usual = self._usual
-        status = step_together(self.scene, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, usual, -1)
+        status = step_together(self.table, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, usual, -1)
         while status <= ROOM_FOR_LISTS:
             self._grow(status)
             bits = FORCES if STATES[READ, :, 6:].any() else 0
-            status = step_together(self.scene, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, usual, bits)
+            status = step_together(self.table, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, usual, bits)
         return status

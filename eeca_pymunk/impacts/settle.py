@@ -50,7 +50,7 @@ from .strike import move_to
 _OFTEN, _VERY_OFTEN = 16, 64  # impacts of a body in a step after which a lossy contact rests; a slow elastic one
 _SLOW = 1.0 / 64.0  # speed relative to |a| dt, below which that happens to elastic ones
 _BUSY_FOR = 8  # steps
-_HITS, _ELASTIC_HITS = 2, 64  # on an island in a step: a lossy one may be hit oftener the smaller it is
+_HITS, _ELASTIC_HITS = 1, 64  # on an island in a step: a lossy one may be hit oftener the smaller it is
 _WORK = 64  # bodies times hits
 _DEEP = 0.2  # of the smaller shape, that a hit would go deep: it is taken up to four times as often
 

@@ -32,6 +32,7 @@ from ..sustained.step import LOCK as LOCK_OF
 from ..sustained.step import OUT_SIZE, step_island
 from ..sustained.step import POLISHES as POLISHES_OF
 from ..sustained.step import SWEEPS as SWEEPS_OF
+from .block import CROWD
 from .coming import PARTS, pairs_of, span_of, stick_time, way_of
 from .islands import members
 from .layout import (
@@ -80,6 +81,8 @@ from .layout import (
     WORK_OF,
     Scene,
 )  # fmt: skip
+
+_SWEEPS, _AGAIN = 40, 15  # of an island that moves: at the start of a step; of a crowd within it
 
 
 class Local(NamedTuple):
@@ -205,10 +208,12 @@ def solve(A: Scene, root: int, t: float) -> int:
     if COUNT[TOGETHER] > 0:
         for q in range(k):
             least = max(least, way_of(A, WHO[q], h))
+    # After a hit the forces of the span that it has cut short are a good beginning.
+    sweeps = _SWEEPS if t == 0.0 or n < CROWD else _AGAIN
     m = 0
     if p > 0 and h > 0.0:
         m = step_island(
-            POSE, V, ACC, IMS, IIS, SIZES, n, PAIRS, p, A.SHAPE, A.RULE, A.LINK, A.VERTEX, A.WORK, h,
+            POSE, V, ACC, IMS, IIS, SIZES, n, PAIRS, p, A.SHAPE, A.RULE, A.LINK, A.VERTEX, A.WORK, h, sweeps,
             least, max(-A.RESTING[root, LOST], 0.0), A.KEYS, A.FORCES, COUNT[REMEMBERED:], A.PAR[STAMP],
             A.RESTING[MINE[0], RELAX : RELAX + 3], P, Q, ROWS, KEY, L, LOSS, VN, JUMP, BOOK, OUT,
         )  # fmt: skip
@@ -218,7 +223,7 @@ def solve(A: Scene, root: int, t: float) -> int:
             h = max(stuck, A.PAR[DT] / PARTS)
             BOOK[:] = 0.0
             m = step_island(
-                POSE, V, ACC, IMS, IIS, SIZES, n, PAIRS, p, A.SHAPE, A.RULE, A.LINK, A.VERTEX, A.WORK, h,
+                POSE, V, ACC, IMS, IIS, SIZES, n, PAIRS, p, A.SHAPE, A.RULE, A.LINK, A.VERTEX, A.WORK, h, sweeps,
                 least, max(-A.RESTING[root, LOST], 0.0), A.KEYS, A.FORCES, COUNT[REMEMBERED:], A.PAR[STAMP],
                 A.RESTING[MINE[0], RELAX : RELAX + 3], P, Q, ROWS, KEY, L, LOSS, VN, JUMP, BOOK, OUT,
             )  # fmt: skip

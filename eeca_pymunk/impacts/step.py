@@ -32,6 +32,7 @@ from ..layout import (
 from ..layout import (
     SECOND_SHAPE as SECOND_OF,
 )
+from ..tables import Table
 from ..transfer import EVENTS as SOME
 from ..transfer import give, take
 from .booking import book, lift_out
@@ -76,8 +77,9 @@ from .layout import (
     SWEEPS,
     UNMET,
     Scene,
+    scene_of,
 )  # fmt: skip
-from .loop import follow, forecast
+from .loop import follow, forecast_due
 from .settle import settle
 from .strike import move_to
 
@@ -239,15 +241,12 @@ def resume(
     status: int,
 ) -> int:  # fmt: skip
     """The rest of a step, whose bits so far are `status`."""
-    COUNT, BODY = A.COUNT, A.BODY
-    dt = A.PAR[DT]
+    COUNT = A.COUNT
     if COUNT[PHASE] == 0:
         if COUNT[PUSHES] > 0 and settle(A) != DONE:
             return ROOM_FOR_CONTACTS
         COUNT[PHASE] = 1
-        for i in range(BODY.shape[0] - 1):
-            if BODY[i, DUE] < dt or A.STATE[i, ISLAND] >= 0:
-                forecast(A, disks, A.LIST.shape[0], i, 0.0, dt)
+        forecast_due(A, disks)
     if COUNT[PHASE] == 1:
         met = follow(A, disks, lossy or A.PAR[PULLED] > 0.0)
         if met != DONE:
@@ -260,12 +259,13 @@ def resume(
 
 @kernel
 def step(
-    A: Scene, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
-    left: float, disks: int, lossy: bool, bits: int,
+    TABLE: Table, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float,
+    gy: float, left: float, disks: int, lossy: bool, bits: int,
 ) -> int:  # fmt: skip
     """From the states that were read to those that are to be written, see `transfer.py`.
 
     Args:
+        TABLE: `table_of` a Scene.
         dt: time, > 0.  gx, gy: gravity, length/time².  left: what half the step's damping leaves of velocities.
         disks: the first so many rows of BODY are lone disks.  lossy: whether any shape's elasticity is below 1.
         bits: negative for a new step; those of one that wished for room and goes on.
@@ -273,6 +273,7 @@ def step(
     Returns:
         the bits EVENTS, FORCES, TURNS, a negative code of `transfer.py`, or a wish for room.
     """
+    A = scene_of(TABLE)
     if bits >= 0:
         return resume(A, STATES, WALK, EXTRA, ENDS, disks, lossy, bits)
     status = start(A, STATES, WALK, EXTRA, dt, gx, gy, left)

@@ -18,6 +18,7 @@ from ..pairs.candidates import cover
 from ..pairs.layout import NUMBER, START
 from ..pairs.lists import mark_pair
 from ..pairs.rules import barred
+from ..tables import Table
 from .coming import way_of
 from .islands import TOUCH, approach, unite
 from .layout import (
@@ -33,6 +34,7 @@ from .layout import (
     SPEED,
     TOGETHER,
     Scene,
+    scene_of,
 )
 from .spans import solve
 from .step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, finish, start
@@ -158,14 +160,15 @@ def resume_together(
 
 @kernel
 def step_together(
-    A: Scene, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
-    left: float, USUAL: FloatArray, bits: int,
+    TABLE: Table, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float,
+    gy: float, left: float, USUAL: FloatArray, bits: int,
 ) -> int:  # fmt: skip
     """From the states that were read to those that are to be written: arguments and answer as of `step.step`.
 
     Args:
         USUAL: (k,) margins of shapes that are not fast, length.
     """
+    A = scene_of(TABLE)
     if bits >= 0:
         return resume_together(A, STATES, WALK, EXTRA, ENDS, USUAL, bits)
     status = start(A, STATES, WALK, EXTRA, dt, gx, gy, left)

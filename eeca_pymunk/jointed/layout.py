@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from ..arrays import FloatArray, IntArray
+from ..tables import Opener
 
 # TALLY (8,) int
 COMPONENTS, ORDER, WORST, REPEATS = 0, 1, 2, 3  # how many; 2 or 4; worst status of the step; steps of components
@@ -44,3 +45,6 @@ class Joints(NamedTuple):
     SIDES: IntArray
     STEPPED: FloatArray
     TALLY: IntArray
+
+
+joints_of = Opener(Joints)

@@ -31,14 +31,16 @@ from ..impacts.layout import (
     UNMET,
     WAITING,
     Scene,
+    scene_of,
 )  # fmt: skip
-from ..impacts.loop import follow, forecast
+from ..impacts.loop import follow, forecast, forecast_due
 from ..impacts.settle import settle
 from ..impacts.step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, finish, start, wish
 from ..joints.layout import BODY_A, BODY_B, ELASTIC, TOUCHED
-from ..layout import BODY_ROW, DUE, LEFT, SINCE
+from ..layout import BODY_ROW, LEFT, SINCE
 from ..layout import NOW as READ
-from .layout import COMPONENTS, REPEATS, WORST, Joints
+from ..tables import Table
+from .layout import COMPONENTS, REPEATS, WORST, Joints, joints_of
 from .solve import begin_span
 from .strike import book_component, collide
 
@@ -141,15 +143,12 @@ def resume_jointed(
     lossy: bool, status: int,
 ) -> int:  # fmt: skip
     """The rest of a step, whose bits so far are `status`: as `..impacts.step.resume`."""
-    COUNT, BODY = A.COUNT, A.BODY
-    dt = A.PAR[DT]
+    COUNT = A.COUNT
     if COUNT[PHASE] == 0:
         if settle_jointed(A, J) != DONE:
             return ROOM_FOR_CONTACTS
         COUNT[PHASE] = 1
-        for i in range(BODY.shape[0] - 1):
-            if BODY[i, DUE] < dt or A.STATE[i, ISLAND] >= 0:
-                forecast(A, disks, A.LIST.shape[0], i, 0.0, dt)
+        forecast_due(A, disks)
     if COUNT[PHASE] == 1:
         met = follow_jointed(A, J, disks, lossy or A.PAR[PULLED] > 0.0)
         if met != DONE:
@@ -163,10 +162,11 @@ def resume_jointed(
 
 @kernel
 def step_jointed(
-    A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float,
-    gy: float, left: float, disks: int, lossy: bool, bits: int,
+    TABLE: Table, JOINTS: Table, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float,
+    gx: float, gy: float, left: float, disks: int, lossy: bool, bits: int,
 ) -> int:  # fmt: skip
     """From the states that were read to those that are to be written: arguments and answer as `..impacts.step.step`."""
+    A, J = scene_of(TABLE), joints_of(JOINTS)
     if bits >= 0:
         return resume_jointed(A, J, STATES, WALK, EXTRA, ENDS, disks, lossy, bits)
     status = start_jointed(A, J, STATES, WALK, EXTRA, dt, gx, gy, left)

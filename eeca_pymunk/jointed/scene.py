@@ -29,6 +29,7 @@ from ..joints.scratch import (
 )
 from ..layout import NOW as READ
 from ..pairs.layout import MARGIN
+from ..tables import table_of
 from ..transfer import FORCES
 from .layout import COMPONENTS, ORDER, STEPPED_COLUMNS, TALLY_LENGTH, Joints
 from .loop import step_jointed
@@ -86,6 +87,7 @@ class JointedLoop(EventLoop):
             np.zeros((6, 6)), np.zeros(5), np.zeros(8), np.zeros(size, np.int64), of, np.zeros((count, JOINT_COLUMNS)),
             np.zeros((count, TIE_COLUMNS), np.int64), np.zeros((max(components, 1), STEPPED_COLUMNS)), tally,
         )  # fmt: skip
+        self._ties = table_of(self.joints)
 
     def step(
         self, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
@@ -93,12 +95,13 @@ class JointedLoop(EventLoop):
     ) -> int:  # fmt: skip
         """See `loop.step_jointed`; a negative answer is one of `..transfer`."""
         disks, lossy, usual = self.disks, self.lossy, self._usual
+        ties = self._ties
         edge, bits = (STATES, WALK, EXTRA, ENDS, dt, gx, gy, left), -1
         while True:
             if self._together:
-                status = step_together_jointed(self.scene, self.joints, *edge, usual, bits)
+                status = step_together_jointed(self.table, ties, *edge, usual, bits)
             else:
-                status = step_jointed(self.scene, self.joints, *edge, disks, lossy, bits)
+                status = step_jointed(self.table, ties, *edge, disks, lossy, bits)
             if status > ROOM_FOR_LISTS:
                 return status
             self._grow(status)

@@ -21,12 +21,14 @@ from ..impacts.layout import (
     TIED,
     TOGETHER,
     Scene,
+    scene_of,
 )
 from ..impacts.spans import solve
 from ..impacts.step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, finish
 from ..impacts.together import anew, join_all
 from ..layout import EXTENT, SPIN, VX, VY
-from .layout import Joints
+from ..tables import Table
+from .layout import Joints, joints_of
 from .loop import book_joints, start_jointed
 from .solve import begin_span
 
@@ -67,11 +69,12 @@ def resume_together_jointed(
 
 @kernel
 def step_together_jointed(
-    A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float,
-    gy: float, left: float, USUAL: FloatArray, bits: int,
+    TABLE: Table, JOINTS: Table, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float,
+    gx: float, gy: float, left: float, USUAL: FloatArray, bits: int,
 ) -> int:  # fmt: skip
     """From the states that were read to those that are to be written: arguments and answer as
     `..impacts.together.step_together`."""
+    A, J = scene_of(TABLE), joints_of(JOINTS)
     if bits >= 0:
         return resume_together_jointed(A, J, STATES, WALK, EXTRA, ENDS, USUAL, bits)
     status = start_jointed(A, J, STATES, WALK, EXTRA, dt, gx, gy, left)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import math
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import cast
@@ -112,6 +113,8 @@ class Film:
             view = (float(low[0]), float(high[1]), float(low[2]), float(high[3]))
         end = max(float(r.time[-1]) for r in shown)
         self.times = np.linspace(0.0, end, max(len(r) for r in shown) if frames is None else frames)
+        # As many as tell a hundredth of the film, so that the clock does not jump about.
+        self.digits = min(max(2 - math.floor(math.log10(end)), 0), 9) if end > 0.0 else 0
         # Even numbers of pixels: video codecs ask for them.
         tall = min(max(4.0 * (view[3] - view[2]) / (view[1] - view[0]), 2.0), 8.0) + 1.9
         pixels = [2 * round(0.5 * dpi * inches) for inches in (4.0 * len(shown), tall)]
@@ -147,7 +150,7 @@ class Film:
                 panel.show(float(t))
             for ax, artist in moving:
                 ax.draw_artist(artist)
-            self.clock.set_text(f"t = {t:.4g} s")
+            self.clock.set_text(f"t = {t:.{self.digits}f} s")
             self.figure.draw_artist(self.clock)
             yield np.asarray(canvas.buffer_rgba())[..., :3].copy()
 

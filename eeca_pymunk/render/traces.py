@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 
 import numpy as np
@@ -59,13 +60,16 @@ def trace(ax: Axes, recording: Recording) -> Trace:
 
 
 class Lines(Trace):
-    """Energy relative to the start, and the size of the momentum relative to its largest."""
+    """Energy relative to the start, in which the potential counts from the lowest it comes to if that is below zero,
+    and the size of the momentum relative to its largest."""
 
     def __init__(self, ax: Axes, recording: Recording) -> None:
         super().__init__(ax, recording)
         size = np.linalg.norm(recording.momentum, axis=1)
-        start = abs(float(recording.energy[0])) or float(np.abs(recording.energy).max()) or 1.0
-        self.values = (recording.energy / start, size / (float(size.max()) or 1.0))
+        lowest = float((recording.energy - recording.kinetic).min(initial=0.0))
+        energy = recording.energy - (lowest if math.isfinite(lowest) else 0.0)
+        start = abs(float(energy[0])) or float(np.abs(energy).max()) or 1.0
+        self.values = (energy / start, size / (float(size.max()) or 1.0))
         self.top = min(max(1.0, float(np.nanmax(self.values[0]))), _CEILING)
         self.lines = ax.plot([], [], color="black", linewidth=2, label="E / E(0)")
         self.lines += ax.plot([], [], color=ARROW, linewidth=1.2, linestyle="--", label="|p| / max |p|")

@@ -7,6 +7,9 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
 from .layout import (
+    A_NN,
+    A_NT,
+    A_TT,
     ARM_NA,
     ARM_NB,
     ARM_TA,
@@ -22,8 +25,13 @@ from .layout import (
     TARGET,
     UN,
     UT,
+    W_NN,
+    W_NT,
+    W_TT,
     WAKE,
 )
+
+SINGULAR = 1e-12  # determinant of A relative to the product of its diagonal
 
 
 @uncounted
@@ -57,8 +65,18 @@ def place_row(
     ROWS[i, ARM_TB] = xb * nx + yb * ny
     ROWS[i, GAP] = gap
     mass = IM[a] + IM[b]
-    ROWS[i, K_N] = 1.0 / (mass + II[a] * ROWS[i, ARM_NA] ** 2 + II[b] * ROWS[i, ARM_NB] ** 2)
-    ROWS[i, K_T] = 1.0 / (mass + II[a] * ROWS[i, ARM_TA] ** 2 + II[b] * ROWS[i, ARM_TB] ** 2)
+    nn = mass + II[a] * ROWS[i, ARM_NA] ** 2 + II[b] * ROWS[i, ARM_NB] ** 2
+    tt = mass + II[a] * ROWS[i, ARM_TA] ** 2 + II[b] * ROWS[i, ARM_TB] ** 2
+    nt = II[a] * ROWS[i, ARM_NA] * ROWS[i, ARM_TA] + II[b] * ROWS[i, ARM_NB] * ROWS[i, ARM_TB]
+    ROWS[i, A_NN], ROWS[i, A_NT], ROWS[i, A_TT] = nn, nt, tt
+    ROWS[i, K_N] = 1.0 / nn
+    ROWS[i, K_T] = 1.0 / tt
+    if friction > 0.0:
+        det = nn * tt - nt * nt
+        regular = det > SINGULAR * nn * tt
+        ROWS[i, W_NN] = tt / det if regular else np.nan
+        ROWS[i, W_NT] = -nt / det if regular else 0.0
+        ROWS[i, W_TT] = nn / det if regular else 0.0
     ROWS[i, ELASTICITY] = elasticity
     ROWS[i, FRICTION] = friction
     ROWS[i, SURFACE] = surface

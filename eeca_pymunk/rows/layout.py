@@ -8,7 +8,7 @@ unit normal from A to B, and t = (-n_y, n_x):
     u_n = n.(v_b - v_a) + arm_nb w_b - arm_na w_a,   arm_n = r x n,  r from the centre of mass to the point,
     u_t = t.(v_b - v_a) + arm_tb w_b - arm_ta w_a + surface,   arm_t = r x t.
 
-L (m, 2): the normal impulse lam >= 0 and the tangential one on B. ROWS (m, 16):
+L (m, 2): the normal impulse lam >= 0 and the tangential one on B. ROWS (m, 22):
 """
 
 NX, NY = 0, 1  # unit normal from A to B
@@ -21,4 +21,6 @@ ELASTICITY, FRICTION = 11, 12  # of the contact: products of both shapes' values
 TARGET = 13  # b: the law is 0 <= lam _|_ u_n - b >= 0
 SURFACE = 14  # t.(surface velocity of B's shape - that of A's): length/time
 WAKE = 15  # the contact acts once u_n without its own impulse falls below this; infinity while it acts
-ROW_COLUMNS = 16
+A_NN, A_NT, A_TT = 16, 17, 18  # what a unit impulse changes of u_n and u_t: 1/mass
+W_NN, W_NT, W_TT = 19, 20, 21  # the inverse of these, with friction; nan where they are singular: mass
+ROW_COLUMNS = 22

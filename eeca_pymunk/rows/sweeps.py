@@ -17,20 +17,26 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
+from .build import SINGULAR
 from .layout import (
+    A_NN,
+    A_NT,
+    A_TT,
     ARM_NA,
     ARM_NB,
     ARM_TA,
     ARM_TB,
     FRICTION,
     K_N,
-    K_T,
     NX,
     NY,
     SURFACE,
     TARGET,
     UN,
     UT,
+    W_NN,
+    W_NT,
+    W_TT,
     WAKE,
 )
 
@@ -49,7 +55,7 @@ def coulomb(
     lam = 0.0
     beta = 0.0
     done = False
-    if det > 1e-12 * ann * att:
+    if det > SINGULAR * ann * att:
         lam = (qt * ant - qn * att) / det
         beta = (qn * ant - qt * ann) / det
         done = lam >= 0.0 and abs(beta) <= mu * lam
@@ -103,27 +109,37 @@ def sweep(
         nb = ROWS[i, ARM_NB]
         lam0 = L[i, 0]
         beta0 = L[i, 1]
-        k = ROWS[i, K_N]
+        ann = ROWS[i, A_NN]
+        mu = ROWS[i, FRICTION]
         dx = V[b, 0] - V[a, 0]
         dy = V[b, 1] - V[a, 1]
-        free = nx * dx + ny * dy + (nb * V[b, 2] - na * V[a, 2]) - lam0 / k  # own normal impulse taken away
+        short = nx * dx + ny * dy + (nb * V[b, 2] - na * V[a, 2]) - ROWS[i, TARGET]  # u_n - b
+        if ROWS[i, WAKE] < np.inf:
+            if short + ROWS[i, TARGET] - lam0 * ann < ROWS[i, WAKE]:
+                ROWS[i, WAKE] = np.inf
+            else:
+                short = np.inf
         lam = 0.0
         beta = 0.0
-        mu = ROWS[i, FRICTION]
-        ta = ROWS[i, ARM_TA]
-        tb = ROWS[i, ARM_TB]
-        if free < ROWS[i, WAKE]:
-            ROWS[i, WAKE] = np.inf
-            if mu <= 0.0:
-                lam = max(k * (ROWS[i, TARGET] - free), 0.0)
-            else:
-                att = 1.0 / ROWS[i, K_T]
-                ant = II[a] * na * ta + II[b] * nb * tb
-                ut = nx * dy - ny * dx + (tb * V[b, 2] - ta * V[a, 2]) + ROWS[i, SURFACE]
-                lam, beta = coulomb(
-                    free - ROWS[i, TARGET] - beta0 * ant, ut - beta0 * att - lam0 * ant,
-                    1.0 / k, ant, att, mu, ROWS[i, UN], ROWS[i, UT], ROWS[i, TARGET],
-                )  # fmt: skip
+        ta = 0.0
+        tb = 0.0
+        if mu <= 0.0:
+            lam = max(lam0 - ROWS[i, K_N] * short, 0.0)
+        else:
+            ta = ROWS[i, ARM_TA]
+            tb = ROWS[i, ARM_TB]
+            ut = nx * dy - ny * dx + (tb * V[b, 2] - ta * V[a, 2]) + ROWS[i, SURFACE]
+            ant = ROWS[i, A_NT]
+            qn = short - lam0 * ann - beta0 * ant
+            if qn < 0.0:
+                # Most stick, and need no more than this.
+                lam = lam0 - (ROWS[i, W_NN] * short + ROWS[i, W_NT] * ut)
+                beta = beta0 - (ROWS[i, W_NT] * short + ROWS[i, W_TT] * ut)
+                if not (abs(beta) <= mu * lam and beta * ROWS[i, UT] <= 0.0):
+                    att = ROWS[i, A_TT]
+                    lam, beta = coulomb(
+                        qn, ut - beta0 * att - lam0 * ant, ann, ant, att, mu, ROWS[i, UN], ROWS[i, UT], ROWS[i, TARGET]
+                    )
         dn = lam - lam0
         dt = beta - beta0
         if dn == 0.0 and dt == 0.0:
@@ -142,8 +158,8 @@ def sweep(
         else:
             V[a, 2] -= II[a] * (dn * na + dt * ta)
             V[b, 2] += II[b] * (dn * nb + dt * tb)
-            worst = max(worst, abs(dt) / ROWS[i, K_T])
-        worst = max(worst, abs(dn) / k)
+            worst = max(worst, abs(dt) * ROWS[i, A_TT])
+        worst = max(worst, abs(dn) * ann)
     return worst
 
 

@@ -45,7 +45,7 @@ def lifting(
     if deepest >= -_DEEP * size or not budget > 0.0:
         return 0.0, deepest
     D = np.zeros((len(IM), 3))
-    lift(A, B, ROWS, GAPS, np.zeros(m), D, IM, II, m, 0.1 * _DEEP * size, 20 + 4000 // m)
+    lift(A, B, ROWS, GAPS, np.zeros(m), D, IM, II, m, 0.1 * _DEEP * size, 10 + 1000 // m)
     work = -against(ACC, IM, II, n, D)
     turn = 0.0
     square = 0.0

@@ -18,9 +18,9 @@ from ..rows.sweeps import iterate, sweep
 LOG_R, WAIT, BACKOFF = 0, 1, 2
 FRESH = (8.0, 0.0, 0.0)  # STATE of a new island
 
-_MOVING = 40  # sweeps of a moving island
 _REST = 10  # sweeps before the first direct solution
 _AFTER = 4  # further sweeps after each
+_QUIET = 100.0  # times the residual at which all is done: enough where a large island begins with it
 _LARGE = 80  # contacts beyond which rounds that did not pay are not tried again for some steps
 _PATIENT, _IMPATIENT = 8, 2  # rounds that do not pay end the solve; fewer where the last ones failed as well
 _LONGEST = 32.0  # steps
@@ -30,25 +30,27 @@ _LONGEST = 32.0  # steps
 def relax(
     A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, FREE: FloatArray, IM: FloatArray,
     II: FloatArray, POSE: FloatArray, n: int, m: int, rounds: int, fine: float, coarse: float, STATE: FloatArray,
+    most: int,
 ) -> tuple[int, int, float]:  # fmt: skip
     """Impulses L (m, 2) and velocities V, warm-started by what they hold.
 
     Args:
-        rounds: direct solutions at most; 0 for a moving island.
+        rounds: direct solutions at most; 0 for a moving island, which gets `most` sweeps.
         fine: change of velocity by a sweep at which all is done; coarse: at which a round or a moving island is.
     Returns:
         Sweeps, direct solutions, and the last sweep's change.
     """
     if rounds == 0 or STATE[1] > 0.0:
         STATE[1] = max(STATE[1] - 1.0, 0.0)
-        sweeps, worst = iterate(A, B, ROWS, L, V, IM, II, m, max(fine, coarse), _MOVING)
+        sweeps, worst = iterate(A, B, ROWS, L, V, IM, II, m, max(fine, coarse), most)
         return sweeps, 0, worst
     sweeps = 0
     worst = np.inf
-    while sweeps < _REST and worst > fine:
+    enough = _QUIET * fine if m > _LARGE else fine
+    while sweeps < _REST and worst > enough:
         worst = sweep(A, B, ROWS, L, V, IM, II, m)
         sweeps += 1
-    if worst <= fine:
+    if worst <= enough:
         return sweeps, 0, worst
     fails = 0
     done = 0

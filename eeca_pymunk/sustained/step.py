@@ -27,6 +27,7 @@ OUT_SIZE = 8
 _FINE = 1e-12  # residual relative to |a| h
 _COARSE, _LOOSE = 1e-7, 1e-4  # residual of a large or moving island, relative to |a| h and to its speed
 _ROUNDS = 20  # direct solutions of an island near rest, or elastic
+_STILL, _FEW_SWEEPS = 1e-3, 10  # speed relative to |a| h, below which an island that waits gets so many sweeps
 _FEW_ROUNDS = 6  # of a moving island of few contacts
 
 
@@ -95,8 +96,8 @@ def moved(X: FloatArray, V: FloatArray, s: float) -> FloatArray:
 def step_island(
     POSE: FloatArray, V: FloatArray, ACC: FloatArray, IM: FloatArray, II: FloatArray, EXTENT: FloatArray, n: int,
     PAIRS: IntArray, p: int, SHAPE: FloatArray, RULE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray,
-    h: float,
-    least: float, owed: float, KEYS: IntArray, FORCES: FloatArray, COUNT: IntArray, stamp: float, STATE: FloatArray,
+    h: float, most: int, least: float, owed: float, KEYS: IntArray, FORCES: FloatArray, COUNT: IntArray, stamp: float,
+    STATE: FloatArray,
     A: IntArray, B: IntArray, ROWS: FloatArray, KEY: IntArray, L: FloatArray, LOSS: FloatArray, VN: FloatArray,
     JUMP: FloatArray, LEDGER: FloatArray, OUT: FloatArray,
 ) -> int:  # fmt: skip
@@ -107,6 +108,7 @@ def step_island(
         n: bodies that impulses move, the first of k; the others keep their velocities. A body without mobility that
             rests (the ground) is among the k as well; an island without any is free.
         PAIRS: (p, 4) as `contacts.gather`.  RULE: see `..pairs.rules`.  WORK: scratch of the geometry.
+        most: sweeps of an island that moves.
         least: length that every body's points may come at least, 0 if their velocities tell.
         owed: energy >= 0 to take out at least.
         KEYS, FORCES, COUNT, stamp: memory of forces; the number of this step.  STATE: (3,) of `relax`.
@@ -151,8 +153,11 @@ def step_island(
         few = m <= SMALL
         rounds = _ROUNDS if elastic or slow < pull * h else (_FEW_ROUNDS if few else 0)
         coarse = 0.0 if elastic or few else _COARSE * scale + _LOOSE * slow
+        if slow < _STILL * pull * h:
+            # As good as at rest: what is left goes from step to step.
+            most = min(most, _FEW_SWEEPS)
         sweeps, polishes, worst = relax(
-            A, B, ROWS, L, VN, FREE, IM, II, POSE, n, m, rounds, _FINE * scale, coarse, STATE
+            A, B, ROWS, L, VN, FREE, IM, II, POSE, n, m, rounds, _FINE * scale, coarse, STATE, most
         )  # fmt: skip
         # Sums over many sweeps have their own round-off: the velocities are those of the impulses.
         velocities(A, B, ROWS, L, FREE, IM, II, m, VN)
