@@ -11,9 +11,6 @@ contacts' laws are solved with these; until the velocities of both agree.
 
 from __future__ import annotations
 
-import math
-from typing import NamedTuple
-
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
@@ -21,14 +18,14 @@ from ..compiled import kernel, uncounted
 from ..impacts.layout import DT, Scene
 from ..impacts.spans import Local
 from ..rows.build import conserves, normal_rate, rates, tangent_rate
-from ..rows.layout import ARM_NA, ARM_NB, ARM_TA, ARM_TB, NX, NY, SURFACE, UN, UT
+from ..rows.layout import SURFACE, UN, UT
 from ..sustained.targets import target
-from .columns import Columns, fill_free, fill_group, leave_out, make_columns, push_columns, weigh
-from .component import ready, step_component
-from .gathered import find_places, gather_component, rewind_joints
+from .advance import AS_IT_IS, NOT_AT_ALL, Motion, advance, farthest_apart
+from .columns import fill_free, leave_out, make_columns, push_columns, weigh
 from .groups import Groups
 from .layout import Joints
 from .newton import FEW, solve_columns
+from .overcome import overcome
 
 _OUTER, _ELASTIC_OUTER = 6, 12  # steps of the components
 _MANY_OUTER, _PART_OUTER = 2, 1  # of islands of many contacts, whose sweeps do not come to an end; before an impact
@@ -37,73 +34,6 @@ _SWEEPS, _FEW_SWEEPS, _FEW, _ELASTIC_SWEEPS = 40, 200, 24, 400
 _FINE, _REST_FINE = 1e-9, 1e-12  # residual of the sweeps, likewise
 _LOCKS = 4
 _CHORD = 3  # steps of the components between which their answers are taken to be the same
-
-
-class Motion(NamedTuple):
-    """Of the bodies of an island, (k, 3) each: velocities V and poses END at the end, ways WAY (sums of h v_m)."""
-
-    V: FloatArray
-    WAY: FloatArray
-    END: FloatArray
-
-
-@uncounted
-def is_hit(groups: Groups, P: IntArray, Q: IntArray, m: int, g: int) -> bool:
-    """Whether any contact is on group g."""
-    hits = 0
-    for i in range(m):
-        if groups.GROUP[P[i]] == g or groups.GROUP[Q[i]] == g:
-            hits += 1
-    return hits > 0
-
-
-@kernel
-def advance(
-    A: Scene, J: Joints, isle: Local, groups: Groups, P: IntArray, Q: IntArray, ROWS: FloatArray, L: FloatArray, m: int,
-    t: float, h: float, motion: Motion, C: Columns, fill: bool,
-) -> None:  # fmt: skip
-    """Step all bodies of an island by h under the impulses L of its contacts, from where its joints were; `fill` the
-    columns C about that step."""
-    k = len(isle.IM)
-    ACC = isle.ACC.copy()
-    for i in range(m):
-        fx = (L[i, 0] * ROWS[i, NX] - L[i, 1] * ROWS[i, NY]) / h
-        fy = (L[i, 0] * ROWS[i, NY] + L[i, 1] * ROWS[i, NX]) / h
-        for side in range(2):
-            q, sign = (P[i], -1.0) if side == 0 else (Q[i], 1.0)
-            arm_n, arm_t = (ARM_NA, ARM_TA) if side == 0 else (ARM_NB, ARM_TB)
-            ACC[q, 0] += sign * isle.IM[q] * fx
-            ACC[q, 1] += sign * isle.IM[q] * fy
-            ACC[q, 2] += sign * isle.II[q] * (L[i, 0] * ROWS[i, arm_n] + L[i, 1] * ROWS[i, arm_t]) / h
-    INDEX = np.full(k, -1, np.int64)
-    for g in range(len(groups.COMPONENT)):
-        s = groups.COMPONENT[g]
-        if s < 0:
-            continue
-        rewind_joints(J, s)
-        length = gather_component(A, J, s, isle.POSE, isle.V, ACC, isle.IM, isle.II, t, h)
-        step_component(A, J, s, h, length, m == 0, motion.V, motion.WAY, motion.END)
-        if fill and is_hit(groups, P, Q, m, g):
-            size = find_places(A, J, s, INDEX)
-            if ready(J, s, h, True):
-                fill_group(J, groups, C, g, INDEX, True, P, Q, ROWS, m, np.empty((size, 3)))
-    for q in range(k):
-        if groups.GROUP[q] >= 0 and groups.COMPONENT[groups.GROUP[q]] >= 0:
-            continue
-        for c in range(3):
-            motion.V[q, c] = isle.V[q, c] + h * ACC[q, c]
-            motion.WAY[q, c] = 0.5 * h * (isle.V[q, c] + motion.V[q, c])
-            motion.END[q, c] = isle.POSE[q, c] + motion.WAY[q, c]
-
-
-@uncounted
-def farthest_apart(V: FloatArray, W: FloatArray, EXTENT: FloatArray, n: int) -> float:
-    """Largest difference of two sets of velocities, of points of the bodies."""
-    worst = 0.0
-    for q in range(n):
-        change = math.sqrt((V[q, 0] - W[q, 0]) ** 2 + (V[q, 1] - W[q, 1]) ** 2)
-        worst = max(worst, change + abs(V[q, 2] - W[q, 2]) * EXTENT[q])
-    return worst
 
 
 @uncounted
@@ -147,7 +77,7 @@ def press(
     FORESEEN = np.empty((len(isle.IM), 3))
     converged, best, LEAST, USED = False, np.inf, L.copy(), L.copy()
     for outer in range(rounds):
-        anew = outer % _CHORD == 0
+        anew = AS_IT_IS if outer % _CHORD == 0 else NOT_AT_ALL
         advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, anew)
         if outer > 0:
             off = farthest_apart(motion.V, FORESEEN, isle.EXTENT, n)
@@ -161,7 +91,7 @@ def press(
                 # Too far: the components do not answer as they did.
                 L[:] = 0.5 * (L + LEAST)
                 advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, anew)
-        if anew:
+        if anew != NOT_AT_ALL:
             weigh(groups, C, P, Q, ROWS, m)
         if outer == 0:
             EFFECT = motion.V.copy()
@@ -170,6 +100,7 @@ def press(
                 for c in range(3):
                     EFFECT[q, c] = (EFFECT[q, c] - isle.V[q, c]) / h
             target(P, Q, ROWS, m, EFFECT, EXPECTED, pull, h)
+            overcome(A, J, isle, groups, P, Q, ROWS, L, m, t, h, agree, motion, C)
         FORESEEN[:] = motion.V
         USED[:] = L
         leave_out(C, L, m, FORESEEN)
@@ -180,10 +111,10 @@ def press(
             L[:] = USED
             break
     else:
-        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, False)
+        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, NOT_AT_ALL)
         if not farthest_apart(motion.V, FORESEEN, isle.EXTENT, n) <= best:
             L[:] = LEAST
-            advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, False)
+            advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, NOT_AT_ALL)
         converged = False
     energy = 0.0
     for q in range(n):
@@ -213,7 +144,7 @@ def press(
         for i in range(m):
             L[i, 0] = s * L[i, 0] if s > 0.0 else 0.0
             L[i, 1] = s * L[i, 1] if s > 0.0 else 0.0
-        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, False)
+        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, NOT_AT_ALL)
         converged = False
         if s == 0.0:
             break

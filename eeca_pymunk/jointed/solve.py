@@ -42,13 +42,15 @@ from ..rows.layout import K_N, ROW_COLUMNS, TARGET, UN
 from ..sustained.contacts import gather
 from ..sustained.memory import remember
 from ..sustained.step import moved, recall, speeds
+from .advance import NOT_AT_ALL, Motion, advance
 from .columns import make_columns
-from .component import fit_speeds
-from .gathered import gather_component, keep_joints
+from .component import fit_speeds, step_component
+from .gathered import gather_component, keep_joints, restore_joints
 from .groups import Groups, find_groups
 from .layout import LIFTED, TURNED_WORK, Joints
 from .lifting import lift
-from .press import Motion, advance, lost, press, slip_of
+from .motors import drives
+from .press import lost, press, slip_of
 
 
 @kernel
@@ -77,6 +79,28 @@ def fit(
             if body < A.PLACE.shape[0] and A.PLACE[body] >= 0:
                 for c in range(3):
                     motion.V[A.PLACE[body], c] = J.LOCAL[w, BEFORE + c]
+
+
+@uncounted
+def foresee(
+    A: Scene, J: Joints, isle: Local, groups: Groups, t: float, h: float, motion: Motion, REACH: FloatArray
+) -> float:
+    """Add to REACH (k,) how far springs and motors move points of bodies in h; the largest such acceleration."""
+    most = 0.0
+    for g in range(len(groups.COMPONENT)):
+        s = groups.COMPONENT[g]
+        if s < 0 or not drives(J, s):
+            continue
+        length = gather_component(A, J, s, isle.POSE, isle.V, isle.ACC, isle.IM, isle.II, t, h)
+        step_component(A, J, s, h, length, False, motion.V, motion.WAY, motion.END)
+        restore_joints(J, s)
+        for w in range(groups.FIRST[g], groups.FIRST[g + 1]):
+            q = groups.BODY[w]
+            x, y = motion.WAY[q, 0] - h * isle.V[q, 0], motion.WAY[q, 1] - h * isle.V[q, 1]
+            way = math.sqrt(x * x + y * y) + abs(motion.WAY[q, 2] - h * isle.V[q, 2]) * isle.EXTENT[q]
+            REACH[q] += 1.1 * way
+            most = max(most, 2.0 * way / (h * h))
+    return most
 
 
 @kernel
@@ -113,6 +137,7 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
     slow, fast, pull = speeds(isle.V, isle.ACC, isle.EXTENT, isle.IM, n, h, REACH)
     m = 0
     if p > 0:
+        pull = max(pull, foresee(A, J, isle, groups, t, h, motion, REACH))
         NOW, THEN = np.empty((2, 5)), np.empty((2, 5))
         m = gather(
             isle.PAIRS, p, A.SHAPE, A.RULE, A.LINK, A.VERTEX, A.WORK, isle.POSE, moved(isle.POSE, isle.V, 0.5 * h),
@@ -132,7 +157,7 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
                 remember(A.KEYS, A.FORCES, COUNT[REMEMBERED:], KEY[i], L[i, 0] / h, L[i, 1] / h, load / h, A.PAR[STAMP])
     if m == 0:
         C = make_columns(groups, P, Q, 0)
-        advance(A, J, isle, groups, P, Q, ROWS, L, 0, t, h, motion, C, False)
+        advance(A, J, isle, groups, P, Q, ROWS, L, 0, t, h, motion, C, NOT_AT_ALL)
     book_turning(A, J, isle, groups, motion, n)
     if lossy and m > 0:
         budget = lost(P, Q, ROWS, L, motion.WAY, m, h) + A.RESTING[root, LOST]

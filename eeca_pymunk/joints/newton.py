@@ -23,6 +23,7 @@ from .rows import joint_rows
 from .scratch import (
     BAND,
     BEFORE,
+    BOUNDED,
     COLUMN,
     CONDENSED,
     DUAL,
@@ -94,7 +95,7 @@ def assemble(
             if build and bend != NO_BEND:
                 put_stiffness(link, local, node, k, stiff, bend, h, system, band, matrix)
         soft = link[k, L_SOFT] != 0
-        if soft and not still and held(link, k, 0):
+        if link[k, L_SOFT] == BOUNDED and not still and held(link, k, 0):
             off = put_soft(link, hinge, local, node, k, slopes, h, system, build, band, matrix, right)
             worst = max(worst, off / hinge[k, SIZE])
             continue

@@ -70,6 +70,8 @@ L_JOINT = 7  # its row in JOINT
 L_DUAL = 8  # its first unknown in a system in the rows alone
 L_NEXT = 9  # 9, 10: as FIRST, the next joint on its body a, on its body b
 LINK_COLUMNS = 11
+# L_SOFT: 0 for rows that hold exactly; 1 for impulses within bounds; 2 where these count as given, for an answer.
+BOUNDED, GIVEN = 1, 2
 
 # SPAN: one row per island.
 BODY_0, BODY_1, JOINT_0, JOINT_1 = 0, 1, 2, 3  # its slices of MEMBER and LINK

@@ -189,7 +189,9 @@ def island_step(
                     back(local, bodies)
                     look(joint, hinge, link, joints, local, node, bodies, stiff)
                 book_closing(hinge, link, joints, local, bodies, ledger)
-                ledger[CLOSED] += springs_hold(joint, hinge, link, joints) - stored
+                taken = springs_hold(joint, hinge, link, joints) - stored
+                ledger[CLOSED] += taken
+                ledger[STORED] += taken
             else:
                 ledger[PROJECTED] += kinetic(local, bodies, KEPT) - kinetic(local, bodies, BEFORE)
         save(local, bodies)

@@ -126,3 +126,42 @@ def test_random_figures_lose_and_never_gain(seed: int) -> None:
         assert now - before - max(book.external, 0.0) < 1e-9 * start
         before = now
     assert apart(space) < 1e-8
+
+
+@pytest.mark.parametrize("dt", [1 / 240, 1 / 60])
+@pytest.mark.parametrize("strength", [0.05, 0.5, 50.0])
+def test_a_motor_presses_on_a_wall_with_its_max_force_and_stays(strength: float, dt: float) -> None:
+    """Whether it needs many steps to reach its rate, or would reach it within one: native stands there, too."""
+    space = pymunk.Space()
+    space.add(pymunk.Segment(space.static_body, (0.13, 0.25), (0.13, 0.6), 0.0))
+    bar = pymunk.Body(0.125, pymunk.moment_for_box(0.125, (0.05, 0.35)))
+    bar.position, bar.angle = (0.13, 0.0), -0.3
+    motor = pymunk.SimpleMotor(space.static_body, bar, -1.0)
+    motor.max_force = strength
+    blade = pymunk.Poly(bar, [(-0.025, 0.0), (0.025, 0.0), (0.025, 0.35), (-0.025, 0.35)])
+    space.add(bar, blade, motor, pymunk.PivotJoint(space.static_body, bar, bar.position, (0, 0)))
+    stepper = ep.EECA(space)
+    for k in range(round(1.0 / dt)):
+        report = stepper.step(dt)
+        if k * dt > 0.5:
+            # The wall's end lies on the blade's side.
+            assert bar.angle == pytest.approx(-math.asin(0.025 / 0.25), abs=1e-6)
+            assert bar.angular_velocity == pytest.approx(0.0, abs=1e-9)
+            assert motor.impulse == pytest.approx(strength * dt)
+            assert report.impulse.sum() == pytest.approx(strength * dt / math.sqrt(0.25**2 - 0.025**2), rel=1e-6)
+
+
+def test_a_spring_presses_a_bar_on_a_wall_and_does_not_push_it_through() -> None:
+    space = pymunk.Space()
+    space.add(pymunk.Segment(space.static_body, (0.13, 0.25), (0.13, 0.6), 0.0))
+    bar = pymunk.Body(0.125, pymunk.moment_for_box(0.125, (0.05, 0.35)))
+    bar.position, bar.angle = (0.13, 0.0), -0.3
+    blade = pymunk.Poly(bar, [(-0.025, 0.0), (0.025, 0.0), (0.025, 0.35), (-0.025, 0.35)])
+    spring = pymunk.DampedRotarySpring(space.static_body, bar, -0.5, 1.0, 0.05)
+    space.add(bar, blade, spring, pymunk.PivotJoint(space.static_body, bar, bar.position, (0, 0)))
+    stepper = ep.EECA(space)
+    for _ in range(160):
+        report = stepper.step(1 / 80)
+    assert bar.angle == pytest.approx(-math.asin(0.025 / 0.25), abs=1e-6)
+    torque = 1.0 * (0.5 - bar.angle)
+    assert report.impulse.sum() * math.sqrt(0.25**2 - 0.025**2) == pytest.approx(torque / 80, rel=1e-6)

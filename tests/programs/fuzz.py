@@ -28,10 +28,14 @@ sizes = st.floats(0.1, 0.6).map(lambda x: round(x, 2))
 
 
 class Program:
-    """One random program; `draw` is hypothesis's. What losses may be below 0, in parts of the scale, is `gain`."""
+    """One random program; `draw` is hypothesis's.
 
-    def __init__(self, draw: Callable[..., object], gain: float = GAIN) -> None:
-        self.draw, self.gain = draw, gain
+    Args:
+        gain: what losses may be below 0, in parts of the scale.  joints: whether bodies are joined, too.
+    """
+
+    def __init__(self, draw: Callable[..., object], gain: float = GAIN, joints: bool = False) -> None:
+        self.draw, self.gain, self.joints = draw, gain, joints
         self.space = pymunk.Space()
         self.space.add(pymunk.Segment(self.space.static_body, (-5.0, -3.0), (5.0, -3.0), 0.1))
         self.stepper = ep.EECA(self.space, sync=bool(draw(st.booleans())))
@@ -90,6 +94,38 @@ class Program:
         if shape is not None:
             self.space.remove(shape)
 
+    def join(self) -> None:
+        """Any of the ten joints between two bodies, with a max_force now and then."""
+        a, b = self.body(), self.one((*self.space.bodies, self.space.static_body))
+        if not isinstance(b, pymunk.Body) or a is None or a is b or len(self.space.constraints) > 5:
+            return
+        if pymunk.Body.DYNAMIC not in (a.body_type, b.body_type):
+            return
+        p, q = ((self.size(), 0.0), (0.0, self.size()))
+        make: Callable[[], pymunk.Constraint] = self.one(  # type: ignore[assignment]
+            (
+                lambda: pymunk.PinJoint(a, b, p, q),
+                lambda: pymunk.SlideJoint(a, b, p, q, 0.2, 0.2 + self.size()),
+                lambda: pymunk.PivotJoint(a, b, p, q),
+                lambda: pymunk.GrooveJoint(a, b, (0.0, 0.0), p, q),
+                lambda: pymunk.DampedSpring(a, b, p, q, self.size(), 20.0, self.size()),
+                lambda: pymunk.DampedRotarySpring(a, b, self.number(), 5.0, self.size()),
+                lambda: pymunk.RotaryLimitJoint(a, b, -self.size(), self.size()),
+                lambda: pymunk.RatchetJoint(a, b, 0.0, self.size()),
+                lambda: pymunk.GearJoint(a, b, self.number(), 1.0 + self.size()),
+                lambda: pymunk.SimpleMotor(a, b, self.number()),
+            )
+        )
+        joint = make()
+        joint.max_force = self.one((math.inf, 0.5, 20.0))  # type: ignore[assignment]
+        joint.collide_bodies = bool(self.draw(st.booleans()))
+        self.space.add(joint)
+
+    def part(self) -> None:
+        joint = self.one(self.space.constraints)
+        if joint is not None:
+            self.space.remove(joint)  # type: ignore[arg-type]
+
     def teleport(self) -> None:
         body = self.body()
         if body is not None:
@@ -126,7 +162,7 @@ class Program:
 
     def turn_kind(self) -> None:
         body = self.body()
-        if body is not None:
+        if body is not None and not body.constraints:  # pymunk asserts that one body of a joint is dynamic
             body.body_type = self.one(KINDS)  # type: ignore[assignment]
             if body.body_type == pymunk.Body.DYNAMIC:
                 body.mass, body.moment = 1.5, 1.0
@@ -171,12 +207,15 @@ class Program:
 
     def save(self) -> None:
         handlers = self.space._handlers
-        if not handlers and not any(b._velocity_func for b in self.space.bodies):
+        stiff = any(pymunk.Body.DYNAMIC not in (c.a.body_type, c.b.body_type) for c in self.space.constraints)
+        if not handlers and not stiff and not any(b._velocity_func for b in self.space.bodies):
             pickle.loads(pickle.dumps(self.stepper))
             copy.deepcopy(self.space)
 
     def native(self) -> None:
-        self.space.step(DT)
+        # pymunk gives nan for rotary joints of bodies that do not turn.
+        if not any(math.isinf(b.moment) and b.constraints for b in self.space.bodies if b.body_type == b.DYNAMIC):
+            self.space.step(DT)
 
     def bad(self) -> None:
         """What is refused changes nothing."""
@@ -215,6 +254,8 @@ class Program:
             self.functions,
             self.after, self.ask, self.save, self.native, self.bad,
         )  # fmt: skip
+        if self.joints:
+            actions += (self.join, self.join, self.part)
         for _ in range(length):
             action: Callable[[], None] = self.draw(st.sampled_from(actions))  # type: ignore[assignment]
             note(f"{action.__name__}:")

@@ -1,4 +1,4 @@
-"""Ten thousand random programs of API calls: `python -m tests.programs.soak [COUNT] [--minutes M] [--seed S]`.
+"""Ten thousand random programs of API calls: `python -m tests.programs.soak [COUNT] [--minutes M] [--joints]`.
 
 Goes on after a failure, and prints the shortest program that fails in the same way: the calls by name, in each what
 was drawn for it. `--gain 1e-5` takes a gain of energy above that part of the scale for a failure (see `fuzz.Program`).
@@ -19,15 +19,18 @@ from .fuzz import GAIN, Program
 _BATCH = 100  # programs between two looks at the clock
 
 
-def batch(count: int, start: int, gain: float, length: int) -> str:
+def batch(count: int, start: int, gain: float, joints: bool, length: int) -> str:
     """Play so many programs that begin at a seed; what fails, empty if nothing does."""
 
     @seed(start)
-    @settings(max_examples=count, deadline=None, database=None, suppress_health_check=list(HealthCheck))
+    @settings(
+        max_examples=count, deadline=None, database=None, report_multiple_bugs=False,
+        suppress_health_check=list(HealthCheck),
+    )  # fmt: skip
     @given(st.data())
     def programs(data: st.DataObject) -> None:
         draw: Callable[..., object] = data.draw
-        Program(draw, gain).play(length)
+        Program(draw, gain, joints).play(length)
 
     try:
         programs()
@@ -36,13 +39,13 @@ def batch(count: int, start: int, gain: float, length: int) -> str:
     return ""
 
 
-def soak(count: int, minutes: float, start: int, gain: float, length: int = 40) -> int:
+def soak(count: int, minutes: float, start: int, gain: float, joints: bool, length: int = 40) -> int:
     """Play so many programs, or for so long; how many batches fail."""
     clock, failed, done = time.perf_counter(), 0, 0
     with tqdm(total=count, unit="program", desc="soak") as bar:
         while done < count and time.perf_counter() - clock < 60.0 * minutes:
             size = min(_BATCH, count - done)
-            if told := batch(size, start + done, gain, length):
+            if told := batch(size, start + done, gain, joints, length):
                 failed += 1
                 tqdm.write(f"seed {start + done}, gain {gain:g}:\n{told}\n")
             done += size
@@ -58,5 +61,6 @@ if __name__ == "__main__":
     parser.add_argument("--minutes", type=float, default=float("inf"))
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--gain", type=float, default=GAIN)
-    given_by = parser.parse_args()
-    raise SystemExit(min(soak(given_by.count, given_by.minutes, given_by.seed, given_by.gain), 1))
+    parser.add_argument("--joints", action="store_true", help="join bodies, too")
+    one = parser.parse_args()
+    raise SystemExit(min(soak(one.count, one.minutes, one.seed, one.gain, one.joints), 1))

@@ -78,8 +78,6 @@ def test_a_tip_pushes_a_tee_that_stops_when_it_does(make: Make) -> None:
 def test_a_gripper_drags_a_block_only_if_it_is_closed(make: Make, closed: bool) -> None:
     """magical's robot: a disk that a kinematic body steers through a pivot and a gear of bounded force, and two fingers
     on pins with limits and motors. The ground holds the block back by a pivot and a gear to the static body."""
-    if closed and make is OURS:
-        pytest.xfail("a motor that can speed up within a step pushes its body through what stops it")
     space, group = pymunk.Space(), pymunk.ShapeFilter(group=1)
     room(space, 4.0, 4.0, 0.1)
 

@@ -643,3 +643,21 @@ def test_joints_are_added_from_collisions_and_removed_from_post_step_callbacks()
     stepper.step(DT)
     assert len(space.constraints) == 0
     stepper.step(DT)
+
+
+@pytest.mark.parametrize("own_steps", [0, 1])
+def test_the_ledger_closes_where_joints_with_springs_are_closed(own_steps: int) -> None:
+    """Native leaves the pin apart; closing it stretches the spring."""
+    space = pymunk.Space()
+    body = pymunk.Body(1.5, 1.0)
+    body.position, body.velocity, body.angular_velocity = (2.0, 0.7), (0.3, -1.0), 0.4
+    pin = pymunk.PinJoint(space.static_body, body, (0.44, 0.0), (0.0, 0.31))
+    spring = pymunk.DampedSpring(space.static_body, body, (0.34, 0.0), (0.0, 0.33), 0.43, 20.0, 0.29)
+    space.add(body, pin, spring)
+    stepper = ep.EECA(space)
+    for _ in range(own_steps):
+        stepper.step(1 / 60)
+    space.step(1 / 60)
+    book = stepper.step(1 / 60).ledger
+    assert book is not None
+    assert book.residual == pytest.approx(0.0, abs=1e-12)

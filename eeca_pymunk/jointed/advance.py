@@ -1,0 +1,91 @@
+"""The motion of an island with joints under given impulses of its contacts."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import kernel, uncounted
+from ..impacts.layout import Scene
+from ..impacts.spans import Local
+from ..rows.layout import ARM_NA, ARM_NB, ARM_TA, ARM_TB, NX, NY
+from .columns import Columns, fill_group
+from .component import ready, step_component
+from .gathered import find_places, gather_component, rewind_joints
+from .groups import Groups
+from .layout import Joints
+from .motors import let_slip
+
+NOT_AT_ALL, AS_IT_IS, AS_IF_SLIPPING = 0, 1, 2  # what columns are filled with
+
+
+class Motion(NamedTuple):
+    """Of the bodies of an island, (k, 3) each: velocities V and poses END at the end, ways WAY (sums of h v_m)."""
+
+    V: FloatArray
+    WAY: FloatArray
+    END: FloatArray
+
+
+@uncounted
+def is_hit(groups: Groups, P: IntArray, Q: IntArray, m: int, g: int) -> bool:
+    """Whether any contact is on group g."""
+    hits = 0
+    for i in range(m):
+        if groups.GROUP[P[i]] == g or groups.GROUP[Q[i]] == g:
+            hits += 1
+    return hits > 0
+
+
+@kernel
+def advance(
+    A: Scene, J: Joints, isle: Local, groups: Groups, P: IntArray, Q: IntArray, ROWS: FloatArray, L: FloatArray, m: int,
+    t: float, h: float, motion: Motion, C: Columns, fill: int,
+) -> None:  # fmt: skip
+    """Step all bodies of an island by h under the impulses L of its contacts, from where its joints were; `fill` the
+    columns C about that step: not at all, as joints stand, or as if motors and the like were at their max_force."""
+    k = len(isle.IM)
+    ACC = isle.ACC.copy()
+    for i in range(m):
+        fx = (L[i, 0] * ROWS[i, NX] - L[i, 1] * ROWS[i, NY]) / h
+        fy = (L[i, 0] * ROWS[i, NY] + L[i, 1] * ROWS[i, NX]) / h
+        for side in range(2):
+            q, sign = (P[i], -1.0) if side == 0 else (Q[i], 1.0)
+            arm_n, arm_t = (ARM_NA, ARM_TA) if side == 0 else (ARM_NB, ARM_TB)
+            ACC[q, 0] += sign * isle.IM[q] * fx
+            ACC[q, 1] += sign * isle.IM[q] * fy
+            ACC[q, 2] += sign * isle.II[q] * (L[i, 0] * ROWS[i, arm_n] + L[i, 1] * ROWS[i, arm_t]) / h
+    INDEX = np.full(k, -1, np.int64)
+    for g in range(len(groups.COMPONENT)):
+        s = groups.COMPONENT[g]
+        if s < 0:
+            continue
+        rewind_joints(J, s)
+        length = gather_component(A, J, s, isle.POSE, isle.V, ACC, isle.IM, isle.II, t, h)
+        step_component(A, J, s, h, length, m == 0, motion.V, motion.WAY, motion.END)
+        if fill != NOT_AT_ALL and is_hit(groups, P, Q, m, g):
+            size = find_places(A, J, s, INDEX)
+            let_slip(J, s, fill == AS_IF_SLIPPING)
+            if ready(J, s, h, True):
+                fill_group(J, groups, C, g, INDEX, True, P, Q, ROWS, m, np.empty((size, 3)))
+            let_slip(J, s, False)
+    for q in range(k):
+        if groups.GROUP[q] >= 0 and groups.COMPONENT[groups.GROUP[q]] >= 0:
+            continue
+        for c in range(3):
+            motion.V[q, c] = isle.V[q, c] + h * ACC[q, c]
+            motion.WAY[q, c] = 0.5 * h * (isle.V[q, c] + motion.V[q, c])
+            motion.END[q, c] = isle.POSE[q, c] + motion.WAY[q, c]
+
+
+@uncounted
+def farthest_apart(V: FloatArray, W: FloatArray, EXTENT: FloatArray, n: int) -> float:
+    """Largest difference of two sets of velocities, of points of the bodies."""
+    worst = 0.0
+    for q in range(n):
+        change = math.sqrt((V[q, 0] - W[q, 0]) ** 2 + (V[q, 1] - W[q, 1]) ** 2)
+        worst = max(worst, change + abs(V[q, 2] - W[q, 2]) * EXTENT[q])
+    return worst
