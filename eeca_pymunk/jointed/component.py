@@ -8,7 +8,7 @@ from ..arrays import FloatArray
 from ..compiled import uncounted
 from ..impacts.layout import Scene
 from ..joints.bounds import bounded, gap
-from ..joints.correct import kinetic
+from ..joints.correct import book_fit
 from ..joints.entries import held as stands
 from ..joints.layout import GEAR
 from ..joints.ledger import springs_hold
@@ -20,7 +20,6 @@ from ..joints.scratch import (
     FREEDOMS,
     JOINT_0,
     JOINT_1,
-    KEPT,
     L_KIND,
     L_ROWS,
     L_SIDE,
@@ -73,9 +72,9 @@ def step_component(
 
 
 @uncounted
-def fit_speeds(A: Scene, J: Joints, s: int, length: float) -> float:
+def fit_speeds(A: Scene, J: Joints, s: int, length: float) -> None:
     """Make the velocities that `gather_component` has put into the scratch fit the joints, closed limits included, as
-    an impact at which nothing bounces; the kinetic energy that this costs."""
+    an impact at which nothing bounces; what this costs is booked."""
     j0, j1, b0 = J.SPAN[s, JOINT_0], J.SPAN[s, JOINT_1], J.SPAN[s, BODY_0]
     n = J.SPAN[s, BODY_1] - b0
     for k in range(j1 - j0):
@@ -84,7 +83,7 @@ def fit_speeds(A: Scene, J: Joints, s: int, length: float) -> float:
         int(SPEEDS), J.JOINT, J.HINGE, J.LINK[j0:j1], j1 - j0, J.LOCAL, J.NODE, n, 2.0, length, J.SPAN[s, LOOPS] > 0,
         0.0, J.SPAN[s], J.MATRIX, J.RIGHT, J.MORE, J.PIVOTS, J.STIFF, J.FOUND,
     )  # fmt: skip
-    return kinetic(J.LOCAL, n, KEPT) - kinetic(J.LOCAL, n, BEFORE)
+    book_fit(J.LOCAL, n, J.STEPPED[s])
 
 
 @uncounted

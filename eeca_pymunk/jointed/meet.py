@@ -147,7 +147,10 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> float:
     """Bring the islands of shapes a and b, which are seen to meet at instant t, to the instant at which they do."""
     i, j = A.LINK[a, OWNER], A.LINK[b, OWNER]
     roots = (A.STATE[i, ISLAND], A.STATE[j, ISLAND] if A.BODY[j, IM] > 0.0 else -1)
-    least = 0.0
+    # Nobody goes back in time, to where what overlaps would have met.
+    least = A.BODY[i, SINCE]
+    if A.BODY[j, IM] > 0.0:
+        least = max(least, A.BODY[j, SINCE])
     for root in roots:
         if root >= 0 and A.MEMBER[root, OPEN] > 0 and A.MEMBER[root, JOINTED] > 0:
             least = max(least, A.BODY[root, SINCE])

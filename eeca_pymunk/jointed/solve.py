@@ -34,7 +34,6 @@ from ..impacts.layout import (
     Scene,
 )
 from ..impacts.spans import Local, dismiss, lay_out_island, open_contacts
-from ..joints.layout import PROJECTED
 from ..joints.scratch import BEFORE, BODY_0, BODY_1, M_BODY
 from ..layout import AX, ELASTICITY
 from ..rows.build import normal_rate
@@ -73,7 +72,7 @@ def fit(
         if s < 0 or not pushed:
             continue
         length = gather_component(A, J, s, motion.END, motion.V, NOTHING, isle.IM, isle.II, end, h)
-        J.STEPPED[s, PROJECTED] += fit_speeds(A, J, s, length)
+        fit_speeds(A, J, s, length)
         for w in range(J.SPAN[s, BODY_1] - J.SPAN[s, BODY_0]):
             body = J.MEMBER[J.SPAN[s, BODY_0] + w, M_BODY]
             if body < A.PLACE.shape[0] and A.PLACE[body] >= 0:

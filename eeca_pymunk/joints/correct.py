@@ -8,6 +8,7 @@ from __future__ import annotations
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
 from .bounds import TOUCH, approach, bounded, gap
+from .layout import PROJECTED, SUPPORTS
 from .scratch import BEFORE, KEPT, L_ROWS, L_SIDE, L_SOFT, MOBILITY, PUSHED, SIZE
 
 
@@ -20,6 +21,26 @@ def kinetic(local: FloatArray, bodies: int, column: int) -> float:
             if local[i, MOBILITY + c] > 0.0:
                 total += 0.5 * local[i, column + c] ** 2 / local[i, MOBILITY + c]
     return total
+
+
+@uncounted
+def book_fit(local: FloatArray, bodies: int, ledger: FloatArray) -> None:
+    """Book the change of velocities, from KEPT to BEFORE, that made them fit their joints.
+
+    It is orthogonal to what fits, so that (1/2) dv.M dv is lost; the rest of the change of kinetic energy is the work
+    of supports, which is 0 unless they move.
+    """
+    gained = kinetic(local, bodies, BEFORE) - kinetic(local, bodies, KEPT)
+    lost, moves = 0.0, False
+    for i in range(bodies):
+        for c in range(3):
+            if local[i, MOBILITY + c] > 0.0:
+                lost += 0.5 * (local[i, BEFORE + c] - local[i, KEPT + c]) ** 2 / local[i, MOBILITY + c]
+            elif local[i, BEFORE + c] != 0.0:
+                moves = True
+    ledger[PROJECTED] += lost if moves else -gained
+    if moves:
+        ledger[SUPPORTS] += gained + lost
 
 
 @uncounted

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
-from .correct import kinetic
+from .correct import book_fit
 from .layout import (
     CLOSED,
     DAMPING,
@@ -27,7 +27,6 @@ from .layout import (
     LENGTH_1,
     LINEAR,
     NOTCH,
-    PROJECTED,
     RATCHET,
     ROTARY_SPRING,
     SIDE,
@@ -49,7 +48,6 @@ from .scratch import (
     COS,
     ENDED,
     FREE,
-    KEPT,
     L_A,
     L_B,
     L_JOINT,
@@ -193,7 +191,7 @@ def island_step(
                 ledger[CLOSED] += taken
                 ledger[STORED] += taken
             else:
-                ledger[PROJECTED] += kinetic(local, bodies, KEPT) - kinetic(local, bodies, BEFORE)
+                book_fit(local, bodies, ledger)
         save(local, bodies)
     if needs >= 2:
         look(joint, hinge, link, joints, local, node, bodies, stiff)

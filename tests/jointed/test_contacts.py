@@ -165,3 +165,54 @@ def test_a_spring_presses_a_bar_on_a_wall_and_does_not_push_it_through() -> None
     assert bar.angle == pytest.approx(-math.asin(0.025 / 0.25), abs=1e-6)
     torque = 1.0 * (0.5 - bar.angle)
     assert report.impulse.sum() * math.sqrt(0.25**2 - 0.025**2) == pytest.approx(torque / 80, rel=1e-6)
+
+
+@pytest.mark.parametrize("kind", ["pivot", "pin", "gear"])
+@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
+def test_a_moving_support_pays_for_what_it_sets_going(kind: str, unit: float) -> None:
+    """The velocity jumps by dv to what fits the joint: (1/2) dv.M dv is lost, the rest is the work of the support."""
+    space, body = pymunk.Space(), pymunk.Body(1.5, unit * unit)
+    support = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    support.velocity, support.angular_velocity = (1.0 * unit, 0.5 * unit), 0.7
+    body.position = (2.0 * unit, 0.7 * unit)
+    joint: pymunk.Constraint
+    if kind == "pivot":
+        joint = pymunk.PivotJoint(support, body, (unit, 0.5 * unit))
+    elif kind == "pin":
+        joint = pymunk.PinJoint(support, body, (0, 0), (0, 0))
+    else:
+        joint = pymunk.GearJoint(support, body, 0.0, 1.0)
+    space.add(support, body, joint)
+    ledger = ep.EECA(space).step(1e-9).ledger
+    gained = 0.5 * 1.5 * body.velocity.length**2 + 0.5 * unit * unit * body.angular_velocity**2
+    assert ledger is not None
+    assert ledger.restitution == pytest.approx(gained, rel=1e-5)
+    assert ledger.external == pytest.approx(2.0 * gained, rel=1e-5)
+    assert abs(ledger.residual) <= 1e-13 * gained
+
+
+def test_free_bodies_that_overlap_beside_joints_do_not_go_back_in_time() -> None:
+    """Balls lie on an L that a slide joint holds at its limit; some overlap as they land."""
+    space = pymunk.Space()
+    space.gravity = 0.0, 900.0
+    bar = pymunk.Body(10.0, 10000.0)
+    bar.position, bar.angle, bar.angular_velocity = (300.0, 300.0), -0.25056740282256035, -0.8610807133981175
+    legs = [pymunk.Segment(bar, p, q, 1.0) for p, q in (((-145, 0), (255, 0)), ((-145, 0), (-145, -25)))]
+    space.add(bar, *legs)
+    pin, slide = pymunk.Body(body_type=pymunk.Body.STATIC), pymunk.Body(body_type=pymunk.Body.STATIC)
+    pin.position, slide.position = (300.0, 300.0), (200.0, 300.0)
+    space.add(pymunk.PinJoint(bar, pin, (0, 0), (0, 0)), pymunk.SlideJoint(bar, slide, (-100, 0), (0, 0), 0, 25))
+    for x, y, vx, vy, spin in (
+        (170.00081015755865, 316.3820201282212, 16.377441132044105, 125.6678152286018, 0.13798840135679902),
+        (197.35742741508014, 310.4133283176172, 11.337391295652438, 102.54487042177566, -1.8282815375655228),
+        (224.57029412544102, 303.8178303847197, 2.3310656704538726, 65.46628771735284, -0.896586634918918),
+        (250.41731238949725, 293.0513513474903, -4.942993739182866, 47.649472194060216, -2.937399796958845),
+    ):
+        ball = pymunk.Body(1.0, 98.0)
+        ball.position, ball.velocity, ball.angular_velocity = (x, y), (vx, vy), spin
+        space.add(ball, pymunk.Circle(ball, 14.0))
+    for shape in space.shapes:
+        shape.friction = 1.0
+    ledger = ep.EECA(space).step(1 / 50).ledger
+    assert ledger is not None
+    assert abs(ledger.residual) <= 1e-12 * abs(ledger.change)
