@@ -521,13 +521,13 @@ def test_short_pins_equal_limits_and_points_of_grooves_hold_as_what_they_are() -
 def test_the_model_names_joints() -> None:
     space, (a, b) = pair()
     stepper = ep.EECA(space)
-    assert "1 joints (1 PivotJoint)" in stepper.model
+    assert "1 joints (1 PivotJoint), order 4, 2 in contact and at limits" in stepper.model
     for name in ("pin", "pivot", "motor", "spring", "groove"):
         space.add(KINDS[name](a, b))
     next(iter(space.constraints)).max_force = 5.0
     assert (
         "6 joints (2 PivotJoint, 1 DampedSpring, 1 GrooveJoint, 1 PinJoint, 1 SimpleMotor), limits, motors, springs, "
-        "limited forces"
+        "limited forces, order 4 where nothing dissipates, else 2"
     ) in stepper.model
     space.remove(*space.constraints)
     assert "joint" not in stepper.model
