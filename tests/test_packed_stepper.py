@@ -331,7 +331,7 @@ def test_shapes_that_stay_are_not_read_again(monkeypatch: pytest.MonkeyPatch) ->
     stepper = FreeFlight(space)
     asked: list[pymunk.Shape] = []
     read = world_of_space.read
-    monkeypatch.setattr(world_of_space, "read", lambda shape: (asked.append(shape), read(shape))[1])
+    monkeypatch.setattr(world_of_space, "read", lambda shape, *wall: (asked.append(shape), read(shape, *wall))[1])
     added = pymunk.Circle(space.static_body, 1.0, (700.0, 700.0))
     added.elasticity = 1.0
     space.add(added)

@@ -32,7 +32,7 @@ _MANY_OUTER, _PART_OUTER = 2, 1  # of islands of many contacts, whose sweeps do 
 _AGREE, _REST_AGREE, _ELASTIC_AGREE = 1e-6, 1e-11, 1e-13  # velocities of both solutions, over |a| h and the speed
 _SWEEPS, _FEW_SWEEPS, _FEW, _ELASTIC_SWEEPS = 40, 200, 24, 400
 _FINE, _REST_FINE = 1e-9, 1e-12  # residual of the sweeps, likewise
-_LOCKS = 4
+_LOCKS = 10
 _CHORD = 3  # steps of the components between which their answers are taken to be the same
 
 

@@ -84,9 +84,11 @@ def read_joints(
         hinge[k, BOUND] = joint[j, MAX_FORCE]
         hinge[k, SIZE] = 1.0 if kind >= GEAR else length
         joint[j, WORK] = 0.0
+        # Bodies that were put elsewhere start as those that are new: they go the same ways again, bit by bit.
+        edited = tie[j, TOUCHED] == 1
         for end in range(2):
             for c in range(3):
-                local[link[k, L_A + end], LEAD + c] = joint[j, LED + 3 * end + c]
+                local[link[k, L_A + end], LEAD + c] = 0.0 if edited else joint[j, LED + 3 * end + c]
         if kind == MOTOR:
             hinge[k, TARGET] = -joint[j, RATE]
         elif is_soft:
