@@ -20,7 +20,6 @@ FRESH = (8.0, 0.0, 0.0)  # STATE of a new island
 
 _REST = 10  # sweeps before the first direct solution
 _AFTER = 4  # further sweeps after each
-_QUIET = 100.0  # times the residual at which all is done: enough where a large island begins with it
 _LARGE = 80  # contacts beyond which rounds that did not pay are not tried again for some steps
 _PATIENT, _IMPATIENT = 8, 2  # rounds that do not pay end the solve; fewer where the last ones failed as well
 _LONGEST = 32.0  # steps
@@ -46,11 +45,10 @@ def relax(
         return sweeps, 0, worst
     sweeps = 0
     worst = np.inf
-    enough = _QUIET * fine if m > _LARGE else fine
-    while sweeps < _REST and worst > enough:
+    while sweeps < _REST and worst > fine:
         worst = sweep(A, B, ROWS, L, V, IM, II, m)
         sweeps += 1
-    if worst <= enough:
+    if worst <= fine:
         return sweeps, 0, worst
     fails = 0
     done = 0

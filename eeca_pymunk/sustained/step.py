@@ -27,7 +27,7 @@ OUT_SIZE = 8
 _FINE = 1e-12  # residual relative to |a| h
 _COARSE, _LOOSE = 1e-7, 1e-4  # residual of a large or moving island, relative to |a| h and to its speed
 _ROUNDS = 20  # direct solutions of an island near rest, or elastic
-_STILL, _FEW_SWEEPS = 1e-3, 10  # speed relative to |a| h, below which an island that waits gets so many sweeps
+_AT_REST = 40  # sweeps of an island near rest that waits for its next direct solution
 _FEW_ROUNDS = 6  # of a moving island of few contacts
 
 
@@ -153,9 +153,9 @@ def step_island(
         few = m <= SMALL
         rounds = _ROUNDS if elastic or slow < pull * h else (_FEW_ROUNDS if few else 0)
         coarse = 0.0 if elastic or few else _COARSE * scale + _LOOSE * slow
-        if slow < _STILL * pull * h:
-            # As good as at rest: what is left goes from step to step.
-            most = min(most, _FEW_SWEEPS)
+        if slow < pull * h:
+            # What stands tall falls over by what is left undone.
+            most = _AT_REST
         sweeps, polishes, worst = relax(
             A, B, ROWS, L, VN, FREE, IM, II, POSE, n, m, rounds, _FINE * scale, coarse, STATE, most
         )  # fmt: skip
