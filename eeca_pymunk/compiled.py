@@ -77,6 +77,12 @@ def inlined(python: Callable[P, R]) -> Callable[P, R]:
     return Kernel(python, _nrt=False, inline="always")
 
 
+def merged(python: Callable[P, R]) -> Callable[P, R]:
+    """An uncounted kernel that becomes part of its callers when machine code is made of these: as `inlined`, for what
+    is larger, or called in many places, and best compiled once."""
+    return Kernel(python, _nrt=False, forceinline=True)
+
+
 def disabled() -> bool:
     """Whether kernels run as plain Python because NUMBA_DISABLE_JIT asks for it."""
     return os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0")

@@ -85,12 +85,14 @@ class EECA(PackedStepper):
     def _adjust(self, world: World, dt: float) -> None:
         """Tell the method what joints and collision handlers have to say about this step."""
         parted = False
-        if world.joints is not None:
-            world.joints.look(world.state, world.bodies.row, dt)
-            if world.joints.replan:
+        joints = world.joints
+        if joints is not None:
+            if not joints.idle():
+                joints.look(world.state, world.bodies.row, dt)
+            if joints.replan:
                 assert isinstance(self._method, JointedLoop)
                 self._method.plan()
-                world.joints.planned()
+                joints.planned()
             parted = world.part()
         if world.collisions or parted:
             self._method.rule(world.told())

@@ -45,25 +45,34 @@ _CLOSED = 1e-11  # of the size of a component, that joints may be off where bodi
 
 
 @uncounted
-def step_component(
-    A: Scene, J: Joints, s: int, h: float, length: float, whole: bool, VN: FloatArray, WAY: FloatArray, END: FloatArray
-) -> int:
-    """Step component s by h from what `gather_component` has put into its scratch; its status.
+def step_in_scratch(J: Joints, s: int, h: float, length: float, whole: bool) -> int:
+    """Step component s by h from what is in its scratch, where its end stands then; its status.
 
-    Args:
-        whole: whether order 4 may be had: nothing else acts in the span.
-        VN, WAY, END: (k, 3) of the island, out: velocities at the end, ways (sums of h v_m), poses at the end.
+    `whole`: whether order 4 may be had: nothing else acts in the span.
     """
     j0, j1, b0 = J.SPAN[s, JOINT_0], J.SPAN[s, JOINT_1], J.SPAN[s, BODY_0]
     n = J.SPAN[s, BODY_1] - b0
     order = J.TALLY[ORDER] if whole else 2
     status = island_step(
         J.JOINT, J.TIE, J.HINGE, J.LINK[j0:j1], j1 - j0, J.LOCAL, J.NODE, n, h, order, length, J.SPAN[s], J.MATRIX,
-        J.RIGHT, J.MORE, J.PIVOTS, J.STIFF, J.FOUND, J.PART, J.STEPPED[s],
+        J.RIGHT, J.MORE, J.PIVOTS, J.STIFF, J.FOUND, J.PART, J.PAST[b0 + j0 + s : b0 + n + j1 + s + 1], J.STEPPED[s],
     )  # fmt: skip
     J.TALLY[REPEATS] += 1
     J.TALLY[WORST] = max(J.TALLY[WORST], status)
-    for i in range(n):
+    return int(status)
+
+
+@uncounted
+def step_component(
+    A: Scene, J: Joints, s: int, h: float, length: float, whole: bool, VN: FloatArray, WAY: FloatArray, END: FloatArray
+) -> int:
+    """`step_in_scratch` from what `gather_component` has put there; its status.
+
+    VN, WAY, END: (k, 3) of the island, out: velocities at the end, ways (sums of h v_m), poses at the end.
+    """
+    status = step_in_scratch(J, s, h, length, whole)
+    b0 = J.SPAN[s, BODY_0]
+    for i in range(J.SPAN[s, BODY_1] - b0):
         if J.NODE[i, FREEDOMS] > 0:
             q = A.PLACE[J.MEMBER[b0 + i, M_BODY]]
             for c in range(3):
@@ -144,7 +153,7 @@ def ready(J: Joints, s: int, h: float, about_step: bool) -> bool:
     what = STEP if about_step else SPEEDS
     J.TALLY[ANSWERS] = prepare(
         what, J.JOINT, J.HINGE, J.LINK[j0:j1], j1 - j0, J.LOCAL, J.NODE, J.SPAN[s, BODY_1] - b0, h, J.SPAN[s],
-        J.MATRIX, J.RIGHT, J.STIFF, J.PIVOTS,
+        J.MATRIX, J.RIGHT, J.MORE, J.STIFF, J.PIVOTS,
     )  # fmt: skip
     return bool(J.TALLY[ANSWERS] >= 0)
 

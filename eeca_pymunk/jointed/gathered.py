@@ -34,6 +34,8 @@ from ..joints.scratch import (
     SIN,
 )
 from ..layout import ANGLE, SPIN, VX, VY, X, Y
+from ..layout import II as TURNING
+from ..layout import IM as INVERSE
 from .layout import Joints
 
 
@@ -70,39 +72,34 @@ def rewind_joints(J: Joints, s: int) -> None:
 
 
 @uncounted
-def gather_component(
-    A: Scene, J: Joints, s: int, POSE_OF: FloatArray, V: FloatArray, ACC: FloatArray, IM: FloatArray, II: FloatArray,
-    t: float, h: float,
-) -> float:  # fmt: skip
-    """The bodies of component s into its scratch; its size, the length that errors are measured by.
-
-    Moved bodies stand at A.PLACE in the arrays of the island; others where they are at instant t.
-    """
+def seat(A: Scene, J: Joints, m: int, i: int, t: float) -> None:
+    """The body of row m of MEMBER to i of the scratch: what does not move by joints where it is at instant t, others
+    all but what they do."""
     LOCAL, NODE, n = J.LOCAL, J.NODE, A.BODY.shape[0]
-    length = 0.0
-    b0 = J.SPAN[s, BODY_0]
-    for i in range(J.SPAN[s, BODY_1] - b0):
-        body = int(J.MEMBER[b0 + i, M_BODY])
-        NODE[i, COLUMN], NODE[i, FREEDOMS] = J.MEMBER[b0 + i, M_COLUMN], J.MEMBER[b0 + i, M_FREEDOMS]
-        NODE[i, FIRST], LOCAL[i, CAYLEY] = J.MEMBER[b0 + i, M_FIRST], J.MEMBER[b0 + i, M_CAYLEY]
-        if NODE[i, FREEDOMS] > 0:
-            q = A.PLACE[body]
-            for c in range(3):
-                LOCAL[i, POSE + c], LOCAL[i, BEFORE + c], LOCAL[i, FREE + c] = POSE_OF[q, c], V[q, c], ACC[q, c]
-                LOCAL[i, MOBILITY + c] = IM[q] if c < 2 else II[q]
-        else:
-            x, y, angle, vx, vy, spin = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-            if body < n:
-                x, y, angle = pose(A.BODY, body, t)
-                vx, vy, spin = rate(A.BODY, body, t)
-            else:
-                P = J.PARTNER[body - n]
-                x, y, angle, vx, vy, spin = P[X], P[Y], P[ANGLE], P[VX], P[VY], P[SPIN]
-            LOCAL[i, POSE], LOCAL[i, POSE + 1], LOCAL[i, POSE + 2] = x, y, angle
-            LOCAL[i, BEFORE], LOCAL[i, BEFORE + 1], LOCAL[i, BEFORE + 2] = vx, vy, spin
-            for c in range(3):
-                LOCAL[i, FREE + c] = 0.0
-                LOCAL[i, MOBILITY + c] = 0.0
+    NODE[i, COLUMN], NODE[i, FREEDOMS] = J.MEMBER[m, M_COLUMN], J.MEMBER[m, M_FREEDOMS]
+    NODE[i, FIRST], LOCAL[i, CAYLEY] = J.MEMBER[m, M_FIRST], J.MEMBER[m, M_CAYLEY]
+    if NODE[i, FREEDOMS] > 0:
+        return
+    body = int(J.MEMBER[m, M_BODY])
+    x, y, angle, vx, vy, spin = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    if body < n:
+        x, y, angle = pose(A.BODY, body, t)
+        vx, vy, spin = rate(A.BODY, body, t)
+    else:
+        P = J.PARTNER[body - n]
+        x, y, angle, vx, vy, spin = P[X], P[Y], P[ANGLE], P[VX], P[VY], P[SPIN]
+    LOCAL[i, POSE], LOCAL[i, POSE + 1], LOCAL[i, POSE + 2] = x, y, angle
+    LOCAL[i, BEFORE], LOCAL[i, BEFORE + 1], LOCAL[i, BEFORE + 2] = vx, vy, spin
+    for c in range(3):
+        LOCAL[i, FREE + c] = 0.0
+        LOCAL[i, MOBILITY + c] = 0.0
+
+
+@uncounted
+def size_up(J: Joints, s: int, h: float) -> float:
+    """Complete the bodies in the scratch of component s; its size, the length that errors are measured by."""
+    LOCAL, length = J.LOCAL, 0.0
+    for i in range(J.SPAN[s, BODY_1] - J.SPAN[s, BODY_0]):
         for c in range(3):
             LOCAL[i, ROOT + c] = math.sqrt(LOCAL[i, MOBILITY + c])
         LOCAL[i, COS], LOCAL[i, SIN] = math.cos(LOCAL[i, POSE + 2]), math.sin(LOCAL[i, POSE + 2])
@@ -112,6 +109,43 @@ def gather_component(
         for c in range(4):
             length = max(length, abs(J.JOINT[J.LINK[k, L_JOINT], ANCHOR_AX + c]))
     return length if length > 0.0 else 1.0
+
+
+@uncounted
+def gather_component(
+    A: Scene, J: Joints, s: int, POSE_OF: FloatArray, V: FloatArray, ACC: FloatArray, IM: FloatArray, II: FloatArray,
+    t: float, h: float,
+) -> float:  # fmt: skip
+    """The bodies of component s into its scratch; its size, the length that errors are measured by.
+
+    Moved bodies stand at A.PLACE in the arrays of the island; others where they are at instant t.
+    """
+    LOCAL = J.LOCAL
+    b0 = J.SPAN[s, BODY_0]
+    for i in range(J.SPAN[s, BODY_1] - b0):
+        seat(A, J, b0 + i, i, t)
+        if J.NODE[i, FREEDOMS] > 0:
+            q = A.PLACE[J.MEMBER[b0 + i, M_BODY]]
+            for c in range(3):
+                LOCAL[i, POSE + c], LOCAL[i, BEFORE + c], LOCAL[i, FREE + c] = POSE_OF[q, c], V[q, c], ACC[q, c]
+                LOCAL[i, MOBILITY + c] = IM[q] if c < 2 else II[q]
+    return size_up(J, s, h)
+
+
+@uncounted
+def gather_alone(A: Scene, J: Joints, s: int, t: float, h: float) -> float:
+    """`gather_component` of one that is an island of its own, whose bodies are at instant t."""
+    LOCAL, BODY = J.LOCAL, A.BODY
+    b0 = J.SPAN[s, BODY_0]
+    for i in range(J.SPAN[s, BODY_1] - b0):
+        seat(A, J, b0 + i, i, t)
+        if J.NODE[i, FREEDOMS] > 0:
+            body = J.MEMBER[b0 + i, M_BODY]
+            for c in range(3):
+                LOCAL[i, POSE + c], LOCAL[i, BEFORE + c] = BODY[body, X + c], BODY[body, VX + c]
+                LOCAL[i, FREE + c] = A.PULL[body, c]
+                LOCAL[i, MOBILITY + c] = BODY[body, INVERSE] if c < 2 else BODY[body, TURNING]
+    return size_up(J, s, h)
 
 
 @uncounted

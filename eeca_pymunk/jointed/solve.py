@@ -42,6 +42,7 @@ from ..sustained.contacts import gather
 from ..sustained.memory import remember
 from ..sustained.step import moved, recall, speeds
 from .advance import NOT_AT_ALL, Motion, advance
+from .alone import begin_alone, is_alone
 from .columns import make_columns
 from .component import fit_speeds, step_component
 from .gathered import gather_component, keep_joints, restore_joints
@@ -108,6 +109,9 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
 
     DONE, or PUSHES_FULL, which leaves everything as it was.
     """
+    if is_alone(A, J, root):
+        begin_alone(A, J, root, t, h)
+        return DONE
     BODY, STATE, MEMBER, COUNT = A.BODY, A.STATE, A.MEMBER, A.COUNT
     n = MEMBER[root, BODIES]
     MINE = np.empty(n, np.int64)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from ..arrays import FloatArray
 from ..compiled import uncounted
 from .layout import GEAR, MAX_FORCE, NOTCH, PHASE, PUSH, RATCHET, RATIO, REST, ROTARY_SPRING, STIFFNESS, UPPER
+from .motion import turn
 from .scratch import (
     AFTER,
     ARM_A,
@@ -49,6 +50,8 @@ def angle_rows(
     local: FloatArray, a: int, b: int, stiff: FloatArray,
 ) -> int:  # fmt: skip
     """`joint_rows` of gears, rotary limits, ratchets, motors and rotary springs."""
+    turn(local, a)
+    turn(local, b)
     for c in range(VALUE, WEIGHT):
         hinge[k, c] = 0.0
     lam = hinge[k, LAM]

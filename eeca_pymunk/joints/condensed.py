@@ -9,7 +9,7 @@ and needs no pivots. Rows are those of the factors (FROZEN), also where these se
 from __future__ import annotations
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import inlined, uncounted
+from ..compiled import inlined, merged, uncounted
 from .scratch import COLUMN, FREEDOMS, FROZEN, L_A, L_ROW, L_ROWS, MISSING, ROOT, ROWS, SCALE, WEIGHT
 
 PASSES = 3
@@ -38,10 +38,10 @@ def dot(row: FloatArray, other: FloatArray) -> float:
     return float((a + b) + (c + d))
 
 
-@uncounted
+@merged
 def factor(matrix: FloatArray, size: int, band: int) -> bool:
-    """LU factors without pivots in place of `matrix`, A[i, j] at i (2 band + 1) + j - i + band; False if a pivot
-    vanishes."""
+    """LU factors without pivots in place of `matrix`, A[i, j] at i (2 band + 1) + j - i + band, reciprocals on the
+    diagonal; False if a pivot vanishes."""
     width = 2 * band + 1
     for k in range(size):
         at = k * width + band
@@ -49,6 +49,7 @@ def factor(matrix: FloatArray, size: int, band: int) -> bool:
         if not abs(pivot) > 1e-300:
             return False
         inverse = 1.0 / pivot
+        matrix[at] = inverse
         reach = min(band + 1, size - k)
         for i in range(k + 1, k + reach):
             to = i * width + k - i + band
@@ -64,7 +65,7 @@ def factor(matrix: FloatArray, size: int, band: int) -> bool:
     return True
 
 
-@uncounted
+@merged
 def substitute(matrix: FloatArray, size: int, band: int, right: FloatArray, at: int) -> None:
     """Solve with the factors, in place of right[at : at + size]."""
     width = 2 * band + 1
@@ -85,12 +86,13 @@ def substitute(matrix: FloatArray, size: int, band: int, right: FloatArray, at: 
         if band >= _WIDE:
             total -= dot(matrix[begin + 1 : begin + 1 + n], right[at + i + 1 : at + i + 1 + n])
         else:
-            for j in range(1, n + 1):
+            # What was found last comes last: nothing else waits for it.
+            for j in range(n, 0, -1):
                 total -= matrix[begin + j] * right[at + i + j]
-        right[at + i] = total / matrix[begin]
+        right[at + i] = total * matrix[begin]
 
 
-@uncounted
+@merged
 def freeze(
     hinge: FloatArray, link: IntArray, local: FloatArray, node: IntArray, k: int, r: int, slopes: int
 ) -> None:  # fmt: skip

@@ -8,7 +8,7 @@ a body and itself. For pivots that is all there is; for other joints without spr
 from __future__ import annotations
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import uncounted
+from ..compiled import merged
 from .condensed import factor, substitute
 from .scratch import (
     COLUMN,
@@ -16,6 +16,7 @@ from .scratch import (
     DUAL_SIZE,
     FIRST,
     FREEDOMS,
+    FROZEN,
     INERTIA,
     L_A,
     L_DUAL,
@@ -28,18 +29,20 @@ from .scratch import (
     WEIGHT,
 )
 
+STRIDE = 7  # of scratch per row: six entries and its number
 LEAST = 0.1  # of a body's inertia, that the bending of rows may leave
 
 
-@uncounted
+@merged
 def factor_dual(
     hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray, bodies: int, slopes: int,
-    add: float, span: IntArray, matrix: FloatArray,
+    add: float, span: IntArray, matrix: FloatArray, more: FloatArray,
 ) -> bool:  # fmt: skip
     """LU factors of S + `add` in `matrix`; False if there are none that can be trusted.
 
     Args:
-        slopes: where the rows G stand in `hinge`.  span: the island's row of SPAN.
+        slopes: where the rows G stand in `hinge`; they and the rows J are kept at FROZEN, scaled.
+        span: the island's row of SPAN.  more: scratch, STRIDE of the rows.
         local: INERTIA, the diagonal of A as `newton.assemble` left it; its reciprocal on return.
     """
     size, band = span[DUAL_SIZE], span[DUAL_BAND]
@@ -51,64 +54,82 @@ def factor_dual(
             matrix[(link[k, L_DUAL] + r) * width + band] = add if hinge[k, WEIGHT + r] != 0.0 else 1.0
     for i in range(bodies):
         freedoms = node[i, FREEDOMS]
-        for c in range(freedoms):
-            if not local[i, INERTIA + c] > LEAST:
-                return False
-            local[i, INERTIA + c] = 1.0 / local[i, INERTIA + c]
-        one = node[i, FIRST]
+        if freedoms == 0:
+            continue
+        a, b, c = local[i, INERTIA], local[i, INERTIA + 1], local[i, INERTIA + 2] if freedoms > 2 else 1.0
+        if not (a > LEAST and b > LEAST and c > LEAST):
+            return False
+        a, b, c = 1.0 / a, 1.0 / b, 1.0 / c
+        local[i, INERTIA], local[i, INERTIA + 1], local[i, INERTIA + 2] = a, b, c
+        x, y, z = local[i, ROOT], local[i, ROOT + 1], local[i, ROOT + 2] if freedoms > 2 else 0.0
+        # The rows on this body, then all pairs of them.
+        count, one = 0, node[i, FIRST]
         while one >= 0:
             k, end = one >> 1, one & 1
             for r in range(link[k, L_ROWS]):
-                if hinge[k, WEIGHT + r] == 0.0:
-                    continue
-                g = slopes + 6 * r + 3 * end
-                scale, y = hinge[k, SCALE + r], 0.0
-                x = scale * hinge[k, g] * local[i, ROOT] ** 2 * local[i, INERTIA]
-                if freedoms > 1:
-                    y = scale * hinge[k, g + 1] * local[i, ROOT + 1] ** 2 * local[i, INERTIA + 1]
-                w = scale * hinge[k, g + 2] * local[i, ROOT + 2] ** 2 * local[i, INERTIA + 2] if freedoms > 2 else 0.0
-                row = link[k, L_DUAL] + r
-                other = node[i, FIRST]
-                while other >= 0:
-                    m, side = other >> 1, other & 1
-                    for s in range(link[m, L_ROWS]):
-                        if hinge[m, WEIGHT + s] != 0.0:
-                            j = ROWS + 6 * s + 3 * side
-                            total = x * hinge[m, j] + y * hinge[m, j + 1] + w * hinge[m, j + 2]
-                            matrix[row * width + link[m, L_DUAL] + s - row + band] += total * hinge[m, SCALE + s]
-                    other = link[m, L_NEXT + side]
+                scale = hinge[k, SCALE + r] if hinge[k, WEIGHT + r] != 0.0 else 0.0
+                at = 6 * r + 3 * end
+                u, v, w = scale * x, scale * y, scale * z
+                jx, jy, jw = u * hinge[k, ROWS + at], v * hinge[k, ROWS + at + 1], w * hinge[k, ROWS + at + 2]
+                gx, gy, gw = u * hinge[k, slopes + at], v * hinge[k, slopes + at + 1], w * hinge[k, slopes + at + 2]
+                to = FROZEN + at
+                hinge[k, to], hinge[k, to + 1], hinge[k, to + 2] = jx, jy, jw
+                hinge[k, to + 12], hinge[k, to + 13], hinge[k, to + 14] = gx, gy, gw
+                p = STRIDE * count
+                more[p], more[p + 1], more[p + 2] = jx, jy, jw
+                more[p + 3], more[p + 4], more[p + 5] = gx * a, gy * b, gw * c
+                more[p + 6] = link[k, L_DUAL] + r
+                count += 1
             one = link[k, L_NEXT + end]
+        for m in range(count):
+            p = STRIDE * m
+            gx, gy, gw = more[p + 3], more[p + 4], more[p + 5]
+            begin = int(more[p + 6]) * 2 * band + band
+            for n in range(count):
+                q = STRIDE * n
+                matrix[begin + int(more[q + 6])] += gx * more[q] + gy * more[q + 1] + gw * more[q + 2]
     return factor(matrix, size, band)
 
 
-@uncounted
+@merged
 def back_dual(
-    hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray, bodies: int, slopes: int,
-    span: IntArray, matrix: FloatArray, right: FloatArray, more: FloatArray,
+    hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray, bodies: int, span: IntArray,
+    matrix: FloatArray, right: FloatArray, more: FloatArray,
 ) -> None:  # fmt: skip
     """Solve with the factors of `factor_dual` in place of `right`, bodies and rows; `more` is scratch for the rows."""
     for i in range(bodies):
         for c in range(node[i, FREEDOMS]):
             right[node[i, COLUMN] + c] *= local[i, INERTIA + c]
     for k in range(joints):
-        for r in range(link[k, L_ROWS]):
-            total = 0.0
-            if hinge[k, WEIGHT + r] != 0.0:
-                for end in range(2):
-                    i = link[k, L_A + end]
-                    for c in range(node[i, FREEDOMS]):
-                        entry = hinge[k, slopes + 6 * r + 3 * end + c] * local[i, ROOT + c]
-                        total += entry * right[node[i, COLUMN] + c]
-            more[link[k, L_DUAL] + r] = right[link[k, L_ROW] + r] - hinge[k, SCALE + r] * total
+        rows, row = link[k, L_ROWS], link[k, L_ROW]
+        for r in range(rows):
+            more[link[k, L_DUAL] + r] = right[row + r]
+        for end in range(2):
+            i = link[k, L_A + end]
+            first, freedoms = node[i, COLUMN], node[i, FREEDOMS]
+            if freedoms == 0:
+                continue
+            x, y, w = right[first], right[first + 1], right[first + 2] if freedoms > 2 else 0.0
+            for r in range(rows):
+                at = FROZEN + 12 + 6 * r + 3 * end
+                more[link[k, L_DUAL] + r] -= hinge[k, at] * x + hinge[k, at + 1] * y + hinge[k, at + 2] * w
     substitute(matrix, span[DUAL_SIZE], span[DUAL_BAND], more, 0)
     for k in range(joints):
-        for r in range(link[k, L_ROWS]):
-            push = more[link[k, L_DUAL] + r]
-            right[link[k, L_ROW] + r] = push
-            if hinge[k, WEIGHT + r] != 0.0:
-                push *= hinge[k, SCALE + r]
-                for end in range(2):
-                    i = link[k, L_A + end]
-                    for c in range(node[i, FREEDOMS]):
-                        entry = hinge[k, ROWS + 6 * r + 3 * end + c] * local[i, ROOT + c]
-                        right[node[i, COLUMN] + c] += push * entry * local[i, INERTIA + c]
+        rows, row = link[k, L_ROWS], link[k, L_ROW]
+        for r in range(rows):
+            right[row + r] = more[link[k, L_DUAL] + r]
+        for end in range(2):
+            i = link[k, L_A + end]
+            first, freedoms = node[i, COLUMN], node[i, FREEDOMS]
+            if freedoms == 0:
+                continue
+            x = y = w = 0.0
+            for r in range(rows):
+                at, push = FROZEN + 6 * r + 3 * end, more[link[k, L_DUAL] + r]
+                x += push * hinge[k, at]
+                y += push * hinge[k, at + 1]
+                w += push * hinge[k, at + 2]
+            right[first] += x * local[i, INERTIA]
+            right[first + 1] += y * local[i, INERTIA + 1]
+            if freedoms > 2:
+                right[first + 2] += w * local[i, INERTIA + 2]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import uncounted
+from ..compiled import merged
 from .layout import GROOVE, RATCHET, ROTARY_LIMIT, SLIDE
 from .scratch import (
     COLUMN,
@@ -30,7 +30,7 @@ from .scratch import (
 )
 
 
-@uncounted
+@merged
 def held(link: IntArray, k: int, r: int) -> bool:
     """Whether row r of joint k acts: rows of limits do where the joint stands on one."""
     kind = link[k, L_KIND]
@@ -39,7 +39,7 @@ def held(link: IntArray, k: int, r: int) -> bool:
     return kind not in (SLIDE, ROTARY_LIMIT, RATCHET) or link[k, L_SIDE] != 0
 
 
-@uncounted
+@merged
 def along(hinge: FloatArray, link: IntArray, k: int, row: int, local: FloatArray, column: int) -> float:
     """The six entries of joint k at `row` of `hinge` times those of its bodies at `column` of `local`."""
     a, b = link[k, L_A], link[k, L_B]
@@ -49,7 +49,7 @@ def along(hinge: FloatArray, link: IntArray, k: int, row: int, local: FloatArray
     return total
 
 
-@uncounted
+@merged
 def put_rows(
     link: IntArray, hinge: FloatArray, local: FloatArray, node: IntArray, k: int, r: int, slopes: int, weight: float,
     band: int, matrix: FloatArray,
@@ -66,7 +66,7 @@ def put_rows(
             matrix[(row + d) * width + band - d] -= hinge[k, ROWS + at] * root
 
 
-@uncounted
+@merged
 def put_condensed(
     link: IntArray, hinge: FloatArray, node: IntArray, k: int, r: int, band: int, matrix: FloatArray
 ) -> None:
@@ -84,7 +84,7 @@ def put_condensed(
                     matrix[first + d] += factor * hinge[k, at + d]
 
 
-@uncounted
+@merged
 def put_stiffness(
     link: IntArray, local: FloatArray, node: IntArray, k: int, stiff: FloatArray, bend: int, h: float, system: int,
     band: int, matrix: FloatArray,
@@ -110,7 +110,7 @@ def put_stiffness(
                     matrix[first + d] -= stiff[3 * end + c, 3 * other + d] * factor * local[m, ROOT + d]
 
 
-@uncounted
+@merged
 def put_free(
     link: IntArray, hinge: FloatArray, k: int, r: int, system: int, build: bool, band: int, matrix: FloatArray,
     right: FloatArray,
@@ -123,7 +123,7 @@ def put_free(
         matrix[row * (3 * band + 1) + band] = 1.0
 
 
-@uncounted
+@merged
 def scale_rows(link: IntArray, hinge: FloatArray, local: FloatArray, k: int) -> None:
     """SCALE of the rows of joint k."""
     for r in range(link[k, L_ROWS]):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray
-from ..compiled import uncounted
+from ..compiled import merged, uncounted
 from .scratch import (
     AFTER,
     BEFORE,
@@ -29,39 +29,48 @@ from .scratch import (
 )
 
 
-@uncounted
+@merged
 def move(local: FloatArray, bodies: int, h: float) -> None:
-    """Fill in WAY and what follows from it, of the present velocities at the end."""
+    """Fill in WAY and what follows from it, of the present velocities at the end, but for the angle itself (`turn`)."""
     for i in range(bodies):
         for c in range(3):
-            local[i, WAY + c] = 0.5 * h * (local[i, 3 + c] + local[i, AFTER + c])
+            local[i, WAY + c] = 0.5 * h * (local[i, BEFORE + c] + local[i, AFTER + c])
         chi = local[i, WAY + 2]
         t = 0.5 * chi
-        if local[i, CAYLEY] > 0.0:
+        if local[i, CAYLEY] > 0.0 or chi == 0.0:
             slope = 1.0 / (1.0 + t * t)
-            turned = 2.0 * np.arctan(t)
-            local[i, TURNED] = turned
             local[i, TURN_COS] = (1.0 - t * t) * slope
             local[i, TURN_SIN] = chi * slope
             local[i, SLOPE] = slope
             local[i, LEVER] = 1.0
-            if abs(t) < 1e-3:
-                local[i, PER] = 1.0 - t * t / 3.0 + t**4 / 5.0
-                local[i, BEND] = -t / 3.0 + 0.4 * t**3
-            else:
-                local[i, PER] = turned / chi
-                local[i, BEND] = (slope - turned / chi) / chi
         else:
-            local[i, TURNED] = chi
             local[i, TURN_COS] = np.cos(chi)
             local[i, TURN_SIN] = np.sin(chi)
             local[i, SLOPE] = 1.0
             local[i, LEVER] = np.tan(t) / t if abs(t) > 1e-3 else 1.0 + t * t / 3.0 + 2.0 * t**4 / 15.0
-            local[i, PER] = 1.0
-            local[i, BEND] = 0.0
 
 
 @uncounted
+def turn(local: FloatArray, i: int) -> None:
+    """Fill in the angle that body i turns by, over chi too, after `move`: for joints of angles."""
+    chi = local[i, WAY + 2]
+    t = 0.5 * chi
+    if local[i, CAYLEY] > 0.0:
+        slope, turned = local[i, SLOPE], 2.0 * np.arctan(t)
+        local[i, TURNED] = turned
+        if abs(t) < 1e-3:
+            local[i, PER] = 1.0 - t * t / 3.0 + t**4 / 5.0
+            local[i, BEND] = -t / 3.0 + 0.4 * t**3
+        else:
+            local[i, PER] = turned / chi
+            local[i, BEND] = (slope - turned / chi) / chi
+    else:
+        local[i, TURNED] = chi
+        local[i, PER] = 1.0
+        local[i, BEND] = 0.0
+
+
+@merged
 def settle(local: FloatArray, bodies: int, h: float) -> None:
     """Velocities at the end from the balance of momentum, to round-off, and the way that they make."""
     for i in range(bodies):
@@ -71,7 +80,7 @@ def settle(local: FloatArray, bodies: int, h: float) -> None:
     move(local, bodies, h)
 
 
-@uncounted
+@merged
 def advance(local: FloatArray, bodies: int, h: float) -> None:
     """Make the end of a part h of the step the start of the next."""
     for i in range(bodies):
@@ -80,8 +89,9 @@ def advance(local: FloatArray, bodies: int, h: float) -> None:
             local[i, TRAVEL + c] += local[i, WAY + c]
         local[i, POSE] += local[i, WAY]
         local[i, POSE + 1] += local[i, WAY + 1]
-        local[i, POSE + 2] += local[i, TURNED]
+        chi = local[i, WAY + 2]
+        local[i, POSE + 2] += 2.0 * np.arctan(0.5 * chi) if local[i, CAYLEY] > 0.0 and chi != 0.0 else chi
         for c in range(3):
             local[i, BEFORE + c] = local[i, AFTER + c]
-        local[i, COS] = np.cos(local[i, POSE + 2])
-        local[i, SIN] = np.sin(local[i, POSE + 2])
+        c0, s0, c1, s1 = local[i, COS], local[i, SIN], local[i, TURN_COS], local[i, TURN_SIN]
+        local[i, COS], local[i, SIN] = c0 * c1 - s0 * s1, s0 * c1 + c0 * s1

@@ -16,7 +16,7 @@ a *dual* one the rows alone (`dual`).
 from __future__ import annotations
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import uncounted
+from ..compiled import merged
 from .condensed import freeze
 from .entries import along, held, put_condensed, put_free, put_rows, put_stiffness, scale_rows
 from .rows import joint_rows
@@ -57,7 +57,7 @@ from .scratch import (
 from .soft import put_soft
 
 
-@uncounted
+@merged
 def assemble(
     what: int, joint: FloatArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray,
     bodies: int, h: float, give: float, first: bool, system: int, build: bool, span: IntArray, matrix: FloatArray,

@@ -14,6 +14,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel
 from ..layout import II, IM
+from .dual import STRIDE
 from .layout import ANCHOR_AX, ANCHOR_AY, ANCHOR_BX, ANCHOR_BY, BODY_A, BODY_B, GEAR, GROOVE, KIND, MOTOR, SOFT
 from .ordering import order_rows, order_unknowns
 from .rows import row_count
@@ -207,13 +208,14 @@ def cycles(link: IntArray, member: IntArray, span: IntArray, s: int) -> int:
 
 class Room(NamedTuple):
     """The most of anything that an island of a plan needs: bodies, joints, rows of a matrix, its entries, entries of a
-    right side."""
+    right side, and of scratch."""
 
     bodies: int
     joints: int
     rows: int
     matrix: int
     right: int
+    scratch: int
 
 
 def room_for(span: IntArray) -> Room:
@@ -226,4 +228,5 @@ def room_for(span: IntArray) -> Room:
         int(np.maximum(span[:, UNKNOWNS], span[:, DUAL_SIZE]).max(initial=1)),
         int(np.where(span[:, RIGID] > 0, np.maximum(whole, dual), whole).max(initial=1)),
         int(2 * (span[:, UNKNOWNS] + span[:, ROWS_OF]).max(initial=1)),
+        STRIDE * int(span[:, DUAL_SIZE].max(initial=1)),
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray
-from ..compiled import uncounted
+from ..compiled import merged, uncounted
 from .layout import LENGTH, LOWER, MAX_FORCE, OFFSET, PIVOT, PUSH, REST, SLIDE, SPRING, STIFFNESS, UPPER
 from .scratch import (
     APART,
@@ -32,7 +32,7 @@ from .scratch import (
 from .springs import mean_force
 
 
-@uncounted
+@merged
 def point_rows(
     kind: int, side: int, soft: bool, h: float, joint: FloatArray, j: int, hinge: FloatArray, k: int,
     local: FloatArray, a: int, b: int, bends: bool, stiff: FloatArray,

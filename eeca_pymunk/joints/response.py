@@ -47,8 +47,8 @@ _REFINE = 2  # passes that take back what epsilon, for redundant rows, has chang
 @uncounted
 def prepare(
     what: int, joint: FloatArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray,
-    bodies: int, h: float, span: IntArray, matrix: FloatArray, right: FloatArray, stiff: FloatArray,
-    pivots: IntArray,
+    bodies: int, h: float, span: IntArray, matrix: FloatArray, right: FloatArray, more: FloatArray,
+    stiff: FloatArray, pivots: IntArray,
 ) -> int:  # fmt: skip
     """Factors of the matrix that `respond` needs, in `matrix` and `pivots`; their system, -1 if there are none.
 
@@ -77,7 +77,7 @@ def prepare(
             stiff,
         )  # fmt: skip
         if decompose(
-            what, hinge, link, joints, local, node, bodies, system, LEAST_EPSILON, 0.0, span, matrix, pivots
+            what, hinge, link, joints, local, node, bodies, system, LEAST_EPSILON, 0.0, span, matrix, more, pivots
         ):  # fmt: skip
             return int(system)
         if system != DUAL:

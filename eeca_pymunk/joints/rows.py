@@ -20,7 +20,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import uncounted
+from ..compiled import merged, uncounted
 from .angles import angle_rows
 from .layout import (
     ANCHOR_AX,
@@ -64,7 +64,7 @@ from .scratch import (
 )
 
 
-@uncounted
+@merged
 def joint_rows(
     joint: FloatArray, hinge: FloatArray, link: IntArray, k: int, local: FloatArray, h: float, bends: bool,
     stiff: FloatArray,
@@ -93,7 +93,7 @@ def joint_rows(
     return bend
 
 
-@uncounted
+@merged
 def start_joint(joint: FloatArray, hinge: FloatArray, link: IntArray, k: int, local: FloatArray, h: float) -> None:
     """What stays the same over the iterations: arms, distance and normal at the start, a spring's damping."""
     kind, a, b, j = link[k, L_KIND], link[k, L_A], link[k, L_B], link[k, L_JOINT]

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import uncounted
+from ..compiled import merged, uncounted
 from .banded import back_banded, factor_banded
 from .condensed import PASSES, back_condensed, factor
 from .correct import goes_on, keep
@@ -63,7 +63,7 @@ MOST_CLOSINGS = 8
 MOST_PASSES = 12
 
 
-@uncounted
+@merged
 def begin(
     what: int, joint: FloatArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray,
     bodies: int, h: float,
@@ -80,7 +80,7 @@ def begin(
     move(local, bodies, h)
 
 
-@uncounted
+@merged
 def balance(local: FloatArray, node: IntArray, bodies: int, h: float, length: float, right: FloatArray) -> float:
     """Residuals of the balance of momentum, scaled, into `right`; the worst as a way, over length or as an angle."""
     worst = 0.0
@@ -93,7 +93,7 @@ def balance(local: FloatArray, node: IntArray, bodies: int, h: float, length: fl
     return worst
 
 
-@uncounted
+@merged
 def apply(
     what: int, link: IntArray, hinge: FloatArray, joints: int, local: FloatArray, node: IntArray, bodies: int,
     right: FloatArray,
@@ -111,18 +111,19 @@ def apply(
             hinge[k, impulse + r] += right[link[k, L_ROW] + r] * hinge[k, SCALE + r]
 
 
-@uncounted
+@merged
 def decompose(
     what: int, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray, bodies: int,
-    system: int, epsilon: float, give: float, span: IntArray, matrix: FloatArray, pivots: IntArray,
+    system: int, epsilon: float, give: float, span: IntArray, matrix: FloatArray, more: FloatArray, pivots: IntArray,
 ) -> bool:  # fmt: skip
-    """Factors in the place of what `assemble` has built, with `epsilon` on the rows' block; False if there are none."""
+    """Factors in the place of what `assemble` has built, with `epsilon` on the rows' block; False if there are none.
+    `more` is scratch, as in `back`."""
     size, band = span[UNKNOWNS], span[BAND]
     if system == CONDENSED:
         return factor(matrix, size, band)
     if system == DUAL:
         slopes = SLOPES if what == STEP else ROWS
-        return factor_dual(hinge, link, joints, local, node, bodies, slopes, epsilon + give, span, matrix)
+        return factor_dual(hinge, link, joints, local, node, bodies, slopes, epsilon + give, span, matrix, more)
     if epsilon > 0.0:
         for k in range(joints):
             for r in range(link[k, L_ROWS]):
@@ -130,20 +131,19 @@ def decompose(
     return factor_banded(matrix, size, band, pivots)
 
 
-@uncounted
+@merged
 def back(
     what: int, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray, bodies: int,
     system: int, passes: int, span: IntArray, matrix: FloatArray, right: FloatArray, more: FloatArray,
     pivots: IntArray,
 ) -> None:  # fmt: skip
     """Solve with the factors of `decompose` in place of `right`: changes of velocities, and of impulses. `more` is
-    scratch, as long as the largest matrix has rows."""
+    scratch, see `plan.Room`."""
     size, band = span[UNKNOWNS], span[BAND]
     if system == CONDENSED:
         back_condensed(hinge, link, joints, node, passes, size, band, matrix, right, len(right) - size)
     elif system == DUAL:
-        slopes = SLOPES if what == STEP else ROWS
-        back_dual(hinge, link, joints, local, node, bodies, slopes, span, matrix, right, more)
+        back_dual(hinge, link, joints, local, node, bodies, span, matrix, right, more)
     else:
         back_banded(matrix, size, band, pivots, right)
 
@@ -233,7 +233,7 @@ def solve(
                 if what not in (POSES, SPEEDS):
                     balance(local, node, bodies, h, length, right)
             if decompose(
-                what, hinge, link, joints, local, node, bodies, system, epsilon, give, span, matrix, pivots
+                what, hinge, link, joints, local, node, bodies, system, epsilon, give, span, matrix, more, pivots
             ):  # fmt: skip
                 ready = True
             elif system == DUAL:

@@ -16,45 +16,49 @@ import pymunk
 
 _watching: WeakSet[Edits] = WeakSet()
 _readings: WeakKeyDictionary[pymunk.Constraint, tuple[Any, int]] = WeakKeyDictionary()
+_showings = 0
 _native_impulse: Any = pymunk.Constraint.impulse
 _native_setattr = pymunk.Constraint.__setattr__
 
 
 class Edits:
-    """Which of some constraints had an attribute set since last asked."""
+    """Which of some constraints had an attribute set since last asked: `some`, their rows."""
 
     def __init__(self, row: dict[pymunk.Constraint, int]) -> None:
         self._row = row
-        self._edited: set[int] = set()
+        self.some: set[int] = set()
         _watching.add(self)
         pymunk.Constraint.__setattr__ = _set  # type: ignore[method-assign, assignment]
 
     def take(self) -> set[int]:
         """Their rows; then none."""
-        if not self._edited:
-            return self._edited
-        edited, self._edited = self._edited, set()
+        edited, self.some = self.some, set()
         return edited
 
     def add(self, rows: Iterable[int]) -> None:
         """As if these had been set."""
-        self._edited.update(rows)
+        self.some.update(rows)
 
     def forget(self, row: int) -> None:
         """Take no notice of what was set just now."""
-        self._edited.discard(int(row))
+        self.some.discard(int(row))
 
     def hear(self, constraint: pymunk.Constraint) -> None:
         """An attribute of a constraint was set."""
         row = self._row.get(constraint)
         if row is not None:
-            self._edited.add(row)
+            self.some.add(row)
 
 
 def _set(self: pymunk.Constraint, name: str, value: Any) -> None:
     _native_setattr(self, name, value)
     for edits in _watching:
         edits.hear(self)
+
+
+def showings() -> int:
+    """How often `show_impulses` was called."""
+    return _showings
 
 
 def shown(item: pymunk.Constraint) -> Any:
@@ -64,6 +68,8 @@ def shown(item: pymunk.Constraint) -> Any:
 
 def show_impulses(items: Sequence[pymunk.Constraint], read: Callable[[int], float | None]) -> Any:
     """Let `impulse` of these constraints be `read(row)`, a method, as long as its object lives and it knows one."""
+    global _showings
+    _showings += 1
     method = WeakMethod(read)
     for j, item in enumerate(items):
         _readings[item] = method, j

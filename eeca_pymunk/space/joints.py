@@ -30,7 +30,7 @@ from ..joints.layout import (
 )
 from . import private
 from .constraints import check_constraint, read
-from .edits import Edits, show_impulses, shown
+from .edits import Edits, show_impulses, showings, shown
 from .partners import Partners
 from .spring_functions import Motion, Rate, law, own_function, put_law
 
@@ -57,6 +57,7 @@ class JointRows:
         """The rows of the constraints of `space`, whose bodies have these rows of n; what `past` knows is kept."""
         self.space, self._n = space, n
         self._shown: Any = None
+        self._showings = -1
         self.items = list(space.constraints)
         self.joint: FloatArray = np.zeros((len(self.items), JOINT_COLUMNS))
         self.tie: IntArray = np.zeros((len(self.items), TIE_COLUMNS), np.int64)
@@ -77,7 +78,7 @@ class JointRows:
         self.touch(n + self.partners.changed)
         self.row: dict[pymunk.Constraint, int] = {item: j for j, item in enumerate(self.items)}
         self._edits = Edits(self.row)
-        self._ratchets = np.flatnonzero(self.tie[:, KIND] == RATCHET)
+        self._ratchets = np.flatnonzero(self.tie[:, KIND] == RATCHET).tolist()
         self._timestamp = private.timestamp(space)
         self._ours = -1
         self._rates: dict[pymunk.Constraint, Rate] = {} if past is None else past._rates
@@ -99,6 +100,8 @@ class JointRows:
 
     def refresh(self) -> bool:
         """Read anew the constraints that the user changed; whether joints must be planned anew."""
+        if not self._edits.some:
+            return self.replan
         edited = self._edits.take()
         try:
             for j in edited:
@@ -113,8 +116,7 @@ class JointRows:
             off = self.joint[j, ANCHORS] != 0.0
             if kind != self.tie[j, KIND] or soft != self.tie[j, SOFT] or bool((off != off_before).any()):
                 self.replan = True
-        if edited:
-            self._find_functions()
+        self._find_functions()
         return self.replan
 
     def laws(self) -> list[Callable[[Any, float], float]]:
@@ -138,8 +140,13 @@ class JointRows:
 
     def calls_back(self) -> bool:
         """Whether a constraint has a function that is called once a step."""
-        self.refresh()
-        return bool(self.before or self.after)
+        if self._edits.some:
+            self.refresh()
+        return len(self.calling) > 0
+
+    def idle(self) -> bool:
+        """Whether there is nothing for `look` to do."""
+        return not (self._edits.some or self.functions or self.partners.outside)
 
     def look(self, state: FloatArray, place: Mapping[pymunk.Body, int], dt: float) -> None:
         """Bring what the step needs up to date: edits, places of partners, laws of springs with functions.
@@ -194,6 +201,8 @@ class JointRows:
             item = self.items[j]
             if item.angle != self.joint[j, NOTCH]:
                 item.angle = float(self.joint[j, NOTCH])
-                self._edits.forget(int(j))
-        if self._shown is None or shown(self.items[0]) is not self._shown:
-            self._shown = show_impulses(self.items, self.impulse)
+                self._edits.forget(j)
+        if self._showings != showings():
+            if self._shown is None or shown(self.items[0]) is not self._shown:
+                self._shown = show_impulses(self.items, self.impulse)
+            self._showings = showings()

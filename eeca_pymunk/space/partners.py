@@ -25,6 +25,7 @@ class Partners:
 
     Attributes:
         items: the bodies, by row.  PARTNER: (x, BODY_COLUMNS) their poses and, of kinematic ones, velocities.
+        outside: rows of those that are not in the space, and may have moved.
     """
 
     def __init__(self, items: Sequence[pymunk.Body], space: pymunk.Space, past: Partners | None = None) -> None:
@@ -38,12 +39,12 @@ class Partners:
                     self._known[i] = past._known[before[body]]
                     self.PARTNER[i] = past.PARTNER[before[body]]
         # Static bodies of the space are looked after where the state of all its bodies is read.
-        self._outside = [i for i, body in enumerate(self.items) if body.space is not space]
+        self.outside = [i for i, body in enumerate(self.items) if body.space is not space]
         self.changed: IntArray = self._read(range(len(self.items)))
 
     def read(self) -> IntArray:
         """Look where those are that may have moved; the rows of those that have."""
-        return self._read(self._outside)
+        return self._read(self.outside)
 
     def _read(self, rows: Sequence[int]) -> IntArray:
         changed = []

@@ -113,8 +113,9 @@ class World(Crossing):
 
     def settle(self) -> None:
         """Let joints tell of the step, and take no notice of how pymunk rounds what was written to it."""
-        if self.joints is not None:
-            self.joints.write()
+        joints = self.joints
+        if joints is not None:
+            joints.write()
             if self.eccentric and self.current():
                 self.gather()
                 self.left_as_read()
