@@ -23,7 +23,7 @@ from ..pairs.layout import NUMBER, START
 from ..pairs.rules import barred
 from .component import step_in_scratch
 from .gathered import gather_alone, keep_joints
-from .layout import LIFTED, STEPPED_COLUMNS, TURNED_WORK, Joints
+from .layout import STEPPED_COLUMNS, TURNED_WORK, Joints
 
 
 @uncounted

@@ -8,6 +8,7 @@ from ..arrays import IntArray
 from ..compiled import kernel, uncounted
 from ..geometry.flight import pose
 from ..geometry.gap import gap_at
+from ..impacts.block import crowded
 from ..impacts.booking import book
 from ..impacts.islands import members
 from ..impacts.layout import (
@@ -42,7 +43,7 @@ from .layout import LIFTED, TURNED_WORK, Joints
 from .solve import begin_span
 
 _MEET = 1e-13  # gap at an impact, over the smaller shape
-_SECANTS, _LOADED_SECANTS = 5, 2  # also where other contacts push
+_SECANTS, _LOADED_SECANTS = 5, 2  # also where other contacts push; in a crowd one
 _INSTANT = 1e-12  # of a step, below which a span is none
 
 
@@ -156,6 +157,7 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> float:
             least = max(least, A.BODY[root, SINCE])
     small = min(A.SHAPE[a, SIZE], A.SHAPE[b, SIZE])
     before, gap_before = -1.0, 0.0
+    most = 1 if crowded(A, a, b) else _LOADED_SECANTS
     for tries in range(_SECANTS):
         loaded = shorten(A, J, roots[0], t)
         if roots[1] != roots[0]:
@@ -163,7 +165,7 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> float:
         xi, yi, qi = pose(A.BODY, i, t)
         xj, yj, qj = pose(A.BODY, j, t)
         g, nx, ny, px, py = gap_at(A.SHAPE, A.LINK, A.VERTEX, A.WORK, a, xi, yi, qi, b, xj, yj, qj)
-        if (loaded and tries + 1 >= _LOADED_SECANTS) or abs(g) <= _MEET * small:
+        if (loaded and tries + 1 >= most) or abs(g) <= _MEET * small:
             break
         slope = 0.0
         if before >= 0.0 and t != before:

@@ -15,6 +15,7 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
+from ..impacts.block import CROWD
 from ..impacts.layout import DT, Scene
 from ..impacts.spans import Local
 from ..rows.build import conserves, normal_rate, rates, tangent_rate
@@ -31,8 +32,10 @@ _OUTER, _ELASTIC_OUTER = 6, 12  # steps of the components
 _MANY_OUTER, _PART_OUTER = 2, 1  # of islands of many contacts, whose sweeps do not come to an end; before an impact
 _AGREE, _REST_AGREE, _ELASTIC_AGREE = 1e-6, 1e-11, 1e-13  # velocities of both solutions, over |a| h and the speed
 _SWEEPS, _FEW_SWEEPS, _FEW, _ELASTIC_SWEEPS = 40, 200, 24, 400
+_OF_CROWD, _AGAIN = 24, 12  # sweeps of a crowd; of one that was hit in this step
 _FINE, _REST_FINE = 1e-9, 1e-12  # residual of the sweeps, likewise
 _LOCKS = 10
+_SOME = 12  # contacts from which on the span before an impact, which is solved again after it, is solved roughly
 _CHORD = 3  # steps of the components between which their answers are taken to be the same
 
 
@@ -72,8 +75,13 @@ def press(
     fine = (1e-15 if elastic else (_REST_FINE if rests else _FINE)) * scale
     most = _ELASTIC_SWEEPS if elastic else (_FEW_SWEEPS if m <= _FEW else _SWEEPS)
     rounds = _ELASTIC_OUTER if elastic else _OUTER
+    part = t + h < A.PAR[DT] * (1.0 - 1e-12)
+    if m > _SOME and part and not elastic:
+        rounds = _MANY_OUTER
     if m > FEW and not elastic:
-        rounds = _MANY_OUTER if t + h >= A.PAR[DT] * (1.0 - 1e-12) else _PART_OUTER
+        rounds = _PART_OUTER if part else _MANY_OUTER
+        if n >= CROWD:
+            most = _OF_CROWD if t == 0.0 else _AGAIN
     FORESEEN = np.empty((len(isle.IM), 3))
     converged, best, LEAST, USED = False, np.inf, L.copy(), L.copy()
     for outer in range(rounds):

@@ -76,9 +76,9 @@ class JointedLoop(EventLoop):
             joint, tie, self._partner, span, member, link, np.zeros((room.joints, HINGE_COLUMNS)),
             np.zeros((room.bodies, LOCAL_COLUMNS)), np.zeros((room.bodies, NODE_COLUMNS), np.int64),
             np.zeros(room.matrix), np.zeros(room.right), np.zeros(room.scratch), np.zeros((6, 6)), np.zeros(5),
-            np.zeros(8), np.zeros((components + 3 * count, PAST_COLUMNS)), np.zeros(room.rows, np.int64), of, np.zeros((count, JOINT_COLUMNS)),
-            np.zeros((count, TIE_COLUMNS), np.int64), np.zeros((max(components, 1), STEPPED_COLUMNS)),
-            tally,
+            np.zeros(8), np.zeros((components + 3 * count, PAST_COLUMNS)), np.zeros(room.rows, np.int64), of,
+            np.zeros((count, JOINT_COLUMNS)), np.zeros((count, TIE_COLUMNS), np.int64),
+            np.zeros((max(components, 1), STEPPED_COLUMNS)), tally,
         )  # fmt: skip
         self._ties = table_of(self.joints)
 

@@ -13,6 +13,7 @@ from ..impacts.islands import members
 from ..impacts.layout import (
     BODIES,
     DONE,
+    DT,
     FIRST_SHAPE,
     KINKS,
     LIFT,
@@ -163,12 +164,13 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
         advance(A, J, isle, groups, P, Q, ROWS, L, 0, t, h, motion, C, NOT_AT_ALL)
     book_turning(A, J, isle, groups, motion, n)
     if lossy and m > 0:
-        budget = lost(P, Q, ROWS, L, motion.WAY, m, h) + A.RESTING[root, LOST]
-        spent = lift(A, J, isle, groups, P, Q, ROWS, m, n, motion.V, motion.WAY, motion.END, t + h, h, budget)
-        for g in range(len(groups.COMPONENT)):
-            if groups.COMPONENT[g] >= 0:
-                J.STEPPED[groups.COMPONENT[g], LIFTED] = spent
-                break
+        if t + h >= A.PAR[DT] * (1.0 - 1e-12):
+            budget = lost(P, Q, ROWS, L, motion.WAY, m, h) + A.RESTING[root, LOST]
+            spent = lift(A, J, isle, groups, P, Q, ROWS, m, n, motion.V, motion.WAY, motion.END, t + h, h, budget)
+            for g in range(len(groups.COMPONENT)):
+                if groups.COMPONENT[g] >= 0:
+                    J.STEPPED[groups.COMPONENT[g], LIFTED] = spent
+                    break
         fit(A, J, isle, groups, P, Q, L, m, motion, t + h, h)
     dismiss(A, MINE, n)
     COUNT[SOLVES] += 1

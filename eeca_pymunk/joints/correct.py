@@ -9,7 +9,9 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
 from .bounds import TOUCH, approach, bounded, gap
 from .layout import PROJECTED, SUPPORTS
-from .scratch import BEFORE, KEPT, L_ROWS, L_SIDE, L_SOFT, MOBILITY, PUSHED, SIZE
+from .scratch import BEFORE, KEPT, L_A, L_B, L_ROWS, L_SIDE, L_SOFT, MOBILITY, PUSHED, ROWS, SCALE, SIZE
+
+_ROUND_OFF = 1e-14
 
 
 @uncounted
@@ -72,7 +74,9 @@ def goes_on(
         pulling, pull = -1, 0.0
         for k in range(joints):
             last = link[k, L_ROWS] - 1
-            if last >= 0 and hinge[k, PUSHED + last] * link[k, L_SIDE] > pull and link[k, L_SOFT] == 0:
+            if last < 0 or link[k, L_SIDE] == 0 or link[k, L_SOFT] != 0:
+                continue
+            if hinge[k, PUSHED + last] * link[k, L_SIDE] > max(pull, noise(hinge, link, k, last, local)):
                 pulling, pull = k, hinge[k, PUSHED + last] * link[k, L_SIDE]
         if pulling < 0 or found[4] > joints:
             return False
@@ -85,6 +89,17 @@ def goes_on(
     for k in range(joints):
         hinge[k, PUSHED] = hinge[k, PUSHED + 1] = 0.0
     return True
+
+
+@uncounted
+def noise(hinge: FloatArray, link: IntArray, k: int, r: int, local: FloatArray) -> float:
+    """The impulse that changes the rate of row r of joint k by what is round-off of the velocities before: a limit that
+    pulls no more than that is in nobody's way, and to let it go would only have it met again."""
+    total = 0.0
+    for c in range(3):
+        total += abs(hinge[k, ROWS + 6 * r + c] * local[link[k, L_A], KEPT + c])
+        total += abs(hinge[k, ROWS + 6 * r + 3 + c] * local[link[k, L_B], KEPT + c])
+    return float(_ROUND_OFF * total * hinge[k, SCALE + r] ** 2)
 
 
 @uncounted

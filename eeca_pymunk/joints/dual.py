@@ -92,6 +92,25 @@ def factor_dual(
 
 
 @merged
+def refresh(hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray, slopes: int) -> None:
+    """Let the rows that `back_dual` takes be those of now, though the factors are of an earlier iterate: they say how
+    impulses change velocities, and in long steps these rows turn."""
+    for k in range(joints):
+        for end in range(2):
+            i = link[k, L_A + end]
+            if node[i, FREEDOMS] == 0:
+                continue
+            x, y, z = local[i, ROOT], local[i, ROOT + 1], local[i, ROOT + 2] if node[i, FREEDOMS] > 2 else 0.0
+            for r in range(link[k, L_ROWS]):
+                scale = hinge[k, SCALE + r] if hinge[k, WEIGHT + r] != 0.0 else 0.0
+                u, v, w, at = scale * x, scale * y, scale * z, 6 * r + 3 * end
+                for first, to in ((ROWS + at, FROZEN + at), (slopes + at, FROZEN + 12 + at)):
+                    hinge[k, to] = u * hinge[k, first]
+                    hinge[k, to + 1] = v * hinge[k, first + 1]
+                    hinge[k, to + 2] = w * hinge[k, first + 2]
+
+
+@merged
 def back_dual(
     hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray, bodies: int, span: IntArray,
     matrix: FloatArray, right: FloatArray, more: FloatArray,

@@ -1,13 +1,13 @@
 """What joints will do in the next part of a step of order 4, from what they did in the parts before.
 
 The five parts of Suzuki's composition, of lengths s_k h about the instants t_k, repeat from step to step. The midpoint
-rule makes the rows' rates r = G v of the ends of a part fit to second order only, r_{k+1} = -r_k + s_k^2 f(t): they ring.
-So accelerations by joints are smooth in t_k but for (r_{k+1} - r_k)/s_k and for what goes with s_k^2, and
+rule lets rates r = G v of the rows ring where parts end, r_{k+1} = s_k^2 f(t_k) - r_k: positions fit, velocities do to
+second order. So accelerations by joints are smooth in t_k but for (r_{k+1} - r_k)/s_k and what goes with s_k^2, and
 
     1, t, t^2, s^2, (-1)^k / s, (c_k - 2 r_k)/s_k with c_k = s_k^2/2, r_{k+1} = c_k - r_k
 
 are six functions that six parts determine. WEIGHTS[p] foretells part p exactly for each of them, from the last part to
-the one six before; impulses over the lengths of their parts go the same way. Newton's method then begins with errors
+the sixth last; impulses over the lengths of their parts go the same way. Newton's method then begins with errors
 smaller by (h rate)^2 than with the last accelerations. Sound after two steps of one length; a beginning, no more.
 """
 

@@ -28,6 +28,7 @@ from .scratch import (
     L_ROWS,
     L_SOFT,
     LAM,
+    LOOPS,
     MOBILITY,
     POSE,
     RIGID,
@@ -41,7 +42,7 @@ from .scratch import (
 )
 from .solve import LEAST_EPSILON, back, begin, decompose
 
-_REFINE = 2  # passes that take back what epsilon, for redundant rows, has changed
+_REFINE = 2  # passes that take back what epsilon, for rows that may be redundant, has changed
 
 
 @uncounted
@@ -69,6 +70,7 @@ def prepare(
     else:
         begin(what, joint, hinge, link, joints, local, node, bodies, h)
     system = DUAL if span[RIGID] > (1 if what == STEP else 0) else span[SYSTEM]
+    epsilon = LEAST_EPSILON if span[LOOPS] > 0 else 0.0
     while True:
         for i in range(span[UNKNOWNS] + span[ROWS_OF]):
             right[i] = 0.0
@@ -77,12 +79,15 @@ def prepare(
             stiff,
         )  # fmt: skip
         if decompose(
-            what, hinge, link, joints, local, node, bodies, system, LEAST_EPSILON, 0.0, span, matrix, more, pivots
+            what, hinge, link, joints, local, node, bodies, system, epsilon, 0.0, span, matrix, more, pivots
         ):  # fmt: skip
             return int(system)
-        if system != DUAL:
+        if epsilon == 0.0:
+            epsilon = LEAST_EPSILON
+        elif system != DUAL:
             return -1
-        system = span[SYSTEM]
+        else:
+            system = span[SYSTEM]
 
 
 @uncounted
@@ -104,7 +109,7 @@ def respond(
             right[node[i, COLUMN] + c] = push[i, c] * local[i, ROOT + c]
     back(what, hinge, link, joints, local, node, bodies, system, PASSES, span, matrix, right, more, pivots)
     # (A + epsilon) x = b leaves b - A x = epsilon x in the rows, and each correction d leaves epsilon d.
-    for turn in range(0 if system == CONDENSED else _REFINE):
+    for turn in range(0 if system == CONDENSED or span[LOOPS] == 0 else _REFINE):
         rest = right[size : 2 * size] if turn > 0 else right[:size]
         for i in range(size):
             right[size + i] = rest[i]

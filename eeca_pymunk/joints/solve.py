@@ -13,7 +13,7 @@ from ..compiled import merged, uncounted
 from .banded import back_banded, factor_banded
 from .condensed import PASSES, back_condensed, factor
 from .correct import goes_on, keep
-from .dual import back_dual, factor_dual
+from .dual import back_dual, factor_dual, refresh
 from .motion import move, settle
 from .newton import assemble
 from .rows import start_joint
@@ -195,7 +195,8 @@ def solve(
             if iteration > 0 and (worst <= TOLERANCE or at_floor):
                 settle(local, bodies, h)
                 return iteration
-            slow = not worst <= _FALLS * last
+            # What began next to its solution has not far to fall.
+            slow = not worst <= _FALLS * last and (iteration > 2 or not worst <= ROUND_OFF)
             if worst < best:
                 best = worst
             elif iteration > since + 3:
@@ -240,6 +241,8 @@ def solve(
                 system, build = span[SYSTEM], False
             else:
                 return -1
+        if system == DUAL and not fresh:
+            refresh(hinge, link, joints, local, node, SLOPES if what == STEP else ROWS)
         passes = 1 if give > 0.0 or not fresh else PASSES - 1 if lasting else PASSES
         back(
             what, hinge, link, joints, local, node, bodies, system, passes, span, matrix, right, more, pivots

@@ -9,8 +9,8 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
 from ..layout import ANGLE, AX, II, IM, VX, X
-from .layout import ANCHOR_AX, LEDGER_COLUMNS
 from .foresight import PAST_COLUMNS
+from .layout import ANCHOR_AX, LEDGER_COLUMNS
 from .plan import make_plan, room_for
 from .scratch import (
     BEFORE,
@@ -132,7 +132,7 @@ class Islands:
         self._matrix, self._right = np.zeros(room.matrix), np.zeros(room.right)
         self._more, self._pivots = np.zeros(room.scratch), np.zeros(room.rows, np.int64)
         self._stiff, self._found, self._part = np.zeros((6, 6)), np.zeros(5), np.zeros(LEDGER_COLUMNS)
-        self._past = np.zeros((self.islands + 3 * joints, PAST_COLUMNS))
+        self.past = np.zeros((self.islands + 3 * joints, PAST_COLUMNS))
         self.ledger, self.status = np.zeros((self.islands, LEDGER_COLUMNS)), np.zeros(self.islands, np.int64)
 
     def step(self, bodies: FloatArray, h: float) -> int:
@@ -140,5 +140,5 @@ class Islands:
         return step_all(
             bodies, self.joint, self.tie, self._span, self._member, self._link, self.islands, h, self.order,
             self._hinge, self._local, self._node, self._matrix, self._right, self._more, self._pivots,
-            self._stiff, self._found, self._part, self._past, self.ledger, self.status,
+            self._stiff, self._found, self._part, self.past, self.ledger, self.status,
         )  # fmt: skip
