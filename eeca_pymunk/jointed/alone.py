@@ -6,6 +6,7 @@ import math
 
 from ..compiled import uncounted
 from ..impacts.layout import (
+    AFTER_ME,
     BODIES,
     FIRST_SHAPE,
     ISLAND,
@@ -27,20 +28,31 @@ from .layout import STEPPED_COLUMNS, TURNED_WORK, Joints
 
 
 @uncounted
-def is_alone(A: Scene, J: Joints, root: int) -> bool:
-    """Whether an island is one component, and no shape has another one near that it may meet."""
+def is_component(A: Scene, J: Joints, root: int) -> bool:
+    """Whether an island is one component."""
     s = J.OF[root]
     if s < 0:
         return False
     count = 0
     for i in range(J.SPAN[s, BODY_0], J.SPAN[s, BODY_1]):
-        if J.MEMBER[i, M_FREEDOMS] == 0:
-            continue
-        body = J.MEMBER[i, M_BODY]
-        if A.STATE[body, ISLAND] != root or has_near(A, body):
-            return False
-        count += 1
+        if J.MEMBER[i, M_FREEDOMS] > 0:
+            if A.STATE[J.MEMBER[i, M_BODY], ISLAND] != root:
+                return False
+            count += 1
     return bool(count == A.MEMBER[root, BODIES])
+
+
+@uncounted
+def is_alone(A: Scene, J: Joints, root: int) -> bool:
+    """Whether an island is one component, and no shape has another one near that it may meet."""
+    if not is_component(A, J, root):
+        return False
+    i = root
+    while i >= 0:
+        if has_near(A, i):
+            return False
+        i = A.MEMBER[i, AFTER_ME]
+    return True
 
 
 @uncounted
@@ -55,7 +67,8 @@ def has_near(A: Scene, i: int) -> bool:
 
 @uncounted
 def begin_alone(A: Scene, J: Joints, root: int, t: float, h: float) -> None:
-    """Begin a span of length h of an island that `is_alone` at instant t, at which all its bodies are."""
+    """Begin a span of length h, without contacts, of an island that `is_component` at instant t, at which all its
+    bodies are."""
     s = J.OF[root]
     keep_joints(J, s)
     for c in range(STEPPED_COLUMNS):

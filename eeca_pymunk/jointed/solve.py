@@ -43,7 +43,7 @@ from ..sustained.contacts import gather
 from ..sustained.memory import remember
 from ..sustained.step import moved, recall, speeds
 from .advance import NOT_AT_ALL, Motion, advance
-from .alone import begin_alone, is_alone
+from .alone import begin_alone, is_alone, is_component
 from .columns import make_columns
 from .component import fit_speeds, step_component
 from .gathered import gather_component, keep_joints, restore_joints
@@ -125,6 +125,10 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
             lossy = lossy or A.SHAPE[s, ELASTICITY] < 1.0
     found = pairs_of(A, root, t, lossy, A.PLACE, MINE, n)
     p = len(found)
+    if p == 0 and is_component(A, J, root):
+        dismiss(A, MINE, n)
+        begin_alone(A, J, root, t, h)
+        return DONE
     if COUNT[PUSHES] + 2 * p > A.PUSHED.shape[0] or 2 * (COUNT[REMEMBERED] + 2 * p) > A.KEYS.shape[0]:
         dismiss(A, MINE, n)
         return PUSHES_FULL

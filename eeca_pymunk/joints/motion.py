@@ -90,8 +90,8 @@ def advance(local: FloatArray, bodies: int, h: float) -> None:
         local[i, POSE] += local[i, WAY]
         local[i, POSE + 1] += local[i, WAY + 1]
         chi = local[i, WAY + 2]
-        local[i, POSE + 2] += 2.0 * np.arctan(0.5 * chi) if local[i, CAYLEY] > 0.0 and chi != 0.0 else chi
         for c in range(3):
             local[i, BEFORE + c] = local[i, AFTER + c]
-        c0, s0, c1, s1 = local[i, COS], local[i, SIN], local[i, TURN_COS], local[i, TURN_SIN]
-        local[i, COS], local[i, SIN] = c0 * c1 - s0 * s1, s0 * c1 + c0 * s1
+        if chi != 0.0:
+            local[i, POSE + 2] += 2.0 * np.arctan(0.5 * chi) if local[i, CAYLEY] > 0.0 else chi
+            local[i, COS], local[i, SIN] = np.cos(local[i, POSE + 2]), np.sin(local[i, POSE + 2])
