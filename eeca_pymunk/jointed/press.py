@@ -36,6 +36,7 @@ _OF_CROWD, _AGAIN = 24, 12  # sweeps of a crowd; of one that was hit in this ste
 _FINE, _REST_FINE = 1e-9, 1e-12  # residual of the sweeps, likewise
 _LOCKS = 10
 _SOME = 12  # contacts from which on the span before an impact, which is solved again after it, is solved roughly
+_FALLS = 0.3  # of what velocities are apart, with which they do not come to agree within the rounds
 _CHORD = 3  # steps of the components between which their answers are taken to be the same
 
 
@@ -83,8 +84,10 @@ def press(
         if n >= CROWD:
             most = _OF_CROWD if t == 0.0 else _AGAIN
     FORESEEN = np.empty((len(isle.IM), 3))
-    converged, best, LEAST, USED = False, np.inf, L.copy(), L.copy()
+    converged, best, LEAST, USED, hopeless = False, np.inf, L.copy(), L.copy(), False
     for outer in range(rounds):
+        if hopeless:
+            continue
         anew = AS_IT_IS if outer % _CHORD == 0 else NOT_AT_ALL
         advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, anew)
         if outer > 0:
@@ -92,9 +95,12 @@ def press(
             if off <= agree:
                 converged = True
                 break
+            hopeless = m > _SOME and outer > 1 and not elastic and off > _FALLS * best
             if off < best:
                 best = off
                 LEAST[:] = L
+                if hopeless:
+                    continue
             else:
                 # Too far: the components do not answer as they did.
                 L[:] = 0.5 * (L + LEAST)
