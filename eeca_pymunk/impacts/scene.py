@@ -102,6 +102,7 @@ class EventLoop:
     @scene.setter
     def scene(self, arrays: Scene) -> None:
         self._scene, self.table = arrays, table_of(arrays)
+        self._book: FloatArray = arrays.PAR[LEDGER : AFTER + 1]
 
     def step(
         self, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
@@ -169,7 +170,7 @@ class EventLoop:
     @property
     def book(self) -> FloatArray:
         """(7,) what the ledger of the last step is made of, a copy (`..energy.ledger`)."""
-        return self.scene.PAR[LEDGER : AFTER + 1].copy()
+        return self._book.copy()
 
     @property
     def lock(self) -> float:

@@ -32,6 +32,7 @@ from ..joints.scratch import (
     POSE,
     ROOT,
     SIN,
+    UNROOT,
 )
 from ..layout import ANGLE, SPIN, VX, VY, X, Y
 from ..layout import II as TURNING
@@ -101,7 +102,8 @@ def size_up(J: Joints, s: int, h: float) -> float:
     LOCAL, length = J.LOCAL, 0.0
     for i in range(J.SPAN[s, BODY_1] - J.SPAN[s, BODY_0]):
         for c in range(3):
-            LOCAL[i, ROOT + c] = math.sqrt(LOCAL[i, MOBILITY + c])
+            root = math.sqrt(LOCAL[i, MOBILITY + c])
+            LOCAL[i, ROOT + c], LOCAL[i, UNROOT + c] = root, 1.0 / root if root > 0.0 else 0.0
         LOCAL[i, COS], LOCAL[i, SIN] = math.cos(LOCAL[i, POSE + 2]), math.sin(LOCAL[i, POSE + 2])
         for c in range(2):
             length = max(length, abs(LOCAL[i, POSE + c]), abs(h * LOCAL[i, BEFORE + c]))

@@ -87,14 +87,14 @@ class JointedLoop(EventLoop):
         left: float,
     ) -> int:  # fmt: skip
         """See `loop.step_jointed`; a negative answer is one of `..transfer`."""
-        disks, lossy, usual = self.disks, self.lossy, self._usual
-        ties = self._ties
-        edge, bits = (STATES, WALK, EXTRA, ENDS, dt, gx, gy, left), -1
+        disks, lossy, ties, bits = self.disks, self.lossy, self._ties, -1
         while True:
             if self._together:
-                status = step_together_jointed(self.table, ties, *edge, usual, bits)
+                status = step_together_jointed(
+                    self.table, ties, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, self._usual, bits
+                )
             else:
-                status = step_jointed(self.table, ties, *edge, disks, lossy, bits)
+                status = step_jointed(self.table, ties, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, disks, lossy, bits)
             if status > ROOM_FOR_LISTS:
                 return status
             self._grow(status)

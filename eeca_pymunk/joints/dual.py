@@ -29,20 +29,20 @@ from .scratch import (
     WEIGHT,
 )
 
-STRIDE = 7  # of scratch per row: six entries and its number
+STRIDE = 6  # of scratch per row
 LEAST = 0.1  # of a body's inertia, that the bending of rows may leave
 
 
 @merged
 def factor_dual(
     hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray, bodies: int, slopes: int,
-    add: float, span: IntArray, matrix: FloatArray, more: FloatArray,
+    add: float, span: IntArray, matrix: FloatArray, more: FloatArray, numbers: IntArray,
 ) -> bool:  # fmt: skip
     """LU factors of S + `add` in `matrix`; False if there are none that can be trusted.
 
     Args:
         slopes: where the rows G stand in `hinge`; they and the rows J are kept at FROZEN, scaled.
-        span: the island's row of SPAN.  more: scratch, STRIDE of the rows.
+        span: the island's row of SPAN.  more, numbers: scratch, STRIDE and 1 times the rows.
         local: INERTIA, the diagonal of A as `newton.assemble` left it; its reciprocal on return.
     """
     size, band = span[DUAL_SIZE], span[DUAL_BAND]
@@ -78,16 +78,16 @@ def factor_dual(
                 p = STRIDE * count
                 more[p], more[p + 1], more[p + 2] = jx, jy, jw
                 more[p + 3], more[p + 4], more[p + 5] = gx * a, gy * b, gw * c
-                more[p + 6] = link[k, L_DUAL] + r
+                numbers[count] = link[k, L_DUAL] + r
                 count += 1
             one = link[k, L_NEXT + end]
         for m in range(count):
             p = STRIDE * m
             gx, gy, gw = more[p + 3], more[p + 4], more[p + 5]
-            begin = int(more[p + 6]) * 2 * band + band
+            begin = numbers[m] * 2 * band + band
             for n in range(count):
                 q = STRIDE * n
-                matrix[begin + int(more[q + 6])] += gx * more[q] + gy * more[q + 1] + gw * more[q + 2]
+                matrix[begin + numbers[n]] += gx * more[q] + gy * more[q + 1] + gw * more[q + 2]
     return factor(matrix, size, band)
 
 

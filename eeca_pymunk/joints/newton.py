@@ -68,7 +68,7 @@ def assemble(
     Where it is to `build`, the matrix of the `system` too, or of a dual one what it is made of.
     Returns how far rows are from their targets, over the size of the island; for SPEEDS, the worst G v.
     """
-    worst = 0.0
+    worst, per = 0.0, 2.0 / h
     still = what in (POSES, SPEEDS)
     slopes = SLOPES if what == STEP else ROWS
     band = span[BAND]
@@ -110,7 +110,7 @@ def assemble(
                 error = along(hinge, link, k, ROWS + 6 * r, local, WAY)
             else:
                 error = hinge[k, VALUE + r] - hinge[k, TARGET + r] + give * 0.5 * h * hinge[k, LAM + r] / scale**2
-            right[link[k, L_ROW] + r] = -error * scale * 2.0 / h
+            right[link[k, L_ROW] + r] = -error * scale * per
             worst = max(worst, abs(error) / hinge[k, SIZE])
             hinge[k, WEIGHT + r] = min(STIFFEST, 1.0 / give) if give > 0.0 else STIFFEST
             if build and system == CONDENSED:

@@ -49,6 +49,7 @@ from .scratch import (
     STEP,
     SYSTEM,
     UNKNOWNS,
+    UNROOT,
 )
 
 TOLERANCE = 3e-16  # of joints and momenta, over the size of the island
@@ -83,13 +84,13 @@ def begin(
 @merged
 def balance(local: FloatArray, node: IntArray, bodies: int, h: float, length: float, right: FloatArray) -> float:
     """Residuals of the balance of momentum, scaled, into `right`; the worst as a way, over length or as an angle."""
-    worst = 0.0
+    worst, over = 0.0, 1.0 / length
     for i in range(bodies):
         for c in range(node[i, FREEDOMS]):
             mobility = local[i, MOBILITY + c]
             off = local[i, AFTER + c] - local[i, BEFORE + c] - h * local[i, FREE + c] - mobility * local[i, GOT + c]
-            right[node[i, COLUMN] + c] = -off / local[i, ROOT + c] if mobility > 0.0 else 0.0
-            worst = max(worst, abs(off * h) / (length if c < 2 else 1.0))
+            right[node[i, COLUMN] + c] = -off * local[i, UNROOT + c]
+            worst = max(worst, abs(off * h) * (over if c < 2 else 1.0))
     return worst
 
 
@@ -123,7 +124,7 @@ def decompose(
         return factor(matrix, size, band)
     if system == DUAL:
         slopes = SLOPES if what == STEP else ROWS
-        return factor_dual(hinge, link, joints, local, node, bodies, slopes, epsilon + give, span, matrix, more)
+        return factor_dual(hinge, link, joints, local, node, bodies, slopes, epsilon + give, span, matrix, more, pivots)
     if epsilon > 0.0:
         for k in range(joints):
             for r in range(link[k, L_ROWS]):

@@ -40,6 +40,7 @@ from .scratch import (
     ROOT,
     SIN,
     SPAN_COLUMNS,
+    UNROOT,
 )
 from .step import island_step
 
@@ -59,7 +60,8 @@ def gather_island(
             local[i, BEFORE + c] = bodies[body, VX + c]
             local[i, FREE + c] = bodies[body, AX + c]
             local[i, MOBILITY + c] = bodies[body, IM] if c < 2 else bodies[body, II]
-            local[i, ROOT + c] = np.sqrt(local[i, MOBILITY + c])
+            root = np.sqrt(local[i, MOBILITY + c])
+            local[i, ROOT + c], local[i, UNROOT + c] = root, 1.0 / root if root > 0.0 else 0.0
         local[i, COS], local[i, SIN] = np.cos(bodies[body, ANGLE]), np.sin(bodies[body, ANGLE])
         local[i, CAYLEY] = member[b0 + i, M_CAYLEY]
         node[i, COLUMN], node[i, FREEDOMS] = member[b0 + i, M_COLUMN], member[b0 + i, M_FREEDOMS]
