@@ -55,7 +55,7 @@ def step_in_scratch(J: Joints, s: int, h: float, length: float, whole: bool) -> 
     order = J.TALLY[ORDER] if whole else 2
     status = island_step(
         J.JOINT, J.TIE, J.HINGE, J.LINK[j0:j1], j1 - j0, J.LOCAL, J.NODE, n, h, order, length, J.SPAN[s], J.MATRIX,
-        J.RIGHT, J.MORE, J.PIVOTS, J.STIFF, J.FOUND, J.PART, J.PAST[b0 + j0 + s : b0 + n + j1 + s + 1], J.STEPPED[s],
+        J.RIGHT, J.MORE, J.PIVOTS, J.STIFF, J.FOUND, J.PART, J.STEPPED[s],
     )  # fmt: skip
     J.TALLY[REPEATS] += 1
     J.TALLY[WORST] = max(J.TALLY[WORST], status)

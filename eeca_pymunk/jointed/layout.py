@@ -23,7 +23,7 @@ class Joints(NamedTuple):
     joints cannot move. SPAN, MEMBER, LINK: the plan (`..joints.scratch`), a component per row of SPAN. HINGE, LOCAL,
     NODE, MATRIX, RIGHT, MORE, STIFF, FOUND, PART, PIVOTS: scratch for the largest component. OF (n,): the component of
     a body, -1 for none. KEPT (j, JOINT_COLUMNS), SIDES (j, TIE_COLUMNS): the joints at the start of a span. STEPPED
-    (components, 10): their ledgers in their spans. PAST: what they did (`..joints.foresight`)."""
+    (components, 10): their ledgers in their spans."""
 
     JOINT: FloatArray
     TIE: IntArray
@@ -40,7 +40,6 @@ class Joints(NamedTuple):
     STIFF: FloatArray
     FOUND: FloatArray
     PART: FloatArray
-    PAST: FloatArray
     PIVOTS: IntArray
     OF: IntArray
     KEPT: FloatArray

@@ -8,7 +8,6 @@ from ..arrays import FloatArray, IntArray
 from ..impacts.layout import NEXT_TIED, TIED
 from ..impacts.scene import EventLoop
 from ..impacts.step import ROOM_FOR_LISTS
-from ..joints.foresight import PAST_COLUMNS
 from ..joints.layout import JOINT_COLUMNS, TIE_COLUMNS
 from ..joints.plan import make_plan, room_for
 from ..joints.scratch import (
@@ -76,7 +75,7 @@ class JointedLoop(EventLoop):
             joint, tie, self._partner, span, member, link, np.zeros((room.joints, HINGE_COLUMNS)),
             np.zeros((room.bodies, LOCAL_COLUMNS)), np.zeros((room.bodies, NODE_COLUMNS), np.int64),
             np.zeros(room.matrix), np.zeros(room.right), np.zeros(room.scratch), np.zeros((6, 6)), np.zeros(5),
-            np.zeros(8), np.zeros((components + 3 * count, PAST_COLUMNS)), np.zeros(room.rows, np.int64), of,
+            np.zeros(8), np.zeros(room.rows, np.int64), of,
             np.zeros((count, JOINT_COLUMNS)), np.zeros((count, TIE_COLUMNS), np.int64),
             np.zeros((max(components, 1), STEPPED_COLUMNS)), tally,
         )  # fmt: skip

@@ -16,8 +16,9 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import merged
-from .scratch import L_ROWS, LAM, LEAD
+from ..compiled import inlined, uncounted
+from .layout import COUNTED, COUNTED_OF, PAST_LED, PAST_PUSH
+from .scratch import L_A, L_B, L_JOINT, L_ROWS, LAM, LEAD
 
 PARTS, DEPTH = 5, 6
 WEIGHTS: FloatArray = np.array([
@@ -28,60 +29,65 @@ WEIGHTS: FloatArray = np.array([
     [-1.0, 0.0, 1.704017368006175, 0.7085815800256255, -0.704017368006175, 0.29141841997437445],
 ])  # fmt: skip
 
-# PAST (1 + n + m, 18): of an island the first row, then one of each body, then one of each joint.
-COUNTED, LENGTH_OF_STEP = 0, 1  # of the first row: parts that are known, modulo 30 from 30 on; length of their steps
-NEWEST = 6  # 6-11, of the first row: weights by place, scratch
-PAST_COLUMNS = 3 * DEPTH  # accelerations of a body, or impulses over time of a joint (two), by place
 
-
-@merged
-def forget(past: FloatArray) -> None:
+@uncounted
+def forget(joint: FloatArray, link: IntArray, joints: int) -> None:
     """Begin anew."""
-    past[0, COUNTED] = 0.0
+    for k in range(joints):
+        joint[link[k, L_JOINT], COUNTED] = 0.0
 
 
-@merged
-def recalls(past: FloatArray, h: float) -> bool:
-    """Whether the parts of a step h can be foretold; if they cannot, begin anew."""
-    if past[0, LENGTH_OF_STEP] != h:
-        past[0, COUNTED], past[0, LENGTH_OF_STEP] = 0.0, h
-    return bool(past[0, COUNTED] >= DEPTH)
+@uncounted
+def recalls(joint: FloatArray, link: IntArray, joints: int, h: float) -> bool:
+    """Whether the parts of a step h of these joints can be foretold; where they know not the same, they begin anew."""
+    count, same = joint[link[0, L_JOINT], COUNTED], True
+    for k in range(joints):
+        j = link[k, L_JOINT]
+        same = same and joint[j, COUNTED] == count and joint[j, COUNTED_OF] == h
+    if not same:
+        for k in range(joints):
+            joint[link[k, L_JOINT], COUNTED], joint[link[k, L_JOINT], COUNTED_OF] = 0.0, h
+    return bool(same and count >= DEPTH)
 
 
-@merged
+@inlined
+def extrapolate(joint: FloatArray, j: int, column: int, part: int, last: int) -> float:
+    """What follows the six values at `column`, of which the newest stands at place `last`."""
+    total, place = 0.0, last
+    for k in range(DEPTH):
+        total += WEIGHTS[part, k] * joint[j, column + place]
+        place = place - 1 if place > 0 else DEPTH - 1
+    return total
+
+
+@uncounted
 def foretell(
-    past: FloatArray, part: int, piece: float, loops: bool, hinge: FloatArray, link: IntArray, joints: int,
-    local: FloatArray, bodies: int,
+    joint: FloatArray, part: int, piece: float, loops: bool, hinge: FloatArray, link: IntArray, joints: int,
+    local: FloatArray,
 ) -> None:  # fmt: skip
     """LEAD and, unless rows are redundant, LAM of this part of length `piece`."""
-    count = int(past[0, COUNTED])
-    for k in range(DEPTH):
-        past[0, NEWEST + (count - 1 - k) % DEPTH] = WEIGHTS[part, k]
-    for i in range(bodies):
-        for c in range(3):
-            total = 0.0
-            for w in range(DEPTH):
-                total += past[0, NEWEST + w] * past[1 + i, DEPTH * c + w]
-            local[i, LEAD + c] = total
-    for k in range(0 if loops else joints):
-        for r in range(link[k, L_ROWS]):
-            total = 0.0
-            for w in range(DEPTH):
-                total += past[0, NEWEST + w] * past[1 + bodies + k, DEPTH * r + w]
-            hinge[k, LAM + r] = total * piece
+    last = (int(joint[link[0, L_JOINT], COUNTED]) - 1) % DEPTH
+    for k in range(joints):
+        j = link[k, L_JOINT]
+        for c in range(6):
+            i = link[k, L_A] if c < 3 else link[k, L_B]
+            local[i, LEAD + c % 3] = extrapolate(joint, j, PAST_LED + DEPTH * c, part, last)
+        for r in range(0 if loops else link[k, L_ROWS]):
+            hinge[k, LAM + r] = piece * extrapolate(joint, j, PAST_PUSH + DEPTH * r, part, last)
 
 
-@merged
+@uncounted
 def remember(
-    past: FloatArray, piece: float, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, bodies: int
+    joint: FloatArray, piece: float, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray
 ) -> None:
     """Keep LEAD and LAM of the part of length `piece` that was taken."""
-    count = int(past[0, COUNTED])
+    count = int(joint[link[0, L_JOINT], COUNTED])
     at = count % DEPTH
-    for i in range(bodies):
-        for c in range(3):
-            past[1 + i, DEPTH * c + at] = local[i, LEAD + c]
     for k in range(joints):
+        j = link[k, L_JOINT]
+        for c in range(6):
+            i = link[k, L_A] if c < 3 else link[k, L_B]
+            joint[j, PAST_LED + DEPTH * c + at] = local[i, LEAD + c % 3]
         for r in range(link[k, L_ROWS]):
-            past[1 + bodies + k, DEPTH * r + at] = hinge[k, LAM + r] / piece
-    past[0, COUNTED] = count + 1 if count + 1 < 2 * PARTS * DEPTH else PARTS * DEPTH
+            joint[j, PAST_PUSH + DEPTH * r + at] = hinge[k, LAM + r] / piece
+        joint[j, COUNTED] = count + 1 if count + 1 < 2 * PARTS * DEPTH else PARTS * DEPTH

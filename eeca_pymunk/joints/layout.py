@@ -1,6 +1,6 @@
 """The packed arrays of joints: what their columns mean.
 
-JOINT (j, 24) float and TIE (j, 6) int: one row per joint, in the order of the space. Anchors stand in the frame of
+JOINT (j, 74) float and TIE (j, 6) int: one row per joint, in the order of the space. Anchors stand in the frame of
 their body, from its centre of mass. A joint's impulse `lam` acts along its rows J, which are the *discrete* gradient of
 its function g over a step: g1 - g0 = J . (h v_m), v_m = (v0 + v1)/2, so that J^T lam does no work where g keeps still.
 
@@ -25,7 +25,10 @@ LAST_STEP = 14  # its dt; 0 if none
 LENGTH_0, LENGTH_1 = 15, 16  # of springs: length, or angle_a - angle_b, at the ends of the last step
 WORK = 17  # energy that the joint gave to its bodies in the last step
 LED = 18  # 18-20, 21-23: accelerations that joints gave to bodies a and b last
-JOINT_COLUMNS = 24
+COUNTED, COUNTED_OF = 24, 25  # parts of steps of order 4 that are known (`foresight`); the length of their steps
+PAST_LED = 26  # 26-61: accelerations of bodies a and b along their three ways in these parts, six each
+PAST_PUSH = 62  # 62-73: impulses along two rows, over the lengths of the parts, six each
+JOINT_COLUMNS = 74
 
 # TIE
 KIND = 0  # below

@@ -154,13 +154,13 @@ def island_step(
     joint: FloatArray, tie: IntArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray,
     node: IntArray, bodies: int, h: float, order: int, length: float, span: IntArray, matrix: FloatArray,
     right: FloatArray, more: FloatArray, pivots: IntArray, stiff: FloatArray, found: FloatArray, part: FloatArray,
-    past: FloatArray, ledger: FloatArray,
+    ledger: FloatArray,
 ) -> int:  # fmt: skip
     """Step one island by h; its status (see `layout`).
 
     `local` holds poses, velocities, accelerations and mobilities at the start and, on return, poses and velocities
     (BEFORE) at the end. `ledger` (LEDGER_COLUMNS,) is that of the step, `part` scratch for another; `length` is the
-    size of the island, `span` its row of SPAN, `past` its rows of PAST (see `foresight`).
+    size of the island, `span` its row of SPAN.
     """
     for c in range(LEDGER_COLUMNS):
         ledger[c] = 0.0
@@ -206,8 +206,8 @@ def island_step(
     status, stored = LINEAR, 0.0
     rung = -1 if order == 4 and smooth(joint, link, joints) else FIRST_RUNG
     if rung >= 0 or needs % 2 == 1:
-        forget(past)
-    known = recalls(past, h)
+        forget(joint, link, joints)
+    known = recalls(joint, link, joints, h)
     while rung <= LAST_RUNG:
         parts = 5 if rung < 0 else 1 << rung if rung < 3 else 1 if rung == LAST_RUNG else 7
         give = 0.0 if rung < 4 or rung == LAST_RUNG else 1e-6 if rung == 4 else 1e-4
@@ -226,7 +226,7 @@ def island_step(
                 hinge[k, LAM + 1] *= warm
             before = piece
             if rung < 0 and known:
-                foretell(past, p, piece, loops, hinge, link, joints, local, bodies)
+                foretell(joint, p, piece, loops, hinge, link, joints, local)
             done = step_with_limits(
                 what, joint, hinge, link, joints, local, node, bodies, piece, length, loops, give, rung < 0, span,
                 matrix, right, more, pivots, stiff, found, part,
@@ -234,15 +234,15 @@ def island_step(
             if not done:
                 break
             if rung < 0:
-                remember(past, piece, hinge, link, joints, local, bodies)
-                known = recalls(past, h)
+                remember(joint, piece, hinge, link, joints, local)
+                known = recalls(joint, link, joints, h)
         if done:
             status = EXACT if rung <= 0 else HALVED if rung < 4 else ELASTIC if rung < LAST_RUNG else LINEAR
             break
         restore(joint, tie, hinge, link, joints, local, bodies)
         rung += 0 if known else 1
         known = False
-        forget(past)
+        forget(joint, link, joints)
     if status == LINEAR:
         if rung > LAST_RUNG:  # not even that: free flight
             for i in range(bodies):

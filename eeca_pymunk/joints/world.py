@@ -9,7 +9,6 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
 from ..layout import ANGLE, AX, II, IM, VX, X
-from .foresight import PAST_COLUMNS
 from .layout import ANCHOR_AX, LEDGER_COLUMNS
 from .plan import make_plan, room_for
 from .scratch import (
@@ -79,7 +78,7 @@ def step_all(
     bodies: FloatArray, joint: FloatArray, tie: IntArray, span: IntArray, member: IntArray, link: IntArray,
     islands: int, h: float, order: int, hinge: FloatArray, local: FloatArray, node: IntArray,
     matrix: FloatArray, right: FloatArray, more: FloatArray, pivots: IntArray, stiff: FloatArray, found: FloatArray,
-    part: FloatArray, past: FloatArray, ledger: FloatArray, status: IntArray,
+    part: FloatArray, ledger: FloatArray, status: IntArray,
 ) -> int:  # fmt: skip
     """Step all islands of a plan by h, in place of X .. SPIN of `bodies`; the worst status.
 
@@ -92,7 +91,7 @@ def step_all(
         length = gather_island(bodies, joint, span, s, member, link, h, local, node)
         status[s] = island_step(
             joint, tie, hinge, link[j0:j1], j1 - j0, local, node, n, h, order, length, span[s], matrix, right, more,
-            pivots, stiff, found, part, past[b0 + j0 + s : b0 + n + j1 + s + 1], ledger[s],
+            pivots, stiff, found, part, ledger[s],
         )  # fmt: skip
         worst = max(worst, status[s])
         for i in range(n):
@@ -134,7 +133,6 @@ class Islands:
         self._matrix, self._right = np.zeros(room.matrix), np.zeros(room.right)
         self._more, self._pivots = np.zeros(room.scratch), np.zeros(room.rows, np.int64)
         self._stiff, self._found, self._part = np.zeros((6, 6)), np.zeros(5), np.zeros(LEDGER_COLUMNS)
-        self.past = np.zeros((self.islands + 3 * joints, PAST_COLUMNS))
         self.ledger, self.status = np.zeros((self.islands, LEDGER_COLUMNS)), np.zeros(self.islands, np.int64)
 
     def step(self, bodies: FloatArray, h: float) -> int:
@@ -142,5 +140,5 @@ class Islands:
         return step_all(
             bodies, self.joint, self.tie, self._span, self._member, self._link, self.islands, h, self.order,
             self._hinge, self._local, self._node, self._matrix, self._right, self._more, self._pivots,
-            self._stiff, self._found, self._part, self.past, self.ledger, self.status,
+            self._stiff, self._found, self._part, self.ledger, self.status,
         )  # fmt: skip
