@@ -23,7 +23,7 @@ from ..pairs.layout import NUMBER, START
 from ..pairs.lists import centre
 from ..pairs.rules import barred, law
 from ..rows.build import tangent_rate
-from ..rows.layout import FRICTION, K_T, UT
+from ..rows.layout import FRICTION, K_T, UN, UT
 from .block import CROWD
 from .islands import TOUCH, approach, remembered, rests
 from .layout import (
@@ -44,6 +44,7 @@ _TURN = 0.1  # rad
 PARTS = 64.0  # of a step, that a span is at least
 _FEW = 12  # contacts
 _STICKS = 1e-6  # relative to the friction there can be, and to the slip, below which there is none
+_RATTLES = 1e-3  # relative to that friction, below which slip is no slide where contacts rattle as fast
 
 
 @uncounted
@@ -156,12 +157,15 @@ def stick_time(
     """
     if m > _FEW:
         return h
-    limit, beta, slip, others = 0.0, 0.0, 0.0, 0.0
+    limit, beta, slip, others, rattle = 0.0, 0.0, 0.0, 0.0, 0.0
+    for z in range(m):
+        rattle = max(rattle, abs(ROWS[z, UN]))
     for z in range(m):
         most = ROWS[z, FRICTION] * L[z, 0]
         before = abs(ROWS[z, UT])
         # What sticks all along has no slip but round-off before.
-        if most == 0.0 or before <= _STICKS * most / ROWS[z, K_T]:
+        least = _RATTLES if before < rattle else _STICKS
+        if most == 0.0 or before <= least * most / ROWS[z, K_T]:
             continue
         if abs(tangent_rate(P, Q, ROWS, VN, z)) > _STICKS * before:
             continue
