@@ -44,7 +44,7 @@ _TURN = 0.1  # rad
 PARTS = 64.0  # of a step, that a span is at least
 _FEW = 12  # contacts
 _STICKS = 1e-6  # relative to the friction there can be, and to the slip, below which there is none
-_RATTLES = 1e-3  # relative to that friction, below which slip is no slide where contacts rattle as fast
+_RATTLES = 1e-3  # relative to that friction, below which slip is no slide where contacts that bear rattle as fast
 
 
 @uncounted
@@ -159,13 +159,14 @@ def stick_time(
         return h
     limit, beta, slip, others, rattle = 0.0, 0.0, 0.0, 0.0, 0.0
     for z in range(m):
-        rattle = max(rattle, abs(ROWS[z, UN]))
+        if L[z, 0] > 0.0:
+            rattle = max(rattle, abs(ROWS[z, UN]))
     for z in range(m):
         most = ROWS[z, FRICTION] * L[z, 0]
         before = abs(ROWS[z, UT])
-        # What sticks all along has no slip but round-off before.
-        least = _RATTLES if before < rattle else _STICKS
-        if most == 0.0 or before <= least * most / ROWS[z, K_T]:
+        # What sticks all along has no slip but round-off before, or rattles.
+        change = most / ROWS[z, K_T]
+        if most == 0.0 or before <= _STICKS * change or before < rattle <= _RATTLES * change:
             continue
         if abs(tangent_rate(P, Q, ROWS, VN, z)) > _STICKS * before:
             continue
