@@ -142,7 +142,7 @@ def span_of(A: Scene, found: IntArray, t: float) -> float:
             rate = max(rate, speed / max(A.SHAPE[a, ROUNDING] + A.SHAPE[b, ROUNDING], 1e-300))
     if rate * h <= _TURN:
         return h
-    return max(_TURN / rate, A.PAR[DT] / PARTS)
+    return min(max(_TURN / rate, A.PAR[DT] / PARTS), h)
 
 
 @kernel

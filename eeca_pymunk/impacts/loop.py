@@ -173,6 +173,15 @@ def run(A: Scene, disks: int, may_rest: bool) -> int:
         one, two = i, j if o < disks else -1
 
 
+@uncounted
+def with_mover(A: Scene, i: int, n: int) -> int:
+    """How many of A.BLOCK are to be forecast after an event of body i that changed n: i too, if no impulse moves it."""
+    if A.BODY[i, IM] > 0.0:
+        return n
+    A.BLOCK[n] = i
+    return n + 1
+
+
 @kernel
 def follow(A: Scene, disks: int, may_rest: bool) -> int:
     """The events of the step, blocks and islands included. After a status other than DONE, make room and call again.
@@ -220,6 +229,7 @@ def follow(A: Scene, disks: int, may_rest: bool) -> int:
                 arrive(A, j, t)
             rest = comes_to_rest(A, s, o, t)
         status, n = strike(A, disks, s, o, t, rest)
+        n = with_mover(A, i, n)
         COUNT[WAITING] = n
         if status != DONE:
             return status
