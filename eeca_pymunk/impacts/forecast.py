@@ -28,13 +28,14 @@ from ..layout import (
     X,
     Y,
 )  # fmt: skip
-from ..pairs.layout import AT_X, AT_Y, MARGIN, NUMBER, START
+from ..pairs.layout import AT_X, AT_Y, LATER, MARGIN, NUMBER, START
 from ..pairs.lists import centre
 from ..pairs.rules import barred
 from .heap import push
-from .layout import CHECK, FIRST_SHAPE, HEAP, KINKS, KNOWN, LEAVE, NOTHING, OTHER, OWN, RENEW, SHAPES
+from .layout import CHECK, FIRST_SHAPE, HEAP, KINKS, KNOWN, LEAVE, NOTHING, OTHER, OWN, RENEW, SHAPES, Scene
 from .times import meet, one_pull
 
+_SAME = 1e-9  # of the step, within which an instant that was computed again is the same
 _INSIDE = 0.1  # of the margin that is left, above which a shape has not left its circle
 
 
@@ -96,10 +97,7 @@ def predict(
         until: instant at which a span of the body's island ends, infinite if it has none of its own.
     """
     best, own, other = math.inf, -1, NOTHING
-    since, x, y, vx, vy, ax, ay = (
-        BODY[i, SINCE], BODY[i, X], BODY[i, Y], BODY[i, VX], BODY[i, VY], BODY[i, AX], BODY[i, AY],
-    )  # fmt: skip
-    extent, first = BODY[i, EXTENT], STATE[i, FIRST_SHAPE]
+    first = STATE[i, FIRST_SHAPE]
     for s in range(first, first + STATE[i, SHAPES]):
         t = leaves(BODY, SHAPE, LINK, MARK, disks, i, s, now)
         if t < best:
@@ -113,14 +111,7 @@ def predict(
                 continue
             if RULE.shape[0] > 0 and barred(RULE, s, o):
                 continue
-            certain = True
-            if i < disks and o < disks and BODY[o, AX] == ax and BODY[o, AY] == ay:
-                t = one_pull(
-                    since, x, y, vx, vy, BODY[o, SINCE], BODY[o, X], BODY[o, Y], BODY[o, VX], BODY[o, VY], ax, ay,
-                    extent + BODY[o, EXTENT],
-                )  # fmt: skip
-            else:
-                t, certain = meet(BODY, SHAPE, LINK, VERTEX, WORK, s, o, disks, end, -1.0)
+            t, certain = meet(BODY, SHAPE, LINK, VERTEX, WORK, s, o, disks, end, -1.0)
             if t < best or (t == best and other >= 0 and (s < own or (s == own and o < other))):
                 best, own, other = t, s, (o if certain else CHECK)
     if until < best:
@@ -130,5 +121,103 @@ def predict(
     STATE[i, OWN], STATE[i, OTHER] = own, other
     if other >= 0:
         STATE[i, KNOWN] = STATE[LINK[other, 0], KINKS]
+    if i < disks:
+        LIST[i, LATER] = CHECK
     if best < end:
         COUNT[HEAP] = push(TIME, OF, COUNT[HEAP], best, i)
+
+
+@uncounted
+def first_meeting(
+    A: Scene, disks: int, i: int, known: int, best: float, other: int, end: float, several: bool
+) -> tuple[float, int]:  # fmt: skip
+    """Instant and shape of the first meeting of the lone disk i with those of its list from place `known` on, or what is
+    known to come before, `best` and `other`; CHECK for a shape if it is not certain.
+
+    Args:
+        several: whether bodies that have a PLACE are forecast together, see `predict`.
+    """
+    BODY, POOL, FLAG = A.BODY, A.POOL, A.FLAG
+    x, y, vx, vy, since = BODY[i, X], BODY[i, Y], BODY[i, VX], BODY[i, VY], BODY[i, SINCE]
+    ax, ay, extent = BODY[i, AX], BODY[i, AY], BODY[i, EXTENT]
+    start, ruled = A.LIST[i, START], A.RULE.shape[0] > 0
+    for q in range(start + known, start + A.LIST[i, NUMBER]):
+        if FLAG[q] != 0:
+            continue
+        o = int(POOL[q])
+        if several and A.PLACE[A.LINK[o, OWNER]] >= 0 and A.LINK[o, OWNER] < i:
+            continue
+        if ruled and barred(A.RULE, i, o):
+            continue
+        certain = True
+        if o >= disks:
+            t, certain = meet(BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, i, o, disks, end, -1.0)
+        elif BODY[o, AX] == ax and BODY[o, AY] == ay:
+            t = one_pull(
+                since, x, y, vx, vy, BODY[o, SINCE], BODY[o, X], BODY[o, Y], BODY[o, VX], BODY[o, VY], ax, ay,
+                extent + BODY[o, EXTENT], best,
+            )  # fmt: skip
+        else:
+            t, certain = meet(BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, i, o, disks, end, -1.0)
+        if t < best or (t == best and other >= 0 and o < other):
+            best, other = t, (o if certain else CHECK)
+    return best, other
+
+
+@uncounted
+def expect(A: Scene, disks: int, i: int, best: float, other: int, now: float, end: float) -> None:
+    """Take it that lone disk i meets shape `other` next, at instant `best`, or before that leaves its margin circle; put
+    what is due in this step on the heap."""
+    out = leaves(A.BODY, A.SHAPE, A.LINK, A.MARK, disks, i, i, now)
+    if other >= 0:
+        A.STATE[i, KNOWN] = A.STATE[A.LINK[other, OWNER], KINKS]
+    if out <= best and out < math.inf:
+        A.LIST[i, LATER] = other
+        best, other = out, LEAVE
+    best = max(best, now)
+    A.BODY[i, DUE], A.STATE[i, OWN], A.STATE[i, OTHER] = best, i, other
+    if best < end:
+        A.COUNT[HEAP] = push(A.HEAP_TIME, A.HEAP_BODY, A.COUNT[HEAP], best, i)
+
+
+@uncounted
+def predict_disk(A: Scene, disks: int, i: int, now: float, end: float, several: bool) -> None:
+    """As `predict`, of a lone disk that is in no island."""
+    best, other = first_meeting(A, disks, i, 0, math.inf, NOTHING, end, several)
+    expect(A, disks, i, best, other, now, end)
+
+
+@uncounted
+def go_on(A: Scene, disks: int, i: int, known: int, now: float, end: float) -> None:
+    """Forecast lone disk i, in no island, which goes straight on as it leaves its margin circle: only what has come into
+    its list, after the first `known` of it, is new."""
+    best, other, later = math.inf, NOTHING, A.LIST[i, LATER]
+    if later >= 0 and A.STATE[A.LINK[later, OWNER], KINKS] == A.STATE[i, KNOWN]:
+        best, certain = meet(A.BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, i, later, disks, end, -1.0)
+        other = later if certain else CHECK
+    elif later != NOTHING:
+        known = 0
+    best, other = first_meeting(A, disks, i, known, best, other, end, False)
+    expect(A, disks, i, best, other, now, end)
+
+
+@uncounted
+def holds(A: Scene, disks: int, i: int, end: float) -> bool:
+    """Whether the forecast that lone disk i, in no island, was given in an earlier step is still good, as its path and
+    that of whom it meets are the same; puts it on the heap. The instant is computed again, from the paths as they are
+    described in this step, so that no bit depends on how long ago the forecast was made."""
+    other, due = A.STATE[i, OTHER], A.BODY[i, DUE]
+    if due <= 0.0:
+        return False
+    if other >= 0:
+        if A.STATE[A.LINK[other, OWNER], KINKS] != A.STATE[i, KNOWN]:
+            return False
+        t, certain = meet(A.BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, i, other, disks, end, -1.0)
+        if not (certain and abs(t - due) <= _SAME * end):
+            return False
+        A.BODY[i, DUE] = due = t
+    elif other != LEAVE:
+        return False
+    if due < end:
+        A.COUNT[HEAP] = push(A.HEAP_TIME, A.HEAP_BODY, A.COUNT[HEAP], due, i)
+    return True

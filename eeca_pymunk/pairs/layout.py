@@ -1,7 +1,7 @@
 """The arrays of the near lists: what their columns mean.
 
-MARK (k, 3) float: the margin circle of each shape, drawn about where its list was made. CELL (k, 6) int: its place in
-the grid. LIST (k, 3) int: where in POOL its neighbours stand. POOL int32: numbers of shapes, all lists one after the
+MARK (k, 4) float: the margin circle of each shape, drawn about where its list was made, or ahead of that. CELL (k, 6) int: its place in
+the grid. LIST (k, 4) int: where in POOL its neighbours stand. POOL int32: numbers of shapes, all lists one after the
 other; FLAG, of the same length, 1 where an island's solve has taken the pair over, so that it makes no events.
 INFO int: counters of the lists.
 """
@@ -9,7 +9,8 @@ INFO int: counters of the lists.
 # MARK
 AT_X, AT_Y = 0, 1  # centre of the shape's bounding circle when its list was made, length
 MARGIN = 2  # how far it may go from there: length; infinite where every shape is in every list
-MARK_COLUMNS = 3
+REACH = 3  # of the bounding circle and the margin from the centre, as the grid has it
+MARK_COLUMNS = 4
 
 # CELL
 LEVEL, BUCKET, NEXT, PREVIOUS, COLUMN, ROW = 0, 1, 2, 3, 4, 5
@@ -17,7 +18,8 @@ CELL_COLUMNS = 6
 
 # LIST
 START, CAPACITY, NUMBER = 0, 1, 2
-LIST_COLUMNS = 3
+LATER = 3  # whom a lone disk meets if it goes straight on when it leaves its circle (`..impacts.forecast`)
+LIST_COLUMNS = 4
 
 # INFO
 POOL_END = 0  # first free place of POOL

@@ -35,10 +35,10 @@ class Crowd:
     def renew(self, s: int, t: float = 0.0) -> None:
         """Draw the margin circle of s anew, with more room if that takes it."""
         w, near = self.world, self.near
-        if not grid.renew(
+        if grid.renew(
             w.body, w.shape, w.link, near.MARK, near.CELL, near.LIST, near.POOL, near.FLAG, near.HEAD, near.GRID,
-            near.INFO, near.BOX, near.CSR, s, t,
-        ):  # fmt: skip
+            near.INFO, near.BOX, near.CSR, s, t, 0.0,
+        ) < 0:  # fmt: skip
             self.near = setup.rebuilt(near.larger(), w.body, w.shape, w.link, t)
 
     def listed(self) -> list[list[int]]:
