@@ -32,7 +32,22 @@ from ..pairs.layout import AT_X, AT_Y, LATER, MARGIN, NUMBER, START
 from ..pairs.lists import centre
 from ..pairs.rules import barred
 from .heap import push
-from .layout import CHECK, FIRST_SHAPE, HEAP, KINKS, KNOWN, LEAVE, NOTHING, OTHER, OWN, RENEW, SHAPES, Scene
+from .layout import (
+    CHECK,
+    EVEN,
+    FIRST_SHAPE,
+    HEAP,
+    KINKS,
+    KNOWN,
+    LEAVE,
+    NOTHING,
+    OTHER,
+    OWN,
+    RENEW,
+    SHAPES,
+    UNMET,
+    Scene,
+)  # fmt: skip
 from .times import meet, one_pull
 
 _SAME = 1e-9  # of the step, within which an instant that was computed again is the same
@@ -128,6 +143,12 @@ def predict(
 
 
 @uncounted
+def carrier(LINK: IntArray, disks: int, s: int) -> int:
+    """Row of the body of shape s: lone disks have the same number as their shapes."""
+    return s if s < disks else int(LINK[s, OWNER])
+
+
+@uncounted
 def first_meeting(
     A: Scene, disks: int, i: int, known: int, best: float, other: int, end: float, several: bool
 ) -> tuple[float, int]:  # fmt: skip
@@ -138,21 +159,25 @@ def first_meeting(
         several: whether bodies that have a PLACE are forecast together, see `predict`.
     """
     BODY, POOL, FLAG = A.BODY, A.POOL, A.FLAG
+    even = A.COUNT[EVEN] > 0
+    flagged = not even or A.COUNT[UNMET] > 0
     x, y, vx, vy, since = BODY[i, X], BODY[i, Y], BODY[i, VX], BODY[i, VY], BODY[i, SINCE]
     ax, ay, extent = BODY[i, AX], BODY[i, AY], BODY[i, EXTENT]
     start, ruled = A.LIST[i, START], A.RULE.shape[0] > 0
     for q in range(start + known, start + A.LIST[i, NUMBER]):
-        if FLAG[q] != 0:
+        if flagged and FLAG[q] != 0:
             continue
         o = int(POOL[q])
-        if several and A.PLACE[A.LINK[o, OWNER]] >= 0 and A.LINK[o, OWNER] < i:
-            continue
+        if several:
+            j = carrier(A.LINK, disks, o)
+            if A.PLACE[j] >= 0 and j < i:
+                continue
         if ruled and barred(A.RULE, i, o):
             continue
         certain = True
         if o >= disks:
             t, certain = meet(BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, i, o, disks, end, -1.0)
-        elif BODY[o, AX] == ax and BODY[o, AY] == ay:
+        elif even or (BODY[o, AX] == ax and BODY[o, AY] == ay):
             t = one_pull(
                 since, x, y, vx, vy, BODY[o, SINCE], BODY[o, X], BODY[o, Y], BODY[o, VX], BODY[o, VY], ax, ay,
                 extent + BODY[o, EXTENT], best,
@@ -170,7 +195,7 @@ def expect(A: Scene, disks: int, i: int, best: float, other: int, now: float, en
     what is due in this step on the heap."""
     out = leaves(A.BODY, A.SHAPE, A.LINK, A.MARK, disks, i, i, now)
     if other >= 0:
-        A.STATE[i, KNOWN] = A.STATE[A.LINK[other, OWNER], KINKS]
+        A.STATE[i, KNOWN] = A.STATE[carrier(A.LINK, disks, other), KINKS]
     if out <= best and out < math.inf:
         A.LIST[i, LATER] = other
         best, other = out, LEAVE
@@ -192,7 +217,7 @@ def go_on(A: Scene, disks: int, i: int, known: int, now: float, end: float) -> N
     """Forecast lone disk i, in no island, which goes straight on as it leaves its margin circle: only what has come into
     its list, after the first `known` of it, is new."""
     best, other, later = math.inf, NOTHING, A.LIST[i, LATER]
-    if later >= 0 and A.STATE[A.LINK[later, OWNER], KINKS] == A.STATE[i, KNOWN]:
+    if later >= 0 and A.STATE[carrier(A.LINK, disks, later), KINKS] == A.STATE[i, KNOWN]:
         best, certain = meet(A.BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, i, later, disks, end, -1.0)
         other = later if certain else CHECK
     elif later != NOTHING:
@@ -210,7 +235,7 @@ def holds(A: Scene, disks: int, i: int, end: float) -> bool:
     if due <= 0.0:
         return False
     if other >= 0:
-        if A.STATE[A.LINK[other, OWNER], KINKS] != A.STATE[i, KNOWN]:
+        if A.STATE[carrier(A.LINK, disks, other), KINKS] != A.STATE[i, KNOWN]:
             return False
         t, certain = meet(A.BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, i, other, disks, end, -1.0)
         if not (certain and abs(t - due) <= _SAME * end):

@@ -16,7 +16,7 @@ from ..pairs.lists import mark_pair
 from .block import arrive
 from .booking import end_span
 from .collide import strike
-from .forecast import go_on, has_left, holds, predict, predict_disk
+from .forecast import carrier, go_on, has_left, holds, predict, predict_disk
 from .heap import pop, push, sweep_out
 from .islands import members
 from .layout import (
@@ -161,11 +161,11 @@ def run(A: Scene, disks: int, may_rest: bool) -> int:
         if o == RENEW:
             A.PAR[NOW], COUNT[STRUCK] = t, i
             return BLOCK_DUE
-        if o < 0 or STATE[A.LINK[o, OWNER], KINKS] != STATE[i, KNOWN]:
+        j = carrier(A.LINK, disks, o) if o >= 0 else i
+        if o < 0 or STATE[j, KINKS] != STATE[i, KNOWN]:
             COUNT[STALE] += 1
             one = i
             continue
-        j = A.LINK[o, OWNER]
         if give_up(A, i, j):
             COUNT[UNMET] += 1
             mark_pair(A.LIST, A.POOL, A.FLAG, moving, s, o, 1)
@@ -184,7 +184,7 @@ def run(A: Scene, disks: int, may_rest: bool) -> int:
             return BLOCK_DUE
         # The same bits, whoever of the two has foreseen it.
         a, b = (o, i) if o < i else (i, o)
-        strike_disk(A, a, b, t)
+        strike_disk(A, disks, a, b, t)
         one, two = a, b if o < disks else -1
 
 

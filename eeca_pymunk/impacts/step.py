@@ -45,6 +45,7 @@ from .layout import (
     DIRECT,
     DONE,
     DT,
+    EVEN,
     EVENTS,
     EXTERNAL,
     FORECASTS,
@@ -139,12 +140,13 @@ def begin(A: Scene, WALK: IntArray) -> None:
     PAR[STAMP] += 1.0
     COUNT[PENDING], COUNT[PHASE] = -1, 0
     n, last = BODY.shape[0] - 1, PAR[LAST]
-    pulled = 0.0
+    pulled, even = 0.0, True
     for i in range(n):
         STATE[i, EVENTS] = 0
         A.MEMBER[i, BUSY] = max(A.MEMBER[i, BUSY] - 1, 0)
         if A.MEMBER[i, STILL] == 1 and stays(A, i, last):
             pulled = max(pulled, A.PULL[i, 0] * A.PULL[i, 0] + A.PULL[i, 1] * A.PULL[i, 1])
+            even = False
             continue
         if BODY[i, IM] == 0.0:
             watch(A, i)
@@ -156,7 +158,10 @@ def begin(A: Scene, WALK: IntArray) -> None:
             STATE[i, KINKS] += 1
         else:
             BODY[i, DUE] = max(BODY[i, DUE] - last, 0.0)
+        alike = BODY[i, IM] == 0.0 or (ax == BODY[0, AX] and ay == BODY[0, AY])
+        even = even and alike and STATE[i, ISLAND] < 0
     PAR[PULLED] = math.sqrt(pulled)
+    COUNT[EVEN] = 1 if even else 0
 
 
 @uncounted

@@ -20,7 +20,6 @@ from .layout import (
     BUCKET,
     CAPACITY,
     CELL_LENGTH,
-    COLUMN,
     LEAVES,
     LEVEL,
     LEVEL_COUNT,
@@ -32,7 +31,6 @@ from .layout import (
     POOL_END,
     PREVIOUS,
     REACH,
-    ROW,
     START,
 )  # fmt: skip
 from .lists import append, centre, course, listed, may_meet, remove
@@ -72,26 +70,26 @@ def link(
     MARK[s, REACH] = radius + MARK[s, MARGIN]
     level = level_of(MARK[s, REACH], GRID[CELL_LENGTH])
     length = GRID[CELL_LENGTH] * 2.0**level
-    CELL[s, COLUMN], CELL[s, ROW] = cell_at(MARK[s, AT_X], length), cell_at(MARK[s, AT_Y], length)
-    k = bucket(level, CELL[s, COLUMN], CELL[s, ROW], HEAD.shape[0] - 1)
+    k = bucket(level, cell_at(MARK[s, AT_X], length), cell_at(MARK[s, AT_Y], length), HEAD.shape[0] - 1)
     head = HEAD[k]
-    CELL[s, LEVEL], CELL[s, BUCKET], CELL[s, NEXT], CELL[s, PREVIOUS] = level, k, head, -1
+    CELL[s, LEVEL], CELL[s, BUCKET] = level, k
+    MARK[s, NEXT], MARK[s, PREVIOUS] = head, -1.0
     if head >= 0:
-        CELL[head, PREVIOUS] = s
+        MARK[head, PREVIOUS] = s
     HEAD[k] = s
     INFO[LEVELS + level] += 1
 
 
 @uncounted
-def unlink(CELL: IntArray, HEAD: IntArray, INFO: IntArray, s: int) -> None:
+def unlink(MARK: FloatArray, CELL: IntArray, HEAD: IntArray, INFO: IntArray, s: int) -> None:
     """Take shape s out of the grid."""
-    after, before = CELL[s, NEXT], CELL[s, PREVIOUS]
+    after, before = int(MARK[s, NEXT]), int(MARK[s, PREVIOUS])
     if before >= 0:
-        CELL[before, NEXT] = after
+        MARK[before, NEXT] = after
     else:
         HEAD[CELL[s, BUCKET]] = after
     if after >= 0:
-        CELL[after, PREVIOUS] = before
+        MARK[after, PREVIOUS] = before
     INFO[LEVELS + CELL[s, LEVEL]] -= 1
 
 
@@ -116,10 +114,10 @@ def join(
 @uncounted
 def seek_moving(
     BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, MARK: FloatArray, CELL: IntArray, LIST: IntArray,
-    POOL: PoolArray, FLAG: FlagArray, HEAD: IntArray, GRID: FloatArray, INFO: IntArray, s: int, kept: int,
+    POOL: PoolArray, FLAG: FlagArray, HEAD: IntArray, GRID: FloatArray, INFO: IntArray, s: int,
 ) -> bool:  # fmt: skip
-    """Neighbours of s, which is not in the grid, among the shapes that are, but for those among the first `kept` of its
-    list. False if the pool is full."""
+    """Neighbours of s, which is not in the grid, among the shapes that are, but for those in its list already. False if
+    the pool is full."""
     x, y = MARK[s, AT_X], MARK[s, AT_Y]
     radius = SHAPE[s, BOUND] + MARK[s, MARGIN]
     mask = HEAD.shape[0] - 1
@@ -137,7 +135,7 @@ def seek_moving(
         if last or float(east - west + 1) * float(north - south + 1) > 4.0 * left + 16.0:
             for o in range(INFO[MOVING]):
                 here = CELL[o, LEVEL] == level and CELL[o, BUCKET] >= 0 and o != s
-                if here and near(MARK, o, x, y, radius) and not listed(LIST, POOL, s, kept, o):
+                if here and near(MARK, o, x, y, radius) and not listed(LIST, POOL, s, o):
                     if not join(BODY, LINK, LIST, POOL, FLAG, INFO, s, o):
                         return False
             continue
@@ -145,12 +143,11 @@ def seek_moving(
             for row in range(south, north + 1):
                 o = HEAD[bucket(level, column, row, mask)]
                 while o >= 0:
-                    if near(MARK, o, x, y, radius) and not listed(LIST, POOL, s, kept, o):
-                        # Cells may share a place of the table: a shape counts in its own cell alone.
-                        here = CELL[o, LEVEL] == level and CELL[o, COLUMN] == column and CELL[o, ROW] == row
-                        if here and not join(BODY, LINK, LIST, POOL, FLAG, INFO, s, o):
+                    # Cells may share a place of the table: a shape may come up more than once.
+                    if near(MARK, o, x, y, radius) and not listed(LIST, POOL, s, o):
+                        if not join(BODY, LINK, LIST, POOL, FLAG, INFO, s, o):
                             return False
-                    o = CELL[o, NEXT]
+                    o = int(MARK[o, NEXT])
     return True
 
 
@@ -191,7 +188,7 @@ def renew(
     """
     if MARK[s, MARGIN] == math.inf:
         return int(LIST[s, NUMBER])
-    unlink(CELL, HEAD, INFO, s)
+    unlink(MARK, CELL, HEAD, INFO, s)
     x, y = centre(BODY, SHAPE, LINK, s, t)
     if ahead > 0.0:
         ux, uy = course(BODY, LINK, s, t)
@@ -199,8 +196,8 @@ def renew(
     MARK[s, AT_X], MARK[s, AT_Y], MARK[s, REACH] = x, y, SHAPE[s, BOUND] + MARK[s, MARGIN]
     INFO[LEAVES] += 1
     kept = part(LIST, POOL, FLAG, INFO, MARK, s)
-    found = seek_moving(BODY, SHAPE, LINK, MARK, CELL, LIST, POOL, FLAG, HEAD, GRID, INFO, s, kept) and seek_walls(
-        BODY, SHAPE, LINK, MARK, LIST, POOL, FLAG, GRID, INFO, BOX, CSR, s, kept
+    found = seek_moving(BODY, SHAPE, LINK, MARK, CELL, LIST, POOL, FLAG, HEAD, GRID, INFO, s) and seek_walls(
+        BODY, SHAPE, LINK, MARK, LIST, POOL, FLAG, GRID, INFO, BOX, CSR, s
     )
     link(MARK, CELL, HEAD, GRID, INFO, SHAPE[s, BOUND], s)
     return kept if found else -1
@@ -226,7 +223,7 @@ def build(
     INFO[POOL_END] = moving * _FIRST_CAPACITY
     everybody = moving > 0 and MARK[0, MARGIN] == math.inf
     for s in range(moving):
-        if not seek_walls(BODY, SHAPE, LINK, MARK, LIST, POOL, FLAG, GRID, INFO, BOX, CSR, s, 0):
+        if not seek_walls(BODY, SHAPE, LINK, MARK, LIST, POOL, FLAG, GRID, INFO, BOX, CSR, s):
             return False
         if everybody:
             for o in range(s):
@@ -234,7 +231,7 @@ def build(
                     return False
         else:
             # Each pair once: s seeks among those that were put in before it.
-            if not seek_moving(BODY, SHAPE, LINK, MARK, CELL, LIST, POOL, FLAG, HEAD, GRID, INFO, s, 0):
+            if not seek_moving(BODY, SHAPE, LINK, MARK, CELL, LIST, POOL, FLAG, HEAD, GRID, INFO, s):
                 return False
             link(MARK, CELL, HEAD, GRID, INFO, SHAPE[s, BOUND], s)
     return True

@@ -1,20 +1,21 @@
 """The arrays of the near lists: what their columns mean.
 
-MARK (k, 4) float: the margin circle of each shape, drawn about where its list was made, or ahead of that. CELL (k, 6) int: its place in
-the grid. LIST (k, 4) int: where in POOL its neighbours stand. POOL int32: numbers of shapes, all lists one after the
-other; FLAG, of the same length, 1 where an island's solve has taken the pair over, so that it makes no events.
-INFO int: counters of the lists.
+MARK (k, 8) float: the margin circle of each shape, drawn about where its list was made or ahead of that, and its
+neighbours in the grid. CELL (k, 2) int: its place there. LIST (k, 4) int: where in POOL its neighbours stand. POOL
+int32: numbers of shapes, all lists one after the other; FLAG, of the same length, 1 where an island's solve has taken
+the pair over, so that it makes no events. INFO int: counters of the lists.
 """
 
 # MARK
-AT_X, AT_Y = 0, 1  # centre of the shape's bounding circle when its list was made, length
+AT_X, AT_Y = 0, 1  # centre of the margin circle, length: where that of the bounding circle was, or a way before it
 MARGIN = 2  # how far it may go from there: length; infinite where every shape is in every list
 REACH = 3  # of the bounding circle and the margin from the centre, as the grid has it
-MARK_COLUMNS = 4
+NEXT, PREVIOUS = 4, 5  # shapes in the same place of the grid, -1 for none: beside what a search compares, in one line
+MARK_COLUMNS = 8
 
 # CELL
-LEVEL, BUCKET, NEXT, PREVIOUS, COLUMN, ROW = 0, 1, 2, 3, 4, 5
-CELL_COLUMNS = 6
+LEVEL, BUCKET = 0, 1
+CELL_COLUMNS = 2
 
 # LIST
 START, CAPACITY, NUMBER = 0, 1, 2

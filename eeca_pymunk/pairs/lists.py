@@ -92,9 +92,9 @@ def append(LIST: IntArray, POOL: PoolArray, FLAG: FlagArray, INFO: IntArray, a: 
 
 
 @uncounted
-def listed(LIST: IntArray, POOL: PoolArray, s: int, count: int, o: int) -> bool:
-    """Whether o is among the first so many of the list of s."""
-    for q in range(LIST[s, START], LIST[s, START] + count):
+def listed(LIST: IntArray, POOL: PoolArray, s: int, o: int) -> bool:
+    """Whether o is in the list of s."""
+    for q in range(LIST[s, START], LIST[s, START] + LIST[s, NUMBER]):
         if POOL[q] == o:
             return True
     return False

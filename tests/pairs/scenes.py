@@ -54,7 +54,7 @@ class Crowd:
         w = self.world
         body, shape = w.body[w.link[: self.moving, la.OWNER]], w.shape[: self.moving]
         s = (t - body[:, la.SINCE])[:, None]
-        pose = body[:, :3] + (body[:, 3:6] + 0.5 * body[:, 6:9] * s) * s
+        pose = body[:, :3] + (body[:, 3:6] + 0.5 * body[:, la.AX : la.TWIST + 1] * s) * s
         c, d = np.cos(pose[:, 2]), np.sin(pose[:, 2])
         x, y = shape[:, la.CENTRE_X], shape[:, la.CENTRE_Y]
         return np.asarray(pose[:, :2] + np.stack((c * x - d * y, d * x + c * y), axis=1))
