@@ -28,6 +28,7 @@ from ..layout import (
     X,
     Y,
 )  # fmt: skip
+from ..pairs.grid import renew
 from ..pairs.layout import AT_X, AT_Y, LATER, MARGIN, NUMBER, START
 from ..pairs.lists import centre
 from ..pairs.rules import barred
@@ -51,6 +52,7 @@ from .layout import (
 from .times import meet, one_pull
 
 _SAME = 1e-9  # of the step, within which an instant that was computed again is the same
+AHEAD, _FARTHEST = 0.4, 0.7  # of the margin, that a new circle is before a shape that leaves its own; at most
 _INSIDE = 0.1  # of the margin that is left, above which a shape has not left its circle
 
 
@@ -213,17 +215,32 @@ def predict_disk(A: Scene, disks: int, i: int, now: float, end: float, several: 
 
 
 @uncounted
-def go_on(A: Scene, disks: int, i: int, known: int, now: float, end: float) -> None:
-    """Forecast lone disk i, in no island, which goes straight on as it leaves its margin circle: only what has come into
-    its list, after the first `known` of it, is new."""
-    best, other, later = math.inf, NOTHING, A.LIST[i, LATER]
+def go_on(A: Scene, disks: int, i: int, now: float, end: float) -> bool:
+    """Lone disk i, in no island, leaves its margin circle and goes straight on: only what has come into its list is new
+    in its forecast. False if the pool is full."""
+    BODY = A.BODY
+    best, other, later, known = math.inf, NOTHING, A.LIST[i, LATER], A.LIST[i, NUMBER]
+    ahead = AHEAD
     if later >= 0 and A.STATE[carrier(A.LINK, disks, later), KINKS] == A.STATE[i, KNOWN]:
         best, certain = meet(A.BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, i, later, disks, end, -1.0)
         other = later if certain else CHECK
-    elif later != NOTHING:
+    if has_left(BODY, A.SHAPE, A.LINK, A.MARK, i, now):
+        h = now - BODY[i, SINCE]
+        if later == NOTHING or other >= 0:
+            # Its course changes where it meets somebody: its circle is to be about there.
+            way = norm(BODY[i, VX] + BODY[i, AX] * h, BODY[i, VY] + BODY[i, AY] * h) * (best - now)
+            ahead = min(way / A.MARK[i, MARGIN], _FARTHEST)
+        known = renew(
+            BODY, A.SHAPE, A.LINK, A.MARK, A.CELL, A.LIST, A.POOL, A.FLAG, A.HEAD, A.GRID, A.INFO, A.BOX, A.CSR, i, now,
+            ahead,
+        )  # fmt: skip
+        if known < 0:
+            return False
+    if later != NOTHING and other < 0:
         known = 0
     best, other = first_meeting(A, disks, i, known, best, other, end, False)
     expect(A, disks, i, best, other, now, end)
+    return True
 
 
 @uncounted

@@ -11,12 +11,11 @@ import math
 from ..compiled import inlined, kernel, uncounted
 from ..layout import DUE, IM, OWNER
 from ..pairs.grid import renew
-from ..pairs.layout import NUMBER
 from ..pairs.lists import mark_pair
 from .block import arrive
 from .booking import end_span
 from .collide import strike
-from .forecast import carrier, go_on, has_left, holds, predict, predict_disk
+from .forecast import AHEAD, carrier, go_on, has_left, holds, predict, predict_disk
 from .heap import pop, push, sweep_out
 from .islands import members
 from .layout import (
@@ -54,7 +53,6 @@ from .settle import comes_to_rest, ignored
 from .spans import solve
 from .strike import alone, strike_disk
 
-_AHEAD = 0.3  # of the margin, before a shape that leaves its circle: its new one is there
 _SQUEEZED = 50  # impacts of a body in a step, from which those with a kinematic one are left out: walls may close in
 
 
@@ -143,20 +141,19 @@ def run(A: Scene, disks: int, may_rest: bool) -> int:
         COUNT[HEAP] = pop(TIME, OF, COUNT[HEAP])
         s, o = STATE[i, OWN], STATE[i, OTHER]
         if o == LEAVE:
-            known = A.LIST[s, NUMBER]
-            if has_left(BODY, A.SHAPE, A.LINK, A.MARK, s, t):
-                known = renew(
-                    BODY, A.SHAPE, A.LINK, A.MARK, A.CELL, A.LIST, A.POOL, A.FLAG, A.HEAD, A.GRID, A.INFO, A.BOX, A.CSR,
-                    s, t, _AHEAD,
-                )  # fmt: skip
-            if known < 0:
+            if i < disks and STATE[i, ISLAND] < 0:
+                room = go_on(A, disks, i, t, end)
+            else:
+                one, room = i, True
+                if has_left(BODY, A.SHAPE, A.LINK, A.MARK, s, t):
+                    room = renew(
+                        BODY, A.SHAPE, A.LINK, A.MARK, A.CELL, A.LIST, A.POOL, A.FLAG, A.HEAD, A.GRID, A.INFO, A.BOX,
+                        A.CSR, s, t, AHEAD,
+                    ) >= 0  # fmt: skip
+            if not room:
                 A.PAR[NOW] = t
                 COUNT[HEAP] = push(TIME, OF, COUNT[HEAP], t, i)
                 return POOL_FULL
-            if i < disks and STATE[i, ISLAND] < 0:
-                go_on(A, disks, i, known, t, end)
-            else:
-                one = i
             continue
         if o == RENEW:
             A.PAR[NOW], COUNT[STRUCK] = t, i

@@ -25,6 +25,7 @@ from .layout import (
     BLOCKS,
     CHECK,
     COUNT_LENGTH,
+    DISKS,
     FIRST_SHAPE,
     HEAP,
     ISLAND,
@@ -93,7 +94,7 @@ class EventLoop:
             np.zeros((2, vertices, 4)), np.zeros(PAR_LENGTH), np.zeros(COUNT_LENGTH, np.int64),
         )  # fmt: skip
         self.near = near
-        self.scene.COUNT[LIMIT] = limit
+        self.scene.COUNT[LIMIT], self.scene.COUNT[DISKS] = limit, disks
         self.scene.MEMBER[:, TIED : NEXT_TIED + 1] = -1
         self.scene.RESTING[:, RELAX : RELAX + 3] = FRESH
         self.lossy = bool((SHAPE[:, ELASTICITY] < 1.0).any())
