@@ -33,6 +33,7 @@ LIFT = 0  # RESTING[LIFT : LIFT + 6]: what to add to pose and velocity at the en
 RELAX = 6  # of the root, RESTING[RELAX : RELAX + 3]: state of the solve
 LOST = 9  # of the root: energy lost in this step; below 0 it is owed
 UNTIL = 10  # of the root: instant at which the span ends
+CALM_FOR = 11  # steps in a row at whose start the body hardly moved
 SPEED = 12  # that points of the body may get in the step, where all contacts act together
 STILL_DUE = 13  # DUE of a still body at the end of the last step
 RESTING_COLUMNS = 14

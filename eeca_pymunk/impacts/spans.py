@@ -29,7 +29,7 @@ from ..rows.build import normal_rate, tangent_rate
 from ..rows.layout import ARM_NA, ARM_TA, GAP, K_N, NX, NY, ROW_COLUMNS, UN, UT
 from ..sustained.ledger import LEDGER_SIZE, carried
 from ..sustained.step import LOCK as LOCK_OF
-from ..sustained.step import OUT_SIZE, step_island
+from ..sustained.step import OUT_SIZE, STOOD, step_island
 from ..sustained.step import POLISHES as POLISHES_OF
 from ..sustained.step import SWEEPS as SWEEPS_OF
 from .block import CROWD
@@ -82,6 +82,7 @@ from .layout import (
     WORK_OF,
     Scene,
 )  # fmt: skip
+from .still import calm, halt
 
 _SWEEPS, _OF_CROWD, _AGAIN = 40, 24, 12  # of an island that moves; of a crowd, and of one that was hit in this step
 
@@ -213,13 +214,14 @@ def solve(A: Scene, root: int, t: float) -> int:
     # After a hit the forces of the span that it has cut short are a good beginning.
     sweeps = _SWEEPS if n < CROWD else (_OF_CROWD if t == 0.0 else _AGAIN)
     m = 0
+    quiet = lossy and calm(A, root, MINE, n, t)
     if p > 0 and h > 0.0:
         m = step_island(
             POSE, V, ACC, IMS, IIS, SIZES, n, PAIRS, p, A.SHAPE, A.RULE, A.LINK, A.VERTEX, A.WORK, h, sweeps,
             least, max(-A.RESTING[root, LOST], 0.0), A.KEYS, A.FORCES, COUNT[REMEMBERED:], A.PAR[STAMP],
-            A.RESTING[MINE[0], RELAX : RELAX + 3], P, Q, ROWS, KEY, L, LOSS, VN, JUMP, BOOK, OUT,
+            A.RESTING[MINE[0], RELAX : RELAX + 3], quiet, P, Q, ROWS, KEY, L, LOSS, VN, JUMP, BOOK, OUT,
         )  # fmt: skip
-        stuck = h if hurried(A) else stick_time(P, Q, ROWS, L, V + h * ACC, VN, m, h)
+        stuck = h if hurried(A) or OUT[STOOD] > 0.0 else stick_time(P, Q, ROWS, L, V + h * ACC, VN, m, h)
         if stuck < h:
             # Where slip ends on the way, so does the span: friction changes its law there.
             h = max(stuck, A.PAR[DT] / PARTS)
@@ -227,7 +229,7 @@ def solve(A: Scene, root: int, t: float) -> int:
             m = step_island(
                 POSE, V, ACC, IMS, IIS, SIZES, n, PAIRS, p, A.SHAPE, A.RULE, A.LINK, A.VERTEX, A.WORK, h, sweeps,
                 least, max(-A.RESTING[root, LOST], 0.0), A.KEYS, A.FORCES, COUNT[REMEMBERED:], A.PAR[STAMP],
-                A.RESTING[MINE[0], RELAX : RELAX + 3], P, Q, ROWS, KEY, L, LOSS, VN, JUMP, BOOK, OUT,
+                A.RESTING[MINE[0], RELAX : RELAX + 3], False, P, Q, ROWS, KEY, L, LOSS, VN, JUMP, BOOK, OUT,
             )  # fmt: skip
         if abs(OUT[LOCK_OF] - 1.0) > abs(A.PAR[LOCK] - 1.0):
             A.PAR[LOCK] = OUT[LOCK_OF]
@@ -265,4 +267,6 @@ def solve(A: Scene, root: int, t: float) -> int:
         for z in range(m):
             A.PUSHED_BY[first + z, ROOT] = head
         COUNT[PUSHES] += m
+        if OUT[STOOD] > 0.0:
+            halt(A, head)
     return DONE

@@ -1,10 +1,11 @@
 """Islands that stand still: an unchanged solve goes on, step after step, and costs next to nothing.
 
-An island stands still once, over a whole step that nobody disturbed, every body of it was slower than _STILL |a| dt at
-both ends, so that its contacts bear its weight to that accuracy, and no contact slipped or was driven. Its bodies then
-stay where they are, without velocity (what kinetic energy is left is booked as restitution), and its contacts keep
-their forces. It is solved again from when a body of it is hit, edited, or pulled otherwise than before; when a body
-that carries it moves; and always where collision handlers have a say.
+An island stands still once, over a whole step that nobody disturbed, every body of it was slower than STANDS |a| dt at
+both ends, so that its contacts bear its weight to that accuracy, and no contact slipped or was driven; and once it has
+hardly moved for some steps and `..sustained.statics` finds the forces that hold it. Its bodies then stay where they
+are, without velocity (what kinetic energy is left is booked as restitution), and its contacts keep their forces. It is
+solved again from when a body of it is hit, edited, or pulled otherwise than before; when a body that carries it moves;
+and always where collision handlers have a say.
 
 MEMBER[STILL]: of its bodies 1; of the root CHANGED when it is to be solved again, LIKELY at the end of a step in which
 it may come to a stand; of a kinematic body CHANGED while it moves.
@@ -14,15 +15,18 @@ from __future__ import annotations
 
 import math
 
+from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
 from ..layout import ANGLE, AX, AY, DUE, EXTENT, II, IM, OWNER, SPIN, TWIST, VX, VY, X, Y
 from ..pairs.lists import mark_pair
 from ..sustained.memory import STAMP as OF_STEP
 from ..sustained.memory import find
+from ..sustained.statics import CALM, STANDS
 from .layout import (
     AFTER_ME,
     BETA,
     BUSY,
+    CALM_FOR,
     DT,
     HITS,
     ISLAND,
@@ -64,7 +68,8 @@ from .layout import (
 from .strike import note
 
 CHANGED, LIKELY = 2, 3
-_STILL = 1e-9  # speed relative to |a| dt, below which a body stands
+_SURE = 2  # steps that an island hardly moves, before it is asked whether it stands
+_AGAIN = 16  # and until it is asked again
 
 
 @uncounted
@@ -127,17 +132,15 @@ def rouse(A: Scene) -> None:
             mark_pair(A.LIST, A.POOL, A.FLAG, A.LIST.shape[0], A.PUSHED_BY[c, PUSH_A], A.PUSHED_BY[c, PUSH_B], 0)
         elif root >= 0:
             R = A.PUSHED[c]
-            change = dt / R[SPAN]
-            R[LAM], R[BETA], R[PUSH_CHANGE], R[SPAN] = (
-                R[LAM] * change,
-                R[BETA] * change,
-                R[PUSH_CHANGE] * change,
-                dt,
-            )
+            for column in (LAM, BETA, PUSH_CHANGE):
+                R[column] *= dt / R[SPAN]
+            R[SPAN] = dt
+    calm = CALM * A.PAR[PULLED] * dt
     for i in range(ground):
         root = STATE[i, ISLAND]
         if root < 0 or MEMBER[root, STILL] == 1:
             continue
+        A.RESTING[i, CALM_FOR] = A.RESTING[i, CALM_FOR] + 1.0 if speed(BODY, i, 0.0) <= calm else 0.0
         if MEMBER[i, STILL] > 0:
             BODY[i, AX], BODY[i, AY], BODY[i, TWIST] = A.PULL[i, 0], A.PULL[i, 1], A.PULL[i, 2]
             STATE[i, KINKS] += 1
@@ -171,6 +174,26 @@ def disturb(A: Scene, root: int) -> None:
 
 
 @uncounted
+def speed(BODY: FloatArray, i: int, s: float) -> float:
+    """A bound on the speed of the points of body i in s."""
+    vx, vy = BODY[i, VX] + s * BODY[i, AX], BODY[i, VY] + s * BODY[i, AY]
+    return abs(vx) + abs(vy) + BODY[i, EXTENT] * abs(BODY[i, SPIN] + s * BODY[i, TWIST])
+
+
+@uncounted
+def calm(A: Scene, root: int, MINE: IntArray, n: int, t: float) -> bool:
+    """Whether the island of the n bodies MINE may come to a stand at instant t; if so, it is asked again much later."""
+    if t > 0.0 or A.COUNT[TOGETHER] > 0 or A.RULE.shape[0] > 0 or A.MEMBER[root, HITS] > 0:
+        return False
+    for q in range(n):
+        if A.RESTING[MINE[q], CALM_FOR] < _SURE or A.MEMBER[MINE[q], BUSY] > 0:
+            return False
+    for q in range(n):
+        A.RESTING[MINE[q], CALM_FOR] = -_AGAIN
+    return True
+
+
+@uncounted
 def slow(A: Scene, root: int) -> bool:
     """Whether all bodies of an island were as good as at rest at both ends of this step, undisturbed."""
     BODY, MEMBER = A.BODY, A.MEMBER
@@ -179,16 +202,13 @@ def slow(A: Scene, root: int) -> bool:
         return False
     if A.RESTING[root, UNTIL] < math.inf:
         return False
-    limit = _STILL * A.PAR[PULLED] * dt
+    limit = STANDS * A.PAR[PULLED] * dt
     i = root
     while i >= 0:
         if MEMBER[i, BUSY] > 0:
             return False
-        size = BODY[i, EXTENT]
-        for s in (0.0, dt):
-            vx, vy = BODY[i, VX] + s * BODY[i, AX], BODY[i, VY] + s * BODY[i, AY]
-            if abs(vx) + abs(vy) + size * abs(BODY[i, SPIN] + s * BODY[i, TWIST]) > limit:
-                return False
+        if max(speed(BODY, i, 0.0), speed(BODY, i, dt)) > limit:
+            return False
         for c in range(6):
             if A.RESTING[i, LIFT + c] != 0.0:
                 return False
@@ -208,7 +228,7 @@ def find_still(A: Scene) -> None:
             some = True
     if not some:
         return
-    limit = _STILL * A.PAR[PULLED] * A.PAR[DT]
+    limit = STANDS * A.PAR[PULLED] * A.PAR[DT]
     for c in range(A.COUNT[PUSHES]):
         root = A.PUSHED_BY[c, ROOT]
         if root < 0 or A.MEMBER[root, STILL] != LIKELY:
@@ -245,7 +265,7 @@ def stand(A: Scene, c: int) -> None:
 
 @uncounted
 def halt(A: Scene, root: int) -> None:
-    """At the end of a step, an island that comes to a stand: its bodies stop."""
+    """At either end of a step, an island that comes to a stand: its bodies stop."""
     BODY, MEMBER = A.BODY, A.MEMBER
     i = root
     while i >= 0:

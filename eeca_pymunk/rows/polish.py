@@ -34,6 +34,32 @@ from .layout import (
 from .ordering import dissect, neighbours, pattern
 from .sweeps import velocities
 
+_LINE = 1e-6  # of a face's length, how far its points may be from one tangent line
+
+
+@uncounted
+def share(A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, m: int) -> None:
+    """Divide the friction of a face between its two points as their normal impulses: beta_k = lam_k sum beta / sum lam.
+
+    Both lie on one tangent line, so that no velocity feels the division; and if the sum is inside the cone of the sum,
+    each is inside its own. A point called slipping beside one that sticks leaves the face without a solution.
+    """
+    for i in range(m - 1):
+        j = i + 1
+        mu = ROWS[i, FRICTION]
+        lam = L[i, 0] + L[j, 0]
+        if A[i] != A[j] or B[i] != B[j] or mu <= 0.0 or mu != ROWS[j, FRICTION] or lam <= 0.0:
+            continue
+        if ROWS[i, NX] != ROWS[j, NX] or ROWS[i, NY] != ROWS[j, NY] or ROWS[i, SURFACE] != ROWS[j, SURFACE]:
+            continue
+        line = _LINE * abs(ROWS[i, ARM_NA] - ROWS[j, ARM_NA])
+        if abs(ROWS[i, ARM_TA] - ROWS[j, ARM_TA]) > line or abs(ROWS[i, ARM_TB] - ROWS[j, ARM_TB]) > line:
+            continue
+        beta = L[i, 1] + L[j, 1]
+        if abs(beta) <= mu * lam and beta * ROWS[i, UT] <= 0.0:
+            L[i, 1] = beta * (L[i, 0] / lam)
+            L[j, 1] = beta * (L[j, 0] / lam)
+
 
 @uncounted
 def classify(
@@ -102,6 +128,7 @@ def polish(
     stuck = np.empty(m, np.int64)
     slip = np.empty(m)
     rest = np.empty(m)
+    share(A, B, ROWS, L, m)
     classify(A, B, ROWS, L, V, m, held, stuck, slip, rest)
     SCALE = np.empty((len(IM), 3))
     for i in range(len(IM)):
@@ -165,6 +192,7 @@ def polish(
             else:
                 L[i, 1] = slip[i] * L[i, 0]
         velocities(A, B, ROWS, L, FREE, IM, II, m, V)
+    share(A, B, ROWS, L, m)
     clamped = clamp(ROWS, L, m)
     if clamped > 0:
         velocities(A, B, ROWS, L, FREE, IM, II, m, V)

@@ -18,10 +18,11 @@ from .ledger import against, carried
 from .lifting import lifting
 from .memory import find, remember
 from .relax import relax
+from .statics import comes_to_stand
 from .targets import target
 
 # Of OUT (8,)
-SWEEPS, POLISHES, RESIDUAL, LOCK, OWED, DEEPEST, CLOSED = 0, 1, 2, 3, 4, 5, 6
+SWEEPS, POLISHES, RESIDUAL, LOCK, OWED, DEEPEST, CLOSED, STOOD = 0, 1, 2, 3, 4, 5, 6, 7
 OUT_SIZE = 8
 
 _FINE = 1e-12  # residual relative to |a| h
@@ -46,6 +47,20 @@ def recall(
             L[i, 0] = h * FORCES[row, 0]
             L[i, 1] = h * FORCES[row, 1]
             EXPECTED[i] = h * FORCES[row, 2]
+
+
+@uncounted
+def keep_forces(
+    ROWS: FloatArray, KEY: IntArray, L: FloatArray, m: int, h: float, KEYS: IntArray, FORCES: FloatArray,
+    COUNT: IntArray, stamp: float, OUT: FloatArray,
+) -> None:  # fmt: skip
+    """Remember the forces of contacts that push, and what of them bears loads rather than stops; OUT counts them."""
+    for i in range(m):
+        if L[i, 0] > 0.0:
+            stopped = max(max(ROWS[i, TARGET], 0.0) - ROWS[i, UN], 0.0) * ROWS[i, K_N]
+            load = max(L[i, 0] - stopped, 0.0)
+            OUT[6] += 1.0
+            remember(KEYS, FORCES, COUNT, KEY[i], L[i, 0] / h, L[i, 1] / h, load / h, stamp)
 
 
 @uncounted
@@ -97,7 +112,7 @@ def step_island(
     POSE: FloatArray, V: FloatArray, ACC: FloatArray, IM: FloatArray, II: FloatArray, EXTENT: FloatArray, n: int,
     PAIRS: IntArray, p: int, SHAPE: FloatArray, RULE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray,
     h: float, most: int, least: float, owed: float, KEYS: IntArray, FORCES: FloatArray, COUNT: IntArray, stamp: float,
-    STATE: FloatArray,
+    STATE: FloatArray, calm: bool,
     A: IntArray, B: IntArray, ROWS: FloatArray, KEY: IntArray, L: FloatArray, LOSS: FloatArray, VN: FloatArray,
     JUMP: FloatArray, LEDGER: FloatArray, OUT: FloatArray,
 ) -> int:  # fmt: skip
@@ -112,10 +127,11 @@ def step_island(
         least: length that every body's points may come at least, 0 if their velocities tell.
         owed: energy >= 0 to take out at least.
         KEYS, FORCES, COUNT, stamp: memory of forces; the number of this step.  STATE: (3,) of `relax`.
+        calm: whether it may come to a stand, see `.statics`; V is 0 then, its energy is the caller's to book.
         A, B, ROWS, KEY, L, LOSS: the m contact rows out, with impulses over h and losses (D_n, D_t).
         VN: (k, 3) velocities at the end, out.  JUMP: (k, 6) what to add to pose and velocity then, out.
         LEDGER: (8,) added to.  OUT: (8,) sweeps, direct solutions, residual, scale of the lock, energy still owed,
-            deepest gap at the end before lifting, contacts that push.
+            deepest gap at the end before lifting, contacts that push, whether the island came to a stand.
     Returns:
         m, or -1 if the arrays of rows (or the memory) are too small; nothing is changed then.
     """
@@ -146,6 +162,18 @@ def step_island(
         recall(KEY, m, KEYS, FORCES, stamp, h, L, EXPECTED)
         rates(A, B, ROWS, V, m)
         target(A, B, ROWS, m, ACC, EXPECTED, pull, h)
+        if calm:
+            stands, sweeps, polishes = comes_to_stand(
+                A, B, ROWS, L, V, FREE, IM, II, POSE, EXTENT, VN, n, m, pull * h
+            )  # fmt: skip
+            OUT[0] = sweeps
+            OUT[1] = polishes
+            if stands:
+                OUT[7] = 1.0
+                keep_forces(ROWS, KEY, L, m, h, KEYS, FORCES, COUNT, stamp, OUT)
+                return m
+            rates(A, B, ROWS, V, m)
+            target(A, B, ROWS, m, ACC, EXPECTED, pull, h)
         velocities(A, B, ROWS, L, FREE, IM, II, m, VN)
         scale = pull * h if pull > 0.0 else 1e-3 * fast
         elastic = conserves(ROWS, m)
@@ -161,8 +189,8 @@ def step_island(
         )  # fmt: skip
         # Sums over many sweeps have their own round-off: the velocities are those of the impulses.
         velocities(A, B, ROWS, L, FREE, IM, II, m, VN)
-        OUT[0] = sweeps
-        OUT[1] = polishes
+        OUT[0] += sweeps
+        OUT[1] += polishes
         OUT[2] = worst
         OUT[3], OUT[4] = lock(A, B, ROWS, L, VN, FREE, IM, II, m, owed, elastic)
         normal, tangential = works(A, B, ROWS, L, VN, m, LOSS)
@@ -176,12 +204,7 @@ def step_island(
         LEDGER[1] += tangential
         LEDGER[2] += carried(A, B, ROWS, L, V, IM, m)
         LEDGER[3] += lifted
-        for i in range(m):
-            stopped = max(max(ROWS[i, TARGET], 0.0) - ROWS[i, UN], 0.0) * ROWS[i, K_N]
-            load = max(L[i, 0] - stopped, 0.0)
-            if L[i, 0] > 0.0:
-                OUT[6] += 1.0
-                remember(KEYS, FORCES, COUNT, KEY[i], L[i, 0] / h, L[i, 1] / h, load / h, stamp)
+        keep_forces(ROWS, KEY, L, m, h, KEYS, FORCES, COUNT, stamp, OUT)
     else:
         OUT[4] = owed
     LEDGER[4] += 0.5 * h * (against(ACC, IM, II, n, V) + against(ACC, IM, II, n, VN))

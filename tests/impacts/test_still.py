@@ -144,3 +144,65 @@ def test_without_weight_nothing_comes_to_a_stand() -> None:
     for _ in range(20):
         stepper.step(DT)
     assert all(b.velocity.y == 1e-12 for b in bodies)
+
+
+def heap(count: int, unit: float) -> tuple[pymunk.Space, list[pymunk.Body]]:
+    """Disks without bounces that fall on each other between smooth walls."""
+    space = pymunk.Space()
+    space.gravity = (0.0, -G * unit)
+    for a, b in (((-2.0, 0.0), (2.0, 0.0)), ((-2.0, 0.0), (-2.0, 40.0)), ((2.0, 0.0), (2.0, 40.0))):
+        wall = pymunk.Segment(space.static_body, (a[0] * unit, a[1] * unit), (b[0] * unit, b[1] * unit), 0.0)
+        wall.friction = 0.7 if a[1] == b[1] else 0.0
+        space.add(wall)
+    bodies = []
+    for i in range(count):
+        radius = (0.3 + 0.02 * (7 * i % 11)) * unit
+        body = pymunk.Body(1.0, 0.5 * radius * radius)
+        body.position = ((-1.2 + 0.8 * (i % 4) + 0.01 * (i % 3)) * unit, (0.5 + 0.85 * (i // 4)) * unit)
+        disk = pymunk.Circle(body, radius)
+        disk.friction = 0.7
+        space.add(body, disk)
+        bodies.append(body)
+    return space, bodies
+
+
+@pytest.mark.parametrize("unit", UNITS)
+def test_a_heap_comes_to_a_stand(unit: float) -> None:
+    space, bodies = heap(24, unit)
+    stepper, scale = ep.EECA(space), 24 * G * 4 * unit * unit
+    for _ in range(400):
+        report = stepper.step(DT)
+        assert report.ledger is not None
+        assert abs(report.ledger.residual) <= 1e-12 * scale
+        assert min(report.ledger.restitution, report.ledger.friction) >= -1e-13 * scale
+    assert report.iterations == 0, "the heap is solved though nothing happens"
+    assert all(b.velocity == (0.0, 0.0) and b.angular_velocity == 0.0 for b in bodies)
+    floor = [
+        space.static_body in (report.contacts.bodies[a], report.contacts.bodies[b])
+        for a, b in zip(report.contacts.body_a, report.contacts.body_b, strict=True)
+    ]
+    borne = report.impulse[floor] * report.contacts.normal[floor, 1]
+    assert abs(sum(borne)) == pytest.approx(24 * G * unit * DT, rel=1e-8)
+
+
+@pytest.mark.parametrize("unit", UNITS)
+@pytest.mark.parametrize("friction", [0.0, 0.7])
+def test_what_slides_or_rolls_slowly_goes_on(friction: float, unit: float) -> None:
+    """A block without friction keeps its speed, and so does a disk that rolls: nothing takes that."""
+    space = pymunk.Space()
+    space.gravity = (0.0, -G * unit)
+    ground = pymunk.Segment(space.static_body, (-20 * unit, 0.0), (20 * unit, 0.0), 0.0)
+    ground.friction = friction
+    body = pymunk.Body(1.0, unit * unit / 2)
+    shape = pymunk.Circle(body, unit) if friction else pymunk.Poly.create_box(body, (2 * unit, 2 * unit))
+    shape.friction = friction
+    body.position = (0.0, unit)
+    speed = 1e-5 * G * unit * DT
+    body.velocity = (speed, 0.0)
+    body.angular_velocity = -speed / unit if friction else 0.0
+    space.add(ground, body, shape)
+    stepper = ep.EECA(space)
+    for _ in range(100):
+        stepper.step(DT)
+    assert body.velocity.x == pytest.approx(speed, rel=1e-9)
+    assert body.position.x == pytest.approx(100 * DT * speed, rel=1e-9)

@@ -27,7 +27,6 @@ def of(*kinds: types.ModuleType) -> list[Case]:
 OPEN = {
     "drum of disks and boxes, 8 s": "walls that turn into a crowd are not lifted out of it, so that bodies get through",
     "frictional gas, free cluster": "inelastic contacts that go far within a step turn their clusters a little",
-    "stack of 50": "leans by centimetres in ten seconds",
 }
 
 
