@@ -33,7 +33,7 @@ def side_by_side(*wanted: tuple[tuple[int, ...], type]) -> list[Any]:
         total, unit = max(-(-total // _PAGE) * _PAGE, _HUGE), _PAGE
     memory = np.zeros(total + unit, np.uint8)
     at = -memory.ctypes.data % unit
-    found = []
+    found: list[Any] = []
     for (shape, dtype), size, room in zip(wanted, sizes, rooms, strict=True):
         found.append(memory[at : at + size].view(dtype).reshape(shape))
         at += room

@@ -15,7 +15,7 @@ from ..pairs.lists import mark_pair
 from .block import arrive
 from .booking import end_span
 from .collide import strike
-from .forecast import AHEAD, carrier, go_on, has_left, holds, predict, predict_disk
+from .forecast import AHEAD, has_left, predict
 from .heap import pop, push, sweep_out
 from .islands import members
 from .layout import (
@@ -49,6 +49,7 @@ from .layout import (
     WAITING,
     Scene,
 )  # fmt: skip
+from .lone import carrier, go_on, holds, predict_disk
 from .settle import comes_to_rest, ignored
 from .spans import solve
 from .strike import alone, strike_disk

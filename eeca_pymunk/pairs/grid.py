@@ -33,7 +33,7 @@ from .layout import (
     REACH,
     START,
 )  # fmt: skip
-from .lists import append, centre, course, listed, may_meet, remove
+from .lists import append, centre, course, may_meet, place_in, remove
 from .walls import seek_walls
 
 _FIRST_CAPACITY = 8
@@ -135,7 +135,7 @@ def seek_moving(
         if last or float(east - west + 1) * float(north - south + 1) > 4.0 * left + 16.0:
             for o in range(INFO[MOVING]):
                 here = CELL[o, LEVEL] == level and CELL[o, BUCKET] >= 0 and o != s
-                if here and near(MARK, o, x, y, radius) and not listed(LIST, POOL, s, o):
+                if here and near(MARK, o, x, y, radius) and place_in(LIST, POOL, s, o) < 0:
                     if not join(BODY, LINK, LIST, POOL, FLAG, INFO, s, o):
                         return False
             continue
@@ -144,7 +144,7 @@ def seek_moving(
                 o = HEAD[bucket(level, column, row, mask)]
                 while o >= 0:
                     # Cells may share a place of the table: a shape may come up more than once.
-                    if near(MARK, o, x, y, radius) and not listed(LIST, POOL, s, o):
+                    if near(MARK, o, x, y, radius) and place_in(LIST, POOL, s, o) < 0:
                         if not join(BODY, LINK, LIST, POOL, FLAG, INFO, s, o):
                             return False
                     o = int(MARK[o, NEXT])
@@ -159,11 +159,8 @@ def part(LIST: IntArray, POOL: PoolArray, FLAG: FlagArray, INFO: IntArray, MARK:
     x, y, radius = MARK[s, AT_X], MARK[s, AT_Y], MARK[s, REACH]
     for q in range(start, start + LIST[s, NUMBER]):
         o = int(POOL[q])
-        if o >= INFO[MOVING]:
-            stays = FLAG[q] != 0  # others are sought again
-        else:
-            stays = near(MARK, o, x, y, radius)
-        if stays:
+        # Static ones are sought again, but for their flags.
+        if near(MARK, o, x, y, radius) if o < INFO[MOVING] else FLAG[q] != 0:
             POOL[start + kept], FLAG[start + kept] = o, FLAG[q]
             kept += 1
         elif o < INFO[MOVING]:

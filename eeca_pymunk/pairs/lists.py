@@ -92,12 +92,12 @@ def append(LIST: IntArray, POOL: PoolArray, FLAG: FlagArray, INFO: IntArray, a: 
 
 
 @uncounted
-def listed(LIST: IntArray, POOL: PoolArray, s: int, o: int) -> bool:
-    """Whether o is in the list of s."""
+def place_in(LIST: IntArray, POOL: PoolArray, s: int, o: int) -> int:
+    """Where in the pool o stands in the list of s, -1 if it does not."""
     for q in range(LIST[s, START], LIST[s, START] + LIST[s, NUMBER]):
         if POOL[q] == o:
-            return True
-    return False
+            return q
+    return -1
 
 
 @uncounted

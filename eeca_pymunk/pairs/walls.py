@@ -16,7 +16,7 @@ from .layout import (
     WALL_X,
     WALL_Y,
 )  # fmt: skip
-from .lists import append, listed, may_meet
+from .lists import append, may_meet, place_in
 
 
 @uncounted
@@ -45,7 +45,7 @@ def seek_walls(
     columns, rows = INFO[WALL_COLUMNS], INFO[WALL_ROWS]
     if columns == 0:
         for w in range(BOX.shape[0]):
-            if near_wall(BOX, w, x, y, radius) and not listed(LIST, POOL, s, moving + w):
+            if near_wall(BOX, w, x, y, radius) and place_in(LIST, POOL, s, moving + w) < 0:
                 if may_meet(BODY, LINK, s, moving + w) and not append(LIST, POOL, FLAG, INFO, s, moving + w):
                     return False
         return True
@@ -63,7 +63,7 @@ def seek_walls(
                 first_row = max(south, cell_of(BOX[w, 1] - GRID[WALL_Y], length, rows))
                 if first_column != column or first_row != row:
                     continue
-                if near_wall(BOX, w, x, y, radius) and not listed(LIST, POOL, s, moving + w):
+                if near_wall(BOX, w, x, y, radius) and place_in(LIST, POOL, s, moving + w) < 0:
                     if may_meet(BODY, LINK, s, moving + w) and not append(LIST, POOL, FLAG, INFO, s, moving + w):
                         return False
     return True
