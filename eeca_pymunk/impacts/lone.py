@@ -8,17 +8,17 @@ from __future__ import annotations
 
 import math
 
-from ..arrays import IntArray
-from ..compiled import uncounted
+from ..arrays import FloatArray, IntArray
+from ..compiled import inlined, uncounted
 from ..geometry.flight import norm
 from ..layout import AX, AY, DUE, EXTENT, OWNER, SINCE, VX, VY, X, Y
 from ..pairs.grid import renew
-from ..pairs.layout import LATER, MARGIN, NUMBER, START
+from ..pairs.layout import CHOSEN, LATER, MARGIN, NUMBER, ROOM, START
 from ..pairs.rules import barred
 from .forecast import AHEAD, has_left, leaves
 from .heap import push
 from .layout import CHECK, EVEN, HEAP, KINKS, KNOWN, LEAVE, NOTHING, OTHER, OWN, UNMET, Scene
-from .times import meet, one_pull
+from .times import meet, one_pull, passes
 
 _FARTHEST = 0.7  # of the margin, that a new circle is ahead at most
 _SAME = 1e-9  # of the step, within which an instant that was computed again is the same
@@ -28,6 +28,34 @@ _SAME = 1e-9  # of the step, within which an instant that was computed again is 
 def carrier(LINK: IntArray, disks: int, s: int) -> int:
     """Row of the body of shape s: lone disks have the same number as their shapes."""
     return s if s < disks else int(LINK[s, OWNER])
+
+
+@inlined
+def misses(BODY: FloatArray, i: int, o: int, ax: float, ay: float, latest: float) -> bool:
+    """Whether lone disks i and o, which one acceleration pulls, part, pass far from one another, or are too far away to
+    meet until `latest`: for certain. No more than `times.one_pull` would find out, and no branch."""
+    start = max(BODY[i, SINCE], BODY[o, SINCE])
+    g, h = start - BODY[i, SINCE], start - BODY[o, SINCE]
+    ux, uy = (BODY[o, VX] + h * ax) - (BODY[i, VX] + g * ax), (BODY[o, VY] + h * ay) - (BODY[i, VY] + g * ay)
+    dx = (BODY[o, X] + (BODY[o, VX] + 0.5 * h * ax) * h) - (BODY[i, X] + (BODY[i, VX] + 0.5 * g * ax) * g)
+    dy = (BODY[o, Y] + (BODY[o, VY] + 0.5 * h * ay) * h) - (BODY[i, Y] + (BODY[i, VY] + 0.5 * g * ay) * g)
+    return passes(dx, dy, ux, uy, BODY[i, EXTENT] + BODY[o, EXTENT], latest - start)
+
+
+@uncounted
+def first_chosen(A: Scene, i: int, chosen: int, best: float, other: int) -> tuple[float, int]:
+    """As `first_meeting`, among so many lone disks in INFO[CHOSEN:], which one acceleration pulls."""
+    BODY = A.BODY
+    for k in range(chosen):
+        o = A.INFO[CHOSEN + k]
+        t = one_pull(
+            BODY[i, SINCE], BODY[i, X], BODY[i, Y], BODY[i, VX], BODY[i, VY],
+            BODY[o, SINCE], BODY[o, X], BODY[o, Y], BODY[o, VX], BODY[o, VY],
+            BODY[i, AX], BODY[i, AY], BODY[i, EXTENT] + BODY[o, EXTENT], best,
+        )  # fmt: skip
+        if t < best or (t == best and other >= 0 and o < other):
+            best, other = t, o
+    return best, other
 
 
 @uncounted
@@ -40,11 +68,11 @@ def first_meeting(
     Args:
         several: whether bodies that have a PLACE are forecast together, see `forecast.predict`.
     """
-    BODY, POOL, FLAG = A.BODY, A.POOL, A.FLAG
+    BODY, POOL, FLAG, INFO = A.BODY, A.POOL, A.FLAG, A.INFO
+    chosen = 0
     even = A.COUNT[EVEN] > 0
     flagged = not even or A.COUNT[UNMET] > 0
-    x, y, vx, vy, since = BODY[i, X], BODY[i, Y], BODY[i, VX], BODY[i, VY], BODY[i, SINCE]
-    ax, ay, extent = BODY[i, AX], BODY[i, AY], BODY[i, EXTENT]
+    ax, ay = BODY[i, AX], BODY[i, AY]
     start, ruled = A.LIST[i, START], A.RULE.shape[0] > 0
     for q in range(start + known, start + A.LIST[i, NUMBER]):
         if flagged and FLAG[q] != 0:
@@ -56,19 +84,17 @@ def first_meeting(
                 continue
         if ruled and barred(A.RULE, i, o):
             continue
-        certain = True
-        if o >= disks:
-            t, certain = meet(BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, i, o, disks, end, -1.0)
-        elif even or (BODY[o, AX] == ax and BODY[o, AY] == ay):
-            t = one_pull(
-                since, x, y, vx, vy, BODY[o, SINCE], BODY[o, X], BODY[o, Y], BODY[o, VX], BODY[o, VY], ax, ay,
-                extent + BODY[o, EXTENT], best,
-            )  # fmt: skip
-        else:
-            t, certain = meet(BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, i, o, disks, end, -1.0)
+        if o < disks and even:
+            INFO[CHOSEN + chosen] = o
+            chosen += 0 if misses(BODY, i, o, ax, ay, best) else 1
+            if chosen == ROOM:
+                best, other = first_chosen(A, i, chosen, best, other)
+                chosen = 0
+            continue
+        t, certain = meet(BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, i, o, disks, end, -1.0)
         if t < best or (t == best and other >= 0 and o < other):
             best, other = t, (o if certain else CHECK)
-    return best, other
+    return first_chosen(A, i, chosen, best, other)
 
 
 @uncounted

@@ -23,6 +23,16 @@ _PASSED, _REACHED = 1.000001, 1.0000001  # more than round-off
 
 
 @uncounted
+def passes(dx: float, dy: float, ux: float, uy: float, extent: float, left: float) -> bool:
+    """Whether disks at a distance d and of relative velocity u part, pass far from one another, or are too far away to
+    meet within `left`: for certain. Most do, which needs no root: the first one of |d + u s| = extent is at
+    s >= c / (2 |d.u|), c = |d|² - extent²."""
+    closing, cross, squared = -(dx * ux + dy * uy), dx * uy - dy * ux, extent * extent
+    far = dx * dx + dy * dy - _REACHED * squared > 2.0 * _REACHED * closing * left
+    return bool((closing <= 0.0) | (cross * cross > _PASSED * squared * (ux * ux + uy * uy)) | far)
+
+
+@uncounted
 def one_pull(
     since_i: float, x_i: float, y_i: float, vx_i: float, vy_i: float, since_j: float, x_j: float, y_j: float,
     vx_j: float, vy_j: float, ax: float, ay: float, extent: float, latest: float,
@@ -36,10 +46,8 @@ def one_pull(
     dy = (y_j + (vy_j + 0.5 * h * ay) * h) - (y_i + (vy_i + 0.5 * g * ay) * g)
     ux, uy = (vx_j + h * ax) - (vx_i + g * ax), (vy_j + h * ay) - (vy_i + g * ay)
     closing = -(dx * ux + dy * uy)
-    cross, squared = dx * uy - dy * ux, extent * extent
-    # Most part, pass far from one another, or are too far away, which need no root: s >= c / 2 closing.
-    far = dx * dx + dy * dy - _REACHED * squared > 2.0 * _REACHED * closing * (latest - start)
-    if (closing <= 0.0) | (cross * cross > _PASSED * squared * (ux * ux + uy * uy)) | far:
+    squared = extent * extent
+    if passes(dx, dy, ux, uy, extent, latest - start):
         return math.inf
     if closing < _SLOW * extent * (abs(vx_i) + abs(vy_i) + abs(vx_j) + abs(vy_j)):
         if dx * dx + dy * dy < squared * (1.0 + _NEAR):

@@ -20,6 +20,7 @@ from .layout import (
     BUCKET,
     CAPACITY,
     CELL_LENGTH,
+    CHOSEN,
     LEAVES,
     LEVEL,
     LEVEL_COUNT,
@@ -31,6 +32,7 @@ from .layout import (
     POOL_END,
     PREVIOUS,
     REACH,
+    ROOM,
     START,
 )  # fmt: skip
 from .lists import append, centre, course, may_meet, place_in, remove
@@ -112,6 +114,19 @@ def join(
 
 
 @uncounted
+def join_chosen(
+    BODY: FloatArray, LINK: IntArray, LIST: IntArray, POOL: PoolArray, FLAG: FlagArray, INFO: IntArray, s: int, n: int
+) -> bool:
+    """`join` s with the n shapes in INFO[CHOSEN:] that are not in its list."""
+    for k in range(n):
+        o = INFO[CHOSEN + k]
+        # Cells may share a place of the table: a shape may come up more than once.
+        if place_in(LIST, POOL, s, o) < 0 and not join(BODY, LINK, LIST, POOL, FLAG, INFO, s, o):
+            return False
+    return True
+
+
+@uncounted
 def seek_moving(
     BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, MARK: FloatArray, CELL: IntArray, LIST: IntArray,
     POOL: PoolArray, FLAG: FlagArray, HEAD: IntArray, GRID: FloatArray, INFO: IntArray, s: int,
@@ -120,7 +135,7 @@ def seek_moving(
     the pool is full."""
     x, y = MARK[s, AT_X], MARK[s, AT_Y]
     radius = SHAPE[s, BOUND] + MARK[s, MARGIN]
-    mask = HEAD.shape[0] - 1
+    mask, chosen = HEAD.shape[0] - 1, 0
     length = 0.5 * GRID[CELL_LENGTH]
     for level in range(LEVEL_COUNT):
         length *= 2.0
@@ -143,12 +158,14 @@ def seek_moving(
             for row in range(south, north + 1):
                 o = HEAD[bucket(level, column, row, mask)]
                 while o >= 0:
-                    # Cells may share a place of the table: a shape may come up more than once.
-                    if near(MARK, o, x, y, radius) and place_in(LIST, POOL, s, o) < 0:
-                        if not join(BODY, LINK, LIST, POOL, FLAG, INFO, s, o):
+                    INFO[CHOSEN + chosen] = o
+                    chosen += 1 if near(MARK, o, x, y, radius) else 0
+                    if chosen == ROOM:
+                        if not join_chosen(BODY, LINK, LIST, POOL, FLAG, INFO, s, chosen):
                             return False
+                        chosen = 0
                     o = int(MARK[o, NEXT])
-    return True
+    return join_chosen(BODY, LINK, LIST, POOL, FLAG, INFO, s, chosen)
 
 
 @uncounted

@@ -29,7 +29,9 @@ WALL_COLUMNS, WALL_ROWS = 2, 3  # cells of the grid of static shapes; 0 where al
 LEAVES = 4  # lists made anew, of one shape each
 LEVELS = 5  # INFO[LEVELS + l]: shapes on level l of the grid
 LEVEL_COUNT = 64
-INFO_LENGTH = LEVELS + LEVEL_COUNT
+CHOSEN = LEVELS + LEVEL_COUNT  # INFO[CHOSEN:]: scratch, shapes that a loop has chosen, which one after it looks at
+ROOM = 64  # for so many. Whom to choose cannot be guessed: a branch would wait for one row after the other
+INFO_LENGTH = CHOSEN + ROOM
 
 # GRID float: lengths of the two grids
 CELL_LENGTH = 0  # of level 0; level l has cells twice as long as l - 1
