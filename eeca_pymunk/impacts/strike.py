@@ -129,6 +129,13 @@ def note(
     LOG[n, GAP] = gap
 
 
+@uncounted
+def law_of_disks(BODY: FloatArray, i: int, j: int) -> tuple[float, float, float, float]:
+    """`law` of two lone disks of which no handler says otherwise, and which have no friction: else their surfaces count
+    too. From rows that are at hand."""
+    return BODY[i, BOUNCE] * BODY[j, BOUNCE], BODY[i, GRIP] * BODY[j, GRIP], 0.0, 0.0
+
+
 @inlined
 def strike_disk(A: Scene, disks: int, i: int, o: int, t: float) -> None:
     """Impact of the lone disk i with shape o, another of the lone `disks` or static.
@@ -152,7 +159,7 @@ def strike_disk(A: Scene, disks: int, i: int, o: int, t: float) -> None:
         _, nx, ny, px, py = gap_at(
             A.SHAPE, A.LINK, A.VERTEX, A.WORK, i, x, y, BODY[i, ANGLE], o, BODY[j, X], BODY[j, Y], BODY[j, ANGLE]
         )
-    e, mu, sx, sy = BODY[i, BOUNCE] * BODY[j, BOUNCE], BODY[i, GRIP] * BODY[j, GRIP], 0.0, 0.0
+    e, mu, sx, sy = law_of_disks(BODY, i, j)
     if not disk or mu > 0.0 or A.RULE.shape[0] > 0:
         e, mu, sx, sy = law(A.SHAPE, A.RULE, i, o)
     vx, vy = BODY[j, VX] - BODY[i, VX], BODY[j, VY] - BODY[i, VY]
