@@ -123,7 +123,7 @@ def follow_jointed(A: Scene, J: Joints, disks: int, may_rest: bool) -> int:
                 return PUSHES_FULL
             COUNT[PENDING] = -1
         for q in range(COUNT[WAITING]):
-            forecast(A, disks, moving, BLOCK[q], A.BODY[BLOCK[q], SINCE], end)
+            forecast(A, disks, moving, BLOCK[q], A.BODY[BLOCK[q], SINCE], end, False)
         status = follow(A, disks, may_rest)
 
 
