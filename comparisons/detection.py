@@ -117,7 +117,7 @@ class Lists:
         _, _, _, MARK, CELL, LIST, POOL, FLAG, HEAD, GRID, INFO, BOX, CSR = self._lists
         BODY, SHAPE, LINK = self.world.BODY, self.world.SHAPE, self.world.LINK
         for s in which.tolist():
-            if not grid.renew(BODY, SHAPE, LINK, MARK, CELL, LIST, POOL, FLAG, HEAD, GRID, INFO, BOX, CSR, s, 0.0):
+            if grid.renew(BODY, SHAPE, LINK, MARK, CELL, LIST, POOL, FLAG, HEAD, GRID, INFO, BOX, CSR, s, 0.0, 0.0) < 0:
                 self.near = setup.rebuilt(self.near.larger(), BODY, SHAPE, LINK, 0.0)
                 self._lists = (BODY, SHAPE, LINK, *self.near)
                 return

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TypeAlias
+import math
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -12,6 +13,31 @@ IntArray: TypeAlias = npt.NDArray[np.intp]
 BoolArray: TypeAlias = npt.NDArray[np.bool_]
 PoolArray: TypeAlias = npt.NDArray[np.int32]
 FlagArray: TypeAlias = npt.NDArray[np.uint8]
+
+
+_LINES = 128  # bytes: what a processor fetches at once begins at multiples of that
+_PAGE = 1 << 21  # bytes of a huge page
+_HUGE = 1 << 22  # bytes of an allocation from which numpy asks for huge pages
+
+
+def side_by_side(*wanted: tuple[tuple[int, ...], type]) -> list[Any]:
+    """Arrays of zeros of these shapes and dtypes, in one piece of memory, each from a new cache line on.
+
+    Kernels that look at a few numbers here and there in all arrays of a scene would wait for the addresses of many
+    small pages: large scenes get huge ones, which systems only give to large pieces.
+    """
+    sizes = [math.prod(shape) * np.dtype(dtype).itemsize for shape, dtype in wanted]
+    rooms = [-(-size // _LINES) * _LINES for size in sizes]
+    total, unit = sum(rooms), _LINES
+    if total >= _PAGE // 2:
+        total, unit = max(-(-total // _PAGE) * _PAGE, _HUGE), _PAGE
+    memory = np.zeros(total + unit, np.uint8)
+    at = -memory.ctypes.data % unit
+    found: list[Any] = []
+    for (shape, dtype), size, room in zip(wanted, sizes, rooms, strict=True):
+        found.append(memory[at : at + size].view(dtype).reshape(shape))
+        at += room
+    return found
 
 
 def rotated(vectors: FloatArray, angle: FloatArray) -> FloatArray:

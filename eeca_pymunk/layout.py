@@ -16,10 +16,10 @@ segment (with two edges, one for each side), more a polygon; `ROUNDING` rounds t
 # BODY
 X, Y, ANGLE = 0, 1, 2  # pose of the centre of mass at SINCE: length, length, rad
 VX, VY, SPIN = 3, 4, 5  # velocity there: length/time, rad/time
-AX, AY, TWIST = 6, 7, 8  # acceleration, constant from then on: length/time², rad/time²
-SINCE = 9  # time after the start of the step
-IM, II = 10, 11  # 1/mass, 1/moment; 0 for what impulses do not move
-EXTENT = 12  # length from the centre of mass to the farthest point of the body's shapes; the radius of a lone disk
+SINCE = 6  # time after the start of the step
+EXTENT = 7  # length from the centre of mass to the farthest point of the body's shapes; the radius of a lone disk
+AX, AY, TWIST = 8, 9, 10  # acceleration, constant from SINCE on: length/time², rad/time²
+IM, II = 11, 12  # 1/mass, 1/moment; 0 for what impulses do not move
 BOUNCE, GRIP = 13, 14  # elasticity and friction of a lone disk
 DUE = 15  # time after the start of the step of the body's next event
 BODY_COLUMNS = 16

@@ -43,7 +43,7 @@ def test_matrix_tells_passes_failures_and_refusals(
 # In plain Python, where kernels can be exchanged: what replaces one, and the case that must notice.
 BROKEN = {
     "a loss for a gain": (
-        "strike.law",
+        "strike.law_of_disks",
         "lambda of: lambda *a: (-of(*a)[0], *of(*a)[1:])",
         "swap of velocities",
     ),

@@ -3,7 +3,7 @@
 In: the packed arrays of a world (`..layout`) at the start of a step. Out: the same at its end, and a log of impulses.
 
 Open first `step.py`, the stages of a step; then `loop.py`, the queue of events. `forecast.py` says when a body's next
-event is due, from `times.py` (closed forms in `roots.py` and `circles.py`, shapes that turn in `turning.py`, until when
-shapes need no look in `apart.py`); `strike.py` says what an impact does, alone or in a block. `scene.py` owns the
-arrays, whose columns `layout.py` names.
+event is due, `lone.py` for most lone disks, from `times.py` (closed forms in `roots.py` and `circles.py`, shapes that
+turn in `turning.py`, until when shapes need no look in `apart.py`); `strike.py` says what an impact does, alone or in a
+block. `scene.py` owns the arrays, whose columns `layout.py` names.
 """

@@ -1,19 +1,25 @@
 """The end of an island's span: its works up to there are booked, exactly, as forces are constant and velocities linear.
 
 Forces of a span that was cut may have given energy (a soft landing pushes before it touches): that is owed, and taken
-out by what follows.
+out by what follows. So may they have turned the island, as their arms are about the middle of the whole span.
 """
 
 from __future__ import annotations
 
 from ..compiled import uncounted
 from ..layout import (
+    AX,
+    AY,
     II,
     IM,
+    OWNER,
+    SINCE,
     SPIN,
     VX,
+    VY,
     X,
-)
+    Y,
+)  # fmt: skip
 from ..pairs.lists import mark_pair
 from ..tables import Table
 from .layout import (
@@ -106,18 +112,74 @@ def book(A: Scene, c: int, t: float) -> None:
 
 
 @uncounted
+def gained(A: Scene, c: int, t: float) -> float:
+    """Angular momentum that contact number c makes if its span h is cut after s: its arms are about the middle of the
+    whole, so that bodies without mobility aside it is -(1/2) s (h - s) (v_b - v_a) x f, v at the start of the span."""
+    R, BODY = A.PUSHED[c], A.BODY
+    i, j = A.LINK[A.PUSHED_BY[c, PUSH_A], OWNER], A.LINK[A.PUSHED_BY[c, PUSH_B], OWNER]
+    s, h = t - R[SPAN_FROM], R[SPAN]
+    fx = (R[LAM] * R[PUSH_NX] - R[BETA] * R[PUSH_NY]) / h
+    fy = (R[LAM] * R[PUSH_NY] + R[BETA] * R[PUSH_NX]) / h
+    back_i, back_j = BODY[i, SINCE] - R[SPAN_FROM], BODY[j, SINCE] - R[SPAN_FROM]
+    vx = BODY[j, VX] - back_j * BODY[j, AX] - BODY[i, VX] + back_i * BODY[i, AX]
+    vy = BODY[j, VY] - back_j * BODY[j, AY] - BODY[i, VY] + back_i * BODY[i, AY]
+    return -0.5 * s * max(h - s, 0.0) * (vx * fy - vy * fx)
+
+
+@uncounted
+def turn_back(A: Scene, root: int, excess: float) -> None:
+    """Take an angular momentum out of a free island, whose bodies are at one instant, by a common turn of all of it,
+    which changes no contact's velocity. Its energy is lost, or owed."""
+    BODY = A.BODY
+    mass, x, y, vx, vy = 0.0, 0.0, 0.0, 0.0, 0.0
+    i = root
+    while i >= 0:
+        if BODY[i, II] == 0.0:
+            return
+        m = 1.0 / BODY[i, IM]
+        mass, x, y = mass + m, x + m * BODY[i, X], y + m * BODY[i, Y]
+        vx, vy = vx + m * BODY[i, VX], vy + m * BODY[i, VY]
+        i = A.MEMBER[i, AFTER_ME]
+    x, y, vx, vy = x / mass, y / mass, vx / mass, vy / mass
+    whirl, inertia = 0.0, 0.0
+    i = root
+    while i >= 0:
+        rx, ry = BODY[i, X] - x, BODY[i, Y] - y
+        whirl += (rx * (BODY[i, VY] - vy) - ry * (BODY[i, VX] - vx)) / BODY[i, IM] + BODY[i, SPIN] / BODY[i, II]
+        inertia += (rx * rx + ry * ry) / BODY[i, IM] + 1.0 / BODY[i, II]
+        i = A.MEMBER[i, AFTER_ME]
+    turn = -excess / inertia
+    i = root
+    while i >= 0:
+        BODY[i, VX] -= turn * (BODY[i, Y] - y)
+        BODY[i, VY] += turn * (BODY[i, X] - x)
+        BODY[i, SPIN] += turn
+        i = A.MEMBER[i, AFTER_ME]
+    lost = -turn * (whirl + 0.5 * inertia * turn)
+    A.PAR[LEDGER + RESTITUTION] += lost
+    A.RESTING[root, LOST] += lost
+
+
+@uncounted
 def end_span(A: Scene, root: int, t: float) -> None:
     """End the span of an island at instant t: book its contacts, and bring its bodies there."""
     if A.MEMBER[root, STILL] == 1:
         disturb(A, root)
+    free, excess = A.MEMBER[root, JOINTED] == 0, 0.0
     for c in range(A.COUNT[PUSHES]):
         if A.PUSHED_BY[c, ROOT] == root:
+            for side in range(2):
+                free = free and A.BODY[A.LINK[A.PUSHED_BY[c, PUSH_A + side], OWNER], IM] > 0.0
+            if free:
+                excess += gained(A, c, t)
             book(A, c, t)
     A.MEMBER[root, OPEN] = 0
     i = root
     while i >= 0:
         move_to(A.BODY, i, t)
         i = A.MEMBER[i, AFTER_ME]
+    if free and excess != 0.0:
+        turn_back(A, root, excess)
 
 
 @uncounted

@@ -23,7 +23,7 @@ from ..pairs.layout import NUMBER, START
 from ..pairs.lists import centre
 from ..pairs.rules import barred, law
 from ..rows.build import tangent_rate
-from ..rows.layout import FRICTION, K_T, UT
+from ..rows.layout import FRICTION, K_T, UN, UT
 from .block import CROWD
 from .islands import TOUCH, approach, remembered, rests
 from .layout import (
@@ -44,6 +44,7 @@ _TURN = 0.1  # rad
 PARTS = 64.0  # of a step, that a span is at least
 _FEW = 12  # contacts
 _STICKS = 1e-6  # relative to the friction there can be, and to the slip, below which there is none
+_RATTLES = 1e-3  # relative to that friction, below which slip is no slide where contacts that bear rattle as fast
 
 
 @uncounted
@@ -141,7 +142,7 @@ def span_of(A: Scene, found: IntArray, t: float) -> float:
             rate = max(rate, speed / max(A.SHAPE[a, ROUNDING] + A.SHAPE[b, ROUNDING], 1e-300))
     if rate * h <= _TURN:
         return h
-    return max(_TURN / rate, A.PAR[DT] / PARTS)
+    return min(max(_TURN / rate, A.PAR[DT] / PARTS), h)
 
 
 @kernel
@@ -156,12 +157,16 @@ def stick_time(
     """
     if m > _FEW:
         return h
-    limit, beta, slip, others = 0.0, 0.0, 0.0, 0.0
+    limit, beta, slip, others, rattle = 0.0, 0.0, 0.0, 0.0, 0.0
+    for z in range(m):
+        if L[z, 0] > 0.0:
+            rattle = max(rattle, abs(ROWS[z, UN]))
     for z in range(m):
         most = ROWS[z, FRICTION] * L[z, 0]
         before = abs(ROWS[z, UT])
-        # What sticks all along has no slip but round-off before.
-        if most == 0.0 or before <= _STICKS * most / ROWS[z, K_T]:
+        # What sticks all along has no slip but round-off before, or rattles.
+        change = most / ROWS[z, K_T]
+        if most == 0.0 or before <= _STICKS * change or before < rattle <= _RATTLES * change:
             continue
         if abs(tangent_rate(P, Q, ROWS, VN, z)) > _STICKS * before:
             continue

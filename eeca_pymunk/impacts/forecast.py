@@ -18,7 +18,6 @@ from ..layout import (
     CENTRE_X,
     CENTRE_Y,
     DUE,
-    EXTENT,
     OWNER,
     SINCE,
     SPIN,
@@ -28,13 +27,26 @@ from ..layout import (
     X,
     Y,
 )  # fmt: skip
-from ..pairs.layout import AT_X, AT_Y, MARGIN, NUMBER, START
+from ..pairs.layout import AT_X, AT_Y, LATER, MARGIN, NUMBER, START
 from ..pairs.lists import centre
 from ..pairs.rules import barred
 from .heap import push
-from .layout import CHECK, FIRST_SHAPE, HEAP, KINKS, KNOWN, LEAVE, NOTHING, OTHER, OWN, RENEW, SHAPES
-from .times import meet, one_pull
+from .layout import (
+    CHECK,
+    FIRST_SHAPE,
+    HEAP,
+    KINKS,
+    KNOWN,
+    LEAVE,
+    NOTHING,
+    OTHER,
+    OWN,
+    RENEW,
+    SHAPES,
+)  # fmt: skip
+from .times import meet
 
+AHEAD = 0.4  # of the margin, that the new circle of a shape that leaves its own is ahead on its way
 _INSIDE = 0.1  # of the margin that is left, above which a shape has not left its circle
 
 
@@ -96,10 +108,7 @@ def predict(
         until: instant at which a span of the body's island ends, infinite if it has none of its own.
     """
     best, own, other = math.inf, -1, NOTHING
-    since, x, y, vx, vy, ax, ay = (
-        BODY[i, SINCE], BODY[i, X], BODY[i, Y], BODY[i, VX], BODY[i, VY], BODY[i, AX], BODY[i, AY],
-    )  # fmt: skip
-    extent, first = BODY[i, EXTENT], STATE[i, FIRST_SHAPE]
+    first = STATE[i, FIRST_SHAPE]
     for s in range(first, first + STATE[i, SHAPES]):
         t = leaves(BODY, SHAPE, LINK, MARK, disks, i, s, now)
         if t < best:
@@ -113,14 +122,7 @@ def predict(
                 continue
             if RULE.shape[0] > 0 and barred(RULE, s, o):
                 continue
-            certain = True
-            if i < disks and o < disks and BODY[o, AX] == ax and BODY[o, AY] == ay:
-                t = one_pull(
-                    since, x, y, vx, vy, BODY[o, SINCE], BODY[o, X], BODY[o, Y], BODY[o, VX], BODY[o, VY], ax, ay,
-                    extent + BODY[o, EXTENT],
-                )  # fmt: skip
-            else:
-                t, certain = meet(BODY, SHAPE, LINK, VERTEX, WORK, s, o, disks, end, -1.0)
+            t, certain = meet(BODY, SHAPE, LINK, VERTEX, WORK, s, o, disks, end, -1.0)
             if t < best or (t == best and other >= 0 and (s < own or (s == own and o < other))):
                 best, own, other = t, s, (o if certain else CHECK)
     if until < best:
@@ -130,5 +132,7 @@ def predict(
     STATE[i, OWN], STATE[i, OTHER] = own, other
     if other >= 0:
         STATE[i, KNOWN] = STATE[LINK[other, 0], KINKS]
+    if i < disks:
+        LIST[i, LATER] = CHECK
     if best < end:
         COUNT[HEAP] = push(TIME, OF, COUNT[HEAP], best, i)

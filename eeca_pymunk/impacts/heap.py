@@ -26,20 +26,22 @@ def push(TIME: FloatArray, OF: IntArray, n: int, time: float, body: int) -> int:
 def pop(TIME: FloatArray, OF: IntArray, n: int) -> int:
     """Remove the first event of a heap of n; how many there are then."""
     n -= 1
-    time, body = TIME[n], OF[n]
+    # The hole goes all the way down, by steps that nobody has to guess; the last entry, which goes there, belongs there
+    # mostly.
     k = 0
-    while True:
+    while 2 * k + 2 < n:
         down = 2 * k + 1
-        if down >= n:
-            break
-        right = down + 1
-        if right < n and (TIME[right] < TIME[down] or (TIME[right] == TIME[down] and OF[right] < OF[down])):
-            down = right
-        if time < TIME[down] or (time == TIME[down] and body <= OF[down]):
-            break
+        left, right = TIME[down], TIME[down + 1]
+        second = right < left
+        if left == right:
+            second = OF[down + 1] < OF[down]
+        down += 1 if second else 0
         TIME[k], OF[k] = TIME[down], OF[down]
         k = down
-    TIME[k], OF[k] = time, body
+    if 2 * k + 1 < n:
+        TIME[k], OF[k] = TIME[2 * k + 1], OF[2 * k + 1]
+        k = 2 * k + 1
+    push(TIME, OF, k, TIME[n], OF[n])
     return n
 
 

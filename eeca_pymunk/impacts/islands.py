@@ -24,6 +24,7 @@ from .layout import (
     AFTER_ME,
     BODIES,
     DT,
+    EVEN,
     HITS,
     ISLAND,
     JOINTED,
@@ -46,6 +47,7 @@ def unite(A: Scene, i: int, j: int) -> int:
     MEMBER, STATE = A.MEMBER, A.STATE
     for k in (i, j):
         if STATE[k, ISLAND] < 0:
+            A.COUNT[EVEN] = 0
             STATE[k, ISLAND] = k
             MEMBER[k, AFTER_ME], MEMBER[k, LAST_ONE], MEMBER[k, BODIES], MEMBER[k, HITS] = -1, k, 1, 0
             MEMBER[k, OPEN] = 0

@@ -75,7 +75,10 @@ PHASE = 14  # of the step that is to be resumed
 SWEEPS, DIRECT = 15, 16  # of all solves: sweeps, direct solutions
 REMEMBERED = 17  # COUNT[REMEMBERED:]: rows of the memory of forces in use
 TOGETHER = 18  # 1 where all contacts of a step act together, and no events are followed
-COUNT_LENGTH = 19
+EVEN = 19  # 1 while one acceleration pulls all that impulses move, and no body is in an island
+QUIET = 20  # steps in a row in which that was so to the end
+DISKS = 21  # of the scene: lone disks
+COUNT_LENGTH = 22
 
 # Status of a step
 DONE, POOL_FULL, LOG_FULL, BLOCK_DUE, PUSHES_FULL = 0, 1, 2, 3, 4

@@ -15,7 +15,7 @@ from ..pairs.lists import mark_pair
 from .block import arrive
 from .booking import end_span
 from .collide import strike
-from .forecast import has_left, predict
+from .forecast import AHEAD, has_left, predict
 from .heap import pop, push, sweep_out
 from .islands import members
 from .layout import (
@@ -49,6 +49,7 @@ from .layout import (
     WAITING,
     Scene,
 )  # fmt: skip
+from .lone import carrier, go_on, holds, predict_disk
 from .settle import comes_to_rest, ignored
 from .spans import solve
 from .strike import alone, strike_disk
@@ -57,9 +58,12 @@ _SQUEEZED = 50  # impacts of a body in a step, from which those with a kinematic
 
 
 @uncounted
-def forecast(A: Scene, disks: int, moving: int, i: int, t: float, end: float) -> None:
-    """The next event of body i, seen from instant t of the loop."""
+def forecast(A: Scene, disks: int, moving: int, i: int, t: float, end: float, several: bool) -> None:
+    """The next event of body i, seen from instant t of the loop; see `predict` for `several`."""
     A.COUNT[FORECASTS] += 1
+    if i < disks and A.STATE[i, ISLAND] < 0:
+        predict_disk(A, disks, i, t, end, several)
+        return
     until = A.RESTING[i, UNTIL] if A.STATE[i, ISLAND] == i else math.inf
     predict(
         A.BODY, A.STATE, A.SHAPE, A.LINK, A.VERTEX, A.MARK, A.LIST, A.POOL, A.FLAG, A.RULE, A.HEAP_TIME, A.HEAP_BODY,
@@ -74,7 +78,7 @@ def forecast_all(A: Scene, disks: int, n: int, t: float, end: float) -> None:
     for q in range(n):
         A.PLACE[A.BLOCK[q]] = q
     for q in range(n):
-        forecast(A, disks, A.LIST.shape[0], A.BLOCK[q], t, end)
+        forecast(A, disks, A.LIST.shape[0], A.BLOCK[q], t, end, True)
     for q in range(n):
         A.PLACE[A.BLOCK[q]] = -1
 
@@ -84,9 +88,11 @@ def forecast_due(A: Scene, disks: int) -> None:
     """The next events, at the start of a step, of all bodies whose last forecast is no good."""
     n, dt = 0, A.PAR[DT]
     for i in range(A.BODY.shape[0] - 1):
-        if A.BODY[i, DUE] < dt or (A.STATE[i, ISLAND] >= 0 and A.MEMBER[i, STILL] != 1):
-            A.BLOCK[n] = i
-            n += 1
+        alone = A.STATE[i, ISLAND] < 0
+        if A.BODY[i, DUE] < dt or not (alone or A.MEMBER[i, STILL] == 1):
+            if not (alone and i < disks and holds(A, disks, i, dt)):
+                A.BLOCK[n] = i
+                n += 1
     forecast_all(A, disks, n, 0.0, dt)
 
 
@@ -121,7 +127,7 @@ def run(A: Scene, disks: int, may_rest: bool) -> int:
     one, two, t = -1, -1, 0.0  # bodies to be forecast
     while True:
         while one >= 0:
-            forecast(A, disks, moving, one, t, end)
+            forecast(A, disks, moving, one, t, end, False)
             one, two = two, -1
         if COUNT[HEAP] == 0:
             return DONE
@@ -136,23 +142,28 @@ def run(A: Scene, disks: int, may_rest: bool) -> int:
         COUNT[HEAP] = pop(TIME, OF, COUNT[HEAP])
         s, o = STATE[i, OWN], STATE[i, OTHER]
         if o == LEAVE:
-            if has_left(BODY, A.SHAPE, A.LINK, A.MARK, s, t) and not renew(
-                BODY, A.SHAPE, A.LINK, A.MARK, A.CELL, A.LIST, A.POOL, A.FLAG, A.HEAD, A.GRID, A.INFO, A.BOX, A.CSR,
-                s, t,
-            ):  # fmt: skip
+            if i < disks and STATE[i, ISLAND] < 0:
+                room = go_on(A, disks, i, t, end)
+            else:
+                one, room = i, True
+                if has_left(BODY, A.SHAPE, A.LINK, A.MARK, s, t):
+                    room = renew(
+                        BODY, A.SHAPE, A.LINK, A.MARK, A.CELL, A.LIST, A.POOL, A.FLAG, A.HEAD, A.GRID, A.INFO, A.BOX,
+                        A.CSR, s, t, AHEAD,
+                    ) >= 0  # fmt: skip
+            if not room:
                 A.PAR[NOW] = t
                 COUNT[HEAP] = push(TIME, OF, COUNT[HEAP], t, i)
                 return POOL_FULL
-            one = i
             continue
         if o == RENEW:
             A.PAR[NOW], COUNT[STRUCK] = t, i
             return BLOCK_DUE
-        if o < 0 or STATE[A.LINK[o, OWNER], KINKS] != STATE[i, KNOWN]:
+        j = carrier(A.LINK, disks, o) if o >= 0 else i
+        if o < 0 or STATE[j, KINKS] != STATE[i, KNOWN]:
             COUNT[STALE] += 1
             one = i
             continue
-        j = A.LINK[o, OWNER]
         if give_up(A, i, j):
             COUNT[UNMET] += 1
             mark_pair(A.LIST, A.POOL, A.FLAG, moving, s, o, 1)
@@ -169,8 +180,19 @@ def run(A: Scene, disks: int, may_rest: bool) -> int:
         if not single:
             A.PAR[NOW], COUNT[STRUCK] = t, i
             return BLOCK_DUE
-        strike_disk(A, i, o, t)
-        one, two = i, j if o < disks else -1
+        # The same bits, whoever of the two has foreseen it.
+        a, b = (o, i) if o < i else (i, o)
+        strike_disk(A, disks, a, b, t)
+        one, two = a, b if o < disks else -1
+
+
+@uncounted
+def with_mover(A: Scene, i: int, n: int) -> int:
+    """How many of A.BLOCK are to be forecast after an event of body i that changed n: i too, if no impulse moves it."""
+    if A.BODY[i, IM] > 0.0:
+        return n
+    A.BLOCK[n] = i
+    return n + 1
 
 
 @kernel
@@ -209,7 +231,7 @@ def follow(A: Scene, disks: int, may_rest: bool) -> int:
         if (STATE[i, ISLAND] >= 0 or STATE[j, ISLAND] >= 0) and ignored(A, s, o, t):
             COUNT[UNMET] += 1
             mark_pair(A.LIST, A.POOL, A.FLAG, moving, s, o, 1)
-            forecast(A, disks, moving, i, t, end)
+            forecast(A, disks, moving, i, t, end, False)
             continue
         if jointed(A, i) or jointed(A, j):
             return JOINTS_DUE
@@ -220,6 +242,7 @@ def follow(A: Scene, disks: int, may_rest: bool) -> int:
                 arrive(A, j, t)
             rest = comes_to_rest(A, s, o, t)
         status, n = strike(A, disks, s, o, t, rest)
+        n = with_mover(A, i, n)
         COUNT[WAITING] = n
         if status != DONE:
             return status

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FloatArray, IntArray, side_by_side
 from ..layout import COUNT as VERTICES
 from ..layout import DUE, ELASTICITY, EVENT_COLUMNS, OWNER
 from ..layout import NOW as READ
@@ -25,6 +25,7 @@ from .layout import (
     BLOCKS,
     CHECK,
     COUNT_LENGTH,
+    DISKS,
     FIRST_SHAPE,
     HEAP,
     ISLAND,
@@ -74,22 +75,26 @@ class EventLoop:
         n = len(BODY)
         self.disks = disks
         moving = int(np.count_nonzero(LINK[:, OWNER] < n - 1))
-        STATE = np.zeros((n, STATE_COLUMNS), np.int64)
+        STATE, MEMBER, RESTING, PULL, BEGAN, TIME, OF, PLACE, BLOCK = side_by_side(
+            ((n, STATE_COLUMNS), np.int64), ((n, MEMBER_COLUMNS), np.int64), ((n, RESTING_COLUMNS), np.float64),
+            ((n, 3), np.float64), ((n, 3), np.float64), ((8 * n + 64,), np.float64), ((8 * n + 64,), np.int64),
+            ((n,), np.int64), ((n,), np.int64),
+        )  # fmt: skip
+        PLACE[:] = -1
         STATE[:, SHAPES] = np.bincount(LINK[:moving, OWNER], minlength=n)
         STATE[:, FIRST_SHAPE] = np.cumsum(STATE[:, SHAPES]) - STATE[:, SHAPES]
         STATE[:, ISLAND] = -1
         near = near_lists(BODY, SHAPE, LINK, VERTEX, moving)
         vertices = max(2, int(LINK[:, VERTICES].max(initial=2)))
         self.scene = Scene(
-            BODY, STATE, SHAPE, LINK, VERTEX, *near, np.zeros((0, RULE_COLUMNS)), np.zeros(8 * n + 64),
-            np.zeros(8 * n + 64, np.int64), np.zeros((4 * n + 64, EVENT_COLUMNS)), np.zeros((n, 3)),
-            np.full(n, -1, np.int64), np.zeros(n, np.int64), np.zeros((n, 3)), np.zeros((n, MEMBER_COLUMNS), np.int64),
-            np.zeros((n, RESTING_COLUMNS)), np.zeros((_CONTACTS, 3), np.int64), np.zeros((_CONTACTS, PUSHED_COLUMNS)),
+            BODY, STATE, SHAPE, LINK, VERTEX, *near, np.zeros((0, RULE_COLUMNS)), TIME, OF,
+            np.zeros((4 * n + 64, EVENT_COLUMNS)), BEGAN, PLACE, BLOCK, PULL, MEMBER, RESTING,
+            np.zeros((_CONTACTS, 3), np.int64), np.zeros((_CONTACTS, PUSHED_COLUMNS)),
             np.full(4 * _CONTACTS, -1, np.int64), np.zeros((4 * _CONTACTS, FORCE_COLUMNS)),
             np.zeros((2, vertices, 4)), np.zeros(PAR_LENGTH), np.zeros(COUNT_LENGTH, np.int64),
         )  # fmt: skip
         self.near = near
-        self.scene.COUNT[LIMIT] = limit
+        self.scene.COUNT[LIMIT], self.scene.COUNT[DISKS] = limit, disks
         self.scene.MEMBER[:, TIED : NEXT_TIED + 1] = -1
         self.scene.RESTING[:, RELAX : RELAX + 3] = FRESH
         self.lossy = bool((SHAPE[:, ELASTICITY] < 1.0).any())

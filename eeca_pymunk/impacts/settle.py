@@ -49,7 +49,7 @@ from .strike import move_to
 
 _OFTEN, _VERY_OFTEN = 16, 64  # impacts of a body in a step after which a lossy contact rests; a slow elastic one
 _SLOW = 1.0 / 64.0  # speed relative to |a| dt, below which that happens to elastic ones
-_BUSY_FOR = 8  # steps
+BUSY_FOR = 8  # steps
 _HITS, _ELASTIC_HITS = 1, 64  # on an island in a step: a lossy one may be hit oftener the smaller it is
 _WORK = 64  # bodies times hits
 _DEEP = 0.2  # of the smaller shape, that a hit would go deep: it is taken up to four times as often
@@ -217,8 +217,8 @@ def ignored(A: Scene, a: int, b: int, t: float) -> bool:
         MINE = np.empty(A.BODY.shape[0], np.int64)
         for k in (i, j):
             if A.BODY[k, IM] > 0.0:
-                A.MEMBER[k, BUSY] = _BUSY_FOR
+                A.MEMBER[k, BUSY] = BUSY_FOR
             if STATE[k, ISLAND] >= 0:
                 for q in range(members(A, STATE[k, ISLAND], MINE)):
-                    A.MEMBER[MINE[q], BUSY] = _BUSY_FOR
+                    A.MEMBER[MINE[q], BUSY] = BUSY_FOR
     return True

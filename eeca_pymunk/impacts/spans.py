@@ -224,7 +224,7 @@ def solve(A: Scene, root: int, t: float) -> int:
         stuck = h if hurried(A) or OUT[STOOD] > 0.0 else stick_time(P, Q, ROWS, L, V + h * ACC, VN, m, h)
         if stuck < h:
             # Where slip ends on the way, so does the span: friction changes its law there.
-            h = max(stuck, A.PAR[DT] / PARTS)
+            h = min(max(stuck, A.PAR[DT] / PARTS), h)
             BOOK[:] = 0.0
             m = step_island(
                 POSE, V, ACC, IMS, IIS, SIZES, n, PAIRS, p, A.SHAPE, A.RULE, A.LINK, A.VERTEX, A.WORK, h, sweeps,

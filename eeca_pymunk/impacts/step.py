@@ -13,6 +13,7 @@ from ..layout import (
     AY,
     BODY_ROW,
     DUE,
+    EXTENT,
     GAP,
     II,
     IM,
@@ -43,8 +44,10 @@ from .layout import (
     BUSY,
     DAMPED,
     DIRECT,
+    DISKS,
     DONE,
     DT,
+    EVEN,
     EVENTS,
     EXTERNAL,
     FORECASTS,
@@ -68,6 +71,7 @@ from .layout import (
     POOL_FULL,
     PULLED,
     PUSHES,
+    QUIET,
     RESTITUTION,
     ROOT,
     SOLVES,
@@ -82,7 +86,7 @@ from .layout import (
     scene_of,
 )  # fmt: skip
 from .loop import follow, forecast_due
-from .settle import settle
+from .settle import BUSY_FOR, settle
 from .still import LIKELY, find_still, halt, keep, leave, stand, stays, watch
 from .strike import move_to
 
@@ -139,12 +143,15 @@ def begin(A: Scene, WALK: IntArray) -> None:
     PAR[STAMP] += 1.0
     COUNT[PENDING], COUNT[PHASE] = -1, 0
     n, last = BODY.shape[0] - 1, PAR[LAST]
-    pulled = 0.0
+    pulled, even = 0.0, True
+    quiet = COUNT[QUIET] > BUSY_FOR
     for i in range(n):
         STATE[i, EVENTS] = 0
-        A.MEMBER[i, BUSY] = max(A.MEMBER[i, BUSY] - 1, 0)
-        if A.MEMBER[i, STILL] == 1 and stays(A, i, last):
+        if not quiet:
+            A.MEMBER[i, BUSY] = max(A.MEMBER[i, BUSY] - 1, 0)
+        if not quiet and A.MEMBER[i, STILL] == 1 and stays(A, i, last):
             pulled = max(pulled, A.PULL[i, 0] * A.PULL[i, 0] + A.PULL[i, 1] * A.PULL[i, 1])
+            even = False
             continue
         if BODY[i, IM] == 0.0:
             watch(A, i)
@@ -156,7 +163,10 @@ def begin(A: Scene, WALK: IntArray) -> None:
             STATE[i, KINKS] += 1
         else:
             BODY[i, DUE] = max(BODY[i, DUE] - last, 0.0)
+        alike = BODY[i, IM] == 0.0 or (ax == BODY[0, AX] and ay == BODY[0, AY])
+        even = even and alike and STATE[i, ISLAND] < 0
     PAR[PULLED] = math.sqrt(pulled)
+    COUNT[EVEN] = 1 if even else 0
 
 
 @uncounted
@@ -173,7 +183,10 @@ def close(A: Scene, WALK: IntArray) -> None:
     """Bring all paths to the end of the step; book islands, the work of forces, the energy; gaps at the start."""
     BODY, PAR, LOG, BEGAN, COUNT = A.BODY, A.PAR, A.LOG, A.BEGAN, A.COUNT
     end = PAR[DT]
-    find_still(A)
+    even = COUNT[EVEN] > 0  # no islands
+    COUNT[QUIET] = COUNT[QUIET] + 1 if even else 0
+    if not even:
+        find_still(A)
     for c in range(COUNT[PUSHES]):
         root = A.PUSHED_BY[c, ROOT]
         if root >= 0 and A.MEMBER[root, STILL] == 1:
@@ -185,7 +198,7 @@ def close(A: Scene, WALK: IntArray) -> None:
     gx, gy = PAR[GRAVITY_X], PAR[GRAVITY_Y]
     for i in range(BODY.shape[0] - 1):
         move_to(BODY, i, end)
-        if A.STATE[i, ISLAND] == i:
+        if not even and A.STATE[i, ISLAND] == i:
             lift_out(A, i, end)
             if A.MEMBER[i, STILL] == LIKELY:
                 halt(A, i)
@@ -216,12 +229,17 @@ def close(A: Scene, WALK: IntArray) -> None:
         if not math.isnan(LOG[n, GAP]):
             continue
         a, b = int(LOG[n, FIRST_OF]), int(LOG[n, SECOND_OF])
+        if max(a, b) < COUNT[DISKS]:
+            dx, dy = BEGAN[a, 0] - BEGAN[b, 0], BEGAN[a, 1] - BEGAN[b, 1]
+            LOG[n, GAP] = math.sqrt(dx * dx + dy * dy) - BODY[min(a, b), EXTENT] - BODY[max(a, b), EXTENT]
+            continue
         i, j = A.LINK[a, OWNER], A.LINK[b, OWNER]
         LOG[n, GAP] = gap_at(
             A.SHAPE, A.LINK, A.VERTEX, A.WORK, a, BEGAN[i, 0], BEGAN[i, 1], BEGAN[i, 2],
             b, BEGAN[j, 0], BEGAN[j, 1], BEGAN[j, 2],
         )[0]  # fmt: skip
-    leave(A)
+    if not even:
+        leave(A)
 
 
 @kernel

@@ -69,7 +69,7 @@ from .strike import note
 
 CHANGED, LIKELY = 2, 3
 _SURE = 2  # steps that an island hardly moves, before it is asked whether it stands
-_AGAIN = 16  # and until it is asked again
+_AGAIN, _LATEST = 4, 32  # and until it is asked again, one more for every fourth body
 
 
 @uncounted
@@ -189,7 +189,7 @@ def calm(A: Scene, root: int, MINE: IntArray, n: int, t: float) -> bool:
         if A.RESTING[MINE[q], CALM_FOR] < _SURE or A.MEMBER[MINE[q], BUSY] > 0:
             return False
     for q in range(n):
-        A.RESTING[MINE[q], CALM_FOR] = -_AGAIN
+        A.RESTING[MINE[q], CALM_FOR] = -min(_AGAIN + n // 4, _LATEST)
     return True
 
 

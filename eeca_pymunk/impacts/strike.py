@@ -12,10 +12,12 @@ from ..layout import (
     ANGLE,
     AX,
     AY,
+    BOUNCE,
     BOUND,
     CHANGE,
     EXTENT,
     GAP,
+    GRIP,
     II,
     IM,
     IMPULSE,
@@ -43,6 +45,7 @@ from ..pairs.layout import NUMBER, START
 from ..pairs.lists import centre
 from ..pairs.rules import barred, law
 from .layout import (
+    EVEN,
     EVENTS,
     EXTERNAL,
     FIRST_SHAPE,
@@ -92,6 +95,7 @@ def alone(A: Scene, disks: int, i: int, other: int, t: float) -> bool:
     """Whether no shape but `other` touches the shapes of body i at instant t."""
     BODY, POOL = A.BODY, A.POOL
     x, y, _ = pose(BODY, i, t)
+    even, ax, ay = A.COUNT[EVEN] > 0, BODY[i, AX], BODY[i, AY]
     for s in range(A.STATE[i, FIRST_SHAPE], A.STATE[i, FIRST_SHAPE] + A.STATE[i, SHAPES]):
         start = A.LIST[s, START]
         for q in range(start, start + A.LIST[s, NUMBER]):
@@ -101,8 +105,10 @@ def alone(A: Scene, disks: int, i: int, other: int, t: float) -> bool:
             if o < disks:
                 # Most are plainly apart.
                 h = t - BODY[o, SINCE]
-                dx = BODY[o, X] + (BODY[o, VX] + 0.5 * BODY[o, AX] * h) * h - x
-                dy = BODY[o, Y] + (BODY[o, VY] + 0.5 * BODY[o, AY] * h) * h - y
+                if not even:
+                    ax, ay = BODY[o, AX], BODY[o, AY]
+                dx = BODY[o, X] + (BODY[o, VX] + 0.5 * ax * h) * h - x
+                dy = BODY[o, Y] + (BODY[o, VY] + 0.5 * ay * h) * h - y
                 far = 1.001 * (BODY[i, EXTENT] + BODY[o, EXTENT]) + 1e-9 * (abs(x) + abs(y))
                 if dx * dx + dy * dy > far * far:
                     continue
@@ -123,19 +129,26 @@ def note(
     LOG[n, GAP] = gap
 
 
+@uncounted
+def law_of_disks(BODY: FloatArray, i: int, j: int) -> tuple[float, float, float, float]:
+    """`law` of two lone disks of which no handler says otherwise, and which have no friction: else their surfaces count
+    too. From rows that are at hand."""
+    return BODY[i, BOUNCE] * BODY[j, BOUNCE], BODY[i, GRIP] * BODY[j, GRIP], 0.0, 0.0
+
+
 @inlined
-def strike_disk(A: Scene, i: int, o: int, t: float) -> None:
-    """Impact of the lone disk i with shape o, a lone disk or static.
+def strike_disk(A: Scene, disks: int, i: int, o: int, t: float) -> None:
+    """Impact of the lone disk i with shape o, another of the lone `disks` or static.
 
     The normal goes through both centres, so that the two directions do not mix:
 
         lam = (1 + e) |u_n| / (1/m_i + 1/m_j),   beta = -u_t / A_tt, at most mu lam,   A_tt = sum 1/m + r^2/I.
     """
     BODY, PAR = A.BODY, A.PAR
-    j = A.LINK[o, OWNER]
+    disk = o < disks
+    j = o if disk else A.LINK[o, OWNER]
     move_to(BODY, i, t)
     x, y = BODY[i, X], BODY[i, Y]
-    disk = BODY[j, IM] > 0.0
     if disk:
         move_to(BODY, j, t)
         nx, ny = BODY[j, X] - x, BODY[j, Y] - y
@@ -146,7 +159,9 @@ def strike_disk(A: Scene, i: int, o: int, t: float) -> None:
         _, nx, ny, px, py = gap_at(
             A.SHAPE, A.LINK, A.VERTEX, A.WORK, i, x, y, BODY[i, ANGLE], o, BODY[j, X], BODY[j, Y], BODY[j, ANGLE]
         )
-    e, mu, sx, sy = law(A.SHAPE, A.RULE, i, o)
+    e, mu, sx, sy = law_of_disks(BODY, i, j)
+    if not disk or mu > 0.0 or A.RULE.shape[0] > 0:
+        e, mu, sx, sy = law(A.SHAPE, A.RULE, i, o)
     vx, vy = BODY[j, VX] - BODY[i, VX], BODY[j, VY] - BODY[i, VY]
     u = nx * vx + ny * vy
     free = BODY[i, IM] + BODY[j, IM]

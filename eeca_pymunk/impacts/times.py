@@ -19,29 +19,38 @@ from .turning import general
 
 _SLOW = 1e-13  # of speeds, below which what touches does not approach
 _NEAR = 1e-9  # of the squared extent, within which that counts
+_PASSED, _REACHED = 1.000001, 1.0000001  # more than round-off
+
+
+@uncounted
+def passes(dx: float, dy: float, ux: float, uy: float, extent: float, left: float) -> bool:
+    """Whether disks at a distance d and of relative velocity u part, pass far from one another, or are too far away to
+    meet within `left`: for certain. Most do, which needs no root: the first one of |d + u s| = extent is at
+    s >= c / (2 |d.u|), c = |d|² - extent²."""
+    closing, cross, squared = -(dx * ux + dy * uy), dx * uy - dy * ux, extent * extent
+    far = dx * dx + dy * dy - _REACHED * squared > 2.0 * _REACHED * closing * left
+    return bool((closing <= 0.0) | (cross * cross > _PASSED * squared * (ux * ux + uy * uy)) | far)
 
 
 @uncounted
 def one_pull(
     since_i: float, x_i: float, y_i: float, vx_i: float, vy_i: float, since_j: float, x_j: float, y_j: float,
-    vx_j: float, vy_j: float, ax: float, ay: float, extent: float,
+    vx_j: float, vy_j: float, ax: float, ay: float, extent: float, latest: float,
 ) -> float:  # fmt: skip
     """Instant at which two disks meet that one acceleration pulls, which cancels; closed form. Disks that touch and
-    approach by the round-off of their speeds do not: they part."""
-    s = since_i - since_j
-    if s < 0.0:
-        start, h = since_j, -s
-        dx, dy = x_j - (x_i + (vx_i + 0.5 * h * ax) * h), y_j - (y_i + (vy_i + 0.5 * h * ay) * h)
-        ux, uy = vx_j - (vx_i + h * ax), vy_j - (vy_i + h * ay)
-    else:
-        start = since_i
-        dx, dy = (x_j + (vx_j + 0.5 * s * ax) * s) - x_i, (y_j + (vy_j + 0.5 * s * ay) * s) - y_i
-        ux, uy = (vx_j + s * ax) - vx_i, (vy_j + s * ay) - vy_i
+    approach by the round-off of their speeds do not: they part. Infinity if that is certainly after `latest`."""
+    # Every other pair is the other way round: what is 0 for one of the two is faster computed than asked for.
+    start = max(since_i, since_j)
+    g, h = start - since_i, start - since_j
+    dx = (x_j + (vx_j + 0.5 * h * ax) * h) - (x_i + (vx_i + 0.5 * g * ax) * g)
+    dy = (y_j + (vy_j + 0.5 * h * ay) * h) - (y_i + (vy_i + 0.5 * g * ay) * g)
+    ux, uy = (vx_j + h * ax) - (vx_i + g * ax), (vy_j + h * ay) - (vy_i + g * ay)
     closing = -(dx * ux + dy * uy)
-    if closing <= 0.0:
+    squared = extent * extent
+    if passes(dx, dy, ux, uy, extent, latest - start):
         return math.inf
     if closing < _SLOW * extent * (abs(vx_i) + abs(vy_i) + abs(vx_j) + abs(vy_j)):
-        if dx * dx + dy * dy < extent * extent * (1.0 + _NEAR):
+        if dx * dx + dy * dy < squared * (1.0 + _NEAR):
             return math.inf
     return start + ball_point(dx, dy, ux, uy, extent)
 
@@ -54,7 +63,7 @@ def disk_disk(BODY: FloatArray, i: int, j: int, horizon: float) -> tuple[float, 
     x_j, y_j, vx_j, vy_j, ax_j, ay_j = BODY[j, X], BODY[j, Y], BODY[j, VX], BODY[j, VY], BODY[j, AX], BODY[j, AY]
     extent = BODY[i, EXTENT] + BODY[j, EXTENT]
     if ax_i == ax_j and ay_i == ay_j:
-        t = one_pull(since_i, x_i, y_i, vx_i, vy_i, since_j, x_j, y_j, vx_j, vy_j, ax_i, ay_i, extent)
+        t = one_pull(since_i, x_i, y_i, vx_i, vy_i, since_j, x_j, y_j, vx_j, vy_j, ax_i, ay_i, extent, math.inf)
         return t, True
     start = max(since_i, since_j)
     s = start - since_i

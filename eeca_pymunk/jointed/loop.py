@@ -33,7 +33,7 @@ from ..impacts.layout import (
     Scene,
     scene_of,
 )  # fmt: skip
-from ..impacts.loop import follow, forecast, forecast_due
+from ..impacts.loop import follow, forecast, forecast_due, with_mover
 from ..impacts.settle import settle
 from ..impacts.step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, finish, start, wish
 from ..joints.layout import BODY_A, BODY_B, ELASTIC, TOUCHED
@@ -111,7 +111,8 @@ def follow_jointed(A: Scene, J: Joints, disks: int, may_rest: bool) -> int:
             if not roomy(A):
                 COUNT[HEAP] = push(A.HEAP_TIME, A.HEAP_BODY, COUNT[HEAP], t, i)
                 return PUSHES_FULL
-            status, COUNT[WAITING] = collide(A, J, disks, STATE[i, OWN], STATE[i, OTHER], t)
+            status, n = collide(A, J, disks, STATE[i, OWN], STATE[i, OTHER], t)
+            COUNT[WAITING] = with_mover(A, i, n)
         elif A.MEMBER[COUNT[PENDING], JOINTED] == 0:
             status = follow(A, disks, may_rest)
             continue
@@ -122,7 +123,7 @@ def follow_jointed(A: Scene, J: Joints, disks: int, may_rest: bool) -> int:
                 return PUSHES_FULL
             COUNT[PENDING] = -1
         for q in range(COUNT[WAITING]):
-            forecast(A, disks, moving, BLOCK[q], A.BODY[BLOCK[q], SINCE], end)
+            forecast(A, disks, moving, BLOCK[q], A.BODY[BLOCK[q], SINCE], end, False)
         status = follow(A, disks, may_rest)
 
 

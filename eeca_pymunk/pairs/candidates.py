@@ -41,7 +41,7 @@ def cover(
     if norm(x - MARK[s, AT_X], y - MARK[s, AT_Y]) + reach <= margin:
         return True
     MARK[s, MARGIN] = max(USUAL[s], _LASTS * reach)
-    return renew(BODY, SHAPE, LINK, MARK, CELL, LIST, POOL, FLAG, HEAD, GRID, INFO, BOX, CSR, s, 0.0)
+    return renew(BODY, SHAPE, LINK, MARK, CELL, LIST, POOL, FLAG, HEAD, GRID, INFO, BOX, CSR, s, 0.0, 0.0) >= 0
 
 
 @uncounted

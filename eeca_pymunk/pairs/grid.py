@@ -20,7 +20,7 @@ from .layout import (
     BUCKET,
     CAPACITY,
     CELL_LENGTH,
-    COLUMN,
+    CHOSEN,
     LEAVES,
     LEVEL,
     LEVEL_COUNT,
@@ -31,10 +31,11 @@ from .layout import (
     NUMBER,
     POOL_END,
     PREVIOUS,
-    ROW,
+    REACH,
+    ROOM,
     START,
 )  # fmt: skip
-from .lists import append, centre, may_meet, remove
+from .lists import append, centre, course, may_meet, place_in, remove
 from .walls import seek_walls
 
 _FIRST_CAPACITY = 8
@@ -68,36 +69,37 @@ def link(
     MARK: FloatArray, CELL: IntArray, HEAD: IntArray, GRID: FloatArray, INFO: IntArray, radius: float, s: int
 ) -> None:
     """Put shape s into the grid where its margin circle is."""
-    level = level_of(radius + MARK[s, MARGIN], GRID[CELL_LENGTH])
+    MARK[s, REACH] = radius + MARK[s, MARGIN]
+    level = level_of(MARK[s, REACH], GRID[CELL_LENGTH])
     length = GRID[CELL_LENGTH] * 2.0**level
-    CELL[s, COLUMN], CELL[s, ROW] = cell_at(MARK[s, AT_X], length), cell_at(MARK[s, AT_Y], length)
-    k = bucket(level, CELL[s, COLUMN], CELL[s, ROW], HEAD.shape[0] - 1)
+    k = bucket(level, cell_at(MARK[s, AT_X], length), cell_at(MARK[s, AT_Y], length), HEAD.shape[0] - 1)
     head = HEAD[k]
-    CELL[s, LEVEL], CELL[s, BUCKET], CELL[s, NEXT], CELL[s, PREVIOUS] = level, k, head, -1
+    CELL[s, LEVEL], CELL[s, BUCKET] = level, k
+    MARK[s, NEXT], MARK[s, PREVIOUS] = head, -1.0
     if head >= 0:
-        CELL[head, PREVIOUS] = s
+        MARK[head, PREVIOUS] = s
     HEAD[k] = s
     INFO[LEVELS + level] += 1
 
 
 @uncounted
-def unlink(CELL: IntArray, HEAD: IntArray, INFO: IntArray, s: int) -> None:
+def unlink(MARK: FloatArray, CELL: IntArray, HEAD: IntArray, INFO: IntArray, s: int) -> None:
     """Take shape s out of the grid."""
-    after, before = CELL[s, NEXT], CELL[s, PREVIOUS]
+    after, before = int(MARK[s, NEXT]), int(MARK[s, PREVIOUS])
     if before >= 0:
-        CELL[before, NEXT] = after
+        MARK[before, NEXT] = after
     else:
         HEAD[CELL[s, BUCKET]] = after
     if after >= 0:
-        CELL[after, PREVIOUS] = before
+        MARK[after, PREVIOUS] = before
     INFO[LEVELS + CELL[s, LEVEL]] -= 1
 
 
 @uncounted
-def near(MARK: FloatArray, SHAPE: FloatArray, o: int, x: float, y: float, radius: float) -> bool:
+def near(MARK: FloatArray, o: int, x: float, y: float, radius: float) -> bool:
     """Whether the margin circle of shape o overlaps that of centre (x, y)."""
     dx, dy = MARK[o, AT_X] - x, MARK[o, AT_Y] - y
-    reach = radius + SHAPE[o, BOUND] + MARK[o, MARGIN]
+    reach = radius + MARK[o, REACH]
     return bool(dx * dx + dy * dy <= reach * reach)
 
 
@@ -112,14 +114,28 @@ def join(
 
 
 @uncounted
+def join_chosen(
+    BODY: FloatArray, LINK: IntArray, LIST: IntArray, POOL: PoolArray, FLAG: FlagArray, INFO: IntArray, s: int, n: int
+) -> bool:
+    """`join` s with the n shapes in INFO[CHOSEN:] that are not in its list."""
+    for k in range(n):
+        o = INFO[CHOSEN + k]
+        # Cells may share a place of the table: a shape may come up more than once.
+        if place_in(LIST, POOL, s, o) < 0 and not join(BODY, LINK, LIST, POOL, FLAG, INFO, s, o):
+            return False
+    return True
+
+
+@uncounted
 def seek_moving(
     BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, MARK: FloatArray, CELL: IntArray, LIST: IntArray,
     POOL: PoolArray, FLAG: FlagArray, HEAD: IntArray, GRID: FloatArray, INFO: IntArray, s: int,
 ) -> bool:  # fmt: skip
-    """Neighbours of s, which is not in the grid, among the shapes that are. False if the pool is full."""
+    """Neighbours of s, which is not in the grid, among the shapes that are, but for those in its list already. False if
+    the pool is full."""
     x, y = MARK[s, AT_X], MARK[s, AT_Y]
     radius = SHAPE[s, BOUND] + MARK[s, MARGIN]
-    mask = HEAD.shape[0] - 1
+    mask, chosen = HEAD.shape[0] - 1, 0
     length = 0.5 * GRID[CELL_LENGTH]
     for level in range(LEVEL_COUNT):
         length *= 2.0
@@ -133,8 +149,8 @@ def seek_moving(
         last = level == LEVEL_COUNT - 1
         if last or float(east - west + 1) * float(north - south + 1) > 4.0 * left + 16.0:
             for o in range(INFO[MOVING]):
-                listed = CELL[o, LEVEL] == level and CELL[o, BUCKET] >= 0 and o != s
-                if listed and near(MARK, SHAPE, o, x, y, radius):
+                here = CELL[o, LEVEL] == level and CELL[o, BUCKET] >= 0 and o != s
+                if here and near(MARK, o, x, y, radius) and place_in(LIST, POOL, s, o) < 0:
                     if not join(BODY, LINK, LIST, POOL, FLAG, INFO, s, o):
                         return False
             continue
@@ -142,44 +158,63 @@ def seek_moving(
             for row in range(south, north + 1):
                 o = HEAD[bucket(level, column, row, mask)]
                 while o >= 0:
-                    # Cells may share a place of the table: a shape counts in its own cell alone.
-                    here = CELL[o, LEVEL] == level and CELL[o, COLUMN] == column and CELL[o, ROW] == row
-                    if here and near(MARK, SHAPE, o, x, y, radius):
-                        if not join(BODY, LINK, LIST, POOL, FLAG, INFO, s, o):
+                    INFO[CHOSEN + chosen] = o
+                    chosen += 1 if near(MARK, o, x, y, radius) else 0
+                    if chosen == ROOM:
+                        if not join_chosen(BODY, LINK, LIST, POOL, FLAG, INFO, s, chosen):
                             return False
-                    o = CELL[o, NEXT]
-    return True
+                        chosen = 0
+                    o = int(MARK[o, NEXT])
+    return join_chosen(BODY, LINK, LIST, POOL, FLAG, INFO, s, chosen)
 
 
 @uncounted
-def clear(LIST: IntArray, POOL: PoolArray, FLAG: FlagArray, INFO: IntArray, s: int) -> None:
-    """Empty the list of s, and take s out of those of the others."""
-    start = LIST[s, START]
+def part(LIST: IntArray, POOL: PoolArray, FLAG: FlagArray, INFO: IntArray, MARK: FloatArray, s: int) -> int:
+    """Leave in the list of s the moving shapes that are near its margin circle, with their flags, and take s out of the
+    lists of the others; how many are left."""
+    start, kept = LIST[s, START], 0
+    x, y, radius = MARK[s, AT_X], MARK[s, AT_Y], MARK[s, REACH]
     for q in range(start, start + LIST[s, NUMBER]):
-        if POOL[q] < INFO[MOVING]:
-            remove(LIST, POOL, FLAG, POOL[q], s)
-    LIST[s, NUMBER] = 0
+        o = int(POOL[q])
+        # Static ones are sought again, but for their flags.
+        if near(MARK, o, x, y, radius) if o < INFO[MOVING] else FLAG[q] != 0:
+            POOL[start + kept], FLAG[start + kept] = o, FLAG[q]
+            kept += 1
+        elif o < INFO[MOVING]:
+            remove(LIST, POOL, FLAG, o, s)
+    LIST[s, NUMBER] = kept
+    return kept
 
 
 @uncounted
 def renew(
     BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, MARK: FloatArray, CELL: IntArray, LIST: IntArray,
     POOL: PoolArray, FLAG: FlagArray, HEAD: IntArray, GRID: FloatArray, INFO: IntArray, BOX: FloatArray,
-    CSR: IntArray, s: int, t: float,
-) -> bool:  # fmt: skip
-    """Draw the margin circle of s about where it is at instant t, and make its list anew. False if the pool is full:
-    then `build` is due."""
+    CSR: IntArray, s: int, t: float, ahead: float,
+) -> int:  # fmt: skip
+    """Draw the margin circle of s anew about where it is at instant t, and bring its list up to date.
+
+    Args:
+        ahead: how far before the shape on its way, in margins, the centre of the circle is to be; below 1.
+
+    Returns:
+        how many of the list were in it before: they are the first. -1 if the pool is full: then `build` is due.
+    """
     if MARK[s, MARGIN] == math.inf:
-        return True
-    clear(LIST, POOL, FLAG, INFO, s)
-    unlink(CELL, HEAD, INFO, s)
-    MARK[s, AT_X], MARK[s, AT_Y] = centre(BODY, SHAPE, LINK, s, t)
+        return int(LIST[s, NUMBER])
+    unlink(MARK, CELL, HEAD, INFO, s)
+    x, y = centre(BODY, SHAPE, LINK, s, t)
+    if ahead > 0.0:
+        ux, uy = course(BODY, LINK, s, t)
+        x, y = x + ahead * MARK[s, MARGIN] * ux, y + ahead * MARK[s, MARGIN] * uy
+    MARK[s, AT_X], MARK[s, AT_Y], MARK[s, REACH] = x, y, SHAPE[s, BOUND] + MARK[s, MARGIN]
     INFO[LEAVES] += 1
-    found = seek_walls(BODY, SHAPE, LINK, MARK, LIST, POOL, FLAG, GRID, INFO, BOX, CSR, s) and seek_moving(
-        BODY, SHAPE, LINK, MARK, CELL, LIST, POOL, FLAG, HEAD, GRID, INFO, s
+    kept = part(LIST, POOL, FLAG, INFO, MARK, s)
+    found = seek_moving(BODY, SHAPE, LINK, MARK, CELL, LIST, POOL, FLAG, HEAD, GRID, INFO, s) and seek_walls(
+        BODY, SHAPE, LINK, MARK, LIST, POOL, FLAG, GRID, INFO, BOX, CSR, s
     )
     link(MARK, CELL, HEAD, GRID, INFO, SHAPE[s, BOUND], s)
-    return found
+    return kept if found else -1
 
 
 @uncounted

@@ -51,6 +51,16 @@ def centre(BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, s: int, t: float
 
 
 @uncounted
+def course(BODY: FloatArray, LINK: IntArray, s: int, t: float) -> tuple[float, float]:
+    """Unit vector along which the body of shape s moves at instant t; 0 if it is at rest."""
+    i = LINK[s, OWNER]
+    h = t - BODY[i, SINCE]
+    ux, uy = BODY[i, VX] + BODY[i, AX] * h, BODY[i, VY] + BODY[i, AY] * h
+    u = math.sqrt(ux * ux + uy * uy)
+    return (ux / u, uy / u) if u > 0.0 else (0.0, 0.0)
+
+
+@uncounted
 def may_meet(BODY: FloatArray, LINK: IntArray, a: int, b: int) -> bool:
     """Whether two shapes may collide: of two bodies, one of which impulses move, let through by pymunk's filters."""
     i, j = LINK[a, OWNER], LINK[b, OWNER]
@@ -79,6 +89,15 @@ def append(LIST: IntArray, POOL: PoolArray, FLAG: FlagArray, INFO: IntArray, a: 
     FLAG[start + n] = 0
     LIST[a, NUMBER] = n + 1
     return True
+
+
+@uncounted
+def place_in(LIST: IntArray, POOL: PoolArray, s: int, o: int) -> int:
+    """Where in the pool o stands in the list of s, -1 if it does not."""
+    for q in range(LIST[s, START], LIST[s, START] + LIST[s, NUMBER]):
+        if POOL[q] == o:
+            return q
+    return -1
 
 
 @uncounted

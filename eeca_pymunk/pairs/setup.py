@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..arrays import FlagArray, FloatArray, IntArray, PoolArray
+from ..arrays import FlagArray, FloatArray, IntArray, PoolArray, side_by_side
 from ..layout import BOUND, COUNT, FIRST, OWNER, ROUNDING
 from .grid import build
 from .layout import (
@@ -91,17 +91,17 @@ def boxes(SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, moving: int) ->
 def near_lists(BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, moving: int) -> Near:
     """Lists of the shapes [0, moving), where BODY has them now."""
     bound = SHAPE[:moving, BOUND]
-    INFO, GRID, MARK = np.zeros(INFO_LENGTH, np.int64), np.zeros(GRID_LENGTH), np.zeros((moving, MARK_COLUMNS))
+    INFO, GRID, room = np.zeros(INFO_LENGTH, np.int64), np.zeros(GRID_LENGTH), 32 * moving + 1024
+    MARK, CELL, LIST, POOL, FLAG, HEAD = side_by_side(
+        ((moving, MARK_COLUMNS), np.float64), ((moving, CELL_COLUMNS), np.int64), ((moving, LIST_COLUMNS), np.int64),
+        ((room,), np.int32), ((room,), np.uint8), ((1 << max(1, math.ceil(math.log2(2 * moving + 2))),), np.int64),
+    )  # fmt: skip
     INFO[MOVING] = moving
     BOX = boxes(SHAPE, LINK, VERTEX, moving)
     CSR = _wall_cells(BOX, GRID, INFO)
     MARK[:, MARGIN] = margins(bound, BODY[LINK[:moving, OWNER], :2], len(BOX)) if moving else 0.0
-    room = 32 * moving + 1024
-    near = Near(
-        MARK, np.zeros((moving, CELL_COLUMNS), np.int64), np.zeros((moving, LIST_COLUMNS), np.int64),
-        np.zeros(room, np.int32), np.zeros(room, np.uint8),
-        np.full(1 << max(1, math.ceil(math.log2(2 * moving + 2))), -1, np.int64), GRID, INFO, BOX, CSR,
-    )  # fmt: skip
+    HEAD[:] = -1
+    near = Near(MARK, CELL, LIST, POOL, FLAG, HEAD, GRID, INFO, BOX, CSR)
     for _ in range(_HALVINGS):
         GRID[CELL_LENGTH] = 2.0 * float((bound + MARK[:, MARGIN]).min(initial=1e300))
         near = rebuilt(near, BODY, SHAPE, LINK, 0.0)

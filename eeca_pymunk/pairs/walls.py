@@ -16,7 +16,7 @@ from .layout import (
     WALL_X,
     WALL_Y,
 )  # fmt: skip
-from .lists import append, may_meet
+from .lists import append, may_meet, place_in
 
 
 @uncounted
@@ -39,14 +39,14 @@ def seek_walls(
     BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, MARK: FloatArray, LIST: IntArray, POOL: PoolArray,
     FLAG: FlagArray, GRID: FloatArray, INFO: IntArray, BOX: FloatArray, CSR: IntArray, s: int,
 ) -> bool:  # fmt: skip
-    """Static neighbours of s. False if the pool is full."""
+    """Static neighbours of s, but for those in its list already. False if the pool is full."""
     x, y = MARK[s, AT_X], MARK[s, AT_Y]
     radius, moving = SHAPE[s, BOUND] + MARK[s, MARGIN], INFO[MOVING]
     columns, rows = INFO[WALL_COLUMNS], INFO[WALL_ROWS]
     if columns == 0:
         for w in range(BOX.shape[0]):
-            if near_wall(BOX, w, x, y, radius) and may_meet(BODY, LINK, s, moving + w):
-                if not append(LIST, POOL, FLAG, INFO, s, moving + w):
+            if near_wall(BOX, w, x, y, radius) and place_in(LIST, POOL, s, moving + w) < 0:
+                if may_meet(BODY, LINK, s, moving + w) and not append(LIST, POOL, FLAG, INFO, s, moving + w):
                     return False
         return True
     length = GRID[WALL_LENGTH]
@@ -63,8 +63,8 @@ def seek_walls(
                 first_row = max(south, cell_of(BOX[w, 1] - GRID[WALL_Y], length, rows))
                 if first_column != column or first_row != row:
                     continue
-                if near_wall(BOX, w, x, y, radius) and may_meet(BODY, LINK, s, moving + w):
-                    if not append(LIST, POOL, FLAG, INFO, s, moving + w):
+                if near_wall(BOX, w, x, y, radius) and place_in(LIST, POOL, s, moving + w) < 0:
+                    if may_meet(BODY, LINK, s, moving + w) and not append(LIST, POOL, FLAG, INFO, s, moving + w):
                         return False
     return True
 

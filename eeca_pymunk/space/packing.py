@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 import pymunk
 
-from ..arrays import BoolArray, FloatArray, IntArray, rotated
+from ..arrays import BoolArray, FloatArray, IntArray, rotated, side_by_side
 from ..layout import (
     BODY_COLUMNS,
     BOUNCE,
@@ -103,16 +103,17 @@ def pack(bodies: Bodies, state: FloatArray, shapes: Sequence[pymunk.Shape], reco
     rank = np.empty_like(order)
     rank[order] = np.arange(len(order))
     by_row = np.argsort(rank[of_shape], kind="stable")
-    LINK = np.zeros((len(order), LINK_COLUMNS), np.int64)
+    k = len(order)
+    BODY, SHAPE, LINK = side_by_side(
+        ((ground + 1, BODY_COLUMNS), np.float64), ((k, SHAPE_COLUMNS), np.float64), ((k, LINK_COLUMNS), np.int64)
+    )
     LINK[:, OWNER], LINK[:, COUNT] = body_of[order], count[order]
     LINK[:, FIRST] = np.cumsum(count[order]) - count[order]
     filters = np.array([r.filter for r in records], np.uint64).reshape(-1, 3)
     LINK[:, GROUP : MASK + 1] = filters.view(np.int64)[order]
     VERTEX = _with_normals(vertex[by_row], LINK)
-    SHAPE = np.zeros((len(order), SHAPE_COLUMNS))
     SHAPE[:, : SURFACE_Y + 1] = np.array([r.numbers for r in records], float).reshape(-1, SURFACE_Y + 1)[order]
     _bound(VERTEX[:, :2], LINK, SHAPE)
-    BODY = np.zeros((ground + 1, BODY_COLUMNS))
     moving = np.flatnonzero(row >= 0)
     BODY[row[moving], IM], BODY[row[moving], II] = bodies.inverse_mass[moving], bodies.inverse_moment[moving]
     BODY[:, DUE] = -np.inf

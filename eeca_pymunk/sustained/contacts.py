@@ -3,7 +3,8 @@
 Normals and arms are those at the predicted middle q + (h/2) v, gaps those now: with u = G(middle) v the gap at the end
 is g + (h/2)(u- + u+) to third order in h, so that bodies follow curved surfaces to second order without a loss; and
 an island without forces keeps its angular momentum exactly, as its middle and the predicted one differ by multiples of
-the impulses. Where a pair moves far in half a span (an impact at high speed) its rows are those now.
+the impulses. Where a pair moves far in half a span (an impact at high speed) its normals are those now, and its points
+go half the way with each of its bodies.
 """
 
 from __future__ import annotations
@@ -83,10 +84,19 @@ def gather(
                 if ahead and THEN[z, 0] * NOW[z, 0] + THEN[z, 1] * NOW[z, 1] < _ALIKE:
                     ahead = False
         if not ahead:
-            centre = POSE
+            x = 0.0
+            y = 0.0
+            if IM[a] == 0.0 or IM[b] == 0.0:
+                centre = POSE
+            else:
+                # One point for both, about their middles: so no angular momentum is made.
+                x = 0.5 * (MIDDLE[a, 0] - POSE[a, 0] + MIDDLE[b, 0] - POSE[b, 0])
+                y = 0.5 * (MIDDLE[a, 1] - POSE[a, 1] + MIDDLE[b, 1] - POSE[b, 1])
             for z in range(count):
                 for q in range(5):
                     THEN[z, q] = NOW[z, q]
+                THEN[z, 2] += x
+                THEN[z, 3] += y
         elasticity, friction, sx, sy = law(SHAPE, RULE, s, r)
         for z in range(count):
             i = m + z

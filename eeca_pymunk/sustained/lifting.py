@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FlagArray, FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..rows.build import normal_rate
 from ..rows.energy import lift
@@ -19,6 +19,7 @@ from ..rows.layout import GAP, UN
 from .ledger import against
 
 _DEEP = 1e-9  # overlap relative to the size that is left alone
+_SHARE = 0.99  # of a budget that does not suffice: the moment of inertia goes with what is lifted
 
 
 @kernel
@@ -48,21 +49,30 @@ def lifting(
     lift(A, B, ROWS, GAPS, np.zeros(m), D, IM, II, m, 0.1 * _DEEP * size, 10 + 1000 // m)
     work = -against(ACC, IM, II, n, D)
     turn = 0.0
+    touched = np.zeros(n, np.uint8)
     square = 0.0
     x = 0.0
     y = 0.0
     if len(IM) == n:
-        turn, x, y, spin, inertia = unturn(POSE, VN, D, IM, II, n, h)
+        # Bodies that no contact touches are not of the island any more.
+        for i in range(m):
+            touched[A[i]] = 1
+            touched[B[i]] = 1
+        turn, x, y, spin, inertia = unturn(POSE, VN, D, IM, II, touched, h)
         work += turn * spin
         square = 0.5 * inertia * turn * turn
     part = 1.0
     if work + square > budget:
-        part = budget / (max(work, 0.0) + square)
-    turn *= part
+        part = _SHARE * budget / (max(work, 0.0) + square)
+        for i in range(n):
+            for c in range(3):
+                D[i, c] *= part
+        if turn != 0.0:
+            turn, x, y, _, _ = unturn(POSE, VN, D, IM, II, touched, h)
     for i in range(n):
         for c in range(3):
-            JUMP[i, c] = part * D[i, c]
-        if turn != 0.0:
+            JUMP[i, c] = D[i, c]
+        if turn != 0.0 and touched[i] != 0:
             JUMP[i, 3] = -turn * (POSE[i, 1] + 0.5 * h * VN[i, 1] + JUMP[i, 1] - y)
             JUMP[i, 4] = turn * (POSE[i, 0] + 0.5 * h * VN[i, 0] + JUMP[i, 0] - x)
             JUMP[i, 5] = turn
@@ -71,9 +81,10 @@ def lifting(
 
 @uncounted
 def unturn(
-    POSE: FloatArray, VN: FloatArray, D: FloatArray, IM: FloatArray, II: FloatArray, n: int, h: float
+    POSE: FloatArray, VN: FloatArray, D: FloatArray, IM: FloatArray, II: FloatArray, touched: FlagArray, h: float
 ) -> tuple[float, float, float, float, float]:
-    """The common spin that takes back the angular momentum of displacements D at the end poses POSE + (h/2) VN.
+    """The common spin of the touched bodies that takes back the angular momentum of displacements D at the end poses
+    POSE + (h/2) VN.
 
     Returns it with the centre of mass (x, y), the angular momentum about it and the moment of inertia.
     """
@@ -82,7 +93,9 @@ def unturn(
     y = 0.0
     vx = 0.0
     vy = 0.0
-    for i in range(n):
+    for i in range(len(touched)):
+        if touched[i] == 0:
+            continue
         if II[i] == 0.0:
             return 0.0, 0.0, 0.0, 0.0, 0.0
         mass += 1.0 / IM[i]
@@ -97,7 +110,9 @@ def unturn(
     gained = 0.0
     spin = 0.0
     inertia = 0.0
-    for i in range(n):
+    for i in range(len(touched)):
+        if touched[i] == 0:
+            continue
         rx = POSE[i, 0] + 0.5 * h * VN[i, 0] + D[i, 0] - x
         ry = POSE[i, 1] + 0.5 * h * VN[i, 1] + D[i, 1] - y
         wx = VN[i, 0] - vx

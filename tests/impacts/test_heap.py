@@ -67,13 +67,13 @@ def wanderer(rng: np.random.Generator, turning: bool, pulled: bool, unit: float)
 
 def mark_of(world: World, x: float, y: float, margin: float) -> np.ndarray:
     mark = np.zeros((1, at.MARK_COLUMNS))
-    mark[0] = x, y, margin
+    mark[0, :3] = x, y, margin
     return mark
 
 
 def centre_at(world: World, t: float) -> np.ndarray:
     s = t - world.body[0, la.SINCE]
-    x, y, angle = world.body[0, :3] + (world.body[0, 3:6] + 0.5 * world.body[0, 6:9] * s) * s
+    x, y, angle = world.body[0, :3] + (world.body[0, 3:6] + 0.5 * world.body[0, la.AX : la.TWIST + 1] * s) * s
     kx, ky = world.shape[0, [la.CENTRE_X, la.CENTRE_Y]]
     return np.array([x + math.cos(angle) * kx - math.sin(angle) * ky, y + math.sin(angle) * kx + math.cos(angle) * ky])
 

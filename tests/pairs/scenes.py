@@ -35,10 +35,10 @@ class Crowd:
     def renew(self, s: int, t: float = 0.0) -> None:
         """Draw the margin circle of s anew, with more room if that takes it."""
         w, near = self.world, self.near
-        if not grid.renew(
+        if grid.renew(
             w.body, w.shape, w.link, near.MARK, near.CELL, near.LIST, near.POOL, near.FLAG, near.HEAD, near.GRID,
-            near.INFO, near.BOX, near.CSR, s, t,
-        ):  # fmt: skip
+            near.INFO, near.BOX, near.CSR, s, t, 0.0,
+        ) < 0:  # fmt: skip
             self.near = setup.rebuilt(near.larger(), w.body, w.shape, w.link, t)
 
     def listed(self) -> list[list[int]]:
@@ -54,7 +54,7 @@ class Crowd:
         w = self.world
         body, shape = w.body[w.link[: self.moving, la.OWNER]], w.shape[: self.moving]
         s = (t - body[:, la.SINCE])[:, None]
-        pose = body[:, :3] + (body[:, 3:6] + 0.5 * body[:, 6:9] * s) * s
+        pose = body[:, :3] + (body[:, 3:6] + 0.5 * body[:, la.AX : la.TWIST + 1] * s) * s
         c, d = np.cos(pose[:, 2]), np.sin(pose[:, 2])
         x, y = shape[:, la.CENTRE_X], shape[:, la.CENTRE_Y]
         return np.asarray(pose[:, :2] + np.stack((c * x - d * y, d * x + c * y), axis=1))

@@ -85,7 +85,7 @@ def test_one_that_flew_away_neither_breaks_the_grid_nor_fills_the_lists(speed: f
     for s in (11, 12, 11, 5):
         near.renew(s, 1.0)
     world.body[12, la.X : la.ANGLE] = near.centres(1.0)[11]  # somebody else goes there
-    world.body[12, la.VX : la.TWIST + 1] = 0.0
+    world.body[12, la.VX : la.SINCE + 1] = world.body[12, la.AX : la.TWIST + 1] = 0.0
     near.renew(12, 1.0)
     if speed >= 1e9:
         assert near.listed()[12] == [11]
@@ -155,18 +155,23 @@ def test_flags_follow_their_pairs_and_new_pairs_have_none() -> None:
     pair = next((s, o) for s, found in enumerate(near.listed()) for o in found if o < near.moving)
     n = near.near
     mark_pair(n.LIST, n.POOL, n.FLAG, near.moving, *pair, 1)
+
+    def flagged() -> set[tuple[int, int]]:
+        return {
+            (s, int(o))
+            for s, (start, count) in enumerate(n.LIST[:, [at.START, at.NUMBER]].tolist())
+            for o, flag in zip(n.POOL[start : start + count], n.FLAG[start : start + count], strict=True)
+            if flag
+        }
+
     for s in range(near.moving):
-        if s not in pair:
-            near.renew(s)
-    flagged = {
-        (s, int(o))
-        for s, (start, count) in enumerate(n.LIST[:, [at.START, at.NUMBER]].tolist())
-        for o, flag in zip(n.POOL[start : start + count], n.FLAG[start : start + count], strict=True)
-        if flag
-    }
-    assert flagged == {pair, pair[::-1]}
-    near.renew(pair[0])
-    assert not any(n.FLAG[start : start + count].any() for start, count in n.LIST[:, [at.START, at.NUMBER]].tolist())
+        near.renew(s)
+    assert flagged() == {pair, pair[::-1]}
+    for far in (1e3, -1e3):  # there and back
+        world.body[pair[0], la.X] += far
+        near.renew(pair[0])
+        assert not flagged()
+    near.check()
 
 
 @pytest.mark.parametrize("spread", ["field", "line", "long ones", "one place"])
@@ -198,3 +203,26 @@ def test_levels_hold_circles_of_up_to_half_their_cell() -> None:
         assert 1e-2 * 2.0**level >= 2.0 * radius
         assert level == 0 or 1e-2 * 2.0 ** (level - 1) < 2.0 * radius
     assert grid.level_of(1e300, 1e-2) == at.LEVEL_COUNT - 1
+
+
+@pytest.mark.parametrize("ahead", [0.0, 0.3, 0.9])
+def test_a_list_drawn_ahead_is_complete_and_its_old_part_comes_first(ahead: float) -> None:
+    rng = np.random.default_rng(8)
+    world = crowd(rng, np.full(60, 0.1), walls=10)
+    near = Crowd.of(world)
+    w, n = world, near.near
+    for s in rng.integers(0, near.moving, 300).tolist():
+        world.body[s, la.X : la.ANGLE] += world.body[s, la.VX : la.SPIN] * 0.1
+        before = near.listed()[s]
+        kept = grid.renew(
+            w.body, w.shape, w.link, n.MARK, n.CELL, n.LIST, n.POOL, n.FLAG, n.HEAD, n.GRID, n.INFO, n.BOX, n.CSR,
+            s, 0.0, ahead,
+        )  # fmt: skip
+        assert kept >= 0
+        after = near.listed()[s]
+        assert set(after[:kept]) <= set(before)
+        assert not {o for o in after[kept:] if o < near.moving} & set(before)
+        away = n.MARK[s, :2] - near.centres()[s]
+        assert np.hypot(*away) == pytest.approx(ahead * n.MARK[s, at.MARGIN], abs=1e-12)
+        assert away @ world.body[s, la.VX : la.SPIN] >= 0.0
+    near.check()

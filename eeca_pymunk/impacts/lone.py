@@ -1,0 +1,171 @@
+"""Forecasts of lone disks that are in no island: those that most events of a gas are about.
+
+What a forecast says stays good while neither path changes: past the start of a step, and past the disk's leaving its
+margin circle, for which whom it meets if it goes straight on (LATER) is kept.
+"""
+
+from __future__ import annotations
+
+import math
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import inlined, uncounted
+from ..geometry.flight import norm
+from ..layout import AX, AY, DUE, EXTENT, OWNER, SINCE, VX, VY, X, Y
+from ..pairs.grid import renew
+from ..pairs.layout import CHOSEN, LATER, MARGIN, NUMBER, ROOM, START
+from ..pairs.rules import barred
+from .forecast import AHEAD, has_left, leaves
+from .heap import push
+from .layout import CHECK, EVEN, HEAP, KINKS, KNOWN, LEAVE, NOTHING, OTHER, OWN, UNMET, Scene
+from .times import meet, one_pull, passes
+
+_FARTHEST = 0.7  # of the margin, that a new circle is ahead at most
+_SAME = 1e-9  # of the step, within which an instant that was computed again is the same
+
+
+@uncounted
+def carrier(LINK: IntArray, disks: int, s: int) -> int:
+    """Row of the body of shape s: lone disks have the same number as their shapes."""
+    return s if s < disks else int(LINK[s, OWNER])
+
+
+@inlined
+def misses(BODY: FloatArray, i: int, o: int, ax: float, ay: float, latest: float) -> bool:
+    """Whether lone disks i and o, which one acceleration pulls, part, pass far from one another, or are too far away to
+    meet until `latest`: for certain. No more than `times.one_pull` would find out, and no branch."""
+    start = max(BODY[i, SINCE], BODY[o, SINCE])
+    g, h = start - BODY[i, SINCE], start - BODY[o, SINCE]
+    ux, uy = (BODY[o, VX] + h * ax) - (BODY[i, VX] + g * ax), (BODY[o, VY] + h * ay) - (BODY[i, VY] + g * ay)
+    dx = (BODY[o, X] + (BODY[o, VX] + 0.5 * h * ax) * h) - (BODY[i, X] + (BODY[i, VX] + 0.5 * g * ax) * g)
+    dy = (BODY[o, Y] + (BODY[o, VY] + 0.5 * h * ay) * h) - (BODY[i, Y] + (BODY[i, VY] + 0.5 * g * ay) * g)
+    return passes(dx, dy, ux, uy, BODY[i, EXTENT] + BODY[o, EXTENT], latest - start)
+
+
+@uncounted
+def first_chosen(A: Scene, i: int, chosen: int, best: float, other: int) -> tuple[float, int]:
+    """As `first_meeting`, among so many lone disks in INFO[CHOSEN:], which one acceleration pulls."""
+    BODY = A.BODY
+    for k in range(chosen):
+        o = A.INFO[CHOSEN + k]
+        t = one_pull(
+            BODY[i, SINCE], BODY[i, X], BODY[i, Y], BODY[i, VX], BODY[i, VY],
+            BODY[o, SINCE], BODY[o, X], BODY[o, Y], BODY[o, VX], BODY[o, VY],
+            BODY[i, AX], BODY[i, AY], BODY[i, EXTENT] + BODY[o, EXTENT], best,
+        )  # fmt: skip
+        if t < best or (t == best and other >= 0 and o < other):
+            best, other = t, o
+    return best, other
+
+
+@uncounted
+def first_meeting(
+    A: Scene, disks: int, i: int, known: int, best: float, other: int, end: float, several: bool
+) -> tuple[float, int]:  # fmt: skip
+    """Instant and shape of the first meeting of lone disk i with those of its list from place `known` on, or what comes
+    before that, `best` and `other`; CHECK for a shape if it is not certain.
+
+    Args:
+        several: whether bodies that have a PLACE are forecast together, see `forecast.predict`.
+    """
+    BODY, POOL, FLAG, INFO = A.BODY, A.POOL, A.FLAG, A.INFO
+    chosen = 0
+    even = A.COUNT[EVEN] > 0
+    flagged = not even or A.COUNT[UNMET] > 0
+    ax, ay = BODY[i, AX], BODY[i, AY]
+    start, ruled = A.LIST[i, START], A.RULE.shape[0] > 0
+    for q in range(start + known, start + A.LIST[i, NUMBER]):
+        if flagged and FLAG[q] != 0:
+            continue
+        o = int(POOL[q])
+        if several:
+            j = carrier(A.LINK, disks, o)
+            if A.PLACE[j] >= 0 and j < i:
+                continue
+        if ruled and barred(A.RULE, i, o):
+            continue
+        if o < disks and even:
+            INFO[CHOSEN + chosen] = o
+            chosen += 0 if misses(BODY, i, o, ax, ay, best) else 1
+            if chosen == ROOM:
+                best, other = first_chosen(A, i, chosen, best, other)
+                chosen = 0
+            continue
+        t, certain = meet(BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, i, o, disks, end, -1.0)
+        if t < best or (t == best and other >= 0 and o < other):
+            best, other = t, (o if certain else CHECK)
+    return first_chosen(A, i, chosen, best, other)
+
+
+@uncounted
+def expect(A: Scene, disks: int, i: int, best: float, other: int, now: float, end: float) -> None:
+    """Take it that lone disk i meets shape `other` next, at instant `best`, or leaves its margin circle before; put
+    what is due in this step on the heap."""
+    out = leaves(A.BODY, A.SHAPE, A.LINK, A.MARK, disks, i, i, now)
+    if other >= 0:
+        A.STATE[i, KNOWN] = A.STATE[carrier(A.LINK, disks, other), KINKS]
+    if out <= best and out < math.inf:
+        A.LIST[i, LATER] = other
+        best, other = out, LEAVE
+    best = max(best, now)
+    A.BODY[i, DUE], A.STATE[i, OWN], A.STATE[i, OTHER] = best, i, other
+    if best < end:
+        A.COUNT[HEAP] = push(A.HEAP_TIME, A.HEAP_BODY, A.COUNT[HEAP], best, i)
+
+
+@uncounted
+def predict_disk(A: Scene, disks: int, i: int, now: float, end: float, several: bool) -> None:
+    """As `forecast.predict`, of a lone disk that is in no island."""
+    best, other = first_meeting(A, disks, i, 0, math.inf, NOTHING, end, several)
+    expect(A, disks, i, best, other, now, end)
+
+
+@uncounted
+def go_on(A: Scene, disks: int, i: int, now: float, end: float) -> bool:
+    """Lone disk i, in no island, leaves its margin circle and goes straight on: only what has come into its list is new
+    in its forecast. False if the pool is full."""
+    BODY = A.BODY
+    best, other, later, known = math.inf, NOTHING, A.LIST[i, LATER], A.LIST[i, NUMBER]
+    ahead = AHEAD
+    if later >= 0 and A.STATE[carrier(A.LINK, disks, later), KINKS] == A.STATE[i, KNOWN]:
+        best, certain = meet(A.BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, i, later, disks, end, -1.0)
+        other = later if certain else CHECK
+    if has_left(BODY, A.SHAPE, A.LINK, A.MARK, i, now):
+        h = now - BODY[i, SINCE]
+        if later == NOTHING or other >= 0:
+            # Its course changes where it meets somebody: its circle is to be about there.
+            way = norm(BODY[i, VX] + BODY[i, AX] * h, BODY[i, VY] + BODY[i, AY] * h) * (best - now)
+            ahead = min(way / A.MARK[i, MARGIN], _FARTHEST)
+        known = renew(
+            BODY, A.SHAPE, A.LINK, A.MARK, A.CELL, A.LIST, A.POOL, A.FLAG, A.HEAD, A.GRID, A.INFO, A.BOX, A.CSR,
+            i, now, ahead,
+        )  # fmt: skip
+        if known < 0:
+            return False
+    if later != NOTHING and other < 0:
+        known = 0
+    best, other = first_meeting(A, disks, i, known, best, other, end, False)
+    expect(A, disks, i, best, other, now, end)
+    return True
+
+
+@uncounted
+def holds(A: Scene, disks: int, i: int, end: float) -> bool:
+    """Whether the forecast that lone disk i, in no island, was given in an earlier step is still good, as its path and
+    that of whom it meets are the same; puts it on the heap. The instant is computed again, from the paths as they are
+    described in this step, so that no bit depends on how long ago the forecast was made."""
+    other, due = A.STATE[i, OTHER], A.BODY[i, DUE]
+    if due <= 0.0:
+        return False
+    if other >= 0:
+        if A.STATE[carrier(A.LINK, disks, other), KINKS] != A.STATE[i, KNOWN]:
+            return False
+        t, certain = meet(A.BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, i, other, disks, end, -1.0)
+        if not (certain and abs(t - due) <= _SAME * end):
+            return False
+        A.BODY[i, DUE] = due = t
+    elif other != LEAVE:
+        return False
+    if due < end:
+        A.COUNT[HEAP] = push(A.HEAP_TIME, A.HEAP_BODY, A.COUNT[HEAP], due, i)
+    return True
