@@ -1,13 +1,16 @@
 """Lifting bodies out of each other at the end of a span, paid from the losses of the same island and span.
 
 delta = M^-1 G^T mu with 0 <= mu _|_ g + A mu >= 0 for the gaps g at the end, scaled so that the potential energy it
-costs is at most the losses: no energy comes from push-out. Gaps above -1e-9 of the size are left alone.
+costs is at most the losses, and nothing goes far: no energy comes from push-out, and nobody goes through a wall by it.
+Gaps above -1e-9 of the size are left alone.
 
 Moving bodies apart changes their orbital angular momentum by sum m delta x v. Where an island is free (nothing without
 mobility in it) a common turn of its velocities about the centre of mass takes that back.
 """
 
 from __future__ import annotations
+
+import math
 
 import numpy as np
 
@@ -19,6 +22,7 @@ from ..rows.layout import GAP, UN
 from .ledger import against
 
 _DEEP = 1e-9  # overlap relative to the size that is left alone
+_STEP = 0.25  # of the size, that a body is lifted at most: no farther than walls that it meets so can send it back from
 _SHARE = 0.99  # of a budget that does not suffice: the moment of inertia goes with what is lifted
 
 
@@ -47,6 +51,13 @@ def lifting(
         return 0.0, deepest
     D = np.zeros((len(IM), 3))
     lift(A, B, ROWS, GAPS, np.zeros(m), D, IM, II, m, 0.1 * _DEEP * size, 10 + 1000 // m)
+    far = 0.0
+    for i in range(n):
+        far = max(far, math.sqrt(D[i, 0] * D[i, 0] + D[i, 1] * D[i, 1]))
+    if far > _STEP * size:
+        for i in range(n):
+            for c in range(3):
+                D[i, c] *= _STEP * size / far
     work = -against(ACC, IM, II, n, D)
     turn = 0.0
     touched = np.zeros(n, np.uint8)

@@ -13,6 +13,11 @@ import pytest
 
 import eeca_pymunk as ep
 import scenes
+from comparisons.hard_cases import moving
+from eeca_pymunk.impacts.scene import EventLoop
+from eeca_pymunk.layout import IM, OWNER, SINCE
+from eeca_pymunk.pairs.layout import AT_X, AT_Y, MARGIN
+from eeca_pymunk.pairs.lists import centre
 from scenes.scene import add_disk, add_walls
 
 from .crowds import SHORT, box_of, deepest, positions, radii, reference, state
@@ -280,3 +285,20 @@ def test_terrain_of_a_thousand_segments(count: int) -> None:
         assert (place[:, 1] > np.interp(place[:, 0], x, y)).all()
     assert SHORT or impacts > count
     assert ep.measure(space).energy == pytest.approx(energy, rel=1e-12)
+
+
+def test_walls_that_turn_are_looked_for_where_they_are() -> None:
+    """However often bodies hit a drum, none of its walls leaves the circle in which its neighbours know it."""
+    space = moving.drum(spin=3.0)
+    stepper = ep.EECA(space)
+    for _ in range(90):
+        stepper.step(1 / 60)
+        method = stepper._method
+        assert isinstance(method, EventLoop)
+        scene = method.scene
+        for s in range(len(scene.LIST)):
+            if scene.BODY[scene.LINK[s, OWNER], IM] > 0.0:
+                continue
+            x, y = centre(scene.BODY, scene.SHAPE, scene.LINK, s, scene.BODY[scene.LINK[s, OWNER], SINCE])
+            away = math.hypot(x - scene.MARK[s, AT_X], y - scene.MARK[s, AT_Y])
+            assert away <= scene.MARK[s, MARGIN] * (1 + 1e-9)

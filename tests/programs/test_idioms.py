@@ -314,3 +314,19 @@ def test_a_room_that_is_reset_many_times(make: Make) -> None:
         run(stepper, 40)
         heights.append([b.position.y for b in boxes])
     assert all(h == pytest.approx(heights[0], abs=0.2) for h in heights)
+
+
+def test_nobody_is_lifted_through_a_wall() -> None:
+    """Disks that are made at one place, in a box of thin walls, come apart inside it."""
+    space = pymunk.Space()
+    space.gravity = (0.0, -980.0)
+    corners = [(-40.0, 0.0), (40.0, 0.0), (40.0, 200.0), (-40.0, 200.0)]
+    for a, b in zip(corners, corners[1:] + corners[:1], strict=True):
+        space.add(pymunk.Segment(space.static_body, a, b, 1.0))
+    bodies = [add_disk(space, (0.1 * i, 60.0), 10.0) for i in range(12)]
+    for shape in space.shapes:
+        shape.elasticity, shape.friction = 0.0, 0.5
+    stepper = ep.EECA(space)
+    for _ in range(240):
+        stepper.step(1 / 60)
+    assert all(-40.0 < b.position.x < 40.0 and 0.0 < b.position.y < 200.0 for b in bodies)

@@ -10,7 +10,7 @@ from eeca_pymunk.rows.cholesky import assemble, factorise, substitute
 from eeca_pymunk.rows.dense import newton
 from eeca_pymunk.rows.layout import K_N, TARGET
 from eeca_pymunk.rows.ordering import dissect, neighbours, pattern
-from eeca_pymunk.rows.polish import polish
+from eeca_pymunk.rows.polish import polish, share
 from eeca_pymunk.rows.sweeps import coulomb, sweep, velocities
 
 from .block import Block
@@ -131,3 +131,28 @@ def test_direct_solution_needs_no_sweeps(dense: bool, sliding: bool) -> None:
         assert abs(V[0, 2]) <= 1e-14
         assert sweep(block.A, block.B, block.rows, L, V, block.im, block.ii, 2) <= 1e-14
         assert L[:, 0].sum() == pytest.approx(g * h, rel=1e-13)
+
+
+def test_points_of_a_face_share_their_friction_as_their_loads() -> None:
+    """A guess with one point at its cone's edge and the other pulling against it: the face as a whole sticks."""
+    mu, g_h = 0.5, 0.1
+    block = Block(np.zeros((2, 3)), np.zeros((2, 3)), np.array([1.0, 0]), np.array([6.0, 0]))
+    block.contacts = [(0, 1, 0.0, -1.0, x, -0.5) for x in (-0.5, 0.5)]
+    block.solve(0.0, mu)
+    block.rows[:, TARGET] = 0.0
+    free = np.array([[0.0, -g_h, 0.0], [0.0, 0.0, 0.0]])
+    L = np.array([[0.04, -mu * 0.04], [0.03, 0.6 * mu * 0.03]])
+    V = free.copy()
+    velocities(block.A, block.B, block.rows, L, free, block.im, block.ii, 2, V)
+    before, total = V.copy(), L[:, 1].sum()
+    share(block.A, block.B, block.rows, L, 2)
+    assert L[:, 1].sum() == pytest.approx(total, rel=1e-15)
+    assert L[0, 1] / L[0, 0] == pytest.approx(L[1, 1] / L[1, 0], rel=1e-14)
+    velocities(block.A, block.B, block.rows, L, free, block.im, block.ii, 2, V)
+    assert np.abs(V - before).max() <= 1e-16
+    reached, clamped = polish(
+        block.A, block.B, block.rows, L, V, free, block.im, block.ii, block.pose, 1, 2, 1e8, 40, 1e-16
+    )  # fmt: skip
+    assert reached <= 1e-15
+    assert clamped == 0
+    assert np.abs(V[0]).max() <= 1e-15
