@@ -5,5 +5,10 @@ In: the packed arrays of a world (`..layout`) at the start of a step. Out: the s
 Open first `step.py`, the stages of a step; then `loop.py`, the queue of events. `forecast.py` says when a body's next
 event is due, `lone.py` for most lone disks, from `times.py` (closed forms in `roots.py` and `circles.py`, shapes that
 turn in `turning.py`, until when shapes need no look in `apart.py`); `strike.py` says what an impact does, alone or in a
-block. `scene.py` owns the arrays, whose columns `layout.py` names.
+block (`block.py`, `collide.py`). `scene.py` owns the arrays, whose columns `layout.py` names.
+
+Contacts that last: `settle.py` puts what rests at the start of a step into islands (`islands.py`); `spans.py` solves
+each over a span of time (`coming.py` says of which pairs and how long, `..sustained` is the solve); `booking.py` books
+what it has done when it ends or is cut by a hit; `calm.py` finds the islands that stand, and `still.py` spares them.
+`together.py` is the step in which all contacts act at once.
 """

@@ -33,6 +33,7 @@ from ..sustained.step import OUT_SIZE, STOOD, step_island
 from ..sustained.step import POLISHES as POLISHES_OF
 from ..sustained.step import SWEEPS as SWEEPS_OF
 from .block import CROWD
+from .calm import calm
 from .coming import PARTS, hurried, pairs_of, span_of, stick_time, way_of
 from .islands import members
 from .layout import (
@@ -82,7 +83,7 @@ from .layout import (
     WORK_OF,
     Scene,
 )  # fmt: skip
-from .still import calm, halt
+from .still import halt
 
 _SWEEPS, _OF_CROWD, _AGAIN = 40, 24, 12  # of an island that moves; of a crowd, and of one that was hit in this step
 

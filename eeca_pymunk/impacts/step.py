@@ -19,11 +19,8 @@ from ..layout import (
     IM,
     OWNER,
     SPECIAL,
-    SPIN,
     STEERED,
     TWIST,
-    VX,
-    VY,
     X,
     Y,
 )  # fmt: skip
@@ -37,6 +34,7 @@ from ..tables import Table
 from ..transfer import EVENTS as SOME
 from ..transfer import give, take
 from .booking import book, flag_spans, lift_out
+from .calm import LIKELY, find_still
 from .layout import (
     AFTER,
     BEFORE,
@@ -87,8 +85,8 @@ from .layout import (
 )  # fmt: skip
 from .loop import follow, forecast_due
 from .settle import BUSY_FOR, settle
-from .still import LIKELY, find_still, halt, keep, leave, stand, stays, watch
-from .strike import move_to
+from .still import halt, keep, leave, stand, stays, watch
+from .strike import kinetic, move_to
 
 # Answers of a step that wants more memory: give some, and `resume`.
 ROOM_FOR_LISTS, ROOM_FOR_EVENTS, ROOM_FOR_CONTACTS = -10, -11, -12
@@ -100,10 +98,7 @@ def energy(A: Scene, i: int) -> float:
     BODY = A.BODY
     if BODY[i, IM] == 0.0:
         return 0.0
-    vx, vy, spin = BODY[i, VX], BODY[i, VY], BODY[i, SPIN]
-    linear = 0.5 * (vx * vx + vy * vy) - A.PAR[GRAVITY_X] * BODY[i, X] - A.PAR[GRAVITY_Y] * BODY[i, Y]
-    turning = 0.5 * spin * spin / BODY[i, II] if BODY[i, II] > 0.0 else 0.0
-    return linear / BODY[i, IM] + turning
+    return kinetic(BODY, i) - (A.PAR[GRAVITY_X] * BODY[i, X] + A.PAR[GRAVITY_Y] * BODY[i, Y]) / BODY[i, IM]
 
 
 @uncounted
@@ -167,15 +162,6 @@ def begin(A: Scene, WALK: IntArray) -> None:
         even = even and alike and STATE[i, ISLAND] < 0
     PAR[PULLED] = math.sqrt(pulled)
     COUNT[EVEN] = 1 if even else 0
-
-
-@uncounted
-def kinetic(BODY: FloatArray, i: int) -> float:
-    """Kinetic energy of body i; 0 for what impulses do not move."""
-    if BODY[i, IM] == 0.0:
-        return 0.0
-    vx, vy, spin = BODY[i, VX], BODY[i, VY], BODY[i, SPIN]
-    return 0.5 * (vx * vx + vy * vy) / BODY[i, IM] + (0.5 * spin * spin / BODY[i, II] if BODY[i, II] > 0.0 else 0.0)
 
 
 @uncounted

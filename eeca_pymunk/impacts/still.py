@@ -1,11 +1,9 @@
 """Islands that stand still: an unchanged solve goes on, step after step, and costs next to nothing.
 
-An island stands still once, over a whole step that nobody disturbed, every body of it was slower than STANDS |a| dt at
-both ends, so that its contacts bear its weight to that accuracy, and no contact slipped or was driven; and once it has
-hardly moved for some steps and `..sustained.statics` finds the forces that hold it. Its bodies then stay where they
-are, without velocity (what kinetic energy is left is booked as restitution), and its contacts keep their forces. It is
-solved again from when a body of it is hit, edited, or pulled otherwise than before; when a body that carries it moves;
-and always where collision handlers have a say.
+`calm.py` says which come to a stand. Their bodies then stay where they are, without velocity (what kinetic energy is
+left is booked as restitution), and their contacts keep their forces. An island is solved again from when a body of it
+is hit, edited, or pulled otherwise than before; when a body that carries it moves; and always where collision handlers
+have a say.
 
 MEMBER[STILL]: of its bodies 1; of the root CHANGED when it is to be solved again, LIKELY at the end of a step in which
 it may come to a stand; of a kinematic body CHANGED while it moves.
@@ -13,15 +11,13 @@ it may come to a stand; of a kinematic body CHANGED while it moves.
 
 from __future__ import annotations
 
-import math
-
-from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
-from ..layout import ANGLE, AX, AY, DUE, EXTENT, II, IM, OWNER, SPIN, TWIST, VX, VY, X, Y
+from ..layout import ANGLE, AX, AY, DUE, IM, OWNER, SPIN, TWIST, VX, VY, X, Y
 from ..pairs.lists import mark_pair
 from ..sustained.memory import STAMP as OF_STEP
 from ..sustained.memory import find
-from ..sustained.statics import CALM, STANDS
+from ..sustained.statics import CALM
+from .calm import speed
 from .layout import (
     AFTER_ME,
     BETA,
@@ -30,15 +26,12 @@ from .layout import (
     DT,
     HITS,
     ISLAND,
-    JOINTED,
     KINKS,
     LAM,
     LASTED,
     LEDGER,
-    LIFT,
     LOGGED,
     LOST,
-    OPEN,
     PULLED,
     PUSH_A,
     PUSH_B,
@@ -52,35 +45,35 @@ from .layout import (
     RESTITUTION,
     ROOT,
     SPAN,
-    SPAN_FROM,
     STAMP,
     STILL,
     STILL_DUE,
-    TOGETHER,
     UN_AFTER,
     UN_BEFORE,
-    UNTIL,
     UT_AFTER,
     UT_BEFORE,
     WORK_OF,
     Scene,
 )  # fmt: skip
-from .strike import note
+from .strike import kinetic, note
 
-CHANGED, LIKELY = 2, 3
-_SURE = 2  # steps that an island hardly moves, before it is asked whether it stands
-_AGAIN, _LATEST = 4, 32  # and until it is asked again, one more for every fourth body
+CHANGED = 2
+
+
+@uncounted
+def as_left(A: Scene, i: int) -> bool:
+    """Whether body i has no velocity, and is where it was at the start of the last step."""
+    BODY, BEGAN = A.BODY, A.BEGAN
+    same = BODY[i, X] == BEGAN[i, 0] and BODY[i, Y] == BEGAN[i, 1] and BODY[i, ANGLE] == BEGAN[i, 2]
+    return bool(same and BODY[i, VX] == 0.0 and BODY[i, VY] == 0.0 and BODY[i, SPIN] == 0.0)
 
 
 @uncounted
 def stays(A: Scene, i: int, last: float) -> bool:
     """Whether body i stands as it stood; it then has no path but that, and its forecast of `last` ago."""
     BODY = A.BODY
-    same = A.MEMBER[i, BUSY] == 0
-    same = same and BODY[i, AX] == A.PULL[i, 0] and BODY[i, AY] == A.PULL[i, 1] and BODY[i, TWIST] == A.PULL[i, 2]
-    same = same and BODY[i, VX] == 0.0 and BODY[i, VY] == 0.0 and BODY[i, SPIN] == 0.0
-    same = same and BODY[i, X] == A.BEGAN[i, 0] and BODY[i, Y] == A.BEGAN[i, 1] and BODY[i, ANGLE] == A.BEGAN[i, 2]
-    if not same:
+    pulled = BODY[i, AX] == A.PULL[i, 0] and BODY[i, AY] == A.PULL[i, 1] and BODY[i, TWIST] == A.PULL[i, 2]
+    if A.MEMBER[i, BUSY] > 0 or not pulled or not as_left(A, i):
         A.MEMBER[A.STATE[i, ISLAND], STILL] = CHANGED
         return False
     BODY[i, AX], BODY[i, AY], BODY[i, TWIST] = 0.0, 0.0, 0.0
@@ -91,10 +84,7 @@ def stays(A: Scene, i: int, last: float) -> bool:
 @uncounted
 def watch(A: Scene, i: int) -> None:
     """Say of a body that impulses do not move whether it has moved since the last step, or will in this."""
-    BODY = A.BODY
-    moves = BODY[i, VX] != 0.0 or BODY[i, VY] != 0.0 or BODY[i, SPIN] != 0.0
-    moves = moves or BODY[i, X] != A.BEGAN[i, 0] or BODY[i, Y] != A.BEGAN[i, 1] or BODY[i, ANGLE] != A.BEGAN[i, 2]
-    A.MEMBER[i, STILL] = CHANGED if moves else 0
+    A.MEMBER[i, STILL] = 0 if as_left(A, i) else CHANGED
 
 
 @uncounted
@@ -174,73 +164,6 @@ def disturb(A: Scene, root: int) -> None:
 
 
 @uncounted
-def speed(BODY: FloatArray, i: int, s: float) -> float:
-    """A bound on the speed of the points of body i in s."""
-    vx, vy = BODY[i, VX] + s * BODY[i, AX], BODY[i, VY] + s * BODY[i, AY]
-    return abs(vx) + abs(vy) + BODY[i, EXTENT] * abs(BODY[i, SPIN] + s * BODY[i, TWIST])
-
-
-@uncounted
-def calm(A: Scene, root: int, MINE: IntArray, n: int, t: float) -> bool:
-    """Whether the island of the n bodies MINE may come to a stand at instant t; if so, it is asked again much later."""
-    if t > 0.0 or A.COUNT[TOGETHER] > 0 or A.RULE.shape[0] > 0 or A.MEMBER[root, HITS] > 0:
-        return False
-    for q in range(n):
-        if A.RESTING[MINE[q], CALM_FOR] < _SURE or A.MEMBER[MINE[q], BUSY] > 0:
-            return False
-    for q in range(n):
-        A.RESTING[MINE[q], CALM_FOR] = -min(_AGAIN + n // 4, _LATEST)
-    return True
-
-
-@uncounted
-def slow(A: Scene, root: int) -> bool:
-    """Whether all bodies of an island were as good as at rest at both ends of this step, undisturbed."""
-    BODY, MEMBER = A.BODY, A.MEMBER
-    dt = A.PAR[DT]
-    if MEMBER[root, OPEN] == 0 or MEMBER[root, JOINTED] > 0 or MEMBER[root, HITS] > 0:
-        return False
-    if A.RESTING[root, UNTIL] < math.inf:
-        return False
-    limit = STANDS * A.PAR[PULLED] * dt
-    i = root
-    while i >= 0:
-        if MEMBER[i, BUSY] > 0:
-            return False
-        if max(speed(BODY, i, 0.0), speed(BODY, i, dt)) > limit:
-            return False
-        for c in range(6):
-            if A.RESTING[i, LIFT + c] != 0.0:
-                return False
-        i = MEMBER[i, AFTER_ME]
-    return True
-
-
-@uncounted
-def find_still(A: Scene) -> None:
-    """At the end of a step, before its contacts are booked: which islands come to a stand."""
-    if A.PAR[PULLED] == 0.0 or A.COUNT[TOGETHER] > 0 or A.RULE.shape[0] > 0:
-        return
-    some = False
-    for i in range(A.BODY.shape[0] - 1):
-        if A.STATE[i, ISLAND] == i and A.MEMBER[i, STILL] == 0 and slow(A, i):
-            A.MEMBER[i, STILL] = LIKELY
-            some = True
-    if not some:
-        return
-    limit = STANDS * A.PAR[PULLED] * A.PAR[DT]
-    for c in range(A.COUNT[PUSHES]):
-        root = A.PUSHED_BY[c, ROOT]
-        if root < 0 or A.MEMBER[root, STILL] != LIKELY:
-            continue
-        R = A.PUSHED[c]
-        slips = max(max(abs(R[UN_BEFORE]), abs(R[UN_AFTER])), max(abs(R[UT_BEFORE]), abs(R[UT_AFTER])))
-        driven = abs(R[WORK_OF]) > limit * (abs(R[LAM]) + abs(R[BETA]))
-        if R[SPAN_FROM] != 0.0 or slips > 4.0 * limit or driven:
-            A.MEMBER[root, STILL] = 0
-
-
-@uncounted
 def keep(A: Scene, c: int, root: int) -> None:
     """Contact number c, just booked, goes on: its island comes to a stand."""
     R = A.PUSHED[c]
@@ -269,11 +192,7 @@ def halt(A: Scene, root: int) -> None:
     BODY, MEMBER = A.BODY, A.MEMBER
     i = root
     while i >= 0:
-        vx, vy, spin = BODY[i, VX], BODY[i, VY], BODY[i, SPIN]
-        left = 0.5 * (vx * vx + vy * vy) / BODY[i, IM]
-        if BODY[i, II] > 0.0:
-            left += 0.5 * spin * spin / BODY[i, II]
-        A.PAR[LEDGER + RESTITUTION] += left
+        A.PAR[LEDGER + RESTITUTION] += kinetic(BODY, i)
         BODY[i, VX], BODY[i, VY], BODY[i, SPIN] = 0.0, 0.0, 0.0
         BODY[i, AX], BODY[i, AY], BODY[i, TWIST] = 0.0, 0.0, 0.0
         MEMBER[i, STILL], BODY[i, DUE] = 1, 0.0

@@ -72,6 +72,15 @@ def move_to(BODY: FloatArray, i: int, t: float) -> None:
 
 
 @uncounted
+def kinetic(BODY: FloatArray, i: int) -> float:
+    """Kinetic energy of body i; 0 for what impulses do not move."""
+    if BODY[i, IM] == 0.0:
+        return 0.0
+    vx, vy, spin = BODY[i, VX], BODY[i, VY], BODY[i, SPIN]
+    return 0.5 * (vx * vx + vy * vy) / BODY[i, IM] + (0.5 * spin * spin / BODY[i, II] if BODY[i, II] > 0.0 else 0.0)
+
+
+@uncounted
 def touches(A: Scene, disks: int, a: int, b: int, t: float) -> bool:
     """Whether shapes a and b touch at instant t, up to round-off."""
     BODY = A.BODY

@@ -7,9 +7,11 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..rows.build import normal_rate, tangent_rate
+from ..rows.conjugate import accelerate
 from ..rows.dense import back, decompose, unknowns
 from ..rows.layout import SURFACE, TARGET, UN, UT
 from ..rows.polish import clamp, classify
+from ..rows.sweeps import keep
 from .columns import Columns, push_columns, relax_columns, sweep_columns
 
 FEW = 40  # contacts up to which this pays
@@ -79,33 +81,15 @@ def iterate_columns(
     C: Columns, A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, m: int, tolerance: float,
     most: int,
 ) -> float:  # fmt: skip
-    """At most so many sweeps with nonlinear conjugate gradients on top, as `..rows.sweeps.iterate`; the change of the
-    last, which is plain."""
+    """At most so many sweeps, accelerated as in `..rows.conjugate.iterate`; the change of the last, which is plain."""
     L0, V0, PL, PV = np.empty((m, 2)), np.empty_like(V), np.zeros((m, 2)), np.zeros_like(V)
-    before, worst = -1.0, np.inf
+    change, worst = -1.0, np.inf
     for done in range(1, most + 1):
-        L0[:], V0[:] = L[:m], V
+        keep(L, V, m, L0, V0)
         worst = sweep_columns(C, A, B, ROWS, L, V, m)
         if worst <= tolerance or done == most:
             break
-        change = 0.0
-        for i in range(m):
-            change += (L[i, 0] - L0[i, 0]) ** 2 + (L[i, 1] - L0[i, 1]) ** 2
-        ratio = change / before if before > 0.0 else 2.0
-        if ratio > 1.0:
-            PL[:], PV[:] = L[:m] - L0, V - V0
-        elif done < most - 1:
-            for i in range(m):
-                for j in range(2):
-                    step = L[i, j] - L0[i, j]
-                    L[i, j] += ratio * PL[i, j]
-                    PL[i, j] = ratio * PL[i, j] + step
-            for i in range(len(V)):
-                for j in range(3):
-                    step = V[i, j] - V0[i, j]
-                    V[i, j] += ratio * PV[i, j]
-                    PV[i, j] = ratio * PV[i, j] + step
-        before = change
+        change = accelerate(L, V, L0, V0, PL, PV, m, change, done >= most - 1)
     return worst
 
 

@@ -13,9 +13,10 @@ from __future__ import annotations
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel
 from .build import aim, conserves, rates, rubs
+from .conjugate import iterate
 from .direct import refine
 from .energy import lock, works
-from .sweeps import iterate, push, sweep, velocities
+from .sweeps import push, sweep, velocities
 
 CONVERGED, TRUNCATED = 0, 1  # statuses
 D_NORMAL, D_TANGENTIAL, SCALE_LOCK, OWED, RESIDUAL, SWEEPS, POLISHES = 0, 1, 2, 3, 4, 5, 6  # of OUT

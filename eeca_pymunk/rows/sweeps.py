@@ -16,7 +16,7 @@ import math
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel, uncounted
+from ..compiled import uncounted
 from .build import SINGULAR
 from .layout import (
     A_NN,
@@ -206,53 +206,3 @@ def keep(L: FloatArray, V: FloatArray, m: int, L0: FloatArray, V0: FloatArray) -
     for i in range(len(V)):
         for c in range(3):
             V0[i, c] = V[i, c]
-
-
-@kernel
-def iterate(
-    A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, IM: FloatArray, II: FloatArray, m: int,
-    tolerance: float, most: int,
-) -> tuple[int, float]:  # fmt: skip
-    """Sweeps with nonlinear conjugate gradients on top, until one changes no contact's velocity by > tolerance.
-
-    A sweep's change is the gradient; the directions of Fletcher and Reeves, forgotten where the change grows
-    (Silcowitz, Niebe, Erleben 2009). The last sweep is plain. Returns the sweeps taken (<= most) and its change.
-    """
-    k = len(IM)
-    L0 = np.empty((m, 2))
-    V0 = np.empty((k, 3))
-    PL = np.zeros((m, 2))
-    PV = np.zeros((k, 3))
-    before = -1.0
-    done = 0
-    worst = np.inf
-    while done < most:
-        keep(L, V, m, L0, V0)
-        worst = sweep(A, B, ROWS, L, V, IM, II, m)
-        done += 1
-        if worst <= tolerance or done >= most:
-            break
-        change = 0.0
-        for i in range(m):
-            change += (L[i, 0] - L0[i, 0]) ** 2 + (L[i, 1] - L0[i, 1]) ** 2
-        ratio = change / before if before > 0.0 else 2.0
-        if ratio > 1.0:
-            for i in range(m):
-                for j in range(2):
-                    PL[i, j] = L[i, j] - L0[i, j]
-            for i in range(k):
-                for j in range(3):
-                    PV[i, j] = V[i, j] - V0[i, j]
-        elif done < most - 1:
-            for i in range(m):
-                for j in range(2):
-                    step = L[i, j] - L0[i, j]
-                    L[i, j] += ratio * PL[i, j]
-                    PL[i, j] = ratio * PL[i, j] + step
-            for i in range(k):
-                for j in range(3):
-                    step = V[i, j] - V0[i, j]
-                    V[i, j] += ratio * PV[i, j]
-                    PV[i, j] = ratio * PV[i, j] + step
-        before = change
-    return done, worst

@@ -3,8 +3,8 @@
 Normals and arms are those at the predicted middle q + (h/2) v, gaps those now: with u = G(middle) v the gap at the end
 is g + (h/2)(u- + u+) to third order in h, so that bodies follow curved surfaces to second order without a loss; and
 an island without forces keeps its angular momentum exactly, as its middle and the predicted one differ by multiples of
-the impulses. Where a pair moves far in half a span (an impact at high speed) its normals are those now, and its points
-go half the way with each of its bodies.
+the impulses. Where a pair moves far in half a span (an impact at high speed) its rows are those now; in a free island
+its points go half the way with each of its bodies.
 """
 
 from __future__ import annotations
@@ -45,6 +45,9 @@ def gather(
         How many rows, or -1 if there is no room for them.
     """
     m = 0
+    held = False
+    for i in range(len(IM)):
+        held = held or IM[i] == 0.0
     shapes = len(SHAPE)
     half = 0.5 * h
     for c in range(p):
@@ -86,7 +89,7 @@ def gather(
         if not ahead:
             x = 0.0
             y = 0.0
-            if IM[a] == 0.0 or IM[b] == 0.0:
+            if held:
                 centre = POSE
             else:
                 # One point for both, about their middles: so no angular momentum is made.

@@ -12,8 +12,9 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel
+from ..rows.conjugate import iterate
 from ..rows.direct import refine
-from ..rows.sweeps import iterate, sweep
+from ..rows.sweeps import sweep
 
 LOG_R, WAIT, BACKOFF = 0, 1, 2
 FRESH = (8.0, 0.0, 0.0)  # STATE of a new island
