@@ -13,6 +13,7 @@ import scenes
 from comparisons import runs
 from comparisons.carom import Track
 from comparisons.hopper import numerical_damping
+from comparisons.piles import pile
 from comparisons.pool_break import Watch
 from scenes.scene import add_disk, add_walls
 
@@ -204,3 +205,17 @@ def test_random_scenes(disks, dt: float, gravity: float, closure: ep.Closure, el
         from_walls = -(report.impulse[at_wall, None] * contacts.normal[at_wall]).sum(axis=0)
         expected = before.linear_momentum + dt * weight + from_walls
         np.testing.assert_allclose(now.linear_momentum, expected, atol=1e-10 * (1 + np.abs(expected).max()))
+
+
+@pytest.mark.parametrize("kind", ["disks", "boxes", "mixed"])
+@pytest.mark.parametrize("friction", [0.0, 0.5])
+@pytest.mark.parametrize("elasticity", [0.0, 0.3, 0.5])
+def test_the_ledger_of_a_pile_closes_in_every_step(kind: str, friction: float, elasticity: float) -> None:
+    space = pile(kind, 100, elasticity, friction)
+    stepper = ep.EECA(space, sync=False)
+    scale = sum(b.mass * (0.5 * b.velocity.dot(b.velocity) - space.gravity.dot(b.position)) for b in space.bodies)
+    for _ in range(100):
+        ledger = stepper.step(1 / 60).ledger
+        assert ledger is not None
+        assert abs(ledger.residual) <= 1e-13 * abs(scale)
+        assert min(ledger.restitution, ledger.friction) >= -1e-13 * abs(scale)

@@ -10,8 +10,7 @@ import numpy as np
 
 from ..arrays import IntArray
 from ..compiled import kernel, uncounted
-from ..geometry.flight import norm, pose
-from ..geometry.gap import gap_at
+from ..geometry.flight import norm
 from ..layout import BOUND, EXTENT, IM, OWNER, SIZE, SPIN, VX, VY
 from ..pairs.layout import NUMBER, START
 from ..pairs.lists import centre
@@ -83,21 +82,17 @@ def join(A: Scene, i: int, t: float, FOUND: IntArray) -> int:
             apart = A.SHAPE[s, BOUND] + A.SHAPE[o, BOUND] + reach + TOUCH * small
             if (bx - ax) * (bx - ax) + (by - ay) * (by - ay) > apart * apart:
                 continue
-            if STATE[j, ISLAND] < 0:
-                move_to(BODY, j, t)
-            elif A.MEMBER[STATE[j, ISLAND], OPEN] > 0:
-                if A.MEMBER[STATE[j, ISLAND], JOINTED] > 0:
-                    continue  # it is hit when they meet
-                xi, yi, qi = pose(BODY, i, t)
-                xj, yj, qj = pose(BODY, j, t)
-                if gap_at(A.SHAPE, LINK, A.VERTEX, A.WORK, s, xi, yi, qi, o, xj, yj, qj)[0] > reach:
-                    continue
-                end_span(A, STATE[j, ISLAND], t)
+            other = STATE[j, ISLAND]
+            if other >= 0 and A.MEMBER[other, OPEN] > 0 and A.MEMBER[other, JOINTED] > 0:
+                continue  # it is hit when they meet
+            move_to(BODY, j, t)
             g, u, _, _ = approach(A.BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, A.PULL, s, o, t)
             if g > reach:
                 continue
             if g <= TOUCH * small and (u > pulled * dt or (-u > pulled * dt and not busy)):
                 continue
+            if other >= 0 and A.MEMBER[other, OPEN] > 0:
+                end_span(A, other, t)
             if STATE[j, ISLAND] < 0:
                 FOUND[joined] = j
                 joined += 1
