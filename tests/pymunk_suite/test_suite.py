@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import re
+import sys
 import unittest
 import warnings
 from collections.abc import Iterator
@@ -34,12 +35,18 @@ def outcome(name: str) -> tuple[bool, str]:
     """Whether the test passes under ours, and what it says if not."""
     case = CASES[name]
     result = unittest.TestResult()
+    told: list[str] = []
     gc.freeze()  # one of them collects garbage 720 times, which all that is loaded here would make slow
-    with replaced(), warnings.catch_warnings():
-        warnings.simplefilter("default")
-        type(case)(case._testMethodName).run(result)
-    gc.unfreeze()
-    told = [text for _, text in (*result.errors, *result.failures)]
+    # What a callback raises, pymunk's library written in C drops.
+    hook, sys.unraisablehook = sys.unraisablehook, lambda dropped: told.append(repr(dropped.exc_value))
+    try:
+        with replaced(), warnings.catch_warnings():
+            warnings.simplefilter("default")
+            type(case)(case._testMethodName).run(result)
+    finally:
+        sys.unraisablehook = hook
+        gc.unfreeze()
+    told += [text for _, text in (*result.errors, *result.failures)]
     return not told, "\n".join(told)
 
 
