@@ -12,7 +12,7 @@ import math
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
 from ..layout import AX, AY, EXTENT, SPIN, TWIST, VX, VY
-from ..sustained.statics import STANDS
+from ..sustained.statics import STANDS, bound
 from .layout import (
     AFTER_ME,
     BETA,
@@ -49,7 +49,7 @@ _AGAIN, _LATEST = 4, 32  # and until it is asked again, one more for every fourt
 def speed(BODY: FloatArray, i: int, s: float) -> float:
     """A bound on the speed of the points of body i in s."""
     vx, vy = BODY[i, VX] + s * BODY[i, AX], BODY[i, VY] + s * BODY[i, AY]
-    return abs(vx) + abs(vy) + BODY[i, EXTENT] * abs(BODY[i, SPIN] + s * BODY[i, TWIST])
+    return bound(vx, vy, BODY[i, SPIN] + s * BODY[i, TWIST], BODY[i, EXTENT])
 
 
 @uncounted

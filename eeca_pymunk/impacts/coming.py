@@ -44,6 +44,7 @@ _TURN = 0.1  # rad
 PARTS = 64.0  # of a step, that a span is at least
 _FEW = 12  # contacts
 _STICKS = 1e-6  # relative to the friction there can be, and to the slip, below which there is none
+_OF_CROWD, _AGAIN = 24, 12  # sweeps of a crowd; of one that was hit in this step
 _RATTLES = 1e-3  # relative to that friction, below which slip is no slide where contacts that bear rattle as fast
 
 
@@ -119,6 +120,19 @@ def hurried(A: Scene) -> bool:
     about as many as there are bodies."""
     bodies = A.BODY.shape[0]
     return A.COUNT[TOGETHER] > 0 or A.COUNT[SOLVES] >= max(PARTS - 2.0 * bodies, bodies)
+
+
+@uncounted
+def before_end(A: Scene, t: float) -> bool:
+    """Whether instant t is before the end of the step, by more than round-off."""
+    return bool(t < A.PAR[DT] * (1.0 - 1e-12))
+
+
+@uncounted
+def sweeps_of_crowd(t: float) -> int:
+    """Sweeps of a crowd, in a span from instant t on: after a hit the forces of the span that it has cut short are a
+    good beginning."""
+    return _OF_CROWD if t == 0.0 else _AGAIN
 
 
 @uncounted

@@ -83,7 +83,8 @@ def join(A: Scene, i: int, t: float, FOUND: IntArray) -> int:
             if (bx - ax) * (bx - ax) + (by - ay) * (by - ay) > apart * apart:
                 continue
             other = STATE[j, ISLAND]
-            if other >= 0 and A.MEMBER[other, OPEN] > 0 and A.MEMBER[other, JOINTED] > 0:
+            begun = other >= 0 and A.MEMBER[other, OPEN] > 0
+            if begun and A.MEMBER[other, JOINTED] > 0:
                 continue  # it is hit when they meet
             move_to(BODY, j, t)
             g, u, _, _ = approach(A.BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, A.PULL, s, o, t)
@@ -91,9 +92,9 @@ def join(A: Scene, i: int, t: float, FOUND: IntArray) -> int:
                 continue
             if g <= TOUCH * small and (u > pulled * dt or (-u > pulled * dt and not busy)):
                 continue
-            if other >= 0 and A.MEMBER[other, OPEN] > 0:
+            if begun:
                 end_span(A, other, t)
-            if STATE[j, ISLAND] < 0:
+            if other < 0:
                 FOUND[joined] = j
                 joined += 1
             unite(A, i, j)

@@ -34,7 +34,7 @@ from ..sustained.step import POLISHES as POLISHES_OF
 from ..sustained.step import SWEEPS as SWEEPS_OF
 from .block import CROWD
 from .calm import calm
-from .coming import PARTS, hurried, pairs_of, span_of, stick_time, way_of
+from .coming import PARTS, before_end, hurried, pairs_of, span_of, stick_time, sweeps_of_crowd, way_of
 from .islands import members
 from .layout import (
     AFTER_ME,
@@ -85,7 +85,7 @@ from .layout import (
 )  # fmt: skip
 from .still import halt
 
-_SWEEPS, _OF_CROWD, _AGAIN = 40, 24, 12  # of an island that moves; of a crowd, and of one that was hit in this step
+_SWEEPS = 40  # of an island that moves
 
 
 class Local(NamedTuple):
@@ -212,8 +212,7 @@ def solve(A: Scene, root: int, t: float) -> int:
     if COUNT[TOGETHER] > 0:
         for q in range(k):
             least = max(least, way_of(A, WHO[q], h))
-    # After a hit the forces of the span that it has cut short are a good beginning.
-    sweeps = _SWEEPS if n < CROWD else (_OF_CROWD if t == 0.0 else _AGAIN)
+    sweeps = _SWEEPS if n < CROWD else sweeps_of_crowd(t)
     m = 0
     quiet = lossy and calm(A, root, MINE, n, t)
     if p > 0 and h > 0.0:
@@ -264,7 +263,7 @@ def solve(A: Scene, root: int, t: float) -> int:
         MEMBER[head, LAST_ONE], MEMBER[head, BODIES], MEMBER[head, HITS] = tail, size, hits
         A.RESTING[head, LOST] = lost
         MEMBER[head, OPEN] = 1
-        A.RESTING[head, UNTIL] = t + h if t + h < A.PAR[DT] * (1.0 - 1e-12) else math.inf
+        A.RESTING[head, UNTIL] = t + h if before_end(A, t + h) else math.inf
         for z in range(m):
             A.PUSHED_BY[first + z, ROOT] = head
         COUNT[PUSHES] += m

@@ -43,26 +43,16 @@ def is_component(A: Scene, J: Joints, root: int) -> bool:
 
 
 @uncounted
-def is_alone(A: Scene, J: Joints, root: int) -> bool:
-    """Whether an island is one component, and no shape has another one near that it may meet."""
-    if not is_component(A, J, root):
-        return False
+def meets_nobody(A: Scene, root: int) -> bool:
+    """Whether no shape of an island has another one near that it may meet."""
     i = root
     while i >= 0:
-        if has_near(A, i):
-            return False
+        for s in range(A.STATE[i, FIRST_SHAPE], A.STATE[i, FIRST_SHAPE] + A.STATE[i, SHAPES]):
+            for w in range(A.LIST[s, START], A.LIST[s, START] + A.LIST[s, NUMBER]):
+                if not barred(A.RULE, s, int(A.POOL[w])):
+                    return False
         i = A.MEMBER[i, AFTER_ME]
     return True
-
-
-@uncounted
-def has_near(A: Scene, i: int) -> bool:
-    """Whether a shape of body i has another one near that it may meet."""
-    for s in range(A.STATE[i, FIRST_SHAPE], A.STATE[i, FIRST_SHAPE] + A.STATE[i, SHAPES]):
-        for w in range(A.LIST[s, START], A.LIST[s, START] + A.LIST[s, NUMBER]):
-            if not barred(A.RULE, s, int(A.POOL[w])):
-                return True
-    return False
 
 
 @uncounted

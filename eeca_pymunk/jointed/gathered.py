@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-import math
-
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
 from ..geometry.flight import pose, rate
 from ..impacts.layout import Scene
-from ..joints.layout import ANCHOR_AX, JOINT_COLUMNS, NOTCH, RATCHET, SIDE, TIE_COLUMNS, TOUCHED
+from ..joints.layout import JOINT_COLUMNS, NOTCH, RATCHET, SIDE, TIE_COLUMNS, TOUCHED
+from ..joints.motion import size_up
 from ..joints.scratch import (
     BEFORE,
     BODY_0,
     BODY_1,
     CAYLEY,
     COLUMN,
-    COS,
     FIRST,
     FREE,
     FREEDOMS,
@@ -30,9 +28,6 @@ from ..joints.scratch import (
     M_FREEDOMS,
     MOBILITY,
     POSE,
-    ROOT,
-    SIN,
-    UNROOT,
 )
 from ..layout import ANGLE, SPIN, VX, VY, X, Y
 from ..layout import II as TURNING
@@ -97,20 +92,10 @@ def seat(A: Scene, J: Joints, m: int, i: int, t: float) -> None:
 
 
 @uncounted
-def size_up(J: Joints, s: int, h: float) -> float:
-    """Complete the bodies in the scratch of component s; its size, the length that errors are measured by."""
-    LOCAL, length = J.LOCAL, 0.0
-    for i in range(J.SPAN[s, BODY_1] - J.SPAN[s, BODY_0]):
-        for c in range(3):
-            root = math.sqrt(LOCAL[i, MOBILITY + c])
-            LOCAL[i, ROOT + c], LOCAL[i, UNROOT + c] = root, 1.0 / root if root > 0.0 else 0.0
-        LOCAL[i, COS], LOCAL[i, SIN] = math.cos(LOCAL[i, POSE + 2]), math.sin(LOCAL[i, POSE + 2])
-        for c in range(2):
-            length = max(length, abs(LOCAL[i, POSE + c]), abs(h * LOCAL[i, BEFORE + c]))
-    for k in range(J.SPAN[s, JOINT_0], J.SPAN[s, JOINT_1]):
-        for c in range(4):
-            length = max(length, abs(J.JOINT[J.LINK[k, L_JOINT], ANCHOR_AX + c]))
-    return length if length > 0.0 else 1.0
+def measured(J: Joints, s: int, h: float) -> float:
+    """Complete the bodies in the scratch of component s; its size."""
+    count = J.SPAN[s, BODY_1] - J.SPAN[s, BODY_0]
+    return float(size_up(J.JOINT, J.LINK, J.SPAN[s, JOINT_0], J.SPAN[s, JOINT_1], J.LOCAL, count, h))
 
 
 @uncounted
@@ -131,7 +116,7 @@ def gather_component(
             for c in range(3):
                 LOCAL[i, POSE + c], LOCAL[i, BEFORE + c], LOCAL[i, FREE + c] = POSE_OF[q, c], V[q, c], ACC[q, c]
                 LOCAL[i, MOBILITY + c] = IM[q] if c < 2 else II[q]
-    return size_up(J, s, h)
+    return measured(J, s, h)
 
 
 @uncounted
@@ -147,7 +132,7 @@ def gather_alone(A: Scene, J: Joints, s: int, t: float, h: float) -> float:
                 LOCAL[i, POSE + c], LOCAL[i, BEFORE + c] = BODY[body, X + c], BODY[body, VX + c]
                 LOCAL[i, FREE + c] = A.PULL[body, c]
                 LOCAL[i, MOBILITY + c] = BODY[body, INVERSE] if c < 2 else BODY[body, TURNING]
-    return size_up(J, s, h)
+    return measured(J, s, h)
 
 
 @uncounted

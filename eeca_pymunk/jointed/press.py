@@ -16,7 +16,8 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..impacts.block import CROWD
-from ..impacts.layout import DT, Scene
+from ..impacts.coming import before_end, sweeps_of_crowd
+from ..impacts.layout import Scene
 from ..impacts.spans import Local
 from ..rows.build import conserves, normal_rate, rates, tangent_rate
 from ..rows.layout import SURFACE, UN, UT
@@ -32,7 +33,6 @@ _OUTER, _ELASTIC_OUTER = 6, 12  # steps of the components
 _MANY_OUTER, _PART_OUTER = 2, 1  # of islands of many contacts, whose sweeps do not come to an end; before an impact
 _AGREE, _REST_AGREE, _ELASTIC_AGREE = 1e-6, 1e-11, 1e-13  # velocities of both solutions, over |a| h and the speed
 _SWEEPS, _FEW_SWEEPS, _FEW, _ELASTIC_SWEEPS = 40, 200, 24, 400
-_OF_CROWD, _AGAIN = 24, 12  # sweeps of a crowd; of one that was hit in this step
 _FINE, _REST_FINE = 1e-9, 1e-12  # residual of the sweeps, likewise
 _LOCKS = 10
 _SOME = 12  # contacts from which on the span before an impact, which is solved again after it, is solved roughly
@@ -76,31 +76,31 @@ def press(
     fine = (1e-15 if elastic else (_REST_FINE if rests else _FINE)) * scale
     most = _ELASTIC_SWEEPS if elastic else (_FEW_SWEEPS if m <= _FEW else _SWEEPS)
     rounds = _ELASTIC_OUTER if elastic else _OUTER
-    part = t + h < A.PAR[DT] * (1.0 - 1e-12)
+    part = before_end(A, t + h)
     if m > _SOME and part and not elastic:
         rounds = _MANY_OUTER
     if m > FEW and not elastic:
         rounds = _PART_OUTER if part else _MANY_OUTER
         if n >= CROWD:
-            most = _OF_CROWD if t == 0.0 else _AGAIN
+            most = sweeps_of_crowd(t)
     FORESEEN = np.empty((len(isle.IM), 3))
-    converged, best, LEAST, USED, hopeless = False, np.inf, L.copy(), L.copy(), False
+    converged, best, LEAST, USED, hopeless, agreed = False, np.inf, L.copy(), L.copy(), False, False
     for outer in range(rounds):
         if hopeless:
-            continue
+            break
         anew = AS_IT_IS if outer % _CHORD == 0 else NOT_AT_ALL
         advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, anew)
         if outer > 0:
             off = farthest_apart(motion.V, FORESEEN, isle.EXTENT, n)
             if off <= agree:
-                converged = True
+                converged, agreed = True, True
                 break
             hopeless = m > _SOME and outer > 1 and not elastic and off > _FALLS * best
             if off < best:
                 best = off
                 LEAST[:] = L
                 if hopeless:
-                    continue
+                    break
             else:
                 # Too far: the components do not answer as they did.
                 L[:] = 0.5 * (L + LEAST)
@@ -123,8 +123,9 @@ def press(
         if farthest_apart(motion.V, FORESEEN, isle.EXTENT, n) <= 1e-3 * agree:
             # The motion is that of the impulses before: others may do as little by these answers, and yet do much.
             L[:] = USED
+            agreed = True
             break
-    else:
+    if not agreed:
         advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, NOT_AT_ALL)
         if not farthest_apart(motion.V, FORESEEN, isle.EXTENT, n) <= best:
             L[:] = LEAST

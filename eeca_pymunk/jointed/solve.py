@@ -8,12 +8,11 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
-from ..impacts.coming import pairs_of
+from ..impacts.coming import before_end, pairs_of
 from ..impacts.islands import members
 from ..impacts.layout import (
     BODIES,
     DONE,
-    DT,
     FIRST_SHAPE,
     KINKS,
     LIFT,
@@ -38,12 +37,12 @@ from ..impacts.spans import Local, dismiss, lay_out_island, open_contacts
 from ..joints.scratch import BEFORE, BODY_0, BODY_1, M_BODY
 from ..layout import AX, ELASTICITY
 from ..rows.build import normal_rate
-from ..rows.layout import K_N, ROW_COLUMNS, TARGET, UN
+from ..rows.layout import ROW_COLUMNS
 from ..sustained.contacts import gather
-from ..sustained.memory import remember
+from ..sustained.memory import remember_loads
 from ..sustained.step import moved, recall, speeds
 from .advance import NOT_AT_ALL, Motion, advance
-from .alone import begin_alone, is_alone, is_component
+from .alone import begin_alone, is_component, meets_nobody
 from .columns import make_columns
 from .component import fit_speeds, step_component
 from .gathered import gather_component, keep_joints, restore_joints
@@ -110,7 +109,8 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
 
     DONE, or PUSHES_FULL, which leaves everything as it was.
     """
-    if is_alone(A, J, root):
+    whole = is_component(A, J, root)
+    if whole and meets_nobody(A, root):
         begin_alone(A, J, root, t, h)
         return DONE
     BODY, STATE, MEMBER, COUNT = A.BODY, A.STATE, A.MEMBER, A.COUNT
@@ -125,7 +125,7 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
             lossy = lossy or A.SHAPE[s, ELASTICITY] < 1.0
     found = pairs_of(A, root, t, lossy, A.PLACE, MINE, n)
     p = len(found)
-    if p == 0 and is_component(A, J, root):
+    if p == 0 and whole:
         dismiss(A, MINE, n)
         begin_alone(A, J, root, t, h)
         return DONE
@@ -149,7 +149,7 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
         NOW, THEN = np.empty((2, 5)), np.empty((2, 5))
         m = gather(
             isle.PAIRS, p, A.SHAPE, A.RULE, A.LINK, A.VERTEX, A.WORK, isle.POSE, moved(isle.POSE, isle.V, 0.5 * h),
-            isle.V, REACH, isle.EXTENT, isle.IM, isle.II, h, P, Q, ROWS, KEY, NOW, THEN,
+            isle.V, REACH, isle.EXTENT, isle.IM, isle.II, h, k == n, P, Q, ROWS, KEY, NOW, THEN,
         )  # fmt: skip
     if m > 0:
         recall(KEY, m, A.KEYS, A.FORCES, A.PAR[STAMP], h, L, EXPECTED)
@@ -158,17 +158,13 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
             A, J, isle, groups, P, Q, ROWS, L, EXPECTED, m, n, t, h, slow, fast, pull, owed, motion
         ):  # fmt: skip
             COUNT[UNMET] += 1
-        for i in range(m):
-            stopped = max(max(ROWS[i, TARGET], 0.0) - ROWS[i, UN], 0.0) * ROWS[i, K_N]
-            if L[i, 0] > 0.0:
-                load = max(L[i, 0] - stopped, 0.0)
-                remember(A.KEYS, A.FORCES, COUNT[REMEMBERED:], KEY[i], L[i, 0] / h, L[i, 1] / h, load / h, A.PAR[STAMP])
+        remember_loads(ROWS, KEY, L, m, h, A.KEYS, A.FORCES, COUNT[REMEMBERED:], A.PAR[STAMP])
     if m == 0:
         C = make_columns(groups, P, Q, 0)
         advance(A, J, isle, groups, P, Q, ROWS, L, 0, t, h, motion, C, NOT_AT_ALL)
     book_turning(A, J, isle, groups, motion, n)
     if lossy and m > 0:
-        if t + h >= A.PAR[DT] * (1.0 - 1e-12):
+        if not before_end(A, t + h):
             budget = lost(P, Q, ROWS, L, motion.WAY, m, h) + A.RESTING[root, LOST]
             spent = lift(A, J, isle, groups, P, Q, ROWS, m, n, motion.V, motion.WAY, motion.END, t + h, h, budget)
             for g in range(len(groups.COMPONENT)):

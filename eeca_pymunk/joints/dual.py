@@ -34,6 +34,19 @@ LEAST = 0.1  # of a body's inertia, that the bending of rows may leave
 
 
 @merged
+def freeze(
+    hinge: FloatArray, k: int, end: int, r: int, slopes: int, x: float, y: float, z: float
+) -> None:  # fmt: skip
+    """Keep row r of joint k at one end, J and G, at FROZEN: scaled by its SCALE and the body's roots x, y, z."""
+    scale = hinge[k, SCALE + r] if hinge[k, WEIGHT + r] != 0.0 else 0.0
+    u, v, w, at = scale * x, scale * y, scale * z, 6 * r + 3 * end
+    for first, to in ((ROWS + at, FROZEN + at), (slopes + at, FROZEN + 12 + at)):
+        hinge[k, to] = u * hinge[k, first]
+        hinge[k, to + 1] = v * hinge[k, first + 1]
+        hinge[k, to + 2] = w * hinge[k, first + 2]
+
+
+@merged
 def factor_dual(
     hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray, bodies: int, slopes: int,
     add: float, span: IntArray, matrix: FloatArray, more: FloatArray, numbers: IntArray,
@@ -67,17 +80,11 @@ def factor_dual(
         while one >= 0:
             k, end = one >> 1, one & 1
             for r in range(link[k, L_ROWS]):
-                scale = hinge[k, SCALE + r] if hinge[k, WEIGHT + r] != 0.0 else 0.0
-                at = 6 * r + 3 * end
-                u, v, w = scale * x, scale * y, scale * z
-                jx, jy, jw = u * hinge[k, ROWS + at], v * hinge[k, ROWS + at + 1], w * hinge[k, ROWS + at + 2]
-                gx, gy, gw = u * hinge[k, slopes + at], v * hinge[k, slopes + at + 1], w * hinge[k, slopes + at + 2]
-                to = FROZEN + at
-                hinge[k, to], hinge[k, to + 1], hinge[k, to + 2] = jx, jy, jw
-                hinge[k, to + 12], hinge[k, to + 13], hinge[k, to + 14] = gx, gy, gw
-                p = STRIDE * count
-                more[p], more[p + 1], more[p + 2] = jx, jy, jw
-                more[p + 3], more[p + 4], more[p + 5] = gx * a, gy * b, gw * c
+                freeze(hinge, k, end, r, slopes, x, y, z)
+                at, p = FROZEN + 6 * r + 3 * end, STRIDE * count
+                more[p], more[p + 1], more[p + 2] = hinge[k, at], hinge[k, at + 1], hinge[k, at + 2]
+                more[p + 3], more[p + 4] = hinge[k, at + 12] * a, hinge[k, at + 13] * b
+                more[p + 5] = hinge[k, at + 14] * c
                 numbers[count] = link[k, L_DUAL] + r
                 count += 1
             one = link[k, L_NEXT + end]
@@ -102,12 +109,7 @@ def refresh(hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, n
                 continue
             x, y, z = local[i, ROOT], local[i, ROOT + 1], local[i, ROOT + 2] if node[i, FREEDOMS] > 2 else 0.0
             for r in range(link[k, L_ROWS]):
-                scale = hinge[k, SCALE + r] if hinge[k, WEIGHT + r] != 0.0 else 0.0
-                u, v, w, at = scale * x, scale * y, scale * z, 6 * r + 3 * end
-                for first, to in ((ROWS + at, FROZEN + at), (slopes + at, FROZEN + 12 + at)):
-                    hinge[k, to] = u * hinge[k, first]
-                    hinge[k, to + 1] = v * hinge[k, first + 1]
-                    hinge[k, to + 2] = w * hinge[k, first + 2]
+                freeze(hinge, k, end, r, slopes, x, y, z)
 
 
 @merged

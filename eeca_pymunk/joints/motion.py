@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, IntArray
 from ..compiled import merged, uncounted
+from .layout import ANCHOR_AX
 from .scratch import (
     AFTER,
     BEFORE,
@@ -14,19 +15,42 @@ from .scratch import (
     COS,
     FREE,
     GOT,
+    L_JOINT,
     LEAD,
     LEVER,
     MOBILITY,
     PER,
     POSE,
+    ROOT,
     SIN,
     SLOPE,
     TRAVEL,
     TURN_COS,
     TURN_SIN,
     TURNED,
+    UNROOT,
     WAY,
 )
+
+
+@uncounted
+def size_up(
+    joint: FloatArray, link: IntArray, first: int, last: int, local: FloatArray, bodies: int, h: float
+) -> float:  # fmt: skip
+    """Complete the bodies whose pose, velocity and mobility are in the scratch of an island; its size, the length that
+    errors are measured by, from them and from the joints of rows first ... last of `link`."""
+    length = 0.0
+    for i in range(bodies):
+        for c in range(3):
+            root = np.sqrt(local[i, MOBILITY + c])
+            local[i, ROOT + c], local[i, UNROOT + c] = root, 1.0 / root if root > 0.0 else 0.0
+        local[i, COS], local[i, SIN] = np.cos(local[i, POSE + 2]), np.sin(local[i, POSE + 2])
+        for c in range(2):
+            length = max(length, abs(local[i, POSE + c]), abs(h * local[i, BEFORE + c]))
+    for k in range(first, last):
+        for c in range(4):
+            length = max(length, abs(joint[link[k, L_JOINT], ANCHOR_AX + c]))
+    return length if length > 0.0 else 1.0
 
 
 @merged

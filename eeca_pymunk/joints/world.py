@@ -8,8 +8,9 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
-from ..layout import ANGLE, AX, II, IM, VX, X
-from .layout import ANCHOR_AX, LEDGER_COLUMNS
+from ..layout import AX, II, IM, VX, X
+from .layout import LEDGER_COLUMNS
+from .motion import size_up
 from .plan import make_plan, room_for
 from .scratch import (
     BEFORE,
@@ -17,14 +18,12 @@ from .scratch import (
     BODY_1,
     CAYLEY,
     COLUMN,
-    COS,
     FIRST,
     FREE,
     FREEDOMS,
     HINGE_COLUMNS,
     JOINT_0,
     JOINT_1,
-    L_JOINT,
     LINK_COLUMNS,
     LOCAL_COLUMNS,
     M_BODY,
@@ -36,10 +35,7 @@ from .scratch import (
     MOBILITY,
     NODE_COLUMNS,
     POSE,
-    ROOT,
-    SIN,
     SPAN_COLUMNS,
-    UNROOT,
 )
 from .step import island_step
 
@@ -50,27 +46,18 @@ def gather_island(
     local: FloatArray, node: IntArray,
 ) -> float:  # fmt: skip
     """Copy the bodies of island s into its scratch; the size of the island, the length that errors are measured by."""
-    length = 0.0
-    b0 = span[s, BODY_0]
-    for i in range(span[s, BODY_1] - b0):
+    b0, count = span[s, BODY_0], span[s, BODY_1] - span[s, BODY_0]
+    for i in range(count):
         body = member[b0 + i, M_BODY]
         for c in range(3):
             local[i, POSE + c] = bodies[body, X + c]
             local[i, BEFORE + c] = bodies[body, VX + c]
             local[i, FREE + c] = bodies[body, AX + c]
             local[i, MOBILITY + c] = bodies[body, IM] if c < 2 else bodies[body, II]
-            root = np.sqrt(local[i, MOBILITY + c])
-            local[i, ROOT + c], local[i, UNROOT + c] = root, 1.0 / root if root > 0.0 else 0.0
-        local[i, COS], local[i, SIN] = np.cos(bodies[body, ANGLE]), np.sin(bodies[body, ANGLE])
         local[i, CAYLEY] = member[b0 + i, M_CAYLEY]
         node[i, COLUMN], node[i, FREEDOMS] = member[b0 + i, M_COLUMN], member[b0 + i, M_FREEDOMS]
         node[i, FIRST] = member[b0 + i, M_FIRST]
-        for c in range(2):
-            length = max(length, abs(local[i, POSE + c]), abs(h * local[i, BEFORE + c]))
-    for k in range(span[s, JOINT_0], span[s, JOINT_1]):
-        for c in range(4):
-            length = max(length, abs(joint[link[k, L_JOINT], ANCHOR_AX + c]))
-    return length if length > 0.0 else 1.0
+    return size_up(joint, link, span[s, JOINT_0], span[s, JOINT_1], local, count, h)
 
 
 @uncounted

@@ -65,11 +65,14 @@ def level_of(radius: float, cell: float) -> int:
 
 
 @uncounted
-def link(
-    MARK: FloatArray, CELL: IntArray, HEAD: IntArray, GRID: FloatArray, INFO: IntArray, radius: float, s: int
-) -> None:
+def draw(MARK: FloatArray, SHAPE: FloatArray, s: int, x: float, y: float) -> None:
+    """Let the margin circle of shape s have its centre at (x, y)."""
+    MARK[s, AT_X], MARK[s, AT_Y], MARK[s, REACH] = x, y, SHAPE[s, BOUND] + MARK[s, MARGIN]
+
+
+@uncounted
+def link(MARK: FloatArray, CELL: IntArray, HEAD: IntArray, GRID: FloatArray, INFO: IntArray, s: int) -> None:
     """Put shape s into the grid where its margin circle is."""
-    MARK[s, REACH] = radius + MARK[s, MARGIN]
     level = level_of(MARK[s, REACH], GRID[CELL_LENGTH])
     length = GRID[CELL_LENGTH] * 2.0**level
     k = bucket(level, cell_at(MARK[s, AT_X], length), cell_at(MARK[s, AT_Y], length), HEAD.shape[0] - 1)
@@ -134,7 +137,7 @@ def seek_moving(
     """Neighbours of s, which is not in the grid, among the shapes that are, but for those in its list already. False if
     the pool is full."""
     x, y = MARK[s, AT_X], MARK[s, AT_Y]
-    radius = SHAPE[s, BOUND] + MARK[s, MARGIN]
+    radius = MARK[s, REACH]
     mask, chosen = HEAD.shape[0] - 1, 0
     length = 0.5 * GRID[CELL_LENGTH]
     for level in range(LEVEL_COUNT):
@@ -207,13 +210,13 @@ def renew(
     if ahead > 0.0:
         ux, uy = course(BODY, LINK, s, t)
         x, y = x + ahead * MARK[s, MARGIN] * ux, y + ahead * MARK[s, MARGIN] * uy
-    MARK[s, AT_X], MARK[s, AT_Y], MARK[s, REACH] = x, y, SHAPE[s, BOUND] + MARK[s, MARGIN]
+    draw(MARK, SHAPE, s, x, y)
     INFO[LEAVES] += 1
     kept = part(LIST, POOL, FLAG, INFO, MARK, s)
     found = seek_moving(BODY, SHAPE, LINK, MARK, CELL, LIST, POOL, FLAG, HEAD, GRID, INFO, s) and seek_walls(
         BODY, SHAPE, LINK, MARK, LIST, POOL, FLAG, GRID, INFO, BOX, CSR, s
     )
-    link(MARK, CELL, HEAD, GRID, INFO, SHAPE[s, BOUND], s)
+    link(MARK, CELL, HEAD, GRID, INFO, s)
     return kept if found else -1
 
 
@@ -233,7 +236,8 @@ def build(
     for s in range(moving):
         LIST[s, START], LIST[s, CAPACITY], LIST[s, NUMBER] = s * _FIRST_CAPACITY, _FIRST_CAPACITY, 0
         CELL[s, BUCKET] = -1
-        MARK[s, AT_X], MARK[s, AT_Y] = centre(BODY, SHAPE, LINK, s, t)
+        x, y = centre(BODY, SHAPE, LINK, s, t)
+        draw(MARK, SHAPE, s, x, y)
     INFO[POOL_END] = moving * _FIRST_CAPACITY
     everybody = moving > 0 and MARK[0, MARGIN] == math.inf
     for s in range(moving):
@@ -247,5 +251,5 @@ def build(
             # Each pair once: s seeks among those that were put in before it.
             if not seek_moving(BODY, SHAPE, LINK, MARK, CELL, LIST, POOL, FLAG, HEAD, GRID, INFO, s):
                 return False
-            link(MARK, CELL, HEAD, GRID, INFO, SHAPE[s, BOUND], s)
+            link(MARK, CELL, HEAD, GRID, INFO, s)
     return True

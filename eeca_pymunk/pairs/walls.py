@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from ..arrays import FlagArray, FloatArray, IntArray, PoolArray
 from ..compiled import uncounted
-from ..layout import BOUND
 from .layout import (
     AT_X,
     AT_Y,
-    MARGIN,
     MOVING,
+    REACH,
     WALL_COLUMNS,
     WALL_LENGTH,
     WALL_ROWS,
@@ -41,7 +40,7 @@ def seek_walls(
 ) -> bool:  # fmt: skip
     """Static neighbours of s, but for those in its list already. False if the pool is full."""
     x, y = MARK[s, AT_X], MARK[s, AT_Y]
-    radius, moving = SHAPE[s, BOUND] + MARK[s, MARGIN], INFO[MOVING]
+    radius, moving = MARK[s, REACH], INFO[MOVING]
     columns, rows = INFO[WALL_COLUMNS], INFO[WALL_ROWS]
     if columns == 0:
         for w in range(BOX.shape[0]):

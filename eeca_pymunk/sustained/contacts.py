@@ -32,6 +32,7 @@ def gather(
     PAIRS: IntArray, p: int, SHAPE: FloatArray, RULE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray,
     POSE: FloatArray,
     MIDDLE: FloatArray, V: FloatArray, REACH: FloatArray, EXTENT: FloatArray, IM: FloatArray, II: FloatArray, h: float,
+    free: bool,
     A: IntArray, B: IntArray, ROWS: FloatArray, KEY: IntArray, NOW: FloatArray, THEN: FloatArray,
 ) -> int:  # fmt: skip
     """Rows of all contacts of p pairs no farther apart than the sum of their bodies' REACH.
@@ -40,14 +41,11 @@ def gather(
         PAIRS: (p, 4) shapes a and b, local bodies of a and b.
         POSE, MIDDLE, V: (k, 3) now, predicted for h/2, velocities.  REACH, EXTENT: (k,) length.
         A, B, ROWS, KEY: rows out; KEY int64 tells pair and place, the same as long as the shapes stay on each other.
-        NOW, THEN: (2, 5) scratch.
+        free: whether impulses move all k bodies.  NOW, THEN: (2, 5) scratch.
     Returns:
         How many rows, or -1 if there is no room for them.
     """
     m = 0
-    held = False
-    for i in range(len(IM)):
-        held = held or IM[i] == 0.0
     shapes = len(SHAPE)
     half = 0.5 * h
     for c in range(p):
@@ -89,7 +87,7 @@ def gather(
         if not ahead:
             x = 0.0
             y = 0.0
-            if held:
+            if not free:
                 centre = POSE
             else:
                 # One point for both, about their middles: so no angular momentum is made.

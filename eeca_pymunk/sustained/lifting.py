@@ -55,9 +55,7 @@ def lifting(
     for i in range(n):
         far = max(far, math.sqrt(D[i, 0] * D[i, 0] + D[i, 1] * D[i, 1]))
     if far > _STEP * size:
-        for i in range(n):
-            for c in range(3):
-                D[i, c] *= _STEP * size / far
+        shorten(D, n, _STEP * size / far)
     work = -against(ACC, IM, II, n, D)
     turn = 0.0
     touched = np.zeros(n, np.uint8)
@@ -75,9 +73,7 @@ def lifting(
     part = 1.0
     if work + square > budget:
         part = _SHARE * budget / (max(work, 0.0) + square)
-        for i in range(n):
-            for c in range(3):
-                D[i, c] *= part
+        shorten(D, n, part)
         if turn != 0.0:
             turn, x, y, _, _ = unturn(POSE, VN, D, IM, II, touched, h)
     for i in range(n):
@@ -88,6 +84,14 @@ def lifting(
             JUMP[i, 4] = turn * (POSE[i, 0] + 0.5 * h * VN[i, 0] + JUMP[i, 0] - x)
             JUMP[i, 5] = turn
     return part * (work + part * square), deepest
+
+
+@uncounted
+def shorten(D: FloatArray, n: int, part: float) -> None:
+    """Leave so much of the displacements D of n bodies."""
+    for i in range(n):
+        for c in range(3):
+            D[i, c] *= part
 
 
 @uncounted

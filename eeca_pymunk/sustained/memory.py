@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
+from ..rows.layout import K_N, TARGET, UN
 
 NORMAL, TANGENTIAL, LOAD, STAMP = 0, 1, 2, 3
 FORCE_COLUMNS = 4
@@ -42,6 +43,23 @@ def remember(
     FORCES[row, 1] = tangential
     FORCES[row, 2] = load
     FORCES[row, 3] = stamp
+
+
+@uncounted
+def remember_loads(
+    ROWS: FloatArray, KEY: IntArray, L: FloatArray, m: int, h: float, KEYS: IntArray, FORCES: FloatArray,
+    COUNT: IntArray, stamp: float,
+) -> int:  # fmt: skip
+    """Write the forces of those of m contacts that push, by their impulses L (m, 2) over h, and what of them bears
+    loads rather than stops; how many push."""
+    pushing = 0
+    for i in range(m):
+        if L[i, 0] > 0.0:
+            stopped = max(max(ROWS[i, TARGET], 0.0) - ROWS[i, UN], 0.0) * ROWS[i, K_N]
+            load = max(L[i, 0] - stopped, 0.0)
+            remember(KEYS, FORCES, COUNT, KEY[i], L[i, 0] / h, L[i, 1] / h, load / h, stamp)
+            pushing += 1
+    return pushing
 
 
 @uncounted

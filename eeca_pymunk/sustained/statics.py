@@ -44,11 +44,17 @@ def at_rest(ROWS: FloatArray, V: FloatArray, n: int, m: int, close: float) -> bo
 
 
 @uncounted
+def bound(vx: float, vy: float, spin: float, extent: float) -> float:
+    """A bound on the speed of the points of a body, no farther than extent from its centre of mass."""
+    return abs(vx) + abs(vy) + extent * abs(spin)
+
+
+@uncounted
 def fastest(V: FloatArray, EXTENT: FloatArray, n: int) -> float:
     """A bound on the speed of all points of the n bodies."""
     found = 0.0
     for i in range(n):
-        found = max(found, abs(V[i, 0]) + abs(V[i, 1]) + EXTENT[i] * abs(V[i, 2]))
+        found = max(found, bound(V[i, 0], V[i, 1], V[i, 2], EXTENT[i]))
     return found
 
 

@@ -11,12 +11,11 @@ from ..compiled import kernel, uncounted
 from ..rows.build import conserves, rates
 from ..rows.direct import SMALL
 from ..rows.energy import lock, works
-from ..rows.layout import K_N, TARGET, UN
 from ..rows.sweeps import velocities
 from .contacts import gather
 from .ledger import against, carried
 from .lifting import lifting
-from .memory import find, remember
+from .memory import find, remember_loads
 from .relax import relax
 from .statics import comes_to_stand
 from .targets import target
@@ -47,20 +46,6 @@ def recall(
             L[i, 0] = h * FORCES[row, 0]
             L[i, 1] = h * FORCES[row, 1]
             EXPECTED[i] = h * FORCES[row, 2]
-
-
-@uncounted
-def keep_forces(
-    ROWS: FloatArray, KEY: IntArray, L: FloatArray, m: int, h: float, KEYS: IntArray, FORCES: FloatArray,
-    COUNT: IntArray, stamp: float, OUT: FloatArray,
-) -> None:  # fmt: skip
-    """Remember the forces of contacts that push, and what of them bears loads rather than stops; OUT counts them."""
-    for i in range(m):
-        if L[i, 0] > 0.0:
-            stopped = max(max(ROWS[i, TARGET], 0.0) - ROWS[i, UN], 0.0) * ROWS[i, K_N]
-            load = max(L[i, 0] - stopped, 0.0)
-            OUT[6] += 1.0
-            remember(KEYS, FORCES, COUNT, KEY[i], L[i, 0] / h, L[i, 1] / h, load / h, stamp)
 
 
 @uncounted
@@ -147,7 +132,8 @@ def step_island(
     NOW = np.empty((2, 5))
     THEN = np.empty((2, 5))
     m = gather(
-        PAIRS, p, SHAPE, RULE, LINK, VERTEX, WORK, POSE, MIDDLE, V, REACH, EXTENT, IM, II, h, A, B, ROWS, KEY, NOW, THEN
+        PAIRS, p, SHAPE, RULE, LINK, VERTEX, WORK, POSE, MIDDLE, V, REACH, EXTENT, IM, II, h,
+        k == n, A, B, ROWS, KEY, NOW, THEN,
     )  # fmt: skip
     if m < 0 or 2 * (COUNT[0] + m) > len(KEYS):
         return -1
@@ -169,8 +155,8 @@ def step_island(
             OUT[0] = sweeps
             OUT[1] = polishes
             if stands:
-                OUT[7] = 1.0
-                keep_forces(ROWS, KEY, L, m, h, KEYS, FORCES, COUNT, stamp, OUT)
+                OUT[STOOD] = 1.0
+                OUT[CLOSED] = remember_loads(ROWS, KEY, L, m, h, KEYS, FORCES, COUNT, stamp)
                 return m
             rates(A, B, ROWS, V, m)
             target(A, B, ROWS, m, ACC, EXPECTED, pull, h)
@@ -204,7 +190,7 @@ def step_island(
         LEDGER[1] += tangential
         LEDGER[2] += carried(A, B, ROWS, L, V, IM, m)
         LEDGER[3] += lifted
-        keep_forces(ROWS, KEY, L, m, h, KEYS, FORCES, COUNT, stamp, OUT)
+        OUT[CLOSED] = remember_loads(ROWS, KEY, L, m, h, KEYS, FORCES, COUNT, stamp)
     else:
         OUT[4] = owed
     LEDGER[4] += 0.5 * h * (against(ACC, IM, II, n, V) + against(ACC, IM, II, n, VN))
