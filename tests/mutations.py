@@ -98,7 +98,7 @@ MUTATIONS = (
              "hinge[k, ROWS], hinge[k, ROWS + 1], hinge[k, ROWS + 2] = -mx, -my, lever_a * (rax * my - ray * mx)",
              "joints/test_kernels.py", "discrete_gradients"),
     Mutation("joints: end instead of mean velocity", "joints/motion.py",
-             "local[i, WAY + c] = 0.5 * h * (local[i, 3 + c] + local[i, AFTER + c])",
+             "local[i, WAY + c] = 0.5 * h * (local[i, BEFORE + c] + local[i, AFTER + c])",
              "local[i, WAY + c] = h * local[i, AFTER + c]", "joints/test_linkages.py", "published_place"),
     Mutation("joints: force of a spring at the end", "joints/springs.py", "return 0.5 * (f0 + f1)", "return f1",
              "joints/test_kinds.py", "spring_on_a_line"),
