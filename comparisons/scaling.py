@@ -198,7 +198,8 @@ def run(output: Output, full: bool) -> None:
             rounds = ROUNDS if count <= 4000 else 7
             rows += case(build, count, dt, rounds=rounds, midstep=full and count <= MIDSTEP_TO)
     output.table("Elastic gas in a box, cost at equal dt (native with a spatial hash from 50 bodies)", rows, "gas")
-    output.table("Slope of the cost in N, from 1000 disks on", slopes(rows), "slope")
+    output.table("Slope of the cost in N", slopes(rows), "slope")
+    output.table("What a collision more costs: between the two dt", marginal(rows), "collision")
     mixed: list[Row] = []
     for dt in (1e-3, 1e-2):
         mixed += case(partial(scenes.build, "mixed", count=20, bowl=True), 20, dt, warm=round(0.5 / dt))
@@ -220,14 +221,27 @@ def _series(rows: list[Row], dt: float) -> dict[str, tuple[list[float], list[flo
 
 
 def slopes(rows: list[Row]) -> list[Row]:
-    """Exponents of the cost in N, over 1000 disks and more."""
+    """Exponents of the cost in N, over all sizes, and over those of 1000 disks and more."""
     found: list[Row] = []
     for dt in STEPS:
         for name, (count, cost) in _series(rows, dt).items():
             large = [i for i, n in enumerate(count) if n >= 1000]
             if len(large) > 2:
-                exponent = slope(np.array(count)[large], np.array(cost)[large])
-                found.append({"stepper": name, "dt (s)": dt, "slope": exponent})
+                whole, part = (slope(np.array(count)[k], np.array(cost)[k]) for k in (slice(None), large))
+                found.append({"stepper": name, "dt (s)": dt, "slope": part, "from 1 disk on": whole})
+    return found
+
+
+def marginal(rows: list[Row]) -> list[Row]:
+    """(time at the long dt - time at the short one) / (collisions of the one - of the other), 1000 disks and more."""
+    found: list[Row] = []
+    short, long = ({(r["N"], r["stepper"]): r for r in rows if r["dt (s)"] == dt} for dt in (min(STEPS), max(STEPS)))
+    for (count, name), row in long.items():
+        other = short[count, name]
+        more = float(row["collisions/step"] or 0.0) - float(other["collisions/step"] or 0.0)
+        if float(count or 0) >= 1000 and str(name).startswith("EECA"):
+            took = float(row["us/step"] or 0.0) - float(other["us/step"] or 0.0)
+            found.append({"N": count, "stepper": name, "us/collision more": took / more})
     return found
 
 

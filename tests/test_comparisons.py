@@ -161,6 +161,11 @@ def test_scaling_tells_ratios_of_one_interleaved_run() -> None:
         [{"N": n, "dt (s)": dt, "stepper": "x", "us/step": n**1.5} for n in (100, 1000, 4000, 16_000) for dt in (1e-3,)]
     )
     assert [row["slope"] for row in slopes] == pytest.approx([1.5])
+    cost = [(2e-4, 10.0, 2.0), (1e-3, 40.0, 12.0)]
+    marginal = scaling.marginal(
+        [{"N": 1000, "dt (s)": dt, "stepper": "EECA", "us/step": us, "collisions/step": n} for dt, us, n in cost]
+    )
+    assert [row["us/collision more"] for row in marginal] == pytest.approx([3.0])
 
 
 def test_workers_are_refused_where_times_are_measured(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
