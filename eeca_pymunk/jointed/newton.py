@@ -100,12 +100,14 @@ def solve_columns(
 ) -> float:  # fmt: skip
     """Impulses L and velocities V by sweeps, at most `most`, and for few contacts by direct solutions between them.
 
+    Where direct solutions stop to help, or come back to where they were, sweeps go on from the best of them.
     Returns the last sweep's largest change of a contact's velocity.
     """
     if m > FEW:
         return iterate_columns(C, A, B, ROWS, L, V, m, tolerance, most)
-    worst = relax_columns(C, A, B, ROWS, L, V, m, tolerance, _FIRST)[1]
+    worst = iterate_columns(C, A, B, ROWS, L, V, m, tolerance, _FIRST)
     best, L0, V0 = worst, L.copy(), V.copy()
+    last, before_last = np.inf, np.inf
     for turn in range(_ROUNDS):
         if worst <= tolerance:
             return worst
@@ -115,9 +117,11 @@ def solve_columns(
             best = worst
             L0[:], V0[:] = L, V
         elif not worst < 100.0 * best:
-            L[:], V[:] = L0, V0
             break
+        if abs(worst - before_last) <= 0.5 * worst:
+            break
+        last, before_last = worst, last
     if worst > tolerance:
         L[:], V[:] = L0, V0
-        worst = relax_columns(C, A, B, ROWS, L, V, m, tolerance, most)[1]
+        worst = iterate_columns(C, A, B, ROWS, L, V, m, tolerance, most)
     return worst
