@@ -32,6 +32,7 @@ from .overcome import overcome
 _OUTER, _ELASTIC_OUTER = 6, 12  # steps of the components
 _MANY_OUTER, _PART_OUTER = 2, 1  # of islands of many contacts, whose sweeps do not come to an end; before an impact
 _AGREE, _REST_AGREE, _ELASTIC_AGREE = 1e-6, 1e-11, 1e-13  # velocities of both solutions, over |a| h and the speed
+_SOME_AGREE = 1e-5  # likewise of more than SOME contacts that do not rest
 _SWEEPS, _FEW_SWEEPS, _ELASTIC_SWEEPS = 40, 30, 400
 _FINE, _REST_FINE = 1e-9, 1e-12  # residual of the sweeps, likewise
 _LOCKS = 10
@@ -72,7 +73,7 @@ def press(
     elastic = conserves(ROWS, m)
     scale = pull * h + (fast if elastic else slow)
     rests = not elastic and slow < pull * h
-    agree = (_ELASTIC_AGREE if elastic else (_REST_AGREE if rests else _AGREE)) * scale
+    agree = (_ELASTIC_AGREE if elastic else (_REST_AGREE if rests else _AGREE if m <= SOME else _SOME_AGREE)) * scale
     fine = (1e-15 if elastic else (_REST_FINE if rests else _FINE)) * scale
     most = _ELASTIC_SWEEPS if elastic else (_FEW_SWEEPS if m <= FEW else _SWEEPS)
     rounds = _ELASTIC_OUTER if elastic else _OUTER
@@ -119,7 +120,7 @@ def press(
         USED[:] = L
         leave_out(C, L, m, FORESEEN)
         worst = solve_columns(C, P, Q, ROWS, L, FORESEEN, m, fine, most)
-        converged = worst <= 10.0 * max(fine, agree)
+        converged = worst <= 10.0 * max(fine, min(agree, _AGREE * scale))
         if farthest_apart(motion.V, FORESEEN, isle.EXTENT, n) <= 1e-3 * agree:
             # The motion is that of the impulses before: others may do as little by these answers, and yet do much.
             L[:] = USED

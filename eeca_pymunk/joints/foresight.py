@@ -53,7 +53,7 @@ def recalls(joint: FloatArray, link: IntArray, joints: int, h: float) -> bool:
 @inlined
 def weigh(part: int, last: int, place: int) -> float:
     """The weight of what stands at a place, where the newest stands at `last`."""
-    return WEIGHTS[part, last - place if place <= last else last - place + DEPTH]
+    return float(WEIGHTS[part, last - place if place <= last else last - place + DEPTH])
 
 
 @inlined
@@ -62,7 +62,7 @@ def extrapolate(
 ) -> float:  # fmt: skip
     """What follows the six values at `column`, by the weights of their places."""
     old = w0 * joint[j, column] + w1 * joint[j, column + 1] + w2 * joint[j, column + 2]
-    return old + (w3 * joint[j, column + 3] + w4 * joint[j, column + 4] + w5 * joint[j, column + 5])
+    return float(old + (w3 * joint[j, column + 3] + w4 * joint[j, column + 4] + w5 * joint[j, column + 5]))
 
 
 @uncounted
