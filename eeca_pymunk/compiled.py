@@ -18,6 +18,7 @@ from typing import Any, Generic, ParamSpec, TypeVar
 
 import numpy as np
 
+from .indexing import count_from_the_start
 from .linking import pipelines
 
 P = ParamSpec("P")
@@ -141,6 +142,7 @@ def prepare() -> None:
         print("compiling eeca_pymunk's kernels, once", file=sys.stderr)
     before = numba.config.CACHE_DIR
     whole, part = pipelines()
+    count_from_the_start()
     try:
         for one in fresh:
             options = {**_OPTIONS, **one.options}

@@ -9,6 +9,7 @@ import pytest
 
 import eeca_pymunk as ep
 from eeca_pymunk import compiled
+from eeca_pymunk.indexing import count_from_the_start
 
 STEP = """
 import sys, warnings
@@ -64,6 +65,7 @@ def test_warmup_compiles_everything() -> None:
     code = """
 import eeca_pymunk as ep, scenes
 from eeca_pymunk import compiled
+from eeca_pymunk.indexing import count_from_the_start
 import pymunk
 seconds = ep.warmup()
 assert seconds > 0.0
@@ -85,3 +87,25 @@ print(compiled.disabled() or compiled.compiler() is None, before, compiled.compi
 def test_a_warmup_touches_no_space_of_the_caller() -> None:
     assert ep.warmup() > 0.0
     assert compiled.compilations() >= 0
+
+
+@pytest.mark.skipif(compiled.disabled(), reason="plain Python counts from the end")
+def test_indices_of_kernels_are_taken_as_they_are() -> None:
+    import numba
+    import numpy as np
+
+    def at(values: np.ndarray, i: int) -> float:
+        return float(values[i])
+
+    def last(values: np.ndarray) -> float:
+        return float(values[-1])
+
+    assert count_from_the_start(), "numba has changed: kernels are slower by a sixth"
+    row = np.arange(6.0)
+    theirs = numba.njit(at)
+    assert theirs(row[2:5], -1) == 4.0
+    for ours in (at, last):
+        ours.__module__ = "eeca_pymunk.example"
+    assert numba.njit(at)(row[2:5], -1) == 1.0  # what stands before the view
+    assert numba.njit(at)(row[2:5], 1) == 3.0
+    assert numba.njit(last)(row[2:5]) == 4.0

@@ -40,9 +40,11 @@ from ..layout import AX, AY, IM, OWNER, SINCE, SIZE, SPIN, TWIST, VX, VY
 from ..pairs.lists import mark_pair
 from .gathered import restore_joints
 from .layout import LIFTED, TURNED_WORK, Joints
+from .press import SOME
 from .solve import begin_span
 
 _MEET = 1e-13  # gap at an impact, over the smaller shape
+_LOADED_MEET, _ROUGH_MEET = 1e-6, 1e-4  # likewise where contacts push, and where many do, solved roughly in `press`
 _SECANTS, _LOADED_SECANTS = 5, 2  # also where other contacts push; in a crowd one
 _INSTANT = 1e-12  # of a step, below which a span is none
 
@@ -98,14 +100,14 @@ def take_back(A: Scene, root: int) -> None:
 
 
 @kernel
-def shorten(A: Scene, J: Joints, root: int, t: float) -> bool:
-    """Let the span of an island end at instant t, not booked yet; whether it has contacts. Nothing if it is over."""
+def shorten(A: Scene, J: Joints, root: int, t: float) -> int:
+    """Let the span of an island end at instant t, not booked yet; how many contacts it had. Nothing if it is over."""
     if root < 0 or A.MEMBER[root, JOINTED] == 0 or A.MEMBER[root, OPEN] == 0:
-        return False
+        return 0
     before = A.COUNT[PUSHES]
     take_back(A, root)
     began = A.BODY[root, SINCE]
-    some = before != A.COUNT[PUSHES]
+    some = int(before - A.COUNT[PUSHES])
     found = components_of(A, J, root)
     for c in range(len(found)):
         restore_joints(J, found[c])
@@ -161,11 +163,12 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> float:
     for tries in range(_SECANTS):
         loaded = shorten(A, J, roots[0], t)
         if roots[1] != roots[0]:
-            loaded = shorten(A, J, roots[1], t) or loaded
+            loaded += shorten(A, J, roots[1], t)
         xi, yi, qi = pose(A.BODY, i, t)
         xj, yj, qj = pose(A.BODY, j, t)
         g, nx, ny, px, py = gap_at(A.SHAPE, A.LINK, A.VERTEX, A.WORK, a, xi, yi, qi, b, xj, yj, qj)
-        if (loaded and tries + 1 >= most) or abs(g) <= _MEET * small:
+        close = _MEET if loaded == 0 else _LOADED_MEET if loaded <= SOME else _ROUGH_MEET
+        if (loaded > 0 and tries + 1 >= most) or abs(g) <= close * small:
             break
         slope = 0.0
         if before >= 0.0 and t != before:

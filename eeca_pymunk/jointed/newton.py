@@ -21,14 +21,35 @@ _R = 1e10  # of a proximal term, for contacts that are redundant
 
 
 @uncounted
-def entries(C: Columns, j: int, tangent: bool, slip: float, D: FloatArray) -> None:
-    """D (k, 3): the change of velocities per tangential impulse of contact j, or per normal one with its slip."""
+def entries(C: Columns, j: int, tangent: bool, slip: float, D: FloatArray, HIT: IntArray, mark: int) -> None:
+    """D (k, 3): the change of velocities per tangential impulse of contact j, or per normal one with its slip; HIT (k,)
+    is `mark` where there is any."""
     for q in range(len(D)):
         for c in range(3):
             D[q, c] = 0.0
     for w in range(C.AT[j], C.AT[j + 1]):
+        HIT[C.BODY[w]] = mark
         for c in range(3):
             D[C.BODY[w], c] = C.T[w, c] if tangent else C.N[w, c] + slip * C.T[w, c]
+
+
+@uncounted
+def responses(
+    C: Columns, A: IntArray, B: IntArray, ROWS: FloatArray, slip: FloatArray, at: IntArray, kind: IntArray, N: int,
+    D: FloatArray, HIT: IntArray, W: FloatArray,
+) -> None:  # fmt: skip
+    """W (N, N): the rate of each unknown's row per impulse of each; D (k, 3) and HIT (k,), of zeros, are scratch."""
+    for j in range(N):
+        entries(C, at[j], kind[j] == 1, slip[at[j]], D, HIT, j + 1)
+        for i in range(N):
+            k = at[i]
+            if HIT[A[k]] != j + 1 and HIT[B[k]] != j + 1:
+                W[i, j] = 0.0
+            elif kind[i] == 0:
+                W[i, j] = normal_rate(A, B, ROWS, D, k)
+            else:
+                W[i, j] = tangent_rate(A, B, ROWS, D, k) - ROWS[k, SURFACE]
+        W[j, j] += abs(W[j, j]) / _R
 
 
 @kernel
@@ -44,14 +65,7 @@ def direct(
     N = unknowns(ROWS, L, m, held, stuck, slip, shared, at, kind)
     push_columns(C, L, m, 1.0, V)
     W, D, order = np.empty((N, N)), np.empty_like(V), np.empty(N, np.int64)
-    for j in range(N):
-        entries(C, at[j], kind[j] == 1, slip[at[j]], D)
-        for i in range(N):
-            if kind[i] == 0:
-                W[i, j] = normal_rate(A, B, ROWS, D, at[i])
-            else:
-                W[i, j] = tangent_rate(A, B, ROWS, D, at[i]) - ROWS[at[i], SURFACE]
-        W[j, j] += abs(W[j, j]) / _R
+    responses(C, A, B, ROWS, slip, at, kind, N, D, np.zeros(len(V), np.int64), W)
     decompose(W, N, order)
     r, x = np.empty(N), np.empty(N)
     for _ in range(2):
@@ -100,12 +114,14 @@ def solve_columns(
 ) -> float:  # fmt: skip
     """Impulses L and velocities V by sweeps, at most `most`, and for few contacts by direct solutions between them.
 
+    Where direct solutions stop to help, or come back to where they were, sweeps go on from the best of them.
     Returns the last sweep's largest change of a contact's velocity.
     """
     if m > FEW:
         return iterate_columns(C, A, B, ROWS, L, V, m, tolerance, most)
-    worst = relax_columns(C, A, B, ROWS, L, V, m, tolerance, _FIRST)[1]
+    worst = iterate_columns(C, A, B, ROWS, L, V, m, tolerance, _FIRST)
     best, L0, V0 = worst, L.copy(), V.copy()
+    last, before_last = np.inf, np.inf
     for turn in range(_ROUNDS):
         if worst <= tolerance:
             return worst
@@ -115,9 +131,11 @@ def solve_columns(
             best = worst
             L0[:], V0[:] = L, V
         elif not worst < 100.0 * best:
-            L[:], V[:] = L0, V0
             break
+        if abs(worst - before_last) <= 0.5 * worst:
+            break
+        last, before_last = worst, last
     if worst > tolerance:
         L[:], V[:] = L0, V0
-        worst = relax_columns(C, A, B, ROWS, L, V, m, tolerance, most)[1]
+        worst = iterate_columns(C, A, B, ROWS, L, V, m, tolerance, most)
     return worst

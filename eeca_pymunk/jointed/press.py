@@ -32,10 +32,11 @@ from .overcome import overcome
 _OUTER, _ELASTIC_OUTER = 6, 12  # steps of the components
 _MANY_OUTER, _PART_OUTER = 2, 1  # of islands of many contacts, whose sweeps do not come to an end; before an impact
 _AGREE, _REST_AGREE, _ELASTIC_AGREE = 1e-6, 1e-11, 1e-13  # velocities of both solutions, over |a| h and the speed
-_SWEEPS, _FEW_SWEEPS, _FEW, _ELASTIC_SWEEPS = 40, 200, 24, 400
+_SOME_AGREE = 1e-5  # likewise of more than SOME contacts that do not rest
+_SWEEPS, _FEW_SWEEPS, _ELASTIC_SWEEPS = 40, 30, 400
 _FINE, _REST_FINE = 1e-9, 1e-12  # residual of the sweeps, likewise
 _LOCKS = 10
-_SOME = 12  # contacts from which on the span before an impact, which is solved again after it, is solved roughly
+SOME = 12  # contacts from which on the span before an impact, which is solved again after it, is solved roughly
 _FALLS = 0.3  # of what velocities are apart, with which they do not come to agree within the rounds
 _CHORD = 3  # steps of the components between which their answers are taken to be the same
 
@@ -72,12 +73,12 @@ def press(
     elastic = conserves(ROWS, m)
     scale = pull * h + (fast if elastic else slow)
     rests = not elastic and slow < pull * h
-    agree = (_ELASTIC_AGREE if elastic else (_REST_AGREE if rests else _AGREE)) * scale
+    agree = (_ELASTIC_AGREE if elastic else (_REST_AGREE if rests else _AGREE if m <= SOME else _SOME_AGREE)) * scale
     fine = (1e-15 if elastic else (_REST_FINE if rests else _FINE)) * scale
-    most = _ELASTIC_SWEEPS if elastic else (_FEW_SWEEPS if m <= _FEW else _SWEEPS)
+    most = _ELASTIC_SWEEPS if elastic else (_FEW_SWEEPS if m <= FEW else _SWEEPS)
     rounds = _ELASTIC_OUTER if elastic else _OUTER
     part = before_end(A, t + h)
-    if m > _SOME and part and not elastic:
+    if m > SOME and part and not elastic:
         rounds = _MANY_OUTER
     if m > FEW and not elastic:
         rounds = _PART_OUTER if part else _MANY_OUTER
@@ -95,7 +96,7 @@ def press(
             if off <= agree:
                 converged, agreed = True, True
                 break
-            hopeless = m > _SOME and outer > 1 and not elastic and off > _FALLS * best
+            hopeless = m > SOME and outer > 1 and not elastic and off > _FALLS * best
             if off < best:
                 best = off
                 LEAST[:] = L
@@ -119,7 +120,7 @@ def press(
         USED[:] = L
         leave_out(C, L, m, FORESEEN)
         worst = solve_columns(C, P, Q, ROWS, L, FORESEEN, m, fine, most)
-        converged = worst <= 10.0 * max(fine, agree)
+        converged = worst <= 10.0 * max(fine, min(agree, _AGREE * scale))
         if farthest_apart(motion.V, FORESEEN, isle.EXTENT, n) <= 1e-3 * agree:
             # The motion is that of the impulses before: others may do as little by these answers, and yet do much.
             L[:] = USED

@@ -51,13 +51,18 @@ def recalls(joint: FloatArray, link: IntArray, joints: int, h: float) -> bool:
 
 
 @inlined
-def extrapolate(joint: FloatArray, j: int, column: int, part: int, last: int) -> float:
-    """What follows the six values at `column`, of which the newest stands at place `last`."""
-    total, place = 0.0, last
-    for k in range(DEPTH):
-        total += WEIGHTS[part, k] * joint[j, column + place]
-        place = place - 1 if place > 0 else DEPTH - 1
-    return total
+def weigh(part: int, last: int, place: int) -> float:
+    """The weight of what stands at a place, where the newest stands at `last`."""
+    return float(WEIGHTS[part, last - place if place <= last else last - place + DEPTH])
+
+
+@inlined
+def extrapolate(
+    joint: FloatArray, j: int, column: int, w0: float, w1: float, w2: float, w3: float, w4: float, w5: float
+) -> float:  # fmt: skip
+    """What follows the six values at `column`, by the weights of their places."""
+    old = w0 * joint[j, column] + w1 * joint[j, column + 1] + w2 * joint[j, column + 2]
+    return float(old + (w3 * joint[j, column + 3] + w4 * joint[j, column + 4] + w5 * joint[j, column + 5]))
 
 
 @uncounted
@@ -67,13 +72,15 @@ def foretell(
 ) -> None:  # fmt: skip
     """LEAD and, unless rows are redundant, LAM of this part of length `piece`."""
     last = (int(joint[link[0, L_JOINT], COUNTED]) - 1) % DEPTH
+    w0, w1, w2 = weigh(part, last, 0), weigh(part, last, 1), weigh(part, last, 2)
+    w3, w4, w5 = weigh(part, last, 3), weigh(part, last, 4), weigh(part, last, 5)
     for k in range(joints):
         j = link[k, L_JOINT]
         for c in range(6):
             i = link[k, L_A] if c < 3 else link[k, L_B]
-            local[i, LEAD + c % 3] = extrapolate(joint, j, PAST_LED + DEPTH * c, part, last)
+            local[i, LEAD + c % 3] = extrapolate(joint, j, PAST_LED + DEPTH * c, w0, w1, w2, w3, w4, w5)
         for r in range(0 if loops else link[k, L_ROWS]):
-            hinge[k, LAM + r] = piece * extrapolate(joint, j, PAST_PUSH + DEPTH * r, part, last)
+            hinge[k, LAM + r] = piece * extrapolate(joint, j, PAST_PUSH + DEPTH * r, w0, w1, w2, w3, w4, w5)
 
 
 @uncounted

@@ -54,6 +54,7 @@ def book(
 
     A joint's work on its bodies is F . x / h. Of that, F . x / h of a body that it cannot move is taken from a support.
     """
+    per = 1.0 / h
     for k in range(joints):
         kind, j = link[k, L_KIND], link[k, L_JOINT]
         spring = kind in (SPRING, ROTARY_SPRING)
@@ -63,7 +64,7 @@ def book(
         for end in range(2):
             i = link[k, L_A + end]
             for c in range(3):
-                work = hinge[k, FORCE + 3 * end + c] * local[i, WAY + c] / h
+                work = hinge[k, FORCE + 3 * end + c] * local[i, WAY + c] * per
                 total += work
                 if local[i, MOBILITY + c] > 0.0:
                     moved += work

@@ -107,9 +107,10 @@ def settle(local: FloatArray, bodies: int, h: float) -> None:
 @merged
 def advance(local: FloatArray, bodies: int, h: float) -> None:
     """Make the end of a part h of the step the start of the next."""
+    per = 1.0 / h
     for i in range(bodies):
         for c in range(3):
-            local[i, LEAD + c] = (local[i, AFTER + c] - local[i, BEFORE + c]) / h - local[i, FREE + c]
+            local[i, LEAD + c] = (local[i, AFTER + c] - local[i, BEFORE + c]) * per - local[i, FREE + c]
             local[i, TRAVEL + c] += local[i, WAY + c]
         local[i, POSE] += local[i, WAY]
         local[i, POSE + 1] += local[i, WAY + 1]
@@ -118,4 +119,6 @@ def advance(local: FloatArray, bodies: int, h: float) -> None:
             local[i, BEFORE + c] = local[i, AFTER + c]
         if chi != 0.0:
             local[i, POSE + 2] += 2.0 * np.arctan(0.5 * chi) if local[i, CAYLEY] > 0.0 else chi
-            local[i, COS], local[i, SIN] = np.cos(local[i, POSE + 2]), np.sin(local[i, POSE + 2])
+            # As of that angle, to the round-off of the parts of a step.
+            x, y, turn_x, turn_y = local[i, COS], local[i, SIN], local[i, TURN_COS], local[i, TURN_SIN]
+            local[i, COS], local[i, SIN] = x * turn_x - y * turn_y, y * turn_x + x * turn_y

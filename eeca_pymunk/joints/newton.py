@@ -99,6 +99,7 @@ def assemble(
             off = put_soft(link, hinge, local, node, k, slopes, h, system, build, band, matrix, right)
             worst = max(worst, off / hinge[k, SIZE])
             continue
+        farthest = 0.0
         for r in range(link[k, L_ROWS]):
             if soft or not held(link, k, r):
                 put_free(link, hinge, k, r, system, build, band, matrix, right)
@@ -109,9 +110,11 @@ def assemble(
             elif what == LINEAR_STEP:
                 error = along(hinge, link, k, ROWS + 6 * r, local, WAY)
             else:
-                error = hinge[k, VALUE + r] - hinge[k, TARGET + r] + give * 0.5 * h * hinge[k, LAM + r] / scale**2
+                error = hinge[k, VALUE + r] - hinge[k, TARGET + r]
+                if give > 0.0:
+                    error += give * 0.5 * h * hinge[k, LAM + r] / scale**2
             right[link[k, L_ROW] + r] = -error * scale * per
-            worst = max(worst, abs(error) / hinge[k, SIZE])
+            farthest = max(farthest, abs(error))
             hinge[k, WEIGHT + r] = min(STIFFEST, 1.0 / give) if give > 0.0 else STIFFEST
             if build and system == CONDENSED:
                 freeze(hinge, link, local, node, k, r, slopes)
@@ -119,4 +122,5 @@ def assemble(
             elif build and system == WHOLE:
                 put_rows(link, hinge, local, node, k, r, slopes, 1.0, band, matrix)
                 matrix[(link[k, L_ROW] + r) * width + band] += give
+        worst = max(worst, farthest / hinge[k, SIZE])
     return worst

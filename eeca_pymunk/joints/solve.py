@@ -179,13 +179,14 @@ def solve(
     system = DUAL if span[RIGID] > (1 if what in (STEP, LINEAR_STEP) else 0) else span[SYSTEM]
     lasting = what == STEP and not (system != DUAL and bounded_rows(link, joints))
     ready, fresh, since = False, False, 0
+    unscaled = what != STEP or hinge[0, SCALE] == 0.0  # rows have not been in this step yet
     for iteration in range(MOST_ITERATIONS + 1 if what == STEP else MOST_PASSES + 3 * joints):
         for i in range(span[UNKNOWNS] + span[ROWS_OF]):
             right[i] = 0.0
         build = not ready
         worst = assemble(
-            what, joint, hinge, link, joints, local, node, bodies, h, give, iteration == 0, system, build, span,
-            matrix, right, stiff,
+            what, joint, hinge, link, joints, local, node, bodies, h, give, unscaled and iteration == 0, system, build,
+            span, matrix, right, stiff,
         )  # fmt: skip
         found[2] = worst
         if what not in (POSES, SPEEDS):

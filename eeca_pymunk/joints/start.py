@@ -51,6 +51,7 @@ from .scratch import (
     POSE,
     POSES,
     SAVED,
+    SCALE,
     SHIFT,
     SIZE,
     TARGET,
@@ -80,7 +81,7 @@ def read_joints(
         warm = 0.0 if loops or joint[j, LAST_STEP] == 0.0 else h / joint[j, LAST_STEP]
         hinge[k, LAM], hinge[k, LAM + 1] = joint[j, IMPULSE_1] * warm, joint[j, IMPULSE_2] * warm
         hinge[k, TOTAL] = hinge[k, TOTAL + 1] = 0.0
-        hinge[k, TARGET] = hinge[k, TARGET + 1] = 0.0
+        hinge[k, TARGET] = hinge[k, TARGET + 1] = hinge[k, SCALE] = hinge[k, SCALE + 1] = 0.0
         hinge[k, BOUND] = joint[j, MAX_FORCE]
         hinge[k, SIZE] = 1.0 if kind >= GEAR else length
         joint[j, WORK] = 0.0

@@ -22,7 +22,6 @@ from ..joints.layout import (
     NOTCH,
     RATCHET,
     ROTARY_SPRING,
-    SIDE,
     SOFT,
     SPRING,
     TIE_COLUMNS,
@@ -64,17 +63,17 @@ class JointRows:
         others = [body for item in self.items for body in (item.a, item.b) if body not in row]
         self.partners: Partners = Partners(tuple(dict.fromkeys(others)), space, None if past is None else past.partners)
         self._row_of = {**row, **{body: n + i for i, body in enumerate(self.partners.items)}}
-        for j, item in enumerate(self.items):
-            check_constraint(item)
-            self.tie[j, BODY_A], self.tie[j, BODY_B] = self._row_of[item.a], self._row_of[item.b]
-            read(item, self.joint[j], self.tie[j])
-            self.tie[j, TOUCHED] = 1
+        known = {} if past is None else past.row
         if past is not None:
             past.refresh()
-            for j, item in enumerate(self.items):
-                if item in past.row:
-                    i = past.row[item]
-                    self.joint[j], self.tie[j, SIDE:] = past.joint[i], past.tie[i, SIDE:]
+        for j, item in enumerate(self.items):
+            if past is not None and (i := known.get(item, -1)) >= 0:
+                self.joint[j], self.tie[j] = past.joint[i], past.tie[i]
+            else:
+                check_constraint(item)
+                read(item, self.joint[j], self.tie[j])
+                self.tie[j, TOUCHED] = 1
+            self.tie[j, BODY_A], self.tie[j, BODY_B] = self._row_of[item.a], self._row_of[item.b]
         self.touch(n + self.partners.changed)
         self.row: dict[pymunk.Constraint, int] = {item: j for j, item in enumerate(self.items)}
         self._edits = Edits(self.row)

@@ -214,12 +214,15 @@ class Sleep:
 def rouse(space: pymunk.Space) -> None:
     """Wake who is jointed to a body that is awake, or touches one in pymunk's eyes."""
     pairs = [*((c.a, c.b) for c in space.constraints), *private.touching(space)]
+    bodies = {body for pair in pairs for body in pair}
     again = True
     while again:
         again = False
+        asleep = {body for body in bodies if body.is_sleeping}
         for first, second in pairs:
-            for one, other in ((first, second), (second, first)):
-                if one.is_sleeping and not other.is_sleeping and other.body_type != pymunk.Body.STATIC:
-                    if other.space is space:
-                        one.activate()
-                        again = True
+            if (first in asleep) == (second in asleep):
+                continue
+            one, other = (first, second) if first in asleep else (second, first)
+            if other.body_type != pymunk.Body.STATIC and other.space is space:
+                one.activate()
+                again = True
