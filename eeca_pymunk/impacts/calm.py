@@ -48,7 +48,7 @@ from .layout import (
 
 LIKELY = 3  # of MEMBER[STILL]
 _SURE = 2  # steps that an island hardly moves, before it is asked whether it stands
-_AGAIN, _LATEST = 4, 16  # and until it is asked again, one more for every fourth body
+_AGAIN, _LATEST = 4, 12  # and until it is asked again, one more for every fourth body
 
 
 @uncounted

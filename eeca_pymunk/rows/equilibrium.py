@@ -30,7 +30,7 @@ from .ordering import dissect, neighbours, pattern
 _R = 1e11
 _START = 0.1  # least impulse at the start, relative to the mean guess
 _CLOSE = 0.99  # of the way to where an x or s would vanish
-_SLOW, _STALLED = 0.9, 2  # so little less motion, so often: there is no answer
+_EARLY, _SLOW, _STALLED = 3, 0.9, 2  # after so many steps, so little less motion, so often: there is no answer
 _SETTLED = 1e-8  # sum x s relative to the start, at which x is next to the guess
 
 # EDGE (K, 6) float: of each edge
@@ -63,7 +63,7 @@ def edges(
 ) -> int:  # fmt: skip
     """The edges G (2 m, ..), as rows between P and Q, of the contacts OF whose TARGET is not below 0; how many.
 
-    GUESS is set from L, A_GG = g^T M^-1 g.
+    GUESS and X are set from L, A_GG = g^T M^-1 g.
     """
     K = 0
     for i in range(m):
@@ -78,6 +78,7 @@ def edges(
             G[K, ARM_NA] = ROWS[i, ARM_NA] + slope * ROWS[i, ARM_TA]
             G[K, ARM_NB] = ROWS[i, ARM_NB] + slope * ROWS[i, ARM_TB]
             EDGE[K, GUESS] = L[i, 0] if mu <= 0.0 else max(0.5 * (L[i, 0] + L[i, 1] / slope), 0.0)
+            EDGE[K, X] = EDGE[K, GUESS]
             EDGE[K, A_GG] = (IM[A[i]] + IM[B[i]]) * (1.0 + mu * mu)
             EDGE[K, A_GG] += II[A[i]] * G[K, ARM_NA] ** 2 + II[B[i]] * G[K, ARM_NB] ** 2
             K += 1
@@ -85,20 +86,23 @@ def edges(
 
 
 @uncounted
-def begin(EDGE: FloatArray, K: int, START: FloatArray, IM: FloatArray, n: int) -> None:
-    """X and S to begin with."""
-    mean = 0.0
+def inside(EDGE: FloatArray, K: int) -> bool:
+    """Go to X + DX, next to the guess of all that balances, and say whether it is inside the cones; if not, put it
+    there, with S to begin with."""
+    mean, least = 0.0, np.inf
     for e in range(K):
-        mean += EDGE[e, GUESS] / K
-    if not mean > 0.0:
-        for i in range(n):
-            mean += (abs(START[i, 0]) + abs(START[i, 1])) / (IM[i] * n)
+        EDGE[e, X] += EDGE[e, DX]
+        mean += abs(EDGE[e, X]) / K
+        least = min(least, EDGE[e, X])
+    if least >= 0.0:
+        return True
     load = 0.0
     for e in range(K):
-        EDGE[e, X] = max(EDGE[e, GUESS], _START * mean)
+        EDGE[e, X] = max(EDGE[e, X], _START * mean)
         load += EDGE[e, X] / K
     for e in range(K):
         EDGE[e, S] = EDGE[e, A_GG] * load
+    return False
 
 
 @uncounted
@@ -133,6 +137,9 @@ def along(
             V[i, c] = 0.0
     for e in range(K):
         x, s = EDGE[e, X], EDGE[e, S]
+        if s == 0.0:
+            EDGE[e, DX] = 0.0
+            continue
         dual = EDGE[e, A_GG] * (x - EDGE[e, GUESS]) - normal_rate(P, Q, G, Y, e) - s
         product = x * s - centre + (EDGE[e, DX] * EDGE[e, DS] if second else 0.0)
         EDGE[e, DS] = product
@@ -147,7 +154,8 @@ def along(
             DY[i, c] = SCALE[i, c] * f[place[i], c]
     for e in range(K):
         EDGE[e, DX] = G[e, K_N] * normal_rate(P, Q, G, DY, e) - EDGE[e, DX]
-        EDGE[e, DS] = -(EDGE[e, DS] + EDGE[e, S] * EDGE[e, DX]) / EDGE[e, X]
+        if EDGE[e, S] > 0.0:
+            EDGE[e, DS] = -(EDGE[e, DS] + EDGE[e, S] * EDGE[e, DX]) / EDGE[e, X]
 
 
 @uncounted
@@ -217,7 +225,6 @@ def equilibrium(
     LEFT, Y, DY, V, f = np.empty((k, 3)), np.zeros((k, 3)), np.zeros((k, 3)), np.empty((k, 3)), np.empty((n, 3))
     if K == 0:
         return fastest(START, EXTENT, n) <= tolerance, 0
-    begin(EDGE, K, START, IM, n)
     SCALE = np.empty((k, 3))
     for i in range(k):
         SCALE[i, 0] = SCALE[i, 1] = math.sqrt(IM[i])
@@ -228,7 +235,7 @@ def equilibrium(
     dissect(POSE, n, start, other, place)
     columns, rows = pattern(n, start, other, place)
     DIAGONAL, BELOW = np.empty((n, 3, 3)), np.empty((len(rows), 3, 3))
-    found, stalled, last, first = False, 0, np.inf, products(EDGE, K, 0.0, 0.0)
+    found, free, stalled, last, first = False, True, 0, np.inf, 0.0
     for done in range(most + 1):
         LEFT[:] = START
         send(P, Q, G, EDGE, X, K, IM, II, LEFT)
@@ -239,18 +246,24 @@ def equilibrium(
             give(ROWS, EDGE, OF, K, L, m)
             if not nearest or centre <= _SETTLED * first:
                 return True, done
-        elif not found:
+        elif not found and done > _EARLY:
             stalled = stalled + 1 if speed > _SLOW * last else 0
-        if done == most or stalled >= _STALLED or not (speed < np.inf and centre > 0.0):
+        if done == most or stalled >= _STALLED or not (speed < np.inf and (centre > 0.0 or free)):
             return found, done
         last = speed
-        for e in range(K):
-            G[e, K_N] = 1.0 / (EDGE[e, A_GG] + EDGE[e, S] / EDGE[e, X])
-        assemble(P, Q, G, K, n, held, stuck, SCALE, place, columns, rows, _R, DIAGONAL, BELOW)
-        factorise(n, columns, rows, DIAGONAL, BELOW)
+        if done == 0 or not free:
+            for e in range(K):
+                G[e, K_N] = 1.0 / (EDGE[e, A_GG] + (0.0 if free else EDGE[e, S] / EDGE[e, X]))
+            assemble(P, Q, G, K, n, held, stuck, SCALE, place, columns, rows, _R, DIAGONAL, BELOW)
+            factorise(n, columns, rows, DIAGONAL, BELOW)
         along(
             P, Q, G, EDGE, K, IM, II, n, SCALE, place, columns, rows, DIAGONAL, BELOW, LEFT, Y, f, V, DY, 0.0, False
         )  # fmt: skip
+        if free:
+            # Next to the guess of all that balances, cones or not: often that is all.
+            free = inside(EDGE, K)
+            first = products(EDGE, K, 0.0, 0.0)
+            continue
         aim = centre * (products(EDGE, K, reach(EDGE, K, X, DX), reach(EDGE, K, S, DS)) / centre) ** 3
         along(
             P, Q, G, EDGE, K, IM, II, n, SCALE, place, columns, rows, DIAGONAL, BELOW, LEFT, Y, f, V, DY, aim, True
