@@ -109,8 +109,7 @@ def warm() -> None:
     if compiler() is None:
         print("no compiler: plain Python, some hundred times slower (python -m eeca_pymunk says why)")
     elif not any(cache_folder().rglob("*.nbi")):
-        print("compiling the kernels: some minutes, once; later runs start at once", flush=True)
-    ep.warmup()
+        print("compiling the kernels: two minutes, once; later runs start at once", flush=True)
     for problem in problems():
         ep.EECA(problem.build().space).step(problem.dt)
     print(f"kernels are ready ({time.perf_counter() - begun:.1f} s, not counted below)", flush=True)

@@ -148,8 +148,16 @@ def prepare() -> None:
             one.run = numba.njit(**{**options, **whole})(one.python)
             numba.config.CACHE_DIR = str(folder / "kernels")
             one.inner = numba.njit(**{**options, **part}, no_cpython_wrapper=True, no_cfunc_wrapper=True)(one.python)
+            one.inner.get_call_template = functools.partial(_called, one.inner.get_call_template, numba.types)
     finally:
         numba.config.CACHE_DIR = before
+
+
+def _called(template: Callable[..., Any], types: Any, args: tuple[Any, ...], kws: dict[str, Any]) -> Any:
+    """numba's answer to a call, asked without literals: a kernel would be compiled again for every constant in a call,
+    and for 32-bit integers."""
+    wide = tuple(types.int64 if types.unliteral(a) == types.int32 else types.unliteral(a) for a in args)
+    return template(wide, {key: types.unliteral(a) for key, a in kws.items()})
 
 
 def compilations() -> int:

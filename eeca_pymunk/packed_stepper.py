@@ -2,37 +2,24 @@
 
 from __future__ import annotations
 
-import math
-import warnings
 from abc import abstractmethod
-from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, TypeVar
+from collections.abc import Callable
+from typing import TypeVar
 
-import numpy as np
-
-from .arrays import FloatArray
 from .energy.ledger import AFTER, DAMPED
-from .errors import NotFiniteError
+from .packed_space import TOO_FAR, PackedSpace
 from .report import Details, StepReport
 from .space.bodies import ANGULAR_VELOCITY, VELOCITY
-from .space.checks import check_ignored
-from .space.describe import describe
 from .space.hooks import Hooks, Rehearsal
-from .space.joints import JointRows
-from .space.sleeping import Sleep, rouse
-from .space.sync import Sync
+from .space.sleeping import Sleep
 from .space.world import World
-from .stepper import Stepper, check_dt
-from .transfer import EVENTS, FORCES, MOVED_STATIC, NOT_FINITE, OTHER_BODIES, OVERFLOW, fly
-
-if TYPE_CHECKING:
-    import pymunk
+from .stepper import check_dt
+from .transfer import EVENTS, FORCES, MOVED_STATIC, OTHER_BODIES, fly
 
 Own = TypeVar("Own", bound="PackedStepper")
-_OVERFLOW = "the step would overflow; take a smaller dt, or stop this run"
 
 
-class PackedStepper(Stepper):
+class PackedStepper(PackedSpace):
     """A stepper whose physics is one compiled call on the arrays of a `World`; subclasses say which, in `advance`.
 
     Args:
@@ -43,26 +30,6 @@ class PackedStepper(Stepper):
         ignore: what to step on without: "friction" is all there is to ignore. A warning says so once.
     """
 
-    def __init__(self, space: pymunk.Space, *, sync: bool = True, ignore: Sequence[str] = ()) -> None:
-        super().__init__(space)
-        self.sync = sync
-        self.ignore = check_ignored(ignore)
-        self._warned = False
-        self._world: World | None = None
-        self._past: World | None = None  # before a refresh
-        self._told: JointRows | None = None  # what `constraint.impulse` reads
-        self._sleep: Sleep | None = None  # None where nobody can
-        self._idle_book: FloatArray | None = None  # of a step in which everyone sleeps
-        self._look()
-
-    def __getstate__(self) -> dict[str, object]:
-        # Original and copy go on from the same: without what was remembered of earlier steps.
-        self._world = self._past = self._sleep = None
-        state = self.__dict__.copy()
-        state.pop("_sync", None)
-        state["_told"] = None
-        return state
-
     def __enter__(self: Own) -> Own:
         """Within `with stepper:` the call `space.step(dt)` of this one space is `stepper.step(dt)`."""
         if "step" in vars(self.space):
@@ -72,14 +39,6 @@ class PackedStepper(Stepper):
 
     def __exit__(self, *_: object) -> None:
         del self.space.step
-
-    def refresh(self) -> None:
-        if self._world is not None:
-            self._past = self._world
-        self._world = None
-
-    def prepare(self, world: World) -> None:
-        """Make what the stepper keeps about a world that was read anew."""
 
     @abstractmethod
     def advance(self, world: World, dt: float, left: float) -> int:
@@ -95,10 +54,6 @@ class PackedStepper(Stepper):
     @abstractmethod
     def details(self, world: World, dt: float) -> Details | Callable[[], Details]:
         """The arrays of the report of the step that has just answered EVENTS, or what makes them."""
-
-    def book(self) -> FloatArray | None:
-        """(7,) what the ledger of the last step is made of, see `energy.ledger`; None if the stepper keeps none."""
-        return None
 
     def outcome(self) -> tuple[float, bool, int]:
         """Scale of the energy lock of the last step that was farthest from 1, whether all tolerances were met, and the
@@ -183,11 +138,6 @@ class PackedStepper(Stepper):
             self._sync.call_back()
         return report
 
-    def _undo(self, world: World, state: FloatArray) -> None:
-        """Put the space back where it was."""
-        self._world = self._past = None
-        world.bodies.scatter(state)
-
     def _hooked_step(self, world: World, dt: float) -> StepReport:
         """A step of a space in which functions of bodies or constraints, or collision handlers, are called."""
         world.gather()
@@ -223,7 +173,7 @@ class PackedStepper(Stepper):
                 end += after
             if len(hooks.position):
                 hooks.positions(world.state, end, dt)
-            bodies.check_finite(end, _OVERFLOW)
+            bodies.check_finite(end, TOO_FAR)
             status = status & EVENTS | world.put(end)
             world.reset_forces()
             if world.joints is not None and world.joints.calling:
@@ -255,11 +205,6 @@ class PackedStepper(Stepper):
             self._sync.call_back()
         return report
 
-    def _tell_joints(self, world: World) -> None:
-        """Give constraints what the step has to say of them."""
-        self._told = world.joints
-        world.settle()
-
     def _checked(self, world: World, dt: float, status: int) -> int:
         if status < 0:
             self._fail(world, dt, status)
@@ -269,13 +214,6 @@ class PackedStepper(Stepper):
     def _fly(world: World, dt: float, left: float) -> int:
         gx, gy = world.gravity
         return fly(world.STATES, world.WALK, world.EXTRA, world.BODY, world.ENDS, dt, gx, gy, left)
-
-    @property
-    def model(self) -> str:
-        world = self._world
-        if world is None or not world.current():
-            world = self._look()
-        return describe(world)
 
     def _made(self, world: World, dt: float, status: int, lost: float = 0.0) -> StepReport:
         """The report of the step; `lost` is the energy that damping has taken since."""
@@ -287,44 +225,3 @@ class PackedStepper(Stepper):
             return StepReport(self.time, world.empty, book=book)
         lock, converged, iterations = self.outcome()
         return StepReport(self.time, self.details(world, dt), iterations, lock=lock, converged=converged, book=book)
-
-    def _look(self, anew: bool = False) -> World:
-        """The space as it is now, checked; with all its shapes if `anew` or if some came or went."""
-        world = self._world
-        self._world = None
-        if self._sleep is not None and self.space.sleep_time_threshold == math.inf:
-            self._sleep.wake()
-            self._sleep, anew = None, True
-        if world is not None and not anew and world.same_contents():
-            joints = world.joints
-            world.read_settings()
-            if self._sleep is None and self.space.sleep_time_threshold < math.inf:
-                self._sleep = Sleep(world, None)
-            if world.joints is not joints:
-                self.prepare(world)
-            self._world = world
-            return world
-        past = self._past if world is None else world
-        if self._sleep is not None:
-            self._sleep.part()
-            rouse(self.space)
-        world = World(self.space, self.ignore, None if world is None or world.edited() else world, past)
-        if world.ignores and not self._warned:
-            self._warned = True
-            warnings.warn(f"{type(self).__name__} steps on without the friction of this space", stacklevel=4)
-        self._sync = Sync(self.space, world.bodies)
-        self._sleep = Sleep(world, self._sleep) if self.space.sleep_time_threshold < math.inf else None
-        self.prepare(world)
-        if self._sleep is not None and (book := self.book()) is not None:
-            self._idle_book = np.zeros_like(book)
-        self._world, self._past = world, None
-        return world
-
-    def _fail(self, world: World, dt: float, status: int) -> None:
-        """Raise what a negative answer means."""
-        self._world = self._past = None
-        if status == NOT_FINITE:
-            world.bodies.check_finite(world.state)
-        if status == OVERFLOW:
-            world.bodies.check_finite(world.ended(), _OVERFLOW)
-        raise NotFiniteError(f"a body would move an infinite distance within dt = {dt}: {_OVERFLOW}")

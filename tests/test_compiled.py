@@ -29,6 +29,22 @@ print([str(w.message) for w in caught])
 """
 
 
+@compiled.uncounted
+def spread(several: bool, i: int) -> float:
+    return 0.5 * i if several else 1.0 * i
+
+
+@compiled.kernel
+def callers(n: int) -> float:
+    return spread(False, 0) + spread(True, 1) + spread(n > 2, n)
+
+
+@pytest.mark.skipif(compiled.compiler() is None, reason="plain Python")
+def test_constants_do_not_make_kernels_anew() -> None:
+    assert callers(4) == 2.5
+    assert len(spread.inner.signatures) == 1  # type: ignore[attr-defined]
+
+
 def run(code: str) -> list[str]:
     return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.splitlines()
 

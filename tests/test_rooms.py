@@ -30,6 +30,7 @@ FLOORS = (
     "closures",
     "space",
     "stepper",
+    "packed_space",
     "packed_stepper",
     "eeca baselines",
     "recording warming sweep",

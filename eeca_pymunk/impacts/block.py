@@ -16,7 +16,7 @@ from ..compiled import kernel, uncounted
 from ..geometry.flight import pose, rate
 from ..geometry.gap import touching
 from ..geometry.manifold import face
-from ..layout import ANGLE, II, IM, OWNER, SIZE, SPIN, VX, X
+from ..layout import ANGLE, II, IM, OWNER, SIZE, SPIN, VX, VY, X, Y
 from ..pairs.layout import NUMBER, START
 from ..pairs.rules import barred, law
 from ..rows.build import normal_rate, place_row
@@ -119,7 +119,8 @@ def gather(A: Scene, disks: int, a: int, b: int, t: float) -> tuple[int, int, In
                     n = admit(A, j, n, t)
                 if m == PAIRS.shape[0]:
                     more = np.empty(2 * m, np.int64)
-                    more[:m] = PAIRS
+                    for c in range(m):
+                        more[c] = PAIRS[c]
                     PAIRS = more
                 PAIRS[m] = key
                 m += 1
@@ -174,7 +175,8 @@ def lay_out(A: Scene, disks: int, n: int, m: int, PAIRS: IntArray, hit: int, res
     IMS, IIS = np.zeros(n + m), np.zeros(n + m)
     for q in range(n):
         i = BODIES[q]
-        POSE[q], V[q] = BODY[i, X : ANGLE + 1], BODY[i, VX : SPIN + 1]
+        POSE[q, 0], POSE[q, 1], POSE[q, 2] = BODY[i, X], BODY[i, Y], BODY[i, ANGLE]
+        V[q, 0], V[q, 1], V[q, 2] = BODY[i, VX], BODY[i, VY], BODY[i, SPIN]
         IMS[q], IIS[q] = BODY[i, IM], BODY[i, II]
     P, Q = np.empty(2 * m, np.int64), np.empty(2 * m, np.int64)
     ROWS, POINTS, OF = np.empty((2 * m, ROW_COLUMNS)), np.empty((2 * m, 2)), np.empty(2 * m, np.int64)

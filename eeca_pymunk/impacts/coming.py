@@ -106,7 +106,8 @@ def pairs_of(A: Scene, root: int, t: float, lossy: bool, LOCAL: IntArray, MINE: 
                         continue
                 if p == found.shape[0]:
                     more = np.empty((2 * p, 2), np.int64)
-                    more[:p] = found
+                    for c in range(p):
+                        more[c, 0], more[c, 1] = found[c, 0], found[c, 1]
                     found = more
                 found[p, 0], found[p, 1] = s, o
                 p += 1

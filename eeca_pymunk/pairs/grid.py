@@ -231,8 +231,7 @@ def build(
     if POOL.shape[0] < moving * _FIRST_CAPACITY:
         return False
     HEAD[:] = -1
-    for level in range(LEVEL_COUNT):
-        INFO[LEVELS + level] = 0
+    INFO[LEVELS : LEVELS + LEVEL_COUNT] = 0
     for s in range(moving):
         LIST[s, START], LIST[s, CAPACITY], LIST[s, NUMBER] = s * _FIRST_CAPACITY, _FIRST_CAPACITY, 0
         CELL[s, BUCKET] = -1

@@ -153,7 +153,8 @@ def pattern(n: int, start: IntArray, other: IntArray, place: IntArray) -> tuple[
         if first + n - j > room:
             room = 2 * room + n
             more = np.empty(room, np.int64)
-            more[:first] = rows[:first]
+            for q in range(first):
+                more[q] = rows[q]
             rows = more
         i = body[j]
         for q in range(start[i], start[i + 1]):

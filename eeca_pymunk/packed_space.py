@@ -1,0 +1,120 @@
+"""PackedSpace: a stepper's picture of its space, read anew where the space has changed."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .arrays import FloatArray
+from .errors import NotFiniteError
+from .space.checks import check_ignored
+from .space.describe import describe
+from .space.joints import JointRows
+from .space.sleeping import Sleep, rouse
+from .space.sync import Sync
+from .space.world import World
+from .stepper import Stepper
+from .transfer import NOT_FINITE, OVERFLOW
+
+if TYPE_CHECKING:
+    import pymunk
+
+TOO_FAR = "the step would overflow; take a smaller dt, or stop this run"
+
+
+class PackedSpace(Stepper):
+    """A stepper that keeps its space as the arrays of a `World`; arguments as of `PackedStepper`."""
+
+    def __init__(self, space: pymunk.Space, *, sync: bool = True, ignore: Sequence[str] = ()) -> None:
+        super().__init__(space)
+        self.sync = sync
+        self.ignore = check_ignored(ignore)
+        self._warned = False
+        self._world: World | None = None
+        self._past: World | None = None  # before a refresh
+        self._told: JointRows | None = None  # what `constraint.impulse` reads
+        self._sleep: Sleep | None = None  # None where nobody can
+        self._idle_book: FloatArray | None = None  # of a step in which everyone sleeps
+        self._look()
+
+    def __getstate__(self) -> dict[str, object]:
+        # Original and copy go on from the same: without what was remembered of earlier steps.
+        self._world = self._past = self._sleep = None
+        state = self.__dict__.copy()
+        state.pop("_sync", None)
+        state["_told"] = None
+        return state
+
+    def refresh(self) -> None:
+        if self._world is not None:
+            self._past = self._world
+        self._world = None
+
+    def prepare(self, world: World) -> None:
+        """Make what the stepper keeps about a world that was read anew."""
+
+    def book(self) -> FloatArray | None:
+        """(7,) what the ledger of the last step is made of, see `energy.ledger`; None if the stepper keeps none."""
+        return None
+
+    @property
+    def model(self) -> str:
+        world = self._world
+        if world is None or not world.current():
+            world = self._look()
+        return describe(world)
+
+    def _look(self, anew: bool = False) -> World:
+        """The space as it is now, checked; with all its shapes if `anew` or if some came or went."""
+        world = self._world
+        self._world = None
+        if self._sleep is not None and self.space.sleep_time_threshold == math.inf:
+            self._sleep.wake()
+            self._sleep, anew = None, True
+        if world is not None and not anew and world.same_contents():
+            joints = world.joints
+            world.read_settings()
+            if self._sleep is None and self.space.sleep_time_threshold < math.inf:
+                self._sleep = Sleep(world, None)
+            if world.joints is not joints:
+                self.prepare(world)
+            self._world = world
+            return world
+        past = self._past if world is None else world
+        if self._sleep is not None:
+            self._sleep.part()
+            rouse(self.space)
+        world = World(self.space, self.ignore, None if world is None or world.edited() else world, past)
+        if world.ignores and not self._warned:
+            self._warned = True
+            warnings.warn(f"{type(self).__name__} steps on without the friction of this space", stacklevel=4)
+        self._sync = Sync(self.space, world.bodies)
+        self._sleep = Sleep(world, self._sleep) if self.space.sleep_time_threshold < math.inf else None
+        self.prepare(world)
+        if self._sleep is not None and (book := self.book()) is not None:
+            self._idle_book = np.zeros_like(book)
+        self._world, self._past = world, None
+        return world
+
+    def _undo(self, world: World, state: FloatArray) -> None:
+        """Put the space back where it was."""
+        self._world = self._past = None
+        world.bodies.scatter(state)
+
+    def _tell_joints(self, world: World) -> None:
+        """Give constraints what the step has to say of them."""
+        self._told = world.joints
+        world.settle()
+
+    def _fail(self, world: World, dt: float, status: int) -> None:
+        """Raise what a negative answer means."""
+        self._world = self._past = None
+        if status == NOT_FINITE:
+            world.bodies.check_finite(world.state)
+        if status == OVERFLOW:
+            world.bodies.check_finite(world.ended(), TOO_FAR)
+        raise NotFiniteError(f"a body would move an infinite distance within dt = {dt}: {TOO_FAR}")
