@@ -5,6 +5,6 @@ velocities, losses. Two users: blocks of contacts that hit at one instant (`bloc
 rest, slide and roll (the room `sustained`: bounded work, warm start). Both alternate projected Gauss-Seidel sweeps
 (`sweeps.py`, accelerated by `conjugate.py`) with a direct solve on the active contacts (`direct.py`: `dense.py` for few
 contacts, else `polish.py` on the sparse factor of `cholesky.py`); `equilibrium.py` finds forces that balance;
-`energy.py` takes losses, scales impulses that would give energy, and lifts bodies out of each other. Open `layout.py`
-first.
+`energy.py` takes losses, scales impulses that would give energy, and lifts bodies out of each other.
+Open `layout.py` first.
 """
