@@ -33,6 +33,7 @@ from .layout import (
     PHASE,
     PULLED,
     QUIET,
+    SOLVED,
     SOLVES,
     STALE,
     STAMP,
@@ -51,7 +52,7 @@ from .still import stays, watch
 def begin(A: Scene, WALK: IntArray) -> None:
     """Count from the start of this step; forecast the bodies that were edited, and all that is due."""
     BODY, STATE, PAR, COUNT = A.BODY, A.STATE, A.PAR, A.COUNT
-    for c in (HEAP, LOGGED, IMPACTS, BLOCKS, FORECASTS, STALE, SOLVES, IGNORED, SWEEPS, DIRECT):
+    for c in (HEAP, LOGGED, IMPACTS, BLOCKS, FORECASTS, STALE, SOLVES, SOLVED, IGNORED, SWEEPS, DIRECT):
         COUNT[c] = 0
     if COUNT[UNMET] > 0:
         A.FLAG[:] = 0

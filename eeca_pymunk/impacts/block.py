@@ -23,14 +23,13 @@ from ..rows.build import normal_rate, place_row
 from ..rows.layout import ELASTICITY as ELASTIC
 from ..rows.layout import K_N, ROW_COLUMNS
 from .booking import end_span
-from .islands import remembered
+from .islands import CROWD, remembered, worn
 from .layout import BODIES as SIZE_OF
 from .layout import DT, FIRST_SHAPE, ISLAND, JOINTED, LOST, NEXT_TIED, OPEN, SHAPES, STAMP, TIED, Scene
 from .strike import move_to, touches
 
 _FACES = 16.0  # times the tolerance of touching, by which the ends of parallel faces may differ
-CROWD = 24  # bodies of a lossy island, from which a hit on it acts at once on the nearest _NEAREST only
-_NEAREST = 16
+_NEAREST = 16  # bodies of a crowd on which a hit acts at once
 _ROCKING = 1e-6  # of the size, by which they may where the contact is not elastic: a rocking that is lost anyway ends
 
 
@@ -112,7 +111,9 @@ def gather(A: Scene, disks: int, a: int, b: int, t: float) -> tuple[int, int, In
                 # The pairs with bodies that have been looked at before stand there already.
                 if key == PAIRS[0] or (moves and 0 <= A.PLACE[j] < q - 1):
                     continue
-                if (moves and A.PLACE[j] < 0 and n >= most) or not takes_part(A, disks, s, o, t):
+                # What does not take part is hit in its turn.
+                full = moves and A.PLACE[j] < 0 and (n >= most or worn(A, A.STATE[j, ISLAND]))
+                if full or not takes_part(A, disks, s, o, t):
                     continue
                 if moves and A.PLACE[j] < 0:
                     n = admit(A, j, n, t)

@@ -9,15 +9,19 @@ from __future__ import annotations
 
 import math
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import IntArray
 from ..compiled import uncounted
-from ..layout import AX, AY, EXTENT, SPIN, TWIST, VX, VY
-from ..sustained.statics import STANDS, bound
+from ..layout import AX, AY, EXTENT, FRICTION, SPIN, TWIST, VX, VY
+from ..pairs.rules import law
+from ..rows.equilibrium import bound
+from ..sustained.statics import CALM, CALM_CROWD, STANDS
+from .islands import CROWD
 from .layout import (
     AFTER_ME,
     BETA,
     BUSY,
     CALM_FOR,
+    DISKS,
     DT,
     HITS,
     ISLAND,
@@ -26,6 +30,8 @@ from .layout import (
     LIFT,
     OPEN,
     PULLED,
+    PUSH_A,
+    PUSH_B,
     PUSHES,
     ROOT,
     SPAN_FROM,
@@ -42,34 +48,47 @@ from .layout import (
 
 LIKELY = 3  # of MEMBER[STILL]
 _SURE = 2  # steps that an island hardly moves, before it is asked whether it stands
-_AGAIN, _LATEST = 4, 32  # and until it is asked again, one more for every fourth body
+_AGAIN, _LATEST = 4, 12  # and until it is asked again, one more for every fourth body
 
 
 @uncounted
-def speed(BODY: FloatArray, i: int, s: float) -> float:
-    """A bound on the speed of the points of body i in s."""
+def whirls(A: Scene, i: int) -> bool:
+    """Whether body i turns as it will, whatever touches it: a lone disk without friction, which nothing twists."""
+    return bool(i < A.COUNT[DISKS] and A.SHAPE[i, FRICTION] == 0.0 and A.PULL[i, 2] == 0.0)
+
+
+@uncounted
+def speed(A: Scene, i: int, s: float) -> float:
+    """A bound on the speed of the points of body i in s; of its centre, where its turning moves nothing."""
+    BODY = A.BODY
     vx, vy = BODY[i, VX] + s * BODY[i, AX], BODY[i, VY] + s * BODY[i, AY]
-    return bound(vx, vy, BODY[i, SPIN] + s * BODY[i, TWIST], BODY[i, EXTENT])
+    return bound(vx, vy, 0.0 if whirls(A, i) else BODY[i, SPIN] + s * BODY[i, TWIST], BODY[i, EXTENT])
 
 
 @uncounted
-def calm(A: Scene, root: int, MINE: IntArray, n: int, t: float) -> bool:
-    """Whether the island of the n bodies MINE may come to a stand at instant t; if so, it is asked again much later."""
-    if t > 0.0 or A.COUNT[TOGETHER] > 0 or A.RULE.shape[0] > 0 or A.MEMBER[root, HITS] > 0:
-        return False
+def hardly(bodies: int) -> float:
+    """Speed relative to |a| dt below which an island of so many bodies hardly moves."""
+    return CALM if bodies < CROWD else CALM_CROWD
+
+
+@uncounted
+def calm(A: Scene, root: int, MINE: IntArray, n: int, t: float) -> float:
+    """The speed relative to |a| dt at which the island of the n bodies MINE may come to a stand at instant t, 0 if it
+    may not; it is asked again much later, unless it stood in between."""
+    if t > 0.0 or A.PAR[PULLED] == 0.0 or A.COUNT[TOGETHER] > 0 or A.RULE.shape[0] > 0 or A.MEMBER[root, HITS] > 0:
+        return 0.0
     for q in range(n):
         if A.RESTING[MINE[q], CALM_FOR] < _SURE or A.MEMBER[MINE[q], BUSY] > 0:
-            return False
+            return 0.0
     for q in range(n):
         A.RESTING[MINE[q], CALM_FOR] = -min(_AGAIN + n // 4, _LATEST)
-    return True
+    return hardly(n)
 
 
 @uncounted
 def slow(A: Scene, root: int) -> bool:
     """Whether all bodies of an island were as good as at rest at both ends of this step, undisturbed."""
-    BODY, MEMBER = A.BODY, A.MEMBER
-    dt = A.PAR[DT]
+    MEMBER, dt = A.MEMBER, A.PAR[DT]
     if MEMBER[root, OPEN] == 0 or MEMBER[root, JOINTED] > 0 or MEMBER[root, HITS] > 0:
         return False
     if A.RESTING[root, UNTIL] < math.inf:
@@ -79,7 +98,7 @@ def slow(A: Scene, root: int) -> bool:
     while i >= 0:
         if MEMBER[i, BUSY] > 0:
             return False
-        if max(speed(BODY, i, 0.0), speed(BODY, i, dt)) > limit:
+        if max(speed(A, i, 0.0), speed(A, i, dt)) > limit:
             return False
         for c in range(6):
             if A.RESTING[i, LIFT + c] != 0.0:
@@ -106,7 +125,9 @@ def find_still(A: Scene) -> None:
         if root < 0 or A.MEMBER[root, STILL] != LIKELY:
             continue
         R = A.PUSHED[c]
-        slips = max(max(abs(R[UN_BEFORE]), abs(R[UN_AFTER])), max(abs(R[UT_BEFORE]), abs(R[UT_AFTER])))
+        slips = max(abs(R[UN_BEFORE]), abs(R[UN_AFTER]))
+        if law(A.SHAPE, A.RULE, A.PUSHED_BY[c, PUSH_A], A.PUSHED_BY[c, PUSH_B])[1] > 0.0:
+            slips = max(slips, max(abs(R[UT_BEFORE]), abs(R[UT_AFTER])))
         driven = abs(R[WORK_OF]) > limit * (abs(R[LAM]) + abs(R[BETA]))
         if R[SPAN_FROM] != 0.0 or slips > 4.0 * limit or driven:
             A.MEMBER[root, STILL] = 0

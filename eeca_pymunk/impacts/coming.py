@@ -24,8 +24,7 @@ from ..pairs.lists import centre
 from ..pairs.rules import barred, law
 from ..rows.build import tangent_rate
 from ..rows.layout import FRICTION, K_T, UN, UT
-from .block import CROWD
-from .islands import TOUCH, approach, remembered, rests
+from .islands import CROWD, TOUCH, approach, remembered, rests
 from .layout import (
     BUSY,
     DT,

@@ -32,11 +32,14 @@ from .layout import (
     LOST,
     OPEN,
     PULLED,
+    SOLVED,
     STAMP,
     TIED,
     Scene,
 )  # fmt: skip
 
+CROWD = 24  # bodies of an island, from which it is a crowd: hits spread in it, and solves of it are cut short
+_PLENTY = 3  # solves in a step of every body of the scene, on the average
 TOUCH = 1e-7  # gap relative to the smaller shape, within which shapes are in touch
 _STILL, _WAS_STILL = 1e-6, 1e-3  # speed relative to |a| dt, below which elastic contacts rest; if they did before
 
@@ -69,6 +72,14 @@ def unite(A: Scene, i: int, j: int) -> int:
     MEMBER[a, JOINTED] = max(MEMBER[a, JOINTED], MEMBER[b, JOINTED])
     A.RESTING[a, LOST] += A.RESTING[b, LOST]
     return a
+
+
+@uncounted
+def worn(A: Scene, root: int) -> bool:
+    """Whether the island is a crowd that is not solved again in this step, as bodies have been solved often enough."""
+    if root < 0 or A.MEMBER[root, BODIES] < CROWD or A.MEMBER[root, OPEN] == 0:
+        return False
+    return bool(A.COUNT[SOLVED] > _PLENTY * A.BODY.shape[0])
 
 
 @uncounted

@@ -78,7 +78,8 @@ TOGETHER = 18  # 1 where all contacts of a step act together, and no events are 
 EVEN = 19  # 1 while one acceleration pulls all that impulses move, and no body is in an island
 QUIET = 20  # steps in a row in which that was so to the end
 DISKS = 21  # of the scene: lone disks
-COUNT_LENGTH = 22
+SOLVED = 22  # bodies of all solves
+COUNT_LENGTH = 23
 
 # Status of a step
 DONE, POOL_FULL, LOG_FULL, BLOCK_DUE, PUSHES_FULL = 0, 1, 2, 3, 4

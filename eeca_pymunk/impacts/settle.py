@@ -16,7 +16,7 @@ from ..pairs.layout import NUMBER, START
 from ..pairs.lists import centre
 from ..pairs.rules import barred, law
 from .booking import end_span
-from .islands import TOUCH, approach, members, rests, unite
+from .islands import TOUCH, approach, members, rests, unite, worn
 from .layout import (
     BODIES,
     BUSY,
@@ -84,7 +84,7 @@ def join(A: Scene, i: int, t: float, FOUND: IntArray) -> int:
                 continue
             other = STATE[j, ISLAND]
             begun = other >= 0 and A.MEMBER[other, OPEN] > 0
-            if begun and A.MEMBER[other, JOINTED] > 0:
+            if begun and (A.MEMBER[other, JOINTED] > 0 or worn(A, other)):
                 continue  # it is hit when they meet
             move_to(BODY, j, t)
             g, u, _, _ = approach(A.BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, A.PULL, s, o, t)
@@ -201,9 +201,10 @@ def ignored(A: Scene, a: int, b: int, t: float) -> bool:
         if root >= 0:
             hits, size = max(hits, MEMBER[root, HITS]), max(size, MEMBER[root, BODIES])
     most = max(_HITS, _WORK // size) if lossy else _ELASTIC_HITS
-    if hits < most:
+    spent = worn(A, STATE[i, ISLAND]) or worn(A, STATE[j, ISLAND])
+    if hits < most and not spent:
         return False
-    if hits < 4 * most:
+    if hits < 4 * most and not spent:
         h = A.PAR[DT] - t
         speed = norm(A.BODY[i, VX] - A.BODY[j, VX], A.BODY[i, VY] - A.BODY[j, VY])
         if speed * h > _DEEP * min(A.SHAPE[a, SIZE], A.SHAPE[b, SIZE]):

@@ -32,10 +32,9 @@ from ..sustained.step import LOCK as LOCK_OF
 from ..sustained.step import OUT_SIZE, STOOD, step_island
 from ..sustained.step import POLISHES as POLISHES_OF
 from ..sustained.step import SWEEPS as SWEEPS_OF
-from .block import CROWD
-from .calm import calm
+from .calm import calm, whirls
 from .coming import PARTS, before_end, hurried, pairs_of, span_of, stick_time, sweeps_of_crowd, way_of
-from .islands import members
+from .islands import CROWD, members
 from .layout import (
     AFTER_ME,
     BETA,
@@ -69,6 +68,7 @@ from .layout import (
     REMEMBERED,
     ROOT,
     SHAPES,
+    SOLVED,
     SOLVES,
     SPAN,
     SPAN_FROM,
@@ -90,7 +90,8 @@ _SWEEPS = 40  # of an island that moves
 
 class Local(NamedTuple):
     """The bodies of an island, n that impulses move and then those that they do not: WHO (k,) rows of BODY, POSE, V,
-    ACC (k, 3) and IM, II, EXTENT (k,) at the start of its span; PAIRS (p, 4) as `..sustained.contacts.gather`."""
+    ACC (k, 3) and IM, II, EXTENT (k,) at the start of its span, FELT (k,) as `..sustained.step`; PAIRS (p, 4) as
+    `..sustained.contacts.gather`."""
 
     WHO: IntArray
     POSE: FloatArray
@@ -99,6 +100,7 @@ class Local(NamedTuple):
     IM: FloatArray
     II: FloatArray
     EXTENT: FloatArray
+    FELT: FloatArray
     PAIRS: IntArray
 
 
@@ -118,7 +120,7 @@ def lay_out_island(A: Scene, MINE: IntArray, n: int, found: IntArray, t: float) 
     k = n + fixed
     WHO = np.empty(k, np.int64)
     POSE, V, ACC = np.empty((k, 3)), np.empty((k, 3)), np.zeros((k, 3))
-    IMS, IIS, SIZES = np.empty(k), np.empty(k), np.empty(k)
+    IMS, IIS, SIZES, FELT = np.empty(k), np.empty(k), np.empty(k), np.empty(k)
     for q in range(k):
         i = MINE[q] if q < n else FIXED[q - n]
         WHO[q] = i
@@ -127,6 +129,7 @@ def lay_out_island(A: Scene, MINE: IntArray, n: int, found: IntArray, t: float) 
         for c in range(3):
             POSE[q, c] = BODY[i, X + c] + V[q, c] * s
         IMS[q], IIS[q], SIZES[q] = BODY[i, IM], BODY[i, II], BODY[i, EXTENT]
+        FELT[q] = 0.0 if whirls(A, i) else SIZES[q]
         if q < n:
             for c in range(3):
                 ACC[q, c] = A.PULL[i, c]
@@ -136,7 +139,7 @@ def lay_out_island(A: Scene, MINE: IntArray, n: int, found: IntArray, t: float) 
         PAIRS[c, 2], PAIRS[c, 3] = A.PLACE[A.LINK[found[c, 0], OWNER]], A.PLACE[A.LINK[found[c, 1], OWNER]]
     for q in range(n, k):
         A.PLACE[WHO[q]] = -1
-    return Local(WHO, POSE, V, ACC, IMS, IIS, SIZES, PAIRS)
+    return Local(WHO, POSE, V, ACC, IMS, IIS, SIZES, FELT, PAIRS)
 
 
 @kernel
@@ -214,11 +217,11 @@ def solve(A: Scene, root: int, t: float) -> int:
             least = max(least, way_of(A, WHO[q], h))
     sweeps = _SWEEPS if n < CROWD else sweeps_of_crowd(t)
     m = 0
-    quiet = lossy and calm(A, root, MINE, n, t)
+    quiet = calm(A, root, MINE, n, t) if lossy else 0.0
     if p > 0 and h > 0.0:
         m = step_island(
-            POSE, V, ACC, IMS, IIS, SIZES, n, PAIRS, p, A.SHAPE, A.RULE, A.LINK, A.VERTEX, A.WORK, h, sweeps,
-            least, max(-A.RESTING[root, LOST], 0.0), A.KEYS, A.FORCES, COUNT[REMEMBERED:], A.PAR[STAMP],
+            POSE, V, ACC, IMS, IIS, SIZES, isle.FELT, n, PAIRS, p, A.SHAPE, A.RULE, A.LINK, A.VERTEX, A.WORK, h,
+            sweeps, least, max(-A.RESTING[root, LOST], 0.0), A.KEYS, A.FORCES, COUNT[REMEMBERED:], A.PAR[STAMP],
             A.RESTING[MINE[0], RELAX : RELAX + 3], quiet, P, Q, ROWS, KEY, L, LOSS, VN, JUMP, BOOK, OUT,
         )  # fmt: skip
         stuck = h if hurried(A) or OUT[STOOD] > 0.0 else stick_time(P, Q, ROWS, L, V + h * ACC, VN, m, h)
@@ -227,13 +230,14 @@ def solve(A: Scene, root: int, t: float) -> int:
             h = min(max(stuck, A.PAR[DT] / PARTS), h)
             BOOK[:] = 0.0
             m = step_island(
-                POSE, V, ACC, IMS, IIS, SIZES, n, PAIRS, p, A.SHAPE, A.RULE, A.LINK, A.VERTEX, A.WORK, h, sweeps,
-                least, max(-A.RESTING[root, LOST], 0.0), A.KEYS, A.FORCES, COUNT[REMEMBERED:], A.PAR[STAMP],
-                A.RESTING[MINE[0], RELAX : RELAX + 3], False, P, Q, ROWS, KEY, L, LOSS, VN, JUMP, BOOK, OUT,
+                POSE, V, ACC, IMS, IIS, SIZES, isle.FELT, n, PAIRS, p, A.SHAPE, A.RULE, A.LINK, A.VERTEX, A.WORK, h,
+                sweeps, least, max(-A.RESTING[root, LOST], 0.0), A.KEYS, A.FORCES, COUNT[REMEMBERED:], A.PAR[STAMP],
+                A.RESTING[MINE[0], RELAX : RELAX + 3], 0.0, P, Q, ROWS, KEY, L, LOSS, VN, JUMP, BOOK, OUT,
             )  # fmt: skip
         if abs(OUT[LOCK_OF] - 1.0) > abs(A.PAR[LOCK] - 1.0):
             A.PAR[LOCK] = OUT[LOCK_OF]
     COUNT[SOLVES] += 1
+    COUNT[SOLVED] += n
     COUNT[SWEEPS] += int(OUT[SWEEPS_OF])
     COUNT[DIRECT] += int(OUT[POLISHES_OF])
     first = COUNT[PUSHES]

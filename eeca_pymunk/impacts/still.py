@@ -1,9 +1,9 @@
 """Islands that stand still: an unchanged solve goes on, step after step, and costs next to nothing.
 
 `calm.py` says which come to a stand. Their bodies then stay where they are, without velocity (what kinetic energy is
-left is booked as restitution), and their contacts keep their forces. An island is solved again from when a body of it
-is hit, edited, or pulled otherwise than before; when a body that carries it moves; and always where collision handlers
-have a say.
+left is booked as restitution; disks without friction go on spinning), and their contacts keep their forces. An island
+is solved again from when a body of it is hit, edited, or pulled otherwise than before; when a body that carries it
+moves; and always where collision handlers have a say.
 
 MEMBER[STILL]: of its bodies 1; of the root CHANGED when it is to be solved again, LIKELY at the end of a step in which
 it may come to a stand; of a kinematic body CHANGED while it moves.
@@ -16,11 +16,11 @@ from ..layout import ANGLE, AX, AY, DUE, IM, OWNER, SPIN, TWIST, VX, VY, X, Y
 from ..pairs.lists import mark_pair
 from ..sustained.memory import STAMP as OF_STEP
 from ..sustained.memory import find
-from ..sustained.statics import CALM
-from .calm import speed
+from .calm import hardly, speed, whirls
 from .layout import (
     AFTER_ME,
     BETA,
+    BODIES,
     BUSY,
     CALM_FOR,
     DT,
@@ -62,10 +62,10 @@ CHANGED = 2
 
 @uncounted
 def as_left(A: Scene, i: int) -> bool:
-    """Whether body i has no velocity, and is where it was at the start of the last step."""
+    """Whether body i has no velocity, or a spin alone that nobody feels, and is where it was left."""
     BODY, BEGAN = A.BODY, A.BEGAN
     same = BODY[i, X] == BEGAN[i, 0] and BODY[i, Y] == BEGAN[i, 1] and BODY[i, ANGLE] == BEGAN[i, 2]
-    return bool(same and BODY[i, VX] == 0.0 and BODY[i, VY] == 0.0 and BODY[i, SPIN] == 0.0)
+    return bool(same and BODY[i, VX] == 0.0 and BODY[i, VY] == 0.0 and (BODY[i, SPIN] == 0.0 or whirls(A, i)))
 
 
 @uncounted
@@ -125,12 +125,13 @@ def rouse(A: Scene) -> None:
             for column in (LAM, BETA, PUSH_CHANGE):
                 R[column] *= dt / R[SPAN]
             R[SPAN] = dt
-    calm = CALM * A.PAR[PULLED] * dt
+    most = A.PAR[PULLED] * dt
     for i in range(ground):
         root = STATE[i, ISLAND]
         if root < 0 or MEMBER[root, STILL] == 1:
             continue
-        A.RESTING[i, CALM_FOR] = A.RESTING[i, CALM_FOR] + 1.0 if speed(BODY, i, 0.0) <= calm else 0.0
+        slow = speed(A, i, 0.0) <= hardly(MEMBER[root, BODIES]) * most
+        A.RESTING[i, CALM_FOR] = A.RESTING[i, CALM_FOR] + 1.0 if slow else 0.0
         if MEMBER[i, STILL] > 0:
             BODY[i, AX], BODY[i, AY], BODY[i, TWIST] = A.PULL[i, 0], A.PULL[i, 1], A.PULL[i, 2]
             STATE[i, KINKS] += 1
@@ -188,14 +189,19 @@ def stand(A: Scene, c: int) -> None:
 
 @uncounted
 def halt(A: Scene, root: int) -> None:
-    """At either end of a step, an island that comes to a stand: its bodies stop."""
+    """At either end of a step, an island that comes to a stand: its bodies stop, but for spins that nobody feels. Once
+    something wakes it, it is soon asked whether it stands again."""
     BODY, MEMBER = A.BODY, A.MEMBER
     i = root
     while i >= 0:
         A.PAR[LEDGER + RESTITUTION] += kinetic(BODY, i)
-        BODY[i, VX], BODY[i, VY], BODY[i, SPIN] = 0.0, 0.0, 0.0
+        BODY[i, VX], BODY[i, VY] = 0.0, 0.0
+        if whirls(A, i):
+            A.PAR[LEDGER + RESTITUTION] -= kinetic(BODY, i)
+        else:
+            BODY[i, SPIN] = 0.0
         BODY[i, AX], BODY[i, AY], BODY[i, TWIST] = 0.0, 0.0, 0.0
-        MEMBER[i, STILL], BODY[i, DUE] = 1, 0.0
+        MEMBER[i, STILL], BODY[i, DUE], A.RESTING[i, CALM_FOR] = 1, 0.0, 0.0
         A.STATE[i, KINKS] += 1
         i = MEMBER[i, AFTER_ME]
 

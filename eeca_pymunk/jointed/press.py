@@ -15,8 +15,8 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
-from ..impacts.block import CROWD
 from ..impacts.coming import before_end, sweeps_of_crowd
+from ..impacts.islands import CROWD
 from ..impacts.layout import Scene
 from ..impacts.spans import Local
 from ..rows.build import conserves, normal_rate, rates, tangent_rate

@@ -40,6 +40,8 @@ from .layout import (
     WAKE,
 )
 
+_STEEP = 1e-9  # mobility along a slipping contact's push, relative to A_nn, below which it jams
+
 
 @uncounted
 def coulomb(
@@ -64,7 +66,7 @@ def coulomb(
         sign = -1.0 if qt - qn * ant / ann > 0.0 else 1.0
         for _ in range(2):
             den = ann + sign * mu * ant
-            if den > 1e-9 * ann:
+            if den > _STEEP * ann:
                 lam = -qn / den
                 beta = sign * mu * lam
                 if sign * (qt + ant * lam + att * beta) <= 0.0:
@@ -135,10 +137,24 @@ def sweep(
                 # Most stick, and need no more than this.
                 lam = lam0 - (ROWS[i, W_NN] * short + ROWS[i, W_NT] * ut)
                 beta = beta0 - (ROWS[i, W_NT] * short + ROWS[i, W_TT] * ut)
-                if not (abs(beta) <= mu * lam and beta * ROWS[i, UT] <= 0.0):
+                before = ROWS[i, UT]
+                if abs(beta) <= mu * lam:
+                    done = beta * before + lam * min(ROWS[i, UN] + ROWS[i, TARGET], 0.0) <= 0.0
+                else:
+                    # Nearly all others slip as they would without friction.
+                    att = ROWS[i, A_TT]
+                    qt = ut - beta0 * att - lam0 * ant
+                    slope = -mu if qt * ann > qn * ant else mu
+                    felt = ann + slope * ant
+                    done = False
+                    if felt > _STEEP * ann:
+                        lam = -qn / felt
+                        beta = slope * lam
+                        done = slope * (qt + ant * lam + att * beta) <= 0.0 and beta * before <= 0.0
+                if not done:
                     att = ROWS[i, A_TT]
                     lam, beta = coulomb(
-                        qn, ut - beta0 * att - lam0 * ant, ann, ant, att, mu, ROWS[i, UN], ROWS[i, UT], ROWS[i, TARGET]
+                        qn, ut - beta0 * att - lam0 * ant, ann, ant, att, mu, ROWS[i, UN], before, ROWS[i, TARGET]
                     )
         dn = lam - lam0
         dt = beta - beta0

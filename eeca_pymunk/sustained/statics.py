@@ -1,13 +1,14 @@
 """Whether an island that hardly moves comes to a stand: an equilibrium of its contacts that takes all its motion.
 
 At midstep, what rests with a speed of u is sent back with -u, so that its place is kept and no energy made: tiny
-motions of a pile go on for ever, and no impulses meet all their targets. The rigid pile rather loses them in bounces
-that are over within the step. It stands iff impulses inside their cones leave no velocity at all,
+motions of a pile go on for ever, and so do those that come from solves cut short. The rigid pile rather loses them in
+bounces that are over within the step. It stands iff impulses inside their cones leave no velocity at all, after N steps
+at most, and hold it from then on,
 
-    v + h a + M^-1 (G^T lam + T^T beta) = 0,   lam >= 0,   |beta| <= mu lam,
+    v / N + h a + M^-1 (G^T lam + T^T beta) = 0   and   h a + M^-1 (G^T lam + T^T beta) = 0,
 
 from the velocities v that it has: what slides without friction, rolls, or topples does not. Only what is slower than
-CALM |a| h is asked, so that nothing stops more than CALM |a| h^2 / 2 from where it would.
+CALM |a| h is asked, and N goes with its speed so that nothing stops more than CALM |a| h^2 / 2 from where it would.
 """
 
 from __future__ import annotations
@@ -16,14 +17,13 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
+from ..rows.equilibrium import equilibrium, fastest
 from ..rows.layout import SURFACE, TARGET, UN, UT, WAKE
-from ..rows.sweeps import velocities
-from .relax import FRESH, relax
 
 STANDS = 1e-9  # speed relative to |a| h, below which a body stands
-CALM = 1e-3  # and below which it may come to a stand
-_CLOSED = 1e-3  # velocity relative to |a| h, by which the gap of a contact that bears may change in a step
-_ROUNDS = 8  # direct solutions at most
+CALM, CALM_CROWD = 1e-3, 0.5  # and below which it may come to a stand, alone or among few; in a crowd
+_STEPS = 10.0  # in which it does, at most
+_FACTORS = 12  # for each of the two equilibria, at most
 
 
 @uncounted
@@ -43,54 +43,41 @@ def at_rest(ROWS: FloatArray, V: FloatArray, n: int, m: int, close: float) -> bo
     return True
 
 
-@uncounted
-def bound(vx: float, vy: float, spin: float, extent: float) -> float:
-    """A bound on the speed of the points of a body, no farther than extent from its centre of mass."""
-    return abs(vx) + abs(vy) + extent * abs(spin)
-
-
-@uncounted
-def fastest(V: FloatArray, EXTENT: FloatArray, n: int) -> float:
-    """A bound on the speed of all points of the n bodies."""
-    found = 0.0
-    for i in range(n):
-        found = max(found, bound(V[i, 0], V[i, 1], V[i, 2], EXTENT[i]))
-    return found
-
-
 @kernel
 def comes_to_stand(
     A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, FREE: FloatArray, IM: FloatArray,
-    II: FloatArray, POSE: FloatArray, EXTENT: FloatArray, VN: FloatArray, n: int, m: int, change: float,
-) -> tuple[bool, int, int]:  # fmt: skip
+    II: FloatArray, POSE: FloatArray, FELT: FloatArray, VN: FloatArray, n: int, m: int, change: float, calm: float,
+) -> tuple[bool, int]:  # fmt: skip
     """Look for an equilibrium that ends the motion V (k, 3) of the n bodies, which are FREE without impulses.
 
     Args:
         ROWS, L: the m contacts and first guesses; out, if the island stands, with targets and velocities of 0 and the
             impulses that hold it from then on, without those that stop it.
-        V: 0 out, if it stands.  VN: (k, 3) out, velocities at the end.
-        change: |a| h, to which speeds are compared.
+        FELT: (k,) how far bodies extend, 0 of those whose turning no contact feels.
+        V: 0 out, if it stands, but for spins that nothing feels.  VN: (k, 3) out, velocities at the end.
+        change: |a| h, to which speeds are compared.  calm: that of the island at most; so may gaps of contacts that
+            bear change in h.
     Returns:
-        Whether the island stands, sweeps, direct solutions.
+        Whether the island stands, and factors it took.
     """
-    if not at_rest(ROWS, V, n, m, _CLOSED * change):
-        return False, 0, 0
-    PULL = FREE - V
-    sweeps, rounds = 0, 0
-    for attempt in range(2):
-        START = FREE if attempt == 0 else PULL
-        STATE = np.array(FRESH)
-        velocities(A, B, ROWS, L, START, IM, II, m, VN)
-        some, more, _ = relax(
-            A, B, ROWS, L, VN, START, IM, II, POSE, n, m, _ROUNDS, 1e-3 * STANDS * change, 0.0, STATE, 0
-        )  # fmt: skip
-        sweeps += some
-        rounds += more
-        velocities(A, B, ROWS, L, START, IM, II, m, VN)
-        if fastest(VN, EXTENT, n) > STANDS * change:
-            return False, sweeps, rounds
+    if not at_rest(ROWS, V, n, m, calm * change):
+        return False, 0
+    speed = fastest(V, FELT, n)
+    steps = min(_STEPS, calm * change / speed) if speed > 0.0 else 1.0
+    PULL, START = FREE - V, FREE - V
     for i in range(n):
-        for c in range(3):
+        for c in range(3 if FELT[i] > 0.0 else 2):
+            START[i, c] += V[i, c] / max(steps, 1.0)
+    factors, accuracy = 0, STANDS * change
+    for nearest in (False, True):
+        found, more = equilibrium(
+            A, B, ROWS, L, PULL if nearest else START, IM, II, POSE, FELT, n, m, accuracy, _FACTORS, nearest
+        )  # fmt: skip
+        factors += more
+        if not found:
+            return False, factors
+    for i in range(n):
+        for c in range(3 if FELT[i] > 0.0 else 2):
             V[i, c] = 0.0
             VN[i, c] = 0.0
-    return True, sweeps, rounds
+    return True, factors

@@ -94,10 +94,10 @@ def moved(X: FloatArray, V: FloatArray, s: float) -> FloatArray:
 
 @kernel
 def step_island(
-    POSE: FloatArray, V: FloatArray, ACC: FloatArray, IM: FloatArray, II: FloatArray, EXTENT: FloatArray, n: int,
-    PAIRS: IntArray, p: int, SHAPE: FloatArray, RULE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray,
-    h: float, most: int, least: float, owed: float, KEYS: IntArray, FORCES: FloatArray, COUNT: IntArray, stamp: float,
-    STATE: FloatArray, calm: bool,
+    POSE: FloatArray, V: FloatArray, ACC: FloatArray, IM: FloatArray, II: FloatArray, EXTENT: FloatArray,
+    FELT: FloatArray, n: int, PAIRS: IntArray, p: int, SHAPE: FloatArray, RULE: FloatArray, LINK: IntArray,
+    VERTEX: FloatArray, WORK: FloatArray, h: float, most: int, least: float, owed: float, KEYS: IntArray,
+    FORCES: FloatArray, COUNT: IntArray, stamp: float, STATE: FloatArray, calm: float,
     A: IntArray, B: IntArray, ROWS: FloatArray, KEY: IntArray, L: FloatArray, LOSS: FloatArray, VN: FloatArray,
     JUMP: FloatArray, LEDGER: FloatArray, OUT: FloatArray,
 ) -> int:  # fmt: skip
@@ -105,6 +105,7 @@ def step_island(
 
     Args:
         POSE, V, ACC: (k, 3) pose, velocity, acceleration without contacts.  IM, II, EXTENT: (k,).
+        FELT: (k,) their EXTENT, 0 of bodies whose turning no contact feels.
         n: bodies that impulses move, the first of k; the others keep their velocities. A body without mobility that
             rests (the ground) is among the k as well; an island without any is free.
         PAIRS: (p, 4) as `contacts.gather`.  RULE: see `..pairs.rules`.  WORK: scratch of the geometry.
@@ -112,7 +113,8 @@ def step_island(
         least: length that every body's points may come at least, 0 if their velocities tell.
         owed: energy >= 0 to take out at least.
         KEYS, FORCES, COUNT, stamp: memory of forces; the number of this step.  STATE: (3,) of `relax`.
-        calm: whether it may come to a stand, see `.statics`; V is 0 then, its energy is the caller's to book.
+        calm: speed relative to |a| h at which it may come to a stand, see `.statics`, 0 if it may not; V is 0 once it
+            does, its energy is the caller's to book.
         A, B, ROWS, KEY, L, LOSS: the m contact rows out, with impulses over h and losses (D_n, D_t).
         VN: (k, 3) velocities at the end, out.  JUMP: (k, 6) what to add to pose and velocity then, out.
         LEDGER: (8,) added to.  OUT: (8,) sweeps, direct solutions, residual, scale of the lock, energy still owed,
@@ -148,11 +150,10 @@ def step_island(
         recall(KEY, m, KEYS, FORCES, stamp, h, L, EXPECTED)
         rates(A, B, ROWS, V, m)
         target(A, B, ROWS, m, ACC, EXPECTED, pull, h)
-        if calm:
-            stands, sweeps, polishes = comes_to_stand(
-                A, B, ROWS, L, V, FREE, IM, II, POSE, EXTENT, VN, n, m, pull * h
+        if calm > 0.0:
+            stands, polishes = comes_to_stand(
+                A, B, ROWS, L, V, FREE, IM, II, POSE, FELT, VN, n, m, pull * h, calm
             )  # fmt: skip
-            OUT[0] = sweeps
             OUT[1] = polishes
             if stands:
                 OUT[STOOD] = 1.0

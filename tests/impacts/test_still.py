@@ -8,6 +8,10 @@ import pymunk
 import pytest
 
 import eeca_pymunk as ep
+from comparisons.piles import pile
+from eeca_pymunk.impacts.layout import SOLVED
+
+from .crowds import SHORT
 
 DT, G = 1 / 60, 9.81
 UNITS = (1e-3, 1.0, 1e3)
@@ -206,3 +210,72 @@ def test_what_slides_or_rolls_slowly_goes_on(friction: float, unit: float) -> No
         stepper.step(DT)
     assert body.velocity.x == pytest.approx(speed, rel=1e-9)
     assert body.position.x == pytest.approx(100 * DT * speed, rel=1e-9)
+
+
+@pytest.mark.parametrize("unit", UNITS)
+def test_disks_that_nothing_rubs_stand_and_spin_on(unit: float) -> None:
+    space, bodies = heap(12 if SHORT else 24, unit)
+    for i, body in enumerate(bodies):
+        next(iter(body.shapes)).friction = 0.0
+        body.angular_velocity = 0.3 * i - 2.0
+    spins = [b.angular_velocity for b in bodies]
+    stepper, scale = ep.EECA(space), 24 * G * 4 * unit * unit
+    for _ in range(400):
+        report = stepper.step(DT)
+        assert report.ledger is not None
+        assert abs(report.ledger.residual) <= 1e-12 * scale
+    assert report.iterations == 0, "the heap is solved though nothing happens"
+    assert all(b.velocity == (0.0, 0.0) for b in bodies)
+    # Arms of round-off leave a trace while they fall.
+    assert [b.angular_velocity for b in bodies] == pytest.approx(spins, abs=1e-6)
+    spins, angles = [b.angular_velocity for b in bodies], [b.angle for b in bodies]
+    for _ in range(60):
+        stepper.step(DT)
+    assert [b.angular_velocity for b in bodies] == spins
+    assert [b.angle for b in bodies] == pytest.approx([a + w for a, w in zip(angles, spins, strict=True)], abs=1e-9)
+    # Friction turns it into motion.
+    for body in bodies:
+        next(iter(body.shapes)).friction = 1.0
+    for _ in range(3):
+        stepper.step(DT)
+    assert max(b.velocity.length for b in bodies) > 1e-3 * unit
+
+
+@pytest.mark.parametrize("friction", [0.0, 1.0])
+def test_a_disk_spins_on_where_nothing_rubs(friction: float) -> None:
+    space = pymunk.Space()
+    space.gravity = (0.0, -G)
+    body = pymunk.Body(1.0, 0.5)
+    body.position, body.angular_velocity = (0.0, 1.0), 1e-4
+    shape = pymunk.Circle(body, 1.0)
+    shape.friction = friction
+    space.add(body, shape, pymunk.Segment(space.static_body, (-20.0, 0.0), (20.0, 0.0), 0.0))
+    stepper = ep.EECA(space)
+    for _ in range(20):
+        report = stepper.step(DT)
+    assert body.angular_velocity == 1e-4
+    assert report.iterations == 0 or friction > 0.0, "a disk that nothing can stop from spinning stands as well"
+
+
+@pytest.mark.parametrize("unit", UNITS)
+def test_a_tall_stack_that_is_put_down_at_once_stands(unit: float) -> None:
+    """No sweeps carry its weight to the floor; an equilibrium does."""
+    count = 30 if SHORT else 100
+    space, bodies, _ = stack(count, unit)
+    stepper = ep.EECA(space)
+    for _ in range(10):
+        report = stepper.step(DT)
+    assert report.iterations == 0
+    assert max(abs(b.position.y - (i + 0.5) * unit) for i, b in enumerate(bodies)) < G * unit * DT * DT / 10
+    borne = sum(report.impulse[report.contacts.point[:, 1] < 0.5 * unit])
+    assert borne == pytest.approx(count * G * unit * DT, rel=1e-8)
+
+
+def test_a_crowd_is_solved_a_few_times_a_step_however_often_it_is_hit() -> None:
+    """A rain of disks: each hit on what lies together would be a solve of all of it."""
+    space = pile("disks", 40 if SHORT else 300, 0.5, 0.5)
+    stepper, most = ep.EECA(space), 0
+    for _ in range(30 if SHORT else 120):
+        stepper.step(DT)
+        most = max(most, int(stepper._method.scene.COUNT[SOLVED]))  # type: ignore[attr-defined]
+    assert most < 5 * len(space.bodies)
