@@ -57,7 +57,8 @@ class Clocked:
     """Times every step of every space, and reads the ledger of ours.
 
     Attributes:
-        steps: processor times of the thread that steps (s).  residual: largest of the ledger relative to the largest energy so far.
+        steps: processor times of the thread that steps (s).
+        residual: largest of the ledger relative to the largest energy so far.
         unconverged: steps whose solver was cut short.
     """
 
