@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 
 import pymunk
@@ -152,9 +151,10 @@ def test_without_weight_nothing_comes_to_a_stand() -> None:
 
 
 def heap(count: int, unit: float) -> tuple[pymunk.Space, list[pymunk.Body]]:
-    """Disks without bounces that fall on each other between smooth walls."""
+    """Disks without bounces that fall on each other between smooth walls, and a little to the right: on a level floor
+    a disk between others may roll for ever, as slowly as it likes, and nothing takes that."""
     space = pymunk.Space()
-    space.gravity = (0.0, -G * unit)
+    space.gravity = (0.1 * G * unit, -G * unit)
     for a, b in (((-2.0, 0.0), (2.0, 0.0)), ((-2.0, 0.0), (-2.0, 40.0)), ((2.0, 0.0), (2.0, 40.0))):
         wall = pymunk.Segment(space.static_body, (a[0] * unit, a[1] * unit), (b[0] * unit, b[1] * unit), 0.0)
         wall.friction = 0.7 if a[1] == b[1] else 0.0
@@ -180,15 +180,8 @@ def test_a_heap_comes_to_a_stand(unit: float) -> None:
         assert report.ledger is not None
         assert abs(report.ledger.residual) <= 1e-12 * scale
         assert min(report.ledger.restitution, report.ledger.friction) >= -1e-13 * scale
-    # A disk of the lowest row may roll for ever, by as little as it likes: nothing takes that.
-    pull = G * unit * DT
-    for b in bodies:
-        (disk,) = b.shapes
-        assert isinstance(disk, pymunk.Circle)
-        assert math.hypot(b.velocity.x + disk.radius * b.angular_velocity, b.velocity.y) <= 1e-11 * pull
-    if all(b.velocity.length <= 1e-11 * pull for b in bodies):
-        assert report.iterations == 0, "the heap is solved though nothing happens"
-        assert all(b.velocity == (0.0, 0.0) and b.angular_velocity == 0.0 for b in bodies)
+    assert report.iterations == 0, "the heap is solved though nothing happens"
+    assert all(b.velocity == (0.0, 0.0) and b.angular_velocity == 0.0 for b in bodies)
     floor = [
         space.static_body in (report.contacts.bodies[a], report.contacts.bodies[b])
         for a, b in zip(report.contacts.body_a, report.contacts.body_b, strict=True)
