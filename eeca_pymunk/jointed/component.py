@@ -10,7 +10,7 @@ from ..impacts.layout import Scene
 from ..joints.bounds import bounded, gap
 from ..joints.correct import book_fit
 from ..joints.entries import held as stands
-from ..joints.layout import GEAR
+from ..joints.layout import GEAR, PROJECTED
 from ..joints.ledger import springs_hold
 from ..joints.response import prepare, respond
 from ..joints.scratch import (
@@ -92,7 +92,7 @@ def fit_speeds(A: Scene, J: Joints, s: int, length: float) -> None:
         int(SPEEDS), J.JOINT, J.HINGE, J.LINK[j0:j1], j1 - j0, J.LOCAL, J.NODE, n, 2.0, length, J.SPAN[s, LOOPS] > 0,
         0.0, J.SPAN[s], J.MATRIX, J.RIGHT, J.MORE, J.PIVOTS, J.STIFF, J.FOUND,
     )  # fmt: skip
-    book_fit(J.LOCAL, n, J.STEPPED[s])
+    book_fit(J.LOCAL, n, J.STEPPED[s], int(PROJECTED))
 
 
 @uncounted

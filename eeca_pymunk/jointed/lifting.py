@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel
+from ..compiled import kernel, uncounted
 from ..impacts.layout import Scene
 from ..impacts.spans import Local
 from ..joints.layout import STORED
@@ -47,6 +47,13 @@ def raise_gaps(
             return
 
 
+@uncounted
+def climbed(isle: Local, q: int, x: float, y: float, turn: float) -> float:
+    """Energy that it costs to move body q of an island by (x, y, turn) against the forces on it."""
+    cost = -(isle.ACC[q, 0] * x + isle.ACC[q, 1] * y) / isle.IM[q]
+    return float(cost - isle.ACC[q, 2] * turn / isle.II[q]) if isle.II[q] > 0.0 else cost
+
+
 @kernel
 def lift(
     A: Scene, J: Joints, isle: Local, groups: Groups, P: IntArray, Q: IntArray, ROWS: FloatArray, m: int, n: int,
@@ -54,8 +61,8 @@ def lift(
 ) -> float:  # fmt: skip
     """Lift the poses END of an island by at most what `budget` pays; the energy that it costs.
 
-    The cost is -m a.D for displacements D, and what springs hold more. Joints hold: D goes along them, and what is left
-    of second order is closed.
+    The cost is -(m a.D + I alpha dtheta) for displacements D, and what springs hold more. Joints hold: D goes along
+    them, and what is left of second order is closed.
     """
     size = np.inf
     for q in range(n):
@@ -83,7 +90,7 @@ def lift(
     cost, far = 0.0, 0.0
     for q in range(n):
         far = max(far, (math.sqrt(D[q, 0] ** 2 + D[q, 1] ** 2) + abs(D[q, 2]) * isle.EXTENT[q]) / isle.EXTENT[q])
-        cost -= (isle.ACC[q, 0] * D[q, 0] + isle.ACC[q, 1] * D[q, 1]) / isle.IM[q]
+        cost += climbed(isle, q, D[q, 0], D[q, 1], D[q, 2])
     part = min(1.0, _MOST / far) if far > 0.0 else 0.0
     if cost * part > 0.5 * budget:
         part = 0.5 * budget / cost
@@ -100,7 +107,7 @@ def lift(
                 HELD[g] = close_joints(A, J, s, END, NEW, V, isle.IM, isle.II, end, h)
                 spent += HELD[g]
         for q in range(n):
-            spent -= (isle.ACC[q, 0] * (NEW[q, 0] - END[q, 0]) + isle.ACC[q, 1] * (NEW[q, 1] - END[q, 1])) / isle.IM[q]
+            spent += climbed(isle, q, NEW[q, 0] - END[q, 0], NEW[q, 1] - END[q, 1], NEW[q, 2] - END[q, 2])
         if spent <= budget:
             for g in range(len(groups.COMPONENT)):
                 s = groups.COMPONENT[g]

@@ -9,7 +9,7 @@ from ..compiled import kernel, uncounted
 from ..impacts.block import Block, gather, lay_out, owing
 from ..impacts.collide import finish, rejoin
 from ..impacts.islands import members, unite
-from ..impacts.layout import BODIES, ISLAND, JOINTED, KINKS, OPEN, PENDING, Scene
+from ..impacts.layout import BODIES, EXTERNAL, ISLAND, JOINTED, KINKS, LEDGER, OPEN, PENDING, Scene
 from ..impacts.settle import comes_to_rest
 from ..impacts.spans import dismiss
 from ..joints.scratch import BEFORE as LOCAL_BEFORE
@@ -18,6 +18,7 @@ from ..layout import IM, OWNER
 from ..rows.blocks import CONVERGED, D_NORMAL, D_TANGENTIAL, OUT_SIZE, SCALE_LOCK, TRUNCATED
 from ..rows.build import aim, conserves, rates
 from ..rows.energy import scale_of, works
+from ..sustained.ledger import carried
 from .columns import fill_free, fill_group, make_columns, push_columns, weigh
 from .component import answer, ready
 from .gathered import find_places, gather_component
@@ -136,6 +137,9 @@ def collide(A: Scene, J: Joints, disks: int, a: int, b: int, t: float) -> tuple[
         push_columns(C, L, rows, 1.0, V)
     else:
         OUT[D_NORMAL] += energy_of(block, BEFORE, n) - energy_of(block, FITTED, n)
+    # What else has changed is the work of joints: of those that hang on what moves, or did not fit before.
+    work = energy_of(block, V, n) - energy_of(block, BEFORE, n) + OUT[D_NORMAL] + OUT[D_TANGENTIAL]
+    A.PAR[LEDGER + EXTERNAL] += work - carried(P, Q, ROWS, L, V, block.IM, rows)
     finish(A, block, n, m, L, OUT, status, t)
     A.STATE[i, KINKS] += 1
     if A.BODY[j, IM] > 0.0:
