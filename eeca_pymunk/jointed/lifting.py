@@ -13,11 +13,13 @@ from ..impacts.spans import Local
 from ..joints.layout import STORED
 from ..rows.build import normal_rate
 from ..rows.layout import GAP, K_N
-from .columns import Columns, fill_free, fill_group, make_columns, weigh
+from .advance import Motion
+from .columns import Columns, fill_group, weigh
 from .component import close_joints, ready
 from .gathered import find_places, gather_component
 from .groups import Groups
 from .layout import Joints
+from .motors import drives
 
 _SLOP = 1e-9  # overlap over the size of the bodies, that is left alone
 _SWEEPS = 40
@@ -57,13 +59,14 @@ def climbed(isle: Local, q: int, x: float, y: float, turn: float) -> float:
 @kernel
 def lift(
     A: Scene, J: Joints, isle: Local, groups: Groups, P: IntArray, Q: IntArray, ROWS: FloatArray, m: int, n: int,
-    V: FloatArray, WAY: FloatArray, END: FloatArray, end: float, h: float, budget: float,
+    motion: Motion, end: float, h: float, budget: float, C: Columns,
 ) -> float:  # fmt: skip
-    """Lift the poses END of an island by at most what `budget` pays; the energy that it costs.
+    """Lift the poses at the end of an island's motion by at most what `budget` pays; the energy that it costs.
 
     The cost is -(m a.D + I alpha dtheta) for displacements D, and what springs hold more. Joints hold: D goes along
     them, and what is left of second order is closed.
     """
+    V, WAY, END = motion.V, motion.WAY, motion.END
     size = np.inf
     for q in range(n):
         size = min(size, isle.EXTENT[q])
@@ -73,12 +76,11 @@ def lift(
         deepest = min(deepest, GAPS[i])
     if deepest >= -_SLOP * size or not budget > 0.0:
         return 0.0
-    C = make_columns(groups, P, Q, m)
-    fill_free(groups, C, P, Q, ROWS, isle.IM, isle.II, m)
     NOTHING, INDEX = np.zeros_like(V), np.full(len(isle.IM), -1, np.int64)
     for g in range(len(groups.COMPONENT)):
         s = groups.COMPONENT[g]
-        if s >= 0:
+        # Where joints do nothing but hold, bodies answer as they did in the span.
+        if s >= 0 and drives(J, s):
             gather_component(A, J, s, END, V, NOTHING, isle.IM, isle.II, end, h)
             places = find_places(A, J, s, INDEX)
             if ready(J, s, 2.0, False):
@@ -103,7 +105,11 @@ def lift(
                 NEW[q, c] += part * D[q, c]
         for g in range(len(groups.COMPONENT)):
             s = groups.COMPONENT[g]
-            if s >= 0:
+            moves = 0.0
+            for w in range(groups.FIRST[g], groups.FIRST[g + 1]):
+                for c in range(3):
+                    moves = max(moves, abs(D[groups.BODY[w], c]))
+            if s >= 0 and moves > 0.0:
                 HELD[g] = close_joints(A, J, s, END, NEW, V, isle.IM, isle.II, end, h)
                 spent += HELD[g]
         for q in range(n):

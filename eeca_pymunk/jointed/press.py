@@ -19,11 +19,12 @@ from ..impacts.coming import before_end, sweeps_of_crowd
 from ..impacts.islands import CROWD
 from ..impacts.layout import Scene
 from ..impacts.spans import Local
+from ..joints.scratch import NEAR
 from ..rows.build import conserves, normal_rate, rates, tangent_rate
 from ..rows.layout import SURFACE, UN, UT
 from ..sustained.targets import target
 from .advance import AS_IT_IS, NOT_AT_ALL, Motion, advance, farthest_apart
-from .columns import fill_free, leave_out, make_columns, push_columns, weigh
+from .columns import Columns, fill_free, leave_out, push_columns, weigh
 from .groups import Groups
 from .layout import Joints
 from .newton import FEW, solve_columns
@@ -38,6 +39,7 @@ _FINE, _REST_FINE = 1e-9, 1e-12  # residual of the sweeps, likewise
 _LOCKS = 10
 SOME = 12  # contacts from which on the span before an impact, which is solved again after it, is solved roughly
 _FALLS = 0.3  # of what velocities are apart, with which they do not come to agree within the rounds
+_NEAR = 1e-10  # error of joints over the size of a component, as a way in h
 _CHORD = 3  # steps of the components between which their answers are taken to be the same
 
 
@@ -60,14 +62,14 @@ def lost(P: IntArray, Q: IntArray, ROWS: FloatArray, L: FloatArray, WAY: FloatAr
 def press(
     A: Scene, J: Joints, isle: Local, groups: Groups, P: IntArray, Q: IntArray, ROWS: FloatArray, L: FloatArray,
     EXPECTED: FloatArray, m: int, n: int, t: float, h: float, slow: float, fast: float, pull: float, owed: float,
-    motion: Motion,
+    motion: Motion, C: Columns,
 ) -> bool:  # fmt: skip
     """Impulses L (in: guesses) of the m contacts of an island, and the motion under them; whether they have converged.
 
     Args:
         slow, fast, pull: speeds and acceleration of the island.  owed: energy >= 0 that it has to lose at least.
+        C: columns of the contacts; out, those of their last solution.
     """
-    C = make_columns(groups, P, Q, m)
     fill_free(groups, C, P, Q, ROWS, isle.IM, isle.II, m)
     rates(P, Q, ROWS, isle.V, m)
     elastic = conserves(ROWS, m)
@@ -84,6 +86,8 @@ def press(
         rounds = _PART_OUTER if part else _MANY_OUTER
         if n >= CROWD:
             most = sweeps_of_crowd(t)
+    # Where many contacts do not come to an end, joints come near enough until the last step of the components.
+    J.FOUND[NEAR] = _NEAR if m > FEW and not elastic and not rests else 0.0
     FORESEEN = np.empty((len(isle.IM), 3))
     converged, best, LEAST, USED, hopeless, agreed = False, np.inf, L.copy(), L.copy(), False, False
     for outer in range(rounds):
@@ -126,8 +130,10 @@ def press(
             L[:] = USED
             agreed = True
             break
-    if not agreed:
+    if not agreed or J.FOUND[NEAR] > 0.0:
+        J.FOUND[NEAR] = 0.0
         advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, NOT_AT_ALL)
+    if not agreed:
         if not farthest_apart(motion.V, FORESEEN, isle.EXTENT, n) <= best:
             L[:] = LEAST
             advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, NOT_AT_ALL)

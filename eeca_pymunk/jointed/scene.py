@@ -13,6 +13,7 @@ from ..joints.plan import make_plan, room_for
 from ..joints.scratch import (
     BODY_0,
     BODY_1,
+    FOUND,
     HINGE_COLUMNS,
     LINK_COLUMNS,
     LOCAL_COLUMNS,
@@ -74,7 +75,7 @@ class JointedLoop(EventLoop):
         self.joints = Joints(
             joint, tie, self._partner, span, member, link, np.zeros((room.joints, HINGE_COLUMNS)),
             np.zeros((room.bodies, LOCAL_COLUMNS)), np.zeros((room.bodies, NODE_COLUMNS), np.int64),
-            np.zeros(room.matrix), np.zeros(room.right), np.zeros(room.scratch), np.zeros((6, 6)), np.zeros(5),
+            np.zeros(room.matrix), np.zeros(room.right), np.zeros(room.scratch), np.zeros((6, 6)), np.zeros(FOUND),
             np.zeros(8), np.zeros(room.rows, np.int64), of,
             np.zeros((count, JOINT_COLUMNS)), np.zeros((count, TIE_COLUMNS), np.int64),
             np.zeros((max(components, 1), STEPPED_COLUMNS)), tally,

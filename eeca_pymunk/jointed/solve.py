@@ -64,13 +64,14 @@ def fit(
     sign in every step. What this costs is booked.
     """
     NOTHING = np.zeros_like(isle.V)
+    # One more, for GROUP -1.
+    PUSHED = np.zeros(len(groups.COMPONENT) + 1, np.int64)
+    for i in range(m):
+        if L[i, 0] > 0.0:
+            PUSHED[groups.GROUP[P[i]] + 1] = PUSHED[groups.GROUP[Q[i]] + 1] = 1
     for g in range(len(groups.COMPONENT)):
         s = groups.COMPONENT[g]
-        pushed = False
-        for i in range(m):
-            on = groups.GROUP[P[i]] == g or groups.GROUP[Q[i]] == g
-            pushed = pushed or (on and L[i, 0] > 0.0)
-        if s < 0 or not pushed:
+        if s < 0 or PUSHED[g + 1] == 0:
             continue
         length = gather_component(A, J, s, motion.END, motion.V, NOTHING, isle.IM, isle.II, end, h)
         fit_speeds(A, J, s, length)
@@ -151,16 +152,16 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
             isle.PAIRS, p, A.SHAPE, A.RULE, A.LINK, A.VERTEX, A.WORK, isle.POSE, moved(isle.POSE, isle.V, 0.5 * h),
             isle.V, REACH, isle.EXTENT, isle.IM, isle.II, h, k == n, P, Q, ROWS, KEY, NOW, THEN,
         )  # fmt: skip
+    C = make_columns(groups, P, Q, m)
     if m > 0:
         recall(KEY, m, A.KEYS, A.FORCES, A.PAR[STAMP], h, L, EXPECTED)
         owed = max(-A.RESTING[root, LOST], 0.0)
         if not press(
-            A, J, isle, groups, P, Q, ROWS, L, EXPECTED, m, n, t, h, slow, fast, pull, owed, motion
+            A, J, isle, groups, P, Q, ROWS, L, EXPECTED, m, n, t, h, slow, fast, pull, owed, motion, C
         ):  # fmt: skip
             COUNT[UNMET] += 1
         remember_loads(ROWS, KEY, L, m, h, A.KEYS, A.FORCES, COUNT[REMEMBERED:], A.PAR[STAMP])
     if m == 0:
-        C = make_columns(groups, P, Q, 0)
         advance(A, J, isle, groups, P, Q, ROWS, L, 0, t, h, motion, C, NOT_AT_ALL)
     book_turning(A, J, isle, groups, motion, n)
     # Bodies are lifted at the end of the span, not on the way: the way would be as steep as the span is short.
@@ -168,7 +169,7 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
     if lossy and m > 0:
         if not before_end(A, t + h):
             budget = lost(P, Q, ROWS, L, motion.WAY, m, h) + A.RESTING[root, LOST]
-            spent = lift(A, J, isle, groups, P, Q, ROWS, m, n, motion.V, motion.WAY, motion.END, t + h, h, budget)
+            spent = lift(A, J, isle, groups, P, Q, ROWS, m, n, motion, t + h, h, budget, C)
             for g in range(len(groups.COMPONENT)):
                 if groups.COMPONENT[g] >= 0:
                     J.STEPPED[groups.COMPONENT[g], LIFTED] = spent

@@ -35,6 +35,7 @@ from .scratch import (
     LEAD,
     LINEAR_STEP,
     MOBILITY,
+    NEAR,
     POSE,
     POSES,
     PUSHED,
@@ -170,7 +171,8 @@ def solve(
     momentum holds to round-off. Given up after 25 iterations, or 6 in which the error did not fall. Factors serve for
     as long as errors fall by _FALLS with them, the dual system where they do with fresh ones.
     LINEAR_STEP: one linear system. POSES: until g is on its targets, at most 8 times. SPEEDS: see `correct`; what was
-    before stays at KEPT. These two take h = 2. found[2:5] are scratch.
+    before stays at KEPT. These two take h = 2. found[2:5] are scratch; found[NEAR], of a STEP, is the error of g and of
+    the balance that is near enough, if more than round-off: momentum is balanced all the same.
     """
     begin(what, joint, hinge, link, joints, local, node, bodies, h)
     best, last, stalls = 1e300, 1e300, 0
@@ -194,7 +196,7 @@ def solve(
         if what == STEP:
             floor = LASTING_ROUND_OFF if lasting else FLOOR if stalls > 1 else ROUND_OFF
             at_floor = iteration > since + 1 and worst > 0.5 * best and best < floor
-            if iteration > 0 and (worst <= TOLERANCE or at_floor):
+            if iteration > 0 and (worst <= max(TOLERANCE, found[NEAR]) or at_floor):
                 settle(local, bodies, h)
                 return iteration
             # What began next to its solution has not far to fall.

@@ -19,6 +19,7 @@ from .scratch import (
     CAYLEY,
     COLUMN,
     FIRST,
+    FOUND,
     FREE,
     FREEDOMS,
     HINGE_COLUMNS,
@@ -119,7 +120,7 @@ class Islands:
         self._node = np.zeros((room.bodies, NODE_COLUMNS), np.int64)
         self._matrix, self._right = np.zeros(room.matrix), np.zeros(room.right)
         self._more, self._pivots = np.zeros(room.scratch), np.zeros(room.rows, np.int64)
-        self._stiff, self._found, self._part = np.zeros((6, 6)), np.zeros(5), np.zeros(LEDGER_COLUMNS)
+        self._stiff, self._found, self._part = np.zeros((6, 6)), np.zeros(FOUND), np.zeros(LEDGER_COLUMNS)
         self.ledger, self.status = np.zeros((self.islands, LEDGER_COLUMNS)), np.zeros(self.islands, np.int64)
 
     def step(self, bodies: FloatArray, h: float) -> int:
