@@ -39,7 +39,7 @@ _FINE, _REST_FINE = 1e-9, 1e-12  # residual of the sweeps, likewise
 _LOCKS = 10
 SOME = 12  # contacts from which on the span before an impact, which is solved again after it, is solved roughly
 _FALLS = 0.3  # of what velocities are apart, with which they do not come to agree within the rounds
-_NEAR = 1e-10  # error of joints over the size of a component, as a way in h
+_NEAR = 1e-9  # error of joints over the size of a component, as a way in h
 _CHORD = 3  # steps of the components between which their answers are taken to be the same
 
 
