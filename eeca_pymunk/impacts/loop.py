@@ -9,8 +9,10 @@ from __future__ import annotations
 import math
 
 from ..compiled import inlined, kernel, uncounted
-from ..layout import DUE, IM, OWNER
+from ..fetching import fetch
+from ..layout import AX, DUE, IM, OWNER, X
 from ..pairs.grid import renew
+from ..pairs.layout import AT_X, START
 from ..pairs.lists import mark_pair
 from .block import arrive
 from .booking import end_span
@@ -114,6 +116,39 @@ def give_up(A: Scene, i: int, j: int) -> bool:
     return carried and max(A.STATE[i, EVENTS], A.STATE[j, EVENTS]) >= _SQUEEZED
 
 
+@inlined
+def fetch_body(A: Scene, i: int) -> None:
+    """Have what an event of body i is about brought."""
+    fetch(A.BODY, i, X)
+    fetch(A.BODY, i, AX)
+    fetch(A.STATE, i, OWN)
+
+
+@inlined
+def look_ahead(A: Scene, disks: int, now: int) -> None:
+    """Have the memory bring what the events after that of body `now` are about: numbers of later ones first, as they
+    say where to find the rest."""
+    BODY, LIST = A.BODY, A.LIST
+    n = min(A.COUNT[HEAP], 3)
+    for k in range(1, n):
+        i = A.HEAP_BODY[k]
+        fetch_body(A, i)
+        if i < disks:
+            fetch(LIST, i, START)
+    if n > 0:
+        i = A.HEAP_BODY[0]
+        if i < disks:
+            fetch(A.POOL, LIST[i, START], 0)
+            fetch(A.MARK, i, AT_X)
+            o = A.STATE[i, OTHER]
+            if 0 <= o < disks:
+                fetch_body(A, o)
+                fetch(LIST, o, START)
+    o = A.STATE[now, OTHER]
+    if 0 <= o < disks:
+        fetch(A.POOL, LIST[o, START], 0)
+
+
 @uncounted
 def run(A: Scene, disks: int, may_rest: bool) -> int:
     """Follow the events until the end of the step, or the next one that is a block (BLOCK_DUE) or wants more room.
@@ -140,6 +175,7 @@ def run(A: Scene, disks: int, may_rest: bool) -> int:
         if COUNT[LOGGED] == A.LOG.shape[0]:
             return LOG_FULL
         COUNT[HEAP] = pop(TIME, OF, COUNT[HEAP])
+        look_ahead(A, disks, i)
         s, o = STATE[i, OWN], STATE[i, OTHER]
         if o == LEAVE:
             if i < disks and STATE[i, ISLAND] < 0:

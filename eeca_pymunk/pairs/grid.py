@@ -13,7 +13,8 @@ import math
 
 from ..arrays import FlagArray, FloatArray, IntArray, PoolArray
 from ..compiled import uncounted
-from ..layout import BOUND
+from ..fetching import fetch
+from ..layout import BOUND, X
 from .layout import (
     AT_X,
     AT_Y,
@@ -34,6 +35,7 @@ from .layout import (
     REACH,
     ROOM,
     START,
+    WALKED,
 )  # fmt: skip
 from .lists import append, centre, course, may_meet, place_in, remove
 from .walls import seek_walls
@@ -122,11 +124,40 @@ def join_chosen(
 ) -> bool:
     """`join` s with the n shapes in INFO[CHOSEN:] that are not in its list."""
     for k in range(n):
+        fetch(LIST, INFO[CHOSEN + k], START)
+        fetch(BODY, INFO[CHOSEN + k], X)
+    for k in range(n):
         o = INFO[CHOSEN + k]
         # Cells may share a place of the table: a shape may come up more than once.
         if place_in(LIST, POOL, s, o) < 0 and not join(BODY, LINK, LIST, POOL, FLAG, INFO, s, o):
             return False
     return True
+
+
+@uncounted
+def walk(
+    BODY: FloatArray, LINK: IntArray, MARK: FloatArray, LIST: IntArray, POOL: PoolArray, FLAG: FlagArray,
+    INFO: IntArray, s: int, n: int,
+) -> bool:  # fmt: skip
+    """`join` s with the shapes near its margin circle in the n places of the grid whose first ones are in
+    INFO[WALKED:]. One step in each place at a time: so their rows come at the same time."""
+    x, y, radius, chosen = MARK[s, AT_X], MARK[s, AT_Y], MARK[s, REACH], 0
+    while n > 0:
+        more = 0
+        for k in range(n):
+            o = INFO[WALKED + k]
+            INFO[CHOSEN + chosen] = o
+            chosen += 1 if near(MARK, o, x, y, radius) else 0
+            after = int(MARK[o, NEXT])
+            fetch(MARK, after, AT_X)
+            INFO[WALKED + more] = after
+            more += 1 if after >= 0 else 0
+            if chosen == ROOM:
+                if not join_chosen(BODY, LINK, LIST, POOL, FLAG, INFO, s, chosen):
+                    return False
+                chosen = 0
+        n = more
+    return join_chosen(BODY, LINK, LIST, POOL, FLAG, INFO, s, chosen)
 
 
 @uncounted
@@ -138,7 +169,7 @@ def seek_moving(
     the pool is full."""
     x, y = MARK[s, AT_X], MARK[s, AT_Y]
     radius = MARK[s, REACH]
-    mask, chosen = HEAD.shape[0] - 1, 0
+    mask = HEAD.shape[0] - 1
     length = 0.5 * GRID[CELL_LENGTH]
     for level in range(LEVEL_COUNT):
         length *= 2.0
@@ -157,18 +188,18 @@ def seek_moving(
                     if not join(BODY, LINK, LIST, POOL, FLAG, INFO, s, o):
                         return False
             continue
+        heads = 0
         for column in range(west, east + 1):
             for row in range(south, north + 1):
                 o = HEAD[bucket(level, column, row, mask)]
-                while o >= 0:
-                    INFO[CHOSEN + chosen] = o
-                    chosen += 1 if near(MARK, o, x, y, radius) else 0
-                    if chosen == ROOM:
-                        if not join_chosen(BODY, LINK, LIST, POOL, FLAG, INFO, s, chosen):
-                            return False
-                        chosen = 0
-                    o = int(MARK[o, NEXT])
-    return join_chosen(BODY, LINK, LIST, POOL, FLAG, INFO, s, chosen)
+                fetch(MARK, o, AT_X)
+                INFO[WALKED + heads] = o
+                heads += 1 if o >= 0 else 0
+                if heads == ROOM or (heads > 0 and column == east and row == north):
+                    if not walk(BODY, LINK, MARK, LIST, POOL, FLAG, INFO, s, heads):
+                        return False
+                    heads = 0
+    return True
 
 
 @uncounted
@@ -176,6 +207,9 @@ def part(LIST: IntArray, POOL: PoolArray, FLAG: FlagArray, INFO: IntArray, MARK:
     """Leave in the list of s the moving shapes that are near its margin circle, with their flags, and take s out of the
     lists of the others; how many are left."""
     start, kept = LIST[s, START], 0
+    for q in range(start, start + LIST[s, NUMBER]):
+        fetch(MARK, int(POOL[q]), AT_X)
+        fetch(LIST, int(POOL[q]), START)
     x, y, radius = MARK[s, AT_X], MARK[s, AT_Y], MARK[s, REACH]
     for q in range(start, start + LIST[s, NUMBER]):
         o = int(POOL[q])
