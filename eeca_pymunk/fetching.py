@@ -36,12 +36,13 @@ def _compiled() -> Any:
     def fetch(typing: Any, table: Any, row: Any, column: Any) -> Any:
         def bring(context: Any, builder: Any, signature: Any, args: Any) -> Any:
             array = context.make_array(signature.args[0])(context, builder, args[0])
-            word, number = ir.IntType(64), ir.IntType(32)
-            row, column = (context.cast(builder, a, k, types.int64) for a, k in zip(args[1:], signature.args[1:]))
-            place = row
+            number = ir.IntType(32)
+            place, column = (
+                context.cast(builder, a, k, types.int64) for a, k in zip(args[1:], signature.args[1:], strict=True)
+            )
             if signature.args[0].ndim == 2:
                 width = builder.extract_value(array.shape, 1)
-                place = builder.add(builder.mul(row, width), column)
+                place = builder.add(builder.mul(place, width), column)
             line = builder.bitcast(builder.gep(array.data, [place]), ir.IntType(8).as_pointer())
             kind = ir.FunctionType(ir.VoidType(), [line.type, number, number, number])
             ask = builder.module.declare_intrinsic("llvm.prefetch", [line.type], kind)
