@@ -55,8 +55,8 @@ def lift(
 ) -> float:  # fmt: skip
     """Lift the poses END of an island by at most what `budget` pays; the energy that it costs.
 
-    The cost is -m a.D for displacements D, turns included, and what springs hold more. Joints hold: D goes along them, and what is left
-    of second order is closed.
+    The cost is -m a.D for displacements D, turns included, and what springs hold more. Joints hold: D goes along them,
+    and what is left of second order is closed.
     """
     size = np.inf
     for q in range(n):
