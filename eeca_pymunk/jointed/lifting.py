@@ -7,12 +7,13 @@ import math
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel, uncounted
+from ..compiled import kernel
 from ..impacts.layout import Scene
 from ..impacts.spans import Local
 from ..joints.layout import STORED
 from ..rows.build import normal_rate
 from ..rows.layout import GAP, K_N
+from ..sustained.ledger import against
 from .advance import Motion
 from .columns import Columns, fill_group, weigh
 from .component import close_joints, ready
@@ -49,13 +50,6 @@ def raise_gaps(
             return
 
 
-@uncounted
-def climbed(isle: Local, q: int, x: float, y: float, turn: float) -> float:
-    """Energy that it costs to move body q of an island by (x, y, turn) against the forces on it."""
-    cost = -(isle.ACC[q, 0] * x + isle.ACC[q, 1] * y) / isle.IM[q]
-    return float(cost - isle.ACC[q, 2] * turn / isle.II[q]) if isle.II[q] > 0.0 else cost
-
-
 @kernel
 def lift(
     A: Scene, J: Joints, isle: Local, groups: Groups, P: IntArray, Q: IntArray, ROWS: FloatArray, m: int, n: int,
@@ -63,8 +57,8 @@ def lift(
 ) -> float:  # fmt: skip
     """Lift the poses at the end of an island's motion by at most what `budget` pays; the energy that it costs.
 
-    The cost is -(m a.D + I alpha dtheta) for displacements D, and what springs hold more. Joints hold: D goes along
-    them, and what is left of second order is closed.
+    The cost is -m a.D for displacements D, turns included, and what springs hold more. Joints hold: D goes along them,
+    and what is left of second order is closed.
     """
     V, WAY, END = motion.V, motion.WAY, motion.END
     size = np.inf
@@ -92,7 +86,7 @@ def lift(
     cost, far = 0.0, 0.0
     for q in range(n):
         far = max(far, (math.sqrt(D[q, 0] ** 2 + D[q, 1] ** 2) + abs(D[q, 2]) * isle.EXTENT[q]) / isle.EXTENT[q])
-        cost += climbed(isle, q, D[q, 0], D[q, 1], D[q, 2])
+    cost -= against(isle.ACC, isle.IM, isle.II, n, D)
     part = min(1.0, _MOST / far) if far > 0.0 else 0.0
     if cost * part > 0.5 * budget:
         part = 0.5 * budget / cost
@@ -112,8 +106,7 @@ def lift(
             if s >= 0 and moves > 0.0:
                 HELD[g] = close_joints(A, J, s, END, NEW, V, isle.IM, isle.II, end, h)
                 spent += HELD[g]
-        for q in range(n):
-            spent += climbed(isle, q, NEW[q, 0] - END[q, 0], NEW[q, 1] - END[q, 1], NEW[q, 2] - END[q, 2])
+        spent -= against(isle.ACC, isle.IM, isle.II, n, NEW - END)
         if spent <= budget:
             for g in range(len(groups.COMPONENT)):
                 s = groups.COMPONENT[g]

@@ -34,6 +34,8 @@ from ..impacts.layout import (
     Scene,
 )
 from ..impacts.spans import Local, dismiss, lay_out_island, open_contacts
+from ..joints.correct import book_fit
+from ..joints.layout import PROJECTED
 from ..joints.scratch import BEFORE, BODY_0, BODY_1, M_BODY
 from ..layout import AX, ELASTICITY
 from ..rows.build import normal_rate
@@ -75,6 +77,7 @@ def fit(
             continue
         length = gather_component(A, J, s, motion.END, motion.V, NOTHING, isle.IM, isle.II, end, h)
         fit_speeds(A, J, s, length)
+        book_fit(J.LOCAL, J.SPAN[s, BODY_1] - J.SPAN[s, BODY_0], PROJECTED, J.STEPPED[s])
         for w in range(J.SPAN[s, BODY_1] - J.SPAN[s, BODY_0]):
             body = J.MEMBER[J.SPAN[s, BODY_0] + w, M_BODY]
             if body < A.PLACE.shape[0] and A.PLACE[body] >= 0:

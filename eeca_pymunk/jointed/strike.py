@@ -20,7 +20,7 @@ from ..rows.build import aim, conserves, rates
 from ..rows.energy import scale_of, works
 from ..sustained.ledger import carried
 from .columns import fill_free, fill_group, make_columns, push_columns, weigh
-from .component import answer, ready
+from .component import answer, fit_speeds, ready
 from .gathered import find_places, gather_component
 from .groups import find_groups
 from .layout import Joints
@@ -31,13 +31,14 @@ _SWEEPS = 1000
 
 
 @uncounted
-def energy_of(block: Block, V: FloatArray, n: int) -> float:
-    """Kinetic energy of the n bodies of a block at velocities V."""
+def energy_of(block: Block, V: FloatArray, W: FloatArray, n: int) -> float:
+    """Kinetic energy of the n bodies of a block at velocities V - W."""
     total = 0.0
     for q in range(n):
-        total += 0.5 * (V[q, 0] * V[q, 0] + V[q, 1] * V[q, 1]) / block.IM[q]
+        x, y, spin = V[q, 0] - W[q, 0], V[q, 1] - W[q, 1], V[q, 2] - W[q, 2]
+        total += 0.5 * (x * x + y * y) / block.IM[q]
         if block.II[q] > 0.0:
-            total += 0.5 * V[q, 2] * V[q, 2] / block.II[q]
+            total += 0.5 * spin * spin / block.II[q]
     return total
 
 
@@ -92,15 +93,22 @@ def collide(A: Scene, J: Joints, disks: int, a: int, b: int, t: float) -> tuple[
         s = groups.COMPONENT[g]
         if s < 0:
             continue
-        gather_component(A, J, s, block.POSE, V, np.zeros_like(V), block.IM, block.II, t, 0.0)
+        length = gather_component(A, J, s, block.POSE, V, np.zeros_like(V), block.IM, block.II, t, 0.0)
         size = find_places(A, J, s, INDEX)
         PUSH = np.zeros((size, 3))
+        # Velocities that joints would not let through take no part in the impact.
+        along = carried_along(J, s)
+        if along:
+            fit_speeds(A, J, s, length)
+            for q in range(n):
+                if groups.GROUP[q] == g:
+                    for c in range(3):
+                        V[q, c] = J.LOCAL[INDEX[q], LOCAL_BEFORE + c]
         if not ready(J, s, 2.0, False):
             continue
         fill_group(J, groups, C, g, INDEX, False, P, Q, ROWS, rows, PUSH)
-        if carried_along(J, s):
+        if along:
             continue
-        # Velocities that joints would not let through take no part in the impact, and stay.
         PUSH[:] = 0.0
         for q in range(n):
             if groups.GROUP[q] == g:
@@ -136,10 +144,11 @@ def collide(A: Scene, J: Joints, disks: int, a: int, b: int, t: float) -> tuple[
         V[:] = BEFORE
         push_columns(C, L, rows, 1.0, V)
     else:
-        OUT[D_NORMAL] += energy_of(block, BEFORE, n) - energy_of(block, FITTED, n)
-    # What else has changed is the work of joints: of those that hang on what moves, or did not fit before.
-    work = energy_of(block, V, n) - energy_of(block, BEFORE, n) + OUT[D_NORMAL] + OUT[D_TANGENTIAL]
-    A.PAR[LEDGER + EXTERNAL] += work - carried(P, Q, ROWS, L, V, block.IM, rows)
+        OUT[D_NORMAL] += energy_of(block, BEFORE, FITTED, n)
+    # Joints do all that contacts do not account for, which is nothing unless they hang on something that moves.
+    REST = np.zeros_like(V)
+    gained = energy_of(block, V, REST, n) - energy_of(block, BEFORE, REST, n) + OUT[D_NORMAL] + OUT[D_TANGENTIAL]
+    A.PAR[LEDGER + EXTERNAL] += gained - carried(P, Q, ROWS, L, V, block.IM, rows)
     finish(A, block, n, m, L, OUT, status, t)
     A.STATE[i, KINKS] += 1
     if A.BODY[j, IM] > 0.0:
