@@ -33,6 +33,8 @@ _ready = 0  # how many of these have been handed to numba
 class Kernel(Generic[P, R]):
     """A function that numba compiles at its first call. `python` is the function as it was written.
 
+    To call `run` takes half a microsecond less than to call the kernel.
+
     numba makes machine code of it twice: for other kernels, which take it for `inner`, and, only if Python calls it,
     for Python. What lets Python call a kernel takes longer to compile than many a kernel.
     """
@@ -61,7 +63,7 @@ class Kernel(Generic[P, R]):
         return types.Dispatcher(self.inner)
 
 
-def kernel(python: Callable[P, R]) -> Callable[P, R]:
+def kernel(python: Callable[P, R]) -> Kernel[P, R]:
     """Compile this function when it is first called, together with all kernels that it calls."""
     return Kernel(python)
 

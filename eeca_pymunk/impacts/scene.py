@@ -115,11 +115,11 @@ class EventLoop:
     ) -> int:  # fmt: skip
         """See `step.step`; a negative answer is one of `transfer.py`."""
         disks, lossy = self.disks, self.lossy
-        status = step(self.table, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, disks, lossy, -1)
+        status = step.run(self.table, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, disks, lossy, -1)
         while status <= ROOM_FOR_LISTS:
             self._grow(status)
             bits = FORCES if STATES[READ, :, 6:].any() else 0
-            status = step(self.table, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, disks, lossy, bits)
+            status = step.run(self.table, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, disks, lossy, bits)
         return status
 
     def _grow(self, wish: int) -> None:
@@ -206,9 +206,9 @@ class Together(EventLoop):
     ) -> int:  # fmt: skip
         """See `together.step_together`; a negative answer is one of `transfer.py`."""
         usual = self._usual
-        status = step_together(self.table, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, usual, -1)
+        status = step_together.run(self.table, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, usual, -1)
         while status <= ROOM_FOR_LISTS:
             self._grow(status)
             bits = FORCES if STATES[READ, :, 6:].any() else 0
-            status = step_together(self.table, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, usual, bits)
+            status = step_together.run(self.table, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, usual, bits)
         return status

@@ -90,11 +90,13 @@ class JointedLoop(EventLoop):
         disks, lossy, ties, bits = self.disks, self.lossy, self._ties, -1
         while True:
             if self._together:
-                status = step_together_jointed(
+                status = step_together_jointed.run(
                     self.table, ties, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, self._usual, bits
                 )
             else:
-                status = step_jointed(self.table, ties, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, disks, lossy, bits)
+                status = step_jointed.run(
+                    self.table, ties, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, disks, lossy, bits
+                )
             if status > ROOM_FOR_LISTS:
                 return status
             self._grow(status)
