@@ -215,7 +215,8 @@ class Rehearsal:
                 self._failure = error
             now = self.bodies.gather()
             if was is not None and now is not None:
-                changes[:] += now - was
+                # pymunk makes nan of the spins of bodies that do not turn and that gears hold: ours does not.
+                changes[:] += np.where(np.isnan(was), 0.0, now - was)
 
         return call
 
