@@ -174,6 +174,7 @@ class Rehearsal:
         with ExitStack() as stack:
             if joints is not None:
                 mute = [item for item in joints.calling if item.pre_solve is None or item.a.space is None]
+                stack.enter_context(joints.partners.kept())
                 stack.enter_context(private_joints.silent(mute))
                 stack.enter_context(private_joints.with_laws(joints.own, joints.laws()))
                 stack.enter_context(self._watched_joints([item for item in joints.before if item not in mute]))
