@@ -77,7 +77,7 @@ def fit(
             continue
         length = gather_component(A, J, s, motion.END, motion.V, NOTHING, isle.IM, isle.II, end, h)
         fit_speeds(A, J, s, length)
-        book_fit(J.LOCAL, J.SPAN[s, BODY_1] - J.SPAN[s, BODY_0], PROJECTED, J.STEPPED[s])
+        book_fit(J.LOCAL, J.SPAN[s, BODY_1] - J.SPAN[s, BODY_0], J.STEPPED[s], int(PROJECTED))
         for w in range(J.SPAN[s, BODY_1] - J.SPAN[s, BODY_0]):
             body = J.MEMBER[J.SPAN[s, BODY_0] + w, M_BODY]
             if body < A.PLACE.shape[0] and A.PLACE[body] >= 0:

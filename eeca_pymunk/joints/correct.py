@@ -26,8 +26,8 @@ def kinetic(local: FloatArray, bodies: int, column: int) -> float:
 
 
 @uncounted
-def book_fit(local: FloatArray, bodies: int, loss: int, ledger: FloatArray) -> None:
-    """Book the change of velocities, from KEPT to BEFORE, that made them fit their joints; what is lost at `loss`.
+def book_fit(local: FloatArray, bodies: int, ledger: FloatArray, loss: int) -> None:
+    """Book the change of velocities, from KEPT to BEFORE, that made them fit their joints, as this `loss`.
 
     It is orthogonal to what fits, so that (1/2) dv.M dv is lost; the rest of the change of kinetic energy is the work
     of supports, which is 0 unless they move.

@@ -88,7 +88,7 @@ def step_with_limits(
             int(SPEEDS), joint, hinge, link, joints, local, node, bodies, 2.0, length, loops, 0.0, span, matrix, right,
             more, pivots, stiff, found,
         )  # fmt: skip
-        book_fit(local, bodies, LIMITED, ledger)
+        book_fit(local, bodies, ledger, int(LIMITED))
         for k in range(joints):
             hinge[k, LAM] = hinge[k, LAM + 1] = 0.0
             if link[k, L_SIDE] != 0 and link[k, L_SOFT] == 0:

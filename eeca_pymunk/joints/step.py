@@ -193,7 +193,7 @@ def island_step(
                 ledger[CLOSED] += taken
                 ledger[STORED] += taken
             else:
-                book_fit(local, bodies, PROJECTED, ledger)
+                book_fit(local, bodies, ledger, int(PROJECTED))
         save(local, bodies)
     if needs >= 2:
         look(joint, hinge, link, joints, local, node, bodies, stiff)

@@ -18,14 +18,13 @@ CONSTRAINTS = 10
 def constraint(chance: Random, a: pymunk.Body, b: pymunk.Body, unit: float) -> pymunk.Constraint:
     """Any of pymunk's ten, between places of the bodies that need not be near each other."""
     p, q = ((chance.uniform(-0.3, 0.3) * unit, chance.uniform(-0.3, 0.3) * unit) for _ in range(2))
-    force = unit**2 if unit > 0.0 else 0.0
     kinds: list[pymunk.Constraint] = [
         pymunk.PinJoint(a, b, p, q),
         pymunk.PivotJoint(a, b, tuple((a.position + b.position) / 2)),
         pymunk.SlideJoint(a, b, p, q, 0.2 * unit, 2.0 * unit),
         pymunk.GrooveJoint(a, b, (-unit, 0.0), (unit, 0.2 * unit), p),
         pymunk.DampedSpring(a, b, p, q, 0.8 * unit, chance.choice([5.0, 200.0]), chance.choice([0.0, 0.5])),
-        pymunk.DampedRotarySpring(a, b, 0.3, 2.0 * force, 0.1 * force),
+        pymunk.DampedRotarySpring(a, b, 0.3, 2.0 * unit**2, 0.1 * unit**2),
         pymunk.GearJoint(a, b, 0.0, chance.choice([1.0, -2.0])),
         pymunk.RotaryLimitJoint(a, b, -0.5, 0.5),
         pymunk.RatchetJoint(a, b, 0.0, 0.5),
