@@ -22,8 +22,9 @@ from ..pairs.rules import barred, law
 from ..rows.build import normal_rate, place_row
 from ..rows.layout import ELASTICITY as ELASTIC
 from ..rows.layout import K_N, ROW_COLUMNS
+from ..sustained.contacts import CROWD
 from .booking import end_span
-from .islands import CROWD, remembered, worn
+from .islands import remembered, worn
 from .layout import BODIES as SIZE_OF
 from .layout import DT, FIRST_SHAPE, ISLAND, JOINTED, LOST, NEXT_TIED, OPEN, SHAPES, STAMP, TIED, Scene
 from .strike import move_to, touches

@@ -14,8 +14,8 @@ from ..compiled import uncounted
 from ..layout import AX, AY, EXTENT, FRICTION, SPIN, TWIST, VX, VY
 from ..pairs.rules import law
 from ..rows.equilibrium import bound
+from ..sustained.contacts import CROWD
 from ..sustained.statics import CALM, CALM_CROWD, STANDS
-from .islands import CROWD
 from .layout import (
     AFTER_ME,
     BETA,

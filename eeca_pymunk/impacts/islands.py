@@ -19,6 +19,7 @@ from ..layout import (
     Y,
 )
 from ..pairs.rules import law
+from ..sustained.contacts import CROWD
 from ..sustained.memory import find
 from .layout import (
     AFTER_ME,
@@ -38,7 +39,6 @@ from .layout import (
     Scene,
 )  # fmt: skip
 
-CROWD = 24  # bodies of an island, from which it is a crowd: hits spread in it, and solves of it are cut short
 _PLENTY = 3  # solves in a step of every body of the scene, on the average
 TOUCH = 1e-7  # gap relative to the smaller shape, within which shapes are in touch
 _STILL, _WAS_STILL = 1e-6, 1e-3  # speed relative to |a| dt, below which elastic contacts rest; if they did before

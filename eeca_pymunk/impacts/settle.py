@@ -127,9 +127,11 @@ def settle(A: Scene) -> int:
         if c > 0 and a == A.PUSHED_BY[c - 1, PUSH_A] and b == A.PUSHED_BY[c - 1, PUSH_B]:
             continue  # the other end of a face
         i, j = A.LINK[a, OWNER], A.LINK[b, OWNER]
+        i, j = (j, j) if BODY[i, IM] == 0.0 else (i, i if BODY[j, IM] == 0.0 else j)
+        if STATE[i, ISLAND] >= 0 and STATE[i, ISLAND] == STATE[j, ISLAND]:
+            continue  # together already
         if rests(A, a, b, 0.0, law(A.SHAPE, A.RULE, a, b)[0] < 1.0):
-            i = j if BODY[i, IM] == 0.0 else i
-            unite(A, i, i if BODY[j, IM] == 0.0 else j)
+            unite(A, i, j)
     for i in range(n):
         if A.MEMBER[i, TIED] >= 0:
             unite(A, i, A.MEMBER[i, TIED])

@@ -27,6 +27,7 @@ from ..layout import (
 from ..pairs.lists import mark_pair
 from ..rows.build import normal_rate, tangent_rate
 from ..rows.layout import ARM_NA, ARM_TA, GAP, K_N, NX, NY, ROW_COLUMNS, UN, UT
+from ..sustained.contacts import CROWD
 from ..sustained.ledger import LEDGER_SIZE, carried
 from ..sustained.step import LOCK as LOCK_OF
 from ..sustained.step import OUT_SIZE, STOOD, step_island
@@ -34,7 +35,7 @@ from ..sustained.step import POLISHES as POLISHES_OF
 from ..sustained.step import SWEEPS as SWEEPS_OF
 from .calm import calm, whirls
 from .coming import PARTS, before_end, hurried, pairs_of, span_of, stick_time, sweeps_of_crowd, way_of
-from .islands import CROWD, members
+from .islands import members
 from .layout import (
     AFTER_ME,
     BETA,

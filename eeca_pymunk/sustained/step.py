@@ -12,7 +12,7 @@ from ..rows.build import conserves, rates
 from ..rows.direct import SMALL
 from ..rows.energy import lock, works
 from ..rows.sweeps import velocities
-from .contacts import gather
+from .contacts import CROWD, NEAR, NEAR_CROWD, gather
 from .ledger import against, carried
 from .lifting import lifting
 from .memory import find, remember_loads
@@ -135,7 +135,7 @@ def step_island(
     THEN = np.empty((2, 5))
     m = gather(
         PAIRS, p, SHAPE, RULE, LINK, VERTEX, WORK, POSE, MIDDLE, V, REACH, EXTENT, IM, II, h,
-        k == n, A, B, ROWS, KEY, NOW, THEN,
+        k == n, NEAR if n < CROWD else NEAR_CROWD, A, B, ROWS, KEY, NOW, THEN,
     )  # fmt: skip
     if m < 0 or 2 * (COUNT[0] + m) > len(KEYS):
         return -1
