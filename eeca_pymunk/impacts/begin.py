@@ -13,6 +13,7 @@ from .layout import (
     BEFORE,
     BLOCKS,
     BUSY,
+    CARRIES,
     DAMPED,
     DIRECT,
     EVEN,
@@ -41,6 +42,7 @@ from .layout import (
     STILL_DUE,
     STORED,
     SWEEPS,
+    TIED,
     UNMET,
     Scene,
 )
@@ -73,10 +75,11 @@ def begin(A: Scene, WALK: IntArray) -> None:
     PAR[STAMP] += 1.0
     COUNT[PENDING], COUNT[PHASE] = -1, 0
     n, last = BODY.shape[0] - 1, PAR[LAST]
-    pulled, even = 0.0, True
+    pulled, even, carries = 0.0, True, A.RULE.shape[0] == 0
     quiet = COUNT[QUIET] > BUSY_FOR
     for i in range(n):
         STATE[i, EVENTS] = 0
+        carries = carries and A.MEMBER[i, TIED] < 0
         if not quiet:
             A.MEMBER[i, BUSY] = max(A.MEMBER[i, BUSY] - 1, 0)
         if not quiet and A.MEMBER[i, STILL] == 1 and stays(A, i, last):
@@ -97,3 +100,4 @@ def begin(A: Scene, WALK: IntArray) -> None:
         even = even and alike and STATE[i, ISLAND] < 0
     PAR[PULLED] = math.sqrt(pulled)
     COUNT[EVEN] = 1 if even else 0
+    COUNT[CARRIES] = 1 if carries else 0

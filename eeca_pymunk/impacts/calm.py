@@ -72,16 +72,28 @@ def hardly(bodies: int) -> float:
 
 
 @uncounted
+def settled(A: Scene, i: int) -> bool:
+    """Whether body i has hardly moved for long enough to be asked whether it stands."""
+    return bool(A.RESTING[i, CALM_FOR] >= _SURE and A.MEMBER[i, BUSY] == 0)
+
+
+@uncounted
+def wait(A: Scene, MINE: IntArray, n: int) -> None:
+    """The n bodies MINE are asked again much later, unless they stand in between."""
+    for q in range(n):
+        A.RESTING[MINE[q], CALM_FOR] = -min(_AGAIN + n // 4, _LATEST)
+
+
+@uncounted
 def calm(A: Scene, root: int, MINE: IntArray, n: int, t: float) -> float:
     """The speed relative to |a| dt at which the island of the n bodies MINE may come to a stand at instant t, 0 if it
     may not; it is asked again much later, unless it stood in between."""
     if t > 0.0 or A.PAR[PULLED] == 0.0 or A.COUNT[TOGETHER] > 0 or A.RULE.shape[0] > 0 or A.MEMBER[root, HITS] > 0:
         return 0.0
     for q in range(n):
-        if A.RESTING[MINE[q], CALM_FOR] < _SURE or A.MEMBER[MINE[q], BUSY] > 0:
+        if not settled(A, MINE[q]):
             return 0.0
-    for q in range(n):
-        A.RESTING[MINE[q], CALM_FOR] = -min(_AGAIN + n // 4, _LATEST)
+    wait(A, MINE, n)
     return hardly(n)
 
 

@@ -25,7 +25,7 @@ from ..pairs.rules import barred, law
 from ..rows.build import tangent_rate
 from ..rows.layout import FRICTION, K_T, UN, UT
 from ..sustained.contacts import CROWD
-from .islands import TOUCH, approach, remembered, rests
+from .islands import TOUCH, approach, carrier, remembered, rests
 from .layout import (
     BUSY,
     DT,
@@ -72,7 +72,7 @@ def pairs_of(A: Scene, root: int, t: float, lossy: bool, LOCAL: IntArray, MINE: 
             for w in range(A.LIST[s, START], A.LIST[s, START] + A.LIST[s, NUMBER]):
                 o = int(A.POOL[w])
                 j = LINK[o, OWNER]
-                if BODY[j, IM] > 0.0 and (STATE[j, ISLAND] != root or j < i):
+                if j < i if STATE[j, ISLAND] == root else not carrier(A, j):
                     continue
                 if barred(A.RULE, s, o):
                     continue

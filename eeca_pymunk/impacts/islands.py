@@ -24,6 +24,7 @@ from ..sustained.memory import find
 from .layout import (
     AFTER_ME,
     BODIES,
+    CARRIES,
     DT,
     EVEN,
     HITS,
@@ -35,6 +36,7 @@ from .layout import (
     PULLED,
     SOLVED,
     STAMP,
+    STILL,
     TIED,
     Scene,
 )  # fmt: skip
@@ -42,6 +44,12 @@ from .layout import (
 _PLENTY = 3  # solves in a step of every body of the scene, on the average
 TOUCH = 1e-7  # gap relative to the smaller shape, within which shapes are in touch
 _STILL, _WAS_STILL = 1e-6, 1e-3  # speed relative to |a| dt, below which elastic contacts rest; if they did before
+
+
+@uncounted
+def carrier(A: Scene, i: int) -> bool:
+    """Whether what rests on body i takes it for fixed: impulses do not move it, or it stands still."""
+    return bool(A.BODY[i, IM] == 0.0 or (A.COUNT[CARRIES] > 0 and A.MEMBER[i, STILL] == 1))
 
 
 @uncounted

@@ -130,6 +130,9 @@ def lay_out_island(A: Scene, MINE: IntArray, n: int, found: IntArray, t: float) 
         for c in range(3):
             POSE[q, c] = BODY[i, X + c] + V[q, c] * s
         IMS[q], IIS[q], SIZES[q] = BODY[i, IM], BODY[i, II], BODY[i, EXTENT]
+        if q >= n and IMS[q] > 0.0:
+            # It stands, and carries what moves.
+            V[q, 2], IMS[q], IIS[q] = 0.0, 0.0, 0.0
         FELT[q] = 0.0 if whirls(A, i) else SIZES[q]
         if q < n:
             for c in range(3):

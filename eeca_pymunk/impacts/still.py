@@ -23,6 +23,7 @@ from .layout import (
     BODIES,
     BUSY,
     CALM_FOR,
+    CARRIES,
     DT,
     HITS,
     ISLAND,
@@ -99,6 +100,23 @@ def touch(A: Scene, c: int, stamp: float) -> None:
 
 
 @uncounted
+def spread_change(A: Scene) -> None:
+    """What rests on bodies of an island that is CHANGED is so too, and so on."""
+    MEMBER, more = A.MEMBER, A.COUNT[CARRIES] > 0
+    while more:
+        more = False
+        for c in range(A.COUNT[PUSHES]):
+            root = A.PUSHED_BY[c, ROOT]
+            if root < 0 or MEMBER[root, STILL] == CHANGED:
+                continue
+            for side in range(2):
+                j = A.LINK[A.PUSHED_BY[c, PUSH_A + side], OWNER]
+                other = A.STATE[j, ISLAND]
+                if A.BODY[j, IM] > 0.0 and other >= 0 and MEMBER[other, STILL] == CHANGED:
+                    MEMBER[root, STILL], more = CHANGED, True
+
+
+@uncounted
 def rouse(A: Scene) -> None:
     """At the start of a step: islands that something has changed are no longer still; the rows of the others stay, at
     the front, with the impulses of this step."""
@@ -115,6 +133,7 @@ def rouse(A: Scene) -> None:
                 MEMBER[root, STILL] = CHANGED
         if A.RULE.shape[0] > 0:
             MEMBER[root, STILL] = CHANGED
+    spread_change(A)
     for c in range(A.COUNT[PUSHES]):
         root = A.PUSHED_BY[c, ROOT]
         if root >= 0 and MEMBER[root, STILL] == CHANGED:

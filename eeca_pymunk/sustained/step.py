@@ -114,7 +114,7 @@ def step_island(
         owed: energy >= 0 to take out at least.
         KEYS, FORCES, COUNT, stamp: memory of forces; the number of this step.  STATE: (3,) of `relax`.
         calm: speed relative to |a| h at which it may come to a stand, see `.statics`, 0 if it may not; V is 0 once it
-            does, its energy is the caller's to book.
+            does, its energy is the caller's to book. Negative: that is all that is asked for.
         A, B, ROWS, KEY, L, LOSS: the m contact rows out, with impulses over h and losses (D_n, D_t).
         VN: (k, 3) velocities at the end, out.  JUMP: (k, 6) what to add to pose and velocity then, out.
         LEDGER: (8,) added to.  OUT: (8,) sweeps, direct solutions, residual, scale of the lock, energy still owed,
@@ -150,15 +150,17 @@ def step_island(
         recall(KEY, m, KEYS, FORCES, stamp, h, L, EXPECTED)
         rates(A, B, ROWS, V, m)
         target(A, B, ROWS, m, ACC, EXPECTED, pull, h)
-        if calm > 0.0:
+        if calm != 0.0:
             stands, polishes = comes_to_stand(
-                A, B, ROWS, L, V, FREE, IM, II, POSE, FELT, VN, n, m, pull * h, calm
+                A, B, ROWS, L, V, FREE, IM, II, POSE, FELT, VN, n, m, pull * h, abs(calm)
             )  # fmt: skip
             OUT[1] = polishes
             if stands:
                 OUT[STOOD] = 1.0
                 OUT[CLOSED] = remember_loads(ROWS, KEY, L, m, h, KEYS, FORCES, COUNT, stamp)
                 return m
+            if calm < 0.0:
+                return 0
             rates(A, B, ROWS, V, m)
             target(A, B, ROWS, m, ACC, EXPECTED, pull, h)
         velocities(A, B, ROWS, L, FREE, IM, II, m, VN)
