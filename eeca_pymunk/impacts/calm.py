@@ -47,7 +47,8 @@ from .layout import (
 )  # fmt: skip
 
 LIKELY = 3  # of MEMBER[STILL]
-_SURE = 2  # steps that an island hardly moves, before it is asked whether it stands
+WOKEN = 2.0  # steps more, once it has been woken: what hits it often comes again
+SURE = 2  # steps that an island hardly moves, before it is asked whether it stands
 _AGAIN, _LATEST = 4, 12  # and until it is asked again, one more for every fourth body
 
 
@@ -74,27 +75,33 @@ def hardly(bodies: int) -> float:
 @uncounted
 def settled(A: Scene, i: int) -> bool:
     """Whether body i has hardly moved for long enough to be asked whether it stands."""
-    return bool(A.RESTING[i, CALM_FOR] >= _SURE and A.MEMBER[i, BUSY] == 0)
+    return bool(A.RESTING[i, CALM_FOR] >= SURE and A.MEMBER[i, BUSY] == 0)
 
 
 @uncounted
 def wait(A: Scene, MINE: IntArray, n: int) -> None:
     """The n bodies MINE are asked again much later, unless they stand in between."""
     for q in range(n):
-        A.RESTING[MINE[q], CALM_FOR] = -min(_AGAIN + n // 4, _LATEST)
+        A.RESTING[MINE[q], CALM_FOR] = later(n)
 
 
 @uncounted
-def calm(A: Scene, root: int, MINE: IntArray, n: int, t: float) -> float:
-    """The speed relative to |a| dt at which the island of the n bodies MINE may come to a stand at instant t, 0 if it
-    may not; it is asked again much later, unless it stood in between."""
+def later(n: int) -> float:
+    """CALM_FOR of a body of n that have been asked whether they stand, and do not."""
+    return -float(min(_AGAIN + n // 4, _LATEST))
+
+
+@uncounted
+def calm(A: Scene, root: int, MINE: IntArray, n: int, among: int, t: float) -> float:
+    """The speed relative to |a| dt at which the island of the n bodies MINE, on others, `among` in all, may come to a
+    stand at instant t, 0 if it may not; it is asked again much later, unless it stood in between."""
     if t > 0.0 or A.PAR[PULLED] == 0.0 or A.COUNT[TOGETHER] > 0 or A.RULE.shape[0] > 0 or A.MEMBER[root, HITS] > 0:
         return 0.0
     for q in range(n):
         if not settled(A, MINE[q]):
             return 0.0
     wait(A, MINE, n)
-    return hardly(n)
+    return hardly(among)
 
 
 @uncounted

@@ -16,7 +16,7 @@ from ..pairs.layout import NUMBER, START
 from ..pairs.lists import centre
 from ..pairs.rules import barred, law
 from .booking import end_span
-from .carrying import stands_in_part, support
+from .carrying import support
 from .islands import TOUCH, approach, carrier, members, rests, unite, worn
 from .layout import (
     BODIES,
@@ -44,6 +44,7 @@ from .layout import (
     TIED,
     Scene,
 )  # fmt: skip
+from .parting import stands_in_part
 from .spans import solve
 from .still import rouse
 from .strike import move_to

@@ -16,11 +16,11 @@ from ..layout import ANGLE, AX, AY, DUE, IM, OWNER, SPIN, TWIST, VX, VY, X, Y
 from ..pairs.lists import mark_pair
 from ..sustained.memory import STAMP as OF_STEP
 from ..sustained.memory import find
-from .calm import hardly, speed, whirls
+from .calm import WOKEN, hardly, speed, whirls
 from .layout import (
     AFTER_ME,
+    AMONG,
     BETA,
-    BODIES,
     BUSY,
     CALM_FOR,
     CARRIES,
@@ -149,7 +149,7 @@ def rouse(A: Scene) -> None:
         root = STATE[i, ISLAND]
         if root < 0 or MEMBER[root, STILL] == 1:
             continue
-        slow = speed(A, i, 0.0) <= hardly(MEMBER[root, BODIES]) * most
+        slow = speed(A, i, 0.0) <= hardly(MEMBER[root, AMONG]) * most
         A.RESTING[i, CALM_FOR] = A.RESTING[i, CALM_FOR] + 1.0 if slow else 0.0
         if MEMBER[i, STILL] > 0:
             BODY[i, AX], BODY[i, AY], BODY[i, TWIST] = A.PULL[i, 0], A.PULL[i, 1], A.PULL[i, 2]
@@ -220,7 +220,7 @@ def halt(A: Scene, root: int) -> None:
         else:
             BODY[i, SPIN] = 0.0
         BODY[i, AX], BODY[i, AY], BODY[i, TWIST] = 0.0, 0.0, 0.0
-        MEMBER[i, STILL], BODY[i, DUE], A.RESTING[i, CALM_FOR] = 1, 0.0, 0.0
+        MEMBER[i, STILL], BODY[i, DUE], A.RESTING[i, CALM_FOR] = 1, 0.0, -WOKEN
         A.STATE[i, KINKS] += 1
         i = MEMBER[i, AFTER_ME]
 

@@ -27,7 +27,8 @@ OUT_SIZE = 8
 _FINE = 1e-12  # residual relative to |a| h
 _COARSE, _LOOSE = 1e-7, 1e-4  # residual of a large or moving island, relative to |a| h and to its speed
 _ROUNDS = 20  # direct solutions of an island near rest, or elastic
-_AT_REST = 40  # sweeps of an island near rest that waits for its next direct solution
+_AT_REST = 40  # sweeps of an island near rest that waits for its next direct solution,
+_QUIET = 0.1  # which is slower than this, relative to |a| h
 _FEW_ROUNDS = 6  # of a moving island of few contacts
 
 
@@ -170,7 +171,7 @@ def step_island(
         few = m <= SMALL
         rounds = _ROUNDS if elastic or slow < pull * h else (_FEW_ROUNDS if few else 0)
         coarse = 0.0 if elastic or few else _COARSE * scale + _LOOSE * slow
-        if slow < pull * h:
+        if slow < _QUIET * pull * h:
             # What stands tall falls over by what is left undone.
             most = _AT_REST
         sweeps, polishes, worst = relax(
