@@ -51,7 +51,7 @@ from .layout import (
 from .spans import dismiss, lay_out_island, open_contacts, solve
 from .still import halt
 
-_MOST = 0.3  # of an island's bodies, that may move while the others stand
+_MOST = 0.4  # of an island's bodies, that may move while the others stand
 _TRIES = 2
 _QUIET = 0.1  # speed relative to |a| dt, above which a body moves, unless none does
 
@@ -70,8 +70,8 @@ def chain(A: Scene, MINE: IntArray, n: int) -> None:
 
 @kernel
 def asks(A: Scene, MINE: IntArray, n: int, V0: FloatArray, among: int) -> bool:
-    """Whether the island of the n bodies MINE, `among` so many, comes to a stand from their velocities V0 (n, 3) under what pushes on it;
-    if so it does. If not, those that nothing holds are to wait, see `give_way`."""
+    """Whether the island of the n bodies MINE, `among` so many, comes to a stand from their velocities V0 (n, 3) under
+    what pushes on it; if so it does. If not, those that nothing holds are to wait, see `give_way`."""
     BODY, COUNT, dt, root = A.BODY, A.COUNT, A.PAR[DT], MINE[0]
     for q in range(n):
         A.PLACE[MINE[q]] = q
