@@ -75,7 +75,7 @@ def hardly(bodies: int) -> float:
 @uncounted
 def settled(A: Scene, i: int) -> bool:
     """Whether body i has hardly moved for long enough to be asked whether it stands."""
-    return bool(A.RESTING[i, CALM_FOR] >= SURE and A.MEMBER[i, BUSY] == 0)
+    return bool(A.RESTING[i, CALM_FOR] >= SURE)
 
 
 @uncounted
@@ -98,7 +98,7 @@ def calm(A: Scene, root: int, MINE: IntArray, n: int, among: int, t: float) -> f
     if t > 0.0 or A.PAR[PULLED] == 0.0 or A.COUNT[TOGETHER] > 0 or A.RULE.shape[0] > 0 or A.MEMBER[root, HITS] > 0:
         return 0.0
     for q in range(n):
-        if not settled(A, MINE[q]):
+        if not settled(A, MINE[q]) or A.MEMBER[MINE[q], BUSY] > 0:
             return 0.0
     wait(A, MINE, n)
     return hardly(among)

@@ -26,6 +26,7 @@ from .layout import (
     AFTER_ME,
     AMONG,
     BODIES,
+    BUSY,
     CARRIES,
     DIRECT,
     DT,
@@ -111,6 +112,7 @@ def asks(A: Scene, MINE: IntArray, n: int, V0: FloatArray, among: int) -> bool:
     COUNT[PUSHES] += m
     A.MEMBER[root, OPEN], A.RESTING[root, UNTIL], A.MEMBER[root, AMONG] = 1, math.inf, among
     for q in range(n):
+        A.MEMBER[MINE[q], BUSY] = 0
         for c in range(3):
             BODY[MINE[q], VX + c] = V0[q, c]
         for c in range(6):
