@@ -13,6 +13,7 @@ IntArray: TypeAlias = npt.NDArray[np.intp]
 BoolArray: TypeAlias = npt.NDArray[np.bool_]
 PoolArray: TypeAlias = npt.NDArray[np.int32]
 FlagArray: TypeAlias = npt.NDArray[np.uint8]
+AnyArray: TypeAlias = npt.NDArray[Any]
 
 
 _LINES = 128  # bytes: what a processor fetches at once begins at multiples of that

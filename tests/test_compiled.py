@@ -5,10 +5,13 @@ from __future__ import annotations
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 
 import eeca_pymunk as ep
 from eeca_pymunk import compiled
+from eeca_pymunk.arrays import FloatArray
+from eeca_pymunk.fetching import fetch
 from eeca_pymunk.indexing import count_from_the_start
 
 STEP = """
@@ -44,6 +47,28 @@ def callers(n: int) -> float:
 def test_constants_do_not_make_kernels_anew() -> None:
     assert callers(4) == 2.5
     assert len(spread.inner.signatures) == 1  # type: ignore[attr-defined]
+
+
+@compiled.uncounted
+def every_other(table: FloatArray, row: int) -> float:
+    total = 0.0
+    for k in range(0, table.shape[0], 2):
+        fetch(table, k + row, 1)
+        total += table[k, 1]
+    return total
+
+
+@compiled.kernel
+def asks_for_rows(table: FloatArray, row: int) -> float:
+    return every_other(table, row)
+
+
+def test_rows_are_asked_for_and_nothing_else_happens() -> None:
+    table = np.arange(12.0).reshape(6, 2)
+    for row in (0, -3, 10**9):  # what is in no row is not there to be brought
+        assert asks_for_rows(table, row) == 15.0
+    if compiled.compiler() is not None:
+        assert "prefetch" in asks_for_rows.run.inspect_asm(asks_for_rows.run.signatures[0])  # type: ignore[attr-defined]
 
 
 def run(code: str) -> list[str]:

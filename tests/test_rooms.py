@@ -16,7 +16,7 @@ FILES = sorted(PACKAGE.rglob("*.py"))
 # From the bottom to the top; a room may import what stands on an earlier line, and itself.
 FLOORS = (
     "arrays layout errors files",
-    "indexing linking",
+    "fetching indexing linking",
     "compiled",
     "tables",
     "energy",

@@ -2,10 +2,11 @@
 
 In: the packed arrays of a world (`..layout`) at the start of a step. Out: the same at its end, and a log of impulses.
 
-Open first `step.py`, the stages of a step; then `loop.py`, the queue of events. `forecast.py` says when a body's next
-event is due, `lone.py` for most lone disks, from `times.py` (closed forms in `roots.py` and `circles.py`, shapes that
-turn in `turning.py`, until when shapes need no look in `apart.py`); `strike.py` says what an impact does, alone or in a
-block (`block.py`, `collide.py`). `scene.py` owns the arrays, whose columns `layout.py` names.
+Open first `step.py`, the stages of a step; then `loop.py`, the queue of events. `due.py` chooses who is forecast;
+`forecast.py` says when a body's next event is due, `lone.py` for most lone disks, from `times.py` (closed forms in
+`roots.py` and `circles.py`, shapes that turn in `turning.py`, until when shapes need no look in `apart.py`);
+`strike.py` says what an impact does, alone or in a block (`block.py`, `collide.py`). `scene.py` owns the arrays, whose
+columns `layout.py` names.
 
 Contacts that last: `settle.py` puts what rests at the start of a step into islands (`islands.py`); `spans.py` solves
 each over a span of time (`coming.py` says of which pairs and how long, `..sustained` is the solve); `booking.py` books

@@ -92,7 +92,7 @@ def book(A: Scene, c: int, t: float) -> None:
     A.PUSHED_BY[c, ROOT] = LASTED if t == PAR[DT] else ENDED
     mark_pair(A.LIST, A.POOL, A.FLAG, A.LIST.shape[0], a, b, 0)
     f = (t - R[SPAN_FROM]) / R[SPAN]
-    if f <= 0.0 or (R[LAM] == 0.0 and R[BETA] == 0.0):
+    if f == 0.0 or (R[LAM] == 0.0 and R[BETA] == 0.0):
         return
     normal = -f * R[LAM] * (R[UN_BEFORE] + 0.5 * f * (R[UN_AFTER] - R[UN_BEFORE]))
     tangential = -f * R[BETA] * (R[UT_BEFORE] + 0.5 * f * (R[UT_AFTER] - R[UT_BEFORE]))
@@ -105,7 +105,7 @@ def book(A: Scene, c: int, t: float) -> None:
     PAR[LEDGER + FRICTIONAL] += tangential
     PAR[LEDGER + EXTERNAL] += f * R[WORK_OF]
     A.RESTING[root, LOST] += both
-    if COUNT[LOGGED] < A.LOG.shape[0]:
+    if f > 0.0 and COUNT[LOGGED] < A.LOG.shape[0]:
         note(
             A.LOG, COUNT[LOGGED], a, b, R[SPAN_FROM] + 0.5 * f * R[SPAN], f * R[LAM], f * R[BETA], R[PUSH_NX],
             R[PUSH_NY], R[PUSH_X], R[PUSH_Y], f * R[PUSH_CHANGE], R[PUSH_GAP],
@@ -208,13 +208,28 @@ def close_span(A: Scene, root: int, t: float) -> None:
 
 
 @uncounted
+def alight(A: Scene, i: int, end: float) -> None:
+    """Bring body i of an island with joints to the end of its span: what happens there is in the books of joints."""
+    move_to(A.BODY, i, end)
+    for c in range(3):
+        A.BODY[i, X + c] += A.RESTING[i, LIFT + c]
+        A.BODY[i, VX + c] = A.RESTING[i, LIFT + 3 + c]
+        A.RESTING[i, LIFT + c] = 0.0
+
+
+@uncounted
 def lift_out(A: Scene, root: int, end: float) -> None:
     """Lift the bodies of an island, at the end of its span, out of each other; the losses pay what that costs beyond
     the work of forces: the change of kinetic energy, less m a.D + I alpha dtheta for displacements D."""
     PAR, BODY, PULL, JUMP = A.PAR, A.BODY, A.PULL, A.RESTING
     spent = 0.0
-    paid = A.MEMBER[root, JOINTED] == 0  # what joints do beside the path is in their own books
     i = root
+    if A.MEMBER[root, JOINTED] > 0:
+        while i >= 0:
+            if A.MEMBER[root, OPEN] > 0:
+                alight(A, i, end)
+            i = A.MEMBER[i, AFTER_ME]
+        return
     while i >= 0:
         move_to(BODY, i, end)
         linear = PULL[i, 0] * JUMP[i, LIFT] + PULL[i, 1] * JUMP[i, LIFT + 1]
@@ -227,8 +242,6 @@ def lift_out(A: Scene, root: int, end: float) -> None:
         for c in range(6):
             BODY[i, X + c] += JUMP[i, LIFT + c]
         i = A.MEMBER[i, AFTER_ME]
-    if not paid:
-        return
     PAR[LEDGER + RESTITUTION] -= spent
     if PAR[LEDGER + RESTITUTION] < 0.0 and PAR[LEDGER + FRICTIONAL] > 0.0:
         PAR[LEDGER + FRICTIONAL] += PAR[LEDGER + RESTITUTION]

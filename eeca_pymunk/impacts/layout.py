@@ -31,7 +31,8 @@ AMONG = 11  # of the root: BODIES, and those of the islands that carry them
 MEMBER_COLUMNS = 12
 
 # RESTING (n, 14) float: of a body in an island
-LIFT = 0  # RESTING[LIFT : LIFT + 6]: what to add to pose and velocity at the end of the span
+LIFT = 0  # RESTING[LIFT : LIFT + 6]: what to add to pose and velocity at the end of the span; of an island with joints
+# that is OPEN, what to add to the pose, and the velocity itself: its path may be of a span as short as round-off
 RELAX = 6  # of the root, RESTING[RELAX : RELAX + 3]: state of the solve
 LOST = 9  # of the root: energy lost in this step; below 0 it is owed
 UNTIL = 10  # of the root: instant at which the span ends

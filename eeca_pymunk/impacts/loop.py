@@ -6,8 +6,6 @@ kinked since is forecast anew when it comes up; until then it can only be too ea
 
 from __future__ import annotations
 
-import math
-
 from ..compiled import inlined, kernel, uncounted
 from ..layout import DUE, IM, OWNER
 from ..pairs.grid import renew
@@ -15,7 +13,8 @@ from ..pairs.lists import mark_pair
 from .block import arrive
 from .booking import end_span
 from .collide import strike
-from .forecast import AHEAD, has_left, predict
+from .due import forecast, forecast_all, look_ahead
+from .forecast import AHEAD, has_left
 from .heap import pop, push, sweep_out
 from .islands import members
 from .layout import (
@@ -23,7 +22,6 @@ from .layout import (
     DONE,
     DT,
     EVENTS,
-    FORECASTS,
     HEAP,
     ISLAND,
     JOINTED,
@@ -42,58 +40,17 @@ from .layout import (
     PUSHES,
     RENEW,
     STALE,
-    STILL,
     STRUCK,
     UNMET,
-    UNTIL,
     WAITING,
     Scene,
 )  # fmt: skip
-from .lone import carrier, go_on, holds, predict_disk
+from .lone import carrier, go_on
 from .settle import comes_to_rest, ignored
 from .spans import solve
 from .strike import alone, strike_disk
 
 _SQUEEZED = 50  # impacts of a body in a step, from which those with a kinematic one are left out: walls may close in
-
-
-@uncounted
-def forecast(A: Scene, disks: int, moving: int, i: int, t: float, end: float, several: bool) -> None:
-    """The next event of body i, seen from instant t of the loop; see `predict` for `several`."""
-    A.COUNT[FORECASTS] += 1
-    if i < disks and A.STATE[i, ISLAND] < 0:
-        predict_disk(A, disks, i, t, end, several)
-        return
-    until = A.RESTING[i, UNTIL] if A.STATE[i, ISLAND] == i else math.inf
-    predict(
-        A.BODY, A.STATE, A.SHAPE, A.LINK, A.VERTEX, A.MARK, A.LIST, A.POOL, A.FLAG, A.RULE, A.HEAP_TIME, A.HEAP_BODY,
-        A.WORK, A.PLACE, A.COUNT, disks, moving, i, t, end, until,
-    )  # fmt: skip
-
-
-@uncounted
-def forecast_all(A: Scene, disks: int, n: int, t: float, end: float) -> None:
-    """The next events of the n bodies in A.BLOCK, seen from instant t: each pair of them is looked at once. That is
-    enough, as either body is forecast anew with all others after its next event."""
-    for q in range(n):
-        A.PLACE[A.BLOCK[q]] = q
-    for q in range(n):
-        forecast(A, disks, A.LIST.shape[0], A.BLOCK[q], t, end, True)
-    for q in range(n):
-        A.PLACE[A.BLOCK[q]] = -1
-
-
-@uncounted
-def forecast_due(A: Scene, disks: int) -> None:
-    """The next events, at the start of a step, of all bodies whose last forecast is no good."""
-    n, dt = 0, A.PAR[DT]
-    for i in range(A.BODY.shape[0] - 1):
-        alone = A.STATE[i, ISLAND] < 0
-        if A.BODY[i, DUE] < dt or not (alone or A.MEMBER[i, STILL] == 1):
-            if not (alone and i < disks and holds(A, disks, i, dt)):
-                A.BLOCK[n] = i
-                n += 1
-    forecast_all(A, disks, n, 0.0, dt)
 
 
 @uncounted
@@ -140,6 +97,7 @@ def run(A: Scene, disks: int, may_rest: bool) -> int:
         if COUNT[LOGGED] == A.LOG.shape[0]:
             return LOG_FULL
         COUNT[HEAP] = pop(TIME, OF, COUNT[HEAP])
+        look_ahead(A, disks, i)
         s, o = STATE[i, OWN], STATE[i, OTHER]
         if o == LEAVE:
             if i < disks and STATE[i, ISLAND] < 0:

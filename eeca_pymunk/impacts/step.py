@@ -9,6 +9,7 @@ from ..transfer import EVENTS as SOME
 from ..transfer import give, take
 from .begin import begin
 from .close import close
+from .due import forecast_due
 from .layout import (
     DONE,
     DT,
@@ -24,7 +25,7 @@ from .layout import (
     Scene,
     scene_of,
 )
-from .loop import follow, forecast_due
+from .loop import follow
 from .settle import settle
 
 # Answers of a step that wants more memory: give some, and `resume`.

@@ -85,4 +85,4 @@ def lay_path(A: Scene, J: Joints, s: int, body: int, i: int, h: float) -> None:
         rate = BODY[body, VX + c]
         BODY[body, AX + c] = 2.0 * (LOCAL[i, POSE + c] - BODY[body, X + c] - h * rate) / (h * h)
         A.RESTING[body, LIFT + c] = 0.0
-        A.RESTING[body, LIFT + 3 + c] = LOCAL[i, BEFORE + c] - rate - h * BODY[body, AX + c]
+        A.RESTING[body, LIFT + 3 + c] = LOCAL[i, BEFORE + c]

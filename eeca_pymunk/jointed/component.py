@@ -8,7 +8,6 @@ from ..arrays import FloatArray
 from ..compiled import uncounted
 from ..impacts.layout import Scene
 from ..joints.bounds import bounded, gap
-from ..joints.correct import book_fit
 from ..joints.entries import held as stands
 from ..joints.layout import GEAR
 from ..joints.ledger import springs_hold
@@ -83,16 +82,14 @@ def step_component(
 @uncounted
 def fit_speeds(A: Scene, J: Joints, s: int, length: float) -> None:
     """Make the velocities that `gather_component` has put into the scratch fit the joints, closed limits included, as
-    an impact at which nothing bounces; what this costs is booked."""
+    an impact at which nothing bounces. What this costs is the caller's to book."""
     j0, j1, b0 = J.SPAN[s, JOINT_0], J.SPAN[s, JOINT_1], J.SPAN[s, BODY_0]
-    n = J.SPAN[s, BODY_1] - b0
     for k in range(j1 - j0):
         J.HINGE[k, SIZE] = 1.0 if J.LINK[j0 + k, L_KIND] >= GEAR else length
     solve(
-        int(SPEEDS), J.JOINT, J.HINGE, J.LINK[j0:j1], j1 - j0, J.LOCAL, J.NODE, n, 2.0, length, J.SPAN[s, LOOPS] > 0,
-        0.0, J.SPAN[s], J.MATRIX, J.RIGHT, J.MORE, J.PIVOTS, J.STIFF, J.FOUND,
+        int(SPEEDS), J.JOINT, J.HINGE, J.LINK[j0:j1], j1 - j0, J.LOCAL, J.NODE, J.SPAN[s, BODY_1] - b0, 2.0, length,
+        J.SPAN[s, LOOPS] > 0, 0.0, J.SPAN[s], J.MATRIX, J.RIGHT, J.MORE, J.PIVOTS, J.STIFF, J.FOUND,
     )  # fmt: skip
-    book_fit(J.LOCAL, n, J.STEPPED[s])
 
 
 @uncounted

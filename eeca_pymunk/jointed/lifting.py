@@ -13,6 +13,7 @@ from ..impacts.spans import Local
 from ..joints.layout import STORED
 from ..rows.build import normal_rate
 from ..rows.layout import GAP, K_N
+from ..sustained.ledger import against
 from .columns import Columns, fill_free, fill_group, make_columns, weigh
 from .component import close_joints, ready
 from .gathered import find_places, gather_component
@@ -54,8 +55,8 @@ def lift(
 ) -> float:  # fmt: skip
     """Lift the poses END of an island by at most what `budget` pays; the energy that it costs.
 
-    The cost is -m a.D for displacements D, and what springs hold more. Joints hold: D goes along them, and what is left
-    of second order is closed.
+    The cost is -m a.D for displacements D, turns included, and what springs hold more. Joints hold: D goes along them,
+    and what is left of second order is closed.
     """
     size = np.inf
     for q in range(n):
@@ -83,7 +84,7 @@ def lift(
     cost, far = 0.0, 0.0
     for q in range(n):
         far = max(far, (math.sqrt(D[q, 0] ** 2 + D[q, 1] ** 2) + abs(D[q, 2]) * isle.EXTENT[q]) / isle.EXTENT[q])
-        cost -= (isle.ACC[q, 0] * D[q, 0] + isle.ACC[q, 1] * D[q, 1]) / isle.IM[q]
+    cost -= against(isle.ACC, isle.IM, isle.II, n, D)
     part = min(1.0, _MOST / far) if far > 0.0 else 0.0
     if cost * part > 0.5 * budget:
         part = 0.5 * budget / cost
@@ -99,8 +100,7 @@ def lift(
             if s >= 0:
                 HELD[g] = close_joints(A, J, s, END, NEW, V, isle.IM, isle.II, end, h)
                 spent += HELD[g]
-        for q in range(n):
-            spent -= (isle.ACC[q, 0] * (NEW[q, 0] - END[q, 0]) + isle.ACC[q, 1] * (NEW[q, 1] - END[q, 1])) / isle.IM[q]
+        spent -= against(isle.ACC, isle.IM, isle.II, n, NEW - END)
         if spent <= budget:
             for g in range(len(groups.COMPONENT)):
                 s = groups.COMPONENT[g]

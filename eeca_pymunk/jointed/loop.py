@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
+from ..impacts.due import forecast, forecast_due
 from ..impacts.heap import push
 from ..impacts.layout import (
     DONE,
@@ -33,7 +34,7 @@ from ..impacts.layout import (
     Scene,
     scene_of,
 )  # fmt: skip
-from ..impacts.loop import follow, forecast, forecast_due, with_mover
+from ..impacts.loop import follow, with_mover
 from ..impacts.settle import settle
 from ..impacts.step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, finish, start, wish
 from ..joints.layout import BODY_A, BODY_B, ELASTIC, TOUCHED

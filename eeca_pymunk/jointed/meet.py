@@ -9,19 +9,20 @@ from ..compiled import kernel, uncounted
 from ..geometry.flight import pose
 from ..geometry.gap import gap_at
 from ..impacts.block import crowded
-from ..impacts.booking import book
+from ..impacts.booking import alight, book
 from ..impacts.islands import members
 from ..impacts.layout import (
+    AFTER_ME,
     BODIES,
     DAMPED,
     DT,
     EXTERNAL,
+    FIRST_SHAPE,
     FRICTIONAL,
     ISLAND,
     JOINTED,
     KINKS,
     LEDGER,
-    LIFT,
     LOST,
     OPEN,
     PUSH_A,
@@ -29,14 +30,15 @@ from ..impacts.layout import (
     PUSHES,
     RESTITUTION,
     ROOT,
+    SHAPES,
     STORED,
     Scene,
 )
-from ..impacts.strike import move_to
 from ..joints.layout import CLAMPED, CLOSED, LIMITED, MOTORS, PROJECTED, SUPPORTS
 from ..joints.layout import DAMPED as DAMPED_JOINTS
 from ..joints.layout import STORED as STORED_JOINTS
 from ..layout import AX, AY, IM, OWNER, SINCE, SIZE, SPIN, TWIST, VX, VY
+from ..pairs.layout import NUMBER, START
 from ..pairs.lists import mark_pair
 from .gathered import restore_joints
 from .layout import LIFTED, TURNED_WORK, Joints
@@ -138,11 +140,26 @@ def end_here(A: Scene, J: Joints, root: int, t: float) -> None:
     for q in range(n):
         i = MINE[q]
         A.STATE[i, KINKS] += 1
-        if not empty:
-            move_to(A.BODY, i, t)
+        if empty:
+            # The path is that of a span that is not to be.
+            A.BODY[i, SINCE] = t
             for c in range(3):
-                A.BODY[i, VX + c] += A.RESTING[i, LIFT + 3 + c]
-                A.RESTING[i, LIFT + 3 + c] = 0.0
+                A.BODY[i, AX + c] = 0.0
+        else:
+            alight(A, i, t)
+
+
+@uncounted
+def begun(A: Scene, i: int) -> float:
+    """The latest instant at which spans of islands without joints have begun that shapes of body i may touch."""
+    latest = 0.0
+    for s in range(A.STATE[i, FIRST_SHAPE], A.STATE[i, FIRST_SHAPE] + A.STATE[i, SHAPES]):
+        for w in range(A.LIST[s, START], A.LIST[s, START] + A.LIST[s, NUMBER]):
+            j = A.LINK[A.POOL[w], OWNER]
+            root = A.STATE[j, ISLAND]
+            if root >= 0 and A.MEMBER[root, OPEN] > 0 and A.MEMBER[root, JOINTED] == 0:
+                latest = max(latest, A.BODY[j, SINCE])
+    return latest
 
 
 @kernel
@@ -154,9 +171,16 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> float:
     least = A.BODY[i, SINCE]
     if A.BODY[j, IM] > 0.0:
         least = max(least, A.BODY[j, SINCE])
-    for root in roots:
+    for end in range(2):
+        root = roots[end]
         if root >= 0 and A.MEMBER[root, OPEN] > 0 and A.MEMBER[root, JOINTED] > 0:
             least = max(least, A.BODY[root, SINCE])
+            member = root
+            while member >= 0:
+                least = max(least, begun(A, member))
+                member = A.MEMBER[member, AFTER_ME]
+        elif end == 0 or A.BODY[j, IM] > 0.0:
+            least = max(least, begun(A, i if end == 0 else j))
     small = min(A.SHAPE[a, SIZE], A.SHAPE[b, SIZE])
     before, gap_before = -1.0, 0.0
     most = 1 if crowded(A, a, b) else _LOADED_SECANTS

@@ -34,6 +34,8 @@ from ..impacts.layout import (
     Scene,
 )
 from ..impacts.spans import Local, dismiss, lay_out_island, open_contacts
+from ..joints.correct import book_fit
+from ..joints.layout import PROJECTED
 from ..joints.scratch import BEFORE, BODY_0, BODY_1, M_BODY
 from ..layout import AX, ELASTICITY
 from ..rows.build import normal_rate
@@ -74,6 +76,7 @@ def fit(
             continue
         length = gather_component(A, J, s, motion.END, motion.V, NOTHING, isle.IM, isle.II, end, h)
         fit_speeds(A, J, s, length)
+        book_fit(J.LOCAL, J.SPAN[s, BODY_1] - J.SPAN[s, BODY_0], J.STEPPED[s], int(PROJECTED))
         for w in range(J.SPAN[s, BODY_1] - J.SPAN[s, BODY_0]):
             body = J.MEMBER[J.SPAN[s, BODY_0] + w, M_BODY]
             if body < A.PLACE.shape[0] and A.PLACE[body] >= 0:
@@ -163,6 +166,8 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
         C = make_columns(groups, P, Q, 0)
         advance(A, J, isle, groups, P, Q, ROWS, L, 0, t, h, motion, C, NOT_AT_ALL)
     book_turning(A, J, isle, groups, motion, n)
+    # Bodies are lifted at the end of the span, not on the way: the way would be as steep as the span is short.
+    WHERE = motion.END.copy()
     if lossy and m > 0:
         if not before_end(A, t + h):
             budget = lost(P, Q, ROWS, L, motion.WAY, m, h) + A.RESTING[root, LOST]
@@ -187,9 +192,9 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
         STATE[i, KINKS] += 1
         for c in range(3):
             # A parabola from start to end; velocities at the end are others.
-            BODY[i, AX + c] = 2.0 * (motion.END[q, c] - isle.POSE[q, c] - h * isle.V[q, c]) / (h * h)
-            A.RESTING[i, LIFT + c] = 0.0
-            A.RESTING[i, LIFT + 3 + c] = motion.V[q, c] - isle.V[q, c] - h * BODY[i, AX + c]
+            BODY[i, AX + c] = 2.0 * (WHERE[q, c] - isle.POSE[q, c] - h * isle.V[q, c]) / (h * h)
+            A.RESTING[i, LIFT + c] = motion.END[q, c] - WHERE[q, c]
+            A.RESTING[i, LIFT + 3 + c] = motion.V[q, c]
     MEMBER[root, OPEN] = 1
     A.RESTING[root, UNTIL] = math.inf
     return DONE

@@ -9,7 +9,7 @@ from ..compiled import kernel, uncounted
 from ..impacts.block import Block, gather, lay_out, owing
 from ..impacts.collide import finish, rejoin
 from ..impacts.islands import members, unite
-from ..impacts.layout import BODIES, ISLAND, JOINTED, KINKS, OPEN, PENDING, Scene
+from ..impacts.layout import BODIES, EXTERNAL, ISLAND, JOINTED, KINKS, LEDGER, OPEN, PENDING, Scene
 from ..impacts.settle import comes_to_rest
 from ..impacts.spans import dismiss
 from ..joints.scratch import BEFORE as LOCAL_BEFORE
@@ -18,8 +18,9 @@ from ..layout import IM, OWNER
 from ..rows.blocks import CONVERGED, D_NORMAL, D_TANGENTIAL, OUT_SIZE, SCALE_LOCK, TRUNCATED
 from ..rows.build import aim, conserves, rates
 from ..rows.energy import scale_of, works
+from ..sustained.ledger import carried
 from .columns import fill_free, fill_group, make_columns, push_columns, weigh
-from .component import answer, ready
+from .component import answer, fit_speeds, ready
 from .gathered import find_places, gather_component
 from .groups import find_groups
 from .layout import Joints
@@ -30,13 +31,14 @@ _SWEEPS = 1000
 
 
 @uncounted
-def energy_of(block: Block, V: FloatArray, n: int) -> float:
-    """Kinetic energy of the n bodies of a block at velocities V."""
+def energy_of(block: Block, V: FloatArray, W: FloatArray, n: int) -> float:
+    """Kinetic energy of the n bodies of a block at velocities V - W."""
     total = 0.0
     for q in range(n):
-        total += 0.5 * (V[q, 0] * V[q, 0] + V[q, 1] * V[q, 1]) / block.IM[q]
+        x, y, spin = V[q, 0] - W[q, 0], V[q, 1] - W[q, 1], V[q, 2] - W[q, 2]
+        total += 0.5 * (x * x + y * y) / block.IM[q]
         if block.II[q] > 0.0:
-            total += 0.5 * V[q, 2] * V[q, 2] / block.II[q]
+            total += 0.5 * spin * spin / block.II[q]
     return total
 
 
@@ -86,20 +88,28 @@ def collide(A: Scene, J: Joints, disks: int, a: int, b: int, t: float) -> tuple[
     C = make_columns(groups, P, Q, rows)
     fill_free(groups, C, P, Q, ROWS, block.IM, block.II, rows)
     BEFORE = V.copy()
-    INDEX = np.full(len(block.IM), -1, np.int64)
+    INDEX, carried_by = np.full(len(block.IM), -1, np.int64), False
     for g in range(len(groups.COMPONENT)):
         s = groups.COMPONENT[g]
         if s < 0:
             continue
-        gather_component(A, J, s, block.POSE, V, np.zeros_like(V), block.IM, block.II, t, 0.0)
+        length = gather_component(A, J, s, block.POSE, V, np.zeros_like(V), block.IM, block.II, t, 0.0)
         size = find_places(A, J, s, INDEX)
         PUSH = np.zeros((size, 3))
+        # Velocities that joints would not let through take no part in the impact.
+        along = carried_along(J, s)
+        if along:
+            carried_by = True
+            fit_speeds(A, J, s, length)
+            for q in range(n):
+                if groups.GROUP[q] == g:
+                    for c in range(3):
+                        V[q, c] = J.LOCAL[INDEX[q], LOCAL_BEFORE + c]
         if not ready(J, s, 2.0, False):
             continue
         fill_group(J, groups, C, g, INDEX, False, P, Q, ROWS, rows, PUSH)
-        if carried_along(J, s):
+        if along:
             continue
-        # Velocities that joints would not let through take no part in the impact, and stay.
         PUSH[:] = 0.0
         for q in range(n):
             if groups.GROUP[q] == g:
@@ -135,7 +145,12 @@ def collide(A: Scene, J: Joints, disks: int, a: int, b: int, t: float) -> tuple[
         V[:] = BEFORE
         push_columns(C, L, rows, 1.0, V)
     else:
-        OUT[D_NORMAL] += energy_of(block, BEFORE, n) - energy_of(block, FITTED, n)
+        OUT[D_NORMAL] += energy_of(block, BEFORE, FITTED, n)
+    if carried_by:
+        # What hangs on something that moves is pushed by it: by all that contacts do not account for.
+        REST = np.zeros_like(V)
+        gained = energy_of(block, V, REST, n) - energy_of(block, BEFORE, REST, n) + OUT[D_NORMAL] + OUT[D_TANGENTIAL]
+        A.PAR[LEDGER + EXTERNAL] += gained - carried(P, Q, ROWS, L, V, block.IM, rows)
     finish(A, block, n, m, L, OUT, status, t)
     A.STATE[i, KINKS] += 1
     if A.BODY[j, IM] > 0.0:

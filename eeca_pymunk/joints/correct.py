@@ -8,7 +8,7 @@ from __future__ import annotations
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
 from .bounds import TOUCH, approach, bounded, gap
-from .layout import PROJECTED, SUPPORTS
+from .layout import SUPPORTS
 from .scratch import BEFORE, KEPT, L_A, L_B, L_ROWS, L_SIDE, L_SOFT, MOBILITY, PUSHED, ROWS, SCALE, SIZE
 
 _ROUND_OFF = 1e-14
@@ -26,8 +26,8 @@ def kinetic(local: FloatArray, bodies: int, column: int) -> float:
 
 
 @uncounted
-def book_fit(local: FloatArray, bodies: int, ledger: FloatArray) -> None:
-    """Book the change of velocities, from KEPT to BEFORE, that made them fit their joints.
+def book_fit(local: FloatArray, bodies: int, ledger: FloatArray, loss: int) -> None:
+    """Book the change of velocities, from KEPT to BEFORE, that made them fit their joints, as this `loss`.
 
     It is orthogonal to what fits, so that (1/2) dv.M dv is lost; the rest of the change of kinetic energy is the work
     of supports, which is 0 unless they move.
@@ -40,7 +40,7 @@ def book_fit(local: FloatArray, bodies: int, ledger: FloatArray) -> None:
                 lost += 0.5 * (local[i, BEFORE + c] - local[i, KEPT + c]) ** 2 / local[i, MOBILITY + c]
             elif local[i, BEFORE + c] != 0.0:
                 moves = True
-    ledger[PROJECTED] += lost if moves else -gained
+    ledger[loss] += lost if moves else -gained
     if moves:
         ledger[SUPPORTS] += gained + lost
 

@@ -12,11 +12,11 @@ from __future__ import annotations
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
 from .bounds import TOUCH, approach, first_bound, gap, hold, release, standing
-from .correct import kinetic
+from .correct import book_fit
 from .layout import LIMITED
 from .ledger import book
 from .motion import advance
-from .scratch import AFTER, BEFORE, KEPT, L_SIDE, L_SOFT, LAM, LINEAR_STEP, SIZE, SPEEDS
+from .scratch import AFTER, L_SIDE, L_SOFT, LAM, LINEAR_STEP, SIZE, SPEEDS
 from .solve import solve
 
 MOST_EVENTS = 12
@@ -88,7 +88,7 @@ def step_with_limits(
             int(SPEEDS), joint, hinge, link, joints, local, node, bodies, 2.0, length, loops, 0.0, span, matrix, right,
             more, pivots, stiff, found,
         )  # fmt: skip
-        ledger[LIMITED] += kinetic(local, bodies, KEPT) - kinetic(local, bodies, BEFORE)
+        book_fit(local, bodies, ledger, int(LIMITED))
         for k in range(joints):
             hinge[k, LAM] = hinge[k, LAM + 1] = 0.0
             if link[k, L_SIDE] != 0 and link[k, L_SOFT] == 0:

@@ -28,6 +28,7 @@ from .layout import (
     LENGTH_1,
     LINEAR,
     NOTCH,
+    PROJECTED,
     RATCHET,
     ROTARY_SPRING,
     SIDE,
@@ -192,7 +193,7 @@ def island_step(
                 ledger[CLOSED] += taken
                 ledger[STORED] += taken
             else:
-                book_fit(local, bodies, ledger)
+                book_fit(local, bodies, ledger, int(PROJECTED))
         save(local, bodies)
     if needs >= 2:
         look(joint, hinge, link, joints, local, node, bodies, stiff)
@@ -250,10 +251,11 @@ def island_step(
                     local[i, AFTER + c] = local[i, BEFORE + c] + h * local[i, FREE + c]
             move(local, bodies, h)
             advance(local, bodies, h)
-            for c in range(LEDGER_COLUMNS):
-                part[c] = 0.0
         look(joint, hinge, link, joints, local, node, bodies, stiff)
+        for c in range(LEDGER_COLUMNS):
+            part[c] = 0.0
         part[STORED] = springs_hold(joint, hinge, link, joints) - stored
+    if status >= ELASTIC:
         close_ledger(local, bodies, part)
     for c in range(LEDGER_COLUMNS):
         ledger[c] += part[c]

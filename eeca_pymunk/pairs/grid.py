@@ -1,8 +1,7 @@
 """The grid: near lists of all shapes, made anew one at a time as shapes leave their margin circles.
 
-Bounding circles are hashed by their centres into square cells, on levels of size: level l holds circles (with their
-margins) of up to half its cell, which is twice that of level l - 1. A search on a level looks at the cells that the
-circle, grown by half a cell, overlaps; or at all shapes of the level, where they are fewer than these cells.
+A search on a level of `cells.py` looks at the cells that the circle, grown by half a cell, overlaps; or at all shapes
+of the level, where they are fewer than these cells.
 
 Static shapes stand in a grid of their own (`CSR`: START of each cell, then numbers of shapes), made once.
 """
@@ -13,7 +12,9 @@ import math
 
 from ..arrays import FlagArray, FloatArray, IntArray, PoolArray
 from ..compiled import uncounted
-from ..layout import BOUND
+from ..fetching import fetch
+from ..layout import X
+from .cells import bucket, cell_at, draw, link, near, unlink
 from .layout import (
     AT_X,
     AT_Y,
@@ -30,80 +31,15 @@ from .layout import (
     NEXT,
     NUMBER,
     POOL_END,
-    PREVIOUS,
     REACH,
     ROOM,
     START,
+    WALKED,
 )  # fmt: skip
 from .lists import append, centre, course, may_meet, place_in, remove
 from .walls import seek_walls
 
 _FIRST_CAPACITY = 8
-_FAR = 2.0**50  # cells from the origin, beyond which all are one: numbers of cells stay whole
-
-
-@uncounted
-def bucket(level: int, column: int, row: int, mask: int) -> int:
-    """Place of a cell in the hash table."""
-    return ((column * 73856093) ^ (row * 19349663) ^ (level * 83492791)) & mask
-
-
-@uncounted
-def cell_at(x: float, length: float) -> int:
-    """Column or row of a cell of the grid of moving shapes."""
-    return math.floor(min(max(x / length, -_FAR), _FAR))
-
-
-@uncounted
-def level_of(radius: float, cell: float) -> int:
-    """The lowest level whose cells are at least twice as long as the radius."""
-    level, length = 0, cell
-    while length < 2.0 * radius and level < LEVEL_COUNT - 1:
-        length *= 2.0
-        level += 1
-    return level
-
-
-@uncounted
-def draw(MARK: FloatArray, SHAPE: FloatArray, s: int, x: float, y: float) -> None:
-    """Let the margin circle of shape s have its centre at (x, y)."""
-    MARK[s, AT_X], MARK[s, AT_Y], MARK[s, REACH] = x, y, SHAPE[s, BOUND] + MARK[s, MARGIN]
-
-
-@uncounted
-def link(MARK: FloatArray, CELL: IntArray, HEAD: IntArray, GRID: FloatArray, INFO: IntArray, s: int) -> None:
-    """Put shape s into the grid where its margin circle is."""
-    level = level_of(MARK[s, REACH], GRID[CELL_LENGTH])
-    length = GRID[CELL_LENGTH] * 2.0**level
-    k = bucket(level, cell_at(MARK[s, AT_X], length), cell_at(MARK[s, AT_Y], length), HEAD.shape[0] - 1)
-    head = HEAD[k]
-    CELL[s, LEVEL], CELL[s, BUCKET] = level, k
-    MARK[s, NEXT], MARK[s, PREVIOUS] = head, -1.0
-    if head >= 0:
-        MARK[head, PREVIOUS] = s
-    HEAD[k] = s
-    INFO[LEVELS + level] += 1
-
-
-@uncounted
-def unlink(MARK: FloatArray, CELL: IntArray, HEAD: IntArray, INFO: IntArray, s: int) -> None:
-    """Take shape s out of the grid."""
-    after, before = int(MARK[s, NEXT]), int(MARK[s, PREVIOUS])
-    if before >= 0:
-        MARK[before, NEXT] = after
-    else:
-        HEAD[CELL[s, BUCKET]] = after
-    if after >= 0:
-        MARK[after, PREVIOUS] = before
-    INFO[LEVELS + CELL[s, LEVEL]] -= 1
-
-
-@uncounted
-def near(MARK: FloatArray, o: int, x: float, y: float, radius: float) -> bool:
-    """Whether the margin circle of shape o overlaps that of centre (x, y)."""
-    dx, dy = MARK[o, AT_X] - x, MARK[o, AT_Y] - y
-    reach = radius + MARK[o, REACH]
-    return bool(dx * dx + dy * dy <= reach * reach)
 
 
 @uncounted
@@ -122,11 +58,40 @@ def join_chosen(
 ) -> bool:
     """`join` s with the n shapes in INFO[CHOSEN:] that are not in its list."""
     for k in range(n):
+        fetch(LIST, INFO[CHOSEN + k], START)
+        fetch(BODY, INFO[CHOSEN + k], X)
+    for k in range(n):
         o = INFO[CHOSEN + k]
         # Cells may share a place of the table: a shape may come up more than once.
         if place_in(LIST, POOL, s, o) < 0 and not join(BODY, LINK, LIST, POOL, FLAG, INFO, s, o):
             return False
     return True
+
+
+@uncounted
+def walk(
+    BODY: FloatArray, LINK: IntArray, MARK: FloatArray, LIST: IntArray, POOL: PoolArray, FLAG: FlagArray,
+    INFO: IntArray, s: int, n: int,
+) -> bool:  # fmt: skip
+    """`join` s with the shapes near its margin circle in the n places of the grid whose first ones are in
+    INFO[WALKED:]. One step in each place at a time: so their rows come at the same time."""
+    x, y, radius, chosen = MARK[s, AT_X], MARK[s, AT_Y], MARK[s, REACH], 0
+    while n > 0:
+        more = 0
+        for k in range(n):
+            o = INFO[WALKED + k]
+            INFO[CHOSEN + chosen] = o
+            chosen += 1 if near(MARK, o, x, y, radius) else 0
+            after = int(MARK[o, NEXT])
+            fetch(MARK, after, AT_X)
+            INFO[WALKED + more] = after
+            more += 1 if after >= 0 else 0
+            if chosen == ROOM:
+                if not join_chosen(BODY, LINK, LIST, POOL, FLAG, INFO, s, chosen):
+                    return False
+                chosen = 0
+        n = more
+    return join_chosen(BODY, LINK, LIST, POOL, FLAG, INFO, s, chosen)
 
 
 @uncounted
@@ -138,7 +103,7 @@ def seek_moving(
     the pool is full."""
     x, y = MARK[s, AT_X], MARK[s, AT_Y]
     radius = MARK[s, REACH]
-    mask, chosen = HEAD.shape[0] - 1, 0
+    mask = HEAD.shape[0] - 1
     length = 0.5 * GRID[CELL_LENGTH]
     for level in range(LEVEL_COUNT):
         length *= 2.0
@@ -157,18 +122,18 @@ def seek_moving(
                     if not join(BODY, LINK, LIST, POOL, FLAG, INFO, s, o):
                         return False
             continue
+        heads = 0
         for column in range(west, east + 1):
             for row in range(south, north + 1):
                 o = HEAD[bucket(level, column, row, mask)]
-                while o >= 0:
-                    INFO[CHOSEN + chosen] = o
-                    chosen += 1 if near(MARK, o, x, y, radius) else 0
-                    if chosen == ROOM:
-                        if not join_chosen(BODY, LINK, LIST, POOL, FLAG, INFO, s, chosen):
-                            return False
-                        chosen = 0
-                    o = int(MARK[o, NEXT])
-    return join_chosen(BODY, LINK, LIST, POOL, FLAG, INFO, s, chosen)
+                fetch(MARK, o, AT_X)
+                INFO[WALKED + heads] = o
+                heads += 1 if o >= 0 else 0
+                if heads == ROOM or (heads > 0 and column == east and row == north):
+                    if not walk(BODY, LINK, MARK, LIST, POOL, FLAG, INFO, s, heads):
+                        return False
+                    heads = 0
+    return True
 
 
 @uncounted
@@ -176,6 +141,9 @@ def part(LIST: IntArray, POOL: PoolArray, FLAG: FlagArray, INFO: IntArray, MARK:
     """Leave in the list of s the moving shapes that are near its margin circle, with their flags, and take s out of the
     lists of the others; how many are left."""
     start, kept = LIST[s, START], 0
+    for q in range(start, start + LIST[s, NUMBER]):
+        fetch(MARK, int(POOL[q]), AT_X)
+        fetch(LIST, int(POOL[q]), START)
     x, y, radius = MARK[s, AT_X], MARK[s, AT_Y], MARK[s, REACH]
     for q in range(start, start + LIST[s, NUMBER]):
         o = int(POOL[q])

@@ -31,7 +31,8 @@ LEVELS = 5  # INFO[LEVELS + l]: shapes on level l of the grid
 LEVEL_COUNT = 64
 CHOSEN = LEVELS + LEVEL_COUNT  # INFO[CHOSEN:]: scratch, shapes that a loop has chosen, which one after it looks at
 ROOM = 64  # for so many. Whom to choose cannot be guessed: a branch would wait for one row after the other
-INFO_LENGTH = CHOSEN + ROOM
+WALKED = CHOSEN + ROOM  # INFO[WALKED:]: scratch, one shape in each of so many places of the grid
+INFO_LENGTH = WALKED + ROOM
 
 # GRID float: lengths of the two grids
 CELL_LENGTH = 0  # of level 0; level l has cells twice as long as l - 1

@@ -174,6 +174,7 @@ class Rehearsal:
         with ExitStack() as stack:
             if joints is not None:
                 mute = [item for item in joints.calling if item.pre_solve is None or item.a.space is None]
+                stack.enter_context(joints.partners.kept())
                 stack.enter_context(private_joints.silent(mute))
                 stack.enter_context(private_joints.with_laws(joints.own, joints.laws()))
                 stack.enter_context(self._watched_joints([item for item in joints.before if item not in mute]))
@@ -215,7 +216,8 @@ class Rehearsal:
                 self._failure = error
             now = self.bodies.gather()
             if was is not None and now is not None:
-                changes[:] += now - was
+                # pymunk makes nan of the spins of bodies that do not turn and that gears hold: ours does not.
+                changes[:] += np.where(np.isnan(was), 0.0, now - was)
 
         return call
 

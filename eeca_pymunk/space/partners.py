@@ -8,7 +8,8 @@ it gets nowhere by itself.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 
 import numpy as np
 import pymunk
@@ -72,3 +73,16 @@ class Partners:
         known = self._known[i]
         assert known is not None  # read when these rows were made
         return known[:6]  # type: ignore[return-value]
+
+    @contextmanager
+    def kept(self) -> Iterator[None]:
+        """Within, steps of pymunk leave those outside the space as they are: its constraints push them, too, though it
+        does not move them, and give nan where neither body of one has mobility."""
+        kept = [(body, body.velocity, body.angular_velocity) for body in map(self.items.__getitem__, self.outside)]
+        try:
+            yield
+        finally:
+            for body, velocity, spin in kept:
+                # Asking costs less than telling, which would wake bodies.
+                if body.velocity != velocity or body.angular_velocity != spin:
+                    body.velocity, body.angular_velocity = velocity, spin

@@ -56,7 +56,7 @@ def rest_step(
                 push, calling = _awake(push), _awake(calling)
                 laws = [law for item, law in zip(own, laws, strict=True) if _awake([item])]
                 own = _awake(own)
-            with silent(calling), with_laws(own, laws), inert(push):
+            with joints.partners.kept(), silent(calling), with_laws(own, laws), inert(push):
                 private.step_alone(space, dt)
     finally:
         if not asleep:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from eeca_pymunk import layout as la
-from eeca_pymunk.pairs import grid, setup
+from eeca_pymunk.pairs import cells, grid, setup
 from eeca_pymunk.pairs import layout as at
 from eeca_pymunk.pairs.lists import mark_pair
 from tests.packed import Thing, World, disk
@@ -199,10 +199,10 @@ def test_the_grid_of_walls_holds_what_looking_at_all_finds(spread: str) -> None:
 def test_levels_hold_circles_of_up_to_half_their_cell() -> None:
     for exponent in np.linspace(-3.0, 16.0, 200):
         radius = 10.0**exponent
-        level = grid.level_of(radius, 1e-2)
+        level = cells.level_of(radius, 1e-2)
         assert 1e-2 * 2.0**level >= 2.0 * radius
         assert level == 0 or 1e-2 * 2.0 ** (level - 1) < 2.0 * radius
-    assert grid.level_of(1e300, 1e-2) == at.LEVEL_COUNT - 1
+    assert cells.level_of(1e300, 1e-2) == at.LEVEL_COUNT - 1
 
 
 @pytest.mark.parametrize("ahead", [0.0, 0.3, 0.9])

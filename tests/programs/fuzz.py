@@ -1,7 +1,8 @@
-"""Random programs of API calls, for hypothesis: a space is built, edited, stepped, asked and listened to, in any order.
+"""Random programs of API calls: a space is built, edited, stepped, asked and listened to, in any order.
 
-`Program` draws what to do next from a seed of hypothesis and does it. After every step its rules hold: all is finite,
-the ledger closes, energy does not rise but by what the ledger calls external, and what raises leaves all as it was.
+`Program` draws what to do next and does it. After every step its rules hold: all is finite, the ledger closes, energy
+does not rise but by what the ledger calls external, and what raises leaves all as it was. Draws are either hypothesis's
+(`Drawn`), which finds the shortest program that fails, or plainly random (`Thrown`), which finds failures sooner.
 """
 
 from __future__ import annotations
@@ -9,7 +10,9 @@ from __future__ import annotations
 import copy
 import math
 import pickle
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from random import Random
+from typing import Any, Protocol
 
 import pymunk
 from hypothesis import note
@@ -23,40 +26,88 @@ DT = 1 / 60
 # Elastic bodies that were put deep into one another gain up to 1e-4 of the scale of energy now and then.
 GAIN = 1e-3
 KINDS = (pymunk.Body.DYNAMIC, pymunk.Body.DYNAMIC, pymunk.Body.DYNAMIC, pymunk.Body.KINEMATIC, pymunk.Body.STATIC)
-numbers = st.floats(-3.0, 3.0, allow_nan=False).map(lambda x: round(x, 2))
-sizes = st.floats(0.1, 0.6).map(lambda x: round(x, 2))
+NUMBERS, SIZES = (-3.0, 3.0), (0.1, 0.6)
+
+
+class Chance(Protocol):
+    """What a program draws from."""
+
+    def between(self, low: float, high: float) -> float:
+        """A number of two decimals."""
+
+    def one(self, found: list[Any]) -> Any:
+        """One of a list that is not empty."""
+
+    def told(self, text: str) -> None:
+        """What the program does next."""
+
+
+class Drawn:
+    """Draws of hypothesis."""
+
+    def __init__(self, data: st.DataObject) -> None:
+        self.data = data
+
+    def between(self, low: float, high: float) -> float:
+        return float(self.data.draw(st.floats(low, high, allow_nan=False).map(lambda x: round(x, 2))))
+
+    def one(self, found: list[Any]) -> Any:
+        return self.data.draw(st.sampled_from(found))
+
+    def told(self, text: str) -> None:
+        note(text)
+
+
+class Thrown:
+    """Draws of a seed; `calls` is what the program has done."""
+
+    def __init__(self, seed: int) -> None:
+        self.random, self.calls = Random(seed), list[str]()
+
+    def between(self, low: float, high: float) -> float:
+        return round(self.random.uniform(low, high), 2)
+
+    def one(self, found: list[Any]) -> Any:
+        return self.random.choice(found)
+
+    def told(self, text: str) -> None:
+        self.calls.append(text)
 
 
 class Program:
-    """One random program; `draw` is hypothesis's.
+    """One random program.
 
     Args:
         gain: what losses may be below 0, in parts of the scale.  joints: whether bodies are joined, too.
     """
 
-    def __init__(self, draw: Callable[..., object], gain: float = GAIN, joints: bool = False) -> None:
-        self.draw, self.gain, self.joints = draw, gain, joints
+    def __init__(self, chance: Chance, gain: float = GAIN, joints: bool = False) -> None:
+        self.chance, self.gain, self.joints = chance, gain, joints
         self.space = pymunk.Space()
         self.space.add(pymunk.Segment(self.space.static_body, (-5.0, -3.0), (5.0, -3.0), 0.1))
-        self.stepper = ep.EECA(self.space, sync=bool(draw(st.booleans())))
+        self.stepper = ep.EECA(self.space, sync=self.flag())
         self.steps = 0
         self.calls = 0
+        self.parted: list[pymunk.Constraint] = []
+
+    def flag(self) -> bool:
+        return bool(self.one((False, True)))
 
     def number(self) -> float:
-        return float(self.draw(numbers))  # type: ignore[arg-type]
+        return self.chance.between(*NUMBERS)
 
     def size(self) -> float:
-        return float(self.draw(sizes))  # type: ignore[arg-type]
+        return self.chance.between(*SIZES)
 
-    def one(self, things: object) -> object:
-        found = list(things)  # type: ignore[call-overload]
-        return self.draw(st.sampled_from(found)) if found else None
+    def one(self, things: Iterable[Any]) -> Any:
+        found = list(things)
+        return self.chance.one(found) if found else None
 
     def body(self) -> pymunk.Body | None:
-        return self.one(self.space.bodies)  # type: ignore[return-value]
+        return self.one(self.space.bodies)  # type: ignore[no-any-return]
 
     def shape(self) -> pymunk.Shape | None:
-        return self.one(self.space.shapes)  # type: ignore[return-value]
+        return self.one(self.space.shapes)  # type: ignore[no-any-return]
 
     # What a program may do.
 
@@ -64,14 +115,14 @@ class Program:
         if len(self.space.bodies) > 8:
             return
         kind = self.one(KINDS)
-        body = pymunk.Body(1.0 + self.size(), self.one((0.1, 1.0, math.inf)), kind)  # type: ignore[arg-type]
+        body = pymunk.Body(1.0 + self.size(), self.one((0.1, 1.0, math.inf)), kind)
         body.position, body.angle = (self.number(), self.number()), self.number()
         if kind != pymunk.Body.STATIC:
             self._move(body)
-        make: Callable[[], pymunk.Shape] = self.one(  # type: ignore[assignment]
+        make: Callable[[], pymunk.Shape] = self.one(
             (
-                lambda: pymunk.Circle(body, self.size(), self.one(((0.0, 0.0), (0.1, 0.2)))),  # type: ignore[arg-type]
-                lambda: pymunk.Poly.create_box(body, (self.size(), self.size()), self.one((0.0, 0.05))),  # type: ignore[arg-type]
+                lambda: pymunk.Circle(body, self.size(), self.one(((0.0, 0.0), (0.1, 0.2)))),
+                lambda: pymunk.Poly.create_box(body, (self.size(), self.size()), self.one((0.0, 0.05))),
                 lambda: pymunk.Segment(body, (-self.size(), 0.0), (self.size(), 0.1), 0.05),
             )
         )
@@ -80,9 +131,9 @@ class Program:
         self.space.add(body, shape)
 
     def _dress(self, shape: pymunk.Shape) -> None:
-        shape.elasticity = self.one((0.0, 0.5, 1.0))  # type: ignore[assignment]
-        shape.friction = self.one((0.0, 0.3, 1.5))  # type: ignore[assignment]
-        shape.sensor = self.one((False, False, False, True))  # type: ignore[assignment]
+        shape.elasticity = self.one((0.0, 0.5, 1.0))
+        shape.friction = self.one((0.0, 0.3, 1.5))
+        shape.sensor = self.one((False, False, False, True))
 
     def remove(self) -> None:
         body = self.body()
@@ -102,7 +153,7 @@ class Program:
         if pymunk.Body.DYNAMIC not in (a.body_type, b.body_type):
             return
         p, q = ((self.size(), 0.0), (0.0, self.size()))
-        make: Callable[[], pymunk.Constraint] = self.one(  # type: ignore[assignment]
+        make: Callable[[], pymunk.Constraint] = self.one(
             (
                 lambda: pymunk.PinJoint(a, b, p, q),
                 lambda: pymunk.SlideJoint(a, b, p, q, 0.2, 0.2 + self.size()),
@@ -117,14 +168,15 @@ class Program:
             )
         )
         joint = make()
-        joint.max_force = self.one((math.inf, 0.5, 20.0))  # type: ignore[assignment]
-        joint.collide_bodies = bool(self.draw(st.booleans()))
+        joint.max_force = self.one((math.inf, 0.5, 20.0))
+        joint.collide_bodies = self.flag()
         self.space.add(joint)
 
     def part(self) -> None:
         joint = self.one(self.space.constraints)
         if joint is not None:
-            self.space.remove(joint)  # type: ignore[arg-type]
+            self.space.remove(joint)
+            self.parted.append(joint)  # as long as it lives, its bodies know it
 
     def teleport(self) -> None:
         body = self.body()
@@ -152,7 +204,7 @@ class Program:
         shape, body = self.shape(), self.body()
         if shape is not None:
             self._dress(shape)
-            shape.surface_velocity = (self.one((0.0, 1.0)), 0.0)  # type: ignore[assignment]
+            shape.surface_velocity = (self.one((0.0, 1.0)), 0.0)
             if isinstance(shape, pymunk.Circle):
                 shape.unsafe_set_radius(self.size())
             elif isinstance(shape, pymunk.Segment) and shape.body is not self.space.static_body:
@@ -163,13 +215,13 @@ class Program:
     def turn_kind(self) -> None:
         body = self.body()
         if body is not None and not body.constraints:  # pymunk asserts that one body of a joint is dynamic
-            body.body_type = self.one(KINDS)  # type: ignore[assignment]
+            body.body_type = self.one(KINDS)
             if body.body_type == pymunk.Body.DYNAMIC:
                 body.mass, body.moment = 1.5, 1.0
 
     def set_space(self) -> None:
-        self.space.gravity = self.one(((0.0, 0.0), (0.0, -9.81), (3.0, 3.0)))  # type: ignore[assignment]
-        self.space.damping = self.one((1.0, 1.0, 0.9, 0.0))  # type: ignore[assignment]
+        self.space.gravity = self.one(((0.0, 0.0), (0.0, -9.81), (3.0, 3.0)))
+        self.space.damping = self.one((1.0, 1.0, 0.9, 0.0))
 
     def listen(self) -> None:
         def count(arbiter: pymunk.Arbiter, space: pymunk.Space, data: object) -> None:
@@ -188,12 +240,12 @@ class Program:
                 space.add(body, pymunk.Circle(body, 0.1))
 
         phase = self.one(("begin", "pre_solve", "post_solve", "separate"))
-        self.space.on_collision(**{phase: self.one((count, remove, add, pymunk.empty_callback))})  # type: ignore[arg-type, misc]
+        self.space.on_collision(**{phase: self.one((count, remove, add, pymunk.empty_callback))})  # type: ignore[misc]
 
     def functions(self) -> None:
         body = self.body()
         if body is not None and body.body_type != pymunk.Body.STATIC:
-            body.velocity_func = self.one((pymunk.Body.update_velocity, _slow))  # type: ignore[assignment]
+            body.velocity_func = self.one((pymunk.Body.update_velocity, _slow))
 
     def after(self) -> None:
         self.space.add_post_step_callback(lambda space, key: setattr(self, "calls", self.calls + 1), self.steps)
@@ -213,8 +265,9 @@ class Program:
             copy.deepcopy(self.space)
 
     def native(self) -> None:
-        # pymunk gives nan for rotary joints of bodies that do not turn.
-        if not any(math.isinf(b.moment) and b.constraints for b in self.space.bodies if b.body_type == b.DYNAMIC):
+        # pymunk gives nan for rotary joints of bodies that do not turn, and where both bodies are outside the space.
+        held = [b for c in self.space.constraints for b in (c.a, c.b)]
+        if not any(math.isinf(b.moment) or b.space is None for b in held if b is not self.space.static_body):
             self.space.step(DT)
 
     def bad(self) -> None:
@@ -257,8 +310,8 @@ class Program:
         if self.joints:
             actions += (self.join, self.join, self.part)
         for _ in range(length):
-            action: Callable[[], None] = self.draw(st.sampled_from(actions))  # type: ignore[assignment]
-            note(f"{action.__name__}:")
+            action: Callable[[], None] = self.one(actions)
+            self.chance.told(f"{action.__name__}:")
             action()
         for _ in range(3):
             self.step()

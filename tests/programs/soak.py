@@ -1,20 +1,20 @@
 """Ten thousand random programs of API calls: `python -m tests.programs.soak [COUNT] [--minutes M] [--joints]`.
 
-Goes on after a failure, and prints the shortest program that fails in the same way: the calls by name, in each what
-was drawn for it. `--gain 1e-5` takes a gain of energy above that part of the scale for a failure (see `fuzz.Program`).
+Goes on after a failure, and prints its seed and calls; with `--shrink`, which draws more slowly and less widely, the
+shortest program that fails in the same way, with what was drawn. `--gain 1e-5` takes a gain of energy above that part
+of the scale for a failure (see `fuzz.Program`).
 """
 
 from __future__ import annotations
 
 import argparse
 import time
-from collections.abc import Callable
 
 from hypothesis import HealthCheck, given, seed, settings
 from hypothesis import strategies as st
 from tqdm import tqdm
 
-from .fuzz import GAIN, Program
+from .fuzz import GAIN, Drawn, Program, Thrown
 
 _BATCH = 100  # programs between two looks at the clock
 
@@ -29,8 +29,7 @@ def batch(count: int, start: int, gain: float, joints: bool, length: int) -> str
     )  # fmt: skip
     @given(st.data())
     def programs(data: st.DataObject) -> None:
-        draw: Callable[..., object] = data.draw
-        Program(draw, gain, joints).play(length)
+        Program(Drawn(data), gain, joints).play(length)
 
     try:
         programs()
@@ -39,13 +38,25 @@ def batch(count: int, start: int, gain: float, joints: bool, length: int) -> str
     return ""
 
 
-def soak(count: int, minutes: float, start: int, gain: float, joints: bool, length: int = 40) -> int:
+def plain(count: int, start: int, gain: float, joints: bool, length: int) -> str:
+    """As `batch`, of seeds from `start` on; all that fail."""
+    told = []
+    for one in range(start, start + count):
+        chance = Thrown(one)
+        try:
+            Program(chance, gain, joints).play(length)
+        except Exception as error:
+            told.append(f"seed {one}: {type(error).__name__}: {error}\n{' '.join(chance.calls)}")
+    return "\n".join(told)
+
+
+def soak(count: int, minutes: float, start: int, gain: float, joints: bool, shrink: bool, length: int = 40) -> int:
     """Play so many programs, or for so long; how many batches fail."""
     clock, failed, done = time.perf_counter(), 0, 0
     with tqdm(total=count, unit="program", desc="soak") as bar:
         while done < count and time.perf_counter() - clock < 60.0 * minutes:
             size = min(_BATCH, count - done)
-            if told := batch(size, start + done, gain, joints, length):
+            if told := (batch if shrink else plain)(size, start + done, gain, joints, length):
                 failed += 1
                 tqdm.write(f"seed {start + done}, gain {gain:g}:\n{told}\n")
             done += size
@@ -62,5 +73,6 @@ if __name__ == "__main__":
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--gain", type=float, default=GAIN)
     parser.add_argument("--joints", action="store_true", help="join bodies, too")
+    parser.add_argument("--shrink", action="store_true", help="draw by hypothesis, and shrink what fails")
     one = parser.parse_args()
-    raise SystemExit(min(soak(one.count, one.minutes, one.seed, one.gain, one.joints), 1))
+    raise SystemExit(min(soak(one.count, one.minutes, one.seed, one.gain, one.joints, one.shrink), 1))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import pymunk
@@ -213,3 +214,27 @@ def test_a_space_whose_step_is_ours_is_stepped_by_ours() -> None:
             space.step(DT)
         assert next(iter(space.bodies)).position.x == pytest.approx(3 * DT)
         assert space.current_time_step == DT
+
+
+def test_gears_of_bodies_that_do_not_turn_do_not_make_nan_of_what_handlers_see() -> None:
+    """pymunk's own step divides by the sum of the inverse moments, 0, so that a rehearsal of it gives nan."""
+    space = pymunk.Space()
+    bodies = [pymunk.Body(1.0, math.inf) for _ in range(2)]
+    for i, body in enumerate(bodies):
+        body.position, body.velocity = (i * 0.9, 0.0), (-0.5 * i, 0.0)
+        space.add(body, pymunk.Circle(body, 0.5))
+    space.add(pymunk.GearJoint(*bodies, 0.0, 1.0))
+    seen = []
+
+    def kick(arbiter: pymunk.Arbiter, space: pymunk.Space, data: object) -> None:
+        seen.append(bodies[0].angular_velocity)
+        bodies[0].velocity += (0.0, 1.0)
+
+    space.on_collision(post_solve=kick)
+    stepper = ep.EECA(space)
+    for _ in range(3):
+        stepper.step(0.01)
+    assert len(seen) > 0
+    assert math.isnan(seen[0])
+    assert bodies[0].velocity.y == pytest.approx(len(seen))
+    assert all(math.isfinite(v) for b in bodies for v in (*b.position, *b.velocity, b.angle, b.angular_velocity))

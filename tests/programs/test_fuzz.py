@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
+import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
-from .fuzz import Program
+from .fuzz import Drawn, Program, Thrown
 
 
 # Without shrinking, which would take minutes: the soak does it.
@@ -17,5 +16,15 @@ from .fuzz import Program
 )  # fmt: skip
 @given(st.data())
 def test_random_programs(data: st.DataObject) -> None:
-    draw: Callable[..., object] = data.draw
-    Program(draw).play(25)
+    Program(Drawn(data)).play(25)
+
+
+@pytest.mark.parametrize("first", range(0, 400, 40))
+def test_random_programs_with_joints(first: int) -> None:
+    for seed in range(first, first + 40):
+        chance = Thrown(seed)
+        try:
+            Program(chance, joints=True).play(40)
+        except Exception as error:
+            error.add_note(f"seed {seed}: {' '.join(chance.calls)}")
+            raise

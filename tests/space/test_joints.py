@@ -661,3 +661,21 @@ def test_the_ledger_closes_where_joints_with_springs_are_closed(own_steps: int) 
     book = stepper.step(1 / 60).ledger
     assert book is not None
     assert book.residual == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("watched", [False, True], ids=["", "with a handler"])
+def test_bodies_outside_stay_as_they_are_where_pymunk_pushes_them(watched: bool) -> None:
+    """pymunk pushes bodies outside the space, and makes nan of them where a joint has no mobility to push against."""
+    space = pymunk.Space()
+    space.gravity = 0.0, -10.0
+    inside, heavy, fixed = lift(space), pymunk.Body(1.0, math.inf), pymunk.Body(body_type=pymunk.Body.STATIC)
+    space.add(pymunk.Circle(inside, 0.1))
+    heavy.velocity = 1.0, 2.0
+    space.add(pymunk.GearJoint(heavy, fixed, 0.0, 1.0), pymunk.PinJoint(heavy, inside))
+    if watched:
+        space.on_collision(begin=lambda arbiter, space, data: None)
+    stepper = ep.EECA(space)
+    for _ in range(3):
+        stepper.step(0.01)
+    assert (heavy.velocity, heavy.angular_velocity) == ((1.0, 2.0), 0.0)
+    assert (fixed.velocity, fixed.angular_velocity) == ((0.0, 0.0), 0.0)

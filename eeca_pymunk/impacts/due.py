@@ -1,0 +1,85 @@
+"""Who is to be forecast anew, and what the memory is to bring before the events need it."""
+
+from __future__ import annotations
+
+import math
+
+from ..compiled import inlined, uncounted
+from ..fetching import fetch
+from ..layout import AX, DUE, X
+from ..pairs.layout import AT_X, START
+from .forecast import predict
+from .layout import DT, FORECASTS, HEAP, ISLAND, OTHER, OWN, STILL, UNTIL, Scene
+from .lone import holds, predict_disk
+
+
+@uncounted
+def forecast(A: Scene, disks: int, moving: int, i: int, t: float, end: float, several: bool) -> None:
+    """The next event of body i, seen from instant t of the loop; see `predict` for `several`."""
+    A.COUNT[FORECASTS] += 1
+    if i < disks and A.STATE[i, ISLAND] < 0:
+        predict_disk(A, disks, i, t, end, several)
+        return
+    until = A.RESTING[i, UNTIL] if A.STATE[i, ISLAND] == i else math.inf
+    predict(
+        A.BODY, A.STATE, A.SHAPE, A.LINK, A.VERTEX, A.MARK, A.LIST, A.POOL, A.FLAG, A.RULE, A.HEAP_TIME, A.HEAP_BODY,
+        A.WORK, A.PLACE, A.COUNT, disks, moving, i, t, end, until,
+    )  # fmt: skip
+
+
+@uncounted
+def forecast_all(A: Scene, disks: int, n: int, t: float, end: float) -> None:
+    """The next events of the n bodies in A.BLOCK, seen from instant t: each pair of them is looked at once. That is
+    enough, as either body is forecast anew with all others after its next event."""
+    for q in range(n):
+        A.PLACE[A.BLOCK[q]] = q
+    for q in range(n):
+        forecast(A, disks, A.LIST.shape[0], A.BLOCK[q], t, end, True)
+    for q in range(n):
+        A.PLACE[A.BLOCK[q]] = -1
+
+
+@uncounted
+def forecast_due(A: Scene, disks: int) -> None:
+    """The next events, at the start of a step, of all bodies whose last forecast is no good."""
+    n, dt = 0, A.PAR[DT]
+    for i in range(A.BODY.shape[0] - 1):
+        alone = A.STATE[i, ISLAND] < 0
+        if A.BODY[i, DUE] < dt or not (alone or A.MEMBER[i, STILL] == 1):
+            if not (alone and i < disks and holds(A, disks, i, dt)):
+                A.BLOCK[n] = i
+                n += 1
+    forecast_all(A, disks, n, 0.0, dt)
+
+
+@inlined
+def fetch_body(A: Scene, i: int) -> None:
+    """Have what an event of body i is about brought."""
+    fetch(A.BODY, i, X)
+    fetch(A.BODY, i, AX)
+    fetch(A.STATE, i, OWN)
+
+
+@inlined
+def look_ahead(A: Scene, disks: int, now: int) -> None:
+    """Have the memory bring what the events after that of body `now` are about: numbers of later ones first, as they
+    say where to find the rest."""
+    LIST = A.LIST
+    n = min(A.COUNT[HEAP], 3)
+    for k in range(1, n):
+        i = A.HEAP_BODY[k]
+        fetch_body(A, i)
+        if i < disks:
+            fetch(LIST, i, START)
+    if n > 0:
+        i = A.HEAP_BODY[0]
+        if i < disks:
+            fetch(A.POOL, LIST[i, START], 0)
+            fetch(A.MARK, i, AT_X)
+            o = A.STATE[i, OTHER]
+            if 0 <= o < disks:
+                fetch_body(A, o)
+                fetch(LIST, o, START)
+    o = A.STATE[now, OTHER]
+    if 0 <= o < disks:
+        fetch(A.POOL, LIST[o, START], 0)

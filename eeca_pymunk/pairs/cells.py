@@ -1,0 +1,92 @@
+"""Cells of the grid: where a margin circle stands, and the chains of shapes that stand in the same place.
+
+Bounding circles are hashed by their centres into square cells, on levels of size: level l holds circles (with their
+margins) of up to half its cell, which is twice that of level l - 1.
+"""
+
+from __future__ import annotations
+
+import math
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import uncounted
+from ..layout import BOUND
+from .layout import (
+    AT_X,
+    AT_Y,
+    BUCKET,
+    CELL_LENGTH,
+    LEVEL,
+    LEVEL_COUNT,
+    LEVELS,
+    MARGIN,
+    NEXT,
+    PREVIOUS,
+    REACH,
+)  # fmt: skip
+
+_FAR = 2.0**50  # cells from the origin, beyond which all are one: numbers of cells stay whole
+
+
+@uncounted
+def bucket(level: int, column: int, row: int, mask: int) -> int:
+    """Place of a cell in the hash table."""
+    return ((column * 73856093) ^ (row * 19349663) ^ (level * 83492791)) & mask
+
+
+@uncounted
+def cell_at(x: float, length: float) -> int:
+    """Column or row of a cell of the grid of moving shapes."""
+    return math.floor(min(max(x / length, -_FAR), _FAR))
+
+
+@uncounted
+def level_of(radius: float, cell: float) -> int:
+    """The lowest level whose cells are at least twice as long as the radius."""
+    level, length = 0, cell
+    while length < 2.0 * radius and level < LEVEL_COUNT - 1:
+        length *= 2.0
+        level += 1
+    return level
+
+
+@uncounted
+def draw(MARK: FloatArray, SHAPE: FloatArray, s: int, x: float, y: float) -> None:
+    """Let the margin circle of shape s have its centre at (x, y)."""
+    MARK[s, AT_X], MARK[s, AT_Y], MARK[s, REACH] = x, y, SHAPE[s, BOUND] + MARK[s, MARGIN]
+
+
+@uncounted
+def link(MARK: FloatArray, CELL: IntArray, HEAD: IntArray, GRID: FloatArray, INFO: IntArray, s: int) -> None:
+    """Put shape s into the grid where its margin circle is."""
+    level = level_of(MARK[s, REACH], GRID[CELL_LENGTH])
+    length = GRID[CELL_LENGTH] * 2.0**level
+    k = bucket(level, cell_at(MARK[s, AT_X], length), cell_at(MARK[s, AT_Y], length), HEAD.shape[0] - 1)
+    head = HEAD[k]
+    CELL[s, LEVEL], CELL[s, BUCKET] = level, k
+    MARK[s, NEXT], MARK[s, PREVIOUS] = head, -1.0
+    if head >= 0:
+        MARK[head, PREVIOUS] = s
+    HEAD[k] = s
+    INFO[LEVELS + level] += 1
+
+
+@uncounted
+def unlink(MARK: FloatArray, CELL: IntArray, HEAD: IntArray, INFO: IntArray, s: int) -> None:
+    """Take shape s out of the grid."""
+    after, before = int(MARK[s, NEXT]), int(MARK[s, PREVIOUS])
+    if before >= 0:
+        MARK[before, NEXT] = after
+    else:
+        HEAD[CELL[s, BUCKET]] = after
+    if after >= 0:
+        MARK[after, PREVIOUS] = before
+    INFO[LEVELS + CELL[s, LEVEL]] -= 1
+
+
+@uncounted
+def near(MARK: FloatArray, o: int, x: float, y: float, radius: float) -> bool:
+    """Whether the margin circle of shape o overlaps that of centre (x, y)."""
+    dx, dy = MARK[o, AT_X] - x, MARK[o, AT_Y] - y
+    reach = radius + MARK[o, REACH]
+    return bool(dx * dx + dy * dy <= reach * reach)

@@ -1,0 +1,106 @@
+"""The ledger closes in every step, whatever happens in it, and however badly it is solved."""
+
+from __future__ import annotations
+
+import math
+from random import Random
+
+import pymunk
+import pytest
+
+import eeca_pymunk as ep
+
+from .measures import kinetic, moving
+
+CONSTRAINTS = 10
+
+
+def constraint(chance: Random, a: pymunk.Body, b: pymunk.Body, unit: float) -> pymunk.Constraint:
+    """Any of pymunk's ten, between places of the bodies that need not be near each other."""
+    p, q = ((chance.uniform(-0.3, 0.3) * unit, chance.uniform(-0.3, 0.3) * unit) for _ in range(2))
+    force = unit**2 if unit > 0.0 else 0.0
+    kinds: list[pymunk.Constraint] = [
+        pymunk.PinJoint(a, b, p, q),
+        pymunk.PivotJoint(a, b, tuple((a.position + b.position) / 2)),
+        pymunk.SlideJoint(a, b, p, q, 0.2 * unit, 2.0 * unit),
+        pymunk.GrooveJoint(a, b, (-unit, 0.0), (unit, 0.2 * unit), p),
+        pymunk.DampedSpring(a, b, p, q, 0.8 * unit, chance.choice([5.0, 200.0]), chance.choice([0.0, 0.5])),
+        pymunk.DampedRotarySpring(a, b, 0.3, 2.0 * force, 0.1 * force),
+        pymunk.GearJoint(a, b, 0.0, chance.choice([1.0, -2.0])),
+        pymunk.RotaryLimitJoint(a, b, -0.5, 0.5),
+        pymunk.RatchetJoint(a, b, 0.0, 0.5),
+        pymunk.SimpleMotor(a, b, chance.uniform(-5.0, 5.0)),
+    ]
+    chosen = kinds[chance.randrange(CONSTRAINTS)]
+    if chance.random() < 0.25:
+        chosen.max_force = chance.choice([1.0, 20.0]) * unit
+    chosen.collide_bodies = chance.random() < 0.6
+    return chosen
+
+
+def heap(chance: Random, unit: float) -> pymunk.Space:
+    """Three to nine bodies thrown into a box, on and in each other, held by joints that may contradict each other; in
+    some also by a body that moves by itself, over floors that do, and in a space that slows them."""
+    space = pymunk.Space()
+    space.gravity = 0.0, chance.choice([-9.81, -9.81, 0.0]) * unit
+    space.damping = chance.choice([1.0, 0.9])
+    elasticity, friction = chance.choice([0.0, 0.0, 0.3, 1.0]), chance.choice([0.0, 0.3, 0.8])
+    shapes: list[pymunk.Shape] = []
+    for start, end in (((-4.0, 0.0), (4.0, 0.0)), ((-4.0, 0.0), (-4.0, 4.0)), ((4.0, 0.0), (4.0, 4.0))):
+        here, there = (tuple(x * unit for x in place) for place in (start, end))
+        shapes.append(pymunk.Segment(space.static_body, here, there, 0.02 * unit))
+        shapes[-1].surface_velocity = chance.choice([-0.5, 0.0, 0.0]) * unit, 0.0
+    bodies = [pymunk.Body() for _ in range(chance.randint(3, 9))]
+    for body in bodies:
+        size = chance.uniform(0.15, 0.4) * unit
+        kind = chance.randrange(3)
+        if kind == 0:
+            shapes.append(pymunk.Circle(body, size))
+        elif kind == 1:
+            shapes.append(pymunk.Poly.create_box(body, (2.0 * size, chance.uniform(0.5, 2.0) * size)))
+        else:
+            shapes.append(pymunk.Segment(body, (-size, 0.0), (size, 0.0), 0.1 * size))
+        shapes[-1].mass = chance.choice([0.1, 1.0, 5.0])
+        body.position = chance.uniform(-1.5, 1.5) * unit, chance.uniform(0.2, 2.0) * unit
+        body.angle, body.angular_velocity = chance.uniform(-3.0, 3.0), chance.uniform(-5.0, 5.0)
+        body.velocity = chance.uniform(-3.0, 3.0) * unit, chance.uniform(-3.0, 3.0) * unit
+    if chance.random() < 0.3:
+        mover = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+        mover.position, mover.velocity, mover.angular_velocity = (0.0, -0.2 * unit), (0.5 * unit, 0.2 * unit), 0.5
+        shapes.append(pymunk.Poly.create_box(mover, (1.5 * unit, 0.4 * unit)))
+        bodies.append(mover)
+    space.add(*bodies)
+    for shape in shapes:
+        shape.elasticity, shape.friction = elasticity, friction
+        space.add(shape)
+    for _ in range(chance.randint(2, len(bodies) + 2)):
+        a, b = chance.sample([*bodies, space.static_body], 2)
+        if pymunk.Body.DYNAMIC in (a.body_type, b.body_type):
+            space.add(constraint(chance, a, b, unit))
+    return space
+
+
+@pytest.mark.parametrize("closure", [None, ep.Midstep()], ids=["impacts", "midstep"])
+@pytest.mark.parametrize("unit", [1e-2, 1.0, 1e2])
+def test_ledger_closes_in_random_heaps(unit: float, closure: ep.Closure | None) -> None:
+    unmet = 0
+    for seed in range(12):
+        chance = Random(seed)
+        space = heap(chance, unit)
+        forced = chance.random() < 0.4
+        stepper = ep.EECA(space) if closure is None else ep.EECA(space, closure)
+        for step in range(25):
+            for body in moving(space) if forced else []:
+                body.torque = math.sin(0.1 * step + body.mass) * 20.0 * body.moment
+                body.force = body.mass * unit * math.cos(0.2 * step), 0.0
+            report = stepper.step(1.0 / 60.0)
+            book = report.ledger
+            assert book is not None
+            unmet += not report.converged
+            whole = sum(kinetic(b) + b.mass * abs(space.gravity.dot(b.position)) for b in moving(space))
+            whole += abs(book.change) + abs(book.external) + book.restitution + book.friction + book.damping
+            assert abs(book.residual) <= 1e-12 * whole, (seed, step)
+            assert min(book.restitution, book.friction, book.damping) >= -1e-11 * whole, (seed, step)
+            # Nobody is thrown out: forces, motors and movers of these scenes do not make such speeds.
+            assert max(b.velocity.length for b in space.bodies) <= 1e4 * unit, (seed, step)
+    assert closure is not None or unmet > 5
