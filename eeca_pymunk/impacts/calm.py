@@ -47,9 +47,9 @@ from .layout import (
 )  # fmt: skip
 
 LIKELY = 3  # of MEMBER[STILL]
-WOKEN = 2.0  # steps more, once it has been woken: what hits it often comes again
+WOKEN = -2.0  # CALM_FOR once it is woken after a long stand: what hits it often comes again
 SURE = 2  # steps that an island hardly moves, before it is asked whether it stands
-_AGAIN, _LATEST = 4, 12  # and until it is asked again, one more for every fourth body
+_AGAIN, _LATEST, _LATER = 4, 12, 25  # and until it is asked again, one more for every fourth body; then every 25th
 
 
 @uncounted
@@ -88,7 +88,7 @@ def wait(A: Scene, MINE: IntArray, n: int) -> None:
 @uncounted
 def later(n: int) -> float:
     """CALM_FOR of a body of n that have been asked whether they stand, and do not."""
-    return -float(min(_AGAIN + n // 4, _LATEST))
+    return -float(min(_AGAIN + n // 4, _LATEST + n // _LATER))
 
 
 @uncounted

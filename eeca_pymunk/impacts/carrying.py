@@ -58,7 +58,7 @@ from .layout import (
 )  # fmt: skip
 from .spans import dismiss, solve
 
-_FACTORS = 12  # to find how a standing island carries what moves, at most
+_FACTORS = 4  # to find how a standing island carries what moves, at most: more would cost as much as a solve
 _PART = 1e-2  # of the fastest of a motion that nothing holds, below which a body has no part in it
 
 

@@ -52,7 +52,7 @@ from .layout import (
 from .spans import dismiss, lay_out_island, open_contacts, solve
 from .still import halt
 
-_MOST = 0.4  # of an island's bodies, that may move while the others stand
+_MOST, _FEW = 0.1, 2  # of an island's bodies, that may move while the others stand; so many always
 _TRIES = 2
 _QUIET = 0.1  # speed relative to |a| dt, above which a body moves, unless none does
 
@@ -160,13 +160,13 @@ def stands_in_part(A: Scene, root: int) -> bool:
     MINE, STAND, MOVE = np.empty(n, np.int64), np.empty(n, np.int64), np.empty(n, np.int64)
     members(A, root, MINE)
     stand = divide(A, MINE, n, STAND, MOVE)
-    if stand == 0 or stand < (1.0 - _MOST) * n or not lossy(A, root):
+    if stand == 0 or n - stand > max(_MOST * n, _FEW) or not lossy(A, root):
         return False
     MINE.sort()
     V0, some = np.empty((n, 3)), False
     for _ in range(_TRIES):
         stand = divide(A, MINE, n, STAND, MOVE)
-        if stand == 0 or stand < (1.0 - _MOST) * n:
+        if stand == 0 or n - stand > max(_MOST * n, _FEW):
             break
         some = True
         chain(A, STAND, stand)

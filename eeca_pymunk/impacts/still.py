@@ -16,7 +16,7 @@ from ..layout import ANGLE, AX, AY, DUE, IM, OWNER, SPIN, TWIST, VX, VY, X, Y
 from ..pairs.lists import mark_pair
 from ..sustained.memory import STAMP as OF_STEP
 from ..sustained.memory import find
-from .calm import WOKEN, hardly, speed, whirls
+from .calm import WOKEN, hardly, later, speed, whirls
 from .layout import (
     AFTER_ME,
     AMONG,
@@ -78,6 +78,8 @@ def stays(A: Scene, i: int, last: float) -> bool:
         A.MEMBER[A.STATE[i, ISLAND], STILL] = CHANGED
         return False
     BODY[i, AX], BODY[i, AY], BODY[i, TWIST] = 0.0, 0.0, 0.0
+    # What does not stand for long is not asked again for long.
+    A.RESTING[i, CALM_FOR] = min(A.RESTING[i, CALM_FOR] + 1.0, WOKEN)
     BODY[i, DUE] = max(A.RESTING[i, STILL_DUE] - last, 0.0)
     return True
 
@@ -220,7 +222,7 @@ def halt(A: Scene, root: int) -> None:
         else:
             BODY[i, SPIN] = 0.0
         BODY[i, AX], BODY[i, AY], BODY[i, TWIST] = 0.0, 0.0, 0.0
-        MEMBER[i, STILL], BODY[i, DUE], A.RESTING[i, CALM_FOR] = 1, 0.0, -WOKEN
+        MEMBER[i, STILL], BODY[i, DUE], A.RESTING[i, CALM_FOR] = 1, 0.0, later(MEMBER[root, AMONG])
         A.STATE[i, KINKS] += 1
         i = MEMBER[i, AFTER_ME]
 

@@ -30,7 +30,7 @@ from .ordering import dissect, neighbours, pattern
 _R = 1e11
 _START = 0.1  # least impulse at the start, relative to the mean guess
 _CLOSE = 0.99  # of the way to where an x or s would vanish
-_EARLY, _SLOW, _STALLED = 3, 0.9, 2  # after so many steps, so little less motion, so often: there is no answer
+_EARLY, _SLOW, _STALLED = 3, 0.8, 1  # after so many steps, so little less motion, so often: there is no answer
 _SETTLED = 1e-8  # sum x s relative to the start, at which x is next to the guess
 
 # EDGE (K, 6) float: of each edge
