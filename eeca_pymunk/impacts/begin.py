@@ -13,6 +13,7 @@ from .layout import (
     BEFORE,
     BLOCKS,
     BUSY,
+    CARRIES,
     CRAMMED,
     DAMPED,
     DIRECT,
@@ -43,6 +44,7 @@ from .layout import (
     STILL_DUE,
     STORED,
     SWEEPS,
+    TIED,
     UNMET,
     Scene,
 )
@@ -75,10 +77,11 @@ def begin(A: Scene, WALK: IntArray) -> None:
     PAR[STAMP] += 1.0
     COUNT[PENDING], COUNT[PHASE] = -1, 0
     n, last = BODY.shape[0] - 1, PAR[LAST]
-    pulled, even = 0.0, True
     quiet = COUNT[QUIET] > BUSY_FOR
+    pulled, even, carries = 0.0, True, A.RULE.shape[0] == 0 and not quiet
     for i in range(n):
         STATE[i, EVENTS] = 0
+        carries = carries and A.MEMBER[i, TIED] < 0
         if not quiet:
             A.MEMBER[i, BUSY] = max(A.MEMBER[i, BUSY] - 1, 0)
         if not quiet and A.MEMBER[i, STILL] == 1 and stays(A, i, last):
@@ -94,13 +97,11 @@ def begin(A: Scene, WALK: IntArray) -> None:
         if BODY[i, DUE] < 0.0:
             STATE[i, KINKS] += 1
             if BODY[i, DUE] == -math.inf:
-                A.MEMBER[i, PUT] = 1
+                A.MEMBER[i, PUT], COUNT[CRAMMED] = 1, 1
         else:
             BODY[i, DUE] = max(BODY[i, DUE] - last, 0.0)
         alike = BODY[i, IM] == 0.0 or (ax == BODY[0, AX] and ay == BODY[0, AY])
         even = even and alike and STATE[i, ISLAND] < 0
     PAR[PULLED] = math.sqrt(pulled)
     COUNT[EVEN] = 1 if even else 0
-    COUNT[CRAMMED] = 0
-    for i in range(n):
-        COUNT[CRAMMED] += A.MEMBER[i, PUT]
+    COUNT[CARRIES] = 1 if carries else 0

@@ -22,8 +22,9 @@ from ..pairs.rules import barred, law
 from ..rows.build import normal_rate, place_row
 from ..rows.layout import ELASTICITY as ELASTIC
 from ..rows.layout import K_N, ROW_COLUMNS
+from ..sustained.contacts import CROWD
 from .booking import end_span
-from .islands import CROWD, remembered, worn
+from .islands import carrier, remembered, worn
 from .layout import BODIES as SIZE_OF
 from .layout import DT, FIRST_SHAPE, ISLAND, JOINTED, LOST, NEXT_TIED, OPEN, SHAPES, STAMP, TIED, Scene
 from .strike import move_to, touches
@@ -41,7 +42,7 @@ def takes_part(A: Scene, disks: int, s: int, o: int, t: float) -> bool:
     if touches(A, disks, s, o, t):
         return True
     i, j = A.LINK[s, OWNER], A.LINK[o, OWNER]
-    if A.STATE[i, ISLAND] < 0 or not (A.STATE[j, ISLAND] == A.STATE[i, ISLAND] or A.BODY[j, IM] == 0.0):
+    if A.STATE[i, ISLAND] < 0 or not (A.STATE[j, ISLAND] == A.STATE[i, ISLAND] or carrier(A, j)):
         return False
     return remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], s, o, A.PAR[STAMP])[0] > 0.0
 

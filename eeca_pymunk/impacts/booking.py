@@ -22,6 +22,7 @@ from ..layout import (
 )  # fmt: skip
 from ..pairs.lists import mark_pair
 from ..tables import Table
+from .islands import unite
 from .layout import (
     AFTER_ME,
     BETA,
@@ -29,6 +30,7 @@ from .layout import (
     ENDED,
     EXTERNAL,
     FRICTIONAL,
+    ISLAND,
     JOINTED,
     LAM,
     LASTED,
@@ -59,7 +61,7 @@ from .layout import (
     Scene,
     scene_of,
 )  # fmt: skip
-from .still import disturb
+from .still import CHANGED, disturb, spread_change
 from .strike import move_to, note
 
 
@@ -161,15 +163,38 @@ def turn_back(A: Scene, root: int, excess: float) -> None:
 
 
 @uncounted
+def wake(A: Scene, root: int, t: float) -> int:
+    """An island that stands does so no longer from instant t on: it and all that rests on it become one, whose root is
+    returned, and end their spans."""
+    MEMBER, one = A.MEMBER, root
+    MEMBER[root, STILL] = CHANGED
+    spread_change(A)
+    for i in range(A.BODY.shape[0] - 1):
+        if A.STATE[i, ISLAND] == i and A.BODY[i, IM] > 0.0 and MEMBER[i, STILL] == CHANGED:
+            disturb(A, i)
+            close_span(A, i, t)
+            one = unite(A, one, i)
+    return one
+
+
+@uncounted
 def end_span(A: Scene, root: int, t: float) -> None:
-    """End the span of an island at instant t: book its contacts, and bring its bodies there."""
+    """End the span of an island at instant t, and of what rests on it."""
     if A.MEMBER[root, STILL] == 1:
-        disturb(A, root)
+        wake(A, root, t)
+    else:
+        close_span(A, root, t)
+
+
+@uncounted
+def close_span(A: Scene, root: int, t: float) -> None:
+    """End the span of one island at instant t: book its contacts, and bring its bodies there."""
     free, excess = A.MEMBER[root, JOINTED] == 0, 0.0
     for c in range(A.COUNT[PUSHES]):
         if A.PUSHED_BY[c, ROOT] == root:
             for side in range(2):
-                free = free and A.BODY[A.LINK[A.PUSHED_BY[c, PUSH_A + side], OWNER], IM] > 0.0
+                j = A.LINK[A.PUSHED_BY[c, PUSH_A + side], OWNER]
+                free = free and A.BODY[j, IM] > 0.0 and A.STATE[j, ISLAND] == root
             if free:
                 excess += gained(A, c, t)
             book(A, c, t)

@@ -14,8 +14,8 @@ from ..compiled import uncounted
 from ..layout import AX, AY, EXTENT, FRICTION, SPIN, TWIST, VX, VY
 from ..pairs.rules import law
 from ..rows.equilibrium import bound
+from ..sustained.contacts import CROWD
 from ..sustained.statics import CALM, CALM_CROWD, STANDS
-from .islands import CROWD
 from .layout import (
     AFTER_ME,
     BETA,
@@ -47,8 +47,9 @@ from .layout import (
 )  # fmt: skip
 
 LIKELY = 3  # of MEMBER[STILL]
-_SURE = 2  # steps that an island hardly moves, before it is asked whether it stands
-_AGAIN, _LATEST = 4, 12  # and until it is asked again, one more for every fourth body
+WOKEN = -2.0  # CALM_FOR once it is woken after a long stand: what hits it often comes again
+SURE = 2  # steps that an island hardly moves, before it is asked whether it stands
+_AGAIN, _LATEST, _LATER = 4, 12, 25  # and until it is asked again, one more for every fourth body; then every 25th
 
 
 @uncounted
@@ -72,17 +73,35 @@ def hardly(bodies: int) -> float:
 
 
 @uncounted
-def calm(A: Scene, root: int, MINE: IntArray, n: int, t: float) -> float:
-    """The speed relative to |a| dt at which the island of the n bodies MINE may come to a stand at instant t, 0 if it
-    may not; it is asked again much later, unless it stood in between."""
+def settled(A: Scene, i: int) -> bool:
+    """Whether body i has hardly moved for long enough to be asked whether it stands."""
+    return bool(A.RESTING[i, CALM_FOR] >= SURE)
+
+
+@uncounted
+def wait(A: Scene, MINE: IntArray, n: int) -> None:
+    """The n bodies MINE are asked again much later, unless they stand in between."""
+    for q in range(n):
+        A.RESTING[MINE[q], CALM_FOR] = later(n)
+
+
+@uncounted
+def later(n: int) -> float:
+    """CALM_FOR of a body of n that have been asked whether they stand, and do not."""
+    return -float(min(_AGAIN + n // 4, _LATEST + n // _LATER))
+
+
+@uncounted
+def calm(A: Scene, root: int, MINE: IntArray, n: int, among: int, t: float) -> float:
+    """The speed relative to |a| dt at which the island of the n bodies MINE, on others, `among` in all, may come to a
+    stand at instant t, 0 if it may not; it is asked again much later, unless it stood in between."""
     if t > 0.0 or A.PAR[PULLED] == 0.0 or A.COUNT[TOGETHER] > 0 or A.RULE.shape[0] > 0 or A.MEMBER[root, HITS] > 0:
         return 0.0
     for q in range(n):
-        if A.RESTING[MINE[q], CALM_FOR] < _SURE or A.MEMBER[MINE[q], BUSY] > 0:
+        if not settled(A, MINE[q]) or A.MEMBER[MINE[q], BUSY] > 0:
             return 0.0
-    for q in range(n):
-        A.RESTING[MINE[q], CALM_FOR] = -min(_AGAIN + n // 4, _LATEST)
-    return hardly(n)
+    wait(A, MINE, n)
+    return hardly(among)
 
 
 @uncounted

@@ -24,7 +24,8 @@ from ..pairs.lists import centre
 from ..pairs.rules import barred, law
 from ..rows.build import tangent_rate
 from ..rows.layout import FRICTION, K_T, UN, UT
-from .islands import CROWD, TOUCH, approach, remembered, rests
+from ..sustained.contacts import CROWD
+from .islands import TOUCH, approach, carrier, remembered, rests
 from .layout import (
     BUSY,
     DT,
@@ -71,7 +72,7 @@ def pairs_of(A: Scene, root: int, t: float, lossy: bool, LOCAL: IntArray, MINE: 
             for w in range(A.LIST[s, START], A.LIST[s, START] + A.LIST[s, NUMBER]):
                 o = int(A.POOL[w])
                 j = LINK[o, OWNER]
-                if BODY[j, IM] > 0.0 and (STATE[j, ISLAND] != root or j < i):
+                if j < i if STATE[j, ISLAND] == root else not carrier(A, j):
                     continue
                 if barred(A.RULE, s, o):
                     continue
@@ -87,23 +88,25 @@ def pairs_of(A: Scene, root: int, t: float, lossy: bool, LOCAL: IntArray, MINE: 
                     apart = A.SHAPE[s, BOUND] + A.SHAPE[o, BOUND] + reach
                     if (bx - ax) * (bx - ax) + (by - ay) * (by - ay) > apart * apart:
                         continue
-                g, u, closing, mass = approach(A.BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, A.PULL, s, o, t)
-                if not busy and not together:
-                    reach = 1.1 * (max(-u, 0.0) * h + A.PAR[PULLED] * h * h) + TOUCH * small
-                if g > reach:
-                    continue
-                e = law(A.SHAPE, A.RULE, s, o)[0]
-                if together:
-                    pass
-                elif e >= 1.0 and not lossy:
-                    if not rests(A, s, o, t, False):
-                        continue
-                elif g > TOUCH * small and not busy:
+                force, load = 0.0, 0.0
+                if lossy and not together:
                     force, load = remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], s, o, A.PAR[STAMP] - 1.0)
-                    # What a crowd has carried goes on being carried: hits on it spread by its spans.
-                    carried = n >= CROWD and force > 0.0
-                    if not carried and not -e * min(u, 0.0) < 0.5 * max(closing, load / mass) * h:
+                # What a crowd has carried goes on being carried, as far as it may come: hits on it spread by its spans.
+                if n < CROWD or force <= 0.0:
+                    g, u, closing, mass = approach(A.BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, A.PULL, s, o, t)
+                    if not busy and not together:
+                        reach = 1.1 * (max(-u, 0.0) * h + A.PAR[PULLED] * h * h) + TOUCH * small
+                    if g > reach:
                         continue
+                    e = law(A.SHAPE, A.RULE, s, o)[0]
+                    if together:
+                        pass
+                    elif e >= 1.0 and not lossy:
+                        if not rests(A, s, o, t, False):
+                            continue
+                    elif g > TOUCH * small and not busy:
+                        if not -e * min(u, 0.0) < 0.5 * max(closing, load / mass) * h:
+                            continue
                 if p == found.shape[0]:
                     more = np.empty((2 * p, 2), np.int64)
                     for c in range(p):

@@ -8,8 +8,8 @@ from ..layout import BOUND, IM, OWNER, SIZE
 from ..pairs.layout import NUMBER, START
 from ..pairs.lists import centre
 from ..pairs.rules import barred, law
-from .islands import approach, unite
-from .layout import DT, FIRST_SHAPE, PULLED, PUT, SHAPES, TIED, Scene
+from .islands import approach, carrier, unite
+from .layout import CRAMMED, DT, FIRST_SHAPE, PULLED, PUT, SHAPES, TIED, Scene
 
 _DEEP = 1e-6  # overlap over the size of the smaller shape, above which that is meant
 
@@ -19,6 +19,7 @@ def hold_crammed(A: Scene) -> None:
     """At the start of a step, put into one island what is deep in one another and neither flies apart within the step
     nor hits: lossy shapes of bodies that no joint holds."""
     BODY, LINK, dt = A.BODY, A.LINK, A.PAR[DT]
+    A.COUNT[CRAMMED] = 0
     for i in range(BODY.shape[0] - 1):
         if A.MEMBER[i, PUT] == 0:
             continue
@@ -29,7 +30,7 @@ def hold_crammed(A: Scene) -> None:
                 j = LINK[o, OWNER]
                 if A.MEMBER[i, TIED] >= 0 or (BODY[j, IM] > 0.0 and A.MEMBER[j, TIED] >= 0):
                     continue
-                if (BODY[i, IM] == 0.0 and BODY[j, IM] == 0.0) or barred(A.RULE, s, o):
+                if (carrier(A, i) and carrier(A, j)) or barred(A.RULE, s, o):
                     continue
                 if law(A.SHAPE, A.RULE, s, o)[0] >= 1.0:
                     continue
@@ -42,7 +43,7 @@ def hold_crammed(A: Scene) -> None:
                 g, u, _, _ = approach(BODY, A.SHAPE, LINK, A.VERTEX, A.WORK, A.PULL, s, o, 0.0)
                 if g >= -_DEEP * min(A.SHAPE[s, SIZE], A.SHAPE[o, SIZE]) or u * dt > -g:
                     continue
-                A.MEMBER[i, PUT] = 1
+                A.MEMBER[i, PUT], A.COUNT[CRAMMED] = 1, 1
                 if -u <= A.PAR[PULLED] * dt:
-                    a, b = (j, i) if BODY[i, IM] == 0.0 else (i, j)
-                    unite(A, a, a if BODY[b, IM] == 0.0 else b)
+                    a, b = (j, i) if carrier(A, i) else (i, j)
+                    unite(A, a, a if carrier(A, b) else b)

@@ -19,10 +19,12 @@ from ..layout import (
     Y,
 )
 from ..pairs.rules import law
+from ..sustained.contacts import CROWD
 from ..sustained.memory import find
 from .layout import (
     AFTER_ME,
     BODIES,
+    CARRIES,
     DT,
     EVEN,
     HITS,
@@ -34,14 +36,20 @@ from .layout import (
     PULLED,
     SOLVED,
     STAMP,
+    STILL,
     TIED,
     Scene,
 )  # fmt: skip
 
-CROWD = 24  # bodies of an island, from which it is a crowd: hits spread in it, and solves of it are cut short
 _PLENTY = 3  # solves in a step of every body of the scene, on the average
 TOUCH = 1e-7  # gap relative to the smaller shape, within which shapes are in touch
 _STILL, _WAS_STILL = 1e-6, 1e-3  # speed relative to |a| dt, below which elastic contacts rest; if they did before
+
+
+@uncounted
+def carrier(A: Scene, i: int) -> bool:
+    """Whether what rests on body i takes it for fixed: impulses do not move it, or it stands still."""
+    return bool(A.BODY[i, IM] == 0.0 or (A.COUNT[CARRIES] > 0 and A.MEMBER[i, STILL] == 1))
 
 
 @uncounted

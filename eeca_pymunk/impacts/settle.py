@@ -16,11 +16,13 @@ from ..pairs.layout import NUMBER, START
 from ..pairs.lists import centre
 from ..pairs.rules import barred, law
 from .booking import end_span
+from .carrying import support
 from .crammed import hold_crammed
-from .islands import TOUCH, approach, members, rests, unite, worn
+from .islands import TOUCH, approach, carrier, members, rests, unite, worn
 from .layout import (
     BODIES,
     BUSY,
+    CARRIES,
     CRAMMED,
     DONE,
     DT,
@@ -44,6 +46,7 @@ from .layout import (
     TIED,
     Scene,
 )  # fmt: skip
+from .parting import stands_in_part
 from .spans import solve
 from .still import rouse
 from .strike import move_to
@@ -68,7 +71,7 @@ def join(A: Scene, i: int, t: float, FOUND: IntArray) -> int:
         for w in range(A.LIST[s, START], A.LIST[s, START] + A.LIST[s, NUMBER]):
             o = int(A.POOL[w])
             j = LINK[o, OWNER]
-            if BODY[j, IM] == 0.0 or STATE[j, ISLAND] == STATE[i, ISLAND] or barred(A.RULE, s, o):
+            if carrier(A, j) or STATE[j, ISLAND] == STATE[i, ISLAND] or barred(A.RULE, s, o):
                 continue
             busy = A.MEMBER[i, BUSY] > 0 or A.MEMBER[j, BUSY] > 0
             if law(A.SHAPE, A.RULE, s, o)[0] >= 1.0 and not busy:
@@ -129,9 +132,13 @@ def settle(A: Scene) -> int:
         if c > 0 and a == A.PUSHED_BY[c - 1, PUSH_A] and b == A.PUSHED_BY[c - 1, PUSH_B]:
             continue  # the other end of a face
         i, j = A.LINK[a, OWNER], A.LINK[b, OWNER]
+        i, j = (j, j) if carrier(A, i) else (i, i if carrier(A, j) else j)
+        if carrier(A, i):
+            continue
+        if STATE[i, ISLAND] >= 0 and STATE[i, ISLAND] == STATE[j, ISLAND]:
+            continue  # together already
         if rests(A, a, b, 0.0, law(A.SHAPE, A.RULE, a, b)[0] < 1.0):
-            i = j if BODY[i, IM] == 0.0 else i
-            unite(A, i, i if BODY[j, IM] == 0.0 else j)
+            unite(A, i, j)
     for i in range(n):
         if A.MEMBER[i, TIED] >= 0:
             unite(A, i, A.MEMBER[i, TIED])
@@ -148,10 +155,10 @@ def settle(A: Scene) -> int:
     for c in range(COUNT[PUSHES]):
         kept += 1 if A.PUSHED_BY[c, ROOT] >= 0 else 0
     for i in range(n):
-        if STATE[i, ISLAND] < 0 or A.MEMBER[i, STILL] == 1:
-            continue
+        if STATE[i, ISLAND] < 0 or (A.MEMBER[i, STILL] == 1 and COUNT[CARRIES] == 0):
+            continue  # what carries may have to be solved after all
         for s in range(STATE[i, FIRST_SHAPE], STATE[i, FIRST_SHAPE] + STATE[i, SHAPES]):
-            wanted += 2 * A.LIST[s, NUMBER]
+            wanted += (4 if COUNT[CARRIES] > 0 else 2) * A.LIST[s, NUMBER]
     if kept + wanted > A.PUSHED.shape[0] or 2 * (COUNT[REMEMBERED] + wanted) > A.KEYS.shape[0]:
         return PUSHES_FULL
     kept = 0
@@ -170,7 +177,10 @@ def settle(A: Scene) -> int:
             QUEUE[roots] = i
             roots += 1
     for q in range(roots):
-        solve(A, QUEUE[q], 0.0)
+        root = QUEUE[q]
+        if not stands_in_part(A, root):
+            solve(A, root, 0.0)
+    support(A)
     return DONE
 
 

@@ -27,6 +27,7 @@ from ..layout import (
 from ..pairs.lists import mark_pair
 from ..rows.build import normal_rate, tangent_rate
 from ..rows.layout import ARM_NA, ARM_TA, GAP, K_N, NX, NY, ROW_COLUMNS, UN, UT
+from ..sustained.contacts import CROWD
 from ..sustained.ledger import LEDGER_SIZE, carried
 from ..sustained.step import LOCK as LOCK_OF
 from ..sustained.step import OUT_SIZE, STOOD, step_island
@@ -34,9 +35,10 @@ from ..sustained.step import POLISHES as POLISHES_OF
 from ..sustained.step import SWEEPS as SWEEPS_OF
 from .calm import calm, whirls
 from .coming import PARTS, before_end, hurried, pairs_of, span_of, stick_time, sweeps_of_crowd, way_of
-from .islands import CROWD, members
+from .islands import members
 from .layout import (
     AFTER_ME,
+    AMONG,
     BETA,
     BODIES,
     DIRECT,
@@ -129,6 +131,9 @@ def lay_out_island(A: Scene, MINE: IntArray, n: int, found: IntArray, t: float) 
         for c in range(3):
             POSE[q, c] = BODY[i, X + c] + V[q, c] * s
         IMS[q], IIS[q], SIZES[q] = BODY[i, IM], BODY[i, II], BODY[i, EXTENT]
+        if q >= n and IMS[q] > 0.0:
+            # It stands, and carries what moves.
+            V[q, 2], IMS[q], IIS[q] = 0.0, 0.0, 0.0
         FELT[q] = 0.0 if whirls(A, i) else SIZES[q]
         if q < n:
             for c in range(3):
@@ -155,7 +160,8 @@ def open_contacts(
         if A.LINK[a, OWNER] != isle.WHO[P[z]]:
             a, b = b, a
         TOUCHED[P[z]], TOUCHED[Q[z]] = 1, 1
-        mark_pair(A.LIST, A.POOL, A.FLAG, moving, a, b, 1)
+        if z == 0 or pair != KEY[z - 1] >> 1:
+            mark_pair(A.LIST, A.POOL, A.FLAG, moving, a, b, 1)
         c = first + z
         A.PUSHED_BY[c, PUSH_A], A.PUSHED_BY[c, PUSH_B] = a, b
         ROW = A.PUSHED[c]
@@ -170,6 +176,17 @@ def open_contacts(
         ROW[PUSH_Y] = y + ROWS[z, ARM_TA] * ROWS[z, NY] - ROWS[z, ARM_NA] * ROWS[z, NX]
         ROW[PUSH_CHANGE] = L[z, 0] / ROWS[z, K_N]
         ROW[PUSH_GAP] = ROWS[z, GAP] if t == 0.0 else math.nan
+
+
+@uncounted
+def among_of(A: Scene, isle: Local, n: int) -> int:
+    """The n bodies of an island, and those of the islands that carry them."""
+    found, last = n, -1
+    for q in range(n, len(isle.WHO)):
+        root = A.STATE[isle.WHO[q], ISLAND]
+        if A.BODY[isle.WHO[q], IM] > 0.0 and root >= 0 and root != last:
+            found, last = found + A.MEMBER[root, BODIES], root
+    return found
 
 
 @uncounted
@@ -217,7 +234,8 @@ def solve(A: Scene, root: int, t: float) -> int:
             least = max(least, way_of(A, WHO[q], h))
     sweeps = _SWEEPS if n < CROWD else sweeps_of_crowd(t)
     m = 0
-    quiet = calm(A, root, MINE, n, t) if lossy else 0.0
+    among = among_of(A, isle, n)
+    quiet = calm(A, root, MINE, n, among, t) if lossy else 0.0
     if p > 0 and h > 0.0:
         m = step_island(
             POSE, V, ACC, IMS, IIS, SIZES, isle.FELT, n, PAIRS, p, A.SHAPE, A.RULE, A.LINK, A.VERTEX, A.WORK, h,
@@ -265,6 +283,7 @@ def solve(A: Scene, root: int, t: float) -> int:
         STATE[i, ISLAND], MEMBER[i, AFTER_ME] = head, -1
     if head >= 0:
         MEMBER[head, LAST_ONE], MEMBER[head, BODIES], MEMBER[head, HITS] = tail, size, hits
+        MEMBER[head, AMONG] = among
         A.RESTING[head, LOST] = lost
         MEMBER[head, OPEN] = 1
         A.RESTING[head, UNTIL] = t + h if before_end(A, t + h) else math.inf

@@ -16,13 +16,14 @@ from ..layout import ANGLE, AX, AY, DUE, IM, OWNER, SPIN, TWIST, VX, VY, X, Y
 from ..pairs.lists import mark_pair
 from ..sustained.memory import STAMP as OF_STEP
 from ..sustained.memory import find
-from .calm import hardly, speed, whirls
+from .calm import WOKEN, hardly, later, speed, whirls
 from .layout import (
     AFTER_ME,
+    AMONG,
     BETA,
-    BODIES,
     BUSY,
     CALM_FOR,
+    CARRIES,
     DT,
     HITS,
     ISLAND,
@@ -77,6 +78,8 @@ def stays(A: Scene, i: int, last: float) -> bool:
         A.MEMBER[A.STATE[i, ISLAND], STILL] = CHANGED
         return False
     BODY[i, AX], BODY[i, AY], BODY[i, TWIST] = 0.0, 0.0, 0.0
+    # What does not stand for long is not asked again for long.
+    A.RESTING[i, CALM_FOR] = min(A.RESTING[i, CALM_FOR] + 1.0, WOKEN)
     BODY[i, DUE] = max(A.RESTING[i, STILL_DUE] - last, 0.0)
     return True
 
@@ -99,6 +102,23 @@ def touch(A: Scene, c: int, stamp: float) -> None:
 
 
 @uncounted
+def spread_change(A: Scene) -> None:
+    """What rests on bodies of an island that is CHANGED is so too, and so on."""
+    MEMBER, more = A.MEMBER, A.COUNT[CARRIES] > 0
+    while more:
+        more = False
+        for c in range(A.COUNT[PUSHES]):
+            root = A.PUSHED_BY[c, ROOT]
+            if root < 0 or MEMBER[root, STILL] == CHANGED:
+                continue
+            for side in range(2):
+                j = A.LINK[A.PUSHED_BY[c, PUSH_A + side], OWNER]
+                other = A.STATE[j, ISLAND]
+                if A.BODY[j, IM] > 0.0 and other >= 0 and MEMBER[other, STILL] == CHANGED:
+                    MEMBER[root, STILL], more = CHANGED, True
+
+
+@uncounted
 def rouse(A: Scene) -> None:
     """At the start of a step: islands that something has changed are no longer still; the rows of the others stay, at
     the front, with the impulses of this step."""
@@ -115,6 +135,7 @@ def rouse(A: Scene) -> None:
                 MEMBER[root, STILL] = CHANGED
         if A.RULE.shape[0] > 0:
             MEMBER[root, STILL] = CHANGED
+    spread_change(A)
     for c in range(A.COUNT[PUSHES]):
         root = A.PUSHED_BY[c, ROOT]
         if root >= 0 and MEMBER[root, STILL] == CHANGED:
@@ -130,7 +151,7 @@ def rouse(A: Scene) -> None:
         root = STATE[i, ISLAND]
         if root < 0 or MEMBER[root, STILL] == 1:
             continue
-        slow = speed(A, i, 0.0) <= hardly(MEMBER[root, BODIES]) * most
+        slow = speed(A, i, 0.0) <= hardly(MEMBER[root, AMONG]) * most
         A.RESTING[i, CALM_FOR] = A.RESTING[i, CALM_FOR] + 1.0 if slow else 0.0
         if MEMBER[i, STILL] > 0:
             BODY[i, AX], BODY[i, AY], BODY[i, TWIST] = A.PULL[i, 0], A.PULL[i, 1], A.PULL[i, 2]
@@ -201,7 +222,7 @@ def halt(A: Scene, root: int) -> None:
         else:
             BODY[i, SPIN] = 0.0
         BODY[i, AX], BODY[i, AY], BODY[i, TWIST] = 0.0, 0.0, 0.0
-        MEMBER[i, STILL], BODY[i, DUE], A.RESTING[i, CALM_FOR] = 1, 0.0, 0.0
+        MEMBER[i, STILL], BODY[i, DUE], A.RESTING[i, CALM_FOR] = 1, 0.0, later(MEMBER[root, AMONG])
         A.STATE[i, KINKS] += 1
         i = MEMBER[i, AFTER_ME]
 

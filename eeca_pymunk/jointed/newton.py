@@ -11,7 +11,6 @@ from ..rows.conjugate import accelerate
 from ..rows.dense import back, decompose, unknowns
 from ..rows.layout import SURFACE, TARGET, UN, UT
 from ..rows.polish import clamp, classify
-from ..rows.sweeps import keep
 from .columns import Columns, push_columns, relax_columns, sweep_columns
 
 FEW = 40  # contacts up to which this pays
@@ -96,14 +95,14 @@ def iterate_columns(
     most: int,
 ) -> float:  # fmt: skip
     """At most so many sweeps, accelerated as in `..rows.conjugate.iterate`; the change of the last, which is plain."""
-    L0, V0, PL, PV = np.empty((m, 2)), np.empty_like(V), np.zeros((m, 2)), np.zeros_like(V)
+    FLAT, FAST = L.reshape(L.size), V.reshape(V.size)
+    L0, V0, PL, PV = FLAT[: 2 * m].copy(), FAST.copy(), np.zeros(2 * m), np.zeros(V.size)
     change, worst = -1.0, np.inf
     for done in range(1, most + 1):
-        keep(L, V, m, L0, V0)
         worst = sweep_columns(C, A, B, ROWS, L, V, m)
         if worst <= tolerance or done == most:
             break
-        change = accelerate(L, V, L0, V0, PL, PV, m, change, done >= most - 1)
+        change = accelerate(FLAT, FAST, L0, V0, PL, PV, change, done >= most - 1)
     return worst
 
 

@@ -16,12 +16,12 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..impacts.coming import before_end, sweeps_of_crowd
-from ..impacts.islands import CROWD
 from ..impacts.layout import Scene
 from ..impacts.spans import Local
 from ..joints.scratch import NEAR
 from ..rows.build import conserves, normal_rate, rates, tangent_rate
 from ..rows.layout import SURFACE, UN, UT
+from ..sustained.contacts import CROWD
 from ..sustained.targets import target
 from .advance import AS_IT_IS, NOT_AT_ALL, Motion, advance, farthest_apart
 from .columns import Columns, fill_free, leave_out, push_columns, weigh

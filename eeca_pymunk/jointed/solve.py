@@ -40,7 +40,7 @@ from ..joints.scratch import BEFORE, BODY_0, BODY_1, M_BODY
 from ..layout import AX, ELASTICITY
 from ..rows.build import normal_rate
 from ..rows.layout import ROW_COLUMNS
-from ..sustained.contacts import gather
+from ..sustained.contacts import NEAR, gather
 from ..sustained.memory import remember_loads
 from ..sustained.step import moved, recall, speeds
 from .advance import NOT_AT_ALL, Motion, advance
@@ -153,7 +153,7 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
         NOW, THEN = np.empty((2, 5)), np.empty((2, 5))
         m = gather(
             isle.PAIRS, p, A.SHAPE, A.RULE, A.LINK, A.VERTEX, A.WORK, isle.POSE, moved(isle.POSE, isle.V, 0.5 * h),
-            isle.V, REACH, isle.EXTENT, isle.IM, isle.II, h, k == n, P, Q, ROWS, KEY, NOW, THEN,
+            isle.V, REACH, isle.EXTENT, isle.IM, isle.II, h, k == n, NEAR, P, Q, ROWS, KEY, NOW, THEN,
         )  # fmt: skip
     C = make_columns(groups, P, Q, m)
     if m > 0:

@@ -9,43 +9,53 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
-from .sweeps import keep, sweep
+from .sweeps import sweep
 
 
 @uncounted
 def accelerate(
-    L: FloatArray, V: FloatArray, L0: FloatArray, V0: FloatArray, PL: FloatArray, PV: FloatArray, m: int,
-    before: float, last: bool,
+    L: FloatArray, V: FloatArray, L0: FloatArray, V0: FloatArray, PL: FloatArray, PV: FloatArray, before: float,
+    last: bool,
 ) -> float:  # fmt: skip
-    """After a sweep from (L0, V0) to (L, V): go on along the direction (PL, PV), and renew it.
+    """After a sweep from (L0, V0) to (L, V): go on along the direction (PL, PV), and renew it; (L0, V0) is what the
+    next sweep starts from. All are flat.
 
     Args:
-        before: the square of the change of the m impulses by the sweep before, which is returned for this one; not
+        before: the square of the change of the impulses by the sweep before, which is returned for this one; not
             positive for the first.  last: whether the next sweep is the last, which is a plain one.
     """
     change = 0.0
-    for i in range(m):
-        change += (L[i, 0] - L0[i, 0]) ** 2 + (L[i, 1] - L0[i, 1]) ** 2
+    for i in range(len(L0)):
+        change += (L[i] - L0[i]) * (L[i] - L0[i])
     ratio = change / before if before > 0.0 else 2.0
     if ratio > 1.0:
-        for i in range(m):
-            for j in range(2):
-                PL[i, j] = L[i, j] - L0[i, j]
-        for i in range(len(V)):
-            for j in range(3):
-                PV[i, j] = V[i, j] - V0[i, j]
+        renew(L, L0, PL)
+        renew(V, V0, PV)
     elif not last:
-        for i in range(m):
-            for j in range(2):
-                step = L[i, j] - L0[i, j]
-                L[i, j] += ratio * PL[i, j]
-                PL[i, j] = ratio * PL[i, j] + step
-        for i in range(len(V)):
-            for j in range(3):
-                step = V[i, j] - V0[i, j]
-                V[i, j] += ratio * PV[i, j]
-                PV[i, j] = ratio * PV[i, j] + step
+        go_on(L, L0, PL, ratio)
+        go_on(V, V0, PV, ratio)
     return change
+
+
+@uncounted
+def renew(X: FloatArray, X0: FloatArray, P: FloatArray) -> None:
+    """The direction P from X0 to X, which is the next start."""
+    for i in range(len(X0)):
+        x = X[i]
+        P[i] = x - X0[i]
+        X0[i] = x
+
+
+@uncounted
+def go_on(X: FloatArray, X0: FloatArray, P: FloatArray, ratio: float) -> None:
+    """X goes on along `ratio` times the direction P, which becomes that and the way from X0 to X; X is the next
+    start."""
+    for i in range(len(X0)):
+        x, way = X[i], ratio * P[i]
+        P[i] = way + (x - X0[i])
+        x += way
+        X[i] = x
+        X0[i] = x
 
 
 @kernel
@@ -57,13 +67,14 @@ def iterate(
 
     Returns the sweeps taken (<= most) and the change of the last.
     """
-    L0, V0, PL, PV = np.empty((m, 2)), np.empty_like(V), np.zeros((m, 2)), np.zeros_like(V)
+    # One after the other in memory: loops over flat arrays take several numbers at once.
+    FLAT, FAST = L.reshape(L.size), V.reshape(V.size)
+    L0, V0, PL, PV = FLAT[: 2 * m].copy(), FAST.copy(), np.zeros(2 * m), np.zeros(V.size)
     change, done, worst = -1.0, 0, np.inf
     while done < most:
-        keep(L, V, m, L0, V0)
         worst = sweep(A, B, ROWS, L, V, IM, II, m)
         done += 1
         if worst <= tolerance or done >= most:
             break
-        change = accelerate(L, V, L0, V0, PL, PV, m, change, done >= most - 1)
+        change = accelerate(FLAT, FAST, L0, V0, PL, PV, change, done >= most - 1)
     return done, worst

@@ -15,6 +15,8 @@ from .build import normal_rate, tangent_rate
 from .layout import ARM_NA, ARM_NB, K_N, NX, NY, UN, UT
 from .sweeps import velocities
 
+_SPREAD = 3.0  # times the deepest overlap, up to which gaps count where bodies are lifted out of each other
+
 
 @uncounted
 def works(
@@ -113,21 +115,30 @@ def lock(
 @uncounted
 def lift(
     A: IntArray, B: IntArray, ROWS: FloatArray, GAPS: FloatArray, MU: FloatArray, D: FloatArray, IM: FloatArray,
-    II: FloatArray, m: int, tolerance: float, most: int,
+    II: FloatArray, m: int, tolerance: float, most: int, NEAR: IntArray,
 ) -> tuple[int, float]:  # fmt: skip
     """Displacements D = M^-1 G^T mu with 0 <= mu _|_ g + A mu >= 0, by at most `most` sweeps.
 
     Args:
         GAPS: (m,) length.  MU: (m,) in and out, mass times length.  D: (k, 3) in and out, length and rad.
-        tolerance: length that a sweep may still move a gap.
+        tolerance: length that a sweep may still move a gap.  NEAR: (m,) scratch.
     Returns:
         Sweeps taken and the last one's largest change of a gap.
     """
+    near = 0
+    deepest = 0.0
+    for i in range(m):
+        deepest = min(deepest, GAPS[i])
+    for i in range(m):
+        if GAPS[i] < -_SPREAD * deepest:
+            NEAR[near] = i
+            near += 1
     worst = 0.0
     done = 0
     while done < most:
         worst = 0.0
-        for i in range(m):
+        for z in range(near):
+            i = NEAR[z]
             g = GAPS[i] + normal_rate(A, B, ROWS, D, i)
             if g >= 0.0 and MU[i] == 0.0:
                 continue

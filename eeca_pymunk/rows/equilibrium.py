@@ -30,7 +30,7 @@ from .ordering import dissect, neighbours, pattern
 _R = 1e11
 _START = 0.1  # least impulse at the start, relative to the mean guess
 _CLOSE = 0.99  # of the way to where an x or s would vanish
-_EARLY, _SLOW, _STALLED = 3, 0.9, 2  # after so many steps, so little less motion, so often: there is no answer
+_EARLY, _SLOW, _STALLED = 3, 0.8, 1  # after so many steps, so little less motion, so often: there is no answer
 _SETTLED = 1e-8  # sum x s relative to the start, at which x is next to the guess
 
 # EDGE (K, 6) float: of each edge
@@ -211,6 +211,7 @@ def equilibrium(
 
     Args:
         ROWS: m contacts; those with a TARGET below 0 carry nothing.
+        START: out, if there are none, a motion that nothing holds: the multipliers y, which grow along it.
         L: (m, 2) guess in, impulses out if they are found.
         POSE: (k, 3), for the order of elimination alone.  EXTENT: (k,) how far points of bodies are.
         tolerance: speed of their points that may be left.  most: factors at most.
@@ -224,7 +225,7 @@ def equilibrium(
     K = edges(A, B, ROWS, L, IM, II, m, OF, P, Q, G, EDGE)
     LEFT, Y, DY, V, f = np.empty((k, 3)), np.zeros((k, 3)), np.zeros((k, 3)), np.empty((k, 3)), np.empty((n, 3))
     if K == 0:
-        return fastest(START, EXTENT, n) <= tolerance, 0
+        return fastest(START, EXTENT, n) <= tolerance, 0  # START is that motion itself
     SCALE = np.empty((k, 3))
     for i in range(k):
         SCALE[i, 0] = SCALE[i, 1] = math.sqrt(IM[i])
@@ -249,6 +250,8 @@ def equilibrium(
         elif not found and done > _EARLY:
             stalled = stalled + 1 if speed > _SLOW * last else 0
         if done == most or stalled >= _STALLED or not (speed < np.inf and (centre > 0.0 or free)):
+            if not found:
+                START[:] = Y
             return found, done
         last = speed
         if done == 0 or not free:

@@ -121,6 +121,8 @@ def sweep(
                 ROWS[i, WAKE] = np.inf
             else:
                 short = np.inf
+        if short >= 0.0 and lam0 == 0.0 and beta0 == 0.0:
+            continue  # opens
         lam = 0.0
         beta = 0.0
         ta = 0.0

@@ -19,8 +19,10 @@ from ..pairs.rules import law
 from ..rows.build import place_row
 from ..rows.layout import NX, NY, SURFACE
 
+CROWD = 24  # bodies of an island, from which it is a crowd: hits spread in it, and solves of it are cut short
+
 _FAR = 0.25  # half-way of a pair relative to the smaller shape, beyond which its middle is not predicted
-_NEAR = 1e-7  # the same, below which now and the middle are the same
+NEAR, NEAR_CROWD = 1e-7, 1e-3  # the same, below which now and the middle are the same; in a crowd
 _ALIKE = 0.5  # cosine between a normal now and at the middle, below which the middle is not believed
 _SLACK = 1e-9  # relative to the smaller shape: tolerance of the manifold
 
@@ -32,7 +34,7 @@ def gather(
     PAIRS: IntArray, p: int, SHAPE: FloatArray, RULE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray,
     POSE: FloatArray,
     MIDDLE: FloatArray, V: FloatArray, REACH: FloatArray, EXTENT: FloatArray, IM: FloatArray, II: FloatArray, h: float,
-    free: bool,
+    free: bool, near: float,
     A: IntArray, B: IntArray, ROWS: FloatArray, KEY: IntArray, NOW: FloatArray, THEN: FloatArray,
 ) -> int:  # fmt: skip
     """Rows of all contacts of p pairs no farther apart than the sum of their bodies' REACH.
@@ -41,7 +43,8 @@ def gather(
         PAIRS: (p, 4) shapes a and b, local bodies of a and b.
         POSE, MIDDLE, V: (k, 3) now, predicted for h/2, velocities.  REACH, EXTENT: (k,) length.
         A, B, ROWS, KEY: rows out; KEY int64 tells pair and place, the same as long as the shapes stay on each other.
-        free: whether impulses move all k bodies.  NOW, THEN: (2, 5) scratch.
+        free: whether impulses move all k bodies.  near: half-way of a pair relative to the smaller shape, below which
+            now and the middle are the same.  NOW, THEN: (2, 5) scratch.
     Returns:
         How many rows, or -1 if there is no room for them.
     """
@@ -73,7 +76,7 @@ def gather(
         centre = MIDDLE
         # Normals turn as round shapes go round one another, and slowly about a large one.
         far = SHAPE[s, ROUNDING] + SHAPE[r, ROUNDING] if LINK[s, COUNT] == 1 and LINK[r, COUNT] == 1 else small
-        ahead = _NEAR * small < way <= _FAR * far
+        ahead = near * small < way <= _FAR * far
         if ahead:
             again = manifold(
                 SHAPE, LINK, VERTEX, WORK,

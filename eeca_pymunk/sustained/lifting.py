@@ -17,6 +17,7 @@ import numpy as np
 from ..arrays import FlagArray, FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..rows.build import normal_rate
+from ..rows.direct import SMALL
 from ..rows.energy import lift
 from ..rows.layout import GAP, UN
 from .ledger import against
@@ -51,7 +52,8 @@ def lifting(
     if deepest >= -_DEEP * size or not budget >= 0.0:
         return 0.0, deepest
     D = np.zeros((len(IM), 3))
-    lift(A, B, ROWS, GAPS, np.zeros(m), D, IM, II, m, 0.1 * _DEEP * size, 10 + 1000 // m)
+    most = 10 + 1000 // m if m <= SMALL else 8 + 200 // m
+    lift(A, B, ROWS, GAPS, np.zeros(m), D, IM, II, m, 0.1 * _DEEP * size, most, np.empty(m, np.int64))
     far = 0.0
     for i in range(n):
         far = max(far, math.sqrt(D[i, 0] * D[i, 0] + D[i, 1] * D[i, 1]))

@@ -21,7 +21,7 @@ FRESH = (8.0, 0.0, 0.0)  # STATE of a new island
 
 _REST = 10  # sweeps before the first direct solution
 _AFTER = 4  # further sweeps after each
-_LARGE = 80  # contacts beyond which rounds that did not pay are not tried again for some steps
+_LARGE = 40  # contacts beyond which rounds that did not pay are not tried again for some steps
 _PATIENT, _IMPATIENT = 8, 2  # rounds that do not pay end the solve; fewer where the last ones failed as well
 _LONGEST = 32.0  # steps
 

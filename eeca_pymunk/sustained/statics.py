@@ -54,12 +54,14 @@ def comes_to_stand(
         ROWS, L: the m contacts and first guesses; out, if the island stands, with targets and velocities of 0 and the
             impulses that hold it from then on, without those that stop it.
         FELT: (k,) how far bodies extend, 0 of those whose turning no contact feels.
-        V: 0 out, if it stands, but for spins that nothing feels.  VN: (k, 3) out, velocities at the end.
+        V: 0 out, if it stands, but for spins that nothing feels.  VN: (k, 3) out, velocities at the end; if it does not
+            stand, a motion that nothing holds, of any size.
         change: |a| h, to which speeds are compared.  calm: that of the island at most; so may gaps of contacts that
             bear change in h.
     Returns:
         Whether the island stands, and factors it took.
     """
+    VN[:] = 0.0
     if not at_rest(ROWS, V, n, m, calm * change):
         return False, 0
     speed = fastest(V, FELT, n)
@@ -70,11 +72,13 @@ def comes_to_stand(
             START[i, c] += V[i, c] / max(steps, 1.0)
     factors, accuracy = 0, STANDS * change
     for nearest in (False, True):
+        LEFT = PULL if nearest else START
         found, more = equilibrium(
-            A, B, ROWS, L, PULL if nearest else START, IM, II, POSE, FELT, n, m, accuracy, _FACTORS, nearest
+            A, B, ROWS, L, LEFT, IM, II, POSE, FELT, n, m, accuracy, _FACTORS, nearest
         )  # fmt: skip
         factors += more
         if not found:
+            VN[:] = LEFT
             return False, factors
     for i in range(n):
         for c in range(3 if FELT[i] > 0.0 else 2):

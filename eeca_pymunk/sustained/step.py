@@ -12,7 +12,7 @@ from ..rows.build import conserves, rates
 from ..rows.direct import SMALL
 from ..rows.energy import lock, works
 from ..rows.sweeps import velocities
-from .contacts import gather
+from .contacts import CROWD, NEAR, NEAR_CROWD, gather
 from .ledger import against, carried
 from .lifting import lifting
 from .memory import find, remember_loads
@@ -27,7 +27,8 @@ OUT_SIZE = 8
 _FINE = 1e-12  # residual relative to |a| h
 _COARSE, _LOOSE = 1e-7, 1e-4  # residual of a large or moving island, relative to |a| h and to its speed
 _ROUNDS = 20  # direct solutions of an island near rest, or elastic
-_AT_REST = 40  # sweeps of an island near rest that waits for its next direct solution
+_AT_REST = 40  # sweeps of an island near rest that waits for its next direct solution,
+_QUIET = 0.1  # which is slower than this, relative to |a| h
 _FEW_ROUNDS = 6  # of a moving island of few contacts
 
 
@@ -114,7 +115,7 @@ def step_island(
         owed: energy >= 0 to take out at least.
         KEYS, FORCES, COUNT, stamp: memory of forces; the number of this step.  STATE: (3,) of `relax`.
         calm: speed relative to |a| h at which it may come to a stand, see `.statics`, 0 if it may not; V is 0 once it
-            does, its energy is the caller's to book.
+            does, its energy is the caller's to book. Negative: that is all that is asked for.
         A, B, ROWS, KEY, L, LOSS: the m contact rows out, with impulses over h and losses (D_n, D_t).
         VN: (k, 3) velocities at the end, out.  JUMP: (k, 6) what to add to pose and velocity then, out.
         LEDGER: (8,) added to.  OUT: (8,) sweeps, direct solutions, residual, scale of the lock, energy still owed,
@@ -135,7 +136,7 @@ def step_island(
     THEN = np.empty((2, 5))
     m = gather(
         PAIRS, p, SHAPE, RULE, LINK, VERTEX, WORK, POSE, MIDDLE, V, REACH, EXTENT, IM, II, h,
-        k == n, A, B, ROWS, KEY, NOW, THEN,
+        k == n, NEAR if n < CROWD else NEAR_CROWD, A, B, ROWS, KEY, NOW, THEN,
     )  # fmt: skip
     if m < 0 or 2 * (COUNT[0] + m) > len(KEYS):
         return -1
@@ -150,15 +151,17 @@ def step_island(
         recall(KEY, m, KEYS, FORCES, stamp, h, L, EXPECTED)
         rates(A, B, ROWS, V, m)
         target(A, B, ROWS, m, ACC, EXPECTED, pull, h)
-        if calm > 0.0:
+        if calm != 0.0:
             stands, polishes = comes_to_stand(
-                A, B, ROWS, L, V, FREE, IM, II, POSE, FELT, VN, n, m, pull * h, calm
+                A, B, ROWS, L, V, FREE, IM, II, POSE, FELT, VN, n, m, pull * h, abs(calm)
             )  # fmt: skip
             OUT[1] = polishes
             if stands:
                 OUT[STOOD] = 1.0
                 OUT[CLOSED] = remember_loads(ROWS, KEY, L, m, h, KEYS, FORCES, COUNT, stamp)
                 return m
+            if calm < 0.0:
+                return 0
             rates(A, B, ROWS, V, m)
             target(A, B, ROWS, m, ACC, EXPECTED, pull, h)
         velocities(A, B, ROWS, L, FREE, IM, II, m, VN)
@@ -168,7 +171,7 @@ def step_island(
         few = m <= SMALL
         rounds = _ROUNDS if elastic or slow < pull * h else (_FEW_ROUNDS if few else 0)
         coarse = 0.0 if elastic or few else _COARSE * scale + _LOOSE * slow
-        if slow < pull * h:
+        if slow < _QUIET * pull * h:
             # What stands tall falls over by what is left undone.
             most = _AT_REST
         sweeps, polishes, worst = relax(

@@ -1,0 +1,201 @@
+"""Which of an island's bodies come to a stand while others move: those that hardly do, as far as something holds them.
+
+All of them are asked for statics (`..sustained.statics`), under the pushes of the others, which are solved first with
+these for fixed. Where there are none, the statics tell of a motion that nothing holds: what takes part in it moves, and
+the rest is asked once more.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import kernel, uncounted
+from ..layout import ELASTICITY, VX
+from ..rows.layout import ROW_COLUMNS
+from ..sustained.ledger import LEDGER_SIZE
+from ..sustained.step import OUT_SIZE, POLISHES, STOOD, step_island
+from .booking import close_span
+from .calm import hardly, settled, speed, wait
+from .carrying import give_way, load
+from .coming import pairs_of
+from .islands import members, unite
+from .layout import (
+    AFTER_ME,
+    AMONG,
+    BODIES,
+    BUSY,
+    CARRIES,
+    DIRECT,
+    DT,
+    FIRST_SHAPE,
+    HITS,
+    ISLAND,
+    JOINTED,
+    LAST_ONE,
+    LIFT,
+    LOST,
+    OPEN,
+    PULLED,
+    PUSHES,
+    RELAX,
+    REMEMBERED,
+    ROOT,
+    SHAPES,
+    STAMP,
+    STILL,
+    UNTIL,
+    Scene,
+)  # fmt: skip
+from .spans import dismiss, lay_out_island, open_contacts, solve
+from .still import halt
+
+_MOST, _FEW = 0.1, 2  # of an island's bodies, that may move while the others stand; so many always
+_TRIES = 2
+_QUIET = 0.1  # speed relative to |a| dt, above which a body moves, unless none does
+
+
+@uncounted
+def chain(A: Scene, MINE: IntArray, n: int) -> None:
+    """Make an island of n bodies."""
+    MEMBER, head = A.MEMBER, MINE[0]
+    for q in range(n):
+        A.STATE[MINE[q], ISLAND] = head
+        MEMBER[MINE[q], AFTER_ME] = MINE[q + 1] if q + 1 < n else -1
+    MEMBER[head, LAST_ONE], MEMBER[head, BODIES] = MINE[n - 1], n
+    MEMBER[head, HITS], MEMBER[head, OPEN], MEMBER[head, JOINTED] = 0, 0, 0
+    A.RESTING[head, LOST] = 0.0
+
+
+@kernel
+def asks(A: Scene, MINE: IntArray, n: int, V0: FloatArray, among: int) -> bool:
+    """Whether the island of the n bodies MINE, `among` so many, comes to a stand from their velocities V0 (n, 3) under
+    what pushes on it; if so it does. If not, those that nothing holds are to wait, see `give_way`."""
+    BODY, COUNT, dt, root = A.BODY, A.COUNT, A.PAR[DT], MINE[0]
+    for q in range(n):
+        A.PLACE[MINE[q]] = q
+    found = pairs_of(A, root, 0.0, True, A.PLACE, MINE, n)
+    LOAD = np.zeros((n, 3))
+    load(A, root, LOAD)
+    p = len(found)
+    isle = lay_out_island(A, MINE, n, found, 0.0)
+    dismiss(A, MINE, n)
+    most = 0.0
+    for q in range(n):
+        for c in range(3):
+            isle.V[q, c] = V0[q, c]
+            isle.ACC[q, c] += LOAD[q, c] / dt
+        most = max(most, math.sqrt(isle.ACC[q, 0] ** 2 + isle.ACC[q, 1] ** 2))
+    if p == 0 or COUNT[PUSHES] + 2 * p > A.PUSHED.shape[0] or not most > 0.0:
+        wait(A, MINE, n)
+        return False
+    k, room = len(isle.WHO), 2 * p + 1
+    P, Q, KEY = np.empty(room, np.int64), np.empty(room, np.int64), np.empty(room, np.int64)
+    ROWS, L, LOSS = np.empty((room, ROW_COLUMNS)), np.zeros((room, 2)), np.zeros((room, 2))
+    VN, JUMP, BOOK, OUT = np.zeros((k, 3)), np.zeros((k, 6)), np.zeros(LEDGER_SIZE), np.zeros(OUT_SIZE)
+    m = step_island(
+        isle.POSE, isle.V, isle.ACC, isle.IM, isle.II, isle.EXTENT, isle.FELT, n, isle.PAIRS, p, A.SHAPE, A.RULE,
+        A.LINK, A.VERTEX, A.WORK, dt, 0, 0.0, 0.0, A.KEYS, A.FORCES, COUNT[REMEMBERED:], A.PAR[STAMP],
+        A.RESTING[root, RELAX : RELAX + 3], -hardly(among) * A.PAR[PULLED] / most, P, Q, ROWS, KEY, L, LOSS, VN, JUMP,
+        BOOK, OUT,
+    )  # fmt: skip
+    COUNT[DIRECT] += int(OUT[POLISHES])
+    if not OUT[STOOD] > 0.0:
+        give_way(A, MINE, n, VN, isle.FELT)
+        return False
+    first = COUNT[PUSHES]
+    open_contacts(A, isle, P, Q, ROWS, KEY, L, VN, m, 0.0, dt, np.zeros(k, np.uint8))
+    for z in range(m):
+        A.PUSHED_BY[first + z, ROOT] = root
+    COUNT[PUSHES] += m
+    A.MEMBER[root, OPEN], A.RESTING[root, UNTIL], A.MEMBER[root, AMONG] = 1, math.inf, among
+    for q in range(n):
+        A.MEMBER[MINE[q], BUSY] = 0
+        for c in range(3):
+            BODY[MINE[q], VX + c] = V0[q, c]
+        for c in range(6):
+            A.RESTING[MINE[q], LIFT + c] = 0.0
+    halt(A, root)
+    return True
+
+
+@uncounted
+def lossy(A: Scene, root: int) -> bool:
+    """Whether any shape of an island has an elasticity below 1."""
+    i = root
+    while i >= 0:
+        for s in range(A.STATE[i, FIRST_SHAPE], A.STATE[i, FIRST_SHAPE] + A.STATE[i, SHAPES]):
+            if A.SHAPE[s, ELASTICITY] < 1.0:
+                return True
+        i = A.MEMBER[i, AFTER_ME]
+    return False
+
+
+@uncounted
+def divide(A: Scene, MINE: IntArray, n: int, STAND: IntArray, MOVE: IntArray) -> int:
+    """Those of the n bodies MINE that may stand into STAND, the others into MOVE; how many the first are."""
+    stand, quick = 0, 0
+    for q in range(n):
+        quick += 0 if settled(A, MINE[q]) else 1
+    limit = _QUIET * A.PAR[PULLED] * A.PAR[DT]
+    for q in range(n):
+        if settled(A, MINE[q]) and (quick == 0 or speed(A, MINE[q], 0.0) <= limit):
+            STAND[stand] = MINE[q]
+            stand += 1
+        else:
+            MOVE[q - stand] = MINE[q]
+    return stand
+
+
+@kernel
+def stands_in_part(A: Scene, root: int) -> bool:
+    """At the start of a step, instead of solving an island: whether those of its bodies that hardly move, or what is
+    left of them without those that nothing holds, stand, so that the others are solved alone."""
+    BODY, STATE, MEMBER = A.BODY, A.STATE, A.MEMBER
+    n = MEMBER[root, BODIES]
+    if A.COUNT[CARRIES] == 0 or A.PAR[PULLED] == 0.0 or MEMBER[root, OPEN] > 0 or STATE[root, ISLAND] != root:
+        return False
+    MINE, STAND, MOVE = np.empty(n, np.int64), np.empty(n, np.int64), np.empty(n, np.int64)
+    members(A, root, MINE)
+    stand = divide(A, MINE, n, STAND, MOVE)
+    if stand == 0 or n - stand > max(_MOST * n, _FEW) or not lossy(A, root):
+        return False
+    MINE.sort()
+    V0, some = np.empty((n, 3)), False
+    for _ in range(_TRIES):
+        stand = divide(A, MINE, n, STAND, MOVE)
+        if stand == 0 or n - stand > max(_MOST * n, _FEW):
+            break
+        some = True
+        chain(A, STAND, stand)
+        for q in range(stand):
+            i = STAND[q]
+            MEMBER[i, STILL] = 1
+            for c in range(3):
+                V0[q, c], BODY[i, VX + c] = BODY[i, VX + c], 0.0
+        if stand < n:
+            chain(A, MOVE, n - stand)
+            solve(A, MOVE[0], 0.0)
+        for q in range(stand):
+            MEMBER[STAND[q], STILL] = 0
+        if asks(A, STAND, stand, V0, n):
+            return True
+        for q in range(stand):
+            for c in range(3):
+                BODY[STAND[q], VX + c] = V0[q, c]
+        one = STAND[0]
+        for q in range(n - stand):
+            i = MOVE[q]
+            if STATE[i, ISLAND] >= 0:
+                if MEMBER[STATE[i, ISLAND], OPEN] > 0:
+                    close_span(A, STATE[i, ISLAND], 0.0)
+                one = unite(A, one, i)
+        # What touches nothing has left.
+        n = members(A, one, MINE)
+        MINE[:n].sort()
+    if some:
+        wait(A, STAND, stand)
+        solve(A, STATE[MINE[0], ISLAND], 0.0)
+    return some
