@@ -71,7 +71,8 @@ def take(
 ) -> int:
     """Put the states read from pymunk into BODY: all rows at the start of the step, SINCE = 0.
 
-    `DUE` of a body that was edited or is accelerated otherwise than before becomes -inf: its forecast is void.
+    `DUE` of a body that was edited or is accelerated otherwise than before becomes negative: its forecast is void; -inf
+    if it was put elsewhere.
 
     Args:
         STATES (2, N, 9), WALK (4, N), EXTRA (N, 5), BODY (n, 16): see `layout.py`.
@@ -116,7 +117,7 @@ def take(
             x += c * kx - s * ky
             y += s * kx + c * ky
         if edited or damped != 1.0 or ax != BODY[row, AX] or ay != BODY[row, AY] or twist != BODY[row, TWIST]:
-            BODY[row, DUE] = -math.inf
+            BODY[row, DUE] = -math.inf if moved else min(BODY[row, DUE], -1.0)
         BODY[row, X], BODY[row, Y], BODY[row, ANGLE] = x, y, angle
         BODY[row, VX], BODY[row, VY], BODY[row, SPIN] = damped * vx, damped * vy, damped * spin
         BODY[row, AX], BODY[row, AY], BODY[row, TWIST] = ax, ay, twist

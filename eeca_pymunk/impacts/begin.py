@@ -14,6 +14,7 @@ from .layout import (
     BLOCKS,
     BUSY,
     CARRIES,
+    CRAMMED,
     DAMPED,
     DIRECT,
     EVEN,
@@ -33,6 +34,7 @@ from .layout import (
     PENDING,
     PHASE,
     PULLED,
+    PUT,
     QUIET,
     SOLVED,
     SOLVES,
@@ -92,8 +94,10 @@ def begin(A: Scene, WALK: IntArray) -> None:
         A.PULL[i, 0], A.PULL[i, 1], A.PULL[i, 2] = ax, ay, BODY[i, TWIST]
         pulled = max(pulled, ax * ax + ay * ay)
         A.BEGAN[i, 0], A.BEGAN[i, 1], A.BEGAN[i, 2] = BODY[i, X], BODY[i, Y], BODY[i, ANGLE]
-        if BODY[i, DUE] == -math.inf:
+        if BODY[i, DUE] < 0.0:
             STATE[i, KINKS] += 1
+            if BODY[i, DUE] == -math.inf:
+                A.MEMBER[i, PUT] = 1
         else:
             BODY[i, DUE] = max(BODY[i, DUE] - last, 0.0)
         alike = BODY[i, IM] == 0.0 or (ax == BODY[0, AX] and ay == BODY[0, AY])
@@ -101,3 +105,6 @@ def begin(A: Scene, WALK: IntArray) -> None:
     PAR[PULLED] = math.sqrt(pulled)
     COUNT[EVEN] = 1 if even else 0
     COUNT[CARRIES] = 1 if carries else 0
+    COUNT[CRAMMED] = 0
+    for i in range(n):
+        COUNT[CRAMMED] += A.MEMBER[i, PUT]

@@ -17,11 +17,13 @@ from ..pairs.lists import centre
 from ..pairs.rules import barred, law
 from .booking import end_span
 from .carrying import support
+from .crammed import hold_crammed
 from .islands import TOUCH, approach, carrier, members, rests, unite, worn
 from .layout import (
     BODIES,
     BUSY,
     CARRIES,
+    CRAMMED,
     DONE,
     DT,
     EVENTS,
@@ -140,6 +142,8 @@ def settle(A: Scene) -> int:
     for i in range(n):
         if A.MEMBER[i, TIED] >= 0:
             unite(A, i, A.MEMBER[i, TIED])
+    if COUNT[CRAMMED] > 0:
+        hold_crammed(A)
     QUEUE = np.empty(n, np.int64)
     queued = 0
     for i in range(n):

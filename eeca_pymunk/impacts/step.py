@@ -11,6 +11,7 @@ from .begin import begin
 from .close import close
 from .due import forecast_due
 from .layout import (
+    CRAMMED,
     DONE,
     DT,
     GRAVITY_X,
@@ -71,7 +72,7 @@ def resume(
     """The rest of a step, whose bits so far are `status`."""
     COUNT = A.COUNT
     if COUNT[PHASE] == 0:
-        if COUNT[PUSHES] > 0 and settle(A) != DONE:
+        if COUNT[PUSHES] + COUNT[CRAMMED] > 0 and settle(A) != DONE:
             return ROOM_FOR_CONTACTS
         COUNT[PHASE] = 1
         forecast_due(A, disks)

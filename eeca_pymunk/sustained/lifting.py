@@ -24,6 +24,7 @@ from .ledger import against
 
 _DEEP = 1e-9  # overlap relative to the size that is left alone
 _STEP = 0.25  # of the size, that a body is lifted at most: no farther than walls that it meets so can send it back from
+_ROUND_OFF = 1e-14  # of works
 _SHARE = 0.99  # of a budget that does not suffice: the moment of inertia goes with what is lifted
 
 
@@ -36,7 +37,7 @@ def lifting(
 
     Args:
         POSE: (k, 3) at the middle of the span.  VN: (k, 3) velocities at the end.  size: length.
-        budget: energy that may be spent.
+        budget: energy that may be spent; below 0 nothing is lifted, with 0 what that costs nothing.
     Returns:
         The energy spent (<= budget, negative if more was lost), and the deepest gap before (negative in overlap).
     """
@@ -48,7 +49,7 @@ def lifting(
     for i in range(m):
         GAPS[i] = ROWS[i, GAP] + 0.5 * h * (ROWS[i, UN] + normal_rate(A, B, ROWS, VN, i))
         deepest = min(deepest, GAPS[i])
-    if deepest >= -_DEEP * size or not budget > 0.0:
+    if deepest >= -_DEEP * size or not budget >= 0.0:
         return 0.0, deepest
     D = np.zeros((len(IM), 3))
     most = 10 + 1000 // m if m <= SMALL else 8 + 200 // m
@@ -73,7 +74,7 @@ def lifting(
         work += turn * spin
         square = 0.5 * inertia * turn * turn
     part = 1.0
-    if work + square > budget:
+    if work + square > budget + _ROUND_OFF * against(np.abs(ACC), IM, II, n, np.abs(D)):
         part = _SHARE * budget / (max(work, 0.0) + square)
         shorten(D, n, part)
         if turn != 0.0:

@@ -188,7 +188,7 @@ def step_island(
         for i in range(n):
             size = min(size, EXTENT[i])
         # Losses pay for lifting; what is elastic has none, whatever round-off says.
-        budget = 0.0 if elastic else normal + tangential - owed
+        budget = -1.0 if elastic else normal + tangential - owed
         lifted, OUT[5] = lifting(A, B, ROWS, MIDDLE, VN, ACC, IM, II, n, m, h, size, budget, JUMP)
         LEDGER[0] += normal
         LEDGER[1] += tangential
