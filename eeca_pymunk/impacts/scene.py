@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray, side_by_side
+from ..arrays import AnyArray, FloatArray, IntArray, side_by_side
 from ..layout import COUNT as VERTICES
 from ..layout import DUE, ELASTICITY, EVENT_COLUMNS, OWNER
 from ..layout import NOW as READ
@@ -39,6 +39,7 @@ from .layout import (
     OTHER,
     PAR_LENGTH,
     PUSHED_COLUMNS,
+    PUSHES,
     RELAX,
     REMEMBERED,
     RESTING_COLUMNS,
@@ -57,7 +58,15 @@ if TYPE_CHECKING:
     import pymunk
 
 RULE_COLUMNS = 6
-_CONTACTS = 256  # of islands, that there is room for at first; a power of 2
+_CONTACTS = 256  # of islands, that there is room for at first; powers of 2
+_OF_A_BODY, _MANY = 32, 1 << 16  # for each body where contacts may last, up to so many: untouched memory is free
+
+
+def _longer(table: AnyArray, used: int) -> AnyArray:
+    """A table of twice as many rows, with those in use."""
+    longer = np.zeros((2 * len(table), *table.shape[1:]), table.dtype)
+    longer[:used] = table[:used]
+    return longer
 
 
 class EventLoop:
@@ -86,18 +95,21 @@ class EventLoop:
         STATE[:, ISLAND] = -1
         near = near_lists(BODY, SHAPE, LINK, VERTEX, moving)
         vertices = max(2, int(LINK[:, VERTICES].max(initial=2)))
+        self.lossy = bool((SHAPE[:, ELASTICITY] < 1.0).any())
+        room = _CONTACTS
+        while self.lossy and room < min(_OF_A_BODY * n, _MANY):
+            room *= 2
         self.scene = Scene(
             BODY, STATE, SHAPE, LINK, VERTEX, *near, np.zeros((0, RULE_COLUMNS)), TIME, OF,
             np.zeros((4 * n + 64, EVENT_COLUMNS)), BEGAN, PLACE, BLOCK, PULL, MEMBER, RESTING,
-            np.zeros((_CONTACTS, 3), np.int64), np.zeros((_CONTACTS, PUSHED_COLUMNS)),
-            np.full(4 * _CONTACTS, -1, np.int64), np.zeros((4 * _CONTACTS, FORCE_COLUMNS)),
+            np.zeros((room, 3), np.int64), np.zeros((room, PUSHED_COLUMNS)),
+            np.full(4 * room, -1, np.int64), np.zeros((4 * room, FORCE_COLUMNS)),
             np.zeros((2, vertices, 4)), np.zeros(PAR_LENGTH), np.zeros(COUNT_LENGTH, np.int64),
         )  # fmt: skip
         self.near = near
         self.scene.COUNT[LIMIT], self.scene.COUNT[DISKS] = limit, disks
         self.scene.MEMBER[:, TIED : NEXT_TIED + 1] = -1
         self.scene.RESTING[:, RELAX : RELAX + 3] = FRESH
-        self.lossy = bool((SHAPE[:, ELASTICITY] < 1.0).any())
 
     @property
     def scene(self) -> Scene:
@@ -125,7 +137,7 @@ class EventLoop:
     def _grow(self, wish: int) -> None:
         scene = self.scene
         if wish == ROOM_FOR_EVENTS:
-            self.scene = scene._replace(LOG=np.concatenate((scene.LOG, np.zeros_like(scene.LOG))))
+            self.scene = scene._replace(LOG=_longer(scene.LOG, int(scene.COUNT[LOGGED])))
             return
         if wish == ROOM_FOR_CONTACTS:
             size, count = len(scene.KEYS), int(scene.COUNT[REMEMBERED])
@@ -133,10 +145,10 @@ class EventLoop:
             if count - scene.COUNT[REMEMBERED] >= size // 8:
                 return
             self._clean(2 * size)
+            used = int(scene.COUNT[PUSHES])
             self.scene = self.scene._replace(
-                PUSHED_BY=np.concatenate((scene.PUSHED_BY, np.zeros_like(scene.PUSHED_BY))),
-                PUSHED=np.concatenate((scene.PUSHED, np.zeros_like(scene.PUSHED))),
-            )  # fmt: skip
+                PUSHED_BY=_longer(scene.PUSHED_BY, used), PUSHED=_longer(scene.PUSHED, used)
+            )
             return
         self.near = rebuilt(self.near.larger(), scene.BODY, scene.SHAPE, scene.LINK, float(scene.PAR[NOW]))
         self.scene = scene._replace(POOL=self.near.POOL, FLAG=self.near.FLAG)

@@ -158,7 +158,10 @@ def settle(A: Scene) -> int:
         if STATE[i, ISLAND] < 0 or (A.MEMBER[i, STILL] == 1 and COUNT[CARRIES] == 0):
             continue  # what carries may have to be solved after all
         for s in range(STATE[i, FIRST_SHAPE], STATE[i, FIRST_SHAPE] + STATE[i, SHAPES]):
-            wanted += (4 if COUNT[CARRIES] > 0 else 2) * A.LIST[s, NUMBER]
+            for w in range(A.LIST[s, START], A.LIST[s, START] + A.LIST[s, NUMBER]):
+                # Two points for each pair; those of moving shapes stand in two lists.
+                wanted += 1 if A.POOL[w] < A.LIST.shape[0] else 2
+    wanted *= 2 if COUNT[CARRIES] > 0 else 1
     if kept + wanted > A.PUSHED.shape[0] or 2 * (COUNT[REMEMBERED] + wanted) > A.KEYS.shape[0]:
         return PUSHES_FULL
     kept = 0
