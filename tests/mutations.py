@@ -88,8 +88,8 @@ MUTATIONS = (
              "FREE = moved(V, ACC, 0.5 * h)", "sustained/test_one_body.py", "slides"),
     Mutation("sustained: geometry of the start", "sustained/step.py", "MIDDLE = moved(POSE, V, 0.5 * h)",
              "MIDDLE = moved(POSE, V, 0.0)", "sustained/test_one_body.py", "second_order"),
-    Mutation("sustained: push-out for nothing", "sustained/lifting.py", "if work + square > budget:", "if False:",
-             "sustained/test_piles.py", "push_out"),
+    Mutation("sustained: push-out for nothing", "sustained/lifting.py",
+             "if work + square > budget + ", "if False and budget > ", "sustained/test_piles.py", "push_out"),
     Mutation("sustained: push-out turns a free island", "sustained/lifting.py", "JUMP[i, 5] = turn",
              "JUMP[i, 5] = -turn", "sustained/test_piles.py", "free_island"),
     # Joints.
