@@ -22,6 +22,7 @@ from ..layout import (
 )  # fmt: skip
 from ..pairs.lists import mark_pair
 from ..tables import Table
+from .calm import whirls
 from .islands import unite
 from .layout import (
     AFTER_ME,
@@ -131,7 +132,7 @@ def gained(A: Scene, c: int, t: float) -> float:
 @uncounted
 def turn_back(A: Scene, root: int, excess: float) -> None:
     """Take an angular momentum out of a free island, whose bodies are at one instant, by a common turn of all of it,
-    which changes no contact's velocity. Its energy is lost, or owed."""
+    which changes no contact's velocity; spins that nobody feels stay. Its energy is lost, or owed."""
     BODY = A.BODY
     mass, x, y, vx, vy = 0.0, 0.0, 0.0, 0.0, 0.0
     i = root
@@ -147,15 +148,19 @@ def turn_back(A: Scene, root: int, excess: float) -> None:
     i = root
     while i >= 0:
         rx, ry = BODY[i, X] - x, BODY[i, Y] - y
-        whirl += (rx * (BODY[i, VY] - vy) - ry * (BODY[i, VX] - vx)) / BODY[i, IM] + BODY[i, SPIN] / BODY[i, II]
-        inertia += (rx * rx + ry * ry) / BODY[i, IM] + 1.0 / BODY[i, II]
+        whirl += (rx * (BODY[i, VY] - vy) - ry * (BODY[i, VX] - vx)) / BODY[i, IM]
+        inertia += (rx * rx + ry * ry) / BODY[i, IM]
+        if not whirls(A, i):
+            whirl += BODY[i, SPIN] / BODY[i, II]
+            inertia += 1.0 / BODY[i, II]
         i = A.MEMBER[i, AFTER_ME]
     turn = -excess / inertia
     i = root
     while i >= 0:
         BODY[i, VX] -= turn * (BODY[i, Y] - y)
         BODY[i, VY] += turn * (BODY[i, X] - x)
-        BODY[i, SPIN] += turn
+        if not whirls(A, i):
+            BODY[i, SPIN] += turn
         i = A.MEMBER[i, AFTER_ME]
     lost = -turn * (whirl + 0.5 * inertia * turn)
     A.PAR[LEDGER + RESTITUTION] += lost
