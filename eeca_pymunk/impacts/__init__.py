@@ -10,6 +10,8 @@ columns `layout.py` names.
 
 Contacts that last: `settle.py` puts what rests at the start of a step into islands (`islands.py`); `spans.py` solves
 each over a span of time (`coming.py` says of which pairs and how long, `..sustained` is the solve); `booking.py` books
-what it has done when it ends or is cut by a hit; `calm.py` finds the islands that stand, and `still.py` spares them.
+what it has done when it ends or is cut by a hit; `calm.py` finds the islands that stand, and `still.py` spares them;
+`parting.py` lets some bodies of an island stand while others move, and `carrying.py` sees whether they carry these;
+`crammed.py` holds what was put into one another until it is apart.
 `together.py` is the step in which all contacts act at once.
 """

@@ -23,7 +23,7 @@ from ..pairs.rules import law
 from ..rows.build import place_row
 from ..rows.equilibrium import bound, equilibrium, fastest
 from ..rows.layout import K_N, ROW_COLUMNS
-from ..sustained.memory import find, remember
+from ..sustained.memory import find, key_of, remember
 from ..sustained.statics import STANDS
 from .booking import wake
 from .calm import SURE, hardly, later, wait, whirls
@@ -137,27 +137,25 @@ def holds(A: Scene, root: int) -> bool:
 
 
 @uncounted
-def give_way(A: Scene, MINE: IntArray, n: int, Y: FloatArray, FELT: FloatArray) -> int:
+def give_way(A: Scene, MINE: IntArray, n: int, Y: FloatArray, FELT: FloatArray) -> None:
     """Of the n bodies MINE, of which nothing holds the motion Y (n, 3), those that take part in it are not to be asked
-    soon whether they stand; how many these are."""
-    most, found = fastest(Y, FELT, n), 0
+    soon whether they stand."""
+    most = fastest(Y, FELT, n)
     if not 0.0 < most < math.inf:
         wait(A, MINE, n)
-        return n
+        return
     for q in range(n):
         if bound(Y[q, 0], Y[q, 1], Y[q, 2], FELT[q]) > _PART * most:
             A.RESTING[MINE[q], CALM_FOR] = later(n)
-            found += 1
         else:
             A.RESTING[MINE[q], CALM_FOR] = SURE
-    return found
 
 
 @uncounted
 def keep_in_mind(A: Scene, c: int) -> None:
     """Let the memory have the forces of contact number c."""
     a, b = A.PUSHED_BY[c, PUSH_A], A.PUSHED_BY[c, PUSH_B]
-    key = (min(a, b) * A.SHAPE.shape[0] + max(a, b)) << 1
+    key = key_of(A.SHAPE.shape[0], a, b)
     if c > 0 and A.PUSHED_BY[c - 1, PUSH_A] == a and A.PUSHED_BY[c - 1, PUSH_B] == b:
         key += 1  # the other end of a face
     if find(A.KEYS, key) >= 0 or 2 * (A.COUNT[REMEMBERED] + 1) <= A.KEYS.shape[0]:

@@ -7,8 +7,8 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..geometry.flight import norm
+from ..layout import COUNT as COUNT_OF
 from ..layout import (
-    BOUND,
     EXTENT,
     IM,
     OWNER,
@@ -18,9 +18,8 @@ from ..layout import (
     VX,
     VY,
 )
-from ..layout import COUNT as COUNT_OF
 from ..pairs.layout import NUMBER, START
-from ..pairs.lists import centre
+from ..pairs.lists import far_apart
 from ..pairs.rules import barred, law
 from ..rows.build import tangent_rate
 from ..rows.layout import FRICTION, K_T, UN, UT
@@ -82,12 +81,8 @@ def pairs_of(A: Scene, root: int, t: float, lossy: bool, LOCAL: IntArray, MINE: 
                 reach = 1.1 * (speed * h + A.PAR[PULLED] * h * h) + TOUCH * small
                 if together:
                     reach = way_of(A, i, h) + way_of(A, j, h) + TOUCH * small
-                if o < A.LIST.shape[0]:
-                    ax, ay = centre(BODY, A.SHAPE, LINK, s, t)
-                    bx, by = centre(BODY, A.SHAPE, LINK, o, t)
-                    apart = A.SHAPE[s, BOUND] + A.SHAPE[o, BOUND] + reach
-                    if (bx - ax) * (bx - ax) + (by - ay) * (by - ay) > apart * apart:
-                        continue
+                if o < A.LIST.shape[0] and far_apart(BODY, A.SHAPE, LINK, s, o, t, reach):
+                    continue
                 force, load = 0.0, 0.0
                 if lossy and not together:
                     force, load = remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], s, o, A.PAR[STAMP] - 1.0)

@@ -4,9 +4,9 @@ lift them apart. They are in one until they are."""
 from __future__ import annotations
 
 from ..compiled import kernel
-from ..layout import BOUND, IM, OWNER, SIZE
+from ..layout import IM, OWNER, SIZE
 from ..pairs.layout import NUMBER, START
-from ..pairs.lists import centre
+from ..pairs.lists import far_apart
 from ..pairs.rules import barred, law
 from .islands import approach, carrier, unite
 from .layout import CRAMMED, DT, FIRST_SHAPE, PULLED, PUT, SHAPES, TIED, Scene
@@ -24,22 +24,18 @@ def hold_crammed(A: Scene) -> None:
         if A.MEMBER[i, PUT] == 0:
             continue
         A.MEMBER[i, PUT] = 0
+        if A.MEMBER[i, TIED] >= 0:
+            continue
         for s in range(A.STATE[i, FIRST_SHAPE], A.STATE[i, FIRST_SHAPE] + A.STATE[i, SHAPES]):
             for w in range(A.LIST[s, START], A.LIST[s, START] + A.LIST[s, NUMBER]):
                 o = int(A.POOL[w])
                 j = LINK[o, OWNER]
-                if A.MEMBER[i, TIED] >= 0 or (BODY[j, IM] > 0.0 and A.MEMBER[j, TIED] >= 0):
+                if (BODY[j, IM] > 0.0 and A.MEMBER[j, TIED] >= 0) or (carrier(A, i) and carrier(A, j)):
                     continue
-                if (carrier(A, i) and carrier(A, j)) or barred(A.RULE, s, o):
+                if barred(A.RULE, s, o) or law(A.SHAPE, A.RULE, s, o)[0] >= 1.0:
                     continue
-                if law(A.SHAPE, A.RULE, s, o)[0] >= 1.0:
+                if o < A.LIST.shape[0] and far_apart(BODY, A.SHAPE, LINK, s, o, 0.0, 0.0):
                     continue
-                if o < A.LIST.shape[0]:
-                    ax, ay = centre(BODY, A.SHAPE, LINK, s, 0.0)
-                    bx, by = centre(BODY, A.SHAPE, LINK, o, 0.0)
-                    apart = A.SHAPE[s, BOUND] + A.SHAPE[o, BOUND]
-                    if (bx - ax) * (bx - ax) + (by - ay) * (by - ay) > apart * apart:
-                        continue
                 g, u, _, _ = approach(BODY, A.SHAPE, LINK, A.VERTEX, A.WORK, A.PULL, s, o, 0.0)
                 if g >= -_DEEP * min(A.SHAPE[s, SIZE], A.SHAPE[o, SIZE]) or u * dt > -g:
                     continue

@@ -7,6 +7,7 @@ from ..compiled import uncounted
 from ..geometry.gap import gap_at
 from ..layout import (
     ANGLE,
+    ELASTICITY,
     II,
     IM,
     OWNER,
@@ -20,13 +21,14 @@ from ..layout import (
 )
 from ..pairs.rules import law
 from ..sustained.contacts import CROWD
-from ..sustained.memory import find
+from ..sustained.memory import find, key_of
 from .layout import (
     AFTER_ME,
     BODIES,
     CARRIES,
     DT,
     EVEN,
+    FIRST_SHAPE,
     HITS,
     ISLAND,
     JOINTED,
@@ -34,6 +36,7 @@ from .layout import (
     LOST,
     OPEN,
     PULLED,
+    SHAPES,
     SOLVED,
     STAMP,
     STILL,
@@ -102,9 +105,21 @@ def members(A: Scene, root: int, MINE: IntArray) -> int:
 
 
 @uncounted
+def lossy(A: Scene, root: int) -> bool:
+    """Whether any shape of an island has an elasticity below 1."""
+    i = root
+    while i >= 0:
+        for s in range(A.STATE[i, FIRST_SHAPE], A.STATE[i, FIRST_SHAPE] + A.STATE[i, SHAPES]):
+            if A.SHAPE[s, ELASTICITY] < 1.0:
+                return True
+        i = A.MEMBER[i, AFTER_ME]
+    return False
+
+
+@uncounted
 def remembered(KEYS: IntArray, FORCES: FloatArray, shapes: int, a: int, b: int, since: float) -> tuple[float, float]:
     """Normal force and load of a pair of shapes, of the steps from number `since` on; 0 if there is none."""
-    key = (min(a, b) * shapes + max(a, b)) << 1
+    key = key_of(shapes, a, b)
     force, load = 0.0, 0.0
     for z in range(2):
         row = find(KEYS, key + z)

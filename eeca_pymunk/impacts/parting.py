@@ -13,7 +13,7 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
-from ..layout import ELASTICITY, VX
+from ..layout import VX
 from ..rows.layout import ROW_COLUMNS
 from ..sustained.ledger import LEDGER_SIZE
 from ..sustained.step import OUT_SIZE, POLISHES, STOOD, step_island
@@ -21,7 +21,7 @@ from .booking import close_span
 from .calm import hardly, settled, speed, wait
 from .carrying import give_way, load
 from .coming import pairs_of
-from .islands import members, unite
+from .islands import lossy, members, unite
 from .layout import (
     AFTER_ME,
     AMONG,
@@ -30,7 +30,6 @@ from .layout import (
     CARRIES,
     DIRECT,
     DT,
-    FIRST_SHAPE,
     HITS,
     ISLAND,
     JOINTED,
@@ -43,7 +42,6 @@ from .layout import (
     RELAX,
     REMEMBERED,
     ROOT,
-    SHAPES,
     STAMP,
     STILL,
     UNTIL,
@@ -122,18 +120,6 @@ def asks(A: Scene, MINE: IntArray, n: int, V0: FloatArray, among: int) -> bool:
 
 
 @uncounted
-def lossy(A: Scene, root: int) -> bool:
-    """Whether any shape of an island has an elasticity below 1."""
-    i = root
-    while i >= 0:
-        for s in range(A.STATE[i, FIRST_SHAPE], A.STATE[i, FIRST_SHAPE] + A.STATE[i, SHAPES]):
-            if A.SHAPE[s, ELASTICITY] < 1.0:
-                return True
-        i = A.MEMBER[i, AFTER_ME]
-    return False
-
-
-@uncounted
 def divide(A: Scene, MINE: IntArray, n: int, STAND: IntArray, MOVE: IntArray) -> int:
     """Those of the n bodies MINE that may stand into STAND, the others into MOVE; how many the first are."""
     stand, quick = 0, 0
@@ -157,11 +143,10 @@ def stands_in_part(A: Scene, root: int) -> bool:
     n = MEMBER[root, BODIES]
     if A.COUNT[CARRIES] == 0 or A.PAR[PULLED] == 0.0 or MEMBER[root, OPEN] > 0 or STATE[root, ISLAND] != root:
         return False
+    if not lossy(A, root):
+        return False
     MINE, STAND, MOVE = np.empty(n, np.int64), np.empty(n, np.int64), np.empty(n, np.int64)
     members(A, root, MINE)
-    stand = divide(A, MINE, n, STAND, MOVE)
-    if stand == 0 or n - stand > max(_MOST * n, _FEW) or not lossy(A, root):
-        return False
     MINE.sort()
     V0, some = np.empty((n, 3)), False
     for _ in range(_TRIES):

@@ -11,9 +11,9 @@ import numpy as np
 from ..arrays import IntArray
 from ..compiled import kernel, uncounted
 from ..geometry.flight import norm
-from ..layout import BOUND, EXTENT, IM, OWNER, SIZE, SPIN, VX, VY
+from ..layout import EXTENT, IM, OWNER, SIZE, SPIN, VX, VY
 from ..pairs.layout import NUMBER, START
-from ..pairs.lists import centre
+from ..pairs.lists import far_apart
 from ..pairs.rules import barred, law
 from .booking import end_span
 from .carrying import support
@@ -82,10 +82,7 @@ def join(A: Scene, i: int, t: float, FOUND: IntArray) -> int:
                 speed = norm(BODY[i, VX], BODY[i, VY]) + norm(BODY[j, VX], BODY[j, VY])
                 speed += abs(BODY[i, SPIN]) * BODY[i, EXTENT] + abs(BODY[j, SPIN]) * BODY[j, EXTENT]
                 reach += 1.1 * (speed + pulled * dt) * h
-            ax, ay = centre(BODY, A.SHAPE, LINK, s, t)
-            bx, by = centre(BODY, A.SHAPE, LINK, o, t)
-            apart = A.SHAPE[s, BOUND] + A.SHAPE[o, BOUND] + reach + TOUCH * small
-            if (bx - ax) * (bx - ax) + (by - ay) * (by - ay) > apart * apart:
+            if far_apart(BODY, A.SHAPE, LINK, s, o, t, reach + TOUCH * small):
                 continue
             other = STATE[j, ISLAND]
             begun = other >= 0 and A.MEMBER[other, OPEN] > 0

@@ -12,7 +12,6 @@ from ..compiled import kernel, uncounted
 from ..layout import (
     AX,
     AY,
-    ELASTICITY,
     EXTENT,
     II,
     IM,
@@ -35,7 +34,7 @@ from ..sustained.step import POLISHES as POLISHES_OF
 from ..sustained.step import SWEEPS as SWEEPS_OF
 from .calm import calm, whirls
 from .coming import PARTS, before_end, hurried, pairs_of, span_of, stick_time, sweeps_of_crowd, way_of
-from .islands import members
+from .islands import lossy, members
 from .layout import (
     AFTER_ME,
     AMONG,
@@ -44,7 +43,6 @@ from .layout import (
     DIRECT,
     DONE,
     DT,
-    FIRST_SHAPE,
     HITS,
     ISLAND,
     JOINTED,
@@ -69,7 +67,6 @@ from .layout import (
     RELAX,
     REMEMBERED,
     ROOT,
-    SHAPES,
     SOLVED,
     SOLVES,
     SPAN,
@@ -209,12 +206,10 @@ def solve(A: Scene, root: int, t: float) -> int:
     if MEMBER[root, JOINTED] > 0:
         return JOINTS_DUE
     MINE.sort()
-    lossy = False
     for q in range(n):
         A.PLACE[MINE[q]] = q
-        for s in range(STATE[MINE[q], FIRST_SHAPE], STATE[MINE[q], FIRST_SHAPE] + STATE[MINE[q], SHAPES]):
-            lossy = lossy or A.SHAPE[s, ELASTICITY] < 1.0
-    found = pairs_of(A, root, t, lossy, A.PLACE, MINE, n)
+    may_lose = lossy(A, root)
+    found = pairs_of(A, root, t, may_lose, A.PLACE, MINE, n)
     p = len(found)
     h = span_of(A, found, t)
     if COUNT[PUSHES] + 2 * p > A.PUSHED.shape[0] or 2 * (COUNT[REMEMBERED] + 2 * p) > A.KEYS.shape[0]:
@@ -235,7 +230,7 @@ def solve(A: Scene, root: int, t: float) -> int:
     sweeps = _SWEEPS if n < CROWD else sweeps_of_crowd(t)
     m = 0
     among = among_of(A, isle, n)
-    quiet = calm(A, root, MINE, n, among, t) if lossy else 0.0
+    quiet = calm(A, root, MINE, n, among, t) if may_lose else 0.0
     if p > 0 and h > 0.0:
         m = step_island(
             POSE, V, ACC, IMS, IIS, SIZES, isle.FELT, n, PAIRS, p, A.SHAPE, A.RULE, A.LINK, A.VERTEX, A.WORK, h,

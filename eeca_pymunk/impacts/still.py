@@ -15,7 +15,7 @@ from ..compiled import uncounted
 from ..layout import ANGLE, AX, AY, DUE, IM, OWNER, SPIN, TWIST, VX, VY, X, Y
 from ..pairs.lists import mark_pair
 from ..sustained.memory import STAMP as OF_STEP
-from ..sustained.memory import find
+from ..sustained.memory import find, key_of
 from .calm import WOKEN, hardly, later, speed, whirls
 from .layout import (
     AFTER_ME,
@@ -94,7 +94,7 @@ def watch(A: Scene, i: int) -> None:
 def touch(A: Scene, c: int, stamp: float) -> None:
     """Let the forces of contact number c be those of the step `stamp`."""
     a, b = A.PUSHED_BY[c, PUSH_A], A.PUSHED_BY[c, PUSH_B]
-    key = (min(a, b) * A.SHAPE.shape[0] + max(a, b)) << 1
+    key = key_of(A.SHAPE.shape[0], a, b)
     for z in range(2):
         row = find(A.KEYS, key + z)
         if row >= 0 and A.FORCES[row, OF_STEP] >= stamp - 1.0:

@@ -13,7 +13,6 @@ from ..layout import (
     AX,
     AY,
     BOUNCE,
-    BOUND,
     CHANGE,
     EXTENT,
     GAP,
@@ -42,7 +41,7 @@ from ..layout import (
     SECOND_SHAPE as ON,
 )
 from ..pairs.layout import NUMBER, START
-from ..pairs.lists import centre
+from ..pairs.lists import far_apart
 from ..pairs.rules import barred, law
 from .layout import (
     EVEN,
@@ -86,10 +85,7 @@ def touches(A: Scene, disks: int, a: int, b: int, t: float) -> bool:
     BODY = A.BODY
     tolerance = touching(BODY, A.SHAPE, A.LINK, a, b, disks)
     if b < A.LIST.shape[0]:
-        ax, ay = centre(BODY, A.SHAPE, A.LINK, a, t)
-        bx, by = centre(BODY, A.SHAPE, A.LINK, b, t)
-        reach = A.SHAPE[a, BOUND] + A.SHAPE[b, BOUND] + tolerance
-        if (bx - ax) * (bx - ax) + (by - ay) * (by - ay) > reach * reach:
+        if far_apart(BODY, A.SHAPE, A.LINK, a, b, t, tolerance):
             return False
         if a < disks and b < disks:
             return True

@@ -9,11 +9,10 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..impacts.coming import before_end, pairs_of
-from ..impacts.islands import members
+from ..impacts.islands import lossy, members
 from ..impacts.layout import (
     BODIES,
     DONE,
-    FIRST_SHAPE,
     KINKS,
     LIFT,
     LOST,
@@ -22,7 +21,6 @@ from ..impacts.layout import (
     PUSHES_FULL,
     REMEMBERED,
     ROOT,
-    SHAPES,
     SOLVES,
     STAMP,
     UN_AFTER,
@@ -37,7 +35,7 @@ from ..impacts.spans import Local, dismiss, lay_out_island, open_contacts
 from ..joints.correct import book_fit
 from ..joints.layout import PROJECTED
 from ..joints.scratch import BEFORE, BODY_0, BODY_1, M_BODY
-from ..layout import AX, ELASTICITY
+from ..layout import AX
 from ..rows.build import normal_rate
 from ..rows.layout import ROW_COLUMNS
 from ..sustained.contacts import NEAR, gather
@@ -122,12 +120,10 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
     MINE = np.empty(n, np.int64)
     members(A, root, MINE)
     MINE.sort()
-    lossy = False
     for q in range(n):
         A.PLACE[MINE[q]] = q
-        for s in range(STATE[MINE[q], FIRST_SHAPE], STATE[MINE[q], FIRST_SHAPE] + STATE[MINE[q], SHAPES]):
-            lossy = lossy or A.SHAPE[s, ELASTICITY] < 1.0
-    found = pairs_of(A, root, t, lossy, A.PLACE, MINE, n)
+    may_lose = lossy(A, root)
+    found = pairs_of(A, root, t, may_lose, A.PLACE, MINE, n)
     p = len(found)
     if p == 0 and whole:
         dismiss(A, MINE, n)
@@ -169,7 +165,7 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
     book_turning(A, J, isle, groups, motion, n)
     # Bodies are lifted at the end of the span, not on the way: the way would be as steep as the span is short.
     WHERE = motion.END.copy()
-    if lossy and m > 0:
+    if may_lose and m > 0:
         if not before_end(A, t + h):
             budget = lost(P, Q, ROWS, L, motion.WAY, m, h) + A.RESTING[root, LOST]
             spent = lift(A, J, isle, groups, P, Q, ROWS, m, n, motion, t + h, h, budget, C)

@@ -15,6 +15,7 @@ from ..layout import (
     ANGLE,
     AX,
     AY,
+    BOUND,
     CATEGORIES,
     CENTRE_X,
     CENTRE_Y,
@@ -48,6 +49,17 @@ def centre(BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, s: int, t: float
         x += c * a - d * b
         y += d * a + c * b
     return x, y
+
+
+@uncounted
+def far_apart(
+    BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, a: int, b: int, t: float, reach: float
+) -> bool:  # fmt: skip
+    """Whether the bounding circles of shapes a and b are farther apart than `reach`, length, at instant t."""
+    ax, ay = centre(BODY, SHAPE, LINK, a, t)
+    bx, by = centre(BODY, SHAPE, LINK, b, t)
+    apart = SHAPE[a, BOUND] + SHAPE[b, BOUND] + reach
+    return bool((bx - ax) * (bx - ax) + (by - ay) * (by - ay) > apart * apart)
 
 
 @uncounted

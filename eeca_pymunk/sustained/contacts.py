@@ -18,6 +18,7 @@ from ..layout import COUNT, ROUNDING, SIZE
 from ..pairs.rules import law
 from ..rows.build import place_row
 from ..rows.layout import NX, NY, SURFACE
+from .memory import key_of
 
 CROWD = 24  # bodies of an island, from which it is a crowd: hits spread in it, and solves of it are cut short
 
@@ -109,6 +110,6 @@ def gather(
                 elasticity, friction, 0.0,
             )  # fmt: skip
             ROWS[i, SURFACE] = ROWS[i, NX] * sy - ROWS[i, NY] * sx
-            KEY[i] = ((min(s, r) * shapes + max(s, r)) << 1) + z
+            KEY[i] = key_of(shapes, s, r) + z
         m += count
     return m

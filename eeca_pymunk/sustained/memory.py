@@ -16,6 +16,12 @@ FORCE_COLUMNS = 4
 
 
 @uncounted
+def key_of(shapes: int, a: int, b: int) -> int:
+    """Key of the first contact of shapes a and b, in either order, out of `shapes`; that of the second is 1 more."""
+    return (min(a, b) * shapes + max(a, b)) << 1
+
+
+@uncounted
 def find(KEYS: IntArray, key: int) -> int:
     """Row of the key, or -1 - (the free row where it would be)."""
     mask = len(KEYS) - 1
