@@ -49,7 +49,7 @@ from .layout import (
 LIKELY = 3  # of MEMBER[STILL]
 WOKEN = -2.0  # CALM_FOR once it is woken after a long stand: what hits it often comes again
 SURE = 2  # steps that an island hardly moves, before it is asked whether it stands
-_AGAIN, _LATEST, _LATER = 4, 12, 25  # and until it is asked again, one more for every fourth body; then every 25th
+_AGAIN, _LATEST, _LATER = 4, 12, 100  # and until it is asked again, one more for every fourth body; then every 100th
 
 
 @uncounted

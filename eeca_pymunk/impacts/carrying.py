@@ -30,6 +30,7 @@ from .calm import SURE, hardly, later, wait, whirls
 from .islands import members
 from .layout import (
     AMONG,
+    ANEW,
     BETA,
     BODIES,
     CALM_FOR,
@@ -59,6 +60,7 @@ from .layout import (
 from .spans import dismiss, solve
 
 _FACTORS = 4  # to find how a standing island carries what moves, at most: more would cost as much as a solve
+_ROUNDS = 8  # in which forces find their way down, from what stands to what carries it
 _PART = 1e-2  # of the fastest of a motion that nothing holds, below which a body has no part in it
 
 
@@ -171,22 +173,31 @@ def support(A: Scene) -> None:
     """At the start of a step, once what moves has been solved: what carries some of it and cannot stand is solved with
     what rests on it."""
     STATE, MEMBER, BODY = A.STATE, A.MEMBER, A.BODY
-    more = A.COUNT[CARRIES] > 0
+    more, all_moving, asked = A.COUNT[CARRIES] > 0, True, 0
     while more:
-        more = False
         for c in range(A.COUNT[PUSHES]):
             root = A.PUSHED_BY[c, ROOT]
-            if root < 0 or MEMBER[root, STILL] == 1:
+            if root < 0 or not (MEMBER[root, ANEW] == 1 if MEMBER[root, STILL] == 1 else all_moving):
                 continue
             for side in range(2):
                 j = A.LINK[A.PUSHED_BY[c, PUSH_A + side], OWNER]
                 other = STATE[j, ISLAND]
                 if BODY[j, IM] > 0.0 and other != root and other >= 0 and MEMBER[other, STILL] == 1:
                     MEMBER[other, LOADED] = 1
+        more, all_moving = False, False
+        for i in range(BODY.shape[0] - 1):
+            MEMBER[i, ANEW] = 0
         for i in range(BODY.shape[0] - 1):
             if MEMBER[i, LOADED] == 0:
                 continue
             MEMBER[i, LOADED] = 0
-            if STATE[i, ISLAND] == i and MEMBER[i, STILL] == 1 and not holds(A, i):
+            if STATE[i, ISLAND] != i or MEMBER[i, STILL] != 1:
+                continue
+            more = True
+            # What carries each other in turn is one island.
+            if asked < _ROUNDS and holds(A, i):
+                MEMBER[i, ANEW] = 1
+            else:
                 solve(A, wake(A, i, 0.0), 0.0)
-                more = True
+                all_moving = True
+        asked += 1

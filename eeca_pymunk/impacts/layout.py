@@ -18,7 +18,7 @@ EVENTS = 6  # impacts of the body in this step
 ISLAND = 7  # first body of the island it is solved in, -1 for none
 STATE_COLUMNS = 8
 
-# MEMBER (n, 13) int: islands of bodies in sustained contact as chains from their first body, the root
+# MEMBER (n, 14) int: islands of bodies in sustained contact as chains from their first body, the root
 AFTER_ME, LAST_ONE, BODIES = 0, 1, 2  # next body of the chain, -1 for none; of the root: the last one, and how many
 HITS = 3  # of the root: how often the island was hit in this step
 BUSY = 4  # steps for which what comes near joins the island rather than hits it
@@ -29,7 +29,8 @@ STILL = 9  # 1 if the body's island goes on as it was (`still.py`)
 LOADED = 10  # of the root of an island that stands: 1 while it is to be seen whether it carries what moves on it
 AMONG = 11  # of the root: BODIES, and those of the islands that carry them
 PUT = 12  # 1 if the body was put where it is, and may be in others (`crammed.py`)
-MEMBER_COLUMNS = 13
+ANEW = 13  # of the root of an island that stands: 1 while its forces are new to what carries it
+MEMBER_COLUMNS = 14
 
 # RESTING (n, 14) float: of a body in an island
 LIFT = 0  # RESTING[LIFT : LIFT + 6]: what to add to pose and velocity at the end of the span; of an island with joints

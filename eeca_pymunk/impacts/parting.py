@@ -52,7 +52,6 @@ from .still import halt
 
 _MOST, _FEW = 0.1, 2  # of an island's bodies, that may move while the others stand; so many always
 _TRIES = 2
-_QUIET = 0.1  # speed relative to |a| dt, above which a body moves, unless none does
 
 
 @uncounted
@@ -122,12 +121,9 @@ def asks(A: Scene, MINE: IntArray, n: int, V0: FloatArray, among: int) -> bool:
 @uncounted
 def divide(A: Scene, MINE: IntArray, n: int, STAND: IntArray, MOVE: IntArray) -> int:
     """Those of the n bodies MINE that may stand into STAND, the others into MOVE; how many the first are."""
-    stand, quick = 0, 0
+    stand, limit = 0, hardly(n) * A.PAR[PULLED] * A.PAR[DT]
     for q in range(n):
-        quick += 0 if settled(A, MINE[q]) else 1
-    limit = _QUIET * A.PAR[PULLED] * A.PAR[DT]
-    for q in range(n):
-        if settled(A, MINE[q]) and (quick == 0 or speed(A, MINE[q], 0.0) <= limit):
+        if settled(A, MINE[q]) and speed(A, MINE[q], 0.0) <= limit:
             STAND[stand] = MINE[q]
             stand += 1
         else:

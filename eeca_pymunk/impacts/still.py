@@ -20,6 +20,7 @@ from .calm import WOKEN, hardly, later, speed, whirls
 from .layout import (
     AFTER_ME,
     AMONG,
+    ANEW,
     BETA,
     BUSY,
     CALM_FOR,
@@ -213,6 +214,7 @@ def halt(A: Scene, root: int) -> None:
     """At either end of a step, an island that comes to a stand: its bodies stop, but for spins that nobody feels. Once
     something wakes it, it is soon asked whether it stands again."""
     BODY, MEMBER = A.BODY, A.MEMBER
+    MEMBER[root, ANEW] = 1
     i = root
     while i >= 0:
         A.PAR[LEDGER + RESTITUTION] += kinetic(BODY, i)
