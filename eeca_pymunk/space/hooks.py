@@ -19,7 +19,6 @@ import numpy as np
 import pymunk
 
 from ..arrays import FloatArray
-from ..layout import ELASTICITY, FRICTION
 from . import private, private_joints
 from .bodies import ANGLE, ANGULAR_VELOCITY, POSITION, VELOCITY, Bodies
 from .joints import JointRows
@@ -221,22 +220,9 @@ class Rehearsal:
 
         return call
 
-    def rules(self, shapes: Sequence[pymunk.Shape], SHAPE: FloatArray) -> Rules:
+    def rules(self, shapes: Sequence[pymunk.Shape], SHAPE: FloatArray, smooth: bool) -> Rules:
         """What the arbiters of the step say of pairs of these shapes, which are the rows of SHAPE."""
-        index = {shape: i for i, shape in enumerate(shapes)}
-        ignored, changed = set(), {}
-        for arbiter in private.arbiters(self.space):
-            a, b = (index.get(shape, -1) for shape in arbiter.shapes)
-            if min(a, b) < 0:
-                continue
-            pair = (min(a, b), max(a, b))
-            e, mu = (float(SHAPE[a, k] * SHAPE[b, k]) for k in (ELASTICITY, FRICTION))
-            said = arbiter.restitution, arbiter.friction
-            if not arbiter.process_collision:
-                ignored.add(pair)
-            elif said != (e, mu):
-                changed[pair] = said[0], said[1]
-        return Rules(frozenset(ignored), changed)
+        return Rules.said(private.arbiters(self.space), shapes, SHAPE, smooth)
 
     def finish(self, bodies: Bodies) -> None:
         """What pymunk does when its step has ended: shapes where the bodies are, additions, removals, callbacks."""

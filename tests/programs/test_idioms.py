@@ -8,6 +8,7 @@ import pickle
 import threading
 from collections.abc import Callable
 
+import numpy as np
 import pymunk
 import pytest
 
@@ -242,16 +243,41 @@ def test_debug_draw_shows_the_end_of_the_step(make: Make) -> None:
         assert drawn == [pytest.approx(tuple(body.position))]
 
 
-def test_surface_velocity_set_in_pre_solve_is_not_felt() -> None:
-    space, _ = ground()
-    box = box_on(space, 0.0)
+@pytest.mark.parametrize("order", [(1, 2), (2, 1)])
+def test_surface_velocity_set_in_pre_solve_moves_what_lies_there_as_native_s(order: tuple[int, int]) -> None:
+    """By mu g t until it goes along; the other way round for shapes in the other order."""
+    found = []
+    for make in (ep.Native, ep.EECA):
+        space, floor = ground()
+        box = box_on(space, 0.0)
+        floor.collision_type, next(iter(box.shapes)).collision_type = 1, 2
 
-    def belt(arbiter: pymunk.Arbiter, space: pymunk.Space, data: object) -> None:
-        arbiter.surface_velocity = (5.0, 0.0)
+        def belt(arbiter: pymunk.Arbiter, space: pymunk.Space, data: object) -> None:
+            arbiter.surface_velocity = (5.0, 0.0)
 
-    space.on_collision(pre_solve=belt)
-    run(ep.EECA(space), 30)
-    assert box.velocity.x == pytest.approx(0.0, abs=1e-9)
+        space.on_collision(*order, pre_solve=belt)
+        stepper, speeds = make(space), []
+        for _ in range(3):
+            run(stepper, 30)
+            speeds.append(box.velocity.x)
+        found.append(speeds)
+    assert np.abs(found[1]) == pytest.approx([0.49 * 10.0 * 0.5, 0.49 * 10.0, 5.0], rel=1e-9)
+    assert found[1] == pytest.approx(found[0], rel=1e-9)
+
+
+def test_surface_velocity_of_shapes_is_felt_once_also_with_handlers() -> None:
+    """What pymunk makes of it along the contact, also at a slant, is not taken for one that was set."""
+    speeds = []
+    for handled in (False, True):
+        space, floor = ground()
+        floor.surface_velocity = (1.0, 2.0)
+        floor.unsafe_set_endpoints((-50.0, -5.0), (50.0, 5.0))  # type: ignore[attr-defined]
+        box = box_on(space, 0.0, 0.7)
+        if handled:
+            space.on_collision(pre_solve=lambda *_: None)
+        run(ep.EECA(space), 60)
+        speeds.append((*box.velocity, box.angular_velocity))
+    assert speeds[0] == pytest.approx(speeds[1], abs=1e-9)
 
 
 def test_a_joint_of_two_flush_segments_is_no_bump() -> None:
