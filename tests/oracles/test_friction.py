@@ -32,6 +32,33 @@ def slid(mu: float) -> float:
     return 0.5 * G * (math.sin(SLOPE) - mu * math.cos(SLOPE))
 
 
+@pytest.mark.parametrize(("mu", "tan"), [(0.3, 0.4), (0.45, 0.6), (0.6, 0.55), (0.6, 0.45)])
+def test_a_block_slides_or_tips_whichever_is_first(mu: float, tan: float) -> None:
+    """It slides iff tan > mu, and tips iff tan > width/height = .5: of both, what friction lets it."""
+    space = heavy(slope=math.atan(tan))
+    add_walls(space, friction.FLOOR)
+    body = add_box(space, (0.0, 0.5), 0.5, 1.0)
+    matter(space, mu)
+    friction.go(space, ep.EECA, 60)
+    if tan < min(mu, 0.5):
+        assert tuple(body.position) == pytest.approx((0.0, 0.5), abs=1e-9)
+    elif mu < 0.5:
+        way = 0.5 * G * (tan - mu) / math.hypot(1.0, tan)
+        assert tuple(body.position) == pytest.approx((way, 0.5), rel=1e-9)
+        assert body.angle == pytest.approx(0.0, abs=1e-9)
+    else:
+        assert body.angle < -0.1
+        assert body.position.x > 0.05
+
+
+@pytest.mark.parametrize("above", [False, True])
+def test_the_angle_of_friction_is_told_to_a_part_in_a_million(above: bool) -> None:
+    slope = math.atan(0.3) * (1.0 + (1e-6 if above else -1e-6))
+    body = friction.after(friction.on_plane(slope, 0.3, "box"), ep.EECA, 10.0)
+    way = 0.5 * G * (math.sin(slope) - 0.3 * math.cos(slope)) * 100.0 if above else 0.0
+    assert body.position.x == pytest.approx(way, abs=1e-9)
+
+
 def test_pre_solve_sets_friction() -> None:
     """arbiter.friction = 0 on a rough slope: smooth; and 0.5 for the shapes' .3."""
     for mu in (0.0, 0.5):
