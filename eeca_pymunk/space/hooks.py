@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 import pymunk
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, rotated
 from . import private, private_joints
 from .bodies import ANGLE, ANGULAR_VELOCITY, POSITION, VELOCITY, Bodies
 from .joints import JointRows
@@ -136,11 +136,16 @@ class Rehearsal:
 
     def run(self, free: FloatArray, dt: float) -> FloatArray:
         """Take pymunk's step to the (N, 9) state `free`; what post_solve and separate change (N, 9). Raises what a
-        handler raises, once pymunk has finished."""
-        going = self._state.copy()
-        going[:, VELOCITY] = (free[:, POSITION] - self._state[:, POSITION]) / dt
-        going[:, VELOCITY] += self._pressed() / dt
-        going[:, ANGULAR_VELOCITY] = (free[:, ANGLE] - self._state[:, ANGLE]) / dt
+        handler raises, once pymunk has finished.
+
+        pymunk moves bodies first, and accelerates them where they have come to. So they start from where their
+        velocities, which handlers see and contacts feel, lead there.
+        """
+        going, moves = self._state.copy(), ~self.bodies.static
+        going[:, ANGLE] = free[:, ANGLE] - dt * self._state[:, ANGULAR_VELOCITY]
+        going[:, POSITION] = self.bodies.centers(free) - dt * self._state[:, VELOCITY] + self._pressed()
+        going[:, POSITION] -= rotated(self.bodies.center_of_gravity, going[:, ANGLE])
+        going[~moves] = self._state[~moves]
         self.bodies.scatter(going, unchanged=True)
         with self.hooks.silent(), self._watched():
             private.step_alone(self.space, dt)
