@@ -75,6 +75,18 @@ def test_rate_of_a_rocking_block_falls_to_31_of_34_at_an_impact(dt: float) -> No
         assert rate == pytest.approx(31.0 / 34.0, abs=4.0 * dt)
 
 
+@pytest.mark.parametrize(("e", "mu"), [(1.0, 0.1), (0.9, 0.05), (0.8, 0.5)])
+@pytest.mark.parametrize("steps", [1, 3, 4000])
+def test_bounces_with_spin_in_one_step_and_in_thousands(e: float, mu: float, steps: int) -> None:
+    space = heavy()
+    add_walls(space, oblique.FLOOR)
+    disk = add_disk(space, (0.0, 1.3), 0.5, 1.0, (0.2, 0.0))
+    disk.angular_velocity = 10.0
+    matter(space, mu, e)
+    go(space, ep.EECA, steps, 2.0 / steps)
+    assert (disk.position.x, disk.angular_velocity) == pytest.approx(oblique.spinning_bounces(e, mu, 2.0), abs=1e-11)
+
+
 def test_billiard_break_with_spin_is_the_same_at_any_dt() -> None:
     ends = []
     for dt in (1 / 1000, 1 / 240, 1 / 60, 1 / 5):

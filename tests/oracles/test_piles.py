@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
+
+import pymunk
 import pytest
 
 import eeca_pymunk as ep
 from comparisons.hard_cases import Case, piles, reports
 from comparisons.hard_cases.case import heavy, matter
-from scenes.scene import add_box, add_walls
+from scenes.scene import add_box, add_disk, add_walls
 
 from .running import check, of
 
@@ -15,6 +18,20 @@ from .running import check, of
 @pytest.mark.parametrize("one", of(piles, reports), ids=lambda one: one.name)
 def test_case(one: Case, monkeypatch: pytest.MonkeyPatch) -> None:
     check(one, monkeypatch)
+
+
+@pytest.mark.parametrize(("between", "below"), [(1.0005, 1.0005), (0.9995, 1.1), (1.1, 0.9995)])
+def test_three_disks_stand_from_their_frictions_on(between: float, below: float) -> None:
+    """tan 15° between the disks, a third of that at the floor, to a part in two thousand."""
+    space, mu = heavy(), 0.2679491924 * between
+    floor = pymunk.Segment(space.static_body, (-9.0, 0.0), (9.0, 0.0), 0.0)
+    space.add(floor)
+    for where in ((-0.5, 0.5), (0.5, 0.5), (0.0, 0.5 + math.sqrt(0.75))):
+        add_disk(space, where, 0.5)
+    matter(space, mu)
+    floor.friction = 0.0893163975 * below / math.sqrt(mu)
+    moved = piles.moved(space, ep.EECA, 180)
+    assert moved <= 1e-9 if min(between, below) > 1.0 else moved > 1e-3
 
 
 @pytest.mark.parametrize("falls", [False, True])
