@@ -115,6 +115,7 @@ def test_machine_code_is_kept_by_a_hash_of_all_sources(tmp_path: Path, monkeypat
 def test_one_line_tells_of_the_first_compilation_at_a_terminal(
     terminal: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    compiled.prepare()  # all others have their folder
     monkeypatch.setattr(compiled, "cache_folder", lambda: tmp_path)
     monkeypatch.setattr(compiled.sys.stderr, "isatty", lambda: terminal)
     one = fresh(lambda x: x + 1.0)

@@ -3,7 +3,8 @@
 Velocity and position functions are called with the real dt. Collision handlers need pymunk's own arbiters: a
 *rehearsal* lets pymunk take the step from the same start to where the bodies would fly freely, with its own detection
 and solver, so that begin, pre_solve, post_solve and separate come in pymunk's order and with pymunk's numbers. What
-they decide (collisions to ignore, restitution, changed velocities) goes into our step, which then takes its place.
+they decide (collisions to ignore, restitution, friction, surface velocities, changed velocities) goes into our step,
+which then takes its place.
 
 `pre_solve` of constraints comes in its place there too, before our step where there is no rehearsal. `post_solve` of
 constraints comes after our step, whose impulses they can read; then so does that of collisions, which come after it.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import pymunk
 import pytest
@@ -74,6 +75,39 @@ def test_pre_solve_sets_friction() -> None:
         for _ in range(60):
             stepper.step(DT)
         assert body.position.x == pytest.approx(slid(mu), rel=1e-9)
+
+
+@pytest.mark.parametrize("fall", [-3.0, 0.0], ids=["hit", "rest"])
+@pytest.mark.parametrize("make", [friction.add_disk, lambda space, at, r, m, v: add_box(space, at, 2 * r, 2 * r, m, v)])
+def test_what_pre_solve_sets_is_what_shapes_could_have_had(make: Callable[..., pymunk.Body], fall: float) -> None:
+    """Elasticity, friction and surface velocity, of an impact at its instant and of a contact that lasts."""
+    ends, read = [], pymunk.Vec2d(0.0, 0.0)
+    for told in (False, True):
+        space = heavy()
+        add_walls(space, friction.FLOOR)
+        floor = next(iter(space.shapes))
+        body = make(space, (0.0, 0.5 - 0.1 * fall), 0.5, 2.0, (1.0, fall))
+        matter(space, 0.9, 0.9)
+
+        def set_all(arbiter: pymunk.Arbiter, *_: object, v: pymunk.Vec2d = read) -> None:
+            arbiter.restitution, arbiter.friction, arbiter.surface_velocity = 0.4, 0.3, v
+
+        def note(arbiter: pymunk.Arbiter, *_: object) -> None:
+            nonlocal read
+            read = arbiter.surface_velocity
+
+        if not told:
+            matter(space, 0.3, 0.4)
+            floor.surface_velocity = (-2.5, 0.0)
+        space.on_collision(pre_solve=set_all if told else note)
+        stepper = Audit(space)
+        for _ in range(30):
+            stepper.step(DT)
+        assert stepper.residual <= 1e-12
+        assert stepper.total["external"] > 1.0
+        ends.append((*body.position, *body.velocity, body.angular_velocity))
+    assert abs(read.x) == 2.5
+    assert ends[1] == pytest.approx(ends[0], rel=1e-12, abs=1e-12)
 
 
 def test_friction_can_be_ignored() -> None:
