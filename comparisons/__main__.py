@@ -27,6 +27,7 @@ NAMES = (
     "detection",
     "piles",
     "joints",
+    "sleeping",
     "soak",
     "pymunk_examples",
     "hard_cases",

@@ -161,7 +161,7 @@ class PackedStepper(PackedSpace):
                 self._checked(world, dt, self._fly(world, dt, left))
                 after = rehearsal.run(world.ended(), dt)
                 world.state[:] = rehearsal.before
-                world.rules = rehearsal.rules(world.shapes, world.SHAPE)
+                world.rules = rehearsal.rules(world.shapes, world.SHAPE, world.smooth)
             world.void_forecasts()
             world.give(given)
             status = self._checked(world, dt, self.advance(world, dt, left))

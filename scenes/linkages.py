@@ -137,7 +137,8 @@ def cloth(side: int = 15, mesh: float = 0.1) -> pymunk.Space:
     return space
 
 
-# Andrews' squeezing mechanism (Test Set for IVP Solvers, problem andrews): angles at the start and after .03 s.
+# Andrews' squeezing mechanism (Test Set for IVP Solvers, problem andrews): angles at the start, angles and their rates
+# after .03 s.
 SQUEEZER_START = {
     "beta": -0.0617138900142764496358948458001,
     "theta": 0.0,
@@ -155,6 +156,15 @@ SQUEEZER_AT_003 = {
     "delta": 0.5244099658805304,
     "omega": 0.5347301163226948,
     "epsilon": 1.048080741042263,
+}
+SQUEEZER_RATES_AT_003 = {
+    "beta": 1139.920302151208,
+    "theta": -1424.379294994111,
+    "gamma": 11.03291221937134,
+    "phi": 19.29337464421385,
+    "delta": 0.5735699284790808,
+    "omega": -19.29337464421385,
+    "epsilon": 0.3231791658026955,
 }
 SQUEEZER_WORK = 0.5237920078  # J, torque .033 over the turn of beta
 

@@ -26,6 +26,7 @@ from comparisons import (
     pymunk_examples,
     runs,
     scaling,
+    sleeping,
     soak,
     tour,
     work_precision,
@@ -350,6 +351,13 @@ def test_bars_by_their_angles_keep_their_energy_and_swing_as_the_digits_say() ->
     bars = Bars(np.ones(2), np.ones(2), np.full(2, 0.5), np.ones(2), np.zeros(2), 10.0)
     bars.run(1.0, 500)
     np.testing.assert_allclose(bars.places()[1], linkages.RODS_AT[1.0], atol=1e-10)
+
+
+def test_a_pile_that_sleeps_costs_little_and_wakes_stack_by_stack_in_the_step_that_touches_it() -> None:
+    costs, hits = sleeping.case(1000, 10, rounds=2)
+    assert [row["asleep"] for row in costs] == [1000] * 3
+    assert all(float(row["asleep (us/step)"] or 0.0) < 0.1 * float(row["awake (us/step)"] or 0.0) for row in costs)
+    assert {(row["ball is hit in step"], row["woken in it"]) for row in hits} == {(5, 10)}
 
 
 def test_pymunks_examples_are_run_under_both(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

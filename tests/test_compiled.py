@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import importlib.util
 import subprocess
 import sys
 from collections.abc import Callable
+from pathlib import Path
 from typing import ParamSpec, TypeVar
 
 import numpy as np
@@ -80,10 +82,57 @@ def test_rows_are_asked_for_and_nothing_else_happens() -> None:
         assert "prefetch" in asks_for_rows.run.inspect_asm(asks_for_rows.run.signatures[0])  # type: ignore[attr-defined]
 
 
+@fresh
+def there_and_back(x: float) -> float:
+    return (x + 1.0) - x
+
+
+def test_sums_are_not_reordered() -> None:
+    """As `fastmath` would, which would find 1 here: energies close by the order of their sums."""
+    assert there_and_back(1e16) == 0.0
+
+
+def test_machine_code_is_kept_by_a_hash_of_all_sources(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """An edit of any file of the package makes another folder, the same sources the same."""
+    monkeypatch.setattr(compiled, "_PACKAGE", tmp_path)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "home"))
+    folder = compiled.cache_folder.__wrapped__
+    (tmp_path / "room").mkdir()
+    (tmp_path / "room" / "one.py").write_text("HALF = 0.5\n")
+    first = folder()
+    assert first.parent == tmp_path / "__pycache__"
+    assert first == folder()
+    (tmp_path / "room" / "one.py").write_text("HALF = 0.6\n")
+    second = folder()
+    (tmp_path / "room" / "one.py").rename(tmp_path / "room" / "two.py")
+    assert len({first, second, folder()}) == 3
+    monkeypatch.setattr(compiled.os, "access", lambda path, mode: False)
+    assert folder().parent == tmp_path / "home" / "eeca_pymunk"
+
+
+@pytest.mark.skipif(compiled.compiler() is None, reason="plain Python")
+@pytest.mark.parametrize("terminal", [True, False])
+def test_one_line_tells_of_the_first_compilation_at_a_terminal(
+    terminal: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    compiled.prepare()  # all others have their folder
+    monkeypatch.setattr(compiled, "cache_folder", lambda: tmp_path)
+    monkeypatch.setattr(compiled.sys.stderr, "isatty", lambda: terminal)
+    one = fresh(lambda x: x + 1.0)
+    compiled.prepare()
+    assert capsys.readouterr().err == ("compiling eeca_pymunk's kernels, once\n" if terminal else "")
+    assert one(1.0) == 2.0
+    (tmp_path / "some.nbi").touch()
+    fresh(lambda x: x + 2.0)
+    compiled.prepare()
+    assert capsys.readouterr().err == ""
+
+
 def run(code: str) -> list[str]:
     return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.splitlines()
 
 
+@pytest.mark.skipif(importlib.util.find_spec("numba") is None, reason="there is none to be without")
 def test_without_numba_one_warning_and_the_same_motion() -> None:
     *places, warned = run(STEP.format(hide='sys.modules["numba"] = None'))
     assert warned.startswith("['numba is not installed: eeca_pymunk runs as plain Python")
@@ -123,7 +172,7 @@ def test_a_warmup_touches_no_space_of_the_caller() -> None:
     assert compiled.compilations() >= 0
 
 
-@pytest.mark.skipif(compiled.disabled(), reason="plain Python counts from the end")
+@pytest.mark.skipif(compiled.compiler() is None, reason="plain Python counts from the end")
 def test_indices_of_kernels_are_taken_as_they_are() -> None:
     import numba
     import numpy as np

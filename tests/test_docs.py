@@ -30,6 +30,9 @@ SHORT = {
     "piles": "test_comparisons.py::test_short_piles_keep_their_books",
     "joints": "test_comparisons.py::test_joints_tell_errors_and_costs",
     "pymunk_examples": "test_comparisons.py::test_pymunks_examples_are_run_under_both",
+    "sleeping": (
+        "test_comparisons.py::test_a_pile_that_sleeps_costs_little_and_wakes_stack_by_stack_in_the_step_that_touches_it"
+    ),
     "soak": "test_comparisons.py::test_short_soak_keeps_energy_and_disks",
     "hard_cases": "test_hard_cases.py::test_matrix_tells_passes_failures_and_refusals",
     "maxwell": "test_comparisons.py::test_speeds_of_gases_become_those_of_a_shared_energy",

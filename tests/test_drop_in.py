@@ -292,6 +292,28 @@ def test_different_walls_of_one_body_keep_their_elasticity() -> None:
     assert body.velocity.x == pytest.approx(1.5)  # off the right wall with half the speed, off the left with all
 
 
+@pytest.mark.parametrize("told", [False, True])
+def test_ignored_friction_is_ignored_beside_handlers_too(told: bool) -> None:
+    space = pymunk.Space()
+    space.gravity = (0.0, -10.0)
+    body = pymunk.Body(1.0, 1.0)
+    body.position, body.velocity = (0.0, 0.5), (1.0, 0.0)
+    floor, box = pymunk.Segment(space.static_body, (-9.0, 0.0), (9.0, 0.0), 0.0), pymunk.Poly.create_box(body, (1, 1))
+    floor.friction = box.friction = 0.7
+    space.add(body, floor, box)
+
+    def rough(arbiter: pymunk.Arbiter, space: pymunk.Space, data: object) -> None:
+        if told:
+            arbiter.friction = 0.3
+
+    space.on_collision(pre_solve=rough)
+    with pytest.warns(UserWarning, match="without the friction"):
+        stepper = ep.EECA(space, ignore=("friction",))
+    for _ in range(30):
+        stepper.step(DT)
+    assert body.velocity == pytest.approx((1.0, 0.0), abs=1e-12)
+
+
 def test_friction_is_ignored_with_one_warning() -> None:
     space, _ = ball_in_a_room()
     for shape in space.shapes:

@@ -3,7 +3,8 @@
 Velocity and position functions are called with the real dt. Collision handlers need pymunk's own arbiters: a
 *rehearsal* lets pymunk take the step from the same start to where the bodies would fly freely, with its own detection
 and solver, so that begin, pre_solve, post_solve and separate come in pymunk's order and with pymunk's numbers. What
-they decide (collisions to ignore, restitution, changed velocities) goes into our step, which then takes its place.
+they decide (collisions to ignore, restitution, friction, surface velocities, changed velocities) goes into our step,
+which then takes its place.
 
 `pre_solve` of constraints comes in its place there too, before our step where there is no rehearsal. `post_solve` of
 constraints comes after our step, whose impulses they can read; then so does that of collisions, which come after it.
@@ -18,8 +19,7 @@ from typing import Any
 import numpy as np
 import pymunk
 
-from ..arrays import FloatArray
-from ..layout import ELASTICITY, FRICTION
+from ..arrays import FloatArray, rotated
 from . import private, private_joints
 from .bodies import ANGLE, ANGULAR_VELOCITY, POSITION, VELOCITY, Bodies
 from .joints import JointRows
@@ -137,11 +137,16 @@ class Rehearsal:
 
     def run(self, free: FloatArray, dt: float) -> FloatArray:
         """Take pymunk's step to the (N, 9) state `free`; what post_solve and separate change (N, 9). Raises what a
-        handler raises, once pymunk has finished."""
-        going = self._state.copy()
-        going[:, VELOCITY] = (free[:, POSITION] - self._state[:, POSITION]) / dt
-        going[:, VELOCITY] += self._pressed() / dt
-        going[:, ANGULAR_VELOCITY] = (free[:, ANGLE] - self._state[:, ANGLE]) / dt
+        handler raises, once pymunk has finished.
+
+        pymunk moves bodies first, and accelerates them where they have come to. So they start from where their
+        velocities, which handlers see and contacts feel, lead there.
+        """
+        going, moves = self._state.copy(), ~self.bodies.static
+        going[:, ANGLE] = free[:, ANGLE] - dt * self._state[:, ANGULAR_VELOCITY]
+        going[:, POSITION] = self.bodies.centers(free) - dt * self._state[:, VELOCITY] + self._pressed()
+        going[:, POSITION] -= rotated(self.bodies.center_of_gravity, going[:, ANGLE])
+        going[~moves] = self._state[~moves]
         self.bodies.scatter(going, unchanged=True)
         with self.hooks.silent(), self._watched():
             private.step_alone(self.space, dt)
@@ -221,22 +226,9 @@ class Rehearsal:
 
         return call
 
-    def rules(self, shapes: Sequence[pymunk.Shape], SHAPE: FloatArray) -> Rules:
+    def rules(self, shapes: Sequence[pymunk.Shape], SHAPE: FloatArray, smooth: bool) -> Rules:
         """What the arbiters of the step say of pairs of these shapes, which are the rows of SHAPE."""
-        index = {shape: i for i, shape in enumerate(shapes)}
-        ignored, changed = set(), {}
-        for arbiter in private.arbiters(self.space):
-            a, b = (index.get(shape, -1) for shape in arbiter.shapes)
-            if min(a, b) < 0:
-                continue
-            pair = (min(a, b), max(a, b))
-            e, mu = (float(SHAPE[a, k] * SHAPE[b, k]) for k in (ELASTICITY, FRICTION))
-            said = arbiter.restitution, arbiter.friction
-            if not arbiter.process_collision:
-                ignored.add(pair)
-            elif said != (e, mu):
-                changed[pair] = said[0], said[1]
-        return Rules(frozenset(ignored), changed)
+        return Rules.said(private.arbiters(self.space), shapes, SHAPE, smooth)
 
     def finish(self, bodies: Bodies) -> None:
         """What pymunk does when its step has ended: shapes where the bodies are, additions, removals, callbacks."""

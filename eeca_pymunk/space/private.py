@@ -1,7 +1,7 @@
 """Private names of pymunk: all that this package uses of them, one function each; of constraints in `private_joints`.
 
-Each has a test of its own in `tests/space/test_private.py`, and all are looked up when the package is imported, so that
-a pymunk which has renamed one is refused at once and by name.
+Each has a test of its own in `tests/space/test_private.py` or `test_private_joints.py`, and all are looked up when the
+package is imported, so that a pymunk which has renamed one is refused at once and by name.
 """
 
 from __future__ import annotations
@@ -79,12 +79,12 @@ def handlers(space: pymunk.Space) -> list[Any]:
 
 
 def arbiters(space: pymunk.Space) -> list[pymunk.Arbiter]:
-    """All arbiters of the space's last step."""
+    """All arbiters that pymunk keeps: of its last step, and of as many before as `collision_persistence` says."""
     return [pymunk.Arbiter(one, space) for one in space._get_arbiters()]
 
 
 def touching(space: pymunk.Space) -> list[tuple[pymunk.Body, pymunk.Body]]:
-    """Pairs of bodies that touched in pymunk's last step."""
+    """Pairs of bodies that touched in pymunk's last steps."""
     return [arbiter.bodies for arbiter in arbiters(space)]
 
 

@@ -2,39 +2,80 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import math
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import pymunk
 
 from ..arrays import FloatArray
 from ..errors import UnsupportedFeature
-from ..layout import SURFACE_X, SURFACE_Y
+from ..layout import ELASTICITY, FRICTION, SURFACE_X, SURFACE_Y
+
+_SAME = 1e-9  # part of a surface velocity by which the one that pymunk makes of it may differ
+Pair = tuple[int, int]
+Law = tuple[float, float, float, float]  # elasticity, friction, surface velocity (x, y) of b relative to a
 
 
 @dataclass(frozen=True)
 class Rules:
     """What collision handlers decide about pairs of shapes, for one step; pairs as (smaller, larger) index.
 
-    `ignored`: pairs that do not collide.  `changed`: elasticity and friction of pairs that have others than their
-    shapes say.
+    `ignored`: pairs that do not collide.  `changed`: the law of pairs that have another than their shapes say.
     """
 
-    ignored: frozenset[tuple[int, int]] = frozenset()
-    changed: Mapping[tuple[int, int], tuple[float, float]] = field(default_factory=dict)
+    ignored: frozenset[Pair] = frozenset()
+    changed: Mapping[Pair, Law] = field(default_factory=dict)
 
-    def of_pairs(
-        self, SHAPE: FloatArray, parted: Iterable[tuple[int, int]] = ()
-    ) -> dict[tuple[int, int], tuple[float, float, float, float]]:
+    @classmethod
+    def said(
+        cls, arbiters: Iterable[pymunk.Arbiter], shapes: Sequence[pymunk.Shape], SHAPE: FloatArray, smooth: bool
+    ) -> Rules:
+        """What these arbiters say of pairs of these shapes, the rows of SHAPE; nothing of friction if `smooth`."""
+        index = {shape: i for i, shape in enumerate(shapes)}
+        ignored, changed = set(), {}
+        for arbiter in arbiters:
+            a, b = (index.get(shape, -1) for shape in arbiter.shapes)
+            if min(a, b) < 0:
+                continue
+            pair = (min(a, b), max(a, b))
+            if not arbiter.process_collision:
+                ignored.add(pair)
+                continue
+            own = _law(SHAPE, *pair)
+            mu = 0.0 if smooth else arbiter.friction
+            told = (arbiter.restitution, mu, *_surface(arbiter, own[2:], a < b))
+            if told != own:
+                changed[pair] = told
+        return cls(frozenset(ignored), changed)
+
+    def of_pairs(self, SHAPE: FloatArray, parted: Iterable[Pair] = ()) -> dict[Pair, Law]:
         """By pair of rows of SHAPE, in their order: elasticity (-1: they pass), friction, surface velocity of b
         relative to a. `parted` pairs pass, whatever handlers say."""
-        told = {}
+        told: dict[Pair, Law] = {}
         never = self.ignored.union(parted)
         for pair in sorted(never.union(self.changed)):
-            a, b = (SHAPE[i] for i in pair)
-            e, mu = (-1.0, 0.0) if pair in never else self.changed[pair]
-            told[pair] = (e, mu, float(b[SURFACE_X] - a[SURFACE_X]), float(b[SURFACE_Y] - a[SURFACE_Y]))
+            told[pair] = (-1.0, 0.0, *_law(SHAPE, *pair)[2:]) if pair in never else self.changed[pair]
         return told
+
+
+def _law(SHAPE: FloatArray, a: int, b: int) -> Law:
+    """What two shapes say of each other: pymunk's products, and b's surface velocity relative to a's."""
+    e, mu = (float(SHAPE[a, k] * SHAPE[b, k]) for k in (ELASTICITY, FRICTION))
+    return e, mu, float(SHAPE[b, SURFACE_X] - SHAPE[a, SURFACE_X]), float(SHAPE[b, SURFACE_Y] - SHAPE[a, SURFACE_Y])
+
+
+def _surface(arbiter: pymunk.Arbiter, own: tuple[float, float], ordered: bool) -> tuple[float, float]:
+    """The surface velocity that an arbiter has, `own` if nobody has set another one: pymunk takes the part of that
+    along the contact. `ordered`: whether its first shape is that with the smaller index."""
+    found = arbiter.surface_velocity
+    x, y = found if ordered else -found
+    if (x, y) == own:
+        return own
+    n = arbiter.normal
+    away = own[0] * n.x + own[1] * n.y
+    off = math.hypot(own[0] - away * n.x - x, own[1] - away * n.y - y)
+    return own if off <= _SAME * (math.hypot(*own) + math.hypot(x, y)) else (x, y)
 
 
 def local_outline(shape: pymunk.Shape) -> list[tuple[float, ...]]:

@@ -51,6 +51,7 @@ class World(Crossing):
         collisions: whether the space has collision handlers.  hooked: whether it or its bodies have functions, or
             velocities are gone after each step.  plain: whether there is nothing of that, and no joints.
         rules: what collision handlers decided about pairs of rows of SHAPE for this step.
+        smooth: whether friction is left out, that of handlers too.
         joints: the constraints of the space, None if it has none.  PARTNER: bodies of joints that have no row of BODY.
         parted: pairs of rows of SHAPE that pass through one another because joints of their bodies say so.
         empty: the arrays of a report without contacts.
@@ -74,7 +75,8 @@ class World(Crossing):
         super().__init__(space, bodies, packed.BODY, packed.row, state)
         self.shapes, self.owner = packed.shapes, packed.owner
         self.SHAPE, self.LINK, self.VERTEX = packed.SHAPE, packed.LINK, packed.VERTEX
-        if "friction" in ignore:
+        self.smooth = "friction" in ignore
+        if self.smooth:
             self.SHAPE[:, FRICTION] = 0.0
             self.BODY[:, GRIP] = 0.0
         self.disks, self.dynamic = packed.disks, packed.dynamic

@@ -17,7 +17,7 @@ def test_rules_are_found_as_in_a_dictionary(count: int) -> None:
     every = [(a, b) for a in range(shapes) for b in range(a + 1, shapes)]
     chosen = [every[i] for i in random.permutation(len(every))[:count]]
     ignored, rest = chosen[: count // 3], chosen[count // 3 :]
-    rules = Rules(frozenset(ignored), {pair: (*random.random(2),) for pair in rest})
+    rules = Rules(frozenset(ignored), {pair: tuple(random.random(4)) for pair in rest})
     parted = set(chosen[count // 3 : count // 2])
     told = rules.of_pairs(SHAPE, parted)
     RULE = np.array([(*pair, *what) for pair, what in told.items()], float).reshape(-1, 6)
@@ -25,8 +25,8 @@ def test_rules_are_found_as_in_a_dictionary(count: int) -> None:
         assert barred(RULE, a, b) == barred(RULE, b, a) == ((a, b) in parted.union(ignored))
         e, mu, sx, sy = law(SHAPE, RULE, a, b)
         assert law(SHAPE, RULE, b, a) == (e, mu, -sx, -sy)
-        assert (sx, sy) == tuple(SHAPE[b, SURFACE_X : SURFACE_Y + 1] - SHAPE[a, SURFACE_X : SURFACE_Y + 1])
         if (a, b) not in told:
             assert (e, mu) == (SHAPE[a, ELASTICITY] * SHAPE[b, ELASTICITY], SHAPE[a, FRICTION] * SHAPE[b, FRICTION])
+            assert (sx, sy) == tuple(SHAPE[b, SURFACE_X : SURFACE_Y + 1] - SHAPE[a, SURFACE_X : SURFACE_Y + 1])
         elif (a, b) not in parted.union(ignored):
-            assert (e, mu) == rules.changed[a, b]
+            assert (e, mu, sx, sy) == rules.changed[a, b]

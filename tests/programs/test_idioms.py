@@ -242,18 +242,6 @@ def test_debug_draw_shows_the_end_of_the_step(make: Make) -> None:
         assert drawn == [pytest.approx(tuple(body.position))]
 
 
-def test_surface_velocity_set_in_pre_solve_is_not_felt() -> None:
-    space, _ = ground()
-    box = box_on(space, 0.0)
-
-    def belt(arbiter: pymunk.Arbiter, space: pymunk.Space, data: object) -> None:
-        arbiter.surface_velocity = (5.0, 0.0)
-
-    space.on_collision(pre_solve=belt)
-    run(ep.EECA(space), 30)
-    assert box.velocity.x == pytest.approx(0.0, abs=1e-9)
-
-
 def test_a_joint_of_two_flush_segments_is_no_bump() -> None:
     space = pymunk.Space()
     space.gravity = (0.0, -10.0)

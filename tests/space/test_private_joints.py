@@ -1,0 +1,190 @@
+"""Every private name of pymunk's constraints, and of its sleepers, does what this package takes it to do."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import pymunk
+import pytest
+
+from eeca_pymunk.space import private, private_joints, private_sleep
+
+DT = 0.01
+
+
+def hanging() -> tuple[pymunk.Space, pymunk.Body, pymunk.PinJoint]:
+    """A weight on a pin."""
+    space, body = pymunk.Space(), pymunk.Body(2.0, 1.0)
+    space.gravity = (0.0, -10.0)
+    body.position = (0.0, -1.0)
+    pin = pymunk.PinJoint(space.static_body, body)
+    space.add(body, pin)
+    return space, body, pin
+
+
+def noting(calls: list[str], name: str) -> Callable[..., None]:
+    return lambda *_: calls.append(name)
+
+
+def test_replaced_functions_of_a_constraint_are_called_in_the_place_of_its_own() -> None:
+    space, _, pin = hanging()
+    calls: list[str] = []
+    pin.pre_solve, pin.post_solve = noting(calls, "own before"), noting(calls, "own after")
+    before, after = pin.pre_solve, pin.post_solve
+    private_joints.replace_functions(pin, noting(calls, "before"), noting(calls, "after"))
+    space.step(DT)
+    private_joints.replace_functions(pin, before, after)
+    space.step(DT)
+    assert calls == ["before", "after", "own before", "own after"]
+
+
+def test_silent_constraints_call_nobody_and_go_on_holding() -> None:
+    space, body, pin = hanging()
+    calls: list[str] = []
+    pin.pre_solve, pin.post_solve = noting(calls, "before"), noting(calls, "after")
+    with private_joints.silent([pin]):
+        space.step(DT)
+    assert calls == []
+    assert body.velocity.length < 1e-9
+    space.step(DT)
+    assert calls == ["before", "after"]
+
+
+def test_functions_are_called_again_after_an_error_among_silent_constraints() -> None:
+    space, _, pin = hanging()
+    calls: list[str] = []
+    pin.pre_solve = noting(calls, "before")
+    with pytest.raises(KeyError), private_joints.silent([pin]):
+        raise KeyError
+    space.step(DT)
+    assert calls == ["before"]
+
+
+def test_inert_constraints_do_not_push_and_forget_what_they_pushed_with() -> None:
+    space, body, pin = hanging()
+    pin.max_force = 50.0
+    space.step(DT)
+    assert pin.impulse == pytest.approx(0.2)
+    with private_joints.inert([pin]):
+        space.step(DT)
+        assert pin.impulse == 0.0
+    assert body.velocity.y == pytest.approx(-10.0 * DT)
+    assert pin.max_force == 50.0
+
+
+@pytest.mark.parametrize("rotary", [False, True])
+def test_law_of_a_spring_is_its_own_function_and_another_may_stand_in(rotary: bool) -> None:
+    space, body, pin = hanging()
+    space.remove(pin)
+    space.gravity = (0.0, 0.0)
+    ground = space.static_body
+    spring: pymunk.DampedSpring | pymunk.DampedRotarySpring
+    spring = (
+        pymunk.DampedRotarySpring(ground, body, 0.0, 1.0, 0.0)
+        if rotary
+        else pymunk.DampedSpring(ground, body, (0, 0), (0, 0), 1.0, 1.0, 0.0)
+    )
+    space.add(spring)
+    assert private_joints.law_of(spring) in (None, getattr(type(spring), "spring_torque" if rotary else "spring_force"))
+
+    def push(spring: object, x: float) -> float:
+        return 4.0
+
+    def none(spring: object, x: float) -> float:
+        return 0.0
+
+    if isinstance(spring, pymunk.DampedSpring):
+        spring.force_func = push
+    else:
+        spring.torque_func = push
+    assert private_joints.law_of(spring) is push
+    with private_joints.with_laws([spring], [none]):
+        space.step(DT)
+    assert (body.velocity.length, body.angular_velocity) == (0.0, 0.0)
+    assert private_joints.law_of(spring) is push
+    space.step(DT)
+    assert abs(body.angular_velocity if rotary else body.velocity.y) == pytest.approx(
+        4.0 * DT / (1.0 if rotary else 2.0)
+    )
+
+
+def resting() -> tuple[pymunk.Space, list[pymunk.Body]]:
+    """Two disks on a floor, far from each other."""
+    space, bodies = pymunk.Space(), []
+    space.gravity = (0.0, -10.0)
+    space.add(pymunk.Segment(space.static_body, (-9.0, 0.0), (9.0, 0.0), 0.0))
+    for x in (-3.0, 3.0):
+        body = pymunk.Body(1.0, 1.0)
+        body.position = (x, 0.45)
+        space.add(body, pymunk.Circle(body, 0.5))
+        bodies.append(body)
+    space.step(DT)
+    return space, bodies
+
+
+def test_asleep() -> None:
+    space, bodies = resting()
+    space.sleep_time_threshold = 100.0
+    every = private_sleep.asleep(bodies)
+    assert private_sleep.asleep([])()
+    assert not every()
+    bodies[0].sleep()
+    assert not every()
+    assert private_sleep.asleep(bodies[:1])()
+    bodies[1].sleep()
+    assert every()
+    bodies[0].activate()
+    assert not every()
+
+
+@pytest.mark.parametrize("change", [("position", (0.0, 1e-9)), ("angle", 1e-9), ("velocity", (0.0, 1e-300))])
+def test_unmoved(change: tuple[str, object]) -> None:
+    lift = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    still = private_sleep.unmoved([lift])
+    assert still()
+    setattr(lift, *change)
+    assert not still()
+    setattr(lift, change[0], 0.0 if change[0] == "angle" else (0.0, 0.0))
+    assert still()
+    lift.angular_velocity = -1.0
+    assert not still()
+
+
+def test_touching_are_the_pairs_of_the_last_steps() -> None:
+    space, bodies = resting()
+    assert {frozenset(pair) for pair in private.touching(space)} == {frozenset((space.static_body, b)) for b in bodies}
+    bodies[0].position = (-3.0, 5.0)
+    for _ in range(int(space.collision_persistence) + 1):
+        space.step(DT)
+    assert {frozenset(pair) for pair in private.touching(space)} == {frozenset((space.static_body, bodies[1]))}
+
+
+def test_while_locked_nothing_comes_or_goes() -> None:
+    space, bodies = resting()
+    with private.locked(space):
+        space.add(pymunk.Body(1.0, 1.0))
+        space.remove(bodies[0])
+        assert len(space.bodies) == 2
+    private.finish_step(space)
+    assert len(space.bodies) == 2
+    assert bodies[0] not in space.bodies
+    with pytest.raises(KeyError), private.locked(space):
+        raise KeyError
+    space.add(pymunk.Body(1.0, 1.0))
+    assert len(space.bodies) == 3
+
+
+@pytest.mark.parametrize("name", ["velocity_func", "position_func"])
+def test_a_function_that_is_pymunks_again_is_forgotten(name: str) -> None:
+    body = pymunk.Body(1.0, math.inf)
+    read = private.velocity_function if name == "velocity_func" else private.position_function
+    setattr(body, f"_{name}", private.DEFAULTS[name])  # as pymunk before 7.3 leaves it
+    private.forget_function(body, name, private.DEFAULTS[name])
+    assert read(body) is None
+
+    def own(*_: object) -> None: ...
+
+    setattr(body, f"_{name}", own)
+    private.forget_function(body, name, own)
+    assert read(body) is own
