@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import shutil
+import math
 import statistics
-import subprocess
-import sys
-import tempfile
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
-from pathlib import Path
 
 import numpy as np
 import pymunk
@@ -20,20 +16,21 @@ from tqdm import tqdm
 
 import eeca_pymunk as ep
 import scenes
+from comparisons import first_use
 from comparisons.output import Output, Row
 from comparisons.runs import slope
 from eeca_pymunk import render
 from scenes import Scene
 
 COUNTS = (1, 10, 100, 1000, 4000, 16_000, 64_000)
-STEPS = (2e-4, 1e-3)
-PACKING = 0.3
+STEPS, PACKING = (2e-4, 1e-3), 0.3  # s; part of the area that disks cover
 HASH_FROM = 50  # bodies from which native has its spatial hash
 MIDSTEP_TO = 1000  # disks up to which a step of a simultaneous closure is worth waiting for
 HOPPER_DT, HOPPER_DURATION = 5e-4, 1.0
 WARM = 10  # steps before the clock runs: lists are made, caches are filled
 BLOCK = 4e-3  # s of work that a block of steps takes, if not the least
 ROUNDS, LEAST = 15, 2  # rounds over all steppers; steps of a block, at least
+FAR = (1e3, 1e3)  # m, beside the gas
 COUNTED = 4000  # collisions that are counted for the cost of one, at most 1000 steps
 
 
@@ -147,47 +144,40 @@ def hopper(dt: float = HOPPER_DT, duration: float = HOPPER_DURATION, parts: int 
     return rows
 
 
-_FIRST_USE = """
-import time
-start = time.perf_counter()
-import numpy, pymunk
-base = time.perf_counter() - start
-import eeca_pymunk as ep
-print(base, time.perf_counter() - start - base)
-if {step}:
-    import scenes
-    for scene in (scenes.build("gas", count=20), scenes.build("mixed", bowl=True)):
-        begin = time.perf_counter()
-        ep.EECA(scene.space).step(1e-3)
-        print(time.perf_counter() - begin)
-"""
-
-
-def _fresh(folder: Path, step: bool) -> list[float]:
-    """Seconds in a process of its own: numpy and pymunk, the package after them, and the first steps."""
-    call = [sys.executable, "-c", _FIRST_USE.format(step=step)]
-    answer = subprocess.run(call, cwd=folder, capture_output=True, text=True, check=True)
-    return [float(word) for word in answer.stdout.split()]
-
-
-def first_use(looks: int = 5) -> list[Row]:
-    """Seconds of a first step after installation, with machine code on disk, and of an import alone."""
-    root = Path(ep.__file__).parents[1]
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        for package in ("eeca_pymunk", "scenes"):
-            shutil.copytree(root / package, folder / package, ignore=shutil.ignore_patterns("__pycache__"))
-        cold = _fresh(folder, True)
-        warm = np.median([_fresh(folder, True) for _ in range(looks)], axis=0)
-        imports = np.median([_fresh(folder, False) for _ in range(looks)], axis=0)
+def features(count: int = 1000, dt: float = max(STEPS), rounds: int = ROUNDS) -> list[Row]:
+    """What a gas pays for what it has, and for what stands beside it: step by step in turn with the plain gas."""
+    changes: dict[str, Callable[[Scene], None]] = {
+        "elastic, smooth": _all,
+        "elasticity .9": lambda scene: _all(scene, elasticity=math.sqrt(0.9)),
+        "friction .5": lambda scene: _all(scene, friction=math.sqrt(0.5)),
+        "a pendulum beside": _pendulum,
+    }
+    timed = {}
+    for name, change in changes.items():
+        scene = scenes.build("gas", count=count, packing=PACKING)
+        change(scene)
+        timed[name] = eeca(scene, ep.TimeOfImpact(), False, False)
+    interleave(timed, dt, WARM, rounds)
+    plain = timed["elastic, smooth"].seconds
     return [
-        {"what": "first step of disks after installation: compiling", "s": cold[2]},
-        {"what": "first step of turning shapes after that", "s": cold[3]},
-        {"what": "first step of disks, machine code on disk", "s": float(warm[2])},
-        {"what": "first step of turning shapes after that", "s": float(warm[3])},
-        {"what": "import numpy, pymunk", "s": float(imports[0])},
-        {"what": "import eeca_pymunk after them", "s": float(imports[1])},
-    ]
+        {
+            "gas": name, "N": count, "dt (s)": dt, "us/step": 1e6 * one.median,
+            "x plain": statistics.median(a / b for a, b in zip(one.seconds, plain, strict=True)),
+        }
+        for name, one in timed.items()
+    ]  # fmt: skip
+
+
+def _all(scene: Scene, **values: float) -> None:
+    for shape in scene.space.shapes:
+        for name, value in values.items():
+            setattr(shape, name, value)
+
+
+def _pendulum(scene: Scene) -> None:
+    space, body = scene.space, pymunk.Body(1.0, 1.0)
+    body.position, body.angular_velocity = FAR, 1.0
+    space.add(body, pymunk.PivotJoint(space.static_body, body, FAR))
 
 
 def run(output: Output, full: bool) -> None:
@@ -207,7 +197,8 @@ def run(output: Output, full: bool) -> None:
         mixed += case(partial(scenes.build, "mixed", count=20, bowl=True), 20, dt, warm=round(0.5 / dt))
     output.table("20 turning shapes under gravity in a bowl", mixed, "mixed")
     output.table("Hopper of 665 disks from the first step, native as shipped", hopper(), "hopper")
-    output.table("First use", first_use(), "first_use")
+    output.table("What a gas of 1000 disks pays for what it has", features(), "features")
+    output.table("First use", first_use.look(), "first_use")
     output.picture(_picture(rows))
 
 

@@ -167,6 +167,9 @@ def test_scaling_tells_ratios_of_one_interleaved_run() -> None:
         [{"N": 1000, "dt (s)": dt, "stepper": "EECA", "us/step": us, "collisions/step": n} for dt, us, n in cost]
     )
     assert [row["us/collision more"] for row in marginal] == pytest.approx([3.0])
+    paid = scaling.features(count=30, rounds=3)
+    assert paid[0]["x plain"] == 1.0
+    assert all(float(row["x plain"] or 0.0) > 0.0 for row in paid)
 
 
 def test_workers_are_refused_where_times_are_measured(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
