@@ -12,7 +12,7 @@ from comparisons.output import Output
 from eeca_pymunk import render
 from eeca_pymunk.recording import step_count
 
-NAMES = ("carom", "pile", "drum", "billiard", "hopper", "cradle", "pool_break", "double_pendulum", "rods", "chain")
+NAMES = ("carom", "pile", "drum", "billiard", "hopper", "cradle", "pool_break", "double_pendulum", "rods", "chain", "bridge")
 LARGEST = 300_000  # bytes
 
 
