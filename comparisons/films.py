@@ -12,7 +12,9 @@ from comparisons.output import Output
 from eeca_pymunk import render
 from eeca_pymunk.recording import step_count
 
-NAMES = ("carom", "pile", "drum", "billiard", "hopper", "cradle", "pool_break", "double_pendulum", "rods", "chain", "bridge")
+NAMES = (
+    "carom", "pile", "drum", "billiard", "hopper", "cradle", "pool_break", "double_pendulum", "rods", "chain", "bridge",
+)  # fmt: skip
 LARGEST = 300_000  # bytes
 
 

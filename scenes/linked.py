@@ -40,13 +40,16 @@ def chain(count: int = 20, dt: float = 1 / 60, duration: float = 5.0) -> Scene:
     return Scene("chain", space, bodies, dt, duration, 1e6, parameters={"count": count, "dt": dt})
 
 
-def bridge(planks: int = 12, load: float = 20.0, slack: float = 0.05, dt: float = 1 / 60, duration: float = 5.0) -> Scene:
+def bridge(
+    planks: int = 12, load: float = 20.0, slack: float = 0.05, dt: float = 1 / 60, duration: float = 5.0
+) -> Scene:
     """`planks` of .5 m and 1 kg on pivots hang between two banks; a box of `load` kg falls on them, off the middle.
 
     The banks are by `slack` of the planks' length nearer to each other than the planks are long; these start on an arc.
     """
     if planks < 2 or not load > 0.0 or not 0.0 < slack < 0.5:
-        raise ValueError(f"planks = {planks}, load = {load}, slack = {slack}: give planks >= 2, load > 0, 0 < slack < .5")
+        given = f"planks = {planks}, load = {load}, slack = {slack}"
+        raise ValueError(f"{given}: give planks >= 2, load > 0, 0 < slack < .5")
     space = _space()
     span = 0.5 * planks * (1.0 - slack)
     order = np.arange(planks) - 0.5 * (planks - 1)
