@@ -15,7 +15,18 @@ from comparisons.__main__ import NAMES, chosen, command_line, main
 
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
+TOLD = [*PAGES, ROOT / "CHANGELOG.md", ROOT / "comparisons" / "GALLERY.md"]
 LARGEST = 300_000  # bytes of a picture
+# What else is printed, and the file that it runs, or that runs it.
+OTHERS = {
+    "bash .ci/run": ".ci/run",
+    "bash .ci/wheel": ".ci/wheel",
+    ".ci/oldest": ".ci/oldest",
+    "python tests/mutations.py": "tests/mutations.py",
+    "python -m tests.programs.soak": "tests/programs/soak.py",
+    "python -m eeca_pymunk": "tests/test_release.py",
+    'pip install "eeca-pymunk[video]"': "pyproject.toml",
+}
 # Where the short form of each comparison is run.
 SHORT = {
     "tour": "test_docs.py::test_tour_runs",
@@ -45,7 +56,7 @@ def text(page: Path) -> str:
 
 def commands() -> list[str]:
     """What follows `python -m comparisons`, wherever it is printed."""
-    printed = (re.findall(r"python -m comparisons((?: [^\s`.;,)|]+(?:\.\w+)?)*)", text(page)) for page in PAGES)
+    printed = (re.findall(r"python -m comparisons((?: [^\s`.;,)|]+(?:\.\w+)?)*)", text(page)) for page in TOLD)
     return sorted({one.strip() for found in printed for one in found})
 
 
@@ -63,6 +74,16 @@ def test_printed_commands_exist(command: str) -> None:
         return
     run, _ = chosen(options)
     assert callable(run)
+
+
+def test_other_commands_are_there() -> None:
+    """Everything between backticks that looks like a command, and is no comparison."""
+    quoted = {one for page in TOLD for one in re.findall(r"`([^`\n]+)`", text(page))}
+    found = {one for one in quoted if re.match(r"(EECA_\w+=\S+ )?(python|pip|bash|\.ci/)", one) and one[-1] != "/"}
+    assert {one for one in found if "python -m comparisons" not in one} == OTHERS.keys()
+    for file in OTHERS.values():
+        assert (ROOT / file).exists()
+    assert "video = [" in text(ROOT / "pyproject.toml")
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -114,8 +135,9 @@ def test_pictures_exist_and_are_small() -> None:
     assert len(shown) > 10
     for picture in shown:
         assert 0 < picture.stat().st_size < LARGEST, picture
-    kept = {p.resolve() for folder in ("comparisons/figures", "docs/films") for p in (ROOT / folder).iterdir()}
-    assert kept <= set(shown)
+    # Tables that comparisons write beside them are not kept.
+    kept = {p for folder in ("comparisons/figures", "docs/films") for p in (ROOT / folder).iterdir()}
+    assert {p.resolve() for p in kept if p.suffix != ".csv"} <= set(shown)
 
 
 def test_readme_is_short_and_has_one_command_of_tests() -> None:
