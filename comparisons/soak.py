@@ -30,7 +30,7 @@ JOINTED = {
 def run(output: Output, full: bool, workers: int = 1) -> None:
     """Print the tables; write CSV."""
     output.parameters({"steps": STEPS, "dt": DT, "radius": RADIUS})
-    kinds = {
+    kinds: dict[str, list[tuple[str, float]]] = {
         f"Gas, 20 disks, {STEPS} steps of EECA TimeOfImpact": [("gas", STEPS)],
         f"Mixed shapes that turn, {TURNS} steps": [(name, TURNS) for name in MIXED],
         f"Joints, {SWINGS} steps of 1/60 s": [(name, SWINGS) for name in JOINTED],
