@@ -24,6 +24,7 @@ OTHERS = {
     ".ci/oldest": ".ci/oldest",
     "python tests/mutations.py": "tests/mutations.py",
     "python -m tests.programs.soak": "tests/programs/soak.py",
+    "python -m tests.programs.soak --gain 1e-8": "tests/programs/soak.py",
     "python -m eeca_pymunk": "tests/test_release.py",
     'pip install "eeca-pymunk[video]"': "pyproject.toml",
 }
@@ -69,7 +70,7 @@ def test_printed_commands_exist(command: str) -> None:
     options = command_line().parse_args(shlex.split(command))
     if options.name is None or options.name == "NAME":
         return
-    if options.animate is not None:
+    if any(one is not None for one in (options.animate, options.steppers, options.dt, options.duration)):
         assert film.options(options.steppers, options.animate, options.name)
         return
     run, _ = chosen(options)
