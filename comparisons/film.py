@@ -56,6 +56,7 @@ FILMS = {
     "cradle": Film(duration=0.3, view=(-0.25, 0.4, -0.15, 0.15), dt=0.001, frames=40),
     "double_pendulum": Film(duration=6.0, view=(-2.1, 2.1, -0.1, 3.2)),
     "rods": Film(duration=8.0, view=(-1.2, 1.2, -0.2, 0.6), frames=56),
+    "bridge": Film(duration=4.0, view=(-0.3, 6.0, -1.9, 1.5)),
     "chain": Film(duration=3.0, view=(-3.1, 3.1, -0.6, 3.4)),
 }
 

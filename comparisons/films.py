@@ -12,13 +12,15 @@ from comparisons.output import Output
 from eeca_pymunk import render
 from eeca_pymunk.recording import step_count
 
-NAMES = ("carom", "pile", "drum", "billiard", "hopper", "cradle", "pool_break", "double_pendulum", "rods", "chain")
+NAMES = (
+    "carom", "pile", "drum", "billiard", "hopper", "cradle", "pool_break", "double_pendulum", "rods", "chain", "bridge",
+)  # fmt: skip
 LARGEST = 300_000  # bytes
 
 
-def one(folder: Path, name: str) -> tuple[str, int]:
-    """Film a scene; the file and its size in bytes."""
-    settings = film.FILMS[name]
+def one(folder: Path, case: tuple[str, film.Film]) -> tuple[str, int]:
+    """Film a scene, by its name and how it is filmed; the file and its size in bytes."""
+    name, settings = case
     dt = settings.dt or scenes.build(name).dt
     duration = settings.duration or scenes.build(name).duration
     every = max(1, step_count(duration, dt) // (5 * settings.frames))
@@ -36,7 +38,7 @@ def one(folder: Path, name: str) -> tuple[str, int]:
 
 def run(output: Output, full: bool, workers: int = 1) -> None:
     """Write the films; ValueError if one is too large."""
-    made = pool.over(partial(one, output.folder), NAMES, workers)
+    made = pool.over(partial(one, output.folder), [(name, film.FILMS[name]) for name in NAMES], workers)
     output.table("Films", [{"film": path, "kB": size / 1000.0} for path, size in made])
     large = [path for path, size in made if size > LARGEST]
     if large:

@@ -1,4 +1,4 @@
-"""Soak: a million steps of a gas, linkages, ten minutes of the hopper; drift of energy, who is inside, memory."""
+"""Soak: a million steps of a gas, linkages, ten minutes of the hopper; drifts, who is inside. Takes --workers."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from tqdm import tqdm
 
 import eeca_pymunk as ep
 import scenes
+from comparisons import pool
 from comparisons.hard_cases.joints import apart
 from comparisons.hopper import crossed
 from comparisons.output import Output, Row
@@ -17,22 +18,37 @@ from scenes import linkages
 
 STEPS, DT, RADIUS = 1_000_000, 1e-3, 0.03
 LOOKS = 10
-MINUTES = 10
+MINUTES = 10.0
 TURNS = 10_000
 SWINGS = 100_000
+MIXED = {f"mixed, {'bowl' if bowl else 'box'}, {seed}": (seed, bowl) for bowl in (False, True) for seed in (0, 1)}
+JOINTED = {
+    "pendulum": linkages.pendulum, "double pendulum": linkages.bars, "four-bar": linkages.braced_four_bar,
+}  # fmt: skip
 
 
-def run(output: Output, full: bool) -> None:
-    """Print the table; write CSV."""
+def run(output: Output, full: bool, workers: int = 1) -> None:
+    """Print the tables; write CSV."""
     output.parameters({"steps": STEPS, "dt": DT, "radius": RADIUS})
-    output.table(f"Gas, 20 disks, {STEPS} steps of EECA TimeOfImpact", soak(STEPS))
-    output.table(
-        f"Mixed shapes that turn, {TURNS} steps",
-        [mixed(TURNS, seed, bowl) for bowl in (False, True) for seed in (0, 1)],
-        "mixed",
-    )
-    output.table(f"Joints, {SWINGS} steps of 1/60 s", jointed(SWINGS), "joints")
-    output.table(f"Hopper, {MINUTES} minutes of EECA TimeOfImpact", hopper(60.0 * MINUTES), "hopper")
+    kinds: dict[str, list[tuple[str, float]]] = {
+        f"Gas, 20 disks, {STEPS} steps of EECA TimeOfImpact": [("gas", STEPS)],
+        f"Mixed shapes that turn, {TURNS} steps": [(name, TURNS) for name in MIXED],
+        f"Joints, {SWINGS} steps of 1/60 s": [(name, SWINGS) for name in JOINTED],
+        f"Hopper, {MINUTES:g} minutes of EECA TimeOfImpact": [("hopper", MINUTES)],
+    }
+    found = iter(pool.over(part, [case for cases in kinds.values() for case in cases], workers))
+    for (title, cases), file in zip(kinds.items(), ("", "mixed", "joints", "hopper"), strict=True):
+        output.table(title, [row for _ in cases for row in next(found)], file)
+
+
+def part(case: tuple[str, float]) -> list[Row]:
+    """The rows of a case: its name, and its steps, or minutes of the hopper."""
+    name, length = case
+    if name == "gas":
+        return soak(int(length))
+    if name == "hopper":
+        return hopper(60.0 * length)
+    return [mixed(int(length), *MIXED[name]) if name in MIXED else linkage(int(length), name)]
 
 
 def soak(steps: int, looks: int = LOOKS) -> list[Row]:
@@ -71,23 +87,23 @@ def mixed(steps: int, seed: int, bowl: bool) -> Row:
 
 def jointed(steps: int) -> list[Row]:
     """Pendulum, double pendulum, a four-bar with redundant rows: drift of the energy, by how far joints come apart."""
-    rows: list[Row] = []
-    for name, build in (
-        ("pendulum", linkages.pendulum), ("double pendulum", linkages.bars), ("four-bar", linkages.braced_four_bar),
-    ):  # fmt: skip
-        row: dict[str, str | float] = {"scene": name}
-        for stepper in ("EECA", "native"):
-            space = build()
-            step = ep.EECA(space).step if stepper == "EECA" else space.step
-            scale = sum(body.mass for body in space.bodies) * linkages.GRAVITY
-            start, drift, gap = ep.measure(space).energy, 0.0, 0.0
-            for k in tqdm(range(1, steps + 1), desc=f"{name}, {stepper}", unit="step", mininterval=1.0, disable=None):
-                step(1 / 60)
-                if k % 20 == 0:
-                    drift, gap = max(drift, abs(ep.measure(space).energy - start)), max(gap, apart(space))
-            row |= {f"{stepper}: |dE|/mgl": drift / scale, f"{stepper}: joints apart (m)": gap}
-        rows.append(row)
-    return rows
+    return [linkage(steps, name) for name in JOINTED]
+
+
+def linkage(steps: int, name: str) -> Row:
+    """One of them."""
+    row: dict[str, str | float] = {"scene": name}
+    for stepper in ("EECA", "native"):
+        space = JOINTED[name]()
+        step = ep.EECA(space).step if stepper == "EECA" else space.step
+        scale = sum(body.mass for body in space.bodies) * linkages.GRAVITY
+        start, drift, gap = ep.measure(space).energy, 0.0, 0.0
+        for k in tqdm(range(1, steps + 1), desc=f"{name}, {stepper}", unit="step", mininterval=1.0, disable=None):
+            step(1 / 60)
+            if k % 20 == 0:
+                drift, gap = max(drift, abs(ep.measure(space).energy - start)), max(gap, apart(space))
+        row |= {f"{stepper}: |dE|/mgl": drift / scale, f"{stepper}: joints apart (m)": gap}
+    return row
 
 
 def hopper(seconds: float, looks: int = LOOKS) -> list[Row]:

@@ -48,6 +48,7 @@ _BUILDERS: dict[str, Callable[..., Scene]] = {
     "pendulum": pendulum.build,
     "double_pendulum": linked.double_pendulum,
     "chain": linked.chain,
+    "bridge": linked.bridge,
     "rods": rods.cradle,
     "heap": rods.heap,
 }

@@ -7,6 +7,9 @@ import importlib.util
 import os
 import re
 import runpy
+from dataclasses import replace
+from importlib import import_module
+from inspect import signature
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +21,8 @@ import eeca_pymunk as ep
 import scenes
 from comparisons import (
     detection,
+    film,
+    films,
     gallery,
     joints,
     maxwell,
@@ -32,6 +37,7 @@ from comparisons import (
     work_precision,
 )
 from comparisons.__main__ import NAMES, main
+from comparisons.hard_cases import matrix
 from comparisons.hopper import crossed, deepest_overlap
 from scenes import linkages, pendulum
 from scenes.bars import Bars
@@ -131,7 +137,7 @@ def test_readme_example_runs(tmp_path: Path) -> None:
         os.chdir(tmp_path)
         for i, code in enumerate(examples):
             (tmp_path / f"example_{i}.py").write_text(code)
-            runpy.run_path(str(tmp_path / f"example_{i}.py"))
+            runpy.run_path(str(tmp_path / f"example_{i}.py"), run_name="__main__")
     finally:
         os.chdir(folder)
 
@@ -177,6 +183,42 @@ def test_workers_are_refused_where_times_are_measured(tmp_path: Path, capsys: py
     assert "scaling measures times or runs few cases: leave --workers out" in capsys.readouterr().err
     assert main(["maxwell", "--workers", "0", "--out", str(tmp_path)]) == 2
     assert "--workers 0: give a number >= 1" in capsys.readouterr().err
+
+
+def test_workers_find_what_one_process_finds(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """All comparisons that take --workers, in a short form, on one process and on two."""
+    monkeypatch.setattr(maxwell, "STEPPERS", {"EECA": maxwell.STEPPERS["EECA"]})
+    monkeypatch.setattr(maxwell, "SEEDS", 4)
+    monkeypatch.setattr(work_precision, "SEEDS", 2)
+    problem = next(p for p in work_precision.problems() if p.name == "gas 20, T=0.1")
+    pair = {work_precision.EECA: runs.eeca(ep.TimeOfImpact()), "native default": runs.native()}
+    monkeypatch.setattr(work_precision, "problems", lambda: [problem])
+    monkeypatch.setattr(work_precision, "jobs", lambda full: [(problem, *one, 0.02) for one in pair.items()])
+    names = ("swap of velocities", "touching line of three")
+    monkeypatch.setattr(matrix, "CASES", [one for one in matrix.CASES if one.name in names])
+    for name, short in (("STEPS", 200), ("TURNS", 20), ("SWINGS", 40), ("MINUTES", 0.002)):
+        monkeypatch.setattr(soak, name, short)
+    monkeypatch.setattr(films, "NAMES", ("cradle", "chain"))
+    for name in films.NAMES:
+        monkeypatch.setitem(film.FILMS, name, replace(film.FILMS[name], duration=0.1, frames=2, dpi=40))
+    taking = [n for n in NAMES if "workers" in signature(import_module(f"comparisons.{n}").run).parameters]
+    assert taking == ["work_precision", "soak", "hard_cases", "maxwell", "films"]
+    # What depends on the clock: costs, memory, and how far the hopper comes in its minutes.
+    timed = {f"work_precision_{kind}" for kind in ("all.csv", "summary.csv", "gas_20_T0.1.png")}
+    timed |= {"hard_cases_costs.csv", "soak_hopper.csv"}
+    for name in taking:
+        for workers in ("1", "2"):
+            assert main([name, "--workers", workers, "--out", str(tmp_path / workers)]) == 0
+    written = {path.name for path in (tmp_path / "1").iterdir()}
+    assert written == {path.name for path in (tmp_path / "2").iterdir()}
+    assert len([name for name in written if name.endswith(".csv")]) > 8
+    for name in written - timed:
+        one, two = ((tmp_path / workers / name).read_bytes() for workers in ("1", "2"))
+        if name.endswith(".csv"):
+            one, two = (re.sub(rb",[\d.]+(?=\r?\n)", b"", text) if name == "soak.csv" else text for text in (one, two))
+            assert one.replace(b"/1/", b"/") == two.replace(b"/2/", b"/"), name
+        else:
+            assert one == two, name
 
 
 def test_speeds_of_gases_become_those_of_a_shared_energy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -15,7 +15,19 @@ from comparisons.__main__ import NAMES, chosen, command_line, main
 
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
+TOLD = [*PAGES, ROOT / "CHANGELOG.md", ROOT / "comparisons" / "GALLERY.md"]
 LARGEST = 300_000  # bytes of a picture
+# What else is printed, and the file that it runs, or that runs it.
+OTHERS = {
+    "bash .ci/run": ".ci/run",
+    "bash .ci/wheel": ".ci/wheel",
+    ".ci/oldest": ".ci/oldest",
+    "python tests/mutations.py": "tests/mutations.py",
+    "python -m tests.programs.soak": "tests/programs/soak.py",
+    "python -m tests.programs.soak --gain 1e-8": "tests/programs/soak.py",
+    "python -m eeca_pymunk": "tests/test_release.py",
+    'pip install "eeca-pymunk[video]"': "pyproject.toml",
+}
 # Where the short form of each comparison is run.
 SHORT = {
     "tour": "test_docs.py::test_tour_runs",
@@ -48,7 +60,7 @@ def text(page: Path) -> str:
 
 def commands() -> list[str]:
     """What follows `python -m comparisons`, wherever it is printed."""
-    printed = (re.findall(r"python -m comparisons((?: [^\s`.;,)|]+(?:\.\w+)?)*)", text(page)) for page in PAGES)
+    printed = (re.findall(r"python -m comparisons((?: [^\s`.;,)|]+(?:\.\w+)?)*)", text(page)) for page in TOLD)
     return sorted({one.strip() for found in printed for one in found})
 
 
@@ -61,11 +73,21 @@ def test_printed_commands_exist(command: str) -> None:
     options = command_line().parse_args(shlex.split(command))
     if options.name is None or options.name == "NAME":
         return
-    if options.animate is not None:
+    if any(one is not None for one in (options.animate, options.steppers, options.dt, options.duration)):
         assert film.options(options.steppers, options.animate, options.name)
         return
     run, _ = chosen(options)
     assert callable(run)
+
+
+def test_other_commands_are_there() -> None:
+    """Everything between backticks that looks like a command, and is no comparison."""
+    quoted = {one for page in TOLD for one in re.findall(r"`([^`\n]+)`", text(page))}
+    found = {one for one in quoted if re.match(r"(EECA_\w+=\S+ )?(python|pip|bash|\.ci/)", one) and one[-1] != "/"}
+    assert {one for one in found if "python -m comparisons" not in one} == OTHERS.keys()
+    for file in OTHERS.values():
+        assert (ROOT / file).exists()
+    assert "video = [" in text(ROOT / "pyproject.toml")
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -87,11 +109,10 @@ def test_tour_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pyte
 
 
 @pytest.mark.parametrize("name", sorted(set(filmed())))
-def test_films_run(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_films_run(name: str, tmp_path: Path) -> None:
     settings = film.FILMS[name]
     dt = settings.dt or scenes.build(name).dt
-    monkeypatch.setitem(film.FILMS, name, replace(settings, duration=3 * dt, frames=2, dpi=40))
-    path, size = films.one(tmp_path, name)
+    path, size = films.one(tmp_path, (name, replace(settings, duration=3 * dt, frames=2, dpi=40)))
     assert name in films.NAMES
     assert 0 < size == Path(path).stat().st_size
 
@@ -118,8 +139,9 @@ def test_pictures_exist_and_are_small() -> None:
     assert len(shown) > 10
     for picture in shown:
         assert 0 < picture.stat().st_size < LARGEST, picture
-    kept = {p.resolve() for folder in ("comparisons/figures", "docs/films") for p in (ROOT / folder).iterdir()}
-    assert kept <= set(shown)
+    # Tables that comparisons write beside them are not kept.
+    kept = {p for folder in ("comparisons/figures", "docs/films") for p in (ROOT / folder).iterdir()}
+    assert {p.resolve() for p in kept if p.suffix != ".csv"} <= set(shown)
 
 
 def test_readme_is_short_and_has_one_command_of_tests() -> None:

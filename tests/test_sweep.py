@@ -128,6 +128,13 @@ def test_a_worker_of_a_cluster_that_is_killed_costs_no_result(cluster: Executor,
     assert (tmp_path / "mark").exists()
 
 
+def test_a_case_that_kills_every_worker_of_a_cluster_is_named_and_the_others_are_kept(cluster: Executor) -> None:
+    with pytest.raises(ep.SweepError, match=r"case 3 \(3\): KilledWorker") as caught:
+        ep.sweep(deadly, range(10), cluster)
+    assert caught.value.results == [*range(3), None, *range(4, 10)]
+    assert list(caught.value.failed) == [3]
+
+
 def test_an_executor_that_breaks_names_what_is_not_done() -> None:
     class Broken(ThreadPoolExecutor):
         def submit(self, fn, /, *args, **kwargs):  # type: ignore[no-untyped-def]

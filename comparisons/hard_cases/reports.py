@@ -9,6 +9,7 @@ import pymunk
 
 import eeca_pymunk as ep
 from comparisons import runs
+from scenes import pendulum
 from scenes.scene import add_box, add_disk, add_walls
 
 from .case import DT, LONG, G, case, go, heavy, matter
@@ -62,6 +63,18 @@ def five(make: runs.Make) -> float:
         add_box(space, (0.02 * (k % 2), 0.5 + k), 1.0, 1.0)
     matter(space, 0.3)
     return moved(space, make, 600)
+
+
+@case("asleep at the apex (box2d 906)", "place off / amplitude, after 20 s", 1e-6)
+def asleep(make: runs.Make) -> float:
+    """A pendulum of 5°, which turns back slowly, where what is slow for .1 s may fall asleep."""
+    scene, dt = pendulum.build(degrees=5.0), 1 / 120
+    scene.space.sleep_time_threshold = 0.1
+    go(scene.space, make, round(20.0 / dt), dt)
+    exact = scene.exact(20.0)
+    assert exact is not None
+    off = float(np.linalg.norm(np.array(scene.bodies[0].position) - exact))
+    return off / math.radians(5.0)
 
 
 @case("ball of e = 1 climbs (rapier 97, Jolt 1286)", "energy off (relative)", 1e-9)

@@ -56,7 +56,7 @@ def finish(A: Scene, block: Block, n: int, m: int, L: FloatArray, OUT: FloatArra
         A.PAR[LOCK] = OUT[SCALE_LOCK]
     A.PAR[LEDGER + RESTITUTION] += OUT[D_NORMAL]
     A.PAR[LEDGER + FRICTIONAL] += OUT[D_TANGENTIAL]
-    A.PAR[LEDGER + EXTERNAL] += carried(block.A, block.B, ROWS, L, V, block.IM, len(ROWS))
+    A.PAR[LEDGER + EXTERNAL] += carried(block.A, block.B, ROWS, L, V, V, block.IM, block.II, len(ROWS))
     for q in range(n):
         i = A.BLOCK[q]
         BODY[i, VX], BODY[i, VY], BODY[i, SPIN] = V[q, 0], V[q, 1], V[q, 2]

@@ -165,7 +165,9 @@ def open_contacts(
         ROW[LAM], ROW[BETA], ROW[SPAN_FROM], ROW[SPAN] = L[z, 0], L[z, 1], t, h
         ROW[UN_BEFORE], ROW[UT_BEFORE] = ROWS[z, UN], ROWS[z, UT]
         ROW[UN_AFTER], ROW[UT_AFTER] = normal_rate(P, Q, ROWS, VN, z), tangent_rate(P, Q, ROWS, VN, z)
-        ROW[WORK_OF] = carried(P[z : z + 1], Q[z : z + 1], ROWS[z : z + 1], L[z : z + 1], isle.V, isle.IM, 1)
+        ROW[WORK_OF] = carried(
+            P[z : z + 1], Q[z : z + 1], ROWS[z : z + 1], L[z : z + 1], isle.V, VN, isle.IM, isle.II, 1
+        )  # fmt: skip
         ROW[PUSH_NX], ROW[PUSH_NY] = ROWS[z, NX], ROWS[z, NY]
         # The point from its arms: r = arm_t n - arm_n t.
         x, y = isle.POSE[P[z], 0] + 0.5 * h * isle.V[P[z], 0], isle.POSE[P[z], 1] + 0.5 * h * isle.V[P[z], 1]

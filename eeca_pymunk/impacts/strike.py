@@ -179,7 +179,10 @@ def strike_disk(A: Scene, disks: int, i: int, o: int, t: float) -> None:
         turning = free + BODY[i, II] * r_i * r_i + BODY[j, II] * r_j * r_j
         beta = min(max(-slip / turning, -mu * lam), mu * lam)
         PAR[LEDGER + FRICTIONAL] -= beta * (slip + 0.5 * beta * turning)
-        PAR[LEDGER + EXTERNAL] -= beta * surface
+        # What nothing turns drives as a surface does.
+        driven = surface + (r_j * BODY[j, SPIN] if BODY[j, II] == 0.0 else 0.0)
+        driven -= r_i * BODY[i, SPIN] if BODY[i, II] == 0.0 else 0.0
+        PAR[LEDGER + EXTERNAL] -= beta * driven
     fx, fy = lam * nx - beta * ny, lam * ny + beta * nx
     BODY[i, VX] -= fx * BODY[i, IM]
     BODY[i, VY] -= fy * BODY[i, IM]

@@ -148,7 +148,7 @@ def collide(A: Scene, J: Joints, disks: int, a: int, b: int, t: float) -> tuple[
     # Joints do all that contacts do not account for, which is nothing unless they hang on something that moves.
     REST = np.zeros_like(V)
     gained = energy_of(block, V, REST, n) - energy_of(block, BEFORE, REST, n) + OUT[D_NORMAL] + OUT[D_TANGENTIAL]
-    A.PAR[LEDGER + EXTERNAL] += gained - carried(P, Q, ROWS, L, V, block.IM, rows)
+    A.PAR[LEDGER + EXTERNAL] += gained - carried(P, Q, ROWS, L, V, V, block.IM, block.II, rows)
     finish(A, block, n, m, L, OUT, status, t)
     A.STATE[i, KINKS] += 1
     if A.BODY[j, IM] > 0.0:

@@ -18,8 +18,12 @@ LEDGER_SIZE = 8
 
 
 @uncounted
-def carried(A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, IM: FloatArray, m: int) -> float:
-    """Work of bodies that impulses do not move (kinematic ones, at their velocities in V) and of moving surfaces."""
+def carried(
+    A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, VN: FloatArray, IM: FloatArray,
+    II: FloatArray, m: int,
+) -> float:  # fmt: skip
+    """Work of bodies that impulses do not move (kinematic ones), or do not turn (of infinite moment), at the means of
+    their velocities before and after, V and VN, and of moving surfaces."""
     work = 0.0
     for i in range(m):
         lam = L[i, 0]
@@ -32,11 +36,13 @@ def carried(A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatA
         a = A[i]
         b = B[i]
         if IM[b] == 0.0:
-            turn = lam * ROWS[i, ARM_NB] + beta * ROWS[i, ARM_TB]
-            work -= fx * V[b, 0] + fy * V[b, 1] + turn * V[b, 2]
+            work -= 0.5 * (fx * (V[b, 0] + VN[b, 0]) + fy * (V[b, 1] + VN[b, 1]))
+        if II[b] == 0.0:
+            work -= 0.5 * (lam * ROWS[i, ARM_NB] + beta * ROWS[i, ARM_TB]) * (V[b, 2] + VN[b, 2])
         if IM[a] == 0.0:
-            turn = lam * ROWS[i, ARM_NA] + beta * ROWS[i, ARM_TA]
-            work += fx * V[a, 0] + fy * V[a, 1] + turn * V[a, 2]
+            work += 0.5 * (fx * (V[a, 0] + VN[a, 0]) + fy * (V[a, 1] + VN[a, 1]))
+        if II[a] == 0.0:
+            work += 0.5 * (lam * ROWS[i, ARM_NA] + beta * ROWS[i, ARM_TA]) * (V[a, 2] + VN[a, 2])
     return work
 
 

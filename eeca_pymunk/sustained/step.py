@@ -192,7 +192,7 @@ def step_island(
         lifted, OUT[5] = lifting(A, B, ROWS, MIDDLE, VN, ACC, IM, II, n, m, h, size, budget, JUMP)
         LEDGER[0] += normal
         LEDGER[1] += tangential
-        LEDGER[2] += carried(A, B, ROWS, L, V, IM, m)
+        LEDGER[2] += carried(A, B, ROWS, L, V, VN, IM, II, m)
         LEDGER[3] += lifted
         OUT[CLOSED] = remember_loads(ROWS, KEY, L, m, h, KEYS, FORCES, COUNT, stamp)
     else:

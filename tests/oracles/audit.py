@@ -39,7 +39,8 @@ class Audit(ep.EECA):
         for body in self.space.bodies:
             if body.body_type == pymunk.Body.DYNAMIC:
                 speed2 = body.velocity.length**2
-                whole += 0.5 * (body.mass * speed2 + body.moment * body.angular_velocity**2)
+                turns = body.moment * body.angular_velocity**2 if np.isfinite(body.moment) else 0.0
+                whole += 0.5 * (body.mass * speed2 + turns)
                 whole += body.mass * gravity * body.position.length
         return whole
 

@@ -98,3 +98,31 @@ def test_forces_on_bodies_work() -> None:
         stepper.step(DT)
         work += 2.0 * (body.position.x - before.x) + 1.0 * (body.position.y - before.y)
     assert stepper.total["external"] == pytest.approx(work, rel=1e-9)
+
+
+@pytest.mark.parametrize("height", [0.0, 1.0])
+def test_work_of_what_nothing_turns_is_booked(height: float) -> None:
+    """A disk of infinite moment spins on for ever: set down it comes to r omega, and half of the work is rubbed off.
+
+    Dropped, with e = .5, it has the same in the end, and what it falls by on top.
+    """
+    gravity, radius, spin = 10.0, 0.5, 5.0
+    space = pymunk.Space()
+    space.gravity = (0.0, -gravity)
+    add_walls(space, [((-50.0, 0.0), (50.0, 0.0))])
+    disk = pymunk.Body(2.0, math.inf)
+    disk.position, disk.angular_velocity = (0.0, radius + height), spin
+    shape = pymunk.Circle(disk, radius)
+    space.add(disk, shape)
+    for one in space.shapes:
+        one.friction, one.elasticity = math.sqrt(0.4), math.sqrt(0.5)
+    stepper = Audit(space)
+    for _ in range(180):
+        stepper.step(DT)
+    speed = radius * spin
+    assert disk.velocity == pytest.approx((-speed, 0.0), abs=1e-9)
+    assert disk.angular_velocity == spin
+    assert stepper.total["external"] == pytest.approx(2.0 * speed**2, rel=1e-9)
+    assert stepper.total["friction"] == pytest.approx(speed**2, rel=1e-9)
+    assert stepper.total["restitution"] == pytest.approx(2.0 * gravity * height, rel=1e-9, abs=1e-12)
+    assert stepper.residual <= 1e-12

@@ -191,8 +191,7 @@ class Program:
 
     def _move(self, body: pymunk.Body) -> None:
         body.velocity = self.number(), self.number()
-        # What spins with an infinite moment works without end, which the ledger does not book yet.
-        body.angular_velocity = 0.0 if math.isinf(body.moment) and body.body_type == body.DYNAMIC else self.number()
+        body.angular_velocity = self.number()
 
     def push(self) -> None:
         body = self.body()
