@@ -135,11 +135,12 @@ def tracks(kind: str, count: int, elasticity: float, friction: float) -> list[Tr
 
 @functools.cache
 def warm() -> None:
-    """Falls of a few bodies, so that all kernels are there."""
+    """Falls of crowds, so that all kernels are there."""
     for kind in KINDS:
-        stepper = ep.EECA(pile(kind, 12, 0.3, 0.5), sync=False)
-        for _ in range(80):
-            stepper.step(DT)
+        for elasticity, friction in ((0.0, 0.0), (0.3, 0.5)):
+            stepper = ep.EECA(pile(kind, 60, elasticity, friction), sync=False)
+            for _ in range(200):
+                stepper.step(DT)
 
 
 def case(

@@ -51,7 +51,7 @@ from .spans import dismiss, lay_out_island, open_contacts, solve
 from .still import halt
 
 _MOST, _FEW = 0.1, 2  # of an island's bodies, that may move while the others stand; so many always
-_TRIES = 2
+_TRIES, _DEAR = 2, 8  # factors of a try, beyond which there is no other
 
 
 @uncounted
@@ -144,7 +144,7 @@ def stands_in_part(A: Scene, root: int) -> bool:
     MINE, STAND, MOVE = np.empty(n, np.int64), np.empty(n, np.int64), np.empty(n, np.int64)
     members(A, root, MINE)
     MINE.sort()
-    V0, some = np.empty((n, 3)), False
+    V0, some, factors = np.empty((n, 3)), False, A.COUNT[DIRECT]
     for _ in range(_TRIES):
         stand = divide(A, MINE, n, STAND, MOVE)
         if stand == 0 or n - stand > max(_MOST * n, _FEW):
@@ -176,6 +176,8 @@ def stands_in_part(A: Scene, root: int) -> bool:
         # What touches nothing has left.
         n = members(A, one, MINE)
         MINE[:n].sort()
+        if A.COUNT[DIRECT] > factors + _DEAR:
+            break
     if some:
         wait(A, STAND, stand)
         solve(A, STATE[MINE[0], ISLAND], 0.0)

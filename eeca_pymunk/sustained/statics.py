@@ -23,7 +23,7 @@ from ..rows.layout import SURFACE, TARGET, UN, UT, WAKE
 STANDS = 1e-9  # speed relative to |a| h, below which a body stands
 CALM, CALM_CROWD = 1e-3, 0.5  # and below which it may come to a stand, alone or among few; in a crowd
 _STEPS = 10.0  # in which it does, at most
-_FACTORS = 12  # for each of the two equilibria, at most
+_FACTORS, _NEAREST = 12, 6  # at most, for the first equilibrium; to come near to the guess with the second
 
 
 @uncounted
@@ -74,7 +74,7 @@ def comes_to_stand(
     for nearest in (False, True):
         LEFT = PULL if nearest else START
         found, more = equilibrium(
-            A, B, ROWS, L, LEFT, IM, II, POSE, FELT, n, m, accuracy, _FACTORS, nearest
+            A, B, ROWS, L, LEFT, IM, II, POSE, FELT, n, m, accuracy, _NEAREST if nearest else _FACTORS, nearest
         )  # fmt: skip
         factors += more
         if not found:
