@@ -16,14 +16,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import pymunk
-from matplotlib.figure import Figure
 from tqdm import tqdm
 
 import eeca_pymunk as ep
-from comparisons import pile_precision
+from comparisons import pile_picture, pile_precision
 from comparisons.output import Output, Row
 from comparisons.scaling import HASH_FROM
-from eeca_pymunk import render
 
 G, R = 9.81, 0.5  # m/s²; m, radius of disks and of circles inscribed in boxes
 KINDS = ("disks", "boxes", "mixed")
@@ -225,21 +223,5 @@ def run(output: Output, full: bool) -> None:
         rows += case(*one)
     output.table("Piles that fall and settle, all steppers in one interleaved run", rows, "all")
     output.table("The largest over elasticity and friction", summary(rows))
-    output.picture(_picture(rows))
+    output.picture(pile_picture.draw(rows))
     pile_precision.run(output)
-
-
-def _picture(rows: list[Row]) -> Figure:
-    figure = render.figure(11.0, 4.0)
-    columns = (f"x native {ITERATIONS[0]}", "at the end, x native", "deepest (r)")
-    for ax, column in zip(figure.subplots(1, len(columns)), columns, strict=True):
-        for kind, mark in zip(KINDS, "osd", strict=True):
-            for stepper, colour in ((EECA, "black"), (f"native {ITERATIONS[0]}", "#D55E00")):
-                mine = [r for r in rows if r["kind"] == kind and r["stepper"] == stepper]
-                counts = sorted({int(_number(r["N"])) for r in mine})
-                most = [max(_number(r[column]) for r in mine if r["N"] == n) for n in counts]
-                ax.loglog(counts, np.maximum(most, 1e-12), f"{mark}-", color=colour, label=f"{stepper}, {kind}")
-        ax.set(xlabel="bodies", title=column)
-    figure.legend(*ax.get_legend_handles_labels(), loc="outside right upper", fontsize=8)
-    figure.suptitle("Piles that fall and settle: the largest over elasticity and friction")
-    return figure
