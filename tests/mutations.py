@@ -118,7 +118,7 @@ MUTATIONS = (
     Mutation("equilibrium: sign of the residual", "rows/equilibrium.py", "_R * (V[i, c] - LEFT[i, c])",
              "_R * (V[i, c] + LEFT[i, c])", "rows/test_equilibrium.py", "guess"),
     Mutation("still: spins that nobody feels count", "impacts/calm.py", "i < A.COUNT[DISKS] and", "i < 0 and",
-             "impacts/test_heaps.py", "spins_on"),
+             "impacts/test_still.py", "spins_on"),
     Mutation("ledger: factor 1/2 of friction", "rows/energy.py", "LOSS[i, 1] = -0.5 * L[i, 1]", "LOSS[i, 1] = -L[i, 1]",
              "rows/test_blocks.py", "coulomb"),
     Mutation("ledger: the part of a span that was cut", "impacts/booking.py",
