@@ -134,7 +134,7 @@ def _energies(watches: dict[tuple[str, float], Watch]) -> Figure:
     names = list(dict.fromkeys(name for name, _ in watches))
     figure = render.figure(12.0, 6.5)
     columns = -(-len(names) // 2)
-    axes = figure.subplots(2, columns, sharex=True).flat
+    axes = list(figure.subplots(2, columns, sharex=True).flat)
     for k in range(len(names), len(axes)):
         axes[k].set_axis_off()
         axes[k - columns].tick_params(labelbottom=True)
