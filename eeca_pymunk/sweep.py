@@ -21,6 +21,7 @@ Case = TypeVar("Case")
 Result = TypeVar("Result")
 _SHOWN = 3  # failed cases that a message names
 _LONGEST = 80  # characters of a case in a message
+_RAISED = "_raised_by_its_case"  # attribute of an error: not the executor's own
 _AHEAD = 2  # cases handed out for each worker of a pool that may break: those in doubt if it does
 
 
@@ -57,7 +58,8 @@ def sweep(
 
     A case that raises does not stop the others; `SweepError` then names it and holds all results. A case whose worker
     process dies is tried once more, on its own in a new process: if that dies too, the case has failed. The rest goes
-    on, in a new pool of as many processes. Executors of other kinds see to that themselves, as dask does; if one
+    on, in a new pool of as many processes. Executors of other kinds see to their workers themselves, as dask does: a
+    case that fails by what it did not raise itself is handed to them once more, on its own, after the others. If one
     breaks, the cases it has not done are named.
     """
     held = list(cases)
@@ -68,9 +70,7 @@ def sweep(
         elif isinstance(executor, ProcessPoolExecutor):
             work.on_processes(executor)
         else:
-            if broken := work.on(executor, range(len(held)), len(held)):
-                for i in work.left():
-                    work.failed[i] = work.failed[broken[0]]
+            work.on_workers(executor)
     if work.failed:
         found = [work.done.get(i) for i in range(len(held))]
         raise SweepError(held, found, work.failed) from work.failed[min(work.failed)]
@@ -100,19 +100,35 @@ class _Work(Generic[Case, Result]):
         doubtful = self.on(executor, range(len(self.cases)), _AHEAD * workers)
         while doubtful:
             for i in doubtful:
-                del self.failed[i]
-                self.bar.update(-1)
                 # Alone: whose process dies now has done that by itself.
                 with _like(executor, 1) as alone:
-                    self.on(alone, [i], 1)
+                    self.again(alone, i)
             with _like(executor, workers) as another:
                 doubtful = self.on(another, self.left(), _AHEAD * workers)
+
+    def on_workers(self, executor: Executor) -> None:
+        """All cases on an executor that replaces its workers itself.
+
+        A worker that dies takes with it what it holds: results on their way here, cases that waited behind another.
+        """
+        broken = self.on(executor, range(len(self.cases)), len(self.cases))
+        for i in [] if broken else sorted(self.failed):
+            if not getattr(self.failed[i], _RAISED, False):
+                broken = broken or self.again(executor, i)
+        for i in self.left() if broken else []:
+            self.failed[i] = self.failed[broken[0]]
+
+    def again(self, executor: Executor, i: int) -> list[int]:
+        """A case that has failed, once more and alone."""
+        del self.failed[i]
+        self.bar.update(-1)
+        return self.on(executor, [i], 1, turn=2)
 
     def left(self) -> list[int]:
         """Cases that are neither done nor failed."""
         return [i for i in range(len(self.cases)) if i not in self.done and i not in self.failed]
 
-    def on(self, executor: Executor, places: Iterable[int], most: int) -> list[int]:
+    def on(self, executor: Executor, places: Iterable[int], most: int, turn: int = 1) -> list[int]:
         """Cases by their places, at most so many of them handed out at a time; those handed out when it broke."""
         waiting, out = deque(places), dict[Future[Result], int]()
         broken: list[int] = []
@@ -120,7 +136,7 @@ class _Work(Generic[Case, Result]):
             while out or (waiting and not broken):
                 while waiting and len(out) < most and not broken:
                     try:
-                        out[executor.submit(self.function, self.cases[waiting[0]])] = waiting[0]
+                        out[executor.submit(_attempt, self.function, self.cases[waiting[0]], turn)] = waiting[0]
                     except BrokenExecutor as error:
                         broken.append(waiting[0])
                         self._fail(waiting[0], error)
@@ -142,6 +158,18 @@ class _Work(Generic[Case, Result]):
     def _fail(self, i: int, error: BaseException) -> None:
         self.failed[i] = error
         self.bar.update()
+
+
+def _attempt(function: Callable[[Case], Result], case: Case, turn: int) -> Result:
+    """Of one case; an error that it raises itself says so.
+
+    `turn` tells attempts apart, where an executor knows tasks by their arguments.
+    """
+    try:
+        return function(case)
+    except Exception as error:
+        error.__dict__[_RAISED] = True  # kept by pickle
+        raise
 
 
 def _like(executor: ProcessPoolExecutor, workers: int) -> ProcessPoolExecutor:

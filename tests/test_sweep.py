@@ -6,7 +6,7 @@ import os
 import signal
 import time
 from collections.abc import Iterator
-from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from multiprocessing import get_context
 from pathlib import Path
@@ -135,10 +135,35 @@ def test_a_case_that_kills_every_worker_of_a_cluster_is_named_and_the_others_are
     assert list(caught.value.failed) == [3]
 
 
+def test_a_case_that_its_executor_loses_is_handed_out_once_more() -> None:
+    """As a cluster does when a worker dies between a result and its transport."""
+    runs: list[int] = []
+
+    class Forgetful(ThreadPoolExecutor):
+        lost = 0
+
+        def submit(self, fn, /, *args, **kwargs):  # type: ignore[no-untyped-def]
+            if args[1] in (1, 4) and self.lost < 2:
+                self.lost += 1
+                future: Future[int] = Future()
+                future.set_exception(TypeError("cannot unpack non-iterable int object"))
+                return future
+            return super().submit(fn, *args, **kwargs)
+
+    def counted(case: int) -> int:
+        runs.append(case)
+        return picky(case)
+
+    with Forgetful(2) as pool, pytest.raises(ep.SweepError, match=r"case 3 \(3\): ValueError") as caught:
+        ep.sweep(counted, range(6), pool)
+    assert caught.value.results == [0, 1, 2, None, 4, 5]
+    assert sorted(runs) == list(range(6))  # what a case raises itself is believed at once
+
+
 def test_an_executor_that_breaks_names_what_is_not_done() -> None:
     class Broken(ThreadPoolExecutor):
         def submit(self, fn, /, *args, **kwargs):  # type: ignore[no-untyped-def]
-            if args[0] == 2:
+            if args[1] == 2:
                 raise BrokenProcessPool("gone")
             return super().submit(fn, *args, **kwargs)
 
