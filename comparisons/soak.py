@@ -85,13 +85,8 @@ def mixed(steps: int, seed: int, bowl: bool) -> Row:
     return {"in": "bowl" if bowl else "box", "seed": seed, "impacts": impacts, "max |dE/E|": drift, "outside": outside}
 
 
-def jointed(steps: int) -> list[Row]:
-    """Pendulum, double pendulum, a four-bar with redundant rows: drift of the energy, by how far joints come apart."""
-    return [linkage(steps, name) for name in JOINTED]
-
-
 def linkage(steps: int, name: str) -> Row:
-    """One of them."""
+    """Of one of JOINTED: drift of the energy, by how far joints come apart."""
     row: dict[str, str | float] = {"scene": name}
     for stepper in ("EECA", "native"):
         space = JOINTED[name]()
