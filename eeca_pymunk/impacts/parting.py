@@ -3,6 +3,11 @@
 All of them are asked for statics (`..sustained.statics`), under the pushes of the others, which are solved first with
 these for fixed. Where there are none, the statics tell of a motion that nothing holds: what takes part in it moves, and
 the rest is asked once more.
+
+The pushes of a few that rattle about would wake them again and again, and so would the errors of the solves that
+follow. So a crowd is calmed first: all that is slow is asked as if the others were not there; if something holds it, it
+stops, as what rests on much loses tiny motions within a step, and the forces that were found are the next solve's
+beginning.
 """
 
 from __future__ import annotations
@@ -15,10 +20,12 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..layout import VX
 from ..rows.layout import ROW_COLUMNS
+from ..sustained.contacts import CROWD
 from ..sustained.ledger import LEDGER_SIZE
+from ..sustained.statics import LIVELY
 from ..sustained.step import OUT_SIZE, POLISHES, STOOD, step_island
 from .booking import close_span
-from .calm import hardly, settled, speed, wait
+from .calm import SURE, hardly, settled, speed, wait
 from .carrying import give_way, load
 from .coming import pairs_of
 from .islands import lossy, members, unite
@@ -27,6 +34,7 @@ from .layout import (
     AMONG,
     BODIES,
     BUSY,
+    CALM_FOR,
     CARRIES,
     DIRECT,
     DT,
@@ -48,10 +56,13 @@ from .layout import (
     Scene,
 )  # fmt: skip
 from .spans import dismiss, lay_out_island, open_contacts, solve
-from .still import halt
+from .still import halt, stop
 
 _MOST, _FEW = 0.1, 2  # of an island's bodies, that may move while the others stand; so many always
-_TRIES, _DEAR = 2, 8  # factors of a try, beyond which there is no other
+_TRIES, _DEAR = 2, 8  # factors in a step, beyond which nothing more is asked
+_EVERY = 8  # steps from one asking whether a crowd is calmed to the next,
+_RATTLING = 0.005  # if no more of its bodies are fast,
+_CHEAP = 6  # and factors beyond which there is no other try
 
 
 @uncounted
@@ -67,15 +78,17 @@ def chain(A: Scene, MINE: IntArray, n: int) -> None:
 
 
 @kernel
-def asks(A: Scene, MINE: IntArray, n: int, V0: FloatArray, among: int) -> bool:
+def asks(A: Scene, MINE: IntArray, n: int, V0: FloatArray, among: int, calming: bool) -> bool:
     """Whether the island of the n bodies MINE, `among` so many, comes to a stand from their velocities V0 (n, 3) under
-    what pushes on it; if so it does. If not, those that nothing holds are to wait, see `give_way`."""
+    what pushes on it; if so it does. If not, those that nothing holds are to wait, see `give_way`. Or whether it is
+    calmed, with nothing that pushes on it; then its bodies stop, and may be asked at once whether they stand."""
     BODY, COUNT, dt, root = A.BODY, A.COUNT, A.PAR[DT], MINE[0]
     for q in range(n):
         A.PLACE[MINE[q]] = q
     found = pairs_of(A, root, 0.0, True, A.PLACE, MINE, n)
     LOAD = np.zeros((n, 3))
-    load(A, root, LOAD)
+    if not calming:
+        load(A, root, LOAD)
     p = len(found)
     isle = lay_out_island(A, MINE, n, found, 0.0)
     dismiss(A, MINE, n)
@@ -88,6 +101,7 @@ def asks(A: Scene, MINE: IntArray, n: int, V0: FloatArray, among: int) -> bool:
     if p == 0 or COUNT[PUSHES] + 2 * p > A.PUSHED.shape[0] or not most > 0.0:
         wait(A, MINE, n)
         return False
+    quick = (LIVELY if calming else hardly(among)) * A.PAR[PULLED] / most
     k, room = len(isle.WHO), 2 * p + 1
     P, Q, KEY = np.empty(room, np.int64), np.empty(room, np.int64), np.empty(room, np.int64)
     ROWS, L, LOSS = np.empty((room, ROW_COLUMNS)), np.zeros((room, 2)), np.zeros((room, 2))
@@ -95,13 +109,17 @@ def asks(A: Scene, MINE: IntArray, n: int, V0: FloatArray, among: int) -> bool:
     m = step_island(
         isle.POSE, isle.V, isle.ACC, isle.IM, isle.II, isle.EXTENT, isle.FELT, n, isle.PAIRS, p, A.SHAPE, A.RULE,
         A.LINK, A.VERTEX, A.WORK, dt, 0, 0.0, 0.0, A.KEYS, A.FORCES, COUNT[REMEMBERED:], A.PAR[STAMP],
-        A.RESTING[root, RELAX : RELAX + 3], -hardly(among) * A.PAR[PULLED] / most, P, Q, ROWS, KEY, L, LOSS, VN, JUMP,
-        BOOK, OUT,
+        A.RESTING[root, RELAX : RELAX + 3], -quick, P, Q, ROWS, KEY, L, LOSS, VN, JUMP, BOOK, OUT,
     )  # fmt: skip
     COUNT[DIRECT] += int(OUT[POLISHES])
     if not OUT[STOOD] > 0.0:
         give_way(A, MINE, n, VN, isle.FELT)
         return False
+    if calming:
+        for q in range(n):
+            stop(A, MINE[q])
+            A.RESTING[MINE[q], CALM_FOR] = SURE
+        return True
     first = COUNT[PUSHES]
     open_contacts(A, isle, P, Q, ROWS, KEY, L, VN, m, 0.0, dt, np.zeros(k, np.uint8))
     for z in range(m):
@@ -116,6 +134,42 @@ def asks(A: Scene, MINE: IntArray, n: int, V0: FloatArray, among: int) -> bool:
             A.RESTING[MINE[q], LIFT + c] = 0.0
     halt(A, root)
     return True
+
+
+@kernel
+def calms_down(A: Scene, root: int, MINE: IntArray, n: int) -> None:
+    """Calm the crowd of the n bodies MINE, but for those few that are fast, and those that nothing holds."""
+    STAND, V0, stand = np.empty(n, np.int64), np.empty((n, 3)), 0
+    for q in range(n):
+        if speed(A, MINE[q], 0.0) <= LIVELY * A.PAR[PULLED] * A.PAR[DT]:
+            STAND[stand] = MINE[q]
+            stand += 1
+    if n - stand > max(_RATTLING * n, _FEW):
+        return
+    owed, factors, calmed = A.RESTING[root, LOST], A.COUNT[DIRECT], False
+    while not calmed and stand >= (1.0 - _MOST) * n and A.COUNT[DIRECT] <= factors + _CHEAP:
+        for q in range(n):
+            A.STATE[MINE[q], ISLAND] = -1
+        chain(A, STAND, stand)
+        for q in range(stand):
+            for c in range(3):
+                V0[q, c] = A.BODY[STAND[q], VX + c]
+        calmed = asks(A, STAND, stand, V0, n, True)
+        held = 0
+        for q in range(stand):
+            if settled(A, STAND[q]):
+                STAND[held] = STAND[q]
+                held += 1
+        stand = held
+    if not calmed:
+        wait(A, MINE, n)
+    # The island as it was.
+    STAND[0] = root
+    for q in range(n):
+        if MINE[q] != root:
+            STAND[q + 1 if MINE[q] < root else q] = MINE[q]
+    chain(A, STAND, n)
+    A.RESTING[root, LOST] = owed
 
 
 @uncounted
@@ -144,6 +198,11 @@ def stands_in_part(A: Scene, root: int) -> bool:
     MINE, STAND, MOVE = np.empty(n, np.int64), np.empty(n, np.int64), np.empty(n, np.int64)
     members(A, root, MINE)
     MINE.sort()
+    factors = A.COUNT[DIRECT]
+    if n >= CROWD and A.PAR[STAMP] % _EVERY == 0.0:
+        calms_down(A, root, MINE, n)
+        if A.COUNT[DIRECT] > factors + _DEAR:
+            return False
     V0, some, factors = np.empty((n, 3)), False, A.COUNT[DIRECT]
     for _ in range(_TRIES):
         stand = divide(A, MINE, n, STAND, MOVE)
@@ -161,7 +220,7 @@ def stands_in_part(A: Scene, root: int) -> bool:
             solve(A, MOVE[0], 0.0)
         for q in range(stand):
             MEMBER[STAND[q], STILL] = 0
-        if asks(A, STAND, stand, V0, n):
+        if asks(A, STAND, stand, V0, n, False):
             return True
         for q in range(stand):
             for c in range(3):

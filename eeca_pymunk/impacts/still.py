@@ -210,6 +210,19 @@ def stand(A: Scene, c: int) -> None:
 
 
 @uncounted
+def stop(A: Scene, i: int) -> None:
+    """Body i has no velocity any more, but for a spin that nobody feels; its energy is lost to restitution."""
+    BODY = A.BODY
+    A.PAR[LEDGER + RESTITUTION] += kinetic(BODY, i)
+    BODY[i, VX], BODY[i, VY] = 0.0, 0.0
+    if whirls(A, i):
+        A.PAR[LEDGER + RESTITUTION] -= kinetic(BODY, i)
+    else:
+        BODY[i, SPIN] = 0.0
+    A.STATE[i, KINKS] += 1
+
+
+@uncounted
 def halt(A: Scene, root: int) -> None:
     """At either end of a step, an island that comes to a stand: its bodies stop, but for spins that nobody feels. Once
     something wakes it, it is soon asked whether it stands again."""
@@ -217,15 +230,9 @@ def halt(A: Scene, root: int) -> None:
     MEMBER[root, ANEW] = 1
     i = root
     while i >= 0:
-        A.PAR[LEDGER + RESTITUTION] += kinetic(BODY, i)
-        BODY[i, VX], BODY[i, VY] = 0.0, 0.0
-        if whirls(A, i):
-            A.PAR[LEDGER + RESTITUTION] -= kinetic(BODY, i)
-        else:
-            BODY[i, SPIN] = 0.0
+        stop(A, i)
         BODY[i, AX], BODY[i, AY], BODY[i, TWIST] = 0.0, 0.0, 0.0
         MEMBER[i, STILL], BODY[i, DUE], A.RESTING[i, CALM_FOR] = 1, 0.0, later(MEMBER[root, AMONG])
-        A.STATE[i, KINKS] += 1
         i = MEMBER[i, AFTER_ME]
 
 

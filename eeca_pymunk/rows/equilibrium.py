@@ -30,7 +30,8 @@ from .ordering import dissect, neighbours, pattern
 _R = 1e11
 _START = 0.1  # least impulse at the start, relative to the mean guess
 _CLOSE = 0.99  # of the way to where an x or s would vanish
-_EARLY, _SLOW, _STALLED = 3, 0.8, 1  # after so many steps, so little less motion, so often: there is no answer
+_EARLY, _SLOW, _STALLED = 3, 0.8, 4  # after so many steps, so little less motion, so often: there is no answer
+_RUNAWAY = 1e5  # multipliers relative to the velocities, from which once is enough: they grow along a motion
 _SETTLED = 1e-8  # sum x s relative to the start, at which x is next to the guess
 
 # EDGE (K, 6) float: of each edge
@@ -237,6 +238,7 @@ def equilibrium(
     columns, rows = pattern(n, start, other, place)
     DIAGONAL, BELOW = np.empty((n, 3, 3)), np.empty((len(rows), 3, 3))
     found, free, stalled, last, first = False, True, 0, np.inf, 0.0
+    given = fastest(START, EXTENT, n)
     for done in range(most + 1):
         LEFT[:] = START
         send(P, Q, G, EDGE, X, K, IM, II, LEFT)
@@ -248,7 +250,10 @@ def equilibrium(
             if not nearest or centre <= _SETTLED * first:
                 return True, done
         elif not found and done > _EARLY:
-            stalled = stalled + 1 if speed > _SLOW * last else 0
+            if speed <= _SLOW * last:
+                stalled = 0
+            else:
+                stalled += _STALLED if fastest(Y, EXTENT, n) > _RUNAWAY * given else 1
         if done == most or stalled >= _STALLED or not (speed < np.inf and (centre > 0.0 or free)):
             if not found:
                 START[:] = Y
