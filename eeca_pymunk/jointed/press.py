@@ -88,13 +88,13 @@ def press(
             most = sweeps_of_crowd(t)
     # Where many contacts do not come to an end, joints come near enough until the last step of the components.
     J.FOUND[NEAR] = _NEAR if m > FEW and not elastic and not rests else 0.0
-    FORESEEN = np.empty((len(isle.IM), 3))
+    FORESEEN, UNKNOWN = np.empty((len(isle.IM), 3)), np.empty((0, 3))
     converged, best, LEAST, USED, hopeless, agreed = False, np.inf, L.copy(), L.copy(), False, False
     for outer in range(rounds):
         if hopeless:
             break
         anew = AS_IT_IS if outer % _CHORD == 0 else NOT_AT_ALL
-        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, anew)
+        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, anew, FORESEEN if outer > 0 else UNKNOWN)
         if outer > 0:
             off = farthest_apart(motion.V, FORESEEN, isle.EXTENT, n)
             if off <= agree:
@@ -109,7 +109,7 @@ def press(
             else:
                 # Too far: the components do not answer as they did.
                 L[:] = 0.5 * (L + LEAST)
-                advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, anew)
+                advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, anew, UNKNOWN)
         if anew != NOT_AT_ALL:
             weigh(groups, C, P, Q, ROWS, m)
         if outer == 0:
@@ -132,11 +132,11 @@ def press(
             break
     if not agreed or J.FOUND[NEAR] > 0.0:
         J.FOUND[NEAR] = 0.0
-        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, NOT_AT_ALL)
+        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, NOT_AT_ALL, UNKNOWN)
     if not agreed:
         if not farthest_apart(motion.V, FORESEEN, isle.EXTENT, n) <= best:
             L[:] = LEAST
-            advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, NOT_AT_ALL)
+            advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, NOT_AT_ALL, UNKNOWN)
         converged = False
     energy = 0.0
     for q in range(n):
@@ -166,7 +166,7 @@ def press(
         for i in range(m):
             L[i, 0] = s * L[i, 0] if s > 0.0 else 0.0
             L[i, 1] = s * L[i, 1] if s > 0.0 else 0.0
-        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, NOT_AT_ALL)
+        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, NOT_AT_ALL, UNKNOWN)
         converged = False
         if s == 0.0:
             break

@@ -161,7 +161,7 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
             COUNT[UNMET] += 1
         remember_loads(ROWS, KEY, L, m, h, A.KEYS, A.FORCES, COUNT[REMEMBERED:], A.PAR[STAMP])
     if m == 0:
-        advance(A, J, isle, groups, P, Q, ROWS, L, 0, t, h, motion, C, NOT_AT_ALL)
+        advance(A, J, isle, groups, P, Q, ROWS, L, 0, t, h, motion, C, NOT_AT_ALL, np.empty((0, 3)))
     book_turning(A, J, isle, groups, motion, n)
     # Bodies are lifted at the end of the span, not on the way: the way would be as steep as the span is short.
     WHERE = motion.END.copy()
