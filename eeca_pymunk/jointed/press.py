@@ -40,6 +40,7 @@ _LOCKS = 10
 SOME = 12  # contacts from which on the span before an impact, which is solved again after it, is solved roughly
 _FALLS = 0.3  # of what velocities are apart, with which they do not come to agree within the rounds
 _NEAR = 1e-9  # error of joints over the size of a component, as a way in h
+_FLOOR = 1e-8  # likewise what is round-off of components that hardly give way, if it does not fall
 _CHORD = 3  # steps of the components between which their answers are taken to be the same
 
 
@@ -78,7 +79,7 @@ def press(
     agree = (_ELASTIC_AGREE if elastic else (_REST_AGREE if rests else _AGREE if m <= SOME else _SOME_AGREE)) * scale
     fine = (1e-15 if elastic else (_REST_FINE if rests else _FINE)) * scale
     most = _ELASTIC_SWEEPS if elastic else (_FEW_SWEEPS if m <= FEW else _SWEEPS)
-    rounds = _ELASTIC_OUTER if elastic else _OUTER
+    rounds = _ELASTIC_OUTER if elastic or m <= SOME else _OUTER
     part = before_end(A, t + h)
     if m > SOME and part and not elastic:
         rounds = _MANY_OUTER
@@ -89,17 +90,18 @@ def press(
     # Where many contacts do not come to an end, joints come near enough until the last step of the components.
     J.FOUND[NEAR] = _NEAR if m > FEW and not elastic and not rests else 0.0
     FORESEEN, UNKNOWN = np.empty((len(isle.IM), 3)), np.empty((0, 3))
-    converged, best, LEAST, USED, hopeless, agreed = False, np.inf, L.copy(), L.copy(), False, False
+    converged, best, LEAST, USED, hopeless, agreed, slowly = False, np.inf, L.copy(), L.copy(), False, False, m <= SOME
     for outer in range(rounds):
         if hopeless:
             break
-        anew = AS_IT_IS if outer % _CHORD == 0 else NOT_AT_ALL
+        anew = AS_IT_IS if outer % _CHORD == 0 or slowly else NOT_AT_ALL
         advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, anew, FORESEEN if outer > 0 else UNKNOWN)
         if outer > 0:
             off = farthest_apart(motion.V, FORESEEN, isle.EXTENT, n)
-            if off <= agree:
+            if off <= agree or (off <= _FLOOR * scale and off > _FALLS * best):
                 converged, agreed = True, True
                 break
+            slowly = m <= SOME and off > _FALLS * best
             hopeless = m > SOME and outer > 1 and not elastic and off > _FALLS * best
             if off < best:
                 best = off
