@@ -137,9 +137,7 @@ def gather_alone(A: Scene, J: Joints, s: int, t: float, h: float) -> float:
 
 
 @uncounted
-def lead_component(
-    A: Scene, J: Joints, s: int, V: FloatArray, ACC: FloatArray, GUESS: FloatArray, h: float
-) -> None:
+def lead_component(A: Scene, J: Joints, s: int, V: FloatArray, ACC: FloatArray, GUESS: FloatArray, h: float) -> None:
     """Let the next step of component s begin with velocities GUESS (k, 3) at its end, from V under ACC at its start."""
     for k in range(J.SPAN[s, JOINT_0], J.SPAN[s, JOINT_1]):
         for end in range(2):
