@@ -143,7 +143,7 @@ def press(
     energy = 0.0
     for q in range(n):
         energy += (isle.V[q, 0] ** 2 + isle.V[q, 1] ** 2 + (pull * h) ** 2) / isle.IM[q]
-    bearable = 1e-15 * energy
+    bearable, scaled = 1e-15 * energy, 1.0
     for tries in range(_LOCKS + 1):
         loss = lost(P, Q, ROWS, L, motion.WAY, m, h)
         if loss >= owed - bearable and (not elastic or loss <= owed + bearable):
@@ -169,7 +169,8 @@ def press(
             L[i, 0] = s * L[i, 0] if s > 0.0 else 0.0
             L[i, 1] = s * L[i, 1] if s > 0.0 else 0.0
         advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, NOT_AT_ALL, UNKNOWN)
-        converged = False
+        scaled *= s
+        converged = converged and abs(scaled - 1.0) <= _AGREE
         if s == 0.0:
             break
     return converged
