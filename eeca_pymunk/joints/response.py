@@ -1,9 +1,9 @@
 """How an island of joints answers impulses on its bodies: the change of velocities per impulse.
 
 About a solved step, d v1 = S p for impulses p spread over the step, S the inverse of Newton's matrix with springs and
-bounded joints, but without the bending of rows, by which S would not be positive where joints press. At one instant (an
-impact), S = M^-1 - M^-1 G^T (G M^-1 G^T)^-1 G M^-1: joints that hold exactly let no velocity through, and all others no
-impulse.
+bounded joints. Rows turn as bodies move, and the force of joints that pull with them: without that what is taut would
+give way across. Of joints that press it is left out: S would not be positive. At one instant (an impact),
+S = M^-1 - M^-1 G^T (G M^-1 G^T)^-1 G M^-1: joints that hold exactly let no velocity through, and all others no impulse.
 """
 
 from __future__ import annotations
@@ -54,8 +54,8 @@ _REFINE = 2  # passes that take back what epsilon, for rows that may be redundan
 def bend_if_taut(
     joint: FloatArray, hinge: FloatArray, link: IntArray, k: int, local: FloatArray, h: float, stiff: FloatArray
 ) -> None:
-    """Let joint k have the impulse of the whole step if it pulls, so that rows that turn take their force along; none if
-    it presses: S would not be positive."""
+    """Let joint k have the impulse of the whole step if it pulls, so that its rows take their force along as they turn;
+    none if it presses."""
     hinge[k, LAM], hinge[k, LAM + 1] = hinge[k, TOTAL], hinge[k, TOTAL + 1]
     bend = joint_rows(joint, hinge, link, k, local, h, True, stiff)
     pulls = bend != NO_BEND

@@ -68,6 +68,7 @@ from .scratch import (
     SIN,
     SPEEDS,
     STEP,
+    TAUT,
     TOTAL,
     TRAVEL,
 )
@@ -169,7 +170,8 @@ def island_step(
     loops = span[LOOPS] > 0
     needs = read_joints(joint, tie, hinge, link, joints, local, h, length)
     # Redundant rows begin without impulse, unless it is what holds bodies.
-    cold = loops and not taut(joint, hinge, link, joints, local, h)
+    span[TAUT] = 1 if loops and taut(joint, hinge, link, joints, local, h) else 0
+    cold = loops and span[TAUT] == 0
     for k in range(joints if cold else 0):
         hinge[k, LAM] = hinge[k, LAM + 1] = 0.0
     for i in range(bodies):

@@ -25,8 +25,10 @@ def taut(joint: FloatArray, hinge: FloatArray, link: IntArray, joints: int, loca
             continue
         j, a, b = link[k, L_JOINT], link[k, L_A], link[k, L_B]
         ca, sa, cb, sb = local[a, COS], local[a, SIN], local[b, COS], local[b, SIN]
-        rax, ray = ca * joint[j, ANCHOR_AX] - sa * joint[j, ANCHOR_AY], sa * joint[j, ANCHOR_AX] + ca * joint[j, ANCHOR_AY]
-        rbx, rby = cb * joint[j, ANCHOR_BX] - sb * joint[j, ANCHOR_BY], sb * joint[j, ANCHOR_BX] + cb * joint[j, ANCHOR_BY]
+        rax = ca * joint[j, ANCHOR_AX] - sa * joint[j, ANCHOR_AY]
+        ray = sa * joint[j, ANCHOR_AX] + ca * joint[j, ANCHOR_AY]
+        rbx = cb * joint[j, ANCHOR_BX] - sb * joint[j, ANCHOR_BY]
+        rby = sb * joint[j, ANCHOR_BX] + cb * joint[j, ANCHOR_BY]
         fx, fy, per = hinge[k, LAM], hinge[k, LAM + 1], 0.0
         if kind != PIVOT:
             dx, dy = local[b, POSE] - local[a, POSE] + rbx - rax, local[b, POSE + 1] - local[a, POSE + 1] + rby - ray
