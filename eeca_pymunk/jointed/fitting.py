@@ -20,6 +20,7 @@ from .gathered import find_places, gather_component
 from .groups import Groups
 from .layout import Joints
 from .lifting import raise_gaps
+from .motors import keeps_speed
 from .newton import FEW
 
 _SLOW = 1e-9  # speed over the island's, with which contacts may close
@@ -35,7 +36,8 @@ def fit(
     """Make the velocities at the end of a lossy span fit the joints of the components that contacts push.
 
     Bodies that land leave velocities which violate joints, and those would ring for ever: a midpoint rule turns their
-    sign in every step. What this costs is booked. Of a few contacts, those that push do not close by it: see `hold`.
+    sign in every step. What this costs is booked. Of a few contacts, those that push do not close by it: see `hold`,
+    which would change the speeds of motors.
     `scale` is a speed of the island. C is overwritten.
     """
     NOTHING = np.zeros_like(isle.V)
@@ -44,9 +46,10 @@ def fit(
     for i in range(m):
         if L[i, 0] > 0.0:
             PUSHED[groups.GROUP[P[i]] + 1] = PUSHED[groups.GROUP[Q[i]] + 1] = 1
-    first = -1
+    first, driven = -1, False
     for g in range(len(groups.COMPONENT)):
         s = groups.COMPONENT[g]
+        driven = driven or (s >= 0 and keeps_speed(J, s))
         if s < 0 or PUSHED[g + 1] == 0:
             continue
         first = s if first < 0 else first
@@ -58,7 +61,7 @@ def fit(
             if body < A.PLACE.shape[0] and A.PLACE[body] >= 0:
                 for c in range(3):
                     motion.V[A.PLACE[body], c] = J.LOCAL[w, BEFORE + c]
-    if first < 0 or m > FEW:
+    if first < 0 or driven or m > FEW:
         return
     RATES, fastest = np.full(m, np.inf), 0.0
     for i in range(m):
