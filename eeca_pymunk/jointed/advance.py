@@ -14,7 +14,7 @@ from ..impacts.spans import Local
 from ..rows.layout import ARM_NA, ARM_NB, ARM_TA, ARM_TB, NX, NY
 from .columns import Columns, fill_group
 from .component import ready, step_component
-from .gathered import find_places, gather_component, rewind_joints
+from .gathered import find_places, gather_component, lead_component, rewind_joints
 from .groups import Groups
 from .layout import Joints
 from .motors import let_slip
@@ -43,10 +43,11 @@ def is_hit(groups: Groups, P: IntArray, Q: IntArray, m: int, g: int) -> bool:
 @kernel
 def advance(
     A: Scene, J: Joints, isle: Local, groups: Groups, P: IntArray, Q: IntArray, ROWS: FloatArray, L: FloatArray, m: int,
-    t: float, h: float, motion: Motion, C: Columns, fill: int,
+    t: float, h: float, motion: Motion, C: Columns, fill: int, GUESS: FloatArray,
 ) -> None:  # fmt: skip
     """Step all bodies of an island by h under the impulses L of its contacts, from where its joints were; `fill` the
-    columns C about that step: not at all, as joints stand, or as if motors and the like were at their max_force."""
+    columns C about that step: not at all, as joints stand, or as if motors and the like were at their max_force.
+    GUESS (k, 3): velocities at the end that are foreseen, to begin with; (0, 3) for none."""
     k = len(isle.IM)
     ACC = isle.ACC.copy()
     for i in range(m):
@@ -64,6 +65,8 @@ def advance(
         if s < 0:
             continue
         rewind_joints(J, s)
+        if len(GUESS) > 0:
+            lead_component(A, J, s, isle.V, ACC, GUESS, h)
         length = gather_component(A, J, s, isle.POSE, isle.V, ACC, isle.IM, isle.II, t, h)
         step_component(A, J, s, h, length, m == 0, motion.V, motion.WAY, motion.END)
         if fill != NOT_AT_ALL and is_hit(groups, P, Q, m, g):

@@ -6,7 +6,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
 from ..geometry.flight import pose, rate
 from ..impacts.layout import Scene
-from ..joints.layout import JOINT_COLUMNS, NOTCH, RATCHET, SIDE, TIE_COLUMNS, TOUCHED
+from ..joints.layout import JOINT_COLUMNS, LED, NOTCH, RATCHET, SIDE, TIE_COLUMNS, TOUCHED
 from ..joints.motion import size_up
 from ..joints.scratch import (
     BEFORE,
@@ -19,6 +19,7 @@ from ..joints.scratch import (
     FREEDOMS,
     JOINT_0,
     JOINT_1,
+    L_A,
     L_JOINT,
     L_KIND,
     M_BODY,
@@ -133,6 +134,18 @@ def gather_alone(A: Scene, J: Joints, s: int, t: float, h: float) -> float:
                 LOCAL[i, FREE + c] = A.PULL[body, c]
                 LOCAL[i, MOBILITY + c] = BODY[body, INVERSE] if c < 2 else BODY[body, TURNING]
     return measured(J, s, h)
+
+
+@uncounted
+def lead_component(A: Scene, J: Joints, s: int, V: FloatArray, ACC: FloatArray, GUESS: FloatArray, h: float) -> None:
+    """Let the next step of component s begin with velocities GUESS (k, 3) at its end, from V under ACC at its start."""
+    for k in range(J.SPAN[s, JOINT_0], J.SPAN[s, JOINT_1]):
+        for end in range(2):
+            member = J.SPAN[s, BODY_0] + J.LINK[k, L_A + end]
+            if J.MEMBER[member, M_FREEDOMS] > 0:
+                q = A.PLACE[J.MEMBER[member, M_BODY]]
+                for c in range(3):
+                    J.JOINT[J.LINK[k, L_JOINT], LED + 3 * end + c] = (GUESS[q, c] - V[q, c]) / h - ACC[q, c]
 
 
 @uncounted

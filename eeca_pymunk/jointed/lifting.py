@@ -30,8 +30,8 @@ _MOST = 0.1  # of the size of a body, that a step may lift it
 @kernel
 def raise_gaps(
     C: Columns, P: IntArray, Q: IntArray, ROWS: FloatArray, GAPS: FloatArray, D: FloatArray, m: int, tolerance: float
-) -> None:
-    """Displacements D (k, 3) = Y mu, 0 <= mu _|_ g + G D >= 0, by sweeps."""
+) -> FloatArray:
+    """Displacements D (k, 3) = Y mu, 0 <= mu _|_ g + G D >= 0, by sweeps; mu (m,)."""
     MU = np.zeros(m)
     for _ in range(_SWEEPS):
         worst = 0.0
@@ -47,7 +47,8 @@ def raise_gaps(
                     D[C.BODY[w], c] += change * C.N[w, c]
             worst = max(worst, abs(change) / ROWS[i, K_N])
         if worst <= tolerance:
-            return
+            break
+    return MU
 
 
 @kernel

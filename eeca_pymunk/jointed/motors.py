@@ -19,6 +19,15 @@ def drives(J: Joints, s: int) -> bool:
 
 
 @uncounted
+def keeps_speed(J: Joints, s: int) -> bool:
+    """Whether joints of component s have rows of speeds at the end of a span: motors, joints with a max_force."""
+    some = False
+    for k in range(J.SPAN[s, JOINT_0], J.SPAN[s, JOINT_1]):
+        some = some or J.LINK[k, L_SOFT] != 0
+    return some
+
+
+@uncounted
 def may_slip(J: Joints, s: int) -> bool:
     """Whether component s has motors, or joints with a finite max_force, that enough impulse on its bodies moves."""
     some = False

@@ -44,7 +44,7 @@ def overcome(
     HELD = np.empty(m, np.int64)
     if not driven(J, groups, C, P, Q, m, HELD):
         return
-    START = np.zeros(m)
+    START, UNKNOWN = np.zeros(m), np.empty((0, 3))
     waiting = 0
     for i in range(m):
         START[i] = normal_rate(P, Q, ROWS, motion.V, i)
@@ -53,7 +53,7 @@ def overcome(
         waiting += HELD[i]
     if waiting == 0:
         return
-    advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, AS_IF_SLIPPING)
+    advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, AS_IF_SLIPPING, UNKNOWN)
     weigh(groups, C, P, Q, ROWS, m)
     for i in range(m):
         if C.OUT[i] != 0:
@@ -61,7 +61,7 @@ def overcome(
         if HELD[i] != 0:
             L[i, 0] += ROWS[i, K_N] * (ROWS[i, TARGET] - START[i])
     for tries in range(_TRIES):
-        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, NOT_AT_ALL)
+        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, NOT_AT_ALL, UNKNOWN)
         waiting = 0
         for i in range(m):
             if HELD[i] == 0:
@@ -73,5 +73,5 @@ def overcome(
             waiting += 1
         if waiting == 0:
             break
-    advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, AS_IT_IS)
+    advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, AS_IT_IS, UNKNOWN)
     weigh(groups, C, P, Q, ROWS, m)

@@ -18,7 +18,7 @@ from ..compiled import kernel, uncounted
 from ..impacts.coming import before_end, sweeps_of_crowd
 from ..impacts.layout import Scene
 from ..impacts.spans import Local
-from ..joints.scratch import NEAR
+from ..joints.scratch import NEAR, TAUT
 from ..rows.build import conserves, normal_rate, rates, tangent_rate
 from ..rows.layout import SURFACE, UN, UT
 from ..sustained.contacts import CROWD
@@ -30,7 +30,7 @@ from .layout import Joints
 from .newton import FEW, solve_columns
 from .overcome import overcome
 
-_OUTER, _ELASTIC_OUTER = 6, 12  # steps of the components
+_OUTER, _MOST_OUTER = 6, 12  # steps of the components; if elastic, or of no more than SOME contacts
 _MANY_OUTER, _PART_OUTER = 2, 1  # of islands of many contacts, whose sweeps do not come to an end; before an impact
 _AGREE, _REST_AGREE, _ELASTIC_AGREE = 1e-6, 1e-11, 1e-13  # velocities of both solutions, over |a| h and the speed
 _SOME_AGREE = 1e-5  # likewise of more than SOME contacts that do not rest
@@ -40,6 +40,8 @@ _LOCKS = 10
 SOME = 12  # contacts from which on the span before an impact, which is solved again after it, is solved roughly
 _FALLS = 0.3  # of what velocities are apart, with which they do not come to agree within the rounds
 _NEAR = 1e-9  # error of joints over the size of a component, as a way in h
+_FLOOR = 1e-8  # over the speed, what is round-off of components that hardly give way, if it does not fall
+_ROUGH = 1e-4  # likewise, above which answers are taken anew
 _CHORD = 3  # steps of the components between which their answers are taken to be the same
 
 
@@ -56,6 +58,15 @@ def lost(P: IntArray, Q: IntArray, ROWS: FloatArray, L: FloatArray, WAY: FloatAr
     for i in range(m):
         total -= (L[i, 0] * normal_rate(P, Q, ROWS, WAY, i) + L[i, 1] * slip_of(P, Q, ROWS, WAY, i, h)) / h
     return total
+
+
+@uncounted
+def some_taut(J: Joints, groups: Groups) -> bool:
+    """Whether a component hardly gives way across, for the pull of its joints."""
+    some = False
+    for g in range(len(groups.COMPONENT)):
+        some = some or (groups.COMPONENT[g] >= 0 and J.SPAN[groups.COMPONENT[g], TAUT] > 0)
+    return some
 
 
 @kernel
@@ -78,7 +89,7 @@ def press(
     agree = (_ELASTIC_AGREE if elastic else (_REST_AGREE if rests else _AGREE if m <= SOME else _SOME_AGREE)) * scale
     fine = (1e-15 if elastic else (_REST_FINE if rests else _FINE)) * scale
     most = _ELASTIC_SWEEPS if elastic else (_FEW_SWEEPS if m <= FEW else _SWEEPS)
-    rounds = _ELASTIC_OUTER if elastic else _OUTER
+    rounds = _MOST_OUTER if elastic or m <= SOME else _OUTER
     part = before_end(A, t + h)
     if m > SOME and part and not elastic:
         rounds = _MANY_OUTER
@@ -88,18 +99,20 @@ def press(
             most = sweeps_of_crowd(t)
     # Where many contacts do not come to an end, joints come near enough until the last step of the components.
     J.FOUND[NEAR] = _NEAR if m > FEW and not elastic and not rests else 0.0
-    FORESEEN = np.empty((len(isle.IM), 3))
-    converged, best, LEAST, USED, hopeless, agreed = False, np.inf, L.copy(), L.copy(), False, False
+    FORESEEN, UNKNOWN = np.empty((len(isle.IM), 3)), np.empty((0, 3))
+    converged, best, LEAST, USED, hopeless, agreed, slowly = False, np.inf, L.copy(), L.copy(), False, False, False
+    stiff = False
     for outer in range(rounds):
         if hopeless:
             break
-        anew = AS_IT_IS if outer % _CHORD == 0 else NOT_AT_ALL
-        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, anew)
+        anew = AS_IT_IS if outer % _CHORD == 0 or slowly else NOT_AT_ALL
+        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, anew, FORESEEN if outer > 0 else UNKNOWN)
         if outer > 0:
             off = farthest_apart(motion.V, FORESEEN, isle.EXTENT, n)
-            if off <= agree:
+            if off <= agree or (off <= _FLOOR * scale and off > _FALLS * best):
                 converged, agreed = True, True
                 break
+            slowly = stiff or (m <= SOME and (off > _FALLS * best or off > _ROUGH * scale))
             hopeless = m > SOME and outer > 1 and not elastic and off > _FALLS * best
             if off < best:
                 best = off
@@ -109,10 +122,12 @@ def press(
             else:
                 # Too far: the components do not answer as they did.
                 L[:] = 0.5 * (L + LEAST)
-                advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, anew)
+                advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, anew, UNKNOWN)
         if anew != NOT_AT_ALL:
             weigh(groups, C, P, Q, ROWS, m)
         if outer == 0:
+            stiff = m <= FEW and some_taut(J, groups)
+            slowly = stiff
             EFFECT = motion.V.copy()
             push_columns(C, L, m, -1.0, EFFECT)
             for q in range(len(EFFECT)):
@@ -132,16 +147,16 @@ def press(
             break
     if not agreed or J.FOUND[NEAR] > 0.0:
         J.FOUND[NEAR] = 0.0
-        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, NOT_AT_ALL)
+        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, NOT_AT_ALL, UNKNOWN)
     if not agreed:
         if not farthest_apart(motion.V, FORESEEN, isle.EXTENT, n) <= best:
             L[:] = LEAST
-            advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, NOT_AT_ALL)
+            advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, NOT_AT_ALL, UNKNOWN)
         converged = False
     energy = 0.0
     for q in range(n):
         energy += (isle.V[q, 0] ** 2 + isle.V[q, 1] ** 2 + (pull * h) ** 2) / isle.IM[q]
-    bearable = 1e-15 * energy
+    bearable, scaled = 1e-15 * energy, 1.0
     for tries in range(_LOCKS + 1):
         loss = lost(P, Q, ROWS, L, motion.WAY, m, h)
         if loss >= owed - bearable and (not elastic or loss <= owed + bearable):
@@ -166,8 +181,9 @@ def press(
         for i in range(m):
             L[i, 0] = s * L[i, 0] if s > 0.0 else 0.0
             L[i, 1] = s * L[i, 1] if s > 0.0 else 0.0
-        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, NOT_AT_ALL)
-        converged = False
+        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, NOT_AT_ALL, UNKNOWN)
+        scaled *= s
+        converged = converged and abs(scaled - 1.0) <= _AGREE
         if s == 0.0:
             break
     return converged

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FloatArray
 from ..compiled import kernel, uncounted
 from ..impacts.coming import before_end, pairs_of
 from ..impacts.islands import lossy, members
@@ -32,9 +32,6 @@ from ..impacts.layout import (
     Scene,
 )
 from ..impacts.spans import Local, dismiss, lay_out_island, open_contacts
-from ..joints.correct import book_fit
-from ..joints.layout import PROJECTED
-from ..joints.scratch import BEFORE, BODY_0, BODY_1, M_BODY
 from ..layout import AX
 from ..rows.build import normal_rate
 from ..rows.layout import ROW_COLUMNS
@@ -44,43 +41,14 @@ from ..sustained.step import moved, recall, speeds
 from .advance import NOT_AT_ALL, Motion, advance
 from .alone import begin_alone, is_component, meets_nobody
 from .columns import make_columns
-from .component import fit_speeds, step_component
+from .component import step_component
+from .fitting import fit
 from .gathered import gather_component, keep_joints, restore_joints
 from .groups import Groups, find_groups
 from .layout import LIFTED, TURNED_WORK, Joints
 from .lifting import lift
 from .motors import drives
 from .press import lost, press, slip_of
-
-
-@kernel
-def fit(
-    A: Scene, J: Joints, isle: Local, groups: Groups, P: IntArray, Q: IntArray, L: FloatArray, m: int, motion: Motion,
-    end: float, h: float,
-) -> None:  # fmt: skip
-    """Make the velocities at the end of a lossy span fit the joints of the components that contacts push.
-
-    Bodies that land leave velocities which violate joints, and those would ring for ever: a midpoint rule turns their
-    sign in every step. What this costs is booked.
-    """
-    NOTHING = np.zeros_like(isle.V)
-    # One more, for GROUP -1.
-    PUSHED = np.zeros(len(groups.COMPONENT) + 1, np.int64)
-    for i in range(m):
-        if L[i, 0] > 0.0:
-            PUSHED[groups.GROUP[P[i]] + 1] = PUSHED[groups.GROUP[Q[i]] + 1] = 1
-    for g in range(len(groups.COMPONENT)):
-        s = groups.COMPONENT[g]
-        if s < 0 or PUSHED[g + 1] == 0:
-            continue
-        length = gather_component(A, J, s, motion.END, motion.V, NOTHING, isle.IM, isle.II, end, h)
-        fit_speeds(A, J, s, length)
-        book_fit(J.LOCAL, J.SPAN[s, BODY_1] - J.SPAN[s, BODY_0], J.STEPPED[s], int(PROJECTED))
-        for w in range(J.SPAN[s, BODY_1] - J.SPAN[s, BODY_0]):
-            body = J.MEMBER[J.SPAN[s, BODY_0] + w, M_BODY]
-            if body < A.PLACE.shape[0] and A.PLACE[body] >= 0:
-                for c in range(3):
-                    motion.V[A.PLACE[body], c] = J.LOCAL[w, BEFORE + c]
 
 
 @uncounted
@@ -161,7 +129,7 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
             COUNT[UNMET] += 1
         remember_loads(ROWS, KEY, L, m, h, A.KEYS, A.FORCES, COUNT[REMEMBERED:], A.PAR[STAMP])
     if m == 0:
-        advance(A, J, isle, groups, P, Q, ROWS, L, 0, t, h, motion, C, NOT_AT_ALL)
+        advance(A, J, isle, groups, P, Q, ROWS, L, 0, t, h, motion, C, NOT_AT_ALL, np.empty((0, 3)))
     book_turning(A, J, isle, groups, motion, n)
     # Bodies are lifted at the end of the span, not on the way: the way would be as steep as the span is short.
     WHERE = motion.END.copy()
@@ -173,7 +141,7 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
                 if groups.COMPONENT[g] >= 0:
                     J.STEPPED[groups.COMPONENT[g], LIFTED] = spent
                     break
-        fit(A, J, isle, groups, P, Q, L, m, motion, t + h, h)
+        fit(A, J, isle, groups, P, Q, ROWS, L, m, motion, t + h, h, slow + pull * h, C)
     dismiss(A, MINE, n)
     COUNT[SOLVES] += 1
     first = COUNT[PUSHES]

@@ -1,9 +1,9 @@
 """How an island of joints answers impulses on its bodies: the change of velocities per impulse.
 
 About a solved step, d v1 = S p for impulses p spread over the step, S the inverse of Newton's matrix with springs and
-bounded joints, but without the bending of rows, by which S would not be positive where joints press. At one instant (an
-impact), S = M^-1 - M^-1 G^T (G M^-1 G^T)^-1 G M^-1: joints that hold exactly let no velocity through, and all others no
-impulse.
+bounded joints. Rows turn as bodies move, and the force of joints that pull with them: without that what is taut would
+give way across. Of joints that press it is left out: S would not be positive. At one instant (an impact),
+S = M^-1 - M^-1 G^T (G M^-1 G^T)^-1 G M^-1: joints that hold exactly let no velocity through, and all others no impulse.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from ..compiled import uncounted
 from .condensed import PASSES
 from .motion import move
 from .newton import assemble
-from .rows import start_joint
+from .rows import joint_rows, start_joint
 from .scratch import (
     AFTER,
     BEFORE,
@@ -24,12 +24,16 @@ from .scratch import (
     COS,
     DUAL,
     FREEDOMS,
+    FULL_BEND,
+    L_A,
+    L_B,
     L_ROW,
     L_ROWS,
     L_SOFT,
     LAM,
     LOOPS,
     MOBILITY,
+    NO_BEND,
     POSE,
     RIGID,
     ROOT,
@@ -38,11 +42,30 @@ from .scratch import (
     SIN,
     STEP,
     SYSTEM,
+    TOTAL,
     UNKNOWNS,
 )
 from .solve import LEAST_EPSILON, back, begin, decompose
 
 _REFINE = 2  # passes that take back what epsilon, for rows that may be redundant, has changed
+
+
+@uncounted
+def bend_if_taut(
+    joint: FloatArray, hinge: FloatArray, link: IntArray, k: int, local: FloatArray, h: float, stiff: FloatArray
+) -> None:
+    """Let joint k have the impulse of the whole step if it pulls, so that its rows take their force along as they turn;
+    none if it presses."""
+    hinge[k, LAM], hinge[k, LAM + 1] = hinge[k, TOTAL], hinge[k, TOTAL + 1]
+    bend = joint_rows(joint, hinge, link, k, local, h, True, stiff)
+    pulls = bend != NO_BEND
+    for c in range(6):
+        # What does not move adds nothing.
+        at = link[k, L_A] if c < 3 else link[k, L_B]
+        if local[at, MOBILITY + c % 3] > 0.0 and (bend == FULL_BEND or c % 3 == 2):
+            pulls = pulls and stiff[c, c] <= 0.0
+    if not pulls:
+        hinge[k, LAM] = hinge[k, LAM + 1] = 0.0
 
 
 @uncounted
@@ -63,10 +86,10 @@ def prepare(
             local[i, COS], local[i, SIN] = np.cos(local[i, POSE + 2]), np.sin(local[i, POSE + 2])
         for k in range(joints):
             start_joint(joint, hinge, link, k, local, h)
-            # Without the bending of rows, S is symmetric and positive up to first order in h.
-            if link[k, L_ROWS] > 0 and link[k, L_SOFT] == 0:
-                hinge[k, LAM] = hinge[k, LAM + 1] = 0.0
         move(local, bodies, h)
+        for k in range(joints):
+            if link[k, L_ROWS] > 0 and link[k, L_SOFT] == 0:
+                bend_if_taut(joint, hinge, link, k, local, h, stiff)
     else:
         begin(what, joint, hinge, link, joints, local, node, bodies, h)
     system = DUAL if span[RIGID] > (1 if what == STEP else 0) else span[SYSTEM]

@@ -81,7 +81,8 @@ SYSTEM = 7  # below, WHOLE or CONDENSED
 ROWS_OF = 8  # number of unknowns beside the matrix
 DUAL_SIZE, DUAL_BAND = 9, 10  # of its matrix in the rows alone
 RIGID = 11  # what a dual system is taken for: 2 everything, 1 what happens at an instant, 0 nothing
-SPAN_COLUMNS = 12
+TAUT = 12  # 1 if its loops held by their pull in the last step (`taut`)
+SPAN_COLUMNS = 13
 # MEMBER: one row per body of each island.
 M_BODY, M_COLUMN, M_FREEDOMS, M_CAYLEY, M_FIRST = 0, 1, 2, 3, 4
 MEMBER_COLUMNS = 5

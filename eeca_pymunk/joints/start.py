@@ -66,9 +66,9 @@ APART_FROM = 1e-10  # joints farther apart than this, over the size of the islan
 @uncounted
 def read_joints(
     joint: FloatArray, tie: IntArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, h: float,
-    length: float, loops: bool,
+    length: float,
 ) -> int:  # fmt: skip
-    """Fill in what the joints bring from before. Redundant rows begin without impulse.
+    """Fill in what the joints bring from before.
 
     Returns 0, plus 1 if a joint was touched, plus 2 if a soft joint needs its target.
     """
@@ -78,7 +78,7 @@ def read_joints(
         link[k, L_SIDE] = tie[j, SIDE]
         is_soft = tie[j, SOFT] != 0 and kind not in (SPRING, ROTARY_SPRING)
         link[k, L_SOFT] = 1 if kind == MOTOR or is_soft else 0
-        warm = 0.0 if loops or joint[j, LAST_STEP] == 0.0 else h / joint[j, LAST_STEP]
+        warm = 0.0 if joint[j, LAST_STEP] == 0.0 else h / joint[j, LAST_STEP]
         hinge[k, LAM], hinge[k, LAM + 1] = joint[j, IMPULSE_1] * warm, joint[j, IMPULSE_2] * warm
         hinge[k, TOTAL] = hinge[k, TOTAL + 1] = 0.0
         hinge[k, TARGET] = hinge[k, TARGET + 1] = hinge[k, SCALE] = hinge[k, SCALE + 1] = 0.0

@@ -68,11 +68,13 @@ from .scratch import (
     SIN,
     SPEEDS,
     STEP,
+    TAUT,
     TOTAL,
     TRAVEL,
 )
 from .solve import solve
 from .start import book_closing, farthest, find_apart, look, read_joints, soft_targets
+from .taut import taut
 
 SUZUKI = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))
 FIRST_RUNG, LAST_RUNG = 0, 6  # rung -1 is order 4
@@ -166,7 +168,12 @@ def island_step(
     for c in range(LEDGER_COLUMNS):
         ledger[c] = 0.0
     loops = span[LOOPS] > 0
-    needs = read_joints(joint, tie, hinge, link, joints, local, h, length, loops)
+    needs = read_joints(joint, tie, hinge, link, joints, local, h, length)
+    # Redundant rows begin without impulse, unless it is what holds bodies.
+    span[TAUT] = 1 if loops and taut(joint, hinge, link, joints, local, h) else 0
+    cold = loops and span[TAUT] == 0
+    for k in range(joints if cold else 0):
+        hinge[k, LAM] = hinge[k, LAM + 1] = 0.0
     for i in range(bodies):
         for c in range(3):
             local[i, SHIFT + c] = 0.0
@@ -222,14 +229,14 @@ def island_step(
         for p in range(parts):
             piece = h / parts if rung >= 0 else (1.0 - 4.0 * SUZUKI) * h if p == 2 else SUZUKI * h
             for k in range(joints):
-                warm = 0.0 if loops or rung == LAST_RUNG else piece / before
+                warm = 0.0 if cold or rung == LAST_RUNG else piece / before
                 hinge[k, LAM] *= warm
                 hinge[k, LAM + 1] *= warm
             before = piece
             if rung < 0 and known:
-                foretell(joint, p, piece, loops, hinge, link, joints, local)
+                foretell(joint, p, piece, cold, hinge, link, joints, local)
             done = step_with_limits(
-                what, joint, hinge, link, joints, local, node, bodies, piece, length, loops, give, rung < 0, span,
+                what, joint, hinge, link, joints, local, node, bodies, piece, length, cold, give, rung < 0, span,
                 matrix, right, more, pivots, stiff, found, part,
             )  # fmt: skip
             if not done:
@@ -241,8 +248,8 @@ def island_step(
             status = EXACT if rung <= 0 else HALVED if rung < 4 else ELASTIC if rung < LAST_RUNG else LINEAR
             break
         restore(joint, tie, hinge, link, joints, local, bodies)
-        rung += 0 if known else 1
-        known = False
+        rung += 0 if known or cold != loops else 1
+        known, cold = False, loops
         forget(joint, link, joints)
     if status == LINEAR:
         if rung > LAST_RUNG:  # not even that: free flight

@@ -1,0 +1,139 @@
+"""Velocities at the end of a lossy span made to fit the joints, and contacts kept from closing by it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import kernel, uncounted
+from ..impacts.layout import Scene
+from ..impacts.spans import Local
+from ..joints.correct import book_fit
+from ..joints.layout import PROJECTED, SUPPORTS
+from ..joints.scratch import BEFORE, BODY_0, BODY_1, M_BODY
+from ..rows.build import normal_rate
+from ..rows.layout import ARM_NA, ARM_NB, ARM_TA, ARM_TB, NX, NY
+from .advance import Motion, is_hit
+from .columns import Columns, fill_free, fill_group, weigh
+from .component import fit_speeds, ready
+from .gathered import find_places, gather_component
+from .groups import Groups
+from .layout import Joints
+from .lifting import raise_gaps
+from .motors import keeps_speed
+from .newton import FEW
+
+_SLOW = 1e-9  # speed over the island's, with which contacts may close
+_FINE = 1e-6  # of the fastest closing contact, to which others are kept from it
+_NOTHING = 1e-12  # of the energy, that is round-off of its change
+
+
+@kernel
+def fit(
+    A: Scene, J: Joints, isle: Local, groups: Groups, P: IntArray, Q: IntArray, ROWS: FloatArray, L: FloatArray, m: int,
+    motion: Motion, end: float, h: float, scale: float, C: Columns,
+) -> None:  # fmt: skip
+    """Make the velocities at the end of a lossy span fit the joints of the components that contacts push.
+
+    Bodies that land leave velocities which violate joints, and those would ring for ever: a midpoint rule turns their
+    sign in every step. What this costs is booked. Of a few contacts, those that push do not close by it: see `hold`,
+    which would change the speeds of motors.
+    `scale` is a speed of the island. C is overwritten.
+    """
+    NOTHING = np.zeros_like(isle.V)
+    # One more, for GROUP -1.
+    PUSHED = np.zeros(len(groups.COMPONENT) + 1, np.int64)
+    for i in range(m):
+        if L[i, 0] > 0.0:
+            PUSHED[groups.GROUP[P[i]] + 1] = PUSHED[groups.GROUP[Q[i]] + 1] = 1
+    first, driven = -1, False
+    for g in range(len(groups.COMPONENT)):
+        s = groups.COMPONENT[g]
+        driven = driven or (s >= 0 and keeps_speed(J, s))
+        if s < 0 or PUSHED[g + 1] == 0:
+            continue
+        first = s if first < 0 else first
+        length = gather_component(A, J, s, motion.END, motion.V, NOTHING, isle.IM, isle.II, end, h)
+        fit_speeds(A, J, s, length)
+        book_fit(J.LOCAL, J.SPAN[s, BODY_1] - J.SPAN[s, BODY_0], J.STEPPED[s], int(PROJECTED))
+        for w in range(J.SPAN[s, BODY_1] - J.SPAN[s, BODY_0]):
+            body = J.MEMBER[J.SPAN[s, BODY_0] + w, M_BODY]
+            if body < A.PLACE.shape[0] and A.PLACE[body] >= 0:
+                for c in range(3):
+                    motion.V[A.PLACE[body], c] = J.LOCAL[w, BEFORE + c]
+    if first < 0 or driven or m > FEW:
+        return
+    RATES, fastest = np.full(m, np.inf), 0.0
+    for i in range(m):
+        if L[i, 0] > 0.0 and C.OUT[i] == 0:
+            RATES[i] = normal_rate(P, Q, ROWS, motion.V, i)
+            fastest = max(fastest, -RATES[i])
+    if fastest > _SLOW * scale:
+        hold(A, J, isle, groups, P, Q, ROWS, m, motion, end, h, C, RATES, _FINE * fastest, first)
+
+
+@uncounted
+def bring_arms(P: IntArray, Q: IntArray, ROWS: FloatArray, END: FloatArray, m: int) -> None:
+    """Let the arms of m contacts be about one point of both bodies at END: these have moved apart since."""
+    for i in range(m):
+        x, y, a, b = ROWS[i, NX], ROWS[i, NY], P[i], Q[i]
+        # An arm is (r x t) n - (r x n) t.
+        along = 0.5 * (x * (END[b, 0] - END[a, 0]) + y * (END[b, 1] - END[a, 1]) - ROWS[i, ARM_TA] + ROWS[i, ARM_TB])
+        across = 0.5 * (x * (END[b, 1] - END[a, 1]) - y * (END[b, 0] - END[a, 0]) + ROWS[i, ARM_NA] - ROWS[i, ARM_NB])
+        ROWS[i, ARM_TA] += along
+        ROWS[i, ARM_NA] -= across
+        ROWS[i, ARM_TB] -= along
+        ROWS[i, ARM_NB] += across
+
+
+@uncounted
+def energy_of(isle: Local, V: FloatArray) -> float:
+    """Kinetic energy of what moves."""
+    total = 0.0
+    for q in range(len(V)):
+        for c in range(3):
+            mobility = isle.IM[q] if c < 2 else isle.II[q]
+            if mobility > 0.0:
+                total += 0.5 * V[q, c] ** 2 / mobility
+    return total
+
+
+@kernel
+def hold(
+    A: Scene, J: Joints, isle: Local, groups: Groups, P: IntArray, Q: IntArray, ROWS: FloatArray, m: int,
+    motion: Motion, end: float, h: float, C: Columns, RATES: FloatArray, fine: float, book: int,
+) -> None:  # fmt: skip
+    """Normal impulses 0 <= mu _|_ u + G S G^T mu >= 0 on contacts whose rates u (m,) are RATES, infinite for those that
+    are not asked: velocities that fit the joints go on to do so, and contacts do not close. Energy only falls, by
+    -mu.(u + G S G^T mu / 2), also where sweeps are cut short; it is lost by component `book`."""
+    KEEP, NOTHING = ROWS[:m].copy(), np.zeros_like(isle.V)
+    bring_arms(P, Q, KEEP, motion.END, m)
+    fill_free(groups, C, P, Q, KEEP, isle.IM, isle.II, m)
+    INDEX = np.full(len(isle.IM), -1, np.int64)
+    for g in range(len(groups.COMPONENT)):
+        s = groups.COMPONENT[g]
+        if s < 0 or not is_hit(groups, P, Q, m, g):
+            continue
+        gather_component(A, J, s, motion.END, motion.V, NOTHING, isle.IM, isle.II, end, h)
+        size = find_places(A, J, s, INDEX)
+        if not ready(J, s, 2.0, False):
+            return
+        fill_group(J, groups, C, g, INDEX, False, P, Q, KEEP, m, np.empty((size, 3)))
+    weigh(groups, C, P, Q, KEEP, m)
+    for i in range(m):
+        if RATES[i] < np.inf:
+            RATES[i] = normal_rate(P, Q, KEEP, motion.V, i)
+    D, before = np.zeros_like(motion.V), energy_of(isle, motion.V)
+    MU = raise_gaps(C, P, Q, KEEP, RATES, D, m, fine)
+    loss = 0.0
+    for i in range(m):
+        if MU[i] > 0.0:
+            loss -= MU[i] * (RATES[i] + 0.5 * normal_rate(P, Q, KEEP, D, i))
+    motion.V[:] += D
+    gained = energy_of(isle, motion.V) - before
+    if abs(gained + loss) > _NOTHING * before:
+        # Supports move.
+        J.STEPPED[book, PROJECTED] += loss
+        J.STEPPED[book, SUPPORTS] += gained + loss
+    else:
+        J.STEPPED[book, PROJECTED] -= gained

@@ -1,0 +1,220 @@
+"""Bridges as long as their gap, or hardly longer: what hangs across by the pull of its joints alone."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pymunk
+import pytest
+
+import eeca_pymunk as ep
+from eeca_pymunk.arrays import FloatArray
+from eeca_pymunk.jointed.component import answer, ready
+from eeca_pymunk.jointed.fitting import bring_arms
+from eeca_pymunk.jointed.layout import ORDER, Joints
+from eeca_pymunk.jointed.scene import JointedLoop
+from eeca_pymunk.joints.layout import ANCHOR_AX, ANCHOR_AY, ANCHOR_BX, ANCHOR_BY, JOINT_COLUMNS, PIN, PIVOT
+from eeca_pymunk.joints.scratch import (
+    COS,
+    HINGE_COLUMNS,
+    L_A,
+    L_B,
+    L_KIND,
+    LAM,
+    LINK_COLUMNS,
+    LOCAL_COLUMNS,
+    MOBILITY,
+    POSE,
+)
+from eeca_pymunk.joints.taut import taut
+from eeca_pymunk.rows.layout import ARM_NA, ARM_NB, ARM_TA, ARM_TB, NX, NY, ROW_COLUMNS
+
+from .measures import apart, energy
+
+DT = 1 / 60
+LONG, THICK, SIDE = 0.5, 0.04, 0.6  # of a plank, half of it, of the box
+
+
+def bridge(slack: float, unit: float = 1.0, planks: int = 12) -> tuple[pymunk.Space, list[pymunk.Body]]:
+    """Planks of mass 1 on pivots over a gap that is by `slack` shorter than they are, on an arc."""
+    space = pymunk.Space()
+    space.gravity = 0.0, -9.81 * unit
+    order, low, high = np.arange(planks) - 0.5 * (planks - 1), 0.0, 0.5
+    for _ in range(200 if slack > 0.0 else 0):
+        bend = 0.5 * (low + high)
+        low, high = (bend, high) if np.cos(order * bend).sum() > planks * (1.0 - slack) else (low, bend)
+    long = LONG * unit
+    before, anchor, place = space.static_body, (0.0, 0.0), np.zeros(2)
+    deck = []
+    for angle in order * low:
+        along = long * np.array((math.cos(angle), math.sin(angle)))
+        plank = pymunk.Body(1.0, long**2 / 12)
+        plank.position, plank.angle = tuple(place + 0.5 * along), float(angle)
+        shape = pymunk.Segment(plank, (-0.5 * long, 0.0), (0.5 * long, 0.0), THICK * unit)
+        shape.filter = pymunk.ShapeFilter(group=1)
+        space.add(plank, shape, pymunk.PivotJoint(before, plank, anchor, (-0.5 * long, 0.0)))
+        deck.append(plank)
+        before, anchor, place = plank, (0.5 * long, 0.0), place + along
+    space.add(pymunk.PivotJoint(before, space.static_body, anchor, (planks * long * (1.0 - slack), 0.0)))
+    return space, deck
+
+
+def loaded(
+    slack: float, load: float, height: float, unit: float = 1.0
+) -> tuple[pymunk.Space, list[pymunk.Body], pymunk.Body]:
+    """A box of mass `load` whose lower side is `height` above the pivots, over the middle of a bridge."""
+    space, deck = bridge(slack, unit)
+    box = pymunk.Body(load, load * (SIDE * unit) ** 2 / 6)
+    box.position = 6 * LONG * (1.0 - slack) * unit, (height + 0.5 * SIDE) * unit
+    space.add(box, pymunk.Poly.create_box(box, (SIDE * unit, SIDE * unit)))
+    for shape in space.shapes:
+        shape.elasticity, shape.friction = 0.3, 0.8
+    return space, deck, box
+
+
+def overlap(deck: list[pymunk.Body], box: pymunk.Body, unit: float) -> float:
+    """How deep the lower side of the box is in the deck, over the unit."""
+    worst = 0.0
+    for x in np.linspace(-0.5 * SIDE, 0.5 * SIDE, 13):
+        point = box.local_to_world((float(x) * unit, -0.5 * SIDE * unit))
+        for plank in deck:
+            at = plank.world_to_local(point) / unit
+            if abs(at.x) <= 0.5 * LONG:
+                worst = max(worst, THICK - at.y)
+    return worst
+
+
+@pytest.mark.parametrize("load", [1.0, 5.0])
+@pytest.mark.parametrize(("slack", "deep"), [(0.0, 5e-4), (1e-6, 1e-4), (1e-4, 1e-6), (1e-3, 1e-5), (1e-2, 1e-5)])
+def test_a_box_stays_on_a_bridge_however_tight(slack: float, deep: float, load: float) -> None:
+    sag = math.sqrt(0.375 * slack) * 6.0
+    space, deck, box = loaded(slack, load, 0.06 - sag)
+    stepper, scale = ep.EECA(space), load * 9.81
+    unmet, last = 0, energy(space)
+    for k in range(240):
+        report = stepper.step(DT)
+        unmet += not report.converged
+        assert abs(report.ledger.residual) <= 1e-12 * scale
+        if k % 6 == 0:  # a box that lands is deeper for a while
+            assert overlap(deck, box, 1.0) <= 2e-3
+        if slack >= 1e-4:  # a bridge without any gives way elastically, and closes from outside
+            assert energy(space) - last <= 1e-10 * scale
+        last = energy(space)
+    assert overlap(deck, box, 1.0) <= deep
+    assert unmet <= 12
+    assert apart(space) <= (1e-5 if slack < 1e-4 else 1e-11)
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
+def test_units_do_not_matter(unit: float) -> None:
+    places = []
+    for u in (1.0, unit):
+        space, deck, box = loaded(1e-5, 2.0, 0.05, u)
+        stepper = ep.EECA(space)
+        for _ in range(60):
+            stepper.step(DT)
+        assert overlap(deck, box, u) <= 1e-4
+        places.append(box.position / u)
+    assert (places[0] - places[1]).length <= 1e-3
+
+
+def test_a_ball_falls_on_a_tight_rope() -> None:
+    """Twenty times as heavy as a link: it went through."""
+    space, links = bridge(1e-3, planks=20)
+    for link in links:
+        link.mass, link.moment = 0.05, 0.05 * LONG**2 / 12
+    ball = pymunk.Body(1.0, 0.045)
+    ball.position = 5.01, 0.8
+    space.add(ball, pymunk.Circle(ball, 0.3))
+    for shape in space.shapes:
+        shape.elasticity, shape.friction = 0.3, 0.8
+    stepper = ep.EECA(space)
+    unmet = sum(not stepper.step(DT).converged for _ in range(240))
+    assert unmet <= 12
+    assert ball.position.y > -0.1
+    assert abs(ball.position.x - 5.0) < 3.0
+
+
+def scratch(stepper: ep.EECA) -> Joints:
+    """The arrays of its joints."""
+    method = stepper._method
+    assert isinstance(method, JointedLoop)
+    return method.joints
+
+
+@pytest.mark.parametrize("slack", [1e-5, 1e-3])
+def test_what_planks_answer_is_the_derivative_of_a_step(slack: float) -> None:
+    """Of the velocities after a step, by the force on a plank: by central differences of whole steps."""
+
+    def run(force: float) -> tuple[pymunk.Space, list[pymunk.Body], ep.EECA]:
+        space, deck = bridge(slack)
+        stepper = ep.EECA(space)
+        scratch(stepper).TALLY[ORDER] = 2
+        for k in range(8):
+            deck[1].force, deck[3].force, deck[5].force = (0.0, 3.0), (0.0, -5.0), (0.0, -20.0)
+            deck[4].force = 0.0, force if k == 7 else 0.0
+            stepper.step(DT)
+        return space, deck, stepper
+
+    change = 1e-3
+    seen = np.array([b.velocity.y for b in run(change)[1]]) - np.array([b.velocity.y for b in run(-change)[1]])
+    seen /= 2.0 * change * DT
+    J = scratch(run(0.0)[2])
+    assert ready(J, 0, DT, True)
+    places = [int(np.flatnonzero(J.MEMBER[:, 0] == row)[0]) for row in range(12)]
+    PUSH = np.zeros((13, 3))
+    PUSH[places[4], 1] = 1.0
+    answer(J, 0, True, PUSH)
+    foreseen = PUSH[places, 1]
+    assert np.abs(foreseen).max() > 1e-3
+    assert np.abs(foreseen - seen).max() <= 1e-3 * np.abs(seen).max()
+
+
+@pytest.mark.parametrize("kind", [PIVOT, PIN])
+@pytest.mark.parametrize("turned", [0.0, 2.0])
+def test_taut_is_what_pulls_hard(kind: int, turned: float) -> None:
+    """Two rods end to end: a pull on their joint is stiff beside their moments if (h/2) h f r > I/2."""
+    joint, hinge = np.zeros((1, JOINT_COLUMNS)), np.zeros((1, HINGE_COLUMNS))
+    link, local = np.zeros((1, LINK_COLUMNS), np.int64), np.zeros((2, LOCAL_COLUMNS))
+    link[0, L_KIND], link[0, L_A], link[0, L_B] = kind, 0, 1
+    apart = 0.0 if kind == PIVOT else 0.25
+    joint[0, [ANCHOR_AX, ANCHOR_AY, ANCHOR_BX, ANCHOR_BY]] = 0.5, 0.0, -0.5, 0.0
+    x, y = math.cos(turned), math.sin(turned)
+    local[1, POSE : POSE + 2] = (1.0 + apart) * x, (1.0 + apart) * y
+    local[:, COS], local[:, COS + 1], local[:, MOBILITY : MOBILITY + 3] = x, y, (1.0, 1.0, 12.0)
+    least = 0.5 / (0.5 * 0.1 * 0.5 * 12.0)  # impulse
+    for pull, expected in ((0.99, False), (1.01, True), (-10.0, False)):
+        # On b, towards a: it pulls.
+        f = -pull * least
+        hinge[0, LAM : LAM + 2] = (f * x, f * y) if kind == PIVOT else (f, 0.0)
+        assert taut(joint, hinge, link, 1, local, 0.1) == expected
+
+
+def test_arms_are_brought_to_one_point() -> None:
+    rng = np.random.default_rng(3)
+    ROWS, END = np.zeros((4, ROW_COLUMNS)), rng.normal(size=(5, 3))
+    P, Q = np.arange(4), np.arange(1, 5)
+    angle = rng.uniform(0.0, 6.0, 4)
+    ROWS[:, NX], ROWS[:, NY] = np.cos(angle), np.sin(angle)
+    middle = rng.normal(size=(4, 2))
+    for arm_n, arm_t, away in ((ARM_NA, ARM_TA, 0.1), (ARM_NB, ARM_TB, -0.1)):
+        put_arms(ROWS, middle + away, arm_n, arm_t)
+    before = arms(ROWS, ARM_NA, ARM_TA) + arms(ROWS, ARM_NB, ARM_TB)
+    bring_arms(P, Q, ROWS, END, 4)
+    a, b = arms(ROWS, ARM_NA, ARM_TA), arms(ROWS, ARM_NB, ARM_TB)
+    assert np.abs(END[P, :2] + a - END[Q, :2] - b).max() < 1e-14
+    assert np.abs(a + b - before).max() < 1e-14
+
+
+def put_arms(ROWS: FloatArray, r: FloatArray, arm_n: int, arm_t: int) -> None:
+    """r x n and r x t of arms r (m, 2)."""
+    nx, ny = ROWS[:, NX], ROWS[:, NY]
+    ROWS[:, arm_n], ROWS[:, arm_t] = r[:, 0] * ny - r[:, 1] * nx, r[:, 0] * nx + r[:, 1] * ny
+
+
+def arms(ROWS: FloatArray, arm_n: int, arm_t: int) -> FloatArray:
+    """The arms (m, 2) with these products."""
+    n = ROWS[:, [NX, NY]]
+    t = np.stack((-n[:, 1], n[:, 0]), axis=1)
+    return ROWS[:, [arm_t]] * n - ROWS[:, [arm_n]] * t
