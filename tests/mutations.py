@@ -119,8 +119,6 @@ MUTATIONS = (
              "_R * (V[i, c] + LEFT[i, c])", "rows/test_equilibrium.py", "guess"),
     Mutation("statics: what moves is held like what rests", "sustained/statics.py",
              "START[i, c] += V[i, c] / max(steps, 1.0)", "START[i, c] += 0.0", "impacts/test_calming.py", "slides"),
-    Mutation("parting: nothing is calmed", "impacts/parting.py", "if n - stand > max(_RATTLING * n, _FEW):",
-             "if n > 0:", "impacts/test_calming.py", "large_pile"),
     Mutation("still: spins that nobody feels count", "impacts/calm.py", "i < A.COUNT[DISKS] and", "i < 0 and",
              "impacts/test_still.py", "spins_on"),
     Mutation("ledger: factor 1/2 of friction", "rows/energy.py", "LOSS[i, 1] = -0.5 * L[i, 1]", "LOSS[i, 1] = -L[i, 1]",
