@@ -59,12 +59,12 @@ def test_a_heap_comes_to_a_stand(unit: float) -> None:
     assert on_the_floor(space, report) == pytest.approx(24 * G * unit * DT, rel=1e-8)
 
 
-@pytest.mark.parametrize("seed", [9, 21, 38, 40])
-def test_what_stands_part_by_part_bears_its_weight_in_a_sampling_of_heaps(seed: int) -> None:
+@pytest.mark.parametrize(("count", "seed"), [(18, 39), (18, 53), (22, 58), (40, 59)])
+def test_what_stands_part_by_part_bears_its_weight_in_a_sampling_of_heaps(count: int, seed: int) -> None:
     """Some stand before others do: in these, forces below have to follow those of what comes to a stand above."""
     rng = random.Random(seed)
     space, _ = heap(0, 1.0)
-    for i in range(30):
+    for i in range(count):
         radius = rng.uniform(0.2, 0.4)
         body = pymunk.Body(1.0, 0.5 * radius * radius)
         body.position = (-1.2 + 0.8 * (i % 4) + rng.uniform(-0.05, 0.05), 0.5 + 0.85 * (i // 4))
@@ -75,7 +75,7 @@ def test_what_stands_part_by_part_bears_its_weight_in_a_sampling_of_heaps(seed: 
     for _ in range(600):
         report = stepper.step(DT)
     assert report.iterations == 0
-    assert on_the_floor(space, report) == pytest.approx(30 * G * DT, rel=1e-8)
+    assert on_the_floor(space, report) == pytest.approx(count * G * DT, rel=1e-8)
 
 
 @pytest.mark.parametrize("unit", UNITS)
