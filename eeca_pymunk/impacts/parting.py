@@ -59,10 +59,10 @@ from .spans import dismiss, lay_out_island, open_contacts, solve
 from .still import halt, stop
 
 _MOST, _FEW = 0.1, 2  # of an island's bodies, that may move while the others stand; so many always
-_TRIES, _DEAR = 2, 8  # factors in a step, beyond which nothing more is asked
+_TRIES = 2
+_CHEAP, _DEAR = 5, 8  # factors beyond which there is no other try; and in the same step nothing more is asked
 _EVERY = 8  # steps from one asking whether a crowd is calmed to the next,
-_RATTLING = 0.005  # if no more of its bodies are fast,
-_CHEAP = 6  # and factors beyond which there is no other try
+_RATTLING = 0.005  # if no more of its bodies are fast
 
 
 @uncounted
@@ -235,7 +235,7 @@ def stands_in_part(A: Scene, root: int) -> bool:
         # What touches nothing has left.
         n = members(A, one, MINE)
         MINE[:n].sort()
-        if A.COUNT[DIRECT] > factors + _DEAR:
+        if A.COUNT[DIRECT] > factors + _CHEAP:
             break
     if some:
         wait(A, STAND, stand)
