@@ -100,6 +100,42 @@ def test_there_are_forces_iff_linear_programming_finds_some(friction: float) -> 
     assert stood > 5 if friction else stood < 55
 
 
+def wall(seed: int, courses: int, bricks: int) -> Pile:
+    """Bricks on two others each, not quite flat: a tenth of their contacts are missing; all under random pulls."""
+    rng = np.random.default_rng(seed)
+    n = courses * bricks
+    pose, start = np.zeros((n + 1, 3)), np.zeros((n + 1, 3))
+    start[:n] = np.array([0.0, -1.0, 0.0]) + 0.1 * rng.normal(size=(n, 3))
+    contacts = []
+    for i in range(n):
+        course, c = divmod(i, bricks)
+        x, odd = 2.0 * c + course % 2, course % 2
+        pose[i, :2] = x, course + 0.5
+        if course == 0:
+            contacts += [(i, n, 0.0, -1.0, x + side, 0.0) for side in (-0.9, 0.9)]
+        else:
+            for below in (c - 1 + odd, c + odd):
+                turn, other = 0.15 * rng.normal(), 2.0 * below + 1 - odd
+                for end in (max(x, other) - 1.0, min(x, other) + 1.0):
+                    if 0 <= below < bricks and rng.random() < 0.9:
+                        k = (course - 1) * bricks + below
+                        contacts.append((i, k, math.sin(turn), -math.cos(turn), end, float(course)))
+        if c + 1 < bricks and rng.random() < 0.9:
+            turn = 0.1 * rng.normal()
+            contacts.append((i, i + 1, math.cos(turn), math.sin(turn), x + 1.0, course + rng.random()))
+    return Pile(pose, np.append(np.ones(n), 0.0), np.append(np.full(n, 2.4), 0.0), contacts, 0.3, start)
+
+
+@pytest.mark.parametrize("seed", [0, 1, 6, 18, 28, 78])
+def test_what_takes_long_to_balance_is_not_taken_for_what_nothing_holds(seed: int) -> None:
+    pile = wall(seed, 6, 20)
+    edges = pile.edges()
+    answer = linprog(np.zeros(edges.shape[1]), A_eq=edges, b_eq=-pile.start[:-1].ravel(), method="highs")
+    assert pile.solve() == (answer.status == 0)
+    if pile.found:
+        pile.balances()
+
+
 def on_slope(angle: float, mu: float, unit: float) -> Pile:
     """A block twice as wide as it is high, on a slope; its pull in the frame of the slope."""
     pull = G * unit * np.array([math.sin(angle), -math.cos(angle), 0.0])
