@@ -112,10 +112,10 @@ class _Work(Generic[Case, Result]):
         A worker that dies takes with it what it holds: results on their way here, cases that waited behind another.
         """
         broken = self.on(executor, range(len(self.cases)), len(self.cases))
-        for i in [] if broken else sorted(self.failed):
-            if not getattr(self.failed[i], _RAISED, False):
-                broken = broken or self.again(executor, i)
-        for i in self.left() if broken else []:
+        for i in sorted(self.failed):
+            if not broken and not getattr(self.failed[i], _RAISED, False):
+                broken = self.again(executor, i)
+        for i in self.left():
             self.failed[i] = self.failed[broken[0]]
 
     def again(self, executor: Executor, i: int) -> list[int]:

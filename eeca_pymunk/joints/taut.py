@@ -10,8 +10,9 @@ import math
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
-from .layout import ANCHOR_AX, ANCHOR_AY, ANCHOR_BX, ANCHOR_BY, PIN, PIVOT, SLIDE
-from .scratch import COS, L_A, L_B, L_JOINT, L_KIND, L_SOFT, LAM, MOBILITY, POSE, SIN
+from .layout import PIN, PIVOT, SLIDE
+from .rows import start_joint
+from .scratch import APART, ARM_A, ARM_B, L_A, L_B, L_KIND, L_SOFT, LAM, MOBILITY
 
 _TAUT = 0.5  # stiffness of a joint's pull times h^2/4, over a body's inertia
 
@@ -23,21 +24,17 @@ def taut(joint: FloatArray, hinge: FloatArray, link: IntArray, joints: int, loca
         kind = link[k, L_KIND]
         if link[k, L_SOFT] != 0 or (kind != PIVOT and kind != PIN and kind != SLIDE):
             continue
-        j, a, b = link[k, L_JOINT], link[k, L_A], link[k, L_B]
-        ca, sa, cb, sb = local[a, COS], local[a, SIN], local[b, COS], local[b, SIN]
-        rax = ca * joint[j, ANCHOR_AX] - sa * joint[j, ANCHOR_AY]
-        ray = sa * joint[j, ANCHOR_AX] + ca * joint[j, ANCHOR_AY]
-        rbx = cb * joint[j, ANCHOR_BX] - sb * joint[j, ANCHOR_BY]
-        rby = sb * joint[j, ANCHOR_BX] + cb * joint[j, ANCHOR_BY]
+        start_joint(joint, hinge, link, k, local, h)
+        rax, ray, rbx, rby = hinge[k, ARM_A], hinge[k, ARM_A + 1], hinge[k, ARM_B], hinge[k, ARM_B + 1]
         fx, fy, per = hinge[k, LAM], hinge[k, LAM + 1], 0.0
         if kind != PIVOT:
-            dx, dy = local[b, POSE] - local[a, POSE] + rbx - rax, local[b, POSE + 1] - local[a, POSE + 1] + rby - ray
+            dx, dy = hinge[k, APART], hinge[k, APART + 1]
             length = math.sqrt(dx * dx + dy * dy)
             if length > 0.0:
                 per = hinge[k, LAM] / length
             fx, fy, per = per * dx, per * dy, max(-per, 0.0)
         for end in range(2):
-            i = a if end == 0 else b
+            i = link[k, L_A] if end == 0 else link[k, L_B]
             turn = -(rax * fx + ray * fy) if end == 0 else rbx * fx + rby * fy
             if 0.5 * abs(h) * max(turn * local[i, MOBILITY + 2], per * local[i, MOBILITY]) > _TAUT:
                 return True
