@@ -1,13 +1,17 @@
-"""`python -m eeca_pymunk`: versions of what results depend on, and whether the kernels are compiled."""
+"""`python -m eeca_pymunk`: versions of what results depend on, which code kernels run, and why."""
 
 from __future__ import annotations
 
-import os
-import warnings
 from importlib.metadata import PackageNotFoundError, version
 
-from .compiled import cache_folder, compiler, disabled
+from .compiled.backend import Backend, choose
 from .recording import versions
+
+_SAYS = {
+    "library": "library",
+    "jit": "compiled just in time, at the first call of each entry point",
+    "python": "plain Python, some hundred times slower",
+}
 
 
 def lines() -> list[str]:
@@ -17,20 +21,11 @@ def lines() -> list[str]:
     except PackageNotFoundError:
         numba = "not installed"
     found = versions() | {"numba": numba}
-    return [f"{name:12} {number}" for name, number in found.items()] + [f"{'kernels':12} {_kernels()}"]
+    return [f"{name:12} {number}" for name, number in found.items()] + [f"{'kernels':12} {_kernels(choose(False))}"]
 
 
-def _kernels() -> str:
-    if disabled():
-        return f"plain Python, as NUMBA_DISABLE_JIT={os.environ['NUMBA_DISABLE_JIT']} asks for"
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # this line says it
-        if compiler() is None:
-            return "plain Python, some hundred times slower: pip install numba"
-    folder = cache_folder()
-    if any(folder.rglob("*.nbi")):
-        return f"compiled; machine code is kept in {folder}"
-    return f"compiled at the first step, which takes minutes once (eeca_pymunk.warmup() does it now); kept in {folder}"
+def _kernels(backend: Backend) -> str:
+    return f"{_SAYS[backend.kind]}: {backend.why}"
 
 
 if __name__ == "__main__":

@@ -1,42 +1,27 @@
-"""warmup: compile all kernels now, not at the first steps."""
+"""warmup: have machine code of all kernels now, not at the first steps."""
 
 from __future__ import annotations
 
 import time
 
-from .closures.dashpot import Dashpot
-from .closures.midstep import Midstep
-from .closures.time_of_impact import TimeOfImpact
-from .compiled import compiler
-from .eeca import EECA, Closure
-from .impacts.booking import flag_again
-from .impacts.scene import EventLoop
-from .space.sample import sample
-
-_DT = 0.02  # s: bodies of the samples meet within a step
+from .compiled.entries import ENTRIES
+from .compiled.kernels import kernels, prepare
 
 
 def warmup() -> float:
-    """Compile all kernels now; seconds that took.
+    """Load the library of kernels now, and build it if it is missing; seconds that took.
 
-    Without it kernels are compiled, or read from the disk, at the first step of each closure. Machine code is kept on
-    disk until the package, numba or Python changes: a warmup after that, say when a container is built, spares the
-    first run some minutes of waiting; later ones take seconds. Nothing that the caller holds is touched.
+    Without it that happens at the first step. Installed packages bring their library, which loads in milliseconds; a
+    clone builds it once for every edit of its kernels (`python -m eeca_pymunk.build`), which takes a minute or two. Where
+    kernels are compiled just in time (EECA_KERNELS=jit), all of them are compiled here. `python -m eeca_pymunk` says
+    which of these runs. Nothing that the caller holds is touched.
 
         python -c "import eeca_pymunk as ep; print(ep.warmup())"
     """
     start = time.perf_counter()
-    if compiler() is not None:
-        closures: tuple[Closure, ...] = (TimeOfImpact(), Midstep(), Dashpot(1e4, 1.0))
-        for kind, closure in [("disks", c) for c in closures] + [
-            ("boxes", closures[0]),
-            ("hooked", closures[0]),
-            ("joints", closures[0]),
-            ("joints", closures[1]),
-        ]:
-            stepper = EECA(sample(kind), closure)
-            stepper.step(_DT)
-            if isinstance(stepper._method, EventLoop):
-                # Called only where lists outgrow their room within a step.
-                flag_again(stepper._method.table)
+    if prepare().kind == "jit":
+        from .compiled.frontend.jit import ready
+
+        for name in ENTRIES:
+            ready(kernels()[name])
     return time.perf_counter() - start

@@ -11,12 +11,12 @@ from typing import ParamSpec, TypeVar
 
 import numpy as np
 import pytest
+from eeca_pymunk.fetching import fetch
+from eeca_pymunk.indexing import count_from_the_start
 
 import eeca_pymunk as ep
 from eeca_pymunk import compiled
 from eeca_pymunk.arrays import FloatArray
-from eeca_pymunk.fetching import fetch
-from eeca_pymunk.indexing import count_from_the_start
 
 P = ParamSpec("P")
 R = TypeVar("R")

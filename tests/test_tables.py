@@ -6,10 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+from eeca_pymunk.tables import Opener, Table, table_of
 
 from eeca_pymunk.arrays import FloatArray, IntArray, PoolArray
 from eeca_pymunk.compiled import compiler, kernel, uncounted
-from eeca_pymunk.tables import Opener, Table, table_of
 
 
 class Some(NamedTuple):

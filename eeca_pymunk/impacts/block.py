@@ -22,6 +22,7 @@ from ..pairs.rules import barred, law
 from ..rows.build import normal_rate, place_row
 from ..rows.layout import ELASTICITY as ELASTIC
 from ..rows.layout import K_N, ROW_COLUMNS
+from ..rows.sorting import sort
 from ..sustained.contacts import CROWD
 from .booking import end_span
 from .islands import carrier, remembered, worn
@@ -125,9 +126,8 @@ def gather(A: Scene, disks: int, a: int, b: int, t: float) -> tuple[int, int, In
                     PAIRS = more
                 PAIRS[m] = key
                 m += 1
-    PAIRS = PAIRS[:m]
-    PAIRS.sort()
-    return n, m, PAIRS
+    sort(PAIRS, m)
+    return n, m, PAIRS[:m]
 
 
 @uncounted
@@ -169,7 +169,7 @@ def lay_out(A: Scene, disks: int, n: int, m: int, PAIRS: IntArray, hit: int, res
     """
     BODY, LINK, BODIES = A.BODY, A.LINK, A.BLOCK
     k = A.SHAPE.shape[0]
-    BODIES[:n].sort()
+    sort(BODIES, n)
     for q in range(n):
         A.PLACE[BODIES[q]] = q
     POSE, V = np.zeros((n + m, 3)), np.zeros((n + m, 3))

@@ -6,7 +6,7 @@ out by what follows. So may they have turned the island, as their arms are about
 
 from __future__ import annotations
 
-from ..compiled import uncounted
+from ..compiled import Table, uncounted
 from ..layout import (
     AX,
     AY,
@@ -21,7 +21,6 @@ from ..layout import (
     Y,
 )  # fmt: skip
 from ..pairs.lists import mark_pair
-from ..tables import Table
 from .calm import whirls
 from .islands import unite
 from .layout import (

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 
-from ..compiled import inlined, uncounted
-from ..fetching import fetch
+from ..compiled import fetch, merged, uncounted
 from ..layout import AX, DUE, X
 from ..pairs.layout import AT_X, START
 from .forecast import predict
@@ -52,7 +51,7 @@ def forecast_due(A: Scene, disks: int) -> None:
     forecast_all(A, disks, n, 0.0, dt)
 
 
-@inlined
+@merged
 def fetch_body(A: Scene, i: int) -> None:
     """Have what an event of body i is about brought."""
     fetch(A.BODY, i, X)
@@ -60,7 +59,7 @@ def fetch_body(A: Scene, i: int) -> None:
     fetch(A.STATE, i, OWN)
 
 
-@inlined
+@merged
 def look_ahead(A: Scene, disks: int, now: int) -> None:
     """Have the memory bring what the events after that of body `now` are about: numbers of later ones first, as they
     say where to find the rest."""

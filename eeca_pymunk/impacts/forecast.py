@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 from ..arrays import FlagArray, FloatArray, IntArray, PoolArray
-from ..compiled import inlined, uncounted
+from ..compiled import merged, uncounted
 from ..geometry.flight import norm
 from ..layout import (
     AX,
@@ -93,7 +93,7 @@ def has_left(BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, MARK: FloatArr
     return bool(norm(x - MARK[s, AT_X], y - MARK[s, AT_Y]) > (1.0 - _INSIDE) * MARK[s, MARGIN])
 
 
-@inlined
+@merged
 def predict(
     BODY: FloatArray, STATE: IntArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, MARK: FloatArray,
     LIST: IntArray, POOL: PoolArray, FLAG: FlagArray, RULE: FloatArray, TIME: FloatArray, OF: IntArray,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from ..arrays import FlagArray, FloatArray, IntArray, PoolArray
-from ..tables import Opener
+from ..compiled import Opener
 
 # STATE (n, 8) int: one row per body
 OWN, OTHER = 0, 1  # shapes of the next event; OTHER may be one of these:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import inlined, uncounted
+from ..compiled import merged, uncounted
 from ..geometry.flight import norm
 from ..layout import AX, AY, DUE, EXTENT, OWNER, SINCE, VX, VY, X, Y
 from ..pairs.grid import renew
@@ -30,7 +30,7 @@ def carrier(LINK: IntArray, disks: int, s: int) -> int:
     return s if s < disks else int(LINK[s, OWNER])
 
 
-@inlined
+@merged
 def misses(BODY: FloatArray, i: int, o: int, ax: float, ay: float, latest: float) -> bool:
     """Whether lone disks i and o, which one acceleration pulls, part, pass far from one another, or are too far away to
     meet until `latest`: for certain. No more than `times.one_pull` would find out, and no branch."""

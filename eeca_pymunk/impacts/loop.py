@@ -6,7 +6,7 @@ kinked since is forecast anew when it comes up; until then it can only be too ea
 
 from __future__ import annotations
 
-from ..compiled import inlined, kernel, uncounted
+from ..compiled import kernel, merged, uncounted
 from ..layout import DUE, IM, OWNER
 from ..pairs.grid import renew
 from ..pairs.lists import mark_pair
@@ -60,7 +60,7 @@ def jointed(A: Scene, i: int) -> bool:
     return bool(root >= 0 and A.MEMBER[root, JOINTED] > 0)
 
 
-@inlined
+@merged
 def give_up(A: Scene, i: int, j: int) -> bool:
     """Whether bodies i and j have met as often as a step allows."""
     limit = A.COUNT[LIMIT]

@@ -20,6 +20,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..layout import VX
 from ..rows.layout import ROW_COLUMNS
+from ..rows.sorting import sort
 from ..sustained.contacts import CROWD
 from ..sustained.ledger import LEDGER_SIZE
 from ..sustained.statics import LIVELY
@@ -197,7 +198,7 @@ def stands_in_part(A: Scene, root: int) -> bool:
         return False
     MINE, STAND, MOVE = np.empty(n, np.int64), np.empty(n, np.int64), np.empty(n, np.int64)
     members(A, root, MINE)
-    MINE.sort()
+    sort(MINE, n)
     factors = A.COUNT[DIRECT]
     if n >= CROWD and A.PAR[STAMP] % _EVERY == 0.0:
         calms_down(A, root, MINE, n)
@@ -234,7 +235,7 @@ def stands_in_part(A: Scene, root: int) -> bool:
                 one = unite(A, one, i)
         # What touches nothing has left.
         n = members(A, one, MINE)
-        MINE[:n].sort()
+        sort(MINE, n)
         if A.COUNT[DIRECT] > factors + _CHEAP:
             break
     if some:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arrays import AnyArray, FloatArray, IntArray, side_by_side
+from ..compiled import table_of
 from ..layout import COUNT as VERTICES
 from ..layout import DUE, ELASTICITY, EVENT_COLUMNS, OWNER
 from ..layout import NOW as READ
@@ -17,7 +18,6 @@ from ..pairs.setup import near_lists, rebuilt
 from ..report import Details, of_events
 from ..sustained.memory import FORCE_COLUMNS, forget
 from ..sustained.relax import FRESH
-from ..tables import table_of
 from ..transfer import FORCES
 from .booking import flag_again
 from .layout import (
@@ -95,9 +95,10 @@ class EventLoop:
         STATE[:, ISLAND] = -1
         near = near_lists(BODY, SHAPE, LINK, VERTEX, moving)
         vertices = max(2, int(LINK[:, VERTICES].max(initial=2)))
-        self.lossy = bool((SHAPE[:, ELASTICITY] < 1.0).any())
+        lossy = bool((SHAPE[:, ELASTICITY] < 1.0).any())
+        self._options: tuple[int, ...] = disks, lossy  # numbers that the step takes besides dt, gravity and damping
         room = _CONTACTS
-        while self.lossy and room < min(_OF_A_BODY * n, _MANY):
+        while lossy and room < min(_OF_A_BODY * n, _MANY):
             room *= 2
         self.scene = Scene(
             BODY, STATE, SHAPE, LINK, VERTEX, *near, np.zeros((0, RULE_COLUMNS)), TIME, OF,
@@ -119,6 +120,7 @@ class EventLoop:
     @scene.setter
     def scene(self, arrays: Scene) -> None:
         self._scene, self.table = arrays, table_of(arrays)
+        self._bound: tuple[tuple[AnyArray, ...], Callable[..., int] | None] = (), None
         self._book: FloatArray = arrays.PAR[LEDGER : AFTER + 1]
 
     def step(
@@ -126,13 +128,24 @@ class EventLoop:
         left: float,
     ) -> int:  # fmt: skip
         """See `step.step`; a negative answer is one of `transfer.py`."""
-        disks, lossy = self.disks, self.lossy
-        status = step.run(self.table, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, disks, lossy, -1)
-        while status <= ROOM_FOR_LISTS:
+        bits = -1
+        while True:
+            status = self._call(STATES, WALK, EXTRA, ENDS)(dt, gx, gy, left, *self._options, bits)
+            if status > ROOM_FOR_LISTS:
+                return status
             self._grow(status)
             bits = FORCES if STATES[READ, :, 6:].any() else 0
-            status = step.run(self.table, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, disks, lossy, bits)
-        return status
+
+    def _call(self, *states: AnyArray) -> Callable[..., int]:
+        """The step as machine code, bound to these arrays and to those of the scene."""
+        known, call = self._bound
+        if call is None or any([a is not b for a, b in zip(states, known, strict=True)]):
+            call = self._bind(states)
+            self._bound = states, call
+        return call
+
+    def _bind(self, states: tuple[AnyArray, ...]) -> Callable[..., int]:
+        return step.bind(self.table, *states)
 
     def _grow(self, wish: int) -> None:
         scene = self.scene
@@ -211,16 +224,7 @@ class Together(EventLoop):
     def __init__(self, BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, disks: int) -> None:
         super().__init__(BODY, SHAPE, LINK, VERTEX, disks, 0)
         self._usual: FloatArray = self.near.MARK[:, MARGIN].copy()
+        self._options = ()
 
-    def step(
-        self, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
-        left: float,
-    ) -> int:  # fmt: skip
-        """See `together.step_together`; a negative answer is one of `transfer.py`."""
-        usual = self._usual
-        status = step_together.run(self.table, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, usual, -1)
-        while status <= ROOM_FOR_LISTS:
-            self._grow(status)
-            bits = FORCES if STATES[READ, :, 6:].any() else 0
-            status = step_together.run(self.table, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, usual, bits)
-        return status
+    def _bind(self, states: tuple[AnyArray, ...]) -> Callable[..., int]:
+        return step_together.bind(self.table, *states, self._usual)

@@ -26,6 +26,7 @@ from ..layout import (
 from ..pairs.lists import mark_pair
 from ..rows.build import normal_rate, tangent_rate
 from ..rows.layout import ARM_NA, ARM_TA, GAP, K_N, NX, NY, ROW_COLUMNS, UN, UT
+from ..rows.sorting import sort
 from ..sustained.contacts import CROWD
 from ..sustained.ledger import LEDGER_SIZE, carried
 from ..sustained.step import LOCK as LOCK_OF
@@ -207,7 +208,7 @@ def solve(A: Scene, root: int, t: float) -> int:
     members(A, root, MINE)
     if MEMBER[root, JOINTED] > 0:
         return JOINTS_DUE
-    MINE.sort()
+    sort(MINE, n)
     for q in range(n):
         A.PLACE[MINE[q]] = q
     may_lose = lossy(A, root)

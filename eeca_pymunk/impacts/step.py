@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel, uncounted
-from ..tables import Table
+from ..compiled import Table, kernel, uncounted
 from ..transfer import EVENTS as SOME
 from ..transfer import give, take
 from .begin import begin

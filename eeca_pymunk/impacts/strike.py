@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from ..arrays import FloatArray
-from ..compiled import inlined, uncounted
+from ..compiled import merged, uncounted
 from ..geometry.flight import pose
 from ..geometry.gap import gap_at, touching
 from ..layout import (
@@ -95,7 +95,7 @@ def touches(A: Scene, disks: int, a: int, b: int, t: float) -> bool:
     return gap_at(A.SHAPE, A.LINK, A.VERTEX, A.WORK, a, xa, ya, qa, b, xb, yb, qb)[0] <= tolerance
 
 
-@inlined
+@merged
 def alone(A: Scene, disks: int, i: int, other: int, t: float) -> bool:
     """Whether no shape but `other` touches the shapes of body i at instant t."""
     BODY, POOL = A.BODY, A.POOL
@@ -141,7 +141,7 @@ def law_of_disks(BODY: FloatArray, i: int, j: int) -> tuple[float, float, float,
     return BODY[i, BOUNCE] * BODY[j, BOUNCE], BODY[i, GRIP] * BODY[j, GRIP], 0.0, 0.0
 
 
-@inlined
+@merged
 def strike_disk(A: Scene, disks: int, i: int, o: int, t: float) -> None:
     """Impact of the lone disk i with shape o, another of the lone `disks` or static.
 

@@ -8,7 +8,7 @@ made contacts too, and all is solved again, a few times at most.
 from __future__ import annotations
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel, uncounted
+from ..compiled import Table, kernel, uncounted
 from ..geometry.flight import norm, pose
 from ..geometry.gap import gap
 from ..layout import ANGLE, AX, AY, EXTENT, IM, OWNER, SIZE, SPIN, TWIST, VX, VY, X, Y
@@ -16,7 +16,6 @@ from ..pairs.candidates import cover
 from ..pairs.layout import NUMBER, START
 from ..pairs.lists import mark_pair
 from ..pairs.rules import barred
-from ..tables import Table
 from .coming import way_of
 from .islands import TOUCH, approach, unite
 from .layout import (
@@ -158,8 +157,8 @@ def resume_together(
 
 @kernel
 def step_together(
-    TABLE: Table, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float,
-    gy: float, left: float, USUAL: FloatArray, bits: int,
+    TABLE: Table, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, USUAL: FloatArray,
+    dt: float, gx: float, gy: float, left: float, bits: int,
 ) -> int:  # fmt: skip
     """From the states that were read to those that are to be written: arguments and answer as of `step.step`.
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from ..arrays import FloatArray, IntArray
-from ..tables import Opener
+from ..compiled import Opener
 
 # TALLY (8,) int
 COMPONENTS, ORDER, WORST, REPEATS = 0, 1, 2, 3  # how many; 2 or 4; worst status of the step; steps of components

@@ -7,7 +7,7 @@ on one (of body COUNT[STRUCK]).
 from __future__ import annotations
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel, uncounted
+from ..compiled import Table, kernel, uncounted
 from ..impacts.due import forecast, forecast_due
 from ..impacts.heap import push
 from ..impacts.layout import (
@@ -40,7 +40,6 @@ from ..impacts.step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, finish, start, wi
 from ..joints.layout import BODY_A, BODY_B, ELASTIC, TOUCHED
 from ..layout import BODY_ROW, LEFT, SINCE
 from ..layout import NOW as READ
-from ..tables import Table
 from .layout import COMPONENTS, REPEATS, WORST, Joints, joints_of
 from .meet import book_component
 from .solve import begin_span

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import AnyArray, FloatArray, IntArray
+from ..compiled import table_of
 from ..impacts.layout import NEXT_TIED, TIED
 from ..impacts.scene import EventLoop
-from ..impacts.step import ROOM_FOR_LISTS
 from ..joints.layout import JOINT_COLUMNS, TIE_COLUMNS
 from ..joints.plan import make_plan, room_for
 from ..joints.scratch import (
@@ -23,10 +25,7 @@ from ..joints.scratch import (
     NODE_COLUMNS,
     SPAN_COLUMNS,
 )
-from ..layout import NOW as READ
 from ..pairs.layout import MARGIN
-from ..tables import table_of
-from ..transfer import FORCES
 from .layout import COMPONENTS, ORDER, STEPPED_COLUMNS, TALLY_LENGTH, Joints
 from .loop import step_jointed
 from .together import step_together_jointed
@@ -51,6 +50,8 @@ class JointedLoop(EventLoop):
         self._joint, self._tie, self._partner, self._order = joint, tie, PARTNER, order
         self._together = together
         self._usual: FloatArray = self.near.MARK[:, MARGIN].copy()
+        if together:
+            self._options = ()
         self.plan()
 
     def plan(self) -> None:
@@ -81,23 +82,9 @@ class JointedLoop(EventLoop):
             np.zeros((max(components, 1), STEPPED_COLUMNS)), tally,
         )  # fmt: skip
         self._ties = table_of(self.joints)
+        self._bound = (), None
 
-    def step(
-        self, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
-        left: float,
-    ) -> int:  # fmt: skip
-        """See `loop.step_jointed`; a negative answer is one of `..transfer`."""
-        disks, lossy, ties, bits = self.disks, self.lossy, self._ties, -1
-        while True:
-            if self._together:
-                status = step_together_jointed.run(
-                    self.table, ties, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, self._usual, bits
-                )
-            else:
-                status = step_jointed.run(
-                    self.table, ties, STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, disks, lossy, bits
-                )
-            if status > ROOM_FOR_LISTS:
-                return status
-            self._grow(status)
-            bits = FORCES if STATES[READ, :, 6:].any() else 0
+    def _bind(self, states: tuple[AnyArray, ...]) -> Callable[..., int]:
+        if self._together:
+            return step_together_jointed.bind(self.table, self._ties, *states, self._usual)
+        return step_jointed.bind(self.table, self._ties, *states)

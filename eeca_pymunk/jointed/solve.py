@@ -35,6 +35,7 @@ from ..impacts.spans import Local, dismiss, lay_out_island, open_contacts
 from ..layout import AX
 from ..rows.build import normal_rate
 from ..rows.layout import ROW_COLUMNS
+from ..rows.sorting import sort
 from ..sustained.contacts import NEAR, gather
 from ..sustained.memory import remember_loads
 from ..sustained.step import moved, recall, speeds
@@ -87,7 +88,7 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
     n = MEMBER[root, BODIES]
     MINE = np.empty(n, np.int64)
     members(A, root, MINE)
-    MINE.sort()
+    sort(MINE, n)
     for q in range(n):
         A.PLACE[MINE[q]] = q
     may_lose = lossy(A, root)

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel
+from ..compiled import Table, kernel
 from ..impacts.islands import unite
 from ..impacts.layout import (
     DONE,
@@ -27,7 +27,6 @@ from ..impacts.spans import solve
 from ..impacts.step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, finish
 from ..impacts.together import anew, join_all
 from ..layout import EXTENT, SPIN, VX, VY
-from ..tables import Table
 from .layout import Joints, joints_of
 from .loop import book_joints, start_jointed
 from .solve import begin_span
@@ -69,8 +68,8 @@ def resume_together_jointed(
 
 @kernel
 def step_together_jointed(
-    TABLE: Table, JOINTS: Table, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float,
-    gx: float, gy: float, left: float, USUAL: FloatArray, bits: int,
+    TABLE: Table, JOINTS: Table, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray,
+    USUAL: FloatArray, dt: float, gx: float, gy: float, left: float, bits: int,
 ) -> int:  # fmt: skip
     """From the states that were read to those that are to be written: arguments and answer as
     `..impacts.together.step_together`."""

@@ -9,7 +9,7 @@ and needs no pivots. Rows are those of the factors (FROZEN), also where these se
 from __future__ import annotations
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import inlined, merged, uncounted
+from ..compiled import merged, uncounted
 from .scratch import COLUMN, FREEDOMS, FROZEN, L_A, L_ROW, L_ROWS, MISSING, ROOT, ROWS, SCALE, WEIGHT
 
 PASSES = 3
@@ -105,7 +105,7 @@ def freeze(
             hinge[k, FROZEN + 12 + at] = scale * hinge[k, slopes + at]
 
 
-@inlined
+@merged
 def spread(
     hinge: FloatArray, link: IntArray, node: IntArray, k: int, r: int, amount: float, right: FloatArray, at: int
 ) -> None:
@@ -116,7 +116,7 @@ def spread(
             right[at + node[i, COLUMN] + c] += amount * hinge[k, FROZEN + 6 * r + 3 * end + c]
 
 
-@inlined
+@merged
 def reach_of(
     hinge: FloatArray, link: IntArray, node: IntArray, k: int, r: int, right: FloatArray, at: int
 ) -> float:  # fmt: skip

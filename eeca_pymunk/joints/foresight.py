@@ -16,7 +16,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import inlined, uncounted
+from ..compiled import merged, uncounted
 from .layout import COUNTED, COUNTED_OF, PAST_LED, PAST_PUSH
 from .scratch import L_A, L_B, L_JOINT, L_ROWS, LAM, LEAD
 
@@ -50,13 +50,13 @@ def recalls(joint: FloatArray, link: IntArray, joints: int, h: float) -> bool:
     return bool(same and count >= DEPTH)
 
 
-@inlined
+@merged
 def weigh(part: int, last: int, place: int) -> float:
     """The weight of what stands at a place, where the newest stands at `last`."""
     return float(WEIGHTS[part, last - place if place <= last else last - place + DEPTH])
 
 
-@inlined
+@merged
 def extrapolate(
     joint: FloatArray, j: int, column: int, w0: float, w1: float, w2: float, w3: float, w4: float, w5: float
 ) -> float:  # fmt: skip

@@ -11,8 +11,7 @@ from __future__ import annotations
 import math
 
 from ..arrays import FlagArray, FloatArray, IntArray, PoolArray
-from ..compiled import uncounted
-from ..fetching import fetch
+from ..compiled import fetch, uncounted
 from ..layout import X
 from .cells import bucket, cell_at, draw, link, near, unlink
 from .layout import (

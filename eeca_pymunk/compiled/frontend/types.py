@@ -1,7 +1,7 @@
-"""What numba has to know of `table.py`. It is imported when kernels are compiled, and only then.
+"""numba's types of tables, openers and `fetch`, and its types of what `entries.py` declares.
 
 A table is a pointer to words of 64 bits, WORDS for each array: where its data are, its size, its last two lengths.
-Nothing of this changes while a kernel runs, which LLVM is told: it reads a word once, however often it is asked for.
+Nothing of this changes while a kernel runs, which LLVM is told: it reads a word once, however often it is used.
 """
 
 from __future__ import annotations
@@ -18,7 +18,10 @@ from numba.core.typing.templates import AttributeTemplate
 from numba.extending import infer_getattr, intrinsic, models, register_model
 from numba.np.numpy_support import from_dtype
 
-from .table import WORDS, fields
+from ..tables import WORDS, Opener
+from ..entries import TABLES, is_array, split, table_fields
+from ..kernels import Compilable
+from ..prefetch import Fetch
 
 
 class TableType(types.Type):
@@ -38,7 +41,7 @@ class TableType(types.Type):
 
 @register_model(TableType)
 class _Model(models.OpaqueModel):
-    """A pointer that nobody counts."""
+    """A pointer without a count of references."""
 
 
 @infer_getattr
@@ -77,11 +80,38 @@ def _attribute(context: Any, builder: Any, table: TableType, value: Any, name: s
     return one._getvalue()
 
 
-@functools.cache
-def opener(kind: str) -> Any:
-    """The numba type of the function that opens tables of this kind; what is no table, it hands on as it is."""
+def declared_type(kind: str) -> Any:
+    """numba's type of what `entries.py` calls `f8[2]`, `i8`, `bool`; of a table, that of its words."""
+    if kind.endswith("}"):
+        return types.Array(types.int64, 1, "C")
+    if is_array(kind):
+        dtype, ndim = split(kind)
+        return types.Array(from_dtype(np.dtype(dtype)), ndim, "C")
+    return {"f8": types.float64, "i8": types.int64, "bool": types.boolean}[kind]
 
-    @intrinsic
+
+def global_type(python: Any) -> Any:
+    """The type of an intrinsic function, as of a global of a kernel."""
+    found = intrinsic(python)
+    for context in (cpu_target.typing_context, cpu_target.target_context):
+        context.refresh()
+    return cpu_target.typing_context.resolve_value_type(found)
+
+
+@functools.cache
+def type_of_other(one: Compilable) -> Any:
+    """The type of what kernels name that is no kernel."""
+    if isinstance(one, Opener):
+        return _opener(one.kind)
+    assert isinstance(one, Fetch)
+    return global_type(_fetch)
+
+
+def _opener(kind: type) -> Any:
+    """The type of the function that opens tables of this kind; what is no table, it returns as it is."""
+    name = kind.__name__
+    fields = table_fields(name) if name in TABLES else getattr(kind, "fields", ())
+
     def opened(typing: Any, table: Any) -> Any:
         if not isinstance(table, types.Array):
             return table(table), lambda context, builder, signature, args: args[0]
@@ -90,8 +120,28 @@ def opener(kind: str) -> Any:
             numbers = context.make_array(signature.args[0])(context, builder, args[0])
             return builder.bitcast(numbers.data, context.get_value_type(signature.return_type))
 
-        return TableType(kind, fields[kind])(table), point
+        return TableType(name, fields)(table), point
 
-    for context in (cpu_target.typing_context, cpu_target.target_context):
-        context.refresh()
-    return cpu_target.typing_context.resolve_value_type(opened)
+    return global_type(opened)
+
+
+def _fetch(typing: Any, table: Any, row: Any, column: Any) -> Any:
+    """LLVM's prefetch of the cache line of an element."""
+
+    def bring(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        array = context.make_array(signature.args[0])(context, builder, args[0])
+        number = ir.IntType(32)
+        place, column = (
+            context.cast(builder, a, k, types.int64) for a, k in zip(args[1:], signature.args[1:], strict=True)
+        )
+        if signature.args[0].ndim == 2:
+            width = builder.extract_value(array.shape, 1)
+            place = builder.add(builder.mul(place, width), column)
+        line = builder.bitcast(builder.gep(array.data, [place]), ir.IntType(8).as_pointer())
+        kind = ir.FunctionType(ir.VoidType(), [line.type, number, number, number])
+        ask = builder.module.declare_intrinsic("llvm.prefetch", [line.type], kind)
+        # To read, to be kept in all caches, data.
+        builder.call(ask, [line, ir.Constant(number, 0), ir.Constant(number, 3), ir.Constant(number, 1)])
+        return context.get_dummy_value()
+
+    return types.void(table, row, column), bring

@@ -1,0 +1,61 @@
+"""`python -m eeca_pymunk.build`: compile the kernels to the library of these sources."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from pathlib import Path
+
+from ..compiled.backend import advice
+from ..compiled.library import Status, load
+from ..compiled.sources import library_folder, library_name
+from ..compiled.targets import TARGETS, this_platform
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Build, and say what was built; the exit status."""
+    parser = argparse.ArgumentParser(prog="python -m eeca_pymunk.build", description=__doc__)
+    parser.add_argument("--target", action="append", choices=[*TARGETS, "all"], help="platform, this one by default")
+    parser.add_argument("--out", type=Path, help="folder; by default beside the sources")
+    parser.add_argument("--workers", type=int, help="processes; by default one for each core, eight at most")
+    parser.add_argument("--portable", action="store_true", help="for other machines too: linked by the ziglang wheel")
+    parser.add_argument("--force", action="store_true", help="also if the library is there")
+    options = parser.parse_args(arguments)
+    names = list(TARGETS) if "all" in (options.target or ()) else options.target or [this_platform()]
+    if unknown := [name for name in names if name not in TARGETS]:
+        print(f"no library is built for {unknown[0]}, only for {', '.join(TARGETS)}", file=sys.stderr)
+        return 2
+    folder = (options.out or library_folder()).resolve()
+    try:
+        from .builder import Builder, alone, remove_older
+        from .workers import default_workers
+    except ImportError as error:
+        print(f"{error}. {advice()}", file=sys.stderr)
+        return 2
+    with alone(folder):
+        here = folder / library_name()
+        if (
+            not options.force
+            and names == [this_platform()]
+            and load(here if here.is_file() else None)[0] is Status.LOADED
+        ):
+            print(f"{here} is there already; --force builds it again")
+            return 0
+        start = time.perf_counter()
+        builder = Builder(folder, options.workers or default_workers(), True)
+        try:
+            built = builder.run(names, options.portable)
+        except (RuntimeError, ImportError) as error:
+            print(error, file=sys.stderr)
+            return 1
+    for path in built:
+        print(f"{path}  {path.stat().st_size / 1e6:.2f} MB")
+        remove_older(path)
+    print("  ".join(f"{name} {seconds:.1f} s" for name, seconds in builder.seconds.items()))
+    print(f"{time.perf_counter() - start:.1f} s in all")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

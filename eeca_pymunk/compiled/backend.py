@@ -1,0 +1,138 @@
+"""Which code kernels run: the library, numba's just-in-time compiler, or plain Python.
+
+In this order:
+
+1. the library of these sources (`library.py`), which is built first if it is missing and the builder's requirements are
+   installed (numba and a linker, `eeca_pymunk/build`): once, in a process of its own, with a progress bar;
+2. just in time, by numba in this process, if numba is installed but no library can be linked;
+3. plain Python, some hundred times slower, with a warning.
+
+The environment variable EECA_KERNELS (library, jit, python) chooses one of them; NUMBA_DISABLE_JIT=1 is plain Python.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import subprocess
+import sys
+import threading
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from .library import Entry, Status, load
+from .sources import library_folder, library_path, writable
+from .targets import linker, this_platform
+
+CHOICES = ("", "library", "jit", "python")
+_PLAIN = "eeca_pymunk runs as plain Python, some hundred times slower"
+
+
+@dataclass(frozen=True)
+class Backend:
+    """What kernels run.
+
+    Attributes:
+        kind: library, jit or python.
+        why: one sentence.
+        entries: what Python calls as machine code, by name; empty for python.
+    """
+
+    kind: str
+    why: str
+    entries: Mapping[str, Entry] = field(default_factory=dict)
+
+
+_lock = threading.Lock()
+_chosen: Backend | None = None
+
+
+def start() -> Backend:
+    """The backend of this process, chosen at the first call; later calls take no time."""
+    global _chosen
+    if _chosen is None:
+        with _lock:
+            if _chosen is None:
+                _chosen = choose(build=True)
+                if _chosen.kind == "python" and not asked_for():
+                    warnings.warn(f"{_PLAIN}: {_chosen.why}", stacklevel=5)
+    return _chosen
+
+
+def asked_for() -> str:
+    """The backend that the environment asks for, "" for none.
+
+    Raises:
+        ValueError: EECA_KERNELS is something else.
+    """
+    if os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
+        return "python"
+    asked = os.environ.get("EECA_KERNELS", "")
+    if asked not in CHOICES:
+        raise ValueError(f"EECA_KERNELS={asked}: choose one of {', '.join(CHOICES[1:])}, or leave it unset")
+    return asked
+
+
+def choose(build: bool) -> Backend:
+    """The backend of this process; a missing library is built only if `build`.
+
+    Raises:
+        ImportError: EECA_KERNELS asks for what is not there.
+    """
+    asked = asked_for()
+    if asked == "python":
+        return Backend("python", "the environment asks for it (NUMBA_DISABLE_JIT or EECA_KERNELS)")
+    said = ""
+    if asked != "jit":
+        path = library_path()
+        status, entries, said = load(path)
+        if status is not Status.LOADED and build and (said := cannot_build()) == "":
+            said = _build()
+            path = library_path()
+            status, entries, more = load(path)
+            said = said or more
+        if status is Status.LOADED:
+            return Backend("library", f"{path}", entries)
+        said = f"library: {status.value}{f' ({said})' if said else ''}"
+        if asked == "library":
+            raise ImportError(f"EECA_KERNELS=library, but {said}")
+    if _installed("numba"):
+        from .frontend.jit import entries as compiled
+
+        return Backend("jit", said or "EECA_KERNELS asks for it", compiled())
+    if asked == "jit":
+        raise ImportError("EECA_KERNELS=jit, but numba is not installed")
+    return Backend("python", f"{said}; numba is not installed either. {advice()}")
+
+
+def advice() -> str:
+    """How to get machine code."""
+    return "Install a wheel for this platform, or pip install 'eeca-pymunk[build]' and run python -m eeca_pymunk.build"
+
+
+def cannot_build() -> str:
+    """Why the library cannot be built here; "" if it can."""
+    if not _installed("numba"):
+        return "numba, which builds it, is not installed"
+    if not writable(library_folder()):
+        return f"{library_folder()} is read-only"
+    return "" if linker(this_platform()) else "there is no linker: install a C compiler, or pip install ziglang"
+
+
+def _installed(name: str) -> bool:
+    if name in sys.modules:
+        return sys.modules[name] is not None
+    return importlib.util.find_spec(name) is not None
+
+
+def _build() -> str:
+    """Build the library in another process, which shows its progress; what went wrong, "" if nothing did."""
+    package = Path(__file__).parents[2]
+    paths = os.pathsep.join([str(package), *filter(None, [os.environ.get("PYTHONPATH")])])
+    done = subprocess.run(
+        [sys.executable, "-m", "eeca_pymunk.build"],
+        env={**os.environ, "PYTHONPATH": paths}, stdout=subprocess.DEVNULL,
+    )  # fmt: skip
+    return "" if done.returncode == 0 else f"python -m eeca_pymunk.build failed with exit status {done.returncode}"

@@ -1,0 +1,91 @@
+"""Calls between kernels, typed by annotations.
+
+numba compiles what a function calls before it can type the call. Here a call is typed by what the kernel says that it
+returns, and lowered to a call of a symbol: each kernel is compiled by itself, in any order and in any process, and once
+for each tuple of argument types. Literals and 32-bit integers count as 64-bit numbers, so that constants in a call do
+not make another tuple.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import inspect
+import typing
+from collections.abc import Callable
+from typing import Any
+
+from numba.core import cgutils, types
+
+from ..kernels import Compilable, Kernel, set_types
+from .types import global_type, type_of_other
+
+_RETURNED = {int: types.int64, float: types.float64, bool: types.boolean, type(None): types.none}
+
+Call = tuple[Kernel[Any, Any], tuple[Any, ...]]  # a kernel and the types of its arguments
+met: list[Call] = []  # calls that have been typed since the list was last cleared
+# The type that a kernel returns whose annotation does not say it, an array for instance: it has to be compiled.
+inferred: list[Callable[[Call], Any]] = []
+
+
+def symbol(call: Call) -> str:
+    """The name of a kernel's code for these types of arguments."""
+    kernel, args = call
+    digest = hashlib.sha256(f"{kernel.name}{args!r}".encode()).hexdigest()
+    return f"{kernel.python.__name__}_{digest[:16]}"
+
+
+@functools.cache
+def annotated(kernel: Kernel[Any, Any]) -> Any:
+    """numba's type of what a kernel returns by its annotation; None if that leaves it open."""
+    return _returned(typing.get_type_hints(kernel.python)["return"])
+
+
+def _returned(hint: Any) -> Any:
+    if typing.get_origin(hint) is tuple:
+        parts = [_returned(one) for one in typing.get_args(hint)]
+        return None if None in parts else types.Tuple(parts)
+    return _RETURNED.get(hint) if isinstance(hint, type) else None
+
+
+def _wide(kind: Any) -> Any:
+    kind = types.unliteral(kind)
+    return types.int64 if kind == types.int32 else kind
+
+
+def typed_call(kernel: Kernel[Any, Any], args: tuple[Any, ...]) -> tuple[Any, Callable[..., Any]]:
+    """The signature of a call, and what lowers it."""
+    call = kernel, tuple(map(_wide, args))
+    returned = annotated(kernel)
+    if returned is None:
+        returned = inferred[-1](call)
+    met.append(call)
+    name = symbol(call)
+
+    def lower(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        convention = context.call_conv
+        kind = convention.get_function_type(signature.return_type, signature.args)
+        function = cgutils.get_or_insert_function(builder.module, kind, name)
+        status, result = convention.call_function(builder, function, signature.return_type, signature.args, values)
+        with cgutils.if_unlikely(builder, status.is_error):
+            convention.return_status_propagate(builder, status)
+        return result
+
+    return returned(*call[1]), lower
+
+
+@functools.cache
+def type_of(one: Compilable) -> Any:
+    """numba's type of a kernel, or of what else kernels name."""
+    if not isinstance(one, Kernel):
+        return type_of_other(one)
+    # numba reads the number and names of arguments off a function.
+    names = ", ".join(inspect.signature(one.python).parameters)
+    scope: dict[str, Any] = {"typed_call": typed_call, "kernel": one}
+    exec(f"def {one.python.__name__}(typing, {names}):\n    return typed_call(kernel, ({names},))", scope)
+    return global_type(scope[one.python.__name__])
+
+
+def activate() -> None:
+    """Let numba see these types."""
+    set_types(type_of)

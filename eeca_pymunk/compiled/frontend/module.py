@@ -1,0 +1,154 @@
+"""One LLVM module of all that some entry points reach, and machine code of it."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import llvmlite.binding as llvm
+from llvmlite import ir
+from numba.core import cgutils, types
+from numba.core.registry import cpu_target
+
+from ..entries import ENTRIES
+from ..kernels import kernels
+from ..library import NO_MEMORY, NO_SHAPE, symbol
+from . import calls, parts
+from .calls import Call
+from .types import declared_type
+
+_INT, _FLOAT = ir.IntType(64), ir.DoubleType()
+LEVEL = 2  # of optimisation: 3 takes longer and gains nothing that can be measured
+
+
+def entry_call(name: str) -> Call:
+    """The kernel of an entry, and the types of its arguments."""
+    return kernels()[name], tuple(map(declared_type, ENTRIES[name].split()))
+
+
+@functools.cache
+def initialise() -> None:
+    """Make LLVM ready for all platforms."""
+    llvm.initialize_all_targets()
+    llvm.initialize_all_asmprinters()
+
+
+def _entry(module: ir.Module, name: str, call: Call, returned: Any) -> None:
+    """Add the C function of an entry to the module; see `..library`."""
+    context = cpu_target.target_context
+    args = call[1]
+    kinds = ENTRIES[name].split() if name in ENTRIES else [""] * len(args)
+    numbers = [_FLOAT if a == types.float64 else _INT for a in args if not isinstance(a, types.Array)]
+    function = ir.Function(module, ir.FunctionType(_INT, [_INT.as_pointer(), *numbers]), symbol(name))
+    builder = ir.IRBuilder(function.append_basic_block())
+    words, *given = function.args
+    place = 0
+
+    def word() -> Any:
+        nonlocal place
+        place += 1
+        return builder.load(builder.gep(words, [ir.Constant(_INT, place - 1)]))
+
+    values = []
+    for kind, declared in zip(args, kinds, strict=True):
+        if not isinstance(kind, types.Array):
+            value = given.pop(0)
+            values.append(builder.icmp_signed("!=", value, ir.Constant(_INT, 0)) if kind == types.boolean else value)
+            continue
+        data = word()
+        lengths = [ir.Constant(_INT, 0)] if declared.endswith("}") else [word() for _ in range(kind.ndim)]
+        size = ir.Constant(_INT, context.get_abi_sizeof(context.get_data_type(kind.dtype)))
+        strides, items = [size], lengths[-1]
+        for n in reversed(lengths[1:]):
+            strides.insert(0, builder.mul(strides[0], n))
+        for n in lengths[:-1]:
+            items = builder.mul(items, n)
+        array = context.make_array(kind)(context, builder)
+        context.populate_array(
+            array,
+            data=builder.inttoptr(data, context.get_data_type(kind.dtype).as_pointer()),
+            shape=cgutils.pack_array(builder, lengths),
+            strides=cgutils.pack_array(builder, strides),
+            itemsize=size,
+            meminfo=None,
+        )
+        values.append(array._getvalue())
+    convention = context.call_conv
+    kernel = ir.Function(module, convention.get_function_type(returned, args), calls.symbol(call))
+    status, result = convention.call_function(builder, kernel, returned, args, values)
+    with cgutils.if_unlikely(builder, status.is_error):
+        full = builder.icmp_signed("==", status.code, ir.Constant(status.code.type, 1 + parts.NO_MEMORY))
+        builder.ret(builder.select(full, ir.Constant(_INT, NO_MEMORY), ir.Constant(_INT, NO_SHAPE)))
+    if returned == types.none:
+        builder.ret(ir.Constant(_INT, 0))
+    else:
+        builder.ret(result if result.type == _INT else builder.zext(result, _INT))
+
+
+def linked(entries: dict[str, tuple[Call, Any]], bitcodes: Iterable[bytes]) -> Any:
+    """One module of C functions of the entries, their parts and the runtime, optimised for no platform yet.
+
+    Args:
+        entries: call and returned type of each entry, by name.
+        bitcodes: of all parts, in an order that does not vary.
+    """
+    initialise()
+    parts.adapt()
+    module = ir.Module("eeca_kernels")
+    context = cpu_target.target_context
+    module.triple, module.data_layout = llvm.get_process_triple(), context.codegen()._data_layout
+    for name, (call, returned) in entries.items():
+        _entry(module, name, call, returned)
+    public = {symbol(name) for name in entries}
+    whole = llvm.parse_assembly(cgutils.normalize_ir_text(str(module)))
+    runtime = Path(__file__).with_name("runtime.ll").read_text(encoding="utf-8")
+    header = f'target triple = "{module.triple}"\ntarget datalayout = "{module.data_layout}"\n'
+    whole.link_in(llvm.parse_assembly(header + runtime))
+    for one in bitcodes:
+        whole.link_in(llvm.parse_bitcode(one))
+    for one in (*whole.functions, *whole.global_variables):
+        if not one.is_declaration and one.name not in public:
+            one.linkage = "internal"
+    return whole
+
+
+def mark(sources: str) -> Any:
+    """A module with nothing but the hash of the sources, as the symbol `eeca_sources`."""
+    initialise()
+    text = f'@eeca_sources = constant [{len(sources)} x i8] c"{sources}"\n'
+    return llvm.parse_assembly(text)
+
+
+def retargeted(module: Any, machine: Any) -> Any:
+    """A copy of a module for another platform, whose entry points can be found from outside."""
+    copy = module.clone()
+    copy.triple, copy.data_layout = machine.triple, str(machine.target_data)
+    if "windows" in machine.triple:
+        for one in (*copy.functions, *copy.global_variables):
+            if not one.is_declaration and one.linkage == llvm.Linkage.external:
+                one.storage_class = "dllexport"
+    return copy
+
+
+def unresolved(module: Any) -> list[str]:
+    """Functions that the module calls and lacks: those of the C library."""
+    return sorted(f.name for f in module.functions if f.is_declaration and not f.name.startswith("llvm."))
+
+
+def optimise(module: Any, machine: Any) -> None:
+    """Inline, simplify and vectorise; references to arrays that are counted up and down again are left out."""
+    tuning = llvm.create_pipeline_tuning_options(LEVEL)
+    tuning.loop_vectorization, tuning.slp_vectorization = True, False
+    builder = llvm.create_pass_builder(machine, tuning)
+    passes = builder.getModulePassManager()
+    passes.add_refprune_pass()
+    passes.run(module, builder)
+
+
+def machine_of(triple: str, cpu: str) -> Any:
+    """LLVM's description of a processor."""
+    initialise()
+    target = llvm.Target.from_triple(triple)
+    return target.create_target_machine(cpu=cpu, opt=LEVEL, reloc="pic", codemodel="default")

@@ -1,0 +1,182 @@
+"""LLVM code of one kernel: a part.
+
+numba types and lowers the kernel; of what numba's own functions add, all becomes private to the part. Its only public
+symbol is `calls.symbol`, and what it lacks are other parts, the runtime (`runtime.ll`) and the C library.
+
+This process is a compiler's: numba is adapted in it. Code is kept as LLVM has it and never made machine code of; an error
+is a status without Python's exception, so that no path of a source file enters the code; an index is taken as it is,
+without numba's look whether it counts from the end (three instructions at every access, a fifth of all in linear algebra);
+and what operators answer for given types is remembered (a sixth of the time of typing).
+"""
+
+from __future__ import annotations
+
+import functools
+import gc
+import math
+import operator
+import time
+from typing import Any
+
+import llvmlite.binding as llvm
+import numba
+from llvmlite import ir
+from numba.core import callconv, codegen, types
+from numba.core.registry import cpu_target
+from numba.core.runtime import rtsys
+from numba.np import arrayobj
+
+from ..kernels import Kernel
+from . import NUMBA, calls
+from .calls import Call, annotated, met, symbol
+
+_OPTIONS = {"fastmath": False, "error_model": "numpy", "boundscheck": False, "nogil": True}
+_BARE = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+NO_MEMORY, NO_SHAPE = 1, 2  # statuses of kernels, over numba's own
+_made: dict[Call, Part] = {}
+
+
+class Part:
+    """The code of a kernel as bitcode, the calls that it makes, what it returns, and the seconds that it took."""
+
+    def __init__(self, bitcode: bytes, calls: list[Call], returned: Any, seconds: float) -> None:
+        self.bitcode, self.calls, self.returned, self.seconds = bitcode, calls, returned, seconds
+
+
+class _Quiet:
+    """numba's code generator, without the address of a function that has none."""
+
+    def __init__(self, real: Any) -> None:
+        self._real = real
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._real, name)
+
+    def set_env(self, name: str, environment: Any) -> None:
+        """A part has no environment."""
+
+
+class _Library(codegen.JITCodeLibrary):
+    """LLVM code as numba's front end leaves it."""
+
+    codegen = property(lambda self: _Quiet(self._codegen))  # type: ignore[assignment]
+
+    def finalize(self) -> None:
+        self._raise_if_finalized()
+        self._finalized = True
+
+    def get_pointer_to_function(self, name: str) -> int:
+        self._ensure_finalized()
+        return 0
+
+
+def _raise(self: Any, builder: Any, exc: Any, *_: Any, **__: Any) -> None:
+    code = NO_MEMORY if exc is not None and issubclass(exc, MemoryError) else NO_SHAPE
+    self.check_try_status(builder)
+    self._return_errcode_raw(builder, ir.Constant(callconv.errcode_t, callconv.RETCODE_USEREXC.constant + code))
+
+
+def _index(context: Any, builder: Any, kind: Any, index: Any, size: Any) -> Any:
+    if isinstance(index, ir.Constant):
+        return _usual_index(context, builder, kind, index, size)
+    return context.cast(builder, index, kind, types.intp if kind.signed else types.uintp)
+
+
+_usual_index: Any = arrayobj.fix_integer_index
+
+
+def _remember_operators(context: Any) -> None:
+    known = {*filter(callable, vars(operator).values()), *filter(callable, vars(math).values())}
+    known |= {min, max, abs, int, float, bool, range, len}
+    usual, answers = context.resolve_function_type, {}
+
+    def resolve(function: Any, args: Any, kws: Any) -> Any:
+        key = function.typing_key if isinstance(function, types.Function) else function
+        if kws or getattr(key, "__hash__", None) is None or key not in known:
+            return usual(function, args, kws)
+        if (key, args := tuple(args)) not in answers:
+            answers[key, args] = usual(function, args, kws)
+        return answers[key, args]
+
+    context.resolve_function_type = resolve
+
+
+@functools.cache
+def adapt() -> None:
+    """Make numba in this process a compiler of parts.
+
+    Raises:
+        ImportError: numba is not of the version that this file knows.
+    """
+    if not numba.__version__.startswith(f"{NUMBA}."):
+        raise ImportError(
+            f"numba {numba.__version__} is installed; kernels are compiled by {NUMBA}: pip install 'numba=={NUMBA}.*'"
+        )
+    # Compiling makes much that lives long: collecting garbage would take a sixth of the time.
+    gc.set_threshold(100_000, 50, 50)
+    rtsys.initialize(cpu_target.target_context)
+    cpu_target.target_context.codegen()._library_class = _Library
+    convention: Any = callconv.CPUCallConv
+    convention.return_user_exc = convention.return_dynamic_user_exc = _raise
+    arrayobj.fix_integer_index = _index
+    _remember_operators(cpu_target.typing_context)
+    calls.activate()
+    calls.inferred.append(lambda call: part_of(call).returned)
+
+
+def part_of(call: Call) -> Part:
+    """Compile a kernel for these types of arguments; what was compiled before comes from memory."""
+    if call not in _made:
+        adapt()
+        _made[call] = _compiled(call)
+    return _made[call]
+
+
+def _compiled(call: Call) -> Part:
+    start = time.perf_counter()
+    kernel, args = call
+    outer = met[:]
+    met.clear()
+    returned = annotated(kernel)
+    dispatcher = _dispatcher(kernel)
+    dispatcher.compile(args if returned is None else returned(*args))
+    found = dispatcher.overloads[args]
+    bitcode = _bitcode(found, symbol(call))
+    made = sorted(set(met), key=symbol)
+    met[:] = outer
+    return Part(bitcode, made, found.signature.return_type, time.perf_counter() - start)
+
+
+def _dispatcher(kernel: Kernel[Any, Any]) -> Any:
+    options = _OPTIONS | _BARE | ({} if kernel.counted else {"_nrt": False})
+    return numba.njit(**options, **({"forceinline": True} if kernel.merged else {}))(kernel.python)
+
+
+def _bitcode(found: Any, name: str) -> bytes:
+    """The code of a compiled kernel and of numba's functions that it calls, with `name` as its public symbol."""
+    libraries, waiting = {}, [found.library]
+    while waiting:
+        one = waiting.pop()
+        if id(one) not in libraries and one is not rtsys.library:
+            libraries[id(one)] = one
+            waiting += one._linking_libraries
+    whole = found.library._final_module.clone()
+    for one in libraries.values():
+        if one is not found.library:
+            whole.link_in(one._final_module, preserve=True)
+    whole.get_function(found.fndesc.llvm_func_name).name = name
+    # numba counts its functions in their names: other names in every process, and in every order.
+    for kind, all_of in (("f", whole.functions), ("g", whole.global_variables)):
+        for number, one in enumerate(all_of):
+            if not one.is_declaration and one.name != name:
+                one.linkage = "internal"
+                one.name = f"{name}.{kind}{number}"
+    whole.name = name
+    machine = llvm.Target.from_triple(whole.triple).create_target_machine()
+    passes, builder = (
+        llvm.create_new_module_pass_manager(),
+        llvm.create_pass_builder(machine, llvm.PipelineTuningOptions()),
+    )
+    passes.add_global_dead_code_eliminate_pass()
+    passes.run(whole, builder)
+    return bytes(whole.as_bitcode())

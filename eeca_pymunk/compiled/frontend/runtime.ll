@@ -1,0 +1,70 @@
+; Memory of arrays that kernels make: { references, data }, then the data. Arrays never leave an entry point, so that one
+; thread counts references. Names are those that numba's code calls.
+declare ptr @malloc(i64)
+declare void @free(ptr)
+
+; Data begin at a multiple of `align`; null if there is no memory.
+define ptr @NRT_MemInfo_alloc_aligned(i64 %size, i32 %align) {
+  %a = zext i32 %align to i64
+  %head = add i64 %a, 16
+  %all = add i64 %size, %head
+  %wraps = icmp ult i64 %all, %size
+  br i1 %wraps, label %full, label %ask
+ask:
+  %m = call ptr @malloc(i64 %all)
+  %none = icmp eq ptr %m, null
+  br i1 %none, label %full, label %got
+got:
+  %at = ptrtoint ptr %m to i64
+  %past = add i64 %at, 15
+  %up = add i64 %past, %a
+  %mask = sub i64 0, %a
+  %begin = and i64 %up, %mask
+  %data = inttoptr i64 %begin to ptr
+  store i64 1, ptr %m
+  %where = getelementptr { i64, ptr }, ptr %m, i32 0, i32 1
+  store ptr %data, ptr %where
+  ret ptr %m
+full:
+  ret ptr null
+}
+
+define ptr @NRT_MemInfo_data_fast(ptr %m) {
+  %where = getelementptr { i64, ptr }, ptr %m, i32 0, i32 1
+  %data = load ptr, ptr %where
+  ret ptr %data
+}
+
+define void @NRT_incref(ptr %m) {
+  %none = icmp eq ptr %m, null
+  br i1 %none, label %done, label %count
+count:
+  %n = load i64, ptr %m
+  %more = add i64 %n, 1
+  store i64 %more, ptr %m
+  br label %done
+done:
+  ret void
+}
+
+define void @NRT_decref(ptr %m) {
+  %none = icmp eq ptr %m, null
+  br i1 %none, label %done, label %count
+count:
+  %n = load i64, ptr %m
+  %less = sub i64 %n, 1
+  store i64 %less, ptr %m
+  %last = icmp eq i64 %less, 0
+  br i1 %last, label %release, label %done
+release:
+  call void @free(ptr %m)
+  br label %done
+done:
+  ret void
+}
+
+; reshape(A.size) of an array without gaps, the only reshape of kernels.
+define i32 @numba_attempt_nocopy_reshape(i64 %nd, ptr %dims, ptr %strides, i64 %newnd, ptr %newdims, ptr %newstrides, i64 %itemsize, i32 %fortran) {
+  store i64 %itemsize, ptr %newstrides
+  ret i32 1
+}

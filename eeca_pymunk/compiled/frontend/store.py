@@ -1,0 +1,146 @@
+"""Parts and object code that were compiled before, in files named by a hash of all that they depend on.
+
+A part depends on the source of its kernel, the constants and types that this names, what the kernels that it calls
+return, the types of its arguments, and the versions of the compiler: after an edit of one kernel, one part is compiled
+again. Files that no build has read for `DAYS` are removed.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import inspect
+import os
+import pickle
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from types import BuiltinFunctionType, CodeType, ModuleType
+from typing import Any
+
+import llvmlite
+import numba
+import numpy as np
+
+from ..entries import TABLES, table_fields
+from ..kernels import Kernel, kernels
+from ..prefetch import Fetch
+from ..sources import cache_folder
+from ..tables import Opener
+from .calls import Call, annotated
+from .parts import Part
+
+DAYS = 30
+_HERE = Path(__file__).parent
+
+
+def digest(*parts: object) -> str:
+    """64 hexadecimal digits of what these say of themselves."""
+    return hashlib.sha256("\0".join(map(repr, parts)).encode()).hexdigest()
+
+
+@functools.cache
+def _compiler() -> str:
+    files = [p.read_bytes() for p in sorted(_HERE.glob("*.py"))]
+    return digest(numba.__version__, llvmlite.__version__, sys.version_info[:2], *files)
+
+
+def _names(code: CodeType) -> Iterator[str]:
+    yield from code.co_names
+    for one in code.co_consts:
+        if isinstance(one, CodeType):
+            yield from _names(one)
+
+
+@functools.cache
+def source_key(kernel: Kernel[Any, Any]) -> str:
+    """The hash of a kernel's source and of all that it names."""
+    python = kernel.python
+    named = [
+        (name, _said(python.__globals__[name], f"{kernel.name} names {name}"))
+        for name in sorted(set(_names(python.__code__)))
+        if name in python.__globals__
+    ]
+    return digest(kernel.name, kernel.counted, kernel.merged, inspect.getsource(python), python.__annotations__, named)
+
+
+def _said(value: Any, where: str) -> object:
+    """What code that names this value depends on."""
+    if isinstance(value, Kernel):
+        returned = annotated(value)
+        return value.name, source_key(value) if returned is None else repr(returned)
+    if isinstance(value, Opener):
+        name = value.kind.__name__
+        return name, table_fields(name) if name in TABLES else ()
+    if isinstance(value, np.ndarray):
+        return value.dtype.str, value.shape, value.tobytes()
+    if isinstance(value, (int, float, str, tuple, type(None))):
+        return type(value).__name__, value
+    if isinstance(value, type):
+        return value.__name__, getattr(value, "_fields", ()), str(getattr(value, "__annotations__", ""))
+    if isinstance(value, (ModuleType, BuiltinFunctionType, Fetch)):
+        return getattr(value, "__name__", "fetch")
+    raise TypeError(f"{where}, a {type(value).__name__}: kernels name numbers, arrays, types, modules and kernels")
+
+
+def part_key(call: Call) -> str:
+    """The name under which a part is kept."""
+    kernel, args = call
+    return digest(_compiler(), source_key(kernel), args)
+
+
+def _path(kind: str, key: str) -> Path:
+    return cache_folder() / kind / key[:2] / key
+
+
+def read(kind: str, key: str) -> bytes | None:
+    """What is kept under this key; None if nothing is."""
+    path = _path(kind, key)
+    try:
+        found = path.read_bytes()
+        os.utime(path)
+    except OSError:
+        return None
+    return found
+
+
+def write(kind: str, key: str, content: bytes) -> None:
+    """Keep this, if there is a place to; a reader sees all of it or nothing."""
+    path = _path(kind, key)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:
+            file.write(content)
+        os.replace(file.name, path)
+    except OSError:
+        pass
+
+
+def read_part(call: Call) -> Part | None:
+    """The part of this call, if it was compiled before."""
+    content = read("parts", part_key(call))
+    if content is None:
+        return None
+    all_kernels = kernels()
+    bitcode, called, returned, seconds = pickle.loads(content)
+    return Part(bitcode, [(all_kernels[name], args) for name, args in called], returned, seconds)
+
+
+def write_part(call: Call, part: Part) -> None:
+    """Keep a part."""
+    called = [(kernel.name, args) for kernel, args in part.calls]
+    write("parts", part_key(call), pickle.dumps((part.bitcode, called, part.returned, part.seconds)))
+
+
+def prune() -> None:
+    """Remove what no build has read for `DAYS`."""
+    oldest = time.time() - DAYS * 86400
+    for kind in ("parts", "objects"):
+        for path in (cache_folder() / kind).glob("*/*"):
+            try:
+                if path.stat().st_mtime < oldest:
+                    path.unlink()
+            except OSError:
+                pass

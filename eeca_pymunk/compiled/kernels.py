@@ -1,0 +1,111 @@
+"""The decorators of kernels, and what a decorated function calls.
+
+A kernel takes arrays and numbers, returns numbers or a status, and knows nothing of pymunk. Every kernel annotates its
+arguments and what it returns: the builder types calls by these annotations, so that kernels compile one by one.
+"""
+
+from __future__ import annotations
+
+import functools
+import threading
+from collections.abc import Callable
+from typing import Any, Generic, ParamSpec, TypeVar
+
+import numpy as np
+
+from .backend import Backend, start
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+_kernels: list[Kernel[Any, Any]] = []
+_ready = 0  # kernels of that list whose `run` is set
+_lock = threading.RLock()
+_types: Callable[[Any], Any] | None = None  # the compiler's types of kernels, openers and `fetch`
+
+
+class Compilable:
+    """What kernels may name: the active compiler says which type it has."""
+
+    @property
+    def _numba_type_(self) -> Any:
+        # numba reads this attribute of globals that it does not know.
+        if _types is None:
+            raise AttributeError("no compiler is active")
+        return _types(self)
+
+
+class Kernel(Compilable, Generic[P, R]):
+    """A function that runs as machine code where there is any.
+
+    Attributes:
+        python: the function as it was written.
+        name: its place, "room.module:function", which `entries.py` lists if Python calls it.
+        run: what a call executes; to call `run` saves half a microsecond.
+    """
+
+    def __init__(self, python: Callable[P, R], counted: bool = True, merged: bool = False) -> None:
+        functools.update_wrapper(self, python)
+        self.python = python
+        self.counted, self.merged = counted, merged
+        self.name = f"{python.__module__.partition('.')[2]}:{python.__name__}"
+        self.run: Callable[P, R] = self._first
+        _kernels.append(self)
+
+    def _first(self, *args: P.args, **kwargs: P.kwargs) -> R:
+        prepare()
+        return self.run(*args, **kwargs)
+
+    def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
+        return self.run(*args, **kwargs)
+
+    def bind(self, *arrays: Any) -> Callable[..., R]:
+        """The kernel with its arrays, which come first, to be called with the other arguments.
+
+        Addresses are read once, here: the arrays must not be resized.
+        """
+        prepare()
+        bind = getattr(self.run, "bind", None)
+        return functools.partial(self.run, *arrays) if bind is None else bind(*arrays)
+
+
+def kernel(python: Callable[P, R]) -> Kernel[P, R]:
+    """A kernel that may make arrays."""
+    return Kernel(python)
+
+
+def uncounted(python: Callable[P, R]) -> Kernel[P, R]:
+    """A kernel that makes no arrays, views of its arguments excepted: code that counts references to arrays is left
+    out, two locked instructions for each argument at every call."""
+    return Kernel(python, counted=False)
+
+
+def merged(python: Callable[P, R]) -> Kernel[P, R]:
+    """An uncounted kernel whose machine code becomes part of its callers."""
+    return Kernel(python, counted=False, merged=True)
+
+
+def kernels() -> dict[str, Kernel[Any, Any]]:
+    """All kernels of this package that have been imported, by name."""
+    return {one.name: one for one in _kernels if one.python.__module__.startswith("eeca_pymunk.")}
+
+
+def set_types(types: Callable[[Any], Any]) -> None:
+    """Let a compiler say which types kernels, openers and `fetch` have."""
+    global _types
+    _types = types
+
+
+def prepare() -> Backend:
+    """Set what each kernel runs, if new ones have been decorated; safe to call from any thread."""
+    global _ready
+    if _ready == len(_kernels):
+        return start()
+    with _lock:
+        backend = start()
+        fresh = _kernels[_ready:]
+        for one in fresh:
+            # numpy warns of what machine code does in silence, a division by 0 for instance.
+            one.run = backend.entries.get(one.name) or np.errstate(all="ignore")(one.python)
+        _ready += len(fresh)
+    return backend

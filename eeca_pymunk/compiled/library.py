@@ -1,0 +1,128 @@
+"""The library of kernels: loaded by ctypes, called by cffi.
+
+An entry is the C function
+
+    int64_t eeca_ROOM_MODULE_FUNCTION(const int64_t *words, numbers...),
+
+where `words` has the address of each array followed by its lengths, and the address of each table's words. Numbers are
+doubles and 64-bit integers. It returns what the kernel returns, or one of the two codes below.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import enum
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import _cffi_backend
+import numpy as np
+
+from .entries import ENTRIES, is_array, split
+from .sources import sources_hash
+
+NO_MEMORY, NO_SHAPE = -(1 << 63), -(1 << 63) + 1  # returned where arrays could not be made, or did not fit
+_ffi = _cffi_backend.FFI()
+
+
+class Status(enum.Enum):
+    """What became of a library."""
+
+    LOADED = "loaded"
+    MISSING = "there is none of these sources for this platform"
+    UNREADABLE = "the system cannot load it"
+    UNMARKED = "it is no library of kernels: it carries no hash"
+    OUTDATED = "it carries the hash of other sources"
+    INCOMPLETE = "it lacks an entry point"
+
+
+def symbol(name: str) -> str:
+    """The C name of the entry "room.module:function"."""
+    return "eeca_" + name.replace(".", "_").replace(":", "_")
+
+
+class Entry:
+    """One entry point, called with arrays and numbers as its kernel is."""
+
+    def __init__(self, name: str, address: int, kinds: str = "") -> None:
+        self.name = name
+        self.kinds = (kinds or ENTRIES[name]).split()
+        self.point_to(address)
+        self._arrays = [i for i, kind in enumerate(self.kinds) if is_array(kind)]
+        self._numbers = [i for i, kind in enumerate(self.kinds) if not is_array(kind)]
+        self._last: tuple[tuple[Any, ...], Callable[..., int]] | None = None
+
+    def point_to(self, address: int) -> None:
+        """Call the C function at this address."""
+        numbers = ["double" if kind == "f8" else "int64_t" for kind in self.kinds if not is_array(kind)]
+        self.function: Callable[..., int] = _ffi.cast(f"int64_t(*)({', '.join(['uintptr_t', *numbers])})", address)
+
+    def __call__(self, *args: Any) -> int:
+        if len(args) != len(self.kinds):
+            raise TypeError(f"{self.name} takes {len(self.kinds)} arguments, not {len(args)}")
+        arrays = tuple([args[i] for i in self._arrays])
+        last = self._last
+        if last is None or any([a is not b for a, b in zip(arrays, last[0], strict=True)]):
+            last = self._last = arrays, self.bind(*arrays)
+        return last[1](*[args[i] for i in self._numbers])
+
+    def bind(self, *arrays: Any) -> Callable[..., int]:
+        """The entry with these arrays, to be called with its numbers.
+
+        Raises:
+            TypeError: an array is not of the declared dtype and dimensions, or not C-contiguous.
+        """
+        function, name = self.function, self.name
+        words = np.array(
+            [w for i, a in zip(self._arrays, arrays, strict=True) for w in self._words(self.kinds[i], a)], np.int64
+        )
+        address = words.ctypes.data
+
+        def call(*numbers: Any, _kept: Any = (arrays, words)) -> int:
+            status = function(address, *numbers)
+            if status <= NO_SHAPE:
+                raise MemoryError(name) if status == NO_MEMORY else ValueError(f"{name}: arrays do not fit")
+            return status
+
+        return call
+
+    def _words(self, kind: str, array: Any) -> list[int]:
+        """What `words` has of one array."""
+        if kind.endswith("}"):
+            return [array.address]
+        dtype, ndim = split(kind)
+        if array.dtype != dtype or array.ndim != ndim or not array.flags.c_contiguous:
+            raise TypeError(
+                f"{self.name} takes a C-contiguous {kind}, not {array.dtype} of shape {array.shape} "
+                f"with strides {array.strides}"
+            )
+        return [array.ctypes.data, *array.shape]
+
+
+def load(path: Path | None) -> tuple[Status, dict[str, Entry], str]:
+    """The entries of a library, if it is one of these sources.
+
+    Returns:
+        the status; the entries by name, none unless LOADED; and what the system or the library says.
+    """
+    if path is None:
+        return Status.MISSING, {}, ""
+    try:
+        library = ctypes.CDLL(str(path))
+    except OSError as error:
+        return Status.UNREADABLE, {}, str(error)
+    try:
+        carried = (ctypes.c_char * 32).in_dll(library, "eeca_sources").value.decode("ascii", "replace")
+    except ValueError:
+        return Status.UNMARKED, {}, ""
+    if carried != sources_hash():
+        return Status.OUTDATED, {}, f"{carried}, not {sources_hash()}"
+    entries = {}
+    for name in ENTRIES:
+        try:
+            address = ctypes.cast(getattr(library, symbol(name)), ctypes.c_void_p).value
+        except AttributeError:
+            return Status.INCOMPLETE, {}, name
+        entries[name] = Entry(name, address or 0)
+    return Status.LOADED, entries, ""

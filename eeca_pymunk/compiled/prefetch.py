@@ -1,0 +1,21 @@
+"""Rows brought into the cache before they are needed.
+
+Scenes of thousands of bodies do not fit into a processor's caches, and the next event is usually elsewhere in memory: a
+kernel that knows where can have that row loaded while it computes. No result depends on it.
+"""
+
+from __future__ import annotations
+
+from ..arrays import AnyArray
+from .kernels import Compilable
+
+
+class Fetch(Compilable):
+    """`fetch(TABLE, row, column)`: load the cache line that holds this element of a (rows, columns) or (rows,) array.
+    Nothing happens where there is none, or where kernels run as plain Python."""
+
+    def __call__(self, table: AnyArray, row: int, column: int) -> None:
+        """Plain Python loads nothing ahead."""
+
+
+fetch = Fetch()

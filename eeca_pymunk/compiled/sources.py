@@ -1,0 +1,76 @@
+"""Which sources machine code is made of, and where it is kept."""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import os
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+from .entries import SOURCES
+from .targets import TARGETS, this_platform
+
+PACKAGE = Path(__file__).parents[1]
+
+
+def _files(package: Path) -> Iterator[Path]:
+    for name in SOURCES:
+        one = package / name
+        yield from sorted([*one.rglob("*.py"), *one.rglob("*.ll")]) if one.is_dir() else [one]
+
+
+@functools.cache
+def sources_hash(package: Path = PACKAGE) -> str:
+    """32 hexadecimal digits that change with every edit of a file of `SOURCES`, whatever its line ends."""
+    digest = hashlib.sha256()
+    for one in _files(package):
+        text = one.read_bytes().replace(b"\r\n", b"\n")
+        digest.update(f"{one.relative_to(package).as_posix()}\0{len(text)}\0".encode())
+        digest.update(text)
+    return digest.hexdigest()[:32]
+
+
+def library_name(platform: str | None = None) -> str:
+    """The file name of the library of these sources, for this platform if none is named."""
+    target = TARGETS.get(platform or this_platform())
+    return f"kernels-{sources_hash()[:16]}-{platform or this_platform()}{target.ending if target else '.so'}"
+
+
+def beside() -> Path:
+    """The folder of libraries beside the sources."""
+    return PACKAGE / "compiled" / "libraries"
+
+
+def cache_folder() -> Path:
+    """The folder of this user, or EECA_PYMUNK_CACHE: what builds reuse, and libraries of read-only packages."""
+    if chosen := os.environ.get("EECA_PYMUNK_CACHE"):
+        return Path(chosen)
+    if sys.platform == "win32":
+        home = Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local")
+    elif sys.platform == "darwin":
+        home = Path.home() / "Library" / "Caches"
+    else:
+        home = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+    return home / "eeca_pymunk"
+
+
+def writable(folder: Path) -> bool:
+    """Whether files can be made in this folder, which is made if need be."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return False
+    return os.access(folder, os.W_OK)
+
+
+def library_folder() -> Path:
+    """Where a library is written: beside the sources, or in the cache folder if that is read-only."""
+    return beside() if writable(beside()) else cache_folder()
+
+
+def library_path() -> Path | None:
+    """The library of these sources for this platform; None if there is none."""
+    found = (folder / library_name() for folder in (beside(), cache_folder()))
+    return next((path for path in found if path.is_file()), None)

@@ -1,0 +1,63 @@
+"""Many arrays behind one pointer.
+
+A scene has some thirty arrays. `table_of` writes their addresses and lengths down once; a kernel that Python calls takes
+that, and an `Opener` makes of it what has the arrays as attributes, at no cost. In plain Python a table is the named
+tuple of arrays itself.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Generic, TypeAlias, TypeVar
+
+import numpy as np
+
+from .backend import start
+from .entries import TABLES, table_fields
+from .kernels import Compilable
+
+T = TypeVar("T")
+Table: TypeAlias = Any  # of `table_of`
+WORDS = 4  # numbers of an array: address, size, and its shape, one or two lengths (of three, the last two)
+
+
+class Pointers:
+    """The table that machine code takes: `address` of its words, and the arrays, which it keeps."""
+
+    __slots__ = ("address", "arrays", "words")
+
+    def __init__(self, arrays: Any, words: Any) -> None:
+        self.arrays, self.words, self.address = arrays, words, words.ctypes.data
+
+
+def table_of(arrays: Any) -> Table:
+    """What kernels take for a named tuple of arrays. To be made anew when one of them is replaced by another; the
+    arrays have to be kept as long as the table is used.
+
+    Raises:
+        TypeError: an array is not C-contiguous, or not of the dtype and dimensions that `entries.TABLES` declares.
+    """
+    if not start().entries:
+        return arrays
+    name = type(arrays).__name__
+    declared = table_fields(name) if name in TABLES else None
+    numbers = np.zeros((len(arrays), WORDS), np.int64)
+    for place, (row, field, a) in enumerate(zip(numbers, arrays._fields, arrays, strict=True)):
+        if declared is not None and (field, a.dtype.str, a.ndim) != declared[place]:
+            found = (field, a.dtype.str, a.ndim)
+            raise TypeError(f"{name}.{field} is {found}; entries.TABLES declares {declared[place]}")
+        if not a.flags.c_contiguous:
+            raise TypeError(f"{name}.{field} of shape {a.shape} has strides {a.strides}: it must be C-contiguous")
+        row[0], row[1] = a.ctypes.data, a.size
+        row[2:] = (a.shape * 2)[-2:] if a.ndim == 1 else a.shape[-2:]
+    return Pointers(arrays, numbers.ravel())
+
+
+class Opener(Compilable, Generic[T]):
+    """Makes of a table the named tuple that it was made of, as far as kernels can tell: its arrays are attributes."""
+
+    def __init__(self, kind: type[T]) -> None:
+        self.kind = kind
+
+    def __call__(self, table: Table) -> T:
+        opened: T = table.arrays if isinstance(table, Pointers) else table
+        return opened
