@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import gc
 import math
 import time
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
-from multiprocessing import get_context
 from statistics import median
 from typing import Any
 
@@ -20,7 +17,7 @@ from comparisons import piles, runs, steps
 from comparisons.output import Output, Row
 from comparisons.tour_problems import Problem, problems
 from eeca_pymunk import render
-from eeca_pymunk.compiled import cache_folder, compiler
+from eeca_pymunk.compiled import plain
 from eeca_pymunk.recording import step_count
 
 STEPPERS = steps.STEPS
@@ -106,28 +103,13 @@ def summary(problem: str, points: list[Point]) -> Row:
     }
 
 
-def _step_each(jointed: bool) -> None:
-    """A step of each problem with joints, or of each without: they need different kernels."""
-    gc.disable()  # which numba would keep busy for a sixth of the time
-    for problem in problems():
-        space = problem.build().space
-        if bool(space.constraints) == jointed:
-            ep.EECA(space).step(problem.dt)
-    gc.enable()
-
-
 def warm() -> None:
-    """Compile, or read from disk, all that the tour runs; nothing of it is timed."""
-    begun = time.perf_counter()
-    if compiler() is None:
-        print("no compiler: plain Python, some hundred times slower (python -m eeca_pymunk says why)")
-    elif not any(cache_folder().rglob("*.nbi")):
-        print("compiling the kernels: two minutes, once; later runs start at once", flush=True)
-        with ProcessPoolExecutor(2, get_context("spawn")) as pool:
-            list(pool.map(_step_each, (False, True)))
-    for jointed in (False, True):
-        _step_each(jointed)
-    print(f"kernels are ready ({time.perf_counter() - begun:.1f} s, not counted below)", flush=True)
+    """Load the kernels, or build them; nothing of it is timed."""
+    if plain():
+        print("no machine code: plain Python, some hundred times slower (python -m eeca_pymunk says why)")
+    print(f"kernels are ready ({ep.warmup():.1f} s, not counted below)", flush=True)
+    for problem in problems():
+        ep.EECA(problem.build().space).step(problem.dt)
 
 
 def run(output: Output, full: bool) -> None:

@@ -17,13 +17,14 @@ from tqdm import tqdm
 from ..compiled.entries import ENTRIES
 from ..compiled.frontend import module, store
 from ..compiled.frontend.calls import Call, symbol
+from ..compiled.frontend.module import Group
 from ..compiled.frontend.parts import Part
 from ..compiled.sources import library_name, sources_hash
-from ..compiled.targets import TARGETS, linker
-from .workers import gather, import_kernels
+from ..compiled.targets import TARGETS, Target, linker
+from .workers import Workers, gather, import_kernels
 
-# What a bar counts of the stages after the first, in parts compiled in the same time.
-_LINKING, _OPTIMISING, _WRITING = 15, 160, 80
+_MACHINE_CODE = 150  # what a bar counts for machine code of one platform, in parts compiled in the same time
+_SMALL = 5000  # bytes of code, up to which a kernel is copied into other modules that call it, to be inlined
 _KEPT = 6  # libraries of other sources that are left beside the newest
 
 
@@ -64,15 +65,21 @@ class Builder:
         for name in names:
             if not linker(name, portable):
                 raise RuntimeError(f"no linker for {name}: pip install ziglang")
-        with self._bar:
+        with self._bar, Workers(self.workers) as workers:
             with self.stage("compiling kernels"):
                 import_kernels()
                 calls = {name: module.entry_call(name) for name in ENTRIES}
-                after = _LINKING + (_OPTIMISING + _WRITING) * len(names)
-                found = gather(calls.values(), self.workers, lambda done, known: self._show(done, known + after))
-            order = sorted(found, key=symbol)
-            key = store.digest(sorted(map(store.part_key, order)), module_sources())
-            built = [self._library(name, portable, key, calls, found, order) for name in names]
+                after = _MACHINE_CODE * len(names)
+                found = gather(calls.values(), workers, lambda done, known: self._show(done, known + after))
+            groups = split(calls, found)
+            built = []
+            for name in names:
+                target = TARGETS[name]
+                with self.stage(f"optimising, writing machine code for {name}"):
+                    objects = self._objects(workers, groups, target)
+                    self._bar.update(_MACHINE_CODE)
+                with self.stage(f"linking for {name}"):
+                    built.append(link(self.folder / library_name(name), objects, linker(name, portable)))
         store.prune()
         return built
 
@@ -80,46 +87,67 @@ class Builder:
         self._bar.total, self._bar.n = total, done
         self._bar.refresh()
 
-    def _library(
-        self, name: str, portable: bool, key: str, calls: dict[str, Call], found: dict[Call, Part], order: list[Call]
-    ) -> Path:
-        target = TARGETS[name]
-        machine = module.machine_of(target.triple, target.cpu)
-        key = store.digest(key, target.triple, target.cpu)
-        code = store.read("objects", key)
-        if code is None:
-            with self.stage(f"{name}: putting {len(order)} kernels together"):
-                entries = {entry: (call, found[call].returned) for entry, call in calls.items()}
-                whole = module.retargeted(module.linked(entries, (found[one].bitcode for one in order)), machine)
-                self._bar.update(_LINKING)
-            with self.stage(f"{name}: optimising"):
-                module.optimise(whole, machine)
-                self._bar.update(_OPTIMISING)
-            with self.stage(f"{name}: writing machine code"):
-                code = bytes(machine.emit_object(whole))
-                self._bar.update(_WRITING)
-            store.write("objects", key, code)
-        with self.stage(f"{name}: linking"):
-            mark = machine.emit_object(module.retargeted(module.mark(sources_hash()), machine))
-            return link(
-                self.folder / library_name(name), {"kernels.o": code, "sources.o": mark}, linker(name, portable)
-            )
+    @staticmethod
+    def _objects(workers: Workers, groups: list[Group], target: Target) -> list[bytes]:
+        """The object files of a platform, from the store or compiled."""
+        keys = [store.group_key(one, target.triple, target.cpu) for one in groups]
+        found = [store.read("objects", key) for key in keys]
+        lacking = [i for i, code in enumerate(found) if code is None]
+        made = workers.objects([groups[i] for i in lacking], target.triple, target.cpu)
+        for i, code in zip(lacking, made, strict=True):
+            store.write("objects", keys[i], code)
+            found[i] = code
+        return [*filter(None, found), module.marked_object(sources_hash(), target.triple, target.cpu)]
 
 
-def module_sources() -> str:
-    """What the module is made by, beside its parts."""
-    return store.digest(*(p.read_bytes() for p in sorted(Path(module.__file__).parent.glob("*.*")) if p.is_file()))
+def split(calls: dict[str, Call], found: dict[Call, Part]) -> list[Group]:
+    """Two modules, that of joints and that of all else, which are optimised side by side.
+
+    Small kernels of one module that the other calls are copied into it: calls of larger ones cost no more than they do.
+    """
+    order = sorted(found, key=symbol)
+    jointed = {call for call in order if call[0].name.startswith(("joints.", "jointed."))}
+    sides = [[call for call in order if (call in jointed) == side] for side in (False, True)]
+    copies = [_copies(side, found) for side in sides]
+    whole = [[call for call in order if call in {*side, *copied}] for side, copied in zip(sides, copies, strict=True)]
+    here = [{symbol(call) for call in side} for side in whole]
+    called = [{symbol(callee) for call in side for callee in found[call].calls} for side in whole]
+    return [
+        Group(
+            entries=[(name, found[call].returned) for name, call in calls.items() if call in set(sides[i])],
+            parts=[found[call].bitcode for call in whole[i]],
+            public=frozenset({symbol(call) for call in sides[i]} & (called[1 - i] - here[1 - i])),
+            foreign=frozenset(called[i] - here[i]),
+        )
+        for i in (0, 1)
+    ]
 
 
-def link(path: Path, objects: dict[str, bytes], command: list[str]) -> Path:
+def _copies(side: list[Call], found: dict[Call, Part]) -> set[Call]:
+    """The small kernels that this side calls, and they in turn, of the other side."""
+    own, copied, waiting = set(side), set[Call](), list(side)
+    while waiting:
+        for callee in found[waiting.pop()].calls:
+            if (
+                callee not in own
+                and callee not in copied
+                and (callee[0].merged or len(found[callee].bitcode) <= _SMALL)
+            ):
+                copied.add(callee)
+                waiting.append(callee)
+    return copied
+
+
+def link(path: Path, objects: list[bytes], command: list[str]) -> Path:
     """Link these object files into a shared library, which takes its place when it is complete."""
     path.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=path.parent, prefix=".link") as place:
-        for name, code in objects.items():
+        names = [f"{number}.o" for number in range(len(objects))]
+        for name, code in zip(names, objects, strict=True):
             Path(place, name).write_bytes(code)
         plain = ["-Wl,--build-id=none"] if path.suffix == ".so" else []
         done = subprocess.run(
-            [*command, "-shared", "-s", *plain, "-o", path.name, *objects, "-lm"],
+            [*command, "-shared", "-s", *plain, "-o", path.name, *names, "-lm"],
             cwd=place,
             capture_output=True,
             text=True,

@@ -12,6 +12,7 @@ from typing import Any
 from ..compiled.entries import ENTRIES
 from ..compiled.frontend import store
 from ..compiled.frontend.calls import Call
+from ..compiled.frontend.module import Group, object_of
 from ..compiled.frontend.parts import Part, adapt, part_of
 from ..compiled.kernels import kernels
 
@@ -34,18 +35,47 @@ def _compile(name: str, args: tuple[Any, ...]) -> tuple[bytes, list[tuple[str, t
     return part.bitcode, [(one.name, kinds) for one, kinds in part.calls], part.returned, part.seconds
 
 
-def gather(first: Iterable[Call], workers: int, told: Callable[[int, int], None]) -> dict[Call, Part]:
+class Workers:
+    """Processes that compile, started when they are first needed."""
+
+    def __init__(self, count: int) -> None:
+        self.count = count
+        self._pool: ProcessPoolExecutor | None = None
+
+    def __enter__(self) -> Workers:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._pool is not None:
+            self._pool.shutdown(cancel_futures=True)
+
+    @property
+    def started(self) -> bool:
+        return self._pool is not None
+
+    def submit(self, function: Callable[..., Any], *args: Any) -> Future[Any]:
+        """Call this function of a module in one of the processes."""
+        if self._pool is None:
+            self._pool = ProcessPoolExecutor(self.count, multiprocessing.get_context("spawn"), _start)
+        return self._pool.submit(function, *args)
+
+    def objects(self, groups: list[Group], triple: str, cpu: str) -> list[bytes]:
+        """`frontend.module.object_of` of each group, side by side."""
+        if self.count < 2 or len(groups) < 2:
+            return [object_of(group, triple, cpu) for group in groups]
+        return [one.result() for one in [self.submit(object_of, group, triple, cpu) for group in groups]]
+
+
+def gather(first: Iterable[Call], workers: Workers, told: Callable[[int, int], None]) -> dict[Call, Part]:
     """The parts of these calls and of all that they call, from the store or compiled.
 
     Args:
-        workers: processes.
         told: called with the numbers of parts that are there and that are known to be needed.
     """
     found: dict[Call, Part] = {}
     known: set[Call] = set()
     missing: list[Call] = []
     running: dict[Future[Any], Call] = {}
-    pool: ProcessPoolExecutor | None = None
     all_kernels = kernels()
 
     def look(calls: Iterable[Call]) -> None:
@@ -70,25 +100,19 @@ def gather(first: Iterable[Call], workers: int, told: Callable[[int, int], None]
 
     look(first)
     compiled = 0
-    try:
-        while missing or running:
-            if pool is None and (workers < 2 or compiled < _FEW) and len(missing) < _FEW:
-                call = missing.pop()
-                take(call, part_of(call))
-                compiled += 1
-                continue
-            if pool is None:
-                pool = ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), _start)
-            for call in missing:
-                running[pool.submit(_compile, call[0].name, call[1])] = call
-            missing.clear()
-            for done in wait(running, return_when=FIRST_COMPLETED).done:
-                bitcode, called, returned, seconds = done.result()
-                calls = [(all_kernels[name], args) for name, args in called]
-                take(running.pop(done), Part(bitcode, calls, returned, seconds))
-    finally:
-        if pool is not None:
-            pool.shutdown(cancel_futures=True)
+    while missing or running:
+        if not workers.started and (workers.count < 2 or compiled + len(missing) < _FEW):
+            call = missing.pop()
+            take(call, part_of(call))
+            compiled += 1
+            continue
+        for call in missing:
+            running[workers.submit(_compile, call[0].name, call[1])] = call
+        missing.clear()
+        for done in wait(running, return_when=FIRST_COMPLETED).done:
+            bitcode, called, returned, seconds = done.result()
+            calls = [(all_kernels[name], args) for name, args in called]
+            take(running.pop(done), Part(bitcode, calls, returned, seconds))
     return found
 
 

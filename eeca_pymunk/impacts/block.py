@@ -20,9 +20,9 @@ from ..layout import ANGLE, II, IM, OWNER, SIZE, SPIN, VX, VY, X, Y
 from ..pairs.layout import NUMBER, START
 from ..pairs.rules import barred, law
 from ..rows.build import normal_rate, place_row
+from ..rows.inplace import sort
 from ..rows.layout import ELASTICITY as ELASTIC
 from ..rows.layout import K_N, ROW_COLUMNS
-from ..rows.sorting import sort
 from ..sustained.contacts import CROWD
 from .booking import end_span
 from .islands import carrier, remembered, worn

@@ -19,8 +19,8 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..layout import VX
+from ..rows.inplace import sort
 from ..rows.layout import ROW_COLUMNS
-from ..rows.sorting import sort
 from ..sustained.contacts import CROWD
 from ..sustained.ledger import LEDGER_SIZE
 from ..sustained.statics import LIVELY

@@ -25,8 +25,8 @@ from ..layout import (
 )
 from ..pairs.lists import mark_pair
 from ..rows.build import normal_rate, tangent_rate
+from ..rows.inplace import sort
 from ..rows.layout import ARM_NA, ARM_TA, GAP, K_N, NX, NY, ROW_COLUMNS, UN, UT
-from ..rows.sorting import sort
 from ..sustained.contacts import CROWD
 from ..sustained.ledger import LEDGER_SIZE, carried
 from ..sustained.step import LOCK as LOCK_OF

@@ -12,6 +12,7 @@ from ..joints.correct import book_fit
 from ..joints.layout import PROJECTED, SUPPORTS
 from ..joints.scratch import BEFORE, BODY_0, BODY_1, M_BODY
 from ..rows.build import normal_rate
+from ..rows.inplace import add
 from ..rows.layout import ARM_NA, ARM_NB, ARM_TA, ARM_TB, NX, NY
 from .advance import Motion, is_hit
 from .columns import Columns, fill_free, fill_group, weigh
@@ -129,7 +130,7 @@ def hold(
     for i in range(m):
         if MU[i] > 0.0:
             loss -= MU[i] * (RATES[i] + 0.5 * normal_rate(P, Q, KEEP, D, i))
-    motion.V[:] += D
+    add(motion.V, D)
     gained = energy_of(isle, motion.V) - before
     if abs(gained + loss) > _NOTHING * before:
         # Supports move.

@@ -12,6 +12,7 @@ from ..impacts.layout import Scene
 from ..impacts.spans import Local
 from ..joints.layout import STORED
 from ..rows.build import normal_rate
+from ..rows.inplace import copy
 from ..rows.layout import GAP, K_N
 from ..sustained.ledger import against
 from .advance import Motion
@@ -113,7 +114,7 @@ def lift(
                 s = groups.COMPONENT[g]
                 if s >= 0:
                     J.STEPPED[s, STORED] += HELD[g]
-            END[:] = NEW
+            copy(END, NEW)
             return spent
         part *= 0.25
     return 0.0

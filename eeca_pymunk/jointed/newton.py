@@ -9,6 +9,7 @@ from ..compiled import kernel, uncounted
 from ..rows.build import normal_rate, tangent_rate
 from ..rows.conjugate import accelerate
 from ..rows.dense import back, decompose, unknowns
+from ..rows.inplace import copy
 from ..rows.layout import SURFACE, TARGET, UN, UT
 from ..rows.polish import clamp, classify
 from .columns import Columns, push_columns, relax_columns, sweep_columns
@@ -128,13 +129,15 @@ def solve_columns(
         worst = relax_columns(C, A, B, ROWS, L, V, m, tolerance, _AFTER)[1]
         if worst < best:
             best = worst
-            L0[:], V0[:] = L, V
+            copy(L0, L)
+            copy(V0, V)
         elif not worst < 100.0 * best:
             break
         if abs(worst - before_last) <= 0.5 * worst:
             break
         last, before_last = worst, last
     if worst > tolerance:
-        L[:], V[:] = L0, V0
+        copy(L, L0)
+        copy(V, V0)
         worst = iterate_columns(C, A, B, ROWS, L, V, m, tolerance, most)
     return worst

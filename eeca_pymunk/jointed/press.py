@@ -20,6 +20,7 @@ from ..impacts.layout import Scene
 from ..impacts.spans import Local
 from ..joints.scratch import NEAR, TAUT
 from ..rows.build import conserves, normal_rate, rates, tangent_rate
+from ..rows.inplace import copy
 from ..rows.layout import SURFACE, UN, UT
 from ..sustained.contacts import CROWD
 from ..sustained.targets import target
@@ -116,12 +117,13 @@ def press(
             hopeless = m > SOME and outer > 1 and not elastic and off > _FALLS * best
             if off < best:
                 best = off
-                LEAST[:] = L
+                copy(LEAST, L)
                 if hopeless:
                     break
             else:
                 # Too far: the components do not answer as they did.
-                L[:] = 0.5 * (L + LEAST)
+                for k in range(L.shape[0]):
+                    L[k, 0], L[k, 1] = 0.5 * (L[k, 0] + LEAST[k, 0]), 0.5 * (L[k, 1] + LEAST[k, 1])
                 advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, anew, UNKNOWN)
         if anew != NOT_AT_ALL:
             weigh(groups, C, P, Q, ROWS, m)
@@ -135,14 +137,14 @@ def press(
                     EFFECT[q, c] = (EFFECT[q, c] - isle.V[q, c]) / h
             target(P, Q, ROWS, m, EFFECT, EXPECTED, pull, h)
             overcome(A, J, isle, groups, P, Q, ROWS, L, m, t, h, agree, motion, C)
-        FORESEEN[:] = motion.V
-        USED[:] = L
+        copy(FORESEEN, motion.V)
+        copy(USED, L)
         leave_out(C, L, m, FORESEEN)
         worst = solve_columns(C, P, Q, ROWS, L, FORESEEN, m, fine, most)
         converged = worst <= 10.0 * max(fine, min(agree, _AGREE * scale))
         if farthest_apart(motion.V, FORESEEN, isle.EXTENT, n) <= 1e-3 * agree:
             # The motion is that of the impulses before: others may do as little by these answers, and yet do much.
-            L[:] = USED
+            copy(L, USED)
             agreed = True
             break
     if not agreed or J.FOUND[NEAR] > 0.0:
@@ -150,7 +152,7 @@ def press(
         advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, NOT_AT_ALL, UNKNOWN)
     if not agreed:
         if not farthest_apart(motion.V, FORESEEN, isle.EXTENT, n) <= best:
-            L[:] = LEAST
+            copy(L, LEAST)
             advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, NOT_AT_ALL, UNKNOWN)
         converged = False
     energy = 0.0

@@ -34,8 +34,8 @@ from ..impacts.layout import (
 from ..impacts.spans import Local, dismiss, lay_out_island, open_contacts
 from ..layout import AX
 from ..rows.build import normal_rate
+from ..rows.inplace import sort
 from ..rows.layout import ROW_COLUMNS
-from ..rows.sorting import sort
 from ..sustained.contacts import NEAR, gather
 from ..sustained.memory import remember_loads
 from ..sustained.step import moved, recall, speeds

@@ -18,6 +18,7 @@ from ..layout import IM, OWNER
 from ..rows.blocks import CONVERGED, D_NORMAL, D_TANGENTIAL, OUT_SIZE, SCALE_LOCK, TRUNCATED
 from ..rows.build import aim, conserves, rates
 from ..rows.energy import scale_of, works
+from ..rows.inplace import copy
 from ..sustained.ledger import carried
 from .columns import fill_free, fill_group, make_columns, push_columns, weigh
 from .component import answer, fit_speeds, ready
@@ -83,7 +84,8 @@ def collide(A: Scene, J: Joints, disks: int, a: int, b: int, t: float) -> tuple[
     L, LOSS, OUT = np.zeros((rows, 2)), np.zeros((rows, 2)), np.zeros(OUT_SIZE)
     OUT[SCALE_LOCK] = 1.0
     WHO = np.full(len(block.IM), -1, np.int64)
-    WHO[:n] = A.BLOCK[:n]
+    for q in range(n):
+        WHO[q] = A.BLOCK[q]
     groups = find_groups(WHO, block.IM, J.OF)
     C = make_columns(groups, P, Q, rows)
     fill_free(groups, C, P, Q, ROWS, block.IM, block.II, rows)
@@ -130,18 +132,18 @@ def collide(A: Scene, J: Joints, disks: int, a: int, b: int, t: float) -> tuple[
         elastic = conserves(ROWS, rows)
         tolerance = (1e-15 if elastic else 1e-10) * speed
         worst = solve_columns(C, P, Q, ROWS, L, V, rows, tolerance, _SWEEPS)
-        V[:] = FREE
+        copy(V, FREE)
         push_columns(C, L, rows, 1.0, V)
         scale, _ = scale_of(P, Q, ROWS, L, V, FREE, rows, owed, elastic)
         if scale != 1.0:
             L *= scale
-            V[:] = FREE
+            copy(V, FREE)
             push_columns(C, L, rows, 1.0, V)
         OUT[SCALE_LOCK] = scale
         OUT[D_NORMAL], OUT[D_TANGENTIAL] = works(P, Q, ROWS, L, V, rows, LOSS)
         status = CONVERGED if worst <= 10.0 * tolerance else TRUNCATED
     if conserves(ROWS, rows):
-        V[:] = BEFORE
+        copy(V, BEFORE)
         push_columns(C, L, rows, 1.0, V)
     else:
         OUT[D_NORMAL] += energy_of(block, BEFORE, FITTED, n)

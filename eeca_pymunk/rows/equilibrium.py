@@ -24,6 +24,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from .build import normal_rate
 from .cholesky import assemble, factorise, substitute
+from .inplace import copy
 from .layout import ARM_NA, ARM_NB, ARM_TA, ARM_TB, FRICTION, K_N, NX, NY, ROW_COLUMNS, TARGET
 from .ordering import dissect, neighbours, pattern
 
@@ -240,7 +241,7 @@ def equilibrium(
     found, free, stalled, last, first = False, True, 0, np.inf, 0.0
     given = fastest(START, EXTENT, n)
     for done in range(most + 1):
-        LEFT[:] = START
+        copy(LEFT, START)
         send(P, Q, G, EDGE, X, K, IM, II, LEFT)
         speed = fastest(LEFT, EXTENT, n)
         centre = products(EDGE, K, 0.0, 0.0)
@@ -256,7 +257,7 @@ def equilibrium(
                 stalled += _STALLED if fastest(Y, EXTENT, n) > _RUNAWAY * given else 1
         if done == most or stalled >= _STALLED or not (speed < np.inf and (centre > 0.0 or free)):
             if not found:
-                START[:] = Y
+                copy(START, Y)
             return found, done
         last = speed
         if done == 0 or not free:

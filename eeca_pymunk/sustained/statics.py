@@ -20,6 +20,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..rows.equilibrium import bound, equilibrium
+from ..rows.inplace import copy
 from ..rows.layout import SURFACE, TARGET, UN, UT, WAKE
 
 STANDS = 1e-9  # speed relative to |a| h, below which a body stands
@@ -83,7 +84,7 @@ def comes_to_stand(
         )  # fmt: skip
         factors += more
         if not found:
-            VN[:] = LEFT
+            copy(VN, LEFT)
             return False, factors
     for i in range(n):
         for c in range(3 if FELT[i] > 0.0 else 2):

@@ -8,10 +8,10 @@ import numpy as np
 import pymunk
 
 from comparisons.exact import Gas
-from eeca_pymunk.compiled import disabled
+from eeca_pymunk.compiled import plain
 from scenes.scene import add_disk, add_walls
 
-SHORT = disabled()  # plain Python takes a hundred times as long
+SHORT = plain()  # plain Python takes a hundred times as long
 
 Bodies = list[pymunk.Body]
 

@@ -23,7 +23,7 @@ from .types import global_type, type_of_other
 _RETURNED = {int: types.int64, float: types.float64, bool: types.boolean, type(None): types.none}
 
 Call = tuple[Kernel[Any, Any], tuple[Any, ...]]  # a kernel and the types of its arguments
-met: list[Call] = []  # calls that have been typed since the list was last cleared
+by_symbol: dict[str, Call] = {}  # all calls that have been typed
 # The type that a kernel returns whose annotation does not say it, an array for instance: it has to be compiled.
 inferred: list[Callable[[Call], Any]] = []
 
@@ -59,8 +59,8 @@ def typed_call(kernel: Kernel[Any, Any], args: tuple[Any, ...]) -> tuple[Any, Ca
     returned = annotated(kernel)
     if returned is None:
         returned = inferred[-1](call)
-    met.append(call)
     name = symbol(call)
+    by_symbol[name] = call
 
     def lower(context: Any, builder: Any, signature: Any, values: Any) -> Any:
         convention = context.call_conv

@@ -14,7 +14,7 @@ from ..kernels import Kernel
 from ..library import Entry, symbol
 from . import store
 from .calls import Call
-from .module import entry_call, linked, machine_of, optimise
+from .module import entry_call, linked_call, machine_of, optimise
 from .parts import Part, part_of
 from .types import declared_type
 
@@ -70,8 +70,8 @@ def reached(first: list[Call]) -> dict[Call, Part]:
 def address_of(name: str, call: Call) -> int:
     """Compile a kernel for these types of arguments, and all that it calls, as code of this processor."""
     found = reached([call])
-    module = linked({name: (call, found[call].returned)}, (found[one].bitcode for one in found))
-    machine = machine_of(llvm.get_process_triple(), llvm.get_host_cpu_name())
+    module = linked_call(name, call, found[call].returned, [part.bitcode for part in found.values()])
+    machine = machine_of(llvm.get_process_triple(), llvm.get_host_cpu_name(), here=True)
     optimise(module, machine)
     engine = llvm.create_mcjit_compiler(module, machine)
     engine.finalize_object()

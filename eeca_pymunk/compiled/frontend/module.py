@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +20,43 @@ from .calls import Call
 from .types import declared_type
 
 _INT, _FLOAT = ir.IntType(64), ir.DoubleType()
+C_LIBRARY = set(
+    [
+        "acos",
+        "asin",
+        "atan",
+        "atan2",
+        "calloc",
+        "ceil",
+        "copysign",
+        "cos",
+        "cosh",
+        "exp",
+        "floor",
+        "fmod",
+        "free",
+        "frexp",
+        "hypot",
+        "ldexp",
+        "log",
+        "log10",
+        "log2",
+        "malloc",
+        "memcpy",
+        "memmove",
+        "memset",
+        "pow",
+        "rint",
+        "round",
+        "sin",
+        "sincos",
+        "sinh",
+        "sqrt",
+        "tan",
+        "tanh",
+        "trunc",
+    ]
+)
 LEVEL = 2  # of optimisation: 3 takes longer and gains nothing that can be measured
 
 
@@ -87,30 +124,59 @@ def _entry(module: ir.Module, name: str, call: Call, returned: Any) -> None:
         builder.ret(result if result.type == _INT else builder.zext(result, _INT))
 
 
-def linked(entries: dict[str, tuple[Call, Any]], bitcodes: Iterable[bytes]) -> Any:
-    """One module of C functions of the entries, their parts and the runtime, optimised for no platform yet.
+@dataclass(frozen=True)
+class Group:
+    """What becomes one module.
 
-    Args:
-        entries: call and returned type of each entry, by name.
-        bitcodes: of all parts, in an order that does not vary.
+    Attributes:
+        entries: (name, returned type) of its entry points.
+        parts: the code of its kernels, in an order that does not vary.
+        public: symbols of its kernels that other modules call.
+        foreign: symbols that it calls of other modules.
     """
+
+    entries: list[tuple[str, Any]]
+    parts: list[bytes]
+    public: frozenset[str] = frozenset()
+    foreign: frozenset[str] = frozenset()
+
+
+def linked(group: Group) -> Any:
+    """One module of the C functions of the entries, the parts and the runtime, optimised for no platform yet.
+
+    Raises:
+        RuntimeError: the parts call what is not there.
+    """
+    return _together([(name, entry_call(name), returned) for name, returned in group.entries], group)
+
+
+def linked_call(name: str, call: Call, returned: Any, bitcodes: list[bytes]) -> Any:
+    """As `linked`, of any kernel as the only entry."""
+    return _together([(name, call, returned)], Group([], bitcodes))
+
+
+def _together(entries: list[tuple[str, Call, Any]], group: Group) -> Any:
     initialise()
     parts.adapt()
     module = ir.Module("eeca_kernels")
     context = cpu_target.target_context
     module.triple, module.data_layout = llvm.get_process_triple(), context.codegen()._data_layout
-    for name, (call, returned) in entries.items():
+    for name, call, returned in entries:
         _entry(module, name, call, returned)
-    public = {symbol(name) for name in entries}
     whole = llvm.parse_assembly(cgutils.normalize_ir_text(str(module)))
     runtime = Path(__file__).with_name("runtime.ll").read_text(encoding="utf-8")
     header = f'target triple = "{module.triple}"\ntarget datalayout = "{module.data_layout}"\n'
     whole.link_in(llvm.parse_assembly(header + runtime))
-    for one in bitcodes:
+    for one in group.parts:
         whole.link_in(llvm.parse_bitcode(one))
+    seen = {symbol(name) for name, _, _ in entries}
     for one in (*whole.functions, *whole.global_variables):
-        if not one.is_declaration and one.name not in public:
-            one.linkage = "internal"
+        if not one.is_declaration and one.name not in seen:
+            if one.name in group.public:
+                one.visibility = "hidden"
+            else:
+                one.linkage = "internal"
+    _check_complete(whole, group.foreign)
     return whole
 
 
@@ -132,9 +198,13 @@ def retargeted(module: Any, machine: Any) -> Any:
     return copy
 
 
-def unresolved(module: Any) -> list[str]:
-    """Functions that the module calls and lacks: those of the C library."""
-    return sorted(f.name for f in module.functions if f.is_declaration and not f.name.startswith("llvm."))
+def _check_complete(module: Any, foreign: frozenset[str]) -> None:
+    lacking = {f.name for f in module.functions if f.is_declaration and not f.name.startswith("llvm.")}
+    if missing := sorted(lacking - C_LIBRARY - foreign):
+        raise RuntimeError(
+            f"kernels need {', '.join(missing)}, which no part has: lists, strings, sorting and assignments of arrays to "
+            "slices are not compiled"
+        )
 
 
 def optimise(module: Any, machine: Any) -> None:
@@ -147,8 +217,23 @@ def optimise(module: Any, machine: Any) -> None:
     passes.run(module, builder)
 
 
-def machine_of(triple: str, cpu: str) -> Any:
-    """LLVM's description of a processor."""
+def object_of(group: Group, triple: str, cpu: str) -> bytes:
+    """Machine code of a group for a platform, as an object file."""
+    machine = machine_of(triple, cpu)
+    module = retargeted(linked(group), machine)
+    optimise(module, machine)
+    return bytes(machine.emit_object(module))
+
+
+def marked_object(sources: str, triple: str, cpu: str) -> bytes:
+    """An object file with nothing but the hash of the sources."""
+    machine = machine_of(triple, cpu)
+    return bytes(machine.emit_object(retargeted(mark(sources), machine)))
+
+
+def machine_of(triple: str, cpu: str, here: bool = False) -> Any:
+    """LLVM's description of a processor; `here`: for code that runs in this process, wherever the C library lies."""
     initialise()
     target = llvm.Target.from_triple(triple)
-    return target.create_target_machine(cpu=cpu, opt=LEVEL, reloc="pic", codemodel="default")
+    reloc, model = ("default", "jitdefault") if here else ("pic", "default")
+    return target.create_target_machine(cpu=cpu, opt=LEVEL, reloc=reloc, codemodel=model)

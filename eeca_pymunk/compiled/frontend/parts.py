@@ -28,7 +28,7 @@ from numba.np import arrayobj
 
 from ..kernels import Kernel
 from . import NUMBA, calls
-from .calls import Call, annotated, met, symbol
+from .calls import Call, annotated, by_symbol, symbol
 
 _OPTIONS = {"fastmath": False, "error_model": "numpy", "boundscheck": False, "nogil": True}
 _BARE = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
@@ -135,16 +135,13 @@ def part_of(call: Call) -> Part:
 def _compiled(call: Call) -> Part:
     start = time.perf_counter()
     kernel, args = call
-    outer = met[:]
-    met.clear()
     returned = annotated(kernel)
     dispatcher = _dispatcher(kernel)
     dispatcher.compile(args if returned is None else returned(*args))
     found = dispatcher.overloads[args]
-    bitcode = _bitcode(found, symbol(call))
-    made = sorted(set(met), key=symbol)
-    met[:] = outer
-    return Part(bitcode, made, found.signature.return_type, time.perf_counter() - start)
+    module = _module(found, symbol(call))
+    made = [by_symbol[f.name] for f in module.functions if f.is_declaration and f.name in by_symbol]
+    return Part(bytes(module.as_bitcode()), made, found.signature.return_type, time.perf_counter() - start)
 
 
 def _dispatcher(kernel: Kernel[Any, Any]) -> Any:
@@ -152,7 +149,7 @@ def _dispatcher(kernel: Kernel[Any, Any]) -> Any:
     return numba.njit(**options, **({"forceinline": True} if kernel.merged else {}))(kernel.python)
 
 
-def _bitcode(found: Any, name: str) -> bytes:
+def _module(found: Any, name: str) -> Any:
     """The code of a compiled kernel and of numba's functions that it calls, with `name` as its public symbol."""
     libraries, waiting = {}, [found.library]
     while waiting:
@@ -172,11 +169,15 @@ def _bitcode(found: Any, name: str) -> bytes:
                 one.linkage = "internal"
                 one.name = f"{name}.{kind}{number}"
     whole.name = name
-    machine = llvm.Target.from_triple(whole.triple).create_target_machine()
-    passes, builder = (
-        llvm.create_new_module_pass_manager(),
-        llvm.create_pass_builder(machine, llvm.PipelineTuningOptions()),
-    )
-    passes.add_global_dead_code_eliminate_pass()
+    passes, builder = _cleaning()
     passes.run(whole, builder)
-    return bytes(whole.as_bitcode())
+    return whole
+
+
+@functools.cache
+def _cleaning() -> Any:
+    """The pass that removes functions that are not called, numba's wrappers for Python for instance."""
+    machine = llvm.Target.from_default_triple().create_target_machine()
+    passes = llvm.create_new_module_pass_manager()
+    passes.add_global_dead_code_eliminate_pass()
+    return passes, llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options())

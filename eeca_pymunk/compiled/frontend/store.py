@@ -30,6 +30,7 @@ from ..prefetch import Fetch
 from ..sources import cache_folder
 from ..tables import Opener
 from .calls import Call, annotated
+from .module import Group
 from .parts import Part
 
 DAYS = 30
@@ -43,7 +44,7 @@ def digest(*parts: object) -> str:
 
 @functools.cache
 def _compiler() -> str:
-    files = [p.read_bytes() for p in sorted(_HERE.glob("*.py"))]
+    files = [p.read_bytes() for p in sorted(_HERE.glob("*.*")) if p.is_file()]
     return digest(numba.__version__, llvmlite.__version__, sys.version_info[:2], *files)
 
 
@@ -89,6 +90,12 @@ def part_key(call: Call) -> str:
     """The name under which a part is kept."""
     kernel, args = call
     return digest(_compiler(), source_key(kernel), args)
+
+
+def group_key(group: Group, triple: str, cpu: str) -> str:
+    """The name under which an object file is kept."""
+    code = [hashlib.sha256(one).hexdigest() for one in group.parts]
+    return digest(_compiler(), group.entries, code, sorted(group.public), sorted(group.foreign), triple, cpu)
 
 
 def _path(kind: str, key: str) -> Path:

@@ -18,10 +18,10 @@ from numba.core.typing.templates import AttributeTemplate
 from numba.extending import infer_getattr, intrinsic, models, register_model
 from numba.np.numpy_support import from_dtype
 
-from ..tables import WORDS, Opener
 from ..entries import TABLES, is_array, split, table_fields
 from ..kernels import Compilable
 from ..prefetch import Fetch
+from ..tables import WORDS, Opener
 
 
 class TableType(types.Type):

@@ -1,9 +1,25 @@
-"""Sorting in place, without memory of its own."""
+"""Sorting and copying in place: numpy's own, compiled, would make lists and arrays of their own."""
 
 from __future__ import annotations
 
-from ..arrays import IntArray
+from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
+
+
+@uncounted
+def copy(TO: FloatArray, FROM: FloatArray) -> None:
+    """Write the table FROM (n, k) into TO, of the same shape."""
+    for i in range(TO.shape[0]):
+        for k in range(TO.shape[1]):
+            TO[i, k] = FROM[i, k]
+
+
+@uncounted
+def add(TO: FloatArray, MORE: FloatArray) -> None:
+    """Add the table MORE (n, k) to TO, of the same shape."""
+    for i in range(TO.shape[0]):
+        for k in range(TO.shape[1]):
+            TO[i, k] += MORE[i, k]
 
 
 @uncounted

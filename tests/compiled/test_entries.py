@@ -1,0 +1,105 @@
+"""The declaration of entry points: complete, and true of the arrays that are passed."""
+
+from __future__ import annotations
+
+import ast
+import importlib
+import inspect
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import eeca_pymunk
+from eeca_pymunk.compiled.entries import ENTRIES, SOURCES, TABLES, is_array, table_fields
+from eeca_pymunk.compiled.kernels import Kernel, kernels
+from eeca_pymunk.compiled.tables import table_of
+from eeca_pymunk.impacts.layout import Scene
+from eeca_pymunk.jointed.layout import Joints
+
+PACKAGE = Path(eeca_pymunk.__file__).parent
+MODULES = [
+    p for p in sorted(PACKAGE.rglob("*.py")) if not {"frontend", "build"} & set(p.parts) and p.name != "__main__.py"
+]
+
+
+def module_name(path: Path) -> str:
+    parts = path.relative_to(PACKAGE.parent).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+def named_outside_kernels(path: Path) -> Iterator[Kernel[..., object]]:
+    """The kernels that functions of a module name which are no kernels themselves."""
+    there = vars(importlib.import_module(module_name(path)))
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    for node in list(ast.walk(tree)):
+        if isinstance(node, ast.FunctionDef) and isinstance(there.get(node.name), Kernel):
+            node.body = []
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Name) and isinstance(found := there.get(node.id), Kernel):
+            yield found
+
+
+def test_python_calls_no_kernel_without_an_entry() -> None:
+    called = {one.name for path in MODULES for one in named_outside_kernels(path)}
+    assert called == set(ENTRIES)
+
+
+def in_sources(name: str) -> bool:
+    path = name.removeprefix("eeca_pymunk.").replace(".", "/")
+    return any(path == source.removesuffix(".py") or path.startswith(f"{source}/") for source in SOURCES)
+
+
+def test_libraries_carry_the_hash_of_all_that_kernels_are_made_of() -> None:
+    """The modules of kernels, and those that they import numbers and types from."""
+    for path in MODULES:
+        importlib.import_module(module_name(path))
+    modules = {one.python.__module__ for one in kernels().values()}
+    assert len(modules) > 80
+    assert [name for name in sorted(modules) if not in_sources(name)] == []
+    for name in modules:
+        here = importlib.import_module(name)
+        for value in vars(here).values():
+            owner = getattr(value, "__module__", "") or ""
+            if owner.startswith("eeca_pymunk.") and not owner.startswith("eeca_pymunk.compiled"):
+                assert in_sources(owner), f"{name} names {value}"
+
+
+@pytest.mark.parametrize("kind", [Scene, Joints])
+def test_tables_have_the_fields_of_their_named_tuples(kind: type) -> None:
+    assert tuple(name for name, _, _ in table_fields(kind.__name__)) == kind._fields  # type: ignore[attr-defined]
+    assert set(TABLES) == {"Scene", "Joints"}
+
+
+@pytest.mark.parametrize("name", ENTRIES)
+def test_entries_declare_every_argument(name: str) -> None:
+    room, _, function = name.partition(":")
+    kernel = getattr(importlib.import_module(f"eeca_pymunk.{room}"), function)
+    assert kernel.name == name
+    arguments = inspect.signature(kernel.python).parameters
+    kinds = ENTRIES[name].split()
+    assert len(kinds) == len(arguments)
+    annotated = {"float": ("f8",), "int": ("i8",), "bool": ("bool",)}
+    for kind, argument in zip(kinds, arguments.values(), strict=True):
+        if argument.annotation in annotated:
+            assert kind in annotated[argument.annotation]
+        else:
+            assert is_array(kind), argument
+
+
+@pytest.mark.parametrize(
+    ("wrong", "told"),
+    [
+        ({"POOL": np.zeros(4)}, r"Scene.POOL is \('POOL', '<f8', 1\); entries.TABLES declares \('POOL', '<i4', 1\)"),
+        ({"BODY": np.zeros((4, 3)).T}, r"Scene.BODY of shape \(3, 4\) has strides \(8, 24\): it must be C-contiguous"),
+        ({"KEYS": np.zeros((1, 1), np.int64)}, "Scene.KEYS"),
+    ],
+)
+def test_tables_of_other_arrays_are_refused(wrong: dict[str, np.ndarray], told: str) -> None:
+    if eeca_pymunk.compiled.plain():
+        pytest.skip("a table is the tuple itself")
+    arrays = Scene(*(np.zeros((1,) * ndim, dtype) for _, dtype, ndim in table_fields("Scene")))
+    assert table_of(arrays).arrays is arrays
+    with pytest.raises(TypeError, match=told):
+        table_of(arrays._replace(**wrong))
