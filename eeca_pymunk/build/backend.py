@@ -81,7 +81,9 @@ def _build(config: dict[str, Any] | None, portable: bool, folder: Path | None = 
     name = (config or {}).get("target") or targets.this_platform()
     call = [sys.executable, "-m", "eeca_pymunk.build", "--target", name, *(["--portable"] if portable else [])]
     call += ["--out", str(folder)] if folder else []
-    environment = os.environ | {"PYTHONPATH": str(ROOT), "PYTHONDONTWRITEBYTECODE": "1"}
+    # The build environment is on that path already.
+    paths = os.pathsep.join([str(ROOT), *filter(None, [os.environ.get("PYTHONPATH")])])
+    environment = os.environ | {"PYTHONPATH": paths, "PYTHONDONTWRITEBYTECODE": "1"}
     done = subprocess.run(call, cwd=ROOT, env=environment, stdout=subprocess.PIPE, text=True)
     print(done.stdout)
     if done.returncode:

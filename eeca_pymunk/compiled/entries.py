@@ -46,6 +46,8 @@ ENTRIES = {
     "impacts.step:step": "{Scene} f8[3] i8[2] f8[2] f8[1] f8 f8 f8 f8 i8 bool i8",
     "impacts.together:step_together": "{Scene} f8[3] i8[2] f8[2] f8[1] f8[1] f8 f8 f8 f8 i8",
     "joints.plan:make_plan": "f8[2] f8[2] i8[2] i8[2] i8[2] i8[2]",
+    "joints.world:step_all": "f8[2] f8[2] i8[2] i8[2] i8[2] i8[2] i8 f8 i8 f8[2] f8[2] i8[2] f8[1] f8[1] f8[1] i8[1] f8[2]"
+    " f8[1] f8[1] f8[2] i8[1]",
     "jointed.loop:step_jointed": "{Scene} {Joints} f8[3] i8[2] f8[2] f8[1] f8 f8 f8 f8 i8 bool i8",
     "jointed.together:step_together_jointed": "{Scene} {Joints} f8[3] i8[2] f8[2] f8[1] f8[1] f8 f8 f8 f8 i8",
     "sustained.memory:forget": "i8[1] f8[2] i8[1] i8[1] f8[2] f8",

@@ -147,6 +147,14 @@ class EventLoop:
     def _bind(self, states: tuple[AnyArray, ...]) -> Callable[..., int]:
         return step.bind(self.table, *states)
 
+    def __getstate__(self) -> dict[str, object]:
+        # Addresses are those of this process.
+        return {key: value for key, value in self.__dict__.items() if key not in ("table", "_bound")}
+
+    def __setstate__(self, state: dict[str, object]) -> None:
+        self.__dict__.update(state)
+        self.scene = self._scene
+
     def _grow(self, wish: int) -> None:
         scene = self.scene
         if wish == ROOM_FOR_EVENTS:

@@ -84,6 +84,13 @@ class JointedLoop(EventLoop):
         self._ties = table_of(self.joints)
         self._bound = (), None
 
+    def __getstate__(self) -> dict[str, object]:
+        return {key: value for key, value in super().__getstate__().items() if key != "_ties"}
+
+    def __setstate__(self, state: dict[str, object]) -> None:
+        super().__setstate__(state)
+        self._ties = table_of(self.joints)
+
     def _bind(self, states: tuple[AnyArray, ...]) -> Callable[..., int]:
         if self._together:
             return step_together_jointed.bind(self.table, self._ties, *states, self._usual)
