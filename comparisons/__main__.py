@@ -24,6 +24,7 @@ NAMES = (
     "hopper",
     "work_precision",
     "scaling",
+    "first_use",
     "detection",
     "piles",
     "joints",

@@ -1,56 +1,117 @@
-"""First use: seconds of compiling after installation, and of an import."""
+"""First use: seconds of an import and of a first step; of building the library, and of building it after an edit."""
 
 from __future__ import annotations
 
+import os
+import re
 import shutil
 import subprocess
 import sys
 import tempfile
+import time
 from pathlib import Path
 
 import numpy as np
+from tqdm import tqdm
 
 import eeca_pymunk as ep
-from comparisons.output import Row
+from comparisons.output import Output, Row
+from eeca_pymunk.compiled.backend import cannot_build
+from eeca_pymunk.compiled.sources import sources_hash
 
-_FIRST_USE = """
+_STEPS = """
 import time
 start = time.perf_counter()
 import numpy, pymunk
 base = time.perf_counter() - start
 import eeca_pymunk as ep
-print(base, time.perf_counter() - start - base)
-if {step}:
-    import scenes
-    for scene in (scenes.build("gas", count=20), scenes.build("mixed", bowl=True)):
-        begin = time.perf_counter()
-        ep.EECA(scene.space).step(1e-3)
-        print(time.perf_counter() - begin)
+package = time.perf_counter() - start - base
+import scenes
+space = scenes.build("heap").space  # boxes and disks in pairs: contacts, friction, joints
+begin = time.perf_counter()
+ep.EECA(space).step(1e-2)
+print(base, package, time.perf_counter() - begin, time.perf_counter() - start)
 """
-
-
-def _fresh(folder: Path, step: bool) -> list[float]:
-    """Seconds in a process of its own: numpy and pymunk, the package after them, and the first steps."""
-    call = [sys.executable, "-c", _FIRST_USE.format(step=step)]
-    answer = subprocess.run(call, cwd=folder, capture_output=True, text=True, check=True)
-    return [float(word) for word in answer.stdout.split()]
+# A kernel of each room, to which a line is added that changes nothing.
+_EDITS = {
+    "geometry": "geometry/gap.py",
+    "pairs": "pairs/grid.py",
+    "rows": "rows/sweeps.py",
+    "sustained": "sustained/step.py",
+    "impacts": "impacts/strike.py",
+    "joints": "joints/solve.py",
+    "jointed": "jointed/press.py",
+    "none (a comment)": "impacts/scene.py",
+}
 
 
 def look(looks: int = 5) -> list[Row]:
-    """Seconds of a first step after installation, with machine code on disk, and of an import alone."""
+    """Seconds of imports, and of a first step of a heap with joints and friction, each in a process of its own."""
     root = Path(ep.__file__).parents[1]
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        for package in ("eeca_pymunk", "scenes"):
-            shutil.copytree(root / package, folder / package, ignore=shutil.ignore_patterns("__pycache__"))
-        cold = _fresh(folder, True)
-        warm = np.median([_fresh(folder, True) for _ in range(looks)], axis=0)
-        imports = np.median([_fresh(folder, False) for _ in range(looks)], axis=0)
+    found = []
+    for _ in range(looks):
+        done = subprocess.run(
+            [sys.executable, "-c", _STEPS], env=_environment(root), capture_output=True, text=True, check=True
+        )
+        found.append([float(word) for word in done.stdout.split()])
+    base, package, step, whole = np.median(found, axis=0)
     return [
-        {"what": "first step of disks after installation: compiling", "s": cold[2]},
-        {"what": "first step of turning shapes after that", "s": cold[3]},
-        {"what": "first step of disks, machine code on disk", "s": float(warm[2])},
-        {"what": "first step of turning shapes after that", "s": float(warm[3])},
-        {"what": "import numpy, pymunk", "s": float(imports[0])},
-        {"what": "import eeca_pymunk after them", "s": float(imports[1])},
+        {"what": "import numpy, pymunk", "s": float(base)},
+        {"what": "import eeca_pymunk after them", "s": float(package)},
+        {"what": "first step of a heap with joints and friction", "s": float(step)},
+        {"what": "all of it", "s": float(whole)},
     ]
+
+
+def _environment(root: Path, **more: str) -> dict[str, str]:
+    return os.environ | {"PYTHONPATH": str(root), "PYTHONDONTWRITEBYTECODE": "1"} | more
+
+
+def _build(folder: Path) -> Row:
+    """Seconds and stages of a build of the package in this folder."""
+    start = time.perf_counter()
+    done = subprocess.run(
+        [sys.executable, "-m", "eeca_pymunk.build"],
+        cwd=folder, env=_environment(folder, EECA_PYMUNK_CACHE=str(folder / "store")), capture_output=True, text=True,
+    )  # fmt: skip
+    if done.returncode:
+        raise RuntimeError(done.stderr)
+    took = time.perf_counter() - start
+    stage = {name: sum(map(float, re.findall(rf"{name}[^\d]*?(?:x86_64|aarch64)? ([\d.]+) s", done.stdout)))
+             for name in ("compiling kernels", "machine code")}  # fmt: skip
+    return {"s": took, "compiling kernels (s)": stage["compiling kernels"], "machine code (s)": stage["machine code"]}
+
+
+def builds() -> list[Row]:
+    """A first build of a copy of the package, and one after an edit in each room."""
+    root = Path(ep.__file__).parent
+    rows: list[Row] = []
+    with tempfile.TemporaryDirectory() as name, tqdm(total=1 + len(_EDITS), desc="builds") as bar:
+        folder = Path(name)
+        copy = folder / "eeca_pymunk"
+        shutil.copytree(root, copy, ignore=shutil.ignore_patterns("__pycache__", "libraries"))
+        rows.append({"edit in": "nothing is there yet", **_build(folder)})
+        bar.update()
+        for room, file in _EDITS.items():
+            path = copy / file
+            text = path.read_text(encoding="utf-8")
+            # The first statement of the last kernel of the file, after its docstring; or a comment at the end.
+            kernels = list(re.finditer(r'^@(?:kernel|uncounted)\n(?:.*\n)*?    """(?:.|\n)*?"""\n', text, re.MULTILINE))
+            if room.startswith("none"):
+                path.write_text(f"{text}# An edit that no kernel sees.\n", encoding="utf-8")
+            else:
+                at = kernels[-1].end()
+                path.write_text(f"{text[:at]}    edited = 0  # noqa: F841\n{text[at:]}", encoding="utf-8")
+            rows.append({"edit in": f"{room}: {file}", **_build(folder)})
+            bar.update()
+    return rows
+
+
+def run(output: Output, full: bool) -> None:
+    """Print the tables, write CSV."""
+    output.parameters({"sources": sources_hash()})
+    output.table("First use, machine code installed", look(), "first_use")
+    if reason := cannot_build():
+        print(f"no builds: {reason}")
+        return
+    output.table("Building the library", builds(), "builds")

@@ -16,7 +16,6 @@ from tqdm import tqdm
 
 import eeca_pymunk as ep
 import scenes
-from comparisons import first_use
 from comparisons.output import Output, Row
 from comparisons.runs import slope
 from eeca_pymunk import render
@@ -198,7 +197,6 @@ def run(output: Output, full: bool) -> None:
     output.table("20 turning shapes under gravity in a bowl", mixed, "mixed")
     output.table("Hopper of 665 disks from the first step, native as shipped", hopper(), "hopper")
     output.table("What a gas of 1000 disks pays for what it has", features(), "features")
-    output.table("First use", first_use.look(), "first_use")
     output.picture(_picture(rows))
 
 

@@ -1,7 +1,7 @@
-"""End states of many scenes, bit by bit: `python -m tests.bitwise` prints a hash for each, for this code of the kernels.
+"""End states of many scenes, bit by bit: `python -m tests.bitwise` prints a hash for each.
 
-Two kinds of machine code of the same kernels, or the kernels before and after a change that is to change nothing, print
-the same lines: EECA_KERNELS=jit python -m tests.bitwise | diff - <(EECA_KERNELS=library python -m tests.bitwise).
+Two kinds of machine code of the same kernels, or the kernels before and after a change that alters nothing, print the
+same lines: EECA_KERNELS=jit python -m tests.bitwise | diff - <(EECA_KERNELS=library python -m tests.bitwise).
 """
 
 from __future__ import annotations

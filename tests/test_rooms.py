@@ -17,9 +17,7 @@ FILES = sorted(PACKAGE.rglob("*.py"))
 # From the bottom to the top; a room may import what stands on an earlier line, and itself.
 FLOORS = (
     "arrays layout errors files",
-    "fetching indexing linking",
     "compiled",
-    "tables",
     "energy",
     "transfer report",
     "geometry",
@@ -34,7 +32,7 @@ FLOORS = (
     "packed_space",
     "packed_stepper",
     "eeca baselines",
-    "recording warming sweep",
+    "build recording warming sweep",
     "render",
     "__init__ __main__",
 )

@@ -109,7 +109,10 @@ def choose(build: bool) -> Backend:
 
 def advice() -> str:
     """How to get machine code."""
-    return "Install a wheel for this platform, or pip install 'eeca-pymunk[build]' and run python -m eeca_pymunk.build"
+    return (
+        "In a clone: pip install -e . (builds it once), or pip install -e '.[build]' (builds it after every edit). "
+        "Else: install a wheel for this platform"
+    )
 
 
 def cannot_build() -> str:

@@ -1,8 +1,9 @@
 """The entry points: every kernel that Python calls, with the types of its arguments and the fields of its tables.
 
-`ENTRIES` maps "room.module:function" to the types of its arguments. `f8[2]` is a C-contiguous array of 64-bit floats with
-two dimensions, `i8`, `i4` and `u1` are integers; `f8`, `i8` and `bool` without brackets are numbers; a name in braces is a
-table of `TABLES`. An entry returns an integer, or nothing. One that is bound to its arrays has them before its numbers.
+`ENTRIES` maps "room.module:function" to the types of its arguments. `f8[2]` is a C-contiguous array of 64-bit floats
+with two dimensions, `i8`, `i4` and `u1` are integers; `f8`, `i8` and `bool` without brackets are numbers; a name in
+braces is a table of `TABLES`. An entry returns an integer, or nothing. One that Python binds to its arrays has them
+before its numbers.
 
 `TABLES` lists the arrays of each table in the order of its named tuple. `SOURCES` lists the files and rooms of which
 machine code is made: a library carries their hash.
@@ -46,8 +47,8 @@ ENTRIES = {
     "impacts.step:step": "{Scene} f8[3] i8[2] f8[2] f8[1] f8 f8 f8 f8 i8 bool i8",
     "impacts.together:step_together": "{Scene} f8[3] i8[2] f8[2] f8[1] f8[1] f8 f8 f8 f8 i8",
     "joints.plan:make_plan": "f8[2] f8[2] i8[2] i8[2] i8[2] i8[2]",
-    "joints.world:step_all": "f8[2] f8[2] i8[2] i8[2] i8[2] i8[2] i8 f8 i8 f8[2] f8[2] i8[2] f8[1] f8[1] f8[1] i8[1] f8[2]"
-    " f8[1] f8[1] f8[2] i8[1]",
+    "joints.world:step_all": "f8[2] f8[2] i8[2] i8[2] i8[2] i8[2] i8 f8 i8 f8[2] f8[2] i8[2] f8[1] f8[1] f8[1] i8[1]"
+    " f8[2] f8[1] f8[1] f8[2] i8[1]",
     "jointed.loop:step_jointed": "{Scene} {Joints} f8[3] i8[2] f8[2] f8[1] f8 f8 f8 f8 i8 bool i8",
     "jointed.together:step_together_jointed": "{Scene} {Joints} f8[3] i8[2] f8[2] f8[1] f8[1] f8 f8 f8 f8 i8",
     "sustained.memory:forget": "i8[1] f8[2] i8[1] i8[1] f8[2] f8",

@@ -86,8 +86,8 @@ def merged(python: Callable[P, R]) -> Kernel[P, R]:
 
 
 def kernels() -> dict[str, Kernel[Any, Any]]:
-    """All kernels of this package that have been imported, by name."""
-    return {one.name: one for one in _kernels if one.python.__module__.startswith("eeca_pymunk.")}
+    """All kernels that have been imported, by name; those of this package where another has the same name."""
+    return {one.name: one for one in sorted(_kernels, key=lambda one: one.python.__module__.startswith("eeca_pymunk."))}
 
 
 def set_types(types: Callable[[Any], Any]) -> None:

@@ -12,6 +12,8 @@ from __future__ import annotations
 
 import ctypes
 import enum
+import functools
+import operator
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -42,6 +44,18 @@ def symbol(name: str) -> str:
     return "eeca_" + name.replace(".", "_").replace(":", "_")
 
 
+def check(name: str, status: int) -> int:
+    """The answer of an entry.
+
+    Raises:
+        MemoryError: there was no room for an array that it makes.
+        ValueError: the shapes of arrays do not fit.
+    """
+    if status <= NO_SHAPE:
+        raise MemoryError(name) if status == NO_MEMORY else ValueError(f"{name}: arrays do not fit")
+    return status
+
+
 class Entry:
     """One entry point, called with arrays and numbers as its kernel is."""
 
@@ -51,7 +65,7 @@ class Entry:
         self.point_to(address)
         self._arrays = [i for i, kind in enumerate(self.kinds) if is_array(kind)]
         self._numbers = [i for i, kind in enumerate(self.kinds) if not is_array(kind)]
-        self._last: tuple[tuple[Any, ...], Callable[..., int]] | None = None
+        self._last: tuple[list[Any], Callable[..., int] | None] = [], None
 
     def point_to(self, address: int) -> None:
         """Call the C function at this address."""
@@ -61,30 +75,25 @@ class Entry:
     def __call__(self, *args: Any) -> int:
         if len(args) != len(self.kinds):
             raise TypeError(f"{self.name} takes {len(self.kinds)} arguments, not {len(args)}")
-        arrays = tuple([args[i] for i in self._arrays])
-        last = self._last
-        if last is None or any([a is not b for a, b in zip(arrays, last[0], strict=True)]):
-            last = self._last = arrays, self.bind(*arrays)
-        return last[1](*[args[i] for i in self._numbers])
+        arrays = [args[i] for i in self._arrays]
+        known, call = self._last
+        # One by one: to compare lists would compare the numbers of arrays.
+        if call is None or any(map(operator.is_not, arrays, known)):
+            call = self.bind(*arrays)
+            self._last = arrays, call
+        return check(self.name, call(*[args[i] for i in self._numbers]))
 
     def bind(self, *arrays: Any) -> Callable[..., int]:
-        """The entry with these arrays, to be called with its numbers.
+        """The entry with these arrays, to be called with its numbers; its answer is for `check`.
 
         Raises:
             TypeError: an array is not of the declared dtype and dimensions, or not C-contiguous.
         """
-        function, name = self.function, self.name
         words = np.array(
             [w for i, a in zip(self._arrays, arrays, strict=True) for w in self._words(self.kinds[i], a)], np.int64
         )
-        address = words.ctypes.data
-
-        def call(*numbers: Any, _kept: Any = (arrays, words)) -> int:
-            status = function(address, *numbers)
-            if status <= NO_SHAPE:
-                raise MemoryError(name) if status == NO_MEMORY else ValueError(f"{name}: arrays do not fit")
-            return status
-
+        call = functools.partial(self.function, words.ctypes.data)
+        call.kept = arrays, words  # type: ignore[attr-defined] # as long as their addresses are used
         return call
 
     def _words(self, kind: str, array: Any) -> list[int]:

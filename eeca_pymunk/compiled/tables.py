@@ -1,8 +1,8 @@
 """Many arrays behind one pointer.
 
-A scene has some thirty arrays. `table_of` writes their addresses and lengths down once; a kernel that Python calls takes
-that, and an `Opener` makes of it what has the arrays as attributes, at no cost. In plain Python a table is the named
-tuple of arrays itself.
+A scene has some thirty arrays. `table_of` writes their addresses and lengths down once; a kernel that Python calls
+takes that, and an `Opener` makes of it what has the arrays as attributes, at no cost. In plain Python a table is the
+named tuple of arrays itself.
 """
 
 from __future__ import annotations

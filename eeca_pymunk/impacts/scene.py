@@ -10,6 +10,7 @@ import numpy as np
 
 from ..arrays import AnyArray, FloatArray, IntArray, side_by_side
 from ..compiled import table_of
+from ..compiled.library import check
 from ..layout import COUNT as VERTICES
 from ..layout import DUE, ELASTICITY, EVENT_COLUMNS, OWNER
 from ..layout import NOW as READ
@@ -58,6 +59,7 @@ if TYPE_CHECKING:
     import pymunk
 
 RULE_COLUMNS = 6
+UNBOUND: tuple[tuple[AnyArray | None, ...], Callable[..., int]] = (None,) * 4, int
 _CONTACTS = 256  # of islands, that there is room for at first; powers of 2
 _OF_A_BODY, _MANY = 32, 1 << 16  # for each body where contacts may last, up to so many: untouched memory is free
 
@@ -120,7 +122,7 @@ class EventLoop:
     @scene.setter
     def scene(self, arrays: Scene) -> None:
         self._scene, self.table = arrays, table_of(arrays)
-        self._bound: tuple[tuple[AnyArray, ...], Callable[..., int] | None] = (), None
+        self._bound: tuple[tuple[AnyArray | None, ...], Callable[..., int]] = UNBOUND
         self._book: FloatArray = arrays.PAR[LEDGER : AFTER + 1]
 
     def step(
@@ -128,20 +130,21 @@ class EventLoop:
         left: float,
     ) -> int:  # fmt: skip
         """See `step.step`; a negative answer is one of `transfer.py`."""
-        bits = -1
-        while True:
-            status = self._call(STATES, WALK, EXTRA, ENDS)(dt, gx, gy, left, *self._options, bits)
-            if status > ROOM_FOR_LISTS:
-                return status
-            self._grow(status)
+        states, call = self._bound
+        # One by one, since this is paid in every step.
+        if states[0] is not STATES or states[1] is not WALK or states[2] is not EXTRA or states[3] is not ENDS:
+            call = self._bind_to((STATES, WALK, EXTRA, ENDS))
+        status = call(dt, gx, gy, left, *self._options, -1)
+        while status <= ROOM_FOR_LISTS:
+            self._grow(check("step", status))
             bits = FORCES if STATES[READ, :, 6:].any() else 0
+            status = self._bind_to((STATES, WALK, EXTRA, ENDS))(dt, gx, gy, left, *self._options, bits)
+        return status
 
-    def _call(self, *states: AnyArray) -> Callable[..., int]:
+    def _bind_to(self, states: tuple[AnyArray, ...]) -> Callable[..., int]:
         """The step as machine code, bound to these arrays and to those of the scene."""
-        known, call = self._bound
-        if call is None or any([a is not b for a, b in zip(states, known, strict=True)]):
-            call = self._bind(states)
-            self._bound = states, call
+        call = self._bind(states)
+        self._bound = states, call
         return call
 
     def _bind(self, states: tuple[AnyArray, ...]) -> Callable[..., int]:

@@ -9,7 +9,7 @@ import numpy as np
 from ..arrays import AnyArray, FloatArray, IntArray
 from ..compiled import table_of
 from ..impacts.layout import NEXT_TIED, TIED
-from ..impacts.scene import EventLoop
+from ..impacts.scene import UNBOUND, EventLoop
 from ..joints.layout import JOINT_COLUMNS, TIE_COLUMNS
 from ..joints.plan import make_plan, room_for
 from ..joints.scratch import (
@@ -82,7 +82,7 @@ class JointedLoop(EventLoop):
             np.zeros((max(components, 1), STEPPED_COLUMNS)), tally,
         )  # fmt: skip
         self._ties = table_of(self.joints)
-        self._bound = (), None
+        self._bound = UNBOUND
 
     def __getstate__(self) -> dict[str, object]:
         return {key: value for key, value in super().__getstate__().items() if key != "_ties"}

@@ -59,7 +59,7 @@ def test_without_library_and_numba_one_warning_says_what_to_do(monkeypatch: pyte
     monkeypatch.setenv("NUMBA_DISABLE_JIT", "0")
     monkeypatch.delenv("EECA_KERNELS", raising=False)
     with pytest.warns(
-        UserWarning, match="plain Python, some hundred times slower.*none of these sources.*Install a wheel"
+        UserWarning, match="plain Python, some hundred times slower.*none of these sources.*In a clone: pip install"
     ):
         assert backend.start().kind == "python"
     assert backend.start().kind == "python"  # silently

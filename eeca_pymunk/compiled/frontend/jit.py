@@ -27,6 +27,7 @@ class _Entry(Entry):
 
     def __init__(self, name: str) -> None:
         super().__init__(name, 0)
+        self._there = False
 
     def bind(self, *arrays: Any) -> Callable[..., int]:
         self.ready()
@@ -35,7 +36,8 @@ class _Entry(Entry):
     def ready(self) -> None:
         """Compile it, if it has not been called."""
         with _lock:
-            if not self.function:
+            if not self._there:
+                self._there = True
                 self.point_to(address_of(self.name, entry_call(self.name)))
 
 
@@ -81,7 +83,7 @@ def address_of(name: str, call: Call) -> int:
 
 @functools.cache
 def compiled(kernel: Kernel[Any, Any], kinds: str) -> Entry:
-    """Any kernel as machine code of this process, for arguments as `..entries` writes them: for tests of the compiler."""
+    """Any kernel that returns an integer as machine code, for arguments as `..entries` writes them."""
     call = kernel, tuple(map(declared_type, kinds.split()))
     with _lock:
         return Entry(kernel.name, address_of(kernel.name, call), kinds)

@@ -20,43 +20,10 @@ from .calls import Call
 from .types import declared_type
 
 _INT, _FLOAT = ir.IntType(64), ir.DoubleType()
-C_LIBRARY = set(
-    [
-        "acos",
-        "asin",
-        "atan",
-        "atan2",
-        "calloc",
-        "ceil",
-        "copysign",
-        "cos",
-        "cosh",
-        "exp",
-        "floor",
-        "fmod",
-        "free",
-        "frexp",
-        "hypot",
-        "ldexp",
-        "log",
-        "log10",
-        "log2",
-        "malloc",
-        "memcpy",
-        "memmove",
-        "memset",
-        "pow",
-        "rint",
-        "round",
-        "sin",
-        "sincos",
-        "sinh",
-        "sqrt",
-        "tan",
-        "tanh",
-        "trunc",
-    ]
-)
+C_LIBRARY = frozenset("""
+    acos asin atan atan2 calloc ceil copysign cos cosh exp floor fmod free frexp hypot ldexp log log10 log2 malloc memcpy
+    memmove memset pow rint round sin sincos sinh sqrt tan tanh trunc
+""".split())  # fmt: skip
 LEVEL = 2  # of optimisation: 3 takes longer and gains nothing that can be measured
 
 
@@ -193,7 +160,7 @@ def retargeted(module: Any, machine: Any) -> Any:
     copy.triple, copy.data_layout = machine.triple, str(machine.target_data)
     if "windows" in machine.triple:
         for one in (*copy.functions, *copy.global_variables):
-            if not one.is_declaration and one.linkage == llvm.Linkage.external:
+            if not one.is_declaration and one.name.startswith("eeca_"):
                 one.storage_class = "dllexport"
     return copy
 
@@ -202,8 +169,8 @@ def _check_complete(module: Any, foreign: frozenset[str]) -> None:
     lacking = {f.name for f in module.functions if f.is_declaration and not f.name.startswith("llvm.")}
     if missing := sorted(lacking - C_LIBRARY - foreign):
         raise RuntimeError(
-            f"kernels need {', '.join(missing)}, which no part has: lists, strings, sorting and assignments of arrays to "
-            "slices are not compiled"
+            f"kernels need {', '.join(missing)}, which no part has: lists, strings, sorting and assignments of arrays "
+            "to slices are not compiled"
         )
 
 

@@ -3,10 +3,13 @@
 numba types and lowers the kernel; of what numba's own functions add, all becomes private to the part. Its only public
 symbol is `calls.symbol`, and what it lacks are other parts, the runtime (`runtime.ll`) and the C library.
 
-This process is a compiler's: numba is adapted in it. Code is kept as LLVM has it and never made machine code of; an error
-is a status without Python's exception, so that no path of a source file enters the code; an index is taken as it is,
-without numba's look whether it counts from the end (three instructions at every access, a fifth of all in linear algebra);
-and what operators answer for given types is remembered (a sixth of the time of typing).
+numba is adapted in a process that compiles, which is the builder's or, with EECA_KERNELS=jit, the user's:
+
+* code stays LLVM's: numba makes no machine code of a part;
+* an error is a status without Python's exception, so that no path of a source file enters the code;
+* an index counts from the start of an array: numba's test whether it is negative takes three instructions at every
+  access, a fifth of all in linear algebra;
+* the types of operators are looked up once: a sixth of the time of typing.
 """
 
 from __future__ import annotations
@@ -23,7 +26,7 @@ import numba
 from llvmlite import ir
 from numba.core import callconv, codegen, types
 from numba.core.registry import cpu_target
-from numba.core.runtime import rtsys
+from numba.core.runtime import rtsys  # type: ignore[attr-defined]
 from numba.np import arrayobj
 
 from ..kernels import Kernel
@@ -59,14 +62,12 @@ class _Quiet:
 class _Library(codegen.JITCodeLibrary):
     """LLVM code as numba's front end leaves it."""
 
-    codegen = property(lambda self: _Quiet(self._codegen))  # type: ignore[assignment]
+    codegen = property(lambda self: _Quiet(self._codegen))
 
     def finalize(self) -> None:
-        self._raise_if_finalized()
         self._finalized = True
 
     def get_pointer_to_function(self, name: str) -> int:
-        self._ensure_finalized()
         return 0
 
 
@@ -145,8 +146,9 @@ def _compiled(call: Call) -> Part:
 
 
 def _dispatcher(kernel: Kernel[Any, Any]) -> Any:
-    options = _OPTIONS | _BARE | ({} if kernel.counted else {"_nrt": False})
-    return numba.njit(**options, **({"forceinline": True} if kernel.merged else {}))(kernel.python)
+    njit: Any = numba.njit
+    options: dict[str, Any] = _OPTIONS | _BARE | ({} if kernel.counted else {"_nrt": False})
+    return njit(**options, **({"forceinline": True} if kernel.merged else {}))(kernel.python)
 
 
 def _module(found: Any, name: str) -> Any:
