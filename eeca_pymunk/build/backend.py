@@ -12,6 +12,7 @@ This file is imported by itself, from this folder, before the package is install
 from __future__ import annotations
 
 import base64
+import contextlib
 import hashlib
 import importlib.util
 import os
@@ -21,7 +22,7 @@ import sys
 import zipfile
 from pathlib import Path
 from types import ModuleType
-from typing import Any
+from typing import IO, Any
 
 from setuptools import build_meta
 from setuptools.build_meta import (  # noqa: F401 - hooks that stay as they are
@@ -84,13 +85,22 @@ def _build(config: dict[str, Any] | None, portable: bool, folder: Path | None = 
     # The build environment is on that path already.
     paths = os.pathsep.join([str(ROOT), *filter(None, [os.environ.get("PYTHONPATH")])])
     environment = os.environ | {"PYTHONPATH": paths, "PYTHONDONTWRITEBYTECODE": "1"}
-    done = subprocess.run(call, cwd=ROOT, env=environment, stdout=subprocess.PIPE, text=True)
+    with _terminal() as terminal:
+        done = subprocess.run(call, cwd=ROOT, env=environment, stdout=subprocess.PIPE, stderr=terminal, text=True)
     print(done.stdout)
     if done.returncode:
         raise RuntimeError(f"{' '.join(call)} failed: exit status {done.returncode}")
     found = re.search(r"^(.*kernels-\S+?)(?:  | is there)", done.stdout, flags=re.MULTILINE)
     assert found is not None
     return targets.TARGETS[name], Path(found[1])
+
+
+def _terminal() -> contextlib.AbstractContextManager[IO[str] | None]:
+    """The terminal, for a progress bar: pip hides what its backends print. None where there is no terminal."""
+    try:
+        return open("/dev/tty", "w")
+    except OSError:
+        return contextlib.nullcontext()
 
 
 def build_editable(

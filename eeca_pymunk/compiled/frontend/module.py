@@ -20,10 +20,11 @@ from .calls import Call
 from .types import declared_type
 
 _INT, _FLOAT = ir.IntType(64), ir.DoubleType()
-C_LIBRARY = frozenset("""
-    acos asin atan atan2 calloc ceil copysign cos cosh exp floor fmod free frexp hypot ldexp log log10 log2 malloc memcpy
-    memmove memset pow rint round sin sincos sinh sqrt tan tanh trunc
-""".split())  # fmt: skip
+_NAMES = """
+    acos asin atan atan2 calloc ceil copysign cos cosh exp floor fmod free frexp hypot ldexp log log10 log2 malloc
+    memcpy memmove memset pow rint round sin sincos sinh sqrt tan tanh trunc
+"""
+C_LIBRARY = frozenset(_NAMES.split())
 LEVEL = 2  # of optimisation: 3 takes longer and gains nothing that can be measured
 
 
