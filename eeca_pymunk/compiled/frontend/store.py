@@ -43,9 +43,10 @@ def digest(*parts: object) -> str:
 
 
 @functools.cache
-def _compiler() -> str:
-    files = [p.read_bytes() for p in sorted(_HERE.glob("*.*")) if p.is_file()]
-    return digest(numba.__version__, llvmlite.__version__, sys.version_info[:2], *files)
+def _compiler(*files: str) -> str:
+    """The hash of the compiler, as far as it is in these files of this folder."""
+    texts = [_HERE.joinpath(file).read_bytes() for file in files]
+    return digest(numba.__version__, llvmlite.__version__, sys.version_info[:2], *texts)
 
 
 def _names(code: CodeType) -> Iterator[str]:
@@ -89,13 +90,14 @@ def _said(value: Any, where: str) -> object:
 def part_key(call: Call) -> str:
     """The name under which a part is kept."""
     kernel, args = call
-    return digest(_compiler(), source_key(kernel), args)
+    return digest(_compiler("calls.py", "parts.py", "types.py"), source_key(kernel), args)
 
 
 def group_key(group: Group, triple: str, cpu: str) -> str:
     """The name under which an object file is kept."""
     code = [hashlib.sha256(one).hexdigest() for one in group.parts]
-    return digest(_compiler(), group.entries, code, sorted(group.public), sorted(group.foreign), triple, cpu)
+    compiler = _compiler("module.py", "runtime.ll")
+    return digest(compiler, group.entries, code, sorted(group.public), sorted(group.foreign), triple, cpu)
 
 
 def _path(kind: str, key: str) -> Path:
