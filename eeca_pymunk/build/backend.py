@@ -4,7 +4,8 @@ A wheel holds the library and is of a platform, `py3-none-<platform>`, one for a
 beside the sources. Both build it in an environment of their own, in which numba is installed, and a linker if need be:
 the environment of the user gets neither. `python -m build --wheel -Ctarget=win32-x86_64` is for another platform.
 
-On a platform without numba, or without an entry in `compiled.targets.TARGETS`, the wheel is plain Python.
+Where numba has no wheels (a newer Python, PyPy, musl), and for platforms that `compiled.targets.TARGETS` lacks, the
+wheel is plain Python.
 
 This file is imported by itself, from this folder, before the package is installed.
 """
@@ -52,7 +53,8 @@ def _requirements(portable: bool, config: dict[str, Any] | None) -> list[str]:
     """What the builder needs; nothing where no library is built."""
     targets = _targets()
     name = (config or {}).get("target") or targets.this_platform()
-    if name not in targets.TARGETS or sys.version_info[:2] > NEWEST_PYTHON:
+    has_numba = sys.implementation.name == "cpython" and sys.version_info[:2] <= NEWEST_PYTHON
+    if not has_numba or not {name, targets.this_platform()} <= set(targets.TARGETS):
         return []
     text = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
     extra = re.search(r"^build = \[(.*?)\]", text, flags=re.MULTILINE | re.DOTALL)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import os
 import platform
 import shutil
 import sys
@@ -46,7 +47,16 @@ TARGETS = {
 def this_platform() -> str:
     """The platform of this process, as `linux-x86_64`; it need not be one of `TARGETS`."""
     machine = {"amd64": "x86_64", "arm64": "aarch64"}.get(platform.machine().lower(), platform.machine().lower())
-    return f"{'linux' if sys.platform.startswith('linux') else sys.platform}-{machine}"
+    if not sys.platform.startswith("linux"):
+        return f"{sys.platform}-{machine}"
+    return f"{'linux' if _has_glibc() else 'musl'}-{machine}"
+
+
+def _has_glibc() -> bool:
+    try:
+        return (os.confstr("CS_GNU_LIBC_VERSION") or "").startswith("glibc")
+    except (AttributeError, OSError, ValueError):
+        return False
 
 
 def linker(name: str, portable: bool = False) -> list[str]:
