@@ -33,7 +33,7 @@ ep.EECA(space).step(1e-2)
 print(base, package, time.perf_counter() - begin, time.perf_counter() - start)
 """
 # A kernel of each room, to which a line is added that changes nothing.
-_EDITS = {
+EDITS = {
     "geometry": "geometry/gap.py",
     "pairs": "pairs/grid.py",
     "rows": "rows/sweeps.py",
@@ -86,13 +86,13 @@ def builds() -> list[Row]:
     """A first build of a copy of the package, and one after an edit in each room."""
     root = Path(ep.__file__).parent
     rows: list[Row] = []
-    with tempfile.TemporaryDirectory() as name, tqdm(total=1 + len(_EDITS), desc="builds") as bar:
+    with tempfile.TemporaryDirectory() as name, tqdm(total=1 + len(EDITS), desc="builds") as bar:
         folder = Path(name)
         copy = folder / "eeca_pymunk"
         shutil.copytree(root, copy, ignore=shutil.ignore_patterns("__pycache__", "libraries"))
         rows.append({"edit in": "nothing is there yet", **_build(folder)})
         bar.update()
-        for room, file in _EDITS.items():
+        for room, file in EDITS.items():
             path = copy / file
             text = path.read_text(encoding="utf-8")
             # The first statement of the last kernel of the file, after its docstring; or a comment at the end.

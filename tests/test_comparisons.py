@@ -23,6 +23,7 @@ from comparisons import (
     detection,
     film,
     films,
+    first_use,
     gallery,
     joints,
     maxwell,
@@ -153,6 +154,16 @@ def test_work_precision_finds_how_much_better_eeca_is() -> None:
     assert row["native best (m)"] == min(p.error for p in points[2:])
     assert max(p.error for p in points[:2]) < 1e-12
     assert float(row["native best (m)"] or 0.0) > 1e-4
+
+
+def test_first_use_tells_seconds_of_imports_and_steps() -> None:
+    rows = first_use.look(looks=1)
+    assert [row["what"] for row in rows][-1] == "all of it"
+    seconds = [float(str(row["s"])) for row in rows]
+    assert min(seconds) > 0.0
+    assert seconds[-1] == pytest.approx(sum(seconds[:-1]), abs=seconds[-1])
+    for file in first_use.EDITS.values():
+        assert (Path(ep.__file__).parent / file).is_file()
 
 
 def test_scaling_tells_ratios_of_one_interleaved_run() -> None:

@@ -25,7 +25,13 @@ OTHERS = {
     "python tests/mutations.py": "tests/mutations.py",
     "python -m tests.programs.soak": "tests/programs/soak.py",
     "python -m tests.programs.soak --gain 1e-8": "tests/programs/soak.py",
+    "python -m tests.bitwise": "tests/bitwise.py",
     "python -m eeca_pymunk": "tests/test_release.py",
+    "python -m eeca_pymunk.build": "eeca_pymunk/build/__main__.py",
+    "python -m build": "tests/test_release.py",
+    "python -m build --wheel": "tests/test_release.py",
+    'pip install -e ".[dev]"': ".ci/run",
+    "pip install -e .": "README.md",
     'pip install "eeca-pymunk[video]"': "pyproject.toml",
 }
 # Where the short form of each comparison is run.
@@ -38,6 +44,7 @@ SHORT = {
     "hopper": "test_docs.py::test_films_run",
     "work_precision": "test_comparisons.py::test_work_precision_finds_how_much_better_eeca_is",
     "scaling": "test_comparisons.py::test_scaling_tells_ratios_of_one_interleaved_run",
+    "first_use": "test_comparisons.py::test_first_use_tells_seconds_of_imports_and_steps",
     "detection": "test_comparisons.py::test_detection_finds_what_pymunk_finds",
     "piles": "test_comparisons.py::test_short_piles_keep_their_books",
     "joints": "test_comparisons.py::test_joints_tell_errors_and_costs",
