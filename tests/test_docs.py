@@ -27,7 +27,7 @@ OTHERS = {
     "python -m tests.programs.soak --gain 1e-8": "tests/programs/soak.py",
     "python -m tests.bitwise": "tests/bitwise.py",
     "python -m eeca_pymunk": "tests/test_release.py",
-    "python -m eeca_pymunk.build": "eeca_pymunk/build/__main__.py",
+    "python -m eeca_pymunk.build": "tests/build/test_builder.py",
     "python -m build": "tests/test_release.py",
     "python -m build --wheel": "tests/test_release.py",
     'pip install -e ".[dev]"': ".ci/run",
