@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+import os
+import subprocess
 import sys
 import time
 from pathlib import Path
@@ -58,4 +60,8 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 if __name__ == "__main__":
+    # numba walks sets of names in the order of their hashes: with random hashes two builds differ in their bytes.
+    if sys.flags.hash_randomization:
+        call = [sys.executable, "-m", "eeca_pymunk.build", *sys.argv[1:]]
+        sys.exit(subprocess.run(call, env=os.environ | {"PYTHONHASHSEED": "0"}).returncode)
     sys.exit(main())

@@ -140,7 +140,7 @@ def _compiled(call: Call) -> Part:
     dispatcher = _dispatcher(kernel)
     dispatcher.compile(args if returned is None else returned(*args))
     found = dispatcher.overloads[args]
-    module = _module(found, symbol(call))
+    module = _module(found, symbol(call), kernel.merged)
     made = [by_symbol[f.name] for f in module.functions if f.is_declaration and f.name in by_symbol]
     return Part(bytes(module.as_bitcode()), made, found.signature.return_type, time.perf_counter() - start)
 
@@ -148,10 +148,10 @@ def _compiled(call: Call) -> Part:
 def _dispatcher(kernel: Kernel[Any, Any]) -> Any:
     njit: Any = numba.njit
     options: dict[str, Any] = _OPTIONS | _BARE | ({} if kernel.counted else {"_nrt": False})
-    return njit(**options, **({"forceinline": True} if kernel.merged else {}))(kernel.python)
+    return njit(**options)(kernel.python)
 
 
-def _module(found: Any, name: str) -> Any:
+def _module(found: Any, name: str, merged: bool) -> Any:
     """The code of a compiled kernel and of numba's functions that it calls, with `name` as its public symbol."""
     libraries, waiting = {}, [found.library]
     while waiting:
@@ -163,23 +163,33 @@ def _module(found: Any, name: str) -> Any:
     for one in libraries.values():
         if one is not found.library:
             whole.link_in(one._final_module, preserve=True)
-    whole.get_function(found.fndesc.llvm_func_name).name = name
-    # numba counts its functions in their names: other names in every process, and in every order.
-    for kind, all_of in (("f", whole.functions), ("g", whole.global_variables)):
-        for number, one in enumerate(all_of):
-            if not one.is_declaration and one.name != name:
-                one.linkage = "internal"
-                one.name = f"{name}.{kind}{number}"
-    whole.name = name
+    own = whole.get_function(found.fndesc.llvm_func_name)
+    own.name = name
+    if merged:
+        # Not by numba's option, which functions of numba that are compiled on the way would inherit.
+        own.add_function_attribute("alwaysinline")
+    _hide(whole, name)
     passes, builder = _cleaning()
     passes.run(whole, builder)
+    # numba counts its functions in their names: other names in every process, and in every order.
+    _hide(whole, name)
+    whole.name = name
     return whole
+
+
+def _hide(module: Any, name: str) -> None:
+    """Make all but this symbol private, and number their names."""
+    for kind, all_of in (("f", module.functions), ("g", module.global_variables)):
+        there = [one for one in all_of if not one.is_declaration and one.name != name]
+        for number, one in enumerate(there):
+            one.linkage, one.name = "internal", f"{name}.{kind}{number}"
 
 
 @functools.cache
 def _cleaning() -> Any:
-    """The pass that removes functions that are not called, numba's wrappers for Python for instance."""
+    """What removes functions that are not called, numba's wrappers for Python for instance, and names of values."""
     machine = llvm.Target.from_default_triple().create_target_machine()
     passes = llvm.create_new_module_pass_manager()
     passes.add_global_dead_code_eliminate_pass()
+    passes.add_strip_symbols_pass()
     return passes, llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options())

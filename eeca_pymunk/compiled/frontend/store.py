@@ -138,7 +138,9 @@ def read_part(call: Call) -> Part | None:
 
 
 def write_part(call: Call, part: Part) -> None:
-    """Keep a part."""
+    """Keep a part, unless it was compiled with random hashes, on which the order of its instructions depends."""
+    if sys.flags.hash_randomization:
+        return
     called = [(kernel.name, args) for kernel, args in part.calls]
     write("parts", part_key(call), pickle.dumps((part.bitcode, called, part.returned, part.seconds)))
 
