@@ -6,13 +6,18 @@ import argparse
 import os
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ..compiled.backend import advice
 from ..compiled.library import Status, load
-from ..compiled.sources import library_folder, library_name
+from ..compiled.sources import builder_environment, cache_folder, library_folder, library_name, sources_hash, writable
 from ..compiled.targets import TARGETS, this_platform
+
+if TYPE_CHECKING:
+    from .builder import Builder
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -22,6 +27,9 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--out", type=Path, help="folder; by default beside the sources")
     parser.add_argument("--workers", type=int, help="processes; by default one for each core, eight at most")
     parser.add_argument("--portable", action="store_true", help="for other machines too: linked by the ziglang wheel")
+    parser.add_argument(
+        "--object", action="store_true", help="an object file for this processor, in the place of a library"
+    )
     parser.add_argument("--force", action="store_true", help="also if the library is there")
     options = parser.parse_args(arguments)
     names = list(TARGETS) if "all" in (options.target or ()) else options.target or [this_platform()]
@@ -35,6 +43,8 @@ def main(arguments: list[str] | None = None) -> int:
     except ImportError as error:
         print(f"{error}. {advice()}", file=sys.stderr)
         return 2
+    if options.object:
+        return _object(Builder(cache_folder(), options.workers or default_workers(), True))
     with alone(folder):
         here = folder / library_name()
         if (
@@ -48,7 +58,7 @@ def main(arguments: list[str] | None = None) -> int:
         builder = Builder(folder, options.workers or default_workers(), True)
         try:
             built = builder.run(names, options.portable)
-        except (RuntimeError, ImportError) as error:
+        except (RuntimeError, ImportError, OSError) as error:
             print(error, file=sys.stderr)
             return 1
     for path in built:
@@ -59,9 +69,24 @@ def main(arguments: list[str] | None = None) -> int:
     return 0
 
 
+def _object(builder: Builder) -> int:
+    """Write the object file of this processor, and say where."""
+    folder = cache_folder() if writable(cache_folder()) else Path(tempfile.mkdtemp())
+    path = folder / f"kernels-{sources_hash()[:16]}.o"
+    try:
+        path.write_bytes(builder.host_object())
+    except (RuntimeError, ImportError, OSError) as error:
+        print(error, file=sys.stderr)
+        return 1
+    print(path)
+    return 0
+
+
 if __name__ == "__main__":
     # numba walks sets of names in the order of their hashes: with random hashes two builds differ in their bytes.
-    if sys.flags.hash_randomization:
+    # Its own settings, NUMBA_BOUNDSCHECK for instance, would make other code.
+    others = {key: value for key, value in os.environ.items() if not key.startswith("NUMBA_")}
+    if sys.flags.hash_randomization or len(others) < len(os.environ):
         call = [sys.executable, "-m", "eeca_pymunk.build", *sys.argv[1:]]
-        sys.exit(subprocess.run(call, env=os.environ | {"PYTHONHASHSEED": "0"}).returncode)
+        sys.exit(subprocess.run(call, env=builder_environment(others) | {"PYTHONHASHSEED": "0"}).returncode)
     sys.exit(main())

@@ -4,8 +4,8 @@ A wheel holds the library and is of a platform, `py3-none-<platform>`, one for a
 beside the sources. Both build it in an environment of their own, in which numba is installed, and a linker if need be:
 the environment of the user gets neither. `python -m build --wheel -Ctarget=win32-x86_64` is for another platform.
 
-Where numba has no wheels (a newer Python, PyPy, musl), and for platforms that `compiled.targets.TARGETS` lacks, the
-wheel is plain Python.
+`-Ctarget=none` is plain Python; so is a wheel where numba has no wheels itself (PyPy, musl, macOS on x86-64), and for
+platforms that `compiled.targets.TARGETS` lacks.
 
 This file is imported by itself, from this folder, before the package is installed.
 """
@@ -18,8 +18,10 @@ import hashlib
 import importlib.util
 import os
 import re
+import shutil
 import subprocess
 import sys
+import tempfile
 import zipfile
 from pathlib import Path
 from types import ModuleType
@@ -34,7 +36,7 @@ from setuptools.build_meta import (  # noqa: F401 - hooks that stay as they are
 )
 
 ROOT = Path(__file__).parents[2]
-NEWEST_PYTHON = (3, 14)  # for which numba has wheels
+NEWEST_PYTHON = (3, 15)  # for which numba has wheels
 _DATE = (1980, 1, 1, 0, 0, 0)  # of all files of a wheel: equal sources make equal bytes
 
 
@@ -53,8 +55,10 @@ def _requirements(portable: bool, config: dict[str, Any] | None) -> list[str]:
     """What the builder needs; nothing where no library is built."""
     targets = _targets()
     name = (config or {}).get("target") or targets.this_platform()
+    if name not in {*targets.TARGETS, "none", targets.this_platform()}:
+        raise ValueError(f"-Ctarget={name}: choose one of {', '.join(targets.TARGETS)}, or none for plain Python")
     has_numba = sys.implementation.name == "cpython" and sys.version_info[:2] <= NEWEST_PYTHON
-    if not has_numba or not {name, targets.this_platform()} <= set(targets.TARGETS):
+    if not has_numba or name not in targets.TARGETS or not targets.has_compiler():
         return []
     text = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
     extra = re.search(r"^build = \[(.*?)\]", text, flags=re.MULTILINE | re.DOTALL)
@@ -115,7 +119,16 @@ def build_editable(
 def build_wheel(
     wheel_directory: str, config_settings: dict[str, Any] | None = None, metadata_directory: str | None = None
 ) -> str:
-    built = _build(config_settings, portable=True)
+    with tempfile.TemporaryDirectory() as folder:
+        return _wheel(wheel_directory, config_settings, metadata_directory, Path(folder))
+
+
+def _wheel(
+    wheel_directory: str, config_settings: dict[str, Any] | None, metadata_directory: str | None, folder: Path
+) -> str:
+    # The library beside the sources may be linked for this machine alone; setuptools' folder may hold older files.
+    built = _build(config_settings, True, folder)
+    shutil.rmtree(ROOT / "build" / "lib", ignore_errors=True)
     ours = {key: value for key, value in (config_settings or {}).items() if key != "target"}
     name = str(build_meta.build_wheel(wheel_directory, ours, metadata_directory))
     return name if built is None else _with_library(Path(wheel_directory, name), *built)

@@ -19,7 +19,7 @@ from ..compiled.frontend import module, store
 from ..compiled.frontend.calls import Call, symbol
 from ..compiled.frontend.module import Group
 from ..compiled.frontend.parts import Part
-from ..compiled.sources import library_name, sources_hash
+from ..compiled.sources import cache_folder, library_name, sources_hash
 from ..compiled.targets import TARGETS, Target, linker
 from .workers import Workers, gather, import_kernels
 
@@ -72,6 +72,7 @@ class Builder:
                 after = _MACHINE_CODE * len(names)
                 found = gather(calls.values(), workers, lambda done, known: self._show(done, known + after))
             groups = split(calls, found)
+            check_unchanged()
             built = []
             for name in names:
                 target = TARGETS[name]
@@ -82,6 +83,27 @@ class Builder:
                     built.append(link(self.folder / library_name(name), objects, linker(name, portable)))
         store.prune()
         return built
+
+    def host_object(self) -> bytes:
+        """Machine code of all kernels for this processor, as one object file to be loaded into a process."""
+        with self._bar, Workers(self.workers) as workers:
+            with self.stage("compiling kernels"):
+                import_kernels()
+                calls = {name: module.entry_call(name) for name in ENTRIES}
+                told = lambda done, known: self._show(done, known + _MACHINE_CODE)  # noqa: E731
+                found = gather(calls.values(), workers, told)
+            order = sorted(found, key=symbol)
+            group = Group(
+                [(name, found[call].returned) for name, call in calls.items()], [found[c].bitcode for c in order]
+            )
+            check_unchanged()
+            with self.stage("optimising, writing machine code for this processor"):
+                key = store.group_key(group, "this process", module.host())
+                code = store.read("objects", key)
+                if code is None:
+                    code = module.host_object_of(group)
+                    store.write("objects", key, code)
+        return code
 
     def _show(self, done: int, total: int) -> None:
         self._bar.total, self._bar.n = total, done
@@ -98,6 +120,12 @@ class Builder:
             store.write("objects", keys[i], code)
             found[i] = code
         return [*filter(None, found), module.marked_object(sources_hash(), target.triple, target.cpu)]
+
+
+def check_unchanged() -> None:
+    """RuntimeError if the sources were edited since this process imported them."""
+    if sources_hash.__wrapped__() != sources_hash():
+        raise RuntimeError("sources were edited during the build: build again")
 
 
 def split(calls: dict[str, Call], found: dict[Call, Part]) -> list[Group]:
@@ -146,9 +174,12 @@ def link(path: Path, objects: list[bytes], command: list[str]) -> Path:
         for name, code in zip(names, objects, strict=True):
             Path(place, name).write_bytes(code)
         plain = ["-Wl,--build-id=none"] if path.suffix == ".so" else []
+        # The ziglang linker keeps what it compiles of the C library; a user may have no home for that.
+        environment = {"ZIG_GLOBAL_CACHE_DIR": str(cache_folder() / "zig")} | os.environ
         done = subprocess.run(
             [*command, "-shared", "-s", *plain, "-o", path.name, *names, "-lm"],
             cwd=place,
+            env=environment,
             capture_output=True,
             text=True,
         )

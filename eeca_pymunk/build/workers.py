@@ -30,9 +30,15 @@ def import_kernels() -> None:
         importlib.import_module(f"eeca_pymunk.{name.partition(':')[0]}")
 
 
-def _compile(name: str, args: tuple[Any, ...]) -> tuple[bytes, list[tuple[str, tuple[Any, ...]]], Any, float]:
-    part = part_of((kernels()[name], args))
-    return part.bitcode, [(one.name, kinds) for one, kinds in part.calls], part.returned, part.seconds
+_Answer = tuple[str, bytes, list[tuple[str, tuple[Any, ...]]], Any, float]
+
+
+def _compile(name: str, args: tuple[Any, ...]) -> _Answer:
+    """A part, under the key that it has in this process."""
+    call = kernels()[name], args
+    part = part_of(call)
+    calls = [(one.name, kinds) for one, kinds in part.calls]
+    return store.part_key(call), part.bitcode, calls, part.returned, part.seconds
 
 
 class Workers:
@@ -110,12 +116,15 @@ def gather(first: Iterable[Call], workers: Workers, told: Callable[[int, int], N
             running[workers.submit(_compile, call[0].name, call[1])] = call
         missing.clear()
         for done in wait(running, return_when=FIRST_COMPLETED).done:
-            bitcode, called, returned, seconds = done.result()
-            calls = [(all_kernels[name], args) for name, args in called]
-            take(running.pop(done), Part(bitcode, calls, returned, seconds))
+            key, bitcode, called, returned, seconds = done.result()
+            call = running.pop(done)
+            if key != store.part_key(call):
+                raise RuntimeError(f"{call[0].name} was edited during the build: build again")
+            take(call, Part(bitcode, [(all_kernels[name], args) for name, args in called], returned, seconds))
     return found
 
 
 def default_workers() -> int:
     """One process for each core, eight at most."""
-    return max(1, min(8, os.cpu_count() or 1))
+    there = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return min(8, there)

@@ -4,7 +4,7 @@ In this order:
 
 1. the library of these sources (`library.py`), which is built first if it is missing and the builder's requirements are
    installed (numba and a linker, `eeca_pymunk/build`): once, in a process of its own, with a progress bar;
-2. just in time, by numba in this process, if numba is installed but no library can be linked;
+2. code compiled just in time for this processor (`frontend/jit.py`), if numba is installed but nothing can be linked;
 3. plain Python, some hundred times slower, with a warning.
 
 The environment variable EECA_KERNELS (library, jit, python) chooses one of them; NUMBA_DISABLE_JIT=1 is plain Python.
@@ -12,7 +12,6 @@ The environment variable EECA_KERNELS (library, jit, python) chooses one of them
 
 from __future__ import annotations
 
-import importlib.util
 import os
 import subprocess
 import sys
@@ -20,10 +19,12 @@ import threading
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
+from .frontend import NUMBA
 from .library import Entry, Status, load
-from .sources import library_folder, library_path, writable
+from .sources import builder_environment, library_folder, library_path, writable
 from .targets import linker, this_platform
 
 CHOICES = ("", "library", "jit", "python")
@@ -86,25 +87,42 @@ def choose(build: bool) -> Backend:
         return Backend("python", "the environment asks for it (NUMBA_DISABLE_JIT or EECA_KERNELS)")
     said = ""
     if asked != "jit":
-        path = library_path()
-        status, entries, said = load(path)
-        if status is not Status.LOADED and build and (said := cannot_build()) == "":
+        status, entries, said, path = _library()
+        if status is not Status.LOADED and (reason := cannot_build()) == "":
+            if not build:
+                return Backend("library", "none of these sources yet: it is built at the first step")
             said = _build()
-            path = library_path()
-            status, entries, more = load(path)
+            status, entries, more, path = _library()
             said = said or more
+        elif status is not Status.LOADED:
+            said = f"{said}; {reason}" if said else reason
         if status is Status.LOADED:
             return Backend("library", f"{path}", entries)
         said = f"library: {status.value}{f' ({said})' if said else ''}"
         if asked == "library":
             raise ImportError(f"EECA_KERNELS=library, but {said}")
-    if _installed("numba"):
+    wrong = wrong_numba()
+    if not wrong:
+        if not build:
+            return Backend("jit", said or "EECA_KERNELS asks for it")
         from .frontend.jit import entries as compiled
 
-        return Backend("jit", said or "EECA_KERNELS asks for it", compiled())
+        try:
+            return Backend("jit", said or "EECA_KERNELS asks for it", compiled())
+        except ImportError as error:
+            wrong = str(error)
     if asked == "jit":
-        raise ImportError("EECA_KERNELS=jit, but numba is not installed")
-    return Backend("python", f"{said}; numba is not installed either. {advice()}")
+        raise ImportError(f"EECA_KERNELS=jit, but {wrong}")
+    return Backend("python", f"{said}; just in time: {wrong}. {advice()}")
+
+
+def _library() -> tuple[Status, dict[str, Entry], str, Path | None]:
+    """The library of these sources: its status, entries, what the system says of it, and its file."""
+    try:
+        path = library_path()
+    except OSError as error:
+        return Status.UNKNOWN, {}, str(error), None
+    return *load(path), path
 
 
 def advice() -> str:
@@ -117,25 +135,33 @@ def advice() -> str:
 
 def cannot_build() -> str:
     """Why the library cannot be built here; "" if it can."""
-    if not _installed("numba"):
-        return "numba, which builds it, is not installed"
+    if wrong := wrong_numba():
+        return wrong
     if not writable(library_folder()):
         return f"{library_folder()} is read-only"
     return "" if linker(this_platform()) else "there is no linker: install a C compiler, or pip install ziglang"
 
 
-def _installed(name: str) -> bool:
-    if name in sys.modules:
-        return sys.modules[name] is not None
-    return importlib.util.find_spec(name) is not None
+def wrong_numba() -> str:
+    """Why numba cannot compile the kernels; "" if it can."""
+    found = _found()
+    if found is None:
+        return "numba is not installed"
+    return "" if found.startswith(f"{NUMBA}.") else f"numba {found} is installed, the compiler knows {NUMBA} alone"
+
+
+def _found() -> str | None:
+    """The version of numba that is installed, which is not imported."""
+    if sys.modules.get("numba", ...) is None:  # what import statements take for missing
+        return None
+    try:
+        return version("numba")
+    except PackageNotFoundError:
+        return None
 
 
 def _build() -> str:
     """Build the library in another process, which shows its progress; what went wrong, "" if nothing did."""
-    package = Path(__file__).parents[2]
-    paths = os.pathsep.join([str(package), *filter(None, [os.environ.get("PYTHONPATH")])])
-    done = subprocess.run(
-        [sys.executable, "-m", "eeca_pymunk.build"],
-        env={**os.environ, "PYTHONPATH": paths}, stdout=subprocess.DEVNULL,
-    )  # fmt: skip
+    call = [sys.executable, "-m", "eeca_pymunk.build"]
+    done = subprocess.run(call, env=builder_environment(), stdout=subprocess.DEVNULL)
     return "" if done.returncode == 0 else f"python -m eeca_pymunk.build failed with exit status {done.returncode}"

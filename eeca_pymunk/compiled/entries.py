@@ -14,8 +14,8 @@ from __future__ import annotations
 import functools
 
 SOURCES = (
-    "arrays.py", "layout.py", "transfer.py", "compiled/entries.py", "compiled/tables.py", "compiled/frontend", "build",
-    "energy", "geometry", "rows", "pairs", "sustained", "joints", "impacts", "jointed",
+    "arrays.py", "layout.py", "transfer.py", "compiled", "build", "energy", "geometry", "rows", "pairs", "sustained",
+    "joints", "impacts", "jointed",
 )  # fmt: skip
 
 TABLES = {

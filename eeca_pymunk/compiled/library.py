@@ -37,6 +37,7 @@ class Status(enum.Enum):
     UNMARKED = "it is no library of kernels: it carries no hash"
     OUTDATED = "it carries the hash of other sources"
     INCOMPLETE = "it lacks an entry point"
+    UNKNOWN = "the sources, whose hash it has to carry, cannot be read"
 
 
 def symbol(name: str) -> str:

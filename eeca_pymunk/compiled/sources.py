@@ -6,7 +6,8 @@ import functools
 import hashlib
 import os
 import sys
-from collections.abc import Iterator
+import tempfile
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from .entries import SOURCES
@@ -47,12 +48,16 @@ def cache_folder() -> Path:
     """The folder of this user, or EECA_PYMUNK_CACHE: what builds reuse, and libraries of read-only packages."""
     if chosen := os.environ.get("EECA_PYMUNK_CACHE"):
         return Path(chosen)
+    try:
+        user = Path.home()
+    except RuntimeError:  # of a user without an entry, in a container for instance
+        user = Path(tempfile.gettempdir())
     if sys.platform == "win32":
-        home = Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local")
+        home = Path(os.environ.get("LOCALAPPDATA") or user / "AppData" / "Local")
     elif sys.platform == "darwin":
-        home = Path.home() / "Library" / "Caches"
+        home = user / "Library" / "Caches"
     else:
-        home = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+        home = Path(os.environ.get("XDG_CACHE_HOME") or user / ".cache")
     return home / "eeca_pymunk"
 
 
@@ -72,5 +77,13 @@ def library_folder() -> Path:
 
 def library_path() -> Path | None:
     """The library of these sources for this platform; None if there is none."""
-    found = (folder / library_name() for folder in (beside(), cache_folder()))
-    return next((path for path in found if path.is_file()), None)
+    for folder in (beside, cache_folder):
+        if (path := folder() / library_name()).is_file():
+            return path
+    return None
+
+
+def builder_environment(base: Mapping[str, str] = os.environ) -> dict[str, str]:
+    """The environment of a process that builds from these sources, and not from those of the working folder."""
+    paths = [str(PACKAGE.parent), *filter(None, [base.get("PYTHONPATH")])]
+    return {**base, "PYTHONPATH": os.pathsep.join(paths), "PYTHONSAFEPATH": "1"}

@@ -7,6 +7,7 @@ import os
 import platform
 import shutil
 import sys
+import sysconfig
 from dataclasses import dataclass
 
 
@@ -46,17 +47,34 @@ TARGETS = {
 
 def this_platform() -> str:
     """The platform of this process, as `linux-x86_64`; it need not be one of `TARGETS`."""
-    machine = {"amd64": "x86_64", "arm64": "aarch64"}.get(platform.machine().lower(), platform.machine().lower())
+    # Of the interpreter, which may be another than the kernel's.
+    told = sysconfig.get_platform().rpartition("-")[2] if sys.platform == "win32" else platform.machine()
+    machine = {"amd64": "x86_64", "arm64": "aarch64"}.get(told.lower(), told.lower())
+    machine += "" if sys.maxsize > 1 << 32 else "-32"
     if not sys.platform.startswith("linux"):
         return f"{sys.platform}-{machine}"
     return f"{'linux' if _has_glibc() else 'musl'}-{machine}"
 
 
 def _has_glibc() -> bool:
+    return _glibc() > (0, 0)
+
+
+def _glibc() -> tuple[int, ...]:
+    """The version of GNU's C library, (0, 0) for others."""
     try:
-        return (os.confstr("CS_GNU_LIBC_VERSION") or "").startswith("glibc")
+        name, _, version = (os.confstr("CS_GNU_LIBC_VERSION") or "").partition(" ")
     except (AttributeError, OSError, ValueError):
-        return False
+        return 0, 0
+    return tuple(int(part) for part in version.split(".")[:2]) if name == "glibc" else (0, 0)
+
+
+def has_compiler() -> bool:
+    """Whether numba has wheels for this platform, of the versions that compile kernels."""
+    name = this_platform()
+    if name.startswith("linux"):
+        return name in TARGETS and _glibc() >= (2, 28)
+    return name in ("win32-x86_64", "darwin-aarch64")
 
 
 def linker(name: str, portable: bool = False) -> list[str]:

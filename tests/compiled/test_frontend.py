@@ -13,9 +13,9 @@ from eeca_pymunk.compiled import fetch, kernel, merged, uncounted
 if importlib.util.find_spec("numba") is None:
     pytest.skip("numba is not installed: there is no compiler", allow_module_level=True)
 
-from eeca_pymunk.compiled.frontend import calls, module, store
-from eeca_pymunk.compiled.frontend.jit import compiled, reached
-from eeca_pymunk.compiled.frontend.types import declared_type
+from eeca_pymunk.compiled.frontend import calls, store
+
+from .in_process import call_of, compiled, reached
 
 
 @merged
@@ -37,7 +37,7 @@ def test_constants_in_calls_do_not_make_other_parts() -> None:
     out = np.zeros(1)
     compiled(callers, "f8[1] i8")(out, 4)
     assert out[0] == 2.5
-    found = reached([(callers, (declared_type("f8[1]"), declared_type("i8")))])
+    found = reached(call_of(callers, "f8[1] i8"))
     assert sorted(call[0].python.__name__ for call in found) == ["callers", "half", "spread"]
 
 
@@ -54,7 +54,7 @@ def test_rows_are_fetched_and_nothing_else_happens() -> None:
         out = np.zeros(1)
         compiled(every_other, "f8[2] f8[1] i8")(table, out, row)
         assert out[0] == 15.0
-    (part,) = reached([(every_other, tuple(map(declared_type, ("f8[2]", "f8[1]", "i8"))))]).values()
+    (part,) = reached(call_of(every_other, "f8[2] f8[1] i8")).values()
     assert b"prefetch" in part.bitcode
 
 
@@ -104,6 +104,16 @@ def test_errors_of_kernels_are_statuses() -> None:
 
 
 @kernel
+def reshapes(A: FloatArray) -> int:
+    return len(A.reshape(2, 3))
+
+
+def test_arrays_are_reshaped_to_lines_alone() -> None:
+    with pytest.raises(ValueError, match="reshapes"):
+        compiled(reshapes, "f8[1]")(np.zeros(6))
+
+
+@kernel
 def sorts(A: IntArray) -> None:
     A.sort()
 
@@ -141,6 +151,27 @@ def test_parts_are_kept_by_all_that_they_depend_on(monkeypatch: pytest.MonkeyPat
     assert len({first, other, third}) == 3
 
 
+def test_parts_are_kept_by_the_code_in_memory_and_not_by_the_file(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A file that is edited after it was imported is not what is compiled."""
+    store.source_key.cache_clear()
+    first = store.source_key(half)
+    store.source_key.cache_clear()
+    code = half.python.__code__
+    monkeypatch.setattr(half.python, "__code__", code.replace(co_consts=(*code.co_consts[:-1], 0.25)))
+    assert store.source_key(half) != first
+    store.source_key.cache_clear()
+
+
+def test_files_that_were_cut_short_are_compiled_again(tmp_path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("EECA_PYMUNK_CACHE", str(tmp_path))
+    monkeypatch.setattr(store, "part_key", lambda call: "abc")
+    for content in (b"", b"\x80"):
+        path = tmp_path / "parts" / "ab" / "abc"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content)
+        assert store.read_part(call_of(half, "f8")) is None
+
+
 def test_the_store_keeps_whole_files_and_forgets_old_ones(tmp_path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("EECA_PYMUNK_CACHE", str(tmp_path))
     store.write("parts", "abc", b"code")
@@ -164,4 +195,3 @@ def test_the_declared_version_of_numba_is_asked_for(monkeypatch: pytest.MonkeyPa
 def test_calls_are_typed_by_annotations() -> None:
     assert str(calls.annotated(spread)) == "float64"
     assert calls.annotated(half) is calls.annotated(spread)
-    assert module.LEVEL == 2

@@ -1,89 +1,51 @@
-"""Kernels compiled in this process: each entry point at its first call, with all that it reaches."""
+"""Kernels as code of this process, where no library can be linked.
+
+The builder compiles them in a process of its own to one object file for this processor, and LLVM loads that here: numba
+is not imported, and nothing in this process is changed.
+"""
 
 from __future__ import annotations
 
 import functools
-import threading
-from collections.abc import Callable, Mapping
+import subprocess
+import sys
+from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import llvmlite.binding as llvm
 
 from ..entries import ENTRIES
-from ..kernels import Kernel
 from ..library import Entry, symbol
-from . import store
-from .calls import Call
-from .module import entry_call, linked_call, machine_of, optimise
-from .parts import Part, part_of
-from .types import declared_type
+from ..sources import builder_environment
 
-_lock = threading.RLock()
 _engines: list[Any] = []  # which own the code
 
 
-class _Entry(Entry):
-    """An entry point that is compiled when it is first called."""
-
-    def __init__(self, name: str) -> None:
-        super().__init__(name, 0)
-        self._there = False
-
-    def bind(self, *arrays: Any) -> Callable[..., int]:
-        self.ready()
-        return super().bind(*arrays)
-
-    def ready(self) -> None:
-        """Compile it, if it has not been called."""
-        with _lock:
-            if not self._there:
-                self._there = True
-                self.point_to(address_of(self.name, entry_call(self.name)))
-
-
+@functools.cache
 def entries() -> Mapping[str, Entry]:
-    """All entry points, none of them compiled."""
-    return {name: _Entry(name) for name in ENTRIES}
+    """All entry points, compiled.
+
+    Raises:
+        ImportError: they could not be compiled.
+    """
+    call = [sys.executable, "-m", "eeca_pymunk.build", "--object"]
+    done = subprocess.run(call, env=builder_environment(), stdout=subprocess.PIPE, text=True)
+    if done.returncode:
+        raise ImportError(f"{' '.join(call)} failed with exit status {done.returncode}")
+    engine = loaded(Path(done.stdout.splitlines()[-1]).read_bytes())
+    return {name: Entry(name, engine.get_function_address(symbol(name))) for name in ENTRIES}
 
 
-def ready(kernel: Kernel[Any, Any]) -> None:
-    """Compile this entry point, if it has not been called."""
-    if isinstance(entry := kernel.run, _Entry):
-        entry.ready()
-
-
-def reached(first: list[Call]) -> dict[Call, Part]:
-    """The parts of these calls and of all that they call, compiled or read from the store."""
-    found: dict[Call, Part] = {}
-    waiting = first[::-1]
-    while waiting:
-        call = waiting.pop()
-        if call in found:
-            continue
-        part = store.read_part(call)
-        if part is None:
-            part = part_of(call)
-            store.write_part(call, part)
-        found[call] = part
-        waiting += part.calls
-    return found
-
-
-def address_of(name: str, call: Call) -> int:
-    """Compile a kernel for these types of arguments, and all that it calls, as code of this processor."""
-    found = reached([call])
-    module = linked_call(name, call, found[call].returned, [part.bitcode for part in found.values()])
-    machine = machine_of(llvm.get_process_triple(), llvm.get_host_cpu_name(), here=True)
-    optimise(module, machine)
+def loaded(code: bytes) -> Any:
+    """An engine of LLVM with the code of an object file for this processor."""
+    llvm.initialize_native_target()
+    llvm.initialize_native_asmprinter()
+    machine = llvm.Target.from_triple(llvm.get_process_triple()).create_target_machine(codemodel="jitdefault")
+    module = llvm.parse_assembly("")
+    module.triple = llvm.get_process_triple()
     engine = llvm.create_mcjit_compiler(module, machine)
+    engine.add_object_file(llvm.ObjectFileRef.from_data(code))
     engine.finalize_object()
     _engines.append(engine)
-    return int(engine.get_function_address(symbol(name)))
-
-
-@functools.cache
-def compiled(kernel: Kernel[Any, Any], kinds: str) -> Entry:
-    """Any kernel that returns an integer as machine code, for arguments as `..entries` writes them."""
-    call = kernel, tuple(map(declared_type, kinds.split()))
-    with _lock:
-        return Entry(kernel.name, address_of(kernel.name, call), kinds)
+    return engine

@@ -199,6 +199,20 @@ def marked_object(sources: str, triple: str, cpu: str) -> bytes:
     return bytes(machine.emit_object(retargeted(mark(sources), machine)))
 
 
+def host() -> str:
+    """The name of this processor."""
+    initialise()
+    return str(llvm.get_host_cpu_name())
+
+
+def host_object_of(group: Group) -> bytes:
+    """Machine code of a group for this processor, to be loaded into a process."""
+    machine = machine_of(llvm.get_process_triple(), host(), here=True)
+    module = linked(group)
+    optimise(module, machine)
+    return bytes(machine.emit_object(module))
+
+
 def machine_of(triple: str, cpu: str, here: bool = False) -> Any:
     """LLVM's description of a processor; `here`: for code that runs in this process, wherever the C library lies."""
     initialise()

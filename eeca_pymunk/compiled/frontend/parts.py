@@ -3,7 +3,7 @@
 numba types and lowers the kernel; of what numba's own functions add, all becomes private to the part. Its only public
 symbol is `calls.symbol`, and what it lacks are other parts, the runtime (`runtime.ll`) and the C library.
 
-numba is adapted in a process that compiles, which is the builder's or, with EECA_KERNELS=jit, the user's:
+numba is adapted in the processes of the builder, which do nothing else:
 
 * code stays LLVM's: numba makes no machine code of a part;
 * an error is a status without Python's exception, so that no path of a source file enters the code;

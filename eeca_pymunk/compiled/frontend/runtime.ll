@@ -63,8 +63,13 @@ done:
   ret void
 }
 
-; reshape(A.size) of an array without gaps, the only reshape of kernels.
+; reshape(A.size) of an array without gaps, the only reshape of kernels: 0, an error, for any other.
 define i32 @numba_attempt_nocopy_reshape(i64 %nd, ptr %dims, ptr %strides, i64 %newnd, ptr %newdims, ptr %newstrides, i64 %itemsize, i32 %fortran) {
+  %line = icmp eq i64 %newnd, 1
+  br i1 %line, label %flat, label %other
+flat:
   store i64 %itemsize, ptr %newstrides
   ret i32 1
+other:
+  ret i32 0
 }

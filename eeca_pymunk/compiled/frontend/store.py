@@ -7,9 +7,9 @@ again. Files that no build has read for `DAYS` are removed.
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import hashlib
-import inspect
 import os
 import pickle
 import sys
@@ -56,6 +56,12 @@ def _names(code: CodeType) -> Iterator[str]:
             yield from _names(one)
 
 
+def _said_of(code: CodeType, doc: str | None = None) -> tuple[object, ...]:
+    """What is compiled of a function: from memory, since its file may have been edited since it was imported."""
+    constants = [_said_of(one) if isinstance(one, CodeType) else repr(one) for one in code.co_consts if one != doc]
+    return code.co_code, constants, code.co_names, code.co_varnames, code.co_freevars
+
+
 @functools.cache
 def source_key(kernel: Kernel[Any, Any]) -> str:
     """The hash of a kernel's source and of all that it names."""
@@ -65,7 +71,8 @@ def source_key(kernel: Kernel[Any, Any]) -> str:
         for name in sorted(set(_names(python.__code__)))
         if name in python.__globals__
     ]
-    return digest(kernel.name, kernel.counted, kernel.merged, inspect.getsource(python), python.__annotations__, named)
+    code = _said_of(python.__code__, python.__doc__)
+    return digest(kernel.name, kernel.counted, kernel.merged, code, python.__annotations__, named)
 
 
 def _said(value: Any, where: str) -> object:
@@ -90,13 +97,15 @@ def _said(value: Any, where: str) -> object:
 def part_key(call: Call) -> str:
     """The name under which a part is kept."""
     kernel, args = call
-    return digest(_compiler("calls.py", "parts.py", "types.py"), source_key(kernel), args)
+    return digest(
+        _compiler("calls.py", "parts.py", "types.py", "../tables.py", "../entries.py"), source_key(kernel), args
+    )
 
 
 def group_key(group: Group, triple: str, cpu: str) -> str:
     """The name under which an object file is kept."""
     code = [hashlib.sha256(one).hexdigest() for one in group.parts]
-    compiler = _compiler("module.py", "runtime.ll")
+    compiler = _compiler("module.py", "runtime.ll", "../entries.py", "../library.py")
     return digest(compiler, group.entries, code, sorted(group.public), sorted(group.foreign), triple, cpu)
 
 
@@ -109,10 +118,11 @@ def read(kind: str, key: str) -> bytes | None:
     path = _path(kind, key)
     try:
         found = path.read_bytes()
-        os.utime(path)
     except OSError:
         return None
-    return found
+    with contextlib.suppress(OSError):
+        os.utime(path)
+    return found or None
 
 
 def write(kind: str, key: str, content: bytes) -> None:
@@ -133,8 +143,11 @@ def read_part(call: Call) -> Part | None:
     if content is None:
         return None
     all_kernels = kernels()
-    bitcode, called, returned, seconds = pickle.loads(content)
-    return Part(bitcode, [(all_kernels[name], args) for name, args in called], returned, seconds)
+    try:
+        bitcode, called, returned, seconds = pickle.loads(content)
+        return Part(bitcode, [(all_kernels[name], args) for name, args in called], returned, seconds)
+    except Exception:  # a file that was cut short, whatever pickle makes of it
+        return None
 
 
 def write_part(call: Call, part: Part) -> None:

@@ -18,7 +18,7 @@ from numba.core.typing.templates import AttributeTemplate
 from numba.extending import infer_getattr, intrinsic, models, register_model
 from numba.np.numpy_support import from_dtype
 
-from ..entries import TABLES, is_array, split, table_fields
+from ..entries import is_array, split, table_fields
 from ..kernels import Compilable
 from ..prefetch import Fetch
 from ..tables import WORDS, Opener
@@ -110,7 +110,7 @@ def type_of_other(one: Compilable) -> Any:
 def _opener(kind: type) -> Any:
     """The type of the function that opens tables of this kind; what is no table, it returns as it is."""
     name = kind.__name__
-    fields = table_fields(name) if name in TABLES else getattr(kind, "fields", ())
+    fields = table_fields(name)
 
     def opened(typing: Any, table: Any) -> Any:
         if not isinstance(table, types.Array):
