@@ -32,7 +32,7 @@ begin = time.perf_counter()
 ep.EECA(space).step(1e-2)
 print(base, package, time.perf_counter() - begin, time.perf_counter() - start)
 """
-# A kernel of each room, to which a line is added that changes nothing.
+# A file of each room, in which the last digit of the first number in a kernel is changed.
 EDITS = {
     "geometry": "geometry/gap.py",
     "pairs": "pairs/grid.py",
@@ -43,6 +43,11 @@ EDITS = {
     "jointed": "jointed/press.py",
     "none (a comment)": "impacts/scene.py",
 }
+
+_NUMBER = re.compile(
+    r'^@(?:kernel|uncounted|merged)\n(?:.*\n)*?    """(?:.|\n)*?"""\n(?:.*\n)*?.*?\b(\d*[1-9]\d*\.\d+|\d+\.\d*[1-9])\b',
+    re.MULTILINE,
+)
 
 
 def look(looks: int = 5) -> list[Row]:
@@ -95,13 +100,12 @@ def builds() -> list[Row]:
         for room, file in EDITS.items():
             path = copy / file
             text = path.read_text(encoding="utf-8")
-            # The first statement of the last kernel of the file, after its docstring; or a comment at the end.
-            kernels = list(re.finditer(r'^@(?:kernel|uncounted)\n(?:.*\n)*?    """(?:.|\n)*?"""\n', text, re.MULTILINE))
             if room.startswith("none"):
-                path.write_text(f"{text}# An edit that no kernel sees.\n", encoding="utf-8")
+                edited = f"{text}# An edit that no kernel sees.\n"
             else:
-                at = kernels[-1].end()
-                path.write_text(f"{text[:at]}    edited = 0  # noqa: F841\n{text[at:]}", encoding="utf-8")
+                at = _NUMBER.search(text).end(1)  # type: ignore[union-attr]
+                edited = f"{text[:at]}000000000001{text[at:]}"
+            path.write_text(edited, encoding="utf-8")
             rows.append({"edit in": f"{room}: {file}", **_build(folder)})
             bar.update()
     return rows
