@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING, Protocol
 
 from .arrays import FloatArray, IntArray
 from .closures.time_of_impact import TimeOfImpact
+from .impacts.scene import EventLoop
 from .jointed.scene import JointedLoop
-from .packed_stepper import PackedStepper
+from .packed_stepper import PackedStepper, busy
 from .report import Details
+from .saved import Saved
 from .space.world import World
 
 if TYPE_CHECKING:
@@ -72,9 +74,22 @@ class EECA(PackedStepper):
         self, space: pymunk.Space, closure: Closure | None = None, *, sync: bool = True, ignore: Sequence[str] = ()
     ) -> None:
         self.closure: Closure = TimeOfImpact() if closure is None else closure
+        self._saved: Saved | None = None  # in a copy, until its first step
         super().__init__(space, sync=sync, ignore=ignore)
 
+    def __getstate__(self) -> dict[str, object]:
+        state = super().__getstate__()
+        del state["_method"]
+        world = self._world
+        if world is not None and isinstance(self._method, EventLoop):
+            state["_saved"] = Saved(world, self._method)
+        return state
+
     def prepare(self, world: World) -> None:
+        saved, self._saved = self._saved, None
+        if saved is not None and saved.resume(world):
+            self._method = saved.method
+            return
         world.load()
         self._method = self.closure.prepare(world)
         if world.joints is not None:
@@ -88,7 +103,8 @@ class EECA(PackedStepper):
         joints = world.joints
         if joints is not None:
             if not joints.idle():
-                joints.look(world.state, world.bodies.row, dt)
+                with busy(self.space):  # springs have functions
+                    joints.look(world.state, world.bodies.row, dt)
             if joints.replan:
                 assert isinstance(self._method, JointedLoop)
                 self._method.plan()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
@@ -26,6 +26,9 @@ if TYPE_CHECKING:
 TOO_FAR = "the step would overflow; take a smaller dt, or stop this run"
 
 
+Own = TypeVar("Own", bound="PackedSpace")
+
+
 class PackedSpace(Stepper):
     """A stepper that keeps its space as the arrays of a `World`; arguments as of `PackedStepper`."""
 
@@ -42,17 +45,20 @@ class PackedSpace(Stepper):
         self._look()
 
     def __getstate__(self) -> dict[str, object]:
-        # Original and copy go on from the same: without what was remembered of earlier steps.
-        self._world = self._past = self._sleep = None
+        # The original is left as it is. The copy reads its space anew.
         state = self.__dict__.copy()
         state.pop("_sync", None)
-        state["_told"] = None
+        state["_world"] = state["_past"] = state["_sleep"] = state["_told"] = None
         return state
 
+    def __copy__(self: Own) -> Own:
+        """Another stepper of the same space, which remembers nothing: two cannot share their arrays."""
+        other = type(self).__new__(type(self))
+        other.__dict__.update({**self.__getstate__(), "_saved": None})
+        return other
+
     def refresh(self) -> None:
-        if self._world is not None:
-            self._past = self._world
-        self._world = None
+        self._world = self._past = None
 
     def prepare(self, world: World) -> None:
         """Make what the stepper keeps about a world that was read anew."""

@@ -3,10 +3,16 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from math import isfinite
 from typing import TypeVar
 
+import pymunk
+
+from .arrays import FloatArray
 from .energy.ledger import AFTER, DAMPED
+from .errors import NotFiniteError
 from .packed_space import TOO_FAR, PackedSpace
 from .report import Details, StepReport
 from .space.bodies import ANGULAR_VELOCITY, VELOCITY
@@ -17,6 +23,17 @@ from .stepper import check_dt
 from .transfer import EVENTS, FORCES, MOVED_STATIC, OTHER_BODIES, fly
 
 Own = TypeVar("Own", bound="PackedStepper")
+_busy: set[pymunk.Space] = set()  # spaces whose own functions are being called: they cannot be stepped
+
+
+@contextmanager
+def busy(space: pymunk.Space) -> Iterator[None]:
+    """Within, steps of the space are refused."""
+    _busy.add(space)
+    try:
+        yield
+    finally:
+        _busy.discard(space)
 
 
 class PackedStepper(PackedSpace):
@@ -61,6 +78,11 @@ class PackedStepper(PackedSpace):
         return 1.0, True, 0
 
     def step(self, dt: float) -> StepReport:
+        if _busy and self.space in _busy:
+            raise RuntimeError(
+                f"step was called for {self.space} from within its own step, by a collision handler or a function of a "
+                "body or constraint: step it when that step has returned, or in space.add_post_step_callback"
+            )
         dt = check_dt(dt)
         if dt == 0.0:
             return StepReport.without_contacts(self.time)
@@ -117,6 +139,7 @@ class PackedStepper(PackedSpace):
             world, status = self._awake(world, dt, left, status)
         if status < 0:
             self._fail(world, dt, status)
+        book = self._booked(dt)
         try:
             if status & FORCES:
                 world.reset_forces()
@@ -131,7 +154,7 @@ class PackedStepper(PackedSpace):
             self._undo(world, world.state)
             raise
         self.time += dt
-        report = self._made(world, dt, status)
+        report = self._made(world, dt, status, book)
         if not world.plain:
             self._tell_joints(world)
         if self.sync:
@@ -140,6 +163,16 @@ class PackedStepper(PackedSpace):
 
     def _hooked_step(self, world: World, dt: float) -> StepReport:
         """A step of a space in which functions of bodies or constraints, or collision handlers, are called."""
+        with busy(self.space):
+            world, report, rehearsal = self._take_hooked(world, dt)
+        if rehearsal is not None:
+            rehearsal.finish(world.bodies)
+        elif self.sync or (world.joints is not None and world.joints.calling):
+            self._sync.call_back()
+        return report
+
+    def _take_hooked(self, world: World, dt: float) -> tuple[World, StepReport, Rehearsal | None]:
+        """All of it but what waits for its end."""
         world.gather()
         if not world.is_current():
             world = self._look(anew=True)
@@ -149,6 +182,7 @@ class PackedStepper(PackedSpace):
         hooks, left = Hooks(self.space, bodies, world.joints), world.left(dt)
         rehearsal: Rehearsal | None = None
         given, lost = world.given(), 0.0
+        book: FloatArray | None = None
         try:
             if world.joints is not None:
                 world.joints.refresh()
@@ -165,6 +199,7 @@ class PackedStepper(PackedSpace):
             world.void_forecasts()
             world.give(given)
             status = self._checked(world, dt, self.advance(world, dt, left))
+            book = self._booked(dt)
             given, end = world.given(), world.ended()
             if world.damping == 0.0:
                 lost = world.stop(end)
@@ -197,13 +232,18 @@ class PackedStepper(PackedSpace):
             self._undo(world, state)
             raise
         self.time += dt
-        report = self._made(world, dt, status, lost)
+        report = self._made(world, dt, status, book, lost)
         self._tell_joints(world)
-        if rehearsal is not None:
-            rehearsal.finish(bodies)
-        elif self.sync or (world.joints is not None and world.joints.calling):
-            self._sync.call_back()
-        return report
+        return world, report, rehearsal
+
+    def _booked(self, dt: float) -> FloatArray | None:
+        """What the ledger of the step is made of. NotFiniteError, before the space is touched, if the energy is too
+        large for a number though positions and velocities are not."""
+        book = self.book()
+        if book is not None and not isfinite(book[AFTER]):
+            self._world = self._past = None
+            raise NotFiniteError(f"the energy of the space would be {book[AFTER]} after dt = {dt}: {TOO_FAR}")
+        return book
 
     def _checked(self, world: World, dt: float, status: int) -> int:
         if status < 0:
@@ -215,9 +255,8 @@ class PackedStepper(PackedSpace):
         gx, gy = world.gravity
         return fly(world.STATES, world.WALK, world.EXTRA, world.BODY, world.ENDS, dt, gx, gy, left)
 
-    def _made(self, world: World, dt: float, status: int, lost: float = 0.0) -> StepReport:
-        """The report of the step; `lost` is the energy that damping has taken since."""
-        book = self.book()
+    def _made(self, world: World, dt: float, status: int, book: FloatArray | None, lost: float = 0.0) -> StepReport:
+        """The report of the step with this book; `lost` is the energy that damping has taken since."""
         if lost and book is not None:
             book[DAMPED] += lost
             book[AFTER] -= lost

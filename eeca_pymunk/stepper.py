@@ -23,7 +23,9 @@ def check_dt(dt: float) -> float:
 class Stepper(ABC):
     """Steps a pymunk space: `stepper.step(dt)` in the place of `space.step(dt)`.
 
-    A step completes or raises with the space as it was. Between steps shapes and bodies may be added, removed, edited.
+    A step completes or raises with the space as it was; but for what a post-step callback raises: these are called when
+    the step has been taken, so that bodies and `time` are at its end, as under pymunk. Between steps shapes and bodies
+    may be added, removed, edited. Functions that are called within a step cannot step the same space: RuntimeError.
     """
 
     def __init__(self, space: pymunk.Space) -> None:
@@ -41,4 +43,7 @@ class Stepper(ABC):
         """One line: what of the space as it is now is modelled, and therefore paid for."""
 
     def refresh(self) -> None:  # noqa: B027 - steppers that keep nothing have nothing to refresh
-        """Read the space's shapes and masses anew at the next step; for what was edited behind pymunk's setters."""
+        """Read the whole space anew at the next step, and forget what earlier steps have found.
+
+        For what was edited behind pymunk's setters; and to start again: from the same positions and velocities the
+        space then goes bitwise the same way, whatever was run before."""

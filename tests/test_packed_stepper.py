@@ -13,6 +13,7 @@ import pymunk
 import pytest
 
 import eeca_pymunk as ep
+from eeca_pymunk.errors import NotFiniteError
 from eeca_pymunk import layout as at
 from eeca_pymunk import transfer
 from eeca_pymunk.arrays import FloatArray
@@ -392,3 +393,26 @@ def test_the_report_of_events_is_made_when_asked() -> None:
         report.time = 1.0  # type: ignore[misc]
     assert copy.deepcopy(report).impulse.tolist() == [1.0, 2.0]
     assert "2 contacts" in repr(report)
+
+
+@pytest.mark.parametrize("hooked", [False, True])
+@pytest.mark.parametrize("what", ["gravity", "velocity", "spin"])
+def test_energies_beyond_all_numbers_are_refused_and_nothing_changed(what: str, hooked: bool) -> None:
+    space = swarm()
+    body = next(iter(space.bodies))
+    if hooked:
+        space.on_collision(begin=lambda *_: None)
+    stepper = ep.EECA(space)
+    stepper.step(DT)
+    if what == "gravity":
+        space.gravity = (0.0, -1e300)
+    elif what == "velocity":
+        body.velocity = (1e200, 0.0)
+    else:
+        body.angular_velocity = 1e200
+    before, time = state(space), stepper.time
+    with pytest.raises(NotFiniteError, match=r"energy.*smaller dt"):
+        stepper.step(DT)
+    assert (state(space), stepper.time) == (before, time)
+    space.gravity, body.velocity, body.angular_velocity = (0.0, 0.0), (0.0, 0.0), 0.0
+    assert stepper.step(DT).ledger.residual < 1e-9

@@ -84,6 +84,28 @@ class JointedLoop(EventLoop):
         self._ties = table_of(self.joints)
         self._bound = UNBOUND
 
+    @property
+    def joint(self) -> FloatArray:
+        """(j, JOINT_COLUMNS) the joints."""
+        return self._joint
+
+    @property
+    def tie(self) -> IntArray:
+        """(j, TIE_COLUMNS) the joints."""
+        return self._tie
+
+    @property
+    def partner(self) -> FloatArray:
+        """(x, BODY_COLUMNS) bodies that joints cannot move."""
+        return self._partner
+
+    def rebind(self, joint: FloatArray, tie: IntArray, PARTNER: FloatArray) -> None:
+        """Take other arrays that have the same in them."""
+        self._joint, self._tie, self._partner = joint, tie, PARTNER
+        self.joints = self.joints._replace(**dict(zip(Joints._fields, (joint, tie, PARTNER), strict=False)))
+        self._ties = table_of(self.joints)
+        self._bound = UNBOUND
+
     def __getstate__(self) -> dict[str, object]:
         return {key: value for key, value in super().__getstate__().items() if key != "_ties"}
 

@@ -10,12 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
-from weakref import WeakKeyDictionary, WeakMethod, WeakSet
+from weakref import WeakKeyDictionary, WeakSet
 
 import pymunk
 
 _watching: WeakSet[Edits] = WeakSet()
-_readings: WeakKeyDictionary[pymunk.Constraint, tuple[Any, int]] = WeakKeyDictionary()
+Reading = Callable[[int], "float | None"]
+_readings: WeakKeyDictionary[pymunk.Constraint, tuple[Reading | None, int]] = WeakKeyDictionary()
 _showings = 0
 _native_impulse: Any = pymunk.Constraint.impulse
 _native_setattr = pymunk.Constraint.__setattr__
@@ -61,24 +62,24 @@ def showings() -> int:
     return _showings
 
 
-def shown(item: pymunk.Constraint) -> Any:
-    """Whose reading `impulse` of a constraint is: what `show_impulses` has answered, None for native's."""
+def shown(item: pymunk.Constraint) -> Reading | None:
+    """What `show_impulses` was last told for a constraint, None if its `impulse` is native's."""
     return _readings.get(item, (None, 0))[0]
 
 
-def show_impulses(items: Sequence[pymunk.Constraint], read: Callable[[int], float | None]) -> Any:
-    """Let `impulse` of these constraints be `read(row)`, a method, as long as its object lives and it knows one."""
+def show_impulses(items: Sequence[pymunk.Constraint], read: Reading) -> None:
+    """Let `impulse` of these constraints be `read(row)`, as long as it knows one.
+
+    `read` lives as long as any of them: it must not hold them, nor their space.
+    """
     global _showings
     _showings += 1
-    method = WeakMethod(read)
     for j, item in enumerate(items):
-        _readings[item] = method, j
+        _readings[item] = read, j
     pymunk.Constraint.impulse = property(_impulse, doc=_native_impulse.__doc__)  # type: ignore[method-assign, assignment]
-    return method
 
 
 def _impulse(self: pymunk.Constraint) -> float:
-    method, row = _readings.get(self, (None, 0))
-    read = method() if method is not None else None
+    read, row = _readings.get(self, (None, 0))
     value = None if read is None else read(row)
     return float(_native_impulse.fget(self)) if value is None else value

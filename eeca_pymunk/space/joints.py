@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import weakref
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -36,6 +37,29 @@ from .spring_functions import Motion, Rate, law, own_function, put_law
 ANCHORS = slice(ANCHOR_AX, ANCHOR_AX + 4)
 
 
+class Impulses:
+    """What `constraint.impulse` would be after native's step, by row. It outlives the stepper, and holds no constraint.
+
+    Attributes:
+        joint, tie: the rows.  ours: pymunk's count of its own steps when they were written.
+    """
+
+    def __init__(self, space: pymunk.Space, joint: FloatArray, tie: IntArray) -> None:
+        self._space = weakref.ref(space)
+        self.joint, self.tie = joint, tie
+        self.ours = -1
+
+    def read(self, j: int) -> float | None:
+        """Of springs signed (positive pushes), else >= 0; None if native has taken a step of its own since."""
+        space = self._space()
+        if space is not None and private.timestamp(space)() != self.ours:
+            return None
+        first, second = self.joint[j, IMPULSE_1], self.joint[j, IMPULSE_2]
+        if self.tie[j, KIND] in (SPRING, ROTARY_SPRING):
+            return float(first)
+        return math.hypot(first, second)
+
+
 class JointRows:
     """The constraints of a space as JOINT and TIE rows, kept up to date with what the user changes.
 
@@ -47,6 +71,7 @@ class JointRows:
         partners: bodies of joints that have no row of their own; theirs are n + row of PARTNER.
         parted: pairs of bodies whose shapes pass through one another, by `collide_bodies`; None where nobody has looked
             since that changed.
+        rates: of springs with functions of their own, what the step before was answered, see `put_law`.
         replan: whether kinds, places or softness of joints have changed since `planned` was called.
     """
 
@@ -55,7 +80,7 @@ class JointRows:
     ) -> None:
         """The rows of the constraints of `space`, whose bodies have these rows of n; what `past` knows is kept."""
         self.space, self._n = space, n
-        self._shown: Any = None
+        self._impulses: Impulses | None = None
         self._showings = -1
         self.items = list(space.constraints)
         self.joint: FloatArray = np.zeros((len(self.items), JOINT_COLUMNS))
@@ -79,8 +104,7 @@ class JointRows:
         self._edits = Edits(self.row)
         self._ratchets = np.flatnonzero(self.tie[:, KIND] == RATCHET).tolist()
         self._timestamp = private.timestamp(space)
-        self._ours = -1
-        self._rates: dict[pymunk.Constraint, Rate] = {} if past is None else past._rates
+        self.rates: dict[pymunk.Constraint, Rate] = {} if past is None else past.rates
         self.replan = True
         self._find_functions()
 
@@ -143,6 +167,11 @@ class JointRows:
             self.refresh()
         return len(self.calling) > 0
 
+    @property
+    def edited(self) -> bool:
+        """Whether the user has changed a constraint that was not read since."""
+        return len(self._edits.some) > 0
+
     def idle(self) -> bool:
         """Whether there is nothing for `look` to do."""
         return not (self._edits.some or self.functions or self.partners.outside)
@@ -160,7 +189,7 @@ class JointRows:
         for j in self.functions:
             item = self.items[j]
             a, b = (self._motion(body, state, place) for body in (item.a, item.b))
-            self._rates[item] = put_law(item, a, b, dt, self.joint[j], self._rates.get(item))
+            self.rates[item] = put_law(item, a, b, dt, self.joint[j], self.rates.get(item))
 
     def _motion(self, body: pymunk.Body, state: FloatArray, place: Mapping[pymunk.Body, int]) -> Motion:
         row = self._row_of[body]
@@ -181,27 +210,19 @@ class JointRows:
             hit = np.isin(self.tie[:, BODY_A], rows) | np.isin(self.tie[:, BODY_B], rows)
             self.tie[hit, TOUCHED] = 1
 
-    def impulse(self, j: int) -> float | None:
-        """What `constraint.impulse` would be after native's step: of springs signed (positive pushes), else >= 0.
-
-        None if native has taken a step of its own since.
-        """
-        if self._timestamp() != self._ours:
-            return None
-        first, second = self.joint[j, IMPULSE_1], self.joint[j, IMPULSE_2]
-        if self.tie[j, KIND] in (SPRING, ROTARY_SPRING):
-            return float(first)
-        return math.hypot(first, second)
-
     def write(self) -> None:
         """Give ratchets the notch they have reached, and let `constraint.impulse` read ours."""
-        self._ours = self._timestamp()
+        told = self._impulses
+        if told is None or told.joint is not self.joint:
+            self._impulses = told = Impulses(self.space, self.joint, self.tie)
+            self._showings, self._reading = -1, told.read
+        told.ours = self._timestamp()
         for j in self._ratchets:
             item = self.items[j]
             if item.angle != self.joint[j, NOTCH]:
                 item.angle = float(self.joint[j, NOTCH])
                 self._edits.forget(j)
         if self._showings != showings():
-            if self._shown is None or shown(self.items[0]) is not self._shown:
-                self._shown = show_impulses(self.items, self.impulse)
+            if shown(self.items[0]) is not self._reading:
+                show_impulses(self.items, self._reading)
             self._showings = showings()

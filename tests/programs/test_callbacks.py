@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Callable
 
@@ -238,3 +239,93 @@ def test_gears_of_bodies_that_do_not_turn_do_not_make_nan_of_what_handlers_see()
     assert math.isnan(seen[0])
     assert bodies[0].velocity.y == pytest.approx(len(seen))
     assert all(math.isfinite(v) for b in bodies for v in (*b.position, *b.velocity, b.angle, b.angular_velocity))
+
+
+def resting() -> tuple[pymunk.Space, pymunk.Body]:
+    """A disk on the floor under gravity, hung from a spring."""
+    space = pymunk.Space()
+    space.gravity = (0.0, -10.0)
+    floor = pymunk.Segment(space.static_body, (-5.0, 0.0), (5.0, 0.0), 0.0)
+    body = add_disk(space, (0.0, 0.1), 0.1)
+    space.add(floor, pymunk.DampedSpring(space.static_body, body, (0.0, 2.0), (0.0, 0.0), 1.0, 3.0, 0.0))
+    return space, body
+
+
+@pytest.mark.parametrize("within", [False, True])
+@pytest.mark.parametrize(
+    "function", ["begin", "pre_solve", "post_solve", "velocity", "position", "joint before", "joint after", "force"]
+)
+def test_a_step_within_a_step_is_refused_and_nothing_changed(function: str, within: bool) -> None:
+    space, body = resting()
+    spring = next(iter(space.constraints))
+    assert isinstance(spring, pymunk.DampedSpring)
+    stepper = ep.EECA(space)
+    again = True
+
+    def step(*arguments: object) -> float:
+        if again:
+            (space if within else stepper).step(DT)
+        return 0.0
+
+    if function == "velocity":
+        body.velocity_func = step
+    elif function == "position":
+        body.position_func = step
+    elif function == "joint before":
+        spring.pre_solve = step
+    elif function == "joint after":
+        spring.post_solve = step
+    elif function == "force":
+        spring.force_func = step
+    else:
+        space.on_collision(**{function: step})
+
+    def place() -> tuple[object, ...]:
+        return body.position, body.angle, body.velocity, body.angular_velocity
+
+    before = place()
+    with stepper if within else contextlib.nullcontext():
+        for _ in range(1 if function == "begin" else 2):  # pymunk begins a contact once
+            with pytest.raises(RuntimeError, match=r"from within its own step.*add_post_step_callback"):
+                space.step(DT) if within else stepper.step(DT)
+            assert place() == before
+            assert stepper.time == 0.0
+    again = False
+    assert stepper.step(DT).time == DT
+
+
+def test_another_space_may_be_stepped_within_a_step() -> None:
+    (space, _), (other, _) = resting(), resting()
+    second = ep.EECA(other)
+    space.on_collision(begin=lambda *_: second.step(DT) and None)
+    ep.EECA(space).step(DT)
+    assert second.time == DT
+
+
+def test_a_post_step_callback_may_step_again() -> None:
+    space, _, _ = meeting()
+    stepper = ep.EECA(space)
+    space.add_post_step_callback(lambda *_: stepper.step(DT), 1)
+    stepper.step(DT)
+    assert stepper.time == 2 * DT
+
+
+@pytest.mark.parametrize("hooked", [False, True])
+def test_what_a_post_step_callback_raises_comes_when_the_step_has_been_taken(hooked: bool) -> None:
+    (space, body, _), (_, twin, _) = runs = meeting(), meeting()
+    steppers = [ep.EECA(run[0]) for run in runs]
+    if hooked:
+        for one in runs:
+            one[0].on_collision(begin=lambda *_: None)
+
+    def fail(*arguments: object) -> None:
+        raise KeyError
+
+    space.add_post_step_callback(fail, 1)
+    with pytest.raises(KeyError):
+        steppers[0].step(DT)
+    steppers[1].step(DT)
+    assert steppers[0].time == DT
+    for _ in range(6):
+        assert (body.position, body.velocity) == (twin.position, twin.velocity)
+        assert [one.step(DT).time for one in steppers] == [steppers[0].time] * 2

@@ -1,0 +1,70 @@
+"""Saved: what a stepper remembers of earlier steps, for a copy of it that goes on bit by bit."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .impacts.scene import EventLoop
+from .jointed.scene import JointedLoop
+from .joints.layout import BODY_A, BODY_B, JOINT_COLUMNS, KIND, MAX_BIAS, NOTCH, RATCHET, SOFT
+from .layout import BOUNCE, EXTENT, GRIP, II, IM, LEFT
+from .space.world import World
+
+_FIXED = [IM, II, EXTENT, BOUNCE, GRIP]  # columns of BODY that no step changes
+
+
+class Saved:
+    """The event loop of a world, and what else decides how its next step goes; pickled with the space.
+
+    Of shapes, bodies and joints there is what they were: only a space in which all are the same goes on from it.
+    """
+
+    def __init__(self, world: World, method: EventLoop) -> None:
+        self.method, self.items, self.shapes, self.parted = method, world.bodies.items, world.shapes, world.parted
+        self._left, self._extra = world.STATES[LEFT], world.EXTRA
+        joints = world.joints
+        self._joints = [] if joints is None else joints.items
+        self._rates = {} if joints is None else joints.rates
+        # Joints that the user has edited, and not yet been stepped, are read anew as all others.
+        self._fresh = joints is None or not (joints.replan or joints.edited)
+
+    def resume(self, world: World) -> bool:
+        """Let a world that was read anew go on from here; False, and nothing changed, if it is another."""
+        scene = self.method.scene
+        if not self._fresh or world.bodies.items != self.items or world.shapes != self.shapes:
+            return False
+        if self.method.disks != world.disks or not np.array_equal(scene.BODY[:, _FIXED], world.BODY[:, _FIXED]):
+            return False
+        same = zip((scene.SHAPE, scene.LINK, scene.VERTEX), (world.SHAPE, world.LINK, world.VERTEX), strict=True)
+        if not (all(np.array_equal(a, b) for a, b in same) and self._same_joints(world)):
+            return False
+        joints = world.joints
+        if joints is not None:
+            assert isinstance(self.method, JointedLoop)
+            joints.joint[:], joints.tie[:] = self.method.joint, self.method.tie
+            joints.rates.update(self._rates)
+            self.method.rebind(joints.joint, joints.tie, world.PARTNER)
+            joints.planned()
+            world.parted = self.parted
+            world.part()
+        world.BODY[:] = scene.BODY
+        self.method.scene = scene._replace(BODY=world.BODY)
+        moves = ~world.bodies.static
+        world.STATES[LEFT, moves], world.EXTRA[:] = self._left[moves], self._extra
+        return True
+
+    def _same_joints(self, world: World) -> bool:
+        joints, method = world.joints, self.method
+        if joints is None or not isinstance(method, JointedLoop):
+            return joints is None and not isinstance(method, JointedLoop)
+        if joints.items != self._joints or not np.array_equal(method.partner, world.PARTNER):
+            return False
+        fixed = [KIND, BODY_A, BODY_B, SOFT]
+        if not np.array_equal(method.tie[:, fixed], joints.tie[:, fixed]):
+            return False
+        differs = method.joint != joints.joint
+        differs[:, MAX_BIAS + 1 : JOINT_COLUMNS] = False
+        # What steps change: how far a ratchet has come, the law of a spring with a function of its own.
+        differs[joints.tie[:, KIND] == RATCHET, NOTCH] = False
+        differs[joints.functions] = False
+        return not differs.any()
