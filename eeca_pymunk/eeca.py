@@ -79,16 +79,20 @@ class EECA(PackedStepper):
 
     def __getstate__(self) -> dict[str, object]:
         state = super().__getstate__()
-        del state["_method"]
+        state.pop("_method", None)
         world = self._world
         if world is not None and isinstance(self._method, EventLoop):
             state["_saved"] = Saved(world, self._method)
         return state
 
+    def refresh(self) -> None:
+        super().refresh()
+        self._saved = None
+
     def prepare(self, world: World) -> None:
         saved, self._saved = self._saved, None
         if saved is not None and saved.resume(world):
-            self._method = saved.method
+            self._method: Method = saved.method
             return
         world.load()
         self._method = self.closure.prepare(world)

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from .arrays import FloatArray, IntArray
 from .impacts.scene import EventLoop
 from .jointed.scene import JointedLoop
 from .joints.layout import BODY_A, BODY_B, JOINT_COLUMNS, KIND, MAX_BIAS, NOTCH, RATCHET, SOFT
-from .layout import BOUNCE, EXTENT, GRIP, II, IM, LEFT
+from .layout import BOUNCE, COUNT, EXTENT, GRIP, II, IM, LEFT
 from .space.world import World
 
 _FIXED = [IM, II, EXTENT, BOUNCE, GRIP]  # columns of BODY that no step changes
@@ -35,8 +36,11 @@ class Saved:
             return False
         if self.method.disks != world.disks or not np.array_equal(scene.BODY[:, _FIXED], world.BODY[:, _FIXED]):
             return False
-        same = zip((scene.SHAPE, scene.LINK, scene.VERTEX), (world.SHAPE, world.LINK, world.VERTEX), strict=True)
-        if not (all(np.array_equal(a, b) for a, b in same) and self._same_joints(world)):
+        if not (np.array_equal(scene.SHAPE, world.SHAPE) and np.array_equal(scene.LINK, world.LINK)):
+            return False
+        if not np.array_equal(_in_order(scene.VERTEX, scene.LINK), _in_order(world.VERTEX, world.LINK)):
+            return False
+        if not self._same_joints(world):
             return False
         joints = world.joints
         if joints is not None:
@@ -47,7 +51,7 @@ class Saved:
             joints.planned()
             world.parted = self.parted
             world.part()
-        world.BODY[:] = scene.BODY
+        world.BODY[:], world.VERTEX[:] = scene.BODY, scene.VERTEX
         self.method.scene = scene._replace(BODY=world.BODY)
         moves = ~world.bodies.static
         world.STATES[LEFT, moves], world.EXTRA[:] = self._left[moves], self._extra
@@ -68,3 +72,10 @@ class Saved:
         differs[joints.tie[:, KIND] == RATCHET, NOTCH] = False
         differs[joints.functions] = False
         return not differs.any()
+
+
+def _in_order(VERTEX: FloatArray, LINK: IntArray) -> FloatArray:
+    """The vertices of each shape by their numbers: pymunk's pickles may begin a polygon with another of its corners."""
+    of_shape = np.repeat(np.arange(len(LINK)), LINK[:, COUNT])
+    ordered: FloatArray = VERTEX[np.lexsort((*VERTEX.T, of_shape))]
+    return ordered

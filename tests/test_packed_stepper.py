@@ -13,10 +13,10 @@ import pymunk
 import pytest
 
 import eeca_pymunk as ep
-from eeca_pymunk.errors import NotFiniteError
 from eeca_pymunk import layout as at
 from eeca_pymunk import transfer
 from eeca_pymunk.arrays import FloatArray
+from eeca_pymunk.errors import NotFiniteError
 from eeca_pymunk.packed_stepper import PackedStepper
 from eeca_pymunk.report import Details, of_events
 from eeca_pymunk.space import private

@@ -102,7 +102,7 @@ class JointedLoop(EventLoop):
     def rebind(self, joint: FloatArray, tie: IntArray, PARTNER: FloatArray) -> None:
         """Take other arrays that have the same in them."""
         self._joint, self._tie, self._partner = joint, tie, PARTNER
-        self.joints = self.joints._replace(**dict(zip(Joints._fields, (joint, tie, PARTNER), strict=False)))
+        self.joints = Joints(joint, tie, PARTNER, *self.joints[3:])
         self._ties = table_of(self.joints)
         self._bound = UNBOUND
 

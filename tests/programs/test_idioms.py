@@ -318,3 +318,106 @@ def test_nobody_is_lifted_through_a_wall() -> None:
     for _ in range(240):
         stepper.step(1 / 60)
     assert all(-40.0 < b.position.x < 40.0 and 0.0 < b.position.y < 200.0 for b in bodies)
+
+
+def crowd() -> pymunk.Space:
+    """A chain that falls on a slope, boxes that pile up, disks that bounce, a spring with a law of its own."""
+    space = pymunk.Space()
+    space.gravity = (0.0, -9.81)
+    floor = pymunk.Segment(space.static_body, (-9.0, -1.2), (9.0, -1.4), 0.0)
+    floor.friction = floor.elasticity = 0.5
+    space.add(floor)
+    last = space.static_body
+    for i in range(4):
+        body = pymunk.Body(1.0, 0.1)
+        body.position = (i + 0.5, 0.0)
+        shape = pymunk.Poly.create_box(body, (0.9, 0.2))
+        shape.friction = 0.5
+        joint = pymunk.PivotJoint(last, body, (float(i), 0.0))
+        joint.collide_bodies = False
+        space.add(body, shape, joint)
+        last = body
+    for i in range(5):
+        body = pymunk.Body(1.0, 0.1)
+        body.position = (-3.0 + 0.1 * i, 0.8 * i)
+        shape = pymunk.Poly.create_box(body, (0.7, 0.7)) if i else pymunk.Circle(body, 0.35)
+        shape.friction, shape.elasticity = 0.4, 0.6
+        space.add(body, shape)
+    spring = pymunk.DampedSpring(space.static_body, body, (-3.0, 5.0), (0.0, 0.0), 1.0, 1.0, 0.1)
+    spring.force_func = stiffer
+    space.add(spring)
+    return space
+
+
+def stiffer(spring: pymunk.DampedSpring, length: float) -> float:
+    return -2.0 * (length - spring.rest_length) ** 3
+
+
+def places(space: pymunk.Space) -> list[tuple[float, ...]]:
+    return [(*b.position, b.angle, *b.velocity, b.angular_velocity) for b in space.bodies]
+
+
+WAYS = {"deepcopy": copy.deepcopy, "pickle": lambda s: pickle.loads(pickle.dumps(s))}
+
+
+@pytest.mark.parametrize("way", [*WAYS.values(), copy.copy], ids=[*WAYS, "copy"])
+def test_a_run_that_is_saved_goes_as_one_that_is_not(way: Callable[[ep.EECA], ep.EECA]) -> None:
+    saved, plain = ep.EECA(crowd()), ep.EECA(crowd())
+    for _ in range(60):
+        way(saved)
+        for stepper in (saved, plain):
+            stepper.step(1 / 60)
+        assert places(saved.space) == places(plain.space)
+
+
+@pytest.mark.parametrize("way", WAYS.values(), ids=WAYS)
+@pytest.mark.parametrize("steps", [0, 1, 40])
+def test_a_copy_of_a_stepper_goes_on_as_its_original(way: Callable[[ep.EECA], ep.EECA], steps: int) -> None:
+    stepper = ep.EECA(crowd())
+    for _ in range(steps):
+        stepper.step(1 / 60)
+    other = way(way(stepper))
+    for _ in range(60):
+        stepper.step(1 / 60)
+        other.step(1 / 60)
+        assert places(other.space) == places(stepper.space)
+
+
+def test_what_was_changed_in_a_copy_is_found() -> None:
+    stepper = ep.EECA(crowd())
+    for _ in range(20):
+        stepper.step(1 / 60)
+    for change in ("friction", "mass", "joint", "shape"):
+        other = copy.deepcopy(stepper)
+        space = other.space
+        body = list(space.bodies)[6]
+        shape = next(iter(body.shapes))
+        if change == "friction":
+            shape.friction = 0.0
+        elif change == "mass":
+            body.mass = 7.0
+        elif change == "joint":
+            list(space.constraints)[1].max_force = 1.0
+        else:
+            space.remove(shape)
+        fresh = ep.EECA(copy.deepcopy(space))
+        for _ in range(30):
+            other.step(1 / 60)
+            fresh.step(1 / 60)
+        assert places(other.space) == places(fresh.space)
+
+
+def test_from_the_same_start_a_refreshed_stepper_goes_the_same_way() -> None:
+    space = crowd()
+    stepper = ep.EECA(space)
+    start = [(b.position, b.angle, b.velocity, b.angular_velocity) for b in space.bodies]
+    ends = []
+    for steps in (50, 20, 50):
+        stepper.refresh()
+        for body, (*pose, spin) in zip(space.bodies, start, strict=True):
+            body.position, body.angle, body.velocity = pose
+            body.angular_velocity = spin
+        for _ in range(steps):
+            stepper.step(1 / 60)
+        ends.append(places(space))
+    assert ends[0] == ends[2]

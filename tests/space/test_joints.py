@@ -453,7 +453,9 @@ def test_pickled_and_copied_spaces_go_on() -> None:
     for one in (stepper, resumed, fresh):
         for _ in range(30):
             one.step(DT)
-    assert place(resumed.space) == place(space) == place(fresh.space)
+    assert place(resumed.space) == place(space)
+    # A new stepper of a copied space knows nothing of the steps before: its solver begins elsewhere.
+    np.testing.assert_allclose(place(fresh.space), place(space), rtol=0.0, atol=1e-6)
 
 
 def refused() -> dict[str, Callable[[pymunk.Body, pymunk.Body], pymunk.Constraint]]:
