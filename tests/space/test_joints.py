@@ -455,7 +455,8 @@ def test_pickled_and_copied_spaces_go_on() -> None:
             one.step(DT)
     assert place(resumed.space) == place(space)
     # A new stepper of a copied space knows nothing of the steps before: its solver begins elsewhere.
-    np.testing.assert_allclose(place(fresh.space), place(space), rtol=0.0, atol=1e-6)
+    at = [[row[:3] for row in place(one.space)] for one in (fresh, stepper)]
+    np.testing.assert_allclose(*at, rtol=0.0, atol=1e-6)
 
 
 def refused() -> dict[str, Callable[[pymunk.Body, pymunk.Body], pymunk.Constraint]]:
