@@ -1,0 +1,88 @@
+"""Records of contacts: impulses of a step, contacts that last, rows of a contact problem."""
+
+from __future__ import annotations
+
+from .records import Record
+
+
+class Impulse(Record):
+    """An impulse of a step, as reports read it."""
+
+    first: float  # rows of the shapes of a and of b
+    second: float
+    when: float  # time after the start of the step
+    normal: float  # impulse, mass length/time, >= 0
+    nx: float  # unit normal from a to b
+    ny: float
+    px: float  # point, halfway between the surfaces at that instant: length
+    py: float
+    gap: float  # length, at the start of the step, negative in overlap
+    change: float  # of the contact's normal velocity by this impulse alone, length/time
+    tangential: float  # impulse along t = (-n_y, n_x), mass length/time
+
+
+class Pair(Record):
+    """Which shapes a contact of an island's present interval joins."""
+
+    a: int
+    b: int
+    root: int  # first body of the island; of an interval that is over ENDED or LASTED
+
+
+ENDED, LASTED = -1, -2  # before the end of the step, with it
+
+
+class Pushed(Record):
+    """Impulses and velocities of a contact over the interval of its island."""
+
+    normal: float  # impulses over the interval
+    tangential: float
+    un_before: float  # velocities of the contact at both ends
+    un_after: float
+    ut_before: float
+    ut_after: float
+    work: float  # energy that moving bodies and surfaces give over the interval
+    start: float  # instant and length of the interval
+    length: float
+    nx: float
+    ny: float
+    px: float
+    py: float
+    change: float  # of the normal velocity by the impulse alone
+    gap: float  # at the start of the step, nan where the interval began later
+
+
+class Row(Record):
+    """A row of a contact problem, between local bodies A and B.
+
+    Contact i acts along n, the unit normal from A to B, and t = (-n_y, n_x):
+
+        u_n = n.(v_b - v_a) + arm_nb w_b - arm_na w_a,   arm_n = r x n,  r from the centre of mass to the point,
+        u_t = t.(v_b - v_a) + arm_tb w_b - arm_ta w_a + surface,   arm_t = r x t.
+    """
+
+    nx: float  # unit normal from A to B
+    ny: float
+    arm_na: float  # arms of the normal impulse: length
+    arm_nb: float
+    arm_ta: float  # arms of the tangential impulse: length
+    arm_tb: float
+    gap: float  # length, negative in overlap
+    un: float  # u_n and u_t before the impulses, without what forces add in a step: length/time
+    ut: float
+    k_n: float  # effective masses, 1 / a_nn and 1 / a_tt
+    k_t: float
+    elasticity: float  # of the contact: products of both shapes' values
+    friction: float
+    target: float  # b: the law is 0 <= lam _|_ u_n - b >= 0
+    surface: float  # t.(surface velocity of B's shape - that of A's): length/time
+    wake: float  # activation velocity: the contact acts once u_n without its own impulse falls below; then infinity
+    a_nn: float  # what a unit impulse changes of u_n and u_t: 1/mass
+    a_nt: float
+    a_tt: float
+    w_nn: float  # the inverse of these, with friction; nan where they are singular: mass
+    w_nt: float
+    w_tt: float
+
+
+ROW = Row.TYPE

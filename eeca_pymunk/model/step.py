@@ -1,0 +1,61 @@
+"""Records of a step: its settings and ledger, its counters."""
+
+from __future__ import annotations
+
+from .records import Record
+
+
+class Step(Record):
+    """Settings, instants and energies of a step."""
+
+    dt: float  # length of the step; instant at which the loop has stopped for more room
+    now: float
+    gravity_x: float
+    gravity_y: float
+    left_over: float  # what the damping of half a step leaves of velocities
+    lock: float  # scale of an energy lock that was farthest from 1
+    last: float  # length of the step before
+    restitution: float  # the ledger of the step, energies: taken by restitution and by friction, work of moving bodies
+    frictional: float  # and surfaces, taken by damping
+    external: float
+    damped: float
+    stored: float  # change of what springs hold
+    before: float  # kinetic energy and -m g.x at both ends of the step
+    after: float
+    stamp: float  # number of the step
+    pulled: float  # largest acceleration without contacts
+
+
+class Count(Record):
+    """Counters of a step."""
+
+    heap: int  # rows of the heap in use
+    logged: int  # rows of LOG in use
+    impacts: int
+    blocks: int  # impacts of many contacts at one instant
+    forecasts: int
+    stale: int  # events out of date
+    limit: int  # impacts that a body may have in a step
+    unmet: int  # what was not met
+    struck: int
+    pushes: int  # rows of PUSHED in use
+    solves: int
+    ignored: int
+    pending: int  # island whose interval is to be begun, -1 for none
+    waiting: int  # bodies in BLOCK to be predicted then
+    phase: int  # of the step that is to be resumed
+    sweeps: int  # of all solves: sweeps, direct solutions
+    direct: int
+    remembered: int  # rows of the memory of forces in use
+    together: int  # 1 where all contacts of a step act together, and no events are followed
+    even: int  # 1 while one acceleration holds for all that impulses move, and no body is in an island
+    quiet: int  # steps in a row in which that was so to the end
+    disks: int  # of the scene: lone disks
+    solved: int  # bodies of all solves
+    carries: int  # 1 where islands at rest may support others that move (`impacts/carrying.py`)
+    crammed: int  # 1 if there are bodies that were placed where they are
+
+
+# Status of a step.
+DONE, POOL_FULL, LOG_FULL, BLOCK_DUE, PUSHES_FULL = 0, 1, 2, 3, 4
+JOINTS_DUE = 5  # an interval or an impact of an island that is held by joints: `jointed/`
