@@ -12,58 +12,63 @@ machine code is made: a library carries their hash.
 from __future__ import annotations
 
 import functools
+from typing import Any
+
+import numpy as np
+
+from .records import KINDS
 
 SOURCES = (
-    "arrays.py", "layout.py", "transfer.py", "compiled", "build", "energy", "geometry", "rows", "pairs", "sustained",
+    "arrays.py", "layout.py", "transfer.py", "compiled", "model", "build", "energy", "geometry", "rows", "pairs", "sustained",
     "joints", "impacts", "jointed",
 )  # fmt: skip
 
 TABLES = {
     "Scene": """
-        BODY:f8[2] STATE:i8[2] SHAPE:f8[2] LINK:i8[2] VERTEX:f8[2] MARK:f8[2] CELL:i8[2] LIST:i8[2] POOL:i4[1]
-        FLAG:u1[1] HEAD:i8[1] GRID:f8[1] INFO:i8[1] BOX:f8[2] CSR:i8[1] RULE:f8[2] HEAP_TIME:f8[1] HEAP_BODY:i8[1]
-        LOG:f8[2] BEGAN:f8[2] PLACE:i8[1] BLOCK:i8[1] PULL:f8[2] MEMBER:i8[2] RESTING:f8[2] PUSHED_BY:i8[2]
-        PUSHED:f8[2] KEYS:i8[1] FORCES:f8[2] WORK:f8[3] PAR:f8[1] COUNT:i8[1]
+        BODY:Body[1] STATE:Next[1] SHAPE:Shape[1] LINK:Link[1] VERTEX:f8[2] MARK:Mark[1] CELL:Cell[1] LIST:List[1]
+        POOL:i4[1] FLAG:u1[1] HEAD:i8[1] GRID:f8[1] INFO:i8[1] BOX:f8[2] CSR:i8[1] RULE:f8[2] HEAP_TIME:f8[1]
+        HEAP_BODY:i8[1] LOG:Impulse[1] BEGAN:f8[2] PLACE:i8[1] BLOCK:i8[1] PULL:f8[2] MEMBER:Member[1] RESTING:Rest[1]
+        PUSHED_BY:Pair[1] PUSHED:Pushed[1] KEYS:i8[1] FORCES:f8[2] WORK:f8[3] PAR:Step COUNT:Count
     """,
     "Joints": """
-        JOINT:f8[2] TIE:i8[2] PARTNER:f8[2] SPAN:i8[2] MEMBER:i8[2] LINK:i8[2] HINGE:f8[2] LOCAL:f8[2] NODE:i8[2]
+        JOINT:f8[2] TIE:i8[2] PARTNER:Body[1] SPAN:i8[2] MEMBER:i8[2] LINK:i8[2] HINGE:f8[2] LOCAL:f8[2] NODE:i8[2]
         MATRIX:f8[1] RIGHT:f8[1] MORE:f8[1] STIFF:f8[2] FOUND:f8[1] PART:f8[1] PIVOTS:i8[1] OF:i8[1] KEPT:f8[2]
         SIDES:i8[2] STEPPED:f8[2] TALLY:i8[1]
     """,
 }
 
 ENTRIES = {
-    "geometry.gap:gaps": "i8[2] f8[2] f8[2] f8[2] i8[2] f8[2] f8[3] f8[2]",
+    "geometry.gap:gaps": "i8[2] f8[2] f8[2] Shape[1] Link[1] f8[2] f8[3] f8[2]",
     "pairs.walls:wall_grid": "f8[2] f8[1] i8[1] i8[1]",
-    "pairs.grid:build": "f8[2] f8[2] i8[2] f8[2] i8[2] i8[2] i4[1] u1[1] i8[1] f8[1] i8[1] f8[2] i8[1] f8",
-    "pairs.candidates:candidates": "f8[2] f8[2] i8[2] f8[2] f8[3] f8[2] i8[2] i8[2] i4[1] u1[1] i8[1] f8[1] i8[1] f8[2]"
-    " i8[1] f8[1] i8 f8[1] i8[2] f8[2]",
-    "transfer:take": "f8[3] i8[2] f8[2] f8[2] f8 f8 f8",
-    "transfer:give": "f8[3] i8[2] f8[2] f8[2] f8[1] f8 f8 i8",
+    "pairs.grid:build": "Body[1] Shape[1] Link[1] Mark[1] Cell[1] List[1] i4[1] u1[1] i8[1] f8[1] i8[1] f8[2] i8[1] f8",
+    "pairs.candidates:candidates": "Body[1] Shape[1] Link[1] f8[2] f8[3] Mark[1] Cell[1] List[1] i4[1] u1[1] i8[1] f8[1]"
+    " i8[1] f8[2] i8[1] f8[1] i8 f8[1] i8[2] f8[2]",
+    "transfer:take": "f8[3] i8[2] f8[2] Body[1] f8 f8 f8",
+    "transfer:give": "f8[3] i8[2] f8[2] Body[1] f8[1] f8 f8 i8",
     "transfer:lay": "f8[3] i8[2] f8[1] i8",
     "transfer:lay_rest": "f8[3] f8[1] i8",
-    "transfer:fly": "f8[3] i8[2] f8[2] f8[2] f8[1] f8 f8 f8 f8",
+    "transfer:fly": "f8[3] i8[2] f8[2] Body[1] f8[1] f8 f8 f8 f8",
     "impacts.booking:flag_again": "{Scene}",
     "impacts.step:step": "{Scene} f8[3] i8[2] f8[2] f8[1] f8 f8 f8 f8 i8 bool i8",
     "impacts.together:step_together": "{Scene} f8[3] i8[2] f8[2] f8[1] f8[1] f8 f8 f8 f8 i8",
-    "joints.plan:make_plan": "f8[2] f8[2] i8[2] i8[2] i8[2] i8[2]",
-    "joints.world:step_all": "f8[2] f8[2] i8[2] i8[2] i8[2] i8[2] i8 f8 i8 f8[2] f8[2] i8[2] f8[1] f8[1] f8[1] i8[1]"
+    "joints.plan:make_plan": "Body[1] f8[2] i8[2] i8[2] i8[2] i8[2]",
+    "joints.world:step_all": "Body[1] f8[2] i8[2] i8[2] i8[2] i8[2] i8 f8 i8 f8[2] f8[2] i8[2] f8[1] f8[1] f8[1] i8[1]"
     " f8[2] f8[1] f8[1] f8[2] i8[1]",
     "jointed.loop:step_jointed": "{Scene} {Joints} f8[3] i8[2] f8[2] f8[1] f8 f8 f8 f8 i8 bool i8",
     "jointed.together:step_together_jointed": "{Scene} {Joints} f8[3] i8[2] f8[2] f8[1] f8[1] f8 f8 f8 f8 i8",
     # Of tests alone, which step islands by themselves: some hundred times slower as plain Python.
-    "sustained.step:step_island": "f8[2] f8[2] f8[2] f8[1] f8[1] f8[1] f8[1] i8 i8[2] i8 f8[2] f8[2] i8[2] f8[2] f8[3]"
-    " f8 i8 f8 f8 i8[1] f8[2] i8[1] f8 f8[1] f8 i8[1] i8[1] f8[2] i8[1] f8[2] f8[2] f8[2] f8[2] f8[1] f8[1]",
-    "sustained.memory:forget": "i8[1] f8[2] i8[1] i8[1] f8[2] f8",
+    "sustained.step:step_island": "f8[2] f8[2] f8[2] f8[1] f8[1] f8[1] f8[1] i8 i8[2] i8 Shape[1] f8[2] Link[1] f8[2]"
+    " f8[3] f8 i8 f8 f8 i8[1] f8[2] Count f8 Rest f8 i8[1] i8[1] Row[1] i8[1] f8[2] f8[2] f8[2] f8[2] f8[1] f8[1]",
+    "sustained.memory:forget": "i8[1] f8[2] Count i8[1] f8[2] f8",
 }
 
 _CODES = {"f8": "<f8", "i8": "<i8", "i4": "<i4", "u1": "|u1"}
 
 
-def split(kind: str) -> tuple[str, int]:
-    """The numpy dtype and the dimensions of `f8[2]`."""
+def split(kind: str) -> tuple[Any, int]:
+    """The numpy dtype and the dimensions of `f8[2]`; those of `Body[1]`, an array of records, and of `Step`, one."""
     code, _, rest = kind.partition("[")
-    return _CODES[code], int(rest.rstrip("]"))
+    return KINDS[code] if code in KINDS else np.dtype(_CODES[code]), int(rest.rstrip("]") or 0)
 
 
 def is_array(kind: str) -> bool:
@@ -72,7 +77,7 @@ def is_array(kind: str) -> bool:
 
 
 @functools.cache
-def table_fields(name: str) -> tuple[tuple[str, str, int], ...]:
+def table_fields(name: str) -> tuple[tuple[str, Any, int], ...]:
     """(name, dtype, dimensions) of the arrays of a table."""
     pairs = (field.split(":") for field in TABLES[name].split())
     return tuple((field, *split(kind)) for field, kind in pairs)

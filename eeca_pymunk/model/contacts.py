@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .records import Record
+from ..compiled.records import Record
 
 
 class Impulse(Record):

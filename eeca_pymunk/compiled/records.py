@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 else:
     _Row = np.void
 
+KINDS: dict[str, np.dtype[Any]] = {}  # dtypes of all records by name
 _CODES = {"float": np.float64, "int": np.int64}
 
 
@@ -31,6 +32,7 @@ class Record(_Row):
     def __init_subclass__(cls) -> None:
         fields = [(name, _CODES[kind]) for name, kind in cls.__annotations__.items()]
         cls.TYPE = np.dtype((cls, np.dtype(fields, align=True)))
+        KINDS[cls.__name__] = cls.TYPE
         for name, _ in fields:
             setattr(cls, name, property(itemgetter(name), _setter(name)))
 
