@@ -21,7 +21,7 @@ _PAGE = 1 << 21  # bytes of a huge page
 _HUGE = 1 << 22  # bytes of an allocation from which numpy asks for huge pages
 
 
-def side_by_side(*wanted: tuple[tuple[int, ...], type]) -> list[Any]:
+def side_by_side(*wanted: tuple[tuple[int, ...], npt.DTypeLike]) -> list[Any]:
     """Arrays of zeros of these shapes and dtypes, in one piece of memory, each from a new cache line on.
 
     Kernels that look at a few numbers here and there in all arrays of a scene would wait for the addresses of many

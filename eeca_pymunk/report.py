@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from .arrays import FloatArray, IntArray
+from .compiled.records import Rows, columns
 from .energy.ledger import Ledger, ledger
-from .layout import CHANGE, FIRST_SHAPE, GAP, IMPULSE, NORMAL_X, POINT_X, SECOND_SHAPE, WHEN
+from .model.contacts import Impulse
 
 if TYPE_CHECKING:
     import pymunk
@@ -158,18 +159,18 @@ def nothing(bodies: tuple[pymunk.Body, ...] = ()) -> Details:
     return Details(Contacts(bodies, rows, rows, vectors, vectors, none, none), none, none, none, none)
 
 
-def of_events(EVENT: FloatArray, dt: float, bodies: tuple[pymunk.Body, ...], owner: IntArray) -> Details:
+def of_events(EVENT: Rows[Impulse], dt: float, bodies: tuple[pymunk.Body, ...], owner: IntArray) -> Details:
     """The arrays of the impulses of a step, in the order of time: psi2 = 1 - 2 tau / dt says when each acted, and
     Delta g is Eq. 20 with the impulse's own Delta p.
 
     Args:
-        EVENT: (m, 10) see `layout.py`.  dt: time.  bodies: of the space.  owner: (k,) place in `bodies` of every shape.
+        EVENT: (m,).  dt: time.  bodies: of the space.  owner: (k,) place in `bodies` of every shape.
     """
-    first, second = EVENT[:, FIRST_SHAPE].astype(np.intp), EVENT[:, SECOND_SHAPE].astype(np.intp)
-    order = np.lexsort((second, first, EVENT[:, WHEN]))
+    first, second = EVENT["first"].astype(np.intp), EVENT["second"].astype(np.intp)
+    order = np.lexsort((second, first, EVENT["when"]))
     first, second, EVENT = first[order], second[order], EVENT[order]
-    time, lam = EVENT[:, WHEN].copy(), EVENT[:, IMPULSE].copy()
+    time, lam = EVENT["when"].copy(), EVENT["normal"].copy()
     psi2 = 1.0 - 2.0 * time / dt
-    normal, point = EVENT[:, NORMAL_X : NORMAL_X + 2].copy(), EVENT[:, POINT_X : POINT_X + 2].copy()
-    contacts = Contacts(bodies, owner[first], owner[second], normal, point, EVENT[:, GAP].copy(), time)
-    return Details(contacts, lam, np.full_like(lam, math.inf), psi2, 0.5 * dt * psi2 * EVENT[:, CHANGE])
+    normal, point = columns(EVENT, "nx", "ny"), columns(EVENT, "px", "py")
+    contacts = Contacts(bodies, owner[first], owner[second], normal, point, EVENT["gap"].copy(), time)
+    return Details(contacts, lam, np.full_like(lam, math.inf), psi2, 0.5 * dt * psi2 * EVENT["change"])

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from .arrays import FloatArray, IntArray
+from .arrays import FloatArray
+from .compiled.records import Rows, columns
 from .impacts.scene import EventLoop
 from .jointed.scene import JointedLoop
 from .joints.layout import BODY_A, BODY_B, JOINT_COLUMNS, KIND, MAX_BIAS, NOTCH, RATCHET, SOFT
-from .layout import BOUNCE, COUNT, EXTENT, GRIP, II, IM, LEFT
+from .layout import LEFT
+from .model.shapes import Link
 from .space.world import World
 
-_FIXED = [IM, II, EXTENT, BOUNCE, GRIP]  # columns of BODY that no step changes
+_FIXED = ["inv_mass", "inv_inertia", "extent", "elasticity", "friction"]  # fields of BODY that no step changes
 
 
 class Saved:
@@ -34,7 +36,9 @@ class Saved:
         scene = self.method.scene
         if not self._fresh or world.bodies.items != self.items or world.shapes != self.shapes:
             return False
-        if self.method.disks != world.disks or not np.array_equal(scene.BODY[:, _FIXED], world.BODY[:, _FIXED]):
+        if self.method.disks != world.disks or not np.array_equal(
+            columns(scene.BODY, *_FIXED), columns(world.BODY, *_FIXED)
+        ):
             return False
         if not (np.array_equal(scene.SHAPE, world.SHAPE) and np.array_equal(scene.LINK, world.LINK)):
             return False
@@ -74,8 +78,8 @@ class Saved:
         return not differs.any()
 
 
-def _in_order(VERTEX: FloatArray, LINK: IntArray) -> FloatArray:
+def _in_order(VERTEX: FloatArray, LINK: Rows[Link]) -> FloatArray:
     """The vertices of each shape by their numbers: pymunk's pickles may begin a polygon with another of its corners."""
-    of_shape = np.repeat(np.arange(len(LINK)), LINK[:, COUNT])
+    of_shape = np.repeat(np.arange(len(LINK)), LINK["vertices"])
     ordered: FloatArray = VERTEX[np.lexsort((*VERTEX.T, of_shape))]
     return ordered

@@ -12,19 +12,14 @@ import math
 
 from .arrays import FloatArray, IntArray
 from .compiled import kernel
+from .compiled.records import Rows
 from .layout import (
-    ANGLE,
-    AX,
-    AY,
     BODY_ROW,
     COG_X,
     COG_Y,
-    DUE,
     ECCENTRIC,
     END,
     FOUND,
-    II,
-    IM,
     KNOWN,
     LEFT,
     NOW,
@@ -32,18 +27,12 @@ from .layout import (
     PUSH_TWIST,
     PUSH_X,
     PUSH_Y,
-    SINCE,
     SPECIAL,
     SPEED,
-    SPIN,
     STEERED,
     STILL,
-    TWIST,
-    VX,
-    VY,
-    X,
-    Y,
 )  # fmt: skip
+from .model.bodies import Body
 
 # What `take`, `give` and a step answer: bits of what is to be done, or a negative code.
 EVENTS, FORCES, TURNS = 1, 2, 4
@@ -67,7 +56,7 @@ def finite(a: float, b: float, c: float, d: float, e: float, f: float) -> bool:
 
 @kernel
 def take(
-    STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, BODY: FloatArray, gx: float, gy: float, left: float
+    STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, BODY: Rows[Body], gx: float, gy: float, left: float
 ) -> int:
     """Put the states read from pymunk into BODY: all rows at the start of the step, SINCE = 0.
 
@@ -105,9 +94,9 @@ def take(
                 return MOVED_STATIC
             continue
         ax, ay, twist, damped = 0.0, 0.0, 0.0, 1.0
-        im = BODY[row, IM]
+        im = BODY[row].inv_mass
         if im > 0.0:
-            ax, ay, twist, damped = fx * im + gx, fy * im + gy, torque * BODY[row, II], left
+            ax, ay, twist, damped = fx * im + gx, fy * im + gy, torque * BODY[row].inv_inertia, left
         special = WALK[SPECIAL, i]
         if special & STEERED:
             ax, ay, twist, damped = EXTRA[i, PUSH_X], EXTRA[i, PUSH_Y], EXTRA[i, PUSH_TWIST], 1.0
@@ -116,12 +105,12 @@ def take(
             c, s = math.cos(angle), math.sin(angle)
             x += c * kx - s * ky
             y += s * kx + c * ky
-        if edited or damped != 1.0 or ax != BODY[row, AX] or ay != BODY[row, AY] or twist != BODY[row, TWIST]:
-            BODY[row, DUE] = -math.inf if moved else min(BODY[row, DUE], -1.0)
-        BODY[row, X], BODY[row, Y], BODY[row, ANGLE] = x, y, angle
-        BODY[row, VX], BODY[row, VY], BODY[row, SPIN] = damped * vx, damped * vy, damped * spin
-        BODY[row, AX], BODY[row, AY], BODY[row, TWIST] = ax, ay, twist
-        BODY[row, SINCE] = 0.0
+        if edited or damped != 1.0 or ax != BODY[row].ax or ay != BODY[row].ay or twist != BODY[row].angular:
+            BODY[row].due = -math.inf if moved else min(BODY[row].due, -1.0)
+        BODY[row].x, BODY[row].y, BODY[row].angle = x, y, angle
+        BODY[row].vx, BODY[row].vy, BODY[row].spin = damped * vx, damped * vy, damped * spin
+        BODY[row].ax, BODY[row].ay, BODY[row].angular = ax, ay, twist
+        BODY[row].since = 0.0
     return status
 
 
@@ -130,7 +119,7 @@ def give(
     STATES: FloatArray,
     WALK: IntArray,
     EXTRA: FloatArray,
-    BODY: FloatArray,
+    BODY: Rows[Body],
     ENDS: FloatArray,
     dt: float,
     left: float,
@@ -149,13 +138,13 @@ def give(
         row = WALK[BODY_ROW, i]
         if row < 0:
             continue
-        s = dt - BODY[row, SINCE]
+        s = dt - BODY[row].since
         special = WALK[SPECIAL, i]
-        damped = left if BODY[row, IM] > 0.0 and not special & STEERED else 1.0
-        ax, ay, twist = BODY[row, AX], BODY[row, AY], BODY[row, TWIST]
-        vx, vy, spin = BODY[row, VX], BODY[row, VY], BODY[row, SPIN]
-        x, y = BODY[row, X] + s * (vx + 0.5 * s * ax), BODY[row, Y] + s * (vy + 0.5 * s * ay)
-        angle = BODY[row, ANGLE] + s * (spin + 0.5 * s * twist)
+        damped = left if BODY[row].inv_mass > 0.0 and not special & STEERED else 1.0
+        ax, ay, twist = BODY[row].ax, BODY[row].ay, BODY[row].angular
+        vx, vy, spin = BODY[row].vx, BODY[row].vy, BODY[row].spin
+        x, y = BODY[row].x + s * (vx + 0.5 * s * ax), BODY[row].y + s * (vy + 0.5 * s * ay)
+        angle = BODY[row].angle + s * (spin + 0.5 * s * twist)
         vx, vy, spin = damped * (vx + s * ax), damped * (vy + s * ay), damped * (spin + s * twist)
         if special & ECCENTRIC:
             kx, ky = EXTRA[i, COG_X], EXTRA[i, COG_Y]
@@ -224,7 +213,7 @@ def fly(
     STATES: FloatArray,
     WALK: IntArray,
     EXTRA: FloatArray,
-    BODY: FloatArray,
+    BODY: Rows[Body],
     ENDS: FloatArray,
     dt: float,
     gx: float,

@@ -8,7 +8,6 @@ import pytest
 
 import eeca_pymunk as ep
 import scenes
-from eeca_pymunk.impacts.layout import FORECASTS
 from eeca_pymunk.impacts.scene import EventLoop
 from eeca_pymunk.pairs.layout import LEAVES
 from scenes.scene import add_disk, add_walls
@@ -61,7 +60,7 @@ def test_no_list_and_no_forecast_is_made_where_nothing_is_near() -> None:
     lists = method.scene.INFO[LEAVES]
     for _ in range(3):
         stepper.step(1e-4)
-        assert method.scene.COUNT[FORECASTS] == 0
+        assert method.scene.COUNT.forecasts == 0
     assert method.scene.INFO[LEAVES] == lists
 
 

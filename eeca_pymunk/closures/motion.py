@@ -13,26 +13,9 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
+from ..compiled.records import columns, put
 from ..geometry.gap import ROUND_OFF, gaps
-from ..layout import (
-    ANGLE,
-    AX,
-    AY,
-    COUNT,
-    ELASTICITY,
-    IM,
-    OWNER,
-    ROUNDING,
-    SINCE,
-    SPIN,
-    TWIST,
-    VX,
-    VY,
-    X,
-    Y,
-)  # fmt: skip
 from ..pairs.candidates import candidates
-from ..pairs.layout import MARGIN
 from ..pairs.setup import near_lists, rebuilt
 from ..report import Contacts, Details
 from ..transfer import EVENTS, OVERFLOW, give, take
@@ -107,10 +90,10 @@ class Pairs:
     def __init__(self, disks: Disks, shapes: IntArray) -> None:
         self._disks, self.shapes = disks, shapes
         world = disks.world
-        self.row_a: IntArray = world.LINK[shapes[:, 0], OWNER]
-        self.row_b: IntArray = world.LINK[shapes[:, 1], OWNER]
+        self.row_a: IntArray = world.LINK["owner"][shapes[:, 0]]
+        self.row_b: IntArray = world.LINK["owner"][shapes[:, 1]]
         self.walls: BoolArray = self.row_b == len(world.BODY) - 1
-        self.extent: FloatArray = world.SHAPE[shapes[:, 0], ROUNDING] + world.SHAPE[shapes[:, 1], ROUNDING]
+        self.extent: FloatArray = world.SHAPE["rounding"][shapes[:, 0]] + world.SHAPE["rounding"][shapes[:, 1]]
 
     def __len__(self) -> int:
         return len(self.shapes)
@@ -125,7 +108,7 @@ class Pairs:
     def elasticity(self) -> FloatArray:
         """(m,) the product of the two shapes' elasticities, as in pymunk, unless a collision handler says otherwise."""
         SHAPE = self._disks.world.SHAPE
-        result: FloatArray = SHAPE[self.shapes[:, 0], ELASTICITY] * SHAPE[self.shapes[:, 1], ELASTICITY]
+        result: FloatArray = SHAPE["elasticity"][self.shapes[:, 0]] * SHAPE["elasticity"][self.shapes[:, 1]]
         for pair, (e, *_) in self._disks.rules.items():
             result[(self.shapes == pair).all(axis=1)] = e
         return result
@@ -161,14 +144,14 @@ class Disks:
     """
 
     def __init__(self, world: World, mover: str) -> None:
-        moving = int(np.count_nonzero(world.LINK[:, OWNER] < len(world.BODY) - 1))
+        moving = int(np.count_nonzero(world.LINK["owner"] < len(world.BODY) - 1))
         check_disks(world, moving, mover)
         self.world = world
         self.rules: Mapping[tuple[int, int], tuple[float, float, float, float]] = {}
         self.motion: Motion | None = None
-        self.work: FloatArray = np.zeros((2, max(2, int(world.LINK[:, COUNT].max(initial=2))), 4))
+        self.work: FloatArray = np.zeros((2, max(2, int(world.LINK["vertices"].max(initial=2))), 4))
         self._near = near_lists(world.BODY, world.SHAPE, world.LINK, world.VERTEX, moving)
-        self._usual: FloatArray = self._near.MARK[:, MARGIN].copy()
+        self._usual: FloatArray = self._near.MARK["margin"].copy()
         self._found, self._out = np.zeros((4 * moving + 16, 2), np.int64), np.zeros((4 * moving + 16, 6))
 
     def step(
@@ -181,17 +164,17 @@ class Disks:
         if status < 0:
             return status
         start = Start(
-            dt, BODY[:, X : Y + 1].copy(), BODY[:, VX : VY + 1].copy(), BODY[:, AX : AY + 1].copy(), BODY[:, IM].copy()
+            dt, columns(BODY, "x", "y"), columns(BODY, "vx", "vy"), columns(BODY, "ax", "ay"), BODY["inv_mass"].copy()
         )  # fmt: skip
         if not np.isfinite(start.free_displacement).all():
             give(STATES, WALK, EXTRA, BODY, ENDS, dt, left, status)
             return OVERFLOW
         self.motion = motion = move(start)
-        BODY[:, X : Y + 1] += motion.displacement
-        BODY[:, VX : VY + 1] = motion.velocity
-        BODY[:, ANGLE] += dt * (BODY[:, SPIN] + 0.5 * dt * BODY[:, TWIST])
-        BODY[:, SPIN] += dt * BODY[:, TWIST]
-        BODY[:, SINCE] = dt
+        put(BODY, columns(BODY, "x", "y") + motion.displacement, "x", "y")
+        put(BODY, motion.velocity, "vx", "vy")
+        BODY["angle"] += dt * (BODY["spin"] + 0.5 * dt * BODY["angular"])
+        BODY["spin"] += dt * BODY["angular"]
+        BODY["since"] = dt
         if motion.details is not None:
             status |= EVENTS
         return give(STATES, WALK, EXTRA, BODY, ENDS, dt, left, status)

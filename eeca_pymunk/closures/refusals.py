@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..errors import UnsupportedFeature
-from ..layout import COUNT, FIRST, FRICTION, IM, OWNER
 
 if TYPE_CHECKING:
     from ..space.world import World
@@ -23,18 +22,18 @@ def check_disks(world: World, moving: int, mover: str) -> None:
         raise UnsupportedFeature(
             f"{world.joints.items[0]}: constraints are not modelled by {mover}; remove it or use ep.EECA(space)"
         )
-    owner = world.LINK[:moving, OWNER]
+    owner = world.LINK["owner"][:moving]
     if moving > world.disks:
-        centred = (world.LINK[:moving, COUNT] == 1) & ~world.VERTEX[world.LINK[:moving, FIRST], :2].any(axis=1)
-        other = np.flatnonzero(~(centred & (world.BODY[owner, IM] > 0.0)))
+        centred = (world.LINK["vertices"][:moving] == 1) & ~world.VERTEX[world.LINK["first"][:moving], :2].any(axis=1)
+        other = np.flatnonzero(~(centred & (world.BODY["inv_mass"][owner] > 0.0)))
         i = int(other[0]) if len(other) else world.disks
         raise UnsupportedFeature(
             f"{world.shapes[i]} of {world.bodies.items[world.owner[i]]} moves and is not a disk about the centre of "
             f"mass of a dynamic body with no other shape, which is all that {mover} moves; use ep.EECA(space)"
         )
-    rough = np.flatnonzero(world.SHAPE[:, FRICTION] > 0.0)
+    rough = np.flatnonzero(world.SHAPE["friction"] > 0.0)
     if len(rough) > 1 and rough[0] < moving:
         raise UnsupportedFeature(
-            f"{world.shapes[rough[0]]} has friction {world.SHAPE[rough[0], FRICTION]}, and so has a shape it may "
+            f"{world.shapes[rough[0]]} has friction {world.SHAPE['friction'][rough[0]]}, and so has a shape it may "
             f"touch: {mover} does not model it; use ep.EECA(space), or set shape.friction = 0"
         )

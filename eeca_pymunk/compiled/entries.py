@@ -19,8 +19,8 @@ import numpy as np
 from .records import KINDS
 
 SOURCES = (
-    "arrays.py", "layout.py", "transfer.py", "compiled", "model", "build", "energy", "geometry", "rows", "pairs", "sustained",
-    "joints", "impacts", "jointed",
+    "arrays.py", "layout.py", "transfer.py", "compiled", "model", "build", "energy", "geometry", "rows", "pairs",
+    "sustained", "joints", "impacts", "jointed",
 )  # fmt: skip
 
 TABLES = {
@@ -41,8 +41,8 @@ ENTRIES = {
     "geometry.gap:gaps": "i8[2] f8[2] f8[2] Shape[1] Link[1] f8[2] f8[3] f8[2]",
     "pairs.walls:wall_grid": "f8[2] f8[1] i8[1] i8[1]",
     "pairs.grid:build": "Body[1] Shape[1] Link[1] Mark[1] Cell[1] List[1] i4[1] u1[1] i8[1] f8[1] i8[1] f8[2] i8[1] f8",
-    "pairs.candidates:candidates": "Body[1] Shape[1] Link[1] f8[2] f8[3] Mark[1] Cell[1] List[1] i4[1] u1[1] i8[1] f8[1]"
-    " i8[1] f8[2] i8[1] f8[1] i8 f8[1] i8[2] f8[2]",
+    "pairs.candidates:candidates": "Body[1] Shape[1] Link[1] f8[2] f8[3] Mark[1] Cell[1] List[1] i4[1] u1[1] i8[1]"
+    " f8[1] i8[1] f8[2] i8[1] f8[1] i8 f8[1] i8[2] f8[2]",
     "transfer:take": "f8[3] i8[2] f8[2] Body[1] f8 f8 f8",
     "transfer:give": "f8[3] i8[2] f8[2] Body[1] f8[1] f8 f8 i8",
     "transfer:lay": "f8[3] i8[2] f8[1] i8",
@@ -72,8 +72,8 @@ def split(kind: str) -> tuple[Any, int]:
 
 
 def is_array(kind: str) -> bool:
-    """Whether this is the type of an array or of a table."""
-    return kind.endswith(("]", "}"))
+    """Whether this is the type of an array, a record or a table."""
+    return kind.endswith(("]", "}")) or kind in KINDS
 
 
 @functools.cache

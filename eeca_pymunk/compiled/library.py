@@ -107,7 +107,7 @@ class Entry:
                 f"{self.name} takes a C-contiguous {kind}, not {array.dtype} of shape {array.shape} "
                 f"with strides {array.strides}"
             )
-        return [array.ctypes.data, *array.shape]
+        return [array.__array_interface__["data"][0], *array.shape]
 
 
 def load(path: Path | None) -> tuple[Status, dict[str, Entry], str]:

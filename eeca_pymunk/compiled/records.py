@@ -10,7 +10,12 @@ import numpy as np
 from ..arrays import AnyArray
 
 if TYPE_CHECKING:
-    _Row = object
+
+    class _Row:
+        def tobytes(self) -> bytes:
+            """The memory of the row."""
+            return b""
+
 else:
     _Row = np.void
 
@@ -62,28 +67,39 @@ def _row_of(kind: type[R], content: bytes) -> R:
 
 if TYPE_CHECKING:
 
-    class Rows(Generic[R]):
+    class Rows(np.ndarray[Any, np.dtype[Any]], Generic[R]):
         """An array of records: `rows[i].field` is a number, `rows["field"]` a column."""
 
-        shape: tuple[int, ...]
-        dtype: np.dtype[Any]
-
-        def __len__(self) -> int: ...
-        @overload
+        @overload  # type: ignore[override]
         def __getitem__(self, at: int) -> R: ...
         @overload
         def __getitem__(self, at: str) -> AnyArray: ...
         @overload
         def __getitem__(self, at: slice | AnyArray) -> Rows[R]: ...
         def __getitem__(self, at: Any) -> Any: ...
-        def __setitem__(self, at: Any, value: Any) -> None: ...
-        def copy(self) -> Rows[R]: ...
-        def view(self, kind: Any) -> AnyArray: ...
+        def copy(self) -> Rows[R]: ...  # type: ignore[override]
+
+    class Kind(Generic[R]):
+        """The dtype of arrays of a record, as kernels name it."""
+
+    def empty(count: int, kind: Kind[R]) -> Rows[R]:
+        """(count,) records of any numbers, in a kernel."""
+
+    def zeros(count: int, kind: Kind[R]) -> Rows[R]:
+        """(count,) records of zeros, in a kernel."""
 
 else:
 
     class Rows(Generic[R]):
         """An array of records, as annotations name it; it is a numpy array."""
+
+    # Kernels name numpy's own functions.
+    empty, zeros = np.empty, np.zeros
+
+
+def kind_of(record: type[R]) -> Kind[R]:
+    """The dtype of arrays of this record, for kernels."""
+    return record.TYPE  # type: ignore[return-value]
 
 
 def rows(kind: type[R], count: int) -> Rows[R]:
@@ -96,7 +112,18 @@ def row(kind: type[R]) -> R:
     return np.zeros(1, kind.TYPE)[0]  # type: ignore[no-any-return]
 
 
-def table(of: Rows[Any]) -> AnyArray:
-    """(rows, fields) the numbers of records whose fields are all floats, or all integers: a view."""
-    kind = of.dtype.fields[of.dtype.names[0]][0]  # type: ignore[index]
-    return of.view(kind).reshape(len(of), -1)
+def numbers(of: Record) -> AnyArray:
+    """(fields,) the numbers of a record whose fields are all of one kind: a view."""
+    one: AnyArray = np.asarray(of)
+    return one.reshape(1).view(one.dtype[0])
+
+
+def columns(of: Rows[Any], *names: str) -> AnyArray:
+    """(rows, fields) a copy of some fields of the same kind, by their names."""
+    return np.stack([of[name] for name in names], axis=-1)
+
+
+def put(into: Rows[Any], values: AnyArray, *names: str) -> None:
+    """Set some fields, by their names, from the columns of `values` (rows, fields)."""
+    for k, name in enumerate(names):
+        into[name] = values[..., k]

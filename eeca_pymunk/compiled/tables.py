@@ -42,13 +42,14 @@ def table_of(arrays: Any) -> Table:
     declared = table_fields(name) if name in TABLES else None
     numbers = np.zeros((len(arrays), WORDS), np.int64)
     for place, (row, field, a) in enumerate(zip(numbers, arrays._fields, arrays, strict=True)):
-        if declared is not None and (field, a.dtype.str, a.ndim) != declared[place]:
-            found = (field, a.dtype.str, a.ndim)
+        found = field, a.dtype, a.ndim
+        if declared is not None and found != declared[place]:
             raise TypeError(f"{name}.{field} is {found}; entries.TABLES declares {declared[place]}")
         if not a.flags.c_contiguous:
             raise TypeError(f"{name}.{field} of shape {a.shape} has strides {a.strides}: it must be C-contiguous")
-        row[0], row[1] = a.ctypes.data, a.size
-        row[2:] = (a.shape * 2)[-2:] if a.ndim == 1 else a.shape[-2:]
+        row[0], row[1] = a.__array_interface__["data"][0], a.size
+        if a.ndim:
+            row[2:] = (a.shape * 2)[-2:] if a.ndim == 1 else a.shape[-2:]
     return Pointers(arrays, numbers.ravel())
 
 

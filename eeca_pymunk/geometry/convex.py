@@ -17,9 +17,10 @@ from __future__ import annotations
 
 import math
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FloatArray
 from ..compiled import uncounted
-from ..layout import COUNT, FIRST
+from ..compiled.records import Rows
+from ..model.shapes import Link
 
 CLOSE = 1e-12  # distance relative to coordinates and sizes, below which its direction is round-off
 _TIE = 1e-14  # by which the axis of a longer edge may be less far apart, relative likewise
@@ -28,13 +29,13 @@ _FAR = math.inf
 
 
 @uncounted
-def place(LINK: IntArray, VERTEX: FloatArray, s: int, x: float, y: float, angle: float, OUT: FloatArray) -> int:
+def place(LINK: Rows[Link], VERTEX: FloatArray, s: int, x: float, y: float, angle: float, OUT: FloatArray) -> int:
     """Vertices and outward normals of shape s, its body at (x, y, angle), into OUT (at least as many, 4); how many.
 
     Exact for angle 0 and for a vertex at the centre of mass.
     """
-    first: int = LINK[s, FIRST]
-    count: int = LINK[s, COUNT]
+    first: int = LINK[s].first
+    count: int = LINK[s].vertices
     if angle == 0.0 or (count == 1 and VERTEX[first, 0] == 0.0 and VERTEX[first, 1] == 0.0):
         for k in range(count):
             OUT[k, 0] = x + VERTEX[first + k, 0]

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
-from ..arrays import FloatArray
 from ..compiled import uncounted
-from ..layout import ANGLE, AX, AY, SINCE, SPIN, TWIST, VX, VY, X, Y
+from ..compiled.records import Rows
+from ..model.bodies import Body
 
 
 @uncounted
@@ -16,19 +16,19 @@ def norm(x: float, y: float) -> float:
 
 
 @uncounted
-def pose(BODY: FloatArray, i: int, t: float) -> tuple[float, float, float]:
+def pose(BODY: Rows[Body], i: int, t: float) -> tuple[float, float, float]:
     """Position (length) and angle (rad) of body i at instant t; at t = SINCE the stored ones exactly."""
-    s = t - BODY[i, SINCE]
+    s = t - BODY[i].since
     half = 0.5 * s
     return (
-        BODY[i, X] + (BODY[i, VX] + half * BODY[i, AX]) * s,
-        BODY[i, Y] + (BODY[i, VY] + half * BODY[i, AY]) * s,
-        BODY[i, ANGLE] + (BODY[i, SPIN] + half * BODY[i, TWIST]) * s,
+        BODY[i].x + (BODY[i].vx + half * BODY[i].ax) * s,
+        BODY[i].y + (BODY[i].vy + half * BODY[i].ay) * s,
+        BODY[i].angle + (BODY[i].spin + half * BODY[i].angular) * s,
     )
 
 
 @uncounted
-def rate(BODY: FloatArray, i: int, t: float) -> tuple[float, float, float]:
+def rate(BODY: Rows[Body], i: int, t: float) -> tuple[float, float, float]:
     """Velocity (length/time) and spin (rad/time) of body i at instant t; at t = SINCE the stored ones exactly."""
-    s = t - BODY[i, SINCE]
-    return BODY[i, VX] + s * BODY[i, AX], BODY[i, VY] + s * BODY[i, AY], BODY[i, SPIN] + s * BODY[i, TWIST]
+    s = t - BODY[i].since
+    return BODY[i].vx + s * BODY[i].ax, BODY[i].vy + s * BODY[i].ay, BODY[i].spin + s * BODY[i].angular

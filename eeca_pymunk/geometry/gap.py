@@ -14,7 +14,9 @@ import math
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
-from ..layout import BOUND, COUNT, FIRST, OWNER, ROUNDING, SIZE, X, Y
+from ..compiled.records import Rows
+from ..model.bodies import Body
+from ..model.shapes import Link, Shape
 from .convex import closest, place, point_core
 from .flight import pose
 
@@ -23,9 +25,9 @@ CORNERS = 4.0  # times that, of corners placed by their angle
 
 
 @uncounted
-def centre(LINK: IntArray, VERTEX: FloatArray, s: int, x: float, y: float, angle: float) -> tuple[float, float]:
+def centre(LINK: Rows[Link], VERTEX: FloatArray, s: int, x: float, y: float, angle: float) -> tuple[float, float]:
     """World position of the one vertex of disk s; that of the body, to the last digit, if it is the centre of mass."""
-    px, py = VERTEX[LINK[s, FIRST], 0], VERTEX[LINK[s, FIRST], 1]
+    px, py = VERTEX[LINK[s].first, 0], VERTEX[LINK[s].first, 1]
     if px == 0.0 and py == 0.0:
         return x, y
     if angle == 0.0:
@@ -36,12 +38,12 @@ def centre(LINK: IntArray, VERTEX: FloatArray, s: int, x: float, y: float, angle
 
 @uncounted
 def ordered_gap(
-    SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray,
+    SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, WORK: FloatArray,
     a: int, x_a: float, y_a: float, angle_a: float, b: int, x_b: float, y_b: float, angle_b: float,
 ) -> tuple[float, float, float, float, float]:  # fmt: skip
     """`gap_at` of shapes in the order of their numbers; a's placed core goes to WORK[0], b's to WORK[1]."""
-    r_a, r_b = SHAPE[a, ROUNDING], SHAPE[b, ROUNDING]
-    if LINK[a, COUNT] == 1 and LINK[b, COUNT] == 1:
+    r_a, r_b = SHAPE[a].rounding, SHAPE[b].rounding
+    if LINK[a].vertices == 1 and LINK[b].vertices == 1:
         x, y = centre(LINK, VERTEX, a, x_a, y_a, angle_a)
         px, py = centre(LINK, VERTEX, b, x_b, y_b, angle_b)
         dx, dy = px - x, py - y
@@ -49,7 +51,7 @@ def ordered_gap(
         nx, ny = 1.0, 0.0
         if d > 0.0:
             nx, ny = dx / d, dy / d
-    elif LINK[a, COUNT] == 1:
+    elif LINK[a].vertices == 1:
         x, y = centre(LINK, VERTEX, a, x_a, y_a, angle_a)
         q = place(LINK, VERTEX, b, x_b, y_b, angle_b, WORK[1])
         d, nx, ny, _, _, _ = point_core(x, y, WORK[1], q)
@@ -64,7 +66,7 @@ def ordered_gap(
 
 @uncounted
 def gap_at(
-    SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray,
+    SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, WORK: FloatArray,
     a: int, x_a: float, y_a: float, angle_a: float, b: int, x_b: float, y_b: float, angle_b: float,
 ) -> tuple[float, float, float, float, float]:  # fmt: skip
     """Gap (length), unit normal (2) from a to b and point (2) of shapes a and b, their bodies at the given poses."""
@@ -78,17 +80,24 @@ def gap_at(
 
 @uncounted
 def gap(
-    BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray, a: int, b: int, t: float
+    BODY: Rows[Body],
+    SHAPE: Rows[Shape],
+    LINK: Rows[Link],
+    VERTEX: FloatArray,
+    WORK: FloatArray,
+    a: int,
+    b: int,
+    t: float,
 ) -> tuple[float, float, float, float, float]:
     """`gap_at` of shapes a and b at instant t of their bodies' paths."""
-    x_a, y_a, angle_a = pose(BODY, LINK[a, OWNER], t)
-    x_b, y_b, angle_b = pose(BODY, LINK[b, OWNER], t)
+    x_a, y_a, angle_a = pose(BODY, LINK[a].owner, t)
+    x_b, y_b, angle_b = pose(BODY, LINK[b].owner, t)
     return gap_at(SHAPE, LINK, VERTEX, WORK, a, x_a, y_a, angle_a, b, x_b, y_b, angle_b)
 
 
 @uncounted
 def gaps(
-    PAIRS: IntArray, POSE_A: FloatArray, POSE_B: FloatArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray,
+    PAIRS: IntArray, POSE_A: FloatArray, POSE_B: FloatArray, SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray,
     WORK: FloatArray, OUT: FloatArray,
 ) -> None:  # fmt: skip
     """`gap_at` of PAIRS (m, 2) of shapes with their bodies at POSE_A and POSE_B (m, 3): rows (g, n_x, n_y, p_x, p_y) of
@@ -102,7 +111,7 @@ def gaps(
 
 
 @uncounted
-def touching(BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, a: int, b: int, disks: int) -> float:
+def touching(BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], a: int, b: int, disks: int) -> float:
     """Length up to which a gap of shapes a and b is round-off of positions and sizes: they touch exactly.
 
     1e-12 (max(|x|, |y|) + sizes), where the sizes are the roundings for two lone disks and for a lone disk and a
@@ -110,11 +119,11 @@ def touching(BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, a: int, b: int
     that of its vertices, the bounding circle is the extent; positions are those of the bodies that move.
     """
     ground = BODY.shape[0] - 1
-    i, j = LINK[a, OWNER], LINK[b, OWNER]
-    far: float = max(max(abs(BODY[i, X]), abs(BODY[i, Y])), max(abs(BODY[j, X]), abs(BODY[j, Y])))
-    size: float = SHAPE[a, ROUNDING] + SHAPE[b, ROUNDING]
+    i, j = LINK[a].owner, LINK[b].owner
+    far: float = max(max(abs(BODY[i].x), abs(BODY[i].y)), max(abs(BODY[j].x), abs(BODY[j].y)))
+    size: float = SHAPE[a].rounding + SHAPE[b].rounding
     if not ((a < disks and (b < disks or j == ground)) or (b < disks and i == ground)):
-        extent_a = SHAPE[a, BOUND] if i == ground else SHAPE[a, SIZE]
-        extent_b = SHAPE[b, BOUND] if j == ground else SHAPE[b, SIZE]
+        extent_a = SHAPE[a].bound if i == ground else SHAPE[a].extent
+        extent_b = SHAPE[b].bound if j == ground else SHAPE[b].extent
         size = CORNERS * (size + max(extent_a, extent_b))
     return ROUND_OFF * (far + size)

@@ -10,9 +10,10 @@ from __future__ import annotations
 
 import math
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FloatArray
 from ..compiled import uncounted
-from ..layout import COUNT, ROUNDING
+from ..compiled.records import Rows
+from ..model.shapes import Link, Shape
 from .convex import closest, place, prefers_second
 from .gap import ordered_gap
 
@@ -73,13 +74,13 @@ def reverse(OUT: FloatArray, count: int) -> None:
 
 @uncounted
 def ordered_manifold(
-    SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray,
+    SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, WORK: FloatArray,
     a: int, x_a: float, y_a: float, angle_a: float, b: int, x_b: float, y_b: float, angle_b: float,
     reach: float, tolerance: float, OUT: FloatArray,
 ) -> int:  # fmt: skip
     """`manifold` of shapes in the order of their numbers."""
-    r_a, r_b = SHAPE[a, ROUNDING], SHAPE[b, ROUNDING]
-    if LINK[a, COUNT] == 1 or LINK[b, COUNT] == 1:
+    r_a, r_b = SHAPE[a].rounding, SHAPE[b].rounding
+    if LINK[a].vertices == 1 or LINK[b].vertices == 1:
         g, nx, ny, px, py = ordered_gap(
             SHAPE, LINK, VERTEX, WORK, a, x_a, y_a, angle_a, b, x_b, y_b, angle_b
         )  # fmt: skip
@@ -103,7 +104,7 @@ def ordered_manifold(
 
 @uncounted
 def manifold(
-    SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray,
+    SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, WORK: FloatArray,
     a: int, x_a: float, y_a: float, angle_a: float, b: int, x_b: float, y_b: float, angle_b: float,
     reach: float, tolerance: float, OUT: FloatArray,
 ) -> int:  # fmt: skip
@@ -144,7 +145,7 @@ def support_range(P: FloatArray, p: int, nx: float, ny: float, tolerance: float)
 
 @uncounted
 def face(
-    SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray,
+    SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, WORK: FloatArray,
     a: int, x_a: float, y_a: float, angle_a: float, b: int, x_b: float, y_b: float, angle_b: float,
     tolerance: float, OUT: FloatArray,
 ) -> int:  # fmt: skip
@@ -159,7 +160,7 @@ def face(
     g, nx, ny, px, py = ordered_gap(SHAPE, LINK, VERTEX, WORK, a, x_a, y_a, angle_a, b, x_b, y_b, angle_b)
     count = 1
     OUT[0, 0], OUT[0, 1], OUT[0, 2], OUT[0, 3], OUT[0, 4] = nx, ny, px, py, g
-    p, q = LINK[a, COUNT], LINK[b, COUNT]
+    p, q = LINK[a].vertices, LINK[b].vertices
     if p > 1 and q > 1:
         slack = tolerance + max(-g, 0.0)
         low_p, high_p, top, size_p = support_range(WORK[0], p, nx, ny, slack)
@@ -167,7 +168,7 @@ def face(
         low, high = max(low_p, -high_q), min(high_p, -low_q)
         if high - low > _WIDTH * max(size_p, size_q):
             count = 2
-            top += SHAPE[a, ROUNDING] + 0.5 * g
+            top += SHAPE[a].rounding + 0.5 * g
             for k in range(2):
                 u = low if k == 0 else high
                 OUT[k, 0], OUT[k, 1], OUT[k, 4] = nx, ny, g

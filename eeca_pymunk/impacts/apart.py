@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import math
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FloatArray
 from ..compiled import uncounted
+from ..compiled.records import Rows
 from ..geometry.convex import place, point_core
 from ..geometry.flight import pose, rate
-from ..layout import AX, AY, BOUND, CENTRE_X, CENTRE_Y, OWNER, ROUNDING, SIZE, TWIST
+from ..model.bodies import Body
+from ..model.shapes import Link, Shape
 from .circles import circle_circle, circle_outline
 from .roots import flat
 
 
 @uncounted
 def circles_meet(
-    BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray,
+    BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, WORK: FloatArray,
     a: int, b: int, start: float, left: float, tolerance: float,
 ) -> tuple[float, bool]:  # fmt: skip
     """Time after `start` until which shapes a and b are apart for certain, as a circle about the centre of mass of the
@@ -24,63 +26,63 @@ def circles_meet(
     These circles do not turn. 0 where they overlap.
     """
     ground = BODY.shape[0] - 1
-    i, j = LINK[a, OWNER], LINK[b, OWNER]
+    i, j = LINK[a].owner, LINK[b].owner
     if i == ground:
         a, b, i, j = b, a, j, i
     x_a, y_a, _ = pose(BODY, i, start)
     ux_a, uy_a, _ = rate(BODY, i, start)
     if j == ground:
         q = place(LINK, VERTEX, b, 0.0, 0.0, 0.0, WORK[1])
-        extent = SHAPE[a, SIZE] + SHAPE[b, ROUNDING]
+        extent = SHAPE[a].extent + SHAPE[b].rounding
         if point_core(x_a, y_a, WORK[1], q)[0] - extent <= tolerance:
             return 0.0, False
         s, _ = circle_outline(
-            x_a, y_a, ux_a, uy_a, BODY[i, AX], BODY[i, AY], extent, tolerance, LINK, VERTEX, b, left
+            x_a, y_a, ux_a, uy_a, BODY[i].ax, BODY[i].ay, extent, tolerance, LINK, VERTEX, b, left
         )  # fmt: skip
         return s, s == math.inf
     x_b, y_b, _ = pose(BODY, j, start)
     ux_b, uy_b, _ = rate(BODY, j, start)
     dx, dy = x_b - x_a, y_b - y_a
-    extent = SHAPE[a, SIZE] + SHAPE[b, SIZE]
+    extent = SHAPE[a].extent + SHAPE[b].extent
     if math.sqrt(dx * dx + dy * dy) - extent <= tolerance:
         return 0.0, False
     s, _ = circle_circle(
-        dx, dy, ux_b - ux_a, uy_b - uy_a, BODY[j, AX] - BODY[i, AX], BODY[j, AY] - BODY[i, AY], extent, tolerance, left
+        dx, dy, ux_b - ux_a, uy_b - uy_a, BODY[j].ax - BODY[i].ax, BODY[j].ay - BODY[i].ay, extent, tolerance, left
     )
     return s, s == math.inf
 
 
 @uncounted
 def carried_circle(
-    BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, s: int, start: float, left: float
+    BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], s: int, start: float, left: float
 ) -> tuple[float, float, float, float, float]:
     """Centre (2) and velocity (2) at `start` of the bounding circle of shape s, which its body carries round, and how
     much (length/time²) the turning bends its path at most, for `left`."""
-    i = LINK[s, OWNER]
+    i = LINK[s].owner
     x, y, angle = pose(BODY, i, start)
     ux, uy, w = rate(BODY, i, start)
-    px, py = SHAPE[s, CENTRE_X], SHAPE[s, CENTRE_Y]
+    px, py = SHAPE[s].centre_x, SHAPE[s].centre_y
     if angle != 0.0 and (px != 0.0 or py != 0.0):
         c, z = math.cos(angle), math.sin(angle)
         px, py = c * px - z * py, z * px + c * py
-    twist = abs(BODY[i, TWIST])
+    twist = abs(BODY[i].angular)
     most = abs(w) + twist * left
     return x + px, y + py, ux - w * py, uy + w * px, math.sqrt(px * px + py * py) * (most * most + twist)
 
 
 @uncounted
 def carried_circles_meet(
-    BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, a: int, b: int, start: float, left: float
+    BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], a: int, b: int, start: float, left: float
 ) -> float:
     """Time after `start` until which the bounding circles of shapes a and b are apart for certain: what `circles_meet`
     cannot tell of shapes far from their centres of mass. Holds for `left`, or for ever without angular acceleration."""
     x_a, y_a, ux_a, uy_a, bend_a = carried_circle(BODY, SHAPE, LINK, a, start, left)
     x_b, y_b, ux_b, uy_b, bend_b = carried_circle(BODY, SHAPE, LINK, b, start, left)
-    i, j = LINK[a, OWNER], LINK[b, OWNER]
+    i, j = LINK[a].owner, LINK[b].owner
     dx, dy = x_b - x_a, y_b - y_a
     d = math.sqrt(dx * dx + dy * dy)
-    gap = d - SHAPE[a, BOUND] - SHAPE[b, BOUND]
+    gap = d - SHAPE[a].bound - SHAPE[b].bound
     if gap <= 0.0:
         return 0.0
-    pull = math.sqrt((BODY[j, AX] - BODY[i, AX]) ** 2 + (BODY[j, AY] - BODY[i, AY]) ** 2)
+    pull = math.sqrt((BODY[j].ax - BODY[i].ax) ** 2 + (BODY[j].ay - BODY[i].ay) ** 2)
     return flat(gap, ((ux_b - ux_a) * dx + (uy_b - uy_a) * dy) / d, -(pull + bend_a + bend_b))

@@ -13,21 +13,18 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
+from ..compiled.records import Rows, empty
 from ..geometry.flight import pose, rate
 from ..geometry.gap import touching
 from ..geometry.manifold import face
-from ..layout import ANGLE, II, IM, OWNER, SIZE, SPIN, VX, VY, X, Y
-from ..pairs.layout import NUMBER, START
+from ..model.contacts import ROW, Row
+from ..model.scene import Scene
 from ..pairs.rules import barred, law
 from ..rows.build import normal_rate, place_row
 from ..rows.inplace import sort
-from ..rows.layout import ELASTICITY as ELASTIC
-from ..rows.layout import K_N, ROW_COLUMNS
 from ..sustained.contacts import CROWD
 from .booking import end_span
 from .islands import carrier, remembered, worn
-from .layout import BODIES as SIZE_OF
-from .layout import DT, FIRST_SHAPE, ISLAND, JOINTED, LOST, NEXT_TIED, OPEN, SHAPES, STAMP, TIED, Scene
 from .strike import move_to, touches
 
 _FACES = 16.0  # times the tolerance of touching, by which the ends of parallel faces may differ
@@ -42,10 +39,10 @@ def takes_part(A: Scene, disks: int, s: int, o: int, t: float) -> bool:
         return False
     if touches(A, disks, s, o, t):
         return True
-    i, j = A.LINK[s, OWNER], A.LINK[o, OWNER]
-    if A.STATE[i, ISLAND] < 0 or not (A.STATE[j, ISLAND] == A.STATE[i, ISLAND] or carrier(A, j)):
+    i, j = A.LINK[s].owner, A.LINK[o].owner
+    if A.STATE[i].island < 0 or not (A.STATE[j].island == A.STATE[i].island or carrier(A, j)):
         return False
-    return remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], s, o, A.PAR[STAMP])[0] > 0.0
+    return remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], s, o, A.PAR.stamp)[0] > 0.0
 
 
 @uncounted
@@ -55,18 +52,18 @@ def crowded(A: Scene, a: int, b: int) -> bool:
         return False
     size = 0
     for s in (a, b):
-        root = A.STATE[A.LINK[s, OWNER], ISLAND]
+        root = A.STATE[A.LINK[s].owner].island
         if root >= 0:
-            size = max(size, A.MEMBER[root, SIZE_OF])
+            size = max(size, A.MEMBER[root].bodies)
     return size >= CROWD
 
 
 @uncounted
 def arrive(A: Scene, i: int, t: float) -> None:
     """Bring body i, with its island, to instant t; not one whose island has joints and is under way."""
-    root = A.STATE[i, ISLAND]
-    if root >= 0 and A.MEMBER[root, OPEN] > 0:
-        if A.MEMBER[root, JOINTED] > 0:
+    root = A.STATE[i].island
+    if root >= 0 and A.MEMBER[root].open > 0:
+        if A.MEMBER[root].jointed > 0:
             return
         end_span(A, root, t)
     move_to(A.BODY, i, t)
@@ -80,9 +77,9 @@ def admit(A: Scene, i: int, n: int, t: float) -> int:
         A.BLOCK[n], A.PLACE[j] = j, n
         n += 1
         arrive(A, j, t)
-        if A.MEMBER[j, TIED] < 0:
+        if A.MEMBER[j].tied < 0:
             break
-        j = A.MEMBER[j, NEXT_TIED]
+        j = A.MEMBER[j].next_tied
     return n
 
 
@@ -96,25 +93,25 @@ def gather(A: Scene, disks: int, a: int, b: int, t: float) -> tuple[int, int, In
     n, m, q = 0, 1, 0
     most = _NEAREST if crowded(A, a, b) else A.BLOCK.shape[0]
     for s in (a, b):
-        i = A.LINK[s, OWNER]
-        if A.BODY[i, IM] > 0.0:
+        i = A.LINK[s].owner
+        if A.BODY[i].inv_mass > 0.0:
             if A.PLACE[i] < 0:
                 n = admit(A, i, n, t)
     while q < n:
         i = BODIES[q]
         q += 1
-        for s in range(A.STATE[i, FIRST_SHAPE], A.STATE[i, FIRST_SHAPE] + A.STATE[i, SHAPES]):
-            start = A.LIST[s, START]
-            for p in range(start, start + A.LIST[s, NUMBER]):
+        for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):
+            start = A.LIST[s].start
+            for p in range(start, start + A.LIST[s].number):
                 o = int(A.POOL[p])
-                j = A.LINK[o, OWNER]
-                moves = A.BODY[j, IM] > 0.0
+                j = A.LINK[o].owner
+                moves = A.BODY[j].inv_mass > 0.0
                 key = min(s, o) * k + max(s, o)
                 # The pairs with bodies that have been looked at before stand there already.
                 if key == PAIRS[0] or (moves and 0 <= A.PLACE[j] < q - 1):
                     continue
                 # What does not take part is hit in its turn.
-                full = moves and A.PLACE[j] < 0 and (n >= most or worn(A, A.STATE[j, ISLAND]))
+                full = moves and A.PLACE[j] < 0 and (n >= most or worn(A, A.STATE[j].island))
                 if full or not takes_part(A, disks, s, o, t):
                     continue
                 if moves and A.PLACE[j] < 0:
@@ -135,12 +132,12 @@ def owing(A: Scene, n: int) -> tuple[float, bool]:
     """What the islands of the n bodies in A.BLOCK owe, which is taken out by their block; whether there are any."""
     owed, piled = 0.0, False
     for q in range(n):
-        root = A.STATE[A.BLOCK[q], ISLAND]
+        root = A.STATE[A.BLOCK[q]].island
         if root >= 0:
             piled = True
             # What spans that were cut short have given is taken out here.
-            owes = max(-A.RESTING[root, LOST], 0.0)
-            A.RESTING[root, LOST] += owes
+            owes = max(-A.RESTING[root].lost, 0.0)
+            A.RESTING[root].lost += owes
             owed += owes
     return owed, piled
 
@@ -155,7 +152,7 @@ class Block(NamedTuple):
     II: FloatArray
     A: IntArray
     B: IntArray
-    ROWS: FloatArray
+    ROWS: Rows[Row]
     POINTS: FloatArray
     OF: IntArray
 
@@ -176,21 +173,21 @@ def lay_out(A: Scene, disks: int, n: int, m: int, PAIRS: IntArray, hit: int, res
     IMS, IIS = np.zeros(n + m), np.zeros(n + m)
     for q in range(n):
         i = BODIES[q]
-        POSE[q, 0], POSE[q, 1], POSE[q, 2] = BODY[i, X], BODY[i, Y], BODY[i, ANGLE]
-        V[q, 0], V[q, 1], V[q, 2] = BODY[i, VX], BODY[i, VY], BODY[i, SPIN]
-        IMS[q], IIS[q] = BODY[i, IM], BODY[i, II]
+        POSE[q, 0], POSE[q, 1], POSE[q, 2] = BODY[i].x, BODY[i].y, BODY[i].angle
+        V[q, 0], V[q, 1], V[q, 2] = BODY[i].vx, BODY[i].vy, BODY[i].spin
+        IMS[q], IIS[q] = BODY[i].inv_mass, BODY[i].inv_inertia
     P, Q = np.empty(2 * m, np.int64), np.empty(2 * m, np.int64)
-    ROWS, POINTS, OF = np.empty((2 * m, ROW_COLUMNS)), np.empty((2 * m, 2)), np.empty(2 * m, np.int64)
+    ROWS, POINTS, OF = empty(2 * m, ROW), np.empty((2 * m, 2)), np.empty(2 * m, np.int64)
     found = np.empty((2, 5))
     rows, place = 0, n
     for z in range(m):
         sa, sb = PAIRS[z] // k, PAIRS[z] % k
-        i, j = LINK[sa, OWNER], LINK[sb, OWNER]
+        i, j = LINK[sa].owner, LINK[sb].owner
         p, q = A.PLACE[i], A.PLACE[j]
         # What impulses do not move has a row of its own for each contact.
         for side in range(2):
             w = i if side == 0 else j
-            if BODY[w, IM] == 0.0:
+            if BODY[w].inv_mass == 0.0:
                 xw, yw, qw = pose(BODY, w, t)
                 POSE[place, 0], POSE[place, 1], POSE[place, 2] = xw, yw, qw
                 xw, yw, qw = rate(BODY, w, t)
@@ -202,12 +199,12 @@ def lay_out(A: Scene, disks: int, n: int, m: int, PAIRS: IntArray, hit: int, res
                 place += 1
         e, mu, sx, sy = law(A.SHAPE, A.RULE, sa, sb)
         tolerance = _FACES * touching(BODY, A.SHAPE, LINK, sa, sb, disks)
-        small = min(A.SHAPE[sa, SIZE], A.SHAPE[sb, SIZE])
+        small = min(A.SHAPE[sa].extent, A.SHAPE[sb].extent)
         if e < 1.0:
             tolerance = max(tolerance, _ROCKING * small)
         if rest and PAIRS[z] == hit:
             e = 0.0
-        load = remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], sa, sb, A.PAR[STAMP] - 1.0)[1]
+        load = remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], sa, sb, A.PAR.stamp - 1.0)[1]
         count = face(
             A.SHAPE, LINK, A.VERTEX, A.WORK, sa, POSE[p, 0], POSE[p, 1], POSE[p, 2],
             sb, POSE[q, 0], POSE[q, 1], POSE[q, 2], tolerance, found,
@@ -219,9 +216,9 @@ def lay_out(A: Scene, disks: int, n: int, m: int, PAIRS: IntArray, hit: int, res
                 nx * sy - ny * sx,
             )  # fmt: skip
             u = normal_rate(P, Q, ROWS, V, rows)
-            if e < 1.0 and e * max(-u, 0.0) < 0.5 * load * A.PAR[DT] / ROWS[rows, K_N]:
+            if e < 1.0 and e * max(-u, 0.0) < 0.5 * load * A.PAR.dt / ROWS[rows].k_n:
                 # Its bounce would come back within the step.
-                ROWS[rows, ELASTIC] = 0.0
+                ROWS[rows].elasticity = 0.0
             POINTS[rows, 0], POINTS[rows, 1], OF[rows] = found[c, 2], found[c, 3], PAIRS[z]
             rows += 1
     return Block(POSE, V, IMS, IIS, P[:rows], Q[:rows], ROWS[:rows], POINTS[:rows], OF[:rows])

@@ -7,60 +7,11 @@ out by what follows. So may they have turned the island, as their arms are about
 from __future__ import annotations
 
 from ..compiled import Table, uncounted
-from ..layout import (
-    AX,
-    AY,
-    II,
-    IM,
-    OWNER,
-    SINCE,
-    SPIN,
-    VX,
-    VY,
-    X,
-    Y,
-)  # fmt: skip
+from ..model.contacts import ENDED, LASTED
+from ..model.scene import Scene, scene_of
 from ..pairs.lists import mark_pair
 from .calm import whirls
 from .islands import unite
-from .layout import (
-    AFTER_ME,
-    BETA,
-    DT,
-    ENDED,
-    EXTERNAL,
-    FRICTIONAL,
-    ISLAND,
-    JOINTED,
-    LAM,
-    LASTED,
-    LEDGER,
-    LIFT,
-    LOGGED,
-    LOST,
-    OPEN,
-    PUSH_A,
-    PUSH_B,
-    PUSH_CHANGE,
-    PUSH_GAP,
-    PUSH_NX,
-    PUSH_NY,
-    PUSH_X,
-    PUSH_Y,
-    PUSHES,
-    RESTITUTION,
-    ROOT,
-    SPAN,
-    SPAN_FROM,
-    STILL,
-    UN_AFTER,
-    UN_BEFORE,
-    UT_AFTER,
-    UT_BEFORE,
-    WORK_OF,
-    Scene,
-    scene_of,
-)  # fmt: skip
 from .still import CHANGED, disturb, spread_change
 from .strike import move_to, note
 
@@ -74,9 +25,9 @@ def flag_again(TABLE: Table) -> None:
 @uncounted
 def flag_spans(A: Scene) -> None:
     """Flag the pairs of all spans, whose flags are not set."""
-    for c in range(A.COUNT[PUSHES]):
-        if A.PUSHED_BY[c, ROOT] >= 0:
-            a, b = A.PUSHED_BY[c, PUSH_A], A.PUSHED_BY[c, PUSH_B]
+    for c in range(A.COUNT.pushes):
+        if A.PUSHED_BY[c].root >= 0:
+            a, b = A.PUSHED_BY[c].a, A.PUSHED_BY[c].b
             mark_pair(A.LIST, A.POOL, A.FLAG, A.LIST.shape[0], a, b, 1)
 
 
@@ -88,29 +39,29 @@ def book(A: Scene, c: int, t: float) -> None:
     a contact's friction gives back counts against its restitution, and the other way round.
     """
     PAR, COUNT, R = A.PAR, A.COUNT, A.PUSHED[c]
-    root, a, b = A.PUSHED_BY[c, ROOT], A.PUSHED_BY[c, PUSH_A], A.PUSHED_BY[c, PUSH_B]
-    A.PUSHED_BY[c, ROOT] = LASTED if t == PAR[DT] else ENDED
+    root, a, b = A.PUSHED_BY[c].root, A.PUSHED_BY[c].a, A.PUSHED_BY[c].b
+    A.PUSHED_BY[c].root = LASTED if t == PAR.dt else ENDED
     mark_pair(A.LIST, A.POOL, A.FLAG, A.LIST.shape[0], a, b, 0)
-    f = (t - R[SPAN_FROM]) / R[SPAN]
-    if f == 0.0 or (R[LAM] == 0.0 and R[BETA] == 0.0):
+    f = (t - R.start) / R.length
+    if f == 0.0 or (R.normal == 0.0 and R.tangential == 0.0):
         return
-    normal = -f * R[LAM] * (R[UN_BEFORE] + 0.5 * f * (R[UN_AFTER] - R[UN_BEFORE]))
-    tangential = -f * R[BETA] * (R[UT_BEFORE] + 0.5 * f * (R[UT_AFTER] - R[UT_BEFORE]))
+    normal = -f * R.normal * (R.un_before + 0.5 * f * (R.un_after - R.un_before))
+    tangential = -f * R.tangential * (R.ut_before + 0.5 * f * (R.ut_after - R.ut_before))
     both = normal + tangential
     if normal < 0.0:
         normal, tangential = min(both, 0.0), max(both, 0.0)
     elif tangential < 0.0:
         normal, tangential = both, 0.0
-    PAR[LEDGER + RESTITUTION] += normal
-    PAR[LEDGER + FRICTIONAL] += tangential
-    PAR[LEDGER + EXTERNAL] += f * R[WORK_OF]
-    A.RESTING[root, LOST] += both
-    if f > 0.0 and COUNT[LOGGED] < A.LOG.shape[0]:
+    PAR.restitution += normal
+    PAR.frictional += tangential
+    PAR.external += f * R.work
+    A.RESTING[root].lost += both
+    if f > 0.0 and COUNT.logged < A.LOG.shape[0]:
         note(
-            A.LOG, COUNT[LOGGED], a, b, R[SPAN_FROM] + 0.5 * f * R[SPAN], f * R[LAM], f * R[BETA], R[PUSH_NX],
-            R[PUSH_NY], R[PUSH_X], R[PUSH_Y], f * R[PUSH_CHANGE], R[PUSH_GAP],
+            A.LOG, COUNT.logged, a, b, R.start + 0.5 * f * R.length, f * R.normal, f * R.tangential, R.nx,
+            R.ny, R.px, R.py, f * R.change, R.gap,
         )  # fmt: skip
-        COUNT[LOGGED] += 1
+        COUNT.logged += 1
 
 
 @uncounted
@@ -118,13 +69,13 @@ def gained(A: Scene, c: int, t: float) -> float:
     """Angular momentum that contact number c makes if its span h is cut after s: its arms are about the middle of the
     whole, so that bodies without mobility aside it is -(1/2) s (h - s) (v_b - v_a) x f, v at the start of the span."""
     R, BODY = A.PUSHED[c], A.BODY
-    i, j = A.LINK[A.PUSHED_BY[c, PUSH_A], OWNER], A.LINK[A.PUSHED_BY[c, PUSH_B], OWNER]
-    s, h = t - R[SPAN_FROM], R[SPAN]
-    fx = (R[LAM] * R[PUSH_NX] - R[BETA] * R[PUSH_NY]) / h
-    fy = (R[LAM] * R[PUSH_NY] + R[BETA] * R[PUSH_NX]) / h
-    back_i, back_j = BODY[i, SINCE] - R[SPAN_FROM], BODY[j, SINCE] - R[SPAN_FROM]
-    vx = BODY[j, VX] - back_j * BODY[j, AX] - BODY[i, VX] + back_i * BODY[i, AX]
-    vy = BODY[j, VY] - back_j * BODY[j, AY] - BODY[i, VY] + back_i * BODY[i, AY]
+    i, j = A.LINK[A.PUSHED_BY[c].a].owner, A.LINK[A.PUSHED_BY[c].b].owner
+    s, h = t - R.start, R.length
+    fx = (R.normal * R.nx - R.tangential * R.ny) / h
+    fy = (R.normal * R.ny + R.tangential * R.nx) / h
+    back_i, back_j = BODY[i].since - R.start, BODY[j].since - R.start
+    vx = BODY[j].vx - back_j * BODY[j].ax - BODY[i].vx + back_i * BODY[i].ax
+    vy = BODY[j].vy - back_j * BODY[j].ay - BODY[i].vy + back_i * BODY[i].ay
     return -0.5 * s * max(h - s, 0.0) * (vx * fy - vy * fx)
 
 
@@ -136,34 +87,34 @@ def turn_back(A: Scene, root: int, excess: float) -> None:
     mass, x, y, vx, vy = 0.0, 0.0, 0.0, 0.0, 0.0
     i = root
     while i >= 0:
-        if BODY[i, II] == 0.0:
+        if BODY[i].inv_inertia == 0.0:
             return
-        m = 1.0 / BODY[i, IM]
-        mass, x, y = mass + m, x + m * BODY[i, X], y + m * BODY[i, Y]
-        vx, vy = vx + m * BODY[i, VX], vy + m * BODY[i, VY]
-        i = A.MEMBER[i, AFTER_ME]
+        m = 1.0 / BODY[i].inv_mass
+        mass, x, y = mass + m, x + m * BODY[i].x, y + m * BODY[i].y
+        vx, vy = vx + m * BODY[i].vx, vy + m * BODY[i].vy
+        i = A.MEMBER[i].following
     x, y, vx, vy = x / mass, y / mass, vx / mass, vy / mass
     whirl, inertia = 0.0, 0.0
     i = root
     while i >= 0:
-        rx, ry = BODY[i, X] - x, BODY[i, Y] - y
-        whirl += (rx * (BODY[i, VY] - vy) - ry * (BODY[i, VX] - vx)) / BODY[i, IM]
-        inertia += (rx * rx + ry * ry) / BODY[i, IM]
+        rx, ry = BODY[i].x - x, BODY[i].y - y
+        whirl += (rx * (BODY[i].vy - vy) - ry * (BODY[i].vx - vx)) / BODY[i].inv_mass
+        inertia += (rx * rx + ry * ry) / BODY[i].inv_mass
         if not whirls(A, i):
-            whirl += BODY[i, SPIN] / BODY[i, II]
-            inertia += 1.0 / BODY[i, II]
-        i = A.MEMBER[i, AFTER_ME]
+            whirl += BODY[i].spin / BODY[i].inv_inertia
+            inertia += 1.0 / BODY[i].inv_inertia
+        i = A.MEMBER[i].following
     turn = -excess / inertia
     i = root
     while i >= 0:
-        BODY[i, VX] -= turn * (BODY[i, Y] - y)
-        BODY[i, VY] += turn * (BODY[i, X] - x)
+        BODY[i].vx -= turn * (BODY[i].y - y)
+        BODY[i].vy += turn * (BODY[i].x - x)
         if not whirls(A, i):
-            BODY[i, SPIN] += turn
-        i = A.MEMBER[i, AFTER_ME]
+            BODY[i].spin += turn
+        i = A.MEMBER[i].following
     lost = -turn * (whirl + 0.5 * inertia * turn)
-    A.PAR[LEDGER + RESTITUTION] += lost
-    A.RESTING[root, LOST] += lost
+    A.PAR.restitution += lost
+    A.RESTING[root].lost += lost
 
 
 @uncounted
@@ -171,10 +122,10 @@ def wake(A: Scene, root: int, t: float) -> int:
     """An island that stands does so no longer from instant t on: it and all that rests on it become one, whose root is
     returned, and end their spans."""
     MEMBER, one = A.MEMBER, root
-    MEMBER[root, STILL] = CHANGED
+    MEMBER[root].still = CHANGED
     spread_change(A)
     for i in range(A.BODY.shape[0] - 1):
-        if A.STATE[i, ISLAND] == i and A.BODY[i, IM] > 0.0 and MEMBER[i, STILL] == CHANGED:
+        if A.STATE[i].island == i and A.BODY[i].inv_mass > 0.0 and MEMBER[i].still == CHANGED:
             disturb(A, i)
             close_span(A, i, t)
             one = unite(A, one, i)
@@ -184,7 +135,7 @@ def wake(A: Scene, root: int, t: float) -> int:
 @uncounted
 def end_span(A: Scene, root: int, t: float) -> None:
     """End the span of an island at instant t, and of what rests on it."""
-    if A.MEMBER[root, STILL] == 1:
+    if A.MEMBER[root].still == 1:
         wake(A, root, t)
     else:
         close_span(A, root, t)
@@ -193,20 +144,20 @@ def end_span(A: Scene, root: int, t: float) -> None:
 @uncounted
 def close_span(A: Scene, root: int, t: float) -> None:
     """End the span of one island at instant t: book its contacts, and bring its bodies there."""
-    free, excess = A.MEMBER[root, JOINTED] == 0, 0.0
-    for c in range(A.COUNT[PUSHES]):
-        if A.PUSHED_BY[c, ROOT] == root:
-            for side in range(2):
-                j = A.LINK[A.PUSHED_BY[c, PUSH_A + side], OWNER]
-                free = free and A.BODY[j, IM] > 0.0 and A.STATE[j, ISLAND] == root
+    free, excess = A.MEMBER[root].jointed == 0, 0.0
+    for c in range(A.COUNT.pushes):
+        if A.PUSHED_BY[c].root == root:
+            for shape in (A.PUSHED_BY[c].a, A.PUSHED_BY[c].b):
+                j = A.LINK[shape].owner
+                free = free and A.BODY[j].inv_mass > 0.0 and A.STATE[j].island == root
             if free:
                 excess += gained(A, c, t)
             book(A, c, t)
-    A.MEMBER[root, OPEN] = 0
+    A.MEMBER[root].open = 0
     i = root
     while i >= 0:
         move_to(A.BODY, i, t)
-        i = A.MEMBER[i, AFTER_ME]
+        i = A.MEMBER[i].following
     if free and excess != 0.0:
         turn_back(A, root, excess)
 
@@ -215,10 +166,12 @@ def close_span(A: Scene, root: int, t: float) -> None:
 def alight(A: Scene, i: int, end: float) -> None:
     """Bring body i of an island with joints to the end of its span: what happens there is in the books of joints."""
     move_to(A.BODY, i, end)
-    for c in range(3):
-        A.BODY[i, X + c] += A.RESTING[i, LIFT + c]
-        A.BODY[i, VX + c] = A.RESTING[i, LIFT + 3 + c]
-        A.RESTING[i, LIFT + c] = 0.0
+    body, rest = A.BODY[i], A.RESTING[i]
+    body.x += rest.lift_x
+    body.y += rest.lift_y
+    body.angle += rest.lift_angle
+    body.vx, body.vy, body.spin = rest.lift_vx, rest.lift_vy, rest.lift_spin
+    rest.lift_x, rest.lift_y, rest.lift_angle = 0.0, 0.0, 0.0
 
 
 @uncounted
@@ -228,25 +181,29 @@ def lift_out(A: Scene, root: int, end: float) -> None:
     PAR, BODY, PULL, JUMP = A.PAR, A.BODY, A.PULL, A.RESTING
     spent = 0.0
     i = root
-    if A.MEMBER[root, JOINTED] > 0:
+    if A.MEMBER[root].jointed > 0:
         while i >= 0:
-            if A.MEMBER[root, OPEN] > 0:
+            if A.MEMBER[root].open > 0:
                 alight(A, i, end)
-            i = A.MEMBER[i, AFTER_ME]
+            i = A.MEMBER[i].following
         return
     while i >= 0:
         move_to(BODY, i, end)
-        linear = PULL[i, 0] * JUMP[i, LIFT] + PULL[i, 1] * JUMP[i, LIFT + 1]
-        for c in range(2):
-            linear -= JUMP[i, LIFT + 3 + c] * (BODY[i, VX + c] + 0.5 * JUMP[i, LIFT + 3 + c])
-        spent -= linear / BODY[i, IM]
-        if BODY[i, II] > 0.0:
-            turning = JUMP[i, LIFT + 5] * (BODY[i, SPIN] + 0.5 * JUMP[i, LIFT + 5])
-            spent += (turning - PULL[i, 2] * JUMP[i, LIFT + 2]) / BODY[i, II]
-        for c in range(6):
-            BODY[i, X + c] += JUMP[i, LIFT + c]
-        i = A.MEMBER[i, AFTER_ME]
-    PAR[LEDGER + RESTITUTION] -= spent
-    if PAR[LEDGER + RESTITUTION] < 0.0 and PAR[LEDGER + FRICTIONAL] > 0.0:
-        PAR[LEDGER + FRICTIONAL] += PAR[LEDGER + RESTITUTION]
-        PAR[LEDGER + RESTITUTION] = 0.0
+        linear = PULL[i, 0] * JUMP[i].lift_x + PULL[i, 1] * JUMP[i].lift_y
+        linear -= JUMP[i].lift_vx * (BODY[i].vx + 0.5 * JUMP[i].lift_vx)
+        linear -= JUMP[i].lift_vy * (BODY[i].vy + 0.5 * JUMP[i].lift_vy)
+        spent -= linear / BODY[i].inv_mass
+        if BODY[i].inv_inertia > 0.0:
+            turning = JUMP[i].lift_spin * (BODY[i].spin + 0.5 * JUMP[i].lift_spin)
+            spent += (turning - PULL[i, 2] * JUMP[i].lift_angle) / BODY[i].inv_inertia
+        BODY[i].x += JUMP[i].lift_x
+        BODY[i].y += JUMP[i].lift_y
+        BODY[i].angle += JUMP[i].lift_angle
+        BODY[i].vx += JUMP[i].lift_vx
+        BODY[i].vy += JUMP[i].lift_vy
+        BODY[i].spin += JUMP[i].lift_spin
+        i = A.MEMBER[i].following
+    PAR.restitution -= spent
+    if PAR.restitution < 0.0 and PAR.frictional > 0.0:
+        PAR.frictional += PAR.restitution
+        PAR.restitution = 0.0

@@ -11,40 +11,11 @@ import math
 
 from ..arrays import IntArray
 from ..compiled import uncounted
-from ..layout import AX, AY, EXTENT, FRICTION, SPIN, TWIST, VX, VY
+from ..model.scene import Scene
 from ..pairs.rules import law
 from ..rows.equilibrium import bound
 from ..sustained.contacts import CROWD
 from ..sustained.statics import CALM, CALM_CROWD, STANDS
-from .layout import (
-    AFTER_ME,
-    BETA,
-    BUSY,
-    CALM_FOR,
-    DISKS,
-    DT,
-    HITS,
-    ISLAND,
-    JOINTED,
-    LAM,
-    LIFT,
-    OPEN,
-    PULLED,
-    PUSH_A,
-    PUSH_B,
-    PUSHES,
-    ROOT,
-    SPAN_FROM,
-    STILL,
-    TOGETHER,
-    UN_AFTER,
-    UN_BEFORE,
-    UNTIL,
-    UT_AFTER,
-    UT_BEFORE,
-    WORK_OF,
-    Scene,
-)  # fmt: skip
 
 LIKELY = 3  # of MEMBER[STILL]
 WOKEN = -2.0  # CALM_FOR once it is woken after a long stand: what hits it often comes again
@@ -55,15 +26,15 @@ _AGAIN, _LATEST, _LATER = 4, 12, 100  # and until it is asked again, one more fo
 @uncounted
 def whirls(A: Scene, i: int) -> bool:
     """Whether body i turns as it will, whatever touches it: a lone disk without friction, which nothing twists."""
-    return bool(i < A.COUNT[DISKS] and A.SHAPE[i, FRICTION] == 0.0 and A.PULL[i, 2] == 0.0)
+    return bool(i < A.COUNT.disks and A.SHAPE[i].friction == 0.0 and A.PULL[i, 2] == 0.0)
 
 
 @uncounted
 def speed(A: Scene, i: int, s: float) -> float:
     """A bound on the speed of the points of body i in s; of its centre, where its turning moves nothing."""
     BODY = A.BODY
-    vx, vy = BODY[i, VX] + s * BODY[i, AX], BODY[i, VY] + s * BODY[i, AY]
-    return bound(vx, vy, 0.0 if whirls(A, i) else BODY[i, SPIN] + s * BODY[i, TWIST], BODY[i, EXTENT])
+    vx, vy = BODY[i].vx + s * BODY[i].ax, BODY[i].vy + s * BODY[i].ay
+    return bound(vx, vy, 0.0 if whirls(A, i) else BODY[i].spin + s * BODY[i].angular, BODY[i].extent)
 
 
 @uncounted
@@ -75,14 +46,14 @@ def hardly(bodies: int) -> float:
 @uncounted
 def settled(A: Scene, i: int) -> bool:
     """Whether body i has hardly moved for long enough to be asked whether it stands."""
-    return bool(A.RESTING[i, CALM_FOR] >= SURE)
+    return bool(A.RESTING[i].calm_for >= SURE)
 
 
 @uncounted
 def wait(A: Scene, MINE: IntArray, n: int) -> None:
     """The n bodies MINE are asked again much later, unless they stand in between."""
     for q in range(n):
-        A.RESTING[MINE[q], CALM_FOR] = later(n)
+        A.RESTING[MINE[q]].calm_for = later(n)
 
 
 @uncounted
@@ -95,10 +66,10 @@ def later(n: int) -> float:
 def calm(A: Scene, root: int, MINE: IntArray, n: int, among: int, t: float) -> float:
     """The speed relative to |a| dt at which the island of the n bodies MINE, on others, `among` in all, may come to a
     stand at instant t, 0 if it may not; it is asked again much later, unless it stood in between."""
-    if t > 0.0 or A.PAR[PULLED] == 0.0 or A.COUNT[TOGETHER] > 0 or A.RULE.shape[0] > 0 or A.MEMBER[root, HITS] > 0:
+    if t > 0.0 or A.PAR.pulled == 0.0 or A.COUNT.together > 0 or A.RULE.shape[0] > 0 or A.MEMBER[root].hits > 0:
         return 0.0
     for q in range(n):
-        if not settled(A, MINE[q]) or A.MEMBER[MINE[q], BUSY] > 0:
+        if not settled(A, MINE[q]) or A.MEMBER[MINE[q]].busy > 0:
             return 0.0
     wait(A, MINE, n)
     return hardly(among)
@@ -107,46 +78,48 @@ def calm(A: Scene, root: int, MINE: IntArray, n: int, among: int, t: float) -> f
 @uncounted
 def slow(A: Scene, root: int) -> bool:
     """Whether all bodies of an island were as good as at rest at both ends of this step, undisturbed."""
-    MEMBER, dt = A.MEMBER, A.PAR[DT]
-    if MEMBER[root, OPEN] == 0 or MEMBER[root, JOINTED] > 0 or MEMBER[root, HITS] > 0:
+    MEMBER, dt = A.MEMBER, A.PAR.dt
+    if MEMBER[root].open == 0 or MEMBER[root].jointed > 0 or MEMBER[root].hits > 0:
         return False
-    if A.RESTING[root, UNTIL] < math.inf:
+    if A.RESTING[root].until < math.inf:
         return False
-    limit = STANDS * A.PAR[PULLED] * dt
+    limit = STANDS * A.PAR.pulled * dt
     i = root
     while i >= 0:
-        if MEMBER[i, BUSY] > 0:
+        if MEMBER[i].busy > 0:
             return False
         if max(speed(A, i, 0.0), speed(A, i, dt)) > limit:
             return False
-        for c in range(6):
-            if A.RESTING[i, LIFT + c] != 0.0:
-                return False
-        i = MEMBER[i, AFTER_ME]
+        rest = A.RESTING[i]
+        if rest.lift_x != 0.0 or rest.lift_y != 0.0 or rest.lift_angle != 0.0:
+            return False
+        if rest.lift_vx != 0.0 or rest.lift_vy != 0.0 or rest.lift_spin != 0.0:
+            return False
+        i = MEMBER[i].following
     return True
 
 
 @uncounted
 def find_still(A: Scene) -> None:
     """At the end of a step, before its contacts are booked: which islands come to a stand."""
-    if A.PAR[PULLED] == 0.0 or A.COUNT[TOGETHER] > 0 or A.RULE.shape[0] > 0:
+    if A.PAR.pulled == 0.0 or A.COUNT.together > 0 or A.RULE.shape[0] > 0:
         return
     some = False
     for i in range(A.BODY.shape[0] - 1):
-        if A.STATE[i, ISLAND] == i and A.MEMBER[i, STILL] == 0 and slow(A, i):
-            A.MEMBER[i, STILL] = LIKELY
+        if A.STATE[i].island == i and A.MEMBER[i].still == 0 and slow(A, i):
+            A.MEMBER[i].still = LIKELY
             some = True
     if not some:
         return
-    limit = STANDS * A.PAR[PULLED] * A.PAR[DT]
-    for c in range(A.COUNT[PUSHES]):
-        root = A.PUSHED_BY[c, ROOT]
-        if root < 0 or A.MEMBER[root, STILL] != LIKELY:
+    limit = STANDS * A.PAR.pulled * A.PAR.dt
+    for c in range(A.COUNT.pushes):
+        root = A.PUSHED_BY[c].root
+        if root < 0 or A.MEMBER[root].still != LIKELY:
             continue
         R = A.PUSHED[c]
-        slips = max(abs(R[UN_BEFORE]), abs(R[UN_AFTER]))
-        if law(A.SHAPE, A.RULE, A.PUSHED_BY[c, PUSH_A], A.PUSHED_BY[c, PUSH_B])[1] > 0.0:
-            slips = max(slips, max(abs(R[UT_BEFORE]), abs(R[UT_AFTER])))
-        driven = abs(R[WORK_OF]) > limit * (abs(R[LAM]) + abs(R[BETA]))
-        if R[SPAN_FROM] != 0.0 or slips > 4.0 * limit or driven:
-            A.MEMBER[root, STILL] = 0
+        slips = max(abs(R.un_before), abs(R.un_after))
+        if law(A.SHAPE, A.RULE, A.PUSHED_BY[c].a, A.PUSHED_BY[c].b)[1] > 0.0:
+            slips = max(slips, max(abs(R.ut_before), abs(R.ut_after)))
+        driven = abs(R.work) > limit * (abs(R.normal) + abs(R.tangential))
+        if R.start != 0.0 or slips > 4.0 * limit or driven:
+            A.MEMBER[root].still = 0

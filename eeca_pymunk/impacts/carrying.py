@@ -18,45 +18,17 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
-from ..layout import EXTENT, II, IM, OWNER, X, Y
+from ..compiled.records import empty
+from ..model.contacts import ROW
+from ..model.scene import Scene
 from ..pairs.rules import law
 from ..rows.build import place_row
 from ..rows.equilibrium import bound, equilibrium, fastest
-from ..rows.layout import K_N, ROW_COLUMNS
 from ..sustained.memory import find, key_of, remember
 from ..sustained.statics import STANDS
 from .booking import wake
 from .calm import SURE, hardly, later, wait, whirls
 from .islands import members
-from .layout import (
-    AMONG,
-    ANEW,
-    BETA,
-    BODIES,
-    CALM_FOR,
-    CARRIES,
-    DIRECT,
-    DT,
-    ISLAND,
-    LAM,
-    LOADED,
-    PULLED,
-    PUSH_A,
-    PUSH_B,
-    PUSH_CHANGE,
-    PUSH_GAP,
-    PUSH_NX,
-    PUSH_NY,
-    PUSH_X,
-    PUSH_Y,
-    PUSHES,
-    REMEMBERED,
-    ROOT,
-    SPAN,
-    STAMP,
-    STILL,
-    Scene,
-)  # fmt: skip
 from .spans import dismiss, solve
 
 _FACTORS = 4  # to find how a standing island carries what moves, at most: more would cost as much as a solve
@@ -69,29 +41,29 @@ def load(A: Scene, root: int, LOAD: FloatArray) -> None:
     """Add to LOAD (k, 3) the velocities that contacts of other islands give to the bodies of this one, which have
     A.PLACE, over the whole step, if they go on as they are."""
     BODY = A.BODY
-    for c in range(A.COUNT[PUSHES]):
-        r = A.PUSHED_BY[c, ROOT]
+    for c in range(A.COUNT.pushes):
+        r = A.PUSHED_BY[c].root
         if r < 0 or r == root:
             continue
         R = A.PUSHED[c]
         for side in range(2):
-            j = A.LINK[A.PUSHED_BY[c, PUSH_A + side], OWNER]
-            if BODY[j, IM] == 0.0 or A.STATE[j, ISLAND] != root:
+            j = A.LINK[A.PUSHED_BY[c].b if side > 0 else A.PUSHED_BY[c].a].owner
+            if BODY[j].inv_mass == 0.0 or A.STATE[j].island != root:
                 continue
-            q, part = A.PLACE[j], (2.0 * side - 1.0) * A.PAR[DT] / R[SPAN]
-            fx = part * (R[LAM] * R[PUSH_NX] - R[BETA] * R[PUSH_NY])
-            fy = part * (R[LAM] * R[PUSH_NY] + R[BETA] * R[PUSH_NX])
-            LOAD[q, 0] += BODY[j, IM] * fx
-            LOAD[q, 1] += BODY[j, IM] * fy
-            LOAD[q, 2] += BODY[j, II] * ((R[PUSH_X] - BODY[j, X]) * fy - (R[PUSH_Y] - BODY[j, Y]) * fx)
+            q, part = A.PLACE[j], (2.0 * side - 1.0) * A.PAR.dt / R.length
+            fx = part * (R.normal * R.nx - R.tangential * R.ny)
+            fy = part * (R.normal * R.ny + R.tangential * R.nx)
+            LOAD[q, 0] += BODY[j].inv_mass * fx
+            LOAD[q, 1] += BODY[j].inv_mass * fy
+            LOAD[q, 2] += BODY[j].inv_inertia * ((R.px - BODY[j].x) * fy - (R.py - BODY[j].y) * fx)
 
 
 @kernel
 def holds(A: Scene, root: int) -> bool:
     """Whether an island that stands carries what pushes on it now; then its contacts have the forces that do. If not,
     those of its bodies that are held all the same are asked again soon."""
-    BODY, dt = A.BODY, A.PAR[DT]
-    n = A.MEMBER[root, BODIES]
+    BODY, dt = A.BODY, A.PAR.dt
+    n = A.MEMBER[root].bodies
     MINE = np.empty(n, np.int64)
     members(A, root, MINE)
     # What carries it in its turn, and is fixed, is the last body.
@@ -100,40 +72,41 @@ def holds(A: Scene, root: int) -> bool:
     for q in range(n):
         i = MINE[q]
         A.PLACE[i] = q
-        IMS[q], IIS[q], FELT[q] = BODY[i, IM], BODY[i, II], 0.0 if whirls(A, i) else BODY[i, EXTENT]
+        IMS[q], IIS[q], FELT[q] = BODY[i].inv_mass, BODY[i].inv_inertia, 0.0 if whirls(A, i) else BODY[i].extent
+        POSE[q, 0], POSE[q, 1], POSE[q, 2] = BODY[i].x, BODY[i].y, BODY[i].angle
         for c in range(3):
-            POSE[q, c], START[q, c] = BODY[i, X + c], dt * A.PULL[i, c]
+            START[q, c] = dt * A.PULL[i, c]
     load(A, root, START)
     room = 0
-    for c in range(A.COUNT[PUSHES]):
-        room += 1 if A.PUSHED_BY[c, ROOT] == root else 0
+    for c in range(A.COUNT.pushes):
+        room += 1 if A.PUSHED_BY[c].root == root else 0
     P, Q, OF = np.empty(room, np.int64), np.empty(room, np.int64), np.empty(room, np.int64)
-    ROWS, L = np.empty((room, ROW_COLUMNS)), np.empty((room, 2))
-    open_to, m = 0.5 * hardly(A.MEMBER[root, AMONG]) * A.PAR[PULLED] * dt * dt, 0
-    for c in range(A.COUNT[PUSHES]):
+    ROWS, L = empty(room, ROW), np.empty((room, 2))
+    open_to, m = 0.5 * hardly(A.MEMBER[root].among) * A.PAR.pulled * dt * dt, 0
+    for c in range(A.COUNT.pushes):
         R = A.PUSHED[c]
-        if A.PUSHED_BY[c, ROOT] != root or not (R[LAM] > 0.0 or R[PUSH_GAP] <= open_to):
+        if A.PUSHED_BY[c].root != root or not (R.normal > 0.0 or R.gap <= open_to):
             continue
-        a, b = A.PUSHED_BY[c, PUSH_A], A.PUSHED_BY[c, PUSH_B]
-        p, q = A.PLACE[A.LINK[a, OWNER]], A.PLACE[A.LINK[b, OWNER]]
+        a, b = A.PUSHED_BY[c].a, A.PUSHED_BY[c].b
+        p, q = A.PLACE[A.LINK[a].owner], A.PLACE[A.LINK[b].owner]
         e, mu, _, _ = law(A.SHAPE, A.RULE, a, b)
         place_row(
-            P, Q, ROWS, m, p if p >= 0 else n, q if q >= 0 else n, R[PUSH_NX], R[PUSH_NY], R[PUSH_X], R[PUSH_Y], 0.0,
+            P, Q, ROWS, m, p if p >= 0 else n, q if q >= 0 else n, R.nx, R.ny, R.px, R.py, 0.0,
             POSE, IMS, IIS, e, mu, 0.0,
         )  # fmt: skip
-        L[m, 0], L[m, 1], OF[m] = R[LAM], R[BETA], c
+        L[m, 0], L[m, 1], OF[m] = R.normal, R.tangential, c
         m += 1
     dismiss(A, MINE, n)
     found, factors = equilibrium(
-        P, Q, ROWS, L, START, IMS, IIS, POSE, FELT, n, m, STANDS * A.PAR[PULLED] * dt, _FACTORS, False
+        P, Q, ROWS, L, START, IMS, IIS, POSE, FELT, n, m, STANDS * A.PAR.pulled * dt, _FACTORS, False
     )
-    A.COUNT[DIRECT] += factors
+    A.COUNT.direct += factors
     if not found:
         give_way(A, MINE, n, START, FELT)
     else:
         for z in range(m):
             R = A.PUSHED[OF[z]]
-            R[LAM], R[BETA], R[PUSH_CHANGE] = L[z, 0], L[z, 1], L[z, 0] / ROWS[z, K_N]
+            R.normal, R.tangential, R.change = L[z, 0], L[z, 1], L[z, 0] / ROWS[z].k_n
             keep_in_mind(A, OF[z])
     return found
 
@@ -148,23 +121,23 @@ def give_way(A: Scene, MINE: IntArray, n: int, Y: FloatArray, FELT: FloatArray) 
         return
     for q in range(n):
         if bound(Y[q, 0], Y[q, 1], Y[q, 2], FELT[q]) > _PART * most:
-            A.RESTING[MINE[q], CALM_FOR] = later(n)
+            A.RESTING[MINE[q]].calm_for = later(n)
         else:
-            A.RESTING[MINE[q], CALM_FOR] = SURE
+            A.RESTING[MINE[q]].calm_for = SURE
 
 
 @uncounted
 def keep_in_mind(A: Scene, c: int) -> None:
     """Let the memory have the forces of contact number c."""
-    a, b = A.PUSHED_BY[c, PUSH_A], A.PUSHED_BY[c, PUSH_B]
+    a, b = A.PUSHED_BY[c].a, A.PUSHED_BY[c].b
     key = key_of(A.SHAPE.shape[0], a, b)
-    if c > 0 and A.PUSHED_BY[c - 1, PUSH_A] == a and A.PUSHED_BY[c - 1, PUSH_B] == b:
+    if c > 0 and A.PUSHED_BY[c - 1].a == a and A.PUSHED_BY[c - 1].b == b:
         key += 1  # the other end of a face
-    if find(A.KEYS, key) >= 0 or 2 * (A.COUNT[REMEMBERED] + 1) <= A.KEYS.shape[0]:
+    if find(A.KEYS, key) >= 0 or 2 * (A.COUNT.remembered + 1) <= A.KEYS.shape[0]:
         R = A.PUSHED[c]
-        force = R[LAM] / R[SPAN]
+        force = R.normal / R.length
         remember(
-            A.KEYS, A.FORCES, A.COUNT[REMEMBERED:], key, force, R[BETA] / R[SPAN], force, A.PAR[STAMP]
+            A.KEYS, A.FORCES, A.COUNT, key, force, R.tangential / R.length, force, A.PAR.stamp
         )  # fmt: skip
 
 
@@ -173,30 +146,30 @@ def support(A: Scene) -> None:
     """At the start of a step, once what moves has been solved: what carries some of it and cannot stand is solved with
     what rests on it."""
     STATE, MEMBER, BODY = A.STATE, A.MEMBER, A.BODY
-    more, all_moving, asked = A.COUNT[CARRIES] > 0, True, 0
+    more, all_moving, asked = A.COUNT.carries > 0, True, 0
     while more:
-        for c in range(A.COUNT[PUSHES]):
-            root = A.PUSHED_BY[c, ROOT]
-            if root < 0 or not (MEMBER[root, ANEW] == 1 if MEMBER[root, STILL] == 1 else all_moving):
+        for c in range(A.COUNT.pushes):
+            root = A.PUSHED_BY[c].root
+            if root < 0 or not (MEMBER[root].anew == 1 if MEMBER[root].still == 1 else all_moving):
                 continue
             for side in range(2):
-                j = A.LINK[A.PUSHED_BY[c, PUSH_A + side], OWNER]
-                other = STATE[j, ISLAND]
-                if BODY[j, IM] > 0.0 and other != root and other >= 0 and MEMBER[other, STILL] == 1:
-                    MEMBER[other, LOADED] = 1
+                j = A.LINK[A.PUSHED_BY[c].b if side > 0 else A.PUSHED_BY[c].a].owner
+                other = STATE[j].island
+                if BODY[j].inv_mass > 0.0 and other != root and other >= 0 and MEMBER[other].still == 1:
+                    MEMBER[other].loaded = 1
         more, all_moving = False, False
         for i in range(BODY.shape[0] - 1):
-            MEMBER[i, ANEW] = 0
+            MEMBER[i].anew = 0
         for i in range(BODY.shape[0] - 1):
-            if MEMBER[i, LOADED] == 0:
+            if MEMBER[i].loaded == 0:
                 continue
-            MEMBER[i, LOADED] = 0
-            if STATE[i, ISLAND] != i or MEMBER[i, STILL] != 1:
+            MEMBER[i].loaded = 0
+            if STATE[i].island != i or MEMBER[i].still != 1:
                 continue
             more = True
             # What carries each other in turn is one island.
             if asked < _ROUNDS and holds(A, i):
-                MEMBER[i, ANEW] = 1
+                MEMBER[i].anew = 1
             else:
                 solve(A, wake(A, i, 0.0), 0.0)
                 all_moving = True

@@ -10,9 +10,10 @@ from __future__ import annotations
 
 import math
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FloatArray
 from ..compiled import uncounted
-from ..layout import COUNT, FIRST
+from ..compiled.records import Rows
+from ..model.shapes import Link
 from .roots import ADVANCES, STRIDE, ball_point, flat
 
 _FAR = 1.5  # times the time that is left: circles that cannot meet until then need no root
@@ -59,7 +60,7 @@ def circle_circle(
 @uncounted
 def circle_outline(
     x: float, y: float, vx: float, vy: float, ax: float, ay: float, extent: float, tolerance: float,
-    LINK: IntArray, VERTEX: FloatArray, b: int, left: float,
+    LINK: Rows[Link], VERTEX: FloatArray, b: int, left: float,
 ) -> tuple[float, bool]:  # fmt: skip
     """Time until a circle meets the static shape b, and whether that is when it does, or a lower bound.
 
@@ -72,7 +73,7 @@ def circle_outline(
         x, y: centre, length.  vx, vy: velocity.  ax, ay: acceleration.  extent: radius and b's rounding together.
         tolerance, left: as in `circle_circle`.
     """
-    first, count = LINK[b, FIRST], LINK[b, COUNT]
+    first, count = LINK[b].first, LINK[b].vertices
     sides = count if count > 1 else 0
     straight = ax == 0.0 and ay == 0.0
     pull = math.sqrt(ax * ax + ay * ay)

@@ -7,35 +7,10 @@ import math
 from ..arrays import IntArray
 from ..compiled import uncounted
 from ..geometry.gap import gap_at
-from ..layout import ANGLE, EXTENT, GAP, II, IM, OWNER, X, Y
-from ..layout import FIRST_SHAPE as FIRST_OF
-from ..layout import SECOND_SHAPE as SECOND_OF
+from ..model.scene import Scene
 from .booking import book, lift_out
 from .calm import LIKELY, find_still
 from .energy import total, unsteered
-from .layout import (
-    AFTER,
-    DAMPED,
-    DISKS,
-    DT,
-    EVEN,
-    EXTERNAL,
-    FRICTIONAL,
-    GRAVITY_X,
-    GRAVITY_Y,
-    ISLAND,
-    LAST,
-    LEDGER,
-    LEFT_OVER,
-    LOGGED,
-    PUSHES,
-    QUIET,
-    RESTITUTION,
-    ROOT,
-    STILL,
-    STORED,
-    Scene,
-)
 from .still import halt, keep, leave, stand
 from .strike import move_to
 
@@ -44,55 +19,57 @@ from .strike import move_to
 def close(A: Scene, WALK: IntArray) -> None:
     """Bring all paths to the end of the step; book islands, the work of forces, the energy; gaps at the start."""
     BODY, PAR, LOG, BEGAN, COUNT = A.BODY, A.PAR, A.LOG, A.BEGAN, A.COUNT
-    end = PAR[DT]
-    even = COUNT[EVEN] > 0  # no islands
-    COUNT[QUIET] = COUNT[QUIET] + 1 if even else 0
+    end = PAR.dt
+    even = COUNT.even > 0  # no islands
+    COUNT.quiet = COUNT.quiet + 1 if even else 0
     if not even:
         find_still(A)
-    for c in range(COUNT[PUSHES]):
-        root = A.PUSHED_BY[c, ROOT]
-        if root >= 0 and A.MEMBER[root, STILL] == 1:
+    for c in range(COUNT.pushes):
+        root = A.PUSHED_BY[c].root
+        if root >= 0 and A.MEMBER[root].still == 1:
             stand(A, c)
         elif root >= 0:
             book(A, c, end)
-            if A.MEMBER[root, STILL] == LIKELY:
+            if A.MEMBER[root].still == LIKELY:
                 keep(A, c, root)
-    gx, gy = PAR[GRAVITY_X], PAR[GRAVITY_Y]
+    gx, gy = PAR.gravity_x, PAR.gravity_y
     for i in range(BODY.shape[0] - 1):
         move_to(BODY, i, end)
-        if not even and A.STATE[i, ISLAND] == i:
+        if not even and A.STATE[i].island == i:
             lift_out(A, i, end)
-            if A.MEMBER[i, STILL] == LIKELY:
+            if A.MEMBER[i].still == LIKELY:
                 halt(A, i)
     for i in range(BODY.shape[0] - 1):
         fx, fy, twist = A.PULL[i, 0] - gx, A.PULL[i, 1] - gy, A.PULL[i, 2]
-        if BODY[i, IM] > 0.0 and (fx != 0.0 or fy != 0.0 or twist != 0.0):
-            work = (fx * (BODY[i, X] - BEGAN[i, 0]) + fy * (BODY[i, Y] - BEGAN[i, 1])) / BODY[i, IM]
-            if BODY[i, II] > 0.0:
-                work += twist * (BODY[i, ANGLE] - BEGAN[i, 2]) / BODY[i, II]
-            PAR[LEDGER + EXTERNAL] += work
+        if BODY[i].inv_mass > 0.0 and (fx != 0.0 or fy != 0.0 or twist != 0.0):
+            work = (fx * (BODY[i].x - BEGAN[i, 0]) + fy * (BODY[i].y - BEGAN[i, 1])) / BODY[i].inv_mass
+            if BODY[i].inv_inertia > 0.0:
+                work += twist * (BODY[i].angle - BEGAN[i, 2]) / BODY[i].inv_inertia
+            PAR.external += work
     # What friction gives back counts against restitution, and the other way round.
-    for one, other in ((RESTITUTION, FRICTIONAL), (FRICTIONAL, RESTITUTION)):
-        if PAR[LEDGER + one] < 0.0 and PAR[LEDGER + other] > 0.0:
-            PAR[LEDGER + other] += PAR[LEDGER + one]
-            PAR[LEDGER + one] = 0.0
-    PAR[AFTER] = total(A) + PAR[STORED]
-    left = PAR[LEFT_OVER]
+    if PAR.restitution < 0.0 and PAR.frictional > 0.0:
+        PAR.frictional += PAR.restitution
+        PAR.restitution = 0.0
+    if PAR.frictional < 0.0 and PAR.restitution > 0.0:
+        PAR.restitution += PAR.frictional
+        PAR.frictional = 0.0
+    PAR.after = total(A) + PAR.stored
+    left = PAR.left_over
     if left != 1.0:
         lost = unsteered(A, WALK) * (1.0 - left * left)
-        PAR[LEDGER + DAMPED] += lost
-        PAR[AFTER] -= lost
-    PAR[LAST] = end
-    for n in range(COUNT[LOGGED]):
-        if not math.isnan(LOG[n, GAP]):
+        PAR.damped += lost
+        PAR.after -= lost
+    PAR.last = end
+    for n in range(COUNT.logged):
+        if not math.isnan(LOG[n].gap):
             continue
-        a, b = int(LOG[n, FIRST_OF]), int(LOG[n, SECOND_OF])
-        if max(a, b) < COUNT[DISKS]:
+        a, b = int(LOG[n].first), int(LOG[n].second)
+        if max(a, b) < COUNT.disks:
             dx, dy = BEGAN[a, 0] - BEGAN[b, 0], BEGAN[a, 1] - BEGAN[b, 1]
-            LOG[n, GAP] = math.sqrt(dx * dx + dy * dy) - BODY[min(a, b), EXTENT] - BODY[max(a, b), EXTENT]
+            LOG[n].gap = math.sqrt(dx * dx + dy * dy) - BODY[min(a, b)].extent - BODY[max(a, b)].extent
             continue
-        i, j = A.LINK[a, OWNER], A.LINK[b, OWNER]
-        LOG[n, GAP] = gap_at(
+        i, j = A.LINK[a].owner, A.LINK[b].owner
+        LOG[n].gap = gap_at(
             A.SHAPE, A.LINK, A.VERTEX, A.WORK, a, BEGAN[i, 0], BEGAN[i, 1], BEGAN[i, 2],
             b, BEGAN[j, 0], BEGAN[j, 1], BEGAN[j, 2],
         )[0]  # fmt: skip

@@ -9,37 +9,12 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..compiled import kernel, uncounted
-from ..layout import IM, OWNER, SPIN, VX, VY
+from ..model.scene import Scene
+from ..model.step import DONE, JOINTS_DUE
 from ..rows.blocks import CONVERGED, D_NORMAL, D_TANGENTIAL, OUT_SIZE, SCALE_LOCK, solve_block
-from ..rows.layout import K_N, NX, NY
 from ..sustained.ledger import carried
 from .block import Block, gather, lay_out, owing
 from .islands import members, unite
-from .layout import (
-    BLOCKS,
-    DONE,
-    EVENTS,
-    EXTERNAL,
-    FRICTIONAL,
-    HITS,
-    IMPACTS,
-    ISLAND,
-    JOINTED,
-    JOINTS_DUE,
-    KINKS,
-    LEDGER,
-    LOCK,
-    LOGGED,
-    LOST,
-    PENDING,
-    RESTITUTION,
-    TIED,
-    UNMET,
-    Scene,
-)  # fmt: skip
-from .layout import (
-    BODIES as SIZE_OF,
-)
 from .settle import spread
 from .spans import dismiss, solve
 from .strike import note
@@ -51,27 +26,27 @@ def finish(A: Scene, block: Block, n: int, m: int, L: FloatArray, OUT: FloatArra
     BODY, COUNT = A.BODY, A.COUNT
     V, ROWS, k = block.V, block.ROWS, A.SHAPE.shape[0]
     if status != CONVERGED:
-        COUNT[UNMET] += 1
-    if abs(OUT[SCALE_LOCK] - 1.0) > abs(A.PAR[LOCK] - 1.0):
-        A.PAR[LOCK] = OUT[SCALE_LOCK]
-    A.PAR[LEDGER + RESTITUTION] += OUT[D_NORMAL]
-    A.PAR[LEDGER + FRICTIONAL] += OUT[D_TANGENTIAL]
-    A.PAR[LEDGER + EXTERNAL] += carried(block.A, block.B, ROWS, L, V, V, block.IM, block.II, len(ROWS))
+        COUNT.unmet += 1
+    if abs(OUT[SCALE_LOCK] - 1.0) > abs(A.PAR.lock - 1.0):
+        A.PAR.lock = OUT[SCALE_LOCK]
+    A.PAR.restitution += OUT[D_NORMAL]
+    A.PAR.frictional += OUT[D_TANGENTIAL]
+    A.PAR.external += carried(block.A, block.B, ROWS, L, V, V, block.IM, block.II, len(ROWS))
     for q in range(n):
         i = A.BLOCK[q]
-        BODY[i, VX], BODY[i, VY], BODY[i, SPIN] = V[q, 0], V[q, 1], V[q, 2]
-        A.STATE[i, KINKS] += 1
-        A.STATE[i, EVENTS] += 1
+        BODY[i].vx, BODY[i].vy, BODY[i].spin = V[q, 0], V[q, 1], V[q, 2]
+        A.STATE[i].version += 1
+        A.STATE[i].events += 1
     dismiss(A, A.BLOCK, n)
     for z in range(len(ROWS)):
-        if L[z, 0] > 0.0 and COUNT[LOGGED] < A.LOG.shape[0]:
+        if L[z, 0] > 0.0 and COUNT.logged < A.LOG.shape[0]:
             note(
-                A.LOG, COUNT[LOGGED], block.OF[z] // k, block.OF[z] % k, t, L[z, 0], L[z, 1], ROWS[z, NX], ROWS[z, NY],
-                block.POINTS[z, 0], block.POINTS[z, 1], L[z, 0] / ROWS[z, K_N], math.nan,
+                A.LOG, COUNT.logged, block.OF[z] // k, block.OF[z] % k, t, L[z, 0], L[z, 1], ROWS[z].nx, ROWS[z].ny,
+                block.POINTS[z, 0], block.POINTS[z, 1], L[z, 0] / ROWS[z].k_n, math.nan,
             )  # fmt: skip
-            COUNT[LOGGED] += 1
-    COUNT[IMPACTS] += 1
-    COUNT[BLOCKS] += 1 if m > 1 else 0
+            COUNT.logged += 1
+    COUNT.impacts += 1
+    COUNT.blocks += 1 if m > 1 else 0
 
 
 @uncounted
@@ -79,8 +54,8 @@ def holds_joints(A: Scene, n: int) -> bool:
     """Whether any of the n bodies in A.BLOCK is held by joints, or in an island with such."""
     for q in range(n):
         i = A.BLOCK[q]
-        root = A.STATE[i, ISLAND]
-        if A.MEMBER[i, TIED] >= 0 or (root >= 0 and A.MEMBER[root, JOINTED] > 0):
+        root = A.STATE[i].island
+        if A.MEMBER[i].tied >= 0 or (root >= 0 and A.MEMBER[root].jointed > 0):
             return True
     return False
 
@@ -119,34 +94,34 @@ def rejoin(A: Scene, a: int, b: int, t: float, n: int, rest: bool, lost: float) 
     STATE, BODIES = A.STATE, A.BLOCK
     root = -1
     for q in range(n):
-        if STATE[BODIES[q], ISLAND] >= 0:
+        if STATE[BODIES[q]].island >= 0:
             root = unite(A, BODIES[q], BODIES[q] if root < 0 else root)
     if root < 0 and not rest:
         return DONE, n
     QUEUE = np.empty(A.BODY.shape[0], np.int64)
     queued = 0
     for s in (a, b):
-        i = A.LINK[s, OWNER]
-        if A.BODY[i, IM] > 0.0:
-            if STATE[i, ISLAND] < 0:
+        i = A.LINK[s].owner
+        if A.BODY[i].inv_mass > 0.0:
+            if STATE[i].island < 0:
                 QUEUE[queued] = i
                 queued += 1
             root = unite(A, i, i if root < 0 else root)
     spread(A, QUEUE, queued, t)
-    root = STATE[root, ISLAND]
-    A.RESTING[root, LOST] += lost
-    A.MEMBER[root, HITS] += 1
+    root = STATE[root].island
+    A.RESTING[root].lost += lost
+    A.MEMBER[root].hits += 1
     # The bodies of the block that are in no island are forecast too.
     free = 0
     for q in range(n):
-        if STATE[BODIES[q], ISLAND] != root:
+        if STATE[BODIES[q]].island != root:
             BODIES[free] = BODIES[q]
             free += 1
-    MINE = np.empty(A.MEMBER[root, SIZE_OF], np.int64)
+    MINE = np.empty(A.MEMBER[root].bodies, np.int64)
     more = members(A, root, MINE)
     for q in range(more):
         BODIES[free + q] = MINE[q]
     status = solve(A, root, t)
     if status != DONE:
-        A.COUNT[PENDING] = root
+        A.COUNT.pending = root
     return status, free + more

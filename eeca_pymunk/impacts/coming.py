@@ -6,38 +6,15 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
+from ..compiled.records import Rows
 from ..geometry.flight import norm
-from ..layout import COUNT as COUNT_OF
-from ..layout import (
-    EXTENT,
-    IM,
-    OWNER,
-    ROUNDING,
-    SIZE,
-    SPIN,
-    VX,
-    VY,
-)
-from ..pairs.layout import NUMBER, START
+from ..model.contacts import Row
+from ..model.scene import Scene
 from ..pairs.lists import far_apart
 from ..pairs.rules import barred, law
 from ..rows.build import tangent_rate
-from ..rows.layout import FRICTION, K_T, UN, UT
 from ..sustained.contacts import CROWD
 from .islands import TOUCH, approach, carrier, remembered, rests
-from .layout import (
-    BUSY,
-    DT,
-    FIRST_SHAPE,
-    ISLAND,
-    PULLED,
-    SHAPES,
-    SOLVES,
-    SPEED,
-    STAMP,
-    TOGETHER,
-    Scene,
-)  # fmt: skip
 
 _TURN = 0.1  # rad
 PARTS = 64.0  # of a step, that a span is at least
@@ -50,8 +27,8 @@ _RATTLES = 1e-3  # relative to that friction, below which slip is no slide where
 @uncounted
 def way_of(A: Scene, i: int, h: float) -> float:
     """How far points of body i may come in h, with some room, where all contacts act together."""
-    pulled = 0.5 * A.PAR[PULLED] * h if A.BODY[i, IM] > 0.0 else 0.0
-    return 1.1 * (A.RESTING[i, SPEED] + pulled) * h
+    pulled = 0.5 * A.PAR.pulled * h if A.BODY[i].inv_mass > 0.0 else 0.0
+    return 1.1 * (A.RESTING[i].speed + pulled) * h
 
 
 @kernel
@@ -62,35 +39,35 @@ def pairs_of(A: Scene, root: int, t: float, lossy: bool, LOCAL: IntArray, MINE: 
     found = np.empty((4 * n + 8, 2), np.int64)
     p = 0
     BODY, LINK, STATE = A.BODY, A.LINK, A.STATE
-    h = A.PAR[DT] - t
-    together = A.COUNT[TOGETHER] > 0
+    h = A.PAR.dt - t
+    together = A.COUNT.together > 0
     for q in range(n):
         i = MINE[q]
-        own = norm(BODY[i, VX], BODY[i, VY]) + abs(BODY[i, SPIN]) * BODY[i, EXTENT]
-        for s in range(STATE[i, FIRST_SHAPE], STATE[i, FIRST_SHAPE] + STATE[i, SHAPES]):
-            for w in range(A.LIST[s, START], A.LIST[s, START] + A.LIST[s, NUMBER]):
+        own = norm(BODY[i].vx, BODY[i].vy) + abs(BODY[i].spin) * BODY[i].extent
+        for s in range(STATE[i].first_shape, STATE[i].first_shape + STATE[i].shapes):
+            for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
                 o = int(A.POOL[w])
-                j = LINK[o, OWNER]
-                if j < i if STATE[j, ISLAND] == root else not carrier(A, j):
+                j = LINK[o].owner
+                if j < i if STATE[j].island == root else not carrier(A, j):
                     continue
                 if barred(A.RULE, s, o):
                     continue
-                small = min(A.SHAPE[s, SIZE], A.SHAPE[o, SIZE])
-                busy = A.MEMBER[i, BUSY] > 0 or A.MEMBER[j, BUSY] > 0
-                speed = own + norm(BODY[j, VX], BODY[j, VY]) + abs(BODY[j, SPIN]) * BODY[j, EXTENT]
-                reach = 1.1 * (speed * h + A.PAR[PULLED] * h * h) + TOUCH * small
+                small = min(A.SHAPE[s].extent, A.SHAPE[o].extent)
+                busy = A.MEMBER[i].busy > 0 or A.MEMBER[j].busy > 0
+                speed = own + norm(BODY[j].vx, BODY[j].vy) + abs(BODY[j].spin) * BODY[j].extent
+                reach = 1.1 * (speed * h + A.PAR.pulled * h * h) + TOUCH * small
                 if together:
                     reach = way_of(A, i, h) + way_of(A, j, h) + TOUCH * small
                 if o < A.LIST.shape[0] and far_apart(BODY, A.SHAPE, LINK, s, o, t, reach):
                     continue
                 force, load = 0.0, 0.0
                 if lossy and not together:
-                    force, load = remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], s, o, A.PAR[STAMP] - 1.0)
+                    force, load = remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], s, o, A.PAR.stamp - 1.0)
                 # What a crowd has carried goes on being carried, as far as it may come: hits on it spread by its spans.
                 if n < CROWD or force <= 0.0:
                     g, u, closing, mass = approach(A.BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, A.PULL, s, o, t)
                     if not busy and not together:
-                        reach = 1.1 * (max(-u, 0.0) * h + A.PAR[PULLED] * h * h) + TOUCH * small
+                        reach = 1.1 * (max(-u, 0.0) * h + A.PAR.pulled * h * h) + TOUCH * small
                     if g > reach:
                         continue
                     e = law(A.SHAPE, A.RULE, s, o)[0]
@@ -117,13 +94,13 @@ def hurried(A: Scene) -> bool:
     """Whether spans are to last to the end of the step: where all contacts act together, and once the step has had
     about as many as there are bodies."""
     bodies = A.BODY.shape[0]
-    return A.COUNT[TOGETHER] > 0 or A.COUNT[SOLVES] >= max(PARTS - 2.0 * bodies, bodies)
+    return A.COUNT.together > 0 or A.COUNT.solves >= max(PARTS - 2.0 * bodies, bodies)
 
 
 @uncounted
 def before_end(A: Scene, t: float) -> bool:
     """Whether instant t is before the end of the step, by more than round-off."""
-    return bool(t < A.PAR[DT] * (1.0 - 1e-12))
+    return bool(t < A.PAR.dt * (1.0 - 1e-12))
 
 
 @uncounted
@@ -139,27 +116,27 @@ def span_of(A: Scene, found: IntArray, t: float) -> float:
     islands of few contacts, as every span costs a solve. Normals turn with shapes that are not round, and as round
     ones go round one another."""
     BODY, LINK = A.BODY, A.LINK
-    h = A.PAR[DT] - t
+    h = A.PAR.dt - t
     if found.shape[0] > _FEW or hurried(A):
         return h
     rate = 0.0
     for c in range(found.shape[0]):
         a, b = found[c, 0], found[c, 1]
-        i, j = LINK[a, OWNER], LINK[b, OWNER]
+        i, j = LINK[a].owner, LINK[b].owner
         for s in (a, b):
-            if LINK[s, COUNT_OF] > 1:
-                rate = max(rate, abs(BODY[LINK[s, OWNER], SPIN]))
-        if LINK[a, COUNT_OF] == 1 and LINK[b, COUNT_OF] == 1:
-            speed = norm(BODY[j, VX] - BODY[i, VX], BODY[j, VY] - BODY[i, VY])
-            rate = max(rate, speed / max(A.SHAPE[a, ROUNDING] + A.SHAPE[b, ROUNDING], 1e-300))
+            if LINK[s].vertices > 1:
+                rate = max(rate, abs(BODY[LINK[s].owner].spin))
+        if LINK[a].vertices == 1 and LINK[b].vertices == 1:
+            speed = norm(BODY[j].vx - BODY[i].vx, BODY[j].vy - BODY[i].vy)
+            rate = max(rate, speed / max(A.SHAPE[a].rounding + A.SHAPE[b].rounding, 1e-300))
     if rate * h <= _TURN:
         return h
-    return min(max(_TURN / rate, A.PAR[DT] / PARTS), h)
+    return min(max(_TURN / rate, A.PAR.dt / PARTS), h)
 
 
 @kernel
 def stick_time(
-    P: IntArray, Q: IntArray, ROWS: FloatArray, L: FloatArray, FREE: FloatArray, VN: FloatArray, m: int, h: float
+    P: IntArray, Q: IntArray, ROWS: Rows[Row], L: FloatArray, FREE: FloatArray, VN: FloatArray, m: int, h: float
 ) -> float:
     """When, within a span h of few contacts, those that slip come to stick; h if none does.
 
@@ -172,21 +149,21 @@ def stick_time(
     limit, beta, slip, others, rattle = 0.0, 0.0, 0.0, 0.0, 0.0
     for z in range(m):
         if L[z, 0] > 0.0:
-            rattle = max(rattle, abs(ROWS[z, UN]))
+            rattle = max(rattle, abs(ROWS[z].un))
     for z in range(m):
-        most = ROWS[z, FRICTION] * L[z, 0]
-        before = abs(ROWS[z, UT])
+        most = ROWS[z].friction * L[z, 0]
+        before = abs(ROWS[z].ut)
         # What sticks all along has no slip but round-off before, or rattles.
-        change = most / ROWS[z, K_T]
+        change = most / ROWS[z].k_t
         if most == 0.0 or before <= _STICKS * change or before < rattle <= _RATTLES * change:
             continue
         if abs(tangent_rate(P, Q, ROWS, VN, z)) > _STICKS * before:
             continue
-        sign = 1.0 if ROWS[z, UT] > 0.0 else -1.0
+        sign = 1.0 if ROWS[z].ut > 0.0 else -1.0
         limit += most
         beta -= sign * L[z, 1]
         if before > slip:
-            slip, others = before, sign * (tangent_rate(P, Q, ROWS, FREE, z) - ROWS[z, UT])
+            slip, others = before, sign * (tangent_rate(P, Q, ROWS, FREE, z) - ROWS[z].ut)
     if beta <= _STICKS * limit or beta >= (1.0 - _STICKS) * limit:
         return h
     rate = (slip + others) * limit / beta - others

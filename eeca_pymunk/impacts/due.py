@@ -5,21 +5,19 @@ from __future__ import annotations
 import math
 
 from ..compiled import fetch, merged, uncounted
-from ..layout import AX, DUE, X
-from ..pairs.layout import AT_X, START
+from ..model.scene import Scene
 from .forecast import predict
-from .layout import DT, FORECASTS, HEAP, ISLAND, OTHER, OWN, STILL, UNTIL, Scene
 from .lone import holds, predict_disk
 
 
 @uncounted
 def forecast(A: Scene, disks: int, moving: int, i: int, t: float, end: float, several: bool) -> None:
     """The next event of body i, seen from instant t of the loop; see `predict` for `several`."""
-    A.COUNT[FORECASTS] += 1
-    if i < disks and A.STATE[i, ISLAND] < 0:
+    A.COUNT.forecasts += 1
+    if i < disks and A.STATE[i].island < 0:
         predict_disk(A, disks, i, t, end, several)
         return
-    until = A.RESTING[i, UNTIL] if A.STATE[i, ISLAND] == i else math.inf
+    until = A.RESTING[i].until if A.STATE[i].island == i else math.inf
     predict(
         A.BODY, A.STATE, A.SHAPE, A.LINK, A.VERTEX, A.MARK, A.LIST, A.POOL, A.FLAG, A.RULE, A.HEAP_TIME, A.HEAP_BODY,
         A.WORK, A.PLACE, A.COUNT, disks, moving, i, t, end, until,
@@ -41,10 +39,10 @@ def forecast_all(A: Scene, disks: int, n: int, t: float, end: float) -> None:
 @uncounted
 def forecast_due(A: Scene, disks: int) -> None:
     """The next events, at the start of a step, of all bodies whose last forecast is no good."""
-    n, dt = 0, A.PAR[DT]
+    n, dt = 0, A.PAR.dt
     for i in range(A.BODY.shape[0] - 1):
-        alone = A.STATE[i, ISLAND] < 0
-        if A.BODY[i, DUE] < dt or not (alone or A.MEMBER[i, STILL] == 1):
+        alone = A.STATE[i].island < 0
+        if A.BODY[i].due < dt or not (alone or A.MEMBER[i].still == 1):
             if not (alone and i < disks and holds(A, disks, i, dt)):
                 A.BLOCK[n] = i
                 n += 1
@@ -54,9 +52,9 @@ def forecast_due(A: Scene, disks: int) -> None:
 @merged
 def fetch_body(A: Scene, i: int) -> None:
     """Have what an event of body i is about brought."""
-    fetch(A.BODY, i, X)
-    fetch(A.BODY, i, AX)
-    fetch(A.STATE, i, OWN)
+    fetch(A.BODY, i, 0)
+    fetch(A.BODY, i, 8)
+    fetch(A.STATE, i, 0)
 
 
 @merged
@@ -64,21 +62,21 @@ def look_ahead(A: Scene, disks: int, now: int) -> None:
     """Have the memory bring what the events after that of body `now` are about: numbers of later ones first, as they
     say where to find the rest."""
     LIST = A.LIST
-    n = min(A.COUNT[HEAP], 3)
+    n = min(A.COUNT.heap, 3)
     for k in range(1, n):
         i = A.HEAP_BODY[k]
         fetch_body(A, i)
         if i < disks:
-            fetch(LIST, i, START)
+            fetch(LIST, i, 0)
     if n > 0:
         i = A.HEAP_BODY[0]
         if i < disks:
-            fetch(A.POOL, LIST[i, START], 0)
-            fetch(A.MARK, i, AT_X)
-            o = A.STATE[i, OTHER]
+            fetch(A.POOL, LIST[i].start, 0)
+            fetch(A.MARK, i, 0)
+            o = A.STATE[i].other
             if 0 <= o < disks:
                 fetch_body(A, o)
-                fetch(LIST, o, START)
-    o = A.STATE[now, OTHER]
+                fetch(LIST, o, 0)
+    o = A.STATE[now].other
     if 0 <= o < disks:
-        fetch(A.POOL, LIST[o, START], 0)
+        fetch(A.POOL, LIST[o].start, 0)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from ..arrays import IntArray
 from ..compiled import uncounted
-from ..layout import BODY_ROW, IM, SPECIAL, STEERED, X, Y
-from .layout import GRAVITY_X, GRAVITY_Y, Scene
+from ..layout import BODY_ROW, SPECIAL, STEERED
+from ..model.scene import Scene
 from .strike import kinetic
 
 
@@ -13,10 +13,10 @@ from .strike import kinetic
 def total(A: Scene) -> float:
     """Kinetic energy of all bodies, and potential energy -m g.x in the uniform gravity; what impulses do not move has
     none."""
-    BODY, gx, gy, whole = A.BODY, A.PAR[GRAVITY_X], A.PAR[GRAVITY_Y], 0.0
+    BODY, gx, gy, whole = A.BODY, A.PAR.gravity_x, A.PAR.gravity_y, 0.0
     for i in range(BODY.shape[0] - 1):
-        if BODY[i, IM] != 0.0:
-            whole += kinetic(BODY, i) - (gx * BODY[i, X] + gy * BODY[i, Y]) / BODY[i, IM]
+        if BODY[i].inv_mass != 0.0:
+            whole += kinetic(BODY, i) - (gx * BODY[i].x + gy * BODY[i].y) / BODY[i].inv_mass
     return whole
 
 

@@ -11,39 +11,14 @@ import math
 
 from ..arrays import FlagArray, FloatArray, IntArray, PoolArray
 from ..compiled import merged, uncounted
+from ..compiled.records import Rows
 from ..geometry.flight import norm
-from ..layout import (
-    AX,
-    AY,
-    CENTRE_X,
-    CENTRE_Y,
-    DUE,
-    OWNER,
-    SINCE,
-    SPIN,
-    TWIST,
-    VX,
-    VY,
-    X,
-    Y,
-)  # fmt: skip
-from ..pairs.layout import AT_X, AT_Y, LATER, MARGIN, NUMBER, START
+from ..model.bodies import CHECK, LEAVE, NOTHING, RENEW, Body, Next
+from ..model.shapes import Link, List, Mark, Shape
+from ..model.step import Count
 from ..pairs.lists import centre
 from ..pairs.rules import barred
 from .heap import push
-from .layout import (
-    CHECK,
-    FIRST_SHAPE,
-    HEAP,
-    KINKS,
-    KNOWN,
-    LEAVE,
-    NOTHING,
-    OTHER,
-    OWN,
-    RENEW,
-    SHAPES,
-)  # fmt: skip
 from .times import meet
 
 AHEAD = 0.4  # of the margin, that the new circle of a shape that leaves its own is ahead on its way
@@ -52,18 +27,18 @@ _INSIDE = 0.1  # of the margin that is left, above which a shape has not left it
 
 @uncounted
 def leaves(
-    BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, MARK: FloatArray, disks: int, i: int, s: int, now: float
+    BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], MARK: Rows[Mark], disks: int, i: int, s: int, now: float
 ) -> float:
     """Instant before which the centre of shape s of body i stays within its margin circle; exact for straight paths."""
-    m = MARK[s, MARGIN]
+    m = MARK[s].margin
     if m == math.inf:
         return math.inf
-    h = now - BODY[i, SINCE]
-    arm = 0.0 if s < disks else norm(SHAPE[s, CENTRE_X], SHAPE[s, CENTRE_Y])
-    ax, ay = BODY[i, AX], BODY[i, AY]
+    h = now - BODY[i].since
+    arm = 0.0 if s < disks else norm(SHAPE[s].centre_x, SHAPE[s].centre_y)
+    ax, ay = BODY[i].ax, BODY[i].ay
     if ax == 0.0 and ay == 0.0 and arm == 0.0:
-        vx, vy = BODY[i, VX], BODY[i, VY]
-        dx, dy = BODY[i, X] + vx * h - MARK[s, AT_X], BODY[i, Y] + vy * h - MARK[s, AT_Y]
+        vx, vy = BODY[i].vx, BODY[i].vy
+        dx, dy = BODY[i].x + vx * h - MARK[s].x, BODY[i].y + vy * h - MARK[s].y
         squared = vx * vx + vy * vy
         b = dx * vx + dy * vy
         c = m * m - dx * dx - dy * dy
@@ -76,28 +51,28 @@ def leaves(
         return float(now + ((root - b) / squared if b <= 0.0 else c / (root + b)))
     # The length of the way bounds the distance: u s + g s^2 / 2 until the room is used up.
     x, y = centre(BODY, SHAPE, LINK, s, now)
-    room = m - norm(x - MARK[s, AT_X], y - MARK[s, AT_Y])
+    room = m - norm(x - MARK[s].x, y - MARK[s].y)
     if room <= 0.0:
         return now
-    u = norm(BODY[i, VX] + ax * h, BODY[i, VY] + ay * h) + abs(BODY[i, SPIN] + BODY[i, TWIST] * h) * arm
-    g = norm(ax, ay) + abs(BODY[i, TWIST]) * arm
+    u = norm(BODY[i].vx + ax * h, BODY[i].vy + ay * h) + abs(BODY[i].spin + BODY[i].angular * h) * arm
+    g = norm(ax, ay) + abs(BODY[i].angular) * arm
     if u + g == 0.0:
         return math.inf
     return float(now + 2.0 * room / (u + math.sqrt(u * u + 2.0 * g * room)))
 
 
 @uncounted
-def has_left(BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, MARK: FloatArray, s: int, now: float) -> bool:
+def has_left(BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], MARK: Rows[Mark], s: int, now: float) -> bool:
     """Whether shape s is as good as out of its margin circle."""
     x, y = centre(BODY, SHAPE, LINK, s, now)
-    return bool(norm(x - MARK[s, AT_X], y - MARK[s, AT_Y]) > (1.0 - _INSIDE) * MARK[s, MARGIN])
+    return bool(norm(x - MARK[s].x, y - MARK[s].y) > (1.0 - _INSIDE) * MARK[s].margin)
 
 
 @merged
 def predict(
-    BODY: FloatArray, STATE: IntArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, MARK: FloatArray,
-    LIST: IntArray, POOL: PoolArray, FLAG: FlagArray, RULE: FloatArray, TIME: FloatArray, OF: IntArray,
-    WORK: FloatArray, PLACE: IntArray, COUNT: IntArray, disks: int, moving: int, i: int, now: float, end: float,
+    BODY: Rows[Body], STATE: Rows[Next], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, MARK: Rows[Mark],
+    LIST: Rows[List], POOL: PoolArray, FLAG: FlagArray, RULE: FloatArray, TIME: FloatArray, OF: IntArray,
+    WORK: FloatArray, PLACE: IntArray, COUNT: Count, disks: int, moving: int, i: int, now: float, end: float,
     until: float,
 ) -> None:  # fmt: skip
     """Forecast body i from its present path, at an instant `now` of the loop, and put what is due in this step on the
@@ -108,17 +83,17 @@ def predict(
         until: instant at which a span of the body's island ends, infinite if it has none of its own.
     """
     best, own, other = math.inf, -1, NOTHING
-    first = STATE[i, FIRST_SHAPE]
-    for s in range(first, first + STATE[i, SHAPES]):
+    first = STATE[i].first_shape
+    for s in range(first, first + STATE[i].shapes):
         t = leaves(BODY, SHAPE, LINK, MARK, disks, i, s, now)
         if t < best:
             best, own, other = t, s, LEAVE
-        start = LIST[s, START]
-        for q in range(start, start + LIST[s, NUMBER]):
+        start = LIST[s].start
+        for q in range(start, start + LIST[s].number):
             if FLAG[q] != 0:
                 continue
             o = int(POOL[q])
-            if PLACE[LINK[o, OWNER]] >= 0 and LINK[o, OWNER] < i:
+            if PLACE[LINK[o].owner] >= 0 and LINK[o].owner < i:
                 continue
             if RULE.shape[0] > 0 and barred(RULE, s, o):
                 continue
@@ -128,11 +103,11 @@ def predict(
     if until < best:
         best, own, other = until, -1, RENEW
     best = max(best, now)
-    BODY[i, DUE] = best
-    STATE[i, OWN], STATE[i, OTHER] = own, other
+    BODY[i].due = best
+    STATE[i].own, STATE[i].other = own, other
     if other >= 0:
-        STATE[i, KNOWN] = STATE[LINK[other, 0], KINKS]
+        STATE[i].known = STATE[LINK[other].owner].version
     if i < disks:
-        LIST[i, LATER] = CHECK
+        LIST[i].later = CHECK
     if best < end:
-        COUNT[HEAP] = push(TIME, OF, COUNT[HEAP], best, i)
+        COUNT.heap = push(TIME, OF, COUNT.heap, best, i)

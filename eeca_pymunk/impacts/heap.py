@@ -5,7 +5,8 @@ from __future__ import annotations
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
-from ..layout import DUE
+from ..compiled.records import Rows
+from ..model.bodies import Body
 
 
 @uncounted
@@ -46,14 +47,14 @@ def pop(TIME: FloatArray, OF: IntArray, n: int) -> int:
 
 
 @uncounted
-def sweep_out(TIME: FloatArray, OF: IntArray, n: int, BODY: FloatArray) -> int:
+def sweep_out(TIME: FloatArray, OF: IntArray, n: int, BODY: Rows[Body]) -> int:
     """Drop entries that are not valid any more, and all but one of those that are alike; how many there are then."""
     size, first = n, n
     while n > 0:
         time, body = TIME[0], OF[0]
         n = pop(TIME, OF, n)
         alike = first < size and time == TIME[first] and body == OF[first]
-        if time == BODY[body, DUE] and not alike:
+        if time == BODY[body].due and not alike:
             first -= 1
             TIME[first], OF[first] = time, body
     # The latest stands first: in the order of time they are a heap.

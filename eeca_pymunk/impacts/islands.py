@@ -4,45 +4,14 @@ from __future__ import annotations
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
+from ..compiled.records import Rows
 from ..geometry.gap import gap_at
-from ..layout import (
-    ANGLE,
-    ELASTICITY,
-    II,
-    IM,
-    OWNER,
-    SINCE,
-    SIZE,
-    SPIN,
-    VX,
-    VY,
-    X,
-    Y,
-)
+from ..model.bodies import Body
+from ..model.scene import Scene
+from ..model.shapes import Link, Shape
 from ..pairs.rules import law
 from ..sustained.contacts import CROWD
 from ..sustained.memory import find, key_of
-from .layout import (
-    AFTER_ME,
-    BODIES,
-    CARRIES,
-    DT,
-    EVEN,
-    FIRST_SHAPE,
-    HITS,
-    ISLAND,
-    JOINTED,
-    LAST_ONE,
-    LOST,
-    OPEN,
-    PULLED,
-    SHAPES,
-    SOLVED,
-    STAMP,
-    STILL,
-    TIED,
-    Scene,
-)  # fmt: skip
 
 _PLENTY = 3  # solves in a step of every body of the scene, on the average
 TOUCH = 1e-7  # gap relative to the smaller shape, within which shapes are in touch
@@ -52,7 +21,7 @@ _STILL, _WAS_STILL = 1e-6, 1e-3  # speed relative to |a| dt, below which elastic
 @uncounted
 def carrier(A: Scene, i: int) -> bool:
     """Whether what rests on body i takes it for fixed: impulses do not move it, or it stands still."""
-    return bool(A.BODY[i, IM] == 0.0 or (A.COUNT[CARRIES] > 0 and A.MEMBER[i, STILL] == 1))
+    return bool(A.BODY[i].inv_mass == 0.0 or (A.COUNT.carries > 0 and A.MEMBER[i].still == 1))
 
 
 @uncounted
@@ -60,37 +29,37 @@ def unite(A: Scene, i: int, j: int) -> int:
     """Put bodies i and j, with their islands, into one; its root."""
     MEMBER, STATE = A.MEMBER, A.STATE
     for k in (i, j):
-        if STATE[k, ISLAND] < 0:
-            A.COUNT[EVEN] = 0
-            STATE[k, ISLAND] = k
-            MEMBER[k, AFTER_ME], MEMBER[k, LAST_ONE], MEMBER[k, BODIES], MEMBER[k, HITS] = -1, k, 1, 0
-            MEMBER[k, OPEN] = 0
-            MEMBER[k, JOINTED] = 1 if MEMBER[k, TIED] >= 0 else 0
-            A.RESTING[k, LOST] = 0.0
-    a, b = STATE[i, ISLAND], STATE[j, ISLAND]
+        if STATE[k].island < 0:
+            A.COUNT.even = 0
+            STATE[k].island = k
+            MEMBER[k].following, MEMBER[k].last, MEMBER[k].bodies, MEMBER[k].hits = -1, k, 1, 0
+            MEMBER[k].open = 0
+            MEMBER[k].jointed = 1 if MEMBER[k].tied >= 0 else 0
+            A.RESTING[k].lost = 0.0
+    a, b = STATE[i].island, STATE[j].island
     if a == b:
         return a
-    if MEMBER[a, BODIES] < MEMBER[b, BODIES] or (MEMBER[a, BODIES] == MEMBER[b, BODIES] and b < a):
+    if MEMBER[a].bodies < MEMBER[b].bodies or (MEMBER[a].bodies == MEMBER[b].bodies and b < a):
         a, b = b, a
     k = b
     while k >= 0:
-        STATE[k, ISLAND] = a
-        k = MEMBER[k, AFTER_ME]
-    MEMBER[MEMBER[a, LAST_ONE], AFTER_ME] = b
-    MEMBER[a, LAST_ONE] = MEMBER[b, LAST_ONE]
-    MEMBER[a, BODIES] += MEMBER[b, BODIES]
-    MEMBER[a, HITS] = max(MEMBER[a, HITS], MEMBER[b, HITS])
-    MEMBER[a, JOINTED] = max(MEMBER[a, JOINTED], MEMBER[b, JOINTED])
-    A.RESTING[a, LOST] += A.RESTING[b, LOST]
+        STATE[k].island = a
+        k = MEMBER[k].following
+    MEMBER[MEMBER[a].last].following = b
+    MEMBER[a].last = MEMBER[b].last
+    MEMBER[a].bodies += MEMBER[b].bodies
+    MEMBER[a].hits = max(MEMBER[a].hits, MEMBER[b].hits)
+    MEMBER[a].jointed = max(MEMBER[a].jointed, MEMBER[b].jointed)
+    A.RESTING[a].lost += A.RESTING[b].lost
     return a
 
 
 @uncounted
 def worn(A: Scene, root: int) -> bool:
     """Whether the island is a crowd that is not solved again in this step, as bodies have been solved often enough."""
-    if root < 0 or A.MEMBER[root, BODIES] < CROWD or A.MEMBER[root, OPEN] == 0:
+    if root < 0 or A.MEMBER[root].bodies < CROWD or A.MEMBER[root].open == 0:
         return False
-    return bool(A.COUNT[SOLVED] > _PLENTY * A.BODY.shape[0])
+    return bool(A.COUNT.solved > _PLENTY * A.BODY.shape[0])
 
 
 @uncounted
@@ -100,7 +69,7 @@ def members(A: Scene, root: int, MINE: IntArray) -> int:
     while i >= 0:
         MINE[n] = i
         n += 1
-        i = A.MEMBER[i, AFTER_ME]
+        i = A.MEMBER[i].following
     return n
 
 
@@ -109,10 +78,10 @@ def lossy(A: Scene, root: int) -> bool:
     """Whether any shape of an island has an elasticity below 1."""
     i = root
     while i >= 0:
-        for s in range(A.STATE[i, FIRST_SHAPE], A.STATE[i, FIRST_SHAPE] + A.STATE[i, SHAPES]):
-            if A.SHAPE[s, ELASTICITY] < 1.0:
+        for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):
+            if A.SHAPE[s].elasticity < 1.0:
                 return True
-        i = A.MEMBER[i, AFTER_ME]
+        i = A.MEMBER[i].following
     return False
 
 
@@ -131,29 +100,31 @@ def remembered(KEYS: IntArray, FORCES: FloatArray, shapes: int, a: int, b: int, 
 
 @uncounted
 def approach(
-    BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray, PULL: FloatArray,
+    BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, WORK: FloatArray, PULL: FloatArray,
     a: int, b: int, t: float,
 ) -> tuple[float, float, float, float]:  # fmt: skip
     """Gap of shapes a and b, whose paths begin at instant t or that move evenly; its rate; the acceleration with which
     it closes without contacts; and the mass that it feels."""
-    i, j = LINK[a, OWNER], LINK[b, OWNER]
-    h = t - BODY[j, SINCE]
+    i, j = LINK[a].owner, LINK[b].owner
+    h = t - BODY[j].since
     g, nx, ny, px, py = gap_at(
-        SHAPE, LINK, VERTEX, WORK, a, BODY[i, X], BODY[i, Y], BODY[i, ANGLE],
-        b, BODY[j, X] + BODY[j, VX] * h, BODY[j, Y] + BODY[j, VY] * h, BODY[j, ANGLE] + BODY[j, SPIN] * h,
+        SHAPE, LINK, VERTEX, WORK, a, BODY[i].x, BODY[i].y, BODY[i].angle,
+        b, BODY[j].x + BODY[j].vx * h, BODY[j].y + BODY[j].vy * h, BODY[j].angle + BODY[j].spin * h,
     )  # fmt: skip
     xi, yi, xj, yj = (
-        px - BODY[i, X],
-        py - BODY[i, Y],
-        px - BODY[j, X] - BODY[j, VX] * h,
-        py - BODY[j, Y] - BODY[j, VY] * h,
+        px - BODY[i].x,
+        py - BODY[i].y,
+        px - BODY[j].x - BODY[j].vx * h,
+        py - BODY[j].y - BODY[j].vy * h,
     )
     arm_i, arm_j = xi * ny - yi * nx, xj * ny - yj * nx
-    u = nx * (BODY[j, VX] - BODY[i, VX]) + ny * (BODY[j, VY] - BODY[i, VY])
-    u += arm_j * BODY[j, SPIN] - arm_i * BODY[i, SPIN]
+    u = nx * (BODY[j].vx - BODY[i].vx) + ny * (BODY[j].vy - BODY[i].vy)
+    u += arm_j * BODY[j].spin - arm_i * BODY[i].spin
     closing = nx * (PULL[i, 0] - PULL[j, 0]) + ny * (PULL[i, 1] - PULL[j, 1])
     closing += arm_i * PULL[i, 2] - arm_j * PULL[j, 2]
-    mass = 1.0 / (BODY[i, IM] + BODY[j, IM] + BODY[i, II] * arm_i * arm_i + BODY[j, II] * arm_j * arm_j)
+    mass = 1.0 / (
+        BODY[i].inv_mass + BODY[j].inv_mass + BODY[i].inv_inertia * arm_i * arm_i + BODY[j].inv_inertia * arm_j * arm_j
+    )
     return g, u, closing, mass
 
 
@@ -167,12 +138,12 @@ def rests(A: Scene, a: int, b: int, t: float, lossy: bool) -> bool:
     """
     e = law(A.SHAPE, A.RULE, a, b)[0]
     g, u, closing, mass = approach(A.BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, A.PULL, a, b, t)
-    h = A.PAR[DT] - t
-    small = min(A.SHAPE[a, SIZE], A.SHAPE[b, SIZE])
-    force, load = remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], a, b, A.PAR[STAMP] - 1.0)
+    h = A.PAR.dt - t
+    small = min(A.SHAPE[a].extent, A.SHAPE[b].extent)
+    force, load = remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], a, b, A.PAR.stamp - 1.0)
     if e >= 1.0 and not lossy:
-        limit = (_WAS_STILL if force > 0.0 else _STILL) * A.PAR[PULLED] * A.PAR[DT]
-        fixed = A.BODY[A.LINK[b, OWNER], IM] == 0.0 or A.BODY[A.LINK[a, OWNER], IM] == 0.0
+        limit = (_WAS_STILL if force > 0.0 else _STILL) * A.PAR.pulled * A.PAR.dt
+        fixed = A.BODY[A.LINK[b].owner].inv_mass == 0.0 or A.BODY[A.LINK[a].owner].inv_mass == 0.0
         return g <= TOUCH * small and abs(u) <= limit and (not fixed or closing > 0.0 or force > 0.0)
     press = max(closing, load / mass) * h
     if not -e * min(u, 0.0) < 0.5 * press:

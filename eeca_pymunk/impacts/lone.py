@@ -8,16 +8,17 @@ from __future__ import annotations
 
 import math
 
-from ..arrays import FloatArray, IntArray
 from ..compiled import merged, uncounted
+from ..compiled.records import Rows
 from ..geometry.flight import norm
-from ..layout import AX, AY, DUE, EXTENT, OWNER, SINCE, VX, VY, X, Y
+from ..model.bodies import CHECK, LEAVE, NOTHING, Body
+from ..model.scene import Scene
+from ..model.shapes import Link
 from ..pairs.grid import renew
-from ..pairs.layout import CHOSEN, LATER, MARGIN, NUMBER, ROOM, START
+from ..pairs.layout import CHOSEN, ROOM
 from ..pairs.rules import barred
 from .forecast import AHEAD, has_left, leaves
 from .heap import push
-from .layout import CHECK, EVEN, HEAP, KINKS, KNOWN, LEAVE, NOTHING, OTHER, OWN, UNMET, Scene
 from .times import meet, one_pull, passes
 
 _FARTHEST = 0.7  # of the margin, that a new circle is ahead at most
@@ -25,21 +26,21 @@ _SAME = 1e-9  # of the step, within which an instant that was computed again is 
 
 
 @uncounted
-def carrier(LINK: IntArray, disks: int, s: int) -> int:
+def carrier(LINK: Rows[Link], disks: int, s: int) -> int:
     """Row of the body of shape s: lone disks have the same number as their shapes."""
-    return s if s < disks else int(LINK[s, OWNER])
+    return s if s < disks else int(LINK[s].owner)
 
 
 @merged
-def misses(BODY: FloatArray, i: int, o: int, ax: float, ay: float, latest: float) -> bool:
+def misses(BODY: Rows[Body], i: int, o: int, ax: float, ay: float, latest: float) -> bool:
     """Whether lone disks i and o, which one acceleration pulls, part, pass far from one another, or are too far away to
     meet until `latest`: for certain. No more than `times.one_pull` would find out, and no branch."""
-    start = max(BODY[i, SINCE], BODY[o, SINCE])
-    g, h = start - BODY[i, SINCE], start - BODY[o, SINCE]
-    ux, uy = (BODY[o, VX] + h * ax) - (BODY[i, VX] + g * ax), (BODY[o, VY] + h * ay) - (BODY[i, VY] + g * ay)
-    dx = (BODY[o, X] + (BODY[o, VX] + 0.5 * h * ax) * h) - (BODY[i, X] + (BODY[i, VX] + 0.5 * g * ax) * g)
-    dy = (BODY[o, Y] + (BODY[o, VY] + 0.5 * h * ay) * h) - (BODY[i, Y] + (BODY[i, VY] + 0.5 * g * ay) * g)
-    return passes(dx, dy, ux, uy, BODY[i, EXTENT] + BODY[o, EXTENT], latest - start)
+    start = max(BODY[i].since, BODY[o].since)
+    g, h = start - BODY[i].since, start - BODY[o].since
+    ux, uy = (BODY[o].vx + h * ax) - (BODY[i].vx + g * ax), (BODY[o].vy + h * ay) - (BODY[i].vy + g * ay)
+    dx = (BODY[o].x + (BODY[o].vx + 0.5 * h * ax) * h) - (BODY[i].x + (BODY[i].vx + 0.5 * g * ax) * g)
+    dy = (BODY[o].y + (BODY[o].vy + 0.5 * h * ay) * h) - (BODY[i].y + (BODY[i].vy + 0.5 * g * ay) * g)
+    return passes(dx, dy, ux, uy, BODY[i].extent + BODY[o].extent, latest - start)
 
 
 @uncounted
@@ -49,9 +50,9 @@ def first_chosen(A: Scene, i: int, chosen: int, best: float, other: int) -> tupl
     for k in range(chosen):
         o = A.INFO[CHOSEN + k]
         t = one_pull(
-            BODY[i, SINCE], BODY[i, X], BODY[i, Y], BODY[i, VX], BODY[i, VY],
-            BODY[o, SINCE], BODY[o, X], BODY[o, Y], BODY[o, VX], BODY[o, VY],
-            BODY[i, AX], BODY[i, AY], BODY[i, EXTENT] + BODY[o, EXTENT], best,
+            BODY[i].since, BODY[i].x, BODY[i].y, BODY[i].vx, BODY[i].vy,
+            BODY[o].since, BODY[o].x, BODY[o].y, BODY[o].vx, BODY[o].vy,
+            BODY[i].ax, BODY[i].ay, BODY[i].extent + BODY[o].extent, best,
         )  # fmt: skip
         if t < best or (t == best and other >= 0 and o < other):
             best, other = t, o
@@ -70,11 +71,11 @@ def first_meeting(
     """
     BODY, POOL, FLAG, INFO = A.BODY, A.POOL, A.FLAG, A.INFO
     chosen = 0
-    even = A.COUNT[EVEN] > 0
-    flagged = not even or A.COUNT[UNMET] > 0
-    ax, ay = BODY[i, AX], BODY[i, AY]
-    start, ruled = A.LIST[i, START], A.RULE.shape[0] > 0
-    for q in range(start + known, start + A.LIST[i, NUMBER]):
+    even = A.COUNT.even > 0
+    flagged = not even or A.COUNT.unmet > 0
+    ax, ay = BODY[i].ax, BODY[i].ay
+    start, ruled = A.LIST[i].start, A.RULE.shape[0] > 0
+    for q in range(start + known, start + A.LIST[i].number):
         if flagged and FLAG[q] != 0:
             continue
         o = int(POOL[q])
@@ -103,14 +104,14 @@ def expect(A: Scene, disks: int, i: int, best: float, other: int, now: float, en
     what is due in this step on the heap."""
     out = leaves(A.BODY, A.SHAPE, A.LINK, A.MARK, disks, i, i, now)
     if other >= 0:
-        A.STATE[i, KNOWN] = A.STATE[carrier(A.LINK, disks, other), KINKS]
+        A.STATE[i].known = A.STATE[carrier(A.LINK, disks, other)].version
     if out <= best and out < math.inf:
-        A.LIST[i, LATER] = other
+        A.LIST[i].later = other
         best, other = out, LEAVE
     best = max(best, now)
-    A.BODY[i, DUE], A.STATE[i, OWN], A.STATE[i, OTHER] = best, i, other
+    A.BODY[i].due, A.STATE[i].own, A.STATE[i].other = best, i, other
     if best < end:
-        A.COUNT[HEAP] = push(A.HEAP_TIME, A.HEAP_BODY, A.COUNT[HEAP], best, i)
+        A.COUNT.heap = push(A.HEAP_TIME, A.HEAP_BODY, A.COUNT.heap, best, i)
 
 
 @uncounted
@@ -125,17 +126,17 @@ def go_on(A: Scene, disks: int, i: int, now: float, end: float) -> bool:
     """Lone disk i, in no island, leaves its margin circle and goes straight on: only what has come into its list is new
     in its forecast. False if the pool is full."""
     BODY = A.BODY
-    best, other, later, known = math.inf, NOTHING, A.LIST[i, LATER], A.LIST[i, NUMBER]
+    best, other, later, known = math.inf, NOTHING, A.LIST[i].later, A.LIST[i].number
     ahead = AHEAD
-    if later >= 0 and A.STATE[carrier(A.LINK, disks, later), KINKS] == A.STATE[i, KNOWN]:
+    if later >= 0 and A.STATE[carrier(A.LINK, disks, later)].version == A.STATE[i].known:
         best, certain = meet(A.BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, i, later, disks, end, -1.0)
         other = later if certain else CHECK
     if has_left(BODY, A.SHAPE, A.LINK, A.MARK, i, now):
-        h = now - BODY[i, SINCE]
+        h = now - BODY[i].since
         if later == NOTHING or other >= 0:
             # Its course changes where it meets somebody: its circle is to be about there.
-            way = norm(BODY[i, VX] + BODY[i, AX] * h, BODY[i, VY] + BODY[i, AY] * h) * (best - now)
-            ahead = min(way / A.MARK[i, MARGIN], _FARTHEST)
+            way = norm(BODY[i].vx + BODY[i].ax * h, BODY[i].vy + BODY[i].ay * h) * (best - now)
+            ahead = min(way / A.MARK[i].margin, _FARTHEST)
         known = renew(
             BODY, A.SHAPE, A.LINK, A.MARK, A.CELL, A.LIST, A.POOL, A.FLAG, A.HEAD, A.GRID, A.INFO, A.BOX, A.CSR,
             i, now, ahead,
@@ -154,18 +155,18 @@ def holds(A: Scene, disks: int, i: int, end: float) -> bool:
     """Whether the forecast that lone disk i, in no island, was given in an earlier step is still good, as its path and
     that of whom it meets are the same; puts it on the heap. The instant is computed again, from the paths as they are
     described in this step, so that no bit depends on how long ago the forecast was made."""
-    other, due = A.STATE[i, OTHER], A.BODY[i, DUE]
+    other, due = A.STATE[i].other, A.BODY[i].due
     if due <= 0.0:
         return False
     if other >= 0:
-        if A.STATE[carrier(A.LINK, disks, other), KINKS] != A.STATE[i, KNOWN]:
+        if A.STATE[carrier(A.LINK, disks, other)].version != A.STATE[i].known:
             return False
         t, certain = meet(A.BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, i, other, disks, end, -1.0)
         if not (certain and abs(t - due) <= _SAME * end):
             return False
-        A.BODY[i, DUE] = due = t
+        A.BODY[i].due = due = t
     elif other != LEAVE:
         return False
     if due < end:
-        A.COUNT[HEAP] = push(A.HEAP_TIME, A.HEAP_BODY, A.COUNT[HEAP], due, i)
+        A.COUNT.heap = push(A.HEAP_TIME, A.HEAP_BODY, A.COUNT.heap, due, i)
     return True

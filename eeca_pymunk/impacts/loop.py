@@ -7,7 +7,9 @@ kinked since is forecast anew when it comes up; until then it can only be too ea
 from __future__ import annotations
 
 from ..compiled import kernel, merged, uncounted
-from ..layout import DUE, IM, OWNER
+from ..model.bodies import LEAVE, RENEW
+from ..model.scene import Scene
+from ..model.step import BLOCK_DUE, DONE, JOINTS_DUE, LOG_FULL, POOL_FULL
 from ..pairs.grid import renew
 from ..pairs.lists import mark_pair
 from .block import arrive
@@ -17,34 +19,6 @@ from .due import forecast, forecast_all, look_ahead
 from .forecast import AHEAD, has_left
 from .heap import pop, push, sweep_out
 from .islands import members
-from .layout import (
-    BLOCK_DUE,
-    DONE,
-    DT,
-    EVENTS,
-    HEAP,
-    ISLAND,
-    JOINTED,
-    JOINTS_DUE,
-    KINKS,
-    KNOWN,
-    LEAVE,
-    LIMIT,
-    LOG_FULL,
-    LOGGED,
-    NOW,
-    OTHER,
-    OWN,
-    PENDING,
-    POOL_FULL,
-    PUSHES,
-    RENEW,
-    STALE,
-    STRUCK,
-    UNMET,
-    WAITING,
-    Scene,
-)  # fmt: skip
 from .lone import carrier, go_on
 from .settle import comes_to_rest, ignored
 from .spans import solve
@@ -56,19 +30,19 @@ _SQUEEZED = 50  # impacts of a body in a step, from which those with a kinematic
 @uncounted
 def jointed(A: Scene, i: int) -> bool:
     """Whether body i is in an island that is held by joints."""
-    root = A.STATE[i, ISLAND]
-    return bool(root >= 0 and A.MEMBER[root, JOINTED] > 0)
+    root = A.STATE[i].island
+    return bool(root >= 0 and A.MEMBER[root].jointed > 0)
 
 
 @merged
 def give_up(A: Scene, i: int, j: int) -> bool:
     """Whether bodies i and j have met as often as a step allows."""
-    limit = A.COUNT[LIMIT]
-    if A.STATE[i, EVENTS] >= limit or A.STATE[j, EVENTS] >= limit:
+    limit = A.COUNT.limit
+    if A.STATE[i].events >= limit or A.STATE[j].events >= limit:
         return True
     ground = A.BODY.shape[0] - 1
-    carried = (A.BODY[i, IM] == 0.0 and i != ground) or (A.BODY[j, IM] == 0.0 and j != ground)
-    return carried and max(A.STATE[i, EVENTS], A.STATE[j, EVENTS]) >= _SQUEEZED
+    carried = (A.BODY[i].inv_mass == 0.0 and i != ground) or (A.BODY[j].inv_mass == 0.0 and j != ground)
+    return carried and max(A.STATE[i].events, A.STATE[j].events) >= _SQUEEZED
 
 
 @uncounted
@@ -80,27 +54,27 @@ def run(A: Scene, disks: int, may_rest: bool) -> int:
     """
     BODY, STATE, COUNT, TIME, OF = A.BODY, A.STATE, A.COUNT, A.HEAP_TIME, A.HEAP_BODY
     moving = A.LIST.shape[0]
-    end = A.PAR[DT]
+    end = A.PAR.dt
     one, two, t = -1, -1, 0.0  # bodies to be forecast
     while True:
         while one >= 0:
             forecast(A, disks, moving, one, t, end, False)
             one, two = two, -1
-        if COUNT[HEAP] == 0:
+        if COUNT.heap == 0:
             return DONE
         t, i = TIME[0], OF[0]
-        if t != BODY[i, DUE]:
-            COUNT[HEAP] = pop(TIME, OF, COUNT[HEAP])
+        if t != BODY[i].due:
+            COUNT.heap = pop(TIME, OF, COUNT.heap)
             continue
-        if COUNT[HEAP] + BODY.shape[0] > TIME.shape[0]:
-            COUNT[HEAP] = sweep_out(TIME, OF, COUNT[HEAP], BODY)
-        if COUNT[LOGGED] == A.LOG.shape[0]:
+        if COUNT.heap + BODY.shape[0] > TIME.shape[0]:
+            COUNT.heap = sweep_out(TIME, OF, COUNT.heap, BODY)
+        if COUNT.logged == A.LOG.shape[0]:
             return LOG_FULL
-        COUNT[HEAP] = pop(TIME, OF, COUNT[HEAP])
+        COUNT.heap = pop(TIME, OF, COUNT.heap)
         look_ahead(A, disks, i)
-        s, o = STATE[i, OWN], STATE[i, OTHER]
+        s, o = STATE[i].own, STATE[i].other
         if o == LEAVE:
-            if i < disks and STATE[i, ISLAND] < 0:
+            if i < disks and STATE[i].island < 0:
                 room = go_on(A, disks, i, t, end)
             else:
                 one, room = i, True
@@ -110,24 +84,24 @@ def run(A: Scene, disks: int, may_rest: bool) -> int:
                         A.CSR, s, t, AHEAD,
                     ) >= 0  # fmt: skip
             if not room:
-                A.PAR[NOW] = t
-                COUNT[HEAP] = push(TIME, OF, COUNT[HEAP], t, i)
+                A.PAR.now = t
+                COUNT.heap = push(TIME, OF, COUNT.heap, t, i)
                 return POOL_FULL
             continue
         if o == RENEW:
-            A.PAR[NOW], COUNT[STRUCK] = t, i
+            A.PAR.now, COUNT.struck = t, i
             return BLOCK_DUE
         j = carrier(A.LINK, disks, o) if o >= 0 else i
-        if o < 0 or STATE[j, KINKS] != STATE[i, KNOWN]:
-            COUNT[STALE] += 1
+        if o < 0 or STATE[j].version != STATE[i].known:
+            COUNT.stale += 1
             one = i
             continue
         if give_up(A, i, j):
-            COUNT[UNMET] += 1
+            COUNT.unmet += 1
             mark_pair(A.LIST, A.POOL, A.FLAG, moving, s, o, 1)
             one = i
             continue
-        single = STATE[i, ISLAND] < 0 and STATE[j, ISLAND] < 0 and i < disks and (o < disks or o >= moving)
+        single = STATE[i].island < 0 and STATE[j].island < 0 and i < disks and (o < disks or o >= moving)
         if single and may_rest:
             single = not comes_to_rest(A, s, o, t)
         body, other = i, o
@@ -136,7 +110,7 @@ def run(A: Scene, disks: int, may_rest: bool) -> int:
                 single = alone(A, disks, body, other, t)
             body, other = (j, i) if o < disks else (-1, -1)
         if not single:
-            A.PAR[NOW], COUNT[STRUCK] = t, i
+            A.PAR.now, COUNT.struck = t, i
             return BLOCK_DUE
         # The same bits, whoever of the two has foreseen it.
         a, b = (o, i) if o < i else (i, o)
@@ -147,7 +121,7 @@ def run(A: Scene, disks: int, may_rest: bool) -> int:
 @uncounted
 def with_mover(A: Scene, i: int, n: int) -> int:
     """How many of A.BLOCK are to be forecast after an event of body i that changed n: i too, if no impulse moves it."""
-    if A.BODY[i, IM] > 0.0:
+    if A.BODY[i].inv_mass > 0.0:
         return n
     A.BLOCK[n] = i
     return n + 1
@@ -160,34 +134,34 @@ def follow(A: Scene, disks: int, may_rest: bool) -> int:
     JOINTS_DUE: the span of island COUNT[PENDING], or if there is none the impact of body COUNT[STRUCK], is to be done.
     """
     COUNT, STATE, BLOCK = A.COUNT, A.STATE, A.BLOCK
-    moving, end = A.LIST.shape[0], A.PAR[DT]
-    if COUNT[PENDING] >= 0:
-        status = solve(A, COUNT[PENDING], A.PAR[NOW])
+    moving, end = A.LIST.shape[0], A.PAR.dt
+    if COUNT.pending >= 0:
+        status = solve(A, COUNT.pending, A.PAR.now)
         if status != DONE:
             return status
-        COUNT[PENDING] = -1
-        forecast_all(A, disks, COUNT[WAITING], A.PAR[NOW], end)
+        COUNT.pending = -1
+        forecast_all(A, disks, COUNT.waiting, A.PAR.now, end)
     while True:
         status = run(A, disks, may_rest)
         if status != BLOCK_DUE:
             return status
-        t, i = A.PAR[NOW], COUNT[STRUCK]
-        s, o = STATE[i, OWN], STATE[i, OTHER]
-        if COUNT[LOGGED] + COUNT[PUSHES] + 8 * STATE.shape[0] > A.LOG.shape[0]:
-            COUNT[HEAP] = push(A.HEAP_TIME, A.HEAP_BODY, COUNT[HEAP], t, i)
+        t, i = A.PAR.now, COUNT.struck
+        s, o = STATE[i].own, STATE[i].other
+        if COUNT.logged + COUNT.pushes + 8 * STATE.shape[0] > A.LOG.shape[0]:
+            COUNT.heap = push(A.HEAP_TIME, A.HEAP_BODY, COUNT.heap, t, i)
             return LOG_FULL
         if o == RENEW:
             end_span(A, i, t)
             n = members(A, i, BLOCK)
             status = solve(A, i, t)
-            COUNT[WAITING], COUNT[PENDING] = n, -1 if status == DONE else i
+            COUNT.waiting, COUNT.pending = n, -1 if status == DONE else i
             if status != DONE:
                 return status
             forecast_all(A, disks, n, t, end)
             continue
-        j = A.LINK[o, OWNER]
-        if (STATE[i, ISLAND] >= 0 or STATE[j, ISLAND] >= 0) and ignored(A, s, o, t):
-            COUNT[UNMET] += 1
+        j = A.LINK[o].owner
+        if (STATE[i].island >= 0 or STATE[j].island >= 0) and ignored(A, s, o, t):
+            COUNT.unmet += 1
             mark_pair(A.LIST, A.POOL, A.FLAG, moving, s, o, 1)
             forecast(A, disks, moving, i, t, end, False)
             continue
@@ -196,12 +170,12 @@ def follow(A: Scene, disks: int, may_rest: bool) -> int:
         rest = False
         if may_rest:
             arrive(A, i, t)
-            if A.BODY[j, IM] > 0.0:
+            if A.BODY[j].inv_mass > 0.0:
                 arrive(A, j, t)
             rest = comes_to_rest(A, s, o, t)
         status, n = strike(A, disks, s, o, t, rest)
         n = with_mover(A, i, n)
-        COUNT[WAITING] = n
+        COUNT.waiting = n
         if status != DONE:
             return status
         forecast_all(A, disks, n, t, end)

@@ -18,9 +18,10 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
-from ..layout import VX
+from ..compiled.records import empty
+from ..model.contacts import ROW
+from ..model.scene import Scene
 from ..rows.inplace import sort
-from ..rows.layout import ROW_COLUMNS
 from ..sustained.contacts import CROWD
 from ..sustained.ledger import LEDGER_SIZE
 from ..sustained.statics import LIVELY
@@ -30,32 +31,6 @@ from .calm import SURE, hardly, settled, speed, wait
 from .carrying import give_way, load
 from .coming import pairs_of
 from .islands import lossy, members, unite
-from .layout import (
-    AFTER_ME,
-    AMONG,
-    BODIES,
-    BUSY,
-    CALM_FOR,
-    CARRIES,
-    DIRECT,
-    DT,
-    HITS,
-    ISLAND,
-    JOINTED,
-    LAST_ONE,
-    LIFT,
-    LOST,
-    OPEN,
-    PULLED,
-    PUSHES,
-    RELAX,
-    REMEMBERED,
-    ROOT,
-    STAMP,
-    STILL,
-    UNTIL,
-    Scene,
-)  # fmt: skip
 from .spans import dismiss, lay_out_island, open_contacts, solve
 from .still import halt, stop
 
@@ -71,11 +46,11 @@ def chain(A: Scene, MINE: IntArray, n: int) -> None:
     """Make an island of n bodies."""
     MEMBER, head = A.MEMBER, MINE[0]
     for q in range(n):
-        A.STATE[MINE[q], ISLAND] = head
-        MEMBER[MINE[q], AFTER_ME] = MINE[q + 1] if q + 1 < n else -1
-    MEMBER[head, LAST_ONE], MEMBER[head, BODIES] = MINE[n - 1], n
-    MEMBER[head, HITS], MEMBER[head, OPEN], MEMBER[head, JOINTED] = 0, 0, 0
-    A.RESTING[head, LOST] = 0.0
+        A.STATE[MINE[q]].island = head
+        MEMBER[MINE[q]].following = MINE[q + 1] if q + 1 < n else -1
+    MEMBER[head].last, MEMBER[head].bodies = MINE[n - 1], n
+    MEMBER[head].hits, MEMBER[head].open, MEMBER[head].jointed = 0, 0, 0
+    A.RESTING[head].lost = 0.0
 
 
 @kernel
@@ -83,7 +58,7 @@ def asks(A: Scene, MINE: IntArray, n: int, V0: FloatArray, among: int, calming: 
     """Whether the island of the n bodies MINE, `among` so many, comes to a stand from their velocities V0 (n, 3) under
     what pushes on it; if so it does. If not, those that nothing holds are to wait, see `give_way`. Or whether it is
     calmed, with nothing that pushes on it; then its bodies stop, and may be asked at once whether they stand."""
-    BODY, COUNT, dt, root = A.BODY, A.COUNT, A.PAR[DT], MINE[0]
+    BODY, COUNT, dt, root = A.BODY, A.COUNT, A.PAR.dt, MINE[0]
     for q in range(n):
         A.PLACE[MINE[q]] = q
     found = pairs_of(A, root, 0.0, True, A.PLACE, MINE, n)
@@ -99,40 +74,40 @@ def asks(A: Scene, MINE: IntArray, n: int, V0: FloatArray, among: int, calming: 
             isle.V[q, c] = V0[q, c]
             isle.ACC[q, c] += LOAD[q, c] / dt
         most = max(most, math.sqrt(isle.ACC[q, 0] ** 2 + isle.ACC[q, 1] ** 2))
-    if p == 0 or COUNT[PUSHES] + 2 * p > A.PUSHED.shape[0] or not most > 0.0:
+    if p == 0 or COUNT.pushes + 2 * p > A.PUSHED.shape[0] or not most > 0.0:
         wait(A, MINE, n)
         return False
-    quick = (LIVELY if calming else hardly(among)) * A.PAR[PULLED] / most
+    quick = (LIVELY if calming else hardly(among)) * A.PAR.pulled / most
     k, room = len(isle.WHO), 2 * p + 1
     P, Q, KEY = np.empty(room, np.int64), np.empty(room, np.int64), np.empty(room, np.int64)
-    ROWS, L, LOSS = np.empty((room, ROW_COLUMNS)), np.zeros((room, 2)), np.zeros((room, 2))
+    ROWS, L, LOSS = empty(room, ROW), np.zeros((room, 2)), np.zeros((room, 2))
     VN, JUMP, BOOK, OUT = np.zeros((k, 3)), np.zeros((k, 6)), np.zeros(LEDGER_SIZE), np.zeros(OUT_SIZE)
     m = step_island(
         isle.POSE, isle.V, isle.ACC, isle.IM, isle.II, isle.EXTENT, isle.FELT, n, isle.PAIRS, p, A.SHAPE, A.RULE,
-        A.LINK, A.VERTEX, A.WORK, dt, 0, 0.0, 0.0, A.KEYS, A.FORCES, COUNT[REMEMBERED:], A.PAR[STAMP],
-        A.RESTING[root, RELAX : RELAX + 3], -quick, P, Q, ROWS, KEY, L, LOSS, VN, JUMP, BOOK, OUT,
+        A.LINK, A.VERTEX, A.WORK, dt, 0, 0.0, 0.0, A.KEYS, A.FORCES, COUNT, A.PAR.stamp,
+        A.RESTING[root], -quick, P, Q, ROWS, KEY, L, LOSS, VN, JUMP, BOOK, OUT,
     )  # fmt: skip
-    COUNT[DIRECT] += int(OUT[POLISHES])
+    COUNT.direct += int(OUT[POLISHES])
     if not OUT[STOOD] > 0.0:
         give_way(A, MINE, n, VN, isle.FELT)
         return False
     if calming:
         for q in range(n):
             stop(A, MINE[q])
-            A.RESTING[MINE[q], CALM_FOR] = SURE
+            A.RESTING[MINE[q]].calm_for = SURE
         return True
-    first = COUNT[PUSHES]
+    first = COUNT.pushes
     open_contacts(A, isle, P, Q, ROWS, KEY, L, VN, m, 0.0, dt, np.zeros(k, np.uint8))
     for z in range(m):
-        A.PUSHED_BY[first + z, ROOT] = root
-    COUNT[PUSHES] += m
-    A.MEMBER[root, OPEN], A.RESTING[root, UNTIL], A.MEMBER[root, AMONG] = 1, math.inf, among
+        A.PUSHED_BY[first + z].root = root
+    COUNT.pushes += m
+    A.MEMBER[root].open, A.RESTING[root].until, A.MEMBER[root].among = 1, math.inf, among
     for q in range(n):
-        A.MEMBER[MINE[q], BUSY] = 0
-        for c in range(3):
-            BODY[MINE[q], VX + c] = V0[q, c]
-        for c in range(6):
-            A.RESTING[MINE[q], LIFT + c] = 0.0
+        A.MEMBER[MINE[q]].busy = 0
+        body, rest = BODY[MINE[q]], A.RESTING[MINE[q]]
+        body.vx, body.vy, body.spin = V0[q, 0], V0[q, 1], V0[q, 2]
+        rest.lift_x, rest.lift_y, rest.lift_angle = 0.0, 0.0, 0.0
+        rest.lift_vx, rest.lift_vy, rest.lift_spin = 0.0, 0.0, 0.0
     halt(A, root)
     return True
 
@@ -142,19 +117,19 @@ def calms_down(A: Scene, root: int, MINE: IntArray, n: int) -> None:
     """Calm the crowd of the n bodies MINE, but for those few that are fast, and those that nothing holds."""
     STAND, V0, stand = np.empty(n, np.int64), np.empty((n, 3)), 0
     for q in range(n):
-        if speed(A, MINE[q], 0.0) <= LIVELY * A.PAR[PULLED] * A.PAR[DT]:
+        if speed(A, MINE[q], 0.0) <= LIVELY * A.PAR.pulled * A.PAR.dt:
             STAND[stand] = MINE[q]
             stand += 1
     if n - stand > max(_RATTLING * n, _FEW):
         return
-    owed, factors, calmed = A.RESTING[root, LOST], A.COUNT[DIRECT], False
-    while not calmed and stand >= (1.0 - _MOST) * n and A.COUNT[DIRECT] <= factors + _CHEAP:
+    owed, factors, calmed = A.RESTING[root].lost, A.COUNT.direct, False
+    while not calmed and stand >= (1.0 - _MOST) * n and A.COUNT.direct <= factors + _CHEAP:
         for q in range(n):
-            A.STATE[MINE[q], ISLAND] = -1
+            A.STATE[MINE[q]].island = -1
         chain(A, STAND, stand)
         for q in range(stand):
-            for c in range(3):
-                V0[q, c] = A.BODY[STAND[q], VX + c]
+            body = A.BODY[STAND[q]]
+            V0[q, 0], V0[q, 1], V0[q, 2] = body.vx, body.vy, body.spin
         calmed = asks(A, STAND, stand, V0, n, True)
         held = 0
         for q in range(stand):
@@ -170,13 +145,13 @@ def calms_down(A: Scene, root: int, MINE: IntArray, n: int) -> None:
         if MINE[q] != root:
             STAND[q + 1 if MINE[q] < root else q] = MINE[q]
     chain(A, STAND, n)
-    A.RESTING[root, LOST] = owed
+    A.RESTING[root].lost = owed
 
 
 @uncounted
 def divide(A: Scene, MINE: IntArray, n: int, STAND: IntArray, MOVE: IntArray) -> int:
     """Those of the n bodies MINE that may stand into STAND, the others into MOVE; how many the first are."""
-    stand, limit = 0, hardly(n) * A.PAR[PULLED] * A.PAR[DT]
+    stand, limit = 0, hardly(n) * A.PAR.pulled * A.PAR.dt
     for q in range(n):
         if settled(A, MINE[q]) and speed(A, MINE[q], 0.0) <= limit:
             STAND[stand] = MINE[q]
@@ -191,20 +166,20 @@ def stands_in_part(A: Scene, root: int) -> bool:
     """At the start of a step, instead of solving an island: whether those of its bodies that hardly move, or what is
     left of them without those that nothing holds, stand, so that the others are solved alone."""
     BODY, STATE, MEMBER = A.BODY, A.STATE, A.MEMBER
-    n = MEMBER[root, BODIES]
-    if A.COUNT[CARRIES] == 0 or A.PAR[PULLED] == 0.0 or MEMBER[root, OPEN] > 0 or STATE[root, ISLAND] != root:
+    n = MEMBER[root].bodies
+    if A.COUNT.carries == 0 or A.PAR.pulled == 0.0 or MEMBER[root].open > 0 or STATE[root].island != root:
         return False
     if not lossy(A, root):
         return False
     MINE, STAND, MOVE = np.empty(n, np.int64), np.empty(n, np.int64), np.empty(n, np.int64)
     members(A, root, MINE)
     sort(MINE, n)
-    factors = A.COUNT[DIRECT]
-    if n >= CROWD and A.PAR[STAMP] % _EVERY == 0.0:
+    factors = A.COUNT.direct
+    if n >= CROWD and A.PAR.stamp % _EVERY == 0.0:
         calms_down(A, root, MINE, n)
-        if A.COUNT[DIRECT] > factors + _DEAR:
+        if A.COUNT.direct > factors + _DEAR:
             return False
-    V0, some, factors = np.empty((n, 3)), False, A.COUNT[DIRECT]
+    V0, some, factors = np.empty((n, 3)), False, A.COUNT.direct
     for _ in range(_TRIES):
         stand = divide(A, MINE, n, STAND, MOVE)
         if stand == 0 or n - stand > max(_MOST * n, _FEW):
@@ -213,32 +188,32 @@ def stands_in_part(A: Scene, root: int) -> bool:
         chain(A, STAND, stand)
         for q in range(stand):
             i = STAND[q]
-            MEMBER[i, STILL] = 1
-            for c in range(3):
-                V0[q, c], BODY[i, VX + c] = BODY[i, VX + c], 0.0
+            MEMBER[i].still = 1
+            V0[q, 0], V0[q, 1], V0[q, 2] = BODY[i].vx, BODY[i].vy, BODY[i].spin
+            BODY[i].vx, BODY[i].vy, BODY[i].spin = 0.0, 0.0, 0.0
         if stand < n:
             chain(A, MOVE, n - stand)
             solve(A, MOVE[0], 0.0)
         for q in range(stand):
-            MEMBER[STAND[q], STILL] = 0
+            MEMBER[STAND[q]].still = 0
         if asks(A, STAND, stand, V0, n, False):
             return True
         for q in range(stand):
-            for c in range(3):
-                BODY[STAND[q], VX + c] = V0[q, c]
+            body = BODY[STAND[q]]
+            body.vx, body.vy, body.spin = V0[q, 0], V0[q, 1], V0[q, 2]
         one = STAND[0]
         for q in range(n - stand):
             i = MOVE[q]
-            if STATE[i, ISLAND] >= 0:
-                if MEMBER[STATE[i, ISLAND], OPEN] > 0:
-                    close_span(A, STATE[i, ISLAND], 0.0)
+            if STATE[i].island >= 0:
+                if MEMBER[STATE[i].island].open > 0:
+                    close_span(A, STATE[i].island, 0.0)
                 one = unite(A, one, i)
         # What touches nothing has left.
         n = members(A, one, MINE)
         sort(MINE, n)
-        if A.COUNT[DIRECT] > factors + _CHEAP:
+        if A.COUNT.direct > factors + _CHEAP:
             break
     if some:
         wait(A, STAND, stand)
-        solve(A, STATE[MINE[0], ISLAND], 0.0)
+        solve(A, STATE[MINE[0]].island, 0.0)
     return some

@@ -11,47 +11,19 @@ import numpy as np
 from ..arrays import AnyArray, FloatArray, IntArray, side_by_side
 from ..compiled import table_of
 from ..compiled.library import check
-from ..layout import COUNT as VERTICES
-from ..layout import DUE, ELASTICITY, EVENT_COLUMNS, OWNER
+from ..compiled.records import R, Rows, numbers, row, rows
 from ..layout import NOW as READ
-from ..pairs.layout import MARGIN
+from ..model.bodies import CHECK, Body, Member, Next, Rest
+from ..model.contacts import Impulse, Pair, Pushed
+from ..model.scene import Scene
+from ..model.shapes import Link, Shape
+from ..model.step import Count, Step
 from ..pairs.setup import near_lists, rebuilt
 from ..report import Details, of_events
 from ..sustained.memory import FORCE_COLUMNS, forget
 from ..sustained.relax import FRESH
 from ..transfer import FORCES
 from .booking import flag_again
-from .layout import (
-    AFTER,
-    BLOCKS,
-    CHECK,
-    COUNT_LENGTH,
-    DISKS,
-    FIRST_SHAPE,
-    HEAP,
-    ISLAND,
-    LEDGER,
-    LIMIT,
-    LOCK,
-    LOGGED,
-    MEMBER_COLUMNS,
-    NEXT_TIED,
-    NOW,
-    OTHER,
-    PAR_LENGTH,
-    PUSHED_COLUMNS,
-    PUSHES,
-    RELAX,
-    REMEMBERED,
-    RESTING_COLUMNS,
-    SHAPES,
-    SOLVES,
-    STAMP,
-    STATE_COLUMNS,
-    TIED,
-    UNMET,
-    Scene,
-)  # fmt: skip
 from .step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, step
 from .together import step_together
 
@@ -59,14 +31,15 @@ if TYPE_CHECKING:
     import pymunk
 
 RULE_COLUMNS = 6
+_BOOK = slice((Step.TYPE.names or ()).index("restitution"), (Step.TYPE.names or ()).index("after") + 1)
 UNBOUND: tuple[tuple[AnyArray | None, ...], Callable[..., int]] = (None,) * 4, int
 _CONTACTS = 256  # of islands, that there is room for at first; powers of 2
 _OF_A_BODY, _MANY = 32, 1 << 16  # for each body where contacts may last, up to so many: untouched memory is free
 
 
-def _longer(table: AnyArray, used: int) -> AnyArray:
+def _longer(table: Rows[R], used: int) -> Rows[R]:
     """A table of twice as many rows, with those in use."""
-    longer = np.zeros((2 * len(table), *table.shape[1:]), table.dtype)
+    longer: Rows[R] = np.zeros(2 * len(table), table.dtype)  # type: ignore[assignment]
     longer[:used] = table[:used]
     return longer
 
@@ -81,38 +54,38 @@ class EventLoop:
     """
 
     def __init__(
-        self, BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, disks: int, limit: int
+        self, BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, disks: int, limit: int
     ) -> None:
         n = len(BODY)
         self.disks = disks
-        moving = int(np.count_nonzero(LINK[:, OWNER] < n - 1))
+        moving = int(np.count_nonzero(LINK["owner"] < n - 1))
         STATE, MEMBER, RESTING, PULL, BEGAN, TIME, OF, PLACE, BLOCK = side_by_side(
-            ((n, STATE_COLUMNS), np.int64), ((n, MEMBER_COLUMNS), np.int64), ((n, RESTING_COLUMNS), np.float64),
+            ((n,), Next.TYPE), ((n,), Member.TYPE), ((n,), Rest.TYPE),
             ((n, 3), np.float64), ((n, 3), np.float64), ((8 * n + 64,), np.float64), ((8 * n + 64,), np.int64),
             ((n,), np.int64), ((n,), np.int64),
         )  # fmt: skip
         PLACE[:] = -1
-        STATE[:, SHAPES] = np.bincount(LINK[:moving, OWNER], minlength=n)
-        STATE[:, FIRST_SHAPE] = np.cumsum(STATE[:, SHAPES]) - STATE[:, SHAPES]
-        STATE[:, ISLAND] = -1
+        STATE["shapes"] = np.bincount(LINK["owner"][:moving], minlength=n)
+        STATE["first_shape"] = np.cumsum(STATE["shapes"]) - STATE["shapes"]
+        STATE["island"] = -1
         near = near_lists(BODY, SHAPE, LINK, VERTEX, moving)
-        vertices = max(2, int(LINK[:, VERTICES].max(initial=2)))
-        lossy = bool((SHAPE[:, ELASTICITY] < 1.0).any())
+        vertices = max(2, int(LINK["vertices"].max(initial=2)))
+        lossy = bool((SHAPE["elasticity"] < 1.0).any())
         self._options: tuple[int, ...] = disks, lossy  # numbers that the step takes besides dt, gravity and damping
         room = _CONTACTS
         while lossy and room < min(_OF_A_BODY * n, _MANY):
             room *= 2
         self.scene = Scene(
             BODY, STATE, SHAPE, LINK, VERTEX, *near, np.zeros((0, RULE_COLUMNS)), TIME, OF,
-            np.zeros((4 * n + 64, EVENT_COLUMNS)), BEGAN, PLACE, BLOCK, PULL, MEMBER, RESTING,
-            np.zeros((room, 3), np.int64), np.zeros((room, PUSHED_COLUMNS)),
+            rows(Impulse, 4 * n + 64), BEGAN, PLACE, BLOCK, PULL, MEMBER, RESTING,
+            rows(Pair, room), rows(Pushed, room),
             np.full(4 * room, -1, np.int64), np.zeros((4 * room, FORCE_COLUMNS)),
-            np.zeros((2, vertices, 4)), np.zeros(PAR_LENGTH), np.zeros(COUNT_LENGTH, np.int64),
+            np.zeros((2, vertices, 4)), row(Step), row(Count),
         )  # fmt: skip
         self.near = near
-        self.scene.COUNT[LIMIT], self.scene.COUNT[DISKS] = limit, disks
-        self.scene.MEMBER[:, TIED : NEXT_TIED + 1] = -1
-        self.scene.RESTING[:, RELAX : RELAX + 3] = FRESH
+        self.scene.COUNT.limit, self.scene.COUNT.disks = limit, disks
+        self.scene.MEMBER["tied"] = self.scene.MEMBER["next_tied"] = -1
+        self.scene.RESTING["augmentation"] = FRESH
 
     @property
     def scene(self) -> Scene:
@@ -123,7 +96,7 @@ class EventLoop:
     def scene(self, arrays: Scene) -> None:
         self._scene, self.table = arrays, table_of(arrays)
         self._bound: tuple[tuple[AnyArray | None, ...], Callable[..., int]] = UNBOUND
-        self._book: FloatArray = arrays.PAR[LEDGER : AFTER + 1]
+        self._book: FloatArray = numbers(arrays.PAR)[_BOOK]
 
     def step(
         self, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
@@ -161,32 +134,32 @@ class EventLoop:
     def _grow(self, wish: int) -> None:
         scene = self.scene
         if wish == ROOM_FOR_EVENTS:
-            self.scene = scene._replace(LOG=_longer(scene.LOG, int(scene.COUNT[LOGGED])))
+            self.scene = scene._replace(LOG=_longer(scene.LOG, int(scene.COUNT.logged)))
             return
         if wish == ROOM_FOR_CONTACTS:
-            size, count = len(scene.KEYS), int(scene.COUNT[REMEMBERED])
+            size, count = len(scene.KEYS), int(scene.COUNT.remembered)
             self._clean(size)
-            if count - scene.COUNT[REMEMBERED] >= size // 8:
+            if count - scene.COUNT.remembered >= size // 8:
                 return
             self._clean(2 * size)
-            used = int(scene.COUNT[PUSHES])
+            used = int(scene.COUNT.pushes)
             self.scene = self.scene._replace(
                 PUSHED_BY=_longer(scene.PUSHED_BY, used), PUSHED=_longer(scene.PUSHED, used)
             )
             return
-        self.near = rebuilt(self.near.larger(), scene.BODY, scene.SHAPE, scene.LINK, float(scene.PAR[NOW]))
+        self.near = rebuilt(self.near.larger(), scene.BODY, scene.SHAPE, scene.LINK, float(scene.PAR.now))
         self.scene = scene._replace(POOL=self.near.POOL, FLAG=self.near.FLAG)
         flag_again(self.table)
         # Margin circles are drawn about other places now: everybody is forecast anew.
-        n, now = len(scene.BODY) - 1, float(scene.PAR[NOW])
-        scene.BODY[:n, DUE], scene.STATE[:n, OTHER] = now, CHECK
-        scene.HEAP_TIME[:n], scene.HEAP_BODY[:n], scene.COUNT[HEAP] = now, np.arange(n), n
+        n, now = len(scene.BODY) - 1, float(scene.PAR.now)
+        scene.BODY["due"][:n], scene.STATE["other"][:n] = now, CHECK
+        scene.HEAP_TIME[:n], scene.HEAP_BODY[:n], scene.COUNT.heap = now, np.arange(n), n
 
     def _clean(self, size: int) -> None:
         """Forget the forces of steps before the last one, in tables of so many rows."""
         scene = self.scene
         KEYS, TABLE = np.full(size, -1, np.int64), np.zeros((size, FORCE_COLUMNS))
-        forget(scene.KEYS, scene.FORCES, scene.COUNT[REMEMBERED:], KEYS, TABLE, float(scene.PAR[STAMP]) - 1.0)
+        forget(scene.KEYS, scene.FORCES, scene.COUNT, KEYS, TABLE, float(scene.PAR.stamp) - 1.0)
         self.scene = scene._replace(KEYS=KEYS, FORCES=TABLE)
 
     def rule(self, rules: Mapping[tuple[int, int], tuple[float, float, float, float]]) -> None:
@@ -197,9 +170,9 @@ class EventLoop:
             self.scene = self.scene._replace(RULE=table)
 
     @property
-    def events(self) -> FloatArray:
-        """(m, 11) EVENT rows of the last step, a copy."""
-        return self.scene.LOG[: self.scene.COUNT[LOGGED]].copy()
+    def events(self) -> Rows[Impulse]:
+        """(m,) impulses of the last step, a copy."""
+        return self.scene.LOG[: self.scene.COUNT.logged].copy()
 
     def details(
         self, dt: float, bodies: tuple[pymunk.Body, ...], owner: IntArray
@@ -216,25 +189,25 @@ class EventLoop:
     @property
     def lock(self) -> float:
         """Scale of the energy lock of the last step that was farthest from 1."""
-        return float(self.scene.PAR[LOCK])
+        return float(self.scene.PAR.lock)
 
     @property
     def converged(self) -> bool:
         """Whether the last step left nothing undone."""
-        return bool(self.scene.COUNT[UNMET] == 0)
+        return bool(self.scene.COUNT.unmet == 0)
 
     @property
     def iterations(self) -> int:
         """Solves of islands and of blocks in the last step."""
-        return int(self.scene.COUNT[SOLVES] + self.scene.COUNT[BLOCKS])
+        return int(self.scene.COUNT.solves + self.scene.COUNT.blocks)
 
 
 class Together(EventLoop):
     """Steps the same arrays with all contacts of a step acting together at its middle (`together.py`)."""
 
-    def __init__(self, BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, disks: int) -> None:
+    def __init__(self, BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, disks: int) -> None:
         super().__init__(BODY, SHAPE, LINK, VERTEX, disks, 0)
-        self._usual: FloatArray = self.near.MARK[:, MARGIN].copy()
+        self._usual: FloatArray = self.near.MARK["margin"].copy()
         self._options = ()
 
     def _bind(self, states: tuple[AnyArray, ...]) -> Callable[..., int]:

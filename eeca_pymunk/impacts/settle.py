@@ -11,41 +11,15 @@ import numpy as np
 from ..arrays import IntArray
 from ..compiled import kernel, uncounted
 from ..geometry.flight import norm
-from ..layout import EXTENT, IM, OWNER, SIZE, SPIN, VX, VY
-from ..pairs.layout import NUMBER, START
+from ..model.contacts import LASTED
+from ..model.scene import Scene
+from ..model.step import DONE, PUSHES_FULL
 from ..pairs.lists import far_apart
 from ..pairs.rules import barred, law
 from .booking import end_span
 from .carrying import support
 from .crammed import hold_crammed
 from .islands import TOUCH, approach, carrier, members, rests, unite, worn
-from .layout import (
-    BODIES,
-    BUSY,
-    CARRIES,
-    CRAMMED,
-    DONE,
-    DT,
-    EVENTS,
-    FIRST_SHAPE,
-    HITS,
-    IGNORED,
-    ISLAND,
-    JOINTED,
-    LASTED,
-    OPEN,
-    PULLED,
-    PUSH_A,
-    PUSH_B,
-    PUSHES,
-    PUSHES_FULL,
-    REMEMBERED,
-    ROOT,
-    SHAPES,
-    STILL,
-    TIED,
-    Scene,
-)  # fmt: skip
 from .parting import stands_in_part
 from .spans import solve
 from .still import rouse
@@ -64,29 +38,29 @@ def join(A: Scene, i: int, t: float, FOUND: IntArray) -> int:
     """At instant t, let what touches body i, which is in an island, join it; where it is busy, what comes near. The
     bodies that were in none go into FOUND; how many."""
     BODY, STATE, LINK = A.BODY, A.STATE, A.LINK
-    dt, pulled = A.PAR[DT], A.PAR[PULLED]
+    dt, pulled = A.PAR.dt, A.PAR.pulled
     h = dt - t
     joined = 0
-    for s in range(STATE[i, FIRST_SHAPE], STATE[i, FIRST_SHAPE] + STATE[i, SHAPES]):
-        for w in range(A.LIST[s, START], A.LIST[s, START] + A.LIST[s, NUMBER]):
+    for s in range(STATE[i].first_shape, STATE[i].first_shape + STATE[i].shapes):
+        for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
             o = int(A.POOL[w])
-            j = LINK[o, OWNER]
-            if carrier(A, j) or STATE[j, ISLAND] == STATE[i, ISLAND] or barred(A.RULE, s, o):
+            j = LINK[o].owner
+            if carrier(A, j) or STATE[j].island == STATE[i].island or barred(A.RULE, s, o):
                 continue
-            busy = A.MEMBER[i, BUSY] > 0 or A.MEMBER[j, BUSY] > 0
+            busy = A.MEMBER[i].busy > 0 or A.MEMBER[j].busy > 0
             if law(A.SHAPE, A.RULE, s, o)[0] >= 1.0 and not busy:
                 continue
-            small = min(A.SHAPE[s, SIZE], A.SHAPE[o, SIZE])
+            small = min(A.SHAPE[s].extent, A.SHAPE[o].extent)
             reach = TOUCH * small
             if busy:
-                speed = norm(BODY[i, VX], BODY[i, VY]) + norm(BODY[j, VX], BODY[j, VY])
-                speed += abs(BODY[i, SPIN]) * BODY[i, EXTENT] + abs(BODY[j, SPIN]) * BODY[j, EXTENT]
+                speed = norm(BODY[i].vx, BODY[i].vy) + norm(BODY[j].vx, BODY[j].vy)
+                speed += abs(BODY[i].spin) * BODY[i].extent + abs(BODY[j].spin) * BODY[j].extent
                 reach += 1.1 * (speed + pulled * dt) * h
             if far_apart(BODY, A.SHAPE, LINK, s, o, t, reach + TOUCH * small):
                 continue
-            other = STATE[j, ISLAND]
-            begun = other >= 0 and A.MEMBER[other, OPEN] > 0
-            if begun and (A.MEMBER[other, JOINTED] > 0 or worn(A, other)):
+            other = STATE[j].island
+            begun = other >= 0 and A.MEMBER[other].open > 0
+            if begun and (A.MEMBER[other].jointed > 0 or worn(A, other)):
                 continue  # it is hit when they meet
             move_to(BODY, j, t)
             g, u, _, _ = approach(A.BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, A.PULL, s, o, t)
@@ -101,8 +75,8 @@ def join(A: Scene, i: int, t: float, FOUND: IntArray) -> int:
                 joined += 1
             unite(A, i, j)
             if busy:
-                A.MEMBER[i, BUSY] = max(A.MEMBER[i, BUSY], A.MEMBER[j, BUSY] - 1)
-                A.MEMBER[j, BUSY] = max(A.MEMBER[j, BUSY], A.MEMBER[i, BUSY] - 1)
+                A.MEMBER[i].busy = max(A.MEMBER[i].busy, A.MEMBER[j].busy - 1)
+                A.MEMBER[j].busy = max(A.MEMBER[j].busy, A.MEMBER[i].busy - 1)
     return joined
 
 
@@ -122,58 +96,55 @@ def settle(A: Scene) -> int:
     STATE, COUNT, BODY = A.STATE, A.COUNT, A.BODY
     n = BODY.shape[0] - 1
     rouse(A)
-    for c in range(COUNT[PUSHES]):
-        a, b = A.PUSHED_BY[c, PUSH_A], A.PUSHED_BY[c, PUSH_B]
-        if A.PUSHED_BY[c, ROOT] != LASTED or barred(A.RULE, a, b):
+    for c in range(COUNT.pushes):
+        a, b = A.PUSHED_BY[c].a, A.PUSHED_BY[c].b
+        if A.PUSHED_BY[c].root != LASTED or barred(A.RULE, a, b):
             continue
-        if c > 0 and a == A.PUSHED_BY[c - 1, PUSH_A] and b == A.PUSHED_BY[c - 1, PUSH_B]:
+        if c > 0 and a == A.PUSHED_BY[c - 1].a and b == A.PUSHED_BY[c - 1].b:
             continue  # the other end of a face
-        i, j = A.LINK[a, OWNER], A.LINK[b, OWNER]
+        i, j = A.LINK[a].owner, A.LINK[b].owner
         i, j = (j, j) if carrier(A, i) else (i, i if carrier(A, j) else j)
         if carrier(A, i):
             continue
-        if STATE[i, ISLAND] >= 0 and STATE[i, ISLAND] == STATE[j, ISLAND]:
+        if STATE[i].island >= 0 and STATE[i].island == STATE[j].island:
             continue  # together already
         if rests(A, a, b, 0.0, law(A.SHAPE, A.RULE, a, b)[0] < 1.0):
             unite(A, i, j)
     for i in range(n):
-        if A.MEMBER[i, TIED] >= 0:
-            unite(A, i, A.MEMBER[i, TIED])
-    if COUNT[CRAMMED] > 0:
+        if A.MEMBER[i].tied >= 0:
+            unite(A, i, A.MEMBER[i].tied)
+    if COUNT.crammed > 0:
         hold_crammed(A)
     QUEUE = np.empty(n, np.int64)
     queued = 0
     for i in range(n):
-        if STATE[i, ISLAND] >= 0 and A.MEMBER[i, STILL] != 1:
+        if STATE[i].island >= 0 and A.MEMBER[i].still != 1:
             QUEUE[queued] = i
             queued += 1
     queued = spread(A, QUEUE, queued, 0.0)
     kept, wanted = 0, 0
-    for c in range(COUNT[PUSHES]):
-        kept += 1 if A.PUSHED_BY[c, ROOT] >= 0 else 0
+    for c in range(COUNT.pushes):
+        kept += 1 if A.PUSHED_BY[c].root >= 0 else 0
     for i in range(n):
-        if STATE[i, ISLAND] < 0 or (A.MEMBER[i, STILL] == 1 and COUNT[CARRIES] == 0):
+        if STATE[i].island < 0 or (A.MEMBER[i].still == 1 and COUNT.carries == 0):
             continue  # what carries may have to be solved after all
-        for s in range(STATE[i, FIRST_SHAPE], STATE[i, FIRST_SHAPE] + STATE[i, SHAPES]):
-            for w in range(A.LIST[s, START], A.LIST[s, START] + A.LIST[s, NUMBER]):
+        for s in range(STATE[i].first_shape, STATE[i].first_shape + STATE[i].shapes):
+            for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
                 # Two points for each pair; those of moving shapes stand in two lists.
                 wanted += 1 if A.POOL[w] < A.LIST.shape[0] else 2
-    wanted *= 2 if COUNT[CARRIES] > 0 else 1
-    if kept + wanted > A.PUSHED.shape[0] or 2 * (COUNT[REMEMBERED] + wanted) > A.KEYS.shape[0]:
+    wanted *= 2 if COUNT.carries > 0 else 1
+    if kept + wanted > A.PUSHED.shape[0] or 2 * (COUNT.remembered + wanted) > A.KEYS.shape[0]:
         return PUSHES_FULL
     kept = 0
-    for c in range(COUNT[PUSHES]):
-        if A.PUSHED_BY[c, ROOT] >= 0:
-            for column in range(A.PUSHED_BY.shape[1]):
-                A.PUSHED_BY[kept, column] = A.PUSHED_BY[c, column]
-            for column in range(A.PUSHED.shape[1]):
-                A.PUSHED[kept, column] = A.PUSHED[c, column]
+    for c in range(COUNT.pushes):
+        if A.PUSHED_BY[c].root >= 0:
+            A.PUSHED_BY[kept], A.PUSHED[kept] = A.PUSHED_BY[c], A.PUSHED[c]
             kept += 1
-    COUNT[PUSHES] = kept
+    COUNT.pushes = kept
     # A solve may make another body the root of its island, which then would be solved again.
     roots = 0
     for i in range(n):
-        if STATE[i, ISLAND] == i and A.MEMBER[i, STILL] != 1:
+        if STATE[i].island == i and A.MEMBER[i].still != 1:
             QUEUE[roots] = i
             roots += 1
     for q in range(roots):
@@ -188,48 +159,48 @@ def settle(A: Scene) -> int:
 def comes_to_rest(A: Scene, a: int, b: int, t: float) -> bool:
     """Whether shapes a and b, which meet at instant t, stay in contact from then on: bounces of e |u| under the closing
     acceleration a_n are over within the step iff 2 e |u| <= a_n (1 - e) (dt - t)."""
-    i, j = A.LINK[a, OWNER], A.LINK[b, OWNER]
-    if A.BODY[i, IM] > 0.0:
+    i, j = A.LINK[a].owner, A.LINK[b].owner
+    if A.BODY[i].inv_mass > 0.0:
         move_to(A.BODY, i, t)
-    if A.BODY[j, IM] > 0.0:
+    if A.BODY[j].inv_mass > 0.0:
         move_to(A.BODY, j, t)
     e = law(A.SHAPE, A.RULE, a, b)[0]
     _, u, closing, _ = approach(A.BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, A.PULL, a, b, t)
-    end = A.PAR[DT]
-    met = max(A.STATE[i, EVENTS], A.STATE[j, EVENTS])
+    end = A.PAR.dt
+    met = max(A.STATE[i].events, A.STATE[j].events)
     if e < 1.0:
         return met >= _OFTEN or (closing > 0.0 and 2.0 * e * max(-u, 0.0) <= closing * (1.0 - e) * (end - t))
-    if met >= _VERY_OFTEN and closing > 0.0 and -u < _SLOW * A.PAR[PULLED] * end:
+    if met >= _VERY_OFTEN and closing > 0.0 and -u < _SLOW * A.PAR.pulled * end:
         return True
-    return A.PAR[PULLED] > 0.0 and rests(A, a, b, t, False)
+    return A.PAR.pulled > 0.0 and rests(A, a, b, t, False)
 
 
 @kernel
 def ignored(A: Scene, a: int, b: int, t: float) -> bool:
     """Whether a hit on an island at instant t is beyond its budget; the island then is busy for some steps."""
     STATE, MEMBER = A.STATE, A.MEMBER
-    i, j = A.LINK[a, OWNER], A.LINK[b, OWNER]
+    i, j = A.LINK[a].owner, A.LINK[b].owner
     hits, size, lossy = 0, 1, law(A.SHAPE, A.RULE, a, b)[0] < 1.0
     for k in (i, j):
-        root = STATE[k, ISLAND]
+        root = STATE[k].island
         if root >= 0:
-            hits, size = max(hits, MEMBER[root, HITS]), max(size, MEMBER[root, BODIES])
+            hits, size = max(hits, MEMBER[root].hits), max(size, MEMBER[root].bodies)
     most = max(_HITS, _WORK // size) if lossy else _ELASTIC_HITS
-    spent = worn(A, STATE[i, ISLAND]) or worn(A, STATE[j, ISLAND])
+    spent = worn(A, STATE[i].island) or worn(A, STATE[j].island)
     if hits < most and not spent:
         return False
     if hits < 4 * most and not spent:
-        h = A.PAR[DT] - t
-        speed = norm(A.BODY[i, VX] - A.BODY[j, VX], A.BODY[i, VY] - A.BODY[j, VY])
-        if speed * h > _DEEP * min(A.SHAPE[a, SIZE], A.SHAPE[b, SIZE]):
+        h = A.PAR.dt - t
+        speed = norm(A.BODY[i].vx - A.BODY[j].vx, A.BODY[i].vy - A.BODY[j].vy)
+        if speed * h > _DEEP * min(A.SHAPE[a].extent, A.SHAPE[b].extent):
             return False
-    A.COUNT[IGNORED] += 1
+    A.COUNT.ignored += 1
     if lossy:
         MINE = np.empty(A.BODY.shape[0], np.int64)
         for k in (i, j):
-            if A.BODY[k, IM] > 0.0:
-                A.MEMBER[k, BUSY] = BUSY_FOR
-            if STATE[k, ISLAND] >= 0:
-                for q in range(members(A, STATE[k, ISLAND], MINE)):
-                    A.MEMBER[MINE[q], BUSY] = BUSY_FOR
+            if A.BODY[k].inv_mass > 0.0:
+                A.MEMBER[k].busy = BUSY_FOR
+            if STATE[k].island >= 0:
+                for q in range(members(A, STATE[k].island, MINE)):
+                    A.MEMBER[MINE[q]].busy = BUSY_FOR
     return True

@@ -9,24 +9,13 @@ import numpy as np
 
 from ..arrays import FlagArray, FloatArray, IntArray
 from ..compiled import kernel, uncounted
-from ..layout import (
-    AX,
-    AY,
-    EXTENT,
-    II,
-    IM,
-    OWNER,
-    SINCE,
-    SPIN,
-    TWIST,
-    VX,
-    VY,
-    X,
-)
+from ..compiled.records import Rows, empty
+from ..model.contacts import ROW, Row
+from ..model.scene import Scene
+from ..model.step import DONE, JOINTS_DUE, PUSHES_FULL
 from ..pairs.lists import mark_pair
 from ..rows.build import normal_rate, tangent_rate
 from ..rows.inplace import sort
-from ..rows.layout import ARM_NA, ARM_TA, GAP, K_N, NX, NY, ROW_COLUMNS, UN, UT
 from ..sustained.contacts import CROWD
 from ..sustained.ledger import LEDGER_SIZE, carried
 from ..sustained.step import LOCK as LOCK_OF
@@ -36,53 +25,6 @@ from ..sustained.step import SWEEPS as SWEEPS_OF
 from .calm import calm, whirls
 from .coming import PARTS, before_end, hurried, pairs_of, span_of, stick_time, sweeps_of_crowd, way_of
 from .islands import lossy, members
-from .layout import (
-    AFTER_ME,
-    AMONG,
-    BETA,
-    BODIES,
-    DIRECT,
-    DONE,
-    DT,
-    HITS,
-    ISLAND,
-    JOINTED,
-    JOINTS_DUE,
-    KINKS,
-    LAM,
-    LAST_ONE,
-    LIFT,
-    LOCK,
-    LOST,
-    OPEN,
-    PUSH_A,
-    PUSH_B,
-    PUSH_CHANGE,
-    PUSH_GAP,
-    PUSH_NX,
-    PUSH_NY,
-    PUSH_X,
-    PUSH_Y,
-    PUSHES,
-    PUSHES_FULL,
-    RELAX,
-    REMEMBERED,
-    ROOT,
-    SOLVED,
-    SOLVES,
-    SPAN,
-    SPAN_FROM,
-    STAMP,
-    SWEEPS,
-    TOGETHER,
-    UN_AFTER,
-    UN_BEFORE,
-    UNTIL,
-    UT_AFTER,
-    UT_BEFORE,
-    WORK_OF,
-    Scene,
-)  # fmt: skip
 from .still import halt
 
 _SWEEPS = 40  # of an island that moves
@@ -112,7 +54,7 @@ def lay_out_island(A: Scene, MINE: IntArray, n: int, found: IntArray, t: float) 
     # Bodies that impulses do not move stand after those of the island.
     FIXED, fixed = np.empty(p, np.int64), 0
     for c in range(p):
-        j = A.LINK[found[c, 1], OWNER]
+        j = A.LINK[found[c, 1]].owner
         if A.PLACE[j] < 0:
             A.PLACE[j] = n + fixed
             FIXED[fixed] = j
@@ -124,11 +66,14 @@ def lay_out_island(A: Scene, MINE: IntArray, n: int, found: IntArray, t: float) 
     for q in range(k):
         i = MINE[q] if q < n else FIXED[q - n]
         WHO[q] = i
-        s = t - BODY[i, SINCE]
-        V[q, 0], V[q, 1], V[q, 2] = BODY[i, VX], BODY[i, VY], BODY[i, SPIN]
-        for c in range(3):
-            POSE[q, c] = BODY[i, X + c] + V[q, c] * s
-        IMS[q], IIS[q], SIZES[q] = BODY[i, IM], BODY[i, II], BODY[i, EXTENT]
+        s = t - BODY[i].since
+        V[q, 0], V[q, 1], V[q, 2] = BODY[i].vx, BODY[i].vy, BODY[i].spin
+        POSE[q, 0], POSE[q, 1], POSE[q, 2] = (
+            BODY[i].x + V[q, 0] * s,
+            BODY[i].y + V[q, 1] * s,
+            BODY[i].angle + V[q, 2] * s,
+        )
+        IMS[q], IIS[q], SIZES[q] = BODY[i].inv_mass, BODY[i].inv_inertia, BODY[i].extent
         if q >= n and IMS[q] > 0.0:
             # It stands, and carries what moves.
             V[q, 2], IMS[q], IIS[q] = 0.0, 0.0, 0.0
@@ -139,7 +84,7 @@ def lay_out_island(A: Scene, MINE: IntArray, n: int, found: IntArray, t: float) 
     PAIRS = np.empty((p, 4), np.int64)
     for c in range(p):
         PAIRS[c, 0], PAIRS[c, 1] = found[c, 0], found[c, 1]
-        PAIRS[c, 2], PAIRS[c, 3] = A.PLACE[A.LINK[found[c, 0], OWNER]], A.PLACE[A.LINK[found[c, 1], OWNER]]
+        PAIRS[c, 2], PAIRS[c, 3] = A.PLACE[A.LINK[found[c, 0]].owner], A.PLACE[A.LINK[found[c, 1]].owner]
     for q in range(n, k):
         A.PLACE[WHO[q]] = -1
     return Local(WHO, POSE, V, ACC, IMS, IIS, SIZES, FELT, PAIRS)
@@ -147,35 +92,35 @@ def lay_out_island(A: Scene, MINE: IntArray, n: int, found: IntArray, t: float) 
 
 @kernel
 def open_contacts(
-    A: Scene, isle: Local, P: IntArray, Q: IntArray, ROWS: FloatArray, KEY: IntArray, L: FloatArray, VN: FloatArray,
+    A: Scene, isle: Local, P: IntArray, Q: IntArray, ROWS: Rows[Row], KEY: IntArray, L: FloatArray, VN: FloatArray,
     m: int, t: float, h: float, TOUCHED: FlagArray,
 ) -> None:  # fmt: skip
     """Write the m contacts of a span of length h after those of other islands; TOUCHED (k,): bodies that have any."""
-    shapes, first, moving = A.SHAPE.shape[0], A.COUNT[PUSHES], A.LIST.shape[0]
+    shapes, first, moving = A.SHAPE.shape[0], A.COUNT.pushes, A.LIST.shape[0]
     for z in range(m):
         pair = KEY[z] >> 1
         a, b = pair // shapes, pair % shapes
-        if A.LINK[a, OWNER] != isle.WHO[P[z]]:
+        if A.LINK[a].owner != isle.WHO[P[z]]:
             a, b = b, a
         TOUCHED[P[z]], TOUCHED[Q[z]] = 1, 1
         if z == 0 or pair != KEY[z - 1] >> 1:
             mark_pair(A.LIST, A.POOL, A.FLAG, moving, a, b, 1)
         c = first + z
-        A.PUSHED_BY[c, PUSH_A], A.PUSHED_BY[c, PUSH_B] = a, b
-        ROW = A.PUSHED[c]
-        ROW[LAM], ROW[BETA], ROW[SPAN_FROM], ROW[SPAN] = L[z, 0], L[z, 1], t, h
-        ROW[UN_BEFORE], ROW[UT_BEFORE] = ROWS[z, UN], ROWS[z, UT]
-        ROW[UN_AFTER], ROW[UT_AFTER] = normal_rate(P, Q, ROWS, VN, z), tangent_rate(P, Q, ROWS, VN, z)
-        ROW[WORK_OF] = carried(
+        A.PUSHED_BY[c].a, A.PUSHED_BY[c].b = a, b
+        pushed = A.PUSHED[c]
+        pushed.normal, pushed.tangential, pushed.start, pushed.length = L[z, 0], L[z, 1], t, h
+        pushed.un_before, pushed.ut_before = ROWS[z].un, ROWS[z].ut
+        pushed.un_after, pushed.ut_after = normal_rate(P, Q, ROWS, VN, z), tangent_rate(P, Q, ROWS, VN, z)
+        pushed.work = carried(
             P[z : z + 1], Q[z : z + 1], ROWS[z : z + 1], L[z : z + 1], isle.V, VN, isle.IM, isle.II, 1
         )  # fmt: skip
-        ROW[PUSH_NX], ROW[PUSH_NY] = ROWS[z, NX], ROWS[z, NY]
+        pushed.nx, pushed.ny = ROWS[z].nx, ROWS[z].ny
         # The point from its arms: r = arm_t n - arm_n t.
         x, y = isle.POSE[P[z], 0] + 0.5 * h * isle.V[P[z], 0], isle.POSE[P[z], 1] + 0.5 * h * isle.V[P[z], 1]
-        ROW[PUSH_X] = x + ROWS[z, ARM_TA] * ROWS[z, NX] + ROWS[z, ARM_NA] * ROWS[z, NY]
-        ROW[PUSH_Y] = y + ROWS[z, ARM_TA] * ROWS[z, NY] - ROWS[z, ARM_NA] * ROWS[z, NX]
-        ROW[PUSH_CHANGE] = L[z, 0] / ROWS[z, K_N]
-        ROW[PUSH_GAP] = ROWS[z, GAP] if t == 0.0 else math.nan
+        pushed.px = x + ROWS[z].arm_ta * ROWS[z].nx + ROWS[z].arm_na * ROWS[z].ny
+        pushed.py = y + ROWS[z].arm_ta * ROWS[z].ny - ROWS[z].arm_na * ROWS[z].nx
+        pushed.change = L[z, 0] / ROWS[z].k_n
+        pushed.gap = ROWS[z].gap if t == 0.0 else math.nan
 
 
 @uncounted
@@ -183,9 +128,9 @@ def among_of(A: Scene, isle: Local, n: int) -> int:
     """The n bodies of an island, and those of the islands that carry them."""
     found, last = n, -1
     for q in range(n, len(isle.WHO)):
-        root = A.STATE[isle.WHO[q], ISLAND]
-        if A.BODY[isle.WHO[q], IM] > 0.0 and root >= 0 and root != last:
-            found, last = found + A.MEMBER[root, BODIES], root
+        root = A.STATE[isle.WHO[q]].island
+        if A.BODY[isle.WHO[q]].inv_mass > 0.0 and root >= 0 and root != last:
+            found, last = found + A.MEMBER[root].bodies, root
     return found
 
 
@@ -203,10 +148,10 @@ def solve(A: Scene, root: int, t: float) -> int:
     DONE, or PUSHES_FULL, which leaves everything as it was.
     """
     BODY, STATE, MEMBER, COUNT = A.BODY, A.STATE, A.MEMBER, A.COUNT
-    n = MEMBER[root, BODIES]
+    n = MEMBER[root].bodies
     MINE = np.empty(n, np.int64)
     members(A, root, MINE)
-    if MEMBER[root, JOINTED] > 0:
+    if MEMBER[root].jointed > 0:
         return JOINTS_DUE
     sort(MINE, n)
     for q in range(n):
@@ -215,7 +160,7 @@ def solve(A: Scene, root: int, t: float) -> int:
     found = pairs_of(A, root, t, may_lose, A.PLACE, MINE, n)
     p = len(found)
     h = span_of(A, found, t)
-    if COUNT[PUSHES] + 2 * p > A.PUSHED.shape[0] or 2 * (COUNT[REMEMBERED] + 2 * p) > A.KEYS.shape[0]:
+    if COUNT.pushes + 2 * p > A.PUSHED.shape[0] or 2 * (COUNT.remembered + 2 * p) > A.KEYS.shape[0]:
         dismiss(A, MINE, n)
         return PUSHES_FULL
     isle = lay_out_island(A, MINE, n, found, t)
@@ -224,10 +169,10 @@ def solve(A: Scene, root: int, t: float) -> int:
     IMS, IIS, SIZES, PAIRS = isle.IM, isle.II, isle.EXTENT, isle.PAIRS
     room = 2 * p + 1
     P, Q, KEY = np.empty(room, np.int64), np.empty(room, np.int64), np.empty(room, np.int64)
-    ROWS, L, LOSS = np.empty((room, ROW_COLUMNS)), np.zeros((room, 2)), np.zeros((room, 2))
+    ROWS, L, LOSS = empty(room, ROW), np.zeros((room, 2)), np.zeros((room, 2))
     VN, JUMP, BOOK, OUT = np.empty((k, 3)), np.zeros((k, 6)), np.zeros(LEDGER_SIZE), np.zeros(OUT_SIZE)
     least = 0.0
-    if COUNT[TOGETHER] > 0:
+    if COUNT.together > 0:
         for q in range(k):
             least = max(least, way_of(A, WHO[q], h))
     sweeps = _SWEEPS if n < CROWD else sweeps_of_crowd(t)
@@ -237,57 +182,58 @@ def solve(A: Scene, root: int, t: float) -> int:
     if p > 0 and h > 0.0:
         m = step_island(
             POSE, V, ACC, IMS, IIS, SIZES, isle.FELT, n, PAIRS, p, A.SHAPE, A.RULE, A.LINK, A.VERTEX, A.WORK, h,
-            sweeps, least, max(-A.RESTING[root, LOST], 0.0), A.KEYS, A.FORCES, COUNT[REMEMBERED:], A.PAR[STAMP],
-            A.RESTING[MINE[0], RELAX : RELAX + 3], quiet, P, Q, ROWS, KEY, L, LOSS, VN, JUMP, BOOK, OUT,
+            sweeps, least, max(-A.RESTING[root].lost, 0.0), A.KEYS, A.FORCES, COUNT, A.PAR.stamp,
+            A.RESTING[MINE[0]], quiet, P, Q, ROWS, KEY, L, LOSS, VN, JUMP, BOOK, OUT,
         )  # fmt: skip
         stuck = h if hurried(A) or OUT[STOOD] > 0.0 else stick_time(P, Q, ROWS, L, V + h * ACC, VN, m, h)
         if stuck < h:
             # Where slip ends on the way, so does the span: friction changes its law there.
-            h = min(max(stuck, A.PAR[DT] / PARTS), h)
+            h = min(max(stuck, A.PAR.dt / PARTS), h)
             BOOK[:] = 0.0
             m = step_island(
                 POSE, V, ACC, IMS, IIS, SIZES, isle.FELT, n, PAIRS, p, A.SHAPE, A.RULE, A.LINK, A.VERTEX, A.WORK, h,
-                sweeps, least, max(-A.RESTING[root, LOST], 0.0), A.KEYS, A.FORCES, COUNT[REMEMBERED:], A.PAR[STAMP],
-                A.RESTING[MINE[0], RELAX : RELAX + 3], 0.0, P, Q, ROWS, KEY, L, LOSS, VN, JUMP, BOOK, OUT,
+                sweeps, least, max(-A.RESTING[root].lost, 0.0), A.KEYS, A.FORCES, COUNT, A.PAR.stamp,
+                A.RESTING[MINE[0]], 0.0, P, Q, ROWS, KEY, L, LOSS, VN, JUMP, BOOK, OUT,
             )  # fmt: skip
-        if abs(OUT[LOCK_OF] - 1.0) > abs(A.PAR[LOCK] - 1.0):
-            A.PAR[LOCK] = OUT[LOCK_OF]
-    COUNT[SOLVES] += 1
-    COUNT[SOLVED] += n
-    COUNT[SWEEPS] += int(OUT[SWEEPS_OF])
-    COUNT[DIRECT] += int(OUT[POLISHES_OF])
-    first = COUNT[PUSHES]
+        if abs(OUT[LOCK_OF] - 1.0) > abs(A.PAR.lock - 1.0):
+            A.PAR.lock = OUT[LOCK_OF]
+    COUNT.solves += 1
+    COUNT.solved += n
+    COUNT.sweeps += int(OUT[SWEEPS_OF])
+    COUNT.direct += int(OUT[POLISHES_OF])
+    first = COUNT.pushes
     TOUCHED = np.zeros(k, np.uint8)
     open_contacts(A, isle, P, Q, ROWS, KEY, L, VN, m, t, h, TOUCHED)
-    lost, hits = A.RESTING[root, LOST], MEMBER[root, HITS]
+    lost, hits = A.RESTING[root].lost, MEMBER[root].hits
     head, tail, size = -1, -1, 0
     for q in range(n):
         i = MINE[q]
-        STATE[i, KINKS] += 1
-        for c in range(6):
-            A.RESTING[i, LIFT + c] = JUMP[q, c]
+        STATE[i].version += 1
+        rest = A.RESTING[i]
+        rest.lift_x, rest.lift_y, rest.lift_angle = JUMP[q, 0], JUMP[q, 1], JUMP[q, 2]
+        rest.lift_vx, rest.lift_vy, rest.lift_spin = JUMP[q, 3], JUMP[q, 4], JUMP[q, 5]
         if TOUCHED[q] == 0:
-            STATE[i, ISLAND] = -1
-            BODY[i, AX], BODY[i, AY], BODY[i, TWIST] = A.PULL[i, 0], A.PULL[i, 1], A.PULL[i, 2]
+            STATE[i].island = -1
+            BODY[i].ax, BODY[i].ay, BODY[i].angular = A.PULL[i, 0], A.PULL[i, 1], A.PULL[i, 2]
             continue
-        BODY[i, AX], BODY[i, AY] = (VN[q, 0] - V[q, 0]) / h, (VN[q, 1] - V[q, 1]) / h
-        BODY[i, TWIST] = (VN[q, 2] - V[q, 2]) / h
+        BODY[i].ax, BODY[i].ay = (VN[q, 0] - V[q, 0]) / h, (VN[q, 1] - V[q, 1]) / h
+        BODY[i].angular = (VN[q, 2] - V[q, 2]) / h
         if head < 0:
             head = i
         else:
-            MEMBER[tail, AFTER_ME] = i
+            MEMBER[tail].following = i
         tail = i
         size += 1
-        STATE[i, ISLAND], MEMBER[i, AFTER_ME] = head, -1
+        STATE[i].island, MEMBER[i].following = head, -1
     if head >= 0:
-        MEMBER[head, LAST_ONE], MEMBER[head, BODIES], MEMBER[head, HITS] = tail, size, hits
-        MEMBER[head, AMONG] = among
-        A.RESTING[head, LOST] = lost
-        MEMBER[head, OPEN] = 1
-        A.RESTING[head, UNTIL] = t + h if before_end(A, t + h) else math.inf
+        MEMBER[head].last, MEMBER[head].bodies, MEMBER[head].hits = tail, size, hits
+        MEMBER[head].among = among
+        A.RESTING[head].lost = lost
+        MEMBER[head].open = 1
+        A.RESTING[head].until = t + h if before_end(A, t + h) else math.inf
         for z in range(m):
-            A.PUSHED_BY[first + z, ROOT] = head
-        COUNT[PUSHES] += m
+            A.PUSHED_BY[first + z].root = head
+        COUNT.pushes += m
         if OUT[STOOD] > 0.0:
             halt(A, head)
     return DONE

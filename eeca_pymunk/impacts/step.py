@@ -4,27 +4,13 @@ from __future__ import annotations
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import Table, kernel, uncounted
+from ..model.scene import Scene, scene_of
+from ..model.step import DONE, LOG_FULL, POOL_FULL
 from ..transfer import EVENTS as SOME
 from ..transfer import give, take
 from .begin import begin
 from .close import close
 from .due import forecast_due
-from .layout import (
-    CRAMMED,
-    DONE,
-    DT,
-    GRAVITY_X,
-    GRAVITY_Y,
-    LEFT_OVER,
-    LOG_FULL,
-    LOGGED,
-    PHASE,
-    POOL_FULL,
-    PULLED,
-    PUSHES,
-    Scene,
-    scene_of,
-)
 from .loop import follow
 from .settle import settle
 
@@ -39,7 +25,7 @@ def start(
     """Take the states that were read, and begin a step of length dt on them; the bits so far, or a negative code."""
     status = take(STATES, WALK, EXTRA, A.BODY, gx, gy, left)
     if status >= 0:
-        A.PAR[DT], A.PAR[GRAVITY_X], A.PAR[GRAVITY_Y], A.PAR[LEFT_OVER] = dt, gx, gy, left
+        A.PAR.dt, A.PAR.gravity_x, A.PAR.gravity_y, A.PAR.left_over = dt, gx, gy, left
         begin(A, WALK)
     return status
 
@@ -50,9 +36,9 @@ def finish(
 ) -> int:  # fmt: skip
     """Close the step, and give the states at its end; the bits of the step, or a negative code."""
     close(A, WALK)
-    if A.COUNT[LOGGED] > 0:
+    if A.COUNT.logged > 0:
         status |= SOME
-    return give(STATES, WALK, EXTRA, A.BODY, ENDS, A.PAR[DT], A.PAR[LEFT_OVER], status)
+    return give(STATES, WALK, EXTRA, A.BODY, ENDS, A.PAR.dt, A.PAR.left_over, status)
 
 
 @uncounted
@@ -70,17 +56,17 @@ def resume(
 ) -> int:  # fmt: skip
     """The rest of a step, whose bits so far are `status`."""
     COUNT = A.COUNT
-    if COUNT[PHASE] == 0:
-        if COUNT[PUSHES] + COUNT[CRAMMED] > 0 and settle(A) != DONE:
+    if COUNT.phase == 0:
+        if COUNT.pushes + COUNT.crammed > 0 and settle(A) != DONE:
             return ROOM_FOR_CONTACTS
-        COUNT[PHASE] = 1
+        COUNT.phase = 1
         forecast_due(A, disks)
-    if COUNT[PHASE] == 1:
-        met = follow(A, disks, lossy or A.PAR[PULLED] > 0.0)
+    if COUNT.phase == 1:
+        met = follow(A, disks, lossy or A.PAR.pulled > 0.0)
         if met != DONE:
             return wish(met)
-        COUNT[PHASE] = 2
-    if COUNT[LOGGED] + COUNT[PUSHES] > A.LOG.shape[0]:
+        COUNT.phase = 2
+    if COUNT.logged + COUNT.pushes > A.LOG.shape[0]:
         return ROOM_FOR_EVENTS
     return finish(A, STATES, WALK, EXTRA, ENDS, status)
 

@@ -12,51 +12,12 @@ it may come to a stand; of a kinematic body CHANGED while it moves.
 from __future__ import annotations
 
 from ..compiled import uncounted
-from ..layout import ANGLE, AX, AY, DUE, IM, OWNER, SPIN, TWIST, VX, VY, X, Y
+from ..model.contacts import LASTED
+from ..model.scene import Scene
 from ..pairs.lists import mark_pair
 from ..sustained.memory import STAMP as OF_STEP
 from ..sustained.memory import find, key_of
 from .calm import WOKEN, hardly, later, speed, whirls
-from .layout import (
-    AFTER_ME,
-    AMONG,
-    ANEW,
-    BETA,
-    BUSY,
-    CALM_FOR,
-    CARRIES,
-    DT,
-    HITS,
-    ISLAND,
-    KINKS,
-    LAM,
-    LASTED,
-    LEDGER,
-    LOGGED,
-    LOST,
-    PULLED,
-    PUSH_A,
-    PUSH_B,
-    PUSH_CHANGE,
-    PUSH_GAP,
-    PUSH_NX,
-    PUSH_NY,
-    PUSH_X,
-    PUSH_Y,
-    PUSHES,
-    RESTITUTION,
-    ROOT,
-    SPAN,
-    STAMP,
-    STILL,
-    STILL_DUE,
-    UN_AFTER,
-    UN_BEFORE,
-    UT_AFTER,
-    UT_BEFORE,
-    WORK_OF,
-    Scene,
-)  # fmt: skip
 from .strike import kinetic, note
 
 CHANGED = 2
@@ -66,35 +27,35 @@ CHANGED = 2
 def as_left(A: Scene, i: int) -> bool:
     """Whether body i has no velocity, or a spin alone that nobody feels, and is where it was left."""
     BODY, BEGAN = A.BODY, A.BEGAN
-    same = BODY[i, X] == BEGAN[i, 0] and BODY[i, Y] == BEGAN[i, 1] and BODY[i, ANGLE] == BEGAN[i, 2]
-    return bool(same and BODY[i, VX] == 0.0 and BODY[i, VY] == 0.0 and (BODY[i, SPIN] == 0.0 or whirls(A, i)))
+    same = BODY[i].x == BEGAN[i, 0] and BODY[i].y == BEGAN[i, 1] and BODY[i].angle == BEGAN[i, 2]
+    return bool(same and BODY[i].vx == 0.0 and BODY[i].vy == 0.0 and (BODY[i].spin == 0.0 or whirls(A, i)))
 
 
 @uncounted
 def stays(A: Scene, i: int, last: float) -> bool:
     """Whether body i stands as it stood; it then has no path but that, and its forecast of `last` ago."""
     BODY = A.BODY
-    pulled = BODY[i, AX] == A.PULL[i, 0] and BODY[i, AY] == A.PULL[i, 1] and BODY[i, TWIST] == A.PULL[i, 2]
-    if A.MEMBER[i, BUSY] > 0 or not pulled or not as_left(A, i):
-        A.MEMBER[A.STATE[i, ISLAND], STILL] = CHANGED
+    pulled = BODY[i].ax == A.PULL[i, 0] and BODY[i].ay == A.PULL[i, 1] and BODY[i].angular == A.PULL[i, 2]
+    if A.MEMBER[i].busy > 0 or not pulled or not as_left(A, i):
+        A.MEMBER[A.STATE[i].island].still = CHANGED
         return False
-    BODY[i, AX], BODY[i, AY], BODY[i, TWIST] = 0.0, 0.0, 0.0
+    BODY[i].ax, BODY[i].ay, BODY[i].angular = 0.0, 0.0, 0.0
     # What does not stand for long is not asked again for long.
-    A.RESTING[i, CALM_FOR] = min(A.RESTING[i, CALM_FOR] + 1.0, WOKEN)
-    BODY[i, DUE] = max(A.RESTING[i, STILL_DUE] - last, 0.0)
+    A.RESTING[i].calm_for = min(A.RESTING[i].calm_for + 1.0, WOKEN)
+    BODY[i].due = max(A.RESTING[i].still_due - last, 0.0)
     return True
 
 
 @uncounted
 def watch(A: Scene, i: int) -> None:
     """Say of a body that impulses do not move whether it has moved since the last step, or will in this."""
-    A.MEMBER[i, STILL] = 0 if as_left(A, i) else CHANGED
+    A.MEMBER[i].still = 0 if as_left(A, i) else CHANGED
 
 
 @uncounted
 def touch(A: Scene, c: int, stamp: float) -> None:
     """Let the forces of contact number c be those of the step `stamp`."""
-    a, b = A.PUSHED_BY[c, PUSH_A], A.PUSHED_BY[c, PUSH_B]
+    a, b = A.PUSHED_BY[c].a, A.PUSHED_BY[c].b
     key = key_of(A.SHAPE.shape[0], a, b)
     for z in range(2):
         row = find(A.KEYS, key + z)
@@ -105,18 +66,18 @@ def touch(A: Scene, c: int, stamp: float) -> None:
 @uncounted
 def spread_change(A: Scene) -> None:
     """What rests on bodies of an island that is CHANGED is so too, and so on."""
-    MEMBER, more = A.MEMBER, A.COUNT[CARRIES] > 0
+    MEMBER, more = A.MEMBER, A.COUNT.carries > 0
     while more:
         more = False
-        for c in range(A.COUNT[PUSHES]):
-            root = A.PUSHED_BY[c, ROOT]
-            if root < 0 or MEMBER[root, STILL] == CHANGED:
+        for c in range(A.COUNT.pushes):
+            root = A.PUSHED_BY[c].root
+            if root < 0 or MEMBER[root].still == CHANGED:
                 continue
             for side in range(2):
-                j = A.LINK[A.PUSHED_BY[c, PUSH_A + side], OWNER]
-                other = A.STATE[j, ISLAND]
-                if A.BODY[j, IM] > 0.0 and other >= 0 and MEMBER[other, STILL] == CHANGED:
-                    MEMBER[root, STILL], more = CHANGED, True
+                j = A.LINK[A.PUSHED_BY[c].b if side > 0 else A.PUSHED_BY[c].a].owner
+                other = A.STATE[j].island
+                if A.BODY[j].inv_mass > 0.0 and other >= 0 and MEMBER[other].still == CHANGED:
+                    MEMBER[root].still, more = CHANGED, True
 
 
 @uncounted
@@ -125,101 +86,102 @@ def rouse(A: Scene) -> None:
     the front, with the impulses of this step."""
     STATE, MEMBER, BODY = A.STATE, A.MEMBER, A.BODY
     ground = BODY.shape[0] - 1
-    dt = A.PAR[DT]
-    for c in range(A.COUNT[PUSHES]):
-        root = A.PUSHED_BY[c, ROOT]
+    dt = A.PAR.dt
+    for c in range(A.COUNT.pushes):
+        root = A.PUSHED_BY[c].root
         if root < 0:
             continue
         for side in range(2):
-            j = A.LINK[A.PUSHED_BY[c, PUSH_A + side], OWNER]
-            if j != ground and BODY[j, IM] == 0.0 and MEMBER[j, STILL] == CHANGED:
-                MEMBER[root, STILL] = CHANGED
+            j = A.LINK[A.PUSHED_BY[c].b if side > 0 else A.PUSHED_BY[c].a].owner
+            if j != ground and BODY[j].inv_mass == 0.0 and MEMBER[j].still == CHANGED:
+                MEMBER[root].still = CHANGED
         if A.RULE.shape[0] > 0:
-            MEMBER[root, STILL] = CHANGED
+            MEMBER[root].still = CHANGED
     spread_change(A)
-    for c in range(A.COUNT[PUSHES]):
-        root = A.PUSHED_BY[c, ROOT]
-        if root >= 0 and MEMBER[root, STILL] == CHANGED:
-            A.PUSHED_BY[c, ROOT] = LASTED
-            mark_pair(A.LIST, A.POOL, A.FLAG, A.LIST.shape[0], A.PUSHED_BY[c, PUSH_A], A.PUSHED_BY[c, PUSH_B], 0)
+    for c in range(A.COUNT.pushes):
+        root = A.PUSHED_BY[c].root
+        if root >= 0 and MEMBER[root].still == CHANGED:
+            A.PUSHED_BY[c].root = LASTED
+            mark_pair(A.LIST, A.POOL, A.FLAG, A.LIST.shape[0], A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, 0)
         elif root >= 0:
             R = A.PUSHED[c]
-            for column in (LAM, BETA, PUSH_CHANGE):
-                R[column] *= dt / R[SPAN]
-            R[SPAN] = dt
-    most = A.PAR[PULLED] * dt
+            longer = dt / R.length
+            R.normal *= longer
+            R.tangential *= longer
+            R.change *= longer
+            R.length = dt
+    most = A.PAR.pulled * dt
     for i in range(ground):
-        root = STATE[i, ISLAND]
-        if root < 0 or MEMBER[root, STILL] == 1:
+        root = STATE[i].island
+        if root < 0 or MEMBER[root].still == 1:
             continue
-        slow = speed(A, i, 0.0) <= hardly(MEMBER[root, AMONG]) * most
-        A.RESTING[i, CALM_FOR] = A.RESTING[i, CALM_FOR] + 1.0 if slow else 0.0
-        if MEMBER[i, STILL] > 0:
-            BODY[i, AX], BODY[i, AY], BODY[i, TWIST] = A.PULL[i, 0], A.PULL[i, 1], A.PULL[i, 2]
-            STATE[i, KINKS] += 1
+        slow = speed(A, i, 0.0) <= hardly(MEMBER[root].among) * most
+        A.RESTING[i].calm_for = A.RESTING[i].calm_for + 1.0 if slow else 0.0
+        if MEMBER[i].still > 0:
+            BODY[i].ax, BODY[i].ay, BODY[i].angular = A.PULL[i, 0], A.PULL[i, 1], A.PULL[i, 2]
+            STATE[i].version += 1
         # Its forecast left out the pairs of its span.
-        BODY[i, DUE] = min(BODY[i, DUE], 0.0)
+        BODY[i].due = min(BODY[i].due, 0.0)
     for i in range(ground):
-        root = STATE[i, ISLAND]
+        root = STATE[i].island
         if root < 0:
             continue
-        if MEMBER[root, STILL] != 1:
-            STATE[i, ISLAND] = -1
+        if MEMBER[root].still != 1:
+            STATE[i].island = -1
             if i != root:
-                MEMBER[i, STILL] = 0
+                MEMBER[i].still = 0
         else:
-            A.RESTING[i, LOST], MEMBER[i, HITS] = 0.0, 0
+            A.RESTING[i].lost, MEMBER[i].hits = 0.0, 0
     for i in range(ground):
-        if STATE[i, ISLAND] < 0 and BODY[i, IM] > 0.0:
-            MEMBER[i, STILL] = 0
+        if STATE[i].island < 0 and BODY[i].inv_mass > 0.0:
+            MEMBER[i].still = 0
 
 
 @uncounted
 def disturb(A: Scene, root: int) -> None:
     """A still island is hit, or joined: its span of this step is an ordinary one."""
-    for c in range(A.COUNT[PUSHES]):
-        if A.PUSHED_BY[c, ROOT] == root:
-            touch(A, c, A.PAR[STAMP])
+    for c in range(A.COUNT.pushes):
+        if A.PUSHED_BY[c].root == root:
+            touch(A, c, A.PAR.stamp)
     i = root
     while i >= 0:
-        A.MEMBER[i, STILL] = 0
-        i = A.MEMBER[i, AFTER_ME]
+        A.MEMBER[i].still = 0
+        i = A.MEMBER[i].following
 
 
 @uncounted
 def keep(A: Scene, c: int, root: int) -> None:
     """Contact number c, just booked, goes on: its island comes to a stand."""
     R = A.PUSHED[c]
-    A.PUSHED_BY[c, ROOT] = root
-    mark_pair(A.LIST, A.POOL, A.FLAG, A.LIST.shape[0], A.PUSHED_BY[c, PUSH_A], A.PUSHED_BY[c, PUSH_B], 1)
-    for column in (UN_BEFORE, UN_AFTER, UT_BEFORE, UT_AFTER, WORK_OF):
-        R[column] = 0.0
+    A.PUSHED_BY[c].root = root
+    mark_pair(A.LIST, A.POOL, A.FLAG, A.LIST.shape[0], A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, 1)
+    R.un_before, R.un_after, R.ut_before, R.ut_after, R.work = 0.0, 0.0, 0.0, 0.0, 0.0
 
 
 @uncounted
 def stand(A: Scene, c: int) -> None:
     """Contact number c, of an island that stands still: its impulse is noted, and goes on."""
     R = A.PUSHED[c]
-    touch(A, c, A.PAR[STAMP])
-    if A.COUNT[LOGGED] < A.LOG.shape[0] and (R[LAM] != 0.0 or R[BETA] != 0.0):
+    touch(A, c, A.PAR.stamp)
+    if A.COUNT.logged < A.LOG.shape[0] and (R.normal != 0.0 or R.tangential != 0.0):
         note(
-            A.LOG, A.COUNT[LOGGED], A.PUSHED_BY[c, PUSH_A], A.PUSHED_BY[c, PUSH_B], 0.5 * A.PAR[DT], R[LAM], R[BETA],
-            R[PUSH_NX], R[PUSH_NY], R[PUSH_X], R[PUSH_Y], R[PUSH_CHANGE], R[PUSH_GAP],
+            A.LOG, A.COUNT.logged, A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, 0.5 * A.PAR.dt, R.normal, R.tangential,
+            R.nx, R.ny, R.px, R.py, R.change, R.gap,
         )  # fmt: skip
-        A.COUNT[LOGGED] += 1
+        A.COUNT.logged += 1
 
 
 @uncounted
 def stop(A: Scene, i: int) -> None:
     """Body i has no velocity any more, but for a spin that nobody feels; its energy is lost to restitution."""
     BODY = A.BODY
-    A.PAR[LEDGER + RESTITUTION] += kinetic(BODY, i)
-    BODY[i, VX], BODY[i, VY] = 0.0, 0.0
+    A.PAR.restitution += kinetic(BODY, i)
+    BODY[i].vx, BODY[i].vy = 0.0, 0.0
     if whirls(A, i):
-        A.PAR[LEDGER + RESTITUTION] -= kinetic(BODY, i)
+        A.PAR.restitution -= kinetic(BODY, i)
     else:
-        BODY[i, SPIN] = 0.0
-    A.STATE[i, KINKS] += 1
+        BODY[i].spin = 0.0
+    A.STATE[i].version += 1
 
 
 @uncounted
@@ -227,20 +189,19 @@ def halt(A: Scene, root: int) -> None:
     """At either end of a step, an island that comes to a stand: its bodies stop, but for spins that nobody feels. Once
     something wakes it, it is soon asked whether it stands again."""
     BODY, MEMBER = A.BODY, A.MEMBER
-    MEMBER[root, ANEW] = 1
+    MEMBER[root].anew = 1
     i = root
     while i >= 0:
         stop(A, i)
-        BODY[i, AX], BODY[i, AY], BODY[i, TWIST] = 0.0, 0.0, 0.0
-        MEMBER[i, STILL], BODY[i, DUE], A.RESTING[i, CALM_FOR] = 1, 0.0, later(MEMBER[root, AMONG])
-        i = MEMBER[i, AFTER_ME]
+        BODY[i].ax, BODY[i].ay, BODY[i].angular = 0.0, 0.0, 0.0
+        MEMBER[i].still, BODY[i].due, A.RESTING[i].calm_for = 1, 0.0, later(MEMBER[root].among)
+        i = MEMBER[i].following
 
 
 @uncounted
 def leave(A: Scene) -> None:
     """What still bodies have to find again at the next step: where they are, and when they are due."""
     for i in range(A.BODY.shape[0] - 1):
-        if A.MEMBER[i, STILL] == 1:
-            A.RESTING[i, STILL_DUE] = A.BODY[i, DUE]
-            for c in range(3):
-                A.BEGAN[i, c] = A.BODY[i, X + c]
+        if A.MEMBER[i].still == 1:
+            A.RESTING[i].still_due = A.BODY[i].due
+            A.BEGAN[i, 0], A.BEGAN[i, 1], A.BEGAN[i, 2] = A.BODY[i].x, A.BODY[i].y, A.BODY[i].angle

@@ -4,79 +4,41 @@ from __future__ import annotations
 
 import math
 
-from ..arrays import FloatArray
 from ..compiled import merged, uncounted
+from ..compiled.records import Rows
 from ..geometry.flight import pose
 from ..geometry.gap import gap_at, touching
-from ..layout import (
-    ANGLE,
-    AX,
-    AY,
-    BOUNCE,
-    CHANGE,
-    EXTENT,
-    GAP,
-    GRIP,
-    II,
-    IM,
-    IMPULSE,
-    NORMAL_X,
-    NORMAL_Y,
-    OWNER,
-    POINT_X,
-    POINT_Y,
-    SINCE,
-    SPIN,
-    TANGENTIAL,
-    VX,
-    VY,
-    WHEN,
-    X,
-    Y,
-)  # fmt: skip
-from ..layout import (
-    FIRST_SHAPE as BY,
-)
-from ..layout import (
-    SECOND_SHAPE as ON,
-)
-from ..pairs.layout import NUMBER, START
+from ..model.bodies import Body
+from ..model.contacts import Impulse
+from ..model.scene import Scene
 from ..pairs.lists import far_apart
 from ..pairs.rules import barred, law
-from .layout import (
-    EVEN,
-    EVENTS,
-    EXTERNAL,
-    FIRST_SHAPE,
-    FRICTIONAL,
-    IMPACTS,
-    KINKS,
-    LEDGER,
-    LOGGED,
-    RESTITUTION,
-    SHAPES,
-    Scene,
-)  # fmt: skip
 
 
 @uncounted
-def move_to(BODY: FloatArray, i: int, t: float) -> None:
+def move_to(BODY: Rows[Body], i: int, t: float) -> None:
     """Let the path of body i begin at instant t."""
-    s = t - BODY[i, SINCE]
+    body = BODY[i]
+    s = t - body.since
     if s != 0.0:
-        for c in range(3):
-            BODY[i, X + c] += (BODY[i, VX + c] + 0.5 * BODY[i, AX + c] * s) * s
-            BODY[i, VX + c] += BODY[i, AX + c] * s
-        BODY[i, SINCE] = t
+        body.x += (body.vx + 0.5 * body.ax * s) * s
+        body.y += (body.vy + 0.5 * body.ay * s) * s
+        body.angle += (body.spin + 0.5 * body.angular * s) * s
+        body.vx += body.ax * s
+        body.vy += body.ay * s
+        body.spin += body.angular * s
+        body.since = t
 
 
 @uncounted
-def kinetic(BODY: FloatArray, i: int) -> float:
+def kinetic(BODY: Rows[Body], i: int) -> float:
     """Kinetic energy of body i; 0 for what impulses do not move."""
-    if BODY[i, IM] == 0.0:
+    if BODY[i].inv_mass == 0.0:
         return 0.0
-    vx, vy, spin = BODY[i, VX], BODY[i, VY], BODY[i, SPIN]
-    return 0.5 * (vx * vx + vy * vy) / BODY[i, IM] + (0.5 * spin * spin / BODY[i, II] if BODY[i, II] > 0.0 else 0.0)
+    vx, vy, spin = BODY[i].vx, BODY[i].vy, BODY[i].spin
+    return 0.5 * (vx * vx + vy * vy) / BODY[i].inv_mass + (
+        0.5 * spin * spin / BODY[i].inv_inertia if BODY[i].inv_inertia > 0.0 else 0.0
+    )
 
 
 @uncounted
@@ -89,7 +51,7 @@ def touches(A: Scene, disks: int, a: int, b: int, t: float) -> bool:
             return False
         if a < disks and b < disks:
             return True
-    i, j = A.LINK[a, OWNER], A.LINK[b, OWNER]
+    i, j = A.LINK[a].owner, A.LINK[b].owner
     xa, ya, qa = pose(BODY, i, t)
     xb, yb, qb = pose(BODY, j, t)
     return gap_at(A.SHAPE, A.LINK, A.VERTEX, A.WORK, a, xa, ya, qa, b, xb, yb, qb)[0] <= tolerance
@@ -100,21 +62,21 @@ def alone(A: Scene, disks: int, i: int, other: int, t: float) -> bool:
     """Whether no shape but `other` touches the shapes of body i at instant t."""
     BODY, POOL = A.BODY, A.POOL
     x, y, _ = pose(BODY, i, t)
-    even, ax, ay = A.COUNT[EVEN] > 0, BODY[i, AX], BODY[i, AY]
-    for s in range(A.STATE[i, FIRST_SHAPE], A.STATE[i, FIRST_SHAPE] + A.STATE[i, SHAPES]):
-        start = A.LIST[s, START]
-        for q in range(start, start + A.LIST[s, NUMBER]):
+    even, ax, ay = A.COUNT.even > 0, BODY[i].ax, BODY[i].ay
+    for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):
+        start = A.LIST[s].start
+        for q in range(start, start + A.LIST[s].number):
             o = int(POOL[q])
             if o == other:
                 continue
             if o < disks:
                 # Most are plainly apart.
-                h = t - BODY[o, SINCE]
+                h = t - BODY[o].since
                 if not even:
-                    ax, ay = BODY[o, AX], BODY[o, AY]
-                dx = BODY[o, X] + (BODY[o, VX] + 0.5 * ax * h) * h - x
-                dy = BODY[o, Y] + (BODY[o, VY] + 0.5 * ay * h) * h - y
-                far = 1.001 * (BODY[i, EXTENT] + BODY[o, EXTENT]) + 1e-9 * (abs(x) + abs(y))
+                    ax, ay = BODY[o].ax, BODY[o].ay
+                dx = BODY[o].x + (BODY[o].vx + 0.5 * ax * h) * h - x
+                dy = BODY[o].y + (BODY[o].vy + 0.5 * ay * h) * h - y
+                far = 1.001 * (BODY[i].extent + BODY[o].extent) + 1e-9 * (abs(x) + abs(y))
                 if dx * dx + dy * dy > far * far:
                     continue
             if touches(A, disks, s, o, t) and not barred(A.RULE, s, o):
@@ -124,21 +86,21 @@ def alone(A: Scene, disks: int, i: int, other: int, t: float) -> bool:
 
 @uncounted
 def note(
-    LOG: FloatArray, n: int, a: int, b: int, t: float, lam: float, beta: float, nx: float, ny: float, px: float,
+    LOG: Rows[Impulse], n: int, a: int, b: int, t: float, lam: float, beta: float, nx: float, ny: float, px: float,
     py: float, change: float, gap: float,
 ) -> None:  # fmt: skip
     """Row n of the log: an impulse between shapes a and b at instant t; `gap` at the start of the step, nan if that is
     to be found out."""
-    LOG[n, BY], LOG[n, ON], LOG[n, WHEN], LOG[n, IMPULSE], LOG[n, TANGENTIAL] = a, b, t, lam, beta
-    LOG[n, NORMAL_X], LOG[n, NORMAL_Y], LOG[n, POINT_X], LOG[n, POINT_Y], LOG[n, CHANGE] = nx, ny, px, py, change
-    LOG[n, GAP] = gap
+    LOG[n].first, LOG[n].second, LOG[n].when, LOG[n].normal, LOG[n].tangential = a, b, t, lam, beta
+    LOG[n].nx, LOG[n].ny, LOG[n].px, LOG[n].py, LOG[n].change = nx, ny, px, py, change
+    LOG[n].gap = gap
 
 
 @uncounted
-def law_of_disks(BODY: FloatArray, i: int, j: int) -> tuple[float, float, float, float]:
+def law_of_disks(BODY: Rows[Body], i: int, j: int) -> tuple[float, float, float, float]:
     """`law` of two lone disks of which no handler says otherwise, and which have no friction: else their surfaces count
     too. From rows that are at hand."""
-    return BODY[i, BOUNCE] * BODY[j, BOUNCE], BODY[i, GRIP] * BODY[j, GRIP], 0.0, 0.0
+    return BODY[i].elasticity * BODY[j].elasticity, BODY[i].friction * BODY[j].friction, 0.0, 0.0
 
 
 @merged
@@ -151,51 +113,51 @@ def strike_disk(A: Scene, disks: int, i: int, o: int, t: float) -> None:
     """
     BODY, PAR = A.BODY, A.PAR
     disk = o < disks
-    j = o if disk else A.LINK[o, OWNER]
+    j = o if disk else A.LINK[o].owner
     move_to(BODY, i, t)
-    x, y = BODY[i, X], BODY[i, Y]
+    x, y = BODY[i].x, BODY[i].y
     if disk:
         move_to(BODY, j, t)
-        nx, ny = BODY[j, X] - x, BODY[j, Y] - y
+        nx, ny = BODY[j].x - x, BODY[j].y - y
         d = math.sqrt(nx * nx + ny * ny)
         nx, ny = nx / d, ny / d
-        px, py = x + BODY[i, EXTENT] * nx, y + BODY[i, EXTENT] * ny
+        px, py = x + BODY[i].extent * nx, y + BODY[i].extent * ny
     else:
         _, nx, ny, px, py = gap_at(
-            A.SHAPE, A.LINK, A.VERTEX, A.WORK, i, x, y, BODY[i, ANGLE], o, BODY[j, X], BODY[j, Y], BODY[j, ANGLE]
+            A.SHAPE, A.LINK, A.VERTEX, A.WORK, i, x, y, BODY[i].angle, o, BODY[j].x, BODY[j].y, BODY[j].angle
         )
     e, mu, sx, sy = law_of_disks(BODY, i, j)
     if not disk or mu > 0.0 or A.RULE.shape[0] > 0:
         e, mu, sx, sy = law(A.SHAPE, A.RULE, i, o)
-    vx, vy = BODY[j, VX] - BODY[i, VX], BODY[j, VY] - BODY[i, VY]
+    vx, vy = BODY[j].vx - BODY[i].vx, BODY[j].vy - BODY[i].vy
     u = nx * vx + ny * vy
-    free = BODY[i, IM] + BODY[j, IM]
+    free = BODY[i].inv_mass + BODY[j].inv_mass
     lam = (1.0 + e) * max(-u, 0.0) / free
     beta = 0.0
-    r_i, r_j = BODY[i, EXTENT], -BODY[j, EXTENT] if disk else 0.0
+    r_i, r_j = BODY[i].extent, -BODY[j].extent if disk else 0.0
     if mu > 0.0:
         surface = nx * sy - ny * sx
-        slip = nx * vy - ny * vx + surface + r_j * BODY[j, SPIN] - r_i * BODY[i, SPIN]
-        turning = free + BODY[i, II] * r_i * r_i + BODY[j, II] * r_j * r_j
+        slip = nx * vy - ny * vx + surface + r_j * BODY[j].spin - r_i * BODY[i].spin
+        turning = free + BODY[i].inv_inertia * r_i * r_i + BODY[j].inv_inertia * r_j * r_j
         beta = min(max(-slip / turning, -mu * lam), mu * lam)
-        PAR[LEDGER + FRICTIONAL] -= beta * (slip + 0.5 * beta * turning)
+        PAR.frictional -= beta * (slip + 0.5 * beta * turning)
         # What nothing turns drives as a surface does.
-        driven = surface + (r_j * BODY[j, SPIN] if BODY[j, II] == 0.0 else 0.0)
-        driven -= r_i * BODY[i, SPIN] if BODY[i, II] == 0.0 else 0.0
-        PAR[LEDGER + EXTERNAL] -= beta * driven
+        driven = surface + (r_j * BODY[j].spin if BODY[j].inv_inertia == 0.0 else 0.0)
+        driven -= r_i * BODY[i].spin if BODY[i].inv_inertia == 0.0 else 0.0
+        PAR.external -= beta * driven
     fx, fy = lam * nx - beta * ny, lam * ny + beta * nx
-    BODY[i, VX] -= fx * BODY[i, IM]
-    BODY[i, VY] -= fy * BODY[i, IM]
-    BODY[i, SPIN] -= BODY[i, II] * r_i * beta
-    A.STATE[i, KINKS] += 1
-    A.STATE[i, EVENTS] += 1
+    BODY[i].vx -= fx * BODY[i].inv_mass
+    BODY[i].vy -= fy * BODY[i].inv_mass
+    BODY[i].spin -= BODY[i].inv_inertia * r_i * beta
+    A.STATE[i].version += 1
+    A.STATE[i].events += 1
     if disk:
-        BODY[j, VX] += fx * BODY[j, IM]
-        BODY[j, VY] += fy * BODY[j, IM]
-        BODY[j, SPIN] += BODY[j, II] * r_j * beta
-        A.STATE[j, KINKS] += 1
-        A.STATE[j, EVENTS] += 1
-    PAR[LEDGER + RESTITUTION] += 0.5 * lam * (1.0 - e) * max(-u, 0.0)
-    note(A.LOG, A.COUNT[LOGGED], i, o, t, lam, beta, nx, ny, px, py, lam * free, math.nan)
-    A.COUNT[LOGGED] += 1
-    A.COUNT[IMPACTS] += 1
+        BODY[j].vx += fx * BODY[j].inv_mass
+        BODY[j].vy += fy * BODY[j].inv_mass
+        BODY[j].spin += BODY[j].inv_inertia * r_j * beta
+        A.STATE[j].version += 1
+        A.STATE[j].events += 1
+    PAR.restitution += 0.5 * lam * (1.0 - e) * max(-u, 0.0)
+    note(A.LOG, A.COUNT.logged, i, o, t, lam, beta, nx, ny, px, py, lam * free, math.nan)
+    A.COUNT.logged += 1
+    A.COUNT.impacts += 1

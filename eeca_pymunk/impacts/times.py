@@ -9,10 +9,12 @@ from __future__ import annotations
 
 import math
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FloatArray
 from ..compiled import uncounted
+from ..compiled.records import Rows
 from ..geometry.gap import ROUND_OFF
-from ..layout import AX, AY, EXTENT, OWNER, ROUNDING, SINCE, VX, VY, X, Y
+from ..model.bodies import Body
+from ..model.shapes import Link, Shape
 from .circles import circle_circle, circle_outline
 from .roots import ball_point
 from .turning import general
@@ -56,12 +58,12 @@ def one_pull(
 
 
 @uncounted
-def disk_disk(BODY: FloatArray, i: int, j: int, horizon: float) -> tuple[float, bool]:
+def disk_disk(BODY: Rows[Body], i: int, j: int, horizon: float) -> tuple[float, bool]:
     """Lone disks i and j: in closed form where one acceleration pulls both."""
-    since_i, since_j = BODY[i, SINCE], BODY[j, SINCE]
-    x_i, y_i, vx_i, vy_i, ax_i, ay_i = BODY[i, X], BODY[i, Y], BODY[i, VX], BODY[i, VY], BODY[i, AX], BODY[i, AY]
-    x_j, y_j, vx_j, vy_j, ax_j, ay_j = BODY[j, X], BODY[j, Y], BODY[j, VX], BODY[j, VY], BODY[j, AX], BODY[j, AY]
-    extent = BODY[i, EXTENT] + BODY[j, EXTENT]
+    since_i, since_j = BODY[i].since, BODY[j].since
+    x_i, y_i, vx_i, vy_i, ax_i, ay_i = BODY[i].x, BODY[i].y, BODY[i].vx, BODY[i].vy, BODY[i].ax, BODY[i].ay
+    x_j, y_j, vx_j, vy_j, ax_j, ay_j = BODY[j].x, BODY[j].y, BODY[j].vx, BODY[j].vy, BODY[j].ax, BODY[j].ay
+    extent = BODY[i].extent + BODY[j].extent
     if ax_i == ax_j and ay_i == ay_j:
         t = one_pull(since_i, x_i, y_i, vx_i, vy_i, since_j, x_j, y_j, vx_j, vy_j, ax_i, ay_i, extent, math.inf)
         return t, True
@@ -82,14 +84,14 @@ def disk_disk(BODY: FloatArray, i: int, j: int, horizon: float) -> tuple[float, 
 
 @uncounted
 def disk_wall(
-    BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, i: int, b: int, horizon: float
+    BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, i: int, b: int, horizon: float
 ) -> tuple[float, bool]:
     """Lone disk i and a static shape b: in closed form, but for round ends under a pull."""
-    x, y, since = BODY[i, X], BODY[i, Y], BODY[i, SINCE]
-    extent = BODY[i, EXTENT] + SHAPE[b, ROUNDING]
+    x, y, since = BODY[i].x, BODY[i].y, BODY[i].since
+    extent = BODY[i].extent + SHAPE[b].rounding
     tolerance = ROUND_OFF * (max(abs(x), abs(y)) + extent)
     t, certain = circle_outline(
-        x, y, BODY[i, VX], BODY[i, VY], BODY[i, AX], BODY[i, AY], extent, tolerance, LINK, VERTEX, b,
+        x, y, BODY[i].vx, BODY[i].vy, BODY[i].ax, BODY[i].ay, extent, tolerance, LINK, VERTEX, b,
         max(horizon - since, 0.0),
     )  # fmt: skip
     return since + t, certain or t == math.inf
@@ -97,7 +99,7 @@ def disk_wall(
 
 @uncounted
 def meet(
-    BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray,
+    BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, WORK: FloatArray,
     a: int, b: int, disks: int, horizon: float, held: float,
 ) -> tuple[float, bool]:  # fmt: skip
     """Instant at which shapes a and b meet next, and whether they do; `disks` lone disks have the first numbers.
@@ -112,6 +114,6 @@ def meet(
     if a < disks:
         if b < disks:
             return disk_disk(BODY, a, b, horizon)
-        if LINK[b, OWNER] == BODY.shape[0] - 1:
+        if LINK[b].owner == BODY.shape[0] - 1:
             return disk_wall(BODY, SHAPE, LINK, VERTEX, a, b, horizon)
     return general(BODY, SHAPE, LINK, VERTEX, WORK, a, b, disks, horizon, held)

@@ -11,28 +11,13 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import Table, kernel, uncounted
 from ..geometry.flight import norm, pose
 from ..geometry.gap import gap
-from ..layout import ANGLE, AX, AY, EXTENT, IM, OWNER, SIZE, SPIN, TWIST, VX, VY, X, Y
+from ..model.scene import Scene, scene_of
+from ..model.step import DONE
 from ..pairs.candidates import cover
-from ..pairs.layout import NUMBER, START
 from ..pairs.lists import mark_pair
 from ..pairs.rules import barred
 from .coming import way_of
 from .islands import TOUCH, approach, unite
-from .layout import (
-    DONE,
-    DT,
-    FIRST_SHAPE,
-    ISLAND,
-    NOW,
-    PUSH_A,
-    PUSH_B,
-    PUSHES,
-    SHAPES,
-    SPEED,
-    TOGETHER,
-    Scene,
-    scene_of,
-)
 from .spans import solve
 from .step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, finish, start
 
@@ -42,8 +27,8 @@ _PASSES = 3  # further solves for bodies that impulses send into others
 @uncounted
 def reaches(A: Scene, USUAL: FloatArray, i: int) -> bool:
     """Make the lists of body i complete for what it may reach within the step. False if there is no room."""
-    way = way_of(A, i, A.PAR[DT])
-    for s in range(A.STATE[i, FIRST_SHAPE], A.STATE[i, FIRST_SHAPE] + A.STATE[i, SHAPES]):
+    way = way_of(A, i, A.PAR.dt)
+    for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):
         if not cover(
             A.BODY, A.SHAPE, A.LINK, A.MARK, A.CELL, A.LIST, A.POOL, A.FLAG, A.HEAD, A.GRID, A.INFO, A.BOX, A.CSR,
             USUAL, s, way,
@@ -56,21 +41,21 @@ def reaches(A: Scene, USUAL: FloatArray, i: int) -> bool:
 def join_all(A: Scene, USUAL: FloatArray) -> bool:
     """The islands of all bodies that may touch within the step. False if there is no room for lists."""
     BODY, LINK = A.BODY, A.LINK
-    n, dt = BODY.shape[0] - 1, A.PAR[DT]
+    n, dt = BODY.shape[0] - 1, A.PAR.dt
     for i in range(n):
         if not reaches(A, USUAL, i):
             return False
     for s in range(A.LIST.shape[0]):
-        i = LINK[s, OWNER]
-        if BODY[i, IM] == 0.0:
+        i = LINK[s].owner
+        if BODY[i].inv_mass == 0.0:
             continue
-        for w in range(A.LIST[s, START], A.LIST[s, START] + A.LIST[s, NUMBER]):
+        for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
             o = int(A.POOL[w])
-            j = LINK[o, OWNER]
-            moves = BODY[j, IM] > 0.0
+            j = LINK[o].owner
+            moves = BODY[j].inv_mass > 0.0
             if (moves and o < s) or barred(A.RULE, s, o):
                 continue
-            touch = TOUCH * min(A.SHAPE[s, SIZE], A.SHAPE[o, SIZE])
+            touch = TOUCH * min(A.SHAPE[s].extent, A.SHAPE[o].extent)
             g = approach(BODY, A.SHAPE, LINK, A.VERTEX, A.WORK, A.PULL, s, o, 0.0)[0]
             if g <= way_of(A, i, dt) + way_of(A, j, dt) + touch:
                 unite(A, i, j if moves else i)
@@ -80,12 +65,12 @@ def join_all(A: Scene, USUAL: FloatArray) -> bool:
 @uncounted
 def anew(A: Scene) -> None:
     """Undo the spans that were begun: nobody is in an island, and impulses have changed no path."""
-    for c in range(A.COUNT[PUSHES]):
-        mark_pair(A.LIST, A.POOL, A.FLAG, A.LIST.shape[0], A.PUSHED_BY[c, PUSH_A], A.PUSHED_BY[c, PUSH_B], 0)
-    A.COUNT[PUSHES] = 0
+    for c in range(A.COUNT.pushes):
+        mark_pair(A.LIST, A.POOL, A.FLAG, A.LIST.shape[0], A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, 0)
+    A.COUNT.pushes = 0
     for i in range(A.BODY.shape[0] - 1):
-        A.STATE[i, ISLAND] = -1
-        A.BODY[i, AX], A.BODY[i, AY], A.BODY[i, TWIST] = A.PULL[i, 0], A.PULL[i, 1], A.PULL[i, 2]
+        A.STATE[i].island = -1
+        A.BODY[i].ax, A.BODY[i].ay, A.BODY[i].angular = A.PULL[i, 0], A.PULL[i, 1], A.PULL[i, 2]
 
 
 @uncounted
@@ -93,30 +78,30 @@ def overrun(A: Scene, USUAL: FloatArray) -> int:
     """How many bodies went farther than was thought, and into others that are no contacts of the solve; they have the
     speed now that they got. -1 if there is no room for lists."""
     BODY, LINK, RESTING = A.BODY, A.LINK, A.RESTING
-    dt, found = A.PAR[DT], 0
+    dt, found = A.PAR.dt, 0
     for i in range(BODY.shape[0] - 1):
-        if A.STATE[i, ISLAND] < 0:
+        if A.STATE[i].island < 0:
             continue
         x, y, angle = pose(BODY, i, dt)
-        way = norm(x - BODY[i, X], y - BODY[i, Y]) + abs(angle - BODY[i, ANGLE]) * BODY[i, EXTENT]
+        way = norm(x - BODY[i].x, y - BODY[i].y) + abs(angle - BODY[i].angle) * BODY[i].extent
         if way <= way_of(A, i, dt):
             continue
-        before, RESTING[i, SPEED] = RESTING[i, SPEED], way / dt
+        before, RESTING[i].speed = RESTING[i].speed, way / dt
         if not reaches(A, USUAL, i):
             return -1
         into = 0
-        for s in range(A.STATE[i, FIRST_SHAPE], A.STATE[i, FIRST_SHAPE] + A.STATE[i, SHAPES]):
-            for w in range(A.LIST[s, START], A.LIST[s, START] + A.LIST[s, NUMBER]):
+        for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):
+            for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
                 o = int(A.POOL[w])
                 if A.FLAG[w] != 0 or barred(A.RULE, s, o):
                     continue
-                small = min(A.SHAPE[s, SIZE], A.SHAPE[o, SIZE])
+                small = min(A.SHAPE[s].extent, A.SHAPE[o].extent)
                 if gap(BODY, A.SHAPE, LINK, A.VERTEX, A.WORK, s, o, dt)[0] < -TOUCH * small:
                     into += 1
         if into > 0:
             found += 1
         else:
-            RESTING[i, SPEED] = before
+            RESTING[i].speed = before
     return found
 
 
@@ -127,9 +112,9 @@ def resume_together(
     """The rest of a step, whose bits so far are `status`; from its start, if it has been broken off for more room."""
     COUNT, BODY = A.COUNT, A.BODY
     n = BODY.shape[0] - 1
-    A.RESTING[n, SPEED] = 0.0
+    A.RESTING[n].speed = 0.0
     for i in range(n):
-        A.RESTING[i, SPEED] = norm(BODY[i, VX], BODY[i, VY]) + abs(BODY[i, SPIN]) * BODY[i, EXTENT]
+        A.RESTING[i].speed = norm(BODY[i].vx, BODY[i].vy) + abs(BODY[i].spin) * BODY[i].extent
     for solves in range(_PASSES + 1):
         anew(A)
         if not join_all(A, USUAL):
@@ -137,13 +122,13 @@ def resume_together(
         # A solve may make another body the root of its island, which then would be solved again.
         roots = 0
         for i in range(n):
-            if A.STATE[i, ISLAND] == i:
+            if A.STATE[i].island == i:
                 A.BLOCK[roots] = i
                 roots += 1
         for q in range(roots):
             if solve(A, A.BLOCK[q], 0.0) != DONE:
                 return ROOM_FOR_CONTACTS
-        if COUNT[PUSHES] > A.LOG.shape[0]:
+        if COUNT.pushes > A.LOG.shape[0]:
             return ROOM_FOR_EVENTS
         if solves == _PASSES:
             break
@@ -171,5 +156,5 @@ def step_together(
     status = start(A, STATES, WALK, EXTRA, dt, gx, gy, left)
     if status < 0:
         return status
-    A.COUNT[TOGETHER], A.PAR[NOW] = 1, 0.0
+    A.COUNT.together, A.PAR.now = 1, 0.0
     return resume_together(A, STATES, WALK, EXTRA, ENDS, USUAL, status)

@@ -19,12 +19,14 @@ from __future__ import annotations
 
 import math
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FloatArray
 from ..compiled import uncounted
+from ..compiled.records import Rows
 from ..geometry.convex import closest, place
 from ..geometry.flight import pose, rate
 from ..geometry.gap import touching
-from ..layout import AX, AY, BOUND, CENTRE_X, CENTRE_Y, OWNER, ROUNDING, SINCE, SIZE, TWIST
+from ..model.bodies import Body
+from ..model.shapes import Link, Shape
 from .apart import carried_circles_meet, circles_meet
 from .roots import ADVANCES, STRIDE, flat
 
@@ -85,30 +87,30 @@ def turning_axis(
 
 
 @uncounted
-def reach_of(BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, s: int) -> tuple[float, float, float]:
+def reach_of(BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], s: int) -> tuple[float, float, float]:
     """A point of the body of shape s, relative to its centre of mass, and the reach of the shape about it: the centre
     of mass itself, but for what stands on the ground the shape's own centre."""
-    if LINK[s, OWNER] == BODY.shape[0] - 1:
-        return SHAPE[s, CENTRE_X], SHAPE[s, CENTRE_Y], SHAPE[s, BOUND]
-    return 0.0, 0.0, SHAPE[s, SIZE]
+    if LINK[s].owner == BODY.shape[0] - 1:
+        return SHAPE[s].centre_x, SHAPE[s].centre_y, SHAPE[s].bound
+    return 0.0, 0.0, SHAPE[s].extent
 
 
 @uncounted
 def bends(
-    BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, a: int, b: int, start: float, left: float
+    BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], a: int, b: int, start: float, left: float
 ) -> tuple[float, float, float]:
     """The bounds B (length/time²) of the fixed axis and those of a and b, from `start` on for `left`."""
-    i, j = LINK[a, OWNER], LINK[b, OWNER]
+    i, j = LINK[a].owner, LINK[b].owner
     x_a, y_a, _ = pose(BODY, i, start)
     x_b, y_b, _ = pose(BODY, j, start)
     ux_a, uy_a, w_a = rate(BODY, i, start)
     ux_b, uy_b, w_b = rate(BODY, j, start)
-    q_a, q_b = abs(BODY[i, TWIST]), abs(BODY[j, TWIST])
+    q_a, q_b = abs(BODY[i].angular), abs(BODY[j].angular)
     w_a, w_b = abs(w_a) + q_a * left, abs(w_b) + q_b * left
     px_a, py_a, r_a = reach_of(BODY, SHAPE, LINK, a)
     px_b, py_b, r_b = reach_of(BODY, SHAPE, LINK, b)
-    r_a, r_b = max(r_a - SHAPE[a, ROUNDING], 0.0), max(r_b - SHAPE[b, ROUNDING], 0.0)
-    A = math.sqrt((BODY[j, AX] - BODY[i, AX]) ** 2 + (BODY[j, AY] - BODY[i, AY]) ** 2)
+    r_a, r_b = max(r_a - SHAPE[a].rounding, 0.0), max(r_b - SHAPE[b].rounding, 0.0)
+    A = math.sqrt((BODY[j].ax - BODY[i].ax) ** 2 + (BODY[j].ay - BODY[i].ay) ** 2)
     V = math.sqrt((ux_b - ux_a) ** 2 + (uy_b - uy_a) ** 2) + A * left
     L = math.sqrt((x_b + px_b - x_a - px_a) ** 2 + (y_b + py_b - y_a - py_a) ** 2) + V * left
     around_a, around_b = r_a * (w_a * w_a + q_a), r_b * (w_b * w_b + q_b)
@@ -118,7 +120,7 @@ def bends(
 
 
 @uncounted
-def pressed(BODY: FloatArray, i: int, j: int, t: float, nx: float, ny: float, px: float, py: float) -> float:
+def pressed(BODY: Rows[Body], i: int, j: int, t: float, nx: float, ny: float, px: float, py: float) -> float:
     """When bodies that touch at a point, and there part with u >= 0 or rest, are back: 2 u / a_n if the point's
     acceleration closes by a_n > 0; infinity else."""
     x_a, y_a, _ = pose(BODY, i, t)
@@ -126,17 +128,17 @@ def pressed(BODY: FloatArray, i: int, j: int, t: float, nx: float, ny: float, px
     ux_a, uy_a, w_a = rate(BODY, i, t)
     ux_b, uy_b, w_b = rate(BODY, j, t)
     rx_a, ry_a, rx_b, ry_b = px - x_a, py - y_a, px - x_b, py - y_b
-    q_a, q_b = BODY[i, TWIST], BODY[j, TWIST]
+    q_a, q_b = BODY[i].angular, BODY[j].angular
     u = nx * (ux_b - w_b * ry_b - ux_a + w_a * ry_a) + ny * (uy_b + w_b * rx_b - uy_a - w_a * rx_a)
-    ax = BODY[j, AX] - q_b * ry_b - w_b * w_b * rx_b - (BODY[i, AX] - q_a * ry_a - w_a * w_a * rx_a)
-    ay = BODY[j, AY] + q_b * rx_b - w_b * w_b * ry_b - (BODY[i, AY] + q_a * rx_a - w_a * w_a * ry_a)
+    ax = BODY[j].ax - q_b * ry_b - w_b * w_b * rx_b - (BODY[i].ax - q_a * ry_a - w_a * w_a * rx_a)
+    ay = BODY[j].ay + q_b * rx_b - w_b * w_b * ry_b - (BODY[i].ay + q_a * rx_a - w_a * w_a * ry_a)
     closing = -(nx * ax + ny * ay)
     return 2.0 * max(u, 0.0) / closing if closing > 0.0 else math.inf
 
 
 @uncounted
 def general(
-    BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray,
+    BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, WORK: FloatArray,
     a: int, b: int, disks: int, horizon: float, held: float,
 ) -> tuple[float, bool]:  # fmt: skip
     """Instant at which any two shapes meet next, and whether they do, or are only known to be apart until then.
@@ -150,8 +152,8 @@ def general(
     """
     if a > b:
         a, b = b, a
-    i, j = LINK[a, OWNER], LINK[b, OWNER]
-    start = max(BODY[i, SINCE], BODY[j, SINCE])
+    i, j = LINK[a].owner, LINK[b].owner
+    start = max(BODY[i].since, BODY[j].since)
     left = max(horizon - start, 0.0)
     tolerance = touching(BODY, SHAPE, LINK, a, b, disks)
     s, never = circles_meet(BODY, SHAPE, LINK, VERTEX, WORK, a, b, start, left, tolerance)
@@ -160,11 +162,11 @@ def general(
     if s == 0.0:
         s = carried_circles_meet(BODY, SHAPE, LINK, a, b, start, left)
         if s > left:
-            if BODY[i, TWIST] == 0.0 and BODY[j, TWIST] == 0.0:
+            if BODY[i].angular == 0.0 and BODY[j].angular == 0.0:
                 return start + s, s == math.inf
             return horizon, False
     bend, bend_a, bend_b = bends(BODY, SHAPE, LINK, a, b, start, left)
-    extent = SHAPE[a, ROUNDING] + SHAPE[b, ROUNDING]
+    extent = SHAPE[a].rounding + SHAPE[b].rounding
     P, Q = WORK[0], WORK[1]
     for _ in range(ADVANCES):
         x_a, y_a, angle_a = pose(BODY, i, start + s)
@@ -189,7 +191,7 @@ def general(
             )
             safe, near, met = max(safe, may), max(near, gap), met and closes
         if not met and near <= tolerance:
-            back = pressed(BODY, i, j, start + s, nx, ny, px + SHAPE[a, ROUNDING] * nx, py + SHAPE[a, ROUNDING] * ny)
+            back = pressed(BODY, i, j, start + s, nx, ny, px + SHAPE[a].rounding * nx, py + SHAPE[a].rounding * ny)
             if back <= STRIDE * left:
                 return start + s + back, True
         # Shapes that touch without closing would be followed in steps that shrink with their rate.

@@ -9,9 +9,10 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
-from ..impacts.layout import Scene
+from ..compiled.records import Rows
 from ..impacts.spans import Local
-from ..rows.layout import ARM_NA, ARM_NB, ARM_TA, ARM_TB, NX, NY
+from ..model.contacts import Row
+from ..model.scene import Scene
 from .columns import Columns, fill_group
 from .component import ready, step_component
 from .gathered import find_places, gather_component, lead_component, rewind_joints
@@ -42,7 +43,7 @@ def is_hit(groups: Groups, P: IntArray, Q: IntArray, m: int, g: int) -> bool:
 
 @kernel
 def advance(
-    A: Scene, J: Joints, isle: Local, groups: Groups, P: IntArray, Q: IntArray, ROWS: FloatArray, L: FloatArray, m: int,
+    A: Scene, J: Joints, isle: Local, groups: Groups, P: IntArray, Q: IntArray, ROWS: Rows[Row], L: FloatArray, m: int,
     t: float, h: float, motion: Motion, C: Columns, fill: int, GUESS: FloatArray,
 ) -> None:  # fmt: skip
     """Step all bodies of an island by h under the impulses L of its contacts, from where its joints were; `fill` the
@@ -51,14 +52,15 @@ def advance(
     k = len(isle.IM)
     ACC = isle.ACC.copy()
     for i in range(m):
-        fx = (L[i, 0] * ROWS[i, NX] - L[i, 1] * ROWS[i, NY]) / h
-        fy = (L[i, 0] * ROWS[i, NY] + L[i, 1] * ROWS[i, NX]) / h
+        fx = (L[i, 0] * ROWS[i].nx - L[i, 1] * ROWS[i].ny) / h
+        fy = (L[i, 0] * ROWS[i].ny + L[i, 1] * ROWS[i].nx) / h
         for side in range(2):
             q, sign = (P[i], -1.0) if side == 0 else (Q[i], 1.0)
-            arm_n, arm_t = (ARM_NA, ARM_TA) if side == 0 else (ARM_NB, ARM_TB)
+            arm_n = ROWS[i].arm_na if side == 0 else ROWS[i].arm_nb
+            arm_t = ROWS[i].arm_ta if side == 0 else ROWS[i].arm_tb
             ACC[q, 0] += sign * isle.IM[q] * fx
             ACC[q, 1] += sign * isle.IM[q] * fy
-            ACC[q, 2] += sign * isle.II[q] * (L[i, 0] * ROWS[i, arm_n] + L[i, 1] * ROWS[i, arm_t]) / h
+            ACC[q, 2] += sign * isle.II[q] * (L[i, 0] * arm_n + L[i, 1] * arm_t) / h
     INDEX = np.full(k, -1, np.int64)
     for g in range(len(groups.COMPONENT)):
         s = groups.COMPONENT[g]

@@ -5,22 +5,8 @@ from __future__ import annotations
 import math
 
 from ..compiled import uncounted
-from ..impacts.layout import (
-    AFTER_ME,
-    BODIES,
-    FIRST_SHAPE,
-    ISLAND,
-    KINKS,
-    LIFT,
-    OPEN,
-    SHAPES,
-    SOLVES,
-    UNTIL,
-    Scene,
-)
 from ..joints.scratch import BEFORE, BODY_0, BODY_1, FREEDOMS, M_BODY, M_FREEDOMS, POSE, TRAVEL
-from ..layout import ANGLE, AX, II, VX, X
-from ..pairs.layout import NUMBER, START
+from ..model.scene import Scene
 from ..pairs.rules import barred
 from .component import step_in_scratch
 from .gathered import gather_alone, keep_joints
@@ -36,10 +22,10 @@ def is_component(A: Scene, J: Joints, root: int) -> bool:
     count = 0
     for i in range(J.SPAN[s, BODY_0], J.SPAN[s, BODY_1]):
         if J.MEMBER[i, M_FREEDOMS] > 0:
-            if A.STATE[J.MEMBER[i, M_BODY], ISLAND] != root:
+            if A.STATE[J.MEMBER[i, M_BODY]].island != root:
                 return False
             count += 1
-    return bool(count == A.MEMBER[root, BODIES])
+    return bool(count == A.MEMBER[root].bodies)
 
 
 @uncounted
@@ -47,11 +33,11 @@ def meets_nobody(A: Scene, root: int) -> bool:
     """Whether no shape of an island has another one near that it may meet."""
     i = root
     while i >= 0:
-        for s in range(A.STATE[i, FIRST_SHAPE], A.STATE[i, FIRST_SHAPE] + A.STATE[i, SHAPES]):
-            for w in range(A.LIST[s, START], A.LIST[s, START] + A.LIST[s, NUMBER]):
+        for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):
+            for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
                 if not barred(A.RULE, s, int(A.POOL[w])):
                     return False
-        i = A.MEMBER[i, AFTER_ME]
+        i = A.MEMBER[i].following
     return True
 
 
@@ -68,21 +54,22 @@ def begin_alone(A: Scene, J: Joints, root: int, t: float, h: float) -> None:
     for i in range(J.SPAN[s, BODY_1] - first):
         if J.NODE[i, FREEDOMS] > 0:
             lay_path(A, J, s, J.MEMBER[first + i, M_BODY], i, h)
-    A.COUNT[SOLVES] += 1
-    A.MEMBER[root, OPEN] = 1
-    A.RESTING[root, UNTIL] = math.inf
+    A.COUNT.solves += 1
+    A.MEMBER[root].open = 1
+    A.RESTING[root].until = math.inf
 
 
 @uncounted
 def lay_path(A: Scene, J: Joints, s: int, body: int, i: int, h: float) -> None:
     """Let a body go to where the scratch of its component has it at i: see `..jointed.solve`."""
     BODY, LOCAL = A.BODY, J.LOCAL
-    if BODY[body, II] > 0.0 and A.PULL[body, 2] != 0.0:
-        turned = LOCAL[i, POSE + 2] - BODY[body, ANGLE]
-        J.STEPPED[s, TURNED_WORK] += A.PULL[body, 2] * (LOCAL[i, TRAVEL + 2] - turned) / BODY[body, II]
-    A.STATE[body, KINKS] += 1
-    for c in range(3):
-        rate = BODY[body, VX + c]
-        BODY[body, AX + c] = 2.0 * (LOCAL[i, POSE + c] - BODY[body, X + c] - h * rate) / (h * h)
-        A.RESTING[body, LIFT + c] = 0.0
-        A.RESTING[body, LIFT + 3 + c] = LOCAL[i, BEFORE + c]
+    if BODY[body].inv_inertia > 0.0 and A.PULL[body, 2] != 0.0:
+        turned = LOCAL[i, POSE + 2] - BODY[body].angle
+        J.STEPPED[s, TURNED_WORK] += A.PULL[body, 2] * (LOCAL[i, TRAVEL + 2] - turned) / BODY[body].inv_inertia
+    A.STATE[body].version += 1
+    b, rest = BODY[body], A.RESTING[body]
+    b.ax = 2.0 * (LOCAL[i, POSE] - b.x - h * b.vx) / (h * h)
+    b.ay = 2.0 * (LOCAL[i, POSE + 1] - b.y - h * b.vy) / (h * h)
+    b.angular = 2.0 * (LOCAL[i, POSE + 2] - b.angle - h * b.spin) / (h * h)
+    rest.lift_x, rest.lift_y, rest.lift_angle = 0.0, 0.0, 0.0
+    rest.lift_vx, rest.lift_vy, rest.lift_spin = LOCAL[i, BEFORE], LOCAL[i, BEFORE + 1], LOCAL[i, BEFORE + 2]

@@ -12,28 +12,9 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
+from ..compiled.records import Rows
+from ..model.contacts import Row
 from ..rows.build import SINGULAR, normal_rate, tangent_rate
-from ..rows.layout import (
-    A_NN,
-    A_NT,
-    A_TT,
-    ARM_NA,
-    ARM_NB,
-    ARM_TA,
-    ARM_TB,
-    FRICTION,
-    K_N,
-    K_T,
-    NX,
-    NY,
-    TARGET,
-    UN,
-    UT,
-    W_NN,
-    W_NT,
-    W_TT,
-    WAKE,
-)
 from ..rows.sweeps import coulomb
 from .component import answer
 from .groups import Groups
@@ -76,7 +57,7 @@ def make_columns(groups: Groups, A: IntArray, B: IntArray, m: int) -> Columns:
 
 @uncounted
 def fill_free(
-    groups: Groups, C: Columns, A: IntArray, B: IntArray, ROWS: FloatArray, IM: FloatArray, II: FloatArray, m: int
+    groups: Groups, C: Columns, A: IntArray, B: IntArray, ROWS: Rows[Row], IM: FloatArray, II: FloatArray, m: int
 ) -> None:
     """The columns' entries on bodies that no joint holds."""
     for i in range(m):
@@ -85,16 +66,18 @@ def fill_free(
             if groups.COMPONENT[groups.GROUP[q]] >= 0:
                 continue
             sign = 1.0 if q == B[i] else -1.0
-            arm_n, arm_t = (ARM_NB, ARM_TB) if q == B[i] else (ARM_NA, ARM_TA)
-            C.N[w, 0], C.N[w, 1] = sign * IM[q] * ROWS[i, NX], sign * IM[q] * ROWS[i, NY]
-            C.T[w, 0], C.T[w, 1] = -sign * IM[q] * ROWS[i, NY], sign * IM[q] * ROWS[i, NX]
-            C.N[w, 2], C.T[w, 2] = sign * II[q] * ROWS[i, arm_n], sign * II[q] * ROWS[i, arm_t]
+            on_b = q == B[i]
+            arm_n = ROWS[i].arm_nb if on_b else ROWS[i].arm_na
+            arm_t = ROWS[i].arm_tb if on_b else ROWS[i].arm_ta
+            C.N[w, 0], C.N[w, 1] = sign * IM[q] * ROWS[i].nx, sign * IM[q] * ROWS[i].ny
+            C.T[w, 0], C.T[w, 1] = -sign * IM[q] * ROWS[i].ny, sign * IM[q] * ROWS[i].nx
+            C.N[w, 2], C.T[w, 2] = sign * II[q] * arm_n, sign * II[q] * arm_t
 
 
 @uncounted
 def fill_group(
     J: Joints, groups: Groups, C: Columns, g: int, INDEX: IntArray, about_step: bool, A: IntArray, B: IntArray,
-    ROWS: FloatArray, m: int, PUSH: FloatArray,
+    ROWS: Rows[Row], m: int, PUSH: FloatArray,
 ) -> None:  # fmt: skip
     """The columns' entries on the bodies of group g, whose component is `ready`.
 
@@ -111,14 +94,15 @@ def fill_group(
             for w in range(len(PUSH)):
                 for c in range(3):
                     PUSH[w, c] = 0.0
-            x, y = (ROWS[i, NX], ROWS[i, NY]) if tangent == 0 else (-ROWS[i, NY], ROWS[i, NX])
-            arm_a, arm_b = (ARM_NA, ARM_NB) if tangent == 0 else (ARM_TA, ARM_TB)
+            x, y = (ROWS[i].nx, ROWS[i].ny) if tangent == 0 else (-ROWS[i].ny, ROWS[i].nx)
+            arm_a = ROWS[i].arm_na if tangent == 0 else ROWS[i].arm_ta
+            arm_b = ROWS[i].arm_nb if tangent == 0 else ROWS[i].arm_tb
             if on_a:
                 q = INDEX[a]
-                PUSH[q, 0], PUSH[q, 1], PUSH[q, 2] = -x, -y, -ROWS[i, arm_a]
+                PUSH[q, 0], PUSH[q, 1], PUSH[q, 2] = -x, -y, -arm_a
             if on_b:
                 q = INDEX[b]
-                PUSH[q, 0], PUSH[q, 1], PUSH[q, 2] = PUSH[q, 0] + x, PUSH[q, 1] + y, PUSH[q, 2] + ROWS[i, arm_b]
+                PUSH[q, 0], PUSH[q, 1], PUSH[q, 2] = PUSH[q, 0] + x, PUSH[q, 1] + y, PUSH[q, 2] + arm_b
             answer(J, s, about_step, PUSH)
             for w in range(C.AT[i], C.AT[i + 1]):
                 if groups.GROUP[C.BODY[w]] == g:
@@ -130,39 +114,40 @@ def fill_group(
 
 
 @uncounted
-def along(C: Columns, A: IntArray, B: IntArray, ROWS: FloatArray, i: int, D: FloatArray, tangent: bool) -> float:
+def along(C: Columns, A: IntArray, B: IntArray, ROWS: Rows[Row], i: int, D: FloatArray, tangent: bool) -> float:
     """Rate of contact i along n (or t) of its own column D."""
-    x, y = (-ROWS[i, NY], ROWS[i, NX]) if tangent else (ROWS[i, NX], ROWS[i, NY])
-    arm_a, arm_b = (ARM_TA, ARM_TB) if tangent else (ARM_NA, ARM_NB)
+    x, y = (-ROWS[i].ny, ROWS[i].nx) if tangent else (ROWS[i].nx, ROWS[i].ny)
+    arm_a = ROWS[i].arm_ta if tangent else ROWS[i].arm_na
+    arm_b = ROWS[i].arm_tb if tangent else ROWS[i].arm_nb
     total = 0.0
     for w in range(C.AT[i], C.AT[i + 1]):
         if C.BODY[w] == A[i]:
-            total -= x * D[w, 0] + y * D[w, 1] + ROWS[i, arm_a] * D[w, 2]
+            total -= x * D[w, 0] + y * D[w, 1] + arm_a * D[w, 2]
         if C.BODY[w] == B[i]:
-            total += x * D[w, 0] + y * D[w, 1] + ROWS[i, arm_b] * D[w, 2]
+            total += x * D[w, 0] + y * D[w, 1] + arm_b * D[w, 2]
     return total
 
 
 @uncounted
-def weigh(groups: Groups, C: Columns, A: IntArray, B: IntArray, ROWS: FloatArray, m: int) -> None:
+def weigh(groups: Groups, C: Columns, A: IntArray, B: IntArray, ROWS: Rows[Row], m: int) -> None:
     """Let K, A and W of the rows be those of the columns; leave out what hardly can be moved."""
     for i in range(m):
         nn, tt = along(C, A, B, ROWS, i, C.N, False), along(C, A, B, ROWS, i, C.T, True)
         nt = 0.5 * (along(C, A, B, ROWS, i, C.N, True) + along(C, A, B, ROWS, i, C.T, False))
         least = _STRUT if groups.GROUP[A[i]] == groups.GROUP[B[i]] else _NOTHING
-        C.OUT[i] = 0 if nn * ROWS[i, K_N] > least else 1
+        C.OUT[i] = 0 if nn * ROWS[i].k_n > least else 1
         if C.OUT[i] == 0:
-            ROWS[i, K_N], ROWS[i, A_NN] = 1.0 / nn, nn
-        if tt * ROWS[i, K_T] > least:
-            ROWS[i, K_T], ROWS[i, A_TT], ROWS[i, A_NT] = 1.0 / tt, tt, nt
+            ROWS[i].k_n, ROWS[i].a_nn = 1.0 / nn, nn
+        if tt * ROWS[i].k_t > least:
+            ROWS[i].k_t, ROWS[i].a_tt, ROWS[i].a_nt = 1.0 / tt, tt, nt
         else:
-            ROWS[i, FRICTION], ROWS[i, A_NT] = 0.0, 0.0
-        if ROWS[i, FRICTION] > 0.0:
+            ROWS[i].friction, ROWS[i].a_nt = 0.0, 0.0
+        if ROWS[i].friction > 0.0:
             det = nn * tt - nt * nt
             regular = det > SINGULAR * nn * tt
-            ROWS[i, W_NN] = tt / det if regular else np.nan
-            ROWS[i, W_NT] = -nt / det if regular else 0.0
-            ROWS[i, W_TT] = nn / det if regular else 0.0
+            ROWS[i].w_nn = tt / det if regular else np.nan
+            ROWS[i].w_nt = -nt / det if regular else 0.0
+            ROWS[i].w_tt = nn / det if regular else 0.0
 
 
 @uncounted
@@ -189,36 +174,34 @@ def leave_out(C: Columns, L: FloatArray, m: int, V: FloatArray) -> None:
 
 
 @uncounted
-def sweep_columns(
-    C: Columns, A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, m: int
-) -> float:
+def sweep_columns(C: Columns, A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, m: int) -> float:
     """One sweep over the m contacts as `..rows.sweeps.sweep`; the largest change of a contact's velocity."""
     worst = 0.0
     for i in range(m):
         if C.OUT[i] != 0:
             continue
         lam0, beta0 = L[i, 0], L[i, 1]
-        lam, beta, ann = 0.0, 0.0, ROWS[i, A_NN]
-        short = normal_rate(A, B, ROWS, V, i) - ROWS[i, TARGET]
-        if ROWS[i, WAKE] < np.inf:
-            if short + ROWS[i, TARGET] - lam0 * ann < ROWS[i, WAKE]:
-                ROWS[i, WAKE] = np.inf
+        lam, beta, ann = 0.0, 0.0, ROWS[i].a_nn
+        short = normal_rate(A, B, ROWS, V, i) - ROWS[i].target
+        if ROWS[i].wake < np.inf:
+            if short + ROWS[i].target - lam0 * ann < ROWS[i].wake:
+                ROWS[i].wake = np.inf
             else:
                 short = np.inf
-        if ROWS[i, FRICTION] <= 0.0:
-            lam = max(lam0 - ROWS[i, K_N] * short, 0.0)
+        if ROWS[i].friction <= 0.0:
+            lam = max(lam0 - ROWS[i].k_n * short, 0.0)
         else:
-            qn = short - lam0 * ann - beta0 * ROWS[i, A_NT]
+            qn = short - lam0 * ann - beta0 * ROWS[i].a_nt
             if qn < 0.0:
                 ut = tangent_rate(A, B, ROWS, V, i)
                 # Most stick, and need no more than this.
-                lam = lam0 - (ROWS[i, W_NN] * short + ROWS[i, W_NT] * ut)
-                beta = beta0 - (ROWS[i, W_NT] * short + ROWS[i, W_TT] * ut)
-                if not (abs(beta) <= ROWS[i, FRICTION] * lam and beta * ROWS[i, UT] <= 0.0):
-                    ant, att = ROWS[i, A_NT], ROWS[i, A_TT]
+                lam = lam0 - (ROWS[i].w_nn * short + ROWS[i].w_nt * ut)
+                beta = beta0 - (ROWS[i].w_nt * short + ROWS[i].w_tt * ut)
+                if not (abs(beta) <= ROWS[i].friction * lam and beta * ROWS[i].ut <= 0.0):
+                    ant, att = ROWS[i].a_nt, ROWS[i].a_tt
                     lam, beta = coulomb(
-                        qn, ut - beta0 * att - lam0 * ant, ann, ant, att, ROWS[i, FRICTION], ROWS[i, UN], ROWS[i, UT],
-                        ROWS[i, TARGET],
+                        qn, ut - beta0 * att - lam0 * ant, ann, ant, att, ROWS[i].friction, ROWS[i].un, ROWS[i].ut,
+                        ROWS[i].target,
                     )  # fmt: skip
         dn, dt = lam - lam0, beta - beta0
         if dn == 0.0 and dt == 0.0:
@@ -227,13 +210,13 @@ def sweep_columns(
         for w in range(C.AT[i], C.AT[i + 1]):
             for c in range(3):
                 V[C.BODY[w], c] += dn * C.N[w, c] + dt * C.T[w, c]
-        worst = max(worst, abs(dn) * ann, abs(dt) * ROWS[i, A_TT])
+        worst = max(worst, abs(dn) * ann, abs(dt) * ROWS[i].a_tt)
     return worst
 
 
 @uncounted
 def relax_columns(
-    C: Columns, A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, m: int, tolerance: float,
+    C: Columns, A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, m: int, tolerance: float,
     most: int,
 ) -> tuple[int, float]:  # fmt: skip
     """Sweeps until one changes no contact's velocity by more than the tolerance; how many, and the last change."""

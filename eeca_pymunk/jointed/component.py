@@ -6,7 +6,6 @@ import math
 
 from ..arrays import FloatArray
 from ..compiled import uncounted
-from ..impacts.layout import Scene
 from ..joints.bounds import bounded, gap
 from ..joints.entries import held as stands
 from ..joints.layout import GEAR
@@ -37,6 +36,7 @@ from ..joints.scratch import (
 from ..joints.solve import solve
 from ..joints.start import look
 from ..joints.step import island_step
+from ..model.scene import Scene
 from .gathered import gather_component
 from .layout import ANSWERS, ORDER, REPEATS, WORST, Joints
 

@@ -6,14 +6,15 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
-from ..impacts.layout import Scene
+from ..compiled.records import Rows
 from ..impacts.spans import Local
 from ..joints.correct import book_fit
 from ..joints.layout import PROJECTED, SUPPORTS
 from ..joints.scratch import BEFORE, BODY_0, BODY_1, M_BODY
+from ..model.contacts import Row
+from ..model.scene import Scene
 from ..rows.build import normal_rate
 from ..rows.inplace import add
-from ..rows.layout import ARM_NA, ARM_NB, ARM_TA, ARM_TB, NX, NY
 from .advance import Motion, is_hit
 from .columns import Columns, fill_free, fill_group, weigh
 from .component import fit_speeds, ready
@@ -31,7 +32,7 @@ _NOTHING = 1e-12  # of the energy, that is round-off of its change
 
 @kernel
 def fit(
-    A: Scene, J: Joints, isle: Local, groups: Groups, P: IntArray, Q: IntArray, ROWS: FloatArray, L: FloatArray, m: int,
+    A: Scene, J: Joints, isle: Local, groups: Groups, P: IntArray, Q: IntArray, ROWS: Rows[Row], L: FloatArray, m: int,
     motion: Motion, end: float, h: float, scale: float, C: Columns,
 ) -> None:  # fmt: skip
     """Make the velocities at the end of a lossy span fit the joints of the components that contacts push.
@@ -74,17 +75,17 @@ def fit(
 
 
 @uncounted
-def bring_arms(P: IntArray, Q: IntArray, ROWS: FloatArray, END: FloatArray, m: int) -> None:
+def bring_arms(P: IntArray, Q: IntArray, ROWS: Rows[Row], END: FloatArray, m: int) -> None:
     """Let the arms of m contacts be about one point of both bodies at END: these have moved apart since."""
     for i in range(m):
-        x, y, a, b = ROWS[i, NX], ROWS[i, NY], P[i], Q[i]
+        x, y, a, b = ROWS[i].nx, ROWS[i].ny, P[i], Q[i]
         # An arm is (r x t) n - (r x n) t.
-        along = 0.5 * (x * (END[b, 0] - END[a, 0]) + y * (END[b, 1] - END[a, 1]) - ROWS[i, ARM_TA] + ROWS[i, ARM_TB])
-        across = 0.5 * (x * (END[b, 1] - END[a, 1]) - y * (END[b, 0] - END[a, 0]) + ROWS[i, ARM_NA] - ROWS[i, ARM_NB])
-        ROWS[i, ARM_TA] += along
-        ROWS[i, ARM_NA] -= across
-        ROWS[i, ARM_TB] -= along
-        ROWS[i, ARM_NB] += across
+        along = 0.5 * (x * (END[b, 0] - END[a, 0]) + y * (END[b, 1] - END[a, 1]) - ROWS[i].arm_ta + ROWS[i].arm_tb)
+        across = 0.5 * (x * (END[b, 1] - END[a, 1]) - y * (END[b, 0] - END[a, 0]) + ROWS[i].arm_na - ROWS[i].arm_nb)
+        ROWS[i].arm_ta += along
+        ROWS[i].arm_na -= across
+        ROWS[i].arm_tb -= along
+        ROWS[i].arm_nb += across
 
 
 @uncounted
@@ -101,7 +102,7 @@ def energy_of(isle: Local, V: FloatArray) -> float:
 
 @kernel
 def hold(
-    A: Scene, J: Joints, isle: Local, groups: Groups, P: IntArray, Q: IntArray, ROWS: FloatArray, m: int,
+    A: Scene, J: Joints, isle: Local, groups: Groups, P: IntArray, Q: IntArray, ROWS: Rows[Row], m: int,
     motion: Motion, end: float, h: float, C: Columns, RATES: FloatArray, fine: float, book: int,
 ) -> None:  # fmt: skip
     """Normal impulses 0 <= mu _|_ u + G S G^T mu >= 0 on contacts whose rates u (m,) are RATES, infinite for those that

@@ -5,7 +5,6 @@ from __future__ import annotations
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
 from ..geometry.flight import pose, rate
-from ..impacts.layout import Scene
 from ..joints.layout import JOINT_COLUMNS, LED, NOTCH, RATCHET, SIDE, TIE_COLUMNS, TOUCHED
 from ..joints.motion import size_up
 from ..joints.scratch import (
@@ -30,9 +29,7 @@ from ..joints.scratch import (
     MOBILITY,
     POSE,
 )
-from ..layout import ANGLE, SPIN, VX, VY, X, Y
-from ..layout import II as TURNING
-from ..layout import IM as INVERSE
+from ..model.scene import Scene
 from .layout import Joints
 
 
@@ -84,7 +81,7 @@ def seat(A: Scene, J: Joints, m: int, i: int, t: float) -> None:
         vx, vy, spin = rate(A.BODY, body, t)
     else:
         P = J.PARTNER[body - n]
-        x, y, angle, vx, vy, spin = P[X], P[Y], P[ANGLE], P[VX], P[VY], P[SPIN]
+        x, y, angle, vx, vy, spin = P.x, P.y, P.angle, P.vx, P.vy, P.spin
     LOCAL[i, POSE], LOCAL[i, POSE + 1], LOCAL[i, POSE + 2] = x, y, angle
     LOCAL[i, BEFORE], LOCAL[i, BEFORE + 1], LOCAL[i, BEFORE + 2] = vx, vy, spin
     for c in range(3):
@@ -129,10 +126,12 @@ def gather_alone(A: Scene, J: Joints, s: int, t: float, h: float) -> float:
         seat(A, J, b0 + i, i, t)
         if J.NODE[i, FREEDOMS] > 0:
             body = J.MEMBER[b0 + i, M_BODY]
+            b = BODY[body]
+            LOCAL[i, POSE], LOCAL[i, POSE + 1], LOCAL[i, POSE + 2] = b.x, b.y, b.angle
+            LOCAL[i, BEFORE], LOCAL[i, BEFORE + 1], LOCAL[i, BEFORE + 2] = b.vx, b.vy, b.spin
+            LOCAL[i, MOBILITY], LOCAL[i, MOBILITY + 1], LOCAL[i, MOBILITY + 2] = b.inv_mass, b.inv_mass, b.inv_inertia
             for c in range(3):
-                LOCAL[i, POSE + c], LOCAL[i, BEFORE + c] = BODY[body, X + c], BODY[body, VX + c]
                 LOCAL[i, FREE + c] = A.PULL[body, c]
-                LOCAL[i, MOBILITY + c] = BODY[body, INVERSE] if c < 2 else BODY[body, TURNING]
     return measured(J, s, h)
 
 

@@ -6,6 +6,8 @@ from typing import NamedTuple
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import Opener
+from ..compiled.records import Rows
+from ..model.bodies import Body
 
 # TALLY (8,) int
 COMPONENTS, ORDER, WORST, REPEATS = 0, 1, 2, 3  # how many; 2 or 4; worst status of the step; steps of components
@@ -19,7 +21,7 @@ STEPPED_COLUMNS = 10
 
 
 class Joints(NamedTuple):
-    """JOINT, TIE: see `..joints.layout`; bodies as rows of BODY (n rows) or n + row of PARTNER (x, BODY_COLUMNS), which
+    """JOINT, TIE: see `..joints.layout`; bodies as rows of BODY (n rows) or n + row of PARTNER (x,), which
     joints cannot move. SPAN, MEMBER, LINK: the plan (`..joints.scratch`), a component per row of SPAN. HINGE, LOCAL,
     NODE, MATRIX, RIGHT, MORE, STIFF, FOUND, PART, PIVOTS: scratch for the largest component. OF (n,): the component of
     a body, -1 for none. KEPT (j, JOINT_COLUMNS), SIDES (j, TIE_COLUMNS): the joints at the start of a span. STEPPED
@@ -27,7 +29,7 @@ class Joints(NamedTuple):
 
     JOINT: FloatArray
     TIE: IntArray
-    PARTNER: FloatArray
+    PARTNER: Rows[Body]
     SPAN: IntArray
     MEMBER: IntArray
     LINK: IntArray

@@ -8,12 +8,13 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel
-from ..impacts.layout import Scene
+from ..compiled.records import Rows
 from ..impacts.spans import Local
 from ..joints.layout import STORED
+from ..model.contacts import Row
+from ..model.scene import Scene
 from ..rows.build import normal_rate
 from ..rows.inplace import copy
-from ..rows.layout import GAP, K_N
 from ..sustained.ledger import against
 from .advance import Motion
 from .columns import Columns, fill_group, weigh
@@ -30,7 +31,7 @@ _MOST = 0.1  # of the size of a body, that a step may lift it
 
 @kernel
 def raise_gaps(
-    C: Columns, P: IntArray, Q: IntArray, ROWS: FloatArray, GAPS: FloatArray, D: FloatArray, m: int, tolerance: float
+    C: Columns, P: IntArray, Q: IntArray, ROWS: Rows[Row], GAPS: FloatArray, D: FloatArray, m: int, tolerance: float
 ) -> FloatArray:
     """Displacements D (k, 3) = Y mu, 0 <= mu _|_ g + G D >= 0, by sweeps; mu (m,)."""
     MU = np.zeros(m)
@@ -40,13 +41,13 @@ def raise_gaps(
             if C.OUT[i] != 0:
                 continue
             g = GAPS[i] + normal_rate(P, Q, ROWS, D, i)
-            mu = max(MU[i] - ROWS[i, K_N] * g, 0.0)
+            mu = max(MU[i] - ROWS[i].k_n * g, 0.0)
             change = mu - MU[i]
             MU[i] = mu
             for w in range(C.AT[i], C.AT[i + 1]):
                 for c in range(3):
                     D[C.BODY[w], c] += change * C.N[w, c]
-            worst = max(worst, abs(change) / ROWS[i, K_N])
+            worst = max(worst, abs(change) / ROWS[i].k_n)
         if worst <= tolerance:
             break
     return MU
@@ -54,7 +55,7 @@ def raise_gaps(
 
 @kernel
 def lift(
-    A: Scene, J: Joints, isle: Local, groups: Groups, P: IntArray, Q: IntArray, ROWS: FloatArray, m: int, n: int,
+    A: Scene, J: Joints, isle: Local, groups: Groups, P: IntArray, Q: IntArray, ROWS: Rows[Row], m: int, n: int,
     motion: Motion, end: float, h: float, budget: float, C: Columns,
 ) -> float:  # fmt: skip
     """Lift the poses at the end of an island's motion by at most what `budget` pays; the energy that it costs.
@@ -68,7 +69,7 @@ def lift(
         size = min(size, isle.EXTENT[q])
     GAPS, deepest = np.empty(m), 0.0
     for i in range(m):
-        GAPS[i] = ROWS[i, GAP] + normal_rate(P, Q, ROWS, WAY, i)
+        GAPS[i] = ROWS[i].gap + normal_rate(P, Q, ROWS, WAY, i)
         deepest = min(deepest, GAPS[i])
     if deepest >= -_SLOP * size or not budget > 0.0:
         return 0.0

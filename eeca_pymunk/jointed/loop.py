@@ -10,36 +10,14 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import Table, kernel, uncounted
 from ..impacts.due import forecast, forecast_due
 from ..impacts.heap import push
-from ..impacts.layout import (
-    DONE,
-    DT,
-    HEAP,
-    ISLAND,
-    JOINTED,
-    JOINTS_DUE,
-    LOGGED,
-    NOW,
-    OPEN,
-    OTHER,
-    OWN,
-    PENDING,
-    PHASE,
-    PULLED,
-    PUSHES,
-    PUSHES_FULL,
-    REMEMBERED,
-    STRUCK,
-    UNMET,
-    WAITING,
-    Scene,
-    scene_of,
-)  # fmt: skip
 from ..impacts.loop import follow, with_mover
 from ..impacts.settle import settle
 from ..impacts.step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, finish, start, wish
 from ..joints.layout import BODY_A, BODY_B, ELASTIC, TOUCHED
-from ..layout import BODY_ROW, LEFT, SINCE
+from ..layout import BODY_ROW, LEFT
 from ..layout import NOW as READ
+from ..model.scene import Scene, scene_of
+from ..model.step import DONE, JOINTS_DUE, PUSHES_FULL
 from .layout import COMPONENTS, REPEATS, WORST, Joints, joints_of
 from .meet import book_component
 from .solve import begin_span
@@ -86,44 +64,44 @@ def book_joints(A: Scene, J: Joints) -> None:
     for s in range(J.TALLY[COMPONENTS]):
         book_component(A, J, s)
     if J.TALLY[WORST] >= ELASTIC:
-        A.COUNT[UNMET] += 1
+        A.COUNT.unmet += 1
 
 
 @uncounted
 def roomy(A: Scene) -> bool:
     """Whether there is room for the contacts that an impact may bring."""
-    more = 2 * A.COUNT[PUSHES] + _ROOM
-    return bool(more <= A.PUSHED.shape[0] and 2 * (A.COUNT[REMEMBERED] + more) <= A.KEYS.shape[0])
+    more = 2 * A.COUNT.pushes + _ROOM
+    return bool(more <= A.PUSHED.shape[0] and 2 * (A.COUNT.remembered + more) <= A.KEYS.shape[0])
 
 
 @kernel
 def follow_jointed(A: Scene, J: Joints, disks: int, may_rest: bool) -> int:
     """The events of the step; results as `..impacts.loop.follow`."""
     COUNT, STATE, BLOCK = A.COUNT, A.STATE, A.BLOCK
-    moving, end = A.LIST.shape[0], A.PAR[DT]
-    status = JOINTS_DUE if COUNT[PENDING] >= 0 else follow(A, disks, may_rest)
+    moving, end = A.LIST.shape[0], A.PAR.dt
+    status = JOINTS_DUE if COUNT.pending >= 0 else follow(A, disks, may_rest)
     while True:
         if status != JOINTS_DUE:
             return status
-        if COUNT[PENDING] < 0:
-            i = COUNT[STRUCK]
-            t = A.PAR[NOW]
+        if COUNT.pending < 0:
+            i = COUNT.struck
+            t = A.PAR.now
             if not roomy(A):
-                COUNT[HEAP] = push(A.HEAP_TIME, A.HEAP_BODY, COUNT[HEAP], t, i)
+                COUNT.heap = push(A.HEAP_TIME, A.HEAP_BODY, COUNT.heap, t, i)
                 return PUSHES_FULL
-            status, n = collide(A, J, disks, STATE[i, OWN], STATE[i, OTHER], t)
-            COUNT[WAITING] = with_mover(A, i, n)
-        elif A.MEMBER[COUNT[PENDING], JOINTED] == 0:
+            status, n = collide(A, J, disks, STATE[i].own, STATE[i].other, t)
+            COUNT.waiting = with_mover(A, i, n)
+        elif A.MEMBER[COUNT.pending].jointed == 0:
             status = follow(A, disks, may_rest)
             continue
-        if COUNT[PENDING] >= 0:
-            root = COUNT[PENDING]
-            t = A.BODY[root, SINCE]
+        if COUNT.pending >= 0:
+            root = COUNT.pending
+            t = A.BODY[root].since
             if t < end and begin_span(A, J, root, t, end - t) != DONE:
                 return PUSHES_FULL
-            COUNT[PENDING] = -1
-        for q in range(COUNT[WAITING]):
-            forecast(A, disks, moving, BLOCK[q], A.BODY[BLOCK[q], SINCE], end, False)
+            COUNT.pending = -1
+        for q in range(COUNT.waiting):
+            forecast(A, disks, moving, BLOCK[q], A.BODY[BLOCK[q]].since, end, False)
         status = follow(A, disks, may_rest)
 
 
@@ -133,8 +111,8 @@ def settle_jointed(A: Scene, J: Joints) -> int:
     if settle(A) != DONE:
         return PUSHES_FULL
     for i in range(A.BODY.shape[0] - 1):
-        if A.STATE[i, ISLAND] == i and A.MEMBER[i, JOINTED] > 0 and A.MEMBER[i, OPEN] == 0:
-            if begin_span(A, J, i, 0.0, A.PAR[DT]) != DONE:
+        if A.STATE[i].island == i and A.MEMBER[i].jointed > 0 and A.MEMBER[i].open == 0:
+            if begin_span(A, J, i, 0.0, A.PAR.dt) != DONE:
                 return PUSHES_FULL
     return DONE
 
@@ -146,17 +124,17 @@ def resume_jointed(
 ) -> int:  # fmt: skip
     """The rest of a step, whose bits so far are `status`: as `..impacts.step.resume`."""
     COUNT = A.COUNT
-    if COUNT[PHASE] == 0:
+    if COUNT.phase == 0:
         if settle_jointed(A, J) != DONE:
             return ROOM_FOR_CONTACTS
-        COUNT[PHASE] = 1
+        COUNT.phase = 1
         forecast_due(A, disks)
-    if COUNT[PHASE] == 1:
-        met = follow_jointed(A, J, disks, lossy or A.PAR[PULLED] > 0.0)
+    if COUNT.phase == 1:
+        met = follow_jointed(A, J, disks, lossy or A.PAR.pulled > 0.0)
         if met != DONE:
             return wish(met)
-        COUNT[PHASE] = 2
-    if COUNT[LOGGED] + COUNT[PUSHES] > A.LOG.shape[0]:
+        COUNT.phase = 2
+    if COUNT.logged + COUNT.pushes > A.LOG.shape[0]:
         return ROOM_FOR_EVENTS
     book_joints(A, J)
     return finish(A, STATES, WALK, EXTRA, ENDS, status)

@@ -11,34 +11,10 @@ from ..geometry.gap import gap_at
 from ..impacts.block import crowded
 from ..impacts.booking import alight, book
 from ..impacts.islands import members
-from ..impacts.layout import (
-    AFTER_ME,
-    BODIES,
-    DAMPED,
-    DT,
-    EXTERNAL,
-    FIRST_SHAPE,
-    FRICTIONAL,
-    ISLAND,
-    JOINTED,
-    KINKS,
-    LEDGER,
-    LOST,
-    OPEN,
-    PUSH_A,
-    PUSH_B,
-    PUSHES,
-    RESTITUTION,
-    ROOT,
-    SHAPES,
-    STORED,
-    Scene,
-)
 from ..joints.layout import CLAMPED, CLOSED, LIMITED, MOTORS, PROJECTED, SUPPORTS
 from ..joints.layout import DAMPED as DAMPED_JOINTS
 from ..joints.layout import STORED as STORED_JOINTS
-from ..layout import AX, AY, IM, OWNER, SINCE, SIZE, SPIN, TWIST, VX, VY
-from ..pairs.layout import NUMBER, START
+from ..model.scene import Scene
 from ..pairs.lists import mark_pair
 from .gathered import restore_joints
 from .layout import LIFTED, TURNED_WORK, Joints
@@ -55,11 +31,11 @@ _INSTANT = 1e-12  # of a step, below which a span is none
 def book_component(A: Scene, J: Joints, s: int) -> None:
     """Book what the joints of component s have done in their span."""
     PAR, B = A.PAR, J.STEPPED[s]
-    PAR[LEDGER + EXTERNAL] += B[MOTORS] + B[SUPPORTS] + B[CLOSED] + B[TURNED_WORK]
-    PAR[LEDGER + DAMPED] += B[DAMPED_JOINTS]
-    PAR[LEDGER + RESTITUTION] += B[LIMITED] + B[PROJECTED] - B[LIFTED]
-    PAR[LEDGER + FRICTIONAL] += B[CLAMPED]
-    PAR[STORED] += B[STORED_JOINTS]
+    PAR.external += B[MOTORS] + B[SUPPORTS] + B[CLOSED] + B[TURNED_WORK]
+    PAR.damped += B[DAMPED_JOINTS]
+    PAR.restitution += B[LIMITED] + B[PROJECTED] - B[LIFTED]
+    PAR.frictional += B[CLAMPED]
+    PAR.stored += B[STORED_JOINTS]
     for c in range(len(B)):
         B[c] = 0.0
 
@@ -67,7 +43,7 @@ def book_component(A: Scene, J: Joints, s: int) -> None:
 @kernel
 def components_of(A: Scene, J: Joints, root: int) -> IntArray:
     """The components in an island."""
-    MINE = np.empty(A.MEMBER[root, BODIES], np.int64)
+    MINE = np.empty(A.MEMBER[root].bodies, np.int64)
     n = members(A, root, MINE)
     found = np.empty(n, np.int64)
     count = 0
@@ -88,15 +64,12 @@ def components_of(A: Scene, J: Joints, root: int) -> IntArray:
 def take_back(A: Scene, root: int) -> None:
     """Forget the contacts of the span that an island has begun."""
     c = 0
-    while c < A.COUNT[PUSHES]:
-        if A.PUSHED_BY[c, ROOT] == root:
-            mark_pair(A.LIST, A.POOL, A.FLAG, A.LIST.shape[0], A.PUSHED_BY[c, PUSH_A], A.PUSHED_BY[c, PUSH_B], 0)
-            last = A.COUNT[PUSHES] - 1
-            for w in range(A.PUSHED.shape[1]):
-                A.PUSHED[c, w] = A.PUSHED[last, w]
-            for w in range(3):
-                A.PUSHED_BY[c, w] = A.PUSHED_BY[last, w]
-            A.COUNT[PUSHES] = last
+    while c < A.COUNT.pushes:
+        if A.PUSHED_BY[c].root == root:
+            mark_pair(A.LIST, A.POOL, A.FLAG, A.LIST.shape[0], A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, 0)
+            last = A.COUNT.pushes - 1
+            A.PUSHED[c], A.PUSHED_BY[c] = A.PUSHED[last], A.PUSHED_BY[last]
+            A.COUNT.pushes = last
         else:
             c += 1
 
@@ -104,16 +77,16 @@ def take_back(A: Scene, root: int) -> None:
 @kernel
 def shorten(A: Scene, J: Joints, root: int, t: float) -> int:
     """Let the span of an island end at instant t, not booked yet; how many contacts it had. Nothing if it is over."""
-    if root < 0 or A.MEMBER[root, JOINTED] == 0 or A.MEMBER[root, OPEN] == 0:
+    if root < 0 or A.MEMBER[root].jointed == 0 or A.MEMBER[root].open == 0:
         return 0
-    before = A.COUNT[PUSHES]
+    before = A.COUNT.pushes
     take_back(A, root)
-    began = A.BODY[root, SINCE]
-    some = int(before - A.COUNT[PUSHES])
+    began = A.BODY[root].since
+    some = int(before - A.COUNT.pushes)
     found = components_of(A, J, root)
     for c in range(len(found)):
         restore_joints(J, found[c])
-    if t - began > _INSTANT * A.PAR[DT]:
+    if t - began > _INSTANT * A.PAR.dt:
         begin_span(A, J, root, began, t - began)
     return some
 
@@ -121,30 +94,29 @@ def shorten(A: Scene, J: Joints, root: int, t: float) -> int:
 @kernel
 def end_here(A: Scene, J: Joints, root: int, t: float) -> None:
     """End the span of an island at instant t, its own end: book it, and bring its bodies there."""
-    if root < 0 or A.MEMBER[root, JOINTED] == 0 or A.MEMBER[root, OPEN] == 0:
+    if root < 0 or A.MEMBER[root].jointed == 0 or A.MEMBER[root].open == 0:
         return
-    for c in range(A.COUNT[PUSHES]):
-        if A.PUSHED_BY[c, ROOT] == root:
+    for c in range(A.COUNT.pushes):
+        if A.PUSHED_BY[c].root == root:
             book(A, c, t)
-    empty = t - A.BODY[root, SINCE] <= _INSTANT * A.PAR[DT]
+    empty = t - A.BODY[root].since <= _INSTANT * A.PAR.dt
     found = components_of(A, J, root)
     for c in range(len(found)):
         if empty:
             for w in range(J.STEPPED.shape[1]):
                 J.STEPPED[found[c], w] = 0.0
-        A.RESTING[root, LOST] -= J.STEPPED[found[c], LIFTED]
+        A.RESTING[root].lost -= J.STEPPED[found[c], LIFTED]
         book_component(A, J, found[c])
-    A.MEMBER[root, OPEN] = 0
-    MINE = np.empty(A.MEMBER[root, BODIES], np.int64)
+    A.MEMBER[root].open = 0
+    MINE = np.empty(A.MEMBER[root].bodies, np.int64)
     n = members(A, root, MINE)
     for q in range(n):
         i = MINE[q]
-        A.STATE[i, KINKS] += 1
+        A.STATE[i].version += 1
         if empty:
             # The path is that of a span that is not to be.
-            A.BODY[i, SINCE] = t
-            for c in range(3):
-                A.BODY[i, AX + c] = 0.0
+            A.BODY[i].since = t
+            A.BODY[i].ax, A.BODY[i].ay, A.BODY[i].angular = 0.0, 0.0, 0.0
         else:
             alight(A, i, t)
 
@@ -153,35 +125,35 @@ def end_here(A: Scene, J: Joints, root: int, t: float) -> None:
 def begun(A: Scene, i: int) -> float:
     """The latest instant at which spans of islands without joints have begun that shapes of body i may touch."""
     latest = 0.0
-    for s in range(A.STATE[i, FIRST_SHAPE], A.STATE[i, FIRST_SHAPE] + A.STATE[i, SHAPES]):
-        for w in range(A.LIST[s, START], A.LIST[s, START] + A.LIST[s, NUMBER]):
-            j = A.LINK[A.POOL[w], OWNER]
-            root = A.STATE[j, ISLAND]
-            if root >= 0 and A.MEMBER[root, OPEN] > 0 and A.MEMBER[root, JOINTED] == 0:
-                latest = max(latest, A.BODY[j, SINCE])
+    for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):
+        for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
+            j = A.LINK[A.POOL[w]].owner
+            root = A.STATE[j].island
+            if root >= 0 and A.MEMBER[root].open > 0 and A.MEMBER[root].jointed == 0:
+                latest = max(latest, A.BODY[j].since)
     return latest
 
 
 @kernel
 def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> float:
     """Bring the islands of shapes a and b, which are seen to meet at instant t, to the instant at which they do."""
-    i, j = A.LINK[a, OWNER], A.LINK[b, OWNER]
-    roots = (A.STATE[i, ISLAND], A.STATE[j, ISLAND] if A.BODY[j, IM] > 0.0 else -1)
+    i, j = A.LINK[a].owner, A.LINK[b].owner
+    roots = (A.STATE[i].island, A.STATE[j].island if A.BODY[j].inv_mass > 0.0 else -1)
     # Nobody goes back in time, to where what overlaps would have met.
-    least = A.BODY[i, SINCE]
-    if A.BODY[j, IM] > 0.0:
-        least = max(least, A.BODY[j, SINCE])
+    least = A.BODY[i].since
+    if A.BODY[j].inv_mass > 0.0:
+        least = max(least, A.BODY[j].since)
     for end in range(2):
         root = roots[end]
-        if root >= 0 and A.MEMBER[root, OPEN] > 0 and A.MEMBER[root, JOINTED] > 0:
-            least = max(least, A.BODY[root, SINCE])
+        if root >= 0 and A.MEMBER[root].open > 0 and A.MEMBER[root].jointed > 0:
+            least = max(least, A.BODY[root].since)
             member = root
             while member >= 0:
                 least = max(least, begun(A, member))
-                member = A.MEMBER[member, AFTER_ME]
-        elif end == 0 or A.BODY[j, IM] > 0.0:
+                member = A.MEMBER[member].following
+        elif end == 0 or A.BODY[j].inv_mass > 0.0:
             least = max(least, begun(A, i if end == 0 else j))
-    small = min(A.SHAPE[a, SIZE], A.SHAPE[b, SIZE])
+    small = min(A.SHAPE[a].extent, A.SHAPE[b].extent)
     before, gap_before = -1.0, 0.0
     most = 1 if crowded(A, a, b) else _LOADED_SECANTS
     for tries in range(_SECANTS):
@@ -204,7 +176,7 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> float:
         if not slope < 0.0 or tries + 1 == _SECANTS:
             break
         before, gap_before = t, g
-        then = min(max(t - g / slope, least), A.PAR[DT])
+        then = min(max(t - g / slope, least), A.PAR.dt)
         if then == t:
             break
         t = then
@@ -217,7 +189,7 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> float:
 @uncounted
 def path_rate(A: Scene, i: int, t: float, nx: float, ny: float, x: float, y: float) -> float:
     """Velocity along n of the point at (x, y) from body i on its path."""
-    BODY, s = A.BODY, t - A.BODY[i, SINCE]
-    vx, vy = BODY[i, VX] + s * BODY[i, AX], BODY[i, VY] + s * BODY[i, AY]
-    spin = BODY[i, SPIN] + s * BODY[i, TWIST]
+    BODY, s = A.BODY, t - A.BODY[i].since
+    vx, vy = BODY[i].vx + s * BODY[i].ax, BODY[i].vy + s * BODY[i].ay
+    spin = BODY[i].spin + s * BODY[i].angular
     return float(nx * vx + ny * vy + (x * ny - y * nx) * spin)

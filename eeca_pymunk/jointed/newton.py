@@ -6,11 +6,12 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
+from ..compiled.records import Rows
+from ..model.contacts import Row
 from ..rows.build import normal_rate, tangent_rate
 from ..rows.conjugate import accelerate
 from ..rows.dense import back, decompose, unknowns
 from ..rows.inplace import copy
-from ..rows.layout import SURFACE, TARGET, UN, UT
 from ..rows.polish import clamp, classify
 from .columns import Columns, push_columns, relax_columns, sweep_columns
 
@@ -35,7 +36,7 @@ def entries(C: Columns, j: int, tangent: bool, slip: float, D: FloatArray, HIT: 
 
 @uncounted
 def responses(
-    C: Columns, A: IntArray, B: IntArray, ROWS: FloatArray, slip: FloatArray, at: IntArray, kind: IntArray, N: int,
+    C: Columns, A: IntArray, B: IntArray, ROWS: Rows[Row], slip: FloatArray, at: IntArray, kind: IntArray, N: int,
     D: FloatArray, HIT: IntArray, W: FloatArray,
 ) -> None:  # fmt: skip
     """W (N, N): the rate of each unknown's row per impulse of each; D (k, 3) and HIT (k,), of zeros, are scratch."""
@@ -48,13 +49,13 @@ def responses(
             elif kind[i] == 0:
                 W[i, j] = normal_rate(A, B, ROWS, D, k)
             else:
-                W[i, j] = tangent_rate(A, B, ROWS, D, k) - ROWS[k, SURFACE]
+                W[i, j] = tangent_rate(A, B, ROWS, D, k) - ROWS[k].surface
         W[j, j] += abs(W[j, j]) / _R
 
 
 @kernel
 def direct(
-    C: Columns, A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, m: int, shared: bool
+    C: Columns, A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, m: int, shared: bool
 ) -> None:
     """Newton's step of the law on the contacts that act in L, which are kept in their cones; V follows."""
     held, stuck = np.empty(m, np.int64), np.empty(m, np.int64)
@@ -72,10 +73,10 @@ def direct(
         for k in range(N):
             i = at[k]
             if kind[k] == 0:
-                r[k] = ROWS[i, TARGET] - normal_rate(A, B, ROWS, V, i)
+                r[k] = ROWS[i].target - normal_rate(A, B, ROWS, V, i)
             else:
                 if stuck[i] == 2 and L[i, 1] != 0.0:
-                    rest[i] = -ROWS[i, UT] - L[i, 0] * min(ROWS[i, UN] + ROWS[i, TARGET], 0.0) / L[i, 1]
+                    rest[i] = -ROWS[i].ut - L[i, 0] * min(ROWS[i].un + ROWS[i].target, 0.0) / L[i, 1]
                 r[k] = rest[i] - tangent_rate(A, B, ROWS, V, i)
         back(W, N, order, r, x)
         push_columns(C, L, m, -1.0, V)
@@ -92,7 +93,7 @@ def direct(
 
 @kernel
 def iterate_columns(
-    C: Columns, A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, m: int, tolerance: float,
+    C: Columns, A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, m: int, tolerance: float,
     most: int,
 ) -> float:  # fmt: skip
     """At most so many sweeps, accelerated as in `..rows.conjugate.iterate`; the change of the last, which is plain."""
@@ -109,7 +110,7 @@ def iterate_columns(
 
 @kernel
 def solve_columns(
-    C: Columns, A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, m: int, tolerance: float,
+    C: Columns, A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, m: int, tolerance: float,
     most: int,
 ) -> float:  # fmt: skip
     """Impulses L and velocities V by sweeps, at most `most`, and for few contacts by direct solutions between them.

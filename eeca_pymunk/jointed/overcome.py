@@ -6,10 +6,11 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
-from ..impacts.layout import Scene
+from ..compiled.records import Rows
 from ..impacts.spans import Local
+from ..model.contacts import Row
+from ..model.scene import Scene
 from ..rows.build import normal_rate
-from ..rows.layout import K_N, TARGET
 from .advance import AS_IF_SLIPPING, AS_IT_IS, NOT_AT_ALL, Motion, advance
 from .columns import Columns, weigh
 from .groups import Groups
@@ -35,7 +36,7 @@ def driven(J: Joints, groups: Groups, C: Columns, P: IntArray, Q: IntArray, m: i
 
 @kernel
 def overcome(
-    A: Scene, J: Joints, isle: Local, groups: Groups, P: IntArray, Q: IntArray, ROWS: FloatArray, L: FloatArray, m: int,
+    A: Scene, J: Joints, isle: Local, groups: Groups, P: IntArray, Q: IntArray, ROWS: Rows[Row], L: FloatArray, m: int,
     t: float, h: float, small: float, motion: Motion, C: Columns,
 ) -> None:  # fmt: skip
     """Where a motor below its max_force pushes a body into another one, no small impulse changes the body's velocity:
@@ -48,7 +49,7 @@ def overcome(
     waiting = 0
     for i in range(m):
         START[i] = normal_rate(P, Q, ROWS, motion.V, i)
-        if not ROWS[i, TARGET] - START[i] > small:
+        if not ROWS[i].target - START[i] > small:
             HELD[i] = 0
         waiting += HELD[i]
     if waiting == 0:
@@ -59,14 +60,14 @@ def overcome(
         if C.OUT[i] != 0:
             HELD[i] = 0
         if HELD[i] != 0:
-            L[i, 0] += ROWS[i, K_N] * (ROWS[i, TARGET] - START[i])
+            L[i, 0] += ROWS[i].k_n * (ROWS[i].target - START[i])
     for tries in range(_TRIES):
         advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, NOT_AT_ALL, UNKNOWN)
         waiting = 0
         for i in range(m):
             if HELD[i] == 0:
                 continue
-            if normal_rate(P, Q, ROWS, motion.V, i) > START[i] + 0.1 * (ROWS[i, TARGET] - START[i]):
+            if normal_rate(P, Q, ROWS, motion.V, i) > START[i] + 0.1 * (ROWS[i].target - START[i]):
                 HELD[i] = 0
                 continue
             L[i, 0] *= _MORE if tries + 1 < _TRIES else 0.0

@@ -15,13 +15,14 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
+from ..compiled.records import Rows
 from ..impacts.coming import before_end, sweeps_of_crowd
-from ..impacts.layout import Scene
 from ..impacts.spans import Local
 from ..joints.scratch import NEAR, TAUT
+from ..model.contacts import Row
+from ..model.scene import Scene
 from ..rows.build import conserves, normal_rate, rates, tangent_rate
 from ..rows.inplace import copy
-from ..rows.layout import SURFACE, UN, UT
 from ..sustained.contacts import CROWD
 from ..sustained.targets import target
 from .advance import AS_IT_IS, NOT_AT_ALL, Motion, advance, farthest_apart
@@ -47,13 +48,13 @@ _CHORD = 3  # steps of the components between which their answers are taken to b
 
 
 @uncounted
-def slip_of(P: IntArray, Q: IntArray, ROWS: FloatArray, WAY: FloatArray, i: int, h: float) -> float:
+def slip_of(P: IntArray, Q: IntArray, ROWS: Rows[Row], WAY: FloatArray, i: int, h: float) -> float:
     """How far contact i slips in h while bodies go WAY: its surfaces move at a rate, bodies by ways."""
-    return tangent_rate(P, Q, ROWS, WAY, i) + (h - 1.0) * ROWS[i, SURFACE]
+    return tangent_rate(P, Q, ROWS, WAY, i) + (h - 1.0) * ROWS[i].surface
 
 
 @uncounted
-def lost(P: IntArray, Q: IntArray, ROWS: FloatArray, L: FloatArray, WAY: FloatArray, m: int, h: float) -> float:
+def lost(P: IntArray, Q: IntArray, ROWS: Rows[Row], L: FloatArray, WAY: FloatArray, m: int, h: float) -> float:
     """What contacts lose with impulses L while bodies go WAY: their part in the energy of the island, exactly."""
     total = 0.0
     for i in range(m):
@@ -72,7 +73,7 @@ def some_taut(J: Joints, groups: Groups) -> bool:
 
 @kernel
 def press(
-    A: Scene, J: Joints, isle: Local, groups: Groups, P: IntArray, Q: IntArray, ROWS: FloatArray, L: FloatArray,
+    A: Scene, J: Joints, isle: Local, groups: Groups, P: IntArray, Q: IntArray, ROWS: Rows[Row], L: FloatArray,
     EXPECTED: FloatArray, m: int, n: int, t: float, h: float, slow: float, fast: float, pull: float, owed: float,
     motion: Motion, C: Columns,
 ) -> bool:  # fmt: skip
@@ -168,7 +169,7 @@ def press(
         push_columns(C, L, m, -1.0, FREE)
         for i in range(m):
             for tangent in range(2):
-                before = ROWS[i, UT if tangent == 1 else UN]
+                before = ROWS[i].ut if tangent == 1 else ROWS[i].un
                 if tangent == 1:
                     free, after = tangent_rate(P, Q, ROWS, FREE, i), tangent_rate(P, Q, ROWS, motion.V, i)
                 else:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
 from ..arrays import AnyArray, FloatArray, IntArray
 from ..compiled import table_of
-from ..impacts.layout import NEXT_TIED, TIED
+from ..compiled.records import Rows
 from ..impacts.scene import UNBOUND, EventLoop
 from ..joints.layout import JOINT_COLUMNS, TIE_COLUMNS
 from ..joints.plan import make_plan, room_for
@@ -25,7 +26,8 @@ from ..joints.scratch import (
     NODE_COLUMNS,
     SPAN_COLUMNS,
 )
-from ..pairs.layout import MARGIN
+from ..model.bodies import Body
+from ..model.shapes import Link, Shape
 from .layout import COMPONENTS, ORDER, STEPPED_COLUMNS, TALLY_LENGTH, Joints
 from .loop import step_jointed
 from .together import step_together_jointed
@@ -37,19 +39,19 @@ class JointedLoop(EventLoop):
     Args:
         BODY, SHAPE, LINK, VERTEX, disks, limit: as `EventLoop`.
         joint, tie: (j, ...) the joints, see `..joints.layout`; kept, not copied. Bodies are rows of BODY, or len(BODY)
-            + row of PARTNER (x, BODY_COLUMNS), which joints cannot move.
+            + row of PARTNER (x,), which joints cannot move.
         together: whether all contacts of a step act together at its middle, rather than at their instants.
         order: 4 where nothing in a component dissipates, drives, or touches something; or 2.
     """
 
     def __init__(
-        self, BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, disks: int, limit: int,
-        joint: FloatArray, tie: IntArray, PARTNER: FloatArray, together: bool = False, order: int = 4,
+        self, BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, disks: int, limit: int,
+        joint: FloatArray, tie: IntArray, PARTNER: Rows[Body], together: bool = False, order: int = 4,
     ) -> None:  # fmt: skip
         super().__init__(BODY, SHAPE, LINK, VERTEX, disks, limit)
         self._joint, self._tie, self._partner, self._order = joint, tie, PARTNER, order
         self._together = together
-        self._usual: FloatArray = self.near.MARK[:, MARGIN].copy()
+        self._usual: FloatArray = self.near.MARK["margin"].copy()
         if together:
             self._options = ()
         self.plan()
@@ -60,19 +62,19 @@ class JointedLoop(EventLoop):
         count = len(tie)
         span, member = np.zeros((count, SPAN_COLUMNS), np.int64), np.zeros((2 * count, MEMBER_COLUMNS), np.int64)
         link = np.zeros((count, LINK_COLUMNS), np.int64)
-        bodies = np.concatenate((self.scene.BODY, self._partner))
+        bodies: Any = np.concatenate((self.scene.BODY, self._partner))
         components = make_plan(bodies, joint, tie, span, member, link)
         room = room_for(span[:components])
         tally = np.zeros(TALLY_LENGTH, np.int64)
         tally[COMPONENTS], tally[ORDER] = components, self._order
         of = np.full(n, -1, np.int64)
         ring = self.scene.MEMBER
-        ring[:, TIED : NEXT_TIED + 1] = -1
+        ring["tied"] = ring["next_tied"] = -1
         for s in range(components):
             rows = member[span[s, BODY_0] : span[s, BODY_1]]
             moved = np.sort(rows[rows[:, M_FREEDOMS] > 0, M_BODY])
             of[moved] = s
-            ring[moved, TIED], ring[moved, NEXT_TIED] = moved[0], np.roll(moved, -1)
+            ring["tied"][moved], ring["next_tied"][moved] = moved[0], np.roll(moved, -1)
         self.joints = Joints(
             joint, tie, self._partner, span, member, link, np.zeros((room.joints, HINGE_COLUMNS)),
             np.zeros((room.bodies, LOCAL_COLUMNS)), np.zeros((room.bodies, NODE_COLUMNS), np.int64),
@@ -95,11 +97,11 @@ class JointedLoop(EventLoop):
         return self._tie
 
     @property
-    def partner(self) -> FloatArray:
-        """(x, BODY_COLUMNS) bodies that joints cannot move."""
+    def partner(self) -> Rows[Body]:
+        """(x,) bodies that joints cannot move."""
         return self._partner
 
-    def rebind(self, joint: FloatArray, tie: IntArray, PARTNER: FloatArray) -> None:
+    def rebind(self, joint: FloatArray, tie: IntArray, PARTNER: Rows[Body]) -> None:
         """Take other arrays that have the same in them."""
         self._joint, self._tie, self._partner = joint, tie, PARTNER
         self.joints = Joints(joint, tie, PARTNER, *self.joints[3:])

@@ -8,34 +8,15 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..compiled import kernel, uncounted
+from ..compiled.records import empty
 from ..impacts.coming import before_end, pairs_of
 from ..impacts.islands import lossy, members
-from ..impacts.layout import (
-    BODIES,
-    DONE,
-    KINKS,
-    LIFT,
-    LOST,
-    OPEN,
-    PUSHES,
-    PUSHES_FULL,
-    REMEMBERED,
-    ROOT,
-    SOLVES,
-    STAMP,
-    UN_AFTER,
-    UN_BEFORE,
-    UNMET,
-    UNTIL,
-    UT_AFTER,
-    UT_BEFORE,
-    Scene,
-)
 from ..impacts.spans import Local, dismiss, lay_out_island, open_contacts
-from ..layout import AX
+from ..model.contacts import ROW
+from ..model.scene import Scene
+from ..model.step import DONE, PUSHES_FULL
 from ..rows.build import normal_rate
 from ..rows.inplace import sort
-from ..rows.layout import ROW_COLUMNS
 from ..sustained.contacts import NEAR, gather
 from ..sustained.memory import remember_loads
 from ..sustained.step import moved, recall, speeds
@@ -85,7 +66,7 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
         begin_alone(A, J, root, t, h)
         return DONE
     BODY, STATE, MEMBER, COUNT = A.BODY, A.STATE, A.MEMBER, A.COUNT
-    n = MEMBER[root, BODIES]
+    n = MEMBER[root].bodies
     MINE = np.empty(n, np.int64)
     members(A, root, MINE)
     sort(MINE, n)
@@ -98,7 +79,7 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
         dismiss(A, MINE, n)
         begin_alone(A, J, root, t, h)
         return DONE
-    if COUNT[PUSHES] + 2 * p > A.PUSHED.shape[0] or 2 * (COUNT[REMEMBERED] + 2 * p) > A.KEYS.shape[0]:
+    if COUNT.pushes + 2 * p > A.PUSHED.shape[0] or 2 * (COUNT.remembered + 2 * p) > A.KEYS.shape[0]:
         dismiss(A, MINE, n)
         return PUSHES_FULL
     isle = lay_out_island(A, MINE, n, found, t)
@@ -108,7 +89,7 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
         if groups.COMPONENT[g] >= 0:
             keep_joints(J, groups.COMPONENT[g])
     P, Q, KEY = np.empty(room, np.int64), np.empty(room, np.int64), np.empty(room, np.int64)
-    ROWS, L, EXPECTED = np.empty((room, ROW_COLUMNS)), np.zeros((room, 2)), np.zeros(room)
+    ROWS, L, EXPECTED = empty(room, ROW), np.zeros((room, 2)), np.zeros(room)
     motion = Motion(isle.V.copy(), np.zeros((k, 3)), isle.POSE.copy())
     REACH = np.empty(k)
     slow, fast, pull = speeds(isle.V, isle.ACC, isle.EXTENT, isle.IM, n, h, REACH)
@@ -122,13 +103,13 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
         )  # fmt: skip
     C = make_columns(groups, P, Q, m)
     if m > 0:
-        recall(KEY, m, A.KEYS, A.FORCES, A.PAR[STAMP], h, L, EXPECTED)
-        owed = max(-A.RESTING[root, LOST], 0.0)
+        recall(KEY, m, A.KEYS, A.FORCES, A.PAR.stamp, h, L, EXPECTED)
+        owed = max(-A.RESTING[root].lost, 0.0)
         if not press(
             A, J, isle, groups, P, Q, ROWS, L, EXPECTED, m, n, t, h, slow, fast, pull, owed, motion, C
         ):  # fmt: skip
-            COUNT[UNMET] += 1
-        remember_loads(ROWS, KEY, L, m, h, A.KEYS, A.FORCES, COUNT[REMEMBERED:], A.PAR[STAMP])
+            COUNT.unmet += 1
+        remember_loads(ROWS, KEY, L, m, h, A.KEYS, A.FORCES, COUNT, A.PAR.stamp)
     if m == 0:
         advance(A, J, isle, groups, P, Q, ROWS, L, 0, t, h, motion, C, NOT_AT_ALL, np.empty((0, 3)))
     book_turning(A, J, isle, groups, motion, n)
@@ -136,7 +117,7 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
     WHERE = motion.END.copy()
     if may_lose and m > 0:
         if not before_end(A, t + h):
-            budget = lost(P, Q, ROWS, L, motion.WAY, m, h) + A.RESTING[root, LOST]
+            budget = lost(P, Q, ROWS, L, motion.WAY, m, h) + A.RESTING[root].lost
             spent = lift(A, J, isle, groups, P, Q, ROWS, m, n, motion, t + h, h, budget, C)
             for g in range(len(groups.COMPONENT)):
                 if groups.COMPONENT[g] >= 0:
@@ -144,25 +125,28 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
                     break
         fit(A, J, isle, groups, P, Q, ROWS, L, m, motion, t + h, h, slow + pull * h, C)
     dismiss(A, MINE, n)
-    COUNT[SOLVES] += 1
-    first = COUNT[PUSHES]
+    COUNT.solves += 1
+    first = COUNT.pushes
     open_contacts(A, isle, P, Q, ROWS, KEY, L, motion.V, m, t, h, np.zeros(k, np.uint8))
     for z in range(m):
         R = A.PUSHED[first + z]
-        R[UN_BEFORE] = R[UN_AFTER] = normal_rate(P, Q, ROWS, motion.WAY, z) / h
-        R[UT_BEFORE] = R[UT_AFTER] = slip_of(P, Q, ROWS, motion.WAY, z, h) / h
-        A.PUSHED_BY[first + z, ROOT] = root
-    COUNT[PUSHES] += m
+        R.un_before = R.un_after = normal_rate(P, Q, ROWS, motion.WAY, z) / h
+        R.ut_before = R.ut_after = slip_of(P, Q, ROWS, motion.WAY, z, h) / h
+        A.PUSHED_BY[first + z].root = root
+    COUNT.pushes += m
     for q in range(n):
         i = MINE[q]
-        STATE[i, KINKS] += 1
-        for c in range(3):
-            # A parabola from start to end; velocities at the end are others.
-            BODY[i, AX + c] = 2.0 * (WHERE[q, c] - isle.POSE[q, c] - h * isle.V[q, c]) / (h * h)
-            A.RESTING[i, LIFT + c] = motion.END[q, c] - WHERE[q, c]
-            A.RESTING[i, LIFT + 3 + c] = motion.V[q, c]
-    MEMBER[root, OPEN] = 1
-    A.RESTING[root, UNTIL] = math.inf
+        STATE[i].version += 1
+        # A parabola from start to end; velocities at the end are others.
+        body, rest = BODY[i], A.RESTING[i]
+        body.ax = 2.0 * (WHERE[q, 0] - isle.POSE[q, 0] - h * isle.V[q, 0]) / (h * h)
+        body.ay = 2.0 * (WHERE[q, 1] - isle.POSE[q, 1] - h * isle.V[q, 1]) / (h * h)
+        body.angular = 2.0 * (WHERE[q, 2] - isle.POSE[q, 2] - h * isle.V[q, 2]) / (h * h)
+        rest.lift_x, rest.lift_y = motion.END[q, 0] - WHERE[q, 0], motion.END[q, 1] - WHERE[q, 1]
+        rest.lift_angle = motion.END[q, 2] - WHERE[q, 2]
+        rest.lift_vx, rest.lift_vy, rest.lift_spin = motion.V[q, 0], motion.V[q, 1], motion.V[q, 2]
+    MEMBER[root].open = 1
+    A.RESTING[root].until = math.inf
     return DONE
 
 

@@ -9,12 +9,11 @@ from ..compiled import kernel, uncounted
 from ..impacts.block import Block, gather, lay_out, owing
 from ..impacts.collide import finish, rejoin
 from ..impacts.islands import members, unite
-from ..impacts.layout import BODIES, EXTERNAL, ISLAND, JOINTED, KINKS, LEDGER, OPEN, PENDING, Scene
 from ..impacts.settle import comes_to_rest
 from ..impacts.spans import dismiss
 from ..joints.scratch import BEFORE as LOCAL_BEFORE
 from ..joints.scratch import BODY_0, BODY_1, FREEDOMS
-from ..layout import IM, OWNER
+from ..model.scene import Scene
 from ..rows.blocks import CONVERGED, D_NORMAL, D_TANGENTIAL, OUT_SIZE, SCALE_LOCK, TRUNCATED
 from ..rows.build import aim, conserves, rates
 from ..rows.energy import scale_of, works
@@ -58,7 +57,7 @@ def carried_along(J: Joints, s: int) -> bool:
 def collide(A: Scene, J: Joints, disks: int, a: int, b: int, t: float) -> tuple[int, int]:
     """The impact of shapes a and b, seen at instant t, with all that hangs on them: results as `..impacts.strike`."""
     k = A.SHAPE.shape[0]
-    i, j = A.LINK[a, OWNER], A.LINK[b, OWNER]
+    i, j = A.LINK[a].owner, A.LINK[b].owner
     t = meet(A, J, a, b, t)
     n, m, PAIRS = gather(A, disks, a, b, t)
     again, ended = True, 0
@@ -66,8 +65,8 @@ def collide(A: Scene, J: Joints, disks: int, a: int, b: int, t: float) -> tuple[
     while again:
         again = False
         for q in range(n):
-            root = A.STATE[A.BLOCK[q], ISLAND]
-            if root >= 0 and A.MEMBER[root, OPEN] > 0 and A.MEMBER[root, JOINTED] > 0:
+            root = A.STATE[A.BLOCK[q]].island
+            if root >= 0 and A.MEMBER[root].open > 0 and A.MEMBER[root].jointed > 0:
                 shorten(A, J, root, t)
                 end_here(A, J, root, t)
                 ENDED[ended] = root
@@ -150,18 +149,18 @@ def collide(A: Scene, J: Joints, disks: int, a: int, b: int, t: float) -> tuple[
     # Joints do all that contacts do not account for, which is nothing unless they hang on something that moves.
     REST = np.zeros_like(V)
     gained = energy_of(block, V, REST, n) - energy_of(block, BEFORE, REST, n) + OUT[D_NORMAL] + OUT[D_TANGENTIAL]
-    A.PAR[LEDGER + EXTERNAL] += gained - carried(P, Q, ROWS, L, V, V, block.IM, block.II, rows)
+    A.PAR.external += gained - carried(P, Q, ROWS, L, V, V, block.IM, block.II, rows)
     finish(A, block, n, m, L, OUT, status, t)
-    A.STATE[i, KINKS] += 1
-    if A.BODY[j, IM] > 0.0:
-        A.STATE[j, KINKS] += 1
+    A.STATE[i].version += 1
+    if A.BODY[j].inv_mass > 0.0:
+        A.STATE[j].version += 1
     status, n = rejoin(A, a, b, t, n, rest, OUT[D_NORMAL] + OUT[D_TANGENTIAL] - owed)
     # Islands that were brought here, and do not touch after all, begin anew with those that do.
-    root = A.STATE[i if A.BODY[i, IM] > 0.0 else j, ISLAND]
+    root = A.STATE[i if A.BODY[i].inv_mass > 0.0 else j].island
     for c in range(ended):
-        other = A.STATE[ENDED[c], ISLAND]
+        other = A.STATE[ENDED[c]].island
         if other != root:
-            MINE = np.empty(A.MEMBER[other, BODIES], np.int64)
+            MINE = np.empty(A.MEMBER[other].bodies, np.int64)
             members(A, other, MINE)
             for q in range(len(MINE)):
                 known = False
@@ -171,5 +170,5 @@ def collide(A: Scene, J: Joints, disks: int, a: int, b: int, t: float) -> tuple[
                     A.BLOCK[n] = MINE[q]
                     n += 1
             root = unite(A, root, other)
-    A.COUNT[PENDING] = root
+    A.COUNT.pending = root
     return status, n

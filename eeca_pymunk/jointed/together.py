@@ -10,23 +10,11 @@ import math
 from ..arrays import FloatArray, IntArray
 from ..compiled import Table, kernel
 from ..impacts.islands import unite
-from ..impacts.layout import (
-    DONE,
-    DT,
-    ISLAND,
-    JOINTED,
-    NOW,
-    PUSHES,
-    SPEED,
-    TIED,
-    TOGETHER,
-    Scene,
-    scene_of,
-)
 from ..impacts.spans import solve
 from ..impacts.step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, finish
 from ..impacts.together import anew, join_all
-from ..layout import EXTENT, SPIN, VX, VY
+from ..model.scene import Scene, scene_of
+from ..model.step import DONE
 from .layout import Joints, joints_of
 from .loop import book_joints, start_jointed
 from .solve import begin_span
@@ -40,27 +28,27 @@ def resume_together_jointed(
     """The rest of a step, whose bits so far are `status`; from its start, if it has been broken off for more room."""
     COUNT, BODY = A.COUNT, A.BODY
     n = BODY.shape[0] - 1
-    A.RESTING[n, SPEED] = 0.0
+    A.RESTING[n].speed = 0.0
     for i in range(n):
-        A.RESTING[i, SPEED] = math.hypot(BODY[i, VX], BODY[i, VY]) + abs(BODY[i, SPIN]) * BODY[i, EXTENT]
+        A.RESTING[i].speed = math.hypot(BODY[i].vx, BODY[i].vy) + abs(BODY[i].spin) * BODY[i].extent
     anew(A)
     if not join_all(A, USUAL):
         return ROOM_FOR_LISTS
     for i in range(n):
-        if A.MEMBER[i, TIED] >= 0:
-            unite(A, i, A.MEMBER[i, TIED])
+        if A.MEMBER[i].tied >= 0:
+            unite(A, i, A.MEMBER[i].tied)
     # A solve may make another body the root of its island, which then would be solved again.
     roots = 0
     for i in range(n):
-        if A.STATE[i, ISLAND] == i:
+        if A.STATE[i].island == i:
             A.BLOCK[roots] = i
             roots += 1
     for q in range(roots):
         root = A.BLOCK[q]
-        jointed = A.MEMBER[root, JOINTED] > 0
-        if (begin_span(A, J, root, 0.0, A.PAR[DT]) if jointed else solve(A, root, 0.0)) != DONE:
+        jointed = A.MEMBER[root].jointed > 0
+        if (begin_span(A, J, root, 0.0, A.PAR.dt) if jointed else solve(A, root, 0.0)) != DONE:
             return ROOM_FOR_CONTACTS
-    if COUNT[PUSHES] > A.LOG.shape[0]:
+    if COUNT.pushes > A.LOG.shape[0]:
         return ROOM_FOR_EVENTS
     book_joints(A, J)
     return finish(A, STATES, WALK, EXTRA, ENDS, status)
@@ -79,5 +67,5 @@ def step_together_jointed(
     status = start_jointed(A, J, STATES, WALK, EXTRA, dt, gx, gy, left)
     if status < 0:
         return status
-    A.COUNT[TOGETHER], A.PAR[NOW] = 1, 0.0
+    A.COUNT.together, A.PAR.now = 1, 0.0
     return resume_together_jointed(A, J, STATES, WALK, EXTRA, ENDS, USUAL, status)

@@ -13,7 +13,8 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel
-from ..layout import II, IM
+from ..compiled.records import Rows
+from ..model.bodies import Body
 from .dual import STRIDE
 from .layout import ANCHOR_AX, ANCHOR_AY, ANCHOR_BX, ANCHOR_BY, BODY_A, BODY_B, GEAR, GROOVE, KIND, MOTOR, SOFT
 from .ordering import order_rows, order_unknowns
@@ -53,7 +54,7 @@ def root(parent: IntArray, i: int) -> int:
 
 
 @kernel
-def find_islands(bodies: FloatArray, tie: IntArray, parent: IntArray, island: IntArray, joints: int) -> int:
+def find_islands(bodies: Rows[Body], tie: IntArray, parent: IntArray, island: IntArray, joints: int) -> int:
     """Number the islands by their first joint; island[j] = -1 for a joint between bodies that nothing moves.
 
     `parent` (bodies,) and `island` (joints,) are filled in.
@@ -81,14 +82,14 @@ def find_islands(bodies: FloatArray, tie: IntArray, parent: IntArray, island: In
 
 
 @kernel
-def moved(bodies: FloatArray, i: int) -> bool:
+def moved(bodies: Rows[Body], i: int) -> bool:
     """Whether joints can move body i."""
-    return bool(bodies[i, IM] > 0.0 or bodies[i, II] > 0.0)
+    return bool(bodies[i].inv_mass > 0.0 or bodies[i].inv_inertia > 0.0)
 
 
 @kernel
 def turning(
-    bodies: FloatArray, joint: FloatArray, tie: IntArray, joints: int, turns: IntArray, cayley: IntArray
+    bodies: Rows[Body], joint: FloatArray, tie: IntArray, joints: int, turns: IntArray, cayley: IntArray
 ) -> None:
     """Which bodies joints turn, and which of them take Cayley's turn: those held off their centre, and who is bound
     to one of these by its angle."""
@@ -96,10 +97,10 @@ def turning(
         a, b, kind = tie[j, BODY_A], tie[j, BODY_B], tie[j, KIND]
         off_a = kind == GROOVE or (kind < GEAR and (joint[j, ANCHOR_AX] != 0.0 or joint[j, ANCHOR_AY] != 0.0))
         off_b = kind < GEAR and (joint[j, ANCHOR_BX] != 0.0 or joint[j, ANCHOR_BY] != 0.0)
-        if bodies[a, II] > 0.0 and (off_a or kind >= GEAR):
+        if bodies[a].inv_inertia > 0.0 and (off_a or kind >= GEAR):
             turns[a] = 1
             cayley[a] = max(cayley[a], 1 if off_a else 0)
-        if bodies[b, II] > 0.0 and (off_b or kind >= GEAR):
+        if bodies[b].inv_inertia > 0.0 and (off_b or kind >= GEAR):
             turns[b] = 1
             cayley[b] = max(cayley[b], 1 if off_b else 0)
     changed = True
@@ -114,7 +115,7 @@ def turning(
 
 @kernel
 def make_plan(
-    bodies: FloatArray, joint: FloatArray, tie: IntArray, span: IntArray, member: IntArray, link: IntArray
+    bodies: Rows[Body], joint: FloatArray, tie: IntArray, span: IntArray, member: IntArray, link: IntArray
 ) -> int:
     """Fill in `span` (joints, SPAN_COLUMNS), `member` (2 joints, ...), `link` (joints, ...); the number of islands."""
     joints = len(tie)

@@ -8,7 +8,8 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
-from ..layout import AX, II, IM, VX, X
+from ..compiled.records import Rows
+from ..model.bodies import Body
 from .layout import LEDGER_COLUMNS
 from .motion import size_up
 from .plan import make_plan, room_for
@@ -43,18 +44,18 @@ from .step import island_step
 
 @uncounted
 def gather_island(
-    bodies: FloatArray, joint: FloatArray, span: IntArray, s: int, member: IntArray, link: IntArray, h: float,
+    bodies: Rows[Body], joint: FloatArray, span: IntArray, s: int, member: IntArray, link: IntArray, h: float,
     local: FloatArray, node: IntArray,
 ) -> float:  # fmt: skip
     """Copy the bodies of island s into its scratch; the size of the island, the length that errors are measured by."""
     b0, count = span[s, BODY_0], span[s, BODY_1] - span[s, BODY_0]
     for i in range(count):
         body = member[b0 + i, M_BODY]
-        for c in range(3):
-            local[i, POSE + c] = bodies[body, X + c]
-            local[i, BEFORE + c] = bodies[body, VX + c]
-            local[i, FREE + c] = bodies[body, AX + c]
-            local[i, MOBILITY + c] = bodies[body, IM] if c < 2 else bodies[body, II]
+        b = bodies[body]
+        local[i, POSE], local[i, POSE + 1], local[i, POSE + 2] = b.x, b.y, b.angle
+        local[i, BEFORE], local[i, BEFORE + 1], local[i, BEFORE + 2] = b.vx, b.vy, b.spin
+        local[i, FREE], local[i, FREE + 1], local[i, FREE + 2] = b.ax, b.ay, b.angular
+        local[i, MOBILITY], local[i, MOBILITY + 1], local[i, MOBILITY + 2] = b.inv_mass, b.inv_mass, b.inv_inertia
         local[i, CAYLEY] = member[b0 + i, M_CAYLEY]
         node[i, COLUMN], node[i, FREEDOMS] = member[b0 + i, M_COLUMN], member[b0 + i, M_FREEDOMS]
         node[i, FIRST] = member[b0 + i, M_FIRST]
@@ -63,12 +64,12 @@ def gather_island(
 
 @uncounted
 def step_all(
-    bodies: FloatArray, joint: FloatArray, tie: IntArray, span: IntArray, member: IntArray, link: IntArray,
+    bodies: Rows[Body], joint: FloatArray, tie: IntArray, span: IntArray, member: IntArray, link: IntArray,
     islands: int, h: float, order: int, hinge: FloatArray, local: FloatArray, node: IntArray,
     matrix: FloatArray, right: FloatArray, more: FloatArray, pivots: IntArray, stiff: FloatArray, found: FloatArray,
     part: FloatArray, ledger: FloatArray, status: IntArray,
 ) -> int:  # fmt: skip
-    """Step all islands of a plan by h, in place of X .. SPIN of `bodies`; the worst status.
+    """Step all islands of a plan by h, in place of the poses and velocities of `bodies`; the worst status.
 
     Bodies outside islands are not moved. `ledger` (islands, LEDGER_COLUMNS) and `status` (islands,) are filled in.
     """
@@ -83,11 +84,10 @@ def step_all(
         )  # fmt: skip
         worst = max(worst, status[s])
         for i in range(n):
-            body = member[b0 + i, M_BODY]
-            for c in range(3):
-                if bodies[body, IM] > 0.0 or bodies[body, II] > 0.0:
-                    bodies[body, X + c] = local[i, POSE + c]
-                    bodies[body, VX + c] = local[i, BEFORE + c]
+            b = bodies[member[b0 + i, M_BODY]]
+            if b.inv_mass > 0.0 or b.inv_inertia > 0.0:
+                b.x, b.y, b.angle = local[i, POSE], local[i, POSE + 1], local[i, POSE + 2]
+                b.vx, b.vy, b.spin = local[i, BEFORE], local[i, BEFORE + 1], local[i, BEFORE + 2]
     return worst
 
 
@@ -107,7 +107,7 @@ class Islands:
     ledger: FloatArray = field(default_factory=lambda: np.zeros((0, LEDGER_COLUMNS)))
     status: IntArray = field(default_factory=lambda: np.zeros(0, np.int64))
 
-    def plan(self, bodies: FloatArray) -> None:
+    def plan(self, bodies: Rows[Body]) -> None:
         """Find the islands of `bodies` (n, BODY_COLUMNS), and make room."""
         joints = len(self.tie)
         self._span = np.zeros((joints, SPAN_COLUMNS), np.int64)
@@ -123,7 +123,7 @@ class Islands:
         self._stiff, self._found, self._part = np.zeros((6, 6)), np.zeros(FOUND), np.zeros(LEDGER_COLUMNS)
         self.ledger, self.status = np.zeros((self.islands, LEDGER_COLUMNS)), np.zeros(self.islands, np.int64)
 
-    def step(self, bodies: FloatArray, h: float) -> int:
+    def step(self, bodies: Rows[Body], h: float) -> int:
         """Step all islands of `bodies` (n, BODY_COLUMNS) by h; the worst status."""
         return step_all(
             bodies, self.joint, self.tie, self._span, self._member, self._link, self.islands, h, self.order,

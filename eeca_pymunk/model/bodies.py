@@ -78,9 +78,9 @@ class Rest(Record):
     lift_vx: float
     lift_vy: float
     lift_spin: float
-    relax_0: float  # of the root: state of the iterative solve, see `sustained/relax.py`
-    relax_1: float
-    relax_2: float
+    augmentation: float  # of the root: its log10 in direct solves, see `sustained/relax.py`
+    wait: float  # of the root: steps to wait before the next direct solve; the wait that its next failure brings
+    backoff: float
     lost: float  # of the root: energy lost in this step; below 0 it is owed
     until: float  # of the root: instant at which the interval ends
     calm_for: float  # steps in a row at whose start the body hardly moved

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..compiled.records import Record
+from ..compiled.records import Record, kind_of
 
 
 class Impulse(Record):
@@ -85,4 +85,4 @@ class Row(Record):
     w_tt: float
 
 
-ROW = Row.TYPE
+ROW = kind_of(Row)

@@ -10,11 +10,13 @@ import math
 
 from ..arrays import FlagArray, FloatArray, IntArray, PoolArray
 from ..compiled import uncounted
+from ..compiled.records import Rows
 from ..geometry.flight import norm
 from ..geometry.gap import gap, touching
-from ..layout import OWNER
+from ..model.bodies import Body
+from ..model.shapes import Cell, Link, List, Mark, Shape
 from .grid import renew
-from .layout import AT_X, AT_Y, CELL_LENGTH, MARGIN, NUMBER, START
+from .layout import CELL_LENGTH
 from .lists import centre
 
 _LASTS = 2.0  # times the reach, that the margin of a fast shape is
@@ -23,7 +25,7 @@ _ABSURD = 1e15  # cells, beyond which nothing is farther
 
 @uncounted
 def cover(
-    BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, MARK: FloatArray, CELL: IntArray, LIST: IntArray,
+    BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], MARK: Rows[Mark], CELL: Rows[Cell], LIST: Rows[List],
     POOL: PoolArray, FLAG: FlagArray, HEAD: IntArray, GRID: FloatArray, INFO: IntArray, BOX: FloatArray, CSR: IntArray,
     USUAL: FloatArray, s: int, reach: float,
 ) -> bool:  # fmt: skip
@@ -33,21 +35,21 @@ def cover(
     Args:
         USUAL: (k,) margins where nothing is fast, length; margins of shapes that were fast go back to these.
     """
-    margin = MARK[s, MARGIN]
+    margin = MARK[s].margin
     if margin == math.inf:
         return True
     reach = min(reach, _ABSURD * GRID[CELL_LENGTH])
     x, y = centre(BODY, SHAPE, LINK, s, 0.0)
-    if norm(x - MARK[s, AT_X], y - MARK[s, AT_Y]) + reach <= margin:
+    if norm(x - MARK[s].x, y - MARK[s].y) + reach <= margin:
         return True
-    MARK[s, MARGIN] = max(USUAL[s], _LASTS * reach)
+    MARK[s].margin = max(USUAL[s], _LASTS * reach)
     return renew(BODY, SHAPE, LINK, MARK, CELL, LIST, POOL, FLAG, HEAD, GRID, INFO, BOX, CSR, s, 0.0, 0.0) >= 0
 
 
 @uncounted
 def candidates(
-    BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray, MARK: FloatArray,
-    CELL: IntArray, LIST: IntArray, POOL: PoolArray, FLAG: FlagArray, HEAD: IntArray, GRID: FloatArray, INFO: IntArray,
+    BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, WORK: FloatArray, MARK: Rows[Mark],
+    CELL: Rows[Cell], LIST: Rows[List], POOL: PoolArray, FLAG: FlagArray, HEAD: IntArray, GRID: FloatArray, INFO: IntArray,
     BOX: FloatArray, CSR: IntArray, USUAL: FloatArray, disks: int, REACH: FloatArray, PAIRS: IntArray, OUT: FloatArray,
 ) -> int:  # fmt: skip
     """The pairs of shapes whose gap at the start of the step is at most the sum of their bodies' reaches.
@@ -63,17 +65,17 @@ def candidates(
     moving = LIST.shape[0]
     for s in range(moving):
         if not cover(
-            BODY, SHAPE, LINK, MARK, CELL, LIST, POOL, FLAG, HEAD, GRID, INFO, BOX, CSR, USUAL, s, REACH[LINK[s, OWNER]]
+            BODY, SHAPE, LINK, MARK, CELL, LIST, POOL, FLAG, HEAD, GRID, INFO, BOX, CSR, USUAL, s, REACH[LINK[s].owner]
         ):
             return -1
     found = 0
     for s in range(moving):
-        for q in range(LIST[s, START], LIST[s, START] + LIST[s, NUMBER]):
+        for q in range(LIST[s].start, LIST[s].start + LIST[s].number):
             o = int(POOL[q])
             if o < s:
                 continue
             g, nx, ny, px, py = gap(BODY, SHAPE, LINK, VERTEX, WORK, s, o, 0.0)
-            if g > REACH[LINK[s, OWNER]] + REACH[LINK[o, OWNER]]:
+            if g > REACH[LINK[s].owner] + REACH[LINK[o].owner]:
                 continue
             if found < PAIRS.shape[0]:
                 PAIRS[found, 0], PAIRS[found, 1] = s, o

@@ -10,19 +10,12 @@ import math
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
-from ..layout import BOUND
+from ..compiled.records import Rows
+from ..model.shapes import Cell, Mark, Shape
 from .layout import (
-    AT_X,
-    AT_Y,
-    BUCKET,
     CELL_LENGTH,
-    LEVEL,
     LEVEL_COUNT,
     LEVELS,
-    MARGIN,
-    NEXT,
-    PREVIOUS,
-    REACH,
 )  # fmt: skip
 
 _FAR = 2.0**50  # cells from the origin, beyond which all are one: numbers of cells stay whole
@@ -51,42 +44,42 @@ def level_of(radius: float, cell: float) -> int:
 
 
 @uncounted
-def draw(MARK: FloatArray, SHAPE: FloatArray, s: int, x: float, y: float) -> None:
+def draw(MARK: Rows[Mark], SHAPE: Rows[Shape], s: int, x: float, y: float) -> None:
     """Let the margin circle of shape s have its centre at (x, y)."""
-    MARK[s, AT_X], MARK[s, AT_Y], MARK[s, REACH] = x, y, SHAPE[s, BOUND] + MARK[s, MARGIN]
+    MARK[s].x, MARK[s].y, MARK[s].reach = x, y, SHAPE[s].bound + MARK[s].margin
 
 
 @uncounted
-def link(MARK: FloatArray, CELL: IntArray, HEAD: IntArray, GRID: FloatArray, INFO: IntArray, s: int) -> None:
+def link(MARK: Rows[Mark], CELL: Rows[Cell], HEAD: IntArray, GRID: FloatArray, INFO: IntArray, s: int) -> None:
     """Put shape s into the grid where its margin circle is."""
-    level = level_of(MARK[s, REACH], GRID[CELL_LENGTH])
+    level = level_of(MARK[s].reach, GRID[CELL_LENGTH])
     length = GRID[CELL_LENGTH] * 2.0**level
-    k = bucket(level, cell_at(MARK[s, AT_X], length), cell_at(MARK[s, AT_Y], length), HEAD.shape[0] - 1)
+    k = bucket(level, cell_at(MARK[s].x, length), cell_at(MARK[s].y, length), HEAD.shape[0] - 1)
     head = HEAD[k]
-    CELL[s, LEVEL], CELL[s, BUCKET] = level, k
-    MARK[s, NEXT], MARK[s, PREVIOUS] = head, -1.0
+    CELL[s].level, CELL[s].bucket = level, k
+    MARK[s].following, MARK[s].previous = head, -1.0
     if head >= 0:
-        MARK[head, PREVIOUS] = s
+        MARK[head].previous = s
     HEAD[k] = s
     INFO[LEVELS + level] += 1
 
 
 @uncounted
-def unlink(MARK: FloatArray, CELL: IntArray, HEAD: IntArray, INFO: IntArray, s: int) -> None:
+def unlink(MARK: Rows[Mark], CELL: Rows[Cell], HEAD: IntArray, INFO: IntArray, s: int) -> None:
     """Take shape s out of the grid."""
-    after, before = int(MARK[s, NEXT]), int(MARK[s, PREVIOUS])
+    after, before = int(MARK[s].following), int(MARK[s].previous)
     if before >= 0:
-        MARK[before, NEXT] = after
+        MARK[before].following = after
     else:
-        HEAD[CELL[s, BUCKET]] = after
+        HEAD[CELL[s].bucket] = after
     if after >= 0:
-        MARK[after, PREVIOUS] = before
-    INFO[LEVELS + CELL[s, LEVEL]] -= 1
+        MARK[after].previous = before
+    INFO[LEVELS + CELL[s].level] -= 1
 
 
 @uncounted
-def near(MARK: FloatArray, o: int, x: float, y: float, radius: float) -> bool:
+def near(MARK: Rows[Mark], o: int, x: float, y: float, radius: float) -> bool:
     """Whether the margin circle of shape o overlaps that of centre (x, y)."""
-    dx, dy = MARK[o, AT_X] - x, MARK[o, AT_Y] - y
-    reach = radius + MARK[o, REACH]
+    dx, dy = MARK[o].x - x, MARK[o].y - y
+    reach = radius + MARK[o].reach
     return bool(dx * dx + dy * dy <= reach * reach)

@@ -12,27 +12,19 @@ import math
 
 from ..arrays import FlagArray, FloatArray, IntArray, PoolArray
 from ..compiled import fetch, uncounted
-from ..layout import X
+from ..compiled.records import Rows
+from ..model.bodies import Body
+from ..model.shapes import Cell, Link, List, Mark, Shape
 from .cells import bucket, cell_at, draw, link, near, unlink
 from .layout import (
-    AT_X,
-    AT_Y,
-    BUCKET,
-    CAPACITY,
     CELL_LENGTH,
     CHOSEN,
     LEAVES,
-    LEVEL,
     LEVEL_COUNT,
     LEVELS,
-    MARGIN,
     MOVING,
-    NEXT,
-    NUMBER,
     POOL_END,
-    REACH,
     ROOM,
-    START,
     WALKED,
 )  # fmt: skip
 from .lists import append, centre, course, may_meet, place_in, remove
@@ -43,7 +35,14 @@ _FIRST_CAPACITY = 8
 
 @uncounted
 def join(
-    BODY: FloatArray, LINK: IntArray, LIST: IntArray, POOL: PoolArray, FLAG: FlagArray, INFO: IntArray, s: int, o: int
+    BODY: Rows[Body],
+    LINK: Rows[Link],
+    LIST: Rows[List],
+    POOL: PoolArray,
+    FLAG: FlagArray,
+    INFO: IntArray,
+    s: int,
+    o: int,
 ) -> bool:
     """Put two moving shapes that may meet into each other's lists. False if the pool is full."""
     return not may_meet(BODY, LINK, s, o) or (
@@ -53,12 +52,19 @@ def join(
 
 @uncounted
 def join_chosen(
-    BODY: FloatArray, LINK: IntArray, LIST: IntArray, POOL: PoolArray, FLAG: FlagArray, INFO: IntArray, s: int, n: int
+    BODY: Rows[Body],
+    LINK: Rows[Link],
+    LIST: Rows[List],
+    POOL: PoolArray,
+    FLAG: FlagArray,
+    INFO: IntArray,
+    s: int,
+    n: int,
 ) -> bool:
     """`join` s with the n shapes in INFO[CHOSEN:] that are not in its list."""
     for k in range(n):
-        fetch(LIST, INFO[CHOSEN + k], START)
-        fetch(BODY, INFO[CHOSEN + k], X)
+        fetch(LIST, INFO[CHOSEN + k], 0)
+        fetch(BODY, INFO[CHOSEN + k], 0)
     for k in range(n):
         o = INFO[CHOSEN + k]
         # Cells may share a place of the table: a shape may come up more than once.
@@ -69,20 +75,20 @@ def join_chosen(
 
 @uncounted
 def walk(
-    BODY: FloatArray, LINK: IntArray, MARK: FloatArray, LIST: IntArray, POOL: PoolArray, FLAG: FlagArray,
+    BODY: Rows[Body], LINK: Rows[Link], MARK: Rows[Mark], LIST: Rows[List], POOL: PoolArray, FLAG: FlagArray,
     INFO: IntArray, s: int, n: int,
 ) -> bool:  # fmt: skip
     """`join` s with the shapes near its margin circle in the n places of the grid whose first ones are in
     INFO[WALKED:]. One step in each place at a time: so their rows come at the same time."""
-    x, y, radius, chosen = MARK[s, AT_X], MARK[s, AT_Y], MARK[s, REACH], 0
+    x, y, radius, chosen = MARK[s].x, MARK[s].y, MARK[s].reach, 0
     while n > 0:
         more = 0
         for k in range(n):
             o = INFO[WALKED + k]
             INFO[CHOSEN + chosen] = o
             chosen += 1 if near(MARK, o, x, y, radius) else 0
-            after = int(MARK[o, NEXT])
-            fetch(MARK, after, AT_X)
+            after = int(MARK[o].following)
+            fetch(MARK, after, 0)
             INFO[WALKED + more] = after
             more += 1 if after >= 0 else 0
             if chosen == ROOM:
@@ -95,13 +101,13 @@ def walk(
 
 @uncounted
 def seek_moving(
-    BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, MARK: FloatArray, CELL: IntArray, LIST: IntArray,
+    BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], MARK: Rows[Mark], CELL: Rows[Cell], LIST: Rows[List],
     POOL: PoolArray, FLAG: FlagArray, HEAD: IntArray, GRID: FloatArray, INFO: IntArray, s: int,
 ) -> bool:  # fmt: skip
     """Neighbours of s, which is not in the grid, among the shapes that are, but for those in its list already. False if
     the pool is full."""
-    x, y = MARK[s, AT_X], MARK[s, AT_Y]
-    radius = MARK[s, REACH]
+    x, y = MARK[s].x, MARK[s].y
+    radius = MARK[s].reach
     mask = HEAD.shape[0] - 1
     length = 0.5 * GRID[CELL_LENGTH]
     for level in range(LEVEL_COUNT):
@@ -116,7 +122,7 @@ def seek_moving(
         last = level == LEVEL_COUNT - 1
         if last or float(east - west + 1) * float(north - south + 1) > 4.0 * left + 16.0:
             for o in range(INFO[MOVING]):
-                here = CELL[o, LEVEL] == level and CELL[o, BUCKET] >= 0 and o != s
+                here = CELL[o].level == level and CELL[o].bucket >= 0 and o != s
                 if here and near(MARK, o, x, y, radius) and place_in(LIST, POOL, s, o) < 0:
                     if not join(BODY, LINK, LIST, POOL, FLAG, INFO, s, o):
                         return False
@@ -125,7 +131,7 @@ def seek_moving(
         for column in range(west, east + 1):
             for row in range(south, north + 1):
                 o = HEAD[bucket(level, column, row, mask)]
-                fetch(MARK, o, AT_X)
+                fetch(MARK, o, 0)
                 INFO[WALKED + heads] = o
                 heads += 1 if o >= 0 else 0
                 if heads == ROOM or (heads > 0 and column == east and row == north):
@@ -136,15 +142,15 @@ def seek_moving(
 
 
 @uncounted
-def part(LIST: IntArray, POOL: PoolArray, FLAG: FlagArray, INFO: IntArray, MARK: FloatArray, s: int) -> int:
+def part(LIST: Rows[List], POOL: PoolArray, FLAG: FlagArray, INFO: IntArray, MARK: Rows[Mark], s: int) -> int:
     """Leave in the list of s the moving shapes that are near its margin circle, with their flags, and take s out of the
     lists of the others; how many are left."""
-    start, kept = LIST[s, START], 0
-    for q in range(start, start + LIST[s, NUMBER]):
-        fetch(MARK, int(POOL[q]), AT_X)
-        fetch(LIST, int(POOL[q]), START)
-    x, y, radius = MARK[s, AT_X], MARK[s, AT_Y], MARK[s, REACH]
-    for q in range(start, start + LIST[s, NUMBER]):
+    start, kept = LIST[s].start, 0
+    for q in range(start, start + LIST[s].number):
+        fetch(MARK, int(POOL[q]), 0)
+        fetch(LIST, int(POOL[q]), 0)
+    x, y, radius = MARK[s].x, MARK[s].y, MARK[s].reach
+    for q in range(start, start + LIST[s].number):
         o = int(POOL[q])
         # Static ones are sought again, but for their flags.
         if near(MARK, o, x, y, radius) if o < INFO[MOVING] else FLAG[q] != 0:
@@ -152,13 +158,13 @@ def part(LIST: IntArray, POOL: PoolArray, FLAG: FlagArray, INFO: IntArray, MARK:
             kept += 1
         elif o < INFO[MOVING]:
             remove(LIST, POOL, FLAG, o, s)
-    LIST[s, NUMBER] = kept
+    LIST[s].number = kept
     return kept
 
 
 @uncounted
 def renew(
-    BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, MARK: FloatArray, CELL: IntArray, LIST: IntArray,
+    BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], MARK: Rows[Mark], CELL: Rows[Cell], LIST: Rows[List],
     POOL: PoolArray, FLAG: FlagArray, HEAD: IntArray, GRID: FloatArray, INFO: IntArray, BOX: FloatArray,
     CSR: IntArray, s: int, t: float, ahead: float,
 ) -> int:  # fmt: skip
@@ -170,13 +176,13 @@ def renew(
     Returns:
         how many of the list were in it before: they are the first. -1 if the pool is full: then `build` is due.
     """
-    if MARK[s, MARGIN] == math.inf:
-        return int(LIST[s, NUMBER])
+    if MARK[s].margin == math.inf:
+        return int(LIST[s].number)
     unlink(MARK, CELL, HEAD, INFO, s)
     x, y = centre(BODY, SHAPE, LINK, s, t)
     if ahead > 0.0:
         ux, uy = course(BODY, LINK, s, t)
-        x, y = x + ahead * MARK[s, MARGIN] * ux, y + ahead * MARK[s, MARGIN] * uy
+        x, y = x + ahead * MARK[s].margin * ux, y + ahead * MARK[s].margin * uy
     draw(MARK, SHAPE, s, x, y)
     INFO[LEAVES] += 1
     kept = part(LIST, POOL, FLAG, INFO, MARK, s)
@@ -189,7 +195,7 @@ def renew(
 
 @uncounted
 def build(
-    BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, MARK: FloatArray, CELL: IntArray, LIST: IntArray,
+    BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], MARK: Rows[Mark], CELL: Rows[Cell], LIST: Rows[List],
     POOL: PoolArray, FLAG: FlagArray, HEAD: IntArray, GRID: FloatArray, INFO: IntArray, BOX: FloatArray,
     CSR: IntArray, t: float,
 ) -> bool:  # fmt: skip
@@ -200,12 +206,12 @@ def build(
     HEAD[:] = -1
     INFO[LEVELS : LEVELS + LEVEL_COUNT] = 0
     for s in range(moving):
-        LIST[s, START], LIST[s, CAPACITY], LIST[s, NUMBER] = s * _FIRST_CAPACITY, _FIRST_CAPACITY, 0
-        CELL[s, BUCKET] = -1
+        LIST[s].start, LIST[s].capacity, LIST[s].number = s * _FIRST_CAPACITY, _FIRST_CAPACITY, 0
+        CELL[s].bucket = -1
         x, y = centre(BODY, SHAPE, LINK, s, t)
         draw(MARK, SHAPE, s, x, y)
     INFO[POOL_END] = moving * _FIRST_CAPACITY
-    everybody = moving > 0 and MARK[0, MARGIN] == math.inf
+    everybody = moving > 0 and MARK[0].margin == math.inf
     for s in range(moving):
         if not seek_walls(BODY, SHAPE, LINK, MARK, LIST, POOL, FLAG, GRID, INFO, BOX, CSR, s):
             return False

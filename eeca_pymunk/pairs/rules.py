@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from ..arrays import FloatArray
 from ..compiled import uncounted
-from ..layout import ELASTICITY, FRICTION, SURFACE_X, SURFACE_Y
+from ..compiled.records import Rows
+from ..model.shapes import Shape
 
 
 @uncounted
@@ -37,15 +38,15 @@ def barred(RULE: FloatArray, a: int, b: int) -> bool:
 
 
 @uncounted
-def law(SHAPE: FloatArray, RULE: FloatArray, a: int, b: int) -> tuple[float, float, float, float]:
+def law(SHAPE: Rows[Shape], RULE: FloatArray, a: int, b: int) -> tuple[float, float, float, float]:
     """Elasticity, friction, and surface velocity (x, y) of b relative to a."""
     r = row_of(RULE, a, b)
     if r >= 0:
         sign = 1.0 if a < b else -1.0
         return RULE[r, 2], RULE[r, 3], sign * RULE[r, 4], sign * RULE[r, 5]
     return (
-        SHAPE[a, ELASTICITY] * SHAPE[b, ELASTICITY],
-        SHAPE[a, FRICTION] * SHAPE[b, FRICTION],
-        SHAPE[b, SURFACE_X] - SHAPE[a, SURFACE_X],
-        SHAPE[b, SURFACE_Y] - SHAPE[a, SURFACE_Y],
+        SHAPE[a].elasticity * SHAPE[b].elasticity,
+        SHAPE[a].friction * SHAPE[b].friction,
+        SHAPE[b].surface_x - SHAPE[a].surface_x,
+        SHAPE[b].surface_y - SHAPE[a].surface_y,
     )

@@ -8,18 +8,15 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arrays import FlagArray, FloatArray, IntArray, PoolArray, side_by_side
-from ..layout import BOUND, COUNT, FIRST, OWNER, ROUNDING
+from ..compiled.records import Rows, columns
+from ..model.bodies import Body
+from ..model.shapes import Cell, Link, List, Mark, Shape
 from .grid import build
 from .layout import (
-    CELL_COLUMNS,
     CELL_LENGTH,
     GRID_LENGTH,
     INFO_LENGTH,
-    LIST_COLUMNS,
-    MARGIN,
-    MARK_COLUMNS,
     MOVING,
-    NUMBER,
     WALL_COLUMNS,
     WALL_LENGTH,
     WALL_ROWS,
@@ -39,9 +36,9 @@ _FEW_WALLS = 16  # static shapes up to which all are looked at
 class Near(NamedTuple):
     """The arrays of the near lists, see `layout.py`; BOX (W, 4) and CSR are those of the static shapes."""
 
-    MARK: FloatArray
-    CELL: IntArray
-    LIST: IntArray
+    MARK: Rows[Mark]
+    CELL: Rows[Cell]
+    LIST: Rows[List]
     POOL: PoolArray
     FLAG: FlagArray
     HEAD: IntArray
@@ -77,44 +74,44 @@ def margins(bound: FloatArray, centre: FloatArray, walls: int) -> FloatArray:
     return result
 
 
-def boxes(SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, moving: int) -> FloatArray:
+def boxes(SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, moving: int) -> FloatArray:
     """(W, 4) left, bottom, right and top of the static shapes, which are those from number `moving` on."""
     result = np.zeros((len(SHAPE) - moving, 4))
     if len(result):
-        first, count = LINK[moving:, FIRST], LINK[moving:, COUNT]
+        first, count = LINK["first"][moving:], LINK["vertices"][moving:]
         points = VERTEX[first[0] : first[-1] + count[-1], :2]
-        result[:, :2] = np.minimum.reduceat(points, first - first[0]) - SHAPE[moving:, ROUNDING, None]
-        result[:, 2:] = np.maximum.reduceat(points, first - first[0]) + SHAPE[moving:, ROUNDING, None]
+        result[:, :2] = np.minimum.reduceat(points, first - first[0]) - SHAPE["rounding"][moving:, None]
+        result[:, 2:] = np.maximum.reduceat(points, first - first[0]) + SHAPE["rounding"][moving:, None]
     return result
 
 
-def near_lists(BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, VERTEX: FloatArray, moving: int) -> Near:
+def near_lists(BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, moving: int) -> Near:
     """Lists of the shapes [0, moving), where BODY has them now."""
-    bound = SHAPE[:moving, BOUND]
+    bound = SHAPE["bound"][:moving]
     INFO, GRID, room = np.zeros(INFO_LENGTH, np.int64), np.zeros(GRID_LENGTH), 32 * moving + 1024
     MARK, CELL, LIST, POOL, FLAG, HEAD = side_by_side(
-        ((moving, MARK_COLUMNS), np.float64), ((moving, CELL_COLUMNS), np.int64), ((moving, LIST_COLUMNS), np.int64),
+        ((moving,), Mark.TYPE), ((moving,), Cell.TYPE), ((moving,), List.TYPE),
         ((room,), np.int32), ((room,), np.uint8), ((1 << max(1, math.ceil(math.log2(2 * moving + 2))),), np.int64),
     )  # fmt: skip
     INFO[MOVING] = moving
     BOX = boxes(SHAPE, LINK, VERTEX, moving)
     CSR = _wall_cells(BOX, GRID, INFO)
-    MARK[:, MARGIN] = margins(bound, BODY[LINK[:moving, OWNER], :2], len(BOX)) if moving else 0.0
+    MARK["margin"] = margins(bound, columns(BODY, "x", "y")[LINK["owner"][:moving]], len(BOX)) if moving else 0.0
     HEAD[:] = -1
     near = Near(MARK, CELL, LIST, POOL, FLAG, HEAD, GRID, INFO, BOX, CSR)
     for _ in range(_HALVINGS):
-        GRID[CELL_LENGTH] = 2.0 * float((bound + MARK[:, MARGIN]).min(initial=1e300))
+        GRID[CELL_LENGTH] = 2.0 * float((bound + MARK["margin"]).min(initial=1e300))
         near = rebuilt(near, BODY, SHAPE, LINK, 0.0)
         # What is crowded in places needs less, unless that is next to nothing, or everybody knows all.
-        if moving == 0 or near.LIST[:, NUMBER].mean() <= _CROWDED or math.isinf(MARK[0, MARGIN]):
+        if moving == 0 or near.LIST["number"].mean() <= _CROWDED or math.isinf(MARK["margin"][0]):
             break
-        if np.median(MARK[:, MARGIN]) <= _MARGINS[0] * np.median(bound):
+        if np.median(MARK["margin"]) <= _MARGINS[0] * np.median(bound):
             break
-        MARK[:, MARGIN] *= 0.5
+        MARK["margin"] *= 0.5
     return near
 
 
-def rebuilt(near: Near, BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, t: float) -> Near:
+def rebuilt(near: Near, BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], t: float) -> Near:
     """The lists made anew at instant t, with more room if they want it."""
     while not build(
         BODY, SHAPE, LINK, near.MARK, near.CELL, near.LIST, near.POOL, near.FLAG, near.HEAD, near.GRID, near.INFO,

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from ..arrays import FlagArray, FloatArray, IntArray, PoolArray
 from ..compiled import uncounted
+from ..compiled.records import Rows
+from ..model.bodies import Body
+from ..model.shapes import Link, List, Mark, Shape
 from .layout import (
-    AT_X,
-    AT_Y,
     MOVING,
-    REACH,
     WALL_COLUMNS,
     WALL_LENGTH,
     WALL_ROWS,
@@ -35,12 +35,12 @@ def near_wall(BOX: FloatArray, w: int, x: float, y: float, radius: float) -> boo
 
 @uncounted
 def seek_walls(
-    BODY: FloatArray, SHAPE: FloatArray, LINK: IntArray, MARK: FloatArray, LIST: IntArray, POOL: PoolArray,
+    BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], MARK: Rows[Mark], LIST: Rows[List], POOL: PoolArray,
     FLAG: FlagArray, GRID: FloatArray, INFO: IntArray, BOX: FloatArray, CSR: IntArray, s: int,
 ) -> bool:  # fmt: skip
     """Static neighbours of s, but for those in its list already. False if the pool is full."""
-    x, y = MARK[s, AT_X], MARK[s, AT_Y]
-    radius, moving = MARK[s, REACH], INFO[MOVING]
+    x, y = MARK[s].x, MARK[s].y
+    radius, moving = MARK[s].reach, INFO[MOVING]
     columns, rows = INFO[WALL_COLUMNS], INFO[WALL_ROWS]
     if columns == 0:
         for w in range(BOX.shape[0]):

@@ -12,6 +12,8 @@ from __future__ import annotations
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel
+from ..compiled.records import Rows
+from ..model.contacts import Row
 from .build import aim, conserves, rates, rubs
 from .conjugate import iterate
 from .direct import refine
@@ -35,7 +37,7 @@ _LITTLE = 16  # contacts up to which sweeps alone are cheaper than a direct solu
 
 @kernel
 def resolve(
-    A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, FREE: FloatArray, IM: FloatArray,
+    A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, FREE: FloatArray, IM: FloatArray,
     II: FloatArray, POSE: FloatArray, n: int, m: int, rough: bool, tolerance: float, OUT: FloatArray,
 ) -> float:  # fmt: skip
     """Impulses for given targets; returns the change of velocity that a last sweep made.
@@ -73,7 +75,7 @@ def resolve(
 
 @kernel
 def solve_block(
-    A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, IM: FloatArray, II: FloatArray,
+    A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, IM: FloatArray, II: FloatArray,
     POSE: FloatArray, n: int, m: int, owed: float, hasty: bool, LOSS: FloatArray, OUT: FloatArray,
 ) -> int:  # fmt: skip
     """Impulses of m contacts at one instant; V (k, 3) becomes the velocities after.

@@ -6,37 +6,15 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
-from .layout import (
-    A_NN,
-    A_NT,
-    A_TT,
-    ARM_NA,
-    ARM_NB,
-    ARM_TA,
-    ARM_TB,
-    ELASTICITY,
-    FRICTION,
-    GAP,
-    K_N,
-    K_T,
-    NX,
-    NY,
-    SURFACE,
-    TARGET,
-    UN,
-    UT,
-    W_NN,
-    W_NT,
-    W_TT,
-    WAKE,
-)
+from ..compiled.records import Rows
+from ..model.contacts import Row
 
 SINGULAR = 1e-12  # determinant of A relative to the product of its diagonal
 
 
 @uncounted
 def place_row(
-    A: IntArray, B: IntArray, ROWS: FloatArray, i: int, a: int, b: int, nx: float, ny: float, px: float, py: float,
+    A: IntArray, B: IntArray, ROWS: Rows[Row], i: int, a: int, b: int, nx: float, ny: float, px: float, py: float,
     gap: float, POSE: FloatArray, IM: FloatArray, II: FloatArray, elasticity: float, friction: float, surface: float,
 ) -> None:  # fmt: skip
     """Write row i: contact at (px, py) with unit normal (nx, ny) from local body a to b; target 0, awake.
@@ -46,8 +24,8 @@ def place_row(
     """
     A[i] = a
     B[i] = b
-    ROWS[i, NX] = nx
-    ROWS[i, NY] = ny
+    ROWS[i].nx = nx
+    ROWS[i].ny = ny
     xa = px - POSE[a, 0]
     ya = py - POSE[a, 1]
     xb = px - POSE[b, 0]
@@ -56,98 +34,98 @@ def place_row(
     arm = xa * ny - ya * nx
     if abs(arm) <= 1e-15 * (abs(xa) + abs(ya)) + noise:
         arm = 0.0
-    ROWS[i, ARM_NA] = arm
+    ROWS[i].arm_na = arm
     arm = xb * ny - yb * nx
     if abs(arm) <= 1e-15 * (abs(xb) + abs(yb)) + noise:
         arm = 0.0
-    ROWS[i, ARM_NB] = arm
-    ROWS[i, ARM_TA] = xa * nx + ya * ny
-    ROWS[i, ARM_TB] = xb * nx + yb * ny
-    ROWS[i, GAP] = gap
+    ROWS[i].arm_nb = arm
+    ROWS[i].arm_ta = xa * nx + ya * ny
+    ROWS[i].arm_tb = xb * nx + yb * ny
+    ROWS[i].gap = gap
     mass = IM[a] + IM[b]
-    nn = mass + II[a] * ROWS[i, ARM_NA] ** 2 + II[b] * ROWS[i, ARM_NB] ** 2
-    tt = mass + II[a] * ROWS[i, ARM_TA] ** 2 + II[b] * ROWS[i, ARM_TB] ** 2
-    nt = II[a] * ROWS[i, ARM_NA] * ROWS[i, ARM_TA] + II[b] * ROWS[i, ARM_NB] * ROWS[i, ARM_TB]
-    ROWS[i, A_NN], ROWS[i, A_NT], ROWS[i, A_TT] = nn, nt, tt
-    ROWS[i, K_N] = 1.0 / nn
-    ROWS[i, K_T] = 1.0 / tt
+    nn = mass + II[a] * ROWS[i].arm_na ** 2 + II[b] * ROWS[i].arm_nb ** 2
+    tt = mass + II[a] * ROWS[i].arm_ta ** 2 + II[b] * ROWS[i].arm_tb ** 2
+    nt = II[a] * ROWS[i].arm_na * ROWS[i].arm_ta + II[b] * ROWS[i].arm_nb * ROWS[i].arm_tb
+    ROWS[i].a_nn, ROWS[i].a_nt, ROWS[i].a_tt = nn, nt, tt
+    ROWS[i].k_n = 1.0 / nn
+    ROWS[i].k_t = 1.0 / tt
     if friction > 0.0:
         det = nn * tt - nt * nt
         regular = det > SINGULAR * nn * tt
-        ROWS[i, W_NN] = tt / det if regular else np.nan
-        ROWS[i, W_NT] = -nt / det if regular else 0.0
-        ROWS[i, W_TT] = nn / det if regular else 0.0
-    ROWS[i, ELASTICITY] = elasticity
-    ROWS[i, FRICTION] = friction
-    ROWS[i, SURFACE] = surface
-    ROWS[i, TARGET] = 0.0
-    ROWS[i, WAKE] = np.inf
+        ROWS[i].w_nn = tt / det if regular else np.nan
+        ROWS[i].w_nt = -nt / det if regular else 0.0
+        ROWS[i].w_tt = nn / det if regular else 0.0
+    ROWS[i].elasticity = elasticity
+    ROWS[i].friction = friction
+    ROWS[i].surface = surface
+    ROWS[i].target = 0.0
+    ROWS[i].wake = np.inf
 
 
 @uncounted
-def normal_rate(A: IntArray, B: IntArray, ROWS: FloatArray, V: FloatArray, i: int) -> float:
+def normal_rate(A: IntArray, B: IntArray, ROWS: Rows[Row], V: FloatArray, i: int) -> float:
     """u_n of contact i at velocities V."""
     a = A[i]
     b = B[i]
     rate: float = (
-        ROWS[i, NX] * (V[b, 0] - V[a, 0])
-        + ROWS[i, NY] * (V[b, 1] - V[a, 1])
-        + (ROWS[i, ARM_NB] * V[b, 2] - ROWS[i, ARM_NA] * V[a, 2])
+        ROWS[i].nx * (V[b, 0] - V[a, 0])
+        + ROWS[i].ny * (V[b, 1] - V[a, 1])
+        + (ROWS[i].arm_nb * V[b, 2] - ROWS[i].arm_na * V[a, 2])
     )
     return rate
 
 
 @uncounted
-def tangent_rate(A: IntArray, B: IntArray, ROWS: FloatArray, V: FloatArray, i: int) -> float:
+def tangent_rate(A: IntArray, B: IntArray, ROWS: Rows[Row], V: FloatArray, i: int) -> float:
     """u_t of contact i at velocities V, relative to moving surfaces."""
     a = A[i]
     b = B[i]
     rate: float = (
-        ROWS[i, NX] * (V[b, 1] - V[a, 1])
-        - ROWS[i, NY] * (V[b, 0] - V[a, 0])
-        + (ROWS[i, ARM_TB] * V[b, 2] - ROWS[i, ARM_TA] * V[a, 2])
-        + ROWS[i, SURFACE]
+        ROWS[i].nx * (V[b, 1] - V[a, 1])
+        - ROWS[i].ny * (V[b, 0] - V[a, 0])
+        + (ROWS[i].arm_tb * V[b, 2] - ROWS[i].arm_ta * V[a, 2])
+        + ROWS[i].surface
     )
     return rate
 
 
 @uncounted
-def rates(A: IntArray, B: IntArray, ROWS: FloatArray, V: FloatArray, m: int) -> None:
+def rates(A: IntArray, B: IntArray, ROWS: Rows[Row], V: FloatArray, m: int) -> None:
     """Set u_n and u_t before the impulses of all contacts from V."""
     for i in range(m):
-        ROWS[i, UN] = normal_rate(A, B, ROWS, V, i)
-        ROWS[i, UT] = tangent_rate(A, B, ROWS, V, i)
+        ROWS[i].un = normal_rate(A, B, ROWS, V, i)
+        ROWS[i].ut = tangent_rate(A, B, ROWS, V, i)
 
 
 @uncounted
-def aim(ROWS: FloatArray, m: int) -> float:
+def aim(ROWS: Rows[Row], m: int) -> float:
     """Targets of impacts at one instant: b = -e u_n where the contact approaches, -u_n where it opens.
 
     Then no impulse can add energy: lam (u_n + b) <= 0. Returns the largest b - u_n, a velocity: <= 0 if nothing hits.
     """
     worst = 0.0
     for i in range(m):
-        u = ROWS[i, UN]
-        ROWS[i, TARGET] = -ROWS[i, ELASTICITY] * u if u < 0.0 else -u
-        worst = max(worst, ROWS[i, TARGET] - u)
+        u = ROWS[i].un
+        ROWS[i].target = -ROWS[i].elasticity * u if u < 0.0 else -u
+        worst = max(worst, ROWS[i].target - u)
     return worst
 
 
 @uncounted
-def conserves(ROWS: FloatArray, m: int) -> bool:
+def conserves(ROWS: Rows[Row], m: int) -> bool:
     """Whether all contacts are elastic and without friction."""
     lossy = 0
     for i in range(m):
-        if ROWS[i, ELASTICITY] < 1.0 or ROWS[i, FRICTION] > 0.0:
+        if ROWS[i].elasticity < 1.0 or ROWS[i].friction > 0.0:
             lossy += 1
     return lossy == 0
 
 
 @uncounted
-def rubs(ROWS: FloatArray, m: int) -> bool:
+def rubs(ROWS: Rows[Row], m: int) -> bool:
     """Whether any contact has friction."""
     rough = 0
     for i in range(m):
-        if ROWS[i, FRICTION] > 0.0:
+        if ROWS[i].friction > 0.0:
             rough += 1
     return rough > 0

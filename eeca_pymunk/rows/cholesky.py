@@ -12,12 +12,13 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
-from .layout import ARM_NA, ARM_NB, ARM_TA, ARM_TB, K_N, K_T, NX, NY
+from ..compiled.records import Rows
+from ..model.contacts import Row
 
 
 @kernel
 def assemble(
-    A: IntArray, B: IntArray, ROWS: FloatArray, m: int, n: int, held: IntArray, stuck: IntArray, SCALE: FloatArray,
+    A: IntArray, B: IntArray, ROWS: Rows[Row], m: int, n: int, held: IntArray, stuck: IntArray, SCALE: FloatArray,
     place: IntArray, columns: IntArray, rows: IntArray, R: float, DIAGONAL: FloatArray, BELOW: FloatArray,
 ) -> None:  # fmt: skip
     """Blocks of B: DIAGONAL (n, 3, 3) and BELOW (len(rows), 3, 3), of rows held (normal) and stuck (tangential)."""
@@ -31,29 +32,29 @@ def assemble(
     for i in range(m):
         a = A[i]
         b = B[i]
-        nx = ROWS[i, NX]
-        ny = ROWS[i, NY]
+        nx = ROWS[i].nx
+        ny = ROWS[i].ny
         for kind in range(2):
             if kind == 0:
                 if held[i] == 0:
                     continue
-                weight = R * ROWS[i, K_N]
+                weight = R * ROWS[i].k_n
                 ja[0] = -nx
                 ja[1] = -ny
-                ja[2] = -ROWS[i, ARM_NA]
+                ja[2] = -ROWS[i].arm_na
                 jb[0] = nx
                 jb[1] = ny
-                jb[2] = ROWS[i, ARM_NB]
+                jb[2] = ROWS[i].arm_nb
             else:
                 if stuck[i] == 0:
                     continue
-                weight = R * ROWS[i, K_T]
+                weight = R * ROWS[i].k_t
                 ja[0] = ny
                 ja[1] = -nx
-                ja[2] = -ROWS[i, ARM_TA]
+                ja[2] = -ROWS[i].arm_ta
                 jb[0] = -ny
                 jb[1] = nx
-                jb[2] = ROWS[i, ARM_TB]
+                jb[2] = ROWS[i].arm_tb
             for p in range(3):
                 ja[p] *= SCALE[a, p]
                 jb[p] *= SCALE[b, p]

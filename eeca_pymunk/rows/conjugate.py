@@ -9,6 +9,8 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
+from ..compiled.records import Rows
+from ..model.contacts import Row
 from .sweeps import sweep
 
 
@@ -60,7 +62,7 @@ def go_on(X: FloatArray, X0: FloatArray, P: FloatArray, ratio: float) -> None:
 
 @kernel
 def iterate(
-    A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, IM: FloatArray, II: FloatArray, m: int,
+    A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, IM: FloatArray, II: FloatArray, m: int,
     tolerance: float, most: int,
 ) -> tuple[int, float]:  # fmt: skip
     """Sweeps, accelerated, until one changes no contact's velocity by > tolerance. The last is plain.

@@ -11,20 +11,9 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
+from ..compiled.records import Rows
+from ..model.contacts import Row
 from .build import normal_rate, tangent_rate
-from .layout import (
-    ARM_NA,
-    ARM_NB,
-    ARM_TA,
-    ARM_TB,
-    K_N,
-    K_T,
-    NX,
-    NY,
-    TARGET,
-    UN,
-    UT,
-)
 from .polish import clamp, classify
 from .sweeps import velocities
 
@@ -74,7 +63,7 @@ def back(W: FloatArray, N: int, order: IntArray, r: FloatArray, x: FloatArray) -
 def jacobian(
     A: IntArray,
     B: IntArray,
-    ROWS: FloatArray,
+    ROWS: Rows[Row],
     slip: FloatArray,
     IM: FloatArray,
     II: FloatArray,
@@ -87,22 +76,22 @@ def jacobian(
     J = np.empty((N, 8))  # rows: n or t with arms a, b; then the columns' direction and arms
     for i in range(N):
         c = at[i]
-        nx = ROWS[c, NX]
-        ny = ROWS[c, NY]
+        nx = ROWS[c].nx
+        ny = ROWS[c].ny
         if kind[i] == 0:
             J[i, 0] = nx
             J[i, 1] = ny
-            J[i, 2] = ROWS[c, ARM_NA]
-            J[i, 3] = ROWS[c, ARM_NB]
+            J[i, 2] = ROWS[c].arm_na
+            J[i, 3] = ROWS[c].arm_nb
             J[i, 4] = nx - slip[c] * ny
             J[i, 5] = ny + slip[c] * nx
-            J[i, 6] = ROWS[c, ARM_NA] + slip[c] * ROWS[c, ARM_TA]
-            J[i, 7] = ROWS[c, ARM_NB] + slip[c] * ROWS[c, ARM_TB]
+            J[i, 6] = ROWS[c].arm_na + slip[c] * ROWS[c].arm_ta
+            J[i, 7] = ROWS[c].arm_nb + slip[c] * ROWS[c].arm_tb
         else:
             J[i, 0] = -ny
             J[i, 1] = nx
-            J[i, 2] = ROWS[c, ARM_TA]
-            J[i, 3] = ROWS[c, ARM_TB]
+            J[i, 2] = ROWS[c].arm_ta
+            J[i, 3] = ROWS[c].arm_tb
             for k in range(4):
                 J[i, 4 + k] = J[i, k]
     for i in range(N):
@@ -121,12 +110,12 @@ def jacobian(
                 w -= IM[b] * along + II[b] * J[i, 3] * J[j, 6]
             W[i, j] = w
         c = at[i]
-        W[i, i] += 1.0 / (_R * (ROWS[c, K_N] if kind[i] == 0 else ROWS[c, K_T]))
+        W[i, i] += 1.0 / (_R * (ROWS[c].k_n if kind[i] == 0 else ROWS[c].k_t))
 
 
 @uncounted
 def unknowns(
-    ROWS: FloatArray, L: FloatArray, m: int, held: IntArray, stuck: IntArray, slip: FloatArray, shared: bool,
+    ROWS: Rows[Row], L: FloatArray, m: int, held: IntArray, stuck: IntArray, slip: FloatArray, shared: bool,
     at: IntArray, kind: IntArray,
 ) -> int:  # fmt: skip
     """List the unknowns: contact and kind (0 normal, 1 tangential); returns how many.
@@ -140,7 +129,7 @@ def unknowns(
             continue
         if shared and stuck[i] == 2:
             stuck[i] = 0
-            slip[i] = -min(ROWS[i, UN] + ROWS[i, TARGET], 0.0) / ROWS[i, UT]
+            slip[i] = -min(ROWS[i].un + ROWS[i].target, 0.0) / ROWS[i].ut
         at[N] = i
         kind[N] = 0
         N += 1
@@ -157,7 +146,7 @@ def unknowns(
 def newton(
     A: IntArray,
     B: IntArray,
-    ROWS: FloatArray,
+    ROWS: Rows[Row],
     L: FloatArray,
     V: FloatArray,
     FREE: FloatArray,
@@ -191,10 +180,10 @@ def newton(
         for k in range(N):
             i = at[k]
             if kind[k] == 0:
-                r[k] = ROWS[i, TARGET] - normal_rate(A, B, ROWS, V, i)
+                r[k] = ROWS[i].target - normal_rate(A, B, ROWS, V, i)
             else:
                 if stuck[i] == 2 and L[i, 1] != 0.0:
-                    rest[i] = -ROWS[i, UT] - L[i, 0] * min(ROWS[i, UN] + ROWS[i, TARGET], 0.0) / L[i, 1]
+                    rest[i] = -ROWS[i].ut - L[i, 0] * min(ROWS[i].un + ROWS[i].target, 0.0) / L[i, 1]
                 r[k] = rest[i] - tangent_rate(A, B, ROWS, V, i)
             worst = max(worst, abs(r[k]))
         if worst <= tolerance or done == passes or not worst <= 0.5 * last:

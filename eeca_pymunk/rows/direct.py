@@ -6,6 +6,8 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel
+from ..compiled.records import Rows
+from ..model.contacts import Row
 from .dense import newton
 from .polish import polish, segment
 from .sweeps import keep, sweep
@@ -18,7 +20,7 @@ _PASSES = 4  # of its refinement
 def refine(
     A: IntArray,
     B: IntArray,
-    ROWS: FloatArray,
+    ROWS: Rows[Row],
     L: FloatArray,
     V: FloatArray,
     FREE: FloatArray,

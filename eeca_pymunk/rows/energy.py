@@ -11,8 +11,9 @@ import math
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
+from ..compiled.records import Rows
+from ..model.contacts import Row
 from .build import normal_rate, tangent_rate
-from .layout import ARM_NA, ARM_NB, K_N, NX, NY, UN, UT
 from .sweeps import velocities
 
 _SPREAD = 3.0  # times the deepest overlap, up to which gaps count where bodies are lifted out of each other
@@ -20,7 +21,7 @@ _SPREAD = 3.0  # times the deepest overlap, up to which gaps count where bodies 
 
 @uncounted
 def works(
-    A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, m: int, LOSS: FloatArray
+    A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, m: int, LOSS: FloatArray
 ) -> tuple[float, float]:
     """LOSS (m, 2) = D_n and D_t of each contact, energy, V being the velocities after; returns their sums.
 
@@ -34,8 +35,8 @@ def works(
         LOSS[i, 1] = 0.0
         if L[i, 0] == 0.0 and L[i, 1] == 0.0:
             continue
-        LOSS[i, 0] = -0.5 * L[i, 0] * (ROWS[i, UN] + normal_rate(A, B, ROWS, V, i))
-        LOSS[i, 1] = -0.5 * L[i, 1] * (ROWS[i, UT] + tangent_rate(A, B, ROWS, V, i))
+        LOSS[i, 0] = -0.5 * L[i, 0] * (ROWS[i].un + normal_rate(A, B, ROWS, V, i))
+        LOSS[i, 1] = -0.5 * L[i, 1] * (ROWS[i].ut + tangent_rate(A, B, ROWS, V, i))
         both = LOSS[i, 0] + LOSS[i, 1]
         if LOSS[i, 0] < 0.0:
             LOSS[i, 0] = min(both, 0.0)
@@ -56,7 +57,7 @@ def works(
 
 @uncounted
 def scale_of(
-    A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, FREE: FloatArray, m: int, owed: float,
+    A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, FREE: FloatArray, m: int, owed: float,
     exact: bool,
 ) -> tuple[float, float]:  # fmt: skip
     """One scale s for all impulses, so that the island loses `owed` at least; exactly that if `exact`.
@@ -77,7 +78,7 @@ def scale_of(
             continue
         n0 = normal_rate(A, B, ROWS, FREE, i)
         t0 = tangent_rate(A, B, ROWS, FREE, i)
-        p -= 0.5 * (lam * (ROWS[i, UN] + n0) + beta * (ROWS[i, UT] + t0))
+        p -= 0.5 * (lam * (ROWS[i].un + n0) + beta * (ROWS[i].ut + t0))
         q += 0.5 * (lam * (normal_rate(A, B, ROWS, V, i) - n0) + beta * (tangent_rate(A, B, ROWS, V, i) - t0))
     if not q > 0.0:
         return 1.0, max(owed, 0.0)
@@ -99,7 +100,7 @@ def scale_of(
 
 @uncounted
 def lock(
-    A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, FREE: FloatArray, IM: FloatArray,
+    A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, FREE: FloatArray, IM: FloatArray,
     II: FloatArray, m: int, owed: float, exact: bool,
 ) -> tuple[float, float]:  # fmt: skip
     """Scale all impulses by `scale_of`, and V with them; its results."""
@@ -114,7 +115,7 @@ def lock(
 
 @uncounted
 def lift(
-    A: IntArray, B: IntArray, ROWS: FloatArray, GAPS: FloatArray, MU: FloatArray, D: FloatArray, IM: FloatArray,
+    A: IntArray, B: IntArray, ROWS: Rows[Row], GAPS: FloatArray, MU: FloatArray, D: FloatArray, IM: FloatArray,
     II: FloatArray, m: int, tolerance: float, most: int, NEAR: IntArray,
 ) -> tuple[int, float]:  # fmt: skip
     """Displacements D = M^-1 G^T mu with 0 <= mu _|_ g + A mu >= 0, by at most `most` sweeps.
@@ -142,20 +143,20 @@ def lift(
             g = GAPS[i] + normal_rate(A, B, ROWS, D, i)
             if g >= 0.0 and MU[i] == 0.0:
                 continue
-            k = ROWS[i, K_N]
+            k = ROWS[i].k_n
             mu = max(MU[i] - k * g, 0.0)
             d = mu - MU[i]
             MU[i] = mu
             a = A[i]
             b = B[i]
-            nx = ROWS[i, NX]
-            ny = ROWS[i, NY]
+            nx = ROWS[i].nx
+            ny = ROWS[i].ny
             D[a, 0] -= IM[a] * d * nx
             D[a, 1] -= IM[a] * d * ny
-            D[a, 2] -= II[a] * (d * ROWS[i, ARM_NA])
+            D[a, 2] -= II[a] * (d * ROWS[i].arm_na)
             D[b, 0] += IM[b] * d * nx
             D[b, 1] += IM[b] * d * ny
-            D[b, 2] += II[b] * (d * ROWS[i, ARM_NB])
+            D[b, 2] += II[b] * (d * ROWS[i].arm_nb)
             worst = max(worst, abs(d) / k)
         done += 1
         if worst <= tolerance:

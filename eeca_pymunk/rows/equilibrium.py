@@ -22,10 +22,11 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
+from ..compiled.records import Rows, zeros
+from ..model.contacts import ROW, Row
 from .build import normal_rate
 from .cholesky import assemble, factorise, substitute
 from .inplace import copy
-from .layout import ARM_NA, ARM_NB, ARM_TA, ARM_TB, FRICTION, K_N, NX, NY, ROW_COLUMNS, TARGET
 from .ordering import dissect, neighbours, pattern
 
 _R = 1e11
@@ -60,8 +61,8 @@ def fastest(V: FloatArray, EXTENT: FloatArray, n: int) -> float:
 
 @uncounted
 def edges(
-    A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, IM: FloatArray, II: FloatArray, m: int, OF: IntArray,
-    P: IntArray, Q: IntArray, G: FloatArray, EDGE: FloatArray,
+    A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, IM: FloatArray, II: FloatArray, m: int, OF: IntArray,
+    P: IntArray, Q: IntArray, G: Rows[Row], EDGE: FloatArray,
 ) -> int:  # fmt: skip
     """The edges G (2 m, ..), as rows between P and Q, of the contacts OF whose TARGET is not below 0; how many.
 
@@ -69,20 +70,20 @@ def edges(
     """
     K = 0
     for i in range(m):
-        if ROWS[i, TARGET] < 0.0:
+        if ROWS[i].target < 0.0:
             continue
-        mu = ROWS[i, FRICTION]
+        mu = ROWS[i].friction
         for side in range(2 if mu > 0.0 else 1):
             slope = mu if side == 0 else -mu
             P[K], Q[K], OF[K] = A[i], B[i], i
-            G[K, NX] = ROWS[i, NX] - slope * ROWS[i, NY]
-            G[K, NY] = ROWS[i, NY] + slope * ROWS[i, NX]
-            G[K, ARM_NA] = ROWS[i, ARM_NA] + slope * ROWS[i, ARM_TA]
-            G[K, ARM_NB] = ROWS[i, ARM_NB] + slope * ROWS[i, ARM_TB]
+            G[K].nx = ROWS[i].nx - slope * ROWS[i].ny
+            G[K].ny = ROWS[i].ny + slope * ROWS[i].nx
+            G[K].arm_na = ROWS[i].arm_na + slope * ROWS[i].arm_ta
+            G[K].arm_nb = ROWS[i].arm_nb + slope * ROWS[i].arm_tb
             EDGE[K, GUESS] = L[i, 0] if mu <= 0.0 else max(0.5 * (L[i, 0] + L[i, 1] / slope), 0.0)
             EDGE[K, X] = EDGE[K, GUESS]
             EDGE[K, A_GG] = (IM[A[i]] + IM[B[i]]) * (1.0 + mu * mu)
-            EDGE[K, A_GG] += II[A[i]] * G[K, ARM_NA] ** 2 + II[B[i]] * G[K, ARM_NB] ** 2
+            EDGE[K, A_GG] += II[A[i]] * G[K].arm_na ** 2 + II[B[i]] * G[K].arm_nb ** 2
             K += 1
     return K
 
@@ -109,24 +110,24 @@ def inside(EDGE: FloatArray, K: int) -> bool:
 
 @uncounted
 def send(
-    P: IntArray, Q: IntArray, G: FloatArray, EDGE: FloatArray, what: int, K: int, IM: FloatArray, II: FloatArray,
+    P: IntArray, Q: IntArray, G: Rows[Row], EDGE: FloatArray, what: int, K: int, IM: FloatArray, II: FloatArray,
     V: FloatArray,
 ) -> None:  # fmt: skip
     """V += M^-1 sum g EDGE[what]."""
     for e in range(K):
         lam = EDGE[e, what]
         a, b = P[e], Q[e]
-        V[a, 0] -= IM[a] * lam * G[e, NX]
-        V[a, 1] -= IM[a] * lam * G[e, NY]
-        V[a, 2] -= II[a] * lam * G[e, ARM_NA]
-        V[b, 0] += IM[b] * lam * G[e, NX]
-        V[b, 1] += IM[b] * lam * G[e, NY]
-        V[b, 2] += II[b] * lam * G[e, ARM_NB]
+        V[a, 0] -= IM[a] * lam * G[e].nx
+        V[a, 1] -= IM[a] * lam * G[e].ny
+        V[a, 2] -= II[a] * lam * G[e].arm_na
+        V[b, 0] += IM[b] * lam * G[e].nx
+        V[b, 1] += IM[b] * lam * G[e].ny
+        V[b, 2] += II[b] * lam * G[e].arm_nb
 
 
 @uncounted
 def along(
-    P: IntArray, Q: IntArray, G: FloatArray, EDGE: FloatArray, K: int, IM: FloatArray, II: FloatArray, n: int,
+    P: IntArray, Q: IntArray, G: Rows[Row], EDGE: FloatArray, K: int, IM: FloatArray, II: FloatArray, n: int,
     SCALE: FloatArray, place: IntArray, columns: IntArray, rows: IntArray, DIAGONAL: FloatArray, BELOW: FloatArray,
     LEFT: FloatArray, Y: FloatArray, f: FloatArray, V: FloatArray, DY: FloatArray, centre: float, second: bool,
 ) -> None:  # fmt: skip
@@ -145,7 +146,7 @@ def along(
         dual = EDGE[e, A_GG] * (x - EDGE[e, GUESS]) - normal_rate(P, Q, G, Y, e) - s
         product = x * s - centre + (EDGE[e, DX] * EDGE[e, DS] if second else 0.0)
         EDGE[e, DS] = product
-        EDGE[e, DX] = G[e, K_N] * (dual + product / x)
+        EDGE[e, DX] = G[e].k_n * (dual + product / x)
     send(P, Q, G, EDGE, DX, K, IM, II, V)
     for i in range(n):
         for c in range(3):
@@ -155,7 +156,7 @@ def along(
         for c in range(3):
             DY[i, c] = SCALE[i, c] * f[place[i], c]
     for e in range(K):
-        EDGE[e, DX] = G[e, K_N] * normal_rate(P, Q, G, DY, e) - EDGE[e, DX]
+        EDGE[e, DX] = G[e].k_n * normal_rate(P, Q, G, DY, e) - EDGE[e, DX]
         if EDGE[e, S] > 0.0:
             EDGE[e, DS] = -(EDGE[e, DS] + EDGE[e, S] * EDGE[e, DX]) / EDGE[e, X]
 
@@ -191,13 +192,13 @@ def go(EDGE: FloatArray, K: int, Y: FloatArray, DY: FloatArray, primal: float, d
 
 
 @uncounted
-def give(ROWS: FloatArray, EDGE: FloatArray, OF: IntArray, K: int, L: FloatArray, m: int) -> None:
+def give(ROWS: Rows[Row], EDGE: FloatArray, OF: IntArray, K: int, L: FloatArray, m: int) -> None:
     """Impulses L (m, 2) of the x of their edges."""
     for i in range(m):
         L[i, 0] = L[i, 1] = 0.0
     for e in range(K):
         i = OF[e]
-        slope = ROWS[i, FRICTION]
+        slope = ROWS[i].friction
         if e > 0 and OF[e - 1] == i:
             slope = -slope
         L[i, 0] += EDGE[e, X]
@@ -206,7 +207,7 @@ def give(ROWS: FloatArray, EDGE: FloatArray, OF: IntArray, K: int, L: FloatArray
 
 @kernel
 def equilibrium(
-    A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, START: FloatArray, IM: FloatArray, II: FloatArray,
+    A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, START: FloatArray, IM: FloatArray, II: FloatArray,
     POSE: FloatArray, EXTENT: FloatArray, n: int, m: int, tolerance: float, most: int, nearest: bool,
 ) -> tuple[bool, int]:  # fmt: skip
     """Look for impulses that take the velocities START (k, 3) of the n bodies that impulses move.
@@ -223,7 +224,7 @@ def equilibrium(
     """
     k = len(IM)
     OF, P, Q = np.empty(2 * m, np.int64), np.empty(2 * m, np.int64), np.empty(2 * m, np.int64)
-    G, EDGE = np.zeros((2 * m, ROW_COLUMNS)), np.zeros((2 * m, EDGE_COLUMNS))
+    G, EDGE = zeros(2 * m, ROW), np.zeros((2 * m, EDGE_COLUMNS))
     K = edges(A, B, ROWS, L, IM, II, m, OF, P, Q, G, EDGE)
     LEFT, Y, DY, V, f = np.empty((k, 3)), np.zeros((k, 3)), np.zeros((k, 3)), np.empty((k, 3)), np.empty((n, 3))
     if K == 0:
@@ -262,7 +263,7 @@ def equilibrium(
         last = speed
         if done == 0 or not free:
             for e in range(K):
-                G[e, K_N] = 1.0 / (EDGE[e, A_GG] + (0.0 if free else EDGE[e, S] / EDGE[e, X]))
+                G[e].k_n = 1.0 / (EDGE[e, A_GG] + (0.0 if free else EDGE[e, S] / EDGE[e, X]))
             assemble(P, Q, G, K, n, held, stuck, SCALE, place, columns, rows, _R, DIAGONAL, BELOW)
             factorise(n, columns, rows, DIAGONAL, BELOW)
         along(

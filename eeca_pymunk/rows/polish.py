@@ -14,23 +14,10 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
+from ..compiled.records import Rows
+from ..model.contacts import Row
 from .build import normal_rate, tangent_rate
 from .cholesky import assemble, factorise, substitute
-from .layout import (
-    ARM_NA,
-    ARM_NB,
-    ARM_TA,
-    ARM_TB,
-    FRICTION,
-    K_N,
-    K_T,
-    NX,
-    NY,
-    SURFACE,
-    TARGET,
-    UN,
-    UT,
-)
 from .ordering import dissect, neighbours, pattern
 from .sweeps import velocities
 
@@ -38,7 +25,7 @@ _LINE = 1e-6  # of a face's length, how far its points may be from one tangent l
 
 
 @uncounted
-def share(A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, m: int) -> None:
+def share(A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, m: int) -> None:
     """Divide the friction of a face between its two points as their normal impulses: beta_k = lam_k sum beta / sum lam.
 
     Both lie on one tangent line, so that no velocity feels the division; and if the sum is inside the cone of the sum,
@@ -46,24 +33,24 @@ def share(A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, m: int) -> 
     """
     for i in range(m - 1):
         j = i + 1
-        mu = ROWS[i, FRICTION]
+        mu = ROWS[i].friction
         lam = L[i, 0] + L[j, 0]
-        if A[i] != A[j] or B[i] != B[j] or mu <= 0.0 or mu != ROWS[j, FRICTION] or lam <= 0.0:
+        if A[i] != A[j] or B[i] != B[j] or mu <= 0.0 or mu != ROWS[j].friction or lam <= 0.0:
             continue
-        if ROWS[i, NX] != ROWS[j, NX] or ROWS[i, NY] != ROWS[j, NY] or ROWS[i, SURFACE] != ROWS[j, SURFACE]:
+        if ROWS[i].nx != ROWS[j].nx or ROWS[i].ny != ROWS[j].ny or ROWS[i].surface != ROWS[j].surface:
             continue
-        line = _LINE * abs(ROWS[i, ARM_NA] - ROWS[j, ARM_NA])
-        if abs(ROWS[i, ARM_TA] - ROWS[j, ARM_TA]) > line or abs(ROWS[i, ARM_TB] - ROWS[j, ARM_TB]) > line:
+        line = _LINE * abs(ROWS[i].arm_na - ROWS[j].arm_na)
+        if abs(ROWS[i].arm_ta - ROWS[j].arm_ta) > line or abs(ROWS[i].arm_tb - ROWS[j].arm_tb) > line:
             continue
         beta = L[i, 1] + L[j, 1]
-        if abs(beta) <= mu * lam and beta * ROWS[i, UT] <= 0.0:
+        if abs(beta) <= mu * lam and beta * ROWS[i].ut <= 0.0:
             L[i, 1] = beta * (L[i, 0] / lam)
             L[j, 1] = beta * (L[j, 0] / lam)
 
 
 @uncounted
 def classify(
-    A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, m: int, held: IntArray, stuck: IntArray,
+    A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, m: int, held: IntArray, stuck: IntArray,
     slip: FloatArray, rest: FloatArray,
 ) -> None:  # fmt: skip
     """Which normals are held, which tangents stuck (1 at u_t = 0, 2 at u_t = rest), which slip (beta = slip lam).
@@ -73,7 +60,7 @@ def classify(
     for i in range(m):
         lam = L[i, 0]
         beta = L[i, 1]
-        mu = ROWS[i, FRICTION]
+        mu = ROWS[i].friction
         held[i] = 1 if lam > 0.0 else 0
         stuck[i] = 0
         slip[i] = 0.0
@@ -81,24 +68,24 @@ def classify(
         if lam <= 0.0 or mu <= 0.0:
             continue
         if abs(beta) < mu * lam * (1.0 - 1e-12):
-            loss = lam * min(ROWS[i, UN] + ROWS[i, TARGET], 0.0)
-            if beta == 0.0 and loss == 0.0 and tangent_rate(A, B, ROWS, V, i) * ROWS[i, UT] < 0.0:
+            loss = lam * min(ROWS[i].un + ROWS[i].target, 0.0)
+            if beta == 0.0 and loss == 0.0 and tangent_rate(A, B, ROWS, V, i) * ROWS[i].ut < 0.0:
                 continue  # a slip that has reversed by less than its size: no friction without giving energy
-            if beta * ROWS[i, UT] <= -loss:
+            if beta * ROWS[i].ut <= -loss:
                 stuck[i] = 1
             else:
                 stuck[i] = 2
-                rest[i] = -ROWS[i, UT] - loss / beta
+                rest[i] = -ROWS[i].ut - loss / beta
         elif beta != 0.0:
             slip[i] = mu if beta > 0.0 else -mu
 
 
 @uncounted
-def clamp(ROWS: FloatArray, L: FloatArray, m: int) -> int:
+def clamp(ROWS: Rows[Row], L: FloatArray, m: int) -> int:
     """Put impulses back into their cones; how many were outside."""
     clamped = 0
     for i in range(m):
-        most = ROWS[i, FRICTION] * L[i, 0]
+        most = ROWS[i].friction * L[i, 0]
         if L[i, 0] < 0.0:
             L[i, 0] = 0.0
             L[i, 1] = 0.0
@@ -113,7 +100,7 @@ def clamp(ROWS: FloatArray, L: FloatArray, m: int) -> int:
 
 @kernel
 def polish(
-    A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, FREE: FloatArray, IM: FloatArray,
+    A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, FREE: FloatArray, IM: FloatArray,
     II: FloatArray, POSE: FloatArray, n: int, m: int, R: float, passes: int, tolerance: float,
 ) -> tuple[float, int]:  # fmt: skip
     """Solve on the active contacts of L; L and V = FREE + M^-1 (G^T lam + T^T beta), also on entry, are replaced.
@@ -153,28 +140,28 @@ def polish(
         for i in range(m):
             if held[i] == 0:
                 continue
-            r[i, 0] = ROWS[i, TARGET] - normal_rate(A, B, ROWS, V, i)
+            r[i, 0] = ROWS[i].target - normal_rate(A, B, ROWS, V, i)
             worst = max(worst, abs(r[i, 0]))
-            fn = R * ROWS[i, K_N] * r[i, 0]
+            fn = R * ROWS[i].k_n * r[i, 0]
             ft = 0.0
             if stuck[i] != 0:
                 r[i, 1] = rest[i] - tangent_rate(A, B, ROWS, V, i)
                 worst = max(worst, abs(r[i, 1]))
-                ft = R * ROWS[i, K_T] * r[i, 1]
+                ft = R * ROWS[i].k_t * r[i, 1]
             a = A[i]
             b = B[i]
-            fx = fn * ROWS[i, NX] - ft * ROWS[i, NY]
-            fy = fn * ROWS[i, NY] + ft * ROWS[i, NX]
+            fx = fn * ROWS[i].nx - ft * ROWS[i].ny
+            fy = fn * ROWS[i].ny + ft * ROWS[i].nx
             if a < n:
                 k = place[a]
                 f[k, 0] -= SCALE[a, 0] * fx
                 f[k, 1] -= SCALE[a, 1] * fy
-                f[k, 2] -= SCALE[a, 2] * (fn * ROWS[i, ARM_NA] + ft * ROWS[i, ARM_TA])
+                f[k, 2] -= SCALE[a, 2] * (fn * ROWS[i].arm_na + ft * ROWS[i].arm_ta)
             if b < n:
                 k = place[b]
                 f[k, 0] += SCALE[b, 0] * fx
                 f[k, 1] += SCALE[b, 1] * fy
-                f[k, 2] += SCALE[b, 2] * (fn * ROWS[i, ARM_NB] + ft * ROWS[i, ARM_TB])
+                f[k, 2] += SCALE[b, 2] * (fn * ROWS[i].arm_nb + ft * ROWS[i].arm_tb)
         if worst <= tolerance or done == passes or worst > 0.5 * last:
             break
         substitute(n, columns, rows, DIAGONAL, BELOW, f)
@@ -184,11 +171,11 @@ def polish(
         for i in range(m):
             if held[i] == 0:
                 continue
-            L[i, 0] += R * ROWS[i, K_N] * (r[i, 0] - normal_rate(A, B, ROWS, dv, i))
+            L[i, 0] += R * ROWS[i].k_n * (r[i, 0] - normal_rate(A, B, ROWS, dv, i))
             if stuck[i] != 0:
-                L[i, 1] += R * ROWS[i, K_T] * (r[i, 1] - tangent_rate(A, B, ROWS, dv, i) + ROWS[i, SURFACE])
+                L[i, 1] += R * ROWS[i].k_t * (r[i, 1] - tangent_rate(A, B, ROWS, dv, i) + ROWS[i].surface)
                 if stuck[i] == 2 and L[i, 1] != 0.0:
-                    rest[i] = -ROWS[i, UT] - L[i, 0] * min(ROWS[i, UN] + ROWS[i, TARGET], 0.0) / L[i, 1]
+                    rest[i] = -ROWS[i].ut - L[i, 0] * min(ROWS[i].un + ROWS[i].target, 0.0) / L[i, 1]
             else:
                 L[i, 1] = slip[i] * L[i, 0]
         velocities(A, B, ROWS, L, FREE, IM, II, m, V)
@@ -201,7 +188,7 @@ def polish(
 
 @uncounted
 def segment(
-    A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, L0: FloatArray, V0: FloatArray, m: int
+    A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, L0: FloatArray, V0: FloatArray, m: int
 ) -> float:
     """Go back from (L, V) towards (L0, V0) to the least lam.(u_n - b) + beta.u_t - (1/2) lam^T A lam between them.
 
@@ -216,7 +203,7 @@ def segment(
             continue
         un = normal_rate(A, B, ROWS, V0, i)
         ut = tangent_rate(A, B, ROWS, V0, i)
-        slope += dn * (un - ROWS[i, TARGET]) + dt * ut
+        slope += dn * (un - ROWS[i].target) + dt * ut
         curvature += dn * (normal_rate(A, B, ROWS, V, i) - un) + dt * (tangent_rate(A, B, ROWS, V, i) - ut)
     part = 0.0
     if curvature > 0.0:

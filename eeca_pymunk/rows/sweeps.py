@@ -17,28 +17,9 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
+from ..compiled.records import Rows
+from ..model.contacts import Row
 from .build import SINGULAR
-from .layout import (
-    A_NN,
-    A_NT,
-    A_TT,
-    ARM_NA,
-    ARM_NB,
-    ARM_TA,
-    ARM_TB,
-    FRICTION,
-    K_N,
-    NX,
-    NY,
-    SURFACE,
-    TARGET,
-    UN,
-    UT,
-    W_NN,
-    W_NT,
-    W_TT,
-    WAKE,
-)
 
 _STEEP = 1e-9  # mobility along a slipping contact's push, relative to A_nn, below which it jams
 
@@ -98,27 +79,27 @@ def coulomb(
 
 @uncounted
 def sweep(
-    A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, IM: FloatArray, II: FloatArray, m: int
+    A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, IM: FloatArray, II: FloatArray, m: int
 ) -> float:
     """One sweep over the m contacts; L and V are updated. Returns the largest change of a contact's velocity."""
     worst = 0.0
     for i in range(m):
         a = A[i]
         b = B[i]
-        nx = ROWS[i, NX]
-        ny = ROWS[i, NY]
-        na = ROWS[i, ARM_NA]
-        nb = ROWS[i, ARM_NB]
+        nx = ROWS[i].nx
+        ny = ROWS[i].ny
+        na = ROWS[i].arm_na
+        nb = ROWS[i].arm_nb
         lam0 = L[i, 0]
         beta0 = L[i, 1]
-        ann = ROWS[i, A_NN]
-        mu = ROWS[i, FRICTION]
+        ann = ROWS[i].a_nn
+        mu = ROWS[i].friction
         dx = V[b, 0] - V[a, 0]
         dy = V[b, 1] - V[a, 1]
-        short = nx * dx + ny * dy + (nb * V[b, 2] - na * V[a, 2]) - ROWS[i, TARGET]  # u_n - b
-        if ROWS[i, WAKE] < np.inf:
-            if short + ROWS[i, TARGET] - lam0 * ann < ROWS[i, WAKE]:
-                ROWS[i, WAKE] = np.inf
+        short = nx * dx + ny * dy + (nb * V[b, 2] - na * V[a, 2]) - ROWS[i].target  # u_n - b
+        if ROWS[i].wake < np.inf:
+            if short + ROWS[i].target - lam0 * ann < ROWS[i].wake:
+                ROWS[i].wake = np.inf
             else:
                 short = np.inf
         if short >= 0.0 and lam0 == 0.0 and beta0 == 0.0:
@@ -128,23 +109,23 @@ def sweep(
         ta = 0.0
         tb = 0.0
         if mu <= 0.0:
-            lam = max(lam0 - ROWS[i, K_N] * short, 0.0)
+            lam = max(lam0 - ROWS[i].k_n * short, 0.0)
         else:
-            ta = ROWS[i, ARM_TA]
-            tb = ROWS[i, ARM_TB]
-            ut = nx * dy - ny * dx + (tb * V[b, 2] - ta * V[a, 2]) + ROWS[i, SURFACE]
-            ant = ROWS[i, A_NT]
+            ta = ROWS[i].arm_ta
+            tb = ROWS[i].arm_tb
+            ut = nx * dy - ny * dx + (tb * V[b, 2] - ta * V[a, 2]) + ROWS[i].surface
+            ant = ROWS[i].a_nt
             qn = short - lam0 * ann - beta0 * ant
             if qn < 0.0:
                 # Most stick, and need no more than this.
-                lam = lam0 - (ROWS[i, W_NN] * short + ROWS[i, W_NT] * ut)
-                beta = beta0 - (ROWS[i, W_NT] * short + ROWS[i, W_TT] * ut)
-                before = ROWS[i, UT]
+                lam = lam0 - (ROWS[i].w_nn * short + ROWS[i].w_nt * ut)
+                beta = beta0 - (ROWS[i].w_nt * short + ROWS[i].w_tt * ut)
+                before = ROWS[i].ut
                 if abs(beta) <= mu * lam:
-                    done = beta * before + lam * min(ROWS[i, UN] + ROWS[i, TARGET], 0.0) <= 0.0
+                    done = beta * before + lam * min(ROWS[i].un + ROWS[i].target, 0.0) <= 0.0
                 else:
                     # Nearly all others slip as they would without friction.
-                    att = ROWS[i, A_TT]
+                    att = ROWS[i].a_tt
                     qt = ut - beta0 * att - lam0 * ant
                     slope = -mu if qt * ann > qn * ant else mu
                     felt = ann + slope * ant
@@ -154,9 +135,9 @@ def sweep(
                         beta = slope * lam
                         done = slope * (qt + ant * lam + att * beta) <= 0.0 and beta * before <= 0.0
                 if not done:
-                    att = ROWS[i, A_TT]
+                    att = ROWS[i].a_tt
                     lam, beta = coulomb(
-                        qn, ut - beta0 * att - lam0 * ant, ann, ant, att, mu, ROWS[i, UN], before, ROWS[i, TARGET]
+                        qn, ut - beta0 * att - lam0 * ant, ann, ant, att, mu, ROWS[i].un, before, ROWS[i].target
                     )
         dn = lam - lam0
         dt = beta - beta0
@@ -176,14 +157,14 @@ def sweep(
         else:
             V[a, 2] -= II[a] * (dn * na + dt * ta)
             V[b, 2] += II[b] * (dn * nb + dt * tb)
-            worst = max(worst, abs(dt) * ROWS[i, A_TT])
+            worst = max(worst, abs(dt) * ROWS[i].a_tt)
         worst = max(worst, abs(dn) * ann)
     return worst
 
 
 @uncounted
 def push(
-    A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, IM: FloatArray, II: FloatArray, m: int
+    A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, IM: FloatArray, II: FloatArray, m: int
 ) -> None:
     """V += M^-1 (G^T lam + T^T beta)."""
     for i in range(m):
@@ -193,19 +174,19 @@ def push(
             continue
         a = A[i]
         b = B[i]
-        fx = lam * ROWS[i, NX] - beta * ROWS[i, NY]
-        fy = lam * ROWS[i, NY] + beta * ROWS[i, NX]
+        fx = lam * ROWS[i].nx - beta * ROWS[i].ny
+        fy = lam * ROWS[i].ny + beta * ROWS[i].nx
         V[a, 0] -= IM[a] * fx
         V[a, 1] -= IM[a] * fy
-        V[a, 2] -= II[a] * (lam * ROWS[i, ARM_NA] + beta * ROWS[i, ARM_TA])
+        V[a, 2] -= II[a] * (lam * ROWS[i].arm_na + beta * ROWS[i].arm_ta)
         V[b, 0] += IM[b] * fx
         V[b, 1] += IM[b] * fy
-        V[b, 2] += II[b] * (lam * ROWS[i, ARM_NB] + beta * ROWS[i, ARM_TB])
+        V[b, 2] += II[b] * (lam * ROWS[i].arm_nb + beta * ROWS[i].arm_tb)
 
 
 @uncounted
 def velocities(
-    A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, FREE: FloatArray, IM: FloatArray, II: FloatArray, m: int,
+    A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, FREE: FloatArray, IM: FloatArray, II: FloatArray, m: int,
     V: FloatArray,
 ) -> None:  # fmt: skip
     """V = FREE + M^-1 (G^T lam + T^T beta)."""

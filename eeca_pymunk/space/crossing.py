@@ -9,11 +9,11 @@ import pymunk
 from pymunk import batch
 
 from ..arrays import FloatArray, IntArray
+from ..compiled.records import Rows
 from ..layout import (
     BODY_ROW,
     COG_X,
     COG_Y,
-    DUE,
     ECCENTRIC,
     END,
     END_COLUMNS,
@@ -31,6 +31,7 @@ from ..layout import (
     STEERED,
     STILL,
 )  # fmt: skip
+from ..model.bodies import Body
 from ..transfer import FORCES, TURNS, lay, lay_rest
 from . import private
 from .bodies import Bodies
@@ -44,12 +45,12 @@ class Crossing:
 
     Attributes:
         bodies: in pymunk's order, N with the static ones.
-        BODY: (n, BODY_COLUMNS).  STATES, WALK, EXTRA, ENDS: what crosses the edge, see `layout.py`.
+        BODY: (n,).  STATES, WALK, EXTRA, ENDS: what crosses the edge, see `layout.py`.
         gather: reads the state of all bodies into STATES[NOW].
         eccentric: whether the centre of mass of any body is not its origin.
     """
 
-    def __init__(self, space: pymunk.Space, bodies: Bodies, BODY: FloatArray, row: IntArray, state: FloatArray) -> None:
+    def __init__(self, space: pymunk.Space, bodies: Bodies, BODY: Rows[Body], row: IntArray, state: FloatArray) -> None:
         """Room for `bodies` that have these rows (N,) of BODY and this (N, 9) state."""
         self.space, self.bodies, self.BODY = space, bodies, BODY
         N = len(bodies)
@@ -144,7 +145,7 @@ class Crossing:
 
     def void_forecasts(self) -> None:
         """Let the next step look at all bodies as if they had been moved, though they are where it left them."""
-        self.BODY[:, DUE] = -np.inf
+        self.BODY["due"] = -np.inf
 
     def scatter(self, status: int) -> None:
         """Write poses and velocities at the end of the step to the space, angles and spins if the bit TURNS is set."""

@@ -16,7 +16,6 @@ from ..joints.layout import (
     SOFT,
     SPRING,
 )
-from ..layout import COUNT, ELASTICITY, FIRST, FRICTION, OWNER, SURFACE_X, SURFACE_Y
 from .bodies import ANGULAR_VELOCITY, FORCE, TORQUE
 from .joints import JointRows
 from .world import World
@@ -26,9 +25,9 @@ def describe(world: World) -> str:
     """What of the space as it is now is modelled, and therefore paid for."""
     world.gather()
     state, bodies = world.state, world.bodies
-    owner = world.LINK[:, OWNER]
+    owner = world.LINK["owner"]
     moving = owner < len(world.BODY) - 1
-    centred = (world.LINK[:, COUNT] == 1) & ~world.VERTEX[world.LINK[:, FIRST], :2].any(axis=1)
+    centred = (world.LINK["vertices"] == 1) & ~world.VERTEX[world.LINK["first"], :2].any(axis=1)
     disks = int(np.count_nonzero(centred & (owner < world.dynamic)))
     others = int(np.count_nonzero(moving)) - disks
     pulled = any(world.gravity) or state[:, FORCE].any() or (others > 0 and state[:, TORQUE].any())
@@ -38,11 +37,11 @@ def describe(world: World) -> str:
         f"{shapes}, {int(np.count_nonzero(~moving))} walls",
         "gravity or forces" if pulled else "no forces",
         "rotation with contact arms" if others else "free rotation" if turns else "no rotation",
-        "loss" if (world.SHAPE[:, ELASTICITY] < 1.0).any() else "elastic",
+        "loss" if (world.SHAPE["elasticity"] < 1.0).any() else "elastic",
     ]
-    if (world.SHAPE[:, FRICTION] > 0.0).any():
+    if (world.SHAPE["friction"] > 0.0).any():
         parts.append("friction")
-    if world.SHAPE[:, SURFACE_X : SURFACE_Y + 1].any():
+    if world.SHAPE["surface_x"].any() or world.SHAPE["surface_y"].any():
         parts.append("moving surfaces")
     if pulled or parts[-1] != "elastic":
         parts.append("sustained contacts")

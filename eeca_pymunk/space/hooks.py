@@ -20,6 +20,8 @@ import numpy as np
 import pymunk
 
 from ..arrays import FloatArray, rotated
+from ..compiled.records import Rows
+from ..model.shapes import Shape
 from . import private, private_joints
 from .bodies import ANGLE, ANGULAR_VELOCITY, POSITION, VELOCITY, Bodies
 from .joints import JointRows
@@ -226,7 +228,7 @@ class Rehearsal:
 
         return call
 
-    def rules(self, shapes: Sequence[pymunk.Shape], SHAPE: FloatArray, smooth: bool) -> Rules:
+    def rules(self, shapes: Sequence[pymunk.Shape], SHAPE: Rows[Shape], smooth: bool) -> Rules:
         """What the arbiters of the step say of pairs of these shapes, which are the rows of SHAPE."""
         return Rules.said(private.arbiters(self.space), shapes, SHAPE, smooth)
 

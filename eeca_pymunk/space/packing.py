@@ -10,30 +10,9 @@ import numpy as np
 import pymunk
 
 from ..arrays import BoolArray, FloatArray, IntArray, rotated, side_by_side
-from ..layout import (
-    BODY_COLUMNS,
-    BOUNCE,
-    BOUND,
-    CENTRE_X,
-    CENTRE_Y,
-    COUNT,
-    DUE,
-    ELASTICITY,
-    EXTENT,
-    FIRST,
-    FRICTION,
-    GRIP,
-    GROUP,
-    II,
-    IM,
-    LINK_COLUMNS,
-    MASK,
-    OWNER,
-    ROUNDING,
-    SHAPE_COLUMNS,
-    SIZE,
-    SURFACE_Y,
-)  # fmt: skip
+from ..compiled.records import Rows, put
+from ..model.bodies import Body
+from ..model.shapes import Link, Shape
 from .bodies import ANGLE, POSITION, Bodies
 from .checks import shape_body, shape_radius
 from .shapes import local_outline
@@ -66,6 +45,10 @@ def read(shape: pymunk.Shape, ground: pymunk.Body | None = None) -> Record:
     return Record(outline, numbers, (group & _WORD, categories & _WORD, mask & _WORD), ground is not None)
 
 
+# Fields of a shape that its record gives, in the order of `Record.numbers`.
+_GIVEN = ("rounding", "extent", "elasticity", "friction", "surface_x", "surface_y")
+
+
 @dataclass(frozen=True)
 class Packed:
     """Rows of a space's bodies and solid shapes.
@@ -80,9 +63,9 @@ class Packed:
     shapes: tuple[pymunk.Shape, ...]
     owner: IntArray
     row: IntArray
-    BODY: FloatArray
-    SHAPE: FloatArray
-    LINK: IntArray
+    BODY: Rows[Body]
+    SHAPE: Rows[Shape]
+    LINK: Rows[Link]
     VERTEX: FloatArray
     disks: int
     dynamic: int
@@ -104,21 +87,23 @@ def pack(bodies: Bodies, state: FloatArray, shapes: Sequence[pymunk.Shape], reco
     rank[order] = np.arange(len(order))
     by_row = np.argsort(rank[of_shape], kind="stable")
     k = len(order)
-    BODY, SHAPE, LINK = side_by_side(
-        ((ground + 1, BODY_COLUMNS), np.float64), ((k, SHAPE_COLUMNS), np.float64), ((k, LINK_COLUMNS), np.int64)
-    )
-    LINK[:, OWNER], LINK[:, COUNT] = body_of[order], count[order]
-    LINK[:, FIRST] = np.cumsum(count[order]) - count[order]
+    BODY, SHAPE, LINK = side_by_side(((ground + 1,), Body.TYPE), ((k,), Shape.TYPE), ((k,), Link.TYPE))
+    LINK["owner"], LINK["vertices"] = body_of[order], count[order]
+    LINK["first"] = np.cumsum(count[order]) - count[order]
     filters = np.array([r.filter for r in records], np.uint64).reshape(-1, 3)
-    LINK[:, GROUP : MASK + 1] = filters.view(np.int64)[order]
+    put(LINK, filters.view(np.int64)[order], "group", "categories", "mask")
     VERTEX = _with_normals(vertex[by_row], LINK)
-    SHAPE[:, : SURFACE_Y + 1] = np.array([r.numbers for r in records], float).reshape(-1, SURFACE_Y + 1)[order]
+    numbers = np.array([r.numbers for r in records], float).reshape(-1, len(_GIVEN))[order]
+    put(SHAPE, numbers, *_GIVEN)
     _bound(VERTEX[:, :2], LINK, SHAPE)
     moving = np.flatnonzero(row >= 0)
-    BODY[row[moving], IM], BODY[row[moving], II] = bodies.inverse_mass[moving], bodies.inverse_moment[moving]
-    BODY[:, DUE] = -np.inf
-    np.maximum.at(BODY[:, EXTENT], LINK[:, OWNER], SHAPE[:, SIZE])
-    BODY[:disks, BOUNCE], BODY[:disks, GRIP] = SHAPE[:disks, ELASTICITY], SHAPE[:disks, FRICTION]
+    BODY["inv_mass"][row[moving]], BODY["inv_inertia"][row[moving]] = (
+        bodies.inverse_mass[moving],
+        bodies.inverse_moment[moving],
+    )
+    BODY["due"] = -np.inf
+    np.maximum.at(BODY["extent"], LINK["owner"], SHAPE["extent"])
+    BODY["elasticity"][:disks], BODY["friction"][:disks] = SHAPE["elasticity"][:disks], SHAPE["friction"][:disks]
     ordered = tuple(shapes[i] for i in order.tolist())
     dynamic = int(np.count_nonzero(bodies.dynamic))
     return Packed(ordered, owner[order], row, BODY, SHAPE, LINK, VERTEX, disks, dynamic)
@@ -153,10 +138,10 @@ def _rows(bodies: Bodies, owner: IntArray, centred: BoolArray) -> tuple[IntArray
     return row, int(np.count_nonzero(lone))
 
 
-def _with_normals(vertex: FloatArray, LINK: IntArray) -> FloatArray:
+def _with_normals(vertex: FloatArray, LINK: Rows[Link]) -> FloatArray:
     """(v, 4) vertices and the outward unit normals of the edges that begin there."""
     following = np.arange(1, len(vertex) + 1)
-    following[LINK[:, FIRST] + LINK[:, COUNT] - 1] = LINK[:, FIRST]
+    following[LINK["first"] + LINK["vertices"] - 1] = LINK["first"]
     edge = vertex[following] - vertex
     length = np.hypot(edge[:, 0], edge[:, 1])
     # Counter-clockwise outlines (pymunk's hulls) have their outside on the right of every edge.
@@ -164,13 +149,13 @@ def _with_normals(vertex: FloatArray, LINK: IntArray) -> FloatArray:
     return np.concatenate((vertex, normal), axis=1)
 
 
-def _bound(vertex: FloatArray, LINK: IntArray, SHAPE: FloatArray) -> None:
+def _bound(vertex: FloatArray, LINK: Rows[Link], SHAPE: Rows[Shape]) -> None:
     """Fill in the sizes of shapes and the circles about the boxes of their vertices."""
     if len(SHAPE) == 0:
         return
-    first = LINK[:, FIRST]
+    first = LINK["first"]
     centre = 0.5 * (np.minimum.reduceat(vertex, first) + np.maximum.reduceat(vertex, first))
-    away = vertex - np.repeat(centre, LINK[:, COUNT], axis=0)
-    SHAPE[:, CENTRE_X : CENTRE_Y + 1] = centre
-    SHAPE[:, BOUND] = SHAPE[:, ROUNDING] + np.maximum.reduceat(np.hypot(away[:, 0], away[:, 1]), first)
-    SHAPE[:, SIZE] = SHAPE[:, ROUNDING] + np.maximum.reduceat(np.hypot(vertex[:, 0], vertex[:, 1]), first)
+    away = vertex - np.repeat(centre, LINK["vertices"], axis=0)
+    put(SHAPE, centre, "centre_x", "centre_y")
+    SHAPE["bound"] = SHAPE["rounding"] + np.maximum.reduceat(np.hypot(away[:, 0], away[:, 1]), first)
+    SHAPE["extent"] = SHAPE["rounding"] + np.maximum.reduceat(np.hypot(vertex[:, 0], vertex[:, 1]), first)

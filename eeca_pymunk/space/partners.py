@@ -14,24 +14,25 @@ from contextlib import contextmanager
 import numpy as np
 import pymunk
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import IntArray
+from ..compiled.records import put, rows
 from ..errors import NotFiniteError
-from ..layout import BODY_COLUMNS, SPIN, X
+from ..model.bodies import Body
 
-_MOTION = slice(X, SPIN + 1)
+_MOTION = "x", "y", "angle", "vx", "vy", "spin"
 
 
 class Partners:
     """The rows of some bodies.
 
     Attributes:
-        items: the bodies, by row.  PARTNER: (x, BODY_COLUMNS) their poses and, of kinematic ones, velocities.
+        items: the bodies, by row.  PARTNER: (x,) their poses and, of kinematic ones, velocities.
         outside: rows of those that are not in the space, and may have moved.
     """
 
     def __init__(self, items: Sequence[pymunk.Body], space: pymunk.Space, past: Partners | None = None) -> None:
         self.items = tuple(items)
-        self.PARTNER: FloatArray = np.zeros((len(self.items), BODY_COLUMNS))
+        self.PARTNER = rows(Body, len(self.items))
         self._known: list[tuple[float, ...] | None] = [None] * len(self.items)
         if past is not None:
             before = {body: i for i, body in enumerate(past.items)}
@@ -65,7 +66,11 @@ class Partners:
             changed.append(i)
             self._known[i] = state
             c, s, kx, ky = math.cos(angle), math.sin(angle), *body.center_of_gravity
-            self.PARTNER[i, _MOTION] = (x + c * kx - s * ky, y + s * kx + c * ky, angle, vx, vy, spin)
+            put(
+                self.PARTNER[i : i + 1],
+                np.array((x + c * kx - s * ky, y + s * kx + c * ky, angle, vx, vy, spin)),
+                *_MOTION,
+            )
         return np.array(changed, np.int64)
 
     def motion(self, i: int) -> tuple[float, float, float, float, float, float]:

@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 
 import pymunk
 
-from ..arrays import FloatArray
+from ..compiled.records import Rows
 from ..errors import UnsupportedFeature
-from ..layout import ELASTICITY, FRICTION, SURFACE_X, SURFACE_Y
+from ..model.shapes import Shape
 
 _SAME = 1e-9  # part of a surface velocity by which the one that pymunk makes of it may differ
 Pair = tuple[int, int]
@@ -29,7 +29,7 @@ class Rules:
 
     @classmethod
     def said(
-        cls, arbiters: Iterable[pymunk.Arbiter], shapes: Sequence[pymunk.Shape], SHAPE: FloatArray, smooth: bool
+        cls, arbiters: Iterable[pymunk.Arbiter], shapes: Sequence[pymunk.Shape], SHAPE: Rows[Shape], smooth: bool
     ) -> Rules:
         """What these arbiters say of pairs of these shapes, the rows of SHAPE; nothing of friction if `smooth`."""
         index = {shape: i for i, shape in enumerate(shapes)}
@@ -49,7 +49,7 @@ class Rules:
                 changed[pair] = told
         return cls(frozenset(ignored), changed)
 
-    def of_pairs(self, SHAPE: FloatArray, parted: Iterable[Pair] = ()) -> dict[Pair, Law]:
+    def of_pairs(self, SHAPE: Rows[Shape], parted: Iterable[Pair] = ()) -> dict[Pair, Law]:
         """By pair of rows of SHAPE, in their order: elasticity (-1: they pass), friction, surface velocity of b
         relative to a. `parted` pairs pass, whatever handlers say."""
         told: dict[Pair, Law] = {}
@@ -59,10 +59,15 @@ class Rules:
         return told
 
 
-def _law(SHAPE: FloatArray, a: int, b: int) -> Law:
+def _law(SHAPE: Rows[Shape], a: int, b: int) -> Law:
     """What two shapes say of each other: pymunk's products, and b's surface velocity relative to a's."""
-    e, mu = (float(SHAPE[a, k] * SHAPE[b, k]) for k in (ELASTICITY, FRICTION))
-    return e, mu, float(SHAPE[b, SURFACE_X] - SHAPE[a, SURFACE_X]), float(SHAPE[b, SURFACE_Y] - SHAPE[a, SURFACE_Y])
+    e, mu = (float(SHAPE[k][a] * SHAPE[k][b]) for k in ("elasticity", "friction"))
+    return (
+        e,
+        mu,
+        float(SHAPE["surface_x"][b] - SHAPE["surface_x"][a]),
+        float(SHAPE["surface_y"][b] - SHAPE["surface_y"][a]),
+    )
 
 
 def _surface(arbiter: pymunk.Arbiter, own: tuple[float, float], ordered: bool) -> tuple[float, float]:

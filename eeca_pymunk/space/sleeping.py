@@ -23,7 +23,7 @@ import numpy as np
 import pymunk
 
 from ..arrays import BoolArray, FloatArray
-from ..layout import BODY_ROW, EXTENT, FOUND, KNOWN, LEFT, NOW
+from ..layout import BODY_ROW, FOUND, KNOWN, LEFT, NOW
 from ..report import Contacts
 from . import private, private_sleep
 from .noticed import leader
@@ -72,7 +72,7 @@ class Sleep:
         self._steps, self._dt = self.space.collision_persistence + 2, 0.0
         self._tired: BoolArray = np.zeros(len(bodies), bool)
         row = world.WALK[BODY_ROW]
-        self._size: FloatArray = np.where(row >= 0, world.BODY[row, EXTENT], 0.0)
+        self._size: FloatArray = np.where(row >= 0, world.BODY["extent"][row], 0.0)
 
     def changed(self) -> bool:
         """Whether others sleep now than when this was made, as far as one knows: pymunk may have taken a step."""

@@ -10,7 +10,9 @@ import numpy as np
 import pymunk
 
 from ..arrays import FloatArray
-from ..layout import BODY_COLUMNS, BODY_ROW, FRICTION, GRIP, GROUP, MASK
+from ..compiled.records import Rows, columns, rows
+from ..layout import BODY_ROW
+from ..model.bodies import Body
 from ..report import nothing
 from ..transfer import take
 from . import private
@@ -77,10 +79,10 @@ class World(Crossing):
         self.SHAPE, self.LINK, self.VERTEX = packed.SHAPE, packed.LINK, packed.VERTEX
         self.smooth = "friction" in ignore
         if self.smooth:
-            self.SHAPE[:, FRICTION] = 0.0
-            self.BODY[:, GRIP] = 0.0
+            self.SHAPE["friction"] = 0.0
+            self.BODY["friction"] = 0.0
         self.disks, self.dynamic = packed.disks, packed.dynamic
-        self.filtered = bool((self.LINK[:, GROUP : MASK + 1] != _COLLIDES_WITH_ALL).any())
+        self.filtered = bool((columns(self.LINK, "group", "categories", "mask") != _COLLIDES_WITH_ALL).any())
         self.empty = nothing(bodies.items)
         self.parted: set[tuple[int, int]] = set()
         self.joints: JointRows | None = None
@@ -123,9 +125,9 @@ class World(Crossing):
                 self.left_as_read()
 
     @property
-    def PARTNER(self) -> FloatArray:
-        """(x, BODY_COLUMNS) bodies of joints that have no row of BODY."""
-        return np.zeros((0, BODY_COLUMNS)) if self.joints is None else self.joints.partners.PARTNER
+    def PARTNER(self) -> Rows[Body]:
+        """(x,) bodies of joints that have no row of BODY."""
+        return rows(Body, 0) if self.joints is None else self.joints.partners.PARTNER
 
     def part(self) -> bool:
         """Find out whose shapes pass through one another because joints of their bodies say so; whether others than

@@ -13,11 +13,12 @@ import math
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
+from ..compiled.records import Rows
 from ..geometry.manifold import manifold
-from ..layout import COUNT, ROUNDING, SIZE
+from ..model.contacts import Row
+from ..model.shapes import Link, Shape
 from ..pairs.rules import law
 from ..rows.build import place_row
-from ..rows.layout import NX, NY, SURFACE
 from .memory import key_of
 
 CROWD = 24  # bodies of an island, from which it is a crowd: hits spread in it, and solves of it are cut short
@@ -32,11 +33,11 @@ PAIR_COLUMNS = 4  # PAIRS: shape a, shape b, and their local bodies
 
 @uncounted
 def gather(
-    PAIRS: IntArray, p: int, SHAPE: FloatArray, RULE: FloatArray, LINK: IntArray, VERTEX: FloatArray, WORK: FloatArray,
+    PAIRS: IntArray, p: int, SHAPE: Rows[Shape], RULE: FloatArray, LINK: Rows[Link], VERTEX: FloatArray, WORK: FloatArray,
     POSE: FloatArray,
     MIDDLE: FloatArray, V: FloatArray, REACH: FloatArray, EXTENT: FloatArray, IM: FloatArray, II: FloatArray, h: float,
     free: bool, near: float,
-    A: IntArray, B: IntArray, ROWS: FloatArray, KEY: IntArray, NOW: FloatArray, THEN: FloatArray,
+    A: IntArray, B: IntArray, ROWS: Rows[Row], KEY: IntArray, NOW: FloatArray, THEN: FloatArray,
 ) -> int:  # fmt: skip
     """Rows of all contacts of p pairs no farther apart than the sum of their bodies' REACH.
 
@@ -59,7 +60,7 @@ def gather(
         b = PAIRS[c, 3]
         if IM[a] == 0.0 and IM[b] == 0.0:
             continue
-        small = min(SHAPE[s, SIZE], SHAPE[r, SIZE])
+        small = min(SHAPE[s].extent, SHAPE[r].extent)
         reach = REACH[a] + REACH[b]
         count = manifold(
             SHAPE, LINK, VERTEX, WORK, s, POSE[a, 0], POSE[a, 1], POSE[a, 2], r, POSE[b, 0], POSE[b, 1], POSE[b, 2],
@@ -76,7 +77,7 @@ def gather(
         )
         centre = MIDDLE
         # Normals turn as round shapes go round one another, and slowly about a large one.
-        far = SHAPE[s, ROUNDING] + SHAPE[r, ROUNDING] if LINK[s, COUNT] == 1 and LINK[r, COUNT] == 1 else small
+        far = SHAPE[s].rounding + SHAPE[r].rounding if LINK[s].vertices == 1 and LINK[r].vertices == 1 else small
         ahead = near * small < way <= _FAR * far
         if ahead:
             again = manifold(
@@ -109,7 +110,7 @@ def gather(
                 A, B, ROWS, i, a, b, THEN[z, 0], THEN[z, 1], THEN[z, 2], THEN[z, 3], NOW[z, 4], centre, IM, II,
                 elasticity, friction, 0.0,
             )  # fmt: skip
-            ROWS[i, SURFACE] = ROWS[i, NX] * sy - ROWS[i, NY] * sx
+            ROWS[i].surface = ROWS[i].nx * sy - ROWS[i].ny * sx
             KEY[i] = key_of(shapes, s, r) + z
         m += count
     return m

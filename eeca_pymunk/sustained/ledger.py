@@ -11,7 +11,8 @@ from __future__ import annotations
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
-from ..rows.layout import ARM_NA, ARM_NB, ARM_TA, ARM_TB, NX, NY, SURFACE
+from ..compiled.records import Rows
+from ..model.contacts import Row
 
 RESTITUTION, FRICTION, CARRIED, LIFTED, FORCES = 0, 1, 2, 3, 4
 LEDGER_SIZE = 8
@@ -19,7 +20,7 @@ LEDGER_SIZE = 8
 
 @uncounted
 def carried(
-    A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, VN: FloatArray, IM: FloatArray,
+    A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, VN: FloatArray, IM: FloatArray,
     II: FloatArray, m: int,
 ) -> float:  # fmt: skip
     """Work of bodies that impulses do not move (kinematic ones), or do not turn (of infinite moment), at the means of
@@ -30,19 +31,19 @@ def carried(
         beta = L[i, 1]
         if lam == 0.0 and beta == 0.0:
             continue
-        work -= beta * ROWS[i, SURFACE]
-        fx = lam * ROWS[i, NX] - beta * ROWS[i, NY]
-        fy = lam * ROWS[i, NY] + beta * ROWS[i, NX]
+        work -= beta * ROWS[i].surface
+        fx = lam * ROWS[i].nx - beta * ROWS[i].ny
+        fy = lam * ROWS[i].ny + beta * ROWS[i].nx
         a = A[i]
         b = B[i]
         if IM[b] == 0.0:
             work -= 0.5 * (fx * (V[b, 0] + VN[b, 0]) + fy * (V[b, 1] + VN[b, 1]))
         if II[b] == 0.0:
-            work -= 0.5 * (lam * ROWS[i, ARM_NB] + beta * ROWS[i, ARM_TB]) * (V[b, 2] + VN[b, 2])
+            work -= 0.5 * (lam * ROWS[i].arm_nb + beta * ROWS[i].arm_tb) * (V[b, 2] + VN[b, 2])
         if IM[a] == 0.0:
             work += 0.5 * (fx * (V[a, 0] + VN[a, 0]) + fy * (V[a, 1] + VN[a, 1]))
         if II[a] == 0.0:
-            work += 0.5 * (lam * ROWS[i, ARM_NA] + beta * ROWS[i, ARM_TA]) * (V[a, 2] + VN[a, 2])
+            work += 0.5 * (lam * ROWS[i].arm_na + beta * ROWS[i].arm_ta) * (V[a, 2] + VN[a, 2])
     return work
 
 

@@ -16,10 +16,11 @@ import numpy as np
 
 from ..arrays import FlagArray, FloatArray, IntArray
 from ..compiled import kernel, uncounted
+from ..compiled.records import Rows
+from ..model.contacts import Row
 from ..rows.build import normal_rate
 from ..rows.direct import SMALL
 from ..rows.energy import lift
-from ..rows.layout import GAP, UN
 from .ledger import against
 
 _DEEP = 1e-9  # overlap relative to the size that is left alone
@@ -30,7 +31,7 @@ _SHARE = 0.99  # of a budget that does not suffice: the moment of inertia goes w
 
 @kernel
 def lifting(
-    A: IntArray, B: IntArray, ROWS: FloatArray, POSE: FloatArray, VN: FloatArray, ACC: FloatArray, IM: FloatArray,
+    A: IntArray, B: IntArray, ROWS: Rows[Row], POSE: FloatArray, VN: FloatArray, ACC: FloatArray, IM: FloatArray,
     II: FloatArray, n: int, m: int, h: float, size: float, budget: float, JUMP: FloatArray,
 ) -> tuple[float, float]:  # fmt: skip
     """JUMP (k, 6) = changes of pose and velocity at the end of the span.
@@ -47,7 +48,7 @@ def lifting(
     GAPS = np.empty(m)
     deepest = 0.0
     for i in range(m):
-        GAPS[i] = ROWS[i, GAP] + 0.5 * h * (ROWS[i, UN] + normal_rate(A, B, ROWS, VN, i))
+        GAPS[i] = ROWS[i].gap + 0.5 * h * (ROWS[i].un + normal_rate(A, B, ROWS, VN, i))
         deepest = min(deepest, GAPS[i])
     if deepest >= -_DEEP * size or not budget >= 0.0:
         return 0.0, deepest

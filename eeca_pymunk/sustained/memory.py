@@ -2,14 +2,16 @@
 
 KEYS (c,) int64, -1 where free, c a power of 2; FORCES (c, 4): normal force, tangential force, load (the normal force
 without what stopped an impact), and the stamp of the step that wrote the row. Rows of older steps than the last are
-forgotten, and cleared by `forget` when the table fills. COUNT (1,) rows in use.
+forgotten, and cleared by `forget` when the table fills. COUNT.remembered: rows in use.
 """
 
 from __future__ import annotations
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
-from ..rows.layout import K_N, TARGET, UN
+from ..compiled.records import Rows
+from ..model.contacts import Row
+from ..model.step import Count
 
 NORMAL, TANGENTIAL, LOAD, STAMP = 0, 1, 2, 3
 FORCE_COLUMNS = 4
@@ -36,7 +38,7 @@ def find(KEYS: IntArray, key: int) -> int:
 
 @uncounted
 def remember(
-    KEYS: IntArray, FORCES: FloatArray, COUNT: IntArray, key: int, normal: float, tangential: float, load: float,
+    KEYS: IntArray, FORCES: FloatArray, COUNT: Count, key: int, normal: float, tangential: float, load: float,
     stamp: float,
 ) -> None:  # fmt: skip
     """Write a contact's forces. The table must have a free row."""
@@ -44,7 +46,7 @@ def remember(
     if row < 0:
         row = -1 - row
         KEYS[row] = key
-        COUNT[0] += 1
+        COUNT.remembered += 1
     FORCES[row, 0] = normal
     FORCES[row, 1] = tangential
     FORCES[row, 2] = load
@@ -53,15 +55,15 @@ def remember(
 
 @uncounted
 def remember_loads(
-    ROWS: FloatArray, KEY: IntArray, L: FloatArray, m: int, h: float, KEYS: IntArray, FORCES: FloatArray,
-    COUNT: IntArray, stamp: float,
+    ROWS: Rows[Row], KEY: IntArray, L: FloatArray, m: int, h: float, KEYS: IntArray, FORCES: FloatArray,
+    COUNT: Count, stamp: float,
 ) -> int:  # fmt: skip
     """Write the forces of those of m contacts that push, by their impulses L (m, 2) over h, and what of them bears
     loads rather than stops; how many push."""
     pushing = 0
     for i in range(m):
         if L[i, 0] > 0.0:
-            stopped = max(max(ROWS[i, TARGET], 0.0) - ROWS[i, UN], 0.0) * ROWS[i, K_N]
+            stopped = max(max(ROWS[i].target, 0.0) - ROWS[i].un, 0.0) * ROWS[i].k_n
             load = max(L[i, 0] - stopped, 0.0)
             remember(KEYS, FORCES, COUNT, KEY[i], L[i, 0] / h, L[i, 1] / h, load / h, stamp)
             pushing += 1
@@ -70,10 +72,10 @@ def remember_loads(
 
 @uncounted
 def forget(
-    KEYS: IntArray, FORCES: FloatArray, COUNT: IntArray, KEYS_2: IntArray, FORCES_2: FloatArray, stamp: float
+    KEYS: IntArray, FORCES: FloatArray, COUNT: Count, KEYS_2: IntArray, FORCES_2: FloatArray, stamp: float
 ) -> None:
     """Move rows with a stamp >= `stamp` to empty tables KEYS_2, FORCES_2 (of any size); COUNT becomes theirs."""
-    COUNT[0] = 0
+    COUNT.remembered = 0
     KEYS_2[:] = -1
     for row in range(len(KEYS)):
         if KEYS[row] >= 0 and FORCES[row, 3] >= stamp:

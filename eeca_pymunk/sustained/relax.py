@@ -2,8 +2,8 @@
 
 Sweeps alone never carry a stack's weight to its floor; a direct solution does in one go, once the sweeps have found
 which contacts carry. Disordered moving piles change these with every step: there sweeps alone are the better bargain.
-STATE (3,) of an island lasts across steps: log10 of the augmentation R, steps to wait before the next direct solution,
-and the wait that its next failure brings.
+STATE of an island lasts across steps: log10 of the augmentation R, steps to wait before the next direct solution, and
+the wait that its next failure brings.
 """
 
 from __future__ import annotations
@@ -12,12 +12,14 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel
+from ..compiled.records import Rows
+from ..model.bodies import Rest
+from ..model.contacts import Row
 from ..rows.conjugate import iterate
 from ..rows.direct import refine
 from ..rows.sweeps import sweep
 
-LOG_R, WAIT, BACKOFF = 0, 1, 2
-FRESH = (8.0, 0.0, 0.0)  # STATE of a new island
+FRESH = 8.0  # augmentation of a new island
 
 _REST = 10  # sweeps before the first direct solution
 _AFTER = 4  # further sweeps after each
@@ -28,8 +30,8 @@ _LONGEST = 32.0  # steps
 
 @kernel
 def relax(
-    A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, FREE: FloatArray, IM: FloatArray,
-    II: FloatArray, POSE: FloatArray, n: int, m: int, rounds: int, fine: float, coarse: float, STATE: FloatArray,
+    A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, FREE: FloatArray, IM: FloatArray,
+    II: FloatArray, POSE: FloatArray, n: int, m: int, rounds: int, fine: float, coarse: float, STATE: Rest,
     most: int,
 ) -> tuple[int, int, float]:  # fmt: skip
     """Impulses L (m, 2) and velocities V, warm-started by what they hold.
@@ -40,8 +42,8 @@ def relax(
     Returns:
         Sweeps, direct solutions, and the last sweep's change.
     """
-    if rounds == 0 or STATE[1] > 0.0:
-        STATE[1] = max(STATE[1] - 1.0, 0.0)
+    if rounds == 0 or STATE.wait > 0.0:
+        STATE.wait = max(STATE.wait - 1.0, 0.0)
         sweeps, worst = iterate(A, B, ROWS, L, V, IM, II, m, max(fine, coarse), most)
         return sweeps, 0, worst
     sweeps = 0
@@ -55,8 +57,10 @@ def relax(
     done = 0
     last = worst
     while done < rounds:
-        passes = 6 if STATE[0] > 6.0 else 1
-        STATE[0], worst = refine(A, B, ROWS, L, V, FREE, IM, II, POSE, n, m, STATE[0], passes, 0.1 * fine, worst)
+        passes = 6 if STATE.augmentation > 6.0 else 1
+        STATE.augmentation, worst = refine(
+            A, B, ROWS, L, V, FREE, IM, II, POSE, n, m, STATE.augmentation, passes, 0.1 * fine, worst
+        )
         done += 1
         sweeps += 1
         for _ in range(_AFTER):
@@ -69,11 +73,11 @@ def relax(
         if worst > 0.2 * last:
             fails += 1
         last = worst
-        if fails >= (_IMPATIENT if STATE[2] > 0.0 else _PATIENT):
+        if fails >= (_IMPATIENT if STATE.backoff > 0.0 else _PATIENT):
             break
     if worst > max(fine, coarse) and m > _LARGE:
-        STATE[2] = min(2.0 * STATE[2] + 2.0, _LONGEST)
-        STATE[1] = STATE[2]
+        STATE.backoff = min(2.0 * STATE.backoff + 2.0, _LONGEST)
+        STATE.wait = STATE.backoff
     else:
-        STATE[2] = 0.0
+        STATE.backoff = 0.0
     return sweeps, done, worst

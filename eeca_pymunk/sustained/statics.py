@@ -19,9 +19,10 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
+from ..compiled.records import Rows
+from ..model.contacts import Row
 from ..rows.equilibrium import bound, equilibrium
 from ..rows.inplace import copy
-from ..rows.layout import SURFACE, TARGET, UN, UT, WAKE
 
 STANDS = 1e-9  # speed relative to |a| h, below which a body stands
 CALM, CALM_CROWD = 1e-3, 0.5  # and below which it may come to a stand, alone or among few; in a crowd
@@ -31,25 +32,25 @@ _FACTORS, _NEAREST = 12, 6  # at most, for the first equilibrium; to come near t
 
 
 @uncounted
-def at_rest(ROWS: FloatArray, V: FloatArray, n: int, m: int, close: float) -> bool:
+def at_rest(ROWS: Rows[Row], V: FloatArray, n: int, m: int, close: float) -> bool:
     """Set the rows' targets as if nothing moved; whether no surface and no body but the n first moves."""
     for i in range(n, len(V)):
         if V[i, 0] != 0.0 or V[i, 1] != 0.0 or V[i, 2] != 0.0:
             return False
     for i in range(m):
-        if ROWS[i, SURFACE] != 0.0:
+        if ROWS[i].surface != 0.0:
             return False
-        if ROWS[i, TARGET] + max(ROWS[i, UN], 0.0) >= -close:
-            ROWS[i, TARGET] = 0.0
-        ROWS[i, UN] = 0.0
-        ROWS[i, UT] = 0.0
-        ROWS[i, WAKE] = np.inf
+        if ROWS[i].target + max(ROWS[i].un, 0.0) >= -close:
+            ROWS[i].target = 0.0
+        ROWS[i].un = 0.0
+        ROWS[i].ut = 0.0
+        ROWS[i].wake = np.inf
     return True
 
 
 @kernel
 def comes_to_stand(
-    A: IntArray, B: IntArray, ROWS: FloatArray, L: FloatArray, V: FloatArray, FREE: FloatArray, IM: FloatArray,
+    A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, FREE: FloatArray, IM: FloatArray,
     II: FloatArray, POSE: FloatArray, FELT: FloatArray, VN: FloatArray, n: int, m: int, change: float, calm: float,
 ) -> tuple[bool, int]:  # fmt: skip
     """Look for an equilibrium that ends the motion V (k, 3) of the n bodies, which are FREE without impulses.

@@ -8,6 +8,11 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
+from ..compiled.records import Rows
+from ..model.bodies import Rest
+from ..model.contacts import Row
+from ..model.shapes import Link, Shape
+from ..model.step import Count
 from ..rows.build import conserves, rates
 from ..rows.direct import SMALL
 from ..rows.energy import lock, works
@@ -96,10 +101,10 @@ def moved(X: FloatArray, V: FloatArray, s: float) -> FloatArray:
 @kernel
 def step_island(
     POSE: FloatArray, V: FloatArray, ACC: FloatArray, IM: FloatArray, II: FloatArray, EXTENT: FloatArray,
-    FELT: FloatArray, n: int, PAIRS: IntArray, p: int, SHAPE: FloatArray, RULE: FloatArray, LINK: IntArray,
+    FELT: FloatArray, n: int, PAIRS: IntArray, p: int, SHAPE: Rows[Shape], RULE: FloatArray, LINK: Rows[Link],
     VERTEX: FloatArray, WORK: FloatArray, h: float, most: int, least: float, owed: float, KEYS: IntArray,
-    FORCES: FloatArray, COUNT: IntArray, stamp: float, STATE: FloatArray, calm: float,
-    A: IntArray, B: IntArray, ROWS: FloatArray, KEY: IntArray, L: FloatArray, LOSS: FloatArray, VN: FloatArray,
+    FORCES: FloatArray, COUNT: Count, stamp: float, STATE: Rest, calm: float,
+    A: IntArray, B: IntArray, ROWS: Rows[Row], KEY: IntArray, L: FloatArray, LOSS: FloatArray, VN: FloatArray,
     JUMP: FloatArray, LEDGER: FloatArray, OUT: FloatArray,
 ) -> int:  # fmt: skip
     """Solve an island over h from now.
@@ -138,7 +143,7 @@ def step_island(
         PAIRS, p, SHAPE, RULE, LINK, VERTEX, WORK, POSE, MIDDLE, V, REACH, EXTENT, IM, II, h,
         k == n, NEAR if n < CROWD else NEAR_CROWD, A, B, ROWS, KEY, NOW, THEN,
     )  # fmt: skip
-    if m < 0 or 2 * (COUNT[0] + m) > len(KEYS):
+    if m < 0 or 2 * (COUNT.remembered + m) > len(KEYS):
         return -1
     FREE = moved(V, ACC, h)
     for i in range(k):

@@ -15,7 +15,8 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
-from ..rows.layout import ELASTICITY, GAP, K_N, NX, NY, TARGET, UN, WAKE
+from ..compiled.records import Rows
+from ..model.contacts import Row
 
 _FAST = 2.0  # approach speed relative to |a| h from which a contact is an impact
 
@@ -34,7 +35,7 @@ def sustained(elasticity: float, u: float, along: float, mass: float, expected: 
 
 @uncounted
 def target(
-    A: IntArray, B: IntArray, ROWS: FloatArray, m: int, ACC: FloatArray, EXPECTED: FloatArray, pull: float, h: float
+    A: IntArray, B: IntArray, ROWS: Rows[Row], m: int, ACC: FloatArray, EXPECTED: FloatArray, pull: float, h: float
 ) -> None:
     """Set TARGET and WAKE of m rows.
 
@@ -45,19 +46,19 @@ def target(
     for i in range(m):
         a = A[i]
         b = B[i]
-        u = ROWS[i, UN]
-        e = ROWS[i, ELASTICITY]
-        close = -u - 2.0 * ROWS[i, GAP] / h  # end velocity that closes the gap
+        u = ROWS[i].un
+        e = ROWS[i].elasticity
+        close = -u - 2.0 * ROWS[i].gap / h  # end velocity that closes the gap
         bounce = -e * u if u < 0.0 else 0.0
-        ROWS[i, WAKE] = np.inf
+        ROWS[i].wake = np.inf
         if e >= 1.0:
             bounce = -u
         else:
-            along = ROWS[i, NX] * (ACC[b, 0] - ACC[a, 0]) + ROWS[i, NY] * (ACC[b, 1] - ACC[a, 1])
-            if sustained(e, u, along, ROWS[i, K_N], EXPECTED[i], h):
+            along = ROWS[i].nx * (ACC[b, 0] - ACC[a, 0]) + ROWS[i].ny * (ACC[b, 1] - ACC[a, 1])
+            if sustained(e, u, along, ROWS[i].k_n, EXPECTED[i], h):
                 bounce = 0.0
-        if u < -_FAST * pull * h or (e >= 1.0 and ROWS[i, GAP] > 0.0):
-            ROWS[i, TARGET] = bounce
-            ROWS[i, WAKE] = close
+        if u < -_FAST * pull * h or (e >= 1.0 and ROWS[i].gap > 0.0):
+            ROWS[i].target = bounce
+            ROWS[i].wake = close
         else:
-            ROWS[i, TARGET] = min(bounce, min(-u, close))
+            ROWS[i].target = min(bounce, min(-u, close))

@@ -15,8 +15,8 @@ import eeca_pymunk
 from eeca_pymunk.compiled.entries import ENTRIES, SOURCES, TABLES, is_array, table_fields
 from eeca_pymunk.compiled.kernels import Kernel, kernels
 from eeca_pymunk.compiled.tables import table_of
-from eeca_pymunk.impacts.layout import Scene
 from eeca_pymunk.jointed.layout import Joints
+from eeca_pymunk.model.scene import Scene
 
 PACKAGE = Path(eeca_pymunk.__file__).parent
 MODULES = [

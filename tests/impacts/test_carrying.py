@@ -6,7 +6,6 @@ import pymunk
 import pytest
 
 import eeca_pymunk as ep
-from eeca_pymunk.impacts.layout import SOLVED
 
 from .test_still import DT, UNITS, G
 
@@ -53,7 +52,7 @@ def test_a_plank_carries_a_disk_until_its_weight_tips_it(unit: float) -> None:
         energy = ep.measure(space).energy
         if disk.position.x > 1.001 * unit:
             break
-        alone += 1 if stepper._method.scene.COUNT[SOLVED] <= 1 else 0  # type: ignore[attr-defined]
+        alone += 1 if stepper._method.scene.COUNT.solved <= 1 else 0  # type: ignore[attr-defined]
         assert disk.position.x == pytest.approx(begun + SPEED * unit * k * DT, abs=1e-9 * unit)
         if disk.position.x < 0.999 * unit:
             now = (*board.position, board.angle, *pedestal.position)

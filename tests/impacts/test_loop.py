@@ -15,8 +15,6 @@ import eeca_pymunk as ep
 import scenes
 from comparisons.hard_cases import moving
 from eeca_pymunk.impacts.scene import EventLoop
-from eeca_pymunk.layout import IM, OWNER, SINCE
-from eeca_pymunk.pairs.layout import AT_X, AT_Y, MARGIN
 from eeca_pymunk.pairs.lists import centre
 from scenes.scene import add_disk, add_walls
 
@@ -297,8 +295,8 @@ def test_walls_that_turn_are_looked_for_where_they_are() -> None:
         assert isinstance(method, EventLoop)
         scene = method.scene
         for s in range(len(scene.LIST)):
-            if scene.BODY[scene.LINK[s, OWNER], IM] > 0.0:
+            if scene.BODY["inv_mass"][scene.LINK["owner"][s]] > 0.0:
                 continue
-            x, y = centre(scene.BODY, scene.SHAPE, scene.LINK, s, scene.BODY[scene.LINK[s, OWNER], SINCE])
-            away = math.hypot(x - scene.MARK[s, AT_X], y - scene.MARK[s, AT_Y])
-            assert away <= scene.MARK[s, MARGIN] * (1 + 1e-9)
+            x, y = centre(scene.BODY, scene.SHAPE, scene.LINK, s, scene.BODY["since"][scene.LINK["owner"][s]])
+            away = math.hypot(x - scene.MARK["x"][s], y - scene.MARK["y"][s])
+            assert away <= scene.MARK["margin"][s] * (1 + 1e-9)

@@ -9,7 +9,6 @@ import pytest
 
 import eeca_pymunk as ep
 from comparisons.piles import pile
-from eeca_pymunk.impacts.layout import SOLVED
 
 from .crowds import SHORT
 
@@ -209,5 +208,5 @@ def test_a_crowd_is_solved_a_few_times_a_step_however_often_it_is_hit() -> None:
     stepper, most = ep.EECA(space), 0
     for _ in range(30 if SHORT else 120):
         stepper.step(DT)
-        most = max(most, int(stepper._method.scene.COUNT[SOLVED]))  # type: ignore[attr-defined]
+        most = max(most, int(stepper._method.scene.COUNT.solved))  # type: ignore[attr-defined]
     assert most < 5 * len(space.bodies)

@@ -10,6 +10,7 @@ import pytest
 
 import eeca_pymunk as ep
 from eeca_pymunk.arrays import FloatArray
+from eeca_pymunk.compiled.records import Rows
 from eeca_pymunk.jointed.component import answer, ready
 from eeca_pymunk.jointed.fitting import bring_arms
 from eeca_pymunk.jointed.layout import ORDER, Joints
@@ -28,6 +29,7 @@ from eeca_pymunk.joints.scratch import (
     POSE,
 )
 from eeca_pymunk.joints.taut import taut
+from eeca_pymunk.model.contacts import Row
 from eeca_pymunk.rows.layout import ARM_NA, ARM_NB, ARM_TA, ARM_TB, NX, NY, ROW_COLUMNS
 
 from .measures import apart, energy
@@ -196,7 +198,7 @@ def test_arms_are_brought_to_one_point() -> None:
     ROWS, END = np.zeros((4, ROW_COLUMNS)), rng.normal(size=(5, 3))
     P, Q = np.arange(4), np.arange(1, 5)
     angle = rng.uniform(0.0, 6.0, 4)
-    ROWS[:, NX], ROWS[:, NY] = np.cos(angle), np.sin(angle)
+    ROWS["nx"], ROWS["ny"] = np.cos(angle), np.sin(angle)
     middle = rng.normal(size=(4, 2))
     for arm_n, arm_t, away in ((ARM_NA, ARM_TA, 0.1), (ARM_NB, ARM_TB, -0.1)):
         put_arms(ROWS, middle + away, arm_n, arm_t)
@@ -207,13 +209,13 @@ def test_arms_are_brought_to_one_point() -> None:
     assert np.abs(a + b - before).max() < 1e-14
 
 
-def put_arms(ROWS: FloatArray, r: FloatArray, arm_n: int, arm_t: int) -> None:
+def put_arms(ROWS: Rows[Row], r: FloatArray, arm_n: int, arm_t: int) -> None:
     """r x n and r x t of arms r (m, 2)."""
-    nx, ny = ROWS[:, NX], ROWS[:, NY]
+    nx, ny = ROWS["nx"], ROWS["ny"]
     ROWS[:, arm_n], ROWS[:, arm_t] = r[:, 0] * ny - r[:, 1] * nx, r[:, 0] * nx + r[:, 1] * ny
 
 
-def arms(ROWS: FloatArray, arm_n: int, arm_t: int) -> FloatArray:
+def arms(ROWS: Rows[Row], arm_n: int, arm_t: int) -> FloatArray:
     """The arms (m, 2) with these products."""
     n = ROWS[:, [NX, NY]]
     t = np.stack((-n[:, 1], n[:, 0]), axis=1)

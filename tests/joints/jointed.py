@@ -18,7 +18,7 @@ from eeca_pymunk.joints.layout import (
     SUPPORTS,
 )  # fmt: skip
 from eeca_pymunk.joints.world import Islands
-from eeca_pymunk.layout import ANGLE, AX, AY, BODY_COLUMNS, II, IM, SPIN, TWIST, VX, VY, X, Y
+from eeca_pymunk.layout import ANGLE, AX, AY, BODY_COLUMNS, SPIN, TWIST, VX, X
 from eeca_pymunk.space.joints import JointRows
 
 
@@ -65,7 +65,7 @@ class JointedSpace:
         self._centre = np.array([tuple(b.center_of_gravity) for b in self._items]).reshape(-1, 2)
         for i, body in enumerate(self._items):
             if body.body_type == pymunk.Body.DYNAMIC:
-                self.bodies[i, IM], self.bodies[i, II] = 1.0 / body.mass, 1.0 / body.moment
+                self.bodies["inv_mass"][i], self.bodies["inv_inertia"][i] = 1.0 / body.mass, 1.0 / body.moment
         self._dynamic = np.array([b.body_type == pymunk.Body.DYNAMIC for b in self._items])
         self._moving = np.array([b.body_type != pymunk.Body.STATIC and b in self._inside for b in self._items])
 
@@ -79,8 +79,8 @@ class JointedSpace:
             self.rows.touch(new)
             bodies[new, X : SPIN + 1] = state[new]
             c, s = np.cos(state[new, 2]), np.sin(state[new, 2])
-            bodies[new, X] += c * self._centre[new, 0] - s * self._centre[new, 1]
-            bodies[new, Y] += s * self._centre[new, 0] + c * self._centre[new, 1]
+            bodies["x"][new] += c * self._centre[new, 0] - s * self._centre[new, 1]
+            bodies["y"][new] += s * self._centre[new, 0] + c * self._centre[new, 1]
             bodies[~self._moving, VX : SPIN + 1] = 0.0
         bodies[self._dynamic, AX : AY + 1] = tuple(self.space.gravity)
 
@@ -109,25 +109,28 @@ class JointedSpace:
 
     def _scatter(self) -> None:
         bodies = self.bodies
-        c, s = np.cos(bodies[:, ANGLE]), np.sin(bodies[:, ANGLE])
-        x = bodies[:, X] - c * self._centre[:, 0] + s * self._centre[:, 1]
-        y = bodies[:, Y] - s * self._centre[:, 0] - c * self._centre[:, 1]
+        c, s = np.cos(bodies["angle"]), np.sin(bodies["angle"])
+        x = bodies["x"] - c * self._centre[:, 0] + s * self._centre[:, 1]
+        y = bodies["y"] - s * self._centre[:, 0] - c * self._centre[:, 1]
         for i in np.flatnonzero(self._moving):
             body = self._items[i]
             # pymunk places the centre of mass from the position by the angle it has at that moment.
-            body.angle = bodies[i, ANGLE]
+            body.angle = bodies["angle"][i]
             body.position = x[i], y[i]
-            body.velocity, body.angular_velocity = (bodies[i, VX], bodies[i, VY]), bodies[i, SPIN]
+            body.velocity, body.angular_velocity = (bodies["vx"][i], bodies["vy"][i]), bodies["spin"][i]
         self._written = np.array([(*b.position, b.angle, *b.velocity, b.angular_velocity) for b in self._items])
 
     def energy(self) -> float:
         """Kinetic energy, potential energy of gravity, and what linear springs hold."""
         bodies, total = self.bodies[self._dynamic], 0.0
         with np.errstate(divide="ignore"):
-            mass, moment = 1.0 / bodies[:, IM], np.where(bodies[:, II] > 0.0, 1.0 / bodies[:, II], 0.0)
-        total += float((0.5 * mass * (bodies[:, VX] ** 2 + bodies[:, VY] ** 2)).sum())
-        total += float((0.5 * moment * bodies[:, SPIN] ** 2).sum())
-        total -= float((mass * (bodies[:, AX] * bodies[:, X] + bodies[:, AY] * bodies[:, Y])).sum())
+            mass, moment = (
+                1.0 / bodies["inv_mass"],
+                np.where(bodies["inv_inertia"] > 0.0, 1.0 / bodies["inv_inertia"], 0.0),
+            )
+        total += float((0.5 * mass * (bodies["vx"] ** 2 + bodies["vy"] ** 2)).sum())
+        total += float((0.5 * moment * bodies["spin"] ** 2).sum())
+        total -= float((mass * (bodies["ax"] * bodies["x"] + bodies["ay"] * bodies["y"])).sum())
         for c in self._joints:
             if isinstance(c, pymunk.DampedSpring):
                 length = (c.b.local_to_world(c.anchor_b) - c.a.local_to_world(c.anchor_a)).length

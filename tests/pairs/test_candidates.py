@@ -10,7 +10,6 @@ import eeca_pymunk as ep
 import scenes
 from eeca_pymunk.closures.motion import Disks, Start
 from eeca_pymunk.closures.simultaneous import SimultaneousStep
-from eeca_pymunk.layout import IM
 from eeca_pymunk.pairs.layout import LEAVES
 from eeca_pymunk.space.world import World
 from scenes.scene import add_disk, add_walls
@@ -22,7 +21,7 @@ def start_of(disks: Disks) -> Start:
     """The start of a step of length DT without forces."""
     BODY = disks.world.BODY
     still = np.zeros((len(BODY), 2))
-    return Start(DT, BODY[:, :2].copy(), BODY[:, 3:5].copy(), still, BODY[:, IM].copy())
+    return Start(DT, BODY[:, :2].copy(), BODY[:, 3:5].copy(), still, BODY["inv_mass"].copy())
 
 
 @pytest.mark.parametrize("count", [10, 30, 400])  # all in all lists, then with margins

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from eeca_pymunk.layout import ELASTICITY, FRICTION, SHAPE_COLUMNS, SURFACE_X, SURFACE_Y
+from eeca_pymunk.layout import SHAPE_COLUMNS, SURFACE_X, SURFACE_Y
 from eeca_pymunk.pairs.rules import barred, law
 from eeca_pymunk.space.shapes import Rules
 
@@ -26,7 +26,10 @@ def test_rules_are_found_as_in_a_dictionary(count: int) -> None:
         e, mu, sx, sy = law(SHAPE, RULE, a, b)
         assert law(SHAPE, RULE, b, a) == (e, mu, -sx, -sy)
         if (a, b) not in told:
-            assert (e, mu) == (SHAPE[a, ELASTICITY] * SHAPE[b, ELASTICITY], SHAPE[a, FRICTION] * SHAPE[b, FRICTION])
+            assert (e, mu) == (
+                SHAPE["elasticity"][a] * SHAPE["elasticity"][b],
+                SHAPE["friction"][a] * SHAPE["friction"][b],
+            )
             assert (sx, sy) == tuple(SHAPE[b, SURFACE_X : SURFACE_Y + 1] - SHAPE[a, SURFACE_X : SURFACE_Y + 1])
         elif (a, b) not in parted.union(ignored):
             assert (e, mu, sx, sy) == rules.changed[a, b]

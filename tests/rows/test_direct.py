@@ -8,7 +8,7 @@ import pytest
 from eeca_pymunk.rows.build import normal_rate, rates, tangent_rate
 from eeca_pymunk.rows.cholesky import assemble, factorise, substitute
 from eeca_pymunk.rows.dense import newton
-from eeca_pymunk.rows.layout import K_N, TARGET
+from eeca_pymunk.rows.layout import K_N
 from eeca_pymunk.rows.ordering import dissect, neighbours, pattern
 from eeca_pymunk.rows.polish import polish, share
 from eeca_pymunk.rows.sweeps import coulomb, sweep, velocities
@@ -109,7 +109,7 @@ def test_direct_solution_needs_no_sweeps(dense: bool, sliding: bool) -> None:
     block = Block(np.zeros((2, 3)), np.zeros((2, 3)), np.array([1.0, 0]), np.array([6.0, 0]))
     block.contacts = [(0, 1, *(turn @ [0.0, -1.0]), *(turn @ [x, -0.5])) for x in (-0.5, 0.5)]
     block.solve(0.0, mu)
-    block.rows[:, TARGET] = 0.0
+    block.rows["target"] = 0.0
     rates(block.A, block.B, block.rows, block.velocity, 2)
     free = np.zeros((2, 3))
     free[0, :2] = turn @ [g * h * pull, -g * h]
@@ -139,7 +139,7 @@ def test_points_of_a_face_share_their_friction_as_their_loads() -> None:
     block = Block(np.zeros((2, 3)), np.zeros((2, 3)), np.array([1.0, 0]), np.array([6.0, 0]))
     block.contacts = [(0, 1, 0.0, -1.0, x, -0.5) for x in (-0.5, 0.5)]
     block.solve(0.0, mu)
-    block.rows[:, TARGET] = 0.0
+    block.rows["target"] = 0.0
     free = np.array([[0.0, -g_h, 0.0], [0.0, 0.0, 0.0]])
     L = np.array([[0.04, -mu * 0.04], [0.03, 0.6 * mu * 0.03]])
     V = free.copy()

@@ -11,7 +11,7 @@ from scipy.optimize import linprog
 
 from eeca_pymunk.rows.build import place_row
 from eeca_pymunk.rows.equilibrium import equilibrium
-from eeca_pymunk.rows.layout import FRICTION, ROW_COLUMNS, TARGET
+from eeca_pymunk.rows.layout import ROW_COLUMNS
 from eeca_pymunk.rows.sweeps import velocities
 
 Floats = npt.NDArray[np.float64]
@@ -51,7 +51,7 @@ class Pile:
         """(3 n, 2 m) velocities from impulses 1 along each edge of each cone."""
         columns = []
         for i in range(self.m):
-            for slope in (self.rows[i, FRICTION], -self.rows[i, FRICTION]):
+            for slope in (self.rows["friction"][i], -self.rows["friction"][i]):
                 L = np.zeros((self.m, 2))
                 L[i] = 1.0, slope
                 columns.append(self.left(L, np.zeros_like(self.start))[:-1].ravel())
@@ -62,7 +62,7 @@ class Pile:
         speed = np.abs(self.start).max()
         assert np.abs(self.left(self.L)).max() <= 1e-9 * speed
         assert (self.L[:, 0] >= 0).all()
-        assert (np.abs(self.L[:, 1]) <= self.rows[:, FRICTION] * self.L[:, 0] * (1 + 1e-12)).all()
+        assert (np.abs(self.L[:, 1]) <= self.rows["friction"] * self.L[:, 0] * (1 + 1e-12)).all()
 
 
 def random_pile(seed: int, friction: float) -> Pile:
@@ -178,9 +178,9 @@ def test_loads_that_many_can_bear_stay_next_to_the_guess(unit: float) -> None:
 
 def test_what_nothing_holds_or_is_left_out_has_none() -> None:
     pile = on_slope(0.1, 0.5, 1.0)
-    pile.rows[1, TARGET] = -1.0
+    pile.rows["target"][1] = -1.0
     assert not pile.solve()
-    pile.rows[0, TARGET] = -1.0
+    pile.rows["target"][0] = -1.0
     assert not pile.solve()
     pile.start[:] = 0.0
     assert pile.solve()

@@ -20,6 +20,7 @@ from .calls import Call
 from .types import declared_type
 
 _INT, _FLOAT = ir.IntType(64), ir.DoubleType()
+_POINTED = types.Array, types.Record
 _NAMES = """
     acos asin atan atan2 calloc ceil copysign cos cosh exp floor fmod free frexp hypot ldexp log log10 log2 malloc
     memcpy memmove memset pow rint round sin sincos sinh sqrt tan tanh trunc
@@ -45,7 +46,7 @@ def _entry(module: ir.Module, name: str, call: Call, returned: Any) -> None:
     context = cpu_target.target_context
     args = call[1]
     kinds = ENTRIES[name].split() if name in ENTRIES else [""] * len(args)
-    numbers = [_FLOAT if a == types.float64 else _INT for a in args if not isinstance(a, types.Array)]
+    numbers = [_FLOAT if a == types.float64 else _INT for a in args if not isinstance(a, _POINTED)]
     function = ir.Function(module, ir.FunctionType(_INT, [_INT.as_pointer(), *numbers]), symbol(name))
     builder = ir.IRBuilder(function.append_basic_block())
     words, *given = function.args
@@ -58,11 +59,14 @@ def _entry(module: ir.Module, name: str, call: Call, returned: Any) -> None:
 
     values = []
     for kind, declared in zip(args, kinds, strict=True):
-        if not isinstance(kind, types.Array):
+        if not isinstance(kind, _POINTED):
             value = given.pop(0)
             values.append(builder.icmp_signed("!=", value, ir.Constant(_INT, 0)) if kind == types.boolean else value)
             continue
         data = word()
+        if isinstance(kind, types.Record):
+            values.append(builder.inttoptr(data, context.get_value_type(kind)))
+            continue
         lengths = [ir.Constant(_INT, 0)] if declared.endswith("}") else [word() for _ in range(kind.ndim)]
         size = ir.Constant(_INT, context.get_abi_sizeof(context.get_data_type(kind.dtype)))
         strides, items = [size], lengths[-1]

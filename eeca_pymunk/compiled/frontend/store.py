@@ -83,6 +83,8 @@ def _said(value: Any, where: str) -> object:
     if isinstance(value, Opener):
         name = value.kind.__name__
         return name, table_fields(name) if name in TABLES else ()
+    if isinstance(value, np.dtype):
+        return repr(value)
     if isinstance(value, np.ndarray):
         return value.dtype.str, value.shape, value.tobytes()
     if isinstance(value, (int, float, str, tuple, type(None))):

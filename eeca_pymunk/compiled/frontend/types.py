@@ -9,7 +9,6 @@ from __future__ import annotations
 import functools
 from typing import Any
 
-import numpy as np
 from llvmlite import ir
 from numba.core import cgutils, types
 from numba.core.imputils import lower_getattr_generic
@@ -27,15 +26,16 @@ from ..tables import WORDS, Opener
 class TableType(types.Type):
     """The type of an opened table: a pointer; `arrays` are the (name, dtype, dimensions) of its arrays."""
 
-    def __init__(self, kind: str, arrays: tuple[tuple[str, str, int], ...]) -> None:
+    def __init__(self, kind: str, arrays: tuple[tuple[str, Any, int], ...]) -> None:
         self.arrays = arrays
         super().__init__(f"{kind}{arrays}")
 
     def array(self, name: str) -> tuple[int, Any]:
-        """Place and type of an array; (-1, None) if there is none of that name."""
+        """Place and type of an array or a record; (-1, None) if there is none of that name."""
         for place, (field, dtype, dimensions) in enumerate(self.arrays):
             if field == name:
-                return place, types.Array(from_dtype(np.dtype(dtype)), dimensions, "C")
+                kind = from_dtype(dtype)
+                return place, types.Array(kind, dimensions, "C") if dimensions else kind
         return -1, None
 
 
@@ -64,6 +64,8 @@ def _attribute(context: Any, builder: Any, table: TableType, value: Any, name: s
         found.set_metadata("invariant.load", unchanging)
         return found
 
+    if isinstance(kind, types.Record):
+        return builder.inttoptr(read(0), context.get_value_type(kind))
     one = context.make_array(kind)(context, builder)
     size = context.get_abi_sizeof(context.get_data_type(kind.dtype))
     lengths = [read(2), read(3)][-min(kind.ndim, 2) :]
@@ -86,7 +88,7 @@ def declared_type(kind: str) -> Any:
         return types.Array(types.int64, 1, "C")
     if is_array(kind):
         dtype, ndim = split(kind)
-        return types.Array(from_dtype(np.dtype(dtype)), ndim, "C")
+        return types.Array(from_dtype(dtype), ndim, "C") if ndim else from_dtype(dtype)
     return {"f8": types.float64, "i8": types.int64, "bool": types.boolean}[kind]
 
 
@@ -138,6 +140,8 @@ def _fetch(typing: Any, table: Any, row: Any, column: Any) -> Any:
             width = builder.extract_value(array.shape, 1)
             place = builder.add(builder.mul(place, width), column)
         line = builder.bitcast(builder.gep(array.data, [place]), ir.IntType(8).as_pointer())
+        if isinstance(signature.args[0].dtype, types.Record):
+            line = builder.gep(line, [builder.mul(column, ir.Constant(column.type, 8))])
         kind = ir.FunctionType(ir.VoidType(), [line.type, number, number, number])
         ask = builder.module.declare_intrinsic("llvm.prefetch", [line.type], kind)
         # To read, to be kept in all caches, data.
