@@ -21,10 +21,10 @@ from tqdm import tqdm
 import eeca_pymunk as ep
 import scenes
 from comparisons.output import Output, Row
-from eeca_pymunk import layout as la
 from eeca_pymunk.arrays import FloatArray, IntArray
+from eeca_pymunk.compiled.records import columns
+from eeca_pymunk.model.bodies import POSE
 from eeca_pymunk.pairs import grid, setup
-from eeca_pymunk.pairs import layout as at
 from eeca_pymunk.space.world import World
 from scenes.scene import add_disk, add_walls
 
@@ -47,9 +47,9 @@ class Twin:
         margin = np.r_[margin, np.zeros(len(world.SHAPE) - moving)]
         for s, shape in enumerate(world.shapes):
             body = pymunk.Body(1.0, 1.0) if s < moving else pymunk.Body(body_type=pymunk.Body.STATIC)
-            first, count = world.LINK[s, [la.FIRST, la.COUNT]]
+            first, count = world.LINK[s].first, world.LINK[s].vertices
             points = [(float(x), float(y)) for x, y in world.VERTEX[first : first + count, :2]]
-            radius = float(world.SHAPE[s, la.ROUNDING] + margin[s])
+            radius = float(world.SHAPE["rounding"][s] + margin[s])
             copy: pymunk.Shape
             if count == 1:
                 copy = pymunk.Circle(body, radius, points[0])
@@ -61,7 +61,7 @@ class Twin:
             space.add(body, copy)
             shape_of[body.id] = s
         if moving >= _HASH_FROM:
-            size = world.SHAPE[:moving, la.BOUND] + margin[:moving]
+            size = world.SHAPE["bound"][:moving] + margin[:moving]
             space.use_spatial_hash(2.5 * float(np.median(size)), 4 * moving)
         self._fields = batch.BodyFields.POSITION | batch.BodyFields.ANGLE
         self._in, self._out = batch.Buffer(), batch.Buffer()
@@ -92,14 +92,14 @@ class Lists:
     def __init__(self, world: World, moving: int) -> None:
         self.world, self.moving = world, moving
         self.near = setup.near_lists(world.BODY, world.SHAPE, world.LINK, world.VERTEX, moving)
-        if np.isinf(self.near.MARK[:, at.MARGIN]).any():
+        if np.isinf(self.near.MARK["margin"]).any():
             raise ValueError(f"{moving} shapes stand in all lists: there is nothing to detect")
         self._lists = (world.BODY, world.SHAPE, world.LINK, *self.near)
 
     @property
     def margin(self) -> FloatArray:
         """(moving,) margins, length."""
-        column: FloatArray = self.near.MARK[:, at.MARGIN]
+        column: FloatArray = self.near.MARK["margin"]
         return column
 
     def gone(self) -> FloatArray:
@@ -107,9 +107,9 @@ class Lists:
         world, n = self.world, self.moving
         pose = poses(world, n)
         c, d = np.cos(pose[:, 2]), np.sin(pose[:, 2])
-        x, y = world.SHAPE[:n, la.CENTRE_X], world.SHAPE[:n, la.CENTRE_Y]
+        x, y = world.SHAPE["centre_x"][:n], world.SHAPE["centre_y"][:n]
         place = pose[:, :2] + np.stack((c * x - d * y, d * x + c * y), axis=1)
-        used: FloatArray = np.hypot(*(place - self.near.MARK[:, :2]).T) / self.margin
+        used: FloatArray = np.hypot(*(place - columns(self.near.MARK, "x", "y")).T) / self.margin
         return used
 
     def renew(self, which: IntArray) -> None:
@@ -126,14 +126,14 @@ class Lists:
         """All pairs of the lists."""
         near = self.near
         found: Pairs = set()
-        for s, (start, count) in enumerate(near.LIST[:, [at.START, at.NUMBER]].tolist()):
+        for s, (start, count) in enumerate(columns(near.LIST, "start", "number").tolist()):
             found |= {(min(s, o), max(s, o)) for o in near.POOL[start : start + count].tolist()}
         return found
 
 
 def poses(world: World, moving: int) -> FloatArray:
     """(moving, 3) of the bodies of the shapes that move."""
-    found: FloatArray = world.BODY[world.LINK[:moving, la.OWNER], la.X : la.ANGLE + 1]
+    found: FloatArray = columns(world.BODY, *POSE)[world.LINK["owner"][:moving]]
     return found
 
 
@@ -149,7 +149,7 @@ def check(world: World, lists: Lists, twin: Twin, slack: Twin) -> None:
     pose = poses(world, moving)
     ours = lists.pairs()
     anew = Lists(world, moving)
-    anew.near.MARK[:, at.MARGIN] = lists.margin
+    anew.near.MARK["margin"] = lists.margin
     anew.near = setup.rebuilt(anew.near, world.BODY, world.SHAPE, world.LINK, 0.0)
     for found, held, what in ((slack.find(pose), ours, "kept"), (twin.find(pose), anew.pairs(), "new")):
         if missing := {p for p in as_set(found, moving) if _meet(world, *p)} - held:
@@ -157,8 +157,8 @@ def check(world: World, lists: Lists, twin: Twin, slack: Twin) -> None:
 
 
 def _meet(world: World, a: int, b: int) -> bool:
-    i, j = world.LINK[a, la.OWNER], world.LINK[b, la.OWNER]
-    return bool(i != j and (world.BODY[i, la.IM] > 0.0 or world.BODY[j, la.IM] > 0.0))
+    i, j = world.LINK["owner"][a], world.LINK["owner"][b]
+    return bool(i != j and (world.BODY["inv_mass"][i] > 0.0 or world.BODY["inv_mass"][j] > 0.0))
 
 
 def case(name: str, build: Build, steps: int = STEPS, dt: float = DT, looks: int = 5) -> Row:
@@ -166,7 +166,7 @@ def case(name: str, build: Build, steps: int = STEPS, dt: float = DT, looks: int
     space = build()
     stepper, world = ep.EECA(space, sync=False), World(space)
     world.load()
-    moving = int(np.count_nonzero(world.LINK[:, la.OWNER] < len(world.BODY) - 1))
+    moving = int(np.count_nonzero(world.LINK["owner"] < len(world.BODY) - 1))
     lists = Lists(world, moving)
     twin, slack = Twin(world, moving, lists.margin), Twin(world, moving, (1.0 - _SURE) * lists.margin)
     lists.renew(np.arange(min(moving, 20)))  # so that nothing is compiled below
@@ -182,7 +182,7 @@ def case(name: str, build: Build, steps: int = STEPS, dt: float = DT, looks: int
         spent += time.process_time() - begin
         made += len(left)
         pose = poses(world, moving)
-        turned = np.abs(pose[:, 2] - twin_at[:, 2]) * world.SHAPE[:moving, la.SIZE]
+        turned = np.abs(pose[:, 2] - twin_at[:, 2]) * world.SHAPE["extent"][:moving]
         if (np.hypot(*(pose[:, :2] - twin_at[:, :2]).T) + turned > lists.margin).any():
             found_anew, twin_at = found_anew + 1, pose.copy()
         if k % max(1, steps // looks) == 0:
@@ -198,7 +198,7 @@ def case(name: str, build: Build, steps: int = STEPS, dt: float = DT, looks: int
     find, build_all = statistics.median(finds), statistics.median(builds)
     return {
         "scene": name, "shapes": moving,
-        "margin/radius": float(np.median(lists.margin / world.SHAPE[:moving, la.BOUND])),
+        "margin/radius": float(np.median(lists.margin / world.SHAPE["bound"][:moving])),
         "lists: pairs": len(listed), "twin: pairs": len(pairs), "lists, all at once (us)": 1e6 * build_all,
         "twin, all at once (us)": 1e6 * find, "lists made/step": made / steps, "twin found/step": found_anew / steps,
         "lists (us/step)": 1e6 * spent / steps, "twin (us/step)": 1e6 * find * found_anew / steps,

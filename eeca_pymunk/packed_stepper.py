@@ -6,9 +6,7 @@ from abc import abstractmethod
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from math import isfinite
-from typing import TypeVar
-
-import pymunk
+from typing import TYPE_CHECKING, TypeVar
 
 from .arrays import FloatArray
 from .energy.ledger import AFTER, DAMPED
@@ -21,6 +19,9 @@ from .space.sleeping import Sleep
 from .space.world import World
 from .stepper import check_dt
 from .transfer import EVENTS, FORCES, MOVED_STATIC, OTHER_BODIES, fly
+
+if TYPE_CHECKING:
+    import pymunk
 
 Own = TypeVar("Own", bound="PackedStepper")
 _busy: set[pymunk.Space] = set()  # spaces whose own functions are being called: they cannot be stepped

@@ -1,4 +1,4 @@
-"""Transfer: from the states that pymunk holds to the rows of BODY and back (columns: `layout.py`).
+"""Transfer: from the states that pymunk holds to the rows of BODY and back (`layout.py`, `model.bodies`).
 
 A step takes the state, moves the rows of BODY, and gives the state at its end. Damping d acts as a factor d^(dt/2) on
 velocities before and after the motion, which is second order. Centre of mass c and position x of a body at angle phi:
@@ -64,7 +64,7 @@ def take(
     if it was put elsewhere.
 
     Args:
-        STATES (2, N, 9), WALK (4, N), EXTRA (N, 5), BODY (n, 16): see `layout.py`.
+        STATES (2, N, 9), WALK (4, N), EXTRA (N, 5), BODY (n,): see `layout.py`.
         gx, gy: gravity, length/time².  left: d^(dt/2), what half a step's damping leaves of velocities.
 
     Returns:

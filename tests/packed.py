@@ -1,4 +1,4 @@
-"""Small worlds as the packed arrays of `eeca_pymunk.layout`, for tests of kernels."""
+"""Small worlds as the packed arrays of `eeca_pymunk.model`, for tests of kernels."""
 
 from __future__ import annotations
 
@@ -8,7 +8,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from eeca_pymunk import layout as la
+from eeca_pymunk.compiled.records import rows
+from eeca_pymunk.model.bodies import Body
+from eeca_pymunk.model.shapes import Link, Shape
 
 
 @dataclass
@@ -40,15 +42,16 @@ class World:
         self.disks = sum(thing.lone for thing in self.things)
         everything = [*self.things, Thing(self.ground, moves=False)]
         shapes = [(i, v, r) for i, thing in enumerate(everything) for v, r in thing.shapes]
-        self.body = np.zeros((len(everything), la.BODY_COLUMNS))
-        self.shape = np.zeros((len(shapes), la.SHAPE_COLUMNS))
-        self.link = np.zeros((len(shapes), la.LINK_COLUMNS), np.int64)
+        self.body = rows(Body, len(everything))
+        self.shape = rows(Shape, len(shapes))
+        self.link = rows(Link, len(shapes))
         self.vertex = np.zeros((sum(len(v) for _, v, _ in shapes), 4))
-        for row, thing in zip(self.body, everything, strict=True):
-            row[la.X : la.ANGLE + 1], row[la.VX : la.SPIN + 1], row[la.AX : la.TWIST + 1] = (
-                thing.pose, thing.rate, thing.pull,
-            )  # fmt: skip
-            row[la.SINCE], row[la.IM], row[la.II] = thing.since, float(thing.moves), float(thing.moves)
+        for i, thing in enumerate(everything):
+            row = self.body[i]
+            row.x, row.y, row.angle = thing.pose
+            row.vx, row.vy, row.spin = thing.rate
+            row.ax, row.ay, row.angular = thing.pull
+            row.since, row.inv_mass, row.inv_inertia = thing.since, float(thing.moves), float(thing.moves)
         first = 0
         for s, (i, vertices, rounding) in enumerate(shapes):
             v, count = np.array(vertices, float), len(vertices)
@@ -57,12 +60,13 @@ class World:
                 edge = np.roll(v, -1, axis=0) - v
                 length = np.hypot(edge[:, 0], edge[:, 1])[:, None]
                 self.vertex[first : first + count, 2:] = np.stack((edge[:, 1], -edge[:, 0]), axis=1) / length
-            self.link[s, [la.OWNER, la.FIRST, la.COUNT]] = i, first, count
+            self.link[s].owner, self.link[s].first, self.link[s].vertices = i, first, count
             size = rounding + np.hypot(v[:, 0], v[:, 1]).max()
             middle = 0.5 * (v.min(axis=0) + v.max(axis=0))
-            self.shape[s, [la.ROUNDING, la.SIZE, la.CENTRE_X, la.CENTRE_Y]] = rounding, size, *middle
-            self.shape[s, la.BOUND] = rounding + np.hypot(*(v - middle).T).max()
-            self.body[i, la.EXTENT] = max(self.body[i, la.EXTENT], size)
+            shape = self.shape[s]
+            shape.rounding, shape.extent, shape.centre_x, shape.centre_y = rounding, size, *middle
+            shape.bound = rounding + np.hypot(*(v - middle).T).max()
+            self.body["extent"][i] = max(self.body["extent"][i], size)
             first += count
         self.work = np.zeros((2, max((len(v) for _, v, _ in shapes), default=1), 4))
 

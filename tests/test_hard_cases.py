@@ -54,7 +54,7 @@ BROKEN = {
     ),
     "impulses at the centres of mass": (
         "build.place_row",
-        "lambda of: lambda A, B, R, i, *a: (of(A, B, R, i, *a), R[i].__setitem__(ARMS, 0.0))[0]",
+        "lambda of: lambda A, B, R, i, *a: (of(A, B, R, i, *a), [R[i].__setitem__(arm, 0.0) for arm in ARMS])[0]",
         "rod onto its corner",
     ),
     "nothing touches": (
@@ -81,8 +81,7 @@ from eeca_pymunk import compiled
 from eeca_pymunk.impacts import strike, times
 from eeca_pymunk.joints import bounds, motion
 from eeca_pymunk.rows import build
-from eeca_pymunk.rows.layout import ARM_NA, ARM_NB, ARM_TA, ARM_TB
-ARMS = [ARM_NA, ARM_NB, ARM_TA, ARM_TB]
+ARMS = ["arm_na", "arm_nb", "arm_ta", "arm_tb"]
 compiled.prepare()
 where, how, name = sys.argv[1:]
 room, kernel = where.split(".")

@@ -13,10 +13,10 @@ import pymunk
 import pytest
 
 import eeca_pymunk as ep
-from eeca_pymunk import layout as at
 from eeca_pymunk import transfer
-from eeca_pymunk.arrays import FloatArray
+from eeca_pymunk.compiled.records import Rows
 from eeca_pymunk.errors import NotFiniteError
+from eeca_pymunk.model.contacts import Impulse
 from eeca_pymunk.packed_stepper import PackedStepper
 from eeca_pymunk.report import Details, of_events
 from eeca_pymunk.space import private
@@ -30,9 +30,9 @@ DT = 0.0625
 
 
 class FreeFlight(PackedStepper):
-    """Bodies that meet nothing; `told` are the EVENT rows it reports."""
+    """Bodies that meet nothing; `told` are the impulses it reports."""
 
-    told: FloatArray | None = None
+    told: Rows[Impulse] | None = None
 
     def advance(self, world: World, dt: float, left: float) -> int:
         status = self._fly(world, dt, left)
@@ -373,8 +373,7 @@ def test_the_report_of_events_is_made_when_asked() -> None:
     first, second = 0, len(world.shapes) - 1
     late = [first, second, 0.75 * DT, 2.0, 0.0, 1.0, 5.0, 6.0, 0.5, 3.0, 0.0]
     soon = [second - 1, second, 0.25 * DT, 1.0, 1.0, 0.0, 7.0, 8.0, -0.5, 4.0, 0.0]
-    stepper.told = np.array([late, soon])
-    assert stepper.told.shape[1] == at.EVENT_COLUMNS
+    stepper.told = np.array([tuple(late), tuple(soon)], Impulse.TYPE)
     report = stepper.step(DT)
     contacts = report.contacts
     assert contacts.time.tolist() == [0.25 * DT, 0.75 * DT]

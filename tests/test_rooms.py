@@ -18,6 +18,7 @@ FILES = sorted(PACKAGE.rglob("*.py"))
 FLOORS = (
     "arrays layout errors files",
     "compiled",
+    "model",
     "energy",
     "transfer report",
     "geometry",
@@ -28,6 +29,7 @@ FLOORS = (
     "jointed",
     "closures",
     "space",
+    "saved",
     "stepper",
     "packed_space",
     "packed_stepper",

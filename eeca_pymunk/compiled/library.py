@@ -104,7 +104,7 @@ class Entry:
         dtype, ndim = split(kind)
         if array.dtype != dtype or array.ndim != ndim or not array.flags.c_contiguous:
             raise TypeError(
-                f"{self.name} takes a C-contiguous {kind}, not {array.dtype} of shape {array.shape} "
+                f"{self.name} takes a C-contiguous {kind}, not {array.dtype.type.__name__} of shape {array.shape} "
                 f"with strides {array.strides}"
             )
         return [array.__array_interface__["data"][0], *array.shape]

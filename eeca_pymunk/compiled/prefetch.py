@@ -12,7 +12,7 @@ from .kernels import Compilable
 
 class Fetch(Compilable):
     """`fetch(TABLE, row, column)`: load the cache line that holds this element of a (rows, columns) or (rows,) array;
-    of records, the number of 64 bits at that place of the row. Nothing happens where there is none, or where kernels run as plain Python."""
+    of records, the field at that place of the row. Nothing happens where there is none, or in plain Python."""
 
     def __call__(self, table: AnyArray, row: int, column: int) -> None:
         """Plain Python loads nothing ahead."""

@@ -29,6 +29,10 @@ class Pointers:
         self.arrays, self.words, self.address = arrays, words, words.ctypes.data
 
 
+def _said(dtype: np.dtype[Any], dimensions: int) -> str:
+    return f"{dtype.type.__name__}[{dimensions}]"
+
+
 def table_of(arrays: Any) -> Table:
     """What kernels take for a named tuple of arrays. To be made anew when one of them is replaced by another; the
     arrays have to be kept as long as the table is used.
@@ -44,7 +48,10 @@ def table_of(arrays: Any) -> Table:
     for place, (row, field, a) in enumerate(zip(numbers, arrays._fields, arrays, strict=True)):
         found = field, a.dtype, a.ndim
         if declared is not None and found != declared[place]:
-            raise TypeError(f"{name}.{field} is {found}; entries.TABLES declares {declared[place]}")
+            _, dtype, dimensions = declared[place]
+            raise TypeError(
+                f"{name}.{field} is {_said(a.dtype, a.ndim)}; entries.TABLES declares {_said(dtype, dimensions)}"
+            )
         if not a.flags.c_contiguous:
             raise TypeError(f"{name}.{field} of shape {a.shape} has strides {a.strides}: it must be C-contiguous")
         row[0], row[1] = a.__array_interface__["data"][0], a.size

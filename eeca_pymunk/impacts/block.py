@@ -143,7 +143,7 @@ def owing(A: Scene, n: int) -> tuple[float, bool]:
 
 
 class Block(NamedTuple):
-    """What a block is made of: POSE, V (k, 3), IM, II (k,), rows of contacts (`..rows.layout`) between A and B, POINTS
+    """What a block is made of: POSE, V (k, 3), IM, II (k,), rows of contacts (`Row`) between A and B, POINTS
     (m, 2) where they are, and OF (m,) the pairs that they are of, as numbers a k + b."""
 
     POSE: FloatArray

@@ -48,7 +48,7 @@ class EventLoop:
     """Steps the packed bodies and shapes of a world from impact to impact.
 
     Args:
-        BODY, SHAPE, LINK, VERTEX: see `..layout`; BODY has the poses of now.
+        BODY, SHAPE, LINK, VERTEX: see `..model`; BODY has the poses of now.
         disks: the first so many rows of BODY are lone disks.
         limit: impacts that a body may have in a step.
     """

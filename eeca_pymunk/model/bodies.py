@@ -33,6 +33,9 @@ class Body(Record):
     due: float  # time after the start of the step of the body's next event
 
 
+POSE, VELOCITY, ACCELERATION = ("x", "y", "angle"), ("vx", "vy", "spin"), ("ax", "ay", "angular")
+
+
 class Next(Record):
     """A body's next event, and where its shapes are."""
 

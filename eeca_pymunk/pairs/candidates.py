@@ -49,13 +49,13 @@ def cover(
 @uncounted
 def candidates(
     BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, WORK: FloatArray, MARK: Rows[Mark],
-    CELL: Rows[Cell], LIST: Rows[List], POOL: PoolArray, FLAG: FlagArray, HEAD: IntArray, GRID: FloatArray, INFO: IntArray,
-    BOX: FloatArray, CSR: IntArray, USUAL: FloatArray, disks: int, REACH: FloatArray, PAIRS: IntArray, OUT: FloatArray,
+    CELL: Rows[Cell], LIST: Rows[List], POOL: PoolArray, FLAG: FlagArray, HEAD: IntArray, GRID: FloatArray,
+    INFO: IntArray, BOX: FloatArray, CSR: IntArray, USUAL: FloatArray, disks: int, REACH: FloatArray, PAIRS: IntArray, OUT: FloatArray,
 ) -> int:  # fmt: skip
     """The pairs of shapes whose gap at the start of the step is at most the sum of their bodies' reaches.
 
     Args:
-        disks: see `..layout`.  REACH: (n,) length by body.
+        disks: see `..model`.  REACH: (n,) length by body.
         PAIRS: (p, 2) shapes a < b, out.  OUT: (p, 6) gap, normal (2) and point (2), and the length up to which the gap
             is round-off.
 

@@ -1,26 +1,7 @@
-"""The arrays of the near lists: what their columns mean.
+"""The counters and lengths of the near lists and their grids: what their places mean.
 
-MARK (k, 8) float: the margin circle of each shape, drawn about where its list was made or ahead of that, and its
-neighbours in the grid. CELL (k, 2) int: its place there. LIST (k, 4) int: where in POOL its neighbours stand. POOL
-int32: numbers of shapes, all lists one after the other; FLAG, of the same length, 1 where an island's solve has taken
-the pair over, so that it makes no events. INFO int: counters of the lists.
+INFO int: counters of the lists. GRID float: lengths of the two grids.
 """
-
-# MARK
-AT_X, AT_Y = 0, 1  # centre of the margin circle, length: where that of the bounding circle was, or a way before it
-MARGIN = 2  # how far it may go from there: length; infinite where every shape is in every list
-REACH = 3  # of the bounding circle and the margin from the centre, as the grid has it
-NEXT, PREVIOUS = 4, 5  # shapes in the same place of the grid, -1 for none: beside what a search compares, in one line
-MARK_COLUMNS = 8
-
-# CELL
-LEVEL, BUCKET = 0, 1
-CELL_COLUMNS = 2
-
-# LIST
-START, CAPACITY, NUMBER = 0, 1, 2
-LATER = 3  # whom a lone disk meets if it goes straight on when it leaves its circle (`..impacts.forecast`)
-LIST_COLUMNS = 4
 
 # INFO
 POOL_END = 0  # first free place of POOL

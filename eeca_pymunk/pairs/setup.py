@@ -34,7 +34,7 @@ _FEW_WALLS = 16  # static shapes up to which all are looked at
 
 
 class Near(NamedTuple):
-    """The arrays of the near lists, see `layout.py`; BOX (W, 4) and CSR are those of the static shapes."""
+    """The arrays of the near lists, see `..model.shapes`; BOX (W, 4) and CSR are those of the static shapes."""
 
     MARK: Rows[Mark]
     CELL: Rows[Cell]

@@ -1,4 +1,4 @@
-"""Packing: bodies and shapes of pymunk as the rows of BODY, SHAPE, LINK and VERTEX (`layout.py`)."""
+"""Packing: bodies and shapes of pymunk as the rows of BODY, SHAPE, LINK and VERTEX (`..model`)."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class Packed:
     Attributes:
         shapes: the pymunk shapes, by row of SHAPE.  owner: (k,) places of their bodies in pymunk's order.
         row: (N,) row of BODY of each body in pymunk's order, -1 for static ones.
-        BODY, SHAPE, LINK, VERTEX: see `layout.py`; poses and velocities are still 0.
+        BODY, SHAPE, LINK, VERTEX: see `..model`; poses and velocities are still 0.
         disks, dynamic: rows of BODY below which there are lone disks, and dynamic bodies.
     """
 

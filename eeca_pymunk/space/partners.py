@@ -17,9 +17,9 @@ import pymunk
 from ..arrays import IntArray
 from ..compiled.records import put, rows
 from ..errors import NotFiniteError
-from ..model.bodies import Body
+from ..model.bodies import POSE, VELOCITY, Body
 
-_MOTION = "x", "y", "angle", "vx", "vy", "spin"
+_MOTION = *POSE, *VELOCITY
 
 
 class Partners:

@@ -45,7 +45,7 @@ class World(Crossing):
         records: what the shapes of the space say of themselves, None for sensors.
         bodies: in pymunk's order, N with the static ones.  shapes: by row of SHAPE.
         owner: (k,) place in `bodies.items` of the body of every shape.
-        BODY, SHAPE, LINK, VERTEX: see `layout.py`.  disks, dynamic: rows of BODY below which there are lone disks, and
+        BODY, SHAPE, LINK, VERTEX: see `..model`.  disks, dynamic: rows of BODY below which there are lone disks, and
             dynamic bodies; the rows from there to the last one, the ground, are kinematic.
         STATES, WALK, EXTRA, ENDS: what crosses the edge, see `layout.py`.
         gravity: length/time².  damping: pymunk's, 1 is none.

@@ -33,8 +33,8 @@ PAIR_COLUMNS = 4  # PAIRS: shape a, shape b, and their local bodies
 
 @uncounted
 def gather(
-    PAIRS: IntArray, p: int, SHAPE: Rows[Shape], RULE: FloatArray, LINK: Rows[Link], VERTEX: FloatArray, WORK: FloatArray,
-    POSE: FloatArray,
+    PAIRS: IntArray, p: int, SHAPE: Rows[Shape], RULE: FloatArray, LINK: Rows[Link], VERTEX: FloatArray,
+    WORK: FloatArray, POSE: FloatArray,
     MIDDLE: FloatArray, V: FloatArray, REACH: FloatArray, EXTENT: FloatArray, IM: FloatArray, II: FloatArray, h: float,
     free: bool, near: float,
     A: IntArray, B: IntArray, ROWS: Rows[Row], KEY: IntArray, NOW: FloatArray, THEN: FloatArray,

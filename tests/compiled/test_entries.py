@@ -91,8 +91,9 @@ def test_entries_declare_every_argument(name: str) -> None:
 @pytest.mark.parametrize(
     ("wrong", "told"),
     [
-        ({"POOL": np.zeros(4)}, r"Scene.POOL is \('POOL', '<f8', 1\); entries.TABLES declares \('POOL', '<i4', 1\)"),
-        ({"BODY": np.zeros((4, 3)).T}, r"Scene.BODY of shape \(3, 4\) has strides \(8, 24\): it must be C-contiguous"),
+        ({"POOL": np.zeros(4)}, r"Scene.POOL is float64\[1\]; entries.TABLES declares int32\[1\]"),
+        ({"BODY": np.zeros((4, 3))}, r"Scene.BODY is float64\[2\]; entries.TABLES declares Body\[1\]"),
+        ({"PULL": np.zeros((4, 3)).T}, r"Scene.PULL of shape \(3, 4\) has strides \(8, 24\): it must be C-contiguous"),
         ({"KEYS": np.zeros((1, 1), np.int64)}, "Scene.KEYS"),
     ],
 )

@@ -7,8 +7,10 @@ import math
 import numpy as np
 import pytest
 
+from eeca_pymunk.compiled.records import columns
 from eeca_pymunk.geometry.gap import gap
 from eeca_pymunk.geometry.manifold import face, manifold
+from eeca_pymunk.model.bodies import POSE
 from tests.packed import Thing, World, box, disk, hull
 
 UNITS = [1e-3, 1.0, 1e3]
@@ -17,13 +19,13 @@ UNITS = [1e-3, 1.0, 1e3]
 def rows(world: World, a: int, b: int, reach: float, tolerance: float = 1e-9) -> np.ndarray:
     """The rows of `manifold`, bodies where their paths start; shape numbers are body numbers."""
     out = np.zeros((2, 5))
-    x = world.body[:, :3]
+    x = columns(world.body, *POSE)
     return out[: manifold(*world.geometry, a, *x[a], b, *x[b], reach, tolerance, out)]
 
 
 def common(world: World, a: int, b: int, tolerance: float) -> np.ndarray:
     out = np.zeros((2, 5))
-    x = world.body[:, :3]
+    x = columns(world.body, *POSE)
     return out[: face(*world.geometry, a, *x[a], b, *x[b], tolerance, out)]
 
 

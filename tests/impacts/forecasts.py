@@ -6,7 +6,6 @@ import math
 
 import numpy as np
 
-from eeca_pymunk import layout as la
 from eeca_pymunk.geometry.gap import gap, touching
 from eeca_pymunk.impacts.times import meet
 from tests.packed import Thing, World
@@ -32,8 +31,8 @@ def first_falling_root(coefficients: list[float]) -> float:
 
 def check_by_sampling(world: World, a: int, b: int, horizon: float, looks: int = 400) -> str:
     """That no earlier contact is jumped over, and that the one found is one: gaps sampled along the paths."""
-    i, j = world.link[a, 0], world.link[b, 0]
-    start = max(world.body[i, la.SINCE], world.body[j, la.SINCE])
+    i, j = world.link[a].owner, world.link[b].owner
+    start = max(world.body["since"][i], world.body["since"][j])
     t, certain = next_impact(world, a, b, horizon)
     tolerance = touching(world.body, world.shape, world.link, a, b, world.disks)
     end = min(t, horizon)

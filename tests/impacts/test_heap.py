@@ -8,10 +8,11 @@ import math
 import numpy as np
 import pytest
 
-from eeca_pymunk import layout as la
+from eeca_pymunk.compiled.records import Rows, columns, rows
 from eeca_pymunk.impacts.forecast import has_left, leaves
 from eeca_pymunk.impacts.heap import pop, push, sweep_out
-from eeca_pymunk.pairs import layout as at
+from eeca_pymunk.model.bodies import ACCELERATION, POSE, VELOCITY, Body
+from eeca_pymunk.model.shapes import Mark
 from tests.packed import Thing, World, box, disk
 
 
@@ -36,11 +37,11 @@ def test_events_come_out_by_time_and_then_by_body(ties: bool) -> None:
 
 def test_sweeping_keeps_what_is_due_in_order() -> None:
     rng = np.random.default_rng(1)
-    body = np.zeros((40, la.BODY_COLUMNS))
-    body[:, la.DUE] = rng.uniform(size=40)
+    body = rows(Body, 40)
+    body["due"] = rng.uniform(size=40)
     time, of, n = np.zeros(200), np.zeros(200, np.int64), 0
     for i in rng.permutation(40).tolist():
-        n = push(time, of, n, float(body[i, la.DUE]), i)
+        n = push(time, of, n, float(body["due"][i]), i)
         for _ in range(int(rng.integers(0, 4))):  # forecasts of before
             n = push(time, of, n, float(rng.uniform()), i)
     assert n > 60
@@ -50,7 +51,7 @@ def test_sweeping_keeps_what_is_due_in_order() -> None:
     while n > 0:
         found.append((float(time[0]), int(of[0])))
         n = pop(time, of, n)
-    assert found == sorted((float(body[i, la.DUE]), i) for i in range(40))
+    assert found == sorted((float(body["due"][i]), i) for i in range(40))
 
 
 def wanderer(rng: np.random.Generator, turning: bool, pulled: bool, unit: float) -> World:
@@ -65,16 +66,17 @@ def wanderer(rng: np.random.Generator, turning: bool, pulled: bool, unit: float)
     return World([thing])
 
 
-def mark_of(world: World, x: float, y: float, margin: float) -> np.ndarray:
-    mark = np.zeros((1, at.MARK_COLUMNS))
-    mark[0, :3] = x, y, margin
+def mark_of(world: World, x: float, y: float, margin: float) -> Rows[Mark]:
+    mark = rows(Mark, 1)
+    mark[0].x, mark[0].y, mark[0].margin = x, y, margin
     return mark
 
 
 def centre_at(world: World, t: float) -> np.ndarray:
-    s = t - world.body[0, la.SINCE]
-    x, y, angle = world.body[0, :3] + (world.body[0, 3:6] + 0.5 * world.body[0, la.AX : la.TWIST + 1] * s) * s
-    kx, ky = world.shape[0, [la.CENTRE_X, la.CENTRE_Y]]
+    body, shape = world.body[0], world.shape[0]
+    s = t - body.since
+    x, y, angle = columns(body, *POSE) + (columns(body, *VELOCITY) + 0.5 * columns(body, *ACCELERATION) * s) * s
+    kx, ky = shape.centre_x, shape.centre_y
     return np.array([x + math.cos(angle) * kx - math.sin(angle) * ky, y + math.sin(angle) * kx + math.cos(angle) * ky])
 
 
@@ -85,7 +87,7 @@ def test_nobody_leaves_before_the_instant_told(turning: bool, pulled: bool, unit
     for _ in range(50):
         world = wanderer(rng, turning, pulled, unit)
         margin = unit * float(10.0 ** rng.uniform(-2.0, 0.0))
-        now = float(world.body[0, la.SINCE]) + (float(rng.uniform(0.0, 3.0)) if rng.uniform() < 0.7 else 0.0)
+        now = float(world.body["since"][0]) + (float(rng.uniform(0.0, 3.0)) if rng.uniform() < 0.7 else 0.0)
         place = centre_at(world, now) + margin * rng.uniform(-0.6, 0.6, 2)
         mark = mark_of(world, float(place[0]), float(place[1]), margin)
         looks = 0
@@ -123,13 +125,13 @@ def test_who_rests_or_knows_everybody_never_leaves() -> None:
 
 def test_entries_that_are_alike_are_swept_out() -> None:
     rng = np.random.default_rng(1)
-    body = np.zeros((20, la.BODY_COLUMNS))
-    body[:, la.DUE] = rng.integers(0, 8, 20) / 8.0
+    body = rows(Body, 20)
+    body["due"] = rng.integers(0, 8, 20) / 8.0
     time, of, n = np.zeros(400), np.zeros(400, np.int64), 0
     for _ in range(400):
         i = int(rng.integers(20))
-        n = push(time, of, n, float(body[i, la.DUE] if rng.random() < 0.7 else rng.random()), i)
-    valid = {(float(time[k]), int(of[k])) for k in range(n) if time[k] == body[of[k], la.DUE]}
+        n = push(time, of, n, float(body["due"][i] if rng.random() < 0.7 else rng.random()), i)
+    valid = {(float(time[k]), int(of[k])) for k in range(n) if time[k] == body["due"][of[k]]}
     n = sweep_out(time, of, n, body)
     out = []
     while n > 0:

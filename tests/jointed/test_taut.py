@@ -10,7 +10,7 @@ import pytest
 
 import eeca_pymunk as ep
 from eeca_pymunk.arrays import FloatArray
-from eeca_pymunk.compiled.records import Rows
+from eeca_pymunk.compiled.records import Rows, columns, rows
 from eeca_pymunk.jointed.component import answer, ready
 from eeca_pymunk.jointed.fitting import bring_arms
 from eeca_pymunk.jointed.layout import ORDER, Joints
@@ -30,7 +30,6 @@ from eeca_pymunk.joints.scratch import (
 )
 from eeca_pymunk.joints.taut import taut
 from eeca_pymunk.model.contacts import Row
-from eeca_pymunk.rows.layout import ARM_NA, ARM_NB, ARM_TA, ARM_TB, NX, NY, ROW_COLUMNS
 
 from .measures import apart, energy
 
@@ -195,28 +194,28 @@ def test_taut_is_what_pulls_hard(kind: int, turned: float) -> None:
 
 def test_arms_are_brought_to_one_point() -> None:
     rng = np.random.default_rng(3)
-    ROWS, END = np.zeros((4, ROW_COLUMNS)), rng.normal(size=(5, 3))
+    ROWS, END = rows(Row, 4), rng.normal(size=(5, 3))
     P, Q = np.arange(4), np.arange(1, 5)
     angle = rng.uniform(0.0, 6.0, 4)
     ROWS["nx"], ROWS["ny"] = np.cos(angle), np.sin(angle)
     middle = rng.normal(size=(4, 2))
-    for arm_n, arm_t, away in ((ARM_NA, ARM_TA, 0.1), (ARM_NB, ARM_TB, -0.1)):
+    for arm_n, arm_t, away in (("arm_na", "arm_ta", 0.1), ("arm_nb", "arm_tb", -0.1)):
         put_arms(ROWS, middle + away, arm_n, arm_t)
-    before = arms(ROWS, ARM_NA, ARM_TA) + arms(ROWS, ARM_NB, ARM_TB)
+    before = arms(ROWS, "arm_na", "arm_ta") + arms(ROWS, "arm_nb", "arm_tb")
     bring_arms(P, Q, ROWS, END, 4)
-    a, b = arms(ROWS, ARM_NA, ARM_TA), arms(ROWS, ARM_NB, ARM_TB)
+    a, b = arms(ROWS, "arm_na", "arm_ta"), arms(ROWS, "arm_nb", "arm_tb")
     assert np.abs(END[P, :2] + a - END[Q, :2] - b).max() < 1e-14
     assert np.abs(a + b - before).max() < 1e-14
 
 
-def put_arms(ROWS: Rows[Row], r: FloatArray, arm_n: int, arm_t: int) -> None:
+def put_arms(ROWS: Rows[Row], r: FloatArray, arm_n: str, arm_t: str) -> None:
     """r x n and r x t of arms r (m, 2)."""
     nx, ny = ROWS["nx"], ROWS["ny"]
-    ROWS[:, arm_n], ROWS[:, arm_t] = r[:, 0] * ny - r[:, 1] * nx, r[:, 0] * nx + r[:, 1] * ny
+    ROWS[arm_n], ROWS[arm_t] = r[:, 0] * ny - r[:, 1] * nx, r[:, 0] * nx + r[:, 1] * ny
 
 
-def arms(ROWS: Rows[Row], arm_n: int, arm_t: int) -> FloatArray:
+def arms(ROWS: Rows[Row], arm_n: str, arm_t: str) -> FloatArray:
     """The arms (m, 2) with these products."""
-    n = ROWS[:, [NX, NY]]
+    n = columns(ROWS, "nx", "ny")
     t = np.stack((-n[:, 1], n[:, 0]), axis=1)
-    return ROWS[:, [arm_t]] * n - ROWS[:, [arm_n]] * t
+    return ROWS[arm_t][:, None] * n - ROWS[arm_n][:, None] * t

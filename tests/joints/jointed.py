@@ -6,6 +6,7 @@ import numpy as np
 import pymunk
 
 from eeca_pymunk.arrays import FloatArray, IntArray
+from eeca_pymunk.compiled.records import Rows, rows
 from eeca_pymunk.joints.layout import (
     BODY_A,
     BODY_B,
@@ -18,7 +19,7 @@ from eeca_pymunk.joints.layout import (
     SUPPORTS,
 )  # fmt: skip
 from eeca_pymunk.joints.world import Islands
-from eeca_pymunk.layout import ANGLE, AX, AY, BODY_COLUMNS, SPIN, TWIST, VX, X
+from eeca_pymunk.model.bodies import ACCELERATION, POSE, VELOCITY, Body
 from eeca_pymunk.space.joints import JointRows
 
 
@@ -52,7 +53,7 @@ class JointedSpace:
         self._place: dict[pymunk.Body, int] = {body: i for i, body in enumerate(self._items)}
         self.rows: JointRows = JointRows(space, self._place, len(self._items), self._past)
         self._past = self.rows
-        self.bodies: FloatArray = np.zeros((len(self._items), BODY_COLUMNS))
+        self.bodies: Rows[Body] = rows(Body, len(self._items))
         self._written: FloatArray = np.full((len(self._items), 6), np.nan)
         self._mobility()
         self.islands = Islands(self.rows.joint, self.rows.tie, self.order)
@@ -77,12 +78,14 @@ class JointedSpace:
         if changed.any():
             new: IntArray = np.flatnonzero(changed)
             self.rows.touch(new)
-            bodies[new, X : SPIN + 1] = state[new]
+            for name, values in zip((*POSE, *VELOCITY), state.T, strict=True):
+                bodies[name][new] = values[new]
             c, s = np.cos(state[new, 2]), np.sin(state[new, 2])
             bodies["x"][new] += c * self._centre[new, 0] - s * self._centre[new, 1]
             bodies["y"][new] += s * self._centre[new, 0] + c * self._centre[new, 1]
-            bodies[~self._moving, VX : SPIN + 1] = 0.0
-        bodies[self._dynamic, AX : AY + 1] = tuple(self.space.gravity)
+            for name in VELOCITY:
+                bodies[name][~self._moving] = 0.0
+        bodies["ax"][self._dynamic], bodies["ay"][self._dynamic] = self.space.gravity
 
     def step(self, dt: float) -> None:
         """Step the space by dt."""
@@ -98,9 +101,11 @@ class JointedSpace:
             self.rows.planned()
         self.status = self.islands.step(self.bodies, dt)
         self.ledger += self.islands.ledger.sum(axis=0)
-        self.bodies[self._free, VX : SPIN + 1] += 0.5 * dt * self.bodies[self._free, AX : TWIST + 1]
-        self.bodies[self._free, X : ANGLE + 1] += dt * self.bodies[self._free, VX : SPIN + 1]
-        self.bodies[self._free, VX : SPIN + 1] += 0.5 * dt * self.bodies[self._free, AX : TWIST + 1]
+        free = self._free
+        for x, v, a in zip(POSE, VELOCITY, ACCELERATION, strict=True):
+            self.bodies[v][free] += 0.5 * dt * self.bodies[a][free]
+            self.bodies[x][free] += dt * self.bodies[v][free]
+            self.bodies[v][free] += 0.5 * dt * self.bodies[a][free]
         self._scatter()
         self.rows.write()
         for c in self.rows.after:

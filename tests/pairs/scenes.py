@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eeca_pymunk import layout as la
+from eeca_pymunk.compiled.records import columns, put
+from eeca_pymunk.model.bodies import ACCELERATION, POSE, VELOCITY
 from eeca_pymunk.pairs import grid, setup
 from eeca_pymunk.pairs import layout as at
 from tests.packed import Thing, World, box, disk
@@ -46,32 +47,32 @@ class Crowd:
         near = self.near
         return [
             near.POOL[start : start + count].tolist()
-            for start, count in near.LIST[:, [at.START, at.NUMBER]].tolist()
+            for start, count in columns(near.LIST, "start", "number").tolist()
         ]  # fmt: skip
 
     def centres(self, t: float = 0.0) -> np.ndarray:
         """(moving, 2) centres of the bounding circles at instant t, from the packed parabolas."""
         w = self.world
-        body, shape = w.body[w.link[: self.moving, la.OWNER]], w.shape[: self.moving]
-        s = (t - body[:, la.SINCE])[:, None]
-        pose = body[:, :3] + (body[:, 3:6] + 0.5 * body[:, la.AX : la.TWIST + 1] * s) * s
+        body, shape = w.body[w.link["owner"][: self.moving]], w.shape[: self.moving]
+        s = (t - body["since"])[:, None]
+        pose = columns(body, *POSE) + (columns(body, *VELOCITY) + 0.5 * columns(body, *ACCELERATION) * s) * s
         c, d = np.cos(pose[:, 2]), np.sin(pose[:, 2])
-        x, y = shape[:, la.CENTRE_X], shape[:, la.CENTRE_Y]
+        x, y = shape["centre_x"], shape["centre_y"]
         return np.asarray(pose[:, :2] + np.stack((c * x - d * y, d * x + c * y), axis=1))
 
     def expected(self) -> list[set[int]]:
         """Who must stand in the list of every moving shape: whose margin circle, or box of a static shape, overlaps its
         margin circle, and whom the filters let it meet."""
         w, near, moving = self.world, self.near, self.moving
-        place, reach = near.MARK[:, :2], w.shape[:moving, la.BOUND] + near.MARK[:, at.MARGIN]
+        place, reach = columns(near.MARK, "x", "y"), w.shape["bound"][:moving] + near.MARK["margin"]
         d = place[:, None] - place
         close = np.hypot(d[..., 0], d[..., 1]) <= reach[:, None] + reach
         sets = []
         for s in range(moving):
             found = {int(o) for o in np.flatnonzero(close[s]) if may_meet(w, s, int(o))}
             for o in range(moving, len(w.shape)):
-                points = w.vertex[w.link[o, la.FIRST] : w.link[o, la.FIRST] + w.link[o, la.COUNT], :2]
-                low, high = points.min(axis=0) - w.shape[o, la.ROUNDING], points.max(axis=0) + w.shape[o, la.ROUNDING]
+                points = w.vertex[w.link["first"][o] : w.link["first"][o] + w.link["vertices"][o], :2]
+                low, high = points.min(axis=0) - w.shape["rounding"][o], points.max(axis=0) + w.shape["rounding"][o]
                 away = np.maximum(np.maximum(low - place[s], place[s] - high), 0.0)
                 if math.hypot(*away) <= reach[s] and may_meet(w, s, o):
                     found.add(o)
@@ -80,7 +81,7 @@ class Crowd:
 
     def check(self) -> None:
         """Lists hold all they must and nothing else, each once; and everybody has somewhere to go."""
-        assert (self.near.MARK[:, at.MARGIN] > 0.0).all()
+        assert (self.near.MARK["margin"] > 0.0).all()
         for s, (found, expected) in enumerate(zip(self.listed(), self.expected(), strict=True)):
             assert len(set(found)) == len(found), f"list of {s} holds somebody twice"
             assert set(found) == expected, f"list of {s}"
@@ -88,16 +89,16 @@ class Crowd:
 
 def moving_of(world: World) -> int:
     """How many shapes are not the ground's."""
-    return int(np.count_nonzero(world.link[:, la.OWNER] < len(world.body) - 1))
+    return int(np.count_nonzero(world.link["owner"] < len(world.body) - 1))
 
 
 def may_meet(world: World, a: int, b: int) -> bool:
     """pymunk's rules, in Python's whole numbers."""
-    i, j = world.link[a, la.OWNER], world.link[b, la.OWNER]
-    if i == j or not (world.body[[i, j], la.IM].any() or world.body[[i, j], la.II].any()):
+    i, j = world.link["owner"][a], world.link["owner"][b]
+    if i == j or not (world.body["inv_mass"][[i, j]].any() or world.body["inv_inertia"][[i, j]].any()):
         return False
-    group_a, categories_a, mask_a = (int(v) & WORD for v in world.link[a, [la.GROUP, la.CATEGORIES, la.MASK]])
-    group_b, categories_b, mask_b = (int(v) & WORD for v in world.link[b, [la.GROUP, la.CATEGORIES, la.MASK]])
+    group_a, categories_a, mask_a = (int(v) & WORD for v in columns(world.link[a], "group", "categories", "mask"))
+    group_b, categories_b, mask_b = (int(v) & WORD for v in columns(world.link[b], "group", "categories", "mask"))
     if group_a and group_a == group_b:
         return False
     return bool(categories_a & mask_b) and bool(categories_b & mask_a)
@@ -146,9 +147,9 @@ def crowd(
         points = [tuple((unit * p + origin).tolist()) for p in (start, end)]
         ground.append((points, unit * float(rng.choice([0.0, 0.2 * size]))))
     world = World(things, ground)
-    world.link[:, [la.CATEGORIES, la.MASK]] = -1
+    world.link["categories"] = world.link["mask"] = -1
     if filters:
         kinds = [(0, WORD, WORD), (1, WORD, WORD), (2, 1, WORD), (0, 1 << 63, 1), (0, 1, 1 << 63 | 1), (0, 2, WORD - 2)]
         rows = np.array(kinds, np.uint64).view(np.int64)
-        world.link[:, [la.GROUP, la.CATEGORIES, la.MASK]] = rows[rng.integers(0, len(kinds), len(world.link))]
+        put(world.link, rows[rng.integers(0, len(kinds), len(world.link))], "group", "categories", "mask")
     return world

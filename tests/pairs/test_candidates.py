@@ -10,6 +10,7 @@ import eeca_pymunk as ep
 import scenes
 from eeca_pymunk.closures.motion import Disks, Start
 from eeca_pymunk.closures.simultaneous import SimultaneousStep
+from eeca_pymunk.compiled.records import columns, put
 from eeca_pymunk.pairs.layout import LEAVES
 from eeca_pymunk.space.world import World
 from scenes.scene import add_disk, add_walls
@@ -40,8 +41,8 @@ def test_every_pair_that_can_meet_is_listed(count: int, unit: float) -> None:
     disks = Disks(world, "test")
     meetings = 0
     for _ in range(60):
-        world.BODY[:count, :2] = x
-        pairs, before, _ = disks.near(start_of(disks), DT * world.BODY[:, 3:5])
+        put(world.BODY[:count], x, "x", "y")
+        pairs, before, _ = disks.near(start_of(disks), DT * columns(world.BODY, "vx", "vy"))
         listed = {(int(a), int(b)) for a, b in pairs.shapes}
         assert len(listed) == len(pairs)
         # Closest approach of the straight paths within the step.

@@ -7,7 +7,8 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from eeca_pymunk import layout as la
+from eeca_pymunk.compiled.records import columns, put
+from eeca_pymunk.model.bodies import ACCELERATION, VELOCITY
 from eeca_pymunk.pairs import cells, grid, setup
 from eeca_pymunk.pairs import layout as at
 from eeca_pymunk.pairs.lists import mark_pair
@@ -21,14 +22,14 @@ Make = Callable[[np.random.Generator], World]
 def absurd(rng: np.random.Generator) -> World:
     """A giant too large for all levels, whose centre is far from the others."""
     world = crowd(rng, np.where(np.arange(20) == 7, 1e200, 1e-3), side=1.0)
-    world.body[7, la.X] = 1e30
+    world.body["x"][7] = 1e30
     return world
 
 
 def pivots(rng: np.random.Generator) -> World:
     """Bodies that impulses turn but do not shift, among others."""
     world = crowd(rng, np.full(30, 0.1), boxes=6, kinematic=4, walls=8)
-    world.body[5:20, la.IM] = 0.0
+    world.body["inv_mass"][5:20] = 0.0
     return world
 
 
@@ -68,10 +69,10 @@ def test_lists_stay_complete_as_shapes_leave_one_by_one(kind: str) -> None:
     near = Crowd.of(CROWDS[kind](rng))
     for turn, s in enumerate(rng.integers(0, near.moving, 150).tolist()):
         near.renew(s, t := 2.0 * float(rng.uniform()))
-        if not np.isinf(near.near.MARK[s, at.MARGIN]):
+        if not np.isinf(near.near.MARK["margin"][s]):
             exact = near.centres(t)[s]
-            near_round_off = 1e-14 * float(np.abs(exact).max() + near.world.shape[s, la.SIZE])
-            np.testing.assert_allclose(near.near.MARK[s, :2], exact, rtol=0.0, atol=near_round_off)
+            near_round_off = 1e-14 * float(np.abs(exact).max() + near.world.shape["extent"][s])
+            np.testing.assert_allclose(columns(near.near.MARK[s], "x", "y"), exact, rtol=0.0, atol=near_round_off)
         if turn % 10 == 9:
             near.check()
 
@@ -80,27 +81,27 @@ def test_lists_stay_complete_as_shapes_leave_one_by_one(kind: str) -> None:
 def test_one_that_flew_away_neither_breaks_the_grid_nor_fills_the_lists(speed: float) -> None:
     # Beyond 2^50 cells all cells are one.
     world = crowd(np.random.default_rng(1), np.full(200, 0.1))
-    world.body[11, la.VX : la.SPIN] = (speed, -2.0 * speed)
+    world.body[11].vx, world.body[11].vy = speed, -2.0 * speed
     near = Crowd.of(world)
     for s in (11, 12, 11, 5):
         near.renew(s, 1.0)
-    world.body[12, la.X : la.ANGLE] = near.centres(1.0)[11]  # somebody else goes there
-    world.body[12, la.VX : la.SINCE + 1] = world.body[12, la.AX : la.TWIST + 1] = 0.0
+    world.body[12].x, world.body[12].y = near.centres(1.0)[11]  # somebody else goes there
+    put(world.body[12:13], np.zeros((1, 7)), *VELOCITY, "since", *ACCELERATION)
     near.renew(12, 1.0)
     if speed >= 1e9:
         assert near.listed()[12] == [11]
     away = setup.near_lists(world.body, world.shape, world.link, world.vertex, near.moving)
-    assert away.LIST[:, at.NUMBER].mean() <= 30
+    assert away.LIST["number"].mean() <= 30
     Crowd(world, away).check()
 
 
 def test_half_full_places_are_crowded_too() -> None:
     # Two dense clouds far from one another: margins follow from how shapes stand, not from the empty place between.
     world = crowd(np.random.default_rng(1), np.full(200, 0.1))
-    world.body[:100, la.X] += 1e4
+    world.body["x"][:100] += 1e4
     near = Crowd.of(world)
     near.check()
-    assert near.near.LIST[:, at.NUMBER].mean() <= 30
+    assert near.near.LIST["number"].mean() <= 30
 
 
 @pytest.mark.parametrize("unit", [1e-3, 1e3])
@@ -140,7 +141,8 @@ def test_a_full_pool_is_told_and_more_room_helps() -> None:
 def test_room_runs_out_as_lists_grow_and_wander() -> None:
     rng = np.random.default_rng(5)
     near = Crowd.of(crowd(rng, np.full(40, 0.1)))
-    near.world.body[:, la.VX : la.SPIN] *= 10.0
+    near.world.body["vx"] *= 10.0
+    near.world.body["vy"] *= 10.0
     room = len(near.near.POOL)
     for turn in range(3000):
         near.renew(int(rng.integers(0, near.moving)), float(rng.uniform()) if turn < 1500 else 0.0)
@@ -159,7 +161,7 @@ def test_flags_follow_their_pairs_and_new_pairs_have_none() -> None:
     def flagged() -> set[tuple[int, int]]:
         return {
             (s, int(o))
-            for s, (start, count) in enumerate(n.LIST[:, [at.START, at.NUMBER]].tolist())
+            for s, (start, count) in enumerate(columns(n.LIST, "start", "number").tolist())
             for o, flag in zip(n.POOL[start : start + count], n.FLAG[start : start + count], strict=True)
             if flag
         }
@@ -168,7 +170,7 @@ def test_flags_follow_their_pairs_and_new_pairs_have_none() -> None:
         near.renew(s)
     assert flagged() == {pair, pair[::-1]}
     for far in (1e3, -1e3):  # there and back
-        world.body[pair[0], la.X] += far
+        world.body["x"][pair[0]] += far
         near.renew(pair[0])
         assert not flagged()
     near.check()
@@ -186,7 +188,7 @@ def test_the_grid_of_walls_holds_what_looking_at_all_finds(spread: str) -> None:
     ground = [([tuple(a), tuple(b)], 0.01) for a, b in zip(start.tolist(), end.tolist(), strict=True)]
     things = [Thing(disk(r), (x, y, 0.0)) for x, y, r in rng.uniform((-2, -2, 0.01), (12, 12, 1.0), (30, 3)).tolist()]
     world = World(things, ground)
-    world.link[:, [la.CATEGORIES, la.MASK]] = -1
+    world.link["categories"] = world.link["mask"] = -1
     gridded = Crowd.of(world)
     assert gridded.near.INFO[at.WALL_COLUMNS] > 0
     assert len(gridded.near.CSR) < 40 * len(ground) + 2
@@ -212,7 +214,8 @@ def test_a_list_drawn_ahead_is_complete_and_its_old_part_comes_first(ahead: floa
     near = Crowd.of(world)
     w, n = world, near.near
     for s in rng.integers(0, near.moving, 300).tolist():
-        world.body[s, la.X : la.ANGLE] += world.body[s, la.VX : la.SPIN] * 0.1
+        world.body[s].x += world.body[s].vx * 0.1
+        world.body[s].y += world.body[s].vy * 0.1
         before = near.listed()[s]
         kept = grid.renew(
             w.body, w.shape, w.link, n.MARK, n.CELL, n.LIST, n.POOL, n.FLAG, n.HEAD, n.GRID, n.INFO, n.BOX, n.CSR,
@@ -222,7 +225,7 @@ def test_a_list_drawn_ahead_is_complete_and_its_old_part_comes_first(ahead: floa
         after = near.listed()[s]
         assert set(after[:kept]) <= set(before)
         assert not {o for o in after[kept:] if o < near.moving} & set(before)
-        away = n.MARK[s, :2] - near.centres()[s]
-        assert np.hypot(*away) == pytest.approx(ahead * n.MARK[s, at.MARGIN], abs=1e-12)
-        assert away @ world.body[s, la.VX : la.SPIN] >= 0.0
+        away = columns(n.MARK[s], "x", "y") - near.centres()[s]
+        assert np.hypot(*away) == pytest.approx(ahead * n.MARK["margin"][s], abs=1e-12)
+        assert away @ columns(world.body[s], "vx", "vy") >= 0.0
     near.check()

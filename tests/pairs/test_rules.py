@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from eeca_pymunk.layout import SHAPE_COLUMNS, SURFACE_X, SURFACE_Y
+from eeca_pymunk.compiled.records import put, rows
+from eeca_pymunk.model.shapes import Shape
 from eeca_pymunk.pairs.rules import barred, law
 from eeca_pymunk.space.shapes import Rules
 
@@ -13,7 +14,8 @@ from eeca_pymunk.space.shapes import Rules
 @pytest.mark.parametrize("count", [0, 1, 2, 7, 40])
 def test_rules_are_found_as_in_a_dictionary(count: int) -> None:
     random, shapes = np.random.default_rng(count), 12
-    SHAPE = random.random((shapes, SHAPE_COLUMNS))
+    SHAPE = rows(Shape, shapes)
+    put(SHAPE, random.random((shapes, len(Shape.TYPE))), *(Shape.TYPE.names or ()))
     every = [(a, b) for a in range(shapes) for b in range(a + 1, shapes)]
     chosen = [every[i] for i in random.permutation(len(every))[:count]]
     ignored, rest = chosen[: count // 3], chosen[count // 3 :]
@@ -30,6 +32,6 @@ def test_rules_are_found_as_in_a_dictionary(count: int) -> None:
                 SHAPE["elasticity"][a] * SHAPE["elasticity"][b],
                 SHAPE["friction"][a] * SHAPE["friction"][b],
             )
-            assert (sx, sy) == tuple(SHAPE[b, SURFACE_X : SURFACE_Y + 1] - SHAPE[a, SURFACE_X : SURFACE_Y + 1])
+            assert (sx, sy) == (SHAPE[b].surface_x - SHAPE[a].surface_x, SHAPE[b].surface_y - SHAPE[a].surface_y)
         elif (a, b) not in parted.union(ignored):
             assert (e, mu, sx, sy) == rules.changed[a, b]

@@ -7,9 +7,10 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from eeca_pymunk.compiled.records import rows
+from eeca_pymunk.model.contacts import Row
 from eeca_pymunk.rows.blocks import OUT_SIZE, solve_block
 from eeca_pymunk.rows.build import place_row
-from eeca_pymunk.rows.layout import ROW_COLUMNS
 
 Floats = npt.NDArray[np.float64]
 
@@ -49,7 +50,7 @@ class Block:
         """Set `status`, `after`, `impulses`, `loss`, `out`."""
         m, n = len(self.contacts), len(self.pose) - 1
         self.A, self.B = np.zeros(m, np.int64), np.zeros(m, np.int64)
-        self.rows, self.impulses, self.loss = np.zeros((m, ROW_COLUMNS)), np.zeros((m, 2)), np.zeros((m, 2))
+        self.rows, self.impulses, self.loss = rows(Row, m), np.zeros((m, 2)), np.zeros((m, 2))
         for i, (a, b, nx, ny, px, py) in enumerate(self.contacts):
             place_row(self.A, self.B, self.rows, i, a, b, nx, ny, px, py, 0.0, self.pose, self.im, self.ii, e, mu, 0.0)
         self.after, self.out = self.velocity.copy(), np.zeros(OUT_SIZE)

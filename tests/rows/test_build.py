@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from eeca_pymunk.compiled import records
+from eeca_pymunk.model.contacts import Row
 from eeca_pymunk.rows.build import normal_rate, place_row, tangent_rate
-from eeca_pymunk.rows.layout import K_N, K_T, ROW_COLUMNS
 
 
 def cross(x: np.ndarray, y: np.ndarray) -> float:
@@ -24,7 +25,7 @@ def test_rates_and_masses_are_those_of_points_of_rigid_bodies(seed: int, unit: f
     angle, surface = rng.uniform(0.0, 6.0), unit * rng.normal()
     n, t = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
     point = unit * rng.normal(size=2)
-    A, B, rows = np.zeros(1, np.int64), np.zeros(1, np.int64), np.zeros((1, ROW_COLUMNS))
+    A, B, rows = np.zeros(1, np.int64), np.zeros(1, np.int64), records.rows(Row, 1)
     place_row(A, B, rows, 0, 0, 1, *n, *point, 0.0, pose, im, ii, 0.5, 0.3, surface)
 
     arm = point - pose[:, :2]
@@ -32,6 +33,6 @@ def test_rates_and_masses_are_those_of_points_of_rigid_bodies(seed: int, unit: f
     apart = speed[1] - speed[0]
     assert normal_rate(A, B, rows, v, 0) == pytest.approx(n @ apart, rel=1e-12, abs=1e-13 * unit)
     assert tangent_rate(A, B, rows, v, 0) == pytest.approx(t @ apart + surface, rel=1e-12, abs=1e-13 * unit)
-    for direction, column in ((n, K_N), (t, K_T)):
+    for direction, column in ((n, "k_n"), (t, "k_t")):
         given = sum(im[i] + ii[i] * cross(arm[i], direction) ** 2 for i in range(2))
-        assert rows[0, column] == pytest.approx(1.0 / given, rel=1e-12)
+        assert rows[column][0] == pytest.approx(1.0 / given, rel=1e-12)

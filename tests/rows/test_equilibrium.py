@@ -9,9 +9,10 @@ import numpy.typing as npt
 import pytest
 from scipy.optimize import linprog
 
+from eeca_pymunk.compiled.records import rows
+from eeca_pymunk.model.contacts import Row
 from eeca_pymunk.rows.build import place_row
 from eeca_pymunk.rows.equilibrium import equilibrium
-from eeca_pymunk.rows.layout import ROW_COLUMNS
 from eeca_pymunk.rows.sweeps import velocities
 
 Floats = npt.NDArray[np.float64]
@@ -28,7 +29,7 @@ class Pile:
     ) -> None:  # fmt: skip
         self.pose, self.im, self.ii, self.start, self.m = pose, im, ii, start, len(contacts)
         self.A, self.B = np.zeros(self.m, np.int64), np.zeros(self.m, np.int64)
-        self.rows, self.L = np.zeros((self.m, ROW_COLUMNS)), np.zeros((self.m, 2))
+        self.rows, self.L = rows(Row, self.m), np.zeros((self.m, 2))
         for i, (a, b, nx, ny, x, y) in enumerate(contacts):
             place_row(self.A, self.B, self.rows, i, a, b, nx, ny, x, y, 0.0, pose, im, ii, 0.0, mu, 0.0)
 

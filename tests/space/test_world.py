@@ -11,6 +11,8 @@ import pymunk
 import pytest
 
 from eeca_pymunk import layout as at
+from eeca_pymunk.compiled.records import columns
+from eeca_pymunk.model.bodies import POSE, VELOCITY
 from eeca_pymunk.space.world import World
 from scenes.scene import add_disk
 
@@ -69,15 +71,15 @@ def test_lone_disks_come_first_then_other_dynamic_bodies_then_kinematic_ones_and
     for name, one in names.items():
         if row[one] >= 0:
             mobile = one.body_type == pymunk.Body.DYNAMIC
-            assert world.BODY[row[one], at.IM] == (0.5 if mobile else 0.0), name
-            assert world.BODY[row[one], at.II] == (1.0 / 3.0 if mobile else 0.0), name
-    assert not world.BODY[-1, : at.SINCE].any()
+            assert world.BODY["inv_mass"][row[one]] == (0.5 if mobile else 0.0), name
+            assert world.BODY["inv_inertia"][row[one]] == (1.0 / 3.0 if mobile else 0.0), name
+    assert not any(world.BODY[-1][name] for name in (*POSE, *VELOCITY))
 
 
 def test_shapes_are_ordered_by_body_and_static_ones_stand_on_the_ground_in_world_coordinates() -> None:
     space, names = zoo()
     world = World(space)
-    row, owner = rows(world), world.LINK[:, at.OWNER]
+    row, owner = rows(world), world.LINK["owner"]
     assert (np.diff(owner) >= 0).all()
     assert owner[: world.disks].tolist() == [0, 1]
     assert len(world.shapes) == 9  # without the sensor
@@ -85,13 +87,13 @@ def test_shapes_are_ordered_by_body_and_static_ones_stand_on_the_ground_in_world
     for k, shape in enumerate(world.shapes):
         assert shape.body is not None
         assert owner[k] == (row[shape.body] if row[shape.body] >= 0 else len(world.BODY) - 1)
-        assert world.SHAPE[k, at.ROUNDING] == shape.radius  # type: ignore[attr-defined]
+        assert world.SHAPE["rounding"][k] == shape.radius  # type: ignore[attr-defined]
         if shape.body is names["pillar"]:
-            first = world.LINK[k, at.FIRST]
+            first = world.LINK["first"][k]
             assert world.VERTEX[first, :2] == pytest.approx((5.0, 1.0))
-            assert world.LINK[k, at.COUNT] == 1
-    assert world.LINK[0, at.FIRST] == 0
-    assert (np.diff(world.LINK[:, at.FIRST]) == world.LINK[:-1, at.COUNT]).all()
+            assert world.LINK["vertices"][k] == 1
+    assert world.LINK["first"][0] == 0
+    assert (np.diff(world.LINK["first"]) == world.LINK["vertices"][:-1]).all()
 
 
 def test_outlines_turn_counter_clockwise_with_normals_outward() -> None:
@@ -101,7 +103,7 @@ def test_outlines_turn_counter_clockwise_with_normals_outward() -> None:
     world = World(space)
     polygons = 0
     for k in range(len(world.shapes)):
-        first, count = world.LINK[k, [at.FIRST, at.COUNT]]
+        first, count = world.LINK[k].first, world.LINK[k].vertices
         vertex, normal = np.split(world.VERTEX[first : first + count], 2, axis=1)
         if count == 1:
             assert not normal.any()
@@ -133,15 +135,15 @@ def test_bounds_hold_the_whole_shape(scale: float) -> None:
     world = World(space)
     turn = np.linspace(0.0, 2.0 * np.pi, 100)
     for k in range(3):
-        first, count = world.LINK[k, [at.FIRST, at.COUNT]]
+        first, count = world.LINK[k].first, world.LINK[k].vertices
         S = world.SHAPE[k]
-        rim = np.stack((np.cos(turn), np.sin(turn)), axis=1) * S[at.ROUNDING]
+        rim = np.stack((np.cos(turn), np.sin(turn)), axis=1) * S["rounding"]
         points = (world.VERTEX[first : first + count, None, :2] + rim).reshape(-1, 2)
-        assert np.hypot(*points.T).max() == pytest.approx(S[at.SIZE], rel=1e-2)
-        assert np.hypot(*points.T).max() <= S[at.SIZE] * (1 + 1e-12)
-        away = np.hypot(*(points - S[[at.CENTRE_X, at.CENTRE_Y]]).T).max()
-        assert 0.99 * S[at.BOUND] <= away <= S[at.BOUND] * (1 + 1e-12)
-    assert world.BODY[0, at.EXTENT] == world.SHAPE[:, at.SIZE].max()
+        assert np.hypot(*points.T).max() == pytest.approx(S["extent"], rel=1e-2)
+        assert np.hypot(*points.T).max() <= S["extent"] * (1 + 1e-12)
+        away = np.hypot(*(points - (S.centre_x, S.centre_y)).T).max()
+        assert 0.99 * S["bound"] <= away <= S["bound"] * (1 + 1e-12)
+    assert world.BODY["extent"][0] == world.SHAPE["extent"].max()
 
 
 def test_a_disk_whose_offset_is_its_centre_of_mass_is_a_lone_disk() -> None:
@@ -156,7 +158,7 @@ def test_a_segment_of_no_length_is_a_disk() -> None:
     space = pymunk.Space()
     space.add(pymunk.Segment(space.static_body, (1.0, 2.0), (1.0, 2.0), 0.1))
     world = World(space)
-    assert world.LINK[0, at.COUNT] == 1
+    assert world.LINK["vertices"][0] == 1
     assert world.VERTEX.tolist() == [[1.0, 2.0, 0.0, 0.0]]
 
 
@@ -168,9 +170,9 @@ def test_materials_and_filters() -> None:
     shape.filter = pymunk.ShapeFilter(7, 0b101, 0xFFFFFFFE)
     world = World(space)
     assert world.filtered
-    assert world.LINK[0, at.GROUP :].tolist() == [7, 5, 0xFFFFFFFE]
-    assert world.SHAPE[0, [at.ELASTICITY, at.FRICTION]].tolist() == [0.75, 0.5]
-    assert world.BODY[0, [at.BOUNCE, at.GRIP, at.EXTENT]].tolist() == [0.75, 0.5, 0.1]
+    assert columns(world.LINK[0], "group", "categories", "mask").tolist() == [7, 5, 0xFFFFFFFE]
+    assert columns(world.SHAPE[0], "elasticity", "friction").tolist() == [0.75, 0.5]
+    assert columns(world.BODY[0], "elasticity", "friction", "extent").tolist() == [0.75, 0.5, 0.1]
 
 
 def test_a_space_without_anything() -> None:
@@ -226,10 +228,10 @@ def test_friction_is_read_or_ignored() -> None:
     for x in (0.0, 1.0):
         for shape in add_disk(space, (x, 0.0), 0.1).shapes:
             shape.friction = 0.5
-    assert World(space).SHAPE[:, at.FRICTION].tolist() == [0.5, 0.5]
+    assert World(space).SHAPE["friction"].tolist() == [0.5, 0.5]
     ignoring = World(space, ("friction",))
     assert ignoring.ignores
-    assert not ignoring.SHAPE[:, at.FRICTION].any()
+    assert not ignoring.SHAPE["friction"].any()
 
 
 def test_masses_that_no_body_can_have_are_refused() -> None:

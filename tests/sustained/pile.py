@@ -6,8 +6,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from eeca_pymunk import layout as la
-from eeca_pymunk.rows.layout import ROW_COLUMNS
+from eeca_pymunk.compiled.records import columns, row, rows
+from eeca_pymunk.model.bodies import POSE, VELOCITY, Rest
+from eeca_pymunk.model.contacts import Row
+from eeca_pymunk.model.step import Count
 from eeca_pymunk.sustained.ledger import LEDGER_SIZE
 from eeca_pymunk.sustained.memory import FORCE_COLUMNS, forget
 from eeca_pymunk.sustained.relax import FRESH
@@ -40,28 +42,29 @@ class Pile:
         k = len(world.things) + grounded
         self.n = sum(thing.moves for thing in world.things)
         body = world.body[:k]
-        self.pose, self.v = body[:, la.X : la.ANGLE + 1].copy(), body[:, la.VX : la.SPIN + 1].copy()
-        self.acc, self.extent = np.zeros((k, 3)), body[:, la.EXTENT].copy()
+        self.pose, self.v = columns(body, *POSE), columns(body, *VELOCITY)
+        self.acc, self.extent = np.zeros((k, 3)), body["extent"].copy()
         self.acc[: self.n, :2] = self.gravity
         self.im, self.ii = np.zeros(k), np.zeros(k)
         self.im[: self.n], self.ii[: self.n] = 1.0 / np.asarray(self.mass), 1.0 / np.asarray(self.moment)
         # Contacts have the product of both shapes' values.
-        world.shape[:, la.ELASTICITY] = np.sqrt(self.elasticity)
-        world.shape[:, la.FRICTION] = np.sqrt(self.friction)
-        owner = world.link[:, la.OWNER]
+        world.shape["elasticity"] = np.sqrt(self.elasticity)
+        world.shape["friction"] = np.sqrt(self.friction)
+        owner = world.link["owner"]
         self.all = np.array(
             [(s, r, owner[s], owner[r]) for s in range(len(owner)) for r in range(s + 1, len(owner))
              if owner[s] != owner[r] and min(owner[s], owner[r]) < self.n], np.int64,
         ).reshape(-1, 4)  # fmt: skip
-        self.state, self.stamp, self.m = np.array(FRESH), 0.0, 0
-        self.keys, self.forces, self.count = np.full(64, -1), np.zeros((64, FORCE_COLUMNS)), np.zeros(1, np.int64)
+        self.state, self.stamp, self.m = row(Rest), 0.0, 0
+        self.state.augmentation = FRESH
+        self.keys, self.forces, self.count = np.full(64, -1), np.zeros((64, FORCE_COLUMNS)), row(Count)
         self.jump, self.out = np.zeros((k, 6)), np.zeros(OUT_SIZE)
         self.room(64)
 
     def room(self, size: int) -> None:
         """Rows for `size` contacts, and memory for four times as many."""
         self.A, self.B, self.key = (np.zeros(size, np.int64) for _ in range(3))
-        self.rows, self.L, self.loss = np.zeros((size, ROW_COLUMNS)), np.zeros((size, 2)), np.zeros((size, 2))
+        self.rows, self.L, self.loss = rows(Row, size), np.zeros((size, 2)), np.zeros((size, 2))
         self.clean(8 * size)
 
     def clean(self, size: int) -> None:

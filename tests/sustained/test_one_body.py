@@ -123,7 +123,7 @@ def test_block_on_a_belt_catches_up() -> None:
     mu, speed, h = 0.25, 1.5, 1 / 200
     pile = on_plane(0.0, mu, cube(1.0), 1 / 6)
     # As in pymunk, the surface's velocity is that of the shape's skin against its body: things go the other way.
-    pile.world.shape[1, 4] = -speed
+    pile.world.shape[1].surface_x = -speed
     steps = math.ceil(speed / (mu * G) / h) + 2
     pile.run(steps, h)
     assert abs(pile.v[0, 0]) == pytest.approx(speed, rel=1e-12)

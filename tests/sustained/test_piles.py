@@ -8,6 +8,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from eeca_pymunk.compiled.records import row
+from eeca_pymunk.model.step import Count
 from eeca_pymunk.sustained.memory import FORCE_COLUMNS, find, forget, remember
 
 from ..packed import Thing, World, box, disk
@@ -203,13 +205,13 @@ def test_steps_converge_to_one_another() -> None:
 def test_memory_finds_what_was_remembered() -> None:
     """Against a dictionary, with keys that collide."""
     rng = np.random.default_rng(2)
-    keys, forces, count = np.full(256, -1), np.zeros((256, FORCE_COLUMNS)), np.zeros(1, np.int64)
+    keys, forces, count = np.full(256, -1), np.zeros((256, FORCE_COLUMNS)), row(Count)
     known: dict[int, tuple[float, float]] = {}
     for _ in range(300):
         key = int(rng.integers(0, 60)) * 1024
         known[key] = (float(rng.random()), float(rng.integers(1, 4)))
         remember(keys, forces, count, key, known[key][0], 0.0, 0.0, known[key][1])
-    assert count[0] == len(known)
+    assert count.remembered == len(known)
     assert all(forces[find(keys, key), 0] == value for key, (value, _) in known.items())
     assert find(keys, 7) < 0
     kept, kept_forces = np.full(128, -1), np.zeros((128, FORCE_COLUMNS))
