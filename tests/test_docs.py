@@ -28,6 +28,7 @@ OTHERS = {
     "python -m tests.bitwise": "tests/bitwise.py",
     "python -m eeca_pymunk": "tests/test_release.py",
     "python -m eeca_pymunk.build": "tests/build/test_builder.py",
+    "python -m eeca_pymunk.build --target PLATFORM": "tests/build/test_builder.py",
     "python -m build": "tests/test_release.py",
     "python -m build --wheel": "tests/test_release.py",
     'pip install -e ".[dev]"': ".ci/run",

@@ -22,7 +22,7 @@ def start_of(disks: Disks) -> Start:
     """The start of a step of length DT without forces."""
     BODY = disks.world.BODY
     still = np.zeros((len(BODY), 2))
-    return Start(DT, BODY[:, :2].copy(), BODY[:, 3:5].copy(), still, BODY["inv_mass"].copy())
+    return Start(DT, columns(BODY, "x", "y"), columns(BODY, "vx", "vy"), still, BODY["inv_mass"].copy())
 
 
 @pytest.mark.parametrize("count", [10, 30, 400])  # all in all lists, then with margins
