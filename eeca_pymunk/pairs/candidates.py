@@ -50,7 +50,8 @@ def cover(
 def candidates(
     BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, WORK: FloatArray, MARK: Rows[Mark],
     CELL: Rows[Cell], LIST: Rows[List], POOL: PoolArray, FLAG: FlagArray, HEAD: IntArray, GRID: FloatArray,
-    INFO: IntArray, BOX: FloatArray, CSR: IntArray, USUAL: FloatArray, disks: int, REACH: FloatArray, PAIRS: IntArray, OUT: FloatArray,
+    INFO: IntArray, BOX: FloatArray, CSR: IntArray, USUAL: FloatArray, disks: int, REACH: FloatArray,
+    PAIRS: IntArray, OUT: FloatArray,
 ) -> int:  # fmt: skip
     """The pairs of shapes whose gap at the start of the step is at most the sum of their bodies' reaches.
 
