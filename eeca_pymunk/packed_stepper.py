@@ -78,12 +78,17 @@ class PackedStepper(PackedSpace):
         iterations of the solver."""
         return 1.0, True, 0
 
-    def step(self, dt: float) -> StepReport:
+    def refuse_within(self) -> None:
+        """RuntimeError within a step of this space."""
         if _busy and self.space in _busy:
             raise RuntimeError(
                 f"step was called for {self.space} from within its own step, by a collision handler or a function of a "
                 "body or constraint: step it when that step has returned, or in space.add_post_step_callback"
             )
+
+    def step(self, dt: float) -> StepReport:
+        if _busy:
+            self.refuse_within()
         dt = check_dt(dt)
         if dt == 0.0:
             return StepReport.without_contacts(self.time)
@@ -144,13 +149,7 @@ class PackedStepper(PackedSpace):
         try:
             if status & FORCES:
                 world.reset_forces()
-            if not self.sync:
-                world.scatter(status)
-            elif self._sync.reindexes(dt, bool(status & EVENTS)):
-                world.scatter(status)
-                self._sync.reindex()
-            else:
-                self._sync.land(world, dt, status)
+            self.land(world, dt, status)
         except BaseException:
             self._undo(world, world.state)
             raise
@@ -161,6 +160,16 @@ class PackedStepper(PackedSpace):
         if self.sync:
             self._sync.call_back()
         return report
+
+    def land(self, world: World, dt: float, status: int) -> None:
+        """Write the end of a step to the space."""
+        if not self.sync:
+            world.scatter(status)
+        elif self._sync.reindexes(dt, bool(status & EVENTS)):
+            world.scatter(status)
+            self._sync.reindex()
+        else:
+            self._sync.land(world, dt, status)
 
     def _hooked_step(self, world: World, dt: float) -> StepReport:
         """A step of a space in which functions of bodies or constraints, or collision handlers, are called."""

@@ -33,6 +33,7 @@ FLOORS = (
     "stepper",
     "packed_space",
     "packed_stepper",
+    "runs",
     "eeca baselines",
     "build recording warming sweep",
     "render",

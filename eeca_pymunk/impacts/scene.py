@@ -24,6 +24,8 @@ from ..sustained.memory import FORCE_COLUMNS, forget
 from ..sustained.relax import FRESH
 from ..transfer import FORCES
 from .booking import flag_again
+from .film import Reel
+from .run import ROOM_FOR_IMPACTS, run
 from .step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, step
 from .together import step_together
 
@@ -72,6 +74,8 @@ class EventLoop:
         vertices = max(2, int(LINK["vertices"].max(initial=2)))
         lossy = bool((SHAPE["elasticity"] < 1.0).any())
         self._options: tuple[int, ...] = disks, lossy  # numbers that the step takes besides dt, gravity and damping
+        self.lossy, self.together = lossy, False
+        self._usual: FloatArray = near.MARK["margin"].copy()
         room = _CONTACTS
         while lossy and room < min(_OF_A_BODY * n, _MANY):
             room *= 2
@@ -113,6 +117,20 @@ class EventLoop:
             bits = FORCES if STATES[READ, :, 6:].any() else 0
             status = self._bind_to((STATES, WALK, EXTRA, ENDS))(dt, gx, gy, left, *self._options, bits)
         return status
+
+    def follow(self, reel: Reel, states: tuple[AnyArray, ...]) -> int:
+        """Take the steps that `reel` asks for; the bits of all, a negative code of `transfer.py`, or `run.ENERGY`."""
+        while True:
+            status = check("run", self._bind_run(reel, states)(self.disks, self.lossy, self.together))
+            if status == ROOM_FOR_IMPACTS:
+                reel.more_events()
+            elif status <= ROOM_FOR_LISTS:
+                self._grow(status)
+            else:
+                return status
+
+    def _bind_run(self, reel: Reel, states: tuple[AnyArray, ...]) -> Callable[..., int]:
+        return run.bind(self.table, reel.table, *states, self._usual)
 
     def _bind_to(self, states: tuple[AnyArray, ...]) -> Callable[..., int]:
         """The step as machine code, bound to these arrays and to those of the scene."""
@@ -207,8 +225,7 @@ class Together(EventLoop):
 
     def __init__(self, BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, disks: int) -> None:
         super().__init__(BODY, SHAPE, LINK, VERTEX, disks, 0)
-        self._usual: FloatArray = self.near.MARK["margin"].copy()
-        self._options = ()
+        self._options, self.together = (), True
 
     def _bind(self, states: tuple[AnyArray, ...]) -> Callable[..., int]:
         return step_together.bind(self.table, *states, self._usual)

@@ -1,0 +1,159 @@
+"""RunningStepper: many steps in one compiled call, wherever no Python function is to be called in between."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Sequence
+from time import perf_counter
+from typing import TYPE_CHECKING
+
+import numpy as np
+from tqdm import tqdm
+
+from .errors import NotFiniteError
+from .impacts.film import Reel
+from .impacts.run import ENERGY
+from .impacts.scene import EventLoop
+from .layout import BODY_ROW, LEFT, NOW
+from .packed_space import TOO_FAR
+from .packed_stepper import PackedStepper
+from .report import RunReport
+from .space.world import World
+from .stepper import check_dt, check_steps
+from .transfer import FORCES, lay
+
+if TYPE_CHECKING:
+    import pymunk
+
+_FIRST = 64  # steps until the loop returns for the first time
+_SHORT, _LONG = 0.05, 0.2  # seconds between which it is to return, for progress and interrupts
+
+
+class RunningStepper(PackedStepper):
+    """A stepper that can take many steps in one call; arguments as of `PackedStepper`."""
+
+    @property
+    @abstractmethod
+    def event_loop(self) -> EventLoop | None:
+        """What steps the arrays of the world that was read last, None if it is no event loop."""
+
+    @abstractmethod
+    def adjust(self, world: World, dt: float) -> None:
+        """Have the event loop know what joints and collision handlers say of the next step."""
+
+    def current(self) -> World:
+        """The arrays of the space as it is now, with the state of its bodies read."""
+        world = self._world
+        if world is None or not world.current():
+            world = self._look()
+        world.gather()
+        if not world.is_current():
+            world = self._look(anew=True)
+            world.gather()
+        return world
+
+    def compiles(self) -> bool:
+        """Whether a run of the space as it is now is one compiled call.
+
+        It is not where functions are to be called within steps (collision handlers, functions of bodies, joints and
+        springs, post-step callbacks that wait), where bodies may sleep, where centres of gravity lie elsewhere than at
+        the origins of bodies, and where joints hold bodies that are not in the space. Then a run is a Python loop.
+        """
+        world = self._world
+        if world is None or not world.current():
+            world = self._look()
+        joints = world.joints
+        calls = world.hooked or (
+            joints is not None and (joints.calls_back() or bool(joints.functions) or bool(joints.partners.outside))
+        )
+        waits = self.sync and self._sync.waits()
+        return not (calls or waits or self._sleep is not None or world.eccentric) and self.event_loop is not None
+
+    def run(self, steps: int, dt: float, progress: bool = False) -> RunReport:
+        self.refuse_within()
+        steps, dt = check_steps(steps), check_dt(dt)
+        if steps == 0 or dt == 0.0 or not self.compiles():
+            return super().run(steps, dt, progress)
+        reel = self.film(steps, dt, progress=progress)
+        RUN = reel.progress
+        counted = int(RUN.impacts), int(RUN.unmet), int(RUN.iterations)
+        return RunReport(self.time, int(RUN.done), reel.ledger, *counted, float(RUN.lock))
+
+    def film(
+        self, steps: int, dt: float, kept: Sequence[pymunk.Body] = (), every: int = 0, events: bool = False,
+        progress: bool = False,
+    ) -> Reel:  # fmt: skip
+        """Take steps > 0 of dt > 0 in compiled code, of a space that `compiles`, and keep frames of some bodies.
+
+        Args:
+            kept: bodies that are not static.  every: steps from frame to frame, 0 for none; the start is the first one.
+            events: whether impacts are kept.  progress: whether to show a progress bar.
+
+        A step that fails raises as `step` does, with the space as the steps before have left it.
+        """
+        world = self.current()
+        if not world.plain:
+            self.adjust(world, dt)
+        rows = np.array([world.bodies.row[body] for body in kept], np.int64)
+        moments = 1 + steps // every if every else 0
+        reel = Reel(dt, world.gravity, world.left(dt), self.time, rows, moments, every, events)
+        if every:
+            reel.frames[0] = world.STATES[NOW, rows, :6]
+            reel.progress.frame = 1
+        status = 0
+        try:
+            status = self._shoot(world, reel, steps, progress)
+        finally:
+            # After an interrupt too.
+            failure = self._failure(world, reel, dt, status) if status < 0 else None
+            self._land_run(world, reel, dt, status)
+            if failure is not None:
+                raise failure
+        return reel
+
+    def _shoot(self, world: World, reel: Reel, steps: int, progress: bool) -> int:
+        """Follow the run to its end; its bits or a negative code."""
+        RUN, loop, stretch, status = reel.progress, self.event_loop, _FIRST, 0
+        assert loop is not None
+        states = world.STATES, world.WALK, world.EXTRA, world.ENDS
+        with tqdm(total=steps, desc=type(self).__name__, unit="step", disable=not progress) as bar:
+            while status >= 0 and RUN.done < steps:
+                RUN.until = min(steps, int(RUN.done) + stretch)
+                began, before = perf_counter(), int(RUN.done)
+                status = loop.follow(reel, states)
+                took = perf_counter() - began
+                stretch = 2 * stretch if took < _SHORT else max(stretch // 2, 1) if took > _LONG else stretch
+                bar.update(int(RUN.done) - before)
+        return status
+
+    def _failure(self, world: World, reel: Reel, dt: float, status: int) -> Exception:
+        """The error of a step that failed."""
+        loop = self.event_loop
+        assert loop is not None
+        if status == ENERGY:
+            after = float(loop.scene.PAR.after)
+            return NotFiniteError(f"the energy of the space would be {after} after dt = {dt}: {TOO_FAR}")
+        try:
+            self._fail(world, dt, status)
+        except Exception as error:
+            return error
+        raise AssertionError(status)
+
+    def _land_run(self, world: World, reel: Reel, dt: float, status: int) -> None:
+        """Bring the space to where the steps that were taken have left it."""
+        RUN = reel.progress
+        broken = status < 0 or reel.halted
+        if broken:
+            self._world = self._past = None
+            moves = world.WALK[BODY_ROW] >= 0
+            world.STATES[LEFT, moves, :6] = world.STATES[NOW, moves, :6]
+        if RUN.done == 0:
+            return
+        bits = int(RUN.all_bits)
+        lay(world.STATES, world.WALK, world.ENDS, bits)
+        self.time = float(RUN.time)
+        if bits & FORCES:
+            world.reset_forces()
+        self.land(world, dt, bits)
+        if not world.plain:
+            self._tell_joints(world)
