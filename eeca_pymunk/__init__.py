@@ -16,8 +16,10 @@ from .energy.invariants import Invariants
 from .energy.ledger import Ledger
 from .energy.ledger_trace import LedgerTrace
 from .errors import UnsupportedFeature
-from .recording import Recording, record
-from .report import Contacts, StepReport
+from .events import Events
+from .recorder import record
+from .recording import Recording
+from .report import Contacts, RunReport, StepReport
 from .space.measure import measure
 from .stepper import Stepper
 from .sweep import SweepError, sweep
@@ -28,6 +30,7 @@ __all__ = [
     "Closure",
     "Contacts",
     "Dashpot",
+    "Events",
     "Invariants",
     "Ledger",
     "LedgerTrace",
@@ -36,6 +39,7 @@ __all__ = [
     "Newmark",
     "PenaltyEnergyMomentum",
     "Recording",
+    "RunReport",
     "StepReport",
     "Stepper",
     "SweepError",

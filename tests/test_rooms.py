@@ -35,7 +35,9 @@ FLOORS = (
     "packed_stepper",
     "runs",
     "eeca baselines",
-    "build recording warming sweep",
+    "events",
+    "recording",
+    "build recorder warming sweep",
     "render",
     "__init__ __main__",
 )
