@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import sys
 from typing import TYPE_CHECKING
 
@@ -28,14 +29,19 @@ _PER_MOMENT = 11 * 8  # bytes besides: time, energies, momentum, ledger
 MEMORY = 2.0**30  # bytes
 
 
-def versions() -> dict[str, str]:
-    """Versions of what a result depends on."""
+@functools.cache
+def _versions() -> dict[str, str]:
     from importlib.metadata import version
 
     return {
         "python": sys.version.split()[0],
         **{name: version(name) for name in ("eeca-pymunk", "pymunk", "numpy")},
     }
+
+
+def versions() -> dict[str, str]:
+    """Versions of what a result depends on."""
+    return dict(_versions())
 
 
 def step_count(duration: float, dt: float) -> int:

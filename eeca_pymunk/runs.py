@@ -25,7 +25,7 @@ from .transfer import FORCES, lay
 if TYPE_CHECKING:
     import pymunk
 
-_FIRST = 64  # steps until the loop returns for the first time
+_FIRST = 256  # steps until the loop returns for the first time
 _SHORT, _LONG = 0.05, 0.2  # seconds between which it is to return, for progress and interrupts
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
@@ -61,6 +63,7 @@ class Reel:
     @film.setter
     def film(self, arrays: Film) -> None:
         self._film, self.table = arrays, table_of(arrays)
+        self.call: Callable[..., int] | None = None  # the loop bound to these arrays
 
     @property
     def progress(self) -> Run:

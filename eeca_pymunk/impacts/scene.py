@@ -121,11 +121,13 @@ class EventLoop:
     def follow(self, reel: Reel, states: tuple[AnyArray, ...]) -> int:
         """Take the steps that `reel` asks for; the bits of all, a negative code of `transfer.py`, or `run.ENERGY`."""
         while True:
-            status = check("run", self._bind_run(reel, states)(self.disks, self.lossy, self.together))
+            call = reel.call = reel.call or self._bind_run(reel, states)
+            status = check("run", call(self.disks, self.lossy, self.together))
             if status == ROOM_FOR_IMPACTS:
                 reel.more_events()
             elif status <= ROOM_FOR_LISTS:
                 self._grow(status)
+                reel.call = None
             else:
                 return status
 
