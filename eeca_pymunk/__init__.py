@@ -20,6 +20,7 @@ from .events import Events
 from .recorder import record
 from .recording import Recording
 from .report import Contacts, RunReport, StepReport
+from .rollouts import Rollouts, rollout
 from .space.measure import measure
 from .stepper import Stepper
 from .sweep import SweepError, sweep
@@ -39,6 +40,7 @@ __all__ = [
     "Newmark",
     "PenaltyEnergyMomentum",
     "Recording",
+    "Rollouts",
     "RunReport",
     "StepReport",
     "Stepper",
@@ -48,6 +50,7 @@ __all__ = [
     "measure",
     "record",
     "render",
+    "rollout",
     "sweep",
     "warmup",
 ]

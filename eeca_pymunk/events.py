@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from .arrays import FloatArray, IntArray
 from .compiled.records import Rows, columns
 from .model.contacts import Impulse
+from .report import StepReport
+
+if TYPE_CHECKING:
+    import pymunk
 
 
 @dataclass
@@ -33,6 +38,10 @@ class Events:
     def __len__(self) -> int:
         return len(self.time)
 
+    def part(self, first: int, last: int) -> Events:
+        """Those from number `first` to before `last`."""
+        return Events(*(getattr(self, f.name)[first:last] for f in fields(self)))
+
     def in_order(self) -> Events:
         """The same by time, those at one instant by their bodies."""
         order = np.lexsort((self.bodies[:, 1], self.bodies[:, 0], self.time))
@@ -40,16 +49,29 @@ class Events:
 
     @staticmethod
     def of(EVENT: Rows[Impulse], place: IntArray) -> Events:
-        """Of (m,) impacts; `place` (k,) is where the body of each shape is among the recorded ones, -1 for none."""
+        """Of (m,) impacts, in this order; `place` (k,) is where the body of each shape is among the recorded ones, -1
+        for none."""
         bodies = np.stack((place[EVENT["first"].astype(np.intp)], place[EVENT["second"].astype(np.intp)]), axis=-1)
         return Events(
             EVENT["when"].copy(), bodies, columns(EVENT, "px", "py"), columns(EVENT, "nx", "ny"),
             EVENT["normal"].copy(), EVENT["tangential"].copy(),
-        ).in_order()  # fmt: skip
+        )  # fmt: skip
+
+    @staticmethod
+    def of_report(report: StepReport, start: float, place: Mapping[pymunk.Body, int]) -> Events:
+        """Of a step that began at `start`; `place` of the recorded bodies."""
+        contacts = report.contacts
+        now = np.flatnonzero((contacts.duration == 0.0) & (report.impulse != 0.0))
+        at = np.array([place.get(body, -1) for body in contacts.bodies] if len(now) else [], np.intp)
+        bodies = np.stack((at[contacts.body_a[now]], at[contacts.body_b[now]]), axis=-1)
+        return Events(
+            start + contacts.time[now], bodies, contacts.point[now], contacts.normal[now], report.impulse[now],
+            report.friction[now],
+        )  # fmt: skip
 
     @staticmethod
     def joined(parts: Sequence[Events]) -> Events:
-        """Those of several stretches of one run."""
+        """One after the other."""
         if not parts:
             return Events()
-        return Events(*(np.concatenate([getattr(part, f.name) for part in parts]) for f in fields(Events))).in_order()
+        return Events(*(np.concatenate([getattr(part, f.name) for part in parts]) for f in fields(Events)))

@@ -86,7 +86,7 @@ def record(
                 film.keep(k // every)
         recording = film.recording
         recording.parameters["steps_unmet"] = film.unmet
-        recording.events = Events.joined(film.events)
+        recording.events = Events.joined(film.events).in_order()
     recording.time[:] = (dt * every) * np.arange(moments)
     recording.parameters.update(stepper=type(stepper).__name__, dt=dt, duration=count * dt, every=every, **versions())
     return recording
@@ -113,7 +113,7 @@ def _filmed(
     return Recording(
         np.zeros(len(frames)), position.copy(), angle.copy(), velocity.copy(), of.energy, of.linear_momentum, mass,
         outlines, kinetic=of.kinetic, ledger=LedgerTrace(*reel.film.SUMS.T.copy()), spin=spin.copy(),
-        events=Events.of(reel.events, owner), parameters={"steps_unmet": int(reel.progress.unmet)},
+        events=Events.of(reel.events, owner).in_order(), parameters={"steps_unmet": int(reel.progress.unmet)},
     )  # fmt: skip
 
 
@@ -144,17 +144,7 @@ class _Moments:
         """Add the ledger and the impacts of a step that began at `start`."""
         self.total += entries(report.ledger)
         self.unmet += not report.converged
-        contacts = report.contacts
-        now = np.flatnonzero((contacts.duration == 0.0) & (report.impulse != 0.0))
-        if len(now):
-            place = np.array([self.place.get(body, -1) for body in contacts.bodies], np.intp)
-            bodies = np.stack((place[contacts.body_a[now]], place[contacts.body_b[now]]), axis=-1)
-            self.events.append(
-                Events(
-                    start + contacts.time[now], bodies, contacts.point[now], contacts.normal[now],
-                    report.impulse[now], report.friction[now],
-                )
-            )  # fmt: skip
+        self.events.append(Events.of_report(report, start, self.place))
 
     def keep(self, i: int) -> None:
         """Write moment number i."""

@@ -8,8 +8,10 @@ from time import perf_counter
 from typing import TYPE_CHECKING
 
 import numpy as np
+import numpy.typing as npt
 from tqdm import tqdm
 
+from .arrays import FloatArray, IntArray
 from .errors import NotFiniteError
 from .impacts.film import Reel
 from .impacts.run import ENERGY
@@ -19,18 +21,30 @@ from .packed_space import TOO_FAR
 from .packed_stepper import PackedStepper
 from .report import RunReport
 from .space.world import World
+from .states import get_state, set_state
 from .stepper import check_dt, check_steps
 from .transfer import FORCES, lay
 
 if TYPE_CHECKING:
     import pymunk
 
+    from .rolling import Rolling
+
 _FIRST = 256  # steps until the loop returns for the first time
 _SHORT, _LONG = 0.05, 0.2  # seconds between which it is to return, for progress and interrupts
 
 
 class RunningStepper(PackedStepper):
-    """A stepper that can take many steps in one call; arguments as of `PackedStepper`."""
+    """A stepper that can take many steps in one call; arguments as of `PackedStepper`.
+
+    Attributes:
+        rolling: the copies of the scene that rollouts have been made on.
+    """
+
+    rolling: Rolling | None = None
+
+    def __getstate__(self) -> dict[str, object]:
+        return {**super().__getstate__(), "rolling": None}
 
     @property
     @abstractmethod
@@ -68,6 +82,45 @@ class RunningStepper(PackedStepper):
         )
         waits = self.sync and self._sync.waits()
         return not (calls or waits or self._sleep is not None or world.eccentric) and self.event_loop is not None
+
+    def get_state(self) -> IntArray:
+        """All that decides where the space goes from here, as a 1-D array of integers: poses, velocities and forces of
+        its bodies, and what the stepper knows of earlier steps. `set_state` takes it, in this process or in another
+        with the same space.
+
+        Where some bodies sleep, what the stepper knows is left out: from there paths agree up to round-off.
+        """
+        return get_state(self)
+
+    def set_state(self, state: npt.ArrayLike) -> None:
+        """Go back to a state.
+
+        Args:
+            state: what `get_state` returned: the space then goes the same way, bit by bit; or (b, 6) position, angle,
+                velocity and spin of the b bodies that are not static, in the order of `space.bodies`; length, rad, per
+                time. That clears forces, and all that the stepper knows of earlier steps: equal states give equal
+                paths, whatever came before. Sleeping bodies wake.
+
+        Raises:
+            ValueError: it is neither, of another space, or not finite; nothing is changed.
+        """
+        set_state(self, np.asarray(state))
+
+    def start_anew(self, world: World, state: FloatArray) -> None:
+        """Forget all of earlier steps: bodies have been put where (N, 9) says."""
+        loop = self.event_loop
+        if loop is None or world.joints is not None or self._sleep is not None:
+            self.refresh()
+        elif not hasattr(loop, "fresh"):
+            # Later calls are cheaper.
+            self.refresh()
+            self.current()
+            if (loop := self.event_loop) is not None:
+                loop.keep_fresh()
+        else:
+            rows = world.WALK[BODY_ROW]
+            loop.start_anew(rows[rows >= 0], state[rows >= 0, :6])
+            world.STATES[LEFT, rows >= 0] = np.nan
 
     def run(self, steps: int, dt: float, progress: bool = False) -> RunReport:
         self.refuse_within()

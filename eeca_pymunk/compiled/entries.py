@@ -36,8 +36,8 @@ TABLES = {
         SIDES:i8[2] STEPPED:f8[2] TALLY:i8[1]
     """,
     "Film": """
-        RUN:Run KEPT:i8[1] FRAMES:f8[2] SUMS:f8[2] EVENTS:Impulse[1] TOTAL:f8[1] INITIAL:f8[2] PUSH:f8[2] LATE:i8[1]
-        OWN:i8[1] FRESH:i8[1]
+        RUN:Run KEPT:i8[1] FRAMES:f8[2] SUMS:f8[2] EVENTS:Impulse[1] TOTAL:f8[1] INITIAL:f8[2] PUSH:f8[2]
+        COUNTS:i8[2] OWN:i8[1] FRESH:i8[1]
     """,
 }
 

@@ -32,21 +32,23 @@ class Reel:
         every: steps from frame to frame, 0 for none.  events: whether impacts are kept.
         initial: (K, b, 6) where rollouts begin; none: the run goes on from where bodies are.
         push: (K T, b, 3) forces and torques in each stretch of `every` steps, or none.
+        into: (T, b, 6) memory for the frames, else new memory.
     """
 
     def __init__(
         self, dt: float, gravity: tuple[float, ...], left: float, time: float = 0.0, kept: IntArray = _NOBODY,
         frames: int = 0, every: int = 0, events: bool = False, initial: FloatArray | None = None,
-        push: FloatArray | None = None,
+        push: FloatArray | None = None, into: FloatArray | None = None,
     ) -> None:  # fmt: skip
         b, RUN = len(kept), row(Run)
         rollouts = 0 if initial is None else len(initial)
         RUN.dt, RUN.gravity_x, RUN.gravity_y, RUN.left_over = dt, *gravity, left
         RUN.time, RUN.lock, RUN.every = time, 1.0, every
         self.film = Film(
-            RUN, np.ascontiguousarray(kept, np.int64), np.zeros((frames * b, 6)), np.zeros((frames, 6)),
+            RUN, np.ascontiguousarray(kept, np.int64), np.zeros((frames * b, 6)) if into is None else _flat(into, 6),
+            np.zeros((frames, 6)),
             rows(Impulse, _IMPACTS if events else 0), np.zeros(6), _flat(initial, 6), _flat(push, 3),
-            np.zeros(rollouts, np.int64), _NOBODY, _NOBODY,
+            np.zeros((rollouts, 2), np.int64), _NOBODY, _NOBODY,
         )  # fmt: skip
 
     @property

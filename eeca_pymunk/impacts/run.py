@@ -53,7 +53,7 @@ def set_back(A: Scene, F: Film, STATES: FloatArray, WALK: IntArray) -> None:
             now[F.KEPT[q], c] = F.INITIAL[F.RUN.rollout * b + q, c]
     for c in range(6):
         F.TOTAL[c] = 0.0
-    F.LATE[F.RUN.rollout] = 0
+    F.COUNTS[F.RUN.rollout, 0] = 0
 
 
 @uncounted
@@ -95,7 +95,7 @@ def after_step(A: Scene, F: Film, STATES: FloatArray) -> int:
     if COUNT.unmet > 0:
         RUN.unmet += 1
         if RUN.rollouts > 0:
-            F.LATE[RUN.rollout] += 1
+            F.COUNTS[RUN.rollout, 0] += 1
     if COUNT.logged > 0:
         RUN.iterations += COUNT.solves + COUNT.blocks
         if abs(PAR.lock - 1.0) > abs(RUN.lock - 1.0):
@@ -126,6 +126,7 @@ def next_rollout(F: Film) -> bool:
     RUN = F.RUN
     if RUN.rollouts == 0:
         return False
+    F.COUNTS[RUN.rollout, 1] = RUN.kept
     RUN.rollout, RUN.done = RUN.rollout + 1, 0
     return bool(RUN.rollout < RUN.rollouts)
 

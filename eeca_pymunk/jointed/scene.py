@@ -11,6 +11,7 @@ from ..arrays import AnyArray, FloatArray, IntArray
 from ..compiled import table_of
 from ..compiled.records import Rows
 from ..impacts.film import Reel
+from ..impacts.memory import OF_SCENE, gathered
 from ..impacts.scene import UNBOUND, EventLoop
 from ..joints.layout import JOINT_COLUMNS, TIE_COLUMNS
 from ..joints.plan import make_plan, room_for
@@ -29,7 +30,7 @@ from ..joints.scratch import (
 )
 from ..model.bodies import Body
 from ..model.shapes import Link, Shape
-from .layout import COMPONENTS, ORDER, STEPPED_COLUMNS, TALLY_LENGTH, Joints
+from .layout import COMPONENTS, OF_JOINTS, ORDER, STEPPED_COLUMNS, TALLY_LENGTH, Joints
 from .loop import step_jointed
 from .run import run_jointed
 from .together import step_together_jointed
@@ -86,6 +87,13 @@ class JointedLoop(EventLoop):
         )  # fmt: skip
         self._ties = table_of(self.joints)
         self._bound = UNBOUND
+
+    def _gather(self) -> IntArray:
+        (self.scene, self.joints), memory = gathered((self.scene, OF_SCENE), (self.joints, OF_JOINTS))
+        self.near = self._lists()
+        self._joint, self._tie = self.joints.JOINT, self.joints.TIE
+        self._ties = table_of(self.joints)
+        return memory
 
     @property
     def joint(self) -> FloatArray:

@@ -43,9 +43,9 @@ class Film(NamedTuple):
     KEPT (b,): rows of the bodies in STATES. FRAMES (T b, 6): poses and velocities of T frames. SUMS (T, 6): ledgers of
     all steps so far, summed, in the order of `energy.ledger.Ledger`. EVENTS: impacts, `when` from the start of the run;
     none are kept if there is no row. TOTAL (6,): the sum so far. INITIAL (K b, 6): poses and velocities at the start of
-    each of K rollouts. PUSH (K T b, 3): forces and torques in each stretch of `every` steps, or none. LATE (K,): steps
-    of each rollout that left something undone. OWN, FRESH: the memory of the scene that steps change, and what is in it
-    where nothing has been stepped.
+    each of K rollouts. PUSH (K T b, 3): forces and torques in each stretch of `every` steps, or none. COUNTS (K, 2):
+    steps of each rollout that left something undone, rows of EVENTS in use at its end. OWN, FRESH: the memory of the
+    scene that steps change, and what is in it where nothing has been stepped.
     """
 
     RUN: Run
@@ -56,7 +56,7 @@ class Film(NamedTuple):
     TOTAL: FloatArray
     INITIAL: FloatArray
     PUSH: FloatArray
-    LATE: IntArray
+    COUNTS: IntArray
     OWN: IntArray
     FRESH: IntArray
 
