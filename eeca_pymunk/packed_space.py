@@ -112,14 +112,12 @@ class PackedSpace(Stepper):
             self._sleep.wake()
             rouse(self.space)
 
-    def resting(self) -> tuple[FloatArray, IntArray, IntArray]:
-        """How long bodies have been at rest (N,), their groups of sleepers (N,), -1 for who is awake, and timers (2,).
-
-        All by the rows of the world that was read last."""
-        N = 0 if self._world is None else len(self._world.bodies)
+    def resting(self, bodies: Sequence[pymunk.Body]) -> tuple[FloatArray, IntArray, IntArray]:
+        """How long bodies have been at rest (N,), places of others of their groups of sleepers (N,), -1 for who is
+        awake, and timers (2,)."""
         if self._sleep is None:
-            return np.zeros(N), np.full(N, -1), np.zeros(2, np.int64)
-        return self._sleep.told()
+            return np.zeros(len(bodies)), np.full(len(bodies), -1), np.zeros(2, np.int64)
+        return self._sleep.told(bodies)
 
     def rest_again(self, bodies: Sequence[pymunk.Body], rested: FloatArray, groups: IntArray, timers: IntArray) -> None:
         """Have bodies, all awake, rest as `resting` told of them."""

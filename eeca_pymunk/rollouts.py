@@ -175,7 +175,7 @@ def _twin(stepper: RunningStepper) -> RunningStepper:
         twin: RunningStepper = pickle.loads(pickle.dumps(stepper))
     except Exception as error:
         raise UnsupportedFeature(
-            f"rollouts of a space in which functions are called step a copy of it, and pickle makes none ({error}): give "
-            " functions that stand in a module"
+            f"rollouts of a space in which functions are called step a copy of it, and pickle makes none ({error}): "
+            "give functions that stand in a module"
         ) from error
     return twin

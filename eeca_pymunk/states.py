@@ -33,9 +33,10 @@ _OF_STEPS = slice(MAX_BIAS + 1, None)  # columns of JOINT that steps change, bes
 def get_state(stepper: RunningStepper) -> IntArray:
     """See `RunningStepper.get_state`."""
     world, loop = stepper.current(), stepper.event_loop
-    parts: list[AnyArray] = [_order(world), world.state, np.array([stepper.time]), *stepper.resting()]
+    at = _rows(world)
+    parts: list[AnyArray] = [world.state[at], np.array([stepper.time]), *stepper.resting(_everyone(stepper.space))]
     if loop is not None and not world.bodies.asleep.any():
-        parts += [world.STATES[LEFT], world.EXTRA, *loop.remembered()]
+        parts += [world.STATES[LEFT, at], world.EXTRA[at], *loop.remembered()]
         if isinstance(loop, JointedLoop) and world.joints is not None:
             joints = world.joints
             rates = np.array([joints.rates.get(item, (np.nan, np.nan)) for item in joints.items])
@@ -85,34 +86,32 @@ def _recall(stepper: RunningStepper, state: IntArray) -> None:
             "this state is of another space, or of another stepper: give one of a space with the same bodies, shapes "
             "and joints, added in the same order"
         )
-    everyone = (*space.bodies, space.static_body)
+    everyone = _everyone(space)
     N = len(everyone)
-    items = [everyone[i] for i in parts.take(np.int64, (N,)).tolist()]
-    poses = parts.take(np.float64, (N, STATE_COLUMNS))
     stepper.wake()
     world = stepper.current()
-    whole = world.state.copy()
-    for body, row in zip(items, poses, strict=True):
-        if not world.bodies.static[world.bodies.row[body]]:
-            whole[world.bodies.row[body]] = row
+    at, whole = _rows(world), world.state.copy()
+    moves = ~world.bodies.static
+    whole[at] = parts.take(np.float64, (N, STATE_COLUMNS))
+    whole[~moves] = world.state[~moves]
     world.bodies.scatter(whole, unchanged=True)
     stepper.time = float(parts.take(np.float64, (1,))[0])
     rested, groups, timers = parts.take(np.float64, (N,)), parts.take(np.int64, (N,)), parts.take(np.int64, (2,))
-    same = not (groups >= 0).any() and items == list(world.bodies.items)
-    if not same or not parts.left:
-        stepper.refresh()
+    if parts.left:
+        _remember(stepper, world, parts, at)
     else:
-        _remember(stepper, world, parts)
-    stepper.rest_again(items, rested, groups, timers)
+        stepper.refresh()
+    stepper.rest_again(everyone, rested, groups, timers)
 
 
-def _remember(stepper: RunningStepper, world: World, parts: _Parts) -> None:
-    """Have what was known in a state."""
+def _remember(stepper: RunningStepper, world: World, parts: _Parts, at: IntArray) -> None:
+    """Have what was known in a state, whose bodies have now the rows `at` (N,)."""
     loop, joints = stepper.event_loop, world.joints
     assert loop is not None
     moves = ~world.bodies.static
-    left = parts.take(np.float64, world.STATES[LEFT].shape)
-    world.EXTRA[:] = parts.take(np.float64, world.EXTRA.shape)
+    left = np.empty_like(world.STATES[LEFT])
+    left[at] = parts.take(np.float64, left.shape)
+    world.EXTRA[at] = parts.take(np.float64, world.EXTRA.shape)
     loop.recall(parts.take)
     if isinstance(loop, JointedLoop) and joints is not None:
         joint = parts.take(np.float64, joints.joint.shape)
@@ -168,15 +167,19 @@ def _words(array: AnyArray) -> IntArray:
     return np.frombuffer(content + bytes(-len(content) % 8), np.int64)
 
 
-def _order(world: World) -> IntArray:
-    """(N,) places of the bodies among those of the space, the static body last."""
-    place = {body: i for i, body in enumerate((*world.space.bodies, world.space.static_body))}
-    return np.array([place[body] for body in world.bodies.items], np.int64)
+def _everyone(space: pymunk.Space) -> list[pymunk.Body]:
+    """All bodies in the order in which the space got them, which pymunk's own order is not once some have slept."""
+    return [*space.bodies, space.static_body]
+
+
+def _rows(world: World) -> IntArray:
+    """Rows of `_everyone` among the bodies of the world."""
+    return np.array([world.bodies.row[body] for body in _everyone(world.space)], np.int64)
 
 
 def _fingerprint(space: pymunk.Space, loop: EventLoop | None) -> int:
     """Of what a state does not say: what bodies, shapes and joints there are, and what steps them, in which records."""
-    bodies = {body: i for i, body in enumerate((*space.bodies, space.static_body))}
+    bodies = {body: i for i, body in enumerate(_everyone(space))}
     of: list[object] = [type(loop).__name__, None if loop is None else loop.together]
     of += [(name, kind.itemsize) for name, kind in sorted(KINDS.items())]
     of += [body.body_type for body in bodies]

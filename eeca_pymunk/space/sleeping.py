@@ -117,12 +117,12 @@ class Sleep:
             found |= self._wake_within(box)
         return found
 
-    def told(self) -> tuple[FloatArray, IntArray, IntArray]:
-        """Times at rest (N,), groups of sleepers (N,), -1 for who is awake, and timers (2,)."""
-        items = self.world.bodies.items
-        place = {body: i for i, body in enumerate(items)}
-        groups = [place.get(leader(body), i) if body.is_sleeping else -1 for i, body in enumerate(items)]
-        return self._rested, np.array(groups, np.int64), np.array([self._wait, self._since], np.int64)
+    def told(self, bodies: Sequence[pymunk.Body]) -> tuple[FloatArray, IntArray, IntArray]:
+        """Times at rest (N,), places of others of their groups of sleepers (N,), -1 for who is awake, timers (2,)."""
+        place = {body: i for i, body in enumerate(bodies)}
+        groups = [place.get(leader(body), i) if body.is_sleeping else -1 for i, body in enumerate(bodies)]
+        rested = self._rested[[self.world.bodies.row[body] for body in bodies]]
+        return rested, np.array(groups, np.int64), np.array([self._wait, self._since], np.int64)
 
     def recall(self, rested: Mapping[pymunk.Body, float], timers: IntArray) -> None:
         """Take over times at rest, and timers."""
