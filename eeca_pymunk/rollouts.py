@@ -84,8 +84,8 @@ def rollout(
         ValueError: shapes do not fit, a number is not finite, or becomes so on the way.
         UnsupportedFeature: functions are called within steps and the space cannot be copied, see below.
 
-    Where `stepper.run` is a Python loop (collision handlers, functions of bodies and joints, sleeping bodies) so is
-    this, in one thread, on a copy of the space that pickle makes.
+    Where `stepper.run` is a Python loop so is this, in one thread: on the space itself, which is put back afterwards,
+    or, if functions are called within steps, on a copy of it that pickle makes.
     """
     if not isinstance(stepper, RunningStepper):
         raise TypeError(f"{type(stepper).__name__} has no rollouts: give an EECA")
@@ -106,9 +106,8 @@ def rollout(
         raise ValueError(f"controls of shape {push.shape}: give ({K}, {T}, {b}, 3), force and torque of each body")
     for name, array in (("states", start), ("controls", push)):
         if array is not None and not np.isfinite(array).all():
-            raise ValueError(
-                f"{name}[{np.argwhere(~np.isfinite(array))[0].tolist()}] is not finite: give finite numbers"
-            )
+            at = tuple(np.argwhere(~np.isfinite(array))[0].tolist())
+            raise ValueError(f"{name}[{at}] is {array[at]}: give finite numbers")
     count = _processors() if threads is None else check_steps(threads)
     if count == 0:
         raise ValueError(f"threads = {threads}: give a whole number > 0, or None")
@@ -119,7 +118,7 @@ def rollout(
         if stepper.compiles():
             events = _on_threads(stepper, job, min(count, max(K, 1)), bar.update)
         else:
-            events = roll_slowly(_twin(stepper), job, bar.update)
+            events = _one_by_one(stepper, job, bar.update)
     if not full:
         return job.frames
     first = np.cumsum([0, *map(len, events)])
@@ -167,6 +166,17 @@ def _on_threads(stepper: RunningStepper, job: Job, threads: int, done: Callable[
             pool.shutdown(wait=True, cancel_futures=True)
             raise
     return found
+
+
+def _one_by_one(stepper: RunningStepper, job: Job, done: Callable[[int], object]) -> list[Events]:
+    """All rollouts by a Python loop; the impacts of each."""
+    if stepper.calls():
+        return roll_slowly(_twin(stepper), job, done)
+    state = stepper.get_state()
+    try:
+        return roll_slowly(stepper, job, done)
+    finally:
+        stepper.set_state(state)
 
 
 def _twin(stepper: RunningStepper) -> RunningStepper:

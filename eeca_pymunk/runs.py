@@ -73,15 +73,21 @@ class RunningStepper(PackedStepper):
         springs, post-step callbacks that wait), where bodies may sleep, where centres of gravity lie elsewhere than at
         the origins of bodies, and where joints hold bodies that are not in the space. Then a run is a Python loop.
         """
+        if self.calls() or self.event_loop is None or self._sleep is not None:
+            return False
+        world = self._world
+        assert world is not None  # `calls` has looked
+        outside = world.joints is not None and bool(world.joints.partners.outside)
+        return not (outside or world.eccentric)
+
+    def calls(self) -> bool:
+        """Whether functions are to be called within the next step."""
         world = self._world
         if world is None or not world.current():
             world = self._look()
         joints = world.joints
-        calls = world.hooked or (
-            joints is not None and (joints.calls_back() or bool(joints.functions) or bool(joints.partners.outside))
-        )
-        waits = self.sync and self._sync.waits()
-        return not (calls or waits or self._sleep is not None or world.eccentric) and self.event_loop is not None
+        functions = joints is not None and (joints.calls_back() or bool(joints.functions))
+        return world.hooked or functions or (self.sync and self._sync.waits())
 
     def get_state(self) -> IntArray:
         """All that decides where the space goes from here, as a 1-D array of integers: poses, velocities and forces of
