@@ -22,7 +22,7 @@ from .runs import RunningStepper
 from .space.bodies import moving
 from .stepper import check_dt, check_steps
 
-_PIECES = 8  # that each thread's share is cut into, so that none waits long for another
+_PIECES, _STEPS = 8, 4096  # that each thread's share is cut into, so that none waits long for another; steps at least
 
 
 @dataclass
@@ -136,7 +136,8 @@ def _on_threads(stepper: RunningStepper, job: Job, threads: int, done: Callable[
     """All rollouts; the impacts of each."""
     rolling = Rolling.of(stepper, job.dt)
     K = len(job.states)
-    size = max(1, -(-K // (threads * _PIECES)))
+    count = max(threads, min(threads * _PIECES, K * job.steps // _STEPS))
+    size = max(1, -(-K // count))
     pieces = [(k, min(k + size, K)) for k in range(0, K, size)]
     if threads == 1:
         found = []

@@ -151,7 +151,8 @@ class EventLoop:
         """Be what a new loop is for bodies, rows `at` (b,) of BODY, of this state (b, 6); after `keep_fresh`."""
         self.own[:] = self.fresh
         # Where tables have been made larger they are taken back: a step that is broken off for room begins again.
-        self.scene = self.scene._replace(**self._room)
+        if any(getattr(self.scene, name) is not array for name, array in self._room.items()):
+            self.scene = self.scene._replace(**self._room)
         self.scene.KEYS[:] = -1
         if self.listed:
             BODY, moved = self.scene.BODY, self.scene.BODY[at]
