@@ -9,7 +9,7 @@ from .arrays import FloatArray, IntArray
 from .closures.time_of_impact import TimeOfImpact
 from .impacts.scene import EventLoop
 from .jointed.scene import JointedLoop
-from .packed_stepper import busy
+from .reentry import busy
 from .report import Details
 from .runs import RunningStepper
 from .saved import Saved

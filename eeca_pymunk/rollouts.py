@@ -17,6 +17,7 @@ from tqdm import tqdm
 from .arrays import FloatArray, IntArray
 from .errors import UnsupportedFeature
 from .events import Events
+from .reentry import refuse_within
 from .rolling import Job, Rolling, roll_slowly
 from .runs import RunningStepper
 from .space.bodies import moving
@@ -89,7 +90,7 @@ def rollout(
     """
     if not isinstance(stepper, RunningStepper):
         raise TypeError(f"{type(stepper).__name__} has no rollouts: give an EECA")
-    stepper.refuse_within()
+    refuse_within(stepper.space)
     steps, every, dt = check_steps(steps), check_steps(every), check_dt(dt)
     if steps == 0 or every == 0 or dt == 0.0 or steps < every:
         raise ValueError(f"steps = {steps}, every = {every}, dt = {dt}: give numbers > 0, every <= steps")

@@ -19,6 +19,7 @@ from .impacts.scene import EventLoop
 from .layout import BODY_ROW, LEFT, NOW
 from .packed_space import TOO_FAR
 from .packed_stepper import PackedStepper
+from .reentry import refuse_within
 from .report import RunReport
 from .space.world import World
 from .states import get_state, set_state
@@ -129,7 +130,7 @@ class RunningStepper(PackedStepper):
             world.STATES[LEFT, rows >= 0] = np.nan
 
     def run(self, steps: int, dt: float, progress: bool = False) -> RunReport:
-        self.refuse_within()
+        refuse_within(self.space)
         steps, dt = check_steps(steps), check_dt(dt)
         if steps == 0 or dt == 0.0 or not self.compiles():
             return super().run(steps, dt, progress)

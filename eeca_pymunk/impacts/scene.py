@@ -4,28 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..arrays import AnyArray, FloatArray, IntArray, side_by_side
-from ..compiled import table_of
 from ..compiled.library import check
-from ..compiled.records import R, Rows, numbers, put, row, rows
+from ..compiled.records import R, Rows, row, rows
 from ..layout import NOW as READ
-from ..model.bodies import CHECK, POSE, VELOCITY, Body, Member, Next, Rest
+from ..model.bodies import CHECK, Body, Member, Next, Rest
 from ..model.contacts import Impulse, Pair, Pushed
 from ..model.scene import Scene
 from ..model.shapes import Link, Shape
 from ..model.step import Count, Step
-from ..pairs.setup import Near, near_lists, rebuilt
+from ..pairs.setup import near_lists, rebuilt
 from ..report import Details, of_events
 from ..sustained.memory import FORCE_COLUMNS, forget
 from ..sustained.relax import FRESH
 from ..transfer import FORCES
 from .booking import flag_again
 from .film import Reel
-from .memory import OF_SCENE, ROOM, gathered, recalled, remembered
+from .remembering import Remembering
 from .run import ROOM_FOR_IMPACTS, run
 from .step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, step
 from .together import step_together
@@ -34,9 +33,6 @@ if TYPE_CHECKING:
     import pymunk
 
 RULE_COLUMNS = 6
-_BOOK = slice((Step.TYPE.names or ()).index("restitution"), (Step.TYPE.names or ()).index("after") + 1)
-_OF_PROCESS = "table", "_bound", "own", "fresh", "_room"  # attributes that no copy has
-UNBOUND: tuple[tuple[AnyArray | None, ...], Callable[..., int]] = (None,) * 4, int
 _CONTACTS = 256  # of islands, that there is room for at first; powers of 2
 _OF_A_BODY, _MANY = 32, 1 << 16  # for each body where contacts may last, up to so many: untouched memory is free
 
@@ -48,7 +44,7 @@ def _longer(table: Rows[R], used: int) -> Rows[R]:
     return longer
 
 
-class EventLoop:
+class EventLoop(Remembering):
     """Steps the packed bodies and shapes of a world from impact to impact.
 
     Args:
@@ -93,17 +89,6 @@ class EventLoop:
         self.scene.MEMBER["tied"] = self.scene.MEMBER["next_tied"] = -1
         self.scene.RESTING["augmentation"] = FRESH
 
-    @property
-    def scene(self) -> Scene:
-        """All arrays; replace some by setting another."""
-        return self._scene
-
-    @scene.setter
-    def scene(self, arrays: Scene) -> None:
-        self._scene, self.table = arrays, table_of(arrays)
-        self._bound: tuple[tuple[AnyArray | None, ...], Callable[..., int]] = UNBOUND
-        self._book: FloatArray = numbers(arrays.PAR)[_BOOK]
-
     def step(
         self, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
         left: float,
@@ -136,60 +121,6 @@ class EventLoop:
     def _bind_run(self, reel: Reel, states: tuple[AnyArray, ...]) -> Callable[..., int]:
         return run.bind(self.table, reel.table, *states, self._usual)
 
-    def keep_fresh(self) -> None:
-        """Before the first step: keep what steps change, poses and velocities aside, as it is now, for `start_anew`."""
-        self.own = self._gather()
-        self.fresh: IntArray = self.own.copy()
-        self._room = {name: getattr(self.scene, name) for name in ROOM}
-
-    @property
-    def listed(self) -> bool:
-        """Whether near lists depend on where bodies are: else all shapes stand in all lists."""
-        return bool(np.isfinite(self.scene.MARK["margin"]).any())
-
-    def start_anew(self, at: IntArray, state: FloatArray) -> None:
-        """Be what a new loop is for bodies, rows `at` (b,) of BODY, of this state (b, 6); after `keep_fresh`."""
-        self.own[:] = self.fresh
-        # Where tables have been made larger they are taken back: a step that is broken off for room begins again.
-        if any(getattr(self.scene, name) is not array for name, array in self._room.items()):
-            self.scene = self.scene._replace(**self._room)
-        self.scene.KEYS[:] = -1
-        if self.listed:
-            BODY, moved = self.scene.BODY, self.scene.BODY[at]
-            put(moved, state, *POSE, *VELOCITY)
-            moved["since"] = 0.0
-            BODY[at] = moved
-            self._list_anew()
-            self.keep_fresh()
-
-    def remembered(self) -> list[AnyArray]:
-        """All that decides how the next step goes, besides what crosses the edge."""
-        return [self._usual, *remembered(self.scene)]
-
-    def recall(self, take: Callable[[Any, tuple[int, ...]], AnyArray]) -> None:
-        """Remember what `remembered` told; `take` gives its next part with a dtype and a shape."""
-        self._usual = take(np.float64, self._usual.shape).copy()
-        self.scene = recalled(self.scene, take)
-        self.near = self._lists()
-        self.__dict__.pop("fresh", None)
-
-    def _gather(self) -> IntArray:
-        """Have what steps change, poses and velocities aside, in one piece of memory: that memory, as integers."""
-        (self.scene,), memory = gathered((self.scene, OF_SCENE))
-        self.near = self._lists()
-        return memory
-
-    def _lists(self) -> Near:
-        """The near lists among the arrays of the scene."""
-        return Near(*(getattr(self.scene, name) for name in Near._fields))
-
-    def _list_anew(self) -> None:
-        """Make the near lists for where BODY has the bodies now, as for a new loop."""
-        scene = self.scene
-        self.near = near_lists(scene.BODY, scene.SHAPE, scene.LINK, scene.VERTEX, len(scene.LIST))
-        self._usual = self.near.MARK["margin"].copy()
-        self.scene = scene._replace(**self.near._asdict())
-
     def _bind_to(self, states: tuple[AnyArray, ...]) -> Callable[..., int]:
         """The step as machine code, bound to these arrays and to those of the scene."""
         call = self._bind(states)
@@ -198,13 +129,6 @@ class EventLoop:
 
     def _bind(self, states: tuple[AnyArray, ...]) -> Callable[..., int]:
         return step.bind(self.table, *states)
-
-    def __getstate__(self) -> dict[str, object]:
-        return {key: value for key, value in self.__dict__.items() if key not in _OF_PROCESS}
-
-    def __setstate__(self, state: dict[str, object]) -> None:
-        self.__dict__.update(state)
-        self.scene = self._scene
 
     def _grow(self, wish: int) -> None:
         scene = self.scene

@@ -12,7 +12,8 @@ from ..compiled import table_of
 from ..compiled.records import Rows
 from ..impacts.film import Reel
 from ..impacts.memory import OF_SCENE, gathered
-from ..impacts.scene import UNBOUND, EventLoop
+from ..impacts.remembering import UNBOUND
+from ..impacts.scene import EventLoop
 from ..joints.layout import JOINT_COLUMNS, TIE_COLUMNS
 from ..joints.plan import make_plan, room_for
 from ..joints.scratch import (
