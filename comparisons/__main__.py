@@ -29,6 +29,8 @@ NAMES = (
     "piles",
     "joints",
     "sleeping",
+    "rollouts",
+    "datasets",
     "soak",
     "pymunk_examples",
     "hard_cases",

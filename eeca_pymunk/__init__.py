@@ -11,6 +11,7 @@ from .baselines.penalty import PenaltyEnergyMomentum
 from .closures.dashpot import Dashpot
 from .closures.midstep import Midstep
 from .closures.time_of_impact import TimeOfImpact
+from .datasets import Rollouts
 from .eeca import EECA, Closure
 from .energy.invariants import Invariants
 from .energy.ledger import Ledger
@@ -20,7 +21,7 @@ from .events import Events
 from .recorder import record
 from .recording import Recording
 from .report import Contacts, RunReport, StepReport
-from .rollouts import Rollouts, rollout
+from .rollouts import certify, rollout
 from .space.measure import measure
 from .stepper import Stepper
 from .sweep import SweepError, sweep
@@ -47,6 +48,7 @@ __all__ = [
     "SweepError",
     "TimeOfImpact",
     "UnsupportedFeature",
+    "certify",
     "measure",
     "record",
     "render",

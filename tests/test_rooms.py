@@ -37,8 +37,9 @@ FLOORS = (
     "runs",
     "eeca baselines",
     "events",
-    "recording rolling",
-    "build recorder rollouts warming sweep",
+    "recording rolling datasets",
+    "build recorder warming sweep",
+    "rollouts",
     "render",
     "__init__ __main__",
 )
