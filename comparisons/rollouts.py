@@ -120,7 +120,7 @@ def speed(name: str, build: Callable[[], pymunk.Space]) -> Row:
     space, twin, third = build(), build(), build()
     start = poses(space)
     stepper, other = ep.EECA(space), ep.EECA(third)
-    states = np.repeat(start[None], 64, axis=0)
+    states = np.repeat(start[None], max(4, 64 // len(start)), axis=0)
     dt, buffer, run = 1.0 / FPS, batch.Buffer(), len(states) * FRAMES
     restarts = [b for b in twin.bodies if b.body_type != pymunk.Body.STATIC]
 

@@ -173,12 +173,3 @@ def film(case: int) -> np.ndarray:
     states = poses(stepper.space)[None].repeat(20, axis=0)
     states[:, :, 3:5] += np.random.default_rng(case).normal(size=(20, 5, 2))
     return ep.rollout(stepper, states, 30, 1 / 60, every=30, threads=1)
-
-
-def test_sweep_carries_rollouts_over_processes() -> None:
-    from concurrent.futures import ProcessPoolExecutor
-
-    with ProcessPoolExecutor(2) as pool:
-        found = ep.sweep(film, range(4), pool)
-    for one, other in zip(found, map(film, range(4)), strict=True):
-        np.testing.assert_array_equal(one, other)

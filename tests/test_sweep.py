@@ -16,6 +16,7 @@ import pytest
 
 import eeca_pymunk as ep
 import scenes
+from tests.test_rollouts import film
 
 State = list[tuple[float, float, float, float]]
 
@@ -87,6 +88,12 @@ def test_bits_do_not_depend_on_where_a_case_runs(where: str, request: pytest.Fix
     there = ep.sweep(gas, range(6), request.getfixturevalue(where))
     assert np.array(here).tobytes() == np.array(there).tobytes()
     assert len({str(one) for one in here}) == 6
+
+
+@pytest.mark.parametrize("where", ["processes", "cluster"])
+def test_rollouts_of_many_processes_are_those_of_one(where: str, request: pytest.FixtureRequest) -> None:
+    found = ep.sweep(film, range(4), request.getfixturevalue(where))
+    np.testing.assert_array_equal(np.array(found), np.array([film(case) for case in range(4)]))
 
 
 def test_results_are_in_order_and_progress_is_shown(capsys: pytest.CaptureFixture[str]) -> None:
