@@ -25,6 +25,7 @@ from ..model.shapes import Shape
 from . import private, private_joints
 from .bodies import ANGLE, ANGULAR_VELOCITY, POSITION, VELOCITY, Bodies
 from .joints import JointRows
+from .private_versions import answer
 from .shapes import Rules
 
 _PRESS = 1e-7  # part of its height by which a body is pressed on what carries it, in a rehearsal
@@ -188,7 +189,7 @@ class Rehearsal:
             try:
                 for handler, phase, function in functions:
                     changes = self.before if phase in private.PHASES[:2] else self._after
-                    watched = self._watch(function, changes)
+                    watched = self._watch(function, changes, phase)
                     if phase == private.PHASES[2] and joints is not None and joints.after:
                         watched = self.hooks.later(function)
                     setattr(handler, phase, watched)
@@ -211,13 +212,16 @@ class Rehearsal:
             for item, before, after in functions:
                 private_joints.replace_functions(item, before, after)
 
-    def _watch(self, function: Callable[..., Any], changes: FloatArray) -> Callable[..., None]:
-        def call(*arguments: Any) -> None:
+    def _watch(self, function: Callable[..., Any], changes: FloatArray, phase: str = "") -> Callable[..., bool | None]:
+        """The function, whose changes go into `changes`; of a handler's phase, with its answer."""
+
+        def call(*arguments: Any) -> bool | None:
+            taken: bool | None = True
             if self._failure is not None:
-                return
+                return taken
             was = self.bodies.gather()
             try:
-                function(*arguments)
+                taken = answer(function(*arguments), function, phase)
             except BaseException as error:
                 # It would end in pymunk's C code, which cannot pass it on.
                 self._failure = error
@@ -225,6 +229,7 @@ class Rehearsal:
             if was is not None and now is not None:
                 # pymunk makes nan of the spins of bodies that do not turn and that gears hold: ours does not.
                 changes[:] += np.where(np.isnan(was), 0.0, now - was)
+            return taken
 
         return call
 

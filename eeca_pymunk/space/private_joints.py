@@ -19,7 +19,7 @@ OF_SPRINGS = ((pymunk.DampedSpring, FORCE[1:]), (pymunk.DampedRotarySpring, TORQ
 
 
 def replace_functions(
-    constraint: pymunk.Constraint, before: Callable[..., None] | None, after: Callable[..., None] | None
+    constraint: pymunk.Constraint, before: Callable[..., Any] | None, after: Callable[..., Any] | None
 ) -> None:
     """Let pymunk call these in the place of the constraint's `pre_solve` and `post_solve`.
 

@@ -64,7 +64,7 @@ def test_removal_in_begin_calls_separate_which_removes_the_same_again(make: Make
     run(make(space), 30)
     assert called == ["begin", "separate"]
     assert len(space.shapes) == 1
-    assert not b.space.shapes & b.shapes  # type: ignore[union-attr]
+    assert not set(b.space.shapes) & set(b.shapes)  # type: ignore[union-attr]
     assert a in space.bodies
 
 
