@@ -28,6 +28,7 @@ NAMES = (
     "detection",
     "piles",
     "joints",
+    "robots",
     "sleeping",
     "soak",
     "pymunk_examples",

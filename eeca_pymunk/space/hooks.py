@@ -50,19 +50,19 @@ class Hooks:
         self._change: FloatArray | None = None
         self._late: list[Callable[[], None]] = []
 
-    def before(self) -> None:
+    def before(self, dt: float) -> None:
         """Call `pre_solve` of the constraints that no rehearsal calls. pymunk calls none whose first body is outside
         the space, and complains."""
         if self.joints is not None:
-            with private.locked(self.space):
+            with private.locked(self.space), private_joints.time_step(self.space, dt):
                 for item in self.joints.before:
                     if not self.collisions or item.a.space is None:
                         assert item.pre_solve is not None
                         item.pre_solve(item, self.space)
 
-    def after(self) -> None:
+    def after(self, dt: float) -> None:
         """Call `post_solve` of the constraints, then that of collisions if it had to wait for this."""
-        with private.locked(self.space):
+        with private.locked(self.space), private_joints.time_step(self.space, dt):
             for item in () if self.joints is None else self.joints.after:
                 assert item.post_solve is not None
                 item.post_solve(item, self.space)
@@ -88,7 +88,8 @@ class Hooks:
                 function = private.velocity_function(body)
                 assert function is not None  # this is one of the bodies that have one
                 try:
-                    function(body, gravity, damping, dt)
+                    with private_joints.time_step(self.space, dt):
+                        function(body, gravity, damping, dt)
                     self._change[i] = (*(body.velocity - velocity), body.angular_velocity - spin)
                 finally:
                     body.velocity, body.angular_velocity = velocity, spin
@@ -102,7 +103,8 @@ class Hooks:
             assert function is not None
             way, turn = end[row, POSITION] - state[row, POSITION], end[row, ANGLE] - state[row, ANGLE]
             body.velocity, body.angular_velocity = tuple(way / dt), float(turn / dt)
-            function(body, dt)
+            with private_joints.time_step(self.space, dt):
+                function(body, dt)
             end[row, POSITION], end[row, ANGLE] = body.position, body.angle
 
     @contextmanager

@@ -9,6 +9,7 @@ from typing import Any
 import pymunk
 
 OF_LIBRARY = (
+    "cpSpaceGetCurrentTimeStep", "cpSpaceSetCurrentTimeStep",
     "cpConstraintGetMaxForce", "cpConstraintSetMaxForce", "cpConstraintGetPreSolveFunc", "cpConstraintSetPreSolveFunc",
     "cpConstraintGetPostSolveFunc", "cpConstraintSetPostSolveFunc",
 )  # fmt: skip
@@ -16,6 +17,19 @@ BEFORE, AFTER, FORCE, TORQUE = "_pre_solve_func", "_post_solve_func", "_force_fu
 OF_CONSTRAINT = ("_constraint", BEFORE, AFTER)
 # pymunk 7.0.0 has `_force_func` only where it was set: what is looked up is the setter.
 OF_SPRINGS = ((pymunk.DampedSpring, FORCE[1:]), (pymunk.DampedRotarySpring, TORQUE[1:]))
+
+
+@contextmanager
+def time_step(space: pymunk.Space, dt: float) -> Iterator[None]:
+    """Within, which is where functions of a program are called, `space.current_time_step` is dt. Afterwards it is that
+    of pymunk's last step again, by which pymunk scales what it remembers of that step."""
+    lib = _library()[1]
+    before = lib.cpSpaceGetCurrentTimeStep(space._space)
+    lib.cpSpaceSetCurrentTimeStep(space._space, dt)
+    try:
+        yield
+    finally:
+        lib.cpSpaceSetCurrentTimeStep(space._space, before)
 
 
 def replace_functions(
