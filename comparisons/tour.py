@@ -167,8 +167,8 @@ def seen(shown: list[Row], at_dt: list[Row]) -> list[str]:
         "",
         f"1. Places: in the time of EECA's run, pymunk's error is {finer:.2g} times larger at least.",
         f"2. Energy: EECA's is off by {energy['EECA']:.0e} at most, pymunk's by {energy['pymunk']:.0e}.",
-        f"3. Cost: at equal dt a step of EECA takes {min(price):.2g} to {max(price):.2g} times pymunk's, in scenes of 1 to "
-        "20 bodies, with the default sync=True.",
+        f"3. Cost: at equal dt a step of EECA takes {min(price):.2g} to {max(price):.2g} times pymunk's, "
+        "in scenes of 1 to 20 bodies, with the default sync=True.",
     ]
 
 
