@@ -58,7 +58,7 @@ ENTRIES = {
     "jointed.together:step_together_jointed": "{Scene} {Joints} f8[3] i8[2] f8[2] f8[1] f8[1] f8 f8 f8 f8 i8",
     # Of tests alone, which step islands by themselves: some hundred times slower as plain Python.
     "sustained.step:step_island": "f8[2] f8[2] f8[2] f8[1] f8[1] f8[1] f8[1] i8 i8[2] i8 Shape[1] f8[2] Link[1] f8[2]"
-    " f8[3] f8 i8 f8 f8 i8[1] f8[2] Count f8 Rest f8 i8[1] i8[1] Row[1] i8[1] f8[2] f8[2] f8[2] f8[2] f8[1] f8[1]",
+    " f8[3] f8 i8 f8 f8 f8 i8[1] f8[2] Count f8 Rest f8 i8[1] i8[1] Row[1] i8[1] f8[2] f8[2] f8[2] f8[2] f8[1] f8[1]",
     "sustained.memory:forget": "i8[1] f8[2] Count i8[1] f8[2] f8",
 }
 
