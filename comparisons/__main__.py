@@ -28,6 +28,7 @@ NAMES = (
     "detection",
     "piles",
     "joints",
+    "robots",
     "sleeping",
     "rollouts",
     "datasets",

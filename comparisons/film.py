@@ -58,6 +58,8 @@ FILMS = {
     "rods": Film(duration=8.0, view=(-1.2, 1.2, -0.2, 0.6), frames=56),
     "bridge": Film(duration=4.0, view=(-0.3, 6.0, -1.9, 1.5)),
     "chain": Film(duration=3.0, view=(-3.1, 3.1, -0.6, 3.4)),
+    "lander": Film(duration=7.0, view=(-6.0, 6.0, -0.5, 7.0)),
+    "walker": Film(duration=8.0, view=(-4.2, 4.2, -0.3, 2.2), frames=64),
 }
 
 

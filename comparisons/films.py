@@ -14,6 +14,7 @@ from eeca_pymunk.recorder import step_count
 
 NAMES = (
     "carom", "pile", "drum", "billiard", "hopper", "cradle", "pool_break", "double_pendulum", "rods", "chain", "bridge",
+    "lander", "walker",
 )  # fmt: skip
 LARGEST = 300_000  # bytes
 

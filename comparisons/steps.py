@@ -13,8 +13,8 @@ Step = Callable[[float], object]
 
 
 def eeca_step(space: pymunk.Space) -> Step:
-    """The step of EECA."""
-    return ep.EECA(space, sync=False).step
+    """The step of EECA as it is by default: pymunk's shapes are brought up to date in it."""
+    return ep.EECA(space).step
 
 
 def pymunk_step(space: pymunk.Space) -> Step:

@@ -139,7 +139,7 @@ def run(output: Output, full: bool) -> None:
     output.table("EECA, and pymunk (as shipped or tuned, at any dt) in no more time", shown)
     output.picture(picture(found, shown))
     print(f"-> {film}")
-    print("\n".join(closing(shown, price)))
+    print("\n".join([*seen(shown, at_dt), *closing(shown, price)]))
 
 
 def pile_price() -> float:
@@ -153,6 +153,23 @@ def pile_price() -> float:
             step(1 / 60)
             wall.append(time.process_time() - clock)
     return median(walls[0][PILE_STEPS // 2 :]) / median(walls[1][PILE_STEPS // 2 :])
+
+
+def seen(shown: list[Row], at_dt: list[Row]) -> list[str]:
+    """What was seen, in three lines."""
+    finer = min(float(row["x smaller error"] or 0.0) for row in shown)
+    energy = {
+        name: max(float(row["energy error"] or 0.0) for row in at_dt if row["stepper"] == name)
+        for name in ("EECA", "pymunk")
+    }
+    price = [float(row[STEP] or 0.0) for row in shown]
+    return [
+        "",
+        f"1. Places: in the time of EECA's run, pymunk's error is {finer:.2g} times larger at least.",
+        f"2. Energy: EECA's is off by {energy['EECA']:.0e} at most, pymunk's by {energy['pymunk']:.0e}.",
+        f"3. Cost: at equal dt a step of EECA takes {min(price):.2g} to {max(price):.2g} times pymunk's, "
+        "in scenes of 1 to 20 bodies, with the default sync=True.",
+    ]
 
 
 def closing(shown: list[Row], price: float) -> list[str]:

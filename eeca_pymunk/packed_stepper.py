@@ -177,7 +177,7 @@ class PackedStepper(PackedSpace):
         try:
             if world.joints is not None:
                 world.joints.refresh()
-                hooks.before()
+                hooks.before(dt)
                 world.gather()
             if len(hooks.velocity):
                 world.push(hooks.change(dt), dt)
@@ -205,7 +205,7 @@ class PackedStepper(PackedSpace):
             if world.joints is not None and world.joints.calling:
                 world.scatter(status)
                 world.joints.write()
-                hooks.after()
+                hooks.after(dt)
                 if self.sync and rehearsal is None:
                     with hooks.silent():
                         self._sync.settle(bodies, world.joints, dt, bool(status & EVENTS))

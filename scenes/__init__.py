@@ -16,6 +16,7 @@ from . import (
     drum,
     gas,
     hopper,
+    lander,
     linked,
     mixed,
     pendulum,
@@ -25,6 +26,7 @@ from . import (
     rods,
     signorini,
     slope,
+    walker,
 )
 from .scene import Scene
 
@@ -51,6 +53,8 @@ _BUILDERS: dict[str, Callable[..., Scene]] = {
     "bridge": linked.bridge,
     "rods": rods.cradle,
     "heap": rods.heap,
+    "lander": lander.build,
+    "walker": walker.build,
 }
 NAMES = tuple(_BUILDERS)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -18,12 +18,24 @@ def _unknown(t: float) -> FloatArray | None:
     return None
 
 
+def _nothing() -> None:
+    pass
+
+
+class Driver(Protocol):
+    """What steers a scene from within its steps."""
+
+    def work(self) -> float:
+        """The most that it has put in so far (J)."""
+
+
 @dataclass
 class Scene:
     """A space, its N moving bodies in order, the time step and duration to run it with (s), and its exact solution.
 
     `exact(t)` gives (N, 2) positions in metres, or None where no closed form is known. `stiffness` is the penalty K
-    (N/m) the paper uses, `parameters` what the scene was built with.
+    (N/m) the paper uses, `parameters` what the scene was built with. `reset` puts a scene that has a `driver` back to
+    its start.
     """
 
     name: str
@@ -34,6 +46,8 @@ class Scene:
     stiffness: float
     exact: Callable[[float], FloatArray | None] = _unknown
     parameters: dict[str, Any] = field(default_factory=dict)
+    driver: Driver | None = None
+    reset: Callable[[], None] = _nothing
 
 
 def add_disk(

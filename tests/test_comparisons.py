@@ -32,6 +32,7 @@ from comparisons import (
     piles,
     pymunk_examples,
     rollouts,
+    robots,
     runs,
     scaling,
     sleeping,
@@ -405,6 +406,15 @@ def test_joints_tell_errors_and_costs(tmp_path: Path) -> None:
     assert float(cost["EECA / native 10"] or 0.0) > 0.0
     ep.render.save_picture(joints.picture([problem], rows), tmp_path / "joints.png")
     assert (tmp_path / "joints.png").exists()
+
+
+def test_robots_tell_costs_and_repeatability() -> None:
+    for name in robots.NAMES:
+        ours, native = robots.compare(name, 1.0)
+        assert ours["differs after reset (m)"] == ours["surplus (J)"] == 0.0
+        assert float(ours["pivots apart (m)"] or 0.0) < 1e-12 < 1e-5 < float(native["pivots apart (m)"] or 0.0)
+        assert float(ours["ms/step"] or 0.0) > 0.0
+    assert robots.distance(ep.EECA, 10, 1 / 50, 0.5) == robots.distance(ep.EECA, 200, 1 / 50, 0.5)
 
 
 def test_bars_by_their_angles_keep_their_energy_and_swing_as_the_digits_say() -> None:

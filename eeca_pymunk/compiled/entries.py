@@ -64,7 +64,7 @@ ENTRIES = {
     "jointed.run:run_jointed": "{Scene} {Joints} {Film} f8[3] i8[2] f8[2] f8[1] f8[1] i8 bool bool",
     # Of tests alone, which step islands by themselves: some hundred times slower as plain Python.
     "sustained.step:step_island": "f8[2] f8[2] f8[2] f8[1] f8[1] f8[1] f8[1] i8 i8[2] i8 Shape[1] f8[2] Link[1] f8[2]"
-    " f8[3] f8 i8 f8 f8 i8[1] f8[2] Count f8 Rest f8 i8[1] i8[1] Row[1] i8[1] f8[2] f8[2] f8[2] f8[2] f8[1] f8[1]",
+    " f8[3] f8 i8 f8 f8 f8 i8[1] f8[2] Count f8 Rest f8 i8[1] i8[1] Row[1] i8[1] f8[2] f8[2] f8[2] f8[2] f8[1] f8[1]",
     "sustained.memory:forget": "i8[1] f8[2] Count i8[1] f8[2] f8",
 }
 

@@ -204,6 +204,9 @@ def lift_out(A: Scene, root: int, end: float) -> None:
         BODY[i].vy += JUMP[i].lift_vy
         BODY[i].spin += JUMP[i].lift_spin
         i = A.MEMBER[i].following
+    if A.MEMBER[root].raised > 0:
+        PAR.external += spent
+        return
     PAR.restitution -= spent
     if PAR.restitution < 0.0 and PAR.frictional > 0.0:
         PAR.frictional += PAR.restitution

@@ -84,7 +84,7 @@ def asks(A: Scene, MINE: IntArray, n: int, V0: FloatArray, among: int, calming: 
     VN, JUMP, BOOK, OUT = np.zeros((k, 3)), np.zeros((k, 6)), np.zeros(LEDGER_SIZE), np.zeros(OUT_SIZE)
     m = step_island(
         isle.POSE, isle.V, isle.ACC, isle.IM, isle.II, isle.EXTENT, isle.FELT, n, isle.PAIRS, p, A.SHAPE, A.RULE,
-        A.LINK, A.VERTEX, A.WORK, dt, 0, 0.0, 0.0, A.KEYS, A.FORCES, COUNT, A.PAR.stamp,
+        A.LINK, A.VERTEX, A.WORK, dt, 0, 0.0, 0.0, 0.0, A.KEYS, A.FORCES, COUNT, A.PAR.stamp,
         A.RESTING[root], -quick, P, Q, ROWS, KEY, L, LOSS, VN, JUMP, BOOK, OUT,
     )  # fmt: skip
     COUNT.direct += int(OUT[POLISHES])

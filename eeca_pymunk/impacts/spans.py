@@ -178,11 +178,17 @@ def solve(A: Scene, root: int, t: float) -> int:
     sweeps = _SWEEPS if n < CROWD else sweeps_of_crowd(t)
     m = 0
     among = among_of(A, isle, n)
-    quiet = calm(A, root, MINE, n, among, t) if may_lose else 0.0
+    raised = 0
+    for q in range(n, k):
+        # Where its user has put a body that nothing moves into others, that does the work of lifting them.
+        if MEMBER[WHO[q]].put > 0 and BODY[WHO[q]].inv_mass == 0.0:
+            raised = 1
+    free = math.inf if raised > 0 else 0.0
+    quiet = calm(A, root, MINE, n, among, t) if may_lose and raised == 0 else 0.0
     if p > 0 and h > 0.0:
         m = step_island(
             POSE, V, ACC, IMS, IIS, SIZES, isle.FELT, n, PAIRS, p, A.SHAPE, A.RULE, A.LINK, A.VERTEX, A.WORK, h,
-            sweeps, least, max(-A.RESTING[root].lost, 0.0), A.KEYS, A.FORCES, COUNT, A.PAR.stamp,
+            sweeps, least, max(-A.RESTING[root].lost, 0.0), free, A.KEYS, A.FORCES, COUNT, A.PAR.stamp,
             A.RESTING[MINE[0]], quiet, P, Q, ROWS, KEY, L, LOSS, VN, JUMP, BOOK, OUT,
         )  # fmt: skip
         stuck = h if hurried(A) or OUT[STOOD] > 0.0 else stick_time(P, Q, ROWS, L, V + h * ACC, VN, m, h)
@@ -192,7 +198,7 @@ def solve(A: Scene, root: int, t: float) -> int:
             BOOK[:] = 0.0
             m = step_island(
                 POSE, V, ACC, IMS, IIS, SIZES, isle.FELT, n, PAIRS, p, A.SHAPE, A.RULE, A.LINK, A.VERTEX, A.WORK, h,
-                sweeps, least, max(-A.RESTING[root].lost, 0.0), A.KEYS, A.FORCES, COUNT, A.PAR.stamp,
+                sweeps, least, max(-A.RESTING[root].lost, 0.0), free, A.KEYS, A.FORCES, COUNT, A.PAR.stamp,
                 A.RESTING[MINE[0]], 0.0, P, Q, ROWS, KEY, L, LOSS, VN, JUMP, BOOK, OUT,
             )  # fmt: skip
         if abs(OUT[LOCK_OF] - 1.0) > abs(A.PAR.lock - 1.0):
@@ -227,7 +233,7 @@ def solve(A: Scene, root: int, t: float) -> int:
         STATE[i].island, MEMBER[i].following = head, -1
     if head >= 0:
         MEMBER[head].last, MEMBER[head].bodies, MEMBER[head].hits = tail, size, hits
-        MEMBER[head].among = among
+        MEMBER[head].among, MEMBER[head].raised = among, raised
         A.RESTING[head].lost = lost
         MEMBER[head].open = 1
         A.RESTING[head].until = t + h if before_end(A, t + h) else math.inf

@@ -69,6 +69,7 @@ class Member(Record):
     loaded: int  # of the root of an island at rest: 1 while support of moving neighbours is unverified
     among: int  # of the root: `bodies`, and those of the islands that support them
     put: int  # 1 if the body was placed where it is, and may overlap others
+    raised: int  # of the root: 1 if a body without mobility was put into its bodies, which it lifts from outside
     anew: int  # of the root of an island at rest: 1 while its forces are new to what supports it
 
 

@@ -25,6 +25,7 @@ from ..model.shapes import Shape
 from . import private, private_joints
 from .bodies import ANGLE, ANGULAR_VELOCITY, POSITION, VELOCITY, Bodies
 from .joints import JointRows
+from .private_versions import answer
 from .shapes import Rules
 
 _PRESS = 1e-7  # part of its height by which a body is pressed on what carries it, in a rehearsal
@@ -49,19 +50,19 @@ class Hooks:
         self._change: FloatArray | None = None
         self._late: list[Callable[[], None]] = []
 
-    def before(self) -> None:
+    def before(self, dt: float) -> None:
         """Call `pre_solve` of the constraints that no rehearsal calls. pymunk calls none whose first body is outside
         the space, and complains."""
         if self.joints is not None:
-            with private.locked(self.space):
+            with private.locked(self.space), private_joints.time_step(self.space, dt):
                 for item in self.joints.before:
                     if not self.collisions or item.a.space is None:
                         assert item.pre_solve is not None
                         item.pre_solve(item, self.space)
 
-    def after(self) -> None:
+    def after(self, dt: float) -> None:
         """Call `post_solve` of the constraints, then that of collisions if it had to wait for this."""
-        with private.locked(self.space):
+        with private.locked(self.space), private_joints.time_step(self.space, dt):
             for item in () if self.joints is None else self.joints.after:
                 assert item.post_solve is not None
                 item.post_solve(item, self.space)
@@ -87,7 +88,8 @@ class Hooks:
                 function = private.velocity_function(body)
                 assert function is not None  # this is one of the bodies that have one
                 try:
-                    function(body, gravity, damping, dt)
+                    with private_joints.time_step(self.space, dt):
+                        function(body, gravity, damping, dt)
                     self._change[i] = (*(body.velocity - velocity), body.angular_velocity - spin)
                 finally:
                     body.velocity, body.angular_velocity = velocity, spin
@@ -101,7 +103,8 @@ class Hooks:
             assert function is not None
             way, turn = end[row, POSITION] - state[row, POSITION], end[row, ANGLE] - state[row, ANGLE]
             body.velocity, body.angular_velocity = tuple(way / dt), float(turn / dt)
-            function(body, dt)
+            with private_joints.time_step(self.space, dt):
+                function(body, dt)
             end[row, POSITION], end[row, ANGLE] = body.position, body.angle
 
     @contextmanager
@@ -188,7 +191,7 @@ class Rehearsal:
             try:
                 for handler, phase, function in functions:
                     changes = self.before if phase in private.PHASES[:2] else self._after
-                    watched = self._watch(function, changes)
+                    watched = self._watch(function, changes, phase)
                     if phase == private.PHASES[2] and joints is not None and joints.after:
                         watched = self.hooks.later(function)
                     setattr(handler, phase, watched)
@@ -211,13 +214,16 @@ class Rehearsal:
             for item, before, after in functions:
                 private_joints.replace_functions(item, before, after)
 
-    def _watch(self, function: Callable[..., Any], changes: FloatArray) -> Callable[..., None]:
-        def call(*arguments: Any) -> None:
+    def _watch(self, function: Callable[..., Any], changes: FloatArray, phase: str = "") -> Callable[..., bool | None]:
+        """The function, whose changes go into `changes`; of a handler's phase, with its answer."""
+
+        def call(*arguments: Any) -> bool | None:
+            taken: bool | None = True
             if self._failure is not None:
-                return
+                return taken
             was = self.bodies.gather()
             try:
-                function(*arguments)
+                taken = answer(function(*arguments), function, phase)
             except BaseException as error:
                 # It would end in pymunk's C code, which cannot pass it on.
                 self._failure = error
@@ -225,6 +231,7 @@ class Rehearsal:
             if was is not None and now is not None:
                 # pymunk makes nan of the spins of bodies that do not turn and that gears hold: ours does not.
                 changes[:] += np.where(np.isnan(was), 0.0, now - was)
+            return taken
 
         return call
 

@@ -18,7 +18,7 @@ from weakref import WeakKeyDictionary
 
 import pymunk
 
-from . import private
+from . import private_versions
 
 _PROPERTIES: tuple[tuple[type, tuple[str, ...]], ...] = (
     (pymunk.Shape, ("mass", "density", "sensor", "filter", "elasticity", "friction", "surface_velocity", "body")),
@@ -82,8 +82,8 @@ def _property(name: str, native: Any) -> property:
     def set_and_note(self: Any, value: Any) -> None:
         before = None if read is None else read(self)
         write(self, value)
-        if name in private.DEFAULTS:
-            private.forget_function(self, name, value)
+        if name in private_versions.DEFAULTS:
+            private_versions.forget_function(self, name, value)
         if read is None or read(self) != before:
             _note(self)
 

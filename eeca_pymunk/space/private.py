@@ -16,18 +16,17 @@ import pymunk
 from pymunk import batch
 
 from ..arrays import FloatArray, IntArray
-from . import private_joints, private_sleep
+from . import private_joints, private_sleep, private_versions
+from .private_versions import DEFAULTS as DEFAULTS
+from .private_versions import REQUIRED, bodies
 
 try:
     from pymunk._chipmunk_cffi import ffi, lib
 except ImportError as error:  # pragma: no cover - needs another pymunk
-    raise ImportError(f"pymunk {pymunk.version} has no pymunk._chipmunk_cffi: pip install 'pymunk>=7.0,<8'") from error
+    raise ImportError(f"pymunk {pymunk.version} has no pymunk._chipmunk_cffi: pip install '{REQUIRED}'") from error
 
 # Functions of a handler, in the order in which pymunk calls them.
 PHASES = ("_begin", "_pre_solve", "_post_solve", "_separate")
-
-# What bodies have that have no function of their own.
-DEFAULTS = {"velocity_func": pymunk.Body.update_velocity, "position_func": pymunk.Body.update_position}
 
 _OF_LIBRARY = (
     "cpSpaceStep", "cpHastySpaceStep", "cpSpaceEachBody", "cpSpaceGetGravity", "cpSpaceGetDamping",
@@ -47,14 +46,14 @@ def missing() -> list[str]:
     """Names that this package needs and that the installed pymunk lacks."""
     space = pymunk.Space()
     body = pymunk.Body(1.0, 1.0)
-    space.on_collision(begin=lambda arbiter, space, data: None)
+    handler = private_versions.add_handler(space)
     owners: list[tuple[str, Any, Iterable[str]]] = [
         ("pymunk._chipmunk_cffi.lib", lib, _OF_LIBRARY),
         ("pymunk.Space", space, _OF_SPACE),
         ("pymunk.Body", body, _OF_BODY),
         ("pymunk.Constraint", pymunk.PinJoint(body, space.static_body), private_joints.OF_CONSTRAINT),
         *((f"pymunk.{kind.__name__}", kind, (function,)) for kind, function in private_joints.OF_SPRINGS),
-        *(("pymunk.CollisionHandler", one, PHASES) for one in getattr(space, "_handlers", {}).values()),
+        ("pymunk.CollisionHandler", handler, PHASES),
     ]
     absent = [f"{name}.{one}" for name, owner, names in owners for one in names if not hasattr(owner, one)]
     for kind in _TYPES:
@@ -69,7 +68,7 @@ def check() -> None:
     """ImportError unless the installed pymunk has all private names."""
     if absent := missing():
         raise ImportError(
-            f"pymunk {pymunk.version} lacks {', '.join(absent)}, which eeca_pymunk needs: pip install 'pymunk>=7.0,<8'"
+            f"pymunk {pymunk.version} lacks {', '.join(absent)}, which eeca_pymunk needs: pip install '{REQUIRED}'"
         )
 
 
@@ -85,7 +84,7 @@ def arbiters(space: pymunk.Space) -> list[pymunk.Arbiter]:
 
 def touching(space: pymunk.Space) -> list[tuple[pymunk.Body, pymunk.Body]]:
     """Pairs of bodies that touched in pymunk's last steps."""
-    return [arbiter.bodies for arbiter in arbiters(space)]
+    return [bodies(arbiter) for arbiter in arbiters(space)]
 
 
 def velocity_function(body: pymunk.Body) -> Callable[..., None] | None:
@@ -96,12 +95,6 @@ def velocity_function(body: pymunk.Body) -> Callable[..., None] | None:
 def position_function(body: pymunk.Body) -> Callable[..., None] | None:
     """The body's own position function, None if it has pymunk's."""
     return body._position_func
-
-
-def forget_function(body: pymunk.Body, name: str, function: Callable[..., None]) -> None:
-    """What pymunk before 7.3 leaves undone when its default is set again: the body's own function is none any more."""
-    if function is DEFAULTS[name]:
-        setattr(body, f"_{name}", None)
 
 
 def replace_functions(
@@ -152,7 +145,7 @@ def finish_step(space: pymunk.Space) -> None:
     space._add_later.clear()
     space.add(*added)
     # What is removed while it touches something calls `separate`, which may remove more, and the same again.
-    remove, gone = getattr(space, "_remove", space.remove), set()
+    remove, gone = private_versions.remover(space), set()
     while space._remove_later:
         things = list(space._remove_later)
         space._remove_later.clear()

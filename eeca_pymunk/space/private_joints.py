@@ -9,6 +9,7 @@ from typing import Any
 import pymunk
 
 OF_LIBRARY = (
+    "cpSpaceGetCurrentTimeStep", "cpSpaceSetCurrentTimeStep",
     "cpConstraintGetMaxForce", "cpConstraintSetMaxForce", "cpConstraintGetPreSolveFunc", "cpConstraintSetPreSolveFunc",
     "cpConstraintGetPostSolveFunc", "cpConstraintSetPostSolveFunc",
 )  # fmt: skip
@@ -18,8 +19,21 @@ OF_CONSTRAINT = ("_constraint", BEFORE, AFTER)
 OF_SPRINGS = ((pymunk.DampedSpring, FORCE[1:]), (pymunk.DampedRotarySpring, TORQUE[1:]))
 
 
+@contextmanager
+def time_step(space: pymunk.Space, dt: float) -> Iterator[None]:
+    """Within, which is where functions of a program are called, `space.current_time_step` is dt. Afterwards it is that
+    of pymunk's last step again, by which pymunk scales what it remembers of that step."""
+    lib = _library()[1]
+    before = lib.cpSpaceGetCurrentTimeStep(space._space)
+    lib.cpSpaceSetCurrentTimeStep(space._space, dt)
+    try:
+        yield
+    finally:
+        lib.cpSpaceSetCurrentTimeStep(space._space, before)
+
+
 def replace_functions(
-    constraint: pymunk.Constraint, before: Callable[..., None] | None, after: Callable[..., None] | None
+    constraint: pymunk.Constraint, before: Callable[..., Any] | None, after: Callable[..., Any] | None
 ) -> None:
     """Let pymunk call these in the place of the constraint's `pre_solve` and `post_solve`.
 

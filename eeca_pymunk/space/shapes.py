@@ -11,6 +11,7 @@ import pymunk
 from ..compiled.records import Rows
 from ..errors import UnsupportedFeature
 from ..model.shapes import Shape
+from .private_versions import processed
 
 _SAME = 1e-9  # part of a surface velocity by which the one that pymunk makes of it may differ
 Pair = tuple[int, int]
@@ -39,7 +40,7 @@ class Rules:
             if min(a, b) < 0:
                 continue
             pair = (min(a, b), max(a, b))
-            if not arbiter.process_collision:
+            if not processed(arbiter):
                 ignored.add(pair)
                 continue
             own = _law(SHAPE, *pair)

@@ -102,7 +102,7 @@ def moved(X: FloatArray, V: FloatArray, s: float) -> FloatArray:
 def step_island(
     POSE: FloatArray, V: FloatArray, ACC: FloatArray, IM: FloatArray, II: FloatArray, EXTENT: FloatArray,
     FELT: FloatArray, n: int, PAIRS: IntArray, p: int, SHAPE: Rows[Shape], RULE: FloatArray, LINK: Rows[Link],
-    VERTEX: FloatArray, WORK: FloatArray, h: float, most: int, least: float, owed: float, KEYS: IntArray,
+    VERTEX: FloatArray, WORK: FloatArray, h: float, most: int, least: float, owed: float, free: float, KEYS: IntArray,
     FORCES: FloatArray, COUNT: Count, stamp: float, STATE: Rest, calm: float,
     A: IntArray, B: IntArray, ROWS: Rows[Row], KEY: IntArray, L: FloatArray, LOSS: FloatArray, VN: FloatArray,
     JUMP: FloatArray, LEDGER: FloatArray, OUT: FloatArray,
@@ -118,6 +118,7 @@ def step_island(
         most: sweeps of an island that moves.
         least: length that every body's points may come at least, 0 if their velocities tell.
         owed: energy >= 0 to take out at least.
+        free: energy >= 0 that lifting may cost beyond the losses: from outside, by who put bodies into one another.
         KEYS, FORCES, COUNT, stamp: memory of forces; the number of this step.  STATE: (3,) of `relax`.
         calm: speed relative to |a| h at which it may come to a stand, see `.statics`, 0 if it may not; V is 0 once it
             does, its energy is the caller's to book. Negative: that is all that is asked for.
@@ -194,6 +195,8 @@ def step_island(
             size = min(size, EXTENT[i])
         # Losses pay for lifting; what is elastic has none, whatever round-off says.
         budget = -1.0 if elastic else normal + tangential - owed
+        if free > 0.0:
+            budget = max(budget, 0.0) + free
         lifted, OUT[5] = lifting(A, B, ROWS, MIDDLE, VN, ACC, IM, II, n, m, h, size, budget, JUMP)
         LEDGER[0] += normal
         LEDGER[1] += tangential

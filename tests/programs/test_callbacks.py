@@ -64,7 +64,7 @@ def test_removal_in_begin_calls_separate_which_removes_the_same_again(make: Make
     run(make(space), 30)
     assert called == ["begin", "separate"]
     assert len(space.shapes) == 1
-    assert not b.space.shapes & b.shapes  # type: ignore[union-attr]
+    assert not set(b.space.shapes) & set(b.shapes)  # type: ignore[union-attr]
     assert a in space.bodies
 
 
@@ -329,3 +329,34 @@ def test_what_a_post_step_callback_raises_comes_when_the_step_has_been_taken(hoo
     for _ in range(6):
         assert (body.position, body.velocity) == (twin.position, twin.velocity)
         assert [one.step(DT).time for one in steppers] == [steppers[0].time] * 2
+
+
+@pytest.mark.parametrize("sync", [True, False])
+def test_functions_read_the_time_step_that_they_are_in(sync: bool) -> None:
+    found = []
+    for make in (ep.Native, lambda space: ep.EECA(space, sync=sync)):
+        space, a, b = meeting()
+        read: dict[str, list[float]] = {}
+
+        def note(name: str, space: pymunk.Space = space, read: dict[str, list[float]] = read) -> None:
+            read.setdefault(name, []).append(space.current_time_step)
+
+        def velocity(body: pymunk.Body, gravity: pymunk.Vec2d, damping: float, dt: float, note=note) -> None:  # type: ignore[no-untyped-def]
+            note("velocity")
+            pymunk.Body.update_velocity(body, gravity, damping, dt)
+
+        def position(body: pymunk.Body, dt: float, note=note) -> None:  # type: ignore[no-untyped-def]
+            note("position")
+            pymunk.Body.update_position(body, dt)
+
+        a.velocity_func, a.position_func = velocity, position
+        spring = pymunk.DampedSpring(a, b, (0.0, 0.0), (0.0, 0.0), 1.0, 1.0, 0.0)
+        spring.pre_solve = lambda *_, note=note: note("before")
+        spring.post_solve = lambda *_, note=note: note("after")
+        space.add(spring)
+        stepper = make(space)
+        for dt in (0.01, 0.02, 0.005):
+            stepper.step(dt)
+        found.append(read)
+    assert found[1] == found[0]
+    assert set(found[0]) == {"velocity", "position", "before", "after"}

@@ -148,27 +148,29 @@ def test_an_edit_that_cannot_be_is_refused_and_taken_back() -> None:
     stepper.step(DT)
 
 
-def test_a_callback_may_edit_what_it_meets() -> None:
-    """Sounds silly, is common: a shape becomes a sensor, or passes what it met, when it is first hit."""
-    for edit in (
-        lambda shape: setattr(shape, "sensor", True),
-        lambda shape: setattr(shape, "filter", pymunk.ShapeFilter(mask=0)),
-    ):
+@pytest.mark.parametrize("edited", [("sensor", True), ("filter", pymunk.ShapeFilter(mask=0))])
+def test_a_callback_may_edit_what_it_meets(edited: tuple[str, object]) -> None:
+    """Sounds silly, is common: a shape becomes a sensor, or passes what it met, when it is first hit. Whether that hit
+    takes place depends on the version of pymunk."""
+    after = []
+    for make in (ep.Native, ep.EECA):
         space = pymunk.Space()
         ball = pymunk.Body(1.0, math.inf)
         ball.position, ball.velocity = (0.0, 0.0), (4.0, 0.0)
         disk, wall = pymunk.Circle(ball, 0.1), pymunk.Segment(space.static_body, (1.0, -1.0), (1.0, 1.0), 0.0)
         disk.elasticity = wall.elasticity = 1.0
         space.add(ball, disk, wall)
-        space.on_collision(begin=lambda arbiter, space, data, edit=edit, wall=wall: edit(wall))
-        stepper = ep.EECA(space)
+        space.on_collision(begin=lambda arbiter, space, data, wall=wall: setattr(wall, *edited))
+        stepper = make(space)
         for _ in range(20):
             stepper.step(DT)
-        assert ball.velocity.x == pytest.approx(-4.0)
+        after.append(ball.velocity.x)
         ball.position, ball.velocity = (0.0, 0.0), (4.0, 0.0)
         for _ in range(40):
             stepper.step(DT)
         assert ball.position.x == pytest.approx(40 * DT * 4.0)
+    assert abs(after[0]) == pytest.approx(4.0)
+    assert after[1] == pytest.approx(after[0])
 
 
 def test_bodies_of_infinite_moment_that_spin_count_for_nothing_infinite() -> None:
@@ -182,3 +184,42 @@ def test_bodies_of_infinite_moment_that_spin_count_for_nothing_infinite() -> Non
     assert ep.measure(space).kinetic == 1.0
     assert ep.measure(space).angular_momentum == 0.0
     assert [b.angular_velocity for b in space.bodies] == [1.0, -2.0]
+
+
+def lifted_by(move: Callable[[pymunk.Body], None], sync: bool = True) -> tuple[pymunk.Body, pymunk.Body, float]:
+    """A ball of 2 kg that rests on a kinematic plate, which `move` changes before each of 40 steps; the ball, the plate,
+    and what came from outside (J)."""
+    space = pymunk.Space()
+    space.gravity = (0.0, -10.0)
+    ball = pymunk.Body(2.0, pymunk.moment_for_circle(2.0, 0.0, 0.5))
+    ball.position = (0.0, 0.6)
+    plate = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    disk, top = pymunk.Circle(ball, 0.5), pymunk.Segment(plate, (-2.0, 0.0), (2.0, 0.0), 0.1)
+    disk.friction = top.friction = 0.5
+    space.add(ball, disk, plate, top)
+    stepper = ep.EECA(space, sync=sync)
+    external = 0.0
+    for k in range(60):
+        if 10 <= k < 50:
+            move(plate)
+        report = stepper.step(DT)
+        assert report.ledger is not None
+        external += report.ledger.external
+        assert abs(report.ledger.residual) < 1e-12
+    return ball, plate, external
+
+
+@pytest.mark.parametrize("sync", [True, False])
+def test_a_plate_that_is_put_higher_lifts_what_rests_on_it_by_work_from_outside(sync: bool) -> None:
+    """A program that sets positions and not velocities: the ball is 40 times .05 higher, at rest; the work is m g h."""
+    ball, plate, external = lifted_by(lambda plate: setattr(plate, "position", plate.position + (0.0, 0.05)), sync)
+    assert plate.position.y == pytest.approx(2.0)
+    assert ball.position.y == pytest.approx(2.6, abs=1e-8)
+    assert ball.velocity.length < 1e-9
+    assert external == pytest.approx(2.0 * 10.0 * 2.0, rel=1e-8)
+
+
+def test_a_plate_that_is_put_lower_lets_the_ball_fall_and_does_no_work() -> None:
+    ball, plate, external = lifted_by(lambda plate: setattr(plate, "position", plate.position - (0.0, 0.05)))
+    assert ball.position.y > plate.position.y + 0.6 - 1e-9
+    assert external == pytest.approx(0.0, abs=1e-9)

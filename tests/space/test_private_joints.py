@@ -8,7 +8,7 @@ from collections.abc import Callable
 import pymunk
 import pytest
 
-from eeca_pymunk.space import private, private_joints, private_sleep
+from eeca_pymunk.space import private, private_joints, private_sleep, private_versions
 
 DT = 0.01
 
@@ -180,11 +180,11 @@ def test_a_function_that_is_pymunks_again_is_forgotten(name: str) -> None:
     body = pymunk.Body(1.0, math.inf)
     read = private.velocity_function if name == "velocity_func" else private.position_function
     setattr(body, f"_{name}", private.DEFAULTS[name])  # as pymunk before 7.3 leaves it
-    private.forget_function(body, name, private.DEFAULTS[name])
+    private_versions.forget_function(body, name, private.DEFAULTS[name])
     assert read(body) is None
 
     def own(*_: object) -> None: ...
 
     setattr(body, f"_{name}", own)
-    private.forget_function(body, name, own)
+    private_versions.forget_function(body, name, own)
     assert read(body) is own
