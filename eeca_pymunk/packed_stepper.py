@@ -14,11 +14,12 @@ from .packed_space import TOO_FAR, PackedSpace
 from .reentry import BUSY, busy, refuse_within
 from .report import Details, StepReport
 from .space.bodies import ANGULAR_VELOCITY, VELOCITY
-from .space.hooks import Hooks, Rehearsal
+from .space.hooks import Hooks
+from .space.rehearsal import Rehearsal
 from .space.sleeping import Sleep
 from .space.world import World
 from .stepper import check_dt
-from .transfer import EVENTS, FORCES, MOVED_STATIC, OTHER_BODIES, fly
+from .transfer import EVENTS, FORCES, MOVED_STATIC, OTHER_BODIES
 
 if TYPE_CHECKING:
     pass
@@ -157,7 +158,7 @@ class PackedStepper(PackedSpace):
         with busy(self.space):
             world, report, rehearsal = self._take_hooked(world, dt)
         if rehearsal is not None:
-            rehearsal.finish(world.bodies)
+            rehearsal.finish()
         elif self.sync or (world.joints is not None and world.joints.calling):
             self._sync.call_back()
         return report
@@ -172,7 +173,7 @@ class PackedStepper(PackedSpace):
         bodies.check_finite(state)
         hooks, left = Hooks(self.space, bodies, world.joints), world.left(dt)
         rehearsal: Rehearsal | None = None
-        given, lost = world.given(), 0.0
+        given, lost = None, 0.0
         book: FloatArray | None = None
         try:
             if world.joints is not None:
@@ -182,25 +183,26 @@ class PackedStepper(PackedSpace):
             if len(hooks.velocity):
                 world.push(hooks.change(dt), dt)
             if hooks.collisions:
-                rehearsal = Rehearsal(self.space, hooks, world.state.copy())
-                self._checked(world, dt, self._fly(world, dt, left))
-                after = rehearsal.run(world.ended(), dt)
-                world.state[:] = rehearsal.before
-                world.rules = rehearsal.rules(world.shapes, world.SHAPE, world.smooth)
+                rehearsal = world.rehearsal
+                self._checked(world, dt, rehearsal.run(hooks, dt, world.gravity, left))
+                world.rules = rehearsal.rules(world.rules, world.shapes, world.SHAPE, world.smooth)
             world.void_forecasts()
-            world.give(given)
             status = self._checked(world, dt, self.advance(world, dt, left))
             book = self._booked(dt)
-            given, end = world.given(), world.ended()
-            if world.damping == 0.0:
-                lost = world.stop(end)
-                given[:, VELOCITY], given[:, ANGULAR_VELOCITY] = end[:, VELOCITY], end[:, ANGULAR_VELOCITY]
-            if rehearsal is not None:
-                end += after
-            if len(hooks.position):
-                hooks.positions(world.state, end, dt)
-            bodies.check_finite(end, TOO_FAR)
-            status = status & EVENTS | world.put(end)
+            after = None if rehearsal is None else rehearsal.after
+            if world.damping == 0.0 or after is not None or len(hooks.position):
+                given, end = world.given(), world.ended()
+                if world.damping == 0.0:
+                    lost = world.stop(end)
+                    given[:, VELOCITY], given[:, ANGULAR_VELOCITY] = end[:, VELOCITY], end[:, ANGULAR_VELOCITY]
+                if after is not None:
+                    end += after
+                if len(hooks.position):
+                    hooks.positions(world.state, end, dt)
+                bodies.check_finite(end, TOO_FAR)
+                status = status & EVENTS | world.put(end)
+            else:
+                status = status & EVENTS | world.whole()
             world.reset_forces()
             if world.joints is not None and world.joints.calling:
                 world.scatter(status)
@@ -217,8 +219,9 @@ class PackedStepper(PackedSpace):
             else:
                 with hooks.silent():
                     self._sync.land(world, dt, status)
-            # What functions have changed since the step is found next time.
-            world.give(given)
+            if given is not None:
+                # What functions have changed since the step is found next time.
+                world.give(given)
         except BaseException:
             self._undo(world, state)
             raise
@@ -240,11 +243,6 @@ class PackedStepper(PackedSpace):
         if status < 0:
             self._fail(world, dt, status)
         return status
-
-    @staticmethod
-    def _fly(world: World, dt: float, left: float) -> int:
-        gx, gy = world.gravity
-        return fly(world.STATES, world.WALK, world.EXTRA, world.BODY, world.ENDS, dt, gx, gy, left)
 
     def _made(self, world: World, dt: float, status: int, book: FloatArray | None, lost: float = 0.0) -> StepReport:
         """The report of the step with this book; `lost` is the energy that damping has taken since."""

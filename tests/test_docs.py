@@ -24,6 +24,7 @@ LARGEST = 300_000  # bytes of a picture
 OTHERS = {
     "bash .ci/run": ".ci/run",
     "bash .ci/wheel": ".ci/wheel",
+    ".ci/clients": ".ci/clients",
     ".ci/oldest": ".ci/oldest",
     "python tests/mutations.py": "tests/mutations.py",
     "python -m tests.programs.soak": "tests/programs/soak.py",

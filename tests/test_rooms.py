@@ -21,6 +21,7 @@ FLOORS = (
     "model",
     "energy",
     "transfer report",
+    "rehearsing",
     "geometry",
     "rows",
     "pairs",

@@ -19,8 +19,8 @@ import numpy as np
 from .records import KINDS
 
 SOURCES = (
-    "arrays.py", "layout.py", "transfer.py", "compiled", "model", "build", "energy", "geometry", "rows", "pairs",
-    "sustained", "joints", "impacts", "jointed",
+    "arrays.py", "layout.py", "transfer.py", "rehearsing.py", "compiled", "model", "build", "energy", "geometry",
+    "rows", "pairs", "sustained", "joints", "impacts", "jointed",
 )  # fmt: skip
 
 TABLES = {
@@ -52,6 +52,8 @@ ENTRIES = {
     "transfer:lay": "f8[3] i8[2] f8[1] i8",
     "transfer:lay_rest": "f8[3] f8[1] i8",
     "transfer:fly": "f8[3] i8[2] f8[2] Body[1] f8[1] f8 f8 f8 f8",
+    "rehearsing:approach": "f8[3] i8[2] f8[2] Body[1] f8[1] f8 f8 f8 f8",
+    "rehearsing:changed": "f8[3] f8[2] f8[2]",
     "impacts.booking:flag_again": "{Scene}",
     "impacts.step:step": "{Scene} f8[3] i8[2] f8[2] f8[1] f8 f8 f8 f8 i8 bool i8",
     "impacts.together:step_together": "{Scene} f8[3] i8[2] f8[2] f8[1] f8[1] f8 f8 f8 f8 i8",

@@ -165,7 +165,7 @@ class EventLoop(Remembering):
         """Let pairs of shapes (a < b) have this elasticity (below 0: they pass), friction and surface velocity from now
         on."""
         table = np.array([(*pair, *what) for pair, what in rules.items()], float).reshape(-1, RULE_COLUMNS)
-        if len(table) or len(self.scene.RULE):
+        if not np.array_equal(table, self.scene.RULE):
             self.scene = self.scene._replace(RULE=table)
 
     @property

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+from typing import Any
+
 import numpy as np
 import numpy.typing as npt
 import pymunk
@@ -82,6 +85,12 @@ class Bodies:
         self.inverse_mass: FloatArray = 1.0 / self.mass
         self.inverse_moment: FloatArray = 1.0 / self.moment
         self.center_of_gravity: FloatArray = np.array([b.center_of_gravity for b in self.items], float).reshape(-1, 2)
+
+    @cached_property
+    def moving(self) -> list[Any]:
+        """Chipmunk's bodies of those that are not static and have shapes."""
+        still = self.static.tolist()
+        return private.pointers(b for b, s in zip(self.items, still, strict=True) if not s and b.shapes)
 
     def __len__(self) -> int:
         return len(self.items)

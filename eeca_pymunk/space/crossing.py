@@ -104,6 +104,10 @@ class Crossing:
     def put(self, end: FloatArray) -> int:
         """Take (N, 9) as the end of the step in the place of what the step gave, whatever pymunk has now; its bits."""
         self.STATES[LEFT] = end
+        return self.whole()
+
+    def whole(self) -> int:
+        """Lay out all of the end of the step, whatever pymunk has now; its bits."""
         return lay(self.STATES, self.WALK, self.ENDS, FORCES | TURNS)
 
     def ended(self) -> FloatArray:

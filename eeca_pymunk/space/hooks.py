@@ -1,10 +1,7 @@
 """Hooks: what a user's program has hung into a space, called once a step as pymunk calls it.
 
-Velocity and position functions are called with the real dt. Collision handlers need pymunk's own arbiters: a
-*rehearsal* lets pymunk take the step from the same start to where the bodies would fly freely, with its own detection
-and solver, so that begin, pre_solve, post_solve and separate come in pymunk's order and with pymunk's numbers. What
-they decide (collisions to ignore, restitution, friction, surface velocities, changed velocities) goes into our step,
-which then takes its place.
+Velocity and position functions are called with the real dt. Collision handlers need pymunk's own arbiters, see
+`rehearsal.py`.
 
 `pre_solve` of constraints comes in its place there too, before our step where there is no rehearsal. `post_solve` of
 constraints comes after our step, whose impulses they can read; then so does that of collisions, which come after it.
@@ -12,21 +9,17 @@ constraints comes after our step, whose impulses they can read; then so does tha
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
 import pymunk
 
-from ..arrays import FloatArray, rotated
-from ..compiled.records import Rows
-from ..model.shapes import Shape
+from ..arrays import FloatArray
 from . import private, private_joints
-from .bodies import ANGLE, ANGULAR_VELOCITY, POSITION, VELOCITY, Bodies
+from .bodies import ANGLE, POSITION, Bodies
 from .joints import JointRows
-from .private_versions import answer
-from .shapes import Rules
 
 _PRESS = 1e-7  # part of its height by which a body is pressed on what carries it, in a rehearsal
 
@@ -124,129 +117,3 @@ class Hooks:
                 private.replace_functions(body, function, None)
             for body, place in position:
                 private.replace_functions(body, None, place)
-
-
-class Rehearsal:
-    """pymunk's own step from the start of ours, for its collision handlers.
-
-    Attributes:
-        before: (N, 9) the state of the start with what begin and pre_solve have changed in it.
-    """
-
-    def __init__(self, space: pymunk.Space, hooks: Hooks, state: FloatArray) -> None:
-        self.space, self.hooks, self.bodies = space, hooks, hooks.bodies
-        self._state = state
-        self.before = state.copy()
-        self._after = np.zeros_like(state)
-        self._failure: BaseException | None = None
-
-    def run(self, free: FloatArray, dt: float) -> FloatArray:
-        """Take pymunk's step to the (N, 9) state `free`; what post_solve and separate change (N, 9). Raises what a
-        handler raises, once pymunk has finished.
-
-        pymunk moves bodies first, and accelerates them where they have come to. So they start from where their
-        velocities, which handlers see and contacts feel, lead there.
-        """
-        going, moves = self._state.copy(), ~self.bodies.static
-        going[:, ANGLE] = free[:, ANGLE] - dt * self._state[:, ANGULAR_VELOCITY]
-        going[:, POSITION] = self.bodies.centers(free) - dt * self._state[:, VELOCITY] + self._pressed()
-        going[:, POSITION] -= rotated(self.bodies.center_of_gravity, going[:, ANGLE])
-        going[~moves] = self._state[~moves]
-        self.bodies.scatter(going, unchanged=True)
-        with self.hooks.silent(), self._watched():
-            private.step_alone(self.space, dt)
-        if self._failure is not None:
-            raise self._failure
-        return self._after
-
-    def _pressed(self) -> FloatArray:
-        """(N, 2) way by which bodies go farther along gravity, the more the higher they are.
-
-        What stands on one another here is at a distance of 0, give or take round-off, and pymunk, in whose own steps it
-        sinks in, would begin and end such contacts at random.
-        """
-        gravity = np.array(self.space.gravity)
-        pull = float(np.hypot(*gravity))
-        way = np.zeros((len(self.bodies), 2))
-        moves = self.bodies.dynamic
-        if pull > 0.0 and moves.any():
-            down = gravity / pull
-            depth = self._state[moves, POSITION] @ down
-            way[moves] = _PRESS * (depth.max() - depth)[:, None] * down
-        return way
-
-    @contextmanager
-    def _watched(self) -> Iterator[None]:
-        """Within, the handlers' functions tell what they change and what they raise."""
-        handlers, joints = private.handlers(self.space), self.hooks.joints
-        functions = [(h, phase, getattr(h, phase)) for h in handlers for phase in private.PHASES]
-        functions = [(h, phase, f) for h, phase, f in functions if f is not None]
-        with ExitStack() as stack:
-            if joints is not None:
-                mute = [item for item in joints.calling if item.pre_solve is None or item.a.space is None]
-                stack.enter_context(joints.partners.kept())
-                stack.enter_context(private_joints.silent(mute))
-                stack.enter_context(private_joints.with_laws(joints.own, joints.laws()))
-                stack.enter_context(self._watched_joints([item for item in joints.before if item not in mute]))
-            try:
-                for handler, phase, function in functions:
-                    changes = self.before if phase in private.PHASES[:2] else self._after
-                    watched = self._watch(function, changes, phase)
-                    if phase == private.PHASES[2] and joints is not None and joints.after:
-                        watched = self.hooks.later(function)
-                    setattr(handler, phase, watched)
-                yield
-            finally:
-                for handler, phase, function in functions:
-                    setattr(handler, phase, function)
-
-    @contextmanager
-    def _watched_joints(self, items: Sequence[pymunk.Constraint]) -> Iterator[None]:
-        """Within, `pre_solve` of constraints tells what it changes and raises, and `post_solve` is not called."""
-        functions = [(item, item.pre_solve, item.post_solve) for item in items]
-        try:
-            for item, before, after in functions:
-                assert before is not None
-                nothing = None if after is None else _nothing
-                private_joints.replace_functions(item, self._watch(before, self.before), nothing)
-            yield
-        finally:
-            for item, before, after in functions:
-                private_joints.replace_functions(item, before, after)
-
-    def _watch(self, function: Callable[..., Any], changes: FloatArray, phase: str = "") -> Callable[..., bool | None]:
-        """The function, whose changes go into `changes`; of a handler's phase, with its answer."""
-
-        def call(*arguments: Any) -> bool | None:
-            taken: bool | None = True
-            if self._failure is not None:
-                return taken
-            was = self.bodies.gather()
-            try:
-                taken = answer(function(*arguments), function, phase)
-            except BaseException as error:
-                # It would end in pymunk's C code, which cannot pass it on.
-                self._failure = error
-            now = self.bodies.gather()
-            if was is not None and now is not None:
-                # pymunk makes nan of the spins of bodies that do not turn and that gears hold: ours does not.
-                changes[:] += np.where(np.isnan(was), 0.0, now - was)
-            return taken
-
-        return call
-
-    def rules(self, shapes: Sequence[pymunk.Shape], SHAPE: Rows[Shape], smooth: bool) -> Rules:
-        """What the arbiters of the step say of pairs of these shapes, which are the rows of SHAPE."""
-        return Rules.said(private.arbiters(self.space), shapes, SHAPE, smooth)
-
-    def finish(self, bodies: Bodies) -> None:
-        """What pymunk does when its step has ended: shapes where the bodies are, additions, removals, callbacks."""
-        space = self.space
-        for body in bodies.items:
-            if body.body_type != pymunk.Body.STATIC:
-                space.reindex_shapes_for_body(body)
-        private.finish_step(space)
-
-
-def _nothing(*arguments: Any) -> None:
-    pass

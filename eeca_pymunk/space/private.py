@@ -30,6 +30,7 @@ PHASES = ("_begin", "_pre_solve", "_post_solve", "_separate")
 
 _OF_LIBRARY = (
     "cpSpaceStep", "cpHastySpaceStep", "cpSpaceEachBody", "cpSpaceGetGravity", "cpSpaceGetDamping",
+    "cpSpaceReindexShapesForBody", "cpShapeGetSensor", "cpShapeGetElasticity", "cpShapeGetFriction",
     "cpSpaceGetSleepTimeThreshold", "cpSpaceSetSleepTimeThreshold", "cpSpaceGetShapeIDCounter", "cpSpaceGetTimestamp",
     "pmSpaceBodyGetIteratorFuncBatched", "pmSpaceBodySetIteratorFuncBatched",
     *private_joints.OF_LIBRARY, *private_sleep.OF_LIBRARY,
@@ -38,7 +39,7 @@ _OF_SPACE = (
     "_space", "_bodies", "_shapes", "_constraints", "_handlers", "_get_arbiters", "_locked", "_add_later",
     "_remove_later", "_removed_shapes", "_post_step_callbacks",
 )  # fmt: skip
-_OF_BODY = ("_velocity_func", "_position_func")
+_OF_BODY = ("_body", "_velocity_func", "_position_func")
 _TYPES = ("pmBatchedData *", "pmFloatArray *", "pmIntArray *")
 
 
@@ -80,6 +81,29 @@ def handlers(space: pymunk.Space) -> list[Any]:
 def arbiters(space: pymunk.Space) -> list[pymunk.Arbiter]:
     """All arbiters that pymunk keeps: of its last step, and of as many before as `collision_persistence` says."""
     return [pymunk.Arbiter(one, space) for one in space._get_arbiters()]
+
+
+def odd_arbiters(space: pymunk.Space) -> list[pymunk.Arbiter]:
+    """Those of `arbiters` that may say anything else than their shapes do."""
+    own = lib.cpShapeGetSensor, lib.cpShapeGetElasticity, lib.cpShapeGetFriction
+    return [pymunk.Arbiter(one, space) for one in space._get_arbiters() if private_versions.is_odd(one, *own)]
+
+
+def decision(arbiter: pymunk.Arbiter) -> tuple[Any, ...]:
+    """What functions may decide of a collision, to be compared with what it was."""
+    return private_versions.decision(arbiter._arbiter, lib.cpShapeGetSensor)
+
+
+def reindex(space: pymunk.Space, bodies: Iterable[Any]) -> None:
+    """Move the shapes of bodies, as `pointers` gives them, to where these are."""
+    c, move = space._space, lib.cpSpaceReindexShapesForBody
+    for body in bodies:
+        move(c, body)
+
+
+def pointers(bodies: Iterable[pymunk.Body]) -> list[Any]:
+    """Chipmunk's bodies."""
+    return [body._body for body in bodies]
 
 
 def touching(space: pymunk.Space) -> list[tuple[pymunk.Body, pymunk.Body]]:

@@ -43,6 +43,24 @@ def processed(arbiter: pymunk.Arbiter) -> bool:
     return bool(held.state != _IGNORED and (held.count > 0 or held.state == _CACHED))
 
 
+def decision(held: Any, sensor: Callable[[Any], bool]) -> tuple[Any, ...]:
+    """What functions may decide of a collision, whose arbiter Chipmunk has: whether it takes place, whether shapes are
+    sensors, restitution, friction, surface velocity."""
+    surface, takes_place = held.surface_vr, True if ANSWERS else held.processCollision
+    return takes_place, sensor(held.a), sensor(held.b), held.e, held.u, surface.x, surface.y
+
+
+def is_odd(
+    held: Any, sensor: Callable[[Any], bool], elasticity: Callable[[Any], float], friction: Callable[[Any], float]
+) -> bool:  # fmt: skip
+    """Whether an arbiter of Chipmunk's may say anything else than its shapes, whose numbers the functions give."""
+    a, b, surface = held.a, held.b, held.surface_vr
+    if ANSWERS or not held.processCollision or sensor(a) or sensor(b):
+        return True
+    plain = held.e == elasticity(a) * elasticity(b) and held.u == friction(a) * friction(b)
+    return not plain or surface.x != 0.0 or surface.y != 0.0
+
+
 def bodies(arbiter: pymunk.Arbiter) -> tuple[pymunk.Body, pymunk.Body]:
     """The two bodies of an arbiter."""
     one, two = (shape.body for shape in arbiter.shapes)

@@ -28,6 +28,11 @@ class Rules:
     ignored: frozenset[Pair] = frozenset()
     changed: Mapping[Pair, Law] = field(default_factory=dict)
 
+    @property
+    def some(self) -> bool:
+        """Whether there are any."""
+        return bool(self.ignored or self.changed)
+
     @classmethod
     def said(
         cls, arbiters: Iterable[pymunk.Arbiter], shapes: Sequence[pymunk.Shape], SHAPE: Rows[Shape], smooth: bool

@@ -76,6 +76,7 @@ class Sync:
         moving = [b for b, still in zip(bodies.items, bodies.static.tolist(), strict=True) if b.shapes and not still]
         self._asleep = bool(bodies.asleep.any())
         self._moving = moving if sum(len(b.shapes) for b in moving) <= FEW else None
+        self._pointers = private.pointers(self._moving or ())
         self._timestamp: Callable[[], int] = private.timestamp(space)
         self._renewed, self._dt, self._left = -1, 0.0, 0
         self._touched = False
@@ -90,9 +91,7 @@ class Sync:
     def reindex(self) -> None:
         """Move the shapes to where their bodies are."""
         self._left -= 1
-        move = self.space.reindex_shapes_for_body
-        for body in self._moving or ():
-            move(body)
+        private.reindex(self.space, self._pointers)
 
     def waits(self) -> bool:
         """Whether post-step callbacks wait for the end of a step."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import cached_property
 from typing import TypeAlias
 
 import numpy as np
@@ -22,6 +23,7 @@ from .crossing import Crossing
 from .joints import JointRows
 from .noticed import edits
 from .packing import Record, pack, read
+from .rehearsal import Rehearsal
 from .shapes import Rules
 
 _COLLIDES_WITH_ALL = tuple(pymunk.ShapeFilter())
@@ -114,6 +116,11 @@ class World(Crossing):
         elif anew or past is None or not past.is_of(self.space):
             rows = {b: r for b, r in zip(self.bodies.items, self.WALK[BODY_ROW].tolist(), strict=True) if r >= 0}
             self.joints = JointRows(self.space, rows, len(self.BODY), past)
+
+    @cached_property
+    def rehearsal(self) -> Rehearsal:
+        """What steps with collision handlers need."""
+        return Rehearsal(self)
 
     def settle(self) -> None:
         """Let joints tell of the step, and take no notice of how pymunk rounds what was written to it."""

@@ -1,0 +1,98 @@
+"""Kernels of a rehearsal: where pymunk's own step begins for its collision handlers, and what these have changed."""
+
+from __future__ import annotations
+
+import math
+
+from .arrays import FloatArray, IntArray
+from .compiled import kernel
+from .compiled.records import Rows
+from .layout import BODY_ROW, COG_X, COG_Y, ECCENTRIC, END, NOW, PUSH_TWIST, PUSH_X, PUSH_Y, SPECIAL, STEERED
+from .model.bodies import Body
+from .transfer import NOT_FINITE, OVERFLOW, finite
+
+PRESS = 1e-7  # part of its height by which a body is pressed on what carries it
+
+
+@kernel
+def approach(
+    STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, BODY: Rows[Body], ENDS: FloatArray, dt: float, gx: float,
+    gy: float, left: float,
+) -> int:  # fmt: skip
+    """Lay out in ENDS, in the table END with angles and spins, from where a step of pymunk leads to the end of free
+    flight: pymunk moves bodies first, and accelerates them where they have come to, so that they start at
+
+        q_free - dt v,   q_free = q + dt (d v + dt a / 2),   d = `left` the damping of half a step.
+
+    What stands on one another in our steps is at a distance of 0, give or take round-off, and pymunk, in whose own
+    steps it sinks in, would begin and end such contacts at random: bodies go farther along gravity by PRESS times how
+    high they are above the lowest.
+
+    Returns:
+        0; NOT_FINITE or OVERFLOW if a number at the start or the end is not finite.
+    """
+    now = STATES[NOW]
+    N = WALK.shape[1]
+    pull = math.sqrt(gx * gx + gy * gy)
+    down_x, down_y, deepest = 0.0, 0.0, -math.inf
+    if pull > 0.0:
+        down_x, down_y = gx / pull, gy / pull
+    for i in range(N):
+        row = WALK[BODY_ROW, i]
+        if row >= 0 and BODY[row].inv_mass > 0.0:
+            deepest = max(deepest, now[i, 0] * down_x + now[i, 1] * down_y)
+    end = ENDS[END * N :]
+    for i in range(N):
+        x, y, angle, vx, vy, spin = now[i, 0], now[i, 1], now[i, 2], now[i, 3], now[i, 4], now[i, 5]
+        row = WALK[BODY_ROW, i]
+        if row >= 0:
+            if not finite(x, y, angle, vx, vy, spin):
+                return NOT_FINITE
+            special = WALK[SPECIAL, i]
+            ax, ay, twist, damped = 0.0, 0.0, 0.0, 1.0
+            moves = BODY[row].inv_mass > 0.0
+            if moves:
+                ax = now[i, 6] * BODY[row].inv_mass + gx
+                ay = now[i, 7] * BODY[row].inv_mass + gy
+                twist, damped = now[i, 8] * BODY[row].inv_inertia, left
+            if special & STEERED:
+                ax, ay, twist, damped = EXTRA[i, PUSH_X], EXTRA[i, PUSH_Y], EXTRA[i, PUSH_TWIST], 1.0
+            px, py = x, y
+            if special & ECCENTRIC:
+                kx, ky = EXTRA[i, COG_X], EXTRA[i, COG_Y]
+                c, s = math.cos(angle), math.sin(angle)
+                px += c * kx - s * ky
+                py += s * kx + c * ky
+            px += dt * (damped * vx + 0.5 * dt * ax)
+            py += dt * (damped * vy + 0.5 * dt * ay)
+            turned = angle + dt * (damped * spin + 0.5 * dt * twist)
+            if not finite(px, py, turned, 0.0, 0.0, 0.0):
+                return OVERFLOW
+            way = PRESS * (deepest - (x * down_x + y * down_y)) if moves and pull > 0.0 else 0.0
+            x, y, angle = px - dt * vx + way * down_x, py - dt * vy + way * down_y, turned - dt * spin
+            if special & ECCENTRIC:
+                kx, ky = EXTRA[i, COG_X], EXTRA[i, COG_Y]
+                c, s = math.cos(angle), math.sin(angle)
+                x -= c * kx - s * ky
+                y -= s * kx + c * ky
+        end[6 * i], end[6 * i + 1], end[6 * i + 2] = x, y, angle
+        end[6 * i + 3], end[6 * i + 4], end[6 * i + 5] = vx, vy, spin
+    return 0
+
+
+@kernel
+def changed(STATES: FloatArray, KNOWN: FloatArray, CHANGES: FloatArray) -> int:
+    """Add to CHANGES (N, 9) what of STATES is no longer as KNOWN (N, 9) has it, and know it; 1 if there is anything.
+
+    pymunk makes nan of the spins of bodies that do not turn and that gears hold: what was nan has not changed.
+    """
+    now, found = STATES[NOW], 0
+    for i in range(KNOWN.shape[0]):
+        for c in range(9):
+            before = KNOWN[i, c]
+            if now[i, c] != before:
+                if before == before:
+                    CHANGES[i, c] += now[i, c] - before
+                    found = 1
+                KNOWN[i, c] = now[i, c]
+    return found

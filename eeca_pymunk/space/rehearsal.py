@@ -1,0 +1,211 @@
+"""A rehearsal: pymunk's own step from the start of ours to where bodies would fly freely, for its collision handlers.
+
+They are called with its own detection and solver, so that begin, pre_solve, post_solve and separate come in pymunk's
+order and with pymunk's numbers. What they decide (collisions to ignore, restitution, friction, surface velocities,
+changed velocities) goes into our step, which then takes its place.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, nullcontext
+from typing import Any
+
+import numpy as np
+import pymunk
+
+from ..arrays import FloatArray
+from ..compiled.records import Rows
+from ..layout import NOW
+from ..model.shapes import Shape
+from ..rehearsing import approach, changed
+from ..transfer import TURNS
+from . import private, private_joints
+from .crossing import Crossing
+from .hooks import Hooks
+from .private_versions import answer
+from .shapes import Rules
+
+_BEGIN, _PRE_SOLVE, _POST_SOLVE, _ = private.PHASES
+
+
+class _Watched:
+    """A function of a handler or constraint that tells what it changes and raises.
+
+    `phase`: of a handler, "" of a constraint; all functions of one `group` are called between two of pymunk's stages.
+    """
+
+    __slots__ = ("_decides", "_group", "_phase", "_rehearsal", "function")
+
+    def __init__(self, rehearsal: Rehearsal, function: Callable[..., Any], phase: str, group: int) -> None:
+        self._rehearsal, self.function, self._phase, self._group = rehearsal, function, phase, group
+        self._decides = phase in (_BEGIN, _PRE_SOLVE)
+
+    def __call__(self, *arguments: Any) -> bool | None:
+        rehearsal = self._rehearsal
+        if rehearsal.failure is not None:
+            return True
+        rehearsal.listen(self._group)
+        before = private.decision(arguments[0]) if self._decides else None
+        answered: bool | None = True
+        try:
+            answered = answer(self.function(*arguments), self.function, self._phase)
+        except BaseException as error:
+            # It would end in pymunk's C code, which cannot pass it on.
+            rehearsal.failure = error
+        if self._decides and (answered is False or private.decision(arguments[0]) != before):
+            rehearsal.decided = True
+        rehearsal.hear(self._group)
+        return answered
+
+
+class Rehearsal:
+    """What rehearsals of a world need, kept from step to step.
+
+    Attributes:
+        failure: what a function has raised in the last one.  decided: whether one has decided about a collision in it.
+    """
+
+    def __init__(self, world: Crossing) -> None:
+        self.world, self.space, self.bodies = world, world.space, world.bodies
+        N = len(world.bodies)
+        self._start, self._known = np.zeros((N, 9)), np.zeros((N, 9))
+        # By group: what begin and pre_solve have changed, then what post_solve and separate have.
+        self._changes: tuple[FloatArray, FloatArray] = np.zeros((N, 9)), np.zeros((N, 9))
+        self._differ = [changed.bind(world.STATES, self._known, table) for table in self._changes]
+        self._heard, self._stage = [False, False], -1
+        self._wrapped: list[tuple[Any, str, Any, Any]] = []
+        self.failure: BaseException | None = None
+        self.decided, self._ignores = False, True
+        self._recent: float = 0.0  # steps for which decisions hold
+
+    def listen(self, stage: int) -> None:
+        """Before a function is called: know what there is, if pymunk has gone on since the last one."""
+        if self._stage != stage:
+            self.world.gather()
+            np.copyto(self._known, self.world.STATES[NOW])
+            self._stage = stage
+
+    def hear(self, stage: int) -> None:
+        """After a function was called: keep what it has changed."""
+        group = 0 if stage == 0 else 1
+        self.world.gather()
+        if self._differ[group]():
+            self._heard[group] = True
+
+    def run(self, hooks: Hooks, dt: float, gravity: tuple[float, ...], left: float) -> int:
+        """Take pymunk's step; STATES then has the start of ours, with what begin and pre_solve have changed in it.
+        Raises what a function raises, once pymunk has finished.
+
+        Returns:
+            0 or a negative code of `transfer.py`, with nothing done.
+        """
+        world = self.world
+        np.copyto(self._start, world.STATES[NOW])
+        gx, gy = gravity
+        status = approach(world.STATES, world.WALK, world.EXTRA, world.BODY, world.ENDS, dt, gx, gy, left)
+        if status < 0:
+            return status
+        self.failure, self.decided, self._stage = None, False, -1
+        for group, table in enumerate(self._changes):
+            if self._heard[group]:
+                table[:], self._heard[group] = 0.0, False
+        world.scatter(TURNS)
+        self._wrap(hooks)
+        plain = not (len(hooks.velocity) or len(hooks.position))
+        try:
+            for handler, phase, _, watched in self._wrapped:
+                setattr(handler, phase, watched)
+            with nullcontext() if plain else hooks.silent(), self._joints(hooks):
+                private.step_alone(self.space, dt)
+        finally:
+            for handler, phase, function, _ in self._wrapped:
+                setattr(handler, phase, function)
+        if self.failure is not None:
+            raise self.failure
+        np.copyto(world.STATES[NOW], self._start)
+        if self._heard[0]:
+            world.STATES[NOW] += self._changes[0]
+        return status
+
+    @property
+    def start(self) -> FloatArray:
+        """(N, 9) the state before functions were called."""
+        return self._start
+
+    @property
+    def after(self) -> FloatArray | None:
+        """(N, 9) what post_solve and separate have changed, None if nothing."""
+        return self._changes[1] if self._heard[1] else None
+
+    def _wrap(self, hooks: Hooks) -> None:
+        """Have functions that tell of all functions of handlers; those of the last step if they are the same."""
+        now = [
+            (handler, phase, function)
+            for handler in private.handlers(self.space)
+            for phase in private.PHASES
+            if (function := getattr(handler, phase)) is not None
+        ]
+        late = hooks.joints is not None and len(hooks.joints.after) > 0
+        known = [(handler, phase, function) for handler, phase, function, _ in self._wrapped]
+        if now != known or late:
+            stages = {phase: max(i - 1, 0) for i, phase in enumerate(private.PHASES)}
+            self._wrapped = [(h, phase, f, _Watched(self, f, phase, stages[phase])) for h, phase, f in now]
+        if late:
+            self._wrapped = [
+                (h, phase, f, hooks.later(f) if phase == _POST_SOLVE else told) for h, phase, f, told in self._wrapped
+            ]
+
+    @contextmanager
+    def _silent_joints(self, hooks: Hooks) -> Iterator[None]:
+        """Within, functions of constraints that have one for before the step tell; others are not called."""
+        joints = hooks.joints
+        assert joints is not None
+        mute = [item for item in joints.calling if item.pre_solve is None or item.a.space is None]
+        with (
+            joints.partners.kept(), private_joints.silent(mute), private_joints.with_laws(joints.own, joints.laws()),
+            self._watched_joints([item for item in joints.before if item not in mute]),
+        ):  # fmt: skip
+            yield
+
+    def _joints(self, hooks: Hooks) -> Any:
+        return nullcontext() if hooks.joints is None else self._silent_joints(hooks)
+
+    @contextmanager
+    def _watched_joints(self, items: Sequence[pymunk.Constraint]) -> Iterator[None]:
+        """Within, `pre_solve` of constraints tells what it changes and raises, and `post_solve` is not called."""
+        functions = [(item, item.pre_solve, item.post_solve) for item in items]
+        try:
+            for item, before, after in functions:
+                assert before is not None
+                nothing = None if after is None else _nothing
+                private_joints.replace_functions(item, _Watched(self, before, "", 0), nothing)
+            yield
+        finally:
+            for item, before, after in functions:
+                private_joints.replace_functions(item, before, after)
+
+    def rules(self, known: Rules, shapes: Sequence[pymunk.Shape], SHAPE: Rows[Shape], smooth: bool) -> Rules:
+        """What the arbiters of the step say of pairs of these shapes, which are the rows of SHAPE.
+
+        Only functions make them say anything else than shapes do. pymunk keeps what they have decided for as many
+        steps as it keeps arbiters; of collisions that are ignored, for as long as shapes touch.
+        """
+        if self.decided:
+            self._recent = self.space.collision_persistence + 1
+        if self._recent <= 0 and not self._ignores:
+            return Rules() if known.some else known
+        self._recent -= 1
+        rules = Rules.said(private.odd_arbiters(self.space), shapes, SHAPE, smooth)
+        self._ignores = bool(rules.ignored)
+        return rules
+
+    def finish(self) -> None:
+        """What pymunk does when its step has ended: shapes where the bodies are, additions, removals, callbacks."""
+        private.reindex(self.space, self.bodies.moving)
+        if private.waits(self.space):
+            private.finish_step(self.space)
+
+
+def _nothing(*arguments: Any) -> None:
+    pass
