@@ -13,14 +13,13 @@ from ..compiled.records import Rows
 from ..impacts.spans import Local
 from ..model.contacts import Row
 from ..model.scene import Scene
+from .bounded import Bounded, fill_rows, list_rows, note_rows
 from .columns import Columns, fill_group
 from .component import ready, step_component
 from .gathered import find_places, gather_component, lead_component, rewind_joints
 from .groups import Groups
 from .layout import Joints
 from .motors import let_slip
-
-NOT_AT_ALL, AS_IT_IS, AS_IF_SLIPPING = 0, 1, 2  # what columns are filled with
 
 
 class Motion(NamedTuple):
@@ -44,10 +43,10 @@ def is_hit(groups: Groups, P: IntArray, Q: IntArray, m: int, g: int) -> bool:
 @kernel
 def advance(
     A: Scene, J: Joints, isle: Local, groups: Groups, P: IntArray, Q: IntArray, ROWS: Rows[Row], L: FloatArray, m: int,
-    t: float, h: float, motion: Motion, C: Columns, fill: int, GUESS: FloatArray,
+    t: float, h: float, motion: Motion, C: Columns, B: Bounded, fill: bool, GUESS: FloatArray,
 ) -> None:  # fmt: skip
     """Step all bodies of an island by h under the impulses L of its contacts, from where its joints were; `fill` the
-    columns C about that step: not at all, as joints stand, or as if motors and the like were at their max_force.
+    columns C and B about that step, bounded impulses being given; else B has what these are, and C stays.
     GUESS (k, 3): velocities at the end that are foreseen, to begin with; (0, 3) for none."""
     k = len(isle.IM)
     ACC = isle.ACC.copy()
@@ -62,6 +61,8 @@ def advance(
             ACC[q, 1] += sign * isle.IM[q] * fy
             ACC[q, 2] += sign * isle.II[q] * (L[i, 0] * arm_n + L[i, 1] * arm_t) / h
     INDEX = np.full(k, -1, np.int64)
+    if fill:
+        B.USED[0] = 0
     for g in range(len(groups.COMPONENT)):
         s = groups.COMPONENT[g]
         if s < 0:
@@ -71,11 +72,18 @@ def advance(
             lead_component(A, J, s, isle.V, ACC, GUESS, h)
         length = gather_component(A, J, s, isle.POSE, isle.V, ACC, isle.IM, isle.II, t, h)
         step_component(A, J, s, h, length, m == 0, motion.V, motion.WAY, motion.END)
-        if fill != NOT_AT_ALL and is_hit(groups, P, Q, m, g):
+        if not fill:
+            note_rows(A, J, B, s, h)
+        elif is_hit(groups, P, Q, m, g):
             size = find_places(A, J, s, INDEX)
-            let_slip(J, s, fill == AS_IF_SLIPPING)
+            let_slip(J, s, True)
+            first = list_rows(A, J, B, s, h)
             if ready(J, s, h, True):
-                fill_group(J, groups, C, g, INDEX, True, P, Q, ROWS, m, np.empty((size, 3)))
+                PUSH = np.empty((size, 3))
+                fill_group(J, groups, C, g, INDEX, True, P, Q, ROWS, m, PUSH)
+                fill_rows(J, groups, B, g, first, INDEX, PUSH)
+            else:
+                B.USED[0] = first
             let_slip(J, s, False)
     for q in range(k):
         if groups.GROUP[q] >= 0 and groups.COMPONENT[groups.GROUP[q]] >= 0:

@@ -25,12 +25,12 @@ from ..rows.build import conserves, normal_rate, rates, tangent_rate
 from ..rows.inplace import copy
 from ..sustained.contacts import CROWD
 from ..sustained.targets import target
-from .advance import AS_IT_IS, NOT_AT_ALL, Motion, advance, farthest_apart
+from .advance import Motion, advance, farthest_apart
+from .bounded import make_bounded, settle_bounded, with_bounded
 from .columns import Columns, fill_free, leave_out, push_columns, weigh
 from .groups import Groups
 from .layout import Joints
 from .newton import FEW, solve_columns
-from .overcome import overcome
 
 _OUTER, _MOST_OUTER = 6, 12  # steps of the components; if elastic, or of no more than SOME contacts
 _MANY_OUTER, _PART_OUTER = 2, 1  # of islands of many contacts, whose sweeps do not come to an end; before an impact
@@ -44,6 +44,7 @@ _FALLS = 0.3  # of what velocities are apart, with which they do not come to agr
 _NEAR = 1e-9  # error of joints over the size of a component, as a way in h
 _FLOOR = 1e-8  # over the speed, what is round-off of components that hardly give way, if it does not fall
 _ROUGH = 1e-4  # likewise, above which answers are taken anew
+_WORK_ROUND_OFF = 4e-14  # of the work of contacts, over their impulses times the island's speed
 _CHORD = 3  # steps of the components between which their answers are taken to be the same
 
 
@@ -103,12 +104,12 @@ def press(
     J.FOUND[NEAR] = _NEAR if m > FEW and not elastic and not rests else 0.0
     FORESEEN, UNKNOWN = np.empty((len(isle.IM), 3)), np.empty((0, 3))
     converged, best, LEAST, USED, hopeless, agreed, slowly = False, np.inf, L.copy(), L.copy(), False, False, False
-    stiff = False
+    stiff, B = False, make_bounded(J, groups, False)
     for outer in range(rounds):
         if hopeless:
             break
-        anew = AS_IT_IS if outer % _CHORD == 0 or slowly else NOT_AT_ALL
-        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, anew, FORESEEN if outer > 0 else UNKNOWN)
+        anew = outer % _CHORD == 0 or slowly
+        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, B, anew, FORESEEN if outer > 0 else UNKNOWN)
         if outer > 0:
             off = farthest_apart(motion.V, FORESEEN, isle.EXTENT, n)
             if off <= agree or (off <= _FLOOR * scale and off > _FALLS * best):
@@ -125,23 +126,26 @@ def press(
                 # Too far: the components do not answer as they did.
                 for k in range(L.shape[0]):
                     L[k, 0], L[k, 1] = 0.5 * (L[k, 0] + LEAST[k, 0]), 0.5 * (L[k, 1] + LEAST[k, 1])
-                advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, anew, UNKNOWN)
-        if anew != NOT_AT_ALL:
+                advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, B, anew, UNKNOWN)
+        if anew:
             weigh(groups, C, P, Q, ROWS, m)
         if outer == 0:
             stiff = m <= FEW and some_taut(J, groups)
             slowly = stiff
             EFFECT = motion.V.copy()
             push_columns(C, L, m, -1.0, EFFECT)
+            settle_bounded(B, EFFECT)
             for q in range(len(EFFECT)):
                 for c in range(3):
                     EFFECT[q, c] = (EFFECT[q, c] - isle.V[q, c]) / h
             target(P, Q, ROWS, m, EFFECT, EXPECTED, pull, h)
-            overcome(A, J, isle, groups, P, Q, ROWS, L, m, t, h, agree, motion, C)
         copy(FORESEEN, motion.V)
         copy(USED, L)
         leave_out(C, L, m, FORESEEN)
-        worst = solve_columns(C, P, Q, ROWS, L, FORESEEN, m, fine, most)
+        BOTH = with_bounded(B, L, m)
+        worst = solve_columns(C, B, P, Q, ROWS, BOTH, FORESEEN, m, fine, most)
+        for i in range(m):
+            L[i, 0], L[i, 1] = BOTH[i, 0], BOTH[i, 1]
         converged = worst <= 10.0 * max(fine, min(agree, _AGREE * scale))
         if farthest_apart(motion.V, FORESEEN, isle.EXTENT, n) <= 1e-3 * agree:
             # The motion is that of the impulses before: others may do as little by these answers, and yet do much.
@@ -150,16 +154,19 @@ def press(
             break
     if not agreed or J.FOUND[NEAR] > 0.0:
         J.FOUND[NEAR] = 0.0
-        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, NOT_AT_ALL, UNKNOWN)
+        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, B, False, UNKNOWN)
     if not agreed:
         if not farthest_apart(motion.V, FORESEEN, isle.EXTENT, n) <= best:
             copy(L, LEAST)
-            advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, NOT_AT_ALL, UNKNOWN)
+            advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, B, False, UNKNOWN)
         converged = False
     energy = 0.0
     for q in range(n):
         energy += (isle.V[q, 0] ** 2 + isle.V[q, 1] ** 2 + (pull * h) ** 2) / isle.IM[q]
-    bearable, scaled = 1e-15 * energy, 1.0
+    pressed = 0.0
+    for i in range(m):
+        pressed += abs(L[i, 0]) + abs(L[i, 1])
+    bearable, scaled = 1e-15 * energy + _WORK_ROUND_OFF * pressed * (slow + pull * h), 1.0
     for tries in range(_LOCKS + 1):
         loss = lost(P, Q, ROWS, L, motion.WAY, m, h)
         if loss >= owed - bearable and (not elastic or loss <= owed + bearable):
@@ -184,7 +191,7 @@ def press(
         for i in range(m):
             L[i, 0] = s * L[i, 0] if s > 0.0 else 0.0
             L[i, 1] = s * L[i, 1] if s > 0.0 else 0.0
-        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, NOT_AT_ALL, UNKNOWN)
+        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, B, False, UNKNOWN)
         scaled *= s
         converged = converged and abs(scaled - 1.0) <= _AGREE
         if s == 0.0:

@@ -20,8 +20,9 @@ from ..rows.inplace import sort
 from ..sustained.contacts import NEAR, gather
 from ..sustained.memory import remember_loads
 from ..sustained.step import moved, recall, speeds
-from .advance import NOT_AT_ALL, Motion, advance
+from .advance import Motion, advance
 from .alone import begin_alone, is_component, meets_nobody
+from .bounded import make_bounded
 from .columns import make_columns
 from .component import step_component
 from .fitting import fit
@@ -111,7 +112,24 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
             COUNT.unmet += 1
         remember_loads(ROWS, KEY, L, m, h, A.KEYS, A.FORCES, COUNT, A.PAR.stamp)
     if m == 0:
-        advance(A, J, isle, groups, P, Q, ROWS, L, 0, t, h, motion, C, NOT_AT_ALL, np.empty((0, 3)))
+        advance(
+            A,
+            J,
+            isle,
+            groups,
+            P,
+            Q,
+            ROWS,
+            L,
+            0,
+            t,
+            h,
+            motion,
+            C,
+            make_bounded(J, groups, True),
+            False,
+            np.empty((0, 3)),
+        )
     book_turning(A, J, isle, groups, motion, n)
     # Bodies are lifted at the end of the span, not on the way: the way would be as steep as the span is short.
     WHERE = motion.END.copy()

@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import merged
+from .boxes import leave_box
 from .condensed import freeze
 from .entries import along, held, put_condensed, put_free, put_rows, put_stiffness, scale_rows
 from .rows import joint_rows
@@ -24,6 +25,7 @@ from .scratch import (
     BAND,
     BEFORE,
     BOUNDED,
+    BOXED,
     COLUMN,
     CONDENSED,
     DUAL,
@@ -98,6 +100,11 @@ def assemble(
         if link[k, L_SOFT] == BOUNDED and not still and held(link, k, 0):
             off = put_soft(link, hinge, local, node, k, slopes, h, system, build, band, matrix, right)
             worst = max(worst, off / hinge[k, SIZE])
+            continue
+        if link[k, L_SOFT] == BOXED and not still and held(link, k, 0):
+            off = put_soft(link, hinge, local, node, k, slopes, h, system, False, band, matrix, right)
+            worst = max(worst, off / hinge[k, SIZE])
+            leave_box(link, hinge, k, build, system == WHOLE, band, matrix, right)
             continue
         farthest = 0.0
         for r in range(link[k, L_ROWS]):

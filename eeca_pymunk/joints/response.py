@@ -19,6 +19,8 @@ from .rows import joint_rows, start_joint
 from .scratch import (
     AFTER,
     BEFORE,
+    BOUNDED,
+    BOXED,
     COLUMN,
     CONDENSED,
     COS,
@@ -78,6 +80,34 @@ def prepare(
 
     `what` is STEP, after `island_step` (whose start becomes that of `local` again), or SPEEDS, at the present poses.
     """
+    boxed = unbox(link, joints)
+    system = factors(
+        what, joint, hinge, link, joints, local, node, bodies, h, span, matrix, right, more, stiff, pivots
+    )  # fmt: skip
+    for k in range(joints if boxed else 0):
+        if link[k, L_SOFT] == BOUNDED:
+            link[k, L_SOFT] = BOXED
+    return int(system)
+
+
+@uncounted
+def unbox(link: IntArray, joints: int) -> bool:
+    """Let rows that are boxed be in the matrix: those inside of their bounds hold. Whether there are any."""
+    some = False
+    for k in range(joints):
+        if link[k, L_SOFT] == BOXED:
+            link[k, L_SOFT] = BOUNDED
+            some = True
+    return some
+
+
+@uncounted
+def factors(
+    what: int, joint: FloatArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray,
+    bodies: int, h: float, span: IntArray, matrix: FloatArray, right: FloatArray, more: FloatArray,
+    stiff: FloatArray, pivots: IntArray,
+) -> int:  # fmt: skip
+    """See `prepare`."""
     if what == STEP:
         for i in range(bodies):
             for c in range(3):

@@ -71,8 +71,9 @@ L_JOINT = 7  # its row in JOINT
 L_DUAL = 8  # its first unknown in a system in the rows alone
 L_NEXT = 9  # 9, 10: as FIRST, the next joint on its body a, on its body b
 LINK_COLUMNS = 11
-# L_SOFT: 0 for rows that hold exactly; 1 for impulses within bounds; 2 where these count as given, for an answer.
-BOUNDED, GIVEN = 1, 2
+# L_SOFT: 0 for rows that hold exactly; 1 for impulses within bounds; 2 where these count as given, for an answer; 3 for
+# impulses within bounds that `boxes` finds.
+BOUNDED, GIVEN, BOXED = 1, 2, 3
 
 # SPAN: one row per island.
 BODY_0, BODY_1, JOINT_0, JOINT_1 = 0, 1, 2, 3  # its slices of MEMBER and LINK
@@ -82,7 +83,8 @@ ROWS_OF = 8  # number of unknowns beside the matrix
 DUAL_SIZE, DUAL_BAND = 9, 10  # of its matrix in the rows alone
 RIGID = 11  # what a dual system is taken for: 2 everything, 1 what happens at an instant, 0 nothing
 TAUT = 12  # 1 if its loops held by their pull in the last step (`taut`)
-SPAN_COLUMNS = 13
+BOXES = 13  # most rows of bounded impulses that may act, if few enough for `boxes`; else 0
+SPAN_COLUMNS = 14
 # MEMBER: one row per body of each island.
 M_BODY, M_COLUMN, M_FREEDOMS, M_CAYLEY, M_FIRST = 0, 1, 2, 3, 4
 MEMBER_COLUMNS = 5

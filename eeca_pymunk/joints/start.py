@@ -38,6 +38,8 @@ from .scratch import (
     APART,
     BEFORE,
     BOUND,
+    BOUNDED,
+    BOXED,
     FREE,
     L_A,
     L_JOINT,
@@ -66,18 +68,19 @@ APART_FROM = 1e-10  # joints farther apart than this, over the size of the islan
 @uncounted
 def read_joints(
     joint: FloatArray, tie: IntArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, h: float,
-    length: float,
+    length: float, boxes: int,
 ) -> int:  # fmt: skip
-    """Fill in what the joints bring from before.
+    """Fill in what the joints bring from before. Rows of bounded impulses are boxed if they are `boxes` at most.
 
     Returns 0, plus 1 if a joint was touched, plus 2 if a soft joint needs its target.
     """
-    touched, soft = 0, 0
+    touched, soft, bounded = 0, 0, 0
     for k in range(joints):
         j, kind = link[k, L_JOINT], link[k, L_KIND]
         link[k, L_SIDE] = tie[j, SIDE]
         is_soft = tie[j, SOFT] != 0 and kind not in (SPRING, ROTARY_SPRING)
-        link[k, L_SOFT] = 1 if kind == MOTOR or is_soft else 0
+        link[k, L_SOFT] = BOUNDED if kind == MOTOR or is_soft else 0
+        bounded += link[k, L_ROWS] if link[k, L_SOFT] != 0 else 0
         warm = 0.0 if joint[j, LAST_STEP] == 0.0 else h / joint[j, LAST_STEP]
         hinge[k, LAM], hinge[k, LAM + 1] = joint[j, IMPULSE_1] * warm, joint[j, IMPULSE_2] * warm
         hinge[k, TOTAL] = hinge[k, TOTAL + 1] = 0.0
@@ -96,6 +99,9 @@ def read_joints(
             soft = 2
         if tie[j, TOUCHED] != 0:
             touched = 1
+    for k in range(joints if bounded <= boxes else 0):
+        if link[k, L_SOFT] != 0:
+            link[k, L_SOFT] = BOXED
     return touched + soft
 
 

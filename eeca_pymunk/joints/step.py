@@ -47,6 +47,7 @@ from .scratch import (
     AFTER,
     BEFORE,
     BEGAN,
+    BOXES,
     COS,
     ENDED,
     FREE,
@@ -168,7 +169,7 @@ def island_step(
     for c in range(LEDGER_COLUMNS):
         ledger[c] = 0.0
     loops = span[LOOPS] > 0
-    needs = read_joints(joint, tie, hinge, link, joints, local, h, length)
+    needs = read_joints(joint, tie, hinge, link, joints, local, h, length, span[BOXES])
     # Redundant rows begin without impulse, unless it is what holds bodies.
     span[TAUT] = 1 if loops and taut(joint, hinge, link, joints, local, h) else 0
     cold = loops and span[TAUT] == 0
