@@ -8,7 +8,7 @@ from ..arrays import FloatArray
 from ..compiled import uncounted
 from ..joints.bounds import bounded, gap
 from ..joints.entries import held as stands
-from ..joints.layout import GEAR
+from ..joints.layout import COMPLIANCE, GEAR
 from ..joints.ledger import springs_hold
 from ..joints.response import prepare, respond
 from ..joints.scratch import (
@@ -18,6 +18,7 @@ from ..joints.scratch import (
     FREEDOMS,
     JOINT_0,
     JOINT_1,
+    L_JOINT,
     L_KIND,
     L_ROWS,
     L_SIDE,
@@ -160,7 +161,8 @@ def answer(J: Joints, s: int, about_step: bool, PUSH: FloatArray) -> None:
     """PUSH (bodies of the component, 3): impulses in, changes of velocity out."""
     j0, j1, b0 = J.SPAN[s, JOINT_0], J.SPAN[s, JOINT_1], J.SPAN[s, BODY_0]
     what = STEP if about_step else SPEEDS
+    gives = about_step and J.JOINT[J.LINK[j0, L_JOINT], COMPLIANCE] > 0.0
     respond(
         what, J.HINGE, J.LINK[j0:j1], j1 - j0, J.LOCAL, J.NODE, J.SPAN[s, BODY_1] - b0, J.TALLY[ANSWERS],
-        J.SPAN[s], J.MATRIX, J.RIGHT, J.MORE, J.PIVOTS, PUSH,
+        J.SPAN[s], J.MATRIX, J.RIGHT, J.MORE, J.PIVOTS, PUSH, gives,
     )  # fmt: skip

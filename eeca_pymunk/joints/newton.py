@@ -122,7 +122,7 @@ def assemble(
                     error += give * 0.5 * h * hinge[k, LAM + r] / scale**2
             right[link[k, L_ROW] + r] = -error * scale * per
             farthest = max(farthest, abs(error))
-            hinge[k, WEIGHT + r] = min(STIFFEST, 1.0 / give) if give > 0.0 else STIFFEST
+            hinge[k, WEIGHT + r] = 1.0 / give if give > 0.0 else STIFFEST
             if build and system == CONDENSED:
                 freeze(hinge, link, local, node, k, r, slopes)
                 put_condensed(link, hinge, node, k, r, band, matrix)

@@ -28,6 +28,7 @@ from .scratch import (
     COS,
     DUAL,
     DUAL_SIZE,
+    FORCE,
     FREE,
     FREEDOMS,
     GOT,
@@ -300,5 +301,10 @@ def solve(
                 for c in range(3):
                     if not abs(local[i, AFTER + c]) < 1e100:
                         return -1
+            for k in range(joints):
+                for c in range(6 if link[k, L_ROWS] > 0 else 0):
+                    hinge[k, FORCE + c] = 0.0
+                    for r in range(link[k, L_ROWS]):
+                        hinge[k, FORCE + c] += hinge[k, LAM + r] * hinge[k, ROWS + 6 * r + c]
             return 0
     return -1
