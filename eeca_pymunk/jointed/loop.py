@@ -14,6 +14,7 @@ from ..impacts.loop import follow, with_mover
 from ..impacts.settle import settle
 from ..impacts.step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, finish, start, wish
 from ..joints.layout import BODY_A, BODY_B, ELASTIC, TOUCHED
+from ..joints.scratch import WORK
 from ..layout import BODY_ROW, LEFT
 from ..layout import NOW as READ
 from ..model.scene import Scene, scene_of
@@ -54,6 +55,7 @@ def start_jointed(
     """As `..impacts.step.start`, with the joints."""
     feel(A, J, STATES, WALK)
     J.TALLY[WORST] = J.TALLY[REPEATS] = 0
+    J.FOUND[WORK] = 0.0
     J.STEPPED[:] = 0.0
     return start(A, STATES, WALK, EXTRA, dt, gx, gy, left)
 

@@ -18,7 +18,8 @@ from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
 from ..impacts.coming import before_end, sweeps_of_crowd
 from ..impacts.spans import Local
-from ..joints.scratch import NEAR, TAUT
+from ..joints.layout import COMPLIANCE
+from ..joints.scratch import JOINT_0, L_JOINT, NEAR, TAUT
 from ..model.contacts import Row
 from ..model.scene import Scene
 from ..rows.build import conserves, normal_rate, rates, tangent_rate
@@ -72,6 +73,16 @@ def some_taut(J: Joints, groups: Groups) -> bool:
     return some
 
 
+@uncounted
+def some_give(J: Joints, groups: Groups) -> bool:
+    """Whether joints of a component have given way elastically in its last step."""
+    some = False
+    for g in range(len(groups.COMPONENT)):
+        s = groups.COMPONENT[g]
+        some = some or (s >= 0 and J.JOINT[J.LINK[J.SPAN[s, JOINT_0], L_JOINT], COMPLIANCE] > 0.0)
+    return some
+
+
 @kernel
 def press(
     A: Scene, J: Joints, isle: Local, groups: Groups, P: IntArray, Q: IntArray, ROWS: Rows[Row], L: FloatArray,
@@ -106,6 +117,8 @@ def press(
     converged, best, LEAST, USED, hopeless, agreed, slowly = False, np.inf, L.copy(), L.copy(), False, False, False
     stiff, B = False, make_bounded(J, groups, False)
     for outer in range(rounds):
+        if outer == 1 and some_give(J, groups):
+            agree = max(agree, _AGREE * scale)
         if hopeless:
             break
         anew = outer % _CHORD == 0 or slowly

@@ -27,6 +27,7 @@ from .scratch import (
     CONDENSED,
     COS,
     DUAL,
+    DUAL_BAND,
     DUAL_SIZE,
     FORCE,
     FREE,
@@ -55,6 +56,7 @@ from .scratch import (
     SYSTEM,
     UNKNOWNS,
     UNROOT,
+    WORK,
 )
 
 TOLERANCE = 3e-16  # of joints and momenta, over the size of the island
@@ -67,6 +69,7 @@ LEAST_EPSILON = 1e-10
 CLOSING_EPSILON = 1e-5
 MOST_CLOSINGS = 8
 MOST_PASSES = 12
+_ROWS_COST = 500.0  # operations, of the rows of a joint
 
 
 @merged
@@ -189,6 +192,14 @@ def answer_boxes(
 
 
 @uncounted
+def effort(system: int, fresh: bool, boxes: int, joints: int, span: IntArray) -> float:
+    """About how many operations an iteration takes: rows, factors, solutions."""
+    size, band = (span[DUAL_SIZE], span[DUAL_BAND]) if system == DUAL else (span[UNKNOWNS], span[BAND])
+    turns = 1 + boxes if fresh else 1
+    return float(_ROWS_COST * joints + (2.0 * size * band * band if fresh else 0.0) + 6.0 * turns * size * (band + 4))
+
+
+@uncounted
 def solve(
     what: int, joint: FloatArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray,
     bodies: int, h: float, length: float, loops: bool, give: float, span: IntArray, matrix: FloatArray,
@@ -278,6 +289,7 @@ def solve(
         if system == DUAL and not fresh:
             refresh(hinge, link, joints, local, node, SLOPES if what == STEP else ROWS)
         passes = 1 if give > 0.0 or not fresh else PASSES - 1 if lasting else PASSES
+        found[WORK] += effort(system, fresh, boxes, joints, span)
         if boxes > 0 and fresh:
             answer_boxes(
                 what, hinge, link, joints, local, node, bodies, system, passes, boxes, span, matrix, right, more,

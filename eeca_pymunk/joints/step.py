@@ -300,7 +300,8 @@ def island_step(
         owed = joint[link[0, L_JOINT], OWED]
         if part[CLOSED] > owed:
             part[CLOSED] -= lock_energy(local, node, bodies, part[CLOSED] - owed)
-        joint[link[0, L_JOINT], OWED] = max(owed - part[CLOSED], 0.0)
+        # What elastic joints hold they may give back; linear rows hold nothing.
+        joint[link[0, L_JOINT], OWED] = max(owed - (part[CLOSED] if status == ELASTIC else max(part[CLOSED], 0.0)), 0.0)
     elif needs % 2 == 0:
         joint[link[0, L_JOINT], OWED] = 0.0
     for c in range(LEDGER_COLUMNS):
