@@ -19,7 +19,7 @@ from ..compiled.records import Rows
 from ..impacts.coming import before_end, sweeps_of_crowd
 from ..impacts.spans import Local
 from ..joints.layout import COMPLIANCE
-from ..joints.scratch import JOINT_0, L_JOINT, NEAR, TAUT
+from ..joints.scratch import BUDGET, EFFORT, JOINT_0, L_JOINT, NEAR, TAUT
 from ..model.contacts import Row
 from ..model.scene import Scene
 from ..rows.build import conserves, normal_rate, rates, tangent_rate
@@ -46,6 +46,7 @@ _NEAR = 1e-9  # error of joints over the size of a component, as a way in h
 _FLOOR = 1e-8  # over the speed, what is round-off of components that hardly give way, if it does not fall
 _ROUGH = 1e-4  # likewise, above which answers are taken anew
 _WORK_ROUND_OFF = 4e-14  # of the work of contacts, over their impulses times the island's speed
+_SOLUTION_COST = 1000.0  # operations, of columns and sweeps, for each of their entries
 _CHORD = 3  # steps of the components between which their answers are taken to be the same
 
 
@@ -112,6 +113,8 @@ def press(
         if n >= CROWD:
             most = sweeps_of_crowd(t)
     # Where many contacts do not come to an end, joints come near enough until the last step of the components.
+    if J.FOUND[EFFORT] > J.FOUND[BUDGET]:
+        rounds, most = _PART_OUTER, min(most, _SWEEPS)
     J.FOUND[NEAR] = _NEAR if m > FEW and not elastic and not rests else 0.0
     FORESEEN, UNKNOWN = np.empty((len(isle.IM), 3)), np.empty((0, 3))
     converged, best, LEAST, USED, hopeless, agreed, slowly = False, np.inf, L.copy(), L.copy(), False, False, False
@@ -141,6 +144,7 @@ def press(
                     L[k, 0], L[k, 1] = 0.5 * (L[k, 0] + LEAST[k, 0]), 0.5 * (L[k, 1] + LEAST[k, 1])
                 advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, B, anew, UNKNOWN)
         if anew:
+            J.FOUND[EFFORT] += _SOLUTION_COST * C.AT[m]
             weigh(groups, C, P, Q, ROWS, m)
         if outer == 0:
             stiff = m <= FEW and some_taut(J, groups)

@@ -29,6 +29,7 @@ from .scratch import (
     DUAL,
     DUAL_BAND,
     DUAL_SIZE,
+    EFFORT,
     FORCE,
     FREE,
     FREEDOMS,
@@ -38,6 +39,7 @@ from .scratch import (
     L_SOFT,
     LAM,
     LEAD,
+    LIMIT,
     LINEAR_STEP,
     MOBILITY,
     NEAR,
@@ -56,7 +58,6 @@ from .scratch import (
     SYSTEM,
     UNKNOWNS,
     UNROOT,
-    WORK,
 )
 
 TOLERANCE = 3e-16  # of joints and momenta, over the size of the island
@@ -246,7 +247,7 @@ def solve(
                 best = worst
             elif iteration > since + 3:
                 stalls += 1
-            if not worst < 1e100 or stalls > 6 or iteration == MOST_ITERATIONS:
+            if not worst < 1e100 or stalls > 6 or iteration == MOST_ITERATIONS or found[EFFORT] > found[LIMIT]:
                 return -1
             last = worst
             if ready and slow:
@@ -289,7 +290,7 @@ def solve(
         if system == DUAL and not fresh:
             refresh(hinge, link, joints, local, node, SLOPES if what == STEP else ROWS)
         passes = 1 if give > 0.0 or not fresh else PASSES - 1 if lasting else PASSES
-        found[WORK] += effort(system, fresh, boxes, joints, span)
+        found[EFFORT] += effort(system, fresh, boxes, joints, span)
         if boxes > 0 and fresh:
             answer_boxes(
                 what, hinge, link, joints, local, node, bodies, system, passes, boxes, span, matrix, right, more,

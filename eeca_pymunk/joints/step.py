@@ -52,7 +52,9 @@ from .scratch import (
     BEFORE,
     BEGAN,
     BOXES,
+    BUDGET,
     COS,
+    EFFORT,
     ENDED,
     FREE,
     L_A,
@@ -64,6 +66,7 @@ from .scratch import (
     L_SOFT,
     LAM,
     LEAD,
+    LIMIT,
     LINEAR_STEP,
     LOOPS,
     POSE,
@@ -84,6 +87,7 @@ from .taut import taut
 SUZUKI = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))
 FIRST_RUNG, ELASTIC_RUNG, LAST_RUNG = 0, 4, 8  # rung -1 is order 4
 _ELASTIC_PARTS = 7
+_PART_OF_BUDGET = 0.15  # of what is left of it, that one step of an island may take
 _NEARLY = 1e-8  # error of joints over the size of an island, up to which one that gives way counts as one that holds
 
 
@@ -235,12 +239,15 @@ def island_step(
             start_joint(joint, hinge, link, k, local, h)
             joint[j, LENGTH_0] = hinge[k, BEGAN]
     status, stored = LINEAR, 0.0
+    found[LIMIT] = found[EFFORT] + max(found[BUDGET] - found[EFFORT], 0.0) * _PART_OF_BUDGET
     yields = gives_way(tie, link, joints)
     rung = ELASTIC_RUNG if yields else -1 if order == 4 and smooth(joint, link, joints) else FIRST_RUNG
     if rung >= 0 or needs % 2 == 1:
         forget(joint, link, joints)
     known = recalls(joint, link, joints, h)
     while rung <= LAST_RUNG:
+        if found[EFFORT] > found[LIMIT]:
+            rung = LAST_RUNG
         parts = 5 if rung < 0 else 1 << rung if rung < 3 else _ELASTIC_PARTS
         if rung in (ELASTIC_RUNG, LAST_RUNG):
             parts = 1
