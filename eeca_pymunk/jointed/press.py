@@ -120,8 +120,6 @@ def press(
     converged, best, LEAST, USED, hopeless, agreed, slowly = False, np.inf, L.copy(), L.copy(), False, False, False
     stiff, B = False, make_bounded(J, groups, False)
     for outer in range(rounds):
-        if outer == 1 and some_give(J, groups):
-            agree = max(agree, _AGREE * scale)
         if hopeless:
             break
         anew = outer % _CHORD == 0 or slowly
@@ -176,7 +174,8 @@ def press(
         if not farthest_apart(motion.V, FORESEEN, isle.EXTENT, n) <= best:
             copy(L, LEAST)
             advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, B, False, UNKNOWN)
-        converged = False
+        # What gives way is as stiff as its joints pull: round-off of its ways does not fall further.
+        converged = best <= _AGREE * scale and some_give(J, groups)
     energy = 0.0
     for q in range(n):
         energy += (isle.V[q, 0] ** 2 + isle.V[q, 1] ** 2 + (pull * h) ** 2) / isle.IM[q]
@@ -203,8 +202,11 @@ def press(
         # D(s) = s p - s^2 q: by its slope at s = 1.
         slope = p - 2.0 * q2
         s = 1.0 + (owed - loss) / slope if slope < 0.0 else 0.0
-        if tries == _LOCKS or not 0.0 < s < 2.0:
+        if tries == _LOCKS or (elastic and not 0.0 < s < 2.0):
             s = 0.0
+        elif not 0.1 < s < 2.0:
+            # The loss of s L has the sign of s p for small s: half of them, again and again.
+            s = 0.5 if owed <= 0.0 else 0.0
         for i in range(m):
             L[i, 0] = s * L[i, 0] if s > 0.0 else 0.0
             L[i, 1] = s * L[i, 1] if s > 0.0 else 0.0
