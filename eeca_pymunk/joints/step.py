@@ -214,18 +214,17 @@ def island_step(
                 look(joint, hinge, link, joints, local, node, bodies, stiff)
                 taken = springs_hold(joint, hinge, link, joints) - stored
                 cost = taken + closing_work(local, bodies)
-                # What a step left apart closes with the energy that it took, and then at the cost of what moves.
-                owed, own = joint[link[0, L_JOINT], OWED], changes >= 4
-                locked = lock_energy(local, node, bodies, cost - owed) if own and cost > owed else 0.0
+                # What a step left apart closes at the cost of what moves.
+                own = changes >= 4
+                locked = lock_energy(local, node, bodies, cost) if own and cost > 0.0 else 0.0
                 # Rows that contradict each other stay.
-                if not farthest(hinge, link, joints) <= apart or (own and owed + locked < cost - 1e-9 * abs(cost)):
+                if not farthest(hinge, link, joints) <= apart or (own and locked < cost - 1e-9 * abs(cost)):
                     back(local, bodies)
                     look(joint, hinge, link, joints, local, node, bodies, stiff)
                     taken, cost, locked = 0.0, 0.0, 0.0
                 keep_closed(hinge, link, joints, local, bodies)
                 ledger[CLOSED] += cost - locked
                 ledger[STORED] += taken
-                joint[link[0, L_JOINT], OWED] = max(owed - cost, 0.0) if own else 0.0
             else:
                 book_fit(local, bodies, ledger, int(PROJECTED))
         save(local, bodies)
