@@ -12,7 +12,9 @@ import math
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
-from .scratch import BEFORE, FREEDOMS, MOBILITY, POSE
+from .scratch import BEFORE, COS, FREE, FREEDOMS, MOBILITY, POSE, SAVED, SHIFT, SIN, TRAVEL
+
+_TURNS = 8  # fixed-point iterations of the mean arms
 
 
 @uncounted
@@ -53,6 +55,16 @@ def lock_energy(local: FloatArray, node: IntArray, bodies: int, gain: float) -> 
 
 
 @uncounted
+def stands(local: FloatArray, node: IntArray, bodies: int) -> bool:
+    """Whether nothing that the component hangs on moves."""
+    still = True
+    for i in range(bodies):
+        for c in range(3):
+            still = still and (node[i, FREEDOMS] > 0 or local[i, BEFORE + c] == 0.0)
+    return still
+
+
+@uncounted
 def against(
     local: FloatArray, node: IntArray, bodies: int, x: float, y: float, vx: float, vy: float, spin: float, s: float
 ) -> float:  # fmt: skip
@@ -72,3 +84,71 @@ def against(
                 if s >= 0.0:
                     local[i, BEFORE + c] = rigid + s * off
     return total
+
+
+@uncounted
+def move_rigidly(local: FloatArray, node: IntArray, bodies: int, h: float) -> None:
+    """The end of a step h from SAVED to which no joint has an objection, and at which there is no more energy than at
+    the start: all move as one rigid body under their accelerations, or stand still where they hang on something.
+
+    r1 - r0 = chi z x r_m: with torques about r_m the work of the accelerations is exact.
+    """
+    mass = x = y = vx = vy = ax = ay = 0.0
+    hangs = False
+    for i in range(bodies):
+        hangs = hangs or node[i, FREEDOMS] == 0
+        if node[i, FREEDOMS] > 0 and local[i, MOBILITY] > 0.0:
+            m = 1.0 / local[i, MOBILITY]
+            mass += m
+            x, y = x + m * local[i, SAVED], y + m * local[i, SAVED + 1]
+            vx, vy = vx + m * local[i, SAVED + 3], vy + m * local[i, SAVED + 4]
+            ax, ay = ax + m * local[i, FREE], ay + m * local[i, FREE + 1]
+    if mass > 0.0:
+        x, y, vx, vy, ax, ay = x / mass, y / mass, vx / mass, vy / mass, ax / mass, ay / mass
+    chi, spin, after = 0.0, 0.0, 0.0
+    for _ in range(0 if hangs else _TURNS):
+        turning = inertia = torque = 0.0
+        for i in range(bodies):
+            if node[i, FREEDOMS] > 0 and local[i, MOBILITY] > 0.0:
+                m, dx, dy = 1.0 / local[i, MOBILITY], local[i, SAVED] - x, local[i, SAVED + 1] - y
+                turning += m * (dx * (local[i, SAVED + 4] - vy) - dy * (local[i, SAVED + 3] - vx))
+                inertia += m * (dx * dx + dy * dy)
+                over = 1.0 / (1.0 + 0.25 * chi * chi)
+                mx, my = over * (dx - 0.5 * chi * dy), over * (dy + 0.5 * chi * dx)
+                torque += m * (mx * (local[i, FREE + 1] - ay) - my * (local[i, FREE] - ax))
+            if node[i, FREEDOMS] > 2 and local[i, MOBILITY + 2] > 0.0:
+                turning += local[i, SAVED + 5] / local[i, MOBILITY + 2]
+                inertia += 1.0 / local[i, MOBILITY + 2]
+                torque += local[i, FREE + 2] / local[i, MOBILITY + 2]
+        spin = turning / inertia if inertia > 0.0 else 0.0
+        after = spin + h * torque / inertia if inertia > 0.0 else 0.0
+        chi = 0.5 * h * (spin + after)
+    over = 1.0 / (1.0 + 0.25 * chi * chi)
+    turned = 2.0 * math.atan(0.5 * chi)
+    for i in range(bodies):
+        for c in range(6):
+            local[i, POSE + c] = local[i, SAVED + c]
+        for c in range(3):
+            local[i, TRAVEL + c] = local[i, SHIFT + c]
+        if node[i, FREEDOMS] == 0:
+            continue
+        if hangs:
+            for c in range(node[i, FREEDOMS]):
+                local[i, BEFORE + c] = 0.0
+        else:
+            dx, dy = local[i, SAVED] - x, local[i, SAVED + 1] - y
+            mx, my = over * (dx - 0.5 * chi * dy), over * (dy + 0.5 * chi * dx)
+            wx, wy = h * (vx + 0.5 * h * ax) - chi * my, h * (vy + 0.5 * h * ay) + chi * mx
+            local[i, POSE], local[i, POSE + 1] = local[i, SAVED] + wx, local[i, SAVED + 1] + wy
+            local[i, TRAVEL], local[i, TRAVEL + 1] = local[i, TRAVEL] + wx, local[i, TRAVEL + 1] + wy
+            rx, ry = 2.0 * mx - dx, 2.0 * my - dy
+            local[i, BEFORE], local[i, BEFORE + 1] = vx + h * ax - after * ry, vy + h * ay + after * rx
+            if node[i, FREEDOMS] > 2:
+                local[i, POSE + 2], local[i, BEFORE + 2] = local[i, SAVED + 2] + turned, after
+                local[i, TRAVEL + 2] += chi
+        if node[i, FREEDOMS] < 3:
+            way = h * (local[i, SAVED + 5] + 0.5 * h * local[i, FREE + 2])
+            local[i, POSE + 2] = local[i, SAVED + 2] + way
+            local[i, BEFORE + 2] = local[i, SAVED + 5] + h * local[i, FREE + 2]
+            local[i, TRAVEL + 2] += way
+        local[i, COS], local[i, SIN] = math.cos(local[i, POSE + 2]), math.sin(local[i, POSE + 2])

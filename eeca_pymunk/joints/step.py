@@ -44,7 +44,7 @@ from .layout import (
 )
 from .ledger import close_ledger, springs_hold
 from .limits import step_with_limits
-from .lock import lock_energy
+from .lock import lock_energy, move_rigidly, stands
 from .motion import advance, move
 from .rows import start_joint
 from .scratch import (
@@ -170,6 +170,31 @@ def write_joints(
             if (notch - joint[j, NOTCH]) * tooth > 1e-12 * tooth * tooth:
                 joint[j, NOTCH] = notch
                 tie[j, SIDE] = 0
+
+
+@uncounted
+def stop_joints(
+    joint: FloatArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray, bodies: int,
+    h: float, stiff: FloatArray, part: FloatArray,
+) -> None:  # fmt: skip
+    """The step of an island that nothing else can do: see `move_rigidly`; what that loses is booked in `part`."""
+    back(local, bodies)
+    look(joint, hinge, link, joints, local, node, bodies, stiff)
+    stored = springs_hold(joint, hinge, link, joints)
+    move_rigidly(local, node, bodies, h)
+    look(joint, hinge, link, joints, local, node, bodies, stiff)
+    for c in range(LEDGER_COLUMNS):
+        part[c] = 0.0
+    part[STORED] = springs_hold(joint, hinge, link, joints) - stored
+    close_ledger(local, bodies, part)
+    part[PROJECTED], part[CLOSED] = max(-part[CLOSED], 0.0), max(part[CLOSED], 0.0)
+    for i in range(bodies):
+        for c in range(3):
+            local[i, LEAD + c] = 0.0
+    for k in range(joints):
+        joint[link[k, L_JOINT], WORK] = 0.0
+        for r in range(2):
+            hinge[k, LAM + r] = hinge[k, TOTAL + r] = 0.0
 
 
 @uncounted
@@ -305,9 +330,15 @@ def island_step(
         close_ledger(local, bodies, part)
         owed = joint[link[0, L_JOINT], OWED]
         if part[CLOSED] > owed:
-            part[CLOSED] -= lock_energy(local, node, bodies, part[CLOSED] - owed)
+            gain = part[CLOSED] - owed
+            taken = lock_energy(local, node, bodies, gain)
+            part[CLOSED] -= taken
+            if gain - taken > 1e-9 * gain + 1e-12 * owed and stands(local, node, bodies):
+                status = LINEAR
+                stop_joints(joint, hinge, link, joints, local, node, bodies, h, stiff, part)
         # What elastic joints hold they may give back; linear rows hold nothing.
-        joint[link[0, L_JOINT], OWED] = max(owed - (part[CLOSED] if status == ELASTIC else max(part[CLOSED], 0.0)), 0.0)
+        spent = part[CLOSED] if status == ELASTIC else max(part[CLOSED], 0.0)
+        joint[link[0, L_JOINT], OWED] = max(owed - spent, 0.0)
     elif needs % 2 == 0:
         joint[link[0, L_JOINT], OWED] = 0.0
     for c in range(LEDGER_COLUMNS):
