@@ -23,11 +23,13 @@ from .motors import let_slip
 
 
 class Motion(NamedTuple):
-    """Of the bodies of an island, (k, 3) each: velocities V and poses END at the end, ways WAY (sums of h v_m)."""
+    """Of the bodies of an island, (k, 3) each: velocities V and poses END at the end, ways WAY (sums of h v_m); MID
+    (k, 2): their mean places, where constant forces act."""
 
     V: FloatArray
     WAY: FloatArray
     END: FloatArray
+    MID: FloatArray
 
 
 @uncounted
@@ -71,7 +73,7 @@ def advance(
         if len(GUESS) > 0:
             lead_component(A, J, s, isle.V, ACC, GUESS, h)
         length = gather_component(A, J, s, isle.POSE, isle.V, ACC, isle.IM, isle.II, t, h)
-        step_component(A, J, s, h, length, m == 0, motion.V, motion.WAY, motion.END)
+        step_component(A, J, s, h, length, m == 0, motion.V, motion.WAY, motion.END, motion.MID)
         if not fill:
             note_rows(A, J, B, s, h)
         elif is_hit(groups, P, Q, m, g):
@@ -92,6 +94,34 @@ def advance(
             motion.V[q, c] = isle.V[q, c] + h * ACC[q, c]
             motion.WAY[q, c] = 0.5 * h * (isle.V[q, c] + motion.V[q, c])
             motion.END[q, c] = isle.POSE[q, c] + motion.WAY[q, c]
+        for c in range(2):
+            motion.MID[q, c] = isle.POSE[q, c] + 0.5 * motion.WAY[q, c]
+
+
+@uncounted
+def align(isle: Local, P: IntArray, Q: IntArray, ROWS: Rows[Row], m: int, motion: Motion) -> float:
+    """Let the arms r of contacts between moving bodies be about one point where their forces act; how far they were
+    off, over the size of bodies and places.
+
+    An impulse p spread over a step changes the angular momentum of a body by (x + r) x p, x its mean place;
+    r = (arm_t) n - (arm_n) t. A disk keeps an arm of 0.
+    """
+    worst = 0.0
+    for i in range(m):
+        a, b, nx, ny = P[i], Q[i], ROWS[i].nx, ROWS[i].ny
+        if isle.IM[a] == 0.0 or isle.IM[b] == 0.0:
+            continue
+        x, y = motion.MID[b, 0] - motion.MID[a, 0], motion.MID[b, 1] - motion.MID[a, 1]
+        along = x * nx + y * ny + (ROWS[i].arm_tb - ROWS[i].arm_ta)
+        across = x * ny - y * nx + (ROWS[i].arm_nb - ROWS[i].arm_na)
+        size = min(isle.EXTENT[a], isle.EXTENT[b]) + abs(motion.MID[a, 0]) + abs(motion.MID[a, 1])
+        worst = max(worst, (abs(along) + abs(across)) / size)
+        part = 0.0 if ROWS[i].arm_na == 0.0 else 1.0 if ROWS[i].arm_nb == 0.0 else 0.5
+        ROWS[i].arm_na += part * across
+        ROWS[i].arm_ta += part * along
+        ROWS[i].arm_nb -= (1.0 - part) * across
+        ROWS[i].arm_tb -= (1.0 - part) * along
+    return worst
 
 
 @uncounted

@@ -25,6 +25,7 @@ from ..joints.scratch import (
     L_SOFT,
     LOOPS,
     M_BODY,
+    MEAN,
     POSE,
     POSES,
     SIZE,
@@ -64,11 +65,13 @@ def step_in_scratch(J: Joints, s: int, h: float, length: float, whole: bool) -> 
 
 @uncounted
 def step_component(
-    A: Scene, J: Joints, s: int, h: float, length: float, whole: bool, VN: FloatArray, WAY: FloatArray, END: FloatArray
-) -> int:
+    A: Scene, J: Joints, s: int, h: float, length: float, whole: bool, VN: FloatArray, WAY: FloatArray,
+    END: FloatArray, MID: FloatArray,
+) -> int:  # fmt: skip
     """`step_in_scratch` from what `gather_component` has put there; its status.
 
     VN, WAY, END: (k, 3) of the island, out: velocities at the end, ways (sums of h v_m), poses at the end.
+    MID: (k, 2), out: where constant forces have acted, means of the places over time.
     """
     status = step_in_scratch(J, s, h, length, whole)
     b0 = J.SPAN[s, BODY_0]
@@ -77,6 +80,7 @@ def step_component(
             q = A.PLACE[J.MEMBER[b0 + i, M_BODY]]
             for c in range(3):
                 VN[q, c], END[q, c], WAY[q, c] = J.LOCAL[i, BEFORE + c], J.LOCAL[i, POSE + c], J.LOCAL[i, TRAVEL + c]
+            MID[q, 0], MID[q, 1] = J.LOCAL[i, MEAN] / h, J.LOCAL[i, MEAN + 1] / h
     return status
 
 

@@ -45,7 +45,7 @@ def foresee(
         if s < 0 or not drives(J, s):
             continue
         length = gather_component(A, J, s, isle.POSE, isle.V, isle.ACC, isle.IM, isle.II, t, h)
-        step_component(A, J, s, h, length, False, motion.V, motion.WAY, motion.END)
+        step_component(A, J, s, h, length, False, motion.V, motion.WAY, motion.END, motion.MID)
         restore_joints(J, s)
         for w in range(groups.FIRST[g], groups.FIRST[g + 1]):
             q = groups.BODY[w]
@@ -91,7 +91,7 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
             keep_joints(J, groups.COMPONENT[g])
     P, Q, KEY = np.empty(room, np.int64), np.empty(room, np.int64), np.empty(room, np.int64)
     ROWS, L, EXPECTED = empty(room, ROW), np.zeros((room, 2)), np.zeros(room)
-    motion = Motion(isle.V.copy(), np.zeros((k, 3)), isle.POSE.copy())
+    motion = Motion(isle.V.copy(), np.zeros((k, 3)), isle.POSE.copy(), np.zeros((k, 2)))
     REACH = np.empty(k)
     slow, fast, pull = speeds(isle.V, isle.ACC, isle.EXTENT, isle.IM, n, h, REACH)
     m = 0

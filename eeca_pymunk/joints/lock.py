@@ -12,7 +12,7 @@ import math
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
-from .scratch import BEFORE, COS, FREE, FREEDOMS, MOBILITY, POSE, SAVED, SHIFT, SIN, TRAVEL
+from .scratch import BEFORE, COS, FREE, FREEDOMS, MEAN, MOBILITY, POSE, SAVED, SHIFT, SIN, TRAVEL
 
 _TURNS = 8  # fixed-point iterations of the mean arms
 
@@ -130,6 +130,7 @@ def move_rigidly(local: FloatArray, node: IntArray, bodies: int, h: float) -> No
             local[i, POSE + c] = local[i, SAVED + c]
         for c in range(3):
             local[i, TRAVEL + c] = local[i, SHIFT + c]
+        local[i, MEAN], local[i, MEAN + 1] = h * local[i, POSE], h * local[i, POSE + 1]
         if node[i, FREEDOMS] == 0:
             continue
         if hangs:
@@ -140,6 +141,7 @@ def move_rigidly(local: FloatArray, node: IntArray, bodies: int, h: float) -> No
             mx, my = over * (dx - 0.5 * chi * dy), over * (dy + 0.5 * chi * dx)
             wx, wy = h * (vx + 0.5 * h * ax) - chi * my, h * (vy + 0.5 * h * ay) + chi * mx
             local[i, POSE], local[i, POSE + 1] = local[i, SAVED] + wx, local[i, SAVED + 1] + wy
+            local[i, MEAN], local[i, MEAN + 1] = local[i, MEAN] + 0.5 * h * wx, local[i, MEAN + 1] + 0.5 * h * wy
             local[i, TRAVEL], local[i, TRAVEL + 1] = local[i, TRAVEL] + wx, local[i, TRAVEL + 1] + wy
             rx, ry = 2.0 * mx - dx, 2.0 * my - dy
             local[i, BEFORE], local[i, BEFORE + 1] = vx + h * ax - after * ry, vy + h * ay + after * rx

@@ -1,6 +1,6 @@
 """The scratch arrays of one island: what their columns mean.
 
-LOCAL (n, 58) float and NODE (n, 3) int: one row per body of the island, those that joints cannot move included.
+LOCAL (n, 60) float and NODE (n, 3) int: one row per body of the island, those that joints cannot move included.
 HINGE (m, 84) float and LINK (m, 11) int: one row per joint. Row vectors have six entries: 0-2 are for body a, 3-5 for
 body b, along x, along y, about the centre of mass. STIFF (6, 6) is that of one joint.
 
@@ -32,7 +32,8 @@ TRAVEL = 46  # 46-48: SHIFT and the sum of WAY over all parts of the step
 LEAD = 49  # 49-51: acceleration by joints that Newton's method begins with
 INERTIA = 52  # 52-54: diagonal of the bodies' part of a dual system, scaled; with its factors, the reciprocal
 UNROOT = 55  # 55-57: reciprocals of ROOT, 0 where that is
-LOCAL_COLUMNS = 58
+MEAN = 58  # 58, 59: integral of x, y over the time of the parts of the step: where a constant force acts is that over h
+LOCAL_COLUMNS = 60
 
 # NODE
 COLUMN, FREEDOMS = 0, 1  # first unknown of the body, number of its unknowns: 0, 2 (joints do not turn it) or 3

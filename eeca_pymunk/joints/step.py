@@ -69,6 +69,7 @@ from .scratch import (
     LIMIT,
     LINEAR_STEP,
     LOOPS,
+    MEAN,
     POSE,
     POSES,
     SAVED,
@@ -99,6 +100,7 @@ def save(local: FloatArray, bodies: int) -> None:
             local[i, SAVED + c] = local[i, POSE + c]
         for c in range(3):
             local[i, TRAVEL + c] = local[i, SHIFT + c]
+        local[i, MEAN] = local[i, MEAN + 1] = 0.0
 
 
 @uncounted
@@ -109,6 +111,7 @@ def back(local: FloatArray, bodies: int) -> None:
             local[i, POSE + c] = local[i, SAVED + c]
         for c in range(3):
             local[i, TRAVEL + c] = local[i, SHIFT + c]
+        local[i, MEAN] = local[i, MEAN + 1] = 0.0
         local[i, COS], local[i, SIN] = np.cos(local[i, POSE + 2]), np.sin(local[i, POSE + 2])
 
 
