@@ -21,6 +21,8 @@ from .groups import Groups
 from .layout import Joints
 from .motors import let_slip
 
+_ALIGNMENTS, ALIGNED = 6, 1e-15  # motions to let arms agree; what they may be off, see `align`
+
 
 class Motion(NamedTuple):
     """Of the bodies of an island, (k, 3) each: velocities V and poses END at the end, ways WAY (sums of h v_m); MID
@@ -99,9 +101,11 @@ def advance(
 
 
 @uncounted
-def align(isle: Local, P: IntArray, Q: IntArray, ROWS: Rows[Row], m: int, motion: Motion) -> float:
-    """Let the arms r of contacts between moving bodies be about one point where their forces act; how far they were
-    off, over the size of bodies and places.
+def align(
+    isle: Local, P: IntArray, Q: IntArray, ROWS: Rows[Row], m: int, motion: Motion, change: bool
+) -> float:  # fmt: skip
+    """How far the arms r of contacts between moving bodies are from being about one point where their forces act, over
+    the size of bodies and places; and `change` them so, unless a body is off by more than its size.
 
     An impulse p spread over a step changes the angular momentum of a body by (x + r) x p, x its mean place;
     r = (arm_t) n - (arm_n) t. A disk keeps an arm of 0.
@@ -114,8 +118,12 @@ def align(isle: Local, P: IntArray, Q: IntArray, ROWS: Rows[Row], m: int, motion
         x, y = motion.MID[b, 0] - motion.MID[a, 0], motion.MID[b, 1] - motion.MID[a, 1]
         along = x * nx + y * ny + (ROWS[i].arm_tb - ROWS[i].arm_ta)
         across = x * ny - y * nx + (ROWS[i].arm_nb - ROWS[i].arm_na)
-        size = min(isle.EXTENT[a], isle.EXTENT[b]) + abs(motion.MID[a, 0]) + abs(motion.MID[a, 1])
-        worst = max(worst, (abs(along) + abs(across)) / size)
+        off, size = abs(along) + abs(across), min(isle.EXTENT[a], isle.EXTENT[b])
+        if not off <= size:
+            continue
+        worst = max(worst, off / (size + abs(motion.MID[a, 0]) + abs(motion.MID[a, 1])))
+        if not change:
+            continue
         part = 0.0 if ROWS[i].arm_na == 0.0 else 1.0 if ROWS[i].arm_nb == 0.0 else 0.5
         ROWS[i].arm_na += part * across
         ROWS[i].arm_ta += part * along
@@ -132,3 +140,16 @@ def farthest_apart(V: FloatArray, W: FloatArray, EXTENT: FloatArray, n: int) -> 
         change = math.sqrt((V[q, 0] - W[q, 0]) ** 2 + (V[q, 1] - W[q, 1]) ** 2)
         worst = max(worst, change + abs(V[q, 2] - W[q, 2]) * EXTENT[q])
     return worst
+
+
+@kernel
+def advance_aligned(
+    A: Scene, J: Joints, isle: Local, groups: Groups, P: IntArray, Q: IntArray, ROWS: Rows[Row], L: FloatArray, m: int,
+    t: float, h: float, motion: Motion, C: Columns, B: Bounded, free: bool,
+) -> None:  # fmt: skip
+    """`advance`; where nothing from without holds or touches the island (`free`), until the arms of contacts agree with
+    the motion. At its end they are those that it has been under."""
+    for turn in range(_ALIGNMENTS):
+        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, B, False, np.empty((0, 3)))
+        if not free or align(isle, P, Q, ROWS, m, motion, turn + 1 < _ALIGNMENTS) <= ALIGNED:
+            break

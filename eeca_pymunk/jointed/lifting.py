@@ -11,7 +11,6 @@ from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
 from ..impacts.spans import Local
 from ..joints.layout import STORED
-from ..joints.scratch import BODY_0, BODY_1, M_FREEDOMS
 from ..model.contacts import Row
 from ..model.scene import Scene
 from ..rows.build import normal_rate
@@ -21,7 +20,7 @@ from .advance import Motion
 from .columns import Columns, fill_group, weigh
 from .component import close_joints, ready
 from .gathered import find_places, gather_component
-from .groups import Groups
+from .groups import Groups, hangs
 from .layout import Joints
 from .motors import drives
 
@@ -52,17 +51,6 @@ def raise_gaps(
         if worst <= tolerance:
             break
     return MU
-
-
-@uncounted
-def hangs(J: Joints, groups: Groups) -> bool:
-    """Whether a component of the island hangs on something that joints cannot move."""
-    some = False
-    for g in range(len(groups.COMPONENT)):
-        s = groups.COMPONENT[g]
-        for i in range(J.SPAN[s, BODY_0] if s >= 0 else 0, J.SPAN[s, BODY_1] if s >= 0 else 0):
-            some = some or J.MEMBER[i, M_FREEDOMS] == 0
-    return some
 
 
 @uncounted
@@ -128,7 +116,7 @@ def lift(
     if cost * part > 0.5 * budget:
         part = 0.5 * budget / cost
     HELD = np.zeros(len(groups.COMPONENT))
-    free = len(isle.IM) == n and not hangs(J, groups)
+    free = len(isle.IM) == n and not hangs(groups, J.SPAN, J.MEMBER)
     for _ in range(4):
         spent = 0.0
         NEW = END.copy()

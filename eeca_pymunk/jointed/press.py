@@ -26,10 +26,10 @@ from ..rows.build import conserves, normal_rate, rates, tangent_rate
 from ..rows.inplace import copy
 from ..sustained.contacts import CROWD
 from ..sustained.targets import target
-from .advance import Motion, advance, align, farthest_apart
+from .advance import ALIGNED, Motion, advance, advance_aligned, align, farthest_apart
 from .bounded import make_bounded, settle_bounded, with_bounded
 from .columns import Columns, fill_free, leave_out, push_columns, weigh
-from .groups import Groups
+from .groups import Groups, hangs
 from .layout import Joints
 from .newton import FEW, solve_columns
 
@@ -47,7 +47,6 @@ _FLOOR = 1e-8  # over the speed, what is round-off of components that hardly giv
 _ROUGH = 1e-4  # likewise, above which answers are taken anew
 _WORK_ROUND_OFF = 4e-14  # of the work of contacts, over their impulses times the island's speed
 _SOLUTION_COST = 1000.0  # operations, of columns and sweeps, for each of their entries
-_ALIGNMENTS, _ALIGNED = 6, 1e-15  # motions to let arms agree; what they may be off, see `align`
 _CHORD = 3  # steps of the components between which their answers are taken to be the same
 
 
@@ -97,6 +96,7 @@ def press(
         slow, fast, pull: speeds and acceleration of the island.  owed: energy >= 0 that it has to lose at least.
         C: columns of the contacts; out, those of their last solution.
     """
+    fill_free(groups, C, P, Q, ROWS, isle.IM, isle.II, m)
     rates(P, Q, ROWS, isle.V, m)
     elastic = conserves(ROWS, m)
     scale = pull * h + (fast if elastic else slow)
@@ -118,13 +118,15 @@ def press(
     J.FOUND[NEAR] = _NEAR if m > FEW and not elastic and not rests else 0.0
     FORESEEN, UNKNOWN = np.empty((len(isle.IM), 3)), np.empty((0, 3))
     converged, best, LEAST, USED, hopeless, agreed, slowly = False, np.inf, L.copy(), L.copy(), False, False, False
-    stiff, B = False, make_bounded(J, groups, False)
+    stiff, bent, B = False, 0.0, make_bounded(J, groups, False)
+    # Only of what nothing from without holds or touches is there an angular momentum to keep.
+    free = len(isle.IM) == n and not hangs(groups, J.SPAN, J.MEMBER)
     for outer in range(rounds):
         if hopeless:
             break
         anew = outer % _CHORD == 0 or slowly
         advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, B, anew, FORESEEN if outer > 0 else UNKNOWN)
-        align(isle, P, Q, ROWS, m, motion)
+        bent = align(isle, P, Q, ROWS, m, motion, True) if free else 0.0
         if outer > 0:
             off = farthest_apart(motion.V, FORESEEN, isle.EXTENT, n)
             if off <= agree or (off <= _FLOOR * scale and off > _FALLS * best):
@@ -143,7 +145,8 @@ def press(
                     L[k, 0], L[k, 1] = 0.5 * (L[k, 0] + LEAST[k, 0]), 0.5 * (L[k, 1] + LEAST[k, 1])
                 advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, B, anew, UNKNOWN)
         if anew:
-            fill_free(groups, C, P, Q, ROWS, isle.IM, isle.II, m)
+            if free:
+                fill_free(groups, C, P, Q, ROWS, isle.IM, isle.II, m)
             J.FOUND[EFFORT] += _SOLUTION_COST * C.AT[m]
             weigh(groups, C, P, Q, ROWS, m)
         if outer == 0:
@@ -170,7 +173,7 @@ def press(
             agreed = True
             break
     if not agreed or J.FOUND[NEAR] > 0.0:
-        J.FOUND[NEAR] = 0.0
+        J.FOUND[NEAR], bent = 0.0, np.inf if free else 0.0
         advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, B, False, UNKNOWN)
     if not agreed:
         if not farthest_apart(motion.V, FORESEEN, isle.EXTENT, n) <= best:
@@ -178,10 +181,8 @@ def press(
             advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, B, False, UNKNOWN)
         # What gives way is as stiff as its joints pull: round-off of its ways does not fall further.
         converged = best <= _AGREE * scale and some_give(J, groups)
-    for _ in range(_ALIGNMENTS):
-        if align(isle, P, Q, ROWS, m, motion) <= _ALIGNED:
-            break
-        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, B, False, UNKNOWN)
+    if bent > ALIGNED:
+        advance_aligned(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, B, free)
     energy = 0.0
     for q in range(n):
         energy += (isle.V[q, 0] ** 2 + isle.V[q, 1] ** 2 + (pull * h) ** 2) / isle.IM[q]
@@ -216,11 +217,7 @@ def press(
         for i in range(m):
             L[i, 0] = s * L[i, 0] if s > 0.0 else 0.0
             L[i, 1] = s * L[i, 1] if s > 0.0 else 0.0
-        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, B, False, UNKNOWN)
-        for _ in range(_ALIGNMENTS):
-            if align(isle, P, Q, ROWS, m, motion) <= _ALIGNED:
-                break
-            advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, B, False, UNKNOWN)
+        advance_aligned(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, B, free)
         scaled *= s
         converged = converged and abs(scaled - 1.0) <= _AGREE
         if s == 0.0:
