@@ -47,6 +47,7 @@ _FLOOR = 1e-8  # over the speed, what is round-off of components that hardly giv
 _ROUGH = 1e-4  # likewise, above which answers are taken anew
 _WORK_ROUND_OFF = 4e-14  # of the work of contacts, over their impulses times the island's speed
 _SOLUTION_COST = 1000.0  # operations, of columns and sweeps, for each of their entries
+_TAUT_WORK = 1e-9  # at most, where joints pull hard
 _CHORD = 3  # steps of the components between which their answers are taken to be the same
 
 
@@ -118,7 +119,7 @@ def press(
     J.FOUND[NEAR] = _NEAR if m > FEW and not elastic and not rests else 0.0
     FORESEEN, UNKNOWN = np.empty((len(isle.IM), 3)), np.empty((0, 3))
     converged, best, LEAST, USED, hopeless, agreed, slowly = False, np.inf, L.copy(), L.copy(), False, False, False
-    stiff, bent, B = False, 0.0, make_bounded(J, groups, False)
+    stiff, bent, reached, B = False, 0.0, np.inf, make_bounded(J, groups, False)
     # Only of what nothing from without holds or touches is there an angular momentum to keep.
     free = len(isle.IM) == n and not hangs(groups, J.SPAN, J.MEMBER)
     for outer in range(rounds):
@@ -129,6 +130,7 @@ def press(
         bent = align(isle, P, Q, ROWS, m, motion, True) if free else 0.0
         if outer > 0:
             off = farthest_apart(motion.V, FORESEEN, isle.EXTENT, n)
+            reached = min(reached, off)
             if off <= agree or (off <= _FLOOR * scale and off > _FALLS * best):
                 converged, agreed = True, True
                 break
@@ -189,7 +191,11 @@ def press(
     pressed = 0.0
     for i in range(m):
         pressed += abs(L[i, 0]) + abs(L[i, 1])
-    bearable, scaled = 1e-15 * energy + _WORK_ROUND_OFF * pressed * (slow + pull * h), 1.0
+    # Where joints pull hard, velocities are known as well as they came to agree, and works no better.
+    known = _WORK_ROUND_OFF
+    if some_give(J, groups) or some_taut(J, groups):
+        known = max(known, min(2.0 * reached / (slow + pull * h), _TAUT_WORK))
+    bearable, scaled = 1e-15 * energy + known * pressed * (slow + pull * h), 1.0
     for tries in range(_LOCKS + 1):
         loss = lost(P, Q, ROWS, L, motion.WAY, m, h)
         if loss >= owed - bearable and (not elastic or loss <= owed + bearable):
