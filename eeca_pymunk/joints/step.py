@@ -12,7 +12,7 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
-from .correct import book_fit
+from .correct import book_fit, fits
 from .foresight import foretell, forget, recalls, remember
 from .layout import (
     CLOSED,
@@ -233,6 +233,8 @@ def island_step(
         apart = farthest(hinge, link, joints)
         for what in (POSES, SPEEDS):
             if (what == POSES and changes % 4 < 2) or (what == SPEEDS and changes % 2 == 0):
+                continue
+            if what == SPEEDS and fits(hinge, link, joints, local):
                 continue
             solve(
                 what, joint, hinge, link, joints, local, node, bodies, 2.0, length, loops, 0.0, span, matrix, right,
