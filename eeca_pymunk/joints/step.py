@@ -2,7 +2,7 @@
 
 Order 2 (midpoint with discrete gradients), or 4 by Suzuki's composition (s, s, 1 - 4s, s, s) h, s = 1/(4 - 4^(1/3)),
 where nothing in the island dissipates, drives or meets a limit. The ladder: the step whole, in 2, 4, 7 parts; whole and
-in 7 with joints that give way elastically, by 1e-9, 1e-8, 1e-6, 1e-4 of their stiffest; one linear system. The work of
+in 7 with joints that give way elastically, by 1e-9, 1e-8, 1e-7, 1e-6, 1e-4; one linear system. The work of
 all rungs together is bounded. What gives way does so in later steps with the same compliance, until it is closed.
 Energy that elastic joints take and give back is booked as CLOSED, and they give back no more than they took; what
 linear rows gain is taken from what moves (`lock`).
@@ -88,7 +88,7 @@ from .start import closing_work, farthest, find_apart, keep_closed, look, read_j
 from .taut import taut
 
 SUZUKI = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))
-FIRST_RUNG, ELASTIC_RUNG, LAST_RUNG = 0, 4, 9  # rung -1 is order 4
+FIRST_RUNG, ELASTIC_RUNG, LAST_RUNG = 0, 4, 10  # rung -1 is order 4
 _ELASTIC_PARTS = 7
 _PART_OF_BUDGET = 0.15  # of what is left of it, that one step of an island may take
 _NEARLY = 1e-8  # error of joints over the size of an island, up to which one that gives way counts as one that holds
@@ -280,12 +280,12 @@ def island_step(
         if found[EFFORT] > found[LIMIT]:
             rung = LAST_RUNG
         parts = 5 if rung < 0 else 1 << rung if rung < 3 else _ELASTIC_PARTS
-        if rung in (ELASTIC_RUNG, ELASTIC_RUNG + 2, LAST_RUNG):
+        if rung in (ELASTIC_RUNG, LAST_RUNG):
             parts = 1
         compliance = 0.0
         if ELASTIC_RUNG <= rung < LAST_RUNG:
             steps = max(rung - ELASTIC_RUNG - 1, 0)
-            relative = 1e-9 if steps == 0 else 1e-8 if steps == 1 else 1e-6 if steps == 2 else 1e-4
+            relative = 1e-4 if rung + 1 == LAST_RUNG else 1e-9 * 10.0**steps
             compliance = relative * (h / _ELASTIC_PARTS) ** 2
             if yields:
                 compliance = max(compliance if relative > 1e-9 else 0.0, joint[link[0, L_JOINT], COMPLIANCE])
