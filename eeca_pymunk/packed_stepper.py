@@ -249,7 +249,7 @@ class PackedStepper(PackedSpace):
         if lost and book is not None:
             book[DAMPED] += lost
             book[AFTER] -= lost
-        if not status & EVENTS:
-            return StepReport(self.time, world.empty, book=book)
         lock, converged, iterations = self.outcome()
+        if not status & EVENTS:
+            return StepReport(self.time, world.empty, converged=converged, book=book)
         return StepReport(self.time, self.details(world, dt), iterations, lock=lock, converged=converged, book=book)

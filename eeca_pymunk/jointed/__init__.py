@@ -3,7 +3,7 @@
 In: the arrays of a scene (`..impacts`) and of its joints (`..joints`). Out: the same at the end of a step.
 
 Open first `loop.py`, the step; then `solve.py`, the span of an island, with `press.py`, its contacts, `advance.py`, the
-motion under their impulses, `alone.py`, of what meets nobody, and `overcome.py`, motors that press them shut
+motion under their impulses, `alone.py`, of what meets nobody, and `bounded.py`, bounded impulses of joints
 (`motors.py`); `meet.py` and `strike.py`, an impact at one instant. `component.py` steps what hangs together by joints
 (`gathered.py`) and finds how it answers impulses; `groups.py`, `columns.py` and `newton.py` solve contact laws with
 these answers in the place of masses; `lifting.py` lifts overlaps. `layout.py` names the arrays, `scene.py` owns them. A

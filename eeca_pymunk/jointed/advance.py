@@ -13,6 +13,7 @@ from ..compiled.records import Rows
 from ..impacts.spans import Local
 from ..model.contacts import Row
 from ..model.scene import Scene
+from .bounded import Bounded, fill_rows, list_rows, note_rows
 from .columns import Columns, fill_group
 from .component import ready, step_component
 from .gathered import find_places, gather_component, lead_component, rewind_joints
@@ -20,15 +21,17 @@ from .groups import Groups
 from .layout import Joints
 from .motors import let_slip
 
-NOT_AT_ALL, AS_IT_IS, AS_IF_SLIPPING = 0, 1, 2  # what columns are filled with
+_ALIGNMENTS, ALIGNED = 6, 1e-15  # motions to let arms agree; what they may be off, see `align`
 
 
 class Motion(NamedTuple):
-    """Of the bodies of an island, (k, 3) each: velocities V and poses END at the end, ways WAY (sums of h v_m)."""
+    """Of the bodies of an island, (k, 3) each: velocities V and poses END at the end, ways WAY (sums of h v_m); MID
+    (k, 2): their mean places, where constant forces act."""
 
     V: FloatArray
     WAY: FloatArray
     END: FloatArray
+    MID: FloatArray
 
 
 @uncounted
@@ -44,10 +47,10 @@ def is_hit(groups: Groups, P: IntArray, Q: IntArray, m: int, g: int) -> bool:
 @kernel
 def advance(
     A: Scene, J: Joints, isle: Local, groups: Groups, P: IntArray, Q: IntArray, ROWS: Rows[Row], L: FloatArray, m: int,
-    t: float, h: float, motion: Motion, C: Columns, fill: int, GUESS: FloatArray,
+    t: float, h: float, motion: Motion, C: Columns, B: Bounded, fill: bool, GUESS: FloatArray,
 ) -> None:  # fmt: skip
     """Step all bodies of an island by h under the impulses L of its contacts, from where its joints were; `fill` the
-    columns C about that step: not at all, as joints stand, or as if motors and the like were at their max_force.
+    columns C and B about that step, bounded impulses being given; else B has what these are, and C stays.
     GUESS (k, 3): velocities at the end that are foreseen, to begin with; (0, 3) for none."""
     k = len(isle.IM)
     ACC = isle.ACC.copy()
@@ -62,6 +65,8 @@ def advance(
             ACC[q, 1] += sign * isle.IM[q] * fy
             ACC[q, 2] += sign * isle.II[q] * (L[i, 0] * arm_n + L[i, 1] * arm_t) / h
     INDEX = np.full(k, -1, np.int64)
+    if fill:
+        B.USED[0] = 0
     for g in range(len(groups.COMPONENT)):
         s = groups.COMPONENT[g]
         if s < 0:
@@ -70,12 +75,19 @@ def advance(
         if len(GUESS) > 0:
             lead_component(A, J, s, isle.V, ACC, GUESS, h)
         length = gather_component(A, J, s, isle.POSE, isle.V, ACC, isle.IM, isle.II, t, h)
-        step_component(A, J, s, h, length, m == 0, motion.V, motion.WAY, motion.END)
-        if fill != NOT_AT_ALL and is_hit(groups, P, Q, m, g):
+        step_component(A, J, s, h, length, m == 0, motion.V, motion.WAY, motion.END, motion.MID)
+        if not fill:
+            note_rows(A, J, B, s, h)
+        elif is_hit(groups, P, Q, m, g):
             size = find_places(A, J, s, INDEX)
-            let_slip(J, s, fill == AS_IF_SLIPPING)
+            let_slip(J, s, True)
+            first = list_rows(A, J, B, s, h)
             if ready(J, s, h, True):
-                fill_group(J, groups, C, g, INDEX, True, P, Q, ROWS, m, np.empty((size, 3)))
+                PUSH = np.empty((size, 3))
+                fill_group(J, groups, C, g, INDEX, True, P, Q, ROWS, m, PUSH)
+                fill_rows(J, groups, B, g, first, INDEX, PUSH)
+            else:
+                B.USED[0] = first
             let_slip(J, s, False)
     for q in range(k):
         if groups.GROUP[q] >= 0 and groups.COMPONENT[groups.GROUP[q]] >= 0:
@@ -84,6 +96,40 @@ def advance(
             motion.V[q, c] = isle.V[q, c] + h * ACC[q, c]
             motion.WAY[q, c] = 0.5 * h * (isle.V[q, c] + motion.V[q, c])
             motion.END[q, c] = isle.POSE[q, c] + motion.WAY[q, c]
+        for c in range(2):
+            motion.MID[q, c] = isle.POSE[q, c] + 0.5 * motion.WAY[q, c]
+
+
+@uncounted
+def align(
+    isle: Local, P: IntArray, Q: IntArray, ROWS: Rows[Row], m: int, motion: Motion, change: bool
+) -> float:  # fmt: skip
+    """How far the arms r of contacts between moving bodies are from being about one point where their forces act, over
+    the size of bodies and places; and `change` them so, unless a body is off by more than its size.
+
+    An impulse p spread over a step changes the angular momentum of a body by (x + r) x p, x its mean place;
+    r = (arm_t) n - (arm_n) t. A disk keeps an arm of 0.
+    """
+    worst = 0.0
+    for i in range(m):
+        a, b, nx, ny = P[i], Q[i], ROWS[i].nx, ROWS[i].ny
+        if isle.IM[a] == 0.0 or isle.IM[b] == 0.0:
+            continue
+        x, y = motion.MID[b, 0] - motion.MID[a, 0], motion.MID[b, 1] - motion.MID[a, 1]
+        along = x * nx + y * ny + (ROWS[i].arm_tb - ROWS[i].arm_ta)
+        across = x * ny - y * nx + (ROWS[i].arm_nb - ROWS[i].arm_na)
+        off, size = abs(along) + abs(across), min(isle.EXTENT[a], isle.EXTENT[b])
+        if not off <= size:
+            continue
+        worst = max(worst, off / (size + abs(motion.MID[a, 0]) + abs(motion.MID[a, 1])))
+        if not change:
+            continue
+        part = 0.0 if ROWS[i].arm_na == 0.0 else 1.0 if ROWS[i].arm_nb == 0.0 else 0.5
+        ROWS[i].arm_na += part * across
+        ROWS[i].arm_ta += part * along
+        ROWS[i].arm_nb -= (1.0 - part) * across
+        ROWS[i].arm_tb -= (1.0 - part) * along
+    return worst
 
 
 @uncounted
@@ -94,3 +140,16 @@ def farthest_apart(V: FloatArray, W: FloatArray, EXTENT: FloatArray, n: int) -> 
         change = math.sqrt((V[q, 0] - W[q, 0]) ** 2 + (V[q, 1] - W[q, 1]) ** 2)
         worst = max(worst, change + abs(V[q, 2] - W[q, 2]) * EXTENT[q])
     return worst
+
+
+@kernel
+def advance_aligned(
+    A: Scene, J: Joints, isle: Local, groups: Groups, P: IntArray, Q: IntArray, ROWS: Rows[Row], L: FloatArray, m: int,
+    t: float, h: float, motion: Motion, C: Columns, B: Bounded, free: bool,
+) -> None:  # fmt: skip
+    """`advance`; where nothing from without holds or touches the island (`free`), until the arms of contacts agree with
+    the motion. At its end they are those that it has been under."""
+    for turn in range(_ALIGNMENTS):
+        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, B, False, np.empty((0, 3)))
+        if not free or align(isle, P, Q, ROWS, m, motion, turn + 1 < _ALIGNMENTS) <= ALIGNED:
+            break

@@ -14,8 +14,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
 from ..model.contacts import Row
-from ..rows.build import SINGULAR, normal_rate, tangent_rate
-from ..rows.sweeps import coulomb
+from ..rows.build import SINGULAR
 from .component import answer
 from .groups import Groups
 from .layout import Joints
@@ -171,57 +170,3 @@ def leave_out(C: Columns, L: FloatArray, m: int, V: FloatArray) -> None:
                 for c in range(3):
                     V[C.BODY[w], c] -= L[i, 0] * C.N[w, c] + L[i, 1] * C.T[w, c]
             L[i, 0] = L[i, 1] = 0.0
-
-
-@uncounted
-def sweep_columns(C: Columns, A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, m: int) -> float:
-    """One sweep over the m contacts as `..rows.sweeps.sweep`; the largest change of a contact's velocity."""
-    worst = 0.0
-    for i in range(m):
-        if C.OUT[i] != 0:
-            continue
-        lam0, beta0 = L[i, 0], L[i, 1]
-        lam, beta, ann = 0.0, 0.0, ROWS[i].a_nn
-        short = normal_rate(A, B, ROWS, V, i) - ROWS[i].target
-        if ROWS[i].wake < np.inf:
-            if short + ROWS[i].target - lam0 * ann < ROWS[i].wake:
-                ROWS[i].wake = np.inf
-            else:
-                short = np.inf
-        if ROWS[i].friction <= 0.0:
-            lam = max(lam0 - ROWS[i].k_n * short, 0.0)
-        else:
-            qn = short - lam0 * ann - beta0 * ROWS[i].a_nt
-            if qn < 0.0:
-                ut = tangent_rate(A, B, ROWS, V, i)
-                # Most stick, and need no more than this.
-                lam = lam0 - (ROWS[i].w_nn * short + ROWS[i].w_nt * ut)
-                beta = beta0 - (ROWS[i].w_nt * short + ROWS[i].w_tt * ut)
-                if not (abs(beta) <= ROWS[i].friction * lam and beta * ROWS[i].ut <= 0.0):
-                    ant, att = ROWS[i].a_nt, ROWS[i].a_tt
-                    lam, beta = coulomb(
-                        qn, ut - beta0 * att - lam0 * ant, ann, ant, att, ROWS[i].friction, ROWS[i].un, ROWS[i].ut,
-                        ROWS[i].target,
-                    )  # fmt: skip
-        dn, dt = lam - lam0, beta - beta0
-        if dn == 0.0 and dt == 0.0:
-            continue
-        L[i, 0], L[i, 1] = lam, beta
-        for w in range(C.AT[i], C.AT[i + 1]):
-            for c in range(3):
-                V[C.BODY[w], c] += dn * C.N[w, c] + dt * C.T[w, c]
-        worst = max(worst, abs(dn) * ann, abs(dt) * ROWS[i].a_tt)
-    return worst
-
-
-@uncounted
-def relax_columns(
-    C: Columns, A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, m: int, tolerance: float,
-    most: int,
-) -> tuple[int, float]:  # fmt: skip
-    """Sweeps until one changes no contact's velocity by more than the tolerance; how many, and the last change."""
-    done, worst = 0, np.inf
-    while done < most and worst > tolerance:
-        worst = sweep_columns(C, A, B, ROWS, L, V, m)
-        done += 1
-    return done, worst

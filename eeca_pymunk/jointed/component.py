@@ -8,7 +8,7 @@ from ..arrays import FloatArray
 from ..compiled import uncounted
 from ..joints.bounds import bounded, gap
 from ..joints.entries import held as stands
-from ..joints.layout import GEAR
+from ..joints.layout import COMPLIANCE, GEAR
 from ..joints.ledger import springs_hold
 from ..joints.response import prepare, respond
 from ..joints.scratch import (
@@ -18,12 +18,14 @@ from ..joints.scratch import (
     FREEDOMS,
     JOINT_0,
     JOINT_1,
+    L_JOINT,
     L_KIND,
     L_ROWS,
     L_SIDE,
     L_SOFT,
     LOOPS,
     M_BODY,
+    MEAN,
     POSE,
     POSES,
     SIZE,
@@ -63,11 +65,13 @@ def step_in_scratch(J: Joints, s: int, h: float, length: float, whole: bool) -> 
 
 @uncounted
 def step_component(
-    A: Scene, J: Joints, s: int, h: float, length: float, whole: bool, VN: FloatArray, WAY: FloatArray, END: FloatArray
-) -> int:
+    A: Scene, J: Joints, s: int, h: float, length: float, whole: bool, VN: FloatArray, WAY: FloatArray,
+    END: FloatArray, MID: FloatArray,
+) -> int:  # fmt: skip
     """`step_in_scratch` from what `gather_component` has put there; its status.
 
     VN, WAY, END: (k, 3) of the island, out: velocities at the end, ways (sums of h v_m), poses at the end.
+    MID: (k, 2), out: where constant forces have acted, means of the places over time.
     """
     status = step_in_scratch(J, s, h, length, whole)
     b0 = J.SPAN[s, BODY_0]
@@ -76,6 +80,7 @@ def step_component(
             q = A.PLACE[J.MEMBER[b0 + i, M_BODY]]
             for c in range(3):
                 VN[q, c], END[q, c], WAY[q, c] = J.LOCAL[i, BEFORE + c], J.LOCAL[i, POSE + c], J.LOCAL[i, TRAVEL + c]
+            MID[q, 0], MID[q, 1] = J.LOCAL[i, MEAN] / h, J.LOCAL[i, MEAN + 1] / h
     return status
 
 
@@ -160,7 +165,8 @@ def answer(J: Joints, s: int, about_step: bool, PUSH: FloatArray) -> None:
     """PUSH (bodies of the component, 3): impulses in, changes of velocity out."""
     j0, j1, b0 = J.SPAN[s, JOINT_0], J.SPAN[s, JOINT_1], J.SPAN[s, BODY_0]
     what = STEP if about_step else SPEEDS
+    gives = about_step and J.JOINT[J.LINK[j0, L_JOINT], COMPLIANCE] > 0.0
     respond(
         what, J.HINGE, J.LINK[j0:j1], j1 - j0, J.LOCAL, J.NODE, J.SPAN[s, BODY_1] - b0, J.TALLY[ANSWERS],
-        J.SPAN[s], J.MATRIX, J.RIGHT, J.MORE, J.PIVOTS, PUSH,
+        J.SPAN[s], J.MATRIX, J.RIGHT, J.MORE, J.PIVOTS, PUSH, gives,
     )  # fmt: skip

@@ -5,7 +5,7 @@ from __future__ import annotations
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
 from ..geometry.flight import pose, rate
-from ..joints.layout import JOINT_COLUMNS, LED, NOTCH, RATCHET, SIDE, TIE_COLUMNS, TOUCHED
+from ..joints.layout import COMPLIANCE, JOINT_COLUMNS, LED, NOTCH, OWED, RATCHET, SIDE, TIE_COLUMNS, TOUCHED
 from ..joints.motion import size_up
 from ..joints.scratch import (
     BEFORE,
@@ -63,6 +63,7 @@ def rewind_joints(J: Joints, s: int) -> None:
         if J.LINK[k, L_KIND] == RATCHET:
             J.JOINT[j, NOTCH] = J.KEPT[j, NOTCH]
         J.TIE[j, SIDE], J.TIE[j, TOUCHED] = J.SIDES[j, SIDE], J.SIDES[j, TOUCHED]
+        J.JOINT[j, OWED], J.JOINT[j, COMPLIANCE] = J.KEPT[j, OWED], J.KEPT[j, COMPLIANCE]
 
 
 @uncounted

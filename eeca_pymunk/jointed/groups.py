@@ -7,7 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel
+from ..compiled import kernel, uncounted
+from ..joints.scratch import BODY_0, BODY_1, M_FREEDOMS
 
 
 class Groups(NamedTuple):
@@ -47,3 +48,14 @@ def find_groups(WHO: IntArray, IM: FloatArray, OF: IntArray) -> Groups:
             BODY[NEXT[GROUP[q]]] = q
             NEXT[GROUP[q]] += 1
     return Groups(GROUP, FIRST[: groups + 1], BODY, COMPONENT[:groups])
+
+
+@uncounted
+def hangs(groups: Groups, SPAN: IntArray, MEMBER: IntArray) -> bool:
+    """Whether a component of the island hangs on something that joints cannot move."""
+    some = False
+    for g in range(len(groups.COMPONENT)):
+        s = groups.COMPONENT[g]
+        for i in range(SPAN[s, BODY_0] if s >= 0 else 0, SPAN[s, BODY_1] if s >= 0 else 0):
+            some = some or MEMBER[i, M_FREEDOMS] == 0
+    return some

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel
+from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
 from ..impacts.spans import Local
 from ..joints.layout import STORED
@@ -20,7 +20,7 @@ from .advance import Motion
 from .columns import Columns, fill_group, weigh
 from .component import close_joints, ready
 from .gathered import find_places, gather_component
-from .groups import Groups
+from .groups import Groups, hangs
 from .layout import Joints
 from .motors import drives
 
@@ -53,6 +53,27 @@ def raise_gaps(
     return MU
 
 
+@uncounted
+def unturn(isle: Local, n: int, NEW: FloatArray, D: FloatArray, V: FloatArray) -> tuple[float, float, float, float]:
+    """The common spin that takes back the angular momentum sum m D x v of displacements D to NEW, the centre of mass
+    (x, y) about which it is, and the energy that it costs. No joint and no contact minds it."""
+    mass = x = y = vx = vy = 0.0
+    for q in range(n):
+        if isle.II[q] == 0.0:
+            return 0.0, 0.0, 0.0, 0.0
+        m = 1.0 / isle.IM[q]
+        mass, x, y, vx, vy = mass + m, x + m * NEW[q, 0], y + m * NEW[q, 1], vx + m * V[q, 0], vy + m * V[q, 1]
+    x, y, vx, vy = x / mass, y / mass, vx / mass, vy / mass
+    gained = spin = inertia = 0.0
+    for q in range(n):
+        rx, ry, wx, wy = NEW[q, 0] - x, NEW[q, 1] - y, V[q, 0] - vx, V[q, 1] - vy
+        gained += (D[q, 0] * V[q, 1] - D[q, 1] * V[q, 0]) / isle.IM[q]
+        spin += (rx * wy - ry * wx) / isle.IM[q] + V[q, 2] / isle.II[q]
+        inertia += (rx * rx + ry * ry) / isle.IM[q] + 1.0 / isle.II[q]
+    turn = -gained / inertia
+    return turn, x, y, turn * spin + 0.5 * inertia * turn * turn
+
+
 @kernel
 def lift(
     A: Scene, J: Joints, isle: Local, groups: Groups, P: IntArray, Q: IntArray, ROWS: Rows[Row], m: int, n: int,
@@ -61,7 +82,8 @@ def lift(
     """Lift the poses at the end of an island's motion by at most what `budget` pays; the energy that it costs.
 
     The cost is -m a.D for displacements D, turns included, and what springs hold more. Joints hold: D goes along them,
-    and what is left of second order is closed.
+    and what is left of second order is closed. Where nothing without mobility is in the island, its angular momentum
+    stays: velocities at the end turn by what the displacements have changed of it.
     """
     V, WAY, END = motion.V, motion.WAY, motion.END
     size = np.inf
@@ -94,6 +116,7 @@ def lift(
     if cost * part > 0.5 * budget:
         part = 0.5 * budget / cost
     HELD = np.zeros(len(groups.COMPONENT))
+    free = len(isle.IM) == n and not hangs(groups, J.SPAN, J.MEMBER)
     for _ in range(4):
         spent = 0.0
         NEW = END.copy()
@@ -110,7 +133,13 @@ def lift(
                 HELD[g] = close_joints(A, J, s, END, NEW, V, isle.IM, isle.II, end, h)
                 spent += HELD[g]
         spent -= against(isle.ACC, isle.IM, isle.II, n, NEW - END)
+        turn, x, y, cost = unturn(isle, n, NEW, NEW - END, V) if free else (0.0, 0.0, 0.0, 0.0)
+        spent += cost
         if spent <= budget:
+            for q in range(n if turn != 0.0 else 0):
+                V[q, 0] -= turn * (NEW[q, 1] - y)
+                V[q, 1] += turn * (NEW[q, 0] - x)
+                V[q, 2] += turn
             for g in range(len(groups.COMPONENT)):
                 s = groups.COMPONENT[g]
                 if s >= 0:

@@ -14,6 +14,7 @@ from ..impacts.loop import follow, with_mover
 from ..impacts.settle import settle
 from ..impacts.step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, finish, start, wish
 from ..joints.layout import BODY_A, BODY_B, ELASTIC, TOUCHED
+from ..joints.scratch import BUDGET, EFFORT
 from ..layout import BODY_ROW, LEFT
 from ..layout import NOW as READ
 from ..model.scene import Scene, scene_of
@@ -23,6 +24,7 @@ from .meet import book_component
 from .solve import begin_span
 from .strike import collide
 
+_WORK, _WORK_OF_BODY = 5e7, 4e5  # operations of a step, beside those of each body; some 5e9 are a second
 _ROOM = 64  # contacts more than there are, that there must be room for before an impact
 
 
@@ -54,6 +56,7 @@ def start_jointed(
     """As `..impacts.step.start`, with the joints."""
     feel(A, J, STATES, WALK)
     J.TALLY[WORST] = J.TALLY[REPEATS] = 0
+    J.FOUND[EFFORT], J.FOUND[BUDGET] = 0.0, _WORK + _WORK_OF_BODY * A.BODY.shape[0]
     J.STEPPED[:] = 0.0
     return start(A, STATES, WALK, EXTRA, dt, gx, gy, left)
 

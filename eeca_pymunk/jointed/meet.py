@@ -14,6 +14,7 @@ from ..impacts.islands import members
 from ..joints.layout import CLAMPED, CLOSED, LIMITED, MOTORS, PROJECTED, SUPPORTS
 from ..joints.layout import DAMPED as DAMPED_JOINTS
 from ..joints.layout import STORED as STORED_JOINTS
+from ..joints.scratch import BUDGET, EFFORT
 from ..model.scene import Scene
 from ..pairs.lists import mark_pair
 from .gathered import restore_joints
@@ -155,7 +156,8 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> float:
             least = max(least, begun(A, i if end == 0 else j))
     small = min(A.SHAPE[a].extent, A.SHAPE[b].extent)
     before, gap_before = -1.0, 0.0
-    most = 1 if crowded(A, a, b) else _LOADED_SECANTS
+    spent = J.FOUND[EFFORT] > J.FOUND[BUDGET]
+    most = 1 if spent or crowded(A, a, b) else _LOADED_SECANTS
     for tries in range(_SECANTS):
         loaded = shorten(A, J, roots[0], t)
         if roots[1] != roots[0]:
@@ -164,7 +166,7 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> float:
         xj, yj, qj = pose(A.BODY, j, t)
         g, nx, ny, px, py = gap_at(A.SHAPE, A.LINK, A.VERTEX, A.WORK, a, xi, yi, qi, b, xj, yj, qj)
         close = _MEET if loaded == 0 else _LOADED_MEET if loaded <= SOME else _ROUGH_MEET
-        if (loaded > 0 and tries + 1 >= most) or abs(g) <= close * small:
+        if ((loaded > 0 or spent) and tries + 1 >= most) or abs(g) <= close * small:
             break
         slope = 0.0
         if before >= 0.0 and t != before:

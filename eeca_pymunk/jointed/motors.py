@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..compiled import uncounted
 from ..joints.layout import MAX_FORCE, MOTOR, ROTARY_SPRING, SOFT, SPRING
-from ..joints.scratch import BOUNDED, GIVEN, JOINT_0, JOINT_1, L_JOINT, L_KIND, L_SOFT
+from ..joints.scratch import BOXED, BOXES, GIVEN, JOINT_0, JOINT_1, L_JOINT, L_KIND, L_SOFT
 from .layout import Joints
 
 
@@ -28,17 +28,10 @@ def keeps_speed(J: Joints, s: int) -> bool:
 
 
 @uncounted
-def may_slip(J: Joints, s: int) -> bool:
-    """Whether component s has motors, or joints with a finite max_force, that enough impulse on its bodies moves."""
-    some = False
-    for k in range(J.SPAN[s, JOINT_0], J.SPAN[s, JOINT_1]):
-        some = some or (J.LINK[k, L_SOFT] != 0 and J.JOINT[J.LINK[k, L_JOINT], MAX_FORCE] < 1e300)
-    return some
-
-
-@uncounted
 def let_slip(J: Joints, s: int, slips: bool) -> None:
-    """Let the impulses of such joints count as given in answers, or no longer."""
+    """Let bounded impulses count as given in answers, or no longer, where they are few enough for `..joints.boxes`."""
+    if J.SPAN[s, BOXES] == 0:
+        return
     for k in range(J.SPAN[s, JOINT_0], J.SPAN[s, JOINT_1]):
         if J.LINK[k, L_SOFT] != 0 and J.JOINT[J.LINK[k, L_JOINT], MAX_FORCE] < 1e300:
-            J.LINK[k, L_SOFT] = GIVEN if slips else BOUNDED
+            J.LINK[k, L_SOFT] = GIVEN if slips else BOXED

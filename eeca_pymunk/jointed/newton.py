@@ -13,11 +13,14 @@ from ..rows.conjugate import accelerate
 from ..rows.dense import back, decompose, unknowns
 from ..rows.inplace import copy
 from ..rows.polish import clamp, classify
-from .columns import Columns, push_columns, relax_columns, sweep_columns
+from .bounded import HIGH, LOW, SPEED, Bounded, bounded_rate, inside, push_row
+from .columns import Columns, push_columns
+from .sweeping import relax_columns, sweep_columns
 
 FEW = 40  # contacts up to which this pays
 _FIRST, _AFTER = 12, 4  # sweeps before the first direct solution and after each
 _ROUNDS = 8
+_BOUNDED = 2  # kind of unknown, beside 0 normal, 1 tangential
 _R = 1e10  # of a proximal term, for contacts that are redundant
 
 
@@ -35,44 +38,69 @@ def entries(C: Columns, j: int, tangent: bool, slip: float, D: FloatArray, HIT: 
 
 
 @uncounted
+def bounded_entries(D: Bounded, j: int, V: FloatArray, HIT: IntArray, mark: int) -> None:
+    """As `entries`, of bounded row j."""
+    for q in range(len(V)):
+        for c in range(3):
+            V[q, c] = 0.0
+    for w in range(D.AT[j], D.AT[j + 1]):
+        HIT[D.BODY[w]] = mark
+        for c in range(3):
+            V[D.BODY[w], c] = D.N[w, c]
+
+
+@uncounted
 def responses(
-    C: Columns, A: IntArray, B: IntArray, ROWS: Rows[Row], slip: FloatArray, at: IntArray, kind: IntArray, N: int,
-    D: FloatArray, HIT: IntArray, W: FloatArray,
+    C: Columns, D: Bounded, A: IntArray, B: IntArray, ROWS: Rows[Row], slip: FloatArray, at: IntArray, kind: IntArray,
+    N: int, V: FloatArray, HIT: IntArray, W: FloatArray,
 ) -> None:  # fmt: skip
-    """W (N, N): the rate of each unknown's row per impulse of each; D (k, 3) and HIT (k,), of zeros, are scratch."""
+    """W (N, N): the rate of each unknown's row per impulse of each; V (k, 3) and HIT (k,), of zeros, are scratch."""
     for j in range(N):
-        entries(C, at[j], kind[j] == 1, slip[at[j]], D, HIT, j + 1)
+        if kind[j] == _BOUNDED:
+            bounded_entries(D, at[j], V, HIT, j + 1)
+        else:
+            entries(C, at[j], kind[j] == 1, slip[at[j]], V, HIT, j + 1)
         for i in range(N):
             k = at[i]
-            if HIT[A[k]] != j + 1 and HIT[B[k]] != j + 1:
+            if kind[i] == _BOUNDED:
+                W[i, j] = bounded_rate(D, k, V)
+            elif HIT[A[k]] != j + 1 and HIT[B[k]] != j + 1:
                 W[i, j] = 0.0
             elif kind[i] == 0:
-                W[i, j] = normal_rate(A, B, ROWS, D, k)
+                W[i, j] = normal_rate(A, B, ROWS, V, k)
             else:
-                W[i, j] = tangent_rate(A, B, ROWS, D, k) - ROWS[k].surface
+                W[i, j] = tangent_rate(A, B, ROWS, V, k) - ROWS[k].surface
         W[j, j] += abs(W[j, j]) / _R
 
 
 @kernel
 def direct(
-    C: Columns, A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, m: int, shared: bool
-) -> None:
-    """Newton's step of the law on the contacts that act in L, which are kept in their cones; V follows."""
+    C: Columns, D: Bounded, A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, m: int,
+    shared: bool,
+) -> None:  # fmt: skip
+    """Newton's step of the law on the contacts that act in L and on the bounded rows inside of their bounds, which are
+    kept in their cones and bounds; V follows."""
     held, stuck = np.empty(m, np.int64), np.empty(m, np.int64)
     slip, rest = np.empty(m), np.empty(m)
     classify(A, B, ROWS, L, V, m, held, stuck, slip, rest)
-    at, kind = np.empty(2 * m, np.int64), np.empty(2 * m, np.int64)
+    at, kind = np.empty(2 * m + D.USED[0], np.int64), np.empty(2 * m + D.USED[0], np.int64)
     push_columns(C, L, m, -1.0, V)
     N = unknowns(ROWS, L, m, held, stuck, slip, shared, at, kind)
     push_columns(C, L, m, 1.0, V)
-    W, D, order = np.empty((N, N)), np.empty_like(V), np.empty(N, np.int64)
-    responses(C, A, B, ROWS, slip, at, kind, N, D, np.zeros(len(V), np.int64), W)
+    for i in range(D.USED[0]):
+        if inside(D, L, m, i):
+            at[N], kind[N] = i, _BOUNDED
+            N += 1
+    W, X, order = np.empty((N, N)), np.empty_like(V), np.empty(N, np.int64)
+    responses(C, D, A, B, ROWS, slip, at, kind, N, X, np.zeros(len(V), np.int64), W)
     decompose(W, N, order)
     r, x = np.empty(N), np.empty(N)
     for _ in range(2):
         for k in range(N):
             i = at[k]
-            if kind[k] == 0:
+            if kind[k] == _BOUNDED:
+                r[k] = -D.NUMBER[i, SPEED] - bounded_rate(D, i, V)
+            elif kind[k] == 0:
                 r[k] = ROWS[i].target - normal_rate(A, B, ROWS, V, i)
             else:
                 if stuck[i] == 2 and L[i, 1] != 0.0:
@@ -82,6 +110,10 @@ def direct(
         push_columns(C, L, m, -1.0, V)
         for k in range(N):
             i = at[k]
+            if kind[k] == _BOUNDED:
+                L[m + i, 0] += x[k]
+                push_row(D, i, x[k], V)
+                continue
             L[i, kind[k]] += x[k]
             if kind[k] == 0 and stuck[i] == 0:
                 L[i, 1] = slip[i] * L[i, 0]
@@ -89,19 +121,24 @@ def direct(
     push_columns(C, L, m, -1.0, V)
     clamp(ROWS, L, m)
     push_columns(C, L, m, 1.0, V)
+    for i in range(D.USED[0]):
+        change = min(max(L[m + i, 0], D.NUMBER[i, LOW]), D.NUMBER[i, HIGH]) - L[m + i, 0]
+        L[m + i, 0] += change
+        push_row(D, i, change, V)
 
 
 @kernel
 def iterate_columns(
-    C: Columns, A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, m: int, tolerance: float,
-    most: int,
+    C: Columns, D: Bounded, A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, m: int,
+    tolerance: float, most: int,
 ) -> float:  # fmt: skip
     """At most so many sweeps, accelerated as in `..rows.conjugate.iterate`; the change of the last, which is plain."""
     FLAT, FAST = L.reshape(L.size), V.reshape(V.size)
-    L0, V0, PL, PV = FLAT[: 2 * m].copy(), FAST.copy(), np.zeros(2 * m), np.zeros(V.size)
+    size = 2 * (m + D.USED[0])
+    L0, V0, PL, PV = FLAT[:size].copy(), FAST.copy(), np.zeros(size), np.zeros(V.size)
     change, worst = -1.0, np.inf
     for done in range(1, most + 1):
-        worst = sweep_columns(C, A, B, ROWS, L, V, m)
+        worst = sweep_columns(C, D, A, B, ROWS, L, V, m)
         if worst <= tolerance or done == most:
             break
         change = accelerate(FLAT, FAST, L0, V0, PL, PV, change, done >= most - 1)
@@ -110,24 +147,25 @@ def iterate_columns(
 
 @kernel
 def solve_columns(
-    C: Columns, A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, m: int, tolerance: float,
-    most: int,
+    C: Columns, D: Bounded, A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, m: int,
+    tolerance: float, most: int,
 ) -> float:  # fmt: skip
-    """Impulses L and velocities V by sweeps, at most `most`, and for few contacts by direct solutions between them.
+    """Impulses L (m contacts, then the bounded rows D) and velocities V by sweeps, at most `most`, and for few contacts
+    by direct solutions between them.
 
     Where direct solutions stop to help, or come back to where they were, sweeps go on from the best of them.
     Returns the last sweep's largest change of a contact's velocity.
     """
     if m > FEW:
-        return iterate_columns(C, A, B, ROWS, L, V, m, tolerance, most)
-    worst = iterate_columns(C, A, B, ROWS, L, V, m, tolerance, _FIRST)
+        return iterate_columns(C, D, A, B, ROWS, L, V, m, tolerance, most)
+    worst = iterate_columns(C, D, A, B, ROWS, L, V, m, tolerance, _FIRST)
     best, L0, V0 = worst, L.copy(), V.copy()
     last, before_last = np.inf, np.inf
     for turn in range(_ROUNDS):
         if worst <= tolerance:
             return worst
-        direct(C, A, B, ROWS, L, V, m, turn % 2 == 1)
-        worst = relax_columns(C, A, B, ROWS, L, V, m, tolerance, _AFTER)[1]
+        direct(C, D, A, B, ROWS, L, V, m, turn % 2 == 1)
+        worst = relax_columns(C, D, A, B, ROWS, L, V, m, tolerance, _AFTER)[1]
         if worst < best:
             best = worst
             copy(L0, L)
@@ -140,5 +178,5 @@ def solve_columns(
     if worst > tolerance:
         copy(L, L0)
         copy(V, V0)
-        worst = iterate_columns(C, A, B, ROWS, L, V, m, tolerance, most)
+        worst = iterate_columns(C, D, A, B, ROWS, L, V, m, tolerance, most)
     return worst

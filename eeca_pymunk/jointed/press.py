@@ -18,19 +18,20 @@ from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
 from ..impacts.coming import before_end, sweeps_of_crowd
 from ..impacts.spans import Local
-from ..joints.scratch import NEAR, TAUT
+from ..joints.layout import COMPLIANCE
+from ..joints.scratch import BUDGET, EFFORT, JOINT_0, L_JOINT, NEAR, TAUT
 from ..model.contacts import Row
 from ..model.scene import Scene
 from ..rows.build import conserves, normal_rate, rates, tangent_rate
 from ..rows.inplace import copy
 from ..sustained.contacts import CROWD
 from ..sustained.targets import target
-from .advance import AS_IT_IS, NOT_AT_ALL, Motion, advance, farthest_apart
+from .advance import ALIGNED, Motion, advance, advance_aligned, align, farthest_apart
+from .bounded import make_bounded, settle_bounded, with_bounded
 from .columns import Columns, fill_free, leave_out, push_columns, weigh
-from .groups import Groups
+from .groups import Groups, hangs
 from .layout import Joints
 from .newton import FEW, solve_columns
-from .overcome import overcome
 
 _OUTER, _MOST_OUTER = 6, 12  # steps of the components; if elastic, or of no more than SOME contacts
 _MANY_OUTER, _PART_OUTER = 2, 1  # of islands of many contacts, whose sweeps do not come to an end; before an impact
@@ -44,6 +45,9 @@ _FALLS = 0.3  # of what velocities are apart, with which they do not come to agr
 _NEAR = 1e-9  # error of joints over the size of a component, as a way in h
 _FLOOR = 1e-8  # over the speed, what is round-off of components that hardly give way, if it does not fall
 _ROUGH = 1e-4  # likewise, above which answers are taken anew
+_WORK_ROUND_OFF = 4e-14  # of the work of contacts, over their impulses times the island's speed
+_SOLUTION_COST = 1000.0  # operations, of columns and sweeps, for each of their entries
+_TAUT_WORK = 1e-9  # at most, where joints pull hard
 _CHORD = 3  # steps of the components between which their answers are taken to be the same
 
 
@@ -68,6 +72,16 @@ def some_taut(J: Joints, groups: Groups) -> bool:
     some = False
     for g in range(len(groups.COMPONENT)):
         some = some or (groups.COMPONENT[g] >= 0 and J.SPAN[groups.COMPONENT[g], TAUT] > 0)
+    return some
+
+
+@uncounted
+def some_give(J: Joints, groups: Groups) -> bool:
+    """Whether joints of a component have given way elastically in its last step."""
+    some = False
+    for g in range(len(groups.COMPONENT)):
+        s = groups.COMPONENT[g]
+        some = some or (s >= 0 and J.JOINT[J.LINK[J.SPAN[s, JOINT_0], L_JOINT], COMPLIANCE] > 0.0)
     return some
 
 
@@ -100,17 +114,23 @@ def press(
         if n >= CROWD:
             most = sweeps_of_crowd(t)
     # Where many contacts do not come to an end, joints come near enough until the last step of the components.
+    if J.FOUND[EFFORT] > J.FOUND[BUDGET]:
+        rounds, most = _PART_OUTER, min(most, _SWEEPS)
     J.FOUND[NEAR] = _NEAR if m > FEW and not elastic and not rests else 0.0
     FORESEEN, UNKNOWN = np.empty((len(isle.IM), 3)), np.empty((0, 3))
     converged, best, LEAST, USED, hopeless, agreed, slowly = False, np.inf, L.copy(), L.copy(), False, False, False
-    stiff = False
+    stiff, bent, reached, B = False, 0.0, np.inf, make_bounded(J, groups, False)
+    # Only of what nothing from without holds or touches is there an angular momentum to keep.
+    free = len(isle.IM) == n and not hangs(groups, J.SPAN, J.MEMBER)
     for outer in range(rounds):
         if hopeless:
             break
-        anew = AS_IT_IS if outer % _CHORD == 0 or slowly else NOT_AT_ALL
-        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, anew, FORESEEN if outer > 0 else UNKNOWN)
+        anew = outer % _CHORD == 0 or slowly
+        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, B, anew, FORESEEN if outer > 0 else UNKNOWN)
+        bent = align(isle, P, Q, ROWS, m, motion, True) if free else 0.0
         if outer > 0:
             off = farthest_apart(motion.V, FORESEEN, isle.EXTENT, n)
+            reached = min(reached, off)
             if off <= agree or (off <= _FLOOR * scale and off > _FALLS * best):
                 converged, agreed = True, True
                 break
@@ -125,23 +145,29 @@ def press(
                 # Too far: the components do not answer as they did.
                 for k in range(L.shape[0]):
                     L[k, 0], L[k, 1] = 0.5 * (L[k, 0] + LEAST[k, 0]), 0.5 * (L[k, 1] + LEAST[k, 1])
-                advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, anew, UNKNOWN)
-        if anew != NOT_AT_ALL:
+                advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, B, anew, UNKNOWN)
+        if anew:
+            if free:
+                fill_free(groups, C, P, Q, ROWS, isle.IM, isle.II, m)
+            J.FOUND[EFFORT] += _SOLUTION_COST * C.AT[m]
             weigh(groups, C, P, Q, ROWS, m)
         if outer == 0:
             stiff = m <= FEW and some_taut(J, groups)
             slowly = stiff
             EFFECT = motion.V.copy()
             push_columns(C, L, m, -1.0, EFFECT)
+            settle_bounded(B, EFFECT)
             for q in range(len(EFFECT)):
                 for c in range(3):
                     EFFECT[q, c] = (EFFECT[q, c] - isle.V[q, c]) / h
             target(P, Q, ROWS, m, EFFECT, EXPECTED, pull, h)
-            overcome(A, J, isle, groups, P, Q, ROWS, L, m, t, h, agree, motion, C)
         copy(FORESEEN, motion.V)
         copy(USED, L)
         leave_out(C, L, m, FORESEEN)
-        worst = solve_columns(C, P, Q, ROWS, L, FORESEEN, m, fine, most)
+        BOTH = with_bounded(B, L, m)
+        worst = solve_columns(C, B, P, Q, ROWS, BOTH, FORESEEN, m, fine, most)
+        for i in range(m):
+            L[i, 0], L[i, 1] = BOTH[i, 0], BOTH[i, 1]
         converged = worst <= 10.0 * max(fine, min(agree, _AGREE * scale))
         if farthest_apart(motion.V, FORESEEN, isle.EXTENT, n) <= 1e-3 * agree:
             # The motion is that of the impulses before: others may do as little by these answers, and yet do much.
@@ -149,17 +175,27 @@ def press(
             agreed = True
             break
     if not agreed or J.FOUND[NEAR] > 0.0:
-        J.FOUND[NEAR] = 0.0
-        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, NOT_AT_ALL, UNKNOWN)
+        J.FOUND[NEAR], bent = 0.0, np.inf if free else 0.0
+        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, B, False, UNKNOWN)
     if not agreed:
         if not farthest_apart(motion.V, FORESEEN, isle.EXTENT, n) <= best:
             copy(L, LEAST)
-            advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, NOT_AT_ALL, UNKNOWN)
-        converged = False
+            advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, B, False, UNKNOWN)
+        # What gives way is as stiff as its joints pull: round-off of its ways does not fall further.
+        converged = best <= _AGREE * scale and some_give(J, groups)
+    if bent > ALIGNED:
+        advance_aligned(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, B, free)
     energy = 0.0
     for q in range(n):
         energy += (isle.V[q, 0] ** 2 + isle.V[q, 1] ** 2 + (pull * h) ** 2) / isle.IM[q]
-    bearable, scaled = 1e-15 * energy, 1.0
+    pressed = 0.0
+    for i in range(m):
+        pressed += abs(L[i, 0]) + abs(L[i, 1])
+    # Where joints pull hard, velocities are known as well as they came to agree, and works no better.
+    known = _WORK_ROUND_OFF
+    if some_give(J, groups) or some_taut(J, groups):
+        known = max(known, min(2.0 * reached / (slow + pull * h), _TAUT_WORK))
+    bearable, scaled = 1e-15 * energy + known * pressed * (slow + pull * h), 1.0
     for tries in range(_LOCKS + 1):
         loss = lost(P, Q, ROWS, L, motion.WAY, m, h)
         if loss >= owed - bearable and (not elastic or loss <= owed + bearable):
@@ -179,12 +215,15 @@ def press(
         # D(s) = s p - s^2 q: by its slope at s = 1.
         slope = p - 2.0 * q2
         s = 1.0 + (owed - loss) / slope if slope < 0.0 else 0.0
-        if tries == _LOCKS or not 0.0 < s < 2.0:
+        if tries == _LOCKS or (elastic and not 0.0 < s < 2.0):
             s = 0.0
+        elif not 0.1 < s < 2.0:
+            # The loss of s L has the sign of s p for small s: half of them, again and again.
+            s = 0.5 if owed <= 0.0 else 0.0
         for i in range(m):
             L[i, 0] = s * L[i, 0] if s > 0.0 else 0.0
             L[i, 1] = s * L[i, 1] if s > 0.0 else 0.0
-        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, NOT_AT_ALL, UNKNOWN)
+        advance_aligned(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, B, free)
         scaled *= s
         converged = converged and abs(scaled - 1.0) <= _AGREE
         if s == 0.0:

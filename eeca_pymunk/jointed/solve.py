@@ -20,8 +20,9 @@ from ..rows.inplace import sort
 from ..sustained.contacts import NEAR, gather
 from ..sustained.memory import remember_loads
 from ..sustained.step import moved, recall, speeds
-from .advance import NOT_AT_ALL, Motion, advance
+from .advance import Motion, advance
 from .alone import begin_alone, is_component, meets_nobody
+from .bounded import make_bounded
 from .columns import make_columns
 from .component import step_component
 from .fitting import fit
@@ -44,7 +45,7 @@ def foresee(
         if s < 0 or not drives(J, s):
             continue
         length = gather_component(A, J, s, isle.POSE, isle.V, isle.ACC, isle.IM, isle.II, t, h)
-        step_component(A, J, s, h, length, False, motion.V, motion.WAY, motion.END)
+        step_component(A, J, s, h, length, False, motion.V, motion.WAY, motion.END, motion.MID)
         restore_joints(J, s)
         for w in range(groups.FIRST[g], groups.FIRST[g + 1]):
             q = groups.BODY[w]
@@ -90,7 +91,7 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
             keep_joints(J, groups.COMPONENT[g])
     P, Q, KEY = np.empty(room, np.int64), np.empty(room, np.int64), np.empty(room, np.int64)
     ROWS, L, EXPECTED = empty(room, ROW), np.zeros((room, 2)), np.zeros(room)
-    motion = Motion(isle.V.copy(), np.zeros((k, 3)), isle.POSE.copy())
+    motion = Motion(isle.V.copy(), np.zeros((k, 3)), isle.POSE.copy(), np.zeros((k, 2)))
     REACH = np.empty(k)
     slow, fast, pull = speeds(isle.V, isle.ACC, isle.EXTENT, isle.IM, n, h, REACH)
     m = 0
@@ -111,7 +112,24 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
             COUNT.unmet += 1
         remember_loads(ROWS, KEY, L, m, h, A.KEYS, A.FORCES, COUNT, A.PAR.stamp)
     if m == 0:
-        advance(A, J, isle, groups, P, Q, ROWS, L, 0, t, h, motion, C, NOT_AT_ALL, np.empty((0, 3)))
+        advance(
+            A,
+            J,
+            isle,
+            groups,
+            P,
+            Q,
+            ROWS,
+            L,
+            0,
+            t,
+            h,
+            motion,
+            C,
+            make_bounded(J, groups, True),
+            False,
+            np.empty((0, 3)),
+        )
     book_turning(A, J, isle, groups, motion, n)
     # Bodies are lifted at the end of the span, not on the way: the way would be as steep as the span is short.
     WHERE = motion.END.copy()

@@ -19,6 +19,7 @@ from ..rows.build import aim, conserves, rates
 from ..rows.energy import scale_of, works
 from ..rows.inplace import copy
 from ..sustained.ledger import carried
+from .bounded import make_bounded
 from .columns import fill_free, fill_group, make_columns, push_columns, weigh
 from .component import answer, fit_speeds, ready
 from .gathered import find_places, gather_component
@@ -130,7 +131,7 @@ def collide(A: Scene, J: Joints, disks: int, a: int, b: int, t: float) -> tuple[
         FREE = V.copy()
         elastic = conserves(ROWS, rows)
         tolerance = (1e-15 if elastic else 1e-10) * speed
-        worst = solve_columns(C, P, Q, ROWS, L, V, rows, tolerance, _SWEEPS)
+        worst = solve_columns(C, make_bounded(J, groups, True), P, Q, ROWS, L, V, rows, tolerance, _SWEEPS)
         copy(V, FREE)
         push_columns(C, L, rows, 1.0, V)
         scale, _ = scale_of(P, Q, ROWS, L, V, FREE, rows, owed, elastic)

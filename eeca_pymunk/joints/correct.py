@@ -8,10 +8,12 @@ from __future__ import annotations
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
 from .bounds import TOUCH, approach, bounded, gap
+from .entries import held
 from .layout import SUPPORTS
 from .scratch import BEFORE, KEPT, L_A, L_B, L_ROWS, L_SIDE, L_SOFT, MOBILITY, PUSHED, ROWS, SCALE, SIZE
 
 _ROUND_OFF = 1e-14
+_STEPS_LEAVE = 1e-2  # of the speeds along a row, what is taken to be left by steps
 
 
 @uncounted
@@ -117,3 +119,25 @@ def touch(joint: FloatArray, hinge: FloatArray, link: IntArray, joints: int, loc
                     link[k, L_SIDE] = side
                     found = True
     return found
+
+
+@uncounted
+def fits(hinge: FloatArray, link: IntArray, joints: int, local: FloatArray) -> bool:
+    """Whether velocities fit all rows that hold, but for what steps leave: they hold places exactly, and velocities to
+    second or fourth order. To project that too would take energy whenever somebody else begins to step.
+
+    Rows are those of the present poses.
+    """
+    well = True
+    for k in range(joints):
+        for r in range(link[k, L_ROWS]):
+            if link[k, L_SOFT] != 0 or not held(link, k, r):
+                continue
+            rate, total = 0.0, 0.0
+            for c in range(3):
+                one = hinge[k, ROWS + 6 * r + c] * local[link[k, L_A], BEFORE + c]
+                two = hinge[k, ROWS + 6 * r + 3 + c] * local[link[k, L_B], BEFORE + c]
+                rate += one + two
+                total += abs(one) + abs(two)
+            well = well and abs(rate) <= _STEPS_LEAVE * total
+    return well

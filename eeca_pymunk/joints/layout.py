@@ -1,6 +1,6 @@
 """The packed arrays of joints: what their columns mean.
 
-JOINT (j, 74) float and TIE (j, 6) int: one row per joint, in the order of the space. Anchors stand in the frame of
+JOINT (j, 76) float and TIE (j, 6) int: one row per joint, in the order of the space. Anchors stand in the frame of
 their body, from its centre of mass. A joint's impulse `lam` acts along its rows J, which are the *discrete* gradient of
 its function g over a step: g1 - g0 = J . (h v_m), v_m = (v0 + v1)/2, so that J^T lam does no work where g keeps still.
 
@@ -28,14 +28,17 @@ LED = 18  # 18-20, 21-23: accelerations that joints gave to bodies a and b last
 COUNTED, COUNTED_OF = 24, 25  # parts of steps of order 4 that are known (`foresight`); the length of their steps
 PAST_LED = 26  # 26-61: accelerations of bodies a and b along their three ways in these parts, six each
 PAST_PUSH = 62  # 62-73: impulses along two rows, over the lengths of the parts, six each
-JOINT_COLUMNS = 74
+OWED = 74  # of the first joint of an island: energy that steps whose joints did not hold have taken
+COMPLIANCE = 75  # likewise: with which compliance (time²) its joints have given way in the last step, 0 if they held
+JOINT_COLUMNS = 76
 
 # TIE
 KIND = 0  # below
 BODY_A, BODY_B = 1, 2  # rows of its bodies
 SIDE = 3
 SOFT = 4  # 1 if max_force is finite: rows of velocity at the end of the step, |lam| <= max_force h
-TOUCHED = 5  # 1 if the user changed the joint or its bodies since the last step
+TOUCHED = 5  # 1 if the user changed the joint or its bodies since the last step; 2 if it is still apart from that; 3 if
+# linear rows of a step left it so, 4 if it gives way elastically
 TIE_COLUMNS = 6
 
 # KIND

@@ -21,6 +21,7 @@ from .solve import solve
 
 MOST_EVENTS = 12
 MOST_SECANTS = 12
+_FEW_SOLVES = 8  # of linear rows, that let limits go which pull
 
 
 @uncounted
@@ -46,7 +47,7 @@ def step_with_limits(
                 return False
             solves += 1
             if meeting < 0:  # a step to the end
-                if solves < 2 * joints + 100 and release(link, hinge, joints):
+                if solves < (_FEW_SOLVES if what == LINEAR_STEP else 2 * joints + 100) and release(link, hinge, joints):
                     continue
                 k = first_bound(joint, hinge, link, joints, local, when, found)
                 if k < 0 or solves > 4 * joints + 200 or what == LINEAR_STEP:

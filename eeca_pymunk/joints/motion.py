@@ -18,6 +18,7 @@ from .scratch import (
     L_JOINT,
     LEAD,
     LEVER,
+    MEAN,
     MOBILITY,
     PER,
     POSE,
@@ -112,6 +113,8 @@ def advance(local: FloatArray, bodies: int, h: float) -> None:
         for c in range(3):
             local[i, LEAD + c] = (local[i, AFTER + c] - local[i, BEFORE + c]) * per - local[i, FREE + c]
             local[i, TRAVEL + c] += local[i, WAY + c]
+        local[i, MEAN] += h * (local[i, POSE] + 0.5 * local[i, WAY])
+        local[i, MEAN + 1] += h * (local[i, POSE + 1] + 0.5 * local[i, WAY + 1])
         local[i, POSE] += local[i, WAY]
         local[i, POSE + 1] += local[i, WAY + 1]
         chi = local[i, WAY + 2]

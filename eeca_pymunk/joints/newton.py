@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import merged
+from .boxes import leave_box
 from .condensed import freeze
 from .entries import along, held, put_condensed, put_free, put_rows, put_stiffness, scale_rows
 from .rows import joint_rows
@@ -24,6 +25,7 @@ from .scratch import (
     BAND,
     BEFORE,
     BOUNDED,
+    BOXED,
     COLUMN,
     CONDENSED,
     DUAL,
@@ -99,6 +101,11 @@ def assemble(
             off = put_soft(link, hinge, local, node, k, slopes, h, system, build, band, matrix, right)
             worst = max(worst, off / hinge[k, SIZE])
             continue
+        if link[k, L_SOFT] == BOXED and not still and held(link, k, 0):
+            off = put_soft(link, hinge, local, node, k, slopes, h, system, False, band, matrix, right)
+            worst = max(worst, off / hinge[k, SIZE])
+            leave_box(link, hinge, k, build, system == WHOLE, band, matrix, right)
+            continue
         farthest = 0.0
         for r in range(link[k, L_ROWS]):
             if soft or not held(link, k, r):
@@ -115,7 +122,7 @@ def assemble(
                     error += give * 0.5 * h * hinge[k, LAM + r] / scale**2
             right[link[k, L_ROW] + r] = -error * scale * per
             farthest = max(farthest, abs(error))
-            hinge[k, WEIGHT + r] = min(STIFFEST, 1.0 / give) if give > 0.0 else STIFFEST
+            hinge[k, WEIGHT + r] = 1.0 / give if give > 0.0 else STIFFEST
             if build and system == CONDENSED:
                 freeze(hinge, link, local, node, k, r, slopes)
                 put_condensed(link, hinge, node, k, r, band, matrix)

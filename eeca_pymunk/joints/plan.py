@@ -15,6 +15,8 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel
 from ..compiled.records import Rows
 from ..model.bodies import Body
+from .boxes import MANY
+from .boxes import ROOM as BOX_ROOM
 from .dual import STRIDE
 from .layout import ANCHOR_AX, ANCHOR_AY, ANCHOR_BX, ANCHOR_BY, BODY_A, BODY_B, GEAR, GROOVE, KIND, MOTOR, SOFT
 from .ordering import order_rows, order_unknowns
@@ -23,6 +25,7 @@ from .scratch import (
     BAND,
     BODY_0,
     BODY_1,
+    BOXES,
     DUAL_BAND,
     DUAL_SIZE,
     JOINT_0,
@@ -166,6 +169,11 @@ def make_plan(
         cost = span[s, UNKNOWNS] * span[s, BAND] ** 2
         pays = 0 < span[s, DUAL_SIZE] * span[s, DUAL_BAND] ** 2 <= cost
         span[s, RIGID] = 0 if not pays else 2 if hard(tie, link, span, s) else 1
+        bounded = 0
+        for k in range(span[s, JOINT_0], span[s, JOINT_1]):
+            if tie[link[k, L_JOINT], KIND] == MOTOR or tie[link[k, L_JOINT], SOFT] != 0:
+                bounded += link[k, L_ROWS]
+        span[s, BOXES] = bounded if bounded <= MANY else 0
     return count
 
 
@@ -222,6 +230,8 @@ class Room(NamedTuple):
 def room_for(span: IntArray) -> Room:
     """Room for the largest islands of SPAN rows."""
     whole = span[:, UNKNOWNS] * (3 * span[:, BAND] + 1)
+    n = span[:, BOXES]
+    boxes = (n > 0) * (n + 1) * (span[:, UNKNOWNS] + span[:, ROWS_OF] + 2 * n + BOX_ROOM)
     dual = span[:, DUAL_SIZE] * (2 * span[:, DUAL_BAND] + 1)
     return Room(
         int((span[:, BODY_1] - span[:, BODY_0]).max(initial=1)),
@@ -229,5 +239,5 @@ def room_for(span: IntArray) -> Room:
         int(np.maximum(span[:, UNKNOWNS], span[:, DUAL_SIZE]).max(initial=1)),
         int(np.where(span[:, RIGID] > 0, np.maximum(whole, dual), whole).max(initial=1)),
         int(2 * (span[:, UNKNOWNS] + span[:, ROWS_OF]).max(initial=1)),
-        STRIDE * int(span[:, DUAL_SIZE].max(initial=1)),
+        int((STRIDE * span[:, DUAL_SIZE] + boxes).max(initial=1)),
     )

@@ -13,12 +13,15 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
 from .condensed import PASSES
+from .layout import COMPLIANCE
 from .motion import move
 from .newton import assemble
 from .rows import joint_rows, start_joint
 from .scratch import (
     AFTER,
     BEFORE,
+    BOUNDED,
+    BOXED,
     COLUMN,
     CONDENSED,
     COS,
@@ -27,6 +30,7 @@ from .scratch import (
     FULL_BEND,
     L_A,
     L_B,
+    L_JOINT,
     L_ROW,
     L_ROWS,
     L_SOFT,
@@ -78,6 +82,34 @@ def prepare(
 
     `what` is STEP, after `island_step` (whose start becomes that of `local` again), or SPEEDS, at the present poses.
     """
+    boxed = unbox(link, joints)
+    system = factors(
+        what, joint, hinge, link, joints, local, node, bodies, h, span, matrix, right, more, stiff, pivots
+    )  # fmt: skip
+    for k in range(joints if boxed else 0):
+        if link[k, L_SOFT] == BOUNDED:
+            link[k, L_SOFT] = BOXED
+    return int(system)
+
+
+@uncounted
+def unbox(link: IntArray, joints: int) -> bool:
+    """Let rows that are boxed be in the matrix: those inside of their bounds hold. Whether there are any."""
+    some = False
+    for k in range(joints):
+        if link[k, L_SOFT] == BOXED:
+            link[k, L_SOFT] = BOUNDED
+            some = True
+    return some
+
+
+@uncounted
+def factors(
+    what: int, joint: FloatArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray,
+    bodies: int, h: float, span: IntArray, matrix: FloatArray, right: FloatArray, more: FloatArray,
+    stiff: FloatArray, pivots: IntArray,
+) -> int:  # fmt: skip
+    """See `prepare`."""
     if what == STEP:
         for i in range(bodies):
             for c in range(3):
@@ -93,16 +125,17 @@ def prepare(
     else:
         begin(what, joint, hinge, link, joints, local, node, bodies, h)
     system = DUAL if span[RIGID] > (1 if what == STEP else 0) else span[SYSTEM]
-    epsilon = LEAST_EPSILON if span[LOOPS] > 0 else 0.0
+    give = joint[link[0, L_JOINT], COMPLIANCE] / h**2 if what == STEP else 0.0
+    epsilon = LEAST_EPSILON if span[LOOPS] > 0 and give == 0.0 else 0.0
     while True:
         for i in range(span[UNKNOWNS] + span[ROWS_OF]):
             right[i] = 0.0
         assemble(
-            what, joint, hinge, link, joints, local, node, bodies, h, 0.0, True, system, True, span, matrix, right,
+            what, joint, hinge, link, joints, local, node, bodies, h, give, True, system, True, span, matrix, right,
             stiff,
         )  # fmt: skip
         if decompose(
-            what, hinge, link, joints, local, node, bodies, system, epsilon, 0.0, span, matrix, more, pivots
+            what, hinge, link, joints, local, node, bodies, system, epsilon, give, span, matrix, more, pivots
         ):  # fmt: skip
             return int(system)
         if epsilon == 0.0:
@@ -117,12 +150,12 @@ def prepare(
 def respond(
     what: int, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray, bodies: int,
     system: int, span: IntArray, matrix: FloatArray, right: FloatArray, more: FloatArray, pivots: IntArray,
-    push: FloatArray,
+    push: FloatArray, gives: bool,
 ) -> None:  # fmt: skip
     """push (bodies, 3): impulses in (mass length/time, mass length²/time), changes of velocity out. `more`: scratch.
 
     Args:
-        system: that of the factors, from `prepare`.
+        system: that of the factors, from `prepare`.  gives: whether joints give way elastically.
     """
     size = span[UNKNOWNS] + span[ROWS_OF]
     for i in range(size):
@@ -130,9 +163,24 @@ def respond(
     for i in range(bodies):
         for c in range(node[i, FREEDOMS]):
             right[node[i, COLUMN] + c] = push[i, c] * local[i, ROOT + c]
-    back(what, hinge, link, joints, local, node, bodies, system, PASSES, span, matrix, right, more, pivots)
+    back(
+        what,
+        hinge,
+        link,
+        joints,
+        local,
+        node,
+        bodies,
+        system,
+        1 if gives else PASSES,
+        span,
+        matrix,
+        right,
+        more,
+        pivots,
+    )
     # (A + epsilon) x = b leaves b - A x = epsilon x in the rows, and each correction d leaves epsilon d.
-    for turn in range(0 if system == CONDENSED or span[LOOPS] == 0 else _REFINE):
+    for turn in range(0 if system == CONDENSED or span[LOOPS] == 0 or gives else _REFINE):
         rest = right[size : 2 * size] if turn > 0 else right[:size]
         for i in range(size):
             right[size + i] = rest[i]

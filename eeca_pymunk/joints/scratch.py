@@ -1,6 +1,6 @@
 """The scratch arrays of one island: what their columns mean.
 
-LOCAL (n, 58) float and NODE (n, 3) int: one row per body of the island, those that joints cannot move included.
+LOCAL (n, 60) float and NODE (n, 3) int: one row per body of the island, those that joints cannot move included.
 HINGE (m, 84) float and LINK (m, 11) int: one row per joint. Row vectors have six entries: 0-2 are for body a, 3-5 for
 body b, along x, along y, about the centre of mass. STIFF (6, 6) is that of one joint.
 
@@ -32,7 +32,8 @@ TRAVEL = 46  # 46-48: SHIFT and the sum of WAY over all parts of the step
 LEAD = 49  # 49-51: acceleration by joints that Newton's method begins with
 INERTIA = 52  # 52-54: diagonal of the bodies' part of a dual system, scaled; with its factors, the reciprocal
 UNROOT = 55  # 55-57: reciprocals of ROOT, 0 where that is
-LOCAL_COLUMNS = 58
+MEAN = 58  # 58, 59: integral of x, y over the time of the parts of the step: where a constant force acts is that over h
+LOCAL_COLUMNS = 60
 
 # NODE
 COLUMN, FREEDOMS = 0, 1  # first unknown of the body, number of its unknowns: 0, 2 (joints do not turn it) or 3
@@ -71,8 +72,9 @@ L_JOINT = 7  # its row in JOINT
 L_DUAL = 8  # its first unknown in a system in the rows alone
 L_NEXT = 9  # 9, 10: as FIRST, the next joint on its body a, on its body b
 LINK_COLUMNS = 11
-# L_SOFT: 0 for rows that hold exactly; 1 for impulses within bounds; 2 where these count as given, for an answer.
-BOUNDED, GIVEN = 1, 2
+# L_SOFT: 0 for rows that hold exactly; 1 for impulses within bounds; 2 where these count as given, for an answer; 3 for
+# impulses within bounds that `boxes` finds.
+BOUNDED, GIVEN, BOXED = 1, 2, 3
 
 # SPAN: one row per island.
 BODY_0, BODY_1, JOINT_0, JOINT_1 = 0, 1, 2, 3  # its slices of MEMBER and LINK
@@ -82,14 +84,17 @@ ROWS_OF = 8  # number of unknowns beside the matrix
 DUAL_SIZE, DUAL_BAND = 9, 10  # of its matrix in the rows alone
 RIGID = 11  # what a dual system is taken for: 2 everything, 1 what happens at an instant, 0 nothing
 TAUT = 12  # 1 if its loops held by their pull in the last step (`taut`)
-SPAN_COLUMNS = 13
+BOXES = 13  # most rows of bounded impulses that may act, if few enough for `boxes`; else 0
+SPAN_COLUMNS = 14
 # MEMBER: one row per body of each island.
 M_BODY, M_COLUMN, M_FREEDOMS, M_CAYLEY, M_FIRST = 0, 1, 2, 3, 4
 MEMBER_COLUMNS = 5
 
-# FOUND (6,): 0, 1 side and instant of a limit that is passed first; 2-4 scratch of solutions;
+# FOUND (9,): 0, 1 side and instant of a limit that is passed first; 2-4 scratch of solutions;
 NEAR = 5  # the error of a step that is near enough, 0 for round-off
-FOUND = 6
+EFFORT, BUDGET = 6, 7  # operations that solutions have taken since the step began; how many they may
+LIMIT = 8  # of EFFORT, at which the step of an island gives up what its ladder has before linear rows
+FOUND = 9
 
 NO_BEND, OWN_TURN, FULL_BEND = 0, 1, 2  # what of STIFF is there: nothing, [2, 2] and [5, 5], all
 

@@ -11,9 +11,10 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import merged, uncounted
 from .banded import back_banded, factor_banded
+from .boxes import bound_impulses, boxed_rows, push, rows_of
 from .condensed import PASSES, back_condensed, factor
 from .correct import goes_on, keep
-from .dual import back_dual, factor_dual, refresh
+from .dual import STRIDE, back_dual, factor_dual, refresh
 from .motion import move, settle
 from .newton import assemble
 from .rows import start_joint
@@ -21,10 +22,15 @@ from .scratch import (
     AFTER,
     BAND,
     BEFORE,
+    BOUNDED,
     COLUMN,
     CONDENSED,
     COS,
     DUAL,
+    DUAL_BAND,
+    DUAL_SIZE,
+    EFFORT,
+    FORCE,
     FREE,
     FREEDOMS,
     GOT,
@@ -33,6 +39,7 @@ from .scratch import (
     L_SOFT,
     LAM,
     LEAD,
+    LIMIT,
     LINEAR_STEP,
     MOBILITY,
     NEAR,
@@ -63,6 +70,7 @@ LEAST_EPSILON = 1e-10
 CLOSING_EPSILON = 1e-5
 MOST_CLOSINGS = 8
 MOST_PASSES = 12
+_ROWS_COST = 500.0  # operations, of the rows of a joint
 
 
 @merged
@@ -152,11 +160,44 @@ def back(
 
 @uncounted
 def bounded_rows(link: IntArray, joints: int) -> bool:
-    """Whether any joint is soft."""
+    """Whether any joint has bounded rows in the matrix."""
     count = 0
     for k in range(joints):
-        count += link[k, L_SOFT]
+        count += 1 if link[k, L_SOFT] == BOUNDED else 0
     return count > 0
+
+
+@uncounted
+def answer_boxes(
+    what: int, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray, bodies: int,
+    system: int, passes: int, boxes: int, span: IntArray, matrix: FloatArray, right: FloatArray, more: FloatArray,
+    pivots: IntArray,
+) -> None:  # fmt: skip
+    """Columns of `boxes`, with the factors of `decompose`: what a unit impulse along each boxed row does."""
+    size = span[UNKNOWNS] + span[ROWS_OF]
+    first = STRIDE * span[DUAL_SIZE]
+    for i in range(size):
+        more[first + boxes * size + i] = right[i]
+    at = first
+    for k in range(joints):
+        for r in range(rows_of(link, k)):
+            push(link, hinge, local, node, k, r, size, right)
+            back(
+                what, hinge, link, joints, local, node, bodies, system, passes, span, matrix, right, more, pivots
+            )  # fmt: skip
+            for i in range(size):
+                more[at + i] = right[i]
+            at += size
+    for i in range(size):
+        right[i] = more[at + i]
+
+
+@uncounted
+def effort(system: int, fresh: bool, boxes: int, joints: int, span: IntArray) -> float:
+    """About how many operations an iteration takes: rows, factors, solutions."""
+    size, band = (span[DUAL_SIZE], span[DUAL_BAND]) if system == DUAL else (span[UNKNOWNS], span[BAND])
+    turns = 1 + boxes if fresh else 1
+    return float(_ROWS_COST * joints + (2.0 * size * band * band if fresh else 0.0) + 6.0 * turns * size * (band + 4))
 
 
 @uncounted
@@ -181,6 +222,7 @@ def solve(
     system = DUAL if span[RIGID] > (1 if what in (STEP, LINEAR_STEP) else 0) else span[SYSTEM]
     lasting = what == STEP and not (system != DUAL and bounded_rows(link, joints))
     ready, fresh, since = False, False, 0
+    boxes = boxed_rows(link, joints) if what in (STEP, LINEAR_STEP) else 0
     unscaled = what != STEP or hinge[0, SCALE] == 0.0  # rows have not been in this step yet
     for iteration in range(MOST_ITERATIONS + 1 if what == STEP else MOST_PASSES + 3 * joints):
         for i in range(span[UNKNOWNS] + span[ROWS_OF]):
@@ -205,7 +247,7 @@ def solve(
                 best = worst
             elif iteration > since + 3:
                 stalls += 1
-            if not worst < 1e100 or stalls > 6 or iteration == MOST_ITERATIONS:
+            if not worst < 1e100 or stalls > 6 or iteration == MOST_ITERATIONS or found[EFFORT] > found[LIMIT]:
                 return -1
             last = worst
             if ready and slow:
@@ -248,9 +290,17 @@ def solve(
         if system == DUAL and not fresh:
             refresh(hinge, link, joints, local, node, SLOPES if what == STEP else ROWS)
         passes = 1 if give > 0.0 or not fresh else PASSES - 1 if lasting else PASSES
+        found[EFFORT] += effort(system, fresh, boxes, joints, span)
+        if boxes > 0 and fresh:
+            answer_boxes(
+                what, hinge, link, joints, local, node, bodies, system, passes, boxes, span, matrix, right, more,
+                pivots,
+            )  # fmt: skip
         back(
             what, hinge, link, joints, local, node, bodies, system, passes, span, matrix, right, more, pivots
         )  # fmt: skip
+        if boxes > 0:
+            bound_impulses(link, hinge, local, node, joints, boxes, h, fresh, span, right, more)
         ready = lasting
         apply(what, link, hinge, joints, local, node, bodies, right)
         if what in (POSES, SPEEDS):
@@ -264,5 +314,10 @@ def solve(
                 for c in range(3):
                     if not abs(local[i, AFTER + c]) < 1e100:
                         return -1
+            for k in range(joints):
+                for c in range(6 if link[k, L_ROWS] > 0 else 0):
+                    hinge[k, FORCE + c] = 0.0
+                    for r in range(link[k, L_ROWS]):
+                        hinge[k, FORCE + c] += hinge[k, LAM + r] * hinge[k, ROWS + 6 * r + c]
             return 0
     return -1

@@ -9,7 +9,6 @@ from ..compiled import uncounted
 from .bounds import approach, bounded, gap
 from .entries import held
 from .layout import (
-    CLOSED,
     ERROR_BIAS,
     GEAR,
     GROOVE,
@@ -38,6 +37,8 @@ from .scratch import (
     APART,
     BEFORE,
     BOUND,
+    BOUNDED,
+    BOXED,
     FREE,
     L_A,
     L_JOINT,
@@ -66,18 +67,19 @@ APART_FROM = 1e-10  # joints farther apart than this, over the size of the islan
 @uncounted
 def read_joints(
     joint: FloatArray, tie: IntArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, h: float,
-    length: float,
+    length: float, boxes: int,
 ) -> int:  # fmt: skip
-    """Fill in what the joints bring from before.
+    """Fill in what the joints bring from before. Rows of bounded impulses are boxed if they are `boxes` at most.
 
     Returns 0, plus 1 if a joint was touched, plus 2 if a soft joint needs its target.
     """
-    touched, soft = 0, 0
+    touched, soft, bounded = 0, 0, 0
     for k in range(joints):
         j, kind = link[k, L_JOINT], link[k, L_KIND]
         link[k, L_SIDE] = tie[j, SIDE]
         is_soft = tie[j, SOFT] != 0 and kind not in (SPRING, ROTARY_SPRING)
-        link[k, L_SOFT] = 1 if kind == MOTOR or is_soft else 0
+        link[k, L_SOFT] = BOUNDED if kind == MOTOR or is_soft else 0
+        bounded += link[k, L_ROWS] if link[k, L_SOFT] != 0 else 0
         warm = 0.0 if joint[j, LAST_STEP] == 0.0 else h / joint[j, LAST_STEP]
         hinge[k, LAM], hinge[k, LAM + 1] = joint[j, IMPULSE_1] * warm, joint[j, IMPULSE_2] * warm
         hinge[k, TOTAL] = hinge[k, TOTAL + 1] = 0.0
@@ -96,6 +98,9 @@ def read_joints(
             soft = 2
         if tie[j, TOUCHED] != 0:
             touched = 1
+    for k in range(joints if bounded <= boxes else 0):
+        if link[k, L_SOFT] != 0:
+            link[k, L_SOFT] = BOXED
     return touched + soft
 
 
@@ -162,13 +167,16 @@ def find_apart(
     """After the user's changes: targets of joints that are apart, one step's share nearer, and limits that are passed.
 
     Rows must be those of the present poses. Joints that will still be apart keep TOUCHED = 2, and hold the rest of
-    their error over the step, so that it does no work. Returns 1 if a touch is fresh, plus 2 if a joint is apart.
+    their error over the step, so that it does no work; or 3 if a step has left them so. Those that give way elastically
+    stay as they are. Returns 1 if a touch is fresh, plus 2 if a joint is to be closed, plus 4 if only steps have left
+    any so.
     """
-    fresh, apart = 0, 0
+    fresh, apart, own = 0, 0, 4
     for k in range(joints):
         j, rows = link[k, L_JOINT], link[k, L_ROWS]
         if tie[j, TOUCHED] == 1:
             fresh = 1
+        was = tie[j, TOUCHED]
         tie[j, TOUCHED] = 0
         if link[k, L_SOFT] != 0 or rows == 0:
             continue
@@ -185,13 +193,16 @@ def find_apart(
             if held(link, k, r):
                 error += hinge[k, VALUE + r] ** 2
         error = np.sqrt(error)
-        if error > APART_FROM * hinge[k, SIZE]:
+        if error > APART_FROM * hinge[k, SIZE] and was == 4:
+            tie[j, TOUCHED] = 4
+        elif error > APART_FROM * hinge[k, SIZE]:
             apart = 2
             left = 1.0 - share(joint, j, error, h)
             for r in range(rows):
                 hinge[k, TARGET + r] = hinge[k, VALUE + r] * left
-            tie[j, TOUCHED] = 2 if left > 0.0 else 0
-    return fresh + apart
+            tie[j, TOUCHED] = 0 if not left > 0.0 else 3 if was == 3 else 2
+            own = own if was == 3 else 0
+    return fresh + apart + (own if fresh == 0 else 0)
 
 
 @uncounted
@@ -206,16 +217,23 @@ def farthest(hinge: FloatArray, link: IntArray, joints: int) -> float:
 
 
 @uncounted
-def book_closing(
-    hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, bodies: int, ledger: FloatArray
-) -> None:
-    """Book the work of closing against the bodies' accelerations, and let joints hold what it reached."""
+def closing_work(local: FloatArray, bodies: int) -> float:
+    """The work of closing, from SAVED to POSE, against the bodies' accelerations."""
+    work = 0.0
     for i in range(bodies):
         for c in range(3):
             if local[i, MOBILITY + c] > 0.0:
-                way = local[i, POSE + c] - local[i, SAVED + c]
-                local[i, SHIFT + c] = way
-                ledger[CLOSED] -= local[i, FREE + c] * way / local[i, MOBILITY + c]
+                work -= local[i, FREE + c] * (local[i, POSE + c] - local[i, SAVED + c]) / local[i, MOBILITY + c]
+    return work
+
+
+@uncounted
+def keep_closed(hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, bodies: int) -> None:
+    """Note how far closing has shifted bodies, and let joints hold what it reached."""
+    for i in range(bodies):
+        for c in range(3):
+            if local[i, MOBILITY + c] > 0.0:
+                local[i, SHIFT + c] = local[i, POSE + c] - local[i, SAVED + c]
     for k in range(joints):
         for r in range(link[k, L_ROWS]):
             if hinge[k, TARGET + r] != 0.0 and link[k, L_SOFT] == 0 and held(link, k, r):

@@ -17,6 +17,7 @@ from .scratch import (
     BEFORE,
     BODY_0,
     BODY_1,
+    BUDGET,
     CAYLEY,
     COLUMN,
     FIRST,
@@ -121,6 +122,7 @@ class Islands:
         self._matrix, self._right = np.zeros(room.matrix), np.zeros(room.right)
         self._more, self._pivots = np.zeros(room.scratch), np.zeros(room.rows, np.int64)
         self._stiff, self._found, self._part = np.zeros((6, 6)), np.zeros(FOUND), np.zeros(LEDGER_COLUMNS)
+        self._found[BUDGET] = np.inf
         self.ledger, self.status = np.zeros((self.islands, LEDGER_COLUMNS)), np.zeros(self.islands, np.int64)
 
     def step(self, bodies: Rows[Body], h: float) -> int:

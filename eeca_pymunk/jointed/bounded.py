@@ -1,0 +1,244 @@
+"""Rows of bounded impulses, motors and joints with a finite max_force, as unknowns beside those of the contacts.
+
+Columns of contacts and of these rows are answered by all joints that hold exactly, the bounded impulses being given: so
+contacts and bounded rows are one problem (`newton`). What its bounded impulses are is found anew by the components'
+next step (`..joints.boxes`), which keeps their bounds to the bit.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import kernel, uncounted
+from ..joints.boxes import FIRST_OF_DISC, SECOND_OF_DISC, SINGLE, on_disc
+from ..joints.entries import held
+from ..joints.layout import GROOVE, RATCHET, ROTARY_LIMIT, SLIDE
+from ..joints.scratch import (
+    BEFORE,
+    BODY_0,
+    BOUND,
+    BOXES,
+    FREEDOMS,
+    GIVEN,
+    JOINT_0,
+    JOINT_1,
+    L_A,
+    L_KIND,
+    L_ROWS,
+    L_SIDE,
+    L_SOFT,
+    M_BODY,
+    ROWS,
+    TARGET,
+    TOTAL,
+)
+from ..model.scene import Scene
+from .component import answer
+from .groups import Groups
+from .layout import Joints
+
+_SWEEPS = 30
+
+
+class Bounded(NamedTuple):
+    """Bounded rows; of row i < USED[0]:
+
+    AT[i] : AT[i + 1] the entries BODY and N (., 3) of its column, AT[0] = 0; END (n, 2) its bodies in the island, -1
+    for what does not move; ROW (n, 6) the row; NUMBER (n, 5): velocity of what does not move along it less its target,
+    least and largest impulse, SINGLE or place in a disc, impulse of the last motion; OF (n, 2): joint (of LINK), row.
+    """
+
+    USED: IntArray
+    AT: IntArray
+    BODY: IntArray
+    N: FloatArray
+    END: IntArray
+    ROW: FloatArray
+    NUMBER: FloatArray
+    OF: IntArray
+
+
+SPEED, LOW, HIGH, PART, NOW = 0, 1, 2, 3, 4  # columns of NUMBER
+
+
+@kernel
+def make_bounded(J: Joints, groups: Groups, empty: bool) -> Bounded:
+    """Room for the bounded rows of all components of an island, or for none."""
+    n, entries = 0, 0
+    for g in range(len(groups.COMPONENT)):
+        if groups.COMPONENT[g] >= 0 and not empty:
+            rows = J.SPAN[groups.COMPONENT[g], BOXES]
+            n += rows
+            entries += rows * (groups.FIRST[g + 1] - groups.FIRST[g])
+    return Bounded(
+        np.zeros(1, np.int64), np.zeros(n + 1, np.int64), np.zeros(entries, np.int64), np.zeros((entries, 3)),
+        np.zeros((n, 2), np.int64), np.zeros((n, 6)), np.zeros((n, 5)), np.zeros((n, 2), np.int64),
+    )  # fmt: skip
+
+
+@uncounted
+def note_row(A: Scene, J: Joints, B: Bounded, s: int, i: int, h: float) -> None:
+    """Row i as it is at the end of the step h that component s has just taken."""
+    k, r = B.OF[i, 0], B.OF[i, 1]
+    hinge = J.HINGE[k - J.SPAN[s, JOINT_0]]
+    B.NUMBER[i, SPEED] = -hinge[TARGET + r]
+    B.NUMBER[i, NOW] = hinge[TOTAL + r]
+    for end in range(2):
+        at = J.LINK[k, L_A + end]
+        B.END[i, end] = A.PLACE[J.MEMBER[J.SPAN[s, BODY_0] + at, M_BODY]] if J.NODE[at, FREEDOMS] > 0 else -1
+        for c in range(3):
+            B.ROW[i, 3 * end + c] = hinge[ROWS + 6 * r + 3 * end + c]
+            if B.END[i, end] < 0:
+                B.NUMBER[i, SPEED] += B.ROW[i, 3 * end + c] * J.LOCAL[at, BEFORE + c]
+    bound = hinge[BOUND] * h
+    low = -bound
+    if J.LINK[k, L_KIND] in (SLIDE, ROTARY_LIMIT, RATCHET):
+        low, bound = (0.0, bound) if J.LINK[k, L_SIDE] < 0 else (-bound, 0.0)
+    B.NUMBER[i, LOW], B.NUMBER[i, HIGH] = low, bound
+
+
+@uncounted
+def note_rows(A: Scene, J: Joints, B: Bounded, s: int, h: float) -> None:
+    """The rows of component s that are known, after another step of it."""
+    for i in range(B.USED[0]):
+        if J.SPAN[s, JOINT_0] <= B.OF[i, 0] < J.SPAN[s, JOINT_1]:
+            note_row(A, J, B, s, i, h)
+
+
+@uncounted
+def list_rows(A: Scene, J: Joints, B: Bounded, s: int, h: float) -> int:
+    """Append the rows of component s whose impulses count as given (`motors.let_slip`); the first of them."""
+    first = B.USED[0]
+    for k in range(J.SPAN[s, JOINT_0], J.SPAN[s, JOINT_1]):
+        if J.LINK[k, L_SOFT] != GIVEN or not held(J.LINK, k, 0):
+            continue
+        rows = 1 if J.LINK[k, L_KIND] == GROOVE and J.LINK[k, L_SIDE] == 0 else J.LINK[k, L_ROWS]
+        for r in range(rows):
+            i = B.USED[0]
+            B.OF[i, 0], B.OF[i, 1] = k, r
+            B.NUMBER[i, PART] = SINGLE if rows == 1 else FIRST_OF_DISC if r == 0 else SECOND_OF_DISC
+            note_row(A, J, B, s, i, h)
+            B.USED[0] = i + 1
+    return int(first)
+
+
+@uncounted
+def fill_rows(
+    J: Joints, groups: Groups, B: Bounded, g: int, first: int, INDEX: IntArray, PUSH: FloatArray
+) -> None:  # fmt: skip
+    """The columns of the rows from `first` on, of group g, whose component is ready to answer."""
+    s = groups.COMPONENT[g]
+    for i in range(first, B.USED[0]):
+        for w in range(len(PUSH)):
+            for c in range(3):
+                PUSH[w, c] = 0.0
+        for end in range(2):
+            if B.END[i, end] >= 0:
+                for c in range(3):
+                    PUSH[INDEX[B.END[i, end]], c] += B.ROW[i, 3 * end + c]
+        answer(J, s, True, PUSH)
+        at = B.AT[i]
+        for w in range(groups.FIRST[g], groups.FIRST[g + 1]):
+            q = groups.BODY[w]
+            B.BODY[at] = q
+            for c in range(3):
+                B.N[at, c] = PUSH[INDEX[q], c]
+            at += 1
+        B.AT[i + 1] = at
+
+
+@uncounted
+def bounded_rate(B: Bounded, i: int, V: FloatArray) -> float:
+    """Velocity of the island's bodies along row i."""
+    total = 0.0
+    for end in range(2):
+        if B.END[i, end] >= 0:
+            for c in range(3):
+                total += B.ROW[i, 3 * end + c] * V[B.END[i, end], c]
+    return total
+
+
+@uncounted
+def per_impulse(B: Bounded, i: int, j: int) -> float:
+    """Velocity along row i per impulse of row j."""
+    total = 0.0
+    for w in range(B.AT[j], B.AT[j + 1]):
+        for end in range(2):
+            if B.BODY[w] == B.END[i, end]:
+                for c in range(3):
+                    total += B.ROW[i, 3 * end + c] * B.N[w, c]
+    return total
+
+
+@uncounted
+def push_row(B: Bounded, i: int, change: float, V: FloatArray) -> None:
+    """V += change of impulse i times its column."""
+    if change != 0.0:
+        for w in range(B.AT[i], B.AT[i + 1]):
+            for c in range(3):
+                V[B.BODY[w], c] += change * B.N[w, c]
+
+
+@uncounted
+def sweep_bounded(B: Bounded, L: FloatArray, m: int, V: FloatArray) -> float:
+    """One sweep over the bounded rows, whose impulses are L[m:, 0]; the largest change of a velocity along one."""
+    worst = 0.0
+    for i in range(B.USED[0]):
+        part, low, high = B.NUMBER[i, PART], B.NUMBER[i, LOW], B.NUMBER[i, HIGH]
+        if part == SECOND_OF_DISC:
+            continue
+        a, x = per_impulse(B, i, i), L[m + i, 0]
+        if not a > 0.0:
+            continue
+        u = B.NUMBER[i, SPEED] + bounded_rate(B, i, V)
+        if part == SINGLE:
+            L[m + i, 0] = min(max(x - u / a, low), high)
+        else:
+            b, c, y = (
+                0.5 * (per_impulse(B, i, i + 1) + per_impulse(B, i + 1, i)),
+                per_impulse(B, i + 1, i + 1),
+                L[m + i + 1, 0],
+            )
+            if not c > 0.0:
+                continue
+            other = B.NUMBER[i + 1, SPEED] + bounded_rate(B, i + 1, V)
+            L[m + i, 0] = on_disc(a, b, c, u, other, x, y, high, False)
+            L[m + i + 1, 0] = on_disc(a, b, c, u, other, x, y, high, True)
+            push_row(B, i + 1, L[m + i + 1, 0] - y, V)
+            worst = max(worst, abs(L[m + i + 1, 0] - y) * c)
+        push_row(B, i, L[m + i, 0] - x, V)
+        worst = max(worst, abs(L[m + i, 0] - x) * a)
+    return worst
+
+
+@uncounted
+def inside(B: Bounded, L: FloatArray, m: int, i: int) -> bool:
+    """Whether impulse i is inside of its bounds."""
+    x, high = L[m + i, 0], B.NUMBER[i, HIGH]
+    if B.NUMBER[i, PART] == SINGLE:
+        return bool(B.NUMBER[i, LOW] < x < high)
+    y = L[m + i + 1, 0] if B.NUMBER[i, PART] == FIRST_OF_DISC else L[m + i - 1, 0]
+    return bool(x * x + y * y < high * high * (1.0 - 1e-14))
+
+
+@kernel
+def with_bounded(B: Bounded, L: FloatArray, m: int) -> FloatArray:
+    """Impulses of m contacts and those of the bounded rows in the last motion, (m + rows, 2)."""
+    BOTH = np.zeros((m + B.USED[0], 2))
+    for i in range(m):
+        BOTH[i, 0], BOTH[i, 1] = L[i, 0], L[i, 1]
+    for i in range(B.USED[0]):
+        BOTH[m + i, 0] = B.NUMBER[i, NOW]
+    return BOTH
+
+
+@kernel
+def settle_bounded(B: Bounded, V: FloatArray) -> None:
+    """Velocities V after contacts' impulses have been taken away: let the bounded rows follow."""
+    X = with_bounded(B, np.empty((0, 2)), 0)
+    for _ in range(_SWEEPS if B.USED[0] > 0 else 0):
+        if sweep_bounded(B, X, 0, V) <= 0.0:
+            break

@@ -1,0 +1,293 @@
+"""Rows of bounded impulses in Newton's method: motors, and joints whose max_force is finite.
+
+Each iteration linearises all else. Let u be the velocity along a bounded row after that, less its target, and W the
+change of u per bounded impulse, answered by all joints that hold exactly. The impulses solve, together,
+
+    |lam| <= max_force h,    u = 0 inside of the bound,    u of the other sign than lam where lam is at the bound,
+
+(a pivot's two as a disc), so that lam never exceeds its bound, in no iteration and in no rung of the ladder of `step`:
+the work of such a row is at most max_force times the way along it. Sweeps find which rows are at their bounds, a direct
+solution on the others does the rest.
+"""
+
+from __future__ import annotations
+
+import math
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import uncounted
+from .dual import STRIDE
+from .entries import held
+from .layout import GROOVE, RATCHET, ROTARY_LIMIT, SLIDE
+from .scratch import (
+    BOUND,
+    BOXED,
+    COLUMN,
+    DUAL_SIZE,
+    FREEDOMS,
+    L_A,
+    L_KIND,
+    L_ROW,
+    L_ROWS,
+    L_SIDE,
+    L_SOFT,
+    LAM,
+    ROOT,
+    ROWS,
+    ROWS_OF,
+    SCALE,
+    UNKNOWNS,
+    VALUE,
+    WEIGHT,
+)
+
+MANY = 64  # bounded rows, above which each iteration decides for each row by itself (`soft`)
+ROOM = 8  # arrays of one number per row, beside the columns (and a right side) and two matrices
+_SWEEPS, _ROUNDS = 12, 6
+_FINE = 1e-15  # change of an impulse in a sweep, over the largest
+_REDUNDANT = 1e-12  # on the diagonal, over it
+_SECULAR = 40
+SINGLE, FIRST_OF_DISC, SECOND_OF_DISC = 0.0, 1.0, 2.0
+
+
+@uncounted
+def rows_of(link: IntArray, k: int) -> int:
+    """The rows of joint k that act, if it is boxed; 0 if not."""
+    if link[k, L_SOFT] != BOXED or not held(link, k, 0):
+        return 0
+    return 1 if link[k, L_KIND] == GROOVE and link[k, L_SIDE] == 0 else int(link[k, L_ROWS])
+
+
+@uncounted
+def boxed_rows(link: IntArray, joints: int) -> int:
+    """How many rows are boxed."""
+    count = 0
+    for k in range(joints):
+        count += rows_of(link, k)
+    return count
+
+
+@uncounted
+def push(
+    link: IntArray, hinge: FloatArray, local: FloatArray, node: IntArray, k: int, r: int, size: int, right: FloatArray
+) -> None:
+    """Let `right` be a unit impulse along row r of joint k, scaled."""
+    for i in range(size):
+        right[i] = 0.0
+    for end in range(2):
+        i = link[k, L_A + end]
+        for c in range(node[i, FREEDOMS]):
+            right[node[i, COLUMN] + c] += hinge[k, ROWS + 6 * r + 3 * end + c] * local[i, ROOT + c]
+
+
+@uncounted
+def rate(
+    link: IntArray, hinge: FloatArray, local: FloatArray, node: IntArray, k: int, r: int, change: FloatArray, at: int
+) -> float:
+    """The velocity along row r of joint k of the scaled change[at :]."""
+    total = 0.0
+    for end in range(2):
+        i = link[k, L_A + end]
+        for c in range(node[i, FREEDOMS]):
+            total += hinge[k, ROWS + 6 * r + 3 * end + c] * local[i, ROOT + c] * change[at + node[i, COLUMN] + c]
+    return total
+
+
+@uncounted
+def measure_boxes(
+    link: IntArray, hinge: FloatArray, local: FloatArray, node: IntArray, joints: int, n: int, h: float, fresh: bool,
+    span: IntArray, right: FloatArray, more: FloatArray,
+) -> None:  # fmt: skip
+    """W, if columns are `fresh`; u after the solution in `right`; impulses and their bounds. All behind the columns."""
+    size = span[UNKNOWNS] + span[ROWS_OF]
+    cols = STRIDE * span[DUAL_SIZE]
+    w = cols + (n + 1) * size
+    u = w + 2 * n * n
+    row = 0
+    for k in range(joints):
+        rows = rows_of(link, k)
+        bound = hinge[k, BOUND] * abs(h)
+        low = -bound
+        if link[k, L_KIND] in (SLIDE, ROTARY_LIMIT, RATCHET):
+            low, bound = (0.0, bound) if link[k, L_SIDE] < 0 else (-bound, 0.0)
+        for r in range(rows):
+            if fresh:
+                for c in range(n):
+                    more[w + row * n + c] = rate(link, hinge, local, node, k, r, more, cols + c * size)
+            more[u + row] = hinge[k, VALUE + r] * 2.0 / h + rate(link, hinge, local, node, k, r, right, 0)
+            more[u + n + row] = hinge[k, LAM + r]
+            more[u + 2 * n + row], more[u + 3 * n + row] = low, bound
+            more[u + 4 * n + row] = SINGLE if rows == 1 else FIRST_OF_DISC if r == 0 else SECOND_OF_DISC
+            row += 1
+
+
+@uncounted
+def on_disc(
+    a: float, b: float, c: float, ux: float, uy: float, x: float, y: float, bound: float, second: bool
+) -> float:
+    """One of the impulses (x', y') with u + W (x' - x, y' - y) = 0, W = [a b; b c], or if these are not in the disc,
+    with u + W (x' - x, y' - y) = -s (x', y'), s > 0, on its rim: (W + s) p = W p0 - u in the frame of W."""
+    turn = 0.5 * math.atan2(2.0 * b, a - c)
+    co, si = math.cos(turn), math.sin(turn)
+    w1 = a * co * co + 2.0 * b * co * si + c * si * si
+    w2 = a * si * si - 2.0 * b * co * si + c * co * co
+    gx, gy = a * x + b * y - ux, b * x + c * y - uy
+    g1, g2 = gx * co + gy * si, gy * co - gx * si
+    w1, w2 = max(w1, 1e-300), max(w2, 1e-14 * w1, 1e-300)
+    p1, p2 = g1 / w1, g2 / w2
+    if p1 * p1 + p2 * p2 > bound * bound:
+        s = 0.0
+        for _ in range(_SECULAR):
+            p1, p2 = g1 / (w1 + s), g2 / (w2 + s)
+            length = math.sqrt(p1 * p1 + p2 * p2)
+            if not bound > 0.0 or length <= bound * (1.0 + 1e-15):
+                break
+            slope = p1 * p1 / (w1 + s) + p2 * p2 / (w2 + s)
+            s += (length / bound - 1.0) * length * length / slope
+        length = math.sqrt(p1 * p1 + p2 * p2)
+        if length > bound:
+            p1, p2 = p1 * bound / length, p2 * bound / length
+    return p1 * si + p2 * co if second else p1 * co - p2 * si
+
+
+@uncounted
+def change_box(more: FloatArray, w: int, u: int, n: int, i: int, to: float) -> float:
+    """Let impulse i be `to`, velocities follow; how much it has changed."""
+    change = to - more[u + n + i]
+    if change != 0.0:
+        more[u + n + i] = to
+        for j in range(n):
+            more[u + j] += more[w + j * n + i] * change
+    return abs(change)
+
+
+@uncounted
+def sweep_boxes(more: FloatArray, w: int, u: int, n: int) -> float:
+    """One sweep over all rows; the largest change of an impulse, over the largest impulse."""
+    worst, largest = 0.0, 1e-300
+    for i in range(n):
+        a, x = more[w + i * n + i], more[u + n + i]
+        low, high = more[u + 2 * n + i], more[u + 3 * n + i]
+        if more[u + 4 * n + i] == SINGLE:
+            to = min(max(x - more[u + i] / a, low), high) if a > 0.0 else min(max(x, low), high)
+            worst = max(worst, change_box(more, w, u, n, i, to))
+        elif more[u + 4 * n + i] == FIRST_OF_DISC:
+            b = 0.5 * (more[w + i * n + i + 1] + more[w + (i + 1) * n + i])
+            c, y = more[w + (i + 1) * n + i + 1], more[u + n + i + 1]
+            ux, uy = more[u + i], more[u + i + 1]
+            if a > 0.0 and c > 0.0:
+                to = on_disc(a, b, c, ux, uy, x, y, high, False)
+                other = on_disc(a, b, c, ux, uy, x, y, high, True)
+            else:
+                to, other = min(max(x, -high), high), 0.0
+            worst = max(worst, change_box(more, w, u, n, i, to), change_box(more, w, u, n, i + 1, other))
+        largest = max(largest, abs(more[u + n + i]))
+    return worst / largest
+
+
+@uncounted
+def free_of_bounds(more: FloatArray, u: int, n: int, i: int) -> bool:
+    """Whether impulse i is inside of its bounds."""
+    x, high = more[u + n + i], more[u + 3 * n + i]
+    if more[u + 4 * n + i] == SINGLE:
+        return bool(more[u + 2 * n + i] < x < high)
+    y = more[u + n + i + 1] if more[u + 4 * n + i] == FIRST_OF_DISC else more[u + n + i - 1]
+    return bool(x * x + y * y < high * high * (1.0 - 1e-14))
+
+
+@uncounted
+def direct_boxes(more: FloatArray, w: int, u: int, n: int) -> None:
+    """Bring u to 0 on all rows inside of their bounds, these left out of account; then clamp."""
+    lu, step = w + n * n, u + 5 * n
+    for i in range(n):
+        inside = free_of_bounds(more, u, n, i)
+        more[step + i] = -more[u + i] if inside else 0.0
+        more[step + n + i] = 1.0 if inside else 0.0
+    for i in range(n):
+        for j in range(n):
+            both = more[step + n + i] > 0.0 and more[step + n + j] > 0.0
+            more[lu + i * n + j] = more[w + i * n + j] if both else 0.0
+        pivot = more[lu + i * n + i]
+        more[lu + i * n + i] = pivot * (1.0 + _REDUNDANT) if pivot > 0.0 else 1.0
+    for k in range(n):
+        pivot = more[lu + k * n + k]
+        if pivot == 0.0:
+            continue
+        for i in range(k + 1, n):
+            factor = more[lu + i * n + k] / pivot
+            if factor != 0.0:
+                for j in range(k + 1, n):
+                    more[lu + i * n + j] -= factor * more[lu + k * n + j]
+                more[step + i] -= factor * more[step + k]
+    for k in range(n - 1, -1, -1):
+        total = more[step + k]
+        for j in range(k + 1, n):
+            total -= more[lu + k * n + j] * more[step + j]
+        pivot = more[lu + k * n + k]
+        more[step + k] = total / pivot if pivot != 0.0 else 0.0
+    for i in range(n):
+        to = more[u + n + i] + more[step + i]
+        if math.isfinite(to):
+            change_box(more, w, u, n, i, min(max(to, more[u + 2 * n + i]), more[u + 3 * n + i]))
+
+
+@uncounted
+def solve_boxes(more: FloatArray, w: int, u: int, n: int) -> None:
+    """Impulses within their bounds, by sweeps and direct solutions."""
+    for turn in range(_ROUNDS):
+        worst = 1.0
+        for _ in range(_SWEEPS):
+            worst = sweep_boxes(more, w, u, n)
+            if worst <= _FINE:
+                return
+        if turn + 1 < _ROUNDS:
+            direct_boxes(more, w, u, n)
+
+
+@uncounted
+def apply_boxes(
+    link: IntArray, hinge: FloatArray, joints: int, n: int, span: IntArray, right: FloatArray, more: FloatArray
+) -> None:
+    """Add to the solution in `right` what the change of the bounded impulses does."""
+    size = span[UNKNOWNS] + span[ROWS_OF]
+    cols = STRIDE * span[DUAL_SIZE]
+    u = cols + (n + 1) * size + 2 * n * n
+    row = 0
+    for k in range(joints):
+        for r in range(rows_of(link, k)):
+            change = more[u + n + row] - hinge[k, LAM + r]
+            if change != 0.0:
+                for i in range(size):
+                    right[i] += change * more[cols + row * size + i]
+            row += 1
+    row = 0
+    for k in range(joints):
+        for r in range(rows_of(link, k)):
+            right[link[k, L_ROW] + r] = (more[u + n + row] - hinge[k, LAM + r]) / hinge[k, SCALE + r]
+            row += 1
+
+
+@uncounted
+def bound_impulses(
+    link: IntArray, hinge: FloatArray, local: FloatArray, node: IntArray, joints: int, n: int, h: float, fresh: bool,
+    span: IntArray, right: FloatArray, more: FloatArray,
+) -> None:  # fmt: skip
+    """Complete the solution in `right`, which is that without a change of the n boxed impulses."""
+    measure_boxes(link, hinge, local, node, joints, n, h, fresh, span, right, more)
+    w = STRIDE * span[DUAL_SIZE] + (n + 1) * (span[UNKNOWNS] + span[ROWS_OF])
+    solve_boxes(more, w, w + 2 * n * n, n)
+    apply_boxes(link, hinge, joints, n, span, right, more)
+
+
+@uncounted
+def leave_box(
+    link: IntArray, hinge: FloatArray, k: int, build: bool, whole: bool, band: int, matrix: FloatArray,
+    right: FloatArray,
+) -> None:  # fmt: skip
+    """Let the rows of joint k be known in the linear system, whose solution is to be without a change of them."""
+    for r in range(link[k, L_ROWS]):
+        row = link[k, L_ROW] + r
+        hinge[k, WEIGHT + r] = 0.0
+        right[row] = 0.0 if r < rows_of(link, k) else -hinge[k, LAM + r] / hinge[k, SCALE + r]
+        if build and whole:
+            matrix[row * (3 * band + 1) + band] = 1.0
