@@ -40,7 +40,7 @@ OTHERS = {
     "pip install eeca-pymunk": "pyproject.toml",
     'pip install -e ".[docs]"': ".ci/run",
     ".ci/site": ".ci/site",
-    "python .ci/clients": ".ci/clients",
+    ".ci/clients": ".ci/clients",
     'pip install "eeca-pymunk[video]"': "pyproject.toml",
 }
 # Where the short form of each comparison is run.

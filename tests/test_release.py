@@ -82,9 +82,12 @@ def test_source_archive_has_scenes_comparisons_and_tests(built: Path) -> None:
 
 def test_version_is_the_changelogs_and_the_citations() -> None:
     changes = (ROOT / "CHANGELOG.md").read_text()
-    newest = re.search(r"^## (\d\S*)", changes, flags=re.MULTILINE)
+    newest = re.search(r"^## \[(\d\S*)\] - \d{4}-\d\d-\d\d$", changes, flags=re.MULTILINE)
     assert newest is not None
     assert newest[1] == declared()
+    assert changes.count("\n## [Unreleased]\n") == 1
+    kinds = set(re.findall(r"^### (.*)$", changes, flags=re.MULTILINE))
+    assert kinds <= {"Added", "Changed", "Deprecated", "Removed", "Fixed", "Security"}
     assert f"\nversion: {declared()}\n" in (ROOT / "CITATION.cff").read_text()
 
 

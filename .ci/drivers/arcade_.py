@@ -1,4 +1,4 @@
-"""arcade's PymunkPhysicsEngine without a window: a hero runs, jumps and pushes crates on a floor of tiles; a platform."""
+"""arcade's PymunkPhysicsEngine without a window: a hero runs, jumps and pushes crates on tiles; a platform moves."""
 
 import os
 import sys

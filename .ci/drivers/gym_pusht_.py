@@ -1,4 +1,4 @@
-"""gym-pusht: 250 actions of a tip that circles through the T; then a reset with the same seed and the same again."""
+"""gym-pusht: 250 actions of a tip that is drawn through the T; then a reset with the same seed and the same again."""
 
 import sys
 
@@ -16,8 +16,7 @@ def episode():
     state, _ = env.reset(seed=3)
     goal = state[2:4]
     for k in range(250):
-        phase = 0.05 * k
-        action = goal + 120.0 * np.array([np.cos(phase), np.sin(phase)]) * (1.0 - 0.6 * min(1.0, k / 150))
+        action = goal + np.array([1.0, 0.3]) * (240.0 * min(1.0, k / 150) - 150.0)
         state, reward, *_ = env.step(np.clip(action, 0, 512))
     return state, reward
 

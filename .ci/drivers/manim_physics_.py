@@ -29,6 +29,7 @@ with tempconfig({"dry_run": True, "quality": "low_quality", "frame_rate": 60, "p
     scene = Falling()
     scene.render()
 tell({
-    "lowest y": min(t.body.position.y for t in scene.things), "mean y": sum(t.body.position.y for t in scene.things) / 9,
+    "lowest y": min(t.body.position.y for t in scene.things),
+    "mean y": sum(t.body.position.y for t in scene.things) / 9,
     "fastest at the end": max(t.body.velocity.length for t in scene.things),
 })  # fmt: skip

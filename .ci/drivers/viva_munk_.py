@@ -11,7 +11,7 @@ from viva_munk.core import build_core
 from viva_munk.processes.multibody import PymunkProcess, make_initial_state
 
 random.seed(1)
-np.random.seed(1)
+np.random.seed(1)  # noqa: NPY002 - what it draws from
 process = PymunkProcess({"env_size": 300.0, "jitter_per_second": 0.05, "barriers": []}, core=build_core())
 state = make_initial_state(12, 30, 300.0, seed=4)
 inputs = {"segment_cells": state["cells"], "bending_cells": {}, "circle_particles": state["particles"]}

@@ -1,6 +1,6 @@
-"""What a client's space does, in the client's own environment: `step` of every space timed, as it is or replaced by ours.
+"""What a client's spaces do, in the client's own environment: their `step` is timed, as it is or replaced by ours.
 
-A driver calls `watch(sys.argv)` before its client makes a space, plays, and calls `tell(values)` with numbers of its end.
+A driver calls `watch(sys.argv)` before its client makes a space, plays, and calls `tell` with numbers of the end.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ _steps: list[float] = []
 _uses: set[str] = set()
 _deepest = [0.0]
 _apart = [0.0]
-_EVERY = 10  # steps between two looks at overlaps
+_EVERY = 7  # steps between two looks at overlaps
 
 
 def watch(arguments: list[str]) -> None:

@@ -187,8 +187,8 @@ def test_bodies_of_infinite_moment_that_spin_count_for_nothing_infinite() -> Non
 
 
 def lifted_by(move: Callable[[pymunk.Body], None], sync: bool = True) -> tuple[pymunk.Body, pymunk.Body, float]:
-    """A ball of 2 kg that rests on a kinematic plate, which `move` changes before each of 40 steps; the ball, the plate,
-    and what came from outside (J)."""
+    """A ball of 2 kg that rests on a kinematic plate, which `move` changes before each of 40 steps; the ball, the
+    plate, and what came from outside (J)."""
     space = pymunk.Space()
     space.gravity = (0.0, -10.0)
     ball = pymunk.Body(2.0, pymunk.moment_for_circle(2.0, 0.0, 0.5))
@@ -212,7 +212,7 @@ def lifted_by(move: Callable[[pymunk.Body], None], sync: bool = True) -> tuple[p
 @pytest.mark.parametrize("sync", [True, False])
 def test_a_plate_that_is_put_higher_lifts_what_rests_on_it_by_work_from_outside(sync: bool) -> None:
     """A program that sets positions and not velocities: the ball is 40 times .05 higher, at rest; the work is m g h."""
-    ball, plate, external = lifted_by(lambda plate: setattr(plate, "position", plate.position + (0.0, 0.05)), sync)
+    ball, plate, external = lifted_by(lambda plate: setattr(plate, "position", (0.0, plate.position.y + 0.05)), sync)
     assert plate.position.y == pytest.approx(2.0)
     assert ball.position.y == pytest.approx(2.6, abs=1e-8)
     assert ball.velocity.length < 1e-9
@@ -220,6 +220,6 @@ def test_a_plate_that_is_put_higher_lifts_what_rests_on_it_by_work_from_outside(
 
 
 def test_a_plate_that_is_put_lower_lets_the_ball_fall_and_does_no_work() -> None:
-    ball, plate, external = lifted_by(lambda plate: setattr(plate, "position", plate.position - (0.0, 0.05)))
+    ball, plate, external = lifted_by(lambda plate: setattr(plate, "position", (0.0, plate.position.y - 0.05)))
     assert ball.position.y > plate.position.y + 0.6 - 1e-9
     assert external == pytest.approx(0.0, abs=1e-9)

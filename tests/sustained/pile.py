@@ -89,8 +89,8 @@ class Pile:
         while True:
             self.m = step_island(
                 self.pose, self.v, self.acc, self.im, self.ii, self.extent, self.extent, self.n, pairs, len(pairs),
-                shape, NO_RULE, link, vertex, work, h, 40, 0.0, 0.0, 0.0, self.keys, self.forces, self.count, self.stamp,
-                self.state, 0.0,
+                shape, NO_RULE, link, vertex, work, h, 40, 0.0, 0.0, 0.0, self.keys, self.forces, self.count,
+                self.stamp, self.state, 0.0,
                 self.A, self.B, self.rows, self.key, self.L, self.loss, vn, self.jump, self.ledger, self.out,
             )  # fmt: skip
             if self.m >= 0:
