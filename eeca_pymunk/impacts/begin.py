@@ -6,6 +6,7 @@ import math
 
 from ..arrays import IntArray
 from ..compiled import uncounted
+from ..geometry.sides import forget_sides
 from ..model.scene import Scene
 from .booking import flag_spans
 from .energy import total, unsteered
@@ -57,6 +58,7 @@ def begin(A: Scene, WALK: IntArray) -> None:
         if BODY[i].due < 0.0:
             STATE[i].version += 1
             if BODY[i].due == -math.inf:
+                forget_sides(A.LINK, A.WORK, A.SHAPE.shape[0], i)
                 A.MEMBER[i].put, COUNT.crammed = 1, 1
         else:
             BODY[i].due = max(BODY[i].due - last, 0.0)

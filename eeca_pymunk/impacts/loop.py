@@ -127,6 +127,15 @@ def with_mover(A: Scene, i: int, n: int) -> int:
     return n + 1
 
 
+@uncounted
+def cut_short(A: Scene, t: float) -> int:
+    """Let the step end at instant t: so nothing that it has no work left for is passed over."""
+    A.PAR.dt = t
+    A.COUNT.heap = 0
+    A.COUNT.unmet += 1
+    return DONE
+
+
 @kernel
 def follow(A: Scene, disks: int, may_rest: bool) -> int:
     """The events of the step, blocks and islands included. After a status other than DONE, make room and call again.
@@ -147,6 +156,8 @@ def follow(A: Scene, disks: int, may_rest: bool) -> int:
             return status
         t, i = A.PAR.now, COUNT.struck
         s, o = STATE[i].own, STATE[i].other
+        if COUNT.solved > COUNT.budget:
+            return cut_short(A, t)
         if COUNT.logged + COUNT.pushes + 8 * STATE.shape[0] > A.LOG.shape[0]:
             COUNT.heap = push(A.HEAP_TIME, A.HEAP_BODY, COUNT.heap, t, i)
             return LOG_FULL

@@ -11,6 +11,7 @@ import numpy as np
 from ..arrays import IntArray
 from ..compiled import kernel, uncounted
 from ..geometry.flight import norm
+from ..geometry.manifold import half_width
 from ..model.contacts import LASTED
 from ..model.scene import Scene
 from ..model.step import DONE, PUSHES_FULL
@@ -30,7 +31,7 @@ _SLOW = 1.0 / 64.0  # speed relative to |a| dt, below which that happens to elas
 BUSY_FOR = 8  # steps
 _HITS, _ELASTIC_HITS = 1, 64  # on an island in a step: a lossy one may be hit oftener the smaller it is
 _WORK = 64  # bodies times hits
-_DEEP = 0.2  # of the smaller shape, that a hit would go deep: it is taken up to four times as often
+_DEEP = 0.4  # of the widths of two shapes, that what is passed over may go deep within the step
 
 
 @uncounted
@@ -189,11 +190,12 @@ def ignored(A: Scene, a: int, b: int, t: float) -> bool:
     spent = worn(A, STATE[i].island) or worn(A, STATE[j].island)
     if hits < most and not spent:
         return False
-    if hits < 4 * most and not spent:
-        h = A.PAR.dt - t
-        speed = norm(A.BODY[i].vx - A.BODY[j].vx, A.BODY[i].vy - A.BODY[j].vy)
-        if speed * h > _DEEP * min(A.SHAPE[a].extent, A.SHAPE[b].extent):
-            return False
+    h = A.PAR.dt - t
+    speed = norm(A.BODY[i].vx - A.BODY[j].vx, A.BODY[i].vy - A.BODY[j].vy)
+    speed += abs(A.BODY[i].spin) * A.BODY[i].extent + abs(A.BODY[j].spin) * A.BODY[j].extent
+    thick = half_width(A.SHAPE, A.LINK, A.VERTEX, a) + half_width(A.SHAPE, A.LINK, A.VERTEX, b)
+    if (speed + A.PAR.pulled * h) * h > _DEEP * thick:
+        return False
     A.COUNT.ignored += 1
     if lossy:
         MINE = np.empty(A.BODY.shape[0], np.int64)

@@ -37,6 +37,7 @@ class Count(Record):
     stale: int  # events out of date
     limit: int  # impacts that a body may have in a step
     unmet: int  # what was not met
+    budget: int  # bodies of all solves in a step, beyond which it is cut short
     struck: int
     pushes: int  # rows of PUSHED in use
     solves: int
