@@ -60,8 +60,7 @@ def ordered_gap(
     else:
         p = place(LINK, VERTEX, a, x_a, y_a, angle_a, WORK[0])
         q = place(LINK, VERTEX, b, x_b, y_b, angle_b, WORK[1])
-        near = ROUND_OFF * CORNERS * (abs(x_a) + abs(y_a) + abs(x_b) + abs(y_b) + SHAPE[a].extent + SHAPE[b].extent)
-        d, nx, ny, x, y, _, _, _, _, _ = closest_on_side(SHAPE, LINK, WORK, WORK[0], p, WORK[1], q, a, b, near)
+        d, nx, ny, x, y, _, _, _, _, _ = closest_on_side(SHAPE, LINK, WORK, WORK[0], p, WORK[1], q, a, b)
     g = d - r_a - r_b
     away = r_a + 0.5 * g
     return g, nx, ny, x + away * nx, y + away * ny

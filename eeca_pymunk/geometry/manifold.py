@@ -92,9 +92,7 @@ def ordered_manifold(
     P, Q = WORK[0], WORK[1]
     p = place(LINK, VERTEX, a, x_a, y_a, angle_a, P)
     q = place(LINK, VERTEX, b, x_b, y_b, angle_b, Q)
-    d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q = closest_on_side(
-        SHAPE, LINK, WORK, P, p, Q, q, a, b, tolerance
-    )
+    d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q = closest_on_side(SHAPE, LINK, WORK, P, p, Q, q, a, b)
     g = d - r_a - r_b
     if g > reach:
         return 0

@@ -5,7 +5,8 @@ far apart, 0, and of segments that have come to cross by round-off the nearer wa
 segments remember a normal m from a to b, in the memory of sides, WORK[2]: rows (1 + a k + b, m_x, m_y, depth) for the
 shapes a < b of k. It holds
 
-* for cores that touch, up to the tolerance of the geometry, and
+* for cores that touch, up to 1e-4 of the smaller one (at the common end of two walls a third segment that lies in one
+  of them would else slip between them), and
 * for contacts that forces hold (`depth` > 0) as far as they may have come through one another: a normal against m is
   the wrong one up to that distance (length), and the gap is negative.
 
@@ -24,7 +25,8 @@ from .convex import closest
 
 SIDES = 2  # of WORK
 _PROBES = 16  # rows that a pair may stand in
-_AGAINST = -0.1  # cosine of normals, below which one is on the other side
+_AGAINST, _ASIDE = -0.1, 0.7  # cosines of normals, below which one is on the other side; is not m, of cores that touch
+_TOUCH = 1e-4  # of the smaller shape
 _HELD = 0.1  # of the smaller shape, by which contacts that forces hold may have come through one another
 _SCATTER = 40503
 
@@ -63,6 +65,12 @@ def note_side(
 
 
 @uncounted
+def near_side(SHAPE: Rows[Shape], a: int, b: int) -> float:
+    """Length up to which cores touch, so that the memory tells their side."""
+    return _TOUCH * min(SHAPE[a].extent, SHAPE[b].extent)
+
+
+@uncounted
 def known_side(SHAPE: Rows[Shape], LINK: Rows[Link], WORK: FloatArray, a: int, b: int) -> bool:
     """Whether the pair a < b of segments has a remembered normal."""
     key = a * SHAPE.shape[0] + b
@@ -98,17 +106,19 @@ def axis(P: FloatArray, Q: FloatArray, sign: float, mx: float, my: float) -> tup
 @uncounted
 def closest_on_side(
     SHAPE: Rows[Shape], LINK: Rows[Link], WORK: FloatArray, P: FloatArray, p: int, Q: FloatArray, q: int,
-    a: int, b: int, near: float,
+    a: int, b: int,
 ) -> tuple[float, float, float, float, float, bool, int, float, int, float]:  # fmt: skip
-    """`closest` of the cores P and Q of shapes a < b; of segments on the side that the pair remembers, if they are no
-    farther than `near` (length), or what it has come through by, on the other one."""
+    """`closest` of the cores P and Q of shapes a < b; of segments that touch, or have come through one another, on the
+    side that the pair remembers."""
     d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q = closest(P, p, Q, q)
     if not remembers(LINK, WORK, a, b):
         return d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q
     key = a * SHAPE.shape[0] + b
     row = side_row(WORK, key)
     mx, my = WORK[SIDES, row, 1], WORK[SIDES, row, 2]
-    if WORK[SIDES, row, 0] != key + 1.0 or nx * mx + ny * my >= _AGAINST or d > max(near, WORK[SIDES, row, 3]):
+    along, near = nx * mx + ny * my, near_side(SHAPE, a, b)
+    right = along >= _AGAINST and (along >= _ASIDE or d > near)
+    if WORK[SIDES, row, 0] != key + 1.0 or right or d > max(near, WORK[SIDES, row, 3]):
         return d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q
     apart_p, edge_p, vertex_q = axis(P, Q, 1.0, mx, my)
     apart_q, edge_q, vertex_p = axis(Q, P, -1.0, mx, my)

@@ -25,7 +25,8 @@ _STICKS = 1e-6  # relative to the friction there can be, and to the slip, below 
 _OF_CROWD, _AGAIN = 24, 12  # sweeps of a crowd; of one that was hit in this step
 _WAY, _ANGLE = 0.5, 0.5  # of the smaller shape, and rad: how far bodies of a contact go about one another in a span
 _DEPTH, _DEEP = 0.05, 0.1  # of the smaller shape, and of both widths: how much deeper a contact may be after a span;
-_FLAT = 0.1  # at least this part of the first
+_FLAT = 1e-4  # at least this of the smaller shape
+FARTHER = 1.5  # how many times as far as they should bodies may go in a span
 _RATTLES = 1e-3  # relative to that friction, below which slip is no slide where contacts that bear rattle as fast
 
 
@@ -168,8 +169,8 @@ def strayed(
     P: IntArray, Q: IntArray, ROWS: Rows[Row], KEY: IntArray, V: FloatArray, VN: FloatArray, SHAPE: Rows[Shape],
     LINK: Rows[Link], VERTEX: FloatArray, m: int, h: float,
 ) -> float:  # fmt: skip
-    """How many times as far as in `near_span` the bodies of m contacts go in a span h that was solved; or how many times
-    too long it is for the deepest contact, which is to land, with no speed left, after h = 2 g / |u + u+|."""
+    """How many times as far as in `near_span` the bodies of m contacts go in a span h that was solved; or how many
+    times too long it is for the deepest contact, which is to land, with no speed left, after h = 2 g / |u + u+|."""
     far, shapes = 0.0, SHAPE.shape[0]
     for z in range(m):
         pair = KEY[z] >> 1
@@ -182,10 +183,12 @@ def strayed(
             turn = max(abs(V[p, 2] + VN[p, 2]), abs(V[q, 2] + VN[q, 2]))
             far = max(far, 0.5 * h * turn / _ANGLE)
         closing = -0.5 * h * (ROWS[z].un + normal_rate(P, Q, ROWS, VN, z))
-        if closing > _FLAT * _DEPTH * small:
+        if closing > _FLAT * small:
             thick = half_width(SHAPE, LINK, VERTEX, a) + half_width(SHAPE, LINK, VERTEX, b)
-            deep = max(min(_DEPTH * small, _DEEP * thick), _FLAT * _DEPTH * small)
-            far = max(far, closing / (max(ROWS[z].gap, 0.0) + deep))
+            deep = max(min(_DEPTH * small, _DEEP * thick), _FLAT * small)
+            room = max(ROWS[z].gap, 0.0)
+            if closing > room + FARTHER * deep:
+                far = max(far, max(closing / (room + deep), 1.01 * FARTHER))
     return far
 
 

@@ -24,6 +24,7 @@ from ..sustained.step import POLISHES as POLISHES_OF
 from ..sustained.step import SWEEPS as SWEEPS_OF
 from .calm import calm, whirls
 from .coming import (
+    FARTHER,
     PARTS,
     before_end,
     hurried,
@@ -39,8 +40,8 @@ from .islands import lossy, members
 from .still import halt
 
 _SWEEPS = 40  # of an island that moves
-_TRIES, _MORE = 8, 1.5  # attempts at a span; how much farther than they should bodies may go in it
-FARTHER = -1
+_TRIES = 12  # attempts at a span
+AGAIN = -1  # status of a span that is to be shorter
 
 
 class Local(NamedTuple):
@@ -166,7 +167,7 @@ def solve(A: Scene, root: int, t: float) -> int:
     longest = A.PAR.dt - t
     for attempt in range(_TRIES):
         status, far = open_span(A, root, t, longest, attempt + 1 == _TRIES or A.COUNT.together > 0)
-        if status != FARTHER:
+        if status != AGAIN:
             return status
         longest = far
     return DONE
@@ -174,7 +175,7 @@ def solve(A: Scene, root: int, t: float) -> int:
 
 @kernel
 def open_span(A: Scene, root: int, t: float, longest: float, last: bool) -> tuple[int, float]:
-    """`solve`, of a span no longer than `longest`. FARTHER, with nothing done, for one that is to be shorter, and how
+    """`solve`, of a span no longer than `longest`. AGAIN, with nothing done, for one that is to be shorter, and how
     long; not if it is the `last` attempt."""
     BODY, STATE, MEMBER, COUNT = A.BODY, A.STATE, A.MEMBER, A.COUNT
     n = MEMBER[root].bodies
@@ -228,9 +229,9 @@ def open_span(A: Scene, root: int, t: float, longest: float, last: bool) -> tupl
                 A.RESTING[MINE[0]], 0.0, P, Q, ROWS, KEY, L, LOSS, VN, JUMP, BOOK, OUT,
             )  # fmt: skip
         far = 0.0 if last or OUT[STOOD] > 0.0 else strayed(P, Q, ROWS, KEY, V, VN, A.SHAPE, A.LINK, A.VERTEX, m, h)
-        if far > _MORE:
+        if far > FARTHER:
             A.COUNT.solved += n
-            return FARTHER, h / far
+            return AGAIN, h / far
         if abs(OUT[LOCK_OF] - 1.0) > abs(A.PAR.lock - 1.0):
             A.PAR.lock = OUT[LOCK_OF]
     COUNT.solves += 1

@@ -25,7 +25,7 @@ from ..compiled.records import Rows
 from ..geometry.convex import place
 from ..geometry.flight import pose, rate
 from ..geometry.gap import touching
-from ..geometry.sides import closest_on_side, known_side, note_side, remembers
+from ..geometry.sides import closest_on_side, known_side, near_side, note_side, remembers
 from ..model.bodies import Body
 from ..model.shapes import Link, Shape
 from .apart import carried_circles_meet, circles_meet
@@ -155,7 +155,7 @@ def leaving(BODY: Rows[Body], i: int, j: int, t: float, nx: float, ny: float, px
 @uncounted
 def begin_side(
     BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, WORK: FloatArray, a: int, b: int,
-    start: float, tolerance: float,
+    start: float,
 ) -> None:  # fmt: skip
     """Note on which side of each other segments a < b begin. Those that were put flush on one another are where they
     part as they move, or rest where they are pressed together."""
@@ -165,9 +165,9 @@ def begin_side(
     p = place(LINK, VERTEX, a, x_a, y_a, angle_a, WORK[0])
     q = place(LINK, VERTEX, b, x_b, y_b, angle_b, WORK[1])
     d, nx, ny, px, py, _, _, _, _, _ = closest_on_side(
-        SHAPE, LINK, WORK, WORK[0], p, WORK[1], q, a, b, tolerance
+        SHAPE, LINK, WORK, WORK[0], p, WORK[1], q, a, b
     )  # fmt: skip
-    if d > tolerance:
+    if d > near_side(SHAPE, a, b):
         note_side(SHAPE, LINK, WORK, a, b, nx, ny, False)
     elif not known_side(SHAPE, LINK, WORK, a, b):
         sign = -1.0 if leaving(BODY, i, j, start, nx, ny, px, py) < 0.0 else 1.0
@@ -185,7 +185,8 @@ def general(
     meet then, shapes that touch and part do not.
 
     Args:
-        horizon: finite instant; lower bounds are no earlier, but for what lasts more than 1000 looks.
+        horizon: finite instant; lower bounds are no earlier. Of what takes more than 1000 looks at a sixteenth of the
+            time until then the rest is given up.
         held: speed up to which points that touch stay where they are, as forces hold them; below 0 for none.
     """
     if a > b:
@@ -207,18 +208,20 @@ def general(
     extent = SHAPE[a].rounding + SHAPE[b].rounding
     P, Q = WORK[0], WORK[1]
     if remembers(LINK, WORK, a, b):
-        begin_side(BODY, SHAPE, LINK, VERTEX, WORK, a, b, start, tolerance)
-    for _ in range(ADVANCES):
+        begin_side(BODY, SHAPE, LINK, VERTEX, WORK, a, b, start)
+    looks, mark = 0, s
+    while looks < ADVANCES:
+        looks += 1
+        if s > mark + STRIDE * left:  # what turns fast is followed for many turns
+            looks, mark = 0, s
         x_a, y_a, angle_a = pose(BODY, i, start + s)
         x_b, y_b, angle_b = pose(BODY, j, start + s)
         ux_a, uy_a, w_a = rate(BODY, i, start + s)
         ux_b, uy_b, w_b = rate(BODY, j, start + s)
         p = place(LINK, VERTEX, a, x_a, y_a, angle_a, P)
         q = place(LINK, VERTEX, b, x_b, y_b, angle_b, Q)
-        d, nx, ny, px, py, _, edge_a, apart_a, edge_b, apart_b = closest_on_side(
-            SHAPE, LINK, WORK, P, p, Q, q, a, b, tolerance
-        )
-        if d > tolerance:
+        d, nx, ny, px, py, _, edge_a, apart_a, edge_b, apart_b = closest_on_side(SHAPE, LINK, WORK, P, p, Q, q, a, b)
+        if d > near_side(SHAPE, a, b):
             note_side(SHAPE, LINK, WORK, a, b, nx, ny, False)
         safe, near, met = fixed_axis(
             P, p, Q, q, nx, ny, x_a, y_a, ux_a, uy_a, w_a, x_b, y_b, ux_b, uy_b, w_b, extent, bend, tolerance, held
@@ -238,12 +241,11 @@ def general(
             back = pressed(BODY, i, j, start + s, nx, ny, px + SHAPE[a].rounding * nx, py + SHAPE[a].rounding * ny)
             if back <= STRIDE * left:
                 return start + s + back, True
-        # Shapes that touch without closing would be followed in steps that shrink with their rate.
-        if not met and near <= tolerance:
+            # Shapes that touch without closing would be followed in steps that shrink with their rate.
             safe = max(safe, STRIDE * left)
         s += safe
         if met:
             return start + s, True
         if s > left:
             return horizon, False
-    return start + max(s, left / ADVANCES), False
+    return horizon, False
