@@ -17,7 +17,7 @@ from .energy.ledger import Ledger
 from .energy.ledger_trace import LedgerTrace
 from .errors import UnsupportedFeature
 from .recording import Recording, record
-from .report import Contacts, StepReport
+from .report import Contacts, StepReport, Unmet
 from .space.measure import measure
 from .stepper import Stepper
 from .sweep import SweepError, sweep
@@ -40,6 +40,7 @@ __all__ = [
     "Stepper",
     "SweepError",
     "TimeOfImpact",
+    "Unmet",
     "UnsupportedFeature",
     "measure",
     "record",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Protocol
 
 from .arrays import FloatArray, IntArray
@@ -10,7 +11,7 @@ from .closures.time_of_impact import TimeOfImpact
 from .impacts.scene import EventLoop
 from .jointed.scene import JointedLoop
 from .packed_stepper import PackedStepper, busy
-from .report import Details
+from .report import Details, Unmet, of_missed
 from .saved import Saved
 from .space.world import World
 
@@ -128,6 +129,11 @@ class EECA(PackedStepper):
 
     def book(self) -> FloatArray | None:
         return self._method.book
+
+    def unmet(self, world: World) -> tuple[Unmet, ...] | Callable[[], tuple[Unmet, ...]]:
+        if not isinstance(self._method, EventLoop):
+            return ()
+        return partial(of_missed, self._method.missed, world.bodies.items, world.owner)
 
     def outcome(self) -> tuple[float, bool, int]:
         return self._method.lock, self._method.converged, self._method.iterations

@@ -12,7 +12,7 @@ from .arrays import FloatArray
 from .energy.ledger import AFTER, DAMPED
 from .errors import NotFiniteError
 from .packed_space import TOO_FAR, PackedSpace
-from .report import Details, StepReport
+from .report import Details, StepReport, Unmet
 from .space.bodies import ANGULAR_VELOCITY, VELOCITY
 from .space.hooks import Hooks, Rehearsal
 from .space.sleeping import Sleep
@@ -77,6 +77,10 @@ class PackedStepper(PackedSpace):
         """Scale of the energy lock of the last step that was farthest from 1, whether all tolerances were met, and the
         iterations of the solver."""
         return 1.0, True, 0
+
+    def unmet(self, world: World) -> tuple[Unmet, ...] | Callable[[], tuple[Unmet, ...]]:
+        """Which budgets and tolerances the last step did not meet, or what makes that."""
+        return ()
 
     def step(self, dt: float) -> StepReport:
         if _busy and self.space in _busy:
@@ -264,4 +268,6 @@ class PackedStepper(PackedSpace):
         if not status & EVENTS:
             return StepReport(self.time, world.empty, book=book)
         lock, converged, iterations = self.outcome()
-        return StepReport(self.time, self.details(world, dt), iterations, lock=lock, converged=converged, book=book)
+        unmet = () if converged else self.unmet(world)
+        details = self.details(world, dt)
+        return StepReport(self.time, details, iterations, lock=lock, converged=converged, book=book, unmet=unmet)

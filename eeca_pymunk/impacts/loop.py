@@ -9,7 +9,7 @@ from __future__ import annotations
 from ..compiled import kernel, merged, uncounted
 from ..model.bodies import LEAVE, RENEW
 from ..model.scene import Scene
-from ..model.step import BLOCK_DUE, DONE, JOINTS_DUE, LOG_FULL, POOL_FULL
+from ..model.step import BLOCK_DUE, DONE, HITS, IMPACTS, JOINTS_DUE, LOG_FULL, POOL_FULL, SOLVES
 from ..pairs.grid import renew
 from ..pairs.lists import mark_pair
 from .block import arrive
@@ -20,7 +20,8 @@ from .forecast import AHEAD, has_left
 from .heap import pop, push, sweep_out
 from .islands import members
 from .lone import carrier, go_on
-from .settle import comes_to_rest, ignored
+from .missed import miss
+from .settle import comes_to_rest, hits_of, ignored, most_hits
 from .spans import solve
 from .strike import alone, strike_disk
 
@@ -97,7 +98,7 @@ def run(A: Scene, disks: int, may_rest: bool) -> int:
             one = i
             continue
         if give_up(A, i, j):
-            COUNT.unmet += 1
+            miss(A, IMPACTS, s, o, float(max(STATE[i].events, STATE[j].events)), float(COUNT.limit))
             mark_pair(A.LIST, A.POOL, A.FLAG, moving, s, o, 1)
             one = i
             continue
@@ -130,9 +131,10 @@ def with_mover(A: Scene, i: int, n: int) -> int:
 @uncounted
 def cut_short(A: Scene, t: float) -> int:
     """Let the step end at instant t: so nothing that it has no work left for is passed over."""
+    a, b = A.STATE[A.COUNT.struck].own, A.STATE[A.COUNT.struck].other
+    miss(A, SOLVES, a, b, float(A.COUNT.solved), float(A.COUNT.budget))
     A.PAR.dt = t
     A.COUNT.heap = 0
-    A.COUNT.unmet += 1
     return DONE
 
 
@@ -172,7 +174,7 @@ def follow(A: Scene, disks: int, may_rest: bool) -> int:
             continue
         j = A.LINK[o].owner
         if (STATE[i].island >= 0 or STATE[j].island >= 0) and ignored(A, s, o, t):
-            COUNT.unmet += 1
+            miss(A, HITS, s, o, float(hits_of(A, s, o)), float(most_hits(A, s, o)))
             mark_pair(A.LIST, A.POOL, A.FLAG, moving, s, o, 1)
             forecast(A, disks, moving, i, t, end, False)
             continue

@@ -17,7 +17,7 @@ from ..model.bodies import CHECK, Body, Member, Next, Rest
 from ..model.contacts import Impulse, Pair, Pushed
 from ..model.scene import Scene
 from ..model.shapes import Link, Shape
-from ..model.step import Count, Step
+from ..model.step import Count, Missed, Step
 from ..pairs.setup import near_lists, rebuilt
 from ..report import Details, of_events
 from ..sustained.memory import FORCE_COLUMNS, forget
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 RULE_COLUMNS = 6
 _BOOK = slice((Step.TYPE.names or ()).index("restitution"), (Step.TYPE.names or ()).index("after") + 1)
 UNBOUND: tuple[tuple[AnyArray | None, ...], Callable[..., int]] = (None,) * 4, int
+_MISSED = 32  # of a step, that are told
 _SOLVES = 512  # of every body in a step, on the average, from which it is cut short
 _SIDES = 64  # pairs of every segment that moves, whose sides are remembered
 _CONTACTS = 256  # of islands, that there is room for at first; powers of 2
@@ -94,7 +95,7 @@ class EventLoop:
             rows(Impulse, 4 * n + 64), BEGAN, PLACE, BLOCK, PULL, MEMBER, RESTING,
             rows(Pair, room), rows(Pushed, room),
             np.full(4 * room, -1, np.int64), np.zeros((4 * room, FORCE_COLUMNS)),
-            _work(LINK, moving, vertices), row(Step), row(Count),
+            _work(LINK, moving, vertices), rows(Missed, _MISSED), row(Step), row(Count),
         )  # fmt: skip
         self.near = near
         self.scene.COUNT.limit, self.scene.COUNT.disks = limit, disks
@@ -210,6 +211,11 @@ class EventLoop:
     def converged(self) -> bool:
         """Whether the last step left nothing undone."""
         return bool(self.scene.COUNT.unmet == 0)
+
+    @property
+    def missed(self) -> Rows[Missed]:
+        """(m,) what the last step has not met, the first of it; a copy."""
+        return self.scene.MISSED[: self.scene.COUNT.unmet].copy()
 
     @property
     def iterations(self) -> int:

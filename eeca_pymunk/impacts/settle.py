@@ -176,17 +176,36 @@ def comes_to_rest(A: Scene, a: int, b: int, t: float) -> bool:
     return A.PAR.pulled > 0.0 and rests(A, a, b, t, False)
 
 
+@uncounted
+def hits_of(A: Scene, a: int, b: int) -> int:
+    """How often the islands of shapes a and b were hit in this step."""
+    hits = 0
+    for s in (a, b):
+        root = A.STATE[A.LINK[s].owner].island
+        if root >= 0:
+            hits = max(hits, A.MEMBER[root].hits)
+    return hits
+
+
+@uncounted
+def most_hits(A: Scene, a: int, b: int) -> int:
+    """How often they may be: lossy islands the oftener the smaller they are."""
+    if law(A.SHAPE, A.RULE, a, b)[0] >= 1.0:
+        return _ELASTIC_HITS
+    size = 1
+    for s in (a, b):
+        root = A.STATE[A.LINK[s].owner].island
+        if root >= 0:
+            size = max(size, A.MEMBER[root].bodies)
+    return max(_HITS, _WORK // size)
+
+
 @kernel
 def ignored(A: Scene, a: int, b: int, t: float) -> bool:
     """Whether a hit on an island at instant t is beyond its budget; the island then is busy for some steps."""
-    STATE, MEMBER = A.STATE, A.MEMBER
+    STATE = A.STATE
     i, j = A.LINK[a].owner, A.LINK[b].owner
-    hits, size, lossy = 0, 1, law(A.SHAPE, A.RULE, a, b)[0] < 1.0
-    for k in (i, j):
-        root = STATE[k].island
-        if root >= 0:
-            hits, size = max(hits, MEMBER[root].hits), max(size, MEMBER[root].bodies)
-    most = max(_HITS, _WORK // size) if lossy else _ELASTIC_HITS
+    hits, most, lossy = hits_of(A, a, b), most_hits(A, a, b), law(A.SHAPE, A.RULE, a, b)[0] < 1.0
     spent = worn(A, STATE[i].island) or worn(A, STATE[j].island)
     if hits < most and not spent:
         return False
