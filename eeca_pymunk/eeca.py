@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Protocol
+from weakref import ref
 
 from .arrays import FloatArray, IntArray
 from .closures.time_of_impact import TimeOfImpact
@@ -13,6 +14,7 @@ from .jointed.scene import JointedLoop
 from .packed_stepper import PackedStepper, busy
 from .report import Details, Unmet, of_missed
 from .saved import Saved
+from .space.arbiters import Touches, show_contacts, touches
 from .space.world import World
 
 if TYPE_CHECKING:
@@ -76,11 +78,13 @@ class EECA(PackedStepper):
     ) -> None:
         self.closure: Closure = TimeOfImpact() if closure is None else closure
         self._saved: Saved | None = None  # in a copy, until its first step
+        self._shown: tuple[float, World | None, Touches | None] = -1.0, None, None
         super().__init__(space, sync=sync, ignore=ignore)
 
     def __getstate__(self) -> dict[str, object]:
         state = super().__getstate__()
         state.pop("_method", None)
+        state["_shown"] = -1.0, None, None
         world = self._world
         if world is not None and isinstance(self._method, EventLoop):
             state["_saved"] = Saved(world, self._method)
@@ -91,6 +95,8 @@ class EECA(PackedStepper):
         self._saved = None
 
     def prepare(self, world: World) -> None:
+        myself = ref(self)
+        show_contacts(self.space, lambda: None if (me := myself()) is None else me._touches())
         saved, self._saved = self._saved, None
         if saved is not None and saved.resume(world):
             self._method: Method = saved.method
@@ -101,6 +107,16 @@ class EECA(PackedStepper):
             world.joints.planned()
             world.part()
             self._method.rule(world.told())
+
+    def _touches(self) -> Touches | None:
+        """Who touched in the last step, for pymunk's arbiters; None if that was no step of ours."""
+        world = self._world
+        if world is None or not isinstance(self._method, EventLoop) or not self._sync.is_ours():
+            return None
+        step = self._method.scene.PAR.stamp
+        if self._shown[0] != step or self._shown[1] is not world:
+            self._shown = step, world, Touches(touches(self._method.events, world.shapes))
+        return self._shown[2]
 
     def _adjust(self, world: World, dt: float) -> None:
         """Tell the method what joints and collision handlers have to say about this step."""

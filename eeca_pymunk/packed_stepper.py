@@ -150,6 +150,8 @@ class PackedStepper(PackedSpace):
                 world.reset_forces()
             if not self.sync:
                 world.scatter(status)
+                if self._sync.stamp < 0:
+                    self._sync.note()
             elif self._sync.reindexes(dt, bool(status & EVENTS)):
                 world.scatter(status)
                 self._sync.reindex()
@@ -171,6 +173,7 @@ class PackedStepper(PackedSpace):
         with busy(self.space):
             world, report, rehearsal = self._take_hooked(world, dt)
         if rehearsal is not None:
+            self._sync.note()
             rehearsal.finish(world.bodies)
         elif self.sync or (world.joints is not None and world.joints.calling):
             self._sync.call_back()

@@ -16,7 +16,7 @@ import pymunk
 from pymunk import batch
 
 from ..arrays import FloatArray, IntArray
-from . import private_joints, private_sleep
+from . import private_arbiters, private_joints, private_sleep
 
 try:
     from pymunk._chipmunk_cffi import ffi, lib
@@ -33,14 +33,14 @@ _OF_LIBRARY = (
     "cpSpaceStep", "cpHastySpaceStep", "cpSpaceEachBody", "cpSpaceGetGravity", "cpSpaceGetDamping",
     "cpSpaceGetSleepTimeThreshold", "cpSpaceSetSleepTimeThreshold", "cpSpaceGetShapeIDCounter", "cpSpaceGetTimestamp",
     "pmSpaceBodyGetIteratorFuncBatched", "pmSpaceBodySetIteratorFuncBatched",
-    *private_joints.OF_LIBRARY, *private_sleep.OF_LIBRARY,
+    *private_joints.OF_LIBRARY, *private_sleep.OF_LIBRARY, *private_arbiters.OF_LIBRARY,
 )  # fmt: skip
 _OF_SPACE = (
     "_space", "_bodies", "_shapes", "_constraints", "_handlers", "_get_arbiters", "_locked", "_add_later",
     "_remove_later", "_removed_shapes", "_post_step_callbacks",
 )  # fmt: skip
 _OF_BODY = ("_velocity_func", "_position_func")
-_TYPES = ("pmBatchedData *", "pmFloatArray *", "pmIntArray *")
+_TYPES = ("pmBatchedData *", "pmFloatArray *", "pmIntArray *", *private_arbiters.TYPES)
 
 
 def missing() -> list[str]:
@@ -81,6 +81,11 @@ def handlers(space: pymunk.Space) -> list[Any]:
 def arbiters(space: pymunk.Space) -> list[pymunk.Arbiter]:
     """All arbiters that pymunk keeps: of its last step, and of as many before as `collision_persistence` says."""
     return [pymunk.Arbiter(one, space) for one in space._get_arbiters()]
+
+
+def raw_arbiters(space: pymunk.Space) -> list[Any]:
+    """`arbiters` as Chipmunk has them."""
+    return list(space._get_arbiters())
 
 
 def touching(space: pymunk.Space) -> list[tuple[pymunk.Body, pymunk.Body]]:
