@@ -26,6 +26,7 @@ from . import private, private_joints
 from .bodies import ANGLE, ANGULAR_VELOCITY, POSITION, VELOCITY, Bodies
 from .joints import JointRows
 from .shapes import Rules
+from .sync import forget_corrections
 
 _PRESS = 1e-7  # part of its height by which a body is pressed on what carries it, in a rehearsal
 
@@ -235,6 +236,7 @@ class Rehearsal:
     def finish(self, bodies: Bodies) -> None:
         """What pymunk does when its step has ended: shapes where the bodies are, additions, removals, callbacks."""
         space = self.space
+        forget_corrections(space)
         for body in bodies.items:
             if body.body_type != pymunk.Body.STATIC:
                 space.reindex_shapes_for_body(body)

@@ -64,7 +64,7 @@ def make_arbiter(
     a: pymunk.Shape, b: pymunk.Shape, normal: tuple[float, float], points: Sequence[tuple[float, float]],
     impulse: tuple[float, float],
 ) -> Any:  # fmt: skip
-    """An arbiter of two shapes that touched at these points (1 or 2) with this impulse on b. It is no part of a space."""
+    """An arbiter of two shapes that touched at these points (1 or 2) with this impulse on b; no part of a space."""
     nx, ny = normal
     contacts, arbiter = ffi.new("cpContact[]", len(points)), ffi.new("cpArbiter *")
     (xa, ya, ma, ia), (xb, yb, mb, ib) = _centre(a), _centre(b)

@@ -64,6 +64,14 @@ def rest_step(
         space.iterations, space.collision_bias = iterations, bias
 
 
+def forget_corrections(space: pymunk.Space) -> None:
+    """Let pymunk's next step not apply the corrections of overlaps that its last one has left: it adds these velocities
+    to those of bodies when it moves them, once, and a move of no time moves nothing."""
+    for body in space.bodies:
+        if body.body_type == pymunk.Body.DYNAMIC:
+            pymunk.Body.update_position(body, 0.0)
+
+
 def _awake(items: list[pymunk.Constraint]) -> list[pymunk.Constraint]:
     return [item for item in items if not (item.a.is_sleeping or item.b.is_sleeping)]
 
@@ -110,7 +118,10 @@ class Sync:
 
     def rest(self, dt: float, joints: JointRows | None = None) -> None:
         """A rest step; all bodies must have velocity 0, and may have another of round-off if there are joints."""
-        rest_step(self.space, dt, joints, forget=self._timestamp() != self._renewed, asleep=self._asleep)
+        native = self._timestamp() != self._renewed
+        if native:
+            forget_corrections(self.space)
+        rest_step(self.space, dt, joints, forget=native, asleep=self._asleep)
         self._renewed, self._dt, self._left = self._timestamp(), dt, _RENEW
         self.stamp = self._renewed
         if self._moving is not None:
