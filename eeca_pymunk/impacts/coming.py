@@ -26,6 +26,7 @@ _OF_CROWD, _AGAIN = 24, 12  # sweeps of a crowd; of one that was hit in this ste
 _WAY, _ANGLE = 0.5, 0.5  # of the smaller shape, and rad: how far bodies of a contact go about one another in a span
 _DEPTH, _DEEP = 0.05, 0.1  # of the smaller shape, and of both widths: how much deeper a contact may be after a span;
 _FLAT = 1e-4  # at least this of the smaller shape
+_AS_DEEP = 0.03  # part of that by which it may be where it is as deep already
 FARTHER = 1.5  # how many times as far as they should bodies may go in a span
 _RATTLES = 1e-3  # relative to that friction, below which slip is no slide where contacts that bear rattle as fast
 
@@ -186,9 +187,12 @@ def strayed(
         if closing > _FLAT * small:
             thick = half_width(SHAPE, LINK, VERTEX, a) + half_width(SHAPE, LINK, VERTEX, b)
             deep = max(min(_DEPTH * small, _DEEP * thick), _FLAT * small)
-            room = max(ROWS[z].gap, 0.0)
-            if closing > room + FARTHER * deep:
-                far = max(far, max(closing / (room + deep), 1.01 * FARTHER))
+            # What is as deep already is to go hardly deeper, where few are solved again for it.
+            room = max(ROWS[z].gap, 0.0) + deep
+            if m <= _FEW:
+                room = max(ROWS[z].gap + deep, _AS_DEEP * deep)
+            if closing > room + 0.5 * min(deep, room):
+                far = max(far, max(closing / room, 1.01 * FARTHER))
     return far
 
 

@@ -25,7 +25,7 @@ from .settle import comes_to_rest, hits_of, ignored, most_hits
 from .spans import solve
 from .strike import alone, strike_disk
 
-_SQUEEZED = 50  # impacts of a body in a step, from which those with a kinematic one are left out: walls may close in
+_SQUEEZED = 50  # impacts of a body in a step, from which those with a kinematic one are left out where walls close in
 
 
 @uncounted
@@ -41,6 +41,8 @@ def give_up(A: Scene, i: int, j: int) -> bool:
     limit = A.COUNT.limit
     if A.STATE[i].events >= limit or A.STATE[j].events >= limit:
         return True
+    if A.COUNT.closing == 0:
+        return False
     ground = A.BODY.shape[0] - 1
     carried = (A.BODY[i].inv_mass == 0.0 and i != ground) or (A.BODY[j].inv_mass == 0.0 and j != ground)
     return carried and max(A.STATE[i].events, A.STATE[j].events) >= _SQUEEZED

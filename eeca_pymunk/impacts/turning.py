@@ -31,6 +31,8 @@ from ..model.shapes import Link, Shape
 from .apart import carried_circles_meet, circles_meet
 from .roots import ADVANCES, STRIDE, flat
 
+_THROUGH = 1e8  # tolerances of touching that a point may come through before it is looked at again
+
 
 @uncounted
 def first_close(
@@ -241,8 +243,6 @@ def general(
             back = pressed(BODY, i, j, start + s, nx, ny, px + SHAPE[a].rounding * nx, py + SHAPE[a].rounding * ny)
             if back <= STRIDE * left:
                 return start + s + back, True
-            # Shapes that touch without closing would be followed in steps that shrink with their rate.
-            safe = max(safe, STRIDE * left)
         s += safe
         if met:
             return start + s, True

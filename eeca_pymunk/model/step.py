@@ -37,6 +37,7 @@ class Count(Record):
     stale: int  # events out of date
     limit: int  # impacts that a body may have in a step
     unmet: int  # what was not met
+    closing: int  # 1 where bodies that impulses do not move may move relative to one another, and squeeze others
     budget: int  # bodies of all solves in a step, beyond which it is cut short
     struck: int
     pushes: int  # rows of PUSHED in use

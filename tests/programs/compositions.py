@@ -49,10 +49,12 @@ class Composition:
 
     Args:
         joints: whether bodies are joined, some by motors of bounded force.
+        thin: whether there are planks and rods, and segments without width.
     """
 
-    def __init__(self, seed: int, joints: bool = False) -> None:
+    def __init__(self, seed: int, joints: bool = False, thin: bool = True) -> None:
         self.random = R = Random(seed)
+        self.kinds = ("disk", "box", "polygon", *(("thin", "rod", "plank") if thin else ()))
         self.length = L = R.choice(LENGTHS)
         self.dt = R.choice(STEPS)
         self.space = space = pymunk.Space()
@@ -83,7 +85,7 @@ class Composition:
         R, L = self.random, self.length
         mass = 10.0 ** R.uniform(0.0, 4.0) * L * L
         size = R.uniform(0.2, 0.7) * L
-        kind = R.choice(("disk", "box", "polygon", "thin", "rod", "plank"))
+        kind = R.choice(self.kinds)
         moment = math.inf if R.random() < 0.1 else 0.4 * mass * size * size
         body = pymunk.Body(mass, moment)
         body.position, body.angle = (x, y), R.uniform(-3.0, 3.0)
@@ -144,7 +146,7 @@ class Composition:
 
     def play(self, steps: int = 120) -> Found:
         """Take the steps; `Broken` says which law does not hold."""
-        found, energies, scale = Found(), [ep.measure(self.space).energy], 0.0
+        found, energies = Found(), [ep.measure(self.space).energy]
         saved: bytes | None = None
         half: list[list[tuple[float, ...]]] = []
         for k in range(steps):
@@ -159,7 +161,6 @@ class Composition:
             if saved is not None:
                 half.append(state)
             self._check(k, report, state, energies, found)
-        del scale
         if saved is not None and not self.turns:
             space, stepper = pickle.loads(saved)
             again = [b for b in space.bodies if b.body_type == pymunk.Body.DYNAMIC]
@@ -196,4 +197,4 @@ class Composition:
             x, y = self.box.world_to_local(body.position)
             out = max(abs(x), abs(y)) - self.half - self.rounding
             if out > OUT * size:
-                raise Broken(f"step {k}: {list(body.shapes)[0]} is {out / size:.2g} of its size outside")
+                raise Broken(f"step {k}: {next(iter(body.shapes))} is {out / size:.2g} of its size outside")
