@@ -20,7 +20,7 @@ from .errors import UnsupportedFeature
 from .events import Events
 from .recorder import record
 from .recording import Recording
-from .report import Contacts, RunReport, StepReport
+from .report import Contacts, RunReport, StepReport, Unmet
 from .rollouts import certify, rollout
 from .space.measure import measure
 from .stepper import Stepper
@@ -47,6 +47,7 @@ __all__ = [
     "Stepper",
     "SweepError",
     "TimeOfImpact",
+    "Unmet",
     "UnsupportedFeature",
     "certify",
     "measure",

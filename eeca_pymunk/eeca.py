@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Protocol
+from weakref import ref
 
 from .arrays import FloatArray, IntArray
 from .closures.time_of_impact import TimeOfImpact
 from .impacts.scene import EventLoop
 from .jointed.scene import JointedLoop
 from .reentry import busy
-from .report import Details
+from .report import Details, Unmet, of_missed
 from .runs import RunningStepper
 from .saved import Saved
+from .space.arbiters import Touches, show_contacts, touches
 from .space.world import World
 
 if TYPE_CHECKING:
@@ -76,11 +79,13 @@ class EECA(RunningStepper):
     ) -> None:
         self.closure: Closure = TimeOfImpact() if closure is None else closure
         self._saved: Saved | None = None  # in a copy, until its first step
+        self._shown: tuple[float, World | None, Touches | None] = -1.0, None, None
         super().__init__(space, sync=sync, ignore=ignore)
 
     def __getstate__(self) -> dict[str, object]:
         state = super().__getstate__()
         state.pop("_method", None)
+        state["_shown"] = -1.0, None, None
         world = self._world
         if world is not None and isinstance(self._method, EventLoop):
             state["_saved"] = Saved(world, self._method)
@@ -91,6 +96,8 @@ class EECA(RunningStepper):
         self._saved = None
 
     def prepare(self, world: World) -> None:
+        myself = ref(self)
+        show_contacts(self.space, lambda: None if (me := myself()) is None else me._touches())
         saved, self._saved = self._saved, None
         if saved is not None and saved.resume(world):
             self._method: Method = saved.method
@@ -105,6 +112,16 @@ class EECA(RunningStepper):
     @property
     def event_loop(self) -> EventLoop | None:
         return self._method if isinstance(self._method, EventLoop) else None
+
+    def _touches(self) -> Touches | None:
+        """Who touched in the last step, for pymunk's arbiters; None if that was no step of ours."""
+        world = self._world
+        if world is None or not isinstance(self._method, EventLoop) or not self._sync.is_ours():
+            return None
+        step = self._method.scene.PAR.stamp
+        if self._shown[0] != step or self._shown[1] is not world:
+            self._shown = step, world, Touches(touches(self._method.events, world.shapes))
+        return self._shown[2]
 
     def adjust(self, world: World, dt: float) -> None:
         parted = False
@@ -132,6 +149,11 @@ class EECA(RunningStepper):
 
     def book(self) -> FloatArray | None:
         return self._method.book
+
+    def unmet(self, world: World) -> tuple[Unmet, ...] | Callable[[], tuple[Unmet, ...]]:
+        if not isinstance(self._method, EventLoop):
+            return ()
+        return partial(of_missed, self._method.missed, world.bodies.items, world.owner)
 
     def outcome(self) -> tuple[float, bool, int]:
         return self._method.lock, self._method.converged, self._method.iterations

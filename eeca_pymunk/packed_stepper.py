@@ -12,7 +12,7 @@ from .energy.ledger import AFTER, DAMPED
 from .errors import NotFiniteError
 from .packed_space import TOO_FAR, PackedSpace
 from .reentry import BUSY, busy, refuse_within
-from .report import Details, StepReport
+from .report import Details, StepReport, Unmet
 from .space.bodies import ANGULAR_VELOCITY, VELOCITY
 from .space.hooks import Hooks
 from .space.rehearsal import Rehearsal
@@ -67,6 +67,10 @@ class PackedStepper(PackedSpace):
         """Scale of the energy lock of the last step that was farthest from 1, whether all tolerances were met, and the
         iterations of the solver."""
         return 1.0, True, 0
+
+    def unmet(self, world: World) -> tuple[Unmet, ...] | Callable[[], tuple[Unmet, ...]]:
+        """Which budgets and tolerances the last step did not meet, or what makes that."""
+        return ()
 
     def step(self, dt: float) -> StepReport:
         if BUSY:
@@ -147,6 +151,8 @@ class PackedStepper(PackedSpace):
         """Write the end of a step to the space."""
         if not self.sync:
             world.scatter(status)
+            if self._sync.stamp < 0:
+                self._sync.note()
         elif self._sync.reindexes(dt, bool(status & EVENTS)):
             world.scatter(status)
             self._sync.reindex()
@@ -158,6 +164,7 @@ class PackedStepper(PackedSpace):
         with busy(self.space):
             world, report, rehearsal = self._take_hooked(world, dt)
         if rehearsal is not None:
+            self._sync.note()
             rehearsal.finish()
         elif self.sync or (world.joints is not None and world.joints.calling):
             self._sync.call_back()
@@ -250,6 +257,8 @@ class PackedStepper(PackedSpace):
             book[DAMPED] += lost
             book[AFTER] -= lost
         lock, converged, iterations = self.outcome()
+        unmet = () if converged else self.unmet(world)
         if not status & EVENTS:
-            return StepReport(self.time, world.empty, converged=converged, book=book)
-        return StepReport(self.time, self.details(world, dt), iterations, lock=lock, converged=converged, book=book)
+            return StepReport(self.time, world.empty, converged=converged, book=book, unmet=unmet)
+        details = self.details(world, dt)
+        return StepReport(self.time, details, iterations, lock=lock, converged=converged, book=book, unmet=unmet)

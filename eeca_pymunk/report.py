@@ -13,6 +13,7 @@ from .arrays import FloatArray, IntArray
 from .compiled.records import Rows, columns
 from .energy.ledger import Ledger, ledger
 from .model.contacts import Impulse
+from .model.step import KINDS, Missed
 
 if TYPE_CHECKING:
     import pymunk
@@ -55,6 +56,34 @@ class Details(NamedTuple):
     friction: FloatArray | None = None
 
 
+class Unmet(NamedTuple):
+    """A budget or tolerance that a step did not meet.
+
+    Attributes:
+        name: "impacts" of a body in a step, "hits" on bodies in contact (both are left out and may penetrate),
+            "impact" (velocity that the impulses of an impact leave, length/time), "solves" of bodies in contact (the
+            step ends before its time), "contacts" of jointed bodies, "joints".
+        value: what it came to.  limit: what it was to be at most; nan where there is no such number.
+        bodies: those concerned, as far as they are known.
+    """
+
+    name: str
+    value: float
+    limit: float
+    bodies: tuple[pymunk.Body, ...]
+
+
+def of_missed(MISSED: Rows[Missed], bodies: tuple[pymunk.Body, ...], owner: IntArray) -> tuple[Unmet, ...]:
+    """What was not met, from its (m,) rows; `owner` (k,) is the place in `bodies` of every shape's body."""
+    found: dict[tuple[str, tuple[int, ...]], Unmet] = {}
+    for row in MISSED:
+        shapes = [int(s) for s in (row["first"], row["second"]) if s >= 0]
+        places = tuple(sorted({int(owner[s]) for s in shapes}))
+        name = KINDS[int(row["kind"])]
+        found[name, places] = Unmet(name, float(row["value"]), float(row["limit"]), tuple(bodies[i] for i in places))
+    return tuple(found.values())
+
+
 class StepReport:
     """What happened in one step; m contacts were active. Read-only.
 
@@ -62,9 +91,10 @@ class StepReport:
         time: simulated time at the end of the step, since the stepper was made.
         details: the arrays, or what makes them when one is asked for.
         iterations, substeps, lock, converged: see the properties.  book: (7,) of `energy.ledger`.
+        unmet: what was not met, or what makes it when it is asked for.
     """
 
-    __slots__ = ("_book", "_converged", "_details", "_iterations", "_lock", "_substeps", "_time")
+    __slots__ = ("_book", "_converged", "_details", "_iterations", "_lock", "_substeps", "_time", "_unmet")
 
     def __init__(
         self,
@@ -75,6 +105,7 @@ class StepReport:
         lock: float = 1.0,
         converged: bool = True,
         book: FloatArray | None = None,
+        unmet: tuple[Unmet, ...] | Callable[[], tuple[Unmet, ...]] = (),
     ) -> None:
         self._time = time
         self._details = details
@@ -83,6 +114,7 @@ class StepReport:
         self._lock = lock
         self._converged = converged
         self._book = book
+        self._unmet = unmet
 
     @staticmethod
     def without_contacts(time: float, bodies: tuple[pymunk.Body, ...] = (), substeps: int = 1) -> StepReport:
@@ -156,6 +188,14 @@ class StepReport:
         """Whether the solver met its tolerance. Energy and momentum are exact either way."""
         return self._converged
 
+    @property
+    def unmet(self) -> tuple[Unmet, ...]:
+        """Which budgets and tolerances were not met, and for which bodies; the first 32. Empty where `converged`."""
+        unmet = self._unmet
+        if not isinstance(unmet, tuple):
+            self._unmet = unmet = unmet()
+        return unmet
+
     def __repr__(self) -> str:
         return f"StepReport(time={self.time}, {len(self.contacts)} contacts, converged={self.converged})"
 
@@ -163,6 +203,7 @@ class StepReport:
         # What would make the arrays holds the stepper: a copy holds the arrays.
         return StepReport, (
             self.time, self._made(), self.iterations, self.substeps, self.lock, self.converged, self._book,
+            self.unmet,
         )  # fmt: skip
 
 

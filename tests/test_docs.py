@@ -40,7 +40,6 @@ OTHERS = {
     "pip install eeca-pymunk": "pyproject.toml",
     'pip install -e ".[docs]"': ".ci/run",
     ".ci/site": ".ci/site",
-    ".ci/clients": ".ci/clients",
     'pip install "eeca-pymunk[video]"': "pyproject.toml",
 }
 # Where the short form of each comparison is run.

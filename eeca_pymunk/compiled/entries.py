@@ -28,7 +28,8 @@ TABLES = {
         BODY:Body[1] STATE:Next[1] SHAPE:Shape[1] LINK:Link[1] VERTEX:f8[2] MARK:Mark[1] CELL:Cell[1] LIST:List[1]
         POOL:i4[1] FLAG:u1[1] HEAD:i8[1] GRID:f8[1] INFO:i8[1] BOX:f8[2] CSR:i8[1] RULE:f8[2] HEAP_TIME:f8[1]
         HEAP_BODY:i8[1] LOG:Impulse[1] BEGAN:f8[2] PLACE:i8[1] BLOCK:i8[1] PULL:f8[2] MEMBER:Member[1] RESTING:Rest[1]
-        PUSHED_BY:Pair[1] PUSHED:Pushed[1] KEYS:i8[1] FORCES:f8[2] WORK:f8[3] PAR:Step COUNT:Count
+        PUSHED_BY:Pair[1] PUSHED:Pushed[1] KEYS:i8[1] FORCES:f8[2] WORK:f8[3]
+        MISSED:Missed[1] PAR:Step COUNT:Count
     """,
     "Joints": """
         JOINT:f8[2] TIE:i8[2] PARTNER:Body[1] SPAN:i8[2] MEMBER:i8[2] LINK:i8[2] HINGE:f8[2] LOCAL:f8[2] NODE:i8[2]

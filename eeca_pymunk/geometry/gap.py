@@ -5,7 +5,8 @@
 with the roundings r; p is halfway between the two surfaces. Exchanging a and b changes no bit of g, n (but its sign)
 and p: pairs are computed from the lower shape number to the higher one.
 
-WORK (2, K, 4) is scratch, K the most vertices of a shape: the placed cores of a and b.
+WORK (2, K, 4) is scratch, K the most vertices of a shape: the placed cores of a and b. Where segments may meet it has
+a third part, the memory of `sides.py`.
 """
 
 from __future__ import annotations
@@ -17,8 +18,9 @@ from ..compiled import uncounted
 from ..compiled.records import Rows
 from ..model.bodies import Body
 from ..model.shapes import Link, Shape
-from .convex import closest, place, point_core
+from .convex import place, point_core
 from .flight import pose
+from .sides import closest_on_side
 
 ROUND_OFF = 1e-12  # of lengths, relative to positions and sizes
 CORNERS = 4.0  # times that, of corners placed by their angle
@@ -58,7 +60,7 @@ def ordered_gap(
     else:
         p = place(LINK, VERTEX, a, x_a, y_a, angle_a, WORK[0])
         q = place(LINK, VERTEX, b, x_b, y_b, angle_b, WORK[1])
-        d, nx, ny, x, y, _, _, _, _, _ = closest(WORK[0], p, WORK[1], q)
+        d, nx, ny, x, y, _, _, _, _, _ = closest_on_side(SHAPE, LINK, WORK, WORK[0], p, WORK[1], q, a, b)
     g = d - r_a - r_b
     away = r_a + 0.5 * g
     return g, nx, ny, x + away * nx, y + away * ny

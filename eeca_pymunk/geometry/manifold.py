@@ -14,8 +14,9 @@ from ..arrays import FloatArray
 from ..compiled import uncounted
 from ..compiled.records import Rows
 from ..model.shapes import Link, Shape
-from .convex import closest, place, prefers_second
+from .convex import place, prefers_second
 from .gap import ordered_gap
+from .sides import closest_on_side
 
 _WIDTH = 1e-6  # of a common face relative to the shapes, below which it is one point
 
@@ -48,6 +49,8 @@ def clip(
     if high <= low:  # beside each other: the ends that are next to each other
         points = 1
         low = u_0 if u_0 >= width else u_1
+        if 0.0 < u_1 <= u_0 < width:  # across: its end that is nearer
+            h_0 = h_1 = min(h_0, h_1)
     for k in range(points):
         # In the order of the tangent of the normal from a to b.
         u = low if (k == 0) == (sign > 0.0) or points == 1 else high
@@ -89,7 +92,7 @@ def ordered_manifold(
     P, Q = WORK[0], WORK[1]
     p = place(LINK, VERTEX, a, x_a, y_a, angle_a, P)
     q = place(LINK, VERTEX, b, x_b, y_b, angle_b, Q)
-    d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q = closest(P, p, Q, q)
+    d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q = closest_on_side(SHAPE, LINK, WORK, P, p, Q, q, a, b)
     g = d - r_a - r_b
     if g > reach:
         return 0
@@ -176,3 +179,18 @@ def face(
     if swapped:
         reverse(OUT, count)
     return count
+
+
+@uncounted
+def half_width(SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, s: int) -> float:
+    """Half the least width of shape s: as deep another may come into it and is on the side that it came from."""
+    first, count, least = LINK[s].first, LINK[s].vertices, math.inf
+    if count < 3:
+        return SHAPE[s].rounding
+    for j in range(first, first + count):
+        most = 0.0
+        for k in range(first, first + count):
+            x, y = VERTEX[j, 0] - VERTEX[k, 0], VERTEX[j, 1] - VERTEX[k, 1]
+            most = max(most, x * VERTEX[j, 2] + y * VERTEX[j, 3])
+        least = min(least, most)
+    return SHAPE[s].rounding + 0.5 * least

@@ -6,6 +6,7 @@ import math
 
 from ..arrays import IntArray
 from ..compiled import uncounted
+from ..geometry.sides import forget_sides
 from ..model.scene import Scene
 from .booking import flag_spans
 from .energy import total, unsteered
@@ -38,6 +39,7 @@ def begin(A: Scene, WALK: IntArray) -> None:
     COUNT.pending, COUNT.phase = -1, 0
     n, last = BODY.shape[0] - 1, PAR.last
     quiet = COUNT.quiet > BUSY_FOR
+    COUNT.closing, fixed = 0, 1 if A.SHAPE.shape[0] > A.LIST.shape[0] else 0
     pulled, even, carries = 0.0, True, A.RULE.shape[0] == 0 and not quiet
     for i in range(n):
         STATE[i].events = 0
@@ -50,6 +52,9 @@ def begin(A: Scene, WALK: IntArray) -> None:
             continue
         if BODY[i].inv_mass == 0.0:
             watch(A, i)
+            fixed += 1
+            if BODY[i].vx != 0.0 or BODY[i].vy != 0.0 or BODY[i].spin != 0.0:
+                COUNT.closing = 1
         ax, ay = BODY[i].ax, BODY[i].ay
         A.PULL[i, 0], A.PULL[i, 1], A.PULL[i, 2] = ax, ay, BODY[i].angular
         pulled = max(pulled, ax * ax + ay * ay)
@@ -57,11 +62,14 @@ def begin(A: Scene, WALK: IntArray) -> None:
         if BODY[i].due < 0.0:
             STATE[i].version += 1
             if BODY[i].due == -math.inf:
+                forget_sides(A.LINK, A.WORK, A.SHAPE.shape[0], i)
                 A.MEMBER[i].put, COUNT.crammed = 1, 1
         else:
             BODY[i].due = max(BODY[i].due - last, 0.0)
         alike = BODY[i].inv_mass == 0.0 or (ax == BODY[0].ax and ay == BODY[0].ay)
         even = even and alike and STATE[i].island < 0
     PAR.pulled = math.sqrt(pulled)
+    if fixed < 2:
+        COUNT.closing = 0
     COUNT.even = 1 if even else 0
     COUNT.carries = 1 if carries else 0

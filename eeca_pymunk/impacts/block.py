@@ -17,6 +17,7 @@ from ..compiled.records import Rows, empty
 from ..geometry.flight import pose, rate
 from ..geometry.gap import touching
 from ..geometry.manifold import face
+from ..geometry.sides import note_side
 from ..model.contacts import ROW, Row
 from ..model.scene import Scene
 from ..pairs.rules import barred, law
@@ -209,6 +210,8 @@ def lay_out(A: Scene, disks: int, n: int, m: int, PAIRS: IntArray, hit: int, res
             A.SHAPE, LINK, A.VERTEX, A.WORK, sa, POSE[p, 0], POSE[p, 1], POSE[p, 2],
             sb, POSE[q, 0], POSE[q, 1], POSE[q, 2], tolerance, found,
         )  # fmt: skip
+        if count > 0:
+            note_side(A.SHAPE, LINK, A.WORK, sa, sb, found[0, 0], found[0, 1], True)
         for c in range(count):
             nx, ny = found[c, 0], found[c, 1]
             place_row(

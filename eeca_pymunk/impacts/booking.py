@@ -12,6 +12,7 @@ from ..model.scene import Scene, scene_of
 from ..pairs.lists import mark_pair
 from .calm import whirls
 from .islands import unite
+from .repaying import repay
 from .still import CHANGED, disturb, spread_change
 from .strike import move_to, note
 
@@ -146,6 +147,8 @@ def end_span(A: Scene, root: int, t: float) -> None:
 def close_span(A: Scene, root: int, t: float) -> None:
     """End the span of one island at instant t: book its contacts, and bring its bodies there."""
     free, excess = A.MEMBER[root].jointed == 0, 0.0
+    if free:
+        repay(A, root, t)
     for c in range(A.COUNT.pushes):
         if A.PUSHED_BY[c].root == root:
             for shape in (A.PUSHED_BY[c].a, A.PUSHED_BY[c].b):

@@ -10,11 +10,12 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import kernel, uncounted
 from ..model.scene import Scene
-from ..model.step import DONE, JOINTS_DUE
-from ..rows.blocks import CONVERGED, D_NORMAL, D_TANGENTIAL, OUT_SIZE, SCALE_LOCK, solve_block
+from ..model.step import DONE, IMPACT, JOINTS_DUE
+from ..rows.blocks import CONVERGED, D_NORMAL, D_TANGENTIAL, OUT_SIZE, RESIDUAL, SCALE_LOCK, TOLERANCE, solve_block
 from ..sustained.ledger import carried
 from .block import Block, gather, lay_out, owing
 from .islands import members, unite
+from .missed import miss
 from .settle import spread
 from .spans import dismiss, solve
 from .strike import note
@@ -26,7 +27,7 @@ def finish(A: Scene, block: Block, n: int, m: int, L: FloatArray, OUT: FloatArra
     BODY, COUNT = A.BODY, A.COUNT
     V, ROWS, k = block.V, block.ROWS, A.SHAPE.shape[0]
     if status != CONVERGED:
-        COUNT.unmet += 1
+        miss(A, IMPACT, block.OF[0] // k, block.OF[0] % k, OUT[RESIDUAL], OUT[TOLERANCE])
     if abs(OUT[SCALE_LOCK] - 1.0) > abs(A.PAR.lock - 1.0):
         A.PAR.lock = OUT[SCALE_LOCK]
     A.PAR.restitution += OUT[D_NORMAL]

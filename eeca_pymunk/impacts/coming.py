@@ -8,11 +8,13 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
 from ..geometry.flight import norm
+from ..geometry.manifold import half_width
 from ..model.contacts import Row
 from ..model.scene import Scene
+from ..model.shapes import Link, Shape
 from ..pairs.lists import far_apart
 from ..pairs.rules import barred, law
-from ..rows.build import tangent_rate
+from ..rows.build import normal_rate, tangent_rate
 from ..sustained.contacts import CROWD
 from .islands import TOUCH, approach, carrier, remembered, rests
 
@@ -21,6 +23,11 @@ PARTS = 64.0  # of a step, that a span is at least
 _FEW = 12  # contacts
 _STICKS = 1e-6  # relative to the friction there can be, and to the slip, below which there is none
 _OF_CROWD, _AGAIN = 24, 12  # sweeps of a crowd; of one that was hit in this step
+_WAY, _ANGLE = 0.5, 0.5  # of the smaller shape, and rad: how far bodies of a contact go about one another in a span
+_DEPTH, _DEEP = 0.05, 0.1  # of the smaller shape, and of both widths: how much deeper a contact may be after a span;
+_FLAT = 1e-4  # at least this of the smaller shape
+_AS_DEEP = 0.03  # part of that by which it may be where it is as deep already
+FARTHER = 1.5  # how many times as far as they should bodies may go in a span
 _RATTLES = 1e-3  # relative to that friction, below which slip is no slide where contacts that bear rattle as fast
 
 
@@ -33,13 +40,18 @@ def way_of(A: Scene, i: int, h: float) -> float:
 
 @kernel
 def pairs_of(A: Scene, root: int, t: float, lossy: bool, LOCAL: IntArray, MINE: IntArray, n: int) -> IntArray:
-    """(p, 2) pairs of shapes of an island, whose n bodies are MINE, that its solve takes over: what touches, and what
-    will rest within the span; where it is busy all that comes near. All others meet at their times of impact, unless
-    all contacts act together."""
+    """`pairs_within` a span from instant t to the end of the step."""
+    return pairs_within(A, root, t, A.PAR.dt - t, lossy, MINE, n)
+
+
+@kernel
+def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: IntArray, n: int) -> IntArray:
+    """(p, 2) pairs of shapes of an island, whose n bodies are MINE, that its solve over h from instant t takes over:
+    what touches, and what will rest within the span; where it is busy all that comes near. All others meet at their
+    times of impact, unless all contacts act together."""
     found = np.empty((4 * n + 8, 2), np.int64)
     p = 0
     BODY, LINK, STATE = A.BODY, A.LINK, A.STATE
-    h = A.PAR.dt - t
     together = A.COUNT.together > 0
     for q in range(n):
         i = MINE[q]
@@ -66,8 +78,11 @@ def pairs_of(A: Scene, root: int, t: float, lossy: bool, LOCAL: IntArray, MINE: 
                 # What a crowd has carried goes on being carried, as far as it may come: hits on it spread by its spans.
                 if n < CROWD or force <= 0.0:
                     g, u, closing, mass = approach(A.BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, A.PULL, s, o, t)
-                    if not busy and not together:
-                        reach = 1.1 * (max(-u, 0.0) * h + A.PAR.pulled * h * h) + TOUCH * small
+                    if not together:
+                        if not busy:
+                            reach = 1.1 * (max(-u, 0.0) * h + A.PAR.pulled * h * h) + TOUCH * small
+                        # No farther do they go in a span; what does meets at its time of impact.
+                        reach = min(reach, 2.0 * _WAY * small)
                     if g > reach:
                         continue
                     e = law(A.SHAPE, A.RULE, s, o)[0]
@@ -132,6 +147,53 @@ def span_of(A: Scene, found: IntArray, t: float) -> float:
     if rate * h <= _TURN:
         return h
     return min(max(_TURN / rate, A.PAR.dt / PARTS), h)
+
+
+@uncounted
+def near_span(A: Scene, found: IntArray, h: float) -> float:
+    """The part of a span h in which the bodies of pairs go no farther about one another than `_WAY` of the smaller one,
+    and turn by no more than `_ANGLE`, with the velocities that they have: beyond it no contact is where it was."""
+    BODY, LINK, rate = A.BODY, A.LINK, 0.0
+    for c in range(found.shape[0]):
+        i, j = LINK[found[c, 0]].owner, LINK[found[c, 1]].owner
+        small = min(A.SHAPE[found[c, 0]].extent, A.SHAPE[found[c, 1]].extent)
+        way = norm(BODY[j].vx - BODY[i].vx, BODY[j].vy - BODY[i].vy)
+        rate = max(rate, way / (_WAY * small))
+        for s in (found[c, 0], found[c, 1]):
+            if LINK[s].vertices > 1:
+                rate = max(rate, abs(BODY[LINK[s].owner].spin) / _ANGLE)
+    return h if rate * h <= 1.0 else 1.0 / rate
+
+
+@kernel
+def strayed(
+    P: IntArray, Q: IntArray, ROWS: Rows[Row], KEY: IntArray, V: FloatArray, VN: FloatArray, SHAPE: Rows[Shape],
+    LINK: Rows[Link], VERTEX: FloatArray, m: int, h: float,
+) -> float:  # fmt: skip
+    """How many times as far as in `near_span` the bodies of m contacts go in a span h that was solved; or how many
+    times too long it is for the deepest contact, which is to land, with no speed left, after h = 2 g / |u + u+|."""
+    far, shapes = 0.0, SHAPE.shape[0]
+    for z in range(m):
+        pair = KEY[z] >> 1
+        a, b, p, q = pair // shapes, pair % shapes, P[z], Q[z]
+        small = min(SHAPE[a].extent, SHAPE[b].extent)
+        x = V[q, 0] + VN[q, 0] - V[p, 0] - VN[p, 0]
+        y = V[q, 1] + VN[q, 1] - V[p, 1] - VN[p, 1]
+        far = max(far, 0.5 * h * norm(x, y) / (_WAY * small))
+        if LINK[a].vertices > 1 or LINK[b].vertices > 1:
+            turn = max(abs(V[p, 2] + VN[p, 2]), abs(V[q, 2] + VN[q, 2]))
+            far = max(far, 0.5 * h * turn / _ANGLE)
+        closing = -0.5 * h * (ROWS[z].un + normal_rate(P, Q, ROWS, VN, z))
+        if closing > _FLAT * small:
+            thick = half_width(SHAPE, LINK, VERTEX, a) + half_width(SHAPE, LINK, VERTEX, b)
+            deep = max(min(_DEPTH * small, _DEEP * thick), _FLAT * small)
+            # What is as deep already is to go hardly deeper, where few are solved again for it.
+            room = max(ROWS[z].gap, 0.0) + deep
+            if m <= _FEW:
+                room = max(ROWS[z].gap + deep, _AS_DEEP * deep)
+            if closing > room + 0.5 * min(deep, room):
+                far = max(far, max(closing / room, 1.01 * FARTHER))
+    return far
 
 
 @kernel

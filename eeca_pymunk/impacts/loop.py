@@ -9,7 +9,7 @@ from __future__ import annotations
 from ..compiled import kernel, merged, uncounted
 from ..model.bodies import LEAVE, RENEW
 from ..model.scene import Scene
-from ..model.step import BLOCK_DUE, DONE, JOINTS_DUE, LOG_FULL, POOL_FULL
+from ..model.step import BLOCK_DUE, DONE, HITS, IMPACTS, JOINTS_DUE, LOG_FULL, POOL_FULL, SOLVES
 from ..pairs.grid import renew
 from ..pairs.lists import mark_pair
 from .block import arrive
@@ -20,11 +20,12 @@ from .forecast import AHEAD, has_left
 from .heap import pop, push, sweep_out
 from .islands import members
 from .lone import carrier, go_on
-from .settle import comes_to_rest, ignored
+from .missed import miss
+from .settle import comes_to_rest, hits_of, ignored, most_hits
 from .spans import solve
 from .strike import alone, strike_disk
 
-_SQUEEZED = 50  # impacts of a body in a step, from which those with a kinematic one are left out: walls may close in
+_SQUEEZED = 50  # impacts of a body in a step, from which those with a kinematic one are left out where walls close in
 
 
 @uncounted
@@ -40,6 +41,8 @@ def give_up(A: Scene, i: int, j: int) -> bool:
     limit = A.COUNT.limit
     if A.STATE[i].events >= limit or A.STATE[j].events >= limit:
         return True
+    if A.COUNT.closing == 0:
+        return False
     ground = A.BODY.shape[0] - 1
     carried = (A.BODY[i].inv_mass == 0.0 and i != ground) or (A.BODY[j].inv_mass == 0.0 and j != ground)
     return carried and max(A.STATE[i].events, A.STATE[j].events) >= _SQUEEZED
@@ -97,7 +100,7 @@ def run(A: Scene, disks: int, may_rest: bool) -> int:
             one = i
             continue
         if give_up(A, i, j):
-            COUNT.unmet += 1
+            miss(A, IMPACTS, s, o, float(max(STATE[i].events, STATE[j].events)), float(COUNT.limit))
             mark_pair(A.LIST, A.POOL, A.FLAG, moving, s, o, 1)
             one = i
             continue
@@ -127,6 +130,16 @@ def with_mover(A: Scene, i: int, n: int) -> int:
     return n + 1
 
 
+@uncounted
+def cut_short(A: Scene, t: float) -> int:
+    """Let the step end at instant t: so nothing that it has no work left for is passed over."""
+    a, b = A.STATE[A.COUNT.struck].own, A.STATE[A.COUNT.struck].other
+    miss(A, SOLVES, a, b, float(A.COUNT.solved), float(A.COUNT.budget))
+    A.PAR.dt = t
+    A.COUNT.heap = 0
+    return DONE
+
+
 @kernel
 def follow(A: Scene, disks: int, may_rest: bool) -> int:
     """The events of the step, blocks and islands included. After a status other than DONE, make room and call again.
@@ -147,6 +160,8 @@ def follow(A: Scene, disks: int, may_rest: bool) -> int:
             return status
         t, i = A.PAR.now, COUNT.struck
         s, o = STATE[i].own, STATE[i].other
+        if COUNT.solved > COUNT.budget:
+            return cut_short(A, t)
         if COUNT.logged + COUNT.pushes + 8 * STATE.shape[0] > A.LOG.shape[0]:
             COUNT.heap = push(A.HEAP_TIME, A.HEAP_BODY, COUNT.heap, t, i)
             return LOG_FULL
@@ -161,7 +176,7 @@ def follow(A: Scene, disks: int, may_rest: bool) -> int:
             continue
         j = A.LINK[o].owner
         if (STATE[i].island >= 0 or STATE[j].island >= 0) and ignored(A, s, o, t):
-            COUNT.unmet += 1
+            miss(A, HITS, s, o, float(hits_of(A, s, o)), float(most_hits(A, s, o)))
             mark_pair(A.LIST, A.POOL, A.FLAG, moving, s, o, 1)
             forecast(A, disks, moving, i, t, end, False)
             continue

@@ -17,8 +17,8 @@ from ..pairs.layout import POOL_END
 
 # Fields of `Scene`. The tables of forces are emptied where a run begins (`run.set_back`).
 OF_SCENE = (
-    "STATE", "MARK", "CELL", "LIST", "POOL", "FLAG", "HEAD", "GRID", "INFO", "PLACE", "MEMBER", "RESTING", "PAR",
-    "COUNT",
+    "STATE", "MARK", "CELL", "LIST", "POOL", "FLAG", "HEAD", "GRID", "INFO", "PLACE", "MEMBER", "RESTING", "WORK",
+    "PAR", "COUNT",
 )  # fmt: skip
 # Those that are made larger on the way.
 ROOM = ("LOG", "PUSHED_BY", "PUSHED", "KEYS", "FORCES")
@@ -62,7 +62,7 @@ def remembered(scene: Scene) -> list[AnyArray]:
     sizes = np.array([len(scene.POOL), end, len(scene.KEYS), len(used), len(scene.PUSHED), pushes], np.int64)
     return [
         sizes, *(np.asarray(getattr(scene, name)) for name in _WHOLE), scene.POOL[:end], scene.FLAG[:end],
-        scene.PUSHED_BY[:pushes], scene.PUSHED[:pushes], used, scene.KEYS[used], scene.FORCES[used],
+        scene.PUSHED_BY[:pushes], scene.PUSHED[:pushes], used, scene.KEYS[used], scene.FORCES[used], scene.WORK[2:],
     ]  # fmt: skip
 
 
@@ -89,4 +89,5 @@ def recalled(scene: Scene, take: Callable[[Any, tuple[int, ...]], AnyArray]) -> 
     new["KEYS"], new["FORCES"] = np.full(slots, -1, np.int64), np.zeros((slots, scene.FORCES.shape[1]))
     new["KEYS"][at] = take(np.int64, (used,))
     new["FORCES"][at] = take(np.float64, (used, scene.FORCES.shape[1]))
+    scene.WORK[2:] = take(np.float64, scene.WORK[2:].shape)  # sides of segments; the rest is scratch
     return scene._replace(**new)

@@ -16,7 +16,7 @@ from ..model.bodies import CHECK, Body, Member, Next, Rest
 from ..model.contacts import Impulse, Pair, Pushed
 from ..model.scene import Scene
 from ..model.shapes import Link, Shape
-from ..model.step import Count, Step
+from ..model.step import Count, Missed, Step
 from ..pairs.setup import near_lists, rebuilt
 from ..report import Details, of_events
 from ..sustained.memory import FORCE_COLUMNS, forget
@@ -33,6 +33,9 @@ if TYPE_CHECKING:
     import pymunk
 
 RULE_COLUMNS = 6
+_MISSED = 32  # of a step, that are told
+_SOLVES = 512  # of every body in a step, on the average, from which it is cut short
+_SIDES = 64  # pairs of every segment that moves, whose sides are remembered
 _CONTACTS = 256  # of islands, that there is room for at first; powers of 2
 _OF_A_BODY, _MANY = 32, 1 << 16  # for each body where contacts may last, up to so many: untouched memory is free
 
@@ -42,6 +45,18 @@ def _longer(table: Rows[R], used: int) -> Rows[R]:
     longer: Rows[R] = np.zeros(2 * len(table), table.dtype)  # type: ignore[assignment]
     longer[:used] = table[:used]
     return longer
+
+
+def _work(LINK: Rows[Link], moving: int, vertices: int) -> FloatArray:
+    """Scratch for the vertices of two shapes; with the memory of sides where segments may meet segments."""
+    flat = LINK["vertices"] == 2
+    few = int(flat[:moving].sum())
+    if few == 0 or flat.sum() < 2:
+        return np.zeros((2, vertices, 4))
+    slots = 64
+    while slots < max(vertices, min(_SIDES * few, _MANY)):
+        slots *= 2
+    return np.zeros((3, slots, 4))
 
 
 class EventLoop(Remembering):
@@ -82,10 +97,11 @@ class EventLoop(Remembering):
             rows(Impulse, 4 * n + 64), BEGAN, PLACE, BLOCK, PULL, MEMBER, RESTING,
             rows(Pair, room), rows(Pushed, room),
             np.full(4 * room, -1, np.int64), np.zeros((4 * room, FORCE_COLUMNS)),
-            np.zeros((2, vertices, 4)), row(Step), row(Count),
+            _work(LINK, moving, vertices), rows(Missed, _MISSED), row(Step), row(Count),
         )  # fmt: skip
         self.near = near
         self.scene.COUNT.limit, self.scene.COUNT.disks = limit, disks
+        self.scene.COUNT.budget = _SOLVES * n
         self.scene.MEMBER["tied"] = self.scene.MEMBER["next_tied"] = -1
         self.scene.RESTING["augmentation"] = FRESH
 
@@ -194,6 +210,11 @@ class EventLoop(Remembering):
     def converged(self) -> bool:
         """Whether the last step left nothing undone."""
         return bool(self.scene.COUNT.unmet == 0)
+
+    @property
+    def missed(self) -> Rows[Missed]:
+        """(m,) what the last step has not met, the first of it; a copy."""
+        return self.scene.MISSED[: self.scene.COUNT.unmet].copy()
 
     @property
     def iterations(self) -> int:

@@ -11,6 +11,7 @@ import numpy as np
 from ..arrays import IntArray
 from ..compiled import kernel, uncounted
 from ..geometry.flight import norm
+from ..geometry.manifold import half_width
 from ..model.contacts import LASTED
 from ..model.scene import Scene
 from ..model.step import DONE, PUSHES_FULL
@@ -30,7 +31,7 @@ _SLOW = 1.0 / 64.0  # speed relative to |a| dt, below which that happens to elas
 BUSY_FOR = 8  # steps
 _HITS, _ELASTIC_HITS = 1, 64  # on an island in a step: a lossy one may be hit oftener the smaller it is
 _WORK = 64  # bodies times hits
-_DEEP = 0.2  # of the smaller shape, that a hit would go deep: it is taken up to four times as often
+_DEEP = 0.4  # of the widths of two shapes, that what is passed over may go deep within the step
 
 
 @uncounted
@@ -175,25 +176,45 @@ def comes_to_rest(A: Scene, a: int, b: int, t: float) -> bool:
     return A.PAR.pulled > 0.0 and rests(A, a, b, t, False)
 
 
+@uncounted
+def hits_of(A: Scene, a: int, b: int) -> int:
+    """How often the islands of shapes a and b were hit in this step."""
+    hits = 0
+    for s in (a, b):
+        root = A.STATE[A.LINK[s].owner].island
+        if root >= 0:
+            hits = max(hits, A.MEMBER[root].hits)
+    return hits
+
+
+@uncounted
+def most_hits(A: Scene, a: int, b: int) -> int:
+    """How often they may be: lossy islands the oftener the smaller they are."""
+    if law(A.SHAPE, A.RULE, a, b)[0] >= 1.0:
+        return _ELASTIC_HITS
+    size = 1
+    for s in (a, b):
+        root = A.STATE[A.LINK[s].owner].island
+        if root >= 0:
+            size = max(size, A.MEMBER[root].bodies)
+    return max(_HITS, _WORK // size)
+
+
 @kernel
 def ignored(A: Scene, a: int, b: int, t: float) -> bool:
     """Whether a hit on an island at instant t is beyond its budget; the island then is busy for some steps."""
-    STATE, MEMBER = A.STATE, A.MEMBER
+    STATE = A.STATE
     i, j = A.LINK[a].owner, A.LINK[b].owner
-    hits, size, lossy = 0, 1, law(A.SHAPE, A.RULE, a, b)[0] < 1.0
-    for k in (i, j):
-        root = STATE[k].island
-        if root >= 0:
-            hits, size = max(hits, MEMBER[root].hits), max(size, MEMBER[root].bodies)
-    most = max(_HITS, _WORK // size) if lossy else _ELASTIC_HITS
+    hits, most, lossy = hits_of(A, a, b), most_hits(A, a, b), law(A.SHAPE, A.RULE, a, b)[0] < 1.0
     spent = worn(A, STATE[i].island) or worn(A, STATE[j].island)
     if hits < most and not spent:
         return False
-    if hits < 4 * most and not spent:
-        h = A.PAR.dt - t
-        speed = norm(A.BODY[i].vx - A.BODY[j].vx, A.BODY[i].vy - A.BODY[j].vy)
-        if speed * h > _DEEP * min(A.SHAPE[a].extent, A.SHAPE[b].extent):
-            return False
+    h = A.PAR.dt - t
+    speed = norm(A.BODY[i].vx - A.BODY[j].vx, A.BODY[i].vy - A.BODY[j].vy)
+    speed += abs(A.BODY[i].spin) * A.BODY[i].extent + abs(A.BODY[j].spin) * A.BODY[j].extent
+    thick = half_width(A.SHAPE, A.LINK, A.VERTEX, a) + half_width(A.SHAPE, A.LINK, A.VERTEX, b)
+    if (speed + A.PAR.pulled * h) * h > _DEEP * thick:
+        return False
     A.COUNT.ignored += 1
     if lossy:
         MINE = np.empty(A.BODY.shape[0], np.int64)

@@ -23,11 +23,25 @@ from ..sustained.step import OUT_SIZE, STOOD, step_island
 from ..sustained.step import POLISHES as POLISHES_OF
 from ..sustained.step import SWEEPS as SWEEPS_OF
 from .calm import calm, whirls
-from .coming import PARTS, before_end, hurried, pairs_of, span_of, stick_time, sweeps_of_crowd, way_of
+from .coming import (
+    FARTHER,
+    PARTS,
+    before_end,
+    hurried,
+    near_span,
+    pairs_within,
+    span_of,
+    stick_time,
+    strayed,
+    sweeps_of_crowd,
+    way_of,
+)  # fmt: skip
 from .islands import lossy, members
 from .still import halt
 
 _SWEEPS = 40  # of an island that moves
+_TRIES = 12  # attempts at a span
+AGAIN = -1  # status of a span that is to be shorter
 
 
 class Local(NamedTuple):
@@ -145,24 +159,43 @@ def dismiss(A: Scene, MINE: IntArray, n: int) -> None:
 def solve(A: Scene, root: int, t: float) -> int:
     """Begin a span of the island at instant t, at which all its bodies are. Bodies without contact leave it.
 
+    The span ends with the step; before, where its bodies would go so far about one another that no contact would be
+    where it was.
+
     DONE, or PUSHES_FULL, which leaves everything as it was.
     """
+    longest = A.PAR.dt - t
+    for attempt in range(_TRIES):
+        status, far = open_span(A, root, t, longest, attempt + 1 == _TRIES or A.COUNT.together > 0)
+        if status != AGAIN:
+            return status
+        longest = far
+    return DONE
+
+
+@kernel
+def open_span(A: Scene, root: int, t: float, longest: float, last: bool) -> tuple[int, float]:
+    """`solve`, of a span no longer than `longest`. AGAIN, with nothing done, for one that is to be shorter, and how
+    long; not if it is the `last` attempt."""
     BODY, STATE, MEMBER, COUNT = A.BODY, A.STATE, A.MEMBER, A.COUNT
     n = MEMBER[root].bodies
     MINE = np.empty(n, np.int64)
     members(A, root, MINE)
     if MEMBER[root].jointed > 0:
-        return JOINTS_DUE
+        return JOINTS_DUE, 0.0
     sort(MINE, n)
     for q in range(n):
         A.PLACE[MINE[q]] = q
     may_lose = lossy(A, root)
-    found = pairs_of(A, root, t, may_lose, A.PLACE, MINE, n)
+    found = pairs_within(A, root, t, longest, may_lose, MINE, n)
+    h = near_span(A, found, longest) if A.COUNT.together == 0 else longest
+    if h < longest:
+        found = pairs_within(A, root, t, h, may_lose, MINE, n)
     p = len(found)
-    h = span_of(A, found, t)
+    h = min(h, span_of(A, found, t))
     if COUNT.pushes + 2 * p > A.PUSHED.shape[0] or 2 * (COUNT.remembered + 2 * p) > A.KEYS.shape[0]:
         dismiss(A, MINE, n)
-        return PUSHES_FULL
+        return PUSHES_FULL, 0.0
     isle = lay_out_island(A, MINE, n, found, t)
     dismiss(A, MINE, n)
     k, WHO, POSE, V, ACC = len(isle.WHO), isle.WHO, isle.POSE, isle.V, isle.ACC
@@ -201,6 +234,10 @@ def solve(A: Scene, root: int, t: float) -> int:
                 sweeps, least, max(-A.RESTING[root].lost, 0.0), free, A.KEYS, A.FORCES, COUNT, A.PAR.stamp,
                 A.RESTING[MINE[0]], 0.0, P, Q, ROWS, KEY, L, LOSS, VN, JUMP, BOOK, OUT,
             )  # fmt: skip
+        far = 0.0 if last or OUT[STOOD] > 0.0 else strayed(P, Q, ROWS, KEY, V, VN, A.SHAPE, A.LINK, A.VERTEX, m, h)
+        if far > FARTHER:
+            A.COUNT.solved += n
+            return AGAIN, h / far
         if abs(OUT[LOCK_OF] - 1.0) > abs(A.PAR.lock - 1.0):
             A.PAR.lock = OUT[LOCK_OF]
     COUNT.solves += 1
@@ -242,4 +279,4 @@ def solve(A: Scene, root: int, t: float) -> int:
         COUNT.pushes += m
         if OUT[STOOD] > 0.0:
             halt(A, head)
-    return DONE
+    return DONE, 0.0

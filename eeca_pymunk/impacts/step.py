@@ -36,7 +36,7 @@ def finish(
 ) -> int:  # fmt: skip
     """Close the step, and give the states at its end; the bits of the step, or a negative code."""
     close(A, WALK)
-    if A.COUNT.logged > 0:
+    if A.COUNT.logged > 0 or A.COUNT.unmet > 0:
         status |= SOME
     return give(STATES, WALK, EXTRA, A.BODY, ENDS, A.PAR.dt, A.PAR.left_over, status)
 

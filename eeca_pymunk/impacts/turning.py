@@ -22,13 +22,16 @@ import math
 from ..arrays import FloatArray
 from ..compiled import uncounted
 from ..compiled.records import Rows
-from ..geometry.convex import closest, place
+from ..geometry.convex import place
 from ..geometry.flight import pose, rate
 from ..geometry.gap import touching
+from ..geometry.sides import closest_on_side, known_side, near_side, note_side, remembers
 from ..model.bodies import Body
 from ..model.shapes import Link, Shape
 from .apart import carried_circles_meet, circles_meet
 from .roots import ADVANCES, STRIDE, flat
+
+_THROUGH = 1e8  # tolerances of touching that a point may come through before it is looked at again
 
 
 @uncounted
@@ -137,6 +140,43 @@ def pressed(BODY: Rows[Body], i: int, j: int, t: float, nx: float, ny: float, px
 
 
 @uncounted
+def leaving(BODY: Rows[Body], i: int, j: int, t: float, nx: float, ny: float, px: float, py: float) -> float:
+    """The rate with which bodies part along the normal n; if it is 0, the acceleration with which they are pressed
+    together."""
+    x_a, y_a, _ = pose(BODY, i, t)
+    x_b, y_b, _ = pose(BODY, j, t)
+    ux_a, uy_a, w_a = rate(BODY, i, t)
+    ux_b, uy_b, w_b = rate(BODY, j, t)
+    u = nx * (ux_b - w_b * (py - y_b) - ux_a + w_a * (py - y_a))
+    u += ny * (uy_b + w_b * (px - x_b) - uy_a - w_a * (px - x_a))
+    if u != 0.0:
+        return u
+    return nx * (BODY[i].ax - BODY[j].ax) + ny * (BODY[i].ay - BODY[j].ay)
+
+
+@uncounted
+def begin_side(
+    BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, WORK: FloatArray, a: int, b: int,
+    start: float,
+) -> None:  # fmt: skip
+    """Note on which side of each other segments a < b begin. Those that were put flush on one another are where they
+    part as they move, or rest where they are pressed together."""
+    i, j = LINK[a].owner, LINK[b].owner
+    x_a, y_a, angle_a = pose(BODY, i, start)
+    x_b, y_b, angle_b = pose(BODY, j, start)
+    p = place(LINK, VERTEX, a, x_a, y_a, angle_a, WORK[0])
+    q = place(LINK, VERTEX, b, x_b, y_b, angle_b, WORK[1])
+    d, nx, ny, px, py, _, _, _, _, _ = closest_on_side(
+        SHAPE, LINK, WORK, WORK[0], p, WORK[1], q, a, b
+    )  # fmt: skip
+    if d > near_side(SHAPE, a, b):
+        note_side(SHAPE, LINK, WORK, a, b, nx, ny, False)
+    elif not known_side(SHAPE, LINK, WORK, a, b):
+        sign = -1.0 if leaving(BODY, i, j, start, nx, ny, px, py) < 0.0 else 1.0
+        note_side(SHAPE, LINK, WORK, a, b, sign * nx, sign * ny, True)
+
+
+@uncounted
 def general(
     BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, WORK: FloatArray,
     a: int, b: int, disks: int, horizon: float, held: float,
@@ -147,7 +187,8 @@ def general(
     meet then, shapes that touch and part do not.
 
     Args:
-        horizon: finite instant; lower bounds are no earlier. What lasts more than 1000 looks is given up there.
+        horizon: finite instant; lower bounds are no earlier. Of what takes more than 1000 looks at a sixteenth of the
+            time until then the rest is given up.
         held: speed up to which points that touch stay where they are, as forces hold them; below 0 for none.
     """
     if a > b:
@@ -168,14 +209,22 @@ def general(
     bend, bend_a, bend_b = bends(BODY, SHAPE, LINK, a, b, start, left)
     extent = SHAPE[a].rounding + SHAPE[b].rounding
     P, Q = WORK[0], WORK[1]
-    for _ in range(ADVANCES):
+    if remembers(LINK, WORK, a, b):
+        begin_side(BODY, SHAPE, LINK, VERTEX, WORK, a, b, start)
+    looks, mark = 0, s
+    while looks < ADVANCES:
+        looks += 1
+        if s > mark + STRIDE * left:  # what turns fast is followed for many turns
+            looks, mark = 0, s
         x_a, y_a, angle_a = pose(BODY, i, start + s)
         x_b, y_b, angle_b = pose(BODY, j, start + s)
         ux_a, uy_a, w_a = rate(BODY, i, start + s)
         ux_b, uy_b, w_b = rate(BODY, j, start + s)
         p = place(LINK, VERTEX, a, x_a, y_a, angle_a, P)
         q = place(LINK, VERTEX, b, x_b, y_b, angle_b, Q)
-        d, nx, ny, px, py, _, edge_a, apart_a, edge_b, apart_b = closest(P, p, Q, q)
+        d, nx, ny, px, py, _, edge_a, apart_a, edge_b, apart_b = closest_on_side(SHAPE, LINK, WORK, P, p, Q, q, a, b)
+        if d > near_side(SHAPE, a, b):
+            note_side(SHAPE, LINK, WORK, a, b, nx, ny, False)
         safe, near, met = fixed_axis(
             P, p, Q, q, nx, ny, x_a, y_a, ux_a, uy_a, w_a, x_b, y_b, ux_b, uy_b, w_b, extent, bend, tolerance, held
         )
@@ -194,9 +243,6 @@ def general(
             back = pressed(BODY, i, j, start + s, nx, ny, px + SHAPE[a].rounding * nx, py + SHAPE[a].rounding * ny)
             if back <= STRIDE * left:
                 return start + s + back, True
-        # Shapes that touch without closing would be followed in steps that shrink with their rate.
-        if not met and near <= tolerance:
-            safe = max(safe, STRIDE * left)
         s += safe
         if met:
             return start + s, True

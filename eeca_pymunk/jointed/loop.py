@@ -11,6 +11,7 @@ from ..compiled import Table, kernel, uncounted
 from ..impacts.due import forecast, forecast_due
 from ..impacts.heap import push
 from ..impacts.loop import follow, with_mover
+from ..impacts.missed import miss
 from ..impacts.settle import settle
 from ..impacts.step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, finish, start, wish
 from ..joints.layout import BODY_A, BODY_B, ELASTIC, TOUCHED
@@ -19,6 +20,7 @@ from ..layout import BODY_ROW, LEFT
 from ..layout import NOW as READ
 from ..model.scene import Scene, scene_of
 from ..model.step import DONE, JOINTS_DUE, PUSHES_FULL
+from ..model.step import JOINTS as UNMET_JOINTS
 from .layout import COMPONENTS, REPEATS, WORST, Joints, joints_of
 from .meet import book_component
 from .solve import begin_span
@@ -67,7 +69,7 @@ def book_joints(A: Scene, J: Joints) -> None:
     for s in range(J.TALLY[COMPONENTS]):
         book_component(A, J, s)
     if J.TALLY[WORST] >= ELASTIC:
-        A.COUNT.unmet += 1
+        miss(A, UNMET_JOINTS, -1, -1, float(J.TALLY[WORST]), float(ELASTIC))
 
 
 @uncounted

@@ -11,10 +11,11 @@ from ..compiled import kernel, uncounted
 from ..compiled.records import empty
 from ..impacts.coming import before_end, pairs_of
 from ..impacts.islands import lossy, members
+from ..impacts.missed import miss
 from ..impacts.spans import Local, dismiss, lay_out_island, open_contacts
 from ..model.contacts import ROW
 from ..model.scene import Scene
-from ..model.step import DONE, PUSHES_FULL
+from ..model.step import CONTACTS, DONE, PUSHES_FULL
 from ..rows.build import normal_rate
 from ..rows.inplace import sort
 from ..sustained.contacts import NEAR, gather
@@ -109,7 +110,8 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
         if not press(
             A, J, isle, groups, P, Q, ROWS, L, EXPECTED, m, n, t, h, slow, fast, pull, owed, motion, C
         ):  # fmt: skip
-            COUNT.unmet += 1
+            pair, shapes = KEY[0] >> 1, A.SHAPE.shape[0]
+            miss(A, CONTACTS, pair // shapes, pair % shapes, math.nan, math.nan)
         remember_loads(ROWS, KEY, L, m, h, A.KEYS, A.FORCES, COUNT, A.PAR.stamp)
     if m == 0:
         advance(

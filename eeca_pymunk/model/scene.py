@@ -10,7 +10,7 @@ from ..compiled.records import Rows
 from .bodies import Body, Member, Next, Rest
 from .contacts import Impulse, Pair, Pushed
 from .shapes import Cell, Link, List, Mark, Shape
-from .step import Count, Step
+from .step import Count, Missed, Step
 
 
 class Scene(NamedTuple):
@@ -20,7 +20,8 @@ class Scene(NamedTuple):
     length, 1 where an island's solve has taken the pair over, so that it makes no events. HEAD, GRID, INFO, BOX, CSR:
     the grids of `..pairs`. RULE (r, 6): what collision handlers say of pairs, a < b: shapes a, b, elasticity (below 0:
     none), friction, surface velocity of b relative to a. LOG: impulses of the step. BEGAN (n, 3): poses at the start of
-    the step. WORK (2, K, 4): scratch for vertices. PLACE (n,): -1, or a body's place in the block in BLOCK (n,). PULL
+    the step. WORK (2, K, 4): scratch for vertices, and sides (`..geometry.sides`). MISSED: what
+    was not met. PLACE (n,): -1, or a body's place in the block in BLOCK (n,). PULL
     (n, 3): accelerations without contacts. KEYS, FORCES: memory of forces (`..sustained.memory`).
     """
 
@@ -54,6 +55,7 @@ class Scene(NamedTuple):
     KEYS: IntArray
     FORCES: FloatArray
     WORK: FloatArray
+    MISSED: Rows[Missed]
     PAR: Step
     COUNT: Count
 

@@ -37,6 +37,8 @@ class Count(Record):
     stale: int  # events out of date
     limit: int  # impacts that a body may have in a step
     unmet: int  # what was not met
+    closing: int  # 1 where bodies that impulses do not move may move relative to one another, and squeeze others
+    budget: int  # bodies of all solves in a step, beyond which it is cut short
     struck: int
     pushes: int  # rows of PUSHED in use
     solves: int
@@ -55,6 +57,27 @@ class Count(Record):
     carries: int  # 1 where islands at rest may support others that move (`impacts/carrying.py`)
     crammed: int  # 1 if there are bodies that were placed where they are
 
+
+class Missed(Record):
+    """A budget or tolerance that was not met."""
+
+    kind: float  # one of `KINDS`, by its number
+    first: float  # shapes, -1 for none
+    second: float
+    value: float  # what it came to, and what it was to be at most
+    limit: float
+
+
+# Kinds of `Missed`, with what they count.
+KINDS = (
+    "impacts",  # of a body in a step (`TimeOfImpact.max_impacts`): later ones are left out
+    "hits",  # on an island in a step: later ones are left for the next step
+    "impact",  # velocity that the impulses of an impact leave
+    "solves",  # of all islands, bodies each: the step ends before its time
+    "contacts",  # of joints: their solve
+    "joints",  # their iteration
+)
+IMPACTS, HITS, IMPACT, SOLVES, CONTACTS, JOINTS = 0, 1, 2, 3, 4, 5
 
 # Status of a step.
 DONE, POOL_FULL, LOG_FULL, BLOCK_DUE, PUSHES_FULL = 0, 1, 2, 3, 4

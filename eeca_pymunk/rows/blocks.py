@@ -21,7 +21,7 @@ from .energy import lock, works
 from .sweeps import push, sweep, velocities
 
 CONVERGED, TRUNCATED = 0, 1  # statuses
-D_NORMAL, D_TANGENTIAL, SCALE_LOCK, OWED, RESIDUAL, SWEEPS, POLISHES = 0, 1, 2, 3, 4, 5, 6  # of OUT
+D_NORMAL, D_TANGENTIAL, SCALE_LOCK, OWED, RESIDUAL, SWEEPS, POLISHES, TOLERANCE = 0, 1, 2, 3, 4, 5, 6, 7  # of OUT
 OUT_SIZE = 8
 
 _PRECISE = 1e-14  # residual of convergence relative to the largest approach speed
@@ -87,7 +87,8 @@ def solve_block(
         owed: energy >= 0 that the block has to take out beyond its own losses' sign: its loss is at least that.
         hasty: whether a lossy crowd may be solved roughly: a hit on a pile.
         LOSS: (m, 2) out, D_n and D_t of each contact.
-        OUT: (8,) out: sums of D_n and D_t, the lock's scale, energy still owed, residual (velocity), sweeps, polishes.
+        OUT: (8,) out: sums of D_n and D_t, the lock's scale, energy still owed, residual (velocity), sweeps,
+            polishes, tolerance of the residual.
     Returns:
         CONVERGED (residual <= 1e-14 of the largest b - u_n, with friction 1e-10, in lossy crowds 1e-4) or TRUNCATED.
         Energy is right in both.
@@ -126,5 +127,5 @@ def solve_block(
     OUT[1] = tangential
     OUT[SCALE_LOCK] = scale
     OUT[OWED] = left
-    OUT[RESIDUAL] = worst
+    OUT[RESIDUAL], OUT[TOLERANCE] = worst, tolerance
     return CONVERGED if worst <= tolerance else TRUNCATED

@@ -16,7 +16,7 @@ import pymunk
 from pymunk import batch
 
 from ..arrays import FloatArray, IntArray
-from . import private_joints, private_sleep, private_versions
+from . import private_arbiters, private_joints, private_sleep, private_versions
 from .private_versions import DEFAULTS as DEFAULTS
 from .private_versions import REQUIRED, bodies
 
@@ -30,17 +30,18 @@ PHASES = ("_begin", "_pre_solve", "_post_solve", "_separate")
 
 _OF_LIBRARY = (
     "cpSpaceStep", "cpHastySpaceStep", "cpSpaceEachBody", "cpSpaceGetGravity", "cpSpaceGetDamping",
-    "cpSpaceReindexShapesForBody", "cpShapeGetSensor", "cpShapeGetElasticity", "cpShapeGetFriction",
+    "cpSpaceReindexShapesForBody", "cpBodyUpdatePosition", "cpShapeGetSensor", "cpShapeGetElasticity",
+    "cpShapeGetFriction",
     "cpSpaceGetSleepTimeThreshold", "cpSpaceSetSleepTimeThreshold", "cpSpaceGetShapeIDCounter", "cpSpaceGetTimestamp",
     "pmSpaceBodyGetIteratorFuncBatched", "pmSpaceBodySetIteratorFuncBatched",
-    *private_joints.OF_LIBRARY, *private_sleep.OF_LIBRARY,
+    *private_joints.OF_LIBRARY, *private_sleep.OF_LIBRARY, *private_arbiters.OF_LIBRARY,
 )  # fmt: skip
 _OF_SPACE = (
     "_space", "_bodies", "_shapes", "_constraints", "_handlers", "_get_arbiters", "_locked", "_add_later",
     "_remove_later", "_removed_shapes", "_post_step_callbacks",
 )  # fmt: skip
 _OF_BODY = ("_body", "_velocity_func", "_position_func")
-_TYPES = ("pmBatchedData *", "pmFloatArray *", "pmIntArray *")
+_TYPES = ("pmBatchedData *", "pmFloatArray *", "pmIntArray *", *private_arbiters.TYPES)
 
 
 def missing() -> list[str]:
@@ -101,9 +102,21 @@ def reindex(space: pymunk.Space, bodies: Iterable[Any]) -> None:
         move(c, body)
 
 
+def forget_corrections(bodies: Iterable[Any]) -> None:
+    """Let pymunk's next step not apply to bodies, as `pointers` gives them, the corrections of overlaps that its last
+    one has left: it adds these velocities to theirs when it moves them, once; a move of no time moves nothing."""
+    for body in bodies:
+        lib.cpBodyUpdatePosition(body, 0.0)
+
+
 def pointers(bodies: Iterable[pymunk.Body]) -> list[Any]:
     """Chipmunk's bodies."""
     return [body._body for body in bodies]
+
+
+def raw_arbiters(space: pymunk.Space) -> list[Any]:
+    """`arbiters` as Chipmunk has them."""
+    return list(space._get_arbiters())
 
 
 def touching(space: pymunk.Space) -> list[tuple[pymunk.Body, pymunk.Body]]:

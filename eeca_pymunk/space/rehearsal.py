@@ -202,6 +202,7 @@ class Rehearsal:
 
     def finish(self) -> None:
         """What pymunk does when its step has ended: shapes where the bodies are, additions, removals, callbacks."""
+        private.forget_corrections(self.bodies.moving)
         private.reindex(self.space, self.bodies.moving)
         if private.waits(self.space):
             private.finish_step(self.space)

@@ -76,10 +76,11 @@ class Sync:
         moving = [b for b, still in zip(bodies.items, bodies.static.tolist(), strict=True) if b.shapes and not still]
         self._asleep = bool(bodies.asleep.any())
         self._moving = moving if sum(len(b.shapes) for b in moving) <= FEW else None
-        self._pointers = private.pointers(self._moving or ())
+        self._pointers, self._all = private.pointers(self._moving or ()), bodies.moving
         self._timestamp: Callable[[], int] = private.timestamp(space)
         self._renewed, self._dt, self._left = -1, 0.0, 0
         self._touched = False
+        self.stamp = -1  # pymunk's count of steps after our last one, -1 before the first
 
     def reindexes(self, dt: float, contacts: bool) -> bool:
         """Whether reindexing does for this step: pymunk took no step since our last rest step, which knows this dt, and
@@ -102,10 +103,22 @@ class Sync:
         if self.waits():
             private.finish_step(self.space)
 
+    def note(self) -> None:
+        """The steps that pymunk has taken until now were ours."""
+        self.stamp = self._timestamp()
+
+    def is_ours(self) -> bool:
+        """Whether pymunk has taken no step of its own since our last one."""
+        return self._timestamp() == self.stamp
+
     def rest(self, dt: float, joints: JointRows | None = None) -> None:
         """A rest step; all bodies must have velocity 0, and may have another of round-off if there are joints."""
-        rest_step(self.space, dt, joints, forget=self._timestamp() != self._renewed, asleep=self._asleep)
+        native = self._timestamp() != self._renewed
+        if native:
+            private.forget_corrections(self._all)
+        rest_step(self.space, dt, joints, forget=native, asleep=self._asleep)
         self._renewed, self._dt, self._left = self._timestamp(), dt, _RENEW
+        self.stamp = self._renewed
         if self._moving is not None:
             self._touched = bool(private.arbiters(self.space))
 

@@ -15,6 +15,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
 from ..compiled.records import Rows
 from ..geometry.manifold import manifold
+from ..geometry.sides import note_side
 from ..model.contacts import Row
 from ..model.shapes import Link, Shape
 from ..pairs.rules import law
@@ -70,6 +71,7 @@ def gather(
             continue
         if m + count > len(A):
             return -1
+        note_side(SHAPE, LINK, WORK, s, r, NOW[0, 0], NOW[0, 1], True)
         way = half * (
             math.sqrt((V[b, 0] - V[a, 0]) ** 2 + (V[b, 1] - V[a, 1]) ** 2)
             + abs(V[a, 2]) * EXTENT[a]

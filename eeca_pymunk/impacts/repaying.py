@@ -1,0 +1,69 @@
+"""Spans that are cut short give no energy.
+
+Forces of a span are right for the whole of it: a soft landing pushes before it touches. Cut after s, its impulses have
+lost D = W - dE, W the work of what impulses do not move. Where that is negative all of them are scaled by one q, which
+keeps momenta: with w = (a - a_free) s for each body, and velocities v at the start,
+
+    dE(q) = q B + q^2 C,   B = sum m (v + a_free s / 2) . w,   C = sum m w^2 / 2,   W(q) = q W,
+
+so that D(q) = 0 for q = (W - B) / C, or 0 where that is negative.
+"""
+
+from __future__ import annotations
+
+from ..compiled import uncounted
+from ..model.scene import Scene
+
+_ROUND_OFF = 1e-13  # of the energies that are summed
+
+
+@uncounted
+def scale_span(A: Scene, root: int, q: float) -> None:
+    """Scale the forces of an island's span, whose bodies are where it began, so that they lose nothing."""
+    BODY, PULL = A.BODY, A.PULL
+    i = root
+    while i >= 0:
+        BODY[i].ax = PULL[i, 0] + q * (BODY[i].ax - PULL[i, 0])
+        BODY[i].ay = PULL[i, 1] + q * (BODY[i].ay - PULL[i, 1])
+        BODY[i].angular = PULL[i, 2] + q * (BODY[i].angular - PULL[i, 2])
+        i = A.MEMBER[i].following
+    for c in range(A.COUNT.pushes):
+        if A.PUSHED_BY[c].root == root:
+            R = A.PUSHED[c]
+            R.normal, R.tangential, R.work, R.change = q * R.normal, q * R.tangential, q * R.work, q * R.change
+            R.un_before, R.un_after, R.ut_before, R.ut_after = 0.0, 0.0, 0.0, 0.0
+
+
+@uncounted
+def repay(A: Scene, root: int, t: float) -> None:
+    """Before the span of an island ends at instant t: see above."""
+    BODY, PULL = A.BODY, A.PULL
+    lost, work, size, start = 0.0, 0.0, 0.0, -1.0
+    for c in range(A.COUNT.pushes):
+        if A.PUSHED_BY[c].root != root:
+            continue
+        R = A.PUSHED[c]
+        start = R.start
+        f = (t - R.start) / R.length
+        normal = -f * R.normal * (R.un_before + 0.5 * f * (R.un_after - R.un_before))
+        tangential = -f * R.tangential * (R.ut_before + 0.5 * f * (R.ut_after - R.ut_before))
+        lost += normal + tangential
+        work += f * R.work
+        size += abs(normal) + abs(tangential)
+    if lost >= -_ROUND_OFF * size or start < 0.0:
+        return
+    s, B, C = t - start, 0.0, 0.0
+    i = root
+    while i >= 0:
+        body = BODY[i]
+        if body.since != start:
+            return
+        wx, wy, turn = (body.ax - PULL[i, 0]) * s, (body.ay - PULL[i, 1]) * s, (body.angular - PULL[i, 2]) * s
+        B += ((body.vx + 0.5 * PULL[i, 0] * s) * wx + (body.vy + 0.5 * PULL[i, 1] * s) * wy) / body.inv_mass
+        C += 0.5 * (wx * wx + wy * wy) / body.inv_mass
+        if body.inv_inertia > 0.0:
+            B += (body.spin + 0.5 * PULL[i, 2] * s) * turn / body.inv_inertia
+            C += 0.5 * turn * turn / body.inv_inertia
+        i = A.MEMBER[i].following
+    if C > 0.0:
+        scale_span(A, root, min(max((work - B) / C, 0.0), 1.0))

@@ -1,0 +1,139 @@
+"""What pymunk's arbiters tell after a step of ours: the impulses of the step, and who touched in it.
+
+pymunk's own solver has taken no part in the step: its arbiters are those of shapes that touch at the end, without
+impulses, or of a rehearsal. `Body.each_arbiter` and `batch.get_space_arbiters` ask us first. While they run, the
+contacts of pymunk's arbiters have the impulses of our step, and pairs that touched within the step only have arbiters
+of their own; afterwards all is as it was. A step pays nothing for it.
+
+The impulse of an arbiter is the sum over the step. Its points are pymunk's, or where the pair touched last; `total_ke`
+is by Chipmunk's formula, sum of (1 - e)/(1 + e) j_n^2 k_nn + j_t^2 k_tt.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any, NamedTuple
+from weakref import WeakKeyDictionary
+
+import pymunk
+from pymunk import batch
+
+from ..compiled.records import Rows
+from ..model.contacts import Impulse
+from . import private, private_arbiters
+
+
+class Touch(NamedTuple):
+    """A pair of shapes in a step: the sum of its impulses on `b` (mass length/time), and where it touched last."""
+
+    a: pymunk.Shape
+    b: pymunk.Shape
+    impulse: tuple[float, float]
+    normal: tuple[float, float]
+    points: list[tuple[float, float]]
+
+
+class Touches:
+    """The pairs of a step, by the addresses of both shapes in Chipmunk, and by each of their bodies."""
+
+    def __init__(self, found: Sequence[Touch]) -> None:
+        self.all: dict[frozenset[int], Touch] = {}
+        self._of: dict[pymunk.Body | None, dict[frozenset[int], Touch]] = {}
+        for touch in found:
+            key = frozenset((private_arbiters.shape_key(touch.a), private_arbiters.shape_key(touch.b)))
+            self.all[key] = touch
+            for body in (touch.a.body, touch.b.body):
+                self._of.setdefault(body, {})[key] = touch
+
+    def of(self, body: pymunk.Body) -> dict[frozenset[int], Touch]:
+        """Those of a body."""
+        return self._of.get(body, {})
+
+
+Reading = Callable[[], "Touches | None"]
+_readings: WeakKeyDictionary[pymunk.Space, Reading] = WeakKeyDictionary()
+_native_each: Any = pymunk.Body.each_arbiter
+_native_batch: Any = batch.get_space_arbiters
+
+
+def show_contacts(space: pymunk.Space, read: Reading) -> None:
+    """Let arbiters of a space tell what `read` does, as long as it is not None. It must not hold the space."""
+    _readings[space] = read
+    pymunk.Body.each_arbiter = _each_arbiter  # type: ignore[method-assign]
+    batch.get_space_arbiters = _get_space_arbiters
+
+
+def touches(EVENT: Rows[Impulse], shapes: Sequence[pymunk.Shape]) -> list[Touch]:
+    """The pairs of the (m,) impulses of a step; `shapes` by row."""
+    found: dict[tuple[int, int], list[Any]] = {}
+    for e in EVENT:
+        found.setdefault((int(e["first"]), int(e["second"])), []).append(e)
+    result = []
+    for (a, b), events in found.items():
+        x = sum(e["normal"] * e["nx"] - e["tangential"] * e["ny"] for e in events)
+        y = sum(e["normal"] * e["ny"] + e["tangential"] * e["nx"] for e in events)
+        last = max(e["when"] for e in events)
+        late = [e for e in events if e["when"] == last][:2]
+        points = [(float(e["px"]), float(e["py"])) for e in late]
+        normal = float(late[0]["nx"]), float(late[0]["ny"])
+        result.append(Touch(shapes[a], shapes[b], (float(x), float(y)), normal, points))
+    return result
+
+
+def _of(space: pymunk.Space | None) -> Touches | None:
+    read = None if space is None else _readings.get(space)
+    return None if read is None else read()
+
+
+@contextmanager
+def _told(arbiters: Sequence[Any], found: dict[frozenset[int], Touch]) -> Iterator[list[Any]]:
+    """Within, arbiters of pymunk have the impulses of these pairs; yields arbiters of the pairs that it has none of."""
+    kept, missing = [], dict(found)
+    try:
+        for arbiter in arbiters:
+            if arbiter.count == 0 or private_arbiters.asleep(arbiter):
+                continue
+            touch = missing.pop(private_arbiters.arbiter_key(arbiter), None)
+            impulse = None if touch is None else _along(arbiter, touch)
+            kept.append((arbiter, private_arbiters.set_impulse(arbiter, impulse)))
+        there = [t for t in missing.values() if t.a.space is not None and t.b.space is not None]
+        yield [private_arbiters.make_arbiter(t.a, t.b, t.normal, t.points, t.impulse) for t in there]
+    finally:
+        for arbiter, old in kept:
+            private_arbiters.restore_impulse(arbiter, old)
+
+
+def _along(arbiter: Any, touch: Touch) -> tuple[float, float]:
+    """The impulse of a pair on the second shape of the arbiter."""
+    sign = 1.0 if private_arbiters.second_is(arbiter, touch.b) else -1.0
+    return sign * touch.impulse[0], sign * touch.impulse[1]
+
+
+def _each_arbiter(self: pymunk.Body, func: Callable[..., None], *args: Any, **kwargs: Any) -> None:
+    space = self.space
+    found = _of(space)
+    if found is None or space is None:
+        _native_each(self, func, *args, **kwargs)
+        return
+    arbiters: list[Any] = []
+    _native_each(self, lambda arbiter: arbiters.append(private_arbiters.raw(arbiter)))
+    with _told(arbiters, found.of(self)) as more:
+        _native_each(self, func, *args, **kwargs)
+        for arbiter in more:
+            private_arbiters.turn_to(arbiter, self)
+            func(pymunk.Arbiter(arbiter, space), *args, **kwargs)
+
+
+def _get_space_arbiters(space: pymunk.Space, fields: batch.ArbiterFields, buffers: batch.Buffer) -> None:
+    found = _of(space)
+    if found is None:
+        _native_batch(space, fields, buffers)
+        return
+    with _told(private.raw_arbiters(space), found.all) as more:
+        _native_batch(space, fields, buffers)
+        private_arbiters.batch_arbiters(more, fields, buffers)
+
+
+_each_arbiter.__doc__ = _native_each.__doc__
+_get_space_arbiters.__doc__ = _native_batch.__doc__

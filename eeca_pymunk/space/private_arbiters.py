@@ -1,0 +1,110 @@
+"""Private names of pymunk's arbiters: their C structures, read and written; see `private`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import pymunk
+from pymunk import batch
+from pymunk._chipmunk_cffi import ffi, lib
+
+OF_LIBRARY = ("pmSpaceArbiterIteratorFuncBatched", "cpBodyIsSleeping", "cpArbiterTotalImpulse")
+TYPES = ("cpArbiter *", "cpContact[1]")
+
+
+def shape_key(shape: pymunk.Shape) -> int:
+    """The address of a shape in Chipmunk."""
+    return int(ffi.cast("uintptr_t", shape._shape))
+
+
+def arbiter_key(arbiter: Any) -> frozenset[int]:
+    """The addresses of both shapes of an arbiter."""
+    return frozenset((int(ffi.cast("uintptr_t", arbiter.a)), int(ffi.cast("uintptr_t", arbiter.b))))
+
+
+def second_is(arbiter: Any, shape: pymunk.Shape) -> bool:
+    """Whether a shape is the second one of an arbiter."""
+    return int(ffi.cast("uintptr_t", arbiter.b)) == shape_key(shape)
+
+
+def asleep(arbiter: Any) -> bool:
+    """Whether a body of an arbiter sleeps."""
+    return bool(lib.cpBodyIsSleeping(arbiter.body_a) or lib.cpBodyIsSleeping(arbiter.body_b))
+
+
+def set_impulse(arbiter: Any, impulse: tuple[float, float] | None) -> list[tuple[float, float]]:
+    """Give an arbiter this impulse on its second shape, shared among its points, or none; what they had."""
+    old = [(arbiter.contacts[k].jnAcc, arbiter.contacts[k].jtAcc) for k in range(arbiter.count)]
+    x, y = (0.0, 0.0) if impulse is None else impulse
+    nx, ny = arbiter.n.x, arbiter.n.y
+    normal, tangential = (x * nx + y * ny) / arbiter.count, (y * nx - x * ny) / arbiter.count
+    for k in range(arbiter.count):
+        arbiter.contacts[k].jnAcc, arbiter.contacts[k].jtAcc = normal, tangential
+    return old
+
+
+def restore_impulse(arbiter: Any, old: Sequence[tuple[float, float]]) -> None:
+    """Undo `set_impulse`."""
+    for k, (normal, tangential) in enumerate(old):
+        arbiter.contacts[k].jnAcc, arbiter.contacts[k].jtAcc = normal, tangential
+
+
+def _centre(shape: pymunk.Shape) -> tuple[float, float, float, float]:
+    """Centre of mass of the shape's body, inverse mass and moment."""
+    body = shape.body
+    assert body is not None
+    x, y = body.local_to_world(body.center_of_gravity)
+    if body.body_type != pymunk.Body.DYNAMIC:
+        return x, y, 0.0, 0.0
+    return x, y, 1.0 / body.mass, 1.0 / body.moment
+
+
+def make_arbiter(
+    a: pymunk.Shape, b: pymunk.Shape, normal: tuple[float, float], points: Sequence[tuple[float, float]],
+    impulse: tuple[float, float],
+) -> Any:  # fmt: skip
+    """An arbiter of two shapes that touched at these points (1 or 2) with this impulse on b; no part of a space."""
+    nx, ny = normal
+    contacts, arbiter = ffi.new("cpContact[]", len(points)), ffi.new("cpArbiter *")
+    (xa, ya, ma, ia), (xb, yb, mb, ib) = _centre(a), _centre(b)
+    for contact, (px, py) in zip(contacts, points, strict=True):
+        contact.r1.x, contact.r1.y, contact.r2.x, contact.r2.y = px - xa, py - ya, px - xb, py - yb
+        turn_a, turn_b = (px - xa) * ny - (py - ya) * nx, (px - xb) * ny - (py - yb) * nx
+        slide_a, slide_b = (px - xa) * nx + (py - ya) * ny, (px - xb) * nx + (py - yb) * ny
+        contact.nMass = 1.0 / (ma + mb + ia * turn_a * turn_a + ib * turn_b * turn_b)
+        contact.tMass = 1.0 / (ma + mb + ia * slide_a * slide_a + ib * slide_b * slide_b)
+    body_a, body_b = a.body, b.body
+    assert body_a is not None
+    assert body_b is not None
+    arbiter.a, arbiter.b, arbiter.body_a, arbiter.body_b = a._shape, b._shape, body_a._body, body_b._body
+    arbiter.e, arbiter.u = a.elasticity * b.elasticity, a.friction * b.friction
+    arbiter.n.x, arbiter.n.y, arbiter.count, arbiter.contacts = nx, ny, len(points), contacts
+    arbiter.state, arbiter.processCollision = lib.CP_ARBITER_STATE_FIRST_COLLISION, 1
+    set_impulse(arbiter, impulse)
+    return _Holder(arbiter, contacts).arbiter
+
+
+class _Holder:
+    """Keeps the contacts of an arbiter as long as that is there."""
+
+    def __init__(self, arbiter: Any, contacts: Any) -> None:
+        self.arbiter = ffi.gc(arbiter, lambda _: contacts)
+
+
+def turn_to(arbiter: Any, body: pymunk.Body) -> None:
+    """Let an arbiter be seen from a body."""
+    arbiter.swapped = 1 if arbiter.body_b == body._body else 0
+
+
+def raw(arbiter: pymunk.Arbiter) -> Any:
+    """An arbiter as Chipmunk has it."""
+    return arbiter._arbiter
+
+
+def batch_arbiters(arbiters: Sequence[Any], fields: batch.ArbiterFields, buffers: batch.Buffer) -> None:
+    """Add arbiters to what `batch.get_space_arbiters` has read."""
+    data = ffi.new("pmBatchedData *")
+    data.fields, data.floatArray, data.intArray = fields.value, buffers._float_arr, buffers._int_arr
+    for arbiter in arbiters:
+        lib.pmSpaceArbiterIteratorFuncBatched(arbiter, data)

@@ -1,0 +1,200 @@
+"""Random compositions: bodies of many kinds and masses in a container that turns and shakes, and the laws that hold.
+
+`Composition` draws a scene and plays it: thin and thick shapes, masses 1 : 10 000, moments that are infinite, lengths
+from 1 mm to 50 m, steps of 1/240 to 1/10 s, with gravity or without; joints and bounded motors on request. Laws:
+
+* all is finite; the ledger closes to 1e-11 of the scale of energy, and its losses are not negative by more than that;
+* in a container that rests energy never rises without joints that drive;
+* nobody leaves the container, by more than a part of his size;
+* a step takes no longer than `LONGEST`;
+* saved and loaded half-way the run goes on bit by bit.
+"""
+
+from __future__ import annotations
+
+import math
+import pickle
+import time
+from dataclasses import dataclass
+from random import Random
+
+import numpy as np
+import pymunk
+
+import eeca_pymunk as ep
+
+LENGTHS = (1e-3, 3e-2, 1.0, 10.0, 50.0)
+STEPS = (1 / 240, 1 / 60, 1 / 30, 1 / 10)
+LONGEST = 2.0  # s, of a step, whatever else the machine does
+CLOSES = 1e-11
+OUT = 0.5  # of a body's least size
+
+
+class Broken(AssertionError):
+    """A law that does not hold."""
+
+
+@dataclass
+class Found:
+    """What a composition came to: longest step (s), steps that have not converged, largest loss below 0, over the scale
+    of energy."""
+
+    longest: float = 0.0
+    unconverged: int = 0
+    below: float = 0.0
+
+
+class Composition:
+    """The scene of a seed.
+
+    Args:
+        joints: whether bodies are joined, some by motors of bounded force.
+        thin: whether there are planks and rods, and segments without width.
+    """
+
+    def __init__(self, seed: int, joints: bool = False, thin: bool = True) -> None:
+        self.random = R = Random(seed)
+        self.kinds = ("disk", "box", "polygon", *(("thin", "rod", "plank") if thin else ()))
+        self.length = L = R.choice(LENGTHS)
+        self.dt = R.choice(STEPS)
+        self.space = space = pymunk.Space()
+        space.gravity = 0.0, R.choice((0.0, -9.81))
+        self.turns = R.random() < 0.6
+        self.half = 5.0 * L
+        self.box = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+        self.rounding = R.choice((0.0, 0.0, 0.1 * L))
+        elastic, rough = R.choice((0.0, 0.5, 1.0)), R.choice((0.0, 0.5, 1.0))
+        corners = [(-self.half, -self.half), (self.half, -self.half), (self.half, self.half), (-self.half, self.half)]
+        walls = [
+            pymunk.Segment(self.box, p, q, self.rounding)
+            for p, q in zip(corners, corners[1:] + corners[:1], strict=True)
+        ]
+        for wall in walls:
+            wall.elasticity, wall.friction = R.choice((1.0, elastic)), rough
+        space.add(self.box, *walls)
+        self.bodies: list[pymunk.Body] = []
+        self.sizes: list[float] = []
+        places = [(x, y) for x in range(-3, 4, 2) for y in range(-3, 4, 2)]
+        for x, y in R.sample(places, R.randint(2, 12)):
+            self._add(x * L, y * L, elastic, rough)
+        if joints:
+            self._join()
+        self.stepper = ep.EECA(space)
+
+    def _add(self, x: float, y: float, elastic: float, rough: float) -> None:
+        R, L = self.random, self.length
+        mass = 10.0 ** R.uniform(0.0, 4.0) * L * L
+        size = R.uniform(0.2, 0.7) * L
+        kind = R.choice(self.kinds)
+        moment = math.inf if R.random() < 0.1 else 0.4 * mass * size * size
+        body = pymunk.Body(mass, moment)
+        body.position, body.angle = (x, y), R.uniform(-3.0, 3.0)
+        speed = R.choice((0.0, 1.0, 5.0)) * L
+        body.velocity = R.uniform(-speed, speed), R.uniform(-speed, speed)
+        spin = R.uniform(-3.0, 3.0)
+        body.angular_velocity = 0.0 if math.isinf(moment) else spin  # a wheel that nothing stops drives others
+        shape: pymunk.Shape
+        least = size
+        if kind == "disk":
+            shape = pymunk.Circle(body, size)
+        elif kind == "box":
+            shape = pymunk.Poly.create_box(body, (2 * size, size), R.choice((0.0, 0.05 * L)))
+        elif kind == "plank":
+            shape, least = pymunk.Poly.create_box(body, (2 * size, 0.05 * size)), 0.05 * size
+        elif kind == "polygon":
+            n = R.randint(3, 8)
+            shape = pymunk.Poly(
+                body, [(size * math.cos(2 * math.pi * k / n), size * math.sin(2 * math.pi * k / n)) for k in range(n)]
+            )
+        else:
+            shape = pymunk.Segment(body, (-size, 0.0), (size, 0.0), 0.0 if kind == "thin" else 0.05 * L)
+        shape.elasticity, shape.friction = R.choice((1.0, elastic)), rough
+        self.space.add(body, shape)
+        self.bodies.append(body)
+        self.sizes.append(max(least, 0.1 * L))
+
+    def _join(self) -> None:
+        R, L = self.random, self.length
+        for a, b in zip(self.bodies, self.bodies[1:], strict=False):
+            if R.random() < 0.5:
+                middle = tuple(0.5 * (p + q) for p, q in zip(a.position, b.position, strict=True))
+                joint: pymunk.Constraint = R.choice(
+                    (
+                        lambda a=a, b=b, middle=middle: pymunk.PivotJoint(a, b, middle),
+                        lambda a=a, b=b: pymunk.PinJoint(a, b),
+                        lambda a=a, b=b: pymunk.SlideJoint(a, b, (0, 0), (0, 0), 0.5 * L, 5.0 * L),
+                        lambda a=a, b=b: pymunk.DampedSpring(a, b, (0, 0), (0, 0), 2 * L, a.mass, 0.1 * a.mass),
+                    )
+                )()
+                joint.collide_bodies = R.random() < 0.5
+                self.space.add(joint)
+                if R.random() < 0.3:
+                    motor = pymunk.SimpleMotor(a, b, R.uniform(-3, 3))
+                    motor.max_force = a.mass * L * L * R.choice((0.1, 1.0, 10.0))
+                    self.space.add(motor)
+
+    def drive(self, k: int) -> None:
+        """Shake and turn the container."""
+        if self.turns:
+            t, L = k * self.dt, self.length
+            self.box.velocity = L * math.cos(3.0 * t), L * math.sin(5.0 * t)
+            self.box.angular_velocity = math.sin(t)
+
+    def state(self) -> list[tuple[float, ...]]:
+        """Poses and velocities of all bodies."""
+        return [(*b.position, b.angle, *b.velocity, b.angular_velocity) for b in self.bodies]
+
+    def play(self, steps: int = 120) -> Found:
+        """Take the steps; `Broken` says which law does not hold."""
+        found, energies = Found(), [ep.measure(self.space).energy]
+        saved: bytes | None = None
+        half: list[list[tuple[float, ...]]] = []
+        for k in range(steps):
+            if k == steps // 2:
+                saved = pickle.dumps((self.space, self.stepper))
+            self.drive(k)
+            clock = time.perf_counter()
+            report = self.stepper.step(self.dt)
+            found.longest = max(found.longest, time.perf_counter() - clock)
+            found.unconverged += not report.converged
+            state = self.state()
+            if saved is not None:
+                half.append(state)
+            self._check(k, report, state, energies, found)
+        if saved is not None and not self.turns:
+            space, stepper = pickle.loads(saved)
+            again = [b for b in space.bodies if b.body_type == pymunk.Body.DYNAMIC]
+            for k, expected in enumerate(half):
+                stepper.step(self.dt)
+                now = [(*b.position, b.angle, *b.velocity, b.angular_velocity) for b in again]
+                if now != expected:
+                    raise Broken(f"a run that was saved goes another way after {k} steps")
+        if found.longest > LONGEST:
+            raise Broken(f"a step took {found.longest:.1f} s")
+        return found
+
+    def _check(
+        self, k: int, report: ep.StepReport, state: list[tuple[float, ...]], energies: list[float], found: Found
+    ) -> None:
+        if not np.isfinite(state).all():
+            raise Broken(f"step {k}: not finite")
+        now = ep.measure(self.space)
+        ledger = report.ledger
+        assert ledger is not None
+        g = abs(self.space.gravity[1])
+        scale = sum(b.mass for b in self.bodies) * g * 10 * self.length + abs(now.kinetic) + abs(ledger.external)
+        scale += ledger.restitution + ledger.friction + ledger.damping + abs(energies[-1])
+        if abs(ledger.residual) > CLOSES * scale:
+            raise Broken(f"step {k}: the ledger is open by {ledger.residual / scale:.1e}")
+        least = min(ledger.restitution, ledger.friction, ledger.damping) / max(scale, 1e-300)
+        found.below = min(found.below, least)
+        if least < -CLOSES:
+            raise Broken(f"step {k}: a loss of {least:.1e}, converged {report.converged}")
+        if not self.turns and not self.space.constraints and now.energy - energies[-1] > CLOSES * scale:
+            raise Broken(f"step {k}: energy rises by {(now.energy - energies[-1]) / scale:.1e}")
+        energies.append(now.energy)
+        for body, size in zip(self.bodies, self.sizes, strict=True):
+            x, y = self.box.world_to_local(body.position)
+            out = max(abs(x), abs(y)) - self.half - self.rounding
+            if out > OUT * size:
+                raise Broken(f"step {k}: {next(iter(body.shapes))} is {out / size:.2g} of its size outside")

@@ -1,0 +1,76 @@
+"""report.unmet: which budget or tolerance was not met, and for which bodies."""
+
+from __future__ import annotations
+
+import pickle
+
+import pymunk
+
+import eeca_pymunk as ep
+
+
+def bouncing(limit: int) -> tuple[ep.EECA, pymunk.Body]:
+    """A ball between two walls, hit 20 times a second, and another on its own."""
+    space = pymunk.Space()
+    for x in (-0.1, 0.1):
+        wall = pymunk.Segment(space.static_body, (x, -9), (x, 9), 0.0)
+        wall.elasticity = 1.0
+        space.add(wall)
+    bodies = []
+    for x, v in ((0.0, 2.0), (5.0, 2.0)):
+        body = pymunk.Body(1.0, 1.0)
+        body.position, body.velocity = (x, 0.0), (v, 0.0)
+        shape = pymunk.Circle(body, 0.05)
+        shape.elasticity = 1.0
+        space.add(body, shape)
+        bodies.append(body)
+    return ep.EECA(space, ep.TimeOfImpact(max_impacts=limit)), bodies[0]
+
+
+def test_a_step_that_meets_all_has_nothing_to_tell() -> None:
+    stepper, _ = bouncing(100)
+    report = stepper.step(1.0)
+    assert report.converged
+    assert report.unmet == ()
+
+
+def test_impacts_beyond_the_limit_are_told_with_their_bodies() -> None:
+    stepper, ball = bouncing(7)
+    report = stepper.step(1.0)
+    assert not report.converged
+    (unmet,) = report.unmet
+    assert (unmet.name, unmet.value, unmet.limit) == ("impacts", 7.0, 7.0)
+    assert ball in unmet.bodies
+    assert len(unmet.bodies) == 2
+    copy = pickle.loads(pickle.dumps(report))
+    assert [u.name for u in copy.unmet] == ["impacts"]
+    later = stepper.step(1e-9)
+    assert later.unmet == ()
+    assert report.unmet == (unmet,), "it was of its own step"
+
+
+def test_a_step_without_work_left_ends_before_its_time() -> None:
+    """Boxes that tumble, with hardly any solves: what the step has come to is consistent, energy right."""
+    space = pymunk.Space()
+    space.gravity = 0.0, -9.81
+    floor = pymunk.Segment(space.static_body, (-99, 0), (99, 0), 0.0)
+    floor.friction = 0.5
+    space.add(floor)
+    for i in range(6):
+        body = pymunk.Body(1.0, 0.2)
+        body.position, body.angle = (0.9 * (i % 2), 0.7 + i), 0.3 * i
+        shape = pymunk.Poly.create_box(body, (0.8, 0.6))
+        shape.friction = 0.5
+        space.add(body, shape)
+    stepper = ep.EECA(space)
+    stepper._method.scene.COUNT.budget = 20  # type: ignore[attr-defined]
+    start = ep.measure(space).energy
+    report = stepper.step(3.0)
+    assert not report.converged
+    unmet = {u.name: u for u in report.unmet}["solves"]
+    assert unmet.value > unmet.limit == 20.0
+    assert unmet.bodies
+    assert report.ledger is not None
+    assert abs(report.ledger.residual) < 1e-12 * start
+    assert ep.measure(space).energy <= start
+    assert min(b.position.y for b in space.bodies) > 0.25
