@@ -207,22 +207,3 @@ def lay_rest(STATES: FloatArray, ENDS: FloatArray, status: int) -> None:
         for i in range(N):
             for k in range(2):
                 still[4 * i + k], still[4 * i + 2 + k], speed[2 * i + k] = after[i, k], 0.0, after[i, 3 + k]
-
-
-@kernel
-def fly(
-    STATES: FloatArray,
-    WALK: IntArray,
-    EXTRA: FloatArray,
-    BODY: Rows[Body],
-    ENDS: FloatArray,
-    dt: float,
-    gx: float,
-    gy: float,
-    left: float,
-) -> int:
-    """A step of bodies that meet nothing: exact parabolas, constant spin or torque. Arguments and answer as above."""
-    status = take(STATES, WALK, EXTRA, BODY, gx, gy, left)
-    if status < 0:
-        return status
-    return give(STATES, WALK, EXTRA, BODY, ENDS, dt, left, status)

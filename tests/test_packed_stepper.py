@@ -25,6 +25,7 @@ from eeca_pymunk.space.world import World
 from scenes.scene import add_disk
 
 from .steppers import state
+from .test_transfer import flown
 
 DT = 0.0625
 
@@ -35,8 +36,7 @@ class FreeFlight(PackedStepper):
     told: Rows[Impulse] | None = None
 
     def advance(self, world: World, dt: float, left: float) -> int:
-        gx, gy = world.gravity
-        status = transfer.fly(world.STATES, world.WALK, world.EXTRA, world.BODY, world.ENDS, dt, gx, gy, left)
+        status = flown(world, dt, left)
         return status if self.told is None or status < 0 else status | transfer.EVENTS
 
     def details(self, world: World, dt: float) -> Callable[[], Details]:

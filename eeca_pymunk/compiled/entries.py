@@ -52,7 +52,6 @@ ENTRIES = {
     "transfer:give": "f8[3] i8[2] f8[2] Body[1] f8[1] f8 f8 i8",
     "transfer:lay": "f8[3] i8[2] f8[1] i8",
     "transfer:lay_rest": "f8[3] f8[1] i8",
-    "transfer:fly": "f8[3] i8[2] f8[2] Body[1] f8[1] f8 f8 f8 f8",
     "rehearsing:approach": "f8[3] i8[2] f8[2] Body[1] f8[1] f8 f8 f8 f8",
     "rehearsing:changed": "f8[3] f8[2] f8[2]",
     "impacts.booking:flag_again": "{Scene}",

@@ -24,7 +24,7 @@ import llvmlite
 import numba
 import numpy as np
 
-from ..entries import TABLES, table_fields
+from ..entries import ENTRIES, TABLES, table_fields
 from ..kernels import Kernel, kernels
 from ..prefetch import Fetch
 from ..sources import cache_folder
@@ -99,16 +99,16 @@ def _said(value: Any, where: str) -> object:
 def part_key(call: Call) -> str:
     """The name under which a part is kept."""
     kernel, args = call
-    return digest(
-        _compiler("calls.py", "parts.py", "types.py", "../tables.py", "../entries.py"), source_key(kernel), args
-    )
+    compiler = _compiler("calls.py", "parts.py", "types.py", "../tables.py", "../records.py")
+    return digest(compiler, TABLES, source_key(kernel), args)
 
 
 def group_key(group: Group, triple: str, cpu: str) -> str:
     """The name under which an object file is kept."""
     code = [hashlib.sha256(one).hexdigest() for one in group.parts]
-    compiler = _compiler("module.py", "runtime.ll", "../entries.py", "../library.py")
-    return digest(compiler, group.entries, code, sorted(group.public), sorted(group.foreign), triple, cpu)
+    compiler = _compiler("module.py", "runtime.ll", "../library.py")
+    declared = [(name, repr(returned), ENTRIES.get(name)) for name, returned in group.entries]
+    return digest(compiler, declared, code, sorted(group.public), sorted(group.foreign), triple, cpu)
 
 
 def _path(kind: str, key: str) -> Path:
