@@ -29,6 +29,7 @@ NAMES = (
     "piles",
     "joints",
     "sleeping",
+    "meeting",
     "soak",
     "pymunk_examples",
     "hard_cases",
