@@ -193,7 +193,11 @@ def within() -> tuple[str, float, float]:
     space = heap(False)
     stepper = ep.EECA(space)
     told = 0
-    space.on_collision(pre_solve=lambda *_: stepper.step(DT) and None)
+
+    def again(arbiter: pymunk.Arbiter, space: pymunk.Space, data: object) -> None:
+        stepper.step(DT)
+
+    space.on_collision(pre_solve=again)
     try:
         for _ in range(30):
             stepper.step(DT)
