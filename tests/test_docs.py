@@ -25,6 +25,7 @@ OTHERS = {
     "python tests/mutations.py": "tests/mutations.py",
     "python -m tests.programs.soak": "tests/programs/soak.py",
     "python -m tests.programs.soak --gain 1e-8": "tests/programs/soak.py",
+    "python -m tests.programs.soak --compositions": "tests/programs/soak.py",
     "python -m tests.bitwise": "tests/bitwise.py",
     "python -m eeca_pymunk": "tests/test_release.py",
     "python -m eeca_pymunk.build": "tests/build/test_builder.py",
