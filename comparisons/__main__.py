@@ -32,6 +32,7 @@ NAMES = (
     "sleeping",
     "rollouts",
     "datasets",
+    "meeting",
     "soak",
     "pymunk_examples",
     "hard_cases",

@@ -28,6 +28,7 @@ from comparisons import (
     gallery,
     joints,
     maxwell,
+    meeting,
     pile_precision,
     piles,
     pymunk_examples,
@@ -158,6 +159,15 @@ def test_work_precision_finds_how_much_better_eeca_is() -> None:
     assert row["native best (m)"] == min(p.error for p in points[2:])
     assert max(p.error for p in points[:2]) < 1e-12
     assert float(row["native best (m)"] or 0.0) > 1e-4
+
+
+JOINTS = ("1", "7", "12")  # rows that joints still owe
+
+
+@pytest.mark.parametrize("number", [n for n in meeting.CASES if n not in JOINTS])
+def test_where_features_meet_laws_hold(number: str) -> None:
+    _, value, most = meeting.CASES[number][1]()
+    assert value <= most
 
 
 def test_first_use_tells_seconds_of_imports_and_steps() -> None:

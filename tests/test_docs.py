@@ -29,6 +29,7 @@ OTHERS = {
     "python tests/mutations.py": "tests/mutations.py",
     "python -m tests.programs.soak": "tests/programs/soak.py",
     "python -m tests.programs.soak --gain 1e-8": "tests/programs/soak.py",
+    "python -m tests.programs.soak --compositions": "tests/programs/soak.py",
     "python -m tests.bitwise": "tests/bitwise.py",
     "python -m eeca_pymunk": "tests/test_release.py",
     "python -m eeca_pymunk.build": "tests/build/test_builder.py",
@@ -63,6 +64,7 @@ SHORT = {
     "sleeping": (
         "test_comparisons.py::test_a_pile_that_sleeps_costs_little_and_wakes_stack_by_stack_in_the_step_that_touches_it"
     ),
+    "meeting": "test_comparisons.py::test_where_features_meet_laws_hold",
     "soak": "test_comparisons.py::test_short_soak_keeps_energy_and_disks",
     "hard_cases": "test_hard_cases.py::test_matrix_tells_passes_failures_and_refusals",
     "maxwell": "test_comparisons.py::test_speeds_of_gases_become_those_of_a_shared_energy",

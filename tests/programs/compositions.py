@@ -81,6 +81,11 @@ class Composition:
             self._join()
         self.stepper = ep.EECA(space)
 
+    @property
+    def gentle(self) -> bool:
+        """Whether what falls comes less far in a step than a quarter of the length of the scene."""
+        return abs(self.space.gravity[1]) * self.dt * self.dt <= 0.25 * self.length
+
     def _add(self, x: float, y: float, elastic: float, rough: float) -> None:
         R, L = self.random, self.length
         mass = 10.0 ** R.uniform(0.0, 4.0) * L * L

@@ -1,5 +1,7 @@
 """Ten thousand random programs of API calls: `python -m tests.programs.soak [COUNT] [--minutes M] [--joints]`.
 
+`--compositions` plays random scenes of `compositions.py` in their place, and prints the longest step of all.
+
 Goes on after a failure, and prints its seed and calls; with `--shrink`, which draws more slowly and less widely, the
 shortest program that fails in the same way, with what was drawn. `--gain 1e-5` takes a gain of energy above that part
 of the scale for a failure (see `fuzz.Program`).
@@ -14,6 +16,7 @@ from hypothesis import HealthCheck, given, seed, settings
 from hypothesis import strategies as st
 from tqdm import tqdm
 
+from .compositions import Composition
 from .fuzz import GAIN, Drawn, Program, Thrown
 
 _BATCH = 100  # programs between two looks at the clock
@@ -50,6 +53,22 @@ def plain(count: int, start: int, gain: float, joints: bool, length: int) -> str
     return "\n".join(told)
 
 
+def compositions(count: int, minutes: float, start: int, joints: bool) -> int:
+    """Play so many compositions, or for so long; how many break a law."""
+    clock, failed, longest, done = time.perf_counter(), 0, 0.0, 0
+    with tqdm(total=count, unit="scene", desc="compositions") as bar:
+        while done < count and time.perf_counter() - clock < 60.0 * minutes:
+            try:
+                longest = max(longest, Composition(start + done, joints).play().longest)
+            except Exception as error:
+                failed += 1
+                tqdm.write(f"seed {start + done}: {type(error).__name__}: {error}")
+            done += 1
+            bar.update(1)
+    print(f"{done} compositions, {failed} fail, longest step {1e3 * longest:.0f} ms")
+    return failed
+
+
 def soak(count: int, minutes: float, start: int, gain: float, joints: bool, shrink: bool, length: int = 40) -> int:
     """Play so many programs, or for so long; how many batches fail."""
     clock, failed, done = time.perf_counter(), 0, 0
@@ -73,6 +92,9 @@ if __name__ == "__main__":
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--gain", type=float, default=GAIN)
     parser.add_argument("--joints", action="store_true", help="join bodies, too")
+    parser.add_argument("--compositions", action="store_true", help="scenes in containers that turn and shake")
     parser.add_argument("--shrink", action="store_true", help="draw by hypothesis, and shrink what fails")
     one = parser.parse_args()
+    if one.compositions:
+        raise SystemExit(min(compositions(one.count, one.minutes, one.seed, one.joints), 1))
     raise SystemExit(min(soak(one.count, one.minutes, one.seed, one.gain, one.joints, one.shrink), 1))
