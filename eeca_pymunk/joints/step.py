@@ -90,7 +90,7 @@ from .taut import taut
 SUZUKI = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))
 FIRST_RUNG, ELASTIC_RUNG, LAST_RUNG = 0, 4, 10  # rung -1 is order 4
 _ELASTIC_PARTS = 7
-_PART_OF_BUDGET = 0.4  # of what is left of it, that one step of an island may take
+_PART_OF_BUDGET = 0.5  # of what is left of it, that one step of an island may take
 _NEARLY = 1e-8  # error of joints over the size of an island, up to which one that gives way counts as one that holds
 
 
