@@ -26,7 +26,7 @@ from .meet import book_component
 from .solve import begin_span
 from .strike import collide
 
-_WORK, _WORK_OF_BODY = 5e7, 4e5  # operations of a step, beside those of each body; some 5e9 are a second
+_WORK, _WORK_OF_BODY = 8e7, 1e6  # operations of a step, beside those of each body; 6e9 are about a second
 _ROOM = 64  # contacts more than there are, that there must be room for before an impact
 
 

@@ -207,11 +207,11 @@ def press(
             for tangent in range(2):
                 before = ROWS[i].ut if tangent == 1 else ROWS[i].un
                 if tangent == 1:
-                    free, after = tangent_rate(P, Q, ROWS, FREE, i), tangent_rate(P, Q, ROWS, motion.V, i)
+                    without, after = tangent_rate(P, Q, ROWS, FREE, i), tangent_rate(P, Q, ROWS, motion.V, i)
                 else:
-                    free, after = normal_rate(P, Q, ROWS, FREE, i), normal_rate(P, Q, ROWS, motion.V, i)
-                p -= 0.5 * L[i, tangent] * (before + free)
-                q2 += 0.5 * L[i, tangent] * (after - free)
+                    without, after = normal_rate(P, Q, ROWS, FREE, i), normal_rate(P, Q, ROWS, motion.V, i)
+                p -= 0.5 * L[i, tangent] * (before + without)
+                q2 += 0.5 * L[i, tangent] * (after - without)
         # D(s) = s p - s^2 q: by its slope at s = 1.
         slope = p - 2.0 * q2
         s = 1.0 + (owed - loss) / slope if slope < 0.0 else 0.0

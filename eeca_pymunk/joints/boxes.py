@@ -147,7 +147,7 @@ def on_disc(
         length = math.sqrt(p1 * p1 + p2 * p2)
         if length > bound:
             p1, p2 = p1 * bound / length, p2 * bound / length
-    return p1 * si + p2 * co if second else p1 * co - p2 * si
+    return float(p1 * si + p2 * co if second else p1 * co - p2 * si)
 
 
 @uncounted
@@ -158,7 +158,7 @@ def change_box(more: FloatArray, w: int, u: int, n: int, i: int, to: float) -> f
         more[u + n + i] = to
         for j in range(n):
             more[u + j] += more[w + j * n + i] * change
-    return abs(change)
+    return float(abs(change))
 
 
 @uncounted
@@ -182,7 +182,7 @@ def sweep_boxes(more: FloatArray, w: int, u: int, n: int) -> float:
                 to, other = min(max(x, -high), high), 0.0
             worst = max(worst, change_box(more, w, u, n, i, to), change_box(more, w, u, n, i + 1, other))
         largest = max(largest, abs(more[u + n + i]))
-    return worst / largest
+    return float(worst / largest)
 
 
 @uncounted

@@ -16,11 +16,12 @@ from .correct import book_fit
 from .layout import LIMITED
 from .ledger import book
 from .motion import advance
-from .scratch import AFTER, L_SIDE, L_SOFT, LAM, LINEAR_STEP, SIZE, SPEEDS
+from .scratch import AFTER, EFFORT, HURRY, L_SIDE, L_SOFT, LAM, LINEAR_STEP, SIZE, SPEEDS
 from .solve import solve
 
 MOST_EVENTS = 12
 MOST_SECANTS = 12
+_FEW_SECANTS = 2  # in a hurry
 _FEW_SOLVES = 8  # of linear rows, that let limits go which pull
 
 
@@ -57,14 +58,15 @@ def step_with_limits(
                 if whole:
                     return False
                 side, events = int(found[0]), events + 1
-                if events > MOST_EVENTS:  # land
+                if events > MOST_EVENTS or found[EFFORT] > found[HURRY]:  # land
                     link[k, L_SIDE] = side
                     continue
                 meeting, when, low, high, secants = k, found[1], 0.0, left, 0
                 continue
             distance = gap(joint, hinge, link, meeting, side)
             secants += 1
-            if abs(distance) > 0.1 * TOUCH * hinge[meeting, SIZE] and secants < MOST_SECANTS:
+            most = MOST_SECANTS if found[EFFORT] <= found[HURRY] else _FEW_SECANTS
+            if abs(distance) > 0.1 * TOUCH * hinge[meeting, SIZE] and secants < most:
                 if distance > 0.0:
                     low = when
                 else:
@@ -77,7 +79,9 @@ def step_with_limits(
                 when = step if low < step < high else 0.5 * (low + high)
                 continue
             k = first_bound(joint, hinge, link, joints, local, when, found)
-            if k >= 0 and k != meeting and events < MOST_EVENTS:  # another one is passed before
+            if (
+                k >= 0 and k != meeting and events < MOST_EVENTS and found[EFFORT] <= found[HURRY]
+            ):  # another one is passed before
                 meeting, side, low, high, secants, events = k, int(found[0]), 0.0, when, 0, events + 1
                 when = found[1]
                 continue

@@ -90,11 +90,12 @@ SPAN_COLUMNS = 14
 M_BODY, M_COLUMN, M_FREEDOMS, M_CAYLEY, M_FIRST = 0, 1, 2, 3, 4
 MEMBER_COLUMNS = 5
 
-# FOUND (9,): 0, 1 side and instant of a limit that is passed first; 2-4 scratch of solutions;
+# FOUND (10,): 0, 1 side and instant of a limit that is passed first; 2-4 scratch of solutions;
 NEAR = 5  # the error of a step that is near enough, 0 for round-off
 EFFORT, BUDGET = 6, 7  # operations that solutions have taken since the step began; how many they may
 LIMIT = 8  # of EFFORT, at which the step of an island gives up what its ladder has before linear rows
-FOUND = 9
+HURRY = 9  # likewise, from which on limits land instead of being met at their instants
+FOUND = 10
 
 NO_BEND, OWN_TURN, FULL_BEND = 0, 1, 2  # what of STIFF is there: nothing, [2, 2] and [5, 5], all
 

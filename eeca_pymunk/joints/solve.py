@@ -58,6 +58,7 @@ from .scratch import (
     SYSTEM,
     UNKNOWNS,
     UNROOT,
+    WHOLE,
 )
 
 TOLERANCE = 3e-16  # of joints and momenta, over the size of the island
@@ -70,6 +71,7 @@ LEAST_EPSILON = 1e-10
 CLOSING_EPSILON = 1e-5
 MOST_CLOSINGS = 8
 MOST_PASSES = 12
+_WIDE = 16  # band from which on factors are computed several numbers at a time
 _ROWS_COST = 500.0  # operations, of the rows of a joint
 
 
@@ -197,7 +199,9 @@ def effort(system: int, fresh: bool, boxes: int, joints: int, span: IntArray) ->
     """About how many operations an iteration takes: rows, factors, solutions."""
     size, band = (span[DUAL_SIZE], span[DUAL_BAND]) if system == DUAL else (span[UNKNOWNS], span[BAND])
     turns = 1 + boxes if fresh else 1
-    return float(_ROWS_COST * joints + (2.0 * size * band * band if fresh else 0.0) + 6.0 * turns * size * (band + 4))
+    # Wide bands take several numbers at once.
+    factors = (4.0 if system == WHOLE else 0.5 if band >= _WIDE else 2.0) * size * band * band
+    return float(_ROWS_COST * joints + (factors if fresh else 0.0) + 6.0 * turns * size * (band + 4))
 
 
 @uncounted

@@ -59,6 +59,7 @@ from .scratch import (
     EFFORT,
     ENDED,
     FREE,
+    HURRY,
     L_A,
     L_B,
     L_JOINT,
@@ -90,7 +91,8 @@ from .taut import taut
 SUZUKI = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))
 FIRST_RUNG, ELASTIC_RUNG, LAST_RUNG = 0, 4, 10  # rung -1 is order 4
 _ELASTIC_PARTS = 7
-_PART_OF_BUDGET = 0.15  # of what is left of it, that one step of an island may take
+_BEFORE_HURRY = 0.25  # of this
+_PART_OF_BUDGET = 0.5  # of what is left of it, that one step of an island may take
 _NEARLY = 1e-8  # error of joints over the size of an island, up to which one that gives way counts as one that holds
 
 
@@ -271,6 +273,7 @@ def island_step(
             joint[j, LENGTH_0] = hinge[k, BEGAN]
     status, stored = LINEAR, 0.0
     found[LIMIT] = found[EFFORT] + max(found[BUDGET] - found[EFFORT], 0.0) * _PART_OF_BUDGET
+    found[HURRY] = found[EFFORT] + _BEFORE_HURRY * (found[LIMIT] - found[EFFORT])
     yields = gives_way(tie, link, joints)
     rung = ELASTIC_RUNG if yields else -1 if order == 4 and smooth(joint, link, joints) else FIRST_RUNG
     if rung >= 0 or needs % 2 == 1:
