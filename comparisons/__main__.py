@@ -30,6 +30,8 @@ NAMES = (
     "joints",
     "robots",
     "sleeping",
+    "rollouts",
+    "datasets",
     "soak",
     "pymunk_examples",
     "hard_cases",

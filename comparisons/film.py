@@ -14,7 +14,7 @@ from comparisons.output import Output, Row
 from eeca_pymunk import render
 from eeca_pymunk.errors import NotFiniteError
 from eeca_pymunk.files import check_writable
-from eeca_pymunk.recording import step_count
+from eeca_pymunk.recorder import step_count
 from eeca_pymunk.render.encode import check_encoder
 from scenes import Scene
 

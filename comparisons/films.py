@@ -10,7 +10,7 @@ import scenes
 from comparisons import film, pool
 from comparisons.output import Output
 from eeca_pymunk import render
-from eeca_pymunk.recording import step_count
+from eeca_pymunk.recorder import step_count
 
 NAMES = (
     "carom", "pile", "drum", "billiard", "hopper", "cradle", "pool_break", "double_pendulum", "rods", "chain", "bridge",

@@ -20,7 +20,7 @@ from comparisons import runs, scaling
 from comparisons.hard_cases.joints import apart
 from comparisons.output import Output, Row
 from eeca_pymunk import render
-from eeca_pymunk.recording import step_count
+from eeca_pymunk.recorder import step_count
 from scenes import linkages, pendulum, rods
 from scenes.bars import Bars
 from scenes.scene import FloatArray

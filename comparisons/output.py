@@ -11,7 +11,7 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from eeca_pymunk.files import check_writable, whole_file
-from eeca_pymunk.recording import versions
+from eeca_pymunk.recorder import versions
 from eeca_pymunk.render import save_picture
 
 Value = str | int | float | bool | None

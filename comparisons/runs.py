@@ -17,7 +17,7 @@ from comparisons.output import Row
 from eeca_pymunk.baselines.native import tune
 from eeca_pymunk.energy.invariants import Invariants
 from eeca_pymunk.errors import NotFiniteError
-from eeca_pymunk.recording import step_count
+from eeca_pymunk.recorder import step_count
 from eeca_pymunk.space.bodies import Bodies
 from eeca_pymunk.space.measure import invariants
 from scenes import Scene

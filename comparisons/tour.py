@@ -18,7 +18,7 @@ from comparisons.output import Output, Row
 from comparisons.tour_problems import Problem, problems
 from eeca_pymunk import render
 from eeca_pymunk.compiled import plain
-from eeca_pymunk.recording import step_count
+from eeca_pymunk.recorder import step_count
 
 STEPPERS = steps.STEPS
 STYLE = {"EECA": ("black", 2.0), "pymunk": ("#d55e00", 1.2), "pymunk tuned": ("#0072b2", 1.2)}

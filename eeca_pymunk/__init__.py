@@ -11,13 +11,17 @@ from .baselines.penalty import PenaltyEnergyMomentum
 from .closures.dashpot import Dashpot
 from .closures.midstep import Midstep
 from .closures.time_of_impact import TimeOfImpact
+from .datasets import Rollouts
 from .eeca import EECA, Closure
 from .energy.invariants import Invariants
 from .energy.ledger import Ledger
 from .energy.ledger_trace import LedgerTrace
 from .errors import UnsupportedFeature
-from .recording import Recording, record
-from .report import Contacts, StepReport
+from .events import Events
+from .recorder import record
+from .recording import Recording
+from .report import Contacts, RunReport, StepReport
+from .rollouts import certify, rollout
 from .space.measure import measure
 from .stepper import Stepper
 from .sweep import SweepError, sweep
@@ -28,6 +32,7 @@ __all__ = [
     "Closure",
     "Contacts",
     "Dashpot",
+    "Events",
     "Invariants",
     "Ledger",
     "LedgerTrace",
@@ -36,14 +41,18 @@ __all__ = [
     "Newmark",
     "PenaltyEnergyMomentum",
     "Recording",
+    "Rollouts",
+    "RunReport",
     "StepReport",
     "Stepper",
     "SweepError",
     "TimeOfImpact",
     "UnsupportedFeature",
+    "certify",
     "measure",
     "record",
     "render",
+    "rollout",
     "sweep",
     "warmup",
 ]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from importlib.metadata import PackageNotFoundError, version
 
 from .compiled.backend import Backend, choose
-from .recording import versions
+from .recorder import versions
 
 _SAYS = {
     "library": "library",

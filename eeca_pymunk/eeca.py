@@ -9,8 +9,9 @@ from .arrays import FloatArray, IntArray
 from .closures.time_of_impact import TimeOfImpact
 from .impacts.scene import EventLoop
 from .jointed.scene import JointedLoop
-from .packed_stepper import PackedStepper, busy
+from .reentry import busy
 from .report import Details
+from .runs import RunningStepper
 from .saved import Saved
 from .space.world import World
 
@@ -61,7 +62,7 @@ class Closure(Protocol):
         """What steps this world, energy and momentum exact; ValueError for what the closure does not move."""
 
 
-class EECA(PackedStepper):
+class EECA(RunningStepper):
     """Conserves energy, linear and angular momentum through every contact, at any dt (paper).
 
     Args:
@@ -101,8 +102,11 @@ class EECA(PackedStepper):
             world.part()
             self._method.rule(world.told())
 
-    def _adjust(self, world: World, dt: float) -> None:
-        """Tell the method what joints and collision handlers have to say about this step."""
+    @property
+    def event_loop(self) -> EventLoop | None:
+        return self._method if isinstance(self._method, EventLoop) else None
+
+    def adjust(self, world: World, dt: float) -> None:
         parted = False
         joints = world.joints
         if joints is not None:
@@ -120,7 +124,7 @@ class EECA(PackedStepper):
     def advance(self, world: World, dt: float, left: float) -> int:
         gx, gy = world.gravity
         if not world.plain:
-            self._adjust(world, dt)
+            self.adjust(world, dt)
         return self._method.step(world.STATES, world.WALK, world.EXTRA, world.ENDS, dt, gx, gy, left)
 
     def details(self, world: World, dt: float) -> Details | Callable[[], Details]:

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
-from .arrays import FloatArray
+from .arrays import FloatArray, IntArray
 from .errors import NotFiniteError
 from .space.checks import check_ignored
 from .space.describe import describe
 from .space.joints import JointRows
-from .space.sleeping import Sleep, rouse
+from .space.sleeping import Sleep, put_to_sleep, rouse
 from .space.sync import Sync
 from .space.world import World
 from .stepper import Stepper
@@ -105,6 +105,26 @@ class PackedSpace(Stepper):
             self._idle_book = np.zeros_like(book)
         self._world, self._past = world, None
         return world
+
+    def wake(self) -> None:
+        """Wake all bodies."""
+        if self._sleep is not None:
+            self._sleep.wake()
+            rouse(self.space)
+
+    def resting(self, bodies: Sequence[pymunk.Body]) -> tuple[FloatArray, IntArray, IntArray]:
+        """How long bodies have been at rest (N,), places of others of their groups of sleepers (N,), -1 for who is
+        awake, and timers (2,)."""
+        if self._sleep is None:
+            return np.zeros(len(bodies)), np.full(len(bodies), -1), np.zeros(2, np.int64)
+        return self._sleep.told(bodies)
+
+    def rest_again(self, bodies: Sequence[pymunk.Body], rested: FloatArray, groups: IntArray, timers: IntArray) -> None:
+        """Have bodies, all awake, rest as `resting` told of them."""
+        if self._sleep is not None:
+            put_to_sleep(bodies, groups)
+            self._look(anew=bool((groups >= 0).any()))
+            self._sleep.recall(dict(zip(bodies, rested.tolist(), strict=True)), timers)
 
     def _undo(self, world: World, state: FloatArray) -> None:
         """Put the space back where it was."""

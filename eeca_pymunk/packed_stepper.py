@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from math import isfinite
 from typing import TYPE_CHECKING, TypeVar
 
@@ -12,6 +11,7 @@ from .arrays import FloatArray
 from .energy.ledger import AFTER, DAMPED
 from .errors import NotFiniteError
 from .packed_space import TOO_FAR, PackedSpace
+from .reentry import BUSY, busy, refuse_within
 from .report import Details, StepReport
 from .space.bodies import ANGULAR_VELOCITY, VELOCITY
 from .space.hooks import Hooks, Rehearsal
@@ -21,20 +21,9 @@ from .stepper import check_dt
 from .transfer import EVENTS, FORCES, MOVED_STATIC, OTHER_BODIES, fly
 
 if TYPE_CHECKING:
-    import pymunk
+    pass
 
 Own = TypeVar("Own", bound="PackedStepper")
-_busy: set[pymunk.Space] = set()  # spaces whose own functions are being called: they cannot be stepped
-
-
-@contextmanager
-def busy(space: pymunk.Space) -> Iterator[None]:
-    """Within, steps of the space are refused."""
-    _busy.add(space)
-    try:
-        yield
-    finally:
-        _busy.discard(space)
 
 
 class PackedStepper(PackedSpace):
@@ -79,11 +68,8 @@ class PackedStepper(PackedSpace):
         return 1.0, True, 0
 
     def step(self, dt: float) -> StepReport:
-        if _busy and self.space in _busy:
-            raise RuntimeError(
-                f"step was called for {self.space} from within its own step, by a collision handler or a function of a "
-                "body or constraint: step it when that step has returned, or in space.add_post_step_callback"
-            )
+        if BUSY:
+            refuse_within(self.space)
         dt = check_dt(dt)
         if dt == 0.0:
             return StepReport.without_contacts(self.time)
@@ -144,13 +130,7 @@ class PackedStepper(PackedSpace):
         try:
             if status & FORCES:
                 world.reset_forces()
-            if not self.sync:
-                world.scatter(status)
-            elif self._sync.reindexes(dt, bool(status & EVENTS)):
-                world.scatter(status)
-                self._sync.reindex()
-            else:
-                self._sync.land(world, dt, status)
+            self.land(world, dt, status)
         except BaseException:
             self._undo(world, world.state)
             raise
@@ -161,6 +141,16 @@ class PackedStepper(PackedSpace):
         if self.sync:
             self._sync.call_back()
         return report
+
+    def land(self, world: World, dt: float, status: int) -> None:
+        """Write the end of a step to the space."""
+        if not self.sync:
+            world.scatter(status)
+        elif self._sync.reindexes(dt, bool(status & EVENTS)):
+            world.scatter(status)
+            self._sync.reindex()
+        else:
+            self._sync.land(world, dt, status)
 
     def _hooked_step(self, world: World, dt: float) -> StepReport:
         """A step of a space in which functions of bodies or constraints, or collision handlers, are called."""

@@ -1,4 +1,4 @@
-"""Recording: run a stepper and keep the trajectory."""
+"""Recording: the trajectory of a run, in memory and in files."""
 
 from __future__ import annotations
 
@@ -7,27 +7,18 @@ import sys
 from dataclasses import dataclass, field, fields
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from tqdm import tqdm
 
-from .arrays import FloatArray, IntArray
-from .energy.ledger_trace import LedgerTrace, entries
+from .arrays import FloatArray
+from .energy.ledger_trace import LedgerTrace
+from .events import Events
 from .files import whole_file
-from .report import StepReport
-from .space.bodies import ANGLE, POSITION, VELOCITY, Bodies, moving
-from .space.measure import invariants
 from .space.outlines import Outlines
-from .stepper import Stepper, check_dt
 
-if TYPE_CHECKING:
-    import pymunk
-
-_PER_BODY = 5 * 8  # bytes kept of a body and moment: position, angle, velocity
-_PER_MOMENT = 11 * 8  # bytes besides: time, energies, momentum, ledger
-MEMORY = 2.0**30  # bytes
-_PARTS: dict[str, type[Any]] = {"outlines": Outlines, "ledger": LedgerTrace}  # of a recording: arrays with names
+# Of a recording: arrays with names.
+_PARTS: dict[str, type[Any]] = {"outlines": Outlines, "ledger": LedgerTrace, "events": Events}
 
 
 def versions() -> dict[str, str]:
@@ -51,6 +42,7 @@ class Recording:
         energy: (T,) kinetic plus gravity.  kinetic: (T,) its first part.  momentum: (T, 2).
         ledger: where energy has gone since the start, arrays (T,); NaN for steppers that keep none.
         mass: (N,) infinite for kinematic bodies.  outlines: the shapes, as they were at the start.
+        spin: (T, N) rad/time.  events: the impacts, each at its instant.
         parameters: what the run was made with, and the versions.
     """
 
@@ -65,11 +57,15 @@ class Recording:
     parameters: dict[str, Any] = field(default_factory=dict)
     kinetic: FloatArray = field(default_factory=lambda: np.zeros(0))
     ledger: LedgerTrace = field(default_factory=LedgerTrace)
+    spin: FloatArray = field(default_factory=lambda: np.zeros((0, 0)))
+    events: Events = field(default_factory=Events)
 
     def __post_init__(self) -> None:
         # What files of older versions do not tell.
         if len(self.kinetic) != len(self.time):
             self.kinetic = np.full(len(self.time), np.nan)
+        if self.spin.shape != self.angle.shape:
+            self.spin = np.full_like(self.angle, np.nan)
         if len(self.ledger.change) != len(self.time):
             self.ledger = LedgerTrace.unknown(len(self.time))
 
@@ -105,83 +101,3 @@ class Recording:
     def _repr_html_(self) -> str:
         # The one import that goes up: a recording shows itself only where pictures are wanted anyway.
         return str(import_module(".render", __package__).player(self))
-
-
-def step_count(duration: float, dt: float) -> int:
-    """Steps of dt that fill the duration; ValueError unless both are positive and finite."""
-    if check_dt(dt) == 0.0 or check_dt(duration) == 0.0:
-        raise ValueError(f"duration = {duration}, dt = {dt}: give numbers > 0")
-    return max(1, round(duration / dt))
-
-
-def record(
-    stepper: Stepper, duration: float, dt: float, every: int = 1, progress: bool = False, memory: float = MEMORY
-) -> Recording:
-    """Run `stepper` for round(duration / dt) steps and keep the start and every `every`-th step.
-
-    Args:
-        duration, dt: time, > 0.
-        every: keep one of so many steps, >= 1.
-        progress: show a progress bar.
-        memory: bytes the recording may take. ValueError, before anything moves, if it would take more.
-    """
-    if every < 1:
-        raise ValueError(f"every = {every}: give a whole number >= 1")
-    count = step_count(duration, dt)
-    kept = moving(stepper.space)
-    moments = 1 + count // every
-    needed = moments * (len(kept) * _PER_BODY + _PER_MOMENT)
-    if needed > memory:
-        raise ValueError(
-            f"{moments} moments of {len(kept)} bodies take {needed:.2g} bytes, more than memory = {memory:.2g}: "
-            f"give every >= {int(np.ceil(every * needed / memory))}, or more memory"
-        )
-    film = _Moments(stepper.space, kept, moments)
-    film.keep(0)
-    for k in tqdm(range(1, count + 1), desc=type(stepper).__name__, unit="step", disable=not progress):
-        film.book(stepper.step(dt))
-        if k % every == 0:
-            film.keep(k // every)
-    film.recording.time[:] = (dt * every) * np.arange(moments)
-    film.recording.parameters.update(
-        stepper=type(stepper).__name__, dt=dt, duration=count * dt, every=every, **versions()
-    )
-    return film.recording
-
-
-class _Moments:
-    """A recording that is being filled."""
-
-    def __init__(self, space: pymunk.Space, kept: list[pymunk.Body], moments: int) -> None:
-        self.space, self.kept = space, kept
-        T, N = moments, len(kept)
-        self._read()
-        self.recording = Recording(
-            np.zeros(T), np.empty((T, N, 2)), np.empty((T, N)), np.empty((T, N, 2)), np.empty(T), np.empty((T, 2)),
-            self.bodies.mass[self.rows], Outlines.of(space, kept), kinetic=np.empty(T), ledger=LedgerTrace.unknown(T),
-        )  # fmt: skip
-        self.total = np.zeros(6)  # of the ledgers so far
-
-    def _read(self) -> None:
-        """The rows of the kept bodies among those the space has now."""
-        self.bodies = Bodies(self.space)
-        self.present: IntArray = np.array([i for i, b in enumerate(self.kept) if b in self.bodies.row], np.intp)
-        self.rows: IntArray = np.array([self.bodies.row[self.kept[i]] for i in self.present], np.intp)
-
-    def book(self, report: StepReport) -> None:
-        self.total += entries(report.ledger)
-
-    def keep(self, i: int) -> None:
-        state = self.bodies.gather()
-        if state is None:
-            self._read()
-            state = self.bodies.gather()
-            assert state is not None  # read from these very bodies
-            if set(self.bodies.row) - set(self.kept) - {b for b in self.bodies.row if b.body_type == b.STATIC}:
-                raise ValueError("a body was added while recording: record the stretch that begins there by itself")
-        now, to = invariants(self.bodies, state, self.space.gravity), self.recording
-        for array, column in ((to.position, POSITION), (to.angle, ANGLE), (to.velocity, VELOCITY)):
-            array[i] = np.nan
-            array[i, self.present] = state[self.rows, column]
-        to.energy[i], to.kinetic[i], to.momentum[i] = now.energy, now.kinetic, now.linear_momentum
-        to.ledger.put(i, self.total)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -23,7 +23,8 @@ class Contacts:
     """The contacts of one step as a struct of arrays; m contacts.
 
     `body_a` and `body_b` are rows of `bodies`, the pymunk bodies. Normal, point and gap are those of the
-    instant `time` inside the step at which the impulse acts; `gap` is that of the start of the step.
+    instant `time` inside the step at which the impulse acts; `gap` is that of the start of the step. A contact that
+    lasts pushes with a constant force through `duration`, about the instant `time`.
     """
 
     bodies: tuple[pymunk.Body, ...]
@@ -33,6 +34,11 @@ class Contacts:
     point: FloatArray  # (m, 2) length, halfway between the two surfaces
     gap: FloatArray  # (m,) length, at the start of the step, negative in overlap
     time: FloatArray  # (m,) time of the impulse after the start of the step
+    duration: FloatArray = field(default_factory=lambda: np.zeros(0))  # (m,) time, 0 for an impact; see below
+
+    def __post_init__(self) -> None:
+        if len(self.duration) != len(self.gap):
+            object.__setattr__(self, "duration", np.zeros(len(self.gap)))
 
     def __len__(self) -> int:
         return len(self.gap)
@@ -46,6 +52,7 @@ class Details(NamedTuple):
     psi1: FloatArray
     psi2: FloatArray
     gap_increment: FloatArray
+    friction: FloatArray | None = None
 
 
 class StepReport:
@@ -104,6 +111,12 @@ class StepReport:
         return self._made().impulse
 
     @property
+    def friction(self) -> FloatArray:
+        """(m,) impulse of friction on b along t = (-n_y, n_x), mass length/time."""
+        made = self._made()
+        return np.zeros(len(made.impulse)) if made.friction is None else made.friction
+
+    @property
     def psi1(self) -> FloatArray:
         """(m,) weight of the extra contact force (paper Eq. 11); infinite in the rigid limit."""
         return self._made().psi1
@@ -153,6 +166,33 @@ class StepReport:
         )  # fmt: skip
 
 
+@dataclass(frozen=True)
+class RunReport:
+    """What happened in a run of many steps.
+
+    Attributes:
+        time: simulated time at its end, since the stepper was made.
+        steps: how many were taken.
+        ledger: where energy has gone, of all steps together; None if the stepper does not tell.
+        impacts: how many there were; contacts that last are none.
+        unmet: steps that did not meet all tolerances. Energy and momentum are exact either way.
+        iterations: of the solver.  lock: scale of the energy lock that was farthest from 1.
+    """
+
+    time: float
+    steps: int
+    ledger: Ledger | None = None
+    impacts: int = 0
+    unmet: int = 0
+    iterations: int = 0
+    lock: float = 1.0
+
+    @property
+    def converged(self) -> bool:
+        """Whether all steps met their tolerances."""
+        return self.unmet == 0
+
+
 def nothing(bodies: tuple[pymunk.Body, ...] = ()) -> Details:
     """The arrays of no contact."""
     rows, none, vectors = np.zeros(0, np.intp), np.zeros(0), np.zeros((0, 2))
@@ -172,5 +212,7 @@ def of_events(EVENT: Rows[Impulse], dt: float, bodies: tuple[pymunk.Body, ...], 
     time, lam = EVENT["when"].copy(), EVENT["normal"].copy()
     psi2 = 1.0 - 2.0 * time / dt
     normal, point = columns(EVENT, "nx", "ny"), columns(EVENT, "px", "py")
-    contacts = Contacts(bodies, owner[first], owner[second], normal, point, EVENT["gap"].copy(), time)
-    return Details(contacts, lam, np.full_like(lam, math.inf), psi2, 0.5 * dt * psi2 * EVENT["change"])
+    gap, duration = EVENT["gap"].copy(), EVENT["duration"].copy()
+    contacts = Contacts(bodies, owner[first], owner[second], normal, point, gap, time, duration)
+    increment = 0.5 * dt * psi2 * EVENT["change"]
+    return Details(contacts, lam, np.full_like(lam, math.inf), psi2, increment, EVENT["tangential"].copy())

@@ -3,10 +3,16 @@
 from __future__ import annotations
 
 import math
+import operator
 from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING
 
-from .report import StepReport
+import numpy as np
+from tqdm import tqdm
+
+from .energy.ledger import Ledger
+from .energy.ledger_trace import entries
+from .report import RunReport, StepReport
 
 if TYPE_CHECKING:
     import pymunk
@@ -18,6 +24,14 @@ def check_dt(dt: float) -> float:
     if not (dt >= 0 and math.isfinite(dt)):
         raise ValueError(f"dt = {dt}: give a finite time step >= 0 (0 does nothing)")
     return dt
+
+
+def check_steps(steps: int) -> int:
+    """A number of steps; ValueError unless it is a whole number >= 0."""
+    count = operator.index(steps)
+    if count < 0:
+        raise ValueError(f"steps = {steps}: give a whole number >= 0")
+    return count
 
 
 class Stepper(ABC):
@@ -36,6 +50,29 @@ class Stepper(ABC):
     def step(self, dt: float) -> StepReport:
         """Advance the space by dt >= 0; 0 is a no-op. ValueError for any other dt and for states that are not finite,
         UnsupportedFeature for what the stepper does not model."""
+
+    def run(self, steps: int, dt: float, progress: bool = False) -> RunReport:
+        """Advance the space by so many steps of dt, as a loop of `step` does, bit by bit.
+
+        EECA takes them in one compiled call wherever no Python function is to be called in between, and then brings
+        pymunk's space up to date once, at the end: .05 to .3 times the time of the loop for small scenes.
+
+        Args:
+            steps: >= 0.  dt: time, >= 0.  progress: show a progress bar.
+
+        A step that raises, or an interrupt, leaves the space as the steps before have left it.
+        """
+        steps, dt = check_steps(steps), check_dt(dt)
+        total, impacts, unmet, iterations, lock, done = np.zeros(6), 0, 0, 0, 1.0, 0
+        for _ in tqdm(range(steps if dt > 0.0 else 0), desc=type(self).__name__, unit="step", disable=not progress):
+            report = self.step(dt)
+            total += entries(report.ledger)
+            contacts = report.contacts
+            impacts += int(np.count_nonzero((contacts.duration == 0.0) & (report.impulse != 0.0)))
+            unmet, iterations, done = unmet + (not report.converged), iterations + report.iterations, done + 1
+            lock = max(lock, report.lock, key=lambda scale: abs(scale - 1.0))
+        told = None if np.isnan(total).any() else Ledger(*total.tolist())
+        return RunReport(self.time, done, told, impacts, unmet, iterations, lock)
 
     @property
     @abstractmethod

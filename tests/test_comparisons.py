@@ -20,6 +20,7 @@ from tqdm import tqdm
 import eeca_pymunk as ep
 import scenes
 from comparisons import (
+    datasets,
     detection,
     film,
     films,
@@ -31,6 +32,7 @@ from comparisons import (
     piles,
     pymunk_examples,
     robots,
+    rollouts,
     runs,
     scaling,
     sleeping,
@@ -41,6 +43,7 @@ from comparisons import (
 from comparisons.__main__ import NAMES, main
 from comparisons.hard_cases import matrix
 from comparisons.hopper import crossed, deepest_overlap
+from comparisons.output import Output
 from scenes import linkages, pendulum
 from scenes.bars import Bars
 
@@ -436,3 +439,32 @@ def test_pymunks_examples_are_run_under_both(tmp_path: Path, monkeypatch: pytest
     with (tmp_path / "pymunk_examples.csv").open() as stream:
         (row,) = csv.DictReader(stream)
     assert (row["native"], row["ours"]) == ("runs", "runs")
+
+
+def test_rollouts_tell_costs_and_wrong_films(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("EECA_ENGINES", str(tmp_path / "none"))
+    for name, short in (("ROUNDS", 1), ("ENOUGH", 1e-4), ("FILMS", 4), ("FRAMES", 240)):
+        monkeypatch.setattr(rollouts, name, short)
+    monkeypatch.setattr(rollouts, "SCENES", {name: rollouts.SCENES[name] for name in ("1 ball", "pendulum")})
+    rollouts.run(Output("rollouts", tmp_path), False)
+    assert {p.name for p in tmp_path.iterdir()} >= {"rollouts.csv", "rollouts_films.csv", "rollouts_films.png"}
+    rows = rollouts.errors(False)
+    ours = next(row for row in rows if row["engine"] == "EECA")
+    assert ours["wrong after 1 s"] == ours["wrong after 4 s"] == 0.0
+    assert max(row["wrong after 4 s"] for row in rows if row["engine"] == "pymunk") == 1.0
+
+
+def test_data_sets_are_judged_by_the_closed_form(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("EECA_ENGINES", str(tmp_path / "none"))
+    films = datasets.pymunk_settings(40)
+    ours = datasets.judged(films, datasets.by_eeca(films))
+    assert ours["frames off > 1 px"] == ours["wrong velocities at the end"] == ours["passed through"] == 0.0
+    assert ours["farthest (px)"] < 1e-10
+    theirs = datasets.judged(films, datasets.by_pymunk(films))
+    assert theirs["overlap > 1 px"] > 0.9
+    slow = datasets.box2d_settings(True, 20)
+    assert (slow.exact()[:, :, 1] - slow.exact()[:, :, 0] > slow.radius.sum(axis=1)[:, None] - 1e-12).all()
+    assert datasets.judged(slow, datasets.by_eeca(slow))["farthest (px)"] < 1e-10
+    assert "no " in str(datasets.by_box2d(slow))
+    energy = (slow.mass * slow.v**2).sum(axis=1)
+    np.testing.assert_allclose((slow.mass * slow.after() ** 2).sum(axis=1), energy, rtol=1e-12)

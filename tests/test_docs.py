@@ -32,6 +32,7 @@ OTHERS = {
     "python -m eeca_pymunk": "tests/test_release.py",
     "python -m eeca_pymunk.build": "tests/build/test_builder.py",
     "python -m eeca_pymunk.build --target PLATFORM": "tests/build/test_builder.py",
+    "python docs/examples/balance.py": "tests/test_environment.py",
     "python -m build": "tests/test_release.py",
     'pip install -e ".[dev]"': ".ci/run",
     "pip install -e .": "README.md",
@@ -57,6 +58,8 @@ SHORT = {
     "robots": "test_comparisons.py::test_robots_tell_costs_and_repeatability",
     "joints": "test_comparisons.py::test_joints_tell_errors_and_costs",
     "pymunk_examples": "test_comparisons.py::test_pymunks_examples_are_run_under_both",
+    "rollouts": "test_comparisons.py::test_rollouts_tell_costs_and_wrong_films",
+    "datasets": "test_comparisons.py::test_data_sets_are_judged_by_the_closed_form",
     "sleeping": (
         "test_comparisons.py::test_a_pile_that_sleeps_costs_little_and_wakes_stack_by_stack_in_the_step_that_touches_it"
     ),

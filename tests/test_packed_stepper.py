@@ -371,8 +371,8 @@ def test_the_report_of_events_is_made_when_asked() -> None:
     stepper = FreeFlight(space)
     world = stepper._look()
     first, second = 0, len(world.shapes) - 1
-    late = [first, second, 0.75 * DT, 2.0, 0.0, 1.0, 5.0, 6.0, 0.5, 3.0, 0.0]
-    soon = [second - 1, second, 0.25 * DT, 1.0, 1.0, 0.0, 7.0, 8.0, -0.5, 4.0, 0.0]
+    late = [first, second, 0.75 * DT, 2.0, 0.0, 1.0, 5.0, 6.0, 0.5, 3.0, 0.0, 0.25]
+    soon = [second - 1, second, 0.25 * DT, 1.0, 1.0, 0.0, 7.0, 8.0, -0.5, 4.0, -0.1, 0.0]
     stepper.told = np.array([tuple(late), tuple(soon)], Impulse.TYPE)
     report = stepper.step(DT)
     contacts = report.contacts
@@ -384,6 +384,8 @@ def test_the_report_of_events_is_made_when_asked() -> None:
     assert contacts.normal.tolist() == [[1.0, 0.0], [0.0, 1.0]]
     assert contacts.point.tolist() == [[7.0, 8.0], [5.0, 6.0]]
     assert contacts.gap.tolist() == [-0.5, 0.5]
+    assert contacts.duration.tolist() == [0.0, 0.25]
+    assert report.friction.tolist() == [-0.1, 0.0]
     assert contacts.bodies[contacts.body_a[1]] is world.shapes[first].body
     assert contacts.bodies[contacts.body_b[1]] is world.shapes[second].body
     assert report.contacts is contacts

@@ -247,7 +247,7 @@ def test_outlines_and_recording_survive_a_file(tmp_path: Path) -> None:
 def test_long_recordings_are_bounded_and_removed_bodies_are_nan() -> None:
     scene = scenes.build("gas")
     space = scene.space
-    with pytest.raises(ValueError, match="give every >= 9"):
+    with pytest.raises(ValueError, match="give every >= 11"):
         ep.record(ep.EECA(space), 1.0, 0.01, memory=1e4)
     assert scene.bodies[0].position == scenes.build("gas").bodies[0].position
 

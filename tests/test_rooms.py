@@ -16,7 +16,7 @@ PACKAGE = Path(eeca_pymunk.__file__).parent
 FILES = sorted(PACKAGE.rglob("*.py"))
 # From the bottom to the top; a room may import what stands on an earlier line, and itself.
 FLOORS = (
-    "arrays layout errors files",
+    "arrays layout errors files reentry",
     "compiled",
     "model",
     "energy",
@@ -33,8 +33,13 @@ FLOORS = (
     "stepper",
     "packed_space",
     "packed_stepper",
+    "states",
+    "runs",
     "eeca baselines",
-    "build recording warming sweep",
+    "events",
+    "recording rolling datasets",
+    "build recorder warming sweep",
+    "rollouts",
     "render",
     "__init__ __main__",
 )

@@ -78,6 +78,23 @@ def _once(name: str, problem: Problem, dt: float, steps: int, every: int) -> End
 
 def other(name: str, folder: Path, problem: Problem, dt: float, steps: int, every: int) -> Ended | str:
     """A run of another engine; or why there is none."""
+    job = {**problem.described(), "dt": dt, "steps": steps, "every": every, "enough": ENOUGH}
+    answer = asked(name, folder, job)
+    if isinstance(answer, str):
+        return answer
+    return Ended(np.array(answer["states"], dtype=float), float(answer["seconds"]))
+
+
+def films(job: dict[str, Any], each: list[dict[str, Any]]) -> list[Ended] | str:
+    """Runs of one scene under Box2D, each with what is its own; or why there are none."""
+    answer = asked("Box2D", Path(os.environ.get("EECA_ENGINES", "engines")), {**job, "films": each})
+    if isinstance(answer, str):
+        return answer
+    return [Ended(np.array(one["states"], dtype=float), float(one["seconds"])) for one in answer]
+
+
+def asked(name: str, folder: Path, job: dict[str, Any]) -> Any:
+    """The answer of another engine, in a process of its own; or as a string why there is none."""
     driver = DRIVERS / OTHERS[name]
     environment = dict(os.environ)
     if driver.suffix == ".js":
@@ -86,17 +103,17 @@ def other(name: str, folder: Path, problem: Problem, dt: float, steps: int, ever
     else:
         python = folder / "venv" / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
         command = [str(python.absolute()), str(driver)]
-    job = json.dumps({**problem.described(), "dt": dt, "steps": steps, "every": every, "enough": ENOUGH})
     try:
-        done = subprocess.run(command, input=job, env=environment, capture_output=True, text=True, timeout=LIMIT)
+        done = subprocess.run(
+            command, input=json.dumps(job), env=environment, capture_output=True, text=True, timeout=LIMIT
+        )
     except FileNotFoundError:
         return f"no {command[0]}"
     except subprocess.TimeoutExpired:
         return f"more than {LIMIT} s"
     if done.returncode != 0:
         return (done.stderr.strip().splitlines() or ["failed"])[-1][:80]
-    answer: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
-    return Ended(np.array(answer["states"], dtype=float), float(answer["seconds"]))
+    return json.loads(done.stdout.splitlines()[-1])
 
 
 def row(problem: Problem, name: str, dt: float, steps: int, ended: Ended) -> Row:

@@ -35,6 +35,10 @@ TABLES = {
         MATRIX:f8[1] RIGHT:f8[1] MORE:f8[1] STIFF:f8[2] FOUND:f8[1] PART:f8[1] PIVOTS:i8[1] OF:i8[1] KEPT:f8[2]
         SIDES:i8[2] STEPPED:f8[2] TALLY:i8[1]
     """,
+    "Film": """
+        RUN:Run KEPT:i8[1] FRAMES:f8[2] SUMS:f8[2] EVENTS:Impulse[1] TOTAL:f8[1] INITIAL:f8[2] PUSH:f8[2]
+        COUNTS:i8[2] OWN:i8[1] FRESH:i8[1]
+    """,
 }
 
 ENTRIES = {
@@ -51,11 +55,13 @@ ENTRIES = {
     "impacts.booking:flag_again": "{Scene}",
     "impacts.step:step": "{Scene} f8[3] i8[2] f8[2] f8[1] f8 f8 f8 f8 i8 bool i8",
     "impacts.together:step_together": "{Scene} f8[3] i8[2] f8[2] f8[1] f8[1] f8 f8 f8 f8 i8",
+    "impacts.run:run": "{Scene} {Film} f8[3] i8[2] f8[2] f8[1] f8[1] i8 bool bool",
     "joints.plan:make_plan": "Body[1] f8[2] i8[2] i8[2] i8[2] i8[2]",
     "joints.world:step_all": "Body[1] f8[2] i8[2] i8[2] i8[2] i8[2] i8 f8 i8 f8[2] f8[2] i8[2] f8[1] f8[1] f8[1] i8[1]"
     " f8[2] f8[1] f8[1] f8[2] i8[1]",
     "jointed.loop:step_jointed": "{Scene} {Joints} f8[3] i8[2] f8[2] f8[1] f8 f8 f8 f8 i8 bool i8",
     "jointed.together:step_together_jointed": "{Scene} {Joints} f8[3] i8[2] f8[2] f8[1] f8[1] f8 f8 f8 f8 i8",
+    "jointed.run:run_jointed": "{Scene} {Joints} {Film} f8[3] i8[2] f8[2] f8[1] f8[1] i8 bool bool",
     # Of tests alone, which step islands by themselves: some hundred times slower as plain Python.
     "sustained.step:step_island": "f8[2] f8[2] f8[2] f8[1] f8[1] f8[1] f8[1] i8 i8[2] i8 Shape[1] f8[2] Link[1] f8[2]"
     " f8[3] f8 i8 f8 f8 f8 i8[1] f8[2] Count f8 Rest f8 i8[1] i8[1] Row[1] i8[1] f8[2] f8[2] f8[2] f8[2] f8[1] f8[1]",

@@ -22,6 +22,7 @@ import _cffi_backend
 import numpy as np
 
 from .entries import ENTRIES, is_array, split
+from .records import address_of
 from .sources import sources_hash
 
 NO_MEMORY, NO_SHAPE = -(1 << 63), -(1 << 63) + 1  # returned where arrays could not be made, or did not fit
@@ -107,7 +108,7 @@ class Entry:
                 f"{self.name} takes a C-contiguous {kind}, not {array.dtype.type.__name__} of shape {array.shape} "
                 f"with strides {array.strides}"
             )
-        return [array.__array_interface__["data"][0], *array.shape]
+        return [address_of(array), *array.shape]
 
 
 def load(path: Path | None) -> tuple[Status, dict[str, Entry], str]:

@@ -14,6 +14,7 @@ import numpy as np
 from .backend import start
 from .entries import TABLES, table_fields
 from .kernels import Compilable
+from .records import address_of
 
 T = TypeVar("T")
 Table: TypeAlias = Any  # of `table_of`
@@ -54,7 +55,7 @@ def table_of(arrays: Any) -> Table:
             )
         if not a.flags.c_contiguous:
             raise TypeError(f"{name}.{field} of shape {a.shape} has strides {a.strides}: it must be C-contiguous")
-        row[0], row[1] = a.__array_interface__["data"][0], a.size
+        row[0], row[1] = address_of(a), a.size
         if a.ndim:
             row[2:] = (a.shape * 2)[-2:] if a.ndim == 1 else a.shape[-2:]
     return Pointers(arrays, numbers.ravel())

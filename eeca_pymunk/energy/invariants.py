@@ -27,6 +27,43 @@ class Invariants:
         return self.kinetic + self.potential
 
 
+@dataclass(frozen=True)
+class Traces:
+    """`Invariants` of T moments: energies and angular momentum (T,), linear momentum (T, 2)."""
+
+    kinetic: FloatArray
+    potential: FloatArray
+    linear_momentum: FloatArray
+    angular_momentum: FloatArray
+
+    @property
+    def energy(self) -> FloatArray:
+        """Kinetic plus potential energy."""
+        return self.kinetic + self.potential
+
+
+def traces(
+    mass: FloatArray,
+    moment: FloatArray,
+    center: FloatArray,
+    velocity: FloatArray,
+    spin: FloatArray,
+    gravity: tuple[float, float],
+) -> Traces:
+    """Of n bodies with masses and moments (n,), centres of mass and velocities (T, n, 2) and spins (T, n) rad/time."""
+    # A body of infinite moment keeps its spin whatever happens: what is constant, and infinite, is not counted.
+    inertia = np.where(np.isfinite(moment), moment, 0.0)
+    # Sums run over contiguous rows: those of one moment are the same, bit by bit, whatever moments there are besides.
+    x, y, vx, vy = (np.ascontiguousarray(a[..., k]) for a in (center, velocity) for k in (0, 1))
+    spin = np.ascontiguousarray(spin)
+    px, py, turning = mass * vx, mass * vy, inertia * spin
+    kinetic = 0.5 * (np.sum(px * vx + py * vy, axis=-1) + np.sum(turning * spin, axis=-1))
+    potential = -np.sum(mass * (x * gravity[0] + y * gravity[1]), axis=-1)
+    linear = np.stack((np.sum(px, axis=-1), np.sum(py, axis=-1)), axis=-1)
+    angular = np.sum(x * py - y * px, axis=-1) + np.sum(turning, axis=-1)
+    return Traces(kinetic, potential, linear, angular)
+
+
 def sums(
     mass: FloatArray,
     moment: FloatArray,
@@ -35,11 +72,8 @@ def sums(
     spin: FloatArray,
     gravity: tuple[float, float],
 ) -> Invariants:
-    """Of n bodies with masses and moments (n,), centres of mass (n, 2), velocities (n, 2) and spins (n,) rad/time."""
-    # A body of infinite moment keeps its spin whatever happens: what is constant, and infinite, is not counted.
-    turning = np.multiply(moment, spin, out=np.zeros_like(spin), where=np.isfinite(moment))
-    kinetic = 0.5 * float(np.sum(mass * np.sum(velocity * velocity, axis=1)) + np.sum(turning * spin))
-    potential = -float(np.sum(mass * (center @ np.asarray(gravity, float))))
-    p = mass[:, None] * velocity
-    angular = float(np.sum(center[:, 0] * p[:, 1] - center[:, 1] * p[:, 0]) + np.sum(turning))
-    return Invariants(kinetic, potential, p.sum(axis=0), angular)
+    """Of one moment: centres of mass and velocities (n, 2), spins (n,)."""
+    one = traces(mass, moment, center[None], velocity[None], spin[None], gravity)
+    return Invariants(
+        float(one.kinetic[0]), float(one.potential[0]), one.linear_momentum[0], float(one.angular_momentum[0])
+    )

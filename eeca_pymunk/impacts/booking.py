@@ -61,6 +61,7 @@ def book(A: Scene, c: int, t: float) -> None:
             A.LOG, COUNT.logged, a, b, R.start + 0.5 * f * R.length, f * R.normal, f * R.tangential, R.nx,
             R.ny, R.px, R.py, f * R.change, R.gap,
         )  # fmt: skip
+        A.LOG[COUNT.logged].duration = f * R.length
         COUNT.logged += 1
 
 

@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arrays import AnyArray, FloatArray, IntArray, side_by_side
-from ..compiled import table_of
 from ..compiled.library import check
-from ..compiled.records import R, Rows, numbers, row, rows
+from ..compiled.records import R, Rows, row, rows
 from ..layout import NOW as READ
 from ..model.bodies import CHECK, Body, Member, Next, Rest
 from ..model.contacts import Impulse, Pair, Pushed
@@ -24,6 +23,9 @@ from ..sustained.memory import FORCE_COLUMNS, forget
 from ..sustained.relax import FRESH
 from ..transfer import FORCES
 from .booking import flag_again
+from .film import Reel
+from .remembering import Remembering
+from .run import ROOM_FOR_IMPACTS, run
 from .step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, step
 from .together import step_together
 
@@ -31,8 +33,6 @@ if TYPE_CHECKING:
     import pymunk
 
 RULE_COLUMNS = 6
-_BOOK = slice((Step.TYPE.names or ()).index("restitution"), (Step.TYPE.names or ()).index("after") + 1)
-UNBOUND: tuple[tuple[AnyArray | None, ...], Callable[..., int]] = (None,) * 4, int
 _CONTACTS = 256  # of islands, that there is room for at first; powers of 2
 _OF_A_BODY, _MANY = 32, 1 << 16  # for each body where contacts may last, up to so many: untouched memory is free
 
@@ -44,7 +44,7 @@ def _longer(table: Rows[R], used: int) -> Rows[R]:
     return longer
 
 
-class EventLoop:
+class EventLoop(Remembering):
     """Steps the packed bodies and shapes of a world from impact to impact.
 
     Args:
@@ -72,6 +72,8 @@ class EventLoop:
         vertices = max(2, int(LINK["vertices"].max(initial=2)))
         lossy = bool((SHAPE["elasticity"] < 1.0).any())
         self._options: tuple[int, ...] = disks, lossy  # numbers that the step takes besides dt, gravity and damping
+        self.lossy, self.together = lossy, False
+        self._usual: FloatArray = near.MARK["margin"].copy()
         room = _CONTACTS
         while lossy and room < min(_OF_A_BODY * n, _MANY):
             room *= 2
@@ -86,17 +88,6 @@ class EventLoop:
         self.scene.COUNT.limit, self.scene.COUNT.disks = limit, disks
         self.scene.MEMBER["tied"] = self.scene.MEMBER["next_tied"] = -1
         self.scene.RESTING["augmentation"] = FRESH
-
-    @property
-    def scene(self) -> Scene:
-        """All arrays; replace some by setting another."""
-        return self._scene
-
-    @scene.setter
-    def scene(self, arrays: Scene) -> None:
-        self._scene, self.table = arrays, table_of(arrays)
-        self._bound: tuple[tuple[AnyArray | None, ...], Callable[..., int]] = UNBOUND
-        self._book: FloatArray = numbers(arrays.PAR)[_BOOK]
 
     def step(
         self, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
@@ -114,6 +105,22 @@ class EventLoop:
             status = self._bind_to((STATES, WALK, EXTRA, ENDS))(dt, gx, gy, left, *self._options, bits)
         return status
 
+    def follow(self, reel: Reel, states: tuple[AnyArray, ...]) -> int:
+        """Take the steps that `reel` asks for; the bits of all, a negative code of `transfer.py`, or `run.ENERGY`."""
+        while True:
+            call = reel.call = reel.call or self._bind_run(reel, states)
+            status = check("run", call(self.disks, self.lossy, self.together))
+            if status == ROOM_FOR_IMPACTS:
+                reel.more_events()
+            elif status <= ROOM_FOR_LISTS:
+                self._grow(status)
+                reel.call = None
+            else:
+                return status
+
+    def _bind_run(self, reel: Reel, states: tuple[AnyArray, ...]) -> Callable[..., int]:
+        return run.bind(self.table, reel.table, *states, self._usual)
+
     def _bind_to(self, states: tuple[AnyArray, ...]) -> Callable[..., int]:
         """The step as machine code, bound to these arrays and to those of the scene."""
         call = self._bind(states)
@@ -122,14 +129,6 @@ class EventLoop:
 
     def _bind(self, states: tuple[AnyArray, ...]) -> Callable[..., int]:
         return step.bind(self.table, *states)
-
-    def __getstate__(self) -> dict[str, object]:
-        # Addresses are those of this process.
-        return {key: value for key, value in self.__dict__.items() if key not in ("table", "_bound")}
-
-    def __setstate__(self, state: dict[str, object]) -> None:
-        self.__dict__.update(state)
-        self.scene = self._scene
 
     def _grow(self, wish: int) -> None:
         scene = self.scene
@@ -207,8 +206,7 @@ class Together(EventLoop):
 
     def __init__(self, BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, disks: int) -> None:
         super().__init__(BODY, SHAPE, LINK, VERTEX, disks, 0)
-        self._usual: FloatArray = self.near.MARK["margin"].copy()
-        self._options = ()
+        self._options, self.together = (), True
 
     def _bind(self, states: tuple[AnyArray, ...]) -> Callable[..., int]:
         return step_together.bind(self.table, *states, self._usual)

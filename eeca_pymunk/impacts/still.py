@@ -168,6 +168,7 @@ def stand(A: Scene, c: int) -> None:
             A.LOG, A.COUNT.logged, A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, 0.5 * A.PAR.dt, R.normal, R.tangential,
             R.nx, R.ny, R.px, R.py, R.change, R.gap,
         )  # fmt: skip
+        A.LOG[A.COUNT.logged].duration = A.PAR.dt
         A.COUNT.logged += 1
 
 

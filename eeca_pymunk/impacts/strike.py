@@ -93,7 +93,7 @@ def note(
     to be found out."""
     LOG[n].first, LOG[n].second, LOG[n].when, LOG[n].normal, LOG[n].tangential = a, b, t, lam, beta
     LOG[n].nx, LOG[n].ny, LOG[n].px, LOG[n].py, LOG[n].change = nx, ny, px, py, change
-    LOG[n].gap = gap
+    LOG[n].gap, LOG[n].duration = gap, 0.0
 
 
 @uncounted

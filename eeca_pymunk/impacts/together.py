@@ -140,6 +140,12 @@ def resume_together(
     return finish(A, STATES, WALK, EXTRA, ENDS, status)
 
 
+@uncounted
+def begin_together(A: Scene) -> None:
+    """Let all contacts of the step that has been started act together."""
+    A.COUNT.together, A.PAR.now = 1, 0.0
+
+
 @kernel
 def step_together(
     TABLE: Table, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, USUAL: FloatArray,
@@ -156,5 +162,5 @@ def step_together(
     status = start(A, STATES, WALK, EXTRA, dt, gx, gy, left)
     if status < 0:
         return status
-    A.COUNT.together, A.PAR.now = 1, 0.0
+    begin_together(A)
     return resume_together(A, STATES, WALK, EXTRA, ENDS, USUAL, status)

@@ -50,4 +50,9 @@ class Joints(NamedTuple):
     TALLY: IntArray
 
 
+# What steps change.
+OF_JOINTS = (
+    "JOINT", "TIE", "HINGE", "LOCAL", "NODE", "STIFF", "FOUND", "PART", "PIVOTS", "KEPT", "SIDES", "STEPPED", "TALLY",
+)  # fmt: skip
+
 joints_of = Opener(Joints)

@@ -10,7 +10,10 @@ import numpy as np
 from ..arrays import AnyArray, FloatArray, IntArray
 from ..compiled import table_of
 from ..compiled.records import Rows
-from ..impacts.scene import UNBOUND, EventLoop
+from ..impacts.film import Reel
+from ..impacts.memory import OF_SCENE, gathered
+from ..impacts.remembering import UNBOUND
+from ..impacts.scene import EventLoop
 from ..joints.layout import JOINT_COLUMNS, TIE_COLUMNS
 from ..joints.plan import make_plan, room_for
 from ..joints.scratch import (
@@ -28,8 +31,9 @@ from ..joints.scratch import (
 )
 from ..model.bodies import Body
 from ..model.shapes import Link, Shape
-from .layout import COMPONENTS, ORDER, STEPPED_COLUMNS, TALLY_LENGTH, Joints
+from .layout import COMPONENTS, OF_JOINTS, ORDER, STEPPED_COLUMNS, TALLY_LENGTH, Joints
 from .loop import step_jointed
+from .run import run_jointed
 from .together import step_together_jointed
 
 
@@ -50,8 +54,7 @@ class JointedLoop(EventLoop):
     ) -> None:  # fmt: skip
         super().__init__(BODY, SHAPE, LINK, VERTEX, disks, limit)
         self._joint, self._tie, self._partner, self._order = joint, tie, PARTNER, order
-        self._together = together
-        self._usual: FloatArray = self.near.MARK["margin"].copy()
+        self.together = together
         if together:
             self._options = ()
         self.plan()
@@ -86,6 +89,13 @@ class JointedLoop(EventLoop):
         self._ties = table_of(self.joints)
         self._bound = UNBOUND
 
+    def _gather(self) -> IntArray:
+        (self.scene, self.joints), memory = gathered((self.scene, OF_SCENE), (self.joints, OF_JOINTS))
+        self.near = self._lists()
+        self._joint, self._tie = self.joints.JOINT, self.joints.TIE
+        self._ties = table_of(self.joints)
+        return memory
+
     @property
     def joint(self) -> FloatArray:
         """(j, JOINT_COLUMNS) the joints."""
@@ -116,6 +126,9 @@ class JointedLoop(EventLoop):
         self._ties = table_of(self.joints)
 
     def _bind(self, states: tuple[AnyArray, ...]) -> Callable[..., int]:
-        if self._together:
+        if self.together:
             return step_together_jointed.bind(self.table, self._ties, *states, self._usual)
         return step_jointed.bind(self.table, self._ties, *states)
+
+    def _bind_run(self, reel: Reel, states: tuple[AnyArray, ...]) -> Callable[..., int]:
+        return run_jointed.bind(self.table, self._ties, reel.table, *states, self._usual)

@@ -12,7 +12,7 @@ from ..compiled import Table, kernel
 from ..impacts.islands import unite
 from ..impacts.spans import solve
 from ..impacts.step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, finish
-from ..impacts.together import anew, join_all
+from ..impacts.together import anew, begin_together, join_all
 from ..model.scene import Scene, scene_of
 from ..model.step import DONE
 from .layout import Joints, joints_of
@@ -67,5 +67,5 @@ def step_together_jointed(
     status = start_jointed(A, J, STATES, WALK, EXTRA, dt, gx, gy, left)
     if status < 0:
         return status
-    A.COUNT.together, A.PAR.now = 1, 0.0
+    begin_together(A)
     return resume_together_jointed(A, J, STATES, WALK, EXTRA, ENDS, USUAL, status)

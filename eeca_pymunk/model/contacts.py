@@ -19,6 +19,7 @@ class Impulse(Record):
     gap: float  # length, at the start of the step, negative in overlap
     change: float  # of the contact's normal velocity by this impulse alone, length/time
     tangential: float  # impulse along t = (-n_y, n_x), mass length/time
+    duration: float  # time over which a force made it, about `when`; 0 for an impact
 
 
 class Pair(Record):

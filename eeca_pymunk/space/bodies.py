@@ -44,7 +44,7 @@ class Bodies:
         space: a pymunk space.  fixed: whether bodies that sleep count as static ones.
 
     Attributes:
-        items: the pymunk bodies, by row.  ids: (N,) pymunk's numbers of them.
+        fixed: whether any may sleep.  items: the pymunk bodies, by row.  ids: (N,) pymunk's numbers of them.
         mass, moment: (N,) mass and M L²; infinite for static and kinematic bodies.
         inverse_mass: (N,) 1/mass, 0 for static and kinematic bodies.
         dynamic: (N,) bool.  static: (N,) bool.  asleep: (N,) bool, none unless `fixed`.
@@ -52,7 +52,7 @@ class Bodies:
     """
 
     def __init__(self, space: pymunk.Space, *, fixed: bool = False) -> None:
-        self.space = space
+        self.space, self.fixed = space, fixed
         self._buffer = batch.Buffer()
         self._out = batch.Buffer()
         known = {body.id: body for body in (*space.bodies, space.static_body)}

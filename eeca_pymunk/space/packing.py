@@ -128,11 +128,16 @@ def _outlines(
 
 
 def _rows(bodies: Bodies, owner: IntArray, centred: BoolArray) -> tuple[IntArray, int]:
-    """(N,) rows: lone disks, other dynamic bodies, kinematic ones, each in pymunk's order; and how many lone disks."""
+    """(N,) rows: lone disks, other dynamic bodies, kinematic ones, each in the order in which the space got them; and
+    how many lone disks."""
     lone: BoolArray = bodies.dynamic & (np.bincount(owner, minlength=len(bodies)) == 1)
     lone[owner[~centred]] = False
     rank = np.where(lone, 0, np.where(bodies.dynamic, 1, 2))
     walk = np.flatnonzero(~bodies.static)
+    if bodies.fixed:
+        # pymunk walks them in another order once some have slept.
+        place = {body: i for i, body in enumerate(bodies.space.bodies)}
+        walk = walk[np.argsort([place[bodies.items[i]] for i in walk])] if len(walk) else walk
     row: IntArray = np.full(len(bodies), -1, np.int64)
     row[walk[np.argsort(rank[walk], kind="stable")]] = np.arange(len(walk))
     return row, int(np.count_nonzero(lone))

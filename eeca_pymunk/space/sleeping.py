@@ -16,13 +16,13 @@ which is merely slow for a moment, has a velocity of |g| dt one step later. With
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pymunk
 
-from ..arrays import BoolArray, FloatArray
+from ..arrays import BoolArray, FloatArray, IntArray
 from ..layout import BODY_ROW, FOUND, KNOWN, LEFT, NOW
 from ..report import Contacts
 from . import private, private_sleep
@@ -117,6 +117,18 @@ class Sleep:
             found |= self._wake_within(box)
         return found
 
+    def told(self, bodies: Sequence[pymunk.Body]) -> tuple[FloatArray, IntArray, IntArray]:
+        """Times at rest (N,), places of others of their groups of sleepers (N,), -1 for who is awake, timers (2,)."""
+        place = {body: i for i, body in enumerate(bodies)}
+        groups = [place.get(leader(body), i) if body.is_sleeping else -1 for i, body in enumerate(bodies)]
+        rested = self._rested[[self.world.bodies.row[body] for body in bodies]]
+        return rested, np.array(groups, np.int64), np.array([self._wait, self._since], np.int64)
+
+    def recall(self, rested: Mapping[pymunk.Body, float], timers: IntArray) -> None:
+        """Take over times at rest, and timers."""
+        self._rested[:] = [rested[body] for body in self.world.bodies.items]
+        self._wait, self._since = timers.tolist()
+
     def part(self) -> None:
         """Wake what may have touched a shape that is no longer there, and what is jointed to a body that is awake."""
         if not self.some:
@@ -209,6 +221,19 @@ class Sleep:
             first.sleep()
             for body in others:
                 body.sleep_with_group(first)
+
+
+def put_to_sleep(bodies: Sequence[pymunk.Body], groups: IntArray) -> None:
+    """Put bodies, all awake, to sleep in groups: each has the place of another of its group, -1 for none."""
+    leaders: dict[int, pymunk.Body] = {}
+    for body, group in zip(bodies, groups.tolist(), strict=True):
+        if group < 0:
+            continue
+        if group in leaders:
+            body.sleep_with_group(leaders[group])
+        else:
+            body.sleep()
+            leaders[group] = body
 
 
 def rouse(space: pymunk.Space) -> None:

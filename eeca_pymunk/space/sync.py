@@ -94,9 +94,13 @@ class Sync:
         for body in self._moving or ():
             move(body)
 
+    def waits(self) -> bool:
+        """Whether post-step callbacks wait for the end of a step."""
+        return private.waits(self.space)
+
     def call_back(self) -> None:
         """Do what waits for the end of a step: post-step callbacks."""
-        if private.waits(self.space):
+        if self.waits():
             private.finish_step(self.space)
 
     def rest(self, dt: float, joints: JointRows | None = None) -> None:

@@ -1,4 +1,7 @@
-"""Box2D 2.3 through pybox2d: a scene from standard input, states and seconds to standard output."""
+"""Box2D 2.3 through pybox2d: a scene from standard input, states and seconds to standard output.
+
+With "films" in it, each has its own "start", "radius", "moment" and "mass": lists of states and seconds come back.
+"""
 
 import json
 import sys
@@ -17,7 +20,7 @@ from Box2D import (
 )
 
 job = json.load(sys.stdin)
-ITERATIONS = 8, 3  # of velocities and positions, as its manual has them
+ITERATIONS = job.get("iterations", [8, 3])  # of velocities and positions, by default as its manual has them
 
 
 def build():
@@ -27,7 +30,10 @@ def build():
         edge = b2EdgeShape(vertices=[(x, y), (u, v)])
         ground.CreateFixture(b2FixtureDef(shape=edge, friction=job["friction"], restitution=job["elasticity"]))
     bodies = []
-    for (x, y, angle, vx, vy, spin), radius, moment in zip(job["start"], job["radius"], job["moment"], strict=True):
+    masses = job.get("mass", [1.0] * len(job["start"]))
+    for (x, y, angle, vx, vy, spin), radius, moment, mass in zip(
+        job["start"], job["radius"], job["moment"], masses, strict=True
+    ):
         body = world.CreateBody(
             b2BodyDef(type=b2_dynamicBody, position=(x, y), angle=angle, linearVelocity=(vx, vy), angularVelocity=spin)
         )
@@ -35,7 +41,7 @@ def build():
         body.CreateFixture(
             b2FixtureDef(shape=shape, density=1, friction=job["friction"], restitution=job["elasticity"])
         )
-        body.massData = b2MassData(mass=1.0, I=moment, center=(0, 0))
+        body.massData = b2MassData(mass=mass, I=moment, center=(0, 0))
         bodies.append(body)
     if job["rod"]:
         rod = b2DistanceJointDef(bodyA=ground, bodyB=bodies[0], anchorA=(0, 0), anchorB=bodies[0].position)
@@ -57,6 +63,14 @@ def run(steps):
     return states, seconds
 
 
+if "films" in job:
+    films = []
+    for film in job["films"]:
+        job |= film
+        states, seconds = run(job["steps"])
+        films.append({"states": states, "seconds": seconds})
+    print(json.dumps(films))
+    sys.exit()
 run(min(3, job["steps"]))
 ended = [run(job["steps"])]
 while sum(seconds for _, seconds in ended) < job["enough"] and len(ended) < 9:

@@ -1,0 +1,77 @@
+"""Events: the impacts of a run, each at its instant."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, fields
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .arrays import FloatArray, IntArray
+from .compiled.records import Rows, columns
+from .model.contacts import Impulse
+from .report import StepReport
+
+if TYPE_CHECKING:
+    import pymunk
+
+
+@dataclass
+class Events:
+    """m impacts in the order of time; contacts that last are none, their forces act all the time.
+
+    Attributes:
+        time: (m,) since the start of the recording.
+        bodies: (m, 2) places of a and b among the recorded bodies, -1 for a static one.
+        point: (m, 2) length, halfway between the two surfaces.  normal: (m, 2) unit, from a to b.
+        impulse: (m,) on b along the normal, >= 0.  friction: (m,) on b along t = (-n_y, n_x): mass length/time.
+    """
+
+    time: FloatArray = field(default_factory=lambda: np.zeros(0))
+    bodies: IntArray = field(default_factory=lambda: np.zeros((0, 2), np.intp))
+    point: FloatArray = field(default_factory=lambda: np.zeros((0, 2)))
+    normal: FloatArray = field(default_factory=lambda: np.zeros((0, 2)))
+    impulse: FloatArray = field(default_factory=lambda: np.zeros(0))
+    friction: FloatArray = field(default_factory=lambda: np.zeros(0))
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    def part(self, first: int, last: int) -> Events:
+        """Those from number `first` to before `last`."""
+        return Events(*(getattr(self, f.name)[first:last] for f in fields(self)))
+
+    def in_order(self) -> Events:
+        """The same by time, those at one instant by their bodies."""
+        order = np.lexsort((self.bodies[:, 1], self.bodies[:, 0], self.time))
+        return Events(*(getattr(self, f.name)[order] for f in fields(self)))
+
+    @staticmethod
+    def of(EVENT: Rows[Impulse], place: IntArray) -> Events:
+        """Of (m,) impacts, in this order; `place` (k,) is where the body of each shape is among the recorded ones, -1
+        for none."""
+        bodies = np.stack((place[EVENT["first"].astype(np.intp)], place[EVENT["second"].astype(np.intp)]), axis=-1)
+        return Events(
+            EVENT["when"].copy(), bodies, columns(EVENT, "px", "py"), columns(EVENT, "nx", "ny"),
+            EVENT["normal"].copy(), EVENT["tangential"].copy(),
+        )  # fmt: skip
+
+    @staticmethod
+    def of_report(report: StepReport, start: float, place: Mapping[pymunk.Body, int]) -> Events:
+        """Of a step that began at `start`; `place` of the recorded bodies."""
+        contacts = report.contacts
+        now = np.flatnonzero((contacts.duration == 0.0) & (report.impulse != 0.0))
+        at = np.array([place.get(body, -1) for body in contacts.bodies] if len(now) else [], np.intp)
+        bodies = np.stack((at[contacts.body_a[now]], at[contacts.body_b[now]]), axis=-1)
+        return Events(
+            start + contacts.time[now], bodies, contacts.point[now], contacts.normal[now], report.impulse[now],
+            report.friction[now],
+        )  # fmt: skip
+
+    @staticmethod
+    def joined(parts: Sequence[Events]) -> Events:
+        """One after the other."""
+        if not parts:
+            return Events()
+        return Events(*(np.concatenate([getattr(part, f.name) for part in parts]) for f in fields(Events)))

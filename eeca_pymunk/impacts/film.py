@@ -1,0 +1,95 @@
+"""Reel: the film of a run of an event loop, with room that grows while it is made."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import table_of
+from ..compiled.records import Rows, row, rows
+from ..energy.ledger import Ledger
+from ..model.contacts import Impulse
+from ..model.run import BETWEEN, Film, Run
+
+_NOBODY: IntArray = np.zeros(0, np.int64)
+_IMPACTS = 256  # rows of EVENTS at first
+
+
+def _flat(table: FloatArray | None, columns: int) -> FloatArray:
+    """Its rows, none if there is none."""
+    return np.zeros((0, columns)) if table is None else np.ascontiguousarray(table, float).reshape(-1, columns)
+
+
+class Reel:
+    """What a run is asked for, and what is kept of it.
+
+    Args:
+        dt: time.  gravity: length/time².  left: what half a step's damping leaves of velocities.
+        time: simulated time at its start.
+        kept: (b,) rows of the bodies in STATES of whom frames are kept.  frames: how many there is room for.
+        every: steps from frame to frame, 0 for none.  events: whether impacts are kept.
+        initial: (K, b, 6) where rollouts begin; none: the run goes on from where bodies are.
+        push: (K T, b, 3) forces and torques in each stretch of `every` steps, or none.
+        into: (T, b, 6) memory for the frames, else new memory.
+    """
+
+    def __init__(
+        self, dt: float, gravity: tuple[float, ...], left: float, time: float = 0.0, kept: IntArray = _NOBODY,
+        frames: int = 0, every: int = 0, events: bool = False, initial: FloatArray | None = None,
+        push: FloatArray | None = None, into: FloatArray | None = None,
+    ) -> None:  # fmt: skip
+        b, RUN = len(kept), row(Run)
+        rollouts = 0 if initial is None else len(initial)
+        RUN.dt, RUN.gravity_x, RUN.gravity_y, RUN.left_over = dt, *gravity, left
+        RUN.time, RUN.lock, RUN.every = time, 1.0, every
+        self.film = Film(
+            RUN, np.ascontiguousarray(kept, np.int64), np.zeros((frames * b, 6)) if into is None else _flat(into, 6),
+            np.zeros((frames, 6)),
+            rows(Impulse, _IMPACTS if events else 0), np.zeros(6), _flat(initial, 6), _flat(push, 3),
+            np.zeros((rollouts, 2), np.int64), _NOBODY, _NOBODY,
+        )  # fmt: skip
+
+    @property
+    def frames(self) -> FloatArray:
+        """(T, b, 6) poses and velocities."""
+        frames: FloatArray = self._film.FRAMES.reshape(len(self._film.SUMS), len(self._film.KEPT), 6)
+        return frames
+
+    @property
+    def film(self) -> Film:
+        """All arrays; replace some by setting another."""
+        return self._film
+
+    @film.setter
+    def film(self, arrays: Film) -> None:
+        self._film, self.table = arrays, table_of(arrays)
+        self.call: Callable[..., int] | None = None  # the loop bound to these arrays
+
+    @property
+    def progress(self) -> Run:
+        """How far the run is."""
+        return self._film.RUN
+
+    @property
+    def halted(self) -> bool:
+        """Whether it was broken off within a step."""
+        return bool(self._film.RUN.stage != BETWEEN)
+
+    def more_events(self) -> None:
+        """Give twice the room for impacts."""
+        film = self._film
+        longer = rows(Impulse, 2 * len(film.EVENTS))
+        longer[: film.RUN.kept] = film.EVENTS[: film.RUN.kept]
+        self.film = film._replace(EVENTS=longer)
+
+    @property
+    def events(self) -> Rows[Impulse]:
+        """(m,) the impacts so far, `when` from the start of the run."""
+        return self._film.EVENTS[: self._film.RUN.kept]
+
+    @property
+    def ledger(self) -> Ledger:
+        """Where energy has gone."""
+        return Ledger(*self._film.TOTAL.tolist())

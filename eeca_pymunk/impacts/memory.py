@@ -1,0 +1,92 @@
+"""What steps change in the arrays of a scene besides poses and velocities, in one piece of memory.
+
+A scene whose memory is as it was made goes from any poses and velocities the way that a new one goes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from ..arrays import AnyArray, IntArray, side_by_side
+from ..compiled.records import address_of
+from ..model.scene import Scene
+from ..pairs.layout import POOL_END
+
+# Fields of `Scene`. The tables of forces are emptied where a run begins (`run.set_back`).
+OF_SCENE = (
+    "STATE", "MARK", "CELL", "LIST", "POOL", "FLAG", "HEAD", "GRID", "INFO", "PLACE", "MEMBER", "RESTING", "PAR",
+    "COUNT",
+)  # fmt: skip
+# Those that are made larger on the way.
+ROOM = ("LOG", "PUSHED_BY", "PUSHED", "KEYS", "FORCES")
+
+
+def gathered(*parts: tuple[Any, tuple[str, ...]]) -> tuple[list[Any], IntArray]:
+    """Named tuples with copies of some of their arrays, which lie in one piece of memory; and that, as integers."""
+    held = [np.asarray(getattr(arrays, name)) for arrays, names in parts for name in names]
+    copies = side_by_side(*((array.shape or (1,), array.dtype) for array in held))
+    for copy, array in zip(copies, held, strict=True):
+        copy[...] = array
+    piece = _piece(copies)
+    # A record is taken out of its row.
+    fields = iter([copy if array.shape else copy[0] for copy, array in zip(copies, held, strict=True)])
+    return [arrays._replace(**{name: next(fields) for name in names}) for arrays, names in parts], piece
+
+
+def _piece(arrays: list[AnyArray]) -> IntArray:
+    """The memory from the first array to the end of the last one, as integers."""
+    memory: AnyArray = arrays[0]
+    while isinstance(memory.base, np.ndarray):
+        memory = memory.base
+    start = address_of(arrays[0]) - address_of(memory)
+    end = address_of(arrays[-1]) - address_of(memory) + arrays[-1].nbytes
+    piece: IntArray = memory[start : start + -(-(end - start) // 8) * 8].view(np.int64)
+    return piece
+
+
+# Of a state: fields of `Scene` that keep their lengths; those of BODY that no step changes.
+_WHOLE = (
+    "BODY", "STATE", "MARK", "CELL", "LIST", "HEAD", "GRID", "INFO", "PLACE", "MEMBER", "RESTING", "PAR", "COUNT",
+    "PULL", "BEGAN",
+)  # fmt: skip
+_CONSTANT = ("inv_mass", "inv_inertia", "extent", "elasticity", "friction")
+
+
+def remembered(scene: Scene) -> list[AnyArray]:
+    """All that decides how the next step of a scene goes, besides shapes and what crosses the edge."""
+    end, pushes = int(scene.INFO[POOL_END]), int(scene.COUNT.pushes)
+    used = np.flatnonzero(scene.KEYS >= 0)
+    sizes = np.array([len(scene.POOL), end, len(scene.KEYS), len(used), len(scene.PUSHED), pushes], np.int64)
+    return [
+        sizes, *(np.asarray(getattr(scene, name)) for name in _WHOLE), scene.POOL[:end], scene.FLAG[:end],
+        scene.PUSHED_BY[:pushes], scene.PUSHED[:pushes], used, scene.KEYS[used], scene.FORCES[used],
+    ]  # fmt: skip
+
+
+def recalled(scene: Scene, take: Callable[[Any, tuple[int, ...]], AnyArray]) -> Scene:
+    """The scene with what `remembered` told; BODY and records in place.
+
+    Args:
+        take: gives the next part with a dtype and a shape.
+    """
+    room, end, slots, used, many, pushes = take(np.int64, (6,)).tolist()
+    whole = {name: np.asarray(getattr(scene, name)) for name in _WHOLE}
+    new: dict[str, Any] = {name: take(array.dtype, array.shape).copy() for name, array in whole.items()}
+    for name in _CONSTANT:
+        new["BODY"][name] = scene.BODY[name]
+    for name in ("BODY", "PAR", "COUNT"):
+        whole[name][...] = new.pop(name)
+    # Lengths decide when more room is made, and that when lists are.
+    for name, kept, length in (
+        ("POOL", end, room), ("FLAG", end, room), ("PUSHED_BY", pushes, many), ("PUSHED", pushes, many)
+    ):  # fmt: skip
+        new[name] = np.zeros(length, getattr(scene, name).dtype)
+        new[name][:kept] = take(new[name].dtype, (kept,))
+    at = take(np.int64, (used,))
+    new["KEYS"], new["FORCES"] = np.full(slots, -1, np.int64), np.zeros((slots, scene.FORCES.shape[1]))
+    new["KEYS"][at] = take(np.int64, (used,))
+    new["FORCES"][at] = take(np.float64, (used, scene.FORCES.shape[1]))
+    return scene._replace(**new)

@@ -1,0 +1,104 @@
+"""Remembering: the arrays of a scene, which steps change, as they were made, as they are, and as a state has them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from ..arrays import AnyArray, FloatArray, IntArray
+from ..compiled import table_of
+from ..compiled.records import numbers, put
+from ..model.bodies import POSE, VELOCITY
+from ..model.scene import Scene
+from ..model.step import Step
+from ..pairs.setup import Near, near_lists
+from .memory import OF_SCENE, ROOM, gathered, recalled, remembered
+
+_BOOK = slice((Step.TYPE.names or ()).index("restitution"), (Step.TYPE.names or ()).index("after") + 1)
+UNBOUND: tuple[tuple[AnyArray | None, ...], Callable[..., int]] = (None,) * 4, int
+_OF_PROCESS = "table", "_bound", "own", "fresh", "_room"  # attributes that no copy has
+
+
+class Remembering:
+    """What an event loop knows of earlier steps.
+
+    Attributes:
+        near: the near lists among the arrays of the scene.
+    """
+
+    near: Near
+    _usual: FloatArray
+
+    @property
+    def scene(self) -> Scene:
+        """All arrays; replace some by setting another."""
+        return self._scene
+
+    @scene.setter
+    def scene(self, arrays: Scene) -> None:
+        self._scene, self.table = arrays, table_of(arrays)
+        self._bound: tuple[tuple[AnyArray | None, ...], Callable[..., int]] = UNBOUND
+        self._book: FloatArray = numbers(arrays.PAR)[_BOOK]
+
+    def __getstate__(self) -> dict[str, object]:
+        return {key: value for key, value in self.__dict__.items() if key not in _OF_PROCESS}
+
+    def __setstate__(self, state: dict[str, object]) -> None:
+        self.__dict__.update(state)
+        self.scene = self._scene
+
+    def keep_fresh(self) -> None:
+        """Before the first step: keep what steps change, poses and velocities aside, as it is now, for `start_anew`."""
+        self.own = self._gather()
+        self.fresh: IntArray = self.own.copy()
+        self._room = {name: getattr(self.scene, name) for name in ROOM}
+
+    @property
+    def listed(self) -> bool:
+        """Whether near lists depend on where bodies are: else all shapes stand in all lists."""
+        return bool(np.isfinite(self.scene.MARK["margin"]).any())
+
+    def start_anew(self, at: IntArray, state: FloatArray) -> None:
+        """Be what a new loop is for bodies, rows `at` (b,) of BODY, of this state (b, 6); after `keep_fresh`."""
+        self.own[:] = self.fresh
+        # Where tables have been made larger they are taken back: a step that is broken off for room begins again.
+        if any(getattr(self.scene, name) is not array for name, array in self._room.items()):
+            self.scene = self.scene._replace(**self._room)
+        self.scene.KEYS[:] = -1
+        if self.listed:
+            BODY, moved = self.scene.BODY, self.scene.BODY[at]
+            put(moved, state, *POSE, *VELOCITY)
+            moved["since"] = 0.0
+            BODY[at] = moved
+            self._list_anew()
+            self.keep_fresh()
+
+    def remembered(self) -> list[AnyArray]:
+        """All that decides how the next step goes, besides what crosses the edge."""
+        return [self._usual, *remembered(self.scene)]
+
+    def recall(self, take: Callable[[Any, tuple[int, ...]], AnyArray]) -> None:
+        """Remember what `remembered` told; `take` gives its next part with a dtype and a shape."""
+        self._usual = take(np.float64, self._usual.shape).copy()
+        self.scene = recalled(self.scene, take)
+        self.near = self._lists()
+        self.__dict__.pop("fresh", None)
+
+    def _gather(self) -> IntArray:
+        """Have what steps change, poses and velocities aside, in one piece of memory: that memory, as integers."""
+        (self.scene,), memory = gathered((self.scene, OF_SCENE))
+        self.near = self._lists()
+        return memory
+
+    def _lists(self) -> Near:
+        """The near lists among the arrays of the scene."""
+        return Near(*(getattr(self.scene, name) for name in Near._fields))
+
+    def _list_anew(self) -> None:
+        """Make the near lists for where BODY has the bodies now, as for a new loop."""
+        scene = self.scene
+        self.near = near_lists(scene.BODY, scene.SHAPE, scene.LINK, scene.VERTEX, len(scene.LIST))
+        self._usual = self.near.MARK["margin"].copy()
+        self.scene = scene._replace(**self.near._asdict())

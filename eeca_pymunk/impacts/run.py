@@ -1,0 +1,173 @@
+"""Many steps in one call: each begins with what the one before has left; frames, ledgers and impacts are kept.
+
+Rollouts are such runs from many states, each of which begins as the first step of a new stepper does.
+"""
+
+from __future__ import annotations
+
+import math
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import Table, kernel, uncounted
+from ..layout import BODY_ROW, LEFT
+from ..layout import NOW as READ
+from ..model.run import AFTER, BETWEEN, WITHIN, Film, film_of
+from ..model.scene import Scene, scene_of
+from .step import resume, start
+from .together import begin_together, resume_together
+
+ROOM_FOR_IMPACTS = -13  # the answer of a run that wants more rows of EVENTS
+ENERGY = -5  # and of one whose energy is too large for a number
+
+
+@uncounted
+def carry_on(STATES: FloatArray, WALK: IntArray) -> None:
+    """Let the next step begin with the poses and velocities that the last one has left, and with no forces."""
+    now, after = STATES[READ], STATES[LEFT]
+    for i in range(WALK.shape[1]):
+        if WALK[BODY_ROW, i] >= 0:
+            for c in range(6):
+                now[i, c] = after[i, c]
+            for c in range(6, 9):
+                now[i, c] = 0.0
+
+
+@uncounted
+def set_back(A: Scene, F: Film, STATES: FloatArray, WALK: IntArray) -> None:
+    """Begin a rollout: everything is forgotten, and bodies are put where INITIAL has them."""
+    now, after = STATES[READ], STATES[LEFT]
+    if A.COUNT.remembered > 0:
+        for q in range(A.KEYS.shape[0]):
+            A.KEYS[q] = -1
+    for q in range(F.OWN.shape[0]):
+        F.OWN[q] = F.FRESH[q]
+    for i in range(WALK.shape[1]):
+        if WALK[BODY_ROW, i] >= 0:
+            for c in range(6):
+                after[i, c] = math.nan
+            for c in range(6, 9):
+                now[i, c] = 0.0
+    b = F.KEPT.shape[0]
+    for q in range(b):
+        for c in range(6):
+            now[F.KEPT[q], c] = F.INITIAL[F.RUN.rollout * b + q, c]
+    for c in range(6):
+        F.TOTAL[c] = 0.0
+    F.COUNTS[F.RUN.rollout, 0] = 0
+
+
+@uncounted
+def before_step(A: Scene, F: Film, STATES: FloatArray, WALK: IntArray) -> None:
+    """What the next step starts from."""
+    RUN, now = F.RUN, STATES[READ]
+    if RUN.done > 0:
+        carry_on(STATES, WALK)
+    elif RUN.rollouts > 0:
+        set_back(A, F, STATES, WALK)
+    if F.PUSH.shape[0] > 0:
+        # `frame` counts those of earlier rollouts too.
+        b = F.KEPT.shape[0]
+        for q in range(b):
+            for c in range(3):
+                now[F.KEPT[q], 6 + c] = F.PUSH[RUN.frame * b + q, c]
+
+
+@uncounted
+def after_step(A: Scene, F: Film, STATES: FloatArray) -> int:
+    """Keep what there is to be kept of a step: 0, or ENERGY or ROOM_FOR_IMPACTS with nothing done."""
+    RUN, PAR, COUNT, LOG, T = F.RUN, A.PAR, A.COUNT, A.LOG, F.TOTAL
+    if not math.isfinite(PAR.after):
+        return ENERGY
+    room = F.EVENTS.shape[0]
+    if room > 0 and RUN.kept + COUNT.logged > room:
+        return ROOM_FOR_IMPACTS
+    for k in range(COUNT.logged):
+        if LOG[k].duration == 0.0 and LOG[k].normal != 0.0:
+            RUN.impacts += 1
+            if room > 0:
+                row, one = F.EVENTS[RUN.kept], LOG[k]
+                row.first, row.second, row.when = one.first, one.second, RUN.done * RUN.dt + one.when
+                row.normal, row.tangential, row.nx, row.ny = one.normal, one.tangential, one.nx, one.ny
+                row.px, row.py, row.gap, row.change, row.duration = one.px, one.py, one.gap, one.change, 0.0
+                RUN.kept += 1
+    RUN.done += 1
+    RUN.time += RUN.dt
+    if COUNT.unmet > 0:
+        RUN.unmet += 1
+        if RUN.rollouts > 0:
+            F.COUNTS[RUN.rollout, 0] += 1
+    if COUNT.logged > 0:
+        RUN.iterations += COUNT.solves + COUNT.blocks
+        if abs(PAR.lock - 1.0) > abs(RUN.lock - 1.0):
+            RUN.lock = PAR.lock
+    change = PAR.after - PAR.before
+    T[0] += change
+    T[1] += PAR.external
+    T[2] += PAR.restitution
+    T[3] += PAR.frictional
+    T[4] += PAR.damped
+    T[5] += change - (PAR.external - PAR.restitution - PAR.frictional - PAR.damped)
+    if RUN.every > 0 and RUN.done % RUN.every == 0:
+        after, b = STATES[LEFT], F.KEPT.shape[0]
+        for q in range(b):
+            for c in range(6):
+                F.FRAMES[RUN.frame * b + q, c] = after[F.KEPT[q], c]
+        for c in range(6):
+            F.SUMS[RUN.frame, c] = T[c]
+        RUN.frame += 1
+    RUN.all_bits |= RUN.bits
+    RUN.stage = BETWEEN
+    return 0
+
+
+@uncounted
+def next_rollout(F: Film) -> bool:
+    """Whether there is one more to be made."""
+    RUN = F.RUN
+    if RUN.rollouts == 0:
+        return False
+    F.COUNTS[RUN.rollout, 1] = RUN.kept
+    RUN.rollout, RUN.done = RUN.rollout + 1, 0
+    return bool(RUN.rollout < RUN.rollouts)
+
+
+@kernel
+def run(
+    TABLE: Table, FILM: Table, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray,
+    USUAL: FloatArray, disks: int, lossy: bool, together: bool,
+) -> int:  # fmt: skip
+    """Steps until RUN.until of them are done, of each rollout if there are any.
+
+    Args:
+        TABLE: `table_of` a Scene.  FILM: `table_of` a Film.  USUAL: see `together.py`.
+        disks, lossy: see `step.step`.  together: whether all contacts of a step act together at its middle.
+
+    Returns:
+        the bits of all steps; a negative code of a step, or ENERGY, with the state at its start in STATES; or a wish
+        for room: give some, and call again.
+    """
+    A, F = scene_of(TABLE), film_of(FILM)
+    RUN = F.RUN
+    while True:
+        while RUN.done < RUN.until:
+            if RUN.stage == BETWEEN:
+                before_step(A, F, STATES, WALK)
+                RUN.bits = start(A, STATES, WALK, EXTRA, RUN.dt, RUN.gravity_x, RUN.gravity_y, RUN.left_over)
+                if RUN.bits < 0:
+                    return RUN.bits
+                if together:
+                    begin_together(A)
+                RUN.stage = WITHIN
+            if RUN.stage == WITHIN:
+                if together:
+                    status = resume_together(A, STATES, WALK, EXTRA, ENDS, USUAL, RUN.bits)
+                else:
+                    status = resume(A, STATES, WALK, EXTRA, ENDS, disks, lossy, RUN.bits)
+                if status < 0:
+                    return status
+                RUN.bits, RUN.stage = status, AFTER
+            status = after_step(A, F, STATES)
+            if status < 0:
+                return status
+        if not next_rollout(F):
+            return RUN.all_bits

@@ -1,0 +1,165 @@
+"""record: run a stepper and keep the trajectory."""
+
+from __future__ import annotations
+
+import functools
+import sys
+from typing import TYPE_CHECKING
+
+import numpy as np
+from tqdm import tqdm
+
+from .arrays import FloatArray, IntArray
+from .energy.invariants import traces
+from .energy.ledger_trace import LedgerTrace, entries
+from .events import Events
+from .recording import Recording
+from .report import StepReport
+from .runs import RunningStepper
+from .space.bodies import ANGLE, ANGULAR_VELOCITY, POSITION, VELOCITY, Bodies, moving
+from .space.measure import invariants
+from .space.outlines import Outlines
+from .stepper import Stepper, check_dt
+
+if TYPE_CHECKING:
+    import pymunk
+
+_PER_BODY = 6 * 8  # bytes kept of a body and moment: position, angle, velocity, spin
+_PER_MOMENT = 11 * 8  # bytes besides: time, energies, momentum, ledger
+MEMORY = 2.0**30  # bytes
+
+
+@functools.cache
+def _versions() -> dict[str, str]:
+    from importlib.metadata import version
+
+    return {
+        "python": sys.version.split()[0],
+        **{name: version(name) for name in ("eeca-pymunk", "pymunk", "numpy")},
+    }
+
+
+def versions() -> dict[str, str]:
+    """Versions of what a result depends on."""
+    return dict(_versions())
+
+
+def step_count(duration: float, dt: float) -> int:
+    """Steps of dt that fill the duration; ValueError unless both are positive and finite."""
+    if check_dt(dt) == 0.0 or check_dt(duration) == 0.0:
+        raise ValueError(f"duration = {duration}, dt = {dt}: give numbers > 0")
+    return max(1, round(duration / dt))
+
+
+def record(
+    stepper: Stepper, duration: float, dt: float, every: int = 1, progress: bool = False, memory: float = MEMORY
+) -> Recording:
+    """Run `stepper` for round(duration / dt) steps and keep the start, every `every`-th step, and all impacts.
+
+    Of EECA that is one compiled call wherever `stepper.run` is.
+
+    Args:
+        duration, dt: time, > 0.
+        every: keep one of so many steps, >= 1.
+        progress: show a progress bar.
+        memory: bytes that the moments may take. ValueError, before anything moves, if they would take more.
+    """
+    if every < 1:
+        raise ValueError(f"every = {every}: give a whole number >= 1")
+    count = step_count(duration, dt)
+    kept = moving(stepper.space)
+    moments = 1 + count // every
+    needed = moments * (len(kept) * _PER_BODY + _PER_MOMENT)
+    if needed > memory:
+        raise ValueError(
+            f"{moments} moments of {len(kept)} bodies take {needed:.2g} bytes, more than memory = {memory:.2g}: "
+            f"give every >= {int(np.ceil(every * needed / memory))}, or more memory"
+        )
+    if isinstance(stepper, RunningStepper) and stepper.compiles():
+        recording = _filmed(stepper, kept, count, dt, every, progress)
+    else:
+        film = _Moments(stepper.space, kept, moments)
+        film.keep(0)
+        for k in tqdm(range(1, count + 1), desc=type(stepper).__name__, unit="step", disable=not progress):
+            film.book(stepper.step(dt), (k - 1) * dt)
+            if k % every == 0:
+                film.keep(k // every)
+        recording = film.recording
+        recording.parameters["steps_unmet"] = film.unmet
+        recording.events = Events.joined(film.events).in_order()
+    recording.time[:] = (dt * every) * np.arange(moments)
+    recording.parameters.update(stepper=type(stepper).__name__, dt=dt, duration=count * dt, every=every, **versions())
+    return recording
+
+
+def _filmed(
+    stepper: RunningStepper, kept: list[pymunk.Body], count: int, dt: float, every: int, progress: bool
+) -> Recording:  # fmt: skip
+    """The recording of a run in compiled code."""
+    space = stepper.space
+    outlines = Outlines.of(space, kept)
+    world = stepper.current()
+    rows: IntArray = np.array([world.bodies.row[body] for body in kept], np.intp)
+    mass, moment, dynamic = world.bodies.mass[rows], world.bodies.moment[rows], world.bodies.dynamic[rows]
+    place = np.full(len(world.bodies), -1, np.intp)
+    place[rows] = np.arange(len(kept))
+    owner = place[world.owner]
+    reel = stepper.film(count, dt, kept, every, events=True, progress=progress)
+    frames = reel.frames
+    position, angle, velocity, spin = frames[:, :, :2], frames[:, :, 2], frames[:, :, 3:5], frames[:, :, 5]
+    d = np.argsort(rows)  # as `measure` adds
+    d = d[dynamic[d]]
+    of = traces(mass[d], moment[d], position[:, d], velocity[:, d], spin[:, d], space.gravity)
+    return Recording(
+        np.zeros(len(frames)), position.copy(), angle.copy(), velocity.copy(), of.energy, of.linear_momentum, mass,
+        outlines, kinetic=of.kinetic, ledger=LedgerTrace(*reel.film.SUMS.T.copy()), spin=spin.copy(),
+        events=Events.of(reel.events, owner).in_order(), parameters={"steps_unmet": int(reel.progress.unmet)},
+    )  # fmt: skip
+
+
+class _Moments:
+    """A recording that is being filled."""
+
+    def __init__(self, space: pymunk.Space, kept: list[pymunk.Body], moments: int) -> None:
+        self.space, self.kept = space, kept
+        T, N = moments, len(kept)
+        self.place = {body: i for i, body in enumerate(kept)}
+        self.events: list[Events] = []
+        self._read()
+        self.recording = Recording(
+            np.zeros(T), np.empty((T, N, 2)), np.empty((T, N)), np.empty((T, N, 2)), np.empty(T), np.empty((T, 2)),
+            self.bodies.mass[self.rows], Outlines.of(space, kept), kinetic=np.empty(T), ledger=LedgerTrace.unknown(T),
+            spin=np.empty((T, N)),
+        )  # fmt: skip
+        self.total: FloatArray = np.zeros(6)  # of the ledgers so far
+        self.unmet = 0  # steps that left something undone
+
+    def _read(self) -> None:
+        """The rows of the kept bodies among those the space has now."""
+        self.bodies = Bodies(self.space)
+        self.present: IntArray = np.array([i for i, b in enumerate(self.kept) if b in self.bodies.row], np.intp)
+        self.rows: IntArray = np.array([self.bodies.row[self.kept[i]] for i in self.present], np.intp)
+
+    def book(self, report: StepReport, start: float) -> None:
+        """Add the ledger and the impacts of a step that began at `start`."""
+        self.total += entries(report.ledger)
+        self.unmet += not report.converged
+        self.events.append(Events.of_report(report, start, self.place))
+
+    def keep(self, i: int) -> None:
+        """Write moment number i."""
+        state = self.bodies.gather()
+        if state is None:
+            self._read()
+            state = self.bodies.gather()
+            assert state is not None  # read from these very bodies
+            if set(self.bodies.row) - set(self.kept) - {b for b in self.bodies.row if b.body_type == b.STATIC}:
+                raise ValueError("a body was added while recording: record the stretch that begins there by itself")
+        now, to = invariants(self.bodies, state, self.space.gravity), self.recording
+        for array, column in (
+            (to.position, POSITION), (to.angle, ANGLE), (to.velocity, VELOCITY), (to.spin, ANGULAR_VELOCITY)
+        ):  # fmt: skip
+            array[i] = np.nan
+            array[i, self.present] = state[self.rows, column]
+        to.energy[i], to.kinetic[i], to.momentum[i] = now.energy, now.kinetic, now.linear_momentum
+        to.ledger.put(i, self.total)

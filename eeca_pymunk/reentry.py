@@ -1,0 +1,31 @@
+"""Re-entry: while a step calls functions of a space, they cannot step that space."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import pymunk
+
+BUSY: set[pymunk.Space] = set()  # spaces whose own functions are being called
+
+
+@contextmanager
+def busy(space: pymunk.Space) -> Iterator[None]:
+    """Within, steps of the space are refused."""
+    BUSY.add(space)
+    try:
+        yield
+    finally:
+        BUSY.discard(space)
+
+
+def refuse_within(space: pymunk.Space) -> None:
+    """RuntimeError within a step of this space."""
+    if space in BUSY:
+        raise RuntimeError(
+            f"step was called for {space} from within its own step, by a collision handler or a function of a "
+            "body or constraint: step it when that step has returned, or in space.add_post_step_callback"
+        )

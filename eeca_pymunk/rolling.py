@@ -1,0 +1,156 @@
+"""Rolling: the copies of a scene that rollouts are made on, kept from call to call."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from .arrays import FloatArray, IntArray
+from .energy.ledger_trace import entries
+from .errors import NotFiniteError
+from .events import Events
+from .impacts.film import Reel
+from .impacts.scene import EventLoop
+from .jointed.scene import JointedLoop
+from .layout import BODY_ROW
+from .packed_space import TOO_FAR
+from .runs import RunningStepper
+from .space.bodies import moving
+from .space.world import World
+
+
+@dataclass(frozen=True)
+class Job:
+    """What K rollouts of b bodies are to be, and what comes of them.
+
+    Attributes:
+        states: (K, b, 6).  push: (K, T, b, 3), or none.  steps, every, dt: see `rollout`.
+        frames: (K, T, b, 6).  ledger: (K, T, 6).  unmet: (K,).  full: whether impacts are kept.
+    """
+
+    states: FloatArray
+    push: FloatArray | None
+    steps: int
+    every: int
+    dt: float
+    frames: FloatArray
+    ledger: FloatArray
+    unmet: IntArray
+    full: bool
+
+
+class _Copy:
+    """The arrays of a scene that has not taken a step, for one thread; `rows` (b,) of its bodies in STATES."""
+
+    def __init__(self, world: World, loop: EventLoop, rows: IntArray) -> None:
+        self.world, self.rows = world, rows
+        self.loop = copy.deepcopy(loop)
+        self.states = world.STATES.copy(), world.WALK.copy(), world.EXTRA.copy(), np.zeros_like(world.ENDS)
+        self._place = np.full(len(world.bodies), -1, np.intp)
+        self._place[rows] = np.arange(len(rows))
+        self._at = world.WALK[BODY_ROW, rows]
+        self.loop.keep_fresh()
+
+    def roll(self, job: Job, first: int, last: int) -> list[Events]:
+        """The rollouts from number `first` to before `last`; the impacts of each, none unless the job is full."""
+        if not self.loop.listed:
+            return self._shoot(job, first, last)
+        events = []
+        for k in range(first, last):
+            self.loop.start_anew(self._at, job.states[k])
+            events += self._shoot(job, k, k + 1)
+        return events
+
+    def _shoot(self, job: Job, first: int, last: int) -> list[Events]:
+        T, world = job.frames.shape[1], self.world
+        reel = Reel(
+            job.dt, world.gravity, world.left(job.dt), 0.0, self.rows, (last - first) * T, job.every, job.full,
+            job.states[first:last], None if job.push is None else job.push[first:last], job.frames[first:last],
+        )  # fmt: skip
+        reel.film = reel.film._replace(OWN=self.loop.own, FRESH=self.loop.fresh)
+        RUN = reel.progress
+        RUN.until, RUN.rollouts = job.steps, last - first
+        status = self.loop.follow(reel, self.states)
+        if status < 0:
+            raise NotFiniteError(f"rollout {first + int(RUN.rollout)}, after {int(RUN.done)} steps: {TOO_FAR}")
+        job.ledger[first:last] = reel.film.SUMS.reshape(last - first, T, 6)
+        job.unmet[first:last] = reel.film.COUNTS[:, 0]
+        if not job.full:
+            return []
+        events = Events.of(reel.events, self._place[world.owner])
+        ends = [0, *reel.film.COUNTS[:, 1].tolist()]
+        return [events.part(a, b).in_order() for a, b in pairwise(ends)]
+
+
+class Rolling:
+    """The copies of the scene of a stepper.
+
+    Args:
+        twin: another stepper of the space, which takes no steps.
+    """
+
+    def __init__(self, twin: RunningStepper) -> None:
+        self.twin = twin
+        self._made: list[_Copy] = []
+        self._of: tuple[object, ...] = ()
+
+    @staticmethod
+    def of(stepper: RunningStepper, dt: float) -> Rolling:
+        """That of a stepper, with copies of the space as it is now."""
+        rolling = stepper.rolling
+        if rolling is None:
+            rolling = stepper.rolling = Rolling(copy.copy(stepper))
+        rolling._refresh(dt)
+        return rolling
+
+    def _refresh(self, dt: float) -> None:
+        """Forget the copies if the space is another."""
+        world = self.world = self.twin.current()
+        if not world.plain:
+            self.twin.adjust(world, dt)
+        loop = self.twin.event_loop
+        assert loop is not None
+        rules = loop.scene.RULE.tobytes()
+        joints = (loop.joint.tobytes(), loop.tie.tobytes()) if isinstance(loop, JointedLoop) else ()
+        now = id(world), id(loop), rules, *joints
+        if now != self._of:
+            self._made, self._of = [], now
+
+    def copies(self, count: int) -> list[_Copy]:
+        """So many copies."""
+        loop, world = self.twin.event_loop, self.world
+        assert loop is not None
+        if len(self._made) < count:
+            rows: IntArray = np.array([world.bodies.row[body] for body in moving(self.twin.space)], np.intp)
+            self._made += [_Copy(world, loop, rows) for _ in range(count - len(self._made))]
+        return self._made[:count]
+
+
+def roll_slowly(twin: RunningStepper, job: Job, done: Callable[[int], object]) -> list[Events]:
+    """The rollouts step by step, on a space of their own; the impacts of each."""
+    bodies, found = moving(twin.space), []
+    place = {body: i for i, body in enumerate(bodies)}
+    for k, state in enumerate(job.states):
+        twin.set_state(state)
+        total, parts = np.zeros(6), []
+        for step in range(job.steps):
+            t = step // job.every
+            if job.push is not None:
+                for body, (fx, fy, torque) in zip(bodies, job.push[k, t].tolist(), strict=True):
+                    body.force, body.torque = (fx, fy), torque
+            report = twin.step(job.dt)
+            total += entries(report.ledger)
+            job.unmet[k] += not report.converged
+            if job.full:
+                parts.append(Events.of_report(report, step * job.dt, place))
+            if (step + 1) % job.every == 0:
+                job.ledger[k, t] = total
+                for i, body in enumerate(bodies):
+                    job.frames[k, t, i] = *body.position, body.angle, *body.velocity, body.angular_velocity
+        found.append(Events.joined(parts).in_order())
+        done(1)
+    return found

@@ -1,0 +1,192 @@
+"""rollout: copies of one scene from many states, in compiled code, on threads."""
+
+from __future__ import annotations
+
+import os
+import pickle
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from queue import SimpleQueue
+from typing import Literal, overload
+
+import numpy as np
+import numpy.typing as npt
+from tqdm import tqdm
+
+from .arrays import FloatArray
+from .datasets import Rollouts
+from .errors import UnsupportedFeature
+from .events import Events
+from .recorder import versions
+from .reentry import refuse_within
+from .rolling import Job, Rolling, roll_slowly
+from .runs import RunningStepper
+from .space.bodies import moving
+from .stepper import check_dt, check_steps
+
+_PIECES, _STEPS = 8, 4096  # that each thread's share is cut into, so that none waits long for another; steps at least
+
+
+@overload
+def rollout(
+    stepper: RunningStepper, states: npt.ArrayLike, steps: int, dt: float, every: int = 1,
+    controls: npt.ArrayLike | None = None, threads: int | None = None, progress: bool = False,
+    full: Literal[False] = False,
+) -> FloatArray: ...  # fmt: skip
+@overload
+def rollout(
+    stepper: RunningStepper, states: npt.ArrayLike, steps: int, dt: float, every: int = 1,
+    controls: npt.ArrayLike | None = None, threads: int | None = None, progress: bool = False,
+    *, full: Literal[True],
+) -> Rollouts: ...  # fmt: skip
+def rollout(
+    stepper: RunningStepper, states: npt.ArrayLike, steps: int, dt: float, every: int = 1,
+    controls: npt.ArrayLike | None = None, threads: int | None = None, progress: bool = False, full: bool = False,
+) -> FloatArray | Rollouts:  # fmt: skip
+    """Where K copies of a scene go from K states: bit by bit as if `stepper.set_state(states[k])` were followed by so
+    many steps. The space and its stepper are left as they are.
+
+    Args:
+        stepper: an EECA, of the scene.
+        states: (K, b, 6) position, angle, velocity and spin of the b bodies that are not static, in the order of
+            `space.bodies`; length, rad, per time.
+        steps, dt: number > 0; time > 0.
+        every: keep one of so many steps: T = steps // every frames. What is left over is not run.
+        controls: (K, T, b, 3) forces at the centres of mass and torques, held over the steps up to each frame.
+        threads: as many as there are processors if None. The answer is the same for any number.
+        progress: show a progress bar.  full: also return ledgers, impacts, and which steps did not converge.
+
+    Returns:
+        (K, T, b, 6), or all that is known if `full`.
+
+    Raises:
+        ValueError: shapes do not fit, a number is not finite, or becomes so on the way.
+        UnsupportedFeature: functions are called within steps and the space cannot be copied, see below.
+
+    Where `stepper.run` is a Python loop so is this, in one thread: on the space itself, which is put back afterwards,
+    or, if functions are called within steps, on a copy of it that pickle makes.
+    """
+    if not isinstance(stepper, RunningStepper):
+        raise TypeError(f"{type(stepper).__name__} has no rollouts: give an EECA")
+    refuse_within(stepper.space)
+    steps, every, dt = check_steps(steps), check_steps(every), check_dt(dt)
+    if steps == 0 or every == 0 or dt == 0.0 or steps < every:
+        raise ValueError(f"steps = {steps}, every = {every}, dt = {dt}: give numbers > 0, every <= steps")
+    bodies = moving(stepper.space)
+    b, T = len(bodies), steps // every
+    start = np.ascontiguousarray(states, float)
+    if start.ndim != 3 or start.shape[1:] != (b, 6):
+        raise ValueError(
+            f"states of shape {start.shape}: give (K, {b}, 6), position, angle, velocity, spin of each body"
+        )
+    K = len(start)
+    push = None if controls is None else np.ascontiguousarray(controls, float)
+    if push is not None and push.shape != (K, T, b, 3):
+        raise ValueError(f"controls of shape {push.shape}: give ({K}, {T}, {b}, 3), force and torque of each body")
+    for name, array in (("states", start), ("controls", push)):
+        if array is not None and not np.isfinite(array).all():
+            at = tuple(np.argwhere(~np.isfinite(array))[0].tolist())
+            raise ValueError(f"{name}[{at}] is {array[at]}: give finite numbers")
+    count = _processors() if threads is None else check_steps(threads)
+    if count == 0:
+        raise ValueError(f"threads = {threads}: give a whole number > 0, or None")
+    job = Job(
+        start, push, T * every, every, dt, np.zeros((K, T, b, 6)), np.zeros((K, T, 6)), np.zeros(K, np.int64), full
+    )
+    with tqdm(total=K, desc="rollout", unit="rollout", disable=not progress) as bar:
+        if stepper.compiles():
+            events = _on_threads(stepper, job, min(count, max(K, 1)), bar.update)
+        else:
+            events = _one_by_one(stepper, job, bar.update)
+    if not full:
+        return job.frames
+    first = np.cumsum([0, *map(len, events)])
+    told = {"steps": steps, "dt": dt, "every": every, "model": stepper.model, **versions()}
+    return Rollouts(start, job.frames, job.ledger, job.unmet, Events.joined(events), first, parameters=told)
+
+
+def certify(
+    stepper: RunningStepper, rollouts: Rollouts, threads: int | None = None, progress: bool = False
+) -> FloatArray:  # fmt: skip
+    """How far off the frames of rollouts without controls may be: they are made again with half the time step.
+
+    Of a method of order p the error is 2^p / (2^p - 1) of the difference, at most 2; where it is exact (impacts of
+    disks, free flight) both differ by round-off, whose growth from impact to impact that measures.
+
+    Returns:
+        (K,) length, twice the largest difference of a position in any frame; it also becomes `rollouts.error`.
+    """
+    told = rollouts.parameters
+    again = rollout(
+        stepper, rollouts.states, 2 * told["steps"], 0.5 * told["dt"], 2 * told["every"], None, threads, progress
+    )
+    apart = np.linalg.norm(again[..., :2] - rollouts.frames[..., :2], axis=-1)
+    rollouts.error = 2.0 * apart.max(axis=(1, 2), initial=0.0)
+    return rollouts.error
+
+
+def _processors() -> int:
+    """Processors that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def _on_threads(stepper: RunningStepper, job: Job, threads: int, done: Callable[[int], object]) -> list[Events]:
+    """All rollouts; the impacts of each."""
+    rolling = Rolling.of(stepper, job.dt)
+    K = len(job.states)
+    count = max(threads, min(threads * _PIECES, K * job.steps // _STEPS))
+    size = max(1, -(-K // count))
+    pieces = [(k, min(k + size, K)) for k in range(0, K, size)]
+    if threads == 1:
+        found = []
+        for piece in pieces:
+            found += rolling.copies(1)[0].roll(job, *piece)
+            done(piece[1] - piece[0])
+        return found
+    free: SimpleQueue[int] = SimpleQueue()
+    copies = rolling.copies(threads)
+    for i in range(threads):
+        free.put(i)
+
+    def roll(piece: tuple[int, int]) -> list[Events]:
+        i = free.get()
+        try:
+            return copies[i].roll(job, *piece)
+        finally:
+            free.put(i)
+
+    found = []
+    with ThreadPoolExecutor(threads) as pool:
+        try:
+            for piece, events in zip(pieces, pool.map(roll, pieces), strict=True):
+                found += events
+                done(piece[1] - piece[0])
+        except BaseException:
+            pool.shutdown(wait=True, cancel_futures=True)
+            raise
+    return found
+
+
+def _one_by_one(stepper: RunningStepper, job: Job, done: Callable[[int], object]) -> list[Events]:
+    """All rollouts by a Python loop; the impacts of each."""
+    if stepper.calls():
+        return roll_slowly(_twin(stepper), job, done)
+    state = stepper.get_state()
+    try:
+        return roll_slowly(stepper, job, done)
+    finally:
+        stepper.set_state(state)
+
+
+def _twin(stepper: RunningStepper) -> RunningStepper:
+    """A copy of a stepper and its space."""
+    try:
+        twin: RunningStepper = pickle.loads(pickle.dumps(stepper))
+    except Exception as error:
+        raise UnsupportedFeature(
+            f"rollouts of a space in which functions are called step a copy of it, and pickle makes none ({error}): "
+            "give functions that stand in a module"
+        ) from error
+    return twin

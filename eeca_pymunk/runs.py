@@ -1,0 +1,219 @@
+"""RunningStepper: many steps in one compiled call, wherever no Python function is to be called in between."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Sequence
+from time import perf_counter
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+from tqdm import tqdm
+
+from .arrays import FloatArray, IntArray
+from .errors import NotFiniteError
+from .impacts.film import Reel
+from .impacts.run import ENERGY
+from .impacts.scene import EventLoop
+from .layout import BODY_ROW, LEFT, NOW
+from .packed_space import TOO_FAR
+from .packed_stepper import PackedStepper
+from .reentry import refuse_within
+from .report import RunReport
+from .space.world import World
+from .states import get_state, set_state
+from .stepper import check_dt, check_steps
+from .transfer import FORCES, lay
+
+if TYPE_CHECKING:
+    import pymunk
+
+    from .rolling import Rolling
+
+_FIRST = 256  # steps until the loop returns for the first time
+_SHORT, _LONG = 0.05, 0.2  # seconds between which it is to return, for progress and interrupts
+
+
+class RunningStepper(PackedStepper):
+    """A stepper that can take many steps in one call; arguments as of `PackedStepper`.
+
+    Attributes:
+        rolling: the copies of the scene that rollouts have been made on.
+    """
+
+    rolling: Rolling | None = None
+
+    def __getstate__(self) -> dict[str, object]:
+        return {**super().__getstate__(), "rolling": None}
+
+    @property
+    @abstractmethod
+    def event_loop(self) -> EventLoop | None:
+        """What steps the arrays of the world that was read last, None if it is no event loop."""
+
+    @abstractmethod
+    def adjust(self, world: World, dt: float) -> None:
+        """Have the event loop know what joints and collision handlers say of the next step."""
+
+    def current(self) -> World:
+        """The arrays of the space as it is now, with the state of its bodies read."""
+        world = self._world
+        if world is None or not world.current():
+            world = self._look()
+        world.gather()
+        if not world.is_current():
+            world = self._look(anew=True)
+            world.gather()
+        return world
+
+    def compiles(self) -> bool:
+        """Whether a run of the space as it is now is one compiled call.
+
+        It is not where functions are to be called within steps (collision handlers, functions of bodies, joints and
+        springs, post-step callbacks that wait), where bodies may sleep, where centres of gravity lie elsewhere than at
+        the origins of bodies, and where joints hold bodies that are not in the space. Then a run is a Python loop.
+        """
+        if self.calls() or self.event_loop is None or self._sleep is not None:
+            return False
+        world = self._world
+        assert world is not None  # `calls` has looked
+        outside = world.joints is not None and bool(world.joints.partners.outside)
+        return not (outside or world.eccentric)
+
+    def calls(self) -> bool:
+        """Whether functions are to be called within the next step."""
+        world = self._world
+        if world is None or not world.current():
+            world = self._look()
+        joints = world.joints
+        functions = joints is not None and (joints.calls_back() or bool(joints.functions))
+        return world.hooked or functions or (self.sync and self._sync.waits())
+
+    def get_state(self) -> IntArray:
+        """All that decides where the space goes from here, as a 1-D array of integers: poses, velocities and forces of
+        its bodies, and what the stepper knows of earlier steps. `set_state` takes it, in this process or in another
+        with the same space.
+
+        Where some bodies sleep, what the stepper knows is left out: from there paths agree up to round-off.
+        """
+        return get_state(self)
+
+    def set_state(self, state: npt.ArrayLike) -> None:
+        """Go back to a state.
+
+        Args:
+            state: what `get_state` returned: the space then goes the same way, bit by bit; or (b, 6) position, angle,
+                velocity and spin of the b bodies that are not static, in the order of `space.bodies`; length, rad, per
+                time. That clears forces, and all that the stepper knows of earlier steps: equal states give equal
+                paths, whatever came before. Sleeping bodies wake.
+
+        Raises:
+            ValueError: it is neither, of another space, or not finite; nothing is changed.
+        """
+        set_state(self, np.asarray(state))
+
+    def start_anew(self, world: World, state: FloatArray) -> None:
+        """Forget all of earlier steps: bodies have been put where (N, 9) says."""
+        loop = self.event_loop
+        if loop is None or world.joints is not None or self._sleep is not None:
+            self.refresh()
+        elif not hasattr(loop, "fresh"):
+            # Later calls are cheaper.
+            self.refresh()
+            self.current()
+            if (loop := self.event_loop) is not None:
+                loop.keep_fresh()
+        else:
+            rows = world.WALK[BODY_ROW]
+            loop.start_anew(rows[rows >= 0], state[rows >= 0, :6])
+            world.STATES[LEFT, rows >= 0] = np.nan
+
+    def run(self, steps: int, dt: float, progress: bool = False) -> RunReport:
+        refuse_within(self.space)
+        steps, dt = check_steps(steps), check_dt(dt)
+        if steps == 0 or dt == 0.0 or not self.compiles():
+            return super().run(steps, dt, progress)
+        reel = self.film(steps, dt, progress=progress)
+        RUN = reel.progress
+        counted = int(RUN.impacts), int(RUN.unmet), int(RUN.iterations)
+        return RunReport(self.time, int(RUN.done), reel.ledger, *counted, float(RUN.lock))
+
+    def film(
+        self, steps: int, dt: float, kept: Sequence[pymunk.Body] = (), every: int = 0, events: bool = False,
+        progress: bool = False,
+    ) -> Reel:  # fmt: skip
+        """Take steps > 0 of dt > 0 in compiled code, of a space that `compiles`, and keep frames of some bodies.
+
+        Args:
+            kept: bodies that are not static.  every: steps from frame to frame, 0 for none; the start is the first one.
+            events: whether impacts are kept.  progress: whether to show a progress bar.
+
+        A step that fails raises as `step` does, with the space as the steps before have left it.
+        """
+        world = self.current()
+        if not world.plain:
+            self.adjust(world, dt)
+        rows = np.array([world.bodies.row[body] for body in kept], np.int64)
+        moments = 1 + steps // every if every else 0
+        reel = Reel(dt, world.gravity, world.left(dt), self.time, rows, moments, every, events)
+        if every:
+            reel.frames[0] = world.STATES[NOW, rows, :6]
+            reel.progress.frame = 1
+        status = 0
+        try:
+            status = self._shoot(world, reel, steps, progress)
+        finally:
+            # After an interrupt too.
+            failure = self._failure(world, reel, dt, status) if status < 0 else None
+            self._land_run(world, reel, dt, status)
+            if failure is not None:
+                raise failure
+        return reel
+
+    def _shoot(self, world: World, reel: Reel, steps: int, progress: bool) -> int:
+        """Follow the run to its end; its bits or a negative code."""
+        RUN, loop, stretch, status = reel.progress, self.event_loop, _FIRST, 0
+        assert loop is not None
+        states = world.STATES, world.WALK, world.EXTRA, world.ENDS
+        with tqdm(total=steps, desc=type(self).__name__, unit="step", disable=not progress) as bar:
+            while status >= 0 and RUN.done < steps:
+                RUN.until = min(steps, int(RUN.done) + stretch)
+                began, before = perf_counter(), int(RUN.done)
+                status = loop.follow(reel, states)
+                took = perf_counter() - began
+                stretch = 2 * stretch if took < _SHORT else max(stretch // 2, 1) if took > _LONG else stretch
+                bar.update(int(RUN.done) - before)
+        return status
+
+    def _failure(self, world: World, reel: Reel, dt: float, status: int) -> Exception:
+        """The error of a step that failed."""
+        loop = self.event_loop
+        assert loop is not None
+        if status == ENERGY:
+            after = float(loop.scene.PAR.after)
+            return NotFiniteError(f"the energy of the space would be {after} after dt = {dt}: {TOO_FAR}")
+        try:
+            self._fail(world, dt, status)
+        except Exception as error:
+            return error
+        raise AssertionError(status)
+
+    def _land_run(self, world: World, reel: Reel, dt: float, status: int) -> None:
+        """Bring the space to where the steps that were taken have left it."""
+        RUN = reel.progress
+        broken = status < 0 or reel.halted
+        if broken:
+            self._world = self._past = None
+            moves = world.WALK[BODY_ROW] >= 0
+            world.STATES[LEFT, moves, :6] = world.STATES[NOW, moves, :6]
+        if RUN.done == 0:
+            return
+        bits = int(RUN.all_bits)
+        lay(world.STATES, world.WALK, world.ENDS, bits)
+        self.time = float(RUN.time)
+        if bits & FORCES:
+            world.reset_forces()
+        self.land(world, dt, bits)
+        if not world.plain:
+            self._tell_joints(world)

@@ -1,0 +1,188 @@
+"""The state of a stepper as one array: all that decides the path of its space.
+
+    mark, fingerprint, number of parts, length of each part; then the parts, in words of 8 bytes.
+
+The words are integers, as those of floats may be NaN: two states are equal where their arrays are.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .arrays import AnyArray, FloatArray, IntArray
+from .compiled.records import KINDS
+from .impacts.scene import EventLoop
+from .jointed.scene import JointedLoop
+from .joints.layout import KIND, MAX_BIAS, NOTCH, RATCHET, TOUCHED
+from .layout import LEFT, STATE_COLUMNS
+from .space.bodies import moving
+from .space.world import World
+
+if TYPE_CHECKING:
+    import pymunk
+
+    from .runs import RunningStepper
+
+_MARK = 0x65656361_00000001
+_OF_STEPS = slice(MAX_BIAS + 1, None)  # columns of JOINT that steps change, besides the notches of ratchets
+
+
+def get_state(stepper: RunningStepper) -> IntArray:
+    """See `RunningStepper.get_state`."""
+    world, loop = stepper.current(), stepper.event_loop
+    at = _rows(world)
+    parts: list[AnyArray] = [world.state[at], np.array([stepper.time]), *stepper.resting(_everyone(stepper.space))]
+    if loop is not None and not world.bodies.asleep.any():
+        parts += [world.STATES[LEFT, at], world.EXTRA[at], *loop.remembered()]
+        if isinstance(loop, JointedLoop) and world.joints is not None:
+            joints = world.joints
+            rates = np.array([joints.rates.get(item, (np.nan, np.nan)) for item in joints.items])
+            parts += [joints.joint, joints.tie[:, TOUCHED], loop.joints.TALLY, rates]
+    inner = [_words(part) for part in parts]
+    head = [_MARK, _fingerprint(stepper.space, loop), len(inner), *map(len, inner)]
+    return np.concatenate((np.array(head, np.int64), *inner))
+
+
+def set_state(stepper: RunningStepper, state: AnyArray) -> None:
+    """See `RunningStepper.set_state`."""
+    if state.ndim == 1 and state.dtype == np.int64:
+        _recall(stepper, state)
+    else:
+        _place(stepper, np.asarray(state, float))
+    if stepper.sync:
+        for body in moving(stepper.space):
+            stepper.space.reindex_shapes_for_body(body)
+
+
+def _place(stepper: RunningStepper, state: FloatArray) -> None:
+    """Put bodies where (b, 6) says, and forget everything else."""
+    bodies = moving(stepper.space)
+    if state.shape != (len(bodies), 6):
+        raise ValueError(
+            f"a state of shape {state.shape}: give what get_state returned, or ({len(bodies)}, 6), position, angle, "
+            "velocity and spin of each body that is not static"
+        )
+    if not np.isfinite(state).all():
+        i, k = np.argwhere(~np.isfinite(state))[0].tolist()
+        raise ValueError(f"state[{i}, {k}] is {state[i, k]}: give finite numbers")
+    stepper.wake()
+    world = stepper.current()
+    rows = [world.bodies.row[body] for body in bodies]
+    whole = np.zeros((len(world.bodies), STATE_COLUMNS))
+    whole[:] = world.state
+    whole[rows, :6], whole[rows, 6:] = state, 0.0
+    world.bodies.scatter(whole, unchanged=True)
+    stepper.start_anew(world, whole)
+
+
+def _recall(stepper: RunningStepper, state: IntArray) -> None:
+    """Go back to what `get_state` told."""
+    space, parts = stepper.space, _Parts(state)
+    if parts.fingerprint != _fingerprint(space, stepper.event_loop):
+        raise ValueError(
+            "this state is of another space, or of another stepper: give one of a space with the same bodies, shapes "
+            "and joints, added in the same order"
+        )
+    everyone = _everyone(space)
+    N = len(everyone)
+    stepper.wake()
+    world = stepper.current()
+    at, whole = _rows(world), world.state.copy()
+    moves = ~world.bodies.static
+    whole[at] = parts.take(np.float64, (N, STATE_COLUMNS))
+    whole[~moves] = world.state[~moves]
+    world.bodies.scatter(whole, unchanged=True)
+    stepper.time = float(parts.take(np.float64, (1,))[0])
+    rested, groups, timers = parts.take(np.float64, (N,)), parts.take(np.int64, (N,)), parts.take(np.int64, (2,))
+    if parts.left:
+        _remember(stepper, world, parts, at)
+    else:
+        stepper.refresh()
+    stepper.rest_again(everyone, rested, groups, timers)
+
+
+def _remember(stepper: RunningStepper, world: World, parts: _Parts, at: IntArray) -> None:
+    """Have what was known in a state, whose bodies have now the rows `at` (N,)."""
+    loop, joints = stepper.event_loop, world.joints
+    assert loop is not None
+    moves = ~world.bodies.static
+    left = np.empty_like(world.STATES[LEFT])
+    left[at] = parts.take(np.float64, left.shape)
+    world.EXTRA[at] = parts.take(np.float64, world.EXTRA.shape)
+    loop.recall(parts.take)
+    if isinstance(loop, JointedLoop) and joints is not None:
+        joint = parts.take(np.float64, joints.joint.shape)
+        joints.joint[:, _OF_STEPS] = joint[:, _OF_STEPS]
+        ratchets = joints.tie[:, KIND] == RATCHET
+        joints.joint[ratchets, NOTCH] = joint[ratchets, NOTCH]
+        joints.joint[joints.functions] = joint[joints.functions]
+        joints.tie[:, TOUCHED] = parts.take(np.int64, (len(joint),))
+        loop.joints.TALLY[:] = parts.take(np.int64, loop.joints.TALLY.shape)
+        rates = parts.take(np.float64, (len(joint), 2))
+        known = zip(joints.items, rates.tolist(), strict=True)
+        joints.rates = {item: (r, h) for item, (r, h) in known if r == r}
+        joints.write()
+    world.STATES[LEFT, moves] = left[moves]
+    if world.eccentric:
+        # pymunk rounds the places of such bodies: what it reads is what the step has left.
+        world.gather()
+        world.left_as_read()
+
+
+class _Parts:
+    """The parts of a state, one after the other."""
+
+    def __init__(self, state: IntArray) -> None:
+        count = int(state[2]) if len(state) > 3 and state[0] == _MARK else -1
+        lengths = state[3 : 3 + max(count, 0)]
+        if count < 0 or len(lengths) != count or lengths.min(initial=0) < 0 or len(state) != 3 + count + lengths.sum():
+            raise ValueError("this is not a state that get_state returned, or of another version of the package")
+        self.fingerprint = int(state[1])
+        self._state, self._ends = state, (3 + count + np.cumsum([0, *lengths])).tolist()
+        self._next = 0
+
+    @property
+    def left(self) -> bool:
+        """Whether there are more."""
+        return self._next < len(self._ends) - 1
+
+    def take(self, dtype: Any, shape: tuple[int, ...]) -> AnyArray:
+        """The next part, of this dtype and shape."""
+        kind = np.dtype(dtype)
+        size = int(np.prod(shape)) * kind.itemsize
+        begin, end = self._ends[self._next : self._next + 2]
+        if -(-size // 8) != end - begin:
+            raise ValueError("this state is of another space, or of another version of the package")
+        self._next += 1
+        part: AnyArray = np.frombuffer(self._state[begin:end].tobytes()[:size], kind).reshape(shape)
+        return part
+
+
+def _words(array: AnyArray) -> IntArray:
+    """The memory of an array as integers, with zeros up to a multiple of 8 bytes."""
+    content = np.ascontiguousarray(array).tobytes()
+    return np.frombuffer(content + bytes(-len(content) % 8), np.int64)
+
+
+def _everyone(space: pymunk.Space) -> list[pymunk.Body]:
+    """All bodies in the order in which the space got them, which pymunk's own order is not once some have slept."""
+    return [*space.bodies, space.static_body]
+
+
+def _rows(world: World) -> IntArray:
+    """Rows of `_everyone` among the bodies of the world."""
+    return np.array([world.bodies.row[body] for body in _everyone(world.space)], np.int64)
+
+
+def _fingerprint(space: pymunk.Space, loop: EventLoop | None) -> int:
+    """Of what a state does not say: what bodies, shapes and joints there are, and what steps them, in which records."""
+    bodies = {body: i for i, body in enumerate(_everyone(space))}
+    of: list[object] = [type(loop).__name__, None if loop is None else loop.together]
+    of += [(name, kind.itemsize) for name, kind in sorted(KINDS.items())]
+    of += [body.body_type for body in bodies]
+    of += [(type(s).__name__, bodies.get(s.body, -1), s.sensor) for s in space.shapes if s.body is not None]
+    of += [(type(c).__name__, bodies.get(c.a, -1), bodies.get(c.b, -1)) for c in space.constraints]
+    return int.from_bytes(hashlib.sha256(repr(of).encode()).digest()[:8], "little", signed=True)

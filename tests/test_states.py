@@ -1,0 +1,170 @@
+"""States: a path goes on from where it was saved, bit by bit, and begins anew from poses and velocities."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pymunk
+import pytest
+
+import eeca_pymunk as ep
+from eeca_pymunk.compiled.kernels import prepare
+from tests.bitwise import CASES, CLOSURES
+
+SLOW = not prepare().entries  # kernels as plain Python
+NAMES = ("pool break", "lossy gas", "motor and spring", "kinematic") if SLOW else sorted(CASES)
+STEPS = 3 if SLOW else 15
+
+
+def poses(space: pymunk.Space) -> np.ndarray:
+    bodies = [b for b in space.bodies if b.body_type != pymunk.Body.STATIC]
+    return np.array([(*b.position, b.angle, *b.velocity, b.angular_velocity) for b in bodies])
+
+
+def run(stepper: ep.EECA, dt: float) -> list[np.ndarray]:
+    found = []
+    for _ in range(STEPS):
+        stepper.step(dt)
+        found.append(poses(stepper.space))
+    return found
+
+
+@pytest.mark.parametrize("closure", sorted(CLOSURES))
+@pytest.mark.parametrize("name", NAMES)
+def test_back_to_a_state(name: str, closure: str) -> None:
+    space, dt = CASES[name][0]()
+    stepper = ep.EECA(space, CLOSURES[closure]())
+    stepper.run(STEPS, dt)
+    state, time = stepper.get_state(), stepper.time
+    np.testing.assert_array_equal(stepper.get_state(), state)  # telling changes nothing
+    first = run(stepper, dt)
+    run(stepper, dt)
+    stepper.set_state(state)
+    assert stepper.time == time
+    np.testing.assert_array_equal(stepper.get_state(), state)
+    np.testing.assert_array_equal(run(stepper, dt), first)
+    other = CASES[name][0]()[0]
+    another = ep.EECA(other, CLOSURES[closure]())
+    another.set_state(state)
+    np.testing.assert_array_equal(run(another, dt), first)
+
+
+@pytest.mark.parametrize("closure", sorted(CLOSURES))
+@pytest.mark.parametrize("name", NAMES)
+def test_poses_and_velocities_alone_forget_everything_else(name: str, closure: str) -> None:
+    space, dt = CASES[name][0]()
+    stepper = ep.EECA(space, CLOSURES[closure]())
+    stepper.run(STEPS, dt)
+    if any(b.is_sleeping for b in space.bodies):
+        pytest.skip("pymunk's order of bodies is another once some have slept")
+    start = poses(space)
+    found = []
+    for _ in range(3):
+        stepper.set_state(start)
+        found.append(run(stepper, dt))
+    another = CASES[name][0]()[0]
+    for body, (x, y, angle, vx, vy, spin) in zip(moving(another), start.tolist(), strict=True):
+        body.position, body.angle, body.velocity, body.angular_velocity = (x, y), angle, (vx, vy), spin
+    new = run(ep.EECA(another, CLOSURES[closure]()), dt)
+    for path in found:
+        np.testing.assert_array_equal(path, new)
+
+
+def moving(space: pymunk.Space) -> list[pymunk.Body]:
+    return [b for b in space.bodies if b.body_type != pymunk.Body.STATIC]
+
+
+def test_in_another_process(tmp_path: Path) -> None:
+    script = """
+import sys, numpy as np, eeca_pymunk as ep
+from tests.bitwise import CASES
+from tests.test_states import poses
+space, dt = CASES["jointed heap"][0]()
+stepper = ep.EECA(space)
+stepper.set_state(np.load(sys.argv[1]))
+stepper.run(10, dt)
+np.save(sys.argv[2], poses(space))
+"""
+    if SLOW:
+        pytest.skip("takes long without machine code")
+    space, dt = CASES["jointed heap"][0]()
+    stepper = ep.EECA(space)
+    stepper.run(60, dt)
+    np.save(tmp_path / "state.npy", stepper.get_state())
+    subprocess.run(
+        [sys.executable, "-c", script, str(tmp_path / "state.npy"), str(tmp_path / "end.npy")],
+        check=True, cwd=Path(__file__).parents[1],
+    )  # fmt: skip
+    stepper.run(10, dt)
+    np.testing.assert_array_equal(np.load(tmp_path / "end.npy"), poses(space))
+
+
+def disk() -> tuple[ep.EECA, pymunk.Body]:
+    space = pymunk.Space()
+    body = pymunk.Body(1.0, 1.0)
+    space.add(body, pymunk.Circle(body, 1.0))
+    return ep.EECA(space), body
+
+
+def test_states_that_do_not_fit_change_nothing() -> None:
+    stepper, body = disk()
+    body.velocity = (1.0, 0.0)
+    good = stepper.get_state()
+    space, _ = CASES["cradle"][0]()
+    bad = [
+        np.zeros((2, 6)), np.zeros(6), np.full((1, 6), np.nan), good[:-1], np.zeros(9, np.int64),
+        ep.EECA(space).get_state(),
+    ]  # fmt: skip
+    for state in bad:
+        with pytest.raises(ValueError, match=r"give|get_state"):
+            stepper.set_state(state)
+        assert body.velocity == (1.0, 0.0)
+        np.testing.assert_array_equal(stepper.get_state(), good)
+
+
+def test_a_state_has_forces_and_a_motors_rate_is_the_users() -> None:
+    stepper, body = disk()
+    body.force = (2.0, 0.0)
+    state = stepper.get_state()
+    stepper.run(3, 0.5)
+    assert body.velocity == (1.0, 0.0)
+    stepper.set_state(state)
+    assert (body.force, body.velocity) == ((2.0, 0.0), (0.0, 0.0))
+    motor = pymunk.SimpleMotor(stepper.space.static_body, body, 1.0)
+    stepper.space.add(motor)
+    stepper.set_state(np.zeros((1, 6)))
+    stepper.step(0.5)
+    state = stepper.get_state()
+    motor.rate = 3.0
+    stepper.set_state(state)
+    stepper.step(0.5)
+    assert body.angular_velocity == pytest.approx(-3.0, rel=1e-12)
+
+
+def test_queries_see_where_bodies_were_put() -> None:
+    stepper, _ = disk()
+    stepper.step(0.1)
+    stepper.set_state(np.array([[50.0, 0.0, 0.0, 0.0, 0.0, 0.0]]))
+    assert stepper.space.point_query_nearest((50.0, 0.5), 0.0, pymunk.ShapeFilter()) is not None
+
+
+def test_sleepers_sleep_again() -> None:
+    space, dt = CASES["sleeping"][0]()
+    stepper = ep.EECA(space)
+    while not any(b.is_sleeping for b in space.bodies):
+        stepper.step(dt)
+        assert stepper.time < 10.0
+    asleep = [b.is_sleeping for b in space.bodies]
+    state = stepper.get_state()
+    for body in space.bodies:
+        body.activate()
+    stepper.set_state(state)
+    assert [b.is_sleeping for b in space.bodies] == asleep
+    before = poses(space)
+    stepper.run(5, dt)
+    np.testing.assert_array_equal(poses(space)[asleep], before[asleep])
+    stepper.set_state(before)
+    assert not any(b.is_sleeping for b in space.bodies)
