@@ -7,13 +7,14 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
+from ..joints.boxes import SINGLE
 from ..model.contacts import Row
 from ..rows.build import normal_rate, tangent_rate
 from ..rows.conjugate import accelerate
 from ..rows.dense import back, decompose, unknowns
 from ..rows.inplace import copy
 from ..rows.polish import clamp, classify
-from .bounded import HIGH, LOW, SPEED, Bounded, bounded_rate, inside, push_row
+from .bounded import HIGH, LOW, PART, SPEED, Bounded, bounded_rate, inside, push_row
 from .columns import Columns, push_columns
 from .sweeping import relax_columns, sweep_columns
 
@@ -73,13 +74,34 @@ def responses(
         W[j, j] += abs(W[j, j]) / _R
 
 
+@uncounted
+def first_at_bound(
+    D: Bounded, L: FloatArray, m: int, at: IntArray, kind: IntArray, N: int, x: FloatArray
+) -> tuple[int, float]:  # fmt: skip
+    """The first bounded row of the N unknowns that comes to a bound while impulses change by x, and the part of x by
+    then; -1 and 1 if none does. Those of discs are kept in them afterwards."""
+    hit, part = -1, 1.0
+    for k in range(N):
+        i = at[k]
+        if kind[k] != _BOUNDED or D.NUMBER[i, PART] != SINGLE or x[k] == 0.0:
+            continue
+        until = ((D.NUMBER[i, HIGH] if x[k] > 0.0 else D.NUMBER[i, LOW]) - L[m + i, 0]) / x[k]
+        if until < part:
+            hit, part = k, until
+    return hit, part
+
+
 @kernel
 def direct(
     C: Columns, D: Bounded, A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, m: int,
     shared: bool,
 ) -> None:  # fmt: skip
     """Newton's step of the law on the contacts that act in L and on the bounded rows inside of their bounds, which are
-    kept in their cones and bounds; V follows."""
+    kept in their cones and bounds; V follows.
+
+    Rows may contradict one another (motors of legs whose feet stick): impulses then grow until one of them comes to its
+    bound. So the step goes as far as the first bounded row that does, which is kept there, and on without it.
+    """
     held, stuck = np.empty(m, np.int64), np.empty(m, np.int64)
     slip, rest = np.empty(m), np.empty(m)
     classify(A, B, ROWS, L, V, m, held, stuck, slip, rest)
@@ -92,10 +114,14 @@ def direct(
             at[N], kind[N] = i, _BOUNDED
             N += 1
     W, X, order = np.empty((N, N)), np.empty_like(V), np.empty(N, np.int64)
-    responses(C, D, A, B, ROWS, slip, at, kind, N, X, np.zeros(len(V), np.int64), W)
-    decompose(W, N, order)
-    r, x = np.empty(N), np.empty(N)
-    for _ in range(2):
+    r, x, HIT = np.empty(N), np.empty(N), np.empty(len(V), np.int64)
+    hit, whole = N, 0
+    while whole < 2:
+        if hit >= 0:
+            for q in range(len(V)):
+                HIT[q] = 0
+            responses(C, D, A, B, ROWS, slip, at, kind, N, X, HIT, W)
+            decompose(W, N, order)
         for k in range(N):
             i = at[k]
             if kind[k] == _BOUNDED:
@@ -107,17 +133,27 @@ def direct(
                     rest[i] = -ROWS[i].ut - L[i, 0] * min(ROWS[i].un + ROWS[i].target, 0.0) / L[i, 1]
                 r[k] = rest[i] - tangent_rate(A, B, ROWS, V, i)
         back(W, N, order, r, x)
+        hit, part = first_at_bound(D, L, m, at, kind, N, x)
         push_columns(C, L, m, -1.0, V)
         for k in range(N):
             i = at[k]
             if kind[k] == _BOUNDED:
-                L[m + i, 0] += x[k]
-                push_row(D, i, x[k], V)
+                change = part * x[k]
+                if k == hit:
+                    change = (D.NUMBER[i, HIGH] if x[k] > 0.0 else D.NUMBER[i, LOW]) - L[m + i, 0]
+                L[m + i, 0] += change
+                push_row(D, i, change, V)
                 continue
-            L[i, kind[k]] += x[k]
+            L[i, kind[k]] += part * x[k]
             if kind[k] == 0 and stuck[i] == 0:
                 L[i, 1] = slip[i] * L[i, 0]
         push_columns(C, L, m, 1.0, V)
+        if hit >= 0:
+            N -= 1
+            for k in range(hit, N):
+                at[k], kind[k] = at[k + 1], kind[k + 1]
+        else:
+            whole += 1
     push_columns(C, L, m, -1.0, V)
     clamp(ROWS, L, m)
     push_columns(C, L, m, 1.0, V)

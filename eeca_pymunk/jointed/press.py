@@ -28,7 +28,8 @@ from ..sustained.contacts import CROWD
 from ..sustained.targets import target
 from .advance import ALIGNED, Motion, advance, advance_aligned, align, farthest_apart
 from .bounded import make_bounded, settle_bounded, with_bounded
-from .columns import Columns, fill_free, leave_out, push_columns, weigh
+from .columns import Columns, fill_free, leave_out, make_columns, push_columns, weigh
+from .condensing import solve_condensed
 from .groups import Groups, hangs
 from .layout import Joints
 from .newton import FEW, solve_columns
@@ -120,6 +121,7 @@ def press(
     FORESEEN, UNKNOWN = np.empty((len(isle.IM), 3)), np.empty((0, 3))
     converged, best, LEAST, USED, hopeless, agreed, slowly = False, np.inf, L.copy(), L.copy(), False, False, False
     stiff, bent, reached, B = False, 0.0, np.inf, make_bounded(J, groups, False)
+    K, NONE = make_columns(groups, P, Q, m if len(B.OF) > 0 else 0), make_bounded(J, groups, True)
     # Only of what nothing from without holds or touches is there an angular momentum to keep.
     free = len(isle.IM) == n and not hangs(groups, J.SPAN, J.MEMBER)
     for outer in range(rounds):
@@ -165,7 +167,9 @@ def press(
         copy(USED, L)
         leave_out(C, L, m, FORESEEN)
         BOTH = with_bounded(B, L, m)
-        worst = solve_columns(C, B, P, Q, ROWS, BOTH, FORESEEN, m, fine, most)
+        worst = solve_condensed(groups, C, K, B, NONE, P, Q, ROWS, BOTH, FORESEEN, m, fine, most)
+        if worst < 0.0:
+            worst = solve_columns(C, B, P, Q, ROWS, BOTH, FORESEEN, m, fine, most)
         for i in range(m):
             L[i, 0], L[i, 1] = BOTH[i, 0], BOTH[i, 1]
         converged = worst <= 10.0 * max(fine, min(agree, _AGREE * scale))

@@ -36,12 +36,17 @@ def sweep_columns(
             lam = max(lam0 - ROWS[i].k_n * short, 0.0)
         else:
             qn = short - lam0 * ann - beta0 * ROWS[i].a_nt
-            if qn < 0.0:
+            # Where friction alone could part the surfaces, a_nn < mu |a_nt|, a contact may stick though it would open
+            # without its impulses: then what has stuck goes on.
+            if qn < 0.0 or lam0 > 0.0:
                 ut = tangent_rate(A, B, ROWS, V, i)
                 # Most stick, and need no more than this.
                 lam = lam0 - (ROWS[i].w_nn * short + ROWS[i].w_nt * ut)
                 beta = beta0 - (ROWS[i].w_nt * short + ROWS[i].w_tt * ut)
-                if not (abs(beta) <= ROWS[i].friction * lam and beta * ROWS[i].ut <= 0.0):
+                sticks = abs(beta) <= ROWS[i].friction * lam and beta * ROWS[i].ut <= 0.0
+                if not sticks and not qn < 0.0:
+                    lam, beta = 0.0, 0.0
+                elif not sticks:
                     ant, att = ROWS[i].a_nt, ROWS[i].a_tt
                     lam, beta = coulomb(
                         qn, ut - beta0 * att - lam0 * ant, ann, ant, att, ROWS[i].friction, ROWS[i].un, ROWS[i].ut,

@@ -1,0 +1,169 @@
+"""Contacts and bounded rows of joints, those inside of their bounds condensed: contacts feel motors that hold.
+
+With the rows S inside and their velocities at their targets, an impulse along a column c of a contact moves
+
+    c - D_S (J_S D_S)^-1 J_S c,
+
+D the columns of the rows, J the rows. The contacts are solved with these, the impulses of S follow, and the row that
+violates its bound, or its law at it, the most changes sides: an active-set method, which ends where none does.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import kernel, uncounted
+from ..compiled.records import Rows
+from ..joints.boxes import SINGLE
+from ..model.contacts import Row
+from ..rows.dense import back, decompose
+from ..rows.inplace import copy
+from .bounded import HIGH, LOW, PART, SPEED, Bounded, bounded_rate, per_impulse, push_row
+from .columns import Columns, weigh
+from .groups import Groups
+from .newton import FEW, solve_columns
+
+MOST = 16  # bounded rows up to which this pays
+_TURNS = 4  # changes of sides for each of them, at most
+_R = 1e10  # of a proximal term, for rows that are redundant
+_SAVED = 10
+
+
+@uncounted
+def save_rows(ROWS: Rows[Row], m: int, KEPT: FloatArray) -> None:
+    """Keep in KEPT (m, 10) what `weigh` changes."""
+    for i in range(m):
+        R, K = ROWS[i], KEPT[i]
+        K[0], K[1], K[2], K[3], K[4] = R.k_n, R.a_nn, R.k_t, R.a_tt, R.a_nt
+        K[5], K[6], K[7], K[8] = R.friction, R.w_nn, R.w_nt, R.w_tt
+
+
+@uncounted
+def restore_rows(ROWS: Rows[Row], m: int, KEPT: FloatArray) -> None:
+    """Undo what `weigh` has changed since `save_rows`."""
+    for i in range(m):
+        R, K = ROWS[i], KEPT[i]
+        R.k_n, R.a_nn, R.k_t, R.a_tt, R.a_nt = K[0], K[1], K[2], K[3], K[4]
+        R.friction, R.w_nn, R.w_nt, R.w_tt = K[5], K[6], K[7], K[8]
+
+
+@uncounted
+def along_row(D: Bounded, i: int, C: Columns, contact: int, tangent: bool) -> float:
+    """Velocity along bounded row i per normal, or tangential, impulse of a contact."""
+    total = 0.0
+    for w in range(C.AT[contact], C.AT[contact + 1]):
+        for end in range(2):
+            if C.BODY[w] == D.END[i, end]:
+                for c in range(3):
+                    total += D.ROW[i, 3 * end + c] * (C.T[w, c] if tangent else C.N[w, c])
+    return total
+
+
+@uncounted
+def add_column(D: Bounded, i: int, factor: float, C: Columns, contact: int, tangent: bool) -> None:
+    """Add the column of bounded row i, times a factor, to a column of a contact."""
+    if factor == 0.0:
+        return
+    for w in range(C.AT[contact], C.AT[contact + 1]):
+        for e in range(D.AT[i], D.AT[i + 1]):
+            if D.BODY[e] == C.BODY[w]:
+                for c in range(3):
+                    if tangent:
+                        C.T[w, c] += factor * D.N[e, c]
+                    else:
+                        C.N[w, c] += factor * D.N[e, c]
+
+
+@uncounted
+def violation(D: Bounded, i: int, side: int, x: float, per: float, V: FloatArray) -> float:
+    """By how much row i violates its bound, or at a bound its law: a velocity."""
+    if side == 0:
+        return max(x - D.NUMBER[i, HIGH], D.NUMBER[i, LOW] - x) * per
+    return side * (D.NUMBER[i, SPEED] + bounded_rate(D, i, V))
+
+
+@kernel
+def solve_condensed(
+    groups: Groups, C: Columns, K: Columns, D: Bounded, NONE: Bounded, A: IntArray, B: IntArray, ROWS: Rows[Row],
+    L: FloatArray, V: FloatArray, m: int, tolerance: float, most: int,
+) -> float:  # fmt: skip
+    """Impulses L (m contacts, then the bounded rows D) and velocities V.
+
+    Args:
+        K: room for the condensed columns.  NONE: no rows.  tolerance, most: see `solve_columns`.
+
+    Returns:
+        the last sweep's largest change of a contact's velocity; -1 with nothing changed if rows go on changing sides,
+        or if there are some of discs.
+    """
+    n = D.USED[0]
+    if n == 0 or n > MOST or m > FEW:
+        return -1.0
+    L0, V0, KEPT = L.copy(), V.copy(), np.empty((m, _SAVED))
+    side, R, S = np.zeros(n, np.int64), np.empty((n, n)), np.empty(n, np.int64)
+    Y, LC = np.empty((n, 2 * m)), np.empty((m, 2))
+    W, order, r, x = np.empty((n, n)), np.empty(n, np.int64), np.empty(n), np.empty(n)
+    for i in range(n):
+        if D.NUMBER[i, PART] != SINGLE:
+            return -1.0
+        for j in range(n):
+            R[i, j] = per_impulse(D, i, j)
+        side[i] = 1 if L[m + i, 0] >= D.NUMBER[i, HIGH] else -1 if L[m + i, 0] <= D.NUMBER[i, LOW] else 0
+    save_rows(ROWS, m, KEPT)
+    for _ in range(_TURNS * n):
+        k = 0
+        for i in range(n):
+            if side[i] == 0:
+                S[k] = i
+                k += 1
+            else:
+                bound = D.NUMBER[i, HIGH] if side[i] > 0 else D.NUMBER[i, LOW]
+                push_row(D, i, bound - L[m + i, 0], V)
+                L[m + i, 0] = bound
+        for p in range(k):
+            for q in range(k):
+                W[p, q] = R[S[p], S[q]]
+            W[p, p] += abs(W[p, p]) / _R
+            r[p] = -D.NUMBER[S[p], SPEED] - bounded_rate(D, S[p], V)
+        decompose(W, k, order)
+        back(W, k, order, r, x)
+        for p in range(k):
+            L[m + S[p], 0] += x[p]
+            push_row(D, S[p], x[p], V)
+        for w in range(C.AT[m]):
+            for c in range(3):
+                K.N[w, c], K.T[w, c] = C.N[w, c], C.T[w, c]
+        for j in range(2 * m):
+            tangent = j % 2 == 1
+            for p in range(k):
+                r[p] = -along_row(D, S[p], C, j // 2, tangent)
+            back(W, k, order, r, x)
+            for p in range(k):
+                Y[p, j] = x[p]
+                add_column(D, S[p], x[p], K, j // 2, tangent)
+        weigh(groups, K, A, B, ROWS, m)
+        for i in range(m):
+            LC[i, 0], LC[i, 1] = L[i, 0], L[i, 1]
+        worst = solve_columns(K, NONE, A, B, ROWS, LC, V, m, tolerance, most)
+        for i in range(m):
+            for c in range(2):
+                change = LC[i, c] - L[i, c]
+                for p in range(k):
+                    L[m + S[p], 0] += Y[p, 2 * i + c] * change
+                L[i, c] = LC[i, c]
+        restore_rows(ROWS, m, KEPT)
+        farthest, by = -1, 10.0 * tolerance
+        for i in range(n):
+            off = violation(D, i, side[i], L[m + i, 0], R[i, i], V)
+            if off > by:
+                farthest, by = i, off
+        if farthest < 0:
+            return worst
+        if side[farthest] != 0:
+            side[farthest] = 0
+        else:
+            side[farthest] = 1 if L[m + farthest, 0] > D.NUMBER[farthest, HIGH] else -1
+    copy(L, L0)
+    copy(V, V0)
+    return -1.0
