@@ -17,10 +17,11 @@ from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
 from ..joints.boxes import SINGLE
 from ..model.contacts import Row
+from ..rows.build import normal_rate
 from ..rows.dense import back, decompose
 from ..rows.inplace import copy
 from .bounded import HIGH, LOW, PART, SPEED, Bounded, bounded_rate, per_impulse, push_row
-from .columns import Columns, weigh
+from .columns import Columns, leave_out, weigh
 from .groups import Groups
 from .newton import FEW, solve_columns
 
@@ -83,6 +84,31 @@ def violation(D: Bounded, i: int, side: int, x: float, per: float, V: FloatArray
     return side * (D.NUMBER[i, SPEED] + bounded_rate(D, i, V))
 
 
+@uncounted
+def follow(S: IntArray, k: int, Y: FloatArray, L: FloatArray, LC: FloatArray, m: int) -> None:
+    """Take LC (m, 2) for the impulses of the contacts in L; those of the k rows S answer by Y (k, 2 m)."""
+    for i in range(m):
+        for c in range(2):
+            change = LC[i, c] - L[i, c]
+            for p in range(k):
+                L[m + S[p], 0] += Y[p, 2 * i + c] * change
+            L[i, c] = LC[i, c]
+
+
+@uncounted
+def first_to_yield(D: Bounded, S: IntArray, k: int, Y: FloatArray, L: FloatArray, m: int, j: int) -> int:
+    """Which of the k rows S comes to its bound first while impulse j of the contacts grows; -1 for none."""
+    first, least = -1, np.inf
+    for p in range(k):
+        i, rate = S[p], Y[p, j]
+        if rate == 0.0:
+            continue
+        way = (D.NUMBER[i, HIGH] - L[m + i, 0]) / rate if rate > 0.0 else (D.NUMBER[i, LOW] - L[m + i, 0]) / rate
+        if way < least:
+            first, least = p, way
+    return first
+
+
 @kernel
 def solve_condensed(
     groups: Groups, C: Columns, K: Columns, D: Bounded, NONE: Bounded, A: IntArray, B: IntArray, ROWS: Rows[Row],
@@ -95,7 +121,7 @@ def solve_condensed(
 
     Returns:
         the last sweep's largest change of a contact's velocity; -1 with nothing changed if rows go on changing sides,
-        or if there are some of discs.
+        if that is above the tolerance, or if there are some of discs.
     """
     n = D.USED[0]
     if n == 0 or n > MOST or m > FEW:
@@ -145,13 +171,22 @@ def solve_condensed(
         weigh(groups, K, A, B, ROWS, m)
         for i in range(m):
             LC[i, 0], LC[i, 1] = L[i, 0], L[i, 1]
-        worst = solve_columns(K, NONE, A, B, ROWS, LC, V, m, tolerance, most)
+        leave_out(K, LC, m, V)
+        blocked = -1
         for i in range(m):
-            for c in range(2):
-                change = LC[i, c] - L[i, c]
-                for p in range(k):
-                    L[m + S[p], 0] += Y[p, 2 * i + c] * change
-                L[i, c] = LC[i, c]
+            if K.OUT[i] != 0 and C.OUT[i] == 0 and normal_rate(A, B, ROWS, V, i) < ROWS[i].target - 10.0 * tolerance:
+                blocked = i
+        if blocked >= 0:
+            # Rows inside hold what the contact would have to move: one of them comes to its bound.
+            restore_rows(ROWS, m, KEPT)
+            follow(S, k, Y, L, LC, m)
+            p = first_to_yield(D, S, k, Y, L, m, 2 * blocked)
+            if p < 0:
+                break
+            side[S[p]] = 1 if Y[p, 2 * blocked] > 0.0 else -1
+            continue
+        worst = solve_columns(K, NONE, A, B, ROWS, LC, V, m, tolerance, most)
+        follow(S, k, Y, L, LC, m)
         restore_rows(ROWS, m, KEPT)
         farthest, by = -1, 10.0 * tolerance
         for i in range(n):
@@ -159,6 +194,8 @@ def solve_condensed(
             if off > by:
                 farthest, by = i, off
         if farthest < 0:
+            if worst > 10.0 * tolerance:
+                break
             return worst
         if side[farthest] != 0:
             side[farthest] = 0
