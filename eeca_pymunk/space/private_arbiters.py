@@ -9,6 +9,8 @@ import pymunk
 from pymunk import batch
 from pymunk._chipmunk_cffi import ffi, lib
 
+from .private_versions import take_place
+
 OF_LIBRARY = ("pmSpaceArbiterIteratorFuncBatched", "cpBodyIsSleeping", "cpArbiterTotalImpulse")
 TYPES = ("cpArbiter *", "cpContact[1]")
 
@@ -80,7 +82,8 @@ def make_arbiter(
     arbiter.a, arbiter.b, arbiter.body_a, arbiter.body_b = a._shape, b._shape, body_a._body, body_b._body
     arbiter.e, arbiter.u = a.elasticity * b.elasticity, a.friction * b.friction
     arbiter.n.x, arbiter.n.y, arbiter.count, arbiter.contacts = nx, ny, len(points), contacts
-    arbiter.state, arbiter.processCollision = lib.CP_ARBITER_STATE_FIRST_COLLISION, 1
+    arbiter.state = lib.CP_ARBITER_STATE_FIRST_COLLISION
+    take_place(arbiter)
     set_impulse(arbiter, impulse)
     return _Holder(arbiter, contacts).arbiter
 

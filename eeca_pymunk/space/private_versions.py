@@ -43,6 +43,12 @@ def processed(arbiter: pymunk.Arbiter) -> bool:
     return bool(held.state != _IGNORED and (held.count > 0 or held.state == _CACHED))
 
 
+def take_place(held: Any) -> None:
+    """Have the collision of an arbiter of ours take place."""
+    if not ANSWERS:
+        held.processCollision = 1
+
+
 def decision(held: Any, sensor: Callable[[Any], bool]) -> tuple[Any, ...]:
     """What functions may decide of a collision, whose arbiter Chipmunk has: whether it takes place, whether shapes are
     sensors, restitution, friction, surface velocity."""
