@@ -27,7 +27,8 @@ def side_by_side(*wanted: tuple[tuple[int, ...], npt.DTypeLike]) -> list[Any]:
     Kernels that look at a few numbers here and there in all arrays of a scene would wait for the addresses of many
     small pages: large scenes get huge ones, which systems only give to large pieces.
     """
-    sizes = [math.prod(shape) * np.dtype(dtype).itemsize for shape, dtype in wanted]
+    kinds = [np.dtype(dtype) for _, dtype in wanted]
+    sizes = [math.prod(shape) * kind.itemsize for (shape, _), kind in zip(wanted, kinds, strict=True)]
     rooms = [-(-size // _LINES) * _LINES for size in sizes]
     total, unit = sum(rooms), _LINES
     if total >= _PAGE // 2:
@@ -35,8 +36,8 @@ def side_by_side(*wanted: tuple[tuple[int, ...], npt.DTypeLike]) -> list[Any]:
     memory = np.zeros(total + unit, np.uint8)
     at = -memory.ctypes.data % unit
     found: list[Any] = []
-    for (shape, dtype), size, room in zip(wanted, sizes, rooms, strict=True):
-        found.append(memory[at : at + size].view(dtype).reshape(shape))
+    for (shape, _), kind, room in zip(wanted, kinds, rooms, strict=True):
+        found.append(np.ndarray(shape, kind, memory, at))
         at += room
     return found
 

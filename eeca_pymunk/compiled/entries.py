@@ -73,6 +73,7 @@ ENTRIES = {
 _CODES = {"f8": "<f8", "i8": "<i8", "i4": "<i4", "u1": "|u1"}
 
 
+@functools.cache
 def split(kind: str) -> tuple[Any, int]:
     """The numpy dtype and the dimensions of `f8[2]`; those of `Body[1]`, an array of records, and of `Step`, one."""
     code, _, rest = kind.partition("[")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from operator import itemgetter
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar, overload
 
+import _cffi_backend
 import numpy as np
 
 from ..arrays import AnyArray
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 else:
     _Row = np.void
 
+_ffi = _cffi_backend.FFI()
 KINDS: dict[str, np.dtype[Any]] = {}  # dtypes of all records by name
 _CODES = {"float": np.float64, "int": np.int64}
 
@@ -114,8 +116,8 @@ def row(kind: type[R]) -> R:
 
 def address_of(array: Any) -> int:
     """Where an array, or a record of one, lies in memory."""
-    # Of arrays of records `__array_interface__` takes ten times as long: it describes all fields.
-    return int(np.asarray(array).ctypes.data)
+    # numpy's `__array_interface__` describes all fields of records, in forty times the time.
+    return int(_ffi.cast("uintptr_t", _ffi.from_buffer(array)))
 
 
 def numbers(of: Record) -> AnyArray:

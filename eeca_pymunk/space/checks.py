@@ -43,8 +43,9 @@ def check_ignored(ignore: Sequence[str]) -> tuple[str, ...]:
 def check_shape(shape: pymunk.Shape) -> None:
     """Refuse numbers that no shape can have, and a shape without a body."""
     shape_body(shape)
-    if not all(math.isfinite(v) for v in shape.surface_velocity):
-        raise ValueError(f"{shape} has surface velocity {shape.surface_velocity}: set a finite one")
+    surface = shape.surface_velocity
+    if not (math.isfinite(surface.x) and math.isfinite(surface.y)):
+        raise ValueError(f"{shape} has surface velocity {surface}: set a finite one")
     if not 0.0 <= shape.friction < math.inf:
         raise ValueError(f"{shape} has friction {shape.friction}: set a finite value >= 0")
     if not isinstance(shape, (pymunk.Circle, pymunk.Segment, pymunk.Poly)):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cached_property
 
 import numpy as np
 import pymunk
@@ -66,14 +67,24 @@ class Crossing:
         self.EXTRA[:, COG_X : COG_Y + 1] = bodies.center_of_gravity
         self.STATES[LEFT] = np.where(bodies.static[:, None], state, np.nan)
         self.gather = private.reader(space, _F.BODY_ID | _STATE, floats, ids)
-        self._restore = private.writer(space, _STATE, floats, bodies.reached)
-        self.reset_forces = private.writer(space, _F.FORCE | _F.TORQUE, self.ENDS[PULL * N :], bodies.reached)
         # By whether angles and spins are to be written.
         self._scatter = self._writers(_F.POSITION | _F.VELOCITY, END)
-        self._scatter_still = self._writers(_F.POSITION | _F.VELOCITY, STILL)
-        self._scatter_speed = self._writers(_F.VELOCITY, SPEED)
         # pymunk places a body whose centre of mass is elsewhere by the angle it has: the second time by the new one.
         self.eccentric = bool(bodies.center_of_gravity.any())
+
+    @cached_property
+    def reset_forces(self) -> Callable[[], None]:
+        """Writes the forces that the step leaves."""
+        pull = self.ENDS[PULL * len(self.bodies) :]
+        return private.writer(self.space, _F.FORCE | _F.TORQUE, pull, self.bodies.reached)
+
+    @cached_property
+    def _scatter_still(self) -> dict[int, Callable[[], None]]:
+        return self._writers(_F.POSITION | _F.VELOCITY, STILL)
+
+    @cached_property
+    def _scatter_speed(self) -> dict[int, Callable[[], None]]:
+        return self._writers(_F.VELOCITY, SPEED)
 
     def _writers(self, fields: batch.BodyFields, start: int) -> dict[int, Callable[[], None]]:
         """What writes the fields from the table that begins at `start` in ENDS, by the bit TURNS of a step's answer."""
@@ -167,9 +178,3 @@ class Crossing:
     def scatter_speed(self, status: int) -> None:
         """Write the velocities."""
         self._scatter_speed[status & TURNS]()
-
-    def restore(self) -> None:
-        """Write back what `gather` read: the space as it was."""
-        self._restore()
-        if self.eccentric:
-            self._restore()

@@ -320,7 +320,7 @@ def test_the_state_is_that_of_the_bodies(count: int) -> None:
     before = world.state.copy()
     for one in space.bodies:
         one.position, one.velocity, one.angle, one.force, one.torque = (9.0, 9.0), (9.0, 9.0), 9.0, (9.0, 9.0), 9.0
-    world.restore()
+    world.bodies.scatter(world.state, unchanged=True)
     world.gather()
     assert np.array_equal(world.state, before)
 
