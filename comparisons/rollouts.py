@@ -24,11 +24,7 @@ from scenes import linkages
 FloatArray = npt.NDArray[np.float64]
 FPS = 60
 FRAMES = 240
-SIDE, RADIUS, SPEED = (
-    10.0,
-    1.0,
-    10.0,
-)  # of the gases: what pymunk's and Box2D's settings are made for
+SIDE, RADIUS, SPEED = 10.0, 1.0, 3.0  # of the gases: what the settings of pymunk and Box2D are made for
 WRONG = 0.25  # radii by which a ball is off in a film that is wrong
 FILMS, SECONDS = 100, (1.0, 4.0)
 ROUNDS = 7

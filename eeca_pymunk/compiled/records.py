@@ -128,7 +128,11 @@ def numbers(of: Record) -> AnyArray:
 
 def columns(of: Rows[Any], *names: str) -> AnyArray:
     """(rows, fields) a copy of some fields of the same kind, by their names."""
-    return np.stack([of[name] for name in names], axis=-1)
+    # numpy's `stack` takes three times as long for few rows.
+    found = np.empty((*of.shape, len(names)), of.dtype[names[0]])
+    for k, name in enumerate(names):
+        found[..., k] = of[name]
+    return found
 
 
 def put(into: Rows[Any], values: AnyArray, *names: str) -> None:

@@ -45,8 +45,8 @@ def table_of(arrays: Any) -> Table:
         return arrays
     name = type(arrays).__name__
     declared = table_fields(name) if name in TABLES else None
-    numbers = np.zeros((len(arrays), WORDS), np.int64)
-    for place, (row, field, a) in enumerate(zip(numbers, arrays._fields, arrays, strict=True)):
+    numbers: list[int] = []
+    for place, (field, a) in enumerate(zip(arrays._fields, arrays, strict=True)):
         found = field, a.dtype, a.ndim
         if declared is not None and found != declared[place]:
             _, dtype, dimensions = declared[place]
@@ -55,10 +55,9 @@ def table_of(arrays: Any) -> Table:
             )
         if not a.flags.c_contiguous:
             raise TypeError(f"{name}.{field} of shape {a.shape} has strides {a.strides}: it must be C-contiguous")
-        row[0], row[1] = address_of(a), a.size
-        if a.ndim:
-            row[2:] = (a.shape * 2)[-2:] if a.ndim == 1 else a.shape[-2:]
-    return Pointers(arrays, numbers.ravel())
+        lengths = (a.shape * 2)[-2:] if a.ndim == 1 else a.shape[-2:] if a.ndim else (0, 0)
+        numbers += (address_of(a), a.size, *lengths)
+    return Pointers(arrays, np.array(numbers, np.int64))
 
 
 class Opener(Compilable, Generic[T]):

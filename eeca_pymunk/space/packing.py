@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import isfinite
 from typing import NamedTuple
 
 import numpy as np
@@ -14,7 +15,7 @@ from ..compiled.records import Rows, put
 from ..model.bodies import Body
 from ..model.shapes import Link, Shape
 from .bodies import ANGLE, POSITION, Bodies
-from .checks import shape_body, shape_radius
+from .checks import check_shape, shape_body, shape_radius
 from .shapes import local_outline
 
 _WORD = (1 << 64) - 1  # of a filter's numbers as 64 bits: equality and `&` ask for no more
@@ -35,9 +36,15 @@ class Record(NamedTuple):
 
 
 def read(shape: pymunk.Shape, ground: pymunk.Body | None = None) -> Record:
-    """The record of a shape that has been checked; one that stands where it is as a shape of `ground`, if given."""
-    group, categories, mask = shape.filter
+    """The record of a shape; one that stands where it is as a shape of `ground`, if given.
+
+    Raises:
+        ValueError, UnsupportedFeature: see `check_shape`.
+    """
     numbers = (shape_radius(shape), 0.0, shape.elasticity, shape.friction, *shape.surface_velocity)
+    if shape.body is None or not all(map(isfinite, numbers)) or min(numbers[:4]) < 0.0:
+        check_shape(shape)
+    group, categories, mask = shape.filter
     outline = local_outline(shape)
     if ground is not None:
         place, taken = shape_body(shape).local_to_world, ground.world_to_local

@@ -18,7 +18,7 @@ from ..report import nothing
 from ..transfer import take
 from . import private
 from .bodies import ANGULAR_VELOCITY, VELOCITY, Bodies
-from .checks import check_shape, check_space, rough_pair
+from .checks import check_space, rough_pair
 from .crossing import Crossing
 from .joints import JointRows
 from .noticed import edits
@@ -206,6 +206,5 @@ def _records(space: pymunk.Space, bodies: Bodies, known: Records) -> Records:
         elif shape.sensor:
             records[shape] = None
         else:
-            check_shape(shape)
             records[shape] = read(shape, None if here else space.static_body)
     return records
