@@ -31,7 +31,7 @@ _SLOW = 1.0 / 64.0  # speed relative to |a| dt, below which that happens to elas
 BUSY_FOR = 8  # steps
 _HITS, _ELASTIC_HITS = 1, 64  # on an island in a step: a lossy one may be hit oftener the smaller it is
 _WORK = 64  # bodies times hits
-_DEEP = 0.4  # of the widths of two shapes, that what is passed over may go deep within the step
+_DEEP = 0.1  # of the widths of two shapes, that what is passed over may go deep within the step
 
 
 @uncounted
