@@ -32,6 +32,7 @@ OTHERS = {
     "python -m tests.programs.soak --compositions": "tests/programs/soak.py",
     "python -m tests.bitwise": "tests/bitwise.py",
     "python -m eeca_pymunk": "tests/test_release.py",
+    "python -m eeca_pymunk.model.parameters": "tests/model/test_parameters.py",
     "python -m eeca_pymunk.build": "tests/build/test_builder.py",
     "python -m eeca_pymunk.build --target PLATFORM": "tests/build/test_builder.py",
     "python docs/examples/balance.py": "tests/test_environment.py",

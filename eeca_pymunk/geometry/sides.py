@@ -20,14 +20,12 @@ import math
 from ..arrays import FloatArray
 from ..compiled import uncounted
 from ..compiled.records import Rows
+from ..model.parameters.detection import SIDE_HELD, SIDE_OPPOSITE, SIDE_TOUCH, SIDE_UNSURE
 from ..model.shapes import Link, Shape
 from .convex import closest
 
 SIDES = 2  # of WORK
 _PROBES = 16  # rows that a pair may stand in
-_AGAINST, _ASIDE = -0.1, 0.7  # cosines of normals, below which one is on the other side; is not m, of cores that touch
-_TOUCH = 1e-4  # of the smaller shape
-_HELD = 0.1  # of the smaller shape, by which contacts that forces hold may have come through one another
 _SCATTER = 40503
 
 
@@ -61,13 +59,13 @@ def note_side(
     key = a * SHAPE.shape[0] + b
     row = side_row(WORK, key)
     WORK[SIDES, row, 0], WORK[SIDES, row, 1], WORK[SIDES, row, 2] = key + 1.0, nx, ny
-    WORK[SIDES, row, 3] = _HELD * min(SHAPE[a].extent, SHAPE[b].extent) if held else 0.0
+    WORK[SIDES, row, 3] = SIDE_HELD * min(SHAPE[a].extent, SHAPE[b].extent) if held else 0.0
 
 
 @uncounted
 def near_side(SHAPE: Rows[Shape], a: int, b: int) -> float:
     """Length up to which cores touch, so that the memory tells their side."""
-    return _TOUCH * min(SHAPE[a].extent, SHAPE[b].extent)
+    return SIDE_TOUCH * min(SHAPE[a].extent, SHAPE[b].extent)
 
 
 @uncounted
@@ -117,7 +115,7 @@ def closest_on_side(
     row = side_row(WORK, key)
     mx, my = WORK[SIDES, row, 1], WORK[SIDES, row, 2]
     along, near = nx * mx + ny * my, near_side(SHAPE, a, b)
-    right = along >= _AGAINST and (along >= _ASIDE or d > near)
+    right = along >= SIDE_OPPOSITE and (along >= SIDE_UNSURE or d > near)
     if WORK[SIDES, row, 0] != key + 1.0 or right or d > max(near, WORK[SIDES, row, 3]):
         return d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q
     apart_p, edge_p, vertex_q = axis(P, Q, 1.0, mx, my)

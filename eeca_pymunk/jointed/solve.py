@@ -14,11 +14,12 @@ from ..impacts.islands import lossy, members
 from ..impacts.missed import miss
 from ..impacts.spans import Local, dismiss, lay_out_island, open_contacts
 from ..model.contacts import ROW
+from ..model.parameters.intervals import MIDPOINT_SAME
 from ..model.scene import Scene
 from ..model.step import CONTACTS, DONE, PUSHES_FULL
 from ..rows.build import normal_rate
 from ..rows.inplace import sort
-from ..sustained.contacts import NEAR, gather
+from ..sustained.contacts import gather
 from ..sustained.memory import remember_loads
 from ..sustained.step import moved, recall, speeds
 from .advance import Motion, advance
@@ -101,7 +102,7 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
         NOW, THEN = np.empty((2, 5)), np.empty((2, 5))
         m = gather(
             isle.PAIRS, p, A.SHAPE, A.RULE, A.LINK, A.VERTEX, A.WORK, isle.POSE, moved(isle.POSE, isle.V, 0.5 * h),
-            isle.V, REACH, isle.EXTENT, isle.IM, isle.II, h, k == n, NEAR, P, Q, ROWS, KEY, NOW, THEN,
+            isle.V, REACH, isle.EXTENT, isle.IM, isle.II, h, k == n, MIDPOINT_SAME, P, Q, ROWS, KEY, NOW, THEN,
         )  # fmt: skip
     C = make_columns(groups, P, Q, m)
     if m > 0:
