@@ -27,6 +27,7 @@ NAMES = (
     "first_use",
     "detection",
     "piles",
+    "ablation",
     "joints",
     "robots",
     "sleeping",
