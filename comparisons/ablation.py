@@ -140,7 +140,9 @@ def run(output: Output, full: bool, names: tuple[str, ...] = ()) -> None:
             **{k: found.get(k) for k in ("unmet", "depth", "rise", "moving", "hard cases failed", "which")},
         })  # fmt: skip
         output.csv(rows)
-    output.table("Cost relative to the package; share of steps not converged; deepest overlap (radii); rise of energy", rows)
+    output.table(
+        "Cost relative to the package; share of steps not converged; deepest overlap (radii); rise of energy", rows
+    )
 
 
 if __name__ == "__main__":

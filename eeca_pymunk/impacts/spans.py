@@ -15,8 +15,9 @@ from ..model.scene import Scene
 from ..model.step import DONE, JOINTS_DUE, PUSHES_FULL
 from ..rows.inplace import sort
 from ..sustained.ledger import LEDGER_SIZE
+from ..sustained.lifting import budget_of, least_of, lifting
 from ..sustained.step import LOCK as LOCK_OF
-from ..sustained.step import OUT_SIZE, STOOD, step_island
+from ..sustained.step import OUT_SIZE, STOOD, moved, step_island
 from ..sustained.step import POLISHES as POLISHES_OF
 from ..sustained.step import SWEEPS as SWEEPS_OF
 from .calm import calm
@@ -109,13 +110,13 @@ def open_span(A: Scene, root: int, t: float, longest: float, last: bool) -> tupl
         # Where its user has put a body that nothing moves into others, that does the work of lifting them.
         if MEMBER[WHO[q]].put > 0 and BODY[WHO[q]].inv_mass == 0.0:
             raised = 1
-    free = math.inf if raised > 0 else 0.0
     quiet = calm(A, root, MINE, n, among, t) if may_lose and raised == 0 else 0.0
+    owed = max(-A.RESTING[root].lost, 0.0)
     if p > 0 and h > 0.0:
         m = step_island(
             POSE, V, ACC, IMS, IIS, SIZES, isle.FELT, n, PAIRS, p, A.SHAPE, A.RULE, A.LINK, A.VERTEX, A.WORK, h,
-            sweeps, least, max(-A.RESTING[root].lost, 0.0), free, A.KEYS, A.FORCES, COUNT, A.PAR.stamp,
-            A.RESTING[MINE[0]], quiet, P, Q, ROWS, KEY, L, LOSS, VN, JUMP, BOOK, OUT,
+            sweeps, least, owed, -1.0, A.KEYS, A.FORCES, COUNT, A.PAR.stamp, A.RESTING[MINE[0]], quiet,
+            P, Q, ROWS, KEY, L, LOSS, VN, JUMP, BOOK, OUT,
         )  # fmt: skip
         stuck = h if hurried(A) or OUT[STOOD] > 0.0 else stick_time(P, Q, ROWS, L, V + h * ACC, VN, m, h)
         if stuck < h:
@@ -124,13 +125,19 @@ def open_span(A: Scene, root: int, t: float, longest: float, last: bool) -> tupl
             BOOK[:] = 0.0
             m = step_island(
                 POSE, V, ACC, IMS, IIS, SIZES, isle.FELT, n, PAIRS, p, A.SHAPE, A.RULE, A.LINK, A.VERTEX, A.WORK, h,
-                sweeps, least, max(-A.RESTING[root].lost, 0.0), free, A.KEYS, A.FORCES, COUNT, A.PAR.stamp,
-                A.RESTING[MINE[0]], 0.0, P, Q, ROWS, KEY, L, LOSS, VN, JUMP, BOOK, OUT,
+                sweeps, least, owed, -1.0, A.KEYS, A.FORCES, COUNT, A.PAR.stamp, A.RESTING[MINE[0]], 0.0,
+                P, Q, ROWS, KEY, L, LOSS, VN, JUMP, BOOK, OUT,
             )  # fmt: skip
         far = 0.0 if last or OUT[STOOD] > 0.0 else strayed(P, Q, ROWS, KEY, V, VN, A.SHAPE, A.LINK, A.VERTEX, m, h)
         if far > INTERVAL_RETRY:
             A.COUNT.solved += n
             return AGAIN, h / far
+        if m > 0 and not OUT[STOOD] > 0.0 and not before_end(A, t + h):
+            # An interval that ends within the step is followed by another one, which corrects what is left.
+            budget = budget_of(ROWS, m, BOOK[0] + BOOK[1], owed, math.inf if raised > 0 else 0.0)
+            lifting(
+                P, Q, ROWS, moved(POSE, V, 0.5 * h), VN, ACC, IMS, IIS, n, m, h, least_of(SIZES, n), budget, JUMP
+            )  # fmt: skip
         if abs(OUT[LOCK_OF] - 1.0) > abs(A.PAR.lock - 1.0):
             A.PAR.lock = OUT[LOCK_OF]
     COUNT.solves += 1

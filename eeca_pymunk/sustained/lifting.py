@@ -20,7 +20,7 @@ from ..compiled.records import Rows
 from ..model.contacts import Row
 from ..model.parameters.impulses import DENSE_CONTACTS
 from ..model.parameters.intervals import CORRECTION_ROUND_OFF, CORRECTION_SHARE, CORRECTION_STEP, OVERLAP_LEFT
-from ..rows.build import normal_rate
+from ..rows.build import conserves, normal_rate
 from ..rows.energy import lift
 from .ledger import against
 
@@ -84,6 +84,23 @@ def lifting(
             JUMP[i, 4] = turn * (POSE[i, 0] + 0.5 * h * VN[i, 0] + JUMP[i, 0] - x)
             JUMP[i, 5] = turn
     return part * (work + part * square), deepest
+
+
+@uncounted
+def least_of(EXTENT: FloatArray, n: int) -> float:
+    """The size of the smallest of n bodies."""
+    size = math.inf
+    for i in range(n):
+        size = min(size, EXTENT[i])
+    return size
+
+
+@uncounted
+def budget_of(ROWS: Rows[Row], m: int, lost: float, owed: float, free: float) -> float:
+    """What `lifting` may spend: the losses of m contacts, less what is owed, and `free`. Elastic contacts have none,
+    whatever their round-off is."""
+    budget = -1.0 if conserves(ROWS, m) else lost - owed
+    return max(budget, 0.0) + free if free > 0.0 else budget
 
 
 @uncounted

@@ -31,7 +31,7 @@ from ..rows.energy import lock, works
 from ..rows.sweeps import velocities
 from .contacts import gather
 from .ledger import against, carried
-from .lifting import lifting
+from .lifting import budget_of, least_of, lifting
 from .memory import find, remember_loads
 from .relax import relax
 from .statics import comes_to_stand
@@ -123,7 +123,8 @@ def step_island(
         most: sweeps of an island that moves.
         least: length that every body's points may come at least, 0 if their velocities tell.
         owed: energy >= 0 to take out at least.
-        free: energy >= 0 that lifting may cost beyond the losses: from outside, by who put bodies into one another.
+        free: energy >= 0 that lifting may cost beyond the losses: work of a kinematic body that was put into others.
+            Negative: overlaps are not corrected.
         KEYS, FORCES, COUNT, stamp: memory of forces; the number of this step.  STATE: (3,) of `relax`.
         calm: speed relative to |a| h at which it may come to a stand, see `.statics`, 0 if it may not; V is 0 once it
             does, its energy is the caller's to book. Negative: that is all that is asked for.
@@ -195,18 +196,14 @@ def step_island(
         OUT[2] = worst
         OUT[3], OUT[4] = lock(A, B, ROWS, L, VN, FREE, IM, II, m, owed, elastic)
         normal, tangential = works(A, B, ROWS, L, VN, m, LOSS)
-        size = np.inf
-        for i in range(n):
-            size = min(size, EXTENT[i])
-        # Losses pay for lifting; what is elastic has none, whatever round-off says.
-        budget = -1.0 if elastic else normal + tangential - owed
-        if free > 0.0:
-            budget = max(budget, 0.0) + free
-        lifted, OUT[5] = lifting(A, B, ROWS, MIDDLE, VN, ACC, IM, II, n, m, h, size, budget, JUMP)
         LEDGER[0] += normal
         LEDGER[1] += tangential
         LEDGER[2] += carried(A, B, ROWS, L, V, VN, IM, II, m)
-        LEDGER[3] += lifted
+        if free >= 0.0:
+            budget = budget_of(ROWS, m, normal + tangential, owed, free)
+            size = least_of(EXTENT, n)
+            lifted, OUT[DEEPEST] = lifting(A, B, ROWS, MIDDLE, VN, ACC, IM, II, n, m, h, size, budget, JUMP)
+            LEDGER[3] += lifted
         OUT[CLOSED] = remember_loads(ROWS, KEY, L, m, h, KEYS, FORCES, COUNT, stamp)
     else:
         OUT[4] = owed
