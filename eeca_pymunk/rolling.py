@@ -115,7 +115,7 @@ class Rolling:
         loop = self.twin.event_loop
         assert loop is not None
         rules = loop.scene.RULE.tobytes()
-        joints = (loop.joint.tobytes(), loop.tie.tobytes()) if isinstance(loop, JointedLoop) else ()
+        joints = (loop.joint.tobytes(),) if isinstance(loop, JointedLoop) else ()
         now = id(world), id(loop), rules, *joints
         if now != self._of:
             self._made, self._of = [], now

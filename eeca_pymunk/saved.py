@@ -8,12 +8,13 @@ from .arrays import FloatArray
 from .compiled.records import Rows, columns
 from .impacts.scene import EventLoop
 from .jointed.scene import JointedLoop
-from .joints.layout import BODY_A, BODY_B, JOINT_COLUMNS, KIND, MAX_BIAS, NOTCH, RATCHET, SOFT
 from .layout import LEFT
+from .model.joints import OF_STEPS, RATCHET, Joint
 from .model.shapes import Link
 from .space.world import World
 
 _FIXED = ["inv_mass", "inv_inertia", "extent", "elasticity", "friction"]  # fields of BODY that no step changes
+_TIE = "kind", "body", "soft"  # fields of JOINT that decide the plan
 
 
 class Saved:
@@ -49,9 +50,9 @@ class Saved:
         joints = world.joints
         if joints is not None:
             assert isinstance(self.method, JointedLoop)
-            joints.joint[:], joints.tie[:] = self.method.joint, self.method.tie
+            joints.joint[:] = self.method.joint
             joints.rates.update(self._rates)
-            self.method.rebind(joints.joint, joints.tie, world.PARTNER)
+            self.method.rebind(joints.joint, world.PARTNER)
             joints.planned()
             world.parted = self.parted
             world.part()
@@ -67,14 +68,17 @@ class Saved:
             return joints is None and not isinstance(method, JointedLoop)
         if joints.items != self._joints or not np.array_equal(method.partner, world.PARTNER):
             return False
-        fixed = [KIND, BODY_A, BODY_B, SOFT]
-        if not np.array_equal(method.tie[:, fixed], joints.tie[:, fixed]):
-            return False
-        differs = method.joint != joints.joint
-        differs[:, MAX_BIAS + 1 : JOINT_COLUMNS] = False
-        # What steps change: how far a ratchet has come, the law of a spring with a function of its own.
-        differs[joints.tie[:, KIND] == RATCHET, NOTCH] = False
-        differs[joints.functions] = False
+        differs = np.zeros(len(joints.joint), bool)
+        for name in Joint.TYPE.names or ():
+            if name in ("touched", *OF_STEPS):
+                continue
+            apart = (method.joint[name] != joints.joint[name]).reshape(len(differs), -1).any(axis=1)
+            # What steps change: how far a ratchet has come, the law of a spring with a function of its own.
+            if name == "notch":
+                apart[joints.joint["kind"] == RATCHET] = False
+            elif name not in _TIE:
+                apart[joints.functions] = False
+            differs |= apart
         return not differs.any()
 
 

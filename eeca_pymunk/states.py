@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .arrays import AnyArray, FloatArray, IntArray
-from .compiled.records import KINDS
+from .compiled.records import KINDS, numbers
 from .impacts.scene import EventLoop
 from .jointed.scene import JointedLoop
-from .joints.layout import KIND, MAX_BIAS, NOTCH, RATCHET, TOUCHED
 from .layout import LEFT, STATE_COLUMNS
+from .model.joints import OF_STEPS, RATCHET
 from .space.bodies import moving
 from .space.world import World
 
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from .runs import RunningStepper
 
 _MARK = 0x65656361_00000001
-_OF_STEPS = slice(MAX_BIAS + 1, None)  # columns of JOINT that steps change, besides the notches of ratchets
 
 
 def get_state(stepper: RunningStepper) -> IntArray:
@@ -40,7 +39,7 @@ def get_state(stepper: RunningStepper) -> IntArray:
         if isinstance(loop, JointedLoop) and world.joints is not None:
             joints = world.joints
             rates = np.array([joints.rates.get(item, (np.nan, np.nan)) for item in joints.items])
-            parts += [joints.joint, joints.tie[:, TOUCHED], loop.joints.TALLY, rates]
+            parts += [joints.joint, numbers(loop.joints.TALLY), rates]
     inner = [_words(part) for part in parts]
     head = [_MARK, _fingerprint(stepper.space, loop), len(inner), *map(len, inner)]
     return np.concatenate((np.array(head, np.int64), *inner))
@@ -114,13 +113,15 @@ def _remember(stepper: RunningStepper, world: World, parts: _Parts, at: IntArray
     world.EXTRA[at] = parts.take(np.float64, world.EXTRA.shape)
     loop.recall(parts.take)
     if isinstance(loop, JointedLoop) and joints is not None:
-        joint = parts.take(np.float64, joints.joint.shape)
-        joints.joint[:, _OF_STEPS] = joint[:, _OF_STEPS]
-        ratchets = joints.tie[:, KIND] == RATCHET
-        joints.joint[ratchets, NOTCH] = joint[ratchets, NOTCH]
-        joints.joint[joints.functions] = joint[joints.functions]
-        joints.tie[:, TOUCHED] = parts.take(np.int64, (len(joint),))
-        loop.joints.TALLY[:] = parts.take(np.int64, loop.joints.TALLY.shape)
+        joint = parts.take(joints.joint.dtype, joints.joint.shape)
+        for name in ("touched", *OF_STEPS):
+            joints.joint[name] = joint[name]
+        ratchets = joints.joint["kind"] == RATCHET
+        joints.joint["notch"][ratchets] = joint["notch"][ratchets]
+        for name in ("stiffness", "rest", "push"):
+            joints.joint[name][joints.functions] = joint[name][joints.functions]
+        tally = numbers(loop.joints.TALLY)
+        tally[:] = parts.take(np.int64, tally.shape)
         rates = parts.take(np.float64, (len(joint), 2))
         known = zip(joints.items, rates.tolist(), strict=True)
         joints.rates = {item: (r, h) for item, (r, h) in known if r == r}

@@ -30,6 +30,6 @@ class Midstep:
         if world.joints is not None:
             return JointedLoop(
                 world.BODY, world.SHAPE, world.LINK, world.VERTEX, world.disks, 0, world.joints.joint,
-                world.joints.tie, world.PARTNER, together=True,
+                world.PARTNER, together=True,
             )  # fmt: skip
         return Together(world.BODY, world.SHAPE, world.LINK, world.VERTEX, world.disks)

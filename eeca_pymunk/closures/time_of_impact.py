@@ -33,5 +33,5 @@ class TimeOfImpact:
             return EventLoop(world.BODY, world.SHAPE, world.LINK, world.VERTEX, world.disks, self.max_impacts)
         return JointedLoop(
             world.BODY, world.SHAPE, world.LINK, world.VERTEX, world.disks, self.max_impacts, world.joints.joint,
-            world.joints.tie, world.PARTNER, together=False,
+            world.PARTNER, together=False,
         )  # fmt: skip

@@ -32,9 +32,9 @@ TABLES = {
         MISSED:Missed[1] PAR:Step COUNT:Count
     """,
     "Joints": """
-        JOINT:f8[2] TIE:i8[2] PARTNER:Body[1] SPAN:i8[2] MEMBER:i8[2] LINK:i8[2] HINGE:f8[2] LOCAL:f8[2] NODE:i8[2]
-        MATRIX:f8[1] RIGHT:f8[1] MORE:f8[1] STIFF:f8[2] FOUND:f8[1] PART:f8[1] PIVOTS:i8[1] OF:i8[1] KEPT:f8[2]
-        SIDES:i8[2] STEPPED:f8[2] TALLY:i8[1]
+        JOINT:Joint[1] PARTNER:Body[1] COMPONENT:Component[1] MEMBER:ComponentBody[1] LINK:Coupling[1]
+        HINGE:JointStep[1] LOCAL:BodyStep[1] MATRIX:f8[1] RIGHT:f8[1] MORE:f8[1] STIFF:f8[2] PROGRESS:Progress
+        PART:JointLedger PIVOTS:i8[1] OF:i8[1] KEPT:Joint[1] STEPPED:JointLedger[1] TALLY:Tally
     """,
     "Film": """
         RUN:Run KEPT:i8[1] FRAMES:f8[2] SUMS:f8[2] EVENTS:Impulse[1] TOTAL:f8[1] INITIAL:f8[2] PUSH:f8[2]
@@ -58,9 +58,8 @@ ENTRIES = {
     "impacts.step:step": "{Scene} f8[3] i8[2] f8[2] f8[1] f8 f8 f8 f8 i8 bool i8",
     "impacts.together:step_together": "{Scene} f8[3] i8[2] f8[2] f8[1] f8[1] f8 f8 f8 f8 i8",
     "impacts.run:run": "{Scene} {Film} f8[3] i8[2] f8[2] f8[1] f8[1] i8 bool bool",
-    "joints.plan:make_plan": "Body[1] f8[2] i8[2] i8[2] i8[2] i8[2]",
-    "joints.world:step_all": "Body[1] f8[2] i8[2] i8[2] i8[2] i8[2] i8 f8 i8 f8[2] f8[2] i8[2] f8[1] f8[1] f8[1] i8[1]"
-    " f8[2] f8[1] f8[1] f8[2] i8[1]",
+    "joints.plan:make_plan": "Body[1] Joint[1] Component[1] ComponentBody[1] Coupling[1]",
+    "joints.world:step_all": "{Joints} Body[1] f8",
     "jointed.loop:step_jointed": "{Scene} {Joints} f8[3] i8[2] f8[2] f8[1] f8 f8 f8 f8 i8 bool i8",
     "jointed.together:step_together_jointed": "{Scene} {Joints} f8[3] i8[2] f8[2] f8[1] f8[1] f8 f8 f8 f8 i8",
     "jointed.run:run_jointed": "{Scene} {Joints} {Film} f8[3] i8[2] f8[2] f8[1] f8[1] i8 bool bool",

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from operator import itemgetter
-from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar, overload
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Generic, TypeVar, get_origin, get_type_hints, overload
 
 import _cffi_backend
 import numpy as np
 
-from ..arrays import AnyArray
+from ..arrays import AnyArray, FloatArray, IntArray
 
 if TYPE_CHECKING:
 
@@ -22,13 +22,14 @@ else:
 
 _ffi = _cffi_backend.FFI()
 KINDS: dict[str, np.dtype[Any]] = {}  # dtypes of all records by name
-_CODES = {"float": np.float64, "int": np.int64}
+_CODES: dict[Any, Any] = {float: np.float64, int: np.int64, FloatArray: np.float64, IntArray: np.int64}
 
 
 class Record(_Row):
     """One row of an array of records: a view, through which the array is read and written.
 
-    Subclasses annotate their fields as `float` or `int`, in the order in which they lie in memory.
+    Subclasses annotate their fields as `float` or `int`, in the order in which they lie in memory; as
+    `Annotated[FloatArray, 2, 6]` what is an array of this shape within the row.
 
     Attributes:
         TYPE: the dtype of arrays of this record.
@@ -37,10 +38,11 @@ class Record(_Row):
     TYPE: ClassVar[np.dtype[Any]]
 
     def __init_subclass__(cls) -> None:
-        fields = [(name, _CODES[kind]) for name, kind in cls.__annotations__.items()]
+        hints = get_type_hints(cls, include_extras=True)
+        fields = [(name, *_code(hints[name])) for name in cls.__annotations__]
         cls.TYPE = np.dtype((cls, np.dtype(fields, align=True)))
         KINDS[cls.__name__] = cls.TYPE
-        for name, _ in fields:
+        for name, *_ in fields:
             setattr(cls, name, property(itemgetter(name), _setter(name)))
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -51,6 +53,13 @@ class Record(_Row):
         return _row_of(type(self), self.tobytes())
 
     __copy__ = __deepcopy__
+
+
+def _code(hint: Any) -> tuple[Any, tuple[int, ...]]:
+    """The numpy type and the shape of a field."""
+    if get_origin(hint) is Annotated:
+        return _CODES[hint.__origin__], hint.__metadata__
+    return _CODES[hint], ()
 
 
 def _setter(name: str) -> Any:

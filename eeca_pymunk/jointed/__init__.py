@@ -6,6 +6,6 @@ Open first `loop.py`, the step; then `solve.py`, the span of an island, with `pr
 motion under their impulses, `alone.py`, of what meets nobody, and `bounded.py`, bounded impulses of joints
 (`motors.py`); `meet.py` and `strike.py`, an impact at one instant. `component.py` steps what hangs together by joints
 (`gathered.py`) and finds how it answers impulses; `groups.py`, `columns.py` and `newton.py` solve contact laws with
-these answers in the place of masses; `lifting.py` lifts overlaps. `layout.py` names the arrays, `scene.py` owns them. A
-scene without joints knows nothing of this room.
+these answers in the place of masses; `lifting.py` lifts overlaps. `..model.joints` names the arrays, `scene.py` owns
+them. A scene without joints knows nothing of this room.
 """

@@ -12,13 +12,13 @@ from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
 from ..impacts.spans import Local
 from ..model.contacts import Row
+from ..model.joints import Joints
 from ..model.scene import Scene
 from .bounded import Bounded, fill_rows, list_rows, note_rows
 from .columns import Columns, fill_group
 from .component import ready, step_component
 from .gathered import find_places, gather_component, lead_component, rewind_joints
 from .groups import Groups
-from .layout import Joints
 from .motors import let_slip
 
 _ALIGNMENTS, ALIGNED = 6, 1e-15  # motions to let arms agree; what they may be off, see `align`

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 
 from ..compiled import uncounted
-from ..joints.scratch import BEFORE, BODY_0, BODY_1, FREEDOMS, M_BODY, M_FREEDOMS, POSE, TRAVEL
+from ..joints.ledger import clear_interval
+from ..model.joints import Joints
 from ..model.scene import Scene
 from ..pairs.rules import barred
 from .component import step_in_scratch
 from .gathered import gather_alone, keep_joints
-from .layout import STEPPED_COLUMNS, TURNED_WORK, Joints
 
 
 @uncounted
@@ -20,9 +20,9 @@ def is_component(A: Scene, J: Joints, root: int) -> bool:
     if s < 0:
         return False
     count = 0
-    for i in range(J.SPAN[s, BODY_0], J.SPAN[s, BODY_1]):
-        if J.MEMBER[i, M_FREEDOMS] > 0:
-            if A.STATE[J.MEMBER[i, M_BODY]].island != root:
+    for i in range(J.COMPONENT[s].first_body, J.COMPONENT[s].end_body):
+        if J.MEMBER[i].freedoms > 0:
+            if A.STATE[J.MEMBER[i].body].island != root:
                 return False
             count += 1
     return bool(count == A.MEMBER[root].bodies)
@@ -47,13 +47,12 @@ def begin_alone(A: Scene, J: Joints, root: int, t: float, h: float) -> None:
     bodies are."""
     s = J.OF[root]
     keep_joints(J, s)
-    for c in range(STEPPED_COLUMNS):
-        J.STEPPED[s, c] = 0.0
+    clear_interval(J.STEPPED[s])
     step_in_scratch(J, s, h, gather_alone(A, J, s, t, h), True)
-    first = J.SPAN[s, BODY_0]
-    for i in range(J.SPAN[s, BODY_1] - first):
-        if J.NODE[i, FREEDOMS] > 0:
-            lay_path(A, J, s, J.MEMBER[first + i, M_BODY], i, h)
+    first = J.COMPONENT[s].first_body
+    for i in range(J.COMPONENT[s].end_body - first):
+        if J.LOCAL[i].freedoms > 0:
+            lay_path(A, J, s, J.MEMBER[first + i].body, i, h)
     A.COUNT.solves += 1
     A.MEMBER[root].open = 1
     A.RESTING[root].until = math.inf
@@ -64,12 +63,12 @@ def lay_path(A: Scene, J: Joints, s: int, body: int, i: int, h: float) -> None:
     """Let a body go to where the scratch of its component has it at i: see `..jointed.solve`."""
     BODY, LOCAL = A.BODY, J.LOCAL
     if BODY[body].inv_inertia > 0.0 and A.PULL[body, 2] != 0.0:
-        turned = LOCAL[i, POSE + 2] - BODY[body].angle
-        J.STEPPED[s, TURNED_WORK] += A.PULL[body, 2] * (LOCAL[i, TRAVEL + 2] - turned) / BODY[body].inv_inertia
+        turned = LOCAL[i].pose[2] - BODY[body].angle
+        J.STEPPED[s].turned_work += A.PULL[body, 2] * (LOCAL[i].travel[2] - turned) / BODY[body].inv_inertia
     A.STATE[body].version += 1
     b, rest = BODY[body], A.RESTING[body]
-    b.ax = 2.0 * (LOCAL[i, POSE] - b.x - h * b.vx) / (h * h)
-    b.ay = 2.0 * (LOCAL[i, POSE + 1] - b.y - h * b.vy) / (h * h)
-    b.angular = 2.0 * (LOCAL[i, POSE + 2] - b.angle - h * b.spin) / (h * h)
+    b.ax = 2.0 * (LOCAL[i].pose[0] - b.x - h * b.vx) / (h * h)
+    b.ay = 2.0 * (LOCAL[i].pose[1] - b.y - h * b.vy) / (h * h)
+    b.angular = 2.0 * (LOCAL[i].pose[2] - b.angle - h * b.spin) / (h * h)
     rest.lift_x, rest.lift_y, rest.lift_angle = 0.0, 0.0, 0.0
-    rest.lift_vx, rest.lift_vy, rest.lift_spin = LOCAL[i, BEFORE], LOCAL[i, BEFORE + 1], LOCAL[i, BEFORE + 2]
+    rest.lift_vx, rest.lift_vy, rest.lift_spin = LOCAL[i].v0[0], LOCAL[i].v0[1], LOCAL[i].v0[2]

@@ -15,30 +15,10 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..joints.boxes import FIRST_OF_DISC, SECOND_OF_DISC, SINGLE, on_disc
 from ..joints.entries import held
-from ..joints.layout import GROOVE, RATCHET, ROTARY_LIMIT, SLIDE
-from ..joints.scratch import (
-    BEFORE,
-    BODY_0,
-    BOUND,
-    BOXES,
-    FREEDOMS,
-    GIVEN,
-    JOINT_0,
-    JOINT_1,
-    L_A,
-    L_KIND,
-    L_ROWS,
-    L_SIDE,
-    L_SOFT,
-    M_BODY,
-    ROWS,
-    TARGET,
-    TOTAL,
-)
+from ..model.joints import GIVEN, GROOVE, RATCHET, ROTARY_LIMIT, SLIDE, Joints
 from ..model.scene import Scene
 from .component import answer
 from .groups import Groups
-from .layout import Joints
 
 _SWEEPS = 30
 
@@ -70,7 +50,7 @@ def make_bounded(J: Joints, groups: Groups, empty: bool) -> Bounded:
     n, entries = 0, 0
     for g in range(len(groups.COMPONENT)):
         if groups.COMPONENT[g] >= 0 and not empty:
-            rows = J.SPAN[groups.COMPONENT[g], BOXES]
+            rows = J.COMPONENT[groups.COMPONENT[g]].boxes
             n += rows
             entries += rows * (groups.FIRST[g + 1] - groups.FIRST[g])
     return Bounded(
@@ -83,20 +63,20 @@ def make_bounded(J: Joints, groups: Groups, empty: bool) -> Bounded:
 def note_row(A: Scene, J: Joints, B: Bounded, s: int, i: int, h: float) -> None:
     """Row i as it is at the end of the step h that component s has just taken."""
     k, r = B.OF[i, 0], B.OF[i, 1]
-    hinge = J.HINGE[k - J.SPAN[s, JOINT_0]]
-    B.NUMBER[i, SPEED] = -hinge[TARGET + r]
-    B.NUMBER[i, NOW] = hinge[TOTAL + r]
+    hinge = J.HINGE[k - J.COMPONENT[s].first_joint]
+    B.NUMBER[i, SPEED] = -hinge.target[r]
+    B.NUMBER[i, NOW] = hinge.total[r]
     for end in range(2):
-        at = J.LINK[k, L_A + end]
-        B.END[i, end] = A.PLACE[J.MEMBER[J.SPAN[s, BODY_0] + at, M_BODY]] if J.NODE[at, FREEDOMS] > 0 else -1
+        at = J.LINK[k].body[end]
+        B.END[i, end] = A.PLACE[J.MEMBER[J.COMPONENT[s].first_body + at].body] if J.LOCAL[at].freedoms > 0 else -1
         for c in range(3):
-            B.ROW[i, 3 * end + c] = hinge[ROWS + 6 * r + 3 * end + c]
+            B.ROW[i, 3 * end + c] = hinge.rows[r, 3 * end + c]
             if B.END[i, end] < 0:
-                B.NUMBER[i, SPEED] += B.ROW[i, 3 * end + c] * J.LOCAL[at, BEFORE + c]
-    bound = hinge[BOUND] * h
+                B.NUMBER[i, SPEED] += B.ROW[i, 3 * end + c] * J.LOCAL[at].v0[c]
+    bound = hinge.bound * h
     low = -bound
-    if J.LINK[k, L_KIND] in (SLIDE, ROTARY_LIMIT, RATCHET):
-        low, bound = (0.0, bound) if J.LINK[k, L_SIDE] < 0 else (-bound, 0.0)
+    if J.LINK[k].kind in (SLIDE, ROTARY_LIMIT, RATCHET):
+        low, bound = (0.0, bound) if J.LINK[k].side < 0 else (-bound, 0.0)
     B.NUMBER[i, LOW], B.NUMBER[i, HIGH] = low, bound
 
 
@@ -104,7 +84,7 @@ def note_row(A: Scene, J: Joints, B: Bounded, s: int, i: int, h: float) -> None:
 def note_rows(A: Scene, J: Joints, B: Bounded, s: int, h: float) -> None:
     """The rows of component s that are known, after another step of it."""
     for i in range(B.USED[0]):
-        if J.SPAN[s, JOINT_0] <= B.OF[i, 0] < J.SPAN[s, JOINT_1]:
+        if J.COMPONENT[s].first_joint <= B.OF[i, 0] < J.COMPONENT[s].end_joint:
             note_row(A, J, B, s, i, h)
 
 
@@ -112,10 +92,10 @@ def note_rows(A: Scene, J: Joints, B: Bounded, s: int, h: float) -> None:
 def list_rows(A: Scene, J: Joints, B: Bounded, s: int, h: float) -> int:
     """Append the rows of component s whose impulses count as given (`motors.let_slip`); the first of them."""
     first = B.USED[0]
-    for k in range(J.SPAN[s, JOINT_0], J.SPAN[s, JOINT_1]):
-        if J.LINK[k, L_SOFT] != GIVEN or not held(J.LINK, k, 0):
+    for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
+        if J.LINK[k].soft != GIVEN or not held(J.LINK, k, 0):
             continue
-        rows = 1 if J.LINK[k, L_KIND] == GROOVE and J.LINK[k, L_SIDE] == 0 else J.LINK[k, L_ROWS]
+        rows = 1 if J.LINK[k].kind == GROOVE and J.LINK[k].side == 0 else J.LINK[k].rows
         for r in range(rows):
             i = B.USED[0]
             B.OF[i, 0], B.OF[i, 1] = k, r

@@ -14,10 +14,10 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
 from ..model.contacts import Row
+from ..model.joints import Joints
 from ..model.parameters.impulses import SINGULAR
 from .component import answer
 from .groups import Groups
-from .layout import Joints
 
 _STRUT, _NOTHING = 1e-3, 1e-7  # share of its free mobility below which a contact is left out: of one group, of two
 

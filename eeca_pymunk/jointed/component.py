@@ -5,42 +5,18 @@ from __future__ import annotations
 import math
 
 from ..arrays import FloatArray
-from ..compiled import uncounted
+from ..compiled import merged, uncounted
 from ..joints.bounds import bounded, gap
 from ..joints.entries import held as stands
-from ..joints.layout import COMPLIANCE, GEAR
 from ..joints.ledger import springs_hold
 from ..joints.response import prepare, respond
-from ..joints.scratch import (
-    BEFORE,
-    BODY_0,
-    BODY_1,
-    FREEDOMS,
-    JOINT_0,
-    JOINT_1,
-    L_JOINT,
-    L_KIND,
-    L_ROWS,
-    L_SIDE,
-    L_SOFT,
-    LOOPS,
-    M_BODY,
-    MEAN,
-    POSE,
-    POSES,
-    SIZE,
-    SPEEDS,
-    STEP,
-    TARGET,
-    TRAVEL,
-    VALUE,
-)
 from ..joints.solve import solve
 from ..joints.start import look
 from ..joints.step import island_step
+from ..joints.workspace import workspace
+from ..model.joints import GEAR, POSES, SPEEDS, STEP, Joints, Workspace
 from ..model.scene import Scene
 from .gathered import gather_component
-from .layout import ANSWERS, ORDER, REPEATS, WORST, Joints
 
 _CLOSED = 1e-11  # of the size of a component, that joints may be off where bodies are lifted
 
@@ -51,15 +27,10 @@ def step_in_scratch(J: Joints, s: int, h: float, length: float, whole: bool) -> 
 
     `whole`: whether order 4 may be had: nothing else acts in the span.
     """
-    j0, j1, b0 = J.SPAN[s, JOINT_0], J.SPAN[s, JOINT_1], J.SPAN[s, BODY_0]
-    n = J.SPAN[s, BODY_1] - b0
-    order = J.TALLY[ORDER] if whole else 2
-    status = island_step(
-        J.JOINT, J.TIE, J.HINGE, J.LINK[j0:j1], j1 - j0, J.LOCAL, J.NODE, n, h, order, length, J.SPAN[s], J.MATRIX,
-        J.RIGHT, J.MORE, J.PIVOTS, J.STIFF, J.FOUND, J.PART, J.STEPPED[s],
-    )  # fmt: skip
-    J.TALLY[REPEATS] += 1
-    J.TALLY[WORST] = max(J.TALLY[WORST], status)
+    order = J.TALLY.order if whole else 2
+    status = island_step(workspace(J, s), h, order, length, J.STEPPED[s])
+    J.TALLY.repeats += 1
+    J.TALLY.worst = max(J.TALLY.worst, status)
     return int(status)
 
 
@@ -74,35 +45,37 @@ def step_component(
     MID: (k, 2), out: where constant forces have acted, means of the places over time.
     """
     status = step_in_scratch(J, s, h, length, whole)
-    b0 = J.SPAN[s, BODY_0]
-    for i in range(J.SPAN[s, BODY_1] - b0):
-        if J.NODE[i, FREEDOMS] > 0:
-            q = A.PLACE[J.MEMBER[b0 + i, M_BODY]]
+    b0 = J.COMPONENT[s].first_body
+    for i in range(J.COMPONENT[s].end_body - b0):
+        if J.LOCAL[i].freedoms > 0:
+            q = A.PLACE[J.MEMBER[b0 + i].body]
             for c in range(3):
-                VN[q, c], END[q, c], WAY[q, c] = J.LOCAL[i, BEFORE + c], J.LOCAL[i, POSE + c], J.LOCAL[i, TRAVEL + c]
-            MID[q, 0], MID[q, 1] = J.LOCAL[i, MEAN] / h, J.LOCAL[i, MEAN + 1] / h
+                VN[q, c], END[q, c], WAY[q, c] = J.LOCAL[i].v0[c], J.LOCAL[i].pose[c], J.LOCAL[i].travel[c]
+            MID[q, 0], MID[q, 1] = J.LOCAL[i].mean[0] / h, J.LOCAL[i].mean[1] / h
     return status
+
+
+@merged
+def size_joints(W: Workspace, length: float) -> None:
+    """Units of the joints' functions in a component of size `length`."""
+    for k in range(W.joints):
+        W.J.HINGE[k].size = 1.0 if W.link[k].kind >= GEAR else length
 
 
 @uncounted
 def fit_speeds(A: Scene, J: Joints, s: int, length: float) -> None:
     """Make the velocities that `gather_component` has put into the scratch fit the joints, closed limits included, as
     an impact at which nothing bounces. What this costs is the caller's to book."""
-    j0, j1, b0 = J.SPAN[s, JOINT_0], J.SPAN[s, JOINT_1], J.SPAN[s, BODY_0]
-    for k in range(j1 - j0):
-        J.HINGE[k, SIZE] = 1.0 if J.LINK[j0 + k, L_KIND] >= GEAR else length
-    solve(
-        int(SPEEDS), J.JOINT, J.HINGE, J.LINK[j0:j1], j1 - j0, J.LOCAL, J.NODE, J.SPAN[s, BODY_1] - b0, 2.0, length,
-        J.SPAN[s, LOOPS] > 0, 0.0, J.SPAN[s], J.MATRIX, J.RIGHT, J.MORE, J.PIVOTS, J.STIFF, J.FOUND,
-    )  # fmt: skip
+    W = workspace(J, s)
+    size_joints(W, length)
+    solve(W, int(SPEEDS), 2.0, length, W.J.COMPONENT[W.s].loops > 0, 0.0)
 
 
 @uncounted
-def springs_of(J: Joints, s: int, bodies: int) -> float:
-    """The energy that the springs of component s hold at the poses in the scratch."""
-    j0, j1 = J.SPAN[s, JOINT_0], J.SPAN[s, JOINT_1]
-    look(J.JOINT, J.HINGE, J.LINK[j0:j1], j1 - j0, J.LOCAL, J.NODE, bodies, J.STIFF)
-    return springs_hold(J.JOINT, J.HINGE, J.LINK[j0:j1], j1 - j0)
+def springs_of(W: Workspace) -> float:
+    """The energy that the springs of a component hold at the poses in the scratch."""
+    look(W)
+    return springs_hold(W)
 
 
 @uncounted
@@ -112,37 +85,32 @@ def close_joints(
 ) -> float:  # fmt: skip
     """Close the joints of component s at the poses NEW (k, 3) of an island, along M^-1 G^T; how much more its springs
     hold there than at OLD, infinite if joints do not close or limits are passed."""
-    j0, j1, b0 = J.SPAN[s, JOINT_0], J.SPAN[s, JOINT_1], J.SPAN[s, BODY_0]
-    n = J.SPAN[s, BODY_1] - b0
+    W, b0 = workspace(J, s), J.COMPONENT[s].first_body
     length = gather_component(A, J, s, OLD, V, V, IM, II, t, h)
-    for k in range(j1 - j0):
-        J.HINGE[k, SIZE] = 1.0 if J.LINK[j0 + k, L_KIND] >= GEAR else length
-    held = springs_of(J, s, n)
-    for k in range(j1 - j0):
+    size_joints(W, length)
+    held = springs_of(W)
+    for k in range(W.joints):
         # What is apart stays as far apart.
-        for r in range(J.LINK[j0 + k, L_ROWS]):
-            J.HINGE[k, TARGET + r] = J.HINGE[k, VALUE + r]
+        for r in range(W.link[k].rows):
+            W.J.HINGE[k].target[r] = W.J.HINGE[k].value[r]
     gather_component(A, J, s, NEW, V, V, IM, II, t, h)
-    solve(
-        int(POSES), J.JOINT, J.HINGE, J.LINK[j0:j1], j1 - j0, J.LOCAL, J.NODE, n, 2.0, length, J.SPAN[s, LOOPS] > 0,
-        0.0, J.SPAN[s], J.MATRIX, J.RIGHT, J.MORE, J.PIVOTS, J.STIFF, J.FOUND,
-    )  # fmt: skip
-    for i in range(n):
-        if J.NODE[i, FREEDOMS] > 0:
-            q = A.PLACE[J.MEMBER[b0 + i, M_BODY]]
+    solve(W, int(POSES), 2.0, length, W.J.COMPONENT[W.s].loops > 0, 0.0)
+    for i in range(W.bodies):
+        if J.LOCAL[i].freedoms > 0:
+            q = A.PLACE[J.MEMBER[b0 + i].body]
             for c in range(3):
-                NEW[q, c] = J.LOCAL[i, POSE + c]
-    held = springs_of(J, s, n) - held
-    for k in range(j1 - j0):
-        link, small = J.LINK[j0 + k], _CLOSED * J.HINGE[k, SIZE]
-        if link[L_SOFT] != 0:
+                NEW[q, c] = J.LOCAL[i].pose[c]
+    held = springs_of(W) - held
+    for k in range(W.joints):
+        link, small = W.link[k], _CLOSED * W.J.HINGE[k].size
+        if link.soft != 0:
             continue
-        for r in range(link[L_ROWS]):
-            if stands(J.LINK, j0 + k, r) and abs(J.HINGE[k, VALUE + r] - J.HINGE[k, TARGET + r]) > small:
+        for r in range(link.rows):
+            if stands(W.link, k, r) and abs(W.J.HINGE[k].value[r] - W.J.HINGE[k].target[r]) > small:
                 return math.inf
         for side in (-1, 1):
-            passed = bounded(J.JOINT, J.LINK[j0:j1], k, side) and link[L_SIDE] != side
-            if passed and gap(J.JOINT, J.HINGE, J.LINK[j0:j1], k, side) < -small:
+            passed = bounded(W.J.JOINT, W.link, k, side) and link.side != side
+            if passed and gap(W.J.JOINT, W.J.HINGE, W.link, k, side) < -small:
                 return math.inf
     return held
 
@@ -151,22 +119,13 @@ def close_joints(
 def ready(J: Joints, s: int, h: float, about_step: bool) -> bool:
     """Whether component s can answer impulses: about the step that `step_component` has just taken (its scratch is back
     at the start then), or at the poses that `gather_component` has put there."""
-    j0, j1, b0 = J.SPAN[s, JOINT_0], J.SPAN[s, JOINT_1], J.SPAN[s, BODY_0]
-    what = STEP if about_step else SPEEDS
-    J.TALLY[ANSWERS] = prepare(
-        what, J.JOINT, J.HINGE, J.LINK[j0:j1], j1 - j0, J.LOCAL, J.NODE, J.SPAN[s, BODY_1] - b0, h, J.SPAN[s],
-        J.MATRIX, J.RIGHT, J.MORE, J.STIFF, J.PIVOTS,
-    )  # fmt: skip
-    return bool(J.TALLY[ANSWERS] >= 0)
+    J.TALLY.answers = prepare(workspace(J, s), STEP if about_step else SPEEDS, h)
+    return bool(J.TALLY.answers >= 0)
 
 
 @uncounted
 def answer(J: Joints, s: int, about_step: bool, PUSH: FloatArray) -> None:
     """PUSH (bodies of the component, 3): impulses in, changes of velocity out."""
-    j0, j1, b0 = J.SPAN[s, JOINT_0], J.SPAN[s, JOINT_1], J.SPAN[s, BODY_0]
-    what = STEP if about_step else SPEEDS
-    gives = about_step and J.JOINT[J.LINK[j0, L_JOINT], COMPLIANCE] > 0.0
-    respond(
-        what, J.HINGE, J.LINK[j0:j1], j1 - j0, J.LOCAL, J.NODE, J.SPAN[s, BODY_1] - b0, J.TALLY[ANSWERS],
-        J.SPAN[s], J.MATRIX, J.RIGHT, J.MORE, J.PIVOTS, PUSH, gives,
-    )  # fmt: skip
+    W = workspace(J, s)
+    gives = about_step and W.J.JOINT[W.link[0].joint].compliance > 0.0
+    respond(W, STEP if about_step else SPEEDS, J.TALLY.answers, PUSH, gives)

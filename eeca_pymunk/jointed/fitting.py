@@ -8,10 +8,9 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
 from ..impacts.spans import Local
-from ..joints.correct import book_fit
-from ..joints.layout import PROJECTED, SUPPORTS
-from ..joints.scratch import BEFORE, BODY_0, BODY_1, M_BODY
+from ..joints.correct import fitting_loss
 from ..model.contacts import Row
+from ..model.joints import Joints
 from ..model.scene import Scene
 from ..rows.build import normal_rate
 from ..rows.inplace import add
@@ -20,7 +19,6 @@ from .columns import Columns, fill_free, fill_group, weigh
 from .component import fit_speeds, ready
 from .gathered import find_places, gather_component
 from .groups import Groups
-from .layout import Joints
 from .lifting import raise_gaps
 from .motors import keeps_speed
 from .newton import FEW
@@ -57,12 +55,14 @@ def fit(
         first = s if first < 0 else first
         length = gather_component(A, J, s, motion.END, motion.V, NOTHING, isle.IM, isle.II, end, h)
         fit_speeds(A, J, s, length)
-        book_fit(J.LOCAL, J.SPAN[s, BODY_1] - J.SPAN[s, BODY_0], J.STEPPED[s], int(PROJECTED))
-        for w in range(J.SPAN[s, BODY_1] - J.SPAN[s, BODY_0]):
-            body = J.MEMBER[J.SPAN[s, BODY_0] + w, M_BODY]
+        J.STEPPED[s].projected += fitting_loss(
+            J.LOCAL, J.COMPONENT[s].end_body - J.COMPONENT[s].first_body, J.STEPPED[s]
+        )
+        for w in range(J.COMPONENT[s].end_body - J.COMPONENT[s].first_body):
+            body = J.MEMBER[J.COMPONENT[s].first_body + w].body
             if body < A.PLACE.shape[0] and A.PLACE[body] >= 0:
                 for c in range(3):
-                    motion.V[A.PLACE[body], c] = J.LOCAL[w, BEFORE + c]
+                    motion.V[A.PLACE[body], c] = J.LOCAL[w].v0[c]
     if first < 0 or driven or m > FEW:
         return
     RATES, fastest = np.full(m, np.inf), 0.0
@@ -135,7 +135,7 @@ def hold(
     gained = energy_of(isle, motion.V) - before
     if abs(gained + loss) > _NOTHING * before:
         # Supports move.
-        J.STEPPED[book, PROJECTED] += loss
-        J.STEPPED[book, SUPPORTS] += gained + loss
+        J.STEPPED[book].projected += loss
+        J.STEPPED[book].supports += gained + loss
     else:
-        J.STEPPED[book, PROJECTED] -= gained
+        J.STEPPED[book].projected -= gained

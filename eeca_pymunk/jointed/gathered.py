@@ -5,77 +5,48 @@ from __future__ import annotations
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
 from ..geometry.flight import pose, rate
-from ..joints.layout import COMPLIANCE, JOINT_COLUMNS, LED, NOTCH, OWED, RATCHET, SIDE, TIE_COLUMNS, TOUCHED
 from ..joints.motion import size_up
-from ..joints.scratch import (
-    BEFORE,
-    BODY_0,
-    BODY_1,
-    CAYLEY,
-    COLUMN,
-    FIRST,
-    FREE,
-    FREEDOMS,
-    JOINT_0,
-    JOINT_1,
-    L_A,
-    L_JOINT,
-    L_KIND,
-    M_BODY,
-    M_CAYLEY,
-    M_COLUMN,
-    M_FIRST,
-    M_FREEDOMS,
-    MOBILITY,
-    POSE,
-)
+from ..model.joints import RATCHET, Joints
 from ..model.scene import Scene
-from .layout import Joints
 
 
 @uncounted
 def keep_joints(J: Joints, s: int) -> None:
     """Remember the joints of component s as they are."""
-    for k in range(J.SPAN[s, JOINT_0], J.SPAN[s, JOINT_1]):
-        j = J.LINK[k, L_JOINT]
-        for c in range(JOINT_COLUMNS):
-            J.KEPT[j, c] = J.JOINT[j, c]
-        for c in range(TIE_COLUMNS):
-            J.SIDES[j, c] = J.TIE[j, c]
+    for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
+        j = J.LINK[k].joint
+        J.KEPT[j] = J.JOINT[j]
 
 
 @uncounted
 def restore_joints(J: Joints, s: int) -> None:
     """What `keep_joints` remembers."""
-    for k in range(J.SPAN[s, JOINT_0], J.SPAN[s, JOINT_1]):
-        j = J.LINK[k, L_JOINT]
-        for c in range(JOINT_COLUMNS):
-            J.JOINT[j, c] = J.KEPT[j, c]
-        for c in range(TIE_COLUMNS):
-            J.TIE[j, c] = J.SIDES[j, c]
+    for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
+        j = J.LINK[k].joint
+        J.JOINT[j] = J.KEPT[j]
 
 
 @uncounted
 def rewind_joints(J: Joints, s: int) -> None:
     """What `keep_joints` remembers, but for impulses, with which the next solution begins."""
-    for k in range(J.SPAN[s, JOINT_0], J.SPAN[s, JOINT_1]):
-        j = J.LINK[k, L_JOINT]
-        if J.LINK[k, L_KIND] == RATCHET:
-            J.JOINT[j, NOTCH] = J.KEPT[j, NOTCH]
-        J.TIE[j, SIDE], J.TIE[j, TOUCHED] = J.SIDES[j, SIDE], J.SIDES[j, TOUCHED]
-        J.JOINT[j, OWED], J.JOINT[j, COMPLIANCE] = J.KEPT[j, OWED], J.KEPT[j, COMPLIANCE]
+    for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
+        j = J.LINK[k].joint
+        if J.LINK[k].kind == RATCHET:
+            J.JOINT[j].notch = J.KEPT[j].notch
+        J.JOINT[j].side, J.JOINT[j].touched = J.KEPT[j].side, J.KEPT[j].touched
+        J.JOINT[j].owed, J.JOINT[j].compliance = J.KEPT[j].owed, J.KEPT[j].compliance
 
 
 @uncounted
 def seat(A: Scene, J: Joints, m: int, i: int, t: float) -> None:
     """The body of row m of MEMBER to i of the scratch: what does not move by joints where it is at instant t, others
     all but what they do."""
-    LOCAL, NODE, n = J.LOCAL, J.NODE, A.BODY.shape[0]
-    NODE[i, COLUMN], NODE[i, FREEDOMS] = J.MEMBER[m, M_COLUMN], J.MEMBER[m, M_FREEDOMS]
-    NODE[i, FIRST], LOCAL[i, CAYLEY] = J.MEMBER[m, M_FIRST], J.MEMBER[m, M_CAYLEY]
-    if NODE[i, FREEDOMS] > 0:
+    LOCAL, LOCAL, n = J.LOCAL, J.LOCAL, A.BODY.shape[0]
+    LOCAL[i].column, LOCAL[i].freedoms = J.MEMBER[m].column, J.MEMBER[m].freedoms
+    LOCAL[i].first, LOCAL[i].cayley = J.MEMBER[m].first, J.MEMBER[m].cayley
+    if LOCAL[i].freedoms > 0:
         return
-    body = int(J.MEMBER[m, M_BODY])
+    body = int(J.MEMBER[m].body)
     x, y, angle, vx, vy, spin = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     if body < n:
         x, y, angle = pose(A.BODY, body, t)
@@ -83,18 +54,18 @@ def seat(A: Scene, J: Joints, m: int, i: int, t: float) -> None:
     else:
         P = J.PARTNER[body - n]
         x, y, angle, vx, vy, spin = P.x, P.y, P.angle, P.vx, P.vy, P.spin
-    LOCAL[i, POSE], LOCAL[i, POSE + 1], LOCAL[i, POSE + 2] = x, y, angle
-    LOCAL[i, BEFORE], LOCAL[i, BEFORE + 1], LOCAL[i, BEFORE + 2] = vx, vy, spin
+    LOCAL[i].pose[0], LOCAL[i].pose[1], LOCAL[i].pose[2] = x, y, angle
+    LOCAL[i].v0[0], LOCAL[i].v0[1], LOCAL[i].v0[2] = vx, vy, spin
     for c in range(3):
-        LOCAL[i, FREE + c] = 0.0
-        LOCAL[i, MOBILITY + c] = 0.0
+        LOCAL[i].acceleration[c] = 0.0
+        LOCAL[i].mobility[c] = 0.0
 
 
 @uncounted
 def measured(J: Joints, s: int, h: float) -> float:
     """Complete the bodies in the scratch of component s; its size."""
-    count = J.SPAN[s, BODY_1] - J.SPAN[s, BODY_0]
-    return float(size_up(J.JOINT, J.LINK, J.SPAN[s, JOINT_0], J.SPAN[s, JOINT_1], J.LOCAL, count, h))
+    count = J.COMPONENT[s].end_body - J.COMPONENT[s].first_body
+    return float(size_up(J.JOINT, J.LINK, J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint, J.LOCAL, count, h))
 
 
 @uncounted
@@ -107,14 +78,14 @@ def gather_component(
     Moved bodies stand at A.PLACE in the arrays of the island; others where they are at instant t.
     """
     LOCAL = J.LOCAL
-    b0 = J.SPAN[s, BODY_0]
-    for i in range(J.SPAN[s, BODY_1] - b0):
+    b0 = J.COMPONENT[s].first_body
+    for i in range(J.COMPONENT[s].end_body - b0):
         seat(A, J, b0 + i, i, t)
-        if J.NODE[i, FREEDOMS] > 0:
-            q = A.PLACE[J.MEMBER[b0 + i, M_BODY]]
+        if J.LOCAL[i].freedoms > 0:
+            q = A.PLACE[J.MEMBER[b0 + i].body]
             for c in range(3):
-                LOCAL[i, POSE + c], LOCAL[i, BEFORE + c], LOCAL[i, FREE + c] = POSE_OF[q, c], V[q, c], ACC[q, c]
-                LOCAL[i, MOBILITY + c] = IM[q] if c < 2 else II[q]
+                LOCAL[i].pose[c], LOCAL[i].v0[c], LOCAL[i].acceleration[c] = POSE_OF[q, c], V[q, c], ACC[q, c]
+                LOCAL[i].mobility[c] = IM[q] if c < 2 else II[q]
     return measured(J, s, h)
 
 
@@ -122,38 +93,38 @@ def gather_component(
 def gather_alone(A: Scene, J: Joints, s: int, t: float, h: float) -> float:
     """`gather_component` of one that is an island of its own, whose bodies are at instant t."""
     LOCAL, BODY = J.LOCAL, A.BODY
-    b0 = J.SPAN[s, BODY_0]
-    for i in range(J.SPAN[s, BODY_1] - b0):
+    b0 = J.COMPONENT[s].first_body
+    for i in range(J.COMPONENT[s].end_body - b0):
         seat(A, J, b0 + i, i, t)
-        if J.NODE[i, FREEDOMS] > 0:
-            body = J.MEMBER[b0 + i, M_BODY]
+        if J.LOCAL[i].freedoms > 0:
+            body = J.MEMBER[b0 + i].body
             b = BODY[body]
-            LOCAL[i, POSE], LOCAL[i, POSE + 1], LOCAL[i, POSE + 2] = b.x, b.y, b.angle
-            LOCAL[i, BEFORE], LOCAL[i, BEFORE + 1], LOCAL[i, BEFORE + 2] = b.vx, b.vy, b.spin
-            LOCAL[i, MOBILITY], LOCAL[i, MOBILITY + 1], LOCAL[i, MOBILITY + 2] = b.inv_mass, b.inv_mass, b.inv_inertia
+            LOCAL[i].pose[0], LOCAL[i].pose[1], LOCAL[i].pose[2] = b.x, b.y, b.angle
+            LOCAL[i].v0[0], LOCAL[i].v0[1], LOCAL[i].v0[2] = b.vx, b.vy, b.spin
+            LOCAL[i].mobility[0], LOCAL[i].mobility[1], LOCAL[i].mobility[2] = b.inv_mass, b.inv_mass, b.inv_inertia
             for c in range(3):
-                LOCAL[i, FREE + c] = A.PULL[body, c]
+                LOCAL[i].acceleration[c] = A.PULL[body, c]
     return measured(J, s, h)
 
 
 @uncounted
 def lead_component(A: Scene, J: Joints, s: int, V: FloatArray, ACC: FloatArray, GUESS: FloatArray, h: float) -> None:
     """Let the next step of component s begin with velocities GUESS (k, 3) at its end, from V under ACC at its start."""
-    for k in range(J.SPAN[s, JOINT_0], J.SPAN[s, JOINT_1]):
+    for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
         for end in range(2):
-            member = J.SPAN[s, BODY_0] + J.LINK[k, L_A + end]
-            if J.MEMBER[member, M_FREEDOMS] > 0:
-                q = A.PLACE[J.MEMBER[member, M_BODY]]
+            member = J.COMPONENT[s].first_body + J.LINK[k].body[end]
+            if J.MEMBER[member].freedoms > 0:
+                q = A.PLACE[J.MEMBER[member].body]
                 for c in range(3):
-                    J.JOINT[J.LINK[k, L_JOINT], LED + 3 * end + c] = (GUESS[q, c] - V[q, c]) / h - ACC[q, c]
+                    J.JOINT[J.LINK[k].joint].led[end, c] = (GUESS[q, c] - V[q, c]) / h - ACC[q, c]
 
 
 @uncounted
 def find_places(A: Scene, J: Joints, s: int, INDEX: IntArray) -> int:
     """INDEX (k,) of the moved bodies of component s: their places in its scratch; how many bodies that has."""
-    b0, size = J.SPAN[s, BODY_0], J.SPAN[s, BODY_1] - J.SPAN[s, BODY_0]
+    b0, size = J.COMPONENT[s].first_body, J.COMPONENT[s].end_body - J.COMPONENT[s].first_body
     for w in range(size):
-        body = J.MEMBER[b0 + w, M_BODY]
+        body = J.MEMBER[b0 + w].body
         if body < A.PLACE.shape[0] and A.PLACE[body] >= 0:
             INDEX[A.PLACE[body]] = w
     return int(size)

@@ -8,7 +8,8 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
-from ..joints.scratch import BODY_0, BODY_1, M_FREEDOMS
+from ..compiled.records import Rows
+from ..model.joints import Component, ComponentBody
 
 
 class Groups(NamedTuple):
@@ -51,11 +52,11 @@ def find_groups(WHO: IntArray, IM: FloatArray, OF: IntArray) -> Groups:
 
 
 @uncounted
-def hangs(groups: Groups, SPAN: IntArray, MEMBER: IntArray) -> bool:
+def hangs(groups: Groups, COMPONENTS: Rows[Component], MEMBER: Rows[ComponentBody]) -> bool:
     """Whether a component of the island hangs on something that joints cannot move."""
     some = False
     for g in range(len(groups.COMPONENT)):
         s = groups.COMPONENT[g]
-        for i in range(SPAN[s, BODY_0] if s >= 0 else 0, SPAN[s, BODY_1] if s >= 0 else 0):
-            some = some or MEMBER[i, M_FREEDOMS] == 0
+        for i in range(COMPONENTS[s].first_body if s >= 0 else 0, COMPONENTS[s].end_body if s >= 0 else 0):
+            some = some or MEMBER[i].freedoms == 0
     return some

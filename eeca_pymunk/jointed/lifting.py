@@ -10,8 +10,8 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
 from ..impacts.spans import Local
-from ..joints.layout import STORED
 from ..model.contacts import Row
+from ..model.joints import Joints
 from ..model.scene import Scene
 from ..rows.build import normal_rate
 from ..rows.inplace import copy
@@ -21,7 +21,6 @@ from .columns import Columns, fill_group, weigh
 from .component import close_joints, ready
 from .gathered import find_places, gather_component
 from .groups import Groups, hangs
-from .layout import Joints
 from .motors import drives
 
 _SLOP = 1e-9  # overlap over the size of the bodies, that is left alone
@@ -116,7 +115,7 @@ def lift(
     if cost * part > 0.5 * budget:
         part = 0.5 * budget / cost
     HELD = np.zeros(len(groups.COMPONENT))
-    free = len(isle.IM) == n and not hangs(groups, J.SPAN, J.MEMBER)
+    free = len(isle.IM) == n and not hangs(groups, J.COMPONENT, J.MEMBER)
     for _ in range(4):
         spent = 0.0
         NEW = END.copy()
@@ -143,7 +142,7 @@ def lift(
             for g in range(len(groups.COMPONENT)):
                 s = groups.COMPONENT[g]
                 if s >= 0:
-                    J.STEPPED[s, STORED] += HELD[g]
+                    J.STEPPED[s].stored += HELD[g]
             copy(END, NEW)
             return spent
         part *= 0.25

@@ -14,14 +14,13 @@ from ..impacts.loop import follow, with_mover
 from ..impacts.missed import miss
 from ..impacts.settle import settle
 from ..impacts.step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, finish, start, wish
-from ..joints.layout import BODY_A, BODY_B, ELASTIC, TOUCHED
-from ..joints.scratch import BUDGET, EFFORT
+from ..joints.ledger import clear_interval
 from ..layout import BODY_ROW, LEFT
 from ..layout import NOW as READ
+from ..model.joints import ELASTIC, Joints, joints_of
 from ..model.scene import Scene, scene_of
 from ..model.step import DONE, JOINTS_DUE, PUSHES_FULL
 from ..model.step import JOINTS as UNMET_JOINTS
-from .layout import COMPONENTS, REPEATS, WORST, Joints, joints_of
 from .meet import book_component
 from .solve import begin_span
 from .strike import collide
@@ -43,10 +42,10 @@ def feel(A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray) -> None:
             same = same and now[k, c] == before[k, c]
         A.PLACE[i] = -1 if same else 1
     n = A.PLACE.shape[0]
-    for j in range(J.TIE.shape[0]):
-        a, b = J.TIE[j, BODY_A], J.TIE[j, BODY_B]
+    for j in range(J.JOINT.shape[0]):
+        a, b = J.JOINT[j].body[0], J.JOINT[j].body[1]
         if (a < n and A.PLACE[a] > 0) or (b < n and A.PLACE[b] > 0):
-            J.TIE[j, TOUCHED] = 1
+            J.JOINT[j].touched = 1
     A.PLACE[:] = -1
 
 
@@ -57,19 +56,20 @@ def start_jointed(
 ) -> int:  # fmt: skip
     """As `..impacts.step.start`, with the joints."""
     feel(A, J, STATES, WALK)
-    J.TALLY[WORST] = J.TALLY[REPEATS] = 0
-    J.FOUND[EFFORT], J.FOUND[BUDGET] = 0.0, _WORK + _WORK_OF_BODY * A.BODY.shape[0]
-    J.STEPPED[:] = 0.0
+    J.TALLY.worst = J.TALLY.repeats = 0
+    J.PROGRESS.effort, J.PROGRESS.budget = 0.0, _WORK + _WORK_OF_BODY * A.BODY.shape[0]
+    for s in range(len(J.STEPPED)):
+        clear_interval(J.STEPPED[s])
     return start(A, STATES, WALK, EXTRA, dt, gx, gy, left)
 
 
 @uncounted
 def book_joints(A: Scene, J: Joints) -> None:
     """Book what all joints have done until the end of the step."""
-    for s in range(J.TALLY[COMPONENTS]):
+    for s in range(J.TALLY.components):
         book_component(A, J, s)
-    if J.TALLY[WORST] >= ELASTIC:
-        miss(A, UNMET_JOINTS, -1, -1, float(J.TALLY[WORST]), float(ELASTIC))
+    if J.TALLY.worst >= ELASTIC:
+        miss(A, UNMET_JOINTS, -1, -1, float(J.TALLY.worst), float(ELASTIC))
 
 
 @uncounted

@@ -11,14 +11,11 @@ from ..geometry.gap import gap_at
 from ..impacts.block import crowded
 from ..impacts.booking import alight, book
 from ..impacts.islands import members
-from ..joints.layout import CLAMPED, CLOSED, LIMITED, MOTORS, PROJECTED, SUPPORTS
-from ..joints.layout import DAMPED as DAMPED_JOINTS
-from ..joints.layout import STORED as STORED_JOINTS
-from ..joints.scratch import BUDGET, EFFORT
+from ..joints.ledger import clear_interval
+from ..model.joints import Joints
 from ..model.scene import Scene
 from ..pairs.lists import mark_pair
 from .gathered import restore_joints
-from .layout import LIFTED, TURNED_WORK, Joints
 from .press import SOME
 from .solve import begin_span
 
@@ -32,13 +29,12 @@ _INSTANT = 1e-12  # of a step, below which a span is none
 def book_component(A: Scene, J: Joints, s: int) -> None:
     """Book what the joints of component s have done in their span."""
     PAR, B = A.PAR, J.STEPPED[s]
-    PAR.external += B[MOTORS] + B[SUPPORTS] + B[CLOSED] + B[TURNED_WORK]
-    PAR.damped += B[DAMPED_JOINTS]
-    PAR.restitution += B[LIMITED] + B[PROJECTED] - B[LIFTED]
-    PAR.frictional += B[CLAMPED]
-    PAR.stored += B[STORED_JOINTS]
-    for c in range(len(B)):
-        B[c] = 0.0
+    PAR.external += B.motors + B.supports + B.closed + B.turned_work
+    PAR.damped += B.damped
+    PAR.restitution += B.limited + B.projected - B.lifted
+    PAR.frictional += B.clamped
+    PAR.stored += B.stored
+    clear_interval(B)
 
 
 @kernel
@@ -104,9 +100,8 @@ def end_here(A: Scene, J: Joints, root: int, t: float) -> None:
     found = components_of(A, J, root)
     for c in range(len(found)):
         if empty:
-            for w in range(J.STEPPED.shape[1]):
-                J.STEPPED[found[c], w] = 0.0
-        A.RESTING[root].lost -= J.STEPPED[found[c], LIFTED]
+            clear_interval(J.STEPPED[found[c]])
+        A.RESTING[root].lost -= J.STEPPED[found[c]].lifted
         book_component(A, J, found[c])
     A.MEMBER[root].open = 0
     MINE = np.empty(A.MEMBER[root].bodies, np.int64)
@@ -156,7 +151,7 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> float:
             least = max(least, begun(A, i if end == 0 else j))
     small = min(A.SHAPE[a].extent, A.SHAPE[b].extent)
     before, gap_before = -1.0, 0.0
-    spent = J.FOUND[EFFORT] > J.FOUND[BUDGET]
+    spent = J.PROGRESS.effort > J.PROGRESS.budget
     most = 1 if spent or crowded(A, a, b) else _LOADED_SECANTS
     for tries in range(_SECANTS):
         loaded = shorten(A, J, roots[0], t)

@@ -18,9 +18,8 @@ from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
 from ..impacts.coming import before_end, sweeps_of_crowd
 from ..impacts.spans import Local
-from ..joints.layout import COMPLIANCE
-from ..joints.scratch import BUDGET, EFFORT, JOINT_0, L_JOINT, NEAR, TAUT
 from ..model.contacts import Row
+from ..model.joints import Joints
 from ..model.parameters.intervals import LARGE_ISLAND
 from ..model.scene import Scene
 from ..rows.build import conserves, normal_rate, rates, tangent_rate
@@ -31,7 +30,6 @@ from .bounded import make_bounded, settle_bounded, with_bounded
 from .columns import Columns, fill_free, leave_out, make_columns, push_columns, weigh
 from .condensing import solve_condensed
 from .groups import Groups, hangs
-from .layout import Joints
 from .newton import FEW, solve_columns
 
 _OUTER, _MOST_OUTER = 6, 12  # steps of the components; if elastic, or of no more than SOME contacts
@@ -72,7 +70,7 @@ def some_taut(J: Joints, groups: Groups) -> bool:
     """Whether a component hardly gives way across, for the pull of its joints."""
     some = False
     for g in range(len(groups.COMPONENT)):
-        some = some or (groups.COMPONENT[g] >= 0 and J.SPAN[groups.COMPONENT[g], TAUT] > 0)
+        some = some or (groups.COMPONENT[g] >= 0 and J.COMPONENT[groups.COMPONENT[g]].taut > 0)
     return some
 
 
@@ -82,7 +80,7 @@ def some_give(J: Joints, groups: Groups) -> bool:
     some = False
     for g in range(len(groups.COMPONENT)):
         s = groups.COMPONENT[g]
-        some = some or (s >= 0 and J.JOINT[J.LINK[J.SPAN[s, JOINT_0], L_JOINT], COMPLIANCE] > 0.0)
+        some = some or (s >= 0 and J.JOINT[J.LINK[J.COMPONENT[s].first_joint].joint].compliance > 0.0)
     return some
 
 
@@ -115,15 +113,15 @@ def press(
         if n >= LARGE_ISLAND:
             most = sweeps_of_crowd(t)
     # Where many contacts do not come to an end, joints come near enough until the last step of the components.
-    if J.FOUND[EFFORT] > J.FOUND[BUDGET]:
+    if J.PROGRESS.effort > J.PROGRESS.budget:
         rounds, most = _PART_OUTER, min(most, _SWEEPS)
-    J.FOUND[NEAR] = _NEAR if m > FEW and not elastic and not rests else 0.0
+    J.PROGRESS.near = _NEAR if m > FEW and not elastic and not rests else 0.0
     FORESEEN, UNKNOWN = np.empty((len(isle.IM), 3)), np.empty((0, 3))
     converged, best, LEAST, USED, hopeless, agreed, slowly = False, np.inf, L.copy(), L.copy(), False, False, False
     stiff, bent, reached, B = False, 0.0, np.inf, make_bounded(J, groups, False)
     K, NONE = make_columns(groups, P, Q, m if len(B.OF) > 0 else 0), make_bounded(J, groups, True)
     # Only of what nothing from without holds or touches is there an angular momentum to keep.
-    free = len(isle.IM) == n and not hangs(groups, J.SPAN, J.MEMBER)
+    free = len(isle.IM) == n and not hangs(groups, J.COMPONENT, J.MEMBER)
     for outer in range(rounds):
         if hopeless:
             break
@@ -151,7 +149,7 @@ def press(
         if anew:
             if free:
                 fill_free(groups, C, P, Q, ROWS, isle.IM, isle.II, m)
-            J.FOUND[EFFORT] += _SOLUTION_COST * C.AT[m]
+            J.PROGRESS.effort += _SOLUTION_COST * C.AT[m]
             weigh(groups, C, P, Q, ROWS, m)
         if outer == 0:
             stiff = m <= FEW and some_taut(J, groups)
@@ -178,8 +176,8 @@ def press(
             copy(L, USED)
             agreed = True
             break
-    if not agreed or J.FOUND[NEAR] > 0.0:
-        J.FOUND[NEAR], bent = 0.0, np.inf if free else 0.0
+    if not agreed or J.PROGRESS.near > 0.0:
+        J.PROGRESS.near, bent = 0.0, np.inf if free else 0.0
         advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, B, False, UNKNOWN)
     if not agreed:
         if not farthest_apart(motion.V, FORESEEN, isle.EXTENT, n) <= best:

@@ -6,9 +6,9 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import Table, kernel
 from ..impacts.run import after_step, before_step, next_rollout
 from ..impacts.together import begin_together
+from ..model.joints import joints_of
 from ..model.run import AFTER, BETWEEN, WITHIN, film_of
 from ..model.scene import scene_of
-from .layout import joints_of
 from .loop import resume_jointed, start_jointed
 from .together import resume_together_jointed
 

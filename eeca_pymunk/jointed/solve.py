@@ -14,6 +14,7 @@ from ..impacts.islands import lossy, members
 from ..impacts.missed import miss
 from ..impacts.spans import Local, dismiss, lay_out_island, open_contacts
 from ..model.contacts import ROW
+from ..model.joints import Joints
 from ..model.parameters.intervals import MIDPOINT_SAME
 from ..model.scene import Scene
 from ..model.step import CONTACTS, DONE, PUSHES_FULL
@@ -30,7 +31,6 @@ from .component import step_component
 from .fitting import fit
 from .gathered import gather_component, keep_joints, restore_joints
 from .groups import Groups, find_groups
-from .layout import LIFTED, TURNED_WORK, Joints
 from .lifting import lift
 from .motors import drives
 from .press import lost, press, slip_of
@@ -142,7 +142,7 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
             spent = lift(A, J, isle, groups, P, Q, ROWS, m, n, motion, t + h, h, budget, C)
             for g in range(len(groups.COMPONENT)):
                 if groups.COMPONENT[g] >= 0:
-                    J.STEPPED[groups.COMPONENT[g], LIFTED] = spent
+                    J.STEPPED[groups.COMPONENT[g]].lifted = spent
                     break
         fit(A, J, isle, groups, P, Q, ROWS, L, m, motion, t + h, h, slow + pull * h, C)
     dismiss(A, MINE, n)
@@ -176,10 +176,10 @@ def book_turning(A: Scene, J: Joints, isle: Local, groups: Groups, motion: Motio
     """Torques work along chi = h w_m, which is not quite the angle that a jointed body turns by."""
     for g in range(len(groups.COMPONENT)):
         if groups.COMPONENT[g] >= 0:
-            J.STEPPED[groups.COMPONENT[g], TURNED_WORK] = 0.0
-            J.STEPPED[groups.COMPONENT[g], LIFTED] = 0.0
+            J.STEPPED[groups.COMPONENT[g]].turned_work = 0.0
+            J.STEPPED[groups.COMPONENT[g]].lifted = 0.0
     for q in range(n):
         s = groups.COMPONENT[groups.GROUP[q]]
         if s >= 0 and isle.II[q] > 0.0 and isle.ACC[q, 2] != 0.0:
             turned = motion.END[q, 2] - isle.POSE[q, 2]
-            J.STEPPED[s, TURNED_WORK] += isle.ACC[q, 2] * (motion.WAY[q, 2] - turned) / isle.II[q]
+            J.STEPPED[s].turned_work += isle.ACC[q, 2] * (motion.WAY[q, 2] - turned) / isle.II[q]

@@ -11,8 +11,7 @@ from ..impacts.collide import finish, rejoin
 from ..impacts.islands import members, unite
 from ..impacts.settle import comes_to_rest
 from ..impacts.spans import dismiss
-from ..joints.scratch import BEFORE as LOCAL_BEFORE
-from ..joints.scratch import BODY_0, BODY_1, FREEDOMS
+from ..model.joints import Joints
 from ..model.scene import Scene
 from ..rows.blocks import CONVERGED, D_NORMAL, D_TANGENTIAL, OUT_SIZE, SCALE_LOCK, TRUNCATED
 from ..rows.build import aim, conserves, rates
@@ -24,7 +23,6 @@ from .columns import fill_free, fill_group, make_columns, push_columns, weigh
 from .component import answer, fit_speeds, ready
 from .gathered import find_places, gather_component
 from .groups import find_groups
-from .layout import Joints
 from .meet import end_here, meet, shorten
 from .newton import solve_columns
 
@@ -46,10 +44,10 @@ def energy_of(block: Block, V: FloatArray, W: FloatArray, n: int) -> float:
 @uncounted
 def carried_along(J: Joints, s: int) -> bool:
     """Whether component s hangs on something that moves; its bodies are in the scratch."""
-    for i in range(J.SPAN[s, BODY_1] - J.SPAN[s, BODY_0]):
-        if J.NODE[i, FREEDOMS] == 0:
+    for i in range(J.COMPONENT[s].end_body - J.COMPONENT[s].first_body):
+        if J.LOCAL[i].freedoms == 0:
             for c in range(3):
-                if J.LOCAL[i, LOCAL_BEFORE + c] != 0.0:
+                if J.LOCAL[i].v0[c] != 0.0:
                     return True
     return False
 
@@ -105,7 +103,7 @@ def collide(A: Scene, J: Joints, disks: int, a: int, b: int, t: float) -> tuple[
             for q in range(n):
                 if groups.GROUP[q] == g:
                     for c in range(3):
-                        V[q, c] = J.LOCAL[INDEX[q], LOCAL_BEFORE + c]
+                        V[q, c] = J.LOCAL[INDEX[q]].v0[c]
         if not ready(J, s, 2.0, False):
             continue
         fill_group(J, groups, C, g, INDEX, False, P, Q, ROWS, rows, PUSH)

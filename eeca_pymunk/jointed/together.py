@@ -13,9 +13,9 @@ from ..impacts.islands import unite
 from ..impacts.spans import solve
 from ..impacts.step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, finish
 from ..impacts.together import anew, begin_together, join_all
+from ..model.joints import Joints, joints_of
 from ..model.scene import Scene, scene_of
 from ..model.step import DONE
-from .layout import Joints, joints_of
 from .loop import book_joints, start_jointed
 from .solve import begin_span
 

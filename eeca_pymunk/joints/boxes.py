@@ -14,32 +14,12 @@ from __future__ import annotations
 
 import math
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FloatArray
 from ..compiled import uncounted
+from ..compiled.records import Rows
+from ..model.joints import BOXED, GROOVE, RATCHET, ROTARY_LIMIT, SLIDE, BodyStep, Coupling, JointStep, Workspace
 from .dual import STRIDE
 from .entries import held
-from .layout import GROOVE, RATCHET, ROTARY_LIMIT, SLIDE
-from .scratch import (
-    BOUND,
-    BOXED,
-    COLUMN,
-    DUAL_SIZE,
-    FREEDOMS,
-    L_A,
-    L_KIND,
-    L_ROW,
-    L_ROWS,
-    L_SIDE,
-    L_SOFT,
-    LAM,
-    ROOT,
-    ROWS,
-    ROWS_OF,
-    SCALE,
-    UNKNOWNS,
-    VALUE,
-    WEIGHT,
-)
 
 MANY = 64  # bounded rows, above which each iteration decides for each row by itself (`soft`)
 ROOM = 8  # arrays of one number per row, beside the columns (and a right side) and two matrices
@@ -51,15 +31,15 @@ SINGLE, FIRST_OF_DISC, SECOND_OF_DISC = 0.0, 1.0, 2.0
 
 
 @uncounted
-def rows_of(link: IntArray, k: int) -> int:
+def rows_of(link: Rows[Coupling], k: int) -> int:
     """The rows of joint k that act, if it is boxed; 0 if not."""
-    if link[k, L_SOFT] != BOXED or not held(link, k, 0):
+    if link[k].soft != BOXED or not held(link, k, 0):
         return 0
-    return 1 if link[k, L_KIND] == GROOVE and link[k, L_SIDE] == 0 else int(link[k, L_ROWS])
+    return 1 if link[k].kind == GROOVE and link[k].side == 0 else int(link[k].rows)
 
 
 @uncounted
-def boxed_rows(link: IntArray, joints: int) -> int:
+def boxed_rows(link: Rows[Coupling], joints: int) -> int:
     """How many rows are boxed."""
     count = 0
     for k in range(joints):
@@ -69,53 +49,51 @@ def boxed_rows(link: IntArray, joints: int) -> int:
 
 @uncounted
 def push(
-    link: IntArray, hinge: FloatArray, local: FloatArray, node: IntArray, k: int, r: int, size: int, right: FloatArray
+    link: Rows[Coupling], hinge: Rows[JointStep], local: Rows[BodyStep], k: int, r: int, size: int, right: FloatArray
 ) -> None:
     """Let `right` be a unit impulse along row r of joint k, scaled."""
     for i in range(size):
         right[i] = 0.0
     for end in range(2):
-        i = link[k, L_A + end]
-        for c in range(node[i, FREEDOMS]):
-            right[node[i, COLUMN] + c] += hinge[k, ROWS + 6 * r + 3 * end + c] * local[i, ROOT + c]
+        i = link[k].body[end]
+        for c in range(local[i].freedoms):
+            right[local[i].column + c] += hinge[k].rows[r, 3 * end + c] * local[i].root[c]
 
 
 @uncounted
 def rate(
-    link: IntArray, hinge: FloatArray, local: FloatArray, node: IntArray, k: int, r: int, change: FloatArray, at: int
+    link: Rows[Coupling], hinge: Rows[JointStep], local: Rows[BodyStep], k: int, r: int, change: FloatArray, at: int
 ) -> float:
     """The velocity along row r of joint k of the scaled change[at :]."""
     total = 0.0
     for end in range(2):
-        i = link[k, L_A + end]
-        for c in range(node[i, FREEDOMS]):
-            total += hinge[k, ROWS + 6 * r + 3 * end + c] * local[i, ROOT + c] * change[at + node[i, COLUMN] + c]
+        i = link[k].body[end]
+        for c in range(local[i].freedoms):
+            total += hinge[k].rows[r, 3 * end + c] * local[i].root[c] * change[at + local[i].column + c]
     return total
 
 
 @uncounted
-def measure_boxes(
-    link: IntArray, hinge: FloatArray, local: FloatArray, node: IntArray, joints: int, n: int, h: float, fresh: bool,
-    span: IntArray, right: FloatArray, more: FloatArray,
-) -> None:  # fmt: skip
+def measure_boxes(W: Workspace, n: int, h: float, fresh: bool) -> None:
     """W, if columns are `fresh`; u after the solution in `right`; impulses and their bounds. All behind the columns."""
-    size = span[UNKNOWNS] + span[ROWS_OF]
-    cols = STRIDE * span[DUAL_SIZE]
+    hinge, link, component, more = W.J.HINGE, W.link, W.J.COMPONENT[W.s], W.J.MORE
+    size = component.unknowns + component.impulses
+    cols = STRIDE * component.dual_size
     w = cols + (n + 1) * size
     u = w + 2 * n * n
     row = 0
-    for k in range(joints):
+    for k in range(W.joints):
         rows = rows_of(link, k)
-        bound = hinge[k, BOUND] * abs(h)
+        bound = hinge[k].bound * abs(h)
         low = -bound
-        if link[k, L_KIND] in (SLIDE, ROTARY_LIMIT, RATCHET):
-            low, bound = (0.0, bound) if link[k, L_SIDE] < 0 else (-bound, 0.0)
+        if link[k].kind in (SLIDE, ROTARY_LIMIT, RATCHET):
+            low, bound = (0.0, bound) if link[k].side < 0 else (-bound, 0.0)
         for r in range(rows):
             if fresh:
                 for c in range(n):
-                    more[w + row * n + c] = rate(link, hinge, local, node, k, r, more, cols + c * size)
-            more[u + row] = hinge[k, VALUE + r] * 2.0 / h + rate(link, hinge, local, node, k, r, right, 0)
-            more[u + n + row] = hinge[k, LAM + r]
+                    more[w + row * n + c] = rate(link, hinge, W.J.LOCAL, k, r, more, cols + c * size)
+            more[u + row] = hinge[k].value[r] * 2.0 / h + rate(link, hinge, W.J.LOCAL, k, r, W.J.RIGHT, 0)
+            more[u + n + row] = hinge[k].lam[r]
             more[u + 2 * n + row], more[u + 3 * n + row] = low, bound
             more[u + 4 * n + row] = SINGLE if rows == 1 else FIRST_OF_DISC if r == 0 else SECOND_OF_DISC
             row += 1
@@ -245,49 +223,46 @@ def solve_boxes(more: FloatArray, w: int, u: int, n: int) -> None:
 
 
 @uncounted
-def apply_boxes(
-    link: IntArray, hinge: FloatArray, joints: int, n: int, span: IntArray, right: FloatArray, more: FloatArray
-) -> None:
+def apply_boxes(W: Workspace, n: int) -> None:
     """Add to the solution in `right` what the change of the bounded impulses does."""
-    size = span[UNKNOWNS] + span[ROWS_OF]
-    cols = STRIDE * span[DUAL_SIZE]
+    hinge, link, component, more = W.J.HINGE, W.link, W.J.COMPONENT[W.s], W.J.MORE
+    size = component.unknowns + component.impulses
+    cols = STRIDE * component.dual_size
     u = cols + (n + 1) * size + 2 * n * n
     row = 0
-    for k in range(joints):
+    for k in range(W.joints):
         for r in range(rows_of(link, k)):
-            change = more[u + n + row] - hinge[k, LAM + r]
+            change = more[u + n + row] - hinge[k].lam[r]
             if change != 0.0:
                 for i in range(size):
-                    right[i] += change * more[cols + row * size + i]
+                    W.J.RIGHT[i] += change * more[cols + row * size + i]
             row += 1
     row = 0
-    for k in range(joints):
+    for k in range(W.joints):
         for r in range(rows_of(link, k)):
-            right[link[k, L_ROW] + r] = (more[u + n + row] - hinge[k, LAM + r]) / hinge[k, SCALE + r]
+            W.J.RIGHT[link[k].first_row + r] = (more[u + n + row] - hinge[k].lam[r]) / hinge[k].scale[r]
             row += 1
 
 
 @uncounted
-def bound_impulses(
-    link: IntArray, hinge: FloatArray, local: FloatArray, node: IntArray, joints: int, n: int, h: float, fresh: bool,
-    span: IntArray, right: FloatArray, more: FloatArray,
-) -> None:  # fmt: skip
+def bound_impulses(W: Workspace, n: int, h: float, fresh: bool) -> None:
     """Complete the solution in `right`, which is that without a change of the n boxed impulses."""
-    measure_boxes(link, hinge, local, node, joints, n, h, fresh, span, right, more)
-    w = STRIDE * span[DUAL_SIZE] + (n + 1) * (span[UNKNOWNS] + span[ROWS_OF])
-    solve_boxes(more, w, w + 2 * n * n, n)
-    apply_boxes(link, hinge, joints, n, span, right, more)
+    component = W.J.COMPONENT[W.s]
+    measure_boxes(W, n, h, fresh)
+    w = STRIDE * component.dual_size + (n + 1) * (component.unknowns + component.impulses)
+    solve_boxes(W.J.MORE, w, w + 2 * n * n, n)
+    apply_boxes(W, n)
 
 
 @uncounted
 def leave_box(
-    link: IntArray, hinge: FloatArray, k: int, build: bool, whole: bool, band: int, matrix: FloatArray,
+    link: Rows[Coupling], hinge: Rows[JointStep], k: int, build: bool, whole: bool, band: int, matrix: FloatArray,
     right: FloatArray,
 ) -> None:  # fmt: skip
     """Let the rows of joint k be known in the linear system, whose solution is to be without a change of them."""
-    for r in range(link[k, L_ROWS]):
-        row = link[k, L_ROW] + r
-        hinge[k, WEIGHT + r] = 0.0
-        right[row] = 0.0 if r < rows_of(link, k) else -hinge[k, LAM + r] / hinge[k, SCALE + r]
+    for r in range(link[k].rows):
+        row = link[k].first_row + r
+        hinge[k].weight[r] = 0.0
+        right[row] = 0.0 if r < rows_of(link, k) else -hinge[k].lam[r] / hinge[k].scale[r]
         if build and whole:
             matrix[row * (3 * band + 1) + band] = 1.0

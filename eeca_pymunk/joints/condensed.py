@@ -2,17 +2,20 @@
 
 [A  -J^T; G  give] [x; mu] = [b; c] becomes (A + R J^T G) dx = b + R J^T (c - G x), dmu = R (c - G x - G dx), and again
 with what is left of c: the balance of the bodies holds after the first pass, each further one takes the rows' error by
-1/(1 + R s), s the least eigenvalue of G A^-1 J^T. Redundant rows do no harm. The band is that of the bodies' graph,
-and needs no pivots. Rows are those of the factors (FROZEN), also where these serve for a later iterate.
+1/(1 + R s), s the least eigenvalue of G A^-1 J^T. Redundant rows do no harm. The band is that of the bodies' graph, and
+needs no pivots. Rows are those of the factors (`frozen_rows`, `frozen_slopes`), also where these serve for a later
+iterate.
 """
 
 from __future__ import annotations
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FloatArray
 from ..compiled import merged, uncounted
-from .scratch import COLUMN, FREEDOMS, FROZEN, L_A, L_ROW, L_ROWS, MISSING, ROOT, ROWS, SCALE, WEIGHT
+from ..compiled.records import Rows
+from ..model.joints import BodyStep, Coupling, JointStep, Workspace
 
 PASSES = 3
+STIFFEST = 1e7  # rows in a condensed system, over the bodies' inertia
 _WIDE = 8  # band from which on rows are worth a view
 
 
@@ -94,71 +97,73 @@ def substitute(matrix: FloatArray, size: int, band: int, right: FloatArray, at: 
 
 @merged
 def freeze(
-    hinge: FloatArray, link: IntArray, local: FloatArray, node: IntArray, k: int, r: int, slopes: int
+    hinge: Rows[JointStep], link: Rows[Coupling], local: Rows[BodyStep], k: int, r: int, slopes: bool
 ) -> None:  # fmt: skip
-    """Keep the scaled rows J and G of row r of joint k."""
+    """Store the scaled rows J and G (`slopes`, else J) of row r of joint k."""
+    G = hinge[k].slopes if slopes else hinge[k].rows
     for end in range(2):
-        i = link[k, L_A + end]
-        for c in range(node[i, FREEDOMS]):
-            at, scale = 6 * r + 3 * end + c, hinge[k, SCALE + r] * local[i, ROOT + c]
-            hinge[k, FROZEN + at] = scale * hinge[k, ROWS + at]
-            hinge[k, FROZEN + 12 + at] = scale * hinge[k, slopes + at]
+        i = link[k].body[end]
+        for c in range(local[i].freedoms):
+            at, scale = 3 * end + c, hinge[k].scale[r] * local[i].root[c]
+            hinge[k].frozen_rows[r, at] = scale * hinge[k].rows[r, at]
+            hinge[k].frozen_slopes[r, at] = scale * G[r, at]
 
 
 @merged
 def spread(
-    hinge: FloatArray, link: IntArray, node: IntArray, k: int, r: int, amount: float, right: FloatArray, at: int
-) -> None:
+    hinge: Rows[JointStep], link: Rows[Coupling], local: Rows[BodyStep], k: int, r: int, amount: float,
+    right: FloatArray, at: int,
+) -> None:  # fmt: skip
     """Add `amount` of the scaled column J^T of row r of joint k to right[at :]."""
     for end in range(2):
-        i = link[k, L_A + end]
-        for c in range(node[i, FREEDOMS]):
-            right[at + node[i, COLUMN] + c] += amount * hinge[k, FROZEN + 6 * r + 3 * end + c]
+        i = link[k].body[end]
+        for c in range(local[i].freedoms):
+            right[at + local[i].column + c] += amount * hinge[k].frozen_rows[r, 3 * end + c]
 
 
 @merged
 def reach_of(
-    hinge: FloatArray, link: IntArray, node: IntArray, k: int, r: int, right: FloatArray, at: int
+    hinge: Rows[JointStep], link: Rows[Coupling], local: Rows[BodyStep], k: int, r: int, right: FloatArray, at: int
 ) -> float:  # fmt: skip
     """The scaled row G of row r of joint k times right[at :]."""
     total = 0.0
     for end in range(2):
-        i = link[k, L_A + end]
-        for c in range(node[i, FREEDOMS]):
-            total += hinge[k, FROZEN + 12 + 6 * r + 3 * end + c] * right[at + node[i, COLUMN] + c]
+        i = link[k].body[end]
+        for c in range(local[i].freedoms):
+            total += hinge[k].frozen_slopes[r, 3 * end + c] * right[at + local[i].column + c]
     return total
 
 
 @uncounted
 def back_condensed(
-    hinge: FloatArray, link: IntArray, joints: int, node: IntArray, passes: int, size: int, band: int,
-    matrix: FloatArray, right: FloatArray, room: int,
-) -> None:  # fmt: skip
+    W: Workspace, passes: int, size: int, band: int, matrix: FloatArray, right: FloatArray, room: int
+) -> None:
     """Solve the condensed system with the factors of its matrix in place of `right`: bodies first, then rows;
     right[room : room + size] is scratch."""
+    hinge, link, local = W.J.HINGE, W.link, W.J.LOCAL
     for i in range(size):
         right[room + i] = right[i]
         right[i] = 0.0
-    for k in range(joints):
-        for r in range(link[k, L_ROWS]):
-            row = link[k, L_ROW] + r
-            if hinge[k, WEIGHT + r] < 0.0:
-                spread(hinge, link, node, k, r, right[row], right, room)
-            elif hinge[k, WEIGHT + r] > 0.0:
-                hinge[k, MISSING + r] = right[row]
+    for k in range(W.joints):
+        for r in range(link[k].rows):
+            row = link[k].first_row + r
+            if hinge[k].weight[r] < 0.0:
+                spread(hinge, link, local, k, r, right[row], right, room)
+            elif hinge[k].weight[r] > 0.0:
+                hinge[k].missing[r] = right[row]
                 right[row] = 0.0
     for _ in range(passes):
-        for k in range(joints):
-            for r in range(link[k, L_ROWS]):
-                if hinge[k, WEIGHT + r] > 0.0:
-                    amount = hinge[k, WEIGHT + r] * hinge[k, MISSING + r]
-                    spread(hinge, link, node, k, r, amount, right, room)
+        for k in range(W.joints):
+            for r in range(link[k].rows):
+                if hinge[k].weight[r] > 0.0:
+                    amount = hinge[k].weight[r] * hinge[k].missing[r]
+                    spread(hinge, link, local, k, r, amount, right, room)
         substitute(matrix, size, band, right, room)
-        for k in range(joints):
-            for r in range(link[k, L_ROWS]):
-                if hinge[k, WEIGHT + r] > 0.0:
-                    hinge[k, MISSING + r] -= reach_of(hinge, link, node, k, r, right, room)
-                    right[link[k, L_ROW] + r] += hinge[k, WEIGHT + r] * hinge[k, MISSING + r]
+        for k in range(W.joints):
+            for r in range(link[k].rows):
+                if hinge[k].weight[r] > 0.0:
+                    hinge[k].missing[r] -= reach_of(hinge, link, local, k, r, right, room)
+                    right[link[k].first_row + r] += hinge[k].weight[r] * hinge[k].missing[r]
         for i in range(size):
             right[i] += right[room + i]
             right[room + i] = 0.0

@@ -4,132 +4,111 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FloatArray
 from ..compiled import merged
-from .layout import GROOVE, RATCHET, ROTARY_LIMIT, SLIDE
-from .scratch import (
-    COLUMN,
-    DUAL,
-    FREEDOMS,
-    FROZEN,
-    FULL_BEND,
-    INERTIA,
-    L_A,
-    L_B,
-    L_KIND,
-    L_ROW,
-    L_ROWS,
-    L_SIDE,
-    LAM,
-    MOBILITY,
-    ROOT,
-    ROWS,
-    SCALE,
-    WEIGHT,
-    WHOLE,
-)
+from ..compiled.records import Rows
+from ..model.joints import DUAL, FULL_BEND, GROOVE, RATCHET, ROTARY_LIMIT, SLIDE, WHOLE, BodyStep, Coupling, JointStep
 
 
 @merged
-def held(link: IntArray, k: int, r: int) -> bool:
+def held(link: Rows[Coupling], k: int, r: int) -> bool:
     """Whether row r of joint k acts: rows of limits do where the joint stands on one."""
-    kind = link[k, L_KIND]
+    kind = link[k].kind
     if kind == GROOVE:
-        return r == 0 or link[k, L_SIDE] != 0
-    return kind not in (SLIDE, ROTARY_LIMIT, RATCHET) or link[k, L_SIDE] != 0
+        return r == 0 or link[k].side != 0
+    return kind not in (SLIDE, ROTARY_LIMIT, RATCHET) or link[k].side != 0
 
 
 @merged
-def along(hinge: FloatArray, link: IntArray, k: int, row: int, local: FloatArray, column: int) -> float:
-    """The six entries of joint k at `row` of `hinge` times those of its bodies at `column` of `local`."""
-    a, b = link[k, L_A], link[k, L_B]
+def along(joint: JointStep, r: int, v_a: FloatArray, v_b: FloatArray) -> float:
+    """Row r of a joint times the velocities v_a and v_b of its bodies, or their ways."""
     total = 0.0
     for c in range(3):
-        total += hinge[k, row + c] * local[a, column + c] + hinge[k, row + 3 + c] * local[b, column + c]
+        total += joint.rows[r, c] * v_a[c] + joint.rows[r, 3 + c] * v_b[c]
     return total
 
 
 @merged
 def put_rows(
-    link: IntArray, hinge: FloatArray, local: FloatArray, node: IntArray, k: int, r: int, slopes: int, weight: float,
+    link: Rows[Coupling], hinge: Rows[JointStep], local: Rows[BodyStep], k: int, r: int, slopes: bool, weight: float,
     band: int, matrix: FloatArray,
 ) -> None:  # fmt: skip
-    """Scaled row G (at `slopes` of `hinge`, times `weight`) and column -J^T of row r of joint k in a whole system."""
-    row, scale, width = link[k, L_ROW] + r, hinge[k, SCALE + r], 3 * band + 1
+    """Scaled row G (`slopes`, else J; times `weight`) and column -J^T of row r of joint k in a whole system."""
+    row, scale, width = link[k].first_row + r, hinge[k].scale[r], 3 * band + 1
+    G = hinge[k].slopes if slopes else hinge[k].rows
     for end in range(2):
-        i = link[k, L_A + end]
-        for c in range(node[i, FREEDOMS]):
-            root = scale * local[i, ROOT + c]
-            d = node[i, COLUMN] + c - row
-            at = 6 * r + 3 * end + c
-            matrix[row * width + d + band] += weight * hinge[k, slopes + at] * root
-            matrix[(row + d) * width + band - d] -= hinge[k, ROWS + at] * root
+        i = link[k].body[end]
+        for c in range(local[i].freedoms):
+            root = scale * local[i].root[c]
+            d = local[i].column + c - row
+            matrix[row * width + d + band] += weight * G[r, 3 * end + c] * root
+            matrix[(row + d) * width + band - d] -= hinge[k].rows[r, 3 * end + c] * root
 
 
 @merged
 def put_condensed(
-    link: IntArray, hinge: FloatArray, node: IntArray, k: int, r: int, band: int, matrix: FloatArray
+    link: Rows[Coupling], hinge: Rows[JointStep], local: Rows[BodyStep], k: int, r: int, band: int, matrix: FloatArray
 ) -> None:
-    """WEIGHT J^T G of row r of joint k, as it has been frozen, into a condensed system."""
-    weight, width = hinge[k, WEIGHT + r], 2 * band + 1
+    """weight J^T G of row r of joint k, as it has been frozen, into a condensed system."""
+    weight, width = hinge[k].weight[r], 2 * band + 1
     for end in range(2):
-        i = link[k, L_A + end]
-        for c in range(node[i, FREEDOMS]):
-            factor = weight * hinge[k, FROZEN + 6 * r + 3 * end + c]
-            row = node[i, COLUMN] + c
+        i = link[k].body[end]
+        for c in range(local[i].freedoms):
+            factor = weight * hinge[k].frozen_rows[r, 3 * end + c]
+            row = local[i].column + c
             for other in range(2):
-                m = link[k, L_A + other]
-                at, first = FROZEN + 12 + 6 * r + 3 * other, row * width + node[m, COLUMN] - row + band
-                for d in range(node[m, FREEDOMS]):
-                    matrix[first + d] += factor * hinge[k, at + d]
+                m = link[k].body[other]
+                first = row * width + local[m].column - row + band
+                for d in range(local[m].freedoms):
+                    matrix[first + d] += factor * hinge[k].frozen_slopes[r, 3 * other + d]
 
 
 @merged
 def put_stiffness(
-    link: IntArray, local: FloatArray, node: IntArray, k: int, stiff: FloatArray, bend: int, h: float, system: int,
+    link: Rows[Coupling], local: Rows[BodyStep], k: int, stiff: FloatArray, bend: int, h: float, system: int,
     band: int, matrix: FloatArray,
 ) -> None:  # fmt: skip
-    """-(h/2) dF/dx of joint k, scaled; in a dual system what is on the diagonal, into INERTIA."""
+    """-(h/2) dF/dx of joint k, scaled; in a dual system what is on the diagonal, into `inertia`."""
     low = 0 if bend == FULL_BEND else 2
     width = 3 * band + 1 if system == WHOLE else 2 * band + 1
     for end in range(2):
-        i = link[k, L_A + end]
+        i = link[k].body[end]
         if system == DUAL:
-            for c in range(low, node[i, FREEDOMS]):
-                local[i, INERTIA + c] -= stiff[3 * end + c, 3 * end + c] * 0.5 * h * local[i, ROOT + c] ** 2
+            for c in range(low, local[i].freedoms):
+                local[i].inertia[c] -= stiff[3 * end + c, 3 * end + c] * 0.5 * h * local[i].root[c] ** 2
             continue
         for other in range(2):
             if bend != FULL_BEND and end != other:
                 continue
-            m = link[k, L_A + other]
-            for c in range(low, node[i, FREEDOMS]):
-                factor = 0.5 * h * local[i, ROOT + c]
-                row = node[i, COLUMN] + c
-                first = row * width + node[m, COLUMN] - row + band
-                for d in range(low, node[m, FREEDOMS]):
-                    matrix[first + d] -= stiff[3 * end + c, 3 * other + d] * factor * local[m, ROOT + d]
+            m = link[k].body[other]
+            for c in range(low, local[i].freedoms):
+                factor = 0.5 * h * local[i].root[c]
+                row = local[i].column + c
+                first = row * width + local[m].column - row + band
+                for d in range(low, local[m].freedoms):
+                    matrix[first + d] -= stiff[3 * end + c, 3 * other + d] * factor * local[m].root[d]
 
 
 @merged
 def put_free(
-    link: IntArray, hinge: FloatArray, k: int, r: int, system: int, build: bool, band: int, matrix: FloatArray,
-    right: FloatArray,
+    link: Rows[Coupling], hinge: Rows[JointStep], k: int, r: int, system: int, build: bool, band: int,
+    matrix: FloatArray, right: FloatArray,
 ) -> None:  # fmt: skip
     """A row that does not act: its impulse becomes 0."""
-    row = link[k, L_ROW] + r
-    hinge[k, WEIGHT + r] = 0.0
-    right[row] = -hinge[k, LAM + r] / hinge[k, SCALE + r]
+    row = link[k].first_row + r
+    hinge[k].weight[r] = 0.0
+    right[row] = -hinge[k].lam[r] / hinge[k].scale[r]
     if build and system == WHOLE:
         matrix[row * (3 * band + 1) + band] = 1.0
 
 
 @merged
-def scale_rows(link: IntArray, hinge: FloatArray, local: FloatArray, k: int) -> None:
-    """SCALE of the rows of joint k."""
-    for r in range(link[k, L_ROWS]):
+def scale_rows(link: Rows[Coupling], hinge: Rows[JointStep], local: Rows[BodyStep], k: int) -> None:
+    """Scales of the rows of joint k."""
+    for r in range(link[k].rows):
         total = 0.0
         for end in range(2):
-            i = link[k, L_A + end]
+            i = link[k].body[end]
             for c in range(3):
-                total += local[i, MOBILITY + c] * hinge[k, ROWS + 6 * r + 3 * end + c] ** 2
-        hinge[k, SCALE + r] = 1.0 / np.sqrt(total) if total > 0.0 else 1.0
+                total += local[i].mobility[c] * hinge[k].rows[r, 3 * end + c] ** 2
+        hinge[k].scale[r] = 1.0 / np.sqrt(total) if total > 0.0 else 1.0

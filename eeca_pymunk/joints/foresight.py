@@ -15,10 +15,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FloatArray
 from ..compiled import merged, uncounted
-from .layout import COUNTED, COUNTED_OF, PAST_LED, PAST_PUSH
-from .scratch import L_A, L_B, L_JOINT, L_ROWS, LAM, LEAD
+from ..model.joints import Workspace
 
 PARTS, DEPTH = 5, 6
 WEIGHTS: FloatArray = np.array([
@@ -31,22 +30,23 @@ WEIGHTS: FloatArray = np.array([
 
 
 @uncounted
-def forget(joint: FloatArray, link: IntArray, joints: int) -> None:
+def forget(W: Workspace) -> None:
     """Begin anew."""
-    for k in range(joints):
-        joint[link[k, L_JOINT], COUNTED] = 0.0
+    for k in range(W.joints):
+        W.J.JOINT[W.link[k].joint].known_parts = 0
 
 
 @uncounted
-def recalls(joint: FloatArray, link: IntArray, joints: int, h: float) -> bool:
+def recalls(W: Workspace, h: float) -> bool:
     """Whether the parts of a step h of these joints can be foretold; where they know not the same, they begin anew."""
-    count, same = joint[link[0, L_JOINT], COUNTED], True
-    for k in range(joints):
-        j = link[k, L_JOINT]
-        same = same and joint[j, COUNTED] == count and joint[j, COUNTED_OF] == h
+    joint, link = W.J.JOINT, W.link
+    count, same = joint[link[0].joint].known_parts, True
+    for k in range(W.joints):
+        j = link[k].joint
+        same = same and joint[j].known_parts == count and joint[j].known_step == h
     if not same:
-        for k in range(joints):
-            joint[link[k, L_JOINT], COUNTED], joint[link[k, L_JOINT], COUNTED_OF] = 0.0, h
+        for k in range(W.joints):
+            joint[link[k].joint].known_parts, joint[link[k].joint].known_step = 0, h
     return bool(same and count >= DEPTH)
 
 
@@ -58,43 +58,40 @@ def weigh(part: int, last: int, place: int) -> float:
 
 @merged
 def extrapolate(
-    joint: FloatArray, j: int, column: int, w0: float, w1: float, w2: float, w3: float, w4: float, w5: float
+    past: FloatArray, c: int, w0: float, w1: float, w2: float, w3: float, w4: float, w5: float
 ) -> float:  # fmt: skip
-    """What follows the six values at `column`, by the weights of their places."""
-    old = w0 * joint[j, column] + w1 * joint[j, column + 1] + w2 * joint[j, column + 2]
-    return float(old + (w3 * joint[j, column + 3] + w4 * joint[j, column + 4] + w5 * joint[j, column + 5]))
+    """What follows the six values past[c], by the weights of their places."""
+    old = w0 * past[c, 0] + w1 * past[c, 1] + w2 * past[c, 2]
+    return float(old + (w3 * past[c, 3] + w4 * past[c, 4] + w5 * past[c, 5]))
 
 
 @uncounted
-def foretell(
-    joint: FloatArray, part: int, piece: float, loops: bool, hinge: FloatArray, link: IntArray, joints: int,
-    local: FloatArray,
-) -> None:  # fmt: skip
-    """LEAD and, unless rows are redundant, LAM of this part of length `piece`."""
-    last = (int(joint[link[0, L_JOINT], COUNTED]) - 1) % DEPTH
+def foretell(W: Workspace, part: int, piece: float, loops: bool) -> None:
+    """`lead` and, unless rows are redundant, `lam` of this part of length `piece`."""
+    joint, link = W.J.JOINT, W.link
+    last = (joint[link[0].joint].known_parts - 1) % DEPTH
     w0, w1, w2 = weigh(part, last, 0), weigh(part, last, 1), weigh(part, last, 2)
     w3, w4, w5 = weigh(part, last, 3), weigh(part, last, 4), weigh(part, last, 5)
-    for k in range(joints):
-        j = link[k, L_JOINT]
+    for k in range(W.joints):
+        j = link[k].joint
         for c in range(6):
-            i = link[k, L_A] if c < 3 else link[k, L_B]
-            local[i, LEAD + c % 3] = extrapolate(joint, j, PAST_LED + DEPTH * c, w0, w1, w2, w3, w4, w5)
-        for r in range(0 if loops else link[k, L_ROWS]):
-            hinge[k, LAM + r] = piece * extrapolate(joint, j, PAST_PUSH + DEPTH * r, w0, w1, w2, w3, w4, w5)
+            i = link[k].body[0] if c < 3 else link[k].body[1]
+            W.J.LOCAL[i].lead[c % 3] = extrapolate(joint[j].past_led, c, w0, w1, w2, w3, w4, w5)
+        for r in range(0 if loops else link[k].rows):
+            W.J.HINGE[k].lam[r] = piece * extrapolate(joint[j].past_push, r, w0, w1, w2, w3, w4, w5)
 
 
 @uncounted
-def remember(
-    joint: FloatArray, piece: float, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray
-) -> None:
-    """Keep LEAD and LAM of the part of length `piece` that was taken."""
-    count = int(joint[link[0, L_JOINT], COUNTED])
+def remember(W: Workspace, piece: float) -> None:
+    """Store `lead` and `lam` of the part of length `piece` that was taken."""
+    joint, link = W.J.JOINT, W.link
+    count = joint[link[0].joint].known_parts
     at = count % DEPTH
-    for k in range(joints):
-        j = link[k, L_JOINT]
+    for k in range(W.joints):
+        j = link[k].joint
         for c in range(6):
-            i = link[k, L_A] if c < 3 else link[k, L_B]
-            joint[j, PAST_LED + DEPTH * c + at] = local[i, LEAD + c % 3]
-        for r in range(link[k, L_ROWS]):
-            joint[j, PAST_PUSH + DEPTH * r + at] = hinge[k, LAM + r] / piece
-        joint[j, COUNTED] = count + 1 if count + 1 < 2 * PARTS * DEPTH else PARTS * DEPTH
+            i = link[k].body[0] if c < 3 else link[k].body[1]
+            joint[j].past_led[c, at] = W.J.LOCAL[i].lead[c % 3]
+        for r in range(link[k].rows):
+            joint[j].past_push[r, at] = W.J.HINGE[k].lam[r] / piece
+        joint[j].known_parts = count + 1 if count + 1 < 2 * PARTS * DEPTH else PARTS * DEPTH

@@ -2,118 +2,111 @@
 
 from __future__ import annotations
 
-from ..arrays import FloatArray, IntArray
-from ..compiled import uncounted
+from ..compiled import merged, uncounted
+from ..compiled.records import Rows
+from ..model.joints import MOTOR, ROTARY_SPRING, SPRING, BodyStep, JointLedger, Workspace
 from .entries import held
-from .layout import (
-    CLAMPED,
-    CLOSED,
-    DAMPED,
-    LIMITED,
-    MAX_FORCE,
-    MOTOR,
-    MOTORS,
-    PROJECTED,
-    PUSH,
-    REST,
-    ROTARY_SPRING,
-    SPRING,
-    STIFFNESS,
-    STORED,
-    SUPPORTS,
-    WORK,
-)
-from .scratch import (
-    BEFORE,
-    BEGAN,
-    ENDED,
-    FORCE,
-    FREE,
-    L_A,
-    L_JOINT,
-    L_KIND,
-    L_SIDE,
-    L_SOFT,
-    LAM,
-    MEASURE,
-    MOBILITY,
-    SAVED,
-    SHIFT,
-    TOTAL,
-    TRAVEL,
-    WAY,
-)
 from .springs import held_energy
 
 
+@merged
+def clear(ledger: JointLedger) -> None:
+    """No energies of a step."""
+    ledger.stored = ledger.damped = ledger.limited = ledger.clamped = ledger.projected = 0.0
+    ledger.motors = ledger.supports = ledger.closed = 0.0
+
+
+@merged
+def clear_interval(ledger: JointLedger) -> None:
+    """No energies at all."""
+    clear(ledger)
+    ledger.turned_work = ledger.lifted = 0.0
+
+
+@merged
+def add(ledger: JointLedger, part: JointLedger) -> None:
+    """Add the energies of a part of a step."""
+    ledger.stored += part.stored
+    ledger.damped += part.damped
+    ledger.limited += part.limited
+    ledger.clamped += part.clamped
+    ledger.projected += part.projected
+    ledger.motors += part.motors
+    ledger.supports += part.supports
+    ledger.closed += part.closed
+
+
 @uncounted
-def book(
-    joint: FloatArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, h: float, ledger: FloatArray
-) -> None:
-    """Add the works of a solved part of the step to `ledger` (see `layout`), and its impulses to TOTAL.
+def book(W: Workspace, h: float, ledger: JointLedger) -> None:
+    """Add the works of a solved part of the step to `ledger`, and its impulses to `total`.
 
     A joint's work on its bodies is F . x / h. Of that, F . x / h of a body that it cannot move is taken from a support.
     """
+    hinge, link = W.J.HINGE, W.link
     per = 1.0 / h
-    for k in range(joints):
-        kind, j = link[k, L_KIND], link[k, L_JOINT]
+    for k in range(W.joints):
+        kind, j = link[k].kind, link[k].joint
         spring = kind in (SPRING, ROTARY_SPRING)
         if not spring and not held(link, k, 0):
             continue
         total, moved = 0.0, 0.0
         for end in range(2):
-            i = link[k, L_A + end]
+            i = link[k].body[end]
             for c in range(3):
-                work = hinge[k, FORCE + 3 * end + c] * local[i, WAY + c] * per
+                work = hinge[k].force[3 * end + c] * W.J.LOCAL[i].way[c] * per
                 total += work
-                if local[i, MOBILITY + c] > 0.0:
+                if W.J.LOCAL[i].mobility[c] > 0.0:
                     moved += work
-        ledger[SUPPORTS] += moved - total
-        joint[j, WORK] += moved
-        hinge[k, TOTAL] += hinge[k, LAM]
-        hinge[k, TOTAL + 1] += hinge[k, LAM + 1]
+        ledger.supports += moved - total
+        W.J.JOINT[j].work += moved
+        hinge[k].total[0] += hinge[k].lam[0]
+        hinge[k].total[1] += hinge[k].lam[1]
         if spring:
-            began, ended = hinge[k, BEGAN], hinge[k, ENDED]
+            began, ended = hinge[k].began, hinge[k].ended
             stretch = ended - began if kind == SPRING else began - ended
-            lost = (hinge[k, MEASURE] - hinge[k, LAM] / h) * stretch
-            ledger[STORED] -= hinge[k, MEASURE] * stretch
-            ledger[DAMPED] += lost
-            ledger[CLOSED] += total - hinge[k, MEASURE] * stretch + lost
-        elif kind == MOTOR or link[k, L_SOFT] != 0:
+            lost = (hinge[k].measure - hinge[k].lam[0] / h) * stretch
+            ledger.stored -= hinge[k].measure * stretch
+            ledger.damped += lost
+            ledger.closed += total - hinge[k].measure * stretch + lost
+        elif kind == MOTOR or link[k].soft != 0:
             if kind == MOTOR or total > 0.0:
-                ledger[MOTORS] += total
+                ledger.motors += total
             else:
-                ledger[CLAMPED] -= total
-        elif link[k, L_SIDE] != 0 and total < 0.0:
-            ledger[LIMITED] -= total
+                ledger.clamped -= total
+        elif link[k].side != 0 and total < 0.0:
+            ledger.limited -= total
         else:
-            ledger[CLOSED] += total
+            ledger.closed += total
 
 
 @uncounted
-def springs_hold(joint: FloatArray, hinge: FloatArray, link: IntArray, joints: int) -> float:
+def springs_hold(W: Workspace) -> float:
     """The energy that springs hold at the start."""
+    joint = W.J.JOINT
     total = 0.0
-    for k in range(joints):
-        j, kind = link[k, L_JOINT], link[k, L_KIND]
+    for k in range(W.joints):
+        j, kind = W.link[k].joint, W.link[k].kind
         if kind in (SPRING, ROTARY_SPRING):
             sign = 1.0 if kind == SPRING else -1.0
-            at = sign * (hinge[k, BEGAN] - joint[j, REST])
-            total += held_energy(joint[j, PUSH], -joint[j, STIFFNESS], joint[j, MAX_FORCE], at)
+            at = sign * (W.J.HINGE[k].began - joint[j].rest)
+            total += held_energy(joint[j].push, -joint[j].stiffness, joint[j].max_force, at)
     return total
 
 
 @uncounted
-def close_ledger(local: FloatArray, bodies: int, ledger: FloatArray) -> None:
-    """Let the ledger of a step from SAVED to the present close, whose joints did not hold: works of supports are CLOSED
-    too. Rows that contradict each other push without bound there, and their works cancel but for round-off."""
+def close_ledger(local: Rows[BodyStep], bodies: int, ledger: JointLedger) -> None:
+    """Let the ledger of a step from the saved state to the present close, whose joints did not hold: works of supports
+    are `closed` too. Rows that contradict each other push without bound there, and their works cancel but for
+    round-off."""
     gained = 0.0
     for i in range(bodies):
         for c in range(3):
-            if local[i, MOBILITY + c] > 0.0:
-                before, after = local[i, SAVED + 3 + c], local[i, BEFORE + c]
-                way = local[i, TRAVEL + c] - local[i, SHIFT + c]
-                gained += (0.5 * (after * after - before * before) - local[i, FREE + c] * way) / local[i, MOBILITY + c]
-    lost = ledger[DAMPED] + ledger[LIMITED] + ledger[CLAMPED] + ledger[PROJECTED]
-    ledger[SUPPORTS] = 0.0
-    ledger[CLOSED] = gained + ledger[STORED] + lost - ledger[MOTORS]
+            if local[i].mobility[c] > 0.0:
+                before, after = local[i].saved_velocity[c], local[i].v0[c]
+                way = local[i].travel[c] - local[i].shift[c]
+                gained += (0.5 * (after * after - before * before) - local[i].acceleration[c] * way) / local[
+                    i
+                ].mobility[c]
+    lost = ledger.damped + ledger.limited + ledger.clamped + ledger.projected
+    ledger.supports = 0.0
+    ledger.closed = gained + ledger.stored + lost - ledger.motors

@@ -4,124 +4,101 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
 from ..compiled import merged, uncounted
-from .layout import ANCHOR_AX
-from .scratch import (
-    AFTER,
-    BEFORE,
-    BEND,
-    CAYLEY,
-    COS,
-    FREE,
-    GOT,
-    L_JOINT,
-    LEAD,
-    LEVER,
-    MEAN,
-    MOBILITY,
-    PER,
-    POSE,
-    ROOT,
-    SIN,
-    SLOPE,
-    TRAVEL,
-    TURN_COS,
-    TURN_SIN,
-    TURNED,
-    UNROOT,
-    WAY,
-)
+from ..compiled.records import Rows
+from ..model.joints import BodyStep, Coupling, Joint
 
 
 @uncounted
 def size_up(
-    joint: FloatArray, link: IntArray, first: int, last: int, local: FloatArray, bodies: int, h: float
+    joint: Rows[Joint], link: Rows[Coupling], first: int, last: int, local: Rows[BodyStep], bodies: int, h: float
 ) -> float:  # fmt: skip
     """Complete the bodies whose pose, velocity and mobility are in the scratch of an island; its size, the length that
     errors are measured by, from them and from the joints of rows first ... last of `link`."""
     length = 0.0
     for i in range(bodies):
         for c in range(3):
-            root = np.sqrt(local[i, MOBILITY + c])
-            local[i, ROOT + c], local[i, UNROOT + c] = root, 1.0 / root if root > 0.0 else 0.0
-        local[i, COS], local[i, SIN] = np.cos(local[i, POSE + 2]), np.sin(local[i, POSE + 2])
+            root = np.sqrt(local[i].mobility[c])
+            local[i].root[c], local[i].unroot[c] = root, 1.0 / root if root > 0.0 else 0.0
+        local[i].cos, local[i].sin = np.cos(local[i].pose[2]), np.sin(local[i].pose[2])
         for c in range(2):
-            length = max(length, abs(local[i, POSE + c]), abs(h * local[i, BEFORE + c]))
+            length = max(length, abs(local[i].pose[c]), abs(h * local[i].v0[c]))
     for k in range(first, last):
-        for c in range(4):
-            length = max(length, abs(joint[link[k, L_JOINT], ANCHOR_AX + c]))
+        j = link[k].joint
+        for c in range(2):
+            length = max(length, abs(joint[j].anchor_a[c]), abs(joint[j].anchor_b[c]))
     return length if length > 0.0 else 1.0
 
 
 @merged
-def move(local: FloatArray, bodies: int, h: float) -> None:
-    """Fill in WAY and what follows from it, of the present velocities at the end, but for the angle itself (`turn`)."""
+def move(local: Rows[BodyStep], bodies: int, h: float) -> None:
+    """Fill in `way` and what follows from it, of the present velocities at the end, but for the angle itself
+    (`turn`)."""
     for i in range(bodies):
         for c in range(3):
-            local[i, WAY + c] = 0.5 * h * (local[i, BEFORE + c] + local[i, AFTER + c])
-        chi = local[i, WAY + 2]
+            local[i].way[c] = 0.5 * h * (local[i].v0[c] + local[i].v1[c])
+        chi = local[i].way[2]
         t = 0.5 * chi
-        if local[i, CAYLEY] > 0.0 or chi == 0.0:
+        if local[i].cayley > 0 or chi == 0.0:
             slope = 1.0 / (1.0 + t * t)
-            local[i, TURN_COS] = (1.0 - t * t) * slope
-            local[i, TURN_SIN] = chi * slope
-            local[i, SLOPE] = slope
-            local[i, LEVER] = 1.0
+            local[i].turn_cos = (1.0 - t * t) * slope
+            local[i].turn_sin = chi * slope
+            local[i].slope = slope
+            local[i].lever = 1.0
         else:
-            local[i, TURN_COS] = np.cos(chi)
-            local[i, TURN_SIN] = np.sin(chi)
-            local[i, SLOPE] = 1.0
-            local[i, LEVER] = np.tan(t) / t if abs(t) > 1e-3 else 1.0 + t * t / 3.0 + 2.0 * t**4 / 15.0
+            local[i].turn_cos = np.cos(chi)
+            local[i].turn_sin = np.sin(chi)
+            local[i].slope = 1.0
+            local[i].lever = np.tan(t) / t if abs(t) > 1e-3 else 1.0 + t * t / 3.0 + 2.0 * t**4 / 15.0
 
 
 @uncounted
-def turn(local: FloatArray, i: int) -> None:
-    """Fill in the angle that body i turns by, over chi too, after `move`: for joints of angles."""
-    chi = local[i, WAY + 2]
+def turn(body: BodyStep) -> None:
+    """Fill in the angle that a body turns by, over chi too, after `move`: for joints of angles."""
+    chi = body.way[2]
     t = 0.5 * chi
-    if local[i, CAYLEY] > 0.0:
-        slope, turned = local[i, SLOPE], 2.0 * np.arctan(t)
-        local[i, TURNED] = turned
+    if body.cayley > 0:
+        slope, turned = body.slope, 2.0 * np.arctan(t)
+        body.turned = turned
         if abs(t) < 1e-3:
-            local[i, PER] = 1.0 - t * t / 3.0 + t**4 / 5.0
-            local[i, BEND] = -t / 3.0 + 0.4 * t**3
+            body.per = 1.0 - t * t / 3.0 + t**4 / 5.0
+            body.bend = -t / 3.0 + 0.4 * t**3
         else:
-            local[i, PER] = turned / chi
-            local[i, BEND] = (slope - turned / chi) / chi
+            body.per = turned / chi
+            body.bend = (slope - turned / chi) / chi
     else:
-        local[i, TURNED] = chi
-        local[i, PER] = 1.0
-        local[i, BEND] = 0.0
+        body.turned = chi
+        body.per = 1.0
+        body.bend = 0.0
 
 
 @merged
-def settle(local: FloatArray, bodies: int, h: float) -> None:
+def settle(local: Rows[BodyStep], bodies: int, h: float) -> None:
     """Velocities at the end from the balance of momentum, to round-off, and the way that they make."""
     for i in range(bodies):
         for c in range(3):
-            change = h * local[i, FREE + c] + local[i, MOBILITY + c] * local[i, GOT + c]
-            local[i, AFTER + c] = local[i, BEFORE + c] + change
+            change = h * local[i].acceleration[c] + local[i].mobility[c] * local[i].impulse[c]
+            local[i].v1[c] = local[i].v0[c] + change
     move(local, bodies, h)
 
 
 @merged
-def advance(local: FloatArray, bodies: int, h: float) -> None:
+def advance(local: Rows[BodyStep], bodies: int, h: float) -> None:
     """Make the end of a part h of the step the start of the next."""
     per = 1.0 / h
     for i in range(bodies):
         for c in range(3):
-            local[i, LEAD + c] = (local[i, AFTER + c] - local[i, BEFORE + c]) * per - local[i, FREE + c]
-            local[i, TRAVEL + c] += local[i, WAY + c]
-        local[i, MEAN] += h * (local[i, POSE] + 0.5 * local[i, WAY])
-        local[i, MEAN + 1] += h * (local[i, POSE + 1] + 0.5 * local[i, WAY + 1])
-        local[i, POSE] += local[i, WAY]
-        local[i, POSE + 1] += local[i, WAY + 1]
-        chi = local[i, WAY + 2]
+            local[i].lead[c] = (local[i].v1[c] - local[i].v0[c]) * per - local[i].acceleration[c]
+            local[i].travel[c] += local[i].way[c]
+        local[i].mean[0] += h * (local[i].pose[0] + 0.5 * local[i].way[0])
+        local[i].mean[1] += h * (local[i].pose[1] + 0.5 * local[i].way[1])
+        local[i].pose[0] += local[i].way[0]
+        local[i].pose[1] += local[i].way[1]
+        chi = local[i].way[2]
         for c in range(3):
-            local[i, BEFORE + c] = local[i, AFTER + c]
+            local[i].v0[c] = local[i].v1[c]
         if chi != 0.0:
-            local[i, POSE + 2] += 2.0 * np.arctan(0.5 * chi) if local[i, CAYLEY] > 0.0 else chi
+            local[i].pose[2] += 2.0 * np.arctan(0.5 * chi) if local[i].cayley > 0 else chi
             # As of that angle, to the round-off of the parts of a step.
-            x, y, turn_x, turn_y = local[i, COS], local[i, SIN], local[i, TURN_COS], local[i, TURN_SIN]
-            local[i, COS], local[i, SIN] = x * turn_x - y * turn_y, y * turn_x + x * turn_y
+            x, y, turn_x, turn_y = local[i].cos, local[i].sin, local[i].turn_cos, local[i].turn_sin
+            local[i].cos, local[i].sin = x * turn_x - y * turn_y, y * turn_x + x * turn_y

@@ -5,7 +5,7 @@ Unknowns: velocities v1 of the bodies and impulses lam of the rows, the way bein
     M (v1 - v0) = h M a + F(x) + J(x)^T lam,      g(x) = target.
 
 Systems are scaled by sqrt(M) and by the diagonal of G M^-1 G^T. `give` > 0 makes rows elastic:
-g - target + (give h / 2 SCALE^2) lam = 0. Soft rows follow Alart and Curnier: with p = lam - u/A, A = 1/SCALE^2, either
+g - target + (give h / 2 scale^2) lam = 0. Soft rows follow Alart and Curnier: with p = lam - u/A, A = 1/scale^2, either
 |p| <= bound and u = 0, or lam = bound p/|p|.
 
 The same systems with `still` bodies (h v_m = 0) correct poses, M dq = G^T mu, g(q + dq) = target, and velocities,
@@ -15,119 +15,81 @@ a *dual* one the rows alone (`dual`).
 
 from __future__ import annotations
 
-from ..arrays import FloatArray, IntArray
 from ..compiled import merged
+from ..model.joints import BOUNDED, BOXED, CONDENSED, DUAL, LINEAR_STEP, NO_BEND, POSES, SPEEDS, STEP, WHOLE, Workspace
 from .boxes import leave_box
-from .condensed import freeze
+from .condensed import STIFFEST, freeze
 from .entries import along, held, put_condensed, put_free, put_rows, put_stiffness, scale_rows
 from .rows import joint_rows
-from .scratch import (
-    BAND,
-    BEFORE,
-    BOUNDED,
-    BOXED,
-    COLUMN,
-    CONDENSED,
-    DUAL,
-    FORCE,
-    FREEDOMS,
-    GOT,
-    INERTIA,
-    L_A,
-    L_B,
-    L_ROW,
-    L_ROWS,
-    L_SOFT,
-    LAM,
-    LINEAR_STEP,
-    NO_BEND,
-    POSES,
-    ROWS,
-    SCALE,
-    SIZE,
-    SLOPES,
-    SPEEDS,
-    STEP,
-    STIFFEST,
-    TARGET,
-    UNKNOWNS,
-    VALUE,
-    WAY,
-    WEIGHT,
-    WHOLE,
-)
 from .soft import put_soft
 
 
 @merged
-def assemble(
-    what: int, joint: FloatArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray,
-    bodies: int, h: float, give: float, first: bool, system: int, build: bool, span: IntArray, matrix: FloatArray,
-    right: FloatArray, stiff: FloatArray,
-) -> float:  # fmt: skip
-    """Residuals of the rows for `what` (see `scratch`), scaled, in `right`, and the joints' rows in `hinge`.
+def assemble(W: Workspace, what: int, h: float, give: float, first: bool, system: int, build: bool) -> float:
+    """Residuals of the rows for `what` (see `..model.joints`), scaled, in RIGHT, and the joints' rows in HINGE.
 
     Where it is to `build`, the matrix of the `system` too, or of a dual one what it is made of.
     Returns how far rows are from their targets, over the size of the island; for SPEEDS, the worst G v.
     """
+    hinge, link, local, matrix, right = W.J.HINGE, W.link, W.J.LOCAL, W.J.MATRIX, W.J.RIGHT
     worst, per = 0.0, 2.0 / h
     still = what in (POSES, SPEEDS)
-    slopes = SLOPES if what == STEP else ROWS
-    band = span[BAND]
+    slopes = what == STEP
+    band = W.J.COMPONENT[W.s].band
     width = 3 * band + 1 if system == WHOLE else 2 * band + 1
     if build and system != DUAL:
-        for i in range(span[UNKNOWNS] * width):
+        for i in range(W.J.COMPONENT[W.s].unknowns * width):
             matrix[i] = 0.0
-    for i in range(bodies):
+    for i in range(W.bodies):
         for c in range(3):
-            local[i, GOT + c] = 0.0
-            local[i, INERTIA + c] = 1.0 if build else local[i, INERTIA + c]
+            local[i].impulse[c] = 0.0
+            local[i].inertia[c] = 1.0 if build else local[i].inertia[c]
         if build and system != DUAL:
-            for c in range(node[i, FREEDOMS]):
-                matrix[(node[i, COLUMN] + c) * width + band] = 1.0
-    for k in range(joints):
-        bend = joint_rows(joint, hinge, link, k, local, h, build and not still, stiff)
-        a, b = link[k, L_A], link[k, L_B]
+            for c in range(local[i].freedoms):
+                matrix[(local[i].column + c) * width + band] = 1.0
+    for k in range(W.joints):
+        bend = joint_rows(W, k, h, build and not still)
+        a, b = link[k].body[0], link[k].body[1]
         if first:
             scale_rows(link, hinge, local, k)
-        if not still and (link[k, L_ROWS] == 0 or held(link, k, 0)):
+        if not still and (link[k].rows == 0 or held(link, k, 0)):
             for c in range(3):
-                local[a, GOT + c] += hinge[k, FORCE + c]
-                local[b, GOT + c] += hinge[k, FORCE + 3 + c]
+                local[a].impulse[c] += hinge[k].force[c]
+                local[b].impulse[c] += hinge[k].force[c + 3]
             if build and bend != NO_BEND:
-                put_stiffness(link, local, node, k, stiff, bend, h, system, band, matrix)
-        soft = link[k, L_SOFT] != 0
-        if link[k, L_SOFT] == BOUNDED and not still and held(link, k, 0):
-            off = put_soft(link, hinge, local, node, k, slopes, h, system, build, band, matrix, right)
-            worst = max(worst, off / hinge[k, SIZE])
+                put_stiffness(link, local, k, W.J.STIFF, bend, h, system, band, matrix)
+        soft = link[k].soft != 0
+        if link[k].soft == BOUNDED and not still and held(link, k, 0):
+            off = put_soft(W, k, slopes, h, system, build, band)
+            worst = max(worst, off / hinge[k].size)
             continue
-        if link[k, L_SOFT] == BOXED and not still and held(link, k, 0):
-            off = put_soft(link, hinge, local, node, k, slopes, h, system, False, band, matrix, right)
-            worst = max(worst, off / hinge[k, SIZE])
+        if link[k].soft == BOXED and not still and held(link, k, 0):
+            off = put_soft(W, k, slopes, h, system, False, band)
+            worst = max(worst, off / hinge[k].size)
             leave_box(link, hinge, k, build, system == WHOLE, band, matrix, right)
             continue
         farthest = 0.0
-        for r in range(link[k, L_ROWS]):
+        for r in range(link[k].rows):
             if soft or not held(link, k, r):
                 put_free(link, hinge, k, r, system, build, band, matrix, right)
                 continue
-            scale = hinge[k, SCALE + r]
+            scale = hinge[k].scale[r]
             if what == SPEEDS:
-                error = along(hinge, link, k, ROWS + 6 * r, local, BEFORE)
+                error = along(hinge[k], r, local[a].v0, local[b].v0)
             elif what == LINEAR_STEP:
-                error = along(hinge, link, k, ROWS + 6 * r, local, WAY)
+                error = along(hinge[k], r, local[a].way, local[b].way)
             else:
-                error = hinge[k, VALUE + r] - hinge[k, TARGET + r]
+                error = hinge[k].value[r] - hinge[k].target[r]
                 if give > 0.0:
-                    error += give * 0.5 * h * hinge[k, LAM + r] / scale**2
-            right[link[k, L_ROW] + r] = -error * scale * per
+                    error += give * 0.5 * h * hinge[k].lam[r] / scale**2
+            right[link[k].first_row + r] = -error * scale * per
             farthest = max(farthest, abs(error))
-            hinge[k, WEIGHT + r] = 1.0 / give if give > 0.0 else STIFFEST
+            hinge[k].weight[r] = 1.0 / give if give > 0.0 else STIFFEST
             if build and system == CONDENSED:
-                freeze(hinge, link, local, node, k, r, slopes)
-                put_condensed(link, hinge, node, k, r, band, matrix)
+                freeze(hinge, link, local, k, r, slopes)
+                put_condensed(link, hinge, local, k, r, band, matrix)
             elif build and system == WHOLE:
-                put_rows(link, hinge, local, node, k, r, slopes, 1.0, band, matrix)
-                matrix[(link[k, L_ROW] + r) * width + band] += give
-        worst = max(worst, farthest / hinge[k, SIZE])
+                put_rows(link, hinge, local, k, r, slopes, 1.0, band, matrix)
+                matrix[(link[k].first_row + r) * width + band] += give
+        worst = max(worst, farthest / hinge[k].size)
     return worst

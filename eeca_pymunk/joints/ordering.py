@@ -6,36 +6,13 @@ import numpy as np
 
 from ..arrays import IntArray
 from ..compiled import kernel
-from .layout import PIVOT
-from .scratch import (
-    BAND,
-    BODY_0,
-    BODY_1,
-    CONDENSED,
-    DUAL_BAND,
-    DUAL_SIZE,
-    JOINT_0,
-    JOINT_1,
-    L_A,
-    L_B,
-    L_DUAL,
-    L_KIND,
-    L_NEXT,
-    L_ROW,
-    L_ROWS,
-    M_COLUMN,
-    M_FIRST,
-    M_FREEDOMS,
-    ROWS_OF,
-    SYSTEM,
-    UNKNOWNS,
-    WHOLE,
-)
+from ..compiled.records import Rows
+from ..model.joints import CONDENSED, PIVOT, WHOLE, Component, ComponentBody, Coupling
 
 
 @kernel
 def order_nodes(start: IntArray, near: IntArray, nodes: int, order: IntArray) -> None:
-    """Reverse Cuthill-McKee order of a graph in compressed rows, from a node far out, ties by number."""
+    """Reverse Cuthill-McKee order of a graph in compressed rows, from a local far out, ties by number."""
     level = np.empty(nodes, np.int64)
     placed = np.zeros(nodes, np.int64)
     count = 0
@@ -78,28 +55,30 @@ def order_nodes(start: IntArray, near: IntArray, nodes: int, order: IntArray) ->
 
 
 @kernel
-def order_unknowns(span: IntArray, member: IntArray, link: IntArray, s: int, condensed: bool) -> None:
+def order_unknowns(
+    component: Rows[Component], member: Rows[ComponentBody], link: Rows[Coupling], s: int, condensed: bool
+) -> None:
     """Give the bodies and joints of island s their unknowns; fill in its size and band.
 
     In a condensed system the bodies come first, and joints are the edges between them.
     """
-    b0, b1, j0, j1 = span[s, BODY_0], span[s, BODY_1], span[s, JOINT_0], span[s, JOINT_1]
+    b0, b1, j0, j1 = component[s].first_body, component[s].end_body, component[s].first_joint, component[s].end_joint
     bodies, joints = b1 - b0, j1 - j0
     nodes = bodies if condensed else bodies + joints
     width = np.zeros(bodies + joints, np.int64)
     for i in range(bodies):
-        width[i] = member[b0 + i, M_FREEDOMS]
+        width[i] = member[b0 + i].freedoms
     for k in range(joints):
-        width[bodies + k] = link[j0 + k, L_ROWS]
+        width[bodies + k] = link[j0 + k].rows
     start = np.zeros(nodes + 1, np.int64)
     near = np.empty(6 * joints, np.int64)
     for fill in range(2):
         at = start.copy()
         for k in range(joints):
-            a, b = link[j0 + k, L_A], link[j0 + k, L_B]
+            a, b = link[j0 + k].body[0], link[j0 + k].body[1]
             for p in range(2 if condensed else 0, 3):
                 u, v = (a, b) if p == 2 else (bodies + k, a if p == 0 else b)
-                uncoupled = p == 2 and not condensed and link[j0 + k, L_KIND] == PIVOT
+                uncoupled = p == 2 and not condensed and link[j0 + k].kind == PIVOT
                 if width[u] == 0 or width[v] == 0 or uncoupled:
                     continue
                 if fill == 0:
@@ -124,49 +103,49 @@ def order_unknowns(span: IntArray, member: IntArray, link: IntArray, s: int, con
         for t in range(start[u], start[u + 1]):
             v = near[t]
             band = max(band, max(first[u] + width[u], first[v] + width[v]) - 1 - min(first[u], first[v]))
-    span[s, UNKNOWNS], span[s, BAND], span[s, SYSTEM] = total, band, CONDENSED if condensed else WHOLE
+    component[s].unknowns, component[s].band, component[s].system = total, band, CONDENSED if condensed else WHOLE
     if condensed:
         for k in range(joints):
             first[bodies + k] = total
             total += width[bodies + k]
     for i in range(bodies):
-        member[b0 + i, M_COLUMN] = first[i]
+        member[b0 + i].column = first[i]
     for k in range(joints):
-        link[j0 + k, L_ROW] = first[bodies + k]
-    span[s, ROWS_OF] = total - span[s, UNKNOWNS]
+        link[j0 + k].first_row = first[bodies + k]
+    component[s].impulses = total - component[s].unknowns
 
 
 @kernel
-def order_rows(span: IntArray, member: IntArray, link: IntArray, s: int) -> None:
+def order_rows(component: Rows[Component], member: Rows[ComponentBody], link: Rows[Coupling], s: int) -> None:
     """Give the joints of island s their unknowns in a system of rows alone, in which joints of one body are coupled;
     fill in its size and band, and the lists of the joints on each body."""
-    b0, b1, j0, j1 = span[s, BODY_0], span[s, BODY_1], span[s, JOINT_0], span[s, JOINT_1]
+    b0, b1, j0, j1 = component[s].first_body, component[s].end_body, component[s].first_joint, component[s].end_joint
     joints = j1 - j0
     for i in range(b0, b1):
-        member[i, M_FIRST] = -1
+        member[i].first = -1
     for k in range(joints - 1, -1, -1):
         for end in range(2):
-            i = b0 + link[j0 + k, L_A + end]
-            link[j0 + k, L_NEXT + end] = -1
-            if link[j0 + k, L_ROWS] > 0 and member[i, M_FREEDOMS] > 0:
-                link[j0 + k, L_NEXT + end] = member[i, M_FIRST]
-                member[i, M_FIRST] = 2 * k + end
+            i = b0 + link[j0 + k].body[end]
+            link[j0 + k].following[end] = -1
+            if link[j0 + k].rows > 0 and member[i].freedoms > 0:
+                link[j0 + k].following[end] = member[i].first
+                member[i].first = 2 * k + end
     start = np.zeros(joints + 1, np.int64)
     near = np.empty(0, np.int64)
     for fill in range(2):
         at = start.copy()
         for i in range(b0, b1):
-            one = member[i, M_FIRST]
+            one = member[i].first
             while one >= 0:
-                other = member[i, M_FIRST]
+                other = member[i].first
                 while other >= 0:
                     if other != one and fill == 0:
                         start[(one >> 1) + 1] += 1
                     elif other != one:
                         near[at[one >> 1]] = other >> 1
                         at[one >> 1] += 1
-                    other = link[j0 + (other >> 1), L_NEXT + (other & 1)]
-                one = link[j0 + (one >> 1), L_NEXT + (one & 1)]
+                    other = link[j0 + (other >> 1)].following[other & 1]
+                one = link[j0 + (one >> 1)].following[one & 1]
         if fill == 0:
             for k in range(joints):
                 start[k + 1] += start[k]
@@ -175,11 +154,11 @@ def order_rows(span: IntArray, member: IntArray, link: IntArray, s: int) -> None
     order_nodes(start, near, joints, order)
     total, band = 0, 1
     for x in range(joints):
-        link[j0 + order[x], L_DUAL] = total
-        total += link[j0 + order[x], L_ROWS]
+        link[j0 + order[x]].first_dual = total
+        total += link[j0 + order[x]].rows
     for k in range(joints):
         for t in range(start[k], start[k + 1]):
             one, other = j0 + k, j0 + near[t]
-            reach = link[one, L_DUAL] + link[one, L_ROWS] - 1 - link[other, L_DUAL]
+            reach = link[one].first_dual + link[one].rows - 1 - link[other].first_dual
             band = max(band, reach)
-    span[s, DUAL_SIZE], span[s, DUAL_BAND] = total, band
+    component[s].dual_size, component[s].dual_band = total, band

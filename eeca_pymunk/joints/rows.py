@@ -19,112 +19,69 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
 from ..compiled import merged, uncounted
+from ..model.joints import GEAR, GROOVE, PIVOT, ROTARY_SPRING, SPRING, Workspace
 from .angles import angle_rows
-from .layout import (
-    ANCHOR_AX,
-    ANCHOR_AY,
-    ANCHOR_BX,
-    ANCHOR_BY,
-    DAMPING,
-    GEAR,
-    GROOVE,
-    NORMAL_X,
-    NORMAL_Y,
-    PIVOT,
-    ROTARY_SPRING,
-    SPRING,
-)
 from .points import groove_rows, point_rows
-from .scratch import (
-    AFTER,
-    APART,
-    ARM_A,
-    ARM_B,
-    BEGAN,
-    COS,
-    DRAG,
-    ENDED,
-    L_A,
-    L_B,
-    L_JOINT,
-    L_KIND,
-    L_ROWS,
-    L_SIDE,
-    L_SOFT,
-    MOBILITY,
-    NORMAL,
-    POSE,
-    ROWS,
-    SIN,
-    SLOPES,
-    TARGET,
-    VALUE,
-)
 
 
 @merged
-def joint_rows(
-    joint: FloatArray, hinge: FloatArray, link: IntArray, k: int, local: FloatArray, h: float, bends: bool,
-    stiff: FloatArray,
-) -> int:  # fmt: skip
-    """Joint k at the present iterate: VALUE to SLOPES of `hinge`, and `stiff`, if how rows bend is asked for, as far as
-    the result says (`scratch`)."""
-    kind, a, b, side = link[k, L_KIND], link[k, L_A], link[k, L_B], link[k, L_SIDE]
-    soft, j = link[k, L_SOFT] != 0, link[k, L_JOINT]
+def joint_rows(W: Workspace, k: int, h: float, bends: bool) -> int:
+    """Joint k at the present iterate: `value` to `slopes`, and STIFF if the derivative of its force is needed
+    (`bends`), as far as the result says: NO_BEND, OWN_TURN, FULL_BEND."""
+    joint, hinge, link, local, stiff = W.J.JOINT, W.J.HINGE, W.link, W.J.LOCAL, W.J.STIFF
+    kind, a, b, side = link[k].kind, link[k].body[0], link[k].body[1], link[k].side
+    soft, j = link[k].soft != 0, link[k].joint
     if kind >= GEAR:
-        return angle_rows(kind, side, soft, h, joint, j, hinge, k, local, a, b, stiff)
+        return angle_rows(kind, side, soft, h, joint[j], hinge[k], local[a], local[b], stiff)
     if kind == GROOVE:
-        bend = groove_rows(side, joint, j, hinge, k, local, a, b, stiff)
+        bend = groove_rows(side, joint[j], hinge[k], local[a], local[b], stiff)
     else:
-        bend = point_rows(kind, side, soft, h, joint, j, hinge, k, local, a, b, bends, stiff)
+        bend = point_rows(kind, side, soft, h, joint[j], hinge[k], local[a], local[b], bends, stiff)
     if soft:
-        for r in range(link[k, L_ROWS]):
-            speed = -hinge[k, TARGET + r]
+        for r in range(link[k].rows):
+            speed = -hinge[k].target[r]
             for c in range(3):
-                speed += (
-                    hinge[k, ROWS + 6 * r + c] * local[a, AFTER + c]
-                    + hinge[k, ROWS + 6 * r + 3 + c] * local[b, AFTER + c]
-                )
+                speed += hinge[k].rows[r, c] * local[a].v1[c] + hinge[k].rows[r, c + 3] * local[b].v1[c]
             for c in range(6):
-                hinge[k, SLOPES + 6 * r + c] = hinge[k, ROWS + 6 * r + c]
-            hinge[k, VALUE + r] = 0.5 * h * speed
+                hinge[k].slopes[r, c] = hinge[k].rows[r, c]
+            hinge[k].value[r] = 0.5 * h * speed
     return bend
 
 
 @merged
-def start_joint(joint: FloatArray, hinge: FloatArray, link: IntArray, k: int, local: FloatArray, h: float) -> None:
+def start_joint(W: Workspace, k: int, h: float) -> None:
     """What stays the same over the iterations: arms, distance and normal at the start, a spring's damping."""
-    kind, a, b, j = link[k, L_KIND], link[k, L_A], link[k, L_B], link[k, L_JOINT]
+    joint, hinge, link, local = W.J.JOINT, W.J.HINGE, W.link, W.J.LOCAL
+    kind, a, b, j = link[k].kind, link[k].body[0], link[k].body[1], link[k].joint
     if kind >= GEAR:
-        hinge[k, ARM_A], hinge[k, ARM_B] = local[a, POSE + 2], local[b, POSE + 2]
+        hinge[k].arm_a[0], hinge[k].arm_b[0] = local[a].pose[2], local[b].pose[2]
         if kind == ROTARY_SPRING:
-            hinge[k, BEGAN] = hinge[k, ENDED] = local[a, POSE + 2] - local[b, POSE + 2]
-            hinge[k, DRAG] = drag(joint[j, DAMPING], local[a, MOBILITY + 2] + local[b, MOBILITY + 2], h)
+            hinge[k].began = hinge[k].ended = local[a].pose[2] - local[b].pose[2]
+            hinge[k].drag = drag(joint[j].damping, local[a].mobility[2] + local[b].mobility[2], h)
         return
-    ca, sa, cb, sb = local[a, COS], local[a, SIN], local[b, COS], local[b, SIN]
-    rbx = cb * joint[j, ANCHOR_BX] - sb * joint[j, ANCHOR_BY]
-    rby = sb * joint[j, ANCHOR_BX] + cb * joint[j, ANCHOR_BY]
+    ca, sa, cb, sb = local[a].cos, local[a].sin, local[b].cos, local[b].sin
+    rbx = cb * joint[j].anchor_b[0] - sb * joint[j].anchor_b[1]
+    rby = sb * joint[j].anchor_b[0] + cb * joint[j].anchor_b[1]
     rax = ray = 0.0
     if kind == GROOVE:
-        hinge[k, NORMAL] = ca * joint[j, NORMAL_X] - sa * joint[j, NORMAL_Y]
-        hinge[k, NORMAL + 1] = sa * joint[j, NORMAL_X] + ca * joint[j, NORMAL_Y]
+        hinge[k].normal[0] = ca * joint[j].normal[0] - sa * joint[j].normal[1]
+        hinge[k].normal[1] = sa * joint[j].normal[0] + ca * joint[j].normal[1]
     else:
-        rax = ca * joint[j, ANCHOR_AX] - sa * joint[j, ANCHOR_AY]
-        ray = sa * joint[j, ANCHOR_AX] + ca * joint[j, ANCHOR_AY]
-    dx, dy = local[b, POSE] - local[a, POSE] + (rbx - rax), local[b, POSE + 1] - local[a, POSE + 1] + (rby - ray)
-    hinge[k, ARM_A], hinge[k, ARM_A + 1], hinge[k, ARM_B], hinge[k, ARM_B + 1] = rax, ray, rbx, rby
-    hinge[k, APART], hinge[k, APART + 1] = dx, dy
+        rax = ca * joint[j].anchor_a[0] - sa * joint[j].anchor_a[1]
+        ray = sa * joint[j].anchor_a[0] + ca * joint[j].anchor_a[1]
+    dx, dy = local[b].pose[0] - local[a].pose[0] + (rbx - rax), local[b].pose[1] - local[a].pose[1] + (rby - ray)
+    hinge[k].arm_a[0], hinge[k].arm_a[1], hinge[k].arm_b[0], hinge[k].arm_b[1] = rax, ray, rbx, rby
+    hinge[k].apart[0], hinge[k].apart[1] = dx, dy
     if kind == SPRING:
         length = np.sqrt(dx * dx + dy * dy)
-        hinge[k, BEGAN] = hinge[k, ENDED] = length
+        hinge[k].began = hinge[k].ended = length
         turn_a, turn_b = 0.0, 0.0
         if length > 0.0:
             turn_a, turn_b = (rax * dy - ray * dx) / length, (rbx * dy - rby * dx) / length
-        mobility = local[a, MOBILITY] + local[b, MOBILITY]
-        mobility += local[a, MOBILITY + 2] * turn_a * turn_a + local[b, MOBILITY + 2] * turn_b * turn_b
-        hinge[k, DRAG] = drag(joint[j, DAMPING], mobility, h)
+        mobility = local[a].mobility[0] + local[b].mobility[0]
+        mobility += local[a].mobility[2] * turn_a * turn_a + local[b].mobility[2] * turn_b * turn_b
+        hinge[k].drag = drag(joint[j].damping, mobility, h)
 
 
 @uncounted

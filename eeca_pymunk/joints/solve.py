@@ -8,8 +8,22 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FloatArray
 from ..compiled import merged, uncounted
+from ..compiled.records import Rows
+from ..model.joints import (
+    BOUNDED,
+    CONDENSED,
+    DUAL,
+    LINEAR_STEP,
+    POSES,
+    SPEEDS,
+    STEP,
+    WHOLE,
+    Component,
+    Coupling,
+    Workspace,
+)
 from .banded import back_banded, factor_banded
 from .boxes import bound_impulses, boxed_rows, push, rows_of
 from .condensed import PASSES, back_condensed, factor
@@ -18,48 +32,6 @@ from .dual import STRIDE, back_dual, factor_dual, refresh
 from .motion import move, settle
 from .newton import assemble
 from .rows import start_joint
-from .scratch import (
-    AFTER,
-    BAND,
-    BEFORE,
-    BOUNDED,
-    COLUMN,
-    CONDENSED,
-    COS,
-    DUAL,
-    DUAL_BAND,
-    DUAL_SIZE,
-    EFFORT,
-    FORCE,
-    FREE,
-    FREEDOMS,
-    GOT,
-    L_ROW,
-    L_ROWS,
-    L_SOFT,
-    LAM,
-    LEAD,
-    LIMIT,
-    LINEAR_STEP,
-    MOBILITY,
-    NEAR,
-    POSE,
-    POSES,
-    PUSHED,
-    RIGID,
-    ROOT,
-    ROWS,
-    ROWS_OF,
-    SCALE,
-    SIN,
-    SLOPES,
-    SPEEDS,
-    STEP,
-    SYSTEM,
-    UNKNOWNS,
-    UNROOT,
-    WHOLE,
-)
 
 TOLERANCE = 3e-16  # of joints and momenta, over the size of the island
 ROUND_OFF = 3e-14  # below this, an error that no longer halves is round-off
@@ -76,117 +48,102 @@ _ROWS_COST = 500.0  # operations, of the rows of a joint
 
 
 @merged
-def begin(
-    what: int, joint: FloatArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray,
-    bodies: int, h: float,
-) -> None:  # fmt: skip
+def begin(W: Workspace, what: int, h: float) -> None:
     """What stays the same over the iterations, and the first iterate: motion with the accelerations that joints gave
-    before (LEAD), or no motion where joints act."""
-    for k in range(joints):
-        start_joint(joint, hinge, link, k, local, h)
-    for i in range(bodies):
+    before (`lead`), or no motion where joints act."""
+    local = W.J.LOCAL
+    for k in range(W.joints):
+        start_joint(W, k, h)
+    for i in range(W.bodies):
         for c in range(3):
-            local[i, AFTER + c] = local[i, BEFORE + c] + h * (local[i, FREE + c] + local[i, LEAD + c])
-            if what in (POSES, SPEEDS) or (what == LINEAR_STEP and c < node[i, FREEDOMS]):
-                local[i, AFTER + c] = -local[i, BEFORE + c]
-    move(local, bodies, h)
+            local[i].v1[c] = local[i].v0[c] + h * (local[i].acceleration[c] + local[i].lead[c])
+            if what in (POSES, SPEEDS) or (what == LINEAR_STEP and c < local[i].freedoms):
+                local[i].v1[c] = -local[i].v0[c]
+    move(local, W.bodies, h)
 
 
 @merged
-def balance(local: FloatArray, node: IntArray, bodies: int, h: float, length: float, right: FloatArray) -> float:
+def balance(W: Workspace, h: float, length: float) -> float:
     """Residuals of the balance of momentum, scaled, into `right`; the worst as a way, over length or as an angle."""
+    local = W.J.LOCAL
     worst, over = 0.0, 1.0 / length
-    for i in range(bodies):
-        for c in range(node[i, FREEDOMS]):
-            mobility = local[i, MOBILITY + c]
-            off = local[i, AFTER + c] - local[i, BEFORE + c] - h * local[i, FREE + c] - mobility * local[i, GOT + c]
-            right[node[i, COLUMN] + c] = -off * local[i, UNROOT + c]
+    for i in range(W.bodies):
+        for c in range(local[i].freedoms):
+            mobility = local[i].mobility[c]
+            off = local[i].v1[c] - local[i].v0[c] - h * local[i].acceleration[c] - mobility * local[i].impulse[c]
+            W.J.RIGHT[local[i].column + c] = -off * local[i].unroot[c]
             worst = max(worst, abs(off * h) * (over if c < 2 else 1.0))
     return worst
 
 
 @merged
-def apply(
-    what: int, link: IntArray, hinge: FloatArray, joints: int, local: FloatArray, node: IntArray, bodies: int,
-    right: FloatArray,
-) -> None:  # fmt: skip
+def apply(W: Workspace, what: int) -> None:
     """Add the solution of a scaled system to what was solved for, and to impulses."""
-    column = POSE if what == POSES else BEFORE if what == SPEEDS else AFTER
-    for i in range(bodies):
-        for c in range(node[i, FREEDOMS]):
-            local[i, column + c] += right[node[i, COLUMN] + c] * local[i, ROOT + c]
+    local = W.J.LOCAL
+    for i in range(W.bodies):
+        for c in range(local[i].freedoms):
+            changed = local[i].pose if what == POSES else local[i].v0 if what == SPEEDS else local[i].v1
+            changed[c] += W.J.RIGHT[local[i].column + c] * local[i].root[c]
         if what == POSES:
-            local[i, COS], local[i, SIN] = np.cos(local[i, POSE + 2]), np.sin(local[i, POSE + 2])
-    impulse = PUSHED if what in (POSES, SPEEDS) else LAM
-    for k in range(joints):
-        for r in range(link[k, L_ROWS]):
-            hinge[k, impulse + r] += right[link[k, L_ROW] + r] * hinge[k, SCALE + r]
+            local[i].cos, local[i].sin = np.cos(local[i].pose[2]), np.sin(local[i].pose[2])
+    for k in range(W.joints):
+        for r in range(W.link[k].rows):
+            impulse = W.J.HINGE[k].pushed if what in (POSES, SPEEDS) else W.J.HINGE[k].lam
+            impulse[r] += W.J.RIGHT[W.link[k].first_row + r] * W.J.HINGE[k].scale[r]
 
 
 @merged
-def decompose(
-    what: int, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray, bodies: int,
-    system: int, epsilon: float, give: float, span: IntArray, matrix: FloatArray, more: FloatArray, pivots: IntArray,
-) -> bool:  # fmt: skip
+def decompose(W: Workspace, what: int, system: int, epsilon: float, give: float) -> bool:
     """Factors in the place of what `assemble` has built, with `epsilon` on the rows' block; False if there are none.
     `more` is scratch, as in `back`."""
-    size, band = span[UNKNOWNS], span[BAND]
+    matrix = W.J.MATRIX
+    size, band = W.J.COMPONENT[W.s].unknowns, W.J.COMPONENT[W.s].band
     if system == CONDENSED:
         return factor(matrix, size, band)
     if system == DUAL:
-        slopes = SLOPES if what == STEP else ROWS
-        return factor_dual(hinge, link, joints, local, node, bodies, slopes, epsilon + give, span, matrix, more, pivots)
+        return factor_dual(W, what == STEP, epsilon + give)
     if epsilon > 0.0:
-        for k in range(joints):
-            for r in range(link[k, L_ROWS]):
-                matrix[(link[k, L_ROW] + r) * (3 * band + 1) + band] += epsilon
-    return factor_banded(matrix, size, band, pivots)
+        for k in range(W.joints):
+            for r in range(W.link[k].rows):
+                matrix[(W.link[k].first_row + r) * (3 * band + 1) + band] += epsilon
+    return factor_banded(matrix, size, band, W.J.PIVOTS)
 
 
 @merged
-def back(
-    what: int, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray, bodies: int,
-    system: int, passes: int, span: IntArray, matrix: FloatArray, right: FloatArray, more: FloatArray,
-    pivots: IntArray,
-) -> None:  # fmt: skip
+def back(W: Workspace, what: int, system: int, passes: int, right: FloatArray) -> None:
     """Solve with the factors of `decompose` in place of `right`: changes of velocities, and of impulses. `more` is
     scratch, see `plan.Room`."""
-    size, band = span[UNKNOWNS], span[BAND]
+    size, band = W.J.COMPONENT[W.s].unknowns, W.J.COMPONENT[W.s].band
     if system == CONDENSED:
-        back_condensed(hinge, link, joints, node, passes, size, band, matrix, right, len(right) - size)
+        back_condensed(W, passes, size, band, W.J.MATRIX, right, len(right) - size)
     elif system == DUAL:
-        back_dual(hinge, link, joints, local, node, bodies, span, matrix, right, more)
+        back_dual(W, right)
     else:
-        back_banded(matrix, size, band, pivots, right)
+        back_banded(W.J.MATRIX, size, band, W.J.PIVOTS, right)
 
 
 @uncounted
-def bounded_rows(link: IntArray, joints: int) -> bool:
+def bounded_rows(link: Rows[Coupling], joints: int) -> bool:
     """Whether any joint has bounded rows in the matrix."""
     count = 0
     for k in range(joints):
-        count += 1 if link[k, L_SOFT] == BOUNDED else 0
+        count += 1 if link[k].soft == BOUNDED else 0
     return count > 0
 
 
 @uncounted
-def answer_boxes(
-    what: int, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray, bodies: int,
-    system: int, passes: int, boxes: int, span: IntArray, matrix: FloatArray, right: FloatArray, more: FloatArray,
-    pivots: IntArray,
-) -> None:  # fmt: skip
+def answer_boxes(W: Workspace, what: int, system: int, passes: int, boxes: int) -> None:
     """Columns of `boxes`, with the factors of `decompose`: what a unit impulse along each boxed row does."""
-    size = span[UNKNOWNS] + span[ROWS_OF]
-    first = STRIDE * span[DUAL_SIZE]
+    component, right, more = W.J.COMPONENT[W.s], W.J.RIGHT, W.J.MORE
+    size = component.unknowns + component.impulses
+    first = STRIDE * component.dual_size
     for i in range(size):
         more[first + boxes * size + i] = right[i]
     at = first
-    for k in range(joints):
-        for r in range(rows_of(link, k)):
-            push(link, hinge, local, node, k, r, size, right)
-            back(
-                what, hinge, link, joints, local, node, bodies, system, passes, span, matrix, right, more, pivots
-            )  # fmt: skip
+    for k in range(W.joints):
+        for r in range(rows_of(W.link, k)):
+            push(W.link, W.J.HINGE, W.J.LOCAL, k, r, size, right)
+            back(W, what, system, passes, right)
             for i in range(size):
                 more[at + i] = right[i]
             at += size
@@ -195,9 +152,9 @@ def answer_boxes(
 
 
 @uncounted
-def effort(system: int, fresh: bool, boxes: int, joints: int, span: IntArray) -> float:
+def effort(system: int, fresh: bool, boxes: int, joints: int, component: Component) -> float:
     """About how many operations an iteration takes: rows, factors, solutions."""
-    size, band = (span[DUAL_SIZE], span[DUAL_BAND]) if system == DUAL else (span[UNKNOWNS], span[BAND])
+    size, band = (component.dual_size, component.dual_band) if system == DUAL else (component.unknowns, component.band)
     turns = 1 + boxes if fresh else 1
     # Wide bands take several numbers at once.
     factors = (4.0 if system == WHOLE else 0.5 if band >= _WIDE else 2.0) * size * band * band
@@ -205,45 +162,46 @@ def effort(system: int, fresh: bool, boxes: int, joints: int, span: IntArray) ->
 
 
 @uncounted
-def solve(
-    what: int, joint: FloatArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray,
-    bodies: int, h: float, length: float, loops: bool, give: float, span: IntArray, matrix: FloatArray,
-    right: FloatArray, more: FloatArray, pivots: IntArray, stiff: FloatArray, found: FloatArray,
-) -> int:  # fmt: skip
-    """Solve for `what` (see `scratch`) from the present LAM; the number of iterations, -1 if that fails.
+def solve(W: Workspace, what: int, h: float, length: float, loops: bool, give: float) -> int:
+    """Solve for `what` (see `..model.joints`) from the present `lam`; the number of iterations, -1 if that fails.
 
     STEP: at convergence g is within 3e-16 of the island's size (or at round-off) of its targets, and the balance of
     momentum holds to round-off. Given up after 25 iterations, or 6 in which the error did not fall. Factors serve for
-    as long as errors fall by _FALLS with them, the dual system where they do with fresh ones.
-    LINEAR_STEP: one linear system. POSES: until g is on its targets, at most 8 times. SPEEDS: see `correct`; what was
-    before stays at KEPT. These two take h = 2. found[2:5] are scratch; found[NEAR], of a STEP, is the error of g and of
-    the balance that is near enough, if more than round-off: momentum is balanced all the same.
+    as long as errors fall by _FALLS with them, the dual system where they do with fresh ones. LINEAR_STEP: one linear
+    system. POSES: until g is on its targets, at most 8 times. SPEEDS: see `correct`; what was before stays at `v_kept`.
+    These two take h = 2. PROGRESS.near, of a STEP, is the error of g and of the balance that is near enough, if more
+    than round-off: momentum is balanced all the same.
     """
-    begin(what, joint, hinge, link, joints, local, node, bodies, h)
+    hinge, link, local, component, right, progress = (
+        W.J.HINGE,
+        W.link,
+        W.J.LOCAL,
+        W.J.COMPONENT[W.s],
+        W.J.RIGHT,
+        W.J.PROGRESS,
+    )
+    begin(W, what, h)
     best, last, stalls = 1e300, 1e300, 0
     if what == SPEEDS:
-        keep(hinge, joints, local, bodies, found)
-    system = DUAL if span[RIGID] > (1 if what in (STEP, LINEAR_STEP) else 0) else span[SYSTEM]
-    lasting = what == STEP and not (system != DUAL and bounded_rows(link, joints))
+        keep(W)
+    system = DUAL if component.rigid > (1 if what in (STEP, LINEAR_STEP) else 0) else component.system
+    lasting = what == STEP and not (system != DUAL and bounded_rows(link, W.joints))
     ready, fresh, since = False, False, 0
-    boxes = boxed_rows(link, joints) if what in (STEP, LINEAR_STEP) else 0
-    unscaled = what != STEP or hinge[0, SCALE] == 0.0  # rows have not been in this step yet
-    for iteration in range(MOST_ITERATIONS + 1 if what == STEP else MOST_PASSES + 3 * joints):
-        for i in range(span[UNKNOWNS] + span[ROWS_OF]):
+    boxes = boxed_rows(link, W.joints) if what in (STEP, LINEAR_STEP) else 0
+    unscaled = what != STEP or hinge[0].scale[0] == 0.0  # rows have not been in this step yet
+    for iteration in range(MOST_ITERATIONS + 1 if what == STEP else MOST_PASSES + 3 * W.joints):
+        for i in range(component.unknowns + component.impulses):
             right[i] = 0.0
         build = not ready
-        worst = assemble(
-            what, joint, hinge, link, joints, local, node, bodies, h, give, unscaled and iteration == 0, system, build,
-            span, matrix, right, stiff,
-        )  # fmt: skip
-        found[2] = worst
+        worst = assemble(W, what, h, give, unscaled and iteration == 0, system, build)
+        progress.error = worst
         if what not in (POSES, SPEEDS):
-            worst = max(worst, balance(local, node, bodies, h, length, right))
+            worst = max(worst, balance(W, h, length))
         if what == STEP:
             floor = LASTING_ROUND_OFF if lasting else FLOOR if stalls > 1 else ROUND_OFF
             at_floor = iteration > since + 1 and worst > 0.5 * best and best < floor
-            if iteration > 0 and (worst <= max(TOLERANCE, found[NEAR]) or at_floor):
-                settle(local, bodies, h)
+            if iteration > 0 and (worst <= max(TOLERANCE, progress.near) or at_floor):
+                settle(local, W.bodies, h)
                 return iteration
             # What began next to its solution has not far to fall.
             slow = not worst <= _FALLS * last and (iteration > 2 or not worst <= ROUND_OFF)
@@ -251,19 +209,19 @@ def solve(
                 best = worst
             elif iteration > since + 3:
                 stalls += 1
-            if not worst < 1e100 or stalls > 6 or iteration == MOST_ITERATIONS or found[EFFORT] > found[LIMIT]:
+            if not worst < 1e100 or stalls > 6 or iteration == MOST_ITERATIONS or progress.effort > progress.limit:
                 return -1
             last = worst
             if ready and slow:
                 ready = False
                 if fresh:
                     # Hardly any step that is not nearly singular, or long, comes here: full Newton from now on.
-                    lasting, system, since = False, span[SYSTEM], iteration
+                    lasting, system, since = False, component.system, iteration
                     best, stalls = worst, 0
                     if loops:
-                        for k in range(joints):
-                            hinge[k, LAM] = hinge[k, LAM + 1] = 0.0
-                        begin(what, joint, hinge, link, joints, local, node, bodies, h)
+                        for k in range(W.joints):
+                            hinge[k].lam[0] = hinge[k].lam[1] = 0.0
+                        begin(W, what, h)
                         best = 1e300
         elif what == POSES and (worst <= 1e-14 or iteration == MOST_CLOSINGS):
             return iteration
@@ -275,53 +233,43 @@ def solve(
         fresh = not ready
         while not ready:
             if not build:
-                for i in range(span[UNKNOWNS] + span[ROWS_OF]):
+                for i in range(component.unknowns + component.impulses):
                     right[i] = 0.0
-                assemble(
-                    what, joint, hinge, link, joints, local, node, bodies, h, give, False, system, True, span, matrix,
-                    right, stiff,
-                )  # fmt: skip
+                assemble(W, what, h, give, False, system, True)
                 if what not in (POSES, SPEEDS):
-                    balance(local, node, bodies, h, length, right)
-            if decompose(
-                what, hinge, link, joints, local, node, bodies, system, epsilon, give, span, matrix, more, pivots
-            ):  # fmt: skip
+                    balance(W, h, length)
+            if decompose(W, what, system, epsilon, give):  # fmt: skip
                 ready = True
             elif system == DUAL:
-                system, build = span[SYSTEM], False
+                system, build = component.system, False
             else:
                 return -1
         if system == DUAL and not fresh:
-            refresh(hinge, link, joints, local, node, SLOPES if what == STEP else ROWS)
+            refresh(W, what == STEP)
         passes = 1 if give > 0.0 or not fresh else PASSES - 1 if lasting else PASSES
-        found[EFFORT] += effort(system, fresh, boxes, joints, span)
+        progress.effort += effort(system, fresh, boxes, W.joints, component)
         if boxes > 0 and fresh:
-            answer_boxes(
-                what, hinge, link, joints, local, node, bodies, system, passes, boxes, span, matrix, right, more,
-                pivots,
-            )  # fmt: skip
-        back(
-            what, hinge, link, joints, local, node, bodies, system, passes, span, matrix, right, more, pivots
-        )  # fmt: skip
+            answer_boxes(W, what, system, passes, boxes)
+        back(W, what, system, passes, right)
         if boxes > 0:
-            bound_impulses(link, hinge, local, node, joints, boxes, h, fresh, span, right, more)
+            bound_impulses(W, boxes, h, fresh)
         ready = lasting
-        apply(what, link, hinge, joints, local, node, bodies, right)
+        apply(W, what)
         if what in (POSES, SPEEDS):
-            if what == SPEEDS and not goes_on(joint, hinge, link, joints, local, bodies, found):
+            if what == SPEEDS and not goes_on(W):
                 return iteration
-            begin(what, joint, hinge, link, joints, local, node, bodies, h)
+            begin(W, what, h)
             continue
-        move(local, bodies, h)
+        move(local, W.bodies, h)
         if what == LINEAR_STEP:
-            for i in range(bodies):
+            for i in range(W.bodies):
                 for c in range(3):
-                    if not abs(local[i, AFTER + c]) < 1e100:
+                    if not abs(local[i].v1[c]) < 1e100:
                         return -1
-            for k in range(joints):
-                for c in range(6 if link[k, L_ROWS] > 0 else 0):
-                    hinge[k, FORCE + c] = 0.0
-                    for r in range(link[k, L_ROWS]):
-                        hinge[k, FORCE + c] += hinge[k, LAM + r] * hinge[k, ROWS + 6 * r + c]
+            for k in range(W.joints):
+                for c in range(6 if link[k].rows > 0 else 0):
+                    hinge[k].force[c] = 0.0
+                    for r in range(link[k].rows):
+                        hinge[k].force[c] += hinge[k].lam[r] * hinge[k].rows[r, c]
             return 0
     return -1

@@ -4,7 +4,7 @@ Order 2 (midpoint with discrete gradients), or 4 by Suzuki's composition (s, s, 
 where nothing in the island dissipates, drives or meets a limit. The ladder: the step whole, in 2, 4, 7 parts; whole and
 in 7 with joints that give way elastically, by 1e-9, 1e-8, 1e-7, 1e-6, 1e-4; one linear system. The work of
 all rungs together is bounded. What gives way does so in later steps with the same compliance, until it is closed.
-Energy that elastic joints take and give back is booked as CLOSED, and they give back no more than they took; what
+Energy that elastic joints take and give back is booked as `closed`, and they give back no more than they took; what
 linear rows gain is taken from what moves (`lock`).
 """
 
@@ -12,78 +12,34 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
-from .correct import book_fit, fits
-from .foresight import foretell, forget, recalls, remember
-from .layout import (
-    CLOSED,
-    COMPLIANCE,
-    DAMPING,
+from ..compiled.records import Rows
+from ..model.joints import (
+    APART,
     ELASTIC,
     EXACT,
+    GIVES_WAY,
     HALVED,
-    IMPULSE_1,
-    IMPULSE_2,
-    LAST_STEP,
-    LED,
-    LEDGER_COLUMNS,
-    LENGTH_0,
-    LENGTH_1,
+    LEFT_APART,
     LINEAR,
-    NOTCH,
-    OWED,
-    PROJECTED,
+    LINEAR_STEP,
+    POSES,
     RATCHET,
     ROTARY_SPRING,
-    SIDE,
+    SPEEDS,
     SPRING,
-    STORED,
-    TOOTH,
-    TOOTH_PHASE,
-    TOUCHED,
-    WORK,
+    STEP,
+    BodyStep,
+    JointLedger,
+    Workspace,
 )
-from .ledger import close_ledger, springs_hold
+from .correct import fits, fitting_loss
+from .foresight import foretell, forget, recalls, remember
+from .ledger import add, clear, close_ledger, springs_hold
 from .limits import step_with_limits
 from .lock import lock_energy, move_rigidly, stands
 from .motion import advance, move
 from .rows import start_joint
-from .scratch import (
-    AFTER,
-    BEFORE,
-    BEGAN,
-    BOXES,
-    BUDGET,
-    COS,
-    EFFORT,
-    ENDED,
-    FREE,
-    HURRY,
-    L_A,
-    L_B,
-    L_JOINT,
-    L_KIND,
-    L_ROWS,
-    L_SIDE,
-    L_SOFT,
-    LAM,
-    LEAD,
-    LIMIT,
-    LINEAR_STEP,
-    LOOPS,
-    MEAN,
-    POSE,
-    POSES,
-    SAVED,
-    SHIFT,
-    SIN,
-    SPEEDS,
-    STEP,
-    TAUT,
-    TOTAL,
-    TRAVEL,
-)
 from .solve import solve
 from .start import closing_work, farthest, find_apart, keep_closed, look, read_joints, soft_targets
 from .taut import taut
@@ -97,190 +53,175 @@ _NEARLY = 1e-8  # error of joints over the size of an island, up to which one th
 
 
 @uncounted
-def save(local: FloatArray, bodies: int) -> None:
+def save(local: Rows[BodyStep], bodies: int) -> None:
     """Keep the start of the step."""
     for i in range(bodies):
-        for c in range(6):
-            local[i, SAVED + c] = local[i, POSE + c]
         for c in range(3):
-            local[i, TRAVEL + c] = local[i, SHIFT + c]
-        local[i, MEAN] = local[i, MEAN + 1] = 0.0
+            local[i].saved_pose[c], local[i].saved_velocity[c] = local[i].pose[c], local[i].v0[c]
+            local[i].travel[c] = local[i].shift[c]
+        local[i].mean[0] = local[i].mean[1] = 0.0
 
 
 @uncounted
-def back(local: FloatArray, bodies: int) -> None:
+def back(local: Rows[BodyStep], bodies: int) -> None:
     """Back to the poses and velocities at the start of the step."""
     for i in range(bodies):
-        for c in range(6):
-            local[i, POSE + c] = local[i, SAVED + c]
         for c in range(3):
-            local[i, TRAVEL + c] = local[i, SHIFT + c]
-        local[i, MEAN] = local[i, MEAN + 1] = 0.0
-        local[i, COS], local[i, SIN] = np.cos(local[i, POSE + 2]), np.sin(local[i, POSE + 2])
+            local[i].pose[c], local[i].v0[c] = local[i].saved_pose[c], local[i].saved_velocity[c]
+            local[i].travel[c] = local[i].shift[c]
+        local[i].mean[0] = local[i].mean[1] = 0.0
+        local[i].cos, local[i].sin = np.cos(local[i].pose[2]), np.sin(local[i].pose[2])
 
 
 @uncounted
-def restore(
-    joint: FloatArray, tie: IntArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, bodies: int
-) -> None:
+def restore(W: Workspace) -> None:
     """Back to the start of the step, without impulses."""
-    back(local, bodies)
-    for i in range(bodies):
+    hinge, link = W.J.HINGE, W.link
+    back(W.J.LOCAL, W.bodies)
+    for i in range(W.bodies):
         for c in range(3):
-            local[i, LEAD + c] = 0.0
-    for k in range(joints):
-        hinge[k, LAM] = hinge[k, LAM + 1] = hinge[k, TOTAL] = hinge[k, TOTAL + 1] = 0.0
-        joint[link[k, L_JOINT], WORK] = 0.0
-        link[k, L_SIDE] = tie[link[k, L_JOINT], SIDE]
+            W.J.LOCAL[i].lead[c] = 0.0
+    for k in range(W.joints):
+        hinge[k].lam[0] = hinge[k].lam[1] = hinge[k].total[0] = hinge[k].total[1] = 0.0
+        W.J.JOINT[link[k].joint].work = 0.0
+        link[k].side = W.J.JOINT[link[k].joint].side
 
 
 @uncounted
-def smooth(joint: FloatArray, link: IntArray, joints: int) -> bool:
+def smooth(W: Workspace) -> bool:
     """Whether order 4 may be had: no damping, no motor, no finite max_force, nobody on a limit."""
-    for k in range(joints):
-        spring = link[k, L_KIND] in (SPRING, ROTARY_SPRING)
-        if link[k, L_SOFT] != 0 or link[k, L_SIDE] != 0 or (spring and joint[link[k, L_JOINT], DAMPING] != 0.0):
+    link = W.link
+    for k in range(W.joints):
+        spring = link[k].kind in (SPRING, ROTARY_SPRING)
+        if link[k].soft != 0 or link[k].side != 0 or (spring and W.J.JOINT[link[k].joint].damping != 0.0):
             return False
     return True
 
 
 @uncounted
-def gives_way(tie: IntArray, link: IntArray, joints: int) -> bool:
+def gives_way(W: Workspace) -> bool:
     """Whether a joint of the island gives way elastically since an earlier step."""
     some = False
-    for k in range(joints):
-        some = some or tie[link[k, L_JOINT], TOUCHED] == 4
+    for k in range(W.joints):
+        some = some or W.J.JOINT[W.link[k].joint].touched == GIVES_WAY
     return some
 
 
 @uncounted
-def write_joints(
-    joint: FloatArray, tie: IntArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, h: float,
-    loose: int,
-) -> None:  # fmt: skip
+def write_joints(W: Workspace, h: float, loose: int) -> None:
     """Leave impulses, limits and notches in the joints' own rows."""
-    for k in range(joints):
-        j = link[k, L_JOINT]
-        joint[j, IMPULSE_1], joint[j, IMPULSE_2] = hinge[k, TOTAL], hinge[k, TOTAL + 1]
-        joint[j, LAST_STEP] = h
-        joint[j, LENGTH_1] = hinge[k, ENDED]
-        tie[j, SIDE] = link[k, L_SIDE]
+    joint, hinge, link, local = W.J.JOINT, W.J.HINGE, W.link, W.J.LOCAL
+    for k in range(W.joints):
+        j = link[k].joint
+        joint[j].impulse[0], joint[j].impulse[1] = hinge[k].total[0], hinge[k].total[1]
+        joint[j].last_step = h
+        joint[j].length_1 = hinge[k].ended
+        joint[j].side = link[k].side
         for end in range(2):
             for c in range(3):
-                joint[j, LED + 3 * end + c] = local[link[k, L_A + end], LEAD + c]
+                joint[j].led[end, c] = local[link[k].body[end]].lead[c]
         if loose > 0:
-            tie[j, TOUCHED] = 2 if tie[j, TOUCHED] == 2 else loose
-        if link[k, L_KIND] == RATCHET:
-            tooth, phase = joint[j, TOOTH], joint[j, TOOTH_PHASE]
-            turned = local[link[k, L_B], POSE + 2] - local[link[k, L_A], POSE + 2]
+            joint[j].touched = APART if joint[j].touched == APART else loose
+        if link[k].kind == RATCHET:
+            tooth, phase = joint[j].tooth, joint[j].tooth_phase
+            turned = local[link[k].body[1]].pose[2] - local[link[k].body[0]].pose[2]
             notch = np.floor((turned - phase) / tooth) * tooth + phase
-            if (notch - joint[j, NOTCH]) * tooth > 1e-12 * tooth * tooth:
-                joint[j, NOTCH] = notch
-                tie[j, SIDE] = 0
+            if (notch - joint[j].notch) * tooth > 1e-12 * tooth * tooth:
+                joint[j].notch = notch
+                joint[j].side = 0
 
 
 @uncounted
-def stop_joints(
-    joint: FloatArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray, node: IntArray, bodies: int,
-    h: float, stiff: FloatArray, part: FloatArray,
-) -> None:  # fmt: skip
+def stop_joints(W: Workspace, h: float) -> None:
     """The step of an island that nothing else can do: see `move_rigidly`; what that loses is booked in `part`."""
-    back(local, bodies)
-    look(joint, hinge, link, joints, local, node, bodies, stiff)
-    stored = springs_hold(joint, hinge, link, joints)
-    move_rigidly(local, node, bodies, h)
-    look(joint, hinge, link, joints, local, node, bodies, stiff)
-    for c in range(LEDGER_COLUMNS):
-        part[c] = 0.0
-    part[STORED] = springs_hold(joint, hinge, link, joints) - stored
-    close_ledger(local, bodies, part)
-    part[PROJECTED], part[CLOSED] = max(-part[CLOSED], 0.0), max(part[CLOSED], 0.0)
-    for i in range(bodies):
+    local, part = W.J.LOCAL, W.J.PART
+    back(local, W.bodies)
+    look(W)
+    stored = springs_hold(W)
+    move_rigidly(local, W.bodies, h)
+    look(W)
+    clear(part)
+    part.stored = springs_hold(W) - stored
+    close_ledger(local, W.bodies, part)
+    part.projected, part.closed = max(-part.closed, 0.0), max(part.closed, 0.0)
+    for i in range(W.bodies):
         for c in range(3):
-            local[i, LEAD + c] = 0.0
-    for k in range(joints):
-        joint[link[k, L_JOINT], WORK] = 0.0
+            local[i].lead[c] = 0.0
+    for k in range(W.joints):
+        W.J.JOINT[W.link[k].joint].work = 0.0
         for r in range(2):
-            hinge[k, LAM + r] = hinge[k, TOTAL + r] = 0.0
+            W.J.HINGE[k].lam[r] = W.J.HINGE[k].total[r] = 0.0
 
 
 @uncounted
-def island_step(
-    joint: FloatArray, tie: IntArray, hinge: FloatArray, link: IntArray, joints: int, local: FloatArray,
-    node: IntArray, bodies: int, h: float, order: int, length: float, span: IntArray, matrix: FloatArray,
-    right: FloatArray, more: FloatArray, pivots: IntArray, stiff: FloatArray, found: FloatArray, part: FloatArray,
-    ledger: FloatArray,
-) -> int:  # fmt: skip
-    """Step one island by h; its status (see `layout`).
+def island_step(W: Workspace, h: float, order: int, length: float, ledger: JointLedger) -> int:
+    """Step one component by h; its status: EXACT, HALVED, ELASTIC or LINEAR.
 
-    `local` holds poses, velocities, accelerations and mobilities at the start and, on return, poses and velocities
-    (BEFORE) at the end. `ledger` (LEDGER_COLUMNS,) is that of the step, `part` scratch for another; `length` is the
-    size of the island, `span` its row of SPAN.
+    LOCAL holds poses, velocities, accelerations and mobilities at the start and, on return, poses and velocities (v0)
+    at the end. `ledger` is that of the step; `length` is the size of the component.
     """
-    for c in range(LEDGER_COLUMNS):
-        ledger[c] = 0.0
-    loops = span[LOOPS] > 0
-    needs = read_joints(joint, tie, hinge, link, joints, local, h, length, span[BOXES])
+    joint, hinge, link, local = W.J.JOINT, W.J.HINGE, W.link, W.J.LOCAL
+    component, progress, part = W.J.COMPONENT[W.s], W.J.PROGRESS, W.J.PART
+    clear(ledger)
+    loops = component.loops > 0
+    needs = read_joints(W, h, length, component.boxes)
     # Redundant rows begin without impulse, unless it is what holds bodies.
-    span[TAUT] = 1 if loops and taut(joint, hinge, link, joints, local, h) else 0
-    cold = loops and span[TAUT] == 0
-    for k in range(joints if cold else 0):
-        hinge[k, LAM] = hinge[k, LAM + 1] = 0.0
-    for i in range(bodies):
+    component.taut = 1 if loops and taut(W, h) else 0
+    cold = loops and component.taut == 0
+    for k in range(W.joints if cold else 0):
+        hinge[k].lam[0] = hinge[k].lam[1] = 0.0
+    for i in range(W.bodies):
         for c in range(3):
-            local[i, SHIFT + c] = 0.0
-    save(local, bodies)
+            local[i].shift[c] = 0.0
+    save(local, W.bodies)
     if needs % 2 == 1:
-        look(joint, hinge, link, joints, local, node, bodies, stiff)
-        stored = springs_hold(joint, hinge, link, joints)
-        changes = find_apart(joint, tie, hinge, link, joints, local, h, stiff)
-        apart = farthest(hinge, link, joints)
+        look(W)
+        stored = springs_hold(W)
+        changes = find_apart(W, h)
+        apart = farthest(W)
         for what in (POSES, SPEEDS):
             if (what == POSES and changes % 4 < 2) or (what == SPEEDS and changes % 2 == 0):
                 continue
-            if what == SPEEDS and fits(hinge, link, joints, local):
+            if what == SPEEDS and fits(W):
                 continue
-            solve(
-                what, joint, hinge, link, joints, local, node, bodies, 2.0, length, loops, 0.0, span, matrix, right,
-                more, pivots, stiff, found,
-            )  # fmt: skip
+            solve(W, what, 2.0, length, loops, 0.0)
             if what == POSES:
-                look(joint, hinge, link, joints, local, node, bodies, stiff)
-                taken = springs_hold(joint, hinge, link, joints) - stored
-                cost = taken + closing_work(local, bodies)
+                look(W)
+                taken = springs_hold(W) - stored
+                cost = taken + closing_work(local, W.bodies)
                 # What a step left apart closes at the cost of what moves.
                 own = changes >= 4
-                locked = lock_energy(local, node, bodies, cost) if own and cost > 0.0 else 0.0
+                locked = lock_energy(local, W.bodies, cost) if own and cost > 0.0 else 0.0
                 # Rows that contradict each other stay.
-                if not farthest(hinge, link, joints) <= apart or (own and locked < cost - 1e-9 * abs(cost)):
-                    back(local, bodies)
-                    look(joint, hinge, link, joints, local, node, bodies, stiff)
+                if not farthest(W) <= apart or (own and locked < cost - 1e-9 * abs(cost)):
+                    back(local, W.bodies)
+                    look(W)
                     taken, cost, locked = 0.0, 0.0, 0.0
-                keep_closed(hinge, link, joints, local, bodies)
-                ledger[CLOSED] += cost - locked
-                ledger[STORED] += taken
+                keep_closed(W)
+                ledger.closed += cost - locked
+                ledger.stored += taken
             else:
-                book_fit(local, bodies, ledger, int(PROJECTED))
-        save(local, bodies)
+                ledger.projected += fitting_loss(local, W.bodies, ledger)
+        save(local, W.bodies)
     if needs >= 2:
-        look(joint, hinge, link, joints, local, node, bodies, stiff)
-        soft_targets(joint, hinge, link, joints, local, h)
-    for k in range(joints):
-        j = link[k, L_JOINT]
-        tie[j, SIDE] = link[k, L_SIDE]
-        if link[k, L_ROWS] == 0:
-            start_joint(joint, hinge, link, k, local, h)
-            joint[j, LENGTH_0] = hinge[k, BEGAN]
+        look(W)
+        soft_targets(W, h)
+    for k in range(W.joints):
+        j = link[k].joint
+        joint[j].side = link[k].side
+        if link[k].rows == 0:
+            start_joint(W, k, h)
+            joint[j].length_0 = hinge[k].began
     status, stored = LINEAR, 0.0
-    found[LIMIT] = found[EFFORT] + max(found[BUDGET] - found[EFFORT], 0.0) * _PART_OF_BUDGET
-    found[HURRY] = found[EFFORT] + _BEFORE_HURRY * (found[LIMIT] - found[EFFORT])
-    yields = gives_way(tie, link, joints)
-    rung = ELASTIC_RUNG if yields else -1 if order == 4 and smooth(joint, link, joints) else FIRST_RUNG
+    progress.limit = progress.effort + max(progress.budget - progress.effort, 0.0) * _PART_OF_BUDGET
+    progress.hurry = progress.effort + _BEFORE_HURRY * (progress.limit - progress.effort)
+    yields = gives_way(W)
+    rung = ELASTIC_RUNG if yields else -1 if order == 4 and smooth(W) else FIRST_RUNG
     if rung >= 0 or needs % 2 == 1:
-        forget(joint, link, joints)
-    known = recalls(joint, link, joints, h)
+        forget(W)
+    known = recalls(W, h)
     while rung <= LAST_RUNG:
-        if found[EFFORT] > found[LIMIT]:
+        if progress.effort > progress.limit:
             rung = LAST_RUNG
         parts = 5 if rung < 0 else 1 << rung if rung < 3 else _ELASTIC_PARTS
         if rung in (ELASTIC_RUNG, LAST_RUNG):
@@ -291,70 +232,64 @@ def island_step(
             relative = 1e-4 if rung + 1 == LAST_RUNG else 1e-9 * 10.0**steps
             compliance = relative * (h / _ELASTIC_PARTS) ** 2
             if yields:
-                compliance = max(compliance if relative > 1e-9 else 0.0, joint[link[0, L_JOINT], COMPLIANCE])
+                compliance = max(compliance if relative > 1e-9 else 0.0, joint[link[0].joint].compliance)
         give = compliance / (h / parts) ** 2
         what = LINEAR_STEP if rung == LAST_RUNG else STEP
-        for c in range(LEDGER_COLUMNS):
-            part[c] = 0.0
+        clear(part)
         if rung == LAST_RUNG:
-            look(joint, hinge, link, joints, local, node, bodies, stiff)
-            stored = springs_hold(joint, hinge, link, joints)
+            look(W)
+            stored = springs_hold(W)
         done, before = True, h
         for p in range(parts):
             piece = h / parts if rung >= 0 else (1.0 - 4.0 * SUZUKI) * h if p == 2 else SUZUKI * h
-            for k in range(joints):
+            for k in range(W.joints):
                 warm = 0.0 if cold or rung == LAST_RUNG else piece / before
-                hinge[k, LAM] *= warm
-                hinge[k, LAM + 1] *= warm
+                hinge[k].lam[0] *= warm
+                hinge[k].lam[1] *= warm
             before = piece
             if rung < 0 and known:
-                foretell(joint, p, piece, cold, hinge, link, joints, local)
-            done = step_with_limits(
-                what, joint, hinge, link, joints, local, node, bodies, piece, length, cold, give, rung < 0, span,
-                matrix, right, more, pivots, stiff, found, part,
-            )  # fmt: skip
+                foretell(W, p, piece, cold)
+            done = step_with_limits(W, what, piece, length, cold, give, rung < 0, part)
             if not done:
                 break
             if rung < 0:
-                remember(joint, piece, hinge, link, joints, local)
-                known = recalls(joint, link, joints, h)
+                remember(W, piece)
+                known = recalls(W, h)
         if done:
-            joint[link[0, L_JOINT], COMPLIANCE] = compliance
+            joint[link[0].joint].compliance = compliance
             status = EXACT if rung <= 0 else HALVED if rung < ELASTIC_RUNG else ELASTIC if rung < LAST_RUNG else LINEAR
             break
-        restore(joint, tie, hinge, link, joints, local, bodies)
+        restore(W)
         rung += 0 if known or cold != loops else 1
         known, cold = False, loops
-        forget(joint, link, joints)
+        forget(W)
     if status == LINEAR:
         if rung > LAST_RUNG:  # not even that: free flight
-            for i in range(bodies):
+            for i in range(W.bodies):
                 for c in range(3):
-                    local[i, AFTER + c] = local[i, BEFORE + c] + h * local[i, FREE + c]
-            move(local, bodies, h)
-            advance(local, bodies, h)
-        look(joint, hinge, link, joints, local, node, bodies, stiff)
-        for c in range(LEDGER_COLUMNS):
-            part[c] = 0.0
-        part[STORED] = springs_hold(joint, hinge, link, joints) - stored
+                    local[i].v1[c] = local[i].v0[c] + h * local[i].acceleration[c]
+            move(local, W.bodies, h)
+            advance(local, W.bodies, h)
+        look(W)
+        clear(part)
+        part.stored = springs_hold(W) - stored
     if status >= ELASTIC:
-        close_ledger(local, bodies, part)
-        owed = joint[link[0, L_JOINT], OWED]
-        if part[CLOSED] > owed:
-            gain = part[CLOSED] - owed
-            taken = lock_energy(local, node, bodies, gain)
-            part[CLOSED] -= taken
-            if gain - taken > 1e-9 * gain + 1e-12 * owed and stands(local, node, bodies):
+        close_ledger(local, W.bodies, part)
+        owed = joint[link[0].joint].owed
+        if part.closed > owed:
+            gain = part.closed - owed
+            taken = lock_energy(local, W.bodies, gain)
+            part.closed -= taken
+            if gain - taken > 1e-9 * gain + 1e-12 * owed and stands(local, W.bodies):
                 status = LINEAR
-                stop_joints(joint, hinge, link, joints, local, node, bodies, h, stiff, part)
+                stop_joints(W, h)
         # What elastic joints hold they may give back; linear rows hold nothing.
-        spent = part[CLOSED] if status == ELASTIC else max(part[CLOSED], 0.0)
-        joint[link[0, L_JOINT], OWED] = max(owed - spent, 0.0)
+        spent = part.closed if status == ELASTIC else max(part.closed, 0.0)
+        joint[link[0].joint].owed = max(owed - spent, 0.0)
     elif needs % 2 == 0:
-        joint[link[0, L_JOINT], OWED] = 0.0
-    for c in range(LEDGER_COLUMNS):
-        ledger[c] += part[c]
-    write_joints(joint, tie, hinge, link, joints, local, h, 4 if status == ELASTIC else 3 if status == LINEAR else 0)
-    if status == ELASTIC and farthest(hinge, link, joints) <= _NEARLY:
+        joint[link[0].joint].owed = 0.0
+    add(ledger, part)
+    write_joints(W, h, GIVES_WAY if status == ELASTIC else LEFT_APART if status == LINEAR else 0)
+    if status == ELASTIC and farthest(W) <= _NEARLY:
         status = HALVED
     return status

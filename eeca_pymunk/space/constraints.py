@@ -1,4 +1,4 @@
-"""Constraints: what pymunk's ten constraints are as rows of JOINT and TIE, and numbers that no joint can have.
+"""Constraints: what pymunk's ten constraints are as rows of JOINT, and numbers that no joint can have.
 
 Anchors of pymunk stand relative to the body, ours to its centre of mass. A pin without length, a slide or rotary limit
 whose limits are one, and a groove that is a point hold as what they then are: pivots, pins, gears.
@@ -12,43 +12,20 @@ from typing import Any
 import numpy as np
 import pymunk
 
-from ..arrays import FloatArray, IntArray
 from ..errors import UnsupportedFeature
-from ..joints.layout import (
-    ANCHOR_AX,
-    ANCHOR_BX,
-    DAMPING,
-    ERROR_BIAS,
+from ..model.joints import (
     GEAR,
     GROOVE,
-    KIND,
-    LENGTH,
-    LOWER,
-    MAX_BIAS,
-    MAX_FORCE,
     MOTOR,
-    NORMAL_X,
-    NOTCH,
-    OFFSET,
-    PHASE,
     PIN,
     PIVOT,
-    PUSH,
     RATCHET,
-    RATE,
-    RATIO,
-    REST,
     ROTARY_LIMIT,
     ROTARY_SPRING,
-    SIDE,
     SLIDE,
-    SOFT,
     SPRING,
-    STIFFNESS,
-    TOOTH,
-    TOOTH_PHASE,
-    UPPER,
-)  # fmt: skip
+    Joint,
+)
 
 _SMALL = 1e-9  # a pin shorter than this, over its anchors' distances, is a pivot
 _KINDS = (
@@ -92,64 +69,64 @@ def name(c: Any) -> str:
     return f"{c} between {c.a} and {c.b}"
 
 
-def read(c: Any, joint: FloatArray, tie: IntArray) -> None:
-    """Fill in the parameters of one row of JOINT and TIE; `check_constraint` has passed it."""
-    joint[MAX_FORCE], joint[ERROR_BIAS], joint[MAX_BIAS] = c.max_force, c.error_bias, c.max_bias
-    tie[SOFT] = int(math.isfinite(c.max_force))
-    tie[SIDE] = 0
+def read(c: Any, joint: Joint) -> None:
+    """Fill in the parameters of one row of JOINT; `check_constraint` has passed it."""
+    joint.max_force, joint.error_bias, joint.max_bias = c.max_force, c.error_bias, c.max_bias
+    joint.soft = int(math.isfinite(c.max_force))
+    joint.side = 0
     if hasattr(c, "anchor_a"):
-        joint[ANCHOR_AX : ANCHOR_AX + 2] = c.anchor_a - c.a.center_of_gravity
+        joint.anchor_a[:] = c.anchor_a - c.a.center_of_gravity
     if hasattr(c, "anchor_b"):
-        joint[ANCHOR_BX : ANCHOR_BX + 2] = c.anchor_b - c.b.center_of_gravity
+        joint.anchor_b[:] = c.anchor_b - c.b.center_of_gravity
     if isinstance(c, pymunk.PinJoint):
-        _pin(c.distance, joint, tie)
+        _pin(c.distance, joint)
     elif isinstance(c, pymunk.SlideJoint):
         if c.min == c.max:
-            _pin(c.max, joint, tie)
+            _pin(c.max, joint)
         else:
-            tie[KIND], joint[LOWER], joint[UPPER] = SLIDE, c.min, c.max
+            joint.kind, joint.lower, joint.upper = SLIDE, c.min, c.max
     elif isinstance(c, pymunk.PivotJoint):
-        tie[KIND] = PIVOT
+        joint.kind = PIVOT
     elif isinstance(c, pymunk.GrooveJoint):
-        _groove(c, joint, tie)
+        _groove(c, joint)
     elif isinstance(c, pymunk.DampedSpring):
-        tie[KIND], joint[STIFFNESS], joint[DAMPING], joint[REST] = SPRING, c.stiffness, c.damping, c.rest_length
-        joint[PUSH] = 0.0
+        joint.kind, joint.stiffness, joint.damping, joint.rest = SPRING, c.stiffness, c.damping, c.rest_length
+        joint.push = 0.0
     elif isinstance(c, pymunk.DampedRotarySpring):
-        tie[KIND], joint[STIFFNESS], joint[DAMPING], joint[REST] = ROTARY_SPRING, c.stiffness, c.damping, c.rest_angle
-        joint[PUSH] = 0.0
+        joint.kind, joint.stiffness, joint.damping, joint.rest = ROTARY_SPRING, c.stiffness, c.damping, c.rest_angle
+        joint.push = 0.0
     elif isinstance(c, pymunk.RotaryLimitJoint):
         if c.min == c.max:
-            tie[KIND], joint[RATIO], joint[PHASE] = GEAR, 1.0, c.min
+            joint.kind, joint.ratio, joint.phase = GEAR, 1.0, c.min
         else:
-            tie[KIND], joint[LOWER], joint[UPPER] = ROTARY_LIMIT, c.min, c.max
+            joint.kind, joint.lower, joint.upper = ROTARY_LIMIT, c.min, c.max
     elif isinstance(c, pymunk.RatchetJoint):
-        tie[KIND], joint[TOOTH], joint[TOOTH_PHASE] = RATCHET, c.ratchet, c.phase
-        joint[NOTCH] = _notch(c)
+        joint.kind, joint.tooth, joint.tooth_phase = RATCHET, c.ratchet, c.phase
+        joint.notch = _notch(c)
     elif isinstance(c, pymunk.GearJoint):
-        tie[KIND], joint[RATIO], joint[PHASE] = GEAR, c.ratio, c.phase
+        joint.kind, joint.ratio, joint.phase = GEAR, c.ratio, c.phase
     elif isinstance(c, pymunk.SimpleMotor):
-        tie[KIND], joint[RATE] = MOTOR, c.rate
+        joint.kind, joint.rate = MOTOR, c.rate
 
 
-def _pin(length: float, joint: FloatArray, tie: IntArray) -> None:
+def _pin(length: float, joint: Joint) -> None:
     """A pin, or a pivot if it has no length: there a pin has no direction."""
-    scale = float(np.abs(joint[ANCHOR_AX : ANCHOR_AX + 4]).max())
-    tie[KIND] = PIVOT if length <= _SMALL * max(scale, 1e-300) or length == 0.0 else PIN
-    joint[LENGTH] = length
+    scale = float(max(np.abs(joint.anchor_a).max(), np.abs(joint.anchor_b).max()))
+    joint.kind = PIVOT if length <= _SMALL * max(scale, 1e-300) or length == 0.0 else PIN
+    joint.length = length
 
 
-def _groove(c: pymunk.GrooveJoint, joint: FloatArray, tie: IntArray) -> None:
+def _groove(c: pymunk.GrooveJoint, joint: Joint) -> None:
     """A groove, or a pivot if its ends are one point: there a groove has no direction."""
     first, last = c.groove_a - c.a.center_of_gravity, c.groove_b - c.a.center_of_gravity
     if c.groove_a == c.groove_b:
-        tie[KIND], joint[ANCHOR_AX : ANCHOR_AX + 2] = PIVOT, first
+        joint.kind, joint.anchor_a[:] = PIVOT, first
         return
     along = (last - first).normalized()
     normal = along.perpendicular()
-    tie[KIND], joint[ANCHOR_AX : ANCHOR_AX + 2] = GROOVE, 0.0
-    joint[NORMAL_X : NORMAL_X + 2] = normal
-    joint[OFFSET], joint[LOWER], joint[UPPER] = normal.dot(first), along.dot(first), along.dot(last)
+    joint.kind, joint.anchor_a[:] = GROOVE, 0.0
+    joint.normal[:] = normal
+    joint.offset, joint.lower, joint.upper = normal.dot(first), along.dot(first), along.dot(last)
 
 
 def _notch(c: pymunk.RatchetJoint) -> float:

@@ -4,18 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..joints.layout import (
-    DAMPING,
-    GROOVE,
-    KIND,
-    MOTOR,
-    RATCHET,
-    ROTARY_LIMIT,
-    ROTARY_SPRING,
-    SLIDE,
-    SOFT,
-    SPRING,
-)
+from ..model.joints import GROOVE, MOTOR, RATCHET, ROTARY_LIMIT, ROTARY_SPRING, SLIDE, SPRING
 from .bodies import ANGULAR_VELOCITY, FORCE, TORQUE
 from .joints import JointRows
 from .world import World
@@ -67,14 +56,14 @@ def _joints(joints: JointRows) -> str:
     names = [type(item).__name__ for item in joints.items]
     kinds = sorted(set(names), key=lambda kind: (-names.count(kind), kind))
     text = f"{len(names)} joints ({', '.join(f'{names.count(kind)} {kind}' for kind in kinds)})"
-    kind, damped = joints.tie[:, KIND], joints.joint[:, DAMPING] != 0.0
+    kind, damped = joints.joint["kind"], joints.joint["damping"] != 0.0
     having = [
         ("limits", np.isin(kind, (SLIDE, GROOVE, ROTARY_LIMIT, RATCHET))),
         ("motors", kind == MOTOR),
         ("springs", np.isin(kind, (SPRING, ROTARY_SPRING))),
-        ("limited forces", (joints.tie[:, SOFT] != 0) & (kind != MOTOR)),
+        ("limited forces", (joints.joint["soft"] != 0) & (kind != MOTOR)),
     ]
-    lossy = (joints.tie[:, SOFT] != 0) | (kind == MOTOR) | (np.isin(kind, (SPRING, ROTARY_SPRING)) & damped)
+    lossy = (joints.joint["soft"] != 0) | (kind == MOTOR) | (np.isin(kind, (SPRING, ROTARY_SPRING)) & damped)
     order = "order 4, 2 in contact and at limits" if not lossy.any() else "order 4 where nothing dissipates, else 2"
     if lossy.all():
         order = "order 2"

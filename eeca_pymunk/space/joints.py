@@ -11,42 +11,25 @@ import numpy as np
 import pymunk
 
 from ..arrays import FloatArray, IntArray
-from ..joints.layout import (
-    ANCHOR_AX,
-    BODY_A,
-    BODY_B,
-    IMPULSE_1,
-    IMPULSE_2,
-    JOINT_COLUMNS,
-    KIND,
-    MOTOR,
-    NOTCH,
-    RATCHET,
-    ROTARY_SPRING,
-    SOFT,
-    SPRING,
-    TIE_COLUMNS,
-    TOUCHED,
-)
+from ..compiled.records import Rows, rows
+from ..model.joints import EDITED, MOTOR, RATCHET, ROTARY_SPRING, SPRING, Joint
 from . import private
 from .constraints import check_constraint, read
 from .edits import Edits, show_impulses, showings, shown
 from .partners import Partners
 from .spring_functions import Motion, Rate, law, own_function, put_law
 
-ANCHORS = slice(ANCHOR_AX, ANCHOR_AX + 4)
-
 
 class Impulses:
     """What `constraint.impulse` would be after native's step, by row. It outlives the stepper, and holds no constraint.
 
     Attributes:
-        joint, tie: the rows.  ours: pymunk's count of its own steps when they were written.
+        joint: the rows.  ours: pymunk's count of its own steps when they were written.
     """
 
-    def __init__(self, space: pymunk.Space, joint: FloatArray, tie: IntArray) -> None:
+    def __init__(self, space: pymunk.Space, joint: Rows[Joint]) -> None:
         self._space = weakref.ref(space)
-        self.joint, self.tie = joint, tie
+        self.joint = joint
         self.ours = -1
 
     def read(self, j: int) -> float | None:
@@ -54,17 +37,17 @@ class Impulses:
         space = self._space()
         if space is not None and private.timestamp(space)() != self.ours:
             return None
-        first, second = self.joint[j, IMPULSE_1], self.joint[j, IMPULSE_2]
-        if self.tie[j, KIND] in (SPRING, ROTARY_SPRING):
+        first, second = self.joint[j].impulse
+        if self.joint[j].kind in (SPRING, ROTARY_SPRING):
             return float(first)
         return math.hypot(first, second)
 
 
 class JointRows:
-    """The constraints of a space as JOINT and TIE rows, kept up to date with what the user changes.
+    """The constraints of a space as rows of JOINT, kept up to date with what the user changes.
 
     Attributes:
-        items: the constraints, in the order of the rows.  joint: (j, JOINT_COLUMNS).  tie: (j, TIE_COLUMNS).
+        items: the constraints, in the order of the rows.  joint: (j,).
         row: the row of each constraint.
         functions: rows of springs that have a force or torque function of the user's own.  own: these springs.
         before, after, calling: constraints with a `pre_solve`, with a `post_solve`, with either.
@@ -83,8 +66,7 @@ class JointRows:
         self._impulses: Impulses | None = None
         self._showings = -1
         self.items = list(space.constraints)
-        self.joint: FloatArray = np.zeros((len(self.items), JOINT_COLUMNS))
-        self.tie: IntArray = np.zeros((len(self.items), TIE_COLUMNS), np.int64)
+        self.joint: Rows[Joint] = rows(Joint, len(self.items))
         others = [body for item in self.items for body in (item.a, item.b) if body not in row]
         self.partners: Partners = Partners(tuple(dict.fromkeys(others)), space, None if past is None else past.partners)
         self._row_of = {**row, **{body: n + i for i, body in enumerate(self.partners.items)}}
@@ -93,16 +75,16 @@ class JointRows:
             past.refresh()
         for j, item in enumerate(self.items):
             if past is not None and (i := known.get(item, -1)) >= 0:
-                self.joint[j], self.tie[j] = past.joint[i], past.tie[i]
+                self.joint[j] = past.joint[i]
             else:
                 check_constraint(item)
-                read(item, self.joint[j], self.tie[j])
-                self.tie[j, TOUCHED] = 1
-            self.tie[j, BODY_A], self.tie[j, BODY_B] = self._row_of[item.a], self._row_of[item.b]
+                read(item, self.joint[j])
+                self.joint[j].touched = EDITED
+            self.joint[j].body[:] = self._row_of[item.a], self._row_of[item.b]
         self.touch(n + self.partners.changed)
         self.row: dict[pymunk.Constraint, int] = {item: j for j, item in enumerate(self.items)}
         self._edits = Edits(self.row)
-        self._ratchets = np.flatnonzero(self.tie[:, KIND] == RATCHET).tolist()
+        self._ratchets = np.flatnonzero(self.joint["kind"] == RATCHET).tolist()
         self._timestamp = private.timestamp(space)
         self.rates: dict[pymunk.Constraint, Rate] = {} if past is None else past.rates
         self.replan = True
@@ -133,11 +115,11 @@ class JointRows:
             self._edits.add(edited)
             raise
         for j in sorted(edited):
-            off_before, kind, soft = self.joint[j, ANCHORS] != 0.0, self.tie[j, KIND], self.tie[j, SOFT]
-            read(self.items[j], self.joint[j], self.tie[j])
-            self.tie[j, TOUCHED] = 1
-            off = self.joint[j, ANCHORS] != 0.0
-            if kind != self.tie[j, KIND] or soft != self.tie[j, SOFT] or bool((off != off_before).any()):
+            joint = self.joint[j]
+            before = _planned_by(joint)
+            read(self.items[j], self.joint[j])
+            self.joint[j].touched = EDITED
+            if before != _planned_by(joint):
                 self.replan = True
         self._find_functions()
         return self.replan
@@ -149,13 +131,13 @@ class JointRows:
     def pushing(self) -> list[pymunk.Constraint]:
         """The constraints that push, in a step of pymunk, where everything is at rest: springs, motors, joints that are
         apart or may be, and those of bodies that the batch calls do not reach."""
-        apart = np.flatnonzero(self.tie[:, TOUCHED])
+        apart = np.flatnonzero(self.joint["touched"])
         return [*self._pushing, *(self.items[j] for j in apart.tolist())]
 
     def _push(self, j: int) -> bool:
-        item, kind = self.items[j], self.tie[j, KIND]
+        item, kind = self.items[j], self.joint[j].kind
         out = any(body in self.partners.items and body.body_type == pymunk.Body.DYNAMIC for body in (item.a, item.b))
-        return out or self.tie[j, SOFT] != 0 or kind in (SPRING, ROTARY_SPRING, MOTOR)
+        return out or self.joint[j].soft != 0 or kind in (SPRING, ROTARY_SPRING, MOTOR)
 
     def planned(self) -> None:
         """The joints have been planned as they are."""
@@ -207,22 +189,27 @@ class JointRows:
     def touch(self, rows: IntArray) -> None:
         """Mark the joints of bodies (rows) that the user has moved or pushed."""
         if len(rows):
-            hit = np.isin(self.tie[:, BODY_A], rows) | np.isin(self.tie[:, BODY_B], rows)
-            self.tie[hit, TOUCHED] = 1
+            hit = np.isin(self.joint["body"], rows).any(axis=1)
+            self.joint["touched"][hit] = EDITED
 
     def write(self) -> None:
         """Give ratchets the notch they have reached, and let `constraint.impulse` read ours."""
         told = self._impulses
         if told is None or told.joint is not self.joint:
-            self._impulses = told = Impulses(self.space, self.joint, self.tie)
+            self._impulses = told = Impulses(self.space, self.joint)
             self._showings, self._reading = -1, told.read
         told.ours = self._timestamp()
         for j in self._ratchets:
             item = self.items[j]
-            if item.angle != self.joint[j, NOTCH]:
-                item.angle = float(self.joint[j, NOTCH])
+            if item.angle != self.joint[j].notch:
+                item.angle = float(self.joint[j].notch)
                 self._edits.forget(j)
         if self._showings != showings():
             if shown(self.items[0]) is not self._reading:
                 show_impulses(self.items, self._reading)
             self._showings = showings()
+
+
+def _planned_by(joint: Joint) -> tuple[object, ...]:
+    """What of a joint a plan depends on."""
+    return joint.kind, joint.soft, *(joint.anchor_a != 0.0).tolist(), *(joint.anchor_b != 0.0).tolist()

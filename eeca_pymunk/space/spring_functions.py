@@ -17,9 +17,8 @@ from typing import Any
 
 import pymunk
 
-from ..arrays import FloatArray
 from ..errors import NotFiniteError
-from ..joints.layout import PUSH, REST, STIFFNESS
+from ..model.joints import Joint
 from . import private_joints
 
 _POINT = 0.5 / math.sqrt(3.0)  # of Gauss, from the middle, over the length of the interval
@@ -43,7 +42,7 @@ def own_function(item: Any) -> Callable[[Any, float], float] | None:
     return None if law is usual else law
 
 
-def put_law(item: Any, a: Motion, b: Motion, dt: float, row: FloatArray, past: Rate | None) -> Rate:
+def put_law(item: Any, a: Motion, b: Motion, dt: float, row: Joint, past: Rate | None) -> Rate:
     """Write the law of a spring with a function of its own between bodies moving so into its row of JOINT.
 
     `past` is what the step before was answered: r and h'.
@@ -67,14 +66,14 @@ def put_law(item: Any, a: Motion, b: Motion, dt: float, row: FloatArray, past: R
         raise NotFiniteError(f"the function of {item} answers {push} at {middle}: let it answer a finite number")
     # A force that grows with the length is taken at the middle alone: it would not bring the step to an end.
     sign = 1.0 if isinstance(item, pymunk.DampedSpring) else -1.0
-    row[PUSH], row[STIFFNESS], row[REST] = push, max(0.0, -sign * slope), middle
+    row.push, row.stiffness, row.rest = push, max(0.0, -sign * slope), middle
     return rate, dt
 
 
-def law(item: Any, row: FloatArray) -> Callable[[Any, float], float]:
+def law(item: Any, row: Joint) -> Callable[[Any, float], float]:
     """The law in a spring's row of JOINT as a function like the spring's own."""
-    slope = -row[STIFFNESS] if isinstance(item, pymunk.DampedSpring) else row[STIFFNESS]
-    return lambda spring, at: float(row[PUSH] + slope * (at - row[REST]))
+    slope = -row.stiffness if isinstance(item, pymunk.DampedSpring) else row.stiffness
+    return lambda spring, at: float(row.push + slope * (at - row.rest))
 
 
 def _stretch(item: Any, a: Motion, b: Motion) -> tuple[float, float, float]:

@@ -15,7 +15,7 @@ import eeca_pymunk
 from eeca_pymunk.compiled.entries import ENTRIES, SOURCES, TABLES, is_array, table_fields
 from eeca_pymunk.compiled.kernels import Kernel, kernels
 from eeca_pymunk.compiled.tables import table_of
-from eeca_pymunk.jointed.layout import Joints
+from eeca_pymunk.model.joints import Joints
 from eeca_pymunk.model.run import Film
 from eeca_pymunk.model.scene import Scene
 

@@ -13,23 +13,12 @@ from eeca_pymunk.arrays import FloatArray
 from eeca_pymunk.compiled.records import Rows, columns, rows
 from eeca_pymunk.jointed.component import answer, ready
 from eeca_pymunk.jointed.fitting import bring_arms
-from eeca_pymunk.jointed.layout import ORDER, Joints
 from eeca_pymunk.jointed.scene import JointedLoop
-from eeca_pymunk.joints.layout import ANCHOR_AX, ANCHOR_AY, ANCHOR_BX, ANCHOR_BY, JOINT_COLUMNS, PIN, PIVOT
-from eeca_pymunk.joints.scratch import (
-    COS,
-    HINGE_COLUMNS,
-    L_A,
-    L_B,
-    L_KIND,
-    LAM,
-    LINK_COLUMNS,
-    LOCAL_COLUMNS,
-    MOBILITY,
-    POSE,
-)
 from eeca_pymunk.joints.taut import taut
+from eeca_pymunk.joints.workspace import make_joints
+from eeca_pymunk.model.bodies import Body
 from eeca_pymunk.model.contacts import Row
+from eeca_pymunk.model.joints import PIN, PIVOT, BodyStep, Joint, Joints, Workspace
 
 from .measures import apart, energy
 
@@ -151,7 +140,7 @@ def test_what_planks_answer_is_the_derivative_of_a_step(slack: float) -> None:
     def run(force: float) -> tuple[pymunk.Space, list[pymunk.Body], ep.EECA]:
         space, deck = bridge(slack)
         stepper = ep.EECA(space)
-        scratch(stepper).TALLY[ORDER] = 2
+        scratch(stepper).TALLY.order = 2
         for k in range(8):
             deck[1].force, deck[3].force, deck[5].force = (0.0, 3.0), (0.0, -5.0), (0.0, -20.0)
             deck[4].force = 0.0, force if k == 7 else 0.0
@@ -163,7 +152,7 @@ def test_what_planks_answer_is_the_derivative_of_a_step(slack: float) -> None:
     seen /= 2.0 * change * DT
     J = scratch(run(0.0)[2])
     assert ready(J, 0, DT, True)
-    places = [int(np.flatnonzero(J.MEMBER[:, 0] == row)[0]) for row in range(12)]
+    places = [int(np.flatnonzero(J.MEMBER["body"] == row)[0]) for row in range(12)]
     PUSH = np.zeros((13, 3))
     PUSH[places[4], 1] = 1.0
     answer(J, 0, True, PUSH)
@@ -176,20 +165,20 @@ def test_what_planks_answer_is_the_derivative_of_a_step(slack: float) -> None:
 @pytest.mark.parametrize("turned", [0.0, 2.0])
 def test_taut_is_what_pulls_hard(kind: int, turned: float) -> None:
     """Two rods end to end: a pull on their joint is stiff beside their moments if (h/2) h f r > I/2."""
-    joint, hinge = np.zeros((1, JOINT_COLUMNS)), np.zeros((1, HINGE_COLUMNS))
-    link, local = np.zeros((1, LINK_COLUMNS), np.int64), np.zeros((2, LOCAL_COLUMNS))
-    link[0, L_KIND], link[0, L_A], link[0, L_B] = kind, 0, 1
+    J = make_joints(rows(Body, 3), rows(Joint, 1), rows(Body, 0), 2)._replace(LOCAL=rows(BodyStep, 2))
+    joint, link, local = J.JOINT[0], J.LINK[:1], J.LOCAL
+    link[0].kind, link[0].body[:] = kind, (0, 1)
     apart = 0.0 if kind == PIVOT else 0.25
-    joint[0, [ANCHOR_AX, ANCHOR_AY, ANCHOR_BX, ANCHOR_BY]] = 0.5, 0.0, -0.5, 0.0
+    joint.anchor_a[:], joint.anchor_b[:] = (0.5, 0.0), (-0.5, 0.0)
     x, y = math.cos(turned), math.sin(turned)
-    local[1, POSE : POSE + 2] = (1.0 + apart) * x, (1.0 + apart) * y
-    local[:, COS], local[:, COS + 1], local[:, MOBILITY : MOBILITY + 3] = x, y, (1.0, 1.0, 12.0)
+    local[1].pose[:2] = (1.0 + apart) * x, (1.0 + apart) * y
+    local["cos"], local["sin"], local["mobility"] = x, y, (1.0, 1.0, 12.0)
     least = 0.5 / (0.5 * 0.1 * 0.5 * 12.0)  # impulse
     for pull, expected in ((0.99, False), (1.01, True), (-10.0, False)):
         # On b, towards a: it pulls.
         f = -pull * least
-        hinge[0, LAM : LAM + 2] = (f * x, f * y) if kind == PIVOT else (f, 0.0)
-        assert taut(joint, hinge, link, 1, local, 0.1) == expected
+        J.HINGE[0].lam[:] = (f * x, f * y) if kind == PIVOT else (f, 0.0)
+        assert taut(Workspace(J, 0, link, 1, 2), 0.1) == expected
 
 
 def test_arms_are_brought_to_one_point() -> None:

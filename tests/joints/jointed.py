@@ -6,20 +6,10 @@ import numpy as np
 import pymunk
 
 from eeca_pymunk.arrays import FloatArray, IntArray
-from eeca_pymunk.compiled.records import Rows, rows
-from eeca_pymunk.joints.layout import (
-    BODY_A,
-    BODY_B,
-    CLAMPED,
-    CLOSED,
-    DAMPED,
-    LIMITED,
-    MOTORS,
-    PROJECTED,
-    SUPPORTS,
-)  # fmt: skip
+from eeca_pymunk.compiled.records import Rows, numbers, row, rows
 from eeca_pymunk.joints.world import Islands
 from eeca_pymunk.model.bodies import ACCELERATION, POSE, VELOCITY, Body
+from eeca_pymunk.model.joints import JointLedger
 from eeca_pymunk.space.joints import JointRows
 
 
@@ -28,7 +18,7 @@ class JointedSpace:
 
     Attributes:
         order: 2 or 4 (where an island allows it).  status: the worst of the last step.
-        ledger: (LEDGER_COLUMNS,) energies summed over all steps and islands.
+        ledger: energies summed over all steps and islands.
     """
 
     def __init__(self, space: pymunk.Space, order: int = 2) -> None:
@@ -36,7 +26,7 @@ class JointedSpace:
         self.status = 0
         self._items: list[pymunk.Body] = []
         self._joints: tuple[pymunk.Constraint, ...] = ()
-        self.ledger: FloatArray = np.zeros(8)
+        self.ledger: JointLedger = row(JointLedger)
         self._past: JointRows | None = None
         self._plan()
 
@@ -56,9 +46,9 @@ class JointedSpace:
         self.bodies: Rows[Body] = rows(Body, len(self._items))
         self._written: FloatArray = np.full((len(self._items), 6), np.nan)
         self._mobility()
-        self.islands = Islands(self.rows.joint, self.rows.tie, self.order)
+        self.islands = Islands(self.rows.joint, self.order)
         self.islands.plan(self.bodies)
-        bound = self.rows.tie[:, BODY_A : BODY_B + 1].ravel()
+        bound = self.rows.joint["body"].ravel()
         self._free = self._moving.copy()
         self._free[bound] &= ~self._dynamic[bound]
 
@@ -100,7 +90,7 @@ class JointedSpace:
             self.islands.plan(self.bodies)
             self.rows.planned()
         self.status = self.islands.step(self.bodies, dt)
-        self.ledger += self.islands.ledger.sum(axis=0)
+        self.book()
         free = self._free
         for x, v, a in zip(POSE, VELOCITY, ACCELERATION, strict=True):
             self.bodies[v][free] += 0.5 * dt * self.bodies[a][free]
@@ -111,6 +101,16 @@ class JointedSpace:
         for c in self.rows.after:
             if c.post_solve is not None:
                 c.post_solve(c, self.space)
+
+    def book(self) -> None:
+        """Add the ledgers of the last step."""
+        for one in self.islands.ledger:
+            numbers(self.ledger)[:] += numbers(one)
+
+    def losses(self) -> tuple[float, ...]:
+        """All that has been lost so far."""
+        book = self.ledger
+        return book.damped, book.limited, book.clamped, book.projected
 
     def _scatter(self) -> None:
         bodies = self.bodies
@@ -147,5 +147,4 @@ class JointedSpace:
     def gain(self) -> float:
         """Energy that the ledger says has come in since the start, without STORED, which `energy` counts."""
         book = self.ledger
-        lost = book[DAMPED] + book[LIMITED] + book[CLAMPED] + book[PROJECTED]
-        return float(book[MOTORS] + book[SUPPORTS] + book[CLOSED] - lost)
+        return float(book.motors + book.supports + book.closed - sum(self.losses()))

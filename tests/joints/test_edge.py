@@ -9,7 +9,6 @@ import numpy as np
 import pymunk
 import pytest
 
-from eeca_pymunk.joints.layout import PROJECTED
 from scenes.linkages import bars, body, chain, empty, pendulum
 
 from .driving import error, run
@@ -72,9 +71,9 @@ def test_an_edit_is_seen_and_only_once() -> None:
     for _ in range(200):
         stepper.step(1 / 60)
     assert next(iter(space.bodies)).position.length == pytest.approx(1.1, abs=1e-9)
-    booked = stepper.ledger[PROJECTED]
+    booked = stepper.ledger.projected
     stepper.step(1 / 60)
-    assert stepper.ledger[PROJECTED] == booked
+    assert stepper.ledger.projected == booked
 
 
 def test_breaking_joints_and_new_ones() -> None:
@@ -92,7 +91,7 @@ def test_breaking_joints_and_new_ones() -> None:
     for _ in range(60):
         stepper.step(1 / 60)
     assert error(space) < 1e-9
-    assert stepper.ledger[PROJECTED] > 0.0
+    assert stepper.ledger.projected > 0.0
 
 
 def test_functions_are_called_once_a_step_around_it() -> None:

@@ -7,7 +7,6 @@ import pytest
 
 from eeca_pymunk.arrays import FloatArray
 from eeca_pymunk.joints.foresight import DEPTH, PARTS, WEIGHTS
-from eeca_pymunk.joints.layout import COUNTED
 from eeca_pymunk.joints.step import SUZUKI
 from scenes import linkages
 
@@ -44,10 +43,10 @@ def test_a_step_of_another_length_begins_anew(longer: float) -> None:
     counts = []
     for k in range(12):
         stepper.step(dt * (1.0 + (longer if k == 6 else 0.0)))
-        counts.append(stepper.rows.joint[0, COUNTED])
+        counts.append(stepper.rows.joint[0].known_parts)
         assert error(space) < 1e-13
     assert counts[:8] == [5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 5.0, 5.0]
     first = next(iter(space.bodies))
     first.velocity = first.velocity * 1.0001
     stepper.step(dt)
-    assert stepper.rows.joint[0, COUNTED] == 5.0
+    assert stepper.rows.joint[0].known_parts == 5.0

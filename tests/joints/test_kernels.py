@@ -7,14 +7,14 @@ import pymunk
 import pytest
 
 from eeca_pymunk.arrays import FloatArray
-from eeca_pymunk.joints import scratch
 from eeca_pymunk.joints.banded import back_banded, factor_banded
 from eeca_pymunk.joints.condensed import factor, substitute
-from eeca_pymunk.joints.layout import PUSH
 from eeca_pymunk.joints.motion import move
 from eeca_pymunk.joints.ordering import order_unknowns
 from eeca_pymunk.joints.rows import joint_rows, start_joint
+from eeca_pymunk.joints.workspace import workspace
 from eeca_pymunk.joints.world import gather_island
+from eeca_pymunk.model.joints import CONDENSED, NO_BEND, OWN_TURN, JointStep
 from scenes import linkages
 from scenes.linkages import body, empty
 
@@ -87,36 +87,35 @@ class Iterate:
             next(iter(space.bodies)).body_type = pymunk.Body.KINEMATIC
         self.h, stepper = h, JointedSpace(space)
         stepper._gather()
-        world = stepper.islands
-        self.joint, self.tie, self.link, self.hinge = world.joint, world.tie, world._link, world._hinge
-        self.local, self.node = world._local, world._node
-        gather_island(stepper.bodies, self.joint, world._span, 0, world._member, self.link, h, self.local, self.node)
+        J = stepper.islands.arrays
+        gather_island(stepper.bodies, J, 0, h)
+        self.work = workspace.python(J, 0)
+        self.joint, self.hinge, self.local, self.stiff = J.JOINT, J.HINGE, J.LOCAL, J.STIFF
         rng = np.random.default_rng(5)
-        self.hinge[:, scratch.LAM : scratch.LAM + 2] = rng.normal(size=(10, 2))
-        self.joint[[4, 5], PUSH] = 0.5
+        self.hinge["lam"] = rng.normal(size=(10, 2))
+        self.joint["push"][[4, 5]] = 0.5
         for k in range(10):
-            self.link[k, scratch.L_SIDE] = -1 if k in (1, 7) else 1 if k in (3, 6) else 0
-            self.link[k, scratch.L_SOFT] = int(soft or k == 9)
+            J.LINK[k].side = -1 if k in (1, 7) else 1 if k in (3, 6) else 0
+            J.LINK[k].soft = int(soft or k == 9)
         change = rng.normal(size=(2, 3))
-        self.local[:, scratch.AFTER : scratch.AFTER + 3] = self.local[:, scratch.BEFORE : scratch.BEFORE + 3] + change
+        self.local["v1"] = self.local["v0"] + change
         if static:
-            self.local[0, scratch.AFTER : scratch.AFTER + 3] = self.local[0, scratch.BEFORE : scratch.BEFORE + 3]
-        self.stiff = np.zeros((6, 6))
+            self.local["v1"][0] = self.local["v0"][0]
 
-    def at(self, k: int, shift: FloatArray | None = None) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, int]:
-        """VALUE, FORCE, ROWS, SLOPES of joint k with its bodies' ways shifted, and what of `stiff` is there."""
+    def at(self, k: int, shift: FloatArray | None = None) -> tuple[JointStep, int]:
+        """Joint k with its bodies' ways shifted, and what of `stiff` is there."""
         keep = self.local.copy()
         if shift is not None:
-            self.local[:, scratch.AFTER : scratch.AFTER + 3] += shift.reshape(2, 3) * 2.0 / self.h
+            self.local["v1"] += shift.reshape(2, 3) * 2.0 / self.h
         move(self.local, 2, self.h)
-        start_joint(self.joint, self.hinge, self.link, k, self.local, self.h)
-        lam = self.hinge[k, scratch.LAM : scratch.LAM + 2].copy()
-        bend = joint_rows(self.joint, self.hinge, self.link, k, self.local, self.h, True, self.stiff)
-        row = self.hinge[k].copy()
-        self.way = self.local[:, scratch.WAY : scratch.WAY + 3].copy()
+        start_joint(self.work, k, self.h)
+        lam = self.hinge[k].lam.copy()
+        bend = joint_rows(self.work, k, self.h, True)
+        found = self.hinge[k : k + 1].copy()[0]
+        self.way = self.local["way"].copy()
         self.local[:] = keep
-        self.hinge[k, scratch.LAM : scratch.LAM + 2] = lam
-        return row[24:26], row[26:32], row[32:44].reshape(2, 6), row[44:56].reshape(2, 6), bend
+        self.hinge[k].lam[:] = lam
+        return found, bend
 
 
 NAMES = ["pin", "slide", "pivot", "groove", "spring", "rotary spring", "limit", "ratchet", "gear", "motor"]
@@ -128,32 +127,32 @@ COUNTS = [1, 1, 2, 2, 0, 0, 1, 1, 1, 1]
 def test_rows_are_discrete_gradients(k: int, static: bool) -> None:
     # g1 - g0 = J x for any x, large ones too; and F = J^T lam.
     one = Iterate(0.4, static=static)
-    value, force, rows, _, _ = one.at(k)
-    way = one.way.ravel()
+    found, _ = one.at(k)
+    force, way = found.force, one.way.ravel()
     if COUNTS[k] == 0:
-        held, damping, stiffness, rest = one.hinge[k, [9, 8]].tolist() + one.joint[k, [4, 6]].tolist()
-        ended = one.hinge[k, scratch.ENDED]
+        held, ended, damping = found.began, found.ended, found.drag
+        stiffness, rest = one.joint[k].stiffness, one.joint[k].rest
         sign = 1.0 if k == 4 else -1.0
         stretch = sign * (ended - held)
         pull = 0.5 - sign * stiffness * (0.5 * (held + ended) - rest) - damping * stretch / one.h
         assert force @ way == pytest.approx(one.h * pull * stretch, rel=1e-12)
         return
     still = Iterate(0.4, static=static)
-    still.local[:, scratch.AFTER : scratch.AFTER + 3] = -still.local[:, scratch.BEFORE : scratch.BEFORE + 3]
+    still.local["v1"] = -still.local["v0"]
     before = still.at(k)[0]
     for r in range(COUNTS[k]):
-        assert value[r] - before[r] == pytest.approx(rows[r] @ way, abs=1e-14)
-    lam = one.hinge[k, scratch.LAM : scratch.LAM + COUNTS[k]]
-    np.testing.assert_allclose(force, rows[: COUNTS[k]].T @ lam, atol=1e-14)
+        assert found.value[r] - before.value[r] == pytest.approx(found.rows[r] @ way, abs=1e-14)
+    lam = one.hinge[k].lam[: COUNTS[k]]
+    np.testing.assert_allclose(force, found.rows[: COUNTS[k]].T @ lam, atol=1e-14)
 
 
 @pytest.mark.parametrize("k", range(10), ids=NAMES)
 def test_slopes_and_stiffness_are_derivatives(k: int) -> None:
     # The derivative of torques' common factor is good to the square of the difference of both turns.
     one = Iterate(0.05)
-    _, _, _, slopes, bend = one.at(k)
-    stiff = one.stiff.copy() if bend != scratch.NO_BEND else np.zeros((6, 6))
-    if bend == scratch.OWN_TURN:
+    found, bend = one.at(k)
+    stiff = one.stiff.copy() if bend != NO_BEND else np.zeros((6, 6))
+    if bend == OWN_TURN:
         keep = np.zeros((6, 6))
         keep[2, 2], keep[5, 5] = stiff[2, 2], stiff[5, 5]
         stiff = keep
@@ -161,16 +160,18 @@ def test_slopes_and_stiffness_are_derivatives(k: int) -> None:
     for c in range(6):
         shift = np.zeros(6)
         shift[c] = e
-        up, down = one.at(k, shift), one.at(k, -shift)
+        up, down = one.at(k, shift)[0], one.at(k, -shift)[0]
         for r in range(COUNTS[k]):
-            assert slopes[r, c] == pytest.approx((up[0][r] - down[0][r]) / (2.0 * e), abs=1e-8)
-        np.testing.assert_allclose(stiff[:, c], (up[1] - down[1]) / (2.0 * e), atol=1e-4 if k in (5, 6, 7) else 1e-7)
+            assert found.slopes[r, c] == pytest.approx((up.value[r] - down.value[r]) / (2.0 * e), abs=1e-8)
+        np.testing.assert_allclose(
+            stiff[:, c], (up.force - down.force) / (2.0 * e), atol=1e-4 if k in (5, 6, 7) else 1e-7
+        )
 
 
 def test_torques_of_angles_are_opposite() -> None:
     one = Iterate(0.4)
     for k in (5, 6, 7, 9):
-        force = one.at(k)[1]
+        force = one.at(k)[0].force
         assert force[2] == -force[5]
         assert (force[[0, 1, 3, 4]] == 0.0).all()
 
@@ -179,8 +180,8 @@ def test_forces_between_points_keep_angular_momentum() -> None:
     # Total angular momentum over the step: sum of x_m x F + torque, with x_m the centres at mid-way.
     one = Iterate(0.4)
     for k in (0, 1, 3, 4):  # a pivot's acts at two points if these are apart, as here
-        force = one.at(k)[1]
-        middle = one.local[:, scratch.POSE : scratch.POSE + 2] + 0.5 * one.way[:, :2]
+        force = one.at(k)[0].force
+        middle = one.local["pose"][:, :2] + 0.5 * one.way[:, :2]
         moment = sum(middle[i, 0] * force[3 * i + 1] - middle[i, 1] * force[3 * i] + force[3 * i + 2] for i in (0, 1))
         assert abs(moment) < 1e-14
         np.testing.assert_allclose(force[:2], -force[3:5], atol=1e-15)
@@ -201,13 +202,13 @@ def test_islands_are_the_components_of_the_graph() -> None:
             if c.b is not space.static_body:
                 label[c.a] = label[c.b] = min(label[c.a], label[c.b])
     bound = {c.a for c in space.constraints} | {c.b for c in space.constraints} - {space.static_body}
-    assert stepper.islands.islands == len({label[b] for b in bound if b is not space.static_body})
+    J = stepper.islands.arrays
+    assert J.TALLY.components == len({label[b] for b in bound if b is not space.static_body})
     seen: list[int] = []
-    for s in range(stepper.islands.islands):
-        b0, b1, j0, j1 = stepper.islands._span[s, :4]
-        own = [stepper._items[stepper.islands._member[i, 0]] for i in range(b0, b1)]
+    for C in J.COMPONENT[: J.TALLY.components]:
+        own = [stepper._items[J.MEMBER[i].body] for i in range(C.first_body, C.end_body)]
         assert len({label[b] for b in own if b is not space.static_body}) == 1
-        seen += stepper.islands._link[j0:j1, scratch.L_JOINT].tolist()
+        seen += J.LINK["joint"][C.first_joint : C.end_joint].tolist()
     assert sorted(seen) == list(range(45))
 
 
@@ -215,12 +216,13 @@ def test_bands_are_as_narrow_as_their_graphs() -> None:
     spans = {}
     for name, make in (("chain", lambda: linkages.chain(30)), ("cloth", lambda: linkages.cloth(12))):
         world = JointedSpace(make()).islands
-        spans[name] = world._span[0]
-    assert spans["chain"][[scratch.UNKNOWNS, scratch.BAND, scratch.RIGID]].tolist() == [150, 4, 2]
-    assert spans["chain"][[scratch.DUAL_SIZE, scratch.DUAL_BAND]].tolist() == [60, 3]
-    assert spans["cloth"][scratch.SYSTEM] == scratch.CONDENSED
-    assert spans["cloth"][scratch.UNKNOWNS] == 288
-    assert spans["cloth"][scratch.BAND] <= 2 * 13
+        spans[name] = world.arrays.COMPONENT[0]
+    chain, cloth = spans["chain"], spans["cloth"]
+    assert (chain.unknowns, chain.band, chain.rigid) == (150, 4, 2)
+    assert (chain.dual_size, chain.dual_band) == (60, 3)
+    assert cloth.system == CONDENSED
+    assert cloth.unknowns == 288
+    assert cloth.band <= 2 * 13
 
 
 def test_condensed_islands_step_as_full_ones() -> None:
@@ -238,12 +240,15 @@ def test_condensed_islands_step_as_full_ones() -> None:
 
 def arrange(stepper: JointedSpace, condensed: bool) -> None:
     """Have the stepper's only island in the bodies' unknowns alone, or not."""
-    world = stepper.islands
-    order_unknowns(world._span, world._member, world._link, 0, condensed)
-    span = world._span[0]
-    world._right = np.zeros(2 * span[scratch.UNKNOWNS] + span[scratch.ROWS_OF])
-    world._matrix = np.zeros(span[scratch.UNKNOWNS] * (3 * span[scratch.BAND] + 1))
-    world._more, world._pivots = np.zeros(span[scratch.UNKNOWNS]), np.zeros(span[scratch.UNKNOWNS], np.int64)
+    J = stepper.islands.arrays
+    order_unknowns(J.COMPONENT, J.MEMBER, J.LINK, 0, condensed)
+    C = J.COMPONENT[0]
+    stepper.islands.use(
+        J._replace(
+            RIGHT=np.zeros(2 * C.unknowns + C.impulses), MATRIX=np.zeros(C.unknowns * (3 * C.band + 1)),
+            MORE=np.zeros(C.unknowns), PIVOTS=np.zeros(C.unknowns, np.int64),
+        )
+    )  # fmt: skip
 
 
 def linked() -> pymunk.Space:
@@ -265,8 +270,8 @@ def test_all_systems_step_an_island_alike() -> None:
     for rigid in (0, 2):
         space = linked()
         stepper = JointedSpace(space)
-        assert stepper.islands._span[0, scratch.RIGID] == 2
-        stepper.islands._span[0, scratch.RIGID] = rigid
+        assert stepper.islands.arrays.COMPONENT[0].rigid == 2
+        stepper.islands.arrays.COMPONENT[0].rigid = rigid
         for _ in range(60):
             stepper.step(1 / 60)
             assert stepper.status <= 1

@@ -8,7 +8,6 @@ import numpy as np
 import pymunk
 import pytest
 
-from eeca_pymunk.joints.layout import CLAMPED, MOTORS, PROJECTED, SUPPORTS
 from scenes.linkages import body, empty, pendulum, point_double
 
 from .driving import error, ledger_closes, run
@@ -73,7 +72,7 @@ def test_motor_spins_up_with_its_force_then_holds_its_rate() -> None:
         stepper.step(1 / 60)
     assert wheel.angular_velocity == pytest.approx(3.0, abs=1e-13)
     assert wheel.angle == pytest.approx(0.5 * 1.5 * 3.0 + 0.5 * 3.0, abs=1e-12)
-    assert stepper.ledger[MOTORS] == pytest.approx(2.25, abs=1e-13)
+    assert stepper.ledger.motors == pytest.approx(2.25, abs=1e-13)
 
 
 @pytest.mark.parametrize("ratio", [2.5, -1.5])
@@ -111,7 +110,7 @@ def test_tank_rubs_to_rest_as_coulomb_says() -> None:
     assert tank.position.length == pytest.approx(25.0 / 4.0, abs=1e-3)
     assert tank.angle == pytest.approx(36.0 / 5.0, abs=1e-3)
     assert tank.velocity.length < 1e-12
-    assert stepper.ledger[CLAMPED] == pytest.approx(0.5 * 25.0 + 0.5 * 0.4 * 36.0, rel=1e-12)
+    assert stepper.ledger.clamped == pytest.approx(0.5 * 25.0 + 0.5 * 0.4 * 36.0, rel=1e-12)
 
 
 def test_kinematic_support_books_its_work() -> None:
@@ -128,7 +127,7 @@ def test_kinematic_support_books_its_work() -> None:
         stepper.step(1 / 60)
     assert crank.angle == pytest.approx(10.0, abs=1e-12)
     assert error(space) < 1e-13
-    assert abs(stepper.ledger[SUPPORTS]) > 0.1
+    assert abs(stepper.ledger.supports) > 0.1
     ledger_closes(stepper, start, 10.0)
 
 
@@ -154,10 +153,10 @@ def test_pushed_bodies_are_projected_once() -> None:
     stepper = run(space, 1 / 60, 30)
     along = bob.position.normalized()
     bob.velocity += 2.0 * along
-    before = stepper.ledger[PROJECTED]
+    before = stepper.ledger.projected
     stepper.step(1 / 60)
-    assert stepper.ledger[PROJECTED] - before == pytest.approx(2.0, rel=0.02)
-    first = stepper.ledger[PROJECTED]
+    assert stepper.ledger.projected - before == pytest.approx(2.0, rel=0.02)
+    first = stepper.ledger.projected
     for _ in range(30):
         stepper.step(1 / 60)
-    assert stepper.ledger[PROJECTED] == first
+    assert stepper.ledger.projected == first

@@ -8,7 +8,6 @@ import numpy as np
 import pymunk
 import pytest
 
-from eeca_pymunk.joints.layout import LIMITED, PROJECTED
 from scenes.linkages import body, chain, empty
 
 from .driving import error, ledger_closes, run
@@ -31,7 +30,7 @@ def test_ratchet_goes_one_way(ratchet: float) -> None:
     assert pawl.angle == pytest.approx(notch, abs=1e-12)
     assert abs(wheel.angular_velocity) < 1e-10
     ledger_closes(stepper, 1.0, 1.0)
-    assert stepper.ledger[LIMITED] == pytest.approx(1.0 - 0.5 * notch**2, rel=1e-12)
+    assert stepper.ledger.limited == pytest.approx(1.0 - 0.5 * notch**2, rel=1e-12)
 
 
 def test_bead_slides_down_its_groove_and_stops_at_the_end() -> None:
@@ -48,7 +47,7 @@ def test_bead_slides_down_its_groove_and_stops_at_the_end() -> None:
         stepper.step(1 / 60)
     np.testing.assert_allclose(bead.position, (4.0, -3.0), atol=1e-11)
     assert bead.velocity.length < 1e-11
-    assert stepper.ledger[LIMITED] == pytest.approx(2.0 * 9.81 * 2.7, rel=1e-12)
+    assert stepper.ledger.limited == pytest.approx(2.0 * 9.81 * 2.7, rel=1e-12)
     ledger_closes(stepper, start, 60.0)
 
 
@@ -61,7 +60,7 @@ def test_rope_is_never_longer_than_its_length() -> None:
     for _ in range(120):
         stepper.step(1 / 60)
         assert weight.position.length < 1.0 + 1e-11
-    assert stepper.ledger[LIMITED] == pytest.approx(2.0 * 9.81 * 0.6 * 0.36, rel=1e-3)
+    assert stepper.ledger.limited == pytest.approx(2.0 * 9.81 * 0.6 * 0.36, rel=1e-3)
     ledger_closes(stepper, 0.0, 20.0)
 
 
@@ -73,7 +72,7 @@ def test_a_taut_rope_does_not_hold_what_is_thrown_inwards() -> None:
     weight.velocity = (0.0, 3.0)
     stepper.step(1 / 60)
     assert weight.position.y == pytest.approx(-1.0 + 3.0 / 60.0 - 0.5 * 9.81 / 3600.0, abs=1e-12)
-    assert stepper.ledger[PROJECTED] == 0.0
+    assert stepper.ledger.projected == 0.0
 
 
 def test_door_stops_at_its_limit_and_rests_there() -> None:
@@ -86,7 +85,7 @@ def test_door_stops_at_its_limit_and_rests_there() -> None:
         stepper.step(1 / 60)
         assert door.angle > -0.9 - 1e-12
     assert door.angle == pytest.approx(-0.9, abs=1e-12)
-    assert stepper.ledger[LIMITED] == pytest.approx(2.0 * 9.81 * 0.8 * math.sin(0.9), rel=1e-12)
+    assert stepper.ledger.limited == pytest.approx(2.0 * 9.81 * 0.8 * math.sin(0.9), rel=1e-12)
     ledger_closes(stepper, 0.0, 20.0)
 
 

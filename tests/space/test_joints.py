@@ -14,7 +14,6 @@ import pymunk
 import pytest
 
 import eeca_pymunk as ep
-from eeca_pymunk.joints.layout import TOUCHED
 from eeca_pymunk.space.joints import JointRows
 from scenes.linkages import bars, body, chain, empty, pendulum
 
@@ -392,7 +391,7 @@ def test_only_joints_of_partners_that_move_are_touched() -> None:
             world.gather()
         assert world.joints is not None
         world.joints.look(world.state, world.bodies.row, DT)
-        return [int(mark) for mark in world.joints.tie[:, TOUCHED]]
+        return [int(mark) for mark in world.joints.joint["touched"]]
 
     assert touched() == [0, 0, 0]
     hand.position = (1.0, 0.01)

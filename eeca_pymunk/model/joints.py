@@ -1,0 +1,298 @@
+"""Records of joints: the joints of a scene, the plan of their components, the memory of a component's step.
+
+A component is a set of bodies that hang together by joints. Bodies that joints cannot move bind nothing: they take part
+in several components.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, NamedTuple
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import Opener
+from ..compiled.records import Record, Rows
+from .bodies import Body
+
+
+class Joint(Record):
+    """A joint, in the order of the space: its parameters, and what steps leave in it.
+
+    A joint's impulse `lam` acts along its rows J, which are the *discrete* gradient of its function g over a step:
+    g1 - g0 = J . (h v_m), v_m = (v0 + v1)/2, so that J^T lam does no work where g does not change.
+    """
+
+    kind: int  # PIN ... ROTARY_SPRING
+    body: Annotated[IntArray, 2]  # rows of its bodies a and b
+    soft: int  # 1 if max_force is finite: rows of velocity at the end of the step, |lam| <= max_force h
+    anchor_a: Annotated[FloatArray, 2]  # in the frame of body a, from its centre of mass: length
+    anchor_b: Annotated[FloatArray, 2]
+    max_force: float  # force or torque; infinite for a joint that holds exactly
+    error_bias: float  # part of an error that is left after a unit of time
+    max_bias: float  # fastest closing speed
+    length: float  # of a pin: length, > 0
+    lower: float  # limits of a slide (length), of angle_b - angle_a (rad), of a groove's ends along it (length)
+    upper: float
+    normal: Annotated[FloatArray, 2]  # of a groove, on body a: unit normal
+    offset: float  # of a groove: n . (its points - centre of mass), length
+    stiffness: float  # of springs: force/length, torque/rad
+    damping: float  # of springs: force time/length, torque time/rad
+    rest: float  # of springs: length, rad
+    push: float  # of springs: force (torque on b) added to the linear law
+    ratio: float  # of a gear: angle_b ratio - angle_a = phase
+    phase: float
+    rate: float  # of a motor: spin_a - spin_b, rad/time
+    tooth: float  # of a ratchet: angle between notches, signed
+    tooth_phase: float  # of a ratchet: angle of one notch
+    notch: float  # of a ratchet: angle_b - angle_a does not go back beyond it, rad
+    side: int  # of a limit that holds: -1 the lower, 1 the upper, lam side <= 0; 0 between them
+    touched: int  # 0, EDITED, APART, LEFT_APART or GIVES_WAY
+    impulse: Annotated[FloatArray, 2]  # of the last step along the rows; of a spring along d, of a rotary one on b
+    last_step: float  # its dt; 0 if none
+    length_0: float  # of springs: length, or angle_a - angle_b, at the ends of the last step
+    length_1: float
+    work: float  # energy that the joint gave to its bodies in the last step
+    led: Annotated[FloatArray, 2, 3]  # accelerations that joints gave to bodies a and b last
+    known_parts: int  # parts of steps of order 4 that are known (`..joints.foresight`); the length of their steps
+    known_step: float
+    past_led: Annotated[FloatArray, 6, 6]  # accelerations of bodies a and b along their three ways in these parts
+    past_push: Annotated[FloatArray, 2, 6]  # impulses along two rows, over the lengths of the parts
+    owed: float  # of the first joint of a component: energy that steps whose joints did not hold have taken
+    compliance: float  # likewise: with which compliance (time²) joints gave way in the last step, 0 if they held
+
+
+# Kinds of joints.
+PIN, PIVOT, GROOVE, SLIDE, SPRING = 0, 1, 2, 3, 4
+GEAR, ROTARY_LIMIT, RATCHET, MOTOR, ROTARY_SPRING = 5, 6, 7, 8, 9
+
+# Why a joint is not taken to be closed. The user changed the joint or its bodies since the last step; it is still apart
+# from that; linear rows of a step left it so; it gives way elastically.
+EDITED, APART, LEFT_APART, GIVES_WAY = 1, 2, 3, 4
+
+# Fields that steps change.
+OF_STEPS = (
+    "side", "impulse", "last_step", "length_0", "length_1", "work", "led", "known_parts", "known_step", "past_led",
+    "past_push", "owed", "compliance",
+)  # fmt: skip
+
+
+class Component(Record):
+    """A component: its slices of `ComponentBody` and `Coupling`, its linear systems."""
+
+    first_body: int
+    end_body: int
+    first_joint: int
+    end_joint: int
+    unknowns: int  # size and half-width of its matrix
+    band: int
+    loops: int  # number of independent cycles of its graph
+    system: int  # WHOLE or CONDENSED
+    impulses: int  # number of unknowns beside the matrix
+    dual_size: int  # of its matrix in the rows alone: size and half-width
+    dual_band: int
+    rigid: int  # what a dual system is taken for: 2 everything, 1 what happens at an instant, 0 nothing
+    taut: int  # 1 if its loops held by their pull in the last step (`..joints.taut`)
+    boxes: int  # most rows of bounded impulses that may act, if few enough for `..joints.boxes`; else 0
+
+
+# Linear systems: of bodies and rows; of bodies alone (`..joints.condensed`); of rows alone (`..joints.dual`).
+WHOLE, CONDENSED, DUAL = 0, 1, 2
+
+
+class ComponentBody(Record):
+    """A body of a component."""
+
+    body: int  # row of `Body`, or their number + row of PARTNER
+    column: int  # first unknown of the body
+    freedoms: int  # number of its unknowns: 0 (joints cannot move it), 2 (joints do not turn it) or 3
+    cayley: int  # 1 if the body turns by 2 atan(chi/2), see `BodyStep`
+    first: int  # first joint with impulses on it, as `Coupling.following`
+
+
+class Coupling(Record):
+    """A joint of a component: its place there."""
+
+    kind: int  # as `Joint.kind`
+    body: Annotated[IntArray, 2]  # bodies a and b by their numbers in the component
+    side: int  # as `Joint.side`, in the present step
+    soft: int  # 0 for rows that hold exactly; BOUNDED, GIVEN or BOXED
+    rows: int  # number of rows, and first unknown of their impulses
+    first_row: int
+    joint: int  # row of `Joint`
+    first_dual: int  # its first unknown in a system in the rows alone
+    following: Annotated[IntArray, 2]  # next joint on body a, on body b: 2 k + (0 as its body a, 1 as b), -1 for none
+
+
+# Impulses within bounds; these given, for an answer to other impulses; these found by `..joints.boxes`.
+BOUNDED, GIVEN, BOXED = 1, 2, 3
+
+
+class BodyStep(Record):
+    """Scratch of a body over a step h of its component. Velocities and ways are along x, along y, about the centre.
+
+    The body takes the way h v_m = h (v0 + v1)/2 and turns by 2 atan(chi/2), chi = h w_m (Cayley), for then
+    r1 - r0 = chi z x r_m with r_m = (r0 + r1)/2 exactly, and energy and angular momentum are conserved both. A body
+    that no joint holds off its centre of mass, and one that cannot be turned, turns by chi; its levers are
+    tan(chi/2)/(chi/2) r_m.
+    """
+
+    pose: Annotated[FloatArray, 3]  # x, y, angle of the centre of mass at the start
+    v0: Annotated[FloatArray, 3]  # velocity at the start
+    v1: Annotated[FloatArray, 3]  # at the end; the unknowns
+    acceleration: Annotated[FloatArray, 3]  # without joints
+    mobility: Annotated[FloatArray, 3]  # 1/mass, 1/mass, 1/moment; 0 where joints cannot move
+    root: Annotated[FloatArray, 3]  # square roots of the mobilities
+    unroot: Annotated[FloatArray, 3]  # reciprocals of these, 0 where they are
+    cos: float  # of the angle at the start
+    sin: float
+    way: Annotated[FloatArray, 3]  # h v_m; the last is chi
+    turn_cos: float  # of the angle turned
+    turn_sin: float
+    slope: float  # derivative of the angle turned by chi
+    lever: float  # levers over r_m
+    turned: float  # angle turned
+    per: float  # turned/chi, its derivative by chi
+    bend: float
+    impulse: Annotated[FloatArray, 3]  # of the joints
+    lead: Annotated[FloatArray, 3]  # acceleration by joints that Newton's method begins with
+    inertia: Annotated[FloatArray, 3]  # diagonal of the bodies' part of a dual system, scaled; factored, the reciprocal
+    v_kept: Annotated[FloatArray, 3]  # velocities to come back to
+    saved_pose: Annotated[FloatArray, 3]  # at the start of the whole step
+    saved_velocity: Annotated[FloatArray, 3]
+    shift: Annotated[FloatArray, 3]  # how far closing of joints moved it at the start
+    travel: Annotated[FloatArray, 3]  # `shift` and the sum of `way` over all parts of the step
+    mean: Annotated[FloatArray, 2]  # integral of x, y over the parts' time: a constant force acts at that over h
+    cayley: int  # as in `ComponentBody`
+    column: int
+    freedoms: int
+    first: int
+
+
+class JointStep(Record):
+    """Scratch of a joint over a step of its component. Rows have six entries: three for body a, three for body b, along
+    x, along y, about the centre of mass."""
+
+    arm_a: Annotated[FloatArray, 2]  # arms at the start; of joints of angles the angle at the start, and nothing
+    arm_b: Annotated[FloatArray, 2]
+    apart: Annotated[FloatArray, 2]  # d = anchor b - anchor a at the start; of a groove: anchor b - centre a
+    normal: Annotated[FloatArray, 2]  # of a groove, at the start
+    drag: float  # damping that makes the midpoint rule as exact as exp(-c K h)
+    began: float  # of springs: length, or angle_a - angle_b, at the start
+    ended: float  # and at the end
+    lam: Annotated[FloatArray, 2]  # impulse along the rows, of springs their own
+    target: Annotated[FloatArray, 2]  # what the functions g shall be at the end; of soft joints: the speed
+    scale: Annotated[FloatArray, 2]  # 1/sqrt of the diagonal of G M^-1 G^T
+    bound: float  # max_force of a soft joint
+    size: float  # unit of g: length of the component, or 1 for angles
+    measure: float  # what limits bound, at the end: length, angle, place along a groove
+    total: Annotated[FloatArray, 2]  # impulse over all parts of the step
+    pushed: Annotated[FloatArray, 2]  # impulse of a correction
+    value: Annotated[FloatArray, 2]  # g at the end of the present iterate
+    force: Annotated[FloatArray, 6]  # J^T lam
+    rows: Annotated[FloatArray, 2, 6]  # J
+    slopes: Annotated[FloatArray, 2, 6]  # G = dg/d(h v_m)
+    weight: Annotated[FloatArray, 2]  # of the rows in a condensed system; 0 if they do not act, -1 if lam is known
+    missing: Annotated[FloatArray, 2]  # what a condensed system still lacks of its rows
+    frozen_rows: Annotated[FloatArray, 2, 6]  # scaled J of the factors of a linear system
+    frozen_slopes: Annotated[FloatArray, 2, 6]  # scaled G of these
+
+
+NO_BEND, OWN_TURN, FULL_BEND = 0, 1, 2  # what of STIFF is there: nothing, [2, 2] and [5, 5], all
+
+# What is solved for: the implicit step; poses or velocities that fit the joints; the step with rows of the start.
+STEP, POSES, SPEEDS, LINEAR_STEP = 0, 1, 2, 3
+
+
+class Progress(Record):
+    """How far the solutions of a component are, and what they may take."""
+
+    when: float  # instant in the step of a limit that is passed first
+    error: float  # of the present iterate, over the size of the component
+    near: float  # error of a step that is near enough, 0 for round-off
+    effort: float  # operations that solutions have taken since the step of the scene began; how many they may
+    budget: float
+    limit: float  # of `effort`, at which the step of a component gives up what its ladder has before linear rows
+    hurry: float  # likewise, from which on limits land instead of being met at their instants
+    side: int  # of the limit that is passed first
+    passes: int  # of correcting velocities, and tries of these with other limits
+    tries: int
+
+
+class JointLedger(Record):
+    """Energies of a step of a component. K is kinetic energy, W the work of the bodies' constant accelerations:
+
+    K1 - K0 - W + stored = motors + supports + closed - damped - limited - clamped - projected.
+    """
+
+    stored: float  # change of what springs hold
+    damped: float  # loss >= 0 in damped springs
+    limited: float  # loss >= 0 at limits
+    clamped: float  # loss >= 0 in joints that slip at their max_force
+    projected: float  # loss >= 0 of velocities that violated joints
+    motors: float  # work of motors, and of joints with a finite max_force where it is positive
+    supports: float  # work of bodies that move without being moved
+    closed: float  # work of closing joints that were apart at the start, of elastic stand-ins, of linear steps
+    turned_work: float  # with contacts: work of torques beyond that along the angle
+    lifted: float  # energy that separating overlapping bodies costs, paid from the losses of contacts
+
+
+# Status of a component's step: joints hold to round-off; the step was taken in parts; joints gave way elastically in
+# some part; rows of the start held at mid-velocity in some part: energy conserved, joints to O(h^2).
+EXACT, HALVED, ELASTIC, LINEAR = 0, 1, 2, 3
+
+
+class Tally(Record):
+    """Counters of the components of a scene."""
+
+    components: int
+    order: int  # 2 or 4
+    worst: int  # status of the step
+    repeats: int  # steps of components
+    answers: int  # linear system with which the component that is ready answers impulses, -1 for none
+
+
+class Joints(NamedTuple):
+    """The arrays of the joints of a scene.
+
+    JOINT (j,): bodies are rows of BODY (n rows) or n + row of PARTNER (x,), which joints cannot move. COMPONENT,
+    MEMBER, LINK: the plan. Scratch for the largest component: HINGE, LOCAL, of its joints and bodies; MATRIX, banded;
+    RIGHT, right sides; PIVOTS; MORE, of linear systems and bounded rows; STIFF (6, 6), derivative of a joint's force by
+    the ways of its bodies; PROGRESS; PART, the ledger of a part of the step. OF (n,): the component of a body, -1 for
+    none. KEPT (j,): the joints at the start of an interval. STEPPED (components,): their ledgers in their intervals.
+    """
+
+    JOINT: Rows[Joint]
+    PARTNER: Rows[Body]
+    COMPONENT: Rows[Component]
+    MEMBER: Rows[ComponentBody]
+    LINK: Rows[Coupling]
+    HINGE: Rows[JointStep]
+    LOCAL: Rows[BodyStep]
+    MATRIX: FloatArray
+    RIGHT: FloatArray
+    MORE: FloatArray
+    STIFF: FloatArray
+    PROGRESS: Progress
+    PART: JointLedger
+    PIVOTS: IntArray
+    OF: IntArray
+    KEPT: Rows[Joint]
+    STEPPED: Rows[JointLedger]
+    TALLY: Tally
+
+
+# What steps change.
+OF_JOINTS = (
+    "JOINT", "HINGE", "LOCAL", "STIFF", "PROGRESS", "PART", "PIVOTS", "KEPT", "STEPPED", "TALLY",
+)  # fmt: skip
+
+joints_of = Opener(Joints)
+
+
+class Workspace(NamedTuple):
+    """Component s of the joints J, for its step: link (joints,) are its joints; how many joints and bodies it has."""
+
+    J: Joints
+    s: int
+    link: Rows[Coupling]
+    joints: int
+    bodies: int
