@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import ast
 import csv
 import importlib.util
 import os
 import re
 import runpy
+import shutil
 from dataclasses import replace
 from importlib import import_module
 from inspect import signature
@@ -20,6 +22,7 @@ from tqdm import tqdm
 import eeca_pymunk as ep
 import scenes
 from comparisons import (
+    ablation,
     datasets,
     detection,
     film,
@@ -45,7 +48,8 @@ from comparisons.__main__ import NAMES, main
 from comparisons.hard_cases import matrix
 from comparisons.hopper import crossed, deepest_overlap
 from comparisons.output import Output
-from scenes import linkages, pendulum
+from eeca_pymunk.model import parameters
+from scenes import layouts, linkages, pendulum
 from scenes.bars import Bars
 
 
@@ -380,6 +384,36 @@ def test_short_piles_keep_their_books() -> None:
     assert all(row["x native 10"] == 1.0 for row in rows if row["stepper"] == "native 10")
     shown = piles.summary([{**row, "N": piles.COUNTS[0]} for row in rows])
     assert [row["kind"] for row in shown] == list(piles.KINDS)
+
+
+def test_ablation_switches_each_heuristic_off_in_a_copy(tmp_path: Path) -> None:
+    heuristics = {n: p for found in parameters.table().values() for n, p in found.items() if p.kind == "heuristic"}
+    assert ablation.OFF.keys() == heuristics.keys()
+    copy = tmp_path / "eeca_pymunk" / "model" / "parameters"
+    shutil.copytree(Path(parameters.__file__).parent, copy)
+    for name, value in ablation.OFF.items():
+        ablation.switched(name, value, tmp_path)
+    with pytest.raises(ValueError, match="no heuristic"):
+        ablation.switched("GAP_ROUND_OFF", "0.0", tmp_path)
+    for path in copy.glob("*.py"):
+        for node in ast.parse(path.read_text()).body:
+            if isinstance(node, ast.Assign) and isinstance(node.value, ast.Call):
+                name = ast.unparse(node.targets[0])
+                if name in heuristics:
+                    value = eval(ast.unparse(node.value.args[0]))
+                    assert value == eval(ablation.OFF[name]) != heuristics[name].value, name
+                    assert isinstance(value, type(heuristics[name].value)), name
+
+
+@pytest.mark.parametrize("layout", layouts.LAYOUTS)
+@pytest.mark.parametrize("kind", layouts.KINDS)
+def test_layouts_begin_apart_and_come_to_rest(layout: str, kind: str) -> None:
+    assert piles.deepest(layouts.build(layout, kind, 30)) == 0.0
+    row = ablation.pile(layout, kind, seed=1, count=12, steps=240)
+    assert row["rise"] <= 1e-13
+    assert row["depth"] < 0.05
+    if kind == "boxes":  # disks roll on: nothing resists
+        assert row["moving"] <= 0.25
 
 
 def test_depths_of_piles_are_seen() -> None:

@@ -30,7 +30,7 @@ MOST_HITS = heuristic(
 )
 MOST_HITS_ELASTIC = heuristic(64, "impacts in a step", "The same for an elastic island.")
 HITS_TIMES_BODIES = heuristic(
-    16, "impacts times bodies", "Small islands may be hit oftener: until impacts times bodies reach this."
+    64, "impacts times bodies", "Small islands may be hit oftener: until impacts times bodies reach this."
 )
 PASSED_OVER_DEPTH = heuristic(
     0.1,
