@@ -14,7 +14,9 @@ from ..compiled.records import Rows
 from ..model.shapes import Link
 from .sides import CORNERS
 
-_SLENDER = 0.5  # area over the square of half the length, below which a polygon is thin: as long as eight times its width
+_SLENDER = 0.5  # area over the square of half the length, below which a polygon is thin: eight times as long as wide
+    0.5  # area over the square of half the length, below which a polygon is thin: as long as eight times its width
+)
 _MEET = 1e-9  # of the segments' size, by which ends that meet may be apart
 _SIDES, _MANY = 64, 1 << 16  # pairs of every thin shape that moves, whose sides are remembered; of all, at most
 _CHUNK = 256
@@ -67,7 +69,8 @@ def note_corners(LINK: Rows[Link], VERTEX: FloatArray, CORNER: FloatArray) -> No
             place = np.einsum("ijk,jk->ij", c[:, None] - start, along) / length**2
             nearest = start + np.clip(place, 0.0, 1.0)[..., None] * along
             tolerance = _MEET * np.maximum(length, length[first : first + _CHUNK, None])
-            meet = np.hypot(*(nearest - c[:, None]).T).T <= tolerance
+            apart = nearest - c[:, None]
+            meet = (apart**2).sum(axis=2) <= tolerance**2
             meet &= owner == owner[first : first + _CHUNK, None]
             for i, j in np.argwhere(meet).tolist():
                 s = first + i

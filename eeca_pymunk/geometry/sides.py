@@ -13,8 +13,8 @@ What is farther apart has its side from the geometry, and the forecasts of its n
 
 Segments of one body that meet, end to end or an end on the other, are one boundary. What lies in the corner between
 two, by its side of one, and is nearest to the other where they meet, is on that one's side that looks into the corner:
-there its gap is the distance from the plane of that side, which goes on beyond the end. In a corner of less than 180
-degrees no other point of that plane is inside, so the corner stays what it is. (WORK[CORNERS], see `corners.py`)
+there it meets that side as if it went on beyond the end, by a tenth of the smaller shape. In a corner of less than 180
+degrees nothing of that is inside, so the corner stays what it is. (WORK[CORNERS], see `corners.py`)
 """
 
 from __future__ import annotations
@@ -33,8 +33,7 @@ _AGAINST, _ASIDE = -0.1, 0.7  # cosines of normals, below which one is on the ot
 _TOUCH = 1e-4  # of the smaller shape
 _HELD = 0.1  # of the smaller shape, by which contacts that forces hold may have come through one another
 _SCATTER = 40503
-_FACING, _STRAIGHT = 1.0 - 1e-9, 1e-6  # cosine, above which a shape is over a segment and not at its end; sine of the
-# angle beyond 180 degrees, or before, of segments that are one straight wall
+_STRAIGHT = 1e-6  # sine of the angle between segments, below which they are one straight wall
 
 
 @uncounted
@@ -131,19 +130,17 @@ def side_of(SHAPE: Rows[Shape], WORK: FloatArray, a: int, b: int) -> tuple[float
 
 
 @uncounted
-def corner_normal(
-    SHAPE: Rows[Shape], WORK: FloatArray, W: FloatArray, w: int, o: int, sx: float, sy: float
-) -> tuple[int, float, float]:
+def corner_of(
+    SHAPE: Rows[Shape], WORK: FloatArray, W: FloatArray, w: int, o: int, sx: float, sy: float, deep: float
+) -> tuple[int, float, float]:  # fmt: skip
     """Of shape o, which is nearest to the segment w, placed as W, along s, from o to w: the end of w at which it lies
-    in a corner, -1 if in none, and the normal (2) of the side of w that looks into that."""
+    in a corner, -1 if in none, and the normal (2) of the side of w that looks into that. There W goes on by `deep`."""
     ex, ey = W[1, 0] - W[0, 0], W[1, 1] - W[0, 1]
     end = 0
     if ex * sx + ey * sy < 0.0:
         end, ex, ey = 1, -ex, -ey
     length = math.sqrt(ex * ex + ey * ey)
     ux, uy = ex / length, ey / length
-    if abs(sx * uy - sy * ux) > _FACING:
-        return -1, 0.0, 0.0
     for turn in range(2):
         row = 4 * w + 2 * end + turn
         other = int(WORK[CORNERS, row, 0]) - 1
@@ -157,21 +154,9 @@ def corner_normal(
             continue
         mx, my = side_of(SHAPE, WORK, w, o)
         if mx * lx + my * ly >= _AGAINST:
+            W[end, 0], W[end, 1] = W[end, 0] - deep * ux, W[end, 1] - deep * uy
             return end, lx, ly
     return -1, 0.0, 0.0
-
-
-@uncounted
-def beyond_end(
-    W: FloatArray, end: int, S: FloatArray, s: int, lx: float, ly: float
-) -> tuple[float, int]:  # fmt: skip
-    """How far the s vertices of S are apart from the plane through an end of W along l, and the nearest of them."""
-    least, lowest = math.inf, 0
-    for i in range(s):
-        height = (S[i, 0] - W[end, 0]) * lx + (S[i, 1] - W[end, 1]) * ly
-        if height < least:
-            least, lowest = height, i
-    return least, lowest
 
 
 @uncounted
@@ -185,26 +170,24 @@ def closest_on_side(
     if not remembers(LINK, WORK, a, b):
         return d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q
     deep = _HELD * min(SHAPE[a].extent, SHAPE[b].extent)
-    if d <= deep:
-        if q == 2:
-            end, lx, ly = corner_normal(SHAPE, WORK, Q, b, a, nx, ny)
-            if end >= 0:
-                g, vertex = beyond_end(Q, end, P, p, lx, ly)
-                if g >= -deep:
-                    return g, -lx, -ly, P[vertex, 0], P[vertex, 1], False, 0, -math.inf, 0, -math.inf
-        if p == 2:
-            end, lx, ly = corner_normal(SHAPE, WORK, P, a, b, -nx, -ny)
-            if end >= 0:
-                g, vertex = beyond_end(P, end, Q, q, lx, ly)
-                if g >= -deep:
-                    x, y = Q[vertex, 0] - g * lx, Q[vertex, 1] - g * ly
-                    return g, lx, ly, x, y, False, 0, -math.inf, 0, -math.inf
-    key = a * SHAPE.shape[0] + b
-    row = side_row(WORK, key)
-    mx, my = WORK[SIDES, row, 1], WORK[SIDES, row, 2]
-    along, near = nx * mx + ny * my, near_side(SHAPE, a, b)
-    right = along >= _AGAINST and (along >= _ASIDE or d > near)
-    if WORK[SIDES, row, 0] != key + 1.0 or right or d > max(near, WORK[SIDES, row, 3]):
+    end = -1
+    if d <= deep and q == 2:
+        end, mx, my = corner_of(SHAPE, WORK, Q, b, a, nx, ny, deep)
+        mx, my = -mx, -my
+    if d <= deep and end < 0 and p == 2:
+        end, mx, my = corner_of(SHAPE, WORK, P, a, b, -nx, -ny, deep)
+    near = near_side(SHAPE, a, b)
+    if end >= 0:
+        d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q = closest(P, p, Q, q)
+        reach = deep
+    else:
+        key = a * SHAPE.shape[0] + b
+        row = side_row(WORK, key)
+        mx, my, reach = WORK[SIDES, row, 1], WORK[SIDES, row, 2], max(near, WORK[SIDES, row, 3])
+        if WORK[SIDES, row, 0] != key + 1.0:
+            return d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q
+    along = nx * mx + ny * my
+    if d > reach or (along >= _AGAINST and (along >= _ASIDE or d > near)):
         return d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q
     apart_p, edge_p, vertex_q = axis(P, p, Q, q, 1.0, mx, my)
     apart_q, edge_q, vertex_p = axis(Q, q, P, p, -1.0, mx, my)

@@ -63,7 +63,8 @@ def remembered(scene: Scene) -> list[AnyArray]:
     sizes = np.array([len(scene.POOL), end, len(scene.KEYS), len(used), len(scene.PUSHED), pushes], np.int64)
     return [
         sizes, *(np.asarray(getattr(scene, name)) for name in _WHOLE), scene.POOL[:end], scene.FLAG[:end],
-        scene.PUSHED_BY[:pushes], scene.PUSHED[:pushes], used, scene.KEYS[used], scene.FORCES[used], scene.WORK[SIDES:CORNERS],
+        scene.PUSHED_BY[:pushes], scene.PUSHED[:pushes], used, scene.KEYS[used], scene.FORCES[used],
+        scene.WORK[SIDES:CORNERS],
     ]  # fmt: skip
 
 
