@@ -14,9 +14,7 @@ from ..compiled.records import Rows
 from ..model.shapes import Link
 from .sides import CORNERS
 
-_SLENDER = 0.5  # area over the square of half the length, below which a polygon is thin: eight times as long as wide
-    0.5  # area over the square of half the length, below which a polygon is thin: as long as eight times its width
-)
+_SLENDER = 0.5  # area over (length / 2)², below which a polygon is thin: eight times as long as wide
 _MEET = 1e-9  # of the segments' size, by which ends that meet may be apart
 _SIDES, _MANY = 64, 1 << 16  # pairs of every thin shape that moves, whose sides are remembered; of all, at most
 _CHUNK = 256
