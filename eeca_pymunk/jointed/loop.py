@@ -22,7 +22,7 @@ from ..model.scene import Scene, scene_of
 from ..model.step import DONE, JOINTS_DUE, PUSHES_FULL
 from ..model.step import JOINTS as UNMET_JOINTS
 from .layout import COMPONENTS, REPEATS, WORST, Joints, joints_of
-from .meet import book_component
+from .meet import book_component, shorten
 from .solve import begin_span
 from .strike import collide
 
@@ -135,9 +135,15 @@ def resume_jointed(
         COUNT.phase = 1
         forecast_due(A, disks)
     if COUNT.phase == 1:
+        whole = A.PAR.dt
         met = follow_jointed(A, J, disks, lossy or A.PAR.pulled > 0.0)
         if met != DONE:
             return wish(met)
+        if A.PAR.dt < whole:
+            # The step was cut short.
+            for i in range(A.BODY.shape[0] - 1):
+                if A.STATE[i].island == i:
+                    shorten(A, J, i, A.PAR.dt)
         COUNT.phase = 2
     if COUNT.logged + COUNT.pushes > A.LOG.shape[0]:
         return ROOM_FOR_EVENTS
