@@ -8,12 +8,13 @@ from .arrays import FloatArray
 from .compiled.records import Rows, columns
 from .impacts.scene import EventLoop
 from .jointed.scene import JointedLoop
-from .joints.layout import BODY_A, BODY_B, JOINT_COLUMNS, KIND, MAX_BIAS, NOTCH, RATCHET, SOFT
+from .joints.layout import BODY_A, BODY_B, JOINT_COLUMNS, KIND, LENGTH, MAX_BIAS, NOTCH, PIN, RATCHET, SOFT
 from .layout import LEFT
 from .model.shapes import Link
 from .space.world import World
 
 _FIXED = ["inv_mass", "inv_inertia", "extent", "elasticity", "friction"]  # fields of BODY that no step changes
+_APART = 1e-7  # of the length of a pin
 
 
 class Saved:
@@ -72,6 +73,10 @@ class Saved:
             return False
         differs = method.joint != joints.joint
         differs[:, MAX_BIAS + 1 : JOINT_COLUMNS] = False
+        # pymunk's pickles do not have the length of a pin: it is measured anew, up to what the joint is apart.
+        pins = joints.tie[:, KIND] == PIN
+        apart = np.abs(method.joint[pins, LENGTH] - joints.joint[pins, LENGTH])
+        differs[pins, LENGTH] = apart > _APART * joints.joint[pins, LENGTH]
         # What steps change: how far a ratchet has come, the law of a spring with a function of its own.
         differs[joints.tie[:, KIND] == RATCHET, NOTCH] = False
         differs[joints.functions] = False
