@@ -20,12 +20,12 @@ from .islands import TOUCH, approach, carrier, remembered, rests
 
 _TURN = 0.1  # rad
 PARTS = 64.0  # of a step, that a span is at least
-_FEW = 12  # contacts
+FEW = 12  # contacts
 _STICKS = 1e-6  # relative to the friction there can be, and to the slip, below which there is none
 _OF_CROWD, _AGAIN = 24, 12  # sweeps of a crowd; of one that was hit in this step
-_WAY, _ANGLE = 0.5, 0.5  # of the smaller shape, and rad: how far bodies of a contact go about one another in a span
+WAY, ANGLE = 0.5, 0.5  # of the smaller shape, and rad: how far bodies of a contact go about one another in a span
 _DEPTH, _DEEP = 0.05, 0.1  # of the smaller shape, and of both widths: how much deeper a contact may be after a span;
-_FLAT = 1e-4  # at least this of the smaller shape
+FLAT = 1e-4  # at least this of the smaller shape
 _AS_DEEP = 0.03  # part of that by which it may be where it is as deep already
 FARTHER = 1.5  # how many times as far as they should bodies may go in a span
 _RATTLES = 1e-3  # relative to that friction, below which slip is no slide where contacts that bear rattle as fast
@@ -82,7 +82,7 @@ def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: Int
                         if not busy:
                             reach = 1.1 * (max(-u, 0.0) * h + A.PAR.pulled * h * h) + TOUCH * small
                         # No farther do they go in a span; what does meets at its time of impact.
-                        reach = min(reach, 2.0 * _WAY * small)
+                        reach = min(reach, 2.0 * WAY * small)
                     if g > reach:
                         continue
                     e = law(A.SHAPE, A.RULE, s, o)[0]
@@ -132,7 +132,7 @@ def span_of(A: Scene, found: IntArray, t: float) -> float:
     ones go round one another."""
     BODY, LINK = A.BODY, A.LINK
     h = A.PAR.dt - t
-    if found.shape[0] > _FEW or hurried(A):
+    if found.shape[0] > FEW or hurried(A):
         return h
     rate = 0.0
     for c in range(found.shape[0]):
@@ -151,18 +151,32 @@ def span_of(A: Scene, found: IntArray, t: float) -> float:
 
 @uncounted
 def near_span(A: Scene, found: IntArray, h: float) -> float:
-    """The part of a span h in which the bodies of pairs go no farther about one another than `_WAY` of the smaller one,
-    and turn by no more than `_ANGLE`, with the velocities that they have: beyond it no contact is where it was."""
+    """The part of a span h in which the bodies of pairs go no farther about one another than `WAY` of the smaller one,
+    and turn by no more than `ANGLE`, with the velocities that they have: beyond it no contact is where it was."""
     BODY, LINK, rate = A.BODY, A.LINK, 0.0
     for c in range(found.shape[0]):
         i, j = LINK[found[c, 0]].owner, LINK[found[c, 1]].owner
         small = min(A.SHAPE[found[c, 0]].extent, A.SHAPE[found[c, 1]].extent)
         way = norm(BODY[j].vx - BODY[i].vx, BODY[j].vy - BODY[i].vy)
-        rate = max(rate, way / (_WAY * small))
+        rate = max(rate, way / (WAY * small))
         for s in (found[c, 0], found[c, 1]):
             if LINK[s].vertices > 1:
-                rate = max(rate, abs(BODY[LINK[s].owner].spin) / _ANGLE)
+                rate = max(rate, abs(BODY[LINK[s].owner].spin) / ANGLE)
     return h if rate * h <= 1.0 else 1.0 / rate
+
+
+@uncounted
+def too_deep(gap: float, closing: float, small: float, thick: float, few: bool) -> float:
+    """How many times too long a span is in which a contact closes by more than it has room for; 0 if it is not. `thick`
+    are half the widths of both shapes, `few` whether there are few contacts."""
+    deep = max(min(_DEPTH * small, _DEEP * thick), FLAT * small)
+    room = max(gap, 0.0) + deep
+    if few:
+        # What is as deep already is to go hardly deeper, where few are solved again for it.
+        room = max(gap + deep, _AS_DEEP * deep)
+    if closing > room + 0.5 * min(deep, room):
+        return max(closing / room, 1.01 * FARTHER)
+    return 0.0
 
 
 @kernel
@@ -179,20 +193,14 @@ def strayed(
         small = min(SHAPE[a].extent, SHAPE[b].extent)
         x = V[q, 0] + VN[q, 0] - V[p, 0] - VN[p, 0]
         y = V[q, 1] + VN[q, 1] - V[p, 1] - VN[p, 1]
-        far = max(far, 0.5 * h * norm(x, y) / (_WAY * small))
+        far = max(far, 0.5 * h * norm(x, y) / (WAY * small))
         if LINK[a].vertices > 1 or LINK[b].vertices > 1:
             turn = max(abs(V[p, 2] + VN[p, 2]), abs(V[q, 2] + VN[q, 2]))
-            far = max(far, 0.5 * h * turn / _ANGLE)
+            far = max(far, 0.5 * h * turn / ANGLE)
         closing = -0.5 * h * (ROWS[z].un + normal_rate(P, Q, ROWS, VN, z))
-        if closing > _FLAT * small:
+        if closing > FLAT * small:
             thick = half_width(SHAPE, LINK, VERTEX, a) + half_width(SHAPE, LINK, VERTEX, b)
-            deep = max(min(_DEPTH * small, _DEEP * thick), _FLAT * small)
-            # What is as deep already is to go hardly deeper, where few are solved again for it.
-            room = max(ROWS[z].gap, 0.0) + deep
-            if m <= _FEW:
-                room = max(ROWS[z].gap + deep, _AS_DEEP * deep)
-            if closing > room + 0.5 * min(deep, room):
-                far = max(far, max(closing / room, 1.01 * FARTHER))
+            far = max(far, too_deep(ROWS[z].gap, closing, small, thick, m <= FEW))
     return far
 
 
@@ -206,7 +214,7 @@ def stick_time(
     changes it by F sum mu lam / sum |beta| (single ones of a body's contacts are not unique): so fast the slip is over
     after h |u_t| / (|F| sum mu lam / sum |beta| - a_t h).
     """
-    if m > _FEW:
+    if m > FEW:
         return h
     limit, beta, slip, others, rattle = 0.0, 0.0, 0.0, 0.0, 0.0
     for z in range(m):

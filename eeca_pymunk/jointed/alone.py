@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from ..compiled import uncounted
+from ..impacts.coming import before_end
 from ..joints.scratch import BEFORE, BODY_0, BODY_1, FREEDOMS, M_BODY, M_FREEDOMS, POSE, TRAVEL
 from ..model.scene import Scene
 from ..pairs.rules import barred
@@ -56,7 +57,7 @@ def begin_alone(A: Scene, J: Joints, root: int, t: float, h: float) -> None:
             lay_path(A, J, s, J.MEMBER[first + i, M_BODY], i, h)
     A.COUNT.solves += 1
     A.MEMBER[root].open = 1
-    A.RESTING[root].until = math.inf
+    A.RESTING[root].until = t + h if before_end(A, t + h) else math.inf
 
 
 @uncounted
