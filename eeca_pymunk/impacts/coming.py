@@ -16,18 +16,14 @@ from ..pairs.lists import far_apart
 from ..pairs.rules import barred, law
 from ..rows.build import normal_rate, tangent_rate
 from ..sustained.contacts import CROWD
+from .depths import FEW, FLAT, too_deep
 from .islands import TOUCH, approach, carrier, remembered, rests
 
 _TURN = 0.1  # rad
 PARTS = 64.0  # of a step, that a span is at least
-FEW = 12  # contacts
 _STICKS = 1e-6  # relative to the friction there can be, and to the slip, below which there is none
 _OF_CROWD, _AGAIN = 24, 12  # sweeps of a crowd; of one that was hit in this step
 WAY, ANGLE = 0.5, 0.5  # of the smaller shape, and rad: how far bodies of a contact go about one another in a span
-_DEPTH, _DEEP = 0.05, 0.1  # of the smaller shape, and of both widths: how much deeper a contact may be after a span;
-FLAT = 1e-4  # at least this of the smaller shape
-_AS_DEEP = 0.03  # part of that by which it may be where it is as deep already
-FARTHER = 1.5  # how many times as far as they should bodies may go in a span
 _RATTLES = 1e-3  # relative to that friction, below which slip is no slide where contacts that bear rattle as fast
 
 
@@ -163,20 +159,6 @@ def near_span(A: Scene, found: IntArray, h: float) -> float:
             if LINK[s].vertices > 1:
                 rate = max(rate, abs(BODY[LINK[s].owner].spin) / ANGLE)
     return h if rate * h <= 1.0 else 1.0 / rate
-
-
-@uncounted
-def too_deep(gap: float, closing: float, small: float, thick: float, few: bool) -> float:
-    """How many times too long a span is in which a contact closes by more than it has room for; 0 if it is not. `thick`
-    are half the widths of both shapes, `few` whether there are few contacts."""
-    deep = max(min(_DEPTH * small, _DEEP * thick), FLAT * small)
-    room = max(gap, 0.0) + deep
-    if few:
-        # What is as deep already is to go hardly deeper, where few are solved again for it.
-        room = max(gap + deep, _AS_DEEP * deep)
-    if closing > room + 0.5 * min(deep, room):
-        return max(closing / room, 1.01 * FARTHER)
-    return 0.0
 
 
 @kernel

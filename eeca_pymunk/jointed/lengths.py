@@ -12,7 +12,8 @@ from ..compiled import uncounted
 from ..compiled.records import Rows
 from ..geometry.flight import norm
 from ..geometry.manifold import half_width
-from ..impacts.coming import ANGLE, FEW, FLAT, WAY, hurried, too_deep
+from ..impacts.coming import ANGLE, WAY, hurried
+from ..impacts.depths import FEW, FLAT, sunk, too_deep
 from ..impacts.spans import Local
 from ..joints.scratch import BUDGET, EFFORT
 from ..model.contacts import Row
@@ -80,4 +81,4 @@ def too_long(
         if closing > FLAT * small:
             thick = half_width(A.SHAPE, A.LINK, A.VERTEX, a) + half_width(A.SHAPE, A.LINK, A.VERTEX, b)
             far = max(far, too_deep(ROWS[z].gap, closing, small, thick, m <= FEW))
-    return far
+    return max(far, sunk(A, isle, motion.END, P, Q, ROWS, KEY, m, True))

@@ -9,7 +9,8 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import kernel, uncounted
 from ..compiled.records import empty
-from ..impacts.coming import FARTHER, before_end, pairs_of
+from ..impacts.coming import before_end, pairs_of
+from ..impacts.depths import FARTHER
 from ..impacts.islands import lossy, members
 from ..impacts.missed import miss
 from ..impacts.spans import AGAIN, Local, dismiss, lay_out_island, open_contacts
