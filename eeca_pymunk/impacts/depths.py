@@ -48,6 +48,8 @@ def sunk(
         if pair == last or not (all or remembers(A.LINK, A.WORK, a, b)):
             continue
         last = pair
+        if isle.WHO[p] != A.LINK[a].owner:
+            p, q = q, p
         gap = ROWS[z].gap
         if z + 1 < m and KEY[z + 1] >> 1 == pair:
             gap = min(gap, ROWS[z + 1].gap)
