@@ -14,7 +14,8 @@ import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..compiled.records import columns, put
-from ..geometry.gap import ROUND_OFF, gaps
+from ..geometry.gap import gaps
+from ..model.parameters.detection import GAP_ROUND_OFF
 from ..pairs.candidates import candidates
 from ..pairs.setup import near_lists, rebuilt
 from ..report import Contacts, Details
@@ -191,7 +192,7 @@ class Disks:
         # The path of a thrown body leaves its chord.
         bow = (0.125 * start.dt**2) * np.hypot(*start.acceleration.T)
         far = np.abs(start.position).max(axis=1)
-        reach = 2.0 * (np.hypot(*displacement.T) + bow + ROUND_OFF * far + extra)
+        reach = 2.0 * (np.hypot(*displacement.T) + bow + GAP_ROUND_OFF * far + extra)
         found, out = self._candidates(reach)
         order = np.lexsort((found[:, 1], found[:, 0]))
         found, out = found[order], out[order]

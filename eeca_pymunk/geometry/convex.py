@@ -10,7 +10,7 @@ distance from below, and is the distance if the foot of the nearest vertex lies 
 less far apart). Else some vertex and some edge of the other core are closest. Two parallel segments, and cores that
 share a corner, need the second way also where s = 0.
 
-Directions between points that are closer than `CLOSE` of the coordinates are round-off: there the edge's normal holds.
+Directions between points that are closer than `DIRECTION_ROUND_OFF` of the coordinates are round-off: there the edge's normal holds.
 """
 
 from __future__ import annotations
@@ -20,11 +20,9 @@ import math
 from ..arrays import FloatArray
 from ..compiled import uncounted
 from ..compiled.records import Rows
+from ..model.parameters.detection import AXIS_TIE, DIRECTION_ROUND_OFF, EDGE_TIE
 from ..model.shapes import Link
 
-CLOSE = 1e-12  # distance relative to coordinates and sizes, below which its direction is round-off
-_TIE = 1e-14  # by which the axis of a longer edge may be less far apart, relative likewise
-_LONGER = 1.0 + 1e-9  # squared lengths of edges: less is round-off
 _FAR = math.inf
 
 
@@ -121,7 +119,7 @@ def prefers_second(
         return False
     length_p = along_edge(P, p, edge_p, 0.0, 0.0)[1]
     length_q = along_edge(Q, q, edge_q, 0.0, 0.0)[1]
-    return length_q > length_p * _LONGER
+    return length_q > length_p * EDGE_TIE
 
 
 @uncounted
@@ -147,7 +145,7 @@ def point_core(x: float, y: float, Q: FloatArray, q: int) -> tuple[float, float,
                 corner = edge + 1 if edge + 1 < q else 0
             dx, dy = Q[corner, 0] - x, Q[corner, 1] - y
             d = math.sqrt(dx * dx + dy * dy)
-            if d > CLOSE * (abs(x) + abs(y) + math.sqrt(squared)):
+            if d > DIRECTION_ROUND_OFF * (abs(x) + abs(y) + math.sqrt(squared)):
                 return d, dx / d, dy / d, False, edge, apart
     return apart, -Q[edge, 2], -Q[edge, 3], True, edge, apart
 
@@ -172,8 +170,8 @@ def closest(
     apart_q, edge_q, vertex_p = separation(Q, q, P, p)
     size = abs(P[0, 0]) + abs(P[0, 1]) + abs(Q[0, 0]) + abs(Q[0, 1])
     size += abs(P[1, 0] - P[0, 0]) + abs(P[1, 1] - P[0, 1]) + abs(Q[1, 0] - Q[0, 0]) + abs(Q[1, 1] - Q[0, 1])
-    near = CLOSE * size
-    second = prefers_second(P, p, edge_p, apart_p, Q, q, edge_q, apart_q, _TIE * size)
+    near = DIRECTION_ROUND_OFF * size
+    second = prefers_second(P, p, edge_p, apart_p, Q, q, edge_q, apart_q, AXIS_TIE * size)
     apart = apart_q if second else apart_p
     if apart > -near:
         # The face nearest to a vertex; without one, any vertex and edge.

@@ -11,11 +11,10 @@ import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..compiled.records import Rows
+from ..model.parameters.detection import CORNER_MEET, SLENDER
 from ..model.shapes import Link
 from .sides import CORNERS
 
-_SLENDER = 0.5  # area over (length / 2)², below which a polygon is thin: eight times as long as wide
-_MEET = 1e-9  # of the segments' size, by which ends that meet may be apart
 _SIDES, _MANY = 64, 1 << 16  # pairs of every thin shape that moves, whose sides are remembered; of all, at most
 _CHUNK = 256
 
@@ -49,7 +48,7 @@ def thin(LINK: Rows[Link], VERTEX: FloatArray) -> BoolArray:
         area = np.bincount(of, 0.5 * (x * y[following] - y * x[following]), len(LINK))
         length = np.zeros(len(LINK))
         np.maximum.at(length, of, np.hypot(x, y))
-        flat[some] = area[some] < _SLENDER * (0.5 * length[some]) ** 2
+        flat[some] = area[some] < SLENDER * (0.5 * length[some]) ** 2
     return flat
 
 
@@ -66,7 +65,7 @@ def note_corners(LINK: Rows[Link], VERTEX: FloatArray, CORNER: FloatArray) -> No
             c = points[first : first + _CHUNK]
             place = np.einsum("ijk,jk->ij", c[:, None] - start, along) / length**2
             nearest = start + np.clip(place, 0.0, 1.0)[..., None] * along
-            tolerance = _MEET * np.maximum(length, length[first : first + _CHUNK, None])
+            tolerance = CORNER_MEET * np.maximum(length, length[first : first + _CHUNK, None])
             apart = nearest - c[:, None]
             meet = (apart**2).sum(axis=2) <= tolerance**2
             meet &= owner == owner[first : first + _CHUNK, None]
@@ -81,7 +80,7 @@ def _note(
 ) -> None:  # fmt: skip
     """Note that segment j, along v, passes or ends at end e of segment s, so far from its own start."""
     length = float(np.hypot(*v))
-    for sign, ends in ((1.0, place > (1.0 - _MEET) * length), (-1.0, place < _MEET * length)):
+    for sign, ends in ((1.0, place > (1.0 - CORNER_MEET) * length), (-1.0, place < CORNER_MEET * length)):
         if ends:
             continue
         scale = sign / (length * float(np.hypot(*u)))

@@ -17,13 +17,11 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
 from ..compiled.records import Rows
 from ..model.bodies import Body
+from ..model.parameters.detection import CORNER_ROUND_OFF, GAP_ROUND_OFF
 from ..model.shapes import Link, Shape
 from .convex import place, point_core
 from .flight import pose
 from .sides import closest_on_side
-
-ROUND_OFF = 1e-12  # of lengths, relative to positions and sizes
-CORNERS = 4.0  # times that, of corners placed by their angle
 
 
 @uncounted
@@ -127,5 +125,5 @@ def touching(BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], a: int, b: 
     if not ((a < disks and (b < disks or j == ground)) or (b < disks and i == ground)):
         extent_a = SHAPE[a].bound if i == ground else SHAPE[a].extent
         extent_b = SHAPE[b].bound if j == ground else SHAPE[b].extent
-        size = CORNERS * (size + max(extent_a, extent_b))
-    return ROUND_OFF * (far + size)
+        size = CORNER_ROUND_OFF * (size + max(extent_a, extent_b))
+    return GAP_ROUND_OFF * (far + size)

@@ -13,12 +13,11 @@ import math
 from ..arrays import FloatArray
 from ..compiled import uncounted
 from ..compiled.records import Rows
+from ..model.parameters.detection import FACE_WIDTH
 from ..model.shapes import Link, Shape
 from .convex import place, prefers_second
 from .gap import ordered_gap
 from .sides import closest_on_side
-
-_WIDTH = 1e-6  # of a common face relative to the shapes, below which it is one point
 
 
 @uncounted
@@ -169,7 +168,7 @@ def face(
         low_p, high_p, top, size_p = support_range(WORK[0], p, nx, ny, slack)
         low_q, high_q, _, size_q = support_range(WORK[1], q, -nx, -ny, slack)
         low, high = max(low_p, -high_q), min(high_p, -low_q)
-        if high - low > _WIDTH * max(size_p, size_q):
+        if high - low > FACE_WIDTH * max(size_p, size_q):
             count = 2
             top += SHAPE[a].rounding + 0.5 * g
             for k in range(2):

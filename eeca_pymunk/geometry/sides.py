@@ -24,16 +24,13 @@ import math
 from ..arrays import FloatArray
 from ..compiled import uncounted
 from ..compiled.records import Rows
+from ..model.parameters.detection import SIDE_HELD, SIDE_OPPOSITE, SIDE_TOUCH, SIDE_UNSURE, STRAIGHT
 from ..model.shapes import Link, Shape
 from .convex import closest
 
 SIDES, CORNERS = 2, 3  # of WORK
 _PROBES = 16  # rows that a pair may stand in
-_AGAINST, _ASIDE = -0.1, 0.7  # cosines of normals, below which one is on the other side; is not m, of cores that touch
-_TOUCH = 1e-4  # of the smaller shape
-_HELD = 0.1  # of the smaller shape, by which contacts that forces hold may have come through one another
 _SCATTER = 40503
-_STRAIGHT = 1e-6  # sine of the angle between segments, below which they are one straight wall
 
 
 @uncounted
@@ -68,13 +65,13 @@ def note_side(
     key = a * SHAPE.shape[0] + b
     row = side_row(WORK, key)
     WORK[SIDES, row, 0], WORK[SIDES, row, 1], WORK[SIDES, row, 2] = key + 1.0, nx, ny
-    WORK[SIDES, row, 3] = _HELD * min(SHAPE[a].extent, SHAPE[b].extent) if held else 0.0
+    WORK[SIDES, row, 3] = SIDE_HELD * min(SHAPE[a].extent, SHAPE[b].extent) if held else 0.0
 
 
 @uncounted
 def near_side(SHAPE: Rows[Shape], a: int, b: int) -> float:
     """Length up to which cores touch, so that the memory tells their side."""
-    return _TOUCH * min(SHAPE[a].extent, SHAPE[b].extent)
+    return SIDE_TOUCH * min(SHAPE[a].extent, SHAPE[b].extent)
 
 
 @uncounted
@@ -146,14 +143,14 @@ def corner_of(
         other = int(WORK[CORNERS, row, 0]) - 1
         sign = 1.0 - 2.0 * turn
         c, z = WORK[CORNERS, row, 1], WORK[CORNERS, row, 2]
-        if other < 0 or other == o or sign * z <= _STRAIGHT:
+        if other < 0 or other == o or sign * z <= STRAIGHT:
             continue
         lx, ly = -sign * uy, sign * ux
         mx, my = side_of(SHAPE, WORK, other, o)
-        if sign * (mx * (z * ux + c * uy) - my * (c * ux - z * uy)) < _ASIDE:
+        if sign * (mx * (z * ux + c * uy) - my * (c * ux - z * uy)) < SIDE_UNSURE:
             continue
         mx, my = side_of(SHAPE, WORK, w, o)
-        if mx * lx + my * ly >= _AGAINST:
+        if mx * lx + my * ly >= SIDE_OPPOSITE:
             W[end, 0], W[end, 1] = W[end, 0] - deep * ux, W[end, 1] - deep * uy
             return end, lx, ly
     return -1, 0.0, 0.0
@@ -169,7 +166,7 @@ def closest_on_side(
     d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q = closest(P, p, Q, q)
     if not remembers(LINK, WORK, a, b):
         return d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q
-    deep = _HELD * min(SHAPE[a].extent, SHAPE[b].extent)
+    deep = SIDE_HELD * min(SHAPE[a].extent, SHAPE[b].extent)
     end = -1
     if d <= deep and q == 2:
         end, mx, my = corner_of(SHAPE, WORK, Q, b, a, nx, ny, deep)
@@ -187,7 +184,7 @@ def closest_on_side(
         if WORK[SIDES, row, 0] != key + 1.0:
             return d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q
     along = nx * mx + ny * my
-    if d > reach or (along >= _AGAINST and (along >= _ASIDE or d > near)):
+    if d > reach or (along >= SIDE_OPPOSITE and (along >= SIDE_UNSURE or d > near)):
         return d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q
     apart_p, edge_p, vertex_q = axis(P, p, Q, q, 1.0, mx, my)
     apart_q, edge_q, vertex_p = axis(Q, q, P, p, -1.0, mx, my)

@@ -7,10 +7,10 @@ import math
 from ..arrays import IntArray
 from ..compiled import uncounted
 from ..geometry.sides import forget_sides
+from ..model.parameters.intervals import BUSY_STEPS
 from ..model.scene import Scene
 from .booking import flag_spans
 from .energy import total, unsteered
-from .settle import BUSY_FOR
 from .still import stays, watch
 
 
@@ -38,7 +38,7 @@ def begin(A: Scene, WALK: IntArray) -> None:
     PAR.stamp += 1.0
     COUNT.pending, COUNT.phase = -1, 0
     n, last = BODY.shape[0] - 1, PAR.last
-    quiet = COUNT.quiet > BUSY_FOR
+    quiet = COUNT.quiet > BUSY_STEPS
     COUNT.closing, fixed = 0, 1 if A.SHAPE.shape[0] > A.LIST.shape[0] else 0
     pulled, even, carries = 0.0, True, A.RULE.shape[0] == 0 and not quiet
     for i in range(n):

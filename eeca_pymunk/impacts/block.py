@@ -19,18 +19,15 @@ from ..geometry.gap import touching
 from ..geometry.manifold import face
 from ..geometry.sides import note_side
 from ..model.contacts import ROW, Row
+from ..model.parameters.impulses import BLOCK_BODIES, FACE_ROUND_OFF, ROCKING
+from ..model.parameters.intervals import LARGE_ISLAND
 from ..model.scene import Scene
 from ..pairs.rules import barred, law
 from ..rows.build import normal_rate, place_row
 from ..rows.inplace import sort
-from ..sustained.contacts import CROWD
 from .booking import end_span
 from .islands import carrier, remembered, worn
 from .strike import move_to, touches
-
-_FACES = 16.0  # times the tolerance of touching, by which the ends of parallel faces may differ
-_NEAREST = 16  # bodies of a crowd on which a hit acts at once
-_ROCKING = 1e-6  # of the size, by which they may where the contact is not elastic: a rocking that is lost anyway ends
 
 
 @uncounted
@@ -56,7 +53,7 @@ def crowded(A: Scene, a: int, b: int) -> bool:
         root = A.STATE[A.LINK[s].owner].island
         if root >= 0:
             size = max(size, A.MEMBER[root].bodies)
-    return size >= CROWD
+    return size >= LARGE_ISLAND
 
 
 @uncounted
@@ -92,7 +89,7 @@ def gather(A: Scene, disks: int, a: int, b: int, t: float) -> tuple[int, int, In
     PAIRS = np.empty(16, np.int64)
     PAIRS[0] = min(a, b) * k + max(a, b)
     n, m, q = 0, 1, 0
-    most = _NEAREST if crowded(A, a, b) else A.BLOCK.shape[0]
+    most = BLOCK_BODIES if crowded(A, a, b) else A.BLOCK.shape[0]
     for s in (a, b):
         i = A.LINK[s].owner
         if A.BODY[i].inv_mass > 0.0:
@@ -199,10 +196,10 @@ def lay_out(A: Scene, disks: int, n: int, m: int, PAIRS: IntArray, hit: int, res
                     q = place
                 place += 1
         e, mu, sx, sy = law(A.SHAPE, A.RULE, sa, sb)
-        tolerance = _FACES * touching(BODY, A.SHAPE, LINK, sa, sb, disks)
+        tolerance = FACE_ROUND_OFF * touching(BODY, A.SHAPE, LINK, sa, sb, disks)
         small = min(A.SHAPE[sa].extent, A.SHAPE[sb].extent)
         if e < 1.0:
-            tolerance = max(tolerance, _ROCKING * small)
+            tolerance = max(tolerance, ROCKING * small)
         if rest and PAIRS[z] == hit:
             e = 0.0
         load = remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], sa, sb, A.PAR.stamp - 1.0)[1]

@@ -1,6 +1,6 @@
 """Which islands come to a stand.
 
-An island stands still once, over a whole step that nobody disturbed, every body of it was slower than STANDS |a| dt at
+An island stands still once, over a whole step that nobody disturbed, every body of it was slower than REST_SPEED |a| dt at
 both ends, so that its contacts bear its weight to that accuracy, and no contact slipped or was driven; or once it has
 hardly moved for some steps and `..sustained.statics` finds the forces that hold it.
 """
@@ -11,16 +11,21 @@ import math
 
 from ..arrays import IntArray
 from ..compiled import uncounted
+from ..model.parameters.intervals import LARGE_ISLAND
+from ..model.parameters.rest import (
+    REST_CANDIDATE,
+    REST_CANDIDATE_LARGE,
+    REST_RETRY,
+    REST_RETRY_BODIES,
+    REST_RETRY_LATEST,
+    REST_SPEED,
+    REST_STEPS,
+)
 from ..model.scene import Scene
 from ..pairs.rules import law
 from ..rows.equilibrium import bound
-from ..sustained.contacts import CROWD
-from ..sustained.statics import CALM, CALM_CROWD, STANDS
 
 LIKELY = 3  # of MEMBER[STILL]
-WOKEN = -2.0  # CALM_FOR once it is woken after a long stand: what hits it often comes again
-SURE = 2  # steps that an island hardly moves, before it is asked whether it stands
-_AGAIN, _LATEST, _LATER = 4, 12, 100  # and until it is asked again, one more for every fourth body; then every 100th
 
 
 @uncounted
@@ -40,13 +45,13 @@ def speed(A: Scene, i: int, s: float) -> float:
 @uncounted
 def hardly(bodies: int) -> float:
     """Speed relative to |a| dt below which an island of so many bodies hardly moves."""
-    return CALM if bodies < CROWD else CALM_CROWD
+    return REST_CANDIDATE if bodies < LARGE_ISLAND else REST_CANDIDATE_LARGE
 
 
 @uncounted
 def settled(A: Scene, i: int) -> bool:
     """Whether body i has hardly moved for long enough to be asked whether it stands."""
-    return bool(A.RESTING[i].calm_for >= SURE)
+    return bool(A.RESTING[i].calm_for >= REST_STEPS)
 
 
 @uncounted
@@ -59,7 +64,7 @@ def wait(A: Scene, MINE: IntArray, n: int) -> None:
 @uncounted
 def later(n: int) -> float:
     """CALM_FOR of a body of n that have been asked whether they stand, and do not."""
-    return -float(min(_AGAIN + n // 4, _LATEST + n // _LATER))
+    return -float(min(REST_RETRY + n // 4, REST_RETRY_LATEST + n // REST_RETRY_BODIES))
 
 
 @uncounted
@@ -83,7 +88,7 @@ def slow(A: Scene, root: int) -> bool:
         return False
     if A.RESTING[root].until < math.inf:
         return False
-    limit = STANDS * A.PAR.pulled * dt
+    limit = REST_SPEED * A.PAR.pulled * dt
     i = root
     while i >= 0:
         if MEMBER[i].busy > 0:
@@ -111,7 +116,7 @@ def find_still(A: Scene) -> None:
             some = True
     if not some:
         return
-    limit = STANDS * A.PAR.pulled * A.PAR.dt
+    limit = REST_SPEED * A.PAR.pulled * A.PAR.dt
     for c in range(A.COUNT.pushes):
         root = A.PUSHED_BY[c].root
         if root < 0 or A.MEMBER[root].still != LIKELY:

@@ -20,20 +20,16 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..compiled.records import empty
 from ..model.contacts import ROW
+from ..model.parameters.rest import REST_SPEED, REST_STEPS, SUPPORT_FACTORS, SUPPORT_ROUNDS, UNSUPPORTED
 from ..model.scene import Scene
 from ..pairs.rules import law
 from ..rows.build import place_row
 from ..rows.equilibrium import bound, equilibrium, fastest
 from ..sustained.memory import find, key_of, remember
-from ..sustained.statics import STANDS
 from .booking import wake
-from .calm import SURE, hardly, later, wait, whirls
+from .calm import hardly, later, wait, whirls
 from .islands import members
 from .spans import dismiss, solve
-
-_FACTORS = 4  # to find how a standing island carries what moves, at most: more would cost as much as a solve
-_ROUNDS = 8  # in which forces find their way down, from what stands to what carries it
-_PART = 1e-2  # of the fastest of a motion that nothing holds, below which a body has no part in it
 
 
 @uncounted
@@ -98,7 +94,7 @@ def holds(A: Scene, root: int) -> bool:
         m += 1
     dismiss(A, MINE, n)
     found, factors = equilibrium(
-        P, Q, ROWS, L, START, IMS, IIS, POSE, FELT, n, m, STANDS * A.PAR.pulled * dt, _FACTORS, False
+        P, Q, ROWS, L, START, IMS, IIS, POSE, FELT, n, m, REST_SPEED * A.PAR.pulled * dt, SUPPORT_FACTORS, False
     )
     A.COUNT.direct += factors
     if not found:
@@ -120,10 +116,10 @@ def give_way(A: Scene, MINE: IntArray, n: int, Y: FloatArray, FELT: FloatArray) 
         wait(A, MINE, n)
         return
     for q in range(n):
-        if bound(Y[q, 0], Y[q, 1], Y[q, 2], FELT[q]) > _PART * most:
+        if bound(Y[q, 0], Y[q, 1], Y[q, 2], FELT[q]) > UNSUPPORTED * most:
             A.RESTING[MINE[q]].calm_for = later(n)
         else:
-            A.RESTING[MINE[q]].calm_for = SURE
+            A.RESTING[MINE[q]].calm_for = REST_STEPS
 
 
 @uncounted
@@ -168,7 +164,7 @@ def support(A: Scene) -> None:
                 continue
             more = True
             # What carries each other in turn is one island.
-            if asked < _ROUNDS and holds(A, i):
+            if asked < SUPPORT_ROUNDS and holds(A, i):
                 MEMBER[i].anew = 1
             else:
                 solve(A, wake(A, i, 0.0), 0.0)

@@ -13,10 +13,9 @@ import math
 from ..arrays import FloatArray
 from ..compiled import uncounted
 from ..compiled.records import Rows
+from ..model.parameters.events import ADVANCES, SEARCH_AHEAD, STRIDE
 from ..model.shapes import Link
-from .roots import ADVANCES, STRIDE, ball_point, flat
-
-_FAR = 1.5  # times the time that is left: circles that cannot meet until then need no root
+from .roots import ball_point, flat
 
 
 @uncounted
@@ -33,7 +32,7 @@ def circle_circle(
     if ax == 0.0 and ay == 0.0:
         return ball_point(dx, dy, ux, uy, extent), True
     if 0.0 < left < math.inf:
-        later = _FAR * left
+        later = SEARCH_AHEAD * left
         reach = extent + (abs(ux) + abs(uy) + 0.5 * (abs(ax) + abs(ay)) * later) * later
         if dx * dx + dy * dy > reach * reach:
             return later, False

@@ -10,21 +10,27 @@ from ..compiled.records import Rows
 from ..geometry.flight import norm
 from ..geometry.manifold import half_width
 from ..model.contacts import Row
+from ..model.parameters.intervals import (
+    EXACT_CONTACTS,
+    INTERVAL_ANGLE,
+    INTERVAL_DEPTH_LEAST,
+    INTERVAL_WAY,
+    LARGE_ISLAND,
+    LARGE_SWEEPS,
+    LARGE_SWEEPS_HIT,
+    LEAST_INTERVAL,
+    NORMAL_TURN,
+    RATTLE,
+    STICK,
+    TOUCH,
+)
 from ..model.scene import Scene
 from ..model.shapes import Link, Shape
 from ..pairs.lists import far_apart
 from ..pairs.rules import barred, law
 from ..rows.build import normal_rate, tangent_rate
-from ..sustained.contacts import CROWD
-from .depths import FEW, FLAT, too_deep
-from .islands import TOUCH, approach, carrier, remembered, rests
-
-_TURN = 0.1  # rad
-PARTS = 64.0  # of a step, that a span is at least
-_STICKS = 1e-6  # relative to the friction there can be, and to the slip, below which there is none
-_OF_CROWD, _AGAIN = 24, 12  # sweeps of a crowd; of one that was hit in this step
-WAY, ANGLE = 0.5, 0.5  # of the smaller shape, and rad: how far bodies of a contact go about one another in a span
-_RATTLES = 1e-3  # relative to that friction, below which slip is no slide where contacts that bear rattle as fast
+from .depths import too_deep
+from .islands import approach, carrier, remembered, rests
 
 
 @uncounted
@@ -72,13 +78,13 @@ def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: Int
                 if lossy and not together:
                     force, load = remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], s, o, A.PAR.stamp - 1.0)
                 # What a crowd has carried goes on being carried, as far as it may come: hits on it spread by its spans.
-                if n < CROWD or force <= 0.0:
+                if n < LARGE_ISLAND or force <= 0.0:
                     g, u, closing, mass = approach(A.BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, A.PULL, s, o, t)
                     if not together:
                         if not busy:
                             reach = 1.1 * (max(-u, 0.0) * h + A.PAR.pulled * h * h) + TOUCH * small
                         # No farther do they go in a span; what does meets at its time of impact.
-                        reach = min(reach, 2.0 * WAY * small)
+                        reach = min(reach, 2.0 * INTERVAL_WAY * small)
                     if g > reach:
                         continue
                     e = law(A.SHAPE, A.RULE, s, o)[0]
@@ -105,7 +111,7 @@ def hurried(A: Scene) -> bool:
     """Whether spans are to last to the end of the step: where all contacts act together, and once the step has had
     about as many as there are bodies."""
     bodies = A.BODY.shape[0]
-    return A.COUNT.together > 0 or A.COUNT.solves >= max(PARTS - 2.0 * bodies, bodies)
+    return A.COUNT.together > 0 or A.COUNT.solves >= max(LEAST_INTERVAL - 2.0 * bodies, bodies)
 
 
 @uncounted
@@ -118,17 +124,17 @@ def before_end(A: Scene, t: float) -> bool:
 def sweeps_of_crowd(t: float) -> int:
     """Sweeps of a crowd, in a span from instant t on: after a hit the forces of the span that it has cut short are a
     good beginning."""
-    return _OF_CROWD if t == 0.0 else _AGAIN
+    return LARGE_SWEEPS if t == 0.0 else LARGE_SWEEPS_HIT
 
 
 @uncounted
 def span_of(A: Scene, found: IntArray, t: float) -> float:
-    """Length of a span that begins at instant t: to the end of the step, or until a normal may have turned by _TURN; of
+    """Length of a span that begins at instant t: to the end of the step, or until a normal may have turned by NORMAL_TURN; of
     islands of few contacts, as every span costs a solve. Normals turn with shapes that are not round, and as round
     ones go round one another."""
     BODY, LINK = A.BODY, A.LINK
     h = A.PAR.dt - t
-    if found.shape[0] > FEW or hurried(A):
+    if found.shape[0] > EXACT_CONTACTS or hurried(A):
         return h
     rate = 0.0
     for c in range(found.shape[0]):
@@ -140,24 +146,24 @@ def span_of(A: Scene, found: IntArray, t: float) -> float:
         if LINK[a].vertices == 1 and LINK[b].vertices == 1:
             speed = norm(BODY[j].vx - BODY[i].vx, BODY[j].vy - BODY[i].vy)
             rate = max(rate, speed / max(A.SHAPE[a].rounding + A.SHAPE[b].rounding, 1e-300))
-    if rate * h <= _TURN:
+    if rate * h <= NORMAL_TURN:
         return h
-    return min(max(_TURN / rate, A.PAR.dt / PARTS), h)
+    return min(max(NORMAL_TURN / rate, A.PAR.dt / LEAST_INTERVAL), h)
 
 
 @uncounted
 def near_span(A: Scene, found: IntArray, h: float) -> float:
-    """The part of a span h in which the bodies of pairs go no farther about one another than `WAY` of the smaller one,
-    and turn by no more than `ANGLE`, with the velocities that they have: beyond it no contact is where it was."""
+    """The part of a span h in which the bodies of pairs go no farther about one another than `INTERVAL_WAY` of the smaller one,
+    and turn by no more than `INTERVAL_ANGLE`, with the velocities that they have: beyond it no contact is where it was."""
     BODY, LINK, rate = A.BODY, A.LINK, 0.0
     for c in range(found.shape[0]):
         i, j = LINK[found[c, 0]].owner, LINK[found[c, 1]].owner
         small = min(A.SHAPE[found[c, 0]].extent, A.SHAPE[found[c, 1]].extent)
         way = norm(BODY[j].vx - BODY[i].vx, BODY[j].vy - BODY[i].vy)
-        rate = max(rate, way / (WAY * small))
+        rate = max(rate, way / (INTERVAL_WAY * small))
         for s in (found[c, 0], found[c, 1]):
             if LINK[s].vertices > 1:
-                rate = max(rate, abs(BODY[LINK[s].owner].spin) / ANGLE)
+                rate = max(rate, abs(BODY[LINK[s].owner].spin) / INTERVAL_ANGLE)
     return h if rate * h <= 1.0 else 1.0 / rate
 
 
@@ -175,14 +181,14 @@ def strayed(
         small = min(SHAPE[a].extent, SHAPE[b].extent)
         x = V[q, 0] + VN[q, 0] - V[p, 0] - VN[p, 0]
         y = V[q, 1] + VN[q, 1] - V[p, 1] - VN[p, 1]
-        far = max(far, 0.5 * h * norm(x, y) / (WAY * small))
+        far = max(far, 0.5 * h * norm(x, y) / (INTERVAL_WAY * small))
         if LINK[a].vertices > 1 or LINK[b].vertices > 1:
             turn = max(abs(V[p, 2] + VN[p, 2]), abs(V[q, 2] + VN[q, 2]))
-            far = max(far, 0.5 * h * turn / ANGLE)
+            far = max(far, 0.5 * h * turn / INTERVAL_ANGLE)
         closing = -0.5 * h * (ROWS[z].un + normal_rate(P, Q, ROWS, VN, z))
-        if closing > FLAT * small:
+        if closing > INTERVAL_DEPTH_LEAST * small:
             thick = half_width(SHAPE, LINK, VERTEX, a) + half_width(SHAPE, LINK, VERTEX, b)
-            far = max(far, too_deep(ROWS[z].gap, closing, small, thick, m <= FEW))
+            far = max(far, too_deep(ROWS[z].gap, closing, small, thick, m <= EXACT_CONTACTS))
     return far
 
 
@@ -196,7 +202,7 @@ def stick_time(
     changes it by F sum mu lam / sum |beta| (single ones of a body's contacts are not unique): so fast the slip is over
     after h |u_t| / (|F| sum mu lam / sum |beta| - a_t h).
     """
-    if m > FEW:
+    if m > EXACT_CONTACTS:
         return h
     limit, beta, slip, others, rattle = 0.0, 0.0, 0.0, 0.0, 0.0
     for z in range(m):
@@ -207,16 +213,16 @@ def stick_time(
         before = abs(ROWS[z].ut)
         # What sticks all along has no slip but round-off before, or rattles.
         change = most / ROWS[z].k_t
-        if most == 0.0 or before <= _STICKS * change or before < rattle <= _RATTLES * change:
+        if most == 0.0 or before <= STICK * change or before < rattle <= RATTLE * change:
             continue
-        if abs(tangent_rate(P, Q, ROWS, VN, z)) > _STICKS * before:
+        if abs(tangent_rate(P, Q, ROWS, VN, z)) > STICK * before:
             continue
         sign = 1.0 if ROWS[z].ut > 0.0 else -1.0
         limit += most
         beta -= sign * L[z, 1]
         if before > slip:
             slip, others = before, sign * (tangent_rate(P, Q, ROWS, FREE, z) - ROWS[z].ut)
-    if beta <= _STICKS * limit or beta >= (1.0 - _STICKS) * limit:
+    if beta <= STICK * limit or beta >= (1.0 - STICK) * limit:
         return h
     rate = (slip + others) * limit / beta - others
     return h * slip / rate if rate > slip else h

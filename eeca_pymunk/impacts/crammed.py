@@ -4,12 +4,11 @@ lift them apart. They are in one until they are."""
 from __future__ import annotations
 
 from ..compiled import kernel
+from ..model.parameters.events import INITIAL_PENETRATION
 from ..model.scene import Scene
 from ..pairs.lists import far_apart
 from ..pairs.rules import barred, law
 from .islands import approach, carrier, unite
-
-_DEEP = 1e-6  # overlap over the size of the smaller shape, above which that is meant
 
 
 @kernel
@@ -35,7 +34,7 @@ def hold_crammed(A: Scene) -> None:
                 if o < A.LIST.shape[0] and far_apart(BODY, A.SHAPE, LINK, s, o, 0.0, 0.0):
                     continue
                 g, u, _, _ = approach(BODY, A.SHAPE, LINK, A.VERTEX, A.WORK, A.PULL, s, o, 0.0)
-                if g >= -_DEEP * min(A.SHAPE[s].extent, A.SHAPE[o].extent) or u * dt > -g:
+                if g >= -INITIAL_PENETRATION * min(A.SHAPE[s].extent, A.SHAPE[o].extent) or u * dt > -g:
                     continue
                 A.MEMBER[i].put, A.COUNT.crammed = 1, 1
                 if -u <= A.PAR.pulled * dt:

@@ -11,27 +11,29 @@ from ..geometry.gap import gap_at
 from ..geometry.manifold import half_width
 from ..geometry.sides import remembers
 from ..model.contacts import Row
+from ..model.parameters.intervals import (
+    EXACT_CONTACTS,
+    INTERVAL_DEPTH,
+    INTERVAL_DEPTH_LEAST,
+    INTERVAL_DEPTH_MORE,
+    INTERVAL_DEPTH_WIDTH,
+    INTERVAL_RETRY,
+)
 from ..model.scene import Scene
 from .local import Local
-
-FEW = 12  # contacts
-_DEPTH, _DEEP = 0.05, 0.1  # of the smaller shape, and of both widths: how much deeper a contact may be after a span;
-FLAT = 1e-4  # at least this of the smaller shape
-_AS_DEEP = 0.03  # part of that by which it may be where it is as deep already
-FARTHER = 1.5  # how many times as far as they should bodies may go in a span
 
 
 @uncounted
 def too_deep(gap: float, closing: float, small: float, thick: float, few: bool) -> float:
     """How many times too long a span is in which a contact closes by more than it has room for; 0 if it is not. `thick`
     are half the widths of both shapes, `few` whether there are few contacts."""
-    deep = max(min(_DEPTH * small, _DEEP * thick), FLAT * small)
+    deep = max(min(INTERVAL_DEPTH * small, INTERVAL_DEPTH_WIDTH * thick), INTERVAL_DEPTH_LEAST * small)
     room = max(gap, 0.0) + deep
     if few:
         # What is as deep already is to go hardly deeper, where few are solved again for it.
-        room = max(gap + deep, _AS_DEEP * deep)
+        room = max(gap + deep, INTERVAL_DEPTH_MORE * deep)
     if closing > room + 0.5 * min(deep, room):
-        return max(closing / room, 1.01 * FARTHER)
+        return max(closing / room, 1.01 * INTERVAL_RETRY)
     return 0.0
 
 
@@ -57,8 +59,8 @@ def sunk(
         end = gap_at(
             A.SHAPE, A.LINK, A.VERTEX, A.WORK, a, END[p, 0], END[p, 1], END[p, 2], b, END[q, 0], END[q, 1], END[q, 2]
         )[0]
-        if gap - end > FLAT * small:
+        if gap - end > INTERVAL_DEPTH_LEAST * small:
             thick = half_width(A.SHAPE, A.LINK, A.VERTEX, a) + half_width(A.SHAPE, A.LINK, A.VERTEX, b)
-            far = max(far, too_deep(gap, gap - end, small, thick, m <= FEW))
+            far = max(far, too_deep(gap, gap - end, small, thick, m <= EXACT_CONTACTS))
     # What rows do not tell grows with the square of the length, at least.
-    return max(math.sqrt(far), 1.01 * FARTHER) if far > 0.0 else 0.0
+    return max(math.sqrt(far), 1.01 * INTERVAL_RETRY) if far > 0.0 else 0.0

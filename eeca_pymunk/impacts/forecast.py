@@ -14,15 +14,13 @@ from ..compiled import merged, uncounted
 from ..compiled.records import Rows
 from ..geometry.flight import norm
 from ..model.bodies import CHECK, LEAVE, NOTHING, RENEW, Body, Next
+from ..model.parameters.events import INSIDE
 from ..model.shapes import Link, List, Mark, Shape
 from ..model.step import Count
 from ..pairs.lists import centre
 from ..pairs.rules import barred
 from .heap import push
 from .times import meet
-
-AHEAD = 0.4  # of the margin, that the new circle of a shape that leaves its own is ahead on its way
-_INSIDE = 0.1  # of the margin that is left, above which a shape has not left its circle
 
 
 @uncounted
@@ -65,7 +63,7 @@ def leaves(
 def has_left(BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], MARK: Rows[Mark], s: int, now: float) -> bool:
     """Whether shape s is as good as out of its margin circle."""
     x, y = centre(BODY, SHAPE, LINK, s, now)
-    return bool(norm(x - MARK[s].x, y - MARK[s].y) > (1.0 - _INSIDE) * MARK[s].margin)
+    return bool(norm(x - MARK[s].x, y - MARK[s].y) > (1.0 - INSIDE) * MARK[s].margin)
 
 
 @merged

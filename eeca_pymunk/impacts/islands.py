@@ -7,15 +7,11 @@ from ..compiled import uncounted
 from ..compiled.records import Rows
 from ..geometry.gap import gap_at
 from ..model.bodies import Body
+from ..model.parameters.intervals import ELASTIC_REST, ELASTIC_REST_ON, LARGE_ISLAND, SOLVES_BEFORE_HASTE, TOUCH
 from ..model.scene import Scene
 from ..model.shapes import Link, Shape
 from ..pairs.rules import law
-from ..sustained.contacts import CROWD
 from ..sustained.memory import find, key_of
-
-_PLENTY = 3  # solves in a step of every body of the scene, on the average
-TOUCH = 1e-7  # gap relative to the smaller shape, within which shapes are in touch
-_STILL, _WAS_STILL = 1e-6, 1e-3  # speed relative to |a| dt, below which elastic contacts rest; if they did before
 
 
 @uncounted
@@ -57,9 +53,9 @@ def unite(A: Scene, i: int, j: int) -> int:
 @uncounted
 def worn(A: Scene, root: int) -> bool:
     """Whether the island is a crowd that is not solved again in this step, as bodies have been solved often enough."""
-    if root < 0 or A.MEMBER[root].bodies < CROWD or A.MEMBER[root].open == 0:
+    if root < 0 or A.MEMBER[root].bodies < LARGE_ISLAND or A.MEMBER[root].open == 0:
         return False
-    return bool(A.COUNT.solved > _PLENTY * A.BODY.shape[0])
+    return bool(A.COUNT.solved > SOLVES_BEFORE_HASTE * A.BODY.shape[0])
 
 
 @uncounted
@@ -142,7 +138,7 @@ def rests(A: Scene, a: int, b: int, t: float, lossy: bool) -> bool:
     small = min(A.SHAPE[a].extent, A.SHAPE[b].extent)
     force, load = remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], a, b, A.PAR.stamp - 1.0)
     if e >= 1.0 and not lossy:
-        limit = (_WAS_STILL if force > 0.0 else _STILL) * A.PAR.pulled * A.PAR.dt
+        limit = (ELASTIC_REST_ON if force > 0.0 else ELASTIC_REST) * A.PAR.pulled * A.PAR.dt
         fixed = A.BODY[A.LINK[b].owner].inv_mass == 0.0 or A.BODY[A.LINK[a].owner].inv_mass == 0.0
         return g <= TOUCH * small and abs(u) <= limit and (not fixed or closing > 0.0 or force > 0.0)
     press = max(closing, load / mass) * h

@@ -12,17 +12,15 @@ from ..compiled import merged, uncounted
 from ..compiled.records import Rows
 from ..geometry.flight import norm
 from ..model.bodies import CHECK, LEAVE, NOTHING, Body
+from ..model.parameters.events import AHEAD, FARTHEST_MARGIN, SAME_INSTANT
 from ..model.scene import Scene
 from ..model.shapes import Link
 from ..pairs.grid import renew
 from ..pairs.layout import CHOSEN, ROOM
 from ..pairs.rules import barred
-from .forecast import AHEAD, has_left, leaves
+from .forecast import has_left, leaves
 from .heap import push
 from .times import meet, one_pull, passes
-
-_FARTHEST = 0.7  # of the margin, that a new circle is ahead at most
-_SAME = 1e-9  # of the step, within which an instant that was computed again is the same
 
 
 @uncounted
@@ -136,7 +134,7 @@ def go_on(A: Scene, disks: int, i: int, now: float, end: float) -> bool:
         if later == NOTHING or other >= 0:
             # Its course changes where it meets somebody: its circle is to be about there.
             way = norm(BODY[i].vx + BODY[i].ax * h, BODY[i].vy + BODY[i].ay * h) * (best - now)
-            ahead = min(way / A.MARK[i].margin, _FARTHEST)
+            ahead = min(way / A.MARK[i].margin, FARTHEST_MARGIN)
         known = renew(
             BODY, A.SHAPE, A.LINK, A.MARK, A.CELL, A.LIST, A.POOL, A.FLAG, A.HEAD, A.GRID, A.INFO, A.BOX, A.CSR,
             i, now, ahead,
@@ -162,7 +160,7 @@ def holds(A: Scene, disks: int, i: int, end: float) -> bool:
         if A.STATE[carrier(A.LINK, disks, other)].version != A.STATE[i].known:
             return False
         t, certain = meet(A.BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, i, other, disks, end, -1.0)
-        if not (certain and abs(t - due) <= _SAME * end):
+        if not (certain and abs(t - due) <= SAME_INSTANT * end):
             return False
         A.BODY[i].due = due = t
     elif other != LEAVE:

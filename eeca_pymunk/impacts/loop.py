@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from ..compiled import kernel, merged, uncounted
 from ..model.bodies import LEAVE, RENEW
+from ..model.parameters.events import AHEAD, SQUEEZED_IMPACTS
 from ..model.scene import Scene
 from ..model.step import BLOCK_DUE, DONE, HITS, IMPACTS, JOINTS_DUE, LOG_FULL, POOL_FULL, SOLVES
 from ..pairs.grid import renew
@@ -16,7 +17,7 @@ from .block import arrive
 from .booking import close_span, end_span
 from .collide import strike
 from .due import forecast, forecast_all, look_ahead
-from .forecast import AHEAD, has_left
+from .forecast import has_left
 from .heap import pop, push, sweep_out
 from .islands import members
 from .lone import carrier, go_on
@@ -24,8 +25,6 @@ from .missed import miss
 from .settle import comes_to_rest, hits_of, ignored, most_hits
 from .spans import solve
 from .strike import alone, strike_disk
-
-_SQUEEZED = 50  # impacts of a body in a step, from which those with a kinematic one are left out where walls close in
 
 
 @uncounted
@@ -45,7 +44,7 @@ def give_up(A: Scene, i: int, j: int) -> bool:
         return False
     ground = A.BODY.shape[0] - 1
     carried = (A.BODY[i].inv_mass == 0.0 and i != ground) or (A.BODY[j].inv_mass == 0.0 and j != ground)
-    return carried and max(A.STATE[i].events, A.STATE[j].events) >= _SQUEEZED
+    return carried and max(A.STATE[i].events, A.STATE[j].events) >= SQUEEZED_IMPACTS
 
 
 @uncounted

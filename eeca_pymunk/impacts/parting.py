@@ -20,25 +20,29 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..compiled.records import empty
 from ..model.contacts import ROW
+from ..model.parameters.intervals import LARGE_ISLAND
+from ..model.parameters.rest import (
+    FREEZE,
+    FREEZE_EVERY,
+    FREEZE_MOVING,
+    MOVING_BODIES,
+    MOVING_SHARE,
+    PARTIAL_REST_FACTORS,
+    PARTIAL_REST_FACTORS_STEP,
+    PARTIAL_REST_TRIES,
+    REST_STEPS,
+)
 from ..model.scene import Scene
 from ..rows.inplace import sort
-from ..sustained.contacts import CROWD
 from ..sustained.ledger import LEDGER_SIZE
-from ..sustained.statics import LIVELY
 from ..sustained.step import OUT_SIZE, POLISHES, STOOD, step_island
 from .booking import close_span
-from .calm import SURE, hardly, settled, speed, wait
+from .calm import hardly, settled, speed, wait
 from .carrying import give_way, load
 from .coming import pairs_of
 from .islands import lossy, members, unite
 from .spans import dismiss, lay_out_island, open_contacts, solve
 from .still import halt, stop
-
-_MOST, _FEW = 0.1, 2  # of an island's bodies, that may move while the others stand; so many always
-_TRIES = 2
-_CHEAP, _DEAR = 5, 8  # factors beyond which there is no other try; and in the same step nothing more is asked
-_EVERY = 8  # steps from one asking whether a crowd is calmed to the next,
-_RATTLING = 0.005  # if no more of its bodies are fast
 
 
 @uncounted
@@ -77,7 +81,7 @@ def asks(A: Scene, MINE: IntArray, n: int, V0: FloatArray, among: int, calming: 
     if p == 0 or COUNT.pushes + 2 * p > A.PUSHED.shape[0] or not most > 0.0:
         wait(A, MINE, n)
         return False
-    quick = (LIVELY if calming else hardly(among)) * A.PAR.pulled / most
+    quick = (FREEZE if calming else hardly(among)) * A.PAR.pulled / most
     k, room = len(isle.WHO), 2 * p + 1
     P, Q, KEY = np.empty(room, np.int64), np.empty(room, np.int64), np.empty(room, np.int64)
     ROWS, L, LOSS = empty(room, ROW), np.zeros((room, 2)), np.zeros((room, 2))
@@ -94,7 +98,7 @@ def asks(A: Scene, MINE: IntArray, n: int, V0: FloatArray, among: int, calming: 
     if calming:
         for q in range(n):
             stop(A, MINE[q])
-            A.RESTING[MINE[q]].calm_for = SURE
+            A.RESTING[MINE[q]].calm_for = REST_STEPS
         return True
     first = COUNT.pushes
     open_contacts(A, isle, P, Q, ROWS, KEY, L, VN, m, 0.0, dt, np.zeros(k, np.uint8))
@@ -117,13 +121,13 @@ def calms_down(A: Scene, root: int, MINE: IntArray, n: int) -> None:
     """Calm the crowd of the n bodies MINE, but for those few that are fast, and those that nothing holds."""
     STAND, V0, stand = np.empty(n, np.int64), np.empty((n, 3)), 0
     for q in range(n):
-        if speed(A, MINE[q], 0.0) <= LIVELY * A.PAR.pulled * A.PAR.dt:
+        if speed(A, MINE[q], 0.0) <= FREEZE * A.PAR.pulled * A.PAR.dt:
             STAND[stand] = MINE[q]
             stand += 1
-    if n - stand > max(_RATTLING * n, _FEW):
+    if n - stand > max(FREEZE_MOVING * n, MOVING_BODIES):
         return
     owed, factors, calmed = A.RESTING[root].lost, A.COUNT.direct, False
-    while not calmed and stand >= (1.0 - _MOST) * n and A.COUNT.direct <= factors + _CHEAP:
+    while not calmed and stand >= (1.0 - MOVING_SHARE) * n and A.COUNT.direct <= factors + PARTIAL_REST_FACTORS:
         for q in range(n):
             A.STATE[MINE[q]].island = -1
         chain(A, STAND, stand)
@@ -175,14 +179,14 @@ def stands_in_part(A: Scene, root: int) -> bool:
     members(A, root, MINE)
     sort(MINE, n)
     factors = A.COUNT.direct
-    if n >= CROWD and A.PAR.stamp % _EVERY == 0.0:
+    if n >= LARGE_ISLAND and A.PAR.stamp % FREEZE_EVERY == 0.0:
         calms_down(A, root, MINE, n)
-        if A.COUNT.direct > factors + _DEAR:
+        if A.COUNT.direct > factors + PARTIAL_REST_FACTORS_STEP:
             return False
     V0, some, factors = np.empty((n, 3)), False, A.COUNT.direct
-    for _ in range(_TRIES):
+    for _ in range(PARTIAL_REST_TRIES):
         stand = divide(A, MINE, n, STAND, MOVE)
-        if stand == 0 or n - stand > max(_MOST * n, _FEW):
+        if stand == 0 or n - stand > max(MOVING_SHARE * n, MOVING_BODIES):
             break
         some = True
         chain(A, STAND, stand)
@@ -211,7 +215,7 @@ def stands_in_part(A: Scene, root: int) -> bool:
         # What touches nothing has left.
         n = members(A, one, MINE)
         sort(MINE, n)
-        if A.COUNT.direct > factors + _CHEAP:
+        if A.COUNT.direct > factors + PARTIAL_REST_FACTORS:
             break
     if some:
         wait(A, STAND, stand)

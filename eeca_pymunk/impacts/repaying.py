@@ -12,9 +12,8 @@ so that D(q) = 0 for q = (W - B) / C, or 0 where that is negative.
 from __future__ import annotations
 
 from ..compiled import uncounted
+from ..model.parameters.intervals import REPAY_ROUND_OFF
 from ..model.scene import Scene
-
-_ROUND_OFF = 1e-13  # of the energies that are summed
 
 
 @uncounted
@@ -50,7 +49,7 @@ def repay(A: Scene, root: int, t: float) -> None:
         lost += normal + tangential
         work += f * R.work
         size += abs(normal) + abs(tangential)
-    if lost >= -_ROUND_OFF * size or start < 0.0:
+    if lost >= -REPAY_ROUND_OFF * size or start < 0.0:
         return
     s, B, C = t - start, 0.0, 0.0
     i = root

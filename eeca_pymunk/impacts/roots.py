@@ -6,9 +6,6 @@ import math
 
 from ..compiled import uncounted
 
-ADVANCES = 1000  # looks at one pair in one forecast; a double root halves its error in each, a single root squares it
-STRIDE = 1 / 16  # least part of the horizon between looks at shapes that touch: what bounces faster rests
-
 
 @uncounted
 def flat(g: float, w: float, alpha: float) -> float:

@@ -15,13 +15,14 @@ from ..geometry.corners import work_room
 from ..layout import NOW as READ
 from ..model.bodies import CHECK, Body, Member, Next, Rest
 from ..model.contacts import Impulse, Pair, Pushed
+from ..model.parameters.events import SOLVES_PER_BODY
+from ..model.parameters.intervals import FIRST_AUGMENTATION
 from ..model.scene import Scene
 from ..model.shapes import Link, Shape
 from ..model.step import Count, Missed, Step
 from ..pairs.setup import near_lists, rebuilt
 from ..report import Details, of_events
 from ..sustained.memory import FORCE_COLUMNS, forget
-from ..sustained.relax import FRESH
 from ..transfer import FORCES
 from .booking import flag_again
 from .film import Reel
@@ -35,7 +36,6 @@ if TYPE_CHECKING:
 
 RULE_COLUMNS = 6
 _MISSED = 32  # of a step, that are told
-_SOLVES = 512  # of every body in a step, on the average, from which it is cut short
 _CONTACTS = 256  # of islands, that there is room for at first; powers of 2
 _OF_A_BODY, _MANY = 32, 1 << 16  # for each body where contacts may last, up to so many: untouched memory is free
 
@@ -88,9 +88,9 @@ class EventLoop(Remembering):
         )  # fmt: skip
         self.near = near
         self.scene.COUNT.limit, self.scene.COUNT.disks = limit, disks
-        self.scene.COUNT.budget = _SOLVES * n
+        self.scene.COUNT.budget = SOLVES_PER_BODY * n
         self.scene.MEMBER["tied"] = self.scene.MEMBER["next_tied"] = -1
-        self.scene.RESTING["augmentation"] = FRESH
+        self.scene.RESTING["augmentation"] = FIRST_AUGMENTATION
 
     def step(
         self, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,

@@ -13,6 +13,17 @@ from ..compiled import kernel, uncounted
 from ..geometry.flight import norm
 from ..geometry.manifold import half_width
 from ..model.contacts import LASTED
+from ..model.parameters.intervals import (
+    BUSY_STEPS,
+    HITS_TIMES_BODIES,
+    IMPACTS_BEFORE_REST,
+    IMPACTS_BEFORE_REST_ELASTIC,
+    MOST_HITS,
+    MOST_HITS_ELASTIC,
+    PASSED_OVER_DEPTH,
+    SLOW_ELASTIC,
+    TOUCH,
+)
 from ..model.scene import Scene
 from ..model.step import DONE, PUSHES_FULL
 from ..pairs.lists import far_apart
@@ -20,18 +31,11 @@ from ..pairs.rules import barred, law
 from .booking import end_span
 from .carrying import support
 from .crammed import hold_crammed
-from .islands import TOUCH, approach, carrier, members, rests, unite, worn
+from .islands import approach, carrier, members, rests, unite, worn
 from .parting import stands_in_part
 from .spans import solve
 from .still import rouse
 from .strike import move_to
-
-_OFTEN, _VERY_OFTEN = 16, 64  # impacts of a body in a step after which a lossy contact rests; a slow elastic one
-_SLOW = 1.0 / 64.0  # speed relative to |a| dt, below which that happens to elastic ones
-BUSY_FOR = 8  # steps
-_HITS, _ELASTIC_HITS = 1, 64  # on an island in a step: a lossy one may be hit oftener the smaller it is
-_WORK = 64  # bodies times hits
-_DEEP = 0.1  # of the widths of two shapes, that what is passed over may go deep within the step
 
 
 @uncounted
@@ -170,8 +174,10 @@ def comes_to_rest(A: Scene, a: int, b: int, t: float) -> bool:
     end = A.PAR.dt
     met = max(A.STATE[i].events, A.STATE[j].events)
     if e < 1.0:
-        return met >= _OFTEN or (closing > 0.0 and 2.0 * e * max(-u, 0.0) <= closing * (1.0 - e) * (end - t))
-    if met >= _VERY_OFTEN and closing > 0.0 and -u < _SLOW * A.PAR.pulled * end:
+        return met >= IMPACTS_BEFORE_REST or (
+            closing > 0.0 and 2.0 * e * max(-u, 0.0) <= closing * (1.0 - e) * (end - t)
+        )
+    if met >= IMPACTS_BEFORE_REST_ELASTIC and closing > 0.0 and -u < SLOW_ELASTIC * A.PAR.pulled * end:
         return True
     return A.PAR.pulled > 0.0 and rests(A, a, b, t, False)
 
@@ -191,13 +197,13 @@ def hits_of(A: Scene, a: int, b: int) -> int:
 def most_hits(A: Scene, a: int, b: int) -> int:
     """How often they may be: lossy islands the oftener the smaller they are."""
     if law(A.SHAPE, A.RULE, a, b)[0] >= 1.0:
-        return _ELASTIC_HITS
+        return MOST_HITS_ELASTIC
     size = 1
     for s in (a, b):
         root = A.STATE[A.LINK[s].owner].island
         if root >= 0:
             size = max(size, A.MEMBER[root].bodies)
-    return max(_HITS, _WORK // size)
+    return max(MOST_HITS, HITS_TIMES_BODIES // size)
 
 
 @kernel
@@ -213,15 +219,15 @@ def ignored(A: Scene, a: int, b: int, t: float) -> bool:
     speed = norm(A.BODY[i].vx - A.BODY[j].vx, A.BODY[i].vy - A.BODY[j].vy)
     speed += abs(A.BODY[i].spin) * A.BODY[i].extent + abs(A.BODY[j].spin) * A.BODY[j].extent
     thick = half_width(A.SHAPE, A.LINK, A.VERTEX, a) + half_width(A.SHAPE, A.LINK, A.VERTEX, b)
-    if (speed + A.PAR.pulled * h) * h > _DEEP * thick:
+    if (speed + A.PAR.pulled * h) * h > PASSED_OVER_DEPTH * thick:
         return False
     A.COUNT.ignored += 1
     if lossy:
         MINE = np.empty(A.BODY.shape[0], np.int64)
         for k in (i, j):
             if A.BODY[k].inv_mass > 0.0:
-                A.MEMBER[k].busy = BUSY_FOR
+                A.MEMBER[k].busy = BUSY_STEPS
             if STATE[k].island >= 0:
                 for q in range(members(A, STATE[k].island, MINE)):
-                    A.MEMBER[MINE[q]].busy = BUSY_FOR
+                    A.MEMBER[MINE[q]].busy = BUSY_STEPS
     return True

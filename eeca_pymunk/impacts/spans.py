@@ -11,37 +11,24 @@ from ..compiled import kernel, uncounted
 from ..compiled.records import empty
 from ..geometry.sides import SIDES
 from ..model.contacts import ROW
+from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES, LARGE_ISLAND, LEAST_INTERVAL, SMALL_SWEEPS
 from ..model.scene import Scene
 from ..model.step import DONE, JOINTS_DUE, PUSHES_FULL
 from ..rows.inplace import sort
-from ..sustained.contacts import CROWD
 from ..sustained.ledger import LEDGER_SIZE
 from ..sustained.step import LOCK as LOCK_OF
 from ..sustained.step import OUT_SIZE, STOOD, step_island
 from ..sustained.step import POLISHES as POLISHES_OF
 from ..sustained.step import SWEEPS as SWEEPS_OF
 from .calm import calm
-from .coming import (
-    PARTS,
-    before_end,
-    hurried,
-    near_span,
-    pairs_within,
-    span_of,
-    stick_time,
-    strayed,
-    sweeps_of_crowd,
-    way_of,
-)  # fmt: skip
-from .depths import FARTHER, sunk
+from .coming import before_end, hurried, near_span, pairs_within, span_of, stick_time, strayed, sweeps_of_crowd, way_of
+from .depths import sunk
 from .islands import lossy, members
 from .local import Local as Local
 from .local import lay_out_island as lay_out_island
 from .local import open_contacts as open_contacts
 from .still import halt
 
-_SWEEPS = 40  # of an island that moves
-_TRIES = 12  # attempts at a span
 AGAIN = -1  # status of a span that is to be shorter
 
 
@@ -73,8 +60,8 @@ def solve(A: Scene, root: int, t: float) -> int:
     DONE, or PUSHES_FULL, which leaves everything as it was.
     """
     longest = A.PAR.dt - t
-    for attempt in range(_TRIES):
-        status, far = open_span(A, root, t, longest, attempt + 1 == _TRIES or A.COUNT.together > 0)
+    for attempt in range(INTERVAL_TRIES):
+        status, far = open_span(A, root, t, longest, attempt + 1 == INTERVAL_TRIES or A.COUNT.together > 0)
         if status != AGAIN:
             return status
         longest = far
@@ -116,7 +103,7 @@ def open_span(A: Scene, root: int, t: float, longest: float, last: bool) -> tupl
     if COUNT.together > 0:
         for q in range(k):
             least = max(least, way_of(A, WHO[q], h))
-    sweeps = _SWEEPS if n < CROWD else sweeps_of_crowd(t)
+    sweeps = SMALL_SWEEPS if n < LARGE_ISLAND else sweeps_of_crowd(t)
     m = 0
     among = among_of(A, isle, n)
     raised = 0
@@ -135,7 +122,7 @@ def open_span(A: Scene, root: int, t: float, longest: float, last: bool) -> tupl
         stuck = h if hurried(A) or OUT[STOOD] > 0.0 else stick_time(P, Q, ROWS, L, V + h * ACC, VN, m, h)
         if stuck < h:
             # Where slip ends on the way, so does the span: friction changes its law there.
-            h = min(max(stuck, A.PAR.dt / PARTS), h)
+            h = min(max(stuck, A.PAR.dt / LEAST_INTERVAL), h)
             BOOK[:] = 0.0
             m = step_island(
                 POSE, V, ACC, IMS, IIS, SIZES, isle.FELT, n, PAIRS, p, A.SHAPE, A.RULE, A.LINK, A.VERTEX, A.WORK, h,
@@ -145,9 +132,9 @@ def open_span(A: Scene, root: int, t: float, longest: float, last: bool) -> tupl
         far = 0.0
         if not last and OUT[STOOD] == 0.0:
             far = strayed(P, Q, ROWS, KEY, V, VN, A.SHAPE, A.LINK, A.VERTEX, m, h)
-            if far <= FARTHER and A.WORK.shape[0] > SIDES:
+            if far <= INTERVAL_RETRY and A.WORK.shape[0] > SIDES:
                 far = sunk(A, isle, POSE + 0.5 * h * (V + VN), P, Q, ROWS, KEY, m, False)
-        if far > FARTHER:
+        if far > INTERVAL_RETRY:
             A.COUNT.solved += n
             return AGAIN, h / far
         if abs(OUT[LOCK_OF] - 1.0) > abs(A.PAR.lock - 1.0):

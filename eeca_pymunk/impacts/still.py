@@ -13,11 +13,12 @@ from __future__ import annotations
 
 from ..compiled import uncounted
 from ..model.contacts import LASTED
+from ..model.parameters.rest import REST_WOKEN
 from ..model.scene import Scene
 from ..pairs.lists import mark_pair
 from ..sustained.memory import STAMP as OF_STEP
 from ..sustained.memory import find, key_of
-from .calm import WOKEN, hardly, later, speed, whirls
+from .calm import hardly, later, speed, whirls
 from .strike import kinetic, note
 
 CHANGED = 2
@@ -41,7 +42,7 @@ def stays(A: Scene, i: int, last: float) -> bool:
         return False
     BODY[i].ax, BODY[i].ay, BODY[i].angular = 0.0, 0.0, 0.0
     # What does not stand for long is not asked again for long.
-    A.RESTING[i].calm_for = min(A.RESTING[i].calm_for + 1.0, WOKEN)
+    A.RESTING[i].calm_for = min(A.RESTING[i].calm_for + 1.0, REST_WOKEN)
     BODY[i].due = max(A.RESTING[i].still_due - last, 0.0)
     return True
 

@@ -12,16 +12,13 @@ import math
 from ..arrays import FloatArray
 from ..compiled import uncounted
 from ..compiled.records import Rows
-from ..geometry.gap import ROUND_OFF
 from ..model.bodies import Body
+from ..model.parameters.detection import GAP_ROUND_OFF
+from ..model.parameters.events import APPROACH_ROUND_OFF, DISTANCE_ROUND_OFF, MISS_DISTANCE, PATH_REACH
 from ..model.shapes import Link, Shape
 from .circles import circle_circle, circle_outline
 from .roots import ball_point
 from .turning import general
-
-_SLOW = 1e-13  # of speeds, below which what touches does not approach
-_NEAR = 1e-9  # of the squared extent, within which that counts
-_PASSED, _REACHED = 1.000001, 1.0000001  # more than round-off
 
 
 @uncounted
@@ -30,8 +27,8 @@ def passes(dx: float, dy: float, ux: float, uy: float, extent: float, left: floa
     meet within `left`: for certain. Most do, which needs no root: the first one of |d + u s| = extent is at
     s >= c / (2 |d.u|), c = |d|² - extent²."""
     closing, cross, squared = -(dx * ux + dy * uy), dx * uy - dy * ux, extent * extent
-    far = dx * dx + dy * dy - _REACHED * squared > 2.0 * _REACHED * closing * left
-    return bool((closing <= 0.0) | (cross * cross > _PASSED * squared * (ux * ux + uy * uy)) | far)
+    far = dx * dx + dy * dy - PATH_REACH * squared > 2.0 * PATH_REACH * closing * left
+    return bool((closing <= 0.0) | (cross * cross > MISS_DISTANCE * squared * (ux * ux + uy * uy)) | far)
 
 
 @uncounted
@@ -51,8 +48,8 @@ def one_pull(
     squared = extent * extent
     if passes(dx, dy, ux, uy, extent, latest - start):
         return math.inf
-    if closing < _SLOW * extent * (abs(vx_i) + abs(vy_i) + abs(vx_j) + abs(vy_j)):
-        if dx * dx + dy * dy < squared * (1.0 + _NEAR):
+    if closing < APPROACH_ROUND_OFF * extent * (abs(vx_i) + abs(vy_i) + abs(vx_j) + abs(vy_j)):
+        if dx * dx + dy * dy < squared * (1.0 + DISTANCE_ROUND_OFF):
             return math.inf
     return start + ball_point(dx, dy, ux, uy, extent)
 
@@ -76,7 +73,7 @@ def disk_disk(BODY: Rows[Body], i: int, j: int, horizon: float) -> tuple[float, 
     vx_j, vy_j = vx_j + s * ax_j, vy_j + s * ay_j
     far = max(max(abs(x_i), abs(y_i)), max(abs(x_j), abs(y_j)))
     t, certain = circle_circle(
-        x_j - x_i, y_j - y_i, vx_j - vx_i, vy_j - vy_i, ax_j - ax_i, ay_j - ay_i, extent, ROUND_OFF * (far + extent),
+        x_j - x_i, y_j - y_i, vx_j - vx_i, vy_j - vy_i, ax_j - ax_i, ay_j - ay_i, extent, GAP_ROUND_OFF * (far + extent),
         max(horizon - start, 0.0),
     )  # fmt: skip
     return start + t, certain or t == math.inf
@@ -89,7 +86,7 @@ def disk_wall(
     """Lone disk i and a static shape b: in closed form, but for round ends under a pull."""
     x, y, since = BODY[i].x, BODY[i].y, BODY[i].since
     extent = BODY[i].extent + SHAPE[b].rounding
-    tolerance = ROUND_OFF * (max(abs(x), abs(y)) + extent)
+    tolerance = GAP_ROUND_OFF * (max(abs(x), abs(y)) + extent)
     t, certain = circle_outline(
         x, y, BODY[i].vx, BODY[i].vy, BODY[i].ax, BODY[i].ay, extent, tolerance, LINK, VERTEX, b,
         max(horizon - since, 0.0),

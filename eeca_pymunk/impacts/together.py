@@ -11,17 +11,16 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import Table, kernel, uncounted
 from ..geometry.flight import norm, pose
 from ..geometry.gap import gap
+from ..model.parameters.intervals import MIDSTEP_PASSES, TOUCH
 from ..model.scene import Scene, scene_of
 from ..model.step import DONE
 from ..pairs.candidates import cover
 from ..pairs.lists import mark_pair
 from ..pairs.rules import barred
 from .coming import way_of
-from .islands import TOUCH, approach, unite
+from .islands import approach, unite
 from .spans import solve
 from .step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, finish, start
-
-_PASSES = 3  # further solves for bodies that impulses send into others
 
 
 @uncounted
@@ -115,7 +114,7 @@ def resume_together(
     A.RESTING[n].speed = 0.0
     for i in range(n):
         A.RESTING[i].speed = norm(BODY[i].vx, BODY[i].vy) + abs(BODY[i].spin) * BODY[i].extent
-    for solves in range(_PASSES + 1):
+    for solves in range(MIDSTEP_PASSES + 1):
         anew(A)
         if not join_all(A, USUAL):
             return ROOM_FOR_LISTS
@@ -130,7 +129,7 @@ def resume_together(
                 return ROOM_FOR_CONTACTS
         if COUNT.pushes > A.LOG.shape[0]:
             return ROOM_FOR_EVENTS
-        if solves == _PASSES:
+        if solves == MIDSTEP_PASSES:
             break
         more = overrun(A, USUAL)
         if more < 0:

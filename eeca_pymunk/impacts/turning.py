@@ -27,9 +27,10 @@ from ..geometry.flight import pose, rate
 from ..geometry.gap import touching
 from ..geometry.sides import closest_on_side, known_side, near_side, note_side, remembers
 from ..model.bodies import Body
+from ..model.parameters.events import ADVANCES, STRIDE
 from ..model.shapes import Link, Shape
 from .apart import carried_circles_meet, circles_meet
-from .roots import ADVANCES, STRIDE, flat
+from .roots import flat
 
 _THROUGH = 1e8  # tolerances of touching that a point may come through before it is looked at again
 

@@ -14,7 +14,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
 from ..model.contacts import Row
-from ..rows.build import SINGULAR
+from ..model.parameters.impulses import SINGULAR
 from .component import answer
 from .groups import Groups
 from .layout import Joints

@@ -12,11 +12,12 @@ from ..compiled import uncounted
 from ..compiled.records import Rows
 from ..geometry.flight import norm
 from ..geometry.manifold import half_width
-from ..impacts.coming import ANGLE, WAY, hurried
-from ..impacts.depths import FEW, FLAT, sunk, too_deep
+from ..impacts.coming import hurried
+from ..impacts.depths import sunk, too_deep
 from ..impacts.spans import Local
 from ..joints.scratch import BUDGET, EFFORT
 from ..model.contacts import Row
+from ..model.parameters.intervals import EXACT_CONTACTS, INTERVAL_ANGLE, INTERVAL_DEPTH_LEAST, INTERVAL_WAY
 from ..model.scene import Scene
 from ..rows.build import normal_rate
 from .advance import Motion
@@ -46,13 +47,13 @@ def length_ahead(A: Scene, found: IntArray, MINE: IntArray, n: int, h: float) ->
     for q in range(n):
         i = MINE[q]
         if turns(A, i):
-            rate = max(rate, abs(BODY[i].spin) / ANGLE)
+            rate = max(rate, abs(BODY[i].spin) / INTERVAL_ANGLE)
     for c in range(found.shape[0]):
         a, b = found[c, 0], found[c, 1]
         i, j = A.LINK[a].owner, A.LINK[b].owner
         if BODY[i].inv_mass > 0.0 and BODY[j].inv_mass > 0.0:
             small = min(A.SHAPE[a].extent, A.SHAPE[b].extent)
-            rate = max(rate, norm(BODY[j].vx - BODY[i].vx, BODY[j].vy - BODY[i].vy) / (WAY * small))
+            rate = max(rate, norm(BODY[j].vx - BODY[i].vx, BODY[j].vy - BODY[i].vy) / (INTERVAL_WAY * small))
     return h if rate * h <= 1.0 else 1.0 / rate
 
 
@@ -66,9 +67,9 @@ def too_long(
     for q in range(n):
         i = isle.WHO[q]
         if turns(A, i):
-            far = max(far, abs(motion.END[q, 2] - isle.POSE[q, 2]) / ANGLE)
+            far = max(far, abs(motion.END[q, 2] - isle.POSE[q, 2]) / INTERVAL_ANGLE)
         x, y = motion.WAY[q, 0] - h * isle.V[q, 0], motion.WAY[q, 1] - h * isle.V[q, 1]
-        far = max(far, norm(x, y) / (WAY * isle.EXTENT[q]))
+        far = max(far, norm(x, y) / (INTERVAL_WAY * isle.EXTENT[q]))
     for z in range(m):
         pair = KEY[z] >> 1
         a, b = pair // shapes, pair % shapes
@@ -76,9 +77,9 @@ def too_long(
         p, q = P[z], Q[z]
         if isle.IM[p] > 0.0 and isle.IM[q] > 0.0:
             x, y = motion.WAY[q, 0] - motion.WAY[p, 0], motion.WAY[q, 1] - motion.WAY[p, 1]
-            far = max(far, norm(x, y) / (WAY * small))
+            far = max(far, norm(x, y) / (INTERVAL_WAY * small))
         closing = -normal_rate(P, Q, ROWS, motion.WAY, z)
-        if closing > FLAT * small:
+        if closing > INTERVAL_DEPTH_LEAST * small:
             thick = half_width(A.SHAPE, A.LINK, A.VERTEX, a) + half_width(A.SHAPE, A.LINK, A.VERTEX, b)
-            far = max(far, too_deep(ROWS[z].gap, closing, small, thick, m <= FEW))
+            far = max(far, too_deep(ROWS[z].gap, closing, small, thick, m <= EXACT_CONTACTS))
     return max(far, sunk(A, isle, motion.END, P, Q, ROWS, KEY, m, True))

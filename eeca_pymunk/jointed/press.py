@@ -21,10 +21,10 @@ from ..impacts.spans import Local
 from ..joints.layout import COMPLIANCE
 from ..joints.scratch import BUDGET, EFFORT, JOINT_0, L_JOINT, NEAR, TAUT
 from ..model.contacts import Row
+from ..model.parameters.intervals import LARGE_ISLAND
 from ..model.scene import Scene
 from ..rows.build import conserves, normal_rate, rates, tangent_rate
 from ..rows.inplace import copy
-from ..sustained.contacts import CROWD
 from ..sustained.targets import target
 from .advance import ALIGNED, Motion, advance, advance_aligned, align, farthest_apart
 from .bounded import make_bounded, settle_bounded, with_bounded
@@ -112,7 +112,7 @@ def press(
         rounds = _MANY_OUTER
     if m > FEW and not elastic:
         rounds = _PART_OUTER if part else _MANY_OUTER
-        if n >= CROWD:
+        if n >= LARGE_ISLAND:
             most = sweeps_of_crowd(t)
     # Where many contacts do not come to an end, joints come near enough until the last step of the components.
     if J.FOUND[EFFORT] > J.FOUND[BUDGET]:

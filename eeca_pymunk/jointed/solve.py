@@ -10,16 +10,16 @@ from ..arrays import FloatArray
 from ..compiled import kernel, uncounted
 from ..compiled.records import empty
 from ..impacts.coming import before_end, pairs_of
-from ..impacts.depths import FARTHER
 from ..impacts.islands import lossy, members
 from ..impacts.missed import miss
 from ..impacts.spans import AGAIN, Local, dismiss, lay_out_island, open_contacts
 from ..model.contacts import ROW
+from ..model.parameters.intervals import INTERVAL_RETRY, MIDPOINT_SAME
 from ..model.scene import Scene
 from ..model.step import CONTACTS, DONE, PUSHES_FULL
 from ..rows.build import normal_rate
 from ..rows.inplace import sort
-from ..sustained.contacts import NEAR, gather
+from ..sustained.contacts import gather
 from ..sustained.memory import remember_loads
 from ..sustained.step import moved, recall, speeds
 from .advance import Motion, advance
@@ -123,7 +123,7 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
         NOW, THEN = np.empty((2, 5)), np.empty((2, 5))
         m = gather(
             isle.PAIRS, p, A.SHAPE, A.RULE, A.LINK, A.VERTEX, A.WORK, isle.POSE, moved(isle.POSE, isle.V, 0.5 * h),
-            isle.V, REACH, isle.EXTENT, isle.IM, isle.II, h, k == n, NEAR, P, Q, ROWS, KEY, NOW, THEN,
+            isle.V, REACH, isle.EXTENT, isle.IM, isle.II, h, k == n, MIDPOINT_SAME, P, Q, ROWS, KEY, NOW, THEN,
         )  # fmt: skip
     C = make_columns(groups, P, Q, m)
     held = True
@@ -136,7 +136,7 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
         bounded, unknown = make_bounded(J, groups, True), np.empty((0, 3))
         advance(A, J, isle, groups, P, Q, ROWS, L, 0, t, h, motion, C, bounded, False, unknown)
     far = 0.0 if last else too_long(A, isle, P, Q, ROWS, KEY, motion, m, n, h)
-    if far > FARTHER:
+    if far > INTERVAL_RETRY:
         for g in range(len(groups.COMPONENT)):
             if groups.COMPONENT[g] >= 0:
                 restore_joints(J, groups.COMPONENT[g])

@@ -14,13 +14,11 @@ from ..compiled.records import Rows
 from ..geometry.flight import norm
 from ..geometry.gap import gap, touching
 from ..model.bodies import Body
+from ..model.parameters.detection import FARTHEST_CELL, MARGIN_OF_FAST
 from ..model.shapes import Cell, Link, List, Mark, Shape
 from .grid import renew
 from .layout import CELL_LENGTH
 from .lists import centre
-
-_LASTS = 2.0  # times the reach, that the margin of a fast shape is
-_ABSURD = 1e15  # cells, beyond which nothing is farther
 
 
 @uncounted
@@ -38,11 +36,11 @@ def cover(
     margin = MARK[s].margin
     if margin == math.inf:
         return True
-    reach = min(reach, _ABSURD * GRID[CELL_LENGTH])
+    reach = min(reach, FARTHEST_CELL * GRID[CELL_LENGTH])
     x, y = centre(BODY, SHAPE, LINK, s, 0.0)
     if norm(x - MARK[s].x, y - MARK[s].y) + reach <= margin:
         return True
-    MARK[s].margin = max(USUAL[s], _LASTS * reach)
+    MARK[s].margin = max(USUAL[s], MARGIN_OF_FAST * reach)
     return renew(BODY, SHAPE, LINK, MARK, CELL, LIST, POOL, FLAG, HEAD, GRID, INFO, BOX, CSR, s, 0.0, 0.0) >= 0
 
 

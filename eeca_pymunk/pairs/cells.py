@@ -11,14 +11,13 @@ import math
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
 from ..compiled.records import Rows
+from ..model.parameters.detection import CELL_LIMIT
 from ..model.shapes import Cell, Mark, Shape
 from .layout import (
     CELL_LENGTH,
     LEVEL_COUNT,
     LEVELS,
 )  # fmt: skip
-
-_FAR = 2.0**50  # cells from the origin, beyond which all are one: numbers of cells stay whole
 
 
 @uncounted
@@ -30,7 +29,7 @@ def bucket(level: int, column: int, row: int, mask: int) -> int:
 @uncounted
 def cell_at(x: float, length: float) -> int:
     """Column or row of a cell of the grid of moving shapes."""
-    return math.floor(min(max(x / length, -_FAR), _FAR))
+    return math.floor(min(max(x / length, -CELL_LIMIT), CELL_LIMIT))
 
 
 @uncounted

@@ -10,6 +10,7 @@ import numpy as np
 from ..arrays import FlagArray, FloatArray, IntArray, PoolArray, side_by_side
 from ..compiled.records import Rows, columns
 from ..model.bodies import Body
+from ..model.parameters.detection import ALL_PAIRS, ALL_WALLS, MARGIN_HALVINGS, MOST_NEIGHBOURS, NEIGHBOURS
 from ..model.shapes import Cell, Link, List, Mark, Shape
 from .grid import build
 from .layout import (
@@ -25,12 +26,7 @@ from .layout import (
 )  # fmt: skip
 from .walls import wall_grid
 
-EVERYBODY = 16  # shapes that move up to which each is in the list of every other one
-_NEIGHBOURS = 8.0  # that a list is to hold: the least cost over packings from .05 to .65
 _MARGINS = (0.1, 20.0)  # least and most, in radii
-_CROWDED = 20.0  # neighbours, above which margins are too large for how shapes stand
-_HALVINGS = 8  # of margins, at most
-_FEW_WALLS = 16  # static shapes up to which all are looked at
 
 
 class Near(NamedTuple):
@@ -60,13 +56,13 @@ def margins(bound: FloatArray, centre: FloatArray, walls: int) -> FloatArray:
     less where they are not. Small shapes among large ones do not get more than twice their own share, large ones no
     more than the median's. Few shapes among few walls stand in all lists.
     """
-    if len(bound) <= EVERYBODY and walls <= _FEW_WALLS:
+    if len(bound) <= ALL_PAIRS and walls <= ALL_WALLS:
         return np.full(len(bound), np.inf)
     low, high = (centre - bound[:, None]).min(axis=0), (centre + bound[:, None]).max(axis=0)
     wide, tall = np.maximum(high - low, 1e-300)
     phi = max(math.pi * float((bound / wide) @ (bound / tall)), 1e-6)
-    few = len(bound) <= EVERYBODY
-    factor = _MARGINS[1] if few else min(max(math.sqrt(0.25 * _NEIGHBOURS / phi) - 1.0, _MARGINS[0]), _MARGINS[1])
+    few = len(bound) <= ALL_PAIRS
+    factor = _MARGINS[1] if few else min(max(math.sqrt(0.25 * NEIGHBOURS / phi) - 1.0, _MARGINS[0]), _MARGINS[1])
     median = float(np.median(bound))
     # Points have a margin too; where all are points, any length will do.
     least = 1e-3 * (median or float(bound.max()) or 1.0)
@@ -99,11 +95,11 @@ def near_lists(BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: F
     MARK["margin"] = margins(bound, columns(BODY, "x", "y")[LINK["owner"][:moving]], len(BOX)) if moving else 0.0
     HEAD[:] = -1
     near = Near(MARK, CELL, LIST, POOL, FLAG, HEAD, GRID, INFO, BOX, CSR)
-    for _ in range(_HALVINGS):
+    for _ in range(MARGIN_HALVINGS):
         GRID[CELL_LENGTH] = 2.0 * float((bound + MARK["margin"]).min(initial=1e300))
         near = rebuilt(near, BODY, SHAPE, LINK, 0.0)
         # What is crowded in places needs less, unless that is next to nothing, or everybody knows all.
-        if moving == 0 or near.LIST["number"].mean() <= _CROWDED or math.isinf(MARK["margin"][0]):
+        if moving == 0 or near.LIST["number"].mean() <= MOST_NEIGHBOURS or math.isinf(MARK["margin"][0]):
             break
         if np.median(MARK["margin"]) <= _MARGINS[0] * np.median(bound):
             break
@@ -123,7 +119,7 @@ def rebuilt(near: Near, BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], 
 
 def _wall_cells(BOX: FloatArray, GRID: FloatArray, INFO: IntArray) -> IntArray:
     """The grid of static shapes: about as many cells as shapes, fewer where large ones would fill too many."""
-    if len(BOX) <= _FEW_WALLS:
+    if len(BOX) <= ALL_WALLS:
         return np.zeros(1, np.int64)
     low, high = BOX[:, :2].min(axis=0), BOX[:, 2:].max(axis=0)
     wide, tall = np.maximum(high - low, 1e-300)

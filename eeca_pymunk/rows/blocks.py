@@ -14,6 +14,21 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel
 from ..compiled.records import Rows
 from ..model.contacts import Row
+from ..model.parameters.impulses import (
+    BLOCK_DIRECT,
+    BLOCK_DIRECT_FRICTION,
+    BLOCK_LAST_SWEEPS,
+    BLOCK_LAST_SWEEPS_FRICTION,
+    BLOCK_RESIDUAL,
+    BLOCK_RESIDUAL_FRICTION,
+    BLOCK_SWEEPS,
+    BLOCK_SWEEPS_AFTER,
+    BLOCK_SWEEPS_FRICTION,
+    LARGE_BLOCK,
+    LARGE_BLOCK_RESIDUAL,
+    LARGE_BLOCK_SWEEPS,
+    SMALL_BLOCK,
+)
 from .build import aim, conserves, rates, rubs
 from .conjugate import iterate
 from .direct import refine
@@ -23,16 +38,6 @@ from .sweeps import push, sweep, velocities
 CONVERGED, TRUNCATED = 0, 1  # statuses
 D_NORMAL, D_TANGENTIAL, SCALE_LOCK, OWED, RESIDUAL, SWEEPS, POLISHES, TOLERANCE = 0, 1, 2, 3, 4, 5, 6, 7  # of OUT
 OUT_SIZE = 8
-
-_PRECISE = 1e-14  # residual of convergence relative to the largest approach speed
-_RUBBED = 1e-10  # the same with friction, whose law is not that of a least energy
-_SWEEPS, _RUBBED_SWEEPS = 12, 100  # before the first direct solution
-_AFTER = 3  # sweeps after each
-_ROUNDS, _RUBBED_ROUNDS = 40, 8
-_LAST, _RUBBED_LAST = 400, 200  # sweeps where direct solutions have not converged
-# Contacts beyond which a lossy block gets so many sweeps, to this residual.
-_CROWD, _CROWD_SWEEPS, _CROWDED = 20, 40, 1e-4
-_LITTLE = 16  # contacts up to which sweeps alone are cheaper than a direct solution at first
 
 
 @kernel
@@ -44,7 +49,7 @@ def resolve(
 
     With friction direct solutions help where contacts stick; where many slip only sweeps converge: more of them.
     """
-    most = _RUBBED_SWEEPS if rough else (4 * _SWEEPS if m <= _LITTLE else _SWEEPS)
+    most = BLOCK_SWEEPS_FRICTION if rough else (4 * BLOCK_SWEEPS if m <= SMALL_BLOCK else BLOCK_SWEEPS)
     taken, worst = iterate(A, B, ROWS, L, V, IM, II, m, tolerance, most)
     OUT[SWEEPS] = taken
     OUT[POLISHES] = 0.0
@@ -53,10 +58,10 @@ def resolve(
     least = worst
     stalled = 0
     log_R = 8.0
-    for _ in range(_RUBBED_ROUNDS if rough else _ROUNDS):
+    for _ in range(BLOCK_DIRECT_FRICTION if rough else BLOCK_DIRECT):
         log_R, worst = refine(A, B, ROWS, L, V, FREE, IM, II, POSE, n, m, log_R, 8, 0.1 * tolerance, worst)
         OUT[POLISHES] += 1.0
-        for _ in range(_AFTER):
+        for _ in range(BLOCK_SWEEPS_AFTER):
             OUT[SWEEPS] += 1.0
             if worst <= tolerance:
                 return worst
@@ -68,7 +73,9 @@ def resolve(
             stalled += 1
             if stalled >= 8:
                 break
-    taken, worst = iterate(A, B, ROWS, L, V, IM, II, m, tolerance, _RUBBED_LAST if rough else _LAST)
+    taken, worst = iterate(
+        A, B, ROWS, L, V, IM, II, m, tolerance, BLOCK_LAST_SWEEPS_FRICTION if rough else BLOCK_LAST_SWEEPS
+    )
     OUT[SWEEPS] += taken
     return worst
 
@@ -110,12 +117,12 @@ def solve_block(
     FREE = V.copy()
     push(A, B, ROWS, L, V, IM, II, m)
     rough = rubs(ROWS, m)
-    tolerance = speed * (_RUBBED if rough else _PRECISE)
+    tolerance = speed * (BLOCK_RESIDUAL_FRICTION if rough else BLOCK_RESIDUAL)
     exact = conserves(ROWS, m)
-    if hasty and m > _CROWD and not exact:
+    if hasty and m > LARGE_BLOCK and not exact:
         # A hit on a pile, which loses energy anyway: what follows it matters more than its last digits.
-        tolerance = _CROWDED * speed
-        taken, worst = iterate(A, B, ROWS, L, V, IM, II, m, tolerance, _CROWD_SWEEPS)
+        tolerance = LARGE_BLOCK_RESIDUAL * speed
+        taken, worst = iterate(A, B, ROWS, L, V, IM, II, m, tolerance, LARGE_BLOCK_SWEEPS)
         OUT[SWEEPS] = taken
     else:
         worst = resolve(A, B, ROWS, L, V, FREE, IM, II, POSE, n, m, rough, tolerance, OUT)

@@ -8,8 +8,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
 from ..compiled.records import Rows
 from ..model.contacts import Row
-
-SINGULAR = 1e-12  # determinant of A relative to the product of its diagonal
+from ..model.parameters.impulses import SINGULAR
 
 
 @uncounted

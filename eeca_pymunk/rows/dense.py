@@ -13,11 +13,10 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
 from ..model.contacts import Row
+from ..model.parameters.impulses import PROXIMAL_DENSE
 from .build import normal_rate, tangent_rate
 from .polish import clamp, classify
 from .sweeps import velocities
-
-_R = 1e8
 
 
 @uncounted
@@ -110,7 +109,7 @@ def jacobian(
                 w -= IM[b] * along + II[b] * J[i, 3] * J[j, 6]
             W[i, j] = w
         c = at[i]
-        W[i, i] += 1.0 / (_R * (ROWS[c].k_n if kind[i] == 0 else ROWS[c].k_t))
+        W[i, i] += 1.0 / (PROXIMAL_DENSE * (ROWS[c].k_n if kind[i] == 0 else ROWS[c].k_t))
 
 
 @uncounted

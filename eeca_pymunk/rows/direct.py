@@ -8,12 +8,10 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel
 from ..compiled.records import Rows
 from ..model.contacts import Row
+from ..model.parameters.impulses import DENSE_CONTACTS, REFINEMENTS
 from .dense import newton
 from .polish import polish, segment
 from .sweeps import keep, sweep
-
-SMALL = 20  # contacts up to which an island's matrix is dense
-_PASSES = 4  # of its refinement
 
 
 @kernel
@@ -46,12 +44,12 @@ def refine(
     keep(L, V, m, L0, V0)
     reached = np.inf
     clamped = 0
-    if m <= SMALL:
+    if m <= DENSE_CONTACTS:
         for attempt in range(2):
             # Friction that its energy limits: on its own, then together with other contacts of its face.
             if reached > 1e-3 * worst:
                 keep(L0, V0, m, L, V)
-                reached, clamped = newton(A, B, ROWS, L, V, FREE, IM, II, m, _PASSES, tolerance, attempt == 1)
+                reached, clamped = newton(A, B, ROWS, L, V, FREE, IM, II, m, REFINEMENTS, tolerance, attempt == 1)
     else:
         reached, clamped = polish(A, B, ROWS, L, V, FREE, IM, II, POSE, n, m, 10.0**log_R, passes, tolerance)
     part = 1.0
@@ -60,7 +58,7 @@ def refine(
         part = 0.0
     elif clamped > 0:
         # Slip has no energy that is least at the answer: what a sweep leaves decides there, the energy elsewhere.
-        if m <= SMALL:
+        if m <= DENSE_CONTACTS:
             L1 = np.empty((m, 2))
             V1 = np.empty_like(V)
             keep(L, V, m, L1, V1)

@@ -13,10 +13,9 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
 from ..compiled.records import Rows
 from ..model.contacts import Row
+from ..model.parameters.impulses import LIFT_TOGETHER
 from .build import normal_rate, tangent_rate
 from .sweeps import velocities
-
-_SPREAD = 3.0  # times the deepest overlap, up to which gaps count where bodies are lifted out of each other
 
 
 @uncounted
@@ -131,7 +130,7 @@ def lift(
     for i in range(m):
         deepest = min(deepest, GAPS[i])
     for i in range(m):
-        if GAPS[i] < -_SPREAD * deepest:
+        if GAPS[i] < -LIFT_TOGETHER * deepest:
             NEAR[near] = i
             near += 1
     worst = 0.0

@@ -24,17 +24,20 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..compiled.records import Rows, zeros
 from ..model.contacts import ROW, Row
+from ..model.parameters.impulses import PROXIMAL_STATICS
+from ..model.parameters.rest import (
+    STATICS_EARLY,
+    STATICS_GAP,
+    STATICS_PROGRESS,
+    STATICS_RUNAWAY,
+    STATICS_STALLED,
+    STATICS_START,
+    STATICS_STEP,
+)
 from .build import normal_rate
 from .cholesky import assemble, factorise, substitute
 from .inplace import copy
 from .ordering import dissect, neighbours, pattern
-
-_R = 1e11
-_START = 0.1  # least impulse at the start, relative to the mean guess
-_CLOSE = 0.99  # of the way to where an x or s would vanish
-_EARLY, _SLOW, _STALLED = 3, 0.8, 4  # after so many steps, so little less motion, so often: there is no answer
-_RUNAWAY = 1e5  # multipliers relative to the velocities, from which once is enough: they grow along a motion
-_SETTLED = 1e-8  # sum x s relative to the start, at which x is next to the guess
 
 # EDGE (K, 6) float: of each edge
 X, S, GUESS, A_GG, DX, DS = 0, 1, 2, 3, 4, 5
@@ -101,7 +104,7 @@ def inside(EDGE: FloatArray, K: int) -> bool:
         return True
     load = 0.0
     for e in range(K):
-        EDGE[e, X] = max(EDGE[e, X], _START * mean)
+        EDGE[e, X] = max(EDGE[e, X], STATICS_START * mean)
         load += EDGE[e, X] / K
     for e in range(K):
         EDGE[e, S] = EDGE[e, A_GG] * load
@@ -150,7 +153,7 @@ def along(
     send(P, Q, G, EDGE, DX, K, IM, II, V)
     for i in range(n):
         for c in range(3):
-            f[place[i], c] = _R * (V[i, c] - LEFT[i, c]) / SCALE[i, c] if SCALE[i, c] > 0.0 else 0.0
+            f[place[i], c] = PROXIMAL_STATICS * (V[i, c] - LEFT[i, c]) / SCALE[i, c] if SCALE[i, c] > 0.0 else 0.0
     substitute(n, columns, rows, DIAGONAL, BELOW, f)
     for i in range(n):
         for c in range(3):
@@ -167,7 +170,7 @@ def reach(EDGE: FloatArray, K: int, value: int, change: int) -> float:
     most = 1.0
     for e in range(K):
         if EDGE[e, change] < 0.0:
-            most = min(most, -_CLOSE * EDGE[e, value] / EDGE[e, change])
+            most = min(most, -STATICS_STEP * EDGE[e, value] / EDGE[e, change])
     return most
 
 
@@ -249,14 +252,14 @@ def equilibrium(
         if speed <= tolerance:
             found = True
             give(ROWS, EDGE, OF, K, L, m)
-            if not nearest or centre <= _SETTLED * first:
+            if not nearest or centre <= STATICS_GAP * first:
                 return True, done
-        elif not found and done > _EARLY:
-            if speed <= _SLOW * last:
+        elif not found and done > STATICS_EARLY:
+            if speed <= STATICS_PROGRESS * last:
                 stalled = 0
             else:
-                stalled += _STALLED if fastest(Y, EXTENT, n) > _RUNAWAY * given else 1
-        if done == most or stalled >= _STALLED or not (speed < np.inf and (centre > 0.0 or free)):
+                stalled += STATICS_STALLED if fastest(Y, EXTENT, n) > STATICS_RUNAWAY * given else 1
+        if done == most or stalled >= STATICS_STALLED or not (speed < np.inf and (centre > 0.0 or free)):
             if not found:
                 copy(START, Y)
             return found, done
@@ -264,7 +267,7 @@ def equilibrium(
         if done == 0 or not free:
             for e in range(K):
                 G[e].k_n = 1.0 / (EDGE[e, A_GG] + (0.0 if free else EDGE[e, S] / EDGE[e, X]))
-            assemble(P, Q, G, K, n, held, stuck, SCALE, place, columns, rows, _R, DIAGONAL, BELOW)
+            assemble(P, Q, G, K, n, held, stuck, SCALE, place, columns, rows, PROXIMAL_STATICS, DIAGONAL, BELOW)
             factorise(n, columns, rows, DIAGONAL, BELOW)
         along(
             P, Q, G, EDGE, K, IM, II, n, SCALE, place, columns, rows, DIAGONAL, BELOW, LEFT, Y, f, V, DY, 0.0, False

@@ -10,9 +10,7 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
-
-_LEAF = 6  # bodies that are not divided further
-_MANY = 24  # neighbours from which a body is eliminated last
+from ..model.parameters.impulses import DISSECTION_LEAF, LATE_NEIGHBOURS
 
 
 @kernel
@@ -47,7 +45,7 @@ def dissect(POSE: FloatArray, n: int, start: IntArray, other: IntArray, place: I
     end = n
     count = 0
     for i in range(n):
-        if start[i + 1] - start[i] > _MANY:
+        if start[i + 1] - start[i] > LATE_NEIGHBOURS:
             end -= 1
             place[i] = end
         else:
@@ -77,7 +75,7 @@ def dissect(POSE: FloatArray, n: int, start: IntArray, other: IntArray, place: I
             y1 = max(y1, py)
             x += px
             y += py
-        if high - low <= _LEAF or top > 120 or not max(x1 - x0, y1 - y0) > 0.0:
+        if high - low <= DISSECTION_LEAF or top > 120 or not max(x1 - x0, y1 - y0) > 0.0:
             for k in range(high - 1, low - 1, -1):
                 end -= 1
                 place[ids[k]] = end

@@ -16,12 +16,11 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
 from ..model.contacts import Row
+from ..model.parameters.impulses import FACE_LINE
 from .build import normal_rate, tangent_rate
 from .cholesky import assemble, factorise, substitute
 from .ordering import dissect, neighbours, pattern
 from .sweeps import velocities
-
-_LINE = 1e-6  # of a face's length, how far its points may be from one tangent line
 
 
 @uncounted
@@ -39,7 +38,7 @@ def share(A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, m: int) -> N
             continue
         if ROWS[i].nx != ROWS[j].nx or ROWS[i].ny != ROWS[j].ny or ROWS[i].surface != ROWS[j].surface:
             continue
-        line = _LINE * abs(ROWS[i].arm_na - ROWS[j].arm_na)
+        line = FACE_LINE * abs(ROWS[i].arm_na - ROWS[j].arm_na)
         if abs(ROWS[i].arm_ta - ROWS[j].arm_ta) > line or abs(ROWS[i].arm_tb - ROWS[j].arm_tb) > line:
             continue
         beta = L[i, 1] + L[j, 1]

@@ -19,9 +19,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
 from ..compiled.records import Rows
 from ..model.contacts import Row
-from .build import SINGULAR
-
-_STEEP = 1e-9  # mobility along a slipping contact's push, relative to A_nn, below which it jams
+from ..model.parameters.impulses import JAMMED, SINGULAR
 
 
 @uncounted
@@ -47,7 +45,7 @@ def coulomb(
         sign = -1.0 if qt - qn * ant / ann > 0.0 else 1.0
         for _ in range(2):
             den = ann + sign * mu * ant
-            if den > _STEEP * ann:
+            if den > JAMMED * ann:
                 lam = -qn / den
                 beta = sign * mu * lam
                 if sign * (qt + ant * lam + att * beta) <= 0.0:
@@ -130,7 +128,7 @@ def sweep(
                     slope = -mu if qt * ann > qn * ant else mu
                     felt = ann + slope * ant
                     done = False
-                    if felt > _STEEP * ann:
+                    if felt > JAMMED * ann:
                         lam = -qn / felt
                         beta = slope * lam
                         done = slope * (qt + ant * lam + att * beta) <= 0.0 and beta * before <= 0.0

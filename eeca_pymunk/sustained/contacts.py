@@ -17,17 +17,11 @@ from ..compiled.records import Rows
 from ..geometry.manifold import manifold
 from ..geometry.sides import note_side
 from ..model.contacts import Row
+from ..model.parameters.intervals import MANIFOLD_ROUND_OFF, MIDPOINT_TURN, MIDPOINT_WAY
 from ..model.shapes import Link, Shape
 from ..pairs.rules import law
 from ..rows.build import place_row
 from .memory import key_of
-
-CROWD = 24  # bodies of an island, from which it is a crowd: hits spread in it, and solves of it are cut short
-
-_FAR = 0.25  # half-way of a pair relative to the smaller shape, beyond which its middle is not predicted
-NEAR, NEAR_CROWD = 1e-7, 1e-3  # the same, below which now and the middle are the same; in a crowd
-_ALIKE = 0.5  # cosine between a normal now and at the middle, below which the middle is not believed
-_SLACK = 1e-9  # relative to the smaller shape: tolerance of the manifold
 
 PAIR_COLUMNS = 4  # PAIRS: shape a, shape b, and their local bodies
 
@@ -73,7 +67,7 @@ def gather(
         reach = REACH[a] + REACH[b]
         count = manifold(
             SHAPE, LINK, VERTEX, WORK, s, POSE[a, 0], POSE[a, 1], POSE[a, 2], r, POSE[b, 0], POSE[b, 1], POSE[b, 2],
-            reach, _SLACK * small, NOW,
+            reach, MANIFOLD_ROUND_OFF * small, NOW,
         )  # fmt: skip
         if count == 0:
             continue
@@ -93,16 +87,16 @@ def gather(
         centre = MIDDLE
         # Normals turn as round shapes go round one another, and slowly about a large one.
         far = SHAPE[s].rounding + SHAPE[r].rounding if LINK[s].vertices == 1 and LINK[r].vertices == 1 else small
-        ahead = near * small < way and about <= _FAR * far
+        ahead = near * small < way and about <= MIDPOINT_WAY * far
         if ahead:
             again = manifold(
                 SHAPE, LINK, VERTEX, WORK,
                 s, MIDDLE[a, 0], MIDDLE[a, 1], MIDDLE[a, 2], r, MIDDLE[b, 0], MIDDLE[b, 1], MIDDLE[b, 2],
-                reach + about, _SLACK * small, THEN,
+                reach + about, MANIFOLD_ROUND_OFF * small, THEN,
             )  # fmt: skip
             ahead = again == count
             for z in range(count):
-                if ahead and THEN[z, 0] * NOW[z, 0] + THEN[z, 1] * NOW[z, 1] < _ALIKE:
+                if ahead and THEN[z, 0] * NOW[z, 0] + THEN[z, 1] * NOW[z, 1] < MIDPOINT_TURN:
                     ahead = False
         if not ahead:
             x = 0.0

@@ -18,15 +18,11 @@ from ..arrays import FlagArray, FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
 from ..model.contacts import Row
+from ..model.parameters.impulses import DENSE_CONTACTS
+from ..model.parameters.intervals import CORRECTION_ROUND_OFF, CORRECTION_SHARE, CORRECTION_STEP, OVERLAP_LEFT
 from ..rows.build import normal_rate
-from ..rows.direct import SMALL
 from ..rows.energy import lift
 from .ledger import against
-
-_DEEP = 1e-9  # overlap relative to the size that is left alone
-_STEP = 0.25  # of the size, that a body is lifted at most: no farther than walls that it meets so can send it back from
-_ROUND_OFF = 1e-14  # of works
-_SHARE = 0.99  # of a budget that does not suffice: the moment of inertia goes with what is lifted
 
 
 @kernel
@@ -50,16 +46,16 @@ def lifting(
     for i in range(m):
         GAPS[i] = ROWS[i].gap + 0.5 * h * (ROWS[i].un + normal_rate(A, B, ROWS, VN, i))
         deepest = min(deepest, GAPS[i])
-    if deepest >= -_DEEP * size or not budget >= 0.0:
+    if deepest >= -OVERLAP_LEFT * size or not budget >= 0.0:
         return 0.0, deepest
     D = np.zeros((len(IM), 3))
-    most = 10 + 1000 // m if m <= SMALL else 8 + 200 // m
-    lift(A, B, ROWS, GAPS, np.zeros(m), D, IM, II, m, 0.1 * _DEEP * size, most, np.empty(m, np.int64))
+    most = 10 + 1000 // m if m <= DENSE_CONTACTS else 8 + 200 // m
+    lift(A, B, ROWS, GAPS, np.zeros(m), D, IM, II, m, 0.1 * OVERLAP_LEFT * size, most, np.empty(m, np.int64))
     far = 0.0
     for i in range(n):
         far = max(far, math.sqrt(D[i, 0] * D[i, 0] + D[i, 1] * D[i, 1]))
-    if far > _STEP * size:
-        shorten(D, n, _STEP * size / far)
+    if far > CORRECTION_STEP * size:
+        shorten(D, n, CORRECTION_STEP * size / far)
     work = -against(ACC, IM, II, n, D)
     turn = 0.0
     touched = np.zeros(n, np.uint8)
@@ -75,8 +71,8 @@ def lifting(
         work += turn * spin
         square = 0.5 * inertia * turn * turn
     part = 1.0
-    if work + square > budget + _ROUND_OFF * against(np.abs(ACC), IM, II, n, np.abs(D)):
-        part = _SHARE * budget / (max(work, 0.0) + square)
+    if work + square > budget + CORRECTION_ROUND_OFF * against(np.abs(ACC), IM, II, n, np.abs(D)):
+        part = CORRECTION_SHARE * budget / (max(work, 0.0) + square)
         shorten(D, n, part)
         if turn != 0.0:
             turn, x, y, _, _ = unturn(POSE, VN, D, IM, II, touched, h)

@@ -15,17 +15,17 @@ from ..compiled import kernel
 from ..compiled.records import Rows
 from ..model.bodies import Rest
 from ..model.contacts import Row
+from ..model.parameters.intervals import (
+    BACKOFF_CONTACTS,
+    FAILED_DIRECT,
+    FAILED_DIRECT_AGAIN,
+    FIRST_SWEEPS,
+    LONGEST_BACKOFF,
+    SWEEPS_AFTER,
+)
 from ..rows.conjugate import iterate
 from ..rows.direct import refine
 from ..rows.sweeps import sweep
-
-FRESH = 8.0  # augmentation of a new island
-
-_REST = 10  # sweeps before the first direct solution
-_AFTER = 4  # further sweeps after each
-_LARGE = 40  # contacts beyond which rounds that did not pay are not tried again for some steps
-_PATIENT, _IMPATIENT = 8, 2  # rounds that do not pay end the solve; fewer where the last ones failed as well
-_LONGEST = 32.0  # steps
 
 
 @kernel
@@ -48,7 +48,7 @@ def relax(
         return sweeps, 0, worst
     sweeps = 0
     worst = np.inf
-    while sweeps < _REST and worst > fine:
+    while sweeps < FIRST_SWEEPS and worst > fine:
         worst = sweep(A, B, ROWS, L, V, IM, II, m)
         sweeps += 1
     if worst <= fine:
@@ -63,7 +63,7 @@ def relax(
         )
         done += 1
         sweeps += 1
-        for _ in range(_AFTER):
+        for _ in range(SWEEPS_AFTER):
             if worst <= fine:
                 break
             worst = sweep(A, B, ROWS, L, V, IM, II, m)
@@ -73,10 +73,10 @@ def relax(
         if worst > 0.2 * last:
             fails += 1
         last = worst
-        if fails >= (_IMPATIENT if STATE.backoff > 0.0 else _PATIENT):
+        if fails >= (FAILED_DIRECT_AGAIN if STATE.backoff > 0.0 else FAILED_DIRECT):
             break
-    if worst > max(fine, coarse) and m > _LARGE:
-        STATE.backoff = min(2.0 * STATE.backoff + 2.0, _LONGEST)
+    if worst > max(fine, coarse) and m > BACKOFF_CONTACTS:
+        STATE.backoff = min(2.0 * STATE.backoff + 2.0, LONGEST_BACKOFF)
         STATE.wait = STATE.backoff
     else:
         STATE.backoff = 0.0

@@ -8,8 +8,8 @@ at most, and hold it from then on,
     v / N + h a + M^-1 (G^T lam + T^T beta) = 0   and   h a + M^-1 (G^T lam + T^T beta) = 0,
 
 from the velocities v that it has: what slides without friction, rolls, or topples does not. Only what is slower than
-CALM |a| h is asked, and N of a body goes with its speed so that it stops no more than CALM |a| h^2 / 2 from where it
-would. What is faster, up to LIVELY |a| h, may only be calmed: the first of the two equilibria ends its motion, and
+REST_CANDIDATE |a| h is asked, and N of a body goes with its speed so that it stops no more than REST_CANDIDATE |a| h^2 / 2 from where it
+would. What is faster, up to FREEZE |a| h, may only be calmed: the first of the two equilibria ends its motion, and
 what the second would say shows in the next solve.
 """
 
@@ -21,14 +21,15 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
 from ..model.contacts import Row
+from ..model.parameters.rest import (
+    REST_CANDIDATE_LARGE,
+    REST_SPEED,
+    STATICS_FACTORS,
+    STATICS_FACTORS_NEAREST,
+    STOPPING_STEPS,
+)
 from ..rows.equilibrium import bound, equilibrium
 from ..rows.inplace import copy
-
-STANDS = 1e-9  # speed relative to |a| h, below which a body stands
-CALM, CALM_CROWD = 1e-3, 0.5  # and below which it may come to a stand, alone or among few; in a crowd
-LIVELY = 2.0  # likewise of a body of a crowd that may be calmed
-_STEPS = 10.0  # in which it does, at most
-_FACTORS, _NEAREST = 12, 6  # at most, for the first equilibrium; to come near to the guess with the second
 
 
 @uncounted
@@ -62,26 +63,26 @@ def comes_to_stand(
         V: 0 out, if it stands, but for spins that nothing feels.  VN: (k, 3) out, velocities at the end; if it does not
             stand, a motion that nothing holds, of any size.
         change: |a| h, to which speeds are compared.  calm: that of the bodies at most; so may gaps of contacts that
-            bear change in h, up to CALM_CROWD. Above that they are only calmed.
+            bear change in h, up to REST_CANDIDATE_LARGE. Above that they are only calmed.
     Returns:
         Whether the island stands, and factors it took.
     """
     VN[:] = 0.0
-    if not at_rest(ROWS, V, n, m, min(calm, CALM_CROWD) * change):
+    if not at_rest(ROWS, V, n, m, min(calm, REST_CANDIDATE_LARGE) * change):
         return False, 0
     PULL, START = FREE - V, FREE - V
     for i in range(n):
         speed = bound(V[i, 0], V[i, 1], V[i, 2], FELT[i])
-        steps = min(_STEPS, calm * change / speed) if speed > 0.0 else 1.0
+        steps = min(STOPPING_STEPS, calm * change / speed) if speed > 0.0 else 1.0
         for c in range(3 if FELT[i] > 0.0 else 2):
             START[i, c] += V[i, c] / max(steps, 1.0)
-    factors, accuracy = 0, STANDS * change
+    factors, accuracy = 0, REST_SPEED * change
     for nearest in (False, True):
-        if nearest and calm > CALM_CROWD:
+        if nearest and calm > REST_CANDIDATE_LARGE:
             break
         LEFT = PULL if nearest else START
         found, more = equilibrium(
-            A, B, ROWS, L, LEFT, IM, II, POSE, FELT, n, m, accuracy, _NEAREST if nearest else _FACTORS, nearest
+            A, B, ROWS, L, LEFT, IM, II, POSE, FELT, n, m, accuracy, STATICS_FACTORS_NEAREST if nearest else STATICS_FACTORS, nearest
         )  # fmt: skip
         factors += more
         if not found:

@@ -11,13 +11,25 @@ from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
 from ..model.bodies import Rest
 from ..model.contacts import Row
+from ..model.parameters.impulses import DENSE_CONTACTS
+from ..model.parameters.intervals import (
+    DIRECT,
+    DIRECT_MOVING,
+    INTERVAL_RESIDUAL,
+    INTERVAL_RESIDUAL_MOVING,
+    INTERVAL_RESIDUAL_SPEED,
+    LARGE_ISLAND,
+    MIDPOINT_SAME,
+    MIDPOINT_SAME_LARGE,
+    NEAR_REST,
+    SWEEPS_NEAR_REST,
+)
 from ..model.shapes import Link, Shape
 from ..model.step import Count
 from ..rows.build import conserves, rates
-from ..rows.direct import SMALL
 from ..rows.energy import lock, works
 from ..rows.sweeps import velocities
-from .contacts import CROWD, NEAR, NEAR_CROWD, gather
+from .contacts import gather
 from .ledger import against, carried
 from .lifting import lifting
 from .memory import find, remember_loads
@@ -28,13 +40,6 @@ from .targets import target
 # Of OUT (8,)
 SWEEPS, POLISHES, RESIDUAL, LOCK, OWED, DEEPEST, CLOSED, STOOD = 0, 1, 2, 3, 4, 5, 6, 7
 OUT_SIZE = 8
-
-_FINE = 1e-12  # residual relative to |a| h
-_COARSE, _LOOSE = 1e-7, 1e-4  # residual of a large or moving island, relative to |a| h and to its speed
-_ROUNDS = 20  # direct solutions of an island near rest, or elastic
-_AT_REST = 40  # sweeps of an island near rest that waits for its next direct solution,
-_QUIET = 0.1  # which is slower than this, relative to |a| h
-_FEW_ROUNDS = 6  # of a moving island of few contacts
 
 
 @uncounted
@@ -142,7 +147,7 @@ def step_island(
     THEN = np.empty((2, 5))
     m = gather(
         PAIRS, p, SHAPE, RULE, LINK, VERTEX, WORK, POSE, MIDDLE, V, REACH, EXTENT, IM, II, h,
-        k == n, NEAR if n < CROWD else NEAR_CROWD, A, B, ROWS, KEY, NOW, THEN,
+        k == n, MIDPOINT_SAME if n < LARGE_ISLAND else MIDPOINT_SAME_LARGE, A, B, ROWS, KEY, NOW, THEN,
     )  # fmt: skip
     if m < 0 or 2 * (COUNT.remembered + m) > len(KEYS):
         return -1
@@ -174,14 +179,14 @@ def step_island(
         scale = pull * h if pull > 0.0 else 1e-3 * fast
         elastic = conserves(ROWS, m)
         # Elastic crowds would melt away by the losses of a solve cut short.
-        few = m <= SMALL
-        rounds = _ROUNDS if elastic or slow < pull * h else (_FEW_ROUNDS if few else 0)
-        coarse = 0.0 if elastic or few else _COARSE * scale + _LOOSE * slow
-        if slow < _QUIET * pull * h:
+        few = m <= DENSE_CONTACTS
+        rounds = DIRECT if elastic or slow < pull * h else (DIRECT_MOVING if few else 0)
+        coarse = 0.0 if elastic or few else INTERVAL_RESIDUAL_MOVING * scale + INTERVAL_RESIDUAL_SPEED * slow
+        if slow < NEAR_REST * pull * h:
             # What stands tall falls over by what is left undone.
-            most = _AT_REST
+            most = SWEEPS_NEAR_REST
         sweeps, polishes, worst = relax(
-            A, B, ROWS, L, VN, FREE, IM, II, POSE, n, m, rounds, _FINE * scale, coarse, STATE, most
+            A, B, ROWS, L, VN, FREE, IM, II, POSE, n, m, rounds, INTERVAL_RESIDUAL * scale, coarse, STATE, most
         )  # fmt: skip
         # Sums over many sweeps have their own round-off: the velocities are those of the impulses.
         velocities(A, B, ROWS, L, FREE, IM, II, m, VN)

@@ -17,8 +17,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
 from ..compiled.records import Rows
 from ..model.contacts import Row
-
-_FAST = 2.0  # approach speed relative to |a| h from which a contact is an impact
+from ..model.parameters.intervals import IMPACT_SPEED
 
 
 @uncounted
@@ -57,7 +56,7 @@ def target(
             along = ROWS[i].nx * (ACC[b, 0] - ACC[a, 0]) + ROWS[i].ny * (ACC[b, 1] - ACC[a, 1])
             if sustained(e, u, along, ROWS[i].k_n, EXPECTED[i], h):
                 bounce = 0.0
-        if u < -_FAST * pull * h or (e >= 1.0 and ROWS[i].gap > 0.0):
+        if u < -IMPACT_SPEED * pull * h or (e >= 1.0 and ROWS[i].gap > 0.0):
             ROWS[i].target = bounce
             ROWS[i].wake = close
         else:

@@ -9,10 +9,10 @@ import numpy as np
 from eeca_pymunk.compiled.records import columns, row, rows
 from eeca_pymunk.model.bodies import POSE, VELOCITY, Rest
 from eeca_pymunk.model.contacts import Row
+from eeca_pymunk.model.parameters.intervals import FIRST_AUGMENTATION
 from eeca_pymunk.model.step import Count
 from eeca_pymunk.sustained.ledger import LEDGER_SIZE
 from eeca_pymunk.sustained.memory import FORCE_COLUMNS, forget
-from eeca_pymunk.sustained.relax import FRESH
 from eeca_pymunk.sustained.step import OUT_SIZE, step_island
 
 from ..packed import Thing, World
@@ -56,7 +56,7 @@ class Pile:
              if owner[s] != owner[r] and min(owner[s], owner[r]) < self.n], np.int64,
         ).reshape(-1, 4)  # fmt: skip
         self.state, self.stamp, self.m = row(Rest), 0.0, 0
-        self.state.augmentation = FRESH
+        self.state.augmentation = FIRST_AUGMENTATION
         self.keys, self.forces, self.count = np.full(64, -1), np.zeros((64, FORCE_COLUMNS)), row(Count)
         self.jump, self.out = np.zeros((k, 6)), np.zeros(OUT_SIZE)
         self.room(64)

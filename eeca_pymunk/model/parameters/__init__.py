@@ -1,0 +1,21 @@
+"""All numbers that results or costs depend on, each with its kind, scale and effect (`record.Parameter`).
+
+In: nothing. Out: plain numbers, which kernels import by name and the compiler takes as constants; `table()` for docs
+and ablations. Open `rest.py` first. Sizes of memory and statuses are not parameters: they stand where they are used.
+"""
+
+from __future__ import annotations
+
+from . import detection, events, impulses, intervals, rest
+from .record import DECLARED, Parameter
+
+SECTIONS = detection, events, impulses, intervals, rest
+
+
+def table() -> dict[str, dict[str, Parameter]]:
+    """The parameters of each section by name, in the order of its file."""
+    declared, found = iter(DECLARED), {}
+    for section in SECTIONS:
+        names = [name for name in vars(section) if name.isupper()]
+        found[section.__name__.rpartition(".")[2]] = dict(zip(names, declared, strict=False))
+    return found
