@@ -9,12 +9,13 @@ from .compiled.records import Rows, columns
 from .impacts.scene import EventLoop
 from .jointed.scene import JointedLoop
 from .layout import LEFT
-from .model.joints import OF_STEPS, RATCHET, Joint
+from .model.joints import OF_STEPS, PIN, RATCHET, Joint
 from .model.shapes import Link
 from .space.world import World
 
 _FIXED = ["inv_mass", "inv_inertia", "extent", "elasticity", "friction"]  # fields of BODY that no step changes
 _TIE = "kind", "body", "soft"  # fields of JOINT that decide the plan
+_APART = 1e-7  # of the length of a pin
 
 
 class Saved:
@@ -76,6 +77,12 @@ class Saved:
             # What steps change: how far a ratchet has come, the law of a spring with a function of its own.
             if name == "notch":
                 apart[joints.joint["kind"] == RATCHET] = False
+            elif name == "length":
+                # pymunk's pickles do not have the length of a pin: it is measured anew, up to what the joint is apart.
+                pins = joints.joint["kind"] == PIN
+                far = np.abs(method.joint["length"] - joints.joint["length"]) > _APART * joints.joint["length"]
+                apart[pins] = far[pins]
+                apart[joints.functions] = False
             elif name not in _TIE:
                 apart[joints.functions] = False
             differs |= apart

@@ -13,11 +13,7 @@ from ..model.contacts import Row
 from ..model.parameters.intervals import (
     EXACT_CONTACTS,
     INTERVAL_ANGLE,
-    INTERVAL_DEPTH,
     INTERVAL_DEPTH_LEAST,
-    INTERVAL_DEPTH_MORE,
-    INTERVAL_DEPTH_WIDTH,
-    INTERVAL_RETRY,
     INTERVAL_WAY,
     LARGE_ISLAND,
     LARGE_SWEEPS,
@@ -33,6 +29,7 @@ from ..model.shapes import Link, Shape
 from ..pairs.lists import far_apart
 from ..pairs.rules import barred, law
 from ..rows.build import normal_rate, tangent_rate
+from .depths import too_deep
 from .islands import approach, carrier, remembered, rests
 
 
@@ -192,13 +189,7 @@ def strayed(
         closing = -0.5 * h * (ROWS[z].un + normal_rate(P, Q, ROWS, VN, z))
         if closing > INTERVAL_DEPTH_LEAST * small:
             thick = half_width(SHAPE, LINK, VERTEX, a) + half_width(SHAPE, LINK, VERTEX, b)
-            deep = max(min(INTERVAL_DEPTH * small, INTERVAL_DEPTH_WIDTH * thick), INTERVAL_DEPTH_LEAST * small)
-            # What is as deep already is to go hardly deeper, where few are solved again for it.
-            room = max(ROWS[z].gap, 0.0) + deep
-            if m <= EXACT_CONTACTS:
-                room = max(ROWS[z].gap + deep, INTERVAL_DEPTH_MORE * deep)
-            if closing > room + 0.5 * min(deep, room):
-                far = max(far, max(closing / room, 1.01 * INTERVAL_RETRY))
+            far = max(far, too_deep(ROWS[z].gap, closing, small, thick, m <= EXACT_CONTACTS))
     return far
 
 

@@ -14,7 +14,7 @@ from ..model.step import BLOCK_DUE, DONE, HITS, IMPACTS, JOINTS_DUE, LOG_FULL, P
 from ..pairs.grid import renew
 from ..pairs.lists import mark_pair
 from .block import arrive
-from .booking import end_span
+from .booking import close_span, end_span
 from .collide import strike
 from .due import forecast, forecast_all, look_ahead
 from .forecast import has_left
@@ -131,11 +131,21 @@ def with_mover(A: Scene, i: int, n: int) -> int:
 
 @uncounted
 def cut_short(A: Scene, t: float) -> int:
-    """Let the step end at instant t: so nothing that it has no work left for is passed over."""
+    """Let the step end at instant t: so nothing that it has no work left for is passed over. Spans end there, without
+    what they would have lifted at their own end."""
     a, b = A.STATE[A.COUNT.struck].own, A.STATE[A.COUNT.struck].other
     miss(A, SOLVES, a, b, float(A.COUNT.solved), float(A.COUNT.budget))
     A.PAR.dt = t
     A.COUNT.heap = 0
+    for i in range(A.BODY.shape[0] - 1):
+        root = A.STATE[i].island
+        if root < 0 or A.MEMBER[root].jointed > 0 or A.MEMBER[root].still == 1:
+            continue
+        if root == i and A.MEMBER[i].open > 0:
+            close_span(A, i, t)
+        rest = A.RESTING[i]
+        rest.lift_x, rest.lift_y, rest.lift_angle = 0.0, 0.0, 0.0
+        rest.lift_vx, rest.lift_vy, rest.lift_spin = 0.0, 0.0, 0.0
     return DONE
 
 
@@ -143,7 +153,8 @@ def cut_short(A: Scene, t: float) -> int:
 def follow(A: Scene, disks: int, may_rest: bool) -> int:
     """The events of the step, blocks and islands included. After a status other than DONE, make room and call again.
 
-    JOINTS_DUE: the span of island COUNT[PENDING], or if there is none the impact of body COUNT[STRUCK], is to be done.
+    JOINTS_DUE: the span of island COUNT[PENDING], or if there is none the event of body COUNT[STRUCK], is to be done:
+    its impact, or the end of the span of its island.
     """
     COUNT, STATE, BLOCK = A.COUNT, A.STATE, A.BLOCK
     moving, end = A.LIST.shape[0], A.PAR.dt
@@ -164,6 +175,8 @@ def follow(A: Scene, disks: int, may_rest: bool) -> int:
         if COUNT.logged + COUNT.pushes + 8 * STATE.shape[0] > A.LOG.shape[0]:
             COUNT.heap = push(A.HEAP_TIME, A.HEAP_BODY, COUNT.heap, t, i)
             return LOG_FULL
+        if o == RENEW and jointed(A, i):
+            return JOINTS_DUE
         if o == RENEW:
             end_span(A, i, t)
             n = members(A, i, BLOCK)

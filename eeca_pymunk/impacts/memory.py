@@ -12,6 +12,7 @@ import numpy as np
 
 from ..arrays import AnyArray, IntArray, side_by_side
 from ..compiled.records import address_of
+from ..geometry.sides import CORNERS, SIDES
 from ..model.scene import Scene
 from ..pairs.layout import POOL_END
 
@@ -62,7 +63,8 @@ def remembered(scene: Scene) -> list[AnyArray]:
     sizes = np.array([len(scene.POOL), end, len(scene.KEYS), len(used), len(scene.PUSHED), pushes], np.int64)
     return [
         sizes, *(np.asarray(getattr(scene, name)) for name in _WHOLE), scene.POOL[:end], scene.FLAG[:end],
-        scene.PUSHED_BY[:pushes], scene.PUSHED[:pushes], used, scene.KEYS[used], scene.FORCES[used], scene.WORK[2:],
+        scene.PUSHED_BY[:pushes], scene.PUSHED[:pushes], used, scene.KEYS[used], scene.FORCES[used],
+        scene.WORK[SIDES:CORNERS],
     ]  # fmt: skip
 
 
@@ -89,5 +91,6 @@ def recalled(scene: Scene, take: Callable[[Any, tuple[int, ...]], AnyArray]) -> 
     new["KEYS"], new["FORCES"] = np.full(slots, -1, np.int64), np.zeros((slots, scene.FORCES.shape[1]))
     new["KEYS"][at] = take(np.int64, (used,))
     new["FORCES"][at] = take(np.float64, (used, scene.FORCES.shape[1]))
-    scene.WORK[2:] = take(np.float64, scene.WORK[2:].shape)  # sides of segments; the rest is scratch
+    # Sides of thin shapes; the rest is scratch, or does not change.
+    scene.WORK[SIDES:CORNERS] = take(np.float64, scene.WORK[SIDES:CORNERS].shape)
     return scene._replace(**new)

@@ -11,6 +11,7 @@ import numpy as np
 from ..arrays import AnyArray, FloatArray, IntArray, side_by_side
 from ..compiled.library import check
 from ..compiled.records import R, Rows, row, rows
+from ..geometry.corners import work_room
 from ..layout import NOW as READ
 from ..model.bodies import CHECK, Body, Member, Next, Rest
 from ..model.contacts import Impulse, Pair, Pushed
@@ -35,7 +36,6 @@ if TYPE_CHECKING:
 
 RULE_COLUMNS = 6
 _MISSED = 32  # of a step, that are told
-_SIDES = 64  # pairs of every segment that moves, whose sides are remembered
 _CONTACTS = 256  # of islands, that there is room for at first; powers of 2
 _OF_A_BODY, _MANY = 32, 1 << 16  # for each body where contacts may last, up to so many: untouched memory is free
 
@@ -45,18 +45,6 @@ def _longer(table: Rows[R], used: int) -> Rows[R]:
     longer: Rows[R] = np.zeros(2 * len(table), table.dtype)  # type: ignore[assignment]
     longer[:used] = table[:used]
     return longer
-
-
-def _work(LINK: Rows[Link], moving: int, vertices: int) -> FloatArray:
-    """Scratch for the vertices of two shapes; with the memory of sides where segments may meet segments."""
-    flat = LINK["vertices"] == 2
-    few = int(flat[:moving].sum())
-    if few == 0 or flat.sum() < 2:
-        return np.zeros((2, vertices, 4))
-    slots = 64
-    while slots < max(vertices, min(_SIDES * few, _MANY)):
-        slots *= 2
-    return np.zeros((3, slots, 4))
 
 
 class EventLoop(Remembering):
@@ -84,7 +72,6 @@ class EventLoop(Remembering):
         STATE["first_shape"] = np.cumsum(STATE["shapes"]) - STATE["shapes"]
         STATE["island"] = -1
         near = near_lists(BODY, SHAPE, LINK, VERTEX, moving)
-        vertices = max(2, int(LINK["vertices"].max(initial=2)))
         lossy = bool((SHAPE["elasticity"] < 1.0).any())
         self._options: tuple[int, ...] = disks, lossy  # numbers that the step takes besides dt, gravity and damping
         self.lossy, self.together = lossy, False
@@ -97,7 +84,7 @@ class EventLoop(Remembering):
             rows(Impulse, 4 * n + 64), BEGAN, PLACE, BLOCK, PULL, MEMBER, RESTING,
             rows(Pair, room), rows(Pushed, room),
             np.full(4 * room, -1, np.int64), np.zeros((4 * room, FORCE_COLUMNS)),
-            _work(LINK, moving, vertices), rows(Missed, _MISSED), row(Step), row(Count),
+            work_room(LINK, VERTEX, moving), rows(Missed, _MISSED), row(Step), row(Count),
         )  # fmt: skip
         self.near = near
         self.scene.COUNT.limit, self.scene.COUNT.disks = limit, disks

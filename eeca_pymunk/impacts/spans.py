@@ -9,6 +9,7 @@ import numpy as np
 from ..arrays import IntArray
 from ..compiled import kernel, uncounted
 from ..compiled.records import empty
+from ..geometry.sides import SIDES
 from ..model.contacts import ROW
 from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES, LARGE_ISLAND, LEAST_INTERVAL, SMALL_SWEEPS
 from ..model.scene import Scene
@@ -22,6 +23,7 @@ from ..sustained.step import POLISHES as POLISHES_OF
 from ..sustained.step import SWEEPS as SWEEPS_OF
 from .calm import calm
 from .coming import before_end, hurried, near_span, pairs_within, span_of, stick_time, strayed, sweeps_of_crowd, way_of
+from .depths import sunk
 from .islands import lossy, members
 from .local import Local as Local
 from .local import lay_out_island as lay_out_island
@@ -128,7 +130,11 @@ def open_span(A: Scene, root: int, t: float, longest: float, last: bool) -> tupl
                 sweeps, least, owed, -1.0, A.KEYS, A.FORCES, COUNT, A.PAR.stamp, A.RESTING[MINE[0]], 0.0,
                 P, Q, ROWS, KEY, L, LOSS, VN, JUMP, BOOK, OUT,
             )  # fmt: skip
-        far = 0.0 if last or OUT[STOOD] > 0.0 else strayed(P, Q, ROWS, KEY, V, VN, A.SHAPE, A.LINK, A.VERTEX, m, h)
+        far = 0.0
+        if not last and OUT[STOOD] == 0.0:
+            far = strayed(P, Q, ROWS, KEY, V, VN, A.SHAPE, A.LINK, A.VERTEX, m, h)
+            if far <= INTERVAL_RETRY and A.WORK.shape[0] > SIDES:
+                far = sunk(A, isle, POSE + 0.5 * h * (V + VN), P, Q, ROWS, KEY, m, False)
         if far > INTERVAL_RETRY:
             A.COUNT.solved += n
             return AGAIN, h / far

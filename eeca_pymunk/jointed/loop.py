@@ -10,6 +10,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import Table, kernel, uncounted
 from ..impacts.due import forecast, forecast_due
 from ..impacts.heap import push
+from ..impacts.islands import members
 from ..impacts.loop import follow, with_mover
 from ..impacts.missed import miss
 from ..impacts.settle import settle
@@ -17,11 +18,12 @@ from ..impacts.step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, finish, start, wi
 from ..joints.ledger import clear_interval
 from ..layout import BODY_ROW, LEFT
 from ..layout import NOW as READ
+from ..model.bodies import RENEW
 from ..model.joints import ELASTIC, Joints, joints_of
 from ..model.scene import Scene, scene_of
 from ..model.step import DONE, JOINTS_DUE, PUSHES_FULL
 from ..model.step import JOINTS as UNMET_JOINTS
-from .meet import book_component
+from .meet import book_component, end_here, shorten
 from .solve import begin_span
 from .strike import collide
 
@@ -94,8 +96,12 @@ def follow_jointed(A: Scene, J: Joints, disks: int, may_rest: bool) -> int:
             if not roomy(A):
                 COUNT.heap = push(A.HEAP_TIME, A.HEAP_BODY, COUNT.heap, t, i)
                 return PUSHES_FULL
-            status, n = collide(A, J, disks, STATE[i].own, STATE[i].other, t)
-            COUNT.waiting = with_mover(A, i, n)
+            if STATE[i].other == RENEW:
+                end_here(A, J, i, t)
+                COUNT.waiting, COUNT.pending = members(A, i, BLOCK), i
+            else:
+                status, n = collide(A, J, disks, STATE[i].own, STATE[i].other, t)
+                COUNT.waiting = with_mover(A, i, n)
         elif A.MEMBER[COUNT.pending].jointed == 0:
             status = follow(A, disks, may_rest)
             continue
@@ -135,9 +141,15 @@ def resume_jointed(
         COUNT.phase = 1
         forecast_due(A, disks)
     if COUNT.phase == 1:
+        whole = A.PAR.dt
         met = follow_jointed(A, J, disks, lossy or A.PAR.pulled > 0.0)
         if met != DONE:
             return wish(met)
+        if A.PAR.dt < whole:
+            # The step was cut short.
+            for i in range(A.BODY.shape[0] - 1):
+                if A.STATE[i].island == i:
+                    shorten(A, J, i, A.PAR.dt)
         COUNT.phase = 2
     if COUNT.logged + COUNT.pushes > A.LOG.shape[0]:
         return ROOM_FOR_EVENTS

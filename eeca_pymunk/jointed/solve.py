@@ -12,10 +12,10 @@ from ..compiled.records import empty
 from ..impacts.coming import before_end, pairs_of
 from ..impacts.islands import lossy, members
 from ..impacts.missed import miss
-from ..impacts.spans import Local, dismiss, lay_out_island, open_contacts
+from ..impacts.spans import AGAIN, Local, dismiss, lay_out_island, open_contacts
 from ..model.contacts import ROW
 from ..model.joints import Joints
-from ..model.parameters.intervals import MIDPOINT_SAME
+from ..model.parameters.intervals import INTERVAL_RETRY, MIDPOINT_SAME
 from ..model.scene import Scene
 from ..model.step import CONTACTS, DONE, PUSHES_FULL
 from ..rows.build import normal_rate
@@ -31,9 +31,12 @@ from .component import step_component
 from .fitting import fit
 from .gathered import gather_component, keep_joints, restore_joints
 from .groups import Groups, find_groups
+from .lengths import in_haste, length_ahead, too_long
 from .lifting import lift
 from .motors import drives
 from .press import lost, press, slip_of
+
+_TRIES = 8  # attempts at a span
 
 
 @uncounted
@@ -60,14 +63,28 @@ def foresee(
 
 @kernel
 def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
-    """Begin a span of length h of an island with joints at instant t, at which all its bodies are.
+    """Begin a span of an island with joints at instant t, at which all its bodies are: of length h, or shorter where
+    bodies go so far that no contact would be where it was (`lengths`).
 
     DONE, or PUSHES_FULL, which leaves everything as it was.
     """
+    longest = h
+    for attempt in range(_TRIES):
+        status, shorter = open_span(A, J, root, t, longest, attempt + 1 == _TRIES or in_haste(A, J))
+        if status != AGAIN:
+            return status
+        longest = shorter
+    return DONE
+
+
+@kernel
+def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) -> tuple[int, float]:
+    """`begin_span` of length h. AGAIN, with nothing done, if that is too long, and how long it may be; not if it is the
+    `last` attempt."""
     whole = is_component(A, J, root)
     if whole and meets_nobody(A, root):
         begin_alone(A, J, root, t, h)
-        return DONE
+        return DONE, h
     BODY, STATE, MEMBER, COUNT = A.BODY, A.STATE, A.MEMBER, A.COUNT
     n = MEMBER[root].bodies
     MINE = np.empty(n, np.int64)
@@ -78,13 +95,17 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
     may_lose = lossy(A, root)
     found = pairs_of(A, root, t, may_lose, A.PLACE, MINE, n)
     p = len(found)
+    shorter = h if last else length_ahead(A, found, MINE, n, h)
+    if shorter < h:
+        dismiss(A, MINE, n)
+        return AGAIN, shorter
     if p == 0 and whole:
         dismiss(A, MINE, n)
         begin_alone(A, J, root, t, h)
-        return DONE
+        return DONE, h
     if COUNT.pushes + 2 * p > A.PUSHED.shape[0] or 2 * (COUNT.remembered + 2 * p) > A.KEYS.shape[0]:
         dismiss(A, MINE, n)
-        return PUSHES_FULL
+        return PUSHES_FULL, h
     isle = lay_out_island(A, MINE, n, found, t)
     k, room = len(isle.WHO), 2 * p + 1
     groups = find_groups(isle.WHO, isle.IM, J.OF)
@@ -105,34 +126,26 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
             isle.V, REACH, isle.EXTENT, isle.IM, isle.II, h, k == n, MIDPOINT_SAME, P, Q, ROWS, KEY, NOW, THEN,
         )  # fmt: skip
     C = make_columns(groups, P, Q, m)
+    held = True
     if m > 0:
         recall(KEY, m, A.KEYS, A.FORCES, A.PAR.stamp, h, L, EXPECTED)
         owed = max(-A.RESTING[root].lost, 0.0)
-        if not press(
-            A, J, isle, groups, P, Q, ROWS, L, EXPECTED, m, n, t, h, slow, fast, pull, owed, motion, C
-        ):  # fmt: skip
-            pair, shapes = KEY[0] >> 1, A.SHAPE.shape[0]
-            miss(A, CONTACTS, pair // shapes, pair % shapes, math.nan, math.nan)
+        held = press(A, J, isle, groups, P, Q, ROWS, L, EXPECTED, m, n, t, h, slow, fast, pull, owed, motion, C)
         remember_loads(ROWS, KEY, L, m, h, A.KEYS, A.FORCES, COUNT, A.PAR.stamp)
     if m == 0:
-        advance(
-            A,
-            J,
-            isle,
-            groups,
-            P,
-            Q,
-            ROWS,
-            L,
-            0,
-            t,
-            h,
-            motion,
-            C,
-            make_bounded(J, groups, True),
-            False,
-            np.empty((0, 3)),
-        )
+        bounded, unknown = make_bounded(J, groups, True), np.empty((0, 3))
+        advance(A, J, isle, groups, P, Q, ROWS, L, 0, t, h, motion, C, bounded, False, unknown)
+    far = 0.0 if last else too_long(A, isle, P, Q, ROWS, KEY, motion, m, n, h)
+    if far > INTERVAL_RETRY:
+        for g in range(len(groups.COMPONENT)):
+            if groups.COMPONENT[g] >= 0:
+                restore_joints(J, groups.COMPONENT[g])
+        dismiss(A, MINE, n)
+        COUNT.solves += 1
+        return AGAIN, h / far
+    if not held:
+        pair, shapes = KEY[0] >> 1, A.SHAPE.shape[0]
+        miss(A, CONTACTS, pair // shapes, pair % shapes, math.nan, math.nan)
     book_turning(A, J, isle, groups, motion, n)
     # Bodies are lifted at the end of the span, not on the way: the way would be as steep as the span is short.
     WHERE = motion.END.copy()
@@ -167,8 +180,8 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
         rest.lift_angle = motion.END[q, 2] - WHERE[q, 2]
         rest.lift_vx, rest.lift_vy, rest.lift_spin = motion.V[q, 0], motion.V[q, 1], motion.V[q, 2]
     MEMBER[root].open = 1
-    A.RESTING[root].until = math.inf
-    return DONE
+    A.RESTING[root].until = t + h if before_end(A, t + h) else math.inf
+    return DONE, h
 
 
 @uncounted

@@ -155,7 +155,7 @@ def collide(A: Scene, J: Joints, disks: int, a: int, b: int, t: float) -> tuple[
         A.STATE[j].version += 1
     status, n = rejoin(A, a, b, t, n, rest, OUT[D_NORMAL] + OUT[D_TANGENTIAL] - owed)
     # Islands that were brought here, and do not touch after all, begin anew with those that do.
-    root = A.STATE[i if A.BODY[i].inv_mass > 0.0 else j].island
+    root = A.COUNT.pending  # of the two bodies that met one may be in no island
     for c in range(ended):
         other = A.STATE[ENDED[c]].island
         if other != root:

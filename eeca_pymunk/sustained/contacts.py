@@ -3,8 +3,8 @@
 Normals and arms are those at the predicted middle q + (h/2) v, gaps those now: with u = G(middle) v the gap at the end
 is g + (h/2)(u- + u+) to third order in h, so that bodies follow curved surfaces to second order without a loss; and
 an island without forces keeps its angular momentum exactly, as its middle and the predicted one differ by multiples of
-the impulses. Where a pair moves far in half a span (an impact at high speed) its rows are those now; in a free island
-its points go half the way with each of its bodies.
+the impulses. Where a pair moves far in half a span (an impact at high speed), as seen from a body that turns and that
+impulses do not move, its rows are those now; in a free island its points go half the way with each of its bodies.
 """
 
 from __future__ import annotations
@@ -24,6 +24,14 @@ from ..rows.build import place_row
 from .memory import key_of
 
 PAIR_COLUMNS = 4  # PAIRS: shape a, shape b, and their local bodies
+
+
+@uncounted
+def way_about(POSE: FloatArray, V: FloatArray, a: int, b: int, extent: float) -> float:
+    """Speed of points of local body b, up to `extent` from its centre of mass, in the frame of body a, which turns."""
+    x = V[b, 0] - V[a, 0] + V[a, 2] * (POSE[b, 1] - POSE[a, 1])
+    y = V[b, 1] - V[a, 1] - V[a, 2] * (POSE[b, 0] - POSE[a, 0])
+    return math.sqrt(x * x + y * y) + abs(V[b, 2] - V[a, 2]) * extent
 
 
 @uncounted
@@ -71,15 +79,20 @@ def gather(
             + abs(V[a, 2]) * EXTENT[a]
             + abs(V[b, 2]) * EXTENT[b]
         )
+        about = way
+        if IM[a] == 0.0 and V[a, 2] != 0.0:
+            about = half * way_about(POSE, V, a, b, EXTENT[b])
+        elif IM[b] == 0.0 and V[b, 2] != 0.0:
+            about = half * way_about(POSE, V, b, a, EXTENT[a])
         centre = MIDDLE
         # Normals turn as round shapes go round one another, and slowly about a large one.
         far = SHAPE[s].rounding + SHAPE[r].rounding if LINK[s].vertices == 1 and LINK[r].vertices == 1 else small
-        ahead = near * small < way <= MIDPOINT_WAY * far
+        ahead = near * small < way and about <= MIDPOINT_WAY * far
         if ahead:
             again = manifold(
                 SHAPE, LINK, VERTEX, WORK,
                 s, MIDDLE[a, 0], MIDDLE[a, 1], MIDDLE[a, 2], r, MIDDLE[b, 0], MIDDLE[b, 1], MIDDLE[b, 2],
-                reach + way, MANIFOLD_ROUND_OFF * small, THEN,
+                reach + about, MANIFOLD_ROUND_OFF * small, THEN,
             )  # fmt: skip
             ahead = again == count
             for z in range(count):

@@ -34,6 +34,9 @@ SIDE_HELD = heuristic(
     "of the smaller shape",
     "Depth by which segments that forces hold together may have passed through one another.",
 )
+SLENDER = heuristic(0.5, "area over (length / 2)^2", "Polygons below it are thin, and remember sides as segments do.")
+CORNER_MEET = round_off(1e-9, "of the segments' size", "Distance of the ends of segments that form a corner.")
+STRAIGHT = round_off(1e-6, "sine", "Angle between segments that meet, below which they are one straight wall.")
 MARGIN_OF_FAST = work(
     2.0,
     "times the way of a step",

@@ -1,0 +1,66 @@
+"""How deep contacts may come in a span: by the rates of their rows, and by where its end has the shapes."""
+
+from __future__ import annotations
+
+import math
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import kernel, uncounted
+from ..compiled.records import Rows
+from ..geometry.gap import gap_at
+from ..geometry.manifold import half_width
+from ..geometry.sides import remembers
+from ..model.contacts import Row
+from ..model.parameters.intervals import (
+    EXACT_CONTACTS,
+    INTERVAL_DEPTH,
+    INTERVAL_DEPTH_LEAST,
+    INTERVAL_DEPTH_MORE,
+    INTERVAL_DEPTH_WIDTH,
+    INTERVAL_RETRY,
+)
+from ..model.scene import Scene
+from .local import Local
+
+
+@uncounted
+def too_deep(gap: float, closing: float, small: float, thick: float, few: bool) -> float:
+    """How many times too long a span is in which a contact closes by more than it has room for; 0 if it is not. `thick`
+    are half the widths of both shapes, `few` whether there are few contacts."""
+    deep = max(min(INTERVAL_DEPTH * small, INTERVAL_DEPTH_WIDTH * thick), INTERVAL_DEPTH_LEAST * small)
+    room = max(gap, 0.0) + deep
+    if few:
+        # What is as deep already is to go hardly deeper, where few are solved again for it.
+        room = max(gap + deep, INTERVAL_DEPTH_MORE * deep)
+    if closing > room + 0.5 * min(deep, room):
+        return max(closing / room, 1.01 * INTERVAL_RETRY)
+    return 0.0
+
+
+@kernel
+def sunk(
+    A: Scene, isle: Local, END: FloatArray, P: IntArray, Q: IntArray, ROWS: Rows[Row], KEY: IntArray, m: int, all: bool
+) -> float:  # fmt: skip
+    """How many times too long a span is at whose END (k, 3) poses some contact is deeper than it may be: what its row,
+    which is linear, does not tell. Of `all` pairs, or of thin shapes alone."""
+    far, shapes, last = 0.0, A.SHAPE.shape[0], -1
+    for z in range(m):
+        pair = KEY[z] >> 1
+        a, b, p, q = pair // shapes, pair % shapes, P[z], Q[z]
+        if pair == last or not (all or remembers(A.LINK, A.WORK, a, b)):
+            continue
+        last = pair
+        if isle.WHO[p] != A.LINK[a].owner:
+            p, q = q, p
+        gap = ROWS[z].gap
+        if z + 1 < m and KEY[z + 1] >> 1 == pair:
+            gap = min(gap, ROWS[z + 1].gap)
+        small = min(A.SHAPE[a].extent, A.SHAPE[b].extent)
+        end = gap_at(
+            A.SHAPE, A.LINK, A.VERTEX, A.WORK, a, END[p, 0], END[p, 1], END[p, 2], b, END[q, 0], END[q, 1], END[q, 2]
+        )[0]
+        if gap - end > INTERVAL_DEPTH_LEAST * small:
+            thick = half_width(A.SHAPE, A.LINK, A.VERTEX, a) + half_width(A.SHAPE, A.LINK, A.VERTEX, b)
+            far = max(far, too_deep(gap, gap - end, small, thick, m <= EXACT_CONTACTS))
+    # What rows do not tell grows with the square of the length, at least.
+    return max(math.sqrt(far), 1.01 * INTERVAL_RETRY) if far > 0.0 else 0.0
