@@ -68,6 +68,11 @@ class PackedSpace(Stepper):
     def prepare(self, world: World) -> None:
         """Make what the stepper keeps about a world that was read anew."""
 
+    def patch(self, world: World) -> bool:
+        """Put what the program has edited of shapes and bodies into the rows of a world, and what is kept about it;
+        False, with nothing done, where only a new reading will do."""
+        return False
+
     def book(self) -> FloatArray | None:
         """(7,) what the ledger of the last step is made of, see `energy.ledger`; None if the stepper keeps none."""
         return None
@@ -93,6 +98,14 @@ class PackedSpace(Stepper):
                 self._sleep = Sleep(world, None)
             if world.joints is not joints:
                 self.prepare(world)
+            self._world = world
+            return world
+        if (
+            world is not None
+            and self._sleep is None
+            and self.space.sleep_time_threshold == math.inf
+            and self.patch(world)
+        ):
             self._world = world
             return world
         past = self._past if world is None else world

@@ -62,18 +62,23 @@ class Remembering:
 
     def start_anew(self, at: IntArray, state: FloatArray) -> None:
         """Be what a new loop is for bodies, rows `at` (b,) of BODY, of this state (b, 6); after `keep_fresh`."""
-        self.own[:] = self.fresh
-        # Where tables have been made larger they are taken back: a step that is broken off for room begins again.
-        if any(getattr(self.scene, name) is not array for name, array in self._room.items()):
-            self.scene = self.scene._replace(**self._room)
-        self.scene.KEYS[:] = -1
         if self.listed:
             BODY, moved = self.scene.BODY, self.scene.BODY[at]
             put(moved, state, *POSE, *VELOCITY)
             moved["since"] = 0.0
             BODY[at] = moved
+        self.be_new(False)
+
+    def be_new(self, lists: bool) -> None:
+        """Be what a new loop is for BODY and shapes as they are; after `keep_fresh`. `lists`: whether shapes are others
+        than then, so that lists are."""
+        self.own[:] = self.fresh
+        # Where tables have been made larger they are taken back: a step that is broken off for room begins again.
+        if any(getattr(self.scene, name) is not array for name, array in self._room.items()):
+            self.scene = self.scene._replace(**self._room)
+        self.scene.KEYS[:] = -1
+        if lists or self.listed:
             self._list_anew()
-            self.keep_fresh()
 
     def remembered(self) -> list[AnyArray]:
         """All that decides how the next step goes, besides what crosses the edge."""
@@ -99,6 +104,15 @@ class Remembering:
     def _list_anew(self) -> None:
         """Make the near lists for where BODY has the bodies now, as for a new loop."""
         scene = self.scene
-        self.near = near_lists(scene.BODY, scene.SHAPE, scene.LINK, scene.VERTEX, len(scene.LIST))
-        self._usual = self.near.MARK["margin"].copy()
-        self.scene = scene._replace(**self.near._asdict())
+        near = near_lists(scene.BODY, scene.SHAPE, scene.LINK, scene.VERTEX, len(scene.LIST))
+        here = self._lists()
+        if all(old.shape == new.shape for old, new in zip(here, near, strict=True)):
+            # The addresses that machine code has been given stay.
+            for old, new in zip(here, near, strict=True):
+                old[...] = new
+            self._usual[:] = near.MARK["margin"]
+            self.fresh[:] = self.own
+            return
+        self.near, self._usual = near, near.MARK["margin"].copy()
+        self.scene = scene._replace(**near._asdict())
+        self.keep_fresh()

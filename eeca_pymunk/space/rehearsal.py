@@ -79,6 +79,12 @@ class Rehearsal:
         self.decided, self._ignores = False, True
         self._recent: float = 0.0  # steps for which decisions hold
 
+    def forget(self) -> None:
+        """Know nothing of earlier steps."""
+        self._heard, self._recent, self._ignores = [False, False], 0, True
+        for table in self._changes:
+            table[:] = 0.0
+
     def listen(self, stage: int) -> None:
         """Before a function is called: know what there is, if pymunk has gone on since the last one."""
         if self._stage != stage:
