@@ -12,13 +12,15 @@ from ..compiled import table_of
 from ..compiled.records import numbers, put
 from ..model.bodies import POSE, VELOCITY
 from ..model.scene import Scene
-from ..model.step import Step
+from ..model.step import Count, Step
 from ..pairs.setup import Near, near_lists
 from .memory import OF_SCENE, ROOM, gathered, recalled, remembered
 
-_BOOK = slice((Step.TYPE.names or ()).index("restitution"), (Step.TYPE.names or ()).index("after") + 1)
+_STEP, _COUNT = Step.TYPE.names or (), Count.TYPE.names or ()
+_BOOK = slice(_STEP.index("restitution"), _STEP.index("after") + 1)
+_LOCK, _UNMET, _SOLVES, _BLOCKS = _STEP.index("lock"), *map(_COUNT.index, ("unmet", "solves", "blocks"))
 UNBOUND: tuple[tuple[AnyArray | None, ...], Callable[..., int]] = (None,) * 4, int
-_OF_PROCESS = "table", "_bound", "own", "fresh", "_room"  # attributes that no copy has
+_OF_PROCESS = "table", "_bound", "own", "fresh", "_room", "_par", "_count"  # attributes that no copy has
 
 
 class Remembering:
@@ -40,7 +42,24 @@ class Remembering:
     def scene(self, arrays: Scene) -> None:
         self._scene, self.table = arrays, table_of(arrays)
         self._bound: tuple[tuple[AnyArray | None, ...], Callable[..., int]] = UNBOUND
-        self._book: FloatArray = numbers(arrays.PAR)[_BOOK]
+        # Fields of records take ten times as long as entries of arrays, and these are asked for in every step.
+        self._par, self._count = numbers(arrays.PAR).reshape(-1), numbers(arrays.COUNT).reshape(-1)
+        self._book: FloatArray = self._par[_BOOK]
+
+    @property
+    def lock(self) -> float:
+        """Scale of the energy lock of the last step that was farthest from 1."""
+        return float(self._par.item(_LOCK))
+
+    @property
+    def converged(self) -> bool:
+        """Whether the last step left nothing undone."""
+        return bool(self._count.item(_UNMET) == 0)
+
+    @property
+    def iterations(self) -> int:
+        """Solves of islands and of blocks in the last step."""
+        return int(self._count.item(_SOLVES) + self._count.item(_BLOCKS))
 
     def __getstate__(self) -> dict[str, object]:
         return {key: value for key, value in self.__dict__.items() if key not in _OF_PROCESS}
@@ -105,10 +124,10 @@ class Remembering:
         """Make the near lists for where BODY has the bodies now, as for a new loop."""
         scene = self.scene
         near = near_lists(scene.BODY, scene.SHAPE, scene.LINK, scene.VERTEX, len(scene.LIST))
-        here = self._lists()
-        if all(old.shape == new.shape for old, new in zip(here, near, strict=True)):
+        pairs: list[tuple[AnyArray, AnyArray]] = list(zip(self._lists(), near, strict=True))
+        if all(old.shape == new.shape for old, new in pairs):
             # The addresses that machine code has been given stay.
-            for old, new in zip(here, near, strict=True):
+            for old, new in pairs:
                 old[...] = new
             self._usual[:] = near.MARK["margin"]
             self.fresh[:] = self.own

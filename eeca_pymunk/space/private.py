@@ -16,7 +16,7 @@ import pymunk
 from pymunk import batch
 
 from ..arrays import FloatArray, IntArray
-from . import private_arbiters, private_joints, private_sleep, private_versions
+from . import private_arbiters, private_functions, private_joints, private_sleep, private_versions
 from .private_versions import DEFAULTS as DEFAULTS
 from .private_versions import REQUIRED, bodies
 
@@ -34,7 +34,7 @@ _OF_LIBRARY = (
     "cpShapeGetFriction",
     "cpSpaceGetSleepTimeThreshold", "cpSpaceSetSleepTimeThreshold", "cpSpaceGetShapeIDCounter", "cpSpaceGetTimestamp",
     "pmSpaceBodyGetIteratorFuncBatched", "pmSpaceBodySetIteratorFuncBatched",
-    *private_joints.OF_LIBRARY, *private_sleep.OF_LIBRARY, *private_arbiters.OF_LIBRARY,
+    *private_joints.OF_LIBRARY, *private_sleep.OF_LIBRARY, *private_arbiters.OF_LIBRARY, *private_functions.OF_LIBRARY,
 )  # fmt: skip
 _OF_SPACE = (
     "_space", "_bodies", "_shapes", "_constraints", "_handlers", "_get_arbiters", "_locked", "_add_later",
@@ -132,19 +132,6 @@ def velocity_function(body: pymunk.Body) -> Callable[..., None] | None:
 def position_function(body: pymunk.Body) -> Callable[..., None] | None:
     """The body's own position function, None if it has pymunk's."""
     return body._position_func
-
-
-def replace_functions(
-    body: pymunk.Body, velocity: Callable[..., None] | None, position: Callable[..., None] | None
-) -> None:
-    """Let pymunk call these functions in the place of the body's own, where that has one; None leaves it.
-
-    The public setters would also tell Chipmunk, which then no longer asks the body.
-    """
-    if velocity is not None:
-        body._velocity_func = velocity
-    if position is not None:
-        body._position_func = position
 
 
 @contextmanager

@@ -7,17 +7,15 @@ from collections.abc import Sequence
 from functools import cached_property
 from typing import Any, TypeAlias
 
-import numpy as np
 import pymunk
 
-from ..arrays import FloatArray
 from ..compiled.records import Rows, columns, rows
 from ..layout import BODY_ROW
 from ..model.bodies import Body
 from ..report import nothing
 from ..transfer import take
 from . import private
-from .bodies import ANGULAR_VELOCITY, VELOCITY, Bodies
+from .bodies import Bodies
 from .checks import check_space, rough_pair
 from .crossing import Crossing
 from .joints import JointRows
@@ -205,22 +203,8 @@ class World(Crossing):
         take(self.STATES, self.WALK, self.EXTRA, self.BODY, 0.0, 0.0, 1.0)
 
     def left(self, dt: float) -> float:
-        """What half a step's damping leaves of velocities; all where nothing is left at the end, see `stop`."""
+        """What half a step's damping leaves of velocities; all of them where nothing is left at the end (`alter`)."""
         return self.damping ** (0.5 * dt) if self.damping > 0.0 else 1.0
-
-    def stop(self, end: FloatArray) -> float:
-        """Take all velocities from the (N, 9) `end`, as damping 0 does; the energy that is lost.
-
-        Within the step bodies keep them, else nothing would ever move: pymunk moves bodies before it damps them.
-        """
-        bodies = self.bodies
-        stops = bodies.dynamic & ~bodies.steered
-        speed, spin = end[stops, VELOCITY], end[stops, ANGULAR_VELOCITY]
-        moment = bodies.moment[stops]
-        turning = np.where(np.isfinite(moment), moment, 0.0)
-        lost = 0.5 * float(np.sum(bodies.mass[stops] * (speed * speed).sum(axis=1)) + np.sum(turning * spin * spin))
-        end[stops, VELOCITY], end[stops, ANGULAR_VELOCITY] = 0.0, 0.0
-        return lost
 
 
 def _records(space: pymunk.Space, bodies: Bodies, known: Records) -> Records:
