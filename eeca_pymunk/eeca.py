@@ -100,6 +100,7 @@ class EECA(RunningStepper):
     def prepare(self, world: World) -> None:
         myself = ref(self)
         show_contacts(self.space, lambda: None if (me := myself()) is None else me._touches())
+        self._sync.late = self._sleep is None  # who falls asleep with whom is asked of arbiters
         saved, self._saved, self._ruled = self._saved, None, None
         if saved is not None and saved.resume(world):
             self._method: Method = saved.method
@@ -120,6 +121,7 @@ class EECA(RunningStepper):
     def _touches(self) -> Touches | None:
         """Who touched in the last step, for pymunk's arbiters; None if that was no step of ours."""
         world = self._world
+        self._sync.renew()
         if world is None or not isinstance(self._method, EventLoop) or not self._sync.is_ours():
             return None
         step = self._method.scene.PAR.stamp

@@ -131,7 +131,7 @@ class HookedStepper(PackedSpace):
                     self._sync.settle(world.bodies, world.joints, dt, bool(status & EVENTS))
         elif not self.sync or rehearses:
             world.scatter(status)
-        elif self._sync.reindexes(dt, bool(status & EVENTS)):
+        elif self._sync.reindexes(dt, bool(status & EVENTS), world.joints):
             world.scatter(status)
             self._sync.reindex()
         else:

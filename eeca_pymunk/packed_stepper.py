@@ -117,7 +117,7 @@ class PackedStepper(HookedStepper):
             world.scatter(status)
             if self._sync.stamp < 0:
                 self._sync.note()
-        elif self._sync.reindexes(dt, bool(status & EVENTS)):
+        elif self._sync.reindexes(dt, bool(status & EVENTS), world.joints):
             world.scatter(status)
             self._sync.reindex()
         else:
