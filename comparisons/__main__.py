@@ -9,6 +9,7 @@ import sys
 from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 import scenes
 
@@ -16,6 +17,8 @@ from . import film
 from .output import Output
 
 NAMES = (
+    "programs",
+    "features",
     "tour",
     "signorini",
     "carom",
@@ -51,6 +54,7 @@ def command_line() -> argparse.ArgumentParser:
     parser.add_argument("--out", type=Path, default=Path("out"), help="folder for CSV and PNG (default: out)")
     parser.add_argument("--full", action="store_true", help="also the runs that take minutes each")
     parser.add_argument("--workers", type=int, help="processes, for comparisons that run many cases (default: 1)")
+    parser.add_argument("--only", help="a list with commas, for comparisons that run many programs (default: all)")
     shown = parser.add_argument_group("the comparison's scene side by side, instead of the whole comparison")
     shown.add_argument("--animate", choices=film.FORMATS, help="write a film in this format")
     shown.add_argument("--steppers", help=f"from {','.join(film.STEPPERS)}; a film shows up to four")
@@ -91,9 +95,18 @@ def main(arguments: list[str] | None = None) -> int:
     return 0
 
 
-def chosen(options: argparse.Namespace) -> tuple[Callable[..., None], dict[str, int]]:
+def chosen(options: argparse.Namespace) -> tuple[Callable[..., None], dict[str, Any]]:
     """What runs the comparison, `run(output, full)`, and what it takes besides."""
-    run: Callable[..., None] = import_module(f".{options.name}", __package__).run
+    module = import_module(f".{options.name}", __package__)
+    run: Callable[..., None] = module.run
+    if options.only is not None:
+        known: dict[str, Any] = getattr(module, "CHOICES", {})
+        if not known:
+            raise ValueError(f"{options.name} has no parts to choose from: leave --only out")
+        names = options.only.split(",")
+        if unknown := [name for name in names if name not in known]:
+            raise ValueError(f"--only {unknown[0]!r}: choose from {','.join(known)}")
+        return run, {"only": names}
     if options.workers is None:
         return run, {}
     if options.workers < 1:

@@ -15,7 +15,7 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import pymunk
 
@@ -24,14 +24,14 @@ import eeca_pymunk as ep
 _HELD = 12  # frames for which a key is held
 _IDLE = 6  # and none after it
 # Not those that end an example (escape, q) or write pictures (p).
-_KEYS = (
+KEYS = (
     "RIGHT", "UP", "LEFT", "SPACE", "SPACE", "RIGHT", "DOWN", "d", "j", "f", "b", "c", "g", "k", "u", "w", "a", "z",
     "x",
 )  # fmt: skip
 # Of examples that end at these, or raise: pymunk's `copy_and_pickle` adds two views of shapes as if they were lists
 # when the space bar is pressed; it saves, loads and starts anew at others.  "": no key.
-_KEYS_OF = {"copy_and_pickle": ("s", "l", "r", "s", "r", "l", "l"), "newtons_cradle": ("r", "f", *8 * ("",))}
-_ARGUMENTS = {"newtons_cradle": ("/i",)}  # without any it only tells how to call it
+KEYS_OF = {"copy_and_pickle": ("s", "l", "r", "s", "r", "l", "l"), "newtons_cradle": ("r", "f", *8 * ("",))}
+ARGUMENTS = {"newtons_cradle": ("/i",)}  # without any it only tells how to call it
 
 
 class Done(BaseException):
@@ -70,6 +70,15 @@ class Clocked:
             now = ep.measure(space)
             self._scale = max(self._scale, now.kinetic, abs(now.potential), abs(book.external))
             self.residual = max(self.residual, abs(book.residual) / max(self._scale, 1e-300))
+
+
+class Stepping(Protocol):
+    """What takes the steps of an example: `steps` has as many entries as were taken."""
+
+    steps: list[float]
+
+    def step(self, space: pymunk.Space, dt: float) -> None:
+        """In the place of `Space.step`."""
 
 
 class Hands:
@@ -142,7 +151,7 @@ class Watch:
 
 
 @contextmanager
-def played(pygame: Any, hands: Hands, clocked: Clocked) -> Iterator[None]:
+def played(pygame: Any, hands: Hands, clocked: Stepping) -> Iterator[None]:
     """Within, examples see our hands, and their spaces our step."""
 
     def step(self: pymunk.Space, dt: float) -> None:
@@ -157,7 +166,7 @@ def played(pygame: Any, hands: Hands, clocked: Clocked) -> Iterator[None]:
     pygame.key.get_mods = lambda: 0
     pygame.mouse.get_pos = lambda: hands.position
     pygame.mouse.get_pressed = lambda *_: tuple(hands.buttons)
-    pygame.time.Clock = Watch
+    pygame.time.Clock, pygame.time.get_ticks = Watch, lambda: 16 * hands.k
     yield
 
 
@@ -169,9 +178,9 @@ def main(arguments: list[str]) -> int:
     if solver == "eeca":
         ep.warmup()
     random.seed(1)
-    hands, clocked = Hands(pygame, frames, _KEYS_OF.get(name, _KEYS)), Clocked(solver)
+    hands, clocked = Hands(pygame, frames, KEYS_OF.get(name, KEYS)), Clocked(solver)
     says = "runs"
-    sys.argv = [name, *_ARGUMENTS.get(name, ())]
+    sys.argv = [name, *ARGUMENTS.get(name, ())]
     try:
         with played(pygame, hands, clocked):
             runpy.run_module(f"pymunk.examples.{name}", run_name="__main__", alter_sys=True)

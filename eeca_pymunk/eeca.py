@@ -16,6 +16,7 @@ from .report import Details, Unmet, of_missed
 from .runs import RunningStepper
 from .saved import Saved
 from .space.arbiters import Touches, show_contacts, touches
+from .space.shapes import Rules
 from .space.world import World
 
 if TYPE_CHECKING:
@@ -79,6 +80,7 @@ class EECA(RunningStepper):
     ) -> None:
         self.closure: Closure = TimeOfImpact() if closure is None else closure
         self._saved: Saved | None = None  # in a copy, until its first step
+        self._ruled: Rules | None = None  # those that the method knows
         self._shown: tuple[float, World | None, Touches | None] = -1.0, None, None
         super().__init__(space, sync=sync, ignore=ignore)
 
@@ -98,12 +100,15 @@ class EECA(RunningStepper):
     def prepare(self, world: World) -> None:
         myself = ref(self)
         show_contacts(self.space, lambda: None if (me := myself()) is None else me._touches())
-        saved, self._saved = self._saved, None
+        self._sync.late = self._sleep is None  # who falls asleep with whom is asked of arbiters
+        saved, self._saved, self._ruled = self._saved, None, None
         if saved is not None and saved.resume(world):
             self._method: Method = saved.method
             return
         world.load()
         self._method = self.closure.prepare(world)
+        if self._patches and world.joints is None and isinstance(self._method, EventLoop):
+            self._method.keep_fresh()
         if world.joints is not None:
             world.joints.planned()
             world.part()
@@ -116,6 +121,7 @@ class EECA(RunningStepper):
     def _touches(self) -> Touches | None:
         """Who touched in the last step, for pymunk's arbiters; None if that was no step of ours."""
         world = self._world
+        self._sync.renew()
         if world is None or not isinstance(self._method, EventLoop) or not self._sync.is_ours():
             return None
         step = self._method.scene.PAR.stamp
@@ -135,7 +141,8 @@ class EECA(RunningStepper):
                 self._method.plan()
                 joints.planned()
             parted = world.part()
-        if world.collisions or parted:
+        if parted or (world.collisions and world.rules is not self._ruled):
+            self._ruled = world.rules
             self._method.rule(world.told())
 
     def advance(self, world: World, dt: float, left: float) -> int:

@@ -30,7 +30,11 @@ Own = TypeVar("Own", bound="PackedSpace")
 
 
 class PackedSpace(Stepper):
-    """A stepper that keeps its space as the arrays of a `World`; arguments as of `PackedStepper`."""
+    """A stepper that keeps its space as the arrays of a `World`; arguments as of `PackedStepper`.
+
+    Attributes:
+        reads: how often the whole space was read: once at the start, and after changes that patch no rows.
+    """
 
     def __init__(self, space: pymunk.Space, *, sync: bool = True, ignore: Sequence[str] = ()) -> None:
         super().__init__(space)
@@ -42,6 +46,7 @@ class PackedSpace(Stepper):
         self._told: JointRows | None = None  # what `constraint.impulse` reads
         self._sleep: Sleep | None = None  # None where nobody can
         self._idle_book: FloatArray | None = None  # of a step in which everyone sleeps
+        self.reads = 0
         self._look()
 
     def __getstate__(self) -> dict[str, object]:
@@ -62,6 +67,11 @@ class PackedSpace(Stepper):
 
     def prepare(self, world: World) -> None:
         """Make what the stepper keeps about a world that was read anew."""
+
+    def patch(self, world: World) -> bool:
+        """Put what the program has edited of shapes and bodies into the rows of a world, and what is kept about it;
+        False, with nothing done, where only a new reading will do."""
+        return False
 
     def book(self) -> FloatArray | None:
         """(7,) what the ledger of the last step is made of, see `energy.ledger`; None if the stepper keeps none."""
@@ -90,6 +100,14 @@ class PackedSpace(Stepper):
                 self.prepare(world)
             self._world = world
             return world
+        if (
+            world is not None
+            and self._sleep is None
+            and self.space.sleep_time_threshold == math.inf
+            and self.patch(world)
+        ):
+            self._world = world
+            return world
         past = self._past if world is None else world
         if self._sleep is not None:
             self._sleep.part()
@@ -98,6 +116,7 @@ class PackedSpace(Stepper):
         if world.ignores and not self._warned:
             self._warned = True
             warnings.warn(f"{type(self).__name__} steps on without the friction of this space", stacklevel=4)
+        self.reads += 1
         self._sync = Sync(self.space, world.bodies)
         self._sleep = Sleep(world, self._sleep) if self.space.sleep_time_threshold < math.inf else None
         self.prepare(world)

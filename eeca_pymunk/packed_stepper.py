@@ -2,32 +2,20 @@
 
 from __future__ import annotations
 
-from abc import abstractmethod
-from collections.abc import Callable
-from math import isfinite
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
-from .arrays import FloatArray
-from .energy.ledger import AFTER, DAMPED
-from .errors import NotFiniteError
-from .packed_space import TOO_FAR, PackedSpace
-from .reentry import BUSY, busy, refuse_within
-from .report import Details, StepReport, Unmet
-from .space.bodies import ANGULAR_VELOCITY, VELOCITY
-from .space.hooks import Hooks
-from .space.rehearsal import Rehearsal
+from .hooked_stepper import HookedStepper
+from .reentry import BUSY, refuse_within
+from .report import Details, StepReport
 from .space.sleeping import Sleep
 from .space.world import World
 from .stepper import check_dt
 from .transfer import EVENTS, FORCES, MOVED_STATIC, OTHER_BODIES
 
-if TYPE_CHECKING:
-    pass
-
 Own = TypeVar("Own", bound="PackedStepper")
 
 
-class PackedStepper(PackedSpace):
+class PackedStepper(HookedStepper):
     """A stepper whose physics is one compiled call on the arrays of a `World`; subclasses say which, in `advance`.
 
     Args:
@@ -47,30 +35,6 @@ class PackedStepper(PackedSpace):
 
     def __exit__(self, *_: object) -> None:
         del self.space.step
-
-    @abstractmethod
-    def advance(self, world: World, dt: float, left: float) -> int:
-        """Move the bodies from `world.STATES` to `world.ENDS`; the space is not touched.
-
-        Args:
-            dt: time, > 0.  left: what half the step's damping leaves of velocities.
-
-        Returns:
-            the bits EVENTS and FORCES, or a negative code, of `transfer.py`.
-        """
-
-    @abstractmethod
-    def details(self, world: World, dt: float) -> Details | Callable[[], Details]:
-        """The arrays of the report of the step that has just answered EVENTS, or what makes them."""
-
-    def outcome(self) -> tuple[float, bool, int]:
-        """Scale of the energy lock of the last step that was farthest from 1, whether all tolerances were met, and the
-        iterations of the solver."""
-        return 1.0, True, 0
-
-    def unmet(self, world: World) -> tuple[Unmet, ...] | Callable[[], tuple[Unmet, ...]]:
-        """Which budgets and tolerances the last step did not meet, or what makes that."""
-        return ()
 
     def step(self, dt: float) -> StepReport:
         if BUSY:
@@ -153,112 +117,8 @@ class PackedStepper(PackedSpace):
             world.scatter(status)
             if self._sync.stamp < 0:
                 self._sync.note()
-        elif self._sync.reindexes(dt, bool(status & EVENTS)):
+        elif self._sync.reindexes(dt, bool(status & EVENTS), world.joints):
             world.scatter(status)
             self._sync.reindex()
         else:
             self._sync.land(world, dt, status)
-
-    def _hooked_step(self, world: World, dt: float) -> StepReport:
-        """A step of a space in which functions of bodies or constraints, or collision handlers, are called."""
-        with busy(self.space):
-            world, report, rehearsal = self._take_hooked(world, dt)
-        if rehearsal is not None:
-            self._sync.note()
-            rehearsal.finish()
-        elif self.sync or (world.joints is not None and world.joints.calling):
-            self._sync.call_back()
-        return report
-
-    def _take_hooked(self, world: World, dt: float) -> tuple[World, StepReport, Rehearsal | None]:
-        """All of it but what waits for its end."""
-        world.gather()
-        if not world.is_current():
-            world = self._look(anew=True)
-            world.gather()
-        bodies, state = world.bodies, world.state.copy()
-        bodies.check_finite(state)
-        hooks, left = Hooks(self.space, bodies, world.joints), world.left(dt)
-        rehearsal: Rehearsal | None = None
-        given, lost = None, 0.0
-        book: FloatArray | None = None
-        try:
-            if world.joints is not None:
-                world.joints.refresh()
-                hooks.before(dt)
-                world.gather()
-            if len(hooks.velocity):
-                world.push(hooks.change(dt), dt)
-            if hooks.collisions:
-                rehearsal = world.rehearsal
-                self._checked(world, dt, rehearsal.run(hooks, dt, world.gravity, left))
-                world.rules = rehearsal.rules(world.rules, world.shapes, world.SHAPE, world.smooth)
-            world.void_forecasts()
-            status = self._checked(world, dt, self.advance(world, dt, left))
-            book = self._booked(dt)
-            after = None if rehearsal is None else rehearsal.after
-            if world.damping == 0.0 or after is not None or len(hooks.position):
-                given, end = world.given(), world.ended()
-                if world.damping == 0.0:
-                    lost = world.stop(end)
-                    given[:, VELOCITY], given[:, ANGULAR_VELOCITY] = end[:, VELOCITY], end[:, ANGULAR_VELOCITY]
-                if after is not None:
-                    end += after
-                if len(hooks.position):
-                    hooks.positions(world.state, end, dt)
-                bodies.check_finite(end, TOO_FAR)
-                status = status & EVENTS | world.put(end)
-            else:
-                status = status & EVENTS | world.whole()
-            world.reset_forces()
-            if world.joints is not None and world.joints.calling:
-                world.scatter(status)
-                world.joints.write()
-                hooks.after(dt)
-                if self.sync and rehearsal is None:
-                    with hooks.silent():
-                        self._sync.settle(bodies, world.joints, dt, bool(status & EVENTS))
-            elif not self.sync or rehearsal is not None:
-                world.scatter(status)
-            elif self._sync.reindexes(dt, bool(status & EVENTS)):
-                world.scatter(status)
-                self._sync.reindex()
-            else:
-                with hooks.silent():
-                    self._sync.land(world, dt, status)
-            if given is not None:
-                # What functions have changed since the step is found next time.
-                world.give(given)
-        except BaseException:
-            self._undo(world, state)
-            raise
-        self.time += dt
-        report = self._made(world, dt, status, book, lost)
-        self._tell_joints(world)
-        return world, report, rehearsal
-
-    def _booked(self, dt: float) -> FloatArray | None:
-        """What the ledger of the step is made of. NotFiniteError, before the space is touched, if the energy is too
-        large for a number though positions and velocities are not."""
-        book = self.book()
-        if book is not None and not isfinite(book[AFTER]):
-            self._world = self._past = None
-            raise NotFiniteError(f"the energy of the space would be {book[AFTER]} after dt = {dt}: {TOO_FAR}")
-        return book
-
-    def _checked(self, world: World, dt: float, status: int) -> int:
-        if status < 0:
-            self._fail(world, dt, status)
-        return status
-
-    def _made(self, world: World, dt: float, status: int, book: FloatArray | None, lost: float = 0.0) -> StepReport:
-        """The report of the step with this book; `lost` is the energy that damping has taken since."""
-        if lost and book is not None:
-            book[DAMPED] += lost
-            book[AFTER] -= lost
-        lock, converged, iterations = self.outcome()
-        unmet = () if converged else self.unmet(world)
-        if not status & EVENTS:
-            return StepReport(self.time, world.empty, converged=converged, book=book, unmet=unmet)
-        details = self.details(world, dt)
-        return StepReport(self.time, details, iterations, lock=lock, converged=converged, book=book, unmet=unmet)

@@ -1,4 +1,5 @@
-"""Kernels of a rehearsal: where pymunk's own step begins for its collision handlers, and what these have changed."""
+"""Kernels of steps in which functions are called: what they find, what they have changed, and where pymunk's own step
+begins for its collision handlers."""
 
 from __future__ import annotations
 
@@ -7,11 +8,95 @@ import math
 from .arrays import FloatArray, IntArray
 from .compiled import kernel
 from .compiled.records import Rows
-from .layout import BODY_ROW, COG_X, COG_Y, ECCENTRIC, END, NOW, PUSH_TWIST, PUSH_X, PUSH_Y, SPECIAL, STEERED
+from .layout import (
+    BODY_ROW,
+    COG_X,
+    COG_Y,
+    ECCENTRIC,
+    END,
+    FOUND,
+    KNOWN,
+    LEFT,
+    NOW,
+    PUSH_TWIST,
+    PUSH_X,
+    PUSH_Y,
+    SPECIAL,
+    STEERED,
+)  # fmt: skip
 from .model.bodies import Body
-from .transfer import NOT_FINITE, OVERFLOW, finite
+from .transfer import FORCES, MOVED_STATIC, NOT_FINITE, OTHER_BODIES, OVERFLOW, TURNS, finite, lay
 
 PRESS = 1e-7  # part of its height by which a body is pressed on what carries it
+
+
+@kernel
+def found(STATES: FloatArray, WALK: IntArray, START: FloatArray) -> int:
+    """Keep the state that was read in START (N, 9).
+
+    Returns:
+        0; OTHER_BODIES, MOVED_STATIC or NOT_FINITE if it is of other bodies, if a static one was moved, or if a number
+        is not finite.
+    """
+    now, left = STATES[NOW], STATES[LEFT]
+    status = 0
+    for i in range(WALK.shape[1]):
+        if WALK[FOUND, i] != WALK[KNOWN, i]:
+            return OTHER_BODIES
+        if not finite(now[i, 0], now[i, 1], now[i, 2], now[i, 3], now[i, 4], now[i, 5]):
+            status = NOT_FINITE
+        if not finite(now[i, 6], now[i, 7], now[i, 8], 0.0, 0.0, 0.0):
+            status = NOT_FINITE
+        if WALK[BODY_ROW, i] < 0:
+            if now[i, 0] != left[i, 0] or now[i, 1] != left[i, 1] or now[i, 2] != left[i, 2]:
+                return MOVED_STATIC
+        for c in range(9):
+            START[i, c] = now[i, c]
+    return status
+
+
+@kernel
+def altered(
+    STATES: FloatArray, WALK: IntArray, BODY: Rows[Body], ENDS: FloatArray, AFTER: FloatArray, GIVEN: FloatArray,
+    LOST: FloatArray, stops: int,
+) -> int:  # fmt: skip
+    """Take all velocities from the end of a step, if `stops`, as damping 0 does; keep what the step then gives in GIVEN
+    (N, 9); add AFTER (N, 9), what functions have changed since, which is then 0; and lay all of that out in ENDS.
+
+    Within the step bodies keep their velocities, else nothing would ever move: pymunk moves bodies before it damps
+    them. LOST[0] is the energy that is lost. Forces are reset.
+
+    Returns:
+        the bits of `lay`, or OVERFLOW if a number is not finite.
+    """
+    now, left = STATES[NOW], STATES[LEFT]
+    status, straight, turning = FORCES | TURNS, 0.0, 0.0
+    for i in range(WALK.shape[1]):
+        row = WALK[BODY_ROW, i]
+        for c in range(9):
+            GIVEN[i, c] = left[i, c]
+        if row < 0:
+            for c in range(9):
+                left[i, c] = now[i, c]
+            if stops:
+                GIVEN[i, 3], GIVEN[i, 4], GIVEN[i, 5] = now[i, 3], now[i, 4], now[i, 5]
+        else:
+            left[i, 6], left[i, 7], left[i, 8] = 0.0, 0.0, 0.0
+            if stops and BODY[row].inv_mass > 0.0 and not WALK[SPECIAL, i] & STEERED:
+                straight += (left[i, 3] * left[i, 3] + left[i, 4] * left[i, 4]) / BODY[row].inv_mass
+                if BODY[row].inv_inertia > 0.0:
+                    turning += left[i, 5] * left[i, 5] / BODY[row].inv_inertia
+                for c in range(3, 6):
+                    left[i, c], GIVEN[i, c] = 0.0, 0.0
+        for c in range(9):
+            left[i, c] += AFTER[i, c]
+            AFTER[i, c] = 0.0
+        if row >= 0 and not finite(left[i, 0], left[i, 1], left[i, 2], left[i, 3], left[i, 4], left[i, 5]):
+            status = OVERFLOW
+    LOST[0] = 0.5 * (straight + turning)
+    if status == OVERFLOW:
+        return OVERFLOW
+    return lay(STATES, WALK, ENDS, status)
 
 
 @kernel

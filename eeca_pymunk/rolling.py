@@ -116,7 +116,7 @@ class Rolling:
         assert loop is not None
         rules = loop.scene.RULE.tobytes()
         joints = (loop.joint.tobytes(),) if isinstance(loop, JointedLoop) else ()
-        now = id(world), id(loop), rules, *joints
+        now = id(world), world.patches, id(loop), rules, *joints
         if now != self._of:
             self._made, self._of = [], now
 

@@ -43,6 +43,7 @@ class RunningStepper(PackedStepper):
     """
 
     rolling: Rolling | None = None
+    _patches = False  # whether the program edits shapes or bodies in place
 
     def __getstate__(self) -> dict[str, object]:
         return {**super().__getstate__(), "rolling": None}
@@ -128,6 +129,21 @@ class RunningStepper(PackedStepper):
             rows = world.WALK[BODY_ROW]
             loop.start_anew(rows[rows >= 0], state[rows >= 0, :6])
             world.STATES[LEFT, rows >= 0] = np.nan
+
+    def patch(self, world: World) -> bool:
+        loop = self.event_loop
+        if loop is None or not hasattr(loop, "fresh"):
+            self._patches = True  # from the next reading on: to keep what patches begin from takes time
+            return False
+        lossy = loop.lossy
+        lists = world.patch()
+        if lists is None or lossy != bool((world.SHAPE["elasticity"] < 1.0).any()):
+            return False
+        if not world.collisions and len(loop.scene.RULE):
+            loop.rule({})
+        world.load()
+        loop.be_new(lists)
+        return True
 
     def run(self, steps: int, dt: float, progress: bool = False) -> RunReport:
         refuse_within(self.space)

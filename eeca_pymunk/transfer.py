@@ -165,8 +165,8 @@ def lay(STATES: FloatArray, WALK: IntArray, ENDS: FloatArray, status: int) -> in
     """Lay out in ENDS, in the tables END and PULL, what the step leaves in STATES.
 
     Returns:
-        `status`, with TURNS if the angle or spin of any body is no longer what pymunk has, or if one spins where there
-        are contacts, which would change its spin in pymunk's step. Otherwise END has no columns for them, which pymunk
+        `status`, with TURNS if the angle or spin of any body is no longer what pymunk has, or if one spins at all:
+        contacts would change its spin in pymunk's step. Otherwise END has no columns for them, which pymunk
         takes as long to write as all others together.
     """
     N = WALK.shape[1]
@@ -175,7 +175,7 @@ def lay(STATES: FloatArray, WALK: IntArray, ENDS: FloatArray, status: int) -> in
     for i in range(N):
         if WALK[BODY_ROW, i] < 0:
             after[i, 3], after[i, 4], after[i, 5] = now[i, 3], now[i, 4], now[i, 5]
-        elif after[i, 2] != now[i, 2] or after[i, 5] != now[i, 5] or (after[i, 5] != 0.0 and status & EVENTS):
+        elif after[i, 2] != now[i, 2] or after[i, 5] != now[i, 5] or after[i, 5] != 0.0:
             status |= TURNS
             break
         end[4 * i], end[4 * i + 1] = after[i, 0], after[i, 1]

@@ -25,6 +25,7 @@ from comparisons import (
     ablation,
     datasets,
     detection,
+    features,
     film,
     films,
     first_use,
@@ -34,6 +35,7 @@ from comparisons import (
     meeting,
     pile_precision,
     piles,
+    programs,
     pymunk_examples,
     robots,
     rollouts,
@@ -483,6 +485,26 @@ def test_pymunks_examples_are_run_under_both(tmp_path: Path, monkeypatch: pytest
     with (tmp_path / "pymunk_examples.csv").open() as stream:
         (row,) = csv.DictReader(stream)
     assert (row["native"], row["ours"]) == ("runs", "runs")
+
+
+def test_programs_are_run_under_both_in_processes_of_their_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(programs, "FRAMES", 3)
+    monkeypatch.setattr(programs, "REPEATS", 1)
+    assert main(["programs", "--only", "Push-T", "--out", str(tmp_path)]) == 0
+    with (tmp_path / "programs.csv").open() as stream:
+        (row,) = csv.DictReader(stream)
+    assert (row["says"], row["steps"], row["re-reads"], row["calls"]) == ("runs", "2", "0", "0")
+    assert len(row["path"]) == 8
+    assert main(["programs", "--only", "nonsense", "--out", str(tmp_path)]) == 2
+    assert main(["carom", "--only", "arrows", "--out", str(tmp_path)]) == 2
+
+
+def test_each_feature_takes_steps(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name, short in (("BLOCKS", 2), ("STEPS", 11)):
+        monkeypatch.setattr(features, name, short)
+    assert main(["features", "--out", str(tmp_path)]) == 0
+    with (tmp_path / "features.csv").open() as stream:
+        assert [row["feature"] for row in csv.DictReader(stream)] == list(features.FEATURES)
 
 
 def test_rollouts_tell_costs_and_wrong_films(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -33,6 +33,7 @@ FLOORS = (
     "saved",
     "stepper",
     "packed_space",
+    "hooked_stepper",
     "packed_stepper",
     "states",
     "runs",

@@ -150,7 +150,7 @@ def test_only_what_was_edited_is_forecast_anew(edit: object, gravity: tuple[floa
     # The force is gone, which is another edit.
     void(world)
     assert not void(world)
-    world.give(np.where(world.bodies.static[:, None], world.given(), np.nan))
+    world.STATES[at.LEFT, ~world.bodies.static] = np.nan
     assert void(world)
 
 
@@ -164,9 +164,8 @@ def test_angles_are_written_only_where_some_body_turns() -> None:
     assert (body.angle, body.angular_velocity) == (angle, 0.0)
     # A spin that the step itself gives is written too.
     world.gather()
-    left = world.STATES[at.LEFT].copy()
-    left[0, 5] = 3.0
-    assert world.put(left) & transfer.TURNS
+    world.STATES[at.LEFT, 0, 5] = 3.0
+    assert world.whole() & transfer.TURNS
     world.scatter(transfer.TURNS)
     assert body.angular_velocity == 3.0
 

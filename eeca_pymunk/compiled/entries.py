@@ -53,6 +53,8 @@ ENTRIES = {
     "transfer:lay": "f8[3] i8[2] f8[1] i8",
     "transfer:lay_rest": "f8[3] f8[1] i8",
     "rehearsing:approach": "f8[3] i8[2] f8[2] Body[1] f8[1] f8 f8 f8 f8",
+    "rehearsing:found": "f8[3] i8[2] f8[2]",
+    "rehearsing:altered": "f8[3] i8[2] Body[1] f8[1] f8[2] f8[2] f8[1] i8",
     "rehearsing:changed": "f8[3] f8[2] f8[2]",
     "impacts.booking:flag_again": "{Scene}",
     "impacts.step:step": "{Scene} f8[3] i8[2] f8[2] f8[1] f8 f8 f8 f8 i8 bool i8",

@@ -12,13 +12,15 @@ from ..compiled import table_of
 from ..compiled.records import numbers, put
 from ..model.bodies import POSE, VELOCITY
 from ..model.scene import Scene
-from ..model.step import Step
+from ..model.step import Count, Step
 from ..pairs.setup import Near, near_lists
 from .memory import OF_SCENE, ROOM, gathered, recalled, remembered
 
-_BOOK = slice((Step.TYPE.names or ()).index("restitution"), (Step.TYPE.names or ()).index("after") + 1)
+_STEP, _COUNT = Step.TYPE.names or (), Count.TYPE.names or ()
+_BOOK = slice(_STEP.index("restitution"), _STEP.index("after") + 1)
+_LOCK, _UNMET, _SOLVES, _BLOCKS = _STEP.index("lock"), *map(_COUNT.index, ("unmet", "solves", "blocks"))
 UNBOUND: tuple[tuple[AnyArray | None, ...], Callable[..., int]] = (None,) * 4, int
-_OF_PROCESS = "table", "_bound", "own", "fresh", "_room"  # attributes that no copy has
+_OF_PROCESS = "table", "_bound", "own", "fresh", "_room", "_par", "_count"  # attributes that no copy has
 
 
 class Remembering:
@@ -40,7 +42,24 @@ class Remembering:
     def scene(self, arrays: Scene) -> None:
         self._scene, self.table = arrays, table_of(arrays)
         self._bound: tuple[tuple[AnyArray | None, ...], Callable[..., int]] = UNBOUND
-        self._book: FloatArray = numbers(arrays.PAR)[_BOOK]
+        # Fields of records take ten times as long as entries of arrays, and these are asked for in every step.
+        self._par, self._count = numbers(arrays.PAR).reshape(-1), numbers(arrays.COUNT).reshape(-1)
+        self._book: FloatArray = self._par[_BOOK]
+
+    @property
+    def lock(self) -> float:
+        """Scale of the energy lock of the last step that was farthest from 1."""
+        return float(self._par.item(_LOCK))
+
+    @property
+    def converged(self) -> bool:
+        """Whether the last step left nothing undone."""
+        return bool(self._count.item(_UNMET) == 0)
+
+    @property
+    def iterations(self) -> int:
+        """Solves of islands and of blocks in the last step."""
+        return int(self._count.item(_SOLVES) + self._count.item(_BLOCKS))
 
     def __getstate__(self) -> dict[str, object]:
         return {key: value for key, value in self.__dict__.items() if key not in _OF_PROCESS}
@@ -62,18 +81,23 @@ class Remembering:
 
     def start_anew(self, at: IntArray, state: FloatArray) -> None:
         """Be what a new loop is for bodies, rows `at` (b,) of BODY, of this state (b, 6); after `keep_fresh`."""
-        self.own[:] = self.fresh
-        # Where tables have been made larger they are taken back: a step that is broken off for room begins again.
-        if any(getattr(self.scene, name) is not array for name, array in self._room.items()):
-            self.scene = self.scene._replace(**self._room)
-        self.scene.KEYS[:] = -1
         if self.listed:
             BODY, moved = self.scene.BODY, self.scene.BODY[at]
             put(moved, state, *POSE, *VELOCITY)
             moved["since"] = 0.0
             BODY[at] = moved
+        self.be_new(False)
+
+    def be_new(self, lists: bool) -> None:
+        """Be what a new loop is for BODY and shapes as they are; after `keep_fresh`. `lists`: whether shapes are others
+        than then, so that lists are."""
+        self.own[:] = self.fresh
+        # Where tables have been made larger they are taken back: a step that is broken off for room begins again.
+        if any(getattr(self.scene, name) is not array for name, array in self._room.items()):
+            self.scene = self.scene._replace(**self._room)
+        self.scene.KEYS[:] = -1
+        if lists or self.listed:
             self._list_anew()
-            self.keep_fresh()
 
     def remembered(self) -> list[AnyArray]:
         """All that decides how the next step goes, besides what crosses the edge."""
@@ -99,6 +123,15 @@ class Remembering:
     def _list_anew(self) -> None:
         """Make the near lists for where BODY has the bodies now, as for a new loop."""
         scene = self.scene
-        self.near = near_lists(scene.BODY, scene.SHAPE, scene.LINK, scene.VERTEX, len(scene.LIST))
-        self._usual = self.near.MARK["margin"].copy()
-        self.scene = scene._replace(**self.near._asdict())
+        near = near_lists(scene.BODY, scene.SHAPE, scene.LINK, scene.VERTEX, len(scene.LIST))
+        pairs: list[tuple[AnyArray, AnyArray]] = list(zip(self._lists(), near, strict=True))
+        if all(old.shape == new.shape for old, new in pairs):
+            # The addresses that machine code has been given stay.
+            for old, new in pairs:
+                old[...] = new
+            self._usual[:] = near.MARK["margin"]
+            self.fresh[:] = self.own
+            return
+        self.near, self._usual = near, near.MARK["margin"].copy()
+        self.scene = scene._replace(**near._asdict())
+        self.keep_fresh()

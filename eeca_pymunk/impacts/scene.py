@@ -189,24 +189,9 @@ class EventLoop(Remembering):
         return self._book.copy()
 
     @property
-    def lock(self) -> float:
-        """Scale of the energy lock of the last step that was farthest from 1."""
-        return float(self.scene.PAR.lock)
-
-    @property
-    def converged(self) -> bool:
-        """Whether the last step left nothing undone."""
-        return bool(self.scene.COUNT.unmet == 0)
-
-    @property
     def missed(self) -> Rows[Missed]:
         """(m,) what the last step has not met, the first of it; a copy."""
         return self.scene.MISSED[: self.scene.COUNT.unmet].copy()
-
-    @property
-    def iterations(self) -> int:
-        """Solves of islands and of blocks in the last step."""
-        return int(self.scene.COUNT.solves + self.scene.COUNT.blocks)
 
 
 class Together(EventLoop):

@@ -55,12 +55,14 @@ Reading = Callable[[], "Touches | None"]
 _readings: WeakKeyDictionary[pymunk.Space, Reading] = WeakKeyDictionary()
 _native_each: Any = pymunk.Body.each_arbiter
 _native_batch: Any = batch.get_space_arbiters
+_native_draw: Any = pymunk.Space.debug_draw
 
 
 def show_contacts(space: pymunk.Space, read: Reading) -> None:
     """Let arbiters of a space tell what `read` does, as long as it is not None. It must not hold the space."""
     _readings[space] = read
     pymunk.Body.each_arbiter = _each_arbiter  # type: ignore[method-assign]
+    pymunk.Space.debug_draw = _debug_draw  # type: ignore[method-assign]
     batch.get_space_arbiters = _get_space_arbiters
 
 
@@ -135,5 +137,12 @@ def _get_space_arbiters(space: pymunk.Space, fields: batch.ArbiterFields, buffer
         private_arbiters.batch_arbiters(more, fields, buffers)
 
 
+def _debug_draw(self: pymunk.Space, options: pymunk.SpaceDebugDrawOptions) -> None:
+    if options.flags & pymunk.SpaceDebugDrawOptions.DRAW_COLLISION_POINTS:
+        _of(self)  # there are arbiters from then on
+    _native_draw(self, options)
+
+
+_debug_draw.__doc__ = _native_draw.__doc__
 _each_arbiter.__doc__ = _native_each.__doc__
 _get_space_arbiters.__doc__ = _native_batch.__doc__

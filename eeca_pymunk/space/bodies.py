@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cached_property
 from typing import Any
 
@@ -85,6 +86,19 @@ class Bodies:
         self.inverse_mass: FloatArray = 1.0 / self.mass
         self.inverse_moment: FloatArray = 1.0 / self.moment
         self.center_of_gravity: FloatArray = np.array([b.center_of_gravity for b in self.items], float).reshape(-1, 2)
+
+    def weigh(self, rows: Sequence[int]) -> None:
+        """Read masses and moments of these rows anew; ValueError, and nothing changed, if they are none."""
+        before = self.mass[rows], self.moment[rows]
+        for i in rows:
+            if self.dynamic[i]:
+                self.mass[i], self.moment[i] = self.items[i].mass, self.items[i].moment
+        try:
+            self.check_masses()
+        except ValueError:
+            self.mass[rows], self.moment[rows] = before
+            raise
+        self.inverse_mass[rows], self.inverse_moment[rows] = 1.0 / self.mass[rows], 1.0 / self.moment[rows]
 
     @cached_property
     def moving(self) -> list[Any]:

@@ -33,6 +33,7 @@ from ..layout import (
     STILL,
 )  # fmt: skip
 from ..model.bodies import Body
+from ..rehearsing import altered, found
 from ..transfer import FORCES, TURNS, lay, lay_rest
 from . import private
 from .bodies import Bodies
@@ -95,6 +96,36 @@ class Crossing:
         table, to = self.ENDS[start * N :], self.bodies.reached
         return {0: private.writer(self.space, fields, table, to), TURNS: private.writer(self.space, turning, table, to)}
 
+    @cached_property
+    def START(self) -> FloatArray:
+        """(N, 9) the state at the start of a step in which functions are called, as `find` keeps it."""
+        return np.zeros((len(self.bodies), STATE_COLUMNS))
+
+    @cached_property
+    def find(self) -> Callable[[], int]:
+        """See `rehearsing.found`."""
+        return found.bind(self.STATES, self.WALK, self.START)
+
+    @cached_property
+    def CHANGES(self) -> FloatArray:
+        """(2, N, 9) what functions change within a step: before the bodies move, and after that."""
+        return np.zeros((2, *self.START.shape))
+
+    @cached_property
+    def _altered(self) -> tuple[FloatArray, FloatArray, Callable[[int], int]]:
+        given, lost, after = np.zeros_like(self.START), np.zeros(1), self.CHANGES[1]
+        return given, lost, altered.bind(self.STATES, self.WALK, self.BODY, self.ENDS, after, given, lost)
+
+    def alter(self, stops: bool) -> tuple[int, float]:
+        """See `rehearsing.altered`: its answer, and the energy that is lost."""
+        _, lost, call = self._altered
+        return call(int(stops)), float(lost[0])
+
+    def give_again(self) -> None:
+        """Take what the step gave before `alter` as what the step before has given: bodies that differ from it have
+        been moved since."""
+        self.STATES[LEFT] = self._altered[0]
+
     def is_current(self) -> bool:
         """Whether what `gather` read is of these very bodies, and no static one was moved."""
         if not np.array_equal(self.WALK[FOUND], self.WALK[KNOWN]):
@@ -112,14 +143,17 @@ class Crossing:
         """Let the bodies with velocity functions accelerate: velocities change by (k, 3) within dt."""
         self.EXTRA[self.bodies.velocity_hooks, PUSH_X : PUSH_TWIST + 1] = change / dt
 
-    def put(self, end: FloatArray) -> int:
-        """Take (N, 9) as the end of the step in the place of what the step gave, whatever pymunk has now; its bits."""
-        self.STATES[LEFT] = end
-        return self.whole()
-
     def whole(self) -> int:
         """Lay out all of the end of the step, whatever pymunk has now; its bits."""
-        return lay(self.STATES, self.WALK, self.ENDS, FORCES | TURNS)
+        return self._lay(FORCES | TURNS)
+
+    @cached_property
+    def _lay(self) -> Callable[[int], int]:
+        return lay.bind(self.STATES, self.WALK, self.ENDS)
+
+    @cached_property
+    def _lay_rest(self) -> Callable[[int], None]:
+        return lay_rest.bind(self.STATES, self.ENDS)
 
     def ended(self) -> FloatArray:
         """(N, 9) the end of the step; forces are reset as pymunk does."""
@@ -127,15 +161,6 @@ class Crossing:
         moving = ~self.bodies.static
         state[moving, :6], state[moving, 6:] = self.STATES[LEFT, moving, :6], 0.0
         return state
-
-    def given(self) -> FloatArray:
-        """(N, 9) what the step has given, a copy."""
-        left: FloatArray = self.STATES[LEFT].copy()
-        return left
-
-    def give(self, given: FloatArray) -> None:
-        """Take (N, 9) as what the step before has given: bodies that differ from it have been moved since."""
-        self.STATES[LEFT] = given
 
     def recall(self, before: Crossing) -> None:
         """Take over what the step before has given to bodies that are what they were then."""
@@ -149,7 +174,7 @@ class Crossing:
 
     def turning(self, status: int) -> int:
         """Lay out the end of the step anew with angles and spins if they were left out; its bits."""
-        return status if status & TURNS else lay(self.STATES, self.WALK, self.ENDS, status | TURNS)
+        return status if status & TURNS else self._lay(status | TURNS)
 
     def left_as_read(self) -> None:
         """Take what was just gathered as what the step gave, where pymunk rounds the places of bodies written to it."""
@@ -170,7 +195,7 @@ class Crossing:
 
     def scatter_still(self, status: int) -> None:
         """Write the poses, and velocity 0; `scatter_speed` must follow."""
-        lay_rest(self.STATES, self.ENDS, status)
+        self._lay_rest(status)
         self._scatter_still[status & TURNS]()
         if self.eccentric:
             self._scatter_still[status & TURNS]()

@@ -9,19 +9,17 @@ constraints comes after our step, whose impulses they can read; then so does tha
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
 from typing import Any
 
 import numpy as np
 import pymunk
 
 from ..arrays import FloatArray
-from . import private, private_joints
+from . import private, private_functions, private_joints
 from .bodies import ANGLE, POSITION, Bodies
 from .joints import JointRows
-
-_PRESS = 1e-7  # part of its height by which a body is pressed on what carries it, in a rehearsal
 
 
 class Hooks:
@@ -73,19 +71,10 @@ class Hooks:
     def change(self, dt: float) -> FloatArray:
         """(k, 3) what the functions add to velocity and spin of their bodies, which keep theirs; called once a step."""
         if self._change is None:
-            gravity, damping = self.space.gravity, self.space.damping**dt
-            self._change = np.empty((len(self.velocity), 3))
-            for i, row in enumerate(self.velocity):
-                body = self.bodies.items[row]
-                velocity, spin = body.velocity, body.angular_velocity
-                function = private.velocity_function(body)
-                assert function is not None  # this is one of the bodies that have one
-                try:
-                    with private_joints.time_step(self.space, dt):
-                        function(body, gravity, damping, dt)
-                    self._change[i] = (*(body.velocity - velocity), body.angular_velocity - spin)
-                finally:
-                    body.velocity, body.angular_velocity = velocity, spin
+            items = [self.bodies.items[row] for row in self.velocity]
+            with private_joints.time_step(self.space, dt):
+                found = private_functions.accelerations(items, self.space.gravity, self.space.damping**dt, dt)
+            self._change = np.array(found)
         return self._change
 
     def positions(self, state: FloatArray, end: FloatArray, dt: float) -> None:
@@ -100,20 +89,9 @@ class Hooks:
                 function(body, dt)
             end[row, POSITION], end[row, ANGLE] = body.position, body.angle
 
-    @contextmanager
-    def silent(self) -> Iterator[None]:
-        """Within, pymunk's default functions stand in for the bodies' own."""
+    def silent(self) -> AbstractContextManager[None]:
+        """Within, bodies have no functions of their own."""
+        if not (len(self.velocity) or len(self.position)):
+            return nullcontext()
         items = self.bodies.items
-        velocity = [(items[i], private.velocity_function(items[i])) for i in self.velocity]
-        position = [(items[i], private.position_function(items[i])) for i in self.position]
-        try:
-            for body, _ in velocity:
-                private.replace_functions(body, pymunk.Body.update_velocity, None)
-            for body, _ in position:
-                private.replace_functions(body, None, pymunk.Body.update_position)
-            yield
-        finally:
-            for body, function in velocity:
-                private.replace_functions(body, function, None)
-            for body, place in position:
-                private.replace_functions(body, None, place)
+        return private_functions.without([items[i] for i in self.velocity], [items[i] for i in self.position])

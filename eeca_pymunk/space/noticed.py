@@ -11,6 +11,7 @@ tells neither.
 from __future__ import annotations
 
 import weakref
+from collections import deque
 from collections.abc import Callable
 from functools import wraps
 from typing import Any
@@ -31,13 +32,27 @@ _METHODS: tuple[tuple[type, tuple[str, ...]], ...] = (
 )
 _SLEEP = ("sleep", "sleep_with_group")
 _leaders: WeakKeyDictionary[pymunk.Body, weakref.ref[pymunk.Body]] = WeakKeyDictionary()
-_counts: WeakKeyDictionary[pymunk.Space, list[int]] = WeakKeyDictionary()
+_KEPT = 256  # edits of a space, the last ones, that are told
 _wrapped = False
 
 
-def edits(space: pymunk.Space) -> list[int]:
-    """Two counts that grow from now on: of edits of a shape or body of the space and of bodies put to sleep; and of the
-    latter alone."""
+class Counts(list[int]):
+    """How often shapes or bodies of a space were edited or put to sleep, and how often the latter alone.
+
+    Attributes:
+        last: the last edits, what was edited, weakly, and which of its attributes.
+    """
+
+    def __init__(self) -> None:
+        super().__init__((0, 0))
+        self.last: deque[tuple[weakref.ref[Any], str]] = deque(maxlen=_KEPT)
+
+
+_counts: WeakKeyDictionary[pymunk.Space, Counts] = WeakKeyDictionary()
+
+
+def edits(space: pymunk.Space) -> Counts:
+    """Counts that grow from now on."""
     global _wrapped
     if not _wrapped:
         _wrapped = True
@@ -47,15 +62,19 @@ def edits(space: pymunk.Space) -> list[int]:
         for owner, names in _METHODS:
             for name in names:
                 setattr(owner, name, _method(vars(owner)[name]))
-    return _counts.setdefault(space, [0, 0])
+    return _counts.setdefault(space, Counts())
 
 
-def _note(thing: Any, of: tuple[int, ...] = (0,)) -> None:
+def _note(thing: Any, name: str) -> None:
     space = thing.space
     count = None if space is None else _counts.get(space)
-    if count is not None:
-        for k in of:
-            count[k] += 1
+    if count is None:
+        return
+    count[0] += 1
+    if name in _SLEEP:
+        count[1] += 1
+    else:
+        count.last.append((weakref.ref(thing), name))
 
 
 def leader(body: pymunk.Body) -> pymunk.Body:
@@ -71,7 +90,7 @@ def _sleep(native: Callable[..., None]) -> Callable[..., None]:
         lead = leader(group[0]) if group else self
         native(self, *group)
         _leaders[self] = weakref.ref(lead)
-        _note(self, of=(0, 1))
+        _note(self, native.__name__)
 
     return sleep_and_note
 
@@ -85,7 +104,7 @@ def _property(name: str, native: Any) -> property:
         if name in private_versions.DEFAULTS:
             private_versions.forget_function(self, name, value)
         if read is None or read(self) != before:
-            _note(self)
+            _note(self, name)
 
     return property(read, set_and_note, native.fdel, native.__doc__)
 
@@ -96,7 +115,7 @@ def _method(native: Callable[..., Any]) -> Callable[..., Any]:
         try:
             return native(self, *args, **kwargs)
         finally:
-            _note(self)
+            _note(self, native.__name__)
 
     return call_and_note
 

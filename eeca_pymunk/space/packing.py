@@ -53,7 +53,7 @@ def read(shape: pymunk.Shape, ground: pymunk.Body | None = None) -> Record:
 
 
 # Fields of a shape that its record gives, in the order of `Record.numbers`.
-_GIVEN = ("rounding", "extent", "elasticity", "friction", "surface_x", "surface_y")
+GIVEN = ("rounding", "extent", "elasticity", "friction", "surface_x", "surface_y")
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,7 @@ def pack(bodies: Bodies, state: FloatArray, shapes: Sequence[pymunk.Shape], reco
     """The rows of `bodies` in the (N, 9) `state` and of their solid `shapes`."""
     ground_itself = bodies.row[bodies.space.static_body]
     owner: IntArray = np.array([bodies.row.get(shape_body(s), ground_itself) for s in shapes], np.intp)
-    vertex, of_shape = _outlines(bodies, state, owner, records)
+    vertex, of_shape = outlines(bodies, state, owner, records)
     count = np.bincount(of_shape, minlength=len(shapes))
     first = np.cumsum(count) - count
     centred = (count == 1) & ~vertex[first].any(axis=1) if len(shapes) else np.zeros(0, bool)
@@ -99,10 +99,10 @@ def pack(bodies: Bodies, state: FloatArray, shapes: Sequence[pymunk.Shape], reco
     LINK["first"] = np.cumsum(count[order]) - count[order]
     filters = np.array([r.filter for r in records], np.uint64).reshape(-1, 3)
     put(LINK, filters.view(np.int64)[order], "group", "categories", "mask")
-    VERTEX = _with_normals(vertex[by_row], LINK)
-    numbers = np.array([r.numbers for r in records], float).reshape(-1, len(_GIVEN))[order]
-    put(SHAPE, numbers, *_GIVEN)
-    _bound(VERTEX[:, :2], LINK, SHAPE)
+    VERTEX = with_normals(vertex[by_row], LINK)
+    numbers = np.array([r.numbers for r in records], float).reshape(-1, len(GIVEN))[order]
+    put(SHAPE, numbers, *GIVEN)
+    bound(VERTEX[:, :2], LINK, SHAPE)
     moving = np.flatnonzero(row >= 0)
     BODY["inv_mass"][row[moving]], BODY["inv_inertia"][row[moving]] = (
         bodies.inverse_mass[moving],
@@ -116,7 +116,7 @@ def pack(bodies: Bodies, state: FloatArray, shapes: Sequence[pymunk.Shape], reco
     return Packed(ordered, owner[order], row, BODY, SHAPE, LINK, VERTEX, disks, dynamic)
 
 
-def _outlines(
+def outlines(
     bodies: Bodies, state: FloatArray, owner: IntArray, records: Sequence[Record]
 ) -> tuple[FloatArray, IntArray]:
     """(v, 2) vertices about the centres of mass, of static shapes in world coordinates, and (v,) their shapes."""
@@ -150,7 +150,7 @@ def _rows(bodies: Bodies, owner: IntArray, centred: BoolArray) -> tuple[IntArray
     return row, int(np.count_nonzero(lone))
 
 
-def _with_normals(vertex: FloatArray, LINK: Rows[Link]) -> FloatArray:
+def with_normals(vertex: FloatArray, LINK: Rows[Link]) -> FloatArray:
     """(v, 4) vertices and the outward unit normals of the edges that begin there."""
     following = np.arange(1, len(vertex) + 1)
     following[LINK["first"] + LINK["vertices"] - 1] = LINK["first"]
@@ -161,7 +161,7 @@ def _with_normals(vertex: FloatArray, LINK: Rows[Link]) -> FloatArray:
     return np.concatenate((vertex, normal), axis=1)
 
 
-def _bound(vertex: FloatArray, LINK: Rows[Link], SHAPE: Rows[Shape]) -> None:
+def bound(vertex: FloatArray, LINK: Rows[Link], SHAPE: Rows[Shape]) -> None:
     """Fill in the sizes of shapes and the circles about the boxes of their vertices."""
     if len(SHAPE) == 0:
         return

@@ -16,7 +16,7 @@ import pymunk
 from pymunk import batch
 
 from ..arrays import FloatArray, IntArray
-from . import private_arbiters, private_joints, private_sleep, private_versions
+from . import private_arbiters, private_functions, private_joints, private_sleep, private_versions
 from .private_versions import DEFAULTS as DEFAULTS
 from .private_versions import REQUIRED, bodies
 
@@ -30,11 +30,13 @@ PHASES = ("_begin", "_pre_solve", "_post_solve", "_separate")
 
 _OF_LIBRARY = (
     "cpSpaceStep", "cpHastySpaceStep", "cpSpaceEachBody", "cpSpaceGetGravity", "cpSpaceGetDamping",
+    "cpSpaceSetGravity", "cpSpaceGetIterations", "cpSpaceSetIterations", "cpSpaceGetCollisionBias",
+    "cpSpaceSetCollisionBias", "cpBodyGetForce", "cpBodySetForce", "cpBodyGetTorque", "cpBodySetTorque",
     "cpSpaceReindexShapesForBody", "cpBodyUpdatePosition", "cpShapeGetSensor", "cpShapeGetElasticity",
     "cpShapeGetFriction",
     "cpSpaceGetSleepTimeThreshold", "cpSpaceSetSleepTimeThreshold", "cpSpaceGetShapeIDCounter", "cpSpaceGetTimestamp",
     "pmSpaceBodyGetIteratorFuncBatched", "pmSpaceBodySetIteratorFuncBatched",
-    *private_joints.OF_LIBRARY, *private_sleep.OF_LIBRARY, *private_arbiters.OF_LIBRARY,
+    *private_joints.OF_LIBRARY, *private_sleep.OF_LIBRARY, *private_arbiters.OF_LIBRARY, *private_functions.OF_LIBRARY,
 )  # fmt: skip
 _OF_SPACE = (
     "_space", "_bodies", "_shapes", "_constraints", "_handlers", "_get_arbiters", "_locked", "_add_later",
@@ -134,19 +136,6 @@ def position_function(body: pymunk.Body) -> Callable[..., None] | None:
     return body._position_func
 
 
-def replace_functions(
-    body: pymunk.Body, velocity: Callable[..., None] | None, position: Callable[..., None] | None
-) -> None:
-    """Let pymunk call these functions in the place of the body's own, where that has one; None leaves it.
-
-    The public setters would also tell Chipmunk, which then no longer asks the body.
-    """
-    if velocity is not None:
-        body._velocity_func = velocity
-    if position is not None:
-        body._position_func = position
-
-
 @contextmanager
 def locked(space: pymunk.Space) -> Iterator[None]:
     """Within, what is added and removed waits for `finish_step` or the end of pymunk's next step."""
@@ -174,6 +163,49 @@ def step_alone(space: pymunk.Space, dt: float) -> None:
         space._locked = False
         if threshold != math.inf:
             lib.cpSpaceSetSleepTimeThreshold(c, threshold)
+
+
+def rest(space: pymunk.Space, dt: float, pulls: bool) -> None:
+    """`step_alone` in one iteration, that corrects no overlaps and, unless it `pulls`, without gravity; threads do not
+    pay. The public properties take five times as long."""
+    c, none = space._space, (0.0, 0.0)
+    gravity, iterations, bias = lib.cpSpaceGetGravity(c), lib.cpSpaceGetIterations(c), lib.cpSpaceGetCollisionBias(c)
+    try:
+        if not pulls:
+            lib.cpSpaceSetGravity(c, none)
+        lib.cpSpaceSetIterations(c, 1)
+        lib.cpSpaceSetCollisionBias(c, 1.0)
+        step_alone(space, dt)
+    finally:
+        if not pulls:
+            lib.cpSpaceSetGravity(c, gravity)
+        lib.cpSpaceSetIterations(c, iterations)
+        lib.cpSpaceSetCollisionBias(c, bias)
+
+
+@contextmanager
+def stopped(space: pymunk.Space) -> Iterator[None]:
+    """Within, bodies have neither velocities nor forces; who sleeps sleeps on."""
+    held = []
+    for body in space.bodies:
+        c = body._body
+        if body.body_type != pymunk.Body.STATIC and not lib.cpBodyIsSleeping(c):
+            velocity, spin = lib.cpBodyGetVelocity(c), lib.cpBodyGetAngularVelocity(c)
+            held.append((c, velocity, spin, lib.cpBodyGetForce(c), lib.cpBodyGetTorque(c)))
+    try:
+        for c, *_ in held:
+            _set_motion(c, (0.0, 0.0), 0.0, (0.0, 0.0), 0.0)
+        yield
+    finally:
+        for motion in held:
+            _set_motion(*motion)
+
+
+def _set_motion(c: Any, velocity: Any, spin: float, force: Any, torque: float) -> None:
+    lib.cpBodySetVelocity(c, velocity)
+    lib.cpBodySetAngularVelocity(c, spin)
+    lib.cpBodySetForce(c, force)
+    lib.cpBodySetTorque(c, torque)
 
 
 def finish_step(space: pymunk.Space) -> None:

@@ -8,7 +8,7 @@ changed velocities) goes into our step, which then takes its place.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -68,16 +68,22 @@ class Rehearsal:
 
     def __init__(self, world: Crossing) -> None:
         self.world, self.space, self.bodies = world, world.space, world.bodies
-        N = len(world.bodies)
-        self._start, self._known = np.zeros((N, 9)), np.zeros((N, 9))
+        self._start, self._known = np.zeros_like(world.START), np.zeros_like(world.START)
         # By group: what begin and pre_solve have changed, then what post_solve and separate have.
-        self._changes: tuple[FloatArray, FloatArray] = np.zeros((N, 9)), np.zeros((N, 9))
+        self._changes: tuple[FloatArray, FloatArray] = world.CHANGES[0], world.CHANGES[1]
+        self._approach = approach.bind(world.STATES, world.WALK, world.EXTRA, world.BODY, world.ENDS)
         self._differ = [changed.bind(world.STATES, self._known, table) for table in self._changes]
         self._heard, self._stage = [False, False], -1
         self._wrapped: list[tuple[Any, str, Any, Any]] = []
         self.failure: BaseException | None = None
         self.decided, self._ignores = False, True
         self._recent: float = 0.0  # steps for which decisions hold
+
+    def forget(self) -> None:
+        """Know nothing of earlier steps."""
+        self._heard, self._recent, self._ignores = [False, False], 0, True
+        for table in self._changes:
+            table[:] = 0.0
 
     def listen(self, stage: int) -> None:
         """Before a function is called: know what there is, if pymunk has gone on since the last one."""
@@ -103,7 +109,7 @@ class Rehearsal:
         world = self.world
         np.copyto(self._start, world.STATES[NOW])
         gx, gy = gravity
-        status = approach(world.STATES, world.WALK, world.EXTRA, world.BODY, world.ENDS, dt, gx, gy, left)
+        status = self._approach(dt, gx, gy, left)
         if status < 0:
             return status
         self.failure, self.decided, self._stage = None, False, -1
@@ -112,12 +118,15 @@ class Rehearsal:
                 table[:], self._heard[group] = 0.0, False
         world.scatter(TURNS)
         self._wrap(hooks)
-        plain = not (len(hooks.velocity) or len(hooks.position))
         try:
             for handler, phase, _, watched in self._wrapped:
                 setattr(handler, phase, watched)
-            with nullcontext() if plain else hooks.silent(), self._joints(hooks):
-                private.step_alone(self.space, dt)
+            if hooks.joints is None:
+                with hooks.silent():
+                    private.step_alone(self.space, dt)
+            else:
+                with hooks.silent(), self._silent_joints(hooks):
+                    private.step_alone(self.space, dt)
         finally:
             for handler, phase, function, _ in self._wrapped:
                 setattr(handler, phase, function)
@@ -129,14 +138,9 @@ class Rehearsal:
         return status
 
     @property
-    def start(self) -> FloatArray:
-        """(N, 9) the state before functions were called."""
-        return self._start
-
-    @property
-    def after(self) -> FloatArray | None:
-        """(N, 9) what post_solve and separate have changed, None if nothing."""
-        return self._changes[1] if self._heard[1] else None
+    def after(self) -> bool:
+        """Whether post_solve and separate have changed anything."""
+        return self._heard[1]
 
     def _wrap(self, hooks: Hooks) -> None:
         """Have functions that tell of all functions of handlers; those of the last step if they are the same."""
@@ -167,9 +171,6 @@ class Rehearsal:
             self._watched_joints([item for item in joints.before if item not in mute]),
         ):  # fmt: skip
             yield
-
-    def _joints(self, hooks: Hooks) -> Any:
-        return nullcontext() if hooks.joints is None else self._silent_joints(hooks)
 
     @contextmanager
     def _watched_joints(self, items: Sequence[pymunk.Constraint]) -> Iterator[None]:

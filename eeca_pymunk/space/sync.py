@@ -1,18 +1,23 @@
 """Sync: pymunk's own shapes and broad phase where a step has put the bodies, for its queries and drawing.
 
-Two ways. A *rest step*, pymunk's own step with everything at rest, moves nothing, renews the broad phase, forgets old
-contacts, and notes dt. *Reindexing* moves the shapes of one body after the other; it costs less for a few bodies, and
-leaves all the rest as it is. In a spatial hash it leaves handles behind, which the next rest step clears, so there is
-one every so many steps. Post-step callbacks come after either, when bodies have their velocities.
+Two ways. A *rest step*, pymunk's own step with everything at rest, moves nothing, renews the broad phase and arbiters,
+forgets old contacts, and notes dt. *Reindexing* moves the shapes of one body after the other; it costs less for a few
+bodies, above all where they touch or hang from joints, and leaves all the rest as it is. In a spatial hash it leaves
+handles behind, which the next rest step clears, so there is one every so many steps. Post-step callbacks come after
+either, when bodies have their velocities.
+
+Who asks for arbiters after a step that has reindexed gets a rest step then (`Sync.renew`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import ExitStack
 from typing import TYPE_CHECKING
 
 import pymunk
 
+from ..reentry import BUSY
 from . import private
 from .bodies import ANGULAR_VELOCITY, VELOCITY, Bodies
 from .joints import JointRows
@@ -21,9 +26,9 @@ from .private_joints import inert, silent, with_laws
 if TYPE_CHECKING:
     from .world import World
 
-FEW = (
-    12  # moving shapes up to which reindexing costs less than a rest step (measured: up to 20 in a tree, 10 in a hash)
-)
+# Moving shapes up to which reindexing costs less than a rest step: where nothing touches, up to 25 in a tree and 10 in
+# a hash; with contacts any number in a tree, and 15 in a hash; with joints 50 and 30.
+FEW, SOME = 12, 32
 _RENEW = 32  # steps after which reindexing gives way to a rest step
 
 
@@ -42,26 +47,25 @@ def rest_step(
         asleep: whether there are bodies that sleep, whom a change of gravity would wake. Then it stays, and leaves
             velocities, which are of no use.
     """
-    gravity, iterations, bias = space.gravity, space.iterations, space.collision_bias
-    try:
-        if not asleep:
-            space.gravity = (0.0, 0.0)
-        space.iterations, space.collision_bias = 1, 1.0
-        if joints is None:
-            private.step_alone(space, dt)
-        else:
-            push, calling = joints.items if forget else joints.pushing(), joints.calling
-            own, laws = joints.own, joints.laws()
-            if asleep:  # pymunk has put their joints away, and any change of one would wake its bodies
-                push, calling = _awake(push), _awake(calling)
-                laws = [law for item, law in zip(own, laws, strict=True) if _awake([item])]
-                own = _awake(own)
-            with joints.partners.kept(), silent(calling), with_laws(own, laws), inert(push):
-                private.step_alone(space, dt)
-    finally:
-        if not asleep:
-            space.gravity = gravity
-        space.iterations, space.collision_bias = iterations, bias
+    if joints is None:
+        private.rest(space, dt, asleep)
+        return
+    push, calling = joints.items if forget else joints.pushing(), joints.calling
+    own, laws = joints.own, joints.laws()
+    if asleep:  # pymunk has put their joints away, and any change of one would wake its bodies
+        push, calling = _awake(push), _awake(calling)
+        laws = [law for item, law in zip(own, laws, strict=True) if _awake([item])]
+        own = _awake(own)
+    with ExitStack() as held:
+        if joints.partners.outside:
+            held.enter_context(joints.partners.kept())
+        if calling:
+            held.enter_context(silent(calling))
+        if own:
+            held.enter_context(with_laws(own, laws))
+        if push:
+            held.enter_context(inert(push))
+        private.rest(space, dt, asleep)
 
 
 def _awake(items: list[pymunk.Constraint]) -> list[pymunk.Constraint]:
@@ -69,30 +73,52 @@ def _awake(items: list[pymunk.Constraint]) -> list[pymunk.Constraint]:
 
 
 class Sync:
-    """Which of the two ways a step takes."""
+    """Which of the two ways a step takes.
+
+    Attributes:
+        late: whether those who ask for arbiters call `renew`.
+    """
 
     def __init__(self, space: pymunk.Space, bodies: Bodies) -> None:
         self.space = space
         moving = [b for b, still in zip(bodies.items, bodies.static.tolist(), strict=True) if b.shapes and not still]
         self._asleep = bool(bodies.asleep.any())
-        self._moving = moving if sum(len(b.shapes) for b in moving) <= FEW else None
-        self._pointers, self._all = private.pointers(self._moving or ()), bodies.moving
+        self._shapes = sum(len(b.shapes) for b in moving)
+        self._pointers = bodies.moving
         self._timestamp: Callable[[], int] = private.timestamp(space)
         self._renewed, self._dt, self._left = -1, 0.0, 0
-        self._touched = False
+        self._touched = self._stale = self._asked = False
+        self._joints: JointRows | None = None
+        self.late = False
         self.stamp = -1  # pymunk's count of steps after our last one, -1 before the first
 
-    def reindexes(self, dt: float, contacts: bool) -> bool:
-        """Whether reindexing does for this step: pymunk took no step since our last rest step, which knows this dt, and
-        nothing touched in either, so that `each_arbiter` has nothing to tell."""
-        if self._moving is None or dt != self._dt or self._left == 0 or contacts or self._touched:
+    def reindexes(self, dt: float, contacts: bool, joints: JointRows | None) -> bool:
+        """Whether reindexing does for this step: it costs less, pymunk took no step since our last rest step, which
+        knows this dt, and nothing touched in either, so that `each_arbiter` has nothing to tell, or it asks later,
+        which it did not do after the step before."""
+        asked, self._asked = self._asked, False
+        if asked or self._left == 0 or dt != self._dt or self._shapes > SOME:
             return False
+        if contacts or self._touched:
+            if not self.late:
+                return False
+        elif self._shapes > FEW and joints is None:
+            return False
+        self._joints = joints
         return self._timestamp() == self._renewed
 
     def reindex(self) -> None:
         """Move the shapes to where their bodies are."""
         self._left -= 1
+        self._stale = True
         private.reindex(self.space, self._pointers)
+
+    def renew(self) -> None:
+        """Have arbiters as a rest step makes them, if the last step was ours and made none."""
+        self._asked = True
+        if self._stale and self.space not in BUSY and self._timestamp() == self._renewed:
+            with private.stopped(self.space):
+                self.rest(self._dt, self._joints)
 
     def waits(self) -> bool:
         """Whether post-step callbacks wait for the end of a step."""
@@ -115,12 +141,13 @@ class Sync:
         """A rest step; all bodies must have velocity 0, and may have another of round-off if there are joints."""
         native = self._timestamp() != self._renewed
         if native:
-            private.forget_corrections(self._all)
+            private.forget_corrections(self._pointers)
         rest_step(self.space, dt, joints, forget=native, asleep=self._asleep)
         self._renewed, self._dt, self._left = self._timestamp(), dt, _RENEW
         self.stamp = self._renewed
-        if self._moving is not None:
-            self._touched = bool(private.arbiters(self.space))
+        self._stale = False
+        if not self.late and self._shapes <= FEW:
+            self._touched = bool(private.raw_arbiters(self.space))
 
     def land(self, world: World, dt: float, status: int) -> None:
         """Write the end of the step of a world with a rest step at it."""
@@ -132,7 +159,7 @@ class Sync:
 
     def settle(self, bodies: Bodies, joints: JointRows, dt: float, contacts: bool) -> None:
         """Let pymunk see the end of a step that has been written already, which functions may have changed since."""
-        if self.reindexes(dt, contacts):
+        if self.reindexes(dt, contacts, joints):
             self.reindex()
             return
         end = bodies.gather()

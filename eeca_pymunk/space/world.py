@@ -5,24 +5,23 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
-import numpy as np
 import pymunk
 
-from ..arrays import FloatArray
 from ..compiled.records import Rows, columns, rows
 from ..layout import BODY_ROW
 from ..model.bodies import Body
 from ..report import nothing
 from ..transfer import take
 from . import private
-from .bodies import ANGULAR_VELOCITY, VELOCITY, Bodies
+from .bodies import Bodies
 from .checks import check_space, rough_pair
 from .crossing import Crossing
 from .joints import JointRows
 from .noticed import edits
 from .packing import Record, pack, read
+from .patching import patch
 from .rehearsal import Rehearsal
 from .shapes import Rules
 
@@ -57,6 +56,7 @@ class World(Crossing):
         rules: what collision handlers decided about pairs of rows of SHAPE for this step.
         smooth: whether friction is left out, that of handlers too.
         joints: the constraints of the space, None if it has none.  PARTNER: bodies of joints that have no row of BODY.
+        fresh: BODY before any step.  patches: how often `patch` has put edits into the rows.
         parted: pairs of rows of SHAPE that pass through one another because joints of their bodies say so.
         empty: the arrays of a report without contacts.
     """
@@ -84,7 +84,8 @@ class World(Crossing):
             self.SHAPE["friction"] = 0.0
             self.BODY["friction"] = 0.0
         self.disks, self.dynamic = packed.disks, packed.dynamic
-        self.filtered = bool((columns(self.LINK, "group", "categories", "mask") != _COLLIDES_WITH_ALL).any())
+        self.fresh, self.patches = self.BODY.copy(), 0
+        self.look_at_filters()
         self.empty = nothing(bodies.items)
         self.parted: set[tuple[int, int]] = set()
         self.joints: JointRows | None = None
@@ -100,6 +101,7 @@ class World(Crossing):
         self._read_joints(anew)
         self.gravity = tuple(self.space.gravity)
         self.damping = self.space.damping
+        self._known = self._edits[0] - self._edits[1]
         self.collisions = bool(private.handlers(self.space))
         self.rules = Rules()
         bodies = self.bodies
@@ -121,6 +123,25 @@ class World(Crossing):
     def rehearsal(self) -> Rehearsal:
         """What steps with collision handlers need."""
         return Rehearsal(self)
+
+    @cached_property
+    def places(self) -> dict[pymunk.Shape, int]:
+        """The row of SHAPE of every solid shape."""
+        return {shape: k for k, shape in enumerate(self.shapes)}
+
+    def look_at_filters(self) -> None:
+        """Find `filtered`."""
+        self.filtered = bool((columns(self.LINK, "group", "categories", "mask") != _COLLIDES_WITH_ALL).any())
+
+    def patch(self) -> bool | None:
+        """See `patching.patch`; the settings of the space are read as well."""
+        lists = patch(self)
+        if lists is not None:
+            self.patches += 1
+            if "rehearsal" in self.__dict__:
+                self.rehearsal.forget()
+            self.read_settings()
+        return lists
 
     def settle(self) -> None:
         """Let joints tell of the step, and take no notice of how pymunk rounds what was written to it."""
@@ -164,6 +185,14 @@ class World(Crossing):
         """Whether shapes have neither come nor gone nor changed, so that new settings are all there is to read."""
         return self._contents == self._count() and not self.edited()
 
+    def edits(self) -> list[tuple[Any, str]] | None:
+        """What shapes and bodies were edited in place since they were read, and which attribute; None in the place of
+        what is gone. None if more has changed, or if nobody knows."""
+        count = self._edits[0] - self._edits[1] - self._known
+        if self._contents != self._count() or count > len(self._edits.last):
+            return None
+        return [(thing(), name) for thing, name in list(self._edits.last)[len(self._edits.last) - count :]]
+
     def edited(self) -> bool:
         """Whether a shape or body was edited in place."""
         return self._edits[0] - self._edits[1] != self._known
@@ -174,22 +203,8 @@ class World(Crossing):
         take(self.STATES, self.WALK, self.EXTRA, self.BODY, 0.0, 0.0, 1.0)
 
     def left(self, dt: float) -> float:
-        """What half a step's damping leaves of velocities; all where nothing is left at the end, see `stop`."""
+        """What half a step's damping leaves of velocities; all of them where nothing is left at the end (`alter`)."""
         return self.damping ** (0.5 * dt) if self.damping > 0.0 else 1.0
-
-    def stop(self, end: FloatArray) -> float:
-        """Take all velocities from the (N, 9) `end`, as damping 0 does; the energy that is lost.
-
-        Within the step bodies keep them, else nothing would ever move: pymunk moves bodies before it damps them.
-        """
-        bodies = self.bodies
-        stops = bodies.dynamic & ~bodies.steered
-        speed, spin = end[stops, VELOCITY], end[stops, ANGULAR_VELOCITY]
-        moment = bodies.moment[stops]
-        turning = np.where(np.isfinite(moment), moment, 0.0)
-        lost = 0.5 * float(np.sum(bodies.mass[stops] * (speed * speed).sum(axis=1)) + np.sum(turning * spin * spin))
-        end[stops, VELOCITY], end[stops, ANGULAR_VELOCITY] = 0.0, 0.0
-        return lost
 
 
 def _records(space: pymunk.Space, bodies: Bodies, known: Records) -> Records:

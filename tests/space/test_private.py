@@ -10,7 +10,7 @@ import pymunk
 import pymunk.batch
 import pytest
 
-from eeca_pymunk.space import noticed, private
+from eeca_pymunk.space import noticed, private, private_functions
 from scenes.scene import add_disk
 
 
@@ -95,16 +95,41 @@ def test_functions_of_bodies(kind: str) -> None:
 
 
 @pytest.mark.parametrize("kind", ["velocity", "position"])
-def test_replaced_functions_are_called_in_the_place_of_the_bodys_own(kind: str) -> None:
-    space, (body, _) = meeting()
+def test_functions_of_bodies_are_left_out(kind: str) -> None:
+    space, (body, other) = meeting()
     calls: list[str] = []
-    setattr(body, f"{kind}_func", lambda *_: calls.append("own"))
-    own = getattr(private, f"{kind}_function")(body)
-    private.replace_functions(body, **{"velocity": None, "position": None, kind: lambda *_: calls.append("other")})
+    for one in (body, other):
+        setattr(one, f"{kind}_func", lambda *_: calls.append("own"))
+    left_out = {"velocity": [], "position": [], kind: [body, other]}
+    with private_functions.without(left_out["velocity"], left_out["position"]):
+        space.step(0.001)
+        assert calls == []
+        assert body.position.x == pytest.approx(-0.0891)
+        setattr(other, f"{kind}_func", getattr(pymunk.Body, f"update_{kind}"))
     space.step(0.001)
-    private.replace_functions(body, **{"velocity": None, "position": None, kind: own})
-    space.step(0.001)
-    assert calls == ["other", "own"]
+    assert calls == ["own"]
+
+
+def test_accelerations_of_velocity_functions() -> None:
+    _, (body, other) = meeting()
+    body.angular_velocity, start = 2.0, body.velocity
+
+    def fall(body: pymunk.Body, gravity: tuple[float, float], damping: float, dt: float) -> None:
+        body.velocity += dt * pymunk.Vec2d(*gravity)
+        body.angular_velocity *= damping
+
+    def fail(*_: object) -> None:
+        body.velocity = (7.0, 7.0)
+        raise KeyError
+
+    body.velocity_func = other.velocity_func = fall
+    found = private_functions.accelerations([body, other], (0.0, -8.0), 0.5, 0.25)
+    assert found == [(0.0, -2.0, -1.0), (0.0, -2.0, 0.0)]
+    assert (body.velocity, body.angular_velocity) == (start, 2.0)
+    body.velocity_func = fail
+    with pytest.raises(KeyError):
+        private_functions.accelerations([body], (0.0, 0.0), 1.0, 0.25)
+    assert body.velocity == start
 
 
 @pytest.mark.parametrize("threaded", [False, True])

@@ -5,7 +5,8 @@ from __future__ import annotations
 import pymunk
 import pytest
 
-from eeca_pymunk.space import sync
+import eeca_pymunk as ep
+from eeca_pymunk.space import private, sync
 from scenes.scene import add_disk
 
 from ..test_packed_stepper import FreeFlight
@@ -24,7 +25,7 @@ def crowd(count: int, hashed: bool = False) -> pymunk.Space:
     return space
 
 
-def counted(stepper: FreeFlight, monkeypatch: pytest.MonkeyPatch) -> list[str]:
+def counted(stepper: ep.Stepper, monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """The ways taken from now on."""
     ways: list[str] = []
     rest, reindex = sync.rest_step, sync.Sync.reindex
@@ -112,3 +113,82 @@ def test_without_sync_pymunks_shapes_stay(monkeypatch: pytest.MonkeyPatch) -> No
     stepper.step(DT)
     assert [s.bb for s in space.shapes] == before
     assert ways == []
+
+
+def standing() -> tuple[pymunk.Space, pymunk.Body]:
+    """A box that stands on a floor, and one that flies."""
+    space = pymunk.Space()
+    space.gravity = (0.0, -10.0)
+    space.add(pymunk.Segment(space.static_body, (-5.0, 0.0), (5.0, 0.0), 0.0))
+    for x, y in ((0.0, 0.5), (3.0, 9.0)):
+        body = pymunk.Body(2.0, 1.0)
+        body.position = (x, y)
+        space.add(body, pymunk.Poly.create_box(body, (1.0, 1.0)))
+    return space, next(iter(space.bodies))
+
+
+def heard(body: pymunk.Body) -> list[tuple[float, float]]:
+    """The impulses of a body's arbiters."""
+    found: list[tuple[float, float]] = []
+    body.each_arbiter(lambda arbiter: found.append(tuple(arbiter.total_impulse)))
+    return found
+
+
+def test_arbiters_are_renewed_when_somebody_asks(monkeypatch: pytest.MonkeyPatch) -> None:
+    space, box = standing()
+    stepper = ep.EECA(space)
+    ways = counted(stepper, monkeypatch)
+    for _ in range(4):
+        stepper.step(DT)
+    assert ways == ["rest", "reindex", "reindex", "reindex"]
+    flying = list(space.bodies)[1]
+    flying.force, motion = (0.0, 3.0), (flying.position, flying.velocity)
+    assert heard(box) == [pytest.approx((0.0, 20.0 * DT))]
+    assert ((flying.position, flying.velocity), flying.force) == (motion, (0.0, 3.0))
+    assert heard(flying) == []
+    assert ways[4:] == ["rest"]
+    # Who asks once asks again.
+    stepper.step(DT)
+    assert heard(box) == [pytest.approx((0.0, 20.0 * DT))]
+    stepper.step(DT)
+    stepper.step(DT)
+    assert ways[5:] == ["rest", "rest", "reindex"]
+
+
+def test_drawing_the_points_of_contacts_renews_arbiters(monkeypatch: pytest.MonkeyPatch) -> None:
+    space, box = standing()
+    stepper, options = ep.EECA(space), pymunk.SpaceDebugDrawOptions()
+    stepper.step(DT)
+    box.position = (2.0, 0.5)
+    stepper.step(DT)
+    ways = counted(stepper, monkeypatch)
+    for name in ("segment", "polygon", "fat_segment", "circle", "dot"):
+        monkeypatch.setattr(options, f"draw_{name}", lambda *_: None)
+    options.flags = pymunk.SpaceDebugDrawOptions.DRAW_SHAPES
+    space.debug_draw(options)
+    assert ways == []
+    options.flags |= pymunk.SpaceDebugDrawOptions.DRAW_COLLISION_POINTS
+    space.debug_draw(options)
+    assert ways == ["rest"]
+
+
+def test_where_bodies_may_sleep_each_step_that_touches_renews_arbiters(monkeypatch: pytest.MonkeyPatch) -> None:
+    space, _ = standing()
+    space.sleep_time_threshold = 5.0
+    stepper = ep.EECA(space)
+    ways = counted(stepper, monkeypatch)
+    for _ in range(3):
+        stepper.step(DT)
+    assert ways == 3 * ["rest"]
+
+
+def test_a_step_at_rest_leaves_settings_and_what_is_stopped_moves_on() -> None:
+    space, box = standing()
+    box.velocity, box.angular_velocity, box.force, box.torque = (1.0, -2.0), 3.0, (4.0, 5.0), 6.0
+    settings = space.gravity, space.iterations, space.collision_bias
+    with private.stopped(space):
+        assert (box.velocity, box.angular_velocity, box.force, box.torque) == ((0.0, 0.0), 0.0, (0.0, 0.0), 0.0)
+        private.rest(space, DT, False)
+    assert (box.velocity, box.angular_velocity, box.force, box.torque) == ((1.0, -2.0), 3.0, (4.0, 5.0), 6.0)
+    assert (box.position, space.current_time_step) == ((0.0, 0.5), DT)
+    assert (space.gravity, space.iterations, space.collision_bias) == settings

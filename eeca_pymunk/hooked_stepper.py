@@ -1,0 +1,165 @@
+"""HookedStepper: what a step of packed arrays consists of, and the step in which functions of a program are called."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Callable
+from math import isfinite
+
+from .arrays import FloatArray
+from .energy.ledger import AFTER, DAMPED
+from .errors import NotFiniteError
+from .layout import LEFT
+from .packed_space import TOO_FAR, PackedSpace
+from .reentry import BUSY
+from .report import Details, StepReport, Unmet
+from .space.hooks import Hooks
+from .space.rehearsal import Rehearsal
+from .space.world import World
+from .transfer import EVENTS, MOVED_STATIC, OTHER_BODIES
+
+
+class HookedStepper(PackedSpace):
+    """A stepper whose steps call functions of the program; arguments as of `PackedStepper`."""
+
+    @abstractmethod
+    def advance(self, world: World, dt: float, left: float) -> int:
+        """Move the bodies from `world.STATES` to `world.ENDS`; the space is not touched.
+
+        Args:
+            dt: time, > 0.  left: what half the step's damping leaves of velocities.
+
+        Returns:
+            the bits EVENTS and FORCES, or a negative code, of `transfer.py`.
+        """
+
+    @abstractmethod
+    def details(self, world: World, dt: float) -> Details | Callable[[], Details]:
+        """The arrays of the report of the step that has just answered EVENTS, or what makes them."""
+
+    def outcome(self) -> tuple[float, bool, int]:
+        """Scale of the energy lock of the last step that was farthest from 1, whether all tolerances were met, and the
+        iterations of the solver."""
+        return 1.0, True, 0
+
+    def unmet(self, world: World) -> tuple[Unmet, ...] | Callable[[], tuple[Unmet, ...]]:
+        """Which budgets and tolerances the last step did not meet, or what makes that."""
+        return ()
+
+    def _hooked_step(self, world: World, dt: float) -> StepReport:
+        """A step of a space in which functions of bodies or constraints, or collision handlers, are called."""
+        BUSY.add(self.space)
+        try:
+            world, report, rehearsal = self._take_hooked(world, dt)
+        finally:
+            BUSY.discard(self.space)
+        if rehearsal is not None:
+            self._sync.note()
+            rehearsal.finish()
+        elif self.sync or (world.joints is not None and world.joints.calling):
+            self._sync.call_back()
+        return report
+
+    def _start_hooked(self, world: World) -> World:
+        """Read the state of all bodies; the world that they are of."""
+        world.gather()
+        status = world.find()
+        if status in (OTHER_BODIES, MOVED_STATIC):
+            world = self._look(anew=True)
+            world.gather()
+            status = world.find()
+        if status < 0:
+            world.bodies.check_finite(world.state)
+        return world
+
+    def _take_hooked(self, world: World, dt: float) -> tuple[World, StepReport, Rehearsal | None]:
+        """All of it but what waits for its end."""
+        world = self._start_hooked(world)
+        bodies, joints, left = world.bodies, world.joints, world.left(dt)
+        hooks = Hooks(self.space, bodies, joints)
+        rehearsal: Rehearsal | None = None
+        given, lost = False, 0.0
+        book: FloatArray | None = None
+        try:
+            if joints is not None:
+                joints.refresh()
+                if joints.before:
+                    hooks.before(dt)
+                    world.gather()
+            if len(hooks.velocity):
+                world.push(hooks.change(dt), dt)
+            if world.collisions:
+                rehearsal = world.rehearsal
+                self._checked(world, dt, rehearsal.run(hooks, dt, world.gravity, left))
+                world.rules = rehearsal.rules(world.rules, world.shapes, world.SHAPE, world.smooth)
+            world.void_forecasts()
+            status = self._checked(world, dt, self.advance(world, dt, left))
+            book = self._booked(dt)
+            if world.damping == 0.0 or len(hooks.position) or (rehearsal is not None and rehearsal.after):
+                given = True
+                bits, lost = world.alter(world.damping == 0.0)
+                self._checked(world, dt, bits)
+                if len(hooks.position):
+                    hooks.positions(world.state, world.STATES[LEFT], dt)
+                    bodies.check_finite(world.ended(), TOO_FAR)
+                    bits = world.whole()
+                status = status & EVENTS | bits
+            else:
+                status = status & EVENTS | world.whole()
+            world.reset_forces()
+            self._land_hooked(world, hooks, dt, status)
+            if given:
+                # What functions have changed since the step is found next time.
+                world.give_again()
+        except BaseException:
+            self._undo(world, world.START)
+            raise
+        self.time += dt
+        report = self._made(world, dt, status, book, lost)
+        self._tell_joints(world)
+        return world, report, rehearsal
+
+    def _land_hooked(self, world: World, hooks: Hooks, dt: float, status: int) -> None:
+        """Write the end of a step to the space, and call what waits for it."""
+        rehearses = world.collisions
+        if world.joints is not None and world.joints.calling:
+            world.scatter(status)
+            world.joints.write()
+            hooks.after(dt)
+            if self.sync and not rehearses:
+                with hooks.silent():
+                    self._sync.settle(world.bodies, world.joints, dt, bool(status & EVENTS))
+        elif not self.sync or rehearses:
+            world.scatter(status)
+        elif self._sync.reindexes(dt, bool(status & EVENTS), world.joints):
+            world.scatter(status)
+            self._sync.reindex()
+        else:
+            with hooks.silent():
+                self._sync.land(world, dt, status)
+
+    def _booked(self, dt: float) -> FloatArray | None:
+        """What the ledger of the step is made of. NotFiniteError, before the space is touched, if the energy is too
+        large for a number though positions and velocities are not."""
+        book = self.book()
+        if book is not None and not isfinite(book[AFTER]):
+            self._world = self._past = None
+            raise NotFiniteError(f"the energy of the space would be {book[AFTER]} after dt = {dt}: {TOO_FAR}")
+        return book
+
+    def _checked(self, world: World, dt: float, status: int) -> int:
+        if status < 0:
+            self._fail(world, dt, status)
+        return status
+
+    def _made(self, world: World, dt: float, status: int, book: FloatArray | None, lost: float = 0.0) -> StepReport:
+        """The report of the step with this book; `lost` is the energy that damping has taken since."""
+        if lost and book is not None:
+            book[DAMPED] += lost
+            book[AFTER] -= lost
+        lock, converged, iterations = self.outcome()
+        unmet = () if converged else self.unmet(world)
+        if not status & EVENTS:
+            return StepReport(self.time, world.empty, converged=converged, book=book, unmet=unmet)
+        details = self.details(world, dt)
+        return StepReport(self.time, details, iterations, lock=lock, converged=converged, book=book, unmet=unmet)
