@@ -34,7 +34,7 @@ SMOOTH = 1e-3  # radii in REST steps, that a body at rest may move
 NEVER, ALWAYS = "1 << 40", "1e300"  # of counts; of lengths and speeds
 # What takes each rule away: a value that it never, or always, reaches.
 OFF = {
-    "SIDE_OPPOSITE": "-2.0", "SIDE_UNSURE": "-2.0", "SIDE_TOUCH": "0.0", "SIDE_HELD": "0.0", "STRIDE": "1e-6",
+    "SLENDER": "0.0", "SIDE_OPPOSITE": "-2.0", "SIDE_UNSURE": "-2.0", "SIDE_TOUCH": "0.0", "SIDE_HELD": "0.0", "STRIDE": "1e-6",
     "SQUEEZED_IMPACTS": NEVER, "INITIAL_PENETRATION": ALWAYS, "LARGE_BLOCK": NEVER, "LARGE_BLOCK_SWEEPS": "400",
     "LARGE_BLOCK_RESIDUAL": "1e-10", "ROCKING": "0.0", "BLOCK_BODIES": "1 << 20", "LIFT_TOGETHER": "1.0",
     "SOLVES_BEFORE_HASTE": NEVER, "IMPACTS_BEFORE_REST": NEVER, "IMPACTS_BEFORE_REST_ELASTIC": NEVER,

@@ -40,7 +40,7 @@ PASSED_OVER_DEPTH = heuristic(
 NORMAL_TURN = accuracy(0.1, "rad", "Rotation of a normal in one interval. Larger: longer intervals, coarser rolling.")
 LEAST_INTERVAL = work(64.0, "intervals in a step", "An interval is not shorter than the step over this.")
 EXACT_CONTACTS = heuristic(
-    4, "contacts", "Number up to which an interval ends where a contact begins to stick or normals turn."
+    12, "contacts", "Number up to which an interval ends where a contact begins to stick or normals turn."
 )
 STICK = accuracy(1e-06, "of the friction limit", "Friction and slip below which a contact sticks.")
 RATTLE = heuristic(
