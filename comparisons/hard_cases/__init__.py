@@ -4,7 +4,7 @@ A case runs a scene under a stepper and returns a figure; its limit is what the 
 each other file has the cases of a kind, `matrix.py` runs them all under all steppers.
 """
 
-from . import impacts, oblique, friction, moving, piles, crowds, guards, invariances, reports, joints, linked  # noqa: F401, I001  (order of the rows)
+from . import impacts, oblique, friction, moving, piles, crowds, guards, invariances, reports, joints, linked, meeting  # noqa: F401, I001  (order of the rows)
 from .case import CASES, LONG, Case
 from .matrix import figure, run
 
