@@ -113,3 +113,70 @@ def test_rooms_introduce_themselves(path: Path) -> None:
         assert re.search(r"Open (first|`\w+\.py` first)", text)
     for file in re.findall(r"`(\w+\.py)`", text):
         assert (path / file).exists() or (PACKAGE / file).exists()
+
+
+MOST_ARGUMENTS = 12
+# Functions with more, which are still to be given records; nothing may be added.
+LONG = {
+    "geometry/manifold": {"face", "manifold", "ordered_manifold"},
+    "impacts/forecast": {"predict"},
+    "impacts/strike": {"note"},
+    "impacts/times": {"one_pull"},
+    "impacts/turning": {"fixed_axis", "turning_axis"},
+    "pairs/candidates": {"candidates", "cover"},
+    "pairs/grid": {"build", "renew"},
+}
+
+
+@pytest.mark.parametrize("path", FILES, ids=name)
+def test_functions_take_few_arguments(path: Path) -> None:
+    found = set()
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)):
+            of = node.args
+            if len(of.posonlyargs) + len(of.args) + len(of.kwonlyargs) - (of.args[:1] == ["self"]) > MOST_ARGUMENTS:
+                found.add(node.name)
+    assert found == LONG.get(name(path), set()), "take records, or shorten the list"
+
+
+# Files whose arrays have columns by number, which are still to become records; nothing may be added.
+NUMBERED = {
+    "geometry/sides", "impacts/energy", "impacts/lone", "impacts/run",
+    "jointed/loop", "pairs/candidates", "pairs/cells",
+    "pairs/grid", "pairs/lists", "pairs/walls", "rehearsing", "transfer",
+}  # fmt: skip
+KERNELS = ("energy", "geometry", "impacts", "jointed", "joints", "pairs", "rehearsing", "rows", "sustained", "transfer")
+
+
+def numbered(tree: ast.Module) -> set[str]:
+    """Names of integer constants, the module's own or imported, by which its kernels index arrays."""
+    constants = set()
+    for node in tree.body:
+        if isinstance(node, ast.Assign) and all(
+            isinstance(value, ast.Constant) and isinstance(value.value, int)
+            for value in (node.value.elts if isinstance(node.value, ast.Tuple) else [node.value])
+        ):
+            constants |= {one.id for target in node.targets for one in ast.walk(target) if isinstance(one, ast.Name)}
+        if isinstance(node, ast.ImportFrom):
+            constants |= {alias.asname or alias.name for alias in node.names}
+    constants = {one for one in constants if one.isupper() and len(one) > 1}
+    found = set()
+    for kernel in ast.walk(tree):
+        if not isinstance(kernel, ast.FunctionDef) or not kernel.decorator_list:
+            continue
+        if not {"kernel", "uncounted", "merged"} & {ast.unparse(one) for one in kernel.decorator_list}:
+            continue
+        for node in ast.walk(kernel):
+            if isinstance(node, ast.Subscript):
+                parts = node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]
+                bare = [
+                    one for part in parts for one in (part, getattr(part, "left", None), getattr(part, "right", None))
+                ]
+                found |= {one.id for one in bare if isinstance(one, ast.Name) and one.id in constants}
+    return found
+
+
+@pytest.mark.parametrize("path", [path for path in FILES if room(path) in KERNELS], ids=name)
+def test_kernels_name_fields_of_records(path: Path) -> None:
+    found = numbered(ast.parse(path.read_text()))
+    assert bool(found) == (name(path) in NUMBERED), f"make records of what {found} number, or shorten the list"

@@ -28,13 +28,19 @@ TABLES = {
         BODY:Body[1] STATE:Next[1] SHAPE:Shape[1] LINK:Link[1] VERTEX:f8[2] MARK:Mark[1] CELL:Cell[1] LIST:List[1]
         POOL:i4[1] FLAG:u1[1] HEAD:i8[1] GRID:f8[1] INFO:i8[1] BOX:f8[2] CSR:i8[1] RULE:f8[2] HEAP_TIME:f8[1]
         HEAP_BODY:i8[1] LOG:Impulse[1] BEGAN:f8[2] PLACE:i8[1] BLOCK:i8[1] PULL:f8[2] MEMBER:Member[1] RESTING:Rest[1]
-        PUSHED_BY:Pair[1] PUSHED:Pushed[1] KEYS:i8[1] FORCES:f8[2] WORK:f8[3]
+        PUSHED_BY:Pair[1] PUSHED:Pushed[1] KEYS:i8[1] FORCES:Force[1] WORK:f8[3]
         MISSED:Missed[1] PAR:Step COUNT:Count
     """,
     "Joints": """
         JOINT:Joint[1] PARTNER:Body[1] COMPONENT:Component[1] MEMBER:ComponentBody[1] LINK:Coupling[1]
         HINGE:JointStep[1] LOCAL:BodyStep[1] MATRIX:f8[1] RIGHT:f8[1] MORE:f8[1] STIFF:f8[2] PROGRESS:Progress
         PART:JointLedger PIVOTS:i8[1] OF:i8[1] KEPT:Joint[1] STEPPED:JointLedger[1] TALLY:Tally
+    """,
+    "Island": """
+        WHO:i8[1] POSE:f8[2] V:f8[2] ACC:f8[2] IM:f8[1] II:f8[1] EXTENT:f8[1] FELT:f8[1] PAIRS:i8[2]
+    """,
+    "Contacts": """
+        A:i8[1] B:i8[1] ROWS:Row[1] KEY:i8[1] L:f8[2] LOSS:f8[2] VN:f8[2] JUMP:f8[2] OUT:Solved[1]
     """,
     "Film": """
         RUN:Run KEPT:i8[1] FRAMES:f8[2] SUMS:f8[2] EVENTS:Impulse[1] TOTAL:f8[1] INITIAL:f8[2] PUSH:f8[2]
@@ -62,13 +68,12 @@ ENTRIES = {
     "impacts.run:run": "{Scene} {Film} f8[3] i8[2] f8[2] f8[1] f8[1] i8 bool bool",
     "joints.plan:make_plan": "Body[1] Joint[1] Component[1] ComponentBody[1] Coupling[1]",
     "joints.world:step_all": "{Joints} Body[1] f8",
-    "jointed.loop:step_jointed": "{Scene} {Joints} f8[3] i8[2] f8[2] f8[1] f8 f8 f8 f8 i8 bool i8",
+    "jointed.loop:step_jointed": "{Scene} {Joints} f8[3] i8[2] f8[2] f8[1] f8 f8 f8 f8 bool i8",
     "jointed.together:step_together_jointed": "{Scene} {Joints} f8[3] i8[2] f8[2] f8[1] f8[1] f8 f8 f8 f8 i8",
     "jointed.run:run_jointed": "{Scene} {Joints} {Film} f8[3] i8[2] f8[2] f8[1] f8[1] i8 bool bool",
     # Of tests alone, which step islands by themselves: some hundred times slower as plain Python.
-    "sustained.step:step_island": "f8[2] f8[2] f8[2] f8[1] f8[1] f8[1] f8[1] i8 i8[2] i8 Shape[1] f8[2] Link[1] f8[2]"
-    " f8[3] f8 i8 f8 f8 f8 i8[1] f8[2] Count f8 Rest f8 i8[1] i8[1] Row[1] i8[1] f8[2] f8[2] f8[2] f8[2] f8[1] f8[1]",
-    "sustained.memory:forget": "i8[1] f8[2] Count i8[1] f8[2] f8",
+    "sustained.step:step_island": "{Scene} {Island} {Contacts} i8 f8 i8 f8 f8 f8 f8",
+    "sustained.memory:forget": "i8[1] Force[1] Count i8[1] Force[1] f8",
 }
 
 _CODES = {"f8": "<f8", "i8": "<i8", "i4": "<i4", "u1": "|u1"}

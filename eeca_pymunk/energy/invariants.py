@@ -3,53 +3,45 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Generic, TypeVar
 
 import numpy as np
 
 from ..arrays import FloatArray
 
+Number = TypeVar("Number", float, FloatArray)
+
 
 @dataclass(frozen=True)
-class Invariants:
+class Sums(Generic[Number]):
     """Sums over the dynamic bodies; angular momentum about the origin, potential energy zero at the origin.
 
-    `kinetic`, `potential` energy; `linear_momentum` (2,) mass length/time; `angular_momentum` mass length²/time.
+    `kinetic`, `potential` energy; `linear_momentum` (..., 2) mass length/time; `angular_momentum` mass length²/time.
     """
 
-    kinetic: float
-    potential: float
+    kinetic: Number
+    potential: Number
     linear_momentum: FloatArray
-    angular_momentum: float
+    angular_momentum: Number
 
     @property
-    def energy(self) -> float:
+    def energy(self) -> Number:
         """Kinetic plus potential energy."""
         return self.kinetic + self.potential
 
 
-@dataclass(frozen=True)
-class Traces:
-    """`Invariants` of T moments: energies and angular momentum (T,), linear momentum (T, 2)."""
+class Invariants(Sums[float]):
+    """The sums of one moment: numbers, and linear momentum (2,)."""
 
-    kinetic: FloatArray
-    potential: FloatArray
-    linear_momentum: FloatArray
-    angular_momentum: FloatArray
 
-    @property
-    def energy(self) -> FloatArray:
-        """Kinetic plus potential energy."""
-        return self.kinetic + self.potential
+class Traces(Sums[FloatArray]):
+    """The sums of T moments: energies and angular momentum (T,), linear momentum (T, 2)."""
 
 
 def traces(
-    mass: FloatArray,
-    moment: FloatArray,
-    center: FloatArray,
-    velocity: FloatArray,
-    spin: FloatArray,
+    mass: FloatArray, moment: FloatArray, center: FloatArray, velocity: FloatArray, spin: FloatArray,
     gravity: tuple[float, float],
-) -> Traces:
+) -> Traces:  # fmt: skip
     """Of n bodies with masses and moments (n,), centres of mass and velocities (T, n, 2) and spins (T, n) rad/time."""
     # A body of infinite moment keeps its spin whatever happens: what is constant, and infinite, is not counted.
     inertia = np.where(np.isfinite(moment), moment, 0.0)
@@ -65,13 +57,9 @@ def traces(
 
 
 def sums(
-    mass: FloatArray,
-    moment: FloatArray,
-    center: FloatArray,
-    velocity: FloatArray,
-    spin: FloatArray,
+    mass: FloatArray, moment: FloatArray, center: FloatArray, velocity: FloatArray, spin: FloatArray,
     gravity: tuple[float, float],
-) -> Invariants:
+) -> Invariants:  # fmt: skip
     """Of one moment: centres of mass and velocities (n, 2), spins (n,)."""
     one = traces(mass, moment, center[None], velocity[None], spin[None], gravity)
     return Invariants(

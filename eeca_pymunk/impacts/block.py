@@ -211,10 +211,11 @@ def lay_out(A: Scene, disks: int, n: int, m: int, PAIRS: IntArray, hit: int, res
             note_side(A.SHAPE, LINK, A.WORK, sa, sb, found[0, 0], found[0, 1], True)
         for c in range(count):
             nx, ny = found[c, 0], found[c, 1]
-            place_row(
-                P, Q, ROWS, rows, p, q, nx, ny, found[c, 2], found[c, 3], found[c, 4], POSE, IMS, IIS, e, mu,
-                nx * sy - ny * sx,
-            )  # fmt: skip
+            P[rows], Q[rows] = p, q
+            row = ROWS[rows]
+            row.nx, row.ny, row.gap, row.elasticity, row.friction = nx, ny, found[c, 4], e, mu
+            row.surface = nx * sy - ny * sx
+            place_row(P, Q, ROWS, rows, found[c, 2], found[c, 3], POSE, IMS, IIS)
             u = normal_rate(P, Q, ROWS, V, rows)
             if e < 1.0 and e * max(-u, 0.0) < 0.5 * load * A.PAR.dt / ROWS[rows].k_n:
                 # Its bounce would come back within the step.

@@ -19,7 +19,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..compiled.records import empty
-from ..model.contacts import ROW
+from ..model.contacts import ROW, Problem
 from ..model.parameters.rest import REST_SPEED, REST_STEPS, SUPPORT_FACTORS, SUPPORT_ROUNDS, UNSUPPORTED
 from ..model.scene import Scene
 from ..pairs.rules import law
@@ -86,15 +86,21 @@ def holds(A: Scene, root: int) -> bool:
         a, b = A.PUSHED_BY[c].a, A.PUSHED_BY[c].b
         p, q = A.PLACE[A.LINK[a].owner], A.PLACE[A.LINK[b].owner]
         e, mu, _, _ = law(A.SHAPE, A.RULE, a, b)
-        place_row(
-            P, Q, ROWS, m, p if p >= 0 else n, q if q >= 0 else n, R.nx, R.ny, R.px, R.py, 0.0,
-            POSE, IMS, IIS, e, mu, 0.0,
-        )  # fmt: skip
+        P[m], Q[m] = p if p >= 0 else n, q if q >= 0 else n
+        row = ROWS[m]
+        row.nx, row.ny, row.gap, row.elasticity, row.friction, row.surface = R.nx, R.ny, 0.0, e, mu, 0.0
+        place_row(P, Q, ROWS, m, R.px, R.py, POSE, IMS, IIS)
         L[m, 0], L[m, 1], OF[m] = R.normal, R.tangential, c
         m += 1
     dismiss(A, MINE, n)
     found, factors = equilibrium(
-        P, Q, ROWS, L, START, IMS, IIS, POSE, FELT, n, m, REST_SPEED * A.PAR.pulled * dt, SUPPORT_FACTORS, False
+        Problem(P, Q, ROWS, IMS, IIS, POSE, n, m),
+        L,
+        START,
+        FELT,
+        REST_SPEED * A.PAR.pulled * dt,
+        SUPPORT_FACTORS,
+        False,
     )
     A.COUNT.direct += factors
     if not found:

@@ -9,9 +9,11 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..compiled import kernel, uncounted
+from ..compiled.records import Rows, zeros
+from ..model.contacts import SOLVED, Problem, Solved
 from ..model.scene import Scene
 from ..model.step import DONE, IMPACT, JOINTS_DUE
-from ..rows.blocks import CONVERGED, D_NORMAL, D_TANGENTIAL, OUT_SIZE, RESIDUAL, SCALE_LOCK, TOLERANCE, solve_block
+from ..rows.blocks import CONVERGED, solve_block
 from ..sustained.ledger import carried
 from .block import Block, gather, lay_out, owing
 from .islands import members, unite
@@ -22,16 +24,16 @@ from .strike import note
 
 
 @uncounted
-def finish(A: Scene, block: Block, n: int, m: int, L: FloatArray, OUT: FloatArray, status: int, t: float) -> None:
+def finish(A: Scene, block: Block, n: int, m: int, L: FloatArray, OUT: Rows[Solved], status: int, t: float) -> None:
     """Write what the impulses L of a block of n bodies and m pairs have made of V, and book it."""
     BODY, COUNT = A.BODY, A.COUNT
     V, ROWS, k = block.V, block.ROWS, A.SHAPE.shape[0]
     if status != CONVERGED:
-        miss(A, IMPACT, block.OF[0] // k, block.OF[0] % k, OUT[RESIDUAL], OUT[TOLERANCE])
-    if abs(OUT[SCALE_LOCK] - 1.0) > abs(A.PAR.lock - 1.0):
-        A.PAR.lock = OUT[SCALE_LOCK]
-    A.PAR.restitution += OUT[D_NORMAL]
-    A.PAR.frictional += OUT[D_TANGENTIAL]
+        miss(A, IMPACT, block.OF[0] // k, block.OF[0] % k, OUT[0].residual, OUT[0].tolerance)
+    if abs(OUT[0].lock - 1.0) > abs(A.PAR.lock - 1.0):
+        A.PAR.lock = OUT[0].lock
+    A.PAR.restitution += OUT[0].restitution
+    A.PAR.frictional += OUT[0].friction
     A.PAR.external += carried(block.A, block.B, ROWS, L, V, V, block.IM, block.II, len(ROWS))
     for q in range(n):
         i = A.BLOCK[q]
@@ -80,12 +82,11 @@ def strike(A: Scene, disks: int, a: int, b: int, t: float, rest: bool) -> tuple[
     owed, piled = owing(A, n)
     block = lay_out(A, disks, n, m, PAIRS, min(a, b) * k + max(a, b), rest, t)
     rows = len(block.ROWS)
-    L, LOSS, OUT = np.zeros((rows, 2)), np.zeros((rows, 2)), np.zeros(OUT_SIZE)
-    status = solve_block(
-        block.A, block.B, block.ROWS, L, block.V, block.IM, block.II, block.POSE, n, rows, owed, piled, LOSS, OUT
-    )  # fmt: skip
+    L, LOSS, OUT = np.zeros((rows, 2)), np.zeros((rows, 2)), zeros(1, SOLVED)
+    problem = Problem(block.A, block.B, block.ROWS, block.IM, block.II, block.POSE, n, rows)
+    status = solve_block(problem, L, block.V, owed, piled, LOSS, OUT)
     finish(A, block, n, m, L, OUT, status, t)
-    return rejoin(A, a, b, t, n, rest, OUT[D_NORMAL] + OUT[D_TANGENTIAL] - owed)
+    return rejoin(A, a, b, t, n, rest, OUT[0].restitution + OUT[0].friction - owed)
 
 
 @kernel

@@ -11,6 +11,7 @@ from ..geometry.gap import gap_at
 from ..geometry.manifold import half_width
 from ..geometry.sides import remembers
 from ..model.contacts import Row
+from ..model.islands import Island
 from ..model.parameters.intervals import (
     EXACT_CONTACTS,
     INTERVAL_DEPTH,
@@ -20,7 +21,6 @@ from ..model.parameters.intervals import (
     INTERVAL_RETRY,
 )
 from ..model.scene import Scene
-from .local import Local
 
 
 @uncounted
@@ -39,7 +39,7 @@ def too_deep(gap: float, closing: float, small: float, thick: float, few: bool) 
 
 @kernel
 def sunk(
-    A: Scene, isle: Local, END: FloatArray, P: IntArray, Q: IntArray, ROWS: Rows[Row], KEY: IntArray, m: int, all: bool
+    A: Scene, isle: Island, END: FloatArray, P: IntArray, Q: IntArray, ROWS: Rows[Row], KEY: IntArray, m: int, all: bool
 ) -> float:  # fmt: skip
     """How many times too long a span is at whose END (k, 3) poses some contact is deeper than it may be: what its row,
     which is linear, does not tell. Of `all` pairs, or of thin shapes alone."""

@@ -7,6 +7,7 @@ from ..compiled import uncounted
 from ..compiled.records import Rows
 from ..geometry.gap import gap_at
 from ..model.bodies import Body
+from ..model.contacts import Force
 from ..model.parameters.intervals import ELASTIC_REST, ELASTIC_REST_ON, LARGE_ISLAND, SOLVES_BEFORE_HASTE, TOUCH
 from ..model.scene import Scene
 from ..model.shapes import Link, Shape
@@ -82,15 +83,15 @@ def lossy(A: Scene, root: int) -> bool:
 
 
 @uncounted
-def remembered(KEYS: IntArray, FORCES: FloatArray, shapes: int, a: int, b: int, since: float) -> tuple[float, float]:
+def remembered(KEYS: IntArray, FORCES: Rows[Force], shapes: int, a: int, b: int, since: float) -> tuple[float, float]:
     """Normal force and load of a pair of shapes, of the steps from number `since` on; 0 if there is none."""
     key = key_of(shapes, a, b)
     force, load = 0.0, 0.0
     for z in range(2):
         row = find(KEYS, key + z)
-        if row >= 0 and FORCES[row, 3] >= since:
-            force += FORCES[row, 0]
-            load += FORCES[row, 2]
+        if row >= 0 and FORCES[row].stamp >= since:
+            force += FORCES[row].normal
+            load += FORCES[row].load
     return force, load
 
 

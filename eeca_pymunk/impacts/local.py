@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
 from ..arrays import FlagArray, FloatArray, IntArray
 from ..compiled import kernel
-from ..compiled.records import Rows
-from ..model.contacts import Row
+from ..model.islands import Contacts, Island
 from ..model.scene import Scene
 from ..pairs.lists import mark_pair
 from ..rows.build import normal_rate, tangent_rate
@@ -18,24 +16,8 @@ from ..sustained.ledger import carried
 from .calm import whirls
 
 
-class Local(NamedTuple):
-    """The bodies of an island, n that impulses move and then those that they do not: WHO (k,) rows of BODY, POSE, V,
-    ACC (k, 3) and IM, II, EXTENT (k,) at the start of its span, FELT (k,) as `..sustained.step`; PAIRS (p, 4) as
-    `..sustained.contacts.gather`."""
-
-    WHO: IntArray
-    POSE: FloatArray
-    V: FloatArray
-    ACC: FloatArray
-    IM: FloatArray
-    II: FloatArray
-    EXTENT: FloatArray
-    FELT: FloatArray
-    PAIRS: IntArray
-
-
 @kernel
-def lay_out_island(A: Scene, MINE: IntArray, n: int, found: IntArray, t: float) -> Local:
+def lay_out_island(A: Scene, MINE: IntArray, n: int, found: IntArray, t: float) -> Island:
     """The island of the n bodies MINE, which are at instant t and have A.PLACE, with (p, 2) pairs of shapes `found`."""
     BODY = A.BODY
     p = len(found)
@@ -75,15 +57,16 @@ def lay_out_island(A: Scene, MINE: IntArray, n: int, found: IntArray, t: float) 
         PAIRS[c, 2], PAIRS[c, 3] = A.PLACE[A.LINK[found[c, 0]].owner], A.PLACE[A.LINK[found[c, 1]].owner]
     for q in range(n, k):
         A.PLACE[WHO[q]] = -1
-    return Local(WHO, POSE, V, ACC, IMS, IIS, SIZES, FELT, PAIRS)
+    return Island(WHO, POSE, V, ACC, IMS, IIS, SIZES, FELT, PAIRS)
 
 
 @kernel
 def open_contacts(
-    A: Scene, isle: Local, P: IntArray, Q: IntArray, ROWS: Rows[Row], KEY: IntArray, L: FloatArray, VN: FloatArray,
-    m: int, t: float, h: float, TOUCHED: FlagArray,
-) -> None:  # fmt: skip
-    """Write the m contacts of a span of length h after those of other islands; TOUCHED (k,): bodies that have any."""
+    A: Scene, isle: Island, contacts: Contacts, VN: FloatArray, m: int, t: float, h: float, TOUCHED: FlagArray
+) -> None:
+    """Write the m contacts of a span of length h, at whose end velocities are VN, after those of other islands; TOUCHED
+    (k,): bodies that have any."""
+    P, Q, ROWS, KEY, L = contacts.A, contacts.B, contacts.ROWS, contacts.KEY, contacts.L
     shapes, first, moving = A.SHAPE.shape[0], A.COUNT.pushes, A.LIST.shape[0]
     for z in range(m):
         pair = KEY[z] >> 1

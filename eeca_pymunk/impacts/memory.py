@@ -88,9 +88,9 @@ def recalled(scene: Scene, take: Callable[[Any, tuple[int, ...]], AnyArray]) -> 
         new[name] = np.zeros(length, getattr(scene, name).dtype)
         new[name][:kept] = take(new[name].dtype, (kept,))
     at = take(np.int64, (used,))
-    new["KEYS"], new["FORCES"] = np.full(slots, -1, np.int64), np.zeros((slots, scene.FORCES.shape[1]))
+    new["KEYS"], new["FORCES"] = np.full(slots, -1, np.int64), np.zeros(slots, scene.FORCES.dtype)
     new["KEYS"][at] = take(np.int64, (used,))
-    new["FORCES"][at] = take(np.float64, (used, scene.FORCES.shape[1]))
+    new["FORCES"][at] = take(scene.FORCES.dtype, (used,))
     # Sides of thin shapes; the rest is scratch, or does not change.
     scene.WORK[SIDES:CORNERS] = take(np.float64, scene.WORK[SIDES:CORNERS].shape)
     return scene._replace(**new)

@@ -18,8 +18,6 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
-from ..compiled.records import empty
-from ..model.contacts import ROW
 from ..model.parameters.intervals import LARGE_ISLAND
 from ..model.parameters.rest import (
     FREEZE,
@@ -34,8 +32,7 @@ from ..model.parameters.rest import (
 )
 from ..model.scene import Scene
 from ..rows.inplace import sort
-from ..sustained.ledger import LEDGER_SIZE
-from ..sustained.step import OUT_SIZE, POLISHES, STOOD, step_island
+from ..sustained.step import make_contacts, step_island
 from .booking import close_span
 from .calm import hardly, settled, speed, wait
 from .carrying import give_way, load
@@ -82,18 +79,11 @@ def asks(A: Scene, MINE: IntArray, n: int, V0: FloatArray, among: int, calming: 
         wait(A, MINE, n)
         return False
     quick = (FREEZE if calming else hardly(among)) * A.PAR.pulled / most
-    k, room = len(isle.WHO), 2 * p + 1
-    P, Q, KEY = np.empty(room, np.int64), np.empty(room, np.int64), np.empty(room, np.int64)
-    ROWS, L, LOSS = empty(room, ROW), np.zeros((room, 2)), np.zeros((room, 2))
-    VN, JUMP, BOOK, OUT = np.zeros((k, 3)), np.zeros((k, 6)), np.zeros(LEDGER_SIZE), np.zeros(OUT_SIZE)
-    m = step_island(
-        isle.POSE, isle.V, isle.ACC, isle.IM, isle.II, isle.EXTENT, isle.FELT, n, isle.PAIRS, p, A.SHAPE, A.RULE,
-        A.LINK, A.VERTEX, A.WORK, dt, 0, 0.0, 0.0, 0.0, A.KEYS, A.FORCES, COUNT, A.PAR.stamp,
-        A.RESTING[root], -quick, P, Q, ROWS, KEY, L, LOSS, VN, JUMP, BOOK, OUT,
-    )  # fmt: skip
-    COUNT.direct += int(OUT[POLISHES])
-    if not OUT[STOOD] > 0.0:
-        give_way(A, MINE, n, VN, isle.FELT)
+    contacts = make_contacts(p, len(isle.WHO))
+    m = step_island(A, isle, contacts, n, dt, 0, 0.0, 0.0, 0.0, -quick)
+    COUNT.direct += contacts.OUT[0].direct
+    if contacts.OUT[0].stood == 0:
+        give_way(A, MINE, n, contacts.VN, isle.FELT)
         return False
     if calming:
         for q in range(n):
@@ -101,7 +91,7 @@ def asks(A: Scene, MINE: IntArray, n: int, V0: FloatArray, among: int, calming: 
             A.RESTING[MINE[q]].calm_for = REST_STEPS
         return True
     first = COUNT.pushes
-    open_contacts(A, isle, P, Q, ROWS, KEY, L, VN, m, 0.0, dt, np.zeros(k, np.uint8))
+    open_contacts(A, isle, contacts, contacts.VN, m, 0.0, dt, np.zeros(len(isle.WHO), np.uint8))
     for z in range(m):
         A.PUSHED_BY[first + z].root = root
     COUNT.pushes += m

@@ -14,7 +14,7 @@ from ..compiled.records import R, Rows, row, rows
 from ..geometry.corners import work_room
 from ..layout import NOW as READ
 from ..model.bodies import CHECK, Body, Member, Next, Rest
-from ..model.contacts import Impulse, Pair, Pushed
+from ..model.contacts import Force, Impulse, Pair, Pushed
 from ..model.parameters.events import SOLVES_PER_BODY
 from ..model.parameters.intervals import FIRST_AUGMENTATION
 from ..model.scene import Scene
@@ -22,7 +22,7 @@ from ..model.shapes import Link, Shape
 from ..model.step import Count, Missed, Step
 from ..pairs.setup import near_lists, rebuilt
 from ..report import Details, of_events
-from ..sustained.memory import FORCE_COLUMNS, forget
+from ..sustained.memory import forget
 from ..transfer import FORCES
 from .booking import flag_again
 from .film import Reel
@@ -83,7 +83,7 @@ class EventLoop(Remembering):
             BODY, STATE, SHAPE, LINK, VERTEX, *near, np.zeros((0, RULE_COLUMNS)), TIME, OF,
             rows(Impulse, 4 * n + 64), BEGAN, PLACE, BLOCK, PULL, MEMBER, RESTING,
             rows(Pair, room), rows(Pushed, room),
-            np.full(4 * room, -1, np.int64), np.zeros((4 * room, FORCE_COLUMNS)),
+            np.full(4 * room, -1, np.int64), rows(Force, 4 * room),
             work_room(LINK, VERTEX, moving), rows(Missed, _MISSED), row(Step), row(Count),
         )  # fmt: skip
         self.near = near
@@ -160,7 +160,7 @@ class EventLoop(Remembering):
     def _clean(self, size: int) -> None:
         """Forget the forces of steps before the last one, in tables of so many rows."""
         scene = self.scene
-        KEYS, TABLE = np.full(size, -1, np.int64), np.zeros((size, FORCE_COLUMNS))
+        KEYS, TABLE = np.full(size, -1, np.int64), rows(Force, size)
         forget(scene.KEYS, scene.FORCES, scene.COUNT, KEYS, TABLE, float(scene.PAR.stamp) - 1.0)
         self.scene = scene._replace(KEYS=KEYS, FORCES=TABLE)
 

@@ -8,24 +8,19 @@ import numpy as np
 
 from ..arrays import IntArray
 from ..compiled import kernel, uncounted
-from ..compiled.records import empty
 from ..geometry.sides import SIDES
-from ..model.contacts import ROW
+from ..model.contacts import Problem
+from ..model.islands import Island
 from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES, LARGE_ISLAND, LEAST_INTERVAL, SMALL_SWEEPS
 from ..model.scene import Scene
 from ..model.step import DONE, JOINTS_DUE, PUSHES_FULL
 from ..rows.inplace import sort
-from ..sustained.ledger import LEDGER_SIZE
 from ..sustained.lifting import budget_of, least_of, lifting
-from ..sustained.step import LOCK as LOCK_OF
-from ..sustained.step import OUT_SIZE, STOOD, moved, step_island
-from ..sustained.step import POLISHES as POLISHES_OF
-from ..sustained.step import SWEEPS as SWEEPS_OF
+from ..sustained.step import make_contacts, moved, step_island
 from .calm import calm
 from .coming import before_end, hurried, near_span, pairs_within, span_of, stick_time, strayed, sweeps_of_crowd, way_of
 from .depths import sunk
 from .islands import lossy, members
-from .local import Local as Local
 from .local import lay_out_island as lay_out_island
 from .local import open_contacts as open_contacts
 from .still import halt
@@ -34,7 +29,7 @@ AGAIN = -1  # status of a span that is to be shorter
 
 
 @uncounted
-def among_of(A: Scene, isle: Local, n: int) -> int:
+def among_of(A: Scene, isle: Island, n: int) -> int:
     """The n bodies of an island, and those of the islands that carry them."""
     found, last = n, -1
     for q in range(n, len(isle.WHO)):
@@ -94,12 +89,9 @@ def open_span(A: Scene, root: int, t: float, longest: float, last: bool) -> tupl
         return PUSHES_FULL, 0.0
     isle = lay_out_island(A, MINE, n, found, t)
     dismiss(A, MINE, n)
-    k, WHO, POSE, V, ACC = len(isle.WHO), isle.WHO, isle.POSE, isle.V, isle.ACC
-    IMS, IIS, SIZES, PAIRS = isle.IM, isle.II, isle.EXTENT, isle.PAIRS
-    room = 2 * p + 1
-    P, Q, KEY = np.empty(room, np.int64), np.empty(room, np.int64), np.empty(room, np.int64)
-    ROWS, L, LOSS = empty(room, ROW), np.zeros((room, 2)), np.zeros((room, 2))
-    VN, JUMP, BOOK, OUT = np.empty((k, 3)), np.zeros((k, 6)), np.zeros(LEDGER_SIZE), np.zeros(OUT_SIZE)
+    k, WHO, V, contacts = len(isle.WHO), isle.WHO, isle.V, make_contacts(p, len(isle.WHO))
+    P, Q, KEY, ROWS, L = contacts.A, contacts.B, contacts.KEY, contacts.ROWS, contacts.L
+    VN, JUMP, OUT = contacts.VN, contacts.JUMP, contacts.OUT
     least = 0.0
     if COUNT.together > 0:
         for q in range(k):
@@ -115,44 +107,36 @@ def open_span(A: Scene, root: int, t: float, longest: float, last: bool) -> tupl
     quiet = calm(A, root, MINE, n, among, t) if may_lose and raised == 0 else 0.0
     owed = max(-A.RESTING[root].lost, 0.0)
     if p > 0 and h > 0.0:
-        m = step_island(
-            POSE, V, ACC, IMS, IIS, SIZES, isle.FELT, n, PAIRS, p, A.SHAPE, A.RULE, A.LINK, A.VERTEX, A.WORK, h,
-            sweeps, least, owed, -1.0, A.KEYS, A.FORCES, COUNT, A.PAR.stamp, A.RESTING[MINE[0]], quiet,
-            P, Q, ROWS, KEY, L, LOSS, VN, JUMP, BOOK, OUT,
-        )  # fmt: skip
-        stuck = h if hurried(A) or OUT[STOOD] > 0.0 else stick_time(P, Q, ROWS, L, V + h * ACC, VN, m, h)
+        m = step_island(A, isle, contacts, n, h, sweeps, least, owed, -1.0, quiet)
+        stuck = h if hurried(A) or OUT[0].stood > 0 else stick_time(P, Q, ROWS, L, V + h * isle.ACC, VN, m, h)
         if stuck < h:
             # Where slip ends on the way, so does the span: friction changes its law there.
             h = min(max(stuck, A.PAR.dt / LEAST_INTERVAL), h)
-            BOOK[:] = 0.0
-            m = step_island(
-                POSE, V, ACC, IMS, IIS, SIZES, isle.FELT, n, PAIRS, p, A.SHAPE, A.RULE, A.LINK, A.VERTEX, A.WORK, h,
-                sweeps, least, owed, -1.0, A.KEYS, A.FORCES, COUNT, A.PAR.stamp, A.RESTING[MINE[0]], 0.0,
-                P, Q, ROWS, KEY, L, LOSS, VN, JUMP, BOOK, OUT,
-            )  # fmt: skip
+            m = step_island(A, isle, contacts, n, h, sweeps, least, owed, -1.0, 0.0)
         far = 0.0
-        if not last and OUT[STOOD] == 0.0:
+        if not last and OUT[0].stood == 0:
             far = strayed(P, Q, ROWS, KEY, V, VN, A.SHAPE, A.LINK, A.VERTEX, m, h)
             if far <= INTERVAL_RETRY and A.WORK.shape[0] > SIDES:
-                far = sunk(A, isle, POSE + 0.5 * h * (V + VN), P, Q, ROWS, KEY, m, False)
+                far = sunk(A, isle, isle.POSE + 0.5 * h * (V + VN), P, Q, ROWS, KEY, m, False)
         if far > INTERVAL_RETRY:
             A.COUNT.solved += n
             return AGAIN, h / far
-        if m > 0 and not OUT[STOOD] > 0.0 and not before_end(A, t + h):
+        if m > 0 and OUT[0].stood == 0 and not before_end(A, t + h):
             # An interval that ends within the step is followed by another one, which corrects what is left.
-            budget = budget_of(ROWS, m, BOOK[0] + BOOK[1], owed, math.inf if raised > 0 else 0.0)
-            lifting(
-                P, Q, ROWS, moved(POSE, V, 0.5 * h), VN, ACC, IMS, IIS, n, m, h, least_of(SIZES, n), budget, JUMP
-            )  # fmt: skip
-        if abs(OUT[LOCK_OF] - 1.0) > abs(A.PAR.lock - 1.0):
-            A.PAR.lock = OUT[LOCK_OF]
+            free = math.inf if raised > 0 else 0.0
+            budget = budget_of(ROWS, m, OUT[0].restitution + OUT[0].friction, owed, free)
+            problem = Problem(P, Q, ROWS, isle.IM, isle.II, isle.POSE, n, m)
+            middle, size = moved(isle.POSE, V, 0.5 * h), least_of(isle.EXTENT, n)
+            lifting(problem, middle, VN, isle.ACC, h, size, budget, contacts.JUMP)
+        if abs(OUT[0].lock - 1.0) > abs(A.PAR.lock - 1.0):
+            A.PAR.lock = OUT[0].lock
     COUNT.solves += 1
     COUNT.solved += n
-    COUNT.sweeps += int(OUT[SWEEPS_OF])
-    COUNT.direct += int(OUT[POLISHES_OF])
+    COUNT.sweeps += OUT[0].sweeps
+    COUNT.direct += OUT[0].direct
     first = COUNT.pushes
     TOUCHED = np.zeros(k, np.uint8)
-    open_contacts(A, isle, P, Q, ROWS, KEY, L, VN, m, t, h, TOUCHED)
+    open_contacts(A, isle, contacts, VN, m, t, h, TOUCHED)
     lost, hits = A.RESTING[root].lost, MEMBER[root].hits
     head, tail, size = -1, -1, 0
     for q in range(n):
@@ -183,6 +167,6 @@ def open_span(A: Scene, root: int, t: float, longest: float, last: bool) -> tupl
         for z in range(m):
             A.PUSHED_BY[first + z].root = head
         COUNT.pushes += m
-        if OUT[STOOD] > 0.0:
+        if OUT[0].stood > 0:
             halt(A, head)
     return DONE, 0.0

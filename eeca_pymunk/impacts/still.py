@@ -16,7 +16,6 @@ from ..model.contacts import LASTED
 from ..model.parameters.rest import REST_WOKEN
 from ..model.scene import Scene
 from ..pairs.lists import mark_pair
-from ..sustained.memory import STAMP as OF_STEP
 from ..sustained.memory import find, key_of
 from .calm import hardly, later, speed, whirls
 from .strike import kinetic, note
@@ -60,8 +59,8 @@ def touch(A: Scene, c: int, stamp: float) -> None:
     key = key_of(A.SHAPE.shape[0], a, b)
     for z in range(2):
         row = find(A.KEYS, key + z)
-        if row >= 0 and A.FORCES[row, OF_STEP] >= stamp - 1.0:
-            A.FORCES[row, OF_STEP] = stamp
+        if row >= 0 and A.FORCES[row].stamp >= stamp - 1.0:
+            A.FORCES[row].stamp = stamp
 
 
 @uncounted

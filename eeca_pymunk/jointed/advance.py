@@ -10,8 +10,8 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
-from ..impacts.spans import Local
 from ..model.contacts import Row
+from ..model.islands import Island
 from ..model.joints import Joints
 from ..model.scene import Scene
 from .bounded import Bounded, fill_rows, list_rows, note_rows
@@ -34,6 +34,23 @@ class Motion(NamedTuple):
     MID: FloatArray
 
 
+class Interval(NamedTuple):
+    """An island over an interval of length h from instant t: its bodies, of which impulses move the first n, and their
+    components; m contacts, rows ROWS between local bodies P and Q, with columns C; the motion of its bodies, out."""
+
+    isle: Island
+    groups: Groups
+    P: IntArray
+    Q: IntArray
+    ROWS: Rows[Row]
+    motion: Motion
+    C: Columns
+    m: int
+    n: int
+    t: float
+    h: float
+
+
 @uncounted
 def is_hit(groups: Groups, P: IntArray, Q: IntArray, m: int, g: int) -> bool:
     """Whether any contact is on group g."""
@@ -45,13 +62,20 @@ def is_hit(groups: Groups, P: IntArray, Q: IntArray, m: int, g: int) -> bool:
 
 
 @kernel
-def advance(
-    A: Scene, J: Joints, isle: Local, groups: Groups, P: IntArray, Q: IntArray, ROWS: Rows[Row], L: FloatArray, m: int,
-    t: float, h: float, motion: Motion, C: Columns, B: Bounded, fill: bool, GUESS: FloatArray,
-) -> None:  # fmt: skip
+def advance(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, fill: bool, GUESS: FloatArray) -> None:
     """Step all bodies of an island by h under the impulses L of its contacts, from where its joints were; `fill` the
     columns C and B about that step, bounded impulses being given; else B has what these are, and C stays.
     GUESS (k, 3): velocities at the end that are foreseen, to begin with; (0, 3) for none."""
+    isle, groups, P, Q, ROWS, m, h, motion = (
+        interval.isle,
+        interval.groups,
+        interval.P,
+        interval.Q,
+        interval.ROWS,
+        interval.m,
+        interval.h,
+        interval.motion,
+    )
     k = len(isle.IM)
     ACC = isle.ACC.copy()
     for i in range(m):
@@ -74,7 +98,7 @@ def advance(
         rewind_joints(J, s)
         if len(GUESS) > 0:
             lead_component(A, J, s, isle.V, ACC, GUESS, h)
-        length = gather_component(A, J, s, isle.POSE, isle.V, ACC, isle.IM, isle.II, t, h)
+        length = gather_component(A, J, s, isle.POSE, isle.V, ACC, isle.IM, isle.II, interval.t, h)
         step_component(A, J, s, h, length, m == 0, motion.V, motion.WAY, motion.END, motion.MID)
         if not fill:
             note_rows(A, J, B, s, h)
@@ -84,7 +108,7 @@ def advance(
             first = list_rows(A, J, B, s, h)
             if ready(J, s, h, True):
                 PUSH = np.empty((size, 3))
-                fill_group(J, groups, C, g, INDEX, True, P, Q, ROWS, m, PUSH)
+                fill_group(J, groups, interval.C, g, INDEX, True, P, Q, ROWS, m, PUSH)
                 fill_rows(J, groups, B, g, first, INDEX, PUSH)
             else:
                 B.USED[0] = first
@@ -102,7 +126,7 @@ def advance(
 
 @uncounted
 def align(
-    isle: Local, P: IntArray, Q: IntArray, ROWS: Rows[Row], m: int, motion: Motion, change: bool
+    isle: Island, P: IntArray, Q: IntArray, ROWS: Rows[Row], m: int, motion: Motion, change: bool
 ) -> float:  # fmt: skip
     """How far the arms r of contacts between moving bodies are from being about one point where their forces act, over
     the size of bodies and places; and `change` them so, unless a body is off by more than its size.
@@ -143,13 +167,22 @@ def farthest_apart(V: FloatArray, W: FloatArray, EXTENT: FloatArray, n: int) -> 
 
 
 @kernel
-def advance_aligned(
-    A: Scene, J: Joints, isle: Local, groups: Groups, P: IntArray, Q: IntArray, ROWS: Rows[Row], L: FloatArray, m: int,
-    t: float, h: float, motion: Motion, C: Columns, B: Bounded, free: bool,
-) -> None:  # fmt: skip
+def advance_aligned(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, free: bool) -> None:
     """`advance`; where nothing from without holds or touches the island (`free`), until the arms of contacts agree with
     the motion. At its end they are those that it has been under."""
     for turn in range(_ALIGNMENTS):
-        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, B, False, np.empty((0, 3)))
-        if not free or align(isle, P, Q, ROWS, m, motion, turn + 1 < _ALIGNMENTS) <= ALIGNED:
+        advance(A, J, interval, L, B, False, np.empty((0, 3)))
+        if (
+            not free
+            or align(
+                interval.isle,
+                interval.P,
+                interval.Q,
+                interval.ROWS,
+                interval.m,
+                interval.motion,
+                turn + 1 < _ALIGNMENTS,
+            )
+            <= ALIGNED
+        ):
             break

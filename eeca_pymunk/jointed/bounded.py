@@ -13,9 +13,10 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
+from ..compiled.records import Rows, zeros
 from ..joints.boxes import FIRST_OF_DISC, SECOND_OF_DISC, SINGLE, on_disc
 from ..joints.entries import held
-from ..model.joints import GIVEN, GROOVE, RATCHET, ROTARY_LIMIT, SLIDE, Joints
+from ..model.joints import BOUNDED_ROW, GIVEN, GROOVE, RATCHET, ROTARY_LIMIT, SLIDE, BoundedRow, Joints
 from ..model.scene import Scene
 from .component import answer
 from .groups import Groups
@@ -27,8 +28,7 @@ class Bounded(NamedTuple):
     """Bounded rows; of row i < USED[0]:
 
     AT[i] : AT[i + 1] the entries BODY and N (., 3) of its column, AT[0] = 0; END (n, 2) its bodies in the island, -1
-    for what does not move; ROW (n, 6) the row; NUMBER (n, 5): velocity of what does not move along it less its target,
-    least and largest impulse, SINGLE or place in a disc, impulse of the last motion; OF (n, 2): joint (of LINK), row.
+    for what does not move; ROW (n, 6) the row; ROWS (n,): its bounds; OF (n, 2): joint (of LINK), row.
     """
 
     USED: IntArray
@@ -37,26 +37,29 @@ class Bounded(NamedTuple):
     N: FloatArray
     END: IntArray
     ROW: FloatArray
-    NUMBER: FloatArray
+    ROWS: Rows[BoundedRow]
     OF: IntArray
 
 
-SPEED, LOW, HIGH, PART, NOW = 0, 1, 2, 3, 4  # columns of NUMBER
+@kernel
+def room_for_rows(n: int, entries: int) -> Bounded:
+    """Room for n bounded rows, whose columns have so many entries."""
+    return Bounded(
+        np.zeros(1, np.int64), np.zeros(n + 1, np.int64), np.zeros(entries, np.int64), np.zeros((entries, 3)),
+        np.zeros((n, 2), np.int64), np.zeros((n, 6)), zeros(n, BOUNDED_ROW), np.zeros((n, 2), np.int64),
+    )  # fmt: skip
 
 
 @kernel
-def make_bounded(J: Joints, groups: Groups, empty: bool) -> Bounded:
-    """Room for the bounded rows of all components of an island, or for none."""
+def make_bounded(J: Joints, groups: Groups) -> Bounded:
+    """Room for the bounded rows of all components of an island."""
     n, entries = 0, 0
     for g in range(len(groups.COMPONENT)):
-        if groups.COMPONENT[g] >= 0 and not empty:
+        if groups.COMPONENT[g] >= 0:
             rows = J.COMPONENT[groups.COMPONENT[g]].boxes
             n += rows
             entries += rows * (groups.FIRST[g + 1] - groups.FIRST[g])
-    return Bounded(
-        np.zeros(1, np.int64), np.zeros(n + 1, np.int64), np.zeros(entries, np.int64), np.zeros((entries, 3)),
-        np.zeros((n, 2), np.int64), np.zeros((n, 6)), np.zeros((n, 5)), np.zeros((n, 2), np.int64),
-    )  # fmt: skip
+    return room_for_rows(n, entries)
 
 
 @uncounted
@@ -64,20 +67,20 @@ def note_row(A: Scene, J: Joints, B: Bounded, s: int, i: int, h: float) -> None:
     """Row i as it is at the end of the step h that component s has just taken."""
     k, r = B.OF[i, 0], B.OF[i, 1]
     hinge = J.HINGE[k - J.COMPONENT[s].first_joint]
-    B.NUMBER[i, SPEED] = -hinge.target[r]
-    B.NUMBER[i, NOW] = hinge.total[r]
+    B.ROWS[i].speed = -hinge.target[r]
+    B.ROWS[i].now = hinge.total[r]
     for end in range(2):
         at = J.LINK[k].body[end]
         B.END[i, end] = A.PLACE[J.MEMBER[J.COMPONENT[s].first_body + at].body] if J.LOCAL[at].freedoms > 0 else -1
         for c in range(3):
             B.ROW[i, 3 * end + c] = hinge.rows[r, 3 * end + c]
             if B.END[i, end] < 0:
-                B.NUMBER[i, SPEED] += B.ROW[i, 3 * end + c] * J.LOCAL[at].v0[c]
+                B.ROWS[i].speed += B.ROW[i, 3 * end + c] * J.LOCAL[at].v0[c]
     bound = hinge.bound * h
     low = -bound
     if J.LINK[k].kind in (SLIDE, ROTARY_LIMIT, RATCHET):
         low, bound = (0.0, bound) if J.LINK[k].side < 0 else (-bound, 0.0)
-    B.NUMBER[i, LOW], B.NUMBER[i, HIGH] = low, bound
+    B.ROWS[i].low, B.ROWS[i].high = low, bound
 
 
 @uncounted
@@ -99,7 +102,7 @@ def list_rows(A: Scene, J: Joints, B: Bounded, s: int, h: float) -> int:
         for r in range(rows):
             i = B.USED[0]
             B.OF[i, 0], B.OF[i, 1] = k, r
-            B.NUMBER[i, PART] = SINGLE if rows == 1 else FIRST_OF_DISC if r == 0 else SECOND_OF_DISC
+            B.ROWS[i].part = SINGLE if rows == 1 else FIRST_OF_DISC if r == 0 else SECOND_OF_DISC
             note_row(A, J, B, s, i, h)
             B.USED[0] = i + 1
     return int(first)
@@ -167,13 +170,13 @@ def sweep_bounded(B: Bounded, L: FloatArray, m: int, V: FloatArray) -> float:
     """One sweep over the bounded rows, whose impulses are L[m:, 0]; the largest change of a velocity along one."""
     worst = 0.0
     for i in range(B.USED[0]):
-        part, low, high = B.NUMBER[i, PART], B.NUMBER[i, LOW], B.NUMBER[i, HIGH]
+        part, low, high = B.ROWS[i].part, B.ROWS[i].low, B.ROWS[i].high
         if part == SECOND_OF_DISC:
             continue
         a, x = per_impulse(B, i, i), L[m + i, 0]
         if not a > 0.0:
             continue
-        u = B.NUMBER[i, SPEED] + bounded_rate(B, i, V)
+        u = B.ROWS[i].speed + bounded_rate(B, i, V)
         if part == SINGLE:
             L[m + i, 0] = min(max(x - u / a, low), high)
         else:
@@ -184,7 +187,7 @@ def sweep_bounded(B: Bounded, L: FloatArray, m: int, V: FloatArray) -> float:
             )
             if not c > 0.0:
                 continue
-            other = B.NUMBER[i + 1, SPEED] + bounded_rate(B, i + 1, V)
+            other = B.ROWS[i + 1].speed + bounded_rate(B, i + 1, V)
             L[m + i, 0] = on_disc(a, b, c, u, other, x, y, high, False)
             L[m + i + 1, 0] = on_disc(a, b, c, u, other, x, y, high, True)
             push_row(B, i + 1, L[m + i + 1, 0] - y, V)
@@ -197,10 +200,10 @@ def sweep_bounded(B: Bounded, L: FloatArray, m: int, V: FloatArray) -> float:
 @uncounted
 def inside(B: Bounded, L: FloatArray, m: int, i: int) -> bool:
     """Whether impulse i is inside of its bounds."""
-    x, high = L[m + i, 0], B.NUMBER[i, HIGH]
-    if B.NUMBER[i, PART] == SINGLE:
-        return bool(B.NUMBER[i, LOW] < x < high)
-    y = L[m + i + 1, 0] if B.NUMBER[i, PART] == FIRST_OF_DISC else L[m + i - 1, 0]
+    x, high = L[m + i, 0], B.ROWS[i].high
+    if B.ROWS[i].part == SINGLE:
+        return bool(B.ROWS[i].low < x < high)
+    y = L[m + i + 1, 0] if B.ROWS[i].part == FIRST_OF_DISC else L[m + i - 1, 0]
     return bool(x * x + y * y < high * high * (1.0 - 1e-14))
 
 
@@ -211,7 +214,7 @@ def with_bounded(B: Bounded, L: FloatArray, m: int) -> FloatArray:
     for i in range(m):
         BOTH[i, 0], BOTH[i, 1] = L[i, 0], L[i, 1]
     for i in range(B.USED[0]):
-        BOTH[m + i, 0] = B.NUMBER[i, NOW]
+        BOTH[m + i, 0] = B.ROWS[i].now
     return BOTH
 
 

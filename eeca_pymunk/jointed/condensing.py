@@ -14,13 +14,13 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
-from ..compiled.records import Rows
+from ..compiled.records import Rows, empty
 from ..joints.boxes import SINGLE
-from ..model.contacts import Row
+from ..model.contacts import ROW, Row
 from ..rows.build import normal_rate
 from ..rows.dense import back, decompose
 from ..rows.inplace import copy
-from .bounded import HIGH, LOW, PART, SPEED, Bounded, bounded_rate, per_impulse, push_row
+from .bounded import Bounded, bounded_rate, per_impulse, push_row, room_for_rows
 from .columns import Columns, leave_out, weigh
 from .groups import Groups
 from .newton import FEW, solve_columns
@@ -28,25 +28,15 @@ from .newton import FEW, solve_columns
 MOST = 16  # bounded rows up to which this pays
 _TURNS = 4  # changes of sides for each of them, at most
 _R = 1e10  # of a proximal term, for rows that are redundant
-_SAVED = 10
 
 
 @uncounted
-def save_rows(ROWS: Rows[Row], m: int, KEPT: FloatArray) -> None:
-    """Keep in KEPT (m, 10) what `weigh` changes."""
+def copy_weights(ROWS: Rows[Row], m: int, KEPT: Rows[Row]) -> None:
+    """Copy to KEPT (m,) those fields that `weigh` changes."""
     for i in range(m):
         R, K = ROWS[i], KEPT[i]
-        K[0], K[1], K[2], K[3], K[4] = R.k_n, R.a_nn, R.k_t, R.a_tt, R.a_nt
-        K[5], K[6], K[7], K[8] = R.friction, R.w_nn, R.w_nt, R.w_tt
-
-
-@uncounted
-def restore_rows(ROWS: Rows[Row], m: int, KEPT: FloatArray) -> None:
-    """Undo what `weigh` has changed since `save_rows`."""
-    for i in range(m):
-        R, K = ROWS[i], KEPT[i]
-        R.k_n, R.a_nn, R.k_t, R.a_tt, R.a_nt = K[0], K[1], K[2], K[3], K[4]
-        R.friction, R.w_nn, R.w_nt, R.w_tt = K[5], K[6], K[7], K[8]
+        K.k_n, K.a_nn, K.k_t, K.a_tt, K.a_nt = R.k_n, R.a_nn, R.k_t, R.a_tt, R.a_nt
+        K.friction, K.w_nn, K.w_nt, K.w_tt = R.friction, R.w_nn, R.w_nt, R.w_tt
 
 
 @uncounted
@@ -80,8 +70,8 @@ def add_column(D: Bounded, i: int, factor: float, C: Columns, contact: int, tang
 def violation(D: Bounded, i: int, side: int, x: float, per: float, V: FloatArray) -> float:
     """By how much row i violates its bound, or at a bound its law: a velocity."""
     if side == 0:
-        return max(x - D.NUMBER[i, HIGH], D.NUMBER[i, LOW] - x) * per
-    return side * (D.NUMBER[i, SPEED] + bounded_rate(D, i, V))
+        return max(x - D.ROWS[i].high, D.ROWS[i].low - x) * per
+    return side * (D.ROWS[i].speed + bounded_rate(D, i, V))
 
 
 @uncounted
@@ -103,7 +93,7 @@ def first_to_yield(D: Bounded, S: IntArray, k: int, Y: FloatArray, L: FloatArray
         i, rate = S[p], Y[p, j]
         if rate == 0.0:
             continue
-        way = (D.NUMBER[i, HIGH] - L[m + i, 0]) / rate if rate > 0.0 else (D.NUMBER[i, LOW] - L[m + i, 0]) / rate
+        way = (D.ROWS[i].high - L[m + i, 0]) / rate if rate > 0.0 else (D.ROWS[i].low - L[m + i, 0]) / rate
         if way < least:
             first, least = p, way
     return first
@@ -111,13 +101,13 @@ def first_to_yield(D: Bounded, S: IntArray, k: int, Y: FloatArray, L: FloatArray
 
 @kernel
 def solve_condensed(
-    groups: Groups, C: Columns, K: Columns, D: Bounded, NONE: Bounded, A: IntArray, B: IntArray, ROWS: Rows[Row],
+    groups: Groups, C: Columns, K: Columns, D: Bounded, A: IntArray, B: IntArray, ROWS: Rows[Row],
     L: FloatArray, V: FloatArray, m: int, tolerance: float, most: int,
 ) -> float:  # fmt: skip
     """Impulses L (m contacts, then the bounded rows D) and velocities V.
 
     Args:
-        K: room for the condensed columns.  NONE: no rows.  tolerance, most: see `solve_columns`.
+        K: room for the condensed columns.  tolerance, most: see `solve_columns`.
 
     Returns:
         the last sweep's largest change of a contact's velocity; -1 with nothing changed if rows go on changing sides,
@@ -126,17 +116,17 @@ def solve_condensed(
     n = D.USED[0]
     if n == 0 or n > MOST or m > FEW:
         return -1.0
-    L0, V0, KEPT = L.copy(), V.copy(), np.empty((m, _SAVED))
+    L0, V0, KEPT = L.copy(), V.copy(), empty(m, ROW)
     side, R, S = np.zeros(n, np.int64), np.empty((n, n)), np.empty(n, np.int64)
     Y, LC = np.empty((n, 2 * m)), np.empty((m, 2))
     W, order, r, x = np.empty((n, n)), np.empty(n, np.int64), np.empty(n), np.empty(n)
     for i in range(n):
-        if D.NUMBER[i, PART] != SINGLE:
+        if D.ROWS[i].part != SINGLE:
             return -1.0
         for j in range(n):
             R[i, j] = per_impulse(D, i, j)
-        side[i] = 1 if L[m + i, 0] >= D.NUMBER[i, HIGH] else -1 if L[m + i, 0] <= D.NUMBER[i, LOW] else 0
-    save_rows(ROWS, m, KEPT)
+        side[i] = 1 if L[m + i, 0] >= D.ROWS[i].high else -1 if L[m + i, 0] <= D.ROWS[i].low else 0
+    copy_weights(ROWS, m, KEPT)
     for _ in range(_TURNS * n):
         k = 0
         for i in range(n):
@@ -144,14 +134,14 @@ def solve_condensed(
                 S[k] = i
                 k += 1
             else:
-                bound = D.NUMBER[i, HIGH] if side[i] > 0 else D.NUMBER[i, LOW]
+                bound = D.ROWS[i].high if side[i] > 0 else D.ROWS[i].low
                 push_row(D, i, bound - L[m + i, 0], V)
                 L[m + i, 0] = bound
         for p in range(k):
             for q in range(k):
                 W[p, q] = R[S[p], S[q]]
             W[p, p] += abs(W[p, p]) / _R
-            r[p] = -D.NUMBER[S[p], SPEED] - bounded_rate(D, S[p], V)
+            r[p] = -D.ROWS[S[p]].speed - bounded_rate(D, S[p], V)
         decompose(W, k, order)
         back(W, k, order, r, x)
         for p in range(k):
@@ -178,16 +168,16 @@ def solve_condensed(
                 blocked = i
         if blocked >= 0:
             # Rows inside hold what the contact would have to move: one of them comes to its bound.
-            restore_rows(ROWS, m, KEPT)
+            copy_weights(KEPT, m, ROWS)
             follow(S, k, Y, L, LC, m)
             p = first_to_yield(D, S, k, Y, L, m, 2 * blocked)
             if p < 0:
                 break
             side[S[p]] = 1 if Y[p, 2 * blocked] > 0.0 else -1
             continue
-        worst = solve_columns(K, NONE, A, B, ROWS, LC, V, m, tolerance, most)
+        worst = solve_columns(K, room_for_rows(0, 0), A, B, ROWS, LC, V, m, tolerance, most)
         follow(S, k, Y, L, LC, m)
-        restore_rows(ROWS, m, KEPT)
+        copy_weights(KEPT, m, ROWS)
         farthest, by = -1, 10.0 * tolerance
         for i in range(n):
             off = violation(D, i, side[i], L[m + i, 0], R[i, i], V)
@@ -200,7 +190,7 @@ def solve_condensed(
         if side[farthest] != 0:
             side[farthest] = 0
         else:
-            side[farthest] = 1 if L[m + farthest, 0] > D.NUMBER[farthest, HIGH] else -1
+            side[farthest] = 1 if L[m + farthest, 0] > D.ROWS[farthest].high else -1
     copy(L, L0)
     copy(V, V0)
     return -1.0

@@ -7,18 +7,17 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
-from ..impacts.spans import Local
 from ..joints.correct import fitting_loss
 from ..model.contacts import Row
+from ..model.islands import Island
 from ..model.joints import Joints
 from ..model.scene import Scene
 from ..rows.build import normal_rate
 from ..rows.inplace import add
-from .advance import Motion, is_hit
-from .columns import Columns, fill_free, fill_group, weigh
+from .advance import Interval, is_hit
+from .columns import fill_free, fill_group, weigh
 from .component import fit_speeds, ready
 from .gathered import find_places, gather_component
-from .groups import Groups
 from .lifting import raise_gaps
 from .motors import keeps_speed
 from .newton import FEW
@@ -29,10 +28,7 @@ _NOTHING = 1e-12  # of the energy, that is round-off of its change
 
 
 @kernel
-def fit(
-    A: Scene, J: Joints, isle: Local, groups: Groups, P: IntArray, Q: IntArray, ROWS: Rows[Row], L: FloatArray, m: int,
-    motion: Motion, end: float, h: float, scale: float, C: Columns,
-) -> None:  # fmt: skip
+def fit(A: Scene, J: Joints, interval: Interval, L: FloatArray, end: float, scale: float) -> None:
     """Make the velocities at the end of a lossy span fit the joints of the components that contacts push.
 
     Bodies that land leave velocities which violate joints, and those would ring for ever: a midpoint rule turns their
@@ -40,12 +36,13 @@ def fit(
     which would change the speeds of motors.
     `scale` is a speed of the island. C is overwritten.
     """
+    isle, groups, m, motion = interval.isle, interval.groups, interval.m, interval.motion
     NOTHING = np.zeros_like(isle.V)
     # One more, for GROUP -1.
     PUSHED = np.zeros(len(groups.COMPONENT) + 1, np.int64)
     for i in range(m):
         if L[i, 0] > 0.0:
-            PUSHED[groups.GROUP[P[i]] + 1] = PUSHED[groups.GROUP[Q[i]] + 1] = 1
+            PUSHED[groups.GROUP[interval.P[i]] + 1] = PUSHED[groups.GROUP[interval.Q[i]] + 1] = 1
     first, driven = -1, False
     for g in range(len(groups.COMPONENT)):
         s = groups.COMPONENT[g]
@@ -53,7 +50,7 @@ def fit(
         if s < 0 or PUSHED[g + 1] == 0:
             continue
         first = s if first < 0 else first
-        length = gather_component(A, J, s, motion.END, motion.V, NOTHING, isle.IM, isle.II, end, h)
+        length = gather_component(A, J, s, motion.END, motion.V, NOTHING, isle.IM, isle.II, end, interval.h)
         fit_speeds(A, J, s, length)
         J.STEPPED[s].projected += fitting_loss(
             J.LOCAL, J.COMPONENT[s].end_body - J.COMPONENT[s].first_body, J.STEPPED[s]
@@ -67,11 +64,11 @@ def fit(
         return
     RATES, fastest = np.full(m, np.inf), 0.0
     for i in range(m):
-        if L[i, 0] > 0.0 and C.OUT[i] == 0:
-            RATES[i] = normal_rate(P, Q, ROWS, motion.V, i)
+        if L[i, 0] > 0.0 and interval.C.OUT[i] == 0:
+            RATES[i] = normal_rate(interval.P, interval.Q, interval.ROWS, motion.V, i)
             fastest = max(fastest, -RATES[i])
     if fastest > _SLOW * scale:
-        hold(A, J, isle, groups, P, Q, ROWS, m, motion, end, h, C, RATES, _FINE * fastest, first)
+        hold(A, J, interval, end, RATES, _FINE * fastest, first)
 
 
 @uncounted
@@ -89,7 +86,7 @@ def bring_arms(P: IntArray, Q: IntArray, ROWS: Rows[Row], END: FloatArray, m: in
 
 
 @uncounted
-def energy_of(isle: Local, V: FloatArray) -> float:
+def energy_of(isle: Island, V: FloatArray) -> float:
     """Kinetic energy of what moves."""
     total = 0.0
     for q in range(len(V)):
@@ -101,14 +98,20 @@ def energy_of(isle: Local, V: FloatArray) -> float:
 
 
 @kernel
-def hold(
-    A: Scene, J: Joints, isle: Local, groups: Groups, P: IntArray, Q: IntArray, ROWS: Rows[Row], m: int,
-    motion: Motion, end: float, h: float, C: Columns, RATES: FloatArray, fine: float, book: int,
-) -> None:  # fmt: skip
+def hold(A: Scene, J: Joints, interval: Interval, end: float, RATES: FloatArray, fine: float, book: int) -> None:
     """Normal impulses 0 <= mu _|_ u + G S G^T mu >= 0 on contacts whose rates u (m,) are RATES, infinite for those that
     are not asked: velocities that fit the joints go on to do so, and contacts do not close. Energy only falls, by
     -mu.(u + G S G^T mu / 2), also where sweeps are cut short; it is lost by component `book`."""
-    KEEP, NOTHING = ROWS[:m].copy(), np.zeros_like(isle.V)
+    isle, groups, P, Q, m, motion, C = (
+        interval.isle,
+        interval.groups,
+        interval.P,
+        interval.Q,
+        interval.m,
+        interval.motion,
+        interval.C,
+    )
+    KEEP, NOTHING = interval.ROWS[:m].copy(), np.zeros_like(isle.V)
     bring_arms(P, Q, KEEP, motion.END, m)
     fill_free(groups, C, P, Q, KEEP, isle.IM, isle.II, m)
     INDEX = np.full(len(isle.IM), -1, np.int64)
@@ -116,7 +119,7 @@ def hold(
         s = groups.COMPONENT[g]
         if s < 0 or not is_hit(groups, P, Q, m, g):
             continue
-        gather_component(A, J, s, motion.END, motion.V, NOTHING, isle.IM, isle.II, end, h)
+        gather_component(A, J, s, motion.END, motion.V, NOTHING, isle.IM, isle.II, end, interval.h)
         size = find_places(A, J, s, INDEX)
         if not ready(J, s, 2.0, False):
             return

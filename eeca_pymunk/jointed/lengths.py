@@ -14,8 +14,8 @@ from ..geometry.flight import norm
 from ..geometry.manifold import half_width
 from ..impacts.coming import hurried
 from ..impacts.depths import sunk, too_deep
-from ..impacts.spans import Local
 from ..model.contacts import Row
+from ..model.islands import Island
 from ..model.joints import Joints
 from ..model.parameters.intervals import EXACT_CONTACTS, INTERVAL_ANGLE, INTERVAL_DEPTH_LEAST, INTERVAL_WAY
 from ..model.scene import Scene
@@ -58,7 +58,7 @@ def length_ahead(A: Scene, found: IntArray, MINE: IntArray, n: int, h: float) ->
 
 @uncounted
 def too_long(
-    A: Scene, isle: Local, P: IntArray, Q: IntArray, ROWS: Rows[Row], KEY: IntArray, motion: Motion, m: int, n: int,
+    A: Scene, isle: Island, P: IntArray, Q: IntArray, ROWS: Rows[Row], KEY: IntArray, motion: Motion, m: int, n: int,
     h: float,
 ) -> float:  # fmt: skip
     """How many times too long the span h is in which n bodies move so, under m contacts."""

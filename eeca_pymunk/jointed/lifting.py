@@ -9,18 +9,18 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
-from ..impacts.spans import Local
 from ..model.contacts import Row
+from ..model.islands import Island
 from ..model.joints import Joints
 from ..model.scene import Scene
 from ..rows.build import normal_rate
 from ..rows.inplace import copy
 from ..sustained.ledger import against
-from .advance import Motion
+from .advance import Interval
 from .columns import Columns, fill_group, weigh
 from .component import close_joints, ready
 from .gathered import find_places, gather_component
-from .groups import Groups, hangs
+from .groups import hangs
 from .motors import drives
 
 _SLOP = 1e-9  # overlap over the size of the bodies, that is left alone
@@ -53,7 +53,7 @@ def raise_gaps(
 
 
 @uncounted
-def unturn(isle: Local, n: int, NEW: FloatArray, D: FloatArray, V: FloatArray) -> tuple[float, float, float, float]:
+def unturn(isle: Island, n: int, NEW: FloatArray, D: FloatArray, V: FloatArray) -> tuple[float, float, float, float]:
     """The common spin that takes back the angular momentum sum m D x v of displacements D to NEW, the centre of mass
     (x, y) about which it is, and the energy that it costs. No joint and no contact minds it."""
     mass = x = y = vx = vy = 0.0
@@ -74,16 +74,24 @@ def unturn(isle: Local, n: int, NEW: FloatArray, D: FloatArray, V: FloatArray) -
 
 
 @kernel
-def lift(
-    A: Scene, J: Joints, isle: Local, groups: Groups, P: IntArray, Q: IntArray, ROWS: Rows[Row], m: int, n: int,
-    motion: Motion, end: float, h: float, budget: float, C: Columns,
-) -> float:  # fmt: skip
+def lift(A: Scene, J: Joints, interval: Interval, end: float, budget: float) -> float:
     """Lift the poses at the end of an island's motion by at most what `budget` pays; the energy that it costs.
 
     The cost is -m a.D for displacements D, turns included, and what springs hold more. Joints hold: D goes along them,
     and what is left of second order is closed. Where nothing without mobility is in the island, its angular momentum
     stays: velocities at the end turn by what the displacements have changed of it.
     """
+    isle, groups, P, Q, ROWS, m, n, motion, C = (
+        interval.isle,
+        interval.groups,
+        interval.P,
+        interval.Q,
+        interval.ROWS,
+        interval.m,
+        interval.n,
+        interval.motion,
+        interval.C,
+    )
     V, WAY, END = motion.V, motion.WAY, motion.END
     size = np.inf
     for q in range(n):
@@ -99,7 +107,7 @@ def lift(
         s = groups.COMPONENT[g]
         # Where joints do nothing but hold, bodies answer as they did in the span.
         if s >= 0 and drives(J, s):
-            gather_component(A, J, s, END, V, NOTHING, isle.IM, isle.II, end, h)
+            gather_component(A, J, s, END, V, NOTHING, isle.IM, isle.II, end, interval.h)
             places = find_places(A, J, s, INDEX)
             if ready(J, s, 2.0, False):
                 fill_group(J, groups, C, g, INDEX, False, P, Q, ROWS, m, np.empty((places, 3)))
@@ -129,7 +137,7 @@ def lift(
                 for c in range(3):
                     moves = max(moves, abs(D[groups.BODY[w], c]))
             if s >= 0 and moves > 0.0:
-                HELD[g] = close_joints(A, J, s, END, NEW, V, isle.IM, isle.II, end, h)
+                HELD[g] = close_joints(A, J, s, END, NEW, V, isle.IM, isle.II, end, interval.h)
                 spent += HELD[g]
         spent -= against(isle.ACC, isle.IM, isle.II, n, NEW - END)
         turn, x, y, cost = unturn(isle, n, NEW, NEW - END, V) if free else (0.0, 0.0, 0.0, 0.0)

@@ -160,10 +160,12 @@ def resume_jointed(
 @kernel
 def step_jointed(
     TABLE: Table, JOINTS: Table, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float,
-    gx: float, gy: float, left: float, disks: int, lossy: bool, bits: int,
+    gx: float, gy: float, left: float, lossy: bool, bits: int,
 ) -> int:  # fmt: skip
-    """From the states that were read to those that are to be written: arguments and answer as `..impacts.step.step`."""
+    """From the states that were read to those that are to be written: arguments and answer as `..impacts.step.step`,
+    but for the number of disks, which the scene has."""
     A, J = scene_of(TABLE), joints_of(JOINTS)
+    disks = A.COUNT.disks
     if bits >= 0:
         return resume_jointed(A, J, STATES, WALK, EXTRA, ENDS, disks, lossy, bits)
     status = start_jointed(A, J, STATES, WALK, EXTRA, dt, gx, gy, left)

@@ -14,7 +14,7 @@ from ..rows.conjugate import accelerate
 from ..rows.dense import back, decompose, unknowns
 from ..rows.inplace import copy
 from ..rows.polish import clamp, classify
-from .bounded import HIGH, LOW, PART, SPEED, Bounded, bounded_rate, inside, push_row
+from .bounded import Bounded, bounded_rate, inside, push_row
 from .columns import Columns, push_columns
 from .sweeping import relax_columns, sweep_columns
 
@@ -26,12 +26,18 @@ _R = 1e10  # of a proximal term, for contacts that are redundant
 
 
 @uncounted
-def entries(C: Columns, j: int, tangent: bool, slip: float, D: FloatArray, HIT: IntArray, mark: int) -> None:
-    """D (k, 3): the change of velocities per tangential impulse of contact j, or per normal one with its slip; HIT (k,)
-    is `mark` where there is any."""
+def clear(D: FloatArray) -> None:
+    """D (k, 3) = 0."""
     for q in range(len(D)):
         for c in range(3):
             D[q, c] = 0.0
+
+
+@uncounted
+def entries(C: Columns, j: int, tangent: bool, slip: float, D: FloatArray, HIT: IntArray, mark: int) -> None:
+    """D (k, 3): the change of velocities per tangential impulse of contact j, or per normal one with its slip; HIT (k,)
+    is `mark` where there is any."""
+    clear(D)
     for w in range(C.AT[j], C.AT[j + 1]):
         HIT[C.BODY[w]] = mark
         for c in range(3):
@@ -41,9 +47,7 @@ def entries(C: Columns, j: int, tangent: bool, slip: float, D: FloatArray, HIT: 
 @uncounted
 def bounded_entries(D: Bounded, j: int, V: FloatArray, HIT: IntArray, mark: int) -> None:
     """As `entries`, of bounded row j."""
-    for q in range(len(V)):
-        for c in range(3):
-            V[q, c] = 0.0
+    clear(V)
     for w in range(D.AT[j], D.AT[j + 1]):
         HIT[D.BODY[w]] = mark
         for c in range(3):
@@ -83,9 +87,9 @@ def first_at_bound(
     hit, part = -1, 1.0
     for k in range(N):
         i = at[k]
-        if kind[k] != _BOUNDED or D.NUMBER[i, PART] != SINGLE or x[k] == 0.0:
+        if kind[k] != _BOUNDED or D.ROWS[i].part != SINGLE or x[k] == 0.0:
             continue
-        until = ((D.NUMBER[i, HIGH] if x[k] > 0.0 else D.NUMBER[i, LOW]) - L[m + i, 0]) / x[k]
+        until = ((D.ROWS[i].high if x[k] > 0.0 else D.ROWS[i].low) - L[m + i, 0]) / x[k]
         if until < part:
             hit, part = k, until
     return hit, part
@@ -125,7 +129,7 @@ def direct(
         for k in range(N):
             i = at[k]
             if kind[k] == _BOUNDED:
-                r[k] = -D.NUMBER[i, SPEED] - bounded_rate(D, i, V)
+                r[k] = -D.ROWS[i].speed - bounded_rate(D, i, V)
             elif kind[k] == 0:
                 r[k] = ROWS[i].target - normal_rate(A, B, ROWS, V, i)
             else:
@@ -140,7 +144,7 @@ def direct(
             if kind[k] == _BOUNDED:
                 change = part * x[k]
                 if k == hit:
-                    change = (D.NUMBER[i, HIGH] if x[k] > 0.0 else D.NUMBER[i, LOW]) - L[m + i, 0]
+                    change = (D.ROWS[i].high if x[k] > 0.0 else D.ROWS[i].low) - L[m + i, 0]
                 L[m + i, 0] += change
                 push_row(D, i, change, V)
                 continue
@@ -158,7 +162,7 @@ def direct(
     clamp(ROWS, L, m)
     push_columns(C, L, m, 1.0, V)
     for i in range(D.USED[0]):
-        change = min(max(L[m + i, 0], D.NUMBER[i, LOW]), D.NUMBER[i, HIGH]) - L[m + i, 0]
+        change = min(max(L[m + i, 0], D.ROWS[i].low), D.ROWS[i].high) - L[m + i, 0]
         L[m + i, 0] += change
         push_row(D, i, change, V)
 

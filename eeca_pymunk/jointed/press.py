@@ -17,7 +17,6 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
 from ..impacts.coming import before_end, sweeps_of_crowd
-from ..impacts.spans import Local
 from ..model.contacts import Row
 from ..model.joints import Joints
 from ..model.parameters.intervals import LARGE_ISLAND
@@ -25,9 +24,9 @@ from ..model.scene import Scene
 from ..rows.build import conserves, normal_rate, rates, tangent_rate
 from ..rows.inplace import copy
 from ..sustained.targets import target
-from .advance import ALIGNED, Motion, advance, advance_aligned, align, farthest_apart
+from .advance import ALIGNED, Interval, advance, advance_aligned, align, farthest_apart
 from .bounded import make_bounded, settle_bounded, with_bounded
-from .columns import Columns, fill_free, leave_out, make_columns, push_columns, weigh
+from .columns import fill_free, leave_out, make_columns, push_columns, weigh
 from .condensing import solve_condensed
 from .groups import Groups, hangs
 from .newton import FEW, solve_columns
@@ -86,16 +85,27 @@ def some_give(J: Joints, groups: Groups) -> bool:
 
 @kernel
 def press(
-    A: Scene, J: Joints, isle: Local, groups: Groups, P: IntArray, Q: IntArray, ROWS: Rows[Row], L: FloatArray,
-    EXPECTED: FloatArray, m: int, n: int, t: float, h: float, slow: float, fast: float, pull: float, owed: float,
-    motion: Motion, C: Columns,
+    A: Scene, J: Joints, interval: Interval, L: FloatArray, EXPECTED: FloatArray, slow: float, fast: float, pull: float,
+    owed: float,
 ) -> bool:  # fmt: skip
     """Impulses L (in: guesses) of the m contacts of an island, and the motion under them; whether they have converged.
 
     Args:
         slow, fast, pull: speeds and acceleration of the island.  owed: energy >= 0 that it has to lose at least.
-        C: columns of the contacts; out, those of their last solution.
+        interval: out, the columns of the contacts in their last solution.
     """
+    isle, groups, P, Q, ROWS, m, n, h, motion, C = (
+        interval.isle,
+        interval.groups,
+        interval.P,
+        interval.Q,
+        interval.ROWS,
+        interval.m,
+        interval.n,
+        interval.h,
+        interval.motion,
+        interval.C,
+    )
     fill_free(groups, C, P, Q, ROWS, isle.IM, isle.II, m)
     rates(P, Q, ROWS, isle.V, m)
     elastic = conserves(ROWS, m)
@@ -105,28 +115,28 @@ def press(
     fine = (1e-15 if elastic else (_REST_FINE if rests else _FINE)) * scale
     most = _ELASTIC_SWEEPS if elastic else (_FEW_SWEEPS if m <= FEW else _SWEEPS)
     rounds = _MOST_OUTER if elastic or m <= SOME else _OUTER
-    part = before_end(A, t + h)
+    part = before_end(A, interval.t + h)
     if m > SOME and part and not elastic:
         rounds = _MANY_OUTER
     if m > FEW and not elastic:
         rounds = _PART_OUTER if part else _MANY_OUTER
         if n >= LARGE_ISLAND:
-            most = sweeps_of_crowd(t)
+            most = sweeps_of_crowd(interval.t)
     # Where many contacts do not come to an end, joints come near enough until the last step of the components.
     if J.PROGRESS.effort > J.PROGRESS.budget:
         rounds, most = _PART_OUTER, min(most, _SWEEPS)
     J.PROGRESS.near = _NEAR if m > FEW and not elastic and not rests else 0.0
     FORESEEN, UNKNOWN = np.empty((len(isle.IM), 3)), np.empty((0, 3))
     converged, best, LEAST, USED, hopeless, agreed, slowly = False, np.inf, L.copy(), L.copy(), False, False, False
-    stiff, bent, reached, B = False, 0.0, np.inf, make_bounded(J, groups, False)
-    K, NONE = make_columns(groups, P, Q, m if len(B.OF) > 0 else 0), make_bounded(J, groups, True)
+    stiff, bent, reached, B = False, 0.0, np.inf, make_bounded(J, groups)
+    K = make_columns(groups, P, Q, m if len(B.OF) > 0 else 0)
     # Only of what nothing from without holds or touches is there an angular momentum to keep.
     free = len(isle.IM) == n and not hangs(groups, J.COMPONENT, J.MEMBER)
     for outer in range(rounds):
         if hopeless:
             break
         anew = outer % _CHORD == 0 or slowly
-        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, B, anew, FORESEEN if outer > 0 else UNKNOWN)
+        advance(A, J, interval, L, B, anew, FORESEEN if outer > 0 else UNKNOWN)
         bent = align(isle, P, Q, ROWS, m, motion, True) if free else 0.0
         if outer > 0:
             off = farthest_apart(motion.V, FORESEEN, isle.EXTENT, n)
@@ -145,7 +155,7 @@ def press(
                 # Too far: the components do not answer as they did.
                 for k in range(L.shape[0]):
                     L[k, 0], L[k, 1] = 0.5 * (L[k, 0] + LEAST[k, 0]), 0.5 * (L[k, 1] + LEAST[k, 1])
-                advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, B, anew, UNKNOWN)
+                advance(A, J, interval, L, B, anew, UNKNOWN)
         if anew:
             if free:
                 fill_free(groups, C, P, Q, ROWS, isle.IM, isle.II, m)
@@ -165,7 +175,7 @@ def press(
         copy(USED, L)
         leave_out(C, L, m, FORESEEN)
         BOTH = with_bounded(B, L, m)
-        worst = solve_condensed(groups, C, K, B, NONE, P, Q, ROWS, BOTH, FORESEEN, m, fine, most)
+        worst = solve_condensed(groups, C, K, B, P, Q, ROWS, BOTH, FORESEEN, m, fine, most)
         if worst < 0.0:
             worst = solve_columns(C, B, P, Q, ROWS, BOTH, FORESEEN, m, fine, most)
         for i in range(m):
@@ -178,15 +188,15 @@ def press(
             break
     if not agreed or J.PROGRESS.near > 0.0:
         J.PROGRESS.near, bent = 0.0, np.inf if free else 0.0
-        advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, B, False, UNKNOWN)
+        advance(A, J, interval, L, B, False, UNKNOWN)
     if not agreed:
         if not farthest_apart(motion.V, FORESEEN, isle.EXTENT, n) <= best:
             copy(L, LEAST)
-            advance(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, B, False, UNKNOWN)
+            advance(A, J, interval, L, B, False, UNKNOWN)
         # What gives way is as stiff as its joints pull: round-off of its ways does not fall further.
         converged = best <= _AGREE * scale and some_give(J, groups)
     if bent > ALIGNED:
-        advance_aligned(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, B, free)
+        advance_aligned(A, J, interval, L, B, free)
     energy = 0.0
     for q in range(n):
         energy += (isle.V[q, 0] ** 2 + isle.V[q, 1] ** 2 + (pull * h) ** 2) / isle.IM[q]
@@ -225,7 +235,7 @@ def press(
         for i in range(m):
             L[i, 0] = s * L[i, 0] if s > 0.0 else 0.0
             L[i, 1] = s * L[i, 1] if s > 0.0 else 0.0
-        advance_aligned(A, J, isle, groups, P, Q, ROWS, L, m, t, h, motion, C, B, free)
+        advance_aligned(A, J, interval, L, B, free)
         scaled *= s
         converged = converged and abs(scaled - 1.0) <= _AGREE
         if s == 0.0:

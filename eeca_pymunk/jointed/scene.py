@@ -40,8 +40,7 @@ class JointedLoop(EventLoop):
         super().__init__(BODY, SHAPE, LINK, VERTEX, disks, limit)
         self._joint, self._partner, self._order = joint, PARTNER, order
         self.together = together
-        if together:
-            self._options = ()
+        self._options = () if together else (self.lossy,)
         self.plan()
 
     def plan(self) -> None:

@@ -8,12 +8,11 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..compiled import kernel, uncounted
-from ..compiled.records import empty
 from ..impacts.coming import before_end, pairs_of
 from ..impacts.islands import lossy, members
 from ..impacts.missed import miss
-from ..impacts.spans import AGAIN, Local, dismiss, lay_out_island, open_contacts
-from ..model.contacts import ROW
+from ..impacts.spans import AGAIN, dismiss, lay_out_island, open_contacts
+from ..model.islands import Island
 from ..model.joints import Joints
 from ..model.parameters.intervals import INTERVAL_RETRY, MIDPOINT_SAME
 from ..model.scene import Scene
@@ -22,10 +21,10 @@ from ..rows.build import normal_rate
 from ..rows.inplace import sort
 from ..sustained.contacts import gather
 from ..sustained.memory import remember_loads
-from ..sustained.step import moved, recall, speeds
-from .advance import Motion, advance
+from ..sustained.step import make_contacts, moved, recall, speeds
+from .advance import Interval, Motion, advance
 from .alone import begin_alone, is_component, meets_nobody
-from .bounded import make_bounded
+from .bounded import room_for_rows
 from .columns import make_columns
 from .component import step_component
 from .fitting import fit
@@ -41,7 +40,7 @@ _TRIES = 8  # attempts at a span
 
 @uncounted
 def foresee(
-    A: Scene, J: Joints, isle: Local, groups: Groups, t: float, h: float, motion: Motion, REACH: FloatArray
+    A: Scene, J: Joints, isle: Island, groups: Groups, t: float, h: float, motion: Motion, REACH: FloatArray
 ) -> float:
     """Add to REACH (k,) how far springs and motors move points of bodies in h; the largest such acceleration."""
     most = 0.0
@@ -107,34 +106,29 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
         dismiss(A, MINE, n)
         return PUSHES_FULL, h
     isle = lay_out_island(A, MINE, n, found, t)
-    k, room = len(isle.WHO), 2 * p + 1
+    k = len(isle.WHO)
     groups = find_groups(isle.WHO, isle.IM, J.OF)
     for g in range(len(groups.COMPONENT)):
         if groups.COMPONENT[g] >= 0:
             keep_joints(J, groups.COMPONENT[g])
-    P, Q, KEY = np.empty(room, np.int64), np.empty(room, np.int64), np.empty(room, np.int64)
-    ROWS, L, EXPECTED = empty(room, ROW), np.zeros((room, 2)), np.zeros(room)
+    contacts, EXPECTED = make_contacts(p, k), np.zeros(2 * p + 1)
+    P, Q, KEY, ROWS, L = contacts.A, contacts.B, contacts.KEY, contacts.ROWS, contacts.L
     motion = Motion(isle.V.copy(), np.zeros((k, 3)), isle.POSE.copy(), np.zeros((k, 2)))
     REACH = np.empty(k)
     slow, fast, pull = speeds(isle.V, isle.ACC, isle.EXTENT, isle.IM, n, h, REACH)
     m = 0
     if p > 0:
         pull = max(pull, foresee(A, J, isle, groups, t, h, motion, REACH))
-        NOW, THEN = np.empty((2, 5)), np.empty((2, 5))
-        m = gather(
-            isle.PAIRS, p, A.SHAPE, A.RULE, A.LINK, A.VERTEX, A.WORK, isle.POSE, moved(isle.POSE, isle.V, 0.5 * h),
-            isle.V, REACH, isle.EXTENT, isle.IM, isle.II, h, k == n, MIDPOINT_SAME, P, Q, ROWS, KEY, NOW, THEN,
-        )  # fmt: skip
-    C = make_columns(groups, P, Q, m)
+        m = gather(A, isle, contacts, moved(isle.POSE, isle.V, 0.5 * h), REACH, h, k == n, MIDPOINT_SAME)
+    interval = Interval(isle, groups, P, Q, ROWS, motion, make_columns(groups, P, Q, m), m, n, t, h)
     held = True
     if m > 0:
         recall(KEY, m, A.KEYS, A.FORCES, A.PAR.stamp, h, L, EXPECTED)
         owed = max(-A.RESTING[root].lost, 0.0)
-        held = press(A, J, isle, groups, P, Q, ROWS, L, EXPECTED, m, n, t, h, slow, fast, pull, owed, motion, C)
+        held = press(A, J, interval, L, EXPECTED, slow, fast, pull, owed)
         remember_loads(ROWS, KEY, L, m, h, A.KEYS, A.FORCES, COUNT, A.PAR.stamp)
     if m == 0:
-        bounded, unknown = make_bounded(J, groups, True), np.empty((0, 3))
-        advance(A, J, isle, groups, P, Q, ROWS, L, 0, t, h, motion, C, bounded, False, unknown)
+        advance(A, J, interval, L, room_for_rows(0, 0), False, np.empty((0, 3)))
     far = 0.0 if last else too_long(A, isle, P, Q, ROWS, KEY, motion, m, n, h)
     if far > INTERVAL_RETRY:
         for g in range(len(groups.COMPONENT)):
@@ -152,16 +146,16 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
     if may_lose and m > 0:
         if not before_end(A, t + h):
             budget = lost(P, Q, ROWS, L, motion.WAY, m, h) + A.RESTING[root].lost
-            spent = lift(A, J, isle, groups, P, Q, ROWS, m, n, motion, t + h, h, budget, C)
+            spent = lift(A, J, interval, t + h, budget)
             for g in range(len(groups.COMPONENT)):
                 if groups.COMPONENT[g] >= 0:
                     J.STEPPED[groups.COMPONENT[g]].lifted = spent
                     break
-        fit(A, J, isle, groups, P, Q, ROWS, L, m, motion, t + h, h, slow + pull * h, C)
+        fit(A, J, interval, L, t + h, slow + pull * h)
     dismiss(A, MINE, n)
     COUNT.solves += 1
     first = COUNT.pushes
-    open_contacts(A, isle, P, Q, ROWS, KEY, L, motion.V, m, t, h, np.zeros(k, np.uint8))
+    open_contacts(A, isle, contacts, motion.V, m, t, h, np.zeros(k, np.uint8))
     for z in range(m):
         R = A.PUSHED[first + z]
         R.un_before = R.un_after = normal_rate(P, Q, ROWS, motion.WAY, z) / h
@@ -185,7 +179,7 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
 
 
 @uncounted
-def book_turning(A: Scene, J: Joints, isle: Local, groups: Groups, motion: Motion, n: int) -> None:
+def book_turning(A: Scene, J: Joints, isle: Island, groups: Groups, motion: Motion, n: int) -> None:
     """Torques work along chi = h w_m, which is not quite the angle that a jointed body turns by."""
     for g in range(len(groups.COMPONENT)):
         if groups.COMPONENT[g] >= 0:

@@ -6,19 +6,21 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..compiled import kernel, uncounted
+from ..compiled.records import zeros
 from ..impacts.block import Block, gather, lay_out, owing
 from ..impacts.collide import finish, rejoin
 from ..impacts.islands import members, unite
 from ..impacts.settle import comes_to_rest
 from ..impacts.spans import dismiss
+from ..model.contacts import SOLVED
 from ..model.joints import Joints
 from ..model.scene import Scene
-from ..rows.blocks import CONVERGED, D_NORMAL, D_TANGENTIAL, OUT_SIZE, SCALE_LOCK, TRUNCATED
+from ..rows.blocks import CONVERGED, TRUNCATED
 from ..rows.build import aim, conserves, rates
 from ..rows.energy import scale_of, works
 from ..rows.inplace import copy
 from ..sustained.ledger import carried
-from .bounded import make_bounded
+from .bounded import room_for_rows
 from .columns import fill_free, fill_group, make_columns, push_columns, weigh
 from .component import answer, fit_speeds, ready
 from .gathered import find_places, gather_component
@@ -79,8 +81,8 @@ def collide(A: Scene, J: Joints, disks: int, a: int, b: int, t: float) -> tuple[
     block = lay_out(A, disks, n, m, PAIRS, min(a, b) * k + max(a, b), rest, t)
     P, Q, ROWS, V = block.A, block.B, block.ROWS, block.V
     rows = len(ROWS)
-    L, LOSS, OUT = np.zeros((rows, 2)), np.zeros((rows, 2)), np.zeros(OUT_SIZE)
-    OUT[SCALE_LOCK] = 1.0
+    L, LOSS, OUT = np.zeros((rows, 2)), np.zeros((rows, 2)), zeros(1, SOLVED)
+    OUT[0].lock = 1.0
     WHO = np.full(len(block.IM), -1, np.int64)
     for q in range(n):
         WHO[q] = A.BLOCK[q]
@@ -129,7 +131,7 @@ def collide(A: Scene, J: Joints, disks: int, a: int, b: int, t: float) -> tuple[
         FREE = V.copy()
         elastic = conserves(ROWS, rows)
         tolerance = (1e-15 if elastic else 1e-10) * speed
-        worst = solve_columns(C, make_bounded(J, groups, True), P, Q, ROWS, L, V, rows, tolerance, _SWEEPS)
+        worst = solve_columns(C, room_for_rows(0, 0), P, Q, ROWS, L, V, rows, tolerance, _SWEEPS)
         copy(V, FREE)
         push_columns(C, L, rows, 1.0, V)
         scale, _ = scale_of(P, Q, ROWS, L, V, FREE, rows, owed, elastic)
@@ -137,23 +139,23 @@ def collide(A: Scene, J: Joints, disks: int, a: int, b: int, t: float) -> tuple[
             L *= scale
             copy(V, FREE)
             push_columns(C, L, rows, 1.0, V)
-        OUT[SCALE_LOCK] = scale
-        OUT[D_NORMAL], OUT[D_TANGENTIAL] = works(P, Q, ROWS, L, V, rows, LOSS)
+        OUT[0].lock = scale
+        OUT[0].restitution, OUT[0].friction = works(P, Q, ROWS, L, V, rows, LOSS)
         status = CONVERGED if worst <= 10.0 * tolerance else TRUNCATED
     if conserves(ROWS, rows):
         copy(V, BEFORE)
         push_columns(C, L, rows, 1.0, V)
     else:
-        OUT[D_NORMAL] += energy_of(block, BEFORE, FITTED, n)
+        OUT[0].restitution += energy_of(block, BEFORE, FITTED, n)
     # Joints do all that contacts do not account for, which is nothing unless they hang on something that moves.
     REST = np.zeros_like(V)
-    gained = energy_of(block, V, REST, n) - energy_of(block, BEFORE, REST, n) + OUT[D_NORMAL] + OUT[D_TANGENTIAL]
+    gained = energy_of(block, V, REST, n) - energy_of(block, BEFORE, REST, n) + OUT[0].restitution + OUT[0].friction
     A.PAR.external += gained - carried(P, Q, ROWS, L, V, V, block.IM, block.II, rows)
     finish(A, block, n, m, L, OUT, status, t)
     A.STATE[i].version += 1
     if A.BODY[j].inv_mass > 0.0:
         A.STATE[j].version += 1
-    status, n = rejoin(A, a, b, t, n, rest, OUT[D_NORMAL] + OUT[D_TANGENTIAL] - owed)
+    status, n = rejoin(A, a, b, t, n, rest, OUT[0].restitution + OUT[0].friction - owed)
     # Islands that were brought here, and do not touch after all, begin anew with those that do.
     root = A.COUNT.pending  # of the two bodies that met one may be in no island
     for c in range(ended):

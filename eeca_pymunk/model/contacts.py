@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from ..compiled.records import Record, kind_of
+from typing import NamedTuple
+
+from ..arrays import FloatArray, IntArray
+from ..compiled.records import Record, Rows, kind_of
 
 
 class Impulse(Record):
@@ -86,4 +89,57 @@ class Row(Record):
     w_tt: float
 
 
-ROW = kind_of(Row)
+class Problem(NamedTuple):
+    """A contact problem: m rows ROWS between local bodies A and B, of bodies (k,) with inverse masses and moments IM
+    and II, at POSE (k, 3), of which impulses move the first n."""
+
+    A: IntArray
+    B: IntArray
+    ROWS: Rows[Row]
+    IM: FloatArray
+    II: FloatArray
+    POSE: FloatArray
+    n: int
+    m: int
+
+
+class Solved(Record):
+    """What the solve of an island, or of an impact, reports."""
+
+    restitution: float  # energies: losses >= 0 by restitution and by friction
+    friction: float
+    carried: float  # work of bodies that impulses do not move, and of moving surfaces
+    lifted: float  # energy that separating overlapping bodies costs
+    forces: float  # work of forces
+    lock: float  # scale of the energy lock
+    owed: float  # energy that is still to be taken out
+    residual: float  # of the contact problem, and what it was to be at most: length/time
+    tolerance: float
+    deepest: float  # gap at the end before bodies are separated: length, negative in overlap
+    sweeps: int
+    direct: int  # direct solutions
+    pushing: int  # contacts that push
+    stood: int  # 1 if the island came to rest
+
+
+class Force(Record):
+    """The forces of a contact in the last step, see `..sustained.memory`."""
+
+    normal: float
+    tangential: float
+    load: float  # the normal force without what stopped an impact
+    stamp: float  # number of the step that wrote the row
+
+
+class Edge(Record):
+    """An edge of a contact's friction cone in the interior-point method of `..rows.equilibrium`."""
+
+    x: float  # impulse along it, >= 0
+    s: float  # multiplier of x >= 0
+    guess: float  # impulse that x is to be next to
+    a_gg: float  # what a unit impulse changes of the velocity along it
+    dx: float  # Newton's step
+    ds: float
+
+
+ROW, SOLVED, EDGE = kind_of(Row), kind_of(Solved), kind_of(Edge)

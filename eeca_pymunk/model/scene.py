@@ -8,7 +8,7 @@ from ..arrays import FlagArray, FloatArray, IntArray, PoolArray
 from ..compiled import Opener
 from ..compiled.records import Rows
 from .bodies import Body, Member, Next, Rest
-from .contacts import Impulse, Pair, Pushed
+from .contacts import Force, Impulse, Pair, Pushed
 from .shapes import Cell, Link, List, Mark, Shape
 from .step import Count, Missed, Step
 
@@ -53,7 +53,7 @@ class Scene(NamedTuple):
     PUSHED_BY: Rows[Pair]
     PUSHED: Rows[Pushed]
     KEYS: IntArray
-    FORCES: FloatArray
+    FORCES: Rows[Force]
     WORK: FloatArray
     MISSED: Rows[Missed]
     PAR: Step

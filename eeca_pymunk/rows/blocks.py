@@ -10,10 +10,10 @@ of elastic crowds melts away otherwise; what is left of it is taken out by one s
 
 from __future__ import annotations
 
-from ..arrays import FloatArray, IntArray
-from ..compiled import kernel
+from ..arrays import FloatArray
+from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
-from ..model.contacts import Row
+from ..model.contacts import Problem, Solved
 from ..model.parameters.impulses import (
     BLOCK_DIRECT,
     BLOCK_DIRECT_FRICTION,
@@ -36,33 +36,40 @@ from .energy import lock, works
 from .sweeps import push, sweep, velocities
 
 CONVERGED, TRUNCATED = 0, 1  # statuses
-D_NORMAL, D_TANGENTIAL, SCALE_LOCK, OWED, RESIDUAL, SWEEPS, POLISHES, TOLERANCE = 0, 1, 2, 3, 4, 5, 6, 7  # of OUT
-OUT_SIZE = 8
+
+
+@uncounted
+def clear(out: Solved) -> None:
+    """The report of a solve that has done nothing."""
+    out.restitution = out.friction = out.carried = out.lifted = out.forces = 0.0
+    out.owed = out.residual = out.tolerance = out.deepest = 0.0
+    out.sweeps = out.direct = out.pushing = out.stood = 0
+    out.lock = 1.0
 
 
 @kernel
 def resolve(
-    A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, FREE: FloatArray, IM: FloatArray,
-    II: FloatArray, POSE: FloatArray, n: int, m: int, rough: bool, tolerance: float, OUT: FloatArray,
-) -> float:  # fmt: skip
+    problem: Problem, L: FloatArray, V: FloatArray, FREE: FloatArray, rough: bool, tolerance: float, OUT: Rows[Solved]
+) -> float:
     """Impulses for given targets; returns the change of velocity that a last sweep made.
 
     With friction direct solutions help where contacts stick; where many slip only sweeps converge: more of them.
     """
+    A, B, ROWS, IM, II, m = problem.A, problem.B, problem.ROWS, problem.IM, problem.II, problem.m
     most = BLOCK_SWEEPS_FRICTION if rough else (4 * BLOCK_SWEEPS if m <= SMALL_BLOCK else BLOCK_SWEEPS)
     taken, worst = iterate(A, B, ROWS, L, V, IM, II, m, tolerance, most)
-    OUT[SWEEPS] = taken
-    OUT[POLISHES] = 0.0
+    OUT[0].sweeps = taken
+    OUT[0].direct = 0
     if worst <= tolerance:
         return worst
     least = worst
     stalled = 0
     log_R = 8.0
     for _ in range(BLOCK_DIRECT_FRICTION if rough else BLOCK_DIRECT):
-        log_R, worst = refine(A, B, ROWS, L, V, FREE, IM, II, POSE, n, m, log_R, 8, 0.1 * tolerance, worst)
-        OUT[POLISHES] += 1.0
+        log_R, worst = refine(problem, L, V, FREE, log_R, 8, 0.1 * tolerance, worst)
+        OUT[0].direct += 1
         for _ in range(BLOCK_SWEEPS_AFTER):
-            OUT[SWEEPS] += 1.0
+            OUT[0].sweeps += 1
             if worst <= tolerance:
                 return worst
             worst = sweep(A, B, ROWS, L, V, IM, II, m)
@@ -76,34 +83,31 @@ def resolve(
     taken, worst = iterate(
         A, B, ROWS, L, V, IM, II, m, tolerance, BLOCK_LAST_SWEEPS_FRICTION if rough else BLOCK_LAST_SWEEPS
     )
-    OUT[SWEEPS] += taken
+    OUT[0].sweeps += taken
     return worst
 
 
 @kernel
 def solve_block(
-    A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, IM: FloatArray, II: FloatArray,
-    POSE: FloatArray, n: int, m: int, owed: float, hasty: bool, LOSS: FloatArray, OUT: FloatArray,
-) -> int:  # fmt: skip
+    problem: Problem, L: FloatArray, V: FloatArray, owed: float, hasty: bool, LOSS: FloatArray, OUT: Rows[Solved]
+) -> int:
     """Impulses of m contacts at one instant; V (k, 3) becomes the velocities after.
 
     Args:
-        ROWS: (m, 16) of `place_row`; u_n, u_t and the targets are set here, from V and the elasticities.
+        problem: u_n, u_t and the targets of its rows are set here, from V and the elasticities; POSE is for the order
+            of elimination alone.
         L: (m, 2) first guess of the impulses in (0 for none), the impulses out.
-        POSE: (k, 3), for the order of elimination alone.  n: bodies that impulses move, the first of k.
         owed: energy >= 0 that the block has to take out beyond its own losses' sign: its loss is at least that.
         hasty: whether a lossy crowd may be solved roughly: a hit on a pile.
         LOSS: (m, 2) out, D_n and D_t of each contact.
-        OUT: (8,) out: sums of D_n and D_t, the lock's scale, energy still owed, residual (velocity), sweeps,
-            polishes, tolerance of the residual.
+        OUT: (1,) the report, out.
     Returns:
         CONVERGED (residual <= 1e-14 of the largest b - u_n, with friction 1e-10, in lossy crowds 1e-4) or TRUNCATED.
         Energy is right in both.
     """
-    for i in range(len(OUT)):
-        OUT[i] = 0.0
-    OUT[SCALE_LOCK] = 1.0
-    OUT[OWED] = owed
+    A, B, ROWS, IM, II, m = problem.A, problem.B, problem.ROWS, problem.IM, problem.II, problem.m
+    clear(OUT[0])
+    OUT[0].owed = owed
     for i in range(m):
         LOSS[i, 0] = 0.0
         LOSS[i, 1] = 0.0
@@ -123,16 +127,16 @@ def solve_block(
         # A hit on a pile, which loses energy anyway: what follows it matters more than its last digits.
         tolerance = LARGE_BLOCK_RESIDUAL * speed
         taken, worst = iterate(A, B, ROWS, L, V, IM, II, m, tolerance, LARGE_BLOCK_SWEEPS)
-        OUT[SWEEPS] = taken
+        OUT[0].sweeps = taken
     else:
-        worst = resolve(A, B, ROWS, L, V, FREE, IM, II, POSE, n, m, rough, tolerance, OUT)
+        worst = resolve(problem, L, V, FREE, rough, tolerance, OUT)
     # Sums over many sweeps have their own round-off: the velocities are those of the impulses.
     velocities(A, B, ROWS, L, FREE, IM, II, m, V)
     scale, left = lock(A, B, ROWS, L, V, FREE, IM, II, m, owed, exact)
     normal, tangential = works(A, B, ROWS, L, V, m, LOSS)
-    OUT[0] = normal
-    OUT[1] = tangential
-    OUT[SCALE_LOCK] = scale
-    OUT[OWED] = left
-    OUT[RESIDUAL], OUT[TOLERANCE] = worst, tolerance
+    OUT[0].restitution = normal
+    OUT[0].friction = tangential
+    OUT[0].lock = scale
+    OUT[0].owed = left
+    OUT[0].residual, OUT[0].tolerance = worst, tolerance
     return CONVERGED if worst <= tolerance else TRUNCATED

@@ -13,18 +13,16 @@ from ..model.parameters.impulses import SINGULAR
 
 @uncounted
 def place_row(
-    A: IntArray, B: IntArray, ROWS: Rows[Row], i: int, a: int, b: int, nx: float, ny: float, px: float, py: float,
-    gap: float, POSE: FloatArray, IM: FloatArray, II: FloatArray, elasticity: float, friction: float, surface: float,
+    A: IntArray, B: IntArray, ROWS: Rows[Row], i: int, px: float, py: float, POSE: FloatArray, IM: FloatArray,
+    II: FloatArray,
 ) -> None:  # fmt: skip
-    """Write row i: contact at (px, py) with unit normal (nx, ny) from local body a to b; target 0, awake.
+    """Complete row i, of which bodies, unit normal, gap, elasticity, friction and surface velocity are set: a contact
+    at (px, py), with target 0, awake.
 
     Arms that are round-off of the point's coordinates (a circle about its centre of mass) become 0, so that
     frictionless impulses on disks turn nothing.
     """
-    A[i] = a
-    B[i] = b
-    ROWS[i].nx = nx
-    ROWS[i].ny = ny
+    a, b, nx, ny, friction = A[i], B[i], ROWS[i].nx, ROWS[i].ny, ROWS[i].friction
     xa = px - POSE[a, 0]
     ya = py - POSE[a, 1]
     xb = px - POSE[b, 0]
@@ -40,7 +38,6 @@ def place_row(
     ROWS[i].arm_nb = arm
     ROWS[i].arm_ta = xa * nx + ya * ny
     ROWS[i].arm_tb = xb * nx + yb * ny
-    ROWS[i].gap = gap
     mass = IM[a] + IM[b]
     nn = mass + II[a] * ROWS[i].arm_na ** 2 + II[b] * ROWS[i].arm_nb ** 2
     tt = mass + II[a] * ROWS[i].arm_ta ** 2 + II[b] * ROWS[i].arm_tb ** 2
@@ -54,9 +51,6 @@ def place_row(
         ROWS[i].w_nn = tt / det if regular else np.nan
         ROWS[i].w_nt = -nt / det if regular else 0.0
         ROWS[i].w_tt = nn / det if regular else 0.0
-    ROWS[i].elasticity = elasticity
-    ROWS[i].friction = friction
-    ROWS[i].surface = surface
     ROWS[i].target = 0.0
     ROWS[i].wake = np.inf
 

@@ -7,6 +7,7 @@ do not move, dimensionless, and insensitive to mass ratios.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,12 +17,27 @@ from ..compiled.records import Rows
 from ..model.contacts import Row
 
 
+class Factor(NamedTuple):
+    """A symmetric matrix in blocks of one body, and its factor in their place.
+
+    place (n,): of a body in the order of elimination. rows: of the blocks below the diagonal, those of column j at
+    columns[j] : columns[j + 1]. DIAGONAL (n, 3, 3), BELOW (len(rows), 3, 3): the blocks.
+    """
+
+    place: IntArray
+    columns: IntArray
+    rows: IntArray
+    DIAGONAL: FloatArray
+    BELOW: FloatArray
+
+
 @kernel
 def assemble(
     A: IntArray, B: IntArray, ROWS: Rows[Row], m: int, n: int, held: IntArray, stuck: IntArray, SCALE: FloatArray,
-    place: IntArray, columns: IntArray, rows: IntArray, R: float, DIAGONAL: FloatArray, BELOW: FloatArray,
+    R: float, factor: Factor,
 ) -> None:  # fmt: skip
-    """Blocks of B: DIAGONAL (n, 3, 3) and BELOW (len(rows), 3, 3), of rows held (normal) and stuck (tangential)."""
+    """Blocks of B, of rows held (normal) and stuck (tangential)."""
+    place, columns, rows, DIAGONAL, BELOW = factor.place, factor.columns, factor.rows, factor.DIAGONAL, factor.BELOW
     DIAGONAL[:] = 0.0
     BELOW[:] = 0.0
     for j in range(n):
@@ -88,8 +104,9 @@ def assemble(
 
 
 @kernel
-def factorise(n: int, columns: IntArray, rows: IntArray, D: FloatArray, X: FloatArray) -> None:
+def factorise(n: int, factor: Factor) -> None:
     """Left-looking Cholesky in place: D gets lower triangles, X the blocks below them."""
+    columns, rows, D, X = factor.columns, factor.rows, factor.DIAGONAL, factor.BELOW
     head = np.full(n, -1, np.int64)
     after = np.full(n, -1, np.int64)
     first = np.zeros(n, np.int64)  # next block of a column that is still to be used
@@ -159,8 +176,9 @@ def factorise(n: int, columns: IntArray, rows: IntArray, D: FloatArray, X: Float
 
 
 @uncounted
-def substitute(n: int, columns: IntArray, rows: IntArray, D: FloatArray, X: FloatArray, f: FloatArray) -> None:
+def substitute(n: int, factor: Factor, f: FloatArray) -> None:
     """f (n, 3), in order of elimination, becomes B^-1 f."""
+    columns, rows, D, X = factor.columns, factor.rows, factor.DIAGONAL, factor.BELOW
     for j in range(n):
         f[j, 0] /= D[j, 0, 0]
         f[j, 1] = (f[j, 1] - D[j, 1, 0] * f[j, 0]) / D[j, 1, 1]

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FloatArray
 from ..compiled import kernel
-from ..compiled.records import Rows
-from ..model.contacts import Row
+from ..model.contacts import Problem
 from ..model.parameters.impulses import DENSE_CONTACTS, REFINEMENTS
 from .dense import newton
 from .polish import polish, segment
@@ -16,22 +15,9 @@ from .sweeps import keep, sweep
 
 @kernel
 def refine(
-    A: IntArray,
-    B: IntArray,
-    ROWS: Rows[Row],
-    L: FloatArray,
-    V: FloatArray,
-    FREE: FloatArray,
-    IM: FloatArray,
-    II: FloatArray,
-    POSE: FloatArray,
-    n: int,
-    m: int,
-    log_R: float,
-    passes: int,
-    tolerance: float,
+    problem: Problem, L: FloatArray, V: FloatArray, FREE: FloatArray, log_R: float, passes: int, tolerance: float,
     worst: float,
-) -> tuple[float, float]:
+) -> tuple[float, float]:  # fmt: skip
     """Replace L and V by a direct solution on L's active contacts, the part of the way to it that is sensible.
 
     Args:
@@ -39,6 +25,7 @@ def refine(
     Returns:
         log_R for the next round, and what a sweep after this one changed.
     """
+    A, B, ROWS, IM, II, m = problem.A, problem.B, problem.ROWS, problem.IM, problem.II, problem.m
     L0 = np.empty((m, 2))
     V0 = np.empty_like(V)
     keep(L, V, m, L0, V0)
@@ -51,7 +38,7 @@ def refine(
                 keep(L0, V0, m, L, V)
                 reached, clamped = newton(A, B, ROWS, L, V, FREE, IM, II, m, REFINEMENTS, tolerance, attempt == 1)
     else:
-        reached, clamped = polish(A, B, ROWS, L, V, FREE, IM, II, POSE, n, m, 10.0**log_R, passes, tolerance)
+        reached, clamped = polish(problem, L, V, FREE, 10.0**log_R, passes, tolerance)
     part = 1.0
     if not reached <= 1e3 * worst + tolerance:
         keep(L0, V0, m, L, V)

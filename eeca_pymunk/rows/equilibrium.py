@@ -23,7 +23,8 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..compiled.records import Rows, zeros
-from ..model.contacts import ROW, Row
+from ..model.contacts import EDGE as EDGE_KIND
+from ..model.contacts import ROW, Edge, Problem, Row
 from ..model.parameters.impulses import PROXIMAL_STATICS
 from ..model.parameters.rest import (
     STATICS_EARLY,
@@ -35,13 +36,9 @@ from ..model.parameters.rest import (
     STATICS_STEP,
 )
 from .build import normal_rate
-from .cholesky import assemble, factorise, substitute
+from .cholesky import Factor, assemble, factorise, substitute
 from .inplace import copy
 from .ordering import dissect, neighbours, pattern
-
-# EDGE (K, 6) float: of each edge
-X, S, GUESS, A_GG, DX, DS = 0, 1, 2, 3, 4, 5
-EDGE_COLUMNS = 6
 
 
 @uncounted
@@ -65,11 +62,11 @@ def fastest(V: FloatArray, EXTENT: FloatArray, n: int) -> float:
 @uncounted
 def edges(
     A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, IM: FloatArray, II: FloatArray, m: int, OF: IntArray,
-    P: IntArray, Q: IntArray, G: Rows[Row], EDGE: FloatArray,
+    P: IntArray, Q: IntArray, G: Rows[Row], EDGE: Rows[Edge],
 ) -> int:  # fmt: skip
-    """The edges G (2 m, ..), as rows between P and Q, of the contacts OF whose TARGET is not below 0; how many.
+    """The edges G (2 m, ..), as rows between P and Q, of the contacts OF whose target is not below 0; how many.
 
-    GUESS and X are set from L, A_GG = g^T M^-1 g.
+    guess and x are set from L, a_gg = g^T M^-1 g.
     """
     K = 0
     for i in range(m):
@@ -83,42 +80,42 @@ def edges(
             G[K].ny = ROWS[i].ny + slope * ROWS[i].nx
             G[K].arm_na = ROWS[i].arm_na + slope * ROWS[i].arm_ta
             G[K].arm_nb = ROWS[i].arm_nb + slope * ROWS[i].arm_tb
-            EDGE[K, GUESS] = L[i, 0] if mu <= 0.0 else max(0.5 * (L[i, 0] + L[i, 1] / slope), 0.0)
-            EDGE[K, X] = EDGE[K, GUESS]
-            EDGE[K, A_GG] = (IM[A[i]] + IM[B[i]]) * (1.0 + mu * mu)
-            EDGE[K, A_GG] += II[A[i]] * G[K].arm_na ** 2 + II[B[i]] * G[K].arm_nb ** 2
+            EDGE[K].guess = L[i, 0] if mu <= 0.0 else max(0.5 * (L[i, 0] + L[i, 1] / slope), 0.0)
+            EDGE[K].x = EDGE[K].guess
+            EDGE[K].a_gg = (IM[A[i]] + IM[B[i]]) * (1.0 + mu * mu)
+            EDGE[K].a_gg += II[A[i]] * G[K].arm_na ** 2 + II[B[i]] * G[K].arm_nb ** 2
             K += 1
     return K
 
 
 @uncounted
-def inside(EDGE: FloatArray, K: int) -> bool:
-    """Go to X + DX, next to the guess of all that balances, and say whether it is inside the cones; if not, put it
-    there, with S to begin with."""
+def inside(EDGE: Rows[Edge], K: int) -> bool:
+    """Go to x + dx, next to the guess of all that balances, and say whether it is inside the cones; if not, put it
+    there, with s to begin with."""
     mean, least = 0.0, np.inf
     for e in range(K):
-        EDGE[e, X] += EDGE[e, DX]
-        mean += abs(EDGE[e, X]) / K
-        least = min(least, EDGE[e, X])
+        EDGE[e].x += EDGE[e].dx
+        mean += abs(EDGE[e].x) / K
+        least = min(least, EDGE[e].x)
     if least >= 0.0:
         return True
     load = 0.0
     for e in range(K):
-        EDGE[e, X] = max(EDGE[e, X], STATICS_START * mean)
-        load += EDGE[e, X] / K
+        EDGE[e].x = max(EDGE[e].x, STATICS_START * mean)
+        load += EDGE[e].x / K
     for e in range(K):
-        EDGE[e, S] = EDGE[e, A_GG] * load
+        EDGE[e].s = EDGE[e].a_gg * load
     return False
 
 
 @uncounted
 def send(
-    P: IntArray, Q: IntArray, G: Rows[Row], EDGE: FloatArray, what: int, K: int, IM: FloatArray, II: FloatArray,
+    P: IntArray, Q: IntArray, G: Rows[Row], EDGE: Rows[Edge], steps: bool, K: int, IM: FloatArray, II: FloatArray,
     V: FloatArray,
 ) -> None:  # fmt: skip
-    """V += M^-1 sum g EDGE[what]."""
+    """V += M^-1 sum g x, or dx (`steps`)."""
     for e in range(K):
-        lam = EDGE[e, what]
+        lam = EDGE[e].dx if steps else EDGE[e].x
         a, b = P[e], Q[e]
         V[a, 0] -= IM[a] * lam * G[e].nx
         V[a, 1] -= IM[a] * lam * G[e].ny
@@ -130,72 +127,73 @@ def send(
 
 @uncounted
 def along(
-    P: IntArray, Q: IntArray, G: Rows[Row], EDGE: FloatArray, K: int, IM: FloatArray, II: FloatArray, n: int,
-    SCALE: FloatArray, place: IntArray, columns: IntArray, rows: IntArray, DIAGONAL: FloatArray, BELOW: FloatArray,
-    LEFT: FloatArray, Y: FloatArray, f: FloatArray, V: FloatArray, DY: FloatArray, centre: float, second: bool,
+    edges: Problem, EDGE: Rows[Edge], SCALE: FloatArray, factor: Factor, LEFT: FloatArray, Y: FloatArray, f: FloatArray,
+    V: FloatArray, DY: FloatArray, centre: float, second: bool,
 ) -> None:  # fmt: skip
-    """Newton's step DX, DS, DY towards X S = centre, less the product of the last step's if it is the second.
+    """Newton's step dx, ds, DY towards x s = centre, less the product of the last step's if it is the second.
 
-    LEFT (k, 3): velocities that X leaves.  f (n, 3), V (k, 3): scratch.
+    edges: the rows of the edges.  LEFT (k, 3): velocities that x leaves.  f (n, 3), V (k, 3): scratch.
     """
+    P, Q, G, K, n, place = edges.A, edges.B, edges.ROWS, edges.m, edges.n, factor.place
     for i in range(len(V)):
         for c in range(3):
             V[i, c] = 0.0
     for e in range(K):
-        x, s = EDGE[e, X], EDGE[e, S]
+        x, s = EDGE[e].x, EDGE[e].s
         if s == 0.0:
-            EDGE[e, DX] = 0.0
+            EDGE[e].dx = 0.0
             continue
-        dual = EDGE[e, A_GG] * (x - EDGE[e, GUESS]) - normal_rate(P, Q, G, Y, e) - s
-        product = x * s - centre + (EDGE[e, DX] * EDGE[e, DS] if second else 0.0)
-        EDGE[e, DS] = product
-        EDGE[e, DX] = G[e].k_n * (dual + product / x)
-    send(P, Q, G, EDGE, DX, K, IM, II, V)
+        dual = EDGE[e].a_gg * (x - EDGE[e].guess) - normal_rate(P, Q, G, Y, e) - s
+        product = x * s - centre + (EDGE[e].dx * EDGE[e].ds if second else 0.0)
+        EDGE[e].ds = product
+        EDGE[e].dx = G[e].k_n * (dual + product / x)
+    send(P, Q, G, EDGE, True, K, edges.IM, edges.II, V)
     for i in range(n):
         for c in range(3):
             f[place[i], c] = PROXIMAL_STATICS * (V[i, c] - LEFT[i, c]) / SCALE[i, c] if SCALE[i, c] > 0.0 else 0.0
-    substitute(n, columns, rows, DIAGONAL, BELOW, f)
+    substitute(n, factor, f)
     for i in range(n):
         for c in range(3):
             DY[i, c] = SCALE[i, c] * f[place[i], c]
     for e in range(K):
-        EDGE[e, DX] = G[e].k_n * normal_rate(P, Q, G, DY, e) - EDGE[e, DX]
-        if EDGE[e, S] > 0.0:
-            EDGE[e, DS] = -(EDGE[e, DS] + EDGE[e, S] * EDGE[e, DX]) / EDGE[e, X]
+        EDGE[e].dx = G[e].k_n * normal_rate(P, Q, G, DY, e) - EDGE[e].dx
+        if EDGE[e].s > 0.0:
+            EDGE[e].ds = -(EDGE[e].ds + EDGE[e].s * EDGE[e].dx) / EDGE[e].x
 
 
 @uncounted
-def reach(EDGE: FloatArray, K: int, value: int, change: int) -> float:
-    """How much of a change, at most all of it, leaves all values well positive."""
+def reach(EDGE: Rows[Edge], K: int, dual: bool) -> float:
+    """How much of a step, at most all of it, leaves all x, or all s (`dual`), well positive."""
     most = 1.0
     for e in range(K):
-        if EDGE[e, change] < 0.0:
-            most = min(most, -STATICS_STEP * EDGE[e, value] / EDGE[e, change])
+        value, change = (EDGE[e].s, EDGE[e].ds) if dual else (EDGE[e].x, EDGE[e].dx)
+        if change < 0.0:
+            most = min(most, -STATICS_STEP * value / change)
     return most
 
 
 @uncounted
-def products(EDGE: FloatArray, K: int, primal: float, dual: float) -> float:
+def products(EDGE: Rows[Edge], K: int, primal: float, dual: float) -> float:
     """Mean of x s after parts of a step."""
     total = 0.0
     for e in range(K):
-        total += (EDGE[e, X] + primal * EDGE[e, DX]) * (EDGE[e, S] + dual * EDGE[e, DS])
+        total += (EDGE[e].x + primal * EDGE[e].dx) * (EDGE[e].s + dual * EDGE[e].ds)
     return total / K
 
 
 @uncounted
-def go(EDGE: FloatArray, K: int, Y: FloatArray, DY: FloatArray, primal: float, dual: float) -> None:
+def go(EDGE: Rows[Edge], K: int, Y: FloatArray, DY: FloatArray, primal: float, dual: float) -> None:
     """Take parts of a step."""
     for e in range(K):
-        EDGE[e, X] += primal * EDGE[e, DX]
-        EDGE[e, S] += dual * EDGE[e, DS]
+        EDGE[e].x += primal * EDGE[e].dx
+        EDGE[e].s += dual * EDGE[e].ds
     for i in range(len(Y)):
         for c in range(3):
             Y[i, c] += dual * DY[i, c]
 
 
 @uncounted
-def give(ROWS: Rows[Row], EDGE: FloatArray, OF: IntArray, K: int, L: FloatArray, m: int) -> None:
+def give(ROWS: Rows[Row], EDGE: Rows[Edge], OF: IntArray, K: int, L: FloatArray, m: int) -> None:
     """Impulses L (m, 2) of the x of their edges."""
     for i in range(m):
         L[i, 0] = L[i, 1] = 0.0
@@ -204,19 +202,18 @@ def give(ROWS: Rows[Row], EDGE: FloatArray, OF: IntArray, K: int, L: FloatArray,
         slope = ROWS[i].friction
         if e > 0 and OF[e - 1] == i:
             slope = -slope
-        L[i, 0] += EDGE[e, X]
-        L[i, 1] += slope * EDGE[e, X]
+        L[i, 0] += EDGE[e].x
+        L[i, 1] += slope * EDGE[e].x
 
 
 @kernel
 def equilibrium(
-    A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, START: FloatArray, IM: FloatArray, II: FloatArray,
-    POSE: FloatArray, EXTENT: FloatArray, n: int, m: int, tolerance: float, most: int, nearest: bool,
-) -> tuple[bool, int]:  # fmt: skip
+    problem: Problem, L: FloatArray, START: FloatArray, EXTENT: FloatArray, tolerance: float, most: int, nearest: bool
+) -> tuple[bool, int]:
     """Look for impulses that take the velocities START (k, 3) of the n bodies that impulses move.
 
     Args:
-        ROWS: m contacts; those with a TARGET below 0 carry nothing.
+        ROWS: m contacts; those with a target below 0 carry nothing.
         START: out, if there are none, a motion that nothing holds: the multipliers y, which grow along it.
         L: (m, 2) guess in, impulses out if they are found.
         POSE: (k, 3), for the order of elimination alone.  EXTENT: (k,) how far points of bodies are.
@@ -225,10 +222,11 @@ def equilibrium(
     Returns:
         Whether they are found, and how many factors that took.
     """
+    IM, II, n, m = problem.IM, problem.II, problem.n, problem.m
     k = len(IM)
     OF, P, Q = np.empty(2 * m, np.int64), np.empty(2 * m, np.int64), np.empty(2 * m, np.int64)
-    G, EDGE = zeros(2 * m, ROW), np.zeros((2 * m, EDGE_COLUMNS))
-    K = edges(A, B, ROWS, L, IM, II, m, OF, P, Q, G, EDGE)
+    G, EDGE = zeros(2 * m, ROW), zeros(2 * m, EDGE_KIND)
+    K = edges(problem.A, problem.B, problem.ROWS, L, IM, II, m, OF, P, Q, G, EDGE)
     LEFT, Y, DY, V, f = np.empty((k, 3)), np.zeros((k, 3)), np.zeros((k, 3)), np.empty((k, 3)), np.empty((n, 3))
     if K == 0:
         return fastest(START, EXTENT, n) <= tolerance, 0  # START is that motion itself
@@ -239,19 +237,20 @@ def equilibrium(
     held, stuck = np.ones(K, np.int64), np.zeros(K, np.int64)
     start, other = neighbours(P, Q, K, n, held)
     place = np.empty(n, np.int64)
-    dissect(POSE, n, start, other, place)
+    dissect(problem.POSE, n, start, other, place)
     columns, rows = pattern(n, start, other, place)
-    DIAGONAL, BELOW = np.empty((n, 3, 3)), np.empty((len(rows), 3, 3))
+    factor = Factor(place, columns, rows, np.empty((n, 3, 3)), np.empty((len(rows), 3, 3)))
+    problem_of_edges = Problem(P, Q, G, IM, II, problem.POSE, n, K)
     found, free, stalled, last, first = False, True, 0, np.inf, 0.0
     given = fastest(START, EXTENT, n)
     for done in range(most + 1):
         copy(LEFT, START)
-        send(P, Q, G, EDGE, X, K, IM, II, LEFT)
+        send(P, Q, G, EDGE, False, K, IM, II, LEFT)
         speed = fastest(LEFT, EXTENT, n)
         centre = products(EDGE, K, 0.0, 0.0)
         if speed <= tolerance:
             found = True
-            give(ROWS, EDGE, OF, K, L, m)
+            give(problem.ROWS, EDGE, OF, K, L, m)
             if not nearest or centre <= STATICS_GAP * first:
                 return True, done
         elif not found and done > STATICS_EARLY:
@@ -266,20 +265,16 @@ def equilibrium(
         last = speed
         if done == 0 or not free:
             for e in range(K):
-                G[e].k_n = 1.0 / (EDGE[e, A_GG] + (0.0 if free else EDGE[e, S] / EDGE[e, X]))
-            assemble(P, Q, G, K, n, held, stuck, SCALE, place, columns, rows, PROXIMAL_STATICS, DIAGONAL, BELOW)
-            factorise(n, columns, rows, DIAGONAL, BELOW)
-        along(
-            P, Q, G, EDGE, K, IM, II, n, SCALE, place, columns, rows, DIAGONAL, BELOW, LEFT, Y, f, V, DY, 0.0, False
-        )  # fmt: skip
+                G[e].k_n = 1.0 / (EDGE[e].a_gg + (0.0 if free else EDGE[e].s / EDGE[e].x))
+            assemble(P, Q, G, K, n, held, stuck, SCALE, PROXIMAL_STATICS, factor)
+            factorise(n, factor)
+        along(problem_of_edges, EDGE, SCALE, factor, LEFT, Y, f, V, DY, 0.0, False)
         if free:
             # Next to the guess of all that balances, cones or not: often that is all.
             free = inside(EDGE, K)
             first = products(EDGE, K, 0.0, 0.0)
             continue
-        aim = centre * (products(EDGE, K, reach(EDGE, K, X, DX), reach(EDGE, K, S, DS)) / centre) ** 3
-        along(
-            P, Q, G, EDGE, K, IM, II, n, SCALE, place, columns, rows, DIAGONAL, BELOW, LEFT, Y, f, V, DY, aim, True
-        )  # fmt: skip
-        go(EDGE, K, Y, DY, reach(EDGE, K, X, DX), reach(EDGE, K, S, DS))
+        aim = centre * (products(EDGE, K, reach(EDGE, K, False), reach(EDGE, K, True)) / centre) ** 3
+        along(problem_of_edges, EDGE, SCALE, factor, LEFT, Y, f, V, DY, aim, True)
+        go(EDGE, K, Y, DY, reach(EDGE, K, False), reach(EDGE, K, True))
     return found, most

@@ -15,10 +15,10 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
-from ..model.contacts import Row
+from ..model.contacts import Problem, Row
 from ..model.parameters.impulses import FACE_LINE
 from .build import normal_rate, tangent_rate
-from .cholesky import assemble, factorise, substitute
+from .cholesky import Factor, assemble, factorise, substitute
 from .ordering import dissect, neighbours, pattern
 from .sweeps import velocities
 
@@ -99,9 +99,8 @@ def clamp(ROWS: Rows[Row], L: FloatArray, m: int) -> int:
 
 @kernel
 def polish(
-    A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, FREE: FloatArray, IM: FloatArray,
-    II: FloatArray, POSE: FloatArray, n: int, m: int, R: float, passes: int, tolerance: float,
-) -> tuple[float, int]:  # fmt: skip
+    problem: Problem, L: FloatArray, V: FloatArray, FREE: FloatArray, R: float, passes: int, tolerance: float
+) -> tuple[float, int]:
     """Solve on the active contacts of L; L and V = FREE + M^-1 (G^T lam + T^T beta), also on entry, are replaced.
 
     Args:
@@ -110,6 +109,7 @@ def polish(
     Returns:
         The residual before the impulses were clamped (velocity), and how many were clamped.
     """
+    A, B, ROWS, IM, II, n, m = problem.A, problem.B, problem.ROWS, problem.IM, problem.II, problem.n, problem.m
     held = np.empty(m, np.int64)
     stuck = np.empty(m, np.int64)
     slip = np.empty(m)
@@ -122,12 +122,11 @@ def polish(
         SCALE[i, 2] = math.sqrt(II[i])
     start, other = neighbours(A, B, m, n, held)
     place = np.empty(n, np.int64)
-    dissect(POSE, n, start, other, place)
+    dissect(problem.POSE, n, start, other, place)
     columns, rows = pattern(n, start, other, place)
-    DIAGONAL = np.empty((n, 3, 3))
-    BELOW = np.empty((len(rows), 3, 3))
-    assemble(A, B, ROWS, m, n, held, stuck, SCALE, place, columns, rows, R, DIAGONAL, BELOW)
-    factorise(n, columns, rows, DIAGONAL, BELOW)
+    factor = Factor(place, columns, rows, np.empty((n, 3, 3)), np.empty((len(rows), 3, 3)))
+    assemble(A, B, ROWS, m, n, held, stuck, SCALE, R, factor)
+    factorise(n, factor)
     f = np.empty((n, 3))
     dv = np.zeros((len(IM), 3))
     r = np.zeros((m, 2))
@@ -163,7 +162,7 @@ def polish(
                 f[k, 2] += SCALE[b, 2] * (fn * ROWS[i].arm_nb + ft * ROWS[i].arm_tb)
         if worst <= tolerance or done == passes or worst > 0.5 * last:
             break
-        substitute(n, columns, rows, DIAGONAL, BELOW, f)
+        substitute(n, factor, f)
         for i in range(n):
             for p in range(3):
                 dv[i, p] = SCALE[i, p] * f[place[i], p]

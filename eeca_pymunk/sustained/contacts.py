@@ -11,19 +11,18 @@ from __future__ import annotations
 
 import math
 
-from ..arrays import FloatArray, IntArray
-from ..compiled import uncounted
-from ..compiled.records import Rows
+import numpy as np
+
+from ..arrays import FloatArray
+from ..compiled import kernel, uncounted
 from ..geometry.manifold import manifold
 from ..geometry.sides import note_side
-from ..model.contacts import Row
+from ..model.islands import Contacts, Island
 from ..model.parameters.intervals import MANIFOLD_ROUND_OFF, MIDPOINT_TURN, MIDPOINT_WAY
-from ..model.shapes import Link, Shape
+from ..model.scene import Scene
 from ..pairs.rules import law
 from ..rows.build import place_row
 from .memory import key_of
-
-PAIR_COLUMNS = 4  # PAIRS: shape a, shape b, and their local bodies
 
 
 @uncounted
@@ -34,34 +33,33 @@ def way_about(POSE: FloatArray, V: FloatArray, a: int, b: int, extent: float) ->
     return math.sqrt(x * x + y * y) + abs(V[b, 2] - V[a, 2]) * extent
 
 
-@uncounted
+@kernel
 def gather(
-    PAIRS: IntArray, p: int, SHAPE: Rows[Shape], RULE: FloatArray, LINK: Rows[Link], VERTEX: FloatArray,
-    WORK: FloatArray, POSE: FloatArray,
-    MIDDLE: FloatArray, V: FloatArray, REACH: FloatArray, EXTENT: FloatArray, IM: FloatArray, II: FloatArray, h: float,
-    free: bool, near: float,
-    A: IntArray, B: IntArray, ROWS: Rows[Row], KEY: IntArray, NOW: FloatArray, THEN: FloatArray,
+    S: Scene, isle: Island, contacts: Contacts, MIDDLE: FloatArray, REACH: FloatArray, h: float, free: bool,
+    near: float,
 ) -> int:  # fmt: skip
-    """Rows of all contacts of p pairs no farther apart than the sum of their bodies' REACH.
+    """Rows A, B, ROWS, KEY of all contacts of an island's pairs no farther apart than the sum of their bodies' REACH.
 
     Args:
-        PAIRS: (p, 4) shapes a and b, local bodies of a and b.
-        POSE, MIDDLE, V: (k, 3) now, predicted for h/2, velocities.  REACH, EXTENT: (k,) length.
-        A, B, ROWS, KEY: rows out; KEY int64 tells pair and place, the same as long as the shapes stay on each other.
+        MIDDLE: (k, 3) poses predicted for h/2.  REACH: (k,) length.
         free: whether impulses move all k bodies.  near: half-way of a pair relative to the smaller shape, below which
-            now and the middle are the same.  NOW, THEN: (2, 5) scratch.
+            now and the middle are the same.
     Returns:
         How many rows, or -1 if there is no room for them.
     """
+    SHAPE, LINK, VERTEX, WORK = S.SHAPE, S.LINK, S.VERTEX, S.WORK
+    POSE, V, EXTENT, PAIRS = isle.POSE, isle.V, isle.EXTENT, isle.PAIRS
+    A, B, ROWS = contacts.A, contacts.B, contacts.ROWS
+    NOW, THEN = np.empty((2, 5)), np.empty((2, 5))
     m = 0
     shapes = len(SHAPE)
     half = 0.5 * h
-    for c in range(p):
+    for c in range(len(PAIRS)):
         s = PAIRS[c, 0]
         r = PAIRS[c, 1]
         a = PAIRS[c, 2]
         b = PAIRS[c, 3]
-        if IM[a] == 0.0 and IM[b] == 0.0:
+        if isle.IM[a] == 0.0 and isle.IM[b] == 0.0:
             continue
         small = min(SHAPE[s].extent, SHAPE[r].extent)
         reach = REACH[a] + REACH[b]
@@ -80,9 +78,9 @@ def gather(
             + abs(V[b, 2]) * EXTENT[b]
         )
         about = way
-        if IM[a] == 0.0 and V[a, 2] != 0.0:
+        if isle.IM[a] == 0.0 and V[a, 2] != 0.0:
             about = half * way_about(POSE, V, a, b, EXTENT[b])
-        elif IM[b] == 0.0 and V[b, 2] != 0.0:
+        elif isle.IM[b] == 0.0 and V[b, 2] != 0.0:
             about = half * way_about(POSE, V, b, a, EXTENT[a])
         centre = MIDDLE
         # Normals turn as round shapes go round one another, and slowly about a large one.
@@ -112,14 +110,15 @@ def gather(
                     THEN[z, q] = NOW[z, q]
                 THEN[z, 2] += x
                 THEN[z, 3] += y
-        elasticity, friction, sx, sy = law(SHAPE, RULE, s, r)
+        elasticity, friction, sx, sy = law(SHAPE, S.RULE, s, r)
         for z in range(count):
             i = m + z
-            place_row(
-                A, B, ROWS, i, a, b, THEN[z, 0], THEN[z, 1], THEN[z, 2], THEN[z, 3], NOW[z, 4], centre, IM, II,
-                elasticity, friction, 0.0,
-            )  # fmt: skip
-            ROWS[i].surface = ROWS[i].nx * sy - ROWS[i].ny * sx
-            KEY[i] = key_of(shapes, s, r) + z
+            A[i], B[i] = a, b
+            row = ROWS[i]
+            row.nx, row.ny, row.gap = THEN[z, 0], THEN[z, 1], NOW[z, 4]
+            row.elasticity, row.friction, row.surface = elasticity, friction, 0.0
+            place_row(A, B, ROWS, i, THEN[z, 2], THEN[z, 3], centre, isle.IM, isle.II)
+            row.surface = row.nx * sy - row.ny * sx
+            contacts.KEY[i] = key_of(shapes, s, r) + z
         m += count
     return m

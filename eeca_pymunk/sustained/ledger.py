@@ -1,10 +1,10 @@
 """The works of an island over a span: impulses times means of velocities before and after, which close by identity:
 
-    change of energy = FORCES + CARRIED + LIFTED - RESTITUTION - FRICTION,
+    change of energy = forces + carried + lifted - restitution - friction,
 
-of kinetic energy, and of potential energy as far as bodies are lifted. RESTITUTION and FRICTION are >= 0. LIFTED is the
-energy that lifting bodies out of each other costs; it never exceeds these losses, from which it is paid, and is below
-0 where bodies sink by it.
+of kinetic energy, and of potential energy as far as bodies are lifted. `restitution` and `friction` are >= 0. `lifted`
+is the energy that lifting bodies out of each other costs; it never exceeds these losses, from which it is paid, and is
+below 0 where bodies sink by it.
 """
 
 from __future__ import annotations
@@ -13,9 +13,6 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
 from ..compiled.records import Rows
 from ..model.contacts import Row
-
-RESTITUTION, FRICTION, CARRIED, LIFTED, FORCES = 0, 1, 2, 3, 4
-LEDGER_SIZE = 8
 
 
 @uncounted

@@ -14,10 +14,10 @@ import math
 
 import numpy as np
 
-from ..arrays import FlagArray, FloatArray, IntArray
+from ..arrays import FlagArray, FloatArray
 from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
-from ..model.contacts import Row
+from ..model.contacts import Problem, Row
 from ..model.parameters.impulses import DENSE_CONTACTS
 from ..model.parameters.intervals import CORRECTION_ROUND_OFF, CORRECTION_SHARE, CORRECTION_STEP, OVERLAP_LEFT
 from ..rows.build import conserves, normal_rate
@@ -27,8 +27,8 @@ from .ledger import against
 
 @kernel
 def lifting(
-    A: IntArray, B: IntArray, ROWS: Rows[Row], POSE: FloatArray, VN: FloatArray, ACC: FloatArray, IM: FloatArray,
-    II: FloatArray, n: int, m: int, h: float, size: float, budget: float, JUMP: FloatArray,
+    problem: Problem, POSE: FloatArray, VN: FloatArray, ACC: FloatArray, h: float, size: float, budget: float,
+    JUMP: FloatArray,
 ) -> tuple[float, float]:  # fmt: skip
     """JUMP (k, 6) = changes of pose and velocity at the end of the span.
 
@@ -38,6 +38,7 @@ def lifting(
     Returns:
         The energy spent (<= budget, negative if more was lost), and the deepest gap before (negative in overlap).
     """
+    A, B, ROWS, IM, II, n, m = problem.A, problem.B, problem.ROWS, problem.IM, problem.II, problem.n, problem.m
     for i in range(len(JUMP)):
         for c in range(6):
             JUMP[i, c] = 0.0

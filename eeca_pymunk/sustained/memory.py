@@ -1,7 +1,6 @@
 """What is remembered of contacts across steps: a hash table from keys to forces, with open addressing.
 
-KEYS (c,) int64, -1 where free, c a power of 2; FORCES (c, 4): normal force, tangential force, load (the normal force
-without what stopped an impact), and the stamp of the step that wrote the row. Rows of older steps than the last are
+KEYS (c,) int64, -1 where free, c a power of 2; FORCES (c,): the forces. Rows of older steps than the last are
 forgotten, and cleared by `forget` when the table fills. COUNT.remembered: rows in use.
 """
 
@@ -10,11 +9,8 @@ from __future__ import annotations
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
 from ..compiled.records import Rows
-from ..model.contacts import Row
+from ..model.contacts import Force, Row
 from ..model.step import Count
-
-NORMAL, TANGENTIAL, LOAD, STAMP = 0, 1, 2, 3
-FORCE_COLUMNS = 4
 
 
 @uncounted
@@ -38,7 +34,7 @@ def find(KEYS: IntArray, key: int) -> int:
 
 @uncounted
 def remember(
-    KEYS: IntArray, FORCES: FloatArray, COUNT: Count, key: int, normal: float, tangential: float, load: float,
+    KEYS: IntArray, FORCES: Rows[Force], COUNT: Count, key: int, normal: float, tangential: float, load: float,
     stamp: float,
 ) -> None:  # fmt: skip
     """Write a contact's forces. The table must have a free row."""
@@ -47,15 +43,13 @@ def remember(
         row = -1 - row
         KEYS[row] = key
         COUNT.remembered += 1
-    FORCES[row, 0] = normal
-    FORCES[row, 1] = tangential
-    FORCES[row, 2] = load
-    FORCES[row, 3] = stamp
+    force = FORCES[row]
+    force.normal, force.tangential, force.load, force.stamp = normal, tangential, load, stamp
 
 
 @uncounted
 def remember_loads(
-    ROWS: Rows[Row], KEY: IntArray, L: FloatArray, m: int, h: float, KEYS: IntArray, FORCES: FloatArray,
+    ROWS: Rows[Row], KEY: IntArray, L: FloatArray, m: int, h: float, KEYS: IntArray, FORCES: Rows[Force],
     COUNT: Count, stamp: float,
 ) -> int:  # fmt: skip
     """Write the forces of those of m contacts that push, by their impulses L (m, 2) over h, and what of them bears
@@ -72,11 +66,14 @@ def remember_loads(
 
 @uncounted
 def forget(
-    KEYS: IntArray, FORCES: FloatArray, COUNT: Count, KEYS_2: IntArray, FORCES_2: FloatArray, stamp: float
+    KEYS: IntArray, FORCES: Rows[Force], COUNT: Count, KEYS_2: IntArray, FORCES_2: Rows[Force], stamp: float
 ) -> None:
     """Move rows with a stamp >= `stamp` to empty tables KEYS_2, FORCES_2 (of any size); COUNT becomes theirs."""
     COUNT.remembered = 0
     KEYS_2[:] = -1
     for row in range(len(KEYS)):
-        if KEYS[row] >= 0 and FORCES[row, 3] >= stamp:
-            remember(KEYS_2, FORCES_2, COUNT, KEYS[row], FORCES[row, 0], FORCES[row, 1], FORCES[row, 2], FORCES[row, 3])
+        if KEYS[row] >= 0 and FORCES[row].stamp >= stamp:
+            force = FORCES[row]
+            remember(
+                KEYS_2, FORCES_2, COUNT, KEYS[row], force.normal, force.tangential, force.load, force.stamp
+            )  # fmt: skip

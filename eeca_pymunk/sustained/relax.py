@@ -10,11 +10,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FloatArray
 from ..compiled import kernel
-from ..compiled.records import Rows
 from ..model.bodies import Rest
-from ..model.contacts import Row
+from ..model.contacts import Problem
 from ..model.parameters.intervals import (
     BACKOFF_CONTACTS,
     FAILED_DIRECT,
@@ -30,9 +29,8 @@ from ..rows.sweeps import sweep
 
 @kernel
 def relax(
-    A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, FREE: FloatArray, IM: FloatArray,
-    II: FloatArray, POSE: FloatArray, n: int, m: int, rounds: int, fine: float, coarse: float, STATE: Rest,
-    most: int,
+    problem: Problem, L: FloatArray, V: FloatArray, FREE: FloatArray, rounds: int, fine: float, coarse: float,
+    STATE: Rest, most: int,
 ) -> tuple[int, int, float]:  # fmt: skip
     """Impulses L (m, 2) and velocities V, warm-started by what they hold.
 
@@ -42,6 +40,7 @@ def relax(
     Returns:
         Sweeps, direct solutions, and the last sweep's change.
     """
+    A, B, ROWS, IM, II, m = problem.A, problem.B, problem.ROWS, problem.IM, problem.II, problem.m
     if rounds == 0 or STATE.wait > 0.0:
         STATE.wait = max(STATE.wait - 1.0, 0.0)
         sweeps, worst = iterate(A, B, ROWS, L, V, IM, II, m, max(fine, coarse), most)
@@ -58,9 +57,7 @@ def relax(
     last = worst
     while done < rounds:
         passes = 6 if STATE.augmentation > 6.0 else 1
-        STATE.augmentation, worst = refine(
-            A, B, ROWS, L, V, FREE, IM, II, POSE, n, m, STATE.augmentation, passes, 0.1 * fine, worst
-        )
+        STATE.augmentation, worst = refine(problem, L, V, FREE, STATE.augmentation, passes, 0.1 * fine, worst)
         done += 1
         sweeps += 1
         for _ in range(SWEEPS_AFTER):

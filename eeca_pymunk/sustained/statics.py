@@ -17,10 +17,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FloatArray
 from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
-from ..model.contacts import Row
+from ..model.contacts import Problem, Row
 from ..model.parameters.rest import (
     REST_CANDIDATE_LARGE,
     REST_SPEED,
@@ -51,8 +51,8 @@ def at_rest(ROWS: Rows[Row], V: FloatArray, n: int, m: int, close: float) -> boo
 
 @kernel
 def comes_to_stand(
-    A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, FREE: FloatArray, IM: FloatArray,
-    II: FloatArray, POSE: FloatArray, FELT: FloatArray, VN: FloatArray, n: int, m: int, change: float, calm: float,
+    problem: Problem, L: FloatArray, V: FloatArray, FREE: FloatArray, FELT: FloatArray, VN: FloatArray, change: float,
+    calm: float,
 ) -> tuple[bool, int]:  # fmt: skip
     """Look for an equilibrium that ends the motion V (k, 3) of the n bodies, which are FREE without impulses.
 
@@ -67,8 +67,9 @@ def comes_to_stand(
     Returns:
         Whether the island stands, and factors it took.
     """
+    n = problem.n
     VN[:] = 0.0
-    if not at_rest(ROWS, V, n, m, min(calm, REST_CANDIDATE_LARGE) * change):
+    if not at_rest(problem.ROWS, V, n, problem.m, min(calm, REST_CANDIDATE_LARGE) * change):
         return False, 0
     PULL, START = FREE - V, FREE - V
     for i in range(n):
@@ -82,9 +83,8 @@ def comes_to_stand(
             break
         LEFT = PULL if nearest else START
         found, more = equilibrium(
-            A, B, ROWS, L, LEFT, IM, II, POSE, FELT, n, m, accuracy,
-            STATICS_FACTORS_NEAREST if nearest else STATICS_FACTORS, nearest,
-        )  # fmt: skip
+            problem, L, LEFT, FELT, accuracy, STATICS_FACTORS_NEAREST if nearest else STATICS_FACTORS, nearest
+        )
         factors += more
         if not found:
             copy(VN, LEFT)

@@ -7,10 +7,10 @@ import math
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel, uncounted
-from ..compiled.records import Rows
-from ..model.bodies import Rest
-from ..model.contacts import Row
+from ..compiled import Table, kernel, uncounted
+from ..compiled.records import Rows, empty, zeros
+from ..model.contacts import ROW, SOLVED, Force, Problem
+from ..model.islands import Contacts, contacts_of, island_of
 from ..model.parameters.impulses import DENSE_CONTACTS
 from ..model.parameters.intervals import (
     DIRECT,
@@ -24,8 +24,8 @@ from ..model.parameters.intervals import (
     NEAR_REST,
     SWEEPS_NEAR_REST,
 )
-from ..model.shapes import Link, Shape
-from ..model.step import Count
+from ..model.scene import scene_of
+from ..rows.blocks import clear
 from ..rows.build import conserves, rates
 from ..rows.energy import lock, works
 from ..rows.sweeps import velocities
@@ -37,14 +37,10 @@ from .relax import relax
 from .statics import comes_to_stand
 from .targets import target
 
-# Of OUT (8,)
-SWEEPS, POLISHES, RESIDUAL, LOCK, OWED, DEEPEST, CLOSED, STOOD = 0, 1, 2, 3, 4, 5, 6, 7
-OUT_SIZE = 8
-
 
 @uncounted
 def recall(
-    KEY: IntArray, m: int, KEYS: IntArray, FORCES: FloatArray, stamp: float, h: float, L: FloatArray,
+    KEY: IntArray, m: int, KEYS: IntArray, FORCES: Rows[Force], stamp: float, h: float, L: FloatArray,
     EXPECTED: FloatArray,
 ) -> None:  # fmt: skip
     """First guesses L (m, 2) of the impulses, and those of loads (m,), from forces of this step or the last."""
@@ -53,10 +49,10 @@ def recall(
         L[i, 1] = 0.0
         EXPECTED[i] = 0.0
         row = find(KEYS, KEY[i])
-        if row >= 0 and FORCES[row, 3] >= stamp - 1.0:
-            L[i, 0] = h * FORCES[row, 0]
-            L[i, 1] = h * FORCES[row, 1]
-            EXPECTED[i] = h * FORCES[row, 2]
+        if row >= 0 and FORCES[row].stamp >= stamp - 1.0:
+            L[i, 0] = h * FORCES[row].normal
+            L[i, 1] = h * FORCES[row].tangential
+            EXPECTED[i] = h * FORCES[row].load
 
 
 @uncounted
@@ -104,73 +100,67 @@ def moved(X: FloatArray, V: FloatArray, s: float) -> FloatArray:
 
 
 @kernel
+def make_contacts(p: int, k: int) -> Contacts:
+    """Room for the contacts of p pairs of shapes of k bodies."""
+    room = 2 * p + 1
+    return Contacts(
+        np.empty(room, np.int64), np.empty(room, np.int64), empty(room, ROW), np.empty(room, np.int64),
+        np.zeros((room, 2)), np.zeros((room, 2)), np.zeros((k, 3)), np.zeros((k, 6)), zeros(1, SOLVED),
+    )  # fmt: skip
+
+
+@kernel
 def step_island(
-    POSE: FloatArray, V: FloatArray, ACC: FloatArray, IM: FloatArray, II: FloatArray, EXTENT: FloatArray,
-    FELT: FloatArray, n: int, PAIRS: IntArray, p: int, SHAPE: Rows[Shape], RULE: FloatArray, LINK: Rows[Link],
-    VERTEX: FloatArray, WORK: FloatArray, h: float, most: int, least: float, owed: float, free: float, KEYS: IntArray,
-    FORCES: FloatArray, COUNT: Count, stamp: float, STATE: Rest, calm: float,
-    A: IntArray, B: IntArray, ROWS: Rows[Row], KEY: IntArray, L: FloatArray, LOSS: FloatArray, VN: FloatArray,
-    JUMP: FloatArray, LEDGER: FloatArray, OUT: FloatArray,
+    SCENE: Table, ISLE: Table, CONTACTS: Table, n: int, h: float, most: int, least: float, owed: float, free: float,
+    calm: float,
 ) -> int:  # fmt: skip
     """Solve an island over h from now.
 
     Args:
-        POSE, V, ACC: (k, 3) pose, velocity, acceleration without contacts.  IM, II, EXTENT: (k,).
-        FELT: (k,) their EXTENT, 0 of bodies whose turning no contact feels.
-        n: bodies that impulses move, the first of k; the others keep their velocities. A body without mobility that
-            rests (the ground) is among the k as well; an island without any is free.
-        PAIRS: (p, 4) as `contacts.gather`.  RULE: see `..pairs.rules`.  WORK: scratch of the geometry.
+        SCENE: its shapes, vertices, rules, scratch of the geometry, memory of forces.  ISLE: its bodies and pairs.
+        CONTACTS: its rows, impulses, velocities, report, out.
+        n: bodies that impulses move; the others keep their velocities.
         most: sweeps of an island that moves.
         least: length that every body's points may come at least, 0 if their velocities tell.
         owed: energy >= 0 to take out at least.
         free: energy >= 0 that lifting may cost beyond the losses: work of a kinematic body that was put into others.
             Negative: overlaps are not corrected.
-        KEYS, FORCES, COUNT, stamp: memory of forces; the number of this step.  STATE: (3,) of `relax`.
         calm: speed relative to |a| h at which it may come to a stand, see `.statics`, 0 if it may not; V is 0 once it
             does, its energy is the caller's to book. Negative: that is all that is asked for.
-        A, B, ROWS, KEY, L, LOSS: the m contact rows out, with impulses over h and losses (D_n, D_t).
-        VN: (k, 3) velocities at the end, out.  JUMP: (k, 6) what to add to pose and velocity then, out.
-        LEDGER: (8,) added to.  OUT: (8,) sweeps, direct solutions, residual, scale of the lock, energy still owed,
-            deepest gap at the end before lifting, contacts that push, whether the island came to a stand.
     Returns:
-        m, or -1 if the arrays of rows (or the memory) are too small; nothing is changed then.
+        The number m of contacts, or -1 if there is no room for them, or in the memory; nothing is changed then.
     """
-    for i in range(len(OUT)):
-        OUT[i] = 0.0
-    OUT[3] = 1.0
+    S, isle, contacts = scene_of(SCENE), island_of(ISLE), contacts_of(CONTACTS)
+    A, B, ROWS, L, VN, OUT = contacts.A, contacts.B, contacts.ROWS, contacts.L, contacts.VN, contacts.OUT
+    V, ACC, IM, II, EXTENT = isle.V, isle.ACC, isle.IM, isle.II, isle.EXTENT
+    clear(OUT[0])
     k = len(IM)
     REACH = np.empty(k)
     slow, fast, pull = speeds(V, ACC, EXTENT, IM, n, h, REACH)
     for i in range(k):
         REACH[i] = max(REACH[i], least)
-    MIDDLE = moved(POSE, V, 0.5 * h)
-    NOW = np.empty((2, 5))
-    THEN = np.empty((2, 5))
-    m = gather(
-        PAIRS, p, SHAPE, RULE, LINK, VERTEX, WORK, POSE, MIDDLE, V, REACH, EXTENT, IM, II, h,
-        k == n, MIDPOINT_SAME if n < LARGE_ISLAND else MIDPOINT_SAME_LARGE, A, B, ROWS, KEY, NOW, THEN,
-    )  # fmt: skip
-    if m < 0 or 2 * (COUNT.remembered + m) > len(KEYS):
+    MIDDLE = moved(isle.POSE, V, 0.5 * h)
+    m = gather(S, isle, contacts, MIDDLE, REACH, h, k == n, MIDPOINT_SAME if n < LARGE_ISLAND else MIDPOINT_SAME_LARGE)
+    if m < 0 or 2 * (S.COUNT.remembered + m) > len(S.KEYS):
         return -1
     FREE = moved(V, ACC, h)
     for i in range(k):
         for c in range(3):
             VN[i, c] = FREE[i, c]
-            JUMP[i, c] = 0.0
-            JUMP[i, 3 + c] = 0.0
+            contacts.JUMP[i, c] = 0.0
+            contacts.JUMP[i, 3 + c] = 0.0
     if m > 0:
+        problem = Problem(A, B, ROWS, IM, II, isle.POSE, n, m)
         EXPECTED = np.empty(m)
-        recall(KEY, m, KEYS, FORCES, stamp, h, L, EXPECTED)
+        recall(contacts.KEY, m, S.KEYS, S.FORCES, S.PAR.stamp, h, L, EXPECTED)
         rates(A, B, ROWS, V, m)
         target(A, B, ROWS, m, ACC, EXPECTED, pull, h)
         if calm != 0.0:
-            stands, polishes = comes_to_stand(
-                A, B, ROWS, L, V, FREE, IM, II, POSE, FELT, VN, n, m, pull * h, abs(calm)
-            )  # fmt: skip
-            OUT[1] = polishes
+            stands, factors = comes_to_stand(problem, L, V, FREE, isle.FELT, VN, pull * h, abs(calm))
+            OUT[0].direct = factors
             if stands:
-                OUT[STOOD] = 1.0
-                OUT[CLOSED] = remember_loads(ROWS, KEY, L, m, h, KEYS, FORCES, COUNT, stamp)
+                OUT[0].stood = 1
+                OUT[0].pushing = remember_loads(ROWS, contacts.KEY, L, m, h, S.KEYS, S.FORCES, S.COUNT, S.PAR.stamp)
                 return m
             if calm < 0.0:
                 return 0
@@ -179,33 +169,30 @@ def step_island(
         velocities(A, B, ROWS, L, FREE, IM, II, m, VN)
         scale = pull * h if pull > 0.0 else 1e-3 * fast
         elastic = conserves(ROWS, m)
-        # Elastic crowds would melt away by the losses of a solve cut short.
+        # A truncated solve dissipates energy in large elastic islands.
         few = m <= DENSE_CONTACTS
         rounds = DIRECT if elastic or slow < pull * h else (DIRECT_MOVING if few else 0)
         coarse = 0.0 if elastic or few else INTERVAL_RESIDUAL_MOVING * scale + INTERVAL_RESIDUAL_SPEED * slow
         if slow < NEAR_REST * pull * h:
-            # What stands tall falls over by what is left undone.
+            # Residuals of an unconverged solve topple tall stacks.
             most = SWEEPS_NEAR_REST
         sweeps, polishes, worst = relax(
-            A, B, ROWS, L, VN, FREE, IM, II, POSE, n, m, rounds, INTERVAL_RESIDUAL * scale, coarse, STATE, most
+            problem, L, VN, FREE, rounds, INTERVAL_RESIDUAL * scale, coarse, S.RESTING[isle.WHO[0]], most
         )  # fmt: skip
         # Sums over many sweeps have their own round-off: the velocities are those of the impulses.
         velocities(A, B, ROWS, L, FREE, IM, II, m, VN)
-        OUT[0] += sweeps
-        OUT[1] += polishes
-        OUT[2] = worst
-        OUT[3], OUT[4] = lock(A, B, ROWS, L, VN, FREE, IM, II, m, owed, elastic)
-        normal, tangential = works(A, B, ROWS, L, VN, m, LOSS)
-        LEDGER[0] += normal
-        LEDGER[1] += tangential
-        LEDGER[2] += carried(A, B, ROWS, L, V, VN, IM, II, m)
+        OUT[0].sweeps += sweeps
+        OUT[0].direct += polishes
+        OUT[0].residual = worst
+        OUT[0].lock, OUT[0].owed = lock(A, B, ROWS, L, VN, FREE, IM, II, m, owed, elastic)
+        normal, tangential = works(A, B, ROWS, L, VN, m, contacts.LOSS)
+        OUT[0].restitution, OUT[0].friction = normal, tangential
+        OUT[0].carried = carried(A, B, ROWS, L, V, VN, IM, II, m)
         if free >= 0.0:
-            budget = budget_of(ROWS, m, normal + tangential, owed, free)
-            size = least_of(EXTENT, n)
-            lifted, OUT[DEEPEST] = lifting(A, B, ROWS, MIDDLE, VN, ACC, IM, II, n, m, h, size, budget, JUMP)
-            LEDGER[3] += lifted
-        OUT[CLOSED] = remember_loads(ROWS, KEY, L, m, h, KEYS, FORCES, COUNT, stamp)
+            budget, size = budget_of(ROWS, m, normal + tangential, owed, free), least_of(EXTENT, n)
+            OUT[0].lifted, OUT[0].deepest = lifting(problem, MIDDLE, VN, ACC, h, size, budget, contacts.JUMP)
+        OUT[0].pushing = remember_loads(ROWS, contacts.KEY, L, m, h, S.KEYS, S.FORCES, S.COUNT, S.PAR.stamp)
     else:
-        OUT[4] = owed
-    LEDGER[4] += 0.5 * h * (against(ACC, IM, II, n, V) + against(ACC, IM, II, n, VN))
+        OUT[0].owed = owed
+    OUT[0].forces = 0.5 * h * (against(ACC, IM, II, n, V) + against(ACC, IM, II, n, VN))
     return m

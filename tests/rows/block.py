@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from eeca_pymunk.compiled.records import rows
-from eeca_pymunk.model.contacts import Row
-from eeca_pymunk.rows.blocks import OUT_SIZE, solve_block
+from eeca_pymunk.model.contacts import Problem, Row, Solved
+from eeca_pymunk.rows.blocks import solve_block
 from eeca_pymunk.rows.build import place_row
 
 Floats = npt.NDArray[np.float64]
@@ -52,12 +52,13 @@ class Block:
         self.A, self.B = np.zeros(m, np.int64), np.zeros(m, np.int64)
         self.rows, self.impulses, self.loss = rows(Row, m), np.zeros((m, 2)), np.zeros((m, 2))
         for i, (a, b, nx, ny, px, py) in enumerate(self.contacts):
-            place_row(self.A, self.B, self.rows, i, a, b, nx, ny, px, py, 0.0, self.pose, self.im, self.ii, e, mu, 0.0)
-        self.after, self.out = self.velocity.copy(), np.zeros(OUT_SIZE)
-        self.status = solve_block(
-            self.A, self.B, self.rows, self.impulses, self.after, self.im, self.ii, self.pose, n, m, owed, False,
-            self.loss, self.out,
-        )  # fmt: skip
+            self.A[i], self.B[i] = a, b
+            row = self.rows[i]
+            row.nx, row.ny, row.elasticity, row.friction = nx, ny, e, mu
+            place_row(self.A, self.B, self.rows, i, px, py, self.pose, self.im, self.ii)
+        self.after, self.out = self.velocity.copy(), rows(Solved, 1)
+        problem = Problem(self.A, self.B, self.rows, self.im, self.ii, self.pose, n, m)
+        self.status = solve_block(problem, self.impulses, self.after, owed, False, self.loss, self.out)  # fmt: skip
 
     def energy(self, v: Floats) -> float:
         n = len(self.pose) - 1

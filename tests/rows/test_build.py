@@ -26,7 +26,10 @@ def test_rates_and_masses_are_those_of_points_of_rigid_bodies(seed: int, unit: f
     n, t = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
     point = unit * rng.normal(size=2)
     A, B, rows = np.zeros(1, np.int64), np.zeros(1, np.int64), records.rows(Row, 1)
-    place_row(A, B, rows, 0, 0, 1, *n, *point, 0.0, pose, im, ii, 0.5, 0.3, surface)
+    A[0], B[0] = 0, 1
+    row = rows[0]
+    row.nx, row.ny, row.elasticity, row.friction, row.surface = *n, 0.5, 0.3, surface
+    place_row(A, B, rows, 0, *point, pose, im, ii)
 
     arm = point - pose[:, :2]
     speed = v[:, :2] + v[:, 2:] * np.stack((-arm[:, 1], arm[:, 0]), axis=1)

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from eeca_pymunk.model.contacts import Problem
 from eeca_pymunk.rows.build import normal_rate, rates, tangent_rate
-from eeca_pymunk.rows.cholesky import assemble, factorise, substitute
+from eeca_pymunk.rows.cholesky import Factor, assemble, factorise, substitute
 from eeca_pymunk.rows.dense import newton
 from eeca_pymunk.rows.ordering import dissect, neighbours, pattern
 from eeca_pymunk.rows.polish import polish, share
@@ -71,10 +72,8 @@ def test_sparse_factor_is_that_of_the_dense_matrix(count: int) -> None:
     dissect(block.pose, n, start, other, place)
     assert sorted(place) == list(range(n))
     columns, rows = pattern(n, start, other, place)
-    D, X, R = np.empty((n, 3, 3)), np.empty((len(rows), 3, 3)), 100.0
-    assemble(
-        block.A, block.B, block.rows, m, n, held, stuck, scale, place, columns, rows, R, D, X
-    )  # fmt: skip
+    factor, R = Factor(place, columns, rows, np.empty((n, 3, 3)), np.empty((len(rows), 3, 3))), 100.0
+    assemble(block.A, block.B, block.rows, m, n, held, stuck, scale, R, factor)
     dense = np.eye(3 * n)
     for i in range(m):
         for rate, column in ((normal_rate, "k_n"), (tangent_rate, "k_t")):
@@ -90,8 +89,8 @@ def test_sparse_factor_is_that_of_the_dense_matrix(count: int) -> None:
     right = np.random.default_rng(0).normal(size=(n, 3))
     f = np.empty((n, 3))
     f[place] = right
-    factorise(n, columns, rows, D, X)
-    substitute(n, columns, rows, D, X, f)
+    factorise(n, factor)
+    substitute(n, factor, f)
     expected = np.linalg.solve(dense, right.ravel()).reshape(n, 3)
     assert np.abs(f[place] - expected).max() <= 1e-11 * np.abs(expected).max()
 
@@ -121,9 +120,8 @@ def test_direct_solution_needs_no_sweeps(dense: bool, sliding: bool) -> None:
             block.A, block.B, block.rows, L, V, free, block.im, block.ii, 2, 4, 1e-16, False
         )  # fmt: skip
     else:
-        reached, _ = polish(
-            block.A, block.B, block.rows, L, V, free, block.im, block.ii, block.pose, 1, 2, 1e8, 40, 1e-16
-        )  # fmt: skip
+        problem = Problem(block.A, block.B, block.rows, block.im, block.ii, block.pose, 1, 2)
+        reached, _ = polish(problem, L, V, free, 1e8, 40, 1e-16)  # fmt: skip
     if dense or not sliding:
         assert reached <= 1e-14
         assert np.abs(V[0, :2] - turn @ [g * h * max(pull - mu, 0.0), 0.0]).max() <= 1e-14
@@ -149,9 +147,8 @@ def test_points_of_a_face_share_their_friction_as_their_loads() -> None:
     assert L[0, 1] / L[0, 0] == pytest.approx(L[1, 1] / L[1, 0], rel=1e-14)
     velocities(block.A, block.B, block.rows, L, free, block.im, block.ii, 2, V)
     assert np.abs(V - before).max() <= 1e-16
-    reached, clamped = polish(
-        block.A, block.B, block.rows, L, V, free, block.im, block.ii, block.pose, 1, 2, 1e8, 40, 1e-16
-    )  # fmt: skip
+    problem = Problem(block.A, block.B, block.rows, block.im, block.ii, block.pose, 1, 2)
+    reached, clamped = polish(problem, L, V, free, 1e8, 40, 1e-16)  # fmt: skip
     assert reached <= 1e-15
     assert clamped == 0
     assert np.abs(V[0]).max() <= 1e-15

@@ -10,7 +10,7 @@ import pytest
 from scipy.optimize import linprog
 
 from eeca_pymunk.compiled.records import rows
-from eeca_pymunk.model.contacts import Row
+from eeca_pymunk.model.contacts import Problem, Row
 from eeca_pymunk.rows.build import place_row
 from eeca_pymunk.rows.equilibrium import equilibrium
 from eeca_pymunk.rows.sweeps import velocities
@@ -31,14 +31,17 @@ class Pile:
         self.A, self.B = np.zeros(self.m, np.int64), np.zeros(self.m, np.int64)
         self.rows, self.L = rows(Row, self.m), np.zeros((self.m, 2))
         for i, (a, b, nx, ny, x, y) in enumerate(contacts):
-            place_row(self.A, self.B, self.rows, i, a, b, nx, ny, x, y, 0.0, pose, im, ii, 0.0, mu, 0.0)
+            self.A[i], self.B[i] = a, b
+            row = self.rows[i]
+            row.nx, row.ny, row.friction = nx, ny, mu
+            place_row(self.A, self.B, self.rows, i, x, y, pose, im, ii)
 
     def solve(self, most: int = 20, nearest: bool = False, tolerance: float = 1e-9) -> bool:
         speed = float(np.abs(self.start).max())
+        problem = Problem(self.A, self.B, self.rows, self.im, self.ii, self.pose, len(self.im) - 1, self.m)
         self.found, self.factors = equilibrium(
-            self.A, self.B, self.rows, self.L, self.start, self.im, self.ii, self.pose, np.ones(len(self.im)),
-            len(self.im) - 1, self.m, tolerance * speed, most, nearest,
-        )  # fmt: skip
+            problem, self.L, self.start, np.ones(len(self.im)), tolerance * speed, most, nearest
+        )
         return self.found
 
     def left(self, L: Floats, start: Floats | None = None) -> Floats:

@@ -6,18 +6,16 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from eeca_pymunk.compiled import table_of
 from eeca_pymunk.compiled.records import columns, row, rows
-from eeca_pymunk.model.bodies import POSE, VELOCITY, Rest
-from eeca_pymunk.model.contacts import Row
-from eeca_pymunk.model.parameters.intervals import FIRST_AUGMENTATION
-from eeca_pymunk.model.step import Count
-from eeca_pymunk.sustained.ledger import LEDGER_SIZE
-from eeca_pymunk.sustained.memory import FORCE_COLUMNS, forget
-from eeca_pymunk.sustained.step import OUT_SIZE, step_island
+from eeca_pymunk.impacts.scene import EventLoop
+from eeca_pymunk.model.bodies import POSE, VELOCITY
+from eeca_pymunk.model.contacts import Force, Solved
+from eeca_pymunk.model.islands import Island
+from eeca_pymunk.sustained.memory import forget
+from eeca_pymunk.sustained.step import make_contacts, step_island
 
 from ..packed import Thing, World
-
-NO_RULE = np.zeros((0, 6))
 
 
 @dataclass
@@ -34,7 +32,7 @@ class Pile:
     gravity: tuple[float, float] = (0.0, 0.0)
     elasticity: float = 0.0
     friction: float = 0.0
-    ledger: np.ndarray = field(default_factory=lambda: np.zeros(LEDGER_SIZE))
+    ledger: Solved = field(default_factory=lambda: row(Solved))
 
     def __post_init__(self) -> None:
         world = self.world
@@ -55,28 +53,36 @@ class Pile:
             [(s, r, owner[s], owner[r]) for s in range(len(owner)) for r in range(s + 1, len(owner))
              if owner[s] != owner[r] and min(owner[s], owner[r]) < self.n], np.int64,
         ).reshape(-1, 4)  # fmt: skip
-        self.state, self.stamp, self.m = row(Rest), 0.0, 0
-        self.state.augmentation = FIRST_AUGMENTATION
-        self.keys, self.forces, self.count = np.full(64, -1), np.zeros((64, FORCE_COLUMNS)), row(Count)
-        self.jump, self.out = np.zeros((k, 6)), np.zeros(OUT_SIZE)
+        self.m = 0
+        # The scene of these bodies: its shapes, its memory of forces.
+        self.scene = EventLoop(world.body, world.shape, world.link, world.vertex, world.disks, 0).scene
         self.room(64)
 
     def room(self, size: int) -> None:
         """Rows for `size` contacts, and memory for four times as many."""
-        self.A, self.B, self.key = (np.zeros(size, np.int64) for _ in range(3))
-        self.rows, self.L, self.loss = rows(Row, size), np.zeros((size, 2)), np.zeros((size, 2))
+        self.contacts = make_contacts(size // 2, len(self.im))
         self.clean(8 * size)
 
     def clean(self, size: int) -> None:
         """Memory of this step and the last alone, in tables of `size` rows."""
-        keys, forces = np.full(size, -1), np.zeros((size, FORCE_COLUMNS))
-        forget(self.keys, self.forces, self.count, keys, forces, self.stamp - 1.0)
-        self.keys, self.forces = keys, forces
+        scene = self.scene
+        keys, forces = np.full(size, -1), rows(Force, size)
+        forget(scene.KEYS, scene.FORCES, scene.COUNT, keys, forces, scene.PAR.stamp - 1.0)
+        self.scene = scene._replace(KEYS=keys, FORCES=forces)
+
+    @property
+    def B(self) -> np.ndarray:
+        """The second bodies of the contacts."""
+        return self.contacts.B
+
+    @property
+    def L(self) -> np.ndarray:
+        """Impulses of the contacts."""
+        return self.contacts.L
 
     def step(self, h: float) -> None:
         """One step; the ledger is added to, and `closes` is how far it misses the change of energy."""
-        self.stamp += 1.0
-        shape, link, vertex, work = self.world.geometry
+        self.scene.PAR.stamp += 1.0
         x, far = (
             self.pose[:, :2],
             self.extent + 2.5 * h * (np.hypot(*self.v[:, :2].T)) + h * h * np.hypot(*self.gravity),
@@ -84,28 +90,34 @@ class Pile:
         a, b = self.all[:, 2], self.all[:, 3]
         near = (np.hypot(*(x[a] - x[b]).T) <= 1.1 * (far[a] + far[b])) | (b >= self.n)
         pairs = np.ascontiguousarray(self.all[near])
-        before, ledger = self.kinetic(), self.ledger.copy()
-        vn = np.empty_like(self.v)
+        before = self.kinetic()
+        isle = Island(
+            np.arange(len(self.im)), self.pose, self.v, self.acc, self.im, self.ii, self.extent, self.extent, pairs
+        )
         while True:
             self.m = step_island(
-                self.pose, self.v, self.acc, self.im, self.ii, self.extent, self.extent, self.n, pairs, len(pairs),
-                shape, NO_RULE, link, vertex, work, h, 40, 0.0, 0.0, 0.0, self.keys, self.forces, self.count,
-                self.stamp, self.state, 0.0,
-                self.A, self.B, self.rows, self.key, self.L, self.loss, vn, self.jump, self.ledger, self.out,
-            )  # fmt: skip
+                table_of(self.scene), table_of(isle), table_of(self.contacts), self.n, h, 40, 0.0, 0.0, 0.0, 0.0
+            )
             if self.m >= 0:
                 break
-            if 4 * self.count[0] > len(self.keys):
-                self.clean(len(self.keys))
+            if 4 * self.scene.COUNT.remembered > len(self.scene.KEYS):
+                self.clean(len(self.scene.KEYS))
             else:
-                self.room(2 * len(self.A))
+                self.room(2 * len(self.contacts.A))
+        vn, self.jump, self.out = self.contacts.VN, self.contacts.JUMP, self.contacts.OUT[0]
+        for name in ("restitution", "friction", "carried", "lifted", "forces"):
+            setattr(self.ledger, name, getattr(self.ledger, name) + getattr(self.out, name))
         way = 0.5 * h * (self.v + vn)
         self.pose = self.pose + way + self.jump[:, :3]
         self.v = vn + self.jump[:, 3:]
-        now = self.ledger - ledger
         lifted = -((self.acc * self.jump[:, :3])[: self.n, :2] / self.im[: self.n, None]).sum()
-        self.closes = self.kinetic() + lifted - before - (now[4] + now[2] + now[3] - now[0] - now[1])
-        self.losses = now[:2]
+        self.closes = (
+            self.kinetic()
+            + lifted
+            - before
+            - (self.out.forces + self.out.carried + self.out.lifted - self.out.restitution - self.out.friction)
+        )
+        self.losses = np.array((self.out.restitution, self.out.friction))
 
     def kinetic(self) -> float:
         n = self.n
@@ -124,13 +136,13 @@ class Pile:
         self.least_loss = self.deepest = 0.0
         energy = self.energy()
         for _ in range(steps):
-            carried = self.ledger[2]
+            carried = self.ledger.carried
             self.step(h)
             self.worst_closure = max(self.worst_closure, abs(self.closes))
             self.least_loss = min(self.least_loss, self.losses.min())
-            self.deepest = min(self.deepest, self.out[5])
+            self.deepest = min(self.deepest, self.out.deepest)
             after = self.energy()
-            self.rise = max(self.rise, after - energy - (self.ledger[2] - carried))
+            self.rise = max(self.rise, after - energy - (self.ledger.carried - carried))
             energy = after
         return self
 

@@ -8,9 +8,10 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from eeca_pymunk.compiled.records import row
+from eeca_pymunk.compiled.records import row, rows
+from eeca_pymunk.model.contacts import Force
 from eeca_pymunk.model.step import Count
-from eeca_pymunk.sustained.memory import FORCE_COLUMNS, find, forget, remember
+from eeca_pymunk.sustained.memory import find, forget, remember
 
 from ..packed import Thing, World, box, disk
 from .pile import Pile
@@ -108,7 +109,7 @@ def test_push_out_takes_no_more_energy_than_was_lost() -> None:
     energy = pile.energy()
     pile.run(100, 1 / 60)
     check(pile, energy)
-    assert 0.0 < pile.ledger[3] <= pile.ledger[:2].sum() * (1 + 1e-12)
+    assert 0.0 < pile.ledger.lifted <= (pile.ledger.restitution + pile.ledger.friction) * (1 + 1e-12)
 
 
 @pytest.mark.parametrize("unit", UNITS)
@@ -205,16 +206,16 @@ def test_steps_converge_to_one_another() -> None:
 def test_memory_finds_what_was_remembered() -> None:
     """Against a dictionary, with keys that collide."""
     rng = np.random.default_rng(2)
-    keys, forces, count = np.full(256, -1), np.zeros((256, FORCE_COLUMNS)), row(Count)
+    keys, forces, count = np.full(256, -1), rows(Force, 256), row(Count)
     known: dict[int, tuple[float, float]] = {}
     for _ in range(300):
         key = int(rng.integers(0, 60)) * 1024
         known[key] = (float(rng.random()), float(rng.integers(1, 4)))
         remember(keys, forces, count, key, known[key][0], 0.0, 0.0, known[key][1])
     assert count.remembered == len(known)
-    assert all(forces[find(keys, key), 0] == value for key, (value, _) in known.items())
+    assert all(forces[find(keys, key)].normal == value for key, (value, _) in known.items())
     assert find(keys, 7) < 0
-    kept, kept_forces = np.full(128, -1), np.zeros((128, FORCE_COLUMNS))
+    kept, kept_forces = np.full(128, -1), rows(Force, 128)
     forget(keys, forces, count, kept, kept_forces, 2.0)
     assert {int(key) for key in kept[kept >= 0]} == {key for key, (_, stamp) in known.items() if stamp >= 2.0}
-    assert all(kept_forces[find(kept, key), 0] == value for key, (value, stamp) in known.items() if stamp >= 2.0)
+    assert all(kept_forces[find(kept, key)].normal == value for key, (value, stamp) in known.items() if stamp >= 2.0)

@@ -11,7 +11,7 @@ from typing import Any
 
 from llvmlite import ir
 from numba.core import cgutils, types
-from numba.core.imputils import lower_getattr_generic
+from numba.core.imputils import impl_ret_borrowed, lower_getattr_generic
 from numba.core.registry import cpu_target
 from numba.core.typing.templates import AttributeTemplate
 from numba.extending import infer_getattr, intrinsic, models, register_model
@@ -116,7 +116,9 @@ def _opener(kind: type) -> Any:
 
     def opened(typing: Any, table: Any) -> Any:
         if not isinstance(table, types.Array):
-            return table(table), lambda context, builder, signature, args: args[0]
+            return table(table), lambda context, builder, signature, args: impl_ret_borrowed(
+                context, builder, signature.return_type, args[0]
+            )
 
         def point(context: Any, builder: Any, signature: Any, args: Any) -> Any:
             numbers = context.make_array(signature.args[0])(context, builder, args[0])
