@@ -9,13 +9,12 @@ from .compiled.records import Rows, columns
 from .impacts.scene import EventLoop
 from .jointed.scene import JointedLoop
 from .layout import LEFT
-from .model.joints import OF_STEPS, PIN, RATCHET, Joint
+from .model.joints import OF_STEPS, RATCHET, Joint
 from .model.shapes import Link
 from .space.world import World
 
 _FIXED = ["inv_mass", "inv_inertia", "extent", "elasticity", "friction"]  # fields of BODY that no step changes
 _TIE = "kind", "body", "soft"  # fields of JOINT that decide the plan
-_APART = 1e-7  # of the length of a pin
 
 
 class Saved:
@@ -51,6 +50,8 @@ class Saved:
         joints = world.joints
         if joints is not None:
             assert isinstance(self.method, JointedLoop)
+            for j in joints.measured():
+                joints.lengthen(j, float(self.method.joint[j].length))
             joints.joint[:] = self.method.joint
             joints.rates.update(self._rates)
             self.method.rebind(joints.joint, world.PARTNER)
@@ -78,12 +79,8 @@ class Saved:
             if name == "notch":
                 apart[joints.joint["kind"] == RATCHET] = False
             elif name == "length":
-                # pymunk's pickles do not have the length of a pin: it is measured anew, up to what the joint is apart.
-                pins = joints.joint["kind"] == PIN
-                far = np.abs(method.joint["length"] - joints.joint["length"]) > _APART * joints.joint["length"]
-                apart[pins] = far[pins]
-                apart[joints.functions] = False
-            elif name not in _TIE:
+                apart[joints.measured()] = False
+            if name not in _TIE:
                 apart[joints.functions] = False
             differs |= apart
         return not differs.any()

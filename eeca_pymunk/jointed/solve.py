@@ -136,6 +136,7 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
                 restore_joints(J, groups.COMPONENT[g])
         dismiss(A, MINE, n)
         COUNT.solves += 1
+        COUNT.solved += n
         return AGAIN, h / far
     if not held:
         pair, shapes = KEY[0] >> 1, A.SHAPE.shape[0]
@@ -154,6 +155,7 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
         fit(A, J, interval, L, t + h, slow + pull * h)
     dismiss(A, MINE, n)
     COUNT.solves += 1
+    COUNT.solved += n
     first = COUNT.pushes
     open_contacts(A, isle, contacts, motion.V, m, t, h, np.zeros(k, np.uint8))
     for z in range(m):

@@ -14,6 +14,7 @@ from ..impacts.settle import comes_to_rest
 from ..impacts.spans import dismiss
 from ..model.contacts import SOLVED
 from ..model.joints import Joints
+from ..model.parameters.intervals import BUSY_STEPS
 from ..model.scene import Scene
 from ..rows.blocks import CONVERGED, TRUNCATED
 from ..rows.build import aim, conserves, rates
@@ -29,6 +30,7 @@ from .meet import end_here, meet, shorten
 from .newton import solve_columns
 
 _SWEEPS = 1000
+_OFTEN = 64  # impacts of a body in a step
 
 
 @uncounted
@@ -54,6 +56,16 @@ def carried_along(J: Joints, s: int) -> bool:
     return False
 
 
+@uncounted
+def hit_often(A: Scene, i: int) -> bool:
+    """Whether body i has had so many impacts in this step that it rests on what it meets from now on; then what comes
+    near is in its island, elastic or not."""
+    if A.BODY[i].inv_mass == 0.0 or A.STATE[i].events < _OFTEN:
+        return False
+    A.MEMBER[i].busy = BUSY_STEPS
+    return True
+
+
 @kernel
 def collide(A: Scene, J: Joints, disks: int, a: int, b: int, t: float) -> tuple[int, int]:
     """The impact of shapes a and b, seen at instant t, with all that hangs on them: results as `..impacts.strike`."""
@@ -76,7 +88,7 @@ def collide(A: Scene, J: Joints, disks: int, a: int, b: int, t: float) -> tuple[
         if again:
             dismiss(A, A.BLOCK, n)
             n, m, PAIRS = gather(A, disks, a, b, t)
-    rest = comes_to_rest(A, a, b, t)
+    rest = comes_to_rest(A, a, b, t) or hit_often(A, i) or hit_often(A, j)
     owed, _ = owing(A, n)
     block = lay_out(A, disks, n, m, PAIRS, min(a, b) * k + max(a, b), rest, t)
     P, Q, ROWS, V = block.A, block.B, block.ROWS, block.V
@@ -157,7 +169,7 @@ def collide(A: Scene, J: Joints, disks: int, a: int, b: int, t: float) -> tuple[
         A.STATE[j].version += 1
     status, n = rejoin(A, a, b, t, n, rest, OUT[0].restitution + OUT[0].friction - owed)
     # Islands that were brought here, and do not touch after all, begin anew with those that do.
-    root = A.COUNT.pending  # of the two bodies that met one may be in no island
+    root = A.COUNT.pending  # -1 if no joints take part after all
     for c in range(ended):
         other = A.STATE[ENDED[c]].island
         if other != root:
@@ -170,6 +182,6 @@ def collide(A: Scene, J: Joints, disks: int, a: int, b: int, t: float) -> tuple[
                 if not known:
                     A.BLOCK[n] = MINE[q]
                     n += 1
-            root = unite(A, root, other)
+            root = other if root < 0 else unite(A, root, other)
     A.COUNT.pending = root
     return status, n

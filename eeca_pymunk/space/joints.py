@@ -19,6 +19,8 @@ from .edits import Edits, show_impulses, showings, shown
 from .partners import Partners
 from .spring_functions import Motion, Rate, law, own_function, put_law
 
+_ROUND_OFF = 1e-12  # of the length of a pin
+
 
 class Impulses:
     """What `constraint.impulse` would be after native's step, by row. It outlives the stepper, and holds no constraint.
@@ -138,6 +140,22 @@ class JointRows:
         item, kind = self.items[j], self.joint[j].kind
         out = any(body in self.partners.items and body.body_type == pymunk.Body.DYNAMIC for body in (item.a, item.b))
         return out or self.joint[j].soft != 0 or kind in (SPRING, ROTARY_SPRING, MOTOR)
+
+    def measured(self) -> list[int]:
+        """The pins that are as long as their anchors are apart: pymunk's pickles do not have their lengths."""
+        found = []
+        for j, item in enumerate(self.items):
+            if isinstance(item, pymunk.PinJoint):
+                apart = item.a.local_to_world(item.anchor_a).get_distance(item.b.local_to_world(item.anchor_b))
+                if abs(item.distance - apart) <= _ROUND_OFF * apart:
+                    found.append(j)
+        return found
+
+    def lengthen(self, j: int, length: float) -> None:
+        """Give the pin of row j its length, which is no edit of the user's."""
+        self.items[j].distance = length
+        self._edits.forget(j)
+        self.joint[j].length = length
 
     def planned(self) -> None:
         """The joints have been planned as they are."""

@@ -1,0 +1,148 @@
+"""Thin shapes among thin walls: planks remember sides, corners have no way out, walls that turn carry planks."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pymunk
+import pytest
+
+import eeca_pymunk as ep
+from eeca_pymunk.geometry.corners import note_corners, thin
+from eeca_pymunk.model.shapes import Link
+
+G = 9.81
+
+
+def walls(space: pymunk.Space, body: pymunk.Body, *lines: tuple[tuple[float, float], tuple[float, float]]) -> None:
+    for p, q in lines:
+        wall = pymunk.Segment(body, p, q, 0.0)
+        wall.elasticity, wall.friction = 1.0, 0.0
+        space.add(wall)
+
+
+def rod(space: pymunk.Space, x: float, y: float, vx: float) -> pymunk.Body:
+    body = pymunk.Body(1.0, 0.3)
+    body.position, body.velocity = (x, y), (vx, 0.0)
+    shape = pymunk.Segment(body, (-1.0, 0.0), (1.0, 0.0), 0.0)
+    shape.elasticity, shape.friction = 0.0, 0.0
+    space.add(body, shape)
+    return body
+
+
+BOX = (((-5, 0), (5, 0)), ((5, 0), (5, 5)), ((5, 5), (-5, 5)), ((-5, 5), (-5, 0)))  # end to end
+ROOM = (((-9, 0), (9, 0)), ((5, 0), (5, 5)), ((-5, 5), (-5, 0)))  # walls that stand on a floor that goes on
+
+
+@pytest.mark.parametrize("lines", [BOX, ROOM])
+@pytest.mark.parametrize("height", [0.0, 1e-12, 1e-9, 1e-3])
+@pytest.mark.parametrize("dt", [1 / 60, 0.1])
+def test_a_rod_that_slides_along_a_wall_stays_in_its_corner(
+    lines: tuple[tuple[tuple[float, float], tuple[float, float]], ...], height: float, dt: float
+) -> None:
+    """Of two walls without width that meet, one has no point where a rod in the plane of the other comes: it is stopped
+    as by one connected boundary."""
+    space = pymunk.Space()
+    space.gravity = 0.0, -G
+    walls(space, space.static_body, *lines)
+    body = rod(space, 0.0, height, 1.0)
+    stepper = ep.EECA(space)
+    for _ in range(round(12.0 / dt)):
+        stepper.step(dt)
+        for end in (-1.0, 1.0):
+            x, y = body.local_to_world((end, 0.0))
+            assert abs(x) < 5.0 + 1e-3
+            assert y > -1e-3
+
+
+def test_what_is_outside_of_a_corner_slides_past_it() -> None:
+    """The plane of a wall goes on beyond its end for what is inside of the corner alone."""
+    space = pymunk.Space()
+    walls(space, space.static_body, *BOX)
+    body = rod(space, -8.0, -1e-9, 1.0)
+    stepper = ep.EECA(space)
+    for _ in range(160):
+        stepper.step(0.1)
+    assert body.position.x == pytest.approx(8.0, abs=1e-6)
+    assert body.position.y <= 0.0
+
+
+@pytest.mark.parametrize("dt", [1 / 60, 0.1])
+def test_a_plank_on_a_wall_that_turns_stays_on_it(dt: float) -> None:
+    """The normal turns with the wall, which is large: rows of contacts have that of the middle of the span, though the
+    wall's far ends go many times the plank's size. No plank of .02 gets through."""
+    space = pymunk.Space()
+    space.gravity = 0.0, -G
+    table = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    space.add(table)
+    walls(space, table, ((-5, 0), (5, 0)))
+    for wall in table.shapes:
+        wall.friction = 1.0
+    plank = pymunk.Body(1.0, 0.3)
+    plank.position = 0.0, 0.01
+    shape = pymunk.Poly.create_box(plank, (1.0, 0.02))
+    shape.friction, shape.elasticity = 1.0, 0.0
+    space.add(plank, shape)
+    stepper = ep.EECA(space)
+    for k in range(round(4.0 / dt)):
+        table.angular_velocity = 0.5 * math.sin(3.0 * k * dt)
+        stepper.step(dt)
+        heights = [table.world_to_local(plank.local_to_world(v)).y for v in shape.get_vertices()]
+        assert min(heights) > -0.02 * dt
+        assert max(heights) < 0.04
+
+
+def test_planks_that_are_pressed_through_a_thin_floor_come_back() -> None:
+    """The shortest way out of a plank that is more than half-way through a wall is the wrong one: its side tells."""
+    space = pymunk.Space()
+    space.gravity = 0.0, -G
+    walls(space, space.static_body, ((-5, 0), (5, 0)))
+    plank = pymunk.Body(1.0, 0.3)
+    plank.position = 0.0, 0.011
+    shape = pymunk.Poly.create_box(plank, (1.0, 0.02))
+    shape.friction, shape.elasticity = 0.5, 0.0
+    space.add(plank, shape)
+    heavy = pymunk.Body(1e4, 1e3)
+    heavy.position, heavy.velocity = (0.0, 0.4), (0.0, -20.0)
+    block = pymunk.Poly.create_box(heavy, (0.6, 0.6))
+    block.friction, block.elasticity = 0.5, 0.0
+    space.add(heavy, block)
+    stepper = ep.EECA(space)
+    for _ in range(40):
+        stepper.step(0.1)
+    assert plank.position.y > 0.0
+    assert heavy.position.y > 0.3
+
+
+def test_corners_are_found_where_segments_of_one_body_meet() -> None:
+    """End to end, and with an end on the other; the next one about the end, either way, with the angle to it."""
+    lines = [((0, 0), (2, 0)), ((2, 0), (2, 1)), ((1, 0), (1, 3)), ((0, 0), (-1, -1)), ((0, 0), (1, 1))]
+    LINK = np.zeros(len(lines), Link.TYPE)
+    LINK["first"], LINK["vertices"] = 2 * np.arange(len(lines)), 2
+    LINK["owner"][4] = 1  # of another body
+    VERTEX = np.zeros((2 * len(lines), 4))
+    VERTEX[:, :2] = np.array(lines, float).reshape(-1, 2)
+    CORNER = np.zeros((4 * len(lines), 4))
+    note_corners(LINK, VERTEX, CORNER)
+    angles = {row: math.degrees(math.atan2(z, c)) for row, (k, c, z, _) in enumerate(CORNER) if k > 0}
+    assert {row: int(CORNER[row, 0]) - 1 for row in angles} == {
+        0: 3, 1: 3, 2: 1, 3: 1,  # both ends of the first
+        4: 0, 5: 0, 8: 0, 9: 0, 12: 0, 13: 0,
+    }  # fmt: skip
+    assert [angles[k] for k in (0, 2, 4)] == pytest.approx([-135.0, -90.0, 90.0])
+    # On the floor to the left and to the right of the wall that stands on it.
+    assert [angles[k] for k in (8, 9)] == pytest.approx([90.0, -90.0])
+
+
+def test_planks_are_thin_and_boxes_are_not() -> None:
+    space = pymunk.Space()
+    body = pymunk.Body(1.0, 1.0)
+    shapes = [pymunk.Poly.create_box(body, (1.0, w)) for w in (0.02, 0.1, 0.2, 1.0)]
+    space.add(body, *shapes)
+    method = ep.EECA(space)
+    method.step(0.1)
+    loop = method._method
+    assert loop is not None
+    scene = loop.scene  # type: ignore[attr-defined]
+    assert sorted(thin(scene.LINK, scene.VERTEX).tolist()) == [False, False, True, True]
