@@ -104,16 +104,16 @@ def _filmed(
     place = np.full(len(world.bodies), -1, np.intp)
     place[rows] = np.arange(len(kept))
     owner = place[world.owner]
-    reel = stepper.film(count, dt, kept, every, events=True, progress=progress)
-    frames = reel.frames
+    buffers = stepper.buffered_run(count, dt, kept, every, events=True, progress=progress)
+    frames = buffers.frames
     position, angle, velocity, spin = frames[:, :, :2], frames[:, :, 2], frames[:, :, 3:5], frames[:, :, 5]
     d = np.argsort(rows)  # as `measure` adds
     d = d[dynamic[d]]
     of = traces(mass[d], moment[d], position[:, d], velocity[:, d], spin[:, d], space.gravity)
     return Recording(
         np.zeros(len(frames)), position.copy(), angle.copy(), velocity.copy(), of.energy, of.linear_momentum, mass,
-        outlines, kinetic=of.kinetic, ledger=LedgerTrace(*reel.film.SUMS.T.copy()), spin=spin.copy(),
-        events=Events.of(reel.events, owner).in_order(), parameters={"steps_unmet": int(reel.progress.unmet)},
+        outlines, kinetic=of.kinetic, ledger=LedgerTrace(*buffers.arrays.SUMS.T.copy()), spin=spin.copy(),
+        events=Events.of(buffers.events, owner).in_order(), parameters={"steps_unmet": int(buffers.progress.unmet)},
     )  # fmt: skip
 
 

@@ -13,7 +13,7 @@ from .arrays import FloatArray, IntArray
 from .energy.ledger_trace import entries
 from .errors import NotFiniteError
 from .events import Events
-from .impacts.film import Reel
+from .impacts.run_buffers import RunBuffers
 from .impacts.scene import EventLoop
 from .jointed.scene import JointedLoop
 from .layout import BODY_ROW
@@ -58,31 +58,31 @@ class _Copy:
     def roll(self, job: Job, first: int, last: int) -> list[Events]:
         """The rollouts from number `first` to before `last`; the impacts of each, none unless the job is full."""
         if not self.loop.listed:
-            return self._shoot(job, first, last)
+            return self._take_rollouts(job, first, last)
         events = []
         for k in range(first, last):
             self.loop.start_anew(self._at, job.states[k])
-            events += self._shoot(job, k, k + 1)
+            events += self._take_rollouts(job, k, k + 1)
         return events
 
-    def _shoot(self, job: Job, first: int, last: int) -> list[Events]:
+    def _take_rollouts(self, job: Job, first: int, last: int) -> list[Events]:
         T, world = job.frames.shape[1], self.world
-        reel = Reel(
+        buffers = RunBuffers(
             job.dt, world.gravity, world.left(job.dt), 0.0, self.rows, (last - first) * T, job.every, job.full,
             job.states[first:last], None if job.push is None else job.push[first:last], job.frames[first:last],
         )  # fmt: skip
-        reel.film = reel.film._replace(OWN=self.loop.own, FRESH=self.loop.fresh)
-        RUN = reel.progress
+        buffers.arrays = buffers.arrays._replace(OWN=self.loop.own, FRESH=self.loop.fresh)
+        RUN = buffers.progress
         RUN.until, RUN.rollouts = job.steps, last - first
-        status = self.loop.follow(reel, self.states)
+        status = self.loop.follow(buffers, self.states)
         if status < 0:
             raise NotFiniteError(f"rollout {first + int(RUN.rollout)}, after {int(RUN.done)} steps: {TOO_FAR}")
-        job.ledger[first:last] = reel.film.SUMS.reshape(last - first, T, 6)
-        job.unmet[first:last] = reel.film.COUNTS[:, 0]
+        job.ledger[first:last] = buffers.arrays.SUMS.reshape(last - first, T, 6)
+        job.unmet[first:last] = buffers.arrays.COUNTS[:, 0]
         if not job.full:
             return []
-        events = Events.of(reel.events, self._place[world.owner])
-        ends = [0, *reel.film.COUNTS[:, 1].tolist()]
+        events = Events.of(buffers.events, self._place[world.owner])
+        ends = [0, *buffers.arrays.COUNTS[:, 1].tolist()]
         return [events.part(a, b).in_order() for a, b in pairwise(ends)]
 
 

@@ -13,8 +13,8 @@ from tqdm import tqdm
 
 from .arrays import FloatArray, IntArray
 from .errors import NotFiniteError
-from .impacts.film import Reel
 from .impacts.run import ENERGY
+from .impacts.run_buffers import RunBuffers
 from .impacts.scene import EventLoop
 from .layout import BODY_ROW, LEFT, NOW
 from .packed_space import TOO_FAR
@@ -150,15 +150,15 @@ class RunningStepper(PackedStepper):
         steps, dt = check_steps(steps), check_dt(dt)
         if steps == 0 or dt == 0.0 or not self.compiles():
             return super().run(steps, dt, progress)
-        reel = self.film(steps, dt, progress=progress)
-        RUN = reel.progress
+        buffers = self.buffered_run(steps, dt, progress=progress)
+        RUN = buffers.progress
         counted = int(RUN.impacts), int(RUN.unmet), int(RUN.iterations)
-        return RunReport(self.time, int(RUN.done), reel.ledger, *counted, float(RUN.lock))
+        return RunReport(self.time, int(RUN.done), buffers.ledger, *counted, float(RUN.lock))
 
-    def film(
+    def buffered_run(
         self, steps: int, dt: float, kept: Sequence[pymunk.Body] = (), every: int = 0, events: bool = False,
         progress: bool = False,
-    ) -> Reel:  # fmt: skip
+    ) -> RunBuffers:  # fmt: skip
         """Take steps > 0 of dt > 0 in compiled code, of a space that `compiles`, and keep frames of some bodies.
 
         Args:
@@ -172,37 +172,37 @@ class RunningStepper(PackedStepper):
             self.adjust(world, dt)
         rows = np.array([world.bodies.row[body] for body in kept], np.int64)
         moments = 1 + steps // every if every else 0
-        reel = Reel(dt, world.gravity, world.left(dt), self.time, rows, moments, every, events)
+        buffers = RunBuffers(dt, world.gravity, world.left(dt), self.time, rows, moments, every, events)
         if every:
-            reel.frames[0] = world.STATES[NOW, rows, :6]
-            reel.progress.frame = 1
+            buffers.frames[0] = world.STATES[NOW, rows, :6]
+            buffers.progress.frame = 1
         status = 0
         try:
-            status = self._shoot(world, reel, steps, progress)
+            status = self._take_steps(world, buffers, steps, progress)
         finally:
             # After an interrupt too.
-            failure = self._failure(world, reel, dt, status) if status < 0 else None
-            self._land_run(world, reel, dt, status)
+            failure = self._failure(world, buffers, dt, status) if status < 0 else None
+            self._land_run(world, buffers, dt, status)
             if failure is not None:
                 raise failure
-        return reel
+        return buffers
 
-    def _shoot(self, world: World, reel: Reel, steps: int, progress: bool) -> int:
+    def _take_steps(self, world: World, buffers: RunBuffers, steps: int, progress: bool) -> int:
         """Follow the run to its end; its bits or a negative code."""
-        RUN, loop, stretch, status = reel.progress, self.event_loop, _FIRST, 0
+        RUN, loop, stretch, status = buffers.progress, self.event_loop, _FIRST, 0
         assert loop is not None
         states = world.STATES, world.WALK, world.EXTRA, world.ENDS
         with tqdm(total=steps, desc=type(self).__name__, unit="step", disable=not progress) as bar:
             while status >= 0 and RUN.done < steps:
                 RUN.until = min(steps, int(RUN.done) + stretch)
                 began, before = perf_counter(), int(RUN.done)
-                status = loop.follow(reel, states)
+                status = loop.follow(buffers, states)
                 took = perf_counter() - began
                 stretch = 2 * stretch if took < _SHORT else max(stretch // 2, 1) if took > _LONG else stretch
                 bar.update(int(RUN.done) - before)
         return status
 
-    def _failure(self, world: World, reel: Reel, dt: float, status: int) -> Exception:
+    def _failure(self, world: World, buffers: RunBuffers, dt: float, status: int) -> Exception:
         """The error of a step that failed."""
         loop = self.event_loop
         assert loop is not None
@@ -215,10 +215,10 @@ class RunningStepper(PackedStepper):
             return error
         raise AssertionError(status)
 
-    def _land_run(self, world: World, reel: Reel, dt: float, status: int) -> None:
+    def _land_run(self, world: World, buffers: RunBuffers, dt: float, status: int) -> None:
         """Bring the space to where the steps that were taken have left it."""
-        RUN = reel.progress
-        broken = status < 0 or reel.halted
+        RUN = buffers.progress
+        broken = status < 0 or buffers.halted
         if broken:
             self._world = self._past = None
             moves = world.WALK[BODY_ROW] >= 0

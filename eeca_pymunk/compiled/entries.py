@@ -42,7 +42,7 @@ TABLES = {
     "Contacts": """
         A:i8[1] B:i8[1] ROWS:Row[1] KEY:i8[1] L:f8[2] LOSS:f8[2] VN:f8[2] JUMP:f8[2] OUT:Solved[1]
     """,
-    "Film": """
+    "RunArrays": """
         RUN:Run KEPT:i8[1] FRAMES:f8[2] SUMS:f8[2] EVENTS:Impulse[1] TOTAL:f8[1] INITIAL:f8[2] PUSH:f8[2]
         COUNTS:i8[2] OWN:i8[1] FRESH:i8[1]
     """,
@@ -65,12 +65,12 @@ ENTRIES = {
     "impacts.booking:flag_again": "{Scene}",
     "impacts.step:step": "{Scene} f8[3] i8[2] f8[2] f8[1] f8 f8 f8 f8 i8 bool i8",
     "impacts.together:step_together": "{Scene} f8[3] i8[2] f8[2] f8[1] f8[1] f8 f8 f8 f8 i8",
-    "impacts.run:run": "{Scene} {Film} f8[3] i8[2] f8[2] f8[1] f8[1] i8 bool bool",
+    "impacts.run:run": "{Scene} {RunArrays} f8[3] i8[2] f8[2] f8[1] f8[1] i8 bool bool",
     "joints.plan:make_plan": "Body[1] Joint[1] Component[1] ComponentBody[1] Coupling[1]",
     "joints.world:step_all": "{Joints} Body[1] f8",
     "jointed.loop:step_jointed": "{Scene} {Joints} f8[3] i8[2] f8[2] f8[1] f8 f8 f8 f8 bool i8",
     "jointed.together:step_together_jointed": "{Scene} {Joints} f8[3] i8[2] f8[2] f8[1] f8[1] f8 f8 f8 f8 i8",
-    "jointed.run:run_jointed": "{Scene} {Joints} {Film} f8[3] i8[2] f8[2] f8[1] f8[1] i8 bool bool",
+    "jointed.run:run_jointed": "{Scene} {Joints} {RunArrays} f8[3] i8[2] f8[2] f8[1] f8[1] i8 bool bool",
     # Of tests alone, which step islands by themselves: some hundred times slower as plain Python.
     "sustained.step:step_island": "{Scene} {Island} {Contacts} i8 f8 i8 f8 f8 f8 f8",
     "sustained.memory:forget": "i8[1] Force[1] Count i8[1] Force[1] f8",

@@ -44,7 +44,7 @@ def finish(A: Scene, block: Block, n: int, m: int, L: FloatArray, OUT: Rows[Solv
     for z in range(len(ROWS)):
         if L[z, 0] > 0.0 and COUNT.logged < A.LOG.shape[0]:
             note(
-                A.LOG, COUNT.logged, block.OF[z] // k, block.OF[z] % k, t, L[z, 0], L[z, 1], ROWS[z].nx, ROWS[z].ny,
+                A.LOG[COUNT.logged], block.OF[z] // k, block.OF[z] % k, t, L[z, 0], L[z, 1], ROWS[z].nx, ROWS[z].ny,
                 block.POINTS[z, 0], block.POINTS[z, 1], L[z, 0] / ROWS[z].k_n, math.nan,
             )  # fmt: skip
             COUNT.logged += 1

@@ -18,10 +18,7 @@ def forecast(A: Scene, disks: int, moving: int, i: int, t: float, end: float, se
         predict_disk(A, disks, i, t, end, several)
         return
     until = A.RESTING[i].until if A.STATE[i].island == i else math.inf
-    predict(
-        A.BODY, A.STATE, A.SHAPE, A.LINK, A.VERTEX, A.MARK, A.LIST, A.POOL, A.FLAG, A.RULE, A.HEAP_TIME, A.HEAP_BODY,
-        A.WORK, A.PLACE, A.COUNT, disks, moving, i, t, end, until,
-    )  # fmt: skip
+    predict(A, disks, moving, i, t, end, until)
 
 
 @uncounted

@@ -9,14 +9,13 @@ from __future__ import annotations
 
 import math
 
-from ..arrays import FlagArray, FloatArray, IntArray, PoolArray
 from ..compiled import merged, uncounted
 from ..compiled.records import Rows
 from ..geometry.flight import norm
-from ..model.bodies import CHECK, LEAVE, NOTHING, RENEW, Body, Next
+from ..model.bodies import CHECK, LEAVE, NOTHING, RENEW, Body
 from ..model.parameters.events import INSIDE
-from ..model.shapes import Link, List, Mark, Shape
-from ..model.step import Count
+from ..model.scene import Scene
+from ..model.shapes import Link, Mark, Shape
 from ..pairs.lists import centre
 from ..pairs.rules import barred
 from .heap import push
@@ -67,35 +66,31 @@ def has_left(BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], MARK: Rows[
 
 
 @merged
-def predict(
-    BODY: Rows[Body], STATE: Rows[Next], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, MARK: Rows[Mark],
-    LIST: Rows[List], POOL: PoolArray, FLAG: FlagArray, RULE: FloatArray, TIME: FloatArray, OF: IntArray,
-    WORK: FloatArray, PLACE: IntArray, COUNT: Count, disks: int, moving: int, i: int, now: float, end: float,
-    until: float,
-) -> None:  # fmt: skip
+def predict(A: Scene, disks: int, moving: int, i: int, now: float, end: float, until: float) -> None:
     """Forecast body i from its present path, at an instant `now` of the loop, and put what is due in this step on the
     heap.
 
     Args:
-        PLACE: (n,) 0 or more for bodies that are forecast together, the first of a pair of which sees it; else -1.
+        A: PLACE (n,) is 0 or more for bodies that are forecast together, the first of a pair of which sees it; else -1.
         until: instant at which a span of the body's island ends, infinite if it has none of its own.
     """
+    BODY, STATE, SHAPE, LINK, LIST = A.BODY, A.STATE, A.SHAPE, A.LINK, A.LIST
     best, own, other = math.inf, -1, NOTHING
     first = STATE[i].first_shape
     for s in range(first, first + STATE[i].shapes):
-        t = leaves(BODY, SHAPE, LINK, MARK, disks, i, s, now)
+        t = leaves(BODY, SHAPE, LINK, A.MARK, disks, i, s, now)
         if t < best:
             best, own, other = t, s, LEAVE
         start = LIST[s].start
         for q in range(start, start + LIST[s].number):
-            if FLAG[q] != 0:
+            if A.FLAG[q] != 0:
                 continue
-            o = int(POOL[q])
-            if PLACE[LINK[o].owner] >= 0 and LINK[o].owner < i:
+            o = int(A.POOL[q])
+            if A.PLACE[LINK[o].owner] >= 0 and LINK[o].owner < i:
                 continue
-            if RULE.shape[0] > 0 and barred(RULE, s, o):
+            if A.RULE.shape[0] > 0 and barred(A.RULE, s, o):
                 continue
-            t, certain = meet(BODY, SHAPE, LINK, VERTEX, WORK, s, o, disks, end, -1.0)
+            t, certain = meet(BODY, SHAPE, LINK, A.VERTEX, A.WORK, s, o, disks, end, -1.0)
             if t < best or (t == best and other >= 0 and (s < own or (s == own and o < other))):
                 best, own, other = t, s, (o if certain else CHECK)
     if until < best:
@@ -108,4 +103,4 @@ def predict(
     if i < disks:
         LIST[i].later = CHECK
     if best < end:
-        COUNT.heap = push(TIME, OF, COUNT.heap, best, i)
+        A.COUNT.heap = push(A.HEAP_TIME, A.HEAP_BODY, A.COUNT.heap, best, i)

@@ -11,7 +11,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import Table, kernel, uncounted
 from ..layout import BODY_ROW, LEFT
 from ..layout import NOW as READ
-from ..model.run import AFTER, BETWEEN, WITHIN, Film, film_of
+from ..model.run import AFTER, BETWEEN, WITHIN, RunArrays, run_arrays_of
 from ..model.scene import Scene, scene_of
 from .step import resume, start
 from .together import begin_together, resume_together
@@ -33,7 +33,7 @@ def carry_on(STATES: FloatArray, WALK: IntArray) -> None:
 
 
 @uncounted
-def set_back(A: Scene, F: Film, STATES: FloatArray, WALK: IntArray) -> None:
+def set_back(A: Scene, F: RunArrays, STATES: FloatArray, WALK: IntArray) -> None:
     """Begin a rollout: everything is forgotten, and bodies are put where INITIAL has them."""
     now, after = STATES[READ], STATES[LEFT]
     if A.COUNT.remembered > 0:
@@ -57,7 +57,7 @@ def set_back(A: Scene, F: Film, STATES: FloatArray, WALK: IntArray) -> None:
 
 
 @uncounted
-def before_step(A: Scene, F: Film, STATES: FloatArray, WALK: IntArray) -> None:
+def before_step(A: Scene, F: RunArrays, STATES: FloatArray, WALK: IntArray) -> None:
     """What the next step starts from."""
     RUN, now = F.RUN, STATES[READ]
     if RUN.done > 0:
@@ -73,7 +73,7 @@ def before_step(A: Scene, F: Film, STATES: FloatArray, WALK: IntArray) -> None:
 
 
 @uncounted
-def after_step(A: Scene, F: Film, STATES: FloatArray) -> int:
+def after_step(A: Scene, F: RunArrays, STATES: FloatArray) -> int:
     """Keep what there is to be kept of a step: 0, or ENERGY or ROOM_FOR_IMPACTS with nothing done."""
     RUN, PAR, COUNT, LOG, T = F.RUN, A.PAR, A.COUNT, A.LOG, F.TOTAL
     if not math.isfinite(PAR.after):
@@ -121,7 +121,7 @@ def after_step(A: Scene, F: Film, STATES: FloatArray) -> int:
 
 
 @uncounted
-def next_rollout(F: Film) -> bool:
+def next_rollout(F: RunArrays) -> bool:
     """Whether there is one more to be made."""
     RUN = F.RUN
     if RUN.rollouts == 0:
@@ -133,20 +133,20 @@ def next_rollout(F: Film) -> bool:
 
 @kernel
 def run(
-    TABLE: Table, FILM: Table, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray,
+    TABLE: Table, ARRAYS: Table, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray,
     USUAL: FloatArray, disks: int, lossy: bool, together: bool,
 ) -> int:  # fmt: skip
     """Steps until RUN.until of them are done, of each rollout if there are any.
 
     Args:
-        TABLE: `table_of` a Scene.  FILM: `table_of` a Film.  USUAL: see `together.py`.
+        TABLE: `table_of` a Scene.  ARRAYS: `table_of` a RunArrays.  USUAL: see `together.py`.
         disks, lossy: see `step.step`.  together: whether all contacts of a step act together at its middle.
 
     Returns:
         the bits of all steps; a negative code of a step, or ENERGY, with the state at its start in STATES; or a wish
         for room: give some, and call again.
     """
-    A, F = scene_of(TABLE), film_of(FILM)
+    A, F = scene_of(TABLE), run_arrays_of(ARRAYS)
     RUN = F.RUN
     while True:
         while RUN.done < RUN.until:

@@ -25,9 +25,9 @@ from ..report import Details, of_events
 from ..sustained.memory import forget
 from ..transfer import FORCES
 from .booking import flag_again
-from .film import Reel
 from .remembering import Remembering
 from .run import ROOM_FOR_IMPACTS, run
+from .run_buffers import RunBuffers
 from .step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, step
 from .together import step_together
 
@@ -108,21 +108,21 @@ class EventLoop(Remembering):
             status = self._bind_to((STATES, WALK, EXTRA, ENDS))(dt, gx, gy, left, *self._options, bits)
         return status
 
-    def follow(self, reel: Reel, states: tuple[AnyArray, ...]) -> int:
-        """Take the steps that `reel` asks for; the bits of all, a negative code of `transfer.py`, or `run.ENERGY`."""
+    def follow(self, buffers: RunBuffers, states: tuple[AnyArray, ...]) -> int:
+        """Take the steps that `buffers` asks for; all bits, a negative code of `transfer.py`, or `run.ENERGY`."""
         while True:
-            call = reel.call = reel.call or self._bind_run(reel, states)
+            call = buffers.call = buffers.call or self._bind_run(buffers, states)
             status = check("run", call(self.disks, self.lossy, self.together))
             if status == ROOM_FOR_IMPACTS:
-                reel.more_events()
+                buffers.more_events()
             elif status <= ROOM_FOR_LISTS:
                 self._grow(status)
-                reel.call = None
+                buffers.call = None
             else:
                 return status
 
-    def _bind_run(self, reel: Reel, states: tuple[AnyArray, ...]) -> Callable[..., int]:
-        return run.bind(self.table, reel.table, *states, self._usual)
+    def _bind_run(self, buffers: RunBuffers, states: tuple[AnyArray, ...]) -> Callable[..., int]:
+        return run.bind(self.table, buffers.table, *states, self._usual)
 
     def _bind_to(self, states: tuple[AnyArray, ...]) -> Callable[..., int]:
         """The step as machine code, bound to these arrays and to those of the scene."""

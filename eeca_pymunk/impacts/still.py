@@ -165,7 +165,7 @@ def stand(A: Scene, c: int) -> None:
     touch(A, c, A.PAR.stamp)
     if A.COUNT.logged < A.LOG.shape[0] and (R.normal != 0.0 or R.tangential != 0.0):
         note(
-            A.LOG, A.COUNT.logged, A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, 0.5 * A.PAR.dt, R.normal, R.tangential,
+            A.LOG[A.COUNT.logged], A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, 0.5 * A.PAR.dt, R.normal, R.tangential,
             R.nx, R.ny, R.px, R.py, R.change, R.gap,
         )  # fmt: skip
         A.LOG[A.COUNT.logged].duration = A.PAR.dt

@@ -86,14 +86,14 @@ def alone(A: Scene, disks: int, i: int, other: int, t: float) -> bool:
 
 @uncounted
 def note(
-    LOG: Rows[Impulse], n: int, a: int, b: int, t: float, lam: float, beta: float, nx: float, ny: float, px: float,
-    py: float, change: float, gap: float,
+    row: Impulse, a: int, b: int, t: float, lam: float, beta: float, nx: float, ny: float, px: float, py: float,
+    change: float, gap: float,
 ) -> None:  # fmt: skip
-    """Row n of the log: an impulse between shapes a and b at instant t; `gap` at the start of the step, nan if that is
-    to be found out."""
-    LOG[n].first, LOG[n].second, LOG[n].when, LOG[n].normal, LOG[n].tangential = a, b, t, lam, beta
-    LOG[n].nx, LOG[n].ny, LOG[n].px, LOG[n].py, LOG[n].change = nx, ny, px, py, change
-    LOG[n].gap, LOG[n].duration = gap, 0.0
+    """Write a row of the log: an impulse between shapes a and b at instant t; `gap` at the start of the step, nan if
+    that is to be found out."""
+    row.first, row.second, row.when, row.normal, row.tangential = a, b, t, lam, beta
+    row.nx, row.ny, row.px, row.py, row.change = nx, ny, px, py, change
+    row.gap, row.duration = gap, 0.0
 
 
 @uncounted
@@ -158,6 +158,6 @@ def strike_disk(A: Scene, disks: int, i: int, o: int, t: float) -> None:
         A.STATE[j].version += 1
         A.STATE[j].events += 1
     PAR.restitution += 0.5 * lam * (1.0 - e) * max(-u, 0.0)
-    note(A.LOG, A.COUNT.logged, i, o, t, lam, beta, nx, ny, px, py, lam * free, math.nan)
+    note(A.LOG[A.COUNT.logged], i, o, t, lam, beta, nx, ny, px, py, lam * free, math.nan)
     A.COUNT.logged += 1
     A.COUNT.impacts += 1

@@ -15,8 +15,8 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..compiled.records import Rows, zeros
 from ..joints.boxes import FIRST_OF_DISC, SECOND_OF_DISC, SINGLE, on_disc
-from ..joints.entries import held
-from ..model.joints import BOUNDED_ROW, GIVEN, GROOVE, RATCHET, ROTARY_LIMIT, SLIDE, BoundedRow, Joints
+from ..joints.entries import held, interval_of
+from ..model.joints import BOUNDED_ROW, GIVEN, GROOVE, BoundedRow, Joints
 from ..model.scene import Scene
 from .component import answer
 from .groups import Groups
@@ -76,11 +76,7 @@ def note_row(A: Scene, J: Joints, B: Bounded, s: int, i: int, h: float) -> None:
             B.ROW[i, 3 * end + c] = hinge.rows[r, 3 * end + c]
             if B.END[i, end] < 0:
                 B.ROWS[i].speed += B.ROW[i, 3 * end + c] * J.LOCAL[at].v0[c]
-    bound = hinge.bound * h
-    low = -bound
-    if J.LINK[k].kind in (SLIDE, ROTARY_LIMIT, RATCHET):
-        low, bound = (0.0, bound) if J.LINK[k].side < 0 else (-bound, 0.0)
-    B.ROWS[i].low, B.ROWS[i].high = low, bound
+    B.ROWS[i].low, B.ROWS[i].high = interval_of(J.LINK[k].kind, J.LINK[k].side, hinge.bound * h)
 
 
 @uncounted

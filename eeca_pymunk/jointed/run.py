@@ -7,7 +7,7 @@ from ..compiled import Table, kernel
 from ..impacts.run import after_step, before_step, next_rollout
 from ..impacts.together import begin_together
 from ..model.joints import joints_of
-from ..model.run import AFTER, BETWEEN, WITHIN, film_of
+from ..model.run import AFTER, BETWEEN, WITHIN, run_arrays_of
 from ..model.scene import scene_of
 from .loop import resume_jointed, start_jointed
 from .together import resume_together_jointed
@@ -15,11 +15,11 @@ from .together import resume_together_jointed
 
 @kernel
 def run_jointed(
-    TABLE: Table, JOINTS: Table, FILM: Table, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray,
+    TABLE: Table, JOINTS: Table, ARRAYS: Table, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray,
     USUAL: FloatArray, disks: int, lossy: bool, together: bool,
 ) -> int:  # fmt: skip
     """Arguments and answer as of `..impacts.run.run`."""
-    A, J, F = scene_of(TABLE), joints_of(JOINTS), film_of(FILM)
+    A, J, F = scene_of(TABLE), joints_of(JOINTS), run_arrays_of(ARRAYS)
     RUN = F.RUN
     while True:
         while RUN.done < RUN.until:

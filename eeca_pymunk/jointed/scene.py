@@ -9,9 +9,9 @@ import numpy as np
 from ..arrays import AnyArray, FloatArray, IntArray
 from ..compiled import table_of
 from ..compiled.records import Rows
-from ..impacts.film import Reel
 from ..impacts.memory import OF_SCENE, gathered
 from ..impacts.remembering import UNBOUND
+from ..impacts.run_buffers import RunBuffers
 from ..impacts.scene import EventLoop
 from ..joints.workspace import make_joints
 from ..model.bodies import Body
@@ -90,5 +90,5 @@ class JointedLoop(EventLoop):
             return step_together_jointed.bind(self.table, self._ties, *states, self._usual)
         return step_jointed.bind(self.table, self._ties, *states)
 
-    def _bind_run(self, reel: Reel, states: tuple[AnyArray, ...]) -> Callable[..., int]:
-        return run_jointed.bind(self.table, self._ties, reel.table, *states, self._usual)
+    def _bind_run(self, buffers: RunBuffers, states: tuple[AnyArray, ...]) -> Callable[..., int]:
+        return run_jointed.bind(self.table, self._ties, buffers.table, *states, self._usual)

@@ -17,9 +17,9 @@ import math
 from ..arrays import FloatArray
 from ..compiled import uncounted
 from ..compiled.records import Rows
-from ..model.joints import BOXED, GROOVE, RATCHET, ROTARY_LIMIT, SLIDE, BodyStep, Coupling, JointStep, Workspace
+from ..model.joints import BOXED, GROOVE, BodyStep, Coupling, JointStep, Workspace
 from .dual import STRIDE
-from .entries import held
+from .entries import held, interval_of
 
 MANY = 64  # bounded rows, above which each iteration decides for each row by itself (`soft`)
 ROOM = 8  # arrays of one number per row, beside the columns (and a right side) and two matrices
@@ -84,10 +84,7 @@ def measure_boxes(W: Workspace, n: int, h: float, fresh: bool) -> None:
     row = 0
     for k in range(W.joints):
         rows = rows_of(link, k)
-        bound = hinge[k].bound * abs(h)
-        low = -bound
-        if link[k].kind in (SLIDE, ROTARY_LIMIT, RATCHET):
-            low, bound = (0.0, bound) if link[k].side < 0 else (-bound, 0.0)
+        low, bound = interval_of(link[k].kind, link[k].side, hinge[k].bound * abs(h))
         for r in range(rows):
             if fresh:
                 for c in range(n):

@@ -20,6 +20,14 @@ def held(link: Rows[Coupling], k: int, r: int) -> bool:
 
 
 @merged
+def interval_of(kind: int, side: int, bound: float) -> tuple[float, float]:
+    """Least and largest impulse of a joint of bounded force, by its largest amount: limits only push inwards."""
+    if kind in (SLIDE, ROTARY_LIMIT, RATCHET):
+        return (0.0, bound) if side < 0 else (-bound, 0.0)
+    return -bound, bound
+
+
+@merged
 def along(joint: JointStep, r: int, v_a: FloatArray, v_b: FloatArray) -> float:
     """Row r of a joint times the velocities v_a and v_b of its bodies, or their ways."""
     total = 0.0

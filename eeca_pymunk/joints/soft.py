@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from ..compiled import uncounted
-from ..model.joints import CONDENSED, GROOVE, RATCHET, ROTARY_LIMIT, SLIDE, Workspace
+from ..model.joints import CONDENSED, GROOVE, Workspace
 from .condensed import STIFFEST, freeze
-from .entries import put_condensed, put_free, put_rows
+from .entries import interval_of, put_condensed, put_free, put_rows
 
 
 @uncounted
@@ -19,9 +19,7 @@ def put_soft(W: Workspace, k: int, slopes: bool, h: float, system: int, build: b
     if kind == GROOVE and side == 0:
         rows = 1
         put_free(link, hinge, k, rows, system, build, band, matrix, right)
-    low, high = -bound, bound
-    if kind in (SLIDE, ROTARY_LIMIT, RATCHET):
-        low, high = (0.0, bound) if side < 0 else (-bound, 0.0)
+    low, high = interval_of(kind, side, bound)
     rho = hinge[k].scale[0] ** 2
     if rows == 2:
         rho = min(rho, hinge[k].scale[1] ** 2)

@@ -37,7 +37,7 @@ class Run(Record):
 BETWEEN, WITHIN, AFTER = 0, 1, 2
 
 
-class Film(NamedTuple):
+class RunArrays(NamedTuple):
     """What is kept of a run of b bodies, and where rollouts begin.
 
     KEPT (b,): rows of the bodies in STATES. FRAMES (T b, 6): poses and velocities of T frames. SUMS (T, 6): ledgers of
@@ -61,4 +61,4 @@ class Film(NamedTuple):
     FRESH: IntArray
 
 
-film_of = Opener(Film)
+run_arrays_of = Opener(RunArrays)

@@ -1,4 +1,4 @@
-"""Reel: the film of a run of an event loop, with room that grows while it is made."""
+"""The buffers of a run of an event loop: what it is asked for, and its results, with room that grows on the way."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ..compiled import table_of
 from ..compiled.records import Rows, row, rows
 from ..energy.ledger import Ledger
 from ..model.contacts import Impulse
-from ..model.run import BETWEEN, Film, Run
+from ..model.run import BETWEEN, Run, RunArrays
 
 _NOBODY: IntArray = np.zeros(0, np.int64)
 _IMPACTS = 256  # rows of EVENTS at first
@@ -22,7 +22,7 @@ def _flat(table: FloatArray | None, columns: int) -> FloatArray:
     return np.zeros((0, columns)) if table is None else np.ascontiguousarray(table, float).reshape(-1, columns)
 
 
-class Reel:
+class RunBuffers:
     """What a run is asked for, and what is kept of it.
 
     Args:
@@ -44,7 +44,7 @@ class Reel:
         rollouts = 0 if initial is None else len(initial)
         RUN.dt, RUN.gravity_x, RUN.gravity_y, RUN.left_over = dt, *gravity, left
         RUN.time, RUN.lock, RUN.every = time, 1.0, every
-        self.film = Film(
+        self.arrays = RunArrays(
             RUN, np.ascontiguousarray(kept, np.int64), np.zeros((frames * b, 6)) if into is None else _flat(into, 6),
             np.zeros((frames, 6)),
             rows(Impulse, _IMPACTS if events else 0), np.zeros(6), _flat(initial, 6), _flat(push, 3),
@@ -54,42 +54,42 @@ class Reel:
     @property
     def frames(self) -> FloatArray:
         """(T, b, 6) poses and velocities."""
-        frames: FloatArray = self._film.FRAMES.reshape(len(self._film.SUMS), len(self._film.KEPT), 6)
+        frames: FloatArray = self._arrays.FRAMES.reshape(len(self._arrays.SUMS), len(self._arrays.KEPT), 6)
         return frames
 
     @property
-    def film(self) -> Film:
+    def arrays(self) -> RunArrays:
         """All arrays; replace some by setting another."""
-        return self._film
+        return self._arrays
 
-    @film.setter
-    def film(self, arrays: Film) -> None:
-        self._film, self.table = arrays, table_of(arrays)
+    @arrays.setter
+    def arrays(self, arrays: RunArrays) -> None:
+        self._arrays, self.table = arrays, table_of(arrays)
         self.call: Callable[..., int] | None = None  # the loop bound to these arrays
 
     @property
     def progress(self) -> Run:
         """How far the run is."""
-        return self._film.RUN
+        return self._arrays.RUN
 
     @property
     def halted(self) -> bool:
         """Whether it was broken off within a step."""
-        return bool(self._film.RUN.stage != BETWEEN)
+        return bool(self._arrays.RUN.stage != BETWEEN)
 
     def more_events(self) -> None:
         """Give twice the room for impacts."""
-        film = self._film
-        longer = rows(Impulse, 2 * len(film.EVENTS))
-        longer[: film.RUN.kept] = film.EVENTS[: film.RUN.kept]
-        self.film = film._replace(EVENTS=longer)
+        arrays = self._arrays
+        longer = rows(Impulse, 2 * len(arrays.EVENTS))
+        longer[: arrays.RUN.kept] = arrays.EVENTS[: arrays.RUN.kept]
+        self.arrays = arrays._replace(EVENTS=longer)
 
     @property
     def events(self) -> Rows[Impulse]:
         """(m,) the impacts so far, `when` from the start of the run."""
-        return self._film.EVENTS[: self._film.RUN.kept]
+        return self._arrays.EVENTS[: self._arrays.RUN.kept]
 
     @property
     def ledger(self) -> Ledger:
         """Where energy has gone."""
-        return Ledger(*self._film.TOTAL.tolist())
+        return Ledger(*self._arrays.TOTAL.tolist())
