@@ -149,8 +149,9 @@ class JointRows:
     def pushing(self) -> list[pymunk.Constraint]:
         """The constraints that push, in a step of pymunk, where everything is at rest: springs, motors, joints that are
         apart or may be, and those of bodies that the batch calls do not reach."""
-        apart = np.flatnonzero(self.tie[:, TOUCHED])
-        return [*self._pushing, *(self.items[j] for j in apart.tolist())]
+        if not self.tie[:, TOUCHED].any():
+            return self._pushing
+        return [*self._pushing, *(self.items[j] for j in np.flatnonzero(self.tie[:, TOUCHED]).tolist())]
 
     def _push(self, j: int) -> bool:
         item, kind = self.items[j], self.tie[j, KIND]
@@ -206,9 +207,8 @@ class JointRows:
 
     def touch(self, rows: IntArray) -> None:
         """Mark the joints of bodies (rows) that the user has moved or pushed."""
-        if len(rows):
-            hit = np.isin(self.tie[:, BODY_A], rows) | np.isin(self.tie[:, BODY_B], rows)
-            self.tie[hit, TOUCHED] = 1
+        for row in rows.tolist():
+            self.tie[(self.tie[:, BODY_A] == row) | (self.tie[:, BODY_B] == row), TOUCHED] = 1
 
     def write(self) -> None:
         """Give ratchets the notch they have reached, and let `constraint.impulse` read ours."""

@@ -21,7 +21,7 @@ from ..reentry import BUSY
 from . import private
 from .bodies import ANGULAR_VELOCITY, VELOCITY, Bodies
 from .joints import JointRows
-from .private_joints import inert, silent, with_laws
+from .private_joints import inert, silent, strengthen, weaken, with_laws
 
 if TYPE_CHECKING:
     from .world import World
@@ -51,20 +51,27 @@ def rest_step(
         private.rest(space, dt, asleep)
         return
     push, calling = joints.items if forget else joints.pushing(), joints.calling
+    if not (asleep or calling or joints.own or joints.partners.outside):
+        held = weaken(push)
+        try:
+            private.rest(space, dt, asleep)
+        finally:
+            strengthen(held)
+        return
     own, laws = joints.own, joints.laws()
     if asleep:  # pymunk has put their joints away, and any change of one would wake its bodies
         push, calling = _awake(push), _awake(calling)
         laws = [law for item, law in zip(own, laws, strict=True) if _awake([item])]
         own = _awake(own)
-    with ExitStack() as held:
+    with ExitStack() as within:
         if joints.partners.outside:
-            held.enter_context(joints.partners.kept())
+            within.enter_context(joints.partners.kept())
         if calling:
-            held.enter_context(silent(calling))
+            within.enter_context(silent(calling))
         if own:
-            held.enter_context(with_laws(own, laws))
+            within.enter_context(with_laws(own, laws))
         if push:
-            held.enter_context(inert(push))
+            within.enter_context(inert(push))
         private.rest(space, dt, asleep)
 
 
