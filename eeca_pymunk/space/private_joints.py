@@ -10,6 +10,7 @@ import pymunk
 from pymunk._chipmunk_cffi import ffi, lib
 
 OF_LIBRARY = (
+    "cpBodyIsSleeping", "cpConstraintGetBodyA", "cpConstraintGetBodyB",
     "cpBodyGetPosition", "cpBodyGetCenterOfGravity", "cpBodyGetType", "CP_BODY_TYPE_KINEMATIC", "cpBodyGetAngle",
     "cpSpaceGetCurrentTimeStep", "cpSpaceSetCurrentTimeStep",
     "cpConstraintGetMaxForce", "cpConstraintSetMaxForce", "cpConstraintGetPreSolveFunc", "cpConstraintSetPreSolveFunc",
@@ -77,6 +78,12 @@ def moving_on(bodies: Iterable[pymunk.Body]) -> Iterator[None]:
             if now.x != before.x or now.y != before.y or spin(c) != turned:
                 lib.cpBodySetVelocity(c, before)
                 lib.cpBodySetAngularVelocity(c, turned)
+
+
+def awake(constraints: Sequence[pymunk.Constraint]) -> list[pymunk.Constraint]:
+    """Those of constraints neither of whose bodies sleeps. The public properties take five times as long."""
+    sleeps, a, b = lib.cpBodyIsSleeping, lib.cpConstraintGetBodyA, lib.cpConstraintGetBodyB
+    return [c for c in constraints if not (sleeps(a(c._constraint)) or sleeps(b(c._constraint)))]
 
 
 def weaken(constraints: Iterable[Any]) -> list[tuple[Any, float]]:

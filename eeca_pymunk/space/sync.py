@@ -21,7 +21,7 @@ from ..reentry import BUSY
 from . import private
 from .bodies import ANGULAR_VELOCITY, VELOCITY, Bodies
 from .joints import JointRows
-from .private_joints import inert, silent, strengthen, weaken, with_laws
+from .private_joints import awake, inert, silent, strengthen, weaken, with_laws
 
 if TYPE_CHECKING:
     from .world import World
@@ -51,7 +51,9 @@ def rest_step(
         private.rest(space, dt, asleep)
         return
     push, calling = joints.items if forget else joints.pushing(), joints.calling
-    if not (asleep or calling or joints.own or joints.partners.outside):
+    if asleep:  # pymunk has put their joints away, and any change of one would wake its bodies
+        push, calling = awake(push), awake(calling)
+    if not (calling or joints.own or joints.partners.outside):
         held = weaken(push)
         try:
             private.rest(space, dt, asleep)
@@ -59,10 +61,9 @@ def rest_step(
             strengthen(held)
         return
     own, laws = joints.own, joints.laws()
-    if asleep:  # pymunk has put their joints away, and any change of one would wake its bodies
-        push, calling = _awake(push), _awake(calling)
-        laws = [law for item, law in zip(own, laws, strict=True) if _awake([item])]
-        own = _awake(own)
+    if asleep:
+        laws = [law for item, law in zip(own, laws, strict=True) if awake([item])]
+        own = awake(own)
     with ExitStack() as within:
         if joints.partners.outside:
             within.enter_context(joints.partners.kept())
@@ -73,10 +74,6 @@ def rest_step(
         if push:
             within.enter_context(inert(push))
         private.rest(space, dt, asleep)
-
-
-def _awake(items: list[pymunk.Constraint]) -> list[pymunk.Constraint]:
-    return [item for item in items if not (item.a.is_sleeping or item.b.is_sleeping)]
 
 
 class Sync:
