@@ -99,7 +99,9 @@ def _number(world: World, at: IntArray, numbers: FloatArray) -> None:
 
 def _move(world: World, moved: IntArray) -> bool:
     """Put the shapes of static bodies, rows `moved` of STATES, where these are; False if they have other vertices."""
-    at = np.flatnonzero(np.isin(world.owner, moved))
+    hit = np.zeros(len(world.bodies), bool)
+    hit[moved] = True
+    at = np.flatnonzero(hit[world.owner])
     if len(at) == 0:
         return True
     found = [world.records[world.shapes[k]] for k in at.tolist()]

@@ -155,7 +155,7 @@ class Sleep:
         self.wake(woken)
         return bool(woken)
 
-    def touches(self, LOG: Rows[Impulse], count: int) -> bool:
+    def is_touched(self, LOG: Rows[Impulse], count: int) -> bool:
         """Whether something that moves has touched a body asleep in the first `count` impulses of LOG."""
         return bool(touches(LOG, self.world.owner, *self._still, count))
 

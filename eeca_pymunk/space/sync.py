@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 import pymunk
 
 from ..reentry import BUSY
-from . import private
+from . import private, private_rest
 from .bodies import ANGULAR_VELOCITY, VELOCITY, Bodies
 from .joints import JointRows
 from .private_joints import awake, inert, silent, strengthen, weaken, with_laws
@@ -48,7 +48,7 @@ def rest_step(
             velocities, which are of no use.
     """
     if joints is None:
-        private.rest(space, dt, asleep)
+        private_rest.rest(space, dt, asleep)
         return
     push, calling = joints.items if forget else joints.pushing(), joints.calling
     if asleep:  # pymunk has put their joints away, and any change of one would wake its bodies
@@ -56,7 +56,7 @@ def rest_step(
     if not (calling or joints.own or joints.partners.outside):
         held = weaken(push)
         try:
-            private.rest(space, dt, asleep)
+            private_rest.rest(space, dt, asleep)
         finally:
             strengthen(held)
         return
@@ -73,7 +73,7 @@ def rest_step(
             within.enter_context(with_laws(own, laws))
         if push:
             within.enter_context(inert(push))
-        private.rest(space, dt, asleep)
+        private_rest.rest(space, dt, asleep)
 
 
 class Sync:
@@ -121,7 +121,7 @@ class Sync:
         """Have arbiters as a rest step makes them, if the last step was ours and made none."""
         self._asked = True
         if self._stale and self.space not in BUSY and self._timestamp() == self._renewed:
-            with private.stopped(self.space):
+            with private_rest.stopped(self.space):
                 self.rest(self._dt, self._joints)
 
     def waits(self) -> bool:
