@@ -182,7 +182,7 @@ FEATURES: dict[str, Callable[[Scene], object]] = {
     "surface velocity set": _each(lambda s: s.floor, "surface_velocity", lambda k: (0.1 * (k % 2), 0.0)),
     "filter set": _each(lambda s: s.shapes[3], "filter", lambda k: pymunk.ShapeFilter(group=1 + k % 2)),
     "mass set": _each(lambda s: s.flying, "mass", lambda k: 1.0 + 0.1 * (k % 2)),
-    "body added, removed every 10 steps": _come_and_go,
+    "body added and removed every 10 steps": _come_and_go,
     "static body put": lambda s: _moved(s, pymunk.Body.STATIC),
 }
 CHOICES = FEATURES

@@ -107,7 +107,8 @@ class EECA(RunningStepper):
             return
         world.load()
         self._method = self.closure.prepare(world)
-        if self._patches and world.joints is None and isinstance(self._method, EventLoop):
+        patches, self._patches = self._patches, False
+        if patches and world.joints is None and isinstance(self._method, EventLoop):
             self._method.keep_fresh()
         if world.joints is not None:
             world.joints.planned()

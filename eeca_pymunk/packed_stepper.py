@@ -61,15 +61,21 @@ class PackedStepper(HookedStepper):
         report = self._step(world, dt)
         now = self._sleep
         if now is not None and now.world is self._world:
-            if now.some:
+            if now.some and self.may_touch_sleepers(now):
                 now.wake(now.touched(report.contacts))  # by what functions have done
             if now.rest(dt) and now.world.current():
                 now.fall_asleep(report.contacts)
         return report
 
+    def may_touch_sleepers(self, sleep: Sleep) -> bool:
+        """Whether the step that was just taken may have touched anybody asleep: False saves its report."""
+        return True
+
     def _awake(self, world: World, dt: float, left: float, status: int) -> tuple[World, int]:
         """Take the step again, with those awake that it has touched asleep."""
         while self._sleep is not None and self._sleep.some and status >= 0 and status & EVENTS:
+            if not self.may_touch_sleepers(self._sleep):
+                break
             details = self.details(world, dt)
             touched = self._sleep.touched((details if isinstance(details, Details) else details()).contacts)
             if not touched:

@@ -21,6 +21,7 @@ from .packed_space import TOO_FAR
 from .packed_stepper import PackedStepper
 from .reentry import refuse_within
 from .report import RunReport
+from .space.sleeping import Sleep
 from .space.world import World
 from .states import get_state, set_state
 from .stepper import check_dt, check_steps
@@ -43,7 +44,7 @@ class RunningStepper(PackedStepper):
     """
 
     rolling: Rolling | None = None
-    _patches = False  # whether the program edits shapes or bodies in place
+    _patches = False  # whether the space is read anew for edits in place
 
     def __getstate__(self) -> dict[str, object]:
         return {**super().__getstate__(), "rolling": None}
@@ -130,10 +131,15 @@ class RunningStepper(PackedStepper):
             loop.start_anew(rows[rows >= 0], state[rows >= 0, :6])
             world.STATES[LEFT, rows >= 0] = np.nan
 
+    def may_touch_sleepers(self, sleep: Sleep) -> bool:
+        loop = self.event_loop
+        return loop is None or sleep.is_touched(loop.scene.LOG, int(loop.scene.COUNT.logged))
+
     def patch(self, world: World) -> bool:
         loop = self.event_loop
         if loop is None or not hasattr(loop, "fresh"):
-            self._patches = True  # from the next reading on: to keep what patches begin from takes time
+            # From the reading on that is due: to keep what patches begin from takes time.
+            self._patches = world.edits() is not None
             return False
         lossy = loop.lossy
         lists = world.patch()

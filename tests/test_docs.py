@@ -46,6 +46,8 @@ OTHERS = {
 }
 # Where the short form of each comparison is run.
 SHORT = {
+    "programs": "test_comparisons.py::test_programs_are_run_under_both_in_processes_of_their_own",
+    "features": "test_comparisons.py::test_each_feature_takes_steps",
     "tour": "test_docs.py::test_tour_runs",
     "signorini": "test_comparisons.py::test_comparison_writes_table_and_pictures",
     "carom": "test_docs.py::test_films_run",

@@ -21,7 +21,7 @@ FLOORS = (
     "model",
     "energy",
     "transfer report",
-    "rehearsing",
+    "rehearsing drowsing",
     "geometry",
     "rows",
     "pairs",

@@ -19,8 +19,8 @@ import numpy as np
 from .records import KINDS
 
 SOURCES = (
-    "arrays.py", "layout.py", "transfer.py", "rehearsing.py", "compiled", "model", "build", "energy", "geometry",
-    "rows", "pairs", "sustained", "joints", "impacts", "jointed",
+    "arrays.py", "layout.py", "transfer.py", "rehearsing.py", "drowsing.py", "compiled", "model", "build", "energy",
+    "geometry", "rows", "pairs", "sustained", "joints", "impacts", "jointed",
 )  # fmt: skip
 
 TABLES = {
@@ -60,7 +60,10 @@ ENTRIES = {
     "transfer:lay_rest": "f8[3] f8[1] i8",
     "rehearsing:approach": "f8[3] i8[2] f8[2] Body[1] f8[1] f8 f8 f8 f8",
     "rehearsing:found": "f8[3] i8[2] f8[2]",
+    "rehearsing:as_read": "f8[3] f8[2]",
     "rehearsing:altered": "f8[3] i8[2] Body[1] f8[1] f8[2] f8[2] f8[1] i8",
+    "drowsing:rests": "f8[3] i8[2] Body[1] f8[1] f8[1] i8[1] f8 f8 f8",
+    "drowsing:touches": "Impulse[1] i8[1] i8[1] i8[1] i8",
     "rehearsing:changed": "f8[3] f8[2] f8[2]",
     "impacts.booking:flag_again": "{Scene}",
     "impacts.step:step": "{Scene} f8[3] i8[2] f8[2] f8[1] f8 f8 f8 f8 i8 bool i8",

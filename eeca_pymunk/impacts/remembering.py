@@ -18,9 +18,10 @@ from .memory import OF_SCENE, ROOM, gathered, recalled, remembered
 
 _STEP, _COUNT = Step.TYPE.names or (), Count.TYPE.names or ()
 _BOOK = slice(_STEP.index("restitution"), _STEP.index("after") + 1)
-_LOCK, _UNMET, _SOLVES, _BLOCKS = _STEP.index("lock"), *map(_COUNT.index, ("unmet", "solves", "blocks"))
+_LOCK = _STEP.index("lock")
+_UNMET, _SOLVES, _BLOCKS, _LOGGED = map(_COUNT.index, ("unmet", "solves", "blocks", "logged"))
 UNBOUND: tuple[tuple[AnyArray | None, ...], Callable[..., int]] = (None,) * 4, int
-_OF_PROCESS = "table", "_bound", "own", "fresh", "_room", "_par", "_count"  # attributes that no copy has
+_OF_PROCESS = "table", "_bound", "own", "fresh", "_room", "_par", "_count", "_log"  # attributes that no copy has
 
 
 class Remembering:
@@ -45,6 +46,7 @@ class Remembering:
         # Fields of records take ten times as long as entries of arrays, and these are asked for in every step.
         self._par, self._count = numbers(arrays.PAR).reshape(-1), numbers(arrays.COUNT).reshape(-1)
         self._book: FloatArray = self._par[_BOOK]
+        self._log: IntArray = arrays.LOG.view(np.int64).reshape(len(arrays.LOG), -1)
 
     @property
     def lock(self) -> float:
@@ -60,6 +62,10 @@ class Remembering:
     def iterations(self) -> int:
         """Solves of islands and of blocks in the last step."""
         return int(self._count.item(_SOLVES) + self._count.item(_BLOCKS))
+
+    def logged(self) -> IntArray:
+        """(m, fields) the impulses of the last step as integers, a copy: that of records takes ten times as long."""
+        return self._log[: self._count.item(_LOGGED)].copy()
 
     def __getstate__(self) -> dict[str, object]:
         return {key: value for key, value in self.__dict__.items() if key not in _OF_PROCESS}

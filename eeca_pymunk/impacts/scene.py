@@ -47,6 +47,11 @@ def _longer(table: Rows[R], used: int) -> Rows[R]:
     return longer
 
 
+def _details(logged: IntArray, dt: float, bodies: tuple[pymunk.Body, ...], owner: IntArray) -> Details:
+    """`of_events` of what `logged` told."""
+    return of_events(logged.reshape(-1).view(Impulse.TYPE), dt, bodies, owner)  # type: ignore[arg-type]
+
+
 class EventLoop(Remembering):
     """Steps the packed bodies and shapes of a world from impact to impact.
 
@@ -174,14 +179,14 @@ class EventLoop(Remembering):
     @property
     def events(self) -> Rows[Impulse]:
         """(m,) impulses of the last step, a copy."""
-        return self.scene.LOG[: self.scene.COUNT.logged].copy()
+        return self.logged().reshape(-1).view(Impulse.TYPE)  # type: ignore[return-value]
 
     def details(
         self, dt: float, bodies: tuple[pymunk.Body, ...], owner: IntArray
     ) -> Callable[[], Details]:  # fmt: skip
         """What makes the arrays of the report of the last step; `owner` (k,) is the place of every shape's body in
         `bodies`."""
-        return partial(of_events, self.events, dt, bodies, owner)
+        return partial(_details, self.logged(), dt, bodies, owner)
 
     @property
     def book(self) -> FloatArray:

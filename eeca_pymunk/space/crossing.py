@@ -33,7 +33,7 @@ from ..layout import (
     STILL,
 )  # fmt: skip
 from ..model.bodies import Body
-from ..rehearsing import altered, found
+from ..rehearsing import altered, as_read, found
 from ..transfer import FORCES, TURNS, lay, lay_rest
 from . import private
 from .bodies import Bodies
@@ -176,12 +176,10 @@ class Crossing:
         """Lay out the end of the step anew with angles and spins if they were left out; its bits."""
         return status if status & TURNS else self._lay(status | TURNS)
 
-    def left_as_read(self) -> None:
-        """Take what was just gathered as what the step gave, where pymunk rounds the places of bodies written to it."""
-        now, left = self.STATES[NOW, :, :2], self.STATES[LEFT, :, :2]
-        size = np.abs(now).max(axis=1) + np.abs(self.bodies.center_of_gravity).max(axis=1)
-        near = np.abs(now - left).max(axis=1) <= 1e-14 * size
-        left[near] = now[near]
+    @cached_property
+    def left_as_read(self) -> Callable[[], None]:
+        """Takes what was just gathered as what the step gave, see `rehearsing.as_read`."""
+        return as_read.bind(self.STATES, self.EXTRA)
 
     def void_forecasts(self) -> None:
         """Let the next step look at all bodies as if they had been moved, though they are where it left them."""

@@ -133,6 +133,8 @@ class JointRows:
     def pushing(self) -> list[pymunk.Constraint]:
         """The constraints that push, in a step of pymunk, where everything is at rest: springs, motors, joints that are
         apart or may be, and those of bodies that the batch calls do not reach."""
+        if not self.joint["touched"].any():
+            return self._pushing
         apart = np.flatnonzero(self.joint["touched"])
         return [*self._pushing, *(self.items[j] for j in apart.tolist())]
 

@@ -15,11 +15,13 @@ import numpy as np
 import pymunk
 
 from ..arrays import IntArray
-from ..compiled.records import put, rows
+from ..compiled.records import rows
 from ..errors import NotFiniteError
 from ..model.bodies import POSE, VELOCITY, Body
+from . import private_joints
 
 _MOTION = *POSE, *VELOCITY
+_NONE: IntArray = np.zeros(0, np.int64)
 
 
 class Partners:
@@ -52,12 +54,10 @@ class Partners:
         changed = []
         for i in rows:
             body = self.items[i]
-            (x, y), angle, (vx, vy), spin = body.position, body.angle, body.velocity, body.angular_velocity
-            if body.body_type != pymunk.Body.KINEMATIC:
-                vx = vy = spin = 0.0
-            state = (x, y, angle, vx, vy, spin, *body.center_of_gravity)
+            state = private_joints.pose_and_motion(body)
             if state == self._known[i]:
                 continue
+            x, y, angle, vx, vy, spin = state[:6]
             if not all(math.isfinite(v) for v in state):
                 raise NotFiniteError(
                     f"{body}, which a constraint holds, has position {body.position}, angle {angle}, velocity "
@@ -65,13 +65,11 @@ class Partners:
                 )
             changed.append(i)
             self._known[i] = state
-            c, s, kx, ky = math.cos(angle), math.sin(angle), *body.center_of_gravity
-            put(
-                self.PARTNER[i : i + 1],
-                np.array((x + c * kx - s * ky, y + s * kx + c * ky, angle, vx, vy, spin)),
-                *_MOTION,
-            )
-        return np.array(changed, np.int64)
+            c, s, kx, ky = math.cos(angle), math.sin(angle), *state[6:]
+            place = x + c * kx - s * ky, y + s * kx + c * ky
+            for name, number in zip(_MOTION, (*place, angle, vx, vy, spin), strict=True):
+                self.PARTNER[name][i] = number
+        return np.array(changed, np.int64) if changed else _NONE
 
     def motion(self, i: int) -> tuple[float, float, float, float, float, float]:
         """Position, angle, velocity and spin of one, as last read."""
@@ -83,11 +81,5 @@ class Partners:
     def kept(self) -> Iterator[None]:
         """Within, steps of pymunk leave those outside the space as they are: its constraints push them, too, though it
         does not move them, and give nan where neither body of one has mobility."""
-        kept = [(body, body.velocity, body.angular_velocity) for body in map(self.items.__getitem__, self.outside)]
-        try:
+        with private_joints.moving_on([self.items[i] for i in self.outside]):
             yield
-        finally:
-            for body, velocity, spin in kept:
-                # Asking costs less than telling, which would wake bodies.
-                if body.velocity != velocity or body.angular_velocity != spin:
-                    body.velocity, body.angular_velocity = velocity, spin

@@ -165,49 +165,6 @@ def step_alone(space: pymunk.Space, dt: float) -> None:
             lib.cpSpaceSetSleepTimeThreshold(c, threshold)
 
 
-def rest(space: pymunk.Space, dt: float, pulls: bool) -> None:
-    """`step_alone` in one iteration, that corrects no overlaps and, unless it `pulls`, without gravity; threads do not
-    pay. The public properties take five times as long."""
-    c, none = space._space, (0.0, 0.0)
-    gravity, iterations, bias = lib.cpSpaceGetGravity(c), lib.cpSpaceGetIterations(c), lib.cpSpaceGetCollisionBias(c)
-    try:
-        if not pulls:
-            lib.cpSpaceSetGravity(c, none)
-        lib.cpSpaceSetIterations(c, 1)
-        lib.cpSpaceSetCollisionBias(c, 1.0)
-        step_alone(space, dt)
-    finally:
-        if not pulls:
-            lib.cpSpaceSetGravity(c, gravity)
-        lib.cpSpaceSetIterations(c, iterations)
-        lib.cpSpaceSetCollisionBias(c, bias)
-
-
-@contextmanager
-def stopped(space: pymunk.Space) -> Iterator[None]:
-    """Within, bodies have neither velocities nor forces; who sleeps sleeps on."""
-    held = []
-    for body in space.bodies:
-        c = body._body
-        if body.body_type != pymunk.Body.STATIC and not lib.cpBodyIsSleeping(c):
-            velocity, spin = lib.cpBodyGetVelocity(c), lib.cpBodyGetAngularVelocity(c)
-            held.append((c, velocity, spin, lib.cpBodyGetForce(c), lib.cpBodyGetTorque(c)))
-    try:
-        for c, *_ in held:
-            _set_motion(c, (0.0, 0.0), 0.0, (0.0, 0.0), 0.0)
-        yield
-    finally:
-        for motion in held:
-            _set_motion(*motion)
-
-
-def _set_motion(c: Any, velocity: Any, spin: float, force: Any, torque: float) -> None:
-    lib.cpBodySetVelocity(c, velocity)
-    lib.cpBodySetAngularVelocity(c, spin)
-    lib.cpBodySetForce(c, force)
-    lib.cpBodySetTorque(c, torque)
-
-
 def finish_step(space: pymunk.Space) -> None:
     """Add and remove what callbacks of the last step asked for, and call its post-step callbacks."""
     added = list(space._add_later)

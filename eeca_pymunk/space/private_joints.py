@@ -7,8 +7,11 @@ from contextlib import contextmanager
 from typing import Any
 
 import pymunk
+from pymunk._chipmunk_cffi import ffi, lib
 
 OF_LIBRARY = (
+    "cpBodyIsSleeping", "cpConstraintGetBodyA", "cpConstraintGetBodyB",
+    "cpBodyGetPosition", "cpBodyGetCenterOfGravity", "cpBodyGetType", "CP_BODY_TYPE_KINEMATIC", "cpBodyGetAngle",
     "cpSpaceGetCurrentTimeStep", "cpSpaceSetCurrentTimeStep",
     "cpConstraintGetMaxForce", "cpConstraintSetMaxForce", "cpConstraintGetPreSolveFunc", "cpConstraintSetPreSolveFunc",
     "cpConstraintGetPostSolveFunc", "cpConstraintSetPostSolveFunc",
@@ -23,7 +26,6 @@ OF_SPRINGS = ((pymunk.DampedSpring, FORCE[1:]), (pymunk.DampedRotarySpring, TORQ
 def time_step(space: pymunk.Space, dt: float) -> Iterator[None]:
     """Within, which is where functions of a program are called, `space.current_time_step` is dt. Afterwards it is that
     of pymunk's last step again, by which pymunk scales what it remembers of that step."""
-    lib = _library()[1]
     before = lib.cpSpaceGetCurrentTimeStep(space._space)
     lib.cpSpaceSetCurrentTimeStep(space._space, dt)
     try:
@@ -50,25 +52,69 @@ def law_of(spring: Any) -> Callable[[Any, float], float] | None:
     return law
 
 
+def pose_and_motion(body: pymunk.Body) -> tuple[float, ...]:
+    """Place, angle, velocity, spin and centre of gravity of a body, at rest unless it is kinematic. The public
+    properties take three times as long."""
+    c = body._body
+    place, centre = lib.cpBodyGetPosition(c), lib.cpBodyGetCenterOfGravity(c)
+    if lib.cpBodyGetType(c) != lib.CP_BODY_TYPE_KINEMATIC:
+        return place.x, place.y, lib.cpBodyGetAngle(c), 0.0, 0.0, 0.0, centre.x, centre.y
+    v = lib.cpBodyGetVelocity(c)
+    spin = lib.cpBodyGetAngularVelocity(c)
+    return place.x, place.y, lib.cpBodyGetAngle(c), v.x, v.y, spin, centre.x, centre.y
+
+
 @contextmanager
-def inert(constraints: Iterable[Any]) -> Iterator[None]:
-    """Within, these constraints push with no force in pymunk's steps, which forget what they pushed with before."""
-    lib = _library()[1]
-    limit, read = lib.cpConstraintSetMaxForce, lib.cpConstraintGetMaxForce
-    held = [(one._constraint, read(one._constraint)) for one in constraints]
+def moving_on(bodies: Iterable[pymunk.Body]) -> Iterator[None]:
+    """Within, bodies may get other velocities and spins; afterwards they have theirs again."""
+    velocity, spin = lib.cpBodyGetVelocity, lib.cpBodyGetAngularVelocity
+    kept = [(body._body, velocity(body._body), spin(body._body)) for body in bodies]
     try:
-        for c, _ in held:
-            limit(c, 0.0)
         yield
     finally:
-        for c, most in held:
-            limit(c, most)
+        for c, before, turned in kept:
+            now = velocity(c)
+            # Asking costs less than telling, which would wake bodies.
+            if now.x != before.x or now.y != before.y or spin(c) != turned:
+                lib.cpBodySetVelocity(c, before)
+                lib.cpBodySetAngularVelocity(c, turned)
+
+
+def awake(constraints: Sequence[pymunk.Constraint]) -> list[pymunk.Constraint]:
+    """Those of constraints neither of whose bodies sleeps. The public properties take five times as long."""
+    sleeps, a, b = lib.cpBodyIsSleeping, lib.cpConstraintGetBodyA, lib.cpConstraintGetBodyB
+    return [c for c in constraints if not (sleeps(a(c._constraint)) or sleeps(b(c._constraint)))]
+
+
+def weaken(constraints: Iterable[Any]) -> list[tuple[Any, float]]:
+    """Have these constraints push with no force in pymunk's steps, which forget what they pushed with before; what
+    `strengthen` wants."""
+    limit, read = lib.cpConstraintSetMaxForce, lib.cpConstraintGetMaxForce
+    held = [(c := one._constraint, read(c)) for one in constraints]
+    for c, _ in held:
+        limit(c, 0.0)
+    return held
+
+
+def strengthen(held: Iterable[tuple[Any, float]]) -> None:
+    """Have constraints push as before `weaken`."""
+    for c, most in held:
+        lib.cpConstraintSetMaxForce(c, most)
+
+
+@contextmanager
+def inert(constraints: Iterable[Any]) -> Iterator[None]:
+    """Within, these constraints push with no force in pymunk's steps."""
+    held = weaken(constraints)
+    try:
+        yield
+    finally:
+        strengthen(held)
 
 
 @contextmanager
 def silent(constraints: Iterable[Any]) -> Iterator[None]:
     """Within, pymunk calls neither `pre_solve` nor `post_solve` of these constraints."""
-    ffi, lib = _library()
     functions: list[tuple[Any, Any, Any]] = []
     try:
         for one in constraints:
@@ -95,9 +141,3 @@ def with_laws(springs: Sequence[Any], laws: Sequence[Callable[[Any, float], floa
     finally:
         for one, name, function in zip(springs, names, own, strict=True):
             one.__dict__[name] = function
-
-
-def _library() -> tuple[Any, Any]:
-    from pymunk._chipmunk_cffi import ffi, lib  # `private` says what to do if it is not there
-
-    return ffi, lib

@@ -8,7 +8,7 @@ changed velocities) goes into our step, which then takes its place.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from typing import Any
 
 import numpy as np
@@ -121,7 +121,8 @@ class Rehearsal:
         try:
             for handler, phase, _, watched in self._wrapped:
                 setattr(handler, phase, watched)
-            if hooks.joints is None:
+            joints = hooks.joints
+            if joints is None or not (joints.partners.outside or joints.calling or joints.own):
                 with hooks.silent():
                     private.step_alone(self.space, dt)
             else:
@@ -166,10 +167,15 @@ class Rehearsal:
         joints = hooks.joints
         assert joints is not None
         mute = [item for item in joints.calling if item.pre_solve is None or item.a.space is None]
-        with (
-            joints.partners.kept(), private_joints.silent(mute), private_joints.with_laws(joints.own, joints.laws()),
-            self._watched_joints([item for item in joints.before if item not in mute]),
-        ):  # fmt: skip
+        with ExitStack() as held:
+            if joints.partners.outside:
+                held.enter_context(joints.partners.kept())
+            if mute:
+                held.enter_context(private_joints.silent(mute))
+            if joints.own:
+                held.enter_context(private_joints.with_laws(joints.own, joints.laws()))
+            if joints.before:
+                held.enter_context(self._watched_joints([item for item in joints.before if item not in mute]))
             yield
 
     @contextmanager

@@ -23,7 +23,10 @@ import numpy as np
 import pymunk
 
 from ..arrays import BoolArray, FloatArray, IntArray
-from ..layout import BODY_ROW, FOUND, KNOWN, LEFT, NOW
+from ..compiled.records import Rows
+from ..drowsing import rests, touches
+from ..layout import BODY_ROW, FOUND, KNOWN
+from ..model.contacts import Impulse
 from ..report import Contacts
 from . import private, private_sleep
 from .noticed import leader
@@ -32,7 +35,6 @@ if TYPE_CHECKING:
     from .world import World
 
 AT_REST = 1e-6
-_ROUND = 1e-14  # of coordinates, and of the largest speed
 _AGAIN = 16  # steps after which islands that could not fall asleep are looked at again
 _SHARE, _PATIENCE = 8, 120  # islands fall asleep that are this part of who is awake, or after so many steps
 
@@ -70,9 +72,14 @@ class Sleep:
                 if body in before and not past.world.bodies.asleep[before[body]]:
                     self._rested[i] = past._rested[before[body]]
         self._steps, self._dt = self.space.collision_persistence + 2, 0.0
-        self._tired: BoolArray = np.zeros(len(bodies), bool)
+        self._tired: IntArray = np.zeros(len(bodies), np.int64)
         row = world.WALK[BODY_ROW]
         self._size: FloatArray = np.where(row >= 0, world.BODY["extent"][row], 0.0)
+        self._rests = rests.bind(world.STATES, world.WALK, world.BODY, self._size, self._rested, self._tired)
+        self._still = bodies.asleep.astype(np.int64), bodies.static.astype(np.int64)
+        # Whom others than the solver move: where functions are called everybody, else kinematic bodies.
+        movers: tuple[BoolArray, BoolArray] = ~bodies.static, ~bodies.static & ~bodies.dynamic
+        self._moves = [np.flatnonzero(moves).tolist() for moves in movers]
 
     def changed(self) -> bool:
         """Whether others sleep now than when this was made, as far as one knows: pymunk may have taken a step."""
@@ -99,12 +106,12 @@ class Sleep:
         """Wake whom a body may meet that is moved by others than the solver: a kinematic one; where functions are
         called, which a step cannot do twice, any body. Whether there was any."""
         world, bodies, found = self.world, self.world.bodies, False
-        moves = ~bodies.static if world.hooked or not world.plain else ~bodies.static & ~bodies.dynamic
-        if not moves.any():
+        moves = self._moves[1 if world.plain else 0]
+        if not moves:
             return False
         world.gather()
-        pull = math.hypot(*self.space.gravity)
-        for i in np.flatnonzero(moves):
+        pull = math.hypot(*world.gravity)
+        for i in moves:
             x, y, _, vx, vy, spin, fx, fy, _ = world.state[i]
             if self._size[i] == 0.0 or (not bodies.dynamic[i] and vx == vy == spin == 0.0):
                 continue
@@ -148,6 +155,10 @@ class Sleep:
         self.wake(woken)
         return bool(woken)
 
+    def is_touched(self, LOG: Rows[Impulse], count: int) -> bool:
+        """Whether something that moves has touched a body asleep in the first `count` impulses of LOG."""
+        return bool(touches(LOG, self.world.owner, *self._still, count))
+
     def touched(self, contacts: Contacts) -> list[pymunk.Body]:
         """Whom something that moves has touched."""
         asleep, moves = self.world.bodies.asleep, ~self.world.bodies.static
@@ -158,34 +169,16 @@ class Sleep:
     def rest(self, dt: float) -> bool:
         """Count how long bodies have been at rest, after a step; whether any may fall asleep."""
         self._left = self._timestamp()
-        world, bodies = self.world, self.world.bodies
-        before, after = world.STATES[NOW], world.STATES[LEFT]
-        fastest = float(np.hypot(after[:, 3], after[:, 4]).max(initial=0.0))
-        limit = AT_REST * math.hypot(*self.space.gravity) * dt + _ROUND * fastest
-        size = self._size
-        way = np.abs(after[:, :3] - before[:, :3])
-        way[:, 2] *= size
-        place = np.abs(after[:, :3])
-        place[:, 2] *= size
-        rests = bodies.dynamic & (way <= limit * dt + _ROUND * place).all(axis=1)
-        for state in (before, after):
-            rests &= np.hypot(state[:, 3], state[:, 4]) <= limit
-            rests &= np.abs(state[:, 5]) * np.where(size > 0.0, size, 1.0) <= limit
-        rests &= ~before[:, 6:].any(axis=1)
-        self._rested[rests] += dt
-        self._rested[~rests] = 0.0
+        # Sums of dt fall short of the threshold by round-off.
+        need = self.space.sleep_time_threshold * (1.0 - 1e-9)
+        tired = self._rests(AT_REST * math.hypot(*self.world.gravity) * dt, dt, need)
         self._wait = max(self._wait - 1, 0)
         self._since += 1
-        # Sums of dt fall short of the threshold by round-off.
-        tired = rests & (self._rested >= self.space.sleep_time_threshold * (1.0 - 1e-9))
-        if self._wait > 0 or not tired.any():
-            return False
-        self._tired = tired
-        return True
+        return self._wait == 0 and tired == 1
 
     def fall_asleep(self, contacts: Contacts) -> None:
         """Put the islands to sleep all of whose bodies have rested long enough, each a group, as pymunk does."""
-        bodies, tired, groups = self.world.bodies, self._tired, list(range(len(self.world.bodies)))
+        bodies, tired, groups = self.world.bodies, self._tired != 0, list(range(len(self.world.bodies)))
 
         def root(i: int) -> int:
             while groups[i] != i:

@@ -18,10 +18,10 @@ from typing import TYPE_CHECKING
 import pymunk
 
 from ..reentry import BUSY
-from . import private
+from . import private, private_rest
 from .bodies import ANGULAR_VELOCITY, VELOCITY, Bodies
 from .joints import JointRows
-from .private_joints import inert, silent, with_laws
+from .private_joints import awake, inert, silent, strengthen, weaken, with_laws
 
 if TYPE_CHECKING:
     from .world import World
@@ -48,28 +48,32 @@ def rest_step(
             velocities, which are of no use.
     """
     if joints is None:
-        private.rest(space, dt, asleep)
+        private_rest.rest(space, dt, asleep)
         return
     push, calling = joints.items if forget else joints.pushing(), joints.calling
-    own, laws = joints.own, joints.laws()
     if asleep:  # pymunk has put their joints away, and any change of one would wake its bodies
-        push, calling = _awake(push), _awake(calling)
-        laws = [law for item, law in zip(own, laws, strict=True) if _awake([item])]
-        own = _awake(own)
-    with ExitStack() as held:
+        push, calling = awake(push), awake(calling)
+    if not (calling or joints.own or joints.partners.outside):
+        held = weaken(push)
+        try:
+            private_rest.rest(space, dt, asleep)
+        finally:
+            strengthen(held)
+        return
+    own, laws = joints.own, joints.laws()
+    if asleep:
+        laws = [law for item, law in zip(own, laws, strict=True) if awake([item])]
+        own = awake(own)
+    with ExitStack() as within:
         if joints.partners.outside:
-            held.enter_context(joints.partners.kept())
+            within.enter_context(joints.partners.kept())
         if calling:
-            held.enter_context(silent(calling))
+            within.enter_context(silent(calling))
         if own:
-            held.enter_context(with_laws(own, laws))
+            within.enter_context(with_laws(own, laws))
         if push:
-            held.enter_context(inert(push))
-        private.rest(space, dt, asleep)
-
-
-def _awake(items: list[pymunk.Constraint]) -> list[pymunk.Constraint]:
-    return [item for item in items if not (item.a.is_sleeping or item.b.is_sleeping)]
+            within.enter_context(inert(push))
+        private_rest.rest(space, dt, asleep)
 
 
 class Sync:
@@ -117,7 +121,7 @@ class Sync:
         """Have arbiters as a rest step makes them, if the last step was ours and made none."""
         self._asked = True
         if self._stale and self.space not in BUSY and self._timestamp() == self._renewed:
-            with private.stopped(self.space):
+            with private_rest.stopped(self.space):
                 self.rest(self._dt, self._joints)
 
     def waits(self) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import Any, TypeAlias
 
@@ -200,7 +200,11 @@ class World(Crossing):
     def load(self) -> None:
         """Put what pymunk has now into BODY."""
         self.gather()
-        take(self.STATES, self.WALK, self.EXTRA, self.BODY, 0.0, 0.0, 1.0)
+        self._take(0.0, 0.0, 1.0)
+
+    @cached_property
+    def _take(self) -> Callable[[float, float, float], int]:
+        return take.bind(self.STATES, self.WALK, self.EXTRA, self.BODY)
 
     def left(self, dt: float) -> float:
         """What half a step's damping leaves of velocities; all of them where nothing is left at the end (`alter`)."""

@@ -188,3 +188,42 @@ def test_a_function_that_is_pymunks_again_is_forgotten(name: str) -> None:
     setattr(body, f"_{name}", own)
     private_versions.forget_function(body, name, own)
     assert read(body) is own
+
+
+def test_poses_of_bodies_that_joints_hold() -> None:
+    body = pymunk.Body(2.0, 1.0)
+    body.position, body.angle, body.center_of_gravity = (1.0, 2.0), 0.5, (0.25, 0.0)
+    body.velocity, body.angular_velocity = (3.0, 4.0), 5.0
+    place = (body.position.x, body.position.y)
+    assert private_joints.pose_and_motion(body) == (*place, 0.5, 0.0, 0.0, 0.0, 0.25, 0.0)
+    body.body_type = pymunk.Body.KINEMATIC
+    body.velocity, body.angular_velocity = (3.0, 4.0), 5.0
+    assert private_joints.pose_and_motion(body)[3:6] == (3.0, 4.0, 5.0)
+
+
+def test_bodies_that_move_on() -> None:
+    body = pymunk.Body(2.0, 1.0)
+    body.velocity, body.angular_velocity = (3.0, 4.0), 5.0
+    with private_joints.moving_on([body]):
+        body.velocity, body.angular_velocity = (0.0, 1.0), 2.0
+    assert (body.velocity, body.angular_velocity) == ((3.0, 4.0), 5.0)
+
+
+def test_constraints_that_push_with_nothing_for_a_while() -> None:
+    pin = pymunk.PinJoint(pymunk.Body(2.0, 1.0), pymunk.Body(2.0, 1.0))
+    pin.max_force = 7.0
+    held = private_joints.weaken([pin])
+    assert pin.max_force == 0.0
+    private_joints.strengthen(held)
+    assert pin.max_force == 7.0
+
+
+def test_constraints_of_bodies_that_are_awake() -> None:
+    space, bodies = pymunk.Space(), [pymunk.Body(2.0, 1.0) for _ in range(4)]
+    pins = [pymunk.PinJoint(bodies[0], bodies[1], (1, 0)), pymunk.PinJoint(bodies[2], bodies[3], (1, 0))]
+    space.sleep_time_threshold = 1.0
+    space.add(*bodies, *pins)
+    bodies[0].sleep()
+    bodies[1].sleep_with_group(bodies[0])
+    assert private_joints.awake(pins) == pins[1:]
+    assert bodies[0].is_sleeping

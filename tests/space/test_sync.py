@@ -6,7 +6,7 @@ import pymunk
 import pytest
 
 import eeca_pymunk as ep
-from eeca_pymunk.space import private, sync
+from eeca_pymunk.space import private_rest, sync
 from scenes.scene import add_disk
 
 from ..test_packed_stepper import FreeFlight
@@ -186,9 +186,9 @@ def test_a_step_at_rest_leaves_settings_and_what_is_stopped_moves_on() -> None:
     space, box = standing()
     box.velocity, box.angular_velocity, box.force, box.torque = (1.0, -2.0), 3.0, (4.0, 5.0), 6.0
     settings = space.gravity, space.iterations, space.collision_bias
-    with private.stopped(space):
+    with private_rest.stopped(space):
         assert (box.velocity, box.angular_velocity, box.force, box.torque) == ((0.0, 0.0), 0.0, (0.0, 0.0), 0.0)
-        private.rest(space, DT, False)
+        private_rest.rest(space, DT, False)
     assert (box.velocity, box.angular_velocity, box.force, box.torque) == ((1.0, -2.0), 3.0, (4.0, 5.0), 6.0)
     assert (box.position, space.current_time_step) == ((0.0, 0.5), DT)
     assert (space.gravity, space.iterations, space.collision_bias) == settings

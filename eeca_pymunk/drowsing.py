@@ -1,0 +1,66 @@
+"""Kernels of sleeping: who has been at rest in a step, and whether anybody asleep was touched in it."""
+
+from __future__ import annotations
+
+import math
+
+from .arrays import FloatArray, IntArray
+from .compiled import kernel
+from .compiled.records import Rows
+from .layout import BODY_ROW, LEFT, NOW
+from .model.bodies import Body
+from .model.contacts import Impulse
+
+ROUND = 1e-14  # of coordinates, and of the largest speed
+
+
+@kernel
+def rests(
+    STATES: FloatArray, WALK: IntArray, BODY: Rows[Body], SIZE: FloatArray, RESTED: FloatArray, TIRED: IntArray,
+    slow: float, dt: float, need: float,
+) -> int:  # fmt: skip
+    """Count for how long bodies have been at rest: at both ends of the step
+
+        |v|, |spin| SIZE <= slow + round-off     and     |x - x0| <= slow dt + round-off,
+
+    without forces. SIZE (N,): length, 0 for bodies without shapes. RESTED (N,): time. TIRED (N,): 1 for those that have
+    rested for the time `need`.
+
+    Returns:
+        1 if any is tired, else 0.
+    """
+    before, after = STATES[NOW], STATES[LEFT]
+    N, fastest, some = WALK.shape[1], 0.0, 0
+    for i in range(N):
+        vx, vy = after[i, 3], after[i, 4]
+        fastest = max(fastest, math.sqrt(vx * vx + vy * vy))
+    limit = slow + ROUND * fastest
+    for i in range(N):
+        row = WALK[BODY_ROW, i]
+        still = row >= 0 and BODY[row].inv_mass > 0.0
+        if still:
+            size = SIZE[i]
+            for c in range(3):
+                scale = size if c == 2 else 1.0
+                way, place = scale * abs(after[i, c] - before[i, c]), scale * abs(after[i, c])
+                still = still and way <= limit * dt + ROUND * place
+            for k in range(2):
+                vx, vy, spin = STATES[k, i, 3], STATES[k, i, 4], STATES[k, i, 5]
+                still = still and math.sqrt(vx * vx + vy * vy) <= limit
+                still = still and abs(spin) * (size if size > 0.0 else 1.0) <= limit
+            still = still and before[i, 6] == 0.0 and before[i, 7] == 0.0 and before[i, 8] == 0.0
+        RESTED[i] = RESTED[i] + dt if still else 0.0
+        TIRED[i] = 1 if still and RESTED[i] >= need else 0
+        some = max(some, TIRED[i])
+    return some
+
+
+@kernel
+def touches(LOG: Rows[Impulse], OWNER: IntArray, ASLEEP: IntArray, STILL: IntArray, count: int) -> int:
+    """Whether one of the first `count` impulses is between a body asleep and one that moves; bodies of shapes are in
+    OWNER (k,), ASLEEP and STILL (N,) are 1 for bodies asleep, and for those that stand, asleep or static."""
+    for e in range(count):
+        a, b = OWNER[int(LOG[e].first)], OWNER[int(LOG[e].second)]
+        if (ASLEEP[a] == 1 and STILL[b] == 0) or (ASLEEP[b] == 1 and STILL[a] == 0):
+            return 1
+    return 0
