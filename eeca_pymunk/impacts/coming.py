@@ -91,7 +91,7 @@ def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: Int
                     if together:
                         pass
                     elif e >= 1.0 and not lossy:
-                        if not busy and not rests(A, s, o, t, False):
+                        if not rests(A, s, o, t, False):
                             continue
                     elif g > TOUCH * small and not busy:
                         if not -e * min(u, 0.0) < 0.5 * max(closing, load / mass) * h:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 from ..compiled import uncounted
-from ..impacts.coming import before_end
 from ..joints.ledger import clear_interval
 from ..model.joints import Joints
 from ..model.scene import Scene
@@ -56,7 +55,7 @@ def begin_alone(A: Scene, J: Joints, root: int, t: float, h: float) -> None:
             lay_path(A, J, s, J.MEMBER[first + i].body, i, h)
     A.COUNT.solves += 1
     A.MEMBER[root].open = 1
-    A.RESTING[root].until = t + h if before_end(A, t + h) else math.inf
+    A.RESTING[root].until = math.inf
 
 
 @uncounted

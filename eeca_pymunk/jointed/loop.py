@@ -10,7 +10,6 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import Table, kernel, uncounted
 from ..impacts.due import forecast, forecast_due
 from ..impacts.heap import push
-from ..impacts.islands import members
 from ..impacts.loop import follow, with_mover
 from ..impacts.missed import miss
 from ..impacts.settle import settle
@@ -18,12 +17,11 @@ from ..impacts.step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, finish, start, wi
 from ..joints.ledger import clear_interval
 from ..layout import BODY_ROW, LEFT
 from ..layout import NOW as READ
-from ..model.bodies import RENEW
 from ..model.joints import ELASTIC, Joints, joints_of
 from ..model.scene import Scene, scene_of
 from ..model.step import DONE, JOINTS_DUE, PUSHES_FULL
 from ..model.step import JOINTS as UNMET_JOINTS
-from .meet import book_component, end_here, shorten
+from .meet import book_component, shorten
 from .solve import begin_span
 from .strike import collide
 
@@ -96,12 +94,8 @@ def follow_jointed(A: Scene, J: Joints, disks: int, may_rest: bool) -> int:
             if not roomy(A):
                 COUNT.heap = push(A.HEAP_TIME, A.HEAP_BODY, COUNT.heap, t, i)
                 return PUSHES_FULL
-            if STATE[i].other == RENEW:
-                end_here(A, J, i, t)
-                COUNT.waiting, COUNT.pending = members(A, i, BLOCK), i
-            else:
-                status, n = collide(A, J, disks, STATE[i].own, STATE[i].other, t)
-                COUNT.waiting = with_mover(A, i, n)
+            status, n = collide(A, J, disks, STATE[i].own, STATE[i].other, t)
+            COUNT.waiting = with_mover(A, i, n)
         elif A.MEMBER[COUNT.pending].jointed == 0:
             status = follow(A, disks, may_rest)
             continue

@@ -17,7 +17,7 @@ from ..model.scene import Scene
 from ..pairs.lists import mark_pair
 from .gathered import restore_joints
 from .press import SOME
-from .solve import open_span
+from .solve import begin_span
 
 _MEET = 1e-13  # gap at an impact, over the smaller shape
 _LOADED_MEET, _ROUGH_MEET = 1e-6, 1e-4  # likewise where contacts push, and where many do, solved roughly in `press`
@@ -84,7 +84,7 @@ def shorten(A: Scene, J: Joints, root: int, t: float) -> int:
     for c in range(len(found)):
         restore_joints(J, found[c])
     if t - began > _INSTANT * A.PAR.dt:
-        open_span(A, J, root, began, t - began, True)
+        begin_span(A, J, root, began, t - began)
     return some
 
 

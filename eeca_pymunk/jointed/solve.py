@@ -11,10 +11,10 @@ from ..compiled import kernel, uncounted
 from ..impacts.coming import before_end, pairs_of
 from ..impacts.islands import lossy, members
 from ..impacts.missed import miss
-from ..impacts.spans import AGAIN, dismiss, lay_out_island, open_contacts
+from ..impacts.spans import dismiss, lay_out_island, open_contacts
 from ..model.islands import Island
 from ..model.joints import Joints
-from ..model.parameters.intervals import INTERVAL_RETRY, MIDPOINT_SAME
+from ..model.parameters.intervals import MIDPOINT_SAME
 from ..model.scene import Scene
 from ..model.step import CONTACTS, DONE, PUSHES_FULL
 from ..rows.build import normal_rate
@@ -30,12 +30,9 @@ from .component import step_component
 from .fitting import fit
 from .gathered import gather_component, keep_joints, restore_joints
 from .groups import Groups, find_groups
-from .lengths import in_haste, length_ahead, too_long
 from .lifting import lift
 from .motors import drives
 from .press import lost, press, slip_of
-
-_TRIES = 8  # attempts at a span
 
 
 @uncounted
@@ -62,28 +59,14 @@ def foresee(
 
 @kernel
 def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
-    """Begin a span of an island with joints at instant t, at which all its bodies are: of length h, or shorter where
-    bodies go so far that no contact would be where it was (`lengths`).
+    """Begin a span of length h of an island with joints at instant t, at which all its bodies are.
 
     DONE, or PUSHES_FULL, which leaves everything as it was.
     """
-    longest = h
-    for attempt in range(_TRIES):
-        status, shorter = open_span(A, J, root, t, longest, attempt + 1 == _TRIES or in_haste(A, J))
-        if status != AGAIN:
-            return status
-        longest = shorter
-    return DONE
-
-
-@kernel
-def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) -> tuple[int, float]:
-    """`begin_span` of length h. AGAIN, with nothing done, if that is too long, and how long it may be; not if it is the
-    `last` attempt."""
     whole = is_component(A, J, root)
     if whole and meets_nobody(A, root):
         begin_alone(A, J, root, t, h)
-        return DONE, h
+        return DONE
     BODY, STATE, MEMBER, COUNT = A.BODY, A.STATE, A.MEMBER, A.COUNT
     n = MEMBER[root].bodies
     MINE = np.empty(n, np.int64)
@@ -94,17 +77,13 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
     may_lose = lossy(A, root)
     found = pairs_of(A, root, t, may_lose, A.PLACE, MINE, n)
     p = len(found)
-    shorter = h if last else length_ahead(A, found, MINE, n, h)
-    if shorter < h:
-        dismiss(A, MINE, n)
-        return AGAIN, shorter
     if p == 0 and whole:
         dismiss(A, MINE, n)
         begin_alone(A, J, root, t, h)
-        return DONE, h
+        return DONE
     if COUNT.pushes + 2 * p > A.PUSHED.shape[0] or 2 * (COUNT.remembered + 2 * p) > A.KEYS.shape[0]:
         dismiss(A, MINE, n)
-        return PUSHES_FULL, h
+        return PUSHES_FULL
     isle = lay_out_island(A, MINE, n, found, t)
     k = len(isle.WHO)
     groups = find_groups(isle.WHO, isle.IM, J.OF)
@@ -121,26 +100,15 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
         pull = max(pull, foresee(A, J, isle, groups, t, h, motion, REACH))
         m = gather(A, isle, contacts, moved(isle.POSE, isle.V, 0.5 * h), REACH, h, k == n, MIDPOINT_SAME)
     interval = Interval(isle, groups, P, Q, ROWS, motion, make_columns(groups, P, Q, m), m, n, t, h)
-    held = True
     if m > 0:
         recall(KEY, m, A.KEYS, A.FORCES, A.PAR.stamp, h, L, EXPECTED)
         owed = max(-A.RESTING[root].lost, 0.0)
-        held = press(A, J, interval, L, EXPECTED, slow, fast, pull, owed)
+        if not press(A, J, interval, L, EXPECTED, slow, fast, pull, owed):
+            pair, shapes = KEY[0] >> 1, A.SHAPE.shape[0]
+            miss(A, CONTACTS, pair // shapes, pair % shapes, math.nan, math.nan)
         remember_loads(ROWS, KEY, L, m, h, A.KEYS, A.FORCES, COUNT, A.PAR.stamp)
     if m == 0:
         advance(A, J, interval, L, room_for_rows(0, 0), False, np.empty((0, 3)))
-    far = 0.0 if last else too_long(A, isle, P, Q, ROWS, KEY, motion, m, n, h)
-    if far > INTERVAL_RETRY:
-        for g in range(len(groups.COMPONENT)):
-            if groups.COMPONENT[g] >= 0:
-                restore_joints(J, groups.COMPONENT[g])
-        dismiss(A, MINE, n)
-        COUNT.solves += 1
-        COUNT.solved += n
-        return AGAIN, h / far
-    if not held:
-        pair, shapes = KEY[0] >> 1, A.SHAPE.shape[0]
-        miss(A, CONTACTS, pair // shapes, pair % shapes, math.nan, math.nan)
     book_turning(A, J, isle, groups, motion, n)
     # Bodies are lifted at the end of the span, not on the way: the way would be as steep as the span is short.
     WHERE = motion.END.copy()
@@ -155,7 +123,6 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
         fit(A, J, interval, L, t + h, slow + pull * h)
     dismiss(A, MINE, n)
     COUNT.solves += 1
-    COUNT.solved += n
     first = COUNT.pushes
     open_contacts(A, isle, contacts, motion.V, m, t, h, np.zeros(k, np.uint8))
     for z in range(m):
@@ -176,8 +143,8 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
         rest.lift_angle = motion.END[q, 2] - WHERE[q, 2]
         rest.lift_vx, rest.lift_vy, rest.lift_spin = motion.V[q, 0], motion.V[q, 1], motion.V[q, 2]
     MEMBER[root].open = 1
-    A.RESTING[root].until = t + h if before_end(A, t + h) else math.inf
-    return DONE, h
+    A.RESTING[root].until = math.inf
+    return DONE
 
 
 @uncounted

@@ -14,7 +14,6 @@ from ..impacts.settle import comes_to_rest
 from ..impacts.spans import dismiss
 from ..model.contacts import SOLVED
 from ..model.joints import Joints
-from ..model.parameters.intervals import BUSY_STEPS
 from ..model.scene import Scene
 from ..rows.blocks import CONVERGED, TRUNCATED
 from ..rows.build import aim, conserves, rates
@@ -30,7 +29,6 @@ from .meet import end_here, meet, shorten
 from .newton import solve_columns
 
 _SWEEPS = 1000
-_OFTEN = 64  # impacts of a body in a step
 
 
 @uncounted
@@ -56,16 +54,6 @@ def carried_along(J: Joints, s: int) -> bool:
     return False
 
 
-@uncounted
-def hit_often(A: Scene, i: int) -> bool:
-    """Whether body i has had so many impacts in this step that it rests on what it meets from now on; then what comes
-    near is in its island, elastic or not."""
-    if A.BODY[i].inv_mass == 0.0 or A.STATE[i].events < _OFTEN:
-        return False
-    A.MEMBER[i].busy = BUSY_STEPS
-    return True
-
-
 @kernel
 def collide(A: Scene, J: Joints, disks: int, a: int, b: int, t: float) -> tuple[int, int]:
     """The impact of shapes a and b, seen at instant t, with all that hangs on them: results as `..impacts.strike`."""
@@ -88,7 +76,7 @@ def collide(A: Scene, J: Joints, disks: int, a: int, b: int, t: float) -> tuple[
         if again:
             dismiss(A, A.BLOCK, n)
             n, m, PAIRS = gather(A, disks, a, b, t)
-    rest = comes_to_rest(A, a, b, t) or hit_often(A, i) or hit_often(A, j)
+    rest = comes_to_rest(A, a, b, t)
     owed, _ = owing(A, n)
     block = lay_out(A, disks, n, m, PAIRS, min(a, b) * k + max(a, b), rest, t)
     P, Q, ROWS, V = block.A, block.B, block.ROWS, block.V

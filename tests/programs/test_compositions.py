@@ -45,13 +45,6 @@ def test_random_compositions_with_thin_shapes_keep_the_laws(first: int) -> None:
                 raise
 
 
-@pytest.mark.parametrize(("seed", "steps"), [(50, 50), (146, 20), (254, 60)])
-def test_jointed_bodies_that_move_far_in_a_step_stay_inside(seed: int, steps: int) -> None:
-    """Whips and planks on springs that turn by more than half a radian in a step: spans of islands with joints end
-    before no contact is where it was. A light body left through a wall at 60 sizes per second, converged."""
-    Composition(seed, joints=True).play(steps)
-
-
 @pytest.mark.parametrize(("seed", "steps"), [(164, 4), (190, 6)])
 def test_a_step_that_is_cut_short_gives_no_energy(seed: int, steps: int) -> None:
     """What lies in the part of a span that is not to be is neither lost nor lifted for: it gained 3e-5 of all."""
@@ -82,12 +75,6 @@ def test_saved_steppers_know_the_lengths_of_pins(length: float | None) -> None:
     assert sorted(pin.distance for pin in pins) == sorted(
         c.distance for c in other.constraints if isinstance(c, pymunk.PinJoint)
     )
-
-
-def test_a_hit_that_finds_no_joints_after_all() -> None:
-    """The islands that were brought there begin anew by themselves; they were joined to body -1 of the scene, and the
-    process ended."""
-    Composition(266, joints=True).play(80)
 
 
 def test_hits_that_cut_solves_of_contacts_short_gain_no_energy() -> None:
