@@ -60,6 +60,7 @@ class Pile:
 
     def room(self, size: int) -> None:
         """Rows for `size` contacts, and memory for four times as many."""
+        self.size = size
         self.contacts = make_contacts(size // 2, len(self.im))
         self.clean(8 * size)
 
@@ -100,10 +101,7 @@ class Pile:
             )
             if self.m >= 0:
                 break
-            if 4 * self.scene.COUNT.remembered > len(self.scene.KEYS):
-                self.clean(len(self.scene.KEYS))
-            else:
-                self.room(2 * len(self.contacts.A))
+            self.room(2 * self.size)
         vn, self.jump, self.out = self.contacts.VN, self.contacts.JUMP, self.contacts.OUT[0]
         for name in ("restitution", "friction", "carried", "lifted", "forces"):
             setattr(self.ledger, name, getattr(self.ledger, name) + getattr(self.out, name))
