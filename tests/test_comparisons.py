@@ -63,7 +63,7 @@ def test_no_name_lists_all(capsys: pytest.CaptureFixture[str]) -> None:
 
 def test_unknown_comparison(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["nonsense", "--out", str(tmp_path / "new")]) == 2
-    assert "unknown comparison 'nonsense': choose one of tour" in capsys.readouterr().err
+    assert "unknown comparison 'nonsense': choose one of programs" in capsys.readouterr().err
     assert not (tmp_path / "new").exists()
 
 
