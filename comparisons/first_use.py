@@ -36,9 +36,11 @@ print(base, package, time.perf_counter() - begin, time.perf_counter() - start)
 EDITS = {
     "geometry": "geometry/gap.py",
     "pairs": "pairs/grid.py",
+    "prediction": "prediction/impact_times.py",
     "rows": "rows/sweeps.py",
-    "sustained": "sustained/step.py",
-    "impacts": "impacts/strike.py",
+    "contacts": "contacts/interval.py",
+    "islands": "islands/intervals.py",
+    "impacts": "impacts/simultaneous.py",
     "joints": "joints/solve.py",
     "jointed": "jointed/press.py",
     "none (a comment)": "impacts/scene.py",

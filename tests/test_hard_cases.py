@@ -43,12 +43,12 @@ def test_matrix_tells_passes_failures_and_refusals(
 # In plain Python, where kernels can be exchanged: what replaces one, and the case that must notice.
 BROKEN = {
     "a loss for a gain": (
-        "strike.law_of_disks",
+        "single.law_of_disks",
         "lambda of: lambda *a: (-of(*a)[0], *of(*a)[1:])",
         "swap of velocities",
     ),
     "impacts a thousandth late": (
-        "times.one_pull",
+        "impact_times.one_pull",
         "lambda of: lambda *a: of(*a) + 1e-3",
         "dt from 3e-5 to 1/10",
     ),
@@ -58,7 +58,7 @@ BROKEN = {
         "rod onto its corner",
     ),
     "nothing touches": (
-        "strike.touches",
+        "single.touches",
         "lambda of: lambda *a: False",
         "touching line of three",
     ),
@@ -78,7 +78,8 @@ import sys
 from comparisons import hard_cases
 import eeca_pymunk as ep
 from eeca_pymunk import compiled
-from eeca_pymunk.impacts import strike, times
+from eeca_pymunk.contacts import single
+from eeca_pymunk.prediction import impact_times
 from eeca_pymunk.joints import bounds, motion
 from eeca_pymunk.rows import build
 ARMS = ["arm_na", "arm_nb", "arm_ta", "arm_tb"]

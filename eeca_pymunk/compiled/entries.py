@@ -20,7 +20,7 @@ from .records import KINDS
 
 SOURCES = (
     "arrays.py", "layout.py", "transfer.py", "rehearsing.py", "drowsing.py", "compiled", "model", "build", "energy",
-    "geometry", "rows", "pairs", "sustained", "joints", "impacts", "jointed",
+    "geometry", "rows", "pairs", "prediction", "contacts", "joints", "islands", "impacts", "jointed",
 )  # fmt: skip
 
 TABLES = {
@@ -65,9 +65,9 @@ ENTRIES = {
     "drowsing:rests": "f8[3] i8[2] Body[1] f8[1] f8[1] i8[1] f8 f8 f8",
     "drowsing:touches": "Impulse[1] i8[1] i8[1] i8[1] i8",
     "rehearsing:changed": "f8[3] f8[2] f8[2]",
-    "impacts.booking:flag_again": "{Scene}",
+    "islands.accounting:flag_again": "{Scene}",
     "impacts.step:step": "{Scene} f8[3] i8[2] f8[2] f8[1] f8 f8 f8 f8 i8 bool i8",
-    "impacts.together:step_together": "{Scene} f8[3] i8[2] f8[2] f8[1] f8[1] f8 f8 f8 f8 i8",
+    "impacts.midstep:step_together": "{Scene} f8[3] i8[2] f8[2] f8[1] f8[1] f8 f8 f8 f8 i8",
     "impacts.run:run": "{Scene} {RunArrays} f8[3] i8[2] f8[2] f8[1] f8[1] i8 bool bool",
     "joints.plan:make_plan": "Body[1] Joint[1] Component[1] ComponentBody[1] Coupling[1]",
     "joints.world:step_all": "{Joints} Body[1] f8",
@@ -75,8 +75,8 @@ ENTRIES = {
     "jointed.together:step_together_jointed": "{Scene} {Joints} f8[3] i8[2] f8[2] f8[1] f8[1] f8 f8 f8 f8 i8",
     "jointed.run:run_jointed": "{Scene} {Joints} {RunArrays} f8[3] i8[2] f8[2] f8[1] f8[1] i8 bool bool",
     # Of tests alone, which step islands by themselves: some hundred times slower as plain Python.
-    "sustained.step:step_island": "{Scene} {Island} {Contacts} i8 f8 i8 f8 f8 f8 f8",
-    "sustained.memory:forget": "i8[1] Force[1] Count i8[1] Force[1] f8",
+    "contacts.interval:step_island": "{Scene} {Island} {Contacts} i8 f8 i8 f8 f8 f8 f8",
+    "contacts.memory:forget": "i8[1] Force[1] Count i8[1] Force[1] f8",
 }
 
 _CODES = {"f8": "<f8", "i8": "<i8", "i4": "<i4", "u1": "|u1"}

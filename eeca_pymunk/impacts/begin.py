@@ -6,12 +6,13 @@ import math
 
 from ..arrays import IntArray
 from ..compiled import uncounted
+from ..contacts.energy import total, unsteered
 from ..geometry.sides import forget_sides
+from ..islands.accounting import flag_spans
+from ..islands.at_rest import note_motion, stays_at_rest
+from ..model.bodies import AT_REST
 from ..model.parameters.intervals import BUSY_STEPS
 from ..model.scene import Scene
-from .booking import flag_spans
-from .energy import total, unsteered
-from .still import stays, watch
 
 
 @uncounted
@@ -46,12 +47,12 @@ def begin(A: Scene, WALK: IntArray) -> None:
         carries = carries and A.MEMBER[i].tied < 0
         if not quiet:
             A.MEMBER[i].busy = max(A.MEMBER[i].busy - 1, 0)
-        if not quiet and A.MEMBER[i].still == 1 and stays(A, i, last):
+        if not quiet and A.MEMBER[i].rest == AT_REST and stays_at_rest(A, i, last):
             pulled = max(pulled, A.PULL[i, 0] * A.PULL[i, 0] + A.PULL[i, 1] * A.PULL[i, 1])
             even = False
             continue
         if BODY[i].inv_mass == 0.0:
-            watch(A, i)
+            note_motion(A, i)
             fixed += 1
             if BODY[i].vx != 0.0 or BODY[i].vy != 0.0 or BODY[i].spin != 0.0:
                 COUNT.closing = 1

@@ -6,13 +6,14 @@ import math
 
 from ..arrays import IntArray
 from ..compiled import uncounted
+from ..contacts.energy import total, unsteered
+from ..contacts.single import move_to
 from ..geometry.gap import gap_at
+from ..islands.accounting import book, lift_out
+from ..islands.at_rest import keep, leave, put_to_rest, stand
+from ..islands.rest import find_candidates
+from ..model.bodies import AT_REST, CANDIDATE
 from ..model.scene import Scene
-from .booking import book, lift_out
-from .calm import LIKELY, find_still
-from .energy import total, unsteered
-from .still import halt, keep, leave, stand
-from .strike import move_to
 
 
 @uncounted
@@ -23,22 +24,22 @@ def close(A: Scene, WALK: IntArray) -> None:
     even = COUNT.even > 0  # no islands
     COUNT.quiet = COUNT.quiet + 1 if even else 0
     if not even:
-        find_still(A)
+        find_candidates(A)
     for c in range(COUNT.pushes):
         root = A.PUSHED_BY[c].root
-        if root >= 0 and A.MEMBER[root].still == 1:
+        if root >= 0 and A.MEMBER[root].rest == AT_REST:
             stand(A, c)
         elif root >= 0:
             book(A, c, end)
-            if A.MEMBER[root].still == LIKELY:
+            if A.MEMBER[root].rest == CANDIDATE:
                 keep(A, c, root)
     gx, gy = PAR.gravity_x, PAR.gravity_y
     for i in range(BODY.shape[0] - 1):
         move_to(BODY, i, end)
         if not even and A.STATE[i].island == i:
             lift_out(A, i, end)
-            if A.MEMBER[i].still == LIKELY:
-                halt(A, i)
+            if A.MEMBER[i].rest == CANDIDATE:
+                put_to_rest(A, i)
     for i in range(BODY.shape[0] - 1):
         fx, fy, twist = A.PULL[i, 0] - gx, A.PULL[i, 1] - gy, A.PULL[i, 2]
         if BODY[i].inv_mass > 0.0 and (fx != 0.0 or fy != 0.0 or twist != 0.0):

@@ -7,24 +7,24 @@ kinked since is forecast anew when it comes up; until then it can only be too ea
 from __future__ import annotations
 
 from ..compiled import kernel, merged, uncounted
-from ..model.bodies import LEAVE, RENEW
+from ..contacts.single import alone, strike_disk
+from ..contacts.unmet import note_unmet
+from ..islands.accounting import close_span, end_interval
+from ..islands.building import comes_to_rest, hits_of, most_hits, passed_over
+from ..islands.intervals import solve
+from ..islands.membership import members
+from ..model.bodies import AT_REST, LEAVE, RENEW
 from ..model.parameters.events import AHEAD, SQUEEZED_IMPACTS
 from ..model.scene import Scene
 from ..model.step import BLOCK_DUE, DONE, HITS, IMPACTS, JOINTS_DUE, LOG_FULL, POOL_FULL, SOLVES
 from ..pairs.grid import renew
 from ..pairs.lists import mark_pair
-from .block import arrive
-from .booking import close_span, end_span
-from .collide import strike
-from .due import forecast, forecast_all, look_ahead
-from .forecast import has_left
-from .heap import pop, push, sweep_out
-from .islands import members
-from .lone import carrier, go_on
-from .missed import miss
-from .settle import comes_to_rest, hits_of, ignored, most_hits
-from .spans import solve
-from .strike import alone, strike_disk
+from ..prediction.disks import carrier, go_on
+from ..prediction.heap import pop, push, sweep_out
+from ..prediction.next_event import has_left
+from ..prediction.scheduling import forecast, forecast_all, look_ahead
+from .resolution import strike
+from .simultaneous import arrive
 
 
 @uncounted
@@ -99,7 +99,7 @@ def run(A: Scene, disks: int, may_rest: bool) -> int:
             one = i
             continue
         if give_up(A, i, j):
-            miss(A, IMPACTS, s, o, float(max(STATE[i].events, STATE[j].events)), float(COUNT.limit))
+            note_unmet(A, IMPACTS, s, o, float(max(STATE[i].events, STATE[j].events)), float(COUNT.limit))
             mark_pair(A.LIST, A.POOL, A.FLAG, moving, s, o, 1)
             one = i
             continue
@@ -134,12 +134,12 @@ def cut_short(A: Scene, t: float) -> int:
     """Let the step end at instant t: so nothing that it has no work left for is passed over. Spans end there, without
     what they would have lifted at their own end."""
     a, b = A.STATE[A.COUNT.struck].own, A.STATE[A.COUNT.struck].other
-    miss(A, SOLVES, a, b, float(A.COUNT.solved), float(A.COUNT.budget))
+    note_unmet(A, SOLVES, a, b, float(A.COUNT.solved), float(A.COUNT.budget))
     A.PAR.dt = t
     A.COUNT.heap = 0
     for i in range(A.BODY.shape[0] - 1):
         root = A.STATE[i].island
-        if root < 0 or A.MEMBER[root].jointed > 0 or A.MEMBER[root].still == 1:
+        if root < 0 or A.MEMBER[root].jointed > 0 or A.MEMBER[root].rest == AT_REST:
             continue
         if root == i and A.MEMBER[i].open > 0:
             close_span(A, i, t)
@@ -175,7 +175,7 @@ def follow(A: Scene, disks: int, may_rest: bool) -> int:
             COUNT.heap = push(A.HEAP_TIME, A.HEAP_BODY, COUNT.heap, t, i)
             return LOG_FULL
         if o == RENEW:
-            end_span(A, i, t)
+            end_interval(A, i, t)
             n = members(A, i, BLOCK)
             status = solve(A, i, t)
             COUNT.waiting, COUNT.pending = n, -1 if status == DONE else i
@@ -184,8 +184,8 @@ def follow(A: Scene, disks: int, may_rest: bool) -> int:
             forecast_all(A, disks, n, t, end)
             continue
         j = A.LINK[o].owner
-        if (STATE[i].island >= 0 or STATE[j].island >= 0) and ignored(A, s, o, t):
-            miss(A, HITS, s, o, float(hits_of(A, s, o)), float(most_hits(A, s, o)))
+        if (STATE[i].island >= 0 or STATE[j].island >= 0) and passed_over(A, s, o, t):
+            note_unmet(A, HITS, s, o, float(hits_of(A, s, o)), float(most_hits(A, s, o)))
             mark_pair(A.LIST, A.POOL, A.FLAG, moving, s, o, 1)
             forecast(A, disks, moving, i, t, end, False)
             continue

@@ -13,8 +13,8 @@ from ..layout import BODY_ROW, LEFT
 from ..layout import NOW as READ
 from ..model.run import AFTER, BETWEEN, WITHIN, RunArrays, run_arrays_of
 from ..model.scene import Scene, scene_of
+from .midstep import begin_together, resume_together
 from .step import resume, start
-from .together import begin_together, resume_together
 
 ROOM_FOR_IMPACTS = -13  # the answer of a run that wants more rows of EVENTS
 ENERGY = -5  # and of one whose energy is too large for a number

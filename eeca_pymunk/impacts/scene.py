@@ -11,7 +11,9 @@ import numpy as np
 from ..arrays import AnyArray, FloatArray, IntArray, side_by_side
 from ..compiled.library import check
 from ..compiled.records import R, Rows, row, rows
+from ..contacts.memory import forget
 from ..geometry.corners import work_room
+from ..islands.accounting import flag_again
 from ..layout import NOW as READ
 from ..model.bodies import CHECK, Body, Member, Next, Rest
 from ..model.contacts import Force, Impulse, Pair, Pushed
@@ -22,14 +24,12 @@ from ..model.shapes import Link, Shape
 from ..model.step import Count, Missed, Step
 from ..pairs.setup import near_lists, rebuilt
 from ..report import Details, of_events
-from ..sustained.memory import forget
 from ..transfer import FORCES
-from .booking import flag_again
+from .midstep import step_together
 from .remembering import Remembering
 from .run import ROOM_FOR_IMPACTS, run
 from .run_buffers import RunBuffers
 from .step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, step
-from .together import step_together
 
 if TYPE_CHECKING:
     import pymunk

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import Table, kernel, uncounted
+from ..islands.building import build_islands
 from ..model.scene import Scene, scene_of
 from ..model.step import DONE, LOG_FULL, POOL_FULL
+from ..prediction.scheduling import forecast_due
 from ..transfer import EVENTS as SOME
 from ..transfer import give, take
 from .begin import begin
 from .close import close
-from .due import forecast_due
 from .loop import follow
-from .settle import settle
 
 # Answers of a step that wants more memory: give some, and `resume`.
 ROOM_FOR_LISTS, ROOM_FOR_EVENTS, ROOM_FOR_CONTACTS = -10, -11, -12
@@ -57,7 +57,7 @@ def resume(
     """The rest of a step, whose bits so far are `status`."""
     COUNT = A.COUNT
     if COUNT.phase == 0:
-        if COUNT.pushes + COUNT.crammed > 0 and settle(A) != DONE:
+        if COUNT.pushes + COUNT.crammed > 0 and build_islands(A) != DONE:
             return ROOM_FOR_CONTACTS
         COUNT.phase = 1
         forecast_due(A, disks)

@@ -13,6 +13,7 @@ from ..compiled.records import Rows
 from ..model.contacts import Row
 from ..model.islands import Island
 from ..model.joints import Joints
+from ..model.parameters.joints import ARM_ERROR, ARM_ITERATIONS
 from ..model.scene import Scene
 from .bounded import Bounded, fill_rows, list_rows, note_rows
 from .columns import Columns, fill_group
@@ -20,8 +21,6 @@ from .component import ready, step_component
 from .gathered import find_places, gather_component, lead_component, rewind_joints
 from .groups import Groups
 from .motors import let_slip
-
-_ALIGNMENTS, ALIGNED = 6, 1e-15  # motions to let arms agree; what they may be off, see `align`
 
 
 class Motion(NamedTuple):
@@ -170,7 +169,7 @@ def farthest_apart(V: FloatArray, W: FloatArray, EXTENT: FloatArray, n: int) -> 
 def advance_aligned(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, free: bool) -> None:
     """`advance`; where nothing from without holds or touches the island (`free`), until the arms of contacts agree with
     the motion. At its end they are those that it has been under."""
-    for turn in range(_ALIGNMENTS):
+    for turn in range(ARM_ITERATIONS):
         advance(A, J, interval, L, B, False, np.empty((0, 3)))
         if (
             not free
@@ -181,8 +180,8 @@ def advance_aligned(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: B
                 interval.ROWS,
                 interval.m,
                 interval.motion,
-                turn + 1 < _ALIGNMENTS,
+                turn + 1 < ARM_ITERATIONS,
             )
-            <= ALIGNED
+            <= ARM_ERROR
         ):
             break

@@ -17,11 +17,10 @@ from ..compiled.records import Rows, zeros
 from ..joints.boxes import FIRST_OF_DISC, SECOND_OF_DISC, SINGLE, on_disc
 from ..joints.entries import held, interval_of
 from ..model.joints import BOUNDED_ROW, GIVEN, GROOVE, BoundedRow, Joints
+from ..model.parameters.joints import BOUNDED_SWEEPS
 from ..model.scene import Scene
 from .component import answer
 from .groups import Groups
-
-_SWEEPS = 30
 
 
 class Bounded(NamedTuple):
@@ -218,6 +217,6 @@ def with_bounded(B: Bounded, L: FloatArray, m: int) -> FloatArray:
 def settle_bounded(B: Bounded, V: FloatArray) -> None:
     """Velocities V after contacts' impulses have been taken away: let the bounded rows follow."""
     X = with_bounded(B, np.empty((0, 2)), 0)
-    for _ in range(_SWEEPS if B.USED[0] > 0 else 0):
+    for _ in range(BOUNDED_SWEEPS if B.USED[0] > 0 else 0):
         if sweep_bounded(B, X, 0, V) <= 0.0:
             break

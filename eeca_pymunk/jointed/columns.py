@@ -16,10 +16,9 @@ from ..compiled.records import Rows
 from ..model.contacts import Row
 from ..model.joints import Joints
 from ..model.parameters.impulses import SINGULAR
+from ..model.parameters.joints import STRUT, STRUT_BETWEEN
 from .component import answer
 from .groups import Groups
-
-_STRUT, _NOTHING = 1e-3, 1e-7  # share of its free mobility below which a contact is left out: of one group, of two
 
 
 class Columns(NamedTuple):
@@ -133,7 +132,7 @@ def weigh(groups: Groups, C: Columns, A: IntArray, B: IntArray, ROWS: Rows[Row],
     for i in range(m):
         nn, tt = along(C, A, B, ROWS, i, C.N, False), along(C, A, B, ROWS, i, C.T, True)
         nt = 0.5 * (along(C, A, B, ROWS, i, C.N, True) + along(C, A, B, ROWS, i, C.T, False))
-        least = _STRUT if groups.GROUP[A[i]] == groups.GROUP[B[i]] else _NOTHING
+        least = STRUT if groups.GROUP[A[i]] == groups.GROUP[B[i]] else STRUT_BETWEEN
         C.OUT[i] = 0 if nn * ROWS[i].k_n > least else 1
         if C.OUT[i] == 0:
             ROWS[i].k_n, ROWS[i].a_nn = 1.0 / nn, nn

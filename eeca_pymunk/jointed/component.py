@@ -15,10 +15,9 @@ from ..joints.start import look
 from ..joints.step import island_step
 from ..joints.workspace import workspace
 from ..model.joints import GEAR, POSES, SPEEDS, STEP, Joints, Workspace
+from ..model.parameters.joints import CORRECTION_JOINTS
 from ..model.scene import Scene
 from .gathered import gather_component
-
-_CLOSED = 1e-11  # of the size of a component, that joints may be off where bodies are lifted
 
 
 @uncounted
@@ -102,7 +101,7 @@ def close_joints(
                 NEW[q, c] = J.LOCAL[i].pose[c]
     held = springs_of(W) - held
     for k in range(W.joints):
-        link, small = W.link[k], _CLOSED * W.J.HINGE[k].size
+        link, small = W.link[k], CORRECTION_JOINTS * W.J.HINGE[k].size
         if link.soft != 0:
             continue
         for r in range(link.rows):

@@ -17,17 +17,14 @@ from ..compiled import kernel, uncounted
 from ..compiled.records import Rows, empty
 from ..joints.boxes import SINGLE
 from ..model.contacts import ROW, Row
+from ..model.parameters.joints import COLUMN_CONTACTS, CONDENSED_BOUNDED, CONDENSED_CHANGES, CONDENSED_PROXIMAL
 from ..rows.build import normal_rate
 from ..rows.dense import back, decompose
 from ..rows.inplace import copy
 from .bounded import Bounded, bounded_rate, per_impulse, push_row, room_for_rows
 from .columns import Columns, leave_out, weigh
 from .groups import Groups
-from .newton import FEW, solve_columns
-
-MOST = 16  # bounded rows up to which this pays
-_TURNS = 4  # changes of sides for each of them, at most
-_R = 1e10  # of a proximal term, for rows that are redundant
+from .newton import solve_columns
 
 
 @uncounted
@@ -114,7 +111,7 @@ def solve_condensed(
         if that is above the tolerance, or if there are some of discs.
     """
     n = D.USED[0]
-    if n == 0 or n > MOST or m > FEW:
+    if n == 0 or n > CONDENSED_BOUNDED or m > COLUMN_CONTACTS:
         return -1.0
     L0, V0, KEPT = L.copy(), V.copy(), empty(m, ROW)
     side, R, S = np.zeros(n, np.int64), np.empty((n, n)), np.empty(n, np.int64)
@@ -127,7 +124,7 @@ def solve_condensed(
             R[i, j] = per_impulse(D, i, j)
         side[i] = 1 if L[m + i, 0] >= D.ROWS[i].high else -1 if L[m + i, 0] <= D.ROWS[i].low else 0
     copy_weights(ROWS, m, KEPT)
-    for _ in range(_TURNS * n):
+    for _ in range(CONDENSED_CHANGES * n):
         k = 0
         for i in range(n):
             if side[i] == 0:
@@ -140,7 +137,7 @@ def solve_condensed(
         for p in range(k):
             for q in range(k):
                 W[p, q] = R[S[p], S[q]]
-            W[p, p] += abs(W[p, p]) / _R
+            W[p, p] += abs(W[p, p]) / CONDENSED_PROXIMAL
             r[p] = -D.ROWS[S[p]].speed - bounded_rate(D, S[p], V)
         decompose(W, k, order)
         back(W, k, order, r, x)

@@ -11,6 +11,7 @@ from ..joints.correct import fitting_loss
 from ..model.contacts import Row
 from ..model.islands import Island
 from ..model.joints import Joints
+from ..model.parameters.joints import COLUMN_CONTACTS, FIT_CLOSING, FIT_ENERGY, FIT_RESIDUAL
 from ..model.scene import Scene
 from ..rows.build import normal_rate
 from ..rows.inplace import add
@@ -20,11 +21,6 @@ from .component import fit_speeds, ready
 from .gathered import find_places, gather_component
 from .lifting import raise_gaps
 from .motors import keeps_speed
-from .newton import FEW
-
-_SLOW = 1e-9  # speed over the island's, with which contacts may close
-_FINE = 1e-6  # of the fastest closing contact, to which others are kept from it
-_NOTHING = 1e-12  # of the energy, that is round-off of its change
 
 
 @kernel
@@ -60,15 +56,15 @@ def fit(A: Scene, J: Joints, interval: Interval, L: FloatArray, end: float, scal
             if body < A.PLACE.shape[0] and A.PLACE[body] >= 0:
                 for c in range(3):
                     motion.V[A.PLACE[body], c] = J.LOCAL[w].v0[c]
-    if first < 0 or driven or m > FEW:
+    if first < 0 or driven or m > COLUMN_CONTACTS:
         return
     RATES, fastest = np.full(m, np.inf), 0.0
     for i in range(m):
         if L[i, 0] > 0.0 and interval.C.OUT[i] == 0:
             RATES[i] = normal_rate(interval.P, interval.Q, interval.ROWS, motion.V, i)
             fastest = max(fastest, -RATES[i])
-    if fastest > _SLOW * scale:
-        hold(A, J, interval, end, RATES, _FINE * fastest, first)
+    if fastest > FIT_CLOSING * scale:
+        hold(A, J, interval, end, RATES, FIT_RESIDUAL * fastest, first)
 
 
 @uncounted
@@ -136,7 +132,7 @@ def hold(A: Scene, J: Joints, interval: Interval, end: float, RATES: FloatArray,
             loss -= MU[i] * (RATES[i] + 0.5 * normal_rate(P, Q, KEEP, D, i))
     add(motion.V, D)
     gained = energy_of(isle, motion.V) - before
-    if abs(gained + loss) > _NOTHING * before:
+    if abs(gained + loss) > FIT_ENERGY * before:
         # Supports move.
         J.STEPPED[book].projected += loss
         J.STEPPED[book].supports += gained + loss

@@ -9,23 +9,20 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
+from ..contacts.works import against
 from ..model.contacts import Row
 from ..model.islands import Island
 from ..model.joints import Joints
+from ..model.parameters.joints import JOINTED_CORRECTION, JOINTED_CORRECTION_SWEEPS, JOINTED_OVERLAP
 from ..model.scene import Scene
 from ..rows.build import normal_rate
 from ..rows.inplace import copy
-from ..sustained.ledger import against
 from .advance import Interval
 from .columns import Columns, fill_group, weigh
 from .component import close_joints, ready
 from .gathered import find_places, gather_component
 from .groups import hangs
 from .motors import drives
-
-_SLOP = 1e-9  # overlap over the size of the bodies, that is left alone
-_SWEEPS = 40
-_MOST = 0.1  # of the size of a body, that a step may lift it
 
 
 @kernel
@@ -34,7 +31,7 @@ def raise_gaps(
 ) -> FloatArray:
     """Displacements D (k, 3) = Y mu, 0 <= mu _|_ g + G D >= 0, by sweeps; mu (m,)."""
     MU = np.zeros(m)
-    for _ in range(_SWEEPS):
+    for _ in range(JOINTED_CORRECTION_SWEEPS):
         worst = 0.0
         for i in range(m):
             if C.OUT[i] != 0:
@@ -100,7 +97,7 @@ def lift(A: Scene, J: Joints, interval: Interval, end: float, budget: float) -> 
     for i in range(m):
         GAPS[i] = ROWS[i].gap + normal_rate(P, Q, ROWS, WAY, i)
         deepest = min(deepest, GAPS[i])
-    if deepest >= -_SLOP * size or not budget > 0.0:
+    if deepest >= -JOINTED_OVERLAP * size or not budget > 0.0:
         return 0.0
     NOTHING, INDEX = np.zeros_like(V), np.full(len(isle.IM), -1, np.int64)
     for g in range(len(groups.COMPONENT)):
@@ -119,7 +116,7 @@ def lift(A: Scene, J: Joints, interval: Interval, end: float, budget: float) -> 
     for q in range(n):
         far = max(far, (math.sqrt(D[q, 0] ** 2 + D[q, 1] ** 2) + abs(D[q, 2]) * isle.EXTENT[q]) / isle.EXTENT[q])
     cost -= against(isle.ACC, isle.IM, isle.II, n, D)
-    part = min(1.0, _MOST / far) if far > 0.0 else 0.0
+    part = min(1.0, JOINTED_CORRECTION / far) if far > 0.0 else 0.0
     if cost * part > 0.5 * budget:
         part = 0.5 * budget / cost
     HELD = np.zeros(len(groups.COMPONENT))

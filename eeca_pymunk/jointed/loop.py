@@ -8,24 +8,24 @@ from __future__ import annotations
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import Table, kernel, uncounted
-from ..impacts.due import forecast, forecast_due
-from ..impacts.heap import push
+from ..contacts.unmet import note_unmet
 from ..impacts.loop import follow, with_mover
-from ..impacts.missed import miss
-from ..impacts.settle import settle
 from ..impacts.step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, finish, start, wish
+from ..islands.building import build_islands
 from ..joints.ledger import clear_interval
 from ..layout import BODY_ROW, LEFT
 from ..layout import NOW as READ
 from ..model.joints import ELASTIC, Joints, joints_of
+from ..model.parameters.joints import STEP_WORK, STEP_WORK_BODY
 from ..model.scene import Scene, scene_of
 from ..model.step import DONE, JOINTS_DUE, PUSHES_FULL
 from ..model.step import JOINTS as UNMET_JOINTS
+from ..prediction.heap import push
+from ..prediction.scheduling import forecast, forecast_due
 from .meet import book_component, shorten
 from .solve import begin_span
 from .strike import collide
 
-_WORK, _WORK_OF_BODY = 8e7, 1e6  # operations of a step, beside those of each body; 6e9 are about a second
 _ROOM = 64  # contacts more than there are, that there must be room for before an impact
 
 
@@ -57,7 +57,7 @@ def start_jointed(
     """As `..impacts.step.start`, with the joints."""
     feel(A, J, STATES, WALK)
     J.TALLY.worst = J.TALLY.repeats = 0
-    J.PROGRESS.effort, J.PROGRESS.budget = 0.0, _WORK + _WORK_OF_BODY * A.BODY.shape[0]
+    J.PROGRESS.effort, J.PROGRESS.budget = 0.0, STEP_WORK + STEP_WORK_BODY * A.BODY.shape[0]
     for s in range(len(J.STEPPED)):
         clear_interval(J.STEPPED[s])
     return start(A, STATES, WALK, EXTRA, dt, gx, gy, left)
@@ -69,7 +69,7 @@ def book_joints(A: Scene, J: Joints) -> None:
     for s in range(J.TALLY.components):
         book_component(A, J, s)
     if J.TALLY.worst >= ELASTIC:
-        miss(A, UNMET_JOINTS, -1, -1, float(J.TALLY.worst), float(ELASTIC))
+        note_unmet(A, UNMET_JOINTS, -1, -1, float(J.TALLY.worst), float(ELASTIC))
 
 
 @uncounted
@@ -113,7 +113,7 @@ def follow_jointed(A: Scene, J: Joints, disks: int, may_rest: bool) -> int:
 @kernel
 def settle_jointed(A: Scene, J: Joints) -> int:
     """The islands of the start of a step, and their spans. DONE, or PUSHES_FULL, to be called again with more room."""
-    if settle(A) != DONE:
+    if build_islands(A) != DONE:
         return PUSHES_FULL
     for i in range(A.BODY.shape[0] - 1):
         if A.STATE[i].island == i and A.MEMBER[i].jointed > 0 and A.MEMBER[i].open == 0:

@@ -8,21 +8,24 @@ from ..arrays import IntArray
 from ..compiled import kernel, uncounted
 from ..geometry.flight import pose
 from ..geometry.gap import gap_at
-from ..impacts.block import crowded
-from ..impacts.booking import alight, book
-from ..impacts.islands import members
+from ..impacts.simultaneous import crowded
+from ..islands.accounting import alight, book
+from ..islands.membership import members
 from ..joints.ledger import clear_interval
 from ..model.joints import Joints
+from ..model.parameters.joints import (
+    MEET,
+    MEET_INSTANT,
+    MEET_LOADED,
+    MEET_MANY,
+    MEET_SECANTS,
+    MEET_SECANTS_LOADED,
+    SOME_CONTACTS,
+)
 from ..model.scene import Scene
 from ..pairs.lists import mark_pair
 from .gathered import restore_joints
-from .press import SOME
 from .solve import begin_span
-
-_MEET = 1e-13  # gap at an impact, over the smaller shape
-_LOADED_MEET, _ROUGH_MEET = 1e-6, 1e-4  # likewise where contacts push, and where many do, solved roughly in `press`
-_SECANTS, _LOADED_SECANTS = 5, 2  # also where other contacts push; in a crowd one
-_INSTANT = 1e-12  # of a step, below which a span is none
 
 
 @uncounted
@@ -83,7 +86,7 @@ def shorten(A: Scene, J: Joints, root: int, t: float) -> int:
     found = components_of(A, J, root)
     for c in range(len(found)):
         restore_joints(J, found[c])
-    if t - began > _INSTANT * A.PAR.dt:
+    if t - began > MEET_INSTANT * A.PAR.dt:
         begin_span(A, J, root, began, t - began)
     return some
 
@@ -96,7 +99,7 @@ def end_here(A: Scene, J: Joints, root: int, t: float) -> None:
     for c in range(A.COUNT.pushes):
         if A.PUSHED_BY[c].root == root:
             book(A, c, t)
-    empty = t - A.BODY[root].since <= _INSTANT * A.PAR.dt
+    empty = t - A.BODY[root].since <= MEET_INSTANT * A.PAR.dt
     found = components_of(A, J, root)
     for c in range(len(found)):
         if empty:
@@ -152,15 +155,15 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> float:
     small = min(A.SHAPE[a].extent, A.SHAPE[b].extent)
     before, gap_before = -1.0, 0.0
     spent = J.PROGRESS.effort > J.PROGRESS.budget
-    most = 1 if spent or crowded(A, a, b) else _LOADED_SECANTS
-    for tries in range(_SECANTS):
+    most = 1 if spent or crowded(A, a, b) else MEET_SECANTS_LOADED
+    for tries in range(MEET_SECANTS):
         loaded = shorten(A, J, roots[0], t)
         if roots[1] != roots[0]:
             loaded += shorten(A, J, roots[1], t)
         xi, yi, qi = pose(A.BODY, i, t)
         xj, yj, qj = pose(A.BODY, j, t)
         g, nx, ny, px, py = gap_at(A.SHAPE, A.LINK, A.VERTEX, A.WORK, a, xi, yi, qi, b, xj, yj, qj)
-        close = _MEET if loaded == 0 else _LOADED_MEET if loaded <= SOME else _ROUGH_MEET
+        close = MEET if loaded == 0 else MEET_LOADED if loaded <= SOME_CONTACTS else MEET_MANY
         if ((loaded > 0 or spent) and tries + 1 >= most) or abs(g) <= close * small:
             break
         slope = 0.0
@@ -170,7 +173,7 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> float:
             vi = path_rate(A, i, t, nx, ny, px - xi, py - yi)
             slope = path_rate(A, j, t, nx, ny, px - xj, py - yj) - vi
         # The islands end where they were brought last.
-        if not slope < 0.0 or tries + 1 == _SECANTS:
+        if not slope < 0.0 or tries + 1 == MEET_SECANTS:
             break
         before, gap_before = t, g
         then = min(max(t - g / slope, least), A.PAR.dt)

@@ -9,6 +9,13 @@ from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
 from ..joints.boxes import SINGLE
 from ..model.contacts import Row
+from ..model.parameters.joints import (
+    COLUMN_CONTACTS,
+    COLUMN_PROXIMAL,
+    COLUMN_ROUNDS,
+    COLUMN_SWEEPS,
+    COLUMN_SWEEPS_AFTER,
+)
 from ..rows.build import normal_rate, tangent_rate
 from ..rows.conjugate import accelerate
 from ..rows.dense import back, decompose, unknowns
@@ -18,11 +25,7 @@ from .bounded import Bounded, bounded_rate, inside, push_row
 from .columns import Columns, push_columns
 from .sweeping import relax_columns, sweep_columns
 
-FEW = 40  # contacts up to which this pays
-_FIRST, _AFTER = 12, 4  # sweeps before the first direct solution and after each
-_ROUNDS = 8
 _BOUNDED = 2  # kind of unknown, beside 0 normal, 1 tangential
-_R = 1e10  # of a proximal term, for contacts that are redundant
 
 
 @uncounted
@@ -75,7 +78,7 @@ def responses(
                 W[i, j] = normal_rate(A, B, ROWS, V, k)
             else:
                 W[i, j] = tangent_rate(A, B, ROWS, V, k) - ROWS[k].surface
-        W[j, j] += abs(W[j, j]) / _R
+        W[j, j] += abs(W[j, j]) / COLUMN_PROXIMAL
 
 
 @uncounted
@@ -196,16 +199,16 @@ def solve_columns(
     Where direct solutions stop to help, or come back to where they were, sweeps go on from the best of them.
     Returns the last sweep's largest change of a contact's velocity.
     """
-    if m > FEW:
+    if m > COLUMN_CONTACTS:
         return iterate_columns(C, D, A, B, ROWS, L, V, m, tolerance, most)
-    worst = iterate_columns(C, D, A, B, ROWS, L, V, m, tolerance, _FIRST)
+    worst = iterate_columns(C, D, A, B, ROWS, L, V, m, tolerance, COLUMN_SWEEPS)
     best, L0, V0 = worst, L.copy(), V.copy()
     last, before_last = np.inf, np.inf
-    for turn in range(_ROUNDS):
+    for turn in range(COLUMN_ROUNDS):
         if worst <= tolerance:
             return worst
         direct(C, D, A, B, ROWS, L, V, m, turn % 2 == 1)
-        worst = relax_columns(C, D, A, B, ROWS, L, V, m, tolerance, _AFTER)[1]
+        worst = relax_columns(C, D, A, B, ROWS, L, V, m, tolerance, COLUMN_SWEEPS_AFTER)[1]
         if worst < best:
             best = worst
             copy(L0, L)

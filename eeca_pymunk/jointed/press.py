@@ -2,7 +2,7 @@
 
     M (v+ - v) = h M a + F_s + J^T Lam + G^T lam + T^T beta,    J, F_s the discrete rows of the joints,
 
-contact rows at the predicted middle, as `..sustained.contacts`. The contacts' impulses act on the components as forces
+contact rows at the predicted middle, as `..contacts.geometry`. The contacts' impulses act on the components as forces
 that are constant over the span, so that joints, springs, limits and motors are those of `..joints` to round-off however
 badly contacts are truncated, and a contact loses -lam . (way of its row)/h exactly. Impulses follow from Newton's
 method in the space of contacts: components are stepped with the present impulses, answer by their columns, and the
@@ -16,37 +16,47 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
-from ..impacts.coming import before_end, sweeps_of_crowd
+from ..contacts.targets import target
+from ..islands.candidates import before_end, sweeps_of_large
 from ..model.contacts import Row
 from ..model.joints import Joints
 from ..model.parameters.intervals import LARGE_ISLAND
+from ..model.parameters.joints import (
+    AGREE,
+    AGREE_ELASTIC,
+    AGREE_REST,
+    AGREE_SOME,
+    ARM_ERROR,
+    CHORD,
+    COLUMN_CONTACTS,
+    COLUMNS_AGAIN,
+    JOINTS_NEAR,
+    OUTER,
+    OUTER_FLOOR,
+    OUTER_MANY,
+    OUTER_PART,
+    OUTER_PROGRESS,
+    OUTER_SMALL,
+    PRESS_LOCKS,
+    PRESS_RESIDUAL,
+    PRESS_RESIDUAL_REST,
+    PRESS_SWEEPS,
+    PRESS_SWEEPS_ELASTIC,
+    PRESS_SWEEPS_FEW,
+    PRESS_WORK_ROUND_OFF,
+    PRESS_WORK_TAUT,
+    SOLUTION_WORK,
+    SOME_CONTACTS,
+)
 from ..model.scene import Scene
 from ..rows.build import conserves, normal_rate, rates, tangent_rate
 from ..rows.inplace import copy
-from ..sustained.targets import target
-from .advance import ALIGNED, Interval, advance, advance_aligned, align, farthest_apart
+from .advance import Interval, advance, advance_aligned, align, farthest_apart
 from .bounded import make_bounded, settle_bounded, with_bounded
 from .columns import fill_free, leave_out, make_columns, push_columns, weigh
 from .condensing import solve_condensed
 from .groups import Groups, hangs
-from .newton import FEW, solve_columns
-
-_OUTER, _MOST_OUTER = 6, 12  # steps of the components; if elastic, or of no more than SOME contacts
-_MANY_OUTER, _PART_OUTER = 2, 1  # of islands of many contacts, whose sweeps do not come to an end; before an impact
-_AGREE, _REST_AGREE, _ELASTIC_AGREE = 1e-6, 1e-11, 1e-13  # velocities of both solutions, over |a| h and the speed
-_SOME_AGREE = 1e-5  # likewise of more than SOME contacts that do not rest
-_SWEEPS, _FEW_SWEEPS, _ELASTIC_SWEEPS = 40, 30, 400
-_FINE, _REST_FINE = 1e-9, 1e-12  # residual of the sweeps, likewise
-_LOCKS = 10
-SOME = 12  # contacts from which on the span before an impact, which is solved again after it, is solved roughly
-_FALLS = 0.3  # of what velocities are apart, with which they do not come to agree within the rounds
-_NEAR = 1e-9  # error of joints over the size of a component, as a way in h
-_FLOOR = 1e-8  # over the speed, what is round-off of components that hardly give way, if it does not fall
-_ROUGH = 1e-4  # likewise, above which answers are taken anew
-_WORK_ROUND_OFF = 4e-14  # of the work of contacts, over their impulses times the island's speed
-_SOLUTION_COST = 1000.0  # operations, of columns and sweeps, for each of their entries
-_TAUT_WORK = 1e-9  # at most, where joints pull hard
-_CHORD = 3  # steps of the components between which their answers are taken to be the same
+from .newton import solve_columns
 
 
 @uncounted
@@ -111,21 +121,23 @@ def press(
     elastic = conserves(ROWS, m)
     scale = pull * h + (fast if elastic else slow)
     rests = not elastic and slow < pull * h
-    agree = (_ELASTIC_AGREE if elastic else (_REST_AGREE if rests else _AGREE if m <= SOME else _SOME_AGREE)) * scale
-    fine = (1e-15 if elastic else (_REST_FINE if rests else _FINE)) * scale
-    most = _ELASTIC_SWEEPS if elastic else (_FEW_SWEEPS if m <= FEW else _SWEEPS)
-    rounds = _MOST_OUTER if elastic or m <= SOME else _OUTER
+    agree = (
+        AGREE_ELASTIC if elastic else (AGREE_REST if rests else AGREE if m <= SOME_CONTACTS else AGREE_SOME)
+    ) * scale
+    fine = (1e-15 if elastic else (PRESS_RESIDUAL_REST if rests else PRESS_RESIDUAL)) * scale
+    most = PRESS_SWEEPS_ELASTIC if elastic else (PRESS_SWEEPS_FEW if m <= COLUMN_CONTACTS else PRESS_SWEEPS)
+    rounds = OUTER_SMALL if elastic or m <= SOME_CONTACTS else OUTER
     part = before_end(A, interval.t + h)
-    if m > SOME and part and not elastic:
-        rounds = _MANY_OUTER
-    if m > FEW and not elastic:
-        rounds = _PART_OUTER if part else _MANY_OUTER
+    if m > SOME_CONTACTS and part and not elastic:
+        rounds = OUTER_MANY
+    if m > COLUMN_CONTACTS and not elastic:
+        rounds = OUTER_PART if part else OUTER_MANY
         if n >= LARGE_ISLAND:
-            most = sweeps_of_crowd(interval.t)
+            most = sweeps_of_large(interval.t)
     # Where many contacts do not come to an end, joints come near enough until the last step of the components.
     if J.PROGRESS.effort > J.PROGRESS.budget:
-        rounds, most = _PART_OUTER, min(most, _SWEEPS)
-    J.PROGRESS.near = _NEAR if m > FEW and not elastic and not rests else 0.0
+        rounds, most = OUTER_PART, min(most, PRESS_SWEEPS)
+    J.PROGRESS.near = JOINTS_NEAR if m > COLUMN_CONTACTS and not elastic and not rests else 0.0
     FORESEEN, UNKNOWN = np.empty((len(isle.IM), 3)), np.empty((0, 3))
     converged, best, LEAST, USED, hopeless, agreed, slowly = False, np.inf, L.copy(), L.copy(), False, False, False
     stiff, bent, reached, B = False, 0.0, np.inf, make_bounded(J, groups)
@@ -135,17 +147,17 @@ def press(
     for outer in range(rounds):
         if hopeless:
             break
-        anew = outer % _CHORD == 0 or slowly
+        anew = outer % CHORD == 0 or slowly
         advance(A, J, interval, L, B, anew, FORESEEN if outer > 0 else UNKNOWN)
         bent = align(isle, P, Q, ROWS, m, motion, True) if free else 0.0
         if outer > 0:
             off = farthest_apart(motion.V, FORESEEN, isle.EXTENT, n)
             reached = min(reached, off)
-            if off <= agree or (off <= _FLOOR * scale and off > _FALLS * best):
+            if off <= agree or (off <= OUTER_FLOOR * scale and off > OUTER_PROGRESS * best):
                 converged, agreed = True, True
                 break
-            slowly = stiff or (m <= SOME and (off > _FALLS * best or off > _ROUGH * scale))
-            hopeless = m > SOME and outer > 1 and not elastic and off > _FALLS * best
+            slowly = stiff or (m <= SOME_CONTACTS and (off > OUTER_PROGRESS * best or off > COLUMNS_AGAIN * scale))
+            hopeless = m > SOME_CONTACTS and outer > 1 and not elastic and off > OUTER_PROGRESS * best
             if off < best:
                 best = off
                 copy(LEAST, L)
@@ -159,10 +171,10 @@ def press(
         if anew:
             if free:
                 fill_free(groups, C, P, Q, ROWS, isle.IM, isle.II, m)
-            J.PROGRESS.effort += _SOLUTION_COST * C.AT[m]
+            J.PROGRESS.effort += SOLUTION_WORK * C.AT[m]
             weigh(groups, C, P, Q, ROWS, m)
         if outer == 0:
-            stiff = m <= FEW and some_taut(J, groups)
+            stiff = m <= COLUMN_CONTACTS and some_taut(J, groups)
             slowly = stiff
             EFFECT = motion.V.copy()
             push_columns(C, L, m, -1.0, EFFECT)
@@ -180,7 +192,7 @@ def press(
             worst = solve_columns(C, B, P, Q, ROWS, BOTH, FORESEEN, m, fine, most)
         for i in range(m):
             L[i, 0], L[i, 1] = BOTH[i, 0], BOTH[i, 1]
-        converged = worst <= 10.0 * max(fine, min(agree, _AGREE * scale))
+        converged = worst <= 10.0 * max(fine, min(agree, AGREE * scale))
         if farthest_apart(motion.V, FORESEEN, isle.EXTENT, n) <= 1e-3 * agree:
             # The motion is that of the impulses before: others may do as little by these answers, and yet do much.
             copy(L, USED)
@@ -194,8 +206,8 @@ def press(
             copy(L, LEAST)
             advance(A, J, interval, L, B, False, UNKNOWN)
         # What gives way is as stiff as its joints pull: round-off of its ways does not fall further.
-        converged = best <= _AGREE * scale and some_give(J, groups)
-    if bent > ALIGNED:
+        converged = best <= AGREE * scale and some_give(J, groups)
+    if bent > ARM_ERROR:
         advance_aligned(A, J, interval, L, B, free)
     energy = 0.0
     for q in range(n):
@@ -204,11 +216,11 @@ def press(
     for i in range(m):
         pressed += abs(L[i, 0]) + abs(L[i, 1])
     # Where joints pull hard, velocities are known as well as they came to agree, and works no better.
-    known = _WORK_ROUND_OFF
+    known = PRESS_WORK_ROUND_OFF
     if some_give(J, groups) or some_taut(J, groups):
-        known = max(known, min(2.0 * reached / (slow + pull * h), _TAUT_WORK))
+        known = max(known, min(2.0 * reached / (slow + pull * h), PRESS_WORK_TAUT))
     bearable, scaled = 1e-15 * energy + known * pressed * (slow + pull * h), 1.0
-    for tries in range(_LOCKS + 1):
+    for tries in range(PRESS_LOCKS + 1):
         loss = lost(P, Q, ROWS, L, motion.WAY, m, h)
         if loss >= owed - bearable and (not elastic or loss <= owed + bearable):
             break
@@ -227,7 +239,7 @@ def press(
         # D(s) = s p - s^2 q: by its slope at s = 1.
         slope = p - 2.0 * q2
         s = 1.0 + (owed - loss) / slope if slope < 0.0 else 0.0
-        if tries == _LOCKS or (elastic and not 0.0 < s < 2.0):
+        if tries == PRESS_LOCKS or (elastic and not 0.0 < s < 2.0):
             s = 0.0
         elif not 0.1 < s < 2.0:
             # The loss of s L has the sign of s p for small s: half of them, again and again.
@@ -237,7 +249,7 @@ def press(
             L[i, 1] = s * L[i, 1] if s > 0.0 else 0.0
         advance_aligned(A, J, interval, L, B, free)
         scaled *= s
-        converged = converged and abs(scaled - 1.0) <= _AGREE
+        converged = converged and abs(scaled - 1.0) <= AGREE
         if s == 0.0:
             break
     return converged

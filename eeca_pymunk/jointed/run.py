@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import Table, kernel
+from ..impacts.midstep import begin_together
 from ..impacts.run import after_step, before_step, next_rollout
-from ..impacts.together import begin_together
 from ..model.joints import joints_of
 from ..model.run import AFTER, BETWEEN, WITHIN, run_arrays_of
 from ..model.scene import scene_of

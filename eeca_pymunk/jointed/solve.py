@@ -8,10 +8,13 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..compiled import kernel, uncounted
-from ..impacts.coming import before_end, pairs_of
-from ..impacts.islands import lossy, members
-from ..impacts.missed import miss
-from ..impacts.spans import dismiss, lay_out_island, open_contacts
+from ..contacts.geometry import gather
+from ..contacts.interval import make_contacts, moved, recall, speeds
+from ..contacts.memory import remember_loads
+from ..contacts.unmet import note_unmet
+from ..islands.candidates import before_end, pairs_of
+from ..islands.intervals import dismiss, lay_out_island, open_contacts
+from ..islands.membership import lossy, members
 from ..model.islands import Island
 from ..model.joints import Joints
 from ..model.parameters.intervals import MIDPOINT_SAME
@@ -19,9 +22,6 @@ from ..model.scene import Scene
 from ..model.step import CONTACTS, DONE, PUSHES_FULL
 from ..rows.build import normal_rate
 from ..rows.inplace import sort
-from ..sustained.contacts import gather
-from ..sustained.memory import remember_loads
-from ..sustained.step import make_contacts, moved, recall, speeds
 from .advance import Interval, Motion, advance
 from .alone import begin_alone, is_component, meets_nobody
 from .bounded import room_for_rows
@@ -105,7 +105,7 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
         owed = max(-A.RESTING[root].lost, 0.0)
         if not press(A, J, interval, L, EXPECTED, slow, fast, pull, owed):
             pair, shapes = KEY[0] >> 1, A.SHAPE.shape[0]
-            miss(A, CONTACTS, pair // shapes, pair % shapes, math.nan, math.nan)
+            note_unmet(A, CONTACTS, pair // shapes, pair % shapes, math.nan, math.nan)
         remember_loads(ROWS, KEY, L, m, h, A.KEYS, A.FORCES, COUNT, A.PAR.stamp)
     if m == 0:
         advance(A, J, interval, L, room_for_rows(0, 0), False, np.empty((0, 3)))

@@ -7,19 +7,20 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import kernel, uncounted
 from ..compiled.records import zeros
-from ..impacts.block import Block, gather, lay_out, owing
-from ..impacts.collide import finish, rejoin
-from ..impacts.islands import members, unite
-from ..impacts.settle import comes_to_rest
-from ..impacts.spans import dismiss
+from ..contacts.works import carried
+from ..impacts.resolution import finish, rejoin
+from ..impacts.simultaneous import Block, gather, lay_out, owing
+from ..islands.building import comes_to_rest
+from ..islands.intervals import dismiss
+from ..islands.membership import members, unite
 from ..model.contacts import SOLVED
 from ..model.joints import Joints
+from ..model.parameters.joints import STRIKE_SWEEPS
 from ..model.scene import Scene
 from ..rows.blocks import CONVERGED, TRUNCATED
 from ..rows.build import aim, conserves, rates
 from ..rows.energy import scale_of, works
 from ..rows.inplace import copy
-from ..sustained.ledger import carried
 from .bounded import room_for_rows
 from .columns import fill_free, fill_group, make_columns, push_columns, weigh
 from .component import answer, fit_speeds, ready
@@ -27,8 +28,6 @@ from .gathered import find_places, gather_component
 from .groups import find_groups
 from .meet import end_here, meet, shorten
 from .newton import solve_columns
-
-_SWEEPS = 1000
 
 
 @uncounted
@@ -56,7 +55,7 @@ def carried_along(J: Joints, s: int) -> bool:
 
 @kernel
 def collide(A: Scene, J: Joints, disks: int, a: int, b: int, t: float) -> tuple[int, int]:
-    """The impact of shapes a and b, seen at instant t, with all that hangs on them: results as `..impacts.strike`."""
+    """The impact of shapes a and b, seen at instant t, with all that hangs on them: results as `..contacts.single`."""
     k = A.SHAPE.shape[0]
     i, j = A.LINK[a].owner, A.LINK[b].owner
     t = meet(A, J, a, b, t)
@@ -131,7 +130,7 @@ def collide(A: Scene, J: Joints, disks: int, a: int, b: int, t: float) -> tuple[
         FREE = V.copy()
         elastic = conserves(ROWS, rows)
         tolerance = (1e-15 if elastic else 1e-10) * speed
-        worst = solve_columns(C, room_for_rows(0, 0), P, Q, ROWS, L, V, rows, tolerance, _SWEEPS)
+        worst = solve_columns(C, room_for_rows(0, 0), P, Q, ROWS, L, V, rows, tolerance, STRIKE_SWEEPS)
         copy(V, FREE)
         push_columns(C, L, rows, 1.0, V)
         scale, _ = scale_of(P, Q, ROWS, L, V, FREE, rows, owed, elastic)

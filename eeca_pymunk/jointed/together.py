@@ -1,6 +1,6 @@
 """A step whose contacts act together at its middle, in a scene with joints.
 
-As `..impacts.together`, without the further passes for bodies that impulses send into others.
+As `..impacts.midstep`, without the further passes for bodies that impulses send into others.
 """
 
 from __future__ import annotations
@@ -9,10 +9,10 @@ import math
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import Table, kernel
-from ..impacts.islands import unite
-from ..impacts.spans import solve
+from ..impacts.midstep import anew, begin_together, join_all
 from ..impacts.step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, finish
-from ..impacts.together import anew, begin_together, join_all
+from ..islands.intervals import solve
+from ..islands.membership import unite
 from ..model.joints import Joints, joints_of
 from ..model.scene import Scene, scene_of
 from ..model.step import DONE
@@ -60,7 +60,7 @@ def step_together_jointed(
     USUAL: FloatArray, dt: float, gx: float, gy: float, left: float, bits: int,
 ) -> int:  # fmt: skip
     """From the states that were read to those that are to be written: arguments and answer as
-    `..impacts.together.step_together`."""
+    `..impacts.midstep.step_together`."""
     A, J = scene_of(TABLE), joints_of(JOINTS)
     if bits >= 0:
         return resume_together_jointed(A, J, STATES, WALK, EXTRA, ENDS, USUAL, bits)

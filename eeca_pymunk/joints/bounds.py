@@ -6,9 +6,8 @@ from ..arrays import FloatArray
 from ..compiled import uncounted
 from ..compiled.records import Rows
 from ..model.joints import GROOVE, RATCHET, ROTARY_LIMIT, SLIDE, Coupling, Joint, JointStep, Workspace
+from ..model.parameters.joints import JOINT_TOUCH
 from .entries import along
-
-TOUCH = 1e-12  # a gap below this, over the size of the island, is closed
 
 
 @uncounted
@@ -94,7 +93,7 @@ def first_bound(W: Workspace, h: float) -> int:
             if not bounded(W.J.JOINT, link, k, side):
                 continue
             end = gap(W.J.JOINT, hinge, link, k, side)
-            if end >= -TOUCH * hinge[k].size:
+            if end >= -JOINT_TOUCH * hinge[k].size:
                 continue
             a, b = W.J.LOCAL[link[k].body[0]], W.J.LOCAL[link[k].body[1]]
             rate = approach(hinge[k], link[k].rows, side, a.v0, b.v0) + approach(

@@ -18,15 +18,11 @@ from ..arrays import FloatArray
 from ..compiled import uncounted
 from ..compiled.records import Rows
 from ..model.joints import BOXED, GROOVE, BodyStep, Coupling, JointStep, Workspace
+from ..model.parameters.joints import BOX_REDUNDANT, BOX_RESIDUAL, BOX_ROUNDS, BOX_SECULAR, BOX_SWEEPS
 from .dual import STRIDE
 from .entries import held, interval_of
 
-MANY = 64  # bounded rows, above which each iteration decides for each row by itself (`soft`)
 ROOM = 8  # arrays of one number per row, beside the columns (and a right side) and two matrices
-_SWEEPS, _ROUNDS = 12, 6
-_FINE = 1e-15  # change of an impulse in a sweep, over the largest
-_REDUNDANT = 1e-12  # on the diagonal, over it
-_SECULAR = 40
 SINGLE, FIRST_OF_DISC, SECOND_OF_DISC = 0.0, 1.0, 2.0
 
 
@@ -112,7 +108,7 @@ def on_disc(
     p1, p2 = g1 / w1, g2 / w2
     if p1 * p1 + p2 * p2 > bound * bound:
         s = 0.0
-        for _ in range(_SECULAR):
+        for _ in range(BOX_SECULAR):
             p1, p2 = g1 / (w1 + s), g2 / (w2 + s)
             length = math.sqrt(p1 * p1 + p2 * p2)
             if not bound > 0.0 or length <= bound * (1.0 + 1e-15):
@@ -183,7 +179,7 @@ def direct_boxes(more: FloatArray, w: int, u: int, n: int) -> None:
             both = more[step + n + i] > 0.0 and more[step + n + j] > 0.0
             more[lu + i * n + j] = more[w + i * n + j] if both else 0.0
         pivot = more[lu + i * n + i]
-        more[lu + i * n + i] = pivot * (1.0 + _REDUNDANT) if pivot > 0.0 else 1.0
+        more[lu + i * n + i] = pivot * (1.0 + BOX_REDUNDANT) if pivot > 0.0 else 1.0
     for k in range(n):
         pivot = more[lu + k * n + k]
         if pivot == 0.0:
@@ -209,13 +205,13 @@ def direct_boxes(more: FloatArray, w: int, u: int, n: int) -> None:
 @uncounted
 def solve_boxes(more: FloatArray, w: int, u: int, n: int) -> None:
     """Impulses within their bounds, by sweeps and direct solutions."""
-    for turn in range(_ROUNDS):
+    for turn in range(BOX_ROUNDS):
         worst = 1.0
-        for _ in range(_SWEEPS):
+        for _ in range(BOX_SWEEPS):
             worst = sweep_boxes(more, w, u, n)
-            if worst <= _FINE:
+            if worst <= BOX_RESIDUAL:
                 return
-        if turn + 1 < _ROUNDS:
+        if turn + 1 < BOX_ROUNDS:
             direct_boxes(more, w, u, n)
 
 

@@ -13,10 +13,7 @@ from ..arrays import FloatArray
 from ..compiled import merged, uncounted
 from ..compiled.records import Rows
 from ..model.joints import BodyStep, Coupling, JointStep, Workspace
-
-PASSES = 3
-STIFFEST = 1e7  # rows in a condensed system, over the bodies' inertia
-_WIDE = 8  # band from which on rows are worth a view
+from ..model.parameters.joints import CONDENSED_BAND
 
 
 @uncounted
@@ -60,7 +57,7 @@ def factor(matrix: FloatArray, size: int, band: int) -> bool:
             if below != 0.0:
                 below *= inverse
                 matrix[to] = below
-                if band >= _WIDE:
+                if band >= CONDENSED_BAND:
                     subtract(matrix[to + 1 : to + reach], matrix[at + 1 : at + reach], below)
                 else:
                     for j in range(1, reach):
@@ -75,7 +72,7 @@ def substitute(matrix: FloatArray, size: int, band: int, right: FloatArray, at: 
     for i in range(size):
         n = min(band, i)
         begin = i * width + band - n
-        if band >= _WIDE:
+        if band >= CONDENSED_BAND:
             right[at + i] -= dot(matrix[begin : begin + n], right[at + i - n : at + i])
         else:
             total = right[at + i]
@@ -86,7 +83,7 @@ def substitute(matrix: FloatArray, size: int, band: int, right: FloatArray, at: 
         n = min(band, size - 1 - i)
         begin = i * width + band
         total = right[at + i]
-        if band >= _WIDE:
+        if band >= CONDENSED_BAND:
             total -= dot(matrix[begin + 1 : begin + 1 + n], right[at + i + 1 : at + i + 1 + n])
         else:
             # What was found last comes last: nothing else waits for it.

@@ -8,11 +8,9 @@ from __future__ import annotations
 from ..compiled import uncounted
 from ..compiled.records import Rows
 from ..model.joints import BodyStep, Coupling, JointLedger, JointStep, Workspace
-from .bounds import TOUCH, approach, bounded, gap
+from ..model.parameters.joints import JOINT_SPEED_LEFT, JOINT_SPEED_ROUND_OFF, JOINT_TOUCH
+from .bounds import approach, bounded, gap
 from .entries import held
-
-_ROUND_OFF = 1e-14
-_STEPS_LEAVE = 1e-2  # of the speeds along a row, what is taken to be left by steps
 
 
 @uncounted
@@ -99,7 +97,7 @@ def noise(hinge: Rows[JointStep], link: Rows[Coupling], k: int, r: int, local: R
     for c in range(3):
         total += abs(hinge[k].rows[r, c] * local[link[k].body[0]].v_kept[c])
         total += abs(hinge[k].rows[r, c + 3] * local[link[k].body[1]].v_kept[c])
-    return float(_ROUND_OFF * total * hinge[k].scale[r] ** 2)
+    return float(JOINT_SPEED_ROUND_OFF * total * hinge[k].scale[r] ** 2)
 
 
 @uncounted
@@ -114,7 +112,8 @@ def touch(W: Workspace) -> bool:
         if link[k].side == 0 and link[k].soft == 0:
             for side in (-1, 1):
                 closed = (
-                    bounded(W.J.JOINT, link, k, side) and gap(W.J.JOINT, hinge, link, k, side) <= TOUCH * hinge[k].size
+                    bounded(W.J.JOINT, link, k, side)
+                    and gap(W.J.JOINT, hinge, link, k, side) <= JOINT_TOUCH * hinge[k].size
                 )
                 a, b = W.J.LOCAL[link[k].body[0]], W.J.LOCAL[link[k].body[1]]
                 if closed and approach(hinge[k], link[k].rows, side, a.v_kept, b.v_kept) < 0.0:
@@ -142,5 +141,5 @@ def fits(W: Workspace) -> bool:
                 two = W.J.HINGE[k].rows[r, c + 3] * W.J.LOCAL[link[k].body[1]].v0[c]
                 rate += one + two
                 total += abs(one) + abs(two)
-            well = well and abs(rate) <= _STEPS_LEAVE * total
+            well = well and abs(rate) <= JOINT_SPEED_LEFT * total
     return well

@@ -11,10 +11,10 @@ from ..arrays import FloatArray
 from ..compiled import merged
 from ..compiled.records import Rows
 from ..model.joints import JointStep, Workspace
+from ..model.parameters.joints import LEAST_INERTIA
 from .condensed import factor, substitute
 
 STRIDE = 6  # of scratch per row
-LEAST = 0.1  # of a body's inertia, that the bending of rows may leave
 
 
 @merged
@@ -57,7 +57,7 @@ def factor_dual(W: Workspace, slopes: bool, add: float) -> bool:
         if freedoms == 0:
             continue
         a, b, c = local[i].inertia[0], local[i].inertia[1], local[i].inertia[2] if freedoms > 2 else 1.0
-        if not (a > LEAST and b > LEAST and c > LEAST):
+        if not (a > LEAST_INERTIA and b > LEAST_INERTIA and c > LEAST_INERTIA):
             return False
         a, b, c = 1.0 / a, 1.0 / b, 1.0 / c
         local[i].inertia[0], local[i].inertia[1], local[i].inertia[2] = a, b, c

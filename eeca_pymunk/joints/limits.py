@@ -11,16 +11,12 @@ from __future__ import annotations
 
 from ..compiled import uncounted
 from ..model.joints import LINEAR_STEP, SPEEDS, JointLedger, Workspace
-from .bounds import TOUCH, approach, first_bound, gap, hold, release, standing
+from ..model.parameters.joints import JOINT_TOUCH, LIMIT_EVENTS, LIMIT_SECANTS, LIMIT_SECANTS_HASTE, LIMIT_SOLVES
+from .bounds import approach, first_bound, gap, hold, release, standing
 from .correct import fitting_loss
 from .ledger import book
 from .motion import advance
 from .solve import solve
-
-MOST_EVENTS = 12
-MOST_SECANTS = 12
-_FEW_SECANTS = 2  # in a hurry
-_FEW_SOLVES = 8  # of linear rows, that let limits go which pull
 
 
 @uncounted
@@ -42,7 +38,7 @@ def step_with_limits(
                 return False
             solves += 1
             if meeting < 0:  # a step to the end
-                if solves < (_FEW_SOLVES if what == LINEAR_STEP else 2 * W.joints + 100) and release(W):
+                if solves < (LIMIT_SOLVES if what == LINEAR_STEP else 2 * W.joints + 100) and release(W):
                     continue
                 k = first_bound(W, when)
                 if k < 0 or solves > 4 * W.joints + 200 or what == LINEAR_STEP:
@@ -52,15 +48,15 @@ def step_with_limits(
                 if whole:
                     return False
                 side, events = progress.side, events + 1
-                if events > MOST_EVENTS or progress.effort > progress.hurry:  # land
+                if events > LIMIT_EVENTS or progress.effort > progress.hurry:  # land
                     link[k].side = side
                     continue
                 meeting, when, low, high, secants = k, progress.when, 0.0, left, 0
                 continue
             distance = gap(W.J.JOINT, hinge, link, meeting, side)
             secants += 1
-            most = MOST_SECANTS if progress.effort <= progress.hurry else _FEW_SECANTS
-            if abs(distance) > 0.1 * TOUCH * hinge[meeting].size and secants < most:
+            most = LIMIT_SECANTS if progress.effort <= progress.hurry else LIMIT_SECANTS_HASTE
+            if abs(distance) > 0.1 * JOINT_TOUCH * hinge[meeting].size and secants < most:
                 if distance > 0.0:
                     low = when
                 else:
@@ -75,7 +71,7 @@ def step_with_limits(
                 continue
             k = first_bound(W, when)
             if (
-                k >= 0 and k != meeting and events < MOST_EVENTS and progress.effort <= progress.hurry
+                k >= 0 and k != meeting and events < LIMIT_EVENTS and progress.effort <= progress.hurry
             ):  # another one is passed before
                 meeting, side, low, high, secants, events = k, progress.side, 0.0, when, 0, events + 1
                 when = progress.when

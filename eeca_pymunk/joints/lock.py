@@ -13,8 +13,7 @@ import math
 from ..compiled import uncounted
 from ..compiled.records import Rows
 from ..model.joints import BodyStep
-
-_TURNS = 8  # fixed-point iterations of the mean arms
+from ..model.parameters.joints import LOCK_ITERATIONS
 
 
 @uncounted
@@ -107,7 +106,7 @@ def move_rigidly(local: Rows[BodyStep], bodies: int, h: float) -> None:
     if mass > 0.0:
         x, y, vx, vy, ax, ay = x / mass, y / mass, vx / mass, vy / mass, ax / mass, ay / mass
     chi, spin, after = 0.0, 0.0, 0.0
-    for _ in range(0 if hangs else _TURNS):
+    for _ in range(0 if hangs else LOCK_ITERATIONS):
         turning = inertia = torque = 0.0
         for i in range(bodies):
             if local[i].freedoms > 0 and local[i].mobility[0] > 0.0:

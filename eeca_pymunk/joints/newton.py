@@ -17,8 +17,9 @@ from __future__ import annotations
 
 from ..compiled import merged
 from ..model.joints import BOUNDED, BOXED, CONDENSED, DUAL, LINEAR_STEP, NO_BEND, POSES, SPEEDS, STEP, WHOLE, Workspace
+from ..model.parameters.joints import STIFFEST
 from .boxes import leave_box
-from .condensed import STIFFEST, freeze
+from .condensed import freeze
 from .entries import along, held, put_condensed, put_free, put_rows, put_stiffness, scale_rows
 from .rows import joint_rows
 from .soft import put_soft

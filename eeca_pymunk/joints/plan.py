@@ -16,13 +16,11 @@ from ..compiled import kernel
 from ..compiled.records import Rows
 from ..model.bodies import Body
 from ..model.joints import GEAR, GROOVE, MOTOR, Component, ComponentBody, Coupling, Joint
-from .boxes import MANY
+from ..model.parameters.joints import BOXES_DIRECT, CONDENSE_BAND
 from .boxes import ROOM as BOX_ROOM
 from .dual import STRIDE
 from .ordering import order_rows, order_unknowns
 from .rows import row_count
-
-WIDE = 14  # half-width of the band from which on an island is condensed
 
 
 @kernel
@@ -140,7 +138,7 @@ def make_plan(
         component[s].end_body = used
         component[s].loops = cycles(link, member, component, s)
         for way in range(2):
-            if way == 0 or (component[s].band > WIDE and not discs(joint, link, component, s)):
+            if way == 0 or (component[s].band > CONDENSE_BAND and not discs(joint, link, component, s)):
                 order_unknowns(component, member, link, s, way > 0)
         order_rows(component, member, link, s)
         cost = component[s].unknowns * component[s].band ** 2
@@ -150,7 +148,7 @@ def make_plan(
         for k in range(component[s].first_joint, component[s].end_joint):
             if joint[link[k].joint].kind == MOTOR or joint[link[k].joint].soft != 0:
                 bounded += link[k].rows
-        component[s].boxes = bounded if bounded <= MANY else 0
+        component[s].boxes = bounded if bounded <= BOXES_DIRECT else 0
     return count
 
 

@@ -14,13 +14,11 @@ from ..arrays import FloatArray
 from ..compiled import uncounted
 from ..compiled.records import Rows
 from ..model.joints import BOUNDED, BOXED, CONDENSED, DUAL, FULL_BEND, NO_BEND, STEP, Coupling, Workspace
-from .condensed import PASSES
+from ..model.parameters.joints import CONDENSED_PASSES, REDUNDANT_EPSILON, RESPONSE_PASSES
 from .motion import move
 from .newton import assemble
 from .rows import joint_rows, start_joint
-from .solve import LEAST_EPSILON, back, begin, decompose
-
-_REFINE = 2  # passes that take back what epsilon, for rows that may be redundant, has changed
+from .solve import back, begin, decompose
 
 
 @uncounted
@@ -86,7 +84,7 @@ def factors(W: Workspace, what: int, h: float) -> int:
         begin(W, what, h)
     system = DUAL if component.rigid > (1 if what == STEP else 0) else component.system
     give = W.J.JOINT[link[0].joint].compliance / h**2 if what == STEP else 0.0
-    epsilon = LEAST_EPSILON if component.loops > 0 and give == 0.0 else 0.0
+    epsilon = REDUNDANT_EPSILON if component.loops > 0 and give == 0.0 else 0.0
     while True:
         for i in range(component.unknowns + component.impulses):
             W.J.RIGHT[i] = 0.0
@@ -94,7 +92,7 @@ def factors(W: Workspace, what: int, h: float) -> int:
         if decompose(W, what, system, epsilon, give):  # fmt: skip
             return int(system)
         if epsilon == 0.0:
-            epsilon = LEAST_EPSILON
+            epsilon = REDUNDANT_EPSILON
         elif system != DUAL:
             return -1
         else:
@@ -115,9 +113,9 @@ def respond(W: Workspace, what: int, system: int, push: FloatArray, gives: bool)
     for i in range(W.bodies):
         for c in range(local[i].freedoms):
             right[local[i].column + c] = push[i, c] * local[i].root[c]
-    back(W, what, system, 1 if gives else PASSES, right)
+    back(W, what, system, 1 if gives else CONDENSED_PASSES, right)
     # (A + epsilon) x = b leaves b - A x = epsilon x in the rows, and each correction d leaves epsilon d.
-    for turn in range(0 if system == CONDENSED or component.loops == 0 or gives else _REFINE):
+    for turn in range(0 if system == CONDENSED or component.loops == 0 or gives else RESPONSE_PASSES):
         rest = right[size : 2 * size] if turn > 0 else right[:size]
         for i in range(size):
             right[size + i] = rest[i]
@@ -127,8 +125,8 @@ def respond(W: Workspace, what: int, system: int, push: FloatArray, gives: bool)
                 rest[local[i].column + c] = 0.0
         for k in range(W.joints):
             for r in range(W.link[k].rows):
-                rest[W.link[k].first_row + r] *= LEAST_EPSILON
-        back(W, what, system, PASSES, rest)
+                rest[W.link[k].first_row + r] *= REDUNDANT_EPSILON
+        back(W, what, system, CONDENSED_PASSES, rest)
         for i in range(size):
             right[i] += rest[i]
     for i in range(W.bodies):

@@ -6,7 +6,8 @@ import numpy as np
 
 from ..compiled import uncounted
 from ..model.joints import CONDENSED, GROOVE, Workspace
-from .condensed import STIFFEST, freeze
+from ..model.parameters.joints import STIFFEST
+from .condensed import freeze
 from .entries import interval_of, put_condensed, put_free, put_rows
 
 

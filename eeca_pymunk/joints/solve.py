@@ -24,27 +24,29 @@ from ..model.joints import (
     Coupling,
     Workspace,
 )
+from ..model.parameters.joints import (
+    CLOSING_EPSILON,
+    CLOSINGS,
+    CONDENSED_PASSES,
+    FACTOR_BAND,
+    JOINT_ROUND_OFF,
+    JOINT_ROUND_OFF_KEPT,
+    JOINT_TOLERANCE,
+    NEWTON_FLOOR,
+    NEWTON_ITERATIONS,
+    NEWTON_PROGRESS,
+    REDUNDANT_EPSILON,
+    REDUNDANT_PASSES,
+    ROW_WORK,
+)
 from .banded import back_banded, factor_banded
 from .boxes import bound_impulses, boxed_rows, push, rows_of
-from .condensed import PASSES, back_condensed, factor
+from .condensed import back_condensed, factor
 from .correct import goes_on, keep
 from .dual import STRIDE, back_dual, factor_dual, refresh
 from .motion import move, settle
 from .newton import assemble
 from .rows import start_joint
-
-TOLERANCE = 3e-16  # of joints and momenta, over the size of the island
-ROUND_OFF = 3e-14  # below this, an error that no longer halves is round-off
-LASTING_ROUND_OFF = 2e-15  # likewise with lasting factors
-_FALLS = 0.03  # of an error, that an iteration with factors of an earlier one may leave
-FLOOR = 1e-11  # below this, it is if it has not fallen twice
-MOST_ITERATIONS = 25
-LEAST_EPSILON = 1e-10
-CLOSING_EPSILON = 1e-5
-MOST_CLOSINGS = 8
-MOST_PASSES = 12
-_WIDE = 16  # band from which on factors are computed several numbers at a time
-_ROWS_COST = 500.0  # operations, of the rows of a joint
 
 
 @merged
@@ -157,8 +159,8 @@ def effort(system: int, fresh: bool, boxes: int, joints: int, component: Compone
     size, band = (component.dual_size, component.dual_band) if system == DUAL else (component.unknowns, component.band)
     turns = 1 + boxes if fresh else 1
     # Wide bands take several numbers at once.
-    factors = (4.0 if system == WHOLE else 0.5 if band >= _WIDE else 2.0) * size * band * band
-    return float(_ROWS_COST * joints + (factors if fresh else 0.0) + 6.0 * turns * size * (band + 4))
+    factors = (4.0 if system == WHOLE else 0.5 if band >= FACTOR_BAND else 2.0) * size * band * band
+    return float(ROW_WORK * joints + (factors if fresh else 0.0) + 6.0 * turns * size * (band + 4))
 
 
 @uncounted
@@ -167,9 +169,9 @@ def solve(W: Workspace, what: int, h: float, length: float, loops: bool, give: f
 
     STEP: at convergence g is within 3e-16 of the island's size (or at round-off) of its targets, and the balance of
     momentum holds to round-off. Given up after 25 iterations, or 6 in which the error did not fall. Factors serve for
-    as long as errors fall by _FALLS with them, the dual system where they do with fresh ones. LINEAR_STEP: one linear
-    system. POSES: until g is on its targets, at most 8 times. SPEEDS: see `correct`; what was before stays at `v_kept`.
-    These two take h = 2. PROGRESS.near, of a STEP, is the error of g and of the balance that is near enough, if more
+    as long as errors fall by NEWTON_PROGRESS with them, the dual system where they do with fresh ones. LINEAR_STEP: one
+    linear system. POSES: until g is on its targets, at most 8 times. SPEEDS: see `correct`; what was before stays at
+    `v_kept`. These two take h = 2. PROGRESS.near, of a STEP, is the error of g and of the balance that is near enough, if more
     than round-off: momentum is balanced all the same.
     """
     hinge, link, local, component, right, progress = (
@@ -189,7 +191,7 @@ def solve(W: Workspace, what: int, h: float, length: float, loops: bool, give: f
     ready, fresh, since = False, False, 0
     boxes = boxed_rows(link, W.joints) if what in (STEP, LINEAR_STEP) else 0
     unscaled = what != STEP or hinge[0].scale[0] == 0.0  # rows have not been in this step yet
-    for iteration in range(MOST_ITERATIONS + 1 if what == STEP else MOST_PASSES + 3 * W.joints):
+    for iteration in range(NEWTON_ITERATIONS + 1 if what == STEP else REDUNDANT_PASSES + 3 * W.joints):
         for i in range(component.unknowns + component.impulses):
             right[i] = 0.0
         build = not ready
@@ -198,18 +200,18 @@ def solve(W: Workspace, what: int, h: float, length: float, loops: bool, give: f
         if what not in (POSES, SPEEDS):
             worst = max(worst, balance(W, h, length))
         if what == STEP:
-            floor = LASTING_ROUND_OFF if lasting else FLOOR if stalls > 1 else ROUND_OFF
+            floor = JOINT_ROUND_OFF_KEPT if lasting else NEWTON_FLOOR if stalls > 1 else JOINT_ROUND_OFF
             at_floor = iteration > since + 1 and worst > 0.5 * best and best < floor
-            if iteration > 0 and (worst <= max(TOLERANCE, progress.near) or at_floor):
+            if iteration > 0 and (worst <= max(JOINT_TOLERANCE, progress.near) or at_floor):
                 settle(local, W.bodies, h)
                 return iteration
             # What began next to its solution has not far to fall.
-            slow = not worst <= _FALLS * last and (iteration > 2 or not worst <= ROUND_OFF)
+            slow = not worst <= NEWTON_PROGRESS * last and (iteration > 2 or not worst <= JOINT_ROUND_OFF)
             if worst < best:
                 best = worst
             elif iteration > since + 3:
                 stalls += 1
-            if not worst < 1e100 or stalls > 6 or iteration == MOST_ITERATIONS or progress.effort > progress.limit:
+            if not worst < 1e100 or stalls > 6 or iteration == NEWTON_ITERATIONS or progress.effort > progress.limit:
                 return -1
             last = worst
             if ready and slow:
@@ -223,11 +225,11 @@ def solve(W: Workspace, what: int, h: float, length: float, loops: bool, give: f
                             hinge[k].lam[0] = hinge[k].lam[1] = 0.0
                         begin(W, what, h)
                         best = 1e300
-        elif what == POSES and (worst <= 1e-14 or iteration == MOST_CLOSINGS):
+        elif what == POSES and (worst <= 1e-14 or iteration == CLOSINGS):
             return iteration
         epsilon = 0.0
         if loops or what != STEP:
-            epsilon = max(LEAST_EPSILON, min(1e-2, worst)) if what == STEP else LEAST_EPSILON
+            epsilon = max(REDUNDANT_EPSILON, min(1e-2, worst)) if what == STEP else REDUNDANT_EPSILON
             if what == POSES:  # rows that contradict each other must not move bodies far
                 epsilon = CLOSING_EPSILON
         fresh = not ready
@@ -246,7 +248,7 @@ def solve(W: Workspace, what: int, h: float, length: float, loops: bool, give: f
                 return -1
         if system == DUAL and not fresh:
             refresh(W, what == STEP)
-        passes = 1 if give > 0.0 or not fresh else PASSES - 1 if lasting else PASSES
+        passes = 1 if give > 0.0 or not fresh else CONDENSED_PASSES - 1 if lasting else CONDENSED_PASSES
         progress.effort += effort(system, fresh, boxes, W.joints, component)
         if boxes > 0 and fresh:
             answer_boxes(W, what, system, passes, boxes)

@@ -27,12 +27,11 @@ from ..model.joints import (
     Joint,
     Workspace,
 )
+from ..model.parameters.joints import JOINT_APART
 from .bounds import approach, bounded, gap
 from .entries import held
 from .rows import joint_rows
 from .solve import begin
-
-APART_FROM = 1e-10  # joints farther apart than this, over the size of the island, close at their own rate
 
 
 @uncounted
@@ -148,9 +147,9 @@ def find_apart(W: Workspace, h: float) -> int:
         for side in (-1, 1):
             if bounded(joint, link, k, side):
                 room = gap(joint, hinge, link, k, side)
-                if room < -APART_FROM * hinge[k].size:
+                if room < -JOINT_APART * hinge[k].size:
                     link[k].side = side
-                elif link[k].side == side and room > APART_FROM * hinge[k].size:
+                elif link[k].side == side and room > JOINT_APART * hinge[k].size:
                     link[k].side = 0
         joint_rows(W, k, 2.0, False)
         error = 0.0
@@ -158,9 +157,9 @@ def find_apart(W: Workspace, h: float) -> int:
             if held(link, k, r):
                 error += hinge[k].value[r] ** 2
         error = np.sqrt(error)
-        if error > APART_FROM * hinge[k].size and was == GIVES_WAY:
+        if error > JOINT_APART * hinge[k].size and was == GIVES_WAY:
             joint[j].touched = GIVES_WAY
-        elif error > APART_FROM * hinge[k].size:
+        elif error > JOINT_APART * hinge[k].size:
             apart = 2
             left = 1.0 - share(joint, j, error, h)
             for r in range(rows):

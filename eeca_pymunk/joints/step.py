@@ -33,6 +33,7 @@ from ..model.joints import (
     JointLedger,
     Workspace,
 )
+from ..model.parameters.joints import COMPONENT_BUDGET, ELASTIC_PARTS, HASTE, NEARLY_HELD
 from .correct import fits, fitting_loss
 from .foresight import foretell, forget, recalls, remember
 from .ledger import add, clear, close_ledger, springs_hold
@@ -46,10 +47,6 @@ from .taut import taut
 
 SUZUKI = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))
 FIRST_RUNG, ELASTIC_RUNG, LAST_RUNG = 0, 4, 10  # rung -1 is order 4
-_ELASTIC_PARTS = 7
-_BEFORE_HURRY = 0.25  # of this
-_PART_OF_BUDGET = 0.5  # of what is left of it, that one step of an island may take
-_NEARLY = 1e-8  # error of joints over the size of an island, up to which one that gives way counts as one that holds
 
 
 @uncounted
@@ -213,8 +210,8 @@ def island_step(W: Workspace, h: float, order: int, length: float, ledger: Joint
             start_joint(W, k, h)
             joint[j].length_0 = hinge[k].began
     status, stored = LINEAR, 0.0
-    progress.limit = progress.effort + max(progress.budget - progress.effort, 0.0) * _PART_OF_BUDGET
-    progress.hurry = progress.effort + _BEFORE_HURRY * (progress.limit - progress.effort)
+    progress.limit = progress.effort + max(progress.budget - progress.effort, 0.0) * COMPONENT_BUDGET
+    progress.hurry = progress.effort + HASTE * (progress.limit - progress.effort)
     yields = gives_way(W)
     rung = ELASTIC_RUNG if yields else -1 if order == 4 and smooth(W) else FIRST_RUNG
     if rung >= 0 or needs % 2 == 1:
@@ -223,14 +220,14 @@ def island_step(W: Workspace, h: float, order: int, length: float, ledger: Joint
     while rung <= LAST_RUNG:
         if progress.effort > progress.limit:
             rung = LAST_RUNG
-        parts = 5 if rung < 0 else 1 << rung if rung < 3 else _ELASTIC_PARTS
+        parts = 5 if rung < 0 else 1 << rung if rung < 3 else ELASTIC_PARTS
         if rung in (ELASTIC_RUNG, LAST_RUNG):
             parts = 1
         compliance = 0.0
         if ELASTIC_RUNG <= rung < LAST_RUNG:
             steps = max(rung - ELASTIC_RUNG - 1, 0)
             relative = 1e-4 if rung + 1 == LAST_RUNG else 1e-9 * 10.0**steps
-            compliance = relative * (h / _ELASTIC_PARTS) ** 2
+            compliance = relative * (h / ELASTIC_PARTS) ** 2
             if yields:
                 compliance = max(compliance if relative > 1e-9 else 0.0, joint[link[0].joint].compliance)
         give = compliance / (h / parts) ** 2
@@ -290,6 +287,6 @@ def island_step(W: Workspace, h: float, order: int, length: float, ledger: Joint
         joint[link[0].joint].owed = 0.0
     add(ledger, part)
     write_joints(W, h, GIVES_WAY if status == ELASTIC else LEFT_APART if status == LINEAR else 0)
-    if status == ELASTIC and farthest(W) <= _NEARLY:
+    if status == ELASTIC and farthest(W) <= NEARLY_HELD:
         status = HALVED
     return status

@@ -10,14 +10,13 @@ import math
 
 from ..compiled import uncounted
 from ..model.joints import PIN, PIVOT, SLIDE, Workspace
+from ..model.parameters.joints import TAUT
 from .rows import start_joint
-
-_TAUT = 0.5  # stiffness of a joint's pull times h^2/4, over a body's inertia
 
 
 @uncounted
 def taut(W: Workspace, h: float) -> bool:
-    """Whether the impulses of some joint between points pull so that (h/2) dF/dx > _TAUT of a body's inertia."""
+    """Whether the impulses of some joint between points pull so that (h/2) dF/dx > TAUT of a body's inertia."""
     hinge, link = W.J.HINGE, W.link
     for k in range(W.joints):
         kind = link[k].kind
@@ -35,6 +34,6 @@ def taut(W: Workspace, h: float) -> bool:
         for end in range(2):
             i = link[k].body[0] if end == 0 else link[k].body[1]
             turn = -(rax * fx + ray * fy) if end == 0 else rbx * fx + rby * fy
-            if 0.5 * abs(h) * max(turn * W.J.LOCAL[i].mobility[2], per * W.J.LOCAL[i].mobility[0]) > _TAUT:
+            if 0.5 * abs(h) * max(turn * W.J.LOCAL[i].mobility[2], per * W.J.LOCAL[i].mobility[0]) > TAUT:
                 return True
     return False

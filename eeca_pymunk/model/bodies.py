@@ -53,6 +53,9 @@ LEAVE, CHECK, NOTHING = -1, -2, -3  # `own` leaves its margin circle; to be pred
 RENEW = -4  # the interval of the body's island ends
 
 
+AWAKE, AT_REST, CHANGED, CANDIDATE = 0, 1, 2, 3  # `Member.rest`; CHANGED also of a kinematic body that moves
+
+
 class Member(Record):
     """A body's place in an island: bodies in sustained contact, a chain from the first one, the root."""
 
@@ -65,7 +68,7 @@ class Member(Record):
     tied: int  # of a body held by joints: the first body of its component, else -1; the next one
     next_tied: int
     jointed: int  # of the root: 1 if bodies of its island are held by joints
-    still: int  # state of rest, see `impacts/still.py`
+    rest: int  # AWAKE to CANDIDATE, see `..islands`
     loaded: int  # of the root of an island at rest: 1 while support of moving neighbours is unverified
     among: int  # of the root: `bodies`, and those of the islands that support them
     put: int  # 1 if the body was placed where it is, and may overlap others
@@ -82,7 +85,7 @@ class Rest(Record):
     lift_vx: float
     lift_vy: float
     lift_spin: float
-    augmentation: float  # of the root: its log10 in direct solves, see `sustained/relax.py`
+    augmentation: float  # of the root: its log10 in direct solves, see `contacts/relaxation.py`
     wait: float  # of the root: steps to wait before the next direct solve; the wait that its next failure brings
     backoff: float
     lost: float  # of the root: energy lost in this step; below 0 it is owed

@@ -123,7 +123,7 @@ class Solved(Record):
 
 
 class Force(Record):
-    """The forces of a contact in the last step, see `..sustained.memory`."""
+    """The forces of a contact in the last step, see `..contacts.memory`."""
 
     normal: float
     tangential: float

@@ -22,7 +22,7 @@ class Scene(NamedTuple):
     none), friction, surface velocity of b relative to a. LOG: impulses of the step. BEGAN (n, 3): poses at the start of
     the step. WORK (2, K, 4): scratch for vertices, and sides (`..geometry.sides`). MISSED: what
     was not met. PLACE (n,): -1, or a body's place in the block in BLOCK (n,). PULL
-    (n, 3): accelerations without contacts. KEYS, FORCES: memory of forces (`..sustained.memory`).
+    (n, 3): accelerations without contacts. KEYS, FORCES: memory of forces (`..contacts.memory`).
     """
 
     BODY: Rows[Body]

@@ -54,7 +54,7 @@ class Count(Record):
     quiet: int  # steps in a row in which that was so to the end
     disks: int  # of the scene: lone disks
     solved: int  # bodies of all solves
-    carries: int  # 1 where islands at rest may support others that move (`impacts/carrying.py`)
+    carries: int  # 1 where islands at rest may support others that move (`islands/support.py`)
     crammed: int  # 1 if there are bodies that were placed where they are
 
 

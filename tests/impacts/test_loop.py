@@ -18,7 +18,7 @@ from eeca_pymunk.impacts.scene import EventLoop
 from eeca_pymunk.pairs.lists import centre
 from scenes.scene import add_disk, add_walls
 
-from .crowds import SHORT, box_of, deepest, positions, radii, reference, state
+from ..crowds import SHORT, box_of, deepest, positions, radii, reference, state
 
 
 @pytest.mark.parametrize("dt", [0.005, 0.01, 0.4])

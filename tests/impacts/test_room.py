@@ -13,7 +13,7 @@ from eeca_pymunk.pairs import layout as at
 from eeca_pymunk.pairs import setup
 from scenes.scene import add_disk, add_walls
 
-from .crowds import box_of, deepest, positions, reference
+from ..crowds import box_of, deepest, positions, reference
 
 
 def test_forces_are_reset_after_a_step_of_more_impacts_than_there_was_room_for() -> None:

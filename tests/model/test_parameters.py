@@ -12,7 +12,9 @@ from eeca_pymunk.model import parameters
 from eeca_pymunk.model.parameters.__main__ import markdown
 
 PACKAGE = Path(eeca_pymunk.__file__).parent
-KERNEL_ROOMS = ("geometry", "pairs", "rows", "sustained", "impacts")
+KERNEL_ROOMS = (
+    "geometry", "pairs", "rows", "prediction", "contacts", "islands", "impacts", "joints", "jointed",
+)  # fmt: skip
 
 
 def test_every_name_has_its_own_record() -> None:

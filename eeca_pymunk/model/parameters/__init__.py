@@ -6,10 +6,10 @@ and ablations. Open `rest.py` first. Sizes of memory and statuses are not parame
 
 from __future__ import annotations
 
-from . import detection, events, impulses, intervals, rest
+from . import detection, events, impulses, intervals, joints, rest
 from .record import DECLARED, Parameter
 
-SECTIONS = detection, events, impulses, intervals, rest
+SECTIONS = detection, events, impulses, intervals, joints, rest
 
 
 def table() -> dict[str, dict[str, Parameter]]:

@@ -1,0 +1,156 @@
+"""Lifting bodies out of each other at the end of a span, paid from the losses of the same island and span.
+
+delta = M^-1 G^T mu with 0 <= mu _|_ g + A mu >= 0 for the gaps g at the end, scaled so that the potential energy it
+costs is at most the losses, and nothing goes far: no energy comes from push-out, and nobody goes through a wall by it.
+Gaps above -1e-9 of the size are left alone.
+
+Moving bodies apart changes their orbital angular momentum by sum m delta x v. Where an island is free (nothing without
+mobility in it) a common turn of its velocities about the centre of mass takes that back.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..arrays import FlagArray, FloatArray
+from ..compiled import kernel, uncounted
+from ..compiled.records import Rows
+from ..model.contacts import Problem, Row
+from ..model.parameters.impulses import DENSE_CONTACTS
+from ..model.parameters.intervals import CORRECTION_ROUND_OFF, CORRECTION_SHARE, CORRECTION_STEP, OVERLAP_LEFT
+from ..rows.build import conserves, normal_rate
+from ..rows.energy import lift
+from .works import against
+
+
+@kernel
+def lifting(
+    problem: Problem, POSE: FloatArray, VN: FloatArray, ACC: FloatArray, h: float, size: float, budget: float,
+    JUMP: FloatArray,
+) -> tuple[float, float]:  # fmt: skip
+    """JUMP (k, 6) = changes of pose and velocity at the end of the span.
+
+    Args:
+        POSE: (k, 3) at the middle of the span.  VN: (k, 3) velocities at the end.  size: length.
+        budget: energy that may be spent; below 0 nothing is lifted, with 0 what that costs nothing.
+    Returns:
+        The energy spent (<= budget, negative if more was lost), and the deepest gap before (negative in overlap).
+    """
+    A, B, ROWS, IM, II, n, m = problem.A, problem.B, problem.ROWS, problem.IM, problem.II, problem.n, problem.m
+    for i in range(len(JUMP)):
+        for c in range(6):
+            JUMP[i, c] = 0.0
+    GAPS = np.empty(m)
+    deepest = 0.0
+    for i in range(m):
+        GAPS[i] = ROWS[i].gap + 0.5 * h * (ROWS[i].un + normal_rate(A, B, ROWS, VN, i))
+        deepest = min(deepest, GAPS[i])
+    if deepest >= -OVERLAP_LEFT * size or not budget >= 0.0:
+        return 0.0, deepest
+    D = np.zeros((len(IM), 3))
+    most = 10 + 1000 // m if m <= DENSE_CONTACTS else 8 + 200 // m
+    lift(A, B, ROWS, GAPS, np.zeros(m), D, IM, II, m, 0.1 * OVERLAP_LEFT * size, most, np.empty(m, np.int64))
+    far = 0.0
+    for i in range(n):
+        far = max(far, math.sqrt(D[i, 0] * D[i, 0] + D[i, 1] * D[i, 1]))
+    if far > CORRECTION_STEP * size:
+        shorten(D, n, CORRECTION_STEP * size / far)
+    work = -against(ACC, IM, II, n, D)
+    turn = 0.0
+    touched = np.zeros(n, np.uint8)
+    square = 0.0
+    x = 0.0
+    y = 0.0
+    if len(IM) == n:
+        # Bodies that no contact touches are not of the island any more.
+        for i in range(m):
+            touched[A[i]] = 1
+            touched[B[i]] = 1
+        turn, x, y, spin, inertia = unturn(POSE, VN, D, IM, II, touched, h)
+        work += turn * spin
+        square = 0.5 * inertia * turn * turn
+    part = 1.0
+    if work + square > budget + CORRECTION_ROUND_OFF * against(np.abs(ACC), IM, II, n, np.abs(D)):
+        part = CORRECTION_SHARE * budget / (max(work, 0.0) + square)
+        shorten(D, n, part)
+        if turn != 0.0:
+            turn, x, y, _, _ = unturn(POSE, VN, D, IM, II, touched, h)
+    for i in range(n):
+        for c in range(3):
+            JUMP[i, c] = D[i, c]
+        if turn != 0.0 and touched[i] != 0:
+            JUMP[i, 3] = -turn * (POSE[i, 1] + 0.5 * h * VN[i, 1] + JUMP[i, 1] - y)
+            JUMP[i, 4] = turn * (POSE[i, 0] + 0.5 * h * VN[i, 0] + JUMP[i, 0] - x)
+            JUMP[i, 5] = turn
+    return part * (work + part * square), deepest
+
+
+@uncounted
+def least_of(EXTENT: FloatArray, n: int) -> float:
+    """The size of the smallest of n bodies."""
+    size = math.inf
+    for i in range(n):
+        size = min(size, EXTENT[i])
+    return size
+
+
+@uncounted
+def budget_of(ROWS: Rows[Row], m: int, lost: float, owed: float, free: float) -> float:
+    """What `lifting` may spend: the losses of m contacts, less what is owed, and `free`. Elastic contacts have none,
+    whatever their round-off is."""
+    budget = -1.0 if conserves(ROWS, m) else lost - owed
+    return max(budget, 0.0) + free if free > 0.0 else budget
+
+
+@uncounted
+def shorten(D: FloatArray, n: int, part: float) -> None:
+    """Leave so much of the displacements D of n bodies."""
+    for i in range(n):
+        for c in range(3):
+            D[i, c] *= part
+
+
+@uncounted
+def unturn(
+    POSE: FloatArray, VN: FloatArray, D: FloatArray, IM: FloatArray, II: FloatArray, touched: FlagArray, h: float
+) -> tuple[float, float, float, float, float]:
+    """The common spin of the touched bodies that takes back the angular momentum of displacements D at the end poses
+    POSE + (h/2) VN.
+
+    Returns it with the centre of mass (x, y), the angular momentum about it and the moment of inertia.
+    """
+    mass = 0.0
+    x = 0.0
+    y = 0.0
+    vx = 0.0
+    vy = 0.0
+    for i in range(len(touched)):
+        if touched[i] == 0:
+            continue
+        if II[i] == 0.0:
+            return 0.0, 0.0, 0.0, 0.0, 0.0
+        mass += 1.0 / IM[i]
+        x += (POSE[i, 0] + 0.5 * h * VN[i, 0] + D[i, 0]) / IM[i]
+        y += (POSE[i, 1] + 0.5 * h * VN[i, 1] + D[i, 1]) / IM[i]
+        vx += VN[i, 0] / IM[i]
+        vy += VN[i, 1] / IM[i]
+    x /= mass
+    y /= mass
+    vx /= mass
+    vy /= mass
+    gained = 0.0
+    spin = 0.0
+    inertia = 0.0
+    for i in range(len(touched)):
+        if touched[i] == 0:
+            continue
+        rx = POSE[i, 0] + 0.5 * h * VN[i, 0] + D[i, 0] - x
+        ry = POSE[i, 1] + 0.5 * h * VN[i, 1] + D[i, 1] - y
+        wx = VN[i, 0] - vx
+        wy = VN[i, 1] - vy
+        gained += (D[i, 0] * wy - D[i, 1] * wx) / IM[i]
+        spin += (rx * wy - ry * wx) / IM[i] + VN[i, 2] / II[i]
+        inertia += (rx * rx + ry * ry) / IM[i] + 1.0 / II[i]
+    return -gained / inertia, x, y, spin, inertia

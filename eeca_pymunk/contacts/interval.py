@@ -1,0 +1,198 @@
+"""One span of one island: v+ = v + h a + M^-1 (G^T lam + T^T beta), each body on the parabola between v and v+."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import Table, kernel, uncounted
+from ..compiled.records import Rows, empty, zeros
+from ..model.contacts import ROW, SOLVED, Force, Problem
+from ..model.islands import Contacts, contacts_of, island_of
+from ..model.parameters.impulses import DENSE_CONTACTS
+from ..model.parameters.intervals import (
+    DIRECT,
+    DIRECT_MOVING,
+    INTERVAL_RESIDUAL,
+    INTERVAL_RESIDUAL_MOVING,
+    INTERVAL_RESIDUAL_SPEED,
+    LARGE_ISLAND,
+    MIDPOINT_SAME,
+    MIDPOINT_SAME_LARGE,
+    NEAR_REST,
+    SWEEPS_NEAR_REST,
+)
+from ..model.scene import scene_of
+from ..rows.blocks import clear
+from ..rows.build import conserves, rates
+from ..rows.energy import lock, works
+from ..rows.sweeps import velocities
+from .correction import budget_of, least_of, lifting
+from .geometry import gather
+from .memory import find, remember_loads
+from .relaxation import relax
+from .statics import comes_to_stand
+from .targets import target
+from .works import against, carried
+
+
+@uncounted
+def recall(
+    KEY: IntArray, m: int, KEYS: IntArray, FORCES: Rows[Force], stamp: float, h: float, L: FloatArray,
+    EXPECTED: FloatArray,
+) -> None:  # fmt: skip
+    """First guesses L (m, 2) of the impulses, and those of loads (m,), from forces of this step or the last."""
+    for i in range(m):
+        L[i, 0] = 0.0
+        L[i, 1] = 0.0
+        EXPECTED[i] = 0.0
+        row = find(KEYS, KEY[i])
+        if row >= 0 and FORCES[row].stamp >= stamp - 1.0:
+            L[i, 0] = h * FORCES[row].normal
+            L[i, 1] = h * FORCES[row].tangential
+            EXPECTED[i] = h * FORCES[row].load
+
+
+@uncounted
+def speeds(
+    V: FloatArray, ACC: FloatArray, EXTENT: FloatArray, IM: FloatArray, n: int, h: float, REACH: FloatArray
+) -> tuple[float, float, float]:
+    """Root mean square and largest speed of points of the n bodies, and their largest acceleration |a|.
+
+    An island on nothing has no frame: speeds are relative to its common motion. REACH (k,) = how far a body's points
+    may come in h, with some room.
+    """
+    x = 0.0
+    y = 0.0
+    if len(IM) == n:
+        mass = 0.0
+        for i in range(n):
+            mass += 1.0 / IM[i]
+            x += V[i, 0] / IM[i]
+            y += V[i, 1] / IM[i]
+        x /= mass
+        y /= mass
+    square = 0.0
+    most = 0.0
+    pull = 0.0
+    for i in range(n):
+        pull = max(pull, math.sqrt(ACC[i, 0] ** 2 + ACC[i, 1] ** 2))
+    for i in range(len(IM)):
+        speed = math.sqrt((V[i, 0] - x) ** 2 + (V[i, 1] - y) ** 2) + abs(V[i, 2]) * EXTENT[i]
+        REACH[i] = 1.1 * speed * h
+        if i < n:
+            REACH[i] += 1.1 * pull * h * h + 1e-9 * EXTENT[i]
+            square += speed * speed
+            most = max(most, speed)
+    return math.sqrt(square / n), most, pull
+
+
+@kernel
+def moved(X: FloatArray, V: FloatArray, s: float) -> FloatArray:
+    """X + s V, all (k, 3)."""
+    Y = np.empty_like(X)
+    for i in range(len(X)):
+        for c in range(3):
+            Y[i, c] = X[i, c] + s * V[i, c]
+    return Y
+
+
+@kernel
+def make_contacts(p: int, k: int) -> Contacts:
+    """Room for the contacts of p pairs of shapes of k bodies."""
+    room = 2 * p + 1
+    return Contacts(
+        np.empty(room, np.int64), np.empty(room, np.int64), empty(room, ROW), np.empty(room, np.int64),
+        np.zeros((room, 2)), np.zeros((room, 2)), np.zeros((k, 3)), np.zeros((k, 6)), zeros(1, SOLVED),
+    )  # fmt: skip
+
+
+@kernel
+def step_island(
+    SCENE: Table, ISLE: Table, CONTACTS: Table, n: int, h: float, most: int, least: float, owed: float, free: float,
+    calm: float,
+) -> int:  # fmt: skip
+    """Solve an island over h from now.
+
+    Args:
+        SCENE: its shapes, vertices, rules, scratch of the geometry, memory of forces.  ISLE: its bodies and pairs.
+        CONTACTS: its rows, impulses, velocities, report, out.
+        n: bodies that impulses move; the others keep their velocities.
+        most: sweeps of an island that moves.
+        least: length that every body's points may come at least, 0 if their velocities tell.
+        owed: energy >= 0 to take out at least.
+        free: energy >= 0 that lifting may cost beyond the losses: work of a kinematic body that was put into others.
+            Negative: overlaps are not corrected.
+        calm: speed relative to |a| h at which it may come to a stand, see `.statics`, 0 if it may not; V is 0 once it
+            does, its energy is the caller's to book. Negative: that is all that is asked for.
+    Returns:
+        The number m of contacts, or -1 if there is no room for them, or in the memory; nothing is changed then.
+    """
+    S, isle, contacts = scene_of(SCENE), island_of(ISLE), contacts_of(CONTACTS)
+    A, B, ROWS, L, VN, OUT = contacts.A, contacts.B, contacts.ROWS, contacts.L, contacts.VN, contacts.OUT
+    V, ACC, IM, II, EXTENT = isle.V, isle.ACC, isle.IM, isle.II, isle.EXTENT
+    clear(OUT[0])
+    k = len(IM)
+    REACH = np.empty(k)
+    slow, fast, pull = speeds(V, ACC, EXTENT, IM, n, h, REACH)
+    for i in range(k):
+        REACH[i] = max(REACH[i], least)
+    MIDDLE = moved(isle.POSE, V, 0.5 * h)
+    m = gather(S, isle, contacts, MIDDLE, REACH, h, k == n, MIDPOINT_SAME if n < LARGE_ISLAND else MIDPOINT_SAME_LARGE)
+    if m < 0 or 2 * (S.COUNT.remembered + m) > len(S.KEYS):
+        return -1
+    FREE = moved(V, ACC, h)
+    for i in range(k):
+        for c in range(3):
+            VN[i, c] = FREE[i, c]
+            contacts.JUMP[i, c] = 0.0
+            contacts.JUMP[i, 3 + c] = 0.0
+    if m > 0:
+        problem = Problem(A, B, ROWS, IM, II, isle.POSE, n, m)
+        EXPECTED = np.empty(m)
+        recall(contacts.KEY, m, S.KEYS, S.FORCES, S.PAR.stamp, h, L, EXPECTED)
+        rates(A, B, ROWS, V, m)
+        target(A, B, ROWS, m, ACC, EXPECTED, pull, h)
+        if calm != 0.0:
+            stands, factors = comes_to_stand(problem, L, V, FREE, isle.FELT, VN, pull * h, abs(calm))
+            OUT[0].direct = factors
+            if stands:
+                OUT[0].stood = 1
+                OUT[0].pushing = remember_loads(ROWS, contacts.KEY, L, m, h, S.KEYS, S.FORCES, S.COUNT, S.PAR.stamp)
+                return m
+            if calm < 0.0:
+                return 0
+            rates(A, B, ROWS, V, m)
+            target(A, B, ROWS, m, ACC, EXPECTED, pull, h)
+        velocities(A, B, ROWS, L, FREE, IM, II, m, VN)
+        scale = pull * h if pull > 0.0 else 1e-3 * fast
+        elastic = conserves(ROWS, m)
+        # A truncated solve dissipates energy in large elastic islands.
+        few = m <= DENSE_CONTACTS
+        rounds = DIRECT if elastic or slow < pull * h else (DIRECT_MOVING if few else 0)
+        coarse = 0.0 if elastic or few else INTERVAL_RESIDUAL_MOVING * scale + INTERVAL_RESIDUAL_SPEED * slow
+        if slow < NEAR_REST * pull * h:
+            # Residuals of an unconverged solve topple tall stacks.
+            most = SWEEPS_NEAR_REST
+        sweeps, polishes, worst = relax(
+            problem, L, VN, FREE, rounds, INTERVAL_RESIDUAL * scale, coarse, S.RESTING[isle.WHO[0]], most
+        )  # fmt: skip
+        # Sums over many sweeps have their own round-off: the velocities are those of the impulses.
+        velocities(A, B, ROWS, L, FREE, IM, II, m, VN)
+        OUT[0].sweeps += sweeps
+        OUT[0].direct += polishes
+        OUT[0].residual = worst
+        OUT[0].lock, OUT[0].owed = lock(A, B, ROWS, L, VN, FREE, IM, II, m, owed, elastic)
+        normal, tangential = works(A, B, ROWS, L, VN, m, contacts.LOSS)
+        OUT[0].restitution, OUT[0].friction = normal, tangential
+        OUT[0].carried = carried(A, B, ROWS, L, V, VN, IM, II, m)
+        if free >= 0.0:
+            budget, size = budget_of(ROWS, m, normal + tangential, owed, free), least_of(EXTENT, n)
+            OUT[0].lifted, OUT[0].deepest = lifting(problem, MIDDLE, VN, ACC, h, size, budget, contacts.JUMP)
+        OUT[0].pushing = remember_loads(ROWS, contacts.KEY, L, m, h, S.KEYS, S.FORCES, S.COUNT, S.PAR.stamp)
+    else:
+        OUT[0].owed = owed
+    OUT[0].forces = 0.5 * h * (against(ACC, IM, II, n, V) + against(ACC, IM, II, n, VN))
+    return m

@@ -1,0 +1,165 @@
+"""A step whose contacts act together at its middle, psi2 = 0: the bounded solve of islands on all contacts.
+
+No event is followed. Every pair that may close within the step is a contact of an island, and every island has one
+span, the step. How far a body may go its own speed tells; where impulses send it farther, and into others, these are
+made contacts too, and all is solved again, a few times at most.
+"""
+
+from __future__ import annotations
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import Table, kernel, uncounted
+from ..geometry.flight import norm, pose
+from ..geometry.gap import gap
+from ..islands.candidates import way_of
+from ..islands.intervals import solve
+from ..islands.membership import approach, unite
+from ..model.parameters.intervals import MIDSTEP_PASSES, TOUCH
+from ..model.scene import Scene, scene_of
+from ..model.step import DONE
+from ..pairs.candidates import cover
+from ..pairs.lists import mark_pair
+from ..pairs.rules import barred
+from .step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, finish, start
+
+
+@uncounted
+def reaches(A: Scene, USUAL: FloatArray, i: int) -> bool:
+    """Make the lists of body i complete for what it may reach within the step. False if there is no room."""
+    way = way_of(A, i, A.PAR.dt)
+    for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):
+        if not cover(
+            A.BODY, A.SHAPE, A.LINK, A.MARK, A.CELL, A.LIST, A.POOL, A.FLAG, A.HEAD, A.GRID, A.INFO, A.BOX, A.CSR,
+            USUAL, s, way,
+        ):  # fmt: skip
+            return False
+    return True
+
+
+@uncounted
+def join_all(A: Scene, USUAL: FloatArray) -> bool:
+    """The islands of all bodies that may touch within the step. False if there is no room for lists."""
+    BODY, LINK = A.BODY, A.LINK
+    n, dt = BODY.shape[0] - 1, A.PAR.dt
+    for i in range(n):
+        if not reaches(A, USUAL, i):
+            return False
+    for s in range(A.LIST.shape[0]):
+        i = LINK[s].owner
+        if BODY[i].inv_mass == 0.0:
+            continue
+        for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
+            o = int(A.POOL[w])
+            j = LINK[o].owner
+            moves = BODY[j].inv_mass > 0.0
+            if (moves and o < s) or barred(A.RULE, s, o):
+                continue
+            touch = TOUCH * min(A.SHAPE[s].extent, A.SHAPE[o].extent)
+            g = approach(BODY, A.SHAPE, LINK, A.VERTEX, A.WORK, A.PULL, s, o, 0.0)[0]
+            if g <= way_of(A, i, dt) + way_of(A, j, dt) + touch:
+                unite(A, i, j if moves else i)
+    return True
+
+
+@uncounted
+def anew(A: Scene) -> None:
+    """Undo the spans that were begun: nobody is in an island, and impulses have changed no path."""
+    for c in range(A.COUNT.pushes):
+        mark_pair(A.LIST, A.POOL, A.FLAG, A.LIST.shape[0], A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, 0)
+    A.COUNT.pushes = 0
+    for i in range(A.BODY.shape[0] - 1):
+        A.STATE[i].island = -1
+        A.BODY[i].ax, A.BODY[i].ay, A.BODY[i].angular = A.PULL[i, 0], A.PULL[i, 1], A.PULL[i, 2]
+
+
+@uncounted
+def overrun(A: Scene, USUAL: FloatArray) -> int:
+    """How many bodies went farther than was thought, and into others that are no contacts of the solve; they have the
+    speed now that they got. -1 if there is no room for lists."""
+    BODY, LINK, RESTING = A.BODY, A.LINK, A.RESTING
+    dt, found = A.PAR.dt, 0
+    for i in range(BODY.shape[0] - 1):
+        if A.STATE[i].island < 0:
+            continue
+        x, y, angle = pose(BODY, i, dt)
+        way = norm(x - BODY[i].x, y - BODY[i].y) + abs(angle - BODY[i].angle) * BODY[i].extent
+        if way <= way_of(A, i, dt):
+            continue
+        before, RESTING[i].speed = RESTING[i].speed, way / dt
+        if not reaches(A, USUAL, i):
+            return -1
+        into = 0
+        for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):
+            for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
+                o = int(A.POOL[w])
+                if A.FLAG[w] != 0 or barred(A.RULE, s, o):
+                    continue
+                small = min(A.SHAPE[s].extent, A.SHAPE[o].extent)
+                if gap(BODY, A.SHAPE, LINK, A.VERTEX, A.WORK, s, o, dt)[0] < -TOUCH * small:
+                    into += 1
+        if into > 0:
+            found += 1
+        else:
+            RESTING[i].speed = before
+    return found
+
+
+@kernel
+def resume_together(
+    A: Scene, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, USUAL: FloatArray, status: int
+) -> int:
+    """The rest of a step, whose bits so far are `status`; from its start, if it has been broken off for more room."""
+    COUNT, BODY = A.COUNT, A.BODY
+    n = BODY.shape[0] - 1
+    A.RESTING[n].speed = 0.0
+    for i in range(n):
+        A.RESTING[i].speed = norm(BODY[i].vx, BODY[i].vy) + abs(BODY[i].spin) * BODY[i].extent
+    for solves in range(MIDSTEP_PASSES + 1):
+        anew(A)
+        if not join_all(A, USUAL):
+            return ROOM_FOR_LISTS
+        # A solve may make another body the root of its island, which then would be solved again.
+        roots = 0
+        for i in range(n):
+            if A.STATE[i].island == i:
+                A.BLOCK[roots] = i
+                roots += 1
+        for q in range(roots):
+            if solve(A, A.BLOCK[q], 0.0) != DONE:
+                return ROOM_FOR_CONTACTS
+        if COUNT.pushes > A.LOG.shape[0]:
+            return ROOM_FOR_EVENTS
+        if solves == MIDSTEP_PASSES:
+            break
+        more = overrun(A, USUAL)
+        if more < 0:
+            return ROOM_FOR_LISTS
+        if more == 0:
+            break
+    return finish(A, STATES, WALK, EXTRA, ENDS, status)
+
+
+@uncounted
+def begin_together(A: Scene) -> None:
+    """Let all contacts of the step that has been started act together."""
+    A.COUNT.together, A.PAR.now = 1, 0.0
+
+
+@kernel
+def step_together(
+    TABLE: Table, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, USUAL: FloatArray,
+    dt: float, gx: float, gy: float, left: float, bits: int,
+) -> int:  # fmt: skip
+    """From the states that were read to those that are to be written: arguments and answer as of `step.step`.
+
+    Args:
+        USUAL: (k,) margins of shapes that are not fast, length.
+    """
+    A = scene_of(TABLE)
+    if bits >= 0:
+        return resume_together(A, STATES, WALK, EXTRA, ENDS, USUAL, bits)
+    status = start(A, STATES, WALK, EXTRA, dt, gx, gy, left)
+    if status < 0:
+        return status
+    begin_together(A)
+    return resume_together(A, STATES, WALK, EXTRA, ENDS, USUAL, status)

@@ -1,0 +1,129 @@
+"""Impulses of a block, and what follows: islands that take part become one with the bodies of the impact, and begin
+anew."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..compiled import kernel, uncounted
+from ..compiled.records import Rows, zeros
+from ..contacts.single import note
+from ..contacts.unmet import note_unmet
+from ..contacts.works import carried
+from ..islands.building import spread
+from ..islands.intervals import dismiss, solve
+from ..islands.membership import members, unite
+from ..model.contacts import SOLVED, Problem, Solved
+from ..model.scene import Scene
+from ..model.step import DONE, IMPACT, JOINTS_DUE
+from ..rows.blocks import CONVERGED, solve_block
+from .simultaneous import Block, gather, lay_out, owing
+
+
+@uncounted
+def finish(A: Scene, block: Block, n: int, m: int, L: FloatArray, OUT: Rows[Solved], status: int, t: float) -> None:
+    """Write what the impulses L of a block of n bodies and m pairs have made of V, and book it."""
+    BODY, COUNT = A.BODY, A.COUNT
+    V, ROWS, k = block.V, block.ROWS, A.SHAPE.shape[0]
+    if status != CONVERGED:
+        note_unmet(A, IMPACT, block.OF[0] // k, block.OF[0] % k, OUT[0].residual, OUT[0].tolerance)
+    if abs(OUT[0].lock - 1.0) > abs(A.PAR.lock - 1.0):
+        A.PAR.lock = OUT[0].lock
+    A.PAR.restitution += OUT[0].restitution
+    A.PAR.frictional += OUT[0].friction
+    A.PAR.external += carried(block.A, block.B, ROWS, L, V, V, block.IM, block.II, len(ROWS))
+    for q in range(n):
+        i = A.BLOCK[q]
+        BODY[i].vx, BODY[i].vy, BODY[i].spin = V[q, 0], V[q, 1], V[q, 2]
+        A.STATE[i].version += 1
+        A.STATE[i].events += 1
+    dismiss(A, A.BLOCK, n)
+    for z in range(len(ROWS)):
+        if L[z, 0] > 0.0 and COUNT.logged < A.LOG.shape[0]:
+            note(
+                A.LOG[COUNT.logged], block.OF[z] // k, block.OF[z] % k, t, L[z, 0], L[z, 1], ROWS[z].nx, ROWS[z].ny,
+                block.POINTS[z, 0], block.POINTS[z, 1], L[z, 0] / ROWS[z].k_n, math.nan,
+            )  # fmt: skip
+            COUNT.logged += 1
+    COUNT.impacts += 1
+    COUNT.blocks += 1 if m > 1 else 0
+
+
+@uncounted
+def holds_joints(A: Scene, n: int) -> bool:
+    """Whether any of the n bodies in A.BLOCK is held by joints, or in an island with such."""
+    for q in range(n):
+        i = A.BLOCK[q]
+        root = A.STATE[i].island
+        if A.MEMBER[i].tied >= 0 or (root >= 0 and A.MEMBER[root].jointed > 0):
+            return True
+    return False
+
+
+@kernel
+def strike(A: Scene, disks: int, a: int, b: int, t: float, rest: bool) -> tuple[int, int]:
+    """Impulses of the block of shapes a and b at instant t. Status, and the number of bodies to be forecast anew, in
+    A.BLOCK.
+
+    PUSHES_FULL and JOINTS_DUE leave the new span of the island COUNT[PENDING] to be begun; JOINTS_DUE with none
+    pending leaves the impact itself.
+
+    Args:
+        rest: whether the contact of a and b stays closed from now on.
+    """
+    k = A.SHAPE.shape[0]
+    n, m, PAIRS = gather(A, disks, a, b, t)
+    if holds_joints(A, n):
+        dismiss(A, A.BLOCK, n)
+        return JOINTS_DUE, 0
+    owed, piled = owing(A, n)
+    block = lay_out(A, disks, n, m, PAIRS, min(a, b) * k + max(a, b), rest, t)
+    rows = len(block.ROWS)
+    L, LOSS, OUT = np.zeros((rows, 2)), np.zeros((rows, 2)), zeros(1, SOLVED)
+    problem = Problem(block.A, block.B, block.ROWS, block.IM, block.II, block.POSE, n, rows)
+    status = solve_block(problem, L, block.V, owed, piled, LOSS, OUT)
+    finish(A, block, n, m, L, OUT, status, t)
+    return rejoin(A, a, b, t, n, rest, OUT[0].restitution + OUT[0].friction - owed)
+
+
+@kernel
+def rejoin(A: Scene, a: int, b: int, t: float, n: int, rest: bool, lost: float) -> tuple[int, int]:
+    """After the impulses of a block of n bodies in A.BLOCK: its islands become one and begin a new span; so do the two
+    bodies of shapes a and b if they rest on each other. Status and number of bodies as `strike`."""
+    STATE, BODIES = A.STATE, A.BLOCK
+    root = -1
+    for q in range(n):
+        if STATE[BODIES[q]].island >= 0:
+            root = unite(A, BODIES[q], BODIES[q] if root < 0 else root)
+    if root < 0 and not rest:
+        return DONE, n
+    QUEUE = np.empty(A.BODY.shape[0], np.int64)
+    queued = 0
+    for s in (a, b):
+        i = A.LINK[s].owner
+        if A.BODY[i].inv_mass > 0.0:
+            if STATE[i].island < 0:
+                QUEUE[queued] = i
+                queued += 1
+            root = unite(A, i, i if root < 0 else root)
+    spread(A, QUEUE, queued, t)
+    root = STATE[root].island
+    A.RESTING[root].lost += lost
+    A.MEMBER[root].hits += 1
+    # The bodies of the block that are in no island are forecast too.
+    free = 0
+    for q in range(n):
+        if STATE[BODIES[q]].island != root:
+            BODIES[free] = BODIES[q]
+            free += 1
+    MINE = np.empty(A.MEMBER[root].bodies, np.int64)
+    more = members(A, root, MINE)
+    for q in range(more):
+        BODIES[free + q] = MINE[q]
+    status = solve(A, root, t)
+    if status != DONE:
+        A.COUNT.pending = root
+    return status, free + more

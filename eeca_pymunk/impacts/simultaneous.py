@@ -1,0 +1,225 @@
+"""Blocks: who takes part in an impact at one instant: all shapes that touch, islands that are hit.
+
+Contacts that touch at the instant of an impact take part in it, and so on from body to body: the impulses of a rack of
+disks are simultaneous. So do contacts that carry a load in an island, and all bodies that hang on one by joints. Bodies
+that impulses do not move carry nothing on.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import kernel, uncounted
+from ..compiled.records import Rows, empty
+from ..contacts.single import move_to, touches
+from ..geometry.flight import pose, rate
+from ..geometry.gap import touching
+from ..geometry.manifold import face
+from ..geometry.sides import note_side
+from ..islands.accounting import end_interval
+from ..islands.membership import budget_spent, carrier, remembered
+from ..model.contacts import ROW, Row
+from ..model.parameters.impulses import BLOCK_BODIES, FACE_ROUND_OFF, ROCKING
+from ..model.parameters.intervals import LARGE_ISLAND
+from ..model.scene import Scene
+from ..pairs.rules import barred, law
+from ..rows.build import normal_rate, place_row
+from ..rows.inplace import sort
+
+
+@uncounted
+def takes_part(A: Scene, disks: int, s: int, o: int, t: float) -> bool:
+    """Whether shapes s and o touch at instant t, or are in contact under load."""
+    if barred(A.RULE, s, o):
+        return False
+    if touches(A, disks, s, o, t):
+        return True
+    i, j = A.LINK[s].owner, A.LINK[o].owner
+    if A.STATE[i].island < 0 or not (A.STATE[j].island == A.STATE[i].island or carrier(A, j)):
+        return False
+    return remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], s, o, A.PAR.stamp)[0] > 0.0
+
+
+@uncounted
+def crowded(A: Scene, a: int, b: int) -> bool:
+    """Whether shapes a and b meet in a crowd: their hit spreads from the nearest bodies by its new span."""
+    if law(A.SHAPE, A.RULE, a, b)[0] >= 1.0:
+        return False
+    size = 0
+    for s in (a, b):
+        root = A.STATE[A.LINK[s].owner].island
+        if root >= 0:
+            size = max(size, A.MEMBER[root].bodies)
+    return size >= LARGE_ISLAND
+
+
+@uncounted
+def arrive(A: Scene, i: int, t: float) -> None:
+    """Bring body i, with its island, to instant t; not one whose island has joints and is under way."""
+    root = A.STATE[i].island
+    if root >= 0 and A.MEMBER[root].open > 0:
+        if A.MEMBER[root].jointed > 0:
+            return
+        end_interval(A, root, t)
+    move_to(A.BODY, i, t)
+
+
+@uncounted
+def admit(A: Scene, i: int, n: int, t: float) -> int:
+    """Take body i, and all that hangs on it by joints, into A.BLOCK, where there are n bodies; how many there are."""
+    j = i
+    while A.PLACE[j] < 0:
+        A.BLOCK[n], A.PLACE[j] = j, n
+        n += 1
+        arrive(A, j, t)
+        if A.MEMBER[j].tied < 0:
+            break
+        j = A.MEMBER[j].next_tied
+    return n
+
+
+@kernel
+def gather(A: Scene, disks: int, a: int, b: int, t: float) -> tuple[int, int, IntArray]:
+    """The block that shapes a and b hit at instant t: its n bodies into A.BLOCK, which move to that instant, and its m
+    pairs as numbers a k + b (k shapes) in increasing order. A.PLACE gives the place of each of these bodies."""
+    k, BODIES = A.SHAPE.shape[0], A.BLOCK
+    PAIRS = np.empty(16, np.int64)
+    PAIRS[0] = min(a, b) * k + max(a, b)
+    n, m, q = 0, 1, 0
+    most = BLOCK_BODIES if crowded(A, a, b) else A.BLOCK.shape[0]
+    for s in (a, b):
+        i = A.LINK[s].owner
+        if A.BODY[i].inv_mass > 0.0:
+            if A.PLACE[i] < 0:
+                n = admit(A, i, n, t)
+    while q < n:
+        i = BODIES[q]
+        q += 1
+        for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):
+            start = A.LIST[s].start
+            for p in range(start, start + A.LIST[s].number):
+                o = int(A.POOL[p])
+                j = A.LINK[o].owner
+                moves = A.BODY[j].inv_mass > 0.0
+                key = min(s, o) * k + max(s, o)
+                # The pairs with bodies that have been looked at before stand there already.
+                if key == PAIRS[0] or (moves and 0 <= A.PLACE[j] < q - 1):
+                    continue
+                # What does not take part is hit in its turn.
+                full = moves and A.PLACE[j] < 0 and (n >= most or budget_spent(A, A.STATE[j].island))
+                if full or not takes_part(A, disks, s, o, t):
+                    continue
+                if moves and A.PLACE[j] < 0:
+                    n = admit(A, j, n, t)
+                if m == PAIRS.shape[0]:
+                    more = np.empty(2 * m, np.int64)
+                    for c in range(m):
+                        more[c] = PAIRS[c]
+                    PAIRS = more
+                PAIRS[m] = key
+                m += 1
+    sort(PAIRS, m)
+    return n, m, PAIRS[:m]
+
+
+@uncounted
+def owing(A: Scene, n: int) -> tuple[float, bool]:
+    """What the islands of the n bodies in A.BLOCK owe, which is taken out by their block; whether there are any."""
+    owed, piled = 0.0, False
+    for q in range(n):
+        root = A.STATE[A.BLOCK[q]].island
+        if root >= 0:
+            piled = True
+            # What spans that were cut short have given is taken out here.
+            owes = max(-A.RESTING[root].lost, 0.0)
+            A.RESTING[root].lost += owes
+            owed += owes
+    return owed, piled
+
+
+class Block(NamedTuple):
+    """What a block is made of: POSE, V (k, 3), IM, II (k,), rows of contacts (`Row`) between A and B, POINTS
+    (m, 2) where they are, and OF (m,) the pairs that they are of, as numbers a k + b."""
+
+    POSE: FloatArray
+    V: FloatArray
+    IM: FloatArray
+    II: FloatArray
+    A: IntArray
+    B: IntArray
+    ROWS: Rows[Row]
+    POINTS: FloatArray
+    OF: IntArray
+
+
+@kernel
+def lay_out(A: Scene, disks: int, n: int, m: int, PAIRS: IntArray, hit: int, rest: bool, t: float) -> Block:
+    """The block of the n bodies in A.BLOCK, sorted, and of m PAIRS, at instant t.
+
+    Args:
+        hit: the pair that meets now.  rest: whether it stays closed from now on.
+    """
+    BODY, LINK, BODIES = A.BODY, A.LINK, A.BLOCK
+    k = A.SHAPE.shape[0]
+    sort(BODIES, n)
+    for q in range(n):
+        A.PLACE[BODIES[q]] = q
+    POSE, V = np.zeros((n + m, 3)), np.zeros((n + m, 3))
+    IMS, IIS = np.zeros(n + m), np.zeros(n + m)
+    for q in range(n):
+        i = BODIES[q]
+        POSE[q, 0], POSE[q, 1], POSE[q, 2] = BODY[i].x, BODY[i].y, BODY[i].angle
+        V[q, 0], V[q, 1], V[q, 2] = BODY[i].vx, BODY[i].vy, BODY[i].spin
+        IMS[q], IIS[q] = BODY[i].inv_mass, BODY[i].inv_inertia
+    P, Q = np.empty(2 * m, np.int64), np.empty(2 * m, np.int64)
+    ROWS, POINTS, OF = empty(2 * m, ROW), np.empty((2 * m, 2)), np.empty(2 * m, np.int64)
+    found = np.empty((2, 5))
+    rows, place = 0, n
+    for z in range(m):
+        sa, sb = PAIRS[z] // k, PAIRS[z] % k
+        i, j = LINK[sa].owner, LINK[sb].owner
+        p, q = A.PLACE[i], A.PLACE[j]
+        # What impulses do not move has a row of its own for each contact.
+        for side in range(2):
+            w = i if side == 0 else j
+            if BODY[w].inv_mass == 0.0:
+                xw, yw, qw = pose(BODY, w, t)
+                POSE[place, 0], POSE[place, 1], POSE[place, 2] = xw, yw, qw
+                xw, yw, qw = rate(BODY, w, t)
+                V[place, 0], V[place, 1], V[place, 2] = xw, yw, qw
+                if side == 0:
+                    p = place
+                else:
+                    q = place
+                place += 1
+        e, mu, sx, sy = law(A.SHAPE, A.RULE, sa, sb)
+        tolerance = FACE_ROUND_OFF * touching(BODY, A.SHAPE, LINK, sa, sb, disks)
+        small = min(A.SHAPE[sa].extent, A.SHAPE[sb].extent)
+        if e < 1.0:
+            tolerance = max(tolerance, ROCKING * small)
+        if rest and PAIRS[z] == hit:
+            e = 0.0
+        load = remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], sa, sb, A.PAR.stamp - 1.0)[1]
+        count = face(
+            A.SHAPE, LINK, A.VERTEX, A.WORK, sa, POSE[p, 0], POSE[p, 1], POSE[p, 2],
+            sb, POSE[q, 0], POSE[q, 1], POSE[q, 2], tolerance, found,
+        )  # fmt: skip
+        if count > 0:
+            note_side(A.SHAPE, LINK, A.WORK, sa, sb, found[0, 0], found[0, 1], True)
+        for c in range(count):
+            nx, ny = found[c, 0], found[c, 1]
+            P[rows], Q[rows] = p, q
+            row = ROWS[rows]
+            row.nx, row.ny, row.gap, row.elasticity, row.friction = nx, ny, found[c, 4], e, mu
+            row.surface = nx * sy - ny * sx
+            place_row(P, Q, ROWS, rows, found[c, 2], found[c, 3], POSE, IMS, IIS)
+            u = normal_rate(P, Q, ROWS, V, rows)
+            if e < 1.0 and e * max(-u, 0.0) < 0.5 * load * A.PAR.dt / ROWS[rows].k_n:
+                # Its bounce would come back within the step.
+                ROWS[rows].elasticity = 0.0
+            POINTS[rows, 0], POINTS[rows, 1], OF[rows] = found[c, 2], found[c, 3], PAIRS[z]
+            rows += 1
+    return Block(POSE, V, IMS, IIS, P[:rows], Q[:rows], ROWS[:rows], POINTS[:rows], OF[:rows])

@@ -1,0 +1,206 @@
+"""Islands that stand still: an unchanged solve goes on, step after step, and costs next to nothing.
+
+`calm.py` says which come to a stand. Their bodies then stay where they are, without velocity (what kinetic energy is
+left is booked as restitution; disks without friction go on spinning), and their contacts keep their forces. An island
+is solved again from when a body of it is hit, edited, or pulled otherwise than before; when a body that carries it
+moves; and always where collision handlers have a say.
+
+`Member.rest` is AT_REST of all its bodies; of the root CHANGED once it is to be solved again.
+"""
+
+from __future__ import annotations
+
+from ..compiled import uncounted
+from ..contacts.memory import find, key_of
+from ..contacts.single import kinetic, note
+from ..model.bodies import AT_REST, AWAKE, CHANGED
+from ..model.contacts import LASTED
+from ..model.parameters.rest import REST_WOKEN
+from ..model.scene import Scene
+from ..pairs.lists import mark_pair
+from .rest import candidate_speed, postponed, speed, spins_freely
+
+
+@uncounted
+def unchanged(A: Scene, i: int) -> bool:
+    """Whether body i has no velocity, or a spin alone that nobody feels, and is where it was left."""
+    BODY, BEGAN = A.BODY, A.BEGAN
+    same = BODY[i].x == BEGAN[i, 0] and BODY[i].y == BEGAN[i, 1] and BODY[i].angle == BEGAN[i, 2]
+    return bool(same and BODY[i].vx == 0.0 and BODY[i].vy == 0.0 and (BODY[i].spin == 0.0 or spins_freely(A, i)))
+
+
+@uncounted
+def stays_at_rest(A: Scene, i: int, last: float) -> bool:
+    """Whether body i stands as it stood; it then has no path but that, and its forecast of `last` ago."""
+    BODY = A.BODY
+    pulled = BODY[i].ax == A.PULL[i, 0] and BODY[i].ay == A.PULL[i, 1] and BODY[i].angular == A.PULL[i, 2]
+    if A.MEMBER[i].busy > 0 or not pulled or not unchanged(A, i):
+        A.MEMBER[A.STATE[i].island].rest = CHANGED
+        return False
+    BODY[i].ax, BODY[i].ay, BODY[i].angular = 0.0, 0.0, 0.0
+    # What does not stand for long is not asked again for long.
+    A.RESTING[i].calm_for = min(A.RESTING[i].calm_for + 1.0, REST_WOKEN)
+    BODY[i].due = max(A.RESTING[i].still_due - last, 0.0)
+    return True
+
+
+@uncounted
+def note_motion(A: Scene, i: int) -> None:
+    """Say of a body that impulses do not move whether it has moved since the last step, or will in this."""
+    A.MEMBER[i].rest = AWAKE if unchanged(A, i) else CHANGED
+
+
+@uncounted
+def touch(A: Scene, c: int, stamp: float) -> None:
+    """Let the forces of contact number c be those of the step `stamp`."""
+    a, b = A.PUSHED_BY[c].a, A.PUSHED_BY[c].b
+    key = key_of(A.SHAPE.shape[0], a, b)
+    for z in range(2):
+        row = find(A.KEYS, key + z)
+        if row >= 0 and A.FORCES[row].stamp >= stamp - 1.0:
+            A.FORCES[row].stamp = stamp
+
+
+@uncounted
+def wake_supported(A: Scene) -> None:
+    """What rests on bodies of an island that is CHANGED is so too, and so on."""
+    MEMBER, more = A.MEMBER, A.COUNT.carries > 0
+    while more:
+        more = False
+        for c in range(A.COUNT.pushes):
+            root = A.PUSHED_BY[c].root
+            if root < 0 or MEMBER[root].rest == CHANGED:
+                continue
+            for side in range(2):
+                j = A.LINK[A.PUSHED_BY[c].b if side > 0 else A.PUSHED_BY[c].a].owner
+                other = A.STATE[j].island
+                if A.BODY[j].inv_mass > 0.0 and other >= 0 and MEMBER[other].rest == CHANGED:
+                    MEMBER[root].rest, more = CHANGED, True
+
+
+@uncounted
+def wake_changed(A: Scene) -> None:
+    """At the start of a step: islands that something has changed are no longer still; the rows of the others stay, at
+    the front, with the impulses of this step."""
+    STATE, MEMBER, BODY = A.STATE, A.MEMBER, A.BODY
+    ground = BODY.shape[0] - 1
+    dt = A.PAR.dt
+    for c in range(A.COUNT.pushes):
+        root = A.PUSHED_BY[c].root
+        if root < 0:
+            continue
+        for side in range(2):
+            j = A.LINK[A.PUSHED_BY[c].b if side > 0 else A.PUSHED_BY[c].a].owner
+            if j != ground and BODY[j].inv_mass == 0.0 and MEMBER[j].rest == CHANGED:
+                MEMBER[root].rest = CHANGED
+        if A.RULE.shape[0] > 0:
+            MEMBER[root].rest = CHANGED
+    wake_supported(A)
+    for c in range(A.COUNT.pushes):
+        root = A.PUSHED_BY[c].root
+        if root >= 0 and MEMBER[root].rest == CHANGED:
+            A.PUSHED_BY[c].root = LASTED
+            mark_pair(A.LIST, A.POOL, A.FLAG, A.LIST.shape[0], A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, 0)
+        elif root >= 0:
+            R = A.PUSHED[c]
+            longer = dt / R.length
+            R.normal *= longer
+            R.tangential *= longer
+            R.change *= longer
+            R.length = dt
+    most = A.PAR.pulled * dt
+    for i in range(ground):
+        root = STATE[i].island
+        if root < 0 or MEMBER[root].rest == AT_REST:
+            continue
+        slow = speed(A, i, 0.0) <= candidate_speed(MEMBER[root].among) * most
+        A.RESTING[i].calm_for = A.RESTING[i].calm_for + 1.0 if slow else 0.0
+        if MEMBER[i].rest != AWAKE:
+            BODY[i].ax, BODY[i].ay, BODY[i].angular = A.PULL[i, 0], A.PULL[i, 1], A.PULL[i, 2]
+            STATE[i].version += 1
+        # Its forecast left out the pairs of its span.
+        BODY[i].due = min(BODY[i].due, 0.0)
+    for i in range(ground):
+        root = STATE[i].island
+        if root < 0:
+            continue
+        if MEMBER[root].rest != AT_REST:
+            STATE[i].island = -1
+            if i != root:
+                MEMBER[i].rest = AWAKE
+        else:
+            A.RESTING[i].lost, MEMBER[i].hits = 0.0, 0
+    for i in range(ground):
+        if STATE[i].island < 0 and BODY[i].inv_mass > 0.0:
+            MEMBER[i].rest = AWAKE
+
+
+@uncounted
+def mark_changed(A: Scene, root: int) -> None:
+    """A still island is hit, or joined: its span of this step is an ordinary one."""
+    for c in range(A.COUNT.pushes):
+        if A.PUSHED_BY[c].root == root:
+            touch(A, c, A.PAR.stamp)
+    i = root
+    while i >= 0:
+        A.MEMBER[i].rest = AWAKE
+        i = A.MEMBER[i].following
+
+
+@uncounted
+def keep(A: Scene, c: int, root: int) -> None:
+    """Contact number c, just booked, goes on: its island comes to a stand."""
+    R = A.PUSHED[c]
+    A.PUSHED_BY[c].root = root
+    mark_pair(A.LIST, A.POOL, A.FLAG, A.LIST.shape[0], A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, 1)
+    R.un_before, R.un_after, R.ut_before, R.ut_after, R.work = 0.0, 0.0, 0.0, 0.0, 0.0
+
+
+@uncounted
+def stand(A: Scene, c: int) -> None:
+    """Contact number c, of an island that stands still: its impulse is noted, and goes on."""
+    R = A.PUSHED[c]
+    touch(A, c, A.PAR.stamp)
+    if A.COUNT.logged < A.LOG.shape[0] and (R.normal != 0.0 or R.tangential != 0.0):
+        note(
+            A.LOG[A.COUNT.logged], A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, 0.5 * A.PAR.dt, R.normal, R.tangential,
+            R.nx, R.ny, R.px, R.py, R.change, R.gap,
+        )  # fmt: skip
+        A.LOG[A.COUNT.logged].duration = A.PAR.dt
+        A.COUNT.logged += 1
+
+
+@uncounted
+def stop(A: Scene, i: int) -> None:
+    """Body i has no velocity any more, but for a spin that nobody feels; its energy is lost to restitution."""
+    BODY = A.BODY
+    A.PAR.restitution += kinetic(BODY, i)
+    BODY[i].vx, BODY[i].vy = 0.0, 0.0
+    if spins_freely(A, i):
+        A.PAR.restitution -= kinetic(BODY, i)
+    else:
+        BODY[i].spin = 0.0
+    A.STATE[i].version += 1
+
+
+@uncounted
+def put_to_rest(A: Scene, root: int) -> None:
+    """At either end of a step, an island that comes to a stand: its bodies stop, but for spins that nobody feels. Once
+    something wakes it, it is soon asked whether it stands again."""
+    BODY, MEMBER = A.BODY, A.MEMBER
+    MEMBER[root].anew = 1
+    i = root
+    while i >= 0:
+        stop(A, i)
+        BODY[i].ax, BODY[i].ay, BODY[i].angular = 0.0, 0.0, 0.0
+        MEMBER[i].rest, BODY[i].due, A.RESTING[i].calm_for = 1, 0.0, postponed(MEMBER[root].among)
+        i = MEMBER[i].following
+
+
+@uncounted
+def leave(A: Scene) -> None:
+    """What still bodies have to find again at the next step: where they are, and when they are due."""
+    for i in range(A.BODY.shape[0] - 1):
+        if A.MEMBER[i].rest == AT_REST:
+            A.RESTING[i].still_due = A.BODY[i].due
+            A.BEGAN[i, 0], A.BEGAN[i, 1], A.BEGAN[i, 2] = A.BODY[i].x, A.BODY[i].y, A.BODY[i].angle

@@ -1,0 +1,234 @@
+"""What rests at the start of a step, and whether what meets within it comes to rest.
+
+Contacts that lasted to the end of the step before are looked at again; what touches an island joins it. New contacts
+come by events, and are sustained from the instant at which their bounces would all be over within the step.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..arrays import IntArray
+from ..compiled import kernel, uncounted
+from ..contacts.single import move_to
+from ..geometry.flight import norm
+from ..geometry.manifold import half_width
+from ..model.bodies import AT_REST
+from ..model.contacts import LASTED
+from ..model.parameters.intervals import (
+    BUSY_STEPS,
+    HITS_TIMES_BODIES,
+    IMPACTS_BEFORE_REST,
+    IMPACTS_BEFORE_REST_ELASTIC,
+    MOST_HITS,
+    MOST_HITS_ELASTIC,
+    PASSED_OVER_DEPTH,
+    SLOW_ELASTIC,
+    TOUCH,
+)
+from ..model.scene import Scene
+from ..model.step import DONE, PUSHES_FULL
+from ..pairs.lists import far_apart
+from ..pairs.rules import barred, law
+from .accounting import end_interval
+from .at_rest import wake_changed
+from .intervals import solve
+from .membership import approach, budget_spent, carrier, members, rests, unite
+from .partial_rest import rests_in_part
+from .penetration import hold_penetrating
+from .support import support
+
+
+@uncounted
+def join_neighbours(A: Scene, i: int, t: float, FOUND: IntArray) -> int:
+    """At instant t, let what touches body i, which is in an island, join it; where it is busy, what comes near. The
+    bodies that were in none go into FOUND; how many."""
+    BODY, STATE, LINK = A.BODY, A.STATE, A.LINK
+    dt, pulled = A.PAR.dt, A.PAR.pulled
+    h = dt - t
+    joined = 0
+    for s in range(STATE[i].first_shape, STATE[i].first_shape + STATE[i].shapes):
+        for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
+            o = int(A.POOL[w])
+            j = LINK[o].owner
+            if carrier(A, j) or STATE[j].island == STATE[i].island or barred(A.RULE, s, o):
+                continue
+            busy = A.MEMBER[i].busy > 0 or A.MEMBER[j].busy > 0
+            if law(A.SHAPE, A.RULE, s, o)[0] >= 1.0 and not busy:
+                continue
+            small = min(A.SHAPE[s].extent, A.SHAPE[o].extent)
+            reach = TOUCH * small
+            if busy:
+                speed = norm(BODY[i].vx, BODY[i].vy) + norm(BODY[j].vx, BODY[j].vy)
+                speed += abs(BODY[i].spin) * BODY[i].extent + abs(BODY[j].spin) * BODY[j].extent
+                reach += 1.1 * (speed + pulled * dt) * h
+            if far_apart(BODY, A.SHAPE, LINK, s, o, t, reach + TOUCH * small):
+                continue
+            other = STATE[j].island
+            begun = other >= 0 and A.MEMBER[other].open > 0
+            if begun and (A.MEMBER[other].jointed > 0 or budget_spent(A, other)):
+                continue  # it is hit when they meet
+            move_to(BODY, j, t)
+            g, u, _, _ = approach(A.BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, A.PULL, s, o, t)
+            if g > reach:
+                continue
+            if g <= TOUCH * small and (u > pulled * dt or (-u > pulled * dt and not busy)):
+                continue
+            if begun:
+                end_interval(A, other, t)
+            if other < 0:
+                FOUND[joined] = j
+                joined += 1
+            unite(A, i, j)
+            if busy:
+                A.MEMBER[i].busy = max(A.MEMBER[i].busy, A.MEMBER[j].busy - 1)
+                A.MEMBER[j].busy = max(A.MEMBER[j].busy, A.MEMBER[i].busy - 1)
+    return joined
+
+
+@uncounted
+def spread(A: Scene, QUEUE: IntArray, queued: int, t: float) -> int:
+    """`join_neighbours` from the bodies of QUEUE on, and from those that join; how many bodies are in QUEUE then."""
+    q = 0
+    while q < queued:
+        queued += join_neighbours(A, QUEUE[q], t, QUEUE[queued:])
+        q += 1
+    return queued
+
+
+@kernel
+def build_islands(A: Scene) -> int:
+    """The islands of the start of a step, and their spans. DONE, or PUSHES_FULL, to be called again with more room."""
+    STATE, COUNT, BODY = A.STATE, A.COUNT, A.BODY
+    n = BODY.shape[0] - 1
+    wake_changed(A)
+    for c in range(COUNT.pushes):
+        a, b = A.PUSHED_BY[c].a, A.PUSHED_BY[c].b
+        if A.PUSHED_BY[c].root != LASTED or barred(A.RULE, a, b):
+            continue
+        if c > 0 and a == A.PUSHED_BY[c - 1].a and b == A.PUSHED_BY[c - 1].b:
+            continue  # the other end of a face
+        i, j = A.LINK[a].owner, A.LINK[b].owner
+        i, j = (j, j) if carrier(A, i) else (i, i if carrier(A, j) else j)
+        if carrier(A, i):
+            continue
+        if STATE[i].island >= 0 and STATE[i].island == STATE[j].island:
+            continue  # together already
+        if rests(A, a, b, 0.0, law(A.SHAPE, A.RULE, a, b)[0] < 1.0):
+            unite(A, i, j)
+    for i in range(n):
+        if A.MEMBER[i].tied >= 0:
+            unite(A, i, A.MEMBER[i].tied)
+    if COUNT.crammed > 0:
+        hold_penetrating(A)
+    QUEUE = np.empty(n, np.int64)
+    queued = 0
+    for i in range(n):
+        if STATE[i].island >= 0 and A.MEMBER[i].rest != AT_REST:
+            QUEUE[queued] = i
+            queued += 1
+    queued = spread(A, QUEUE, queued, 0.0)
+    kept, wanted = 0, 0
+    for c in range(COUNT.pushes):
+        kept += 1 if A.PUSHED_BY[c].root >= 0 else 0
+    for i in range(n):
+        if STATE[i].island < 0 or (A.MEMBER[i].rest == AT_REST and COUNT.carries == 0):
+            continue  # what carries may have to be solved after all
+        for s in range(STATE[i].first_shape, STATE[i].first_shape + STATE[i].shapes):
+            for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
+                # Two points for each pair; those of moving shapes stand in two lists.
+                wanted += 1 if A.POOL[w] < A.LIST.shape[0] else 2
+    wanted *= 2 if COUNT.carries > 0 else 1
+    if kept + wanted > A.PUSHED.shape[0] or 2 * (COUNT.remembered + wanted) > A.KEYS.shape[0]:
+        return PUSHES_FULL
+    kept = 0
+    for c in range(COUNT.pushes):
+        if A.PUSHED_BY[c].root >= 0:
+            A.PUSHED_BY[kept], A.PUSHED[kept] = A.PUSHED_BY[c], A.PUSHED[c]
+            kept += 1
+    COUNT.pushes = kept
+    # A solve may make another body the root of its island, which then would be solved again.
+    roots = 0
+    for i in range(n):
+        if STATE[i].island == i and A.MEMBER[i].rest != AT_REST:
+            QUEUE[roots] = i
+            roots += 1
+    for q in range(roots):
+        root = QUEUE[q]
+        if not rests_in_part(A, root):
+            solve(A, root, 0.0)
+    support(A)
+    return DONE
+
+
+@uncounted
+def comes_to_rest(A: Scene, a: int, b: int, t: float) -> bool:
+    """Whether shapes a and b, which meet at instant t, stay in contact from then on: bounces of e |u| under the closing
+    acceleration a_n are over within the step iff 2 e |u| <= a_n (1 - e) (dt - t)."""
+    i, j = A.LINK[a].owner, A.LINK[b].owner
+    if A.BODY[i].inv_mass > 0.0:
+        move_to(A.BODY, i, t)
+    if A.BODY[j].inv_mass > 0.0:
+        move_to(A.BODY, j, t)
+    e = law(A.SHAPE, A.RULE, a, b)[0]
+    _, u, closing, _ = approach(A.BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, A.PULL, a, b, t)
+    end = A.PAR.dt
+    met = max(A.STATE[i].events, A.STATE[j].events)
+    if e < 1.0:
+        return met >= IMPACTS_BEFORE_REST or (
+            closing > 0.0 and 2.0 * e * max(-u, 0.0) <= closing * (1.0 - e) * (end - t)
+        )
+    if met >= IMPACTS_BEFORE_REST_ELASTIC and closing > 0.0 and -u < SLOW_ELASTIC * A.PAR.pulled * end:
+        return True
+    return A.PAR.pulled > 0.0 and rests(A, a, b, t, False)
+
+
+@uncounted
+def hits_of(A: Scene, a: int, b: int) -> int:
+    """How often the islands of shapes a and b were hit in this step."""
+    hits = 0
+    for s in (a, b):
+        root = A.STATE[A.LINK[s].owner].island
+        if root >= 0:
+            hits = max(hits, A.MEMBER[root].hits)
+    return hits
+
+
+@uncounted
+def most_hits(A: Scene, a: int, b: int) -> int:
+    """How often they may be: lossy islands the oftener the smaller they are."""
+    if law(A.SHAPE, A.RULE, a, b)[0] >= 1.0:
+        return MOST_HITS_ELASTIC
+    size = 1
+    for s in (a, b):
+        root = A.STATE[A.LINK[s].owner].island
+        if root >= 0:
+            size = max(size, A.MEMBER[root].bodies)
+    return max(MOST_HITS, HITS_TIMES_BODIES // size)
+
+
+@kernel
+def passed_over(A: Scene, a: int, b: int, t: float) -> bool:
+    """Whether a hit on an island at instant t is beyond its budget; the island then is busy for some steps."""
+    STATE = A.STATE
+    i, j = A.LINK[a].owner, A.LINK[b].owner
+    hits, most, lossy = hits_of(A, a, b), most_hits(A, a, b), law(A.SHAPE, A.RULE, a, b)[0] < 1.0
+    spent = budget_spent(A, STATE[i].island) or budget_spent(A, STATE[j].island)
+    if hits < most and not spent:
+        return False
+    h = A.PAR.dt - t
+    speed = norm(A.BODY[i].vx - A.BODY[j].vx, A.BODY[i].vy - A.BODY[j].vy)
+    speed += abs(A.BODY[i].spin) * A.BODY[i].extent + abs(A.BODY[j].spin) * A.BODY[j].extent
+    thick = half_width(A.SHAPE, A.LINK, A.VERTEX, a) + half_width(A.SHAPE, A.LINK, A.VERTEX, b)
+    if (speed + A.PAR.pulled * h) * h > PASSED_OVER_DEPTH * thick:
+        return False
+    A.COUNT.ignored += 1
+    if lossy:
+        MINE = np.empty(A.BODY.shape[0], np.int64)
+        for k in (i, j):
+            if A.BODY[k].inv_mass > 0.0:
+                A.MEMBER[k].busy = BUSY_STEPS
+            if STATE[k].island >= 0:
+                for q in range(members(A, STATE[k].island, MINE)):
+                    A.MEMBER[MINE[q]].busy = BUSY_STEPS
+    return True

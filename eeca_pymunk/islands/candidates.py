@@ -1,0 +1,230 @@
+"""Which pairs of an island its span takes over, and how long the span is."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import kernel, uncounted
+from ..compiled.records import Rows
+from ..geometry.flight import norm
+from ..geometry.manifold import half_width
+from ..model.contacts import Row
+from ..model.parameters.intervals import (
+    EXACT_CONTACTS,
+    INTERVAL_ANGLE,
+    INTERVAL_DEPTH_LEAST,
+    INTERVAL_WAY,
+    LARGE_ISLAND,
+    LARGE_SWEEPS,
+    LARGE_SWEEPS_HIT,
+    LEAST_INTERVAL,
+    NORMAL_TURN,
+    RATTLE,
+    STICK,
+    TOUCH,
+)
+from ..model.scene import Scene
+from ..model.shapes import Link, Shape
+from ..pairs.lists import far_apart
+from ..pairs.rules import barred, law
+from ..rows.build import normal_rate, tangent_rate
+from .depths import too_deep
+from .membership import approach, carrier, remembered, rests
+
+
+@uncounted
+def way_of(A: Scene, i: int, h: float) -> float:
+    """How far points of body i may come in h, with some room, where all contacts act together."""
+    pulled = 0.5 * A.PAR.pulled * h if A.BODY[i].inv_mass > 0.0 else 0.0
+    return 1.1 * (A.RESTING[i].speed + pulled) * h
+
+
+@kernel
+def pairs_of(A: Scene, root: int, t: float, lossy: bool, LOCAL: IntArray, MINE: IntArray, n: int) -> IntArray:
+    """`pairs_within` a span from instant t to the end of the step."""
+    return pairs_within(A, root, t, A.PAR.dt - t, lossy, MINE, n)
+
+
+@kernel
+def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: IntArray, n: int) -> IntArray:
+    """(p, 2) pairs of shapes of an island, whose n bodies are MINE, that its solve over h from instant t takes over:
+    what touches, and what will rest within the span; where it is busy all that comes near. All others meet at their
+    times of impact, unless all contacts act together."""
+    found = np.empty((4 * n + 8, 2), np.int64)
+    p = 0
+    BODY, LINK, STATE = A.BODY, A.LINK, A.STATE
+    together = A.COUNT.together > 0
+    for q in range(n):
+        i = MINE[q]
+        own = norm(BODY[i].vx, BODY[i].vy) + abs(BODY[i].spin) * BODY[i].extent
+        for s in range(STATE[i].first_shape, STATE[i].first_shape + STATE[i].shapes):
+            for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
+                o = int(A.POOL[w])
+                j = LINK[o].owner
+                if j < i if STATE[j].island == root else not carrier(A, j):
+                    continue
+                if barred(A.RULE, s, o):
+                    continue
+                small = min(A.SHAPE[s].extent, A.SHAPE[o].extent)
+                busy = A.MEMBER[i].busy > 0 or A.MEMBER[j].busy > 0
+                speed = own + norm(BODY[j].vx, BODY[j].vy) + abs(BODY[j].spin) * BODY[j].extent
+                reach = 1.1 * (speed * h + A.PAR.pulled * h * h) + TOUCH * small
+                if together:
+                    reach = way_of(A, i, h) + way_of(A, j, h) + TOUCH * small
+                if o < A.LIST.shape[0] and far_apart(BODY, A.SHAPE, LINK, s, o, t, reach):
+                    continue
+                force, load = 0.0, 0.0
+                if lossy and not together:
+                    force, load = remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], s, o, A.PAR.stamp - 1.0)
+                # What a crowd has carried goes on being carried, as far as it may come: hits on it spread by its spans.
+                if n < LARGE_ISLAND or force <= 0.0:
+                    g, u, closing, mass = approach(A.BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, A.PULL, s, o, t)
+                    if not together:
+                        if not busy:
+                            reach = 1.1 * (max(-u, 0.0) * h + A.PAR.pulled * h * h) + TOUCH * small
+                        # No farther do they go in a span; what does meets at its time of impact.
+                        reach = min(reach, 2.0 * INTERVAL_WAY * small)
+                    if g > reach:
+                        continue
+                    e = law(A.SHAPE, A.RULE, s, o)[0]
+                    if together:
+                        pass
+                    elif e >= 1.0 and not lossy:
+                        if not rests(A, s, o, t, False):
+                            continue
+                    elif g > TOUCH * small and not busy:
+                        if not -e * min(u, 0.0) < 0.5 * max(closing, load / mass) * h:
+                            continue
+                if p == found.shape[0]:
+                    more = np.empty((2 * p, 2), np.int64)
+                    for c in range(p):
+                        more[c, 0], more[c, 1] = found[c, 0], found[c, 1]
+                    found = more
+                found[p, 0], found[p, 1] = s, o
+                p += 1
+    return found[:p]
+
+
+@uncounted
+def in_haste(A: Scene) -> bool:
+    """Whether spans are to last to the end of the step: where all contacts act together, and once the step has had
+    about as many as there are bodies."""
+    bodies = A.BODY.shape[0]
+    return A.COUNT.together > 0 or A.COUNT.solves >= max(LEAST_INTERVAL - 2.0 * bodies, bodies)
+
+
+@uncounted
+def before_end(A: Scene, t: float) -> bool:
+    """Whether instant t is before the end of the step, by more than round-off."""
+    return bool(t < A.PAR.dt * (1.0 - 1e-12))
+
+
+@uncounted
+def sweeps_of_large(t: float) -> int:
+    """Sweeps of a crowd, in a span from instant t on: after a hit the forces of the span that it has cut short are a
+    good beginning."""
+    return LARGE_SWEEPS if t == 0.0 else LARGE_SWEEPS_HIT
+
+
+@uncounted
+def interval_length(A: Scene, found: IntArray, t: float) -> float:
+    """Length of an interval that begins at instant t: to the end of the step, or until a normal may have turned by
+    NORMAL_TURN; of islands of few contacts, as every interval costs a solve. Normals turn with shapes that are not
+    round, and as round ones go round one another."""
+    BODY, LINK = A.BODY, A.LINK
+    h = A.PAR.dt - t
+    if found.shape[0] > EXACT_CONTACTS or in_haste(A):
+        return h
+    rate = 0.0
+    for c in range(found.shape[0]):
+        a, b = found[c, 0], found[c, 1]
+        i, j = LINK[a].owner, LINK[b].owner
+        for s in (a, b):
+            if LINK[s].vertices > 1:
+                rate = max(rate, abs(BODY[LINK[s].owner].spin))
+        if LINK[a].vertices == 1 and LINK[b].vertices == 1:
+            speed = norm(BODY[j].vx - BODY[i].vx, BODY[j].vy - BODY[i].vy)
+            rate = max(rate, speed / max(A.SHAPE[a].rounding + A.SHAPE[b].rounding, 1e-300))
+    if rate * h <= NORMAL_TURN:
+        return h
+    return min(max(NORMAL_TURN / rate, A.PAR.dt / LEAST_INTERVAL), h)
+
+
+@uncounted
+def interval_within_way(A: Scene, found: IntArray, h: float) -> float:
+    """The part of an interval h in which the bodies of pairs go no farther about one another than `INTERVAL_WAY` of the
+    smaller one, and turn by no more than `INTERVAL_ANGLE`, with the velocities that they have: beyond it no contact is
+    where it was."""
+    BODY, LINK, rate = A.BODY, A.LINK, 0.0
+    for c in range(found.shape[0]):
+        i, j = LINK[found[c, 0]].owner, LINK[found[c, 1]].owner
+        small = min(A.SHAPE[found[c, 0]].extent, A.SHAPE[found[c, 1]].extent)
+        way = norm(BODY[j].vx - BODY[i].vx, BODY[j].vy - BODY[i].vy)
+        rate = max(rate, way / (INTERVAL_WAY * small))
+        for s in (found[c, 0], found[c, 1]):
+            if LINK[s].vertices > 1:
+                rate = max(rate, abs(BODY[LINK[s].owner].spin) / INTERVAL_ANGLE)
+    return h if rate * h <= 1.0 else 1.0 / rate
+
+
+@kernel
+def excess_way(
+    P: IntArray, Q: IntArray, ROWS: Rows[Row], KEY: IntArray, V: FloatArray, VN: FloatArray, SHAPE: Rows[Shape],
+    LINK: Rows[Link], VERTEX: FloatArray, m: int, h: float,
+) -> float:  # fmt: skip
+    """How many times as far as in `interval_within_way` the bodies of m contacts go in an interval h that was solved;
+    or how many times too long it is for the deepest contact, which is to land, with no speed left, after
+    h = 2 g / |u + u+|."""
+    far, shapes = 0.0, SHAPE.shape[0]
+    for z in range(m):
+        pair = KEY[z] >> 1
+        a, b, p, q = pair // shapes, pair % shapes, P[z], Q[z]
+        small = min(SHAPE[a].extent, SHAPE[b].extent)
+        x = V[q, 0] + VN[q, 0] - V[p, 0] - VN[p, 0]
+        y = V[q, 1] + VN[q, 1] - V[p, 1] - VN[p, 1]
+        far = max(far, 0.5 * h * norm(x, y) / (INTERVAL_WAY * small))
+        if LINK[a].vertices > 1 or LINK[b].vertices > 1:
+            turn = max(abs(V[p, 2] + VN[p, 2]), abs(V[q, 2] + VN[q, 2]))
+            far = max(far, 0.5 * h * turn / INTERVAL_ANGLE)
+        closing = -0.5 * h * (ROWS[z].un + normal_rate(P, Q, ROWS, VN, z))
+        if closing > INTERVAL_DEPTH_LEAST * small:
+            thick = half_width(SHAPE, LINK, VERTEX, a) + half_width(SHAPE, LINK, VERTEX, b)
+            far = max(far, too_deep(ROWS[z].gap, closing, small, thick, m <= EXACT_CONTACTS))
+    return far
+
+
+@kernel
+def stick_time(
+    P: IntArray, Q: IntArray, ROWS: Rows[Row], L: FloatArray, FREE: FloatArray, VN: FloatArray, m: int, h: float
+) -> float:
+    """When, within a span h of few contacts, those that slip come to stick; h if none does.
+
+    The solve ends their slip u_t with frictions beta, which change it by F, beside a_t h by other forces. Full friction
+    changes it by F sum mu lam / sum |beta| (single ones of a body's contacts are not unique): so fast the slip is over
+    after h |u_t| / (|F| sum mu lam / sum |beta| - a_t h).
+    """
+    if m > EXACT_CONTACTS:
+        return h
+    limit, beta, slip, others, rattle = 0.0, 0.0, 0.0, 0.0, 0.0
+    for z in range(m):
+        if L[z, 0] > 0.0:
+            rattle = max(rattle, abs(ROWS[z].un))
+    for z in range(m):
+        most = ROWS[z].friction * L[z, 0]
+        before = abs(ROWS[z].ut)
+        # What sticks all along has no slip but round-off before, or rattles.
+        change = most / ROWS[z].k_t
+        if most == 0.0 or before <= STICK * change or before < rattle <= RATTLE * change:
+            continue
+        if abs(tangent_rate(P, Q, ROWS, VN, z)) > STICK * before:
+            continue
+        sign = 1.0 if ROWS[z].ut > 0.0 else -1.0
+        limit += most
+        beta -= sign * L[z, 1]
+        if before > slip:
+            slip, others = before, sign * (tangent_rate(P, Q, ROWS, FREE, z) - ROWS[z].ut)
+    if beta <= STICK * limit or beta >= (1.0 - STICK) * limit:
+        return h
+    rate = (slip + others) * limit / beta - others
+    return h * slip / rate if rate > slip else h

@@ -1,0 +1,182 @@
+"""The span of an island: from an instant on its bodies follow parabolas, on which others may hit it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..arrays import IntArray
+from ..compiled import kernel, uncounted
+from ..contacts.correction import budget_of, least_of, lifting
+from ..contacts.interval import make_contacts, moved, step_island
+from ..geometry.sides import SIDES
+from ..model.contacts import Problem
+from ..model.islands import Island
+from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES, LARGE_ISLAND, LEAST_INTERVAL, SMALL_SWEEPS
+from ..model.scene import Scene
+from ..model.step import DONE, JOINTS_DUE, PUSHES_FULL
+from ..rows.inplace import sort
+from .at_rest import put_to_rest
+from .candidates import (
+    before_end,
+    excess_way,
+    in_haste,
+    interval_length,
+    interval_within_way,
+    pairs_within,
+    stick_time,
+    sweeps_of_large,
+    way_of,
+)
+from .depths import sunk
+from .local import lay_out_island as lay_out_island
+from .local import open_contacts as open_contacts
+from .membership import lossy, members
+from .rest import rest_threshold
+
+AGAIN = -1  # status of a span that is to be shorter
+
+
+@uncounted
+def among_of(A: Scene, isle: Island, n: int) -> int:
+    """The n bodies of an island, and those of the islands that carry them."""
+    found, last = n, -1
+    for q in range(n, len(isle.WHO)):
+        root = A.STATE[isle.WHO[q]].island
+        if A.BODY[isle.WHO[q]].inv_mass > 0.0 and root >= 0 and root != last:
+            found, last = found + A.MEMBER[root].bodies, root
+    return found
+
+
+@uncounted
+def dismiss(A: Scene, MINE: IntArray, n: int) -> None:
+    """Forget the places of n bodies."""
+    for q in range(n):
+        A.PLACE[MINE[q]] = -1
+
+
+@kernel
+def solve(A: Scene, root: int, t: float) -> int:
+    """Begin a span of the island at instant t, at which all its bodies are. Bodies without contact leave it.
+
+    The span ends with the step; before, where its bodies would go so far about one another that no contact would be
+    where it was.
+
+    DONE, or PUSHES_FULL, which leaves everything as it was.
+    """
+    longest = A.PAR.dt - t
+    for attempt in range(INTERVAL_TRIES):
+        status, far = open_interval(A, root, t, longest, attempt + 1 == INTERVAL_TRIES or A.COUNT.together > 0)
+        if status != AGAIN:
+            return status
+        longest = far
+    return DONE
+
+
+@kernel
+def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> tuple[int, float]:
+    """`solve`, of a span no longer than `longest`. AGAIN, with nothing done, for one that is to be shorter, and how
+    long; not if it is the `last` attempt."""
+    BODY, STATE, MEMBER, COUNT = A.BODY, A.STATE, A.MEMBER, A.COUNT
+    n = MEMBER[root].bodies
+    MINE = np.empty(n, np.int64)
+    members(A, root, MINE)
+    if MEMBER[root].jointed > 0:
+        return JOINTS_DUE, 0.0
+    sort(MINE, n)
+    for q in range(n):
+        A.PLACE[MINE[q]] = q
+    may_lose = lossy(A, root)
+    found = pairs_within(A, root, t, longest, may_lose, MINE, n)
+    h = interval_within_way(A, found, longest) if A.COUNT.together == 0 else longest
+    if h < longest:
+        found = pairs_within(A, root, t, h, may_lose, MINE, n)
+    p = len(found)
+    h = min(h, interval_length(A, found, t))
+    if COUNT.pushes + 2 * p > A.PUSHED.shape[0] or 2 * (COUNT.remembered + 2 * p) > A.KEYS.shape[0]:
+        dismiss(A, MINE, n)
+        return PUSHES_FULL, 0.0
+    isle = lay_out_island(A, MINE, n, found, t)
+    dismiss(A, MINE, n)
+    k, WHO, V, contacts = len(isle.WHO), isle.WHO, isle.V, make_contacts(p, len(isle.WHO))
+    P, Q, KEY, ROWS, L = contacts.A, contacts.B, contacts.KEY, contacts.ROWS, contacts.L
+    VN, JUMP, OUT = contacts.VN, contacts.JUMP, contacts.OUT
+    least = 0.0
+    if COUNT.together > 0:
+        for q in range(k):
+            least = max(least, way_of(A, WHO[q], h))
+    sweeps = SMALL_SWEEPS if n < LARGE_ISLAND else sweeps_of_large(t)
+    m = 0
+    among = among_of(A, isle, n)
+    raised = 0
+    for q in range(n, k):
+        # Where its user has put a body that nothing moves into others, that does the work of lifting them.
+        if MEMBER[WHO[q]].put > 0 and BODY[WHO[q]].inv_mass == 0.0:
+            raised = 1
+    quiet = rest_threshold(A, root, MINE, n, among, t) if may_lose and raised == 0 else 0.0
+    owed = max(-A.RESTING[root].lost, 0.0)
+    if p > 0 and h > 0.0:
+        m = step_island(A, isle, contacts, n, h, sweeps, least, owed, -1.0, quiet)
+        stuck = h if in_haste(A) or OUT[0].stood > 0 else stick_time(P, Q, ROWS, L, V + h * isle.ACC, VN, m, h)
+        if stuck < h:
+            # Where slip ends on the way, so does the span: friction changes its law there.
+            h = min(max(stuck, A.PAR.dt / LEAST_INTERVAL), h)
+            m = step_island(A, isle, contacts, n, h, sweeps, least, owed, -1.0, 0.0)
+        far = 0.0
+        if not last and OUT[0].stood == 0:
+            far = excess_way(P, Q, ROWS, KEY, V, VN, A.SHAPE, A.LINK, A.VERTEX, m, h)
+            if far <= INTERVAL_RETRY and A.WORK.shape[0] > SIDES:
+                far = sunk(A, isle, isle.POSE + 0.5 * h * (V + VN), P, Q, ROWS, KEY, m)
+        if far > INTERVAL_RETRY:
+            A.COUNT.solved += n
+            return AGAIN, h / far
+        if m > 0 and OUT[0].stood == 0 and not before_end(A, t + h):
+            # An interval that ends within the step is followed by another one, which corrects what is left.
+            free = math.inf if raised > 0 else 0.0
+            budget = budget_of(ROWS, m, OUT[0].restitution + OUT[0].friction, owed, free)
+            problem = Problem(P, Q, ROWS, isle.IM, isle.II, isle.POSE, n, m)
+            middle, size = moved(isle.POSE, V, 0.5 * h), least_of(isle.EXTENT, n)
+            lifting(problem, middle, VN, isle.ACC, h, size, budget, contacts.JUMP)
+        if abs(OUT[0].lock - 1.0) > abs(A.PAR.lock - 1.0):
+            A.PAR.lock = OUT[0].lock
+    COUNT.solves += 1
+    COUNT.solved += n
+    COUNT.sweeps += OUT[0].sweeps
+    COUNT.direct += OUT[0].direct
+    first = COUNT.pushes
+    TOUCHED = np.zeros(k, np.uint8)
+    open_contacts(A, isle, contacts, VN, m, t, h, TOUCHED)
+    lost, hits = A.RESTING[root].lost, MEMBER[root].hits
+    head, tail, size = -1, -1, 0
+    for q in range(n):
+        i = MINE[q]
+        STATE[i].version += 1
+        rest = A.RESTING[i]
+        rest.lift_x, rest.lift_y, rest.lift_angle = JUMP[q, 0], JUMP[q, 1], JUMP[q, 2]
+        rest.lift_vx, rest.lift_vy, rest.lift_spin = JUMP[q, 3], JUMP[q, 4], JUMP[q, 5]
+        if TOUCHED[q] == 0:
+            STATE[i].island = -1
+            BODY[i].ax, BODY[i].ay, BODY[i].angular = A.PULL[i, 0], A.PULL[i, 1], A.PULL[i, 2]
+            continue
+        BODY[i].ax, BODY[i].ay = (VN[q, 0] - V[q, 0]) / h, (VN[q, 1] - V[q, 1]) / h
+        BODY[i].angular = (VN[q, 2] - V[q, 2]) / h
+        if head < 0:
+            head = i
+        else:
+            MEMBER[tail].following = i
+        tail = i
+        size += 1
+        STATE[i].island, MEMBER[i].following = head, -1
+    if head >= 0:
+        MEMBER[head].last, MEMBER[head].bodies, MEMBER[head].hits = tail, size, hits
+        MEMBER[head].among, MEMBER[head].raised = among, raised
+        A.RESTING[head].lost = lost
+        MEMBER[head].open = 1
+        A.RESTING[head].until = t + h if before_end(A, t + h) else math.inf
+        for z in range(m):
+            A.PUSHED_BY[first + z].root = head
+        COUNT.pushes += m
+        if OUT[0].stood > 0:
+            put_to_rest(A, head)
+    return DONE, 0.0

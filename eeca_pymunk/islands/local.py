@@ -1,0 +1,94 @@
+"""An island as its solve takes it: its bodies one after the other, and what becomes of its contacts."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..arrays import FlagArray, FloatArray, IntArray
+from ..compiled import kernel
+from ..contacts.works import carried
+from ..model.islands import Contacts, Island
+from ..model.scene import Scene
+from ..pairs.lists import mark_pair
+from ..rows.build import normal_rate, tangent_rate
+from .rest import spins_freely
+
+
+@kernel
+def lay_out_island(A: Scene, MINE: IntArray, n: int, found: IntArray, t: float) -> Island:
+    """The island of the n bodies MINE, which are at instant t and have A.PLACE, with (p, 2) pairs of shapes `found`."""
+    BODY = A.BODY
+    p = len(found)
+    # Bodies that impulses do not move stand after those of the island.
+    FIXED, fixed = np.empty(p, np.int64), 0
+    for c in range(p):
+        j = A.LINK[found[c, 1]].owner
+        if A.PLACE[j] < 0:
+            A.PLACE[j] = n + fixed
+            FIXED[fixed] = j
+            fixed += 1
+    k = n + fixed
+    WHO = np.empty(k, np.int64)
+    POSE, V, ACC = np.empty((k, 3)), np.empty((k, 3)), np.zeros((k, 3))
+    IMS, IIS, SIZES, FELT = np.empty(k), np.empty(k), np.empty(k), np.empty(k)
+    for q in range(k):
+        i = MINE[q] if q < n else FIXED[q - n]
+        WHO[q] = i
+        s = t - BODY[i].since
+        V[q, 0], V[q, 1], V[q, 2] = BODY[i].vx, BODY[i].vy, BODY[i].spin
+        POSE[q, 0], POSE[q, 1], POSE[q, 2] = (
+            BODY[i].x + V[q, 0] * s,
+            BODY[i].y + V[q, 1] * s,
+            BODY[i].angle + V[q, 2] * s,
+        )
+        IMS[q], IIS[q], SIZES[q] = BODY[i].inv_mass, BODY[i].inv_inertia, BODY[i].extent
+        if q >= n and IMS[q] > 0.0:
+            # It stands, and carries what moves.
+            V[q, 2], IMS[q], IIS[q] = 0.0, 0.0, 0.0
+        FELT[q] = 0.0 if spins_freely(A, i) else SIZES[q]
+        if q < n:
+            for c in range(3):
+                ACC[q, c] = A.PULL[i, c]
+    PAIRS = np.empty((p, 4), np.int64)
+    for c in range(p):
+        PAIRS[c, 0], PAIRS[c, 1] = found[c, 0], found[c, 1]
+        PAIRS[c, 2], PAIRS[c, 3] = A.PLACE[A.LINK[found[c, 0]].owner], A.PLACE[A.LINK[found[c, 1]].owner]
+    for q in range(n, k):
+        A.PLACE[WHO[q]] = -1
+    return Island(WHO, POSE, V, ACC, IMS, IIS, SIZES, FELT, PAIRS)
+
+
+@kernel
+def open_contacts(
+    A: Scene, isle: Island, contacts: Contacts, VN: FloatArray, m: int, t: float, h: float, TOUCHED: FlagArray
+) -> None:
+    """Write the m contacts of a span of length h, at whose end velocities are VN, after those of other islands; TOUCHED
+    (k,): bodies that have any."""
+    P, Q, ROWS, KEY, L = contacts.A, contacts.B, contacts.ROWS, contacts.KEY, contacts.L
+    shapes, first, moving = A.SHAPE.shape[0], A.COUNT.pushes, A.LIST.shape[0]
+    for z in range(m):
+        pair = KEY[z] >> 1
+        a, b = pair // shapes, pair % shapes
+        if A.LINK[a].owner != isle.WHO[P[z]]:
+            a, b = b, a
+        TOUCHED[P[z]], TOUCHED[Q[z]] = 1, 1
+        if z == 0 or pair != KEY[z - 1] >> 1:
+            mark_pair(A.LIST, A.POOL, A.FLAG, moving, a, b, 1)
+        c = first + z
+        A.PUSHED_BY[c].a, A.PUSHED_BY[c].b = a, b
+        pushed = A.PUSHED[c]
+        pushed.normal, pushed.tangential, pushed.start, pushed.length = L[z, 0], L[z, 1], t, h
+        pushed.un_before, pushed.ut_before = ROWS[z].un, ROWS[z].ut
+        pushed.un_after, pushed.ut_after = normal_rate(P, Q, ROWS, VN, z), tangent_rate(P, Q, ROWS, VN, z)
+        pushed.work = carried(
+            P[z : z + 1], Q[z : z + 1], ROWS[z : z + 1], L[z : z + 1], isle.V, VN, isle.IM, isle.II, 1
+        )  # fmt: skip
+        pushed.nx, pushed.ny = ROWS[z].nx, ROWS[z].ny
+        # The point from its arms: r = arm_t n - arm_n t.
+        x, y = isle.POSE[P[z], 0] + 0.5 * h * isle.V[P[z], 0], isle.POSE[P[z], 1] + 0.5 * h * isle.V[P[z], 1]
+        pushed.px = x + ROWS[z].arm_ta * ROWS[z].nx + ROWS[z].arm_na * ROWS[z].ny
+        pushed.py = y + ROWS[z].arm_ta * ROWS[z].ny - ROWS[z].arm_na * ROWS[z].nx
+        pushed.change = L[z, 0] / ROWS[z].k_n
+        pushed.gap = ROWS[z].gap if t == 0.0 else math.nan

@@ -1,0 +1,150 @@
+"""Islands of bodies in sustained contact: who belongs to one, and which contacts are sustained."""
+
+from __future__ import annotations
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import uncounted
+from ..compiled.records import Rows
+from ..contacts.memory import find, key_of
+from ..geometry.gap import gap_at
+from ..model.bodies import AT_REST, Body
+from ..model.contacts import Force
+from ..model.parameters.intervals import ELASTIC_REST, ELASTIC_REST_ON, LARGE_ISLAND, SOLVES_BEFORE_HASTE, TOUCH
+from ..model.scene import Scene
+from ..model.shapes import Link, Shape
+from ..pairs.rules import law
+
+
+@uncounted
+def carrier(A: Scene, i: int) -> bool:
+    """Whether what rests on body i takes it for fixed: impulses do not move it, or it stands still."""
+    return bool(A.BODY[i].inv_mass == 0.0 or (A.COUNT.carries > 0 and A.MEMBER[i].rest == AT_REST))
+
+
+@uncounted
+def unite(A: Scene, i: int, j: int) -> int:
+    """Put bodies i and j, with their islands, into one; its root."""
+    MEMBER, STATE = A.MEMBER, A.STATE
+    for k in (i, j):
+        if STATE[k].island < 0:
+            A.COUNT.even = 0
+            STATE[k].island = k
+            MEMBER[k].following, MEMBER[k].last, MEMBER[k].bodies, MEMBER[k].hits = -1, k, 1, 0
+            MEMBER[k].open = 0
+            MEMBER[k].jointed = 1 if MEMBER[k].tied >= 0 else 0
+            A.RESTING[k].lost = 0.0
+    a, b = STATE[i].island, STATE[j].island
+    if a == b:
+        return a
+    if MEMBER[a].bodies < MEMBER[b].bodies or (MEMBER[a].bodies == MEMBER[b].bodies and b < a):
+        a, b = b, a
+    k = b
+    while k >= 0:
+        STATE[k].island = a
+        k = MEMBER[k].following
+    MEMBER[MEMBER[a].last].following = b
+    MEMBER[a].last = MEMBER[b].last
+    MEMBER[a].bodies += MEMBER[b].bodies
+    MEMBER[a].hits = max(MEMBER[a].hits, MEMBER[b].hits)
+    MEMBER[a].jointed = max(MEMBER[a].jointed, MEMBER[b].jointed)
+    A.RESTING[a].lost += A.RESTING[b].lost
+    return a
+
+
+@uncounted
+def budget_spent(A: Scene, root: int) -> bool:
+    """Whether the island is a crowd that is not solved again in this step, as bodies have been solved often enough."""
+    if root < 0 or A.MEMBER[root].bodies < LARGE_ISLAND or A.MEMBER[root].open == 0:
+        return False
+    return bool(A.COUNT.solved > SOLVES_BEFORE_HASTE * A.BODY.shape[0])
+
+
+@uncounted
+def members(A: Scene, root: int, MINE: IntArray) -> int:
+    """The bodies of an island into MINE; how many they are."""
+    i, n = root, 0
+    while i >= 0:
+        MINE[n] = i
+        n += 1
+        i = A.MEMBER[i].following
+    return n
+
+
+@uncounted
+def lossy(A: Scene, root: int) -> bool:
+    """Whether any shape of an island has an elasticity below 1."""
+    i = root
+    while i >= 0:
+        for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):
+            if A.SHAPE[s].elasticity < 1.0:
+                return True
+        i = A.MEMBER[i].following
+    return False
+
+
+@uncounted
+def remembered(KEYS: IntArray, FORCES: Rows[Force], shapes: int, a: int, b: int, since: float) -> tuple[float, float]:
+    """Normal force and load of a pair of shapes, of the steps from number `since` on; 0 if there is none."""
+    key = key_of(shapes, a, b)
+    force, load = 0.0, 0.0
+    for z in range(2):
+        row = find(KEYS, key + z)
+        if row >= 0 and FORCES[row].stamp >= since:
+            force += FORCES[row].normal
+            load += FORCES[row].load
+    return force, load
+
+
+@uncounted
+def approach(
+    BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, WORK: FloatArray, PULL: FloatArray,
+    a: int, b: int, t: float,
+) -> tuple[float, float, float, float]:  # fmt: skip
+    """Gap of shapes a and b, whose paths begin at instant t or that move evenly; its rate; the acceleration with which
+    it closes without contacts; and the mass that it feels."""
+    i, j = LINK[a].owner, LINK[b].owner
+    h = t - BODY[j].since
+    g, nx, ny, px, py = gap_at(
+        SHAPE, LINK, VERTEX, WORK, a, BODY[i].x, BODY[i].y, BODY[i].angle,
+        b, BODY[j].x + BODY[j].vx * h, BODY[j].y + BODY[j].vy * h, BODY[j].angle + BODY[j].spin * h,
+    )  # fmt: skip
+    xi, yi, xj, yj = (
+        px - BODY[i].x,
+        py - BODY[i].y,
+        px - BODY[j].x - BODY[j].vx * h,
+        py - BODY[j].y - BODY[j].vy * h,
+    )
+    arm_i, arm_j = xi * ny - yi * nx, xj * ny - yj * nx
+    u = nx * (BODY[j].vx - BODY[i].vx) + ny * (BODY[j].vy - BODY[i].vy)
+    u += arm_j * BODY[j].spin - arm_i * BODY[i].spin
+    closing = nx * (PULL[i, 0] - PULL[j, 0]) + ny * (PULL[i, 1] - PULL[j, 1])
+    closing += arm_i * PULL[i, 2] - arm_j * PULL[j, 2]
+    mass = 1.0 / (
+        BODY[i].inv_mass + BODY[j].inv_mass + BODY[i].inv_inertia * arm_i * arm_i + BODY[j].inv_inertia * arm_j * arm_j
+    )
+    return g, u, closing, mass
+
+
+@uncounted
+def rests(A: Scene, a: int, b: int, t: float, lossy: bool) -> bool:
+    """Whether a pair whose bodies are at instant t is in sustained contact until the end of the step.
+
+    e < 1: iff its bounce e |u| is below half of what presses it together, P = max(a_n h, A_nn f h) with f the load it
+    carried, and it is in touch (u <= P) or carried a force and closes again. e = 1: iff it touches without speed and
+    against what does not move is pressed.
+    """
+    e = law(A.SHAPE, A.RULE, a, b)[0]
+    g, u, closing, mass = approach(A.BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, A.PULL, a, b, t)
+    h = A.PAR.dt - t
+    small = min(A.SHAPE[a].extent, A.SHAPE[b].extent)
+    force, load = remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], a, b, A.PAR.stamp - 1.0)
+    if e >= 1.0 and not lossy:
+        limit = (ELASTIC_REST_ON if force > 0.0 else ELASTIC_REST) * A.PAR.pulled * A.PAR.dt
+        fixed = A.BODY[A.LINK[b].owner].inv_mass == 0.0 or A.BODY[A.LINK[a].owner].inv_mass == 0.0
+        return g <= TOUCH * small and abs(u) <= limit and (not fixed or closing > 0.0 or force > 0.0)
+    press = max(closing, load / mass) * h
+    if not -e * min(u, 0.0) < 0.5 * press:
+        return False
+    if g <= TOUCH * small:
+        return u <= press
+    return force > 0.0 and g + u * h - 0.5 * press * h <= 0.0

@@ -1,0 +1,215 @@
+"""Which of an island's bodies come to a stand while others move: those that hardly do, as far as something holds them.
+
+All of them are asked for statics (`..contacts.statics`), under the pushes of the others, which are solved first with
+these for fixed. Where there are none, the statics tell of a motion that nothing holds: what takes part in it moves, and
+the rest is asked once more.
+
+The pushes of a few that rattle about would wake them again and again, and so would the errors of the solves that
+follow. So a crowd is calmed first: all that is slow is asked as if the others were not there; if something holds it, it
+stops, as what rests on much loses tiny motions within a step, and the forces that were found are the next solve's
+beginning.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import kernel, uncounted
+from ..contacts.interval import make_contacts, step_island
+from ..model.bodies import AT_REST, AWAKE
+from ..model.parameters.intervals import LARGE_ISLAND
+from ..model.parameters.rest import (
+    FREEZE,
+    FREEZE_EVERY,
+    FREEZE_MOVING,
+    MOVING_BODIES,
+    MOVING_SHARE,
+    PARTIAL_REST_FACTORS,
+    PARTIAL_REST_FACTORS_STEP,
+    PARTIAL_REST_TRIES,
+    REST_STEPS,
+)
+from ..model.scene import Scene
+from ..rows.inplace import sort
+from .accounting import close_span
+from .at_rest import put_to_rest, stop
+from .candidates import pairs_of
+from .intervals import dismiss, lay_out_island, open_contacts, solve
+from .membership import lossy, members, unite
+from .rest import candidate_speed, postpone, slow_for_long, speed
+from .support import load, postpone_unsupported
+
+
+@uncounted
+def chain(A: Scene, MINE: IntArray, n: int) -> None:
+    """Make an island of n bodies."""
+    MEMBER, head = A.MEMBER, MINE[0]
+    for q in range(n):
+        A.STATE[MINE[q]].island = head
+        MEMBER[MINE[q]].following = MINE[q + 1] if q + 1 < n else -1
+    MEMBER[head].last, MEMBER[head].bodies = MINE[n - 1], n
+    MEMBER[head].hits, MEMBER[head].open, MEMBER[head].jointed = 0, 0, 0
+    A.RESTING[head].lost = 0.0
+
+
+@kernel
+def test_rest(A: Scene, MINE: IntArray, n: int, V0: FloatArray, among: int, calming: bool) -> bool:
+    """Whether the island of the n bodies MINE, `among` so many, can be put to rest from their velocities V0 (n, 3)
+    under what pushes on it; if so it is. If not, the test of unsupported bodies is postponed (`postpone_unsupported`).
+    `calming`: whether static forces hold it with nothing that pushes on it; then its bodies stop, and may be tested
+    for rest at once."""
+    BODY, COUNT, dt, root = A.BODY, A.COUNT, A.PAR.dt, MINE[0]
+    for q in range(n):
+        A.PLACE[MINE[q]] = q
+    found = pairs_of(A, root, 0.0, True, A.PLACE, MINE, n)
+    LOAD = np.zeros((n, 3))
+    if not calming:
+        load(A, root, LOAD)
+    p = len(found)
+    isle = lay_out_island(A, MINE, n, found, 0.0)
+    dismiss(A, MINE, n)
+    most = 0.0
+    for q in range(n):
+        for c in range(3):
+            isle.V[q, c] = V0[q, c]
+            isle.ACC[q, c] += LOAD[q, c] / dt
+        most = max(most, math.sqrt(isle.ACC[q, 0] ** 2 + isle.ACC[q, 1] ** 2))
+    if p == 0 or COUNT.pushes + 2 * p > A.PUSHED.shape[0] or not most > 0.0:
+        postpone(A, MINE, n)
+        return False
+    quick = (FREEZE if calming else candidate_speed(among)) * A.PAR.pulled / most
+    contacts = make_contacts(p, len(isle.WHO))
+    m = step_island(A, isle, contacts, n, dt, 0, 0.0, 0.0, 0.0, -quick)
+    COUNT.direct += contacts.OUT[0].direct
+    if contacts.OUT[0].stood == 0:
+        postpone_unsupported(A, MINE, n, contacts.VN, isle.FELT)
+        return False
+    if calming:
+        for q in range(n):
+            stop(A, MINE[q])
+            A.RESTING[MINE[q]].calm_for = REST_STEPS
+        return True
+    first = COUNT.pushes
+    open_contacts(A, isle, contacts, contacts.VN, m, 0.0, dt, np.zeros(len(isle.WHO), np.uint8))
+    for z in range(m):
+        A.PUSHED_BY[first + z].root = root
+    COUNT.pushes += m
+    A.MEMBER[root].open, A.RESTING[root].until, A.MEMBER[root].among = 1, math.inf, among
+    for q in range(n):
+        A.MEMBER[MINE[q]].busy = 0
+        body, rest = BODY[MINE[q]], A.RESTING[MINE[q]]
+        body.vx, body.vy, body.spin = V0[q, 0], V0[q, 1], V0[q, 2]
+        rest.lift_x, rest.lift_y, rest.lift_angle = 0.0, 0.0, 0.0
+        rest.lift_vx, rest.lift_vy, rest.lift_spin = 0.0, 0.0, 0.0
+    put_to_rest(A, root)
+    return True
+
+
+@kernel
+def freeze(A: Scene, root: int, MINE: IntArray, n: int) -> None:
+    """Calm the crowd of the n bodies MINE, but for those few that are fast, and those that nothing holds."""
+    STAND, V0, stand = np.empty(n, np.int64), np.empty((n, 3)), 0
+    for q in range(n):
+        if speed(A, MINE[q], 0.0) <= FREEZE * A.PAR.pulled * A.PAR.dt:
+            STAND[stand] = MINE[q]
+            stand += 1
+    if n - stand > max(FREEZE_MOVING * n, MOVING_BODIES):
+        return
+    owed, factors, calmed = A.RESTING[root].lost, A.COUNT.direct, False
+    while not calmed and stand >= (1.0 - MOVING_SHARE) * n and A.COUNT.direct <= factors + PARTIAL_REST_FACTORS:
+        for q in range(n):
+            A.STATE[MINE[q]].island = -1
+        chain(A, STAND, stand)
+        for q in range(stand):
+            body = A.BODY[STAND[q]]
+            V0[q, 0], V0[q, 1], V0[q, 2] = body.vx, body.vy, body.spin
+        calmed = test_rest(A, STAND, stand, V0, n, True)
+        held = 0
+        for q in range(stand):
+            if slow_for_long(A, STAND[q]):
+                STAND[held] = STAND[q]
+                held += 1
+        stand = held
+    if not calmed:
+        postpone(A, MINE, n)
+    # The island as it was.
+    STAND[0] = root
+    for q in range(n):
+        if MINE[q] != root:
+            STAND[q + 1 if MINE[q] < root else q] = MINE[q]
+    chain(A, STAND, n)
+    A.RESTING[root].lost = owed
+
+
+@uncounted
+def divide(A: Scene, MINE: IntArray, n: int, STAND: IntArray, MOVE: IntArray) -> int:
+    """Those of the n bodies MINE that may stand into STAND, the others into MOVE; how many the first are."""
+    stand, limit = 0, candidate_speed(n) * A.PAR.pulled * A.PAR.dt
+    for q in range(n):
+        if slow_for_long(A, MINE[q]) and speed(A, MINE[q], 0.0) <= limit:
+            STAND[stand] = MINE[q]
+            stand += 1
+        else:
+            MOVE[q - stand] = MINE[q]
+    return stand
+
+
+@kernel
+def rests_in_part(A: Scene, root: int) -> bool:
+    """At the start of a step, instead of solving an island: whether those of its bodies that hardly move, or what is
+    left of them without those that nothing holds, stand, so that the others are solved alone."""
+    BODY, STATE, MEMBER = A.BODY, A.STATE, A.MEMBER
+    n = MEMBER[root].bodies
+    if A.COUNT.carries == 0 or A.PAR.pulled == 0.0 or MEMBER[root].open > 0 or STATE[root].island != root:
+        return False
+    if not lossy(A, root):
+        return False
+    MINE, STAND, MOVE = np.empty(n, np.int64), np.empty(n, np.int64), np.empty(n, np.int64)
+    members(A, root, MINE)
+    sort(MINE, n)
+    factors = A.COUNT.direct
+    if n >= LARGE_ISLAND and A.PAR.stamp % FREEZE_EVERY == 0.0:
+        freeze(A, root, MINE, n)
+        if A.COUNT.direct > factors + PARTIAL_REST_FACTORS_STEP:
+            return False
+    V0, some, factors = np.empty((n, 3)), False, A.COUNT.direct
+    for _ in range(PARTIAL_REST_TRIES):
+        stand = divide(A, MINE, n, STAND, MOVE)
+        if stand == 0 or n - stand > max(MOVING_SHARE * n, MOVING_BODIES):
+            break
+        some = True
+        chain(A, STAND, stand)
+        for q in range(stand):
+            i = STAND[q]
+            MEMBER[i].rest = AT_REST
+            V0[q, 0], V0[q, 1], V0[q, 2] = BODY[i].vx, BODY[i].vy, BODY[i].spin
+            BODY[i].vx, BODY[i].vy, BODY[i].spin = 0.0, 0.0, 0.0
+        if stand < n:
+            chain(A, MOVE, n - stand)
+            solve(A, MOVE[0], 0.0)
+        for q in range(stand):
+            MEMBER[STAND[q]].rest = AWAKE
+        if test_rest(A, STAND, stand, V0, n, False):
+            return True
+        for q in range(stand):
+            body = BODY[STAND[q]]
+            body.vx, body.vy, body.spin = V0[q, 0], V0[q, 1], V0[q, 2]
+        one = STAND[0]
+        for q in range(n - stand):
+            i = MOVE[q]
+            if STATE[i].island >= 0:
+                if MEMBER[STATE[i].island].open > 0:
+                    close_span(A, STATE[i].island, 0.0)
+                one = unite(A, one, i)
+        # What touches nothing has left.
+        n = members(A, one, MINE)
+        sort(MINE, n)
+        if A.COUNT.direct > factors + PARTIAL_REST_FACTORS:
+            break
+    if some:
+        postpone(A, STAND, stand)
+        solve(A, STATE[MINE[0]].island, 0.0)
+    return some

@@ -1,0 +1,179 @@
+"""Islands that stand, and carry what moves.
+
+One disk that rolls on a pile moves nothing else. So what hardly moves may stand while the rest of its island goes on:
+what moves takes it for fixed, as the ground, and the statics of what stands, under the forces with which the other
+pushes on it, say whether that is so. Where these forces and those of its own contacts balance inside all cones, they
+are an answer of the contact problem of all bodies together: nothing that stands has any motion, and momentum goes
+through it to what is fixed. Otherwise all of them are solved as one island.
+
+In each step what moves is solved first, then the forces of what carries it are found anew from those of the last step.
+The contacts of what moves are of its own island; that of the other body is its carrier, and wakes it when it wakes.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import kernel, uncounted
+from ..compiled.records import empty
+from ..contacts.memory import find, key_of, remember
+from ..model.bodies import AT_REST
+from ..model.contacts import ROW, Problem
+from ..model.parameters.rest import REST_SPEED, REST_STEPS, SUPPORT_FACTORS, SUPPORT_ROUNDS, UNSUPPORTED
+from ..model.scene import Scene
+from ..pairs.rules import law
+from ..rows.build import place_row
+from ..rows.equilibrium import bound, equilibrium, fastest
+from .accounting import wake
+from .intervals import dismiss, solve
+from .membership import members
+from .rest import candidate_speed, postpone, postponed, spins_freely
+
+
+@uncounted
+def load(A: Scene, root: int, LOAD: FloatArray) -> None:
+    """Add to LOAD (k, 3) the velocities that contacts of other islands give to the bodies of this one, which have
+    A.PLACE, over the whole step, if they go on as they are."""
+    BODY = A.BODY
+    for c in range(A.COUNT.pushes):
+        r = A.PUSHED_BY[c].root
+        if r < 0 or r == root:
+            continue
+        R = A.PUSHED[c]
+        for side in range(2):
+            j = A.LINK[A.PUSHED_BY[c].b if side > 0 else A.PUSHED_BY[c].a].owner
+            if BODY[j].inv_mass == 0.0 or A.STATE[j].island != root:
+                continue
+            q, part = A.PLACE[j], (2.0 * side - 1.0) * A.PAR.dt / R.length
+            fx = part * (R.normal * R.nx - R.tangential * R.ny)
+            fy = part * (R.normal * R.ny + R.tangential * R.nx)
+            LOAD[q, 0] += BODY[j].inv_mass * fx
+            LOAD[q, 1] += BODY[j].inv_mass * fy
+            LOAD[q, 2] += BODY[j].inv_inertia * ((R.px - BODY[j].x) * fy - (R.py - BODY[j].y) * fx)
+
+
+@kernel
+def holds(A: Scene, root: int) -> bool:
+    """Whether an island that stands carries what pushes on it now; then its contacts have the forces that do. If not,
+    those of its bodies that are held all the same are asked again soon."""
+    BODY, dt = A.BODY, A.PAR.dt
+    n = A.MEMBER[root].bodies
+    MINE = np.empty(n, np.int64)
+    members(A, root, MINE)
+    # What carries it in its turn, and is fixed, is the last body.
+    POSE, IMS, IIS, FELT = np.zeros((n + 1, 3)), np.zeros(n + 1), np.zeros(n + 1), np.zeros(n + 1)
+    START = np.zeros((n + 1, 3))
+    for q in range(n):
+        i = MINE[q]
+        A.PLACE[i] = q
+        IMS[q], IIS[q], FELT[q] = BODY[i].inv_mass, BODY[i].inv_inertia, 0.0 if spins_freely(A, i) else BODY[i].extent
+        POSE[q, 0], POSE[q, 1], POSE[q, 2] = BODY[i].x, BODY[i].y, BODY[i].angle
+        for c in range(3):
+            START[q, c] = dt * A.PULL[i, c]
+    load(A, root, START)
+    room = 0
+    for c in range(A.COUNT.pushes):
+        room += 1 if A.PUSHED_BY[c].root == root else 0
+    P, Q, OF = np.empty(room, np.int64), np.empty(room, np.int64), np.empty(room, np.int64)
+    ROWS, L = empty(room, ROW), np.empty((room, 2))
+    open_to, m = 0.5 * candidate_speed(A.MEMBER[root].among) * A.PAR.pulled * dt * dt, 0
+    for c in range(A.COUNT.pushes):
+        R = A.PUSHED[c]
+        if A.PUSHED_BY[c].root != root or not (R.normal > 0.0 or R.gap <= open_to):
+            continue
+        a, b = A.PUSHED_BY[c].a, A.PUSHED_BY[c].b
+        p, q = A.PLACE[A.LINK[a].owner], A.PLACE[A.LINK[b].owner]
+        e, mu, _, _ = law(A.SHAPE, A.RULE, a, b)
+        P[m], Q[m] = p if p >= 0 else n, q if q >= 0 else n
+        row = ROWS[m]
+        row.nx, row.ny, row.gap, row.elasticity, row.friction, row.surface = R.nx, R.ny, 0.0, e, mu, 0.0
+        place_row(P, Q, ROWS, m, R.px, R.py, POSE, IMS, IIS)
+        L[m, 0], L[m, 1], OF[m] = R.normal, R.tangential, c
+        m += 1
+    dismiss(A, MINE, n)
+    found, factors = equilibrium(
+        Problem(P, Q, ROWS, IMS, IIS, POSE, n, m),
+        L,
+        START,
+        FELT,
+        REST_SPEED * A.PAR.pulled * dt,
+        SUPPORT_FACTORS,
+        False,
+    )
+    A.COUNT.direct += factors
+    if not found:
+        postpone_unsupported(A, MINE, n, START, FELT)
+    else:
+        for z in range(m):
+            R = A.PUSHED[OF[z]]
+            R.normal, R.tangential, R.change = L[z, 0], L[z, 1], L[z, 0] / ROWS[z].k_n
+            keep_in_mind(A, OF[z])
+    return found
+
+
+@uncounted
+def postpone_unsupported(A: Scene, MINE: IntArray, n: int, Y: FloatArray, FELT: FloatArray) -> None:
+    """Of the n bodies MINE, of which nothing holds the motion Y (n, 3), those that take part in it are not to be asked
+    soon whether they stand."""
+    most = fastest(Y, FELT, n)
+    if not 0.0 < most < math.inf:
+        postpone(A, MINE, n)
+        return
+    for q in range(n):
+        if bound(Y[q, 0], Y[q, 1], Y[q, 2], FELT[q]) > UNSUPPORTED * most:
+            A.RESTING[MINE[q]].calm_for = postponed(n)
+        else:
+            A.RESTING[MINE[q]].calm_for = REST_STEPS
+
+
+@uncounted
+def keep_in_mind(A: Scene, c: int) -> None:
+    """Let the memory have the forces of contact number c."""
+    a, b = A.PUSHED_BY[c].a, A.PUSHED_BY[c].b
+    key = key_of(A.SHAPE.shape[0], a, b)
+    if c > 0 and A.PUSHED_BY[c - 1].a == a and A.PUSHED_BY[c - 1].b == b:
+        key += 1  # the other end of a face
+    if find(A.KEYS, key) >= 0 or 2 * (A.COUNT.remembered + 1) <= A.KEYS.shape[0]:
+        R = A.PUSHED[c]
+        force = R.normal / R.length
+        remember(
+            A.KEYS, A.FORCES, A.COUNT, key, force, R.tangential / R.length, force, A.PAR.stamp
+        )  # fmt: skip
+
+
+@kernel
+def support(A: Scene) -> None:
+    """At the start of a step, once what moves has been solved: what carries some of it and cannot stand is solved with
+    what rests on it."""
+    STATE, MEMBER, BODY = A.STATE, A.MEMBER, A.BODY
+    more, all_moving, asked = A.COUNT.carries > 0, True, 0
+    while more:
+        for c in range(A.COUNT.pushes):
+            root = A.PUSHED_BY[c].root
+            if root < 0 or not (MEMBER[root].anew == 1 if MEMBER[root].rest == AT_REST else all_moving):
+                continue
+            for side in range(2):
+                j = A.LINK[A.PUSHED_BY[c].b if side > 0 else A.PUSHED_BY[c].a].owner
+                other = STATE[j].island
+                if BODY[j].inv_mass > 0.0 and other != root and other >= 0 and MEMBER[other].rest == AT_REST:
+                    MEMBER[other].loaded = 1
+        more, all_moving = False, False
+        for i in range(BODY.shape[0] - 1):
+            MEMBER[i].anew = 0
+        for i in range(BODY.shape[0] - 1):
+            if MEMBER[i].loaded == 0:
+                continue
+            MEMBER[i].loaded = 0
+            if STATE[i].island != i or MEMBER[i].rest != AT_REST:
+                continue
+            more = True
+            # What carries each other in turn is one island.
+            if asked < SUPPORT_ROUNDS and holds(A, i):
+                MEMBER[i].anew = 1
+            else:
+                solve(A, wake(A, i, 0.0), 0.0)
+                all_moving = True
+        asked += 1

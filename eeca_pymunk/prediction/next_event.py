@@ -1,0 +1,106 @@
+"""Forecasts: the next event of a body on its present path, among the shapes of its lists.
+
+A forecast is a function of the two paths alone, not of when it is made: times are counted from the later of the two
+bodies' kinks. Paths of equal acceleration give times that hold beyond the step; others are looked at to its end, and
+give a time before which nothing happens: the body is forecast anew then.
+"""
+
+from __future__ import annotations
+
+import math
+
+from ..compiled import merged, uncounted
+from ..compiled.records import Rows
+from ..geometry.flight import norm
+from ..model.bodies import CHECK, LEAVE, NOTHING, RENEW, Body
+from ..model.parameters.events import INSIDE
+from ..model.scene import Scene
+from ..model.shapes import Link, Mark, Shape
+from ..pairs.lists import centre
+from ..pairs.rules import barred
+from .heap import push
+from .impact_times import meet
+
+
+@uncounted
+def leaves(
+    BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], MARK: Rows[Mark], disks: int, i: int, s: int, now: float
+) -> float:
+    """Instant before which the centre of shape s of body i stays within its margin circle; exact for straight paths."""
+    m = MARK[s].margin
+    if m == math.inf:
+        return math.inf
+    h = now - BODY[i].since
+    arm = 0.0 if s < disks else norm(SHAPE[s].centre_x, SHAPE[s].centre_y)
+    ax, ay = BODY[i].ax, BODY[i].ay
+    if ax == 0.0 and ay == 0.0 and arm == 0.0:
+        vx, vy = BODY[i].vx, BODY[i].vy
+        dx, dy = BODY[i].x + vx * h - MARK[s].x, BODY[i].y + vy * h - MARK[s].y
+        squared = vx * vx + vy * vy
+        b = dx * vx + dy * vy
+        c = m * m - dx * dx - dy * dy
+        # What the user has put elsewhere is outside, even at rest or on its way back.
+        if c <= 0.0:
+            return now
+        if squared == 0.0:
+            return math.inf
+        root = math.sqrt(b * b + squared * c)
+        return float(now + ((root - b) / squared if b <= 0.0 else c / (root + b)))
+    # The length of the way bounds the distance: u s + g s^2 / 2 until the room is used up.
+    x, y = centre(BODY, SHAPE, LINK, s, now)
+    room = m - norm(x - MARK[s].x, y - MARK[s].y)
+    if room <= 0.0:
+        return now
+    u = norm(BODY[i].vx + ax * h, BODY[i].vy + ay * h) + abs(BODY[i].spin + BODY[i].angular * h) * arm
+    g = norm(ax, ay) + abs(BODY[i].angular) * arm
+    if u + g == 0.0:
+        return math.inf
+    return float(now + 2.0 * room / (u + math.sqrt(u * u + 2.0 * g * room)))
+
+
+@uncounted
+def has_left(BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], MARK: Rows[Mark], s: int, now: float) -> bool:
+    """Whether shape s is as good as out of its margin circle."""
+    x, y = centre(BODY, SHAPE, LINK, s, now)
+    return bool(norm(x - MARK[s].x, y - MARK[s].y) > (1.0 - INSIDE) * MARK[s].margin)
+
+
+@merged
+def predict(A: Scene, disks: int, moving: int, i: int, now: float, end: float, until: float) -> None:
+    """Forecast body i from its present path, at an instant `now` of the loop, and put what is due in this step on the
+    heap.
+
+    Args:
+        A: PLACE (n,) is 0 or more for bodies that are forecast together, the first of a pair of which sees it; else -1.
+        until: instant at which a span of the body's island ends, infinite if it has none of its own.
+    """
+    BODY, STATE, SHAPE, LINK, LIST = A.BODY, A.STATE, A.SHAPE, A.LINK, A.LIST
+    best, own, other = math.inf, -1, NOTHING
+    first = STATE[i].first_shape
+    for s in range(first, first + STATE[i].shapes):
+        t = leaves(BODY, SHAPE, LINK, A.MARK, disks, i, s, now)
+        if t < best:
+            best, own, other = t, s, LEAVE
+        start = LIST[s].start
+        for q in range(start, start + LIST[s].number):
+            if A.FLAG[q] != 0:
+                continue
+            o = int(A.POOL[q])
+            if A.PLACE[LINK[o].owner] >= 0 and LINK[o].owner < i:
+                continue
+            if A.RULE.shape[0] > 0 and barred(A.RULE, s, o):
+                continue
+            t, certain = meet(BODY, SHAPE, LINK, A.VERTEX, A.WORK, s, o, disks, end, -1.0)
+            if t < best or (t == best and other >= 0 and (s < own or (s == own and o < other))):
+                best, own, other = t, s, (o if certain else CHECK)
+    if until < best:
+        best, own, other = until, -1, RENEW
+    best = max(best, now)
+    BODY[i].due = best
+    STATE[i].own, STATE[i].other = own, other
+    if other >= 0:
+        STATE[i].known = STATE[LINK[other].owner].version
+    if i < disks:
+        LIST[i].later = CHECK
+    if best < end:
+        A.COUNT.heap = push(A.HEAP_TIME, A.HEAP_BODY, A.COUNT.heap, best, i)

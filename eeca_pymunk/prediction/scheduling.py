@@ -1,0 +1,80 @@
+"""Who is to be forecast anew, and what the memory is to bring before the events need it."""
+
+from __future__ import annotations
+
+import math
+
+from ..compiled import fetch, merged, uncounted
+from ..model.bodies import AT_REST
+from ..model.scene import Scene
+from .disks import holds, predict_disk
+from .next_event import predict
+
+
+@uncounted
+def forecast(A: Scene, disks: int, moving: int, i: int, t: float, end: float, several: bool) -> None:
+    """The next event of body i, seen from instant t of the loop; see `predict` for `several`."""
+    A.COUNT.forecasts += 1
+    if i < disks and A.STATE[i].island < 0:
+        predict_disk(A, disks, i, t, end, several)
+        return
+    until = A.RESTING[i].until if A.STATE[i].island == i else math.inf
+    predict(A, disks, moving, i, t, end, until)
+
+
+@uncounted
+def forecast_all(A: Scene, disks: int, n: int, t: float, end: float) -> None:
+    """The next events of the n bodies in A.BLOCK, seen from instant t: each pair of them is looked at once. That is
+    enough, as either body is forecast anew with all others after its next event."""
+    for q in range(n):
+        A.PLACE[A.BLOCK[q]] = q
+    for q in range(n):
+        forecast(A, disks, A.LIST.shape[0], A.BLOCK[q], t, end, True)
+    for q in range(n):
+        A.PLACE[A.BLOCK[q]] = -1
+
+
+@uncounted
+def forecast_due(A: Scene, disks: int) -> None:
+    """The next events, at the start of a step, of all bodies whose last forecast is no good."""
+    n, dt = 0, A.PAR.dt
+    for i in range(A.BODY.shape[0] - 1):
+        alone = A.STATE[i].island < 0
+        if A.BODY[i].due < dt or not (alone or A.MEMBER[i].rest == AT_REST):
+            if not (alone and i < disks and holds(A, disks, i, dt)):
+                A.BLOCK[n] = i
+                n += 1
+    forecast_all(A, disks, n, 0.0, dt)
+
+
+@merged
+def fetch_body(A: Scene, i: int) -> None:
+    """Have what an event of body i is about brought."""
+    fetch(A.BODY, i, 0)
+    fetch(A.BODY, i, 8)
+    fetch(A.STATE, i, 0)
+
+
+@merged
+def look_ahead(A: Scene, disks: int, now: int) -> None:
+    """Have the memory bring what the events after that of body `now` are about: numbers of later ones first, as they
+    say where to find the rest."""
+    LIST = A.LIST
+    n = min(A.COUNT.heap, 3)
+    for k in range(1, n):
+        i = A.HEAP_BODY[k]
+        fetch_body(A, i)
+        if i < disks:
+            fetch(LIST, i, 0)
+    if n > 0:
+        i = A.HEAP_BODY[0]
+        if i < disks:
+            fetch(A.POOL, LIST[i].start, 0)
+            fetch(A.MARK, i, 0)
+            o = A.STATE[i].other
+            if 0 <= o < disks:
+                fetch_body(A, o)
+                fetch(LIST, o, 0)
+    o = A.STATE[now].other
+    if 0 <= o < disks:
+        fetch(A.POOL, LIST[o].start, 0)

@@ -1,0 +1,140 @@
+"""Large steps and thin shapes: nothing gets through, energy never rises, work is bounded."""
+
+from __future__ import annotations
+
+import math
+import random
+
+import pymunk
+import pytest
+
+import eeca_pymunk as ep
+
+from ..crowds import SHORT
+
+G = 9.81
+
+
+def world(floor: float = 0.0, elasticity: float = 0.0) -> pymunk.Space:
+    """A space with a floor of this radius whose surface is y = 0."""
+    space = pymunk.Space()
+    space.gravity = 0.0, -G
+    ground = pymunk.Segment(space.static_body, (-1e5, -floor), (1e5, -floor), floor)
+    ground.friction, ground.elasticity = 0.5, elasticity
+    space.add(ground)
+    return space
+
+
+def box(space: pymunk.Space, x: float, y: float, w: float, h: float, angle: float, e: float) -> pymunk.Body:
+    body = pymunk.Body(1.0, pymunk.moment_for_box(1.0, (w, h)))
+    body.position, body.angle = (x, y), angle
+    shape = pymunk.Poly.create_box(body, (w, h))
+    shape.friction, shape.elasticity = 0.5, e
+    space.add(body, shape)
+    return body
+
+
+def rod(space: pymunk.Space, y: float, angle: float, e: float) -> pymunk.Body:
+    body = pymunk.Body(1.0, pymunk.moment_for_segment(1.0, (-0.9, 0.0), (0.9, 0.0), 0.0))
+    body.position, body.angle = (0.0, y), angle
+    shape = pymunk.Segment(body, (-0.9, 0.0), (0.9, 0.0), 0.0)
+    shape.friction, shape.elasticity = 0.4 * (1.0 - e), e
+    space.add(body, shape)
+    return body
+
+
+def ends(body: pymunk.Body) -> float:
+    """Height of a rod's lower end."""
+    return min(float(body.local_to_world((x, 0.0)).y) for x in (-0.9, 0.9))
+
+
+@pytest.mark.parametrize("dt", [1.0, 3.0, 10.0, 30.0])
+def test_a_stack_at_rest_stays_in_any_step(dt: float) -> None:
+    """Forces that are constant move nothing however long they last: round-off of a dt² is all there is."""
+    space = world()
+    bodies = [box(space, 0.0, 0.5 + i, 1.0, 1.0, 0.0, 0.0) for i in range(10)]
+    stepper = ep.EECA(space)
+    for _ in range(10):
+        assert stepper.step(dt).converged
+    assert max(abs(b.position.y - 0.5 - i) for i, b in enumerate(bodies)) < 1e-12 * G * dt * dt + 1e-12
+
+
+@pytest.mark.parametrize(("count", "dt"), [(2, 1.0), (2, 3.0), (12, 1.0), (12, 3.0), (12, 10.0), (40, 0.25), (40, 1.0)])
+@pytest.mark.parametrize("e", [0.0, 0.5])
+def test_dropped_boxes_stay_above_the_floor(count: int, dt: float, e: float) -> None:
+    """Centres of boxes of half height .3 and more stay above it, and no step gains energy beyond external work."""
+    chance = random.Random(count)
+    space = world()
+    if SHORT and count > 2:
+        count = 4
+    bodies = [
+        box(space, -2 + (i % 4) * 1.1, 0.8 + (i // 4) * 1.1, 0.8, 0.6, chance.uniform(-0.5, 0.5), e)
+        for i in range(count)
+    ]
+    stepper = ep.EECA(space)
+    before = ep.measure(space).energy
+    for _ in range(6):
+        report = stepper.step(dt)
+        ledger = report.ledger
+        assert ledger is not None
+        after = ep.measure(space).energy
+        assert after - before <= ledger.external + 1e-12 * count * G * count
+        before = after
+        assert min(b.position.y for b in bodies) > 0.1
+
+
+@pytest.mark.parametrize("dt", [1 / 60, 0.1, 1.0])
+@pytest.mark.parametrize("angle", [0.0, 1e-12, 0.3, math.pi / 2, 1.0, math.pi])
+@pytest.mark.parametrize("e", [0.0, 0.5, 1.0])
+def test_a_rod_of_no_width_stays_on_a_floor_of_no_width(e: float, angle: float, dt: float) -> None:
+    """Both gaps and sides are exact at 0: a rod that falls on its side, on its end or flush stays above, and its energy
+    is that of its height at rest, kept for e = 1."""
+    space = world(elasticity=1.0 if e == 1.0 else e)
+    body = rod(space, 2.0, angle, e)
+    start = ep.measure(space).energy
+    stepper = ep.EECA(space)
+    for _ in range(int(max(5.0, 3.0 / dt)) if not SHORT else 30):
+        stepper.step(dt)
+        assert ends(body) > -1e-3  # what contacts of its size that come to rest may go deep
+    energy = ep.measure(space).energy
+    assert energy <= start + 1e-12 * start
+    if e == 1.0:
+        assert energy == pytest.approx(start, rel=1e-11)
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_rod_put_exactly_on_a_segment_stays_on_the_side_from_which_it_is_pressed(side: float) -> None:
+    space = world()
+    space.gravity = 0.0, -side * G
+    body = rod(space, 0.0, 0.0, 0.0)
+    stepper = ep.EECA(space)
+    for _ in range(50):
+        stepper.step(1 / 60)
+    assert abs(body.position.y) < 1e-9
+    body.velocity = 0.0, side * 2.0
+    stepper.step(0.1)
+    assert body.position.y * side == pytest.approx(0.2 - 0.005 * G, rel=1e-9)
+
+
+def test_thin_rods_at_high_speed_stay_in_a_thin_box() -> None:
+    """Elastic, without friction: energy is kept, and nobody leaves."""
+    chance = random.Random(4)
+    space = pymunk.Space()
+    corners = [(-6.0, -6.0), (6.0, -6.0), (6.0, 6.0), (-6.0, 6.0)]
+    for p, q in zip(corners, corners[1:] + corners[:1], strict=True):
+        wall = pymunk.Segment(space.static_body, p, q, 0.0)
+        wall.elasticity = 1.0
+        space.add(wall)
+    bodies = []
+    for i in range(9):
+        body = rod(space, 0.0, chance.uniform(0, 6), 1.0)
+        body.position = -4 + 4 * (i % 3), -4 + 4 * (i // 3)
+        body.velocity = chance.uniform(-60, 60), chance.uniform(-60, 60)
+        body.angular_velocity = chance.uniform(-60, 60)
+        bodies.append(body)
+    energy = ep.measure(space).energy
+    stepper = ep.EECA(space)
+    for _ in range(20 if SHORT else 200):
+        stepper.step(1 / 60)
+    assert ep.measure(space).energy == pytest.approx(energy, rel=1e-12)
+    assert max(max(abs(c) for c in b.local_to_world((x, 0.0))) for b in bodies for x in (-0.9, 0.9)) < 6.0 + 1e-9

@@ -1,0 +1,88 @@
+"""What stands carries what moves on it, as long as it can."""
+
+from __future__ import annotations
+
+import pymunk
+import pytest
+
+import eeca_pymunk as ep
+
+from .test_at_rest import DT, UNITS, G
+
+R, SPEED = 0.2, 0.5  # of the disk that rolls, in units
+
+
+def plank(unit: float) -> tuple[pymunk.Space, pymunk.Body, pymunk.Body, pymunk.Body]:
+    """A plank of mass 1 on a pedestal of half-width unit / 2, and a disk of mass 1 that is to roll along it."""
+    space = pymunk.Space()
+    space.gravity = (0.0, -G * unit)
+    shapes: list[pymunk.Shape] = [pymunk.Segment(space.static_body, (-20 * unit, 0.0), (20 * unit, 0.0), 0.0)]
+    bodies = []
+    for mass, width, height, y in ((5.0, 1.0, 0.5, 0.25), (1.0, 4.0, 0.2, 0.6)):
+        body = pymunk.Body(mass, pymunk.moment_for_box(mass, (width * unit, height * unit)))
+        body.position = (0.0, y * unit)
+        shapes.append(pymunk.Poly.create_box(body, (width * unit, height * unit)))
+        bodies.append(body)
+    disk = pymunk.Body(1.0, pymunk.moment_for_circle(1.0, 0.0, R * unit))
+    disk.position = (-0.4 * unit, (0.7 + R) * unit)
+    shapes.append(pymunk.Circle(disk, R * unit))
+    bodies.append(disk)
+    for shape in shapes:
+        shape.friction = 0.8
+    space.add(*bodies, *shapes)
+    return space, bodies[0], bodies[1], disk
+
+
+@pytest.mark.parametrize("unit", UNITS)
+def test_a_plank_carries_a_disk_until_its_weight_tips_it(unit: float) -> None:
+    """About the pedestal's edge at 1/2: the plank's weight holds the disk's until that is at 1."""
+    space, pedestal, board, disk = plank(unit)
+    stepper = ep.EECA(space)
+    for _ in range(10):
+        stepper.step(DT)
+    start = (*board.position, board.angle, *pedestal.position)
+    disk.velocity, disk.angular_velocity = (SPEED * unit, 0.0), -SPEED / R
+    begun, alone, energy = disk.position.x, 0, ep.measure(space).energy
+    scale = G * unit * unit
+    for k in range(1, 1000):
+        report = stepper.step(DT)
+        assert report.ledger is not None
+        assert abs(report.ledger.residual) <= 1e-12 * scale
+        assert ep.measure(space).energy <= energy + 1e-12 * scale
+        energy = ep.measure(space).energy
+        if disk.position.x > 1.001 * unit:
+            break
+        alone += 1 if stepper._method.scene.COUNT.solved <= 1 else 0  # type: ignore[attr-defined]
+        assert disk.position.x == pytest.approx(begun + SPEED * unit * k * DT, abs=1e-9 * unit)
+        if disk.position.x < 0.999 * unit:
+            now = (*board.position, board.angle, *pedestal.position)
+            assert now == pytest.approx(start, abs=1e-9 * unit)
+            floor = 0.0
+            for z in range(len(report.contacts)):
+                a = report.contacts.bodies[report.contacts.body_a[z]]
+                b = report.contacts.bodies[report.contacts.body_b[z]]
+                if space.static_body in (a, b):
+                    floor += float(report.impulse[z] * abs(report.contacts.normal[z, 1]))
+            assert floor == pytest.approx(7.0 * G * unit * DT, rel=1e-8)
+    assert alone > 0.8 * k, "what stands is solved though it only carries"
+    for _ in range(20):
+        stepper.step(DT)
+    assert board.angle < -1e-3
+    assert pedestal.position == pytest.approx(start[3:], abs=1e-6 * unit)
+
+
+def test_what_stands_lets_go_when_it_is_hit() -> None:
+    space, _, board, disk = plank(1.0)
+    stepper = ep.EECA(space)
+    for _ in range(10):
+        stepper.step(DT)
+    disk.velocity, disk.angular_velocity = (SPEED, 0.0), -SPEED / R
+    for _ in range(20):
+        stepper.step(DT)
+    ball = pymunk.Body(3.0, 1.0)
+    ball.position, ball.velocity = (-1.9, 1.2), (0.0, -4.0)
+    space.add(ball, pymunk.Circle(ball, 0.2))
+    for _ in range(20):
+        stepper.step(DT)
+    assert board.angle > 1e-2
+    assert disk.velocity.y > 0.0 or disk.position.y > 0.91
