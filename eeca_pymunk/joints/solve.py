@@ -171,8 +171,8 @@ def solve(W: Workspace, what: int, h: float, length: float, loops: bool, give: f
     momentum holds to round-off. Given up after 25 iterations, or 6 in which the error did not fall. Factors serve for
     as long as errors fall by NEWTON_PROGRESS with them, the dual system where they do with fresh ones. LINEAR_STEP: one
     linear system. POSES: until g is on its targets, at most 8 times. SPEEDS: see `correct`; what was before stays at
-    `v_kept`. These two take h = 2. PROGRESS.near, of a STEP, is the error of g and of the balance that is near enough, if more
-    than round-off: momentum is balanced all the same.
+    `v_kept`. These two take h = 2. PROGRESS.near, of a STEP, is the error of g and of the balance that is near enough,
+    if more than round-off: momentum is balanced all the same.
     """
     hinge, link, local, component, right, progress = (
         W.J.HINGE,
