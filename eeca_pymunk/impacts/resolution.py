@@ -92,7 +92,7 @@ def strike(A: Scene, disks: int, a: int, b: int, t: float, rest: bool) -> tuple[
 @kernel
 def rejoin(A: Scene, a: int, b: int, t: float, n: int, rest: bool, lost: float) -> tuple[int, int]:
     """After the impulses of a block of n bodies in A.BLOCK: its islands become one and begin a new span; so do the two
-    bodies of shapes a and b if they rest on each other. Status and number of bodies as `strike`."""
+    bodies of shapes a and b if they rest on each other. Status and number of bodies."""
     STATE, BODIES = A.STATE, A.BLOCK
     root = -1
     for q in range(n):

@@ -139,7 +139,7 @@ def run(
     """Steps until RUN.until of them are done, of each rollout if there are any.
 
     Args:
-        TABLE: `table_of` a Scene.  ARRAYS: `table_of` a RunArrays.  USUAL: see `together.py`.
+        TABLE: `table_of` a Scene.  ARRAYS: `table_of` a RunArrays.  USUAL: see `midstep.py`.
         disks, lossy: see `step.step`.  together: whether all contacts of a step act together at its middle.
 
     Returns:

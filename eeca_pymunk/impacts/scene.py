@@ -200,7 +200,7 @@ class EventLoop(Remembering):
 
 
 class Together(EventLoop):
-    """Steps the same arrays with all contacts of a step acting together at its middle (`together.py`)."""
+    """Steps the same arrays with all contacts of a step acting together at its middle (`midstep.py`)."""
 
     def __init__(self, BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, disks: int) -> None:
         super().__init__(BODY, SHAPE, LINK, VERTEX, disks, 0)

@@ -3,8 +3,8 @@
 In: the contacts that the last step has left, impacts that end in contact. Out: bodies on parabolas until the interval
 ends, contacts with their impulses, works in the ledger. Open `building.py` first: islands at the start of a step
 (`membership.py`: which bodies, which contacts persist; `penetration.py`: what was put into one another). `intervals.py`
-solves one (`candidates.py`: pairs and length of the interval; `local.py`: its bodies as the solver takes them);
-`accounting.py` ends it, `excess.py` takes back energy that a shorter one has gained.
+solves one (`candidates.py`: pairs and length of the interval; `depths.py`: how deep contacts may close; `local.py`: its
+bodies as the solver takes them); `accounting.py` ends it, `excess.py` takes back energy that a shorter one has gained.
 
 States of rest, `Member.rest` of the first body of an island, and what leads from one to another:
 

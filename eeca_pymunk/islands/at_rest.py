@@ -1,6 +1,6 @@
 """Islands that stand still: an unchanged solve goes on, step after step, and costs next to nothing.
 
-`calm.py` says which come to a stand. Their bodies then stay where they are, without velocity (what kinetic energy is
+`rest.py` says which come to rest. Their bodies then stay where they are, without velocity (what kinetic energy is
 left is booked as restitution; disks without friction go on spinning), and their contacts keep their forces. An island
 is solved again from when a body of it is hit, edited, or pulled otherwise than before; when a body that carries it
 moves; and always where collision handlers have a say.

@@ -65,7 +65,7 @@ def first_meeting(
     before that, `best` and `other`; CHECK for a shape if it is not certain.
 
     Args:
-        several: whether bodies that have a PLACE are forecast together, see `forecast.predict`.
+        several: whether bodies that have a PLACE are forecast together, see `next_event.predict`.
     """
     BODY, POOL, FLAG, INFO = A.BODY, A.POOL, A.FLAG, A.INFO
     chosen = 0
@@ -114,7 +114,7 @@ def expect(A: Scene, disks: int, i: int, best: float, other: int, now: float, en
 
 @uncounted
 def predict_disk(A: Scene, disks: int, i: int, now: float, end: float, several: bool) -> None:
-    """As `forecast.predict`, of a lone disk that is in no island."""
+    """As `next_event.predict`, of a lone disk that is in no island."""
     best, other = first_meeting(A, disks, i, 0, math.inf, NOTHING, end, several)
     expect(A, disks, i, best, other, now, end)
 
