@@ -168,10 +168,10 @@ def closest_on_side(
         return d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q
     deep = SIDE_HELD * min(SHAPE[a].extent, SHAPE[b].extent)
     end = -1
-    if d <= deep and q == 2:
+    if q == 2:
         end, mx, my = corner_of(SHAPE, WORK, Q, b, a, nx, ny, deep)
         mx, my = -mx, -my
-    if d <= deep and end < 0 and p == 2:
+    if end < 0 and p == 2:
         end, mx, my = corner_of(SHAPE, WORK, P, a, b, -nx, -ny, deep)
     near = near_side(SHAPE, a, b)
     if end >= 0:

@@ -156,10 +156,11 @@ def leaving(BODY: Rows[Body], i: int, j: int, t: float, nx: float, ny: float, px
 @uncounted
 def begin_side(
     BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, WORK: FloatArray, a: int, b: int,
-    start: float,
+    start: float, tolerance: float,
 ) -> None:  # fmt: skip
-    """Note on which side of each other segments a < b begin. Those that were put flush on one another are where they
-    part as they move, or rest where they are pressed together."""
+    """Note on which side of each other thin shapes a < b begin. Segments that were put flush on one another are where
+    they part as they move, or rest where they are pressed together: neither has an inside, and within `tolerance`
+    (length) their distance does not tell the side. Else the geometry does."""
     i, j = LINK[a].owner, LINK[b].owner
     x_a, y_a, angle_a = pose(BODY, i, start)
     x_b, y_b, angle_b = pose(BODY, j, start)
@@ -171,7 +172,8 @@ def begin_side(
     if d > near_side(SHAPE, a, b):
         note_side(SHAPE, LINK, WORK, a, b, nx, ny, False)
     elif not known_side(SHAPE, LINK, WORK, a, b):
-        sign = -1.0 if leaving(BODY, i, j, start, nx, ny, px, py) < 0.0 else 1.0
+        flush = p == 2 and q == 2 and d <= tolerance
+        sign = -1.0 if flush and leaving(BODY, i, j, start, nx, ny, px, py) < 0.0 else 1.0
         note_side(SHAPE, LINK, WORK, a, b, sign * nx, sign * ny, True)
 
 
@@ -183,7 +185,8 @@ def general(
     """Instant at which any two shapes meet next, and whether they do, or are only known to be apart until then.
 
     A function of the two paths from the later SINCE on, whatever the order of a and b. Shapes that touch and close
-    meet then, shapes that touch and part do not.
+    meet then. Shapes that touch and part do not; they are followed until the horizon, by at least a thousandth of it
+    a look, as no bound of theirs is above 0.
 
     Args:
         horizon: finite instant; lower bounds are no earlier. Of what takes more than 1000 looks at a sixteenth of the
@@ -209,7 +212,7 @@ def general(
     extent = SHAPE[a].rounding + SHAPE[b].rounding
     P, Q = WORK[0], WORK[1]
     if remembers(LINK, WORK, a, b):
-        begin_side(BODY, SHAPE, LINK, VERTEX, WORK, a, b, start)
+        begin_side(BODY, SHAPE, LINK, VERTEX, WORK, a, b, start, tolerance)
     looks, mark = 0, s
     while looks < ADVANCES:
         looks += 1
@@ -242,6 +245,7 @@ def general(
             back = pressed(BODY, i, j, start + s, nx, ny, px + SHAPE[a].rounding * nx, py + SHAPE[a].rounding * ny)
             if back <= STRIDE * left:
                 return start + s + back, True
+            safe = max(safe, left / ADVANCES)
         s += safe
         if met:
             return start + s, True
