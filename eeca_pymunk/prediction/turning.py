@@ -139,28 +139,30 @@ def pressed(BODY: Rows[Body], i: int, j: int, t: float, nx: float, ny: float, px
 
 
 @uncounted
-def leaving(BODY: Rows[Body], i: int, j: int, t: float, nx: float, ny: float, px: float, py: float) -> float:
-    """The rate with which bodies part along the normal n; if it is 0, the acceleration with which they are pressed
-    together."""
+def leaving(
+    BODY: Rows[Body], i: int, j: int, t: float, nx: float, ny: float, px: float, py: float
+) -> tuple[float, float]:  # fmt: skip
+    """The rate with which bodies part along the normal n, and the acceleration with which they are pressed together."""
     x_a, y_a, _ = pose(BODY, i, t)
     x_b, y_b, _ = pose(BODY, j, t)
     ux_a, uy_a, w_a = rate(BODY, i, t)
     ux_b, uy_b, w_b = rate(BODY, j, t)
     u = nx * (ux_b - w_b * (py - y_b) - ux_a + w_a * (py - y_a))
     u += ny * (uy_b + w_b * (px - x_b) - uy_a - w_a * (px - x_a))
-    if u != 0.0:
-        return u
-    return nx * (BODY[i].ax - BODY[j].ax) + ny * (BODY[i].ay - BODY[j].ay)
+    return u, nx * (BODY[i].ax - BODY[j].ax) + ny * (BODY[i].ay - BODY[j].ay)
 
 
 @uncounted
 def begin_side(
     BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, WORK: FloatArray, a: int, b: int,
-    start: float, tolerance: float,
+    start: float, left: float, tolerance: float,
 ) -> None:  # fmt: skip
-    """Note on which side of each other thin shapes a < b begin. Segments that were put flush on one another are where
-    they part as they move, or rest where they are pressed together: neither has an inside, and within `tolerance`
-    (length) their distance does not tell the side. Else the geometry does."""
+    """Note on which side of each other thin shapes a < b begin.
+
+    Segments that were put flush on one another, which have no inside to tell, rest where they are pressed together if
+    they move by less than `tolerance` (length) in the time `left`. If they move, and their distance is round-off too,
+    they are where they part. Of all else the geometry tells the side.
+    """
     i, j = LINK[a].owner, LINK[b].owner
     x_a, y_a, angle_a = pose(BODY, i, start)
     x_b, y_b, angle_b = pose(BODY, j, start)
@@ -172,8 +174,10 @@ def begin_side(
     if d > near_side(SHAPE, a, b):
         note_side(SHAPE, LINK, WORK, a, b, nx, ny, False)
     elif not known_side(SHAPE, LINK, WORK, a, b):
-        flush = p == 2 and q == 2 and d <= tolerance
-        sign = -1.0 if flush and leaving(BODY, i, j, start, nx, ny, px, py) < 0.0 else 1.0
+        parting, pressing = leaving(BODY, i, j, start, nx, ny, px, py)
+        resting = abs(parting) * left <= tolerance
+        other = (resting and pressing < 0.0) or (not resting and d <= tolerance and parting < 0.0)
+        sign = -1.0 if p == 2 and q == 2 and other else 1.0
         note_side(SHAPE, LINK, WORK, a, b, sign * nx, sign * ny, True)
 
 
@@ -212,7 +216,7 @@ def general(
     extent = SHAPE[a].rounding + SHAPE[b].rounding
     P, Q = WORK[0], WORK[1]
     if remembers(LINK, WORK, a, b):
-        begin_side(BODY, SHAPE, LINK, VERTEX, WORK, a, b, start, tolerance)
+        begin_side(BODY, SHAPE, LINK, VERTEX, WORK, a, b, start, left, tolerance)
     looks, mark = 0, s
     while looks < ADVANCES:
         looks += 1
