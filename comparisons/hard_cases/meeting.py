@@ -185,11 +185,10 @@ def fast(make: runs.Make) -> float:
 def beyond(space: pymunk.Space, half: float) -> float:
     """How far a vertex of what moves is outside a square of half width `half` about the origin."""
     worst = -math.inf
-    for shape in space.shapes:
-        if shape.body.body_type == pymunk.Body.DYNAMIC:
-            points = shape.get_vertices() if isinstance(shape, pymunk.Poly) else [shape.a, shape.b]
-            for point in points:
-                x, y = shape.body.local_to_world(point)
+    for body in space.bodies:
+        for shape in body.shapes:
+            for point in shape.get_vertices() if isinstance(shape, pymunk.Poly) else [shape.a, shape.b]:
+                x, y = body.local_to_world(point)
                 worst = max(worst, abs(x) - half, abs(y) - half)
     return worst
 
