@@ -190,7 +190,7 @@ def excess_way(
         closing = -0.5 * h * (ROWS[z].un + normal_rate(P, Q, ROWS, VN, z))
         if closing > INTERVAL_DEPTH_LEAST * small:
             thick = half_width(SHAPE, LINK, VERTEX, a) + half_width(SHAPE, LINK, VERTEX, b)
-            far = max(far, too_deep(ROWS[z].gap, closing, small, thick, m <= EXACT_CONTACTS))
+            far = max(far, too_deep(ROWS[z].gap, closing, small, thick))
     return far
 
 

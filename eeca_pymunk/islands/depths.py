@@ -13,10 +13,8 @@ from ..geometry.sides import remembers
 from ..model.contacts import Row
 from ..model.islands import Island
 from ..model.parameters.intervals import (
-    EXACT_CONTACTS,
     INTERVAL_DEPTH,
     INTERVAL_DEPTH_LEAST,
-    INTERVAL_DEPTH_MORE,
     INTERVAL_DEPTH_WIDTH,
     INTERVAL_RETRY,
 )
@@ -24,15 +22,12 @@ from ..model.scene import Scene
 
 
 @uncounted
-def too_deep(gap: float, closing: float, small: float, thick: float, few: bool) -> float:
+def too_deep(gap: float, closing: float, small: float, thick: float) -> float:
     """How many times too long a span is in which a contact closes by more than it has room for; 0 if it is not. `thick`
-    are half the widths of both shapes, `few` whether there are few contacts."""
+    are half the widths of both shapes."""
     deep = max(min(INTERVAL_DEPTH * small, INTERVAL_DEPTH_WIDTH * thick), INTERVAL_DEPTH_LEAST * small)
     room = max(gap, 0.0) + deep
-    if few:
-        # What is as deep already is to go hardly deeper, where few are solved again for it.
-        room = max(gap + deep, INTERVAL_DEPTH_MORE * deep)
-    if closing > room + 0.5 * min(deep, room):
+    if closing > room + 0.5 * deep:
         return max(closing / room, 1.01 * INTERVAL_RETRY)
     return 0.0
 
@@ -61,6 +56,6 @@ def sunk(
         )[0]
         if gap - end > INTERVAL_DEPTH_LEAST * small:
             thick = half_width(A.SHAPE, A.LINK, A.VERTEX, a) + half_width(A.SHAPE, A.LINK, A.VERTEX, b)
-            far = max(far, too_deep(gap, gap - end, small, thick, m <= EXACT_CONTACTS))
+            far = max(far, too_deep(gap, gap - end, small, thick))
     # What rows do not tell grows with the square of the length, at least.
     return max(math.sqrt(far), 1.01 * INTERVAL_RETRY) if far > 0.0 else 0.0

@@ -129,9 +129,9 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
             far = excess_way(P, Q, ROWS, KEY, V, VN, A.SHAPE, A.LINK, A.VERTEX, m, h)
             if far <= INTERVAL_RETRY and A.WORK.shape[0] > SIDES:
                 far = sunk(A, isle, isle.POSE + 0.5 * h * (V + VN), P, Q, ROWS, KEY, m)
-        if far > INTERVAL_RETRY and h > shortest:
+        if far > INTERVAL_RETRY:
             A.COUNT.solved += n
-            return AGAIN, max(h / far, shortest)
+            return AGAIN, h / far
         if m > 0 and OUT[0].stood == 0 and not before_end(A, t + h):
             # An interval that ends within the step is followed by another one, which corrects what is left.
             free = math.inf if raised > 0 else 0.0

@@ -143,7 +143,7 @@ def test_thin_rods_at_high_speed_stay_in_a_thin_box() -> None:
 
 
 def test_rods_that_lie_deep_in_walls_that_turn_are_solved_a_bounded_number_of_times() -> None:
-    """A rod and a plank in a thin box that turns and shakes, dt 0.1 s: intervals are no shorter than a 64th of it."""
+    """A rod and a plank in a thin box that turns and shakes, dt 0.1 s."""
     scene = Composition(166)
     for k in range(20):
         scene.drive(k)

@@ -59,7 +59,6 @@ INTERVAL_ANGLE = heuristic(0.5, "rad", "Rotation of a body in one interval.")
 INTERVAL_DEPTH = heuristic(0.05, "of the smaller shape", "Depth by which a contact may close in one interval.")
 INTERVAL_DEPTH_WIDTH = heuristic(0.1, "of both widths", "The same, relative to what it would take to pass through.")
 INTERVAL_DEPTH_LEAST = heuristic(0.0001, "of the smaller shape", "Depth that is always allowed.")
-INTERVAL_DEPTH_MORE = heuristic(0.03, "of that depth", "Further depth of a contact that is as deep already.")
 INTERVAL_RETRY = heuristic(
     1.5, "ratio", "An interval is solved again, shorter, if bodies went farther than they should by this ratio."
 )
