@@ -7,7 +7,7 @@ import math
 from ..compiled import merged, uncounted
 from ..compiled.records import Rows
 from ..geometry.flight import pose
-from ..geometry.gap import gap_at, touching
+from ..geometry.gap import gap, gap_at, touching
 from ..model.bodies import Body
 from ..model.contacts import Impulse
 from ..model.scene import Scene
@@ -44,17 +44,13 @@ def kinetic(BODY: Rows[Body], i: int) -> float:
 @uncounted
 def touches(A: Scene, disks: int, a: int, b: int, t: float) -> bool:
     """Whether shapes a and b touch at instant t, up to round-off."""
-    BODY = A.BODY
-    tolerance = touching(BODY, A.SHAPE, A.LINK, a, b, disks)
+    tolerance = touching(A, a, b)
     if b < A.LIST.shape[0]:
-        if far_apart(BODY, A.SHAPE, A.LINK, a, b, t, tolerance):
+        if far_apart(A, a, b, t, tolerance):
             return False
         if a < disks and b < disks:
             return True
-    i, j = A.LINK[a].owner, A.LINK[b].owner
-    xa, ya, qa = pose(BODY, i, t)
-    xb, yb, qb = pose(BODY, j, t)
-    return gap_at(A.SHAPE, A.LINK, A.VERTEX, A.WORK, a, xa, ya, qa, b, xb, yb, qb)[0] <= tolerance
+    return gap(A, a, b, t)[0] <= tolerance
 
 
 @merged
@@ -123,9 +119,7 @@ def strike_disk(A: Scene, disks: int, i: int, o: int, t: float) -> None:
         nx, ny = nx / d, ny / d
         px, py = x + BODY[i].extent * nx, y + BODY[i].extent * ny
     else:
-        _, nx, ny, px, py = gap_at(
-            A.SHAPE, A.LINK, A.VERTEX, A.WORK, i, x, y, BODY[i].angle, o, BODY[j].x, BODY[j].y, BODY[j].angle
-        )
+        _, nx, ny, px, py = gap_at(A, i, x, y, BODY[i].angle, o, BODY[j].x, BODY[j].y, BODY[j].angle)
     e, mu, sx, sy = law_of_disks(BODY, i, j)
     if not disk or mu > 0.0 or A.RULE.shape[0] > 0:
         e, mu, sx, sy = law(A.SHAPE, A.RULE, i, o)

@@ -80,11 +80,8 @@ def run(A: Scene, disks: int, may_rest: bool) -> int:
                 room = go_on(A, disks, i, t, end)
             else:
                 one, room = i, True
-                if has_left(BODY, A.SHAPE, A.LINK, A.MARK, s, t):
-                    room = renew(
-                        BODY, A.SHAPE, A.LINK, A.MARK, A.CELL, A.LIST, A.POOL, A.FLAG, A.HEAD, A.GRID, A.INFO, A.BOX,
-                        A.CSR, s, t, AHEAD,
-                    ) >= 0  # fmt: skip
+                if has_left(A, s, t):
+                    room = renew(A, s, t, AHEAD) >= 0
             if not room:
                 A.PAR.now = t
                 COUNT.heap = push(TIME, OF, COUNT.heap, t, i)
@@ -100,7 +97,7 @@ def run(A: Scene, disks: int, may_rest: bool) -> int:
             continue
         if give_up(A, i, j):
             note_unmet(A, IMPACTS, s, o, float(max(STATE[i].events, STATE[j].events)), float(COUNT.limit))
-            mark_pair(A.LIST, A.POOL, A.FLAG, moving, s, o, 1)
+            mark_pair(A, s, o, 1)
             one = i
             continue
         single = STATE[i].island < 0 and STATE[j].island < 0 and i < disks and (o < disks or o >= moving)
@@ -186,7 +183,7 @@ def follow(A: Scene, disks: int, may_rest: bool) -> int:
         j = A.LINK[o].owner
         if (STATE[i].island >= 0 or STATE[j].island >= 0) and passed_over(A, s, o, t):
             note_unmet(A, HITS, s, o, float(hits_of(A, s, o)), float(most_hits(A, s, o)))
-            mark_pair(A.LIST, A.POOL, A.FLAG, moving, s, o, 1)
+            mark_pair(A, s, o, 1)
             forecast(A, disks, moving, i, t, end, False)
             continue
         if jointed(A, i) or jointed(A, j):

@@ -196,19 +196,16 @@ def lay_out(A: Scene, disks: int, n: int, m: int, PAIRS: IntArray, hit: int, res
                     q = place
                 place += 1
         e, mu, sx, sy = law(A.SHAPE, A.RULE, sa, sb)
-        tolerance = FACE_ROUND_OFF * touching(BODY, A.SHAPE, LINK, sa, sb, disks)
+        tolerance = FACE_ROUND_OFF * touching(A, sa, sb)
         small = min(A.SHAPE[sa].extent, A.SHAPE[sb].extent)
         if e < 1.0:
             tolerance = max(tolerance, ROCKING * small)
         if rest and PAIRS[z] == hit:
             e = 0.0
         load = remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], sa, sb, A.PAR.stamp - 1.0)[1]
-        count = face(
-            A.SHAPE, LINK, A.VERTEX, A.WORK, sa, POSE[p, 0], POSE[p, 1], POSE[p, 2],
-            sb, POSE[q, 0], POSE[q, 1], POSE[q, 2], tolerance, found,
-        )  # fmt: skip
+        count = face(A, sa, sb, POSE, p, q, tolerance, found)
         if count > 0:
-            note_side(A.SHAPE, LINK, A.WORK, sa, sb, found[0, 0], found[0, 1], True)
+            note_side(A, sa, sb, found[0, 0], found[0, 1], True)
         for c in range(count):
             nx, ny = found[c, 0], found[c, 1]
             P[rows], Q[rows] = p, q

@@ -56,7 +56,6 @@ class JointedLoop(EventLoop):
 
     def _gather(self) -> IntArray:
         (self.scene, self.joints), memory = gathered((self.scene, OF_SCENE), (self.joints, OF_JOINTS))
-        self.near = self._lists()
         self._joint = self.joints.JOINT
         self._ties = table_of(self.joints)
         return memory
