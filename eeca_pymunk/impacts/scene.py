@@ -65,7 +65,6 @@ class EventLoop(Remembering):
         self, BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, disks: int, limit: int
     ) -> None:
         n = len(BODY)
-        self.disks = disks
         moving = int(np.count_nonzero(LINK["owner"] < n - 1))
         STATE, MEMBER, RESTING, PULL, BEGAN, TIME, OF, PLACE, BLOCK = side_by_side(
             ((n,), Next.TYPE), ((n,), Member.TYPE), ((n,), Rest.TYPE),
@@ -77,7 +76,7 @@ class EventLoop(Remembering):
         STATE["first_shape"] = np.cumsum(STATE["shapes"]) - STATE["shapes"]
         STATE["island"] = -1
         lossy = bool((SHAPE["elasticity"] < 1.0).any())
-        self._options: tuple[int, ...] = disks, lossy  # numbers that the step takes besides dt, gravity and damping
+        self._options: tuple[int, ...] = (lossy,)  # numbers that the step takes besides dt, gravity and damping
         self.lossy, self.together = lossy, False
         room = _CONTACTS
         while lossy and room < min(_OF_A_BODY * n, _MANY):
@@ -117,7 +116,7 @@ class EventLoop(Remembering):
         """Take the steps that `buffers` asks for; all bits, a negative code of `transfer.py`, or `run.ENERGY`."""
         while True:
             call = buffers.call = buffers.call or self._bind_run(buffers, states)
-            status = check("run", call(self.disks, self.lossy, self.together))
+            status = check("run", call(self.lossy, self.together))
             if status == ROOM_FOR_IMPACTS:
                 buffers.more_events()
             elif status <= ROOM_FOR_LISTS:

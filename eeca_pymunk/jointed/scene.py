@@ -40,7 +40,7 @@ class JointedLoop(EventLoop):
         super().__init__(BODY, SHAPE, LINK, VERTEX, disks, limit)
         self._joint, self._partner, self._order = joint, PARTNER, order
         self.together = together
-        self._options = () if together else (self.lossy,)
+        self._options = () if together else self._options
         self.plan()
 
     def plan(self) -> None:

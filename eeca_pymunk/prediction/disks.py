@@ -9,12 +9,11 @@ from __future__ import annotations
 import math
 
 from ..compiled import uncounted
-from ..compiled.records import Rows
 from ..geometry.flight import norm
 from ..model.bodies import CHECK, LEAVE, NOTHING
 from ..model.parameters.events import AHEAD, FARTHEST_MARGIN, SAME_INSTANT
 from ..model.scene import Scene
-from ..model.shapes import BATCH, Link
+from ..model.shapes import BATCH
 from ..pairs.grid import renew
 from ..pairs.rules import barred
 from .heap import push
@@ -23,9 +22,9 @@ from .next_event import has_left, leaves
 
 
 @uncounted
-def carrier(LINK: Rows[Link], disks: int, s: int) -> int:
+def carrier(A: Scene, s: int) -> int:
     """Row of the body of shape s: lone disks have the same number as their shapes."""
-    return s if s < disks else int(LINK[s].owner)
+    return s if s < A.COUNT.disks else int(A.LINK[s].owner)
 
 
 @uncounted
@@ -41,7 +40,7 @@ def first_chosen(A: Scene, i: int, chosen: int, best: float, other: int) -> tupl
 
 @uncounted
 def first_meeting(
-    A: Scene, disks: int, i: int, known: int, best: float, other: int, end: float, several: bool
+    A: Scene, i: int, known: int, best: float, other: int, end: float, several: bool
 ) -> tuple[float, int]:  # fmt: skip
     """Instant and shape of the first meeting of lone disk i with those of its list from place `known` on, or what comes
     before that, `best` and `other`; CHECK for a shape if it is not certain.
@@ -50,7 +49,7 @@ def first_meeting(
         several: whether bodies that have a PLACE are forecast together, see `next_event.predict`.
     """
     BODY, POOL, FLAG, CHOSEN = A.BODY, A.POOL, A.FLAG, A.GRID.chosen
-    chosen = 0
+    disks, chosen = A.COUNT.disks, 0
     even = A.COUNT.even > 0
     flagged = not even or A.COUNT.unmet > 0
     ax, ay = BODY[i].ax, BODY[i].ay
@@ -60,7 +59,7 @@ def first_meeting(
             continue
         o = int(POOL[q])
         if several:
-            j = carrier(A.LINK, disks, o)
+            j = carrier(A, o)
             if A.PLACE[j] >= 0 and j < i:
                 continue
         if ruled and barred(A.RULE, i, o):
@@ -79,12 +78,12 @@ def first_meeting(
 
 
 @uncounted
-def expect(A: Scene, disks: int, i: int, best: float, other: int, now: float, end: float) -> None:
+def expect(A: Scene, i: int, best: float, other: int, now: float, end: float) -> None:
     """Take it that lone disk i meets shape `other` next, at instant `best`, or leaves its margin circle before; put
     what is due in this step on the heap."""
     out = leaves(A, i, i, now)
     if other >= 0:
-        A.STATE[i].known = A.STATE[carrier(A.LINK, disks, other)].version
+        A.STATE[i].known = A.STATE[carrier(A, other)].version
     if out <= best and out < math.inf:
         A.LIST[i].later = other
         best, other = out, LEAVE
@@ -95,20 +94,20 @@ def expect(A: Scene, disks: int, i: int, best: float, other: int, now: float, en
 
 
 @uncounted
-def predict_disk(A: Scene, disks: int, i: int, now: float, end: float, several: bool) -> None:
+def predict_disk(A: Scene, i: int, now: float, end: float, several: bool) -> None:
     """As `next_event.predict`, of a lone disk that is in no island."""
-    best, other = first_meeting(A, disks, i, 0, math.inf, NOTHING, end, several)
-    expect(A, disks, i, best, other, now, end)
+    best, other = first_meeting(A, i, 0, math.inf, NOTHING, end, several)
+    expect(A, i, best, other, now, end)
 
 
 @uncounted
-def go_on(A: Scene, disks: int, i: int, now: float, end: float) -> bool:
+def go_on(A: Scene, i: int, now: float, end: float) -> bool:
     """Lone disk i, in no island, leaves its margin circle and goes straight on: only what has come into its list is new
     in its forecast. False if the pool is full."""
     BODY = A.BODY
     best, other, later, known = math.inf, NOTHING, A.LIST[i].later, A.LIST[i].number
     ahead = AHEAD
-    if later >= 0 and A.STATE[carrier(A.LINK, disks, later)].version == A.STATE[i].known:
+    if later >= 0 and A.STATE[carrier(A, later)].version == A.STATE[i].known:
         best, certain = meet(A, i, later, end)
         other = later if certain else CHECK
     if has_left(A, i, now):
@@ -122,13 +121,13 @@ def go_on(A: Scene, disks: int, i: int, now: float, end: float) -> bool:
             return False
     if later != NOTHING and other < 0:
         known = 0
-    best, other = first_meeting(A, disks, i, known, best, other, end, False)
-    expect(A, disks, i, best, other, now, end)
+    best, other = first_meeting(A, i, known, best, other, end, False)
+    expect(A, i, best, other, now, end)
     return True
 
 
 @uncounted
-def holds(A: Scene, disks: int, i: int, end: float) -> bool:
+def holds(A: Scene, i: int, end: float) -> bool:
     """Whether the forecast that lone disk i, in no island, was given in an earlier step is still good, as its path and
     that of whom it meets are the same; puts it on the heap. The instant is computed again, from the paths as they are
     described in this step, so that no bit depends on how long ago the forecast was made."""
@@ -136,7 +135,7 @@ def holds(A: Scene, disks: int, i: int, end: float) -> bool:
     if due <= 0.0:
         return False
     if other >= 0:
-        if A.STATE[carrier(A.LINK, disks, other)].version != A.STATE[i].known:
+        if A.STATE[carrier(A, other)].version != A.STATE[i].known:
             return False
         t, certain = meet(A, i, other, end)
         if not (certain and abs(t - due) <= SAME_INSTANT * end):

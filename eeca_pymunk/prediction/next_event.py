@@ -63,7 +63,7 @@ def has_left(A: Scene, s: int, now: float) -> bool:
 
 
 @merged
-def predict(A: Scene, disks: int, moving: int, i: int, now: float, end: float, until: float) -> None:
+def predict(A: Scene, i: int, now: float, end: float, until: float) -> None:
     """Forecast body i from its present path, at an instant `now` of the loop, and put what is due in this step on the
     heap.
 
@@ -97,7 +97,7 @@ def predict(A: Scene, disks: int, moving: int, i: int, now: float, end: float, u
     STATE[i].own, STATE[i].other = own, other
     if other >= 0:
         STATE[i].known = STATE[LINK[other].owner].version
-    if i < disks:
+    if i < A.COUNT.disks:
         LIST[i].later = CHECK
     if best < end:
         A.COUNT.heap = push(A.HEAP_TIME, A.HEAP_BODY, A.COUNT.heap, best, i)
