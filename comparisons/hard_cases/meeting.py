@@ -182,6 +182,62 @@ def fast(make: runs.Make) -> float:
     return worst / 0.5
 
 
+def beyond(space: pymunk.Space, half: float) -> float:
+    """How far a vertex of what moves is outside a square of half width `half` about the origin."""
+    worst = -math.inf
+    for body in space.bodies:
+        for shape in body.shapes:
+            for point in shape.get_vertices() if isinstance(shape, pymunk.Poly) else [shape.a, shape.b]:
+                x, y = body.local_to_world(point)
+                worst = max(worst, abs(x) - half, abs(y) - half)
+    return worst
+
+
+def square(space: pymunk.Space) -> None:
+    """Four walls without width about the origin, 2 m long."""
+    corners = [pymunk.Vec2d(1.0, 1.0).rotated(0.5 * math.pi * k) for k in range(4)]
+    add_walls(space, list(itertools.pairwise([*corners, corners[0]])))
+
+
+@case("plank put flush on a thin wall, thrown at it", THROUGH, 1e-3)
+def flush(make: runs.Make) -> float:
+    """A plank of 0.45 by 0.012 m that touches the wall, or is 1e-5 m off or in it, and moves into it."""
+    worst = 0.0
+    for turn, gap, elastic in itertools.product(range(4), (0.0, 1e-5, -3e-5), (0.0, 0.5, 1.0)):
+        for dt, velocity, spin in ((0.1, (37.0, -21.0), 0.0), (DT, (3.0, -2.0), 0.0), (DT, (0.0, -2.0), 5.0)):
+            space, angle = pymunk.Space(), 0.5 * math.pi * turn
+            square(space)
+            body = add_box(space, pymunk.Vec2d(0.994 - gap, 0.1).rotated(angle), 0.45, 0.012)
+            body.angle, body.angular_velocity = angle + 0.5 * math.pi, spin
+            body.velocity = pymunk.Vec2d(*velocity).rotated(angle)
+            matter(space, 0.4, elastic)
+            stepper = make(space)
+            for _ in range(15):
+                stepper.step(dt)
+                worst = max(worst, beyond(space, 1.0) / 0.45)
+    return worst
+
+
+@case("rod flush on a thin floor slides into a thin wall", THROUGH, 1e-3)
+def slides(make: runs.Make) -> float:
+    """A rod of 1 m on the floor, or 1e-9 to 1e-5 m off or in it, goes left or right to the corner."""
+    worst = 0.0
+    heights = (0.0, 1e-9, -1e-9, 5e-8, -5e-8, 1e-5, -1e-5)
+    for height, side, elastic, (speed, dt) in itertools.product(
+        heights, (-1.0, 1.0), (0.0, 0.8), ((3.0, DT), (10.0, 0.1), (40.0, 0.1))
+    ):
+        space = heavy()
+        square(space)
+        body = rod(space, 0.2, height - 1.0, 0.5)
+        body.velocity = (side * speed, 0.0)
+        matter(space, 0.0, elastic)
+        stepper = make(space)
+        for _ in range(15):
+            stepper.step(dt)
+            worst = max(worst, beyond(space, 1.0) / 0.5)
+    return worst
+
+
 @case("jointed pair in free flight is hit", "change of angular momentum (relative)", 1e-12)
 def hit(make: runs.Make) -> float:
     space = pymunk.Space()

@@ -13,7 +13,7 @@ What is farther apart has its side from the geometry, and the forecasts of its n
 
 Segments of one body that meet, end to end or an end on the other, are one boundary. What lies in the corner between
 two, by its side of one, and is nearest to the other where they meet, is on that one's side that looks into the corner:
-there it meets that side as if it went on beyond the end, by a tenth of the smaller shape. In a corner of less than 180
+there it meets that side as if it went on beyond the end, by 0.4 of the smaller shape. In a corner of less than 180
 degrees nothing of that is inside, so the corner stays what it is. (CORNER, see `corners.py`)
 """
 
@@ -135,16 +135,17 @@ def side_of(A: Scene, a: int, b: int) -> tuple[float, float]:
 
 @uncounted
 def corner_of(
-    A: Scene, W: FloatArray, w: int, o: int, sx: float, sy: float, deep: float
+    A: Scene, W: FloatArray, w: int, o: int, x: float, y: float, deep: float
 ) -> tuple[int, float, float]:  # fmt: skip
-    """Of shape o, which is nearest to the segment w, placed as W, along s, from o to w: the end of w at which it lies
-    in a corner, -1 if in none, and the normal (2) of the side of w that looks into that. There W goes on by `deep`."""
+    """Of shape o, which is nearest to the segment w, placed as W, at the point (x, y): the end of w there, if o lies in
+    a corner at that end, -1 if in none, and the normal (2) of the side of w that looks into that. There W goes on by
+    `deep`."""
     ex, ey = W[1, 0] - W[0, 0], W[1, 1] - W[0, 1]
-    end = 0
-    if ex * sx + ey * sy < 0.0:
-        end, ex, ey = 1, -ex, -ey
     length = math.sqrt(ex * ex + ey * ey)
     ux, uy = ex / length, ey / length
+    end = 0
+    if (x - W[0, 0]) * ux + (y - W[0, 1]) * uy > 0.5 * length:
+        end, ux, uy = 1, -ux, -uy
     for turn in range(2):
         corner = A.CORNER[4 * w + 2 * end + turn]
         other, c, z = corner.other - 1, corner.cosine, corner.sine
@@ -174,10 +175,10 @@ def closest_on_side(
     deep = SIDE_HELD * smaller(A, a, b)
     end = -1
     if q == 2:
-        end, mx, my = corner_of(A, Q, b, a, nx, ny, deep)
+        end, mx, my = corner_of(A, Q, b, a, x + d * nx, y + d * ny, deep)
         mx, my = -mx, -my
     if end < 0 and p == 2:
-        end, mx, my = corner_of(A, P, a, b, -nx, -ny, deep)
+        end, mx, my = corner_of(A, P, a, b, x, y, deep)
     near = near_side(A, a, b)
     if end >= 0:
         d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q = closest(P, p, Q, q)

@@ -149,22 +149,24 @@ def pressed(BODY: Rows[Body], i: int, j: int, t: float, nx: float, ny: float, px
 
 
 @uncounted
-def leaving(BODY: Rows[Body], i: int, j: int, t: float, nx: float, ny: float, px: float, py: float) -> float:
-    """The rate with which bodies part along the normal n; if it is 0, the acceleration with which they are pressed
-    together."""
+def leaving(
+    BODY: Rows[Body], i: int, j: int, t: float, nx: float, ny: float, px: float, py: float
+) -> tuple[float, float]:  # fmt: skip
+    """The rate with which bodies part along the normal n, and the acceleration with which they are pressed together."""
     a, b = motion(BODY, i, t), motion(BODY, j, t)
     u = nx * (b.vx - b.spin * (py - b.y) - a.vx + a.spin * (py - a.y))
     u += ny * (b.vy + b.spin * (px - b.x) - a.vy - a.spin * (px - a.x))
-    if u != 0.0:
-        return u
-    return nx * (BODY[i].ax - BODY[j].ax) + ny * (BODY[i].ay - BODY[j].ay)
+    return u, nx * (BODY[i].ax - BODY[j].ax) + ny * (BODY[i].ay - BODY[j].ay)
 
 
 @uncounted
-def begin_side(A: Scene, a: int, b: int, start: float, tolerance: float) -> None:
-    """Note on which side of each other thin shapes a < b begin. Segments that were put flush on one another are where
-    they part as they move, or rest where they are pressed together: neither has an inside, and within `tolerance`
-    (length) their distance does not tell the side. Else the geometry does."""
+def begin_side(A: Scene, a: int, b: int, start: float, left: float, tolerance: float) -> None:
+    """Note on which side of each other thin shapes a < b begin.
+
+    Segments that were put flush on one another, which have no inside to tell, rest where they are pressed together if
+    they move by less than `tolerance` (length) in the time `left`. If they move, and their distance is round-off too,
+    they are where they part. Of all else the geometry tells the side.
+    """
     i, j, P, Q = A.LINK[a].owner, A.LINK[b].owner, A.CORE[0], A.CORE[1]
     x_a, y_a, angle_a = pose(A.BODY, i, start)
     x_b, y_b, angle_b = pose(A.BODY, j, start)
@@ -174,8 +176,10 @@ def begin_side(A: Scene, a: int, b: int, start: float, tolerance: float) -> None
     if d > near_side(A, a, b):
         note_side(A, a, b, nx, ny, False)
     elif not known_side(A, a, b):
-        flush = p == 2 and q == 2 and d <= tolerance
-        sign = -1.0 if flush and leaving(A.BODY, i, j, start, nx, ny, px, py) < 0.0 else 1.0
+        parting, pressing = leaving(A.BODY, i, j, start, nx, ny, px, py)
+        resting = abs(parting) * left <= tolerance
+        other = (resting and pressing < 0.0) or (not resting and d <= tolerance and parting < 0.0)
+        sign = -1.0 if p == 2 and q == 2 and other else 1.0
         note_side(A, a, b, sign * nx, sign * ny, True)
 
 
@@ -214,7 +218,7 @@ def general(A: Scene, a: int, b: int, horizon: float) -> tuple[float, bool]:
     )  # fmt: skip
     P, Q = A.CORE[0], A.CORE[1]
     if remembers(A, a, b):
-        begin_side(A, a, b, start, tolerance)
+        begin_side(A, a, b, start, left, tolerance)
     looks, mark = 0, s
     while looks < ADVANCES:
         looks += 1

@@ -15,4 +15,4 @@ def test_case(one: Case, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_there_are_as_many_as_the_docs_say() -> None:
-    assert len(CASES) == 120
+    assert len(CASES) == 122

@@ -30,7 +30,7 @@ SIDE_OPPOSITE = heuristic(
 SIDE_UNSURE = heuristic(0.7, "cosine", "The same, while cores of segments touch, where the normal is not reliable.")
 SIDE_TOUCH = heuristic(0.0001, "of the smaller shape", "Distance of cores within which the remembered side decides.")
 SIDE_HELD = heuristic(
-    0.1,
+    0.4,
     "of the smaller shape",
     "Depth by which segments that forces hold together may have passed through one another.",
 )
