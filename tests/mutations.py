@@ -159,6 +159,39 @@ MUTATIONS = (
              "energy/test_equations.py", "lock"),
     Mutation("paper: psi1 + psi2 = 2 xi / Omega", "energy/balance.py", "return 4.0 * damping_ratio / reduced_frequency",
              "return 2.0 * damping_ratio / reduced_frequency", "energy/test_equations.py", "signorini_closed"),
+    # One place each: sides, manifolds, lists, the lock, the correction, rest, the driver, rows over an operator.
+    Mutation("sides: a remembered normal is not used", "geometry/sides.py", "if d > reach or (", "if True or (",
+             "islands/test_large_steps.py", "rod"),
+    Mutation("corners: the side that looks out of them", "geometry/sides.py", "lx, ly = -sign * uy, sign * ux",
+             "lx, ly = sign * uy, -sign * ux", "islands/test_corners.py", "stays_in_its_corner"),
+    Mutation("manifold: rows stay as seen from the other shape", "geometry/manifold.py",
+             "    reverse(OUT, count)\n    return count\n\n\n@uncounted\ndef support",
+             "    return count\n\n\n@uncounted\ndef support", "geometry/test_manifold.py", "exchange_and_reflection"),
+    Mutation("lists: a pair is flagged in one list alone", "pairs/lists.py", "for s, o in ((a, b), (b, a)):",
+             "for s, o in ((a, b), (a, b)):", "pairs/test_lists.py", "flags_follow"),
+    Mutation("lists: what leaves stays in the lists of others", "pairs/grid.py", "            remove(A, o, s)",
+             "            pass", "pairs/test_lists.py", "one_by_one and disks"),
+    Mutation("lists: a wall is found in its first cell alone", "pairs/walls.py",
+             "if max(west, first_column) == column and", "if first_column == column and",
+             "pairs/test_lists.py", "looking_at_all"),
+    Mutation("lock: the root that is farther from 1", "rows/energy.py", "if abs(other - 1.0) < abs(s - 1.0):",
+             "if abs(other - 1.0) > abs(s - 1.0):", "rows/test_blocks.py", "debt"),
+    Mutation("lock: velocities keep their scale", "rows/energy.py",
+             "        velocities(A, B, ROWS, L, FREE, IM, II, m, V)\n    return s, left",
+             "        pass\n    return s, left", "rows/test_blocks.py", "debt"),
+    Mutation("correction: the common turn is the other way", "contacts/correction.py", "return -gained / inertia",
+             "return gained / inertia", "contacts/test_piles.py", "free_island"),
+    Mutation("correction: sign of its work", "contacts/correction.py", "work = -against(", "work = against(",
+             "contacts/test_piles.py", "push_out"),
+    Mutation("rest: forces keep half of the length of the step", "islands/at_rest.py", "longer = dt / R.length",
+             "longer = 0.5", "islands/test_at_rest.py", "bear_its_weight"),
+    Mutation("rest: a carrier that begins to move wakes nothing", "islands/at_rest.py",
+             "MEMBER[root].rest = CHANGED\n        if A.RULE", "pass\n        if A.RULE",
+             "islands/test_at_rest.py", "wakes"),
+    Mutation("driver: sweeps alone", "contacts/relaxation.py", "if rounds == 0 or STATE.wait > 0.0:", "if True:",
+             "contacts/test_piles.py", "stack_stands_still"),
+    Mutation("operator: tangents answer as normals do", "jointed/newton.py", "C.T[w, c] if tangent else",
+             "C.N[w, c] if tangent else", "jointed/test_contacts.py", "dropped_chain"),
 )  # fmt: skip
 
 
@@ -168,7 +201,7 @@ def passes(copy: Path, tests: list[tuple[str, str]]) -> tuple[bool, str]:
     for file, only in tests:
         try:
             done = subprocess.run(
-                [sys.executable, "-m", "pytest", "-x", "-p", "no:cacheprovider", f"tests/{file}", "-k", only],
+                [sys.executable, "-m", "pytest", "-x", "-n0", "-p", "no:cacheprovider", f"tests/{file}", "-k", only],
                 cwd=copy, env=os.environ | {"NUMBA_DISABLE_JIT": "1", "PYTHONDONTWRITEBYTECODE": "1"},
                 capture_output=True, text=True, timeout=LIMIT,
             )  # fmt: skip
