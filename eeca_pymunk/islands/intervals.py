@@ -115,21 +115,22 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
             raised = 1
     quiet = rest_threshold(A, root, MINE, n, among, t) if may_lose and raised == 0 else 0.0
     owed = max(-A.RESTING[root].lost, 0.0)
+    shortest = A.PAR.dt / LEAST_INTERVAL
     if p > 0 and h > 0.0:
         m = step_island(A, isle, contacts, n, h, sweeps, least, owed, -1.0, quiet)
         stuck = h if in_haste(A) or OUT[0].stood > 0 else stick_time(P, Q, ROWS, L, V + h * isle.ACC, VN, m, h)
         if stuck < h:
             # Where slip ends on the way, so does the span: friction changes its law there.
-            h = min(max(stuck, A.PAR.dt / LEAST_INTERVAL), h)
+            h = min(max(stuck, shortest), h)
             m = step_island(A, isle, contacts, n, h, sweeps, least, owed, -1.0, 0.0)
         far = 0.0
         if not last and OUT[0].stood == 0:
             far = excess_way(A, P, Q, ROWS, KEY, V, VN, m, h)
             if far <= INTERVAL_RETRY and len(A.SIDE) > 0:
                 far = sunk(A, isle, isle.POSE + 0.5 * h * (V + VN), P, Q, ROWS, KEY, m)
-        if far > INTERVAL_RETRY:
+        if far > INTERVAL_RETRY and h > shortest:
             A.COUNT.solved += n
-            return AGAIN, h / far
+            return AGAIN, max(h / far, shortest)
         if m > 0 and OUT[0].stood == 0 and not before_end(A, t + h):
             # An interval that ends within the step is followed by another one, which corrects what is left.
             free = math.inf if raised > 0 else 0.0

@@ -13,6 +13,7 @@ from ..errors import UnsupportedFeature
 from ..model.shapes import Shape
 from .private_versions import processed
 
+_STRAIGHT = 1e-12  # of its coordinates: how far round-off may have moved a vertex off the line of its neighbours
 _SAME = 1e-9  # part of a surface velocity by which the one that pymunk makes of it may differ
 Pair = tuple[int, int]
 Law = tuple[float, float, float, float]  # elasticity, friction, surface velocity (x, y) of b relative to a
@@ -96,5 +97,19 @@ def local_outline(shape: pymunk.Shape) -> list[tuple[float, ...]]:
     if isinstance(shape, pymunk.Segment):
         return [tuple(shape.a), tuple(shape.b)]
     if isinstance(shape, pymunk.Poly):
-        return [tuple(v) for v in shape.get_vertices()]
+        return corners([tuple(v) for v in shape.get_vertices()])
     raise UnsupportedFeature(f"{shape}: only circles, segments and polygons are known")
+
+
+def corners(outline: list[tuple[float, ...]]) -> list[tuple[float, ...]]:
+    """A convex outline without the vertices that lie on the line of their neighbours, up to round-off: of the normals
+    of two edges in one line, round-off would tell which of them something is beside."""
+    limit = _STRAIGHT * max(abs(c) for v in outline for c in v)
+    kept: list[tuple[float, ...]] = []
+    for i, (x, y) in enumerate(outline):
+        ax, ay = kept[-1] if kept else outline[-1]
+        bx, by = outline[(i + 1) % len(outline)]
+        along = math.hypot(bx - ax, by - ay)
+        if abs((bx - ax) * (y - ay) - (by - ay) * (x - ax)) > limit * along:
+            kept.append((x, y))
+    return kept if len(kept) > 2 else outline

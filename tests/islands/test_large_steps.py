@@ -9,8 +9,10 @@ import pymunk
 import pytest
 
 import eeca_pymunk as ep
+from eeca_pymunk.model.parameters.intervals import LEAST_INTERVAL
 
 from ..crowds import SHORT
+from ..programs.compositions import Composition
 
 G = 9.81
 
@@ -138,3 +140,13 @@ def test_thin_rods_at_high_speed_stay_in_a_thin_box() -> None:
         stepper.step(1 / 60)
     assert ep.measure(space).energy == pytest.approx(energy, rel=1e-12)
     assert max(max(abs(c) for c in b.local_to_world((x, 0.0))) for b in bodies for x in (-0.9, 0.9)) < 6.0 + 1e-9
+
+
+def test_rods_that_lie_deep_in_walls_that_turn_are_solved_a_bounded_number_of_times() -> None:
+    """A rod and a plank in a thin box that turns and shakes, dt 0.1 s: intervals are no shorter than a 64th of it."""
+    scene = Composition(166)
+    for k in range(20):
+        scene.drive(k)
+        report = scene.stepper.step(scene.dt)
+        assert report.iterations < 4 * LEAST_INTERVAL
+        assert all(u.name != "solves" for u in report.unmet)
