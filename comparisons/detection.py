@@ -24,6 +24,7 @@ from comparisons.output import Output, Row
 from eeca_pymunk.arrays import FloatArray, IntArray
 from eeca_pymunk.compiled.records import columns
 from eeca_pymunk.model.bodies import POSE
+from eeca_pymunk.model.scene import scene_with
 from eeca_pymunk.pairs import grid, setup
 from eeca_pymunk.space.world import World
 from scenes.scene import add_disk, add_walls
@@ -91,10 +92,10 @@ class Lists:
 
     def __init__(self, world: World, moving: int) -> None:
         self.world, self.moving = world, moving
-        self.near = setup.near_lists(world.BODY, world.SHAPE, world.LINK, world.VERTEX, moving)
+        scene = scene_with(BODY=world.BODY, SHAPE=world.SHAPE, LINK=world.LINK, VERTEX=world.VERTEX)
+        self.near = setup.near_lists(scene, moving)
         if np.isinf(self.near.MARK["margin"]).any():
             raise ValueError(f"{moving} shapes stand in all lists: there is nothing to detect")
-        self._lists = (world.BODY, world.SHAPE, world.LINK, *self.near)
 
     @property
     def margin(self) -> FloatArray:
@@ -114,12 +115,9 @@ class Lists:
 
     def renew(self, which: IntArray) -> None:
         """Make the lists of some shapes anew, where they are now."""
-        _, _, _, MARK, CELL, LIST, POOL, FLAG, HEAD, GRID, INFO, BOX, CSR = self._lists
-        BODY, SHAPE, LINK = self.world.BODY, self.world.SHAPE, self.world.LINK
         for s in which.tolist():
-            if grid.renew(BODY, SHAPE, LINK, MARK, CELL, LIST, POOL, FLAG, HEAD, GRID, INFO, BOX, CSR, s, 0.0, 0.0) < 0:
-                self.near = setup.rebuilt(self.near.larger(), BODY, SHAPE, LINK, 0.0)
-                self._lists = (BODY, SHAPE, LINK, *self.near)
+            if grid.renew(self.near, s, 0.0, 0.0) < 0:
+                self.near = setup.with_more_room(self.near, 0.0)
                 return
 
     def pairs(self) -> Pairs:
@@ -150,7 +148,7 @@ def check(world: World, lists: Lists, twin: Twin, slack: Twin) -> None:
     ours = lists.pairs()
     anew = Lists(world, moving)
     anew.near.MARK["margin"] = lists.margin
-    anew.near = setup.rebuilt(anew.near, world.BODY, world.SHAPE, world.LINK, 0.0)
+    anew.near = setup.rebuilt(anew.near, 0.0)
     for found, held, what in ((slack.find(pose), ours, "kept"), (twin.find(pose), anew.pairs(), "new")):
         if missing := {p for p in as_set(found, moving) if _meet(world, *p)} - held:
             raise ValueError(f"{what} lists lack {sorted(missing)[:5]}")
@@ -192,7 +190,7 @@ def case(name: str, build: Build, steps: int = STEPS, dt: float = DT, looks: int
             check(world, lists, twin, slack)
     for _ in range(looks):
         begin = time.process_time()
-        setup.rebuilt(lists.near, world.BODY, world.SHAPE, world.LINK, 0.0)
+        setup.rebuilt(lists.near, 0.0)
         builds.append(time.process_time() - begin)
     listed, pairs = lists.pairs(), as_set(twin.find(pose), moving)
     find, build_all = statistics.median(finds), statistics.median(builds)

@@ -37,7 +37,7 @@ class Saved:
         scene = self.method.scene
         if not self._fresh or world.bodies.items != self.items or world.shapes != self.shapes:
             return False
-        if self.method.disks != world.disks or not np.array_equal(
+        if scene.COUNT.disks != world.disks or not np.array_equal(
             columns(scene.BODY, *_FIXED), columns(world.BODY, *_FIXED)
         ):
             return False

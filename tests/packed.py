@@ -9,7 +9,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from eeca_pymunk.compiled.records import rows
+from eeca_pymunk.geometry.corners import core_room
 from eeca_pymunk.model.bodies import Body
+from eeca_pymunk.model.scene import scene_with
 from eeca_pymunk.model.shapes import Link, Shape
 
 
@@ -68,17 +70,10 @@ class World:
             shape.bound = rounding + np.hypot(*(v - middle).T).max()
             self.body["extent"][i] = max(self.body["extent"][i], size)
             first += count
-        self.work = np.zeros((2, max((len(v) for _, v, _ in shapes), default=1), 4))
-
-    @property
-    def geometry(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """SHAPE, LINK, VERTEX and WORK."""
-        return self.shape, self.link, self.vertex, self.work
-
-    @property
-    def arrays(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """BODY, SHAPE, LINK, VERTEX and WORK."""
-        return self.body, self.shape, self.link, self.vertex, self.work
+        self.scene = scene_with(
+            BODY=self.body, SHAPE=self.shape, LINK=self.link, VERTEX=self.vertex, CORE=core_room(self.link)
+        )
+        self.scene.COUNT.disks = self.disks
 
 
 def disk(radius: float) -> list[tuple[Sequence[tuple[float, float]], float]]:

@@ -9,7 +9,6 @@ import pytest
 import eeca_pymunk as ep
 import scenes
 from eeca_pymunk.impacts.scene import EventLoop
-from eeca_pymunk.pairs.layout import LEAVES
 from scenes.scene import add_disk, add_walls
 
 
@@ -57,11 +56,11 @@ def test_no_list_and_no_forecast_is_made_where_nothing_is_near() -> None:
     stepper.step(1e-4)
     method = stepper._method
     assert isinstance(method, EventLoop)
-    lists = method.scene.INFO[LEAVES]
+    lists = method.scene.GRID.leaves
     for _ in range(3):
         stepper.step(1e-4)
         assert method.scene.COUNT.forecasts == 0
-    assert method.scene.INFO[LEAVES] == lists
+    assert method.scene.GRID.leaves == lists
 
 
 def test_model_is_one_line_for_every_stepper() -> None:

@@ -13,11 +13,14 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
+from ..compiled import table_of
 from ..compiled.records import columns, put
+from ..geometry.corners import core_room
 from ..geometry.gap import gaps
 from ..model.parameters.detection import GAP_ROUND_OFF
+from ..model.scene import Scene, scene_with
 from ..pairs.candidates import candidates
-from ..pairs.setup import near_lists, rebuilt
+from ..pairs.setup import near_lists, with_more_room
 from ..report import Contacts, Details
 from ..transfer import EVENTS, OVERFLOW, give, take
 from .refusals import check_disks
@@ -120,10 +123,10 @@ class Pairs:
 
     def between(self, position_a: FloatArray, position_b: FloatArray) -> Geometry:
         """Geometry with the bodies of every pair at its own (m, 2) places."""
-        world, m = self._disks.world, len(self)
+        m = len(self)
         POSE_A, POSE_B, OUT = np.zeros((m, 3)), np.zeros((m, 3)), np.empty((m, 5))
         POSE_A[:, :2], POSE_B[:, :2] = position_a, position_b
-        gaps(self.shapes, POSE_A, POSE_B, world.SHAPE, world.LINK, world.VERTEX, self._disks.work, OUT)
+        gaps(self._disks.table, self.shapes, POSE_A, POSE_B, OUT)
         return Geometry(OUT[:, 0].copy(), OUT[:, 1:3].copy(), OUT[:, 3:5].copy())
 
     def at(self, position: FloatArray) -> Geometry:
@@ -150,10 +153,29 @@ class Disks:
         self.world = world
         self.rules: Mapping[tuple[int, int], tuple[float, float, float, float]] = {}
         self.motion: Motion | None = None
-        self.work: FloatArray = np.zeros((2, max(2, int(world.LINK["vertices"].max(initial=2))), 4))
-        self._near = near_lists(world.BODY, world.SHAPE, world.LINK, world.VERTEX, moving)
-        self._usual: FloatArray = self._near.MARK["margin"].copy()
+        scene = scene_with(
+            BODY=world.BODY, SHAPE=world.SHAPE, LINK=world.LINK, VERTEX=world.VERTEX, CORE=core_room(world.LINK)
+        )
+        scene.COUNT.disks = world.disks
+        self.scene = near_lists(scene, moving)
+        self._usual: FloatArray = self.scene.MARK["margin"].copy()
         self._found, self._out = np.zeros((4 * moving + 16, 2), np.int64), np.zeros((4 * moving + 16, 6))
+
+    def __getstate__(self) -> dict[str, object]:
+        return {key: value for key, value in self.__dict__.items() if key != "table"}
+
+    def __setstate__(self, state: dict[str, object]) -> None:
+        self.__dict__.update(state)
+        self.scene = self._scene
+
+    @property
+    def scene(self) -> Scene:
+        """The world, and the near lists of its shapes."""
+        return self._scene
+
+    @scene.setter
+    def scene(self, scene: Scene) -> None:
+        self._scene, self.table = scene, table_of(scene)
 
     def step(
         self, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
@@ -203,14 +225,10 @@ class Disks:
         return Pairs(self, found), Geometry(out[:, 0], out[:, 1:3], out[:, 3:5]), out[:, 5]
 
     def _candidates(self, reach: FloatArray) -> tuple[IntArray, FloatArray]:
-        world = self.world
         while True:
-            count = candidates(
-                world.BODY, world.SHAPE, world.LINK, world.VERTEX, self.work, *self._near, self._usual, world.disks,
-                reach, self._found, self._out,
-            )  # fmt: skip
+            count = candidates(self.table, self._usual, reach, self._found, self._out)
             if count < 0:
-                self._near = rebuilt(self._near.larger(), world.BODY, world.SHAPE, world.LINK, 0.0)
+                self.scene = with_more_room(self.scene, 0.0)
             elif count > len(self._found):
                 self._found, self._out = np.zeros((2 * count, 2), np.int64), np.zeros((2 * count, 6))
             else:

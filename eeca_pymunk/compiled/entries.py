@@ -26,10 +26,10 @@ SOURCES = (
 TABLES = {
     "Scene": """
         BODY:Body[1] STATE:Next[1] SHAPE:Shape[1] LINK:Link[1] VERTEX:f8[2] MARK:Mark[1] CELL:Cell[1] LIST:List[1]
-        POOL:i4[1] FLAG:u1[1] HEAD:i8[1] GRID:f8[1] INFO:i8[1] BOX:f8[2] CSR:i8[1] RULE:f8[2] HEAP_TIME:f8[1]
+        POOL:i4[1] FLAG:u1[1] HEAD:i8[1] GRID:Grid BOX:f8[2] CSR:i8[1] RULE:f8[2] HEAP_TIME:f8[1]
         HEAP_BODY:i8[1] LOG:Impulse[1] BEGAN:f8[2] PLACE:i8[1] BLOCK:i8[1] PULL:f8[2] MEMBER:Member[1] RESTING:Rest[1]
-        PUSHED_BY:Pair[1] PUSHED:Pushed[1] KEYS:i8[1] FORCES:Force[1] WORK:f8[3]
-        MISSED:Missed[1] PAR:Step COUNT:Count
+        PUSHED_BY:Pair[1] PUSHED:Pushed[1] KEYS:i8[1] FORCES:Force[1] CORE:f8[3]
+        SIDE:Side[1] CORNER:Corner[1] MISSED:Missed[1] PAR:Step COUNT:Count
     """,
     "Joints": """
         JOINT:Joint[1] PARTNER:Body[1] COMPONENT:Component[1] MEMBER:ComponentBody[1] LINK:Coupling[1]
@@ -49,11 +49,10 @@ TABLES = {
 }
 
 ENTRIES = {
-    "geometry.gap:gaps": "i8[2] f8[2] f8[2] Shape[1] Link[1] f8[2] f8[3] f8[2]",
-    "pairs.walls:wall_grid": "f8[2] f8[1] i8[1] i8[1]",
-    "pairs.grid:build": "Body[1] Shape[1] Link[1] Mark[1] Cell[1] List[1] i4[1] u1[1] i8[1] f8[1] i8[1] f8[2] i8[1] f8",
-    "pairs.candidates:candidates": "Body[1] Shape[1] Link[1] f8[2] f8[3] Mark[1] Cell[1] List[1] i4[1] u1[1] i8[1]"
-    " f8[1] i8[1] f8[2] i8[1] f8[1] i8 f8[1] i8[2] f8[2]",
+    "geometry.gap:gaps": "{Scene} i8[2] f8[2] f8[2] f8[2]",
+    "pairs.walls:wall_grid": "f8[2] Grid i8[1]",
+    "pairs.grid:build": "{Scene} f8",
+    "pairs.candidates:candidates": "{Scene} f8[1] f8[1] i8[2] f8[2]",
     "transfer:take": "f8[3] i8[2] f8[2] Body[1] f8 f8 f8",
     "transfer:give": "f8[3] i8[2] f8[2] Body[1] f8[1] f8 f8 i8",
     "transfer:lay": "f8[3] i8[2] f8[1] i8",
@@ -66,14 +65,14 @@ ENTRIES = {
     "drowsing:touches": "Impulse[1] i8[1] i8[1] i8[1] i8",
     "rehearsing:changed": "f8[3] f8[2] f8[2]",
     "islands.accounting:flag_again": "{Scene}",
-    "impacts.step:step": "{Scene} f8[3] i8[2] f8[2] f8[1] f8 f8 f8 f8 i8 bool i8",
+    "impacts.step:step": "{Scene} f8[3] i8[2] f8[2] f8[1] f8 f8 f8 f8 bool i8",
     "impacts.midstep:step_together": "{Scene} f8[3] i8[2] f8[2] f8[1] f8[1] f8 f8 f8 f8 i8",
-    "impacts.run:run": "{Scene} {RunArrays} f8[3] i8[2] f8[2] f8[1] f8[1] i8 bool bool",
+    "impacts.run:run": "{Scene} {RunArrays} f8[3] i8[2] f8[2] f8[1] f8[1] bool bool",
     "joints.plan:make_plan": "Body[1] Joint[1] Component[1] ComponentBody[1] Coupling[1]",
     "joints.world:step_all": "{Joints} Body[1] f8",
     "jointed.loop:step_jointed": "{Scene} {Joints} f8[3] i8[2] f8[2] f8[1] f8 f8 f8 f8 bool i8",
     "jointed.together:step_together_jointed": "{Scene} {Joints} f8[3] i8[2] f8[2] f8[1] f8[1] f8 f8 f8 f8 i8",
-    "jointed.run:run_jointed": "{Scene} {Joints} {RunArrays} f8[3] i8[2] f8[2] f8[1] f8[1] i8 bool bool",
+    "jointed.run:run_jointed": "{Scene} {Joints} {RunArrays} f8[3] i8[2] f8[2] f8[1] f8[1] bool bool",
     # Of tests alone, which step islands by themselves: some hundred times slower as plain Python.
     "contacts.interval:step_island": "{Scene} {Island} {Contacts} i8 f8 i8 f8 f8 f8 f8",
     "contacts.memory:forget": "i8[1] Force[1] Count i8[1] Force[1] f8",

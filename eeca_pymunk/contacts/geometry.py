@@ -47,7 +47,7 @@ def gather(
     Returns:
         How many rows, or -1 if there is no room for them.
     """
-    SHAPE, LINK, VERTEX, WORK = S.SHAPE, S.LINK, S.VERTEX, S.WORK
+    SHAPE, LINK = S.SHAPE, S.LINK
     POSE, V, EXTENT, PAIRS = isle.POSE, isle.V, isle.EXTENT, isle.PAIRS
     A, B, ROWS = contacts.A, contacts.B, contacts.ROWS
     NOW, THEN = np.empty((2, 5)), np.empty((2, 5))
@@ -63,15 +63,12 @@ def gather(
             continue
         small = min(SHAPE[s].extent, SHAPE[r].extent)
         reach = REACH[a] + REACH[b]
-        count = manifold(
-            SHAPE, LINK, VERTEX, WORK, s, POSE[a, 0], POSE[a, 1], POSE[a, 2], r, POSE[b, 0], POSE[b, 1], POSE[b, 2],
-            reach, MANIFOLD_ROUND_OFF * small, NOW,
-        )  # fmt: skip
+        count = manifold(S, s, r, POSE, a, b, reach, MANIFOLD_ROUND_OFF * small, NOW)
         if count == 0:
             continue
         if m + count > len(A):
             return -1
-        note_side(SHAPE, LINK, WORK, s, r, NOW[0, 0], NOW[0, 1], True)
+        note_side(S, s, r, NOW[0, 0], NOW[0, 1], True)
         way = half * (
             math.sqrt((V[b, 0] - V[a, 0]) ** 2 + (V[b, 1] - V[a, 1]) ** 2)
             + abs(V[a, 2]) * EXTENT[a]
@@ -87,11 +84,7 @@ def gather(
         far = SHAPE[s].rounding + SHAPE[r].rounding if LINK[s].vertices == 1 and LINK[r].vertices == 1 else small
         ahead = near * small < way and about <= MIDPOINT_WAY * far
         if ahead:
-            again = manifold(
-                SHAPE, LINK, VERTEX, WORK,
-                s, MIDDLE[a, 0], MIDDLE[a, 1], MIDDLE[a, 2], r, MIDDLE[b, 0], MIDDLE[b, 1], MIDDLE[b, 2],
-                reach + about, MANIFOLD_ROUND_OFF * small, THEN,
-            )  # fmt: skip
+            again = manifold(S, s, r, MIDDLE, a, b, reach + about, MANIFOLD_ROUND_OFF * small, THEN)
             ahead = again == count
             for z in range(count):
                 if ahead and THEN[z, 0] * NOW[z, 0] + THEN[z, 1] * NOW[z, 1] < MIDPOINT_TURN:

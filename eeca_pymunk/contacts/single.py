@@ -7,7 +7,7 @@ import math
 from ..compiled import merged, uncounted
 from ..compiled.records import Rows
 from ..geometry.flight import pose
-from ..geometry.gap import gap_at, touching
+from ..geometry.gap import gap, gap_at, touching
 from ..model.bodies import Body
 from ..model.contacts import Impulse
 from ..model.scene import Scene
@@ -42,23 +42,19 @@ def kinetic(BODY: Rows[Body], i: int) -> float:
 
 
 @uncounted
-def touches(A: Scene, disks: int, a: int, b: int, t: float) -> bool:
+def touches(A: Scene, a: int, b: int, t: float) -> bool:
     """Whether shapes a and b touch at instant t, up to round-off."""
-    BODY = A.BODY
-    tolerance = touching(BODY, A.SHAPE, A.LINK, a, b, disks)
+    tolerance = touching(A, a, b)
     if b < A.LIST.shape[0]:
-        if far_apart(BODY, A.SHAPE, A.LINK, a, b, t, tolerance):
+        if far_apart(A, a, b, t, tolerance):
             return False
-        if a < disks and b < disks:
+        if max(a, b) < A.COUNT.disks:
             return True
-    i, j = A.LINK[a].owner, A.LINK[b].owner
-    xa, ya, qa = pose(BODY, i, t)
-    xb, yb, qb = pose(BODY, j, t)
-    return gap_at(A.SHAPE, A.LINK, A.VERTEX, A.WORK, a, xa, ya, qa, b, xb, yb, qb)[0] <= tolerance
+    return gap(A, a, b, t)[0] <= tolerance
 
 
 @merged
-def alone(A: Scene, disks: int, i: int, other: int, t: float) -> bool:
+def alone(A: Scene, i: int, other: int, t: float) -> bool:
     """Whether no shape but `other` touches the shapes of body i at instant t."""
     BODY, POOL = A.BODY, A.POOL
     x, y, _ = pose(BODY, i, t)
@@ -69,7 +65,7 @@ def alone(A: Scene, disks: int, i: int, other: int, t: float) -> bool:
             o = int(POOL[q])
             if o == other:
                 continue
-            if o < disks:
+            if o < A.COUNT.disks:
                 # Most are plainly apart.
                 h = t - BODY[o].since
                 if not even:
@@ -79,7 +75,7 @@ def alone(A: Scene, disks: int, i: int, other: int, t: float) -> bool:
                 far = 1.001 * (BODY[i].extent + BODY[o].extent) + 1e-9 * (abs(x) + abs(y))
                 if dx * dx + dy * dy > far * far:
                     continue
-            if touches(A, disks, s, o, t) and not barred(A.RULE, s, o):
+            if touches(A, s, o, t) and not barred(A.RULE, s, o):
                 return False
     return True
 
@@ -104,15 +100,15 @@ def law_of_disks(BODY: Rows[Body], i: int, j: int) -> tuple[float, float, float,
 
 
 @merged
-def strike_disk(A: Scene, disks: int, i: int, o: int, t: float) -> None:
-    """Impact of the lone disk i with shape o, another of the lone `disks` or static.
+def strike_disk(A: Scene, i: int, o: int, t: float) -> None:
+    """Impact of the lone disk i with shape o, another lone disk or static.
 
     The normal goes through both centres, so that the two directions do not mix:
 
         lam = (1 + e) |u_n| / (1/m_i + 1/m_j),   beta = -u_t / A_tt, at most mu lam,   A_tt = sum 1/m + r^2/I.
     """
     BODY, PAR = A.BODY, A.PAR
-    disk = o < disks
+    disk = o < A.COUNT.disks
     j = o if disk else A.LINK[o].owner
     move_to(BODY, i, t)
     x, y = BODY[i].x, BODY[i].y
@@ -123,9 +119,7 @@ def strike_disk(A: Scene, disks: int, i: int, o: int, t: float) -> None:
         nx, ny = nx / d, ny / d
         px, py = x + BODY[i].extent * nx, y + BODY[i].extent * ny
     else:
-        _, nx, ny, px, py = gap_at(
-            A.SHAPE, A.LINK, A.VERTEX, A.WORK, i, x, y, BODY[i].angle, o, BODY[j].x, BODY[j].y, BODY[j].angle
-        )
+        _, nx, ny, px, py = gap_at(A, i, x, y, BODY[i].angle, o, BODY[j].x, BODY[j].y, BODY[j].angle)
     e, mu, sx, sy = law_of_disks(BODY, i, j)
     if not disk or mu > 0.0 or A.RULE.shape[0] > 0:
         e, mu, sx, sy = law(A.SHAPE, A.RULE, i, o)

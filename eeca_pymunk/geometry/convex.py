@@ -20,21 +20,19 @@ import math
 
 from ..arrays import FloatArray
 from ..compiled import uncounted
-from ..compiled.records import Rows
 from ..model.parameters.detection import AXIS_TIE, DIRECTION_ROUND_OFF, EDGE_TIE
-from ..model.shapes import Link
+from ..model.scene import Scene
 
 _FAR = math.inf
 
 
 @uncounted
-def place(LINK: Rows[Link], VERTEX: FloatArray, s: int, x: float, y: float, angle: float, OUT: FloatArray) -> int:
+def place(A: Scene, s: int, x: float, y: float, angle: float, OUT: FloatArray) -> int:
     """Vertices and outward normals of shape s, its body at (x, y, angle), into OUT (at least as many, 4); how many.
 
     Exact for angle 0 and for a vertex at the centre of mass.
     """
-    first: int = LINK[s].first
-    count: int = LINK[s].vertices
+    VERTEX, first, count = A.VERTEX, A.LINK[s].first, A.LINK[s].vertices
     if angle == 0.0 or (count == 1 and VERTEX[first, 0] == 0.0 and VERTEX[first, 1] == 0.0):
         for k in range(count):
             OUT[k, 0] = x + VERTEX[first + k, 0]

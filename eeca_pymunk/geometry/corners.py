@@ -1,8 +1,8 @@
-"""Which shapes are thin, and at which corners segments meet: what `sides.py` asks for, from the shapes as they stand.
+"""Which shapes are thin, and at which corners segments meet: what `sides.py` needs, from the shapes as they stand.
 
-Row 4 s + 2 e + t of WORK[CORNERS] is about end e of segment s, with u the direction from there along s: of the segments
-that meet there (1 + shape, cosine, sine, ...) of the one that comes next about that end, counter-clockwise from u for
-t = 0, clockwise for t = 1, with the angle from u to it; 0 if none does. The fourth number of row 4 s is 1 for a thin s.
+Row 4 s + 2 e + t of CORNER is about end e of segment s, with u the direction from there along s: of the segments that
+meet there it has the one that comes next about that end, counter-clockwise from u for t = 0, clockwise for t = 1, with
+the angle from u to it. Row 4 s says whether s is thin.
 """
 
 from __future__ import annotations
@@ -10,29 +10,32 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
-from ..compiled.records import Rows
+from ..compiled.records import Rows, rows
 from ..model.parameters.detection import CORNER_MEET, SLENDER
-from ..model.shapes import Link
-from .sides import CORNERS
+from ..model.shapes import Corner, Link, Side
 
 _SIDES, _MANY = 64, 1 << 16  # pairs of every thin shape that moves, whose sides are remembered; of all, at most
 _CHUNK = 256
 
 
-def work_room(LINK: Rows[Link], VERTEX: FloatArray, moving: int) -> FloatArray:
-    """WORK: scratch for the vertices of two shapes; with the memory of sides where thin shapes may meet."""
-    vertices = max(2, int(LINK["vertices"].max(initial=2)))
+def core_room(LINK: Rows[Link]) -> FloatArray:
+    """CORE: scratch for the vertices of two shapes."""
+    return np.zeros((2, max(2, int(LINK["vertices"].max(initial=2))), 4))
+
+
+def thin_memory(LINK: Rows[Link], VERTEX: FloatArray, moving: int) -> tuple[Rows[Side], Rows[Corner]]:
+    """SIDE and CORNER, without rows where no thin shapes may meet."""
     flat = thin(LINK, VERTEX)
     few = int(flat[:moving].sum())
     if few == 0 or flat.sum() < 2:
-        return np.zeros((2, vertices, 4))
+        return rows(Side, 0), rows(Corner, 0)
     slots = 64
-    while slots < max(vertices, 4 * len(LINK), min(_SIDES * few, _MANY)):
+    while slots < max(4 * len(LINK), min(_SIDES * few, _MANY)):
         slots *= 2
-    WORK = np.zeros((CORNERS + 1, slots, 4))
-    WORK[CORNERS, : 4 * len(LINK) : 4, 3] = flat
-    note_corners(LINK, VERTEX, WORK[CORNERS])
-    return WORK
+    CORNER = rows(Corner, 4 * len(LINK))
+    CORNER["thin"][::4] = flat
+    note_corners(LINK, VERTEX, CORNER)
+    return rows(Side, slots), CORNER
 
 
 def thin(LINK: Rows[Link], VERTEX: FloatArray) -> BoolArray:
@@ -52,7 +55,7 @@ def thin(LINK: Rows[Link], VERTEX: FloatArray) -> BoolArray:
     return flat
 
 
-def note_corners(LINK: Rows[Link], VERTEX: FloatArray, CORNER: FloatArray) -> None:
+def note_corners(LINK: Rows[Link], VERTEX: FloatArray, CORNER: Rows[Corner]) -> None:
     """Fill in the corners of all segments; those of one body meet."""
     some: IntArray = np.flatnonzero(LINK["vertices"] == 2)
     if len(some) < 2:
@@ -76,7 +79,7 @@ def note_corners(LINK: Rows[Link], VERTEX: FloatArray, CORNER: FloatArray) -> No
 
 
 def _note(
-    CORNER: FloatArray, some: IntArray, s: int, e: int, j: int, u: FloatArray, v: FloatArray, place: float
+    CORNER: Rows[Corner], some: IntArray, s: int, e: int, j: int, u: FloatArray, v: FloatArray, place: float
 ) -> None:  # fmt: skip
     """Note that segment j, along v, passes or ends at end e of segment s, so far from its own start."""
     length = float(np.hypot(*v))
@@ -87,8 +90,9 @@ def _note(
         c, z = scale * float(u @ v), scale * float(u[0] * v[1] - u[1] * v[0])
         for turn in range(2):
             row = CORNER[4 * some[s] + 2 * e + turn]
-            if row[0] == 0.0 or _before((1.0 - 2.0 * turn) * z, c, (1.0 - 2.0 * turn) * row[2], row[1]):
-                row[:3] = some[j] + 1.0, c, z
+            sign_of = 1.0 - 2.0 * turn
+            if row.other == 0 or _before(sign_of * z, c, sign_of * row.sine, row.cosine):
+                row.other, row.cosine, row.sine = some[j] + 1, c, z
 
 
 def _before(z: float, c: float, sine: float, cosine: float) -> bool:

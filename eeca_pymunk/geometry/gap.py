@@ -5,8 +5,7 @@
 with the roundings r; p is halfway between the two surfaces. Exchanging a and b changes no bit of g, n (but its sign)
 and p: pairs are computed from the lower shape number to the higher one.
 
-WORK (2, K, 4) is scratch, K the most vertices of a shape: the placed cores of a and b. Where segments may meet it has
-a third part, the memory of `sides.py`.
+The placed cores of a and b stand in CORE afterwards, but for points.
 """
 
 from __future__ import annotations
@@ -14,20 +13,18 @@ from __future__ import annotations
 import math
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import uncounted
-from ..compiled.records import Rows
-from ..model.bodies import Body
+from ..compiled import Table, uncounted
 from ..model.parameters.detection import CORNER_ROUND_OFF, GAP_ROUND_OFF
-from ..model.shapes import Link, Shape
+from ..model.scene import Scene, scene_of
 from .convex import place, point_core
 from .flight import pose
 from .sides import closest_on_side
 
 
 @uncounted
-def centre(LINK: Rows[Link], VERTEX: FloatArray, s: int, x: float, y: float, angle: float) -> tuple[float, float]:
+def centre(A: Scene, s: int, x: float, y: float, angle: float) -> tuple[float, float]:
     """World position of the one vertex of disk s; that of the body, to the last digit, if it is the centre of mass."""
-    px, py = VERTEX[LINK[s].first, 0], VERTEX[LINK[s].first, 1]
+    px, py = A.VERTEX[A.LINK[s].first, 0], A.VERTEX[A.LINK[s].first, 1]
     if px == 0.0 and py == 0.0:
         return x, y
     if angle == 0.0:
@@ -38,27 +35,27 @@ def centre(LINK: Rows[Link], VERTEX: FloatArray, s: int, x: float, y: float, ang
 
 @uncounted
 def ordered_gap(
-    SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, WORK: FloatArray,
-    a: int, x_a: float, y_a: float, angle_a: float, b: int, x_b: float, y_b: float, angle_b: float,
+    A: Scene, a: int, x_a: float, y_a: float, angle_a: float, b: int, x_b: float, y_b: float, angle_b: float
 ) -> tuple[float, float, float, float, float]:  # fmt: skip
-    """`gap_at` of shapes in the order of their numbers; a's placed core goes to WORK[0], b's to WORK[1]."""
-    r_a, r_b = SHAPE[a].rounding, SHAPE[b].rounding
+    """`gap_at` of shapes in the order of their numbers; a's placed core goes to CORE[0], b's to CORE[1]."""
+    LINK, P, Q = A.LINK, A.CORE[0], A.CORE[1]
+    r_a, r_b = A.SHAPE[a].rounding, A.SHAPE[b].rounding
     if LINK[a].vertices == 1 and LINK[b].vertices == 1:
-        x, y = centre(LINK, VERTEX, a, x_a, y_a, angle_a)
-        px, py = centre(LINK, VERTEX, b, x_b, y_b, angle_b)
+        x, y = centre(A, a, x_a, y_a, angle_a)
+        px, py = centre(A, b, x_b, y_b, angle_b)
         dx, dy = px - x, py - y
         d = math.sqrt(dx * dx + dy * dy)
         nx, ny = 1.0, 0.0
         if d > 0.0:
             nx, ny = dx / d, dy / d
     elif LINK[a].vertices == 1:
-        x, y = centre(LINK, VERTEX, a, x_a, y_a, angle_a)
-        q = place(LINK, VERTEX, b, x_b, y_b, angle_b, WORK[1])
-        d, nx, ny, _, _, _ = point_core(x, y, WORK[1], q)
+        x, y = centre(A, a, x_a, y_a, angle_a)
+        q = place(A, b, x_b, y_b, angle_b, Q)
+        d, nx, ny, _, _, _ = point_core(x, y, Q, q)
     else:
-        p = place(LINK, VERTEX, a, x_a, y_a, angle_a, WORK[0])
-        q = place(LINK, VERTEX, b, x_b, y_b, angle_b, WORK[1])
-        d, nx, ny, x, y, _, _, _, _, _ = closest_on_side(SHAPE, LINK, WORK, WORK[0], p, WORK[1], q, a, b)
+        p = place(A, a, x_a, y_a, angle_a, P)
+        q = place(A, b, x_b, y_b, angle_b, Q)
+        d, nx, ny, x, y, _, _, _, _, _ = closest_on_side(A, P, p, Q, q, a, b)
     g = d - r_a - r_b
     away = r_a + 0.5 * g
     return g, nx, ny, x + away * nx, y + away * ny
@@ -66,58 +63,46 @@ def ordered_gap(
 
 @uncounted
 def gap_at(
-    SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, WORK: FloatArray,
-    a: int, x_a: float, y_a: float, angle_a: float, b: int, x_b: float, y_b: float, angle_b: float,
+    A: Scene, a: int, x_a: float, y_a: float, angle_a: float, b: int, x_b: float, y_b: float, angle_b: float
 ) -> tuple[float, float, float, float, float]:  # fmt: skip
     """Gap (length), unit normal (2) from a to b and point (2) of shapes a and b, their bodies at the given poses."""
     sign = 1.0
     if a > b:
         sign = -1.0
         a, x_a, y_a, angle_a, b, x_b, y_b, angle_b = b, x_b, y_b, angle_b, a, x_a, y_a, angle_a
-    g, nx, ny, px, py = ordered_gap(SHAPE, LINK, VERTEX, WORK, a, x_a, y_a, angle_a, b, x_b, y_b, angle_b)
+    g, nx, ny, px, py = ordered_gap(A, a, x_a, y_a, angle_a, b, x_b, y_b, angle_b)
     return g, sign * nx, sign * ny, px, py
 
 
 @uncounted
-def gap(
-    BODY: Rows[Body],
-    SHAPE: Rows[Shape],
-    LINK: Rows[Link],
-    VERTEX: FloatArray,
-    WORK: FloatArray,
-    a: int,
-    b: int,
-    t: float,
-) -> tuple[float, float, float, float, float]:
+def gap(A: Scene, a: int, b: int, t: float) -> tuple[float, float, float, float, float]:
     """`gap_at` of shapes a and b at instant t of their bodies' paths."""
-    x_a, y_a, angle_a = pose(BODY, LINK[a].owner, t)
-    x_b, y_b, angle_b = pose(BODY, LINK[b].owner, t)
-    return gap_at(SHAPE, LINK, VERTEX, WORK, a, x_a, y_a, angle_a, b, x_b, y_b, angle_b)
+    x_a, y_a, angle_a = pose(A.BODY, A.LINK[a].owner, t)
+    x_b, y_b, angle_b = pose(A.BODY, A.LINK[b].owner, t)
+    return gap_at(A, a, x_a, y_a, angle_a, b, x_b, y_b, angle_b)
 
 
 @uncounted
-def gaps(
-    PAIRS: IntArray, POSE_A: FloatArray, POSE_B: FloatArray, SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray,
-    WORK: FloatArray, OUT: FloatArray,
-) -> None:  # fmt: skip
+def gaps(table: Table, PAIRS: IntArray, POSE_A: FloatArray, POSE_B: FloatArray, OUT: FloatArray) -> None:
     """`gap_at` of PAIRS (m, 2) of shapes with their bodies at POSE_A and POSE_B (m, 3): rows (g, n_x, n_y, p_x, p_y) of
     OUT."""
+    A = scene_of(table)
     for k in range(PAIRS.shape[0]):
         OUT[k, 0], OUT[k, 1], OUT[k, 2], OUT[k, 3], OUT[k, 4] = gap_at(
-            SHAPE, LINK, VERTEX, WORK,
-            PAIRS[k, 0], POSE_A[k, 0], POSE_A[k, 1], POSE_A[k, 2],
+            A, PAIRS[k, 0], POSE_A[k, 0], POSE_A[k, 1], POSE_A[k, 2],
             PAIRS[k, 1], POSE_B[k, 0], POSE_B[k, 1], POSE_B[k, 2],
         )  # fmt: skip
 
 
 @uncounted
-def touching(BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], a: int, b: int, disks: int) -> float:
+def touching(A: Scene, a: int, b: int) -> float:
     """Length up to which a gap of shapes a and b is round-off of positions and sizes: they touch exactly.
 
     1e-12 (max(|x|, |y|) + sizes), where the sizes are the roundings for two lone disks and for a lone disk and a
     static shape; else four times the roundings and the larger extent of the two. Of a static shape, whose place is
     that of its vertices, the bounding circle is the extent; positions are those of the bodies that move.
     """
+    BODY, SHAPE, LINK, disks = A.BODY, A.SHAPE, A.LINK, A.COUNT.disks
     ground = BODY.shape[0] - 1
     i, j = LINK[a].owner, LINK[b].owner
     far: float = max(max(abs(BODY[i].x), abs(BODY[i].y)), max(abs(BODY[j].x), abs(BODY[j].y)))

@@ -12,9 +12,8 @@ import math
 
 from ..arrays import FloatArray
 from ..compiled import uncounted
-from ..compiled.records import Rows
 from ..model.parameters.detection import FACE_WIDTH
-from ..model.shapes import Link, Shape
+from ..model.scene import Scene
 from .convex import place, prefers_second
 from .gap import ordered_gap
 from .sides import closest_on_side
@@ -76,55 +75,47 @@ def reverse(OUT: FloatArray, count: int) -> None:
 
 @uncounted
 def ordered_manifold(
-    SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, WORK: FloatArray,
-    a: int, x_a: float, y_a: float, angle_a: float, b: int, x_b: float, y_b: float, angle_b: float,
-    reach: float, tolerance: float, OUT: FloatArray,
-) -> int:  # fmt: skip
+    A: Scene, s: int, r: int, POSE: FloatArray, a: int, b: int, reach: float, tolerance: float, OUT: FloatArray
+) -> int:
     """`manifold` of shapes in the order of their numbers."""
-    r_a, r_b = SHAPE[a].rounding, SHAPE[b].rounding
-    if LINK[a].vertices == 1 or LINK[b].vertices == 1:
-        g, nx, ny, px, py = ordered_gap(
-            SHAPE, LINK, VERTEX, WORK, a, x_a, y_a, angle_a, b, x_b, y_b, angle_b
-        )  # fmt: skip
+    LINK, P, Q = A.LINK, A.CORE[0], A.CORE[1]
+    r_s, r_r = A.SHAPE[s].rounding, A.SHAPE[r].rounding
+    x_a, y_a, angle_a, x_b, y_b, angle_b = POSE[a, 0], POSE[a, 1], POSE[a, 2], POSE[b, 0], POSE[b, 1], POSE[b, 2]
+    if LINK[s].vertices == 1 or LINK[r].vertices == 1:
+        g, nx, ny, px, py = ordered_gap(A, s, x_a, y_a, angle_a, r, x_b, y_b, angle_b)
         OUT[0, 0], OUT[0, 1], OUT[0, 2], OUT[0, 3], OUT[0, 4] = nx, ny, px, py, g
         return 1 if g <= reach else 0
-    P, Q = WORK[0], WORK[1]
-    p = place(LINK, VERTEX, a, x_a, y_a, angle_a, P)
-    q = place(LINK, VERTEX, b, x_b, y_b, angle_b, Q)
-    d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q = closest_on_side(SHAPE, LINK, WORK, P, p, Q, q, a, b)
-    g = d - r_a - r_b
+    p = place(A, s, x_a, y_a, angle_a, P)
+    q = place(A, r, x_b, y_b, angle_b, Q)
+    d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q = closest_on_side(A, P, p, Q, q, s, r)
+    g = d - r_s - r_r
     if g > reach:
         return 0
     if not flat and d > max(apart_p, apart_q) + tolerance:  # two corners
-        away = r_a + 0.5 * g
+        away = r_s + 0.5 * g
         OUT[0, 0], OUT[0, 1], OUT[0, 2], OUT[0, 3], OUT[0, 4] = nx, ny, x + away * nx, y + away * ny, g
         return 1
     if prefers_second(P, p, edge_p, apart_p, Q, q, edge_q, apart_q, tolerance):
-        return clip(Q, q, edge_q, P, p, r_b, r_a, -1.0, reach, OUT)
-    return clip(P, p, edge_p, Q, q, r_a, r_b, 1.0, reach, OUT)
+        return clip(Q, q, edge_q, P, p, r_r, r_s, -1.0, reach, OUT)
+    return clip(P, p, edge_p, Q, q, r_s, r_r, 1.0, reach, OUT)
 
 
 @uncounted
 def manifold(
-    SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, WORK: FloatArray,
-    a: int, x_a: float, y_a: float, angle_a: float, b: int, x_b: float, y_b: float, angle_b: float,
-    reach: float, tolerance: float, OUT: FloatArray,
-) -> int:  # fmt: skip
-    """How many (0, 1 or 2) points of shapes a and b are no farther apart than `reach` (length), into OUT (2, 5).
+    A: Scene, s: int, r: int, POSE: FloatArray, a: int, b: int, reach: float, tolerance: float, OUT: FloatArray
+) -> int:
+    """How many (0, 1 or 2) points of shapes s and r are no farther apart than `reach` (length), into OUT (2, 5).
 
     Args:
+        POSE: (k, 3) x, y and angle; rows a and b are those of the bodies of s and r.
         tolerance: length, by which the shapes may be less far apart along the longer of two reference faces, and by
             which two corners must be farther apart than the faces beside them to be a contact of their own.
-        OUT: rows (n_x, n_y, p_x, p_y, g), the gap along the reference face's normal.
+        OUT: rows (n_x, n_y, p_x, p_y, g), normals from s to r, the gap along the reference face's normal.
     """
-    swapped = a > b
-    if swapped:
-        a, x_a, y_a, angle_a, b, x_b, y_b, angle_b = b, x_b, y_b, angle_b, a, x_a, y_a, angle_a
-    count = ordered_manifold(
-        SHAPE, LINK, VERTEX, WORK, a, x_a, y_a, angle_a, b, x_b, y_b, angle_b, reach, tolerance, OUT
-    )
-    if swapped:
-        reverse(OUT, count)
+    if s <= r:
+        return ordered_manifold(A, s, r, POSE, a, b, reach, tolerance, OUT)
+    count = ordered_manifold(A, r, s, POSE, b, a, reach, tolerance, OUT)
+    reverse(OUT, count)
     return count
 
 
@@ -146,31 +137,27 @@ def support_range(P: FloatArray, p: int, nx: float, ny: float, tolerance: float)
 
 
 @uncounted
-def face(
-    SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, WORK: FloatArray,
-    a: int, x_a: float, y_a: float, angle_a: float, b: int, x_b: float, y_b: float, angle_b: float,
-    tolerance: float, OUT: FloatArray,
-) -> int:  # fmt: skip
-    """The contact of shapes that meet, into OUT as `manifold` does: 2 rows, the ends of their common face, where both
-    have an edge across the normal within `tolerance` (length), else 1. The gap is the same at both ends.
+def face(A: Scene, s: int, r: int, POSE: FloatArray, a: int, b: int, tolerance: float, OUT: FloatArray) -> int:
+    """The contact of shapes s and r that meet, into OUT as `manifold` does: 2 rows, the ends of their common face,
+    where both have an edge across the normal within `tolerance` (length), else 1. The gap is the same at both ends.
 
     In overlap every corner that is inside acts: the tolerance grows by the depth.
     """
-    swapped = a > b
+    swapped = s > r
     if swapped:
-        a, x_a, y_a, angle_a, b, x_b, y_b, angle_b = b, x_b, y_b, angle_b, a, x_a, y_a, angle_a
-    g, nx, ny, px, py = ordered_gap(SHAPE, LINK, VERTEX, WORK, a, x_a, y_a, angle_a, b, x_b, y_b, angle_b)
+        s, r, a, b = r, s, b, a
+    g, nx, ny, px, py = ordered_gap(A, s, POSE[a, 0], POSE[a, 1], POSE[a, 2], r, POSE[b, 0], POSE[b, 1], POSE[b, 2])
     count = 1
     OUT[0, 0], OUT[0, 1], OUT[0, 2], OUT[0, 3], OUT[0, 4] = nx, ny, px, py, g
-    p, q = LINK[a].vertices, LINK[b].vertices
+    p, q = A.LINK[s].vertices, A.LINK[r].vertices
     if p > 1 and q > 1:
         slack = tolerance + max(-g, 0.0)
-        low_p, high_p, top, size_p = support_range(WORK[0], p, nx, ny, slack)
-        low_q, high_q, _, size_q = support_range(WORK[1], q, -nx, -ny, slack)
+        low_p, high_p, top, size_p = support_range(A.CORE[0], p, nx, ny, slack)
+        low_q, high_q, _, size_q = support_range(A.CORE[1], q, -nx, -ny, slack)
         low, high = max(low_p, -high_q), min(high_p, -low_q)
         if high - low > FACE_WIDTH * max(size_p, size_q):
             count = 2
-            top += SHAPE[a].rounding + 0.5 * g
+            top += A.SHAPE[s].rounding + 0.5 * g
             for k in range(2):
                 u = low if k == 0 else high
                 OUT[k, 0], OUT[k, 1], OUT[k, 4] = nx, ny, g
@@ -181,15 +168,15 @@ def face(
 
 
 @uncounted
-def half_width(SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, s: int) -> float:
+def half_width(A: Scene, s: int) -> float:
     """Half the least width of shape s: as deep another may come into it and is on the side that it came from."""
-    first, count, least = LINK[s].first, LINK[s].vertices, math.inf
+    VERTEX, first, count, least = A.VERTEX, A.LINK[s].first, A.LINK[s].vertices, math.inf
     if count < 3:
-        return SHAPE[s].rounding
+        return A.SHAPE[s].rounding
     for j in range(first, first + count):
         most = 0.0
         for k in range(first, first + count):
             x, y = VERTEX[j, 0] - VERTEX[k, 0], VERTEX[j, 1] - VERTEX[k, 1]
             most = max(most, x * VERTEX[j, 2] + y * VERTEX[j, 3])
         least = min(least, most)
-    return SHAPE[s].rounding + 0.5 * least
+    return A.SHAPE[s].rounding + 0.5 * least

@@ -3,10 +3,10 @@
 Thin are segments and planks, whose cores have no inside, or hardly any. Along the normals of an edge's two sides two
 segments that lie flush are equally far apart, 0, and of thin shapes that have come to cross by round-off, or by the
 error of a step, the nearer way out may be the wrong one. So pairs of them remember a normal m from a to b, in the
-memory of sides, WORK[SIDES]: rows (1 + a k + b, m_x, m_y, depth) for the shapes a < b of k. It holds
+memory of sides, the rows of SIDE. It holds
 
 * for cores that touch, up to 1e-4 of the smaller one, and
-* for contacts that forces hold (`depth` > 0) as far as they may have come through one another: a normal against m is
+* for contacts that forces hold (`deep` > 0) as far as they may have come through one another: a normal against m is
   the wrong one up to that distance (length), and the gap is negative.
 
 What is farther apart has its side from the geometry, and the forecasts of its next impact note it.
@@ -14,7 +14,7 @@ What is farther apart has its side from the geometry, and the forecasts of its n
 Segments of one body that meet, end to end or an end on the other, are one boundary. What lies in the corner between
 two, by its side of one, and is nearest to the other where they meet, is on that one's side that looks into the corner:
 there it meets that side as if it went on beyond the end, by 0.4 of the smaller shape. In a corner of less than 180
-degrees nothing of that is inside, so the corner stays what it is. (WORK[CORNERS], see `corners.py`)
+degrees nothing of that is inside, so the corner stays what it is. (CORNER, see `corners.py`)
 """
 
 from __future__ import annotations
@@ -23,73 +23,80 @@ import math
 
 from ..arrays import FloatArray
 from ..compiled import uncounted
-from ..compiled.records import Rows
 from ..model.parameters.detection import SIDE_HELD, SIDE_OPPOSITE, SIDE_TOUCH, SIDE_UNSURE, STRAIGHT
-from ..model.shapes import Link, Shape
+from ..model.scene import Scene
 from .convex import closest
 
-SIDES, CORNERS = 2, 3  # of WORK
 _PROBES = 16  # rows that a pair may stand in
 _SCATTER = 40503
 
 
 @uncounted
-def remembers(LINK: Rows[Link], WORK: FloatArray, a: int, b: int) -> bool:
+def remembers(A: Scene, a: int, b: int) -> bool:
     """Whether shapes a and b are thin, in a scene that remembers sides."""
-    if WORK.shape[0] <= SIDES or LINK[a].vertices < 2 or LINK[b].vertices < 2:
+    if len(A.SIDE) == 0 or A.LINK[a].vertices < 2 or A.LINK[b].vertices < 2:
         return False
-    return bool(WORK[CORNERS, 4 * a, 3] > 0.0 and WORK[CORNERS, 4 * b, 3] > 0.0)
+    return bool(A.CORNER[4 * a].thin > 0 and A.CORNER[4 * b].thin > 0)
 
 
 @uncounted
-def side_row(WORK: FloatArray, key: int) -> int:
+def key_of(A: Scene, a: int, b: int) -> int:
+    """The number of the pair a < b in the memory."""
+    return 1 + a * len(A.SHAPE) + b
+
+
+@uncounted
+def side_row(A: Scene, key: int) -> int:
     """The row of a pair in the memory, or else one for it: a free one, if there is any nearby."""
-    mask = WORK.shape[1] - 1
-    first = (key * _SCATTER >> 3) & mask
+    SIDE, mask = A.SIDE, len(A.SIDE) - 1
+    first = ((key - 1) * _SCATTER >> 3) & mask
     for k in range(_PROBES):
         row = (first + k) & mask
-        if WORK[SIDES, row, 0] == key + 1.0 or WORK[SIDES, row, 0] == 0.0:
+        if SIDE[row].key == key or SIDE[row].key == 0:
             return row
     return first
 
 
 @uncounted
-def note_side(
-    SHAPE: Rows[Shape], LINK: Rows[Link], WORK: FloatArray, a: int, b: int, nx: float, ny: float, held: bool
-) -> None:  # fmt: skip
+def smaller(A: Scene, a: int, b: int) -> float:
+    """The smaller extent of two shapes, length."""
+    return min(A.SHAPE[a].extent, A.SHAPE[b].extent)
+
+
+@uncounted
+def note_side(A: Scene, a: int, b: int, nx: float, ny: float, held: bool) -> None:
     """Remember the normal n from shape a to shape b; `held` if forces hold them in contact."""
-    if not remembers(LINK, WORK, a, b):
+    if not remembers(A, a, b):
         return
     if a > b:
         a, b, nx, ny = b, a, -nx, -ny
-    key = a * SHAPE.shape[0] + b
-    row = side_row(WORK, key)
-    WORK[SIDES, row, 0], WORK[SIDES, row, 1], WORK[SIDES, row, 2] = key + 1.0, nx, ny
-    WORK[SIDES, row, 3] = SIDE_HELD * min(SHAPE[a].extent, SHAPE[b].extent) if held else 0.0
+    key = key_of(A, a, b)
+    side = A.SIDE[side_row(A, key)]
+    side.key, side.nx, side.ny = key, nx, ny
+    side.deep = SIDE_HELD * smaller(A, a, b) if held else 0.0
 
 
 @uncounted
-def near_side(SHAPE: Rows[Shape], a: int, b: int) -> float:
+def near_side(A: Scene, a: int, b: int) -> float:
     """Length up to which cores touch, so that the memory tells their side."""
-    return SIDE_TOUCH * min(SHAPE[a].extent, SHAPE[b].extent)
+    return SIDE_TOUCH * smaller(A, a, b)
 
 
 @uncounted
-def known_side(SHAPE: Rows[Shape], LINK: Rows[Link], WORK: FloatArray, a: int, b: int) -> bool:
+def known_side(A: Scene, a: int, b: int) -> bool:
     """Whether the pair a < b of thin shapes has a remembered normal."""
-    key = a * SHAPE.shape[0] + b
-    return bool(WORK[SIDES, side_row(WORK, key), 0] == key + 1.0)
+    key = key_of(A, a, b)
+    return bool(A.SIDE[side_row(A, key)].key == key)
 
 
 @uncounted
-def forget_sides(LINK: Rows[Link], WORK: FloatArray, shapes: int, i: int) -> None:
+def forget_sides(A: Scene, i: int) -> None:
     """Forget the sides of all shapes of body i, which was put where it is."""
-    if WORK.shape[0] <= SIDES:
-        return
-    for row in range(WORK.shape[1]):
-        key = int(WORK[SIDES, row, 0]) - 1
-        if key >= 0 and (LINK[key // shapes].owner == i or LINK[key % shapes].owner == i):
-            WORK[SIDES, row, 0] = -1.0  # others stand behind it
+    SIDE, LINK, shapes = A.SIDE, A.LINK, len(A.SHAPE)
+    for row in range(len(SIDE)):
+        pair = SIDE[row].key - 1
+        if pair >= 0 and (LINK[pair // shapes].owner == i or LINK[pair % shapes].owner == i):
+            SIDE[row].key = -1  # others stand behind it
 
 
 @uncounted
@@ -114,21 +121,21 @@ def axis(
 
 
 @uncounted
-def side_of(SHAPE: Rows[Shape], WORK: FloatArray, a: int, b: int) -> tuple[float, float]:
+def side_of(A: Scene, a: int, b: int) -> tuple[float, float]:
     """The remembered normal from shape a to shape b, (0, 0) if there is none."""
     sign = 1.0
     if a > b:
         a, b, sign = b, a, -1.0
-    key = a * SHAPE.shape[0] + b
-    row = side_row(WORK, key)
-    if WORK[SIDES, row, 0] != key + 1.0:
+    key = key_of(A, a, b)
+    side = A.SIDE[side_row(A, key)]
+    if side.key != key:
         return 0.0, 0.0
-    return sign * WORK[SIDES, row, 1], sign * WORK[SIDES, row, 2]
+    return sign * side.nx, sign * side.ny
 
 
 @uncounted
 def corner_of(
-    SHAPE: Rows[Shape], WORK: FloatArray, W: FloatArray, w: int, o: int, x: float, y: float, deep: float
+    A: Scene, W: FloatArray, w: int, o: int, x: float, y: float, deep: float
 ) -> tuple[int, float, float]:  # fmt: skip
     """Of shape o, which is nearest to the segment w, placed as W, at the point (x, y): the end of w there, if o lies in
     a corner at that end, -1 if in none, and the normal (2) of the side of w that looks into that. There W goes on by
@@ -140,17 +147,16 @@ def corner_of(
     if (x - W[0, 0]) * ux + (y - W[0, 1]) * uy > 0.5 * length:
         end, ux, uy = 1, -ux, -uy
     for turn in range(2):
-        row = 4 * w + 2 * end + turn
-        other = int(WORK[CORNERS, row, 0]) - 1
+        corner = A.CORNER[4 * w + 2 * end + turn]
+        other, c, z = corner.other - 1, corner.cosine, corner.sine
         sign = 1.0 - 2.0 * turn
-        c, z = WORK[CORNERS, row, 1], WORK[CORNERS, row, 2]
         if other < 0 or other == o or sign * z <= STRAIGHT:
             continue
         lx, ly = -sign * uy, sign * ux
-        mx, my = side_of(SHAPE, WORK, other, o)
+        mx, my = side_of(A, other, o)
         if sign * (mx * (z * ux + c * uy) - my * (c * ux - z * uy)) < SIDE_UNSURE:
             continue
-        mx, my = side_of(SHAPE, WORK, w, o)
+        mx, my = side_of(A, w, o)
         if mx * lx + my * ly >= SIDE_OPPOSITE:
             W[end, 0], W[end, 1] = W[end, 0] - deep * ux, W[end, 1] - deep * uy
             return end, lx, ly
@@ -159,30 +165,29 @@ def corner_of(
 
 @uncounted
 def closest_on_side(
-    SHAPE: Rows[Shape], LINK: Rows[Link], WORK: FloatArray, P: FloatArray, p: int, Q: FloatArray, q: int,
-    a: int, b: int,
+    A: Scene, P: FloatArray, p: int, Q: FloatArray, q: int, a: int, b: int
 ) -> tuple[float, float, float, float, float, bool, int, float, int, float]:  # fmt: skip
     """`closest` of the cores P and Q of shapes a < b; of thin ones that touch, or have come through one another, on the
     side that the pair remembers, and in corners on the side that looks into it."""
     d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q = closest(P, p, Q, q)
-    if not remembers(LINK, WORK, a, b):
+    if not remembers(A, a, b):
         return d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q
-    deep = SIDE_HELD * min(SHAPE[a].extent, SHAPE[b].extent)
+    deep = SIDE_HELD * smaller(A, a, b)
     end = -1
     if q == 2:
-        end, mx, my = corner_of(SHAPE, WORK, Q, b, a, x + d * nx, y + d * ny, deep)
+        end, mx, my = corner_of(A, Q, b, a, x + d * nx, y + d * ny, deep)
         mx, my = -mx, -my
     if end < 0 and p == 2:
-        end, mx, my = corner_of(SHAPE, WORK, P, a, b, x, y, deep)
-    near = near_side(SHAPE, a, b)
+        end, mx, my = corner_of(A, P, a, b, x, y, deep)
+    near = near_side(A, a, b)
     if end >= 0:
         d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q = closest(P, p, Q, q)
         reach = deep
     else:
-        key = a * SHAPE.shape[0] + b
-        row = side_row(WORK, key)
-        mx, my, reach = WORK[SIDES, row, 1], WORK[SIDES, row, 2], max(near, WORK[SIDES, row, 3])
-        if WORK[SIDES, row, 0] != key + 1.0:
+        key = key_of(A, a, b)
+        side = A.SIDE[side_row(A, key)]
+        mx, my, reach = side.nx, side.ny, max(near, side.deep)
+        if side.key != key:
             return d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q
     along = nx * mx + ny * my
     if d > reach or (along >= SIDE_OPPOSITE and (along >= SIDE_UNSURE or d > near)):

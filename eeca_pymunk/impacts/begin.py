@@ -63,7 +63,7 @@ def begin(A: Scene, WALK: IntArray) -> None:
         if BODY[i].due < 0.0:
             STATE[i].version += 1
             if BODY[i].due == -math.inf:
-                forget_sides(A.LINK, A.WORK, A.SHAPE.shape[0], i)
+                forget_sides(A, i)
                 A.MEMBER[i].put, COUNT.crammed = 1, 1
         else:
             BODY[i].due = max(BODY[i].due - last, 0.0)

@@ -71,7 +71,7 @@ def close(A: Scene, WALK: IntArray) -> None:
             continue
         i, j = A.LINK[a].owner, A.LINK[b].owner
         LOG[n].gap = gap_at(
-            A.SHAPE, A.LINK, A.VERTEX, A.WORK, a, BEGAN[i, 0], BEGAN[i, 1], BEGAN[i, 2],
+            A, a, BEGAN[i, 0], BEGAN[i, 1], BEGAN[i, 2],
             b, BEGAN[j, 0], BEGAN[j, 1], BEGAN[j, 2],
         )[0]  # fmt: skip
     if not even:

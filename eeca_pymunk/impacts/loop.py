@@ -48,19 +48,18 @@ def give_up(A: Scene, i: int, j: int) -> bool:
 
 
 @uncounted
-def run(A: Scene, disks: int, may_rest: bool) -> int:
+def run(A: Scene, may_rest: bool) -> int:
     """Follow the events until the end of the step, or the next one that is a block (BLOCK_DUE) or wants more room.
 
     Args:
-        disks: the first so many bodies are lone disks.  may_rest: whether contacts may be sustained.
+        may_rest: whether contacts may be sustained.
     """
     BODY, STATE, COUNT, TIME, OF = A.BODY, A.STATE, A.COUNT, A.HEAP_TIME, A.HEAP_BODY
-    moving = A.LIST.shape[0]
-    end = A.PAR.dt
+    disks, moving, end = COUNT.disks, A.LIST.shape[0], A.PAR.dt
     one, two, t = -1, -1, 0.0  # bodies to be forecast
     while True:
         while one >= 0:
-            forecast(A, disks, moving, one, t, end, False)
+            forecast(A, one, t, end, False)
             one, two = two, -1
         if COUNT.heap == 0:
             return DONE
@@ -73,18 +72,15 @@ def run(A: Scene, disks: int, may_rest: bool) -> int:
         if COUNT.logged == A.LOG.shape[0]:
             return LOG_FULL
         COUNT.heap = pop(TIME, OF, COUNT.heap)
-        look_ahead(A, disks, i)
+        look_ahead(A, i)
         s, o = STATE[i].own, STATE[i].other
         if o == LEAVE:
             if i < disks and STATE[i].island < 0:
-                room = go_on(A, disks, i, t, end)
+                room = go_on(A, i, t, end)
             else:
                 one, room = i, True
-                if has_left(BODY, A.SHAPE, A.LINK, A.MARK, s, t):
-                    room = renew(
-                        BODY, A.SHAPE, A.LINK, A.MARK, A.CELL, A.LIST, A.POOL, A.FLAG, A.HEAD, A.GRID, A.INFO, A.BOX,
-                        A.CSR, s, t, AHEAD,
-                    ) >= 0  # fmt: skip
+                if has_left(A, s, t):
+                    room = renew(A, s, t, AHEAD) >= 0
             if not room:
                 A.PAR.now = t
                 COUNT.heap = push(TIME, OF, COUNT.heap, t, i)
@@ -93,14 +89,14 @@ def run(A: Scene, disks: int, may_rest: bool) -> int:
         if o == RENEW:
             A.PAR.now, COUNT.struck = t, i
             return BLOCK_DUE
-        j = carrier(A.LINK, disks, o) if o >= 0 else i
+        j = carrier(A, o) if o >= 0 else i
         if o < 0 or STATE[j].version != STATE[i].known:
             COUNT.stale += 1
             one = i
             continue
         if give_up(A, i, j):
             note_unmet(A, IMPACTS, s, o, float(max(STATE[i].events, STATE[j].events)), float(COUNT.limit))
-            mark_pair(A.LIST, A.POOL, A.FLAG, moving, s, o, 1)
+            mark_pair(A, s, o, 1)
             one = i
             continue
         single = STATE[i].island < 0 and STATE[j].island < 0 and i < disks and (o < disks or o >= moving)
@@ -109,14 +105,14 @@ def run(A: Scene, disks: int, may_rest: bool) -> int:
         body, other = i, o
         for _ in range(2):
             if single and body >= 0:
-                single = alone(A, disks, body, other, t)
+                single = alone(A, body, other, t)
             body, other = (j, i) if o < disks else (-1, -1)
         if not single:
             A.PAR.now, COUNT.struck = t, i
             return BLOCK_DUE
         # The same bits, whoever of the two has foreseen it.
         a, b = (o, i) if o < i else (i, o)
-        strike_disk(A, disks, a, b, t)
+        strike_disk(A, a, b, t)
         one, two = a, b if o < disks else -1
 
 
@@ -150,21 +146,21 @@ def cut_short(A: Scene, t: float) -> int:
 
 
 @kernel
-def follow(A: Scene, disks: int, may_rest: bool) -> int:
+def follow(A: Scene, may_rest: bool) -> int:
     """The events of the step, blocks and islands included. After a status other than DONE, make room and call again.
 
     JOINTS_DUE: the span of island COUNT[PENDING], or if there is none the impact of body COUNT[STRUCK], is to be done.
     """
     COUNT, STATE, BLOCK = A.COUNT, A.STATE, A.BLOCK
-    moving, end = A.LIST.shape[0], A.PAR.dt
+    end = A.PAR.dt
     if COUNT.pending >= 0:
         status = solve(A, COUNT.pending, A.PAR.now)
         if status != DONE:
             return status
         COUNT.pending = -1
-        forecast_all(A, disks, COUNT.waiting, A.PAR.now, end)
+        forecast_all(A, COUNT.waiting, A.PAR.now, end)
     while True:
-        status = run(A, disks, may_rest)
+        status = run(A, may_rest)
         if status != BLOCK_DUE:
             return status
         t, i = A.PAR.now, COUNT.struck
@@ -181,13 +177,13 @@ def follow(A: Scene, disks: int, may_rest: bool) -> int:
             COUNT.waiting, COUNT.pending = n, -1 if status == DONE else i
             if status != DONE:
                 return status
-            forecast_all(A, disks, n, t, end)
+            forecast_all(A, n, t, end)
             continue
         j = A.LINK[o].owner
         if (STATE[i].island >= 0 or STATE[j].island >= 0) and passed_over(A, s, o, t):
             note_unmet(A, HITS, s, o, float(hits_of(A, s, o)), float(most_hits(A, s, o)))
-            mark_pair(A.LIST, A.POOL, A.FLAG, moving, s, o, 1)
-            forecast(A, disks, moving, i, t, end, False)
+            mark_pair(A, s, o, 1)
+            forecast(A, i, t, end, False)
             continue
         if jointed(A, i) or jointed(A, j):
             return JOINTS_DUE
@@ -197,9 +193,9 @@ def follow(A: Scene, disks: int, may_rest: bool) -> int:
             if A.BODY[j].inv_mass > 0.0:
                 arrive(A, j, t)
             rest = comes_to_rest(A, s, o, t)
-        status, n = strike(A, disks, s, o, t, rest)
+        status, n = strike(A, s, o, t, rest)
         n = with_mover(A, i, n)
         COUNT.waiting = n
         if status != DONE:
             return status
-        forecast_all(A, disks, n, t, end)
+        forecast_all(A, n, t, end)

@@ -12,14 +12,12 @@ import numpy as np
 
 from ..arrays import AnyArray, IntArray, side_by_side
 from ..compiled.records import address_of
-from ..geometry.sides import CORNERS, SIDES
 from ..model.scene import Scene
-from ..pairs.layout import POOL_END
 
 # Fields of `Scene`. The tables of forces are emptied where a run begins (`run.set_back`).
 OF_SCENE = (
-    "STATE", "MARK", "CELL", "LIST", "POOL", "FLAG", "HEAD", "GRID", "INFO", "PLACE", "MEMBER", "RESTING", "WORK",
-    "PAR", "COUNT",
+    "STATE", "MARK", "CELL", "LIST", "POOL", "FLAG", "HEAD", "GRID", "PLACE", "MEMBER", "RESTING", "CORE",
+    "SIDE", "PAR", "COUNT",
 )  # fmt: skip
 # Those that are made larger on the way.
 ROOM = ("LOG", "PUSHED_BY", "PUSHED", "KEYS", "FORCES")
@@ -50,21 +48,20 @@ def _piece(arrays: list[AnyArray]) -> IntArray:
 
 # Of a state: fields of `Scene` that keep their lengths; those of BODY that no step changes.
 _WHOLE = (
-    "BODY", "STATE", "MARK", "CELL", "LIST", "HEAD", "GRID", "INFO", "PLACE", "MEMBER", "RESTING", "PAR", "COUNT",
-    "PULL", "BEGAN",
+    "BODY", "STATE", "MARK", "CELL", "LIST", "HEAD", "GRID", "PLACE", "MEMBER", "RESTING", "SIDE", "PAR",
+    "COUNT", "PULL", "BEGAN",
 )  # fmt: skip
 _CONSTANT = ("inv_mass", "inv_inertia", "extent", "elasticity", "friction")
 
 
 def remembered(scene: Scene) -> list[AnyArray]:
     """All that decides how the next step of a scene goes, besides shapes and what crosses the edge."""
-    end, pushes = int(scene.INFO[POOL_END]), int(scene.COUNT.pushes)
+    end, pushes = int(scene.GRID.pool_end), int(scene.COUNT.pushes)
     used = np.flatnonzero(scene.KEYS >= 0)
     sizes = np.array([len(scene.POOL), end, len(scene.KEYS), len(used), len(scene.PUSHED), pushes], np.int64)
     return [
         sizes, *(np.asarray(getattr(scene, name)) for name in _WHOLE), scene.POOL[:end], scene.FLAG[:end],
         scene.PUSHED_BY[:pushes], scene.PUSHED[:pushes], used, scene.KEYS[used], scene.FORCES[used],
-        scene.WORK[SIDES:CORNERS],
     ]  # fmt: skip
 
 
@@ -79,7 +76,7 @@ def recalled(scene: Scene, take: Callable[[Any, tuple[int, ...]], AnyArray]) -> 
     new: dict[str, Any] = {name: take(array.dtype, array.shape).copy() for name, array in whole.items()}
     for name in _CONSTANT:
         new["BODY"][name] = scene.BODY[name]
-    for name in ("BODY", "PAR", "COUNT"):
+    for name in ("BODY", "GRID", "PAR", "COUNT"):
         whole[name][...] = new.pop(name)
     # Lengths decide when more room is made, and that when lists are.
     for name, kept, length in (
@@ -91,6 +88,4 @@ def recalled(scene: Scene, take: Callable[[Any, tuple[int, ...]], AnyArray]) -> 
     new["KEYS"], new["FORCES"] = np.full(slots, -1, np.int64), np.zeros(slots, scene.FORCES.dtype)
     new["KEYS"][at] = take(np.int64, (used,))
     new["FORCES"][at] = take(scene.FORCES.dtype, (used,))
-    # Sides of thin shapes; the rest is scratch, or does not change.
-    scene.WORK[SIDES:CORNERS] = take(np.float64, scene.WORK[SIDES:CORNERS].shape)
     return scene._replace(**new)

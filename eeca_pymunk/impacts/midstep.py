@@ -28,10 +28,7 @@ def reaches(A: Scene, USUAL: FloatArray, i: int) -> bool:
     """Make the lists of body i complete for what it may reach within the step. False if there is no room."""
     way = way_of(A, i, A.PAR.dt)
     for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):
-        if not cover(
-            A.BODY, A.SHAPE, A.LINK, A.MARK, A.CELL, A.LIST, A.POOL, A.FLAG, A.HEAD, A.GRID, A.INFO, A.BOX, A.CSR,
-            USUAL, s, way,
-        ):  # fmt: skip
+        if not cover(A, USUAL, s, way):
             return False
     return True
 
@@ -55,7 +52,7 @@ def join_all(A: Scene, USUAL: FloatArray) -> bool:
             if (moves and o < s) or barred(A.RULE, s, o):
                 continue
             touch = TOUCH * min(A.SHAPE[s].extent, A.SHAPE[o].extent)
-            g = approach(BODY, A.SHAPE, LINK, A.VERTEX, A.WORK, A.PULL, s, o, 0.0)[0]
+            g = approach(A, s, o, 0.0)[0]
             if g <= way_of(A, i, dt) + way_of(A, j, dt) + touch:
                 unite(A, i, j if moves else i)
     return True
@@ -65,7 +62,7 @@ def join_all(A: Scene, USUAL: FloatArray) -> bool:
 def anew(A: Scene) -> None:
     """Undo the spans that were begun: nobody is in an island, and impulses have changed no path."""
     for c in range(A.COUNT.pushes):
-        mark_pair(A.LIST, A.POOL, A.FLAG, A.LIST.shape[0], A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, 0)
+        mark_pair(A, A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, 0)
     A.COUNT.pushes = 0
     for i in range(A.BODY.shape[0] - 1):
         A.STATE[i].island = -1
@@ -76,7 +73,7 @@ def anew(A: Scene) -> None:
 def overrun(A: Scene, USUAL: FloatArray) -> int:
     """How many bodies went farther than was thought, and into others that are no contacts of the solve; they have the
     speed now that they got. -1 if there is no room for lists."""
-    BODY, LINK, RESTING = A.BODY, A.LINK, A.RESTING
+    BODY, RESTING = A.BODY, A.RESTING
     dt, found = A.PAR.dt, 0
     for i in range(BODY.shape[0] - 1):
         if A.STATE[i].island < 0:
@@ -95,7 +92,7 @@ def overrun(A: Scene, USUAL: FloatArray) -> int:
                 if A.FLAG[w] != 0 or barred(A.RULE, s, o):
                     continue
                 small = min(A.SHAPE[s].extent, A.SHAPE[o].extent)
-                if gap(BODY, A.SHAPE, LINK, A.VERTEX, A.WORK, s, o, dt)[0] < -TOUCH * small:
+                if gap(A, s, o, dt)[0] < -TOUCH * small:
                     into += 1
         if into > 0:
             found += 1

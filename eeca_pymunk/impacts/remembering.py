@@ -13,7 +13,7 @@ from ..compiled.records import numbers, put
 from ..model.bodies import POSE, VELOCITY
 from ..model.scene import Scene
 from ..model.step import Count, Step
-from ..pairs.setup import Near, near_lists
+from ..pairs.setup import NEAR, near_lists
 from .memory import OF_SCENE, ROOM, gathered, recalled, remembered
 
 _STEP, _COUNT = Step.TYPE.names or (), Count.TYPE.names or ()
@@ -25,13 +25,8 @@ _OF_PROCESS = "table", "_bound", "own", "fresh", "_room", "_par", "_count", "_lo
 
 
 class Remembering:
-    """What an event loop knows of earlier steps.
+    """What an event loop knows of earlier steps."""
 
-    Attributes:
-        near: the near lists among the arrays of the scene.
-    """
-
-    near: Near
     _usual: FloatArray
 
     @property
@@ -113,24 +108,18 @@ class Remembering:
         """Remember what `remembered` told; `take` gives its next part with a dtype and a shape."""
         self._usual = take(np.float64, self._usual.shape).copy()
         self.scene = recalled(self.scene, take)
-        self.near = self._lists()
         self.__dict__.pop("fresh", None)
 
     def _gather(self) -> IntArray:
         """Have what steps change, poses and velocities aside, in one piece of memory: that memory, as integers."""
         (self.scene,), memory = gathered((self.scene, OF_SCENE))
-        self.near = self._lists()
         return memory
-
-    def _lists(self) -> Near:
-        """The near lists among the arrays of the scene."""
-        return Near(*(getattr(self.scene, name) for name in Near._fields))
 
     def _list_anew(self) -> None:
         """Make the near lists for where BODY has the bodies now, as for a new loop."""
         scene = self.scene
-        near = near_lists(scene.BODY, scene.SHAPE, scene.LINK, scene.VERTEX, len(scene.LIST))
-        pairs: list[tuple[AnyArray, AnyArray]] = list(zip(self._lists(), near, strict=True))
+        near = near_lists(scene, len(scene.LIST))
+        pairs = [(np.asarray(getattr(scene, name)), np.asarray(getattr(near, name))) for name in NEAR]
         if all(old.shape == new.shape for old, new in pairs):
             # The addresses that machine code has been given stay.
             for old, new in pairs:
@@ -138,6 +127,5 @@ class Remembering:
             self._usual[:] = near.MARK["margin"]
             self.fresh[:] = self.own
             return
-        self.near, self._usual = near, near.MARK["margin"].copy()
-        self.scene = scene._replace(**near._asdict())
+        self.scene, self._usual = near, near.MARK["margin"].copy()
         self.keep_fresh()

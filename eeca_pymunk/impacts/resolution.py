@@ -64,7 +64,7 @@ def holds_joints(A: Scene, n: int) -> bool:
 
 
 @kernel
-def strike(A: Scene, disks: int, a: int, b: int, t: float, rest: bool) -> tuple[int, int]:
+def strike(A: Scene, a: int, b: int, t: float, rest: bool) -> tuple[int, int]:
     """Impulses of the block of shapes a and b at instant t. Status, and the number of bodies to be forecast anew, in
     A.BLOCK.
 
@@ -75,12 +75,12 @@ def strike(A: Scene, disks: int, a: int, b: int, t: float, rest: bool) -> tuple[
         rest: whether the contact of a and b stays closed from now on.
     """
     k = A.SHAPE.shape[0]
-    n, m, PAIRS = gather(A, disks, a, b, t)
+    n, m, PAIRS = gather(A, a, b, t)
     if holds_joints(A, n):
         dismiss(A, A.BLOCK, n)
         return JOINTS_DUE, 0
     owed, piled = owing(A, n)
-    block = lay_out(A, disks, n, m, PAIRS, min(a, b) * k + max(a, b), rest, t)
+    block = lay_out(A, n, m, PAIRS, min(a, b) * k + max(a, b), rest, t)
     rows = len(block.ROWS)
     L, LOSS, OUT = np.zeros((rows, 2)), np.zeros((rows, 2)), zeros(1, SOLVED)
     problem = Problem(block.A, block.B, block.ROWS, block.IM, block.II, block.POSE, n, rows)

@@ -134,13 +134,13 @@ def next_rollout(F: RunArrays) -> bool:
 @kernel
 def run(
     TABLE: Table, ARRAYS: Table, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray,
-    USUAL: FloatArray, disks: int, lossy: bool, together: bool,
+    USUAL: FloatArray, lossy: bool, together: bool,
 ) -> int:  # fmt: skip
     """Steps until RUN.until of them are done, of each rollout if there are any.
 
     Args:
         TABLE: `table_of` a Scene.  ARRAYS: `table_of` a RunArrays.  USUAL: see `midstep.py`.
-        disks, lossy: see `step.step`.  together: whether all contacts of a step act together at its middle.
+        lossy: see `step.step`.  together: whether all contacts of a step act together at its middle.
 
     Returns:
         the bits of all steps; a negative code of a step, or ENERGY, with the state at its start in STATES; or a wish
@@ -162,7 +162,7 @@ def run(
                 if together:
                     status = resume_together(A, STATES, WALK, EXTRA, ENDS, USUAL, RUN.bits)
                 else:
-                    status = resume(A, STATES, WALK, EXTRA, ENDS, disks, lossy, RUN.bits)
+                    status = resume(A, STATES, WALK, EXTRA, ENDS, lossy, RUN.bits)
                 if status < 0:
                     return status
                 RUN.bits, RUN.stage = status, AFTER

@@ -10,19 +10,19 @@ import numpy as np
 
 from ..arrays import AnyArray, FloatArray, IntArray, side_by_side
 from ..compiled.library import check
-from ..compiled.records import R, Rows, row, rows
+from ..compiled.records import R, Rows, rows
 from ..contacts.memory import forget
-from ..geometry.corners import work_room
+from ..geometry.corners import core_room, thin_memory
 from ..islands.accounting import flag_again
 from ..layout import NOW as READ
 from ..model.bodies import CHECK, Body, Member, Next, Rest
 from ..model.contacts import Force, Impulse, Pair, Pushed
 from ..model.parameters.events import SOLVES_PER_BODY
 from ..model.parameters.intervals import FIRST_AUGMENTATION
-from ..model.scene import Scene
+from ..model.scene import scene_with
 from ..model.shapes import Link, Shape
-from ..model.step import Count, Missed, Step
-from ..pairs.setup import near_lists, rebuilt
+from ..model.step import Missed
+from ..pairs.setup import near_lists, with_more_room
 from ..report import Details, of_events
 from ..transfer import FORCES
 from .midstep import step_together
@@ -65,7 +65,6 @@ class EventLoop(Remembering):
         self, BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, disks: int, limit: int
     ) -> None:
         n = len(BODY)
-        self.disks = disks
         moving = int(np.count_nonzero(LINK["owner"] < n - 1))
         STATE, MEMBER, RESTING, PULL, BEGAN, TIME, OF, PLACE, BLOCK = side_by_side(
             ((n,), Next.TYPE), ((n,), Member.TYPE), ((n,), Rest.TYPE),
@@ -76,22 +75,22 @@ class EventLoop(Remembering):
         STATE["shapes"] = np.bincount(LINK["owner"][:moving], minlength=n)
         STATE["first_shape"] = np.cumsum(STATE["shapes"]) - STATE["shapes"]
         STATE["island"] = -1
-        near = near_lists(BODY, SHAPE, LINK, VERTEX, moving)
         lossy = bool((SHAPE["elasticity"] < 1.0).any())
-        self._options: tuple[int, ...] = disks, lossy  # numbers that the step takes besides dt, gravity and damping
+        self._options: tuple[int, ...] = (lossy,)  # numbers that the step takes besides dt, gravity and damping
         self.lossy, self.together = lossy, False
-        self._usual: FloatArray = near.MARK["margin"].copy()
         room = _CONTACTS
         while lossy and room < min(_OF_A_BODY * n, _MANY):
             room *= 2
-        self.scene = Scene(
-            BODY, STATE, SHAPE, LINK, VERTEX, *near, np.zeros((0, RULE_COLUMNS)), TIME, OF,
-            rows(Impulse, 4 * n + 64), BEGAN, PLACE, BLOCK, PULL, MEMBER, RESTING,
-            rows(Pair, room), rows(Pushed, room),
-            np.full(4 * room, -1, np.int64), rows(Force, 4 * room),
-            work_room(LINK, VERTEX, moving), rows(Missed, _MISSED), row(Step), row(Count),
+        SIDE, CORNER = thin_memory(LINK, VERTEX, moving)
+        scene = scene_with(
+            BODY=BODY, STATE=STATE, SHAPE=SHAPE, LINK=LINK, VERTEX=VERTEX, CORE=core_room(LINK), SIDE=SIDE,
+            CORNER=CORNER, RULE=np.zeros((0, RULE_COLUMNS)), HEAP_TIME=TIME, HEAP_BODY=OF,
+            LOG=rows(Impulse, 4 * n + 64), BEGAN=BEGAN, PLACE=PLACE, BLOCK=BLOCK, PULL=PULL, MEMBER=MEMBER,
+            RESTING=RESTING, PUSHED_BY=rows(Pair, room), PUSHED=rows(Pushed, room),
+            KEYS=np.full(4 * room, -1, np.int64), FORCES=rows(Force, 4 * room), MISSED=rows(Missed, _MISSED),
         )  # fmt: skip
-        self.near = near
+        self.scene = near_lists(scene, moving)
+        self._usual: FloatArray = self.scene.MARK["margin"].copy()
         self.scene.COUNT.limit, self.scene.COUNT.disks = limit, disks
         self.scene.COUNT.budget = SOLVES_PER_BODY * n
         self.scene.MEMBER["tied"] = self.scene.MEMBER["next_tied"] = -1
@@ -117,7 +116,7 @@ class EventLoop(Remembering):
         """Take the steps that `buffers` asks for; all bits, a negative code of `transfer.py`, or `run.ENERGY`."""
         while True:
             call = buffers.call = buffers.call or self._bind_run(buffers, states)
-            status = check("run", call(self.disks, self.lossy, self.together))
+            status = check("run", call(self.lossy, self.together))
             if status == ROOM_FOR_IMPACTS:
                 buffers.more_events()
             elif status <= ROOM_FOR_LISTS:
@@ -154,8 +153,7 @@ class EventLoop(Remembering):
                 PUSHED_BY=_longer(scene.PUSHED_BY, used), PUSHED=_longer(scene.PUSHED, used)
             )
             return
-        self.near = rebuilt(self.near.larger(), scene.BODY, scene.SHAPE, scene.LINK, float(scene.PAR.now))
-        self.scene = scene._replace(POOL=self.near.POOL, FLAG=self.near.FLAG)
+        self.scene = with_more_room(scene, float(scene.PAR.now))
         flag_again(self.table)
         # Margin circles are drawn about other places now: everybody is forecast anew.
         n, now = len(scene.BODY) - 1, float(scene.PAR.now)

@@ -31,11 +31,11 @@ from ..rows.inplace import sort
 
 
 @uncounted
-def takes_part(A: Scene, disks: int, s: int, o: int, t: float) -> bool:
+def takes_part(A: Scene, s: int, o: int, t: float) -> bool:
     """Whether shapes s and o touch at instant t, or are in contact under load."""
     if barred(A.RULE, s, o):
         return False
-    if touches(A, disks, s, o, t):
+    if touches(A, s, o, t):
         return True
     i, j = A.LINK[s].owner, A.LINK[o].owner
     if A.STATE[i].island < 0 or not (A.STATE[j].island == A.STATE[i].island or carrier(A, j)):
@@ -82,7 +82,7 @@ def admit(A: Scene, i: int, n: int, t: float) -> int:
 
 
 @kernel
-def gather(A: Scene, disks: int, a: int, b: int, t: float) -> tuple[int, int, IntArray]:
+def gather(A: Scene, a: int, b: int, t: float) -> tuple[int, int, IntArray]:
     """The block that shapes a and b hit at instant t: its n bodies into A.BLOCK, which move to that instant, and its m
     pairs as numbers a k + b (k shapes) in increasing order. A.PLACE gives the place of each of these bodies."""
     k, BODIES = A.SHAPE.shape[0], A.BLOCK
@@ -110,7 +110,7 @@ def gather(A: Scene, disks: int, a: int, b: int, t: float) -> tuple[int, int, In
                     continue
                 # What does not take part is hit in its turn.
                 full = moves and A.PLACE[j] < 0 and (n >= most or budget_spent(A, A.STATE[j].island))
-                if full or not takes_part(A, disks, s, o, t):
+                if full or not takes_part(A, s, o, t):
                     continue
                 if moves and A.PLACE[j] < 0:
                     n = admit(A, j, n, t)
@@ -156,7 +156,7 @@ class Block(NamedTuple):
 
 
 @kernel
-def lay_out(A: Scene, disks: int, n: int, m: int, PAIRS: IntArray, hit: int, rest: bool, t: float) -> Block:
+def lay_out(A: Scene, n: int, m: int, PAIRS: IntArray, hit: int, rest: bool, t: float) -> Block:
     """The block of the n bodies in A.BLOCK, sorted, and of m PAIRS, at instant t.
 
     Args:
@@ -196,19 +196,16 @@ def lay_out(A: Scene, disks: int, n: int, m: int, PAIRS: IntArray, hit: int, res
                     q = place
                 place += 1
         e, mu, sx, sy = law(A.SHAPE, A.RULE, sa, sb)
-        tolerance = FACE_ROUND_OFF * touching(BODY, A.SHAPE, LINK, sa, sb, disks)
+        tolerance = FACE_ROUND_OFF * touching(A, sa, sb)
         small = min(A.SHAPE[sa].extent, A.SHAPE[sb].extent)
         if e < 1.0:
             tolerance = max(tolerance, ROCKING * small)
         if rest and PAIRS[z] == hit:
             e = 0.0
         load = remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], sa, sb, A.PAR.stamp - 1.0)[1]
-        count = face(
-            A.SHAPE, LINK, A.VERTEX, A.WORK, sa, POSE[p, 0], POSE[p, 1], POSE[p, 2],
-            sb, POSE[q, 0], POSE[q, 1], POSE[q, 2], tolerance, found,
-        )  # fmt: skip
+        count = face(A, sa, sb, POSE, p, q, tolerance, found)
         if count > 0:
-            note_side(A.SHAPE, LINK, A.WORK, sa, sb, found[0, 0], found[0, 1], True)
+            note_side(A, sa, sb, found[0, 0], found[0, 1], True)
         for c in range(count):
             nx, ny = found[c, 0], found[c, 1]
             P[rows], Q[rows] = p, q

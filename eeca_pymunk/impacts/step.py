@@ -51,7 +51,7 @@ def wish(met: int) -> int:
 
 @kernel
 def resume(
-    A: Scene, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, disks: int, lossy: bool,
+    A: Scene, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, lossy: bool,
     status: int,
 ) -> int:  # fmt: skip
     """The rest of a step, whose bits so far are `status`."""
@@ -60,9 +60,9 @@ def resume(
         if COUNT.pushes + COUNT.crammed > 0 and build_islands(A) != DONE:
             return ROOM_FOR_CONTACTS
         COUNT.phase = 1
-        forecast_due(A, disks)
+        forecast_due(A)
     if COUNT.phase == 1:
-        met = follow(A, disks, lossy or A.PAR.pulled > 0.0)
+        met = follow(A, lossy or A.PAR.pulled > 0.0)
         if met != DONE:
             return wish(met)
         COUNT.phase = 2
@@ -74,14 +74,14 @@ def resume(
 @kernel
 def step(
     TABLE: Table, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float,
-    gy: float, left: float, disks: int, lossy: bool, bits: int,
+    gy: float, left: float, lossy: bool, bits: int,
 ) -> int:  # fmt: skip
     """From the states that were read to those that are to be written, see `transfer.py`.
 
     Args:
         TABLE: `table_of` a Scene.
         dt: time, > 0.  gx, gy: gravity, length/time².  left: what half the step's damping leaves of velocities.
-        disks: the first so many rows of BODY are lone disks.  lossy: whether any shape's elasticity is below 1.
+        lossy: whether any shape's elasticity is below 1.
         bits: negative for a new step; those of one that wished for room and goes on.
 
     Returns:
@@ -89,8 +89,8 @@ def step(
     """
     A = scene_of(TABLE)
     if bits >= 0:
-        return resume(A, STATES, WALK, EXTRA, ENDS, disks, lossy, bits)
+        return resume(A, STATES, WALK, EXTRA, ENDS, lossy, bits)
     status = start(A, STATES, WALK, EXTRA, dt, gx, gy, left)
     if status < 0:
         return status
-    return resume(A, STATES, WALK, EXTRA, ENDS, disks, lossy, status)
+    return resume(A, STATES, WALK, EXTRA, ENDS, lossy, status)

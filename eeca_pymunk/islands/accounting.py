@@ -30,7 +30,7 @@ def flag_spans(A: Scene) -> None:
     for c in range(A.COUNT.pushes):
         if A.PUSHED_BY[c].root >= 0:
             a, b = A.PUSHED_BY[c].a, A.PUSHED_BY[c].b
-            mark_pair(A.LIST, A.POOL, A.FLAG, A.LIST.shape[0], a, b, 1)
+            mark_pair(A, a, b, 1)
 
 
 @uncounted
@@ -43,7 +43,7 @@ def book(A: Scene, c: int, t: float) -> None:
     PAR, COUNT, R = A.PAR, A.COUNT, A.PUSHED[c]
     root, a, b = A.PUSHED_BY[c].root, A.PUSHED_BY[c].a, A.PUSHED_BY[c].b
     A.PUSHED_BY[c].root = LASTED if t == PAR.dt else ENDED
-    mark_pair(A.LIST, A.POOL, A.FLAG, A.LIST.shape[0], a, b, 0)
+    mark_pair(A, a, b, 0)
     f = (t - R.start) / R.length
     if f == 0.0 or (R.normal == 0.0 and R.tangential == 0.0):
         return

@@ -100,7 +100,7 @@ def wake_changed(A: Scene) -> None:
         root = A.PUSHED_BY[c].root
         if root >= 0 and MEMBER[root].rest == CHANGED:
             A.PUSHED_BY[c].root = LASTED
-            mark_pair(A.LIST, A.POOL, A.FLAG, A.LIST.shape[0], A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, 0)
+            mark_pair(A, A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, 0)
         elif root >= 0:
             R = A.PUSHED[c]
             longer = dt / R.length
@@ -152,7 +152,7 @@ def keep(A: Scene, c: int, root: int) -> None:
     """Contact number c, just booked, goes on: its island comes to a stand."""
     R = A.PUSHED[c]
     A.PUSHED_BY[c].root = root
-    mark_pair(A.LIST, A.POOL, A.FLAG, A.LIST.shape[0], A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, 1)
+    mark_pair(A, A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, 1)
     R.un_before, R.un_after, R.ut_before, R.ut_after, R.work = 0.0, 0.0, 0.0, 0.0, 0.0
 
 

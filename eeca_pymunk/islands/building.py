@@ -62,14 +62,14 @@ def join_neighbours(A: Scene, i: int, t: float, FOUND: IntArray) -> int:
                 speed = norm(BODY[i].vx, BODY[i].vy) + norm(BODY[j].vx, BODY[j].vy)
                 speed += abs(BODY[i].spin) * BODY[i].extent + abs(BODY[j].spin) * BODY[j].extent
                 reach += 1.1 * (speed + pulled * dt) * h
-            if far_apart(BODY, A.SHAPE, LINK, s, o, t, reach + TOUCH * small):
+            if far_apart(A, s, o, t, reach + TOUCH * small):
                 continue
             other = STATE[j].island
             begun = other >= 0 and A.MEMBER[other].open > 0
             if begun and (A.MEMBER[other].jointed > 0 or budget_spent(A, other)):
                 continue  # it is hit when they meet
             move_to(BODY, j, t)
-            g, u, _, _ = approach(A.BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, A.PULL, s, o, t)
+            g, u, _, _ = approach(A, s, o, t)
             if g > reach:
                 continue
             if g <= TOUCH * small and (u > pulled * dt or (-u > pulled * dt and not busy)):
@@ -171,7 +171,7 @@ def comes_to_rest(A: Scene, a: int, b: int, t: float) -> bool:
     if A.BODY[j].inv_mass > 0.0:
         move_to(A.BODY, j, t)
     e = law(A.SHAPE, A.RULE, a, b)[0]
-    _, u, closing, _ = approach(A.BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, A.PULL, a, b, t)
+    _, u, closing, _ = approach(A, a, b, t)
     end = A.PAR.dt
     met = max(A.STATE[i].events, A.STATE[j].events)
     if e < 1.0:
@@ -219,7 +219,7 @@ def passed_over(A: Scene, a: int, b: int, t: float) -> bool:
     h = A.PAR.dt - t
     speed = norm(A.BODY[i].vx - A.BODY[j].vx, A.BODY[i].vy - A.BODY[j].vy)
     speed += abs(A.BODY[i].spin) * A.BODY[i].extent + abs(A.BODY[j].spin) * A.BODY[j].extent
-    thick = half_width(A.SHAPE, A.LINK, A.VERTEX, a) + half_width(A.SHAPE, A.LINK, A.VERTEX, b)
+    thick = half_width(A, a) + half_width(A, b)
     if (speed + A.PAR.pulled * h) * h > PASSED_OVER_DEPTH * thick:
         return False
     A.COUNT.ignored += 1

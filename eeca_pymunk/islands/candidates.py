@@ -25,7 +25,6 @@ from ..model.parameters.intervals import (
     TOUCH,
 )
 from ..model.scene import Scene
-from ..model.shapes import Link, Shape
 from ..pairs.lists import far_apart
 from ..pairs.rules import barred, law
 from ..rows.build import normal_rate, tangent_rate
@@ -72,14 +71,14 @@ def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: Int
                 reach = 1.1 * (speed * h + A.PAR.pulled * h * h) + TOUCH * small
                 if together:
                     reach = way_of(A, i, h) + way_of(A, j, h) + TOUCH * small
-                if o < A.LIST.shape[0] and far_apart(BODY, A.SHAPE, LINK, s, o, t, reach):
+                if o < A.LIST.shape[0] and far_apart(A, s, o, t, reach):
                     continue
                 force, load = 0.0, 0.0
                 if lossy and not together:
                     force, load = remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], s, o, A.PAR.stamp - 1.0)
                 # What a crowd has carried goes on being carried, as far as it may come: hits on it spread by its spans.
                 if n < LARGE_ISLAND or force <= 0.0:
-                    g, u, closing, mass = approach(A.BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, A.PULL, s, o, t)
+                    g, u, closing, mass = approach(A, s, o, t)
                     if not together:
                         if not busy:
                             reach = 1.1 * (max(-u, 0.0) * h + A.PAR.pulled * h * h) + TOUCH * small
@@ -170,13 +169,12 @@ def interval_within_way(A: Scene, found: IntArray, h: float) -> float:
 
 @kernel
 def excess_way(
-    P: IntArray, Q: IntArray, ROWS: Rows[Row], KEY: IntArray, V: FloatArray, VN: FloatArray, SHAPE: Rows[Shape],
-    LINK: Rows[Link], VERTEX: FloatArray, m: int, h: float,
-) -> float:  # fmt: skip
+    A: Scene, P: IntArray, Q: IntArray, ROWS: Rows[Row], KEY: IntArray, V: FloatArray, VN: FloatArray, m: int, h: float
+) -> float:
     """How many times as far as in `interval_within_way` the bodies of m contacts go in an interval h that was solved;
     or how many times too long it is for the deepest contact, which is to land, with no speed left, after
     h = 2 g / |u + u+|."""
-    far, shapes = 0.0, SHAPE.shape[0]
+    SHAPE, far, shapes = A.SHAPE, 0.0, len(A.SHAPE)
     for z in range(m):
         pair = KEY[z] >> 1
         a, b, p, q = pair // shapes, pair % shapes, P[z], Q[z]
@@ -184,12 +182,12 @@ def excess_way(
         x = V[q, 0] + VN[q, 0] - V[p, 0] - VN[p, 0]
         y = V[q, 1] + VN[q, 1] - V[p, 1] - VN[p, 1]
         far = max(far, 0.5 * h * norm(x, y) / (INTERVAL_WAY * small))
-        if LINK[a].vertices > 1 or LINK[b].vertices > 1:
+        if A.LINK[a].vertices > 1 or A.LINK[b].vertices > 1:
             turn = max(abs(V[p, 2] + VN[p, 2]), abs(V[q, 2] + VN[q, 2]))
             far = max(far, 0.5 * h * turn / INTERVAL_ANGLE)
         closing = -0.5 * h * (ROWS[z].un + normal_rate(P, Q, ROWS, VN, z))
         if closing > INTERVAL_DEPTH_LEAST * small:
-            thick = half_width(SHAPE, LINK, VERTEX, a) + half_width(SHAPE, LINK, VERTEX, b)
+            thick = half_width(A, a) + half_width(A, b)
             far = max(far, too_deep(ROWS[z].gap, closing, small, thick))
     return far
 

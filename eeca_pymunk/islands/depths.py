@@ -42,7 +42,7 @@ def sunk(
     for z in range(m):
         pair = KEY[z] >> 1
         a, b, p, q = pair // shapes, pair % shapes, P[z], Q[z]
-        if pair == last or not remembers(A.LINK, A.WORK, a, b):
+        if pair == last or not remembers(A, a, b):
             continue
         last = pair
         if isle.WHO[p] != A.LINK[a].owner:
@@ -51,11 +51,9 @@ def sunk(
         if z + 1 < m and KEY[z + 1] >> 1 == pair:
             gap = min(gap, ROWS[z + 1].gap)
         small = min(A.SHAPE[a].extent, A.SHAPE[b].extent)
-        end = gap_at(
-            A.SHAPE, A.LINK, A.VERTEX, A.WORK, a, END[p, 0], END[p, 1], END[p, 2], b, END[q, 0], END[q, 1], END[q, 2]
-        )[0]
+        end = gap_at(A, a, END[p, 0], END[p, 1], END[p, 2], b, END[q, 0], END[q, 1], END[q, 2])[0]
         if gap - end > INTERVAL_DEPTH_LEAST * small:
-            thick = half_width(A.SHAPE, A.LINK, A.VERTEX, a) + half_width(A.SHAPE, A.LINK, A.VERTEX, b)
+            thick = half_width(A, a) + half_width(A, b)
             far = max(far, too_deep(gap, gap - end, small, thick))
     # What rows do not tell grows with the square of the length, at least.
     return max(math.sqrt(far), 1.01 * INTERVAL_RETRY) if far > 0.0 else 0.0

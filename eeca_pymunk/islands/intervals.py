@@ -10,7 +10,6 @@ from ..arrays import IntArray
 from ..compiled import kernel, uncounted
 from ..contacts.correction import budget_of, least_of, lifting
 from ..contacts.interval import make_contacts, moved, step_island
-from ..geometry.sides import SIDES
 from ..model.contacts import Problem
 from ..model.islands import Island
 from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES, LARGE_ISLAND, LEAST_INTERVAL, SMALL_SWEEPS
@@ -126,8 +125,8 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
             m = step_island(A, isle, contacts, n, h, sweeps, least, owed, -1.0, 0.0)
         far = 0.0
         if not last and OUT[0].stood == 0:
-            far = excess_way(P, Q, ROWS, KEY, V, VN, A.SHAPE, A.LINK, A.VERTEX, m, h)
-            if far <= INTERVAL_RETRY and A.WORK.shape[0] > SIDES:
+            far = excess_way(A, P, Q, ROWS, KEY, V, VN, m, h)
+            if far <= INTERVAL_RETRY and len(A.SIDE) > 0:
                 far = sunk(A, isle, isle.POSE + 0.5 * h * (V + VN), P, Q, ROWS, KEY, m)
         if far > INTERVAL_RETRY:
             A.COUNT.solved += n

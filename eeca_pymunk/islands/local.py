@@ -67,7 +67,7 @@ def open_contacts(
     """Write the m contacts of a span of length h, at whose end velocities are VN, after those of other islands; TOUCHED
     (k,): bodies that have any."""
     P, Q, ROWS, KEY, L = contacts.A, contacts.B, contacts.ROWS, contacts.KEY, contacts.L
-    shapes, first, moving = A.SHAPE.shape[0], A.COUNT.pushes, A.LIST.shape[0]
+    shapes, first = A.SHAPE.shape[0], A.COUNT.pushes
     for z in range(m):
         pair = KEY[z] >> 1
         a, b = pair // shapes, pair % shapes
@@ -75,7 +75,7 @@ def open_contacts(
             a, b = b, a
         TOUCHED[P[z]], TOUCHED[Q[z]] = 1, 1
         if z == 0 or pair != KEY[z - 1] >> 1:
-            mark_pair(A.LIST, A.POOL, A.FLAG, moving, a, b, 1)
+            mark_pair(A, a, b, 1)
         c = first + z
         A.PUSHED_BY[c].a, A.PUSHED_BY[c].b = a, b
         pushed = A.PUSHED[c]

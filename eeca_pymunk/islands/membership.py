@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import IntArray
 from ..compiled import uncounted
 from ..compiled.records import Rows
 from ..contacts.memory import find, key_of
 from ..geometry.gap import gap_at
-from ..model.bodies import AT_REST, Body
+from ..model.bodies import AT_REST
 from ..model.contacts import Force
 from ..model.parameters.intervals import ELASTIC_REST, ELASTIC_REST_ON, LARGE_ISLAND, SOLVES_BEFORE_HASTE, TOUCH
 from ..model.scene import Scene
-from ..model.shapes import Link, Shape
 from ..pairs.rules import law
 
 
@@ -96,16 +95,13 @@ def remembered(KEYS: IntArray, FORCES: Rows[Force], shapes: int, a: int, b: int,
 
 
 @uncounted
-def approach(
-    BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, WORK: FloatArray, PULL: FloatArray,
-    a: int, b: int, t: float,
-) -> tuple[float, float, float, float]:  # fmt: skip
+def approach(A: Scene, a: int, b: int, t: float) -> tuple[float, float, float, float]:
     """Gap of shapes a and b, whose paths begin at instant t or that move evenly; its rate; the acceleration with which
     it closes without contacts; and the mass that it feels."""
-    i, j = LINK[a].owner, LINK[b].owner
+    BODY, PULL, i, j = A.BODY, A.PULL, A.LINK[a].owner, A.LINK[b].owner
     h = t - BODY[j].since
     g, nx, ny, px, py = gap_at(
-        SHAPE, LINK, VERTEX, WORK, a, BODY[i].x, BODY[i].y, BODY[i].angle,
+        A, a, BODY[i].x, BODY[i].y, BODY[i].angle,
         b, BODY[j].x + BODY[j].vx * h, BODY[j].y + BODY[j].vy * h, BODY[j].angle + BODY[j].spin * h,
     )  # fmt: skip
     xi, yi, xj, yj = (
@@ -134,7 +130,7 @@ def rests(A: Scene, a: int, b: int, t: float, lossy: bool) -> bool:
     against what does not move is pressed.
     """
     e = law(A.SHAPE, A.RULE, a, b)[0]
-    g, u, closing, mass = approach(A.BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, A.PULL, a, b, t)
+    g, u, closing, mass = approach(A, a, b, t)
     h = A.PAR.dt - t
     small = min(A.SHAPE[a].extent, A.SHAPE[b].extent)
     force, load = remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], a, b, A.PAR.stamp - 1.0)

@@ -31,9 +31,9 @@ def hold_penetrating(A: Scene) -> None:
                     continue
                 if barred(A.RULE, s, o) or law(A.SHAPE, A.RULE, s, o)[0] >= 1.0:
                     continue
-                if o < A.LIST.shape[0] and far_apart(BODY, A.SHAPE, LINK, s, o, 0.0, 0.0):
+                if o < A.LIST.shape[0] and far_apart(A, s, o, 0.0, 0.0):
                     continue
-                g, u, _, _ = approach(BODY, A.SHAPE, LINK, A.VERTEX, A.WORK, A.PULL, s, o, 0.0)
+                g, u, _, _ = approach(A, s, o, 0.0)
                 if g >= -INITIAL_PENETRATION * min(A.SHAPE[s].extent, A.SHAPE[o].extent) or u * dt > -g:
                     continue
                 A.MEMBER[i].put, A.COUNT.crammed = 1, 1

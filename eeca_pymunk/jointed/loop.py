@@ -80,11 +80,11 @@ def roomy(A: Scene) -> bool:
 
 
 @kernel
-def follow_jointed(A: Scene, J: Joints, disks: int, may_rest: bool) -> int:
+def follow_jointed(A: Scene, J: Joints, may_rest: bool) -> int:
     """The events of the step; results as `..impacts.loop.follow`."""
     COUNT, STATE, BLOCK = A.COUNT, A.STATE, A.BLOCK
-    moving, end = A.LIST.shape[0], A.PAR.dt
-    status = JOINTS_DUE if COUNT.pending >= 0 else follow(A, disks, may_rest)
+    end = A.PAR.dt
+    status = JOINTS_DUE if COUNT.pending >= 0 else follow(A, may_rest)
     while True:
         if status != JOINTS_DUE:
             return status
@@ -94,10 +94,10 @@ def follow_jointed(A: Scene, J: Joints, disks: int, may_rest: bool) -> int:
             if not roomy(A):
                 COUNT.heap = push(A.HEAP_TIME, A.HEAP_BODY, COUNT.heap, t, i)
                 return PUSHES_FULL
-            status, n = collide(A, J, disks, STATE[i].own, STATE[i].other, t)
+            status, n = collide(A, J, STATE[i].own, STATE[i].other, t)
             COUNT.waiting = with_mover(A, i, n)
         elif A.MEMBER[COUNT.pending].jointed == 0:
-            status = follow(A, disks, may_rest)
+            status = follow(A, may_rest)
             continue
         if COUNT.pending >= 0:
             root = COUNT.pending
@@ -106,8 +106,8 @@ def follow_jointed(A: Scene, J: Joints, disks: int, may_rest: bool) -> int:
                 return PUSHES_FULL
             COUNT.pending = -1
         for q in range(COUNT.waiting):
-            forecast(A, disks, moving, BLOCK[q], A.BODY[BLOCK[q]].since, end, False)
-        status = follow(A, disks, may_rest)
+            forecast(A, BLOCK[q], A.BODY[BLOCK[q]].since, end, False)
+        status = follow(A, may_rest)
 
 
 @kernel
@@ -124,8 +124,8 @@ def settle_jointed(A: Scene, J: Joints) -> int:
 
 @kernel
 def resume_jointed(
-    A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, disks: int,
-    lossy: bool, status: int,
+    A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, lossy: bool,
+    status: int,
 ) -> int:  # fmt: skip
     """The rest of a step, whose bits so far are `status`: as `..impacts.step.resume`."""
     COUNT = A.COUNT
@@ -133,10 +133,10 @@ def resume_jointed(
         if settle_jointed(A, J) != DONE:
             return ROOM_FOR_CONTACTS
         COUNT.phase = 1
-        forecast_due(A, disks)
+        forecast_due(A)
     if COUNT.phase == 1:
         whole = A.PAR.dt
-        met = follow_jointed(A, J, disks, lossy or A.PAR.pulled > 0.0)
+        met = follow_jointed(A, J, lossy or A.PAR.pulled > 0.0)
         if met != DONE:
             return wish(met)
         if A.PAR.dt < whole:
@@ -156,13 +156,11 @@ def step_jointed(
     TABLE: Table, JOINTS: Table, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float,
     gx: float, gy: float, left: float, lossy: bool, bits: int,
 ) -> int:  # fmt: skip
-    """From the states that were read to those that are to be written: arguments and answer as `..impacts.step.step`,
-    but for the number of disks, which the scene has."""
+    """From the states that were read to those that are to be written: arguments and answer as `..impacts.step.step`."""
     A, J = scene_of(TABLE), joints_of(JOINTS)
-    disks = A.COUNT.disks
     if bits >= 0:
-        return resume_jointed(A, J, STATES, WALK, EXTRA, ENDS, disks, lossy, bits)
+        return resume_jointed(A, J, STATES, WALK, EXTRA, ENDS, lossy, bits)
     status = start_jointed(A, J, STATES, WALK, EXTRA, dt, gx, gy, left)
     if status < 0:
         return status
-    return resume_jointed(A, J, STATES, WALK, EXTRA, ENDS, disks, lossy, status)
+    return resume_jointed(A, J, STATES, WALK, EXTRA, ENDS, lossy, status)

@@ -7,7 +7,7 @@ import numpy as np
 from ..arrays import IntArray
 from ..compiled import kernel, uncounted
 from ..geometry.flight import pose
-from ..geometry.gap import gap_at
+from ..geometry.gap import gap
 from ..impacts.simultaneous import crowded
 from ..islands.accounting import alight, book
 from ..islands.membership import members
@@ -66,7 +66,7 @@ def take_back(A: Scene, root: int) -> None:
     c = 0
     while c < A.COUNT.pushes:
         if A.PUSHED_BY[c].root == root:
-            mark_pair(A.LIST, A.POOL, A.FLAG, A.LIST.shape[0], A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, 0)
+            mark_pair(A, A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, 0)
             last = A.COUNT.pushes - 1
             A.PUSHED[c], A.PUSHED_BY[c] = A.PUSHED[last], A.PUSHED_BY[last]
             A.COUNT.pushes = last
@@ -160,9 +160,7 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> float:
         loaded = shorten(A, J, roots[0], t)
         if roots[1] != roots[0]:
             loaded += shorten(A, J, roots[1], t)
-        xi, yi, qi = pose(A.BODY, i, t)
-        xj, yj, qj = pose(A.BODY, j, t)
-        g, nx, ny, px, py = gap_at(A.SHAPE, A.LINK, A.VERTEX, A.WORK, a, xi, yi, qi, b, xj, yj, qj)
+        g, nx, ny, px, py = gap(A, a, b, t)
         close = MEET if loaded == 0 else MEET_LOADED if loaded <= SOME_CONTACTS else MEET_MANY
         if ((loaded > 0 or spent) and tries + 1 >= most) or abs(g) <= close * small:
             break
@@ -170,6 +168,8 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> float:
         if before >= 0.0 and t != before:
             slope = (g - gap_before) / (t - before)
         else:
+            xi, yi, _ = pose(A.BODY, i, t)
+            xj, yj, _ = pose(A.BODY, j, t)
             vi = path_rate(A, i, t, nx, ny, px - xi, py - yi)
             slope = path_rate(A, j, t, nx, ny, px - xj, py - yj) - vi
         # The islands end where they were brought last.

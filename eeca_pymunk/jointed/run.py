@@ -16,7 +16,7 @@ from .together import resume_together_jointed
 @kernel
 def run_jointed(
     TABLE: Table, JOINTS: Table, ARRAYS: Table, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray,
-    USUAL: FloatArray, disks: int, lossy: bool, together: bool,
+    USUAL: FloatArray, lossy: bool, together: bool,
 ) -> int:  # fmt: skip
     """Arguments and answer as of `..impacts.run.run`."""
     A, J, F = scene_of(TABLE), joints_of(JOINTS), run_arrays_of(ARRAYS)
@@ -35,7 +35,7 @@ def run_jointed(
                 if together:
                     status = resume_together_jointed(A, J, STATES, WALK, EXTRA, ENDS, USUAL, RUN.bits)
                 else:
-                    status = resume_jointed(A, J, STATES, WALK, EXTRA, ENDS, disks, lossy, RUN.bits)
+                    status = resume_jointed(A, J, STATES, WALK, EXTRA, ENDS, lossy, RUN.bits)
                 if status < 0:
                     return status
                 RUN.bits, RUN.stage = status, AFTER

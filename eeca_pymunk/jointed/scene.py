@@ -40,7 +40,7 @@ class JointedLoop(EventLoop):
         super().__init__(BODY, SHAPE, LINK, VERTEX, disks, limit)
         self._joint, self._partner, self._order = joint, PARTNER, order
         self.together = together
-        self._options = () if together else (self.lossy,)
+        self._options = () if together else self._options
         self.plan()
 
     def plan(self) -> None:
@@ -56,7 +56,6 @@ class JointedLoop(EventLoop):
 
     def _gather(self) -> IntArray:
         (self.scene, self.joints), memory = gathered((self.scene, OF_SCENE), (self.joints, OF_JOINTS))
-        self.near = self._lists()
         self._joint = self.joints.JOINT
         self._ties = table_of(self.joints)
         return memory

@@ -54,12 +54,12 @@ def carried_along(J: Joints, s: int) -> bool:
 
 
 @kernel
-def collide(A: Scene, J: Joints, disks: int, a: int, b: int, t: float) -> tuple[int, int]:
+def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[int, int]:
     """The impact of shapes a and b, seen at instant t, with all that hangs on them: results as `..contacts.single`."""
     k = A.SHAPE.shape[0]
     i, j = A.LINK[a].owner, A.LINK[b].owner
     t = meet(A, J, a, b, t)
-    n, m, PAIRS = gather(A, disks, a, b, t)
+    n, m, PAIRS = gather(A, a, b, t)
     again, ended = True, 0
     ENDED = np.empty(A.BODY.shape[0], np.int64)
     while again:
@@ -74,10 +74,10 @@ def collide(A: Scene, J: Joints, disks: int, a: int, b: int, t: float) -> tuple[
                 again = True
         if again:
             dismiss(A, A.BLOCK, n)
-            n, m, PAIRS = gather(A, disks, a, b, t)
+            n, m, PAIRS = gather(A, a, b, t)
     rest = comes_to_rest(A, a, b, t)
     owed, _ = owing(A, n)
-    block = lay_out(A, disks, n, m, PAIRS, min(a, b) * k + max(a, b), rest, t)
+    block = lay_out(A, n, m, PAIRS, min(a, b) * k + max(a, b), rest, t)
     P, Q, ROWS, V = block.A, block.B, block.ROWS, block.V
     rows = len(ROWS)
     L, LOSS, OUT = np.zeros((rows, 2)), np.zeros((rows, 2)), zeros(1, SOLVED)

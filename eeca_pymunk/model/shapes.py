@@ -1,8 +1,14 @@
-"""Records of shapes and of their neighbour lists."""
+"""Records of shapes, of their neighbour lists, and of the sides on which thin ones are."""
 
 from __future__ import annotations
 
+from typing import Annotated
+
+from ..arrays import IntArray
 from ..compiled.records import Record
+
+LEVELS = 64  # of the grid: level l has cells twice as long as l - 1
+BATCH = 64  # shapes that a loop chooses before the next one looks at them
 
 
 class Shape(Record):
@@ -64,3 +70,39 @@ class List(Record):
     capacity: int
     number: int
     later: int  # the shape that a lone disk meets if it goes straight on when it leaves its circle
+
+
+class Grid(Record):
+    """The grid of shapes that move, that of static ones, and how much of the neighbour lists is in use."""
+
+    pool_end: int  # first free place of POOL
+    moving: int  # shapes [0, moving) move and have lists, the others are static
+    leaves: int  # lists made again, of one shape each
+    columns: int  # cells of the grid of static shapes; 0 where all of them are looked at
+    rows: int
+    left: float  # corner and length of these cells
+    bottom: float
+    wall_cell: float
+    cell: float  # length of the cells of level 0 of the shapes that move
+    level: Annotated[IntArray, LEVELS]  # shapes on each level
+    # Scratch. Which shapes to choose cannot be guessed: a branch would wait for one row after the other.
+    chosen: Annotated[IntArray, BATCH]  # shapes that a loop has chosen
+    walked: Annotated[IntArray, BATCH]  # one shape in each of so many places of the grid
+
+
+class Side(Record):
+    """On which side of each other two thin shapes a < b are, see `..geometry.sides`."""
+
+    key: int  # 1 + a k + b, of k shapes; 0 for a row never used, -1 for one that is free again
+    nx: float  # unit normal from a to b
+    ny: float
+    deep: float  # length up to which they may overlap and still be on that side
+
+
+class Corner(Record):
+    """A corner of segments of one body, see `..geometry.corners`."""
+
+    other: int  # 1 + the next segment about the end, 0 for none
+    cosine: float  # of the angle to it
+    sine: float
+    thin: int  # of the first row of a shape: 1 if it is thin

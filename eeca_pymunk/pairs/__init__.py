@@ -8,6 +8,5 @@ All shapes, disks and others, have their pairs from here. pymunk's arbiters of a
 fewer (by a fifth for boxes), but cost 2 to 11 times as much at equal margins, as all are found anew when one has left:
 `python -m comparisons detection` measures both, and checks that every pair that pymunk finds is in the lists.
 
-Open first `lists.py`; `setup.py` chooses margins and lays the arrays out (records of `..model.shapes`;
-`layout.py` names the places of counters).
+Open first `lists.py`; `setup.py` chooses margins and lays the arrays out (records of `..model.shapes`).
 """

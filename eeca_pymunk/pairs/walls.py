@@ -2,19 +2,10 @@
 
 from __future__ import annotations
 
-from ..arrays import FlagArray, FloatArray, IntArray, PoolArray
+from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
-from ..compiled.records import Rows
-from ..model.bodies import Body
-from ..model.shapes import Link, List, Mark, Shape
-from .layout import (
-    MOVING,
-    WALL_COLUMNS,
-    WALL_LENGTH,
-    WALL_ROWS,
-    WALL_X,
-    WALL_Y,
-)  # fmt: skip
+from ..model.scene import Scene
+from ..model.shapes import Grid
 from .lists import append, may_meet, place_in
 
 
@@ -26,30 +17,37 @@ def cell_of(distance: float, length: float, count: int) -> int:
 
 
 @uncounted
-def near_wall(BOX: FloatArray, w: int, x: float, y: float, radius: float) -> bool:
-    """Whether a circle overlaps the box of static shape number w: (W, 4) left, bottom, right, top."""
-    dx = max(BOX[w, 0] - x, x - BOX[w, 2], 0.0)
-    dy = max(BOX[w, 1] - y, y - BOX[w, 3], 0.0)
-    return bool(dx * dx + dy * dy <= radius * radius)
+def cells_of(GRID: Grid, left: float, bottom: float, right: float, top: float) -> tuple[int, int, int, int]:
+    """The first and last column, and the first and last row, of the cells that a box overlaps."""
+    length = GRID.wall_cell
+    return (
+        cell_of(left - GRID.left, length, GRID.columns), cell_of(right - GRID.left, length, GRID.columns),
+        cell_of(bottom - GRID.bottom, length, GRID.rows), cell_of(top - GRID.bottom, length, GRID.rows),
+    )  # fmt: skip
 
 
 @uncounted
-def seek_walls(
-    BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], MARK: Rows[Mark], LIST: Rows[List], POOL: PoolArray,
-    FLAG: FlagArray, GRID: FloatArray, INFO: IntArray, BOX: FloatArray, CSR: IntArray, s: int,
-) -> bool:  # fmt: skip
+def try_wall(A: Scene, s: int, w: int) -> bool:
+    """Put static shape number w into the list of s if it may meet its margin circle. False if the pool is full."""
+    BOX, mark, o = A.BOX, A.MARK[s], A.GRID.moving + w
+    dx = max(BOX[w, 0] - mark.x, mark.x - BOX[w, 2], 0.0)
+    dy = max(BOX[w, 1] - mark.y, mark.y - BOX[w, 3], 0.0)
+    new = dx * dx + dy * dy <= mark.reach * mark.reach and place_in(A, s, o) < 0 and may_meet(A, s, o)
+    return not new or append(A, s, o)
+
+
+@uncounted
+def seek_walls(A: Scene, s: int) -> bool:
     """Static neighbours of s, but for those in its list already. False if the pool is full."""
-    x, y = MARK[s].x, MARK[s].y
-    radius, moving = MARK[s].reach, INFO[MOVING]
-    columns, rows = INFO[WALL_COLUMNS], INFO[WALL_ROWS]
+    GRID, BOX, CSR = A.GRID, A.BOX, A.CSR
+    columns, rows = GRID.columns, GRID.rows
     if columns == 0:
+        room = True
         for w in range(BOX.shape[0]):
-            if near_wall(BOX, w, x, y, radius) and place_in(LIST, POOL, s, moving + w) < 0:
-                if may_meet(BODY, LINK, s, moving + w) and not append(LIST, POOL, FLAG, INFO, s, moving + w):
-                    return False
-        return True
-    length = GRID[WALL_LENGTH]
-    left, bottom = x - GRID[WALL_X], y - GRID[WALL_Y]
+            room = room and try_wall(A, s, w)
+        return room
+    x, y, radius = A.MARK[s].x, A.MARK[s].y, A.MARK[s].reach
+    length, left, bottom = GRID.wall_cell, x - GRID.left, y - GRID.bottom
     west, east = cell_of(left - radius, length, columns), cell_of(left + radius, length, columns)
     south, north = cell_of(bottom - radius, length, rows), cell_of(bottom + radius, length, rows)
     for row in range(south, north + 1):
@@ -58,39 +56,29 @@ def seek_walls(
             for q in range(CSR[c], CSR[c + 1]):
                 w = CSR[columns * rows + 1 + q]
                 # A wall of several cells counts in the first one of these that is looked at.
-                first_column = max(west, cell_of(BOX[w, 0] - GRID[WALL_X], length, columns))
-                first_row = max(south, cell_of(BOX[w, 1] - GRID[WALL_Y], length, rows))
-                if first_column != column or first_row != row:
-                    continue
-                if near_wall(BOX, w, x, y, radius) and place_in(LIST, POOL, s, moving + w) < 0:
-                    if may_meet(BODY, LINK, s, moving + w) and not append(LIST, POOL, FLAG, INFO, s, moving + w):
-                        return False
+                first_column, _, first_row, _ = cells_of(GRID, BOX[w, 0], BOX[w, 1], BOX[w, 2], BOX[w, 3])
+                if max(west, first_column) == column and max(south, first_row) == row and not try_wall(A, s, w):
+                    return False
     return True
 
 
 @uncounted
-def wall_grid(BOX: FloatArray, GRID: FloatArray, INFO: IntArray, CSR: IntArray) -> int:
-    """Lay static shapes, of boxes (W, 4), into the cells of their grid, whose numbers stand in INFO and GRID.
+def wall_grid(BOX: FloatArray, GRID: Grid, CSR: IntArray) -> int:
+    """Lay static shapes, of boxes (W, 4), into the cells of their grid.
 
     CSR holds columns * rows + 1 starts and then the numbers; returns how many these are. Called with a CSR that has no
     room for them, it only counts.
     """
-    columns, rows, length = INFO[WALL_COLUMNS], INFO[WALL_ROWS], GRID[WALL_LENGTH]
-    cells = columns * rows
-    total = 0
+    columns, cells, total = GRID.columns, GRID.columns * GRID.rows, 0
     for w in range(BOX.shape[0]):
-        wide = cell_of(BOX[w, 2] - GRID[WALL_X], length, columns) - cell_of(BOX[w, 0] - GRID[WALL_X], length, columns)
-        high = cell_of(BOX[w, 3] - GRID[WALL_Y], length, rows) - cell_of(BOX[w, 1] - GRID[WALL_Y], length, rows)
-        total += (wide + 1) * (high + 1)
+        west, east, south, north = cells_of(GRID, BOX[w, 0], BOX[w, 1], BOX[w, 2], BOX[w, 3])
+        total += (east - west + 1) * (north - south + 1)
     if CSR.shape[0] < cells + 1 + total:
         return total
     CSR[: cells + 1] = 0
     for fill in range(2):
         for w in range(BOX.shape[0]):
-            west = cell_of(BOX[w, 0] - GRID[WALL_X], length, columns)
-            east = cell_of(BOX[w, 2] - GRID[WALL_X], length, columns)
-            south = cell_of(BOX[w, 1] - GRID[WALL_Y], length, rows)
-            north = cell_of(BOX[w, 3] - GRID[WALL_Y], length, rows)
+            west, east, south, north = cells_of(GRID, BOX[w, 0], BOX[w, 1], BOX[w, 2], BOX[w, 3])
             for row in range(south, north + 1):
                 for column in range(west, east + 1):
                     c = row * columns + column

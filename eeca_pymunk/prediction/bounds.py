@@ -4,27 +4,22 @@ from __future__ import annotations
 
 import math
 
-from ..arrays import FloatArray
 from ..compiled import uncounted
-from ..compiled.records import Rows
 from ..geometry.convex import place, point_core
 from ..geometry.flight import pose, rate
-from ..model.bodies import Body
-from ..model.shapes import Link, Shape
+from ..model.scene import Scene
 from .circles import circle_circle, circle_outline
 from .roots import flat
 
 
 @uncounted
-def circles_meet(
-    BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, WORK: FloatArray,
-    a: int, b: int, start: float, left: float, tolerance: float,
-) -> tuple[float, bool]:  # fmt: skip
+def circles_meet(A: Scene, a: int, b: int, start: float, left: float, tolerance: float) -> tuple[float, bool]:
     """Time after `start` until which shapes a and b are apart for certain, as a circle about the centre of mass of the
     one that moves is from the other's circle or, if that is static, its outline; and whether they never meet.
 
     These circles do not turn. 0 where they overlap.
     """
+    BODY, SHAPE, LINK = A.BODY, A.SHAPE, A.LINK
     ground = BODY.shape[0] - 1
     i, j = LINK[a].owner, LINK[b].owner
     if i == ground:
@@ -32,13 +27,11 @@ def circles_meet(
     x_a, y_a, _ = pose(BODY, i, start)
     ux_a, uy_a, _ = rate(BODY, i, start)
     if j == ground:
-        q = place(LINK, VERTEX, b, 0.0, 0.0, 0.0, WORK[1])
+        q = place(A, b, 0.0, 0.0, 0.0, A.CORE[1])
         extent = SHAPE[a].extent + SHAPE[b].rounding
-        if point_core(x_a, y_a, WORK[1], q)[0] - extent <= tolerance:
+        if point_core(x_a, y_a, A.CORE[1], q)[0] - extent <= tolerance:
             return 0.0, False
-        s, _ = circle_outline(
-            x_a, y_a, ux_a, uy_a, BODY[i].ax, BODY[i].ay, extent, tolerance, LINK, VERTEX, b, left
-        )  # fmt: skip
+        s, _ = circle_outline(x_a, y_a, ux_a, uy_a, BODY[i].ax, BODY[i].ay, extent, tolerance, A, b, left)
         return s, s == math.inf
     x_b, y_b, _ = pose(BODY, j, start)
     ux_b, uy_b, _ = rate(BODY, j, start)
@@ -53,15 +46,13 @@ def circles_meet(
 
 
 @uncounted
-def carried_circle(
-    BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], s: int, start: float, left: float
-) -> tuple[float, float, float, float, float]:
+def carried_circle(A: Scene, s: int, start: float, left: float) -> tuple[float, float, float, float, float]:
     """Centre (2) and velocity (2) at `start` of the bounding circle of shape s, which its body carries round, and how
     much (length/time²) the turning bends its path at most, for `left`."""
-    i = LINK[s].owner
+    BODY, i = A.BODY, A.LINK[s].owner
     x, y, angle = pose(BODY, i, start)
     ux, uy, w = rate(BODY, i, start)
-    px, py = SHAPE[s].centre_x, SHAPE[s].centre_y
+    px, py = A.SHAPE[s].centre_x, A.SHAPE[s].centre_y
     if angle != 0.0 and (px != 0.0 or py != 0.0):
         c, z = math.cos(angle), math.sin(angle)
         px, py = c * px - z * py, z * px + c * py
@@ -71,14 +62,12 @@ def carried_circle(
 
 
 @uncounted
-def carried_circles_meet(
-    BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], a: int, b: int, start: float, left: float
-) -> float:
+def carried_circles_meet(A: Scene, a: int, b: int, start: float, left: float) -> float:
     """Time after `start` until which the bounding circles of shapes a and b are apart for certain: what `circles_meet`
     cannot tell of shapes far from their centres of mass. Holds for `left`, or for ever without angular acceleration."""
-    x_a, y_a, ux_a, uy_a, bend_a = carried_circle(BODY, SHAPE, LINK, a, start, left)
-    x_b, y_b, ux_b, uy_b, bend_b = carried_circle(BODY, SHAPE, LINK, b, start, left)
-    i, j = LINK[a].owner, LINK[b].owner
+    x_a, y_a, ux_a, uy_a, bend_a = carried_circle(A, a, start, left)
+    x_b, y_b, ux_b, uy_b, bend_b = carried_circle(A, b, start, left)
+    BODY, SHAPE, i, j = A.BODY, A.SHAPE, A.LINK[a].owner, A.LINK[b].owner
     dx, dy = x_b - x_a, y_b - y_a
     d = math.sqrt(dx * dx + dy * dy)
     gap = d - SHAPE[a].bound - SHAPE[b].bound

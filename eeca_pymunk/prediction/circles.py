@@ -12,9 +12,8 @@ import math
 
 from ..arrays import FloatArray
 from ..compiled import uncounted
-from ..compiled.records import Rows
 from ..model.parameters.events import ADVANCES, SEARCH_AHEAD, STRIDE
-from ..model.shapes import Link
+from ..model.scene import Scene
 from .roots import ball_point, flat
 
 
@@ -59,7 +58,7 @@ def circle_circle(
 @uncounted
 def circle_outline(
     x: float, y: float, vx: float, vy: float, ax: float, ay: float, extent: float, tolerance: float,
-    LINK: Rows[Link], VERTEX: FloatArray, b: int, left: float,
+    A: Scene, b: int, left: float,
 ) -> tuple[float, bool]:  # fmt: skip
     """Time until a circle meets the static shape b, and whether that is when it does, or a lower bound.
 
@@ -72,7 +71,7 @@ def circle_outline(
         x, y: centre, length.  vx, vy: velocity.  ax, ay: acceleration.  extent: radius and b's rounding together.
         tolerance, left: as in `circle_circle`.
     """
-    first, count = LINK[b].first, LINK[b].vertices
+    VERTEX, first, count = A.VERTEX, A.LINK[b].first, A.LINK[b].vertices
     sides = count if count > 1 else 0
     straight = ax == 0.0 and ay == 0.0
     pull = math.sqrt(ax * ax + ay * ay)

@@ -8,50 +8,31 @@ from __future__ import annotations
 
 import math
 
-from ..compiled import merged, uncounted
-from ..compiled.records import Rows
+from ..compiled import uncounted
 from ..geometry.flight import norm
-from ..model.bodies import CHECK, LEAVE, NOTHING, Body
+from ..model.bodies import CHECK, LEAVE, NOTHING
 from ..model.parameters.events import AHEAD, FARTHEST_MARGIN, SAME_INSTANT
 from ..model.scene import Scene
-from ..model.shapes import Link
+from ..model.shapes import BATCH
 from ..pairs.grid import renew
-from ..pairs.layout import CHOSEN, ROOM
 from ..pairs.rules import barred
 from .heap import push
-from .impact_times import meet, one_pull, passes
+from .impact_times import meet, misses, one_pull
 from .next_event import has_left, leaves
 
 
 @uncounted
-def carrier(LINK: Rows[Link], disks: int, s: int) -> int:
+def carrier(A: Scene, s: int) -> int:
     """Row of the body of shape s: lone disks have the same number as their shapes."""
-    return s if s < disks else int(LINK[s].owner)
-
-
-@merged
-def misses(BODY: Rows[Body], i: int, o: int, ax: float, ay: float, latest: float) -> bool:
-    """Whether lone disks i and o, which one acceleration pulls, part, pass far from one another, or are too far away to
-    meet until `latest`: for certain. No more than `times.one_pull` would find out, and no branch."""
-    start = max(BODY[i].since, BODY[o].since)
-    g, h = start - BODY[i].since, start - BODY[o].since
-    ux, uy = (BODY[o].vx + h * ax) - (BODY[i].vx + g * ax), (BODY[o].vy + h * ay) - (BODY[i].vy + g * ay)
-    dx = (BODY[o].x + (BODY[o].vx + 0.5 * h * ax) * h) - (BODY[i].x + (BODY[i].vx + 0.5 * g * ax) * g)
-    dy = (BODY[o].y + (BODY[o].vy + 0.5 * h * ay) * h) - (BODY[i].y + (BODY[i].vy + 0.5 * g * ay) * g)
-    return passes(dx, dy, ux, uy, BODY[i].extent + BODY[o].extent, latest - start)
+    return s if s < A.COUNT.disks else int(A.LINK[s].owner)
 
 
 @uncounted
 def first_chosen(A: Scene, i: int, chosen: int, best: float, other: int) -> tuple[float, int]:
-    """As `first_meeting`, among so many lone disks in INFO[CHOSEN:], which one acceleration pulls."""
-    BODY = A.BODY
+    """As `first_meeting`, among so many lone disks in GRID.chosen, which one acceleration pulls."""
     for k in range(chosen):
-        o = A.INFO[CHOSEN + k]
-        t = one_pull(
-            BODY[i].since, BODY[i].x, BODY[i].y, BODY[i].vx, BODY[i].vy,
-            BODY[o].since, BODY[o].x, BODY[o].y, BODY[o].vx, BODY[o].vy,
-            BODY[i].ax, BODY[i].ay, BODY[i].extent + BODY[o].extent, best,
-        )  # fmt: skip
+        o = A.GRID.chosen[k]
+        t = one_pull(A.BODY, i, o, best)
         if t < best or (t == best and other >= 0 and o < other):
             best, other = t, o
     return best, other
@@ -59,7 +40,7 @@ def first_chosen(A: Scene, i: int, chosen: int, best: float, other: int) -> tupl
 
 @uncounted
 def first_meeting(
-    A: Scene, disks: int, i: int, known: int, best: float, other: int, end: float, several: bool
+    A: Scene, i: int, known: int, best: float, other: int, end: float, several: bool
 ) -> tuple[float, int]:  # fmt: skip
     """Instant and shape of the first meeting of lone disk i with those of its list from place `known` on, or what comes
     before that, `best` and `other`; CHECK for a shape if it is not certain.
@@ -67,8 +48,8 @@ def first_meeting(
     Args:
         several: whether bodies that have a PLACE are forecast together, see `next_event.predict`.
     """
-    BODY, POOL, FLAG, INFO = A.BODY, A.POOL, A.FLAG, A.INFO
-    chosen = 0
+    BODY, POOL, FLAG, CHOSEN = A.BODY, A.POOL, A.FLAG, A.GRID.chosen
+    disks, chosen = A.COUNT.disks, 0
     even = A.COUNT.even > 0
     flagged = not even or A.COUNT.unmet > 0
     ax, ay = BODY[i].ax, BODY[i].ay
@@ -78,31 +59,31 @@ def first_meeting(
             continue
         o = int(POOL[q])
         if several:
-            j = carrier(A.LINK, disks, o)
+            j = carrier(A, o)
             if A.PLACE[j] >= 0 and j < i:
                 continue
         if ruled and barred(A.RULE, i, o):
             continue
         if o < disks and even:
-            INFO[CHOSEN + chosen] = o
+            CHOSEN[chosen] = o
             chosen += 0 if misses(BODY, i, o, ax, ay, best) else 1
-            if chosen == ROOM:
+            if chosen == BATCH:
                 best, other = first_chosen(A, i, chosen, best, other)
                 chosen = 0
             continue
-        t, certain = meet(BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, i, o, disks, end, -1.0)
+        t, certain = meet(A, i, o, end)
         if t < best or (t == best and other >= 0 and o < other):
             best, other = t, (o if certain else CHECK)
     return first_chosen(A, i, chosen, best, other)
 
 
 @uncounted
-def expect(A: Scene, disks: int, i: int, best: float, other: int, now: float, end: float) -> None:
+def expect(A: Scene, i: int, best: float, other: int, now: float, end: float) -> None:
     """Take it that lone disk i meets shape `other` next, at instant `best`, or leaves its margin circle before; put
     what is due in this step on the heap."""
-    out = leaves(A.BODY, A.SHAPE, A.LINK, A.MARK, disks, i, i, now)
+    out = leaves(A, i, i, now)
     if other >= 0:
-        A.STATE[i].known = A.STATE[carrier(A.LINK, disks, other)].version
+        A.STATE[i].known = A.STATE[carrier(A, other)].version
     if out <= best and out < math.inf:
         A.LIST[i].later = other
         best, other = out, LEAVE
@@ -113,43 +94,40 @@ def expect(A: Scene, disks: int, i: int, best: float, other: int, now: float, en
 
 
 @uncounted
-def predict_disk(A: Scene, disks: int, i: int, now: float, end: float, several: bool) -> None:
+def predict_disk(A: Scene, i: int, now: float, end: float, several: bool) -> None:
     """As `next_event.predict`, of a lone disk that is in no island."""
-    best, other = first_meeting(A, disks, i, 0, math.inf, NOTHING, end, several)
-    expect(A, disks, i, best, other, now, end)
+    best, other = first_meeting(A, i, 0, math.inf, NOTHING, end, several)
+    expect(A, i, best, other, now, end)
 
 
 @uncounted
-def go_on(A: Scene, disks: int, i: int, now: float, end: float) -> bool:
+def go_on(A: Scene, i: int, now: float, end: float) -> bool:
     """Lone disk i, in no island, leaves its margin circle and goes straight on: only what has come into its list is new
     in its forecast. False if the pool is full."""
     BODY = A.BODY
     best, other, later, known = math.inf, NOTHING, A.LIST[i].later, A.LIST[i].number
     ahead = AHEAD
-    if later >= 0 and A.STATE[carrier(A.LINK, disks, later)].version == A.STATE[i].known:
-        best, certain = meet(A.BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, i, later, disks, end, -1.0)
+    if later >= 0 and A.STATE[carrier(A, later)].version == A.STATE[i].known:
+        best, certain = meet(A, i, later, end)
         other = later if certain else CHECK
-    if has_left(BODY, A.SHAPE, A.LINK, A.MARK, i, now):
+    if has_left(A, i, now):
         h = now - BODY[i].since
         if later == NOTHING or other >= 0:
             # Its course changes where it meets somebody: its circle is to be about there.
             way = norm(BODY[i].vx + BODY[i].ax * h, BODY[i].vy + BODY[i].ay * h) * (best - now)
             ahead = min(way / A.MARK[i].margin, FARTHEST_MARGIN)
-        known = renew(
-            BODY, A.SHAPE, A.LINK, A.MARK, A.CELL, A.LIST, A.POOL, A.FLAG, A.HEAD, A.GRID, A.INFO, A.BOX, A.CSR,
-            i, now, ahead,
-        )  # fmt: skip
+        known = renew(A, i, now, ahead)
         if known < 0:
             return False
     if later != NOTHING and other < 0:
         known = 0
-    best, other = first_meeting(A, disks, i, known, best, other, end, False)
-    expect(A, disks, i, best, other, now, end)
+    best, other = first_meeting(A, i, known, best, other, end, False)
+    expect(A, i, best, other, now, end)
     return True
 
 
 @uncounted
-def holds(A: Scene, disks: int, i: int, end: float) -> bool:
+def holds(A: Scene, i: int, end: float) -> bool:
     """Whether the forecast that lone disk i, in no island, was given in an earlier step is still good, as its path and
     that of whom it meets are the same; puts it on the heap. The instant is computed again, from the paths as they are
     described in this step, so that no bit depends on how long ago the forecast was made."""
@@ -157,9 +135,9 @@ def holds(A: Scene, disks: int, i: int, end: float) -> bool:
     if due <= 0.0:
         return False
     if other >= 0:
-        if A.STATE[carrier(A.LINK, disks, other)].version != A.STATE[i].known:
+        if A.STATE[carrier(A, other)].version != A.STATE[i].known:
             return False
-        t, certain = meet(A.BODY, A.SHAPE, A.LINK, A.VERTEX, A.WORK, i, other, disks, end, -1.0)
+        t, certain = meet(A, i, other, end)
         if not (certain and abs(t - due) <= SAME_INSTANT * end):
             return False
         A.BODY[i].due = due = t

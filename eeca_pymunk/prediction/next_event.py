@@ -10,12 +10,10 @@ from __future__ import annotations
 import math
 
 from ..compiled import merged, uncounted
-from ..compiled.records import Rows
 from ..geometry.flight import norm
-from ..model.bodies import CHECK, LEAVE, NOTHING, RENEW, Body
+from ..model.bodies import CHECK, LEAVE, NOTHING, RENEW
 from ..model.parameters.events import INSIDE
 from ..model.scene import Scene
-from ..model.shapes import Link, Mark, Shape
 from ..pairs.lists import centre
 from ..pairs.rules import barred
 from .heap import push
@@ -23,15 +21,14 @@ from .impact_times import meet
 
 
 @uncounted
-def leaves(
-    BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], MARK: Rows[Mark], disks: int, i: int, s: int, now: float
-) -> float:
+def leaves(A: Scene, i: int, s: int, now: float) -> float:
     """Instant before which the centre of shape s of body i stays within its margin circle; exact for straight paths."""
+    BODY, SHAPE, MARK = A.BODY, A.SHAPE, A.MARK
     m = MARK[s].margin
     if m == math.inf:
         return math.inf
     h = now - BODY[i].since
-    arm = 0.0 if s < disks else norm(SHAPE[s].centre_x, SHAPE[s].centre_y)
+    arm = 0.0 if s < A.COUNT.disks else norm(SHAPE[s].centre_x, SHAPE[s].centre_y)
     ax, ay = BODY[i].ax, BODY[i].ay
     if ax == 0.0 and ay == 0.0 and arm == 0.0:
         vx, vy = BODY[i].vx, BODY[i].vy
@@ -47,7 +44,7 @@ def leaves(
         root = math.sqrt(b * b + squared * c)
         return float(now + ((root - b) / squared if b <= 0.0 else c / (root + b)))
     # The length of the way bounds the distance: u s + g s^2 / 2 until the room is used up.
-    x, y = centre(BODY, SHAPE, LINK, s, now)
+    x, y = centre(A, s, now)
     room = m - norm(x - MARK[s].x, y - MARK[s].y)
     if room <= 0.0:
         return now
@@ -59,14 +56,14 @@ def leaves(
 
 
 @uncounted
-def has_left(BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], MARK: Rows[Mark], s: int, now: float) -> bool:
+def has_left(A: Scene, s: int, now: float) -> bool:
     """Whether shape s is as good as out of its margin circle."""
-    x, y = centre(BODY, SHAPE, LINK, s, now)
-    return bool(norm(x - MARK[s].x, y - MARK[s].y) > (1.0 - INSIDE) * MARK[s].margin)
+    x, y = centre(A, s, now)
+    return bool(norm(x - A.MARK[s].x, y - A.MARK[s].y) > (1.0 - INSIDE) * A.MARK[s].margin)
 
 
 @merged
-def predict(A: Scene, disks: int, moving: int, i: int, now: float, end: float, until: float) -> None:
+def predict(A: Scene, i: int, now: float, end: float, until: float) -> None:
     """Forecast body i from its present path, at an instant `now` of the loop, and put what is due in this step on the
     heap.
 
@@ -74,11 +71,11 @@ def predict(A: Scene, disks: int, moving: int, i: int, now: float, end: float, u
         A: PLACE (n,) is 0 or more for bodies that are forecast together, the first of a pair of which sees it; else -1.
         until: instant at which a span of the body's island ends, infinite if it has none of its own.
     """
-    BODY, STATE, SHAPE, LINK, LIST = A.BODY, A.STATE, A.SHAPE, A.LINK, A.LIST
+    BODY, STATE, LINK, LIST = A.BODY, A.STATE, A.LINK, A.LIST
     best, own, other = math.inf, -1, NOTHING
     first = STATE[i].first_shape
     for s in range(first, first + STATE[i].shapes):
-        t = leaves(BODY, SHAPE, LINK, A.MARK, disks, i, s, now)
+        t = leaves(A, i, s, now)
         if t < best:
             best, own, other = t, s, LEAVE
         start = LIST[s].start
@@ -90,7 +87,7 @@ def predict(A: Scene, disks: int, moving: int, i: int, now: float, end: float, u
                 continue
             if A.RULE.shape[0] > 0 and barred(A.RULE, s, o):
                 continue
-            t, certain = meet(BODY, SHAPE, LINK, A.VERTEX, A.WORK, s, o, disks, end, -1.0)
+            t, certain = meet(A, s, o, end)
             if t < best or (t == best and other >= 0 and (s < own or (s == own and o < other))):
                 best, own, other = t, s, (o if certain else CHECK)
     if until < best:
@@ -100,7 +97,7 @@ def predict(A: Scene, disks: int, moving: int, i: int, now: float, end: float, u
     STATE[i].own, STATE[i].other = own, other
     if other >= 0:
         STATE[i].known = STATE[LINK[other].owner].version
-    if i < disks:
+    if i < A.COUNT.disks:
         LIST[i].later = CHECK
     if best < end:
         A.COUNT.heap = push(A.HEAP_TIME, A.HEAP_BODY, A.COUNT.heap, best, i)

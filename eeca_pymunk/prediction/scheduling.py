@@ -12,39 +12,39 @@ from .next_event import predict
 
 
 @uncounted
-def forecast(A: Scene, disks: int, moving: int, i: int, t: float, end: float, several: bool) -> None:
+def forecast(A: Scene, i: int, t: float, end: float, several: bool) -> None:
     """The next event of body i, seen from instant t of the loop; see `predict` for `several`."""
     A.COUNT.forecasts += 1
-    if i < disks and A.STATE[i].island < 0:
-        predict_disk(A, disks, i, t, end, several)
+    if i < A.COUNT.disks and A.STATE[i].island < 0:
+        predict_disk(A, i, t, end, several)
         return
     until = A.RESTING[i].until if A.STATE[i].island == i else math.inf
-    predict(A, disks, moving, i, t, end, until)
+    predict(A, i, t, end, until)
 
 
 @uncounted
-def forecast_all(A: Scene, disks: int, n: int, t: float, end: float) -> None:
+def forecast_all(A: Scene, n: int, t: float, end: float) -> None:
     """The next events of the n bodies in A.BLOCK, seen from instant t: each pair of them is looked at once. That is
     enough, as either body is forecast anew with all others after its next event."""
     for q in range(n):
         A.PLACE[A.BLOCK[q]] = q
     for q in range(n):
-        forecast(A, disks, A.LIST.shape[0], A.BLOCK[q], t, end, True)
+        forecast(A, A.BLOCK[q], t, end, True)
     for q in range(n):
         A.PLACE[A.BLOCK[q]] = -1
 
 
 @uncounted
-def forecast_due(A: Scene, disks: int) -> None:
+def forecast_due(A: Scene) -> None:
     """The next events, at the start of a step, of all bodies whose last forecast is no good."""
-    n, dt = 0, A.PAR.dt
+    n, dt, disks = 0, A.PAR.dt, A.COUNT.disks
     for i in range(A.BODY.shape[0] - 1):
         alone = A.STATE[i].island < 0
         if A.BODY[i].due < dt or not (alone or A.MEMBER[i].rest == AT_REST):
-            if not (alone and i < disks and holds(A, disks, i, dt)):
+            if not (alone and i < disks and holds(A, i, dt)):
                 A.BLOCK[n] = i
                 n += 1
-    forecast_all(A, disks, n, 0.0, dt)
+    forecast_all(A, n, 0.0, dt)
 
 
 @merged
@@ -56,10 +56,10 @@ def fetch_body(A: Scene, i: int) -> None:
 
 
 @merged
-def look_ahead(A: Scene, disks: int, now: int) -> None:
+def look_ahead(A: Scene, now: int) -> None:
     """Have the memory bring what the events after that of body `now` are about: numbers of later ones first, as they
     say where to find the rest."""
-    LIST = A.LIST
+    LIST, disks = A.LIST, A.COUNT.disks
     n = min(A.COUNT.heap, 3)
     for k in range(1, n):
         i = A.HEAP_BODY[k]

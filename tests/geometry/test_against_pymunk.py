@@ -7,7 +7,9 @@ import pymunk
 import pytest
 from pymunk import batch
 
+from eeca_pymunk.geometry.corners import core_room
 from eeca_pymunk.geometry.gap import gap
+from eeca_pymunk.model.scene import scene_with
 from eeca_pymunk.space.world import World
 from scenes.scene import add_disk
 
@@ -33,7 +35,10 @@ def between(space: pymunk.Space) -> tuple[float, float, float, float, float]:
     """Gap, normal and point of the disk and the static shape of a space."""
     world = World(space)
     world.load()
-    return gap(world.BODY, world.SHAPE, world.LINK, world.VERTEX, np.zeros((2, 4, 4)), 0, 1, 0.0)
+    scene = scene_with(
+        BODY=world.BODY, SHAPE=world.SHAPE, LINK=world.LINK, VERTEX=world.VERTEX, CORE=core_room(world.LINK)
+    )
+    return gap(scene, 0, 1, 0.0)
 
 
 @pytest.mark.parametrize("kind", ["circle", "segment", "capsule", "box", "rounded"])

@@ -19,14 +19,12 @@ UNITS = [1e-3, 1.0, 1e3]
 def rows(world: World, a: int, b: int, reach: float, tolerance: float = 1e-9) -> np.ndarray:
     """The rows of `manifold`, bodies where their paths start; shape numbers are body numbers."""
     out = np.zeros((2, 5))
-    x = columns(world.body, *POSE)
-    return out[: manifold(*world.geometry, a, *x[a], b, *x[b], reach, tolerance, out)]
+    return out[: manifold(world.scene, a, b, columns(world.body, *POSE), a, b, reach, tolerance, out)]
 
 
 def common(world: World, a: int, b: int, tolerance: float) -> np.ndarray:
     out = np.zeros((2, 5))
-    x = columns(world.body, *POSE)
-    return out[: face(*world.geometry, a, *x[a], b, *x[b], tolerance, out)]
+    return out[: face(world.scene, a, b, columns(world.body, *POSE), a, b, tolerance, out)]
 
 
 @pytest.mark.parametrize("unit", UNITS)
@@ -111,7 +109,7 @@ def test_exchange_and_reflection_of_random_shapes(rounding: float) -> None:
         mirror = np.array((-1.0, 1.0, -1.0, 1.0, 1.0))
         np.testing.assert_allclose(rows(mirrored, 0, 1, 0.3), mirror * found[::-1], atol=1e-13)
         # The nearer row is the gap; its point lies where it says.
-        g = gap(*world.arrays, 0, 1, 0.0)[0]
+        g = gap(world.scene, 0, 1, 0.0)[0]
         assert len(found) == 0 if g > 0.3 else found[:, 4].min() == pytest.approx(g, abs=1e-13)
         if len(found) == 2:
             along = found[:, 3] * found[:, 0] - found[:, 2] * found[:, 1]

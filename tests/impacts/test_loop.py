@@ -297,6 +297,6 @@ def test_walls_that_turn_are_looked_for_where_they_are() -> None:
         for s in range(len(scene.LIST)):
             if scene.BODY["inv_mass"][scene.LINK["owner"][s]] > 0.0:
                 continue
-            x, y = centre(scene.BODY, scene.SHAPE, scene.LINK, s, scene.BODY["since"][scene.LINK["owner"][s]])
+            x, y = centre(scene, s, scene.BODY["since"][scene.LINK["owner"][s]])
             away = math.hypot(x - scene.MARK["x"][s], y - scene.MARK["y"][s])
             assert away <= scene.MARK["margin"][s] * (1 + 1e-9)

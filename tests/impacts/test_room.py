@@ -9,7 +9,6 @@ import pymunk
 import pytest
 
 import eeca_pymunk as ep
-from eeca_pymunk.pairs import layout as at
 from eeca_pymunk.pairs import setup
 from scenes.scene import add_disk, add_walls
 
@@ -31,18 +30,13 @@ def test_forces_are_reset_after_a_step_of_more_impacts_than_there_was_room_for()
 @pytest.mark.parametrize("seed", [2, 3])
 def test_lists_that_grow_on_the_way_miss_nobody(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     # Little room is given each time, so that it is wanted again and again.
-    def little(self: setup.Near) -> setup.Near:
-        room = len(self.POOL) + 40
-        return self._replace(POOL=np.zeros(room, np.int32), FLAG=np.zeros(room, np.uint8))
-
-    monkeypatch.setattr(setup.Near, "larger", little)
+    monkeypatch.setattr(setup, "more_room", lambda room: room + 40)
     space, bodies = box_of(np.full(150, math.sqrt(0.3 / math.pi / 150)), seed)
     stepper = ep.EECA(space, sync=False)
     stepper.step(1e-3)
     loop = stepper._method
-    room = int(loop.near.INFO[at.POOL_END]) + 40  # type: ignore[attr-defined]
-    pool, flag = loop.near.POOL[:room].copy(), loop.near.FLAG[:room].copy()  # type: ignore[attr-defined]
-    loop.near = loop.near._replace(POOL=pool, FLAG=flag)  # type: ignore[attr-defined]
+    room = int(loop.scene.GRID.pool_end) + 40  # type: ignore[attr-defined]
+    pool, flag = loop.scene.POOL[:room].copy(), loop.scene.FLAG[:room].copy()  # type: ignore[attr-defined]
     loop.scene = loop.scene._replace(POOL=pool, FLAG=flag)  # type: ignore[attr-defined]
     exact = reference(bodies)
     exact.run(0.1)

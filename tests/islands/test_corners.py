@@ -9,8 +9,9 @@ import pymunk
 import pytest
 
 import eeca_pymunk as ep
+from eeca_pymunk.compiled.records import rows
 from eeca_pymunk.geometry.corners import note_corners, thin
-from eeca_pymunk.model.shapes import Link
+from eeca_pymunk.model.shapes import Corner, Link
 
 G = 9.81
 
@@ -123,10 +124,10 @@ def test_corners_are_found_where_segments_of_one_body_meet() -> None:
     LINK["owner"][4] = 1  # of another body
     VERTEX = np.zeros((2 * len(lines), 4))
     VERTEX[:, :2] = np.array(lines, float).reshape(-1, 2)
-    CORNER = np.zeros((4 * len(lines), 4))
+    CORNER = rows(Corner, 4 * len(lines))
     note_corners(LINK, VERTEX, CORNER)
-    angles = {row: math.degrees(math.atan2(z, c)) for row, (k, c, z, _) in enumerate(CORNER) if k > 0}
-    assert {row: int(CORNER[row, 0]) - 1 for row in angles} == {
+    angles = {row: math.degrees(math.atan2(z, c)) for row, (k, c, z, _) in enumerate(CORNER.tolist()) if k > 0}
+    assert {row: CORNER[row].other - 1 for row in angles} == {
         0: 3, 1: 3, 2: 1, 3: 1,  # both ends of the first
         4: 0, 5: 0, 8: 0, 9: 0, 12: 0, 13: 0,
     }  # fmt: skip

@@ -9,8 +9,8 @@ import numpy as np
 
 from eeca_pymunk.compiled.records import columns, put
 from eeca_pymunk.model.bodies import ACCELERATION, POSE, VELOCITY
+from eeca_pymunk.model.scene import Scene
 from eeca_pymunk.pairs import grid, setup
-from eeca_pymunk.pairs import layout as at
 from tests.packed import Thing, World, box, disk
 
 WORD = (1 << 64) - 1  # pymunk's "all categories"
@@ -21,26 +21,22 @@ class Crowd:
     """A world with its near lists, which follow the bodies by `renew`."""
 
     world: World
-    near: setup.Near
+    near: Scene
 
     @classmethod
     def of(cls, world: World) -> Crowd:
         """The lists as a step makes them first."""
-        return cls(world, setup.near_lists(world.body, world.shape, world.link, world.vertex, moving_of(world)))
+        return cls(world, setup.near_lists(world.scene, moving_of(world)))
 
     @property
     def moving(self) -> int:
         """How many shapes move; they have the first numbers."""
-        return int(self.near.INFO[at.MOVING])
+        return int(self.near.GRID.moving)
 
     def renew(self, s: int, t: float = 0.0) -> None:
         """Draw the margin circle of s anew, with more room if that takes it."""
-        w, near = self.world, self.near
-        if grid.renew(
-            w.body, w.shape, w.link, near.MARK, near.CELL, near.LIST, near.POOL, near.FLAG, near.HEAD, near.GRID,
-            near.INFO, near.BOX, near.CSR, s, t, 0.0,
-        ) < 0:  # fmt: skip
-            self.near = setup.rebuilt(near.larger(), w.body, w.shape, w.link, t)
+        if grid.renew(self.near, s, t, 0.0) < 0:
+            self.near = setup.with_more_room(self.near, t)
 
     def listed(self) -> list[list[int]]:
         """The neighbours of every moving shape, in the order of the list."""

@@ -11,7 +11,6 @@ import scenes
 from eeca_pymunk.closures.motion import Disks, Start
 from eeca_pymunk.closures.simultaneous import SimultaneousStep
 from eeca_pymunk.compiled.records import columns, put
-from eeca_pymunk.pairs.layout import LEAVES
 from eeca_pymunk.space.world import World
 from scenes.scene import add_disk, add_walls
 
@@ -71,7 +70,7 @@ def test_lists_last_for_some_steps(wind: float) -> None:
     assert isinstance(method, SimultaneousStep)
     for _ in range(50):
         stepper.step(DT)
-    assert method.disks._near.INFO[LEAVES] <= 100 * 50 * wind * 0.1
+    assert method.disks.scene.GRID.leaves <= 100 * 50 * wind * 0.1
 
 
 @pytest.mark.parametrize("closure", [ep.Midstep(), ep.Dashpot(1e6, 1.0)], ids=["midstep", "dashpot"])
@@ -89,10 +88,10 @@ def test_a_pool_that_is_too_small_grows() -> None:
     stepper, energy = ep.EECA(scene.space, ep.Dashpot(1e6, 200.0)), ep.measure(scene.space).energy
     method = stepper._method
     assert isinstance(method, SimultaneousStep)
-    near = method.disks._near
-    room = int(near.INFO[0])
-    method.disks._near = near._replace(POOL=near.POOL[:room].copy(), FLAG=near.FLAG[:room].copy())
+    near = method.disks.scene
+    room = int(near.GRID.pool_end)
+    method.disks.scene = near._replace(POOL=near.POOL[:room].copy(), FLAG=near.FLAG[:room].copy())
     for _ in range(100):
         stepper.step(2e-3)
-    assert len(method.disks._near.POOL) > room
+    assert len(method.disks.scene.POOL) > room
     assert ep.measure(scene.space).energy == pytest.approx(energy, rel=1e-12)

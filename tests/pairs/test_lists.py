@@ -7,10 +7,11 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from eeca_pymunk.compiled import table_of
 from eeca_pymunk.compiled.records import columns, put
 from eeca_pymunk.model.bodies import ACCELERATION, VELOCITY
+from eeca_pymunk.model.shapes import LEVELS
 from eeca_pymunk.pairs import cells, grid, setup
-from eeca_pymunk.pairs import layout as at
 from eeca_pymunk.pairs.lists import mark_pair
 from tests.packed import Thing, World, disk
 
@@ -90,7 +91,7 @@ def test_one_that_flew_away_neither_breaks_the_grid_nor_fills_the_lists(speed: f
     near.renew(12, 1.0)
     if speed >= 1e9:
         assert near.listed()[12] == [11]
-    away = setup.near_lists(world.body, world.shape, world.link, world.vertex, near.moving)
+    away = setup.near_lists(world.scene, near.moving)
     assert away.LIST["number"].mean() <= 30
     Crowd(world, away).check()
 
@@ -127,15 +128,10 @@ def test_the_same_lists_bit_by_bit_a_second_time() -> None:
 def test_a_full_pool_is_told_and_more_room_helps() -> None:
     world = crowd(np.random.default_rng(3), np.full(40, 0.1), walls=30)
     near = Crowd.of(world)
-    w, n = world, near.near
     for room in (0, 8 * near.moving - 1, 8 * near.moving):
-        small = n._replace(POOL=np.zeros(room, np.int32), FLAG=np.zeros(room, np.uint8))
-        assert not grid.build(
-            w.body, w.shape, w.link, small.MARK, small.CELL, small.LIST, small.POOL, small.FLAG, small.HEAD, small.GRID,
-            small.INFO, small.BOX, small.CSR, 0.0,
-        )  # fmt: skip
-    small = n._replace(POOL=np.zeros(8 * near.moving, np.int32), FLAG=np.zeros(8 * near.moving, np.uint8))
-    Crowd(world, setup.rebuilt(small.larger(), w.body, w.shape, w.link, 0.0)).check()
+        small = near.near._replace(POOL=np.zeros(room, np.int32), FLAG=np.zeros(room, np.uint8))
+        assert not grid.build(table_of(small), 0.0)
+    Crowd(world, setup.with_more_room(small, 0.0)).check()
 
 
 def test_room_runs_out_as_lists_grow_and_wander() -> None:
@@ -146,7 +142,7 @@ def test_room_runs_out_as_lists_grow_and_wander() -> None:
     room = len(near.near.POOL)
     for turn in range(3000):
         near.renew(int(rng.integers(0, near.moving)), float(rng.uniform()) if turn < 1500 else 0.0)
-    assert int(near.near.INFO[at.POOL_END]) <= len(near.near.POOL)
+    assert int(near.near.GRID.pool_end) <= len(near.near.POOL)
     assert len(near.near.POOL) <= 4 * room
     near.check()
 
@@ -156,7 +152,7 @@ def test_flags_follow_their_pairs_and_new_pairs_have_none() -> None:
     near = Crowd.of(world)
     pair = next((s, o) for s, found in enumerate(near.listed()) for o in found if o < near.moving)
     n = near.near
-    mark_pair(n.LIST, n.POOL, n.FLAG, near.moving, *pair, 1)
+    mark_pair(n, *pair, 1)
 
     def flagged() -> set[tuple[int, int]]:
         return {
@@ -190,11 +186,11 @@ def test_the_grid_of_walls_holds_what_looking_at_all_finds(spread: str) -> None:
     world = World(things, ground)
     world.link["categories"] = world.link["mask"] = -1
     gridded = Crowd.of(world)
-    assert gridded.near.INFO[at.WALL_COLUMNS] > 0
+    assert gridded.near.GRID.columns > 0
     assert len(gridded.near.CSR) < 40 * len(ground) + 2
     gridded.check()
-    gridded.near.INFO[at.WALL_COLUMNS] = 0
-    plain = setup.rebuilt(gridded.near, world.body, world.shape, world.link, 0.0)
+    gridded.near.GRID.columns = 0
+    plain = setup.rebuilt(gridded.near, 0.0)
     assert [sorted(found) for found in Crowd(world, plain).listed()] == [sorted(found) for found in gridded.listed()]
 
 
@@ -204,7 +200,7 @@ def test_levels_hold_circles_of_up_to_half_their_cell() -> None:
         level = cells.level_of(radius, 1e-2)
         assert 1e-2 * 2.0**level >= 2.0 * radius
         assert level == 0 or 1e-2 * 2.0 ** (level - 1) < 2.0 * radius
-    assert cells.level_of(1e300, 1e-2) == at.LEVEL_COUNT - 1
+    assert cells.level_of(1e300, 1e-2) == LEVELS - 1
 
 
 @pytest.mark.parametrize("ahead", [0.0, 0.3, 0.9])
@@ -212,15 +208,12 @@ def test_a_list_drawn_ahead_is_complete_and_its_old_part_comes_first(ahead: floa
     rng = np.random.default_rng(8)
     world = crowd(rng, np.full(60, 0.1), walls=10)
     near = Crowd.of(world)
-    w, n = world, near.near
+    n = near.near
     for s in rng.integers(0, near.moving, 300).tolist():
         world.body[s].x += world.body[s].vx * 0.1
         world.body[s].y += world.body[s].vy * 0.1
         before = near.listed()[s]
-        kept = grid.renew(
-            w.body, w.shape, w.link, n.MARK, n.CELL, n.LIST, n.POOL, n.FLAG, n.HEAD, n.GRID, n.INFO, n.BOX, n.CSR,
-            s, 0.0, ahead,
-        )  # fmt: skip
+        kept = grid.renew(n, s, 0.0, ahead)
         assert kept >= 0
         after = near.listed()[s]
         assert set(after[:kept]) <= set(before)

@@ -14,10 +14,10 @@ UNITS = [1e-3, 1.0, 1e3]
 FLOOR = [([(-50.0, 0.0), (50.0, 0.0)], 0.0)]
 
 
-def next_impact(world: World, a: int, b: int, horizon: float = 10.0, held: float = -1.0) -> tuple[float, bool]:
+def next_impact(world: World, a: int, b: int, horizon: float = 10.0) -> tuple[float, bool]:
     """`meet`, the same from b to a."""
-    found = meet(*world.arrays, a, b, world.disks, horizon, held)
-    assert meet(*world.arrays, b, a, world.disks, horizon, held) == found
+    found = meet(world.scene, a, b, horizon)
+    assert meet(world.scene, b, a, horizon) == found
     return float(found[0]), bool(found[1])
 
 
@@ -34,25 +34,25 @@ def check_by_sampling(world: World, a: int, b: int, horizon: float, looks: int =
     i, j = world.link[a].owner, world.link[b].owner
     start = max(world.body["since"][i], world.body["since"][j])
     t, certain = next_impact(world, a, b, horizon)
-    tolerance = touching(world.body, world.shape, world.link, a, b, world.disks)
+    tolerance = touching(world.scene, a, b)
     end = min(t, horizon)
     for instant in np.linspace(start, end, looks, endpoint=False):
-        assert gap(*world.arrays, a, b, instant)[0] > -4.0 * tolerance
+        assert gap(world.scene, a, b, instant)[0] > -4.0 * tolerance
     if not certain:
         assert t >= horizon
         return "later"
     if t == math.inf:
         return "never"
     if t <= horizon:
-        assert abs(gap(*world.arrays, a, b, t)[0]) <= 4.0 * tolerance
+        assert abs(gap(world.scene, a, b, t)[0]) <= 4.0 * tolerance
         after = t + 1e-6 * (t - start + 1e-3)
-        assert gap(*world.arrays, a, b, after)[0] < tolerance
+        assert gap(world.scene, a, b, after)[0] < tolerance
     return "meets"
 
 
 def gap_now(things: list[Thing], a: int = 0, b: int = 1) -> float:
     """Gap of things a and b at the later of their clocks."""
-    return float(gap(*World(things).arrays, a, b, max(t.since for t in things))[0])
+    return float(gap(World(things).scene, a, b, max(t.since for t in things))[0])
 
 
 def static(vertices: list[tuple[float, float]], rounding: float) -> list[tuple[list[tuple[float, float]], float]]:

@@ -8,8 +8,9 @@ import math
 import numpy as np
 import pytest
 
-from eeca_pymunk.compiled.records import Rows, columns, rows
+from eeca_pymunk.compiled.records import columns, rows
 from eeca_pymunk.model.bodies import ACCELERATION, POSE, VELOCITY, Body
+from eeca_pymunk.model.scene import Scene
 from eeca_pymunk.model.shapes import Mark
 from eeca_pymunk.prediction.heap import pop, push, sweep_out
 from eeca_pymunk.prediction.next_event import has_left, leaves
@@ -66,10 +67,11 @@ def wanderer(rng: np.random.Generator, turning: bool, pulled: bool, unit: float)
     return World([thing])
 
 
-def mark_of(world: World, x: float, y: float, margin: float) -> Rows[Mark]:
+def marked(world: World, x: float, y: float, margin: float) -> Scene:
+    """The world with the margin circle of its one shape about (x, y)."""
     mark = rows(Mark, 1)
     mark[0].x, mark[0].y, mark[0].margin = x, y, margin
-    return mark
+    return world.scene._replace(MARK=mark)
 
 
 def centre_at(world: World, t: float) -> np.ndarray:
@@ -89,14 +91,14 @@ def test_nobody_leaves_before_the_instant_told(turning: bool, pulled: bool, unit
         margin = unit * float(10.0 ** rng.uniform(-2.0, 0.0))
         now = float(world.body["since"][0]) + (float(rng.uniform(0.0, 3.0)) if rng.uniform() < 0.7 else 0.0)
         place = centre_at(world, now) + margin * rng.uniform(-0.6, 0.6, 2)
-        mark = mark_of(world, float(place[0]), float(place[1]), margin)
+        scene = marked(world, float(place[0]), float(place[1]), margin)
         looks = 0
         while True:
-            t = leaves(world.body, world.shape, world.link, mark, world.disks, 0, 0, now)
+            t = leaves(scene, 0, 0, now)
             assert t >= now
             for instant in np.linspace(now, t, 20):
                 assert np.hypot(*(centre_at(world, instant) - place)) <= margin * (1.0 + 1e-9)
-            if has_left(world.body, world.shape, world.link, mark, 0, t):
+            if has_left(scene, 0, t):
                 break
             looks += 1
             now = t
@@ -111,16 +113,16 @@ def test_nobody_leaves_before_the_instant_told(turning: bool, pulled: bool, unit
 def test_who_was_put_elsewhere_has_left_already(speed: float, pull: float) -> None:
     # At rest, or on its way through the circle, which it leaves again later.
     world = World([Thing(disk(0.1), (5.0, 0.0, 0.0), (speed, 0.0, 0.0), (pull, 0.0, 0.0))])
-    mark = mark_of(world, 0.0, 0.0, 1.0)
-    assert leaves(world.body, world.shape, world.link, mark, 1, 0, 0, 0.0) == 0.0
-    assert has_left(world.body, world.shape, world.link, mark, 0, 0.0)
+    scene = marked(world, 0.0, 0.0, 1.0)
+    assert leaves(scene, 0, 0, 0.0) == 0.0
+    assert has_left(scene, 0, 0.0)
 
 
 def test_who_rests_or_knows_everybody_never_leaves() -> None:
     world = World([Thing(disk(0.1), (0.5, 0.0, 0.0))])
     for margin in (1.0, math.inf):
-        mark = mark_of(world, 0.0, 0.0, margin)
-        assert leaves(world.body, world.shape, world.link, mark, 1, 0, 0, 0.0) == math.inf
+        scene = marked(world, 0.0, 0.0, margin)
+        assert leaves(scene, 0, 0, 0.0) == math.inf
 
 
 def test_entries_that_are_alike_are_swept_out() -> None:

@@ -69,13 +69,13 @@ def test_disks_are_bitwise_symmetric() -> None:
             Thing(disk(0.3), (*p[i], 0.0), (*v[i], 0.0), (*pulls[i], 0.0), float(since[i])) for i in range(2)
         ]  # fmt: skip
         one, other = World(things), World(things[::-1])
-        found = meet(*one.arrays, 0, 1, 2, 5.0, -1.0)
-        assert found == meet(*other.arrays, 0, 1, 2, 5.0, -1.0)
+        found = meet(one.scene, 0, 1, 5.0)
+        assert found == meet(other.scene, 0, 1, 5.0)
         # Mirrored in both axes.
         turned = World(
             [Thing(disk(0.3), (*-p[i], 0.0), (*-v[i], 0.0), (*-pulls[i], 0.0), float(since[i])) for i in (0, 1)]
         )
-        assert found == meet(*turned.arrays, 0, 1, 2, 5.0, -1.0)
+        assert found == meet(turned.scene, 0, 1, 5.0)
 
 
 @pytest.mark.parametrize("unit", UNITS)
@@ -115,7 +115,7 @@ def test_disk_and_static_shape_by_sampling(corners: int, pull: tuple[float, floa
         v = rng.uniform(-1, 1, 2) - 0.5 * x
         thing = Thing(disk(unit * 0.3), (*unit * x, 0.0), (*unit * v, 0.0), (unit * pull[0], unit * pull[1], 0.0))
         world = World([thing], static(wall, unit * rng.choice([0.0, 0.2])))
-        if gap(*world.arrays, 0, 1, 0.0)[0] > 0.0:
+        if gap(world.scene, 0, 1, 0.0)[0] > 0.0:
             outcomes.append(check_by_sampling(world, 0, 1, 4.0, 300))
     assert outcomes.count("meets") > 15
     assert outcomes.count("never") + outcomes.count("later") > 8
