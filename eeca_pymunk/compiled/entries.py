@@ -50,6 +50,7 @@ TABLES = {
 
 ENTRIES = {
     "geometry.gap:gaps": "i8[2] f8[2] f8[2] Shape[1] Link[1] f8[2] f8[3] f8[2]",
+    "geometry.sides:keep_sides": "f8[2] f8[3] i8[1] i8",
     "pairs.walls:wall_grid": "f8[2] f8[1] i8[1] i8[1]",
     "pairs.grid:build": "Body[1] Shape[1] Link[1] Mark[1] Cell[1] List[1] i4[1] u1[1] i8[1] f8[1] i8[1] f8[2] i8[1] f8",
     "pairs.candidates:candidates": "Body[1] Shape[1] Link[1] f8[2] f8[3] Mark[1] Cell[1] List[1] i4[1] u1[1] i8[1]"

@@ -21,7 +21,7 @@ from __future__ import annotations
 
 import math
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
 from ..compiled.records import Rows
 from ..model.parameters.detection import SIDE_HELD, SIDE_OPPOSITE, SIDE_TOUCH, SIDE_UNSURE, STRAIGHT
@@ -90,6 +90,27 @@ def forget_sides(LINK: Rows[Link], WORK: FloatArray, shapes: int, i: int) -> Non
         key = int(WORK[SIDES, row, 0]) - 1
         if key >= 0 and (LINK[key // shapes].owner == i or LINK[key % shapes].owner == i):
             WORK[SIDES, row, 0] = -1.0  # others stand behind it
+
+
+@uncounted
+def keep_sides(KNOWN: FloatArray, WORK: FloatArray, PLACE: IntArray, shapes: int) -> None:
+    """Remember what KNOWN (m, 4) has of pairs of shapes whose numbers now, PLACE (k,) of `shapes`, are not -1."""
+    k = PLACE.shape[0]
+    for row in range(KNOWN.shape[0]):
+        key = int(KNOWN[row, 0]) - 1
+        if key < 0 or PLACE[key // k] < 0 or PLACE[key % k] < 0:
+            continue
+        a, b, sign = PLACE[key // k], PLACE[key % k], 1.0
+        if a > b:
+            a, b, sign = b, a, -1.0
+        key = a * shapes + b
+        to = WORK[SIDES, side_row(WORK, key)]
+        to[0], to[1], to[2], to[3] = (
+            key + 1.0,
+            sign * KNOWN[row, 1],
+            sign * KNOWN[row, 2],
+            KNOWN[row, 3],
+        )
 
 
 @uncounted
