@@ -111,7 +111,7 @@ class PackedSpace(Stepper):
         if self._sleep is not None:
             self._sleep.part()
             rouse(self.space)
-        world = World(self.space, self.ignore, None if world is None or world.edited() else world, past)
+        world = World(self.space, self.ignore, past)
         if world.ignores and not self._warned:
             self._warned = True
             warnings.warn(f"{type(self).__name__} steps on without the friction of this space", stacklevel=4)

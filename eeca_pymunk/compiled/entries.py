@@ -19,8 +19,8 @@ import numpy as np
 from .records import KINDS
 
 SOURCES = (
-    "arrays.py", "layout.py", "transfer.py", "rehearsing.py", "drowsing.py", "compiled", "model", "build", "energy",
-    "geometry", "rows", "pairs", "prediction", "contacts", "joints", "islands", "impacts", "jointed",
+    "arrays.py", "layout.py", "transfer.py", "rehearsing.py", "drowsing.py", "laying.py", "compiled", "model", "build",
+    "energy", "geometry", "rows", "pairs", "prediction", "contacts", "joints", "islands", "impacts", "jointed",
 )  # fmt: skip
 
 TABLES = {
@@ -65,6 +65,7 @@ ENTRIES = {
     "rehearsing:altered": "f8[3] i8[2] Body[1] f8[1] f8[2] f8[2] f8[1] i8",
     "drowsing:rests": "f8[3] i8[2] Body[1] f8[1] f8[1] i8[1] f8 f8 f8",
     "drowsing:touches": "Impulse[1] i8[1] i8[1] i8[1] i8",
+    "laying:lay_rows": "GivenBody[1] GivenShape[1] f8[2] Body[1] Shape[1] Link[1] f8[2] i8[1]",
     "rehearsing:changed": "f8[3] f8[2] f8[2]",
     "islands.accounting:flag_again": "{Scene}",
     "impacts.step:step": "{Scene} f8[3] i8[2] f8[2] f8[1] f8 f8 f8 f8 i8 bool i8",
