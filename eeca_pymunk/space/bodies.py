@@ -140,10 +140,15 @@ class Bodies:
         self._said.update({self.items[i]: _told(self.items[i]) for i in rows})
 
     @cached_property
-    def moving(self) -> list[Any]:
-        """Chipmunk's bodies of those that are not static and have shapes."""
+    def shapes(self) -> dict[pymunk.Body, int]:
+        """Those that are not static and have shapes, and how many."""
         still = self.static.tolist()
-        return private.pointers(b for b, s in zip(self.items, still, strict=True) if not s and b.shapes)
+        return {b: n for b, s in zip(self.items, still, strict=True) if not s and (n := len(b.shapes))}
+
+    @cached_property
+    def moving(self) -> list[Any]:
+        """Chipmunk's bodies of these."""
+        return private.pointers(self.shapes)
 
     def __len__(self) -> int:
         return len(self.items)
