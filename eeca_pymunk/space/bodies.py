@@ -44,7 +44,7 @@ def moving(space: pymunk.Space) -> list[pymunk.Body]:
     return [b for b in space.bodies if b.body_type != pymunk.Body.STATIC]
 
 
-_GIVEN = struct.Struct("4q9d2q")
+_GIVEN, _MASS = struct.Struct("4q9d2q"), 32  # bytes before mass and moment
 
 
 def _told(body: pymunk.Body) -> bytes:
@@ -124,6 +124,11 @@ class Bodies:
         """What bodies say of themselves, with their poses in the (N, 9) state."""
         put(self.GIVEN, state, *POSE)
         return self.GIVEN
+
+    def changed(self, row: int) -> tuple[bool, bool]:
+        """Whether a body says else than it did, and whether of more than its mass and moment."""
+        new, old = _told(self.items[row]), self._said[self.items[row]]
+        return new != old, new[:_MASS] != old[:_MASS] or new[_MASS + 16 :] != old[_MASS + 16 :]
 
     def weigh(self, rows: Sequence[int]) -> None:
         """Read masses and moments of these rows anew; ValueError, and nothing changed, if they are none."""

@@ -32,22 +32,17 @@ _METHODS: tuple[tuple[type, tuple[str, ...]], ...] = (
 )
 _SLEEP = ("sleep", "sleep_with_group")
 _leaders: WeakKeyDictionary[pymunk.Body, weakref.ref[pymunk.Body]] = WeakKeyDictionary()
-_KEPT = 256  # edits of a space, the last ones, that are told; of all spaces sixteen times as many
+_KEPT = 4096  # edits, the last ones, that are told
 _wrapped = False
 _clock = 0
-_edited: deque[weakref.ref[Any]] = deque(maxlen=16 * _KEPT)  # what was edited last, in or outside of any space
+_edited: deque[weakref.ref[Any]] = deque(maxlen=_KEPT)  # what was edited last, in or outside of any space
 
 
 class Counts(list[int]):
-    """How often shapes or bodies of a space were edited or put to sleep, and how often the latter alone.
-
-    Attributes:
-        last: the last edits, what was edited, weakly, and which of its attributes.
-    """
+    """How often shapes or bodies of a space were edited or put to sleep, and how often the latter alone."""
 
     def __init__(self) -> None:
         super().__init__((0, 0))
-        self.last: deque[tuple[weakref.ref[Any], str]] = deque(maxlen=_KEPT)
 
 
 _counts: WeakKeyDictionary[pymunk.Space, Counts] = WeakKeyDictionary()
@@ -90,10 +85,7 @@ def _note(thing: Any, name: str) -> None:
     if count is None:
         return
     count[0] += 1
-    if name in _SLEEP:
-        count[1] += 1
-    else:
-        count.last.append((weakref.ref(thing), name))
+    count[1] += name in _SLEEP
 
 
 def leader(body: pymunk.Body) -> pymunk.Body:

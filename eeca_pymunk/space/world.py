@@ -55,7 +55,8 @@ class World(Crossing):
         smooth: whether friction is left out, that of handlers too.
         joints: the constraints of the space, None if it has none.  PARTNER: bodies of joints that have no row of BODY.
         read_at: `noticed.clock` when shapes and bodies were read.
-        patches: how often `patch` has put edits into the rows.
+        patches: how often `patch` has put edits into the rows.  fresh: BODY before any step, as laid by the last that
+            has laid rows anew.
         parted: pairs of rows of SHAPE that pass through one another because joints of their bodies say so.
     """
 
@@ -86,6 +87,7 @@ class World(Crossing):
             self.BODY["friction"] = 0.0
         self.disks, self.dynamic = packed.disks, packed.dynamic
         self.patches = 0
+        self.fresh: Rows[Body] | None = None
         self.parted: set[tuple[int, int]] = set()
         self.joints: JointRows | None = None
         if past is not None and past.joints is not None:
@@ -139,7 +141,8 @@ class World(Crossing):
         found = edited_since(self.read_at)
         if found is None:
             return None
-        for shape in self.records.keys() ^ dict.fromkeys(self.space.shapes).keys():
+        now = self.records if self.same_things() else dict.fromkeys(self.space.shapes)
+        for shape in self.records.keys() ^ now.keys():
             record = self.records.get(shape)
             found.update((shape.body, record and record.body))
         return found
@@ -192,17 +195,13 @@ class World(Crossing):
     def _count(self) -> tuple[int, int, int, int]:
         return private.shapes_ever(self.space), len(self.space.shapes), len(self.space.bodies), self._edits[1]
 
+    def same_things(self) -> bool:
+        """Whether shapes have neither come nor gone, and as many bodies are there; they may be others, and edited."""
+        return self._contents == self._count()
+
     def same_contents(self) -> bool:
         """Whether shapes have neither come nor gone nor changed, so that new settings are all there is to read."""
-        return self._contents == self._count() and not self.edited()
-
-    def edits(self) -> list[tuple[Any, str]] | None:
-        """What shapes and bodies were edited in place since they were read, and which attribute; None in the place of
-        what is gone. None if more has changed, or if nobody knows."""
-        count = self._edits[0] - self._edits[1] - self._known
-        if self._contents != self._count() or count > len(self._edits.last):
-            return None
-        return [(thing(), name) for thing, name in list(self._edits.last)[len(self._edits.last) - count :]]
+        return self.same_things() and not self.edited()
 
     def edited(self) -> bool:
         """Whether a shape or body was edited in place."""
