@@ -14,7 +14,7 @@ from .jointed.scene import JointedLoop
 from .reentry import busy
 from .report import Details, Unmet, of_missed
 from .runs import RunningStepper
-from .saved import Saved
+from .saved import Saved, sides_of
 from .space.arbiters import Touches, show_contacts, touches
 from .space.shapes import Rules
 from .space.world import World
@@ -97,7 +97,7 @@ class EECA(RunningStepper):
         super().refresh()
         self._saved = None
 
-    def prepare(self, world: World) -> None:
+    def prepare(self, world: World, past: World | None) -> None:
         myself = ref(self)
         show_contacts(self.space, lambda: None if (me := myself()) is None else me._touches())
         self._sync.late = self._sleep is None  # who falls asleep with whom is asked of arbiters
@@ -105,11 +105,14 @@ class EECA(RunningStepper):
         if saved is not None and saved.resume(world):
             self._method: Method = saved.method
             return
+        sides = None if past is None or (loop := self.event_loop) is None else sides_of(past, loop)
         world.load()
         self._method = self.closure.prepare(world)
         patches, self._patches = self._patches, False
         if patches and world.joints is None and isinstance(self._method, EventLoop):
             self._method.keep_fresh()
+        if sides is not None and isinstance(self._method, EventLoop):
+            sides.recall(world, self._method)
         if world.joints is not None:
             world.joints.planned()
             world.part()

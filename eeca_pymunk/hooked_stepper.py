@@ -143,7 +143,7 @@ class HookedStepper(PackedSpace):
         large for a number though positions and velocities are not."""
         book = self.book()
         if book is not None and not isfinite(book[AFTER]):
-            self._world = self._past = None
+            self._world = None
             raise NotFiniteError(f"the energy of the space would be {book[AFTER]} after dt = {dt}: {TOO_FAR}")
         return book
 

@@ -16,6 +16,8 @@ FOUND, KNOWN = 0, 1  # pymunk's ids of the bodies as read, and as they were when
 BODY_ROW = 2  # row of BODY, -1 for static bodies
 SPECIAL = 3  # 0 for most; bits of what EXTRA has to say
 STEERED, ECCENTRIC = 1, 2  # the body's own function has chosen its acceleration; its centre of mass is not its origin
+# `due` of bodies in BODY at the start of a step: to be forecast anew as if put where they are, their shapes' sides kept
+ANEW = -2.0
 # EXTRA
 COG_X, COG_Y = 0, 1  # centre of mass in the body's coordinates: length
 PUSH_X, PUSH_Y, PUSH_TWIST = 2, 3, 4  # acceleration of a steered body: length/time², rad/time²

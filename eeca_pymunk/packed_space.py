@@ -42,7 +42,6 @@ class PackedSpace(Stepper):
         self.ignore = check_ignored(ignore)
         self._warned = False
         self._world: World | None = None
-        self._past: World | None = None  # before a refresh
         self._told: JointRows | None = None  # what `constraint.impulse` reads
         self._sleep: Sleep | None = None  # None where nobody can
         self._idle_book: FloatArray | None = None  # of a step in which everyone sleeps
@@ -53,7 +52,7 @@ class PackedSpace(Stepper):
         # The original is left as it is. The copy reads its space anew.
         state = self.__dict__.copy()
         state.pop("_sync", None)
-        state["_world"] = state["_past"] = state["_sleep"] = state["_told"] = None
+        state["_world"] = state["_sleep"] = state["_told"] = None
         return state
 
     def __copy__(self: Own) -> Own:
@@ -63,10 +62,10 @@ class PackedSpace(Stepper):
         return other
 
     def refresh(self) -> None:
-        self._world = self._past = None
+        self._world = None
 
-    def prepare(self, world: World) -> None:
-        """Make what the stepper keeps about a world that was read anew."""
+    def prepare(self, world: World, past: World | None) -> None:
+        """Make what the stepper keeps about a world that was read anew; `past` is the one before, if known."""
 
     def patch(self, world: World) -> bool:
         """Put what the program has edited of shapes and bodies into the rows of a world, and what is kept about it;
@@ -97,7 +96,7 @@ class PackedSpace(Stepper):
             if self._sleep is None and self.space.sleep_time_threshold < math.inf:
                 self._sleep = Sleep(world, None)
             if world.joints is not joints:
-                self.prepare(world)
+                self.prepare(world, world)
             self._world = world
             return world
         if (
@@ -108,21 +107,21 @@ class PackedSpace(Stepper):
         ):
             self._world = world
             return world
-        past = self._past if world is None else world
+        past = world
         if self._sleep is not None:
             self._sleep.part()
             rouse(self.space)
-        world = World(self.space, self.ignore, None if world is None or world.edited() else world, past)
+        world = World(self.space, self.ignore, past)
         if world.ignores and not self._warned:
             self._warned = True
             warnings.warn(f"{type(self).__name__} steps on without the friction of this space", stacklevel=4)
         self.reads += 1
         self._sync = Sync(self.space, world.bodies)
         self._sleep = Sleep(world, self._sleep) if self.space.sleep_time_threshold < math.inf else None
-        self.prepare(world)
+        self.prepare(world, past)
         if self._sleep is not None and (book := self.book()) is not None:
             self._idle_book = np.zeros_like(book)
-        self._world, self._past = world, None
+        self._world = world
         return world
 
     def wake(self) -> None:
@@ -147,7 +146,7 @@ class PackedSpace(Stepper):
 
     def _undo(self, world: World, state: FloatArray) -> None:
         """Put the space back where it was."""
-        self._world = self._past = None
+        self._world = None
         world.bodies.scatter(state)
 
     def _tell_joints(self, world: World) -> None:
@@ -157,7 +156,7 @@ class PackedSpace(Stepper):
 
     def _fail(self, world: World, dt: float, status: int) -> None:
         """Raise what a negative answer means."""
-        self._world = self._past = None
+        self._world = None
         if status == NOT_FINITE:
             world.bodies.check_finite(world.state)
         if status == OVERFLOW:

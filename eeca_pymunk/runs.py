@@ -21,6 +21,7 @@ from .packed_space import TOO_FAR
 from .packed_stepper import PackedStepper
 from .reentry import refuse_within
 from .report import RunReport
+from .saved import sides_of
 from .space.sleeping import Sleep
 from .space.world import World
 from .states import get_state, set_state
@@ -139,9 +140,9 @@ class RunningStepper(PackedStepper):
         loop = self.event_loop
         if loop is None or not hasattr(loop, "fresh"):
             # From the reading on that is due: to keep what patches begin from takes time.
-            self._patches = world.edits() is not None
+            self._patches = world.same_things()
             return False
-        lossy = loop.lossy
+        lossy, sides = loop.lossy, sides_of(world, loop)
         lists = world.patch()
         if lists is None or lossy != bool((world.SHAPE["elasticity"] < 1.0).any()):
             return False
@@ -149,6 +150,8 @@ class RunningStepper(PackedStepper):
             loop.rule({})
         world.load()
         loop.be_new(lists)
+        if sides is not None:
+            sides.recall(world, loop)
         return True
 
     def run(self, steps: int, dt: float, progress: bool = False) -> RunReport:
@@ -226,7 +229,7 @@ class RunningStepper(PackedStepper):
         RUN = buffers.progress
         broken = status < 0 or buffers.halted
         if broken:
-            self._world = self._past = None
+            self._world = None
             moves = world.WALK[BODY_ROW] >= 0
             world.STATES[LEFT, moves, :6] = world.STATES[NOW, moves, :6]
         if RUN.done == 0:

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from .arrays import FloatArray
 from .compiled.records import Rows, columns
+from .geometry.sides import keep_sides
 from .impacts.scene import EventLoop
 from .jointed.scene import JointedLoop
-from .layout import LEFT
+from .layout import ANEW, BODY_ROW, LEFT
 from .model.joints import OF_STEPS, RATCHET, Joint
 from .model.shapes import Link
 from .space.world import World
+
+if TYPE_CHECKING:
+    import pymunk
 
 _FIXED = ["inv_mass", "inv_inertia", "extent", "elasticity", "friction"]  # fields of BODY that no step changes
 _TIE = "kind", "body", "soft"  # fields of JOINT that decide the plan
@@ -84,6 +90,44 @@ class Saved:
                 apart[joints.functions] = False
             differs |= apart
         return not differs.any()
+
+
+class Sides:
+    """The memory of sides of a world, for when it is patched or read anew: of shapes that are what they were, where the
+    last step left them, whatever rows they have then."""
+
+    def __init__(self, world: World, loop: EventLoop) -> None:
+        self._known, self._shapes = loop.scene.SIDE.copy(), world.shapes
+        self._outlines = [_outline(world, shape) for shape in world.shapes]
+        self._of = [world.bodies.items[i] for i in world.owner.tolist()]
+        self._left = world.STATES[LEFT, :, :3].copy()
+        self._row = world.bodies.row
+
+    def recall(self, world: World, loop: EventLoop) -> None:
+        """Have the loop of the world as it is now, without a step taken, remember them."""
+        if len(loop.scene.SIDE) == 0:
+            return
+        PLACE = np.full(len(self._shapes), -1, np.int64)
+        for k, (shape, outline, body) in enumerate(zip(self._shapes, self._outlines, self._of, strict=True)):
+            i, place = world.bodies.row.get(body, -1), world.places.get(shape, -1)
+            if i < 0 or place < 0 or world.bodies.items[world.owner[place]] is not body:
+                continue
+            if _outline(world, shape) == outline and np.array_equal(world.state[i, :3], self._left[self._row[body]]):
+                PLACE[k] = place
+                if (row := world.WALK[BODY_ROW, i]) >= 0:
+                    world.STATES[LEFT, i, :3] = world.state[i, :3]
+                    world.BODY["due"][row] = ANEW
+        keep_sides(loop.table, self._known, PLACE)
+
+
+def sides_of(world: World, loop: EventLoop) -> Sides | None:
+    """What a stepper remembers of sides, None if nothing."""
+    return Sides(world, loop) if (loop.scene.SIDE["key"] > 0).any() else None
+
+
+def _outline(world: World, shape: pymunk.Shape) -> object:
+    record = world.records[shape]
+    return record and (record.vertices, record.numbers[0])
 
 
 def _in_order(VERTEX: FloatArray, LINK: Rows[Link]) -> FloatArray:

@@ -135,7 +135,7 @@ MUTATIONS = (
              "work += beta * ROWS[i].surface", "oracles/test_friction.py", "belt_works"),
     Mutation("ledger: damping of speeds, not energies", "impacts/begin.py", "(1.0 / (left * left) - 1.0)",
              "(1.0 / left - 1.0)", "oracles/test_ledger.py", "damping"),
-    Mutation("joints: what pulls gives way", "joints/response.py", "    if not pulls:", "    if pulls or not pulls:",
+    Mutation("joints: what pulls gives way", "joints/response.py", "not (pulls or slight):", "not slight:",
              "jointed/test_taut.py", "derivative"),
     Mutation("joints: what presses is taut", "joints/taut.py", "turn = -(rax", "turn = (rax",
              "jointed/test_taut.py", "pulls_hard"),

@@ -21,7 +21,7 @@ FLOORS = (
     "model",
     "energy",
     "transfer report",
-    "rehearsing drowsing",
+    "rehearsing drowsing laying",
     "geometry",
     "rows",
     "pairs",

@@ -34,7 +34,7 @@ class PenaltyStepper(PackedStepper):
         self.stiffness = float(stiffness)
         super().__init__(space, sync=sync)
 
-    def prepare(self, world: World) -> None:
+    def prepare(self, world: World, past: World | None) -> None:
         world.load()
         self._disks = Disks(world, type(self).__name__)
 

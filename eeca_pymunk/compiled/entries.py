@@ -19,8 +19,8 @@ import numpy as np
 from .records import KINDS
 
 SOURCES = (
-    "arrays.py", "layout.py", "transfer.py", "rehearsing.py", "drowsing.py", "compiled", "model", "build", "energy",
-    "geometry", "rows", "pairs", "prediction", "contacts", "joints", "islands", "impacts", "jointed",
+    "arrays.py", "layout.py", "transfer.py", "rehearsing.py", "drowsing.py", "laying.py", "compiled", "model", "build",
+    "energy", "geometry", "rows", "pairs", "prediction", "contacts", "joints", "islands", "impacts", "jointed",
 )  # fmt: skip
 
 TABLES = {
@@ -53,6 +53,7 @@ ENTRIES = {
     "pairs.walls:wall_grid": "f8[2] Grid i8[1]",
     "pairs.grid:build": "{Scene} f8",
     "pairs.candidates:candidates": "{Scene} f8[1] f8[1] i8[2] f8[2]",
+    "geometry.sides:keep_sides": "{Scene} Side[1] i8[1]",
     "transfer:take": "f8[3] i8[2] f8[2] Body[1] f8 f8 f8",
     "transfer:give": "f8[3] i8[2] f8[2] Body[1] f8[1] f8 f8 i8",
     "transfer:lay": "f8[3] i8[2] f8[1] i8",
@@ -63,6 +64,7 @@ ENTRIES = {
     "rehearsing:altered": "f8[3] i8[2] Body[1] f8[1] f8[2] f8[2] f8[1] i8",
     "drowsing:rests": "f8[3] i8[2] Body[1] f8[1] f8[1] i8[1] f8 f8 f8",
     "drowsing:touches": "Impulse[1] i8[1] i8[1] i8[1] i8",
+    "laying:lay_rows": "GivenBody[1] GivenShape[1] f8[2] Body[1] Shape[1] Link[1] f8[2] i8[1]",
     "rehearsing:changed": "f8[3] f8[2] f8[2]",
     "islands.accounting:flag_again": "{Scene}",
     "impacts.step:step": "{Scene} f8[3] i8[2] f8[2] f8[1] f8 f8 f8 f8 bool i8",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from operator import itemgetter
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Generic, TypeVar, get_origin, get_type_hints, overload
 
@@ -121,6 +122,11 @@ def rows(kind: type[R], count: int) -> Rows[R]:
 def row(kind: type[R]) -> R:
     """One record of zeros."""
     return np.zeros(1, kind.TYPE)[0]  # type: ignore[no-any-return]
+
+
+def from_bytes(kind: type[R], content: Sequence[bytes]) -> Rows[R]:
+    """Records of the memory of each."""
+    return np.frombuffer(bytearray().join(content), kind.TYPE)  # type: ignore[return-value]
 
 
 def address_of(array: Any) -> int:

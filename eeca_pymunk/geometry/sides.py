@@ -21,10 +21,12 @@ from __future__ import annotations
 
 import math
 
-from ..arrays import FloatArray
-from ..compiled import uncounted
+from ..arrays import FloatArray, IntArray
+from ..compiled import Table, uncounted
+from ..compiled.records import Rows
 from ..model.parameters.detection import SIDE_HELD, SIDE_OPPOSITE, SIDE_TOUCH, SIDE_UNSURE, STRAIGHT
-from ..model.scene import Scene
+from ..model.scene import Scene, scene_of
+from ..model.shapes import Side
 from .convex import closest
 
 _PROBES = 16  # rows that a pair may stand in
@@ -97,6 +99,23 @@ def forget_sides(A: Scene, i: int) -> None:
         pair = SIDE[row].key - 1
         if pair >= 0 and (LINK[pair // shapes].owner == i or LINK[pair % shapes].owner == i):
             SIDE[row].key = -1  # others stand behind it
+
+
+@uncounted
+def keep_sides(TABLE: Table, KNOWN: Rows[Side], PLACE: IntArray) -> None:
+    """Remember what KNOWN has of pairs of k shapes whose numbers now, PLACE (k,), are not -1."""
+    A, k = scene_of(TABLE), PLACE.shape[0]
+    for row in range(len(KNOWN)):
+        known = KNOWN[row]
+        pair = known.key - 1
+        if pair < 0 or PLACE[pair // k] < 0 or PLACE[pair % k] < 0:
+            continue
+        a, b, sign = PLACE[pair // k], PLACE[pair % k], 1.0
+        if a > b:
+            a, b, sign = b, a, -1.0
+        key = key_of(A, a, b)
+        side = A.SIDE[side_row(A, key)]
+        side.key, side.nx, side.ny, side.deep = key, sign * known.nx, sign * known.ny, known.deep
 
 
 @uncounted

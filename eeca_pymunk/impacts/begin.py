@@ -10,6 +10,7 @@ from ..contacts.energy import total, unsteered
 from ..geometry.sides import forget_sides
 from ..islands.accounting import flag_spans
 from ..islands.at_rest import note_motion, stays_at_rest
+from ..layout import ANEW
 from ..model.bodies import AT_REST
 from ..model.parameters.intervals import BUSY_STEPS
 from ..model.scene import Scene
@@ -64,6 +65,7 @@ def begin(A: Scene, WALK: IntArray) -> None:
             STATE[i].version += 1
             if BODY[i].due == -math.inf:
                 forget_sides(A, i)
+            if BODY[i].due <= ANEW:
                 A.MEMBER[i].put, COUNT.crammed = 1, 1
         else:
             BODY[i].due = max(BODY[i].due - last, 0.0)

@@ -1,8 +1,8 @@
 """How an island of joints answers impulses on its bodies: the change of velocities per impulse.
 
 About a solved step, d v1 = S p for impulses p spread over the step, S the inverse of Newton's matrix with springs and
-bounded joints. Rows turn as bodies move, and the force of joints that pull with them: without that what is taut would
-give way across. Of joints that press it is left out: S would not be positive. At one instant (an impact),
+bounded joints. Rows turn as bodies move, and the force of joints with them: without that what is taut would give way
+across. Of joints that press hard it is left out: S would not be positive. At one instant (an impact),
 S = M^-1 - M^-1 G^T (G M^-1 G^T)^-1 G M^-1: joints that hold exactly let no velocity through, and all others no impulse.
 """
 
@@ -14,7 +14,7 @@ from ..arrays import FloatArray
 from ..compiled import uncounted
 from ..compiled.records import Rows
 from ..model.joints import BOUNDED, BOXED, CONDENSED, DUAL, FULL_BEND, NO_BEND, STEP, Coupling, Workspace
-from ..model.parameters.joints import CONDENSED_PASSES, REDUNDANT_EPSILON, RESPONSE_PASSES
+from ..model.parameters.joints import CONDENSED_PASSES, PRESSED, REDUNDANT_EPSILON, RESPONSE_PASSES
 from .motion import move
 from .newton import assemble
 from .rows import joint_rows, start_joint
@@ -22,20 +22,30 @@ from .solve import back, begin, decompose
 
 
 @uncounted
-def bend_if_taut(W: Workspace, k: int, h: float) -> None:
-    """Let joint k have the impulse of the whole step if it pulls, so that its rows take their force along as they turn;
-    none if it presses."""
-    hinge = W.J.HINGE
+def bend(W: Workspace, k: int, h: float) -> None:
+    """Let joint k have the impulse of the whole step, so that its rows take their force along as they turn; none if it
+    presses, and all that presses on one of its bodies would take more than PRESSED of that body's `inertia`.
+
+    A full STIFF is at most six times its diagonal, so that what is left of the inertia of all bodies is positive.
+    """
+    hinge, local = W.J.HINGE, W.J.LOCAL
     hinge[k].lam[0], hinge[k].lam[1] = hinge[k].total[0], hinge[k].total[1]
-    bend = joint_rows(W, k, h, True)
-    pulls = bend != NO_BEND
+    kind = joint_rows(W, k, h, True)
+    times = 3.0 if kind == FULL_BEND else 0.5
+    pulls, slight = True, True
     for c in range(6):
-        # What does not move adds nothing.
         at = W.link[k].body[0] if c < 3 else W.link[k].body[1]
-        if W.J.LOCAL[at].mobility[c % 3] > 0.0 and (bend == FULL_BEND or c % 3 == 2):
-            pulls = pulls and W.J.STIFF[c, c] <= 0.0
-    if not pulls:
+        # What does not move adds nothing, and what only turns does so by its angle alone.
+        taken = W.J.STIFF[c, c] * local[at].mobility[c % 3] if kind == FULL_BEND or c % 3 == 2 else 0.0
+        pulls = pulls and taken <= 0.0
+        slight = slight and local[at].inertia[c % 3] - times * abs(h * taken) >= 1.0 - PRESSED
+    if kind == NO_BEND or not (pulls or slight):
         hinge[k].lam[0] = hinge[k].lam[1] = 0.0
+        return
+    for c in range(0 if pulls else 6):
+        at = W.link[k].body[0] if c < 3 else W.link[k].body[1]
+        if kind == FULL_BEND or c % 3 == 2:
+            local[at].inertia[c % 3] -= times * abs(h * W.J.STIFF[c, c]) * local[at].mobility[c % 3]
 
 
 @uncounted
@@ -77,9 +87,12 @@ def factors(W: Workspace, what: int, h: float) -> int:
         for k in range(W.joints):
             start_joint(W, k, h)
         move(local, W.bodies, h)
+        for i in range(W.bodies):
+            for c in range(3):
+                local[i].inertia[c] = 1.0
         for k in range(W.joints):
             if link[k].rows > 0 and link[k].soft == 0:
-                bend_if_taut(W, k, h)
+                bend(W, k, h)
     else:
         begin(W, what, h)
     system = DUAL if component.rigid > (1 if what == STEP else 0) else component.system

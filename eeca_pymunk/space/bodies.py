@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import struct
+from collections.abc import Collection, Sequence
 from functools import cached_property
 from typing import Any
 
@@ -12,9 +13,13 @@ import pymunk
 from pymunk import batch
 
 from ..arrays import BoolArray, FloatArray, IntArray, rotated
+from ..compiled.records import Rows, columns, from_bytes, put
 from ..errors import NotFiniteError
+from ..model.bodies import POSE
+from ..model.given import DYNAMIC, KINEMATIC, STATIC, GivenBody
 from . import private
 
+_KIND = {pymunk.Body.DYNAMIC: DYNAMIC, pymunk.Body.KINEMATIC: KINEMATIC, pymunk.Body.STATIC: STATIC}
 _FIELDS = batch.BodyFields
 _STATE = _FIELDS.POSITION | _FIELDS.ANGLE | _FIELDS.VELOCITY | _FIELDS.ANGULAR_VELOCITY | _FIELDS.FORCE | _FIELDS.TORQUE
 # Columns of one row of the state, in the order pymunk.batch writes them.
@@ -39,6 +44,18 @@ def moving(space: pymunk.Space) -> list[pymunk.Body]:
     return [b for b in space.bodies if b.body_type != pymunk.Body.STATIC]
 
 
+_GIVEN, _MASS = struct.Struct("4q9d2q"), 32  # bytes before mass and moment
+
+
+def _told(body: pymunk.Body) -> bytes:
+    """What a body says of itself, as the memory of a `GivenBody`."""
+    kind = _KIND[body.body_type]
+    # The public properties return pymunk's default when unset.
+    hooks = private.velocity_function(body) is not None, private.position_function(body) is not None
+    mass, moment, centre = body.mass, body.moment, body.center_of_gravity
+    return _GIVEN.pack(kind, 0, *hooks, mass, moment, 0.0, 0.0, *centre, 0.0, 0.0, 0.0, -1, 0)
+
+
 class Bodies:
     """The bodies of one space, one row each, in the order `pymunk.batch` walks them.
 
@@ -46,6 +63,7 @@ class Bodies:
 
     Args:
         space: a pymunk space.  fixed: whether bodies that sleep count as static ones.
+        before: those of the space before some came or went, who are not asked again but for the `stale`.
 
     Attributes:
         fixed: whether any may sleep.  items: the pymunk bodies, by row.  ids: (N,) pymunk's numbers of them.
@@ -55,37 +73,62 @@ class Bodies:
         center_of_gravity: (N, 2) length, in body coordinates.
     """
 
-    def __init__(self, space: pymunk.Space, *, fixed: bool = False) -> None:
+    def __init__(
+        self, space: pymunk.Space, fixed: bool = False, before: Bodies | None = None, stale: Collection[Any] = ()
+    ) -> None:
         self.space, self.fixed = space, fixed
         self._buffer = batch.Buffer()
         self._out = batch.Buffer()
-        known = {body.id: body for body in (*space.bodies, space.static_body)}
+        ground = space.static_body  # in the space from the first time on that it is asked for
         self.ids = self._read_ids()
-        self.items: tuple[pymunk.Body, ...] = tuple(known[int(i)] for i in self.ids)
-        self.row = {body: i for i, body in enumerate(self.items)}
-        self.dynamic: BoolArray = np.array([b.body_type == pymunk.Body.DYNAMIC for b in self.items], bool)
-        self.static: BoolArray = np.array([b.body_type == pymunk.Body.STATIC for b in self.items], bool)
+        ids = self.ids.tolist()
+        known = {} if before is None else before._known
+        if before is None or any(i not in known for i in ids):
+            old = {} if before is None else before.row
+            known = {**known, **{b.id: b for b in (*space.bodies, ground) if b not in old}}
+        self.items: tuple[pymunk.Body, ...] = tuple([known[i] for i in ids])
+        self._known: dict[int, pymunk.Body] = dict(zip(ids, self.items, strict=True))
+        self.row: dict[pymunk.Body, int] = {body: i for i, body in enumerate(self.items)}
+        said = {} if before is None else before._said
+        self._said: dict[pymunk.Body, bytes] = {
+            b: told if b not in stale and (told := said.get(b)) else _told(b) for b in self.items
+        }
+        self.GIVEN: Rows[GivenBody] = from_bytes(GivenBody, list(self._said.values()))
+        kind: IntArray = self.GIVEN["kind"]
         self.asleep: BoolArray = np.zeros(len(self.items), bool)
+        self.GIVEN["place"] = np.arange(len(ids))
         if fixed:
             self.asleep[:] = [b.is_sleeping for b in self.items]
-        self.dynamic &= ~self.asleep
-        self.static |= self.asleep
-        self.mass: FloatArray = np.array([b.mass for b in self.items], float)
-        self.moment: FloatArray = np.array([b.moment for b in self.items], float)
+            kind[self.asleep] = STATIC
+            # pymunk walks them in another order once some have slept.
+            place = {body: i for i, body in enumerate((*space.bodies, ground))}
+            self.GIVEN["place"] = [place[body] for body in self.items]
+        self.dynamic: BoolArray = kind == DYNAMIC
+        self.static: BoolArray = kind == STATIC
+        self.mass: FloatArray = self.GIVEN["mass"]
+        self.moment: FloatArray = self.GIVEN["moment"]
         self.mass[~self.dynamic] = np.inf
         self.moment[~self.dynamic] = np.inf
         self.check_masses()
-        # Rows of the bodies with functions of their own; the public properties return pymunk's default when unset.
         # A body that sleeps is not asked, as under pymunk.
-        velocity = [private.velocity_function(b) is not None for b in self.items]
-        position = [private.position_function(b) is not None for b in self.items]
-        self.velocity_hooks: IntArray = np.flatnonzero(np.array(velocity, bool) & ~self.asleep)
-        self.position_hooks: IntArray = np.flatnonzero(np.array(position, bool) & ~self.asleep)
+        self.velocity_hooks: IntArray = np.flatnonzero((self.GIVEN["steered"] != 0) & ~self.asleep)
+        self.position_hooks: IntArray = np.flatnonzero((self.GIVEN["moved"] != 0) & ~self.asleep)
         self.steered: BoolArray = np.zeros(len(self.items), bool)
         self.steered[self.velocity_hooks] = True
-        self.inverse_mass: FloatArray = 1.0 / self.mass
-        self.inverse_moment: FloatArray = 1.0 / self.moment
-        self.center_of_gravity: FloatArray = np.array([b.center_of_gravity for b in self.items], float).reshape(-1, 2)
+        self.inverse_mass: FloatArray = self.GIVEN["inverse_mass"]
+        self.inverse_moment: FloatArray = self.GIVEN["inverse_moment"]
+        self.inverse_mass[:], self.inverse_moment[:] = 1.0 / self.mass, 1.0 / self.moment
+        self.center_of_gravity: FloatArray = columns(self.GIVEN, "centre_x", "centre_y")
+
+    def placed(self, state: FloatArray) -> Rows[GivenBody]:
+        """What bodies say of themselves, with their poses in the (N, 9) state."""
+        put(self.GIVEN, state, *POSE)
+        return self.GIVEN
+
+    def changed(self, row: int) -> tuple[bool, bool]:
+        """Whether a body says else than it did, and whether of more than its mass and moment."""
+        new, old = _told(self.items[row]), self._said[self.items[row]]
+        return new != old, new[:_MASS] != old[:_MASS] or new[_MASS + 16 :] != old[_MASS + 16 :]
 
     def weigh(self, rows: Sequence[int]) -> None:
         """Read masses and moments of these rows anew; ValueError, and nothing changed, if they are none."""
@@ -99,12 +142,18 @@ class Bodies:
             self.mass[rows], self.moment[rows] = before
             raise
         self.inverse_mass[rows], self.inverse_moment[rows] = 1.0 / self.mass[rows], 1.0 / self.moment[rows]
+        self._said.update({self.items[i]: _told(self.items[i]) for i in rows})
+
+    @cached_property
+    def shapes(self) -> dict[pymunk.Body, int]:
+        """Those that are not static and have shapes, and how many."""
+        still = self.static.tolist()
+        return {b: n for b, s in zip(self.items, still, strict=True) if not s and (n := len(b.shapes))}
 
     @cached_property
     def moving(self) -> list[Any]:
-        """Chipmunk's bodies of those that are not static and have shapes."""
-        still = self.static.tolist()
-        return private.pointers(b for b, s in zip(self.items, still, strict=True) if not s and b.shapes)
+        """Chipmunk's bodies of these."""
+        return private.pointers(self.shapes)
 
     def __len__(self) -> int:
         return len(self.items)

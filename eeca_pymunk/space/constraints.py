@@ -7,6 +7,7 @@ whose limits are one, and a groove that is a point hold as what they then are: p
 from __future__ import annotations
 
 import math
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -38,24 +39,34 @@ _FINITE = (
     "phase", "ratchet", "ratio", "rate",
 )  # fmt: skip
 _POSITIVE = ("max_force", "max_bias", "error_bias", "damping")
+_NOT_ZERO = ("ratio", "ratchet")
+
+
+@cache
+def _numbers(kind: Any) -> tuple[list[str], list[str], list[str]]:
+    """Of a kind of constraint, the attributes that must be finite, positive, and not 0."""
+    finite, positive, some = ([a for a in names if hasattr(kind, a)] for names in (_FINITE, _POSITIVE, _NOT_ZERO))
+    return finite, positive, some
 
 
 def check_constraint(c: Any) -> None:
     """Refuse numbers that no joint can have: ValueError with the remedy."""
     if not isinstance(c, _KINDS):
         raise UnsupportedFeature(f"{name(c)} is none of pymunk's constraints; remove it or use ep.Native(space)")
-    for attribute in _FINITE:
-        value = getattr(c, attribute, 0.0)
-        if not all(math.isfinite(v) for v in (value if isinstance(value, tuple) else (value,))):
+    kind: Any = type(c)
+    finite, positive, some = _numbers(kind)
+    for attribute in finite:
+        value = getattr(c, attribute)
+        if not (all(map(math.isfinite, value)) if isinstance(value, tuple) else math.isfinite(value)):
             raise ValueError(f"{name(c)} has {attribute} = {value}: set a finite one")
-    for attribute in _POSITIVE:
-        value = getattr(c, attribute, 0.0)
+    for attribute in positive:
+        value = getattr(c, attribute)
         if not value >= 0.0:
             raise ValueError(f"{name(c)} has {attribute} = {value}: set a value >= 0")
     if not c.error_bias <= 1.0:
         raise ValueError(f"{name(c)} has error_bias = {c.error_bias}: set a value from 0 to 1")
-    for attribute in ("ratio", "ratchet"):
-        if getattr(c, attribute, 1.0) == 0.0:
+    for attribute in some:
+        if getattr(c, attribute) == 0.0:
             raise ValueError(f"{name(c)} has {attribute} = 0: set another one")
     if isinstance(c, (pymunk.SlideJoint, pymunk.RotaryLimitJoint)):
         if not c.min <= c.max or (c.min == c.max and math.isinf(c.min)):

@@ -12,6 +12,7 @@ from pymunk import batch
 from ..arrays import FloatArray, IntArray
 from ..compiled.records import Rows
 from ..layout import (
+    ANEW,
     BODY_ROW,
     COG_X,
     COG_Y,
@@ -183,7 +184,7 @@ class Crossing:
 
     def void_forecasts(self) -> None:
         """Let the next step look at all bodies as if they had been moved, though they are where it left them."""
-        self.BODY["due"] = -np.inf
+        self.BODY["due"] = np.minimum(self.BODY["due"], ANEW)
 
     def scatter(self, status: int) -> None:
         """Write poses and velocities at the end of the step to the space, angles and spins if the bit TURNS is set."""

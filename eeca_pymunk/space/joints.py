@@ -72,17 +72,24 @@ class JointRows:
         others = [body for item in self.items for body in (item.a, item.b) if body not in row]
         self.partners: Partners = Partners(tuple(dict.fromkeys(others)), space, None if past is None else past.partners)
         self._row_of = {**row, **{body: n + i for i, body in enumerate(self.partners.items)}}
+        self._far = {body for body in self.partners.items if body.body_type == pymunk.Body.DYNAMIC}
         known = {} if past is None else past.row
         if past is not None:
             past.refresh()
-        for j, item in enumerate(self.items):
-            if past is not None and (i := known.get(item, -1)) >= 0:
-                self.joint[j] = past.joint[i]
-            else:
+            kept = [(j, i) for j, item in enumerate(self.items) if (i := known.get(item, -1)) >= 0]
+            if kept:
+                here, there = np.array(kept).T
+                self.joint[here] = past.joint[there]
+        of = [(self._row_of[item.a], self._row_of[item.b]) for item in self.items]
+        self.joint["body"] = of
+        self._at: dict[int, list[int]] = {}  # joints of each body
+        for j, (item, pair) in enumerate(zip(self.items, of, strict=True)):
+            for at in pair:
+                self._at.setdefault(at, []).append(j)
+            if item not in known:
                 check_constraint(item)
                 read(item, self.joint[j])
                 self.joint[j].touched = EDITED
-            self.joint[j].body[:] = self._row_of[item.a], self._row_of[item.b]
         self.touch(n + self.partners.changed)
         self.row: dict[pymunk.Constraint, int] = {item: j for j, item in enumerate(self.items)}
         self._edits = Edits(self.row)
@@ -96,13 +103,19 @@ class JointRows:
         """Whether these are the constraints that the space has now."""
         return self.items == list(space.constraints)
 
+    def _says(self, j: int) -> tuple[object, ...]:
+        """What of a joint `_find_functions` asks."""
+        item = self.items[j]
+        return own_function(item), item.pre_solve, item.post_solve, item.collide_bodies, self._push(j)
+
     def _find_functions(self) -> None:
-        self.functions = [j for j, item in enumerate(self.items) if own_function(item)]
+        self._said = [self._says(j) for j in range(len(self.items))]
+        self.functions = [j for j, said in enumerate(self._said) if said[0]]
         self.own = [self.items[j] for j in self.functions]
-        self.before = [item for item in self.items if item.pre_solve is not None]
-        self.after = [item for item in self.items if item.post_solve is not None]
+        self.before = [item for item, said in zip(self.items, self._said, strict=True) if said[1] is not None]
+        self.after = [item for item, said in zip(self.items, self._said, strict=True) if said[2] is not None]
         self.calling = list(dict.fromkeys((*self.before, *self.after)))
-        self._pushing = [item for j, item in enumerate(self.items) if self._push(j)]
+        self._pushing = [item for item, said in zip(self.items, self._said, strict=True) if said[4]]
         self.parted: frozenset[tuple[pymunk.Body, pymunk.Body]] | None = None
 
     def refresh(self) -> bool:
@@ -123,7 +136,8 @@ class JointRows:
             self.joint[j].touched = EDITED
             if before != _planned_by(joint):
                 self.replan = True
-        self._find_functions()
+        if any(self._said[j] != self._says(j) for j in edited):
+            self._find_functions()
         return self.replan
 
     def laws(self) -> list[Callable[[Any, float], float]]:
@@ -140,7 +154,7 @@ class JointRows:
 
     def _push(self, j: int) -> bool:
         item, kind = self.items[j], self.joint[j].kind
-        out = any(body in self.partners.items and body.body_type == pymunk.Body.DYNAMIC for body in (item.a, item.b))
+        out = bool(self._far) and not self._far.isdisjoint((item.a, item.b))
         return out or self.joint[j].soft != 0 or kind in (SPRING, ROTARY_SPRING, MOTOR)
 
     def measured(self) -> list[int]:
@@ -208,9 +222,8 @@ class JointRows:
 
     def touch(self, rows: IntArray) -> None:
         """Mark the joints of bodies (rows) that the user has moved or pushed."""
-        if len(rows):
-            hit = np.isin(self.joint["body"], rows).any(axis=1)
-            self.joint["touched"][hit] = EDITED
+        for row in rows.tolist():
+            self.joint["touched"][self._at.get(row, [])] = EDITED
 
     def write(self) -> None:
         """Give ratchets the notch they have reached, and let `constraint.impulse` read ours."""

@@ -32,20 +32,17 @@ _METHODS: tuple[tuple[type, tuple[str, ...]], ...] = (
 )
 _SLEEP = ("sleep", "sleep_with_group")
 _leaders: WeakKeyDictionary[pymunk.Body, weakref.ref[pymunk.Body]] = WeakKeyDictionary()
-_KEPT = 256  # edits of a space, the last ones, that are told
+_KEPT = 4096  # edits, the last ones, that are told
 _wrapped = False
+_clock = 0
+_edited: deque[weakref.ref[Any]] = deque(maxlen=_KEPT)  # what was edited last, in or outside of any space
 
 
 class Counts(list[int]):
-    """How often shapes or bodies of a space were edited or put to sleep, and how often the latter alone.
-
-    Attributes:
-        last: the last edits, what was edited, weakly, and which of its attributes.
-    """
+    """How often shapes or bodies of a space were edited or put to sleep, and how often the latter alone."""
 
     def __init__(self) -> None:
         super().__init__((0, 0))
-        self.last: deque[tuple[weakref.ref[Any], str]] = deque(maxlen=_KEPT)
 
 
 _counts: WeakKeyDictionary[pymunk.Space, Counts] = WeakKeyDictionary()
@@ -65,16 +62,30 @@ def edits(space: pymunk.Space) -> Counts:
     return _counts.setdefault(space, Counts())
 
 
+def clock() -> int:
+    """How many edits there were of shapes and bodies, of all spaces and of none."""
+    return _clock
+
+
+def edited_since(time: int) -> set[Any] | None:
+    """Shapes and bodies that were edited since `clock` said `time`, and the bodies of such shapes; None if these are
+    more than are kept."""
+    if _clock - time > len(_edited):
+        return None
+    found = {thing() for thing in list(_edited)[len(_edited) - (_clock - time) :]}
+    return found.union(thing.body for thing in found if isinstance(thing, pymunk.Shape))
+
+
 def _note(thing: Any, name: str) -> None:
+    global _clock
+    _clock += 1
+    _edited.append(weakref.ref(thing))
     space = thing.space
     count = None if space is None else _counts.get(space)
     if count is None:
         return
     count[0] += 1
-    if name in _SLEEP:
-        count[1] += 1
-    else:
-        count.last.append((weakref.ref(thing), name))
+    count[1] += name in _SLEEP
 
 
 def leader(body: pymunk.Body) -> pymunk.Body:

@@ -12,18 +12,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pymunk
 
-from ..arrays import FloatArray, IntArray
+from ..compiled.records import Rows
 from ..layout import BODY_ROW, LEFT, NOW, PUSH_TWIST, PUSH_X
+from ..model.bodies import Body
 from ..transfer import MOVED_STATIC, OTHER_BODIES
-from .packing import GIVEN, bound, outlines, read, with_normals
+from .noticed import clock
+from .packing import Record, pack, read
 
 if TYPE_CHECKING:
     from .world import World
-
-_NUMBERS = ("friction", "elasticity", "surface_velocity")
-_MASSES = ("mass", "moment", "density")
-_FILTER = ("group", "categories", "mask")
-_NONE: IntArray = np.zeros(0, np.intp)
 
 
 def patch(world: World) -> bool | None:
@@ -35,99 +32,75 @@ def patch(world: World) -> bool | None:
     Raises:
         ValueError, UnsupportedFeature, NotFiniteError: as a new reading would.
     """
-    edits = world.edits()
-    if edits is None or world.smooth or world.joints is not None or world.space.constraints:
+    now, stale = clock(), world.stale()
+    if stale is None or not world.same_things() or world.smooth or world.joints is not None or world.space.constraints:
         return None
-    shapes: dict[pymunk.Shape, None] = {}
-    masses: dict[pymunk.Body, None] = {}
-    lists = False
-    for thing, name in edits:
-        if thing is None or name not in (*_NUMBERS, *_MASSES, "filter"):
+    lists, bodies, records = False, world.bodies, {}
+    for shape, record in world.records.items():
+        if shape not in stale:
+            continue
+        if record is None or record.outside or shape.sensor:
             return None
-        if name in _MASSES:
-            body = thing.body if isinstance(thing, pymunk.Shape) else thing
-            if body is not None:
-                masses[body] = None
-        elif thing in world.places:
-            shapes[thing] = None
-            lists |= name == "filter"
+        records[shape] = new = read(shape)
+        if (new.body, new.vertices, new.numbers[0]) != (record.body, record.vertices, record.numbers[0]):
+            return None
+        lists |= new.filter != record.filter
+    changes = {i: bodies.changed(i) for i, body in enumerate(bodies.items) if body in stale}
+    masses = [i for i, (changed, _) in changes.items() if changed]
+    if any(more for _, more in changes.values()):
+        return None
     world.gather()
-    status = world.find()
-    bodies, moved = world.bodies, _NONE
+    status, moved = world.find(), False
     if status == MOVED_STATIC:
-        differs = (world.state[:, :3] != world.STATES[LEFT, :, :3]).any(axis=1)
-        moved = np.flatnonzero(differs & bodies.static)
-    if status == OTHER_BODIES or not (edits or len(moved)) or any(body not in bodies.row for body in masses):
+        moved = bool((world.state[:, :3] != world.STATES[LEFT, :, :3])[bodies.static].any())
+    if status == OTHER_BODIES or not (stale or moved):
         return None
     if status != 0:
         bodies.check_finite(world.state)
-    records = {shape: read(shape) for shape in shapes}
-    weighed = [bodies.row[body] for body in masses]
-    centres = [list(body.center_of_gravity) for body in masses]
-    if masses and bodies.center_of_gravity[weighed].tolist() != centres:
-        return None
-    if len(moved) and not _move(world, moved):
-        return None
     if masses:
-        bodies.weigh(weighed)
-        rows = world.WALK[BODY_ROW, weighed]
-        moving = rows >= 0
-        world.fresh["inv_mass"][rows[moving]] = bodies.inverse_mass[weighed][moving]
-        world.fresh["inv_inertia"][rows[moving]] = bodies.inverse_moment[weighed][moving]
-    if shapes:
-        at = np.array([world.places[shape] for shape in shapes])
-        _number(world, at, np.array([record.numbers for record in records.values()]))
-        if lists:
-            filters = np.array([record.filter for record in records.values()], np.uint64).view(np.int64)
-            for k, name in enumerate(_FILTER):
-                world.LINK[name][at] = filters[:, k]
-            world.look_at_filters()
-        world.records.update(records)
-    _unstep(world)
-    return lists or len(moved) > 0
-
-
-def _number(world: World, at: IntArray, numbers: FloatArray) -> None:
-    """Give shapes, rows `at`, these elasticities, frictions and surface velocities."""
-    for name in ("elasticity", "friction", "surface_x", "surface_y"):
-        world.SHAPE[name][at] = numbers[:, GIVEN.index(name)]
-    disks = at[at < world.disks]
-    # Row k of a lone disk is that of its shape, too.
-    for name in ("elasticity", "friction"):
-        world.fresh[name][disks] = world.SHAPE[name][disks]
-
-
-def _move(world: World, moved: IntArray) -> bool:
-    """Put the shapes of static bodies, rows `moved` of STATES, where these are; False if they have other vertices."""
-    hit = np.zeros(len(world.bodies), bool)
-    hit[moved] = True
-    at = np.flatnonzero(hit[world.owner])
-    if len(at) == 0:
-        return True
-    found = [world.records[world.shapes[k]] for k in at.tolist()]
-    records = [record for record in found if record is not None]
-    vertex, of_shape = outlines(world.bodies, world.state, world.owner[at], records)
-    LINK = world.LINK[at]
-    count = LINK["vertices"]
-    if not np.array_equal(np.bincount(of_shape, minlength=len(at)), count):
-        return False
-    into = np.concatenate([np.arange(a, a + n) for a, n in zip(LINK["first"].tolist(), count.tolist(), strict=True)])
-    SHAPE = world.SHAPE[at]
-    LINK["first"] = np.cumsum(count) - count
-    placed = with_normals(vertex, LINK)
-    bound(placed[:, :2], LINK, SHAPE)
-    world.VERTEX[into], world.SHAPE[at] = placed, SHAPE
-    ground = len(world.BODY) - 1
-    of_ground = world.SHAPE["extent"][world.LINK["owner"] == ground]
-    world.fresh["extent"][ground] = of_ground.max(initial=0.0)
-    return True
-
-
-def _unstep(world: World) -> None:
-    """Have rows and states as if no step had been taken from where the bodies are."""
-    left, static = world.STATES[LEFT], world.bodies.static
+        bodies.weigh(masses)
+    world.records.update(records)
+    if moved or world.fresh is None:
+        if not _lay_again(world):
+            return None
+    else:
+        _number(world, world.fresh, records, masses)
+    world.read_at = now
+    left, static = world.STATES[LEFT], bodies.static
     left[:] = np.nan
     left[static] = world.STATES[NOW, static]
     world.EXTRA[:, PUSH_X : PUSH_TWIST + 1] = 0.0
-    # To copy records takes ten times as long.
-    world.BODY.view(np.int64)[:] = world.fresh.view(np.int64)
+    return lists or moved
+
+
+def _number(world: World, fresh: Rows[Body], records: dict[pymunk.Shape, Record], masses: list[int]) -> None:
+    """Give shapes the numbers and filters of these records, bodies their masses, and BODY its `fresh` rows."""
+    for shape, record in records.items():
+        k = world.places[shape]
+        row, link = world.SHAPE[k], world.LINK[k]
+        row.elasticity, row.friction, row.surface_x, row.surface_y = record.numbers[1:]
+        link.group, link.categories, link.mask = (word - (word >> 63 << 64) for word in record.filter)
+        if k < world.disks:
+            # Row k of a lone disk is that of its shape, too.
+            fresh[k].elasticity, fresh[k].friction = row.elasticity, row.friction
+    for i in masses:
+        if (at := world.WALK[BODY_ROW, i]) >= 0:
+            fresh[at].inv_mass, fresh[at].inv_inertia = world.bodies.inverse_mass[i], world.bodies.inverse_moment[i]
+    world.BODY.view(np.int64)[:] = fresh.view(np.int64)
+
+
+def _lay_again(world: World) -> bool:
+    """Lay all rows anew, by what bodies and shapes say now, as if no step had been taken; False, with nothing done, if
+    these are other rows."""
+    solid = {shape: record for shape, record in world.records.items() if record is not None}
+    packed = pack(world.bodies, world.state, list(solid), list(solid.values()))
+    if packed.shapes != world.shapes or packed.disks != world.disks:
+        return False
+    if not np.array_equal(packed.LINK["vertices"], world.LINK["vertices"]):
+        return False
+    names: tuple[str, ...] = "BODY", "SHAPE", "LINK", "VERTEX"
+    world.fresh = packed.BODY
+    for name in names:
+        # To copy records takes ten times as long.
+        getattr(world, name).view(np.int64)[:] = getattr(packed, name).view(np.int64)
+    return True

@@ -85,9 +85,8 @@ class Sync:
 
     def __init__(self, space: pymunk.Space, bodies: Bodies) -> None:
         self.space = space
-        moving = [b for b, still in zip(bodies.items, bodies.static.tolist(), strict=True) if b.shapes and not still]
         self._asleep = bool(bodies.asleep.any())
-        self._shapes = sum(len(b.shapes) for b in moving)
+        self._shapes = sum(bodies.shapes.values())
         self._pointers = bodies.moving
         self._timestamp: Callable[[], int] = private.timestamp(space)
         self._renewed, self._dt, self._left = -1, 0.0, 0

@@ -3,29 +3,27 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from functools import cached_property
 from typing import Any, TypeAlias
 
 import pymunk
 
-from ..compiled.records import Rows, columns, rows
+from ..compiled.records import Rows, rows
 from ..layout import BODY_ROW
 from ..model.bodies import Body
-from ..report import nothing
+from ..report import Details, nothing
 from ..transfer import take
 from . import private
 from .bodies import Bodies
 from .checks import check_space, rough_pair
 from .crossing import Crossing
 from .joints import JointRows
-from .noticed import edits
+from .noticed import clock, edited_since, edits
 from .packing import Record, pack, read
 from .patching import patch
 from .rehearsal import Rehearsal
 from .shapes import Rules
-
-_COLLIDES_WITH_ALL = tuple(pymunk.ShapeFilter())
 
 Records: TypeAlias = dict[pymunk.Shape, Record | None]
 
@@ -39,8 +37,8 @@ class World(Crossing):
 
     Args:
         space: any pymunk space.  ignore: what to step on without, see `check_ignored`.
-        before: the world of the same space before shapes came or went, whose shapes are not read again.
-        past: the world of the same space before, of which is kept what joints remember of earlier steps.
+        past: the world of the same space before. Bodies and shapes that have not changed since are not read again, and
+            what joints remember of earlier steps is kept.
 
     Attributes:
         records: what the shapes of the space say of themselves, None for sensors.
@@ -50,29 +48,33 @@ class World(Crossing):
             dynamic bodies; the rows from there to the last one, the ground, are kinematic.
         STATES, WALK, EXTRA, ENDS: what crosses the edge, see `layout.py`.
         gravity: length/time².  damping: pymunk's, 1 is none.
-        ignores: whether there is friction that is ignored.  filtered: whether any shape has a filter.
+        ignores: whether there is friction that is ignored.
         collisions: whether the space has collision handlers.  hooked: whether it or its bodies have functions, or
             velocities are gone after each step.  plain: whether there is nothing of that, and no joints.
         rules: what collision handlers decided about pairs of rows of SHAPE for this step.
         smooth: whether friction is left out, that of handlers too.
         joints: the constraints of the space, None if it has none.  PARTNER: bodies of joints that have no row of BODY.
-        fresh: BODY before any step.  patches: how often `patch` has put edits into the rows.
+        read_at: `noticed.clock` when shapes and bodies were read.
+        patches: how often `patch` has put edits into the rows.  fresh: BODY before any step, as laid by the last that
+            has laid rows anew.
         parted: pairs of rows of SHAPE that pass through one another because joints of their bodies say so.
-        empty: the arrays of a report without contacts.
     """
 
     def __init__(
-        self, space: pymunk.Space, ignore: Sequence[str] = (), before: World | None = None,
-        past: World | None = None,
+        self, space: pymunk.Space, ignore: Sequence[str] = (), past: World | None = None
     ) -> None:  # fmt: skip
         check_space(space)
         self._edits = edits(space)
         self._known = self._edits[0] - self._edits[1]
-        bodies = Bodies(space, fixed=space.sleep_time_threshold < math.inf)
+        fixed = space.sleep_time_threshold < math.inf
+        stale = None if past is None else past.stale()
+        known = None if past is None or stale is None else past
+        self.read_at = clock()
+        bodies = Bodies(space, fixed) if known is None else Bodies(space, fixed, known.bodies, stale or ())
         state = bodies.gather()
         assert state is not None  # read from these very bodies
         bodies.check_finite(state)
-        self.records: Records = _records(space, bodies, {} if before is None else before.records)
+        self.records: Records = _records(space, bodies, {} if known is None else known.records, stale or ())
         solid = [s for s, record in self.records.items() if record is not None]
         self.ignores = "friction" in ignore and rough_pair(solid) is not None
         packed = pack(bodies, state, solid, [r for r in self.records.values() if r is not None])
@@ -84,9 +86,8 @@ class World(Crossing):
             self.SHAPE["friction"] = 0.0
             self.BODY["friction"] = 0.0
         self.disks, self.dynamic = packed.disks, packed.dynamic
-        self.fresh, self.patches = self.BODY.copy(), 0
-        self.look_at_filters()
-        self.empty = nothing(bodies.items)
+        self.patches = 0
+        self.fresh: Rows[Body] | None = None
         self.parted: set[tuple[int, int]] = set()
         self.joints: JointRows | None = None
         if past is not None and past.joints is not None:
@@ -129,9 +130,22 @@ class World(Crossing):
         """The row of SHAPE of every solid shape."""
         return {shape: k for k, shape in enumerate(self.shapes)}
 
-    def look_at_filters(self) -> None:
-        """Find `filtered`."""
-        self.filtered = bool((columns(self.LINK, "group", "categories", "mask") != _COLLIDES_WITH_ALL).any())
+    @cached_property
+    def empty(self) -> Details:
+        """The arrays of a report without contacts."""
+        return nothing(self.bodies.items)
+
+    def stale(self) -> set[Any] | None:
+        """Shapes and bodies that may say else than they did: edited, in the space or outside, or weighed anew since
+        shapes have come or gone; None if nobody knows."""
+        found = edited_since(self.read_at)
+        if found is None:
+            return None
+        now = self.records if self.same_things() else dict.fromkeys(self.space.shapes)
+        for shape in self.records.keys() ^ now.keys():
+            record = self.records.get(shape)
+            found.update((shape.body, record and record.body))
+        return found
 
     def patch(self) -> bool | None:
         """See `patching.patch`; the settings of the space are read as well."""
@@ -181,17 +195,13 @@ class World(Crossing):
     def _count(self) -> tuple[int, int, int, int]:
         return private.shapes_ever(self.space), len(self.space.shapes), len(self.space.bodies), self._edits[1]
 
+    def same_things(self) -> bool:
+        """Whether shapes have neither come nor gone, and as many bodies are there; they may be others, and edited."""
+        return self._contents == self._count()
+
     def same_contents(self) -> bool:
         """Whether shapes have neither come nor gone nor changed, so that new settings are all there is to read."""
-        return self._contents == self._count() and not self.edited()
-
-    def edits(self) -> list[tuple[Any, str]] | None:
-        """What shapes and bodies were edited in place since they were read, and which attribute; None in the place of
-        what is gone. None if more has changed, or if nobody knows."""
-        count = self._edits[0] - self._edits[1] - self._known
-        if self._contents != self._count() or count > len(self._edits.last):
-            return None
-        return [(thing(), name) for thing, name in list(self._edits.last)[len(self._edits.last) - count :]]
+        return self.same_things() and not self.edited()
 
     def edited(self) -> bool:
         """Whether a shape or body was edited in place."""
@@ -211,19 +221,19 @@ class World(Crossing):
         return self.damping ** (0.5 * dt) if self.damping > 0.0 else 1.0
 
 
-def _records(space: pymunk.Space, bodies: Bodies, known: Records) -> Records:
-    """What every shape says, None for sensors; those that are known are not asked again.
+def _records(space: pymunk.Space, bodies: Bodies, known: Records, stale: Collection[Any]) -> Records:
+    """What every shape says, None for sensors; those that are known, and not `stale`, are not asked again.
 
     A shape whose body was taken out of the space is left as a wall where it is: pymunk too finds it there.
     """
     records: Records = {}
     for shape in space.shapes:
-        here = shape.body is None or shape.body in bodies.row
-        before = known.get(shape)
-        if shape in known and (before is None or (here and not before.outside)):
+        before = known.get(shape) if shape not in stale else None
+        if before is not None and not before.outside and before.body in bodies.row:
             records[shape] = before
         elif shape.sensor:
             records[shape] = None
         else:
+            here = shape.body is None or shape.body in bodies.row
             records[shape] = read(shape, None if here else space.static_body)
     return records

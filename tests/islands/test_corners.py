@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 import pymunk
@@ -147,3 +148,51 @@ def test_planks_are_thin_and_boxes_are_not() -> None:
     assert loop is not None
     scene = loop.scene  # type: ignore[attr-defined]
     assert sorted(thin(scene.LINK, scene.VERTEX).tolist()) == [False, False, True, True]
+
+
+def _remove_others(space: pymunk.Space, stepper: ep.EECA, shape: pymunk.Shape, others: list[pymunk.Body]) -> None:
+    other = others.pop()
+    space.remove(other, *other.shapes)
+
+
+def _add_others(space: pymunk.Space, stepper: ep.EECA, shape: pymunk.Shape, others: list[pymunk.Body]) -> None:
+    others.append(pymunk.Body(1.0, 1.0))
+    others[-1].position = 30.0, 2.0 * len(others)
+    space.add(others[-1], pymunk.Circle(others[-1], 0.5))
+
+
+def _set_friction(space: pymunk.Space, stepper: ep.EECA, shape: pymunk.Shape, others: list[pymunk.Body]) -> None:
+    shape.friction = 0.1 + 0.01 * len(others) * stepper.time
+
+
+def _add_joints(space: pymunk.Space, stepper: ep.EECA, shape: pymunk.Shape, others: list[pymunk.Body]) -> None:
+    space.add(pymunk.PinJoint(others.pop(), space.static_body))
+
+
+def _hear(space: pymunk.Space, stepper: ep.EECA, shape: pymunk.Shape, others: list[pymunk.Body]) -> None:
+    space.on_collision(1, 2)
+
+
+@pytest.mark.parametrize("edit", [_remove_others, _add_others, _set_friction, _add_joints, _hear])
+def test_sides_outlive_what_is_edited_elsewhere(edit: Callable[..., None]) -> None:
+    """A rod that lies in the plane of a floor without width, and round-off below it, stays on it though the space is
+    read anew, shapes have other numbers, and functions are called."""
+    space = pymunk.Space()
+    space.gravity = 0.0, -G
+    others = []
+    for k in range(8):
+        others.append(pymunk.Body(1.0, 1.0))
+        others[-1].position = 20.0, 2.0 * k
+        space.add(others[-1], pymunk.Circle(others[-1], 0.5))
+    walls(space, space.static_body, ((-5, 0), (5, 0)))
+    body = rod(space, 0.0, 1e-6, 0.0)
+    (shape,) = body.shapes
+    stepper = ep.EECA(space)
+    for _ in range(20):
+        stepper.step(1 / 60)
+    body.position = 0.0, 1e-6
+    for k in range(60):
+        if k in (2, 4, 6, 8, 10):
+            edit(space, stepper, shape, others)
+        stepper.step(1 / 60)
+    assert abs(body.position.y) < 1e-3

@@ -165,11 +165,9 @@ def test_a_segment_of_no_length_is_a_disk() -> None:
 def test_materials_and_filters() -> None:
     space = pymunk.Space()
     shape = next(iter(add_disk(space, (0.0, 0.0), 0.1).shapes))
-    assert not World(space).filtered
     shape.elasticity, shape.friction = 0.75, 0.5
     shape.filter = pymunk.ShapeFilter(7, 0b101, 0xFFFFFFFE)
     world = World(space)
-    assert world.filtered
     assert columns(world.LINK[0], "group", "categories", "mask").tolist() == [7, 5, 0xFFFFFFFE]
     assert columns(world.SHAPE[0], "elasticity", "friction").tolist() == [0.75, 0.5]
     assert columns(world.BODY[0], "elasticity", "friction", "extent").tolist() == [0.75, 0.5, 0.1]

@@ -48,6 +48,11 @@ NEARLY_HELD = accuracy(1e-08, "of the component", "Error of elastic joints up to
 TAUT = heuristic(
     0.5, "of a body's inertia", "Stiffness of a joint's pull, times h^2/4, from which contacts take it into account."
 )
+PRESSED = heuristic(
+    0.5,
+    "of a body's inertia",
+    "Stiffness of joints that press, times h^2/4, up to which contacts take it into account.",
+)
 ARM_ITERATIONS = work(6, "iterations", "Motions in which arms of contacts are made those of the middle.")
 ARM_ERROR = round_off(1e-15, "of the component", "Error of these arms.")
 BOUNDED_SWEEPS = work(30, "sweeps", "Sweeps over bounded joint rows and contacts.")

@@ -1,0 +1,145 @@
+"""Kernels of reading: the rows of bodies and shapes, from what these say."""
+
+from __future__ import annotations
+
+import math
+
+from .arrays import FloatArray, IntArray
+from .compiled import kernel, uncounted
+from .compiled.records import Rows
+from .model.bodies import Body
+from .model.given import DYNAMIC, STATIC, GivenBody, GivenShape
+from .model.shapes import Link, Shape
+
+
+@uncounted
+def place_points(BODIES: Rows[GivenBody], SHAPES: Rows[GivenShape], POINT: FloatArray) -> None:
+    """Put the vertices of static shapes into the world, those of others about the centre of mass, and leave out those
+    that repeat the one before: a segment of no length is a disk."""
+    at, to = 0, 0
+    for s in range(SHAPES.shape[0]):
+        one, body = SHAPES[s], BODIES[SHAPES[s].owner]
+        c, z, first = math.cos(body.angle), math.sin(body.angle), to
+        for _ in range(one.vertices):
+            x, y = POINT[at, 0], POINT[at, 1]
+            if body.kind == STATIC:
+                x, y = body.x + (c * x - z * y), body.y + (z * x + c * y)
+            else:
+                x, y = x - body.centre_x, y - body.centre_y
+            at += 1
+            if to == first or x != POINT[to - 1, 0] or y != POINT[to - 1, 1]:
+                POINT[to, 0], POINT[to, 1] = x, y
+                to += 1
+        one.first, one.vertices = first, to - first
+
+
+@uncounted
+def give_rows(BODIES: Rows[GivenBody], SHAPES: Rows[GivenShape], POINT: FloatArray, ORDER: IntArray) -> int:
+    """Number bodies that are not static: lone disks, other dynamic bodies, kinematic ones, each by `place`. ORDER (n,)
+    is scratch.
+
+    Returns:
+        how many lone disks there are.
+    """
+    for i in range(BODIES.shape[0]):
+        BODIES[i].shapes, BODIES[i].row = 0, -1
+        ORDER[BODIES[i].place] = i
+    for s in range(SHAPES.shape[0]):
+        # Two stand for more, and for one that is no disk about the centre of mass.
+        k = SHAPES[s].first
+        centred = SHAPES[s].vertices == 1 and POINT[k, 0] == 0.0 and POINT[k, 1] == 0.0
+        BODIES[SHAPES[s].owner].shapes += 1 if centred else 2
+    row, disks = 0, 0
+    for rank in range(3):
+        for p in range(BODIES.shape[0]):
+            body = BODIES[ORDER[p]]
+            of = 2 if body.kind != DYNAMIC else 0 if body.shapes == 1 else 1
+            if body.kind != STATIC and of == rank:
+                body.row = row
+                row += 1
+        disks = row if rank == 0 else disks
+    return disks
+
+
+@uncounted
+def order_shapes(BODIES: Rows[GivenBody], SHAPES: Rows[GivenShape], ground: int, ORDER: IntArray) -> None:
+    """Have in ORDER the shapes by the rows of their bodies, the ground's last, in their own order besides. From there
+    on, to its end, ORDER is scratch."""
+    k = SHAPES.shape[0]
+    for i in range(ground + 2):
+        ORDER[k + i] = 0
+    for s in range(k):
+        row = BODIES[SHAPES[s].owner].row
+        ORDER[k + 1 + (ground if row < 0 else row)] += 1
+    for i in range(ground):
+        ORDER[k + i + 1] += ORDER[k + i]
+    for s in range(k):
+        row = BODIES[SHAPES[s].owner].row
+        next_one = k + (ground if row < 0 else row)
+        ORDER[ORDER[next_one]] = s
+        ORDER[next_one] += 1
+
+
+@uncounted
+def lay_shape(POINT: FloatArray, given: GivenShape, SHAPE: Shape, LINK: Link, VERTEX: FloatArray) -> None:
+    """Write one shape's vertices, with the outward normals of the edges that begin there, and its sizes."""
+    n, first = given.vertices, given.first
+    low_x, low_y, high_x, high_y = math.inf, math.inf, -math.inf, -math.inf
+    for j in range(n):
+        x, y, k = POINT[first + j, 0], POINT[first + j, 1], first + j + 1 if j + 1 < n else first
+        # Counter-clockwise outlines (pymunk's hulls) have their outside on the right of every edge.
+        ex, ey = POINT[k, 0] - x, POINT[k, 1] - y
+        length = math.hypot(ex, ey)
+        length = length if length > 0.0 else 1.0
+        to = VERTEX[LINK.first + j]
+        to[0], to[1], to[2], to[3] = x, y, ey / length, -ex / length
+        low_x, low_y, high_x, high_y = min(low_x, x), min(low_y, y), max(high_x, x), max(high_y, y)
+    SHAPE.centre_x, SHAPE.centre_y = 0.5 * (low_x + high_x), 0.5 * (low_y + high_y)
+    far, away = 0.0, 0.0
+    for j in range(first, first + n):
+        far = max(far, math.hypot(POINT[j, 0], POINT[j, 1]))
+        away = max(away, math.hypot(POINT[j, 0] - SHAPE.centre_x, POINT[j, 1] - SHAPE.centre_y))
+    SHAPE.extent, SHAPE.bound = given.rounding + far, given.rounding + away
+
+
+@kernel
+def lay_rows(
+    BODIES: Rows[GivenBody], SHAPES: Rows[GivenShape], POINT: FloatArray, BODY: Rows[Body], SHAPE: Rows[Shape],
+    LINK: Rows[Link], VERTEX: FloatArray, ORDER: IntArray,
+) -> int:  # fmt: skip
+    """The rows of bodies and of their shapes; poses and velocities are left out.
+
+    Args:
+        BODIES (N,), SHAPES (k,): `row` and `first` are written.  POINT (v, 2): the vertices of all shapes, overwritten.
+        BODY (N + 1,), SHAPE (k,), LINK (k,), VERTEX (v, 4): zeros; those in use come first.
+        ORDER (k + N + 2,): has the place of every row of SHAPE among SHAPES.
+
+    Returns:
+        how many lone disks there are.
+    """
+    place_points(BODIES, SHAPES, POINT)
+    disks = give_rows(BODIES, SHAPES, POINT, ORDER)
+    ground = 0
+    for i in range(BODIES.shape[0]):
+        ground = max(ground, BODIES[i].row + 1)
+        if BODIES[i].row >= 0:
+            body = BODY[BODIES[i].row]
+            body.inv_mass, body.inv_inertia = BODIES[i].inverse_mass, BODIES[i].inverse_moment
+    order_shapes(BODIES, SHAPES, ground, ORDER)
+    at = 0
+    for k in range(SHAPES.shape[0]):
+        given, row = SHAPES[ORDER[k]], BODIES[SHAPES[ORDER[k]].owner].row
+        link, shape = LINK[k], SHAPE[k]
+        link.owner, link.first, link.vertices = ground if row < 0 else row, at, given.vertices
+        link.group, link.categories, link.mask = given.group, given.categories, given.mask
+        shape.rounding, shape.elasticity, shape.friction = given.rounding, given.elasticity, given.friction
+        shape.surface_x, shape.surface_y = given.surface_x, given.surface_y
+        lay_shape(POINT, given, shape, link, VERTEX)
+        at += given.vertices
+        body = BODY[link.owner]
+        body.extent = max(body.extent, shape.extent)
+        if k < disks:
+            body.elasticity, body.friction = shape.elasticity, shape.friction
+    for i in range(ground + 1):
+        BODY[i].due = -math.inf
+    return disks

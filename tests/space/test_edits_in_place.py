@@ -1,0 +1,126 @@
+"""What is edited, added and removed: only that is asked anew, and the space goes on as one whose stepper asks all."""
+
+from __future__ import annotations
+
+import random
+
+import numpy as np
+import pymunk
+import pytest
+
+import eeca_pymunk as ep
+
+DT = 1 / 60
+
+
+class Program:
+    """A space whose bodies, shapes and joints come, change and go, by the numbers of `seed`."""
+
+    def __init__(self, seed: int, joints: bool) -> None:
+        self.random, self.joints = random.Random(seed), joints
+        self.space = pymunk.Space()
+        self.space.gravity = 0.0, -900.0
+        for p, q in (((-300, 0), (300, 0)), ((-300, 0), (-300, 600)), ((300, 0), (300, 600))):
+            wall = pymunk.Segment(self.space.static_body, p, q, 3.0)
+            wall.friction = 0.5
+            self.space.add(wall)
+        self.bodies: list[pymunk.Body] = []
+        self.away: list[pymunk.Body] = []
+        self.shapes: dict[pymunk.Body, list[pymunk.Shape]] = {}  # in an order of their own: pymunk's sets have none
+        for _ in range(8):
+            self.add()
+
+    def shape(self, body: pymunk.Body) -> pymunk.Shape:
+        size = self.random.uniform(5.0, 15.0)
+        shape: pymunk.Shape = (
+            pymunk.Circle(body, size) if self.random.random() < 0.5 else pymunk.Poly.create_box(body, (size, size))
+        )
+        shape.friction, shape.elasticity = 0.4, self.random.choice((0.0, 0.5))
+        if body.body_type == pymunk.Body.DYNAMIC and self.random.random() < 0.3:
+            shape.mass = 1.0
+        self.shapes.setdefault(body, []).append(shape)
+        return shape
+
+    def add(self) -> None:
+        body = pymunk.Body(1.0, 100.0, self.random.choice((pymunk.Body.DYNAMIC,) * 4 + (pymunk.Body.KINEMATIC,)))
+        body.position = self.random.uniform(-250, 250), self.random.uniform(50, 500)
+        self.space.add(body, self.shape(body))
+        self.bodies.append(body)
+
+    def remove(self) -> None:
+        body = self.random.choice(self.bodies)
+        self.space.remove(body, *self.shapes[body], *body.constraints)
+        self.bodies.remove(body)
+        self.away.append(body)
+
+    def bring_back(self) -> None:
+        if not self.away:
+            return
+        body = self.away.pop()
+        if body.body_type == pymunk.Body.DYNAMIC:
+            body.mass = self.random.uniform(0.5, 2.0)
+        for shape in self.shapes[body]:
+            shape.friction = 0.3
+        self.space.add(body, *self.shapes[body])
+        self.bodies.append(body)
+
+    def add_shape(self) -> None:
+        body = self.random.choice(self.bodies)
+        self.space.add(self.shape(body))
+
+    def remove_shape(self) -> None:
+        body = self.random.choice(self.bodies)
+        if len(self.shapes[body]) > 1:
+            self.space.remove(self.shapes[body].pop(0))
+
+    def edit(self) -> None:
+        body = self.random.choice(self.bodies)
+        if body.body_type == pymunk.Body.DYNAMIC:
+            body.mass, body.moment = self.random.uniform(0.5, 2.0), 80.0
+        for shape in self.shapes[body]:
+            shape.friction, shape.filter = self.random.random(), pymunk.ShapeFilter(self.random.randint(0, 2))
+            if isinstance(shape, pymunk.Circle):
+                shape.unsafe_set_radius(self.random.uniform(5.0, 15.0))
+
+    def join(self) -> None:
+        one, other = self.random.sample(self.bodies, 2)
+        if self.joints and one.body_type == other.body_type == pymunk.Body.DYNAMIC:
+            self.space.add(pymunk.PinJoint(one, other))
+
+    def change(self) -> None:
+        edits = self.add, self.remove, self.bring_back, self.add_shape, self.remove_shape, self.edit, self.join
+        self.random.choice(edits)()
+
+    def state(self) -> list[float]:
+        return [c for body in self.bodies for c in (*body.position, body.angle, *body.velocity, body.angular_velocity)]
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_bit_by_bit_as_if_all_were_read_anew(seed: int) -> None:
+    one, other = Program(seed, joints=False), Program(seed, joints=False)
+    stepper, refreshed = ep.EECA(one.space), ep.EECA(other.space)
+    for k in range(90):
+        if k % 3 == 2:
+            one.change()
+            other.change()
+            if stepper._world is not None and not stepper._world.current():
+                refreshed.refresh()
+        stepper.step(DT)
+        refreshed.step(DT)
+        assert one.state() == other.state(), k
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_with_joints_up_to_the_tolerance_of_their_solver(seed: int) -> None:
+    """A new reading has joints forget how they went, from which the solver begins."""
+    one, other = Program(seed, joints=True), Program(seed, joints=True)
+    stepper, refreshed = ep.EECA(one.space), ep.EECA(other.space)
+    for k in range(24):
+        if k % 3 == 2:
+            one.change()
+            other.change()
+            if stepper._world is not None and not stepper._world.current():
+                refreshed.refresh()
+        stepper.step(DT)
+        refreshed.step(DT)
+        assert np.allclose(one.state(), other.state(), rtol=1e-6, atol=1e-4), k
