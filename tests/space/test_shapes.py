@@ -27,7 +27,7 @@ def test_vertices_along_a_side_and_twice_at_a_corner_are_left_out() -> None:
     assert np.allclose(corners(twice), [(0.0, 0.0), (1.0, 0.0), (0.5, 1.0)], atol=1e-14)
 
 
-@pytest.mark.parametrize("sides", (3, 8, 100, 1000))
+@pytest.mark.parametrize("sides", [3, 8, 100, 1000])
 def test_polygons_that_are_nearly_round_keep_all_vertices(sides: int) -> None:
     body = pymunk.Body(1.0, 1.0)
     round_one = [(math.cos(2 * math.pi * k / sides), math.sin(2 * math.pi * k / sides)) for k in range(sides)]
@@ -37,10 +37,10 @@ def test_polygons_that_are_nearly_round_keep_all_vertices(sides: int) -> None:
 
 @pytest.mark.parametrize(
     ("x", "velocity", "angle", "spin"),
-    (
+    [
         (-0.05422400468608654, 0.8199179233245939, -0.09138662228635917, 1.2908251207260077),
         (0.002132647936335774, 0.5068930671778104, 0.08276753353463259, -0.09541171212498778),
-    ),
+    ],
 )
 def test_a_disk_bounces_off_a_drawn_box_as_off_a_box_of_four_vertices(
     x: float, velocity: float, angle: float, spin: float
