@@ -1,4 +1,4 @@
-"""Lifting bodies out of each other at the end of a span, paid from the losses of the same island and span.
+"""Lifting bodies out of each other at the end of an interval, paid from the losses of the same island and interval.
 
 delta = M^-1 G^T mu with 0 <= mu _|_ g + A mu >= 0 for the gaps g at the end, scaled so that the potential energy it
 costs is at most the losses, and nothing goes far: no energy comes from push-out, and nobody goes through a wall by it.
@@ -30,10 +30,10 @@ def lifting(
     problem: Problem, POSE: FloatArray, VN: FloatArray, ACC: FloatArray, h: float, size: float, budget: float,
     JUMP: FloatArray,
 ) -> tuple[float, float]:  # fmt: skip
-    """JUMP (k, 6) = changes of pose and velocity at the end of the span.
+    """JUMP (k, 6) = changes of pose and velocity at the end of the interval.
 
     Args:
-        POSE: (k, 3) at the middle of the span.  VN: (k, 3) velocities at the end.  size: length.
+        POSE: (k, 3) at the middle of the interval.  VN: (k, 3) velocities at the end.  size: length.
         budget: energy that may be spent; below 0 nothing is lifted, with 0 what that costs nothing.
     Returns:
         The energy spent (<= budget, negative if more was lost), and the deepest gap before (negative in overlap).

@@ -1,10 +1,10 @@
-"""Contact rows of an island from the geometry of its pairs, for a span h from now.
+"""Contact rows of an island from the geometry of its pairs, for an interval h from now.
 
 Normals and arms are those at the predicted middle q + (h/2) v, gaps those now: with u = G(middle) v the gap at the end
 is g + (h/2)(u- + u+) to third order in h, so that bodies follow curved surfaces to second order without a loss; and
 an island without forces keeps its angular momentum exactly, as its middle and the predicted one differ by multiples of
-the impulses. Where a pair moves far in half a span (an impact at high speed), as seen from a body that turns and that
-impulses do not move, its rows are those now; in a free island its points go half the way with each of its bodies.
+the impulses. Where a pair moves far in half an interval (an impact at high speed), as seen from a body that turns and
+that impulses do not move, its rows are those now; in a free island its points go half the way with each of its bodies.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""One span of one island: v+ = v + h a + M^-1 (G^T lam + T^T beta), each body on the parabola between v and v+."""
+"""One interval of one island: v+ = v + h a + M^-1 (G^T lam + T^T beta), each body on the parabola between v and v+."""
 
 from __future__ import annotations
 

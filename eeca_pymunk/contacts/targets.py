@@ -1,12 +1,12 @@
-"""What a contact's normal velocity is to be at the end of the span: targets b of 0 <= lam _|_ u_n+ - b >= 0.
+"""What a contact's normal velocity is to be at the end of the interval: targets b of 0 <= lam _|_ u_n+ - b >= 0.
 
 Let u = u_n now, g the gap, a_n the acceleration of the gap without impulses, lam_w the impulse expected from the last
 solve. The bounce is e max(-u, 0).
 
-* e < 1 and the bounce below (1/2) max(-a_n h, A_nn lam_w): it would return within the span. The contact is sustained:
-  its bounce is 0 (the ledger books the rest of the bounces as restitution at once).
+* e < 1 and the bounce below (1/2) max(-a_n h, A_nn lam_w): it would return within the interval. The contact is
+  sustained: its bounce is 0 (the ledger books the rest of the bounces as restitution at once).
 * e = 1, or u < -2 |a| h: an impact. b is the bounce, from when the gap would be closed without it.
-* Else the surface is reached softly at the end of the span: b = min(bounce, -u - 2 max(g, 0)/h).
+* Else the surface is reached softly at the end of the interval: b = min(bounce, -u - 2 max(g, 0)/h).
 """
 
 from __future__ import annotations

@@ -1,4 +1,5 @@
-"""The works of an island over a span: impulses times means of velocities before and after, which close by identity:
+"""The works of an island over an interval: impulses times means of velocities before and after, which close by
+identity:
 
     change of energy = forces + carried + lifted - restitution - friction,
 

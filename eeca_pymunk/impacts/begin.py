@@ -8,7 +8,7 @@ from ..arrays import IntArray
 from ..compiled import uncounted
 from ..contacts.energy import total, unsteered
 from ..geometry.sides import forget_sides
-from ..islands.accounting import flag_spans
+from ..islands.accounting import flag_pairs
 from ..islands.at_rest import note_motion, stays_at_rest
 from ..layout import ANEW
 from ..model.bodies import AT_REST
@@ -28,7 +28,7 @@ def begin(A: Scene, WALK: IntArray) -> None:
         # Pairs that were passed over are in nobody's forecast.
         for i in range(BODY.shape[0] - 1):
             BODY[i].due, A.RESTING[i].still_due = min(BODY[i].due, 0.0), 0.0
-        flag_spans(A)
+        flag_pairs(A)
     PAR.restitution, PAR.frictional, PAR.external, PAR.damped = 0.0, 0.0, 0.0, 0.0
     PAR.lock, PAR.stored = 1.0, 0.0
     PAR.before = total(A)

@@ -1,4 +1,4 @@
-"""A step's end: paths come to its last instant, islands and the work of forces are booked."""
+"""A step's end: paths come to its last instant, islands and the work of forces enter the ledger."""
 
 from __future__ import annotations
 

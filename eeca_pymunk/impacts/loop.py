@@ -9,7 +9,7 @@ from __future__ import annotations
 from ..compiled import kernel, merged, uncounted
 from ..contacts.single import alone, strike_disk
 from ..contacts.unmet import note_unmet
-from ..islands.accounting import close_span, end_interval
+from ..islands.accounting import close_interval, end_interval
 from ..islands.building import comes_to_rest, hits_of, most_hits, passed_over
 from ..islands.intervals import solve
 from ..islands.membership import members
@@ -138,7 +138,7 @@ def cut_short(A: Scene, t: float) -> int:
         if root < 0 or A.MEMBER[root].jointed > 0 or A.MEMBER[root].rest == AT_REST:
             continue
         if root == i and A.MEMBER[i].open > 0:
-            close_span(A, i, t)
+            close_interval(A, i, t)
         rest = A.RESTING[i]
         rest.lift_x, rest.lift_y, rest.lift_angle = 0.0, 0.0, 0.0
         rest.lift_vx, rest.lift_vy, rest.lift_spin = 0.0, 0.0, 0.0
@@ -149,7 +149,8 @@ def cut_short(A: Scene, t: float) -> int:
 def follow(A: Scene, may_rest: bool) -> int:
     """The events of the step, blocks and islands included. After a status other than DONE, make room and call again.
 
-    JOINTS_DUE: the span of island COUNT[PENDING], or if there is none the impact of body COUNT[STRUCK], is to be done.
+    JOINTS_DUE: the interval of island COUNT[PENDING], or if there is none the impact of body COUNT[STRUCK], is to be
+    done.
     """
     COUNT, STATE, BLOCK = A.COUNT, A.STATE, A.BLOCK
     end = A.PAR.dt

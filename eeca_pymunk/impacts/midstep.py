@@ -1,8 +1,8 @@
 """A step whose contacts act together at its middle, psi2 = 0: the bounded solve of islands on all contacts.
 
 No event is followed. Every pair that may close within the step is a contact of an island, and every island has one
-span, the step. How far a body may go its own speed tells; where impulses send it farther, and into others, these are
-made contacts too, and all is solved again, a few times at most.
+interval, the step. How far a body may go its own speed tells; where impulses send it farther, and into others, these
+are made contacts too, and all is solved again, a few times at most.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ def join_all(A: Scene, USUAL: FloatArray) -> bool:
 
 @uncounted
 def anew(A: Scene) -> None:
-    """Undo the spans that were begun: nobody is in an island, and impulses have changed no path."""
+    """Undo the intervals that were begun: nobody is in an island, and impulses have changed no path."""
     for c in range(A.COUNT.pushes):
         mark_pair(A, A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, 0)
     A.COUNT.pushes = 0

@@ -68,7 +68,7 @@ def strike(A: Scene, a: int, b: int, t: float, rest: bool) -> tuple[int, int]:
     """Impulses of the block of shapes a and b at instant t. Status, and the number of bodies to be forecast anew, in
     A.BLOCK.
 
-    PUSHES_FULL and JOINTS_DUE leave the new span of the island COUNT[PENDING] to be begun; JOINTS_DUE with none
+    PUSHES_FULL and JOINTS_DUE leave the new interval of the island COUNT[PENDING] to be begun; JOINTS_DUE with none
     pending leaves the impact itself.
 
     Args:
@@ -91,8 +91,8 @@ def strike(A: Scene, a: int, b: int, t: float, rest: bool) -> tuple[int, int]:
 
 @kernel
 def rejoin(A: Scene, a: int, b: int, t: float, n: int, rest: bool, lost: float) -> tuple[int, int]:
-    """After the impulses of a block of n bodies in A.BLOCK: its islands become one and begin a new span; so do the two
-    bodies of shapes a and b if they rest on each other. Status and number of bodies."""
+    """After the impulses of a block of n bodies in A.BLOCK: its islands become one and begin a new interval; so do the
+    two bodies of shapes a and b if they rest on each other. Status and number of bodies."""
     STATE, BODIES = A.STATE, A.BLOCK
     root = -1
     for q in range(n):

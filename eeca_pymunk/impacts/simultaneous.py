@@ -44,8 +44,8 @@ def takes_part(A: Scene, s: int, o: int, t: float) -> bool:
 
 
 @uncounted
-def crowded(A: Scene, a: int, b: int) -> bool:
-    """Whether shapes a and b meet in a crowd: their hit spreads from the nearest bodies by its new span."""
+def in_large_island(A: Scene, a: int, b: int) -> bool:
+    """Whether shapes a and b meet in a large island: their hit spreads from the nearest bodies by its new interval."""
     if law(A.SHAPE, A.RULE, a, b)[0] >= 1.0:
         return False
     size = 0
@@ -89,7 +89,7 @@ def gather(A: Scene, a: int, b: int, t: float) -> tuple[int, int, IntArray]:
     PAIRS = np.empty(16, np.int64)
     PAIRS[0] = min(a, b) * k + max(a, b)
     n, m, q = 0, 1, 0
-    most = BLOCK_BODIES if crowded(A, a, b) else A.BLOCK.shape[0]
+    most = BLOCK_BODIES if in_large_island(A, a, b) else A.BLOCK.shape[0]
     for s in (a, b):
         i = A.LINK[s].owner
         if A.BODY[i].inv_mass > 0.0:
@@ -133,7 +133,7 @@ def owing(A: Scene, n: int) -> tuple[float, bool]:
         root = A.STATE[A.BLOCK[q]].island
         if root >= 0:
             piled = True
-            # What spans that were cut short have given is taken out here.
+            # What intervals that were cut short have given is taken out here.
             owes = max(-A.RESTING[root].lost, 0.0)
             A.RESTING[root].lost += owes
             owed += owes

@@ -1,7 +1,8 @@
-"""The end of an island's span: its works up to there are booked, exactly, as forces are constant and velocities linear.
+"""The end of an island's interval: its works up to there enter the ledger. They are exact, as forces are constant and
+velocities linear.
 
-Forces of a span that was cut may have given energy (a soft landing pushes before it touches): that is owed, and taken
-out by what follows. So may they have turned the island, as their arms are about the middle of the whole span.
+Forces of an interval that was cut may have given energy (a soft landing pushes before it touches): that is owed, and
+taken out by what follows. So may they have turned the island, as their arms are about the middle of the whole interval.
 """
 
 from __future__ import annotations
@@ -20,13 +21,13 @@ from .rest import spins_freely
 
 @uncounted
 def flag_again(TABLE: Table) -> None:
-    """Flag the pairs of all spans, in lists that were made anew. TABLE: `table_of` a Scene."""
-    flag_spans(scene_of(TABLE))
+    """Flag the pairs of all intervals, in lists that were made anew. TABLE: `table_of` a Scene."""
+    flag_pairs(scene_of(TABLE))
 
 
 @uncounted
-def flag_spans(A: Scene) -> None:
-    """Flag the pairs of all spans, whose flags are not set."""
+def flag_pairs(A: Scene) -> None:
+    """Flag the pairs of all intervals, whose flags are not set."""
     for c in range(A.COUNT.pushes):
         if A.PUSHED_BY[c].root >= 0:
             a, b = A.PUSHED_BY[c].a, A.PUSHED_BY[c].b
@@ -35,10 +36,10 @@ def flag_spans(A: Scene) -> None:
 
 @uncounted
 def book(A: Scene, c: int, t: float) -> None:
-    """Book what contact number c has done in its span until instant t, note its impulse, and end it.
+    """Book what contact number c has done in its interval until instant t, note its impulse, and end it.
 
-    Velocities go linearly through a span, so that after the part f of it D_n = -f lam (u_n + f (u_n+ - u_n) / 2). What
-    a contact's friction gives back counts against its restitution, and the other way round.
+    Velocities go linearly through an interval, so that after the part f of it D_n = -f lam (u_n + f (u_n+ - u_n) / 2).
+    What a contact's friction gives back counts against its restitution, and the other way round.
     """
     PAR, COUNT, R = A.PAR, A.COUNT, A.PUSHED[c]
     root, a, b = A.PUSHED_BY[c].root, A.PUSHED_BY[c].a, A.PUSHED_BY[c].b
@@ -69,8 +70,9 @@ def book(A: Scene, c: int, t: float) -> None:
 
 @uncounted
 def gained(A: Scene, c: int, t: float) -> float:
-    """Angular momentum that contact number c makes if its span h is cut after s: its arms are about the middle of the
-    whole, so that bodies without mobility aside it is -(1/2) s (h - s) (v_b - v_a) x f, v at the start of the span."""
+    """Angular momentum that contact number c makes if its interval h is cut after s: its arms are about the middle of
+    the whole, so that bodies without mobility aside it is -(1/2) s (h - s) (v_b - v_a) x f, v at the start of the
+    interval."""
     R, BODY = A.PUSHED[c], A.BODY
     i, j = A.LINK[A.PUSHED_BY[c].a].owner, A.LINK[A.PUSHED_BY[c].b].owner
     s, h = t - R.start, R.length
@@ -123,30 +125,30 @@ def turn_back(A: Scene, root: int, excess: float) -> None:
 @uncounted
 def wake(A: Scene, root: int, t: float) -> int:
     """An island that stands does so no longer from instant t on: it and all that rests on it become one, whose root is
-    returned, and end their spans."""
+    returned, and end their intervals."""
     MEMBER, one = A.MEMBER, root
     MEMBER[root].rest = CHANGED
     wake_supported(A)
     for i in range(A.BODY.shape[0] - 1):
         if A.STATE[i].island == i and A.BODY[i].inv_mass > 0.0 and MEMBER[i].rest == CHANGED:
             mark_changed(A, i)
-            close_span(A, i, t)
+            close_interval(A, i, t)
             one = unite(A, one, i)
     return one
 
 
 @uncounted
 def end_interval(A: Scene, root: int, t: float) -> None:
-    """End the span of an island at instant t, and of what rests on it."""
+    """End the interval of an island at instant t, and of what rests on it."""
     if A.MEMBER[root].rest == AT_REST:
         wake(A, root, t)
     else:
-        close_span(A, root, t)
+        close_interval(A, root, t)
 
 
 @uncounted
-def close_span(A: Scene, root: int, t: float) -> None:
-    """End the span of one island at instant t: book its contacts, and bring its bodies there."""
+def close_interval(A: Scene, root: int, t: float) -> None:
+    """End the interval of one island at instant t: book its contacts, and bring its bodies there."""
     free, excess = A.MEMBER[root].jointed == 0, 0.0
     if free:
         repay(A, root, t)
@@ -169,7 +171,8 @@ def close_span(A: Scene, root: int, t: float) -> None:
 
 @uncounted
 def alight(A: Scene, i: int, end: float) -> None:
-    """Bring body i of an island with joints to the end of its span: what happens there is in the books of joints."""
+    """Bring body i of an island with joints to the end of its interval: what happens there is in the books of
+    joints."""
     move_to(A.BODY, i, end)
     body, rest = A.BODY[i], A.RESTING[i]
     body.x += rest.lift_x
@@ -181,8 +184,8 @@ def alight(A: Scene, i: int, end: float) -> None:
 
 @uncounted
 def lift_out(A: Scene, root: int, end: float) -> None:
-    """Lift the bodies of an island, at the end of its span, out of each other; the losses pay what that costs beyond
-    the work of forces: the change of kinetic energy, less m a.D + I alpha dtheta for displacements D."""
+    """Lift the bodies of an island, at the end of its interval, out of each other; the losses pay what that costs
+    beyond the work of forces: the change of kinetic energy, less m a.D + I alpha dtheta for displacements D."""
     PAR, BODY, PULL, JUMP = A.PAR, A.BODY, A.PULL, A.RESTING
     spent = 0.0
     i = root

@@ -1,9 +1,9 @@
 """Islands that stand still: an unchanged solve goes on, step after step, and costs next to nothing.
 
 `rest.py` says which come to rest. Their bodies then stay where they are, without velocity (what kinetic energy is
-left is booked as restitution; disks without friction go on spinning), and their contacts keep their forces. An island
-is solved again from when a body of it is hit, edited, or pulled otherwise than before; when a body that carries it
-moves; and always where collision handlers have a say.
+left enters the ledger as restitution; disks without friction go on spinning), and their contacts keep their forces. An
+island is solved again from when a body of it is hit, edited, or pulled otherwise than before; when a body that carries
+it moves; and always where collision handlers have a say.
 
 `Member.rest` is AT_REST of all its bodies; of the root CHANGED once it is to be solved again.
 """
@@ -118,7 +118,7 @@ def wake_changed(A: Scene) -> None:
         if MEMBER[i].rest != AWAKE:
             BODY[i].ax, BODY[i].ay, BODY[i].angular = A.PULL[i, 0], A.PULL[i, 1], A.PULL[i, 2]
             STATE[i].version += 1
-        # Its forecast left out the pairs of its span.
+        # Its forecast left out the pairs of its interval.
         BODY[i].due = min(BODY[i].due, 0.0)
     for i in range(ground):
         root = STATE[i].island
@@ -137,7 +137,7 @@ def wake_changed(A: Scene) -> None:
 
 @uncounted
 def mark_changed(A: Scene, root: int) -> None:
-    """A still island is hit, or joined: its span of this step is an ordinary one."""
+    """A still island is hit, or joined: its interval of this step is an ordinary one."""
     for c in range(A.COUNT.pushes):
         if A.PUSHED_BY[c].root == root:
             touch(A, c, A.PAR.stamp)

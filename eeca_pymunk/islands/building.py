@@ -98,7 +98,8 @@ def spread(A: Scene, QUEUE: IntArray, queued: int, t: float) -> int:
 
 @kernel
 def build_islands(A: Scene) -> int:
-    """The islands of the start of a step, and their spans. DONE, or PUSHES_FULL, to be called again with more room."""
+    """The islands of the start of a step, and their intervals. DONE, or PUSHES_FULL, to be called again with more
+    room."""
     STATE, COUNT, BODY = A.STATE, A.COUNT, A.BODY
     n = BODY.shape[0] - 1
     wake_changed(A)

@@ -1,4 +1,4 @@
-"""Which pairs of an island its span takes over, and how long the span is."""
+"""Which pairs of an island its interval takes over, and how long the interval is."""
 
 from __future__ import annotations
 
@@ -41,14 +41,14 @@ def way_of(A: Scene, i: int, h: float) -> float:
 
 @kernel
 def pairs_of(A: Scene, root: int, t: float, lossy: bool, LOCAL: IntArray, MINE: IntArray, n: int) -> IntArray:
-    """`pairs_within` a span from instant t to the end of the step."""
+    """`pairs_within` an interval from instant t to the end of the step."""
     return pairs_within(A, root, t, A.PAR.dt - t, lossy, MINE, n)
 
 
 @kernel
 def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: IntArray, n: int) -> IntArray:
     """(p, 2) pairs of shapes of an island, whose n bodies are MINE, that its solve over h from instant t takes over:
-    what touches, and what will rest within the span; where it is busy all that comes near. All others meet at their
+    what touches, and what will rest within the interval; where it is busy all that comes near. All others meet at their
     times of impact, unless all contacts act together."""
     found = np.empty((4 * n + 8, 2), np.int64)
     p = 0
@@ -76,13 +76,14 @@ def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: Int
                 force, load = 0.0, 0.0
                 if lossy and not together:
                     force, load = remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], s, o, A.PAR.stamp - 1.0)
-                # What a crowd has carried goes on being carried, as far as it may come: hits on it spread by its spans.
+                # What a large island has carried goes on being carried, as far as it may come: hits on it spread by its
+                # intervals.
                 if n < LARGE_ISLAND or force <= 0.0:
                     g, u, closing, mass = approach(A, s, o, t)
                     if not together:
                         if not busy:
                             reach = 1.1 * (max(-u, 0.0) * h + A.PAR.pulled * h * h) + TOUCH * small
-                        # No farther do they go in a span; what does meets at its time of impact.
+                        # No farther do they go in an interval; what does meets at its time of impact.
                         reach = min(reach, 2.0 * INTERVAL_WAY * small)
                     if g > reach:
                         continue
@@ -107,7 +108,7 @@ def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: Int
 
 @uncounted
 def in_haste(A: Scene) -> bool:
-    """Whether spans are to last to the end of the step: where all contacts act together, and once the step has had
+    """Whether intervals are to last to the end of the step: where all contacts act together, and once the step has had
     about as many as there are bodies."""
     bodies = A.BODY.shape[0]
     return A.COUNT.together > 0 or A.COUNT.solves >= max(LEAST_INTERVAL - 2.0 * bodies, bodies)
@@ -121,8 +122,8 @@ def before_end(A: Scene, t: float) -> bool:
 
 @uncounted
 def sweeps_of_large(t: float) -> int:
-    """Sweeps of a crowd, in a span from instant t on: after a hit the forces of the span that it has cut short are a
-    good beginning."""
+    """Sweeps of a large island, in an interval from instant t on: after a hit the forces of the interval that it has
+    cut short are a good beginning."""
     return LARGE_SWEEPS if t == 0.0 else LARGE_SWEEPS_HIT
 
 
@@ -196,7 +197,7 @@ def excess_way(
 def stick_time(
     P: IntArray, Q: IntArray, ROWS: Rows[Row], L: FloatArray, FREE: FloatArray, VN: FloatArray, m: int, h: float
 ) -> float:
-    """When, within a span h of few contacts, those that slip come to stick; h if none does.
+    """When, within an interval h of few contacts, those that slip come to stick; h if none does.
 
     The solve ends their slip u_t with frictions beta, which change it by F, beside a_t h by other forces. Full friction
     changes it by F sum mu lam / sum |beta| (single ones of a body's contacts are not unique): so fast the slip is over

@@ -1,4 +1,4 @@
-"""How deep contacts may come in a span: by the rates of their rows, and by where its end has the shapes."""
+"""How deep contacts may come in an interval: by the rates of their rows, and by where its end has the shapes."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from ..model.scene import Scene
 
 @uncounted
 def too_deep(gap: float, closing: float, small: float, thick: float) -> float:
-    """How many times too long a span is in which a contact closes by more than it has room for; 0 if it is not. `thick`
+    """How many times too long an interval is in which a contact closes by more than it has room for; 0 if it is not. `thick`
     are half the widths of both shapes."""
     deep = max(min(INTERVAL_DEPTH * small, INTERVAL_DEPTH_WIDTH * thick), INTERVAL_DEPTH_LEAST * small)
     room = max(gap, 0.0) + deep
@@ -36,7 +36,7 @@ def too_deep(gap: float, closing: float, small: float, thick: float) -> float:
 def sunk(
     A: Scene, isle: Island, END: FloatArray, P: IntArray, Q: IntArray, ROWS: Rows[Row], KEY: IntArray, m: int
 ) -> float:  # fmt: skip
-    """How many times too long a span is at whose END (k, 3) poses some contact of thin shapes is deeper than it may be:
+    """How many times too long an interval is at whose END (k, 3) poses some contact of thin shapes is deeper than it may be:
     what its row, which is linear, does not tell."""
     far, shapes, last = 0.0, A.SHAPE.shape[0], -1
     for z in range(m):

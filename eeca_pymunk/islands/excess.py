@@ -1,8 +1,8 @@
 """Spans that are cut short give no energy.
 
-Forces of a span are right for the whole of it: a soft landing pushes before it touches. Cut after s, its impulses have
-lost D = W - dE, W the work of what impulses do not move. Where that is negative all of them are scaled by one q, which
-keeps momenta: with w = (a - a_free) s for each body, and velocities v at the start,
+Forces of an interval are right for the whole of it: a soft landing pushes before it touches. Cut after s, its impulses
+have lost D = W - dE, W the work of what impulses do not move. Where that is negative all of them are scaled by one q,
+which keeps momenta: with w = (a - a_free) s for each body, and velocities v at the start,
 
     dE(q) = q B + q^2 C,   B = sum m (v + a_free s / 2) . w,   C = sum m w^2 / 2,   W(q) = q W,
 
@@ -17,8 +17,8 @@ from ..model.scene import Scene
 
 
 @uncounted
-def scale_span(A: Scene, root: int, q: float) -> None:
-    """Scale the forces of an island's span, whose bodies are where it began, so that they lose nothing."""
+def scale_forces(A: Scene, root: int, q: float) -> None:
+    """Scale the forces of an island's interval, whose bodies are where it began, so that they lose nothing."""
     BODY, PULL = A.BODY, A.PULL
     i = root
     while i >= 0:
@@ -35,7 +35,7 @@ def scale_span(A: Scene, root: int, q: float) -> None:
 
 @uncounted
 def repay(A: Scene, root: int, t: float) -> None:
-    """Before the span of an island ends at instant t: see above."""
+    """Before the interval of an island ends at instant t: see above."""
     BODY, PULL = A.BODY, A.PULL
     lost, work, size, start = 0.0, 0.0, 0.0, -1.0
     for c in range(A.COUNT.pushes):
@@ -65,4 +65,4 @@ def repay(A: Scene, root: int, t: float) -> None:
             C += 0.5 * turn * turn / body.inv_inertia
         i = A.MEMBER[i].following
     if C > 0.0:
-        scale_span(A, root, min(max((work - B) / C, 0.0), 1.0))
+        scale_forces(A, root, min(max((work - B) / C, 0.0), 1.0))

@@ -1,4 +1,4 @@
-"""The span of an island: from an instant on its bodies follow parabolas, on which others may hit it."""
+"""The interval of an island: from an instant on its bodies follow parabolas, on which others may hit it."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ from .local import open_contacts as open_contacts
 from .membership import lossy, members
 from .rest import rest_threshold
 
-AGAIN = -1  # status of a span that is to be shorter
+AGAIN = -1  # status of an interval that is to be shorter
 
 
 @uncounted
@@ -57,9 +57,9 @@ def dismiss(A: Scene, MINE: IntArray, n: int) -> None:
 
 @kernel
 def solve(A: Scene, root: int, t: float) -> int:
-    """Begin a span of the island at instant t, at which all its bodies are. Bodies without contact leave it.
+    """Begin an interval of the island at instant t, at which all its bodies are. Bodies without contact leave it.
 
-    The span ends with the step; before, where its bodies would go so far about one another that no contact would be
+    The interval ends with the step; before, where its bodies would go so far about one another that no contact would be
     where it was.
 
     DONE, or PUSHES_FULL, which leaves everything as it was.
@@ -75,8 +75,8 @@ def solve(A: Scene, root: int, t: float) -> int:
 
 @kernel
 def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> tuple[int, float]:
-    """`solve`, of a span no longer than `longest`. AGAIN, with nothing done, for one that is to be shorter, and how
-    long; not if it is the `last` attempt."""
+    """`solve`, of an interval no longer than `longest`. AGAIN, with nothing done, for one that is to be shorter, and
+    how long; not if it is the `last` attempt."""
     BODY, STATE, MEMBER, COUNT = A.BODY, A.STATE, A.MEMBER, A.COUNT
     n = MEMBER[root].bodies
     MINE = np.empty(n, np.int64)
@@ -120,7 +120,7 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
         m = step_island(A, isle, contacts, n, h, sweeps, least, owed, -1.0, quiet)
         stuck = h if in_haste(A) or OUT[0].stood > 0 else stick_time(P, Q, ROWS, L, V + h * isle.ACC, VN, m, h)
         if stuck < h:
-            # Where slip ends on the way, so does the span: friction changes its law there.
+            # Where slip ends on the way, so does the interval: friction changes its law there.
             h = min(max(stuck, shortest), h)
             m = step_island(A, isle, contacts, n, h, sweeps, least, owed, -1.0, 0.0)
         far = 0.0

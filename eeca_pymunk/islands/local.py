@@ -64,8 +64,8 @@ def lay_out_island(A: Scene, MINE: IntArray, n: int, found: IntArray, t: float) 
 def open_contacts(
     A: Scene, isle: Island, contacts: Contacts, VN: FloatArray, m: int, t: float, h: float, TOUCHED: FlagArray
 ) -> None:
-    """Write the m contacts of a span of length h, at whose end velocities are VN, after those of other islands; TOUCHED
-    (k,): bodies that have any."""
+    """Write the m contacts of an interval of length h, at whose end velocities are VN, after those of other islands;
+    TOUCHED (k,): bodies that have any."""
     P, Q, ROWS, KEY, L = contacts.A, contacts.B, contacts.ROWS, contacts.KEY, contacts.L
     shapes, first = A.SHAPE.shape[0], A.COUNT.pushes
     for z in range(m):

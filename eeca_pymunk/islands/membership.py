@@ -52,7 +52,7 @@ def unite(A: Scene, i: int, j: int) -> int:
 
 @uncounted
 def budget_spent(A: Scene, root: int) -> bool:
-    """Whether the island is a crowd that is not solved again in this step, as bodies have been solved often enough."""
+    """Whether the island is large and is not solved again in this step, as bodies have been solved often enough."""
     if root < 0 or A.MEMBER[root].bodies < LARGE_ISLAND or A.MEMBER[root].open == 0:
         return False
     return bool(A.COUNT.solved > SOLVES_BEFORE_HASTE * A.BODY.shape[0])

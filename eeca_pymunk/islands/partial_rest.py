@@ -5,9 +5,9 @@ these for fixed. Where there are none, the statics tell of a motion that nothing
 the rest is asked once more.
 
 The pushes of a few that rattle about would wake them again and again, and so would the errors of the solves that
-follow. So a crowd is calmed first: all that is slow is asked as if the others were not there; if something holds it, it
-stops, as what rests on much loses tiny motions within a step, and the forces that were found are the next solve's
-beginning.
+follow. So a large island is calmed first: all that is slow is asked as if the others were not there; if something holds
+it, it stops, as what rests on much loses tiny motions within a step, and the forces that were found are the next
+solve's beginning.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from ..model.parameters.rest import (
 )
 from ..model.scene import Scene
 from ..rows.inplace import sort
-from .accounting import close_span
+from .accounting import close_interval
 from .at_rest import put_to_rest, stop
 from .candidates import pairs_of
 from .intervals import dismiss, lay_out_island, open_contacts, solve
@@ -110,7 +110,7 @@ def test_rest(A: Scene, MINE: IntArray, n: int, V0: FloatArray, among: int, calm
 
 @kernel
 def freeze(A: Scene, root: int, MINE: IntArray, n: int) -> None:
-    """Calm the crowd of the n bodies MINE, but for those few that are fast, and those that nothing holds."""
+    """Calm the island of the n bodies MINE, but for those few that are fast, and those that nothing holds."""
     STAND, V0, stand = np.empty(n, np.int64), np.empty((n, 3)), 0
     for q in range(n):
         if speed(A, MINE[q], 0.0) <= FREEZE * A.PAR.pulled * A.PAR.dt:
@@ -202,7 +202,7 @@ def rests_in_part(A: Scene, root: int) -> bool:
             i = MOVE[q]
             if STATE[i].island >= 0:
                 if MEMBER[STATE[i].island].open > 0:
-                    close_span(A, STATE[i].island, 0.0)
+                    close_interval(A, STATE[i].island, 0.0)
                 one = unite(A, one, i)
         # What touches nothing has left.
         n = members(A, one, MINE)

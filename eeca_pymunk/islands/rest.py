@@ -105,7 +105,7 @@ def slow(A: Scene, root: int) -> bool:
 
 @uncounted
 def find_candidates(A: Scene) -> None:
-    """At the end of a step, before its contacts are booked: which islands come to a stand."""
+    """At the end of a step, before its contacts enter the ledger: which islands come to a stand."""
     if A.PAR.pulled == 0.0 or A.COUNT.together > 0 or A.RULE.shape[0] > 0:
         return
     some = False

@@ -8,7 +8,7 @@ from ..arrays import IntArray
 from ..compiled import kernel, uncounted
 from ..geometry.flight import pose
 from ..geometry.gap import gap
-from ..impacts.simultaneous import crowded
+from ..impacts.simultaneous import in_large_island
 from ..islands.accounting import alight, book
 from ..islands.membership import members
 from ..joints.ledger import clear_interval
@@ -155,7 +155,7 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> float:
     small = min(A.SHAPE[a].extent, A.SHAPE[b].extent)
     before, gap_before = -1.0, 0.0
     spent = J.PROGRESS.effort > J.PROGRESS.budget
-    most = 1 if spent or crowded(A, a, b) else MEET_SECANTS_LOADED
+    most = 1 if spent or in_large_island(A, a, b) else MEET_SECANTS_LOADED
     for tries in range(MEET_SECANTS):
         loaded = shorten(A, J, roots[0], t)
         if roots[1] != roots[0]:

@@ -69,7 +69,7 @@ def predict(A: Scene, i: int, now: float, end: float, until: float) -> None:
 
     Args:
         A: PLACE (n,) is 0 or more for bodies that are forecast together, the first of a pair of which sees it; else -1.
-        until: instant at which a span of the body's island ends, infinite if it has none of its own.
+        until: instant at which an interval of the body's island ends, infinite if it has none of its own.
     """
     BODY, STATE, LINK, LIST = A.BODY, A.STATE, A.LINK, A.LIST
     best, own, other = math.inf, -1, NOTHING

@@ -5,7 +5,7 @@ With b = -e u_n- where a contact approaches and -u_n- where it opens,
     0 <= lam  _|_  u_n+ - b >= 0,   friction as in `sweeps.py`,
 
 so that without friction sum D = (1/2) sum lam (1 - e)(-u_n-) >= 0, and 0 for e = 1. Solved to round-off, as the energy
-of elastic crowds melts away otherwise; what is left of it is taken out by one scale of all impulses (`lock`).
+of large elastic islands melts away otherwise; what is left of it is taken out by one scale of all impulses (`lock`).
 """
 
 from __future__ import annotations
@@ -98,12 +98,12 @@ def solve_block(
             of elimination alone.
         L: (m, 2) first guess of the impulses in (0 for none), the impulses out.
         owed: energy >= 0 that the block has to take out beyond its own losses' sign: its loss is at least that.
-        hasty: whether a lossy crowd may be solved roughly: a hit on a pile.
+        hasty: whether a large lossy island may be solved roughly: a hit on a pile.
         LOSS: (m, 2) out, D_n and D_t of each contact.
         OUT: (1,) the report, out.
     Returns:
-        CONVERGED (residual <= 1e-14 of the largest b - u_n, with friction 1e-10, in lossy crowds 1e-4) or TRUNCATED.
-        Energy is right in both.
+        CONVERGED (residual <= 1e-14 of the largest b - u_n, with friction 1e-10, in large lossy islands 1e-4) or
+        TRUNCATED. Energy is right in both.
     """
     A, B, ROWS, IM, II, m = problem.A, problem.B, problem.ROWS, problem.IM, problem.II, problem.m
     clear(OUT[0])
