@@ -29,7 +29,7 @@ def step_in_scratch(J: Joints, s: int, h: float, length: float, whole: bool) -> 
     order = J.TALLY.order if whole else 2
     status = island_step(workspace(J, s), h, order, length, J.STEPPED[s])
     J.TALLY.repeats += 1
-    J.TALLY.worst = max(J.TALLY.worst, status)
+    J.STEPPED[s].status = status
     return int(status)
 
 

@@ -9,12 +9,14 @@ from __future__ import annotations
 from ..arrays import FloatArray, IntArray
 from ..compiled import Table, kernel, uncounted
 from ..contacts.unmet import note_unmet
-from ..impacts.loop import follow, with_mover
+from ..impacts.loop import cut_short, follow, with_mover
 from ..impacts.step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, finish, start, wish
 from ..islands.building import build_islands
+from ..islands.membership import members
 from ..joints.ledger import clear_interval
 from ..layout import BODY_ROW, LEFT
 from ..layout import NOW as READ
+from ..model.bodies import RENEW
 from ..model.joints import ELASTIC, Joints, joints_of
 from ..model.parameters.joints import STEP_WORK, STEP_WORK_BODY
 from ..model.scene import Scene, scene_of
@@ -22,8 +24,8 @@ from ..model.step import DONE, JOINTS_DUE, PUSHES_FULL
 from ..model.step import JOINTS as UNMET_JOINTS
 from ..prediction.heap import push
 from ..prediction.scheduling import forecast, forecast_due
-from .meet import book_component, shorten
-from .solve import begin_span
+from .meet import book_component, end_here, shorten
+from .solve import SPENT, begin_span
 from .strike import collide
 
 _ROOM = 64  # contacts more than there are, that there must be room for before an impact
@@ -91,19 +93,30 @@ def follow_jointed(A: Scene, J: Joints, disks: int, may_rest: bool) -> int:
         if COUNT.pending < 0:
             i = COUNT.struck
             t = A.PAR.now
+            if J.PROGRESS.effort > J.PROGRESS.budget:
+                return cut_short(A, t)
             if not roomy(A):
                 COUNT.heap = push(A.HEAP_TIME, A.HEAP_BODY, COUNT.heap, t, i)
                 return PUSHES_FULL
-            status, n = collide(A, J, disks, STATE[i].own, STATE[i].other, t)
-            COUNT.waiting = with_mover(A, i, n)
+            if STATE[i].other == RENEW:
+                end_here(A, J, i, t)
+                COUNT.waiting, COUNT.pending = members(A, i, BLOCK), i
+            else:
+                status, n = collide(A, J, disks, STATE[i].own, STATE[i].other, t)
+                COUNT.waiting = with_mover(A, i, n)
         elif A.MEMBER[COUNT.pending].jointed == 0:
             status = follow(A, disks, may_rest)
             continue
         if COUNT.pending >= 0:
             root = COUNT.pending
             t = A.BODY[root].since
-            if t < end and begin_span(A, J, root, t, end - t) != DONE:
-                return PUSHES_FULL
+            if t < end:
+                status = begin_span(A, J, root, t, end - t)
+                if status == PUSHES_FULL:
+                    return PUSHES_FULL
+                if status == SPENT:
+                    A.COUNT.struck = root
+                    return cut_short(A, t)
             COUNT.pending = -1
         for q in range(COUNT.waiting):
             forecast(A, disks, moving, BLOCK[q], A.BODY[BLOCK[q]].since, end, False)
@@ -141,9 +154,11 @@ def resume_jointed(
             return wish(met)
         if A.PAR.dt < whole:
             # The step was cut short.
+            J.PROGRESS.budget = J.PROGRESS.effort + STEP_WORK
             for i in range(A.BODY.shape[0] - 1):
                 if A.STATE[i].island == i:
                     shorten(A, J, i, A.PAR.dt)
+                    end_here(A, J, i, A.PAR.dt)
         COUNT.phase = 2
     if COUNT.logged + COUNT.pushes > A.LOG.shape[0]:
         return ROOM_FOR_EVENTS

@@ -25,7 +25,7 @@ from ..model.parameters.joints import (
 from ..model.scene import Scene
 from ..pairs.lists import mark_pair
 from .gathered import restore_joints
-from .solve import begin_span
+from .solve import open_span
 
 
 @uncounted
@@ -37,6 +37,7 @@ def book_component(A: Scene, J: Joints, s: int) -> None:
     PAR.restitution += B.limited + B.projected - B.lifted
     PAR.frictional += B.clamped
     PAR.stored += B.stored
+    J.TALLY.worst = max(J.TALLY.worst, B.status)
     clear_interval(B)
 
 
@@ -87,7 +88,7 @@ def shorten(A: Scene, J: Joints, root: int, t: float) -> int:
     for c in range(len(found)):
         restore_joints(J, found[c])
     if t - began > MEET_INSTANT * A.PAR.dt:
-        begin_span(A, J, root, began, t - began)
+        open_span(A, J, root, began, t - began, True)
     return some
 
 
@@ -102,8 +103,6 @@ def end_here(A: Scene, J: Joints, root: int, t: float) -> None:
     empty = t - A.BODY[root].since <= MEET_INSTANT * A.PAR.dt
     found = components_of(A, J, root)
     for c in range(len(found)):
-        if empty:
-            clear_interval(J.STEPPED[found[c]])
         A.RESTING[root].lost -= J.STEPPED[found[c]].lifted
         book_component(A, J, found[c])
     A.MEMBER[root].open = 0
@@ -138,14 +137,14 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> float:
     """Bring the islands of shapes a and b, which are seen to meet at instant t, to the instant at which they do."""
     i, j = A.LINK[a].owner, A.LINK[b].owner
     roots = (A.STATE[i].island, A.STATE[j].island if A.BODY[j].inv_mass > 0.0 else -1)
-    # Nobody goes back in time, to where what overlaps would have met.
-    least = A.BODY[i].since
+    # Nobody goes back in time, to where what overlaps would have met, or on to where an interval would be too long.
+    least, latest = A.BODY[i].since, A.PAR.dt
     if A.BODY[j].inv_mass > 0.0:
         least = max(least, A.BODY[j].since)
     for end in range(2):
         root = roots[end]
         if root >= 0 and A.MEMBER[root].open > 0 and A.MEMBER[root].jointed > 0:
-            least = max(least, A.BODY[root].since)
+            least, latest = max(least, A.BODY[root].since), min(latest, A.RESTING[root].until)
             member = root
             while member >= 0:
                 least = max(least, begun(A, member))
@@ -176,7 +175,7 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> float:
         if not slope < 0.0 or tries + 1 == MEET_SECANTS:
             break
         before, gap_before = t, g
-        then = min(max(t - g / slope, least), A.PAR.dt)
+        then = max(min(t - g / slope, latest), least)
         if then == t:
             break
         t = then

@@ -145,7 +145,7 @@ def press(
     # Only of what nothing from without holds or touches is there an angular momentum to keep.
     free = len(isle.IM) == n and not hangs(groups, J.COMPONENT, J.MEMBER)
     for outer in range(rounds):
-        if hopeless:
+        if hopeless or J.PROGRESS.effort > J.PROGRESS.share:
             break
         anew = outer % CHORD == 0 or slowly
         advance(A, J, interval, L, B, anew, FORESEEN if outer > 0 else UNKNOWN)
