@@ -149,8 +149,8 @@ def cut_short(A: Scene, t: float) -> int:
 def follow(A: Scene, may_rest: bool) -> int:
     """The events of the step, blocks and islands included. After a status other than DONE, make room and call again.
 
-    JOINTS_DUE: the interval of island COUNT[PENDING], or if there is none the impact of body COUNT[STRUCK], is to be
-    done.
+    JOINTS_DUE: the interval of island COUNT[PENDING], or if there is none the event of body COUNT[STRUCK], is to be
+    done: its impact, or the end of the interval of its island.
     """
     COUNT, STATE, BLOCK = A.COUNT, A.STATE, A.BLOCK
     end = A.PAR.dt
@@ -171,6 +171,8 @@ def follow(A: Scene, may_rest: bool) -> int:
         if COUNT.logged + COUNT.pushes + 8 * STATE.shape[0] > A.LOG.shape[0]:
             COUNT.heap = push(A.HEAP_TIME, A.HEAP_BODY, COUNT.heap, t, i)
             return LOG_FULL
+        if o == RENEW and jointed(A, i):
+            return JOINTS_DUE
         if o == RENEW:
             end_interval(A, i, t)
             n = members(A, i, BLOCK)

@@ -23,8 +23,8 @@ from ..model.scene import Scene
 
 @uncounted
 def too_deep(gap: float, closing: float, small: float, thick: float) -> float:
-    """How many times too long an interval is in which a contact closes by more than it has room for; 0 if it is not. `thick`
-    are half the widths of both shapes."""
+    """How many times too long an interval is in which a contact closes by more than it has room for; 0 if it is not.
+    `thick` are half the widths of both shapes."""
     deep = max(min(INTERVAL_DEPTH * small, INTERVAL_DEPTH_WIDTH * thick), INTERVAL_DEPTH_LEAST * small)
     room = max(gap, 0.0) + deep
     if closing > room + 0.5 * deep:
@@ -34,15 +34,16 @@ def too_deep(gap: float, closing: float, small: float, thick: float) -> float:
 
 @kernel
 def sunk(
-    A: Scene, isle: Island, END: FloatArray, P: IntArray, Q: IntArray, ROWS: Rows[Row], KEY: IntArray, m: int
+    A: Scene, isle: Island, END: FloatArray, P: IntArray, Q: IntArray, ROWS: Rows[Row], KEY: IntArray, m: int,
+    every: bool,
 ) -> float:  # fmt: skip
-    """How many times too long an interval is at whose END (k, 3) poses some contact of thin shapes is deeper than it may be:
-    what its row, which is linear, does not tell."""
+    """How many times too long an interval is at whose END (k, 3) poses some contact is deeper than it may be: what its
+    row, which is linear, does not tell. Of `every` pair, or of thin shapes alone."""
     far, shapes, last = 0.0, A.SHAPE.shape[0], -1
     for z in range(m):
         pair = KEY[z] >> 1
         a, b, p, q = pair // shapes, pair % shapes, P[z], Q[z]
-        if pair == last or not remembers(A, a, b):
+        if pair == last or not (every or remembers(A, a, b)):
             continue
         last = pair
         if isle.WHO[p] != A.LINK[a].owner:

@@ -127,7 +127,7 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
         if not last and OUT[0].stood == 0:
             far = excess_way(A, P, Q, ROWS, KEY, V, VN, m, h)
             if far <= INTERVAL_RETRY and len(A.SIDE) > 0:
-                far = sunk(A, isle, isle.POSE + 0.5 * h * (V + VN), P, Q, ROWS, KEY, m)
+                far = sunk(A, isle, isle.POSE + 0.5 * h * (V + VN), P, Q, ROWS, KEY, m, False)
         if far > INTERVAL_RETRY:
             A.COUNT.solved += n
             return AGAIN, h / far

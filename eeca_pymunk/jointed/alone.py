@@ -1,16 +1,19 @@
-"""The span of what hangs together by joints and meets nobody: no contacts, and no arrays to be made."""
+"""The interval of what hangs together by joints and meets nobody: no contacts, and no arrays to be made."""
 
 from __future__ import annotations
 
 import math
 
 from ..compiled import uncounted
+from ..islands.candidates import before_end
 from ..joints.ledger import clear_interval
-from ..model.joints import Joints
+from ..model.joints import ELASTIC, Joints
+from ..model.parameters.intervals import INTERVAL_RETRY
 from ..model.scene import Scene
 from ..pairs.rules import barred
 from .component import step_in_scratch
-from .gathered import gather_alone, keep_joints
+from .gathered import gather_alone, keep_joints, restore_joints
+from .lengths import excess_alone
 
 
 @uncounted
@@ -42,20 +45,25 @@ def meets_nobody(A: Scene, root: int) -> bool:
 
 
 @uncounted
-def begin_alone(A: Scene, J: Joints, root: int, t: float, h: float) -> None:
-    """Begin a span of length h, without contacts, of an island that `is_component` at instant t, at which all its
-    bodies are."""
+def begin_alone(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) -> float:
+    """Begin an interval of length h, without contacts, of an island that `is_component` at instant t, at which all its
+    bodies are; 0, or how many times too long it is, with nothing done; not if it is the `last` attempt."""
     s = J.OF[root]
     keep_joints(J, s)
     clear_interval(J.STEPPED[s])
     step_in_scratch(J, s, h, gather_alone(A, J, s, t, h), True)
+    far = 0.0 if last else 2.0 if J.STEPPED[s].status >= ELASTIC else excess_alone(A, J, s, t, h)
+    if far > INTERVAL_RETRY:
+        restore_joints(J, s)
+        return far
     first = J.COMPONENT[s].first_body
     for i in range(J.COMPONENT[s].end_body - first):
         if J.LOCAL[i].freedoms > 0:
             lay_path(A, J, s, J.MEMBER[first + i].body, i, h)
     A.COUNT.solves += 1
     A.MEMBER[root].open = 1
-    A.RESTING[root].until = math.inf
+    A.RESTING[root].until = t + h if before_end(A, t + h) else math.inf
+    return 0.0
 
 
 @uncounted

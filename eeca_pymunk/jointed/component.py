@@ -24,12 +24,12 @@ from .gathered import gather_component
 def step_in_scratch(J: Joints, s: int, h: float, length: float, whole: bool) -> int:
     """Step component s by h from what is in its scratch, where its end stands then; its status.
 
-    `whole`: whether order 4 may be had: nothing else acts in the span.
+    `whole`: whether order 4 may be had: nothing else acts in the interval.
     """
     order = J.TALLY.order if whole else 2
     status = island_step(workspace(J, s), h, order, length, J.STEPPED[s])
     J.TALLY.repeats += 1
-    J.TALLY.worst = max(J.TALLY.worst, status)
+    J.STEPPED[s].status = status
     return int(status)
 
 

@@ -1,4 +1,4 @@
-"""Velocities at the end of a lossy span made to fit the joints, and contacts kept from closing by it."""
+"""Velocities at the end of a lossy interval made to fit the joints, and contacts kept from closing by it."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ from .motors import keeps_speed
 
 @kernel
 def fit(A: Scene, J: Joints, interval: Interval, L: FloatArray, end: float, scale: float) -> None:
-    """Make the velocities at the end of a lossy span fit the joints of the components that contacts push.
+    """Make the velocities at the end of a lossy interval fit the joints of the components that contacts push.
 
     Bodies that land leave velocities which violate joints, and those would ring for ever: a midpoint rule turns their
-    sign in every step. What this costs is booked. Of a few contacts, those that push do not close by it: see `hold`,
-    which would change the speeds of motors.
+    sign in every step. What this costs enters the ledger. Of a few contacts, those that push do not close by it: see
+    `hold`, which would change the speeds of motors.
     `scale` is a speed of the island. C is overwritten.
     """
     isle, groups, m, motion = interval.isle, interval.groups, interval.m, interval.motion

@@ -5,6 +5,7 @@ from __future__ import annotations
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
 from ..geometry.flight import pose, rate
+from ..joints.ledger import clear_interval
 from ..joints.motion import size_up
 from ..model.joints import RATCHET, Joints
 from ..model.scene import Scene
@@ -20,7 +21,8 @@ def keep_joints(J: Joints, s: int) -> None:
 
 @uncounted
 def restore_joints(J: Joints, s: int) -> None:
-    """What `keep_joints` remembers."""
+    """What `keep_joints` remembers; nothing is done."""
+    clear_interval(J.STEPPED[s])
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
         j = J.LINK[k].joint
         J.JOINT[j] = J.KEPT[j]

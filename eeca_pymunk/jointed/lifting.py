@@ -102,7 +102,7 @@ def lift(A: Scene, J: Joints, interval: Interval, end: float, budget: float) -> 
     NOTHING, INDEX = np.zeros_like(V), np.full(len(isle.IM), -1, np.int64)
     for g in range(len(groups.COMPONENT)):
         s = groups.COMPONENT[g]
-        # Where joints do nothing but hold, bodies answer as they did in the span.
+        # Where joints do nothing but hold, bodies answer as they did in the interval.
         if s >= 0 and drives(J, s):
             gather_component(A, J, s, END, V, NOTHING, isle.IM, isle.II, end, interval.h)
             places = find_places(A, J, s, INDEX)

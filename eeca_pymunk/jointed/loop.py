@@ -1,7 +1,7 @@
 """A step of a scene with joints: the event loop, whose islands with joints are begun and hit here.
 
-`..impacts.loop.follow` does all else. It comes back for the span of such an island (COUNT[PENDING]) and for an impact
-on one (of body COUNT[STRUCK]).
+`..impacts.loop.follow` does all else. It comes back for the interval of such an island (COUNT[PENDING]) and for an
+impact on one (of body COUNT[STRUCK]).
 """
 
 from __future__ import annotations
@@ -9,12 +9,14 @@ from __future__ import annotations
 from ..arrays import FloatArray, IntArray
 from ..compiled import Table, kernel, uncounted
 from ..contacts.unmet import note_unmet
-from ..impacts.loop import follow, with_mover
+from ..impacts.loop import cut_short, follow, with_mover
 from ..impacts.step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, finish, start, wish
 from ..islands.building import build_islands
+from ..islands.membership import members
 from ..joints.ledger import clear_interval
 from ..layout import BODY_ROW, LEFT
 from ..layout import NOW as READ
+from ..model.bodies import RENEW
 from ..model.joints import ELASTIC, Joints, joints_of
 from ..model.parameters.joints import STEP_WORK, STEP_WORK_BODY
 from ..model.scene import Scene, scene_of
@@ -22,8 +24,8 @@ from ..model.step import DONE, JOINTS_DUE, PUSHES_FULL
 from ..model.step import JOINTS as UNMET_JOINTS
 from ..prediction.heap import push
 from ..prediction.scheduling import forecast, forecast_due
-from .meet import book_component, shorten
-from .solve import begin_span
+from .meet import account_component, end_here, shorten
+from .solve import SPENT, begin_interval
 from .strike import collide
 
 _ROOM = 64  # contacts more than there are, that there must be room for before an impact
@@ -64,10 +66,10 @@ def start_jointed(
 
 
 @uncounted
-def book_joints(A: Scene, J: Joints) -> None:
+def account_joints(A: Scene, J: Joints) -> None:
     """Book what all joints have done until the end of the step."""
     for s in range(J.TALLY.components):
-        book_component(A, J, s)
+        account_component(A, J, s)
     if J.TALLY.worst >= ELASTIC:
         note_unmet(A, UNMET_JOINTS, -1, -1, float(J.TALLY.worst), float(ELASTIC))
 
@@ -91,19 +93,30 @@ def follow_jointed(A: Scene, J: Joints, may_rest: bool) -> int:
         if COUNT.pending < 0:
             i = COUNT.struck
             t = A.PAR.now
+            if J.PROGRESS.effort > J.PROGRESS.budget:
+                return cut_short(A, t)
             if not roomy(A):
                 COUNT.heap = push(A.HEAP_TIME, A.HEAP_BODY, COUNT.heap, t, i)
                 return PUSHES_FULL
-            status, n = collide(A, J, STATE[i].own, STATE[i].other, t)
-            COUNT.waiting = with_mover(A, i, n)
+            if STATE[i].other == RENEW:
+                end_here(A, J, i, t)
+                COUNT.waiting, COUNT.pending = members(A, i, BLOCK), i
+            else:
+                status, n = collide(A, J, STATE[i].own, STATE[i].other, t)
+                COUNT.waiting = with_mover(A, i, n)
         elif A.MEMBER[COUNT.pending].jointed == 0:
             status = follow(A, may_rest)
             continue
         if COUNT.pending >= 0:
             root = COUNT.pending
             t = A.BODY[root].since
-            if t < end and begin_span(A, J, root, t, end - t) != DONE:
-                return PUSHES_FULL
+            if t < end:
+                status = begin_interval(A, J, root, t, end - t)
+                if status == PUSHES_FULL:
+                    return PUSHES_FULL
+                if status == SPENT:
+                    A.COUNT.struck = root
+                    return cut_short(A, t)
             COUNT.pending = -1
         for q in range(COUNT.waiting):
             forecast(A, BLOCK[q], A.BODY[BLOCK[q]].since, end, False)
@@ -112,12 +125,13 @@ def follow_jointed(A: Scene, J: Joints, may_rest: bool) -> int:
 
 @kernel
 def settle_jointed(A: Scene, J: Joints) -> int:
-    """The islands of the start of a step, and their spans. DONE, or PUSHES_FULL, to be called again with more room."""
+    """The islands of the start of a step, and their intervals. DONE, or PUSHES_FULL, to be called again with more
+    room."""
     if build_islands(A) != DONE:
         return PUSHES_FULL
     for i in range(A.BODY.shape[0] - 1):
         if A.STATE[i].island == i and A.MEMBER[i].jointed > 0 and A.MEMBER[i].open == 0:
-            if begin_span(A, J, i, 0.0, A.PAR.dt) != DONE:
+            if begin_interval(A, J, i, 0.0, A.PAR.dt) != DONE:
                 return PUSHES_FULL
     return DONE
 
@@ -141,13 +155,15 @@ def resume_jointed(
             return wish(met)
         if A.PAR.dt < whole:
             # The step was cut short.
+            J.PROGRESS.budget = J.PROGRESS.effort + STEP_WORK
             for i in range(A.BODY.shape[0] - 1):
                 if A.STATE[i].island == i:
                     shorten(A, J, i, A.PAR.dt)
+                    end_here(A, J, i, A.PAR.dt)
         COUNT.phase = 2
     if COUNT.logged + COUNT.pushes > A.LOG.shape[0]:
         return ROOM_FOR_EVENTS
-    book_joints(A, J)
+    account_joints(A, J)
     return finish(A, STATES, WALK, EXTRA, ENDS, status)
 
 

@@ -25,18 +25,19 @@ from ..model.parameters.joints import (
 from ..model.scene import Scene
 from ..pairs.lists import mark_pair
 from .gathered import restore_joints
-from .solve import begin_span
+from .solve import open_span
 
 
 @uncounted
-def book_component(A: Scene, J: Joints, s: int) -> None:
-    """Book what the joints of component s have done in their span."""
+def account_component(A: Scene, J: Joints, s: int) -> None:
+    """Book what the joints of component s have done in their interval."""
     PAR, B = A.PAR, J.STEPPED[s]
     PAR.external += B.motors + B.supports + B.closed + B.turned_work
     PAR.damped += B.damped
     PAR.restitution += B.limited + B.projected - B.lifted
     PAR.frictional += B.clamped
     PAR.stored += B.stored
+    J.TALLY.worst = max(J.TALLY.worst, B.status)
     clear_interval(B)
 
 
@@ -62,7 +63,7 @@ def components_of(A: Scene, J: Joints, root: int) -> IntArray:
 
 @uncounted
 def take_back(A: Scene, root: int) -> None:
-    """Forget the contacts of the span that an island has begun."""
+    """Forget the contacts of the interval that an island has begun."""
     c = 0
     while c < A.COUNT.pushes:
         if A.PUSHED_BY[c].root == root:
@@ -76,7 +77,8 @@ def take_back(A: Scene, root: int) -> None:
 
 @kernel
 def shorten(A: Scene, J: Joints, root: int, t: float) -> int:
-    """Let the span of an island end at instant t, not booked yet; how many contacts it had. Nothing if it is over."""
+    """Let the interval of an island end at instant t, not in the ledger yet; how many contacts it had. Nothing if it is
+    over."""
     if root < 0 or A.MEMBER[root].jointed == 0 or A.MEMBER[root].open == 0:
         return 0
     before = A.COUNT.pushes
@@ -87,13 +89,13 @@ def shorten(A: Scene, J: Joints, root: int, t: float) -> int:
     for c in range(len(found)):
         restore_joints(J, found[c])
     if t - began > MEET_INSTANT * A.PAR.dt:
-        begin_span(A, J, root, began, t - began)
+        open_span(A, J, root, began, t - began, True)
     return some
 
 
 @kernel
 def end_here(A: Scene, J: Joints, root: int, t: float) -> None:
-    """End the span of an island at instant t, its own end: book it, and bring its bodies there."""
+    """End the interval of an island at instant t, its own end: book it, and bring its bodies there."""
     if root < 0 or A.MEMBER[root].jointed == 0 or A.MEMBER[root].open == 0:
         return
     for c in range(A.COUNT.pushes):
@@ -102,10 +104,8 @@ def end_here(A: Scene, J: Joints, root: int, t: float) -> None:
     empty = t - A.BODY[root].since <= MEET_INSTANT * A.PAR.dt
     found = components_of(A, J, root)
     for c in range(len(found)):
-        if empty:
-            clear_interval(J.STEPPED[found[c]])
         A.RESTING[root].lost -= J.STEPPED[found[c]].lifted
-        book_component(A, J, found[c])
+        account_component(A, J, found[c])
     A.MEMBER[root].open = 0
     MINE = np.empty(A.MEMBER[root].bodies, np.int64)
     n = members(A, root, MINE)
@@ -113,7 +113,7 @@ def end_here(A: Scene, J: Joints, root: int, t: float) -> None:
         i = MINE[q]
         A.STATE[i].version += 1
         if empty:
-            # The path is that of a span that is not to be.
+            # The path is that of an interval that is not to be.
             A.BODY[i].since = t
             A.BODY[i].ax, A.BODY[i].ay, A.BODY[i].angular = 0.0, 0.0, 0.0
         else:
@@ -122,7 +122,7 @@ def end_here(A: Scene, J: Joints, root: int, t: float) -> None:
 
 @uncounted
 def begun(A: Scene, i: int) -> float:
-    """The latest instant at which spans of islands without joints have begun that shapes of body i may touch."""
+    """The latest instant at which intervals of islands without joints have begun that shapes of body i may touch."""
     latest = 0.0
     for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):
         for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
@@ -138,14 +138,14 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> float:
     """Bring the islands of shapes a and b, which are seen to meet at instant t, to the instant at which they do."""
     i, j = A.LINK[a].owner, A.LINK[b].owner
     roots = (A.STATE[i].island, A.STATE[j].island if A.BODY[j].inv_mass > 0.0 else -1)
-    # Nobody goes back in time, to where what overlaps would have met.
-    least = A.BODY[i].since
+    # Nobody goes back in time, to where what overlaps would have met, or on to where an interval would be too long.
+    least, latest = A.BODY[i].since, A.PAR.dt
     if A.BODY[j].inv_mass > 0.0:
         least = max(least, A.BODY[j].since)
     for end in range(2):
         root = roots[end]
         if root >= 0 and A.MEMBER[root].open > 0 and A.MEMBER[root].jointed > 0:
-            least = max(least, A.BODY[root].since)
+            least, latest = max(least, A.BODY[root].since), min(latest, A.RESTING[root].until)
             member = root
             while member >= 0:
                 least = max(least, begun(A, member))
@@ -176,7 +176,7 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> float:
         if not slope < 0.0 or tries + 1 == MEET_SECANTS:
             break
         before, gap_before = t, g
-        then = min(max(t - g / slope, least), A.PAR.dt)
+        then = max(min(t - g / slope, latest), least)
         if then == t:
             break
         t = then

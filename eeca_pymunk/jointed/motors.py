@@ -18,7 +18,7 @@ def drives(J: Joints, s: int) -> bool:
 
 @uncounted
 def keeps_speed(J: Joints, s: int) -> bool:
-    """Whether joints of component s have rows of speeds at the end of a span: motors, joints with a max_force."""
+    """Whether joints of component s have rows of speeds at the end of an interval: motors, joints with a max_force."""
     some = False
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
         some = some or J.LINK[k].soft != 0

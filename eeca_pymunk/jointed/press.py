@@ -3,10 +3,10 @@
     M (v+ - v) = h M a + F_s + J^T Lam + G^T lam + T^T beta,    J, F_s the discrete rows of the joints,
 
 contact rows at the predicted middle, as `..contacts.geometry`. The contacts' impulses act on the components as forces
-that are constant over the span, so that joints, springs, limits and motors are those of `..joints` to round-off however
-badly contacts are truncated, and a contact loses -lam . (way of its row)/h exactly. Impulses follow from Newton's
-method in the space of contacts: components are stepped with the present impulses, answer by their columns, and the
-contacts' laws are solved with these; until the velocities of both agree.
+that are constant over the interval, so that joints, springs, limits and motors are those of `..joints` to round-off
+however badly contacts are truncated, and a contact loses -lam . (way of its row)/h exactly. Impulses follow from
+Newton's method in the space of contacts: components are stepped with the present impulses, answer by their columns, and
+the contacts' laws are solved with these; until the velocities of both agree.
 """
 
 from __future__ import annotations
@@ -145,7 +145,7 @@ def press(
     # Only of what nothing from without holds or touches is there an angular momentum to keep.
     free = len(isle.IM) == n and not hangs(groups, J.COMPONENT, J.MEMBER)
     for outer in range(rounds):
-        if hopeless:
+        if hopeless or J.PROGRESS.effort > J.PROGRESS.share:
             break
         anew = outer % CHORD == 0 or slowly
         advance(A, J, interval, L, B, anew, FORESEEN if outer > 0 else UNKNOWN)

@@ -1,4 +1,4 @@
-"""The span of an island with joints: contacts (`press`), bodies lifted, velocities made to fit, paths."""
+"""The interval of an island with joints: contacts (`press`), bodies lifted, velocities made to fit, paths."""
 
 from __future__ import annotations
 
@@ -13,11 +13,12 @@ from ..contacts.interval import make_contacts, moved, recall, speeds
 from ..contacts.memory import remember_loads
 from ..contacts.unmet import note_unmet
 from ..islands.candidates import before_end, pairs_of
-from ..islands.intervals import dismiss, lay_out_island, open_contacts
+from ..islands.intervals import AGAIN, dismiss, lay_out_island, open_contacts
 from ..islands.membership import lossy, members
 from ..model.islands import Island
-from ..model.joints import Joints
-from ..model.parameters.intervals import MIDPOINT_SAME
+from ..model.joints import ELASTIC, Joints
+from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES, MIDPOINT_SAME
+from ..model.parameters.joints import INTERVAL_SHARE
 from ..model.scene import Scene
 from ..model.step import CONTACTS, DONE, PUSHES_FULL
 from ..rows.build import normal_rate
@@ -30,9 +31,12 @@ from .component import step_component
 from .fitting import fit
 from .gathered import gather_component, keep_joints, restore_joints
 from .groups import Groups, find_groups
+from .lengths import excess
 from .lifting import lift
 from .motors import drives
 from .press import lost, press, slip_of
+
+SPENT = -2  # status of an interval for which there is no work left
 
 
 @uncounted
@@ -58,15 +62,30 @@ def foresee(
 
 
 @kernel
-def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
-    """Begin a span of length h of an island with joints at instant t, at which all its bodies are.
+def begin_interval(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
+    """Begin an interval of an island with joints at instant t, at which all its bodies are: of length h, or shorter
+    where joints do not hold, the work does not suffice, or bodies go too far (`lengths`).
 
-    DONE, or PUSHES_FULL, which leaves everything as it was.
+    DONE, or PUSHES_FULL, which leaves everything as it was; likewise SPENT, within a step that has no work left.
     """
+    for attempt in range(INTERVAL_TRIES):
+        last = attempt + 1 == INTERVAL_TRIES or A.COUNT.together > 0
+        if t > 0.0 and J.PROGRESS.effort > J.PROGRESS.budget:
+            return SPENT
+        status, h = open_span(A, J, root, t, h, last)
+        if status != AGAIN:
+            return status
+    return DONE
+
+
+@kernel
+def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) -> tuple[int, float]:
+    """`begin_interval` of length h. AGAIN, with nothing done, if that is too long, and how long it may be; not if it is
+    the `last` attempt."""
     whole = is_component(A, J, root)
     if whole and meets_nobody(A, root):
-        begin_alone(A, J, root, t, h)
-        return DONE
+        far = begin_alone(A, J, root, t, h, last)
+        return (AGAIN, h / far) if far > 0.0 else (DONE, h)
     BODY, STATE, MEMBER, COUNT = A.BODY, A.STATE, A.MEMBER, A.COUNT
     n = MEMBER[root].bodies
     MINE = np.empty(n, np.int64)
@@ -79,11 +98,11 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
     p = len(found)
     if p == 0 and whole:
         dismiss(A, MINE, n)
-        begin_alone(A, J, root, t, h)
-        return DONE
+        far = begin_alone(A, J, root, t, h, last)
+        return (AGAIN, h / far) if far > 0.0 else (DONE, h)
     if COUNT.pushes + 2 * p > A.PUSHED.shape[0] or 2 * (COUNT.remembered + 2 * p) > A.KEYS.shape[0]:
         dismiss(A, MINE, n)
-        return PUSHES_FULL
+        return PUSHES_FULL, h
     isle = lay_out_island(A, MINE, n, found, t)
     k = len(isle.WHO)
     groups = find_groups(isle.WHO, isle.IM, J.OF)
@@ -100,17 +119,34 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
         pull = max(pull, foresee(A, J, isle, groups, t, h, motion, REACH))
         m = gather(A, isle, contacts, moved(isle.POSE, isle.V, 0.5 * h), REACH, h, k == n, MIDPOINT_SAME)
     interval = Interval(isle, groups, P, Q, ROWS, motion, make_columns(groups, P, Q, m), m, n, t, h)
+    held = True
+    J.PROGRESS.share = J.PROGRESS.effort + INTERVAL_SHARE * max(J.PROGRESS.budget - J.PROGRESS.effort, 0.0)
     if m > 0:
         recall(KEY, m, A.KEYS, A.FORCES, A.PAR.stamp, h, L, EXPECTED)
         owed = max(-A.RESTING[root].lost, 0.0)
-        if not press(A, J, interval, L, EXPECTED, slow, fast, pull, owed):
-            pair, shapes = KEY[0] >> 1, A.SHAPE.shape[0]
-            note_unmet(A, CONTACTS, pair // shapes, pair % shapes, math.nan, math.nan)
+        held = press(A, J, interval, L, EXPECTED, slow, fast, pull, owed)
         remember_loads(ROWS, KEY, L, m, h, A.KEYS, A.FORCES, COUNT, A.PAR.stamp)
     if m == 0:
         advance(A, J, interval, L, room_for_rows(0, 0), False, np.empty((0, 3)))
-    book_turning(A, J, isle, groups, motion, n)
-    # Bodies are lifted at the end of the span, not on the way: the way would be as steep as the span is short.
+    COUNT.solves += 1
+    COUNT.solved += n
+    far = 2.0 if not held and J.PROGRESS.effort > J.PROGRESS.share else 0.0
+    for g in range(len(groups.COMPONENT)):
+        if groups.COMPONENT[g] >= 0 and J.STEPPED[groups.COMPONENT[g]].status >= ELASTIC:
+            far = 2.0
+    if not last:
+        far = max(far, excess(A, isle, P, Q, ROWS, KEY, motion, m, n, t, h))
+    if far > INTERVAL_RETRY and not last:
+        for g in range(len(groups.COMPONENT)):
+            if groups.COMPONENT[g] >= 0:
+                restore_joints(J, groups.COMPONENT[g])
+        dismiss(A, MINE, n)
+        return AGAIN, h / far
+    if not held:
+        pair, shapes = KEY[0] >> 1, A.SHAPE.shape[0]
+        note_unmet(A, CONTACTS, pair // shapes, pair % shapes, math.nan, math.nan)
+    account_turning(A, J, isle, groups, motion, n)
+    # Bodies are lifted at the end of the interval, not on the way: the way would be as steep as the interval is short.
     WHERE = motion.END.copy()
     if may_lose and m > 0:
         if not before_end(A, t + h):
@@ -122,7 +158,6 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
                     break
         fit(A, J, interval, L, t + h, slow + pull * h)
     dismiss(A, MINE, n)
-    COUNT.solves += 1
     first = COUNT.pushes
     open_contacts(A, isle, contacts, motion.V, m, t, h, np.zeros(k, np.uint8))
     for z in range(m):
@@ -143,12 +178,12 @@ def begin_span(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
         rest.lift_angle = motion.END[q, 2] - WHERE[q, 2]
         rest.lift_vx, rest.lift_vy, rest.lift_spin = motion.V[q, 0], motion.V[q, 1], motion.V[q, 2]
     MEMBER[root].open = 1
-    A.RESTING[root].until = math.inf
-    return DONE
+    A.RESTING[root].until = t + h if before_end(A, t + h) else math.inf
+    return DONE, h
 
 
 @uncounted
-def book_turning(A: Scene, J: Joints, isle: Island, groups: Groups, motion: Motion, n: int) -> None:
+def account_turning(A: Scene, J: Joints, isle: Island, groups: Groups, motion: Motion, n: int) -> None:
     """Torques work along chi = h w_m, which is not quite the angle that a jointed body turns by."""
     for g in range(len(groups.COMPONENT)):
         if groups.COMPONENT[g] >= 0:

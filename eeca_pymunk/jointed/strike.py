@@ -15,7 +15,7 @@ from ..islands.intervals import dismiss
 from ..islands.membership import members, unite
 from ..model.contacts import SOLVED
 from ..model.joints import Joints
-from ..model.parameters.joints import STRIKE_SWEEPS
+from ..model.parameters.joints import SOLUTION_WORK, STRIKE_SWEEPS
 from ..model.scene import Scene
 from ..rows.blocks import CONVERGED, TRUNCATED
 from ..rows.build import aim, conserves, rates
@@ -87,6 +87,7 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[int, int]:
         WHO[q] = A.BLOCK[q]
     groups = find_groups(WHO, block.IM, J.OF)
     C = make_columns(groups, P, Q, rows)
+    J.PROGRESS.effort += SOLUTION_WORK * C.AT[rows]
     fill_free(groups, C, P, Q, ROWS, block.IM, block.II, rows)
     BEFORE = V.copy()
     INDEX = np.full(len(block.IM), -1, np.int64)

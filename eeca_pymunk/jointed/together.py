@@ -16,8 +16,8 @@ from ..islands.membership import unite
 from ..model.joints import Joints, joints_of
 from ..model.scene import Scene, scene_of
 from ..model.step import DONE
-from .loop import book_joints, start_jointed
-from .solve import begin_span
+from .loop import account_joints, start_jointed
+from .solve import begin_interval
 
 
 @kernel
@@ -46,11 +46,11 @@ def resume_together_jointed(
     for q in range(roots):
         root = A.BLOCK[q]
         jointed = A.MEMBER[root].jointed > 0
-        if (begin_span(A, J, root, 0.0, A.PAR.dt) if jointed else solve(A, root, 0.0)) != DONE:
+        if (begin_interval(A, J, root, 0.0, A.PAR.dt) if jointed else solve(A, root, 0.0)) != DONE:
             return ROOM_FOR_CONTACTS
     if COUNT.pushes > A.LOG.shape[0]:
         return ROOM_FOR_EVENTS
-    book_joints(A, J)
+    account_joints(A, J)
     return finish(A, STATES, WALK, EXTRA, ENDS, status)
 
 

@@ -21,6 +21,7 @@ def clear_interval(ledger: JointLedger) -> None:
     """No energies at all."""
     clear(ledger)
     ledger.turned_work = ledger.lifted = 0.0
+    ledger.status = 0
 
 
 @merged

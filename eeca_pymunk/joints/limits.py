@@ -2,9 +2,9 @@
 
 A limit is a row that is either held (side = -1 on the lower, 1 on the upper bound), g = bound, lam side <= 0, or free.
 When a step would end beyond a bound, it is taken anew to the instant at which the bound is reached (secant on the end
-of the implicit step); there velocities into the bound vanish, and what that costs in kinetic energy is booked. A held
-row that would pull is let go from the start of the part. The number of parts of a step is bounded; past it, rows land:
-they are held from where they are, g reaches its bound at the end of the part, and their work is booked.
+of the implicit step); there velocities into the bound vanish, and what that costs in kinetic energy enters the ledger.
+A held row that would pull is let go from the start of the part. The number of parts of a step is bounded; past it, rows
+land: they are held from where they are, g reaches its bound at the end of the part, and their work enters the ledger.
 """
 
 from __future__ import annotations

@@ -4,8 +4,8 @@ Order 2 (midpoint with discrete gradients), or 4 by Suzuki's composition (s, s, 
 where nothing in the island dissipates, drives or meets a limit. The ladder: the step whole, in 2, 4, 7 parts; whole and
 in 7 with joints that give way elastically, by 1e-9, 1e-8, 1e-7, 1e-6, 1e-4; one linear system. The work of
 all rungs together is bounded. What gives way does so in later steps with the same compliance, until it is closed.
-Energy that elastic joints take and give back is booked as `closed`, and they give back no more than they took; what
-linear rows gain is taken from what moves (`lock`).
+Energy that elastic joints take and give back enters the ledger as `closed`, and they give back no more than they took;
+what linear rows gain is taken from what moves (`lock`).
 """
 
 from __future__ import annotations
@@ -130,7 +130,8 @@ def write_joints(W: Workspace, h: float, loose: int) -> None:
 
 @uncounted
 def stop_joints(W: Workspace, h: float) -> None:
-    """The step of an island that nothing else can do: see `move_rigidly`; what that loses is booked in `part`."""
+    """The step of an island that nothing else can do: see `move_rigidly`; what that loses enters the ledger in
+    `part`."""
     local, part = W.J.LOCAL, W.J.PART
     back(local, W.bodies)
     look(W)

@@ -223,6 +223,7 @@ class Progress(Record):
     near: float  # error of a step that is near enough, 0 for round-off
     effort: float  # operations that solutions have taken since the step of the scene began; how many they may
     budget: float
+    share: float  # of `effort`, at which an interval gives up
     limit: float  # of `effort`, at which the step of a component gives up what its ladder has before linear rows
     hurry: float  # likewise, from which on limits land instead of being met at their instants
     side: int  # of the limit that is passed first
@@ -246,6 +247,7 @@ class JointLedger(Record):
     closed: float  # work of closing joints that were apart at the start, of elastic stand-ins, of linear steps
     turned_work: float  # with contacts: work of torques beyond that along the angle
     lifted: float  # energy that separating overlapping bodies costs, paid from the losses of contacts
+    status: int  # of the step
 
 
 # Status of a component's step: joints hold to round-off; the step was taken in parts; joints gave way elastically in

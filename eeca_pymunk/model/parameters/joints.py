@@ -79,6 +79,11 @@ JOINTED_CORRECTION = heuristic(0.1, "of a body", "Displacement by the correction
 STEP_WORK = work(
     80000000.0, "operations", "Work of a step with joints, beside STEP_WORK_BODY; 6e9 take about a second."
 )
+INTERVAL_SHARE = work(
+    0.25,
+    "of what is left of the budget",
+    "Work after which what has not converged is solved again, shorter.",
+)
 STEP_WORK_BODY = work(1000000.0, "operations", "Work for each body.")
 MEET = round_off(1e-13, "of the smaller shape", "Gap at the instant of an impact on a component.")
 MEET_LOADED = accuracy(1e-06, "of the smaller shape", "The same where contacts push on it.")

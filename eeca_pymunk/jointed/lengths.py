@@ -1,0 +1,106 @@
+"""How long intervals of islands with joints are: as `..islands.candidates` has it for others.
+
+Paths are parabolas between both ends of an interval, on which bodies are looked for impacts; joints hold at the ends.
+So bodies that may meet others turn by no more than half a radian, and leave their free flight by no more than half
+their size; contacts go no deeper than they have room for.
+"""
+
+from __future__ import annotations
+
+import math
+
+from ..arrays import IntArray
+from ..compiled import uncounted
+from ..compiled.records import Rows
+from ..contacts.memory import key_of
+from ..geometry.flight import norm
+from ..geometry.manifold import half_width
+from ..islands.depths import sunk, too_deep
+from ..model.contacts import Row
+from ..model.islands import Island
+from ..model.joints import Joints
+from ..model.parameters.intervals import (
+    INTERVAL_ANGLE,
+    INTERVAL_DEPTH_LEAST,
+    INTERVAL_RETRY,
+    INTERVAL_WAY,
+)
+from ..model.scene import Scene
+from ..pairs.lists import far_apart
+from ..pairs.rules import barred
+from ..rows.build import normal_rate
+from .advance import Motion
+
+
+@uncounted
+def may_meet(A: Scene, i: int, way: float, t: float, h: float, KEY: IntArray, m: int) -> bool:
+    """Whether body i, whose points go no farther than `way` in an interval h from instant t, may leave its margin
+    circles, or meet what is not among the m contacts KEY."""
+    for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):
+        if norm(A.BODY[i].x - A.MARK[s].x, A.BODY[i].y - A.MARK[s].y) + A.BODY[i].extent + way > A.MARK[s].margin:
+            return True
+        for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
+            o = int(A.POOL[w])
+            b = A.BODY[A.LINK[o].owner]
+            speed = norm(b.vx, b.vy) + abs(b.spin) * b.extent
+            if barred(A.RULE, s, o) or far_apart(A, s, o, t, 2.0 * (way + speed * h + A.PAR.pulled * h * h)):
+                continue
+            known = False
+            for z in range(m):
+                known = known or KEY[z] >> 1 == key_of(A.SHAPE.shape[0], s, o) >> 1
+            if not known:
+                return True
+    return False
+
+
+@uncounted
+def strays(
+    A: Scene, i: int, turned: float, x: float, y: float, t: float, h: float, KEY: IntArray, m: int
+) -> float:  # fmt: skip
+    """How many times too far body i goes in an interval h from instant t, in which it turns by `turned` and leaves its
+    free flight by (x, y), beside the m contacts KEY."""
+    b = A.BODY[i]
+    if b.extent == 0.0:
+        return 0.0
+    far = norm(x, y) / (INTERVAL_WAY * b.extent)
+    for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):
+        if A.LINK[s].vertices > 1:
+            far = max(far, abs(turned) / INTERVAL_ANGLE)
+    way = norm(x + h * b.vx, y + h * b.vy) + A.PAR.pulled * h * h + min(abs(turned), math.pi) * b.extent
+    return far if far > INTERVAL_RETRY and may_meet(A, i, way, t, h, KEY, m) else 0.0
+
+
+@uncounted
+def excess_alone(A: Scene, J: Joints, s: int, t: float, h: float) -> float:
+    """How many times too long an interval h of component s alone is, whose end is in the scratch."""
+    far, first = 0.0, J.COMPONENT[s].first_body
+    for w in range(J.COMPONENT[s].end_body - first):
+        if J.LOCAL[w].freedoms > 0:
+            i = int(J.MEMBER[first + w].body)
+            b = A.BODY[i]
+            x = J.LOCAL[w].pose[0] - b.x - h * (b.vx + 0.5 * h * A.PULL[i, 0])
+            y = J.LOCAL[w].pose[1] - b.y - h * (b.vy + 0.5 * h * A.PULL[i, 1])
+            far = max(far, strays(A, i, J.LOCAL[w].pose[2] - b.angle, x, y, t, h, A.BLOCK, 0))
+    return far
+
+
+@uncounted
+def excess(
+    A: Scene, isle: Island, P: IntArray, Q: IntArray, ROWS: Rows[Row], KEY: IntArray, motion: Motion, m: int, n: int,
+    t: float, h: float,
+) -> float:  # fmt: skip
+    """How many times too long the interval h is in which n bodies move so, under m contacts."""
+    far, shapes = 0.0, A.SHAPE.shape[0]
+    for q in range(n):
+        x = motion.WAY[q, 0] - h * (isle.V[q, 0] + 0.5 * h * isle.ACC[q, 0])
+        y = motion.WAY[q, 1] - h * (isle.V[q, 1] + 0.5 * h * isle.ACC[q, 1])
+        far = max(far, strays(A, int(isle.WHO[q]), motion.END[q, 2] - isle.POSE[q, 2], x, y, t, h, KEY, m))
+    for z in range(m):
+        pair = KEY[z] >> 1
+        a, b = pair // shapes, pair % shapes
+        small = min(A.SHAPE[a].extent, A.SHAPE[b].extent)
+        closing = -normal_rate(P, Q, ROWS, motion.WAY, z)
+        if closing > INTERVAL_DEPTH_LEAST * small:
+            thick = half_width(A, a) + half_width(A, b)
+            far = max(far, too_deep(ROWS[z].gap, closing, small, thick))
+    return max(far, sunk(A, isle, motion.END, P, Q, ROWS, KEY, m, True))

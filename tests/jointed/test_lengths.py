@@ -1,0 +1,77 @@
+"""How long intervals of islands with joints are: what moves far in a step stays inside of walls without width."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import pymunk
+import pytest
+
+import eeca_pymunk as ep
+from tests.programs.compositions import Composition
+
+HALF = 3.0
+
+
+def add(space: pymunk.Space, place: tuple[float, float], disk: bool) -> pymunk.Body:
+    """A disk, or a rod without width."""
+    body = pymunk.Body(1.0, 0.1)
+    body.position = place
+    shape = pymunk.Circle(body, 0.3) if disk else pymunk.Segment(body, (-0.5, 0.0), (0.5, 0.0), 0.0)
+    shape.elasticity = shape.friction = 0.5
+    space.add(body, shape)
+    return body
+
+
+def room(kind: str, speed: float, gravity: float) -> pymunk.Space:
+    """Two bodies on a joint that whirl, among walls without width."""
+    space = pymunk.Space()
+    space.gravity = 0.0, -gravity
+    corners = [(-HALF, -HALF), (HALF, -HALF), (HALF, HALF), (-HALF, HALF), (-HALF, -HALF)]
+    for p, q in pairwise(corners):
+        wall = pymunk.Segment(space.static_body, p, q, 0.0)
+        wall.elasticity = wall.friction = 0.5
+        space.add(wall)
+    a, b = add(space, (-1.0, 0.0), kind == "pin"), add(space, (1.0, 0.0), kind != "pivot")
+    a.velocity, b.velocity = (5.0, -speed), (2.0, speed)
+    joint: pymunk.Constraint = pymunk.PinJoint(a, b)
+    if kind == "pivot":
+        joint = pymunk.PivotJoint(a, b, (1.0, 0.0), (-1.0, 0.0))
+    elif kind == "slide":
+        joint = pymunk.SlideJoint(a, b, (0.5, 0.0), (0.0, 0.0), 0.5, 2.0)
+    elif kind == "spring":
+        joint = pymunk.DampedSpring(a, b, (0.5, 0.0), (0.0, 0.0), 0.2, 400.0, 0.0)
+    space.add(joint)
+    return space
+
+
+@pytest.mark.parametrize("kind", ["pin", "pivot", "slide", "spring"])
+@pytest.mark.parametrize(("speed", "gravity"), [(20.0, 300.0), (60.0, 300.0), (200.0, 0.0), (200.0, 300.0)])
+def test_what_whirls_on_a_joint_stays_inside(kind: str, speed: float, gravity: float) -> None:
+    """At 1/15 s they turn by radians in a step, or fall by 1.3 m, on paths that joints bend."""
+    space = room(kind, speed, gravity)
+    stepper = ep.EECA(space)
+    for _ in range(60):
+        ledger = stepper.step(1 / 15).ledger
+        assert ledger is not None
+        assert abs(ledger.residual) <= 1e-11 * (abs(ep.measure(space).energy) + abs(ledger.change) + 1.0)
+        assert max(max(map(abs, body.position)) for body in space.bodies) <= HALF + 1e-3
+
+
+@pytest.mark.parametrize(("seed", "steps"), [(14, 20), (21, 10), (66, 10), (70, 5), (100, 10), (190, 5)])
+def test_steps_with_joints_that_end_early_close_their_ledgers(seed: int, steps: int) -> None:
+    """Bodies of 1 mm at 30 Hz, which fall by dozens of their sizes in a step: spans that are not to be are not booked,
+    and nobody leaves."""
+    Composition(seed, joints=True).play(steps)
+
+
+def test_spans_with_joints_end_early_rather_than_joints_give_way() -> None:
+    """A chain of rods in the corner of a room, at 300 g: joints hold however little of a step the work suffices for."""
+    space = room("pivot", 200.0, 3000.0)
+    (joint,) = space.constraints
+    assert isinstance(joint, pymunk.PivotJoint)
+    stepper = ep.EECA(space)
+    for _ in range(40):
+        stepper.step(1 / 15)
+        ends = joint.a.local_to_world(joint.anchor_a), joint.b.local_to_world(joint.anchor_b)
+        assert (ends[0] - ends[1]).length <= 1e-9
