@@ -21,8 +21,6 @@ from ..model.parameters.intervals import (
     LARGE_ISLAND,
     MIDPOINT_SAME,
     MIDPOINT_SAME_LARGE,
-    NEAR_REST,
-    SWEEPS_NEAR_REST,
 )
 from ..model.scene import scene_of
 from ..rows.blocks import clear
@@ -173,9 +171,6 @@ def step_island(
         few = m <= DENSE_CONTACTS
         rounds = DIRECT if elastic or slow < pull * h else (DIRECT_MOVING if few else 0)
         coarse = 0.0 if elastic or few else INTERVAL_RESIDUAL_MOVING * scale + INTERVAL_RESIDUAL_SPEED * slow
-        if slow < NEAR_REST * pull * h:
-            # Residuals of an unconverged solve topple tall stacks.
-            most = SWEEPS_NEAR_REST
         sweeps, polishes, worst = relax(
             problem, L, VN, FREE, rounds, INTERVAL_RESIDUAL * scale, coarse, S.RESTING[isle.WHO[0]], most
         )  # fmt: skip

@@ -24,7 +24,6 @@ from ..model.parameters.intervals import LARGE_ISLAND
 from ..model.parameters.rest import (
     FREEZE,
     FREEZE_EVERY,
-    FREEZE_MOVING,
     MOVING_BODIES,
     MOVING_SHARE,
     PARTIAL_REST_FACTORS,
@@ -40,7 +39,7 @@ from .candidates import pairs_of
 from .intervals import dismiss, lay_out_island, open_contacts, solve
 from .membership import lossy, members, unite
 from .rest import candidate_speed, postpone, slow_for_long, speed
-from .support import load, postpone_unsupported
+from .support import load
 
 
 @uncounted
@@ -58,9 +57,8 @@ def chain(A: Scene, MINE: IntArray, n: int) -> None:
 @kernel
 def test_rest(A: Scene, MINE: IntArray, n: int, V0: FloatArray, among: int, calming: bool) -> bool:
     """Whether the island of the n bodies MINE, `among` so many, can be put to rest from their velocities V0 (n, 3)
-    under what pushes on it; if so it is. If not, the test of unsupported bodies is postponed (`postpone_unsupported`).
-    `calming`: whether static forces hold it with nothing that pushes on it; then its bodies stop, and may be tested
-    for rest at once."""
+    under what pushes on it; if so it is. If not, its next test is postponed. `calming`: whether static forces hold it
+    with nothing that pushes on it; then its bodies stop, and may be tested for rest at once."""
     BODY, COUNT, dt, root = A.BODY, A.COUNT, A.PAR.dt, MINE[0]
     for q in range(n):
         A.PLACE[MINE[q]] = q
@@ -85,7 +83,7 @@ def test_rest(A: Scene, MINE: IntArray, n: int, V0: FloatArray, among: int, calm
     m = step_island(A, isle, contacts, n, dt, 0, 0.0, 0.0, 0.0, -quick)
     COUNT.direct += contacts.OUT[0].direct
     if contacts.OUT[0].stood == 0:
-        postpone_unsupported(A, MINE, n, contacts.VN, isle.FELT)
+        postpone(A, MINE, n)
         return False
     if calming:
         for q in range(n):
@@ -116,7 +114,7 @@ def freeze(A: Scene, root: int, MINE: IntArray, n: int) -> None:
         if speed(A, MINE[q], 0.0) <= FREEZE * A.PAR.pulled * A.PAR.dt:
             STAND[stand] = MINE[q]
             stand += 1
-    if n - stand > max(FREEZE_MOVING * n, MOVING_BODIES):
+    if n - stand > MOVING_BODIES:
         return
     owed, factors, calmed = A.RESTING[root].lost, A.COUNT.direct, False
     while not calmed and stand >= (1.0 - MOVING_SHARE) * n and A.COUNT.direct <= factors + PARTIAL_REST_FACTORS:

@@ -12,25 +12,23 @@ The contacts of what moves are of its own island; that of the other body is its 
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FloatArray
 from ..compiled import kernel, uncounted
 from ..compiled.records import empty
 from ..contacts.memory import find, key_of, remember
 from ..model.bodies import AT_REST
 from ..model.contacts import ROW, Problem
-from ..model.parameters.rest import REST_SPEED, REST_STEPS, SUPPORT_FACTORS, SUPPORT_ROUNDS, UNSUPPORTED
+from ..model.parameters.rest import REST_SPEED, SUPPORT_FACTORS, SUPPORT_ROUNDS
 from ..model.scene import Scene
 from ..pairs.rules import law
 from ..rows.build import place_row
-from ..rows.equilibrium import bound, equilibrium, fastest
+from ..rows.equilibrium import equilibrium
 from .accounting import wake
 from .intervals import dismiss, solve
 from .membership import members
-from .rest import candidate_speed, postpone, postponed, spins_freely
+from .rest import candidate_speed, postpone, spins_freely
 
 
 @uncounted
@@ -105,28 +103,13 @@ def holds(A: Scene, root: int) -> bool:
     )
     A.COUNT.direct += factors
     if not found:
-        postpone_unsupported(A, MINE, n, START, FELT)
+        postpone(A, MINE, n)
     else:
         for z in range(m):
             R = A.PUSHED[OF[z]]
             R.normal, R.tangential, R.change = L[z, 0], L[z, 1], L[z, 0] / ROWS[z].k_n
             keep_in_mind(A, OF[z])
     return found
-
-
-@uncounted
-def postpone_unsupported(A: Scene, MINE: IntArray, n: int, Y: FloatArray, FELT: FloatArray) -> None:
-    """Of the n bodies MINE, of which nothing holds the motion Y (n, 3), those that take part in it are not to be asked
-    soon whether they stand."""
-    most = fastest(Y, FELT, n)
-    if not 0.0 < most < math.inf:
-        postpone(A, MINE, n)
-        return
-    for q in range(n):
-        if bound(Y[q, 0], Y[q, 1], Y[q, 2], FELT[q]) > UNSUPPORTED * most:
-            A.RESTING[MINE[q]].calm_for = postponed(n)
-        else:
-            A.RESTING[MINE[q]].calm_for = REST_STEPS
 
 
 @uncounted

@@ -27,7 +27,6 @@ from ..model.contacts import EDGE as EDGE_KIND
 from ..model.contacts import ROW, Edge, Problem, Row
 from ..model.parameters.impulses import PROXIMAL_STATICS
 from ..model.parameters.rest import (
-    STATICS_EARLY,
     STATICS_GAP,
     STATICS_PROGRESS,
     STATICS_RUNAWAY,
@@ -253,7 +252,7 @@ def equilibrium(
             give(problem.ROWS, EDGE, OF, K, L, m)
             if not nearest or centre <= STATICS_GAP * first:
                 return True, done
-        elif not found and done > STATICS_EARLY:
+        elif not found and done > 0:
             if speed <= STATICS_PROGRESS * last:
                 stalled = 0
             else:

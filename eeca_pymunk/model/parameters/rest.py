@@ -21,7 +21,6 @@ STATICS_FACTORS = work(12, "factorisations", "Factorisations to find static forc
 STATICS_FACTORS_NEAREST = work(6, "factorisations", "Further ones to come near to the guess.")
 STATICS_START = accuracy(0.1, "of the mean guess", "Least impulse at the start of the interior-point iteration.")
 STATICS_STEP = accuracy(0.99, "of the way to the boundary", "Step of the interior-point iteration.")
-STATICS_EARLY = heuristic(3, "iterations", "Iterations before lack of progress is looked for.")
 STATICS_PROGRESS = heuristic(0.8, "ratio of residual motions", "Progress of an iteration below which it stalls.")
 STATICS_STALLED = heuristic(4, "iterations", "Stalled iterations after which no static forces exist.")
 STATICS_RUNAWAY = heuristic(
@@ -39,15 +38,9 @@ REST_RETRY_BODIES = heuristic(100, "bodies", "See REST_RETRY_LATEST.")
 REST_WOKEN = heuristic(-2.0, "steps, negative", "Rest timer of an island that is woken after a long rest.")
 SUPPORT_FACTORS = work(4, "factorisations", "Factorisations to find how an island at rest supports what moves on it.")
 SUPPORT_ROUNDS = work(8, "rounds", "Rounds in which support forces propagate to what bears them.")
-UNSUPPORTED = heuristic(
-    0.01, "of its fastest body", "Speed in a motion that no force holds, below which a body takes no part in it."
-)
 MOVING_SHARE = heuristic(0.1, "of the bodies", "Part of an island that may move while the rest of it is at rest.")
 MOVING_BODIES = heuristic(2, "bodies", "Number that may always move.")
 PARTIAL_REST_TRIES = work(2, "number", "Tests for partial rest of an island in a step.")
 PARTIAL_REST_FACTORS = work(5, "factorisations", "Factorisations after which there is no other test.")
 PARTIAL_REST_FACTORS_STEP = work(8, "factorisations", "Factorisations after which no island is tested in the step.")
 FREEZE_EVERY = work(8, "steps", "Steps from one test whether a large island freezes to the next.")
-FREEZE_MOVING = heuristic(
-    0.005, "of the bodies", "Part of a large island that may be fast while the rest of it freezes."
-)
