@@ -20,9 +20,9 @@ from ..model.parameters.intervals import (
     HITS_TIMES_BODIES,
     IMPACTS_BEFORE_REST,
     IMPACTS_BEFORE_REST_ELASTIC,
+    INTERVAL_DEPTH_WIDTH,
     MOST_HITS,
     MOST_HITS_ELASTIC,
-    PASSED_OVER_DEPTH,
     SLOW_ELASTIC,
     TOUCH,
 )
@@ -221,7 +221,7 @@ def passed_over(A: Scene, a: int, b: int, t: float) -> bool:
     speed = norm(A.BODY[i].vx - A.BODY[j].vx, A.BODY[i].vy - A.BODY[j].vy)
     speed += abs(A.BODY[i].spin) * A.BODY[i].extent + abs(A.BODY[j].spin) * A.BODY[j].extent
     thick = half_width(A, a) + half_width(A, b)
-    if (speed + A.PAR.pulled * h) * h > PASSED_OVER_DEPTH * thick:
+    if (speed + A.PAR.pulled * h) * h > INTERVAL_DEPTH_WIDTH * thick:
         return False
     A.COUNT.ignored += 1
     if lossy:

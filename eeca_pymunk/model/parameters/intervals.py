@@ -32,11 +32,6 @@ MOST_HITS_ELASTIC = heuristic(64, "impacts in a step", "The same for an elastic 
 HITS_TIMES_BODIES = heuristic(
     64, "impacts times bodies", "Small islands may be hit oftener: until impacts times bodies reach this."
 )
-PASSED_OVER_DEPTH = heuristic(
-    0.1,
-    "of both widths",
-    "Depth that an impact which is passed over may reach within the step. Larger: cheaper and deeper piles.",
-)
 NORMAL_TURN = accuracy(0.1, "rad", "Rotation of a normal in one interval. Larger: longer intervals, coarser rolling.")
 LEAST_INTERVAL = work(64.0, "intervals in a step", "An interval is not shorter than the step over this.")
 EXACT_CONTACTS = heuristic(
@@ -57,7 +52,12 @@ INTERVAL_WAY = heuristic(
 )
 INTERVAL_ANGLE = heuristic(0.5, "rad", "Rotation of a body in one interval.")
 INTERVAL_DEPTH = heuristic(0.05, "of the smaller shape", "Depth by which a contact may close in one interval.")
-INTERVAL_DEPTH_WIDTH = heuristic(0.1, "of both widths", "The same, relative to what it would take to pass through.")
+INTERVAL_DEPTH_WIDTH = heuristic(
+    0.1,
+    "of both widths",
+    "Depth by which a contact may close in one interval, or an impact that is passed over by the end of the step: a "
+    "tenth of the way through. Larger: cheaper and deeper piles.",
+)
 INTERVAL_DEPTH_LEAST = heuristic(0.0001, "of the smaller shape", "Depth that is always allowed.")
 INTERVAL_RETRY = heuristic(
     1.5, "ratio", "An interval is solved again, shorter, if bodies went farther than they should by this ratio."
