@@ -62,7 +62,7 @@ INTERVAL_DEPTH_LEAST = heuristic(0.0001, "of the smaller shape", "Depth that is 
 INTERVAL_RETRY = heuristic(
     1.5, "ratio", "An interval is solved again, shorter, if bodies went farther than they should by this ratio."
 )
-SMALL_SWEEPS = work(40, "sweeps", "Sweeps of a small island that moves.")
+SMALL_SWEEPS = work(40, "sweeps", "Sweeps of a small island that moves, and of an impact on a large one.")
 INTERVAL_TRIES = work(12, "number", "Attempts at an interval, each shorter.")
 MIDSTEP_PASSES = work(3, "solves", "Further solves of `Midstep` for bodies that impulses move into others.")
 LARGE_ISLAND = heuristic(
@@ -83,7 +83,9 @@ MIDPOINT_TURN = heuristic(
 MANIFOLD_ROUND_OFF = round_off(1e-09, "of the smaller shape", "Tolerance of a manifold.")
 INTERVAL_RESIDUAL = accuracy(1e-12, "of |a| h", "Residual of an island, and of elastic ones.")
 INTERVAL_RESIDUAL_MOVING = accuracy(1e-07, "of |a| h", "Residual of a large or moving island.")
-INTERVAL_RESIDUAL_SPEED = accuracy(0.0001, "of its speed", "The same, relative to its speed.")
+INTERVAL_RESIDUAL_SPEED = accuracy(
+    0.0001, "of its speed", "The same, relative to its speed; and of impacts on it, relative to the approach speed."
+)
 DIRECT = work(20, "direct solutions", "Direct solutions of an island near rest, or elastic.")
 DIRECT_MOVING = work(6, "direct solutions", "The same of a moving island of few contacts.")
 FIRST_AUGMENTATION = heuristic(8.0, "ratio", "Augmentation of the first direct solution of a new island.")
