@@ -15,6 +15,7 @@ from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
 from ..model.contacts import Problem, Solved
 from ..model.parameters.impulses import (
+    AUGMENTATION,
     BLOCK_DIRECT,
     BLOCK_DIRECT_FRICTION,
     BLOCK_LAST_SWEEPS,
@@ -63,7 +64,7 @@ def resolve(
         return worst
     least = worst
     stalled = 0
-    log_R = 8.0
+    log_R = AUGMENTATION
     for _ in range(BLOCK_DIRECT_FRICTION if rough else BLOCK_DIRECT):
         log_R, worst = refine(problem, L, V, FREE, log_R, 8, 0.1 * tolerance, worst)
         OUT[0].direct += 1

@@ -34,6 +34,11 @@ BLOCK_LAST_SWEEPS = work(400, "sweeps", "Sweeps where direct solutions have not 
 BLOCK_LAST_SWEEPS_FRICTION = work(200, "sweeps", "The same with friction.")
 SMALL_BLOCK = work(16, "contacts", "Number up to which sweeps alone are cheaper than a first direct solution.")
 DENSE_CONTACTS = work(20, "contacts", "Number up to which the matrix of an island is dense.")
+AUGMENTATION = round_off(
+    8.0,
+    "log10 of a ratio",
+    "Largest augmentation of a direct solution, with which each island begins: it leaves half the digits of a double.",
+)
 REFINEMENTS = work(4, "number", "Passes of a direct solution's refinement.")
 DISSECTION_LEAF = work(6, "bodies", "Number that nested dissection does not divide further.")
 LATE_NEIGHBOURS = work(24, "neighbours", "Number from which a body is eliminated last.")

@@ -88,7 +88,6 @@ INTERVAL_RESIDUAL_SPEED = accuracy(
 )
 DIRECT = work(20, "direct solutions", "Direct solutions of an island near rest, or elastic.")
 DIRECT_MOVING = work(6, "direct solutions", "The same of a moving island of few contacts.")
-FIRST_AUGMENTATION = heuristic(8.0, "ratio", "Augmentation of the first direct solution of a new island.")
 FIRST_SWEEPS = work(10, "sweeps", "Sweeps before the first direct solution.")
 SWEEPS_AFTER = work(4, "sweeps", "Sweeps after each.")
 BACKOFF_CONTACTS = work(
