@@ -12,7 +12,6 @@ from ..geometry.manifold import half_width
 from ..model.contacts import Row
 from ..model.parameters.intervals import (
     EXACT_CONTACTS,
-    INTERVAL_ANGLE,
     INTERVAL_DEPTH_LEAST,
     INTERVAL_WAY,
     LARGE_ISLAND,
@@ -154,7 +153,7 @@ def interval_length(A: Scene, found: IntArray, t: float) -> float:
 @uncounted
 def interval_within_way(A: Scene, found: IntArray, h: float) -> float:
     """The part of an interval h in which the bodies of pairs go no farther about one another than `INTERVAL_WAY` of the
-    smaller one, and turn by no more than `INTERVAL_ANGLE`, with the velocities that they have: beyond it no contact is
+    smaller one, and turn by no more than that angle, with the velocities that they have: beyond it no contact is
     where it was."""
     BODY, LINK, rate = A.BODY, A.LINK, 0.0
     for c in range(found.shape[0]):
@@ -164,7 +163,7 @@ def interval_within_way(A: Scene, found: IntArray, h: float) -> float:
         rate = max(rate, way / (INTERVAL_WAY * small))
         for s in (found[c, 0], found[c, 1]):
             if LINK[s].vertices > 1:
-                rate = max(rate, abs(BODY[LINK[s].owner].spin) / INTERVAL_ANGLE)
+                rate = max(rate, abs(BODY[LINK[s].owner].spin) / INTERVAL_WAY)
     return h if rate * h <= 1.0 else 1.0 / rate
 
 
@@ -185,7 +184,7 @@ def excess_way(
         far = max(far, 0.5 * h * norm(x, y) / (INTERVAL_WAY * small))
         if A.LINK[a].vertices > 1 or A.LINK[b].vertices > 1:
             turn = max(abs(V[p, 2] + VN[p, 2]), abs(V[q, 2] + VN[q, 2]))
-            far = max(far, 0.5 * h * turn / INTERVAL_ANGLE)
+            far = max(far, 0.5 * h * turn / INTERVAL_WAY)
         closing = -0.5 * h * (ROWS[z].un + normal_rate(P, Q, ROWS, VN, z))
         if closing > INTERVAL_DEPTH_LEAST * small:
             thick = half_width(A, a) + half_width(A, b)

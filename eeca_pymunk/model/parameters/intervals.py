@@ -47,10 +47,10 @@ LARGE_SWEEPS = work(24, "sweeps", "Sweeps of a large island at the start of a st
 LARGE_SWEEPS_HIT = work(12, "sweeps", "The same after it was hit within the step.")
 INTERVAL_WAY = heuristic(
     0.5,
-    "of the smaller shape",
-    "Relative way of two bodies in contact in one interval. Larger: contacts move while they are held fixed.",
+    "of the smaller shape; rad",
+    "Relative way of two bodies in contact in one interval, and their rotation. Larger: contacts move while they are "
+    "held fixed.",
 )
-INTERVAL_ANGLE = heuristic(0.5, "rad", "Rotation of a body in one interval.")
 INTERVAL_DEPTH = heuristic(0.05, "of the smaller shape", "Depth by which a contact may close in one interval.")
 INTERVAL_DEPTH_WIDTH = heuristic(
     0.1,
@@ -67,11 +67,6 @@ INTERVAL_TRIES = work(12, "number", "Attempts at an interval, each shorter.")
 MIDSTEP_PASSES = work(3, "solves", "Further solves of `Midstep` for bodies that impulses move into others.")
 LARGE_ISLAND = heuristic(
     24, "bodies", "Size from which an island is large: impacts act on BLOCK_BODIES, sweeps are limited."
-)
-MIDPOINT_WAY = heuristic(
-    0.25,
-    "of the smaller shape",
-    "Half way of a pair beyond which its geometry at the middle of the interval is not predicted.",
 )
 MIDPOINT_SAME = round_off(
     1e-07, "of the smaller shape", "Half way below which the geometry at the middle is that of the start."
