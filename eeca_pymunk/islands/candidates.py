@@ -10,6 +10,7 @@ from ..compiled.records import Rows
 from ..geometry.flight import norm
 from ..geometry.manifold import half_width
 from ..model.contacts import Row
+from ..model.parameters.events import RESOLUTION
 from ..model.parameters.intervals import (
     EXACT_CONTACTS,
     INTERVAL_DEPTH_LEAST,
@@ -17,7 +18,6 @@ from ..model.parameters.intervals import (
     LARGE_ISLAND,
     LARGE_SWEEPS,
     LARGE_SWEEPS_HIT,
-    LEAST_INTERVAL,
     NORMAL_TURN,
     RATTLE,
     STICK,
@@ -110,7 +110,7 @@ def in_haste(A: Scene) -> bool:
     """Whether intervals are to last to the end of the step: where all contacts act together, and once the step has had
     about as many as there are bodies."""
     bodies = A.BODY.shape[0]
-    return A.COUNT.together > 0 or A.COUNT.solves >= max(LEAST_INTERVAL - 2.0 * bodies, bodies)
+    return A.COUNT.together > 0 or A.COUNT.solves >= max(RESOLUTION - 2.0 * bodies, bodies)
 
 
 @uncounted
@@ -147,7 +147,7 @@ def interval_length(A: Scene, found: IntArray, t: float) -> float:
             rate = max(rate, speed / max(A.SHAPE[a].rounding + A.SHAPE[b].rounding, 1e-300))
     if rate * h <= NORMAL_TURN:
         return h
-    return min(max(NORMAL_TURN / rate, A.PAR.dt / LEAST_INTERVAL), h)
+    return min(max(NORMAL_TURN / rate, A.PAR.dt / RESOLUTION), h)
 
 
 @uncounted

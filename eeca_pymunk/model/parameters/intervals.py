@@ -15,25 +15,8 @@ SOLVES_BEFORE_HASTE = heuristic(
     3, "solves of every body in a step", "Work after which islands are solved less precisely."
 )
 IMPACT_SPEED = accuracy(2.0, "of |a| h", "Approach speed from which a contact that closes in an interval is an impact.")
-IMPACTS_BEFORE_REST = heuristic(
-    16,
-    "impacts of a body in a step",
-    "Number after which a lossy contact persists. Larger: more events of a bouncing body.",
-)
-IMPACTS_BEFORE_REST_ELASTIC = heuristic(64, "impacts of a body in a step", "The same for a slow elastic contact.")
-SLOW_ELASTIC = heuristic(1.0 / 64.0, "of |a| dt", "Approach speed below which an elastic contact is slow.")
 BUSY_STEPS = heuristic(8, "steps", "Steps after the last impact in which an island is not tested for rest.")
-MOST_HITS = heuristic(
-    1,
-    "impacts in a step",
-    "Impacts on a large lossy island, beyond which shallow ones are passed over until the next step.",
-)
-MOST_HITS_ELASTIC = heuristic(64, "impacts in a step", "The same for an elastic island.")
-HITS_TIMES_BODIES = heuristic(
-    64, "impacts times bodies", "Small islands may be hit oftener: until impacts times bodies reach this."
-)
 NORMAL_TURN = accuracy(0.1, "rad", "Rotation of a normal in one interval. Larger: longer intervals, coarser rolling.")
-LEAST_INTERVAL = work(64.0, "intervals in a step", "An interval is not shorter than the step over this.")
 EXACT_CONTACTS = heuristic(
     12, "contacts", "Number up to which an interval ends where a contact begins to stick or normals turn."
 )
