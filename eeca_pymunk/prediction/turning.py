@@ -192,8 +192,8 @@ def general(A: Scene, a: int, b: int, horizon: float) -> tuple[float, bool]:
     a look, as no bound of theirs is above 0.
 
     Args:
-        horizon: finite instant; lower bounds are no earlier. Of what takes more than 1000 looks at one part in RESOLUTION
-            of the time until then the rest is given up.
+        horizon: finite instant; lower bounds are no earlier. Of what takes more than 1000 looks at a part in
+            RESOLUTION of the time until then the rest is given up.
     """
     if a > b:
         a, b = b, a

@@ -21,7 +21,7 @@ ADVANCES = work(
 RESOLUTION = work(
     64,
     "in a step",
-    "Intervals, looks at shapes that touch, hits times the bodies of an island, impacts of a body that may rest or that "
+    "Intervals, looks at shapes that touch, hits times the bodies of an island, impacts of a body before it rests, or "
     "is squeezed; a bounce slower than |a| dt over it is none. Larger: dearer steps of what rattles.",
 )
 FARTHEST_MARGIN = work(

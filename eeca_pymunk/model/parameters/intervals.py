@@ -14,7 +14,11 @@ ELASTIC_REST_ON = accuracy(0.001, "of |a| dt", "The same if it rested before.")
 SOLVES_BEFORE_HASTE = heuristic(
     3, "solves of every body in a step", "Work after which islands are solved less precisely."
 )
-IMPACT_SPEED = accuracy(2.0, "of |a| h", "Approach speed from which a contact that closes in an interval is an impact.")
+IMPACT_SPEED = accuracy(
+    2.0,
+    "of |a| h",
+    "Approach speed from which a contact that closes in an interval is an impact; what is slower may freeze.",
+)
 BUSY_STEPS = heuristic(8, "steps", "Steps after the last impact in which an island is not tested for rest.")
 NORMAL_TURN = accuracy(0.1, "rad", "Rotation of a normal in one interval. Larger: longer intervals, coarser rolling.")
 EXACT_CONTACTS = heuristic(

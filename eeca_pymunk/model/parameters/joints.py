@@ -46,12 +46,10 @@ HASTE = work(0.25, "of the budget", "Work of a step after which limits are locat
 COMPONENT_BUDGET = work(0.5, "of what is left", "Work that one step of a component may take.")
 NEARLY_HELD = accuracy(1e-08, "of the component", "Error of elastic joints up to which they count as held.")
 TAUT = heuristic(
-    0.5, "of a body's inertia", "Stiffness of a joint's pull, times h^2/4, from which contacts take it into account."
-)
-PRESSED = heuristic(
     0.5,
     "of a body's inertia",
-    "Stiffness of joints that press, times h^2/4, up to which contacts take it into account.",
+    "Stiffness of a joint's force, times h^2/4, from which contacts take it into account where it pulls, and up to "
+    "which where it presses: beyond twice that no inertia of the body would be left.",
 )
 ARM_ITERATIONS = work(6, "iterations", "Motions in which arms of contacts are made those of the middle.")
 ARM_ERROR = round_off(1e-15, "of the component", "Error of these arms.")
