@@ -5,7 +5,7 @@ segments that lie flush are equally far apart, 0, and of thin shapes that have c
 error of a step, the nearer way out may be the wrong one. So pairs of them remember a normal m from a to b, in the
 memory of sides, the rows of SIDE. It holds
 
-* for cores that touch, up to 1e-4 of the smaller one, and
+* for cores that touch, up to the depth that an interval may always reach, and
 * for contacts that forces hold (`deep` > 0) as far as they may have come through one another: a normal against m is
   the wrong one up to that distance (length), and the gap is negative.
 
@@ -24,7 +24,8 @@ import math
 from ..arrays import FloatArray, IntArray
 from ..compiled import Table, uncounted
 from ..compiled.records import Rows
-from ..model.parameters.detection import SIDE_HELD, SIDE_OPPOSITE, SIDE_TOUCH, SIDE_UNSURE, STRAIGHT
+from ..model.parameters.detection import SIDE_HELD, SIDE_OPPOSITE, SIDE_UNSURE, STRAIGHT
+from ..model.parameters.intervals import INTERVAL_DEPTH_LEAST
 from ..model.scene import Scene, scene_of
 from ..model.shapes import Side
 from .convex import closest
@@ -81,7 +82,7 @@ def note_side(A: Scene, a: int, b: int, nx: float, ny: float, held: bool) -> Non
 @uncounted
 def near_side(A: Scene, a: int, b: int) -> float:
     """Length up to which cores touch, so that the memory tells their side."""
-    return SIDE_TOUCH * smaller(A, a, b)
+    return INTERVAL_DEPTH_LEAST * smaller(A, a, b)
 
 
 @uncounted

@@ -28,7 +28,6 @@ SIDE_OPPOSITE = heuristic(
     -0.1, "cosine", "Cosine of normals below which a thin segment is on the other side of a wall."
 )
 SIDE_UNSURE = heuristic(0.7, "cosine", "The same, while cores of segments touch, where the normal is not reliable.")
-SIDE_TOUCH = heuristic(0.0001, "of the smaller shape", "Distance of cores within which the remembered side decides.")
 SIDE_HELD = heuristic(
     0.4,
     "of the smaller shape",

@@ -45,7 +45,12 @@ INTERVAL_DEPTH_WIDTH = heuristic(
     "Depth by which a contact may close in one interval, or an impact that is passed over by the end of the step: a "
     "tenth of the way through. Larger: cheaper and deeper piles.",
 )
-INTERVAL_DEPTH_LEAST = heuristic(0.0001, "of the smaller shape", "Depth that is always allowed.")
+INTERVAL_DEPTH_LEAST = heuristic(
+    0.0001,
+    "of the smaller shape",
+    "Depth that an interval may always reach. Up to it the nearer way out may be the wrong one: thin shapes that touch "
+    "within it are on the side that they remember.",
+)
 INTERVAL_RETRY = heuristic(
     1.5, "ratio", "An interval is solved again, shorter, if bodies went farther than they should by this ratio."
 )
