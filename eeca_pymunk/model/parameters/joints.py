@@ -18,7 +18,12 @@ JOINT_SPEED_ROUND_OFF = round_off(1e-14, "of the speeds", "Velocity along a row 
 JOINT_SPEED_LEFT = heuristic(
     0.01, "of the speeds along a row", "Velocity along a row that is left by steps, and not corrected as an edit."
 )
-LEAST_INERTIA = heuristic(0.1, "of a body's inertia", "Inertia that the geometric stiffness of joints may leave.")
+LEAST_INERTIA = work(
+    0.1,
+    "of a body's inertia",
+    "Inertia that the geometric stiffness of joints may leave in the smaller one of two systems, whose solution is the "
+    "same; below it the larger one is solved.",
+)
 LIMIT_EVENTS = work(12, "number", "Limits that are reached in one step of a component.")
 LIMIT_SECANTS = work(12, "iterations", "Secant steps to the instant at which a limit is reached.")
 LIMIT_SECANTS_HASTE = work(2, "iterations", "The same once the budget is spent.")
@@ -29,8 +34,11 @@ RESPONSE_PASSES = work(2, "number", "Refinements of the response of a component.
 JOINT_TOLERANCE = round_off(3e-16, "of the component", "Error of joints and momenta.")
 JOINT_ROUND_OFF = round_off(3e-14, "of the component", "An error below it that no longer halves is round-off.")
 JOINT_ROUND_OFF_KEPT = round_off(2e-15, "of the component", "The same with factors of an earlier step.")
-NEWTON_PROGRESS = heuristic(
-    0.03, "ratio of errors", "Progress of an iteration with earlier factors below which they are computed again."
+NEWTON_PROGRESS = work(
+    0.03,
+    "ratio of errors",
+    "Progress of an iteration with earlier factors below which they are computed again; it ends at JOINT_TOLERANCE with "
+    "either.",
 )
 NEWTON_FLOOR = round_off(1e-11, "of the component", "An error below it that has not fallen twice is round-off.")
 NEWTON_ITERATIONS = work(25, "iterations", "Newton iterations of a step.")
