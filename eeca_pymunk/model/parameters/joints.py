@@ -37,8 +37,8 @@ JOINT_ROUND_OFF_KEPT = round_off(2e-15, "of the component", "The same with facto
 NEWTON_PROGRESS = work(
     0.03,
     "ratio of errors",
-    "Progress of an iteration with earlier factors below which they are computed again; it ends at JOINT_TOLERANCE with "
-    "either.",
+    "Progress of an iteration with earlier factors below which they are computed again; it ends at "
+    "JOINT_TOLERANCE with either.",
 )
 NEWTON_FLOOR = round_off(1e-11, "of the component", "An error below it that has not fallen twice is round-off.")
 NEWTON_ITERATIONS = work(25, "iterations", "Newton iterations of a step.")
@@ -81,7 +81,6 @@ FIT_RESIDUAL = accuracy(1e-06, "of the fastest closing contact", "Residual of th
 FIT_ENERGY = round_off(1e-12, "of the energy", "Change of energy by the fit that is round-off.")
 JOINTED_OVERLAP = accuracy(1e-09, "of the bodies", "Overlap of jointed bodies that is not corrected.")
 JOINTED_CORRECTION_SWEEPS = work(40, "sweeps", "Sweeps of the correction.")
-JOINTED_CORRECTION = heuristic(0.1, "of a body", "Displacement by the correction in one step, at most.")
 STEP_WORK = work(
     80000000.0, "operations", "Work of a step with joints, beside STEP_WORK_BODY; 6e9 take about a second."
 )
