@@ -107,7 +107,7 @@ def lift(A: Scene, J: Joints, interval: Interval, end: float, budget: float) -> 
             if ready(J, s, 2.0, False):
                 fill_group(J, groups, C, g, INDEX, False, P, Q, ROWS, m, np.empty((places, 3)))
     KEEP = ROWS[:m].copy()
-    weigh(groups, C, P, Q, KEEP, m)
+    weigh(C, P, Q, KEEP, m)
     D = np.zeros_like(V)
     raise_gaps(C, P, Q, KEEP, GAPS, D, m, 1e-3 * -deepest)
     cost = -against(isle.ACC, isle.IM, isle.II, n, D)

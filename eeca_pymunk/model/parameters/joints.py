@@ -62,10 +62,11 @@ TAUT = heuristic(
 ARM_ITERATIONS = work(6, "iterations", "Motions in which arms of contacts are made those of the middle.")
 ARM_ERROR = round_off(1e-15, "of the component", "Error of these arms.")
 BOUNDED_SWEEPS = work(30, "sweeps", "Sweeps over bounded joint rows and contacts.")
-STRUT = heuristic(
-    0.001, "of the free mobility", "Constrained mobility below which a contact within one component is dropped."
+STRUT = round_off(
+    1e-07,
+    "of the free mobility",
+    "Mobility of a contact under its joints that is the error of their solution: the contact then is left out.",
 )
-STRUT_BETWEEN = round_off(1e-07, "of the free mobility", "The same of a contact between two components.")
 CORRECTION_JOINTS = accuracy(1e-11, "of the component", "Error of joints where overlaps are corrected.")
 CONDENSED_BOUNDED = work(
     16, "bounded rows", "Number up to which bounded rows are condensed into the contacts' columns."
