@@ -14,7 +14,7 @@ from ..islands.building import comes_to_rest, hits_of, most_hits, passed_over
 from ..islands.intervals import solve
 from ..islands.membership import members
 from ..model.bodies import AT_REST, LEAVE, RENEW
-from ..model.parameters.events import AHEAD, SQUEEZED_IMPACTS
+from ..model.parameters.events import AHEAD, RESOLUTION
 from ..model.scene import Scene
 from ..model.step import BLOCK_DUE, DONE, HITS, IMPACTS, JOINTS_DUE, LOG_FULL, POOL_FULL, SOLVES
 from ..pairs.grid import renew
@@ -44,7 +44,7 @@ def give_up(A: Scene, i: int, j: int) -> bool:
         return False
     ground = A.BODY.shape[0] - 1
     carried = (A.BODY[i].inv_mass == 0.0 and i != ground) or (A.BODY[j].inv_mass == 0.0 and j != ground)
-    return carried and max(A.STATE[i].events, A.STATE[j].events) >= SQUEEZED_IMPACTS
+    return carried and max(A.STATE[i].events, A.STATE[j].events) >= RESOLUTION
 
 
 @uncounted

@@ -18,7 +18,7 @@ from ..layout import NOW as READ
 from ..model.bodies import CHECK, Body, Member, Next, Rest
 from ..model.contacts import Force, Impulse, Pair, Pushed
 from ..model.parameters.events import SOLVES_PER_BODY
-from ..model.parameters.intervals import FIRST_AUGMENTATION
+from ..model.parameters.impulses import AUGMENTATION
 from ..model.scene import scene_with
 from ..model.shapes import Link, Shape
 from ..model.step import Missed
@@ -94,7 +94,7 @@ class EventLoop(Remembering):
         self.scene.COUNT.limit, self.scene.COUNT.disks = limit, disks
         self.scene.COUNT.budget = SOLVES_PER_BODY * n
         self.scene.MEMBER["tied"] = self.scene.MEMBER["next_tied"] = -1
-        self.scene.RESTING["augmentation"] = FIRST_AUGMENTATION
+        self.scene.RESTING["augmentation"] = AUGMENTATION
 
     def step(
         self, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,

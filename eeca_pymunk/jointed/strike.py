@@ -123,7 +123,7 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[int, int]:
                 for c in range(3):
                     V[q, c] = PUSH[INDEX[q], c]
     FITTED = V.copy()
-    weigh(groups, C, P, Q, ROWS, rows)
+    weigh(C, P, Q, ROWS, rows)
     rates(P, Q, ROWS, V, rows)
     speed = aim(ROWS, rows)
     status = CONVERGED

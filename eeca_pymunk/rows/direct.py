@@ -7,7 +7,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import kernel
 from ..model.contacts import Problem
-from ..model.parameters.impulses import DENSE_CONTACTS, REFINEMENTS
+from ..model.parameters.impulses import AUGMENTATION, DENSE_CONTACTS, REFINEMENTS
 from .dense import newton
 from .polish import polish, segment
 from .sweeps import keep, sweep
@@ -55,7 +55,7 @@ def refine(
             keep(L1, V1, m, L, V)
         part = segment(A, B, ROWS, L, V, L0, V0, m)
     if part > 0.9:
-        log_R = min(log_R + 2.0, 8.0)
+        log_R = min(log_R + 2.0, AUGMENTATION)
     elif part < 0.3:
         log_R = max(log_R - 2.0, 2.0)
     return log_R, sweep(A, B, ROWS, L, V, IM, II, m)
