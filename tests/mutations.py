@@ -143,7 +143,7 @@ MUTATIONS = (
              "if fastest > 1e300 * scale:", "jointed/test_taut.py", "0.0001-1e-06-5.0"),
     Mutation("ledger: sign of the work of a support", "joints/ledger.py", "ledger.supports += moved - total",
              "ledger.supports += total - moved", "joints/test_kinds.py", "support"),
-    Mutation("ledger: supports at impacts", "jointed/strike.py",
+    Mutation("ledger: supports at impacts", "impacts/joint_impact.py",
              "+= gained - carried(P", "+= 0.0 * gained - carried(P", "jointed/test_supports.py", "struck"),
     Mutation("ledger: what a limit costs that moves", "joints/correct.py", "lost += 0.5 *", "lost += 1.0 *",
              "jointed/test_supports.py", "stopped"),

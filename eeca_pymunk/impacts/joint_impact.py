@@ -1,4 +1,4 @@
-"""An impact on islands with joints, at its instant (`meet`): impulses that joints pass on."""
+"""An impact on islands with joints, at its instant (`..jointed.meet`): impulses that joints pass on."""
 
 from __future__ import annotations
 
@@ -8,11 +8,16 @@ from ..arrays import FloatArray
 from ..compiled import kernel, uncounted
 from ..compiled.records import zeros
 from ..contacts.works import carried
-from ..impacts.resolution import finish, rejoin
-from ..impacts.simultaneous import Block, gather, lay_out, owing
 from ..islands.building import comes_to_rest
 from ..islands.intervals import dismiss
-from ..islands.membership import members, unite
+from ..islands.membership import members
+from ..jointed.bounded import room_for_rows
+from ..jointed.columns import fill_free, fill_group, make_columns, push_columns, weigh
+from ..jointed.component import answer, fit_speeds, ready
+from ..jointed.gathered import find_places, gather_component
+from ..jointed.groups import find_groups
+from ..jointed.meet import end_here, meet, shorten
+from ..jointed.newton import solve_columns
 from ..model.contacts import SOLVED
 from ..model.joints import Joints
 from ..model.parameters.joints import SOLUTION_WORK, STRIKE_SWEEPS
@@ -21,13 +26,8 @@ from ..rows.blocks import CONVERGED, TRUNCATED
 from ..rows.build import aim, conserves, rates
 from ..rows.energy import scale_of, works
 from ..rows.inplace import copy
-from .bounded import room_for_rows
-from .columns import fill_free, fill_group, make_columns, push_columns, weigh
-from .component import answer, fit_speeds, ready
-from .gathered import find_places, gather_component
-from .groups import find_groups
-from .meet import end_here, meet, shorten
-from .newton import solve_columns
+from .resolution import finish, rejoin
+from .simultaneous import Block, gather, lay_out, owing
 
 
 @uncounted
@@ -54,11 +54,12 @@ def carried_along(J: Joints, s: int) -> bool:
 
 
 @kernel
-def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[int, int]:
-    """The impact of shapes a and b, seen at instant t, with all that hangs on them: results as `..contacts.single`."""
+def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
+    """The impact of shapes a and b, seen at instant t, with all that hangs on them: results as `resolution.strike`, at
+    PAR.now."""
     k = A.SHAPE.shape[0]
     i, j = A.LINK[a].owner, A.LINK[b].owner
-    t = meet(A, J, a, b, t)
+    A.PAR.now = t = meet(A, J, a, b, t)
     n, m, PAIRS = gather(A, a, b, t)
     again, ended = True, 0
     ENDED = np.empty(A.BODY.shape[0], np.int64)
@@ -155,21 +156,16 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[int, int]:
     A.STATE[i].version += 1
     if A.BODY[j].inv_mass > 0.0:
         A.STATE[j].version += 1
-    status, n = rejoin(A, a, b, t, n, rest, OUT[0].restitution + OUT[0].friction - owed)
-    # Islands that were brought here, and do not touch after all, begin anew with those that do.
-    root = A.COUNT.pending  # -1 if no joints take part after all
+    n = rejoin(A, a, b, t, n, rest, OUT[0].restitution + OUT[0].friction - owed)
+    # Islands that were brought here, and do not touch after all, begin anew too.
+    for q in range(n):
+        A.PLACE[A.BLOCK[q]] = q
+    MINE = np.empty(A.BODY.shape[0], np.int64)
     for c in range(ended):
-        other = A.STATE[ENDED[c]].island
-        if other != root:
-            MINE = np.empty(A.MEMBER[other].bodies, np.int64)
-            members(A, other, MINE)
-            for q in range(len(MINE)):
-                known = False
-                for p in range(n):
-                    known = known or A.BLOCK[p] == MINE[q]
-                if not known:
-                    A.BLOCK[n] = MINE[q]
-                    n += 1
-            root = other if root < 0 else unite(A, root, other)
-    A.COUNT.pending = root
-    return status, n
+        more = members(A, A.STATE[ENDED[c]].island, MINE)
+        for q in range(more):
+            if A.PLACE[MINE[q]] < 0:
+                A.BLOCK[n], A.PLACE[MINE[q]] = MINE[q], n
+                n += 1
+    dismiss(A, A.BLOCK, n)
+    return n
