@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
-from ..compiled.records import zeros
+from ..compiled.records import Rows, zeros
 from ..contacts.works import carried
 from ..islands.building import comes_to_rest
 from ..islands.intervals import dismiss
@@ -18,12 +18,12 @@ from ..jointed.gathered import find_places, gather_component
 from ..jointed.groups import find_groups
 from ..jointed.meet import end_here, meet, shorten
 from ..jointed.newton import solve_columns
-from ..model.contacts import SOLVED
+from ..model.contacts import SOLVED, Row
 from ..model.joints import Joints
-from ..model.parameters.joints import SOLUTION_WORK, STRIKE_SWEEPS
+from ..model.parameters.joints import CLOSES, SOLUTION_WORK, STRIKE_SWEEPS
 from ..model.scene import Scene
 from ..rows.blocks import CONVERGED, TRUNCATED
-from ..rows.build import aim, conserves, rates
+from ..rows.build import aim, conserves, normal_rate, rates
 from ..rows.energy import scale_of, works
 from ..rows.inplace import copy
 from .resolution import finish, rejoin
@@ -51,6 +51,17 @@ def carried_along(J: Joints, s: int) -> bool:
                 if J.LOCAL[i].v0[c] != 0.0:
                     return True
     return False
+
+
+@uncounted
+def closes(P: IntArray, Q: IntArray, ROWS: Rows[Row], BEFORE: FloatArray, V: FloatArray, rows: int) -> bool:
+    """Whether a contact closes with velocities V after an impact, BEFORE it, by more than round-off: where these do not
+    fit the joints, so that the same impact would follow at the same instant, again and again."""
+    fastest, least = 0.0, 0.0
+    for i in range(rows):
+        fastest = max(fastest, abs(normal_rate(P, Q, ROWS, BEFORE, i)))
+        least = min(least, normal_rate(P, Q, ROWS, V, i))
+    return bool(least < -CLOSES * fastest)
 
 
 @kernel
@@ -143,10 +154,15 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
         OUT[0].lock = scale
         OUT[0].restitution, OUT[0].friction = works(P, Q, ROWS, L, V, rows, LOSS)
         status = CONVERGED if worst <= 10.0 * tolerance else TRUNCATED
-    if conserves(ROWS, rows):
+    fits = not conserves(ROWS, rows)
+    if not fits:
         copy(V, BEFORE)
         push_columns(C, L, rows, 1.0, V)
-    else:
+        fits = closes(P, Q, ROWS, BEFORE, V, rows)
+    if fits:
+        # What joints would not let through is lost.
+        copy(V, FITTED)
+        push_columns(C, L, rows, 1.0, V)
         OUT[0].restitution += energy_of(block, BEFORE, FITTED, n)
     # Joints do all that contacts do not account for, which is nothing unless they hang on something that moves.
     REST = np.zeros_like(V)
