@@ -11,21 +11,19 @@ from ..contacts.works import carried
 from ..islands.building import comes_to_rest
 from ..islands.intervals import dismiss
 from ..islands.membership import members
-from ..jointed.bounded import room_for_rows
-from ..jointed.columns import fill_free, fill_group, make_columns, push_columns, weigh
+from ..jointed.columns import fill_free, fill_group, make_columns, weigh
 from ..jointed.component import answer, fit_speeds, ready
 from ..jointed.gathered import find_places, gather_component
 from ..jointed.groups import find_groups
 from ..jointed.meet import end_here, meet, shorten
-from ..jointed.newton import solve_columns
-from ..model.contacts import SOLVED, Row
+from ..model.contacts import SOLVED, JointedProblem, Row
 from ..model.joints import Joints
-from ..model.parameters.joints import CLOSES, SOLUTION_WORK, STRIKE_SWEEPS
+from ..model.parameters.joints import CLOSES, SOLUTION_WORK
 from ..model.scene import Scene
-from ..rows.blocks import CONVERGED, TRUNCATED
-from ..rows.build import aim, conserves, normal_rate, rates
-from ..rows.energy import scale_of, works
-from ..rows.inplace import copy
+from ..rows.blocks import solve_block
+from ..rows.bounded import room_for_rows
+from ..rows.build import conserves, normal_rate
+from ..rows.sweeps import velocities
 from .resolution import finish, rejoin
 from .simultaneous import Block, gather, lay_out, owing
 
@@ -93,7 +91,6 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     P, Q, ROWS, V = block.A, block.B, block.ROWS, block.V
     rows = len(ROWS)
     L, LOSS, OUT = np.zeros((rows, 2)), np.zeros((rows, 2)), zeros(1, SOLVED)
-    OUT[0].lock = 1.0
     WHO = np.full(len(block.IM), -1, np.int64)
     for q in range(n):
         WHO[q] = A.BLOCK[q]
@@ -136,33 +133,15 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
                     V[q, c] = PUSH[INDEX[q], c]
     FITTED = V.copy()
     weigh(groups, C, P, Q, ROWS, rows)
-    rates(P, Q, ROWS, V, rows)
-    speed = aim(ROWS, rows)
-    status = CONVERGED
-    if speed > 0.0:
-        FREE = V.copy()
-        elastic = conserves(ROWS, rows)
-        tolerance = (1e-15 if elastic else 1e-10) * speed
-        worst = solve_columns(C, room_for_rows(0, 0), P, Q, ROWS, L, V, rows, tolerance, STRIKE_SWEEPS)
-        copy(V, FREE)
-        push_columns(C, L, rows, 1.0, V)
-        scale, _ = scale_of(P, Q, ROWS, L, V, FREE, rows, owed, elastic)
-        if scale != 1.0:
-            L *= scale
-            copy(V, FREE)
-            push_columns(C, L, rows, 1.0, V)
-        OUT[0].lock = scale
-        OUT[0].restitution, OUT[0].friction = works(P, Q, ROWS, L, V, rows, LOSS)
-        status = CONVERGED if worst <= 10.0 * tolerance else TRUNCATED
+    problem = JointedProblem(P, Q, ROWS, C, room_for_rows(0, 0), rows)
+    status = solve_block(problem, L, V, owed, False, LOSS, OUT)
     fits = not conserves(ROWS, rows)
     if not fits:
-        copy(V, BEFORE)
-        push_columns(C, L, rows, 1.0, V)
+        velocities(problem, L, BEFORE, V)
         fits = closes(P, Q, ROWS, BEFORE, V, rows)
     if fits:
         # What joints would not let through is lost.
-        copy(V, FITTED)
-        push_columns(C, L, rows, 1.0, V)
+        velocities(problem, L, FITTED, V)
         OUT[0].restitution += energy_of(block, BEFORE, FITTED, n)
     # Joints do all that contacts do not account for, which is nothing unless they hang on something that moves.
     REST = np.zeros_like(V)

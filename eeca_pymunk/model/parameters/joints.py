@@ -124,4 +124,3 @@ CHORD = work(3, "steps of the components", "Steps for which the response is take
 CLOSES = round_off(
     1e-12, "of the fastest contact", "Speed with which contacts may close after an elastic impact on components."
 )
-STRIKE_SWEEPS = work(1000, "sweeps", "Sweeps of an impact on components.")
