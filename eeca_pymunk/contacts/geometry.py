@@ -18,7 +18,7 @@ from ..compiled import kernel, uncounted
 from ..geometry.manifold import manifold
 from ..geometry.sides import note_side
 from ..model.islands import Contacts, Island
-from ..model.parameters.intervals import MANIFOLD_ROUND_OFF, MIDPOINT_TURN, MIDPOINT_WAY
+from ..model.parameters.intervals import INTERVAL_WAY, MANIFOLD_ROUND_OFF, MIDPOINT_TURN
 from ..model.scene import Scene
 from ..pairs.rules import law
 from ..rows.build import place_row
@@ -82,7 +82,7 @@ def gather(
         centre = MIDDLE
         # Normals turn as round shapes go round one another, and slowly about a large one.
         far = SHAPE[s].rounding + SHAPE[r].rounding if LINK[s].vertices == 1 and LINK[r].vertices == 1 else small
-        ahead = near * small < way and about <= MIDPOINT_WAY * far
+        ahead = near * small < way and about <= 0.5 * INTERVAL_WAY * far
         if ahead:
             again = manifold(S, s, r, MIDDLE, a, b, reach + about, MANIFOLD_ROUND_OFF * small, THEN)
             ahead = again == count

@@ -9,8 +9,9 @@ at most, and hold it from then on,
 
 from the velocities v that it has: what slides without friction, rolls, or topples does not. Only what is slower than
 REST_CANDIDATE |a| h is tested, and N of a body grows with its speed, so that it stops no more than
-REST_CANDIDATE |a| h^2 / 2 from where it would. What is faster, up to FREEZE |a| h, may only freeze: the first of the
-two equilibria ends its motion, and the next solve shows whether it holds.
+REST_CANDIDATE |a| h^2 / 2 from where it would. What is faster, up to the IMPACT_SPEED |a| h below which
+contacts persist, may only freeze: the first of the two equilibria ends its motion, and the next solve shows whether it
+holds.
 """
 
 from __future__ import annotations

@@ -5,15 +5,15 @@ segments that lie flush are equally far apart, 0, and of thin shapes that have c
 error of a step, the nearer way out may be the wrong one. So pairs of them remember a normal m from a to b, in the
 memory of sides, the rows of SIDE. It holds
 
-* for cores that touch, up to 1e-4 of the smaller one, and
-* for contacts that forces hold (`deep` > 0) as far as they may have come through one another: a normal against m is
-  the wrong one up to that distance (length), and the gap is negative.
+* for cores that touch, up to the depth that an interval may always reach, and
+* for contacts that forces hold (`deep` > 0) as far as they may go about one another in an interval: a normal n with
+  n . m < 0 is the wrong one up to that distance (length), and the gap is negative.
 
 What is farther apart has its side from the geometry, and the forecasts of its next impact note it.
 
 Segments of one body that meet, end to end or an end on the other, are one boundary. What lies in the corner between
 two, by its side of one, and is nearest to the other where they meet, is on that one's side that looks into the corner:
-there it meets that side as if it went on beyond the end, by 0.4 of the smaller shape. In a corner of less than 180
+there it meets that side as if it went on beyond the end, by that way. In a corner of less than 180
 degrees nothing of that is inside, so the corner stays what it is. (CORNER, see `corners.py`)
 """
 
@@ -24,7 +24,8 @@ import math
 from ..arrays import FloatArray, IntArray
 from ..compiled import Table, uncounted
 from ..compiled.records import Rows
-from ..model.parameters.detection import SIDE_HELD, SIDE_OPPOSITE, SIDE_TOUCH, SIDE_UNSURE, STRAIGHT
+from ..model.parameters.detection import STRAIGHT
+from ..model.parameters.intervals import INTERVAL_DEPTH_LEAST, INTERVAL_WAY
 from ..model.scene import Scene, scene_of
 from ..model.shapes import Side
 from .convex import closest
@@ -75,13 +76,13 @@ def note_side(A: Scene, a: int, b: int, nx: float, ny: float, held: bool) -> Non
     key = key_of(A, a, b)
     side = A.SIDE[side_row(A, key)]
     side.key, side.nx, side.ny = key, nx, ny
-    side.deep = SIDE_HELD * smaller(A, a, b) if held else 0.0
+    side.deep = INTERVAL_WAY * smaller(A, a, b) if held else 0.0
 
 
 @uncounted
 def near_side(A: Scene, a: int, b: int) -> float:
     """Length up to which cores touch, so that the memory tells their side."""
-    return SIDE_TOUCH * smaller(A, a, b)
+    return INTERVAL_DEPTH_LEAST * smaller(A, a, b)
 
 
 @uncounted
@@ -173,10 +174,10 @@ def corner_of(
             continue
         lx, ly = -sign * uy, sign * ux
         mx, my = side_of(A, other, o)
-        if sign * (mx * (z * ux + c * uy) - my * (c * ux - z * uy)) < SIDE_UNSURE:
+        if sign * (mx * (z * ux + c * uy) - my * (c * ux - z * uy)) <= 0.0:
             continue
         mx, my = side_of(A, w, o)
-        if mx * lx + my * ly >= SIDE_OPPOSITE:
+        if mx * lx + my * ly >= 0.0:
             W[end, 0], W[end, 1] = W[end, 0] - deep * ux, W[end, 1] - deep * uy
             return end, lx, ly
     return -1, 0.0, 0.0
@@ -191,25 +192,24 @@ def closest_on_side(
     d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q = closest(P, p, Q, q)
     if not remembers(A, a, b):
         return d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q
-    deep = SIDE_HELD * smaller(A, a, b)
+    deep = INTERVAL_WAY * smaller(A, a, b)
     end = -1
     if q == 2:
         end, mx, my = corner_of(A, Q, b, a, x + d * nx, y + d * ny, deep)
         mx, my = -mx, -my
     if end < 0 and p == 2:
         end, mx, my = corner_of(A, P, a, b, x, y, deep)
-    near = near_side(A, a, b)
     if end >= 0:
         d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q = closest(P, p, Q, q)
         reach = deep
     else:
         key = key_of(A, a, b)
         side = A.SIDE[side_row(A, key)]
-        mx, my, reach = side.nx, side.ny, max(near, side.deep)
+        mx, my, reach = side.nx, side.ny, max(near_side(A, a, b), side.deep)
         if side.key != key:
             return d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q
     along = nx * mx + ny * my
-    if d > reach or (along >= SIDE_OPPOSITE and (along >= SIDE_UNSURE or d > near)):
+    if d > reach or along >= 0.0:
         return d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q
     apart_p, edge_p, vertex_q = axis(P, p, Q, q, 1.0, mx, my)
     apart_q, edge_q, vertex_p = axis(Q, q, P, p, -1.0, mx, my)

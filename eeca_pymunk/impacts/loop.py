@@ -15,7 +15,7 @@ from ..islands.membership import members
 from ..jointed.meet import end_here
 from ..model.bodies import LEAVE, RENEW
 from ..model.joints import Joints
-from ..model.parameters.events import AHEAD, SQUEEZED_IMPACTS
+from ..model.parameters.events import AHEAD, RESOLUTION
 from ..model.scene import Scene
 from ..model.step import BLOCK_DUE, DONE, HITS, IMPACTS, LOG_FULL, POOL_FULL, PUSHES_FULL
 from ..pairs.grid import renew
@@ -49,7 +49,7 @@ def give_up(A: Scene, i: int, j: int) -> bool:
         return False
     ground = A.BODY.shape[0] - 1
     carried = (A.BODY[i].inv_mass == 0.0 and i != ground) or (A.BODY[j].inv_mass == 0.0 and j != ground)
-    return carried and max(A.STATE[i].events, A.STATE[j].events) >= SQUEEZED_IMPACTS
+    return carried and max(A.STATE[i].events, A.STATE[j].events) >= RESOLUTION
 
 
 @uncounted

@@ -20,7 +20,7 @@ from ..model.bodies import CHECK, Body, Member, Next, Rest
 from ..model.contacts import Force, Impulse, Pair, Pushed
 from ..model.joints import Joint
 from ..model.parameters.events import SOLVES_PER_BODY
-from ..model.parameters.intervals import FIRST_AUGMENTATION
+from ..model.parameters.impulses import AUGMENTATION
 from ..model.scene import scene_with
 from ..model.shapes import Link, Shape
 from ..model.step import Missed
@@ -100,7 +100,7 @@ class EventLoop(Remembering):
         self.scene.COUNT.lossy, self.scene.COUNT.together = lossy, together
         self.scene.COUNT.budget = SOLVES_PER_BODY * n
         self.scene.MEMBER["tied"] = self.scene.MEMBER["next_tied"] = -1
-        self.scene.RESTING["augmentation"] = FIRST_AUGMENTATION
+        self.scene.RESTING["augmentation"] = AUGMENTATION
         self.jointed = joint is not None
         self.joints = make_joints(BODY[:0], rows(Joint, 0), BODY[:0], order)
         if joint is not None and PARTNER is not None:

@@ -15,15 +15,10 @@ from ..geometry.flight import norm
 from ..geometry.manifold import half_width
 from ..model.bodies import AT_REST
 from ..model.contacts import LASTED
+from ..model.parameters.events import RESOLUTION
 from ..model.parameters.intervals import (
     BUSY_STEPS,
-    HITS_TIMES_BODIES,
-    IMPACTS_BEFORE_REST,
-    IMPACTS_BEFORE_REST_ELASTIC,
-    MOST_HITS,
-    MOST_HITS_ELASTIC,
-    PASSED_OVER_DEPTH,
-    SLOW_ELASTIC,
+    INTERVAL_DEPTH_WIDTH,
     TOUCH,
 )
 from ..model.scene import Scene
@@ -165,7 +160,8 @@ def build_islands(A: Scene) -> int:
 @uncounted
 def comes_to_rest(A: Scene, a: int, b: int, t: float) -> bool:
     """Whether shapes a and b, which meet at instant t, stay in contact from then on: bounces of e |u| under the closing
-    acceleration a_n are over within the step iff 2 e |u| <= a_n (1 - e) (dt - t)."""
+    acceleration a_n are over within the step iff 2 e |u| <= a_n (1 - e) (dt - t); so are those that the step does not
+    resolve."""
     i, j = A.LINK[a].owner, A.LINK[b].owner
     if A.BODY[i].inv_mass > 0.0:
         move_to(A.BODY, i, t)
@@ -176,10 +172,8 @@ def comes_to_rest(A: Scene, a: int, b: int, t: float) -> bool:
     end = A.PAR.dt
     met = max(A.STATE[i].events, A.STATE[j].events)
     if e < 1.0:
-        return met >= IMPACTS_BEFORE_REST or (
-            closing > 0.0 and 2.0 * e * max(-u, 0.0) <= closing * (1.0 - e) * (end - t)
-        )
-    if met >= IMPACTS_BEFORE_REST_ELASTIC and closing > 0.0 and -u < SLOW_ELASTIC * A.PAR.pulled * end:
+        return met >= RESOLUTION or (closing > 0.0 and 2.0 * e * max(-u, 0.0) <= closing * (1.0 - e) * (end - t))
+    if met >= RESOLUTION and closing > 0.0 and -u * RESOLUTION < A.PAR.pulled * end:
         return True
     return A.PAR.pulled > 0.0 and rests(A, a, b, t, False)
 
@@ -199,13 +193,13 @@ def hits_of(A: Scene, a: int, b: int) -> int:
 def most_hits(A: Scene, a: int, b: int) -> int:
     """How often they may be: lossy islands the oftener the smaller they are."""
     if law(A.SHAPE, A.RULE, a, b)[0] >= 1.0:
-        return MOST_HITS_ELASTIC
+        return RESOLUTION
     size = 1
     for s in (a, b):
         root = A.STATE[A.LINK[s].owner].island
         if root >= 0:
             size = max(size, A.MEMBER[root].bodies)
-    return max(MOST_HITS, HITS_TIMES_BODIES // size)
+    return max(1, RESOLUTION // size)
 
 
 @kernel
@@ -221,7 +215,7 @@ def passed_over(A: Scene, a: int, b: int, t: float) -> bool:
     speed = norm(A.BODY[i].vx - A.BODY[j].vx, A.BODY[i].vy - A.BODY[j].vy)
     speed += abs(A.BODY[i].spin) * A.BODY[i].extent + abs(A.BODY[j].spin) * A.BODY[j].extent
     thick = half_width(A, a) + half_width(A, b)
-    if (speed + A.PAR.pulled * h) * h > PASSED_OVER_DEPTH * thick:
+    if (speed + A.PAR.pulled * h) * h > INTERVAL_DEPTH_WIDTH * thick:
         return False
     A.COUNT.ignored += 1
     if lossy:

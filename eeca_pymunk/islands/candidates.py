@@ -10,15 +10,14 @@ from ..compiled.records import Rows
 from ..geometry.flight import norm
 from ..geometry.manifold import half_width
 from ..model.contacts import Row
+from ..model.parameters.events import RESOLUTION
 from ..model.parameters.intervals import (
     EXACT_CONTACTS,
-    INTERVAL_ANGLE,
     INTERVAL_DEPTH_LEAST,
     INTERVAL_WAY,
     LARGE_ISLAND,
     LARGE_SWEEPS,
     LARGE_SWEEPS_HIT,
-    LEAST_INTERVAL,
     NORMAL_TURN,
     RATTLE,
     STICK,
@@ -111,7 +110,7 @@ def in_haste(A: Scene) -> bool:
     """Whether intervals are to last to the end of the step: where all contacts act together, and once the step has had
     about as many as there are bodies."""
     bodies = A.BODY.shape[0]
-    return A.COUNT.together > 0 or A.COUNT.solves >= max(LEAST_INTERVAL - 2.0 * bodies, bodies)
+    return A.COUNT.together > 0 or A.COUNT.solves >= max(RESOLUTION - 2.0 * bodies, bodies)
 
 
 @uncounted
@@ -148,13 +147,13 @@ def interval_length(A: Scene, found: IntArray, t: float) -> float:
             rate = max(rate, speed / max(A.SHAPE[a].rounding + A.SHAPE[b].rounding, 1e-300))
     if rate * h <= NORMAL_TURN:
         return h
-    return min(max(NORMAL_TURN / rate, A.PAR.dt / LEAST_INTERVAL), h)
+    return min(max(NORMAL_TURN / rate, A.PAR.dt / RESOLUTION), h)
 
 
 @uncounted
 def interval_within_way(A: Scene, found: IntArray, h: float) -> float:
     """The part of an interval h in which the bodies of pairs go no farther about one another than `INTERVAL_WAY` of the
-    smaller one, and turn by no more than `INTERVAL_ANGLE`, with the velocities that they have: beyond it no contact is
+    smaller one, and turn by no more than that angle, with the velocities that they have: beyond it no contact is
     where it was."""
     BODY, LINK, rate = A.BODY, A.LINK, 0.0
     for c in range(found.shape[0]):
@@ -164,7 +163,7 @@ def interval_within_way(A: Scene, found: IntArray, h: float) -> float:
         rate = max(rate, way / (INTERVAL_WAY * small))
         for s in (found[c, 0], found[c, 1]):
             if LINK[s].vertices > 1:
-                rate = max(rate, abs(BODY[LINK[s].owner].spin) / INTERVAL_ANGLE)
+                rate = max(rate, abs(BODY[LINK[s].owner].spin) / INTERVAL_WAY)
     return h if rate * h <= 1.0 else 1.0 / rate
 
 
@@ -185,7 +184,7 @@ def excess_way(
         far = max(far, 0.5 * h * norm(x, y) / (INTERVAL_WAY * small))
         if A.LINK[a].vertices > 1 or A.LINK[b].vertices > 1:
             turn = max(abs(V[p, 2] + VN[p, 2]), abs(V[q, 2] + VN[q, 2]))
-            far = max(far, 0.5 * h * turn / INTERVAL_ANGLE)
+            far = max(far, 0.5 * h * turn / INTERVAL_WAY)
         closing = -0.5 * h * (ROWS[z].un + normal_rate(P, Q, ROWS, VN, z))
         if closing > INTERVAL_DEPTH_LEAST * small:
             thick = half_width(A, a) + half_width(A, b)

@@ -12,7 +12,8 @@ from ..contacts.correction import budget_of, least_of, lifting
 from ..contacts.interval import make_contacts, moved, step_island
 from ..model.contacts import Problem
 from ..model.islands import Island
-from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES, LARGE_ISLAND, LEAST_INTERVAL, SMALL_SWEEPS
+from ..model.parameters.events import RESOLUTION
+from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES, LARGE_ISLAND, SMALL_SWEEPS
 from ..model.scene import Scene
 from ..model.step import DONE, PUSHES_FULL
 from ..rows.inplace import sort
@@ -113,7 +114,7 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
             raised = 1
     quiet = rest_threshold(A, root, MINE, n, among, t) if may_lose and raised == 0 else 0.0
     owed = max(-A.RESTING[root].lost, 0.0)
-    shortest = A.PAR.dt / LEAST_INTERVAL
+    shortest = A.PAR.dt / RESOLUTION
     if p > 0 and h > 0.0:
         m = step_island(A, isle, contacts, n, h, sweeps, least, owed, -1.0, quiet)
         stuck = h if in_haste(A) or OUT[0].stood > 0 else stick_time(P, Q, ROWS, L, V + h * isle.ACC, VN, m, h)

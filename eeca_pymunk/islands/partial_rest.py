@@ -20,9 +20,8 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..contacts.interval import make_contacts, step_island
 from ..model.bodies import AT_REST, AWAKE
-from ..model.parameters.intervals import LARGE_ISLAND
+from ..model.parameters.intervals import IMPACT_SPEED, LARGE_ISLAND
 from ..model.parameters.rest import (
-    FREEZE,
     FREEZE_EVERY,
     MOVING_BODIES,
     MOVING_SHARE,
@@ -78,7 +77,7 @@ def test_rest(A: Scene, MINE: IntArray, n: int, V0: FloatArray, among: int, calm
     if p == 0 or COUNT.pushes + 2 * p > A.PUSHED.shape[0] or not most > 0.0:
         postpone(A, MINE, n)
         return False
-    quick = (FREEZE if calming else candidate_speed(among)) * A.PAR.pulled / most
+    quick = (IMPACT_SPEED if calming else candidate_speed(among)) * A.PAR.pulled / most
     contacts = make_contacts(p, len(isle.WHO))
     m = step_island(A, isle, contacts, n, dt, 0, 0.0, 0.0, 0.0, -quick)
     COUNT.direct += contacts.OUT[0].direct
@@ -111,7 +110,7 @@ def freeze(A: Scene, root: int, MINE: IntArray, n: int) -> None:
     """Calm the island of the n bodies MINE, but for those few that are fast, and those that nothing holds."""
     STAND, V0, stand = np.empty(n, np.int64), np.empty((n, 3)), 0
     for q in range(n):
-        if speed(A, MINE[q], 0.0) <= FREEZE * A.PAR.pulled * A.PAR.dt:
+        if speed(A, MINE[q], 0.0) <= IMPACT_SPEED * A.PAR.pulled * A.PAR.dt:
             STAND[stand] = MINE[q]
             stand += 1
     if n - stand > MOVING_BODIES:

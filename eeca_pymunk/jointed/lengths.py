@@ -20,7 +20,6 @@ from ..model.contacts import Row
 from ..model.islands import Island
 from ..model.joints import Joints
 from ..model.parameters.intervals import (
-    INTERVAL_ANGLE,
     INTERVAL_DEPTH_LEAST,
     INTERVAL_RETRY,
     INTERVAL_WAY,
@@ -65,7 +64,7 @@ def strays(
     far = norm(x, y) / (INTERVAL_WAY * b.extent)
     for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):
         if A.LINK[s].vertices > 1:
-            far = max(far, abs(turned) / INTERVAL_ANGLE)
+            far = max(far, abs(turned) / INTERVAL_WAY)
     way = norm(x + h * b.vx, y + h * b.vy) + A.PAR.pulled * h * h + min(abs(turned), math.pi) * b.extent
     return far if far > INTERVAL_RETRY and may_meet(A, i, way, t, h, KEY, m) else 0.0
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from ..arrays import FloatArray
@@ -12,7 +10,7 @@ from ..contacts.works import against
 from ..model.contacts import JointedProblem
 from ..model.islands import Island
 from ..model.joints import Joints
-from ..model.parameters.joints import JOINTED_CORRECTION, JOINTED_CORRECTION_SWEEPS, JOINTED_OVERLAP
+from ..model.parameters.joints import JOINTED_CORRECTION_SWEEPS, JOINTED_OVERLAP
 from ..model.scene import Scene
 from ..rows.bounded import room_for_rows
 from ..rows.build import normal_rate
@@ -87,15 +85,12 @@ def correct(A: Scene, J: Joints, interval: Interval, end: float, budget: float) 
             if ready(J, s, 2.0, False):
                 fill_group(J, groups, C, g, INDEX, False, P, Q, ROWS, m, np.empty((places, 3)))
     KEEP = ROWS[:m].copy()
-    weigh(groups, C, P, Q, KEEP, m)
+    weigh(C, P, Q, KEEP, m)
     D = np.zeros_like(V)
     raise_gaps(JointedProblem(P, Q, KEEP, C, room_for_rows(0, 0), m), GAPS, D, 1e-3 * -deepest)
-    cost, far = 0.0, 0.0
-    for q in range(n):
-        far = max(far, (math.sqrt(D[q, 0] ** 2 + D[q, 1] ** 2) + abs(D[q, 2]) * isle.EXTENT[q]) / isle.EXTENT[q])
-    cost -= against(isle.ACC, isle.IM, isle.II, n, D)
-    part = min(1.0, JOINTED_CORRECTION / far) if far > 0.0 else 0.0
-    if cost * part > 0.5 * budget:
+    cost = -against(isle.ACC, isle.IM, isle.II, n, D)
+    part = 1.0
+    if cost > 0.5 * budget:
         part = 0.5 * budget / cost
     HELD = np.zeros(len(groups.COMPONENT))
     free = len(isle.IM) == n and not hangs(groups, J.COMPONENT, J.MEMBER)

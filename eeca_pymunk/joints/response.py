@@ -14,7 +14,7 @@ from ..arrays import FloatArray
 from ..compiled import uncounted
 from ..compiled.records import Rows
 from ..model.joints import BOUNDED, BOXED, CONDENSED, DUAL, FULL_BEND, NO_BEND, STEP, Coupling, Workspace
-from ..model.parameters.joints import CONDENSED_PASSES, PRESSED, REDUNDANT_EPSILON, RESPONSE_PASSES
+from ..model.parameters.joints import CONDENSED_PASSES, REDUNDANT_EPSILON, RESPONSE_PASSES, TAUT
 from .motion import move
 from .newton import assemble
 from .rows import joint_rows, start_joint
@@ -24,7 +24,7 @@ from .solve import back, begin, decompose
 @uncounted
 def bend(W: Workspace, k: int, h: float) -> None:
     """Let joint k have the impulse of the whole step, so that its rows take their force along as they turn; none if it
-    presses, and all that presses on one of its bodies would take more than PRESSED of that body's `inertia`.
+    presses, and all that presses on one of its bodies would take more than TAUT of that body's `inertia`.
 
     A full STIFF is at most six times its diagonal, so that what is left of the inertia of all bodies is positive.
     """
@@ -38,7 +38,7 @@ def bend(W: Workspace, k: int, h: float) -> None:
         # What does not move adds nothing, and what only turns does so by its angle alone.
         taken = W.J.STIFF[c, c] * local[at].mobility[c % 3] if kind == FULL_BEND or c % 3 == 2 else 0.0
         pulls = pulls and taken <= 0.0
-        slight = slight and local[at].inertia[c % 3] - times * abs(h * taken) >= 1.0 - PRESSED
+        slight = slight and local[at].inertia[c % 3] - times * abs(h * taken) >= 1.0 - TAUT
     if kind == NO_BEND or not (pulls or slight):
         hinge[k].lam[0] = hinge[k].lam[1] = 0.0
         return

@@ -12,7 +12,7 @@ import math
 
 from ..arrays import FloatArray
 from ..compiled import uncounted
-from ..model.parameters.events import ADVANCES, SEARCH_AHEAD, STRIDE
+from ..model.parameters.events import ADVANCES, RESOLUTION, SEARCH_AHEAD
 from ..model.scene import Scene
 from .roots import ball_point, flat
 
@@ -36,7 +36,7 @@ def circle_circle(
         if dx * dx + dy * dy > reach * reach:
             return later, False
     pull = math.sqrt(ax * ax + ay * ay)
-    stride = STRIDE * left if left < math.inf else 0.0
+    stride = left / RESOLUTION if left < math.inf else 0.0
     s = 0.0
     for _ in range(ADVANCES):
         x, y = dx + (ux + 0.5 * ax * s) * s, dy + (uy + 0.5 * ay * s) * s
@@ -75,7 +75,7 @@ def circle_outline(
     sides = count if count > 1 else 0
     straight = ax == 0.0 and ay == 0.0
     pull = math.sqrt(ax * ax + ay * ay)
-    stride = STRIDE * left if left < math.inf else 0.0
+    stride = left / RESOLUTION if left < math.inf else 0.0
     s = 0.0
     for _ in range(ADVANCES):
         px, py = x + (vx + 0.5 * ax * s) * s, y + (vy + 0.5 * ay * s) * s

@@ -28,7 +28,7 @@ from ..geometry.flight import pose, rate
 from ..geometry.gap import touching
 from ..geometry.sides import closest_on_side, known_side, near_side, note_side, remembers
 from ..model.bodies import Body
-from ..model.parameters.events import ADVANCES, STRIDE
+from ..model.parameters.events import ADVANCES, RESOLUTION
 from ..model.scene import Scene
 from .bounds import carried_circles_meet, circles_meet
 from .roots import flat
@@ -192,8 +192,8 @@ def general(A: Scene, a: int, b: int, horizon: float) -> tuple[float, bool]:
     a look, as no bound of theirs is above 0.
 
     Args:
-        horizon: finite instant; lower bounds are no earlier. Of what takes more than 1000 looks at a sixteenth of the
-            time until then the rest is given up.
+        horizon: finite instant; lower bounds are no earlier. Of what takes more than 1000 looks at a part in
+            RESOLUTION of the time until then the rest is given up.
     """
     if a > b:
         a, b = b, a
@@ -222,7 +222,7 @@ def general(A: Scene, a: int, b: int, horizon: float) -> tuple[float, bool]:
     looks, mark = 0, s
     while looks < ADVANCES:
         looks += 1
-        if s > mark + STRIDE * left:  # what turns fast is followed for many turns
+        if s > mark + left / RESOLUTION:  # what turns fast is followed for many turns
             looks, mark = 0, s
         one, two = motion(BODY, i, start + s), motion(BODY, j, start + s)
         p = place(A, a, one.x, one.y, one.angle, P)
@@ -240,7 +240,7 @@ def general(A: Scene, a: int, b: int, horizon: float) -> tuple[float, bool]:
             safe, near, met = max(safe, may), max(near, gap), met and closes
         if not met and near <= tolerance:
             back = pressed(BODY, i, j, start + s, nx, ny, px + SHAPE[a].rounding * nx, py + SHAPE[a].rounding * ny)
-            if back <= STRIDE * left:
+            if back <= left / RESOLUTION:
                 return start + s + back, True
             safe = max(safe, left / ADVANCES)
         s += safe

@@ -15,6 +15,7 @@ from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
 from ..model.contacts import AnyProblem, Solved
 from ..model.parameters.impulses import (
+    AUGMENTATION,
     BLOCK_DIRECT,
     BLOCK_DIRECT_FRICTION,
     BLOCK_LAST_SWEEPS,
@@ -24,11 +25,10 @@ from ..model.parameters.impulses import (
     BLOCK_SWEEPS,
     BLOCK_SWEEPS_AFTER,
     BLOCK_SWEEPS_FRICTION,
-    LARGE_BLOCK,
-    LARGE_BLOCK_RESIDUAL,
-    LARGE_BLOCK_SWEEPS,
+    DENSE_CONTACTS,
     SMALL_BLOCK,
 )
+from ..model.parameters.intervals import INTERVAL_RESIDUAL_SPEED, SMALL_SWEEPS
 from .build import aim, conserves, rates, rubs
 from .conjugate import iterate
 from .direct import refine
@@ -65,7 +65,7 @@ def resolve(
         return worst
     least = worst
     stalled = 0
-    log_R = 8.0
+    log_R = AUGMENTATION
     for _ in range(BLOCK_DIRECT_FRICTION if rough else BLOCK_DIRECT):
         log_R, worst = refine(problem, L, V, FREE, log_R, 8, 0.1 * tolerance, worst)
         OUT[0].direct += 1
@@ -122,10 +122,10 @@ def solve_block(
     rough = rubs(ROWS, m)
     tolerance = speed * (BLOCK_RESIDUAL_FRICTION if rough else BLOCK_RESIDUAL)
     exact = conserves(ROWS, m)
-    if hasty and m > LARGE_BLOCK and not exact:
-        # A hit on a pile, which loses energy anyway: what follows it matters more than its last digits.
-        tolerance = LARGE_BLOCK_RESIDUAL * speed
-        taken, worst = iterate(problem, L, V, tolerance, LARGE_BLOCK_SWEEPS)
+    if hasty and m > DENSE_CONTACTS and not exact:
+        # A hit on a pile, which loses energy anyway: it is known as well as the velocities of the intervals about it.
+        tolerance = INTERVAL_RESIDUAL_SPEED * speed
+        taken, worst = iterate(problem, L, V, tolerance, SMALL_SWEEPS)
         OUT[0].sweeps = taken
     else:
         worst = resolve(problem, L, V, FREE, rough, tolerance, OUT)

@@ -7,7 +7,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import Choice, kernel
 from ..model.contacts import AnyProblem, JointedProblem
-from ..model.parameters.impulses import DENSE_CONTACTS, REFINEMENTS
+from ..model.parameters.impulses import AUGMENTATION, DENSE_CONTACTS, REFINEMENTS
 from .dense import newton
 from .polish import polish_free, segment
 from .sweeps import keep, rows_of, sweep
@@ -67,7 +67,7 @@ def refine(
             keep(L1, V1, rows, L, V)
         part = segment(problem, L, V, L0, V0)
     if part > 0.9:
-        log_R = min(log_R + 2.0, 8.0)
+        log_R = min(log_R + 2.0, AUGMENTATION)
     elif part < 0.3:
         log_R = max(log_R - 2.0, 2.0)
     return log_R, sweep(problem, L, V)

@@ -9,7 +9,7 @@ import pymunk
 import pytest
 
 import eeca_pymunk as ep
-from eeca_pymunk.model.parameters.intervals import LEAST_INTERVAL
+from eeca_pymunk.model.parameters.events import RESOLUTION
 
 from ..crowds import SHORT
 from ..programs.compositions import Composition
@@ -148,5 +148,5 @@ def test_rods_that_lie_deep_in_walls_that_turn_are_solved_a_bounded_number_of_ti
     for k in range(20):
         scene.drive(k)
         report = scene.stepper.step(scene.dt)
-        assert report.iterations < 4 * LEAST_INTERVAL
+        assert report.iterations < 4 * RESOLUTION
         assert all(u.name != "solves" for u in report.unmet)

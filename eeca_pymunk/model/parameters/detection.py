@@ -24,16 +24,6 @@ FACE_WIDTH = accuracy(
     "of the larger shape",
     "Width of a common face below which it is one point. Smaller: two contacts at one place, singular.",
 )
-SIDE_OPPOSITE = heuristic(
-    -0.1, "cosine", "Cosine of normals below which a thin segment is on the other side of a wall."
-)
-SIDE_UNSURE = heuristic(0.7, "cosine", "The same, while cores of segments touch, where the normal is not reliable.")
-SIDE_TOUCH = heuristic(0.0001, "of the smaller shape", "Distance of cores within which the remembered side decides.")
-SIDE_HELD = heuristic(
-    0.4,
-    "of the smaller shape",
-    "Depth by which segments that forces hold together may have passed through one another.",
-)
 SLENDER = heuristic(0.5, "area over (length / 2)^2", "Polygons below it are thin, and remember sides as segments do.")
 CORNER_MEET = round_off(1e-9, "of the segments' size", "Distance of the ends of segments that form a corner.")
 STRAIGHT = round_off(1e-6, "sine", "Angle between segments that meet, below which they are one straight wall.")

@@ -18,10 +18,11 @@ ADVANCES = work(
     "number",
     "Evaluations of a gap in one search for an impact: a double root halves its error, a single one squares it.",
 )
-STRIDE = heuristic(
-    1 / 16,
-    "of the time that is left",
-    "Least advance of touching shapes in the search. Larger: bounces shorter than it are not resolved.",
+RESOLUTION = work(
+    64,
+    "in a step",
+    "Intervals, looks at shapes that touch, hits times the bodies of an island, impacts of a body before it rests, or "
+    "is squeezed; a bounce slower than |a| dt over it is none. Larger: dearer steps of what rattles.",
 )
 FARTHEST_MARGIN = work(
     0.7, "of the margin", "Distance by which a lone disk's new margin circle may be ahead of it, at most."
@@ -29,11 +30,6 @@ FARTHEST_MARGIN = work(
 SAME_INSTANT = round_off(1e-09, "of the step", "Two computations of an instant that differ by less are the same.")
 AHEAD = work(0.4, "of the margin", "Distance by which a new margin circle is ahead of its shape.")
 INSIDE = work(0.1, "of the margin", "Part of the margin that is left, above which a shape has not left its circle.")
-SQUEEZED_IMPACTS = heuristic(
-    50,
-    "impacts of a body in a step",
-    "From then on its impacts with kinematic bodies are left out where walls close in. Larger: longer steps.",
-)
 SOLVES_PER_BODY = work(
     512,
     "solves of every body in a step",

@@ -32,11 +32,13 @@ BLOCK_DIRECT = work(40, "direct solutions", "Direct solutions, at most.")
 BLOCK_DIRECT_FRICTION = work(8, "direct solutions", "The same with friction.")
 BLOCK_LAST_SWEEPS = work(400, "sweeps", "Sweeps where direct solutions have not converged.")
 BLOCK_LAST_SWEEPS_FRICTION = work(200, "sweeps", "The same with friction.")
-LARGE_BLOCK = heuristic(20, "contacts", "Number beyond which a lossy simultaneous impact is solved by sweeps alone.")
-LARGE_BLOCK_SWEEPS = heuristic(40, "sweeps", "Sweeps of such an impact.")
-LARGE_BLOCK_RESIDUAL = heuristic(0.0001, "of the approach speed", "Residual at which they end.")
 SMALL_BLOCK = work(16, "contacts", "Number up to which sweeps alone are cheaper than a first direct solution.")
 DENSE_CONTACTS = work(20, "contacts", "Number up to which the matrix of an island is dense.")
+AUGMENTATION = round_off(
+    8.0,
+    "log10 of a ratio",
+    "Largest augmentation of a direct solution, with which each island begins: it leaves half the digits of a double.",
+)
 REFINEMENTS = work(4, "number", "Passes of a direct solution's refinement.")
 DISSECTION_LEAF = work(6, "bodies", "Number that nested dissection does not divide further.")
 LATE_NEIGHBOURS = work(24, "neighbours", "Number from which a body is eliminated last.")

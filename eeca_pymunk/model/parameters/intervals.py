@@ -14,31 +14,13 @@ ELASTIC_REST_ON = accuracy(0.001, "of |a| dt", "The same if it rested before.")
 SOLVES_BEFORE_HASTE = heuristic(
     3, "solves of every body in a step", "Work after which islands are solved less precisely."
 )
-IMPACT_SPEED = accuracy(2.0, "of |a| h", "Approach speed from which a contact that closes in an interval is an impact.")
-IMPACTS_BEFORE_REST = heuristic(
-    16,
-    "impacts of a body in a step",
-    "Number after which a lossy contact persists. Larger: more events of a bouncing body.",
+IMPACT_SPEED = accuracy(
+    2.0,
+    "of |a| h",
+    "Approach speed from which a contact that closes in an interval is an impact; what is slower may freeze.",
 )
-IMPACTS_BEFORE_REST_ELASTIC = heuristic(64, "impacts of a body in a step", "The same for a slow elastic contact.")
-SLOW_ELASTIC = heuristic(1.0 / 64.0, "of |a| dt", "Approach speed below which an elastic contact is slow.")
 BUSY_STEPS = heuristic(8, "steps", "Steps after the last impact in which an island is not tested for rest.")
-MOST_HITS = heuristic(
-    1,
-    "impacts in a step",
-    "Impacts on a large lossy island, beyond which shallow ones are passed over until the next step.",
-)
-MOST_HITS_ELASTIC = heuristic(64, "impacts in a step", "The same for an elastic island.")
-HITS_TIMES_BODIES = heuristic(
-    64, "impacts times bodies", "Small islands may be hit oftener: until impacts times bodies reach this."
-)
-PASSED_OVER_DEPTH = heuristic(
-    0.1,
-    "of both widths",
-    "Depth that an impact which is passed over may reach within the step. Larger: cheaper and deeper piles.",
-)
 NORMAL_TURN = accuracy(0.1, "rad", "Rotation of a normal in one interval. Larger: longer intervals, coarser rolling.")
-LEAST_INTERVAL = work(64.0, "intervals in a step", "An interval is not shorter than the step over this.")
 EXACT_CONTACTS = heuristic(
     12, "contacts", "Number up to which an interval ends where a contact begins to stick or normals turn."
 )
@@ -52,26 +34,31 @@ LARGE_SWEEPS = work(24, "sweeps", "Sweeps of a large island at the start of a st
 LARGE_SWEEPS_HIT = work(12, "sweeps", "The same after it was hit within the step.")
 INTERVAL_WAY = heuristic(
     0.5,
-    "of the smaller shape",
-    "Relative way of two bodies in contact in one interval. Larger: contacts move while they are held fixed.",
+    "of the smaller shape; rad",
+    "Relative way of two bodies in contact in one interval, and their rotation. Larger: contacts move while they are "
+    "held fixed.",
 )
-INTERVAL_ANGLE = heuristic(0.5, "rad", "Rotation of a body in one interval.")
 INTERVAL_DEPTH = heuristic(0.05, "of the smaller shape", "Depth by which a contact may close in one interval.")
-INTERVAL_DEPTH_WIDTH = heuristic(0.1, "of both widths", "The same, relative to what it would take to pass through.")
-INTERVAL_DEPTH_LEAST = heuristic(0.0001, "of the smaller shape", "Depth that is always allowed.")
+INTERVAL_DEPTH_WIDTH = heuristic(
+    0.1,
+    "of both widths",
+    "Depth by which a contact may close in one interval, or an impact that is passed over by the end of the step: a "
+    "tenth of the way through. Larger: cheaper and deeper piles.",
+)
+INTERVAL_DEPTH_LEAST = heuristic(
+    0.0001,
+    "of the smaller shape",
+    "Depth that an interval may always reach. Up to it the nearer way out may be the wrong one: thin shapes that touch "
+    "within it are on the side that they remember.",
+)
 INTERVAL_RETRY = heuristic(
     1.5, "ratio", "An interval is solved again, shorter, if bodies went farther than they should by this ratio."
 )
-SMALL_SWEEPS = work(40, "sweeps", "Sweeps of a small island that moves.")
+SMALL_SWEEPS = work(40, "sweeps", "Sweeps of a small island that moves, and of an impact on a large one.")
 INTERVAL_TRIES = work(12, "number", "Attempts at an interval, each shorter.")
 MIDSTEP_PASSES = work(3, "solves", "Further solves of `Midstep` for bodies that impulses move into others.")
 LARGE_ISLAND = heuristic(
     24, "bodies", "Size from which an island is large: impacts act on BLOCK_BODIES, sweeps are limited."
-)
-MIDPOINT_WAY = heuristic(
-    0.25,
-    "of the smaller shape",
-    "Half way of a pair beyond which its geometry at the middle of the interval is not predicted.",
 )
 MIDPOINT_SAME = round_off(
     1e-07, "of the smaller shape", "Half way below which the geometry at the middle is that of the start."
@@ -83,10 +70,11 @@ MIDPOINT_TURN = heuristic(
 MANIFOLD_ROUND_OFF = round_off(1e-09, "of the smaller shape", "Tolerance of a manifold.")
 INTERVAL_RESIDUAL = accuracy(1e-12, "of |a| h", "Residual of an island, and of elastic ones.")
 INTERVAL_RESIDUAL_MOVING = accuracy(1e-07, "of |a| h", "Residual of a large or moving island.")
-INTERVAL_RESIDUAL_SPEED = accuracy(0.0001, "of its speed", "The same, relative to its speed.")
+INTERVAL_RESIDUAL_SPEED = accuracy(
+    0.0001, "of its speed", "The same, relative to its speed; and of impacts on it, relative to the approach speed."
+)
 DIRECT = work(20, "direct solutions", "Direct solutions of an island near rest, or elastic.")
 DIRECT_MOVING = work(6, "direct solutions", "The same of a moving island of few contacts.")
-FIRST_AUGMENTATION = heuristic(8.0, "ratio", "Augmentation of the first direct solution of a new island.")
 FIRST_SWEEPS = work(10, "sweeps", "Sweeps before the first direct solution.")
 SWEEPS_AFTER = work(4, "sweeps", "Sweeps after each.")
 BACKOFF_CONTACTS = work(
@@ -96,11 +84,6 @@ FAILED_DIRECT = work(8, "direct solutions", "Direct solutions without progress t
 FAILED_DIRECT_AGAIN = work(2, "direct solutions", "The same where those of the last step failed.")
 LONGEST_BACKOFF = work(32.0, "steps", "Longest time without direct solutions.")
 OVERLAP_LEFT = accuracy(1e-09, "of the size", "Overlap that is not corrected.")
-CORRECTION_STEP = heuristic(
-    0.25,
-    "of the size",
-    "Displacement of a body by the correction in one interval, at most. Larger: bodies can be pushed through walls.",
-)
 CORRECTION_ROUND_OFF = round_off(1e-14, "of its work", "Round-off of the work of a correction.")
 CORRECTION_SHARE = accuracy(
     0.99,

@@ -18,7 +18,12 @@ JOINT_SPEED_ROUND_OFF = round_off(1e-14, "of the speeds", "Velocity along a row 
 JOINT_SPEED_LEFT = heuristic(
     0.01, "of the speeds along a row", "Velocity along a row that is left by steps, and not corrected as an edit."
 )
-LEAST_INERTIA = heuristic(0.1, "of a body's inertia", "Inertia that the geometric stiffness of joints may leave.")
+LEAST_INERTIA = work(
+    0.1,
+    "of a body's inertia",
+    "Inertia that the geometric stiffness of joints may leave in the smaller one of two systems, whose solution is the "
+    "same; below it the larger one is solved.",
+)
 LIMIT_EVENTS = work(12, "number", "Limits that are reached in one step of a component.")
 LIMIT_SECANTS = work(12, "iterations", "Secant steps to the instant at which a limit is reached.")
 LIMIT_SECANTS_HASTE = work(2, "iterations", "The same once the budget is spent.")
@@ -29,8 +34,11 @@ RESPONSE_PASSES = work(2, "number", "Refinements of the response of a component.
 JOINT_TOLERANCE = round_off(3e-16, "of the component", "Error of joints and momenta.")
 JOINT_ROUND_OFF = round_off(3e-14, "of the component", "An error below it that no longer halves is round-off.")
 JOINT_ROUND_OFF_KEPT = round_off(2e-15, "of the component", "The same with factors of an earlier step.")
-NEWTON_PROGRESS = heuristic(
-    0.03, "ratio of errors", "Progress of an iteration with earlier factors below which they are computed again."
+NEWTON_PROGRESS = work(
+    0.03,
+    "ratio of errors",
+    "Progress of an iteration with earlier factors below which they are computed again; it ends at "
+    "JOINT_TOLERANCE with either.",
 )
 NEWTON_FLOOR = round_off(1e-11, "of the component", "An error below it that has not fallen twice is round-off.")
 NEWTON_ITERATIONS = work(25, "iterations", "Newton iterations of a step.")
@@ -46,20 +54,19 @@ HASTE = work(0.25, "of the budget", "Work of a step after which limits are locat
 COMPONENT_BUDGET = work(0.5, "of what is left", "Work that one step of a component may take.")
 NEARLY_HELD = accuracy(1e-08, "of the component", "Error of elastic joints up to which they count as held.")
 TAUT = heuristic(
-    0.5, "of a body's inertia", "Stiffness of a joint's pull, times h^2/4, from which contacts take it into account."
-)
-PRESSED = heuristic(
     0.5,
     "of a body's inertia",
-    "Stiffness of joints that press, times h^2/4, up to which contacts take it into account.",
+    "Stiffness of a joint's force, times h^2/4, from which contacts take it into account where it pulls, and up to "
+    "which where it presses: beyond twice that no inertia of the body would be left.",
 )
 ARM_ITERATIONS = work(6, "iterations", "Motions in which arms of contacts are made those of the middle.")
 ARM_ERROR = round_off(1e-15, "of the component", "Error of these arms.")
 BOUNDED_SWEEPS = work(30, "sweeps", "Sweeps over bounded joint rows and contacts.")
-STRUT = heuristic(
-    0.001, "of the free mobility", "Constrained mobility below which a contact within one component is dropped."
+STRUT = round_off(
+    1e-07,
+    "of the free mobility",
+    "Mobility of a contact under its joints that is the error of their solution: the contact then is left out.",
 )
-STRUT_BETWEEN = round_off(1e-07, "of the free mobility", "The same of a contact between two components.")
 CORRECTION_JOINTS = accuracy(1e-11, "of the component", "Error of joints where overlaps are corrected.")
 CONDENSED_BOUNDED = work(
     16, "bounded rows", "Number up to which bounded rows are condensed into the contacts' columns."
@@ -75,7 +82,6 @@ FIT_RESIDUAL = accuracy(1e-06, "of the fastest closing contact", "Residual of th
 FIT_ENERGY = round_off(1e-12, "of the energy", "Change of energy by the fit that is round-off.")
 JOINTED_OVERLAP = accuracy(1e-09, "of the bodies", "Overlap of jointed bodies that is not corrected.")
 JOINTED_CORRECTION_SWEEPS = work(40, "sweeps", "Sweeps of the correction.")
-JOINTED_CORRECTION = heuristic(0.1, "of a body", "Displacement by the correction in one step, at most.")
 STEP_WORK = work(
     80000000.0, "operations", "Work of a step with joints, beside STEP_WORK_BODY; 6e9 take about a second."
 )

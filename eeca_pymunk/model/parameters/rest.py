@@ -11,11 +11,6 @@ REST_CANDIDATE = heuristic(
     "Speed below which a body of a small island is tested for static forces. Larger: slow motion stops.",
 )
 REST_CANDIDATE_LARGE = heuristic(0.5, "of |a| dt", "The same in a large island.")
-FREEZE = heuristic(
-    2.0,
-    "of |a| dt",
-    "Speed below which a body of a large island stops where static forces hold it, without being at rest yet.",
-)
 STOPPING_STEPS = heuristic(10.0, "steps", "Time in which a body that is put to rest stops, at most.")
 STATICS_FACTORS = work(12, "factorisations", "Factorisations to find static forces, at most.")
 STATICS_FACTORS_NEAREST = work(6, "factorisations", "Further ones to come near to the guess.")
