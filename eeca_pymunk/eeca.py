@@ -10,7 +10,6 @@ from weakref import ref
 from .arrays import FloatArray, IntArray
 from .closures.time_of_impact import TimeOfImpact
 from .impacts.scene import EventLoop
-from .jointed.scene import JointedLoop
 from .reentry import busy
 from .report import Details, Unmet, of_missed
 from .runs import RunningStepper
@@ -141,7 +140,7 @@ class EECA(RunningStepper):
                 with busy(self.space):  # springs have functions
                     joints.look(world.state, world.bodies.row, dt)
             if joints.replan:
-                assert isinstance(self._method, JointedLoop)
+                assert isinstance(self._method, EventLoop)
                 self._method.plan()
                 joints.planned()
             parted = world.part()

@@ -15,7 +15,6 @@ from .errors import NotFiniteError
 from .events import Events
 from .impacts.run_buffers import RunBuffers
 from .impacts.scene import EventLoop
-from .jointed.scene import JointedLoop
 from .layout import BODY_ROW
 from .packed_space import TOO_FAR
 from .runs import RunningStepper
@@ -115,7 +114,7 @@ class Rolling:
         loop = self.twin.event_loop
         assert loop is not None
         rules = loop.scene.RULE.tobytes()
-        joints = (loop.joint.tobytes(),) if isinstance(loop, JointedLoop) else ()
+        joints = (loop.joint.tobytes(),) if loop.jointed else ()
         now = id(world), world.patches, id(loop), rules, *joints
         if now != self._of:
             self._made, self._of = [], now

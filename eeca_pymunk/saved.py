@@ -10,7 +10,6 @@ from .arrays import FloatArray
 from .compiled.records import Rows, columns
 from .geometry.sides import keep_sides
 from .impacts.scene import EventLoop
-from .jointed.scene import JointedLoop
 from .layout import ANEW, BODY_ROW, LEFT
 from .model.joints import OF_STEPS, RATCHET, Joint
 from .model.shapes import Link
@@ -55,7 +54,6 @@ class Saved:
             return False
         joints = world.joints
         if joints is not None:
-            assert isinstance(self.method, JointedLoop)
             for j in joints.measured():
                 joints.lengthen(j, float(self.method.joint[j].length))
             joints.joint[:] = self.method.joint
@@ -72,8 +70,8 @@ class Saved:
 
     def _same_joints(self, world: World) -> bool:
         joints, method = world.joints, self.method
-        if joints is None or not isinstance(method, JointedLoop):
-            return joints is None and not isinstance(method, JointedLoop)
+        if joints is None or not method.jointed:
+            return joints is None and not method.jointed
         if joints.items != self._joints or not np.array_equal(method.partner, world.PARTNER):
             return False
         differs = np.zeros(len(joints.joint), bool)

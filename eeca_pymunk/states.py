@@ -15,7 +15,6 @@ import numpy as np
 from .arrays import AnyArray, FloatArray, IntArray
 from .compiled.records import KINDS, numbers
 from .impacts.scene import EventLoop
-from .jointed.scene import JointedLoop
 from .layout import LEFT, STATE_COLUMNS
 from .model.joints import OF_STEPS, RATCHET
 from .space.bodies import moving
@@ -36,7 +35,7 @@ def get_state(stepper: RunningStepper) -> IntArray:
     parts: list[AnyArray] = [world.state[at], np.array([stepper.time]), *stepper.resting(_everyone(stepper.space))]
     if loop is not None and not world.bodies.asleep.any():
         parts += [world.STATES[LEFT, at], world.EXTRA[at], *loop.remembered()]
-        if isinstance(loop, JointedLoop) and world.joints is not None:
+        if world.joints is not None:
             joints = world.joints
             rates = np.array([joints.rates.get(item, (np.nan, np.nan)) for item in joints.items])
             parts += [joints.joint, numbers(loop.joints.TALLY), rates]
@@ -112,7 +111,7 @@ def _remember(stepper: RunningStepper, world: World, parts: _Parts, at: IntArray
     left[at] = parts.take(np.float64, left.shape)
     world.EXTRA[at] = parts.take(np.float64, world.EXTRA.shape)
     loop.recall(parts.take)
-    if isinstance(loop, JointedLoop) and joints is not None:
+    if joints is not None:
         joint = parts.take(joints.joint.dtype, joints.joint.shape)
         for name in ("touched", *OF_STEPS):
             joints.joint[name] = joint[name]

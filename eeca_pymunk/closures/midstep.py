@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ..impacts.scene import EventLoop, Together
-from ..jointed.scene import JointedLoop
+from ..impacts.scene import EventLoop
 
 if TYPE_CHECKING:
     from ..space.world import World
@@ -27,9 +26,7 @@ class Midstep:
 
     def prepare(self, world: World) -> EventLoop:
         """The arrays of the solve for a world that was read anew."""
-        if world.joints is not None:
-            return JointedLoop(
-                world.BODY, world.SHAPE, world.LINK, world.VERTEX, world.disks, 0, world.joints.joint,
-                world.PARTNER, together=True,
-            )  # fmt: skip
-        return Together(world.BODY, world.SHAPE, world.LINK, world.VERTEX, world.disks)
+        joint = None if world.joints is None else world.joints.joint
+        return EventLoop(
+            world.BODY, world.SHAPE, world.LINK, world.VERTEX, world.disks, 0, joint, world.PARTNER, together=True
+        )  # fmt: skip

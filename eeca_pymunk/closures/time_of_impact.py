@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ..impacts.scene import EventLoop
-from ..jointed.scene import JointedLoop
 
 if TYPE_CHECKING:
     from ..space.world import World
@@ -29,9 +28,7 @@ class TimeOfImpact:
 
     def prepare(self, world: World) -> EventLoop:
         """The arrays of the loop for a world that was read anew."""
-        if world.joints is None:
-            return EventLoop(world.BODY, world.SHAPE, world.LINK, world.VERTEX, world.disks, self.max_impacts)
-        return JointedLoop(
-            world.BODY, world.SHAPE, world.LINK, world.VERTEX, world.disks, self.max_impacts, world.joints.joint,
-            world.PARTNER, together=False,
+        joint = None if world.joints is None else world.joints.joint
+        return EventLoop(
+            world.BODY, world.SHAPE, world.LINK, world.VERTEX, world.disks, self.max_impacts, joint, world.PARTNER
         )  # fmt: skip

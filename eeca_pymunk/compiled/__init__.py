@@ -9,11 +9,12 @@ builds and the JIT alone; nothing else imports numba.
 """
 
 from .backend import start
-from .kernels import Kernel, kernel, merged, prepare, uncounted
+from .kernels import Choice, Kernel, kernel, merged, prepare, uncounted
 from .prefetch import fetch
 from .tables import Opener, Table, table_of
 
 __all__ = [
+    "Choice",
     "Kernel",
     "Opener",
     "Table",

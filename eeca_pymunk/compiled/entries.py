@@ -20,7 +20,7 @@ from .records import KINDS
 
 SOURCES = (
     "arrays.py", "layout.py", "transfer.py", "rehearsing.py", "drowsing.py", "laying.py", "compiled", "model", "build",
-    "energy", "geometry", "rows", "pairs", "prediction", "contacts", "joints", "islands", "impacts", "jointed",
+    "energy", "geometry", "rows", "pairs", "prediction", "contacts", "joints", "islands", "jointed", "impacts",
 )  # fmt: skip
 
 TABLES = {
@@ -67,14 +67,10 @@ ENTRIES = {
     "laying:lay_rows": "GivenBody[1] GivenShape[1] f8[2] Body[1] Shape[1] Link[1] f8[2] i8[1]",
     "rehearsing:changed": "f8[3] f8[2] f8[2]",
     "islands.accounting:flag_again": "{Scene}",
-    "impacts.step:step": "{Scene} f8[3] i8[2] f8[2] f8[1] f8 f8 f8 f8 bool i8",
-    "impacts.midstep:step_together": "{Scene} f8[3] i8[2] f8[2] f8[1] f8[1] f8 f8 f8 f8 i8",
-    "impacts.run:run": "{Scene} {RunArrays} f8[3] i8[2] f8[2] f8[1] f8[1] bool bool",
+    "impacts.step:step": "{Scene} {Joints} f8[3] i8[2] f8[2] f8[1] f8[1] f8 f8 f8 f8 i8",
+    "impacts.run:run": "{Scene} {Joints} {RunArrays} f8[3] i8[2] f8[2] f8[1] f8[1]",
     "joints.plan:make_plan": "Body[1] Joint[1] Component[1] ComponentBody[1] Coupling[1]",
     "joints.world:step_all": "{Joints} Body[1] f8",
-    "jointed.loop:step_jointed": "{Scene} {Joints} f8[3] i8[2] f8[2] f8[1] f8 f8 f8 f8 bool i8",
-    "jointed.together:step_together_jointed": "{Scene} {Joints} f8[3] i8[2] f8[2] f8[1] f8[1] f8 f8 f8 f8 i8",
-    "jointed.run:run_jointed": "{Scene} {Joints} {RunArrays} f8[3] i8[2] f8[2] f8[1] f8[1] bool bool",
     # Of tests alone, which step islands by themselves: some hundred times slower as plain Python.
     "contacts.interval:step_island": "{Scene} {Island} {Contacts} i8 f8 i8 f8 f8 f8 f8",
     "contacts.memory:forget": "i8[1] Force[1] Count i8[1] Force[1] f8",

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import functools
 import threading
+import typing
 from collections.abc import Callable
 from typing import Any, Generic, ParamSpec, TypeVar
 
@@ -67,6 +68,27 @@ class Kernel(Compilable, Generic[P, R]):
         prepare()
         bind = getattr(self.run, "bind", None)
         return functools.partial(self.run, *arrays) if bind is None else bind(*arrays)
+
+
+class Choice(Compilable, Generic[R]):
+    """Kernels that do the same with data of different types: a call is one of that whose first argument, a named tuple,
+    has this type. Machine code has the choice made when it is compiled.
+
+    Args:
+        kernels: with arguments of the same names, and the same type of what they return.
+    """
+
+    def __init__(self, *kernels: Kernel[..., R]) -> None:
+        self.kernels = kernels
+
+    @functools.cached_property
+    def of(self) -> dict[Any, Kernel[..., R]]:
+        """The kernel for each type of the first argument."""
+        hints = [(typing.get_type_hints(one.python), one) for one in self.kernels]
+        return {next(iter(hint.values())): one for hint, one in hints}
+
+    def __call__(self, first: Any, *args: Any) -> R:
+        return self.of[type(first)].run(first, *args)
 
 
 def kernel(python: Callable[P, R]) -> Kernel[P, R]:

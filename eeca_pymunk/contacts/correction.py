@@ -18,10 +18,10 @@ from ..arrays import FlagArray, FloatArray
 from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
 from ..model.contacts import Problem, Row
-from ..model.parameters.impulses import DENSE_CONTACTS
+from ..model.parameters.impulses import DENSE_CONTACTS, LIFT_TOGETHER
 from ..model.parameters.intervals import CORRECTION_ROUND_OFF, CORRECTION_SHARE, OVERLAP_LEFT
 from ..rows.build import conserves, normal_rate
-from ..rows.energy import lift
+from ..rows.lifting import lift
 from .works import against
 
 
@@ -51,7 +51,8 @@ def lifting(
         return 0.0, deepest
     D = np.zeros((len(IM), 3))
     most = 10 + 1000 // m if m <= DENSE_CONTACTS else 8 + 200 // m
-    lift(A, B, ROWS, GAPS, np.zeros(m), D, IM, II, m, 0.1 * OVERLAP_LEFT * size, most, np.empty(m, np.int64))
+    near = -LIFT_TOGETHER * deepest
+    lift(problem, GAPS, np.zeros(m), D, near, 0.1 * OVERLAP_LEFT * size, most, np.empty(m, np.int64))
     work = -against(ACC, IM, II, n, D)
     turn = 0.0
     touched = np.zeros(n, np.uint8)

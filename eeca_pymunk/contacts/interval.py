@@ -164,7 +164,7 @@ def step_island(
                 return 0
             rates(A, B, ROWS, V, m)
             target(A, B, ROWS, m, ACC, EXPECTED, pull, h)
-        velocities(A, B, ROWS, L, FREE, IM, II, m, VN)
+        velocities(problem, L, FREE, VN)
         scale = pull * h if pull > 0.0 else 1e-3 * fast
         elastic = conserves(ROWS, m)
         # A truncated solve dissipates energy in large elastic islands.
@@ -175,12 +175,12 @@ def step_island(
             problem, L, VN, FREE, rounds, INTERVAL_RESIDUAL * scale, coarse, S.RESTING[isle.WHO[0]], most
         )  # fmt: skip
         # Sums over many sweeps have their own round-off: the velocities are those of the impulses.
-        velocities(A, B, ROWS, L, FREE, IM, II, m, VN)
+        velocities(problem, L, FREE, VN)
         OUT[0].sweeps += sweeps
         OUT[0].direct += polishes
         OUT[0].residual = worst
-        OUT[0].lock, OUT[0].owed = lock(A, B, ROWS, L, VN, FREE, IM, II, m, owed, elastic)
-        normal, tangential = works(A, B, ROWS, L, VN, m, contacts.LOSS)
+        OUT[0].lock, OUT[0].owed = lock(problem, L, VN, FREE, owed, elastic)
+        normal, tangential = works(problem, L, VN, contacts.LOSS)
         OUT[0].restitution, OUT[0].friction = normal, tangential
         OUT[0].carried = carried(A, B, ROWS, L, V, VN, IM, II, m)
         if free >= 0.0:

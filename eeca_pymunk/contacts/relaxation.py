@@ -40,15 +40,14 @@ def relax(
     Returns:
         Sweeps, direct solutions, and the last sweep's change.
     """
-    A, B, ROWS, IM, II, m = problem.A, problem.B, problem.ROWS, problem.IM, problem.II, problem.m
     if rounds == 0 or STATE.wait > 0.0:
         STATE.wait = max(STATE.wait - 1.0, 0.0)
-        sweeps, worst = iterate(A, B, ROWS, L, V, IM, II, m, max(fine, coarse), most)
+        sweeps, worst = iterate(problem, L, V, max(fine, coarse), most)
         return sweeps, 0, worst
     sweeps = 0
     worst = np.inf
     while sweeps < FIRST_SWEEPS and worst > fine:
-        worst = sweep(A, B, ROWS, L, V, IM, II, m)
+        worst = sweep(problem, L, V)
         sweeps += 1
     if worst <= fine:
         return sweeps, 0, worst
@@ -63,7 +62,7 @@ def relax(
         for _ in range(SWEEPS_AFTER):
             if worst <= fine:
                 break
-            worst = sweep(A, B, ROWS, L, V, IM, II, m)
+            worst = sweep(problem, L, V)
             sweeps += 1
         if worst <= max(fine, coarse):
             break
@@ -72,7 +71,7 @@ def relax(
         last = worst
         if fails >= (FAILED_DIRECT_AGAIN if STATE.backoff > 0.0 else FAILED_DIRECT):
             break
-    if worst > max(fine, coarse) and m > BACKOFF_CONTACTS:
+    if worst > max(fine, coarse) and problem.m > BACKOFF_CONTACTS:
         STATE.backoff = min(2.0 * STATE.backoff + 2.0, LONGEST_BACKOFF)
         STATE.wait = STATE.backoff
     else:

@@ -38,7 +38,7 @@ def begin(A: Scene, WALK: IntArray) -> None:
         PAR.damped = unsteered(A, WALK) * (1.0 / (left * left) - 1.0)
         PAR.before += PAR.damped
     PAR.stamp += 1.0
-    COUNT.pending, COUNT.phase = -1, 0
+    COUNT.waiting, COUNT.phase = 0, 0
     n, last = BODY.shape[0] - 1, PAR.last
     quiet = COUNT.quiet > BUSY_STEPS
     COUNT.closing, fixed = 0, 1 if A.SHAPE.shape[0] > A.LIST.shape[0] else 0

@@ -9,22 +9,27 @@ from __future__ import annotations
 from ..compiled import kernel, merged, uncounted
 from ..contacts.single import alone, strike_disk
 from ..contacts.unmet import note_unmet
-from ..islands.accounting import close_interval, end_interval
+from ..islands.accounting import end_interval
 from ..islands.building import comes_to_rest, hits_of, most_hits, passed_over
-from ..islands.intervals import solve
 from ..islands.membership import members
-from ..model.bodies import AT_REST, LEAVE, RENEW
+from ..jointed.meet import end_here
+from ..model.bodies import LEAVE, RENEW
+from ..model.joints import Joints
 from ..model.parameters.events import AHEAD, RESOLUTION
 from ..model.scene import Scene
-from ..model.step import BLOCK_DUE, DONE, HITS, IMPACTS, JOINTS_DUE, LOG_FULL, POOL_FULL, SOLVES
+from ..model.step import BLOCK_DUE, DONE, HITS, IMPACTS, LOG_FULL, POOL_FULL, PUSHES_FULL
 from ..pairs.grid import renew
 from ..pairs.lists import mark_pair
 from ..prediction.disks import carrier, go_on
 from ..prediction.heap import pop, push, sweep_out
 from ..prediction.next_event import has_left
-from ..prediction.scheduling import forecast, forecast_all, look_ahead
+from ..prediction.scheduling import forecast, look_ahead
+from .intervals import cut_short, start_waiting
+from .joint_impact import collide
 from .resolution import strike
 from .simultaneous import arrive
+
+_ROOM = 64  # contacts more than there are, that there must be room for before an impact on joints
 
 
 @uncounted
@@ -117,88 +122,69 @@ def run(A: Scene, may_rest: bool) -> int:
 
 
 @uncounted
-def with_mover(A: Scene, i: int, n: int) -> int:
-    """How many of A.BLOCK are to be forecast after an event of body i that changed n: i too, if no impulse moves it."""
-    if A.BODY[i].inv_mass > 0.0:
-        return n
-    A.BLOCK[n] = i
-    return n + 1
+def roomy(A: Scene) -> bool:
+    """Whether there is room for the contacts that an impact on islands with joints may bring."""
+    more = 2 * A.COUNT.pushes + _ROOM
+    return bool(more <= A.PUSHED.shape[0] and 2 * (A.COUNT.remembered + more) <= A.KEYS.shape[0])
 
 
 @uncounted
-def cut_short(A: Scene, t: float) -> int:
-    """Let the step end at instant t: so nothing that it has no work left for is passed over. Spans end there, without
-    what they would have lifted at their own end."""
-    a, b = A.STATE[A.COUNT.struck].own, A.STATE[A.COUNT.struck].other
-    note_unmet(A, SOLVES, a, b, float(A.COUNT.solved), float(A.COUNT.budget))
-    A.PAR.dt = t
-    A.COUNT.heap = 0
-    for i in range(A.BODY.shape[0] - 1):
-        root = A.STATE[i].island
-        if root < 0 or A.MEMBER[root].jointed > 0 or A.MEMBER[root].rest == AT_REST:
-            continue
-        if root == i and A.MEMBER[i].open > 0:
-            close_interval(A, i, t)
-        rest = A.RESTING[i]
-        rest.lift_x, rest.lift_y, rest.lift_angle = 0.0, 0.0, 0.0
-        rest.lift_vx, rest.lift_vy, rest.lift_spin = 0.0, 0.0, 0.0
-    return DONE
+def end_of_interval(A: Scene, J: Joints, i: int, t: float) -> int:
+    """The interval of the island of body i ends at instant t, within the step; how many bodies it has, in A.BLOCK."""
+    if jointed(A, i):
+        end_here(A, J, i, t)
+    else:
+        end_interval(A, i, t)
+    return int(members(A, i, A.BLOCK))
 
 
 @kernel
-def follow(A: Scene, may_rest: bool) -> int:
-    """The events of the step, blocks and islands included. After a status other than DONE, make room and call again.
-
-    JOINTS_DUE: the interval of island COUNT[PENDING], or if there is none the event of body COUNT[STRUCK], is to be
-    done: its impact, or the end of the interval of its island.
-    """
-    COUNT, STATE, BLOCK = A.COUNT, A.STATE, A.BLOCK
+def follow(A: Scene, J: Joints, may_rest: bool) -> int:
+    """The events of the step, blocks and islands included. After a status other than DONE, make room and call again."""
+    COUNT, STATE = A.COUNT, A.STATE
     end = A.PAR.dt
-    if COUNT.pending >= 0:
-        status = solve(A, COUNT.pending, A.PAR.now)
-        if status != DONE:
-            return status
-        COUNT.pending = -1
-        forecast_all(A, COUNT.waiting, A.PAR.now, end)
     while True:
-        status = run(A, may_rest)
+        status = start_waiting(A, J) if COUNT.waiting > 0 else DONE
+        if status == DONE:
+            status = run(A, may_rest)
         if status != BLOCK_DUE:
             return status
         t, i = A.PAR.now, COUNT.struck
         s, o = STATE[i].own, STATE[i].other
         if COUNT.solved > COUNT.budget:
-            return cut_short(A, t)
+            return cut_short(A, J, i, t)
         if COUNT.logged + COUNT.pushes + 8 * STATE.shape[0] > A.LOG.shape[0]:
             COUNT.heap = push(A.HEAP_TIME, A.HEAP_BODY, COUNT.heap, t, i)
             return LOG_FULL
-        if o == RENEW and jointed(A, i):
-            return JOINTS_DUE
-        if o == RENEW:
-            end_interval(A, i, t)
-            n = members(A, i, BLOCK)
-            status = solve(A, i, t)
-            COUNT.waiting, COUNT.pending = n, -1 if status == DONE else i
-            if status != DONE:
-                return status
-            forecast_all(A, n, t, end)
-            continue
-        j = A.LINK[o].owner
-        if (STATE[i].island >= 0 or STATE[j].island >= 0) and passed_over(A, s, o, t):
+        j = i if o == RENEW else A.LINK[o].owner
+        met = o != RENEW
+        if met and (STATE[i].island >= 0 or STATE[j].island >= 0) and passed_over(A, s, o, t):
             note_unmet(A, HITS, s, o, float(hits_of(A, s, o)), float(most_hits(A, s, o)))
             mark_pair(A, s, o, 1)
             forecast(A, i, t, end, False)
             continue
-        if jointed(A, i) or jointed(A, j):
-            return JOINTS_DUE
-        rest = False
-        if may_rest:
-            arrive(A, i, t)
-            if A.BODY[j].inv_mass > 0.0:
-                arrive(A, j, t)
-            rest = comes_to_rest(A, s, o, t)
-        status, n = strike(A, s, o, t, rest)
-        n = with_mover(A, i, n)
-        COUNT.waiting = n
-        if status != DONE:
-            return status
-        forecast_all(A, n, t, end)
+        joints = jointed(A, i) or jointed(A, j)
+        if met and not joints:
+            rest = False
+            if may_rest:
+                arrive(A, i, t)
+                if A.BODY[j].inv_mass > 0.0:
+                    arrive(A, j, t)
+                rest = comes_to_rest(A, s, o, t)
+            COUNT.waiting = strike(A, s, o, t, rest)
+            joints = COUNT.waiting < 0
+        if joints and J.PROGRESS.effort > J.PROGRESS.budget:
+            COUNT.waiting = 0
+            return cut_short(A, J, i, t)
+        if joints and not roomy(A):
+            COUNT.waiting = 0
+            COUNT.heap = push(A.HEAP_TIME, A.HEAP_BODY, COUNT.heap, t, i)
+            return PUSHES_FULL
+        if not met:
+            COUNT.waiting = end_of_interval(A, J, i, t)
+        elif joints:
+            COUNT.waiting = collide(A, J, s, o, t)
+        if A.BODY[i].inv_mass == 0.0:
+            # No impulse moves it; it is forecast too.
+            A.BLOCK[COUNT.waiting] = i
+            COUNT.waiting += 1

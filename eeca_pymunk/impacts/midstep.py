@@ -7,20 +7,20 @@ are made contacts too, and all is solved again, a few times at most.
 
 from __future__ import annotations
 
-from ..arrays import FloatArray, IntArray
-from ..compiled import Table, kernel, uncounted
+from ..arrays import FloatArray
+from ..compiled import kernel, uncounted
 from ..geometry.flight import norm, pose
 from ..geometry.gap import gap
 from ..islands.candidates import way_of
-from ..islands.intervals import solve
 from ..islands.membership import approach, unite
+from ..model.joints import Joints
 from ..model.parameters.intervals import MIDSTEP_PASSES, TOUCH
-from ..model.scene import Scene, scene_of
-from ..model.step import DONE
+from ..model.scene import Scene
+from ..model.step import DONE, POOL_FULL, PUSHES_FULL
 from ..pairs.candidates import cover
 from ..pairs.lists import mark_pair
 from ..pairs.rules import barred
-from .step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, finish, start
+from .intervals import start_interval
 
 
 @uncounted
@@ -35,7 +35,8 @@ def reaches(A: Scene, USUAL: FloatArray, i: int) -> bool:
 
 @uncounted
 def join_all(A: Scene, USUAL: FloatArray) -> bool:
-    """The islands of all bodies that may touch within the step. False if there is no room for lists."""
+    """The islands of all bodies that may touch within the step, or are tied by joints. False if there is no room for
+    lists."""
     BODY, LINK = A.BODY, A.LINK
     n, dt = BODY.shape[0] - 1, A.PAR.dt
     for i in range(n):
@@ -55,6 +56,9 @@ def join_all(A: Scene, USUAL: FloatArray) -> bool:
             g = approach(A, s, o, 0.0)[0]
             if g <= way_of(A, i, dt) + way_of(A, j, dt) + touch:
                 unite(A, i, j if moves else i)
+    for i in range(n):
+        if A.MEMBER[i].tied >= 0:
+            unite(A, i, A.MEMBER[i].tied)
     return True
 
 
@@ -102,11 +106,13 @@ def overrun(A: Scene, USUAL: FloatArray) -> int:
 
 
 @kernel
-def resume_together(
-    A: Scene, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, USUAL: FloatArray, status: int
-) -> int:
-    """The rest of a step, whose bits so far are `status`; from its start, if it has been broken off for more room."""
-    COUNT, BODY = A.COUNT, A.BODY
+def act_together(A: Scene, J: Joints, USUAL: FloatArray) -> int:
+    """All contacts of a step; from its start, if it has been broken off for more room. DONE, or what is full.
+
+    Args:
+        USUAL: (k,) margins of shapes that are not fast, length.
+    """
+    BODY = A.BODY
     n = BODY.shape[0] - 1
     A.RESTING[n].speed = 0.0
     for i in range(n):
@@ -114,7 +120,7 @@ def resume_together(
     for solves in range(MIDSTEP_PASSES + 1):
         anew(A)
         if not join_all(A, USUAL):
-            return ROOM_FOR_LISTS
+            return POOL_FULL
         # A solve may make another body the root of its island, which then would be solved again.
         roots = 0
         for i in range(n):
@@ -122,41 +128,14 @@ def resume_together(
                 A.BLOCK[roots] = i
                 roots += 1
         for q in range(roots):
-            if solve(A, A.BLOCK[q], 0.0) != DONE:
-                return ROOM_FOR_CONTACTS
-        if COUNT.pushes > A.LOG.shape[0]:
-            return ROOM_FOR_EVENTS
-        if solves == MIDSTEP_PASSES:
+            if start_interval(A, J, A.BLOCK[q], 0.0) != DONE:
+                return PUSHES_FULL
+        # Joints have taken their step: it is not taken back for bodies that were sent into others.
+        if solves == MIDSTEP_PASSES or J.TALLY.components > 0:
             break
         more = overrun(A, USUAL)
         if more < 0:
-            return ROOM_FOR_LISTS
+            return POOL_FULL
         if more == 0:
             break
-    return finish(A, STATES, WALK, EXTRA, ENDS, status)
-
-
-@uncounted
-def begin_together(A: Scene) -> None:
-    """Let all contacts of the step that has been started act together."""
-    A.COUNT.together, A.PAR.now = 1, 0.0
-
-
-@kernel
-def step_together(
-    TABLE: Table, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, USUAL: FloatArray,
-    dt: float, gx: float, gy: float, left: float, bits: int,
-) -> int:  # fmt: skip
-    """From the states that were read to those that are to be written: arguments and answer as of `step.step`.
-
-    Args:
-        USUAL: (k,) margins of shapes that are not fast, length.
-    """
-    A = scene_of(TABLE)
-    if bits >= 0:
-        return resume_together(A, STATES, WALK, EXTRA, ENDS, USUAL, bits)
-    status = start(A, STATES, WALK, EXTRA, dt, gx, gy, left)
-    if status < 0:
-        return status
-    begin_together(A)
-    return resume_together(A, STATES, WALK, EXTRA, ENDS, USUAL, status)
+    return DONE

@@ -9,8 +9,9 @@ import numpy as np
 
 from ..arrays import AnyArray, FloatArray, IntArray
 from ..compiled import table_of
-from ..compiled.records import numbers, put
-from ..model.bodies import POSE, VELOCITY
+from ..compiled.records import Rows, numbers, put
+from ..model.bodies import POSE, VELOCITY, Body
+from ..model.joints import OF_JOINTS, Joint, Joints
 from ..model.scene import Scene
 from ..model.step import Count, Step
 from ..pairs.setup import NEAR, near_lists
@@ -21,13 +22,26 @@ _BOOK = slice(_STEP.index("restitution"), _STEP.index("after") + 1)
 _LOCK = _STEP.index("lock")
 _UNMET, _SOLVES, _BLOCKS, _LOGGED = map(_COUNT.index, ("unmet", "solves", "blocks", "logged"))
 UNBOUND: tuple[tuple[AnyArray | None, ...], Callable[..., int]] = (None,) * 4, int
-_OF_PROCESS = "table", "_bound", "own", "fresh", "_room", "_par", "_count", "_log"  # attributes that no copy has
+_OF_PROCESS = (
+    "table",
+    "ties",
+    "_bound",
+    "own",
+    "fresh",
+    "_room",
+    "_par",
+    "_count",
+    "_log",
+)  # attributes that no copy has
 
 
 class Remembering:
     """What an event loop knows of earlier steps."""
 
     _usual: FloatArray
+    jointed: bool
+    joint: Rows[Joint]
+    partner: Rows[Body]
 
     @property
     def scene(self) -> Scene:
@@ -42,6 +56,16 @@ class Remembering:
         self._par, self._count = numbers(arrays.PAR).reshape(-1), numbers(arrays.COUNT).reshape(-1)
         self._book: FloatArray = self._par[_BOOK]
         self._log: IntArray = arrays.LOG.view(np.int64).reshape(len(arrays.LOG), -1)
+
+    @property
+    def joints(self) -> Joints:
+        """All arrays of joints, of none where the scene has none; replace some by setting another."""
+        return self._joints
+
+    @joints.setter
+    def joints(self, arrays: Joints) -> None:
+        self._joints, self.ties = arrays, table_of(arrays)
+        self._bound = UNBOUND
 
     @property
     def lock(self) -> float:
@@ -67,7 +91,7 @@ class Remembering:
 
     def __setstate__(self, state: dict[str, object]) -> None:
         self.__dict__.update(state)
-        self.scene = self._scene
+        self.scene, self.joints = self._scene, self._joints
 
     def keep_fresh(self) -> None:
         """Before the first step: keep what steps change, poses and velocities aside, as it is now, for `start_anew`."""
@@ -112,7 +136,11 @@ class Remembering:
 
     def _gather(self) -> IntArray:
         """Have what steps change, poses and velocities aside, in one piece of memory: that memory, as integers."""
-        (self.scene,), memory = gathered((self.scene, OF_SCENE))
+        if not self.jointed:
+            (self.scene,), memory = gathered((self.scene, OF_SCENE))
+            return memory
+        (self.scene, self.joints), memory = gathered((self.scene, OF_SCENE), (self.joints, OF_JOINTS))
+        self.joint = self.joints.JOINT
         return memory
 
     def _list_anew(self) -> None:

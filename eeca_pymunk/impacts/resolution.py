@@ -14,11 +14,11 @@ from ..contacts.single import note
 from ..contacts.unmet import note_unmet
 from ..contacts.works import carried
 from ..islands.building import spread
-from ..islands.intervals import dismiss, solve
+from ..islands.intervals import dismiss
 from ..islands.membership import members, unite
 from ..model.contacts import SOLVED, Problem, Solved
 from ..model.scene import Scene
-from ..model.step import DONE, IMPACT, JOINTS_DUE
+from ..model.step import IMPACT
 from ..rows.blocks import CONVERGED, solve_block
 from .simultaneous import Block, gather, lay_out, owing
 
@@ -64,12 +64,9 @@ def holds_joints(A: Scene, n: int) -> bool:
 
 
 @kernel
-def strike(A: Scene, a: int, b: int, t: float, rest: bool) -> tuple[int, int]:
-    """Impulses of the block of shapes a and b at instant t. Status, and the number of bodies to be forecast anew, in
-    A.BLOCK.
-
-    PUSHES_FULL and JOINTS_DUE leave the new interval of the island COUNT[PENDING] to be begun; JOINTS_DUE with none
-    pending leaves the impact itself.
+def strike(A: Scene, a: int, b: int, t: float, rest: bool) -> int:
+    """Impulses of the block of shapes a and b at instant t. How many bodies, in A.BLOCK, are to be forecast anew, once
+    their islands have begun new intervals; -1, with nothing done, if joints take part.
 
     Args:
         rest: whether the contact of a and b stays closed from now on.
@@ -78,7 +75,7 @@ def strike(A: Scene, a: int, b: int, t: float, rest: bool) -> tuple[int, int]:
     n, m, PAIRS = gather(A, a, b, t)
     if holds_joints(A, n):
         dismiss(A, A.BLOCK, n)
-        return JOINTS_DUE, 0
+        return -1
     owed, piled = owing(A, n)
     block = lay_out(A, n, m, PAIRS, min(a, b) * k + max(a, b), rest, t)
     rows = len(block.ROWS)
@@ -90,16 +87,16 @@ def strike(A: Scene, a: int, b: int, t: float, rest: bool) -> tuple[int, int]:
 
 
 @kernel
-def rejoin(A: Scene, a: int, b: int, t: float, n: int, rest: bool, lost: float) -> tuple[int, int]:
-    """After the impulses of a block of n bodies in A.BLOCK: its islands become one and begin a new interval; so do the
-    two bodies of shapes a and b if they rest on each other. Status and number of bodies."""
+def rejoin(A: Scene, a: int, b: int, t: float, n: int, rest: bool, lost: float) -> int:
+    """After the impulses of a block of n bodies in A.BLOCK: its islands become one; so do the two bodies of shapes a
+    and b if they rest on each other. How many bodies are in A.BLOCK then: those of the block and of that island."""
     STATE, BODIES = A.STATE, A.BLOCK
     root = -1
     for q in range(n):
         if STATE[BODIES[q]].island >= 0:
             root = unite(A, BODIES[q], BODIES[q] if root < 0 else root)
     if root < 0 and not rest:
-        return DONE, n
+        return n
     QUEUE = np.empty(A.BODY.shape[0], np.int64)
     queued = 0
     for s in (a, b):
@@ -123,7 +120,4 @@ def rejoin(A: Scene, a: int, b: int, t: float, n: int, rest: bool, lost: float) 
     more = members(A, root, MINE)
     for q in range(more):
         BODIES[free + q] = MINE[q]
-    status = solve(A, root, t)
-    if status != DONE:
-        A.COUNT.pending = root
-    return status, free + more
+    return free + more

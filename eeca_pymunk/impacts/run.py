@@ -11,9 +11,9 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import Table, kernel, uncounted
 from ..layout import BODY_ROW, LEFT
 from ..layout import NOW as READ
+from ..model.joints import joints_of
 from ..model.run import AFTER, BETWEEN, WITHIN, RunArrays, run_arrays_of
 from ..model.scene import Scene, scene_of
-from .midstep import begin_together, resume_together
 from .step import resume, start
 
 ROOM_FOR_IMPACTS = -13  # the answer of a run that wants more rows of EVENTS
@@ -133,36 +133,30 @@ def next_rollout(F: RunArrays) -> bool:
 
 @kernel
 def run(
-    TABLE: Table, ARRAYS: Table, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray,
-    USUAL: FloatArray, lossy: bool, together: bool,
+    TABLE: Table, JOINTS: Table, ARRAYS: Table, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray,
+    USUAL: FloatArray,
 ) -> int:  # fmt: skip
     """Steps until RUN.until of them are done, of each rollout if there are any.
 
     Args:
-        TABLE: `table_of` a Scene.  ARRAYS: `table_of` a RunArrays.  USUAL: see `midstep.py`.
-        lossy: see `step.step`.  together: whether all contacts of a step act together at its middle.
+        TABLE, JOINTS, USUAL: see `step.step`.  ARRAYS: `table_of` a RunArrays.
 
     Returns:
         the bits of all steps; a negative code of a step, or ENERGY, with the state at its start in STATES; or a wish
         for room: give some, and call again.
     """
-    A, F = scene_of(TABLE), run_arrays_of(ARRAYS)
+    A, J, F = scene_of(TABLE), joints_of(JOINTS), run_arrays_of(ARRAYS)
     RUN = F.RUN
     while True:
         while RUN.done < RUN.until:
             if RUN.stage == BETWEEN:
                 before_step(A, F, STATES, WALK)
-                RUN.bits = start(A, STATES, WALK, EXTRA, RUN.dt, RUN.gravity_x, RUN.gravity_y, RUN.left_over)
+                RUN.bits = start(A, J, STATES, WALK, EXTRA, RUN.dt, RUN.gravity_x, RUN.gravity_y, RUN.left_over)
                 if RUN.bits < 0:
                     return RUN.bits
-                if together:
-                    begin_together(A)
                 RUN.stage = WITHIN
             if RUN.stage == WITHIN:
-                if together:
-                    status = resume_together(A, STATES, WALK, EXTRA, ENDS, USUAL, RUN.bits)
-                else:
-                    status = resume(A, STATES, WALK, EXTRA, ENDS, lossy, RUN.bits)
+                status = resume(A, J, STATES, WALK, EXTRA, ENDS, USUAL, RUN.bits)
                 if status < 0:
                     return status
                 RUN.bits, RUN.stage = status, AFTER

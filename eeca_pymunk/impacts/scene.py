@@ -14,9 +14,11 @@ from ..compiled.records import R, Rows, rows
 from ..contacts.memory import forget
 from ..geometry.corners import core_room, thin_memory
 from ..islands.accounting import flag_again
+from ..joints.workspace import make_joints
 from ..layout import NOW as READ
 from ..model.bodies import CHECK, Body, Member, Next, Rest
 from ..model.contacts import Force, Impulse, Pair, Pushed
+from ..model.joints import Joint
 from ..model.parameters.events import SOLVES_PER_BODY
 from ..model.parameters.impulses import AUGMENTATION
 from ..model.scene import scene_with
@@ -25,7 +27,6 @@ from ..model.step import Missed
 from ..pairs.setup import near_lists, with_more_room
 from ..report import Details, of_events
 from ..transfer import FORCES
-from .midstep import step_together
 from .remembering import Remembering
 from .run import ROOM_FOR_IMPACTS, run
 from .run_buffers import RunBuffers
@@ -59,11 +60,16 @@ class EventLoop(Remembering):
         BODY, SHAPE, LINK, VERTEX: see `..model`; BODY has the poses of now.
         disks: the first so many rows of BODY are lone disks.
         limit: impacts that a body may have in a step.
+        joint: (j,) the joints; kept, not copied. Bodies are rows of BODY, or len(BODY) + row of PARTNER (x,), which
+            joints cannot move. None for a scene without joints.
+        together: whether all contacts of a step act together at its middle, rather than at their instants.
+        order: of the steps of components, 4 where nothing in one dissipates, drives, or touches something; or 2.
     """
 
     def __init__(
-        self, BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, disks: int, limit: int
-    ) -> None:
+        self, BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, disks: int, limit: int,
+        joint: Rows[Joint] | None = None, PARTNER: Rows[Body] | None = None, together: bool = False, order: int = 4,
+    ) -> None:  # fmt: skip
         n = len(BODY)
         moving = int(np.count_nonzero(LINK["owner"] < n - 1))
         STATE, MEMBER, RESTING, PULL, BEGAN, TIME, OF, PLACE, BLOCK = side_by_side(
@@ -76,8 +82,7 @@ class EventLoop(Remembering):
         STATE["first_shape"] = np.cumsum(STATE["shapes"]) - STATE["shapes"]
         STATE["island"] = -1
         lossy = bool((SHAPE["elasticity"] < 1.0).any())
-        self._options: tuple[int, ...] = (lossy,)  # numbers that the step takes besides dt, gravity and damping
-        self.lossy, self.together = lossy, False
+        self.together, self._order = together, order
         room = _CONTACTS
         while lossy and room < min(_OF_A_BODY * n, _MANY):
             room *= 2
@@ -92,9 +97,29 @@ class EventLoop(Remembering):
         self.scene = near_lists(scene, moving)
         self._usual: FloatArray = self.scene.MARK["margin"].copy()
         self.scene.COUNT.limit, self.scene.COUNT.disks = limit, disks
+        self.scene.COUNT.lossy, self.scene.COUNT.together = lossy, together
         self.scene.COUNT.budget = SOLVES_PER_BODY * n
         self.scene.MEMBER["tied"] = self.scene.MEMBER["next_tied"] = -1
         self.scene.RESTING["augmentation"] = AUGMENTATION
+        self.jointed = joint is not None
+        self.joints = make_joints(BODY[:0], rows(Joint, 0), BODY[:0], order)
+        if joint is not None and PARTNER is not None:
+            self.joint, self.partner = joint, PARTNER
+            self.plan()
+
+    def plan(self) -> None:
+        """Find the components anew: after changes of joints' kinds, bodies, anchors off centre, or of mobilities."""
+        self.joints = make_joints(self.scene.BODY, self.joint, self.partner, self._order)
+        ring = self.scene.MEMBER
+        ring["tied"] = ring["next_tied"] = -1
+        for s in range(self.joints.TALLY.components):
+            moved = np.flatnonzero(s == self.joints.OF)
+            ring["tied"][moved], ring["next_tied"][moved] = moved[0], np.roll(moved, -1)
+
+    def rebind(self, joint: Rows[Joint], PARTNER: Rows[Body]) -> None:
+        """Take other arrays of joints that have the same in them."""
+        self.joint, self.partner = joint, PARTNER
+        self.joints = self.joints._replace(JOINT=joint, PARTNER=PARTNER)
 
     def step(
         self, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
@@ -105,18 +130,18 @@ class EventLoop(Remembering):
         # One by one, since this is paid in every step.
         if states[0] is not STATES or states[1] is not WALK or states[2] is not EXTRA or states[3] is not ENDS:
             call = self._bind_to((STATES, WALK, EXTRA, ENDS))
-        status = call(dt, gx, gy, left, *self._options, -1)
+        status = call(dt, gx, gy, left, -1)
         while status <= ROOM_FOR_LISTS:
             self._grow(check("step", status))
             bits = FORCES if STATES[READ, :, 6:].any() else 0
-            status = self._bind_to((STATES, WALK, EXTRA, ENDS))(dt, gx, gy, left, *self._options, bits)
+            status = self._bind_to((STATES, WALK, EXTRA, ENDS))(dt, gx, gy, left, bits)
         return status
 
     def follow(self, buffers: RunBuffers, states: tuple[AnyArray, ...]) -> int:
         """Take the steps that `buffers` asks for; all bits, a negative code of `transfer.py`, or `run.ENERGY`."""
         while True:
             call = buffers.call = buffers.call or self._bind_run(buffers, states)
-            status = check("run", call(self.lossy, self.together))
+            status = check("run", call())
             if status == ROOM_FOR_IMPACTS:
                 buffers.more_events()
             elif status <= ROOM_FOR_LISTS:
@@ -126,16 +151,13 @@ class EventLoop(Remembering):
                 return status
 
     def _bind_run(self, buffers: RunBuffers, states: tuple[AnyArray, ...]) -> Callable[..., int]:
-        return run.bind(self.table, buffers.table, *states, self._usual)
+        return run.bind(self.table, self.ties, buffers.table, *states, self._usual)
 
     def _bind_to(self, states: tuple[AnyArray, ...]) -> Callable[..., int]:
         """The step as machine code, bound to these arrays and to those of the scene."""
-        call = self._bind(states)
+        call = step.bind(self.table, self.ties, *states, self._usual)
         self._bound = states, call
         return call
-
-    def _bind(self, states: tuple[AnyArray, ...]) -> Callable[..., int]:
-        return step.bind(self.table, *states)
 
     def _grow(self, wish: int) -> None:
         scene = self.scene
@@ -195,14 +217,3 @@ class EventLoop(Remembering):
     def missed(self) -> Rows[Missed]:
         """(m,) what the last step has not met, the first of it; a copy."""
         return self.scene.MISSED[: self.scene.COUNT.unmet].copy()
-
-
-class Together(EventLoop):
-    """Steps the same arrays with all contacts of a step acting together at its middle (`midstep.py`)."""
-
-    def __init__(self, BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, disks: int) -> None:
-        super().__init__(BODY, SHAPE, LINK, VERTEX, disks, 0)
-        self._options, self.together = (), True
-
-    def _bind(self, states: tuple[AnyArray, ...]) -> Callable[..., int]:
-        return step_together.bind(self.table, *states, self._usual)

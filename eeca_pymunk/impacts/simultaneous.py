@@ -20,10 +20,9 @@ from ..geometry.gap import touching
 from ..geometry.manifold import face
 from ..geometry.sides import note_side
 from ..islands.accounting import end_interval
-from ..islands.membership import budget_spent, carrier, remembered
+from ..islands.membership import budget_spent, carrier, in_large_island, remembered
 from ..model.contacts import ROW, Row
 from ..model.parameters.impulses import BLOCK_BODIES, FACE_ROUND_OFF, ROCKING
-from ..model.parameters.intervals import LARGE_ISLAND
 from ..model.scene import Scene
 from ..pairs.rules import barred, law
 from ..rows.build import normal_rate, place_row
@@ -41,19 +40,6 @@ def takes_part(A: Scene, s: int, o: int, t: float) -> bool:
     if A.STATE[i].island < 0 or not (A.STATE[j].island == A.STATE[i].island or carrier(A, j)):
         return False
     return remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], s, o, A.PAR.stamp)[0] > 0.0
-
-
-@uncounted
-def in_large_island(A: Scene, a: int, b: int) -> bool:
-    """Whether shapes a and b meet in a large island: their hit spreads from the nearest bodies by its new interval."""
-    if law(A.SHAPE, A.RULE, a, b)[0] >= 1.0:
-        return False
-    size = 0
-    for s in (a, b):
-        root = A.STATE[A.LINK[s].owner].island
-        if root >= 0:
-            size = max(size, A.MEMBER[root].bodies)
-    return size >= LARGE_ISLAND
 
 
 @uncounted

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import Table, kernel, uncounted
-from ..islands.building import build_islands
+from ..compiled import Table, kernel
+from ..jointed.ledger import account_joints, start_joints
+from ..model.joints import Joints, joints_of
 from ..model.scene import Scene, scene_of
-from ..model.step import DONE, LOG_FULL, POOL_FULL
+from ..model.step import DONE, LOG_FULL, POOL_FULL, PUSHES_FULL
 from ..prediction.scheduling import forecast_due
 from ..transfer import EVENTS as SOME
 from ..transfer import give, take
 from .begin import begin
 from .close import close
+from .intervals import start_islands
 from .loop import follow
+from .midstep import act_together
 
 # Answers of a step that wants more memory: give some, and `resume`.
 ROOM_FOR_LISTS, ROOM_FOR_EVENTS, ROOM_FOR_CONTACTS = -10, -11, -12
@@ -20,9 +23,12 @@ ROOM_FOR_LISTS, ROOM_FOR_EVENTS, ROOM_FOR_CONTACTS = -10, -11, -12
 
 @kernel
 def start(
-    A: Scene, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, dt: float, gx: float, gy: float, left: float
-) -> int:
+    A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, dt: float, gx: float, gy: float,
+    left: float,
+) -> int:  # fmt: skip
     """Take the states that were read, and begin a step of length dt on them; the bits so far, or a negative code."""
+    if len(J.JOINT) > 0:
+        start_joints(A, J, STATES, WALK)
     status = take(STATES, WALK, EXTRA, A.BODY, gx, gy, left)
     if status >= 0:
         A.PAR.dt, A.PAR.gravity_x, A.PAR.gravity_y, A.PAR.left_over = dt, gx, gy, left
@@ -32,65 +38,71 @@ def start(
 
 @kernel
 def finish(
-    A: Scene, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, status: int
+    A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, status: int
 ) -> int:  # fmt: skip
     """Close the step, and give the states at its end; the bits of the step, or a negative code."""
+    account_joints(A, J)
     close(A, WALK)
     if A.COUNT.logged > 0 or A.COUNT.unmet > 0:
         status |= SOME
     return give(STATES, WALK, EXTRA, A.BODY, ENDS, A.PAR.dt, A.PAR.left_over, status)
 
 
-@uncounted
-def wish(met: int) -> int:
-    """The room that the loop wants, which has answered with one of its arrays being full."""
-    if met == POOL_FULL:
-        return ROOM_FOR_LISTS
-    return ROOM_FOR_EVENTS if met == LOG_FULL else ROOM_FOR_CONTACTS
+@kernel
+def act(A: Scene, J: Joints, USUAL: FloatArray) -> int:
+    """All impulses of a step that has been started: of all contacts together at its middle, or event by event from the
+    intervals of its islands on. DONE, or what is full; then make room and call again."""
+    COUNT = A.COUNT
+    if COUNT.together > 0:
+        return act_together(A, J, USUAL)
+    if COUNT.phase == 0:
+        if COUNT.pushes + COUNT.crammed + J.TALLY.components > 0 and start_islands(A, J) != DONE:
+            return PUSHES_FULL
+        COUNT.phase = 1
+        forecast_due(A)
+    if COUNT.phase == 1:
+        status = follow(A, J, COUNT.lossy > 0 or A.PAR.pulled > 0.0)
+        if status != DONE:
+            return status
+        COUNT.phase = 2
+    return DONE
 
 
 @kernel
 def resume(
-    A: Scene, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, lossy: bool,
+    A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, USUAL: FloatArray,
     status: int,
 ) -> int:  # fmt: skip
-    """The rest of a step, whose bits so far are `status`."""
-    COUNT = A.COUNT
-    if COUNT.phase == 0:
-        if COUNT.pushes + COUNT.crammed > 0 and build_islands(A) != DONE:
-            return ROOM_FOR_CONTACTS
-        COUNT.phase = 1
-        forecast_due(A)
-    if COUNT.phase == 1:
-        met = follow(A, lossy or A.PAR.pulled > 0.0)
-        if met != DONE:
-            return wish(met)
-        COUNT.phase = 2
-    if COUNT.logged + COUNT.pushes > A.LOG.shape[0]:
+    """The rest of a step, whose bits so far are `status`: the bits of the step, a negative code, or a wish for room."""
+    met = act(A, J, USUAL)
+    if met == POOL_FULL:
+        return ROOM_FOR_LISTS
+    if met == PUSHES_FULL:
+        return ROOM_FOR_CONTACTS
+    if met == LOG_FULL or A.COUNT.logged + A.COUNT.pushes > A.LOG.shape[0]:
         return ROOM_FOR_EVENTS
-    return finish(A, STATES, WALK, EXTRA, ENDS, status)
+    return finish(A, J, STATES, WALK, EXTRA, ENDS, status)
 
 
 @kernel
 def step(
-    TABLE: Table, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float,
-    gy: float, left: float, lossy: bool, bits: int,
+    TABLE: Table, JOINTS: Table, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray,
+    USUAL: FloatArray, dt: float, gx: float, gy: float, left: float, bits: int,
 ) -> int:  # fmt: skip
     """From the states that were read to those that are to be written, see `transfer.py`.
 
     Args:
-        TABLE: `table_of` a Scene.
+        TABLE: `table_of` a Scene.  JOINTS: `table_of` its Joints.
+        USUAL: (k,) margins of shapes that are not fast, length.
         dt: time, > 0.  gx, gy: gravity, length/time².  left: what half the step's damping leaves of velocities.
-        lossy: whether any shape's elasticity is below 1.
         bits: negative for a new step; those of one that wished for room and goes on.
 
     Returns:
         the bits EVENTS, FORCES, TURNS, a negative code of `transfer.py`, or a wish for room.
     """
-    A = scene_of(TABLE)
-    if bits >= 0:
-        return resume(A, STATES, WALK, EXTRA, ENDS, lossy, bits)
-    status = start(A, STATES, WALK, EXTRA, dt, gx, gy, left)
-    if status < 0:
-        return status
-    return resume(A, STATES, WALK, EXTRA, ENDS, lossy, status)
+    A, J = scene_of(TABLE), joints_of(JOINTS)
+    if bits < 0:
+        bits = start(A, J, STATES, WALK, EXTRA, dt, gx, gy, left)
+        if bits < 0:
+            return bits
+    return resume(A, J, STATES, WALK, EXTRA, ENDS, USUAL, bits)

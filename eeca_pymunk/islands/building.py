@@ -93,8 +93,8 @@ def spread(A: Scene, QUEUE: IntArray, queued: int, t: float) -> int:
 
 @kernel
 def build_islands(A: Scene) -> int:
-    """The islands of the start of a step, and their intervals. DONE, or PUSHES_FULL, to be called again with more
-    room."""
+    """The islands of the start of a step, and the intervals of those without joints. DONE, or PUSHES_FULL, to be called
+    again with more room."""
     STATE, COUNT, BODY = A.STATE, A.COUNT, A.BODY
     n = BODY.shape[0] - 1
     wake_changed(A)
@@ -151,7 +151,7 @@ def build_islands(A: Scene) -> int:
             roots += 1
     for q in range(roots):
         root = QUEUE[q]
-        if not rests_in_part(A, root):
+        if A.MEMBER[root].jointed == 0 and not rests_in_part(A, root):
             solve(A, root, 0.0)
     support(A)
     return DONE

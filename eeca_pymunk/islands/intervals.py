@@ -15,7 +15,7 @@ from ..model.islands import Island
 from ..model.parameters.events import RESOLUTION
 from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES, LARGE_ISLAND, SMALL_SWEEPS
 from ..model.scene import Scene
-from ..model.step import DONE, JOINTS_DUE, PUSHES_FULL
+from ..model.step import DONE, PUSHES_FULL
 from ..rows.inplace import sort
 from .at_rest import put_to_rest
 from .candidates import (
@@ -82,8 +82,6 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
     n = MEMBER[root].bodies
     MINE = np.empty(n, np.int64)
     members(A, root, MINE)
-    if MEMBER[root].jointed > 0:
-        return JOINTS_DUE, 0.0
     sort(MINE, n)
     for q in range(n):
         A.PLACE[MINE[q]] = q

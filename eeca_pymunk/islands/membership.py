@@ -59,6 +59,19 @@ def budget_spent(A: Scene, root: int) -> bool:
 
 
 @uncounted
+def in_large_island(A: Scene, a: int, b: int) -> bool:
+    """Whether shapes a and b meet in a large island: their hit spreads from the nearest bodies by its new interval."""
+    if law(A.SHAPE, A.RULE, a, b)[0] >= 1.0:
+        return False
+    size = 0
+    for s in (a, b):
+        root = A.STATE[A.LINK[s].owner].island
+        if root >= 0:
+            size = max(size, A.MEMBER[root].bodies)
+    return size >= LARGE_ISLAND
+
+
+@uncounted
 def members(A: Scene, root: int, MINE: IntArray) -> int:
     """The bodies of an island into MINE; how many they are."""
     i, n = root, 0

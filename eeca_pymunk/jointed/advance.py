@@ -10,13 +10,13 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
-from ..model.contacts import Row
+from ..model.contacts import Bounded, Columns, Row
 from ..model.islands import Island
 from ..model.joints import Joints
 from ..model.parameters.joints import ARM_ERROR, ARM_ITERATIONS
 from ..model.scene import Scene
-from .bounded import Bounded, fill_rows, list_rows, note_rows
-from .columns import Columns, fill_group
+from .bounded import fill_rows, list_rows, note_rows
+from .columns import fill_group
 from .component import ready, step_component
 from .gathered import find_places, gather_component, lead_component, rewind_joints
 from .groups import Groups
@@ -65,16 +65,7 @@ def advance(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, 
     """Step all bodies of an island by h under the impulses L of its contacts, from where its joints were; `fill` the
     columns C and B about that step, bounded impulses being given; else B has what these are, and C stays.
     GUESS (k, 3): velocities at the end that are foreseen, to begin with; (0, 3) for none."""
-    isle, groups, P, Q, ROWS, m, h, motion = (
-        interval.isle,
-        interval.groups,
-        interval.P,
-        interval.Q,
-        interval.ROWS,
-        interval.m,
-        interval.h,
-        interval.motion,
-    )
+    isle, groups, P, Q, ROWS, motion, C, m, _, t, h = interval
     k = len(isle.IM)
     ACC = isle.ACC.copy()
     for i in range(m):
@@ -97,7 +88,7 @@ def advance(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, 
         rewind_joints(J, s)
         if len(GUESS) > 0:
             lead_component(A, J, s, isle.V, ACC, GUESS, h)
-        length = gather_component(A, J, s, isle.POSE, isle.V, ACC, isle.IM, isle.II, interval.t, h)
+        length = gather_component(A, J, s, isle.POSE, isle.V, ACC, isle.IM, isle.II, t, h)
         step_component(A, J, s, h, length, m == 0, motion.V, motion.WAY, motion.END, motion.MID)
         if not fill:
             note_rows(A, J, B, s, h)
@@ -107,7 +98,7 @@ def advance(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, 
             first = list_rows(A, J, B, s, h)
             if ready(J, s, h, True):
                 PUSH = np.empty((size, 3))
-                fill_group(J, groups, interval.C, g, INDEX, True, P, Q, ROWS, m, PUSH)
+                fill_group(J, groups, C, g, INDEX, True, P, Q, ROWS, m, PUSH)
                 fill_rows(J, groups, B, g, first, INDEX, PUSH)
             else:
                 B.USED[0] = first
@@ -171,17 +162,6 @@ def advance_aligned(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: B
     the motion. At its end they are those that it has been under."""
     for turn in range(ARM_ITERATIONS):
         advance(A, J, interval, L, B, False, np.empty((0, 3)))
-        if (
-            not free
-            or align(
-                interval.isle,
-                interval.P,
-                interval.Q,
-                interval.ROWS,
-                interval.m,
-                interval.motion,
-                turn + 1 < ARM_ITERATIONS,
-            )
-            <= ARM_ERROR
-        ):
+        isle, _, P, Q, ROWS, motion, _, m, _, _, _ = interval
+        if not free or align(isle, P, Q, ROWS, m, motion, turn + 1 < ARM_ITERATIONS) <= ARM_ERROR:
             break

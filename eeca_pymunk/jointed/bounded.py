@@ -7,46 +7,18 @@ next step (`..joints.boxes`), which keeps their bounds to the bit.
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
-from ..compiled.records import Rows, zeros
-from ..joints.boxes import FIRST_OF_DISC, SECOND_OF_DISC, SINGLE, on_disc
 from ..joints.entries import held, interval_of
-from ..model.joints import BOUNDED_ROW, GIVEN, GROOVE, BoundedRow, Joints
+from ..model.contacts import Bounded
+from ..model.joints import GIVEN, GROOVE, Joints
 from ..model.parameters.joints import BOUNDED_SWEEPS
 from ..model.scene import Scene
+from ..rows.bounded import FIRST_OF_DISC, SECOND_OF_DISC, SINGLE, room_for_rows, sweep_bounded
 from .component import answer
 from .groups import Groups
-
-
-class Bounded(NamedTuple):
-    """Bounded rows; of row i < USED[0]:
-
-    AT[i] : AT[i + 1] the entries BODY and N (., 3) of its column, AT[0] = 0; END (n, 2) its bodies in the island, -1
-    for what does not move; ROW (n, 6) the row; ROWS (n,): its bounds; OF (n, 2): joint (of LINK), row.
-    """
-
-    USED: IntArray
-    AT: IntArray
-    BODY: IntArray
-    N: FloatArray
-    END: IntArray
-    ROW: FloatArray
-    ROWS: Rows[BoundedRow]
-    OF: IntArray
-
-
-@kernel
-def room_for_rows(n: int, entries: int) -> Bounded:
-    """Room for n bounded rows, whose columns have so many entries."""
-    return Bounded(
-        np.zeros(1, np.int64), np.zeros(n + 1, np.int64), np.zeros(entries, np.int64), np.zeros((entries, 3)),
-        np.zeros((n, 2), np.int64), np.zeros((n, 6)), zeros(n, BOUNDED_ROW), np.zeros((n, 2), np.int64),
-    )  # fmt: skip
 
 
 @kernel
@@ -126,80 +98,6 @@ def fill_rows(
                 B.N[at, c] = PUSH[INDEX[q], c]
             at += 1
         B.AT[i + 1] = at
-
-
-@uncounted
-def bounded_rate(B: Bounded, i: int, V: FloatArray) -> float:
-    """Velocity of the island's bodies along row i."""
-    total = 0.0
-    for end in range(2):
-        if B.END[i, end] >= 0:
-            for c in range(3):
-                total += B.ROW[i, 3 * end + c] * V[B.END[i, end], c]
-    return total
-
-
-@uncounted
-def per_impulse(B: Bounded, i: int, j: int) -> float:
-    """Velocity along row i per impulse of row j."""
-    total = 0.0
-    for w in range(B.AT[j], B.AT[j + 1]):
-        for end in range(2):
-            if B.BODY[w] == B.END[i, end]:
-                for c in range(3):
-                    total += B.ROW[i, 3 * end + c] * B.N[w, c]
-    return total
-
-
-@uncounted
-def push_row(B: Bounded, i: int, change: float, V: FloatArray) -> None:
-    """V += change of impulse i times its column."""
-    if change != 0.0:
-        for w in range(B.AT[i], B.AT[i + 1]):
-            for c in range(3):
-                V[B.BODY[w], c] += change * B.N[w, c]
-
-
-@uncounted
-def sweep_bounded(B: Bounded, L: FloatArray, m: int, V: FloatArray) -> float:
-    """One sweep over the bounded rows, whose impulses are L[m:, 0]; the largest change of a velocity along one."""
-    worst = 0.0
-    for i in range(B.USED[0]):
-        part, low, high = B.ROWS[i].part, B.ROWS[i].low, B.ROWS[i].high
-        if part == SECOND_OF_DISC:
-            continue
-        a, x = per_impulse(B, i, i), L[m + i, 0]
-        if not a > 0.0:
-            continue
-        u = B.ROWS[i].speed + bounded_rate(B, i, V)
-        if part == SINGLE:
-            L[m + i, 0] = min(max(x - u / a, low), high)
-        else:
-            b, c, y = (
-                0.5 * (per_impulse(B, i, i + 1) + per_impulse(B, i + 1, i)),
-                per_impulse(B, i + 1, i + 1),
-                L[m + i + 1, 0],
-            )
-            if not c > 0.0:
-                continue
-            other = B.ROWS[i + 1].speed + bounded_rate(B, i + 1, V)
-            L[m + i, 0] = on_disc(a, b, c, u, other, x, y, high, False)
-            L[m + i + 1, 0] = on_disc(a, b, c, u, other, x, y, high, True)
-            push_row(B, i + 1, L[m + i + 1, 0] - y, V)
-            worst = max(worst, abs(L[m + i + 1, 0] - y) * c)
-        push_row(B, i, L[m + i, 0] - x, V)
-        worst = max(worst, abs(L[m + i, 0] - x) * a)
-    return worst
-
-
-@uncounted
-def inside(B: Bounded, L: FloatArray, m: int, i: int) -> bool:
-    """Whether impulse i is inside of its bounds."""
-    x, high = L[m + i, 0], B.ROWS[i].high
-    if B.ROWS[i].part == SINGLE:
-        return bool(B.ROWS[i].low < x < high)
-    y = L[m + i + 1, 0] if B.ROWS[i].part == FIRST_OF_DISC else L[m + i - 1, 0]
-    return bool(x * x + y * y < high * high * (1.0 - 1e-14))
 
 
 @kernel

@@ -6,29 +6,17 @@ for its tangential impulse, over the *groups* of its two bodies: a component, or
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
-from ..model.contacts import Row
+from ..model.contacts import Columns, Row
 from ..model.joints import Joints
 from ..model.parameters.impulses import SINGULAR
 from ..model.parameters.joints import STRUT
 from .component import answer
 from .groups import Groups
-
-
-class Columns(NamedTuple):
-    """Of contact i: AT[i] : AT[i + 1] the entries BODY, N and T (., 3) of its columns; OUT (m,) 1 if it is left out."""
-
-    AT: IntArray
-    BODY: IntArray
-    N: FloatArray
-    T: FloatArray
-    OUT: IntArray
 
 
 @kernel
@@ -145,18 +133,6 @@ def weigh(C: Columns, A: IntArray, B: IntArray, ROWS: Rows[Row], m: int) -> None
             ROWS[i].w_nn = tt / det if regular else np.nan
             ROWS[i].w_nt = -nt / det if regular else 0.0
             ROWS[i].w_tt = nn / det if regular else 0.0
-
-
-@uncounted
-def push_columns(C: Columns, L: FloatArray, m: int, factor: float, V: FloatArray) -> None:
-    """V += factor Y L."""
-    for i in range(m):
-        lam, beta = factor * L[i, 0], factor * L[i, 1]
-        if lam == 0.0 and beta == 0.0:
-            continue
-        for w in range(C.AT[i], C.AT[i + 1]):
-            for c in range(3):
-                V[C.BODY[w], c] += lam * C.N[w, c] + beta * C.T[w, c]
 
 
 @uncounted

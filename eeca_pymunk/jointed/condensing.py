@@ -15,14 +15,13 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..compiled.records import Rows, empty
-from ..joints.boxes import SINGLE
-from ..model.contacts import ROW, Row
+from ..model.contacts import ROW, Bounded, Columns, JointedProblem, Row
 from ..model.parameters.joints import COLUMN_CONTACTS, CONDENSED_BOUNDED, CONDENSED_CHANGES, CONDENSED_PROXIMAL
+from ..rows.bounded import SINGLE, bounded_rate, per_impulse, push_row, room_for_rows
 from ..rows.build import normal_rate
 from ..rows.dense import back, decompose
 from ..rows.inplace import copy
-from .bounded import Bounded, bounded_rate, per_impulse, push_row, room_for_rows
-from .columns import Columns, leave_out, weigh
+from .columns import leave_out, weigh
 from .groups import Groups
 from .newton import solve_columns
 
@@ -98,9 +97,8 @@ def first_to_yield(D: Bounded, S: IntArray, k: int, Y: FloatArray, L: FloatArray
 
 @kernel
 def solve_condensed(
-    groups: Groups, C: Columns, K: Columns, D: Bounded, A: IntArray, B: IntArray, ROWS: Rows[Row],
-    L: FloatArray, V: FloatArray, m: int, tolerance: float, most: int,
-) -> float:  # fmt: skip
+    problem: JointedProblem, groups: Groups, K: Columns, L: FloatArray, V: FloatArray, tolerance: float, most: int
+) -> float:
     """Impulses L (m contacts, then the bounded rows D) and velocities V.
 
     Args:
@@ -110,6 +108,7 @@ def solve_condensed(
         the last sweep's largest change of a contact's velocity; -1 with nothing changed if rows go on changing sides,
         if that is above the tolerance, or if there are some of discs.
     """
+    A, B, ROWS, C, D, m = problem
     n = D.USED[0]
     if n == 0 or n > CONDENSED_BOUNDED or m > COLUMN_CONTACTS:
         return -1.0
@@ -172,7 +171,7 @@ def solve_condensed(
                 break
             side[S[p]] = 1 if Y[p, 2 * blocked] > 0.0 else -1
             continue
-        worst = solve_columns(K, room_for_rows(0, 0), A, B, ROWS, LC, V, m, tolerance, most)
+        worst = solve_columns(JointedProblem(A, B, ROWS, K, room_for_rows(0, 0), m), LC, V, tolerance, most)
         follow(S, k, Y, L, LC, m)
         copy_weights(KEPT, m, ROWS)
         farthest, by = -1, 10.0 * tolerance

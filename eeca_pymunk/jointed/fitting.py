@@ -8,11 +8,12 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
 from ..joints.correct import fitting_loss
-from ..model.contacts import Row
+from ..model.contacts import JointedProblem, Row
 from ..model.islands import Island
 from ..model.joints import Joints
 from ..model.parameters.joints import COLUMN_CONTACTS, FIT_CLOSING, FIT_ENERGY, FIT_RESIDUAL
 from ..model.scene import Scene
+from ..rows.bounded import room_for_rows
 from ..rows.build import normal_rate
 from ..rows.inplace import add
 from .advance import Interval, is_hit
@@ -98,15 +99,7 @@ def hold(A: Scene, J: Joints, interval: Interval, end: float, RATES: FloatArray,
     """Normal impulses 0 <= mu _|_ u + G S G^T mu >= 0 on contacts whose rates u (m,) are RATES, infinite for those that
     are not asked: velocities that fit the joints go on to do so, and contacts do not close. Energy only falls, by
     -mu.(u + G S G^T mu / 2), also where sweeps are cut short; it is lost by component `book`."""
-    isle, groups, P, Q, m, motion, C = (
-        interval.isle,
-        interval.groups,
-        interval.P,
-        interval.Q,
-        interval.m,
-        interval.motion,
-        interval.C,
-    )
+    isle, groups, P, Q, _, motion, C, m, _, _, h = interval
     KEEP, NOTHING = interval.ROWS[:m].copy(), np.zeros_like(isle.V)
     bring_arms(P, Q, KEEP, motion.END, m)
     fill_free(groups, C, P, Q, KEEP, isle.IM, isle.II, m)
@@ -115,7 +108,7 @@ def hold(A: Scene, J: Joints, interval: Interval, end: float, RATES: FloatArray,
         s = groups.COMPONENT[g]
         if s < 0 or not is_hit(groups, P, Q, m, g):
             continue
-        gather_component(A, J, s, motion.END, motion.V, NOTHING, isle.IM, isle.II, end, interval.h)
+        gather_component(A, J, s, motion.END, motion.V, NOTHING, isle.IM, isle.II, end, h)
         size = find_places(A, J, s, INDEX)
         if not ready(J, s, 2.0, False):
             return
@@ -125,7 +118,7 @@ def hold(A: Scene, J: Joints, interval: Interval, end: float, RATES: FloatArray,
         if RATES[i] < np.inf:
             RATES[i] = normal_rate(P, Q, KEEP, motion.V, i)
     D, before = np.zeros_like(motion.V), energy_of(isle, motion.V)
-    MU = raise_gaps(C, P, Q, KEEP, RATES, D, m, fine)
+    MU = raise_gaps(JointedProblem(P, Q, KEEP, C, room_for_rows(0, 0), m), RATES, D, fine)
     loss = 0.0
     for i in range(m):
         if MU[i] > 0.0:

@@ -4,19 +4,20 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FloatArray
 from ..compiled import kernel, uncounted
-from ..compiled.records import Rows
 from ..contacts.works import against
-from ..model.contacts import Row
+from ..model.contacts import JointedProblem
 from ..model.islands import Island
 from ..model.joints import Joints
 from ..model.parameters.joints import JOINTED_CORRECTION_SWEEPS, JOINTED_OVERLAP
 from ..model.scene import Scene
+from ..rows.bounded import room_for_rows
 from ..rows.build import normal_rate
 from ..rows.inplace import copy
+from ..rows.lifting import lift
 from .advance import Interval
-from .columns import Columns, fill_group, weigh
+from .columns import fill_group, weigh
 from .component import close_joints, ready
 from .gathered import find_places, gather_component
 from .groups import hangs
@@ -24,26 +25,13 @@ from .motors import drives
 
 
 @kernel
-def raise_gaps(
-    C: Columns, P: IntArray, Q: IntArray, ROWS: Rows[Row], GAPS: FloatArray, D: FloatArray, m: int, tolerance: float
-) -> FloatArray:
-    """Displacements D (k, 3) = Y mu, 0 <= mu _|_ g + G D >= 0, by sweeps; mu (m,)."""
-    MU = np.zeros(m)
-    for _ in range(JOINTED_CORRECTION_SWEEPS):
-        worst = 0.0
-        for i in range(m):
-            if C.OUT[i] != 0:
-                continue
-            g = GAPS[i] + normal_rate(P, Q, ROWS, D, i)
-            mu = max(MU[i] - ROWS[i].k_n * g, 0.0)
-            change = mu - MU[i]
-            MU[i] = mu
-            for w in range(C.AT[i], C.AT[i + 1]):
-                for c in range(3):
-                    D[C.BODY[w], c] += change * C.N[w, c]
-            worst = max(worst, abs(change) / ROWS[i].k_n)
-        if worst <= tolerance:
-            break
+def raise_gaps(problem: JointedProblem, GAPS: FloatArray, D: FloatArray, tolerance: float) -> FloatArray:
+    """Displacements D (k, 3) = Y mu, 0 <= mu _|_ g + G D >= 0, of contacts that are not left out; mu (m,)."""
+    MU = np.zeros(problem.m)
+    for i in range(problem.m):
+        if problem.C.OUT[i] != 0:
+            GAPS[i] = np.inf
+    lift(problem, GAPS, MU, D, np.inf, tolerance, JOINTED_CORRECTION_SWEEPS, np.empty(problem.m, np.int64))
     return MU
 
 
@@ -69,24 +57,14 @@ def unturn(isle: Island, n: int, NEW: FloatArray, D: FloatArray, V: FloatArray) 
 
 
 @kernel
-def lift(A: Scene, J: Joints, interval: Interval, end: float, budget: float) -> float:
+def correct(A: Scene, J: Joints, interval: Interval, end: float, budget: float) -> float:
     """Lift the poses at the end of an island's motion by at most what `budget` pays; the energy that it costs.
 
     The cost is -m a.D for displacements D, turns included, and what springs hold more. Joints hold: D goes along them,
     and what is left of second order is closed. Where nothing without mobility is in the island, its angular momentum
     stays: velocities at the end turn by what the displacements have changed of it.
     """
-    isle, groups, P, Q, ROWS, m, n, motion, C = (
-        interval.isle,
-        interval.groups,
-        interval.P,
-        interval.Q,
-        interval.ROWS,
-        interval.m,
-        interval.n,
-        interval.motion,
-        interval.C,
-    )
+    isle, groups, P, Q, ROWS, motion, C, m, n, _, h = interval
     V, WAY, END = motion.V, motion.WAY, motion.END
     size = np.inf
     for q in range(n):
@@ -102,14 +80,14 @@ def lift(A: Scene, J: Joints, interval: Interval, end: float, budget: float) -> 
         s = groups.COMPONENT[g]
         # Where joints do nothing but hold, bodies answer as they did in the interval.
         if s >= 0 and drives(J, s):
-            gather_component(A, J, s, END, V, NOTHING, isle.IM, isle.II, end, interval.h)
+            gather_component(A, J, s, END, V, NOTHING, isle.IM, isle.II, end, h)
             places = find_places(A, J, s, INDEX)
             if ready(J, s, 2.0, False):
                 fill_group(J, groups, C, g, INDEX, False, P, Q, ROWS, m, np.empty((places, 3)))
     KEEP = ROWS[:m].copy()
     weigh(C, P, Q, KEEP, m)
     D = np.zeros_like(V)
-    raise_gaps(C, P, Q, KEEP, GAPS, D, m, 1e-3 * -deepest)
+    raise_gaps(JointedProblem(P, Q, KEEP, C, room_for_rows(0, 0), m), GAPS, D, 1e-3 * -deepest)
     cost = -against(isle.ACC, isle.IM, isle.II, n, D)
     part = 1.0
     if cost > 0.5 * budget:
@@ -129,7 +107,7 @@ def lift(A: Scene, J: Joints, interval: Interval, end: float, budget: float) -> 
                 for c in range(3):
                     moves = max(moves, abs(D[groups.BODY[w], c]))
             if s >= 0 and moves > 0.0:
-                HELD[g] = close_joints(A, J, s, END, NEW, V, isle.IM, isle.II, end, interval.h)
+                HELD[g] = close_joints(A, J, s, END, NEW, V, isle.IM, isle.II, end, h)
                 spent += HELD[g]
         spent -= against(isle.ACC, isle.IM, isle.II, n, NEW - END)
         turn, x, y, cost = unturn(isle, n, NEW, NEW - END, V) if free else (0.0, 0.0, 0.0, 0.0)

@@ -8,10 +8,8 @@ from ..arrays import IntArray
 from ..compiled import kernel, uncounted
 from ..geometry.flight import pose
 from ..geometry.gap import gap
-from ..impacts.simultaneous import in_large_island
 from ..islands.accounting import alight, book
-from ..islands.membership import members
-from ..joints.ledger import clear_interval
+from ..islands.membership import in_large_island, members
 from ..model.joints import Joints
 from ..model.parameters.joints import (
     MEET,
@@ -25,20 +23,8 @@ from ..model.parameters.joints import (
 from ..model.scene import Scene
 from ..pairs.lists import mark_pair
 from .gathered import restore_joints
+from .ledger import account_component
 from .solve import open_span
-
-
-@uncounted
-def account_component(A: Scene, J: Joints, s: int) -> None:
-    """Book what the joints of component s have done in their interval."""
-    PAR, B = A.PAR, J.STEPPED[s]
-    PAR.external += B.motors + B.supports + B.closed + B.turned_work
-    PAR.damped += B.damped
-    PAR.restitution += B.limited + B.projected - B.lifted
-    PAR.frictional += B.clamped
-    PAR.stored += B.stored
-    J.TALLY.worst = max(J.TALLY.worst, B.status)
-    clear_interval(B)
 
 
 @kernel

@@ -18,7 +18,7 @@ from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
 from ..contacts.targets import target
 from ..islands.candidates import before_end, sweeps_of_large
-from ..model.contacts import Row
+from ..model.contacts import JointedProblem, Row
 from ..model.joints import Joints
 from ..model.parameters.intervals import LARGE_ISLAND
 from ..model.parameters.joints import (
@@ -50,10 +50,11 @@ from ..model.parameters.joints import (
 )
 from ..model.scene import Scene
 from ..rows.build import conserves, normal_rate, rates, tangent_rate
+from ..rows.columns import push_columns
 from ..rows.inplace import copy
 from .advance import Interval, advance, advance_aligned, align, farthest_apart
 from .bounded import make_bounded, settle_bounded, with_bounded
-from .columns import fill_free, leave_out, make_columns, push_columns, weigh
+from .columns import fill_free, leave_out, make_columns, weigh
 from .condensing import solve_condensed
 from .groups import Groups, hangs
 from .newton import solve_columns
@@ -104,18 +105,7 @@ def press(
         slow, fast, pull: speeds and acceleration of the island.  owed: energy >= 0 that it has to lose at least.
         interval: out, the columns of the contacts in their last solution.
     """
-    isle, groups, P, Q, ROWS, m, n, h, motion, C = (
-        interval.isle,
-        interval.groups,
-        interval.P,
-        interval.Q,
-        interval.ROWS,
-        interval.m,
-        interval.n,
-        interval.h,
-        interval.motion,
-        interval.C,
-    )
+    isle, groups, P, Q, ROWS, motion, C, m, n, _, h = interval
     fill_free(groups, C, P, Q, ROWS, isle.IM, isle.II, m)
     rates(P, Q, ROWS, isle.V, m)
     elastic = conserves(ROWS, m)
@@ -141,7 +131,7 @@ def press(
     FORESEEN, UNKNOWN = np.empty((len(isle.IM), 3)), np.empty((0, 3))
     converged, best, LEAST, USED, hopeless, agreed, slowly = False, np.inf, L.copy(), L.copy(), False, False, False
     stiff, bent, reached, B = False, 0.0, np.inf, make_bounded(J, groups)
-    K = make_columns(groups, P, Q, m if len(B.OF) > 0 else 0)
+    K, problem = make_columns(groups, P, Q, m if len(B.OF) > 0 else 0), JointedProblem(P, Q, ROWS, C, B, m)
     # Only of what nothing from without holds or touches is there an angular momentum to keep.
     free = len(isle.IM) == n and not hangs(groups, J.COMPONENT, J.MEMBER)
     for outer in range(rounds):
@@ -187,9 +177,9 @@ def press(
         copy(USED, L)
         leave_out(C, L, m, FORESEEN)
         BOTH = with_bounded(B, L, m)
-        worst = solve_condensed(groups, C, K, B, P, Q, ROWS, BOTH, FORESEEN, m, fine, most)
+        worst = solve_condensed(problem, groups, K, BOTH, FORESEEN, fine, most)
         if worst < 0.0:
-            worst = solve_columns(C, B, P, Q, ROWS, BOTH, FORESEEN, m, fine, most)
+            worst = solve_columns(problem, BOTH, FORESEEN, fine, most)
         for i in range(m):
             L[i, 0], L[i, 1] = BOTH[i, 0], BOTH[i, 1]
         converged = worst <= 10.0 * max(fine, min(agree, AGREE * scale))

@@ -21,18 +21,18 @@ from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES, MIDPOIN
 from ..model.parameters.joints import INTERVAL_SHARE
 from ..model.scene import Scene
 from ..model.step import CONTACTS, DONE, PUSHES_FULL
+from ..rows.bounded import room_for_rows
 from ..rows.build import normal_rate
 from ..rows.inplace import sort
 from .advance import Interval, Motion, advance
 from .alone import begin_alone, is_component, meets_nobody
-from .bounded import room_for_rows
 from .columns import make_columns
 from .component import step_component
 from .fitting import fit
 from .gathered import gather_component, keep_joints, restore_joints
 from .groups import Groups, find_groups
 from .lengths import excess
-from .lifting import lift
+from .lifting import correct
 from .motors import drives
 from .press import lost, press, slip_of
 
@@ -151,7 +151,7 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
     if may_lose and m > 0:
         if not before_end(A, t + h):
             budget = lost(P, Q, ROWS, L, motion.WAY, m, h) + A.RESTING[root].lost
-            spent = lift(A, J, interval, t + h, budget)
+            spent = correct(A, J, interval, t + h, budget)
             for g in range(len(groups.COMPONENT)):
                 if groups.COMPONENT[g] >= 0:
                     J.STEPPED[groups.COMPONENT[g]].lifted = spent

@@ -18,12 +18,12 @@ from ..arrays import FloatArray
 from ..compiled import uncounted
 from ..compiled.records import Rows
 from ..model.joints import BOXED, GROOVE, BodyStep, Coupling, JointStep, Workspace
-from ..model.parameters.joints import BOX_REDUNDANT, BOX_RESIDUAL, BOX_ROUNDS, BOX_SECULAR, BOX_SWEEPS
+from ..model.parameters.joints import BOX_REDUNDANT, BOX_RESIDUAL, BOX_ROUNDS, BOX_SWEEPS
+from ..rows.bounded import FIRST_OF_DISC, SECOND_OF_DISC, SINGLE, on_disc
 from .dual import STRIDE
 from .entries import held, interval_of
 
 ROOM = 8  # arrays of one number per row, beside the columns (and a right side) and two matrices
-SINGLE, FIRST_OF_DISC, SECOND_OF_DISC = 0.0, 1.0, 2.0
 
 
 @uncounted
@@ -90,35 +90,6 @@ def measure_boxes(W: Workspace, n: int, h: float, fresh: bool) -> None:
             more[u + 2 * n + row], more[u + 3 * n + row] = low, bound
             more[u + 4 * n + row] = SINGLE if rows == 1 else FIRST_OF_DISC if r == 0 else SECOND_OF_DISC
             row += 1
-
-
-@uncounted
-def on_disc(
-    a: float, b: float, c: float, ux: float, uy: float, x: float, y: float, bound: float, second: bool
-) -> float:
-    """One of the impulses (x', y') with u + W (x' - x, y' - y) = 0, W = [a b; b c], or if these are not in the disc,
-    with u + W (x' - x, y' - y) = -s (x', y'), s > 0, on its rim: (W + s) p = W p0 - u in the frame of W."""
-    turn = 0.5 * math.atan2(2.0 * b, a - c)
-    co, si = math.cos(turn), math.sin(turn)
-    w1 = a * co * co + 2.0 * b * co * si + c * si * si
-    w2 = a * si * si - 2.0 * b * co * si + c * co * co
-    gx, gy = a * x + b * y - ux, b * x + c * y - uy
-    g1, g2 = gx * co + gy * si, gy * co - gx * si
-    w1, w2 = max(w1, 1e-300), max(w2, 1e-14 * w1, 1e-300)
-    p1, p2 = g1 / w1, g2 / w2
-    if p1 * p1 + p2 * p2 > bound * bound:
-        s = 0.0
-        for _ in range(BOX_SECULAR):
-            p1, p2 = g1 / (w1 + s), g2 / (w2 + s)
-            length = math.sqrt(p1 * p1 + p2 * p2)
-            if not bound > 0.0 or length <= bound * (1.0 + 1e-15):
-                break
-            slope = p1 * p1 / (w1 + s) + p2 * p2 / (w2 + s)
-            s += (length / bound - 1.0) * length * length / slope
-        length = math.sqrt(p1 * p1 + p2 * p2)
-        if length > bound:
-            p1, p2 = p1 * bound / length, p2 * bound / length
-    return float(p1 * si + p2 * co if second else p1 * co - p2 * si)
 
 
 @uncounted

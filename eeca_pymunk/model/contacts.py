@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 from ..arrays import FloatArray, IntArray
 from ..compiled.records import Record, Rows, kind_of
@@ -101,6 +101,61 @@ class Problem(NamedTuple):
     POSE: FloatArray
     n: int
     m: int
+
+
+class Columns(NamedTuple):
+    """Of contact i: AT[i] : AT[i + 1] the entries BODY, N and T (., 3) of its columns; OUT (m,) 1 if it is left out."""
+
+    AT: IntArray
+    BODY: IntArray
+    N: FloatArray
+    T: FloatArray
+    OUT: IntArray
+
+
+class BoundedRow(Record):
+    """A row of bounded impulse, a motor's for instance, beside the contacts of an island."""
+
+    speed: float  # velocity of what does not move along it, less its target: length/time
+    low: float  # least and largest impulse
+    high: float
+    part: float  # SINGLE, or the place in a disc (`..rows.bounded`)
+    now: float  # impulse of the last motion
+
+
+BOUNDED_ROW = kind_of(BoundedRow)
+
+
+class Bounded(NamedTuple):
+    """Bounded rows; of row i < USED[0]:
+
+    AT[i] : AT[i + 1] the entries BODY and N (., 3) of its column, AT[0] = 0; END (n, 2) its bodies in the island, -1
+    for what does not move; ROW (n, 6) the row; ROWS (n,): its bounds; OF (n, 2): joint (of LINK), row.
+    """
+
+    USED: IntArray
+    AT: IntArray
+    BODY: IntArray
+    N: FloatArray
+    END: IntArray
+    ROW: FloatArray
+    ROWS: Rows[BoundedRow]
+    OF: IntArray
+
+
+class JointedProblem(NamedTuple):
+    """A contact problem of bodies that joints hold: m rows ROWS between local bodies A and B, columns C that say how
+    the bodies answer, and bounded rows D of joints, whose impulses stand behind those of the contacts."""
+
+    A: IntArray
+    B: IntArray
+    ROWS: Rows[Row]
+    C: Columns
+    D: Bounded
+    m: int
+
+
+AnyProblem: TypeAlias = Problem | JointedProblem
 
 
 class Solved(Record):

@@ -10,7 +10,7 @@ from typing import Annotated, NamedTuple
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import Opener
-from ..compiled.records import Record, Rows, kind_of
+from ..compiled.records import Record, Rows
 from .bodies import Body
 
 
@@ -201,19 +201,6 @@ NO_BEND, OWN_TURN, FULL_BEND = 0, 1, 2  # what of STIFF is there: nothing, [2, 2
 
 # What is solved for: the implicit step; poses or velocities that fit the joints; the step with rows of the start.
 STEP, POSES, SPEEDS, LINEAR_STEP = 0, 1, 2, 3
-
-
-class BoundedRow(Record):
-    """A row of bounded impulse, a motor's for instance, beside the contacts of an island."""
-
-    speed: float  # velocity of what does not move along it, less its target: length/time
-    low: float  # least and largest impulse
-    high: float
-    part: float  # SINGLE, or the place in a disc (`..joints.boxes`)
-    now: float  # impulse of the last motion
-
-
-BOUNDED_ROW = kind_of(BoundedRow)
 
 
 class Progress(Record):

@@ -43,12 +43,12 @@ class Count(Record):
     pushes: int  # rows of PUSHED in use
     solves: int
     ignored: int
-    pending: int  # island whose interval is to be begun, -1 for none
-    waiting: int  # bodies in BLOCK to be predicted then
+    waiting: int  # bodies in BLOCK to be forecast once their islands have begun intervals
     phase: int  # of the step that is to be resumed
     sweeps: int  # of all solves: sweeps, direct solutions
     direct: int
     remembered: int  # rows of the memory of forces in use
+    lossy: int  # 1 if any shape's elasticity is below 1
     together: int  # 1 where all contacts of a step act together, and no events are followed
     even: int  # 1 while one acceleration holds for all that impulses move, and no body is in an island
     quiet: int  # steps in a row in which that was so to the end
@@ -81,4 +81,3 @@ IMPACTS, HITS, IMPACT, SOLVES, CONTACTS, JOINTS = 0, 1, 2, 3, 4, 5
 
 # Status of a step.
 DONE, POOL_FULL, LOG_FULL, BLOCK_DUE, PUSHES_FULL = 0, 1, 2, 3, 4
-JOINTS_DUE = 5  # an interval or an impact of an island that is held by joints: `jointed/`

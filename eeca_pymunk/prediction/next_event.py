@@ -62,6 +62,17 @@ def has_left(A: Scene, s: int, now: float) -> bool:
     return bool(norm(x - A.MARK[s].x, y - A.MARK[s].y) > (1.0 - INSIDE) * A.MARK[s].margin)
 
 
+@uncounted
+def horizon_of(A: Scene, i: int, end: float) -> float:
+    """How far ahead the path of body i is of use: to the end of the step, or well beyond that of the interval of its
+    island, after which it has another one. Bounds of paths that bend sharply in a short interval are wide of it."""
+    root = A.STATE[i].island
+    if root < 0 or A.RESTING[root].until == math.inf:
+        return end
+    until = A.RESTING[root].until
+    return min(end, until + max(until - A.BODY[i].since, 0.0))
+
+
 @merged
 def predict(A: Scene, i: int, now: float, end: float, until: float) -> None:
     """Forecast body i from its present path, at an instant `now` of the loop, and put what is due in this step on the
@@ -73,6 +84,7 @@ def predict(A: Scene, i: int, now: float, end: float, until: float) -> None:
     """
     BODY, STATE, LINK, LIST = A.BODY, A.STATE, A.LINK, A.LIST
     best, own, other = math.inf, -1, NOTHING
+    horizon = horizon_of(A, i, end)
     first = STATE[i].first_shape
     for s in range(first, first + STATE[i].shapes):
         t = leaves(A, i, s, now)
@@ -87,7 +99,7 @@ def predict(A: Scene, i: int, now: float, end: float, until: float) -> None:
                 continue
             if A.RULE.shape[0] > 0 and barred(A.RULE, s, o):
                 continue
-            t, certain = meet(A, s, o, end)
+            t, certain = meet(A, s, o, min(horizon, horizon_of(A, LINK[o].owner, end)))
             if t < best or (t == best and other >= 0 and (s < own or (s == own and o < other))):
                 best, own, other = t, s, (o if certain else CHECK)
     if until < best:

@@ -13,7 +13,7 @@ from __future__ import annotations
 from ..arrays import FloatArray
 from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
-from ..model.contacts import Problem, Solved
+from ..model.contacts import AnyProblem, Solved
 from ..model.parameters.impulses import (
     AUGMENTATION,
     BLOCK_DIRECT,
@@ -49,15 +49,16 @@ def clear(out: Solved) -> None:
 
 @kernel
 def resolve(
-    problem: Problem, L: FloatArray, V: FloatArray, FREE: FloatArray, rough: bool, tolerance: float, OUT: Rows[Solved]
-) -> float:
+    problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, rough: bool, tolerance: float,
+    OUT: Rows[Solved],
+) -> float:  # fmt: skip
     """Impulses for given targets; returns the change of velocity that a last sweep made.
 
     With friction direct solutions help where contacts stick; where many slip only sweeps converge: more of them.
     """
-    A, B, ROWS, IM, II, m = problem.A, problem.B, problem.ROWS, problem.IM, problem.II, problem.m
+    m = problem.m
     most = BLOCK_SWEEPS_FRICTION if rough else (4 * BLOCK_SWEEPS if m <= SMALL_BLOCK else BLOCK_SWEEPS)
-    taken, worst = iterate(A, B, ROWS, L, V, IM, II, m, tolerance, most)
+    taken, worst = iterate(problem, L, V, tolerance, most)
     OUT[0].sweeps = taken
     OUT[0].direct = 0
     if worst <= tolerance:
@@ -72,7 +73,7 @@ def resolve(
             OUT[0].sweeps += 1
             if worst <= tolerance:
                 return worst
-            worst = sweep(A, B, ROWS, L, V, IM, II, m)
+            worst = sweep(problem, L, V)
         if worst < 0.5 * least:
             least = worst
             stalled = 0
@@ -80,16 +81,14 @@ def resolve(
             stalled += 1
             if stalled >= 8:
                 break
-    taken, worst = iterate(
-        A, B, ROWS, L, V, IM, II, m, tolerance, BLOCK_LAST_SWEEPS_FRICTION if rough else BLOCK_LAST_SWEEPS
-    )
+    taken, worst = iterate(problem, L, V, tolerance, BLOCK_LAST_SWEEPS_FRICTION if rough else BLOCK_LAST_SWEEPS)
     OUT[0].sweeps += taken
     return worst
 
 
 @kernel
 def solve_block(
-    problem: Problem, L: FloatArray, V: FloatArray, owed: float, hasty: bool, LOSS: FloatArray, OUT: Rows[Solved]
+    problem: AnyProblem, L: FloatArray, V: FloatArray, owed: float, hasty: bool, LOSS: FloatArray, OUT: Rows[Solved]
 ) -> int:
     """Impulses of m contacts at one instant; V (k, 3) becomes the velocities after.
 
@@ -105,7 +104,7 @@ def solve_block(
         CONVERGED (residual <= 1e-14 of the largest b - u_n, with friction 1e-10, in large lossy islands 1e-4) or
         TRUNCATED. Energy is right in both.
     """
-    A, B, ROWS, IM, II, m = problem.A, problem.B, problem.ROWS, problem.IM, problem.II, problem.m
+    A, B, ROWS, m = problem.A, problem.B, problem.ROWS, problem.m
     clear(OUT[0])
     OUT[0].owed = owed
     for i in range(m):
@@ -119,21 +118,21 @@ def solve_block(
             L[i, 1] = 0.0
         return CONVERGED
     FREE = V.copy()
-    push(A, B, ROWS, L, V, IM, II, m)
+    push(problem, L, 1.0, V)
     rough = rubs(ROWS, m)
     tolerance = speed * (BLOCK_RESIDUAL_FRICTION if rough else BLOCK_RESIDUAL)
     exact = conserves(ROWS, m)
     if hasty and m > DENSE_CONTACTS and not exact:
         # A hit on a pile, which loses energy anyway: it is known as well as the velocities of the intervals about it.
         tolerance = INTERVAL_RESIDUAL_SPEED * speed
-        taken, worst = iterate(A, B, ROWS, L, V, IM, II, m, tolerance, SMALL_SWEEPS)
+        taken, worst = iterate(problem, L, V, tolerance, SMALL_SWEEPS)
         OUT[0].sweeps = taken
     else:
         worst = resolve(problem, L, V, FREE, rough, tolerance, OUT)
     # Sums over many sweeps have their own round-off: the velocities are those of the impulses.
-    velocities(A, B, ROWS, L, FREE, IM, II, m, V)
-    scale, left = lock(A, B, ROWS, L, V, FREE, IM, II, m, owed, exact)
-    normal, tangential = works(A, B, ROWS, L, V, m, LOSS)
+    velocities(problem, L, FREE, V)
+    scale, left = lock(problem, L, V, FREE, owed, exact)
+    normal, tangential = works(problem, L, V, LOSS)
     OUT[0].restitution = normal
     OUT[0].friction = tangential
     OUT[0].lock = scale

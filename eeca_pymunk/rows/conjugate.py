@@ -7,11 +7,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FloatArray
 from ..compiled import kernel, uncounted
-from ..compiled.records import Rows
-from ..model.contacts import Row
-from .sweeps import sweep
+from ..model.contacts import AnyProblem
+from .sweeps import rows_of, sweep
 
 
 @uncounted
@@ -61,20 +60,18 @@ def go_on(X: FloatArray, X0: FloatArray, P: FloatArray, ratio: float) -> None:
 
 
 @kernel
-def iterate(
-    A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, IM: FloatArray, II: FloatArray, m: int,
-    tolerance: float, most: int,
-) -> tuple[int, float]:  # fmt: skip
+def iterate(problem: AnyProblem, L: FloatArray, V: FloatArray, tolerance: float, most: int) -> tuple[int, float]:
     """Sweeps, accelerated, until one changes no contact's velocity by > tolerance. The last is plain.
 
     Returns the sweeps taken (<= most) and the change of the last.
     """
     # One after the other in memory: loops over flat arrays take several numbers at once.
     FLAT, FAST = L.reshape(L.size), V.reshape(V.size)
-    L0, V0, PL, PV = FLAT[: 2 * m].copy(), FAST.copy(), np.zeros(2 * m), np.zeros(V.size)
+    size = 2 * rows_of(problem)
+    L0, V0, PL, PV = FLAT[:size].copy(), FAST.copy(), np.zeros(size), np.zeros(V.size)
     change, done, worst = -1.0, 0, np.inf
     while done < most:
-        worst = sweep(A, B, ROWS, L, V, IM, II, m)
+        worst = sweep(problem, L, V)
         done += 1
         if worst <= tolerance or done >= most:
             break

@@ -10,10 +10,11 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel, uncounted
+from ..compiled import Choice, kernel, uncounted
 from ..compiled.records import Rows
-from ..model.contacts import Row
+from ..model.contacts import AnyProblem, JointedProblem, Problem, Row
 from ..model.parameters.impulses import PROXIMAL_DENSE
+from ..model.parameters.joints import COLUMN_PROXIMAL
 from .build import normal_rate, tangent_rate
 from .polish import clamp, classify
 from .sweeps import velocities
@@ -59,19 +60,9 @@ def back(W: FloatArray, N: int, order: IntArray, r: FloatArray, x: FloatArray) -
 
 
 @kernel
-def jacobian(
-    A: IntArray,
-    B: IntArray,
-    ROWS: Rows[Row],
-    slip: FloatArray,
-    IM: FloatArray,
-    II: FloatArray,
-    at: IntArray,
-    kind: IntArray,
-    N: int,
-    W: FloatArray,
-) -> None:
+def matrix_free(problem: Problem, slip: FloatArray, at: IntArray, kind: IntArray, N: int, W: FloatArray) -> None:
     """W[i, j] = velocity along row i of a unit impulse along column j; kind 0 normal (with its slip), 1 tangential."""
+    A, B, ROWS, IM, II, _, _, _ = problem
     J = np.empty((N, 8))  # rows: n or t with arms a, b; then the columns' direction and arms
     for i in range(N):
         c = at[i]
@@ -112,6 +103,37 @@ def jacobian(
         W[i, i] += 1.0 / (PROXIMAL_DENSE * (ROWS[c].k_n if kind[i] == 0 else ROWS[c].k_t))
 
 
+@kernel
+def matrix_jointed(
+    problem: JointedProblem, slip: FloatArray, at: IntArray, kind: IntArray, N: int, W: FloatArray
+) -> None:
+    """As `matrix_free`: an impulse moves all bodies of a column."""
+    A, B, ROWS, C, _, _ = problem
+    bodies = 0
+    for w in range(len(C.BODY)):
+        bodies = max(bodies, C.BODY[w] + 1)
+    for i in range(N):
+        bodies = max(bodies, A[at[i]] + 1, B[at[i]] + 1)
+    D = np.zeros((bodies, 3))
+    for j in range(N):
+        c, tangent = at[j], kind[j] == 1
+        for w in range(C.AT[c], C.AT[c + 1]):
+            for k in range(3):
+                D[C.BODY[w], k] = C.T[w, k] if tangent else C.N[w, k] + slip[c] * C.T[w, k]
+        for i in range(N):
+            z = at[i]
+            W[i, j] = (
+                normal_rate(A, B, ROWS, D, z) if kind[i] == 0 else tangent_rate(A, B, ROWS, D, z) - ROWS[z].surface
+            )
+        for w in range(C.AT[c], C.AT[c + 1]):
+            for k in range(3):
+                D[C.BODY[w], k] = 0.0
+        W[j, j] += abs(W[j, j]) / COLUMN_PROXIMAL
+
+
+matrix = Choice(matrix_free, matrix_jointed)
+
+
 @uncounted
 def unknowns(
     ROWS: Rows[Row], L: FloatArray, m: int, held: IntArray, stuck: IntArray, slip: FloatArray, shared: bool,
@@ -143,20 +165,10 @@ def unknowns(
 
 @kernel
 def newton(
-    A: IntArray,
-    B: IntArray,
-    ROWS: Rows[Row],
-    L: FloatArray,
-    V: FloatArray,
-    FREE: FloatArray,
-    IM: FloatArray,
-    II: FloatArray,
-    m: int,
-    passes: int,
-    tolerance: float,
-    shared: bool,
+    problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, passes: int, tolerance: float, shared: bool
 ) -> tuple[float, int]:
     """Solve on the active contacts of L, as `polish`; the same results. `shared` as in `unknowns`."""
+    A, B, ROWS, m = problem.A, problem.B, problem.ROWS, problem.m
     held = np.empty(m, np.int64)
     stuck = np.empty(m, np.int64)
     slip = np.empty(m)
@@ -167,11 +179,11 @@ def newton(
     N = unknowns(ROWS, L, m, held, stuck, slip, shared, at, kind)
     W = np.empty((N, N))
     order = np.empty(N, np.int64)
-    jacobian(A, B, ROWS, slip, IM, II, at, kind, N, W)
+    matrix(problem, slip, at, kind, N, W)
     decompose(W, N, order)
     r = np.empty(N)
     x = np.empty(N)
-    velocities(A, B, ROWS, L, FREE, IM, II, m, V)
+    velocities(problem, L, FREE, V)
     worst = np.inf
     for done in range(passes + 1):
         last = worst
@@ -193,8 +205,8 @@ def newton(
             L[i, kind[k]] += x[k]
             if kind[k] == 0 and stuck[i] == 0:
                 L[i, 1] = slip[i] * L[i, 0]
-        velocities(A, B, ROWS, L, FREE, IM, II, m, V)
+        velocities(problem, L, FREE, V)
     clamped = clamp(ROWS, L, m)
     if clamped > 0:
-        velocities(A, B, ROWS, L, FREE, IM, II, m, V)
+        velocities(problem, L, FREE, V)
     return worst, clamped

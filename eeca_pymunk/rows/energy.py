@@ -1,4 +1,4 @@
-"""Losses of contacts, the energy lock, and lifting bodies out of each other.
+"""Losses of contacts, and the energy lock.
 
 For any impulses the kinetic energy of an island changes, apart from forces and moving surfaces, by -sum (D_n + D_t),
 
@@ -9,24 +9,21 @@ from __future__ import annotations
 
 import math
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FloatArray
 from ..compiled import uncounted
-from ..compiled.records import Rows
-from ..model.contacts import Row
-from ..model.parameters.impulses import LIFT_TOGETHER
+from ..model.contacts import AnyProblem
 from .build import normal_rate, tangent_rate
 from .sweeps import velocities
 
 
 @uncounted
-def works(
-    A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, m: int, LOSS: FloatArray
-) -> tuple[float, float]:
+def works(problem: AnyProblem, L: FloatArray, V: FloatArray, LOSS: FloatArray) -> tuple[float, float]:
     """LOSS (m, 2) = D_n and D_t of each contact, energy, V being the velocities after; returns their sums.
 
     Where slip reverses, friction gives back a part of what restitution takes, D_n + D_t >= 0: a negative loss counts
     against the same contact's other one. Likewise for the sums, where the solve was cut short.
     """
+    A, B, ROWS, m = problem.A, problem.B, problem.ROWS, problem.m
     normal = 0.0
     tangential = 0.0
     for i in range(m):
@@ -56,9 +53,8 @@ def works(
 
 @uncounted
 def scale_of(
-    A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, FREE: FloatArray, m: int, owed: float,
-    exact: bool,
-) -> tuple[float, float]:  # fmt: skip
+    problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, owed: float, exact: bool
+) -> tuple[float, float]:
     """One scale s for all impulses, so that the island loses `owed` at least; exactly that if `exact`.
 
     With u* the velocities of FREE, s L loses D(s) = -s lam.(u- + u*)/2 - s^2 lam.A.lam/2 (tangents likewise). Of the
@@ -68,6 +64,7 @@ def scale_of(
     Returns:
         s, and the energy still owed (0 where there is a root).
     """
+    A, B, ROWS, m = problem.A, problem.B, problem.ROWS, problem.m
     p = 0.0
     q = 0.0
     for i in range(m):
@@ -99,65 +96,13 @@ def scale_of(
 
 @uncounted
 def lock(
-    A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, FREE: FloatArray, IM: FloatArray,
-    II: FloatArray, m: int, owed: float, exact: bool,
-) -> tuple[float, float]:  # fmt: skip
+    problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, owed: float, exact: bool
+) -> tuple[float, float]:
     """Scale all impulses by `scale_of`, and V with them; its results."""
-    s, left = scale_of(A, B, ROWS, L, V, FREE, m, owed, exact)
+    s, left = scale_of(problem, L, V, FREE, owed, exact)
     if s != 1.0:
-        for i in range(m):
+        for i in range(problem.m):
             L[i, 0] *= s
             L[i, 1] *= s
-        velocities(A, B, ROWS, L, FREE, IM, II, m, V)
+        velocities(problem, L, FREE, V)
     return s, left
-
-
-@uncounted
-def lift(
-    A: IntArray, B: IntArray, ROWS: Rows[Row], GAPS: FloatArray, MU: FloatArray, D: FloatArray, IM: FloatArray,
-    II: FloatArray, m: int, tolerance: float, most: int, NEAR: IntArray,
-) -> tuple[int, float]:  # fmt: skip
-    """Displacements D = M^-1 G^T mu with 0 <= mu _|_ g + A mu >= 0, by at most `most` sweeps.
-
-    Args:
-        GAPS: (m,) length.  MU: (m,) in and out, mass times length.  D: (k, 3) in and out, length and rad.
-        tolerance: length that a sweep may still move a gap.  NEAR: (m,) scratch.
-    Returns:
-        Sweeps taken and the last one's largest change of a gap.
-    """
-    near = 0
-    deepest = 0.0
-    for i in range(m):
-        deepest = min(deepest, GAPS[i])
-    for i in range(m):
-        if GAPS[i] < -LIFT_TOGETHER * deepest:
-            NEAR[near] = i
-            near += 1
-    worst = 0.0
-    done = 0
-    while done < most:
-        worst = 0.0
-        for z in range(near):
-            i = NEAR[z]
-            g = GAPS[i] + normal_rate(A, B, ROWS, D, i)
-            if g >= 0.0 and MU[i] == 0.0:
-                continue
-            k = ROWS[i].k_n
-            mu = max(MU[i] - k * g, 0.0)
-            d = mu - MU[i]
-            MU[i] = mu
-            a = A[i]
-            b = B[i]
-            nx = ROWS[i].nx
-            ny = ROWS[i].ny
-            D[a, 0] -= IM[a] * d * nx
-            D[a, 1] -= IM[a] * d * ny
-            D[a, 2] -= II[a] * (d * ROWS[i].arm_na)
-            D[b, 0] += IM[b] * d * nx
-            D[b, 1] += IM[b] * d * ny
-            D[b, 2] += II[b] * (d * ROWS[i].arm_nb)
-            worst = max(worst, abs(d) / k)
-        done += 1
-        if worst <= tolerance:
-            break
-    return done, worst

@@ -15,7 +15,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
-from ..model.contacts import Problem, Row
+from ..model.contacts import AnyProblem, Problem, Row
 from ..model.parameters.impulses import FACE_LINE
 from .build import normal_rate, tangent_rate
 from .cholesky import Factor, assemble, factorise, substitute
@@ -98,7 +98,7 @@ def clamp(ROWS: Rows[Row], L: FloatArray, m: int) -> int:
 
 
 @kernel
-def polish(
+def polish_free(
     problem: Problem, L: FloatArray, V: FloatArray, FREE: FloatArray, R: float, passes: int, tolerance: float
 ) -> tuple[float, int]:
     """Solve on the active contacts of L; L and V = FREE + M^-1 (G^T lam + T^T beta), also on entry, are replaced.
@@ -109,7 +109,7 @@ def polish(
     Returns:
         The residual before the impulses were clamped (velocity), and how many were clamped.
     """
-    A, B, ROWS, IM, II, n, m = problem.A, problem.B, problem.ROWS, problem.IM, problem.II, problem.n, problem.m
+    A, B, ROWS, IM, II, _, n, m = problem
     held = np.empty(m, np.int64)
     stuck = np.empty(m, np.int64)
     slip = np.empty(m)
@@ -176,22 +176,21 @@ def polish(
                     rest[i] = -ROWS[i].ut - L[i, 0] * min(ROWS[i].un + ROWS[i].target, 0.0) / L[i, 1]
             else:
                 L[i, 1] = slip[i] * L[i, 0]
-        velocities(A, B, ROWS, L, FREE, IM, II, m, V)
+        velocities(problem, L, FREE, V)
     share(A, B, ROWS, L, m)
     clamped = clamp(ROWS, L, m)
     if clamped > 0:
-        velocities(A, B, ROWS, L, FREE, IM, II, m, V)
+        velocities(problem, L, FREE, V)
     return worst, clamped
 
 
 @uncounted
-def segment(
-    A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, L0: FloatArray, V0: FloatArray, m: int
-) -> float:
+def segment(problem: AnyProblem, L: FloatArray, V: FloatArray, L0: FloatArray, V0: FloatArray) -> float:
     """Go back from (L, V) towards (L0, V0) to the least lam.(u_n - b) + beta.u_t - (1/2) lam^T A lam between them.
 
     That is the energy that the frictionless contact problem minimises. Returns the part of the way that is kept.
     """
+    A, B, ROWS, m = problem.A, problem.B, problem.ROWS, problem.m
     slope = 0.0
     curvature = 0.0
     for i in range(m):

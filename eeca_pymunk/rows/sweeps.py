@@ -1,85 +1,23 @@
-"""Projected Gauss-Seidel sweeps over contact rows with the exact local law of Coulomb friction.
-
-Each contact in turn solves, with the others' impulses frozen,
-
-    0 <= lam  _|_  u_n - b >= 0,   |beta| <= mu lam,   u_t = 0 or beta = -mu lam sign(u_t),
-
-its own 2 x 2 matrix ((A_nn, A_nt), (A_nt, A_tt)) included: sticking, else slipping one way or the other, else no
-friction. Newton's law with friction creates energy where the slip reverses; therefore each contact's loss
-D_n + D_t = -lam (u_n- + b)/2 - beta (u_t- + u_t+)/2 is kept from being negative (friction is cut where it would be).
-"""
+"""Projected Gauss-Seidel sweeps over contact rows: each contact in turn solves its law (`coulomb.py`), with the others'
+impulses frozen; over inverse masses, or over the response of jointed components (`columns.py`)."""
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
-from ..compiled import uncounted
-from ..compiled.records import Rows
-from ..model.contacts import Row
-from ..model.parameters.impulses import JAMMED, SINGULAR
+from ..arrays import FloatArray
+from ..compiled import Choice, uncounted
+from ..model.contacts import AnyProblem, Problem
+from ..model.parameters.impulses import JAMMED
+from .columns import push_jointed, rows_jointed, sweep_jointed
+from .coulomb import coulomb
+from .inplace import copy
 
 
 @uncounted
-def coulomb(
-    qn: float, qt: float, ann: float, ant: float, att: float, mu: float, un: float, ut: float, target: float
-) -> tuple[float, float]:
-    """(lam, beta) of one contact whose velocities without impulse are u_n = target + qn and u_t = qt.
-
-    `un`, `ut` are its velocities before the step (or impact), from which the loss counts. Closed form.
-    """
-    if qn >= 0.0:
-        return 0.0, 0.0
-    det = ann * att - ant * ant
-    lam = 0.0
-    beta = 0.0
-    done = False
-    if det > SINGULAR * ann * att:
-        lam = (qt * ant - qn * att) / det
-        beta = (qn * ant - qt * ann) / det
-        done = lam >= 0.0 and abs(beta) <= mu * lam
-    if not done:
-        # Slipping against the motion there would be without friction, then the other way (Painleve: neither).
-        sign = -1.0 if qt - qn * ant / ann > 0.0 else 1.0
-        for _ in range(2):
-            den = ann + sign * mu * ant
-            if den > JAMMED * ann:
-                lam = -qn / den
-                beta = sign * mu * lam
-                if sign * (qt + ant * lam + att * beta) <= 0.0:
-                    done = True
-                    break
-            sign = -sign
-        if not done:
-            return -qn / ann, 0.0
-    if beta * ut > 0.0:
-        # With lam = -(qn + ant beta) / ann the loss is a quadratic in T = |beta|: s T^2 + p T + c <= 0, c <= 0.
-        sign = 1.0 if beta > 0.0 else -1.0
-        loss = min(un + target, 0.0) / ann
-        s = max(det, 0.0) / ann
-        p = sign * (ut + qt - ant * qn / ann - ant * loss)
-        c = -qn * loss
-        T = abs(beta)
-        if T * (s * T + p) + c > 0.0:
-            root = math.sqrt(max(p * p - 4.0 * s * c, 0.0))
-            most = -2.0 * c / (p + root) if p > 0.0 else (root - p) / (2.0 * s)
-            beta = sign * min(T, max(most, 0.0))
-            lam = -(qn + ant * beta) / ann
-            if lam < 0.0:
-                return 0.0, 0.0
-            if abs(beta) > mu * lam:
-                lam = -qn / (ann + sign * mu * ant)
-                beta = sign * mu * lam
-    return lam, beta
-
-
-@uncounted
-def sweep(
-    A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, IM: FloatArray, II: FloatArray, m: int
-) -> float:
-    """One sweep over the m contacts; L and V are updated. Returns the largest change of a contact's velocity."""
+def sweep_free(problem: Problem, L: FloatArray, V: FloatArray) -> float:
+    """One sweep over the contacts; L and V are updated. Returns the largest change of a contact's velocity."""
+    A, B, ROWS, IM, II, _, _, m = problem
     worst = 0.0
     for i in range(m):
         a = A[i]
@@ -161,13 +99,12 @@ def sweep(
 
 
 @uncounted
-def push(
-    A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, IM: FloatArray, II: FloatArray, m: int
-) -> None:
-    """V += M^-1 (G^T lam + T^T beta)."""
+def push_free(problem: Problem, L: FloatArray, factor: float, V: FloatArray) -> None:
+    """V += factor M^-1 (G^T lam + T^T beta)."""
+    A, B, ROWS, IM, II, _, _, m = problem
     for i in range(m):
-        lam = L[i, 0]
-        beta = L[i, 1]
+        lam = factor * L[i, 0]
+        beta = factor * L[i, 1]
         if lam == 0.0 and beta == 0.0:
             continue
         a = A[i]
@@ -183,15 +120,21 @@ def push(
 
 
 @uncounted
-def velocities(
-    A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, FREE: FloatArray, IM: FloatArray, II: FloatArray, m: int,
-    V: FloatArray,
-) -> None:  # fmt: skip
-    """V = FREE + M^-1 (G^T lam + T^T beta)."""
-    for i in range(len(IM)):
-        for c in range(3):
-            V[i, c] = FREE[i, c]
-    push(A, B, ROWS, L, V, IM, II, m)
+def rows_free(problem: Problem) -> int:
+    """How many rows of L (., 2) are unknown."""
+    return problem.m
+
+
+sweep = Choice(sweep_free, sweep_jointed)
+push = Choice(push_free, push_jointed)
+rows_of = Choice(rows_free, rows_jointed)
+
+
+@uncounted
+def velocities(problem: AnyProblem, L: FloatArray, FREE: FloatArray, V: FloatArray) -> None:
+    """V (k, 3) = FREE + W (G^T lam + T^T beta)."""
+    copy(V, FREE)
+    push(problem, L, 1.0, V)
 
 
 @uncounted

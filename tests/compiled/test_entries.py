@@ -38,6 +38,8 @@ def named_outside_kernels(path: Path) -> Iterator[Kernel[..., object]]:
     for node in list(ast.walk(tree)):
         if isinstance(node, ast.FunctionDef) and isinstance(there.get(node.name), Kernel):
             node.body = []
+        if isinstance(node, ast.Call) and ast.unparse(node.func) == "Choice":
+            node.args = []  # of which kernels call one
     for node in ast.walk(tree):
         if isinstance(node, ast.Name) and isinstance(found := there.get(node.id), Kernel):
             yield found

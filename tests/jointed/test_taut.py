@@ -11,9 +11,9 @@ import pytest
 import eeca_pymunk as ep
 from eeca_pymunk.arrays import FloatArray
 from eeca_pymunk.compiled.records import Rows, columns, rows
+from eeca_pymunk.impacts.scene import EventLoop
 from eeca_pymunk.jointed.component import answer, ready
 from eeca_pymunk.jointed.fitting import bring_arms
-from eeca_pymunk.jointed.scene import JointedLoop
 from eeca_pymunk.joints.taut import taut
 from eeca_pymunk.joints.workspace import make_joints
 from eeca_pymunk.model.bodies import Body
@@ -129,7 +129,7 @@ def test_a_ball_falls_on_a_tight_rope() -> None:
 def scratch(stepper: ep.EECA) -> Joints:
     """The arrays of its joints."""
     method = stepper._method
-    assert isinstance(method, JointedLoop)
+    assert isinstance(method, EventLoop)
     return method.joints
 
 

@@ -8,10 +8,11 @@ import pytest
 from eeca_pymunk.model.contacts import Problem
 from eeca_pymunk.rows.build import normal_rate, rates, tangent_rate
 from eeca_pymunk.rows.cholesky import Factor, assemble, factorise, substitute
+from eeca_pymunk.rows.coulomb import coulomb
 from eeca_pymunk.rows.dense import newton
 from eeca_pymunk.rows.ordering import dissect, neighbours, pattern
-from eeca_pymunk.rows.polish import polish, share
-from eeca_pymunk.rows.sweeps import coulomb, sweep, velocities
+from eeca_pymunk.rows.polish import polish_free, share
+from eeca_pymunk.rows.sweeps import sweep, velocities
 
 from .block import Block
 
@@ -114,19 +115,17 @@ def test_direct_solution_needs_no_sweeps(dense: bool, sliding: bool) -> None:
     # A guess whose active contacts are right: friction on the floor is positive.
     part = mu if sliding else 0.1
     L, V = np.array([[0.03, part * 0.03], [0.03, part * 0.03]]), free.copy()
-    velocities(block.A, block.B, block.rows, L, free, block.im, block.ii, 2, V)
+    problem = Problem(block.A, block.B, block.rows, block.im, block.ii, block.pose, 1, 2)
+    velocities(problem, L, free, V)
     if dense:
-        reached, _ = newton(
-            block.A, block.B, block.rows, L, V, free, block.im, block.ii, 2, 4, 1e-16, False
-        )  # fmt: skip
+        reached, _ = newton(problem, L, V, free, 4, 1e-16, False)
     else:
-        problem = Problem(block.A, block.B, block.rows, block.im, block.ii, block.pose, 1, 2)
-        reached, _ = polish(problem, L, V, free, 1e8, 40, 1e-16)  # fmt: skip
+        reached, _ = polish_free(problem, L, V, free, 1e8, 40, 1e-16)  # fmt: skip
     if dense or not sliding:
         assert reached <= 1e-14
         assert np.abs(V[0, :2] - turn @ [g * h * max(pull - mu, 0.0), 0.0]).max() <= 1e-14
         assert abs(V[0, 2]) <= 1e-14
-        assert sweep(block.A, block.B, block.rows, L, V, block.im, block.ii, 2) <= 1e-14
+        assert sweep(problem, L, V) <= 1e-14
         assert L[:, 0].sum() == pytest.approx(g * h, rel=1e-13)
 
 
@@ -140,15 +139,15 @@ def test_points_of_a_face_share_their_friction_as_their_loads() -> None:
     free = np.array([[0.0, -g_h, 0.0], [0.0, 0.0, 0.0]])
     L = np.array([[0.04, -mu * 0.04], [0.03, 0.6 * mu * 0.03]])
     V = free.copy()
-    velocities(block.A, block.B, block.rows, L, free, block.im, block.ii, 2, V)
+    problem = Problem(block.A, block.B, block.rows, block.im, block.ii, block.pose, 1, 2)
+    velocities(problem, L, free, V)
     before, total = V.copy(), L[:, 1].sum()
     share(block.A, block.B, block.rows, L, 2)
     assert L[:, 1].sum() == pytest.approx(total, rel=1e-15)
     assert L[0, 1] / L[0, 0] == pytest.approx(L[1, 1] / L[1, 0], rel=1e-14)
-    velocities(block.A, block.B, block.rows, L, free, block.im, block.ii, 2, V)
+    velocities(problem, L, free, V)
     assert np.abs(V - before).max() <= 1e-16
-    problem = Problem(block.A, block.B, block.rows, block.im, block.ii, block.pose, 1, 2)
-    reached, clamped = polish(problem, L, V, free, 1e8, 40, 1e-16)  # fmt: skip
+    reached, clamped = polish_free(problem, L, V, free, 1e8, 40, 1e-16)  # fmt: skip
     assert reached <= 1e-15
     assert clamped == 0
     assert np.abs(V[0]).max() <= 1e-15

@@ -48,7 +48,8 @@ class Pile:
         """Velocities that impulses L leave of the start."""
         V = np.empty_like(self.start)
         free = self.start if start is None else start
-        velocities(self.A, self.B, self.rows, np.ascontiguousarray(L), free, self.im, self.ii, self.m, V)
+        problem = Problem(self.A, self.B, self.rows, self.im, self.ii, self.pose, len(self.im) - 1, self.m)
+        velocities(problem, np.ascontiguousarray(L), free, V)
         return V
 
     def edges(self) -> Floats:

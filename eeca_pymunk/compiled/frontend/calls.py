@@ -17,7 +17,7 @@ from typing import Any
 
 from numba.core import cgutils, types
 
-from ..kernels import Compilable, Kernel, set_types
+from ..kernels import Choice, Compilable, Kernel, set_types
 from .types import global_type, type_of_other
 
 _RETURNED = {int: types.int64, float: types.float64, bool: types.boolean, type(None): types.none}
@@ -77,13 +77,19 @@ def typed_call(kernel: Kernel[Any, Any], args: tuple[Any, ...]) -> tuple[Any, Ca
 @functools.cache
 def type_of(one: Compilable) -> Any:
     """numba's type of a kernel, or of what else kernels name."""
-    if not isinstance(one, Kernel):
+    if not isinstance(one, Kernel | Choice):
         return type_of_other(one)
     # numba reads the number and names of arguments off a function.
-    names = ", ".join(inspect.signature(one.python).parameters)
-    scope: dict[str, Any] = {"typed_call": typed_call, "kernel": one}
-    exec(f"def {one.python.__name__}(typing, {names}):\n    return typed_call(kernel, ({names},))", scope)
-    return global_type(scope[one.python.__name__])
+    python = one.python if isinstance(one, Kernel) else one.kernels[0].python
+    parameters = list(inspect.signature(python).parameters)
+    names = ", ".join(parameters)
+    chosen = (lambda _: one) if isinstance(one, Kernel) else (lambda kind: one.of[kind.instance_class])
+    scope: dict[str, Any] = {"typed_call": typed_call, "kernel_for_": chosen}
+    exec(
+        f"def {python.__name__}(typing, {names}):\n    return typed_call(kernel_for_({parameters[0]}), ({names},))",
+        scope,
+    )
+    return global_type(scope[python.__name__])
 
 
 def activate() -> None:

@@ -25,7 +25,7 @@ import numba
 import numpy as np
 
 from ..entries import ENTRIES, TABLES, table_fields
-from ..kernels import Kernel, kernels
+from ..kernels import Choice, Kernel, kernels
 from ..prefetch import Fetch
 from ..sources import cache_folder
 from ..tables import Opener
@@ -80,6 +80,8 @@ def _said(value: Any, where: str) -> object:
     if isinstance(value, Kernel):
         returned = annotated(value)
         return value.name, source_key(value) if returned is None else repr(returned)
+    if isinstance(value, Choice):
+        return [_said(one, where) for one in value.kernels]
     if isinstance(value, Opener):
         name = value.kind.__name__
         return name, table_fields(name) if name in TABLES else ()

@@ -127,4 +127,6 @@ PRESS_WORK_ROUND_OFF = round_off(4e-14, "of impulses times speed", "Round-off of
 SOLUTION_WORK = work(1000.0, "operations", "Work of a solution for each entry of its columns.")
 PRESS_WORK_TAUT = round_off(1e-09, "of impulses times speed", "Round-off of that work where joints pull hard, at most.")
 CHORD = work(3, "steps of the components", "Steps for which the response is taken to be the same.")
-STRIKE_SWEEPS = work(1000, "sweeps", "Sweeps of an impact on components.")
+CLOSES = round_off(
+    1e-12, "of the fastest contact", "Speed with which contacts may close after an elastic impact on components."
+)

@@ -1,25 +1,45 @@
-"""Sweeps over contacts, and over bounded rows of joints, with the answers of components in the place of masses."""
+"""Contacts of bodies that joints hold, by columns: what an impulse changes of the velocities of all that hang together.
+
+The same contact problem as that of free bodies, over the response of components in the place of inverse masses.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FloatArray
 from ..compiled import uncounted
-from ..compiled.records import Rows
-from ..model.contacts import Row
-from ..rows.build import normal_rate, tangent_rate
-from ..rows.sweeps import coulomb
-from .bounded import Bounded, sweep_bounded
-from .columns import Columns
+from ..model.contacts import Columns, JointedProblem
+from .bounded import push_row, sweep_bounded
+from .build import normal_rate, tangent_rate
+from .coulomb import coulomb
 
 
 @uncounted
-def sweep_columns(
-    C: Columns, D: Bounded, A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, m: int
-) -> float:
-    """One sweep over the m contacts as `..rows.sweeps.sweep`, and over the bounded rows, whose impulses are L[m:, 0];
-    the largest change of a velocity."""
+def push_columns(C: Columns, L: FloatArray, m: int, factor: float, V: FloatArray) -> None:
+    """V += factor Y L."""
+    for i in range(m):
+        lam, beta = factor * L[i, 0], factor * L[i, 1]
+        if lam == 0.0 and beta == 0.0:
+            continue
+        for w in range(C.AT[i], C.AT[i + 1]):
+            for c in range(3):
+                V[C.BODY[w], c] += lam * C.N[w, c] + beta * C.T[w, c]
+
+
+@uncounted
+def push_jointed(problem: JointedProblem, L: FloatArray, factor: float, V: FloatArray) -> None:
+    """V += factor Y L, of the bounded rows too."""
+    push_columns(problem.C, L, problem.m, factor, V)
+    for i in range(problem.D.USED[0]):
+        push_row(problem.D, i, factor * L[problem.m + i, 0], V)
+
+
+@uncounted
+def sweep_jointed(problem: JointedProblem, L: FloatArray, V: FloatArray) -> float:
+    """One sweep over the contacts as `sweeps.sweep`, and over the bounded rows, whose impulses are L[m:, 0]; the
+    largest change of a velocity."""
+    A, B, ROWS, C, D, m = problem
     worst = 0.0
     for i in range(m):
         if C.OUT[i] != 0:
@@ -64,13 +84,6 @@ def sweep_columns(
 
 
 @uncounted
-def relax_columns(
-    C: Columns, D: Bounded, A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, m: int,
-    tolerance: float, most: int,
-) -> tuple[int, float]:  # fmt: skip
-    """Sweeps until one changes no contact's velocity by more than the tolerance; how many, and the last change."""
-    done, worst = 0, np.inf
-    while done < most and worst > tolerance:
-        worst = sweep_columns(C, D, A, B, ROWS, L, V, m)
-        done += 1
-    return done, worst
+def rows_jointed(problem: JointedProblem) -> int:
+    """How many rows of L (., 2) are unknown: those of contacts, and of joints."""
+    return int(problem.m + problem.D.USED[0])

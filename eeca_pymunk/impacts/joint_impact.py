@@ -1,33 +1,31 @@
-"""An impact on islands with joints, at its instant (`meet`): impulses that joints pass on."""
+"""An impact on islands with joints, at its instant (`..jointed.meet`): impulses that joints pass on."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
-from ..compiled.records import zeros
+from ..compiled.records import Rows, zeros
 from ..contacts.works import carried
-from ..impacts.resolution import finish, rejoin
-from ..impacts.simultaneous import Block, gather, lay_out, owing
 from ..islands.building import comes_to_rest
 from ..islands.intervals import dismiss
-from ..islands.membership import members, unite
-from ..model.contacts import SOLVED
+from ..islands.membership import members
+from ..jointed.columns import fill_free, fill_group, make_columns, weigh
+from ..jointed.component import answer, fit_speeds, ready
+from ..jointed.gathered import find_places, gather_component
+from ..jointed.groups import find_groups
+from ..jointed.meet import end_here, meet, shorten
+from ..model.contacts import SOLVED, JointedProblem, Row
 from ..model.joints import Joints
-from ..model.parameters.joints import SOLUTION_WORK, STRIKE_SWEEPS
+from ..model.parameters.joints import CLOSES, SOLUTION_WORK
 from ..model.scene import Scene
-from ..rows.blocks import CONVERGED, TRUNCATED
-from ..rows.build import aim, conserves, rates
-from ..rows.energy import scale_of, works
-from ..rows.inplace import copy
-from .bounded import room_for_rows
-from .columns import fill_free, fill_group, make_columns, push_columns, weigh
-from .component import answer, fit_speeds, ready
-from .gathered import find_places, gather_component
-from .groups import find_groups
-from .meet import end_here, meet, shorten
-from .newton import solve_columns
+from ..rows.blocks import solve_block
+from ..rows.bounded import room_for_rows
+from ..rows.build import conserves, normal_rate
+from ..rows.sweeps import velocities
+from .resolution import finish, rejoin
+from .simultaneous import Block, gather, lay_out, owing
 
 
 @uncounted
@@ -53,12 +51,24 @@ def carried_along(J: Joints, s: int) -> bool:
     return False
 
 
+@uncounted
+def closes(P: IntArray, Q: IntArray, ROWS: Rows[Row], BEFORE: FloatArray, V: FloatArray, rows: int) -> bool:
+    """Whether a contact closes with velocities V after an impact, BEFORE it, by more than round-off: where these do not
+    fit the joints, so that the same impact would follow at the same instant, again and again."""
+    fastest, least = 0.0, 0.0
+    for i in range(rows):
+        fastest = max(fastest, abs(normal_rate(P, Q, ROWS, BEFORE, i)))
+        least = min(least, normal_rate(P, Q, ROWS, V, i))
+    return bool(least < -CLOSES * fastest)
+
+
 @kernel
-def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[int, int]:
-    """The impact of shapes a and b, seen at instant t, with all that hangs on them: results as `..contacts.single`."""
+def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
+    """The impact of shapes a and b, seen at instant t, with all that hangs on them: results as `resolution.strike`, at
+    PAR.now."""
     k = A.SHAPE.shape[0]
     i, j = A.LINK[a].owner, A.LINK[b].owner
-    t = meet(A, J, a, b, t)
+    A.PAR.now = t = meet(A, J, a, b, t)
     n, m, PAIRS = gather(A, a, b, t)
     again, ended = True, 0
     ENDED = np.empty(A.BODY.shape[0], np.int64)
@@ -81,7 +91,6 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[int, int]:
     P, Q, ROWS, V = block.A, block.B, block.ROWS, block.V
     rows = len(ROWS)
     L, LOSS, OUT = np.zeros((rows, 2)), np.zeros((rows, 2)), zeros(1, SOLVED)
-    OUT[0].lock = 1.0
     WHO = np.full(len(block.IM), -1, np.int64)
     for q in range(n):
         WHO[q] = A.BLOCK[q]
@@ -124,28 +133,15 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[int, int]:
                     V[q, c] = PUSH[INDEX[q], c]
     FITTED = V.copy()
     weigh(C, P, Q, ROWS, rows)
-    rates(P, Q, ROWS, V, rows)
-    speed = aim(ROWS, rows)
-    status = CONVERGED
-    if speed > 0.0:
-        FREE = V.copy()
-        elastic = conserves(ROWS, rows)
-        tolerance = (1e-15 if elastic else 1e-10) * speed
-        worst = solve_columns(C, room_for_rows(0, 0), P, Q, ROWS, L, V, rows, tolerance, STRIKE_SWEEPS)
-        copy(V, FREE)
-        push_columns(C, L, rows, 1.0, V)
-        scale, _ = scale_of(P, Q, ROWS, L, V, FREE, rows, owed, elastic)
-        if scale != 1.0:
-            L *= scale
-            copy(V, FREE)
-            push_columns(C, L, rows, 1.0, V)
-        OUT[0].lock = scale
-        OUT[0].restitution, OUT[0].friction = works(P, Q, ROWS, L, V, rows, LOSS)
-        status = CONVERGED if worst <= 10.0 * tolerance else TRUNCATED
-    if conserves(ROWS, rows):
-        copy(V, BEFORE)
-        push_columns(C, L, rows, 1.0, V)
-    else:
+    problem = JointedProblem(P, Q, ROWS, C, room_for_rows(0, 0), rows)
+    status = solve_block(problem, L, V, owed, False, LOSS, OUT)
+    fits = not conserves(ROWS, rows)
+    if not fits:
+        velocities(problem, L, BEFORE, V)
+        fits = closes(P, Q, ROWS, BEFORE, V, rows)
+    if fits:
+        # What joints would not let through is lost.
+        velocities(problem, L, FITTED, V)
         OUT[0].restitution += energy_of(block, BEFORE, FITTED, n)
     # Joints do all that contacts do not account for, which is nothing unless they hang on something that moves.
     REST = np.zeros_like(V)
@@ -155,21 +151,16 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[int, int]:
     A.STATE[i].version += 1
     if A.BODY[j].inv_mass > 0.0:
         A.STATE[j].version += 1
-    status, n = rejoin(A, a, b, t, n, rest, OUT[0].restitution + OUT[0].friction - owed)
-    # Islands that were brought here, and do not touch after all, begin anew with those that do.
-    root = A.COUNT.pending  # -1 if no joints take part after all
+    n = rejoin(A, a, b, t, n, rest, OUT[0].restitution + OUT[0].friction - owed)
+    # Islands that were brought here, and do not touch after all, begin anew too.
+    for q in range(n):
+        A.PLACE[A.BLOCK[q]] = q
+    MINE = np.empty(A.BODY.shape[0], np.int64)
     for c in range(ended):
-        other = A.STATE[ENDED[c]].island
-        if other != root:
-            MINE = np.empty(A.MEMBER[other].bodies, np.int64)
-            members(A, other, MINE)
-            for q in range(len(MINE)):
-                known = False
-                for p in range(n):
-                    known = known or A.BLOCK[p] == MINE[q]
-                if not known:
-                    A.BLOCK[n] = MINE[q]
-                    n += 1
-            root = other if root < 0 else unite(A, root, other)
-    A.COUNT.pending = root
-    return status, n
+        more = members(A, A.STATE[ENDED[c]].island, MINE)
+        for q in range(more):
+            if A.PLACE[MINE[q]] < 0:
+                A.BLOCK[n], A.PLACE[MINE[q]] = MINE[q], n
+                n += 1
+    dismiss(A, A.BLOCK, n)
+    return n

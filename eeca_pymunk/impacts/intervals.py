@@ -1,0 +1,84 @@
+"""Intervals of islands, with joints or without: begun at the start of a step and after events, cut at its end."""
+
+from __future__ import annotations
+
+from ..compiled import kernel, uncounted
+from ..contacts.unmet import note_unmet
+from ..islands.accounting import close_interval
+from ..islands.building import build_islands
+from ..islands.intervals import solve
+from ..jointed.meet import end_here, shorten
+from ..jointed.solve import SPENT, begin_interval
+from ..model.bodies import AT_REST
+from ..model.joints import Joints
+from ..model.parameters.joints import STEP_WORK
+from ..model.scene import Scene
+from ..model.step import DONE, PUSHES_FULL, SOLVES
+from ..prediction.scheduling import forecast_all
+
+
+@uncounted
+def start_interval(A: Scene, J: Joints, root: int, t: float) -> int:
+    """Begin an interval of an island at instant t, at which all its bodies are: DONE, or PUSHES_FULL, which leaves
+    everything as it was; likewise SPENT, where joints take part and the step has no work left."""
+    if A.MEMBER[root].jointed == 0:
+        return solve(A, root, t)
+    return begin_interval(A, J, root, t, A.PAR.dt - t) if t < A.PAR.dt else DONE
+
+
+@kernel
+def start_islands(A: Scene, J: Joints) -> int:
+    """The islands of the start of a step, and their intervals. DONE, or PUSHES_FULL, to be called again with more
+    room."""
+    if build_islands(A) != DONE:
+        return PUSHES_FULL
+    for i in range(A.BODY.shape[0] - 1 if J.TALLY.components > 0 else 0):
+        if A.STATE[i].island == i and A.MEMBER[i].jointed > 0 and A.MEMBER[i].open == 0:
+            if start_interval(A, J, i, 0.0) != DONE:
+                return PUSHES_FULL
+    return DONE
+
+
+@kernel
+def start_waiting(A: Scene, J: Joints) -> int:
+    """Begin intervals of the islands of the COUNT.waiting bodies in A.BLOCK, which are at the instant of an event, and
+    forecast these: DONE, or PUSHES_FULL, to be called again with more room."""
+    COUNT, BLOCK = A.COUNT, A.BLOCK
+    for q in range(COUNT.waiting):
+        root = A.STATE[BLOCK[q]].island
+        if root >= 0 and A.MEMBER[root].open == 0:
+            status = start_interval(A, J, root, A.BODY[root].since)
+            if status == PUSHES_FULL:
+                return status
+            if status == SPENT:
+                COUNT.waiting = 0
+                return cut_short(A, J, root, A.BODY[root].since)
+    forecast_all(A, COUNT.waiting, A.PAR.now, A.PAR.dt)
+    COUNT.waiting = 0
+    return DONE
+
+
+@kernel
+def cut_short(A: Scene, J: Joints, i: int, t: float) -> int:
+    """Let the step end at instant t, the event of body i: so nothing that it has no work left for is passed over.
+    Intervals end there, without what they would have lifted at their own end."""
+    note_unmet(A, SOLVES, A.STATE[i].own, A.STATE[i].other, float(A.COUNT.solved), float(A.COUNT.budget))
+    A.PAR.dt = t
+    A.COUNT.heap = 0
+    if J.TALLY.components > 0:
+        J.PROGRESS.budget = J.PROGRESS.effort + STEP_WORK
+    for k in range(A.BODY.shape[0] - 1):
+        root = A.STATE[k].island
+        if root < 0 or A.MEMBER[root].rest == AT_REST:
+            continue
+        if A.MEMBER[root].jointed > 0:
+            if root == k:
+                shorten(A, J, k, t)
+                end_here(A, J, k, t)
+            continue
+        if root == k and A.MEMBER[k].open > 0:
+            close_interval(A, k, t)
+        rest = A.RESTING[k]
+        rest.lift_x, rest.lift_y, rest.lift_angle = 0.0, 0.0, 0.0
+        rest.lift_vx, rest.lift_vy, rest.lift_spin = 0.0, 0.0, 0.0
+    return DONE

@@ -1,0 +1,66 @@
+"""What joints are at the start of a step, and what they have done at its end."""
+
+from __future__ import annotations
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import uncounted
+from ..contacts.unmet import note_unmet
+from ..joints.ledger import clear_interval
+from ..layout import BODY_ROW, LEFT
+from ..layout import NOW as READ
+from ..model.joints import ELASTIC, Joints
+from ..model.parameters.joints import STEP_WORK, STEP_WORK_BODY
+from ..model.scene import Scene
+from ..model.step import JOINTS as UNMET_JOINTS
+
+
+@uncounted
+def mark_edited(A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray) -> None:
+    """Mark the joints of bodies that were edited since the last step: their velocities may not fit."""
+    now, before = STATES[READ], STATES[LEFT]
+    for k in range(WALK.shape[1]):
+        i = WALK[BODY_ROW, k]
+        if i < 0:
+            continue
+        same = True
+        for c in range(6):
+            same = same and now[k, c] == before[k, c]
+        A.PLACE[i] = -1 if same else 1
+    n = A.PLACE.shape[0]
+    for j in range(J.JOINT.shape[0]):
+        a, b = J.JOINT[j].body[0], J.JOINT[j].body[1]
+        if (a < n and A.PLACE[a] > 0) or (b < n and A.PLACE[b] > 0):
+            J.JOINT[j].touched = 1
+    A.PLACE[:] = -1
+
+
+@uncounted
+def start_joints(A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray) -> None:
+    """Begin a step of a scene with joints, before its states are taken."""
+    mark_edited(A, J, STATES, WALK)
+    J.TALLY.worst = J.TALLY.repeats = 0
+    J.PROGRESS.effort, J.PROGRESS.budget = 0.0, STEP_WORK + STEP_WORK_BODY * A.BODY.shape[0]
+    for s in range(len(J.STEPPED)):
+        clear_interval(J.STEPPED[s])
+
+
+@uncounted
+def account_component(A: Scene, J: Joints, s: int) -> None:
+    """Book what the joints of component s have done in their interval."""
+    PAR, B = A.PAR, J.STEPPED[s]
+    PAR.external += B.motors + B.supports + B.closed + B.turned_work
+    PAR.damped += B.damped
+    PAR.restitution += B.limited + B.projected - B.lifted
+    PAR.frictional += B.clamped
+    PAR.stored += B.stored
+    J.TALLY.worst = max(J.TALLY.worst, B.status)
+    clear_interval(B)
+
+
+@uncounted
+def account_joints(A: Scene, J: Joints) -> None:
+    """Book what all joints have done until the end of the step."""
+    for s in range(J.TALLY.components):
+        account_component(A, J, s)
+    if J.TALLY.worst >= ELASTIC:
+        note_unmet(A, UNMET_JOINTS, -1, -1, float(J.TALLY.worst), float(ELASTIC))

@@ -1,0 +1,131 @@
+"""Rows of bounded impulses, motors and joints with a finite max_force, as unknowns beside those of contacts.
+
+Alone or, for a pivot's two, as a disc. Inside of its bounds the velocity along a row is at its target, at a bound it is
+of the other sign than the impulse.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..compiled import kernel, uncounted
+from ..compiled.records import zeros
+from ..model.contacts import BOUNDED_ROW, Bounded
+from ..model.parameters.joints import BOX_SECULAR
+
+SINGLE, FIRST_OF_DISC, SECOND_OF_DISC = 0.0, 1.0, 2.0
+
+
+@uncounted
+def on_disc(
+    a: float, b: float, c: float, ux: float, uy: float, x: float, y: float, bound: float, second: bool
+) -> float:
+    """One of the impulses (x', y') with u + W (x' - x, y' - y) = 0, W = [a b; b c], or if these are not in the disc,
+    with u + W (x' - x, y' - y) = -s (x', y'), s > 0, on its rim: (W + s) p = W p0 - u in the frame of W."""
+    turn = 0.5 * math.atan2(2.0 * b, a - c)
+    co, si = math.cos(turn), math.sin(turn)
+    w1 = a * co * co + 2.0 * b * co * si + c * si * si
+    w2 = a * si * si - 2.0 * b * co * si + c * co * co
+    gx, gy = a * x + b * y - ux, b * x + c * y - uy
+    g1, g2 = gx * co + gy * si, gy * co - gx * si
+    w1, w2 = max(w1, 1e-300), max(w2, 1e-14 * w1, 1e-300)
+    p1, p2 = g1 / w1, g2 / w2
+    if p1 * p1 + p2 * p2 > bound * bound:
+        s = 0.0
+        for _ in range(BOX_SECULAR):
+            p1, p2 = g1 / (w1 + s), g2 / (w2 + s)
+            length = math.sqrt(p1 * p1 + p2 * p2)
+            if not bound > 0.0 or length <= bound * (1.0 + 1e-15):
+                break
+            slope = p1 * p1 / (w1 + s) + p2 * p2 / (w2 + s)
+            s += (length / bound - 1.0) * length * length / slope
+        length = math.sqrt(p1 * p1 + p2 * p2)
+        if length > bound:
+            p1, p2 = p1 * bound / length, p2 * bound / length
+    return float(p1 * si + p2 * co if second else p1 * co - p2 * si)
+
+
+@kernel
+def room_for_rows(n: int, entries: int) -> Bounded:
+    """Room for n bounded rows, whose columns have so many entries."""
+    return Bounded(
+        np.zeros(1, np.int64), np.zeros(n + 1, np.int64), np.zeros(entries, np.int64), np.zeros((entries, 3)),
+        np.zeros((n, 2), np.int64), np.zeros((n, 6)), zeros(n, BOUNDED_ROW), np.zeros((n, 2), np.int64),
+    )  # fmt: skip
+
+
+@uncounted
+def bounded_rate(B: Bounded, i: int, V: FloatArray) -> float:
+    """Velocity of the island's bodies along row i."""
+    total = 0.0
+    for end in range(2):
+        if B.END[i, end] >= 0:
+            for c in range(3):
+                total += B.ROW[i, 3 * end + c] * V[B.END[i, end], c]
+    return total
+
+
+@uncounted
+def per_impulse(B: Bounded, i: int, j: int) -> float:
+    """Velocity along row i per impulse of row j."""
+    total = 0.0
+    for w in range(B.AT[j], B.AT[j + 1]):
+        for end in range(2):
+            if B.BODY[w] == B.END[i, end]:
+                for c in range(3):
+                    total += B.ROW[i, 3 * end + c] * B.N[w, c]
+    return total
+
+
+@uncounted
+def push_row(B: Bounded, i: int, change: float, V: FloatArray) -> None:
+    """V += change of impulse i times its column."""
+    if change != 0.0:
+        for w in range(B.AT[i], B.AT[i + 1]):
+            for c in range(3):
+                V[B.BODY[w], c] += change * B.N[w, c]
+
+
+@uncounted
+def sweep_bounded(B: Bounded, L: FloatArray, m: int, V: FloatArray) -> float:
+    """One sweep over the bounded rows, whose impulses are L[m:, 0]; the largest change of a velocity along one."""
+    worst = 0.0
+    for i in range(B.USED[0]):
+        part, low, high = B.ROWS[i].part, B.ROWS[i].low, B.ROWS[i].high
+        if part == SECOND_OF_DISC:
+            continue
+        a, x = per_impulse(B, i, i), L[m + i, 0]
+        if not a > 0.0:
+            continue
+        u = B.ROWS[i].speed + bounded_rate(B, i, V)
+        if part == SINGLE:
+            L[m + i, 0] = min(max(x - u / a, low), high)
+        else:
+            b, c, y = (
+                0.5 * (per_impulse(B, i, i + 1) + per_impulse(B, i + 1, i)),
+                per_impulse(B, i + 1, i + 1),
+                L[m + i + 1, 0],
+            )
+            if not c > 0.0:
+                continue
+            other = B.ROWS[i + 1].speed + bounded_rate(B, i + 1, V)
+            L[m + i, 0] = on_disc(a, b, c, u, other, x, y, high, False)
+            L[m + i + 1, 0] = on_disc(a, b, c, u, other, x, y, high, True)
+            push_row(B, i + 1, L[m + i + 1, 0] - y, V)
+            worst = max(worst, abs(L[m + i + 1, 0] - y) * c)
+        push_row(B, i, L[m + i, 0] - x, V)
+        worst = max(worst, abs(L[m + i, 0] - x) * a)
+    return worst
+
+
+@uncounted
+def inside(B: Bounded, L: FloatArray, m: int, i: int) -> bool:
+    """Whether impulse i is inside of its bounds."""
+    x, high = L[m + i, 0], B.ROWS[i].high
+    if B.ROWS[i].part == SINGLE:
+        return bool(B.ROWS[i].low < x < high)
+    y = L[m + i + 1, 0] if B.ROWS[i].part == FIRST_OF_DISC else L[m + i - 1, 0]
+    return bool(x * x + y * y < high * high * (1.0 - 1e-14))

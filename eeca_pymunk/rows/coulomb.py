@@ -1,0 +1,68 @@
+"""The law of one contact with Coulomb friction, in closed form.
+
+    0 <= lam  _|_  u_n - b >= 0,   |beta| <= mu lam,   u_t = 0 or beta = -mu lam sign(u_t),
+
+its own 2 x 2 matrix ((A_nn, A_nt), (A_nt, A_tt)) included: sticking, else slipping one way or the other, else no
+friction. Newton's law with friction creates energy where the slip reverses; therefore each contact's loss
+D_n + D_t = -lam (u_n- + b)/2 - beta (u_t- + u_t+)/2 is kept from being negative (friction is cut where it would be).
+"""
+
+from __future__ import annotations
+
+import math
+
+from ..compiled import uncounted
+from ..model.parameters.impulses import JAMMED, SINGULAR
+
+
+@uncounted
+def coulomb(
+    qn: float, qt: float, ann: float, ant: float, att: float, mu: float, un: float, ut: float, target: float
+) -> tuple[float, float]:
+    """(lam, beta) of one contact whose velocities without impulse are u_n = target + qn and u_t = qt.
+
+    `un`, `ut` are its velocities before the step (or impact), from which the loss counts. Closed form.
+    """
+    if qn >= 0.0:
+        return 0.0, 0.0
+    det = ann * att - ant * ant
+    lam = 0.0
+    beta = 0.0
+    done = False
+    if det > SINGULAR * ann * att:
+        lam = (qt * ant - qn * att) / det
+        beta = (qn * ant - qt * ann) / det
+        done = lam >= 0.0 and abs(beta) <= mu * lam
+    if not done:
+        # Slipping against the motion there would be without friction, then the other way (Painleve: neither).
+        sign = -1.0 if qt - qn * ant / ann > 0.0 else 1.0
+        for _ in range(2):
+            den = ann + sign * mu * ant
+            if den > JAMMED * ann:
+                lam = -qn / den
+                beta = sign * mu * lam
+                if sign * (qt + ant * lam + att * beta) <= 0.0:
+                    done = True
+                    break
+            sign = -sign
+        if not done:
+            return -qn / ann, 0.0
+    if beta * ut > 0.0:
+        # With lam = -(qn + ant beta) / ann the loss is a quadratic in T = |beta|: s T^2 + p T + c <= 0, c <= 0.
+        sign = 1.0 if beta > 0.0 else -1.0
+        loss = min(un + target, 0.0) / ann
+        s = max(det, 0.0) / ann
+        p = sign * (ut + qt - ant * qn / ann - ant * loss)
+        c = -qn * loss
+        T = abs(beta)
+        if T * (s * T + p) + c > 0.0:
+            root = math.sqrt(max(p * p - 4.0 * s * c, 0.0))
+            most = -2.0 * c / (p + root) if p > 0.0 else (root - p) / (2.0 * s)
+            beta = sign * min(T, max(most, 0.0))
+            lam = -(qn + ant * beta) / ann
+            if lam < 0.0:
+                return 0.0, 0.0
+            if abs(beta) > mu * lam:
+                lam = -qn / (ann + sign * mu * ant)
+                beta = sign * mu * lam
+    return lam, beta

@@ -1,0 +1,69 @@
+"""Moving bodies out of each other along normals: displacements D = W G^T mu with 0 <= mu _|_ g + G D >= 0."""
+
+from __future__ import annotations
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import Choice, merged, uncounted
+from ..model.contacts import AnyProblem, JointedProblem, Problem
+from .build import normal_rate
+
+
+@merged
+def push_normal_free(problem: Problem, i: int, d: float, D: FloatArray) -> None:
+    """D += M^-1 G^T of a change d of mu of contact i."""
+    A, B, ROWS, IM, II, _, _, _ = problem
+    a, b, nx, ny = A[i], B[i], ROWS[i].nx, ROWS[i].ny
+    D[a, 0] -= IM[a] * d * nx
+    D[a, 1] -= IM[a] * d * ny
+    D[a, 2] -= II[a] * (d * ROWS[i].arm_na)
+    D[b, 0] += IM[b] * d * nx
+    D[b, 1] += IM[b] * d * ny
+    D[b, 2] += II[b] * (d * ROWS[i].arm_nb)
+
+
+@merged
+def push_normal_jointed(problem: JointedProblem, i: int, d: float, D: FloatArray) -> None:
+    """D += Y of a change d of mu of contact i."""
+    C = problem.C
+    for w in range(C.AT[i], C.AT[i + 1]):
+        for c in range(3):
+            D[C.BODY[w], c] += d * C.N[w, c]
+
+
+push_normal = Choice(push_normal_free, push_normal_jointed)
+
+
+@uncounted
+def lift(
+    problem: AnyProblem, GAPS: FloatArray, MU: FloatArray, D: FloatArray, near: float, tolerance: float, most: int,
+    NEAR: IntArray,
+) -> float:  # fmt: skip
+    """Displacements D, by at most `most` sweeps over contacts with a gap below `near`; the last one's largest change of
+    a gap.
+
+    Args:
+        GAPS: (m,) length.  MU: (m,) in and out, mass times length.  D: (k, 3) in and out, length and rad.
+        tolerance: length that a sweep may still move a gap.  NEAR: (m,) scratch.
+    """
+    A, B, ROWS = problem.A, problem.B, problem.ROWS
+    contacts, worst = 0, 0.0
+    for i in range(problem.m):
+        if GAPS[i] < near:
+            NEAR[contacts] = i
+            contacts += 1
+    for _ in range(most):
+        worst = 0.0
+        for z in range(contacts):
+            i = NEAR[z]
+            g = GAPS[i] + normal_rate(A, B, ROWS, D, i)
+            if g >= 0.0 and MU[i] == 0.0:
+                continue
+            k = ROWS[i].k_n
+            mu = max(MU[i] - k * g, 0.0)
+            d = mu - MU[i]
+            MU[i] = mu
+            push_normal(problem, i, d, D)
+            worst = max(worst, abs(d) / k)
+        if worst <= tolerance:
+            break
+    return worst
