@@ -1,7 +1,7 @@
 """Lifting bodies out of each other at the end of an interval, paid from the losses of the same island and interval.
 
 delta = M^-1 G^T mu with 0 <= mu _|_ g + A mu >= 0 for the gaps g at the end, scaled so that the potential energy it
-costs is at most the losses: no energy comes from push-out.
+costs is at most the losses, and nothing goes far: no energy comes from push-out, and nobody goes through a wall by it.
 Gaps above -1e-9 of the size are left alone.
 
 Moving bodies apart changes their orbital angular momentum by sum m delta x v. Where an island is free (nothing without
@@ -19,7 +19,7 @@ from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
 from ..model.contacts import Problem, Row
 from ..model.parameters.impulses import DENSE_CONTACTS, LIFT_TOGETHER
-from ..model.parameters.intervals import CORRECTION_ROUND_OFF, CORRECTION_SHARE, OVERLAP_LEFT
+from ..model.parameters.intervals import CORRECTION_ROUND_OFF, CORRECTION_SHARE, CORRECTION_STEP, OVERLAP_LEFT
 from ..rows.build import conserves, normal_rate
 from ..rows.lifting import lift
 from .works import against
@@ -53,6 +53,11 @@ def lifting(
     most = 10 + 1000 // m if m <= DENSE_CONTACTS else 8 + 200 // m
     near = -LIFT_TOGETHER * deepest
     lift(problem, GAPS, np.zeros(m), D, near, 0.1 * OVERLAP_LEFT * size, most, np.empty(m, np.int64))
+    far = 0.0
+    for i in range(n):
+        far = max(far, math.sqrt(D[i, 0] * D[i, 0] + D[i, 1] * D[i, 1]))
+    if far > CORRECTION_STEP * size:
+        shorten(D, n, CORRECTION_STEP * size / far)
     work = -against(ACC, IM, II, n, D)
     turn = 0.0
     touched = np.zeros(n, np.uint8)

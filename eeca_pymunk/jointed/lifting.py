@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from ..arrays import FloatArray
@@ -10,6 +12,7 @@ from ..contacts.works import against
 from ..model.contacts import JointedProblem
 from ..model.islands import Island
 from ..model.joints import Joints
+from ..model.parameters.intervals import CORRECTION_STEP
 from ..model.parameters.joints import JOINTED_CORRECTION_SWEEPS, JOINTED_OVERLAP
 from ..model.scene import Scene
 from ..rows.bounded import room_for_rows
@@ -88,9 +91,12 @@ def correct(A: Scene, J: Joints, interval: Interval, end: float, budget: float) 
     weigh(C, P, Q, KEEP, m)
     D = np.zeros_like(V)
     raise_gaps(JointedProblem(P, Q, KEEP, C, room_for_rows(0, 0), m), GAPS, D, 1e-3 * -deepest)
+    far = 0.0
+    for q in range(n):
+        far = max(far, (math.sqrt(D[q, 0] ** 2 + D[q, 1] ** 2) + abs(D[q, 2]) * isle.EXTENT[q]) / isle.EXTENT[q])
     cost = -against(isle.ACC, isle.IM, isle.II, n, D)
-    part = 1.0
-    if cost > 0.5 * budget:
+    part = min(1.0, CORRECTION_STEP / far) if far > 0.0 else 0.0
+    if cost * part > 0.5 * budget:
         part = 0.5 * budget / cost
     HELD = np.zeros(len(groups.COMPONENT))
     free = len(isle.IM) == n and not hangs(groups, J.COMPONENT, J.MEMBER)

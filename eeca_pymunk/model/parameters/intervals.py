@@ -84,6 +84,12 @@ FAILED_DIRECT = work(8, "direct solutions", "Direct solutions without progress t
 FAILED_DIRECT_AGAIN = work(2, "direct solutions", "The same where those of the last step failed.")
 LONGEST_BACKOFF = work(32.0, "steps", "Longest time without direct solutions.")
 OVERLAP_LEFT = accuracy(1e-09, "of the size", "Overlap that is not corrected.")
+CORRECTION_STEP = accuracy(
+    0.25,
+    "of the smaller body",
+    "Displacement of a body by the correction in one interval, at most: half of what would take its centre through a "
+    "thin wall that it touches.",
+)
 CORRECTION_ROUND_OFF = round_off(1e-14, "of its work", "Round-off of the work of a correction.")
 CORRECTION_SHARE = accuracy(
     0.99,
