@@ -37,8 +37,8 @@ JOINT_ROUND_OFF_KEPT = round_off(2e-15, "of the component", "The same with facto
 NEWTON_PROGRESS = work(
     0.03,
     "ratio of errors",
-    "Progress of an iteration with earlier factors below which they are computed again; it ends at JOINT_TOLERANCE with "
-    "either.",
+    "Progress of an iteration with earlier factors below which they are computed again; it ends at "
+    "JOINT_TOLERANCE with either.",
 )
 NEWTON_FLOOR = round_off(1e-11, "of the component", "An error below it that has not fallen twice is round-off.")
 NEWTON_ITERATIONS = work(25, "iterations", "Newton iterations of a step.")
