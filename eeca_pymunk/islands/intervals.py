@@ -9,7 +9,8 @@ import numpy as np
 from ..arrays import IntArray
 from ..compiled import kernel, uncounted
 from ..contacts.correction import budget_of, least_of, lifting
-from ..contacts.interval import make_contacts, moved, step_island
+from ..contacts.interval import make_contacts, step_island
+from ..contacts.works import moved
 from ..model.contacts import Problem
 from ..model.islands import Island
 from ..model.parameters.events import RESOLUTION

@@ -80,7 +80,6 @@ FIT_CLOSING = round_off(
 )
 FIT_RESIDUAL = accuracy(1e-06, "of the fastest closing contact", "Residual of that fit.")
 FIT_ENERGY = round_off(1e-12, "of the energy", "Change of energy by the fit that is round-off.")
-JOINTED_OVERLAP = accuracy(1e-09, "of the bodies", "Overlap of jointed bodies that is not corrected.")
 JOINTED_CORRECTION_SWEEPS = work(40, "sweeps", "Sweeps of the correction.")
 STEP_WORK = work(
     80000000.0, "operations", "Work of a step with joints, beside STEP_WORK_BODY; 6e9 take about a second."
