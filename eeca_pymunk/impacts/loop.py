@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from ..compiled import kernel, merged, uncounted
 from ..contacts.single import alone, strike_disk
-from ..contacts.unmet import note_unmet
+from ..contacts.unmet import most_work, note_unmet
+from ..geometry.sides import remembers
 from ..islands.accounting import close_interval, end_interval
 from ..islands.building import comes_to_rest, hits_of, most_hits, passed_over
 from ..islands.intervals import solve
 from ..islands.membership import members
 from ..model.bodies import AT_REST, LEAVE, RENEW
-from ..model.parameters.events import AHEAD, SQUEEZED_IMPACTS
+from ..model.parameters.events import AHEAD, EVENT_LOOKS, SQUEEZED_IMPACTS
 from ..model.scene import Scene
 from ..model.step import BLOCK_DUE, DONE, HITS, IMPACTS, JOINTS_DUE, LOG_FULL, POOL_FULL, SOLVES
 from ..pairs.grid import renew
@@ -23,6 +24,7 @@ from ..prediction.disks import carrier, go_on
 from ..prediction.heap import pop, push, sweep_out
 from ..prediction.next_event import has_left
 from ..prediction.scheduling import forecast, forecast_all, look_ahead
+from ..prediction.turning import follow_side
 from .resolution import strike
 from .simultaneous import arrive
 
@@ -55,7 +57,7 @@ def run(A: Scene, may_rest: bool) -> int:
         may_rest: whether contacts may be sustained.
     """
     BODY, STATE, COUNT, TIME, OF = A.BODY, A.STATE, A.COUNT, A.HEAP_TIME, A.HEAP_BODY
-    disks, moving, end = COUNT.disks, A.LIST.shape[0], A.PAR.dt
+    disks, moving, end, most = COUNT.disks, A.LIST.shape[0], A.PAR.dt, most_work(A)
     one, two, t = -1, -1, 0.0  # bodies to be forecast
     while True:
         while one >= 0:
@@ -107,12 +109,13 @@ def run(A: Scene, may_rest: bool) -> int:
             if single and body >= 0:
                 single = alone(A, body, other, t)
             body, other = (j, i) if o < disks else (-1, -1)
-        if not single:
+        if not single or COUNT.work > most:
             A.PAR.now, COUNT.struck = t, i
             return BLOCK_DUE
         # The same bits, whoever of the two has foreseen it.
         a, b = (o, i) if o < i else (i, o)
         strike_disk(A, a, b, t)
+        COUNT.work += EVENT_LOOKS
         one, two = a, b if o < disks else -1
 
 
@@ -130,7 +133,7 @@ def cut_short(A: Scene, t: float) -> int:
     """Let the step end at instant t: so nothing that it has no work left for is passed over. Spans end there, without
     what they would have lifted at their own end."""
     a, b = A.STATE[A.COUNT.struck].own, A.STATE[A.COUNT.struck].other
-    note_unmet(A, SOLVES, a, b, float(A.COUNT.solved), float(A.COUNT.budget))
+    note_unmet(A, SOLVES, a, b, float(A.COUNT.work), most_work(A))
     A.PAR.dt = t
     A.COUNT.heap = 0
     for i in range(A.BODY.shape[0] - 1):
@@ -166,7 +169,7 @@ def follow(A: Scene, may_rest: bool) -> int:
             return status
         t, i = A.PAR.now, COUNT.struck
         s, o = STATE[i].own, STATE[i].other
-        if COUNT.solved > COUNT.budget:
+        if COUNT.work > most_work(A):
             return cut_short(A, t)
         if COUNT.logged + COUNT.pushes + 8 * STATE.shape[0] > A.LOG.shape[0]:
             COUNT.heap = push(A.HEAP_TIME, A.HEAP_BODY, COUNT.heap, t, i)
@@ -183,6 +186,8 @@ def follow(A: Scene, may_rest: bool) -> int:
             forecast_all(A, n, t, end)
             continue
         j = A.LINK[o].owner
+        if remembers(A, s, o):
+            follow_side(A, s, o, t, end)
         if (STATE[i].island >= 0 or STATE[j].island >= 0) and passed_over(A, s, o, t):
             note_unmet(A, HITS, s, o, float(hits_of(A, s, o)), float(most_hits(A, s, o)))
             mark_pair(A, s, o, 1)

@@ -17,7 +17,7 @@ from ..islands.accounting import flag_again
 from ..layout import NOW as READ
 from ..model.bodies import CHECK, Body, Member, Next, Rest
 from ..model.contacts import Force, Impulse, Pair, Pushed
-from ..model.parameters.events import SOLVES_PER_BODY
+from ..model.parameters.events import MANY_BODIES, STEP_LOOKS, STEP_LOOKS_BODY
 from ..model.parameters.intervals import FIRST_AUGMENTATION
 from ..model.scene import scene_with
 from ..model.shapes import Link, Shape
@@ -92,7 +92,7 @@ class EventLoop(Remembering):
         self.scene = near_lists(scene, moving)
         self._usual: FloatArray = self.scene.MARK["margin"].copy()
         self.scene.COUNT.limit, self.scene.COUNT.disks = limit, disks
-        self.scene.COUNT.budget = SOLVES_PER_BODY * n
+        self.scene.COUNT.budget = STEP_LOOKS + STEP_LOOKS_BODY * n * max(n, MANY_BODIES) // MANY_BODIES
         self.scene.MEMBER["tied"] = self.scene.MEMBER["next_tied"] = -1
         self.scene.RESTING["augmentation"] = FIRST_AUGMENTATION
 

@@ -61,6 +61,7 @@ def resume(
             return ROOM_FOR_CONTACTS
         COUNT.phase = 1
         forecast_due(A)
+        COUNT.work = 0  # what a step begins with has to be done
     if COUNT.phase == 1:
         met = follow(A, lossy or A.PAR.pulled > 0.0)
         if met != DONE:

@@ -148,6 +148,7 @@ def resume_jointed(
             return ROOM_FOR_CONTACTS
         COUNT.phase = 1
         forecast_due(A)
+        COUNT.work = 0
     if COUNT.phase == 1:
         whole = A.PAR.dt
         met = follow_jointed(A, J, lossy or A.PAR.pulled > 0.0)
