@@ -22,7 +22,7 @@ from ..model.parameters.impulses import DENSE_CONTACTS, LIFT_TOGETHER
 from ..model.parameters.intervals import CORRECTION_ROUND_OFF, CORRECTION_SHARE, CORRECTION_STEP, OVERLAP_LEFT
 from ..rows.build import conserves, normal_rate
 from ..rows.lifting import lift
-from .works import against
+from .works import against, moved
 
 
 @kernel
@@ -38,7 +38,7 @@ def lifting(
     Returns:
         The energy spent (<= budget, negative if more was lost), and the deepest gap before (negative in overlap).
     """
-    A, B, ROWS, IM, II, n, m = problem.A, problem.B, problem.ROWS, problem.IM, problem.II, problem.n, problem.m
+    A, B, ROWS, IM, II, _, n, m = problem
     for i in range(len(JUMP)):
         for c in range(6):
             JUMP[i, c] = 0.0
@@ -59,32 +59,32 @@ def lifting(
     if far > CORRECTION_STEP * size:
         shorten(D, n, CORRECTION_STEP * size / far)
     work = -against(ACC, IM, II, n, D)
-    turn = 0.0
+    END, NEW = moved(POSE, VN, 0.5 * h), np.empty((n, 3))
+    turn = x = y = square = 0.0
     touched = np.zeros(n, np.uint8)
-    square = 0.0
-    x = 0.0
-    y = 0.0
     if len(IM) == n:
         # Bodies that no contact touches are not of the island any more.
         for i in range(m):
             touched[A[i]] = 1
             touched[B[i]] = 1
-        turn, x, y, spin, inertia = unturn(POSE, VN, D, IM, II, touched, h)
+        place(END, D, n, NEW)
+        turn, x, y, spin, inertia = unturn(NEW, D, VN, IM, II, touched)
         work += turn * spin
         square = 0.5 * inertia * turn * turn
     part = 1.0
     if work + square > budget + CORRECTION_ROUND_OFF * against(np.abs(ACC), IM, II, n, np.abs(D)):
         part = CORRECTION_SHARE * budget / (max(work, 0.0) + square)
-        shorten(D, n, part)
+        for i in range(n):
+            for c in range(3):
+                D[i, c] *= part
         if turn != 0.0:
-            turn, x, y, _, _ = unturn(POSE, VN, D, IM, II, touched, h)
+            place(END, D, n, NEW)
+            turn, x, y, _, _ = unturn(NEW, D, VN, IM, II, touched)
     for i in range(n):
         for c in range(3):
             JUMP[i, c] = D[i, c]
-        if turn != 0.0 and touched[i] != 0:
-            JUMP[i, 3] = -turn * (POSE[i, 1] + 0.5 * h * VN[i, 1] + JUMP[i, 1] - y)
-            JUMP[i, 4] = turn * (POSE[i, 0] + 0.5 * h * VN[i, 0] + JUMP[i, 0] - x)
-            JUMP[i, 5] = turn
+    if turn != 0.0:
+        turn_by(NEW, touched, turn, x, y, JUMP, 3)
     return part * (work + part * square), deepest
 
 
@@ -106,52 +106,50 @@ def budget_of(ROWS: Rows[Row], m: int, lost: float, owed: float, free: float) ->
 
 
 @uncounted
-def shorten(D: FloatArray, n: int, part: float) -> None:
-    """Leave so much of the displacements D of n bodies."""
+def place(END: FloatArray, D: FloatArray, n: int, NEW: FloatArray) -> None:
+    """NEW = END + D, of n bodies."""
     for i in range(n):
         for c in range(3):
-            D[i, c] *= part
+            NEW[i, c] = END[i, c] + D[i, c]
 
 
 @uncounted
 def unturn(
-    POSE: FloatArray, VN: FloatArray, D: FloatArray, IM: FloatArray, II: FloatArray, touched: FlagArray, h: float
+    NEW: FloatArray, D: FloatArray, V: FloatArray, IM: FloatArray, II: FloatArray, touched: FlagArray
 ) -> tuple[float, float, float, float, float]:
-    """The common spin of the touched bodies that takes back the angular momentum of displacements D at the end poses
-    POSE + (h/2) VN.
+    """The common spin of the touched bodies that takes back the angular momentum sum m D x v of displacements D to NEW,
+    at velocities V. No contact and no joint feels it.
 
     Returns it with the centre of mass (x, y), the angular momentum about it and the moment of inertia.
     """
-    mass = 0.0
-    x = 0.0
-    y = 0.0
-    vx = 0.0
-    vy = 0.0
+    mass = x = y = vx = vy = 0.0
     for i in range(len(touched)):
         if touched[i] == 0:
             continue
         if II[i] == 0.0:
             return 0.0, 0.0, 0.0, 0.0, 0.0
         mass += 1.0 / IM[i]
-        x += (POSE[i, 0] + 0.5 * h * VN[i, 0] + D[i, 0]) / IM[i]
-        y += (POSE[i, 1] + 0.5 * h * VN[i, 1] + D[i, 1]) / IM[i]
-        vx += VN[i, 0] / IM[i]
-        vy += VN[i, 1] / IM[i]
-    x /= mass
-    y /= mass
-    vx /= mass
-    vy /= mass
-    gained = 0.0
-    spin = 0.0
-    inertia = 0.0
+        x, y = x + NEW[i, 0] / IM[i], y + NEW[i, 1] / IM[i]
+        vx, vy = vx + V[i, 0] / IM[i], vy + V[i, 1] / IM[i]
+    if mass == 0.0:
+        return 0.0, 0.0, 0.0, 0.0, 0.0
+    x, y, vx, vy = x / mass, y / mass, vx / mass, vy / mass
+    gained = spin = inertia = 0.0
     for i in range(len(touched)):
         if touched[i] == 0:
             continue
-        rx = POSE[i, 0] + 0.5 * h * VN[i, 0] + D[i, 0] - x
-        ry = POSE[i, 1] + 0.5 * h * VN[i, 1] + D[i, 1] - y
-        wx = VN[i, 0] - vx
-        wy = VN[i, 1] - vy
+        rx, ry, wx, wy = NEW[i, 0] - x, NEW[i, 1] - y, V[i, 0] - vx, V[i, 1] - vy
         gained += (D[i, 0] * wy - D[i, 1] * wx) / IM[i]
-        spin += (rx * wy - ry * wx) / IM[i] + VN[i, 2] / II[i]
+        spin += (rx * wy - ry * wx) / IM[i] + V[i, 2] / II[i]
         inertia += (rx * rx + ry * ry) / IM[i] + 1.0 / II[i]
     return -gained / inertia, x, y, spin, inertia
+
+
+@uncounted
+def turn_by(NEW: FloatArray, touched: FlagArray, turn: float, x: float, y: float, V: FloatArray, at: int) -> None:
+    """Add a common spin about (x, y) to the velocities V[:, at :] of the touched bodies, which are at NEW."""
+    for i in range(len(touched)):
+        if touched[i] != 0:
+            V[i, at] -= turn * (NEW[i, 1] - y)
+            V[i, at + 1] += turn * (NEW[i, 0] - x)
+            V[i, at + 2] += turn

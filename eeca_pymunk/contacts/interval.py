@@ -33,7 +33,7 @@ from .memory import find, remember_loads
 from .relaxation import relax
 from .statics import comes_to_stand
 from .targets import target
-from .works import against, carried
+from .works import against, carried, moved
 
 
 @uncounted
@@ -85,16 +85,6 @@ def speeds(
             square += speed * speed
             most = max(most, speed)
     return math.sqrt(square / n), most, pull
-
-
-@kernel
-def moved(X: FloatArray, V: FloatArray, s: float) -> FloatArray:
-    """X + s V, all (k, 3)."""
-    Y = np.empty_like(X)
-    for i in range(len(X)):
-        for c in range(3):
-            Y[i, c] = X[i, c] + s * V[i, c]
-    return Y
 
 
 @kernel

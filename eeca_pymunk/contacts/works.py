@@ -10,8 +10,10 @@ below 0 where bodies sink by it.
 
 from __future__ import annotations
 
+import numpy as np
+
 from ..arrays import FloatArray, IntArray
-from ..compiled import uncounted
+from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
 from ..model.contacts import Row
 
@@ -54,3 +56,13 @@ def against(ACC: FloatArray, IM: FloatArray, II: FloatArray, n: int, D: FloatArr
         if II[i] > 0.0:
             work += ACC[i, 2] * D[i, 2] / II[i]
     return work
+
+
+@kernel
+def moved(X: FloatArray, V: FloatArray, s: float) -> FloatArray:
+    """X + s V, all (k, 3)."""
+    Y = np.empty_like(X)
+    for i in range(len(X)):
+        for c in range(3):
+            Y[i, c] = X[i, c] + s * V[i, c]
+    return Y

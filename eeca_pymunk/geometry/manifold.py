@@ -13,9 +13,11 @@ import math
 from ..arrays import FloatArray
 from ..compiled import uncounted
 from ..model.parameters.detection import FACE_WIDTH
+from ..model.parameters.impulses import FACE_ROUND_OFF, ROCKING
 from ..model.scene import Scene
+from ..pairs.rules import law
 from .convex import place, prefers_second
-from .gap import ordered_gap
+from .gap import ordered_gap, touching
 from .sides import closest_on_side
 
 
@@ -137,6 +139,27 @@ def support_range(P: FloatArray, p: int, nx: float, ny: float, tolerance: float)
 
 
 @uncounted
+def common_face(
+    P: FloatArray, p: int, Q: FloatArray, q: int, nx: float, ny: float, slack: float
+) -> tuple[float, float, float, bool]:  # fmt: skip
+    """Where the cores P and Q, with normal n from P to Q, have edges across it within `slack` (length): from and to
+    along t = (-n_y, n_x), the height of P along n, and whether both have one."""
+    low_p, high_p, top, size_p = support_range(P, p, nx, ny, slack)
+    low_q, high_q, _, size_q = support_range(Q, q, -nx, -ny, slack)
+    low, high = max(low_p, -high_q), min(high_p, -low_q)
+    return low, high, top, high - low > FACE_WIDTH * max(size_p, size_q)
+
+
+@uncounted
+def face_tolerance(A: Scene, a: int, b: int) -> float:
+    """The tolerance (length) of `face` in an impact."""
+    tolerance = FACE_ROUND_OFF * touching(A, a, b)
+    if law(A.SHAPE, A.RULE, a, b)[0] < 1.0:
+        tolerance = max(tolerance, ROCKING * min(A.SHAPE[a].extent, A.SHAPE[b].extent))
+    return tolerance
+
+
+@uncounted
 def face(A: Scene, s: int, r: int, POSE: FloatArray, a: int, b: int, tolerance: float, OUT: FloatArray) -> int:
     """The contact of shapes s and r that meet, into OUT as `manifold` does: 2 rows, the ends of their common face,
     where both have an edge across the normal within `tolerance` (length), else 1. The gap is the same at both ends.
@@ -151,11 +174,8 @@ def face(A: Scene, s: int, r: int, POSE: FloatArray, a: int, b: int, tolerance: 
     OUT[0, 0], OUT[0, 1], OUT[0, 2], OUT[0, 3], OUT[0, 4] = nx, ny, px, py, g
     p, q = A.LINK[s].vertices, A.LINK[r].vertices
     if p > 1 and q > 1:
-        slack = tolerance + max(-g, 0.0)
-        low_p, high_p, top, size_p = support_range(A.CORE[0], p, nx, ny, slack)
-        low_q, high_q, _, size_q = support_range(A.CORE[1], q, -nx, -ny, slack)
-        low, high = max(low_p, -high_q), min(high_p, -low_q)
-        if high - low > FACE_WIDTH * max(size_p, size_q):
+        low, high, top, wide = common_face(A.CORE[0], p, A.CORE[1], q, nx, ny, tolerance + max(-g, 0.0))
+        if wide:
             count = 2
             top += A.SHAPE[s].rounding + 0.5 * g
             for k in range(2):

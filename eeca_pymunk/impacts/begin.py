@@ -21,7 +21,7 @@ def begin(A: Scene, WALK: IntArray) -> None:
     """Count from the start of this step; forecast the bodies that were edited, and all that is due."""
     BODY, STATE, PAR, COUNT = A.BODY, A.STATE, A.PAR, A.COUNT
     COUNT.heap, COUNT.logged, COUNT.impacts, COUNT.blocks, COUNT.forecasts, COUNT.stale = 0, 0, 0, 0, 0, 0
-    COUNT.solves, COUNT.solved, COUNT.ignored, COUNT.sweeps, COUNT.direct = 0, 0, 0, 0, 0
+    COUNT.solves, COUNT.solved, COUNT.ignored, COUNT.sweeps, COUNT.direct, COUNT.work = 0, 0, 0, 0, 0, 0
     if COUNT.unmet > 0:
         A.FLAG[:] = 0
         COUNT.unmet = 0

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..compiled import kernel, uncounted
-from ..contacts.unmet import note_unmet
+from ..contacts.unmet import most_work, note_unmet
 from ..islands.accounting import close_interval
 from ..islands.building import build_islands
 from ..islands.intervals import solve
@@ -62,7 +62,7 @@ def start_waiting(A: Scene, J: Joints) -> int:
 def cut_short(A: Scene, J: Joints, i: int, t: float) -> int:
     """Let the step end at instant t, the event of body i: so nothing that it has no work left for is passed over.
     Intervals end there, without what they would have lifted at their own end."""
-    note_unmet(A, SOLVES, A.STATE[i].own, A.STATE[i].other, float(A.COUNT.solved), float(A.COUNT.budget))
+    note_unmet(A, SOLVES, A.STATE[i].own, A.STATE[i].other, float(A.COUNT.work), most_work(A))
     A.PAR.dt = t
     A.COUNT.heap = 0
     if J.TALLY.components > 0:

@@ -8,14 +8,15 @@ from __future__ import annotations
 
 from ..compiled import kernel, merged, uncounted
 from ..contacts.single import alone, strike_disk
-from ..contacts.unmet import note_unmet
+from ..contacts.unmet import most_work, note_unmet
+from ..geometry.sides import remembers
 from ..islands.accounting import end_interval
 from ..islands.building import comes_to_rest, hits_of, most_hits, passed_over
 from ..islands.membership import members
 from ..jointed.meet import end_here
 from ..model.bodies import LEAVE, RENEW
 from ..model.joints import Joints
-from ..model.parameters.events import AHEAD, RESOLUTION
+from ..model.parameters.events import AHEAD, EVENT_LOOKS, RESOLUTION
 from ..model.scene import Scene
 from ..model.step import BLOCK_DUE, DONE, HITS, IMPACTS, LOG_FULL, POOL_FULL, PUSHES_FULL
 from ..pairs.grid import renew
@@ -24,6 +25,7 @@ from ..prediction.disks import carrier, go_on
 from ..prediction.heap import pop, push, sweep_out
 from ..prediction.next_event import has_left
 from ..prediction.scheduling import forecast, look_ahead
+from ..prediction.turning import follow_side
 from .intervals import cut_short, start_waiting
 from .joint_impact import collide
 from .resolution import strike
@@ -60,7 +62,7 @@ def run(A: Scene, may_rest: bool) -> int:
         may_rest: whether contacts may be sustained.
     """
     BODY, STATE, COUNT, TIME, OF = A.BODY, A.STATE, A.COUNT, A.HEAP_TIME, A.HEAP_BODY
-    disks, moving, end = COUNT.disks, A.LIST.shape[0], A.PAR.dt
+    disks, moving, end, most = COUNT.disks, A.LIST.shape[0], A.PAR.dt, most_work(A)
     one, two, t = -1, -1, 0.0  # bodies to be forecast
     while True:
         while one >= 0:
@@ -112,12 +114,13 @@ def run(A: Scene, may_rest: bool) -> int:
             if single and body >= 0:
                 single = alone(A, body, other, t)
             body, other = (j, i) if o < disks else (-1, -1)
-        if not single:
+        if not single or COUNT.work > most:
             A.PAR.now, COUNT.struck = t, i
             return BLOCK_DUE
         # The same bits, whoever of the two has foreseen it.
         a, b = (o, i) if o < i else (i, o)
         strike_disk(A, a, b, t)
+        COUNT.work += EVENT_LOOKS
         one, two = a, b if o < disks else -1
 
 
@@ -151,13 +154,15 @@ def follow(A: Scene, J: Joints, may_rest: bool) -> int:
             return status
         t, i = A.PAR.now, COUNT.struck
         s, o = STATE[i].own, STATE[i].other
-        if COUNT.solved > COUNT.budget:
+        if COUNT.work > most_work(A):
             return cut_short(A, J, i, t)
         if COUNT.logged + COUNT.pushes + 8 * STATE.shape[0] > A.LOG.shape[0]:
             COUNT.heap = push(A.HEAP_TIME, A.HEAP_BODY, COUNT.heap, t, i)
             return LOG_FULL
         j = i if o == RENEW else A.LINK[o].owner
         met = o != RENEW
+        if met and remembers(A, s, o):
+            follow_side(A, s, o, t, end)
         if met and (STATE[i].island >= 0 or STATE[j].island >= 0) and passed_over(A, s, o, t):
             note_unmet(A, HITS, s, o, float(hits_of(A, s, o)), float(most_hits(A, s, o)))
             mark_pair(A, s, o, 1)

@@ -11,7 +11,7 @@ from ..arrays import FloatArray
 from ..compiled import kernel, uncounted
 from ..compiled.records import Rows, zeros
 from ..contacts.single import note
-from ..contacts.unmet import note_unmet
+from ..contacts.unmet import note_unmet, spend
 from ..contacts.works import carried
 from ..islands.building import spread
 from ..islands.intervals import dismiss
@@ -49,6 +49,7 @@ def finish(A: Scene, block: Block, n: int, m: int, L: FloatArray, OUT: Rows[Solv
             )  # fmt: skip
             COUNT.logged += 1
     COUNT.impacts += 1
+    spend(A, m, len(ROWS), OUT[0].sweeps, OUT[0].direct)
     COUNT.blocks += 1 if m > 1 else 0
 
 

@@ -19,7 +19,7 @@ from ..layout import NOW as READ
 from ..model.bodies import CHECK, Body, Member, Next, Rest
 from ..model.contacts import Force, Impulse, Pair, Pushed
 from ..model.joints import Joint
-from ..model.parameters.events import SOLVES_PER_BODY
+from ..model.parameters.events import MANY_BODIES, STEP_LOOKS, STEP_LOOKS_BODY
 from ..model.parameters.impulses import AUGMENTATION
 from ..model.scene import scene_with
 from ..model.shapes import Link, Shape
@@ -98,7 +98,7 @@ class EventLoop(Remembering):
         self._usual: FloatArray = self.scene.MARK["margin"].copy()
         self.scene.COUNT.limit, self.scene.COUNT.disks = limit, disks
         self.scene.COUNT.lossy, self.scene.COUNT.together = lossy, together
-        self.scene.COUNT.budget = SOLVES_PER_BODY * n
+        self.scene.COUNT.budget = STEP_LOOKS + STEP_LOOKS_BODY * n * max(n, MANY_BODIES) // MANY_BODIES
         self.scene.MEMBER["tied"] = self.scene.MEMBER["next_tied"] = -1
         self.scene.RESTING["augmentation"] = AUGMENTATION
         self.jointed = joint is not None

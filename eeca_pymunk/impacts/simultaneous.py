@@ -16,13 +16,12 @@ from ..compiled import kernel, uncounted
 from ..compiled.records import Rows, empty
 from ..contacts.single import move_to, touches
 from ..geometry.flight import pose, rate
-from ..geometry.gap import touching
-from ..geometry.manifold import face
+from ..geometry.manifold import face, face_tolerance
 from ..geometry.sides import note_side
 from ..islands.accounting import end_interval
 from ..islands.membership import budget_spent, carrier, in_large_island, remembered
 from ..model.contacts import ROW, Row
-from ..model.parameters.impulses import BLOCK_BODIES, FACE_ROUND_OFF, ROCKING
+from ..model.parameters.impulses import BLOCK_BODIES
 from ..model.scene import Scene
 from ..pairs.rules import barred, law
 from ..rows.build import normal_rate, place_row
@@ -182,14 +181,10 @@ def lay_out(A: Scene, n: int, m: int, PAIRS: IntArray, hit: int, rest: bool, t: 
                     q = place
                 place += 1
         e, mu, sx, sy = law(A.SHAPE, A.RULE, sa, sb)
-        tolerance = FACE_ROUND_OFF * touching(A, sa, sb)
-        small = min(A.SHAPE[sa].extent, A.SHAPE[sb].extent)
-        if e < 1.0:
-            tolerance = max(tolerance, ROCKING * small)
         if rest and PAIRS[z] == hit:
             e = 0.0
         load = remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], sa, sb, A.PAR.stamp - 1.0)[1]
-        count = face(A, sa, sb, POSE, p, q, tolerance, found)
+        count = face(A, sa, sb, POSE, p, q, face_tolerance(A, sa, sb), found)
         if count > 0:
             note_side(A, sa, sb, found[0, 0], found[0, 1], True)
         for c in range(count):

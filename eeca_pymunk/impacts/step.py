@@ -60,6 +60,7 @@ def act(A: Scene, J: Joints, USUAL: FloatArray) -> int:
             return PUSHES_FULL
         COUNT.phase = 1
         forecast_due(A)
+        COUNT.work = 0  # what a step begins with has to be done
     if COUNT.phase == 1:
         status = follow(A, J, COUNT.lossy > 0 or A.PAR.pulled > 0.0)
         if status != DONE:

@@ -9,7 +9,9 @@ import numpy as np
 from ..arrays import IntArray
 from ..compiled import kernel, uncounted
 from ..contacts.correction import budget_of, least_of, lifting
-from ..contacts.interval import make_contacts, moved, step_island
+from ..contacts.interval import make_contacts, step_island
+from ..contacts.unmet import spend
+from ..contacts.works import moved
 from ..model.contacts import Problem
 from ..model.islands import Island
 from ..model.parameters.events import RESOLUTION
@@ -129,6 +131,7 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
                 far = sunk(A, isle, isle.POSE + 0.5 * h * (V + VN), P, Q, ROWS, KEY, m, False)
         if far > INTERVAL_RETRY:
             A.COUNT.solved += n
+            spend(A, 2 * p, m, OUT[0].sweeps, OUT[0].direct)
             return AGAIN, h / far
         if m > 0 and OUT[0].stood == 0 and not before_end(A, t + h):
             # An interval that ends within the step is followed by another one, which corrects what is left.
@@ -141,6 +144,7 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
             A.PAR.lock = OUT[0].lock
     COUNT.solves += 1
     COUNT.solved += n
+    spend(A, 2 * p, m, OUT[0].sweeps, OUT[0].direct)
     COUNT.sweeps += OUT[0].sweeps
     COUNT.direct += OUT[0].direct
     first = COUNT.pushes

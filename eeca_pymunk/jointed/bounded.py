@@ -1,7 +1,7 @@
 """Rows of bounded impulses, motors and joints with a finite max_force, as unknowns beside those of the contacts.
 
 Columns of contacts and of these rows are answered by all joints that hold exactly, the bounded impulses being given: so
-contacts and bounded rows are one problem (`newton`). What its bounded impulses are is found anew by the components'
+contacts and bounded rows are one problem (`..rows`). What its bounded impulses are is found anew by the components'
 next step (`..joints.boxes`), which keeps their bounds to the bit.
 """
 

@@ -7,13 +7,13 @@ import math
 import numpy as np
 
 from ..arrays import FloatArray
-from ..compiled import kernel, uncounted
+from ..compiled import kernel
+from ..contacts.correction import least_of, turn_by, unturn
 from ..contacts.works import against
 from ..model.contacts import JointedProblem
-from ..model.islands import Island
 from ..model.joints import Joints
-from ..model.parameters.intervals import CORRECTION_STEP
-from ..model.parameters.joints import JOINTED_CORRECTION_SWEEPS, JOINTED_OVERLAP
+from ..model.parameters.intervals import CORRECTION_STEP, OVERLAP_LEFT
+from ..model.parameters.joints import JOINTED_CORRECTION_SWEEPS
 from ..model.scene import Scene
 from ..rows.bounded import room_for_rows
 from ..rows.build import normal_rate
@@ -38,27 +38,6 @@ def raise_gaps(problem: JointedProblem, GAPS: FloatArray, D: FloatArray, toleran
     return MU
 
 
-@uncounted
-def unturn(isle: Island, n: int, NEW: FloatArray, D: FloatArray, V: FloatArray) -> tuple[float, float, float, float]:
-    """The common spin that takes back the angular momentum sum m D x v of displacements D to NEW, the centre of mass
-    (x, y) about which it is, and the energy that it costs. No joint and no contact minds it."""
-    mass = x = y = vx = vy = 0.0
-    for q in range(n):
-        if isle.II[q] == 0.0:
-            return 0.0, 0.0, 0.0, 0.0
-        m = 1.0 / isle.IM[q]
-        mass, x, y, vx, vy = mass + m, x + m * NEW[q, 0], y + m * NEW[q, 1], vx + m * V[q, 0], vy + m * V[q, 1]
-    x, y, vx, vy = x / mass, y / mass, vx / mass, vy / mass
-    gained = spin = inertia = 0.0
-    for q in range(n):
-        rx, ry, wx, wy = NEW[q, 0] - x, NEW[q, 1] - y, V[q, 0] - vx, V[q, 1] - vy
-        gained += (D[q, 0] * V[q, 1] - D[q, 1] * V[q, 0]) / isle.IM[q]
-        spin += (rx * wy - ry * wx) / isle.IM[q] + V[q, 2] / isle.II[q]
-        inertia += (rx * rx + ry * ry) / isle.IM[q] + 1.0 / isle.II[q]
-    turn = -gained / inertia
-    return turn, x, y, turn * spin + 0.5 * inertia * turn * turn
-
-
 @kernel
 def correct(A: Scene, J: Joints, interval: Interval, end: float, budget: float) -> float:
     """Lift the poses at the end of an island's motion by at most what `budget` pays; the energy that it costs.
@@ -69,14 +48,11 @@ def correct(A: Scene, J: Joints, interval: Interval, end: float, budget: float) 
     """
     isle, groups, P, Q, ROWS, motion, C, m, n, _, h = interval
     V, WAY, END = motion.V, motion.WAY, motion.END
-    size = np.inf
-    for q in range(n):
-        size = min(size, isle.EXTENT[q])
     GAPS, deepest = np.empty(m), 0.0
     for i in range(m):
         GAPS[i] = ROWS[i].gap + normal_rate(P, Q, ROWS, WAY, i)
         deepest = min(deepest, GAPS[i])
-    if deepest >= -JOINTED_OVERLAP * size or not budget > 0.0:
+    if deepest >= -OVERLAP_LEFT * least_of(isle.EXTENT, n) or not budget > 0.0:
         return 0.0
     NOTHING, INDEX = np.zeros_like(V), np.full(len(isle.IM), -1, np.int64)
     for g in range(len(groups.COMPONENT)):
@@ -99,7 +75,8 @@ def correct(A: Scene, J: Joints, interval: Interval, end: float, budget: float) 
     if cost * part > 0.5 * budget:
         part = 0.5 * budget / cost
     HELD = np.zeros(len(groups.COMPONENT))
-    free = len(isle.IM) == n and not hangs(groups, J.COMPONENT, J.MEMBER)
+    # Of what something holds no body is turned.
+    ALL = np.ones(n if len(isle.IM) == n and not hangs(groups, J.COMPONENT, J.MEMBER) else 0, np.uint8)
     for _ in range(4):
         spent = 0.0
         NEW = END.copy()
@@ -116,13 +93,10 @@ def correct(A: Scene, J: Joints, interval: Interval, end: float, budget: float) 
                 HELD[g] = close_joints(A, J, s, END, NEW, V, isle.IM, isle.II, end, h)
                 spent += HELD[g]
         spent -= against(isle.ACC, isle.IM, isle.II, n, NEW - END)
-        turn, x, y, cost = unturn(isle, n, NEW, NEW - END, V) if free else (0.0, 0.0, 0.0, 0.0)
-        spent += cost
+        turn, x, y, spin, inertia = unturn(NEW, NEW - END, V, isle.IM, isle.II, ALL)
+        spent += turn * spin + 0.5 * inertia * turn * turn
         if spent <= budget:
-            for q in range(n if turn != 0.0 else 0):
-                V[q, 0] -= turn * (NEW[q, 1] - y)
-                V[q, 1] += turn * (NEW[q, 0] - x)
-                V[q, 2] += turn
+            turn_by(NEW, ALL, turn, x, y, V, 0)
             for g in range(len(groups.COMPONENT)):
                 s = groups.COMPONENT[g]
                 if s >= 0:

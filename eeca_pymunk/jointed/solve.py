@@ -9,9 +9,10 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import kernel, uncounted
 from ..contacts.geometry import gather
-from ..contacts.interval import make_contacts, moved, recall, speeds
+from ..contacts.interval import make_contacts, recall, speeds
 from ..contacts.memory import remember_loads
 from ..contacts.unmet import note_unmet
+from ..contacts.works import moved
 from ..islands.candidates import before_end, pairs_of
 from ..islands.intervals import AGAIN, dismiss, lay_out_island, open_contacts
 from ..islands.membership import lossy, members

@@ -38,7 +38,8 @@ class Count(Record):
     limit: int  # impacts that a body may have in a step
     unmet: int  # what was not met
     closing: int  # 1 where bodies that impulses do not move may move relative to one another, and squeeze others
-    budget: int  # bodies of all solves in a step, beyond which it is cut short
+    budget: int  # work of the events of a step of no more than `BUDGET_TIME`, beyond which it is cut short
+    work: int  # of the events so far, in looks of the search for an impact
     struck: int
     pushes: int  # rows of PUSHED in use
     solves: int
@@ -73,7 +74,7 @@ KINDS = (
     "impacts",  # of a body in a step (`TimeOfImpact.max_impacts`): later ones are left out
     "hits",  # on an island in a step: later ones are left for the next step
     "impact",  # velocity that the impulses of an impact leave
-    "solves",  # of all islands, bodies each: the step ends before its time
+    "solves",  # work of all events and solves: the step ends before its time
     "contacts",  # of joints: their solve
     "joints",  # their iteration
 )

@@ -91,6 +91,7 @@ def predict(A: Scene, i: int, now: float, end: float, until: float) -> None:
         if t < best:
             best, own, other = t, s, LEAVE
         start = LIST[s].start
+        A.COUNT.work += 1 + LIST[s].number // 4
         for q in range(start, start + LIST[s].number):
             if A.FLAG[q] != 0:
                 continue

@@ -26,9 +26,10 @@ from ..compiled.records import Rows
 from ..geometry.convex import place
 from ..geometry.flight import pose, rate
 from ..geometry.gap import touching
-from ..geometry.sides import closest_on_side, known_side, near_side, note_side, remembers
+from ..geometry.manifold import common_face, face_tolerance
+from ..geometry.sides import closest_on_side, key_of, known_side, near_side, note_side, remembers, side_row, smaller
 from ..model.bodies import Body
-from ..model.parameters.events import ADVANCES, RESOLUTION
+from ..model.parameters.events import ADVANCES, APPROACH_ROUND_OFF, GRAZED, RESOLUTION
 from ..model.scene import Scene
 from .bounds import carried_circles_meet, circles_meet
 from .roots import flat
@@ -51,6 +52,7 @@ class Closing(NamedTuple):
     extent: float  # gap of the cores where the shapes touch: length
     bend: float  # bound of the second derivative of gaps: length/time²
     tolerance: float  # gap up to which points touch: length
+    still: float  # rate up to which points that touch do not close, but by round-off: length/time
 
 
 @uncounted
@@ -67,7 +69,7 @@ def first_close(best: float, near: float, closing: bool, g: float, w: float, of:
     and whether one touches and closes."""
     near = min(near, g)
     if g <= of.tolerance:
-        closing = closing or w < 0.0
+        closing = closing or w < -of.still
     # The bound's one root is before `best` where the bound is negative there.
     if best == math.inf or g + (w - 0.5 * of.bend * best) * best < 0.0:
         best = min(best, flat(g, w, -of.bend))
@@ -135,6 +137,14 @@ def bends(A: Scene, a: int, b: int, start: float, left: float) -> tuple[float, f
 
 
 @uncounted
+def fastest(A: Scene, s: int, t: float) -> float:
+    """Bound of the speed of points of shape s at instant t, length/time."""
+    i = A.LINK[s].owner
+    vx, vy, spin = rate(A.BODY, i, t)
+    return abs(vx) + abs(vy) + abs(spin) * A.SHAPE[s].extent
+
+
+@uncounted
 def pressed(BODY: Rows[Body], i: int, j: int, t: float, nx: float, ny: float, px: float, py: float) -> float:
     """When bodies that touch at a point, and there part with u >= 0 or rest, are back: 2 u / a_n if the point's
     acceleration closes by a_n > 0; infinity else."""
@@ -184,19 +194,66 @@ def begin_side(A: Scene, a: int, b: int, start: float, left: float, tolerance: f
 
 
 @uncounted
+def face_closes(
+    A: Scene, a: int, b: int, nx: float, ny: float, x: float, y: float, d: float, one: Motion, two: Motion, still: float
+) -> bool:  # fmt: skip
+    """Whether any of the points closes at which an impact of shapes a < b acts: of bodies that overlap others may be
+    inside, beside their common face. (x, y) is the point of a's core, d the gap of the cores."""
+    P, Q, p, q = A.CORE[0], A.CORE[1], A.LINK[a].vertices, A.LINK[b].vertices
+    g = d - A.SHAPE[a].rounding - A.SHAPE[b].rounding
+    away = A.SHAPE[a].rounding + 0.5 * g
+    low, high, top, wide = 0.0, 0.0, 0.0, False
+    if p > 1 and q > 1:
+        low, high, top, wide = common_face(P, p, Q, q, nx, ny, face_tolerance(A, a, b) + max(-g, 0.0))
+    for k in range(2 if wide else 1):
+        px, py = x + away * nx, y + away * ny
+        if wide:
+            along = low if k == 0 else high
+            px, py = (top + away) * nx - along * ny, (top + away) * ny + along * nx
+        u = nx * (two.vx - two.spin * (py - two.y) - one.vx + one.spin * (py - one.y))
+        u += ny * (two.vy + two.spin * (px - two.x) - one.vy - one.spin * (px - one.x))
+        if u < -still:
+            return True
+    return False
+
+
+@uncounted
 def general(A: Scene, a: int, b: int, horizon: float) -> tuple[float, bool]:
+    """`search` of any two shapes a and b, which leaves the memory of sides as it is where they are now: what is between
+    may never come."""
+    if a > b:
+        a, b = b, a
+    if not remembers(A, a, b):
+        return search(A, a, b, horizon, math.inf)
+    start = max(A.BODY[A.LINK[a].owner].since, A.BODY[A.LINK[b].owner].since)
+    begin_side(A, a, b, start, max(horizon - start, 0.0), touching(A, a, b))
+    side = A.SIDE[side_row(A, key_of(A, a, b))]
+    key, nx, ny, deep = side.key, side.nx, side.ny, side.deep
+    t, certain = search(A, a, b, horizon, math.inf)
+    side.key, side.nx, side.ny, side.deep = key, nx, ny, deep
+    return t, certain
+
+
+@uncounted
+def follow_side(A: Scene, a: int, b: int, t: float, horizon: float) -> None:
+    """Note on which side of each other the thin shapes a and b are at instant t, at which they meet."""
+    search(A, min(a, b), max(a, b), horizon, t)
+
+
+@uncounted
+def search(A: Scene, a: int, b: int, horizon: float, until: float) -> tuple[float, bool]:
     """Instant at which any two shapes meet next, and whether they do, or are only known to be apart until then.
 
     A function of the two paths from the later SINCE on, whatever the order of a and b. Shapes that touch and close
     meet then. Shapes that touch and part do not; they are followed until the horizon, by at least a thousandth of it
-    a look, as no bound of theirs is above 0.
+    a look, as no bound of theirs is above 0, but by no more than the time `graze` in which no point of theirs comes
+    deeper than `GRAZED`. So are those of which 1000 looks at a sixteenth of the time do not tell when they meet.
 
     Args:
-        horizon: finite instant; lower bounds are no earlier. Of what takes more than 1000 looks at a part in
-            RESOLUTION of the time until then the rest is given up.
+        a, b: a < b.
+        horizon: finite instant; lower bounds are no earlier.
+        until: instant at which the search ends.
     """
-    if a > b:
-        a, b = b, a
     BODY, SHAPE = A.BODY, A.SHAPE
     i, j = A.LINK[a].owner, A.LINK[b].owner
     start = max(BODY[i].since, BODY[j].since)
@@ -213,15 +270,20 @@ def general(A: Scene, a: int, b: int, horizon: float) -> tuple[float, bool]:
             return horizon, False
     bend, bend_a, bend_b = bends(A, a, b, start, left)
     extent = SHAPE[a].rounding + SHAPE[b].rounding
+    still = APPROACH_ROUND_OFF * (fastest(A, a, start) + fastest(A, b, start))
     fixed, of_a, of_b = (
-        Closing(extent, bend, tolerance), Closing(extent, bend_a, tolerance), Closing(extent, bend_b, tolerance)
+        Closing(extent, bend, tolerance, still), Closing(extent, bend_a, tolerance, still),
+        Closing(extent, bend_b, tolerance, still),
     )  # fmt: skip
     P, Q = A.CORE[0], A.CORE[1]
     if remembers(A, a, b):
         begin_side(A, a, b, start, left, tolerance)
+    graze = math.sqrt(2.0 * GRAZED * smaller(A, a, b) / max(max(bend, max(bend_a, bend_b)), 1e-300))
+    graze = max(graze, left / RESOLUTION / ADVANCES)
     looks, mark = 0, s
-    while looks < ADVANCES:
+    while True:
         looks += 1
+        A.COUNT.work += 1
         if s > mark + left / RESOLUTION:  # what turns fast is followed for many turns
             looks, mark = 0, s
         one, two = motion(BODY, i, start + s), motion(BODY, j, start + s)
@@ -238,14 +300,15 @@ def general(A: Scene, a: int, b: int, horizon: float) -> tuple[float, bool]:
         if apart_b - extent >= least:
             may, gap, closes = turning_axis(Q, edge_b, P, p, two, one, of_b)
             safe, near, met = max(safe, may), max(near, gap), met and closes
+        if met and near < -tolerance:
+            met = face_closes(A, a, b, nx, ny, px, py, d, one, two, still)
         if not met and near <= tolerance:
             back = pressed(BODY, i, j, start + s, nx, ny, px + SHAPE[a].rounding * nx, py + SHAPE[a].rounding * ny)
-            if back <= left / RESOLUTION:
+            if back <= min(left / RESOLUTION, graze):
                 return start + s + back, True
-            safe = max(safe, left / ADVANCES)
-        s += safe
+            safe = max(safe, min(left / ADVANCES, graze))
         if met:
-            return start + s, True
-        if s > left:
+            return start + s + safe, True
+        s += safe if looks < ADVANCES else max(safe, graze)
+        if s > left or looks > 2.0 * ADVANCES * RESOLUTION or start + s > until:
             return horizon, False
-    return horizon, False

@@ -49,16 +49,12 @@ def clear(out: Solved) -> None:
 
 @kernel
 def resolve(
-    problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, rough: bool, tolerance: float,
-    OUT: Rows[Solved],
+    problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, first: int, rounds: int, last: int,
+    tolerance: float, OUT: Rows[Solved],
 ) -> float:  # fmt: skip
-    """Impulses for given targets; returns the change of velocity that a last sweep made.
-
-    With friction direct solutions help where contacts stick; where many slip only sweeps converge: more of them.
-    """
-    m = problem.m
-    most = BLOCK_SWEEPS_FRICTION if rough else (4 * BLOCK_SWEEPS if m <= SMALL_BLOCK else BLOCK_SWEEPS)
-    taken, worst = iterate(problem, L, V, tolerance, most)
+    """Impulses for given targets, by `first` sweeps at most, so many `rounds` of a direct solution and sweeps, and
+    `last` sweeps; returns the change of velocity that a last sweep made."""
+    taken, worst = iterate(problem, L, V, tolerance, first)
     OUT[0].sweeps = taken
     OUT[0].direct = 0
     if worst <= tolerance:
@@ -66,7 +62,7 @@ def resolve(
     least = worst
     stalled = 0
     log_R = AUGMENTATION
-    for _ in range(BLOCK_DIRECT_FRICTION if rough else BLOCK_DIRECT):
+    for _ in range(rounds):
         log_R, worst = refine(problem, L, V, FREE, log_R, 8, 0.1 * tolerance, worst)
         OUT[0].direct += 1
         for _ in range(BLOCK_SWEEPS_AFTER):
@@ -81,7 +77,7 @@ def resolve(
             stalled += 1
             if stalled >= 8:
                 break
-    taken, worst = iterate(problem, L, V, tolerance, BLOCK_LAST_SWEEPS_FRICTION if rough else BLOCK_LAST_SWEEPS)
+    taken, worst = iterate(problem, L, V, tolerance, last)
     OUT[0].sweeps += taken
     return worst
 
@@ -128,7 +124,15 @@ def solve_block(
         taken, worst = iterate(problem, L, V, tolerance, SMALL_SWEEPS)
         OUT[0].sweeps = taken
     else:
-        worst = resolve(problem, L, V, FREE, rough, tolerance, OUT)
+        # Direct solutions help where contacts stick; where many slip only sweeps converge: more of them.
+        first, rounds, last = BLOCK_SWEEPS_FRICTION, BLOCK_DIRECT_FRICTION, BLOCK_LAST_SWEEPS_FRICTION
+        if not rough:
+            first, rounds, last = (
+                4 * BLOCK_SWEEPS if m <= SMALL_BLOCK else BLOCK_SWEEPS,
+                BLOCK_DIRECT,
+                BLOCK_LAST_SWEEPS,
+            )
+        worst = resolve(problem, L, V, FREE, first, rounds, last, tolerance, OUT)
     # Sums over many sweeps have their own round-off: the velocities are those of the impulses.
     velocities(problem, L, FREE, V)
     scale, left = lock(problem, L, V, FREE, owed, exact)

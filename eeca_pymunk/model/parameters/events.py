@@ -27,14 +27,26 @@ RESOLUTION = work(
 FARTHEST_MARGIN = work(
     0.7, "of the margin", "Distance by which a lone disk's new margin circle may be ahead of it, at most."
 )
+GRAZED = heuristic(
+    0.0001,
+    "of the smaller shape",
+    "Depth that shapes which touch and part may come to between two looks. Larger: fewer looks at what turns fast.",
+)
 SAME_INSTANT = round_off(1e-09, "of the step", "Two computations of an instant that differ by less are the same.")
 AHEAD = work(0.4, "of the margin", "Distance by which a new margin circle is ahead of its shape.")
 INSIDE = work(0.1, "of the margin", "Part of the margin that is left, above which a shape has not left its circle.")
-SOLVES_PER_BODY = work(
-    512,
-    "solves of every body in a step",
-    "Work of a step after which it ends early. Larger: longer steps where bodies are squeezed.",
+STEP_LOOKS = work(
+    32000,
+    "looks",
+    "Work of the events of a step after which it ends early: about .25 us each. Larger: longer steps.",
 )
+STEP_LOOKS_BODY = work(160, "looks", "What each body adds to it.")
+MANY_BODIES = work(200, "bodies", "Number from which what a body adds grows with it, as piles are solved whole.")
+BUDGET_TIME = work(1 / 30, "s", "Length of a step from which the budget grows with it.")
+EVENT_LOOKS = work(4, "looks", "Work of an event, beside its forecasts.")
+PAIR_LOOKS = work(4, "looks", "Work of the geometry of a pair in a solve.")
+SWEEP_LOOKS = work(0.25, "looks", "Work of a contact in a sweep.")
+DIRECT_LOOKS = work(0.25, "looks", "Work of a direct solution, times the square of its contacts.")
 INITIAL_PENETRATION = heuristic(
     1e-06, "of the smaller shape", "Overlap above which shapes that were put into one another come apart in one step."
 )

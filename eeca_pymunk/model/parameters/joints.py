@@ -80,7 +80,6 @@ FIT_CLOSING = round_off(
 )
 FIT_RESIDUAL = accuracy(1e-06, "of the fastest closing contact", "Residual of that fit.")
 FIT_ENERGY = round_off(1e-12, "of the energy", "Change of energy by the fit that is round-off.")
-JOINTED_OVERLAP = accuracy(1e-09, "of the bodies", "Overlap of jointed bodies that is not corrected.")
 JOINTED_CORRECTION_SWEEPS = work(40, "sweeps", "Sweeps of the correction.")
 STEP_WORK = work(
     80000000.0, "operations", "Work of a step with joints, beside STEP_WORK_BODY; 6e9 take about a second."
@@ -99,8 +98,7 @@ MEET_SECANTS_LOADED = work(2, "iterations", "The same where contacts push.")
 MEET_INSTANT = round_off(1e-12, "of the step", "Interval that is none.")
 COLUMN_CONTACTS = work(40, "contacts", "Number up to which a direct solution over components pays.")
 COLUMN_SWEEPS = work(12, "sweeps", "Sweeps before the first direct solution.")
-COLUMN_SWEEPS_AFTER = work(4, "sweeps", "Sweeps after each.")
-COLUMN_ROUNDS = work(8, "direct solutions", "Direct solutions, at most.")
+COLUMN_ROUNDS = work(4, "direct solutions", "Direct solutions, at most.")
 COLUMN_PROXIMAL = round_off(
     10000000000.0, "over the effective mass", "Stiffness of the proximal term of redundant contacts."
 )
