@@ -181,6 +181,17 @@ def test_links_between_files_lead_somewhere() -> None:
                 assert anchor in {re.sub(r"[^\w\- ]", "", head.lower()).replace(" ", "-") for head in heads}, link
 
 
+@pytest.mark.parametrize("page", ["CONTRIBUTING.md", "docs/method.md"])
+def test_files_and_functions_that_pages_name_exist(page: str) -> None:
+    """`room/file.py` and `room/file.py:function`, of the package or of the repository."""
+    named = re.findall(r"`([\w/]+\.py)(?::(\w+))?`", text(ROOT / page))
+    assert len(named) > 40
+    for file, function in named:
+        found = [folder / file for folder in (ROOT / "eeca_pymunk", ROOT) if (folder / file).exists()]
+        assert found, file
+        assert not function or f"\ndef {function}(" in text(found[0]), (file, function)
+
+
 def test_every_page_is_in_the_site() -> None:
     told = text(ROOT / "mkdocs.yml") if (ROOT / "mkdocs.yml").exists() else pytest.skip("no sources")
     for page in PAGES:
