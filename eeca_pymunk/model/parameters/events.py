@@ -7,38 +7,44 @@ from .record import heuristic, round_off, work
 APPROACH_ROUND_OFF = round_off(
     1e-13, "of the speeds", "Closing speed of touching shapes below which they do not approach."
 )
-DISTANCE_ROUND_OFF = round_off(1e-09, "of the squared distance", "Distance within which APPROACH_ROUND_OFF counts.")
-MISS_DISTANCE = round_off(
-    1.000001, "ratio of squares", "Two paths miss if their least distance exceeds the sum of radii by this."
+DISTANCE_ROUND_OFF = round_off(
+    1e-09, "of the squared distance", "Distance of touching disks within which APPROACH_ROUND_OFF applies."
 )
-PATH_REACH = round_off(1.0000001, "ratio", "Two bodies cannot meet in the step if they miss each other by this.")
-SEARCH_AHEAD = work(1.5, "times the time that is left", "Circles that cannot meet until then need no root.")
+MISS_DISTANCE = round_off(
+    1.000001,
+    "ratio of squares",
+    "Two paths miss each other if their least distance exceeds the sum of radii by this factor.",
+)
+PATH_REACH = round_off(
+    1.0000001, "ratio", "Two bodies cannot meet in the step if their paths miss each other by this factor."
+)
+SEARCH_AHEAD = work(1.5, "times the time that is left", "Circles that cannot meet until then need no root finding.")
 ADVANCES = work(
     1000,
     "number",
-    "Evaluations of a gap in one search for an impact: a double root halves its error, a single one squares it.",
+    "Evaluations of a gap in one search for an impact, at most; its inverse is the least advance of touching shapes.",
 )
 STRIDE = heuristic(
     1 / 16,
     "of the time that is left",
-    "Least advance of touching shapes in the search. Larger: bounces shorter than it are not resolved.",
+    "Advance by ADVANCES evaluations below which the search stops. Larger: bounces shorter than it are not resolved.",
 )
 FARTHEST_MARGIN = work(
-    0.7, "of the margin", "Distance by which a lone disk's new margin circle may be ahead of it, at most."
+    0.7, "of the margin", "Distance of the centre of a single disk's new margin circle ahead of it, at most."
 )
-SAME_INSTANT = round_off(1e-09, "of the step", "Two computations of an instant that differ by less are the same.")
-AHEAD = work(0.4, "of the margin", "Distance by which a new margin circle is ahead of its shape.")
-INSIDE = work(0.1, "of the margin", "Part of the margin that is left, above which a shape has not left its circle.")
+SAME_INSTANT = round_off(1e-09, "of the step", "Two computations of an instant that differ by less agree.")
+AHEAD = work(0.4, "of the margin", "Distance of the centre of a new margin circle ahead of its shape.")
+INSIDE = work(0.1, "of the margin", "Part of the margin that must be left for a shape to count as inside its circle.")
 SQUEEZED_IMPACTS = heuristic(
     50,
     "impacts of a body in a step",
-    "From then on its impacts with kinematic bodies are left out where walls close in. Larger: longer steps.",
+    "Number after which its impacts with kinematic bodies are ignored where walls close in. Larger: slower steps.",
 )
 SOLVES_PER_BODY = work(
     512,
     "solves of every body in a step",
-    "Work of a step after which it ends early. Larger: longer steps where bodies are squeezed.",
+    "Work after which a step ends early. Larger: slower steps where bodies are squeezed.",
 )
 INITIAL_PENETRATION = heuristic(
-    1e-06, "of the smaller shape", "Overlap above which shapes that were put into one another come apart in one step."
+    1e-06, "of the smaller shape", "Overlap above which shapes that the program placed into each other are separated."
 )

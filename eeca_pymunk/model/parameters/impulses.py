@@ -9,46 +9,54 @@ SINGULAR = round_off(
     "of the product of its diagonal",
     "Determinant of a contact's 2 x 2 matrix below which normal and tangential impulse are not solved together.",
 )
-JAMMED = round_off(1e-09, "of A_nn", "Mobility along a slipping contact's impulse below which it jams.")
+JAMMED = round_off(1e-09, "of A_nn", "Mobility along the impulse of a slipping contact below which it jams.")
 PROXIMAL_DENSE = round_off(
     100000000.0,
     "over the effective mass",
-    "Stiffness of the proximal term that makes redundant contacts solvable, dense factors.",
+    "Stiffness of the proximal term that makes redundant contacts solvable with dense factors.",
 )
 PROXIMAL_STATICS = round_off(
-    100000000000.0, "over the effective mass", "Stiffness of the proximal term of static forces, sparse factors."
+    100000000000.0,
+    "over the effective mass",
+    "Stiffness of the proximal term in the search for static forces with sparse factors.",
 )
 FACE_LINE = accuracy(
-    1e-06, "of a face's length", "Distance from one tangent line up to which points of a face count as one line."
+    1e-06,
+    "of a face's length",
+    "Distance from one tangent line up to which the two points of a face share their friction.",
 )
 BLOCK_RESIDUAL = accuracy(1e-14, "of the approach speed", "Residual of simultaneous impacts without friction.")
 BLOCK_RESIDUAL_FRICTION = accuracy(
-    1e-10, "of the approach speed", "The same with friction, whose law is not that of a least energy."
+    1e-10, "of the approach speed", "Residual of simultaneous impacts with friction, which minimise no energy."
 )
-BLOCK_SWEEPS = work(12, "sweeps", "Sweeps before the first direct solution.")
-BLOCK_SWEEPS_FRICTION = work(100, "sweeps", "The same with friction.")
-BLOCK_SWEEPS_AFTER = work(3, "sweeps", "Sweeps after each direct solution.")
-BLOCK_DIRECT = work(40, "direct solutions", "Direct solutions, at most.")
-BLOCK_DIRECT_FRICTION = work(8, "direct solutions", "The same with friction.")
-BLOCK_LAST_SWEEPS = work(400, "sweeps", "Sweeps where direct solutions have not converged.")
-BLOCK_LAST_SWEEPS_FRICTION = work(200, "sweeps", "The same with friction.")
-LARGE_BLOCK = heuristic(20, "contacts", "Number beyond which a lossy simultaneous impact is solved by sweeps alone.")
-LARGE_BLOCK_SWEEPS = heuristic(40, "sweeps", "Sweeps of such an impact.")
-LARGE_BLOCK_RESIDUAL = heuristic(0.0001, "of the approach speed", "Residual at which they end.")
+BLOCK_SWEEPS = work(12, "sweeps", "Sweeps of a simultaneous impact before the first direct solution.")
+BLOCK_SWEEPS_FRICTION = work(
+    100, "sweeps", "Sweeps before the first direct solution of a simultaneous impact with friction."
+)
+BLOCK_SWEEPS_AFTER = work(3, "sweeps", "Sweeps after each direct solution of a simultaneous impact.")
+BLOCK_DIRECT = work(40, "direct solutions", "Direct solutions of a simultaneous impact, at most.")
+BLOCK_DIRECT_FRICTION = work(8, "direct solutions", "Direct solutions of a simultaneous impact with friction, at most.")
+BLOCK_LAST_SWEEPS = work(400, "sweeps", "Sweeps of a simultaneous impact whose direct solutions have not converged.")
+BLOCK_LAST_SWEEPS_FRICTION = work(
+    200, "sweeps", "Sweeps of one with friction whose direct solutions have not converged."
+)
+LARGE_BLOCK = heuristic(20, "contacts", "Number beyond which a lossy hit on an island is solved by sweeps alone.")
+LARGE_BLOCK_SWEEPS = heuristic(40, "sweeps", "Sweeps of a hit of more than LARGE_BLOCK contacts.")
+LARGE_BLOCK_RESIDUAL = heuristic(0.0001, "of the approach speed", "Residual at which the sweeps of such a hit end.")
 SMALL_BLOCK = work(16, "contacts", "Number up to which sweeps alone are cheaper than a first direct solution.")
 DENSE_CONTACTS = work(20, "contacts", "Number up to which the matrix of an island is dense.")
 REFINEMENTS = work(4, "number", "Passes of a direct solution's refinement.")
-DISSECTION_LEAF = work(6, "bodies", "Number that nested dissection does not divide further.")
-LATE_NEIGHBOURS = work(24, "neighbours", "Number from which a body is eliminated last.")
+DISSECTION_LEAF = work(6, "bodies", "Number up to which nested dissection does not divide further.")
+LATE_NEIGHBOURS = work(24, "neighbours", "Number from which on a body is eliminated last.")
 FACE_ROUND_OFF = round_off(
-    16.0, "times the gap's round-off", "Difference of gaps up to which both ends of parallel faces close at once."
+    16.0, "times the gap's round-off", "Difference of gaps up to which both ends of parallel faces touch at once."
 )
 ROCKING = heuristic(
     1e-06,
     "of the smaller shape",
-    "The same for lossy contacts: rocking below it ends at once instead of in a cascade of impacts.",
+    "Difference of gaps up to which both ends of a lossy face touch at once. Smaller: long cascades of impacts.",
 )
-BLOCK_BODIES = heuristic(16, "bodies", "Bodies of a large island on which an impact acts at once. Larger: dearer hits.")
+BLOCK_BODIES = heuristic(16, "bodies", "Bodies of a large island on which a hit acts at once. Larger: slower hits.")
 LIFT_TOGETHER = heuristic(
-    3.0, "times the deepest overlap", "Gaps up to which contacts are corrected with the deepest one."
+    3.0, "times the deepest overlap", "Gaps up to which contacts are corrected together with the deepest one."
 )

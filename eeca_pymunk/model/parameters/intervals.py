@@ -9,102 +9,134 @@ TOUCH = accuracy(
     "of the smaller shape",
     "Gap within which shapes touch. Smaller: round-off opens resting contacts. Larger: bodies rest apart.",
 )
-ELASTIC_REST = accuracy(1e-06, "of |a| dt", "Speed below which an elastic contact rests.")
-ELASTIC_REST_ON = accuracy(0.001, "of |a| dt", "The same if it rested before.")
+ELASTIC_REST = accuracy(1e-06, "of |a| dt", "Speed below which a touching elastic contact persists.")
+ELASTIC_REST_ON = accuracy(0.001, "of |a| dt", "Speed below which an elastic contact that carried a force persists.")
 SOLVES_BEFORE_HASTE = heuristic(
-    3, "solves of every body in a step", "Work after which islands are solved less precisely."
+    3, "solves of every body in a step", "Work after which large islands are neither hit nor joined in the step."
 )
-IMPACT_SPEED = accuracy(2.0, "of |a| h", "Approach speed from which a contact that closes in an interval is an impact.")
+IMPACT_SPEED = accuracy(
+    2.0, "of |a| h", "Approach speed from which on a contact that closes within an interval is an impact."
+)
 IMPACTS_BEFORE_REST = heuristic(
     16,
     "impacts of a body in a step",
     "Number after which a lossy contact persists. Larger: more events of a bouncing body.",
 )
-IMPACTS_BEFORE_REST_ELASTIC = heuristic(64, "impacts of a body in a step", "The same for a slow elastic contact.")
+IMPACTS_BEFORE_REST_ELASTIC = heuristic(
+    64, "impacts of a body in a step", "Number after which a slow elastic contact persists."
+)
 SLOW_ELASTIC = heuristic(1.0 / 64.0, "of |a| dt", "Approach speed below which an elastic contact is slow.")
-BUSY_STEPS = heuristic(8, "steps", "Steps after the last impact in which an island is not tested for rest.")
+BUSY_STEPS = heuristic(
+    8,
+    "steps",
+    "Steps after a passed-over impact in which near shapes join the island, and it is not tested for rest.",
+)
 MOST_HITS = heuristic(
     1,
     "impacts in a step",
-    "Impacts on a large lossy island, beyond which shallow ones are passed over until the next step.",
+    "Hits on a lossy island of HITS_TIMES_BODIES or more bodies; further shallow impacts are passed over.",
 )
-MOST_HITS_ELASTIC = heuristic(64, "impacts in a step", "The same for an elastic island.")
+MOST_HITS_ELASTIC = heuristic(64, "impacts in a step", "Hits on an island by elastic contacts, at most.")
 HITS_TIMES_BODIES = heuristic(
-    64, "impacts times bodies", "Small islands may be hit oftener: until impacts times bodies reach this."
+    64, "impacts times bodies", "Smaller lossy islands may be hit until hits times bodies reach this."
 )
 PASSED_OVER_DEPTH = heuristic(
     0.1,
-    "of both widths",
-    "Depth that an impact which is passed over may reach within the step. Larger: cheaper and deeper piles.",
+    "of both half widths together",
+    "Depth that an impact which is passed over may reach within the step. Larger: faster steps and deeper piles.",
 )
 NORMAL_TURN = accuracy(0.1, "rad", "Rotation of a normal in one interval. Larger: longer intervals, coarser rolling.")
-LEAST_INTERVAL = work(64.0, "intervals in a step", "An interval is not shorter than the step over this.")
-EXACT_CONTACTS = heuristic(
-    12, "contacts", "Number up to which an interval ends where a contact begins to stick or normals turn."
+LEAST_INTERVAL = work(
+    64.0, "intervals in a step", "An interval of few contacts is not shorter than the step divided by this."
 )
-STICK = accuracy(1e-06, "of the friction limit", "Friction and slip below which a contact sticks.")
+EXACT_CONTACTS = heuristic(
+    12,
+    "contacts",
+    "Number up to which an interval ends where a slipping contact begins to stick or a normal has rotated.",
+)
+STICK = accuracy(
+    1e-06, "of the friction limit", "Friction and slip, relative to their bounds, below which a contact sticks."
+)
 RATTLE = heuristic(
     0.001,
     "of the friction's impulse over the mass",
-    "Slip below which a contact sticks where bearing contacts vibrate as fast.",
+    "Slip below which a contact counts as sticking if loaded contacts vibrate as fast.",
 )
 LARGE_SWEEPS = work(24, "sweeps", "Sweeps of a large island at the start of a step.")
-LARGE_SWEEPS_HIT = work(12, "sweeps", "The same after it was hit within the step.")
+LARGE_SWEEPS_HIT = work(12, "sweeps", "Sweeps of a large island that was hit within the step.")
 INTERVAL_WAY = heuristic(
     0.5,
     "of the smaller shape",
-    "Relative way of two bodies in contact in one interval. Larger: contacts move while they are held fixed.",
+    "Relative displacement of two bodies in contact in one interval. Larger: contact geometry is frozen for too long.",
 )
 INTERVAL_ANGLE = heuristic(0.5, "rad", "Rotation of a body in one interval.")
 INTERVAL_DEPTH = heuristic(0.05, "of the smaller shape", "Depth by which a contact may close in one interval.")
-INTERVAL_DEPTH_WIDTH = heuristic(0.1, "of both widths", "The same, relative to what it would take to pass through.")
-INTERVAL_DEPTH_LEAST = heuristic(0.0001, "of the smaller shape", "Depth that is always allowed.")
+INTERVAL_DEPTH_WIDTH = heuristic(
+    0.1, "of both half widths together", "Depth by which a contact of thin shapes may close in one interval."
+)
+INTERVAL_DEPTH_LEAST = heuristic(0.0001, "of the smaller shape", "Depth by which a contact may always close.")
 INTERVAL_RETRY = heuristic(
-    1.5, "ratio", "An interval is solved again, shorter, if bodies went farther than they should by this ratio."
+    1.5,
+    "ratio",
+    "Excess of a displacement, rotation or depth over its limit from which on an interval is solved again, shorter.",
 )
 SMALL_SWEEPS = work(40, "sweeps", "Sweeps of a small island that moves.")
-INTERVAL_TRIES = work(12, "number", "Attempts at an interval, each shorter.")
-MIDSTEP_PASSES = work(3, "solves", "Further solves of `Midstep` for bodies that impulses move into others.")
+INTERVAL_TRIES = work(12, "number", "Attempts at an interval, each shorter, at most.")
+MIDSTEP_PASSES = work(3, "solves", "Further solves of `Midstep` for bodies that impulses move into others, at most.")
 LARGE_ISLAND = heuristic(
-    24, "bodies", "Size from which an island is large: impacts act on BLOCK_BODIES, sweeps are limited."
+    24, "bodies", "Size from which on an island is large: hits act on BLOCK_BODIES, sweeps are limited."
 )
 MIDPOINT_WAY = heuristic(
     0.25,
     "of the smaller shape",
-    "Half way of a pair beyond which its geometry at the middle of the interval is not predicted.",
+    "Half the displacement of a pair beyond which its geometry at the middle of the interval is not predicted.",
 )
 MIDPOINT_SAME = round_off(
-    1e-07, "of the smaller shape", "Half way below which the geometry at the middle is that of the start."
+    1e-07,
+    "of the smaller shape",
+    "Half the displacement of a pair below which the geometry at the middle is that of the start.",
 )
-MIDPOINT_SAME_LARGE = heuristic(0.001, "of the smaller shape", "The same in a large island.")
+MIDPOINT_SAME_LARGE = heuristic(
+    0.001,
+    "of the smaller shape",
+    "Half the displacement of a pair in a large island below which the geometry at the middle is that of the start.",
+)
 MIDPOINT_TURN = heuristic(
     0.5, "cosine", "Cosine of the normals at the start and the middle below which the middle is not used."
 )
 MANIFOLD_ROUND_OFF = round_off(1e-09, "of the smaller shape", "Tolerance of a manifold.")
-INTERVAL_RESIDUAL = accuracy(1e-12, "of |a| h", "Residual of an island, and of elastic ones.")
-INTERVAL_RESIDUAL_MOVING = accuracy(1e-07, "of |a| h", "Residual of a large or moving island.")
-INTERVAL_RESIDUAL_SPEED = accuracy(0.0001, "of its speed", "The same, relative to its speed.")
-DIRECT = work(20, "direct solutions", "Direct solutions of an island near rest, or elastic.")
-DIRECT_MOVING = work(6, "direct solutions", "The same of a moving island of few contacts.")
-FIRST_AUGMENTATION = heuristic(8.0, "ratio", "Augmentation of the first direct solution of a new island.")
-FIRST_SWEEPS = work(10, "sweeps", "Sweeps before the first direct solution.")
-SWEEPS_AFTER = work(4, "sweeps", "Sweeps after each.")
-BACKOFF_CONTACTS = work(
-    40, "contacts", "Number beyond which direct solutions that did not converge are not tried again for some steps."
+INTERVAL_RESIDUAL = accuracy(1e-12, "of |a| h", "Residual of islands near rest and of elastic islands.")
+INTERVAL_RESIDUAL_MOVING = accuracy(1e-07, "of |a| h", "Residual of a large moving island.")
+INTERVAL_RESIDUAL_SPEED = accuracy(
+    0.0001, "of the mean speed", "Part of the residual of a large moving island that grows with its speed."
 )
-FAILED_DIRECT = work(8, "direct solutions", "Direct solutions without progress that end the solve.")
-FAILED_DIRECT_AGAIN = work(2, "direct solutions", "The same where those of the last step failed.")
-LONGEST_BACKOFF = work(32.0, "steps", "Longest time without direct solutions.")
-OVERLAP_LEFT = accuracy(1e-09, "of the size", "Overlap that is not corrected.")
+DIRECT = work(20, "direct solutions", "Direct solutions of an island near rest, or elastic, at most.")
+DIRECT_MOVING = work(6, "direct solutions", "Direct solutions of a moving island of few contacts, at most.")
+FIRST_AUGMENTATION = heuristic(8.0, "log10 of R", "Augmentation R of the first direct solution of a new island.")
+FIRST_SWEEPS = work(10, "sweeps", "Sweeps of an island before its first direct solution.")
+SWEEPS_AFTER = work(4, "sweeps", "Sweeps of an island after each direct solution.")
+BACKOFF_CONTACTS = work(
+    40, "contacts", "Number beyond which direct solutions that did not converge are suspended for some steps."
+)
+FAILED_DIRECT = work(8, "direct solutions", "Direct solutions without progress after which the solve ends.")
+FAILED_DIRECT_AGAIN = work(
+    2,
+    "direct solutions",
+    "Direct solutions without progress after which the solve ends if that of the last step failed.",
+)
+LONGEST_BACKOFF = work(32.0, "steps", "Longest time for which direct solutions are suspended.")
+OVERLAP_LEFT = accuracy(1e-09, "of the smallest body", "Overlap that is not corrected.")
 CORRECTION_STEP = heuristic(
     0.25,
-    "of the size",
+    "of the smallest body",
     "Displacement of a body by the correction in one interval, at most. Larger: bodies can be pushed through walls.",
 )
 CORRECTION_ROUND_OFF = round_off(1e-14, "of its work", "Round-off of the work of a correction.")
 CORRECTION_SHARE = accuracy(
     0.99,
     "of a budget that does not suffice",
-    "Part of the energy lost that a correction uses; the rest is for the moments of inertia.",
+    "Part of the energy lost that a correction uses; the rest covers changes of moments of inertia.",
 )
-REPAY_ROUND_OFF = round_off(1e-13, "of the energies", "Energy below which nothing is paid back.")
+REPAY_ROUND_OFF = round_off(
+    1e-13, "of the energies", "Energy gain of a shortened interval below which its forces are not scaled."
+)
