@@ -8,77 +8,79 @@ from ..compiled.records import Record
 class Step(Record):
     """Settings, instants and energies of a step."""
 
-    dt: float  # length of the step; instant at which the loop has stopped for more room
-    now: float
+    dt: float  # length of the step
+    now: float  # instant at which the event loop has stopped for more memory
     gravity_x: float
     gravity_y: float
-    left_over: float  # what the damping of half a step leaves of velocities
-    lock: float  # scale of an energy lock that was farthest from 1
+    left_over: float  # factor by which the damping of half a step multiplies velocities
+    lock: float  # scale of the energy lock that was farthest from 1
     last: float  # length of the step before
-    restitution: float  # the ledger of the step, energies: taken by restitution and by friction, work of moving bodies
-    frictional: float  # and surfaces, taken by damping
-    external: float
-    damped: float
-    stored: float  # change of what springs hold
-    before: float  # kinetic energy and -m g.x at both ends of the step
-    after: float
+    # The ledger of the step: energies, in the order of `..energy.ledger`.
+    restitution: float  # loss
+    frictional: float  # loss
+    external: float  # work of forces, kinematic bodies and moving surfaces
+    damped: float  # loss by `space.damping`
+    stored: float  # change of the energy of springs; contained in `after`
+    before: float  # kinetic energy and -m g.x at the start of the step
+    after: float  # the same at its end, and `stored`
     stamp: float  # number of the step
-    pulled: float  # largest acceleration without contacts
+    pulled: float  # |a|, largest acceleration without contacts: length/time²
 
 
 class Count(Record):
-    """Counters of a step."""
+    """Counters, flags, limits and the state of a step that stopped for more memory."""
 
     heap: int  # rows of the heap in use
     logged: int  # rows of LOG in use
-    impacts: int
-    blocks: int  # impacts of many contacts at one instant
-    forecasts: int
-    stale: int  # events out of date
-    limit: int  # impacts that a body may have in a step
-    unmet: int  # what was not met
-    closing: int  # 1 where bodies that impulses do not move may move relative to one another, and squeeze others
-    budget: int  # bodies of all solves in a step, beyond which it is cut short
-    struck: int
+    impacts: int  # of single disks
+    blocks: int  # simultaneous impacts
+    forecasts: int  # predictions
+    stale: int  # events that were predicted for an older path version
+    limit: int  # impacts of a body in a step, at most
+    unmet: int  # budgets and tolerances that were not met
+    closing: int  # 1 if bodies that impulses do not move may move relative to each other, and squeeze others
+    budget: int  # limit of `solved`, beyond which the step ends early
+    struck: int  # body whose event has stopped the loop
     pushes: int  # rows of PUSHED in use
-    solves: int
-    ignored: int
-    pending: int  # island whose interval is to be begun, -1 for none
-    waiting: int  # bodies in BLOCK to be predicted then
-    phase: int  # of the step that is to be resumed
-    sweeps: int  # of all solves: sweeps, direct solutions
-    direct: int
+    solves: int  # of islands
+    ignored: int  # impacts that were passed over
+    pending: int  # island whose interval has to begin, -1 for none
+    waiting: int  # bodies in BLOCK to be predicted afterwards
+    phase: int  # 0 islands, 1 events, 2 end: where the step is resumed
+    sweeps: int  # of all solves
+    direct: int  # direct solutions of all solves
     remembered: int  # rows of the memory of forces in use
-    together: int  # 1 where all contacts of a step act together, and no events are followed
-    even: int  # 1 while one acceleration holds for all that impulses move, and no body is in an island
-    quiet: int  # steps in a row in which that was so to the end
-    disks: int  # of the scene: lone disks
+    together: int  # 1 in a step of `Midstep`: all contacts act together, no events are followed
+    even: int  # 1 while all bodies that impulses move have one acceleration, and no body is in an island
+    quiet: int  # number of steps in a row that ended with `even`
+    disks: int  # single disks of the scene
     solved: int  # bodies of all solves
-    carries: int  # 1 where islands at rest may support others that move (`islands/support.py`)
-    crammed: int  # 1 if there are bodies that were placed where they are
+    carries: int  # 1 if islands at rest may support others that move (`islands/support.py`)
+    crammed: int  # 1 if the program has placed bodies, which may overlap
 
 
 class Missed(Record):
     """A budget or tolerance that was not met."""
 
-    kind: float  # one of `KINDS`, by its number
+    kind: float  # index into `KINDS`
     first: float  # shapes, -1 for none
     second: float
-    value: float  # what it came to, and what it was to be at most
-    limit: float
+    value: float  # value reached, in the unit of its kind
+    limit: float  # largest value allowed
 
 
-# Kinds of `Missed`, with what they count.
+# Kinds of `Missed`: what is counted or measured.
 KINDS = (
-    "impacts",  # of a body in a step (`TimeOfImpact.max_impacts`): later ones are left out
-    "hits",  # on an island in a step: later ones are left for the next step
-    "impact",  # velocity that the impulses of an impact leave
-    "solves",  # of all islands, bodies each: the step ends before its time
-    "contacts",  # of joints: their solve
-    "joints",  # their iteration
+    "impacts",  # number of impacts of a body in a step (`TimeOfImpact.max_impacts`): further ones are ignored
+    "hits",  # number of hits on an island in a step: further impacts are passed over until the next step
+    "impact",  # residual velocity of a simultaneous impact: length/time
+    "solves",  # number of bodies in all solves: the step ends early
+    "contacts",  # solve of the contacts of jointed bodies; value and limit are nan
+    "joints",  # status of the joints' solve (`joints.EXACT` to `LINEAR`)
 )
 IMPACTS, HITS, IMPACT, SOLVES, CONTACTS, JOINTS = 0, 1, 2, 3, 4, 5
 
-# Status of a step.
+# Status of the event loop. All but DONE are resumable: lists, log or contacts need more memory, or an event is due that
+# the loop itself does not process.
 DONE, POOL_FULL, LOG_FULL, BLOCK_DUE, PUSHES_FULL = 0, 1, 2, 3, 4
-JOINTS_DUE = 5  # an interval or an impact of an island that is held by joints: `jointed/`
+JOINTS_DUE = 5  # an interval or an impact of an island with joints: `jointed/`
