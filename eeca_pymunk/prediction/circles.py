@@ -21,7 +21,8 @@ from .roots import ball_point, flat
 def circle_circle(
     dx: float, dy: float, ux: float, uy: float, ax: float, ay: float, extent: float, tolerance: float, left: float
 ) -> tuple[float, bool]:
-    """Time s at which |d + u s + a s² / 2| = extent with the distance falling, and whether it is exact or a lower bound.
+    """Time s at which |d + u s + a s² / 2| = extent with the distance falling, and whether it is exact or a lower
+    bound.
 
     Args:
         dx, dy: from centre to centre, length.  ux, uy: relative velocity.  ax, ay: relative acceleration.

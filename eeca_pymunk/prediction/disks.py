@@ -79,8 +79,8 @@ def first_meeting(
 
 @uncounted
 def expect(A: Scene, i: int, best: float, other: int, now: float, end: float) -> None:
-    """Set the next event of single disk i: meeting shape `other` at instant `best`, or leaving its margin circle before.
-    An event that is due in this step goes on the heap."""
+    """Set the next event of single disk i: meeting shape `other` at instant `best`, or leaving its margin circle
+    before. An event that is due in this step goes on the heap."""
     out = leaves(A, i, i, now)
     if other >= 0:
         A.STATE[i].known = A.STATE[carrier(A, other)].version
@@ -102,8 +102,8 @@ def predict_disk(A: Scene, i: int, now: float, end: float, several: bool) -> Non
 
 @uncounted
 def go_on(A: Scene, i: int, now: float, end: float) -> bool:
-    """Single disk i leaves its margin circle with an unchanged path: renew its list and predict its next event, for which
-    only the new entries are tested. False if the pool is full."""
+    """Single disk i leaves its margin circle with an unchanged path: renew its list and predict its next event, for
+    which only the new entries are tested. False if the pool is full."""
     BODY = A.BODY
     best, other, later, known = math.inf, NOTHING, A.LIST[i].later, A.LIST[i].number
     ahead = AHEAD

@@ -27,7 +27,8 @@ def push(TIME: FloatArray, OF: IntArray, n: int, time: float, body: int) -> int:
 def pop(TIME: FloatArray, OF: IntArray, n: int) -> int:
     """Remove the first event of a heap of n; the new number."""
     n -= 1
-    # The hole sinks to a leaf without unpredictable branches; the last entry, which fills it, usually belongs near a leaf.
+    # The hole sinks to a leaf without unpredictable branches; the last entry, which fills it, usually belongs near a
+    # leaf.
     k = 0
     while 2 * k + 2 < n:
         down = 2 * k + 1

@@ -24,8 +24,8 @@ def forecast(A: Scene, i: int, t: float, end: float, several: bool) -> None:
 
 @uncounted
 def forecast_all(A: Scene, n: int, t: float, end: float) -> None:
-    """Predict the next events of the n bodies in A.BLOCK at instant t. Each pair of them is tested once; that is enough,
-    because a body is predicted with all others after its next event."""
+    """Predict the next events of the n bodies in A.BLOCK at instant t. Each pair of them is tested once; that is
+    enough, because a body is predicted with all others after its next event."""
     for q in range(n):
         A.PLACE[A.BLOCK[q]] = q
     for q in range(n):
