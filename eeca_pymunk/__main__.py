@@ -9,7 +9,7 @@ from .recorder import versions
 
 _SAYS = {
     "library": "library",
-    "jit": "compiled just in time, at the first call of each entry point",
+    "jit": "compiled for this processor, at the first step",
     "python": "plain Python, some hundred times slower",
 }
 

@@ -2,11 +2,12 @@
 
 `ENTRIES` maps "room.module:function" to the types of its arguments. `f8[2]` is a C-contiguous array of 64-bit floats
 with two dimensions, `i8`, `i4` and `u1` are integers; `f8`, `i8` and `bool` without brackets are numbers; a name in
-braces is a table of `TABLES`. An entry returns an integer, or nothing. One that Python binds to its arrays has them
-before its numbers.
+braces is a table of `TABLES`. An entry returns an integer, or nothing. In an entry that Python binds to its arrays
+(`kernels.Kernel.bind`) arrays come before numbers.
 
-`TABLES` lists the arrays of each table in the order of its named tuple. `SOURCES` lists the files and rooms of which
-machine code is made: a library carries their hash.
+`TABLES` lists the arrays of each table in the order of its named tuple, for processes that do not import the records'
+annotations; `tables.table_of` compares. `SOURCES` lists the files and rooms that contain kernels; a library carries
+their hash.
 """
 
 from __future__ import annotations
@@ -75,7 +76,7 @@ ENTRIES = {
     "jointed.loop:step_jointed": "{Scene} {Joints} f8[3] i8[2] f8[2] f8[1] f8 f8 f8 f8 bool i8",
     "jointed.together:step_together_jointed": "{Scene} {Joints} f8[3] i8[2] f8[2] f8[1] f8[1] f8 f8 f8 f8 i8",
     "jointed.run:run_jointed": "{Scene} {Joints} {RunArrays} f8[3] i8[2] f8[2] f8[1] f8[1] bool bool",
-    # Of tests alone, which step islands by themselves: some hundred times slower as plain Python.
+    # Only tests call these, which solve single islands: some hundred times slower as plain Python.
     "contacts.interval:step_island": "{Scene} {Island} {Contacts} i8 f8 i8 f8 f8 f8 f8",
     "contacts.memory:forget": "i8[1] Force[1] Count i8[1] Force[1] f8",
 }

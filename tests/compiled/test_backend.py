@@ -139,8 +139,8 @@ def test_kernels_that_are_no_entries_run_as_plain_python() -> None:
 def test_the_command_line_says_which_code_runs_and_why() -> None:
     code = "import runpy; runpy.run_module('eeca_pymunk', run_name='__main__')"
     for environment, said in (
-        ({"NUMBA_DISABLE_JIT": "1"}, "plain Python, some hundred times slower: the environment asks for it"),
-        ({"EECA_KERNELS": "python"}, "plain Python, some hundred times slower: the environment asks for it"),
+        ({"NUMBA_DISABLE_JIT": "1"}, "plain Python, some hundred times slower: set by the environment"),
+        ({"EECA_KERNELS": "python"}, "plain Python, some hundred times slower: set by the environment"),
         *([({}, "library: ")] if sources.library_path() else []),
     ):
         lines = dict(line.split(maxsplit=1) for line in run(code, **environment))
