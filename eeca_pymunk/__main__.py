@@ -1,4 +1,4 @@
-"""`python -m eeca_pymunk`: versions of what results depend on, which code kernels run, and why."""
+"""`python -m eeca_pymunk`: versions on which results depend, the code that kernels run, and the reason."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _SAYS = {
 
 
 def lines() -> list[str]:
-    """What is printed."""
+    """The lines that are printed."""
     try:
         numba = version("numba")
     except PackageNotFoundError:

@@ -1,4 +1,4 @@
-"""Films: recordings side by side on one clock, with traces of energy and momentum, or of the ledger."""
+"""Films: recordings side by side at equal times, with traces of energy and momentum, or of the ledger."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ Image = npt.NDArray[np.uint8]  # (height, width, 3)
 Exact = Callable[[float], FloatArray | None]
 _MOST = 4  # panels
 _PREVIEW = 60  # frames of a notebook's player
-_TRAILED = 5  # bodies of which the paths are drawn too: of more they hide the picture
+_TRAILED = 5  # number of bodies up to which paths are drawn
 
 
 def animate(
@@ -113,9 +113,9 @@ class Film:
             view = (float(low[0]), float(high[1]), float(low[2]), float(high[3]))
         end = max(float(r.time[-1]) for r in shown)
         self.times = np.linspace(0.0, end, max(len(r) for r in shown) if frames is None else frames)
-        # As many as tell a hundredth of the film, so that the clock does not jump about.
+        # Digits that resolve a hundredth of the film; their fixed number keeps the text in place.
         self.digits = min(max(2 - math.floor(math.log10(end)), 0), 9) if end > 0.0 else 0
-        # Even numbers of pixels: video codecs ask for them.
+        # Even numbers of pixels, which video codecs require.
         tall = min(max(4.0 * (view[3] - view[2]) / (view[1] - view[0]), 2.0), 8.0) + 1.9
         pixels = [2 * round(0.5 * dpi * inches) for inches in (4.0 * len(shown), tall)]
         self.figure = figure(pixels[0] / dpi, pixels[1] / dpi, dpi)
@@ -134,7 +134,7 @@ class Film:
         return len(self.times)
 
     def images(self) -> Iterator[Image]:
-        """Each frame as (height, width, 3) bytes; what stands still is drawn once."""
+        """Each frame as (height, width, 3) bytes; static parts are drawn once."""
         canvas = cast(FigureCanvasAgg, self.figure.canvas)
         moving = [(panel.ax, artist) for panel in self.panels for artist in panel.moving]
         moving += [(panel.trace.ax, artist) for panel in self.panels for artist in panel.trace.moving]
@@ -156,7 +156,8 @@ class Film:
 
 
 class _Panel:
-    """The bodies of one recording, with the exact solution as a ghost and arrows where they are wanted."""
+    """The bodies of one recording, with arrows if wanted, and the exact solution as outlines (ghosts): at its
+    positions, with the angles of the recording."""
 
     def __init__(
         self, ax: Axes, recording: Recording, trace: Trace, title: str, view: View, exact: Exact | None,
@@ -189,7 +190,7 @@ class _Panel:
         x, angle = self.recording.position[i], self.recording.angle[i]
         self.drawing.move(x, angle)
         if self.exact is not None:
-            # The ghost is where the body should be at the moment shown, not at the frame's.
+            # The exact solution at the recorded moment that is shown, not at the time of the frame.
             there = self.exact(float(self.recording.time[i]))
             self.ghost.move(np.full_like(x, np.nan) if there is None else there, angle)
         if self.arrows is not None:
