@@ -26,7 +26,7 @@ class Midstep:
     """
 
     def prepare(self, world: World) -> EventLoop:
-        """The arrays of the solve for a world that was read anew."""
+        """The arrays of the solve for a world that was just read."""
         if world.joints is not None:
             return JointedLoop(
                 world.BODY, world.SHAPE, world.LINK, world.VERTEX, world.disks, 0, world.joints.joint,

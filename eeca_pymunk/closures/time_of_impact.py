@@ -28,7 +28,7 @@ class TimeOfImpact:
     max_impacts: int = 100_000
 
     def prepare(self, world: World) -> EventLoop:
-        """The arrays of the loop for a world that was read anew."""
+        """The arrays of the loop for a world that was just read."""
         if world.joints is None:
             return EventLoop(world.BODY, world.SHAPE, world.LINK, world.VERTEX, world.disks, self.max_impacts)
         return JointedLoop(

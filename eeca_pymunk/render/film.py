@@ -47,16 +47,17 @@ def animate(
 ) -> Path:
     """Write a film of one to four recordings side by side; `.gif`, `.mp4` or `.html` by suffix.
 
-    All panels have one scale and one clock: a frame shows of each recording the moment nearest to its time. Below each
-    run the energy relative to the start and the size of the momentum relative to its largest; of a run whose ledger
-    tells of losses or external work, the energies it has and has lost, stacked (`traces.py`).
+    All panels have the same scale; a frame shows the moment of each recording that is nearest to its time. Below each
+    panel are the energy relative to the start and the size of the momentum relative to its largest, or, if the ledger
+    has losses or external work, a stack of energies and losses (`traces.py`).
 
     Args:
-        recordings: what to show.  titles: of the panels; stepper and dt if None.
-        fps: frames per second, > 0; a GIF counts in hundredths of a second.
-        exact: time to the (N, 2) exact positions, None where unknown (`Scene.exact`): drawn as a ghost.
-        view: (left, right, bottom, top) lengths; everything that was recorded if None.
-        frames: evenly spaced in time; one per moment of the recording with most if None.
+        recordings: one to four.  titles: of the panels; stepper and dt if None.
+        fps: frames per second, > 0; delays of a GIF are multiples of 10 ms.
+        exact: function of time that returns the (N, 2) exact positions, None where unknown (`Scene.exact`): drawn as
+            outlines.
+        view: (left, right, bottom, top) lengths; all of the recording if None.
+        frames: number of frames, evenly spaced in time; by default the largest number of moments.
         arrow: "velocity" or "momentum" of every body.
         dpi: dots per inch; a panel is 4 inches wide.
         progress: show a progress bar.
@@ -77,7 +78,7 @@ def animate(
 
 
 def player(recording: Recording, fps: float = 20) -> str:
-    """HTML of a small player of the recording, complete in itself."""
+    """Self-contained HTML of a small player of the recording."""
     film = Film(recording, frames=min(len(recording), _PREVIEW), dpi=60)
     name = html.escape(str(recording.parameters.get("stepper", "recording")))
     return html_player(film.images(), fps, f"{name}, {len(recording)} moments")

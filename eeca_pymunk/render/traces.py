@@ -84,9 +84,8 @@ class Lines(Trace):
 class Stack(Trace):
     """Kinetic and potential energy, and on them what was lost to restitution (bounces), friction and damping.
 
-    All relative to the energy at the start, in which the potential counts from the lowest it comes to if that is below
-    zero. The dashed line is the energy at the start and what has been put in from outside since: the stack ends there
-    if the ledger closes.
+    All relative to the energy at the start; a negative potential energy counts from its minimum. The dashed line is the
+    energy at the start and the external energy since: the stack ends there if the ledger closes.
     """
 
     def __init__(self, ax: Axes, recording: Recording) -> None:
