@@ -6,7 +6,7 @@ of pymunk's arbiters have the impulses of the step, and pairs that touched only 
 own; afterwards pymunk's arbiters are restored. A step has no cost for it.
 
 The impulse of an arbiter is the sum over the step. Its points are pymunk's, or those of the last touch. `total_ke`
-follows Chipmunk's formula (cpArbiterTotalKE), sum of (1 - e)/(1 + e) j_n^2 k_nn + j_t^2 k_tt.
+follows Chipmunk's formula for its total kinetic energy, sum of (1 - e)/(1 + e) j_n^2 k_nn + j_t^2 k_tt.
 """
 
 from __future__ import annotations
