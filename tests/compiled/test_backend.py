@@ -80,7 +80,7 @@ def test_a_library_that_cannot_be_had_is_refused_if_it_is_asked_for(monkeypatch:
 
 
 def test_reasons_against_building(monkeypatch: pytest.MonkeyPatch) -> None:
-    for wrong, said in (("0.61.2", "numba 0.61.2 is installed, the compiler knows"), (None, "numba is not installed")):
+    for wrong, said in (("0.61.2", "numba 0.61.2 is installed, the compiler needs"), (None, "numba is not installed")):
         monkeypatch.setattr(backend, "_found", lambda wrong=wrong: wrong)
         assert said in backend.cannot_build()
     monkeypatch.setattr(backend, "_found", lambda: f"{NUMBA}.0")
