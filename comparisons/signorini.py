@@ -19,7 +19,7 @@ START = 0.0005  # m above the floor for the time histories: the contact begins i
 
 
 def closed_form(damping_ratio: float, dt: float, stiffness: float) -> tuple[float, float, float]:
-    """Delta g, psi1, psi2 of a unit mass at 1 m/s that starts the step touching the floor (design section 2)."""
+    """Delta g, psi1, psi2 of a unit mass at 1 m/s that starts the step touching the floor."""
     omega = dt * np.sqrt(stiffness)
     S = 4.0 * damping_ratio / omega
     delta = -8.0 / omega**2 / ((1.0 + S) + np.sqrt((1.0 + S) ** 2 + 16.0 / omega**2))

@@ -1,6 +1,6 @@
 """Energy and momentum conserving time stepping (EECA) for pymunk spaces.
 
-`eeca_pymunk.render` draws; it is a module of its own because it imports matplotlib.
+`eeca_pymunk.render` draws pictures and films; it is imported at first use, because it imports matplotlib.
 """
 
 from types import ModuleType
@@ -60,7 +60,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> ModuleType:
-    # matplotlib takes longer to import than everything else: only who draws pays for it.
+    # matplotlib takes longer to import than everything else, and only render needs it.
     if name == "render":
         from importlib import import_module
 

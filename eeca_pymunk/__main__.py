@@ -1,4 +1,4 @@
-"""`python -m eeca_pymunk`: versions of what results depend on, which code kernels run, and why."""
+"""`python -m eeca_pymunk`: versions on which results depend, the code that kernels run, and the reason."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from .recorder import versions
 
 _SAYS = {
     "library": "library",
-    "jit": "compiled just in time, at the first call of each entry point",
+    "jit": "compiled for this processor, at the first step",
     "python": "plain Python, some hundred times slower",
 }
 
 
 def lines() -> list[str]:
-    """What is printed."""
+    """The lines that are printed."""
     try:
         numba = version("numba")
     except PackageNotFoundError:

@@ -1,4 +1,4 @@
-"""Names of numpy's array types, and the rotation of vectors."""
+"""Names of numpy's array types, arrays in one piece of memory, and the rotation of vectors."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ FlagArray: TypeAlias = npt.NDArray[np.uint8]
 AnyArray: TypeAlias = npt.NDArray[Any]
 
 
-_LINES = 128  # bytes: what a processor fetches at once begins at multiples of that
+_LINES = 128  # bytes: alignment of what a processor fetches at once
 _PAGE = 1 << 21  # bytes of a huge page
 _HUGE = 1 << 22  # bytes of an allocation from which numpy asks for huge pages
 
 
 def side_by_side(*wanted: tuple[tuple[int, ...], npt.DTypeLike]) -> list[Any]:
-    """Arrays of zeros of these shapes and dtypes, in one piece of memory, each from a new cache line on.
+    """Arrays of zeros of these shapes and dtypes in one piece of memory, each aligned to a cache line.
 
-    Kernels that look at a few numbers here and there in all arrays of a scene would wait for the addresses of many
-    small pages: large scenes get huge ones, which systems only give to large pieces.
+    Kernels read a few numbers in all arrays of a scene, and would often miss the TLB with many small pages. Large
+    scenes therefore get huge pages, which operating systems only give to large allocations.
     """
     kinds = [np.dtype(dtype) for _, dtype in wanted]
     sizes = [math.prod(shape) * kind.itemsize for (shape, _), kind in zip(wanted, kinds, strict=True)]
@@ -43,7 +43,7 @@ def side_by_side(*wanted: tuple[tuple[int, ...], npt.DTypeLike]) -> list[Any]:
 
 
 def rotated(vectors: FloatArray, angle: FloatArray) -> FloatArray:
-    """(..., 2) vectors turned by angles (...)."""
+    """(..., 2) vectors rotated by angles (...)."""
     c, s = np.cos(angle), np.sin(angle)
     x, y = vectors[..., 0], vectors[..., 1]
     return np.stack((c * x - s * y, s * x + c * y), axis=-1)

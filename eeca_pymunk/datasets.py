@@ -1,4 +1,4 @@
-"""Rollouts as data: arrays with names, written to a file that says how they were made and whether it is whole."""
+"""Rollouts as data: named arrays, in a file with their parameters and a hash of the content."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ _HDF5 = (".h5", ".hdf5")
 
 @dataclass
 class Rollouts:
-    """What is known of K rollouts of b bodies, T frames each.
+    """The results of K rollouts of b bodies, T frames each.
 
     Attributes:
         states: (K, b, 6) position, angle, velocity, spin at the start.  frames: (K, T, b, 6) the same afterwards.
         ledger: (K, T, 6) energies since the start of each, in the order of the fields of `Ledger`.
-        unmet: (K,) steps of each that did not meet all tolerances.
-        events: the impacts of all, one rollout after the other, each in the order of time; places of bodies are those
-            in `frames`.  first: (K + 1,) those of rollout k are the ones from first[k] to first[k + 1].
-        error: (K,) length, an estimate of how far off any body is in any frame (`certify`); NaN where nobody looked.
-        parameters: what they were made with, versions, and what the user adds (seeds, units, licence).
+        unmet: (K,) number of steps that did not meet all budgets and tolerances.
+        events: the impacts of all rollouts, one after the other, each in the order of time; numbers of bodies are those
+            in `frames`.  first: (K + 1,) the impacts of rollout k are [first[k], first[k + 1]).
+        error: (K,) length, an estimate of the largest position error in any frame (`certify`); NaN before.
+        parameters: arguments of `rollout`, versions, and what the user adds (seeds, units, licence).
     """
 
     states: FloatArray
@@ -55,14 +55,14 @@ class Rollouts:
         return self.events.part(int(self.first[k]), int(self.first[k + 1]))
 
     def ledger_of(self, k: int, t: int = -1) -> Ledger:
-        """Where the energy of rollout k has gone up to frame t."""
+        """The ledger of rollout k from its start to frame t."""
         return Ledger(*self.ledger[k, t].tolist())
 
     def save(self, path: str | Path) -> None:
         """Write to `path`, whole or not at all: NumPy's format for .npz; HDF5 for .h5 and .hdf5, which needs h5py.
 
-        The file has the arrays by the names of the attributes (`events.time`, ...), the parameters as JSON, and a
-        SHA-256 hash of all of it.
+        The file contains the arrays by the names of the attributes (`events.time`, ...), the parameters as JSON, and a
+        SHA-256 hash of everything.
         """
         arrays, parameters = self._arrays(), json.dumps(self.parameters, sort_keys=True)
         digest = _digest(arrays, parameters)
@@ -79,11 +79,11 @@ class Rollouts:
 
     @staticmethod
     def load(path: str | Path) -> Rollouts:
-        """Read what `save` wrote; ValueError if it is something else, or not what was written."""
+        """Read a file of `save`; ValueError if it is another file, or its content has changed."""
         try:
             found, parameters, digest = _read(Path(path))
             if _digest(found, parameters) != digest:
-                raise ValueError("its hash is another than that of its content")
+                raise ValueError("its hash does not fit its content")
             events = {name.partition(".")[2]: found.pop(name) for name in list(found) if name.startswith("events.")}
             return Rollouts(**found, events=Events(**events), parameters=json.loads(parameters))
         except (KeyError, TypeError, AttributeError, ValueError) as error:
@@ -95,7 +95,7 @@ class Rollouts:
 
 
 def _digest(arrays: Mapping[str, AnyArray], parameters: str) -> str:
-    """Of names, dtypes, shapes and contents."""
+    """Hash of names, dtypes, shapes and contents."""
     found = hashlib.sha256(parameters.encode())
     for name in sorted(arrays):
         array = arrays[name]
@@ -125,5 +125,5 @@ def _h5py() -> Any:
     try:
         import h5py
     except ImportError as error:
-        raise ImportError("files in HDF5 need h5py: pip install h5py; or give a name that ends in .npz") from error
+        raise ImportError("HDF5 files need h5py: pip install h5py; or give a name that ends in .npz") from error
     return h5py

@@ -1,4 +1,4 @@
-"""Kernels of sleeping: who has been at rest in a step, and whether anybody asleep was touched in it."""
+"""Kernels of sleeping: which bodies were at rest in a step, and whether a sleeping body was touched in it."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ def rests(
     STATES: FloatArray, WALK: IntArray, BODY: Rows[Body], SIZE: FloatArray, RESTED: FloatArray, TIRED: IntArray,
     slow: float, dt: float, need: float,
 ) -> int:  # fmt: skip
-    """Count for how long bodies have been at rest: at both ends of the step
+    """Add up for how long bodies have been at rest: at both ends of the step
 
         |v|, |spin| SIZE <= slow + round-off     and     |x - x0| <= slow dt + round-off,
 
-    without forces. SIZE (N,): length, 0 for bodies without shapes. RESTED (N,): time. TIRED (N,): 1 for those that have
-    rested for the time `need`.
+    without forces; `slow` and its reason are in `space/sleeping.py`. SIZE (N,): length, 0 for bodies without shapes.
+    RESTED (N,): time. TIRED (N,): 1 for bodies that have been at rest for the time `need`, and may sleep.
 
     Returns:
-        1 if any is tired, else 0.
+        1 if any body may sleep, else 0.
     """
     before, after = STATES[NOW], STATES[LEFT]
     N, fastest, some = WALK.shape[1], 0.0, 0
@@ -57,8 +57,8 @@ def rests(
 
 @kernel
 def touches(LOG: Rows[Impulse], OWNER: IntArray, ASLEEP: IntArray, STILL: IntArray, count: int) -> int:
-    """Whether one of the first `count` impulses is between a body asleep and one that moves; bodies of shapes are in
-    OWNER (k,), ASLEEP and STILL (N,) are 1 for bodies asleep, and for those that stand, asleep or static."""
+    """Whether one of the first `count` impulses is between a sleeping body and one that moves. OWNER (k,): bodies of
+    shapes. ASLEEP (N,): 1 for sleeping bodies. STILL (N,): 1 for sleeping and static ones."""
     for e in range(count):
         a, b = OWNER[int(LOG[e].first)], OWNER[int(LOG[e].second)]
         if (ASLEEP[a] == 1 and STILL[b] == 0) or (ASLEEP[b] == 1 and STILL[a] == 0):

@@ -1,4 +1,5 @@
-"""EECA: the energy-conserving stepper. Its closure detects, solves and locks; the rest is shared with all steppers."""
+"""EECA: the energy-conserving stepper. Its closure makes a `Method` that steps the arrays; the rest is shared with all
+steppers."""
 
 from __future__ import annotations
 
@@ -23,27 +24,28 @@ if TYPE_CHECKING:
 
 
 class Method(Protocol):
-    """Steps the arrays of one world; what it keeps from step to step is gone with the world."""
+    """Steps the arrays of one world. Results of earlier steps that it keeps, such as contact forces, last as long as
+    the world."""
 
     def step(
         self, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
         left: float,
     ) -> int:  # fmt: skip
-        """From the states that were read to those that are to be written: bits or a code of `transfer.py`."""
+        """From the states read to those to be written: status bits or a negative code of `transfer.py`."""
 
     def rule(self, rules: Mapping[tuple[int, int], tuple[float, float, float, float]]) -> None:
-        """What collision handlers have said of pairs of shapes (a < b) for the next step: elasticity (below 0: they
-        pass), friction, and surface velocity of b relative to a."""
+        """Values of collision handlers for pairs of shapes (a < b) in the next step: elasticity (negative: no
+        collision), friction, and surface velocity of b relative to a."""
 
     def details(
         self, dt: float, bodies: tuple[pymunk.Body, ...], owner: IntArray
     ) -> Details | Callable[[], Details]:  # fmt: skip
-        """The arrays of the report of the last step, or what makes them; `owner` (k,) is the place in `bodies` of the
-        body of every shape."""
+        """The arrays of the report of the last step, or a function that makes them; `owner` (k,): index in `bodies` of
+        the body of each shape."""
 
     @property
     def book(self) -> FloatArray | None:
-        """(7,) what the ledger of the last step is made of, a copy (`energy.ledger`); None if it keeps none."""
+        """(7,) a copy of the book of the last step (`energy.ledger`); None if there is none."""
 
     @property
     def lock(self) -> float:
@@ -51,18 +53,19 @@ class Method(Protocol):
 
     @property
     def converged(self) -> bool:
-        """Whether the last step left nothing undone."""
+        """Whether the last step met all budgets and tolerances."""
 
     @property
     def iterations(self) -> int:
-        """Of the solver in the last step, 0 where they are not counted."""
+        """Number of iterations of the solver in the last step, 0 if they are not counted."""
 
 
 class Closure(Protocol):
-    """Chooses psi2, the one parameter that conservation leaves free: when impulses act."""
+    """Chooses psi2, the parameter that conservation leaves free: the instant at which impulses act."""
 
     def prepare(self, world: World) -> Method:
-        """What steps this world, energy and momentum exact; ValueError for what the closure does not move."""
+        """The method that steps this world, energy and momentum exact; UnsupportedFeature for features that the closure
+        does not support."""
 
 
 class EECA(RunningStepper):
@@ -70,7 +73,7 @@ class EECA(RunningStepper):
 
     Args:
         space: a pymunk space.
-        closure: what chooses psi2; `TimeOfImpact()` if None.
+        closure: the rule for psi2; `TimeOfImpact()` if None.
         sync, ignore: see `PackedStepper`.
     """
 
@@ -79,7 +82,7 @@ class EECA(RunningStepper):
     ) -> None:
         self.closure: Closure = TimeOfImpact() if closure is None else closure
         self._saved: Saved | None = None  # in a copy, until its first step
-        self._ruled: Rules | None = None  # those that the method knows
+        self._ruled: Rules | None = None  # the rules that the method has
         self._shown: tuple[float, World | None, Touches | None] = -1.0, None, None
         super().__init__(space, sync=sync, ignore=ignore)
 
@@ -99,7 +102,7 @@ class EECA(RunningStepper):
     def prepare(self, world: World, past: World | None) -> None:
         myself = ref(self)
         show_contacts(self.space, lambda: None if (me := myself()) is None else me._touches())
-        self._sync.late = self._sleep is None  # who falls asleep with whom is asked of arbiters
+        self._sync.late = self._sleep is None  # groups of sleeping bodies are found from arbiters
         saved, self._saved, self._ruled = self._saved, None, None
         if saved is not None and saved.resume(world):
             self._method: Method = saved.method
@@ -122,7 +125,7 @@ class EECA(RunningStepper):
         return self._method if isinstance(self._method, EventLoop) else None
 
     def _touches(self) -> Touches | None:
-        """Who touched in the last step, for pymunk's arbiters; None if that was no step of ours."""
+        """Pairs that touched in the last step, for pymunk's arbiters; None if pymunk has taken a step since."""
         world = self._world
         self._sync.renew()
         if world is None or not isinstance(self._method, EventLoop) or not self._sync.is_ours():

@@ -19,11 +19,11 @@ if TYPE_CHECKING:
 
 @dataclass
 class Events:
-    """m impacts in the order of time; contacts that last are none, their forces act all the time.
+    """m impacts in the order of time. Persistent contacts are not included.
 
     Attributes:
         time: (m,) since the start of the recording.
-        bodies: (m, 2) places of a and b among the recorded bodies, -1 for a static one.
+        bodies: (m, 2) indices of a and b among the recorded bodies, -1 for a static one.
         point: (m, 2) length, halfway between the two surfaces.  normal: (m, 2) unit, from a to b.
         impulse: (m,) on b along the normal, >= 0.  friction: (m,) on b along t = (-n_y, n_x): mass length/time.
     """
@@ -43,14 +43,14 @@ class Events:
         return Events(*(getattr(self, f.name)[first:last] for f in fields(self)))
 
     def in_order(self) -> Events:
-        """The same by time, those at one instant by their bodies."""
+        """Sorted by time, at equal times by bodies."""
         order = np.lexsort((self.bodies[:, 1], self.bodies[:, 0], self.time))
         return Events(*(getattr(self, f.name)[order] for f in fields(self)))
 
     @staticmethod
     def of(EVENT: Rows[Impulse], place: IntArray) -> Events:
-        """Of (m,) impacts, in this order; `place` (k,) is where the body of each shape is among the recorded ones, -1
-        for none."""
+        """Of (m,) impacts, in their order; `place` (k,): index of each shape's body among the recorded ones, -1 for
+        none."""
         bodies = np.stack((place[EVENT["first"].astype(np.intp)], place[EVENT["second"].astype(np.intp)]), axis=-1)
         return Events(
             EVENT["when"].copy(), bodies, columns(EVENT, "px", "py"), columns(EVENT, "nx", "ny"),
@@ -59,7 +59,7 @@ class Events:
 
     @staticmethod
     def of_report(report: StepReport, start: float, place: Mapping[pymunk.Body, int]) -> Events:
-        """Of a step that began at `start`; `place` of the recorded bodies."""
+        """The impacts of a step that began at `start`; `place`: indices of the recorded bodies."""
         contacts = report.contacts
         now = np.flatnonzero((contacts.duration == 0.0) & (report.impulse != 0.0))
         at = np.array([place.get(body, -1) for body in contacts.bodies] if len(now) else [], np.intp)
@@ -71,7 +71,7 @@ class Events:
 
     @staticmethod
     def joined(parts: Sequence[Events]) -> Events:
-        """One after the other."""
+        """Several, one after the other."""
         if not parts:
             return Events()
         return Events(*(np.concatenate([getattr(part, f.name) for part in parts]) for f in fields(Events)))

@@ -9,7 +9,7 @@ from pathlib import Path
 
 @contextmanager
 def whole_file(path: str | Path) -> Iterator[Path]:
-    """A name beside `path` to write to; it becomes `path` if the block ends well, and vanishes if it does not."""
+    """A temporary name beside `path` to write to; it is renamed to `path` if the block succeeds, else removed."""
     path = Path(path)
     partial = path.with_name(f".{path.stem}.partial{path.suffix}")
     try:

@@ -1,4 +1,4 @@
-"""HookedStepper: what a step of packed arrays consists of, and the step in which functions of a program are called."""
+"""HookedStepper: the methods that a step of packed arrays needs, and the step that calls functions of the program."""
 
 from __future__ import annotations
 
@@ -27,15 +27,15 @@ class HookedStepper(PackedSpace):
         """Move the bodies from `world.STATES` to `world.ENDS`; the space is not touched.
 
         Args:
-            dt: time, > 0.  left: what half the step's damping leaves of velocities.
+            dt: time, > 0.  left: factor of half a step's damping.
 
         Returns:
-            the bits EVENTS and FORCES, or a negative code, of `transfer.py`.
+            status bits or a negative code of `transfer.py`.
         """
 
     @abstractmethod
     def details(self, world: World, dt: float) -> Details | Callable[[], Details]:
-        """The arrays of the report of the step that has just answered EVENTS, or what makes them."""
+        """The arrays of the report of the last step, whose status has EVENTS, or a function that makes them."""
 
     def outcome(self) -> tuple[float, bool, int]:
         """Scale of the energy lock of the last step that was farthest from 1, whether all tolerances were met, and the
@@ -43,7 +43,7 @@ class HookedStepper(PackedSpace):
         return 1.0, True, 0
 
     def unmet(self, world: World) -> tuple[Unmet, ...] | Callable[[], tuple[Unmet, ...]]:
-        """Which budgets and tolerances the last step did not meet, or what makes that."""
+        """Budgets and tolerances that the last step did not meet, or a function that makes them."""
         return ()
 
     def _hooked_step(self, world: World, dt: float) -> StepReport:
@@ -61,7 +61,7 @@ class HookedStepper(PackedSpace):
         return report
 
     def _start_hooked(self, world: World) -> World:
-        """Read the state of all bodies; the world that they are of."""
+        """Read the state of all bodies; returns their world, which may be new."""
         world.gather()
         status = world.find()
         if status in (OTHER_BODIES, MOVED_STATIC):
@@ -73,7 +73,7 @@ class HookedStepper(PackedSpace):
         return world
 
     def _take_hooked(self, world: World, dt: float) -> tuple[World, StepReport, Rehearsal | None]:
-        """All of it but what waits for its end."""
+        """The step without post-step callbacks."""
         world = self._start_hooked(world)
         bodies, joints, left = world.bodies, world.joints, world.left(dt)
         hooks = Hooks(self.space, bodies, joints)
@@ -109,7 +109,7 @@ class HookedStepper(PackedSpace):
             world.reset_forces()
             self._land_hooked(world, hooks, dt, status)
             if given:
-                # What functions have changed since the step is found next time.
+                # So that changes by functions after the step count as edits in the next one.
                 world.give_again()
         except BaseException:
             self._undo(world, world.START)
@@ -120,7 +120,7 @@ class HookedStepper(PackedSpace):
         return world, report, rehearsal
 
     def _land_hooked(self, world: World, hooks: Hooks, dt: float, status: int) -> None:
-        """Write the end of a step to the space, and call what waits for it."""
+        """Write the end of a step to the space, and call `post_solve` of constraints."""
         rehearses = world.collisions
         if world.joints is not None and world.joints.calling:
             world.scatter(status)
@@ -139,8 +139,8 @@ class HookedStepper(PackedSpace):
                 self._sync.land(world, dt, status)
 
     def _booked(self, dt: float) -> FloatArray | None:
-        """What the ledger of the step is made of. NotFiniteError, before the space is touched, if the energy is too
-        large for a number though positions and velocities are not."""
+        """The book of the step. NotFiniteError, before the space is changed, if the energy overflows though positions
+        and velocities do not."""
         book = self.book()
         if book is not None and not isfinite(book[AFTER]):
             self._world = None
@@ -153,7 +153,7 @@ class HookedStepper(PackedSpace):
         return status
 
     def _made(self, world: World, dt: float, status: int, book: FloatArray | None, lost: float = 0.0) -> StepReport:
-        """The report of the step with this book; `lost` is the energy that damping has taken since."""
+        """The report of the step with this book; `lost`: energy taken by damping 0 at the end."""
         if lost and book is not None:
             book[DAMPED] += lost
             book[AFTER] -= lost

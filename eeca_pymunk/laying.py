@@ -1,4 +1,4 @@
-"""Kernels of reading: the rows of bodies and shapes, from what these say."""
+"""Kernels of reading: the rows of bodies and shapes, from the values that pymunk has."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from .model.shapes import Link, Shape
 
 @uncounted
 def place_points(BODIES: Rows[GivenBody], SHAPES: Rows[GivenShape], POINT: FloatArray) -> None:
-    """Put the vertices of static shapes into the world, those of others about the centre of mass, and leave out those
-    that repeat the one before: a segment of no length is a disk."""
+    """Convert the vertices of static shapes to world coordinates, and those of others to coordinates about the centre
+    of mass; remove a vertex that repeats the one before: a segment of length 0 is a disk."""
     at, to = 0, 0
     for s in range(SHAPES.shape[0]):
         one, body = SHAPES[s], BODIES[SHAPES[s].owner]
@@ -35,17 +35,17 @@ def place_points(BODIES: Rows[GivenBody], SHAPES: Rows[GivenShape], POINT: Float
 
 @uncounted
 def give_rows(BODIES: Rows[GivenBody], SHAPES: Rows[GivenShape], POINT: FloatArray, ORDER: IntArray) -> int:
-    """Number bodies that are not static: lone disks, other dynamic bodies, kinematic ones, each by `place`. ORDER (n,)
-    is scratch.
+    """Number the bodies that are not static: single disks, other dynamic bodies, kinematic ones, each group by `place`.
+    ORDER (n,) is scratch.
 
     Returns:
-        how many lone disks there are.
+        the number of single disks.
     """
     for i in range(BODIES.shape[0]):
         BODIES[i].shapes, BODIES[i].row = 0, -1
         ORDER[BODIES[i].place] = i
     for s in range(SHAPES.shape[0]):
-        # Two stand for more, and for one that is no disk about the centre of mass.
+        # 2 or more: several shapes, or one that is no disk about the centre of mass.
         k = SHAPES[s].first
         centred = SHAPES[s].vertices == 1 and POINT[k, 0] == 0.0 and POINT[k, 1] == 0.0
         BODIES[SHAPES[s].owner].shapes += 1 if centred else 2
@@ -63,8 +63,8 @@ def give_rows(BODIES: Rows[GivenBody], SHAPES: Rows[GivenShape], POINT: FloatArr
 
 @uncounted
 def order_shapes(BODIES: Rows[GivenBody], SHAPES: Rows[GivenShape], ground: int, ORDER: IntArray) -> None:
-    """Have in ORDER the shapes by the rows of their bodies, the ground's last, in their own order besides. From there
-    on, to its end, ORDER is scratch."""
+    """Write the shapes into ORDER, sorted by the rows of their bodies (stable; those of the ground last). The rest of
+    ORDER is scratch."""
     k = SHAPES.shape[0]
     for i in range(ground + 2):
         ORDER[k + i] = 0
@@ -87,7 +87,7 @@ def lay_shape(POINT: FloatArray, given: GivenShape, SHAPE: Shape, LINK: Link, VE
     low_x, low_y, high_x, high_y = math.inf, math.inf, -math.inf, -math.inf
     for j in range(n):
         x, y, k = POINT[first + j, 0], POINT[first + j, 1], first + j + 1 if j + 1 < n else first
-        # Counter-clockwise outlines (pymunk's hulls) have their outside on the right of every edge.
+        # The outside of a counter-clockwise outline (pymunk's hulls) is on the right of every edge.
         ex, ey = POINT[k, 0] - x, POINT[k, 1] - y
         length = math.hypot(ex, ey)
         length = length if length > 0.0 else 1.0
@@ -107,15 +107,15 @@ def lay_rows(
     BODIES: Rows[GivenBody], SHAPES: Rows[GivenShape], POINT: FloatArray, BODY: Rows[Body], SHAPE: Rows[Shape],
     LINK: Rows[Link], VERTEX: FloatArray, ORDER: IntArray,
 ) -> int:  # fmt: skip
-    """The rows of bodies and of their shapes; poses and velocities are left out.
+    """Write the rows of bodies and of their shapes, without poses and velocities.
 
     Args:
         BODIES (N,), SHAPES (k,): `row` and `first` are written.  POINT (v, 2): the vertices of all shapes, overwritten.
         BODY (N + 1,), SHAPE (k,), LINK (k,), VERTEX (v, 4): zeros; those in use come first.
-        ORDER (k + N + 2,): has the place of every row of SHAPE among SHAPES.
+        ORDER (k + N + 2,): out, the index in SHAPES of every row of SHAPE.
 
     Returns:
-        how many lone disks there are.
+        the number of single disks.
     """
     place_points(BODIES, SHAPES, POINT)
     disks = give_rows(BODIES, SHAPES, POINT, ORDER)

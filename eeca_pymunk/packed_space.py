@@ -1,4 +1,4 @@
-"""PackedSpace: a stepper's picture of its space, read anew where the space has changed."""
+"""PackedSpace: a stepper's arrays of its space, updated when the space has changed."""
 
 from __future__ import annotations
 
@@ -33,7 +33,8 @@ class PackedSpace(Stepper):
     """A stepper that keeps its space as the arrays of a `World`; arguments as of `PackedStepper`.
 
     Attributes:
-        reads: how often the whole space was read: once at the start, and after changes that patch no rows.
+        reads: number of readings of the whole space: one at the start, and one after each change that rows cannot be
+            patched for.
     """
 
     def __init__(self, space: pymunk.Space, *, sync: bool = True, ignore: Sequence[str] = ()) -> None:
@@ -42,21 +43,21 @@ class PackedSpace(Stepper):
         self.ignore = check_ignored(ignore)
         self._warned = False
         self._world: World | None = None
-        self._told: JointRows | None = None  # what `constraint.impulse` reads
-        self._sleep: Sleep | None = None  # None where nobody can
-        self._idle_book: FloatArray | None = None  # of a step in which everyone sleeps
+        self._told: JointRows | None = None  # source of `constraint.impulse`
+        self._sleep: Sleep | None = None  # None if bodies cannot sleep
+        self._idle_book: FloatArray | None = None  # book of a step in which all dynamic bodies sleep
         self.reads = 0
         self._look()
 
     def __getstate__(self) -> dict[str, object]:
-        # The original is left as it is. The copy reads its space anew.
+        # The original is not changed. The copy reads its space again.
         state = self.__dict__.copy()
         state.pop("_sync", None)
         state["_world"] = state["_sleep"] = state["_told"] = None
         return state
 
     def __copy__(self: Own) -> Own:
-        """Another stepper of the same space, which remembers nothing: two cannot share their arrays."""
+        """Another stepper of the same space, without results of earlier steps: two cannot share their arrays."""
         other = type(self).__new__(type(self))
         other.__dict__.update({**self.__getstate__(), "_saved": None})
         return other
@@ -65,15 +66,15 @@ class PackedSpace(Stepper):
         self._world = None
 
     def prepare(self, world: World, past: World | None) -> None:
-        """Make what the stepper keeps about a world that was read anew; `past` is the one before, if known."""
+        """Make the stepper's own arrays for a world that was just read; `past` is the world before, if known."""
 
     def patch(self, world: World) -> bool:
-        """Put what the program has edited of shapes and bodies into the rows of a world, and what is kept about it;
-        False, with nothing done, where only a new reading will do."""
+        """Update the rows of a world, and the stepper's own arrays, after edits of shapes and bodies; False, with
+        nothing done, if the space has to be read again."""
         return False
 
     def book(self) -> FloatArray | None:
-        """(7,) what the ledger of the last step is made of, see `energy.ledger`; None if the stepper keeps none."""
+        """(7,) the book of the last step, see `energy.ledger`; None if the stepper has none."""
         return None
 
     @property
@@ -84,7 +85,8 @@ class PackedSpace(Stepper):
         return describe(world)
 
     def _look(self, anew: bool = False) -> World:
-        """The space as it is now, checked; with all its shapes if `anew` or if some came or went."""
+        """The present space as a checked World: the last one if only settings changed, that one patched, or a new
+        reading (always if `anew`)."""
         world = self._world
         self._world = None
         if self._sleep is not None and self.space.sleep_time_threshold == math.inf:
@@ -131,31 +133,31 @@ class PackedSpace(Stepper):
             rouse(self.space)
 
     def resting(self, bodies: Sequence[pymunk.Body]) -> tuple[FloatArray, IntArray, IntArray]:
-        """How long bodies have been at rest (N,), places of others of their groups of sleepers (N,), -1 for who is
-        awake, and timers (2,)."""
+        """For how long bodies have been at rest (N,); index of another body of their sleeping group (N,), -1 for awake
+        bodies; the two timers of `space/sleeping.py`."""
         if self._sleep is None:
             return np.zeros(len(bodies)), np.full(len(bodies), -1), np.zeros(2, np.int64)
         return self._sleep.told(bodies)
 
     def rest_again(self, bodies: Sequence[pymunk.Body], rested: FloatArray, groups: IntArray, timers: IntArray) -> None:
-        """Have bodies, all awake, rest as `resting` told of them."""
+        """Restore what `resting` returned, for bodies that are all awake."""
         if self._sleep is not None:
             put_to_sleep(bodies, groups)
             self._look(anew=bool((groups >= 0).any()))
             self._sleep.recall(dict(zip(bodies, rested.tolist(), strict=True)), timers)
 
     def _undo(self, world: World, state: FloatArray) -> None:
-        """Put the space back where it was."""
+        """Restore the states of the bodies."""
         self._world = None
         world.bodies.scatter(state)
 
     def _tell_joints(self, world: World) -> None:
-        """Give constraints what the step has to say of them."""
+        """Publish impulses of joints, and other results of the step for constraints."""
         self._told = world.joints
         world.settle()
 
     def _fail(self, world: World, dt: float, status: int) -> None:
-        """Raise what a negative answer means."""
+        """Raise the exception of a negative status."""
         self._world = None
         if status == NOT_FINITE:
             world.bodies.check_finite(world.state)

@@ -1,4 +1,18 @@
-"""PackedStepper: a step of a space as packed arrays: settings, gather, move, scatter, sync, report."""
+"""PackedStepper: a step of a space as packed arrays.
+
+| stage | method |
+|---|---|
+| have settings, shapes or bodies changed? | `World.current`, else `PackedSpace._look` |
+| read all states | `World.gather` |
+| move the arrays | `advance`, of subclasses |
+| repeat the step with sleeping bodies that were touched | `_awake` |
+| take the ledger's numbers | `_booked` |
+| write the states, and update pymunk's shapes | `land` |
+| make the report | `_made` |
+| call post-step callbacks | `Sync.call_back` |
+
+Steps that call functions of the program have their own method, `HookedStepper._hooked_step`.
+"""
 
 from __future__ import annotations
 
@@ -16,14 +30,14 @@ Own = TypeVar("Own", bound="PackedStepper")
 
 
 class PackedStepper(HookedStepper):
-    """A stepper whose physics is one compiled call on the arrays of a `World`; subclasses say which, in `advance`.
+    """A stepper whose physics is one compiled call on the arrays of a `World`; subclasses implement `advance`.
 
     Args:
         space: any pymunk space.
-        sync: bring pymunk's own shapes and broad phase up to date after each step, for its queries and drawing, and
-            run its post-step callbacks. False saves that time; `space.reindex_shapes_for_body(body)` does the first
-            for one body. With collision handlers they are always called.
-        ignore: what to step on without: "friction" is all there is to ignore. A warning says so once.
+        sync: update pymunk's own shapes and broad phase after each step, for its queries and drawing, and call its
+            post-step callbacks. False skips both; `space.reindex_shapes_for_body(body)` updates the shapes of one body.
+            In spaces with collision handlers the callbacks are called in any case.
+        ignore: features to leave out instead of raising UnsupportedFeature; only "friction". Warns once.
     """
 
     def __enter__(self: Own) -> Own:
@@ -48,7 +62,7 @@ class PackedStepper(HookedStepper):
         return self._step(world, dt) if self._sleep is None else self._drowsy_step(self._sleep, world, dt)
 
     def _drowsy_step(self, sleep: Sleep, world: World, dt: float) -> StepReport:
-        """A step of a space whose bodies may sleep."""
+        """A step of a space in which bodies may sleep."""
         changed = sleep.changed()
         if not changed and sleep.nothing_moves():
             sleep.step(dt)
@@ -62,17 +76,17 @@ class PackedStepper(HookedStepper):
         now = self._sleep
         if now is not None and now.world is self._world:
             if now.some and self.may_touch_sleepers(now):
-                now.wake(now.touched(report.contacts))  # by what functions have done
+                now.wake(now.touched(report.contacts))  # by changes that functions have made
             if now.rest(dt) and now.world.current():
                 now.fall_asleep(report.contacts)
         return report
 
     def may_touch_sleepers(self, sleep: Sleep) -> bool:
-        """Whether the step that was just taken may have touched anybody asleep: False saves its report."""
+        """Whether the last step may have touched a sleeping body; if False, its report need not be made."""
         return True
 
     def _awake(self, world: World, dt: float, left: float, status: int) -> tuple[World, int]:
-        """Take the step again, with those awake that it has touched asleep."""
+        """Repeat the step with the sleeping bodies awake that it has touched, until it touches none."""
         while self._sleep is not None and self._sleep.some and status >= 0 and status & EVENTS:
             if not self.may_touch_sleepers(self._sleep):
                 break
@@ -87,7 +101,7 @@ class PackedStepper(HookedStepper):
         return world, status
 
     def _step(self, world: World, dt: float) -> StepReport:
-        """A step of the bodies that are awake."""
+        """A step of the awake bodies."""
         if not world.plain and (world.hooked or (world.joints is not None and world.joints.calls_back())):
             return self._hooked_step(world, dt)
         world.gather()

@@ -1,4 +1,4 @@
-"""record: run a stepper and keep the trajectory."""
+"""record: run a stepper and store the trajectory."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ from .stepper import Stepper, check_dt
 if TYPE_CHECKING:
     import pymunk
 
-_PER_BODY = 6 * 8  # bytes kept of a body and moment: position, angle, velocity, spin
-_PER_MOMENT = 11 * 8  # bytes besides: time, energies, momentum, ledger
+_PER_BODY = 6 * 8  # bytes for a body and moment: position, angle, velocity, spin
+_PER_MOMENT = 11 * 8  # further bytes for a moment: time, energies, momentum, ledger
 MEMORY = 2.0**30  # bytes
 
 
@@ -40,7 +40,7 @@ def _versions() -> dict[str, str]:
 
 
 def versions() -> dict[str, str]:
-    """Versions of what a result depends on."""
+    """Versions of the software on which a result depends."""
     return dict(_versions())
 
 
@@ -56,13 +56,13 @@ def record(
 ) -> Recording:
     """Run `stepper` for round(duration / dt) steps and keep the start, every `every`-th step, and all impacts.
 
-    Of EECA that is one compiled call wherever `stepper.run` is.
+    For EECA this is one compiled call if `stepper.run` is one.
 
     Args:
         duration, dt: time, > 0.
-        every: keep one of so many steps, >= 1.
+        every: store one of so many steps, >= 1.
         progress: show a progress bar.
-        memory: bytes that the moments may take. ValueError, before anything moves, if they would take more.
+        memory: bytes for the moments, at most. ValueError, before the first step, if they would take more.
     """
     if every < 1:
         raise ValueError(f"every = {every}: give a whole number >= 1")
@@ -132,10 +132,10 @@ class _Moments:
             spin=np.empty((T, N)),
         )  # fmt: skip
         self.total: FloatArray = np.zeros(6)  # of the ledgers so far
-        self.unmet = 0  # steps that left something undone
+        self.unmet = 0  # steps that did not meet a budget or tolerance
 
     def _read(self) -> None:
-        """The rows of the kept bodies among those the space has now."""
+        """Find the rows of the recorded bodies in the present space."""
         self.bodies = Bodies(self.space)
         self.present: IntArray = np.array([i for i, b in enumerate(self.kept) if b in self.bodies.row], np.intp)
         self.rows: IntArray = np.array([self.bodies.row[self.kept[i]] for i in self.present], np.intp)

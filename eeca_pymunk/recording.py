@@ -17,12 +17,12 @@ from .events import Events
 from .files import whole_file
 from .space.outlines import Outlines
 
-# Of a recording: arrays with names.
+# Parts of a recording that are records of arrays.
 _PARTS: dict[str, type[Any]] = {"outlines": Outlines, "ledger": LedgerTrace, "events": Events}
 
 
 def versions() -> dict[str, str]:
-    """Versions of what a result depends on."""
+    """Versions of the software on which a result depends."""
     from importlib.metadata import version
 
     return {
@@ -35,15 +35,16 @@ def versions() -> dict[str, str]:
 class Recording:
     """T moments of N bodies: those of `space.bodies` that are not static, in that order.
 
-    A body that is removed on the way is NaN from then on. In a notebook a recording shows itself as a small film.
+    A body that is removed during the run is NaN from then on. At the end of a notebook cell a recording is shown as a
+    player.
 
     Attributes:
         time: (T,).  position: (T, N, 2) length.  angle: (T, N) rad.  velocity: (T, N, 2) length/time.
         energy: (T,) kinetic plus gravity.  kinetic: (T,) its first part.  momentum: (T, 2).
-        ledger: where energy has gone since the start, arrays (T,); NaN for steppers that keep none.
-        mass: (N,) infinite for kinematic bodies.  outlines: the shapes, as they were at the start.
+        ledger: ledgers summed since the start, arrays (T,); NaN for steppers that have none.
+        mass: (N,) infinite for kinematic bodies.  outlines: the shapes at the start.
         spin: (T, N) rad/time.  events: the impacts, each at its instant.
-        parameters: what the run was made with, and the versions.
+        parameters: stepper, dt, duration, every, and versions.
     """
 
     time: FloatArray
@@ -61,7 +62,7 @@ class Recording:
     events: Events = field(default_factory=Events)
 
     def __post_init__(self) -> None:
-        # What files of older versions do not tell.
+        # Files of older versions lack these.
         if len(self.kinetic) != len(self.time):
             self.kinetic = np.full(len(self.time), np.nan)
         if self.spin.shape != self.angle.shape:
@@ -83,7 +84,7 @@ class Recording:
 
     @staticmethod
     def load(path: str | Path) -> Recording:
-        """Read what `save` wrote; ValueError if it is something else."""
+        """Read a file of `save`; ValueError if it is another file."""
         try:
             with np.load(path) as data:
                 found = {name: data[name] for name in data.files}
@@ -99,5 +100,5 @@ class Recording:
             raise ValueError(f"{path} is not a recording that Recording.save wrote ({error})") from error
 
     def _repr_html_(self) -> str:
-        # The one import that goes up: a recording shows itself only where pictures are wanted anyway.
+        # The only import of a higher room: a recording in a notebook is shown as a player.
         return str(import_module(".render", __package__).player(self))

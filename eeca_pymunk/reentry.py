@@ -1,4 +1,4 @@
-"""Re-entry: while a step calls functions of a space, they cannot step that space."""
+"""Re-entry: functions that are called within a step of a space cannot step that space."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ BUSY: set[pymunk.Space] = set()  # spaces whose own functions are being called
 
 @contextmanager
 def busy(space: pymunk.Space) -> Iterator[None]:
-    """Within, steps of the space are refused."""
+    """Within this block a step of the space raises RuntimeError."""
     BUSY.add(space)
     try:
         yield

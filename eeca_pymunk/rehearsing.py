@@ -1,5 +1,5 @@
-"""Kernels of steps in which functions are called: what they find, what they have changed, and where pymunk's own step
-begins for its collision handlers."""
+"""Kernels of steps in which functions of the program are called: the state before, changes by the functions, and the
+start of pymunk's own step, which calls collision handlers (the rehearsal)."""
 
 from __future__ import annotations
 
@@ -27,16 +27,16 @@ from .layout import (
 from .model.bodies import Body
 from .transfer import FORCES, MOVED_STATIC, NOT_FINITE, OTHER_BODIES, OVERFLOW, TURNS, finite, lay
 
-PRESS = 1e-7  # part of its height by which a body is pressed on what carries it
+PRESS = 1e-7  # part of its height by which a body is moved towards its support in a rehearsal
 
 
 @kernel
 def found(STATES: FloatArray, WALK: IntArray, START: FloatArray) -> int:
-    """Keep the state that was read in START (N, 9).
+    """Copy the state that was read to START (N, 9).
 
     Returns:
-        0; OTHER_BODIES, MOVED_STATIC or NOT_FINITE if it is of other bodies, if a static one was moved, or if a number
-        is not finite.
+        0; OTHER_BODIES, MOVED_STATIC or NOT_FINITE if the bodies are others, a static one was moved, or a number is not
+        finite.
     """
     now, left = STATES[NOW], STATES[LEFT]
     status = 0
@@ -60,11 +60,11 @@ def altered(
     STATES: FloatArray, WALK: IntArray, BODY: Rows[Body], ENDS: FloatArray, AFTER: FloatArray, GIVEN: FloatArray,
     LOST: FloatArray, stops: int,
 ) -> int:  # fmt: skip
-    """Take all velocities from the end of a step, if `stops`, as damping 0 does; keep what the step then gives in GIVEN
-    (N, 9); add AFTER (N, 9), what functions have changed since, which is then 0; and lay all of that out in ENDS.
+    """At the end of a step: set all velocities to 0 if `stops` (damping 0); copy the result to GIVEN (N, 9); add AFTER
+    (N, 9), the changes by functions, and clear it; write all to ENDS.
 
-    Within the step bodies keep their velocities, else nothing would ever move: pymunk moves bodies before it damps
-    them. LOST[0] is the energy that is lost. Forces are reset.
+    Within the step bodies keep their velocities, as under pymunk, which moves bodies before it damps them. LOST[0]: the
+    energy lost by damping 0. Forces are reset.
 
     Returns:
         the bits of `lay`, or OVERFLOW if a number is not finite.
@@ -101,7 +101,7 @@ def altered(
 
 @kernel
 def as_read(STATES: FloatArray, EXTRA: FloatArray) -> None:
-    """Take places as read for what the step has left where they differ by round-off: pymunk rounds the places of bodies
+    """Accept positions that differ from STATES[LEFT] by round-off as unedited: pymunk rounds the positions of bodies
     whose centre of mass is not their origin."""
     now, left = STATES[NOW], STATES[LEFT]
     for i in range(now.shape[0]):
@@ -115,14 +115,14 @@ def approach(
     STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, BODY: Rows[Body], ENDS: FloatArray, dt: float, gx: float,
     gy: float, left: float,
 ) -> int:  # fmt: skip
-    """Lay out in ENDS, in the table END with angles and spins, from where a step of pymunk leads to the end of free
-    flight: pymunk moves bodies first, and accelerates them where they have come to, so that they start at
+    """Write to ENDS, to the table END with angles and spins, the poses from which a step of pymunk leads to the end of
+    free flight. pymunk moves bodies before it accelerates them, so that they start at
 
-        q_free - dt v,   q_free = q + dt (d v + dt a / 2),   d = `left` the damping of half a step.
+        q_free - dt v,   q_free = q + dt (d v + dt a / 2),   d = `left`, the factor of half a step's damping.
 
-    What stands on one another in our steps is at a distance of 0, give or take round-off, and pymunk, in whose own
-    steps it sinks in, would begin and end such contacts at random: bodies go farther along gravity by PRESS times how
-    high they are above the lowest.
+    Bodies at rest on each other have a gap of 0 up to round-off; pymunk, in whose steps they overlap, would begin and
+    end such contacts at random. Therefore each body is moved along gravity by PRESS times its height above the lowest
+    one.
 
     Returns:
         0; NOT_FINITE or OVERFLOW if a number at the start or the end is not finite.
@@ -178,9 +178,9 @@ def approach(
 
 @kernel
 def changed(STATES: FloatArray, KNOWN: FloatArray, CHANGES: FloatArray) -> int:
-    """Add to CHANGES (N, 9) what of STATES is no longer as KNOWN (N, 9) has it, and know it; 1 if there is anything.
+    """Add to CHANGES (N, 9) the differences of STATES from KNOWN (N, 9), and update KNOWN; 1 if there are any.
 
-    pymunk makes nan of the spins of bodies that do not turn and that gears hold: what was nan has not changed.
+    pymunk sets spins of bodies of infinite moment that gears hold to nan: nan counts as unchanged.
     """
     now, found = STATES[NOW], 0
     for i in range(KNOWN.shape[0]):

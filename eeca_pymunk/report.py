@@ -1,4 +1,4 @@
-"""What a step reports: its contacts, and how it was solved. Made when it is asked for, not before."""
+"""The report of a step: its contacts, its ledger, and how it was solved. Arrays are made at the first access."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ if TYPE_CHECKING:
 class Contacts:
     """The contacts of one step as a struct of arrays; m contacts.
 
-    `body_a` and `body_b` are rows of `bodies`, the pymunk bodies. Normal, point and gap are those of the
-    instant `time` inside the step at which the impulse acts; `gap` is that of the start of the step. A contact that
-    lasts pushes with a constant force through `duration`, about the instant `time`.
+    `body_a` and `body_b` are indices into `bodies`, the pymunk bodies. Normal and point are those of the instant `time`
+    inside the step at which the impulse acts; `gap` is that of the start of the step. The impulse of a persistent
+    contact acts as a constant force over `duration`, centred at `time`.
     """
 
     bodies: tuple[pymunk.Body, ...]
@@ -35,7 +35,7 @@ class Contacts:
     point: FloatArray  # (m, 2) length, halfway between the two surfaces
     gap: FloatArray  # (m,) length, at the start of the step, negative in overlap
     time: FloatArray  # (m,) time of the impulse after the start of the step
-    duration: FloatArray = field(default_factory=lambda: np.zeros(0))  # (m,) time, 0 for an impact; see below
+    duration: FloatArray = field(default_factory=lambda: np.zeros(0))  # (m,) time, 0 for an impact
 
     def __post_init__(self) -> None:
         if len(self.duration) != len(self.gap):
@@ -60,10 +60,11 @@ class Unmet(NamedTuple):
     """A budget or tolerance that a step did not meet.
 
     Attributes:
-        name: "impacts" of a body in a step, "hits" on bodies in contact (both are left out and may penetrate),
-            "impact" (velocity that the impulses of an impact leave, length/time), "solves" of bodies in contact (the
-            step ends before its time), "contacts" of jointed bodies, "joints".
-        value: what it came to.  limit: what it was to be at most; nan where there is no such number.
+        name: "impacts" (number for a body in a step; further ones are ignored and may penetrate), "hits" (number on an
+            island; likewise, until the next step), "impact" (residual velocity of a simultaneous impact, length/time),
+            "solves" (bodies of all solves; the step ends early), "contacts" (of jointed bodies; no numbers), "joints"
+            (status of their solve).
+        value: reached.  limit: largest allowed; nan if there is no such number.
         bodies: those concerned, as far as they are known.
     """
 
@@ -74,7 +75,8 @@ class Unmet(NamedTuple):
 
 
 def of_missed(MISSED: Rows[Missed], bodies: tuple[pymunk.Body, ...], owner: IntArray) -> tuple[Unmet, ...]:
-    """What was not met, from its (m,) rows; `owner` (k,) is the place in `bodies` of every shape's body."""
+    """Budgets and tolerances that were not met, from rows (m,); `owner` (k,): index in `bodies` of each shape's
+    body."""
     found: dict[tuple[str, tuple[int, ...]], Unmet] = {}
     for row in MISSED:
         shapes = [int(s) for s in (row["first"], row["second"]) if s >= 0]
@@ -85,13 +87,13 @@ def of_missed(MISSED: Rows[Missed], bodies: tuple[pymunk.Body, ...], owner: IntA
 
 
 class StepReport:
-    """What happened in one step; m contacts were active. Read-only.
+    """The report of one step with m active contacts. Read-only.
 
     Args:
-        time: simulated time at the end of the step, since the stepper was made.
-        details: the arrays, or what makes them when one is asked for.
+        time: see the property.
+        details: the arrays, or a function that makes them at the first access.
         iterations, substeps, lock, converged: see the properties.  book: (7,) of `energy.ledger`.
-        unmet: what was not met, or what makes it when it is asked for.
+        unmet: budgets and tolerances that were not met, or a function that makes them.
     """
 
     __slots__ = ("_book", "_converged", "_details", "_iterations", "_lock", "_substeps", "_time", "_unmet")
@@ -118,7 +120,7 @@ class StepReport:
 
     @staticmethod
     def without_contacts(time: float, bodies: tuple[pymunk.Body, ...] = (), substeps: int = 1) -> StepReport:
-        """The report of a step in which nothing touched, or of a stepper that does not tell."""
+        """The report of a step without contacts, or of a stepper that does not report them."""
         return StepReport(time, nothing(bodies), substeps=substeps)
 
     def _made(self) -> Details:
@@ -129,7 +131,8 @@ class StepReport:
 
     @property
     def time(self) -> float:
-        """Simulated time at the end of the step, since the stepper was made."""
+        """Sum of the dt of all steps since the stepper was made; a step that ended early (`unmet`: solves) counts with
+        its whole dt."""
         return self._time
 
     @property
@@ -170,7 +173,7 @@ class StepReport:
 
     @property
     def substeps(self) -> int:
-        """Parts that the step was split into."""
+        """Always 1; kept for steppers that split a step."""
         return self._substeps
 
     @property
@@ -180,17 +183,18 @@ class StepReport:
 
     @property
     def ledger(self) -> Ledger | None:
-        """Where the energy of the step has gone; None if the stepper does not tell."""
+        """Energy balance of the step; None if the stepper has none."""
         return None if self._book is None else ledger(self._book)
 
     @property
     def converged(self) -> bool:
-        """Whether the solver met its tolerance. Energy and momentum are exact either way."""
+        """Whether the solver met its budgets and tolerances. Otherwise forces and losses are approximate; energy does
+        not rise, momentum and the ledger are exact."""
         return self._converged
 
     @property
     def unmet(self) -> tuple[Unmet, ...]:
-        """Which budgets and tolerances were not met, and for which bodies; the first 32. Empty where `converged`."""
+        """Budgets and tolerances that were not met, and for which bodies; the first 32. Empty if `converged`."""
         unmet = self._unmet
         if not isinstance(unmet, tuple):
             self._unmet = unmet = unmet()
@@ -200,7 +204,7 @@ class StepReport:
         return f"StepReport(time={self.time}, {len(self.contacts)} contacts, converged={self.converged})"
 
     def __reduce__(self) -> tuple[type[StepReport], tuple[object, ...]]:
-        # What would make the arrays holds the stepper: a copy holds the arrays.
+        # The function that makes the arrays refers to the stepper: a copy has the arrays instead.
         return StepReport, (
             self.time, self._made(), self.iterations, self.substeps, self.lock, self.converged, self._book,
             self.unmet,
@@ -209,14 +213,14 @@ class StepReport:
 
 @dataclass(frozen=True)
 class RunReport:
-    """What happened in a run of many steps.
+    """The report of a run of many steps.
 
     Attributes:
-        time: simulated time at its end, since the stepper was made.
-        steps: how many were taken.
-        ledger: where energy has gone, of all steps together; None if the stepper does not tell.
-        impacts: how many there were; contacts that last are none.
-        unmet: steps that did not meet all tolerances. Energy and momentum are exact either way.
+        time: at its end, as `StepReport.time`.
+        steps: number of steps taken.
+        ledger: sum of the ledgers of all steps; None if the stepper has none.
+        impacts: number of impacts, without persistent contacts.
+        unmet: number of steps that did not meet all budgets and tolerances, see `StepReport.converged`.
         iterations: of the solver.  lock: scale of the energy lock that was farthest from 1.
     """
 
@@ -230,7 +234,7 @@ class RunReport:
 
     @property
     def converged(self) -> bool:
-        """Whether all steps met their tolerances."""
+        """Whether all steps met their budgets and tolerances."""
         return self.unmet == 0
 
 
@@ -241,11 +245,11 @@ def nothing(bodies: tuple[pymunk.Body, ...] = ()) -> Details:
 
 
 def of_events(EVENT: Rows[Impulse], dt: float, bodies: tuple[pymunk.Body, ...], owner: IntArray) -> Details:
-    """The arrays of the impulses of a step, in the order of time: psi2 = 1 - 2 tau / dt says when each acted, and
-    Delta g is Eq. 20 with the impulse's own Delta p.
+    """The arrays of the impulses of a step, in the order of time: psi2 = 1 - 2 tau / dt gives the instant of each,
+    psi1 is infinite (rigid limit), and Delta g is Eq. 20 with the impulse's own Delta p.
 
     Args:
-        EVENT: (m,).  dt: time.  bodies: of the space.  owner: (k,) place in `bodies` of every shape.
+        EVENT: (m,).  dt: time.  bodies: of the space.  owner: (k,) index in `bodies` of each shape's body.
     """
     first, second = EVENT["first"].astype(np.intp), EVENT["second"].astype(np.intp)
     order = np.lexsort((second, first, EVENT["when"]))

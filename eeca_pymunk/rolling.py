@@ -1,4 +1,4 @@
-"""Rolling: the copies of a scene that rollouts are made on, kept from call to call."""
+"""Rolling: copies of a scene for rollouts, kept from call to call."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ from .space.world import World
 
 @dataclass(frozen=True)
 class Job:
-    """What K rollouts of b bodies are to be, and what comes of them.
+    """Inputs and outputs of K rollouts of b bodies.
 
     Attributes:
-        states: (K, b, 6).  push: (K, T, b, 3), or none.  steps, every, dt: see `rollout`.
-        frames: (K, T, b, 6).  ledger: (K, T, 6).  unmet: (K,).  full: whether impacts are kept.
+        states: (K, b, 6).  push: (K, T, b, 3) controls, or None.  steps, every, dt: see `rollout`.
+        frames: (K, T, b, 6), out.  ledger: (K, T, 6), out.  unmet: (K,), out.  full: whether impacts are stored.
     """
 
     states: FloatArray
@@ -43,7 +43,7 @@ class Job:
 
 
 class _Copy:
-    """The arrays of a scene that has not taken a step, for one thread; `rows` (b,) of its bodies in STATES."""
+    """The arrays of a scene that has taken no step, for one thread; `rows` (b,): rows of its bodies in STATES."""
 
     def __init__(self, world: World, loop: EventLoop, rows: IntArray) -> None:
         self.world, self.rows = world, rows
@@ -55,7 +55,7 @@ class _Copy:
         self.loop.keep_fresh()
 
     def roll(self, job: Job, first: int, last: int) -> list[Events]:
-        """The rollouts from number `first` to before `last`; the impacts of each, none unless the job is full."""
+        """Compute rollouts [first, last); returns the impacts of each, or none unless the job is full."""
         if not self.loop.listed:
             return self._take_rollouts(job, first, last)
         events = []
@@ -89,7 +89,7 @@ class Rolling:
     """The copies of the scene of a stepper.
 
     Args:
-        twin: another stepper of the space, which takes no steps.
+        twin: a second stepper of the space, which takes no steps.
     """
 
     def __init__(self, twin: RunningStepper) -> None:
@@ -99,7 +99,7 @@ class Rolling:
 
     @staticmethod
     def of(stepper: RunningStepper, dt: float) -> Rolling:
-        """That of a stepper, with copies of the space as it is now."""
+        """The copies of a stepper, for the present space."""
         rolling = stepper.rolling
         if rolling is None:
             rolling = stepper.rolling = Rolling(copy.copy(stepper))
@@ -107,7 +107,7 @@ class Rolling:
         return rolling
 
     def _refresh(self, dt: float) -> None:
-        """Forget the copies if the space is another."""
+        """Forget the copies if the space has changed."""
         world = self.world = self.twin.current()
         if not world.plain:
             self.twin.adjust(world, dt)
@@ -120,7 +120,7 @@ class Rolling:
             self._made, self._of = [], now
 
     def copies(self, count: int) -> list[_Copy]:
-        """So many copies."""
+        """The first `count` copies, made if necessary."""
         loop, world = self.twin.event_loop, self.world
         assert loop is not None
         if len(self._made) < count:
@@ -130,7 +130,7 @@ class Rolling:
 
 
 def roll_slowly(twin: RunningStepper, job: Job, done: Callable[[int], object]) -> list[Events]:
-    """The rollouts step by step, on a space of their own; the impacts of each."""
+    """The rollouts step by step on the space of `twin`, which is left changed; returns the impacts of each."""
     bodies, found = moving(twin.space), []
     place = {body: i for i, body in enumerate(bodies)}
     for k, state in enumerate(job.states):

@@ -24,7 +24,8 @@ from .runs import RunningStepper
 from .space.bodies import moving
 from .stepper import check_dt, check_steps
 
-_PIECES, _STEPS = 8, 4096  # that each thread's share is cut into, so that none waits long for another; steps at least
+_PIECES = 8  # number of pieces of work for each thread, so that none waits long for another
+_STEPS = 4096  # steps of a piece, at least
 
 
 @overload
@@ -43,28 +44,28 @@ def rollout(
     stepper: RunningStepper, states: npt.ArrayLike, steps: int, dt: float, every: int = 1,
     controls: npt.ArrayLike | None = None, threads: int | None = None, progress: bool = False, full: bool = False,
 ) -> FloatArray | Rollouts:  # fmt: skip
-    """Where K copies of a scene go from K states: bit by bit as if `stepper.set_state(states[k])` were followed by so
-    many steps. The space and its stepper are left as they are.
+    """The paths of K copies of a scene from K states: bit by bit as if `stepper.set_state(states[k])` were followed by
+    so many steps. The space and its stepper are not changed.
 
     Args:
         stepper: an EECA, of the scene.
         states: (K, b, 6) position, angle, velocity and spin of the b bodies that are not static, in the order of
             `space.bodies`; length, rad, per time.
         steps, dt: number > 0; time > 0.
-        every: keep one of so many steps: T = steps // every frames. What is left over is not run.
-        controls: (K, T, b, 3) forces at the centres of mass and torques, held over the steps up to each frame.
-        threads: as many as there are processors if None. The answer is the same for any number.
+        every: store one of so many steps: T = steps // every frames. Remaining steps are not taken.
+        controls: (K, T, b, 3) forces at the centres of mass and torques, constant over the steps up to each frame.
+        threads: as many as there are processors if None. The result does not depend on the number.
         progress: show a progress bar.  full: also return ledgers, impacts, and which steps did not converge.
 
     Returns:
-        (K, T, b, 6), or all that is known if `full`.
+        (K, T, b, 6) frames; a `Rollouts` if `full`.
 
     Raises:
-        ValueError: shapes do not fit, a number is not finite, or becomes so on the way.
-        UnsupportedFeature: functions are called within steps and the space cannot be copied, see below.
+        ValueError: shapes do not fit, or a number is not finite or becomes so.
+        UnsupportedFeature: functions are called within steps, and the space cannot be copied, see below.
 
-    Where `stepper.run` is a Python loop so is this, in one thread: on the space itself, which is put back afterwards,
-    or, if functions are called within steps, on a copy of it that pickle makes.
+    If `stepper.run` is a Python loop, so is this, in one thread: on the space itself, whose state is restored
+    afterwards, or, if functions are called within steps, on a copy of it by pickle.
     """
     if not isinstance(stepper, RunningStepper):
         raise TypeError(f"{type(stepper).__name__} has no rollouts: give an EECA")
@@ -108,13 +109,14 @@ def rollout(
 def certify(
     stepper: RunningStepper, rollouts: Rollouts, threads: int | None = None, progress: bool = False
 ) -> FloatArray:  # fmt: skip
-    """How far off the frames of rollouts without controls may be: they are made again with half the time step.
+    """Estimate the errors of the frames of rollouts without controls: they are computed again with half the time step.
 
-    Of a method of order p the error is 2^p / (2^p - 1) of the difference, at most 2; where it is exact (impacts of
-    disks, free flight) both differ by round-off, whose growth from impact to impact that measures.
+    For a method of order p >= 1 and small dt the error is 2^p / (2^p - 1) <= 2 times the difference. Where the method
+    is exact (impacts of disks, free flight) the two differ by round-off, and the difference measures how it grows from
+    impact to impact. Rollouts with controls are compared with motions without: do not use it for them.
 
     Returns:
-        (K,) length, twice the largest difference of a position in any frame; it also becomes `rollouts.error`.
+        (K,) length, twice the largest difference of a position in any frame; also stored as `rollouts.error`.
     """
     told = rollouts.parameters
     again = rollout(
@@ -133,7 +135,7 @@ def _processors() -> int:
 
 
 def _on_threads(stepper: RunningStepper, job: Job, threads: int, done: Callable[[int], object]) -> list[Events]:
-    """All rollouts; the impacts of each."""
+    """All rollouts on threads; returns the impacts of each."""
     rolling = Rolling.of(stepper, job.dt)
     K = len(job.states)
     count = max(threads, min(threads * _PIECES, K * job.steps // _STEPS))
@@ -170,7 +172,7 @@ def _on_threads(stepper: RunningStepper, job: Job, threads: int, done: Callable[
 
 
 def _one_by_one(stepper: RunningStepper, job: Job, done: Callable[[int], object]) -> list[Events]:
-    """All rollouts by a Python loop; the impacts of each."""
+    """All rollouts by a Python loop; returns the impacts of each."""
     if stepper.calls():
         return roll_slowly(_twin(stepper), job, done)
     state = stepper.get_state()

@@ -1,4 +1,4 @@
-"""RunningStepper: many steps in one compiled call, wherever no Python function is to be called in between."""
+"""RunningStepper: many steps in one compiled call, if no Python function has to be called in between."""
 
 from __future__ import annotations
 
@@ -33,19 +33,19 @@ if TYPE_CHECKING:
 
     from .rolling import Rolling
 
-_FIRST = 256  # steps until the loop returns for the first time
-_SHORT, _LONG = 0.05, 0.2  # seconds between which it is to return, for progress and interrupts
+_FIRST = 256  # number of steps after which the loop returns for the first time
+_SHORT, _LONG = 0.05, 0.2  # it shall return after so many seconds, for the progress bar and interrupts
 
 
 class RunningStepper(PackedStepper):
     """A stepper that can take many steps in one call; arguments as of `PackedStepper`.
 
     Attributes:
-        rolling: the copies of the scene that rollouts have been made on.
+        rolling: copies of the scene for rollouts.
     """
 
     rolling: Rolling | None = None
-    _patches = False  # whether the space is read anew for edits in place
+    _patches = False  # whether the space is read again because of an edit in place
 
     def __getstate__(self) -> dict[str, object]:
         return {**super().__getstate__(), "rolling": None}
@@ -53,14 +53,14 @@ class RunningStepper(PackedStepper):
     @property
     @abstractmethod
     def event_loop(self) -> EventLoop | None:
-        """What steps the arrays of the world that was read last, None if it is no event loop."""
+        """The event loop of the present world; None if the closure has none."""
 
     @abstractmethod
     def adjust(self, world: World, dt: float) -> None:
-        """Have the event loop know what joints and collision handlers say of the next step."""
+        """Update the event loop from joints and collision handlers before the next step."""
 
     def current(self) -> World:
-        """The arrays of the space as it is now, with the state of its bodies read."""
+        """The arrays of the present space, with the states of its bodies."""
         world = self._world
         if world is None or not world.current():
             world = self._look()
@@ -71,11 +71,11 @@ class RunningStepper(PackedStepper):
         return world
 
     def compiles(self) -> bool:
-        """Whether a run of the space as it is now is one compiled call.
+        """Whether a run of the present space is one compiled call.
 
-        It is not where functions are to be called within steps (collision handlers, functions of bodies, joints and
-        springs, post-step callbacks that wait), where bodies may sleep, where centres of gravity lie elsewhere than at
-        the origins of bodies, and where joints hold bodies that are not in the space. Then a run is a Python loop.
+        It is not if functions are called within steps (collision handlers, functions of bodies, joints and springs,
+        waiting post-step callbacks), if bodies may sleep, if a centre of gravity is not at its body's origin, or if
+        joints hold bodies outside the space. Then a run is a Python loop.
         """
         if self.calls() or self.event_loop is None or self._sleep is not None:
             return False
@@ -85,7 +85,7 @@ class RunningStepper(PackedStepper):
         return not (outside or world.eccentric)
 
     def calls(self) -> bool:
-        """Whether functions are to be called within the next step."""
+        """Whether functions have to be called within the next step."""
         world = self._world
         if world is None or not world.current():
             world = self._look()
@@ -94,35 +94,35 @@ class RunningStepper(PackedStepper):
         return world.hooked or functions or (self.sync and self._sync.waits())
 
     def get_state(self) -> IntArray:
-        """All that decides where the space goes from here, as a 1-D array of integers: poses, velocities and forces of
-        its bodies, and what the stepper knows of earlier steps. `set_state` takes it, in this process or in another
-        with the same space.
+        """Everything that determines the further path of the space, as a 1-D array of integers: poses, velocities and
+        forces of its bodies, and results of earlier steps that the stepper keeps. `set_state` takes it, in this process
+        or in another one with the same space.
 
-        Where some bodies sleep, what the stepper knows is left out: from there paths agree up to round-off.
+        If some bodies sleep, the results of earlier steps are left out: paths then agree up to round-off.
         """
         return get_state(self)
 
     def set_state(self, state: npt.ArrayLike) -> None:
-        """Go back to a state.
+        """Return to a state.
 
         Args:
-            state: what `get_state` returned: the space then goes the same way, bit by bit; or (b, 6) position, angle,
-                velocity and spin of the b bodies that are not static, in the order of `space.bodies`; length, rad, per
-                time. That clears forces, and all that the stepper knows of earlier steps: equal states give equal
-                paths, whatever came before. Sleeping bodies wake.
+            state: the result of `get_state`: the space then follows the same path, bit by bit. Or (b, 6) position,
+                angle, velocity and spin of the b bodies that are not static, in the order of `space.bodies`; length,
+                rad, per time. That clears forces and results of earlier steps: equal states give equal paths, whatever
+                was run before. Sleeping bodies wake.
 
         Raises:
-            ValueError: it is neither, of another space, or not finite; nothing is changed.
+            ValueError: it is neither, belongs to another space, or is not finite; nothing is changed.
         """
         set_state(self, np.asarray(state))
 
     def start_anew(self, world: World, state: FloatArray) -> None:
-        """Forget all of earlier steps: bodies have been put where (N, 9) says."""
+        """Forget results of earlier steps; bodies have been set to `state` (N, 9)."""
         loop = self.event_loop
         if loop is None or world.joints is not None or self._sleep is not None:
             self.refresh()
         elif not hasattr(loop, "fresh"):
-            # Later calls are cheaper.
+            # Keep the memory of a new scene, so that later calls only copy it.
             self.refresh()
             self.current()
             if (loop := self.event_loop) is not None:
@@ -139,7 +139,7 @@ class RunningStepper(PackedStepper):
     def patch(self, world: World) -> bool:
         loop = self.event_loop
         if loop is None or not hasattr(loop, "fresh"):
-            # From the reading on that is due: to keep what patches begin from takes time.
+            # Memory from which patches start is kept only after the first edit in place, since keeping it costs time.
             self._patches = world.same_things()
             return False
         lossy, sides = bool(loop.scene.COUNT.lossy), sides_of(world, loop)
@@ -168,13 +168,13 @@ class RunningStepper(PackedStepper):
         self, steps: int, dt: float, kept: Sequence[pymunk.Body] = (), every: int = 0, events: bool = False,
         progress: bool = False,
     ) -> RunBuffers:  # fmt: skip
-        """Take steps > 0 of dt > 0 in compiled code, of a space that `compiles`, and keep frames of some bodies.
+        """Take steps > 0 of dt > 0 in compiled code, for a space that `compiles`, and store frames of some bodies.
 
         Args:
             kept: bodies that are not static.  every: steps from frame to frame, 0 for none; the start is the first one.
-            events: whether impacts are kept.  progress: whether to show a progress bar.
+            events: whether impacts are stored.  progress: whether to show a progress bar.
 
-        A step that fails raises as `step` does, with the space as the steps before have left it.
+        A step that fails raises as `step` does; the space is at the end of the step before.
         """
         world = self.current()
         if not world.plain:
@@ -197,7 +197,7 @@ class RunningStepper(PackedStepper):
         return buffers
 
     def _take_steps(self, world: World, buffers: RunBuffers, steps: int, progress: bool) -> int:
-        """Follow the run to its end; its bits or a negative code."""
+        """Take the steps; returns status bits or a negative code."""
         RUN, loop, stretch, status = buffers.progress, self.event_loop, _FIRST, 0
         assert loop is not None
         states = world.STATES, world.WALK, world.EXTRA, world.ENDS
@@ -225,7 +225,7 @@ class RunningStepper(PackedStepper):
         raise AssertionError(status)
 
     def _land_run(self, world: World, buffers: RunBuffers, dt: float, status: int) -> None:
-        """Bring the space to where the steps that were taken have left it."""
+        """Write the end of the steps taken to the space."""
         RUN = buffers.progress
         broken = status < 0 or buffers.halted
         if broken:

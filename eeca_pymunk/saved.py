@@ -1,4 +1,5 @@
-"""Saved: what a stepper remembers of earlier steps, for a copy of it that goes on bit by bit."""
+"""Saved: results of earlier steps that a stepper keeps, for a copy of it that continues bit by bit; `Sides`: the sides
+of thin shapes, across readings of the space."""
 
 from __future__ import annotations
 
@@ -23,9 +24,9 @@ _TIE = "kind", "body", "soft"  # fields of JOINT that decide the plan
 
 
 class Saved:
-    """The event loop of a world, and what else decides how its next step goes; pickled with the space.
+    """The event loop of a world and everything else that determines its next step; pickled with the space.
 
-    Of shapes, bodies and joints there is what they were: only a space in which all are the same goes on from it.
+    It has copies of shapes, bodies and joints, and is used only for a space in which all of them are equal.
     """
 
     def __init__(self, world: World, method: EventLoop) -> None:
@@ -34,11 +35,11 @@ class Saved:
         joints = world.joints
         self._joints = [] if joints is None else joints.items
         self._rates = {} if joints is None else joints.rates
-        # Joints that the user has edited, and not yet been stepped, are read anew as all others.
+        # After edits of joints that no step has used yet, the copy reads all joints again.
         self._fresh = joints is None or not (joints.replan or joints.edited)
 
     def resume(self, world: World) -> bool:
-        """Let a world that was read anew go on from here; False, and nothing changed, if it is another."""
+        """Continue with a world that was just read; False, and nothing changed, if it is not equal."""
         scene = self.method.scene
         if not self._fresh or world.bodies.items != self.items or world.shapes != self.shapes:
             return False
@@ -79,7 +80,7 @@ class Saved:
             if name in ("touched", *OF_STEPS):
                 continue
             apart = (method.joint[name] != joints.joint[name]).reshape(len(differs), -1).any(axis=1)
-            # What steps change: how far a ratchet has come, the law of a spring with a function of its own.
+            # Values that steps change: the notch of a ratchet, the law of a spring with a function.
             if name == "notch":
                 apart[joints.joint["kind"] == RATCHET] = False
             elif name == "length":
@@ -91,8 +92,8 @@ class Saved:
 
 
 class Sides:
-    """The memory of sides of a world, for when it is patched or read anew: of shapes that are what they were, where the
-    last step left them, whatever rows they have then."""
+    """The remembered sides of thin shapes of a world, to be kept when the space is patched or read again: of shapes
+    that have not changed and are where the last step left them, whatever their new rows are."""
 
     def __init__(self, world: World, loop: EventLoop) -> None:
         self._known, self._shapes = loop.scene.SIDE.copy(), world.shapes
@@ -102,7 +103,7 @@ class Sides:
         self._row = world.bodies.row
 
     def recall(self, world: World, loop: EventLoop) -> None:
-        """Have the loop of the world as it is now, without a step taken, remember them."""
+        """Write them into the loop of the present world, which has taken no step."""
         if len(loop.scene.SIDE) == 0:
             return
         PLACE = np.full(len(self._shapes), -1, np.int64)
@@ -119,7 +120,7 @@ class Sides:
 
 
 def sides_of(world: World, loop: EventLoop) -> Sides | None:
-    """What a stepper remembers of sides, None if nothing."""
+    """The remembered sides, None if there are none."""
     return Sides(world, loop) if (loop.scene.SIDE["key"] > 0).any() else None
 
 
@@ -129,7 +130,7 @@ def _outline(world: World, shape: pymunk.Shape) -> object:
 
 
 def _in_order(VERTEX: FloatArray, LINK: Rows[Link]) -> FloatArray:
-    """The vertices of each shape by their numbers: pymunk's pickles may begin a polygon with another of its corners."""
+    """The vertices of each shape sorted by coordinates: pymunk's pickles may begin a polygon with another corner."""
     of_shape = np.repeat(np.arange(len(LINK)), LINK["vertices"])
     ordered: FloatArray = VERTEX[np.lexsort((*VERTEX.T, of_shape))]
     return ordered

@@ -1,8 +1,8 @@
-"""The state of a stepper as one array: all that decides the path of its space.
+"""The state of a stepper as one array: everything that determines the path of its space.
 
-    mark, fingerprint, number of parts, length of each part; then the parts, in words of 8 bytes.
+    mark (a magic number), fingerprint, number of parts, length of each part; then the parts, in words of 8 bytes.
 
-The words are integers, as those of floats may be NaN: two states are equal where their arrays are.
+The words are integers, because floats may be NaN: two states are equal if their arrays are.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ def set_state(stepper: RunningStepper, state: AnyArray) -> None:
 
 
 def _place(stepper: RunningStepper, state: FloatArray) -> None:
-    """Put bodies where (b, 6) says, and forget everything else."""
+    """Set poses and velocities of the bodies to `state` (b, 6), and forget everything else."""
     bodies = moving(stepper.space)
     if state.shape != (len(bodies), 6):
         raise ValueError(
@@ -77,7 +77,7 @@ def _place(stepper: RunningStepper, state: FloatArray) -> None:
 
 
 def _recall(stepper: RunningStepper, state: IntArray) -> None:
-    """Go back to what `get_state` told."""
+    """Return to a result of `get_state`."""
     space, parts = stepper.space, _Parts(state)
     if parts.fingerprint != _fingerprint(space, stepper.event_loop):
         raise ValueError(
@@ -103,7 +103,7 @@ def _recall(stepper: RunningStepper, state: IntArray) -> None:
 
 
 def _remember(stepper: RunningStepper, world: World, parts: _Parts, at: IntArray) -> None:
-    """Have what was known in a state, whose bodies have now the rows `at` (N,)."""
+    """Restore the results of earlier steps from a state; its bodies have now the rows `at` (N,)."""
     loop, joints = stepper.event_loop, world.joints
     assert loop is not None
     moves = ~world.bodies.static
@@ -127,7 +127,7 @@ def _remember(stepper: RunningStepper, world: World, parts: _Parts, at: IntArray
         joints.write()
     world.STATES[LEFT, moves] = left[moves]
     if world.eccentric:
-        # pymunk rounds the places of such bodies: what it reads is what the step has left.
+        # pymunk rounds the positions of such bodies: what is read counts as unedited.
         world.gather()
         world.left_as_read()
 
@@ -168,17 +168,17 @@ def _words(array: AnyArray) -> IntArray:
 
 
 def _everyone(space: pymunk.Space) -> list[pymunk.Body]:
-    """All bodies in the order in which the space got them, which pymunk's own order is not once some have slept."""
+    """All bodies in the order in which they were added; pymunk's own order differs once some have slept."""
     return [*space.bodies, space.static_body]
 
 
 def _rows(world: World) -> IntArray:
-    """Rows of `_everyone` among the bodies of the world."""
+    """Rows of the bodies of `_everyone` in the world."""
     return np.array([world.bodies.row[body] for body in _everyone(world.space)], np.int64)
 
 
 def _fingerprint(space: pymunk.Space, loop: EventLoop | None) -> int:
-    """Of what a state does not say: what bodies, shapes and joints there are, and what steps them, in which records."""
+    """Hash of what a state does not contain: kinds of bodies, shapes and joints, the event loop, sizes of records."""
     bodies = {body: i for i, body in enumerate(_everyone(space))}
     of: list[object] = [type(loop).__name__, None if loop is None else loop.together]
     of += [(name, kind.itemsize) for name, kind in sorted(KINDS.items())]

@@ -1,4 +1,4 @@
-"""sweep: one function over many cases, in this process or on any executor, without losing what is done."""
+"""sweep: one function over many cases, in this process or on any executor, without losing finished results."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ Result = TypeVar("Result")
 _SHOWN = 3  # failed cases that a message names
 _LONGEST = 80  # characters of a case in a message
 _RAISED = "_raised_by_its_case"  # attribute of an error: not the executor's own
-_AHEAD = 2  # cases handed out for each worker of a pool that may break: those in doubt if it does
+_AHEAD = 2  # cases submitted for each worker of a pool that may break; these are in doubt if it does
 
 
 class SweepError(RuntimeError):
-    """Some cases have no result; those of all others are here.
+    """Some cases have no result; the results of all others are in this exception.
 
     Attributes:
-        results: in the order of the cases, None where there is none.
-        failed: what each case without a result raised, by its place among the cases.
+        results: in the order of the cases, None if there is none.
+        failed: the exception of each case without a result, by its index.
     """
 
     def __init__(self, cases: Sequence[Any], results: list[Any], failed: dict[int, BaseException]) -> None:
@@ -50,17 +50,18 @@ def sweep(
     process, in a pool of processes or on a cluster of machines of one kind.
 
     Args:
-        function: takes a case, gives its result. For processes and clusters: a function of a module.
-        cases: what it is called with.
+        function: takes a case, returns its result. For processes and clusters: a function of a module.
+        cases: its arguments.
         executor: any `concurrent.futures.Executor`: `ProcessPoolExecutor(4)`, dask's `Client(...).get_executor()`,
-            `mpi4py.futures.MPIPoolExecutor()`. Call `warmup()` before, or each worker compiles the kernels.
+            `mpi4py.futures.MPIPoolExecutor()`. Call `warmup()` before, so that workers find the library built.
         progress: show a progress bar.
 
-    A case that raises does not stop the others; `SweepError` then names it and holds all results. A case whose worker
-    process dies is tried once more, on its own in a new process: if that dies too, the case has failed. The rest goes
-    on, in a new pool of as many processes. Executors of other kinds see to their workers themselves, as dask does: a
-    case that fails by what it did not raise itself is handed to them once more, on its own, after the others. If one
-    breaks, the cases it has not done are named.
+    A case that raises does not stop the others; `SweepError` then names it and has all results.
+
+    ProcessPoolExecutor: a case whose process dies is tried once more, alone in a new process; if that dies too, the
+    case has failed. The others continue in a new pool of as many processes. Other executors replace their workers
+    themselves, as dask does: a case that fails by an exception that it did not raise itself is submitted once more,
+    alone, after the others. If such an executor breaks, the unfinished cases are named.
     """
     held = list(cases)
     work = _Work(function, held, tqdm(total=len(held), desc="sweep", unit="case", disable=not progress))
@@ -78,7 +79,7 @@ def sweep(
 
 
 class _Work(Generic[Case, Result]):
-    """What is done and what has failed of a sweep so far."""
+    """Finished and failed cases of a sweep."""
 
     def __init__(self, function: Callable[[Case], Result], cases: Sequence[Case], bar: tqdm[Any]) -> None:
         self.function, self.cases, self.bar = function, cases, bar
@@ -100,7 +101,7 @@ class _Work(Generic[Case, Result]):
         doubtful = self.on(executor, range(len(self.cases)), _AHEAD * workers)
         while doubtful:
             for i in doubtful:
-                # Alone: whose process dies now has done that by itself.
+                # Alone: if the process dies now, this case is the cause.
                 with _like(executor, 1) as alone:
                     self.again(alone, i)
             with _like(executor, workers) as another:
@@ -109,7 +110,7 @@ class _Work(Generic[Case, Result]):
     def on_workers(self, executor: Executor) -> None:
         """All cases on an executor that replaces its workers itself.
 
-        A worker that dies takes with it what it holds: results on their way here, cases that waited behind another.
+        A worker that dies loses its results that were not sent yet, and its waiting cases.
         """
         broken = self.on(executor, range(len(self.cases)), len(self.cases))
         for i in sorted(self.failed):
@@ -119,7 +120,7 @@ class _Work(Generic[Case, Result]):
             self.failed[i] = self.failed[broken[0]]
 
     def again(self, executor: Executor, i: int) -> list[int]:
-        """A case that has failed, once more and alone."""
+        """Try a failed case once more, alone."""
         del self.failed[i]
         self.bar.update(-1)
         return self.on(executor, [i], 1, turn=2)
@@ -129,7 +130,8 @@ class _Work(Generic[Case, Result]):
         return [i for i in range(len(self.cases)) if i not in self.done and i not in self.failed]
 
     def on(self, executor: Executor, places: Iterable[int], most: int, turn: int = 1) -> list[int]:
-        """Cases by their places, at most so many of them handed out at a time; those handed out when it broke."""
+        """Run cases given by their indices, at most `most` submitted at a time; returns those submitted when the
+        executor broke."""
         waiting, out = deque(places), dict[Future[Result], int]()
         broken: list[int] = []
         try:
@@ -161,9 +163,9 @@ class _Work(Generic[Case, Result]):
 
 
 def _attempt(function: Callable[[Case], Result], case: Case, turn: int) -> Result:
-    """Of one case; an error that it raises itself says so.
+    """Run one case, and mark an exception that it raises itself.
 
-    `turn` tells attempts apart, where an executor knows tasks by their arguments.
+    `turn` distinguishes attempts for executors that identify tasks by their arguments.
     """
     try:
         return function(case)
@@ -173,7 +175,7 @@ def _attempt(function: Callable[[Case], Result], case: Case, turn: int) -> Resul
 
 
 def _like(executor: ProcessPoolExecutor, workers: int) -> ProcessPoolExecutor:
-    """A new pool that starts its processes as this one does."""
+    """A new pool with the start method and initializer of this one."""
     context, start = getattr(executor, "_mp_context", None), getattr(executor, "_initializer", None)
     return ProcessPoolExecutor(workers, context, start, getattr(executor, "_initargs", ()))
 

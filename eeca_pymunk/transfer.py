@@ -1,7 +1,8 @@
 """Transfer: from the states that pymunk holds to the rows of BODY and back (`layout.py`, `model.bodies`).
 
-A step takes the state, moves the rows of BODY, and gives the state at its end. Damping d acts as a factor d^(dt/2) on
-velocities before and after the motion, which is second order. Centre of mass c and position x of a body at angle phi:
+`take` reads the state into the rows of BODY, a step moves them, `give` writes the state at its end. Damping d acts as a
+factor d^(dt/2) on velocities before and after the motion, which is second order. Centre of mass c and position x of a
+body at angle phi:
 
     c = x + R(phi) k,     k its centre of gravity in its own coordinates, 0 for most bodies.
 """
@@ -34,14 +35,15 @@ from .layout import (
 )  # fmt: skip
 from .model.bodies import Body
 
-# What `take`, `give` and a step answer: bits of what is to be done, or a negative code.
+# Status of `take`, `give` and a step: bits (there are impulses; forces have to be reset; angles or spins have to be
+# written), or a negative code.
 EVENTS, FORCES, TURNS = 1, 2, 4
 OTHER_BODIES, MOVED_STATIC, NOT_FINITE, OVERFLOW = -1, -2, -3, -4
 
 
 @kernel
 def finite(a: float, b: float, c: float, d: float, e: float, f: float) -> bool:
-    """Whether all six are."""
+    """Whether all six numbers are finite."""
     # Comparing is what numba does fastest; NaN is not less than anything.
     least, most = -math.inf, math.inf
     return (
@@ -58,18 +60,18 @@ def finite(a: float, b: float, c: float, d: float, e: float, f: float) -> bool:
 def take(
     STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, BODY: Rows[Body], gx: float, gy: float, left: float
 ) -> int:
-    """Put the states read from pymunk into BODY: all rows at the start of the step, SINCE = 0.
+    """Write the states read from pymunk into BODY: all paths begin at the start of the step, `since` = 0.
 
-    `DUE` of a body that was edited or is accelerated otherwise than before becomes negative: its forecast is void; -inf
-    if it was put elsewhere.
+    `Body.due` becomes negative if the prediction of the last step is void: the velocity was edited or damped, or the
+    acceleration has changed; -inf if the pose was edited. With damping all predictions are void.
 
     Args:
         STATES (2, N, 9), WALK (4, N), EXTRA (N, 5), BODY (n,): see `layout.py`.
-        gx, gy: gravity, length/time².  left: d^(dt/2), what half a step's damping leaves of velocities.
+        gx, gy: gravity, length/time².  left: d^(dt/2), the factor of half a step's damping.
 
     Returns:
-        FORCES if any body has a force or torque, else 0; negative, with BODY in no order, if these are not the bodies,
-        if a static one was moved, or if a number is not finite.
+        FORCES if any body has a force or torque, else 0. A negative code, with BODY invalid, if the bodies are others,
+        a static one was moved, or a number is not finite.
     """
     now, before = STATES[NOW], STATES[LEFT]
     status = 0
@@ -78,10 +80,10 @@ def take(
             return OTHER_BODIES
         x, y, angle, vx, vy, spin = now[i, 0], now[i, 1], now[i, 2], now[i, 3], now[i, 4], now[i, 5]
         fx, fy, torque = now[i, 6], now[i, 7], now[i, 8]
-        # NaN, the mark of what nobody knows, differs from everything.
+        # NaN, for unknown, differs from everything.
         moved = x != before[i, 0] or y != before[i, 1] or angle != before[i, 2]
         edited = moved or vx != before[i, 3] or vy != before[i, 4] or spin != before[i, 5]
-        # What the step before has left was finite.
+        # The end of the last step was finite.
         if edited and not finite(x, y, angle, vx, vy, spin):
             return NOT_FINITE
         if fx != 0.0 or fy != 0.0 or torque != 0.0:
@@ -125,13 +127,13 @@ def give(
     left: float,
     status: int,
 ) -> int:
-    """Write where BODY's paths are at the end of the step to what the step leaves in STATES, and lay it out in ENDS.
+    """Write the ends of BODY's paths to STATES[LEFT], and to ENDS for pymunk.
 
     Args:
         dt: time.  left: see `take`.  status: the bits of the step so far.
 
     Returns:
-        `status` with what `lay` adds; OVERFLOW, with STATES written all the same, if a number is not finite.
+        `status` with the bits of `lay`; OVERFLOW, with STATES written, if a number is not finite.
     """
     after = STATES[LEFT]
     for i in range(WALK.shape[1]):
@@ -162,12 +164,12 @@ def give(
 
 @kernel
 def lay(STATES: FloatArray, WALK: IntArray, ENDS: FloatArray, status: int) -> int:
-    """Lay out in ENDS, in the tables END and PULL, what the step leaves in STATES.
+    """Write STATES[LEFT] to ENDS, to the tables END and PULL.
 
     Returns:
-        `status`, with TURNS if the angle or spin of any body is no longer what pymunk has, or if one spins at all:
-        contacts would change its spin in pymunk's step. Otherwise END has no columns for them, which pymunk
-        takes as long to write as all others together.
+        `status`, with TURNS if the angle or spin of any body differs from pymunk's, or any body spins (contacts in a
+        step of pymunk would change its spin). Otherwise END has no columns for angles and spins, which take pymunk as
+        long to write as all others.
     """
     N = WALK.shape[1]
     now, after = STATES[NOW], STATES[LEFT]
@@ -195,7 +197,8 @@ def lay(STATES: FloatArray, WALK: IntArray, ENDS: FloatArray, status: int) -> in
 
 @kernel
 def lay_rest(STATES: FloatArray, ENDS: FloatArray, status: int) -> None:
-    """Lay out the end of the step in two parts, in the tables STILL and SPEED, which are as wide as END."""
+    """Write the end of the step to the tables STILL (poses, with velocity 0) and SPEED (velocities), for a rest step.
+    They have the columns of END."""
     N = STATES.shape[1]
     after = STATES[LEFT]
     still, speed = ENDS[STILL * N :], ENDS[SPEED * N :]

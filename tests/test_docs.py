@@ -15,6 +15,7 @@ import eeca_pymunk as ep
 import scenes
 from comparisons import engines, film, films, tour
 from comparisons.__main__ import NAMES, chosen, command_line, main
+from eeca_pymunk.model import bodies, joints, parameters
 
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -185,6 +186,24 @@ def test_links_between_files_lead_somewhere() -> None:
             if anchor:
                 heads = re.findall(r"^#+ (.*)$", text(target), flags=re.MULTILINE)
                 assert anchor in {re.sub(r"[^\w\- ]", "", head.lower()).replace(" ", "-") for head in heads}, link
+
+
+@pytest.mark.parametrize("page", ["CONTRIBUTING.md", "docs/method.md"])
+def test_files_and_functions_that_pages_name_exist(page: str) -> None:
+    """`room/file.py` and `room/file.py:function`, of the package or of the repository."""
+    named = re.findall(r"`([\w/]+\.py)(?::(\w+))?`", text(ROOT / page))
+    assert len(named) > 40
+    for file, function in named:
+        found = [folder / file for folder in (ROOT / "eeca_pymunk", ROOT) if (folder / file).exists()]
+        assert found, file
+        assert not function or f"\ndef {function}(" in text(found[0]), (file, function)
+
+
+def test_parameters_and_states_that_the_method_names_exist() -> None:
+    known = {name for found in parameters.table().values() for name in found}
+    known |= {name for module in (bodies, joints) for name in vars(module) if name.isupper()}
+    named = set(re.findall(r"\b[A-Z][A-Z_]{3,}\b", text(ROOT / "docs" / "method.md")))
+    assert named - known == {"EECA"}
 
 
 def test_every_page_is_in_the_site() -> None:

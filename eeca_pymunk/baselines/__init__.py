@@ -1,7 +1,7 @@
-"""Baselines: the steppers that EECA is compared with, behind the same contract.
+"""Baselines: the steppers that EECA is compared with, with the interface of `..stepper.Stepper`.
 
-In: a pymunk space. Out: the same report as every stepper's.
+In: a pymunk space. Out: a StepReport; that of `Native` has no contacts, and none has a ledger.
 
-Open first `native.py`, pymunk's own solver. `penalty.py` has the steppers on penalty springs and the energy-momentum
+Open first `native.py`, pymunk's own solver. `penalty.py` has steppers with penalty springs and the energy-momentum
 scheme that EECA enhances, `newmark.py` Newmark's rules on the same springs (paper, Table I).
 """

@@ -1,4 +1,4 @@
-"""Native: pymunk's own solver behind the Stepper contract, the baseline of every comparison."""
+"""Native: pymunk's own solver as a Stepper, the baseline of every comparison."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ..stepper import Stepper, check_dt
 
 
 class Native(Stepper):
-    """`space.step(dt)`, with bad input refused instead of accepted silently."""
+    """`space.step(dt)`, with errors for invalid input, which pymunk accepts silently."""
 
     def __init__(self, space: pymunk.Space) -> None:
         super().__init__(space)
@@ -21,7 +21,7 @@ class Native(Stepper):
         dt = check_dt(dt)
         if dt == 0.0:
             return StepReport.without_contacts(self.time)
-        # Bodies checks masses, and shape_body the owners: what pymunk would answer with an assertion or an abort.
+        # Bodies checks masses, and shape_body the owners, on which pymunk would fail with an assertion or an abort.
         if self._bodies is None or (state := self._bodies.gather()) is None:
             self._bodies = Bodies(self.space)
             state = self._bodies.gather()
@@ -39,7 +39,7 @@ class Native(Stepper):
 
 
 def tune(space: pymunk.Space, iterations: int = 50) -> None:
-    """Native at its best on impacts: no slop, no memory of old contacts, more iterations (design section 7)."""
+    """Settings for impacts: no slop, no memory of old contacts, more iterations ("pymunk tuned")."""
     space.collision_slop = 0.0
     space.collision_persistence = 1
     space.iterations = iterations

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 
 
 class PenaltyStepper(PackedStepper):
-    """Moves lone disks between static shapes whose contacts are springs of stiffness K > 0 (mass/time²); subclasses say
-    how springs act in time."""
+    """Moves single disks between static shapes; contacts are springs of stiffness K > 0 (mass/time²). Subclasses give
+    the rule in time (`load`)."""
 
     max_iterations = 30
     tolerance = 1e-12  # of the change of impulses between iterations, relative to the largest
@@ -73,11 +73,17 @@ class PenaltyStepper(PackedStepper):
 
     @abstractmethod
     def load(self, springs: Springs) -> tuple[FloatArray, int, bool]:
-        """Solve for the impulses (m,) of the springs, and call `springs.move`; the iterations and whether they met."""
+        """Solve for the impulses (m,) of the springs, and call `springs.move` with the motion. Returns the impulses,
+        the number of iterations, and whether they converged."""
 
 
 class Springs:
-    """The m near pairs of a step on the R bodies they touch, and the trial motion of these bodies."""
+    """The m near pairs of a step on the R bodies they touch, and the trial motion of these bodies.
+
+    Attributes:
+        before, after: geometry (m,) of the pairs at the start, and at the end of the trial motion.
+        displacement, velocity: (R, 2) of the trial motion, and at its end.
+    """
 
     def __init__(
         self,
@@ -95,11 +101,12 @@ class Springs:
         self.move(start.free_displacement[rows], self.start_velocity + start.dt * self.acceleration)
 
     def move(self, displacement: FloatArray, velocity: FloatArray) -> None:
-        """Take a trial displacement and end velocity (R, 2), and find the gaps there."""
+        """Set the trial displacement and the velocity at its end (R, 2), and compute the gaps there."""
         self.displacement, self.velocity = displacement, velocity
         position = self.start_position + displacement
         after = self.pairs.between(position[self.row_a], position[self.row_b])
-        # Through a wall the gap goes on falling, and the normal stays on the side the centre came from.
+        # Behind a static shape the gap continues to fall, and the normal remains that of the side of the start: there
+        # the distance of the cores counts as negative, gap = -distance - extent.
         through = self.pairs.walls & ((after.normal * self.before.normal).sum(axis=1) < 0)
         if through.any():
             middle = self.start_position + 0.5 * displacement
@@ -118,14 +125,16 @@ class Springs:
         result = np.zeros(A.size)
         if len(on):
             part = A.take(on)
-            # The next trial starts where this one ends, so it need not be finished.
+            # Inner solves may be inexact: the outer iteration continues from them.
             result[on] = solve(part, q, compliance, guess, 1e-14, max_iterations=100).lam
         return result
 
     def discrete_normal(self) -> FloatArray:
-        """(m, 2) discrete derivative of the gap (paper's reference [8]): n . (Delta q_b - Delta q_a) = Delta g exactly.
+        """(m, 2) discrete derivative of the gap (Gonzalez, the paper's reference [8]): n . (Delta q_b - Delta q_a) =
+        Delta g.
 
-        The mean of the vectors between centres at both ends over their mean length; shorter than 1 if they turned.
+        The mean of the vectors between centres at both ends over their mean length; shorter than 1 if they have
+        rotated.
         """
         d_n, d_np1 = self.before.gap + self.pairs.extent, self.after.gap + self.pairs.extent
         total = np.abs(d_n) + np.abs(d_np1)
@@ -147,7 +156,8 @@ class PenaltyEnergyMomentum(PenaltyStepper):
         for iteration in range(1, self.max_iterations + 1):
             A = springs.operator(springs.discrete_normal())
             force, slope = discrete_force(g_n, springs.after.gap, K)
-            # Newton: lam = dt (force - slope (g_np1 - g_np1 of the trial)), a complementarity problem where slope > 0.
+            # Newton: the force is linear in g_np1 about the trial, lam = dt (force - slope (g_np1 - g_np1 of the
+            # trial)). Where slope > 0 this is a complementarity problem with compliance.
             loaded = np.flatnonzero(slope > 0)
             increment = springs.after.gap - g_n
             u_mean = A.relative(springs.start_velocity + 0.5 * dt * springs.acceleration)

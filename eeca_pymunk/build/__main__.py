@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Build, and say what was built; the exit status."""
+    """Build, and print what was built; returns the exit status."""
     parser = argparse.ArgumentParser(prog="python -m eeca_pymunk.build", description=__doc__)
     parser.add_argument("--target", action="append", choices=[*TARGETS, "all"], help="platform, this one by default")
     parser.add_argument("--out", type=Path, help="folder; by default beside the sources")
@@ -70,7 +70,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _object(builder: Builder) -> int:
-    """Write the object file of this processor, and say where."""
+    """Write the object file of this processor, and print its path; returns the exit status."""
     folder = cache_folder() if writable(cache_folder()) else Path(tempfile.mkdtemp())
     path = folder / f"kernels-{sources_hash()[:16]}.o"
     try:
@@ -83,8 +83,8 @@ def _object(builder: Builder) -> int:
 
 
 if __name__ == "__main__":
-    # numba walks sets of names in the order of their hashes: with random hashes two builds differ in their bytes.
-    # Its own settings, NUMBA_BOUNDSCHECK for instance, would make other code.
+    # numba iterates over sets of names in the order of their hashes: with random hashes two builds differ.
+    # numba's settings, NUMBA_BOUNDSCHECK for instance, would change the code.
     others = {key: value for key, value in os.environ.items() if not key.startswith("NUMBA_")}
     if sys.flags.hash_randomization or len(others) < len(os.environ):
         call = [sys.executable, "-m", "eeca_pymunk.build", *sys.argv[1:]]

@@ -1,11 +1,12 @@
-"""What pip and `python -m build` call (PEP 517, PEP 660): setuptools' own, and the library of kernels before it.
+"""The hooks of pip and `python -m build` (PEP 517, PEP 660): build the library of kernels, then call setuptools' hook.
 
-A wheel holds the library and is of a platform, `py3-none-<platform>`, one for all Pythons; `pip install -e .` leaves it
-beside the sources. Both build it in an environment of their own, in which numba is installed, and a linker if need be:
-the environment of the user gets neither. `python -m build --wheel -Ctarget=win32-x86_64` is for another platform.
+A wheel contains the library and is specific to a platform, `py3-none-<platform>`, one for all Pythons; `pip install -e
+.` leaves the library beside the sources. Both build it in an environment of their own, in which numba is installed, and
+a linker if necessary; the environment of the user gets neither. `python -m build --wheel -Ctarget=win32-x86_64` builds
+for another platform.
 
-`-Ctarget=none` is plain Python; so is a wheel where numba has no wheels itself (PyPy, musl, macOS on x86-64), and for
-platforms that `compiled.targets.TARGETS` lacks.
+`-Ctarget=none` makes a wheel of plain Python; so does a platform for which numba has no wheels (PyPy, musl, macOS on
+x86-64) or which `compiled.targets.TARGETS` does not contain.
 
 This file is imported by itself, from this folder, before the package is installed.
 """
@@ -37,22 +38,23 @@ from setuptools.build_meta import (  # noqa: F401 - hooks that stay as they are
 
 ROOT = Path(__file__).parents[2]
 NEWEST_PYTHON = (3, 15)  # for which numba has wheels
-_DATE = (1980, 1, 1, 0, 0, 0)  # of all files of a wheel: equal sources make equal bytes
+_DATE = (1980, 1, 1, 0, 0, 0)  # of all files of a wheel, so that equal sources give equal bytes
 
 
 def _targets() -> ModuleType:
-    """`compiled/targets.py`, without the package, whose requirements are not installed yet."""
+    """`compiled/targets.py`, loaded by its path, because the requirements of the package are not installed yet."""
     spec = importlib.util.spec_from_file_location("eeca_targets", ROOT / "eeca_pymunk" / "compiled" / "targets.py")
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module  # which dataclasses ask for
+    sys.modules[spec.name] = module  # where dataclasses look it up
     spec.loader.exec_module(module)
     return module
 
 
 def _requirements(portable: bool, config: dict[str, Any] | None) -> list[str]:
-    """What the builder needs; nothing where no library is built."""
+    """The requirements of the builder, read from pyproject.toml by regular expressions (Python 3.10 has no tomllib);
+    empty if no library is built."""
     targets = _targets()
     name = (config or {}).get("target") or targets.this_platform()
     if name not in {*targets.TARGETS, "none", targets.this_platform()}:
@@ -80,7 +82,8 @@ def get_requires_for_build_editable(config_settings: dict[str, Any] | None = Non
 
 
 def _build(config: dict[str, Any] | None, portable: bool, folder: Path | None = None) -> tuple[Any, Path] | None:
-    """Build the library; its platform and its file, or None where none is built."""
+    """Build the library. Returns its platform and its file, which `__main__` prints first in a line; None if there is
+    none for the platform."""
     if not _requirements(portable, config):
         print("no library of kernels for this platform: plain Python", file=sys.stderr)
         return None
@@ -126,7 +129,7 @@ def build_wheel(
 def _wheel(
     wheel_directory: str, config_settings: dict[str, Any] | None, metadata_directory: str | None, folder: Path
 ) -> str:
-    # The library beside the sources may be linked for this machine alone; setuptools' folder may hold older files.
+    # The library beside the sources may be linked for this machine only; setuptools' folder may contain older files.
     built = _build(config_settings, True, folder)
     shutil.rmtree(ROOT / "build" / "lib", ignore_errors=True)
     ours = {key: value for key, value in (config_settings or {}).items() if key != "target"}
@@ -135,7 +138,7 @@ def _wheel(
 
 
 def _with_library(pure: Path, target: Any, library: Path) -> str:
-    """Put the library into a wheel of plain Python, which becomes one of its platform; the name of its file."""
+    """Put the library into a wheel of plain Python, which becomes specific to its platform; returns its file name."""
     made = pure.with_name(pure.name.replace("-none-any.whl", f"-none-{target.tag}.whl"))
     record: list[str] = []
     with zipfile.ZipFile(pure) as old, zipfile.ZipFile(made, "w", zipfile.ZIP_DEFLATED) as new:

@@ -1,4 +1,4 @@
-"""The stages of a build: compile kernels, put them together, optimise, write machine code, link."""
+"""The stages of a build: compile kernels, join them to modules, optimise, write machine code, link."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ from ..compiled.sources import cache_folder, library_name, sources_hash
 from ..compiled.targets import TARGETS, Target, linker
 from .workers import Workers, gather, import_kernels
 
-_MACHINE_CODE = 150  # what a bar counts for machine code of one platform, in parts compiled in the same time
-_SMALL = 5000  # bytes of code, up to which a kernel is copied into other modules that call it, to be inlined
+_MACHINE_CODE = 150  # weight of machine code of one platform in the progress bar, in parts
+_SMALL = 5000  # bytes of code up to which a kernel is copied into other modules that call it, to be inlined
 _KEPT = 6  # libraries of other sources that are left beside the newest
 
 
 class Builder:
-    """One build, of a library for each of some platforms.
+    """A build of libraries for some platforms.
 
     Args:
         folder: where libraries go.
@@ -47,7 +47,7 @@ class Builder:
 
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:
-        """Name what is being done, and note how long it takes."""
+        """Show the name of a stage, and measure its time."""
         self._bar.set_description_str(name)
         start = time.perf_counter()
         yield
@@ -129,9 +129,10 @@ def check_unchanged() -> None:
 
 
 def split(calls: dict[str, Call], found: dict[Call, Part]) -> list[Group]:
-    """Two modules, that of joints and that of all else, which are optimised side by side.
+    """Two modules, that of joints and that of all other kernels, which are optimised in parallel.
 
-    Small kernels of one module that the other calls are copied into it: calls of larger ones cost no more than they do.
+    Small kernels of one module that the other one calls are copied into it, to be inlined; a call of a larger kernel is
+    cheap compared with the kernel.
     """
     order = sorted(found, key=symbol)
     jointed = {call for call in order if call[0].name.startswith(("joints.", "jointed."))}
@@ -152,7 +153,7 @@ def split(calls: dict[str, Call], found: dict[Call, Part]) -> list[Group]:
 
 
 def _copies(side: list[Call], found: dict[Call, Part]) -> set[Call]:
-    """The small kernels that this side calls, and they in turn, of the other side."""
+    """The small kernels of the other side that this side calls, directly or through each other."""
     own, copied, waiting = set(side), set[Call](), list(side)
     while waiting:
         for callee in found[waiting.pop()].calls:
@@ -167,14 +168,14 @@ def _copies(side: list[Call], found: dict[Call, Part]) -> set[Call]:
 
 
 def link(path: Path, objects: list[bytes], command: list[str]) -> Path:
-    """Link these object files into a shared library, which takes its place when it is complete."""
+    """Link these object files into a shared library; its file appears when it is complete."""
     path.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=path.parent, prefix=".link") as place:
         names = [f"{number}.o" for number in range(len(objects))]
         for name, code in zip(names, objects, strict=True):
             Path(place, name).write_bytes(code)
         plain = ["-Wl,--build-id=none"] if path.suffix == ".so" else []
-        # The ziglang linker keeps what it compiles of the C library; a user may have no home for that.
+        # The ziglang linker caches what it compiles of the C library; a user may have no home folder for that.
         environment = {"ZIG_GLOBAL_CACHE_DIR": str(cache_folder() / "zig")} | os.environ
         done = subprocess.run(
             [*command, "-shared", "-s", *plain, "-o", path.name, *names, "-lm"],
@@ -190,7 +191,7 @@ def link(path: Path, objects: list[bytes], command: list[str]) -> Path:
 
 
 def remove_older(path: Path) -> None:
-    """Leave some libraries of other sources, for those who go back and forth between them, and remove the rest."""
+    """Keep the `_KEPT` newest libraries of other sources, for switching between branches, and remove older ones."""
     ending = path.name.split("-", 2)[2]
     others = sorted(path.parent.glob(f"kernels-*-{ending}"), key=lambda p: p.stat().st_mtime, reverse=True)
     for old in [p for p in others if p != path][_KEPT:]:
@@ -202,7 +203,7 @@ def alone(folder: Path) -> Iterator[None]:
     """Wait until no other process of this machine builds into this folder."""
     try:
         import fcntl
-    except ImportError:  # two builds at once then do the same work twice, and leave the same file
+    except ImportError:  # two builds at once then do the same work, and write the same file
         yield
         return
     folder.mkdir(parents=True, exist_ok=True)

@@ -25,7 +25,7 @@ def _start() -> None:
 
 
 def import_kernels() -> None:
-    """Import all modules of which Python calls kernels, and with them all kernels."""
+    """Import all modules with entry points, and with them all kernels."""
     for name in ENTRIES:
         importlib.import_module(f"eeca_pymunk.{name.partition(':')[0]}")
 
@@ -34,7 +34,8 @@ _Answer = tuple[str, bytes, list[tuple[str, tuple[Any, ...]]], Any, float]
 
 
 def _compile(name: str, args: tuple[Any, ...]) -> _Answer:
-    """A part, under the key that it has in this process."""
+    """Compile a part. Its key in this process is compared with that of the parent: they differ if the source was edited
+    in between."""
     call = kernels()[name], args
     part = part_of(call)
     calls = [(one.name, kinds) for one, kinds in part.calls]
@@ -42,7 +43,7 @@ def _compile(name: str, args: tuple[Any, ...]) -> _Answer:
 
 
 class Workers:
-    """Processes that compile, started when they are first needed."""
+    """Processes that compile, started when first needed."""
 
     def __init__(self, count: int) -> None:
         self.count = count
@@ -60,13 +61,13 @@ class Workers:
         return self._pool is not None
 
     def submit(self, function: Callable[..., Any], *args: Any) -> Future[Any]:
-        """Call this function of a module in one of the processes."""
+        """Call this function, defined in a module, in one of the processes."""
         if self._pool is None:
             self._pool = ProcessPoolExecutor(self.count, multiprocessing.get_context("spawn"), _start)
         return self._pool.submit(function, *args)
 
     def objects(self, groups: list[Group], triple: str, cpu: str) -> list[bytes]:
-        """`frontend.module.object_of` of each group, side by side."""
+        """`frontend.module.object_of` of each group, in parallel."""
         if self.count < 2 or len(groups) < 2:
             return [object_of(group, triple, cpu) for group in groups]
         return [one.result() for one in [self.submit(object_of, group, triple, cpu) for group in groups]]
@@ -76,7 +77,7 @@ def gather(first: Iterable[Call], workers: Workers, told: Callable[[int, int], N
     """The parts of these calls and of all that they call, from the store or compiled.
 
     Args:
-        told: called with the numbers of parts that are there and that are known to be needed.
+        told: called with the number of finished parts, and that of the parts known to be needed.
     """
     found: dict[Call, Part] = {}
     known: set[Call] = set()

@@ -1,8 +1,9 @@
-"""Closures: the paper's free choice of psi2, which says when in the step impulses act. One file each.
+"""Closures: the free choice of psi2 in the paper, which fixes the instant in the step at which impulses act.
 
-In: a world that was read anew. Out: the method that steps its arrays, with energy and momentum exact, and reports.
+In: a world that was just read. Out: the method that steps its arrays, with energy and momentum exact, and reports.
 
-Open first `time_of_impact.py`, the default, and `midstep.py`: both hand over to compiled kernels. `dashpot.py`, the
-paper's closure, moves lone disks on numpy arrays (`motion.py`: start, near pairs, motion); `simultaneous.py` is its
-frame, one impulse for each contact of a step, `locked.py` restitution and the locked motion.
+Open first `time_of_impact.py`, the default, and `midstep.py`: both only choose compiled kernels (`..impacts`,
+`..jointed`). `dashpot.py`, the paper's closure, moves single disks on numpy arrays; `motion.py` (start, near pairs,
+motion of a step) and `refusals.py` (unsupported features) are shared with `..baselines`. `simultaneous.py` is the step
+of a closure with one impulse for each contact, `locked.py` restitution and the motion with the energy lock.
 """

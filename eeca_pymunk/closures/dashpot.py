@@ -1,4 +1,4 @@
-"""Dashpot: psi2 from a spring with a dashpot, the paper's closure (design section 4)."""
+"""Dashpot: psi2 from a spring with a dashpot, the paper's closure."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from .simultaneous import Problem, Simultaneous, Solution
 class Dashpot(Simultaneous):
     """The paper's closure: psi1 + psi2 = 4 xi / Omega (Eqs. 28-30), an enhanced penalty of spring and dashpot.
 
-    A fixed point over complementarity problems (design section 4): impulses give psi2, Delta g and the normals at the
-    kinks, these give the next problem. Islands in which no positive lock exists fall back to the rigid limit.
+    A fixed-point iteration over complementarity problems: impulses give psi2, Delta g and the normals at the instants
+    of the impulses; these give the next problem. Islands without a positive lock use the rigid limit.
 
     Args:
         stiffness: K > 0, mass/time².
         damping_ratio: xi >= 0.
         tolerance: of the change of the impulses between iterations, relative to the largest, and of psi2.
-        max_iterations: of the fixed point; `StepReport.converged` tells whether they sufficed.
+        max_iterations: of the fixed point; `StepReport.converged` is False if they do not suffice.
     """
 
     stiffness: float
@@ -59,7 +59,7 @@ class Dashpot(Simultaneous):
                 and np.max(np.abs(new.psi2 - psi2)) <= self.tolerance
             )
             lam, psi2, increment = impulses.lam, new.psi2, new.gap_increment
-            # The motion takes these psi2 too: the kink it makes in a path lies where its normal was taken.
+            # The normals are those at the instants of the final psi2, at which the motion changes its paths.
             geometry = problem.geometry_at(balance.impulse_time(psi2, dt))
             A = problem.operator(geometry)
         weights = balance.Weights(S - psi2, psi2, increment)

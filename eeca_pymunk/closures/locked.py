@@ -1,4 +1,4 @@
-"""Newton's restitution, and the motion with impulses scaled by the energy lock: exact whatever the impulses are."""
+"""Newton's restitution, and the motion with impulses scaled by the energy lock: exact energy for any impulses."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ TOLERANCE = 1e-6  # of the rigid limit's complementarity problem, relative to th
 
 
 def restitution(A: Delassus, problem: Problem) -> FloatArray:
-    """(m,) e u_n + u*, u* with the external forces alone."""
+    """(m,) e u_n + u*, the constant term q of the rigid limit; u* = u_n + dt a_n, with external forces only."""
     u_n = A.relative(problem.velocity)
     u_free = u_n + problem.dt * A.relative(problem.acceleration)
     return balance.restitution_target(u_n, problem.elasticity) + u_free
@@ -36,11 +36,12 @@ def locked_motion(
     """Scale the impulses by the energy lock, and move: Eq. 10 with v_np1 and p_c of the scaled impulses."""
     dt, psi1, psi2, increment = problem.dt, weights.psi1, weights.psi2, weights.gap_increment
     q = restitution(A, problem)
-    # Impulses that meet their tolerance need no lock of their own for each island: it would be 1 in all of them.
+    # Converged impulses get one common scale, which is 1 up to the tolerance.
     island = None if converged else islands(problem.row_a, problem.row_b, problem.inverse_mass)
     lock = balance.energy_lock(A, island, lam, q, psi2, problem.external)
     failed = ~lock.valid & (lam > 0)
     if failed.any() and psi2.any():
+        # The rigid limit: psi1 infinite, psi2 = 0.
         psi1, psi2 = np.where(failed, math.inf, psi1), np.where(failed, 0.0, psi2)
         increment, converged = np.where(failed, 0.0, increment), False
         geometry = problem.geometry_at(balance.impulse_time(psi2, dt))
@@ -48,7 +49,7 @@ def locked_motion(
         q = restitution(A, problem)
         lam = np.where(failed, solve(A, q, tolerance=TOLERANCE).lam, lam)
         lock = balance.energy_lock(A, island, lam, q, psi2, problem.external)
-    # In the rigid limit no impulse at all conserves energy too.
+    # In the rigid limit the scale 0, no impulse, conserves energy as well; it is used where there is no positive one.
     scale = np.where(lam > 0, np.where(lock.valid, lock.scale, 0.0), 1.0)
     worst = float(scale[np.argmax(np.abs(scale - 1.0))])
     lam = scale * lam

@@ -18,7 +18,7 @@ class Midstep:
     One bounded solve of all contacts of the step at once, of every shape, with friction and loss:
 
         v_np1 = v_n + dt a + M^-1 (G^T lam + T^T beta),   q_np1 = q_n + dt (v_n + v_np1) / 2,
-        0 <= lam _|_ u_np1 - b >= 0,   b = -e u_n for impacts, softer for contacts that last,
+        0 <= lam _|_ u_np1 - b >= 0,   b the targets of docs/method.md, section 4,
 
     with Coulomb's law for beta. Exact in energy and momenta; second order in free flight, first order in the place of
     impacts. psi1 is reported as infinite, its limit.

@@ -1,7 +1,7 @@
-"""Steps of lone disks on numpy arrays: their start, the pairs that are near, and how the bodies moved.
+"""Steps of single disks on numpy arrays: their start, the near pairs, and the motion of the bodies.
 
-What the simultaneous closures and the penalty steppers share. All arrays of bodies have the rows of BODY, the ground,
-on which all static shapes stand, last.
+Shared by the simultaneous closures and the penalty steppers. All arrays of bodies have the rows of BODY; the last row
+is the ground, the body of all static shapes.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ class Start:
     @property
     def free_displacement(self) -> FloatArray:
         """(n, 2) displacement of the free flight over the step."""
-        with np.errstate(over="ignore", invalid="ignore"):  # refused before anything is made of it
+        with np.errstate(over="ignore", invalid="ignore"):  # `step` raises for it
             return self.dt * self.velocity + (0.5 * self.dt**2) * self.acceleration
 
     def at(self, rows: IntArray, time: FloatArray | float) -> FloatArray:
@@ -58,7 +58,8 @@ class Start:
 
 @dataclass(frozen=True)
 class Motion:
-    """Velocity and displacement (n, 2) of all bodies over a step, and what to report of it; no details, no contacts."""
+    """Velocity and displacement (n, 2) of all bodies over a step, and its report; `details` is None without
+    contacts."""
 
     velocity: FloatArray
     displacement: FloatArray
@@ -79,12 +80,12 @@ class Geometry(NamedTuple):
     point: FloatArray
 
     def take(self, which: IntArray) -> Geometry:
-        """That of the pairs number `which`."""
+        """The geometry of the pairs `which`."""
         return Geometry(self.gap[which], self.normal[which], self.point[which])
 
 
 class Pairs:
-    """m pairs of shapes, of a lone disk and a lone disk or static shape.
+    """m pairs of shapes: a single disk with a single disk or a static shape.
 
     Attributes:
         shapes: (m, 2) shapes a < b.  row_a, row_b: (m,) bodies.  walls: (m,) whether b is static.
@@ -110,7 +111,7 @@ class Pairs:
 
     @property
     def elasticity(self) -> FloatArray:
-        """(m,) the product of the two shapes' elasticities, as in pymunk, unless a collision handler says otherwise."""
+        """(m,) the product of the two shapes' elasticities, as in pymunk, unless a collision handler sets another."""
         SHAPE = self._disks.world.SHAPE
         result: FloatArray = SHAPE["elasticity"][self.shapes[:, 0]] * SHAPE["elasticity"][self.shapes[:, 1]]
         for pair, (e, *_) in self._disks.rules.items():
@@ -122,7 +123,7 @@ class Pairs:
         return Pairs(self._disks, self.shapes[which])
 
     def between(self, position_a: FloatArray, position_b: FloatArray) -> Geometry:
-        """Geometry with the bodies of every pair at its own (m, 2) places."""
+        """Geometry with the bodies of each pair at the positions (m, 2) given for it."""
         m = len(self)
         POSE_A, POSE_B, OUT = np.zeros((m, 3)), np.zeros((m, 3)), np.empty((m, 5))
         POSE_A[:, :2], POSE_B[:, :2] = position_a, position_b
@@ -134,17 +135,17 @@ class Pairs:
         return self.between(position[self.row_a], position[self.row_b])
 
     def contacts(self, at: Geometry, gap: FloatArray, time: FloatArray) -> Contacts:
-        """What to report of these pairs: geometry where impulses act, (m,) gaps at the start of the step, instants."""
+        """The report of these pairs: geometry where impulses act, (m,) gaps at the start of the step, (m,) instants."""
         world = self._disks.world
         a, b = world.owner[self.shapes[:, 0]], world.owner[self.shapes[:, 1]]
         return Contacts(world.bodies.items, a, b, at.normal, at.point, gap, time)
 
 
 class Disks:
-    """The lone disks and static shapes of a world; UnsupportedFeature for joints, other moving shapes, and friction.
+    """The single disks and static shapes of a world; UnsupportedFeature for joints, other moving shapes, and friction.
 
     Args:
-        world: read anew, with the poses of now in BODY.  mover: who moves them, for messages.
+        world: just read, with the present poses in BODY.  mover: name of the closure or stepper, for messages.
     """
 
     def __init__(self, world: World, mover: str) -> None:
@@ -181,7 +182,8 @@ class Disks:
         self, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
         left: float, move: Move,
     ) -> int:  # fmt: skip
-        """From the states that were read to those that are to be written, see `transfer.py`; disks turn freely."""
+        """From the states read to those to be written, see `transfer.py`; contacts do not change spins. `left`: factor
+        of half a step's damping."""
         BODY = self.world.BODY
         status = take(STATES, WALK, EXTRA, BODY, gx, gy, left)
         if status < 0:
@@ -208,10 +210,10 @@ class Disks:
         """The pairs that can meet within the step, their geometry at its start, and (m,) the lengths up to which their
         gaps are round-off.
 
-        A body's reach is the length of its free flight and `extra` (n,). Impulses can send it twice as far (an elastic
-        hit by a heavier body), which the factor 2 covers for the contacts that impulses close.
+        A body's reach is the length of its free flight and `extra` (n,), times 2 for bodies that impulses accelerate.
+        Those that impulses move farther are searched again (`Simultaneous.advance`).
         """
-        # The path of a thrown body leaves its chord.
+        # Sagitta of the parabola, a dt² / 8.
         bow = (0.125 * start.dt**2) * np.hypot(*start.acceleration.T)
         far = np.abs(start.position).max(axis=1)
         reach = 2.0 * (np.hypot(*displacement.T) + bow + GAP_ROUND_OFF * far + extra)

@@ -1,4 +1,4 @@
-"""Refusals: what closures and penalties that move lone disks do not move, each with a remedy."""
+"""Refusals: features that steps of single disks do not support, each with a remedy."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ if TYPE_CHECKING:
 
 
 def check_disks(world: World, moving: int, mover: str) -> None:
-    """Refuse joints, what is not a lone disk or static, and friction between what is.
+    """Raise UnsupportedFeature for joints, moving shapes that are no single disks, and friction.
 
     Args:
-        moving: shapes that move, the first rows of SHAPE.  mover: who moves them, for messages.
+        moving: number of moving shapes, the first rows of SHAPE.  mover: name of the closure or stepper, for messages.
     """
     if world.joints is not None:
         raise UnsupportedFeature(

@@ -1,4 +1,4 @@
-"""Simultaneous closures: one impulse per contact and step, all active contacts solved at once (design section 4)."""
+"""Simultaneous closures: one impulse per contact and step, all active contacts solved at once."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from ..space.world import World
 
-_STRUCK = 10.0  # ratio of displacements from which a body is looked after again: detection costs as much as a solution
+_STRUCK = 10.0  # ratio of displacements from which on pairs are searched again, which costs as much as a solve
 
 
 @dataclass(frozen=True)
@@ -91,7 +91,7 @@ class Solution:
 
 
 class Simultaneous(ABC):
-    """A closure that gives every active contact one impulse, at an instant that psi2 tells.
+    """A closure that gives every active contact one impulse, at the instant given by psi2.
 
     A contact is active in a step when it starts closed (gap <= 0) or when the free flight would close it. Contacts
     that the impulses themselves would close join them, in at most `passes` further solves.
@@ -104,7 +104,7 @@ class Simultaneous(ABC):
         """The motion of the bodies of `problem`, energy and momentum exact."""
 
     def prepare(self, world: World) -> SimultaneousStep:
-        """What steps a world of lone disks and static shapes."""
+        """The step of a world of single disks and static shapes."""
         return SimultaneousStep(self, Disks(world, type(self).__name__))
 
     def advance(self, disks: Disks, start: Start) -> Motion:
@@ -126,7 +126,7 @@ class Simultaneous(ABC):
             trial = displacement.copy()
             trial[rows] = solution.displacement
             if left == self.passes and (struck := _length(trial) > _STRUCK * _length(displacement)).any():
-                # Bodies that hardly moved until now reach pairs that were not near.
+                # Bodies that were slow before may reach pairs that were not near.
                 known = pairs.key[active]
                 pairs, before, tolerance = disks.near(start, displacement, struck * _length(trial - displacement))
                 active = np.isin(pairs.key, known)
@@ -181,7 +181,8 @@ class SimultaneousStep:
         return self.disks.step(STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, move)
 
     def rule(self, rules: Mapping[tuple[int, int], tuple[float, float, float, float]]) -> None:
-        """Let pairs of shapes (a < b) have this elasticity (below 0: they pass) from now on."""
+        """Set the elasticity of pairs of shapes (a < b) for the following steps; negative: the pair does not
+        collide."""
         self.disks.rules = rules
 
     def details(self, dt: float, bodies: tuple[pymunk.Body, ...], owner: IntArray) -> Details:

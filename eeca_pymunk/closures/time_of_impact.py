@@ -15,13 +15,13 @@ if TYPE_CHECKING:
 class TimeOfImpact:
     """psi2 = 1 - 2 tau / dt with tau the time of impact, and the normal there: exact for disks and flat walls.
 
-    The step follows the paths of the bodies from impact to impact through one queue of events, each body on its own
-    clock. Impacts of one body at one instant, up to round-off, and contacts that touch then are solved together. Exact
-    up to round-off for elastic and inelastic impacts of disks with disks and walls under constant forces, at any dt;
-    second order where contacts rest on curved shapes.
+    The step follows the paths of the bodies from impact to impact through one queue of events. Impacts of one body at
+    one instant, up to round-off, and contacts that touch then are solved together. Exact up to round-off for elastic
+    and inelastic impacts of disks with disks and walls under constant forces, at any dt; second order for persistent
+    contacts on curved shapes.
 
     Args:
-        max_impacts: of a body in a step. Those beyond are left out, and the report says not converged.
+        max_impacts: of a body in a step. Further ones are ignored, and `report.converged` is False.
     """
 
     max_impacts: int = 100_000

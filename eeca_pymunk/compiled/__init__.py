@@ -1,11 +1,13 @@
 """Kernels: functions of arrays and numbers that run as machine code.
 
-In: Python functions with one of the decorators `kernel`, `uncounted`, `merged`. Out: the same functions, called from
-Python as machine code of a library built ahead of time, as code compiled just in time, or as plain Python.
+In: Python functions with one of three decorators (`kernels.py`): `kernel`; `uncounted`, for kernels that create no
+arrays, which is faster; `merged`, for small ones that are inlined. Out: the same functions, run as machine code of a
+library built ahead of time, as code compiled just in time, or as plain Python.
 
-Open first `backend.py`: it chooses among the three. `entries.py` declares which kernels Python calls, `library.py`
-loads the library, `tables.py` passes many arrays as one pointer. `frontend/` has the compiler and is imported by
-builds and the JIT alone; nothing else imports numba.
+Open first `backend.py`, which chooses among the three. `entries.py` declares the kernels that Python calls,
+`library.py` loads the library, `tables.py` passes many arrays as one pointer. `frontend/` compiles a single kernel, and
+`..build` runs it for all kernels in parallel and links. Only the modules of `frontend/` import numba; builds and the
+JIT import them, other processes only read the version number there.
 """
 
 from .backend import start

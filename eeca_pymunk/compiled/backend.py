@@ -1,4 +1,4 @@
-"""Which code kernels run: the library, numba's just-in-time compiler, or plain Python.
+"""The code that kernels run: the library, code compiled just in time, or plain Python.
 
 In this order:
 
@@ -33,12 +33,12 @@ _PLAIN = "eeca_pymunk runs as plain Python, some hundred times slower"
 
 @dataclass(frozen=True)
 class Backend:
-    """What kernels run.
+    """The code that kernels run.
 
     Attributes:
         kind: library, jit or python.
-        why: one sentence.
-        entries: what Python calls as machine code, by name; empty for python.
+        why: reason of the choice, one sentence.
+        entries: entry points as machine code, by name; empty for python.
     """
 
     kind: str
@@ -63,7 +63,7 @@ def start() -> Backend:
 
 
 def asked_for() -> str:
-    """The backend that the environment asks for, "" for none.
+    """The backend that the environment sets, "" for none.
 
     Raises:
         ValueError: EECA_KERNELS is something else.
@@ -80,17 +80,17 @@ def choose(build: bool) -> Backend:
     """The backend of this process; a missing library is built only if `build`.
 
     Raises:
-        ImportError: EECA_KERNELS asks for what is not there.
+        ImportError: EECA_KERNELS names a backend that is not available.
     """
     asked = asked_for()
     if asked == "python":
-        return Backend("python", "the environment asks for it (NUMBA_DISABLE_JIT or EECA_KERNELS)")
+        return Backend("python", "set by the environment (NUMBA_DISABLE_JIT or EECA_KERNELS)")
     said = ""
     if asked != "jit":
         status, entries, said, path = _library()
         if status is not Status.LOADED and (reason := cannot_build()) == "":
             if not build:
-                return Backend("library", "none of these sources yet: it is built at the first step")
+                return Backend("library", "there is none of these sources yet; it is built at the first step")
             said = _build()
             status, entries, more, path = _library()
             said = said or more
@@ -104,11 +104,11 @@ def choose(build: bool) -> Backend:
     wrong = wrong_numba()
     if not wrong:
         if not build:
-            return Backend("jit", said or "EECA_KERNELS asks for it")
+            return Backend("jit", said or "set by EECA_KERNELS")
         from .frontend.jit import entries as compiled
 
         try:
-            return Backend("jit", said or "EECA_KERNELS asks for it", compiled())
+            return Backend("jit", said or "set by EECA_KERNELS", compiled())
         except ImportError as error:
             wrong = str(error)
     if asked == "jit":
@@ -117,7 +117,7 @@ def choose(build: bool) -> Backend:
 
 
 def _library() -> tuple[Status, dict[str, Entry], str, Path | None]:
-    """The library of these sources: its status, entries, what the system says of it, and its file."""
+    """The library of these sources: its status, entries, the error message of the system, and its file."""
     try:
         path = library_path()
     except OSError as error:
@@ -126,7 +126,7 @@ def _library() -> tuple[Status, dict[str, Entry], str, Path | None]:
 
 
 def advice() -> str:
-    """How to get machine code."""
+    """How to get machine code, for messages."""
     return (
         "In a clone: pip install -e . (builds it once), or pip install -e '.[build]' (builds it after every edit). "
         "Else: install a wheel for this platform"
@@ -147,12 +147,12 @@ def wrong_numba() -> str:
     found = _found()
     if found is None:
         return "numba is not installed"
-    return "" if found.startswith(f"{NUMBA}.") else f"numba {found} is installed, the compiler knows {NUMBA} alone"
+    return "" if found.startswith(f"{NUMBA}.") else f"numba {found} is installed, the compiler needs {NUMBA}"
 
 
 def _found() -> str | None:
-    """The version of numba that is installed, which is not imported."""
-    if sys.modules.get("numba", ...) is None:  # what import statements take for missing
+    """The installed version of numba, without importing it; None if there is none."""
+    if sys.modules.get("numba", ...) is None:  # import statements treat None as missing
         return None
     try:
         return version("numba")

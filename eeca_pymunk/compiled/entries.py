@@ -2,11 +2,12 @@
 
 `ENTRIES` maps "room.module:function" to the types of its arguments. `f8[2]` is a C-contiguous array of 64-bit floats
 with two dimensions, `i8`, `i4` and `u1` are integers; `f8`, `i8` and `bool` without brackets are numbers; a name in
-braces is a table of `TABLES`. An entry returns an integer, or nothing. One that Python binds to its arrays has them
-before its numbers.
+braces is a table of `TABLES`. An entry returns an integer, or nothing. In an entry that Python binds to its arrays
+(`kernels.Kernel.bind`) arrays come before numbers.
 
-`TABLES` lists the arrays of each table in the order of its named tuple. `SOURCES` lists the files and rooms of which
-machine code is made: a library carries their hash.
+`TABLES` lists the arrays of each table in the order of its named tuple, for processes that do not import the records'
+annotations; `tables.table_of` compares. `SOURCES` lists the files and rooms that contain kernels; a library carries
+their hash.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""The decorators of kernels, and what a decorated function calls.
+"""The decorators of kernels, and the code that a decorated function runs.
 
-A kernel takes arrays and numbers, returns numbers or a status, and knows nothing of pymunk. Every kernel annotates its
+A kernel takes arrays and numbers, returns numbers or a status, and does not use pymunk. Every kernel annotates its
 arguments and what it returns: the builder types calls by these annotations, so that kernels compile one by one.
 """
 
@@ -20,13 +20,13 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 _kernels: list[Kernel[Any, Any]] = []
-_ready = 0  # kernels of that list whose `run` is set
+_ready = 0  # the first so many of that list have their `run`
 _lock = threading.RLock()
 _types: Callable[[Any], Any] | None = None  # the compiler's types of kernels, openers and `fetch`
 
 
 class Compilable:
-    """What kernels may name: the active compiler says which type it has."""
+    """Objects that kernels may use as globals; the active compiler gives each a type."""
 
     @property
     def _numba_type_(self) -> Any:
@@ -37,12 +37,12 @@ class Compilable:
 
 
 class Kernel(Compilable, Generic[P, R]):
-    """A function that runs as machine code where there is any.
+    """A function that runs as machine code if there is any.
 
     Attributes:
-        python: the function as it was written.
-        name: its place, "room.module:function", which `entries.py` lists if Python calls it.
-        run: what a call executes; to call `run` saves half a microsecond.
+        python: the function in Python.
+        name: "room.module:function", which `entries.py` lists if Python calls it.
+        run: the code that a call executes; calling `run` directly saves half a microsecond.
     """
 
     def __init__(self, python: Callable[P, R], counted: bool = True, merged: bool = False) -> None:
@@ -61,9 +61,9 @@ class Kernel(Compilable, Generic[P, R]):
         return self.run(*args, **kwargs)
 
     def bind(self, *arrays: Any) -> Callable[..., R]:
-        """The kernel with its arrays, which come first, to be called with the other arguments.
+        """The kernel with its arrays, the first arguments; returns a function of the other arguments.
 
-        Addresses are read once, here: the arrays must not be resized.
+        Addresses are read here, once: the arrays must not be resized or replaced.
         """
         prepare()
         bind = getattr(self.run, "bind", None)
@@ -92,34 +92,34 @@ class Choice(Compilable, Generic[R]):
 
 
 def kernel(python: Callable[P, R]) -> Kernel[P, R]:
-    """A kernel that may make arrays."""
+    """A kernel that may create arrays."""
     return Kernel(python)
 
 
 def uncounted(python: Callable[P, R]) -> Kernel[P, R]:
-    """A kernel that makes no arrays, views of its arguments excepted: code that counts references to arrays is left
-    out, two locked instructions for each argument at every call."""
+    """A kernel that creates no arrays except views of its arguments. It is compiled without reference counting of
+    arrays (numba's `_nrt=False`), which costs two locked instructions for each argument at every call."""
     return Kernel(python, counted=False)
 
 
 def merged(python: Callable[P, R]) -> Kernel[P, R]:
-    """An uncounted kernel whose machine code becomes part of its callers."""
+    """An uncounted kernel whose machine code is inlined into its callers."""
     return Kernel(python, counted=False, merged=True)
 
 
 def kernels() -> dict[str, Kernel[Any, Any]]:
-    """All kernels that have been imported, by name; those of this package where another has the same name."""
+    """All imported kernels by name; of several with one name (those of tests) the one of this package."""
     return {one.name: one for one in sorted(_kernels, key=lambda one: one.python.__module__.startswith("eeca_pymunk."))}
 
 
 def set_types(types: Callable[[Any], Any]) -> None:
-    """Let a compiler say which types kernels, openers and `fetch` have."""
+    """Set the function by which a compiler types kernels, openers and `fetch`."""
     global _types
     _types = types
 
 
 def prepare() -> Backend:
-    """Set what each kernel runs, if new ones have been decorated; safe to call from any thread."""
+    """Set `run` of all kernels decorated since the last call; safe to call from any thread."""
     global _ready
     if _ready == len(_kernels):
         return start()
@@ -127,7 +127,7 @@ def prepare() -> Backend:
         backend = start()
         fresh = _kernels[_ready:]
         for one in fresh:
-            # numpy warns of what machine code does in silence, a division by 0 for instance.
+            # numpy warns of divisions by 0 and the like, machine code does not.
             one.run = backend.entries.get(one.name) or np.errstate(all="ignore")(one.python)
         _ready += len(fresh)
     return backend

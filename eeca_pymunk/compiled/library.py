@@ -25,12 +25,12 @@ from .entries import ENTRIES, is_array, split
 from .records import address_of
 from .sources import sources_hash
 
-NO_MEMORY, NO_SHAPE = -(1 << 63), -(1 << 63) + 1  # returned where arrays could not be made, or did not fit
+NO_MEMORY, NO_SHAPE = -(1 << 63), -(1 << 63) + 1  # returned if an array cannot be created; if shapes do not fit
 _ffi = _cffi_backend.FFI()
 
 
 class Status(enum.Enum):
-    """What became of a library."""
+    """The result of looking for a library, and of loading it."""
 
     LOADED = "loaded"
     MISSING = "there is none of these sources for this platform"
@@ -47,10 +47,10 @@ def symbol(name: str) -> str:
 
 
 def check(name: str, status: int) -> int:
-    """The answer of an entry.
+    """The result of an entry.
 
     Raises:
-        MemoryError: there was no room for an array that it makes.
+        MemoryError: there was no memory for an array.
         ValueError: the shapes of arrays do not fit.
     """
     if status <= NO_SHAPE:
@@ -79,14 +79,14 @@ class Entry:
             raise TypeError(f"{self.name} takes {len(self.kinds)} arguments, not {len(args)}")
         arrays = [args[i] for i in self._arrays]
         known, call = self._last
-        # One by one: to compare lists would compare the numbers of arrays.
+        # One by one: comparing lists would compare the elements of arrays.
         if call is None or any(map(operator.is_not, arrays, known)):
             call = self.bind(*arrays)
             self._last = arrays, call
         return check(self.name, call(*[args[i] for i in self._numbers]))
 
     def bind(self, *arrays: Any) -> Callable[..., int]:
-        """The entry with these arrays, to be called with its numbers; its answer is for `check`.
+        """The entry with these arrays: a function of its numbers, whose result `check` takes.
 
         Raises:
             TypeError: an array is not of the declared dtype and dimensions, or not C-contiguous.
@@ -99,7 +99,7 @@ class Entry:
         return call
 
     def _words(self, kind: str, array: Any) -> list[int]:
-        """What `words` has of one array."""
+        """The words of one array: its address and lengths; of a table, its address."""
         if kind.endswith("}"):
             return [array.address]
         dtype, ndim = split(kind)

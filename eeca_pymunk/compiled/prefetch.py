@@ -1,7 +1,7 @@
-"""Rows brought into the cache before they are needed.
+"""Prefetching: rows are loaded into the cache before they are needed.
 
-Scenes of thousands of bodies do not fit into a processor's caches, and the next event is usually elsewhere in memory: a
-kernel that knows where can have that row loaded while it computes. No result depends on it.
+Scenes of thousands of bodies exceed a processor's caches, and the next event is usually elsewhere in memory. A kernel
+that knows its place lets that row be loaded while it computes. No result depends on it.
 """
 
 from __future__ import annotations

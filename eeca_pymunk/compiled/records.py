@@ -47,7 +47,7 @@ class Record(_Row):
             setattr(cls, name, property(itemgetter(name), _setter(name)))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # numpy's copies of a row cannot be written to.
+        # A pickled or copied `numpy.void` is read-only.
         return _row_of, (type(self), self.tobytes())
 
     def __deepcopy__(self, memo: Any = None) -> Any:
@@ -125,12 +125,12 @@ def row(kind: type[R]) -> R:
 
 
 def from_bytes(kind: type[R], content: Sequence[bytes]) -> Rows[R]:
-    """Records of the memory of each."""
+    """(n,) records from the bytes of each."""
     return np.frombuffer(bytearray().join(content), kind.TYPE)  # type: ignore[return-value]
 
 
 def address_of(array: Any) -> int:
-    """Where an array, or a record of one, lies in memory."""
+    """Memory address of an array, or of a record in one."""
     # numpy's `__array_interface__` describes all fields of records, in forty times the time.
     return int(_ffi.cast("uintptr_t", _ffi.from_buffer(array)))
 

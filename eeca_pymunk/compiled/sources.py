@@ -1,4 +1,4 @@
-"""Which sources machine code is made of, and where it is kept."""
+"""The sources of machine code, and the folders of libraries."""
 
 from __future__ import annotations
 
@@ -45,7 +45,8 @@ def beside() -> Path:
 
 
 def cache_folder() -> Path:
-    """The folder of this user, or EECA_PYMUNK_CACHE: what builds reuse, and libraries of read-only packages."""
+    """The folder named by EECA_PYMUNK_CACHE, or one of this user: for compiled parts, and for libraries of read-only
+    packages."""
     if chosen := os.environ.get("EECA_PYMUNK_CACHE"):
         return Path(chosen)
     try:
@@ -62,7 +63,7 @@ def cache_folder() -> Path:
 
 
 def writable(folder: Path) -> bool:
-    """Whether files can be made in this folder, which is made if need be."""
+    """Whether files can be created in this folder, which is created if necessary."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError:

@@ -1,8 +1,8 @@
 """Many arrays behind one pointer.
 
-A scene has some thirty arrays. `table_of` writes their addresses and lengths down once; a kernel that Python calls
-takes that, and an `Opener` makes of it what has the arrays as attributes, at no cost. In plain Python a table is the
-named tuple of arrays itself.
+A scene has some thirty arrays. `table_of` writes their addresses and lengths into one array, the table. A kernel that
+Python calls takes the table, and an `Opener` (`scene_of` for a Scene) gives it the type of the named tuple, with the
+arrays as attributes: in compiled code this is a cast and costs nothing. In plain Python a table is the named tuple.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ WORDS = 4  # numbers of an array: address, size, and its shape, one or two lengt
 
 
 class Pointers:
-    """The table that machine code takes: `address` of its words, and the arrays, which it keeps."""
+    """The table for machine code: `address` of its words, and the arrays, which it keeps alive."""
 
     __slots__ = ("address", "arrays", "words")
 
@@ -35,8 +35,8 @@ def _said(dtype: np.dtype[Any], dimensions: int) -> str:
 
 
 def table_of(arrays: Any) -> Table:
-    """What kernels take for a named tuple of arrays. To be made anew when one of them is replaced by another; the
-    arrays have to be kept as long as the table is used.
+    """The table of a named tuple of arrays. If one of them is replaced, a new table is needed; the arrays must exist as
+    long as the table is used.
 
     Raises:
         TypeError: an array is not C-contiguous, or not of the dtype and dimensions that `entries.TABLES` declares.
@@ -61,7 +61,7 @@ def table_of(arrays: Any) -> Table:
 
 
 class Opener(Compilable, Generic[T]):
-    """Makes of a table the named tuple that it was made of, as far as kernels can tell: its arrays are attributes."""
+    """Function from a table to its named tuple, in kernels: the arrays are attributes."""
 
     def __init__(self, kind: type[T]) -> None:
         self.kind = kind

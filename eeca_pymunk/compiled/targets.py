@@ -1,4 +1,4 @@
-"""The platforms for which libraries are built, and what links them."""
+"""The platforms for which libraries are built, and their linkers."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ TARGETS = {
 
 def this_platform() -> str:
     """The platform of this process, as `linux-x86_64`; it need not be one of `TARGETS`."""
-    # Of the interpreter, which may be another than the kernel's.
+    # That of the interpreter, which may differ from that of the operating system.
     told = sysconfig.get_platform().rpartition("-")[2] if sys.platform == "win32" else platform.machine()
     machine = {"amd64": "x86_64", "arm64": "aarch64"}.get(told.lower(), told.lower())
     machine += "" if sys.maxsize > 1 << 32 else "-32"
@@ -70,7 +70,7 @@ def _glibc() -> tuple[int, ...]:
 
 
 def has_compiler() -> bool:
-    """Whether numba has wheels for this platform, of the versions that compile kernels."""
+    """Whether there are wheels for this platform of the numba versions that compile kernels."""
     name = this_platform()
     if name.startswith("linux"):
         return name in TARGETS and _glibc() >= (2, 28)

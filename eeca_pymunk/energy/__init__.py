@@ -1,8 +1,11 @@
-"""The equations of EECA on arrays: balance, weights, the energy lock, energy and momenta.
+"""The paper's equations on arrays, the ledger, energy and momenta.
 
-In: masses, velocities, normals, impulses. Out: psi1, psi2, the scale of the lock, sums of energy and momentum.
+In: masses, velocities, normals, impulses. Out: the weights psi1 and psi2, the scale of the energy lock, sums of energy
+and momentum, ledgers.
 
-Open first `balance.py`, the paper's equations with their numbers. `invariants.py` sums energy and momenta.
-`delassus.py` is the operator A = G M^-1 G^T of contacts, `complementarity.py` solves 0 <= lam _|_ A lam + q >= 0 with
-it, `graph.py` tells which bodies hang together. Nothing here knows of pymunk, time steps or shapes.
+Open first `balance.py`, the paper's equations with their numbers, as `Dashpot` and the penalty steppers use them: with
+`delassus.py`, the operator A = G M^-1 G^T of contacts, `complementarity.py`, which solves 0 <= lam _|_ A lam + q >= 0
+with it, and `graph.py`, which finds bodies connected by contacts. All steppers use `invariants.py`, sums of energy and
+momenta, and `ledger.py` (`ledger_trace.py` for a run). The energy lock of the compiled step is in `..rows.energy`.
+Nothing here uses pymunk or shapes.
 """

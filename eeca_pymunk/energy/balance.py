@@ -1,6 +1,7 @@
-"""The EECA equations as pure array kernels (paper Eqs. 10-12, 20, 28-32; design sections 2, 4, 5).
+"""The EECA equations as pure array functions (paper Eqs. 10-12, 20, 28-32; docs/method.md, section 1).
 
-Per contact, with n from a to b, impulse lam >= 0 on b, and Delta the increment over the step:
+Per contact, with n from a to b, impulse lam >= 0 on b, Delta the increment over the step, p_1/2 the mean of the momenta
+at its start and end, K the stiffness of the penalty spring and xi its damping ratio:
 
     Delta q / dt = M^-1 (p_1/2 + p_c),  p_c = sum_c 1/2 psi2 n n^T Delta p        Eqs. 10, 11
     lam / dt     = -1/2 K (g_np1 + g_n) - 1/2 psi1 K (g_np1 - g_n)                Eqs. 11, 12
@@ -60,7 +61,12 @@ def weights(lam: FloatArray, gap: FloatArray, w: FloatArray, S: FloatArray, stif
 
     whose small root is -2 h / ((1 + S) + sqrt((1 + S)^2 + 4 kappa h)). Limits: K, xi -> infinity gives Delta g = 0
     and psi2 = 0. An open contact (lam = 0) has neither force nor momentum: Delta g = psi2 = 0, psi1 = S.
-    psi2 outside [-1, 1] would put the impulse outside the step (design section 3): it is clamped there.
+    psi2 outside [-1, 1] would put the impulse outside the step: it is clamped. A gap g_n > 0 counts as 0, since the
+    impulse acts from the contact on.
+
+    Args:
+        lam: (m,) impulses >= 0.  gap: (m,) g_n, length.  w: (m,) energy, Eq. 20.  S: (m,) psi1 + psi2.
+        stiffness: K, mass/time².  dt: time.
     """
     closed = (lam > 0) & (w > 0)
     kappa = np.divide(2.0 * lam, dt * w, out=np.zeros_like(lam), where=closed)
@@ -68,7 +74,7 @@ def weights(lam: FloatArray, gap: FloatArray, w: FloatArray, S: FloatArray, stif
     root = np.sqrt(np.maximum((1.0 + S) ** 2 + 4.0 * kappa * h, 0.0))
     free = -2.0 * h / ((1.0 + S) + root)
     psi2 = np.clip(kappa * free, -1.0, 1.0)
-    # Where psi2 is clamped the balance, not the dashpot, gives Delta g: energy comes before the penalty law.
+    # Where psi2 is clamped, Delta g follows from the energy balance and not from the dashpot.
     increment = np.where(closed, np.divide(psi2, kappa, out=free, where=np.abs(psi2) == 1.0), 0.0)
     return Weights(S - psi2, psi2, increment)
 
@@ -86,18 +92,20 @@ def extra_momentum(A: Delassus, psi2: FloatArray, delta_p: FloatArray) -> FloatA
 
 
 def impulse_time(psi2: FloatArray, dt: float) -> FloatArray:
-    """tau (m,) = dt (1 - psi2) / 2, the instant inside the step at which the impulse acts (design section 3)."""
+    """tau (m,) = dt (1 - psi2) / 2, the instant inside the step at which the impulse acts."""
     return 0.5 * dt * (1.0 - psi2)
 
 
 def restitution_target(relative: FloatArray, elasticity: FloatArray) -> FloatArray:
-    """e u_n where the contact approaches, u_n where it opens, so that no impulse can add energy (design section 2)."""
+    """-b of docs/method.md, section 3: e u_n where the contact approaches, u_n where it opens; no impulse adds
+    energy."""
     return np.where(relative < 0, elasticity, 1.0) * relative
 
 
 @dataclass(frozen=True)
 class Lock:
-    """The energy lock: `scale` (m,) for each contact's impulse, and `valid` (m,) where a positive scale exists."""
+    """The energy lock: `scale` (m,) for each contact's impulse; `valid` (m,), whether a positive scale exists. Without
+    one the caller has to use other impulses (`..closures.locked`)."""
 
     scale: FloatArray
     valid: BoolArray
@@ -111,7 +119,7 @@ def energy_lock(
     psi2: FloatArray,
     external: FloatArray,
 ) -> Lock:
-    """One scale s per island that makes the step exactly conservative whatever lam is (design section 5).
+    """One scale s per island that makes the energy balance exact for any lam, loss by restitution included.
 
     With J = G^T lam, F = dt f_ext and P x = sum_c 1/2 psi2 n n^T x, the bodies' energy changes over a step with the
     impulses s J by s J . v_1/2 - F . M^-1 P (F + s J), where v_1/2 = v_n + 1/2 M^-1 (F + s J). Setting that equal to
@@ -123,8 +131,8 @@ def energy_lock(
     taken.
 
     Args:
-        island: (m,) label of each contact's island, None if all are one.
-        q: (m,) e u_n + u*, velocity, of the rigid limit.
+        A: the contacts.  island: (m,) label of each contact's island, None if all are one.  lam: (m,) impulses.
+        q: (m,) e u_n + u* of the rigid limit, velocity; u* = u_n + dt a_n without impulses.  psi2: (m,).
         external: (R, 2) F, momentum.
     """
     if island is None:

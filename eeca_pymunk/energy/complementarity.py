@@ -1,4 +1,4 @@
-"""The frictionless contact problem 0 <= lam  _|_  A lam + q >= 0 with A = G M^-1 G^T (design section 6)."""
+"""The frictionless contact problem 0 <= lam  _|_  A lam + q >= 0 with A = G M^-1 G^T."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .graph import islands
 class Impulses:
     """Solution of a complementarity problem.
 
-    `lam` (m,); the iterations taken; whether the tolerance was met; whether only round-off is left.
+    `lam` (m,); iterations taken; whether the tolerance was met; whether the residual is round-off.
     """
 
     lam: FloatArray
@@ -26,11 +26,11 @@ class Impulses:
     exact: bool
 
 
-_PIVOTED = 100  # contacts up to which pivoting beats projected gradients (measured on the hopper)
-_DENSE = 160  # contacts up to which a dense matrix beats the operator
+_PIVOTED = 100  # contacts up to which pivoting is faster than projected gradients, in the hopper
+_DENSE = 160  # contacts up to which a dense matrix is faster than the operator
 _PIVOTS = 25
 _ROUND_OFF = 1e-10  # residual of a direct solution relative to the largest |q|
-_SINGULAR = 1e8  # growth of a solution that tells a singular matrix
+_SINGULAR = 1e8  # size of the solution for a generic right-hand side above which the matrix counts as singular
 
 
 def solve(
@@ -84,7 +84,7 @@ def solve(
 
 
 def pivot(A: FloatArray, q: FloatArray) -> Impulses | None:
-    """Block principal pivoting (Portugal, Judice, Vicente 1994) for a dense (m, m) A; None where it fails.
+    """Block principal pivoting (Portugal, Judice, Vicente 1994) for a dense (m, m) A; None if it fails.
 
     Solves on a guess of the closed contacts, then exchanges every contact whose impulse or velocity has the wrong sign.
     """
@@ -95,7 +95,8 @@ def pivot(A: FloatArray, q: FloatArray) -> Impulses | None:
     for iteration in range(1, _PIVOTS + 1):
         lam[:] = 0.0
         k = np.flatnonzero(closed)
-        # The second right-hand side is generic: it shows a singular matrix, whose impulses would be arbitrary.
+        # The second right-hand side is generic: its solution is huge if the matrix is singular and impulses are
+        # arbitrary.
         right = np.stack((-q[k], diagonal[k] * np.cos(k)), axis=1)
         try:
             both = np.linalg.solve(A[k[:, None], k], right)
@@ -122,10 +123,10 @@ def project(
     limit: float,
     max_iterations: int,
 ) -> Impulses:
-    """Accelerated projected gradients (Nesterov) with the gradient restart of O'Donoghue and Candes.
+    """Accelerated projected gradients (Nesterov 1983) with the gradient restart of O'Donoghue and Candes (2015).
 
-    The metric is diagonal, D >= A, so that every step descends. `multiply` is the product with A; `limit` bounds the
-    natural residual, a velocity.
+    The metric is diagonal, D >= A, so that a step without acceleration descends. `multiply` is the product with A;
+    `limit` bounds the natural residual, a velocity.
     """
     y, t, lam = start, 1.0, start
     for iteration in range(1, max_iterations + 1):

@@ -12,11 +12,11 @@ class Delassus:
     """The operator A = G M^-1 G^T of m contacts between R bodies, never assembled.
 
     G maps body velocities to normal relative velocities, u = n . (v_b - v_a); its transpose maps normal impulses
-    to body impulses, +lam n on b and -lam n on a (design section 1).
+    to body impulses, +lam n on b and -lam n on a.
 
     Args:
         row_a, row_b: (m,) rows of the bodies of each contact.
-        normal: (m, 2) vectors from a to b of length <= 1.
+        normal: (m, 2) vectors from a to b; unit normals, or the shorter discrete ones of the penalty steppers.
         inverse_mass: (R,) 1/mass, 0 for bodies that do not move.
     """
 

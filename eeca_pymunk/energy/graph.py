@@ -1,4 +1,4 @@
-"""The graph of bodies and contacts: which bodies contacts touch, and which hang together."""
+"""The graph of bodies and contacts: which bodies contacts touch, and which are connected by contacts."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from ..arrays import BoolArray, FloatArray, IntArray
 
 
 def restrict(row_a: IntArray, row_b: IntArray, count: int) -> tuple[IntArray, IntArray, IntArray]:
-    """The rows of `count` that occur, increasing, and both arrays renumbered to them: few contacts, small arrays."""
+    """The rows, out of `count`, that occur in both arrays, in increasing order, and both arrays renumbered to them."""
     occurs = np.zeros(count, bool)
     occurs[row_a] = occurs[row_b] = True
     rows = np.flatnonzero(occurs)

@@ -43,9 +43,9 @@ def traces(
     gravity: tuple[float, float],
 ) -> Traces:  # fmt: skip
     """Of n bodies with masses and moments (n,), centres of mass and velocities (T, n, 2) and spins (T, n) rad/time."""
-    # A body of infinite moment keeps its spin whatever happens: what is constant, and infinite, is not counted.
+    # The spin of a body of infinite moment is constant: its infinite energy is left out.
     inertia = np.where(np.isfinite(moment), moment, 0.0)
-    # Sums run over contiguous rows: those of one moment are the same, bit by bit, whatever moments there are besides.
+    # Sums run over contiguous rows, so that the sums of one moment do not depend on T, bit by bit.
     x, y, vx, vy = (np.ascontiguousarray(a[..., k]) for a in (center, velocity) for k in (0, 1))
     spin = np.ascontiguousarray(spin)
     px, py, turning = mass * vx, mass * vy, inertia * spin

@@ -2,9 +2,10 @@
 
     change = external - restitution - friction - damping + residual
 
-The change is that of kinetic energy and of potential energy in the uniform gravity. Losses are booked as impulses
-times means of velocities before and after, or forces times ways, so that the sum closes by identity: the residual is
-round-off of the energies and works that are summed.
+The change is that of kinetic energy, of potential energy in the uniform gravity, and of the energy stored in springs.
+Losses are impulses times means of velocities before and after, or forces times displacements, so that the sum closes by
+identity: the residual is round-off of the energies and works that are summed. A *book* is the array (7,) from which a
+ledger is made.
 """
 
 from __future__ import annotations
@@ -13,7 +14,9 @@ from dataclasses import dataclass
 
 from ..arrays import FloatArray
 
-BOOK = 7  # entries of a book: restitution, friction, external, damping, (free), energy before and after
+# Entries of a book: restitution, friction, external, damping, change of the energy in springs (part of the energy
+# after), energy before and after.
+BOOK = 7
 DAMPED, AFTER = 3, 6
 
 
@@ -22,10 +25,10 @@ class Ledger:
     """Energies of one step, mass length²/time².
 
     Attributes:
-        change: of kinetic and potential energy.
+        change: of kinetic and potential energy, that of springs included.
         external: work of forces on bodies, of velocity functions, of kinematic bodies and moving surfaces.
-        restitution, friction, damping: lost, >= 0. Bounces too small for a step are booked as restitution at once.
-        residual: what does not add up.
+        restitution, friction, damping: losses, >= 0. Bounces too small for a step count as restitution at once.
+        residual: change less the other entries: round-off.
     """
 
     change: float

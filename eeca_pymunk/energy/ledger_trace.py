@@ -12,8 +12,8 @@ from .ledger import Ledger
 
 @dataclass
 class LedgerTrace:
-    """Ledgers of all steps up to each of T moments, summed: of the same names as those of `Ledger`, and zero at the
-    start. NaN from the first step on of which none was kept: pymunk's own solver and the penalty steppers keep none.
+    """Sums of the ledgers of all steps up to each of T moments, zero at the start; names as of `Ledger`. NaN from the
+    first step without a ledger on: pymunk's own solver and the penalty steppers have none.
 
     Attributes:
         change, external, restitution, friction, damping, residual: (T,) mass length²/time².

@@ -8,9 +8,9 @@ from ..compiled.records import Record
 class Body(Record):
     """A body's path, and how impulses move it.
 
-    Rows [0, disks) are dynamic bodies with one shape, a circle about the centre of mass; then the other dynamic bodies;
-    then kinematic ones; the last row is the ground, on which all static shapes stand (pose and velocity 0, no
-    mobility, shapes in world coordinates). From `since` on the path is the parabola
+    Rows [0, disks) are single disks: dynamic bodies with one shape, a circle about the centre of mass. Then come the
+    other dynamic bodies, then the kinematic ones. The last row is the ground, the body of all static shapes (pose and
+    velocity 0, inverse mass and moment 0, shapes in world coordinates). From `since` on the path is the parabola
 
         q(t) = q + v s + a s^2 / 2,   s = t - since,   of each of x, y and the angle.
     """
@@ -21,75 +21,86 @@ class Body(Record):
     vx: float  # velocity there: length/time, length/time, rad/time
     vy: float
     spin: float
-    since: float  # time after the start of the step
-    extent: float  # length from the centre of mass to the farthest point of the shapes; the radius of a lone disk
-    ax: float  # acceleration from `since` on: length/time², length/time², rad/time²
+    since: float  # instant at which the present path began: time after the start of the step
+    extent: float  # length from the centre of mass to the farthest point of the shapes; the radius of a single disk
+    ax: float  # acceleration from `since` on: length/time², length/time²
     ay: float
-    angular: float
-    inv_mass: float  # 1/mass and 1/moment; 0 for what impulses do not move
-    inv_inertia: float
-    elasticity: float  # of a lone disk
-    friction: float
-    due: float  # time after the start of the step of the body's next event
+    angular: float  # angular acceleration: rad/time²
+    inv_mass: float  # 1/mass; 0 for bodies that impulses do not move
+    inv_inertia: float  # 1/moment; 0 for bodies that impulses do not turn
+    elasticity: float  # of a single disk
+    friction: float  # of a single disk
+    # Time of the body's next event after the start of the step. Negative at the start of a step: the event has to be
+    # predicted again. -1 after a new velocity or acceleration, `..layout.ANEW` if the body counts as placed by the
+    # program, -inf if it was placed and the sides of its thin shapes are to be forgotten.
+    due: float
 
 
 POSE, VELOCITY, ACCELERATION = ("x", "y", "angle"), ("vx", "vy", "spin"), ("ax", "ay", "angular")
 
 
 class Next(Record):
-    """A body's next event, and where its shapes are."""
+    """A body's next event, its path version, its shapes, its island."""
 
-    own: int  # shapes of the next event; `other` may be LEAVE, CHECK, NOTHING or RENEW
-    other: int
+    own: int  # shape of the body in its next event; -1 for RENEW
+    other: int  # the other shape, or LEAVE, CHECK, NOTHING, RENEW
     known: int  # path version of the other body when the event was predicted
-    version: int  # of the path: how often it has changed
-    first_shape: int
+    version: int  # path version: number of paths so far
+    first_shape: int  # its shapes are [first_shape, first_shape + shapes)
     shapes: int
     events: int  # impacts of the body in this step
-    island: int  # first body of the island it is solved in, -1 for none
+    island: int  # first body (root) of its island, -1 for none
 
 
-LEAVE, CHECK, NOTHING = -1, -2, -3  # `own` leaves its margin circle; to be predicted again; no event
+# `Next.other`: `own` leaves its margin circle (`shapes.Mark`); the event has to be predicted again then; no event.
+LEAVE, CHECK, NOTHING = -1, -2, -3
 RENEW = -4  # the interval of the body's island ends
 
 
-AWAKE, AT_REST, CHANGED, CANDIDATE = 0, 1, 2, 3  # `Member.rest`; CHANGED also of a kinematic body that moves
+# `Member.rest`; `..islands` has the transitions. AWAKE: solved in every step. AT_REST: held by static forces. CHANGED,
+# of the root of an island at rest: to be solved again; of a kinematic body: it moves. CANDIDATE: slow for a whole step.
+AWAKE, AT_REST, CHANGED, CANDIDATE = 0, 1, 2, 3
 
 
 class Member(Record):
-    """A body's place in an island: bodies in sustained contact, a chain from the first one, the root."""
+    """A body's place in an island. The bodies of an island are a chain from the first one, the root, whose row also
+    holds what is true of the whole island."""
 
     following: int  # next body of the chain, -1 for none
-    last: int  # of the root: the last body, and how many there are
-    bodies: int
-    hits: int  # of the root: how often the island was hit in this step
-    busy: int  # steps for which what comes near joins the island rather than hits it
+    last: int  # of the root: last body of the chain
+    bodies: int  # of the root: number of bodies
+    hits: int  # of the root: hits of the island in this step
+    busy: int  # steps for which shapes that come near join the island instead of hitting it; no test for rest meanwhile
     open: int  # of the root: 1 while contacts of its interval have no entries in the ledger
-    tied: int  # of a body held by joints: the first body of its component, else -1; the next one
-    next_tied: int
-    jointed: int  # of the root: 1 if bodies of its island are held by joints
-    rest: int  # AWAKE to CANDIDATE, see `..islands`
+    tied: int  # first body of its component, -1 if no joint holds the body
+    next_tied: int  # next body of the component, in a ring
+    jointed: int  # of the root: 1 if joints hold bodies of its island
+    rest: int  # AWAKE, AT_REST, CHANGED or CANDIDATE
     loaded: int  # of the root of an island at rest: 1 while support of moving neighbours is unverified
     among: int  # of the root: `bodies`, and those of the islands that support them
-    put: int  # 1 if the body was placed where it is, and may overlap others
-    raised: int  # of the root: 1 if a body without mobility was put into its bodies, which it lifts from outside
-    anew: int  # of the root of an island at rest: 1 while its forces are new to what supports it
+    put: int  # 1 if the program placed the body, which may overlap others
+    raised: (
+        int  # of the root: 1 if a body without mobility was placed into its bodies, so that lifting is external work
+    )
+    anew: int  # of the root of an island at rest: 1 while the islands below have not been tested with its new forces
 
 
 class Rest(Record):
-    """Of a body in an island: displacements to add at the end of the interval, timers of rest."""
+    """A body in an island: corrections at the end of the interval, state of the island's solver, timers of rest."""
 
-    lift_x: float  # to add to pose and velocity at the end of the interval; of an open island with joints, what to add
-    lift_y: float  # to the pose, and the velocity itself
+    # To add to pose and velocity at the end of the interval. With joints `lift_vx` to `lift_spin` are the velocity at
+    # the end itself.
+    lift_x: float
+    lift_y: float
     lift_angle: float
     lift_vx: float
     lift_vy: float
     lift_spin: float
-    augmentation: float  # of the root: its log10 in direct solves, see `contacts/relaxation.py`
-    wait: float  # of the root: steps to wait before the next direct solve; the wait that its next failure brings
-    backoff: float
-    lost: float  # of the root: energy lost in this step; below 0 it is owed
+    augmentation: float  # of the root: log10 of R in direct solves, see `contacts/relaxation.py`
+    wait: float  # of the root: steps until the next direct solve
+    backoff: float  # of the root: steps to wait after its next failure
+    lost: float  # of the root: energy lost in this step; if negative, energy that later intervals have to take out
     until: float  # of the root: instant at which the interval ends
-    calm_for: float  # steps in a row at whose start the body hardly moved
-    speed: float  # that points of the body may get in the step, where all contacts act together
+    calm_for: float  # rest timer: steps in a row at whose start the body was slow; negative after a failed test
+    speed: float  # `Midstep`: bound of the speed of the body's points in the step, length/time
     still_due: float  # `due` of a body at rest at the end of the last step

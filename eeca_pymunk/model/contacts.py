@@ -1,4 +1,4 @@
-"""Records of contacts: impulses of a step, contacts that last, rows of a contact problem."""
+"""Records of contacts: impulses of a step, contacts of intervals, rows of a contact problem."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from ..compiled.records import Record, Rows, kind_of
 
 
 class Impulse(Record):
-    """An impulse of a step, as reports read it."""
+    """An impulse of a step, as reports read it. All fields are floats."""
 
-    first: float  # rows of the shapes of a and of b
-    second: float
+    first: float  # row of the shape of a
+    second: float  # row of the shape of b
     when: float  # time after the start of the step
     normal: float  # impulse, mass length/time, >= 0
     nx: float  # unit normal from a to b
@@ -22,38 +22,38 @@ class Impulse(Record):
     gap: float  # length, at the start of the step, negative in overlap
     change: float  # of the contact's normal velocity by this impulse alone, length/time
     tangential: float  # impulse along t = (-n_y, n_x), mass length/time
-    duration: float  # time over which a force made it, about `when`; 0 for an impact
+    duration: float  # time over which a constant force acted, centred at `when`; 0 for an impact
 
 
 class Pair(Record):
-    """Which shapes a contact of an island's present interval joins."""
+    """The shapes of a contact of an island's present interval, a row of PUSHED_BY; row c of PUSHED has its impulses."""
 
     a: int
     b: int
-    root: int  # first body of the island; of an interval that is over ENDED or LASTED
+    root: int  # first body of the island; ENDED or LASTED once the interval is over
 
 
-ENDED, LASTED = -1, -2  # before the end of the step, with it
+ENDED, LASTED = -1, -2  # the interval ended before the end of the step; with it
 
 
 class Pushed(Record):
     """Impulses and velocities of a contact over the interval of its island."""
 
-    normal: float  # impulses over the interval
+    normal: float  # impulse over the interval, mass length/time
     tangential: float
-    un_before: float  # velocities of the contact at both ends
+    un_before: float  # normal velocity at the start and the end of the interval, length/time
     un_after: float
-    ut_before: float
+    ut_before: float  # tangential velocity likewise
     ut_after: float
-    work: float  # energy that moving bodies and surfaces give over the interval
-    start: float  # instant and length of the interval
-    length: float
-    nx: float
+    work: float  # energy that kinematic bodies and moving surfaces give over the interval
+    start: float  # instant at which the interval begins
+    length: float  # of the interval: time
+    nx: float  # unit normal from a to b
     ny: float
-    px: float
+    px: float  # point, length
     py: float
-    change: float  # of the normal velocity by the impulse alone
-    gap: float  # at the start of the step, nan where the interval began later
+    change: float  # of the normal velocity by the impulse alone, length/time
+    gap: float  # length, at the start of the step; nan if the interval began later
 
 
 class Row(Record):
@@ -80,18 +80,19 @@ class Row(Record):
     friction: float
     target: float  # b: the law is 0 <= lam _|_ u_n - b >= 0
     surface: float  # t.(surface velocity of B's shape - that of A's): length/time
-    wake: float  # activation velocity: the contact acts once u_n without its own impulse falls below; then infinity
-    a_nn: float  # what a unit impulse changes of u_n and u_t: 1/mass
+    # Activation velocity: the contact is inactive while u_n without its own impulse is above it; infinite once active.
+    wake: float
+    a_nn: float  # change of u_n and u_t by unit impulses along n and t: 1/mass
     a_nt: float
     a_tt: float
-    w_nn: float  # the inverse of these, with friction; nan where they are singular: mass
+    w_nn: float  # inverse of [[a_nn, a_nt], [a_nt, a_tt]] of contacts with friction; nan where it is singular: mass
     w_nt: float
     w_tt: float
 
 
 class Problem(NamedTuple):
-    """A contact problem: m rows ROWS between local bodies A and B, of bodies (k,) with inverse masses and moments IM
-    and II, at POSE (k, 3), of which impulses move the first n."""
+    """A contact problem: m rows ROWS between local bodies A and B. The k bodies have inverse masses IM and moments II,
+    (k,), and poses POSE (k, 3); impulses move the first n of them."""
 
     A: IntArray
     B: IntArray
@@ -163,26 +164,26 @@ class Solved(Record):
 
     restitution: float  # energies: losses >= 0 by restitution and by friction
     friction: float
-    carried: float  # work of bodies that impulses do not move, and of moving surfaces
-    lifted: float  # energy that separating overlapping bodies costs
+    carried: float  # external work: of bodies that impulses do not move, and of moving surfaces
+    lifted: float  # energy that the penetration correction costs
     forces: float  # work of forces
     lock: float  # scale of the energy lock
-    owed: float  # energy that is still to be taken out
-    residual: float  # of the contact problem, and what it was to be at most: length/time
-    tolerance: float
-    deepest: float  # gap at the end before bodies are separated: length, negative in overlap
+    owed: float  # energy that later intervals have to take out
+    residual: float  # of the contact problem: length/time
+    tolerance: float  # of the residual
+    deepest: float  # least gap at the end before the correction: length, negative in overlap
     sweeps: int
     direct: int  # direct solutions
-    pushing: int  # contacts that push
-    stood: int  # 1 if the island came to rest
+    pushing: int  # active contacts
+    stood: int  # 1 if the island was put to rest
 
 
 class Force(Record):
     """The forces of a contact in the last step, see `..contacts.memory`."""
 
-    normal: float
+    normal: float  # force, mass length/time²
     tangential: float
-    load: float  # the normal force without what stopped an impact
+    load: float  # part of the normal force that bears loads, without the part that stopped an approach
     stamp: float  # number of the step that wrote the row
 
 
@@ -191,10 +192,10 @@ class Edge(Record):
 
     x: float  # impulse along it, >= 0
     s: float  # multiplier of x >= 0
-    guess: float  # impulse that x is to be next to
-    a_gg: float  # what a unit impulse changes of the velocity along it
-    dx: float  # Newton's step
-    ds: float
+    guess: float  # impulse that x shall be close to
+    a_gg: float  # change of the velocity along it by a unit impulse
+    dx: float  # Newton step of x
+    ds: float  # Newton step of s
 
 
 ROW, SOLVED, EDGE = kind_of(Row), kind_of(Solved), kind_of(Edge)

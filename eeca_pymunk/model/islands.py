@@ -1,4 +1,4 @@
-"""An island as its solve takes it: its bodies one after the other, its contacts, and what the solve answers."""
+"""An island in local numbering, for its solve: its bodies, its contacts, and the report of the solve."""
 
 from __future__ import annotations
 
@@ -11,12 +11,13 @@ from .contacts import Row, Solved
 
 
 class Island(NamedTuple):
-    """The bodies of an island, n that impulses move and then those that they do not.
+    """The k bodies of an island: first the n bodies that impulses move, then the others that they touch.
 
-    A body without mobility that rests (the ground) is among the k as well; an island without any is free. WHO (k,):
-    rows of BODY. POSE, V, ACC (k, 3): poses, velocities and accelerations without contacts, IM, II (k,): inverse masses
-    and moments, EXTENT (k,): lengths, at the start of its interval. FELT (k,): EXTENT, 0 of bodies on which contacts
-    exert no torque. PAIRS (p, 4): shapes a and b, local bodies of a and b.
+    The ground is among the k if a contact touches it. An island with k = n is *free*: its momenta are conserved. WHO
+    (k,): rows of BODY. POSE, V, ACC (k, 3): poses, velocities, and accelerations without contacts, at the start of the
+    interval. IM, II (k,): inverse masses and moments. EXTENT (k,): lengths. FELT (k,): the length by which spin adds to
+    the speed of the body's points; EXTENT, or 0 if contacts exert no torque on the body. PAIRS (p, 4): shapes a and b,
+    local bodies of a and b.
     """
 
     WHO: IntArray
@@ -33,9 +34,9 @@ class Island(NamedTuple):
 class Contacts(NamedTuple):
     """The contacts of an island over an interval.
 
-    ROWS: rows between local bodies A and B. KEY int64 tells pair and place, the same as long as the shapes stay on each
-    other. L, LOSS (., 2): impulses, and losses (D_n, D_t). VN (k, 3): velocities at the end. JUMP (k, 6): what to add
-    to pose and velocity then. OUT (1,): the report.
+    ROWS: rows between local bodies A and B. KEY int64: identifies the pair of shapes and which of its two points it is
+    (`..contacts.memory.key_of`), across steps. L, LOSS (., 2): impulses, and losses (D_n, D_t). VN (k, 3): velocities
+    at the end. JUMP (k, 6): correction of pose and velocity at the end. OUT (1,): the report.
     """
 
     A: IntArray

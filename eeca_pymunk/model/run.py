@@ -1,4 +1,4 @@
-"""Records of a run of many steps: what is asked for, how far it is, and what is kept of it."""
+"""Records of a run of many steps: its settings, its progress, its results."""
 
 from __future__ import annotations
 
@@ -16,36 +16,40 @@ class Run(Record):
     dt: float  # length of each step
     gravity_x: float
     gravity_y: float
-    left_over: float  # what the damping of half a step leaves of velocities
-    time: float  # at the end of the steps that were taken
-    lock: float  # scale of an energy lock that was farthest from 1
-    until: int  # steps after which the loop returns
-    done: int  # steps that were taken
-    stage: int  # of the step at which the loop is: BETWEEN, WITHIN or AFTER
-    bits: int  # of the step that goes on WITHIN or AFTER
-    all_bits: int  # of any step so far
-    every: int  # a frame is kept after so many steps; 0 for none
-    frame: int  # row of FRAMES and SUMS that comes next
+    left_over: float  # factor by which the damping of half a step multiplies velocities
+    time: float  # at the end of the last step taken
+    lock: float  # scale of the energy lock that was farthest from 1
+    until: int  # number of steps after which the loop returns
+    done: int  # number of steps taken
+    stage: int  # BETWEEN, WITHIN or AFTER
+    bits: int  # status bits (`..transfer`) of the step that is resumed WITHIN or AFTER
+    all_bits: int  # status bits of all steps so far
+    every: int  # a frame is stored after so many steps; 0 for none
+    frame: int  # row of FRAMES and SUMS that is written next
     impacts: int  # of all steps
     kept: int  # rows of EVENTS in use
     iterations: int  # solves of all steps
-    unmet: int  # steps that left something undone
-    rollout: int  # number of the rollout, and of the first one that is not to be made
-    rollouts: int
+    unmet: int  # steps that did not meet a budget or tolerance
+    rollout: int  # number of the present rollout
+    rollouts: int  # number of the first rollout that is not to be computed
 
 
-BETWEEN, WITHIN, AFTER = 0, 1, 2
+BETWEEN, WITHIN, AFTER = (
+    0,
+    1,
+    2,
+)  # two steps; a step that asked for more memory; a step whose results are not stored yet
 
 
 class RunArrays(NamedTuple):
-    """What is kept of a run of b bodies, and where rollouts begin.
+    """The results of a run of b bodies, and the starts of rollouts.
 
-    KEPT (b,): rows of the bodies in STATES. FRAMES (T b, 6): poses and velocities of T frames. SUMS (T, 6): ledgers of
-    all steps so far, summed, in the order of `energy.ledger.Ledger`. EVENTS: impacts, `when` from the start of the run;
-    none are kept if there is no row. TOTAL (6,): the sum so far. INITIAL (K b, 6): poses and velocities at the start of
-    each of K rollouts. PUSH (K T b, 3): forces and torques in each stretch of `every` steps, or none. COUNTS (K, 2):
-    steps of each rollout that left something undone, rows of EVENTS in use at its end. OWN, FRESH: the memory of the
-    scene that steps change, and what is in it where nothing has been stepped.
+    KEPT (b,): rows of the bodies in STATES. FRAMES (T b, 6): poses and velocities of T frames. SUMS (T, 6): ledgers,
+    summed over all steps so far, in the order of `energy.ledger.Ledger`. EVENTS: impacts, `when` from the start of the
+    run; without rows none are stored. TOTAL (6,): the present sum. INITIAL (K b, 6): poses and velocities at the start
+    of each of K rollouts. PUSH (K T b, 3): forces and torques for each group of `every` steps, or no rows. COUNTS
+    (K, 2): for each rollout the steps that did not meet a budget or tolerance, and the rows of EVENTS in use at its
+    end. OWN, FRESH: the memory of the scene that steps change, and its content before any step.
     """
 
     RUN: Run

@@ -17,16 +17,25 @@ from .step import Count, Missed, Step
 
 
 class Scene(NamedTuple):
-    """All arrays of a scene of n bodies and k shapes.
+    """All arrays of a scene of n bodies and k shapes, of which the first `moving` move.
 
-    VERTEX: see `shapes.Link`. POOL int32: numbers of shapes, all neighbour lists one after the other; FLAG, of the same
-    length, 1 where an island's solve has taken the pair over, so that it makes no events. HEAD, GRID, BOX, CSR: the
-    grids of `..pairs`. RULE (r, 6): what collision handlers say of pairs, a < b: shapes a, b, elasticity (below 0:
-    none), friction, surface velocity of b relative to a. LOG: impulses of the step. BEGAN (n, 3): poses at the start of
-    the step. CORE (2, K, 4): scratch, the placed cores of two shapes. SIDE, CORNER: of thin shapes
-    (`..geometry.sides`), empty where there are none. MISSED: what was not met. PLACE (n,): -1, or a body's place in the
-    block in BLOCK (n,). PULL (n, 3): accelerations without contacts. KEYS, FORCES: memory of forces
-    (`..contacts.memory`).
+    BODY, STATE (n,): bodies, and their next events.  SHAPE, LINK (k,): shapes.  VERTEX (v, 4): see `shapes.Link`.
+    MARK, CELL (k,), LIST (moving,): margin circles, places in the grid, near lists.
+    POOL int32: numbers of shapes, all near lists one after the other.  FLAG (as POOL): 1 if an island's solve contains
+    the pair, which then makes no events.
+    HEAD (power of 2,): first shape in each bucket of the grid of moving shapes, -1 for none.  GRID: its record.
+    BOX (static shapes, 4): left, bottom, right, top.  CSR: starts of the cells of their grid, then shapes.
+    RULE (r, 6): pairs a < b for which a collision handler decides: shapes a, b, elasticity (negative: no contact),
+    friction, surface velocity of b relative to a.
+    HEAP_TIME, HEAP_BODY: the queue of events.  LOG: impulses of the step.
+    BEGAN (n, 3): poses at the start of the step.  PULL (n, 3): accelerations without contacts.
+    PLACE (n,): -1, or a body's place in BLOCK (n,), a scratch list of bodies.
+    MEMBER, RESTING (n,): islands, and the state of their solves and rest.
+    PUSHED_BY, PUSHED: contacts of the intervals, shapes and impulses, one row each.
+    KEYS, FORCES: hash table of the forces of the last step (`..contacts.memory`).
+    CORE (2, K, 4): scratch, the placed cores of two shapes.
+    SIDE, CORNER: of thin shapes (`..geometry.sides`), empty if there are none.
+    MISSED: budgets and tolerances that were not met.  PAR, COUNT: settings and energies, counters and flags.
     """
 
     BODY: Rows[Body]

@@ -12,7 +12,7 @@ BATCH = 64  # shapes that a loop chooses before the next one looks at them
 
 
 class Shape(Record):
-    """Size and material of a solid shape. Shapes are ordered by body row, so that the shape of a lone disk has the
+    """Size and material of a solid shape. Shapes are ordered by body row, so that the shape of a single disk has the
     number of its body."""
 
     rounding: float  # length, radius of a circle, of a segment's or polygon's rounding
@@ -43,16 +43,19 @@ class Link(Record):
 
 
 class Mark(Record):
-    """The margin circle of a shape, drawn about where its list was made or ahead of that, and its neighbours in the
-    grid."""
+    """The margin circle of a shape, and its neighbours in its bucket of the grid.
 
-    x: float  # centre of the margin circle: where that of the bounding circle was, or a way before it
+    The near list of the shape is valid as long as the centre of its bounding circle is inside the margin circle. All
+    fields are floats, which fill one cache line.
+    """
+
+    x: float  # centre: that of the bounding circle when the list was made, or a point ahead on its path
     y: float
-    margin: float  # how far it may go from there: length; infinite where every shape is in every list
-    reach: float  # of the bounding circle and the margin from the centre, as the grid has it
-    following: float  # shapes in the same place of the grid, -1 for none
+    margin: float  # radius, length; infinite where every shape is in every list
+    reach: float  # `bound` and `margin` together when the shape was entered into the grid
+    following: float  # next and previous shape in the bucket, -1 for none
     previous: float
-    spare_0: float  # to the end of a cache line
+    spare_0: float  # fill the cache line
     spare_1: float
 
 
@@ -64,39 +67,39 @@ class Cell(Record):
 
 
 class List(Record):
-    """Where the neighbours of a shape stand in POOL."""
+    """The near list of a shape: rows [start, start + number) of POOL."""
 
     start: int
     capacity: int
     number: int
-    later: int  # the shape that a lone disk meets if it goes straight on when it leaves its circle
+    later: int  # shape of a single disk's next impact after it has left its margin circle; CHECK or NOTHING
 
 
 class Grid(Record):
-    """The grid of shapes that move, that of static ones, and how much of the neighbour lists is in use."""
+    """The grid of moving shapes, that of static ones, and the use of POOL."""
 
     pool_end: int  # first free place of POOL
     moving: int  # shapes [0, moving) move and have lists, the others are static
-    leaves: int  # lists made again, of one shape each
-    columns: int  # cells of the grid of static shapes; 0 where all of them are looked at
+    leaves: int  # number of renewals of a list
+    columns: int  # of the grid of static shapes; 0 if all of them are tested without a grid
     rows: int
-    left: float  # corner and length of these cells
+    left: float  # x and y of its corner
     bottom: float
-    wall_cell: float
+    wall_cell: float  # length of its cells
     cell: float  # length of the cells of level 0 of the shapes that move
-    level: Annotated[IntArray, LEVELS]  # shapes on each level
-    # Scratch. Which shapes to choose cannot be guessed: a branch would wait for one row after the other.
-    chosen: Annotated[IntArray, BATCH]  # shapes that a loop has chosen
-    walked: Annotated[IntArray, BATCH]  # one shape in each of so many places of the grid
+    level: Annotated[IntArray, LEVELS]  # number of shapes on each level
+    # Scratch. A branch that selects shapes would be predicted badly, so loops write candidates to a list instead.
+    chosen: Annotated[IntArray, BATCH]  # shapes that a loop has selected
+    walked: Annotated[IntArray, BATCH]  # one shape in each of several buckets
 
 
 class Side(Record):
-    """On which side of each other two thin shapes a < b are, see `..geometry.sides`."""
+    """The side of each other on which two thin shapes a < b are, see `..geometry.sides`."""
 
-    key: int  # 1 + a k + b, of k shapes; 0 for a row never used, -1 for one that is free again
+    key: int  # 1 + a k + b, of k shapes; 0 for a row never used, -1 for a deleted one (the search goes on behind it)
     nx: float  # unit normal from a to b
     ny: float
-    deep: float  # length up to which they may overlap and still be on that side
+    deep: float  # depth up to which they may overlap and still be on that side: length
 
 
 class Corner(Record):

@@ -8,26 +8,27 @@ from ..compiled.records import Record
 class Step(Record):
     """Settings, instants and energies of a step."""
 
-    dt: float  # length of the step; instant at which the loop has stopped for more room
-    now: float
+    dt: float  # length of the step
+    now: float  # instant at which the event loop has stopped for more memory
     gravity_x: float
     gravity_y: float
-    left_over: float  # what the damping of half a step leaves of velocities
-    lock: float  # scale of an energy lock that was farthest from 1
+    left_over: float  # factor by which the damping of half a step multiplies velocities
+    lock: float  # scale of the energy lock that was farthest from 1
     last: float  # length of the step before
-    restitution: float  # the ledger of the step, energies: taken by restitution and by friction, work of moving bodies
-    frictional: float  # and surfaces, taken by damping
-    external: float
-    damped: float
-    stored: float  # change of what springs hold
-    before: float  # kinetic energy and -m g.x at both ends of the step
-    after: float
+    # The ledger of the step: energies, in the order of `..energy.ledger`.
+    restitution: float  # loss
+    frictional: float  # loss
+    external: float  # work of forces, kinematic bodies and moving surfaces
+    damped: float  # loss by `space.damping`
+    stored: float  # change of the energy of springs; contained in `after`
+    before: float  # kinetic energy and -m g.x at the start of the step
+    after: float  # the same at its end, and `stored`
     stamp: float  # number of the step
-    pulled: float  # largest acceleration without contacts
+    pulled: float  # |a|, largest acceleration without contacts: length/time²
 
 
 class Count(Record):
-    """Counters of a step."""
+    """Counters, flags, limits and the state of a step that stopped for more memory."""
 
     heap: int  # rows of the heap in use
     logged: int  # rows of LOG in use
@@ -55,21 +56,21 @@ class Count(Record):
     quiet: int  # steps in a row in which that was so to the end
     disks: int  # of the scene: lone disks
     solved: int  # bodies of all solves
-    carries: int  # 1 where islands at rest may support others that move (`islands/support.py`)
-    crammed: int  # 1 if there are bodies that were placed where they are
+    carries: int  # 1 if islands at rest may support others that move (`islands/support.py`)
+    crammed: int  # 1 if the program has placed bodies, which may overlap
 
 
 class Missed(Record):
     """A budget or tolerance that was not met."""
 
-    kind: float  # one of `KINDS`, by its number
+    kind: float  # index into `KINDS`
     first: float  # shapes, -1 for none
     second: float
-    value: float  # what it came to, and what it was to be at most
-    limit: float
+    value: float  # value reached, in the unit of its kind
+    limit: float  # largest value allowed
 
 
-# Kinds of `Missed`, with what they count.
+# Kinds of `Missed`: what is counted or measured.
 KINDS = (
     "impacts",  # of a body in a step (`TimeOfImpact.max_impacts`): later ones are left out
     "hits",  # on an island in a step: later ones are left for the next step
@@ -80,5 +81,6 @@ KINDS = (
 )
 IMPACTS, HITS, IMPACT, SOLVES, CONTACTS, JOINTS = 0, 1, 2, 3, 4, 5
 
-# Status of a step.
+# Status of the event loop. All but DONE are resumable: lists, log or contacts need more memory, or an event is due that
+# the loop itself does not process.
 DONE, POOL_FULL, LOG_FULL, BLOCK_DUE, PUSHES_FULL = 0, 1, 2, 3, 4

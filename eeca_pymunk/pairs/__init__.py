@@ -1,12 +1,10 @@
-"""Pairs: who may meet.
+"""Pairs: which shapes may meet.
 
-In: the bounding circles of shapes, and where they are. Out: near lists, of every shape that moves those that it may
-meet before one of them leaves its margin circle; `grid.py` makes a shape's list anew when it does,
-from the places that shapes have in `cells.py`.
+In: the bounding circles of shapes, and their positions. Out: for each moving shape a near list, the shapes that it may
+meet before one of them leaves its margin circle. The centre of a shape's bounding circle may move by the margin from
+the centre of the margin circle, which is fixed in space; when it leaves that circle, `grid.py` renews the list, from
+the places of shapes in `cells.py`. CONTRIBUTING compares near lists with pymunk's detection.
 
-All shapes, disks and others, have their pairs from here. pymunk's arbiters of a private space of grown shapes would be
-fewer (by a fifth for boxes), but cost 2 to 11 times as much at equal margins, as all are found anew when one has left:
-`python -m comparisons detection` measures both, and checks that every pair that pymunk finds is in the lists.
-
-Open first `lists.py`; `setup.py` chooses margins and lays the arrays out (records of `..model.shapes`).
+Open first `lists.py`; `setup.py` chooses margins and makes the arrays (records of `..model.shapes`); `walls.py` finds
+static neighbours; `rules.py` has elasticity and friction of a pair; `candidates.py` lists the pairs of one step.
 """

@@ -1,7 +1,8 @@
-"""Candidates: the pairs that may meet within a step, for those who solve all contacts of a step at once.
+"""Candidates: the pairs that may meet within a step, for closures that solve all contacts of a step at once.
 
-A shape goes no farther than its body's reach. Its list is complete for a step if it stays within its margin circle all
-the way; lists are made anew where it may not, with a margin that lasts for some steps.
+The reach of a body bounds the displacement of its shapes in the step. A near list is complete for the step if its shape
+stays inside its margin circle; if that is not certain, the list is renewed with MARGIN_OF_FAST times the reach as
+margin.
 """
 
 from __future__ import annotations
@@ -20,11 +21,11 @@ from .lists import centre
 
 @uncounted
 def cover(A: Scene, USUAL: FloatArray, s: int, reach: float) -> bool:
-    """Make the list of shape s complete for a way of length `reach` from the start of the step. False if the pool is
-    full: then `grid.build` is due.
+    """Make the list of shape s complete for a displacement of length `reach` from the start of the step. False if the
+    pool is full: then `grid.build` has to be called.
 
     Args:
-        USUAL: (k,) margins where nothing is fast, length; margins of shapes that were fast go back to these.
+        USUAL: (k,) margins of shapes that are not fast, length; shapes that were fast get them again.
     """
     mark = A.MARK[s]
     if mark.margin == math.inf:
@@ -42,12 +43,11 @@ def candidates(table: Table, USUAL: FloatArray, REACH: FloatArray, PAIRS: IntArr
     """The pairs of shapes whose gap at the start of the step is at most the sum of their bodies' reaches.
 
     Args:
-        REACH: (n,) length by body.
-        PAIRS: (p, 2) shapes a < b, out.  OUT: (p, 6) gap, normal (2) and point (2), and the length up to which the gap
-            is round-off.
+        REACH: (n,) bound of the displacement of each body's points in the step, length.
+        PAIRS: (p, 2) shapes a < b, out.  OUT: (p, 6) gap, normal (2), point (2), and the round-off of the gap, length.
 
     Returns:
-        how many there are; only the first p of them are written. -1 if the pool is full.
+        the number of pairs; only the first p of them are written. -1 if the pool is full.
     """
     A = scene_of(table)
     LINK, LIST = A.LINK, A.LIST

@@ -1,7 +1,8 @@
-"""Cells of the grid: where a margin circle stands, and the chains of shapes that stand in the same place.
+"""Cells of the grid of moving shapes: buckets of a hash table, each a chain of shapes.
 
-Bounding circles are hashed by their centres into square cells, on levels of size: level l holds circles (with their
-margins) of up to half its cell, which is twice that of level l - 1.
+Margin circles are hashed by their centres into square cells on levels of size (Teschner et al. 2003). Level l holds
+circles whose radius, bounding circle and margin together, is at most half its cell; the cells of level l are twice as
+long as those of level l - 1.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from ..model.shapes import LEVELS
 
 @uncounted
 def bucket(level: int, column: int, row: int, mask: int) -> int:
-    """Place of a cell in the hash table."""
+    """Bucket of a cell in the hash table."""
     return ((column * 73856093) ^ (row * 19349663) ^ (level * 83492791)) & mask
 
 
@@ -38,14 +39,14 @@ def level_of(radius: float, cell: float) -> int:
 
 @uncounted
 def draw(A: Scene, s: int, x: float, y: float) -> None:
-    """Let the margin circle of shape s have its centre at (x, y)."""
+    """Set the centre of the margin circle of shape s to (x, y)."""
     mark = A.MARK[s]
     mark.x, mark.y, mark.reach = x, y, A.SHAPE[s].bound + mark.margin
 
 
 @uncounted
 def link(A: Scene, s: int) -> None:
-    """Put shape s into the grid where its margin circle is."""
+    """Enter shape s into the grid at its margin circle."""
     MARK, HEAD = A.MARK, A.HEAD
     level = level_of(MARK[s].reach, A.GRID.cell)
     length = A.GRID.cell * 2.0**level
@@ -61,7 +62,7 @@ def link(A: Scene, s: int) -> None:
 
 @uncounted
 def unlink(A: Scene, s: int) -> None:
-    """Take shape s out of the grid."""
+    """Remove shape s from the grid."""
     MARK, cell = A.MARK, A.CELL[s]
     after, before = int(MARK[s].following), int(MARK[s].previous)
     if before >= 0:
@@ -75,7 +76,7 @@ def unlink(A: Scene, s: int) -> None:
 
 @uncounted
 def near(A: Scene, o: int, x: float, y: float, radius: float) -> bool:
-    """Whether the margin circle of shape o overlaps that of centre (x, y)."""
+    """Whether the circle of radius `MARK.reach` of shape o overlaps the circle (x, y, radius)."""
     dx, dy = A.MARK[o].x - x, A.MARK[o].y - y
     reach = radius + A.MARK[o].reach
     return bool(dx * dx + dy * dy <= reach * reach)

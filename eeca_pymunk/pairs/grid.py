@@ -1,9 +1,7 @@
-"""The grid: near lists of all shapes, made anew one at a time as shapes leave their margin circles.
+"""The grid: near lists of all shapes, renewed one at a time as shapes leave their margin circles.
 
-A search on a level of `cells.py` looks at the cells that the circle, grown by half a cell, overlaps; or at all shapes
-of the level, where they are fewer than these cells.
-
-Static shapes stand in a grid of their own (`CSR`: START of each cell, then numbers of shapes), made once.
+A search on a level of `cells.py` visits the cells that the circle, enlarged by half a cell, overlaps; or all shapes of
+the level, if these are fewer than the cells. Static shapes have a grid of their own (`walls.py`), built once.
 """
 
 from __future__ import annotations
@@ -22,28 +20,28 @@ _FIRST_CAPACITY = 8
 
 @uncounted
 def join(A: Scene, s: int, o: int) -> bool:
-    """Put two moving shapes that may meet into each other's lists. False if the pool is full."""
+    """Enter two moving shapes that may meet into each other's lists. False if the pool is full."""
     return not may_meet(A, s, o) or (append(A, s, o) and append(A, o, s))
 
 
 @uncounted
 def join_chosen(A: Scene, s: int, n: int) -> bool:
-    """`join` s with the first n shapes in GRID.chosen that are not in its list."""
+    """`join` s with those of the first n shapes in GRID.chosen that are not in its list. False if the pool is full."""
     chosen = A.GRID.chosen
     for k in range(n):
         fetch(A.LIST, chosen[k], 0)
         fetch(A.BODY, chosen[k], 0)
     room = True
     for k in range(n):
-        # Cells may share a place of the table: a shape may come up more than once.
+        # Cells may share a bucket: a shape may be found more than once.
         room = room and (place_in(A, s, chosen[k]) >= 0 or join(A, s, chosen[k]))
     return room
 
 
 @uncounted
 def walk(A: Scene, s: int, n: int) -> bool:
-    """`join` s with the shapes near its margin circle in the n places of the grid whose first ones are in GRID.walked.
-    One step in each place at a time: so their rows come at the same time."""
+    """`join` s with the shapes near its margin circle in n buckets, whose first shapes are in GRID.walked. False if the
+    pool is full. All chains advance together, so that their cache misses overlap."""
     MARK, chosen, walked = A.MARK, A.GRID.chosen, A.GRID.walked
     x, y, radius, found = MARK[s].x, MARK[s].y, MARK[s].reach, 0
     while n > 0:
@@ -66,8 +64,8 @@ def walk(A: Scene, s: int, n: int) -> bool:
 
 @uncounted
 def seek_moving(A: Scene, s: int) -> bool:
-    """Neighbours of s, which is not in the grid, among the shapes that are, but for those in its list already. False if
-    the pool is full."""
+    """Enter neighbours of s, which is not in the grid, among the shapes that are; those in its list are skipped. False
+    if the pool is full."""
     MARK, CELL, HEAD, GRID = A.MARK, A.CELL, A.HEAD, A.GRID
     x, y = MARK[s].x, MARK[s].y
     radius = MARK[s].reach
@@ -81,7 +79,7 @@ def seek_moving(A: Scene, s: int) -> bool:
         reach = radius + 0.5 * length
         west, east = cell_at(x - reach, length), cell_at(x + reach, length)
         south, north = cell_at(y - reach, length), cell_at(y + reach, length)
-        # Circles that are too large for the last level stand there too.
+        # The last level also holds all larger circles, so all its shapes are tested.
         last = level == LEVELS - 1
         if last or float(east - west + 1) * float(north - south + 1) > 4.0 * left + 16.0:
             for o in range(GRID.moving):
@@ -105,8 +103,9 @@ def seek_moving(A: Scene, s: int) -> bool:
 
 @uncounted
 def part(A: Scene, s: int) -> int:
-    """Leave in the list of s the moving shapes that are near its margin circle, with their flags, and take s out of the
-    lists of the others; how many are left."""
+    """Keep in the list of s the moving shapes that are near its margin circle, with their flags, and remove s from the
+    lists of the others; returns how many are kept. Static shapes are dropped, since `seek_walls` finds them again,
+    except those with a flag, which would be lost."""
     LIST, POOL, FLAG, MARK, moving = A.LIST, A.POOL, A.FLAG, A.MARK, A.GRID.moving
     start, kept = LIST[s].start, 0
     for q in range(start, start + LIST[s].number):
@@ -115,7 +114,6 @@ def part(A: Scene, s: int) -> int:
     x, y, radius = MARK[s].x, MARK[s].y, MARK[s].reach
     for q in range(start, start + LIST[s].number):
         o = int(POOL[q])
-        # Static ones are sought again, but for their flags.
         if near(A, o, x, y, radius) if o < moving else FLAG[q] != 0:
             POOL[start + kept], FLAG[start + kept] = o, FLAG[q]
             kept += 1
@@ -127,13 +125,13 @@ def part(A: Scene, s: int) -> int:
 
 @uncounted
 def renew(A: Scene, s: int, t: float, ahead: float) -> int:
-    """Draw the margin circle of s anew about where it is at instant t, and bring its list up to date.
+    """Move the margin circle of s to its position at instant t, and renew its list.
 
     Args:
-        ahead: how far before the shape on its way, in margins, the centre of the circle is to be; below 1.
+        ahead: distance of the circle's centre ahead of the shape along its velocity, in margins; below 1.
 
     Returns:
-        how many of the list were in it before: they are the first. -1 if the pool is full: then `build` is due.
+        the number of old entries that are kept; they come first. -1 if the pool is full: then `build` has to be called.
     """
     margin = A.MARK[s].margin
     if margin == math.inf:
@@ -153,7 +151,7 @@ def renew(A: Scene, s: int, t: float, ahead: float) -> int:
 
 @uncounted
 def build(table: Table, t: float) -> bool:
-    """Make all lists at instant t. False if the pool is full: give a larger one, and call again."""
+    """Build all lists at instant t. False if the pool is full: call again with a larger one."""
     A = scene_of(table)
     GRID, moving = A.GRID, A.GRID.moving
     if A.POOL.shape[0] < moving * _FIRST_CAPACITY:
@@ -175,7 +173,7 @@ def build(table: Table, t: float) -> bool:
                 if not join(A, s, o):
                     return False
         else:
-            # Each pair once: s seeks among those that were put in before it.
+            # Each pair once: s is compared with the shapes entered before it.
             if not seek_moving(A, s):
                 return False
             link(A, s)

@@ -1,8 +1,8 @@
-"""Near lists: of every shape that moves the shapes it may meet before one of the two leaves its margin circle.
+"""Near lists: for every moving shape the shapes that it may meet before one of the two leaves its margin circle.
 
-A list is complete while the centres of the bounding circles stay within their margins: |d| > R_a + m_a + R_b + m_b
-where lists were made keeps the circles apart. A pair of moving shapes stands in both lists, a static shape in that of
-the other.
+Let d be the distance of the centres of two margin circles, R the radii of the bounding circles (`Shape.bound`) and m
+the margins. If d > R_a + m_a + R_b + m_b, the bounding circles are apart as long as their centres are inside the margin
+circles, and the pair is in no list. A pair of moving shapes is in both lists, a static shape in that of the other one.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ def centre(A: Scene, s: int, t: float) -> tuple[float, float]:
 
 @uncounted
 def far_apart(A: Scene, a: int, b: int, t: float, reach: float) -> bool:
-    """Whether the bounding circles of shapes a and b are farther apart than `reach`, length, at instant t."""
+    """Whether the bounding circles of shapes a and b are at a distance above `reach`, length, at instant t."""
     ax, ay = centre(A, a, t)
     bx, by = centre(A, b, t)
     apart = A.SHAPE[a].bound + A.SHAPE[b].bound + reach
@@ -40,7 +40,7 @@ def far_apart(A: Scene, a: int, b: int, t: float, reach: float) -> bool:
 
 @uncounted
 def course(A: Scene, s: int, t: float) -> tuple[float, float]:
-    """Unit vector along which the body of shape s moves at instant t; 0 if it is at rest."""
+    """Direction of the velocity of the centre of mass of shape s's body at instant t; 0 if it has none."""
     BODY, i = A.BODY, A.LINK[s].owner
     h = t - BODY[i].since
     ux, uy = BODY[i].vx + BODY[i].ax * h, BODY[i].vy + BODY[i].ay * h
@@ -50,7 +50,8 @@ def course(A: Scene, s: int, t: float) -> tuple[float, float]:
 
 @uncounted
 def may_meet(A: Scene, a: int, b: int) -> bool:
-    """Whether two shapes may collide: of two bodies, one of which impulses move, let through by pymunk's filters."""
+    """Whether two shapes may collide: they belong to two bodies, impulses move one of these, and pymunk's filters allow
+    it."""
     BODY, LINK = A.BODY, A.LINK
     i, j = LINK[a].owner, LINK[b].owner
     if i == j or (
@@ -67,7 +68,7 @@ def may_meet(A: Scene, a: int, b: int) -> bool:
 
 @uncounted
 def append(A: Scene, a: int, b: int) -> bool:
-    """Put b at the end of a's list, which moves to the end of the pool when it is full. False if that is full too."""
+    """Append b to the list of a, which moves to the end of the pool when it is full. False if the pool is full too."""
     POOL, FLAG, own = A.POOL, A.FLAG, A.LIST[a]
     start, n = own.start, own.number
     if n == own.capacity:
@@ -88,7 +89,7 @@ def append(A: Scene, a: int, b: int) -> bool:
 
 @uncounted
 def place_in(A: Scene, s: int, o: int) -> int:
-    """Where in the pool o stands in the list of s, -1 if it does not."""
+    """Index in POOL of o in the list of s, -1 if it is not there."""
     POOL, own = A.POOL, A.LIST[s]
     for q in range(own.start, own.start + own.number):
         if POOL[q] == o:
@@ -98,7 +99,7 @@ def place_in(A: Scene, s: int, o: int) -> int:
 
 @uncounted
 def remove(A: Scene, a: int, b: int) -> None:
-    """Take b out of a's list; the last one takes its place."""
+    """Remove b from the list of a; the last entry takes its place."""
     q = place_in(A, a, b)
     if q >= 0:
         last = A.LIST[a].start + A.LIST[a].number - 1
@@ -108,7 +109,8 @@ def remove(A: Scene, a: int, b: int) -> None:
 
 @uncounted
 def mark_pair(A: Scene, a: int, b: int, value: int) -> None:
-    """Set the flags of the pair in the lists that it stands in."""
+    """Set the flags of a pair in the lists that contain it: 1 while an island's solve has the pair, which then makes no
+    events (set by `..islands`, read by `..prediction`)."""
     for s, o in ((a, b), (b, a)):
         q = place_in(A, s, o) if s < A.LIST.shape[0] else -1
         if q >= 0:

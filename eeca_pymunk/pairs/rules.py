@@ -1,7 +1,5 @@
-"""What a pair of shapes is to each other: pymunk's products, or what handlers have set for this step, or joints.
-
-RULE (r, 6): shapes a < b, elasticity (below 0: they pass through one another), friction, surface velocity of b relative
-to a (x, y). Rows are in the order of their pairs.
+"""Elasticity, friction and surface velocity of a pair of shapes: pymunk's products, or the values that collision
+handlers or joints have set for this step in RULE (see `..model.scene`), whose rows are sorted by pair.
 """
 
 from __future__ import annotations
@@ -32,7 +30,7 @@ def row_of(RULE: FloatArray, a: int, b: int) -> int:
 
 @uncounted
 def barred(RULE: FloatArray, a: int, b: int) -> bool:
-    """Whether shapes a and b pass through one another in this step, as a handler or a joint has said."""
+    """Whether shapes a and b do not collide in this step, because of a handler or a joint."""
     r = row_of(RULE, a, b)
     return bool(r >= 0 and RULE[r, 2] < 0.0)
 

@@ -1,4 +1,4 @@
-"""The first near lists of a scene: margins, the lengths of both grids, and room for the lists."""
+"""The first near lists of a scene: margins, cell lengths of both grids, and memory for the lists."""
 
 from __future__ import annotations
 
@@ -21,11 +21,12 @@ NEAR = ("MARK", "CELL", "LIST", "POOL", "FLAG", "HEAD", "GRID", "BOX", "CSR")
 
 
 def margins(bound: FloatArray, centre: FloatArray, walls: int) -> FloatArray:
-    """(m,) how far shapes of radius `bound` (m,) at `centre` (m, 2) may go before their lists are made anew.
+    """(m,) margins, length, of shapes with bounding radii `bound` (m,) at `centre` (m, 2).
 
-    (2 + 2 m / r)² phi is the number of neighbours at the packing phi, if shapes are spread evenly; `near_lists` takes
-    less where they are not. Small shapes among large ones do not get more than twice their own share, large ones no
-    more than the median's. Few shapes among few walls stand in all lists.
+    Circles of radius r with margins m are neighbours if their centres are nearer than 2 (r + m). At the packing phi, if
+    shapes are spread evenly, 4 (1 + m / r)² phi centres are. Solved for m / r with NEIGHBOURS, this gives a factor; the
+    margin is the factor times the least of 2 r and the median radius. `near_lists` takes less for uneven scenes. In
+    scenes of few moving and few static shapes margins are infinite: every shape is in all lists.
     """
     if len(bound) <= ALL_PAIRS and walls <= ALL_WALLS:
         return np.full(len(bound), np.inf)
@@ -35,14 +36,14 @@ def margins(bound: FloatArray, centre: FloatArray, walls: int) -> FloatArray:
     few = len(bound) <= ALL_PAIRS
     factor = _MARGINS[1] if few else min(max(math.sqrt(0.25 * NEIGHBOURS / phi) - 1.0, _MARGINS[0]), _MARGINS[1])
     median = float(np.median(bound))
-    # Points have a margin too; where all are points, any length will do.
+    # Points have a margin too; if all shapes are points, any length will do.
     least = 1e-3 * (median or float(bound.max()) or 1.0)
     result: FloatArray = factor * np.maximum(np.minimum(2.0 * bound, median), least)
     return result
 
 
 def boxes(scene: Scene, moving: int) -> FloatArray:
-    """(W, 4) left, bottom, right and top of the static shapes, which are those from number `moving` on."""
+    """(W, 4) left, bottom, right and top of the static shapes, those with numbers from `moving` on."""
     SHAPE, LINK = scene.SHAPE, scene.LINK
     result = np.zeros((len(SHAPE) - moving, 4))
     if len(result):
@@ -54,7 +55,7 @@ def boxes(scene: Scene, moving: int) -> FloatArray:
 
 
 def near_lists(scene: Scene, moving: int) -> Scene:
-    """The scene with lists of the shapes [0, moving), where BODY has them now."""
+    """The scene with lists of the shapes [0, moving), for the present poses in BODY."""
     bound, room = scene.SHAPE["bound"][:moving], 32 * moving + 1024
     MARK, CELL, LIST, POOL, FLAG, HEAD = side_by_side(
         ((moving,), Mark.TYPE), ((moving,), Cell.TYPE), ((moving,), List.TYPE),
@@ -72,7 +73,7 @@ def near_lists(scene: Scene, moving: int) -> Scene:
     for _ in range(MARGIN_HALVINGS):
         GRID.cell = 2.0 * float((bound + MARK["margin"]).min(initial=1e300))
         scene = rebuilt(scene, 0.0)
-        # What is crowded in places needs less, unless that is next to nothing, or everybody knows all.
+        # Uneven scenes get smaller margins, down to the least one, unless all pairs are listed anyway.
         if moving == 0 or scene.LIST["number"].mean() <= MOST_NEIGHBOURS or math.isinf(MARK["margin"][0]):
             break
         if np.median(MARK["margin"]) <= _MARGINS[0] * np.median(bound):
@@ -82,23 +83,23 @@ def near_lists(scene: Scene, moving: int) -> Scene:
 
 
 def rebuilt(scene: Scene, t: float) -> Scene:
-    """The scene with its lists built at instant t, with more room if they need it."""
+    """The scene with its lists built at instant t, with a larger pool if necessary."""
     return scene if build(table_of(scene), t) else with_more_room(scene, t)
 
 
 def with_more_room(scene: Scene, t: float) -> Scene:
-    """The scene with twice the room for lists, or more, and with its lists built at instant t."""
+    """The scene with its lists built at instant t, with a pool at least twice as long (recursion with `rebuilt`)."""
     room = more_room(len(scene.POOL))
     return rebuilt(scene._replace(POOL=np.zeros(room, np.int32), FLAG=np.zeros(room, np.uint8)), t)
 
 
 def more_room(room: int) -> int:
-    """The length of a pool after one of this length, which was full."""
+    """Length of the pool that replaces a full one of length `room`."""
     return 2 * room
 
 
 def _wall_cells(BOX: FloatArray, GRID: Grid) -> IntArray:
-    """The grid of static shapes: about as many cells as shapes, fewer where large ones would fill too many."""
+    """The grid of static shapes: about as many cells as shapes, fewer if large shapes would fill too many cells."""
     if len(BOX) <= ALL_WALLS:
         return np.zeros(1, np.int64)
     low, high = BOX[:, :2].min(axis=0), BOX[:, 2:].max(axis=0)

@@ -1,4 +1,4 @@
-"""Static shapes near a moving one: all of them where they are few, else a grid of their own, laid out once."""
+"""Walls: static shapes near a moving one. A few are all tested; many are in a grid of their own, built once."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .lists import append, may_meet, place_in
 
 @uncounted
 def cell_of(distance: float, length: float, count: int) -> int:
-    """Column or row, the outermost ones reaching to infinity."""
+    """Column or row of a distance from the grid's corner; the outermost ones reach to infinity."""
     place = distance / length
     return 0 if not place > 0.0 else (count - 1 if place >= count else int(place))
 
@@ -28,7 +28,7 @@ def cells_of(GRID: Grid, left: float, bottom: float, right: float, top: float) -
 
 @uncounted
 def try_wall(A: Scene, s: int, w: int) -> bool:
-    """Put static shape number w into the list of s if it may meet its margin circle. False if the pool is full."""
+    """Enter static shape number w into the list of s if it may meet its margin circle. False if the pool is full."""
     BOX, mark, o = A.BOX, A.MARK[s], A.GRID.moving + w
     dx = max(BOX[w, 0] - mark.x, mark.x - BOX[w, 2], 0.0)
     dy = max(BOX[w, 1] - mark.y, mark.y - BOX[w, 3], 0.0)
@@ -38,7 +38,7 @@ def try_wall(A: Scene, s: int, w: int) -> bool:
 
 @uncounted
 def seek_walls(A: Scene, s: int) -> bool:
-    """Static neighbours of s, but for those in its list already. False if the pool is full."""
+    """Enter the static neighbours of s that are not in its list. False if the pool is full."""
     GRID, BOX, CSR = A.GRID, A.BOX, A.CSR
     columns, rows = GRID.columns, GRID.rows
     if columns == 0:
@@ -55,7 +55,7 @@ def seek_walls(A: Scene, s: int) -> bool:
             c = row * columns + column
             for q in range(CSR[c], CSR[c + 1]):
                 w = CSR[columns * rows + 1 + q]
-                # A wall of several cells counts in the first one of these that is looked at.
+                # A wall in several cells is tested in the first of the visited ones only.
                 first_column, _, first_row, _ = cells_of(GRID, BOX[w, 0], BOX[w, 1], BOX[w, 2], BOX[w, 3])
                 if max(west, first_column) == column and max(south, first_row) == row and not try_wall(A, s, w):
                     return False
@@ -64,10 +64,10 @@ def seek_walls(A: Scene, s: int) -> bool:
 
 @uncounted
 def wall_grid(BOX: FloatArray, GRID: Grid, CSR: IntArray) -> int:
-    """Lay static shapes, of boxes (W, 4), into the cells of their grid.
+    """Enter static shapes with boxes (W, 4) into the cells of their grid.
 
-    CSR holds columns * rows + 1 starts and then the numbers; returns how many these are. Called with a CSR that has no
-    room for them, it only counts.
+    CSR has columns * rows + 1 starts and then the shapes of all cells. Returns the number of entries; if CSR is too
+    short for them, it only counts.
     """
     columns, cells, total = GRID.columns, GRID.columns * GRID.rows, 0
     for w in range(BOX.shape[0]):

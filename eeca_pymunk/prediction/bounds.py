@@ -1,4 +1,4 @@
-"""Until when two shapes are apart for certain, from the circles about them: most pairs need no closer look."""
+"""Time until which two shapes are certainly apart, from circles around them: most pairs need no search."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from .roots import flat
 
 @uncounted
 def circles_meet(A: Scene, a: int, b: int, start: float, left: float, tolerance: float) -> tuple[float, bool]:
-    """Time after `start` until which shapes a and b are apart for certain, as a circle about the centre of mass of the
-    one that moves is from the other's circle or, if that is static, its outline; and whether they never meet.
+    """Time after `start` until which shapes a and b are certainly apart, and whether they never meet.
 
-    These circles do not turn. 0 where they overlap.
+    Circles about the centres of mass, of radius `extent`, which do not rotate, are compared; a static shape counts with
+    its outline. 0 if they overlap.
     """
     BODY, SHAPE, LINK = A.BODY, A.SHAPE, A.LINK
     ground = BODY.shape[0] - 1
@@ -47,8 +47,8 @@ def circles_meet(A: Scene, a: int, b: int, start: float, left: float, tolerance:
 
 @uncounted
 def carried_circle(A: Scene, s: int, start: float, left: float) -> tuple[float, float, float, float, float]:
-    """Centre (2) and velocity (2) at `start` of the bounding circle of shape s, which its body carries round, and how
-    much (length/time²) the turning bends its path at most, for `left`."""
+    """Centre (2) and velocity (2) at `start` of the bounding circle of shape s on its rotating body, and a bound of the
+    acceleration (length/time²) by rotation within the time `left`."""
     BODY, i = A.BODY, A.LINK[s].owner
     x, y, angle = pose(BODY, i, start)
     ux, uy, w = rate(BODY, i, start)
@@ -63,8 +63,9 @@ def carried_circle(A: Scene, s: int, start: float, left: float) -> tuple[float, 
 
 @uncounted
 def carried_circles_meet(A: Scene, a: int, b: int, start: float, left: float) -> float:
-    """Time after `start` until which the bounding circles of shapes a and b are apart for certain: what `circles_meet`
-    cannot tell of shapes far from their centres of mass. Holds for `left`, or for ever without angular acceleration."""
+    """Time after `start` until which the bounding circles of shapes a and b are certainly apart. Tighter than
+    `circles_meet` for shapes far from their centres of mass. Valid within `left`, always without angular
+    acceleration."""
     x_a, y_a, ux_a, uy_a, bend_a = carried_circle(A, a, start, left)
     x_b, y_b, ux_b, uy_b, bend_b = carried_circle(A, b, start, left)
     BODY, SHAPE, i, j = A.BODY, A.SHAPE, A.LINK[a].owner, A.LINK[b].owner

@@ -1,9 +1,9 @@
 """When a circle meets another one, or a static outline, on parabolic paths.
 
-Straight relative paths, and flat sides under a constant pull, have closed forms. Round ends under a pull have none
-that is cheap (a quartic): there the bound g + g' s - |pull| s² / 2 <= gap(s), which holds because the distance of
-convex sets is a convex function of a translation, leads to the first root from below. None is jumped over, and the
-iteration converges quadratically: Newton's method from the safe side.
+Straight relative paths, and flat sides under constant acceleration, have closed forms. Round ends under acceleration a
+have no cheap one (a quartic). There the bound g + g' s - |a| s² / 2 <= gap(s), which holds because the distance of
+convex sets is a convex function of a translation, leads to the first root from below. No root is missed, and the
+iteration, a Newton method from below, converges quadratically.
 """
 
 from __future__ import annotations
@@ -21,12 +21,13 @@ from .roots import ball_point, flat
 def circle_circle(
     dx: float, dy: float, ux: float, uy: float, ax: float, ay: float, extent: float, tolerance: float, left: float
 ) -> tuple[float, bool]:
-    """Time until |d + u s + a s² / 2| = extent with the distance falling, and whether that is when, or a lower bound.
+    """Time s at which |d + u s + a s² / 2| = extent with the distance falling, and whether it is exact or a lower
+    bound.
 
     Args:
         dx, dy: from centre to centre, length.  ux, uy: relative velocity.  ax, ay: relative acceleration.
         extent: sum of the radii.  tolerance: length, a gap that counts as closed.
-        left: time; a bound is at least that. With infinity there is none.
+        left: time up to which is searched; lower bounds are at least that. Infinite: the result is exact.
     """
     if ax == 0.0 and ay == 0.0:
         return ball_point(dx, dy, ux, uy, extent), True
@@ -60,12 +61,12 @@ def circle_outline(
     x: float, y: float, vx: float, vy: float, ax: float, ay: float, extent: float, tolerance: float,
     A: Scene, b: int, left: float,
 ) -> tuple[float, bool]:  # fmt: skip
-    """Time until a circle meets the static shape b, and whether that is when it does, or a lower bound.
+    """Time at which a circle meets the static shape b, and whether it is exact or a lower bound.
 
-    The outline is the part of the plane inside all its sides, moved out by `extent`, with the corners cut round. So
-    the circle is apart at least until it has entered behind all sides it is now before, each of which is a quadratic
-    equation. If the last one is entered beside its edge that is the impact; else it may be at the corner, straight in
-    closed form too, bent by the bound above. Centres inside a polygon leave through the nearest side.
+    The outline is the region inside all its sides, moved outward by `extent`, with round corners. The circle is apart
+    at least until its centre is behind every side that it is in front of now; each side is a quadratic equation. If the
+    centre passes the last of these sides beside its edge, that is the impact. Otherwise the corner may be hit: a closed
+    form for straight paths, else the bound above. Centres inside a polygon leave through the nearest side.
 
     Args:
         x, y: centre, length.  vx, vy: velocity.  ax, ay: acceleration.  extent: radius and b's rounding together.
@@ -131,7 +132,8 @@ def circle_outline(
 
 @uncounted
 def beside_edge(VERTEX: FloatArray, first: int, count: int, edge: int, x: float, y: float) -> tuple[int, bool]:
-    """The end of an outline's edge (row of VERTEX) on whose side a point is, and whether it is beside the edge."""
+    """The end of an outline's edge (row of VERTEX) that is nearer in direction to a point, and whether the foot of the
+    point lies on the edge."""
     start = first + edge
     end = start + 1 if edge + 1 < count else first
     ex, ey = VERTEX[end, 0] - VERTEX[start, 0], VERTEX[end, 1] - VERTEX[start, 1]

@@ -1,7 +1,7 @@
-"""Forecasts of lone disks that are in no island: those that most events of a gas are about.
+"""Predictions for single disks, which are in no island: most events of a gas.
 
-What a forecast says stays good while neither path changes: past the start of a step, and past the disk's leaving its
-margin circle, for which whom it meets if it goes straight on (LATER) is kept.
+A prediction remains valid while neither path changes, also across the start of a step and after the disk has left its
+margin circle. `List.later` keeps the next impact across the renewal of the list.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ from .next_event import has_left, leaves
 
 @uncounted
 def carrier(A: Scene, s: int) -> int:
-    """Row of the body of shape s: lone disks have the same number as their shapes."""
+    """Row of the body of shape s: single disks have the same number as their shapes."""
     return s if s < A.COUNT.disks else int(A.LINK[s].owner)
 
 
 @uncounted
 def first_chosen(A: Scene, i: int, chosen: int, best: float, other: int) -> tuple[float, int]:
-    """As `first_meeting`, among so many lone disks in GRID.chosen, which one acceleration pulls."""
+    """As `first_meeting`, among the first `chosen` disks in GRID.chosen, all of equal acceleration."""
     for k in range(chosen):
         o = A.GRID.chosen[k]
         t = one_pull(A.BODY, i, o, best)
@@ -42,11 +42,11 @@ def first_chosen(A: Scene, i: int, chosen: int, best: float, other: int) -> tupl
 def first_meeting(
     A: Scene, i: int, known: int, best: float, other: int, end: float, several: bool
 ) -> tuple[float, int]:  # fmt: skip
-    """Instant and shape of the first meeting of lone disk i with those of its list from place `known` on, or what comes
-    before that, `best` and `other`; CHECK for a shape if it is not certain.
+    """Instant and shape of the first meeting of single disk i with shapes of its list from index `known` on; the given
+    `best` and `other` if these come first. CHECK in the place of the shape for a lower bound.
 
     Args:
-        several: whether bodies that have a PLACE are forecast together, see `next_event.predict`.
+        several: whether bodies that have a PLACE are predicted together, see `next_event.predict`.
     """
     BODY, POOL, FLAG, CHOSEN = A.BODY, A.POOL, A.FLAG, A.GRID.chosen
     disks, chosen = A.COUNT.disks, 0
@@ -79,8 +79,8 @@ def first_meeting(
 
 @uncounted
 def expect(A: Scene, i: int, best: float, other: int, now: float, end: float) -> None:
-    """Take it that lone disk i meets shape `other` next, at instant `best`, or leaves its margin circle before; put
-    what is due in this step on the heap."""
+    """Set the next event of single disk i: meeting shape `other` at instant `best`, or leaving its margin circle
+    before. An event that is due in this step goes on the heap."""
     out = leaves(A, i, i, now)
     if other >= 0:
         A.STATE[i].known = A.STATE[carrier(A, other)].version
@@ -95,15 +95,15 @@ def expect(A: Scene, i: int, best: float, other: int, now: float, end: float) ->
 
 @uncounted
 def predict_disk(A: Scene, i: int, now: float, end: float, several: bool) -> None:
-    """As `next_event.predict`, of a lone disk that is in no island."""
+    """As `next_event.predict`, for a single disk."""
     best, other = first_meeting(A, i, 0, math.inf, NOTHING, end, several)
     expect(A, i, best, other, now, end)
 
 
 @uncounted
 def go_on(A: Scene, i: int, now: float, end: float) -> bool:
-    """Lone disk i, in no island, leaves its margin circle and goes straight on: only what has come into its list is new
-    in its forecast. False if the pool is full."""
+    """Single disk i leaves its margin circle with an unchanged path: renew its list and predict its next event, for
+    which only the new entries are tested. False if the pool is full."""
     BODY = A.BODY
     best, other, later, known = math.inf, NOTHING, A.LIST[i].later, A.LIST[i].number
     ahead = AHEAD
@@ -113,7 +113,7 @@ def go_on(A: Scene, i: int, now: float, end: float) -> bool:
     if has_left(A, i, now):
         h = now - BODY[i].since
         if later == NOTHING or other >= 0:
-            # Its course changes where it meets somebody: its circle is to be about there.
+            # Its path changes at its next impact, so the new circle is centred near that place.
             way = norm(BODY[i].vx + BODY[i].ax * h, BODY[i].vy + BODY[i].ay * h) * (best - now)
             ahead = min(way / A.MARK[i].margin, FARTHEST_MARGIN)
         known = renew(A, i, now, ahead)
@@ -128,9 +128,9 @@ def go_on(A: Scene, i: int, now: float, end: float) -> bool:
 
 @uncounted
 def holds(A: Scene, i: int, end: float) -> bool:
-    """Whether the forecast that lone disk i, in no island, was given in an earlier step is still good, as its path and
-    that of whom it meets are the same; puts it on the heap. The instant is computed again, from the paths as they are
-    described in this step, so that no bit depends on how long ago the forecast was made."""
+    """Whether the prediction of an earlier step for single disk i is still valid, because neither path has changed; if
+    so, it goes on the heap. The instant is computed again from the paths as this step describes them, so that no bit
+    depends on the age of the prediction."""
     other, due = A.STATE[i].other, A.BODY[i].due
     if due <= 0.0:
         return False

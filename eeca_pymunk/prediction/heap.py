@@ -1,5 +1,5 @@
-"""The heap of events: the earliest on top, ties by the number of the body. Entries are never removed: one is valid
-while its time is what the body says is due."""
+"""The heap of events: the earliest on top, ties by the number of the body. Entries are not removed when a prediction
+changes: one is valid while its time equals `Body.due`."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ..model.bodies import Body
 
 @uncounted
 def push(TIME: FloatArray, OF: IntArray, n: int, time: float, body: int) -> int:
-    """Add an event to a heap of n; how many there are then."""
+    """Add an event to a heap of n; the new number."""
     k = n
     while k > 0:
         up = (k - 1) >> 1
@@ -25,10 +25,10 @@ def push(TIME: FloatArray, OF: IntArray, n: int, time: float, body: int) -> int:
 
 @uncounted
 def pop(TIME: FloatArray, OF: IntArray, n: int) -> int:
-    """Remove the first event of a heap of n; how many there are then."""
+    """Remove the first event of a heap of n; the new number."""
     n -= 1
-    # The hole goes all the way down, by steps that nobody has to guess; the last entry, which goes there, belongs there
-    # mostly.
+    # The hole sinks to a leaf without unpredictable branches; the last entry, which fills it, usually belongs near a
+    # leaf.
     k = 0
     while 2 * k + 2 < n:
         down = 2 * k + 1
@@ -48,7 +48,7 @@ def pop(TIME: FloatArray, OF: IntArray, n: int) -> int:
 
 @uncounted
 def sweep_out(TIME: FloatArray, OF: IntArray, n: int, BODY: Rows[Body]) -> int:
-    """Drop entries that are not valid any more, and all but one of those that are alike; how many there are then."""
+    """Remove invalid entries, and all but one of equal ones; the new number."""
     size, first = n, n
     while n > 0:
         time, body = TIME[0], OF[0]
@@ -57,7 +57,7 @@ def sweep_out(TIME: FloatArray, OF: IntArray, n: int, BODY: Rows[Body]) -> int:
         if time == BODY[body].due and not alike:
             first -= 1
             TIME[first], OF[first] = time, body
-    # The latest stands first: in the order of time they are a heap.
+    # The latest is first now: reversed, the order of time is a heap.
     kept = size - first
     for k in range(kept // 2):
         a, b = first + k, size - 1 - k

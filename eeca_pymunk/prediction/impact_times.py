@@ -1,8 +1,8 @@
-"""When two shapes meet next if nothing else happens to their bodies.
+"""When two shapes meet next if no impulse acts before.
 
-A forecast is a function of the two paths alone, from the later of their two SINCE on, and the same for (a, b) and
-(b, a). The second result tells whether the instant is when they meet (infinity: never), or only one before which
-they do not, to be looked at again then; it is no earlier than the horizon. Instants count from the start of the step.
+Results (t, certain) are functions of the two paths only, from the later `Body.since` on, and equal for (a, b) and
+(b, a). Certain: the shapes meet at t, never if t is infinite. Not certain: they do not meet before t, which is no
+earlier than the horizon. Instants count from the start of the step.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ from .turning import general
 
 @uncounted
 def passes(dx: float, dy: float, ux: float, uy: float, extent: float, left: float) -> bool:
-    """Whether disks at a distance d and of relative velocity u part, pass far from one another, or are too far away to
-    meet within `left`: for certain. Most do, which needs no root: the first one of |d + u s| = extent is at
+    """Whether disks at a distance d with relative velocity u certainly part, miss each other, or are too far away to
+    meet within the time `left`. True for most, and needs no root: the first one of |d + u s| = extent is at
     s >= c / (2 |d.u|), c = |d|² - extent²."""
     closing, cross, squared = -(dx * ux + dy * uy), dx * uy - dy * ux, extent * extent
     far = dx * dx + dy * dy - PATH_REACH * squared > 2.0 * PATH_REACH * closing * left
@@ -33,8 +33,8 @@ def passes(dx: float, dy: float, ux: float, uy: float, extent: float, left: floa
 
 @merged
 def between(BODY: Rows[Body], i: int, j: int, t: float, ax: float, ay: float) -> tuple[float, float, float, float]:
-    """The way (2) from body i to body j at instant t, and their relative velocity (2), where acceleration a pulls both.
-    Every other pair is the other way round: a term that is 0 for one of the two costs less than a branch."""
+    """The vector (2) from body i to body j at instant t, and their relative velocity (2), for equal accelerations a.
+    One of the two paths begins at t; computing its terms, which are 0, costs less than a branch."""
     g, h = t - BODY[i].since, t - BODY[j].since
     dx = (BODY[j].x + (BODY[j].vx + 0.5 * h * ax) * h) - (BODY[i].x + (BODY[i].vx + 0.5 * g * ax) * g)
     dy = (BODY[j].y + (BODY[j].vy + 0.5 * h * ay) * h) - (BODY[i].y + (BODY[i].vy + 0.5 * g * ay) * g)
@@ -43,8 +43,8 @@ def between(BODY: Rows[Body], i: int, j: int, t: float, ax: float, ay: float) ->
 
 @merged
 def misses(BODY: Rows[Body], i: int, j: int, ax: float, ay: float, latest: float) -> bool:
-    """Whether lone disks i and j, which acceleration a pulls, part, pass far from one another, or are too far away to
-    meet until `latest`: for certain. No more than `one_pull` would find out, and no branch."""
+    """Whether single disks i and j with equal accelerations a certainly part, miss each other, or are too far away to
+    meet until `latest`. Never true if `one_pull` is finite. Without branches."""
     start = max(BODY[i].since, BODY[j].since)
     dx, dy, ux, uy = between(BODY, i, j, start, ax, ay)
     return passes(dx, dy, ux, uy, BODY[i].extent + BODY[j].extent, latest - start)
@@ -52,9 +52,9 @@ def misses(BODY: Rows[Body], i: int, j: int, ax: float, ay: float, latest: float
 
 @uncounted
 def one_pull(BODY: Rows[Body], i: int, j: int, latest: float) -> float:
-    """Instant at which lone disks i and j meet that one acceleration pulls, which cancels; closed form. Disks that
-    touch and approach by the round-off of their speeds do not: they part. Infinity if that is certainly after
-    `latest`."""
+    """Instant at which single disks i and j with equal accelerations, which cancel, meet; closed form. Disks that touch
+    and approach by no more than the round-off of their speeds count as parting. Infinite if the instant is certainly
+    after `latest`."""
     start = max(BODY[i].since, BODY[j].since)
     dx, dy, ux, uy = between(BODY, i, j, start, BODY[i].ax, BODY[i].ay)
     extent = BODY[i].extent + BODY[j].extent
@@ -69,7 +69,7 @@ def one_pull(BODY: Rows[Body], i: int, j: int, latest: float) -> float:
 
 @uncounted
 def disk_disk(BODY: Rows[Body], i: int, j: int, horizon: float) -> tuple[float, bool]:
-    """Lone disks i and j: in closed form where one acceleration pulls both."""
+    """Single disks i and j: a closed form if their accelerations are equal."""
     ax_i, ay_i, ax_j, ay_j = BODY[i].ax, BODY[i].ay, BODY[j].ax, BODY[j].ay
     if ax_i == ax_j and ay_i == ay_j:
         return one_pull(BODY, i, j, math.inf), True
@@ -88,7 +88,7 @@ def disk_disk(BODY: Rows[Body], i: int, j: int, horizon: float) -> tuple[float, 
 
 @uncounted
 def disk_wall(A: Scene, i: int, b: int, horizon: float) -> tuple[float, bool]:
-    """Lone disk i and a static shape b: in closed form, but for round ends under a pull."""
+    """Single disk i and a static shape b: a closed form, except for round ends under acceleration."""
     body = A.BODY[i]
     x, y, since = body.x, body.y, body.since
     extent = body.extent + A.SHAPE[b].rounding
@@ -101,10 +101,10 @@ def disk_wall(A: Scene, i: int, b: int, horizon: float) -> tuple[float, bool]:
 
 @uncounted
 def meet(A: Scene, a: int, b: int, horizon: float) -> tuple[float, bool]:
-    """Instant at which shapes a and b meet next, and whether they do.
+    """(t, certain) of shapes a and b, see the module.
 
     Args:
-        horizon: instant until which the caller wants to know; finite, but for lone disks.
+        horizon: instant up to which is searched; may be infinite for single disks only.
     """
     if a > b:
         a, b = b, a

@@ -1,8 +1,8 @@
-"""Forecasts: the next event of a body on its present path, among the shapes of its lists.
+"""The next event of a body on its present path, among the shapes of its lists.
 
-A forecast is a function of the two paths alone, not of when it is made: times are counted from the later of the two
-bodies' kinks. Paths of equal acceleration give times that hold beyond the step; others are looked at to its end, and
-give a time before which nothing happens: the body is forecast anew then.
+A prediction is a function of the two paths only, not of the instant at which it is made: times count from the later
+start of the two paths. Paths of equal acceleration give times that are valid beyond the step. For other pairs the
+search stops at the end of the step and returns a lower bound; the body is predicted again at that instant.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from .impact_times import meet
 
 @uncounted
 def leaves(A: Scene, i: int, s: int, now: float) -> float:
-    """Instant before which the centre of shape s of body i stays within its margin circle; exact for straight paths."""
+    """Instant before which the centre of shape s of body i stays inside its margin circle; exact for straight paths."""
     BODY, SHAPE, MARK = A.BODY, A.SHAPE, A.MARK
     m = MARK[s].margin
     if m == math.inf:
@@ -36,14 +36,14 @@ def leaves(A: Scene, i: int, s: int, now: float) -> float:
         squared = vx * vx + vy * vy
         b = dx * vx + dy * vy
         c = m * m - dx * dx - dy * dy
-        # What the user has put elsewhere is outside, even at rest or on its way back.
+        # A shape that the program has moved may be outside, even at rest or on its way back.
         if c <= 0.0:
             return now
         if squared == 0.0:
             return math.inf
         root = math.sqrt(b * b + squared * c)
         return float(now + ((root - b) / squared if b <= 0.0 else c / (root + b)))
-    # The length of the way bounds the distance: u s + g s^2 / 2 until the room is used up.
+    # The length of the path bounds the distance: u s + g s^2 / 2, with u, g bounds of speed and acceleration.
     x, y = centre(A, s, now)
     room = m - norm(x - MARK[s].x, y - MARK[s].y)
     if room <= 0.0:
@@ -57,7 +57,7 @@ def leaves(A: Scene, i: int, s: int, now: float) -> float:
 
 @uncounted
 def has_left(A: Scene, s: int, now: float) -> bool:
-    """Whether shape s is as good as out of its margin circle."""
+    """Whether shape s has used more than 1 - INSIDE of its margin."""
     x, y = centre(A, s, now)
     return bool(norm(x - A.MARK[s].x, y - A.MARK[s].y) > (1.0 - INSIDE) * A.MARK[s].margin)
 
@@ -75,12 +75,13 @@ def horizon_of(A: Scene, i: int, end: float) -> float:
 
 @merged
 def predict(A: Scene, i: int, now: float, end: float, until: float) -> None:
-    """Forecast body i from its present path, at an instant `now` of the loop, and put what is due in this step on the
-    heap.
+    """Predict the next event of body i from its present path, at an instant `now` of the loop; one that is due in this
+    step goes on the heap. Ties go to the lower shape numbers, so that the result does not depend on the order of lists.
 
     Args:
-        A: PLACE (n,) is 0 or more for bodies that are forecast together, the first of a pair of which sees it; else -1.
-        until: instant at which an interval of the body's island ends, infinite if it has none of its own.
+        A: PLACE (n,) >= 0 marks bodies that are predicted together; a pair of two such bodies is tested for the one
+            with the lower number only.
+        until: instant at which the interval of the body's island ends, infinite unless the body is its root.
     """
     BODY, STATE, LINK, LIST = A.BODY, A.STATE, A.LINK, A.LIST
     best, own, other = math.inf, -1, NOTHING

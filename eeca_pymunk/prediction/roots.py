@@ -1,4 +1,4 @@
-"""First instants at which a gap closes, in closed form and without cancellation; infinity where it never does."""
+"""First instants at which a gap closes, in closed form and without cancellation; infinite if it never does."""
 
 from __future__ import annotations
 
@@ -12,12 +12,13 @@ def flat(g: float, w: float, alpha: float) -> float:
     """First root of g + w s + alpha s² / 2 = 0 in s >= 0 with the gap falling; 0 in overlap that deepens.
 
     The falling root is 2 g / (sqrt(D) - w) with D = w² - 2 alpha g for w < 0, and (w + sqrt(D)) / -alpha for w >= 0 >
-    alpha: the gap opens first, and the pull closes it again. In overlap a gap that never opens closes again when it is
-    back where it was. A gap of 0 that neither opens nor closes is closed by a pull now, and never without.
+    alpha: the gap opens first, and the acceleration closes it again. In overlap without a real root the result is the
+    time at which the gap has its present value again. A gap of 0 with w = 0 closes now for alpha < 0, never for
+    alpha >= 0.
 
     Args:
-        g: gap, length.  w: its rate, length/time.  alpha: the rate's rate, constant, length/time²: of a gap that is
-            only known to bend down by no more than that, this root is a bound from below.
+        g: gap, length.  w: its rate, length/time.  alpha: its constant second derivative, length/time². If alpha is
+            only a lower bound of the second derivative, the root is a lower bound of the instant.
     """
     if w < 0.0:
         if g <= 0.0:
@@ -40,7 +41,7 @@ def ball_point(dx: float, dy: float, ux: float, uy: float, extent: float) -> flo
 
     With b = d . u < 0 the root is s = c / (sqrt(D) - b), c = |d|² - extent² and D = b² - |u|² c. The discriminant
     D = |u|² extent² - (d x u)², taken as a product of a sum and a difference, keeps its digits for grazing hits.
-    No bit depends on the sign of d and u together.
+    Exchanging the two circles changes no bit.
 
     Args:
         dx, dy: from centre a to centre b, length.  ux, uy: relative velocity, constant.  extent: sum of the radii.
@@ -50,7 +51,7 @@ def ball_point(dx: float, dy: float, ux: float, uy: float, extent: float) -> flo
         return math.inf
     cross = abs(dx * uy - dy * ux)
     squared = ux * ux + uy * uy
-    # Most pass far from one another, which needs no root.
+    # Most miss each other, which needs no root.
     if cross * cross > 1.000001 * extent * extent * squared:
         return math.inf
     reach = math.sqrt(squared) * extent

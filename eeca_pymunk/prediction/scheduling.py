@@ -1,4 +1,4 @@
-"""Who is to be forecast anew, and what the memory is to bring before the events need it."""
+"""Which bodies are predicted, and prefetching of memory for the next events."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .next_event import predict
 
 @uncounted
 def forecast(A: Scene, i: int, t: float, end: float, several: bool) -> None:
-    """The next event of body i, seen from instant t of the loop; see `predict` for `several`."""
+    """Predict the next event of body i at instant t of the loop; `several` as in `disks.first_meeting`."""
     A.COUNT.forecasts += 1
     if i < A.COUNT.disks and A.STATE[i].island < 0:
         predict_disk(A, i, t, end, several)
@@ -24,8 +24,8 @@ def forecast(A: Scene, i: int, t: float, end: float, several: bool) -> None:
 
 @uncounted
 def forecast_all(A: Scene, n: int, t: float, end: float) -> None:
-    """The next events of the n bodies in A.BLOCK, seen from instant t: each pair of them is looked at once. That is
-    enough, as either body is forecast anew with all others after its next event."""
+    """Predict the next events of the n bodies in A.BLOCK at instant t. Each pair of them is tested once; that is
+    enough, because a body is predicted with all others after its next event."""
     for q in range(n):
         A.PLACE[A.BLOCK[q]] = q
     for q in range(n):
@@ -36,7 +36,7 @@ def forecast_all(A: Scene, n: int, t: float, end: float) -> None:
 
 @uncounted
 def forecast_due(A: Scene) -> None:
-    """The next events, at the start of a step, of all bodies whose last forecast is no good."""
+    """At the start of a step, predict the next events of all bodies whose prediction is void or due in this step."""
     n, dt, disks = 0, A.PAR.dt, A.COUNT.disks
     for i in range(A.BODY.shape[0] - 1):
         alone = A.STATE[i].island < 0
@@ -49,7 +49,7 @@ def forecast_due(A: Scene) -> None:
 
 @merged
 def fetch_body(A: Scene, i: int) -> None:
-    """Have what an event of body i is about brought."""
+    """Prefetch the rows of body i for an event."""
     fetch(A.BODY, i, 0)
     fetch(A.BODY, i, 8)
     fetch(A.STATE, i, 0)
@@ -57,8 +57,8 @@ def fetch_body(A: Scene, i: int) -> None:
 
 @merged
 def look_ahead(A: Scene, now: int) -> None:
-    """Have the memory bring what the events after that of body `now` are about: numbers of later ones first, as they
-    say where to find the rest."""
+    """Prefetch the rows for the events after that of body `now`: for later events the indices, because they locate the
+    other rows."""
     LIST, disks = A.LIST, A.COUNT.disks
     n = min(A.COUNT.heap, 3)
     for k in range(1, n):

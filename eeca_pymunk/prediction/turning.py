@@ -1,10 +1,10 @@
-"""When shapes that turn, or are carried, meet: from bounds of the motion of their vertices.
+"""When rotating shapes meet: conservative advancement (Mirtich 1996) from bounds of the motion of their vertices.
 
-Shapes are apart where they are apart along some axis. Along an axis n the least gap of some points bounds that of the
-shapes, and a point's gap g with rate g' stays above g + g' s - B s² / 2 if nothing on the path bends it by more than
-B. So each axis gives an instant before which the shapes are apart, and the latest of these is a safe place to look
-again. Three axes: the normal as it stands in space now, with the vertices of both shapes; and the normals of the
-edges of a and of b along which they are farthest apart, which turn with their bodies, with the other one's vertices.
+Shapes are apart if they are apart along some axis. Along an axis n the least gap of some points bounds that of the
+shapes, and a point's gap g with rate g' stays above g + g' s - B s² / 2 if B bounds its second derivative. So each axis
+gives an instant before which the shapes are apart, and the search continues at the latest of these. There are three
+axes: the present normal, fixed in space, with the vertices of both shapes; and the normals of the edges of a and of b
+along which they are farthest apart, which rotate with their bodies, with the vertices of the other shape.
 
 Bounds until the horizon, with r the reach of a core about its centre of mass, w the spin, q its rate, A the relative
 acceleration of the centres, V their relative speed, and L their distance:
@@ -12,7 +12,9 @@ acceleration of the centres, V their relative speed, and L their distance:
     fixed axis        B = A + sum of r (w² + q) of both,
     axis of body a    B = A + r_b (w_b² + q_b) + 2 w_a (V + w_b r_b) + (w_a² + q_a) (L + r_b).
 
-Shapes have met where points close along all axes on which they touch.
+Shapes meet if, along every axis on which the gap is closed, a point approaches.
+
+Side effect: `begin_side` and `general` note the sides of thin shapes in SIDE.
 """
 
 from __future__ import annotations
@@ -36,7 +38,7 @@ from .roots import flat
 
 
 class Motion(NamedTuple):
-    """Place and velocity of a body at one instant."""
+    """Pose and velocity of a body at one instant."""
 
     x: float
     y: float
@@ -47,7 +49,7 @@ class Motion(NamedTuple):
 
 
 class Closing(NamedTuple):
-    """What the gaps of points along an axis are measured by."""
+    """Constants of the gaps of points along an axis."""
 
     extent: float  # gap of the cores where the shapes touch: length
     bend: float  # bound of the second derivative of gaps: length/time²
@@ -65,8 +67,8 @@ def motion(BODY: Rows[Body], i: int, t: float) -> Motion:
 
 @uncounted
 def first_close(best: float, near: float, closing: bool, g: float, w: float, of: Closing) -> tuple[float, float, bool]:
-    """Take one more point with gap g and rate w into an axis: the first instant at which one may close, the least gap,
-    and whether one touches and closes."""
+    """Include one more point with gap g and rate w in an axis: the first instant at which a point may close, the least
+    gap, and whether a point touches and approaches."""
     near = min(near, g)
     if g <= of.tolerance:
         closing = closing or w < -of.still
@@ -80,7 +82,7 @@ def first_close(best: float, near: float, closing: bool, g: float, w: float, of:
 def fixed_axis(
     P: FloatArray, p: int, Q: FloatArray, q: int, nx: float, ny: float, a: Motion, b: Motion, of: Closing
 ) -> tuple[float, float, bool]:
-    """`first_close` of all vertices of a against all of b along the normal as it stands."""
+    """`first_close` of all vertices of a against all of b along the present normal."""
     best, near, closing = math.inf, math.inf, False
     for i in range(p):
         x, y = P[i, 0], P[i, 1]
@@ -96,7 +98,7 @@ def fixed_axis(
 def turning_axis(
     P: FloatArray, edge: int, Q: FloatArray, q: int, a: Motion, b: Motion, of: Closing
 ) -> tuple[float, float, bool]:
-    """`first_close` of the vertices of b against an edge of a: rates are relative to a's matter at that place."""
+    """`first_close` of the vertices of b against an edge of a: rates are relative to the material point of a there."""
     best, near, closing = math.inf, math.inf, False
     nx, ny = P[edge, 2], P[edge, 3]
     for j in range(q):
@@ -110,8 +112,8 @@ def turning_axis(
 
 @uncounted
 def reach_of(A: Scene, s: int) -> tuple[float, float, float]:
-    """A point of the body of shape s, relative to its centre of mass, and the reach of the shape about it: the centre
-    of mass itself, but for what stands on the ground the shape's own centre."""
+    """A reference point of shape s relative to its body's centre of mass, and the radius of the shape about it: the
+    centre of mass itself for moving bodies, the centre of its bounding circle for static shapes."""
     if A.LINK[s].owner == A.BODY.shape[0] - 1:
         return A.SHAPE[s].centre_x, A.SHAPE[s].centre_y, A.SHAPE[s].bound
     return 0.0, 0.0, A.SHAPE[s].extent
@@ -146,8 +148,8 @@ def fastest(A: Scene, s: int, t: float) -> float:
 
 @uncounted
 def pressed(BODY: Rows[Body], i: int, j: int, t: float, nx: float, ny: float, px: float, py: float) -> float:
-    """When bodies that touch at a point, and there part with u >= 0 or rest, are back: 2 u / a_n if the point's
-    acceleration closes by a_n > 0; infinity else."""
+    """Time after which bodies that touch at a point, and part there with u >= 0, touch again: 2 u / a_n if the
+    acceleration at the point closes with a_n > 0, else infinite."""
     a, b = motion(BODY, i, t), motion(BODY, j, t)
     rx_a, ry_a, rx_b, ry_b = px - a.x, py - a.y, px - b.x, py - b.y
     q_a, q_b = BODY[i].angular, BODY[j].angular
@@ -162,7 +164,7 @@ def pressed(BODY: Rows[Body], i: int, j: int, t: float, nx: float, ny: float, px
 def leaving(
     BODY: Rows[Body], i: int, j: int, t: float, nx: float, ny: float, px: float, py: float
 ) -> tuple[float, float]:  # fmt: skip
-    """The rate with which bodies part along the normal n, and the acceleration with which they are pressed together."""
+    """The velocity with which bodies part along the normal n, and the acceleration that presses them together."""
     a, b = motion(BODY, i, t), motion(BODY, j, t)
     u = nx * (b.vx - b.spin * (py - b.y) - a.vx + a.spin * (py - a.y))
     u += ny * (b.vy + b.spin * (px - b.x) - a.vy - a.spin * (px - a.x))
@@ -171,11 +173,11 @@ def leaving(
 
 @uncounted
 def begin_side(A: Scene, a: int, b: int, start: float, left: float, tolerance: float) -> None:
-    """Note on which side of each other thin shapes a < b begin.
+    """Note on which side of each other thin shapes a < b are at the beginning of a search.
 
-    Segments that were put flush on one another, which have no inside to tell, rest where they are pressed together if
-    they move by less than `tolerance` (length) in the time `left`. If they move, and their distance is round-off too,
-    they are where they part. Of all else the geometry tells the side.
+    For segments that touch and have no remembered side: if they move by less than `tolerance` (length) in the time
+    `left`, they are on the side against which they are pressed; else, if their distance is round-off, on the side to
+    which they part. For all other shapes the side follows from the geometry.
     """
     i, j, P, Q = A.LINK[a].owner, A.LINK[b].owner, A.CORE[0], A.CORE[1]
     x_a, y_a, angle_a = pose(A.BODY, i, start)

@@ -1,4 +1,4 @@
-"""Drawing: the shapes of a space on axes, made once and moved in place."""
+"""Drawing: the shapes of a space on axes; artists are made once and moved."""
 
 from __future__ import annotations
 

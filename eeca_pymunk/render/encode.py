@@ -18,7 +18,7 @@ from PIL import Image
 from .drawing import COLORS
 
 Frames = Iterable[npt.NDArray[np.uint8]]
-_SHADES = 9  # of each colour towards white, for smooth edges: few colours make small files
+_SHADES = 9  # of each colour towards white, for smooth edges; few colours make small files
 
 
 def check_encoder(suffix: str) -> None:
@@ -30,13 +30,13 @@ def check_encoder(suffix: str) -> None:
 
 
 def encoder(suffix: str) -> Callable[[Frames, Path, float], None]:
-    """What writes frames, a path and frames per second to a file."""
+    """The function that writes frames to a file."""
     return _ENCODERS[suffix]
 
 
 def _gif(frames: Frames, path: Path, fps: float) -> None:
     images = _few_colors(frames)
-    # A GIF's clock ticks in hundredths of a second.
+    # Delays of a GIF are multiples of 10 ms.
     duration = 10 * max(2, round(100.0 / fps))
     with path.open("w+b") as file:
         next(images).save(file, "GIF", save_all=True, append_images=images, duration=duration, loop=0, disposal=1)
@@ -58,7 +58,7 @@ def _mp4(frames: Frames, path: Path, fps: float) -> None:
             for shot in chain((first,), shots):
                 ffmpeg.stdin.write(np.ascontiguousarray(shot).tobytes())
         except BrokenPipeError:
-            pass  # ffmpeg says below why it left
+            pass  # the error message of ffmpeg is read below
         except BaseException:
             ffmpeg.kill()
             raise
@@ -86,7 +86,7 @@ def html_player(frames: Frames, fps: float, caption: str) -> str:
 
 
 def _few_colors(frames: Frames) -> Iterator[Image.Image]:
-    """The frames in the colours of drawings, so that what does not change is equal in all of them."""
+    """The frames with one palette, that of drawings, so that unchanged pixels are equal in all of them."""
     whiteness = np.linspace(0.0, 1.0, _SHADES)[:, None]
     pure = [np.array(to_rgb(c)) for c in (*COLORS, "black")]
     shades = np.concatenate([whiteness + (1.0 - whiteness) * c for c in pure])

@@ -1,4 +1,4 @@
-"""Films: recordings side by side on one clock, with traces of energy and momentum, or of the ledger."""
+"""Films: recordings side by side at equal times, with traces of energy and momentum, or of the ledger."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ Image = npt.NDArray[np.uint8]  # (height, width, 3)
 Exact = Callable[[float], FloatArray | None]
 _MOST = 4  # panels
 _PREVIEW = 60  # frames of a notebook's player
-_TRAILED = 5  # bodies of which the paths are drawn too: of more they hide the picture
+_TRAILED = 5  # number of bodies up to which paths are drawn
 
 
 def animate(
@@ -47,16 +47,17 @@ def animate(
 ) -> Path:
     """Write a film of one to four recordings side by side; `.gif`, `.mp4` or `.html` by suffix.
 
-    All panels have one scale and one clock: a frame shows of each recording the moment nearest to its time. Below each
-    run the energy relative to the start and the size of the momentum relative to its largest; of a run whose ledger
-    tells of losses or external work, the energies it has and has lost, stacked (`traces.py`).
+    All panels have the same scale; a frame shows the moment of each recording that is nearest to its time. Below each
+    panel are the energy relative to the start and the size of the momentum relative to its largest, or, if the ledger
+    has losses or external work, a stack of energies and losses (`traces.py`).
 
     Args:
-        recordings: what to show.  titles: of the panels; stepper and dt if None.
-        fps: frames per second, > 0; a GIF counts in hundredths of a second.
-        exact: time to the (N, 2) exact positions, None where unknown (`Scene.exact`): drawn as a ghost.
-        view: (left, right, bottom, top) lengths; everything that was recorded if None.
-        frames: evenly spaced in time; one per moment of the recording with most if None.
+        recordings: one to four.  titles: of the panels; stepper and dt if None.
+        fps: frames per second, > 0; delays of a GIF are multiples of 10 ms.
+        exact: function of time that returns the (N, 2) exact positions, None where unknown (`Scene.exact`): drawn as
+            outlines.
+        view: (left, right, bottom, top) lengths; all of the recording if None.
+        frames: number of frames, evenly spaced in time; by default the largest number of moments.
         arrow: "velocity" or "momentum" of every body.
         dpi: dots per inch; a panel is 4 inches wide.
         progress: show a progress bar.
@@ -77,7 +78,7 @@ def animate(
 
 
 def player(recording: Recording, fps: float = 20) -> str:
-    """HTML of a small player of the recording, complete in itself."""
+    """Self-contained HTML of a small player of the recording."""
     film = Film(recording, frames=min(len(recording), _PREVIEW), dpi=60)
     name = html.escape(str(recording.parameters.get("stepper", "recording")))
     return html_player(film.images(), fps, f"{name}, {len(recording)} moments")
@@ -113,9 +114,9 @@ class Film:
             view = (float(low[0]), float(high[1]), float(low[2]), float(high[3]))
         end = max(float(r.time[-1]) for r in shown)
         self.times = np.linspace(0.0, end, max(len(r) for r in shown) if frames is None else frames)
-        # As many as tell a hundredth of the film, so that the clock does not jump about.
+        # Digits that resolve a hundredth of the film; their fixed number keeps the text in place.
         self.digits = min(max(2 - math.floor(math.log10(end)), 0), 9) if end > 0.0 else 0
-        # Even numbers of pixels: video codecs ask for them.
+        # Even numbers of pixels, which video codecs require.
         tall = min(max(4.0 * (view[3] - view[2]) / (view[1] - view[0]), 2.0), 8.0) + 1.9
         pixels = [2 * round(0.5 * dpi * inches) for inches in (4.0 * len(shown), tall)]
         self.figure = figure(pixels[0] / dpi, pixels[1] / dpi, dpi)
@@ -134,7 +135,7 @@ class Film:
         return len(self.times)
 
     def images(self) -> Iterator[Image]:
-        """Each frame as (height, width, 3) bytes; what stands still is drawn once."""
+        """Each frame as (height, width, 3) bytes; static parts are drawn once."""
         canvas = cast(FigureCanvasAgg, self.figure.canvas)
         moving = [(panel.ax, artist) for panel in self.panels for artist in panel.moving]
         moving += [(panel.trace.ax, artist) for panel in self.panels for artist in panel.trace.moving]
@@ -156,7 +157,8 @@ class Film:
 
 
 class _Panel:
-    """The bodies of one recording, with the exact solution as a ghost and arrows where they are wanted."""
+    """The bodies of one recording, with arrows if wanted, and the exact solution as outlines (ghosts): at its
+    positions, with the angles of the recording."""
 
     def __init__(
         self, ax: Axes, recording: Recording, trace: Trace, title: str, view: View, exact: Exact | None,
@@ -189,7 +191,7 @@ class _Panel:
         x, angle = self.recording.position[i], self.recording.angle[i]
         self.drawing.move(x, angle)
         if self.exact is not None:
-            # The ghost is where the body should be at the moment shown, not at the frame's.
+            # The exact solution at the recorded moment that is shown, not at the time of the frame.
             there = self.exact(float(self.recording.time[i]))
             self.ghost.move(np.full_like(x, np.nan) if there is None else there, angle)
         if self.arrows is not None:

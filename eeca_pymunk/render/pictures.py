@@ -133,8 +133,8 @@ def frame(ax: Axes, view: View, title: str) -> None:
 
 
 def arrows(ax: Axes, x: FloatArray, vector: FloatArray, longest: float | None = None) -> Quiver:
-    """An arrow for each (N, 2) vector at (N, 2) places. `longest` spans two fifths of the axes; the longest here if
-    None. Vectors that are not finite (a kinematic body's momentum) have none."""
+    """An arrow for each (N, 2) vector at (N, 2) positions. A vector of length `longest`, by default the longest one
+    here, spans two fifths of the axes. Vectors that are not finite (the momentum of a kinematic body) have no arrow."""
     size = np.linalg.norm(vector, axis=1)
     shown = np.where(np.isfinite(size)[:, None], vector, 0.0)
     length = float(np.linalg.norm(shown, axis=1).max(initial=0.0)) if longest is None else longest

@@ -1,4 +1,4 @@
-"""Traces below a film's panels: energy and momentum, or where the energy has gone."""
+"""Traces below the panels of a film: energy and momentum, or the ledger."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from eeca_pymunk.recording import Recording
 from .drawing import ARROW
 
 FONT = 12  # points: readable at half size too
-_CEILING = 4.0  # of the traces, relative to the start: what gains more runs out of them
-_WORTH = 1e-9  # of the energy: what a ledger must tell of to be shown
+_CEILING = 4.0  # upper limit of the axis, relative to the start
+_WORTH = 1e-9  # of the energy: least loss or external work for which the ledger is shown
 _COLOURS = {
     "kinetic": "#0072B2",
     "potential": "#56B4E9",
@@ -28,7 +28,7 @@ _COLOURS = {
 
 
 class Trace(ABC):
-    """What is drawn below a panel, up to the moment shown. `top` is the largest value to show."""
+    """Curves below a panel, up to the moment shown. `top` is the largest value shown."""
 
     top: float
     moving: list[Artist]
@@ -50,7 +50,7 @@ class Trace(ABC):
 
 
 def trace(ax: Axes, recording: Recording) -> Trace:
-    """The stack of a ledger that tells of something; else energy and momentum."""
+    """The stack of a ledger with losses or external work; otherwise energy and momentum."""
     held, size = recording.ledger, float(np.abs(recording.energy).max(initial=0.0))
     if held.kept and np.isfinite(recording.kinetic).all():
         told = max(float(np.abs(x).max()) for x in (held.restitution, held.friction, held.damping, held.external))
@@ -60,8 +60,8 @@ def trace(ax: Axes, recording: Recording) -> Trace:
 
 
 class Lines(Trace):
-    """Energy relative to the start, in which the potential counts from the lowest it comes to if that is below zero,
-    and the size of the momentum relative to its largest."""
+    """Energy relative to the start, and the size of the momentum relative to its largest. If the potential energy is
+    negative at any time, it counts from its minimum."""
 
     def __init__(self, ax: Axes, recording: Recording) -> None:
         super().__init__(ax, recording)
@@ -84,9 +84,8 @@ class Lines(Trace):
 class Stack(Trace):
     """Kinetic and potential energy, and on them what was lost to restitution (bounces), friction and damping.
 
-    All relative to the energy at the start, in which the potential counts from the lowest it comes to if that is below
-    zero. The dashed line is the energy at the start and what has been put in from outside since: the stack ends there
-    if the ledger closes.
+    All relative to the energy at the start; a negative potential energy counts from its minimum. The dashed line is the
+    energy at the start and the external energy since: the stack ends there if the ledger closes.
     """
 
     def __init__(self, ax: Axes, recording: Recording) -> None:

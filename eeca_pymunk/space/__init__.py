@@ -1,10 +1,18 @@
-"""The edge: all that reads or writes pymunk, and the only room that knows its private names.
+"""The edge: all that reads or writes pymunk, and the only room that uses its private names.
 
-In: a `pymunk.Space`, its bodies, shapes, settings, functions and handlers. Out: arrays, and the errors that refuse what
-cannot be stepped. Back: the arrays of the end of a step, written into the space.
+In: a `pymunk.Space`, its bodies, shapes, settings, functions and handlers. Out: arrays, and errors for unsupported
+features. Back: the arrays of the end of a step, written into the space.
 
-Open first `world.py`, the space as packed arrays (`packing.py` fills them), and `checks.py`, what is refused. `sync.py`
-brings pymunk's shapes up to date after a step, `hooks.py` calls what the user hung into the space, `noticed.py` hears
-what is edited in place, `private.py` has every private name of pymunk. `bodies.py` and `shapes.py` read bodies and
-shapes; `measure.py`, `outlines.py` and `describe.py` read a space for energies, for pictures, and for one line of text.
+Open first `world.py`, the space as packed arrays, and `checks.py`, the unsupported features.
+
+| subject | files | |---|---| | reading | `bodies.py`, `shapes.py`, `packing.py`; joints: `joints.py`, `constraints.py`,
+`partners.py`, `spring_functions.py` | | states in and out | `crossing.py` | | edits by the program | `noticed.py`
+(shapes, bodies), `edits.py` (joints), `patching.py` (rows after edits in place) | | functions of the program |
+`hooks.py`, `rehearsal.py` (collision handlers) | | pymunk's own state after a step | `sync.py` (shapes), `arbiters.py`
+(contacts), `sleeping.py` | | other readers | `measure.py` (energy), `outlines.py` (pictures), `describe.py` (one line
+of text), `sample.py` (tests) | | private names of pymunk | `private.py` and the files `private_*.py` |
+
+Three files replace methods or properties of pymunk's classes, which then act as before for all other spaces:
+`noticed.py` (setters of shapes and bodies; `Body.sleep` at import), `edits.py` (`Constraint.__setattr__`, `impulse`),
+`arbiters.py` (`each_arbiter`, `batch.get_space_arbiters`, `debug_draw`). They are not restored.
 """

@@ -1,12 +1,12 @@
-"""What pymunk's arbiters tell after a step of ours: the impulses of the step, and who touched in it.
+"""Contents of pymunk's arbiters after an EECA step: the impulses of the step, and the pairs that touched in it.
 
-pymunk's own solver has taken no part in the step: its arbiters are those of shapes that touch at the end, without
-impulses, or of a rehearsal. `Body.each_arbiter` and `batch.get_space_arbiters` ask us first. While they run, the
-contacts of pymunk's arbiters have the impulses of our step, and pairs that touched within the step only have arbiters
-of their own; afterwards all is as it was. A step pays nothing for it.
+pymunk's own solver took no part in the step: its arbiters are those of shapes that touch at the end, without impulses,
+or those of a rehearsal. `Body.each_arbiter` and `batch.get_space_arbiters` are replaced. While they run, the contacts
+of pymunk's arbiters have the impulses of the step, and pairs that touched only within the step have arbiters of their
+own; afterwards pymunk's arbiters are restored. A step has no cost for it.
 
-The impulse of an arbiter is the sum over the step. Its points are pymunk's, or where the pair touched last; `total_ke`
-is by Chipmunk's formula, sum of (1 - e)/(1 + e) j_n^2 k_nn + j_t^2 k_tt.
+The impulse of an arbiter is the sum over the step. Its points are pymunk's, or those of the last touch. `total_ke`
+follows Chipmunk's formula for its total kinetic energy, sum of (1 - e)/(1 + e) j_n^2 k_nn + j_t^2 k_tt.
 """
 
 from __future__ import annotations
@@ -25,7 +25,8 @@ from . import private, private_arbiters
 
 
 class Touch(NamedTuple):
-    """A pair of shapes in a step: the sum of its impulses on `b` (mass length/time), and where it touched last."""
+    """A pair of shapes in a step: the sum of its impulses on `b` (mass length/time), normal and points of its last
+    touch."""
 
     a: pymunk.Shape
     b: pymunk.Shape
@@ -47,7 +48,7 @@ class Touches:
                 self._of.setdefault(body, {})[key] = touch
 
     def of(self, body: pymunk.Body) -> dict[frozenset[int], Touch]:
-        """Those of a body."""
+        """The pairs of a body."""
         return self._of.get(body, {})
 
 
@@ -59,7 +60,8 @@ _native_draw: Any = pymunk.Space.debug_draw
 
 
 def show_contacts(space: pymunk.Space, read: Reading) -> None:
-    """Let arbiters of a space tell what `read` does, as long as it is not None. It must not hold the space."""
+    """Let arbiters of a space have the contents that `read` returns, unless None. `read` must not refer to the
+    space."""
     _readings[space] = read
     pymunk.Body.each_arbiter = _each_arbiter  # type: ignore[method-assign]
     pymunk.Space.debug_draw = _debug_draw  # type: ignore[method-assign]
@@ -90,7 +92,7 @@ def _of(space: pymunk.Space | None) -> Touches | None:
 
 @contextmanager
 def _told(arbiters: Sequence[Any], found: dict[frozenset[int], Touch]) -> Iterator[list[Any]]:
-    """Within, arbiters of pymunk have the impulses of these pairs; yields arbiters of the pairs that it has none of."""
+    """Within this block pymunk's arbiters have the impulses of these pairs; yields arbiters for the other pairs."""
     kept, missing = [], dict(found)
     try:
         for arbiter in arbiters:
@@ -139,7 +141,7 @@ def _get_space_arbiters(space: pymunk.Space, fields: batch.ArbiterFields, buffer
 
 def _debug_draw(self: pymunk.Space, options: pymunk.SpaceDebugDrawOptions) -> None:
     if options.flags & pymunk.SpaceDebugDrawOptions.DRAW_COLLISION_POINTS:
-        _of(self)  # there are arbiters from then on
+        _of(self)  # makes arbiters
     _native_draw(self, options)
 
 

@@ -48,7 +48,7 @@ _GIVEN, _MASS = struct.Struct("4q9d2q"), 32  # bytes before mass and moment
 
 
 def _told(body: pymunk.Body) -> bytes:
-    """What a body says of itself, as the memory of a `GivenBody`."""
+    """The values of a body, as the bytes of a `GivenBody`."""
     kind = _KIND[body.body_type]
     # The public properties return pymunk's default when unset.
     hooks = private.velocity_function(body) is not None, private.position_function(body) is not None
@@ -57,16 +57,16 @@ def _told(body: pymunk.Body) -> bytes:
 
 
 class Bodies:
-    """The bodies of one space, one row each, in the order `pymunk.batch` walks them.
+    """The bodies of one space, one row each, in the order of `pymunk.batch`.
 
-    Masses, moments and kinds are read once; `Bodies.is_current` tells whether the space still has these bodies.
+    Masses, moments and kinds are read once; `gather` returns None if the space no longer has these bodies.
 
     Args:
-        space: a pymunk space.  fixed: whether bodies that sleep count as static ones.
-        before: those of the space before some came or went, who are not asked again but for the `stale`.
+        space: a pymunk space.  fixed: whether bodies may sleep; sleeping ones then count as static.
+        before: the bodies before some were added or removed; their values are reused except for the `stale`.
 
     Attributes:
-        fixed: whether any may sleep.  items: the pymunk bodies, by row.  ids: (N,) pymunk's numbers of them.
+        fixed: as above.  items: the pymunk bodies, by row.  ids: (N,) pymunk's numbers of them.
         mass, moment: (N,) mass and M L²; infinite for static and kinematic bodies.
         inverse_mass: (N,) 1/mass, 0 for static and kinematic bodies.
         dynamic: (N,) bool.  static: (N,) bool.  asleep: (N,) bool, none unless `fixed`.
@@ -79,7 +79,7 @@ class Bodies:
         self.space, self.fixed = space, fixed
         self._buffer = batch.Buffer()
         self._out = batch.Buffer()
-        ground = space.static_body  # in the space from the first time on that it is asked for
+        ground = space.static_body  # exists in the space from its first access on
         self.ids = self._read_ids()
         ids = self.ids.tolist()
         known = {} if before is None else before._known
@@ -100,7 +100,7 @@ class Bodies:
         if fixed:
             self.asleep[:] = [b.is_sleeping for b in self.items]
             kind[self.asleep] = STATIC
-            # pymunk walks them in another order once some have slept.
+            # pymunk's order changes once some have slept.
             place = {body: i for i, body in enumerate((*space.bodies, ground))}
             self.GIVEN["place"] = [place[body] for body in self.items]
         self.dynamic: BoolArray = kind == DYNAMIC
@@ -110,7 +110,7 @@ class Bodies:
         self.mass[~self.dynamic] = np.inf
         self.moment[~self.dynamic] = np.inf
         self.check_masses()
-        # A body that sleeps is not asked, as under pymunk.
+        # Functions of sleeping bodies are not called, as under pymunk.
         self.velocity_hooks: IntArray = np.flatnonzero((self.GIVEN["steered"] != 0) & ~self.asleep)
         self.position_hooks: IntArray = np.flatnonzero((self.GIVEN["moved"] != 0) & ~self.asleep)
         self.steered: BoolArray = np.zeros(len(self.items), bool)
@@ -121,17 +121,17 @@ class Bodies:
         self.center_of_gravity: FloatArray = columns(self.GIVEN, "centre_x", "centre_y")
 
     def placed(self, state: FloatArray) -> Rows[GivenBody]:
-        """What bodies say of themselves, with their poses in the (N, 9) state."""
+        """The values of the bodies, with their poses in the (N, 9) state."""
         put(self.GIVEN, state, *POSE)
         return self.GIVEN
 
     def changed(self, row: int) -> tuple[bool, bool]:
-        """Whether a body says else than it did, and whether of more than its mass and moment."""
+        """Whether values of a body have changed, and whether others than mass and moment have."""
         new, old = _told(self.items[row]), self._said[self.items[row]]
         return new != old, new[:_MASS] != old[:_MASS] or new[_MASS + 16 :] != old[_MASS + 16 :]
 
     def weigh(self, rows: Sequence[int]) -> None:
-        """Read masses and moments of these rows anew; ValueError, and nothing changed, if they are none."""
+        """Read masses and moments of these rows again; ValueError, and nothing changed, if they are invalid."""
         before = self.mass[rows], self.moment[rows]
         for i in rows:
             if self.dynamic[i]:
@@ -146,13 +146,13 @@ class Bodies:
 
     @cached_property
     def shapes(self) -> dict[pymunk.Body, int]:
-        """Those that are not static and have shapes, and how many."""
+        """The bodies that are not static and have shapes, with the number of shapes."""
         still = self.static.tolist()
         return {b: n for b, s in zip(self.items, still, strict=True) if not s and (n := len(b.shapes))}
 
     @cached_property
     def moving(self) -> list[Any]:
-        """Chipmunk's bodies of these."""
+        """Pointers to the Chipmunk bodies of `shapes`."""
         return private.pointers(self.shapes)
 
     def __len__(self) -> int:
@@ -160,7 +160,8 @@ class Bodies:
 
     @property
     def reached(self) -> tuple[pymunk.Body, ...] | None:
-        """Those that may be written to without waking any: None for all. pymunk's order has those asleep at the end."""
+        """The bodies that can be written without waking any, None for all. Sleeping bodies are last in pymunk's
+        order."""
         return self.items[: int(np.argmax(self.asleep))] if self.asleep.any() else None
 
     def _read_ids(self) -> npt.NDArray[np.uintp]:
@@ -182,7 +183,7 @@ class Bodies:
     def gather(self) -> FloatArray | None:
         """The (N, 9) state now: position, angle, velocity, angular velocity, force, torque (see COLUMN_NAMES).
 
-        None when the space's bodies are no longer these rows, so that a new `Bodies` is due.
+        None if the space has other bodies now, so that a new `Bodies` is needed.
         """
         self._buffer.clear()
         batch.get_space_bodies(self.space, _FIELDS.BODY_ID | _STATE, self._buffer)
@@ -207,10 +208,10 @@ class Bodies:
     def scatter(self, state: FloatArray, *, unchanged: bool = False) -> None:
         """Write the whole (N, 9) state to the bodies of these rows that are still in the space.
 
-        `unchanged` promises that all are: no callback has run since the state was gathered.
+        `unchanged`: all are, because no callback has run since the state was gathered.
         """
         if self.asleep.any() or (not unchanged and not np.array_equal(self._read_ids(), self.ids)):
-            # The batch writes by place: it would give rows to the wrong bodies, and it wakes all.
+            # The batch call writes in pymunk's order: rows would go to the wrong bodies; and it wakes all.
             for body, still, row in zip(self.items, self.static.tolist(), state.tolist(), strict=True):
                 if body.space is self.space and not still:
                     body.position, body.angle = (row[0], row[1]), row[2]
@@ -218,6 +219,6 @@ class Bodies:
                     body.force, body.torque = (row[6], row[7]), row[8]
             return
         self._out.set_float_buf(np.ascontiguousarray(state).reshape(-1))
-        # pymunk places a body whose centre of mass is elsewhere by the angle it has: the second time by the new one.
+        # pymunk places a body with another centre of mass by its present angle: a second time, by the new angle.
         for _ in range(2 if self.center_of_gravity.any() else 1):
             batch.set_space_bodies(self.space, _STATE, self._out)

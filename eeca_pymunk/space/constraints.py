@@ -1,7 +1,8 @@
-"""Constraints: what pymunk's ten constraints are as rows of JOINT, and numbers that no joint can have.
+"""Constraints: pymunk's ten constraints as rows of JOINT, and the check of their values.
 
-Anchors of pymunk stand relative to the body, ours to its centre of mass. A pin without length, a slide or rotary limit
-whose limits are one, and a groove that is a point hold as what they then are: pivots, pins, gears.
+Anchors of pymunk are relative to the body's origin, those of JOINT to its centre of mass. Degenerate constraints become
+others: a pin of length 0 and a groove of length 0 pivots, a slide with equal limits a pin, a rotary limit with equal
+limits a gear.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ _KINDS = (
     pymunk.PinJoint, pymunk.SlideJoint, pymunk.PivotJoint, pymunk.GrooveJoint, pymunk.DampedSpring,
     pymunk.DampedRotarySpring, pymunk.RotaryLimitJoint, pymunk.RatchetJoint, pymunk.GearJoint, pymunk.SimpleMotor,
 )  # fmt: skip
-# Attributes that must be finite, and those that may be infinite but have a sign.
+# Attributes that must be finite; that may be infinite but must be >= 0; that must not be 0.
 _FINITE = (
     "anchor_a", "anchor_b", "groove_a", "groove_b", "distance", "stiffness", "damping", "rest_length", "rest_angle",
     "phase", "ratchet", "ratio", "rate",
@@ -44,13 +45,13 @@ _NOT_ZERO = ("ratio", "ratchet")
 
 @cache
 def _numbers(kind: Any) -> tuple[list[str], list[str], list[str]]:
-    """Of a kind of constraint, the attributes that must be finite, positive, and not 0."""
+    """The attributes of a kind of constraint that must be finite, >= 0, and not 0."""
     finite, positive, some = ([a for a in names if hasattr(kind, a)] for names in (_FINITE, _POSITIVE, _NOT_ZERO))
     return finite, positive, some
 
 
 def check_constraint(c: Any) -> None:
-    """Refuse numbers that no joint can have: ValueError with the remedy."""
+    """ValueError, with the remedy, for values that no joint can have."""
     if not isinstance(c, _KINDS):
         raise UnsupportedFeature(f"{name(c)} is none of pymunk's constraints; remove it or use ep.Native(space)")
     kind: Any = type(c)
@@ -76,7 +77,7 @@ def check_constraint(c: Any) -> None:
 
 
 def name(c: Any) -> str:
-    """How messages call a constraint: pymunk gives it no number and no `repr` of its own."""
+    """A name of a constraint for messages: pymunk gives it no number and no `repr` of its own."""
     return f"{c} between {c.a} and {c.b}"
 
 
@@ -121,14 +122,14 @@ def read(c: Any, joint: Joint) -> None:
 
 
 def _pin(length: float, joint: Joint) -> None:
-    """A pin, or a pivot if it has no length: there a pin has no direction."""
+    """A pin, or a pivot if its length is 0, for which a pin has no direction."""
     scale = float(max(np.abs(joint.anchor_a).max(), np.abs(joint.anchor_b).max()))
     joint.kind = PIVOT if length <= _SMALL * max(scale, 1e-300) or length == 0.0 else PIN
     joint.length = length
 
 
 def _groove(c: pymunk.GrooveJoint, joint: Joint) -> None:
-    """A groove, or a pivot if its ends are one point: there a groove has no direction."""
+    """A groove, or a pivot if its ends are equal, for which a groove has no direction."""
     first, last = c.groove_a - c.a.center_of_gravity, c.groove_b - c.a.center_of_gravity
     if c.groove_a == c.groove_b:
         joint.kind, joint.anchor_a[:] = PIVOT, first
@@ -141,7 +142,7 @@ def _groove(c: pymunk.GrooveJoint, joint: Joint) -> None:
 
 
 def _notch(c: pymunk.RatchetJoint) -> float:
-    """The notch as native's step finds it: kept while the angle is short of it, else the last one passed."""
+    """The notch as in pymunk's step: kept while the angle has not reached it, else the last one passed."""
     turned = c.b.angle - c.a.angle
     if (c.angle - turned) * c.ratchet > 0.0:
         return float(c.angle)

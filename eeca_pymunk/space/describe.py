@@ -1,4 +1,4 @@
-"""Describe: one line that tells what of a space is modelled."""
+"""Describe: the modelled features of a space in one line."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .world import World
 
 
 def describe(world: World) -> str:
-    """What of the space as it is now is modelled, and therefore paid for."""
+    """The features of the present space that are modelled."""
     world.gather()
     state, bodies = world.state, world.bodies
     owner = world.LINK["owner"]
@@ -51,7 +51,8 @@ def describe(world: World) -> str:
 
 
 def _joints(joints: JointRows) -> str:
-    """How many constraints of which kind, the commonest first, and what of them is more than bodies held together."""
+    """Numbers of constraints by kind, the most frequent first; limits, motors, springs and bounded forces; the
+    order."""
     joints.refresh()
     names = [type(item).__name__ for item in joints.items]
     kinds = sorted(set(names), key=lambda kind: (-names.count(kind), kind))

@@ -1,9 +1,9 @@
-"""What the user changes of constraints, found without looking, and `constraint.impulse` that tells of our steps.
+"""Edits of constraints are recorded when they are made, and `constraint.impulse` returns impulses of EECA steps.
 
-pymunk has neither: all setters write into Chipmunk at once, and `impulse` has no setter. All attributes of pymunk's
-constraints are set through Python, though, so one hook on the class `pymunk.Constraint` hears of each; and its property
-`impulse` asks us first. Both are put in place when the first constraint is watched, and change nothing for
-constraints that nobody watches: one look into a dictionary of weak references.
+pymunk offers neither: setters write into Chipmunk at once, and `impulse` has no setter. But all attributes of
+constraints are set through Python. So `pymunk.Constraint.__setattr__` and the property `impulse` are replaced when the
+first constraint is watched; for other constraints they act as before, after one access to a dictionary of weak
+references.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _native_setattr = pymunk.Constraint.__setattr__
 
 
 class Edits:
-    """Which of some constraints had an attribute set since last asked: `some`, their rows."""
+    """`some`: rows of the constraints of which an attribute was set since the last `take`."""
 
     def __init__(self, row: dict[pymunk.Constraint, int]) -> None:
         self._row = row
@@ -32,20 +32,20 @@ class Edits:
         pymunk.Constraint.__setattr__ = _set  # type: ignore[method-assign, assignment]
 
     def take(self) -> set[int]:
-        """Their rows; then none."""
+        """Return the rows, and clear them."""
         edited, self.some = self.some, set()
         return edited
 
     def add(self, rows: Iterable[int]) -> None:
-        """As if these had been set."""
+        """Record these rows as edited."""
         self.some.update(rows)
 
     def forget(self, row: int) -> None:
-        """Take no notice of what was set just now."""
+        """Remove a row: the last setting was not an edit by the program."""
         self.some.discard(int(row))
 
     def hear(self, constraint: pymunk.Constraint) -> None:
-        """An attribute of a constraint was set."""
+        """Record that an attribute of a constraint was set."""
         row = self._row.get(constraint)
         if row is not None:
             self.some.add(row)
@@ -58,19 +58,19 @@ def _set(self: pymunk.Constraint, name: str, value: Any) -> None:
 
 
 def showings() -> int:
-    """How often `show_impulses` was called."""
+    """Number of calls of `show_impulses`."""
     return _showings
 
 
 def shown(item: pymunk.Constraint) -> Reading | None:
-    """What `show_impulses` was last told for a constraint, None if its `impulse` is native's."""
+    """The function that `show_impulses` has set for a constraint, None if its `impulse` is pymunk's."""
     return _readings.get(item, (None, 0))[0]
 
 
 def show_impulses(items: Sequence[pymunk.Constraint], read: Reading) -> None:
-    """Let `impulse` of these constraints be `read(row)`, as long as it knows one.
+    """Let `impulse` of these constraints return `read(row)`, unless that is None.
 
-    `read` lives as long as any of them: it must not hold them, nor their space.
+    `read` exists as long as any of them: it must not refer to them or to their space.
     """
     global _showings
     _showings += 1

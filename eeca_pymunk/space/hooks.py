@@ -1,10 +1,11 @@
-"""Hooks: what a user's program has hung into a space, called once a step as pymunk calls it.
+"""Hooks: functions that a program has registered in a space, called once a step.
 
-Velocity and position functions are called with the real dt. Collision handlers need pymunk's own arbiters, see
-`rehearsal.py`.
+Velocity and position functions are called with the real dt. The order of the others is
 
-`pre_solve` of constraints comes in its place there too, before our step where there is no rehearsal. `post_solve` of
-constraints comes after our step, whose impulses they can read; then so does that of collisions, which come after it.
+1. in the rehearsal (`rehearsal.py`), if there are collision handlers: `pre_solve` of constraints, and the handlers;
+2. without a rehearsal: `pre_solve` of constraints, before the step;
+3. after the step: `post_solve` of constraints, which can read its impulses, and then, if there are such, `post_solve`
+   of collisions, which pymunk calls after them.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ class Hooks:
         joints: the constraints of the space, None if it has none.
 
     Attributes:
-        velocity, position: rows of the bodies with a function of their own.  steered: (N,) whether it is for velocity.
+        velocity, position: rows of the bodies with such a function.  steered: (N,) whether it is a velocity function.
         collisions: whether the space has collision handlers.
     """
 
@@ -43,7 +44,7 @@ class Hooks:
 
     def before(self, dt: float) -> None:
         """Call `pre_solve` of the constraints that no rehearsal calls. pymunk calls none whose first body is outside
-        the space, and complains."""
+        the space, with a warning."""
         if self.joints is not None:
             with private.locked(self.space), private_joints.time_step(self.space, dt):
                 for item in self.joints.before:
@@ -52,7 +53,7 @@ class Hooks:
                         item.pre_solve(item, self.space)
 
     def after(self, dt: float) -> None:
-        """Call `post_solve` of the constraints, then that of collisions if it had to wait for this."""
+        """Call `post_solve` of the constraints, then the delayed ones of collisions."""
         with private.locked(self.space), private_joints.time_step(self.space, dt):
             for item in () if self.joints is None else self.joints.after:
                 assert item.post_solve is not None
@@ -61,7 +62,7 @@ class Hooks:
                 call()
 
     def later(self, function: Callable[..., Any]) -> Callable[..., None]:
-        """What lets `after` call a function with the arguments it is called with now."""
+        """A function that records its arguments, with which `after` calls `function`."""
 
         def call(*arguments: Any) -> None:
             self._late.append(lambda: function(*arguments))
@@ -69,7 +70,8 @@ class Hooks:
         return call
 
     def change(self, dt: float) -> FloatArray:
-        """(k, 3) what the functions add to velocity and spin of their bodies, which keep theirs; called once a step."""
+        """(k, 3) changes of velocity and spin by the velocity functions, called once a step; the bodies are
+        restored."""
         if self._change is None:
             items = [self.bodies.items[row] for row in self.velocity]
             with private_joints.time_step(self.space, dt):
@@ -78,7 +80,8 @@ class Hooks:
         return self._change
 
     def positions(self, state: FloatArray, end: FloatArray, dt: float) -> None:
-        """Let the functions move their bodies from `state` with the velocity that leads to `end`, which they change."""
+        """Call the position functions on `state` with the velocity that leads to `end`, and write their results to
+        `end`."""
         for row in self.position:
             body = self.bodies.items[row]
             function = private.position_function(body)
@@ -90,7 +93,7 @@ class Hooks:
             end[row, POSITION], end[row, ANGLE] = body.position, body.angle
 
     def silent(self) -> AbstractContextManager[None]:
-        """Within, bodies have no functions of their own."""
+        """Within this block pymunk does not call velocity and position functions."""
         if not (len(self.velocity) or len(self.position)):
             return nullcontext()
         items = self.bodies.items

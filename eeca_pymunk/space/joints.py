@@ -1,4 +1,4 @@
-"""Joints: the constraints of a space in packed arrays, what the user changed since, and what goes back."""
+"""Joints: the constraints of a space as packed arrays, their edits, and results that are written back."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _ROUND_OFF = 1e-12  # of the length of a pin
 
 
 class Impulses:
-    """What `constraint.impulse` would be after native's step, by row. It outlives the stepper, and holds no constraint.
+    """Values of `constraint.impulse` by row. It outlives the stepper, and does not refer to constraints.
 
     Attributes:
         joint: the rows.  ours: pymunk's count of its own steps when they were written.
@@ -35,7 +35,7 @@ class Impulses:
         self.ours = -1
 
     def read(self, j: int) -> float | None:
-        """Of springs signed (positive pushes), else >= 0; None if native has taken a step of its own since."""
+        """The impulse: of springs signed (positive pushes), else >= 0; None if pymunk has taken a step since."""
         space = self._space()
         if space is not None and private.timestamp(space)() != self.ours:
             return None
@@ -46,24 +46,23 @@ class Impulses:
 
 
 class JointRows:
-    """The constraints of a space as rows of JOINT, kept up to date with what the user changes.
+    """The constraints of a space as rows of JOINT, updated after edits by the program.
 
     Attributes:
         items: the constraints, in the order of the rows.  joint: (j,).
         row: the row of each constraint.
-        functions: rows of springs that have a force or torque function of the user's own.  own: these springs.
+        functions: rows of springs that have a force or torque function of the program.  own: these springs.
         before, after, calling: constraints with a `pre_solve`, with a `post_solve`, with either.
         partners: bodies of joints that have no row of their own; theirs are n + row of PARTNER.
-        parted: pairs of bodies whose shapes pass through one another, by `collide_bodies`; None where nobody has looked
-            since that changed.
-        rates: of springs with functions of their own, what the step before was answered, see `put_law`.
-        replan: whether kinds, places or softness of joints have changed since `planned` was called.
+        parted: pairs of bodies whose shapes do not collide, by `collide_bodies`; None after a change, see `part`.
+        rates: for springs with functions, the rate of length and the dt of the last step, see `put_law`.
+        replan: whether kinds, anchors or bounds of joints have changed since `planned` was called.
     """
 
     def __init__(
         self, space: pymunk.Space, row: Mapping[pymunk.Body, int], n: int, past: JointRows | None = None
     ) -> None:
-        """The rows of the constraints of `space`, whose bodies have these rows of n; what `past` knows is kept."""
+        """Read the constraints of `space`; `row`: rows of its bodies, out of n. Rows that `past` has are reused."""
         self.space, self._n = space, n
         self._impulses: Impulses | None = None
         self._showings = -1
@@ -100,11 +99,11 @@ class JointRows:
         self._find_functions()
 
     def is_of(self, space: pymunk.Space) -> bool:
-        """Whether these are the constraints that the space has now."""
+        """Whether the space has these constraints now."""
         return self.items == list(space.constraints)
 
     def _says(self, j: int) -> tuple[object, ...]:
-        """What of a joint `_find_functions` asks."""
+        """The values of a joint on which `_find_functions` depends."""
         item = self.items[j]
         return own_function(item), item.pre_solve, item.post_solve, item.collide_bodies, self._push(j)
 
@@ -119,7 +118,7 @@ class JointRows:
         self.parted: frozenset[tuple[pymunk.Body, pymunk.Body]] | None = None
 
     def refresh(self) -> bool:
-        """Read anew the constraints that the user changed; whether joints must be planned anew."""
+        """Read edited constraints again; returns whether a new plan of components is needed."""
         if not self._edits.some:
             return self.replan
         edited = self._edits.take()
@@ -141,12 +140,12 @@ class JointRows:
         return self.replan
 
     def laws(self) -> list[Callable[[Any, float], float]]:
-        """The laws of the springs with functions of their own in the last step."""
+        """The linear laws of the springs with functions in the last step."""
         return [law(self.items[j], self.joint[j]) for j in self.functions]
 
     def pushing(self) -> list[pymunk.Constraint]:
-        """The constraints that push, in a step of pymunk, where everything is at rest: springs, motors, joints that are
-        apart or may be, and those of bodies that the batch calls do not reach."""
+        """The constraints that exert forces in a rest step of pymunk: springs, motors, joints that are or may be apart,
+        and those of bodies that the batch calls do not reach."""
         if not self.joint["touched"].any():
             return self._pushing
         apart = np.flatnonzero(self.joint["touched"])
@@ -158,7 +157,8 @@ class JointRows:
         return out or self.joint[j].soft != 0 or kind in (SPRING, ROTARY_SPRING, MOTOR)
 
     def measured(self) -> list[int]:
-        """The pins that are as long as their anchors are apart: pymunk's pickles do not have their lengths."""
+        """Rows of the pins whose length is the distance of their anchors: after loading a pickle of pymunk, which lacks
+        lengths, all pins are of this kind."""
         found = []
         for j, item in enumerate(self.items):
             if isinstance(item, pymunk.PinJoint):
@@ -168,13 +168,13 @@ class JointRows:
         return found
 
     def lengthen(self, j: int, length: float) -> None:
-        """Give the pin of row j its length, which is no edit of the user's."""
+        """Set the length of the pin of row j, without recording an edit."""
         self.items[j].distance = length
         self._edits.forget(j)
         self.joint[j].length = length
 
     def planned(self) -> None:
-        """The joints have been planned as they are."""
+        """Note that there is a plan for the present joints."""
         self.replan = False
 
     def calls_back(self) -> bool:
@@ -185,18 +185,18 @@ class JointRows:
 
     @property
     def edited(self) -> bool:
-        """Whether the user has changed a constraint that was not read since."""
+        """Whether there are edited constraints that were not read since."""
         return len(self._edits.some) > 0
 
     def idle(self) -> bool:
-        """Whether there is nothing for `look` to do."""
+        """Whether `look` has nothing to do."""
         return not (self._edits.some or self.functions or self.partners.outside)
 
     def look(self, state: FloatArray, place: Mapping[pymunk.Body, int], dt: float) -> None:
-        """Bring what the step needs up to date: edits, places of partners, laws of springs with functions.
+        """Update what the step needs: edited constraints, poses of partners, laws of springs with functions.
 
         Args:
-            state: (N, 9) the start of the step.  place: the rows of bodies there.  dt: time.
+            state: (N, 9) at the start of the step.  place: rows of bodies in it.  dt: time.
         """
         self.refresh()
         moved = self.partners.read()
@@ -215,18 +215,18 @@ class JointRows:
         return x, y, angle, vx, vy, spin
 
     def part(self) -> frozenset[tuple[pymunk.Body, pymunk.Body]]:
-        """`parted`, looked for if need be."""
+        """`parted`, found again if necessary."""
         if self.parted is None:
             self.parted = frozenset((item.a, item.b) for item in self.items if not item.collide_bodies)
         return self.parted
 
     def touch(self, rows: IntArray) -> None:
-        """Mark the joints of bodies (rows) that the user has moved or pushed."""
+        """Mark as edited the joints of bodies (rows) that the program has moved or pushed."""
         for row in rows.tolist():
             self.joint["touched"][self._at.get(row, [])] = EDITED
 
     def write(self) -> None:
-        """Give ratchets the notch they have reached, and let `constraint.impulse` read ours."""
+        """Write notches of ratchets, and let `constraint.impulse` return the impulses of the step."""
         told = self._impulses
         if told is None or told.joint is not self.joint:
             self._impulses = told = Impulses(self.space, self.joint)
@@ -244,5 +244,5 @@ class JointRows:
 
 
 def _planned_by(joint: Joint) -> tuple[object, ...]:
-    """What of a joint a plan depends on."""
+    """The values of a joint on which the plan of components depends."""
     return joint.kind, joint.soft, *(joint.anchor_a != 0.0).tolist(), *(joint.anchor_b != 0.0).tolist()

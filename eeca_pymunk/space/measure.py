@@ -1,4 +1,4 @@
-"""Measure: energy and momenta of a space as it is now."""
+"""Measure: energy and momenta of a space in its present state."""
 
 from __future__ import annotations
 

@@ -1,11 +1,11 @@
-"""What a program changes in place of shapes and bodies, noticed without looking.
+"""In-place edits of shapes and bodies are recorded when they are made, by wrapped setters of pymunk's classes.
 
-pymunk's setters write into Chipmunk at once and tell nobody, and to read all shapes anew takes longer than most steps.
-So the setters of what a `World` reads once are wrapped, on pymunk's classes, when the first space is watched: each
-first does what it did, then adds one to the count of the space of its shape or body, if that is watched and the value
-is another one. Reading, and what a `World` does not read (positions, velocities, forces, colours), is as before.
-Putting bodies to sleep is counted too, and who sleeps with whom is kept, from the import of this package on: Chipmunk
-tells neither.
+pymunk's setters write into Chipmunk at once without notification, and reading all shapes again takes longer than most
+steps. So the setters of properties that a `World` reads once are wrapped when the first space is watched. Each acts as
+before, and then adds one to the count of the space of its shape or body, if that is watched and the value has changed.
+Getters, and properties that a `World` does not read (positions, velocities, forces, colours), are not changed.
+`Body.sleep` and `sleep_with_group` are wrapped when this module is imported: their calls are counted, and groups of
+sleeping bodies are recorded, because Chipmunk does not show them.
 """
 
 from __future__ import annotations
@@ -32,14 +32,14 @@ _METHODS: tuple[tuple[type, tuple[str, ...]], ...] = (
 )
 _SLEEP = ("sleep", "sleep_with_group")
 _leaders: WeakKeyDictionary[pymunk.Body, weakref.ref[pymunk.Body]] = WeakKeyDictionary()
-_KEPT = 4096  # edits, the last ones, that are told
+_KEPT = 4096  # number of edits that are kept, the last ones
 _wrapped = False
 _clock = 0
-_edited: deque[weakref.ref[Any]] = deque(maxlen=_KEPT)  # what was edited last, in or outside of any space
+_edited: deque[weakref.ref[Any]] = deque(maxlen=_KEPT)  # the last edits, in any space or outside
 
 
 class Counts(list[int]):
-    """How often shapes or bodies of a space were edited or put to sleep, and how often the latter alone."""
+    """Number of edits of shapes and bodies of a space and of bodies put to sleep; number of the latter alone."""
 
     def __init__(self) -> None:
         super().__init__((0, 0))
@@ -49,7 +49,7 @@ _counts: WeakKeyDictionary[pymunk.Space, Counts] = WeakKeyDictionary()
 
 
 def edits(space: pymunk.Space) -> Counts:
-    """Counts that grow from now on."""
+    """The counts of a space, from its first call on."""
     global _wrapped
     if not _wrapped:
         _wrapped = True
@@ -63,12 +63,12 @@ def edits(space: pymunk.Space) -> Counts:
 
 
 def clock() -> int:
-    """How many edits there were of shapes and bodies, of all spaces and of none."""
+    """Number of edits of shapes and bodies so far, in any space or outside."""
     return _clock
 
 
 def edited_since(time: int) -> set[Any] | None:
-    """Shapes and bodies that were edited since `clock` said `time`, and the bodies of such shapes; None if these are
+    """Shapes and bodies that were edited since `clock` was `time`, and the bodies of these shapes; None if these are
     more than are kept."""
     if _clock - time > len(_edited):
         return None
@@ -89,7 +89,7 @@ def _note(thing: Any, name: str) -> None:
 
 
 def leader(body: pymunk.Body) -> pymunk.Body:
-    """A body that wakes whenever this one does, which sleeps: itself, or one of its group."""
+    """A sleeping body that wakes whenever this sleeping body does: itself, or one of its group."""
     lead = _leaders.get(body)
     found = None if lead is None else lead()
     return found if found is not None and found.space is body.space and found.is_sleeping else body

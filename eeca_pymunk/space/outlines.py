@@ -1,4 +1,4 @@
-"""Outlines: the shapes of a space as plain arrays, to draw them where a recording says they were."""
+"""Outlines: the shapes of a space as plain arrays, for drawing them at the poses of a recording."""
 
 from __future__ import annotations
 

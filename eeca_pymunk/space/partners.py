@@ -1,8 +1,8 @@
-"""Partners: bodies at the other end of joints that have no row of their own among the bodies that a step moves.
+"""Partners: bodies at the other end of joints that have no row among the bodies that a step moves.
 
-Static bodies, `space.static_body`, and bodies outside the space, whatever their type: joints act from where they are
-and do not move them. A kinematic one outside the space that the user gives a velocity holds with it, as under native;
-it gets nowhere by itself.
+They are static bodies, `space.static_body`, and bodies of any type outside the space. Joints act from their poses and
+do not move them. A kinematic body outside the space acts with the velocity that the program sets, as under pymunk, but
+is not moved by it.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class Partners:
 
     Attributes:
         items: the bodies, by row.  PARTNER: (x,) their poses and, of kinematic ones, velocities.
-        outside: rows of those that are not in the space, and may have moved.
+        outside: rows of the bodies outside the space, which may have moved.
     """
 
     def __init__(self, items: Sequence[pymunk.Body], space: pymunk.Space, past: Partners | None = None) -> None:
@@ -42,12 +42,12 @@ class Partners:
                 if body in before:
                     self._known[i] = past._known[before[body]]
                     self.PARTNER[i] = past.PARTNER[before[body]]
-        # Static bodies of the space are looked after where the state of all its bodies is read.
+        # Moved static bodies of the space are found where the states of all its bodies are read.
         self.outside = [i for i, body in enumerate(self.items) if body.space is not space]
         self.changed: IntArray = self._read(range(len(self.items)))
 
     def read(self) -> IntArray:
-        """Look where those are that may have moved; the rows of those that have."""
+        """Read the bodies that may have moved; returns the rows of those that have."""
         return self._read(self.outside)
 
     def _read(self, rows: Sequence[int]) -> IntArray:
@@ -72,14 +72,14 @@ class Partners:
         return np.array(changed, np.int64) if changed else _NONE
 
     def motion(self, i: int) -> tuple[float, float, float, float, float, float]:
-        """Position, angle, velocity and spin of one, as last read."""
+        """Position, angle, velocity and spin of body i, as last read."""
         known = self._known[i]
         assert known is not None  # read when these rows were made
         return known[:6]  # type: ignore[return-value]
 
     @contextmanager
     def kept(self) -> Iterator[None]:
-        """Within, steps of pymunk leave those outside the space as they are: its constraints push them, too, though it
-        does not move them, and give nan where neither body of one has mobility."""
+        """Within this block steps of pymunk do not change bodies outside the space: pymunk's constraints change their
+        velocities though it does not move them, to nan if neither body of a constraint has mobility."""
         with private_joints.moving_on([self.items[i] for i in self.outside]):
             yield

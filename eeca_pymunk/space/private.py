@@ -1,7 +1,7 @@
-"""Private names of pymunk: all that this package uses of them, one function each; of constraints in `private_joints`.
+"""Private names of pymunk that this package uses, one function each; those of constraints are in `private_joints`.
 
-Each has a test of its own in `tests/space/test_private.py` or `test_private_joints.py`, and all are looked up when the
-package is imported, so that a pymunk which has renamed one is refused at once and by name.
+Each has a test in `tests/space/test_private.py` or `test_private_joints.py`. All are looked up when the package is
+imported, so that a pymunk that has renamed one raises ImportError with the name.
 """
 
 from __future__ import annotations
@@ -82,42 +82,42 @@ def handlers(space: pymunk.Space) -> list[Any]:
 
 
 def arbiters(space: pymunk.Space) -> list[pymunk.Arbiter]:
-    """All arbiters that pymunk keeps: of its last step, and of as many before as `collision_persistence` says."""
+    """All arbiters that pymunk keeps: of its last step, and of `collision_persistence` steps before."""
     return [pymunk.Arbiter(one, space) for one in space._get_arbiters()]
 
 
 def odd_arbiters(space: pymunk.Space) -> list[pymunk.Arbiter]:
-    """Those of `arbiters` that may say anything else than their shapes do."""
+    """Those of `arbiters` whose values may differ from the products of their shapes."""
     own = lib.cpShapeGetSensor, lib.cpShapeGetElasticity, lib.cpShapeGetFriction
     return [pymunk.Arbiter(one, space) for one in space._get_arbiters() if private_versions.is_odd(one, *own)]
 
 
 def decision(arbiter: pymunk.Arbiter) -> tuple[Any, ...]:
-    """What functions may decide of a collision, to be compared with what it was."""
+    """The values of an arbiter that functions may change, for comparison."""
     return private_versions.decision(arbiter._arbiter, lib.cpShapeGetSensor)
 
 
 def reindex(space: pymunk.Space, bodies: Iterable[Any]) -> None:
-    """Move the shapes of bodies, as `pointers` gives them, to where these are."""
+    """Move the shapes of bodies, given as `pointers`, to the poses of the bodies."""
     c, move = space._space, lib.cpSpaceReindexShapesForBody
     for body in bodies:
         move(c, body)
 
 
 def forget_corrections(bodies: Iterable[Any]) -> None:
-    """Let pymunk's next step not apply to bodies, as `pointers` gives them, the corrections of overlaps that its last
-    one has left: it adds these velocities to theirs when it moves them, once; a move of no time moves nothing."""
+    """Clear pymunk's corrections of overlaps of bodies, given as `pointers`. pymunk keeps them as velocities and
+    applies them at the next move of a body, once; a move over dt = 0 clears them."""
     for body in bodies:
         lib.cpBodyUpdatePosition(body, 0.0)
 
 
 def pointers(bodies: Iterable[pymunk.Body]) -> list[Any]:
-    """Chipmunk's bodies."""
+    """Pointers to the Chipmunk bodies."""
     return [body._body for body in bodies]
 
 
 def raw_arbiters(space: pymunk.Space) -> list[Any]:
-    """`arbiters` as Chipmunk has them."""
+    """Pointers to the arbiters of Chipmunk."""
     return list(space._get_arbiters())
 
 
@@ -127,18 +127,18 @@ def touching(space: pymunk.Space) -> list[tuple[pymunk.Body, pymunk.Body]]:
 
 
 def velocity_function(body: pymunk.Body) -> Callable[..., None] | None:
-    """The body's own velocity function, None if it has pymunk's; the public property tells no difference."""
+    """The velocity function of the program, None if it is pymunk's; the public property does not distinguish."""
     return body._velocity_func
 
 
 def position_function(body: pymunk.Body) -> Callable[..., None] | None:
-    """The body's own position function, None if it has pymunk's."""
+    """The position function of the program, None if it is pymunk's."""
     return body._position_func
 
 
 @contextmanager
 def locked(space: pymunk.Space) -> Iterator[None]:
-    """Within, what is added and removed waits for `finish_step` or the end of pymunk's next step."""
+    """Within this block additions and removals wait for `finish_step` or the end of pymunk's next step."""
     space._locked = True
     try:
         yield
@@ -147,10 +147,10 @@ def locked(space: pymunk.Space) -> Iterator[None]:
 
 
 def step_alone(space: pymunk.Space, dt: float) -> None:
-    """pymunk's step without what it does afterwards: additions, removals and callbacks wait for `finish_step`.
+    """pymunk's step without its end: additions, removals and callbacks wait for `finish_step`.
 
-    Nobody falls asleep in it. Bodies that sleep and are touched wake: an infinite threshold would leave them asleep
-    with a contact that pymunk then has twice.
+    No body falls asleep in it. Sleeping bodies that are touched wake; with an infinite threshold they would not, and
+    pymunk would have the contact twice.
     """
     c, threshold = space._space, lib.cpSpaceGetSleepTimeThreshold(space._space)
     space._locked = True
@@ -166,11 +166,11 @@ def step_alone(space: pymunk.Space, dt: float) -> None:
 
 
 def finish_step(space: pymunk.Space) -> None:
-    """Add and remove what callbacks of the last step asked for, and call its post-step callbacks."""
+    """Do the additions and removals by callbacks of the last step, and call its post-step callbacks."""
     added = list(space._add_later)
     space._add_later.clear()
     space.add(*added)
-    # What is removed while it touches something calls `separate`, which may remove more, and the same again.
+    # Removing a touching shape calls `separate`, which may remove further objects, also the same ones.
     remove, gone = private_versions.remover(space), set()
     while space._remove_later:
         things = list(space._remove_later)
@@ -186,14 +186,14 @@ def finish_step(space: pymunk.Space) -> None:
 
 
 def watch(space: pymunk.Space, edits: list[int]) -> Callable[[], bool]:
-    """A function that tells whether the space's settings, and what is in it, are still as they are now.
+    """A function that returns whether settings and contents of the space are still the present ones.
 
     Args:
-        edits: grows when something of the space is edited in place.
+        edits: counts that grow with edits in place.
 
-    Every addition of a shape changes pymunk's count of all shapes ever added, every removal the number of those there.
-    A body that was exchanged for another shows in the ids that the batch call reads. Constraints, which have neither,
-    are compared one by one. The public properties take three times as long.
+    Every addition of a shape changes pymunk's count of all shapes ever added, every removal the number of shapes. A
+    body that was exchanged for another one changes the ids that the batch call reads. Constraints are compared one by
+    one. The public properties take three times as long.
     """
     c = space._space
     bodies, shapes, constraints, handlers = space._bodies, space._shapes, space._constraints, space._handlers
@@ -227,10 +227,10 @@ def watch(space: pymunk.Space, edits: list[int]) -> Callable[[], bool]:
 
 
 def reader(space: pymunk.Space, fields: batch.BodyFields, floats: FloatArray, ids: IntArray) -> Callable[[], None]:
-    """`batch.get_space_bodies` into memory of ours, at a quarter of its cost.
+    """`batch.get_space_bodies` into given memory, at a quarter of its cost.
 
-    pymunk would take memory that is too small for one of its own, and free it: `floats` and `ids`, flat and contiguous,
-    need room for all bodies of the space at every call, which the caller has to make sure.
+    The caller must ensure that `floats` and `ids`, flat and contiguous, have room for all bodies of the space at every
+    call: pymunk would replace memory that is too small by its own, and free it.
     """
     values, numbers = _array("pmFloatArray *", "cpFloat[]", floats), _array("pmIntArray *", "uintptr_t[]", ids)
     data = _batched(fields, values, numbers)
@@ -248,9 +248,9 @@ def reader(space: pymunk.Space, fields: batch.BodyFields, floats: FloatArray, id
 def writer(
     space: pymunk.Space, fields: batch.BodyFields, floats: FloatArray, bodies: Sequence[pymunk.Body] | None = None
 ) -> Callable[[], None]:
-    """`batch.set_space_bodies` from memory of ours, flat and contiguous, that has a row for every body of the space.
+    """`batch.set_space_bodies` from given memory, flat and contiguous, with a row for every body of the space.
 
-    With `bodies`, the first of the space in pymunk's order, only these are written to, one after the other.
+    With `bodies`, the first ones of the space in pymunk's order, only these are written, one after the other.
     """
     values, numbers = _array("pmFloatArray *", "cpFloat[]", floats), ffi.new("pmIntArray *")
     data = _batched(fields, values, numbers)
@@ -274,7 +274,7 @@ def writer(
 
 
 def _array(kind: str, items: str, memory: FloatArray | IntArray) -> Any:
-    """pymunk's array over memory of ours; `batch.Buffer` has the same, and leaves what it had before to nobody."""
+    """pymunk's array over given memory; `batch.Buffer` has the same, but leaks its earlier memory."""
     array = ffi.new(kind)
     array.arr = ffi.from_buffer(items, memory)
     array.num, array.max = 0, memory.size
@@ -288,18 +288,18 @@ def _batched(fields: batch.BodyFields, floats: Any, ints: Any) -> Any:
 
 
 def timestamp(space: pymunk.Space) -> Callable[[], int]:
-    """A function that tells how many steps pymunk itself has taken in this space."""
+    """A function that returns the number of steps that pymunk itself has taken in this space."""
     c, read = space._space, lib.cpSpaceGetTimestamp
     return lambda: int(read(c))
 
 
 def shapes_ever(space: pymunk.Space) -> int:
-    """How many shapes were ever added to the space."""
+    """Number of shapes ever added to the space."""
     return int(lib.cpSpaceGetShapeIDCounter(space._space))
 
 
 def waits(space: pymunk.Space) -> bool:
-    """Whether anything waits for the end of a step."""
+    """Whether additions, removals or callbacks wait for the end of a step."""
     return bool(space._post_step_callbacks or space._add_later or space._remove_later)
 
 

@@ -36,7 +36,8 @@ def asleep(arbiter: Any) -> bool:
 
 
 def set_impulse(arbiter: Any, impulse: tuple[float, float] | None) -> list[tuple[float, float]]:
-    """Give an arbiter this impulse on its second shape, shared among its points, or none; what they had."""
+    """Set the impulse of an arbiter on its second shape, divided among its points; None for 0. Returns the old
+    values."""
     old = [(arbiter.contacts[k].jnAcc, arbiter.contacts[k].jtAcc) for k in range(arbiter.count)]
     x, y = (0.0, 0.0) if impulse is None else impulse
     nx, ny = arbiter.n.x, arbiter.n.y
@@ -66,7 +67,7 @@ def make_arbiter(
     a: pymunk.Shape, b: pymunk.Shape, normal: tuple[float, float], points: Sequence[tuple[float, float]],
     impulse: tuple[float, float],
 ) -> Any:  # fmt: skip
-    """An arbiter of two shapes that touched at these points (1 or 2) with this impulse on b; no part of a space."""
+    """An arbiter, in no space, of two shapes that touched at these points (1 or 2) with this impulse on b."""
     nx, ny = normal
     contacts, arbiter = ffi.new("cpContact[]", len(points)), ffi.new("cpArbiter *")
     (xa, ya, ma, ia), (xb, yb, mb, ib) = _centre(a), _centre(b)
@@ -89,24 +90,24 @@ def make_arbiter(
 
 
 class _Holder:
-    """Keeps the contacts of an arbiter as long as that is there."""
+    """Keeps the contacts of an arbiter as long as the arbiter exists."""
 
     def __init__(self, arbiter: Any, contacts: Any) -> None:
         self.arbiter = ffi.gc(arbiter, lambda _: contacts)
 
 
 def turn_to(arbiter: Any, body: pymunk.Body) -> None:
-    """Let an arbiter be seen from a body."""
+    """Order the shapes of an arbiter so that the first one belongs to a body."""
     arbiter.swapped = 1 if arbiter.body_b == body._body else 0
 
 
 def raw(arbiter: pymunk.Arbiter) -> Any:
-    """An arbiter as Chipmunk has it."""
+    """Pointer to an arbiter of Chipmunk."""
     return arbiter._arbiter
 
 
 def batch_arbiters(arbiters: Sequence[Any], fields: batch.ArbiterFields, buffers: batch.Buffer) -> None:
-    """Add arbiters to what `batch.get_space_arbiters` has read."""
+    """Append arbiters to the buffers of `batch.get_space_arbiters`."""
     data = ffi.new("pmBatchedData *")
     data.fields, data.floatArray, data.intArray = fields.value, buffers._float_arr, buffers._int_arr
     for arbiter in arbiters:

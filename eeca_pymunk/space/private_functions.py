@@ -1,4 +1,4 @@
-"""Private names of pymunk behind functions of bodies, called one after the other and left out; see `private`."""
+"""Private names of pymunk for calling functions of bodies, and for steps without them; see `private`."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ OF_LIBRARY = (
 def accelerations(
     bodies: Sequence[pymunk.Body], gravity: pymunk.Vec2d, damping: float, dt: float
 ) -> list[tuple[float, float, float]]:
-    """What the velocity functions of bodies, which have one, add to velocity and spin; these stay what they were.
+    """Changes of velocity and spin by the velocity functions of bodies; the bodies are restored.
 
     The public properties take four times as long.
     """
@@ -40,8 +40,8 @@ def accelerations(
 
 @contextmanager
 def without(velocity: Sequence[pymunk.Body], position: Sequence[pymunk.Body]) -> Iterator[None]:
-    """Within, pymunk's steps call neither the velocity functions of bodies nor the position functions of others, which
-    all have one, but do what they do without."""
+    """Within this block pymunk's steps use its own functions in the place of these velocity functions and position
+    functions of bodies."""
     accelerate, move = ffi.addressof(lib, "cpBodyUpdateVelocity"), ffi.addressof(lib, "cpBodyUpdatePosition")
     try:
         for body in velocity:
@@ -50,7 +50,7 @@ def without(velocity: Sequence[pymunk.Body], position: Sequence[pymunk.Body]) ->
             lib.cpBodySetPositionUpdateFunc(body._body, move)
         yield
     finally:
-        # Functions that were called meanwhile may have taken theirs away.
+        # Functions that were called meanwhile may have removed them.
         for body in velocity:
             if body._velocity_func is not None:
                 lib.cpBodySetVelocityUpdateFunc(body._body, lib.ext_cpBodyVelocityFunc)

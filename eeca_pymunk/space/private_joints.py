@@ -18,14 +18,14 @@ OF_LIBRARY = (
 )  # fmt: skip
 BEFORE, AFTER, FORCE, TORQUE = "_pre_solve_func", "_post_solve_func", "_force_func", "_torque_func"
 OF_CONSTRAINT = ("_constraint", BEFORE, AFTER)
-# pymunk 7.0.0 has `_force_func` only where it was set: what is looked up is the setter.
+# pymunk 7.0.0 has `_force_func` only if it was set: the setter is looked up.
 OF_SPRINGS = ((pymunk.DampedSpring, FORCE[1:]), (pymunk.DampedRotarySpring, TORQUE[1:]))
 
 
 @contextmanager
 def time_step(space: pymunk.Space, dt: float) -> Iterator[None]:
-    """Within, which is where functions of a program are called, `space.current_time_step` is dt. Afterwards it is that
-    of pymunk's last step again, by which pymunk scales what it remembers of that step."""
+    """Within this block, for calls of functions of the program, `space.current_time_step` is dt. Afterwards it is that
+    of pymunk's last step again, with which pymunk scales its stored impulses."""
     before = lib.cpSpaceGetCurrentTimeStep(space._space)
     lib.cpSpaceSetCurrentTimeStep(space._space, dt)
     try:
@@ -37,9 +37,9 @@ def time_step(space: pymunk.Space, dt: float) -> Iterator[None]:
 def replace_functions(
     constraint: pymunk.Constraint, before: Callable[..., Any] | None, after: Callable[..., Any] | None
 ) -> None:
-    """Let pymunk call these in the place of the constraint's `pre_solve` and `post_solve`.
+    """Let pymunk call these functions in the place of the constraint's `pre_solve` and `post_solve`.
 
-    The public setters would also tell Chipmunk, and who watches the attributes of constraints.
+    The public setters would also change Chipmunk, and count as edits.
     """
     constraint.__dict__["_pre_solve_func"], constraint.__dict__["_post_solve_func"] = before, after
 
@@ -53,8 +53,8 @@ def law_of(spring: Any) -> Callable[[Any, float], float] | None:
 
 
 def pose_and_motion(body: pymunk.Body) -> tuple[float, ...]:
-    """Place, angle, velocity, spin and centre of gravity of a body, at rest unless it is kinematic. The public
-    properties take three times as long."""
+    """Position, angle, velocity, spin and centre of gravity of a body; velocities are 0 unless it is kinematic. The
+    public properties take three times as long."""
     c = body._body
     place, centre = lib.cpBodyGetPosition(c), lib.cpBodyGetCenterOfGravity(c)
     if lib.cpBodyGetType(c) != lib.CP_BODY_TYPE_KINEMATIC:
@@ -66,7 +66,7 @@ def pose_and_motion(body: pymunk.Body) -> tuple[float, ...]:
 
 @contextmanager
 def moving_on(bodies: Iterable[pymunk.Body]) -> Iterator[None]:
-    """Within, bodies may get other velocities and spins; afterwards they have theirs again."""
+    """Velocities and spins of the bodies are restored after this block."""
     velocity, spin = lib.cpBodyGetVelocity, lib.cpBodyGetAngularVelocity
     kept = [(body._body, velocity(body._body), spin(body._body)) for body in bodies]
     try:
@@ -74,21 +74,21 @@ def moving_on(bodies: Iterable[pymunk.Body]) -> Iterator[None]:
     finally:
         for c, before, turned in kept:
             now = velocity(c)
-            # Asking costs less than telling, which would wake bodies.
+            # Reading is cheaper than writing, which would wake bodies.
             if now.x != before.x or now.y != before.y or spin(c) != turned:
                 lib.cpBodySetVelocity(c, before)
                 lib.cpBodySetAngularVelocity(c, turned)
 
 
 def awake(constraints: Sequence[pymunk.Constraint]) -> list[pymunk.Constraint]:
-    """Those of constraints neither of whose bodies sleeps. The public properties take five times as long."""
+    """The constraints neither of whose bodies sleeps. The public properties take five times as long."""
     sleeps, a, b = lib.cpBodyIsSleeping, lib.cpConstraintGetBodyA, lib.cpConstraintGetBodyB
     return [c for c in constraints if not (sleeps(a(c._constraint)) or sleeps(b(c._constraint)))]
 
 
 def weaken(constraints: Iterable[Any]) -> list[tuple[Any, float]]:
-    """Have these constraints push with no force in pymunk's steps, which forget what they pushed with before; what
-    `strengthen` wants."""
+    """Set the force bound of constraints to 0, so that they exert no force in pymunk's steps, which then forget their
+    impulses. Returns the argument of `strengthen`."""
     limit, read = lib.cpConstraintSetMaxForce, lib.cpConstraintGetMaxForce
     held = [(c := one._constraint, read(c)) for one in constraints]
     for c, _ in held:
@@ -97,14 +97,14 @@ def weaken(constraints: Iterable[Any]) -> list[tuple[Any, float]]:
 
 
 def strengthen(held: Iterable[tuple[Any, float]]) -> None:
-    """Have constraints push as before `weaken`."""
+    """Restore the force bounds before `weaken`."""
     for c, most in held:
         lib.cpConstraintSetMaxForce(c, most)
 
 
 @contextmanager
 def inert(constraints: Iterable[Any]) -> Iterator[None]:
-    """Within, these constraints push with no force in pymunk's steps."""
+    """Within this block these constraints exert no force in pymunk's steps."""
     held = weaken(constraints)
     try:
         yield
@@ -114,7 +114,7 @@ def inert(constraints: Iterable[Any]) -> Iterator[None]:
 
 @contextmanager
 def silent(constraints: Iterable[Any]) -> Iterator[None]:
-    """Within, pymunk calls neither `pre_solve` nor `post_solve` of these constraints."""
+    """Within this block pymunk calls neither `pre_solve` nor `post_solve` of these constraints."""
     functions: list[tuple[Any, Any, Any]] = []
     try:
         for one in constraints:
@@ -131,7 +131,7 @@ def silent(constraints: Iterable[Any]) -> Iterator[None]:
 
 @contextmanager
 def with_laws(springs: Sequence[Any], laws: Sequence[Callable[[Any, float], float]]) -> Iterator[None]:
-    """Within, these springs, which have a force or torque function of their own, push by other laws."""
+    """Within this block these springs use the given laws in the place of their force or torque functions."""
     names = [FORCE if isinstance(one, pymunk.DampedSpring) else TORQUE for one in springs]
     own = [one.__dict__[name] for one, name in zip(springs, names, strict=True)]
     try:

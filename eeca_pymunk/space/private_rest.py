@@ -1,4 +1,4 @@
-"""Private names of pymunk around its step with everything at rest, see `private`, which looks them up."""
+"""Private names of pymunk for the rest step (`sync.py`); see `private`, which looks them up."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from . import private
 
 
 def rest(space: pymunk.Space, dt: float, pulls: bool) -> None:
-    """`step_alone` in one iteration, that corrects no overlaps and, unless it `pulls`, without gravity; threads do not
-    pay. The public properties take five times as long."""
+    """`step_alone` with one iteration, without correction of overlaps and, unless `pulls`, without gravity. The public
+    properties take five times as long."""
     c, none = space._space, (0.0, 0.0)
     gravity, iterations, bias = lib.cpSpaceGetGravity(c), lib.cpSpaceGetIterations(c), lib.cpSpaceGetCollisionBias(c)
     try:
@@ -32,7 +32,7 @@ def rest(space: pymunk.Space, dt: float, pulls: bool) -> None:
 
 @contextmanager
 def stopped(space: pymunk.Space) -> Iterator[None]:
-    """Within, bodies have neither velocities nor forces; who sleeps sleeps on."""
+    """Within this block bodies have velocity and force 0; sleeping bodies are not woken."""
     held = []
     for body in space.bodies:
         c = body._body

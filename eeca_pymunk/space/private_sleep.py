@@ -1,4 +1,4 @@
-"""Private names of pymunk that tell who sleeps: the public properties take five times as long."""
+"""Private names of pymunk for sleeping bodies: the public properties take five times as long."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ OF_LIBRARY = (
 
 
 def asleep(bodies: Iterable[pymunk.Body]) -> Callable[[], bool]:
-    """A function that tells whether all of these bodies sleep."""
+    """A function that returns whether all of these bodies sleep."""
     pointers, sleeps = [body._body for body in bodies], lib.cpBodyIsSleeping
 
     def all_sleep() -> bool:
-        # all() of a generator takes twice as long for the one body that there mostly is.
+        # all() of a generator takes twice as long for a single body, the usual case.
         for pointer in pointers:  # noqa: SIM110
             if not sleeps(pointer):
                 return False
@@ -28,7 +28,7 @@ def asleep(bodies: Iterable[pymunk.Body]) -> Callable[[], bool]:
 
 
 def unmoved(bodies: Iterable[pymunk.Body]) -> Callable[[], bool]:
-    """A function that tells whether all of these bodies are where they are now, without velocity."""
+    """A function that returns whether all of these bodies still have their present poses, and velocity 0."""
     pointers = [body._body for body in bodies]
     place, angle, velocity, spin = (
         lib.cpBodyGetPosition, lib.cpBodyGetAngle, lib.cpBodyGetVelocity, lib.cpBodyGetAngularVelocity,

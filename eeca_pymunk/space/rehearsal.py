@@ -1,8 +1,8 @@
-"""A rehearsal: pymunk's own step from the start of ours to where bodies would fly freely, for its collision handlers.
+"""A rehearsal: pymunk's own step, from the same start to the end of free flight, for collision handlers.
 
-They are called with its own detection and solver, so that begin, pre_solve, post_solve and separate come in pymunk's
-order and with pymunk's numbers. What they decide (collisions to ignore, restitution, friction, surface velocities,
-changed velocities) goes into our step, which then takes its place.
+pymunk's own detection and solver call them, so that begin, pre_solve, post_solve and separate come in pymunk's order
+and with pymunk's numbers. Their decisions (collisions to ignore, restitution, friction, surface velocities, changed
+velocities) apply to the EECA step, which replaces the rehearsal.
 """
 
 from __future__ import annotations
@@ -30,9 +30,10 @@ _BEGIN, _PRE_SOLVE, _POST_SOLVE, _ = private.PHASES
 
 
 class _Watched:
-    """A function of a handler or constraint that tells what it changes and raises.
+    """Wrapper of a function of a handler or constraint that records changes to bodies, decisions, and exceptions.
 
-    `phase`: of a handler, "" of a constraint; all functions of one `group` are called between two of pymunk's stages.
+    `phase`: of a handler, "" of a constraint. `group`: number of pymunk's stage in which the function is called;
+    between two calls of one group pymunk changes no body.
     """
 
     __slots__ = ("_decides", "_group", "_phase", "_rehearsal", "function")
@@ -51,7 +52,7 @@ class _Watched:
         try:
             answered = answer(self.function(*arguments), self.function, self._phase)
         except BaseException as error:
-            # It would end in pymunk's C code, which cannot pass it on.
+            # pymunk's C code would discard it.
             rehearsal.failure = error
         if self._decides and (answered is False or private.decision(arguments[0]) != before):
             rehearsal.decided = True
@@ -60,16 +61,17 @@ class _Watched:
 
 
 class Rehearsal:
-    """What rehearsals of a world need, kept from step to step.
+    """The arrays and wrappers for rehearsals of a world, kept from step to step.
 
     Attributes:
-        failure: what a function has raised in the last one.  decided: whether one has decided about a collision in it.
+        failure: the exception of a function in the last rehearsal.  decided: whether a function has changed a
+        collision.
     """
 
     def __init__(self, world: Crossing) -> None:
         self.world, self.space, self.bodies = world, world.space, world.bodies
         self._start, self._known = np.zeros_like(world.START), np.zeros_like(world.START)
-        # By group: what begin and pre_solve have changed, then what post_solve and separate have.
+        # Changes by begin and pre_solve, and changes by post_solve and separate.
         self._changes: tuple[FloatArray, FloatArray] = world.CHANGES[0], world.CHANGES[1]
         self._approach = approach.bind(world.STATES, world.WALK, world.EXTRA, world.BODY, world.ENDS)
         self._differ = [changed.bind(world.STATES, self._known, table) for table in self._changes]
@@ -77,31 +79,31 @@ class Rehearsal:
         self._wrapped: list[tuple[Any, str, Any, Any]] = []
         self.failure: BaseException | None = None
         self.decided, self._ignores = False, True
-        self._recent: float = 0.0  # steps for which decisions hold
+        self._recent: float = 0.0  # number of steps for which decisions still apply
 
     def forget(self) -> None:
-        """Know nothing of earlier steps."""
+        """Forget earlier steps."""
         self._heard, self._recent, self._ignores = [False, False], 0, True
         for table in self._changes:
             table[:] = 0.0
 
     def listen(self, stage: int) -> None:
-        """Before a function is called: know what there is, if pymunk has gone on since the last one."""
+        """Before a function is called: read the bodies, if pymunk has reached another stage."""
         if self._stage != stage:
             self.world.gather()
             np.copyto(self._known, self.world.STATES[NOW])
             self._stage = stage
 
     def hear(self, stage: int) -> None:
-        """After a function was called: keep what it has changed."""
+        """After a function was called: record its changes."""
         group = 0 if stage == 0 else 1
         self.world.gather()
         if self._differ[group]():
             self._heard[group] = True
 
     def run(self, hooks: Hooks, dt: float, gravity: tuple[float, ...], left: float) -> int:
-        """Take pymunk's step; STATES then has the start of ours, with what begin and pre_solve have changed in it.
-        Raises what a function raises, once pymunk has finished.
+        """Take pymunk's step; STATES then has the start of the EECA step, with the changes by begin and pre_solve. An
+        exception of a function is raised when pymunk has finished.
 
         Returns:
             0 or a negative code of `transfer.py`, with nothing done.
@@ -144,7 +146,8 @@ class Rehearsal:
         return self._heard[1]
 
     def _wrap(self, hooks: Hooks) -> None:
-        """Have functions that tell of all functions of handlers; those of the last step if they are the same."""
+        """Make wrappers of all functions of handlers; those of the last step are used again if the functions are
+        equal."""
         now = [
             (handler, phase, function)
             for handler in private.handlers(self.space)
@@ -163,7 +166,7 @@ class Rehearsal:
 
     @contextmanager
     def _silent_joints(self, hooks: Hooks) -> Iterator[None]:
-        """Within, functions of constraints that have one for before the step tell; others are not called."""
+        """Within this block `pre_solve` of constraints is wrapped, and their other functions are not called."""
         joints = hooks.joints
         assert joints is not None
         mute = [item for item in joints.calling if item.pre_solve is None or item.a.space is None]
@@ -180,7 +183,7 @@ class Rehearsal:
 
     @contextmanager
     def _watched_joints(self, items: Sequence[pymunk.Constraint]) -> Iterator[None]:
-        """Within, `pre_solve` of constraints tells what it changes and raises, and `post_solve` is not called."""
+        """Within this block `pre_solve` of constraints is wrapped, and `post_solve` is not called."""
         functions = [(item, item.pre_solve, item.post_solve) for item in items]
         try:
             for item, before, after in functions:
@@ -193,10 +196,10 @@ class Rehearsal:
                 private_joints.replace_functions(item, before, after)
 
     def rules(self, known: Rules, shapes: Sequence[pymunk.Shape], SHAPE: Rows[Shape], smooth: bool) -> Rules:
-        """What the arbiters of the step say of pairs of these shapes, which are the rows of SHAPE.
+        """The rules for pairs of these shapes, the rows of SHAPE, by the arbiters of the rehearsal.
 
-        Only functions make them say anything else than shapes do. pymunk keeps what they have decided for as many
-        steps as it keeps arbiters; of collisions that are ignored, for as long as shapes touch.
+        Values of arbiters differ from those of shapes only if a function has changed them. pymunk keeps such decisions
+        as long as it keeps arbiters, and ignored collisions as long as the shapes touch.
         """
         if self.decided:
             self._recent = self.space.collision_persistence + 1
@@ -208,7 +211,7 @@ class Rehearsal:
         return rules
 
     def finish(self) -> None:
-        """What pymunk does when its step has ended: shapes where the bodies are, additions, removals, callbacks."""
+        """The end of pymunk's step: move shapes to their bodies; additions, removals, callbacks."""
         private.forget_corrections(self.bodies.moving)
         private.reindex(self.space, self.bodies.moving)
         if private.waits(self.space):

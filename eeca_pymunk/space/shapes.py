@@ -1,4 +1,4 @@
-"""Shapes: their outlines, and what collision handlers decide about pairs of them."""
+"""Shapes: their outlines, and the decisions of collision handlers about pairs of them."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from ..errors import UnsupportedFeature
 from ..model.shapes import Shape
 from .private_versions import processed
 
-_STRAIGHT = 1e-12  # of its coordinates: how far round-off may have moved a vertex off the line of its neighbours
-_SAME = 1e-9  # part of a surface velocity by which the one that pymunk makes of it may differ
+_STRAIGHT = 1e-12  # of its coordinates: distance of a vertex from the line of its neighbours that is round-off
+_SAME = 1e-9  # relative difference of a surface velocity and pymunk's tangential part of it that is round-off
 Pair = tuple[int, int]
 Law = tuple[float, float, float, float]  # elasticity, friction, surface velocity (x, y) of b relative to a
 
 
 @dataclass(frozen=True)
 class Rules:
-    """What collision handlers decide about pairs of shapes, for one step; pairs as (smaller, larger) index.
+    """Decisions of collision handlers about pairs of shapes, for one step; pairs as (smaller, larger) index.
 
-    `ignored`: pairs that do not collide.  `changed`: the law of pairs that have another than their shapes say.
+    `ignored`: pairs that do not collide.  `changed`: the law of pairs for which it is not that of their shapes.
     """
 
     ignored: frozenset[Pair] = frozenset()
@@ -38,7 +38,7 @@ class Rules:
     def said(
         cls, arbiters: Iterable[pymunk.Arbiter], shapes: Sequence[pymunk.Shape], SHAPE: Rows[Shape], smooth: bool
     ) -> Rules:
-        """What these arbiters say of pairs of these shapes, the rows of SHAPE; nothing of friction if `smooth`."""
+        """The rules by these arbiters for pairs of these shapes, the rows of SHAPE; without friction if `smooth`."""
         index = {shape: i for i, shape in enumerate(shapes)}
         ignored, changed = set(), {}
         for arbiter in arbiters:
@@ -57,8 +57,8 @@ class Rules:
         return cls(frozenset(ignored), changed)
 
     def of_pairs(self, SHAPE: Rows[Shape], parted: Iterable[Pair] = ()) -> dict[Pair, Law]:
-        """By pair of rows of SHAPE, in their order: elasticity (-1: they pass), friction, surface velocity of b
-        relative to a. `parted` pairs pass, whatever handlers say."""
+        """The law by pair of rows of SHAPE, sorted: elasticity (-1: no collision), friction, surface velocity of b
+        relative to a. `parted` pairs do not collide, for any handlers."""
         told: dict[Pair, Law] = {}
         never = self.ignored.union(parted)
         for pair in sorted(never.union(self.changed)):
@@ -67,7 +67,7 @@ class Rules:
 
 
 def _law(SHAPE: Rows[Shape], a: int, b: int) -> Law:
-    """What two shapes say of each other: pymunk's products, and b's surface velocity relative to a's."""
+    """The law of two shapes: pymunk's products, and b's surface velocity relative to a's."""
     e, mu = (float(SHAPE[k][a] * SHAPE[k][b]) for k in ("elasticity", "friction"))
     return (
         e,
@@ -78,8 +78,8 @@ def _law(SHAPE: Rows[Shape], a: int, b: int) -> Law:
 
 
 def _surface(arbiter: pymunk.Arbiter, own: tuple[float, float], ordered: bool) -> tuple[float, float]:
-    """The surface velocity that an arbiter has, `own` if nobody has set another one: pymunk takes the part of that
-    along the contact. `ordered`: whether its first shape is that with the smaller index."""
+    """The surface velocity of an arbiter, `own` if no function has set another one: pymunk stores the tangential part.
+    `ordered`: whether its first shape has the smaller index."""
     found = arbiter.surface_velocity
     x, y = found if ordered else -found
     if (x, y) == own:
@@ -91,7 +91,8 @@ def _surface(arbiter: pymunk.Arbiter, own: tuple[float, float], ordered: bool) -
 
 
 def local_outline(shape: pymunk.Shape) -> list[tuple[float, ...]]:
-    """Vertices in body coordinates, counter-clockwise: one, a circle's centre, or two, a segment's ends, or more."""
+    """Vertices in body coordinates, counter-clockwise: one of a circle (its centre), two of a segment, more of a
+    polygon."""
     if isinstance(shape, pymunk.Circle):
         return [tuple(shape.offset)]
     if isinstance(shape, pymunk.Segment):
@@ -102,8 +103,8 @@ def local_outline(shape: pymunk.Shape) -> list[tuple[float, ...]]:
 
 
 def corners(outline: list[tuple[float, ...]]) -> list[tuple[float, ...]]:
-    """A convex outline without the vertices that lie on the line of their neighbours, up to round-off: of the normals
-    of two edges in one line, round-off would tell which of them something is beside."""
+    """A convex outline without vertices that are collinear with their neighbours, up to round-off: for two collinear
+    edges round-off would decide to which of them a point belongs."""
     limit = _STRAIGHT * max(abs(c) for v in outline for c in v)
     kept: list[tuple[float, ...]] = []
     for i, (x, y) in enumerate(outline):

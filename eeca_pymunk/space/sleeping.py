@@ -1,16 +1,17 @@
 """Sleeping: which bodies of a space sleep, when others fall asleep, and what wakes them.
 
-A body that sleeps stands like a wall: it takes part in no step. If something touches it within a step, it and its
-group wake, and the step is taken again from its start with them awake; so nothing is ever thrown back by a sleeper.
+A sleeping body acts like a static one and takes part in no step. If a moving body touches it within a step, it and its
+group wake, and the step is taken again from its start with them awake; so no body is ever thrown back by a sleeper.
 
-Bodies fall asleep by `body.sleep()`, or as an island of bodies that touch or are jointed, all of which have been at
-rest for `space.sleep_time_threshold`. At rest is a body with a certificate of statics: at both ends of a step
+Bodies fall asleep by `body.sleep()`, or as a group of bodies that touch or are jointed, all of which have been at rest
+for `space.sleep_time_threshold`. A body counts as at rest if, at both ends of a step,
 
     |v|, |spin| size <= AT_REST |g| dt     and     |x - x0| <= AT_REST |g| dt^2 + round-off,
 
-and round-off of the fastest body's, without forces of the user's. The impulse of the step's contacts and joints, each
-inside its cone of friction, then balances gravity's to AT_REST: the solver's tolerance. A body at the apex of a swing,
-which is merely slow for a moment, has a velocity of |g| dt one step later. Without gravity only round-off will do.
+up to round-off of the fastest body, without forces of the program. The impulses of the step's contacts and joints, each
+within its law, then balance gravity to that accuracy: the body is in equilibrium. A body at its highest point, which is
+slow for an instant, has a velocity of |g| dt one step later. Without gravity only motion by round-off counts as rest.
+Islands at rest (`..islands`) meet this criterion; it also holds for bodies that are solved in every step.
 """
 
 from __future__ import annotations
@@ -34,19 +35,20 @@ from .noticed import leader
 if TYPE_CHECKING:
     from .world import World
 
-AT_REST = 1e-6
-_AGAIN = 16  # steps after which islands that could not fall asleep are looked at again
-_SHARE, _PATIENCE = 8, 120  # islands fall asleep that are this part of who is awake, or after so many steps
+AT_REST = 1e-6  # tolerance above; `..model.bodies.AT_REST` is a state
+_AGAIN = 16  # number of steps after which bodies that could not fall asleep are tested again
+_SHARE = 8  # bodies fall asleep at once if they are at least this part (1/8) of those awake,
+_PATIENCE = 120  # else after so many steps
 
 
 class Sleep:
-    """Who sleeps in a world, and who is about to.
+    """The sleeping bodies of a world, and the times for which others have been at rest.
 
     Args:
-        world: of a space whose `sleep_time_threshold` is finite.  past: that of the world of this space before.
+        world: of a space whose `sleep_time_threshold` is finite.  past: that of the last world of this space.
 
     Attributes:
-        some, everyone: whether any body sleeps, and whether all dynamic ones do.
+        some, everyone: whether any body sleeps; whether all dynamic ones do.
     """
 
     def __init__(self, world: World, past: Sleep | None) -> None:
@@ -77,34 +79,34 @@ class Sleep:
         self._size: FloatArray = np.where(row >= 0, world.BODY["extent"][row], 0.0)
         self._rests = rests.bind(world.STATES, world.WALK, world.BODY, self._size, self._rested, self._tired)
         self._still = bodies.asleep.astype(np.int64), bodies.static.astype(np.int64)
-        # Whom others than the solver move: where functions are called everybody, else kinematic bodies.
+        # Bodies that something other than the solver moves: all, if functions are called; else kinematic ones.
         movers: tuple[BoolArray, BoolArray] = ~bodies.static, ~bodies.static & ~bodies.dynamic
         self._moves = [np.flatnonzero(moves).tolist() for moves in movers]
 
     def changed(self) -> bool:
-        """Whether others sleep now than when this was made, as far as one knows: pymunk may have taken a step."""
+        """Whether other bodies may sleep now than when this was made, or pymunk has taken a step."""
         return self._timestamp() != self._left or not self._asleep()
 
     def nothing_moves(self) -> bool:
-        """Whether, if everyone sleeps, the rest of the space is at rest and where it was, too."""
+        """Whether all dynamic bodies sleep, and all others have their old poses and velocity 0."""
         return self.everyone and self._unmoved()
 
     def step(self, dt: float) -> None:
-        """Take a step in which nothing moves: pymunk's own, until it has forgotten all contacts of earlier ones; then
-        none, for a step of this dt would change nothing."""
+        """Take a step in which nothing moves: pymunk's own until it has forgotten all earlier contacts; then none,
+        since a step of this dt would change nothing."""
         if self._steps > 0 or dt != self._dt:
             self._steps, self._dt = self._steps - 1, dt
             private.step_alone(self.space, dt)
             self._left = self._timestamp()
 
     def wake(self, bodies: Iterable[pymunk.Body] | None = None) -> None:
-        """Wake these, and all in their groups; all bodies if None."""
+        """Wake these bodies and their groups; all bodies if None."""
         for body in self._sleepers if bodies is None else bodies:
             body.activate()
 
     def meet(self, dt: float) -> bool:
-        """Wake whom a body may meet that is moved by others than the solver: a kinematic one; where functions are
-        called, which a step cannot do twice, any body. Whether there was any."""
+        """Wake the sleeping bodies that a kinematic body may meet in the step; if functions are called, which cannot be
+        repeated, those that any body may meet. Returns whether there was any."""
         world, bodies, found = self.world, self.world.bodies, False
         moves = self._moves[1 if world.plain else 0]
         if not moves:
@@ -125,19 +127,19 @@ class Sleep:
         return found
 
     def told(self, bodies: Sequence[pymunk.Body]) -> tuple[FloatArray, IntArray, IntArray]:
-        """Times at rest (N,), places of others of their groups of sleepers (N,), -1 for who is awake, timers (2,)."""
+        """Times at rest (N,), index of another body of the sleeping group (N,), -1 for awake bodies, timers (2,)."""
         place = {body: i for i, body in enumerate(bodies)}
         groups = [place.get(leader(body), i) if body.is_sleeping else -1 for i, body in enumerate(bodies)]
         rested = self._rested[[self.world.bodies.row[body] for body in bodies]]
         return rested, np.array(groups, np.int64), np.array([self._wait, self._since], np.int64)
 
     def recall(self, rested: Mapping[pymunk.Body, float], timers: IntArray) -> None:
-        """Take over times at rest, and timers."""
+        """Set times at rest, and timers."""
         self._rested[:] = [rested[body] for body in self.world.bodies.items]
         self._wait, self._since = timers.tolist()
 
     def part(self) -> None:
-        """Wake what may have touched a shape that is no longer there, and what is jointed to a body that is awake."""
+        """Wake bodies near removed shapes; wake all if static bodies were moved or shapes edited."""
         if not self.some:
             return
         for shape in self.world.records.keys() - set(self.space.shapes):
@@ -156,18 +158,18 @@ class Sleep:
         return bool(woken)
 
     def is_touched(self, LOG: Rows[Impulse], count: int) -> bool:
-        """Whether something that moves has touched a body asleep in the first `count` impulses of LOG."""
+        """Whether a moving body has touched a sleeping one in the first `count` impulses of LOG."""
         return bool(touches(LOG, self.world.owner, *self._still, count))
 
     def touched(self, contacts: Contacts) -> list[pymunk.Body]:
-        """Whom something that moves has touched."""
+        """The sleeping bodies that a moving body has touched."""
         asleep, moves = self.world.bodies.asleep, ~self.world.bodies.static
         a, b = contacts.body_a, contacts.body_b
         hit = np.concatenate((a[asleep[a] & moves[b]], b[asleep[b] & moves[a]]))
         return [self.world.bodies.items[i] for i in np.unique(hit)]
 
     def rest(self, dt: float) -> bool:
-        """Count how long bodies have been at rest, after a step; whether any may fall asleep."""
+        """Update the times at rest after a step; returns whether any body may fall asleep."""
         self._left = self._timestamp()
         # Sums of dt fall short of the threshold by round-off.
         need = self.space.sleep_time_threshold * (1.0 - 1e-9)
@@ -177,7 +179,7 @@ class Sleep:
         return self._wait == 0 and tired == 1
 
     def fall_asleep(self, contacts: Contacts) -> None:
-        """Put the islands to sleep all of whose bodies have rested long enough, each a group, as pymunk does."""
+        """Put groups to sleep all of whose bodies have been at rest for long enough."""
         bodies, tired, groups = self.world.bodies, self._tired != 0, list(range(len(self.world.bodies)))
 
         def root(i: int) -> int:
@@ -188,7 +190,7 @@ class Sleep:
 
         kept: BoolArray = bodies.dynamic & ~tired
         pairs = list(zip(contacts.body_a.tolist(), contacts.body_b.tolist(), strict=True))
-        # pymunk keeps a contact with who sleeps for good, so that one must not sleep without the other.
+        # pymunk keeps a contact with a sleeping body for good, so that both bodies must sleep or none.
         for one, two in (*((c.a, c.b) for c in self.space.constraints), *private.touching(self.space)):
             if one in bodies.row and two in bodies.row:
                 pairs.append((bodies.row[one], bodies.row[two]))
@@ -196,7 +198,7 @@ class Sleep:
             if bodies.dynamic[a] and bodies.dynamic[b]:
                 groups[root(a)] = root(b)
             for one, other in ((a, b), (b, a)):
-                # What lies on a kinematic body, or hangs from it, stays awake.
+                # A body on a kinematic body, or jointed to it, stays awake.
                 kept[one] |= bodies.dynamic[one] and not (bodies.dynamic[other] or bodies.static[other])
         self._wait = _AGAIN
         stay = {root(int(i)) for i in np.flatnonzero(kept)}
@@ -204,7 +206,7 @@ class Sleep:
         for i in np.flatnonzero(tired).tolist():
             if (lead := root(i)) not in stay:
                 islands.setdefault(lead, []).append(bodies.items[i])
-        # All others start anew, without what their solver knew: not for every box that rests beside a pile.
+        # Putting bodies to sleep reads the world again and loses contact forces, so small groups wait.
         falling = sum(map(len, islands.values()))
         if falling * _SHARE < np.count_nonzero(bodies.dynamic) and self._since < _PATIENCE:
             return
@@ -217,7 +219,7 @@ class Sleep:
 
 
 def put_to_sleep(bodies: Sequence[pymunk.Body], groups: IntArray) -> None:
-    """Put bodies, all awake, to sleep in groups: each has the place of another of its group, -1 for none."""
+    """Put awake bodies to sleep in groups; `groups`: index of another body of the group, -1 for none."""
     leaders: dict[int, pymunk.Body] = {}
     for body, group in zip(bodies, groups.tolist(), strict=True):
         if group < 0:
@@ -230,7 +232,7 @@ def put_to_sleep(bodies: Sequence[pymunk.Body], groups: IntArray) -> None:
 
 
 def rouse(space: pymunk.Space) -> None:
-    """Wake who is jointed to a body that is awake, or touches one in pymunk's eyes."""
+    """Wake bodies that are jointed to an awake body, or touch one according to pymunk."""
     pairs = [*((c.a, c.b) for c in space.constraints), *private.touching(space)]
     bodies = {body for pair in pairs for body in pair}
     again = True

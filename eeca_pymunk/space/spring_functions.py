@@ -1,12 +1,12 @@
-"""`force_func` and `torque_func`: forces of the user's own, as one linear law for the step.
+"""`force_func` and `torque_func`: force functions of the program, as one linear law for the step.
 
-From its length l0, changing at the rate r0, which was r a step of h' ago, a spring will about reach
+A spring has the length l0, with the rate r0, and r a step of length h' before. Its predicted length at the end is
 
     l1 = l0 + h r0 + h^2 (r0 - r) / 2h'.
 
-It pushes with the mean of f over [l0, l1] (Gauss, 2 points) at their middle m, and changes with the secant k of f
-there where that pulls back: f(m) + k (l - m). This is second order, its energy fourth. What such a spring gives is not
-stored anywhere that the ledger knows: it is external work. Rotary springs likewise, with the angle of a less that of b.
+Its law is f(m) + k (l - m): f(m) the mean of f over [l0, l1] (Gauss, 2 points) at the middle m, k the secant of f there
+if it restores, else 0. This is of second order, its energy of fourth. The ledger has no energy store for such springs:
+their work is external. Rotary springs likewise, with the angle of a less that of b.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ Rate = tuple[float, float]
 
 
 def own_function(item: Any) -> Callable[[Any, float], float] | None:
-    """The spring's force or torque function if it is the user's own."""
+    """The force or torque function of a spring if it is one of the program; else None."""
     usual: Any
     if isinstance(item, pymunk.DampedSpring):
         usual = pymunk.DampedSpring.spring_force
@@ -43,9 +43,9 @@ def own_function(item: Any) -> Callable[[Any, float], float] | None:
 
 
 def put_law(item: Any, a: Motion, b: Motion, dt: float, row: Joint, past: Rate | None) -> Rate:
-    """Write the law of a spring with a function of its own between bodies moving so into its row of JOINT.
+    """Write the law of a spring with a function into its row of JOINT; a, b: motions of its bodies.
 
-    `past` is what the step before was answered: r and h'.
+    `past`: the result of the last step, r and h'. Returns those of this step.
     """
     function = own_function(item)
     assert function is not None
@@ -64,14 +64,14 @@ def put_law(item: Any, a: Motion, b: Motion, dt: float, row: Joint, past: Rate |
         push, slope = 0.5 * (first + last), (last - first) / (2.0 * _POINT * way)
     if not (math.isfinite(push) and math.isfinite(slope)):
         raise NotFiniteError(f"the function of {item} answers {push} at {middle}: let it answer a finite number")
-    # A force that grows with the length is taken at the middle alone: it would not bring the step to an end.
+    # An increasing force is taken as constant: with its slope the step need not converge.
     sign = 1.0 if isinstance(item, pymunk.DampedSpring) else -1.0
     row.push, row.stiffness, row.rest = push, max(0.0, -sign * slope), middle
     return rate, dt
 
 
 def law(item: Any, row: Joint) -> Callable[[Any, float], float]:
-    """The law in a spring's row of JOINT as a function like the spring's own."""
+    """The law in a spring's row of JOINT as a force function."""
     slope = -row.stiffness if isinstance(item, pymunk.DampedSpring) else row.stiffness
     return lambda spring, at: float(row.push + slope * (at - row.rest))
 
@@ -89,7 +89,7 @@ def _stretch(item: Any, a: Motion, b: Motion) -> tuple[float, float, float]:
 
 
 def _anchor(anchor: tuple[float, float], body: pymunk.Body, motion: Motion) -> tuple[float, float, float, float]:
-    """Place and velocity of an anchor."""
+    """Position and velocity of an anchor."""
     x, y, angle, vx, vy, spin = motion
     c, s = math.cos(angle), math.sin(angle)
     (px, py), (kx, ky) = anchor, body.center_of_gravity

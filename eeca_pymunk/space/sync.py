@@ -1,12 +1,12 @@
-"""Sync: pymunk's own shapes and broad phase where a step has put the bodies, for its queries and drawing.
+"""Sync: update pymunk's own shapes and broad phase after a step, for queries and drawing.
 
-Two ways. A *rest step*, pymunk's own step with everything at rest, moves nothing, renews the broad phase and arbiters,
-forgets old contacts, and notes dt. *Reindexing* moves the shapes of one body after the other; it costs less for a few
-bodies, above all where they touch or hang from joints, and leaves all the rest as it is. In a spatial hash it leaves
-handles behind, which the next rest step clears, so there is one every so many steps. Post-step callbacks come after
-either, when bodies have their velocities.
+There are two ways. A *rest step*, pymunk's own step with all velocities 0, moves nothing; it renews broad phase and
+arbiters, forgets old contacts, and stores dt. *Reindexing* moves the shapes of one body after the other and changes
+nothing else; it costs less for a few bodies, above all if they touch or are jointed. In a spatial hash it leaves unused
+handles, which a rest step clears, so there is one every `_RENEW` steps. Post-step callbacks follow either way, when
+bodies have their velocities.
 
-Who asks for arbiters after a step that has reindexed gets a rest step then (`Sync.renew`).
+If arbiters are read after a step that has reindexed, a rest step is taken first (`Sync.renew`).
 """
 
 from __future__ import annotations
@@ -26,8 +26,9 @@ from .private_joints import awake, inert, silent, strengthen, weaken, with_laws
 if TYPE_CHECKING:
     from .world import World
 
-# Moving shapes up to which reindexing costs less than a rest step: where nothing touches, up to 25 in a tree and 10 in
-# a hash; with contacts any number in a tree, and 15 in a hash; with joints 50 and 30.
+# Numbers of moving shapes up to which reindexing is used: without contacts and joints, and with. Measured, it costs
+# less than a rest step without contacts up to 25 shapes in a tree and 10 in a hash; with contacts for any number in a
+# tree, and up to 15 in a hash; with joints up to 50 and 30.
 FEW, SOME = 12, 32
 _RENEW = 32  # steps after which reindexing gives way to a rest step
 
@@ -35,23 +36,23 @@ _RENEW = 32  # steps after which reindexing gives way to a rest step
 def rest_step(
     space: pymunk.Space, dt: float, joints: JointRows | None = None, forget: bool = True, asleep: bool = False
 ) -> None:
-    """Let pymunk see the new positions: its own step with everything at rest moves nothing.
+    """Update pymunk's shapes by its own step, with all velocities 0, which moves nothing.
 
-    With the real dt, so that `space.current_time_step` is right and a native step may follow: at rest pymunk
-    caches no impulse that it would scale by the ratio of the two steps. All bodies must have velocity 0; those of
-    joints may end with another, of round-off.
+    It uses the real dt, so that `space.current_time_step` is right and a native step may follow: with velocities 0
+    pymunk stores no impulse that it would scale by the ratio of the two steps. All bodies must have velocity 0; jointed
+    ones may end with velocities of round-off.
 
     Args:
-        joints: the constraints of the space, which call no functions meanwhile, and push with nothing where they would.
-        forget: whether pymunk remembers impulses of joints, which would push too.
-        asleep: whether there are bodies that sleep, whom a change of gravity would wake. Then it stays, and leaves
-            velocities, which are of no use.
+        joints: the constraints of the space; their functions are not called, and they exert no force.
+        forget: whether pymunk has stored impulses of joints, which would act too.
+        asleep: whether there are sleeping bodies, which a change of gravity would wake. Then gravity is kept, and the
+            caller discards the velocities that it causes.
     """
     if joints is None:
         private_rest.rest(space, dt, asleep)
         return
     push, calling = joints.items if forget else joints.pushing(), joints.calling
-    if asleep:  # pymunk has put their joints away, and any change of one would wake its bodies
+    if asleep:  # a change of a joint would wake its bodies
         push, calling = awake(push), awake(calling)
     if not (calling or joints.own or joints.partners.outside):
         held = weaken(push)
@@ -77,10 +78,10 @@ def rest_step(
 
 
 class Sync:
-    """Which of the two ways a step takes.
+    """Updates pymunk's shapes after each step, in one of the two ways.
 
     Attributes:
-        late: whether those who ask for arbiters call `renew`.
+        late: whether readers of arbiters call `renew`.
     """
 
     def __init__(self, space: pymunk.Space, bodies: Bodies) -> None:
@@ -96,9 +97,13 @@ class Sync:
         self.stamp = -1  # pymunk's count of steps after our last one, -1 before the first
 
     def reindexes(self, dt: float, contacts: bool, joints: JointRows | None) -> bool:
-        """Whether reindexing does for this step: it costs less, pymunk took no step since our last rest step, which
-        knows this dt, and nothing touched in either, so that `each_arbiter` has nothing to tell, or it asks later,
-        which it did not do after the step before."""
+        """Whether reindexing is enough for this step. Conditions:
+
+        * pymunk has taken no step since the last rest step, which had this dt and was no more than `_RENEW` steps ago;
+        * arbiters were not read after the last step;
+        * nothing touched in this step and the last one, or readers of arbiters call `renew`;
+        * the number of shapes is at most SOME; with neither contacts nor joints at most FEW.
+        """
         asked, self._asked = self._asked, False
         if asked or self._left == 0 or dt != self._dt or self._shapes > SOME:
             return False
@@ -111,13 +116,13 @@ class Sync:
         return self._timestamp() == self._renewed
 
     def reindex(self) -> None:
-        """Move the shapes to where their bodies are."""
+        """Move the shapes to the poses of their bodies."""
         self._left -= 1
         self._stale = True
         private.reindex(self.space, self._pointers)
 
     def renew(self) -> None:
-        """Have arbiters as a rest step makes them, if the last step was ours and made none."""
+        """Make arbiters by a rest step, if the last step was an EECA step that made none."""
         self._asked = True
         if self._stale and self.space not in BUSY and self._timestamp() == self._renewed:
             with private_rest.stopped(self.space):
@@ -128,20 +133,21 @@ class Sync:
         return private.waits(self.space)
 
     def call_back(self) -> None:
-        """Do what waits for the end of a step: post-step callbacks."""
+        """Do waiting additions and removals, and call post-step callbacks."""
         if self.waits():
             private.finish_step(self.space)
 
     def note(self) -> None:
-        """The steps that pymunk has taken until now were ours."""
+        """Record that the steps pymunk has taken until now were part of EECA steps."""
         self.stamp = self._timestamp()
 
     def is_ours(self) -> bool:
-        """Whether pymunk has taken no step of its own since our last one."""
+        """Whether pymunk has taken no step of its own since the last EECA step."""
         return self._timestamp() == self.stamp
 
     def rest(self, dt: float, joints: JointRows | None = None) -> None:
-        """A rest step; all bodies must have velocity 0, and may have another of round-off if there are joints."""
+        """Take a rest step; all bodies must have velocity 0, and may get velocities of round-off if there are
+        joints."""
         native = self._timestamp() != self._renewed
         if native:
             private.forget_corrections(self._pointers)
@@ -153,20 +159,21 @@ class Sync:
             self._touched = bool(private.raw_arbiters(self.space))
 
     def land(self, world: World, dt: float, status: int) -> None:
-        """Write the end of the step of a world with a rest step at it."""
+        """Write the end of the step of a world, with a rest step between poses and velocities."""
         if world.joints is not None or self._asleep:
-            status = world.turning(status)  # joints leave round-off in spins, gravity more
+            status = world.turning(status)  # joints change spins by round-off, gravity by more
         world.scatter_still(status)
         self.rest(dt, world.joints)
         world.scatter_speed(status)
 
     def settle(self, bodies: Bodies, joints: JointRows, dt: float, contacts: bool) -> None:
-        """Let pymunk see the end of a step that has been written already, which functions may have changed since."""
+        """Update pymunk's shapes to the end of a step that is written already, and may have been changed by
+        functions."""
         if self.reindexes(dt, contacts, joints):
             self.reindex()
             return
         end = bodies.gather()
-        assert end is not None  # what functions add and remove is still waiting
+        assert end is not None  # additions and removals by functions still wait
         still = end.copy()
         still[:, VELOCITY], still[:, ANGULAR_VELOCITY] = 0.0, 0.0
         bodies.scatter(still, unchanged=True)

@@ -80,7 +80,7 @@ def test_a_library_that_cannot_be_had_is_refused_if_it_is_asked_for(monkeypatch:
 
 
 def test_reasons_against_building(monkeypatch: pytest.MonkeyPatch) -> None:
-    for wrong, said in (("0.61.2", "numba 0.61.2 is installed, the compiler knows"), (None, "numba is not installed")):
+    for wrong, said in (("0.61.2", "numba 0.61.2 is installed, the compiler needs"), (None, "numba is not installed")):
         monkeypatch.setattr(backend, "_found", lambda wrong=wrong: wrong)
         assert said in backend.cannot_build()
     monkeypatch.setattr(backend, "_found", lambda: f"{NUMBA}.0")
@@ -139,8 +139,8 @@ def test_kernels_that_are_no_entries_run_as_plain_python() -> None:
 def test_the_command_line_says_which_code_runs_and_why() -> None:
     code = "import runpy; runpy.run_module('eeca_pymunk', run_name='__main__')"
     for environment, said in (
-        ({"NUMBA_DISABLE_JIT": "1"}, "plain Python, some hundred times slower: the environment asks for it"),
-        ({"EECA_KERNELS": "python"}, "plain Python, some hundred times slower: the environment asks for it"),
+        ({"NUMBA_DISABLE_JIT": "1"}, "plain Python, some hundred times slower: set by the environment"),
+        ({"EECA_KERNELS": "python"}, "plain Python, some hundred times slower: set by the environment"),
         *([({}, "library: ")] if sources.library_path() else []),
     ):
         lines = dict(line.split(maxsplit=1) for line in run(code, **environment))

@@ -38,7 +38,7 @@ def test_every_class_and_property_has_its_row() -> None:
 
 
 def test_every_function_and_module_is_told() -> None:
-    told = SECTIONS["What has nothing to do with steps"]
+    told = SECTIONS["Independent of steps"]
     functions = [n for n, f in inspect.getmembers(pymunk, inspect.isfunction) if f.__module__.startswith("pymunk")]
     assert "moment_for_circle" in functions
     modules = ["autogeometry", "batch", "pygame_util", "pyglet_util", "matplotlib_util"]

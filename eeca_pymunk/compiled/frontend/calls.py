@@ -1,9 +1,9 @@
 """Calls between kernels, typed by annotations.
 
-numba compiles what a function calls before it can type the call. Here a call is typed by what the kernel says that it
-returns, and lowered to a call of a symbol: each kernel is compiled by itself, in any order and in any process, and once
-for each tuple of argument types. Literals and 32-bit integers count as 64-bit numbers, so that constants in a call do
-not make another tuple.
+numba compiles a callee before it can type the call. Here a call is typed by the annotated return type of the kernel,
+and lowered to a call of a symbol. So each kernel is compiled by itself, in any order and in any process, and once for
+each tuple of argument types. Literals and 32-bit integers count as 64-bit numbers, so that constants in a call do not
+make another tuple.
 """
 
 from __future__ import annotations
@@ -24,12 +24,13 @@ _RETURNED = {int: types.int64, float: types.float64, bool: types.boolean, type(N
 
 Call = tuple[Kernel[Any, Any], tuple[Any, ...]]  # a kernel and the types of its arguments
 by_symbol: dict[str, Call] = {}  # all calls that have been typed
-# The type that a kernel returns whose annotation does not say it, an array for instance: it has to be compiled.
+# Function that compiles a kernel to find its return type if the annotation does not give it (an array, for instance);
+# set by `parts.adapt`.
 inferred: list[Callable[[Call], Any]] = []
 
 
 def symbol(call: Call) -> str:
-    """The name of a kernel's code for these types of arguments."""
+    """The symbol of a kernel's code for these types of arguments."""
     kernel, args = call
     digest = hashlib.sha256(f"{kernel.name}{args!r}".encode()).hexdigest()
     return f"{kernel.python.__name__}_{digest[:16]}"
@@ -37,7 +38,7 @@ def symbol(call: Call) -> str:
 
 @functools.cache
 def annotated(kernel: Kernel[Any, Any]) -> Any:
-    """numba's type of what a kernel returns by its annotation; None if that leaves it open."""
+    """numba's type of the annotated return type of a kernel; None if the annotation leaves it open."""
     return _returned(typing.get_type_hints(kernel.python)["return"])
 
 
@@ -54,7 +55,7 @@ def _wide(kind: Any) -> Any:
 
 
 def typed_call(kernel: Kernel[Any, Any], args: tuple[Any, ...]) -> tuple[Any, Callable[..., Any]]:
-    """The signature of a call, and what lowers it."""
+    """The signature of a call, and the function that lowers it."""
     call = kernel, tuple(map(_wide, args))
     returned = annotated(kernel)
     if returned is None:
@@ -93,5 +94,5 @@ def type_of(one: Compilable) -> Any:
 
 
 def activate() -> None:
-    """Let numba see these types."""
+    """Make numba use these types."""
     set_types(type_of)

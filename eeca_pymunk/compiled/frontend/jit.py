@@ -1,4 +1,4 @@
-"""Kernels as code of this process, where no library can be linked.
+"""Kernels as code of this process, if no library can be linked.
 
 The builder compiles them in a process of its own to one object file for this processor, and LLVM loads that here: numba
 is not imported, and nothing in this process is changed.
@@ -19,7 +19,7 @@ from ..entries import ENTRIES
 from ..library import Entry, symbol
 from ..sources import builder_environment
 
-_engines: list[Any] = []  # which own the code
+_engines: list[Any] = []  # they own the code
 
 
 @functools.cache

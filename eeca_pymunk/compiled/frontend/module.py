@@ -1,4 +1,4 @@
-"""One LLVM module of all that some entry points reach, and machine code of it."""
+"""One LLVM module of all kernels that some entry points call, and its machine code."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ def _entry(module: ir.Module, name: str, call: Call, returned: Any) -> None:
 
 @dataclass(frozen=True)
 class Group:
-    """What becomes one module.
+    """The content of one module.
 
     Attributes:
         entries: (name, returned type) of its entry points.
@@ -117,7 +117,7 @@ def linked(group: Group) -> Any:
     """One module of the C functions of the entries, the parts and the runtime, optimised for no platform yet.
 
     Raises:
-        RuntimeError: the parts call what is not there.
+        RuntimeError: the parts call a function that is missing.
     """
     return _together([(name, entry_call(name), returned) for name, returned in group.entries], group)
 
@@ -153,14 +153,14 @@ def _together(entries: list[tuple[str, Call, Any]], group: Group) -> Any:
 
 
 def mark(sources: str) -> Any:
-    """A module with nothing but the hash of the sources, as the symbol `eeca_sources`."""
+    """A module that contains only the hash of the sources, as the symbol `eeca_sources`."""
     initialise()
     text = f'@eeca_sources = constant [{len(sources)} x i8] c"{sources}"\n'
     return llvm.parse_assembly(text)
 
 
 def retargeted(module: Any, machine: Any) -> Any:
-    """A copy of a module for another platform, whose entry points can be found from outside."""
+    """A copy of a module for another platform, whose entry points are exported."""
     copy = module.clone()
     copy.triple, copy.data_layout = machine.triple, str(machine.target_data)
     if "windows" in machine.triple:
@@ -180,7 +180,7 @@ def _check_complete(module: Any, foreign: frozenset[str]) -> None:
 
 
 def optimise(module: Any, machine: Any) -> None:
-    """Inline, simplify and vectorise; references to arrays that are counted up and down again are left out."""
+    """Inline, simplify and vectorise; pairs of reference counts up and down are removed."""
     tuning = llvm.create_pipeline_tuning_options(LEVEL)
     tuning.loop_vectorization, tuning.slp_vectorization = True, False
     builder = llvm.create_pass_builder(machine, tuning)
@@ -198,7 +198,7 @@ def object_of(group: Group, triple: str, cpu: str) -> bytes:
 
 
 def marked_object(sources: str, triple: str, cpu: str) -> bytes:
-    """An object file with nothing but the hash of the sources."""
+    """An object file that contains only the hash of the sources."""
     machine = machine_of(triple, cpu)
     return bytes(machine.emit_object(retargeted(mark(sources), machine)))
 
@@ -218,7 +218,7 @@ def host_object_of(group: Group) -> bytes:
 
 
 def machine_of(triple: str, cpu: str, here: bool = False) -> Any:
-    """LLVM's description of a processor; `here`: for code that runs in this process, wherever the C library lies."""
+    """LLVM's description of a processor; `here`: for code that runs in this process, wherever the C library is."""
     initialise()
     target = llvm.Target.from_triple(triple)
     reloc, model = ("default", "jitdefault") if here else ("pic", "default")

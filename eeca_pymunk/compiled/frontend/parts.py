@@ -1,15 +1,15 @@
 """LLVM code of one kernel: a part.
 
-numba types and lowers the kernel; of what numba's own functions add, all becomes private to the part. Its only public
-symbol is `calls.symbol`, and what it lacks are other parts, the runtime (`runtime.ll`) and the C library.
+numba types and lowers the kernel; functions that numba adds become private to the part. The only public symbol of a
+part is `calls.symbol`; it refers to other parts, to the runtime (`runtime.ll`) and to the C library.
 
 numba is adapted in the processes of the builder, which do nothing else:
 
-* code stays LLVM's: numba makes no machine code of a part;
-* an error is a status without Python's exception, so that no path of a source file enters the code;
-* an index counts from the start of an array: numba's test whether it is negative takes three instructions at every
+* numba makes no machine code of a part: the code remains LLVM code;
+* an error is a status without a Python exception, so that no path of a source file enters the code;
+* an index counts from the start of an array: numba's test for negative indices takes three instructions at every
   access, a fifth of all in linear algebra;
-* the types of operators are looked up once: a sixth of the time of typing.
+* the types of operators are looked up once, which saves a sixth of the time of typing.
 """
 
 from __future__ import annotations
@@ -35,19 +35,20 @@ from .calls import Call, annotated, by_symbol, symbol
 
 _OPTIONS = {"fastmath": False, "error_model": "numpy", "boundscheck": False, "nogil": True}
 _BARE = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-NO_MEMORY, NO_SHAPE = 1, 2  # statuses of kernels, over numba's own
+NO_MEMORY, NO_SHAPE = 1, 2  # statuses of kernels, added to numba's own; `library.check` has those of entries
 _made: dict[Call, Part] = {}
 
 
 class Part:
-    """The code of a kernel as bitcode, the calls that it makes, what it returns, and the seconds that it took."""
+    """The code of a kernel as bitcode, its calls of other kernels, its return type, and the seconds of its
+    compilation."""
 
     def __init__(self, bitcode: bytes, calls: list[Call], returned: Any, seconds: float) -> None:
         self.bitcode, self.calls, self.returned, self.seconds = bitcode, calls, returned, seconds
 
 
 class _Quiet:
-    """numba's code generator, without the address of a function that has none."""
+    """numba's code generator, whose `set_env` does nothing, because parts have no environment."""
 
     def __init__(self, real: Any) -> None:
         self._real = real
@@ -60,7 +61,7 @@ class _Quiet:
 
 
 class _Library(codegen.JITCodeLibrary):
-    """LLVM code as numba's front end leaves it."""
+    """LLVM code as numba's front end leaves it, not compiled further."""
 
     codegen = property(lambda self: _Quiet(self._codegen))
 
@@ -72,12 +73,14 @@ class _Library(codegen.JITCodeLibrary):
 
 
 def _raise(self: Any, builder: Any, exc: Any, *_: Any, **__: Any) -> None:
+    """In the place of numba's `return_user_exc`: return a status, without the exception."""
     code = NO_MEMORY if exc is not None and issubclass(exc, MemoryError) else NO_SHAPE
     self.check_try_status(builder)
     self._return_errcode_raw(builder, ir.Constant(callconv.errcode_t, callconv.RETCODE_USEREXC.constant + code))
 
 
 def _index(context: Any, builder: Any, kind: Any, index: Any, size: Any) -> Any:
+    """In the place of numba's `fix_integer_index`: only constant indices may be negative."""
     if isinstance(index, ir.Constant):
         return _usual_index(context, builder, kind, index, size)
     return context.cast(builder, index, kind, types.intp if kind.signed else types.uintp)
@@ -126,7 +129,7 @@ def adapt() -> None:
 
 
 def part_of(call: Call) -> Part:
-    """Compile a kernel for these types of arguments; what was compiled before comes from memory."""
+    """Compile a kernel for these types of arguments, once in a process."""
     if call not in _made:
         adapt()
         _made[call] = _compiled(call)
@@ -166,12 +169,12 @@ def _module(found: Any, name: str, merged: bool) -> Any:
     own = whole.get_function(found.fndesc.llvm_func_name)
     own.name = name
     if merged:
-        # Not by numba's option, which functions of numba that are compiled on the way would inherit.
+        # Not by numba's option, which functions of numba compiled meanwhile would inherit.
         own.add_function_attribute("alwaysinline")
     _hide(whole, name)
     passes, builder = _cleaning()
     passes.run(whole, builder)
-    # numba counts its functions in their names: other names in every process, and in every order.
+    # numba numbers its functions in their names, which therefore depend on the process and on the order.
     _hide(whole, name)
     whole.name = name
     return whole
@@ -187,7 +190,7 @@ def _hide(module: Any, name: str) -> None:
 
 @functools.cache
 def _cleaning() -> Any:
-    """What removes functions that are not called, numba's wrappers for Python for instance, and names of values."""
+    """Passes that remove functions that are not called, such as numba's wrappers for Python, and names of values."""
     machine = llvm.Target.from_default_triple().create_target_machine()
     passes = llvm.create_new_module_pass_manager()
     passes.add_global_dead_code_eliminate_pass()

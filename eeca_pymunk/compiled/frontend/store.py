@@ -1,8 +1,8 @@
-"""Parts and object code that were compiled before, in files named by a hash of all that they depend on.
+"""Compiled parts and object code, in files named by a hash of everything that they depend on.
 
-A part depends on the source of its kernel, the constants and types that this names, what the kernels that it calls
-return, the types of its arguments, and the versions of the compiler: after an edit of one kernel, one part is compiled
-again. Files that no build has read for `DAYS` are removed.
+A part depends on the code of its kernel, on the constants and types that it uses, on the return types of the kernels
+that it calls, on the types of its arguments, and on the versions of the compiler. After an edit of one kernel one part
+is compiled again. Files that no build has read for `DAYS` are removed.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ _HERE = Path(__file__).parent
 
 
 def digest(*parts: object) -> str:
-    """64 hexadecimal digits of what these say of themselves."""
+    """Hash of the representations of some objects, 64 hexadecimal digits."""
     return hashlib.sha256("\0".join(map(repr, parts)).encode()).hexdigest()
 
 
@@ -57,14 +57,14 @@ def _names(code: CodeType) -> Iterator[str]:
 
 
 def _said_of(code: CodeType, doc: str | None = None) -> tuple[object, ...]:
-    """What is compiled of a function: from memory, since its file may have been edited since it was imported."""
+    """The compiled content of a function, from memory, since its file may have been edited after the import."""
     constants = [_said_of(one) if isinstance(one, CodeType) else repr(one) for one in code.co_consts if one != doc]
     return code.co_code, constants, code.co_names, code.co_varnames, code.co_freevars
 
 
 @functools.cache
 def source_key(kernel: Kernel[Any, Any]) -> str:
-    """The hash of a kernel's source and of all that it names."""
+    """The hash of a kernel's code and of all globals that it uses."""
     python = kernel.python
     named = [
         (name, _said(python.__globals__[name], f"{kernel.name} names {name}"))
@@ -76,7 +76,7 @@ def source_key(kernel: Kernel[Any, Any]) -> str:
 
 
 def _said(value: Any, where: str) -> object:
-    """What code that names this value depends on."""
+    """The part of a global on which the code that uses it depends."""
     if isinstance(value, Kernel):
         returned = annotated(value)
         return value.name, source_key(value) if returned is None else repr(returned)
@@ -99,14 +99,14 @@ def _said(value: Any, where: str) -> object:
 
 
 def part_key(call: Call) -> str:
-    """The name under which a part is kept."""
+    """The name under which a part is stored."""
     kernel, args = call
     compiler = _compiler("calls.py", "parts.py", "types.py", "../tables.py", "../records.py")
     return digest(compiler, TABLES, source_key(kernel), args)
 
 
 def group_key(group: Group, triple: str, cpu: str) -> str:
-    """The name under which an object file is kept."""
+    """The name under which an object file is stored."""
     code = [hashlib.sha256(one).hexdigest() for one in group.parts]
     compiler = _compiler("module.py", "runtime.ll", "../library.py")
     declared = [(name, repr(returned), ENTRIES.get(name)) for name, returned in group.entries]
@@ -118,7 +118,7 @@ def _path(kind: str, key: str) -> Path:
 
 
 def read(kind: str, key: str) -> bytes | None:
-    """What is kept under this key; None if nothing is."""
+    """The content stored under this key, or None."""
     path = _path(kind, key)
     try:
         found = path.read_bytes()
@@ -130,7 +130,7 @@ def read(kind: str, key: str) -> bytes | None:
 
 
 def write(kind: str, key: str, content: bytes) -> None:
-    """Keep this, if there is a place to; a reader sees all of it or nothing."""
+    """Store the content, if there is a writable folder; a reader sees all of it or nothing."""
     path = _path(kind, key)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -150,12 +150,12 @@ def read_part(call: Call) -> Part | None:
     try:
         bitcode, called, returned, seconds = pickle.loads(content)
         return Part(bitcode, [(all_kernels[name], args) for name, args in called], returned, seconds)
-    except Exception:  # a file that was cut short, whatever pickle makes of it
+    except Exception:  # a truncated file, whatever pickle raises
         return None
 
 
 def write_part(call: Call, part: Part) -> None:
-    """Keep a part, unless it was compiled with random hashes, on which the order of its instructions depends."""
+    """Store a part, unless it was compiled with random hashes, on which the order of its instructions depends."""
     if sys.flags.hash_randomization:
         return
     called = [(kernel.name, args) for kernel, args in part.calls]
@@ -163,7 +163,7 @@ def write_part(call: Call, part: Part) -> None:
 
 
 def prune() -> None:
-    """Remove what no build has read for `DAYS`."""
+    """Remove files that no build has read for `DAYS`."""
     oldest = time.time() - DAYS * 86400
     for kind in ("parts", "objects"):
         for path in (cache_folder() / kind).glob("*/*"):

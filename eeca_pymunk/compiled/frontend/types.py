@@ -1,7 +1,7 @@
-"""numba's types of tables, openers and `fetch`, and its types of what `entries.py` declares.
+"""numba's types of tables, openers and `fetch`, and of the arguments that `entries.py` declares.
 
-A table is a pointer to words of 64 bits, WORDS for each array: where its data are, its size, its last two lengths.
-Nothing of this changes while a kernel runs, which LLVM is told: it reads a word once, however often it is used.
+A table is a pointer to words of 64 bits, WORDS for each array: address of its data, size, its last two lengths. The
+words are constant while a kernel runs and are loaded as invariant, so that LLVM reads each word once.
 """
 
 from __future__ import annotations
@@ -83,7 +83,7 @@ def _attribute(context: Any, builder: Any, table: TableType, value: Any, name: s
 
 
 def declared_type(kind: str) -> Any:
-    """numba's type of what `entries.py` calls `f8[2]`, `i8`, `bool`; of a table, that of its words."""
+    """numba's type of `f8[2]`, `i8`, `bool` and the like of `entries.py`; of a table, that of its words."""
     if kind.endswith("}"):
         return types.Array(types.int64, 1, "C")
     if is_array(kind):
@@ -102,7 +102,7 @@ def global_type(python: Any) -> Any:
 
 @functools.cache
 def type_of_other(one: Compilable) -> Any:
-    """The type of what kernels name that is no kernel."""
+    """The type of an opener or of `fetch`."""
     if isinstance(one, Opener):
         return _opener(one.kind)
     assert isinstance(one, Fetch)
@@ -110,7 +110,7 @@ def type_of_other(one: Compilable) -> Any:
 
 
 def _opener(kind: type) -> Any:
-    """The type of the function that opens tables of this kind; what is no table, it returns as it is."""
+    """The type of the function that opens tables of this kind; other arguments are returned unchanged."""
     name = kind.__name__
     fields = table_fields(name)
 
@@ -146,7 +146,7 @@ def _fetch(typing: Any, table: Any, row: Any, column: Any) -> Any:
             line = builder.gep(line, [builder.mul(column, ir.Constant(column.type, 8))])
         kind = ir.FunctionType(ir.VoidType(), [line.type, number, number, number])
         ask = builder.module.declare_intrinsic("llvm.prefetch", [line.type], kind)
-        # To read, to be kept in all caches, data.
+        # For reading, to be kept in all caches, data.
         builder.call(ask, [line, ir.Constant(number, 0), ir.Constant(number, 3), ir.Constant(number, 1)])
         return context.get_dummy_value()
 

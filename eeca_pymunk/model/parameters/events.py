@@ -7,16 +7,22 @@ from .record import heuristic, round_off, work
 APPROACH_ROUND_OFF = round_off(
     1e-13, "of the speeds", "Closing speed of touching shapes below which they do not approach."
 )
-DISTANCE_ROUND_OFF = round_off(1e-09, "of the squared distance", "Distance within which APPROACH_ROUND_OFF counts.")
-MISS_DISTANCE = round_off(
-    1.000001, "ratio of squares", "Two paths miss if their least distance exceeds the sum of radii by this."
+DISTANCE_ROUND_OFF = round_off(
+    1e-09, "of the squared distance", "Distance of touching disks within which APPROACH_ROUND_OFF applies."
 )
-PATH_REACH = round_off(1.0000001, "ratio", "Two bodies cannot meet in the step if they miss each other by this.")
-SEARCH_AHEAD = work(1.5, "times the time that is left", "Circles that cannot meet until then need no root.")
+MISS_DISTANCE = round_off(
+    1.000001,
+    "ratio of squares",
+    "Two paths miss each other if their least distance exceeds the sum of radii by this factor.",
+)
+PATH_REACH = round_off(
+    1.0000001, "ratio", "Two bodies cannot meet in the step if their paths miss each other by this factor."
+)
+SEARCH_AHEAD = work(1.5, "times the time that is left", "Circles that cannot meet until then need no root finding.")
 ADVANCES = work(
     1000,
     "number",
-    "Evaluations of a gap in one search for an impact: a double root halves its error, a single one squares it.",
+    "Evaluations of a gap in one search for an impact, at most; its inverse is the least advance of touching shapes.",
 )
 RESOLUTION = work(
     64,
@@ -25,7 +31,7 @@ RESOLUTION = work(
     "is squeezed; a bounce slower than |a| dt over it is none. Larger: dearer steps of what rattles.",
 )
 FARTHEST_MARGIN = work(
-    0.7, "of the margin", "Distance by which a lone disk's new margin circle may be ahead of it, at most."
+    0.7, "of the margin", "Distance of the centre of a single disk's new margin circle ahead of it, at most."
 )
 GRAZED = heuristic(
     0.0001,
@@ -48,5 +54,5 @@ PAIR_LOOKS = work(4, "looks", "Work of the geometry of a pair in a solve.")
 SWEEP_LOOKS = work(0.25, "looks", "Work of a contact in a sweep.")
 DIRECT_LOOKS = work(0.25, "looks", "Work of a direct solution, times the square of its contacts.")
 INITIAL_PENETRATION = heuristic(
-    1e-06, "of the smaller shape", "Overlap above which shapes that were put into one another come apart in one step."
+    1e-06, "of the smaller shape", "Overlap above which shapes that the program placed into each other are separated."
 )

@@ -9,21 +9,25 @@ SINGULAR = round_off(
     "of the product of its diagonal",
     "Determinant of a contact's 2 x 2 matrix below which normal and tangential impulse are not solved together.",
 )
-JAMMED = round_off(1e-09, "of A_nn", "Mobility along a slipping contact's impulse below which it jams.")
+JAMMED = round_off(1e-09, "of A_nn", "Mobility along the impulse of a slipping contact below which it jams.")
 PROXIMAL_DENSE = round_off(
     100000000.0,
     "over the effective mass",
-    "Stiffness of the proximal term that makes redundant contacts solvable, dense factors.",
+    "Stiffness of the proximal term that makes redundant contacts solvable with dense factors.",
 )
 PROXIMAL_STATICS = round_off(
-    100000000000.0, "over the effective mass", "Stiffness of the proximal term of static forces, sparse factors."
+    100000000000.0,
+    "over the effective mass",
+    "Stiffness of the proximal term in the search for static forces with sparse factors.",
 )
 FACE_LINE = accuracy(
-    1e-06, "of a face's length", "Distance from one tangent line up to which points of a face count as one line."
+    1e-06,
+    "of a face's length",
+    "Distance from one tangent line up to which the two points of a face share their friction.",
 )
 BLOCK_RESIDUAL = accuracy(1e-14, "of the approach speed", "Residual of simultaneous impacts without friction.")
 BLOCK_RESIDUAL_FRICTION = accuracy(
-    1e-10, "of the approach speed", "The same with friction, whose law is not that of a least energy."
+    1e-10, "of the approach speed", "Residual of simultaneous impacts with friction, which minimise no energy."
 )
 BLOCK_SWEEPS = work(12, "sweeps", "Sweeps before the first direct solution.")
 BLOCK_SWEEPS_FRICTION = work(100, "sweeps", "The same with friction.")
@@ -40,17 +44,17 @@ AUGMENTATION = round_off(
     "Largest augmentation of a direct solution, with which each island begins: it leaves half the digits of a double.",
 )
 REFINEMENTS = work(4, "number", "Passes of a direct solution's refinement.")
-DISSECTION_LEAF = work(6, "bodies", "Number that nested dissection does not divide further.")
-LATE_NEIGHBOURS = work(24, "neighbours", "Number from which a body is eliminated last.")
+DISSECTION_LEAF = work(6, "bodies", "Number up to which nested dissection does not divide further.")
+LATE_NEIGHBOURS = work(24, "neighbours", "Number from which on a body is eliminated last.")
 FACE_ROUND_OFF = round_off(
-    16.0, "times the gap's round-off", "Difference of gaps up to which both ends of parallel faces close at once."
+    16.0, "times the gap's round-off", "Difference of gaps up to which both ends of parallel faces touch at once."
 )
 ROCKING = heuristic(
     1e-06,
     "of the smaller shape",
-    "The same for lossy contacts: rocking below it ends at once instead of in a cascade of impacts.",
+    "Difference of gaps up to which both ends of a lossy face touch at once. Smaller: long cascades of impacts.",
 )
-BLOCK_BODIES = heuristic(16, "bodies", "Bodies of a large island on which an impact acts at once. Larger: dearer hits.")
+BLOCK_BODIES = heuristic(16, "bodies", "Bodies of a large island on which a hit acts at once. Larger: slower hits.")
 LIFT_TOGETHER = heuristic(
-    3.0, "times the deepest overlap", "Gaps up to which contacts are corrected with the deepest one."
+    3.0, "times the deepest overlap", "Gaps up to which contacts are corrected together with the deepest one."
 )

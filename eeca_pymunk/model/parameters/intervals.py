@@ -9,10 +9,13 @@ TOUCH = accuracy(
     "of the smaller shape",
     "Gap within which shapes touch. Smaller: round-off opens resting contacts. Larger: bodies rest apart.",
 )
-ELASTIC_REST = accuracy(1e-06, "of |a| dt", "Speed below which an elastic contact rests.")
-ELASTIC_REST_ON = accuracy(0.001, "of |a| dt", "The same if it rested before.")
+ELASTIC_REST = accuracy(1e-06, "of |a| dt", "Speed below which a touching elastic contact persists.")
+ELASTIC_REST_ON = accuracy(0.001, "of |a| dt", "Speed below which an elastic contact that carried a force persists.")
 SOLVES_BEFORE_HASTE = heuristic(
-    3, "solves of every body in a step", "Work after which islands are solved less precisely."
+    3, "solves of every body in a step", "Work after which large islands are neither hit nor joined in the step."
+)
+IMPACT_SPEED = accuracy(
+    2.0, "of |a| h", "Approach speed from which on a contact that closes within an interval is an impact."
 )
 IMPACT_SPEED = accuracy(
     2.0,
@@ -24,14 +27,13 @@ NORMAL_TURN = accuracy(0.1, "rad", "Rotation of a normal in one interval. Larger
 EXACT_CONTACTS = heuristic(
     12, "contacts", "Number up to which an interval ends where a contact begins to stick or normals turn."
 )
-STICK = accuracy(1e-06, "of the friction limit", "Friction and slip below which a contact sticks.")
 RATTLE = heuristic(
     0.001,
     "of the friction's impulse over the mass",
-    "Slip below which a contact sticks where bearing contacts vibrate as fast.",
+    "Slip below which a contact counts as sticking if loaded contacts vibrate as fast.",
 )
 LARGE_SWEEPS = work(24, "sweeps", "Sweeps of a large island at the start of a step.")
-LARGE_SWEEPS_HIT = work(12, "sweeps", "The same after it was hit within the step.")
+LARGE_SWEEPS_HIT = work(12, "sweeps", "Sweeps of a large island that was hit within the step.")
 INTERVAL_WAY = heuristic(
     0.5,
     "of the smaller shape; rad",
@@ -52,18 +54,26 @@ INTERVAL_DEPTH_LEAST = heuristic(
     "within it are on the side that they remember.",
 )
 INTERVAL_RETRY = heuristic(
-    1.5, "ratio", "An interval is solved again, shorter, if bodies went farther than they should by this ratio."
+    1.5,
+    "ratio",
+    "Excess of a displacement, rotation or depth over its limit from which on an interval is solved again, shorter.",
 )
 SMALL_SWEEPS = work(40, "sweeps", "Sweeps of a small island that moves, and of an impact on a large one.")
 INTERVAL_TRIES = work(12, "number", "Attempts at an interval, each shorter.")
 MIDSTEP_PASSES = work(3, "solves", "Further solves of `Midstep` for bodies that impulses move into others.")
 LARGE_ISLAND = heuristic(
-    24, "bodies", "Size from which an island is large: impacts act on BLOCK_BODIES, sweeps are limited."
+    24, "bodies", "Size from which on an island is large: hits act on BLOCK_BODIES, sweeps are limited."
 )
 MIDPOINT_SAME = round_off(
-    1e-07, "of the smaller shape", "Half way below which the geometry at the middle is that of the start."
+    1e-07,
+    "of the smaller shape",
+    "Half the displacement of a pair below which the geometry at the middle is that of the start.",
 )
-MIDPOINT_SAME_LARGE = heuristic(0.001, "of the smaller shape", "The same in a large island.")
+MIDPOINT_SAME_LARGE = heuristic(
+    0.001,
+    "of the smaller shape",
+    "Half the displacement of a pair in a large island below which the geometry at the middle is that of the start.",
+)
 MIDPOINT_TURN = heuristic(
     0.5, "cosine", "Cosine of the normals at the start and the middle below which the middle is not used."
 )
@@ -94,6 +104,8 @@ CORRECTION_ROUND_OFF = round_off(1e-14, "of its work", "Round-off of the work of
 CORRECTION_SHARE = accuracy(
     0.99,
     "of a budget that does not suffice",
-    "Part of the energy lost that a correction uses; the rest is for the moments of inertia.",
+    "Part of the energy lost that a correction uses; the rest covers changes of moments of inertia.",
 )
-REPAY_ROUND_OFF = round_off(1e-13, "of the energies", "Energy below which nothing is paid back.")
+REPAY_ROUND_OFF = round_off(
+    1e-13, "of the energies", "Energy gain of a shortened interval below which its forces are not scaled."
+)

@@ -4,19 +4,21 @@ from __future__ import annotations
 
 from .record import accuracy, heuristic, round_off, work
 
-JOINT_TOUCH = round_off(1e-12, "of the component", "Gap of a limit below which it is closed.")
-BOXES_DIRECT = work(64, "bounded rows", "Number above which each iteration decides for each row by itself.")
+JOINT_TOUCH = round_off(1e-12, "of the component", "Gap of a limit below which it is reached.")
+BOXES_DIRECT = work(64, "bounded rows", "Number above which each row is decided on its own in each iteration.")
 BOX_SWEEPS = work(12, "sweeps", "Sweeps of bounded rows.")
 BOX_ROUNDS = work(6, "number", "Changes of the active set of bounded rows.")
 BOX_RESIDUAL = round_off(1e-15, "of the largest impulse", "Change of an impulse at which sweeps of bounded rows end.")
 BOX_REDUNDANT = round_off(1e-12, "of the diagonal", "Term added to redundant bounded rows.")
-BOX_SECULAR = work(40, "iterations", "Iterations for the multiplier of a disc of friction.")
+BOX_SECULAR = work(40, "iterations", "Iterations for the multiplier of a friction disc.")
 CONDENSED_PASSES = work(3, "number", "Refinements of a condensed solution.")
 STIFFEST = round_off(10000000.0, "of the bodies' inertia", "Stiffness of rows in a condensed system, at most.")
-CONDENSED_BAND = work(8, "rows", "Band from which on rows are taken as views.")
-JOINT_SPEED_ROUND_OFF = round_off(1e-14, "of the speeds", "Velocity along a row that is round-off.")
+CONDENSED_BAND = work(8, "rows", "Half-width of the band from which on rows are taken as views.")
+JOINT_SPEED_ROUND_OFF = round_off(1e-14, "of the speeds", "Velocity along a joint row that is round-off.")
 JOINT_SPEED_LEFT = heuristic(
-    0.01, "of the speeds along a row", "Velocity along a row that is left by steps, and not corrected as an edit."
+    0.01,
+    "of the speeds along a row",
+    "Velocity along a joint row up to which it is an error of steps and not an edit to be corrected.",
 )
 LEAST_INERTIA = work(
     0.1,
@@ -40,27 +42,40 @@ NEWTON_PROGRESS = work(
     "Progress of an iteration with earlier factors below which they are computed again; it ends at "
     "JOINT_TOLERANCE with either.",
 )
-NEWTON_FLOOR = round_off(1e-11, "of the component", "An error below it that has not fallen twice is round-off.")
-NEWTON_ITERATIONS = work(25, "iterations", "Newton iterations of a step.")
-REDUNDANT_EPSILON = round_off(1e-10, "of the diagonal", "Term added for rows that may be redundant.")
-CLOSING_EPSILON = round_off(1e-05, "of the diagonal", "The same while joints that are apart close.")
-CLOSINGS = work(8, "iterations", "Iterations to close joints that are apart.")
-REDUNDANT_PASSES = work(12, "number", "Passes that take back what that term has changed.")
-FACTOR_BAND = work(16, "rows", "Band from which on factors are computed several numbers at a time.")
+RESPONSE_PASSES = work(2, "number", "Refinements of the response of a component.")
+JOINT_TOLERANCE = round_off(3e-16, "of the component", "Error of joints and momenta at which Newton iterations end.")
+JOINT_ROUND_OFF = round_off(3e-14, "of the component", "An error below it that no longer halves is round-off.")
+JOINT_ROUND_OFF_KEPT = round_off(
+    2e-15,
+    "of the component",
+    "Error below which one that no longer halves is round-off, with factors of an earlier step.",
+)
+NEWTON_PROGRESS = heuristic(
+    0.03,
+    "ratio of errors",
+    "Ratio of successive errors with earlier factors above which the factors are computed again.",
+)
+NEWTON_FLOOR = round_off(1e-11, "of the component", "Error below which one that has not fallen twice is round-off.")
+NEWTON_ITERATIONS = work(25, "iterations", "Newton iterations of a step, at most.")
+REDUNDANT_EPSILON = round_off(1e-10, "of the diagonal", "Term added to the diagonal for rows that may be redundant.")
+CLOSING_EPSILON = round_off(1e-05, "of the diagonal", "Term added to the diagonal while joints that are apart close.")
+CLOSINGS = work(8, "iterations", "Iterations to close joints that are apart, at most.")
+REDUNDANT_PASSES = work(12, "number", "Refinements that remove the effect of REDUNDANT_EPSILON.")
+FACTOR_BAND = work(16, "rows", "Half-width of the band from which on factors are computed several numbers at a time.")
 ROW_WORK = work(500.0, "operations", "Work of the rows of one joint, for the budget of a step.")
-JOINT_APART = accuracy(1e-10, "of the component", "Joints farther apart than this close at pymunk's rate.")
-ELASTIC_PARTS = work(7, "number", "Parts of a step in which joints that do not hold may give way elastically.")
+JOINT_APART = accuracy(1e-10, "of the component", "Error of a joint above which it closes at pymunk's rate.")
+ELASTIC_PARTS = work(7, "number", "Parts of a step of elastic joints.")
 HASTE = work(0.25, "of the budget", "Work of a step after which limits are located roughly.")
-COMPONENT_BUDGET = work(0.5, "of what is left", "Work that one step of a component may take.")
-NEARLY_HELD = accuracy(1e-08, "of the component", "Error of elastic joints up to which they count as held.")
+COMPONENT_BUDGET = work(0.5, "of what is left", "Work of one step of a component, at most.")
+NEARLY_HELD = accuracy(1e-08, "of the component", "Error of elastic joints up to which the step counts as converged.")
 TAUT = heuristic(
     0.5,
     "of a body's inertia",
     "Stiffness of a joint's force, times h^2/4, from which contacts take it into account where it pulls, and up to "
     "which where it presses: beyond twice that no inertia of the body would be left.",
 )
-ARM_ITERATIONS = work(6, "iterations", "Motions in which arms of contacts are made those of the middle.")
-ARM_ERROR = round_off(1e-15, "of the component", "Error of these arms.")
+ARM_ITERATIONS = work(6, "iterations", "Iterations of the motion in which arms of contacts become those of its middle.")
+ARM_ERROR = round_off(1e-15, "of the component", "Error of the arms of contacts at which these iterations end.")
 BOUNDED_SWEEPS = work(30, "sweeps", "Sweeps over bounded joint rows and contacts.")
 STRUT = round_off(
     1e-07,
@@ -69,25 +84,38 @@ STRUT = round_off(
 )
 CORRECTION_JOINTS = accuracy(1e-11, "of the component", "Error of joints where overlaps are corrected.")
 CONDENSED_BOUNDED = work(
-    16, "bounded rows", "Number up to which bounded rows are condensed into the contacts' columns."
+    16, "bounded rows", "Number up to which bounded rows are condensed into the columns of the contacts."
 )
-CONDENSED_CHANGES = work(4, "for each bounded row", "Changes of the active set, at most.")
+CONDENSED_CHANGES = work(4, "for each bounded row", "Changes of the active set of condensed rows, at most.")
 CONDENSED_PROXIMAL = round_off(
     10000000000.0, "over the effective mass", "Stiffness of the proximal term of redundant bounded rows."
 )
 FIT_CLOSING = round_off(
-    1e-09, "of the island's speed", "Speed with which contacts may close after velocities are made to fit joints."
+    1e-09,
+    "of the island's speed",
+    "Speed with which contacts may close after velocities were projected onto the joints.",
+)
+FIT_RESIDUAL = accuracy(
+    1e-06,
+    "of the fastest closing contact",
+    "Residual of the impulses that keep contacts from closing in this projection.",
+)
+FIT_ENERGY = round_off(1e-12, "of the energy", "Change of energy by this projection that is round-off.")
+JOINTED_OVERLAP = accuracy(1e-09, "of the smaller body", "Overlap of jointed bodies that is not corrected.")
+JOINTED_CORRECTION_SWEEPS = work(40, "sweeps", "Sweeps of the penetration correction of jointed bodies.")
+JOINTED_CORRECTION = heuristic(
+    0.1, "of a body", "Displacement of a jointed body by the correction in one step, at most."
 )
 FIT_RESIDUAL = accuracy(1e-06, "of the fastest closing contact", "Residual of that fit.")
 FIT_ENERGY = round_off(1e-12, "of the energy", "Change of energy by the fit that is round-off.")
 JOINTED_CORRECTION_SWEEPS = work(40, "sweeps", "Sweeps of the correction.")
 STEP_WORK = work(
-    80000000.0, "operations", "Work of a step with joints, beside STEP_WORK_BODY; 6e9 take about a second."
+    80000000.0, "operations", "Work of a step with joints besides STEP_WORK_BODY; 6e9 operations take about a second."
 )
 INTERVAL_SHARE = work(
     0.25,
     "of what is left of the budget",
-    "Work after which what has not converged is solved again, shorter.",
+    "Work of an interval after which it is solved again, shorter, if it has not converged.",
 )
 STEP_WORK_BODY = work(1000000.0, "operations", "Work for each body.")
 MEET = round_off(1e-13, "of the smaller shape", "Gap at the instant of an impact on a component.")
@@ -100,28 +128,40 @@ COLUMN_CONTACTS = work(40, "contacts", "Number up to which a direct solution ove
 COLUMN_SWEEPS = work(12, "sweeps", "Sweeps before the first direct solution.")
 COLUMN_ROUNDS = work(4, "direct solutions", "Direct solutions, at most.")
 COLUMN_PROXIMAL = round_off(
-    10000000000.0, "over the effective mass", "Stiffness of the proximal term of redundant contacts."
+    10000000000.0, "over the effective mass", "Stiffness of the proximal term of redundant contacts of components."
 )
-OUTER = work(6, "steps of the components", "Iterations between contacts and components.")
-OUTER_SMALL = work(12, "steps of the components", "The same if elastic, or of few contacts.")
-OUTER_MANY = work(2, "steps of the components", "The same where sweeps over many contacts do not converge.")
-OUTER_PART = work(1, "steps of the components", "The same in an interval that ends within the step.")
-AGREE = accuracy(1e-06, "of |a| h and the speed", "Difference of the velocities of both solutions.")
-AGREE_REST = accuracy(1e-11, "of |a| h and the speed", "The same near rest.")
-AGREE_ELASTIC = accuracy(1e-13, "of |a| h and the speed", "The same if elastic.")
-AGREE_SOME = accuracy(1e-05, "of |a| h and the speed", "The same of more than SOME_CONTACTS that move.")
+OUTER = work(6, "steps of the components", "Iterations between contacts and components, at most.")
+OUTER_SMALL = work(12, "steps of the components", "These iterations of elastic islands and of few contacts.")
+OUTER_MANY = work(2, "steps of the components", "These iterations where sweeps over many contacts do not converge.")
+OUTER_PART = work(
+    1, "steps of the components", "These iterations in an interval of many contacts that ends within the step."
+)
+AGREE = accuracy(
+    1e-06,
+    "of |a| h and the speed",
+    "Difference of the velocities of contacts and components at which their iterations end.",
+)
+AGREE_REST = accuracy(1e-11, "of |a| h and the speed", "This difference near rest.")
+AGREE_ELASTIC = accuracy(1e-13, "of |a| h and the speed", "This difference in elastic islands.")
+AGREE_SOME = accuracy(1e-05, "of |a| h and the speed", "This difference with more than SOME_CONTACTS moving contacts.")
 PRESS_SWEEPS = work(40, "sweeps", "Sweeps over contacts of components.")
-PRESS_SWEEPS_FEW = work(30, "sweeps", "The same of few contacts.")
-PRESS_SWEEPS_ELASTIC = work(400, "sweeps", "The same if elastic.")
-PRESS_RESIDUAL = accuracy(1e-09, "of |a| h and the speed", "Residual of these sweeps.")
-PRESS_RESIDUAL_REST = accuracy(1e-12, "of |a| h and the speed", "The same near rest.")
-PRESS_LOCKS = work(10, "number", "Attempts of the energy lock of components.")
-SOME_CONTACTS = work(12, "contacts", "Number from which the interval before an impact is solved roughly.")
-OUTER_PROGRESS = heuristic(0.3, "ratio of differences", "Progress below which the iterations will not agree in time.")
+PRESS_SWEEPS_FEW = work(30, "sweeps", "Sweeps over few contacts of components.")
+PRESS_SWEEPS_ELASTIC = work(400, "sweeps", "Sweeps over elastic contacts of components.")
+PRESS_RESIDUAL = accuracy(1e-09, "of |a| h and the speed", "Residual of sweeps over contacts of components.")
+PRESS_RESIDUAL_REST = accuracy(1e-12, "of |a| h and the speed", "Residual of these sweeps near rest.")
+PRESS_LOCKS = work(10, "number", "Attempts of the energy lock of components, at most.")
+SOME_CONTACTS = work(12, "contacts", "Number from which on the interval before an impact is solved roughly.")
+OUTER_PROGRESS = heuristic(
+    0.3, "ratio of differences", "Ratio of successive differences above which the iterations will not converge in time."
+)
 JOINTS_NEAR = accuracy(1e-09, "of the component", "Error of joints while many contacts have not converged.")
-OUTER_FLOOR = round_off(1e-08, "of the speed", "Difference that is round-off of stiff components if it does not fall.")
-COLUMNS_AGAIN = heuristic(0.0001, "of the speed", "Difference above which the response is computed again.")
-PRESS_WORK_ROUND_OFF = round_off(4e-14, "of impulses times speed", "Round-off of the work of contacts.")
+OUTER_FLOOR = round_off(
+    1e-08, "of the speed", "Difference of the velocities that is round-off of stiff components if it does not fall."
+)
+COLUMNS_AGAIN = heuristic(
+    0.0001, "of the speed", "Difference of the velocities above which the response is computed again."
+)
+PRESS_WORK_ROUND_OFF = round_off(4e-14, "of impulses times speed", "Round-off of the work of contacts of components.")
 SOLUTION_WORK = work(1000.0, "operations", "Work of a solution for each entry of its columns.")
 PRESS_WORK_TAUT = round_off(1e-09, "of impulses times speed", "Round-off of that work where joints pull hard, at most.")
 CHORD = work(3, "steps of the components", "Steps for which the response is taken to be the same.")

@@ -1,4 +1,4 @@
-"""What is said of a parameter beside its value."""
+"""Value, kind, scale and effect of a parameter."""
 
 from __future__ import annotations
 
@@ -12,7 +12,9 @@ class Parameter(NamedTuple):
 
     kind: "round-off" (a multiple of the error of floating-point arithmetic), "accuracy" (a chosen tolerance), "work" (a
     budget or crossover, which changes costs, and results within tolerances), "heuristic" (changes the motion).
-    scale: what the value is relative to, or its unit.  effect: what it decides.
+    scale: the quantity that the value is relative to, or its unit. |a| is `Step.pulled`, the size of a shape its
+    `Shape.extent`, that of a component the length that `..joints` measures, a width `geometry.manifold.half_width`.
+    effect: what the parameter decides.
     """
 
     value: float
