@@ -57,7 +57,9 @@ def lifting(
     for i in range(n):
         far = max(far, math.sqrt(D[i, 0] * D[i, 0] + D[i, 1] * D[i, 1]))
     if far > CORRECTION_STEP * size:
-        shorten(D, n, CORRECTION_STEP * size / far)
+        for i in range(n):
+            for c in range(3):
+                D[i, c] *= CORRECTION_STEP * size / far
     work = -against(ACC, IM, II, n, D)
     END, NEW = moved(POSE, VN, 0.5 * h), np.empty((n, 3))
     turn = x = y = square = 0.0

@@ -38,9 +38,9 @@ GRAZED = heuristic(
     "of the smaller shape",
     "Depth that shapes which touch and part may come to between two looks. Larger: fewer looks at what turns fast.",
 )
-SAME_INSTANT = round_off(1e-09, "of the step", "Two computations of an instant that differ by less are the same.")
-AHEAD = work(0.4, "of the margin", "Distance by which a new margin circle is ahead of its shape.")
-INSIDE = work(0.1, "of the margin", "Part of the margin that is left, above which a shape has not left its circle.")
+SAME_INSTANT = round_off(1e-09, "of the step", "Two computations of an instant that differ by less agree.")
+AHEAD = work(0.4, "of the margin", "Distance of the centre of a new margin circle ahead of its shape.")
+INSIDE = work(0.1, "of the margin", "Part of the margin that must be left for a shape to count as inside its circle.")
 STEP_LOOKS = work(
     32000,
     "looks",

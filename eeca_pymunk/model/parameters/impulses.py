@@ -29,13 +29,17 @@ BLOCK_RESIDUAL = accuracy(1e-14, "of the approach speed", "Residual of simultane
 BLOCK_RESIDUAL_FRICTION = accuracy(
     1e-10, "of the approach speed", "Residual of simultaneous impacts with friction, which minimise no energy."
 )
-BLOCK_SWEEPS = work(12, "sweeps", "Sweeps before the first direct solution.")
-BLOCK_SWEEPS_FRICTION = work(100, "sweeps", "The same with friction.")
-BLOCK_SWEEPS_AFTER = work(3, "sweeps", "Sweeps after each direct solution.")
-BLOCK_DIRECT = work(40, "direct solutions", "Direct solutions, at most.")
-BLOCK_DIRECT_FRICTION = work(8, "direct solutions", "The same with friction.")
-BLOCK_LAST_SWEEPS = work(400, "sweeps", "Sweeps where direct solutions have not converged.")
-BLOCK_LAST_SWEEPS_FRICTION = work(200, "sweeps", "The same with friction.")
+BLOCK_SWEEPS = work(12, "sweeps", "Sweeps of a simultaneous impact before the first direct solution.")
+BLOCK_SWEEPS_FRICTION = work(
+    100, "sweeps", "Sweeps before the first direct solution of a simultaneous impact with friction."
+)
+BLOCK_SWEEPS_AFTER = work(3, "sweeps", "Sweeps after each direct solution of a simultaneous impact.")
+BLOCK_DIRECT = work(40, "direct solutions", "Direct solutions of a simultaneous impact, at most.")
+BLOCK_DIRECT_FRICTION = work(8, "direct solutions", "Direct solutions of a simultaneous impact with friction, at most.")
+BLOCK_LAST_SWEEPS = work(400, "sweeps", "Sweeps of a simultaneous impact whose direct solutions have not converged.")
+BLOCK_LAST_SWEEPS_FRICTION = work(
+    200, "sweeps", "Sweeps of one with friction whose direct solutions have not converged."
+)
 SMALL_BLOCK = work(16, "contacts", "Number up to which sweeps alone are cheaper than a first direct solution.")
 DENSE_CONTACTS = work(20, "contacts", "Number up to which the matrix of an island is dense.")
 AUGMENTATION = round_off(

@@ -15,17 +15,23 @@ SOLVES_BEFORE_HASTE = heuristic(
     3, "solves of every body in a step", "Work after which large islands are neither hit nor joined in the step."
 )
 IMPACT_SPEED = accuracy(
-    2.0, "of |a| h", "Approach speed from which on a contact that closes within an interval is an impact."
-)
-IMPACT_SPEED = accuracy(
     2.0,
     "of |a| h",
     "Approach speed from which a contact that closes in an interval is an impact; what is slower may freeze.",
 )
-BUSY_STEPS = heuristic(8, "steps", "Steps after the last impact in which an island is not tested for rest.")
+BUSY_STEPS = heuristic(
+    8,
+    "steps",
+    "Steps after a passed-over impact in which near shapes join the island, and it is not tested for rest.",
+)
 NORMAL_TURN = accuracy(0.1, "rad", "Rotation of a normal in one interval. Larger: longer intervals, coarser rolling.")
 EXACT_CONTACTS = heuristic(
-    12, "contacts", "Number up to which an interval ends where a contact begins to stick or normals turn."
+    12,
+    "contacts",
+    "Number up to which an interval ends where a slipping contact begins to stick or a normal has rotated.",
+)
+STICK = accuracy(
+    1e-06, "of the friction limit", "Friction and slip, relative to their bounds, below which a contact sticks."
 )
 RATTLE = heuristic(
     0.001,
@@ -59,8 +65,8 @@ INTERVAL_RETRY = heuristic(
     "Excess of a displacement, rotation or depth over its limit from which on an interval is solved again, shorter.",
 )
 SMALL_SWEEPS = work(40, "sweeps", "Sweeps of a small island that moves, and of an impact on a large one.")
-INTERVAL_TRIES = work(12, "number", "Attempts at an interval, each shorter.")
-MIDSTEP_PASSES = work(3, "solves", "Further solves of `Midstep` for bodies that impulses move into others.")
+INTERVAL_TRIES = work(12, "number", "Attempts at an interval, each shorter, at most.")
+MIDSTEP_PASSES = work(3, "solves", "Further solves of `Midstep` for bodies that impulses move into others, at most.")
 LARGE_ISLAND = heuristic(
     24, "bodies", "Size from which on an island is large: hits act on BLOCK_BODIES, sweeps are limited."
 )
@@ -78,22 +84,26 @@ MIDPOINT_TURN = heuristic(
     0.5, "cosine", "Cosine of the normals at the start and the middle below which the middle is not used."
 )
 MANIFOLD_ROUND_OFF = round_off(1e-09, "of the smaller shape", "Tolerance of a manifold.")
-INTERVAL_RESIDUAL = accuracy(1e-12, "of |a| h", "Residual of an island, and of elastic ones.")
-INTERVAL_RESIDUAL_MOVING = accuracy(1e-07, "of |a| h", "Residual of a large or moving island.")
+INTERVAL_RESIDUAL = accuracy(1e-12, "of |a| h", "Residual of islands near rest and of elastic islands.")
+INTERVAL_RESIDUAL_MOVING = accuracy(1e-07, "of |a| h", "Residual of a large moving island.")
 INTERVAL_RESIDUAL_SPEED = accuracy(
     0.0001, "of its speed", "The same, relative to its speed; and of impacts on it, relative to the approach speed."
 )
-DIRECT = work(20, "direct solutions", "Direct solutions of an island near rest, or elastic.")
-DIRECT_MOVING = work(6, "direct solutions", "The same of a moving island of few contacts.")
-FIRST_SWEEPS = work(10, "sweeps", "Sweeps before the first direct solution.")
-SWEEPS_AFTER = work(4, "sweeps", "Sweeps after each.")
+DIRECT = work(20, "direct solutions", "Direct solutions of an island near rest, or elastic, at most.")
+DIRECT_MOVING = work(6, "direct solutions", "Direct solutions of a moving island of few contacts, at most.")
+FIRST_SWEEPS = work(10, "sweeps", "Sweeps of an island before its first direct solution.")
+SWEEPS_AFTER = work(4, "sweeps", "Sweeps of an island after each direct solution.")
 BACKOFF_CONTACTS = work(
-    40, "contacts", "Number beyond which direct solutions that did not converge are not tried again for some steps."
+    40, "contacts", "Number beyond which direct solutions that did not converge are suspended for some steps."
 )
-FAILED_DIRECT = work(8, "direct solutions", "Direct solutions without progress that end the solve.")
-FAILED_DIRECT_AGAIN = work(2, "direct solutions", "The same where those of the last step failed.")
-LONGEST_BACKOFF = work(32.0, "steps", "Longest time without direct solutions.")
-OVERLAP_LEFT = accuracy(1e-09, "of the size", "Overlap that is not corrected.")
+FAILED_DIRECT = work(8, "direct solutions", "Direct solutions without progress after which the solve ends.")
+FAILED_DIRECT_AGAIN = work(
+    2,
+    "direct solutions",
+    "Direct solutions without progress after which the solve ends if that of the last step failed.",
+)
+LONGEST_BACKOFF = work(32.0, "steps", "Longest time for which direct solutions are suspended.")
+OVERLAP_LEFT = accuracy(1e-09, "of the smallest body", "Overlap that is not corrected.")
 CORRECTION_STEP = accuracy(
     0.25,
     "of the smaller body",

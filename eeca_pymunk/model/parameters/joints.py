@@ -26,21 +26,13 @@ LEAST_INERTIA = work(
     "Inertia that the geometric stiffness of joints may leave in the smaller one of two systems, whose solution is the "
     "same; below it the larger one is solved.",
 )
-LIMIT_EVENTS = work(12, "number", "Limits that are reached in one step of a component.")
-LIMIT_SECANTS = work(12, "iterations", "Secant steps to the instant at which a limit is reached.")
-LIMIT_SECANTS_HASTE = work(2, "iterations", "The same once the budget is spent.")
-LIMIT_SOLVES = work(8, "number", "Linear solves that release limits which pull.")
+LIMIT_EVENTS = work(12, "number", "Limits that are reached in one step of a component, at most.")
+LIMIT_SECANTS = work(12, "iterations", "Secant steps to the instant at which a limit is reached, at most.")
+LIMIT_SECANTS_HASTE = work(2, "iterations", "Secant steps to that instant after the work HASTE.")
+LIMIT_SOLVES = work(8, "number", "Linear solves that release limits which pull, at most.")
 LOCK_ITERATIONS = work(8, "iterations", "Fixed-point iterations of the mean arms in the energy lock.")
-CONDENSE_BAND = work(14, "half-width of the band", "From it on the system of a component is condensed to its joints.")
-RESPONSE_PASSES = work(2, "number", "Refinements of the response of a component.")
-JOINT_TOLERANCE = round_off(3e-16, "of the component", "Error of joints and momenta.")
-JOINT_ROUND_OFF = round_off(3e-14, "of the component", "An error below it that no longer halves is round-off.")
-JOINT_ROUND_OFF_KEPT = round_off(2e-15, "of the component", "The same with factors of an earlier step.")
-NEWTON_PROGRESS = work(
-    0.03,
-    "ratio of errors",
-    "Progress of an iteration with earlier factors below which they are computed again; it ends at "
-    "JOINT_TOLERANCE with either.",
+CONDENSE_BAND = work(
+    14, "half-width of the band", "Half-width from which on the system of a component is condensed to its bodies."
 )
 RESPONSE_PASSES = work(2, "number", "Refinements of the response of a component.")
 JOINT_TOLERANCE = round_off(3e-16, "of the component", "Error of joints and momenta at which Newton iterations end.")
@@ -50,10 +42,11 @@ JOINT_ROUND_OFF_KEPT = round_off(
     "of the component",
     "Error below which one that no longer halves is round-off, with factors of an earlier step.",
 )
-NEWTON_PROGRESS = heuristic(
+NEWTON_PROGRESS = work(
     0.03,
     "ratio of errors",
-    "Ratio of successive errors with earlier factors above which the factors are computed again.",
+    "Progress of an iteration with earlier factors below which they are computed again; it ends at "
+    "JOINT_TOLERANCE with either.",
 )
 NEWTON_FLOOR = round_off(1e-11, "of the component", "Error below which one that has not fallen twice is round-off.")
 NEWTON_ITERATIONS = work(25, "iterations", "Newton iterations of a step, at most.")
@@ -82,7 +75,7 @@ STRUT = round_off(
     "of the free mobility",
     "Mobility of a contact under its joints that is the error of their solution: the contact then is left out.",
 )
-CORRECTION_JOINTS = accuracy(1e-11, "of the component", "Error of joints where overlaps are corrected.")
+CORRECTION_JOINTS = accuracy(1e-11, "of the component", "Error of joints when overlaps are corrected.")
 CONDENSED_BOUNDED = work(
     16, "bounded rows", "Number up to which bounded rows are condensed into the columns of the contacts."
 )
@@ -101,14 +94,7 @@ FIT_RESIDUAL = accuracy(
     "Residual of the impulses that keep contacts from closing in this projection.",
 )
 FIT_ENERGY = round_off(1e-12, "of the energy", "Change of energy by this projection that is round-off.")
-JOINTED_OVERLAP = accuracy(1e-09, "of the smaller body", "Overlap of jointed bodies that is not corrected.")
 JOINTED_CORRECTION_SWEEPS = work(40, "sweeps", "Sweeps of the penetration correction of jointed bodies.")
-JOINTED_CORRECTION = heuristic(
-    0.1, "of a body", "Displacement of a jointed body by the correction in one step, at most."
-)
-FIT_RESIDUAL = accuracy(1e-06, "of the fastest closing contact", "Residual of that fit.")
-FIT_ENERGY = round_off(1e-12, "of the energy", "Change of energy by the fit that is round-off.")
-JOINTED_CORRECTION_SWEEPS = work(40, "sweeps", "Sweeps of the correction.")
 STEP_WORK = work(
     80000000.0, "operations", "Work of a step with joints besides STEP_WORK_BODY; 6e9 operations take about a second."
 )
@@ -117,15 +103,15 @@ INTERVAL_SHARE = work(
     "of what is left of the budget",
     "Work of an interval after which it is solved again, shorter, if it has not converged.",
 )
-STEP_WORK_BODY = work(1000000.0, "operations", "Work for each body.")
-MEET = round_off(1e-13, "of the smaller shape", "Gap at the instant of an impact on a component.")
-MEET_LOADED = accuracy(1e-06, "of the smaller shape", "The same where contacts push on it.")
-MEET_MANY = accuracy(0.0001, "of the smaller shape", "The same where many do.")
-MEET_SECANTS = work(5, "iterations", "Secant steps to that instant.")
-MEET_SECANTS_LOADED = work(2, "iterations", "The same where contacts push.")
-MEET_INSTANT = round_off(1e-12, "of the step", "Interval that is none.")
-COLUMN_CONTACTS = work(40, "contacts", "Number up to which a direct solution over components pays.")
-COLUMN_SWEEPS = work(12, "sweeps", "Sweeps before the first direct solution.")
+STEP_WORK_BODY = work(1000000.0, "operations", "Work of a step with joints for each body of the scene.")
+MEET = round_off(1e-13, "of the smaller shape", "Gap at the located instant of an impact on a component.")
+MEET_LOADED = accuracy(1e-06, "of the smaller shape", "Gap at that instant if contacts push on the component.")
+MEET_MANY = accuracy(0.0001, "of the smaller shape", "Gap at that instant if many contacts push on it.")
+MEET_SECANTS = work(5, "iterations", "Secant steps to the instant of an impact on a component, at most.")
+MEET_SECANTS_LOADED = work(2, "iterations", "Secant steps to that instant if contacts push on the component.")
+MEET_INSTANT = round_off(1e-12, "of the step", "Length below which an interval before an impact is empty.")
+COLUMN_CONTACTS = work(40, "contacts", "Number up to which a direct solution over components is worth its cost.")
+COLUMN_SWEEPS = work(12, "sweeps", "Sweeps over components before the first direct solution.")
 COLUMN_ROUNDS = work(4, "direct solutions", "Direct solutions, at most.")
 COLUMN_PROXIMAL = round_off(
     10000000000.0, "over the effective mass", "Stiffness of the proximal term of redundant contacts of components."
@@ -163,8 +149,10 @@ COLUMNS_AGAIN = heuristic(
 )
 PRESS_WORK_ROUND_OFF = round_off(4e-14, "of impulses times speed", "Round-off of the work of contacts of components.")
 SOLUTION_WORK = work(1000.0, "operations", "Work of a solution for each entry of its columns.")
-PRESS_WORK_TAUT = round_off(1e-09, "of impulses times speed", "Round-off of that work where joints pull hard, at most.")
-CHORD = work(3, "steps of the components", "Steps for which the response is taken to be the same.")
+PRESS_WORK_TAUT = round_off(
+    1e-09, "of impulses times speed", "Round-off of the work of contacts on taut joints, at most."
+)
+CHORD = work(3, "steps of the components", "Iterations for which one response is used.")
 CLOSES = round_off(
     1e-12, "of the fastest contact", "Speed with which contacts may close after an elastic impact on components."
 )

@@ -10,8 +10,10 @@ REST_CANDIDATE = heuristic(
     "of |a| dt",
     "Speed below which a body of a small island is tested for static forces. Larger: slow motion stops.",
 )
-REST_CANDIDATE_LARGE = heuristic(0.5, "of |a| dt", "The same in a large island.")
-STOPPING_STEPS = heuristic(10.0, "steps", "Time in which a body that is put to rest stops, at most.")
+REST_CANDIDATE_LARGE = heuristic(
+    0.5, "of |a| dt", "Speed below which a body of a large island is tested for static forces."
+)
+STOPPING_STEPS = heuristic(10.0, "steps", "Steps in which a body that is put to rest would stop, at most.")
 STATICS_FACTORS = work(12, "factorisations", "Factorisations to find static forces, at most.")
 STATICS_FACTORS_NEAREST = work(6, "factorisations", "Further factorisations to approach the guess.")
 STATICS_START = accuracy(0.1, "of the mean guess", "Least impulse at the start of the interior-point iteration.")
