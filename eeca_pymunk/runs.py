@@ -143,13 +143,13 @@ class RunningStepper(PackedStepper):
             self._patches = world.same_things()
             return False
         lossy, sides = loop.lossy, sides_of(world, loop)
-        lists = world.patch()
-        if lists is None or lossy != bool((world.SHAPE["elasticity"] < 1.0).any()):
+        found = world.patch()
+        if found is None or lossy != bool((world.SHAPE["elasticity"] < 1.0).any()):
             return False
         if not world.collisions and len(loop.scene.RULE):
             loop.rule({})
-        world.load()
-        loop.be_new(lists)
+        filters, moved = found
+        loop.be_new(filters or moved, moved)
         if sides is not None:
             sides.recall(world, loop)
         return True

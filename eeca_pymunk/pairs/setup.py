@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from ..arrays import FloatArray, IntArray, side_by_side
-from ..compiled import table_of
+from ..compiled import Table, table_of
 from ..compiled.records import columns, row
 from ..model.parameters.detection import ALL_PAIRS, ALL_WALLS, MARGIN_HALVINGS, MOST_NEIGHBOURS, NEIGHBOURS
 from ..model.scene import Scene
@@ -25,10 +25,8 @@ def margins(bound: FloatArray, centre: FloatArray, walls: int) -> FloatArray:
 
     (2 + 2 m / r)² phi is the number of neighbours at the packing phi, if shapes are spread evenly; `near_lists` takes
     less where they are not. Small shapes among large ones do not get more than twice their own share, large ones no
-    more than the median's. Few shapes among few walls stand in all lists.
+    more than the median's.
     """
-    if len(bound) <= ALL_PAIRS and walls <= ALL_WALLS:
-        return np.full(len(bound), np.inf)
     low, high = (centre - bound[:, None]).min(axis=0), (centre + bound[:, None]).max(axis=0)
     wide, tall = np.maximum(high - low, 1e-300)
     phi = max(math.pi * float((bound / wide) @ (bound / tall)), 1e-6)
@@ -55,30 +53,39 @@ def boxes(scene: Scene, moving: int) -> FloatArray:
 
 def near_lists(scene: Scene, moving: int) -> Scene:
     """The scene with lists of the shapes [0, moving), where BODY has them now."""
+    return with_lists(scene, moving)[0]
+
+
+def with_lists(scene: Scene, moving: int) -> tuple[Scene, Table]:
+    """`near_lists`, and the table of that scene."""
     bound, room = scene.SHAPE["bound"][:moving], 32 * moving + 1024
-    MARK, CELL, LIST, POOL, FLAG, HEAD = side_by_side(
-        ((moving,), Mark.TYPE), ((moving,), Cell.TYPE), ((moving,), List.TYPE),
-        ((room,), np.int32), ((room,), np.uint8), ((1 << max(1, math.ceil(math.log2(2 * moving + 2))),), np.int64),
-    )  # fmt: skip
     GRID, BOX = row(Grid), boxes(scene, moving)
     GRID.moving = moving
+    MARK, CELL, LIST, POOL, FLAG, HEAD = side_by_side(
+        ((moving,), Mark.TYPE), ((moving,), Cell.TYPE), ((moving,), List.TYPE),
+        ((room,), np.int32), ((room,), np.uint8), ((1 << max(1, (2 * moving + 1).bit_length()),), np.int64),
+    )  # fmt: skip
     CSR = _wall_cells(BOX, GRID)
-    centre = columns(scene.BODY, "x", "y")[scene.LINK["owner"][:moving]]
-    MARK["margin"] = margins(bound, centre, len(BOX)) if moving else 0.0
-    HEAD[:] = -1
+    if moving == 0 or (moving <= ALL_PAIRS and len(BOX) <= ALL_WALLS):
+        MARK["margin"] = math.inf  # each in all lists
+    else:
+        MARK["margin"] = margins(bound, columns(scene.BODY, "x", "y")[scene.LINK["owner"][:moving]], len(BOX))
     scene = scene._replace(
         MARK=MARK, CELL=CELL, LIST=LIST, POOL=POOL, FLAG=FLAG, HEAD=HEAD, GRID=GRID, BOX=BOX, CSR=CSR
     )
+    table = table_of(scene)
     for _ in range(MARGIN_HALVINGS):
         GRID.cell = 2.0 * float((bound + MARK["margin"]).min(initial=1e300))
-        scene = rebuilt(scene, 0.0)
+        if not build(table, 0.0):
+            scene = with_more_room(scene, 0.0)
+            table = table_of(scene, table)
         # What is crowded in places needs less, unless that is next to nothing, or everybody knows all.
-        if moving == 0 or scene.LIST["number"].mean() <= MOST_NEIGHBOURS or math.isinf(MARK["margin"][0]):
+        if moving == 0 or math.isinf(MARK["margin"][0]) or scene.LIST["number"].mean() <= MOST_NEIGHBOURS:
             break
         if np.median(MARK["margin"]) <= _MARGINS[0] * np.median(bound):
             break
         MARK["margin"] *= 0.5
-    return scene
+    return scene, table
 
 
 def rebuilt(scene: Scene, t: float) -> Scene:

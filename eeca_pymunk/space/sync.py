@@ -11,17 +11,17 @@ Who asks for arbiters after a step that has reindexed gets a rest step then (`Sy
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from typing import TYPE_CHECKING
 
 import pymunk
 
 from ..reentry import BUSY
-from . import private, private_rest
+from . import private, private_joints, private_rest
 from .bodies import ANGULAR_VELOCITY, VELOCITY, Bodies
 from .joints import JointRows
-from .private_joints import awake, inert, silent, strengthen, weaken, with_laws
+from .private_joints import inert, silent, strengthen, weaken, with_laws
 
 if TYPE_CHECKING:
     from .world import World
@@ -32,8 +32,11 @@ FEW, SOME = 12, 32
 _RENEW = 32  # steps after which reindexing gives way to a rest step
 
 
+Choice = Callable[[Sequence[pymunk.Constraint]], list[pymunk.Constraint]]
+
+
 def rest_step(
-    space: pymunk.Space, dt: float, joints: JointRows | None = None, forget: bool = True, asleep: bool = False
+    space: pymunk.Space, dt: float, joints: JointRows | None = None, forget: bool = True, awake: Choice | None = None
 ) -> None:
     """Let pymunk see the new positions: its own step with everything at rest moves nothing.
 
@@ -44,14 +47,15 @@ def rest_step(
     Args:
         joints: the constraints of the space, which call no functions meanwhile, and push with nothing where they would.
         forget: whether pymunk remembers impulses of joints, which would push too.
-        asleep: whether there are bodies that sleep, whom a change of gravity would wake. Then it stays, and leaves
-            velocities, which are of no use.
+        awake: where bodies sleep, which of constraints have no such body. A change of gravity would wake them: it
+            stays, and leaves velocities, which are of no use.
     """
+    asleep = awake is not None
     if joints is None:
         private_rest.rest(space, dt, asleep)
         return
     push, calling = joints.items if forget else joints.pushing(), joints.calling
-    if asleep:  # pymunk has put their joints away, and any change of one would wake its bodies
+    if awake is not None:  # pymunk has put their joints away, and any change of one would wake its bodies
         push, calling = awake(push), awake(calling)
     if not (calling or joints.own or joints.partners.outside):
         held = weaken(push)
@@ -61,7 +65,7 @@ def rest_step(
             strengthen(held)
         return
     own, laws = joints.own, joints.laws()
-    if asleep:
+    if awake is not None:
         laws = [law for item, law in zip(own, laws, strict=True) if awake([item])]
         own = awake(own)
     with ExitStack() as within:
@@ -86,6 +90,7 @@ class Sync:
     def __init__(self, space: pymunk.Space, bodies: Bodies) -> None:
         self.space = space
         self._asleep = bool(bodies.asleep.any())
+        self._called = len(bodies.velocity_hooks) + len(bodies.position_hooks) > 0
         self._shapes = sum(bodies.shapes.values())
         self._pointers = bodies.moving
         self._timestamp: Callable[[], int] = private.timestamp(space)
@@ -145,12 +150,19 @@ class Sync:
         native = self._timestamp() != self._renewed
         if native:
             private.forget_corrections(self._pointers)
-        rest_step(self.space, dt, joints, forget=native, asleep=self._asleep)
+        rest_step(self.space, dt, joints, native, self._choice(joints) if self._asleep else None)
         self._renewed, self._dt, self._left = self._timestamp(), dt, _RENEW
         self.stamp = self._renewed
         self._stale = False
         if not self.late and self._shapes <= FEW:
             self._touched = bool(private.raw_arbiters(self.space))
+
+    def _choice(self, joints: JointRows | None) -> Choice:
+        """Which of constraints have no body that sleeps: who sleeps at the start of a step does so at its end, unless
+        functions have woken it."""
+        if joints is None or self._called or joints.calling or joints.own:
+            return private_joints.awake
+        return joints.awake
 
     def land(self, world: World, dt: float, status: int) -> None:
         """Write the end of the step of a world with a rest step at it."""
