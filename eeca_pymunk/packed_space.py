@@ -68,8 +68,8 @@ class PackedSpace(Stepper):
         """Make what the stepper keeps about a world that was read anew; `past` is the one before, if known."""
 
     def patch(self, world: World) -> bool:
-        """Put what the program has edited of shapes and bodies into the rows of a world, and what is kept about it;
-        False, with nothing done, where only a new reading will do."""
+        """Put what the program has edited of shapes and bodies, of which none has come or gone, into the rows of a
+        world, and what is kept about it; False where only a new reading will do."""
         return False
 
     def book(self) -> FloatArray | None:
@@ -90,7 +90,8 @@ class PackedSpace(Stepper):
         if self._sleep is not None and self.space.sleep_time_threshold == math.inf:
             self._sleep.wake()
             self._sleep, anew = None, True
-        if world is not None and not anew and world.same_contents():
+        same = world is not None and world.same_things()
+        if world is not None and same and not anew and not world.edited():
             joints = world.joints
             world.read_settings()
             if self._sleep is None and self.space.sleep_time_threshold < math.inf:
@@ -99,14 +100,10 @@ class PackedSpace(Stepper):
                 self.prepare(world, world)
             self._world = world
             return world
-        if (
-            world is not None
-            and self._sleep is None
-            and self.space.sleep_time_threshold == math.inf
-            and self.patch(world)
-        ):
-            self._world = world
-            return world
+        if world is not None and same and self._sleep is None and self.space.sleep_time_threshold == math.inf:
+            if self.patch(world):
+                self._world = world
+                return world
         past = world
         if self._sleep is not None:
             self._sleep.part()
@@ -116,7 +113,7 @@ class PackedSpace(Stepper):
             self._warned = True
             warnings.warn(f"{type(self).__name__} steps on without the friction of this space", stacklevel=4)
         self.reads += 1
-        self._sync = Sync(self.space, world.bodies)
+        self._sync = Sync(world, None if past is None else self._sync)
         self._sleep = Sleep(world, self._sleep) if self.space.sleep_time_threshold < math.inf else None
         self.prepare(world, past)
         if self._sleep is not None and (book := self.book()) is not None:

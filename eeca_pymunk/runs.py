@@ -140,7 +140,7 @@ class RunningStepper(PackedStepper):
         loop = self.event_loop
         if loop is None or not hasattr(loop, "fresh"):
             # From the reading on that is due: to keep what patches begin from takes time.
-            self._patches = world.same_things()
+            self._patches = True
             return False
         lossy, sides = loop.lossy, sides_of(world, loop)
         found = world.patch()

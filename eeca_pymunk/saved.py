@@ -122,7 +122,8 @@ class Sides:
 
 def sides_of(world: World, loop: EventLoop) -> Sides | None:
     """What a stepper remembers of sides, None if nothing."""
-    return Sides(world, loop) if (loop.scene.SIDE["key"] > 0).any() else None
+    SIDE = loop.scene.SIDE
+    return Sides(world, loop) if len(SIDE) and (SIDE["key"] > 0).any() else None
 
 
 def _outline(world: World, shape: pymunk.Shape) -> object:

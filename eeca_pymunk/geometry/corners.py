@@ -25,6 +25,8 @@ def core_room(LINK: Rows[Link]) -> FloatArray:
 
 def thin_memory(LINK: Rows[Link], VERTEX: FloatArray, moving: int) -> tuple[Rows[Side], Rows[Corner]]:
     """SIDE and CORNER, without rows where no thin shapes may meet."""
+    if LINK["vertices"][:moving].max(initial=1) < 2:
+        return rows(Side, 0), rows(Corner, 0)
     flat = thin(LINK, VERTEX)
     few = int(flat[:moving].sum())
     if few == 0 or flat.sum() < 2:

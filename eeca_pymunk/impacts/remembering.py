@@ -76,11 +76,8 @@ class Remembering:
         self.own = self._gather()
         self.fresh: IntArray = self.own.copy()
         self._room = {name: getattr(self.scene, name) for name in ROOM}
-
-    @property
-    def listed(self) -> bool:
-        """Whether near lists depend on where bodies are: else all shapes stand in all lists."""
-        return bool(np.isfinite(self.scene.MARK["margin"]).any())
+        # Whether near lists depend on where bodies are: else all shapes stand in all lists.
+        self.listed = bool(np.isfinite(self.scene.MARK["margin"]).any())
 
     def start_anew(self, at: IntArray, state: FloatArray) -> None:
         """Be what a new loop is for bodies, rows `at` (b,) of BODY, of this state (b, 6); after `keep_fresh`."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Mapping
+from functools import cached_property
 from math import isfinite
 from typing import Any, NamedTuple
 
@@ -112,13 +113,18 @@ class Packed:
         are others; False where the rows would be others, and are then in no order."""
         known = [record for record in records.values() if record is not None]
         vertices = self.LINK["vertices"].copy() if moved else None
-        as_integers(self._shapes)[:] = np.frombuffer(b"".join([record.given for record in known]), np.int64)
-        self._shapes["owner"] = self._owner
+        given, owner, BODY = self._views
+        given[:] = np.frombuffer(b"".join([record.given for record in known]), np.int64)
+        owner[:] = self._owner
         self._points[:] = np.frombuffer(b"".join([record.points for record in known]))
-        bodies.placed(state)
-        BODY, _, _, VERTEX, _ = self._rows
-        as_integers(BODY)[:] = 0
         if moved:
-            VERTEX[:] = 0.0
+            bodies.placed(state)
+            self._rows[3].fill(0.0)
+        BODY.fill(0)
         self._lay()
         return vertices is None or np.array_equal(vertices, self.LINK["vertices"])
+
+    @cached_property
+    def _views(self) -> tuple[IntArray, IntArray, IntArray]:
+        """What shapes say of themselves, as integers; owners there; BODY as integers."""
+        return as_integers(self._shapes), self._shapes["owner"], as_integers(self.BODY)

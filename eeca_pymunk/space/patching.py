@@ -15,7 +15,7 @@ import pymunk
 
 from ..layout import LEFT, NOW, PUSH_TWIST, PUSH_X
 from ..transfer import MOVED_STATIC, OTHER_BODIES
-from .noticed import clock
+from .noticed import clock, edited_since
 from .packing import Record, read
 
 if TYPE_CHECKING:
@@ -23,7 +23,8 @@ if TYPE_CHECKING:
 
 
 def patch(world: World) -> tuple[bool, bool] | None:
-    """Put all edits since the world was read into its rows, and have these be as if no step had been taken.
+    """Put all edits since the world was read into its rows, and have these be as if no step had been taken. Shapes have
+    neither come nor gone.
 
     Returns:
         whether filters have changed, and whether static bodies were moved; None where a new reading is due: then the
@@ -32,10 +33,8 @@ def patch(world: World) -> tuple[bool, bool] | None:
     Raises:
         ValueError, UnsupportedFeature, NotFiniteError: as a new reading would.
     """
-    if not world.same_things() or world.smooth or world.joints is not None or world.space.constraints:
-        return None
-    now, stale = clock(), world.stale()
-    if stale is None:
+    now, stale = clock(), edited_since(world.read_at)
+    if stale is None or world.smooth or world.joints is not None or world.space.constraints:
         return None
     filters, bodies = False, world.bodies
     records: dict[pymunk.Shape, Record] = {}

@@ -87,16 +87,21 @@ class Sync:
         late: whether those who ask for arbiters call `renew`.
     """
 
-    def __init__(self, space: pymunk.Space, bodies: Bodies) -> None:
-        self.space = space
+    def __init__(self, world: World, past: Sync | None = None) -> None:
+        """`past`: that of the world of this space before; pymunk itself puts what has come since into its index."""
+        self.space, bodies = world.space, world.bodies
         self._asleep = bool(bodies.asleep.any())
         self._called = len(bodies.velocity_hooks) + len(bodies.position_hooks) > 0
         self._shapes = sum(bodies.shapes.values())
         self._pointers = bodies.moving
-        self._timestamp: Callable[[], int] = private.timestamp(space)
+        self._timestamp: Callable[[], int] = private.timestamp(self.space)
         self._renewed, self._dt, self._left = -1, 0.0, 0
         self._touched = self._stale = self._asked = False
-        self._joints: JointRows | None = None
+        if past is not None and not (self._asleep or past._asleep):
+            self._renewed, self._dt, self._left = past._renewed, past._dt, past._left
+            self._touched, self._stale, self._asked = past._touched, past._stale, past._asked
+        self._joints = world.joints
+        self._new = True  # bodies and joints may have come from elsewhere, with what pymunk has left in them
         self.late = False
         self.stamp = -1  # pymunk's count of steps after our last one, -1 before the first
 
@@ -147,7 +152,8 @@ class Sync:
 
     def rest(self, dt: float, joints: JointRows | None = None) -> None:
         """A rest step; all bodies must have velocity 0, and may have another of round-off if there are joints."""
-        native = self._timestamp() != self._renewed
+        native = self._new or self._timestamp() != self._renewed
+        self._new = False
         if native:
             private.forget_corrections(self._pointers)
         rest_step(self.space, dt, joints, native, self._choice(joints) if self._asleep else None)

@@ -69,8 +69,7 @@ class World(Crossing):
         known = None if past is None or stale is None else past
         self.read_at = clock()
         bodies = Bodies(space, fixed) if known is None else Bodies(space, fixed, known.bodies, stale or ())
-        state = bodies.gather()
-        assert state is not None  # read from these very bodies
+        state = bodies.start
         bodies.check_finite(state)
         self.records: Records = _records(space, bodies, {} if known is None else known.records, stale or ())
         self.smooth = "friction" in ignore
@@ -85,6 +84,8 @@ class World(Crossing):
         self.disks, self.dynamic = packed.disks, packed.dynamic
         self.patches = 0
         self.parted: set[tuple[int, int]] = set()
+        self.rules = Rules()
+        self._contents = self._count()
         self.joints: JointRows | None = None
         if past is not None and past.joints is not None:
             self.joints = past.joints
@@ -96,15 +97,19 @@ class World(Crossing):
         from now on."""
         self.gravity, self.damping = settings(self.space)
         self._read_joints(anew)
+        self._seen = [self._edits[0]]
         self._known = self._edits[0] - self._edits[1]
         self.collisions = bool(private.handlers(self.space))
-        self.rules = Rules()
+        self._forget_rules()
         bodies = self.bodies
         functions = len(bodies.velocity_hooks) > 0 or len(bodies.position_hooks) > 0
         self.hooked = self.collisions or functions or self.damping == 0.0
         self.plain = not self.hooked and self.joints is None
-        self._contents = self._count()
-        self.current = private.watch(self.space, self._edits)
+        self.current = private.watch(self.space, self._edits, self._seen)
+
+    def _forget_rules(self) -> None:
+        if self.rules.some:
+            self.rules = Rules()
 
     def _read_joints(self, anew: bool) -> None:
         past = self.joints
@@ -147,7 +152,12 @@ class World(Crossing):
             self.patches += 1
             if "rehearsal" in self.__dict__:
                 self.rehearsal.forget()
-            self.read_settings()
+            self._seen[0] = self._edits[0]
+            if self.current():
+                self._known = self._edits[0] - self._edits[1]
+                self._forget_rules()
+            else:
+                self.read_settings()
             self._take(0.0, 0.0, 1.0)
         return found
 
@@ -171,11 +181,13 @@ class World(Crossing):
         joints = self.joints
         if joints is None or joints.parted is not None:
             return False
-        of = [self.bodies.items[i] for i in self.owner]
         parted: set[tuple[int, int]] = set()
-        for a, b in joints.part():
-            first, second = ([k for k, body in enumerate(of) if body is one] for one in (a, b))
-            parted.update((min(i, j), max(i, j)) for i in first for j in second)
+        if pairs := joints.part():
+            of: dict[pymunk.Body, list[int]] = {}
+            for k, i in enumerate(self.owner.tolist()):
+                of.setdefault(self.bodies.items[i], []).append(k)
+            for a, b in pairs:
+                parted.update((min(i, j), max(i, j)) for i in of.get(a, ()) for j in of.get(b, ()))
         if parted == self.parted:
             return False
         self.parted = parted
@@ -192,10 +204,6 @@ class World(Crossing):
     def same_things(self) -> bool:
         """Whether shapes have neither come nor gone, and as many bodies are there; they may be others, and edited."""
         return self._contents == self._count()
-
-    def same_contents(self) -> bool:
-        """Whether shapes have neither come nor gone nor changed, so that new settings are all there is to read."""
-        return self.same_things() and not self.edited()
 
     def edited(self) -> bool:
         """Whether a shape or body was edited in place."""
