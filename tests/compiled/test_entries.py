@@ -15,11 +15,10 @@ import eeca_pymunk
 from eeca_pymunk.compiled.entries import ENTRIES, SOURCES, TABLES, is_array, table_fields
 from eeca_pymunk.compiled.kernels import Kernel, kernels
 from eeca_pymunk.compiled.tables import table_of
-from eeca_pymunk.model.scene import scene_with
 from eeca_pymunk.model.islands import Contacts, Island
 from eeca_pymunk.model.joints import Joints
 from eeca_pymunk.model.run import RunArrays
-from eeca_pymunk.model.scene import Scene
+from eeca_pymunk.model.scene import Scene, scene_with
 
 PACKAGE = Path(eeca_pymunk.__file__).parent
 MODULES = [
