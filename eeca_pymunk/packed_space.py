@@ -43,6 +43,7 @@ class PackedSpace(Stepper):
         self._warned = False
         self._world: World | None = None
         self._told: JointRows | None = None  # what `constraint.impulse` reads
+        self._sync: Sync
         self._sleep: Sleep | None = None  # None where nobody can
         self._idle_book: FloatArray | None = None  # of a step in which everyone sleeps
         self.reads = 0

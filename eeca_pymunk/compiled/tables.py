@@ -52,11 +52,12 @@ def table_of(arrays: Any, like: Table | None = None) -> Table:
         words = like.words.copy()
         for place, (array, known) in enumerate(zip(arrays, like.arrays, strict=True)):
             if array is not known:
-                words[WORDS * place : WORDS * (place + 1)] = _words(name, *fields[place], array)
+                field, dtype, dimensions = fields[place]
+                words[WORDS * place : WORDS * (place + 1)] = _words(name, field, dtype, dimensions, array)
         return Pointers(arrays, words)
     numbers: list[int] = []
-    for field, array in zip(fields, arrays, strict=True):
-        numbers += _words(name, *field, array)
+    for (field, dtype, dimensions), array in zip(fields, arrays, strict=True):
+        numbers += _words(name, field, dtype, dimensions, array)
     return Pointers(arrays, np.array(numbers, np.int64))
 
 

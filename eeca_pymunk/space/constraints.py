@@ -13,7 +13,6 @@ from typing import Any, NamedTuple
 
 import pymunk
 
-from ..arrays import AnyArray
 from ..errors import UnsupportedFeature
 from ..model.joints import (
     EDITED,
@@ -119,8 +118,8 @@ class Given(NamedTuple):
             signs and math.isfinite(total) and lower <= upper and not (self.kind == SLIDE and upper < 0.0) and not zero
         )
 
-    def put(self, memory: AnyArray, j: int, a: int, b: int) -> None:
-        """Write it to row j of JOINT, whose memory (bytes,) is given, for bodies in the rows a and b."""
+    def put(self, memory: memoryview, j: int, a: int, b: int) -> None:
+        """Write it to row j of JOINT, whose memory is given, for bodies in the rows a and b."""
         _ROW.pack_into(
             memory, j * Joint.TYPE.itemsize, self.kind, a, b, self.soft, *self.anchor_a, *self.anchor_b, *self.force,
             self.length, *self.limits, *self.groove, *self.spring, 0.0, *self.gear, self.rate, *self.ratchet, 0, EDITED,
@@ -189,7 +188,7 @@ def _groove(c: pymunk.GrooveJoint, force: tuple[float, float, float], b: tuple[f
     """A groove, or a pivot if its ends are one point: there a groove has no direction."""
     first, last = c.groove_a - c.a.center_of_gravity, c.groove_b - c.a.center_of_gravity
     if c.groove_a == c.groove_b:
-        return Given(PIVOT, force, tuple(first), b)
+        return Given(PIVOT, force, (first.x, first.y), b)
     along = (last - first).normalized()
     normal = along.perpendicular()
     ends, offset = (along.dot(first), along.dot(last)), normal.dot(first)

@@ -55,7 +55,8 @@ class _Writers(dict[int, Callable[[], None]]):
         self._of, self._fields, self._start = weakref.proxy(of), fields, start
 
     def __missing__(self, turns: int) -> Callable[[], None]:
-        self[turns] = write = self._of.writer(self._fields[turns], self._start)
+        write: Callable[[], None] = self._of.writer(self._fields[turns], self._start)
+        self[turns] = write
         return write
 
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pymunk
 
-from ..arrays import AnyArray, FloatArray, IntArray
+from ..arrays import FloatArray, IntArray
 from ..compiled.records import Rows, rows
 from ..model.joints import EDITED, MOTOR, RATCHET, ROTARY_SPRING, SPRING, Joint
 from . import private
@@ -70,7 +70,7 @@ class JointRows:
         self._showings = -1
         self.items = list(space.constraints)
         self.joint: Rows[Joint] = rows(Joint, len(self.items))
-        self._memory: AnyArray = self.joint.view(np.uint8)
+        self._memory = self.joint.view(np.uint8).data
         if past is not None:
             past.refresh()
         known = {} if past is None else past.row
