@@ -91,7 +91,7 @@ class HookedStepper(PackedSpace):
             if world.collisions:
                 rehearsal = world.rehearsal
                 self._checked(world, dt, rehearsal.run(hooks, dt, world.gravity, left))
-                world.rules = rehearsal.rules(world.rules, world.shapes, world.SHAPE, world.smooth)
+                world.rules = rehearsal.rules(world.rules, world.places, world.SHAPE, world.smooth)
             world.void_forecasts()
             status = self._checked(world, dt, self.advance(world, dt, left))
             book = self._booked(dt)

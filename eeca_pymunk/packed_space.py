@@ -43,9 +43,10 @@ class PackedSpace(Stepper):
         self.ignore = check_ignored(ignore)
         self._warned = False
         self._world: World | None = None
-        self._told: JointRows | None = None  # source of `constraint.impulse`
-        self._sleep: Sleep | None = None  # None if bodies cannot sleep
-        self._idle_book: FloatArray | None = None  # book of a step in which all dynamic bodies sleep
+        self._told: JointRows | None = None  # what `constraint.impulse` reads
+        self._sync: Sync
+        self._sleep: Sleep | None = None  # None where nobody can
+        self._idle_book: FloatArray | None = None  # of a step in which everyone sleeps
         self.reads = 0
         self._look()
 
@@ -69,8 +70,8 @@ class PackedSpace(Stepper):
         """Make the stepper's own arrays for a world that was just read; `past` is the world before, if known."""
 
     def patch(self, world: World) -> bool:
-        """Update the rows of a world, and the stepper's own arrays, after edits of shapes and bodies; False, with
-        nothing done, if the space has to be read again."""
+        """Put what the program has edited of shapes and bodies, of which none has come or gone, into the rows of a
+        world, and what is kept about it; False where only a new reading will do."""
         return False
 
     def book(self) -> FloatArray | None:
@@ -92,7 +93,8 @@ class PackedSpace(Stepper):
         if self._sleep is not None and self.space.sleep_time_threshold == math.inf:
             self._sleep.wake()
             self._sleep, anew = None, True
-        if world is not None and not anew and world.same_contents():
+        same = world is not None and world.same_things()
+        if world is not None and same and not anew and not world.edited():
             joints = world.joints
             world.read_settings()
             if self._sleep is None and self.space.sleep_time_threshold < math.inf:
@@ -101,14 +103,10 @@ class PackedSpace(Stepper):
                 self.prepare(world, world)
             self._world = world
             return world
-        if (
-            world is not None
-            and self._sleep is None
-            and self.space.sleep_time_threshold == math.inf
-            and self.patch(world)
-        ):
-            self._world = world
-            return world
+        if world is not None and same and self._sleep is None and self.space.sleep_time_threshold == math.inf:
+            if self.patch(world):
+                self._world = world
+                return world
         past = world
         if self._sleep is not None:
             self._sleep.part()
@@ -118,7 +116,7 @@ class PackedSpace(Stepper):
             self._warned = True
             warnings.warn(f"{type(self).__name__} steps on without the friction of this space", stacklevel=4)
         self.reads += 1
-        self._sync = Sync(self.space, world.bodies)
+        self._sync = Sync(world, None if past is None else self._sync)
         self._sleep = Sleep(world, self._sleep) if self.space.sleep_time_threshold < math.inf else None
         self.prepare(world, past)
         if self._sleep is not None and (book := self.book()) is not None:

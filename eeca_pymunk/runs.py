@@ -139,17 +139,17 @@ class RunningStepper(PackedStepper):
     def patch(self, world: World) -> bool:
         loop = self.event_loop
         if loop is None or not hasattr(loop, "fresh"):
-            # Memory from which patches start is kept only after the first edit in place, since keeping it costs time.
-            self._patches = world.same_things()
+            # From the reading on that is due: to keep what patches begin from takes time.
+            self._patches = True
             return False
-        lossy, sides = bool(loop.scene.COUNT.lossy), sides_of(world, loop)
-        lists = world.patch()
-        if lists is None or lossy != bool((world.SHAPE["elasticity"] < 1.0).any()):
+        lossy, sides = loop.lossy, sides_of(world, loop)
+        found = world.patch()
+        if found is None or lossy != bool((world.SHAPE["elasticity"] < 1.0).any()):
             return False
         if not world.collisions and len(loop.scene.RULE):
             loop.rule({})
-        world.load()
-        loop.be_new(lists)
+        filters, moved = found
+        loop.be_new(filters or moved, moved)
         if sides is not None:
             sides.recall(world, loop)
         return True

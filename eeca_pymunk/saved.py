@@ -120,8 +120,9 @@ class Sides:
 
 
 def sides_of(world: World, loop: EventLoop) -> Sides | None:
-    """The remembered sides, None if there are none."""
-    return Sides(world, loop) if (loop.scene.SIDE["key"] > 0).any() else None
+    """What a stepper remembers of sides, None if nothing."""
+    SIDE = loop.scene.SIDE
+    return Sides(world, loop) if len(SIDE) and (SIDE["key"] > 0).any() else None
 
 
 def _outline(world: World, shape: pymunk.Shape) -> object:

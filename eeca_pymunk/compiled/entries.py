@@ -53,6 +53,7 @@ ENTRIES = {
     "geometry.gap:gaps": "{Scene} i8[2] f8[2] f8[2] f8[2]",
     "pairs.walls:wall_grid": "f8[2] Grid i8[1]",
     "pairs.grid:build": "{Scene} f8",
+    "pairs.grid:relist": "{Scene}",
     "pairs.candidates:candidates": "{Scene} f8[1] f8[1] i8[2] f8[2]",
     "geometry.sides:keep_sides": "{Scene} Side[1] i8[1]",
     "transfer:take": "f8[3] i8[2] f8[2] Body[1] f8 f8 f8",

@@ -66,6 +66,8 @@ class Entry:
         self.kinds = (kinds or ENTRIES[name]).split()
         self.point_to(address)
         self._arrays = [i for i, kind in enumerate(self.kinds) if is_array(kind)]
+        # None for tables.
+        self._wanted = [None if (kind := self.kinds[i]).endswith("}") else split(kind) for i in self._arrays]
         self._numbers = [i for i, kind in enumerate(self.kinds) if not is_array(kind)]
         self._last: tuple[list[Any], Callable[..., int] | None] = [], None
 
@@ -91,24 +93,23 @@ class Entry:
         Raises:
             TypeError: an array is not of the declared dtype and dimensions, or not C-contiguous.
         """
-        words = np.array(
-            [w for i, a in zip(self._arrays, arrays, strict=True) for w in self._words(self.kinds[i], a)], np.int64
-        )
-        call = functools.partial(self.function, words.ctypes.data)
-        call.kept = arrays, words  # type: ignore[attr-defined] # as long as their addresses are used
+        words: list[int] = []
+        for place, (wanted, array) in enumerate(zip(self._wanted, arrays, strict=True)):
+            if wanted is None:
+                words.append(array.address)
+                continue
+            dtype, ndim = wanted
+            if array.dtype != dtype or array.ndim != ndim or not array.flags.c_contiguous:
+                raise TypeError(
+                    f"{self.name} takes a C-contiguous {self.kinds[self._arrays[place]]}, not "
+                    f"{array.dtype.type.__name__} of shape {array.shape} with strides {array.strides}"
+                )
+            words.append(address_of(array))
+            words += array.shape
+        given = np.array(words, np.int64)
+        call = functools.partial(self.function, address_of(given))
+        call.kept = arrays, given  # type: ignore[attr-defined] # as long as their addresses are used
         return call
-
-    def _words(self, kind: str, array: Any) -> list[int]:
-        """The words of one array: its address and lengths; of a table, its address."""
-        if kind.endswith("}"):
-            return [array.address]
-        dtype, ndim = split(kind)
-        if array.dtype != dtype or array.ndim != ndim or not array.flags.c_contiguous:
-            raise TypeError(
-                f"{self.name} takes a C-contiguous {kind}, not {array.dtype.type.__name__} of shape {array.shape} "
-                f"with strides {array.strides}"
-            )
-        return [address_of(array), *array.shape]
 
 
 def load(path: Path | None) -> tuple[Status, dict[str, Entry], str]:

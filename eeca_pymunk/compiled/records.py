@@ -129,6 +129,11 @@ def from_bytes(kind: type[R], content: Sequence[bytes]) -> Rows[R]:
     return np.frombuffer(bytearray().join(content), kind.TYPE)  # type: ignore[return-value]
 
 
+def as_integers(of: Rows[Any]) -> IntArray:
+    """The memory of records: a view. To copy records takes ten times as long."""
+    return of.view(np.int64)
+
+
 def address_of(array: Any) -> int:
     """Memory address of an array, or of a record in one."""
     # numpy's `__array_interface__` describes all fields of records, in forty times the time.

@@ -34,9 +34,12 @@ def _said(dtype: np.dtype[Any], dimensions: int) -> str:
     return f"{dtype.type.__name__}[{dimensions}]"
 
 
-def table_of(arrays: Any) -> Table:
-    """The table of a named tuple of arrays. If one of them is replaced, a new table is needed; the arrays must exist as
-    long as the table is used.
+def table_of(arrays: Any, like: Table | None = None) -> Table:
+    """What kernels take for a named tuple of arrays. To be made anew when one of them is replaced by another; the
+    arrays have to be kept as long as the table is used.
+
+    Args:
+        like: another table of the same kind, None for none: of the very arrays that both have, words are copied.
 
     Raises:
         TypeError: an array is not C-contiguous, or not of the dtype and dimensions that `entries.TABLES` declares.
@@ -44,20 +47,31 @@ def table_of(arrays: Any) -> Table:
     if not start().entries:
         return arrays
     name = type(arrays).__name__
-    declared = table_fields(name) if name in TABLES else None
+    fields = table_fields(name) if name in TABLES else [(field, None, 0) for field in arrays._fields]
+    if isinstance(like, Pointers) and type(like.arrays) is type(arrays):
+        words = like.words.copy()
+        for place, (array, known) in enumerate(zip(arrays, like.arrays, strict=True)):
+            if array is not known:
+                field, dtype, dimensions = fields[place]
+                words[WORDS * place : WORDS * (place + 1)] = _words(name, field, dtype, dimensions, array)
+        return Pointers(arrays, words)
     numbers: list[int] = []
-    for place, (field, a) in enumerate(zip(arrays._fields, arrays, strict=True)):
-        found = field, a.dtype, a.ndim
-        if declared is not None and found != declared[place]:
-            _, dtype, dimensions = declared[place]
-            raise TypeError(
-                f"{name}.{field} is {_said(a.dtype, a.ndim)}; entries.TABLES declares {_said(dtype, dimensions)}"
-            )
-        if not a.flags.c_contiguous:
-            raise TypeError(f"{name}.{field} of shape {a.shape} has strides {a.strides}: it must be C-contiguous")
-        lengths = (a.shape * 2)[-2:] if a.ndim == 1 else a.shape[-2:] if a.ndim else (0, 0)
-        numbers += (address_of(a), a.size, *lengths)
+    for (field, dtype, dimensions), array in zip(fields, arrays, strict=True):
+        numbers += _words(name, field, dtype, dimensions, array)
     return Pointers(arrays, np.array(numbers, np.int64))
+
+
+def _words(name: str, field: str, dtype: np.dtype[Any] | None, dimensions: int, a: Any) -> tuple[int, ...]:
+    """The numbers of one array, which has to be of this dtype, if given, and of as many dimensions."""
+    if dtype is not None and (a.dtype != dtype or a.ndim != dimensions):
+        raise TypeError(
+            f"{name}.{field} is {_said(a.dtype, a.ndim)}; entries.TABLES declares {_said(dtype, dimensions)}"
+        )
+    if not a.flags.c_contiguous:
+        raise TypeError(f"{name}.{field} of shape {a.shape} has strides {a.strides}: it must be C-contiguous")
+    shape = a.shape
+    lengths = shape * 2 if len(shape) == 1 else shape[-2:] if shape else (0, 0)
+    return address_of(a), a.size, *lengths
 
 
 class Opener(Compilable, Generic[T]):

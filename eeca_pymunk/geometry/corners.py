@@ -25,6 +25,8 @@ def core_room(LINK: Rows[Link]) -> FloatArray:
 
 def thin_memory(LINK: Rows[Link], VERTEX: FloatArray, moving: int) -> tuple[Rows[Side], Rows[Corner]]:
     """SIDE and CORNER, without rows where no thin shapes may meet."""
+    if LINK["vertices"][:moving].max(initial=1) < 2:
+        return rows(Side, 0), rows(Corner, 0)
     flat = thin(LINK, VERTEX)
     few = int(flat[:moving].sum())
     if few == 0 or flat.sum() < 2:
@@ -32,10 +34,15 @@ def thin_memory(LINK: Rows[Link], VERTEX: FloatArray, moving: int) -> tuple[Rows
     slots = 64
     while slots < max(4 * len(LINK), min(_SIDES * few, _MANY)):
         slots *= 2
+    return rows(Side, slots), corners_of(LINK, VERTEX, flat)
+
+
+def corners_of(LINK: Rows[Link], VERTEX: FloatArray, flat: BoolArray | None = None) -> Rows[Corner]:
+    """CORNER of all shapes; `flat` (k,) says which are thin, where that is known."""
     CORNER = rows(Corner, 4 * len(LINK))
-    CORNER["thin"][::4] = flat
+    CORNER["thin"][::4] = thin(LINK, VERTEX) if flat is None else flat
     note_corners(LINK, VERTEX, CORNER)
-    return rows(Side, slots), CORNER
+    return CORNER
 
 
 def thin(LINK: Rows[Link], VERTEX: FloatArray) -> BoolArray:

@@ -9,11 +9,12 @@ import numpy as np
 
 from ..arrays import AnyArray, FloatArray, IntArray
 from ..compiled import table_of
-from ..compiled.records import Rows, numbers, put
-from ..model.bodies import POSE, VELOCITY, Body
-from ..model.joints import OF_JOINTS, Joint, Joints
+from ..compiled.records import numbers, put
+from ..geometry.corners import corners_of
+from ..model.bodies import POSE, VELOCITY
 from ..model.scene import Scene
 from ..model.step import Count, Step
+from ..pairs.grid import relist
 from ..pairs.setup import NEAR, near_lists
 from .memory import OF_SCENE, ROOM, gathered, recalled, remembered
 
@@ -50,7 +51,7 @@ class Remembering:
 
     @scene.setter
     def scene(self, arrays: Scene) -> None:
-        self._scene, self.table = arrays, table_of(arrays)
+        self._scene, self.table = arrays, table_of(arrays, self.__dict__.get("table"))
         self._bound: tuple[tuple[AnyArray | None, ...], Callable[..., int]] = UNBOUND
         # Fields of records take ten times as long as entries of arrays, and these are asked for in every step.
         self._par, self._count = numbers(arrays.PAR).reshape(-1), numbers(arrays.COUNT).reshape(-1)
@@ -98,11 +99,8 @@ class Remembering:
         self.own = self._gather()
         self.fresh: IntArray = self.own.copy()
         self._room = {name: getattr(self.scene, name) for name in ROOM}
-
-    @property
-    def listed(self) -> bool:
-        """Whether near lists depend on where bodies are: else all shapes stand in all lists."""
-        return bool(np.isfinite(self.scene.MARK["margin"]).any())
+        # Whether near lists depend on where bodies are: else all shapes stand in all lists.
+        self.listed = bool(np.isfinite(self.scene.MARK["margin"]).any())
 
     def start_anew(self, at: IntArray, state: FloatArray) -> None:
         """Be what a new loop is for bodies, rows `at` (b,) of BODY, of this state (b, 6); after `keep_fresh`."""
@@ -113,15 +111,24 @@ class Remembering:
             BODY[at] = moved
         self.be_new(False)
 
-    def be_new(self, lists: bool) -> None:
+    def be_new(self, lists: bool, corners: bool = False) -> None:
         """Be what a new loop is for BODY and shapes as they are; after `keep_fresh`. `lists`: whether shapes are others
-        than then, so that lists are."""
+        than then, so that lists are. `corners`: whether static ones stand elsewhere."""
         self.own[:] = self.fresh
         # Where tables have been made larger they are taken back: a step that is broken off for room begins again.
-        if any(getattr(self.scene, name) is not array for name, array in self._room.items()):
-            self.scene = self.scene._replace(**self._room)
-        self.scene.KEYS[:] = -1
-        if lists or self.listed:
+        scene = self._scene
+        for name, array in self._room.items():
+            if getattr(scene, name) is not array:
+                self.scene = scene._replace(**self._room)
+                break
+        self._scene.KEYS.fill(-1)
+        if corners and len(scene.CORNER):
+            scene.CORNER[:] = corners_of(scene.LINK, scene.VERTEX)
+        if self.listed:
+            self._list_anew()
+        elif lists and relist(self.table):
+            self.fresh[:] = self.own
+        elif lists:
             self._list_anew()
 
     def remembered(self) -> list[AnyArray]:

@@ -24,7 +24,7 @@ from ..model.parameters.impulses import AUGMENTATION
 from ..model.scene import scene_with
 from ..model.shapes import Link, Shape
 from ..model.step import Missed
-from ..pairs.setup import near_lists, with_more_room
+from ..pairs.setup import with_lists, with_more_room
 from ..report import Details, of_events
 from ..transfer import FORCES
 from .remembering import Remembering
@@ -94,7 +94,8 @@ class EventLoop(Remembering):
             RESTING=RESTING, PUSHED_BY=rows(Pair, room), PUSHED=rows(Pushed, room),
             KEYS=np.full(4 * room, -1, np.int64), FORCES=rows(Force, 4 * room), MISSED=rows(Missed, _MISSED),
         )  # fmt: skip
-        self.scene = near_lists(scene, moving)
+        scene, self.table = with_lists(scene, moving)
+        self.scene = scene
         self._usual: FloatArray = self.scene.MARK["margin"].copy()
         self.scene.COUNT.limit, self.scene.COUNT.disks = limit, disks
         self.scene.COUNT.lossy, self.scene.COUNT.together = lossy, together

@@ -13,7 +13,7 @@ from ..model.scene import Scene, scene_of
 from ..model.shapes import BATCH, LEVELS
 from .cells import bucket, cell_at, draw, link, near, unlink
 from .lists import append, centre, course, may_meet, place_in, remove
-from .walls import seek_walls
+from .walls import box_wall, seek_walls
 
 _FIRST_CAPACITY = 8
 
@@ -150,9 +150,8 @@ def renew(A: Scene, s: int, t: float, ahead: float) -> int:
 
 
 @uncounted
-def build(table: Table, t: float) -> bool:
-    """Build all lists at instant t. False if the pool is full: call again with a larger one."""
-    A = scene_of(table)
+def make_lists(A: Scene, t: float) -> bool:
+    """Make all lists at instant t. False if the pool is full."""
     GRID, moving = A.GRID, A.GRID.moving
     if A.POOL.shape[0] < moving * _FIRST_CAPACITY:
         return False
@@ -178,3 +177,21 @@ def build(table: Table, t: float) -> bool:
                 return False
             link(A, s)
     return True
+
+
+@uncounted
+def build(table: Table, t: float) -> bool:
+    """Make all lists at instant t. False if the pool is full: give a larger one, and call again."""
+    return make_lists(scene_of(table), t)
+
+
+@uncounted
+def relist(table: Table) -> bool:
+    """Make all lists at instant 0 for shapes that are others than before, static ones elsewhere, too. False if the pool
+    is full, or if static shapes have a grid, which this does not make."""
+    A = scene_of(table)
+    if A.GRID.columns != 0:
+        return False
+    for w in range(A.BOX.shape[0]):
+        box_wall(A, w)
+    return make_lists(A, 0.0)

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from ..arrays import FloatArray, IntArray, side_by_side
-from ..compiled import table_of
+from ..compiled import Table, table_of
 from ..compiled.records import columns, row
 from ..model.parameters.detection import ALL_PAIRS, ALL_WALLS, MARGIN_HALVINGS, MOST_NEIGHBOURS, NEIGHBOURS
 from ..model.scene import Scene
@@ -23,23 +23,26 @@ NEAR = ("MARK", "CELL", "LIST", "POOL", "FLAG", "HEAD", "GRID", "BOX", "CSR")
 def margins(bound: FloatArray, centre: FloatArray, walls: int) -> FloatArray:
     """(m,) margins, length, of shapes with bounding radii `bound` (m,) at `centre` (m, 2).
 
-    Circles of radius r with margins m are neighbours if their centres are nearer than 2 (r + m). At the packing phi, if
-    shapes are spread evenly, 4 (1 + m / r)² phi centres are. Solved for m / r with NEIGHBOURS, this gives a factor; the
-    margin is the factor times the least of 2 r and the median radius. `near_lists` takes less for uneven scenes. In
-    scenes of few moving and few static shapes margins are infinite: every shape is in all lists.
+    (2 + 2 m / r)² phi is the number of neighbours at the packing phi, if shapes are spread evenly; `near_lists` takes
+    less where they are not. Small shapes among large ones do not get more than twice their own share, large ones no
+    more than the median's.
     """
-    if len(bound) <= ALL_PAIRS and walls <= ALL_WALLS:
-        return np.full(len(bound), np.inf)
     low, high = (centre - bound[:, None]).min(axis=0), (centre + bound[:, None]).max(axis=0)
     wide, tall = np.maximum(high - low, 1e-300)
     phi = max(math.pi * float((bound / wide) @ (bound / tall)), 1e-6)
     few = len(bound) <= ALL_PAIRS
     factor = _MARGINS[1] if few else min(max(math.sqrt(0.25 * NEIGHBOURS / phi) - 1.0, _MARGINS[0]), _MARGINS[1])
-    median = float(np.median(bound))
-    # Points have a margin too; if all shapes are points, any length will do.
+    median = _median(bound)
+    # Points have a margin too; where all are points, any length will do.
     least = 1e-3 * (median or float(bound.max()) or 1.0)
     result: FloatArray = factor * np.maximum(np.minimum(2.0 * bound, median), least)
     return result
+
+
+def _median(values: FloatArray) -> float:
+    """Of (m,) values, m > 0. numpy's own imports its masked arrays at the first call: 40 ms within a step."""
+    ordered, half = np.sort(values), (len(values) - 1) // 2
+    return 0.5 * float(ordered[half] + ordered[len(values) // 2])
 
 
 def boxes(scene: Scene, moving: int) -> FloatArray:
@@ -55,31 +58,40 @@ def boxes(scene: Scene, moving: int) -> FloatArray:
 
 
 def near_lists(scene: Scene, moving: int) -> Scene:
-    """The scene with lists of the shapes [0, moving), for the present poses in BODY."""
+    """The scene with lists of the shapes [0, moving), where BODY has them now."""
+    return with_lists(scene, moving)[0]
+
+
+def with_lists(scene: Scene, moving: int) -> tuple[Scene, Table]:
+    """`near_lists`, and the table of that scene."""
     bound, room = scene.SHAPE["bound"][:moving], 32 * moving + 1024
-    MARK, CELL, LIST, POOL, FLAG, HEAD = side_by_side(
-        ((moving,), Mark.TYPE), ((moving,), Cell.TYPE), ((moving,), List.TYPE),
-        ((room,), np.int32), ((room,), np.uint8), ((1 << max(1, math.ceil(math.log2(2 * moving + 2))),), np.int64),
-    )  # fmt: skip
     GRID, BOX = row(Grid), boxes(scene, moving)
     GRID.moving = moving
+    MARK, CELL, LIST, POOL, FLAG, HEAD = side_by_side(
+        ((moving,), Mark.TYPE), ((moving,), Cell.TYPE), ((moving,), List.TYPE),
+        ((room,), np.int32), ((room,), np.uint8), ((1 << max(1, (2 * moving + 1).bit_length()),), np.int64),
+    )  # fmt: skip
     CSR = _wall_cells(BOX, GRID)
-    centre = columns(scene.BODY, "x", "y")[scene.LINK["owner"][:moving]]
-    MARK["margin"] = margins(bound, centre, len(BOX)) if moving else 0.0
-    HEAD[:] = -1
+    if moving == 0 or (moving <= ALL_PAIRS and len(BOX) <= ALL_WALLS):
+        MARK["margin"] = math.inf  # each in all lists
+    else:
+        MARK["margin"] = margins(bound, columns(scene.BODY, "x", "y")[scene.LINK["owner"][:moving]], len(BOX))
     scene = scene._replace(
         MARK=MARK, CELL=CELL, LIST=LIST, POOL=POOL, FLAG=FLAG, HEAD=HEAD, GRID=GRID, BOX=BOX, CSR=CSR
     )
+    table = table_of(scene)
     for _ in range(MARGIN_HALVINGS):
         GRID.cell = 2.0 * float((bound + MARK["margin"]).min(initial=1e300))
-        scene = rebuilt(scene, 0.0)
-        # Uneven scenes get smaller margins, down to the least one, unless all pairs are listed anyway.
-        if moving == 0 or scene.LIST["number"].mean() <= MOST_NEIGHBOURS or math.isinf(MARK["margin"][0]):
+        if not build(table, 0.0):
+            scene = with_more_room(scene, 0.0)
+            table = table_of(scene, table)
+        # What is crowded in places needs less, unless that is next to nothing, or everybody knows all.
+        if moving == 0 or math.isinf(MARK["margin"][0]) or scene.LIST["number"].mean() <= MOST_NEIGHBOURS:
             break
-        if np.median(MARK["margin"]) <= _MARGINS[0] * np.median(bound):
+        if _median(MARK["margin"]) <= _MARGINS[0] * _median(bound):
             break
         MARK["margin"] *= 0.5
-    return scene
+    return scene, table
 
 
 def rebuilt(scene: Scene, t: float) -> Scene:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
 from ..model.scene import Scene
@@ -24,6 +26,18 @@ def cells_of(GRID: Grid, left: float, bottom: float, right: float, top: float) -
         cell_of(left - GRID.left, length, GRID.columns), cell_of(right - GRID.left, length, GRID.columns),
         cell_of(bottom - GRID.bottom, length, GRID.rows), cell_of(top - GRID.bottom, length, GRID.rows),
     )  # fmt: skip
+
+
+@uncounted
+def box_wall(A: Scene, w: int) -> None:
+    """Write left, bottom, right and top of static shape number w to BOX."""
+    s = A.GRID.moving + w
+    first, size = A.LINK[s].first, A.SHAPE[s].rounding
+    left, bottom, right, top = math.inf, math.inf, -math.inf, -math.inf
+    for j in range(first, first + A.LINK[s].vertices):
+        x, y = A.VERTEX[j, 0], A.VERTEX[j, 1]
+        left, bottom, right, top = min(left, x), min(bottom, y), max(right, x), max(top, y)
+    A.BOX[w, 0], A.BOX[w, 1], A.BOX[w, 2], A.BOX[w, 3] = left - size, bottom - size, right + size, top + size
 
 
 @uncounted

@@ -22,6 +22,7 @@ from . import private
 _KIND = {pymunk.Body.DYNAMIC: DYNAMIC, pymunk.Body.KINEMATIC: KINEMATIC, pymunk.Body.STATIC: STATIC}
 _FIELDS = batch.BodyFields
 _STATE = _FIELDS.POSITION | _FIELDS.ANGLE | _FIELDS.VELOCITY | _FIELDS.ANGULAR_VELOCITY | _FIELDS.FORCE | _FIELDS.TORQUE
+_WITH_IDS = _FIELDS.BODY_ID | _STATE
 # Columns of one row of the state, in the order pymunk.batch writes them.
 POSITION, ANGLE, VELOCITY = slice(0, 2), 2, slice(3, 5)
 ANGULAR_VELOCITY, FORCE, TORQUE = 5, slice(6, 8), 8
@@ -66,7 +67,8 @@ class Bodies:
         before: the bodies before some were added or removed; their values are reused except for the `stale`.
 
     Attributes:
-        fixed: as above.  items: the pymunk bodies, by row.  ids: (N,) pymunk's numbers of them.
+        fixed: whether any may sleep.  items: the pymunk bodies, by row.  ids: (N,) pymunk's numbers of them.
+        start: (N, 9) their state when they were read.
         mass, moment: (N,) mass and M L²; infinite for static and kinematic bodies.
         inverse_mass: (N,) 1/mass, 0 for static and kinematic bodies.
         dynamic: (N,) bool.  static: (N,) bool.  asleep: (N,) bool, none unless `fixed`.
@@ -79,8 +81,8 @@ class Bodies:
         self.space, self.fixed = space, fixed
         self._buffer = batch.Buffer()
         self._out = batch.Buffer()
-        ground = space.static_body  # exists in the space from its first access on
-        self.ids = self._read_ids()
+        ground = space.static_body  # in the space from the first time on that it is asked for
+        self.ids, self.start = self._read()
         ids = self.ids.tolist()
         known = {} if before is None else before._known
         if before is None or any(i not in known for i in ids):
@@ -164,10 +166,12 @@ class Bodies:
         order."""
         return self.items[: int(np.argmax(self.asleep))] if self.asleep.any() else None
 
-    def _read_ids(self) -> npt.NDArray[np.uintp]:
+    def _read(self) -> tuple[npt.NDArray[np.uintp], FloatArray]:
+        """(N,) ids and (N, 9) state now."""
         self._buffer.clear()
-        batch.get_space_bodies(self.space, _FIELDS.BODY_ID, self._buffer)
-        return np.frombuffer(self._buffer.int_buf(), dtype=np.uintp).copy()
+        batch.get_space_bodies(self.space, _WITH_IDS, self._buffer)
+        ids: npt.NDArray[np.uintp] = np.frombuffer(self._buffer.int_buf(), dtype=np.uintp).copy()
+        return ids, np.frombuffer(self._buffer.float_buf()).reshape(-1, COLUMNS).copy()
 
     def check_masses(self) -> None:
         """Raise ValueError for a dynamic body whose mass or moment is not positive, or whose mass is not finite."""
@@ -185,12 +189,8 @@ class Bodies:
 
         None if the space has other bodies now, so that a new `Bodies` is needed.
         """
-        self._buffer.clear()
-        batch.get_space_bodies(self.space, _FIELDS.BODY_ID | _STATE, self._buffer)
-        ids = np.frombuffer(self._buffer.int_buf(), dtype=np.uintp)
-        if len(ids) != len(self.ids) or not np.array_equal(ids, self.ids):
-            return None
-        return np.frombuffer(self._buffer.float_buf()).reshape(-1, COLUMNS).copy()
+        ids, state = self._read()
+        return state if np.array_equal(ids, self.ids) else None
 
     def check_finite(self, state: FloatArray, remedy: str = "set a finite value before stepping") -> None:
         """Raise NotFiniteError naming the body and the value if anything in the state is NaN or infinite."""
@@ -210,8 +210,8 @@ class Bodies:
 
         `unchanged`: all are, because no callback has run since the state was gathered.
         """
-        if self.asleep.any() or (not unchanged and not np.array_equal(self._read_ids(), self.ids)):
-            # The batch call writes in pymunk's order: rows would go to the wrong bodies; and it wakes all.
+        if self.asleep.any() or (not unchanged and not np.array_equal(self._read()[0], self.ids)):
+            # The batch writes by place: it would give rows to the wrong bodies, and it wakes all.
             for body, still, row in zip(self.items, self.static.tolist(), state.tolist(), strict=True):
                 if body.space is self.space and not still:
                     body.position, body.angle = (row[0], row[1]), row[2]

@@ -23,12 +23,14 @@ def shape_radius(shape: Any) -> float:
     return float(shape.radius)
 
 
-def check_space(space: pymunk.Space) -> None:
-    """Refuse settings and objects of the space that the array steppers do not model."""
-    if not 0.0 <= space.damping < math.inf:
-        raise ValueError(f"space.damping = {space.damping}: set a finite value >= 0; 1 is none")
-    if not all(math.isfinite(g) for g in space.gravity):
+def settings(space: pymunk.Space) -> tuple[tuple[float, float], float]:
+    """Gravity and damping of a space; ValueError for what the array steppers do not model."""
+    (x, y), damping = space.gravity, space.damping
+    if not 0.0 <= damping < math.inf:
+        raise ValueError(f"space.damping = {damping}: set a finite value >= 0; 1 is none")
+    if not (math.isfinite(x) and math.isfinite(y)):
         raise ValueError(f"space.gravity = {space.gravity}: set a finite gravity before stepping")
+    return (x, y), damping
 
 
 def check_ignored(ignore: Sequence[str]) -> tuple[str, ...]:

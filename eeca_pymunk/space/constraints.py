@@ -8,14 +8,15 @@ limits a gear.
 from __future__ import annotations
 
 import math
+import struct
 from functools import cache
-from typing import Any
+from typing import Any, NamedTuple
 
-import numpy as np
 import pymunk
 
 from ..errors import UnsupportedFeature
 from ..model.joints import (
+    EDITED,
     GEAR,
     GROOVE,
     MOTOR,
@@ -81,64 +82,118 @@ def name(c: Any) -> str:
     return f"{c} between {c.a} and {c.b}"
 
 
-def read(c: Any, joint: Joint) -> None:
-    """Fill in the parameters of one row of JOINT; `check_constraint` has passed it."""
-    joint.max_force, joint.error_bias, joint.max_bias = c.max_force, c.error_bias, c.max_bias
-    joint.soft = int(math.isfinite(c.max_force))
-    joint.side = 0
-    if hasattr(c, "anchor_a"):
-        joint.anchor_a[:] = c.anchor_a - c.a.center_of_gravity
-    if hasattr(c, "anchor_b"):
-        joint.anchor_b[:] = c.anchor_b - c.b.center_of_gravity
+class Given(NamedTuple):
+    """What a constraint says of itself: fields of `Joint`, 0 where its kind has none."""
+
+    kind: int
+    force: tuple[float, float, float]  # max_force, error_bias, max_bias
+    anchor_a: tuple[float, float] = (0.0, 0.0)
+    anchor_b: tuple[float, float] = (0.0, 0.0)
+    length: float = 0.0
+    limits: tuple[float, float] = (0.0, 0.0)  # lower, upper
+    groove: tuple[float, float, float] = (0.0, 0.0, 0.0)  # normal, offset
+    spring: tuple[float, float, float] = (0.0, 0.0, 0.0)  # stiffness, damping, rest
+    gear: tuple[float, float] = (0.0, 0.0)  # ratio, phase
+    rate: float = 0.0
+    ratchet: tuple[float, float, float] = (0.0, 0.0, 0.0)  # tooth, tooth_phase, notch
+
+    @property
+    def soft(self) -> bool:
+        """Whether its force is bounded."""
+        return math.isfinite(self.force[0])
+
+    @property
+    def plan(self) -> tuple[object, ...]:
+        """What of it the plan of its component depends on."""
+        (ax, ay), (bx, by) = self.anchor_a, self.anchor_b
+        return self.kind, self.soft, ax != 0.0, ay != 0.0, bx != 0.0, by != 0.0
+
+    def is_fine(self) -> bool:
+        """Whether `check_constraint` need not look: that costs more."""
+        (force, error, bias), (lower, upper), (stiffness, damping, rest) = self.force, self.limits, self.spring
+        total = sum(self.anchor_a) + sum(self.anchor_b) + self.length + sum(self.groove) + stiffness + damping + rest
+        total += sum(self.gear) + self.rate + sum(self.ratchet)
+        signs = force >= 0.0 and 0.0 <= error <= 1.0 and bias >= 0.0 and damping >= 0.0 and self.length >= 0.0
+        zero = self.kind == GEAR and self.gear[0] == 0.0
+        return (
+            signs and math.isfinite(total) and lower <= upper and not (self.kind == SLIDE and upper < 0.0) and not zero
+        )
+
+    def put(self, memory: memoryview, j: int, a: int, b: int) -> None:
+        """Write it to row j of JOINT, whose memory is given, for bodies in the rows a and b."""
+        _ROW.pack_into(
+            memory, j * Joint.TYPE.itemsize, self.kind, a, b, self.soft, *self.anchor_a, *self.anchor_b, *self.force,
+            self.length, *self.limits, *self.groove, *self.spring, 0.0, *self.gear, self.rate, *self.ratchet, 0, EDITED,
+        )  # fmt: skip
+
+
+_ROW = struct.Struct("4q23d2q")  # fields of `Joint` from the first to `touched`
+
+
+def read(c: Any) -> Given:
+    """What a constraint says of itself.
+
+    Raises:
+        ValueError, UnsupportedFeature: see `check_constraint`.
+    """
+    if isinstance(c, pymunk.RatchetJoint) or not isinstance(c, _KINDS):
+        check_constraint(c)  # before anything is divided by its numbers
+    found = _read(c, (c.max_force, c.error_bias, c.max_bias))
+    if not found.is_fine():
+        check_constraint(c)
+    return found
+
+
+def _read(c: Any, force: tuple[float, float, float]) -> Given:
+    if isinstance(c, pymunk.SimpleMotor):
+        return Given(MOTOR, force, rate=c.rate)
+    if isinstance(c, pymunk.DampedRotarySpring):
+        return Given(ROTARY_SPRING, force, spring=(c.stiffness, c.damping, c.rest_angle))
+    if isinstance(c, pymunk.RotaryLimitJoint):
+        if c.min == c.max:
+            return Given(GEAR, force, gear=(1.0, c.min))
+        return Given(ROTARY_LIMIT, force, limits=(c.min, c.max))
+    if isinstance(c, pymunk.RatchetJoint):
+        return Given(RATCHET, force, ratchet=(c.ratchet, c.phase, _notch(c)))
+    if isinstance(c, pymunk.GearJoint):
+        return Given(GEAR, force, gear=(c.ratio, c.phase))
+    b = _anchor(c.anchor_b, c.b)
+    if isinstance(c, pymunk.GrooveJoint):
+        return _groove(c, force, b)
+    a = _anchor(c.anchor_a, c.a)
     if isinstance(c, pymunk.PinJoint):
-        _pin(c.distance, joint)
-    elif isinstance(c, pymunk.SlideJoint):
-        if c.min == c.max:
-            _pin(c.max, joint)
-        else:
-            joint.kind, joint.lower, joint.upper = SLIDE, c.min, c.max
-    elif isinstance(c, pymunk.PivotJoint):
-        joint.kind = PIVOT
-    elif isinstance(c, pymunk.GrooveJoint):
-        _groove(c, joint)
-    elif isinstance(c, pymunk.DampedSpring):
-        joint.kind, joint.stiffness, joint.damping, joint.rest = SPRING, c.stiffness, c.damping, c.rest_length
-        joint.push = 0.0
-    elif isinstance(c, pymunk.DampedRotarySpring):
-        joint.kind, joint.stiffness, joint.damping, joint.rest = ROTARY_SPRING, c.stiffness, c.damping, c.rest_angle
-        joint.push = 0.0
-    elif isinstance(c, pymunk.RotaryLimitJoint):
-        if c.min == c.max:
-            joint.kind, joint.ratio, joint.phase = GEAR, 1.0, c.min
-        else:
-            joint.kind, joint.lower, joint.upper = ROTARY_LIMIT, c.min, c.max
-    elif isinstance(c, pymunk.RatchetJoint):
-        joint.kind, joint.tooth, joint.tooth_phase = RATCHET, c.ratchet, c.phase
-        joint.notch = _notch(c)
-    elif isinstance(c, pymunk.GearJoint):
-        joint.kind, joint.ratio, joint.phase = GEAR, c.ratio, c.phase
-    elif isinstance(c, pymunk.SimpleMotor):
-        joint.kind, joint.rate = MOTOR, c.rate
+        return _pin(c.distance, force, a, b)
+    if isinstance(c, pymunk.SlideJoint):
+        return _pin(c.max, force, a, b) if c.min == c.max else Given(SLIDE, force, a, b, limits=(c.min, c.max))
+    if isinstance(c, pymunk.PivotJoint):
+        return Given(PIVOT, force, a, b)
+    return Given(SPRING, force, a, b, spring=(c.stiffness, c.damping, c.rest_length))
 
 
-def _pin(length: float, joint: Joint) -> None:
-    """A pin, or a pivot if its length is 0, for which a pin has no direction."""
-    scale = float(max(np.abs(joint.anchor_a).max(), np.abs(joint.anchor_b).max()))
-    joint.kind = PIVOT if length <= _SMALL * max(scale, 1e-300) or length == 0.0 else PIN
-    joint.length = length
+def _anchor(anchor: tuple[float, float], body: pymunk.Body) -> tuple[float, float]:
+    """From the centre of mass of a body."""
+    (x, y), (kx, ky) = anchor, body.center_of_gravity
+    return x - kx, y - ky
 
 
-def _groove(c: pymunk.GrooveJoint, joint: Joint) -> None:
-    """A groove, or a pivot if its ends are equal, for which a groove has no direction."""
+def _pin(
+    length: float, force: tuple[float, float, float], a: tuple[float, float], b: tuple[float, float]
+) -> Given:  # fmt: skip
+    """A pin, or a pivot if it has no length: there a pin has no direction."""
+    scale = max(map(abs, (*a, *b)))
+    kind = PIVOT if length <= _SMALL * max(scale, 1e-300) or length == 0.0 else PIN
+    return Given(kind, force, a, b, length)
+
+
+def _groove(c: pymunk.GrooveJoint, force: tuple[float, float, float], b: tuple[float, float]) -> Given:
+    """A groove, or a pivot if its ends are one point: there a groove has no direction."""
     first, last = c.groove_a - c.a.center_of_gravity, c.groove_b - c.a.center_of_gravity
     if c.groove_a == c.groove_b:
-        joint.kind, joint.anchor_a[:] = PIVOT, first
-        return
+        return Given(PIVOT, force, (first.x, first.y), b)
     along = (last - first).normalized()
     normal = along.perpendicular()
-    joint.kind, joint.anchor_a[:] = GROOVE, 0.0
-    joint.normal[:] = normal
-    joint.offset, joint.lower, joint.upper = normal.dot(first), along.dot(first), along.dot(last)
+    ends, offset = (along.dot(first), along.dot(last)), normal.dot(first)
+    return Given(GROOVE, force, (0.0, 0.0), b, limits=ends, groove=(*normal, offset))
 
 
 def _notch(c: pymunk.RatchetJoint) -> float:

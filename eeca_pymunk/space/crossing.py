@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Callable
 from functools import cached_property
 
@@ -40,7 +41,23 @@ from . import private
 from .bodies import Bodies
 
 _F = batch.BodyFields
-_STATE = _F.POSITION | _F.ANGLE | _F.VELOCITY | _F.ANGULAR_VELOCITY | _F.FORCE | _F.TORQUE
+_STATE = _F.BODY_ID | _F.POSITION | _F.ANGLE | _F.VELOCITY | _F.ANGULAR_VELOCITY | _F.FORCE | _F.TORQUE
+_FORCES = _F.FORCE | _F.TORQUE
+# Whether angles and spins are written is the bit TURNS of a step's answer.
+_WHOLE = {0: _F.POSITION | _F.VELOCITY, TURNS: _F.POSITION | _F.ANGLE | _F.VELOCITY | _F.ANGULAR_VELOCITY}
+_SPEEDS = {0: _F.VELOCITY, TURNS: _F.VELOCITY | _F.ANGULAR_VELOCITY}
+
+
+class _Writers(dict[int, Callable[[], None]]):
+    """What writes a table of ENDS that begins at `start` N, by the bit TURNS; made when it is asked for."""
+
+    def __init__(self, of: Crossing, fields: dict[int, batch.BodyFields], start: int) -> None:
+        self._of, self._fields, self._start = weakref.proxy(of), fields, start
+
+    def __missing__(self, turns: int) -> Callable[[], None]:
+        write: Callable[[], None] = self._of.writer(self._fields[turns], self._start)
+        self[turns] = write
+        return write
 
 
 class Crossing:
@@ -68,34 +85,20 @@ class Crossing:
         self.WALK[SPECIAL] = STEERED * bodies.steered + ECCENTRIC * bodies.center_of_gravity.any(axis=1)
         self.EXTRA[:, COG_X : COG_Y + 1] = bodies.center_of_gravity
         self.STATES[LEFT] = np.where(bodies.static[:, None], state, np.nan)
-        self.gather = private.reader(space, _F.BODY_ID | _STATE, floats, ids)
-        # By whether angles and spins are to be written.
-        self._scatter = self._writers(_F.POSITION | _F.VELOCITY, END)
+        self.gather = private.reader(space, _STATE, floats, ids)
+        self._scatter = _Writers(self, _WHOLE, END)
+        self._scatter_still, self._scatter_speed = _Writers(self, _WHOLE, STILL), _Writers(self, _SPEEDS, SPEED)
         # pymunk places a body whose centre of mass is elsewhere by the angle it has: the second time by the new one.
         self.eccentric = bool(bodies.center_of_gravity.any())
 
     @cached_property
     def reset_forces(self) -> Callable[[], None]:
         """Writes the forces that the step leaves."""
-        pull = self.ENDS[PULL * len(self.bodies) :]
-        return private.writer(self.space, _F.FORCE | _F.TORQUE, pull, self.bodies.reached)
+        return self.writer(_FORCES, PULL)
 
-    @cached_property
-    def _scatter_still(self) -> dict[int, Callable[[], None]]:
-        return self._writers(_F.POSITION | _F.VELOCITY, STILL)
-
-    @cached_property
-    def _scatter_speed(self) -> dict[int, Callable[[], None]]:
-        return self._writers(_F.VELOCITY, SPEED)
-
-    def _writers(self, fields: batch.BodyFields, start: int) -> dict[int, Callable[[], None]]:
-        """What writes the fields from the table that begins at `start` in ENDS, by the bit TURNS of a step's answer."""
-        N, turning = len(self.bodies), fields
-        for straight, turned in ((_F.POSITION, _F.ANGLE), (_F.VELOCITY, _F.ANGULAR_VELOCITY)):
-            if straight in fields:
-                turning |= turned
-        table, to = self.ENDS[start * N :], self.bodies.reached
-        return {0: private.writer(self.space, fields, table, to), TURNS: private.writer(self.space, turning, table, to)}
+    def writer(self, fields: batch.BodyFields, start: int) -> Callable[[], None]:
+        """What writes the fields from the table that begins at `start` N in ENDS."""
+        return private.writer(self.space, fields, self.ENDS[start * len(self.bodies) :], self.bodies.reached)
 
     @cached_property
     def START(self) -> FloatArray:
@@ -184,7 +187,12 @@ class Crossing:
 
     def void_forecasts(self) -> None:
         """Let the next step look at all bodies as if they had been moved, though they are where it left them."""
-        self.BODY["due"] = np.minimum(self.BODY["due"], ANEW)
+        np.minimum(self._due, ANEW, out=self._due)
+
+    @cached_property
+    def _due(self) -> FloatArray:
+        due: FloatArray = self.BODY["due"]
+        return due
 
     def scatter(self, status: int) -> None:
         """Write poses and velocities at the end of the step to the space, angles and spins if the bit TURNS is set."""

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import weakref
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled.records import Rows, rows
 from ..model.joints import EDITED, MOTOR, RATCHET, ROTARY_SPRING, SPRING, Joint
 from . import private
-from .constraints import check_constraint, read
+from .constraints import Given, read
 from .edits import Edits, show_impulses, showings, shown
 from .partners import Partners
 from .spring_functions import Motion, Rate, law, own_function, put_law
@@ -68,31 +69,43 @@ class JointRows:
         self._showings = -1
         self.items = list(space.constraints)
         self.joint: Rows[Joint] = rows(Joint, len(self.items))
-        others = [body for item in self.items for body in (item.a, item.b) if body not in row]
-        self.partners: Partners = Partners(tuple(dict.fromkeys(others)), space, None if past is None else past.partners)
-        self._row_of = {**row, **{body: n + i for i, body in enumerate(self.partners.items)}}
-        self._far = {body for body in self.partners.items if body.body_type == pymunk.Body.DYNAMIC}
-        known = {} if past is None else past.row
+        self._memory = self.joint.view(np.uint8).data
         if past is not None:
             past.refresh()
+        known = {} if past is None else past.row
+        self._pairs: dict[pymunk.Constraint, tuple[pymunk.Body, pymunk.Body]] = {} if past is None else past._pairs
+        self._pairs = {item: self._pairs.get(item) or (item.a, item.b) for item in self.items}
+        bodies = dict.fromkeys([body for pair in self._pairs.values() for body in pair])
+        others = [body for body in bodies if body not in row]
+        self.partners: Partners = Partners(tuple(others), space, None if past is None else past.partners)
+        self._row_of = {**row, **{body: n + i for i, body in enumerate(self.partners.items)}}
+        self._far = {body for body in self.partners.items if body.body_type == pymunk.Body.DYNAMIC}
+        if past is not None:
             kept = [(j, i) for j, item in enumerate(self.items) if (i := known.get(item, -1)) >= 0]
             if kept:
                 here, there = np.array(kept).T
                 self.joint[here] = past.joint[there]
-        of = [(self._row_of[item.a], self._row_of[item.b]) for item in self.items]
+        of = [(self._row_of[a], self._row_of[b]) for a, b in self._pairs.values()]
         self.joint["body"] = of
         self._at: dict[int, list[int]] = {}  # joints of each body
-        for j, (item, pair) in enumerate(zip(self.items, of, strict=True)):
+        for j, pair in enumerate(of):
             for at in pair:
                 self._at.setdefault(at, []).append(j)
-            if item not in known:
-                check_constraint(item)
-                read(item, self.joint[j])
-                self.joint[j].touched = EDITED
+        old = {} if past is None else dict(zip(past.items, zip(past._given, past._said, strict=True), strict=True))
+        self._given: list[Given] = []
+        self._said: list[_Said] = []
+        for j, item in enumerate(self.items):
+            if item in old:
+                given, said = old[item]
+            else:
+                given, said = read(item), _says(item)
+                given.put(self._memory, j, *of[j])
+            self._given.append(given)
+            self._said.append(said)
         self.touch(n + self.partners.changed)
         self.row: dict[pymunk.Constraint, int] = {item: j for j, item in enumerate(self.items)}
         self._edits = Edits(self.row)
-        self._ratchets = np.flatnonzero(self.joint["kind"] == RATCHET).tolist()
+        self._ratchets = [j for j, given in enumerate(self._given) if given.kind == RATCHET]
         self._timestamp = private.timestamp(space)
         self.rates: dict[pymunk.Constraint, Rate] = {} if past is None else past.rates
         self.replan = True
@@ -102,19 +115,13 @@ class JointRows:
         """Whether the space has these constraints now."""
         return self.items == list(space.constraints)
 
-    def _says(self, j: int) -> tuple[object, ...]:
-        """The values of a joint on which `_find_functions` depends."""
-        item = self.items[j]
-        return own_function(item), item.pre_solve, item.post_solve, item.collide_bodies, self._push(j)
-
     def _find_functions(self) -> None:
-        self._said = [self._says(j) for j in range(len(self.items))]
         self.functions = [j for j, said in enumerate(self._said) if said[0]]
         self.own = [self.items[j] for j in self.functions]
         self.before = [item for item, said in zip(self.items, self._said, strict=True) if said[1] is not None]
         self.after = [item for item, said in zip(self.items, self._said, strict=True) if said[2] is not None]
         self.calling = list(dict.fromkeys((*self.before, *self.after)))
-        self._pushing = [item for item, said in zip(self.items, self._said, strict=True) if said[4]]
+        self._pushing = [item for j, item in enumerate(self.items) if self._pushes(j)]
         self.parted: frozenset[tuple[pymunk.Body, pymunk.Body]] | None = None
 
     def refresh(self) -> bool:
@@ -123,19 +130,21 @@ class JointRows:
             return self.replan
         edited = self._edits.take()
         try:
-            for j in edited:
-                check_constraint(self.items[j])
+            found = {j: read(self.items[j]) for j in sorted(edited)}
         except ValueError:
             self._edits.add(edited)
             raise
-        for j in sorted(edited):
-            joint = self.joint[j]
-            before = _planned_by(joint)
-            read(self.items[j], self.joint[j])
-            self.joint[j].touched = EDITED
-            if before != _planned_by(joint):
-                self.replan = True
-        if any(self._said[j] != self._says(j) for j in edited):
+        others = False
+        for j, given in found.items():
+            item, before = self.items[j], self._given[j]
+            given.put(self._memory, j, *(self._row_of[body] for body in self._pairs[item]))
+            self._given[j] = given
+            if before.plan != given.plan:
+                self.replan = others = True
+            said = _says(item)
+            others |= said != self._said[j]
+            self._said[j] = said
+        if others:
             self._find_functions()
         return self.replan
 
@@ -151,10 +160,20 @@ class JointRows:
         apart = np.flatnonzero(self.joint["touched"])
         return [*self._pushing, *(self.items[j] for j in apart.tolist())]
 
-    def _push(self, j: int) -> bool:
-        item, kind = self.items[j], self.joint[j].kind
-        out = bool(self._far) and not self._far.isdisjoint((item.a, item.b))
-        return out or self.joint[j].soft != 0 or kind in (SPRING, ROTARY_SPRING, MOTOR)
+    def _pushes(self, j: int) -> bool:
+        given = self._given[j]
+        if given.soft or given.kind in (SPRING, ROTARY_SPRING, MOTOR):
+            return True
+        return bool(self._far) and not self._far.isdisjoint(self._pairs[self.items[j]])
+
+    def awake(self, items: Sequence[pymunk.Constraint]) -> list[pymunk.Constraint]:
+        """Those of constraints that have no body that slept when these rows were made."""
+        return [item for item in items if item not in self._sleeping]
+
+    @cached_property
+    def _sleeping(self) -> set[pymunk.Constraint]:
+        asleep = {body for body in self._far if body.space is self.space}
+        return {item for item, pair in self._pairs.items() if not asleep.isdisjoint(pair)}
 
     def measured(self) -> list[int]:
         """Rows of the pins whose length is the distance of their anchors: after loading a pickle of pymunk, which lacks
@@ -217,7 +236,8 @@ class JointRows:
     def part(self) -> frozenset[tuple[pymunk.Body, pymunk.Body]]:
         """`parted`, found again if necessary."""
         if self.parted is None:
-            self.parted = frozenset((item.a, item.b) for item in self.items if not item.collide_bodies)
+            pairs = zip(self._pairs.values(), self._said, strict=True)
+            self.parted = frozenset(pair for pair, said in pairs if not said[3])
         return self.parted
 
     def touch(self, rows: IntArray) -> None:
@@ -243,6 +263,9 @@ class JointRows:
             self._showings = showings()
 
 
-def _planned_by(joint: Joint) -> tuple[object, ...]:
-    """The values of a joint on which the plan of components depends."""
-    return joint.kind, joint.soft, *(joint.anchor_a != 0.0).tolist(), *(joint.anchor_b != 0.0).tolist()
+_Said = tuple[object, object, object, bool]
+
+
+def _says(item: pymunk.Constraint) -> _Said:
+    """What of a joint `_find_functions` asks, and whether its bodies collide."""
+    return own_function(item), item.pre_solve, item.post_solve, bool(item.collide_bodies)

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Sequence
+from collections.abc import Mapping
+from functools import cached_property
 from math import isfinite
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pymunk
 
 from ..arrays import FloatArray, IntArray, side_by_side
-from ..compiled.records import Rows, from_bytes
+from ..compiled.records import Rows, as_integers, from_bytes
 from ..laying import lay_rows
 from ..model.bodies import Body
 from ..model.given import GivenShape
@@ -64,8 +65,12 @@ def read(shape: pymunk.Shape, ground: pymunk.Body | None = None) -> Record:
     return Record(body, outline, numbers, words, ground is not None, given, points)
 
 
-class Packed(NamedTuple):
+class Packed:
     """Rows of a space's bodies and solid shapes.
+
+    Args:
+        bodies: in the (N, 9) `state`.  shapes: solid ones, in pymunk's order.  records: of all shapes of the space,
+            None for sensors.
 
     Attributes:
         shapes: the pymunk shapes, by row of SHAPE.  owner: (k,) places of their bodies in pymunk's order.
@@ -74,32 +79,52 @@ class Packed(NamedTuple):
         disks, dynamic: rows of BODY below which there are lone disks, and dynamic bodies.
     """
 
-    shapes: tuple[pymunk.Shape, ...]
-    owner: IntArray
-    row: IntArray
-    BODY: Rows[Body]
-    SHAPE: Rows[Shape]
-    LINK: Rows[Link]
-    VERTEX: FloatArray
-    disks: int
-    dynamic: int
+    def __init__(self, bodies: Bodies, state: FloatArray, records: Mapping[pymunk.Shape, Record | None]) -> None:
+        shapes = {shape: record for shape, record in records.items() if record is not None}
+        solid, known = tuple(shapes), list(shapes.values())
+        k, N = len(solid), len(bodies)
+        self._shapes = from_bytes(GivenShape, [record.given for record in known])
+        self._owner: IntArray = np.array([bodies.row[record.body] for record in known], np.int64)
+        self._shapes["owner"] = self._owner
+        self._points: FloatArray = np.frombuffer(bytearray().join([record.points for record in known]))
+        POINT = self._points.reshape(-1, 2)
+        moving = N - int(np.count_nonzero(bodies.static))
+        self._rows: list[Any] = side_by_side(
+            ((moving + 1,), Body.TYPE), ((k,), Shape.TYPE), ((k,), Link.TYPE), ((len(POINT), 4), np.float64),
+            ((k + N + 2,), np.int64),
+        )  # fmt: skip
+        self._lay = lay_rows.bind(bodies.placed(state), self._shapes, POINT, *self._rows)
+        self.disks = self._lay()
+        self.BODY: Rows[Body] = self._rows[0]
+        self.SHAPE: Rows[Shape] = self._rows[1]
+        self.LINK: Rows[Link] = self._rows[2]
+        order: IntArray = self._rows[4][:k]
+        self._used = int(self.LINK[k - 1].first + self.LINK[k - 1].vertices) if k else 0
+        self.VERTEX: FloatArray = self._rows[3][: self._used]
+        self.shapes = tuple([solid[i] for i in order.tolist()])
+        self.owner: IntArray = self._owner[order]
+        self.row: IntArray = bodies.GIVEN["row"].copy()
+        self.dynamic = int(np.count_nonzero(bodies.dynamic))
 
+    def lay_again(
+        self, bodies: Bodies, state: FloatArray, records: Mapping[pymunk.Shape, Record | None], moved: bool
+    ) -> bool:  # fmt: skip
+        """Lay the rows anew, in place, where only numbers, filters and masses, and poses of static bodies if `moved`,
+        are others; False where the rows would be others, and are then in no order."""
+        known = [record for record in records.values() if record is not None]
+        vertices = self.LINK["vertices"].copy() if moved else None
+        given, owner, BODY = self._views
+        given[:] = np.frombuffer(b"".join([record.given for record in known]), np.int64)
+        owner[:] = self._owner
+        self._points[:] = np.frombuffer(b"".join([record.points for record in known]))
+        if moved:
+            bodies.placed(state)
+            self._rows[3].fill(0.0)
+        BODY.fill(0)
+        self._lay()
+        return vertices is None or np.array_equal(vertices, self.LINK["vertices"])
 
-def pack(bodies: Bodies, state: FloatArray, shapes: Sequence[pymunk.Shape], records: Sequence[Record]) -> Packed:
-    """The rows of `bodies` in the (N, 9) `state` and of their solid `shapes`."""
-    GIVEN, k, N = bodies.placed(state), len(shapes), len(bodies)
-    given = from_bytes(GivenShape, [record.given for record in records])
-    given["owner"] = [bodies.row[record.body] for record in records]
-    POINT: FloatArray = np.frombuffer(bytearray().join([record.points for record in records])).reshape(-1, 2)
-    moving = N - int(np.count_nonzero(bodies.static))
-    BODY, SHAPE, LINK, VERTEX, order = side_by_side(
-        ((moving + 1,), Body.TYPE), ((k,), Shape.TYPE), ((k,), Link.TYPE), ((len(POINT), 4), np.float64),
-        ((k + N + 2,), np.int64),
-    )  # fmt: skip
-    disks = lay_rows(GIVEN, given, POINT, BODY, SHAPE, LINK, VERTEX, order)
-    used = int(LINK[k - 1].first + LINK[k - 1].vertices) if k else 0
-    ordered = tuple([shapes[i] for i in order[:k].tolist()])
-    dynamic = int(np.count_nonzero(bodies.dynamic))
-    return Packed(
-        ordered, given["owner"][order[:k]], GIVEN["row"].copy(), BODY, SHAPE, LINK, VERTEX[:used], disks, dynamic
-    )
+    @cached_property
+    def _views(self) -> tuple[IntArray, IntArray, IntArray]:
+        """What shapes say of themselves, as integers; owners there; BODY as integers."""
+        return as_integers(self._shapes), self._shapes["owner"], as_integers(self.BODY)

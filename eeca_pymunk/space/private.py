@@ -185,11 +185,12 @@ def finish_step(space: pymunk.Space) -> None:
         callback(space)
 
 
-def watch(space: pymunk.Space, edits: list[int]) -> Callable[[], bool]:
-    """A function that returns whether settings and contents of the space are still the present ones.
+def watch(space: pymunk.Space, edits: list[int], known: list[int]) -> Callable[[], bool]:
+    """A function that tells whether the space's settings, and what is in it, are still as they are now.
 
     Args:
-        edits: counts that grow with edits in place.
+        edits: its first number grows when something of the space is edited in place.  known: what that was, as its
+            first number, which may be set later.
 
     Every addition of a shape changes pymunk's count of all shapes ever added, every removal the number of shapes. A
     body that was exchanged for another one changes the ids that the batch call reads. Constraints are compared one by
@@ -201,7 +202,7 @@ def watch(space: pymunk.Space, edits: list[int]) -> Callable[[], bool]:
     handler_count = len(handlers)
     counter, added = lib.cpSpaceGetShapeIDCounter, lib.cpSpaceGetShapeIDCounter(c)
     gravity_of, gravity = lib.cpSpaceGetGravity, lib.cpSpaceGetGravity(c)
-    gx, gy, known = gravity.x, gravity.y, edits[0]
+    gx, gy = gravity.x, gravity.y
     damping_of, damping = lib.cpSpaceGetDamping, lib.cpSpaceGetDamping(c)
     threshold_of, threshold = lib.cpSpaceGetSleepTimeThreshold, lib.cpSpaceGetSleepTimeThreshold(c)
 
@@ -213,7 +214,7 @@ def watch(space: pymunk.Space, edits: list[int]) -> Callable[[], bool]:
             g.x == gx
             and g.y == gy
             and counter(c) == added
-            and edits[0] == known
+            and edits[0] == known[0]
             and len(shapes) == shape_count
             and len(bodies) == body_count
             and damping_of(c) == damping

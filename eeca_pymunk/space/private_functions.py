@@ -14,6 +14,7 @@ OF_LIBRARY = (
     "cpBodySetVelocityUpdateFunc", "cpBodySetPositionUpdateFunc", "cpBodyUpdateVelocity", "ext_cpBodyVelocityFunc",
     "ext_cpBodyPositionFunc",
 )  # fmt: skip
+_ACCELERATE, _MOVE = ffi.addressof(lib, "cpBodyUpdateVelocity"), ffi.addressof(lib, "cpBodyUpdatePosition")
 
 
 def accelerations(
@@ -24,6 +25,7 @@ def accelerations(
     The public properties take four times as long.
     """
     velocity, spin = lib.cpBodyGetVelocity, lib.cpBodyGetAngularVelocity
+    put_velocity, put_spin = lib.cpBodySetVelocity, lib.cpBodySetAngularVelocity
     found: list[tuple[float, float, float]] = []
     for body in bodies:
         c: Any = body._body
@@ -33,27 +35,28 @@ def accelerations(
             after = velocity(c)
             found.append((after.x - before.x, after.y - before.y, spin(c) - turned))
         finally:
-            lib.cpBodySetVelocity(c, before)
-            lib.cpBodySetAngularVelocity(c, turned)
+            put_velocity(c, before)
+            put_spin(c, turned)
     return found
 
 
 @contextmanager
 def without(velocity: Sequence[pymunk.Body], position: Sequence[pymunk.Body]) -> Iterator[None]:
-    """Within this block pymunk's steps use its own functions in the place of these velocity functions and position
-    functions of bodies."""
-    accelerate, move = ffi.addressof(lib, "cpBodyUpdateVelocity"), ffi.addressof(lib, "cpBodyUpdatePosition")
+    """Within, pymunk's steps call neither the velocity functions of bodies nor the position functions of others, which
+    all have one, but do what they do without."""
+    set_velocity, set_position = lib.cpBodySetVelocityUpdateFunc, lib.cpBodySetPositionUpdateFunc
     try:
         for body in velocity:
-            lib.cpBodySetVelocityUpdateFunc(body._body, accelerate)
+            set_velocity(body._body, _ACCELERATE)
         for body in position:
-            lib.cpBodySetPositionUpdateFunc(body._body, move)
+            set_position(body._body, _MOVE)
         yield
     finally:
-        # Functions that were called meanwhile may have removed them.
+        # Functions that were called meanwhile may have taken theirs away.
+        own, moved = lib.ext_cpBodyVelocityFunc, lib.ext_cpBodyPositionFunc
         for body in velocity:
             if body._velocity_func is not None:
-                lib.cpBodySetVelocityUpdateFunc(body._body, lib.ext_cpBodyVelocityFunc)
+                set_velocity(body._body, own)
         for body in position:
             if body._position_func is not None:
-                lib.cpBodySetPositionUpdateFunc(body._body, lib.ext_cpBodyPositionFunc)
+                set_position(body._body, moved)

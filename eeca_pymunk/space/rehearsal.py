@@ -7,7 +7,7 @@ velocities) apply to the EECA step, which replaces the rehearsal.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from typing import Any
 
@@ -77,6 +77,7 @@ class Rehearsal:
         self._differ = [changed.bind(world.STATES, self._known, table) for table in self._changes]
         self._heard, self._stage = [False, False], -1
         self._wrapped: list[tuple[Any, str, Any, Any]] = []
+        self._functions: list[tuple[Any, str, Any]] = []
         self.failure: BaseException | None = None
         self.decided, self._ignores = False, True
         self._recent: float = 0.0  # number of steps for which decisions still apply
@@ -155,8 +156,8 @@ class Rehearsal:
             if (function := getattr(handler, phase)) is not None
         ]
         late = hooks.joints is not None and len(hooks.joints.after) > 0
-        known = [(handler, phase, function) for handler, phase, function, _ in self._wrapped]
-        if now != known or late:
+        if now != self._functions or late:
+            self._functions = now
             stages = {phase: max(i - 1, 0) for i, phase in enumerate(private.PHASES)}
             self._wrapped = [(h, phase, f, _Watched(self, f, phase, stages[phase])) for h, phase, f in now]
         if late:
@@ -195,8 +196,8 @@ class Rehearsal:
             for item, before, after in functions:
                 private_joints.replace_functions(item, before, after)
 
-    def rules(self, known: Rules, shapes: Sequence[pymunk.Shape], SHAPE: Rows[Shape], smooth: bool) -> Rules:
-        """The rules for pairs of these shapes, the rows of SHAPE, by the arbiters of the rehearsal.
+    def rules(self, known: Rules, places: Mapping[pymunk.Shape, int], SHAPE: Rows[Shape], smooth: bool) -> Rules:
+        """What the arbiters of the step say of pairs of shapes, which have these rows of SHAPE.
 
         Values of arbiters differ from those of shapes only if a function has changed them. pymunk keeps such decisions
         as long as it keeps arbiters, and ignored collisions as long as the shapes touch.
@@ -206,7 +207,7 @@ class Rehearsal:
         if self._recent <= 0 and not self._ignores:
             return Rules() if known.some else known
         self._recent -= 1
-        rules = Rules.said(private.odd_arbiters(self.space), shapes, SHAPE, smooth)
+        rules = Rules.said(private.odd_arbiters(self.space), places, SHAPE, smooth)
         self._ignores = bool(rules.ignored)
         return rules
 

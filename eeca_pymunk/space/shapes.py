@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 import pymunk
@@ -36,13 +36,13 @@ class Rules:
 
     @classmethod
     def said(
-        cls, arbiters: Iterable[pymunk.Arbiter], shapes: Sequence[pymunk.Shape], SHAPE: Rows[Shape], smooth: bool
+        cls, arbiters: Iterable[pymunk.Arbiter], places: Mapping[pymunk.Shape, int], SHAPE: Rows[Shape], smooth: bool
     ) -> Rules:
-        """The rules by these arbiters for pairs of these shapes, the rows of SHAPE; without friction if `smooth`."""
-        index = {shape: i for i, shape in enumerate(shapes)}
+        """What these arbiters say of pairs of shapes, which have these rows of SHAPE; nothing of friction if
+        `smooth`."""
         ignored, changed = set(), {}
         for arbiter in arbiters:
-            a, b = (index.get(shape, -1) for shape in arbiter.shapes)
+            a, b = (places.get(shape, -1) for shape in arbiter.shapes)
             if min(a, b) < 0:
                 continue
             pair = (min(a, b), max(a, b))

@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -35,10 +36,10 @@ from .noticed import leader
 if TYPE_CHECKING:
     from .world import World
 
-AT_REST = 1e-6  # tolerance above; `..model.bodies.AT_REST` is a state
-_AGAIN = 16  # number of steps after which bodies that could not fall asleep are tested again
-_SHARE = 8  # bodies fall asleep at once if they are at least this part (1/8) of those awake,
-_PATIENCE = 120  # else after so many steps
+AT_REST = 1e-6
+_AGAIN = 16  # steps after which islands that could not fall asleep are looked at again
+_LESS = 1e-9  # of lengths, by which bodies are looked for farther away
+_SHARE, _PATIENCE = 8, 120  # islands fall asleep that are this part of who is awake, or after so many steps
 
 
 class Sleep:
@@ -81,7 +82,7 @@ class Sleep:
         self._still = bodies.asleep.astype(np.int64), bodies.static.astype(np.int64)
         # Bodies that something other than the solver moves: all, if functions are called; else kinematic ones.
         movers: tuple[BoolArray, BoolArray] = ~bodies.static, ~bodies.static & ~bodies.dynamic
-        self._moves = [np.flatnonzero(moves).tolist() for moves in movers]
+        self._moves: list[IntArray] = [np.flatnonzero(moves) for moves in movers]
 
     def changed(self) -> bool:
         """Whether other bodies may sleep now than when this was made, or pymunk has taken a step."""
@@ -109,12 +110,12 @@ class Sleep:
         repeated, those that any body may meet. Returns whether there was any."""
         world, bodies, found = self.world, self.world.bodies, False
         moves = self._moves[1 if world.plain else 0]
-        if not moves:
+        if len(moves) == 0:
             return False
         world.gather()
         pull = math.hypot(*world.gravity)
-        for i in moves:
-            x, y, _, vx, vy, spin, fx, fy, _ = world.state[i]
+        for i in self._near(moves, dt):
+            x, y, _, vx, vy, spin, fx, fy, _ = world.state[i].tolist()
             if self._size[i] == 0.0 or (not bodies.dynamic[i] and vx == vy == spin == 0.0):
                 continue
             force = math.hypot(fx, fy) * bodies.inverse_mass[i]
@@ -125,6 +126,28 @@ class Sleep:
             box = pymunk.BB(x - reach, y - reach, x + reach, y + reach)
             found |= self._wake_within(box)
         return found
+
+    def _near(self, moves: IntArray, dt: float) -> list[int]:
+        """Those of bodies (rows) that may come to the box of a shape asleep within dt; some that do not may be among
+        them."""
+        bodies, state = self.world.bodies, self.world.state[moves]
+        centre = bodies.center_of_gravity[moves]
+        force = np.hypot(state[:, 6], state[:, 7]) * bodies.inverse_mass[moves]
+        pull = math.hypot(*self.world.gravity)
+        reach = self._size[moves] + np.hypot(centre[:, 0], centre[:, 1])
+        reach += dt * (np.hypot(state[:, 3], state[:, 4]) + dt * (pull + force))
+        left, bottom, right, top = self._boxes.T[:, :, None]
+        x, y = state[:, 0], state[:, 1]
+        reach += _LESS * (reach + abs(x) + abs(y))
+        # Written so that nan is near.
+        apart = (left > x + reach) | (right < x - reach) | (bottom > y + reach) | (top < y - reach)
+        return moves[~apart.all(axis=0)].tolist()  # type: ignore[no-any-return]
+
+    @cached_property
+    def _boxes(self) -> FloatArray:
+        """(w, 4) left, bottom, right and top of the shapes of bodies asleep."""
+        boxes = [(b.left, b.bottom, b.right, b.top) for body in self._sleepers for b in (s.bb for s in body.shapes)]
+        return np.array(boxes, float).reshape(-1, 4)
 
     def told(self, bodies: Sequence[pymunk.Body]) -> tuple[FloatArray, IntArray, IntArray]:
         """Times at rest (N,), index of another body of the sleeping group (N,), -1 for awake bodies, timers (2,)."""

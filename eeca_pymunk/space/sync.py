@@ -11,17 +11,17 @@ If arbiters are read after a step that has reindexed, a rest step is taken first
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from typing import TYPE_CHECKING
 
 import pymunk
 
 from ..reentry import BUSY
-from . import private, private_rest
+from . import private, private_joints, private_rest
 from .bodies import ANGULAR_VELOCITY, VELOCITY, Bodies
 from .joints import JointRows
-from .private_joints import awake, inert, silent, strengthen, weaken, with_laws
+from .private_joints import inert, silent, strengthen, weaken, with_laws
 
 if TYPE_CHECKING:
     from .world import World
@@ -33,8 +33,11 @@ FEW, SOME = 12, 32
 _RENEW = 32  # steps after which reindexing gives way to a rest step
 
 
+Choice = Callable[[Sequence[pymunk.Constraint]], list[pymunk.Constraint]]
+
+
 def rest_step(
-    space: pymunk.Space, dt: float, joints: JointRows | None = None, forget: bool = True, asleep: bool = False
+    space: pymunk.Space, dt: float, joints: JointRows | None = None, forget: bool = True, awake: Choice | None = None
 ) -> None:
     """Update pymunk's shapes by its own step, with all velocities 0, which moves nothing.
 
@@ -43,16 +46,17 @@ def rest_step(
     ones may end with velocities of round-off.
 
     Args:
-        joints: the constraints of the space; their functions are not called, and they exert no force.
-        forget: whether pymunk has stored impulses of joints, which would act too.
-        asleep: whether there are sleeping bodies, which a change of gravity would wake. Then gravity is kept, and the
-            caller discards the velocities that it causes.
+        joints: the constraints of the space, which call no functions meanwhile, and push with nothing where they would.
+        forget: whether pymunk remembers impulses of joints, which would push too.
+        awake: where bodies sleep, which of constraints have no such body. A change of gravity would wake them: it
+            stays, and leaves velocities, which are of no use.
     """
+    asleep = awake is not None
     if joints is None:
         private_rest.rest(space, dt, asleep)
         return
     push, calling = joints.items if forget else joints.pushing(), joints.calling
-    if asleep:  # a change of a joint would wake its bodies
+    if awake is not None:  # pymunk has put their joints away, and any change of one would wake its bodies
         push, calling = awake(push), awake(calling)
     if not (calling or joints.own or joints.partners.outside):
         held = weaken(push)
@@ -62,7 +66,7 @@ def rest_step(
             strengthen(held)
         return
     own, laws = joints.own, joints.laws()
-    if asleep:
+    if awake is not None:
         laws = [law for item, law in zip(own, laws, strict=True) if awake([item])]
         own = awake(own)
     with ExitStack() as within:
@@ -84,15 +88,21 @@ class Sync:
         late: whether readers of arbiters call `renew`.
     """
 
-    def __init__(self, space: pymunk.Space, bodies: Bodies) -> None:
-        self.space = space
+    def __init__(self, world: World, past: Sync | None = None) -> None:
+        """`past`: that of the world of this space before; pymunk itself puts what has come since into its index."""
+        self.space, bodies = world.space, world.bodies
         self._asleep = bool(bodies.asleep.any())
+        self._called = len(bodies.velocity_hooks) + len(bodies.position_hooks) > 0
         self._shapes = sum(bodies.shapes.values())
         self._pointers = bodies.moving
-        self._timestamp: Callable[[], int] = private.timestamp(space)
+        self._timestamp: Callable[[], int] = private.timestamp(self.space)
         self._renewed, self._dt, self._left = -1, 0.0, 0
         self._touched = self._stale = self._asked = False
-        self._joints: JointRows | None = None
+        if past is not None and not (self._asleep or past._asleep):
+            self._renewed, self._dt, self._left = past._renewed, past._dt, past._left
+            self._touched, self._stale, self._asked = past._touched, past._stale, past._asked
+        self._joints = world.joints
+        self._new = True  # bodies and joints may have come from elsewhere, with what pymunk has left in them
         self.late = False
         self.stamp = -1  # pymunk's count of steps after our last one, -1 before the first
 
@@ -146,17 +156,24 @@ class Sync:
         return self._timestamp() == self.stamp
 
     def rest(self, dt: float, joints: JointRows | None = None) -> None:
-        """Take a rest step; all bodies must have velocity 0, and may get velocities of round-off if there are
-        joints."""
-        native = self._timestamp() != self._renewed
+        """A rest step; all bodies must have velocity 0, and may have another of round-off if there are joints."""
+        native = self._new or self._timestamp() != self._renewed
+        self._new = False
         if native:
             private.forget_corrections(self._pointers)
-        rest_step(self.space, dt, joints, forget=native, asleep=self._asleep)
+        rest_step(self.space, dt, joints, native, self._choice(joints) if self._asleep else None)
         self._renewed, self._dt, self._left = self._timestamp(), dt, _RENEW
         self.stamp = self._renewed
         self._stale = False
         if not self.late and self._shapes <= FEW:
             self._touched = bool(private.raw_arbiters(self.space))
+
+    def _choice(self, joints: JointRows | None) -> Choice:
+        """Which of constraints have no body that sleeps: who sleeps at the start of a step does so at its end, unless
+        functions have woken it."""
+        if joints is None or self._called or joints.calling or joints.own:
+            return private_joints.awake
+        return joints.awake
 
     def land(self, world: World, dt: float, status: int) -> None:
         """Write the end of the step of a world, with a rest step between poses and velocities."""

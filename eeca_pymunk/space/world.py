@@ -16,11 +16,11 @@ from ..report import Details, nothing
 from ..transfer import take
 from . import private
 from .bodies import Bodies
-from .checks import check_space, rough_pair
+from .checks import rough_pair, settings
 from .crossing import Crossing
 from .joints import JointRows
 from .noticed import clock, edited_since, edits
-from .packing import Record, pack, read
+from .packing import Packed, Record, read
 from .patching import patch
 from .rehearsal import Rehearsal
 from .shapes import Rules
@@ -55,15 +55,13 @@ class World(Crossing):
         smooth: whether friction is left out, that of handlers too.
         joints: the constraints of the space, None if it has none.  PARTNER: bodies of joints that have no row of BODY.
         read_at: `noticed.clock` when shapes and bodies were read.
-        patches: how often `patch` has put edits into the rows.  fresh: BODY before any step, as laid by the last that
-            has laid rows anew.
+        patches: how often `patch` has put edits into the rows.  packed: what lays these.
         parted: pairs of rows of SHAPE that pass through one another because joints of their bodies say so.
     """
 
     def __init__(
         self, space: pymunk.Space, ignore: Sequence[str] = (), past: World | None = None
     ) -> None:  # fmt: skip
-        check_space(space)
         self._edits = edits(space)
         self._known = self._edits[0] - self._edits[1]
         fixed = space.sleep_time_threshold < math.inf
@@ -71,24 +69,23 @@ class World(Crossing):
         known = None if past is None or stale is None else past
         self.read_at = clock()
         bodies = Bodies(space, fixed) if known is None else Bodies(space, fixed, known.bodies, stale or ())
-        state = bodies.gather()
-        assert state is not None  # read from these very bodies
+        state = bodies.start
         bodies.check_finite(state)
         self.records: Records = _records(space, bodies, {} if known is None else known.records, stale or ())
-        solid = [s for s, record in self.records.items() if record is not None]
-        self.ignores = "friction" in ignore and rough_pair(solid) is not None
-        packed = pack(bodies, state, solid, [r for r in self.records.values() if r is not None])
+        self.smooth = "friction" in ignore
+        self.ignores = self.smooth and rough_pair([s for s, r in self.records.items() if r is not None]) is not None
+        self.packed = packed = Packed(bodies, state, self.records)
         super().__init__(space, bodies, packed.BODY, packed.row, state)
         self.shapes, self.owner = packed.shapes, packed.owner
         self.SHAPE, self.LINK, self.VERTEX = packed.SHAPE, packed.LINK, packed.VERTEX
-        self.smooth = "friction" in ignore
         if self.smooth:
             self.SHAPE["friction"] = 0.0
             self.BODY["friction"] = 0.0
         self.disks, self.dynamic = packed.disks, packed.dynamic
         self.patches = 0
-        self.fresh: Rows[Body] | None = None
         self.parted: set[tuple[int, int]] = set()
+        self.rules = Rules()
+        self._contents = self._count()
         self.joints: JointRows | None = None
         if past is not None and past.joints is not None:
             self.joints = past.joints
@@ -98,19 +95,21 @@ class World(Crossing):
     def read_settings(self, anew: bool = False) -> None:
         """Read the settings of the space, checked, and its joints if these are others, or if `anew`; and watch both
         from now on."""
-        check_space(self.space)
+        self.gravity, self.damping = settings(self.space)
         self._read_joints(anew)
-        self.gravity = tuple(self.space.gravity)
-        self.damping = self.space.damping
+        self._seen = [self._edits[0]]
         self._known = self._edits[0] - self._edits[1]
         self.collisions = bool(private.handlers(self.space))
-        self.rules = Rules()
+        self._forget_rules()
         bodies = self.bodies
         functions = len(bodies.velocity_hooks) > 0 or len(bodies.position_hooks) > 0
         self.hooked = self.collisions or functions or self.damping == 0.0
         self.plain = not self.hooked and self.joints is None
-        self._contents = self._count()
-        self.current = private.watch(self.space, self._edits)
+        self.current = private.watch(self.space, self._edits, self._seen)
+
+    def _forget_rules(self) -> None:
+        if self.rules.some:
+            self.rules = Rules()
 
     def _read_joints(self, anew: bool) -> None:
         past = self.joints
@@ -139,23 +138,28 @@ class World(Crossing):
         """Shapes and bodies that may say else than they did: edited, in the space or outside, or weighed anew since
         shapes have come or gone; None if nobody knows."""
         found = edited_since(self.read_at)
-        if found is None:
-            return None
-        now = self.records if self.same_things() else dict.fromkeys(self.space.shapes)
-        for shape in self.records.keys() ^ now.keys():
+        if found is None or self.same_things():
+            return found
+        for shape in self.records.keys() ^ set(self.space.shapes):
             record = self.records.get(shape)
             found.update((shape.body, record and record.body))
         return found
 
-    def patch(self) -> bool | None:
-        """See `patching.patch`; the settings of the space are read as well."""
-        lists = patch(self)
-        if lists is not None:
+    def patch(self) -> tuple[bool, bool] | None:
+        """See `patching.patch`; the settings of the space are read as well, and what pymunk has now is in BODY."""
+        found = patch(self)
+        if found is not None:
             self.patches += 1
             if "rehearsal" in self.__dict__:
                 self.rehearsal.forget()
-            self.read_settings()
-        return lists
+            self._seen[0] = self._edits[0]
+            if self.current():
+                self._known = self._edits[0] - self._edits[1]
+                self._forget_rules()
+            else:
+                self.read_settings()
+            self._take(0.0, 0.0, 1.0)
+        return found
 
     def settle(self) -> None:
         """Let joints tell of the step, and take no notice of how pymunk rounds what was written to it."""
@@ -177,11 +181,13 @@ class World(Crossing):
         joints = self.joints
         if joints is None or joints.parted is not None:
             return False
-        of = [self.bodies.items[i] for i in self.owner]
         parted: set[tuple[int, int]] = set()
-        for a, b in joints.part():
-            first, second = ([k for k, body in enumerate(of) if body is one] for one in (a, b))
-            parted.update((min(i, j), max(i, j)) for i in first for j in second)
+        if pairs := joints.part():
+            of: dict[pymunk.Body, list[int]] = {}
+            for k, i in enumerate(self.owner.tolist()):
+                of.setdefault(self.bodies.items[i], []).append(k)
+            for a, b in pairs:
+                parted.update((min(i, j), max(i, j)) for i in of.get(a, ()) for j in of.get(b, ()))
         if parted == self.parted:
             return False
         self.parted = parted
@@ -198,10 +204,6 @@ class World(Crossing):
     def same_things(self) -> bool:
         """Whether shapes have neither come nor gone, and as many bodies are there; they may be others, and edited."""
         return self._contents == self._count()
-
-    def same_contents(self) -> bool:
-        """Whether shapes have neither come nor gone nor changed, so that new settings are all there is to read."""
-        return self.same_things() and not self.edited()
 
     def edited(self) -> bool:
         """Whether a shape or body was edited in place."""

@@ -18,7 +18,7 @@ from eeca_pymunk.compiled.tables import table_of
 from eeca_pymunk.model.islands import Contacts, Island
 from eeca_pymunk.model.joints import Joints
 from eeca_pymunk.model.run import RunArrays
-from eeca_pymunk.model.scene import Scene
+from eeca_pymunk.model.scene import Scene, scene_with
 
 PACKAGE = Path(eeca_pymunk.__file__).parent
 MODULES = [
@@ -108,3 +108,14 @@ def test_tables_of_other_arrays_are_refused(wrong: dict[str, np.ndarray], told: 
     assert table_of(arrays).arrays is arrays
     with pytest.raises(TypeError, match=told):
         table_of(arrays._replace(**wrong))
+
+
+def test_table_like_another_has_the_words_of_what_was_replaced() -> None:
+    arrays = scene_with()
+    table = table_of(arrays)
+    if table is arrays:
+        pytest.skip("kernels run as plain Python, which has no words")
+    other = arrays._replace(LOG=np.zeros(3, arrays.LOG.dtype), BEGAN=np.zeros((2, 3)))
+    like = table_of(other, table)
+    assert like.arrays is other
+    assert like.words.tolist() == table_of(other).words.tolist() != table.words.tolist()

@@ -127,3 +127,34 @@ def test_patches_among_other_edits(seed: int) -> None:
 @pytest.mark.parametrize("seed", range(6))
 def test_patches_where_handlers_decide(seed: int) -> None:
     assert played(ep.EECA, seed, 8, PATCHED, True)[0] == played(Rereading, seed, 8, PATCHED, True)[0]
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_corners_of_moved_walls_are_those_of_a_new_reading(seed: int) -> None:
+    """Static segments of one body each, put end to end and apart again, under capsules that slide over their joints."""
+
+    def path(make: type[ep.EECA]) -> list[object]:
+        random, space = Random(seed), pymunk.Space()
+        space.gravity = (0.0, -10.0)
+        walls = []
+        for k in range(4):
+            wall = pymunk.Body(body_type=pymunk.Body.STATIC)
+            wall.position = (float(k), 0.0)
+            space.add(wall, pymunk.Segment(wall, (0, 0), (1, 0), 0.0))
+            walls.append(wall)
+        for k in range(3):
+            body = pymunk.Body(1.0, 0.05)
+            body.position, body.velocity = (0.4 + k, 0.3 + 0.2 * k), (1.0, 0.0)
+            space.add(body, pymunk.Segment(body, (-0.2, 0), (0.2, 0), 0.02))
+        stepper, found = make(space), list[object]()
+        for k in range(60):
+            if k % 3 == 2:
+                moved = random.choice(walls)
+                moved.position = (moved.position.x, random.choice((0.0, -0.05)))
+            report = stepper.step(DT)
+            loop = stepper.event_loop
+            assert loop is not None
+            found.append((state(space), report.impulse.tobytes(), loop.scene.CORNER.tobytes()))
+        return found
+
+    assert path(ep.EECA) == path(Rereading)

@@ -703,3 +703,28 @@ def test_bodies_outside_stay_as_they_are_where_pymunk_pushes_them(watched: bool)
         stepper.step(0.01)
     assert (heavy.velocity, heavy.angular_velocity) == ((1.0, 2.0), 0.0)
     assert (fixed.velocity, fixed.angular_velocity) == ((0.0, 0.0), 0.0)
+
+
+@pytest.mark.parametrize("kind", sorted(KINDS))
+def test_rows_have_what_constraints_say_field_by_field(kind: str) -> None:
+    space, (a, b) = pair()
+    joint = KINDS[kind](a, b)
+    joint.max_force, joint.error_bias, joint.max_bias = 7.0, 0.25, 3.0
+    space.add(joint)
+    rows = JointRows(space, {a: 0, b: 1}, 3)
+    row = rows.joint[rows.row[joint]]
+    assert row.body.tolist() == [0, 1]
+    assert (row.soft, row.side, row.touched) == (1, 0, 1)
+    assert (row.max_force, row.error_bias, row.max_bias) == (7.0, 0.25, 3.0)
+    for ours, theirs in {
+        "length": "distance", "stiffness": "stiffness", "damping": "damping", "ratio": "ratio", "rate": "rate",
+        "tooth": "ratchet", "lower": "min", "upper": "max",
+    }.items():  # fmt: skip
+        if hasattr(joint, theirs):
+            assert row[ours] == getattr(joint, theirs)
+    if hasattr(joint, "anchor_b"):
+        assert row.anchor_b.tolist() == list(joint.anchor_b)
+    if hasattr(joint, "rate"):
+        joint.rate = 9.0
+        rows.refresh()
+        assert row.rate == 9.0

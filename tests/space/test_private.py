@@ -167,7 +167,11 @@ def test_watch_and_count_of_shapes() -> None:
     space, bodies = meeting()
     assert private.shapes_ever(space) == 2
     edits = [0]
-    current = private.watch(space, edits)
+
+    def bump() -> None:
+        edits[0] += 1
+
+    current = private.watch(space, edits, [0])
     space.step(0.001)
     bodies[0].velocity = (9.0, 9.0)
     space.iterations = 3
@@ -183,12 +187,15 @@ def test_watch_and_count_of_shapes() -> None:
         # Removing what touches after this would crash pymunk 6.
         lambda: space.on_collision(begin=lambda *_: None),
         lambda: space.add(pymunk.Circle(bodies[0], 1.0)),
-        lambda: edits.append(edits.pop() + 1),
+        bump,
     ):
-        current = private.watch(space, edits)
+        known = edits.copy()
+        current = private.watch(space, edits, known)
         assert current()
         change()
         assert not current()
+        known[0] = edits[0]
+        assert current() == (change is bump)
     assert private.shapes_ever(space) == 3
 
 

@@ -273,7 +273,8 @@ def test_settings_are_read_anew_without_the_shapes(change: str) -> None:
     world = World(space)
     if change != "none":
         CHANGES[change](space)
-    assert world.same_contents()
+    assert world.same_things()
+    assert not world.edited()
     world.read_settings()
     assert world.current()
     assert (world.gravity, world.damping) == (tuple(space.gravity), space.damping)
