@@ -142,7 +142,7 @@ class RunningStepper(PackedStepper):
             # From the reading on that is due: to keep what patches begin from takes time.
             self._patches = True
             return False
-        lossy, sides = loop.lossy, sides_of(world, loop)
+        lossy, sides = bool(loop.scene.COUNT.lossy), sides_of(world, loop)
         found = world.patch()
         if found is None or lossy != bool((world.SHAPE["elasticity"] < 1.0).any()):
             return False

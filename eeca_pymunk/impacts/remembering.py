@@ -9,9 +9,10 @@ import numpy as np
 
 from ..arrays import AnyArray, FloatArray, IntArray
 from ..compiled import table_of
-from ..compiled.records import numbers, put
+from ..compiled.records import Rows, numbers, put
 from ..geometry.corners import corners_of
-from ..model.bodies import POSE, VELOCITY
+from ..model.bodies import POSE, VELOCITY, Body
+from ..model.joints import OF_JOINTS, Joint, Joints
 from ..model.scene import Scene
 from ..model.step import Count, Step
 from ..pairs.grid import relist
