@@ -51,7 +51,7 @@ def lifting(
         return 0.0, deepest
     D = np.zeros((len(IM), 3))
     most = 10 + 1000 // m if m <= DENSE_CONTACTS else 8 + 200 // m
-    lift(A, B, ROWS, GAPS, np.zeros(m), D, IM, II, m, 0.1 * OVERLAP_LEFT * size, most, np.empty(m, np.int64))
+    lift(A, B, ROWS, GAPS, np.zeros(m), D, IM, II, m, 0.1 * OVERLAP_LEFT * size, most)
     work = -against(ACC, IM, II, n, D)
     turn = 0.0
     touched = np.zeros(n, np.uint8)

@@ -13,7 +13,6 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
 from ..compiled.records import Rows
 from ..model.contacts import Row
-from ..model.parameters.impulses import LIFT_TOGETHER
 from .build import normal_rate, tangent_rate
 from .sweeps import velocities
 
@@ -115,30 +114,21 @@ def lock(
 @uncounted
 def lift(
     A: IntArray, B: IntArray, ROWS: Rows[Row], GAPS: FloatArray, MU: FloatArray, D: FloatArray, IM: FloatArray,
-    II: FloatArray, m: int, tolerance: float, most: int, NEAR: IntArray,
+    II: FloatArray, m: int, tolerance: float, most: int,
 ) -> tuple[int, float]:  # fmt: skip
     """Displacements D = M^-1 G^T mu with 0 <= mu _|_ g + A mu >= 0, by at most `most` sweeps.
 
     Args:
         GAPS: (m,) length.  MU: (m,) in and out, mass times length.  D: (k, 3) in and out, length and rad.
-        tolerance: length that a sweep may still move a gap.  NEAR: (m,) scratch.
+        tolerance: length that a sweep may still move a gap.
     Returns:
         Sweeps taken and the last one's largest change of a gap.
     """
-    near = 0
-    deepest = 0.0
-    for i in range(m):
-        deepest = min(deepest, GAPS[i])
-    for i in range(m):
-        if GAPS[i] < -LIFT_TOGETHER * deepest:
-            NEAR[near] = i
-            near += 1
     worst = 0.0
     done = 0
     while done < most:
         worst = 0.0
-        for z in range(near):
-            i = NEAR[z]
+        for i in range(m):
             g = GAPS[i] + normal_rate(A, B, ROWS, D, i)
             if g >= 0.0 and MU[i] == 0.0:
                 continue

@@ -51,6 +51,3 @@ ROCKING = heuristic(
     "The same for lossy contacts: rocking below it ends at once instead of in a cascade of impacts.",
 )
 BLOCK_BODIES = heuristic(16, "bodies", "Bodies of a large island on which an impact acts at once. Larger: dearer hits.")
-LIFT_TOGETHER = heuristic(
-    3.0, "times the deepest overlap", "Gaps up to which contacts are corrected with the deepest one."
-)
