@@ -63,10 +63,6 @@ LARGE_ISLAND = heuristic(
 MIDPOINT_SAME = round_off(
     1e-07, "of the smaller shape", "Half way below which the geometry at the middle is that of the start."
 )
-MIDPOINT_SAME_LARGE = heuristic(0.001, "of the smaller shape", "The same in a large island.")
-MIDPOINT_TURN = heuristic(
-    0.5, "cosine", "Cosine of the normals at the start and the middle below which the middle is not used."
-)
 MANIFOLD_ROUND_OFF = round_off(1e-09, "of the smaller shape", "Tolerance of a manifold.")
 INTERVAL_RESIDUAL = accuracy(1e-12, "of |a| h", "Residual of an island, and of elastic ones.")
 INTERVAL_RESIDUAL_MOVING = accuracy(1e-07, "of |a| h", "Residual of a large or moving island.")
