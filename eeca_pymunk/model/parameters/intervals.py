@@ -22,11 +22,6 @@ EXACT_CONTACTS = heuristic(
     12, "contacts", "Number up to which an interval ends where a contact begins to stick or normals turn."
 )
 STICK = accuracy(1e-06, "of the friction limit", "Friction and slip below which a contact sticks.")
-RATTLE = heuristic(
-    0.001,
-    "of the friction's impulse over the mass",
-    "Slip below which a contact sticks where bearing contacts vibrate as fast.",
-)
 LARGE_SWEEPS = work(24, "sweeps", "Sweeps of a large island at the start of a step.")
 LARGE_SWEEPS_HIT = work(12, "sweeps", "The same after it was hit within the step.")
 INTERVAL_WAY = heuristic(
