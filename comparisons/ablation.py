@@ -34,10 +34,9 @@ SMOOTH = 1e-3  # radii in REST steps, that a body at rest may move
 NEVER, ALWAYS = "1 << 40", "1e300"  # of counts; of lengths and speeds
 # What takes each rule away: a value that it never, or always, reaches.
 OFF = {
-    "SLENDER": "0.0", "BLOCK_BODIES": "1 << 20", "BUSY_STEPS": "0", "EXACT_CONTACTS": "0", "INTERVAL_WAY": ALWAYS,
+    "SLENDER": "0.0", "BLOCK_BODIES": "1 << 20", "EXACT_CONTACTS": "0", "INTERVAL_WAY": ALWAYS,
     "INTERVAL_DEPTH": ALWAYS, "INTERVAL_DEPTH_WIDTH": ALWAYS, "INTERVAL_DEPTH_LEAST": "0.0", "INTERVAL_RETRY": ALWAYS,
     "LARGE_ISLAND": "1 << 20", "REST_CANDIDATE": "0.0", "REST_CANDIDATE_LARGE": "0.0", "STOPPING_STEPS": "1.0",
-    "REST_STEPS": "0", "REST_RETRY": "0", "REST_RETRY_LATEST": "0", "REST_RETRY_BODIES": NEVER, "REST_WOKEN": "0.0",
     "MOVING_SHARE": "0.0", "MOVING_BODIES": "0", "JOINT_SPEED_LEFT": "0.0", "TAUT": ALWAYS, "OUTER_PROGRESS": "1.0",
     "COLUMNS_AGAIN": "0.0",
 }  # fmt: skip

@@ -17,10 +17,10 @@ from ..model.bodies import AT_REST
 from ..model.contacts import LASTED
 from ..model.parameters.events import RESOLUTION
 from ..model.parameters.intervals import (
-    BUSY_STEPS,
     INTERVAL_DEPTH_WIDTH,
     TOUCH,
 )
+from ..model.parameters.rest import REST_RETRY
 from ..model.scene import Scene
 from ..model.step import DONE, PUSHES_FULL
 from ..pairs.lists import far_apart
@@ -221,8 +221,8 @@ def passed_over(A: Scene, a: int, b: int, t: float) -> bool:
         MINE = np.empty(A.BODY.shape[0], np.int64)
         for k in (i, j):
             if A.BODY[k].inv_mass > 0.0:
-                A.MEMBER[k].busy = BUSY_STEPS
+                A.MEMBER[k].busy = REST_RETRY
             if STATE[k].island >= 0:
                 for q in range(members(A, STATE[k].island, MINE)):
-                    A.MEMBER[MINE[q]].busy = BUSY_STEPS
+                    A.MEMBER[MINE[q]].busy = REST_RETRY
     return True

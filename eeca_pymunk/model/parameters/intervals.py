@@ -17,7 +17,6 @@ IMPACT_SPEED = accuracy(
     "of |a| h",
     "Approach speed from which a contact that closes in an interval is an impact; what is slower may freeze.",
 )
-BUSY_STEPS = heuristic(8, "steps", "Steps after the last impact in which an island is not tested for rest.")
 NORMAL_TURN = accuracy(0.1, "rad", "Rotation of a normal in one interval. Larger: longer intervals, coarser rolling.")
 EXACT_CONTACTS = heuristic(
     12, "contacts", "Number up to which an interval ends where a contact begins to stick or normals turn."
