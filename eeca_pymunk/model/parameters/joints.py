@@ -137,15 +137,9 @@ PRESS_RESIDUAL = accuracy(1e-09, "of |a| h and the speed", "Residual of sweeps o
 PRESS_RESIDUAL_REST = accuracy(1e-12, "of |a| h and the speed", "Residual of these sweeps near rest.")
 PRESS_LOCKS = work(10, "number", "Attempts of the energy lock of components, at most.")
 SOME_CONTACTS = work(12, "contacts", "Number from which on the interval before an impact is solved roughly.")
-OUTER_PROGRESS = heuristic(
-    0.3, "ratio of differences", "Ratio of successive differences above which the iterations will not converge in time."
-)
 JOINTS_NEAR = accuracy(1e-09, "of the component", "Error of joints while many contacts have not converged.")
 OUTER_FLOOR = round_off(
     1e-08, "of the speed", "Difference of the velocities that is round-off of stiff components if it does not fall."
-)
-COLUMNS_AGAIN = heuristic(
-    0.0001, "of the speed", "Difference of the velocities above which the response is computed again."
 )
 PRESS_WORK_ROUND_OFF = round_off(4e-14, "of impulses times speed", "Round-off of the work of contacts of components.")
 SOLUTION_WORK = work(1000.0, "operations", "Work of a solution for each entry of its columns.")

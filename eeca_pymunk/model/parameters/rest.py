@@ -18,23 +18,15 @@ STATICS_FACTORS = work(12, "factorisations", "Factorisations to find static forc
 STATICS_FACTORS_NEAREST = work(6, "factorisations", "Further factorisations to approach the guess.")
 STATICS_START = accuracy(0.1, "of the mean guess", "Least impulse at the start of the interior-point iteration.")
 STATICS_STEP = accuracy(0.99, "of the distance to the boundary", "Step of the interior-point iteration.")
-STATICS_PROGRESS = heuristic(
-    0.8, "ratio of residual motions", "Ratio of successive residuals above which an iteration stalls."
-)
-STATICS_STALLED = heuristic(4, "iterations", "Stalled iterations after which no static forces are assumed to exist.")
-STATICS_RUNAWAY = heuristic(
-    100000.0, "times the velocities", "Growth of the multipliers that shows a motion which no force holds."
-)
 STATICS_GAP = accuracy(
     1e-08, "of the first complementarity", "Complementarity at which the forces are the nearest to the guess."
 )
-REST_STEPS = heuristic(2, "steps", "Steps that an island has to be slow before it is tested for rest.")
-REST_RETRY = heuristic(4, "steps", "Steps from one test for rest to the next, and one more for every fourth body.")
-REST_RETRY_LATEST = heuristic(
-    12, "steps", "Steps from one test for rest of a large island to the next, and one more for every REST_RETRY_BODIES."
+REST_RETRY = work(
+    8,
+    "steps",
+    "Steps from one test for rest, or an impact that was passed over, to the next test. Larger: fewer factorisations, "
+    "later rest.",
 )
-REST_RETRY_BODIES = heuristic(100, "bodies", "Bodies of a large island for which its next test comes one step later.")
-REST_WOKEN = heuristic(-2.0, "steps, negative", "Rest timer of an island that wakes after a long rest.")
 SUPPORT_FACTORS = work(
     4, "factorisations", "Factorisations to find the forces by which an island at rest supports moving bodies."
 )
@@ -48,4 +40,3 @@ PARTIAL_REST_FACTORS = work(
 PARTIAL_REST_FACTORS_STEP = work(
     8, "factorisations", "Factorisations of a freeze after which its island is not tested for partial rest in the step."
 )
-FREEZE_EVERY = work(8, "steps", "Steps from one test for freezing a large island to the next.")
