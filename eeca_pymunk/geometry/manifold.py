@@ -13,12 +13,9 @@ import math
 from ..arrays import FloatArray
 from ..compiled import uncounted
 from ..model.parameters.detection import FACE_WIDTH
-from ..model.parameters.impulses import FACE_ROUND_OFF
-from ..model.parameters.intervals import TOUCH
 from ..model.scene import Scene
-from ..pairs.rules import law
 from .convex import place, prefers_second
-from .gap import ordered_gap, touching
+from .gap import ordered_gap
 from .sides import closest_on_side
 
 
@@ -149,15 +146,6 @@ def common_face(
     low_q, high_q, _, size_q = support_range(Q, q, -nx, -ny, slack)
     low, high = max(low_p, -high_q), min(high_p, -low_q)
     return low, high, top, high - low > FACE_WIDTH * max(size_p, size_q)
-
-
-@uncounted
-def face_tolerance(A: Scene, a: int, b: int) -> float:
-    """The tolerance (length) of `face` in an impact."""
-    tolerance = FACE_ROUND_OFF * touching(A, a, b)
-    if law(A.SHAPE, A.RULE, a, b)[0] < 1.0:
-        tolerance = max(tolerance, TOUCH * min(A.SHAPE[a].extent, A.SHAPE[b].extent))
-    return tolerance
 
 
 @uncounted

@@ -16,13 +16,14 @@ from ..compiled import kernel, uncounted
 from ..compiled.records import Rows, empty
 from ..contacts.single import move_to, touches
 from ..geometry.flight import pose, rate
-from ..geometry.manifold import face, face_tolerance
+from ..geometry.manifold import face
 from ..geometry.sides import note_side
 from ..islands.accounting import end_interval
 from ..islands.membership import carrier, in_large_island, remembered
 from ..model.contacts import ROW, Row
 from ..model.parameters.impulses import BLOCK_BODIES
 from ..model.scene import Scene
+from ..pairs.lists import face_tolerance
 from ..pairs.rules import barred, law
 from ..rows.build import normal_rate, place_row
 from ..rows.inplace import sort

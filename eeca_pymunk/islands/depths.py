@@ -22,10 +22,34 @@ from ..model.scene import Scene
 
 
 @uncounted
+def room_of(small: float, thick: float) -> float:
+    """Depth (length) by which a contact of shapes, the smaller of which is `small`, may close in one interval; `thick`
+    are half the widths of both."""
+    return max(min(INTERVAL_DEPTH * small, INTERVAL_DEPTH_WIDTH * thick), INTERVAL_DEPTH_LEAST * small)
+
+
+@uncounted
+def driven(A: Scene, isle: Island, ROWS: Rows[Row], KEY: IntArray, n: int, m: int) -> bool:
+    """Whether a body that impulses do not move, and that moves, touches an island some of whose m contacts are deeper
+    than one interval lets them be: it then does the work of lifting them, as their losses do not suffice."""
+    moves = False
+    for q in range(n, len(isle.WHO)):
+        if A.BODY[isle.WHO[q]].inv_mass == 0.0:
+            moves = moves or isle.V[q, 0] != 0.0 or isle.V[q, 1] != 0.0 or isle.V[q, 2] != 0.0
+    shapes = A.SHAPE.shape[0]
+    for z in range(m if moves else 0):
+        a, b = (KEY[z] >> 1) // shapes, (KEY[z] >> 1) % shapes
+        small = min(A.SHAPE[a].extent, A.SHAPE[b].extent)
+        if ROWS[z].gap < -room_of(small, half_width(A, a) + half_width(A, b)):
+            return True
+    return False
+
+
+@uncounted
 def too_deep(gap: float, closing: float, small: float, thick: float) -> float:
     """How many times too long an interval is in which a contact closes by more than it has room for; 0 if it is not.
     `thick` are half the widths of both shapes."""
-    deep = max(min(INTERVAL_DEPTH * small, INTERVAL_DEPTH_WIDTH * thick), INTERVAL_DEPTH_LEAST * small)
+    deep = room_of(small, thick)
     room = max(gap, 0.0) + deep
     if closing > room + 0.5 * deep:
         return max(closing / room, 1.01 * INTERVAL_RETRY)

@@ -31,7 +31,7 @@ from .candidates import (
     sweeps_of_large,
     way_of,
 )
-from .depths import sunk
+from .depths import driven, sunk
 from .local import lay_out_island as lay_out_island
 from .local import open_contacts as open_contacts
 from .membership import lossy, members
@@ -135,6 +135,7 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
             return AGAIN, h / far
         if m > 0 and OUT[0].stood == 0 and not before_end(A, t + h):
             # An interval that ends within the step is followed by another one, which corrects what is left.
+            raised = max(raised, 1 if driven(A, isle, ROWS, KEY, n, m) else 0)
             free = math.inf if raised > 0 else 0.0
             budget = budget_of(ROWS, m, OUT[0].restitution + OUT[0].friction, owed, free)
             problem = Problem(P, Q, ROWS, isle.IM, isle.II, isle.POSE, n, m)

@@ -10,7 +10,11 @@ from __future__ import annotations
 import math
 
 from ..compiled import uncounted
+from ..geometry.gap import touching
+from ..model.parameters.impulses import FACE_ROUND_OFF
+from ..model.parameters.intervals import TOUCH
 from ..model.scene import Scene
+from .rules import law
 
 
 @uncounted
@@ -115,3 +119,12 @@ def mark_pair(A: Scene, a: int, b: int, value: int) -> None:
         q = place_in(A, s, o) if s < A.LIST.shape[0] else -1
         if q >= 0:
             A.FLAG[q] = value
+
+
+@uncounted
+def face_tolerance(A: Scene, a: int, b: int) -> float:
+    """The tolerance (length) of `face` in an impact."""
+    tolerance = FACE_ROUND_OFF * touching(A, a, b)
+    if law(A.SHAPE, A.RULE, a, b)[0] < 1.0:
+        tolerance = max(tolerance, TOUCH * min(A.SHAPE[a].extent, A.SHAPE[b].extent))
+    return tolerance

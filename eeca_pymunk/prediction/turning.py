@@ -28,11 +28,12 @@ from ..compiled.records import Rows
 from ..geometry.convex import place
 from ..geometry.flight import pose, rate
 from ..geometry.gap import touching
-from ..geometry.manifold import common_face, face_tolerance
+from ..geometry.manifold import common_face
 from ..geometry.sides import closest_on_side, key_of, known_side, near_side, note_side, remembers, side_row, smaller
 from ..model.bodies import Body
 from ..model.parameters.events import ADVANCES, APPROACH_ROUND_OFF, GRAZED, RESOLUTION
 from ..model.scene import Scene
+from ..pairs.lists import face_tolerance
 from .bounds import carried_circles_meet, circles_meet
 from .roots import flat
 
