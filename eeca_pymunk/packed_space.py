@@ -43,10 +43,10 @@ class PackedSpace(Stepper):
         self.ignore = check_ignored(ignore)
         self._warned = False
         self._world: World | None = None
-        self._told: JointRows | None = None  # what `constraint.impulse` reads
+        self._told: JointRows | None = None  # source of `constraint.impulse`
         self._sync: Sync
-        self._sleep: Sleep | None = None  # None where nobody can
-        self._idle_book: FloatArray | None = None  # of a step in which everyone sleeps
+        self._sleep: Sleep | None = None  # None if bodies cannot sleep
+        self._idle_book: FloatArray | None = None  # book of a step in which all dynamic bodies sleep
         self.reads = 0
         self._look()
 

@@ -139,7 +139,7 @@ class RunningStepper(PackedStepper):
     def patch(self, world: World) -> bool:
         loop = self.event_loop
         if loop is None or not hasattr(loop, "fresh"):
-            # From the reading on that is due: to keep what patches begin from takes time.
+            # Memory from which patches start is kept only after the first edit in place, since keeping it costs time.
             self._patches = True
             return False
         lossy, sides = bool(loop.scene.COUNT.lossy), sides_of(world, loop)

@@ -120,7 +120,7 @@ class Sides:
 
 
 def sides_of(world: World, loop: EventLoop) -> Sides | None:
-    """What a stepper remembers of sides, None if nothing."""
+    """The remembered sides, None if there are none."""
     SIDE = loop.scene.SIDE
     return Sides(world, loop) if len(SIDE) and (SIDE["key"] > 0).any() else None
 

@@ -73,7 +73,7 @@ ENTRIES = {
     "impacts.run:run": "{Scene} {Joints} {RunArrays} f8[3] i8[2] f8[2] f8[1] f8[1]",
     "joints.plan:make_plan": "Body[1] Joint[1] Component[1] ComponentBody[1] Coupling[1]",
     "joints.world:step_all": "{Joints} Body[1] f8",
-    # Of tests alone, which step islands by themselves: some hundred times slower as plain Python.
+    # Only tests call these, which solve single islands: some hundred times slower as plain Python.
     "contacts.interval:step_island": "{Scene} {Island} {Contacts} i8 f8 i8 f8 f8 f8 f8",
     "contacts.memory:forget": "i8[1] Force[1] Count i8[1] Force[1] f8",
 }

@@ -35,8 +35,8 @@ def _said(dtype: np.dtype[Any], dimensions: int) -> str:
 
 
 def table_of(arrays: Any, like: Table | None = None) -> Table:
-    """What kernels take for a named tuple of arrays. To be made anew when one of them is replaced by another; the
-    arrays have to be kept as long as the table is used.
+    """The table of a named tuple of arrays. If one of them is replaced, a new table is needed; the arrays must exist as
+    long as the table is used.
 
     Args:
         like: another table of the same kind, None for none: of the very arrays that both have, words are copied.

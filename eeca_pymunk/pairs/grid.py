@@ -181,7 +181,7 @@ def make_lists(A: Scene, t: float) -> bool:
 
 @uncounted
 def build(table: Table, t: float) -> bool:
-    """Make all lists at instant t. False if the pool is full: give a larger one, and call again."""
+    """Build all lists at instant t. False if the pool is full: call again with a larger one."""
     return make_lists(scene_of(table), t)
 
 

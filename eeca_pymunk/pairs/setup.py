@@ -33,7 +33,7 @@ def margins(bound: FloatArray, centre: FloatArray, walls: int) -> FloatArray:
     few = len(bound) <= ALL_PAIRS
     factor = _MARGINS[1] if few else min(max(math.sqrt(0.25 * NEIGHBOURS / phi) - 1.0, _MARGINS[0]), _MARGINS[1])
     median = _median(bound)
-    # Points have a margin too; where all are points, any length will do.
+    # Points have a margin too; if all shapes are points, any length will do.
     least = 1e-3 * (median or float(bound.max()) or 1.0)
     result: FloatArray = factor * np.maximum(np.minimum(2.0 * bound, median), least)
     return result
@@ -58,7 +58,7 @@ def boxes(scene: Scene, moving: int) -> FloatArray:
 
 
 def near_lists(scene: Scene, moving: int) -> Scene:
-    """The scene with lists of the shapes [0, moving), where BODY has them now."""
+    """The scene with lists of the shapes [0, moving), for the present poses in BODY."""
     return with_lists(scene, moving)[0]
 
 
@@ -85,7 +85,7 @@ def with_lists(scene: Scene, moving: int) -> tuple[Scene, Table]:
         if not build(table, 0.0):
             scene = with_more_room(scene, 0.0)
             table = table_of(scene, table)
-        # What is crowded in places needs less, unless that is next to nothing, or everybody knows all.
+        # Uneven scenes get smaller margins, down to the least one, unless all pairs are listed anyway.
         if moving == 0 or math.isinf(MARK["margin"][0]) or scene.LIST["number"].mean() <= MOST_NEIGHBOURS:
             break
         if _median(MARK["margin"]) <= _MARGINS[0] * _median(bound):

@@ -73,7 +73,7 @@ def first_close(best: float, near: float, closing: bool, g: float, w: float, of:
     near = min(near, g)
     if g <= of.tolerance:
         closing = closing or w < -of.still
-    # The bound's one root is before `best` where the bound is negative there.
+    # The root is needed only if the bound is negative at `best`.
     if best == math.inf or g + (w - 0.5 * of.bend * best) * best < 0.0:
         best = min(best, flat(g, w, -of.bend))
     return best, near, closing
@@ -287,7 +287,7 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float) -> tuple[floa
     while True:
         looks += 1
         A.COUNT.work += 1
-        if s > mark + left / RESOLUTION:  # what turns fast is followed for many turns
+        if s > mark + left / RESOLUTION:  # progress resets the budget: fast rotation is followed for many turns
             looks, mark = 0, s
         one, two = motion(BODY, i, start + s), motion(BODY, j, start + s)
         p = place(A, a, one.x, one.y, one.angle, P)

@@ -81,7 +81,7 @@ class Bodies:
         self.space, self.fixed = space, fixed
         self._buffer = batch.Buffer()
         self._out = batch.Buffer()
-        ground = space.static_body  # in the space from the first time on that it is asked for
+        ground = space.static_body  # exists in the space from its first access on
         self.ids, self.start = self._read()
         ids = self.ids.tolist()
         known = {} if before is None else before._known
@@ -211,7 +211,7 @@ class Bodies:
         `unchanged`: all are, because no callback has run since the state was gathered.
         """
         if self.asleep.any() or (not unchanged and not np.array_equal(self._read()[0], self.ids)):
-            # The batch writes by place: it would give rows to the wrong bodies, and it wakes all.
+            # The batch call writes in pymunk's order: rows would go to the wrong bodies; and it wakes all.
             for body, still, row in zip(self.items, self.static.tolist(), state.tolist(), strict=True):
                 if body.space is self.space and not still:
                     body.position, body.angle = (row[0], row[1]), row[2]

@@ -1,4 +1,5 @@
-"""Checks: what a space must be for the array steppers, and the refusal of what they do not model."""
+"""Checks: conditions that a space must meet for steppers that work on arrays (`PackedStepper`), and errors
+otherwise."""
 
 from __future__ import annotations
 
@@ -19,12 +20,12 @@ def shape_body(shape: pymunk.Shape) -> pymunk.Body:
 
 
 def shape_radius(shape: Any) -> float:
-    """The radius that every kind of pymunk shape has."""
+    """The radius of a shape; all kinds of pymunk shapes have one."""
     return float(shape.radius)
 
 
 def settings(space: pymunk.Space) -> tuple[tuple[float, float], float]:
-    """Gravity and damping of a space; ValueError for what the array steppers do not model."""
+    """Gravity and damping of a space; ValueError for values that cannot be stepped."""
     (x, y), damping = space.gravity, space.damping
     if not 0.0 <= damping < math.inf:
         raise ValueError(f"space.damping = {damping}: set a finite value >= 0; 1 is none")
@@ -34,7 +35,7 @@ def settings(space: pymunk.Space) -> tuple[tuple[float, float], float]:
 
 
 def check_ignored(ignore: Sequence[str]) -> tuple[str, ...]:
-    """`ignore` as a tuple; ValueError for what cannot be ignored."""
+    """`ignore` as a tuple; ValueError for other names than "friction"."""
     names = (ignore,) if isinstance(ignore, str) else tuple(ignore)
     for name in names:
         if name != "friction":
@@ -43,7 +44,7 @@ def check_ignored(ignore: Sequence[str]) -> tuple[str, ...]:
 
 
 def check_shape(shape: pymunk.Shape) -> None:
-    """Refuse numbers that no shape can have, and a shape without a body."""
+    """ValueError for invalid values of a shape, or a shape without a body; UnsupportedFeature for unknown kinds."""
     shape_body(shape)
     surface = shape.surface_velocity
     if not (math.isfinite(surface.x) and math.isfinite(surface.y)):
@@ -59,7 +60,7 @@ def check_shape(shape: pymunk.Shape) -> None:
 
 
 def rough_pair(shapes: Sequence[pymunk.Shape]) -> pymunk.Shape | None:
-    """A moving shape with friction that may touch one of another body with friction (pymunk multiplies the two)."""
+    """A moving shape with friction, if there is another body with friction (pymunk multiplies the two); else None."""
     rough = [s for s in shapes if s.friction > 0]
     for shape in rough:
         body = shape_body(shape)

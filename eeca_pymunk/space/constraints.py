@@ -179,14 +179,14 @@ def _anchor(anchor: tuple[float, float], body: pymunk.Body) -> tuple[float, floa
 def _pin(
     length: float, force: tuple[float, float, float], a: tuple[float, float], b: tuple[float, float]
 ) -> Given:  # fmt: skip
-    """A pin, or a pivot if it has no length: there a pin has no direction."""
+    """A pin, or a pivot if its length is 0, for which a pin has no direction."""
     scale = max(map(abs, (*a, *b)))
     kind = PIVOT if length <= _SMALL * max(scale, 1e-300) or length == 0.0 else PIN
     return Given(kind, force, a, b, length)
 
 
 def _groove(c: pymunk.GrooveJoint, force: tuple[float, float, float], b: tuple[float, float]) -> Given:
-    """A groove, or a pivot if its ends are one point: there a groove has no direction."""
+    """A groove, or a pivot if its ends are equal, for which a groove has no direction."""
     first, last = c.groove_a - c.a.center_of_gravity, c.groove_b - c.a.center_of_gravity
     if c.groove_a == c.groove_b:
         return Given(PIVOT, force, (first.x, first.y), b)

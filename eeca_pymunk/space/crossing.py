@@ -1,4 +1,4 @@
-"""Crossing: the state of a space's bodies as it crosses the edge, in one batch call each way and step."""
+"""Crossing: reading and writing the states of a space's bodies, in one batch call each way and step."""
 
 from __future__ import annotations
 
@@ -43,13 +43,13 @@ from .bodies import Bodies
 _F = batch.BodyFields
 _STATE = _F.BODY_ID | _F.POSITION | _F.ANGLE | _F.VELOCITY | _F.ANGULAR_VELOCITY | _F.FORCE | _F.TORQUE
 _FORCES = _F.FORCE | _F.TORQUE
-# Whether angles and spins are written is the bit TURNS of a step's answer.
+# Fields by the bit TURNS of a step's status: without or with angles and spins.
 _WHOLE = {0: _F.POSITION | _F.VELOCITY, TURNS: _F.POSITION | _F.ANGLE | _F.VELOCITY | _F.ANGULAR_VELOCITY}
 _SPEEDS = {0: _F.VELOCITY, TURNS: _F.VELOCITY | _F.ANGULAR_VELOCITY}
 
 
 class _Writers(dict[int, Callable[[], None]]):
-    """What writes a table of ENDS that begins at `start` N, by the bit TURNS; made when it is asked for."""
+    """Functions that write a table of ENDS that begins at `start` N, by the bit TURNS; made at the first use."""
 
     def __init__(self, of: Crossing, fields: dict[int, batch.BodyFields], start: int) -> None:
         self._of, self._fields, self._start = weakref.proxy(of), fields, start
@@ -61,11 +61,11 @@ class _Writers(dict[int, Callable[[], None]]):
 
 
 class Crossing:
-    """What is read of the bodies of a space, and what is written to them.
+    """The states of the bodies of a space, read and written.
 
     Attributes:
         bodies: in pymunk's order, N with the static ones.
-        BODY: (n,).  STATES, WALK, EXTRA, ENDS: what crosses the edge, see `layout.py`.
+        BODY: (n,).  STATES, WALK, EXTRA, ENDS: the arrays exchanged with pymunk, see `layout.py`.
         gather: reads the state of all bodies into STATES[NOW].
         eccentric: whether the centre of mass of any body is not its origin.
     """
@@ -74,7 +74,8 @@ class Crossing:
         """Room for `bodies` that have these rows (N,) of BODY and this (N, 9) state."""
         self.space, self.bodies, self.BODY = space, bodies, BODY
         N = len(bodies)
-        # One body more than there are: pymunk must never find this memory too small.
+        # Room for one body more: pymunk replaces memory that is too small by its own. After additions the ids differ at
+        # once, and new memory is made.
         floats, ids = np.zeros(max(2 * N, N + 1) * STATE_COLUMNS), np.zeros(max(4 * N, N + 1), np.int64)
         self.STATES: FloatArray = floats[: 2 * N * STATE_COLUMNS].reshape(2, N, STATE_COLUMNS)
         self.WALK: IntArray = ids[: 4 * N].reshape(4, N)
@@ -88,21 +89,21 @@ class Crossing:
         self.gather = private.reader(space, _STATE, floats, ids)
         self._scatter = _Writers(self, _WHOLE, END)
         self._scatter_still, self._scatter_speed = _Writers(self, _WHOLE, STILL), _Writers(self, _SPEEDS, SPEED)
-        # pymunk places a body whose centre of mass is elsewhere by the angle it has: the second time by the new one.
+        # pymunk places a body with another centre of mass by its present angle: a second time, by the new angle.
         self.eccentric = bool(bodies.center_of_gravity.any())
 
     @cached_property
     def reset_forces(self) -> Callable[[], None]:
-        """Writes the forces that the step leaves."""
+        """Function that writes the forces at the end of the step."""
         return self.writer(_FORCES, PULL)
 
     def writer(self, fields: batch.BodyFields, start: int) -> Callable[[], None]:
-        """What writes the fields from the table that begins at `start` N in ENDS."""
+        """Function that writes the fields from the table that begins at `start` N in ENDS."""
         return private.writer(self.space, fields, self.ENDS[start * len(self.bodies) :], self.bodies.reached)
 
     @cached_property
     def START(self) -> FloatArray:
-        """(N, 9) the state at the start of a step in which functions are called, as `find` keeps it."""
+        """(N, 9) the state at the start of a step that calls functions, copied by `find`."""
         return np.zeros((len(self.bodies), STATE_COLUMNS))
 
     @cached_property
@@ -112,7 +113,7 @@ class Crossing:
 
     @cached_property
     def CHANGES(self) -> FloatArray:
-        """(2, N, 9) what functions change within a step: before the bodies move, and after that."""
+        """(2, N, 9) changes by functions within a step: before the bodies move, and afterwards."""
         return np.zeros((2, *self.START.shape))
 
     @cached_property
@@ -121,17 +122,17 @@ class Crossing:
         return given, lost, altered.bind(self.STATES, self.WALK, self.BODY, self.ENDS, after, given, lost)
 
     def alter(self, stops: bool) -> tuple[int, float]:
-        """See `rehearsing.altered`: its answer, and the energy that is lost."""
+        """See `rehearsing.altered`; returns its status, and the energy that is lost."""
         _, lost, call = self._altered
         return call(int(stops)), float(lost[0])
 
     def give_again(self) -> None:
-        """Take what the step gave before `alter` as what the step before has given: bodies that differ from it have
-        been moved since."""
+        """Take the end of the step before `alter` as STATES[LEFT]: bodies that functions have changed since then count
+        as edited in the next step."""
         self.STATES[LEFT] = self._altered[0]
 
     def is_current(self) -> bool:
-        """Whether what `gather` read is of these very bodies, and no static one was moved."""
+        """Whether `gather` has read these bodies, and no static one was moved."""
         if not np.array_equal(self.WALK[FOUND], self.WALK[KNOWN]):
             return False
         still = self.bodies.static
@@ -139,16 +140,16 @@ class Crossing:
 
     @property
     def state(self) -> FloatArray:
-        """(N, 9) what `gather` read: position, angle, velocity, spin, force and torque of `bodies`."""
+        """(N, 9) position, angle, velocity, spin, force and torque of `bodies`, as `gather` has read them."""
         now: FloatArray = self.STATES[NOW]
         return now
 
     def push(self, change: FloatArray, dt: float) -> None:
-        """Let the bodies with velocity functions accelerate: velocities change by (k, 3) within dt."""
+        """Set accelerations of the bodies with velocity functions: velocities change by (k, 3) within dt."""
         self.EXTRA[self.bodies.velocity_hooks, PUSH_X : PUSH_TWIST + 1] = change / dt
 
     def whole(self) -> int:
-        """Lay out all of the end of the step, whatever pymunk has now; its bits."""
+        """Write the end of the step to ENDS, with forces and angles in any case; returns its status bits."""
         return self._lay(FORCES | TURNS)
 
     @cached_property
@@ -167,7 +168,7 @@ class Crossing:
         return state
 
     def recall(self, before: Crossing) -> None:
-        """Take over what the step before has given to bodies that are what they were then."""
+        """Copy STATES[LEFT] of bodies whose mass, moment and centre of gravity have not changed."""
         new, old = self.bodies, before.bodies
         for i, body in enumerate(new.items):
             k = old.row.get(body, -1)
@@ -177,16 +178,16 @@ class Crossing:
                 self.STATES[LEFT, i] = before.STATES[LEFT, k]
 
     def turning(self, status: int) -> int:
-        """Lay out the end of the step anew with angles and spins if they were left out; its bits."""
+        """Write the end of the step to ENDS with angles and spins, if they were left out; returns its status bits."""
         return status if status & TURNS else self._lay(status | TURNS)
 
     @cached_property
     def left_as_read(self) -> Callable[[], None]:
-        """Takes what was just gathered as what the step gave, see `rehearsing.as_read`."""
+        """Function that accepts pymunk's rounding of positions as unedited, see `rehearsing.as_read`."""
         return as_read.bind(self.STATES, self.EXTRA)
 
     def void_forecasts(self) -> None:
-        """Let the next step look at all bodies as if they had been moved, though they are where it left them."""
+        """Void all predictions: in the next step all bodies count as placed by the program, and may overlap others."""
         np.minimum(self._due, ANEW, out=self._due)
 
     @cached_property

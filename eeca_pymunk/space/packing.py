@@ -21,18 +21,18 @@ from .bodies import Bodies
 from .checks import check_shape, shape_body, shape_radius
 from .shapes import local_outline
 
-_WORD = (1 << 64) - 1  # of a filter's numbers as 64 bits: equality and `&` ask for no more
+_WORD = (1 << 64) - 1  # the lowest 64 bits of a filter's numbers, which equality and `&` need
 _GIVEN = struct.Struct("2q3Q5dq")
 
 
 class Record(NamedTuple):
-    """What a shape says of itself, read once.
+    """The values of a shape, read once.
 
     Attributes:
-        body: its own; the static one of the space if its own is not in the space, as `outside` says.
+        body: its body, or the static body of the space if its own is not in the space (`outside`).
         vertices: in coordinates of `body`, counter-clockwise.
         numbers: rounding, elasticity, friction, surface velocity (2).  filter: group, categories, mask.
-        given, points: the memory of a `GivenShape` of all that, and of its vertices.
+        given, points: the bytes of its `GivenShape`, and of its vertices.
     """
 
     body: pymunk.Body
@@ -45,7 +45,7 @@ class Record(NamedTuple):
 
 
 def read(shape: pymunk.Shape, ground: pymunk.Body | None = None) -> Record:
-    """The record of a shape; one that stands where it is as a shape of `ground`, if given.
+    """The record of a shape; if `ground` is given, at its present place as a shape of `ground`.
 
     Raises:
         ValueError, UnsupportedFeature: see `check_shape`.
@@ -76,7 +76,7 @@ class Packed:
         shapes: the pymunk shapes, by row of SHAPE.  owner: (k,) places of their bodies in pymunk's order.
         row: (N,) row of BODY of each body in pymunk's order, -1 for static ones.
         BODY, SHAPE, LINK, VERTEX: see `..model`; poses and velocities are still 0.
-        disks, dynamic: rows of BODY below which there are lone disks, and dynamic bodies.
+        disks, dynamic: numbers of the first rows of BODY that are single disks, and dynamic bodies.
     """
 
     def __init__(self, bodies: Bodies, state: FloatArray, records: Mapping[pymunk.Shape, Record | None]) -> None:
@@ -109,8 +109,8 @@ class Packed:
     def lay_again(
         self, bodies: Bodies, state: FloatArray, records: Mapping[pymunk.Shape, Record | None], moved: bool
     ) -> bool:  # fmt: skip
-        """Lay the rows anew, in place, where only numbers, filters and masses, and poses of static bodies if `moved`,
-        are others; False where the rows would be others, and are then in no order."""
+        """Write the rows again, in place, after changes of numbers, filters, masses, and, if `moved`, poses of static
+        bodies; False, with invalid rows, if the rows would be others."""
         known = [record for record in records.values() if record is not None]
         vertices = self.LINK["vertices"].copy() if moved else None
         given, owner, BODY = self._views

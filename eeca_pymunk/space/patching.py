@@ -1,4 +1,4 @@
-"""Patching: edits in place put into the rows of a world whose bodies and shapes are otherwise what they were.
+"""Patching: after edits in place the rows of a world are updated without reading the whole space.
 
 Rows are afterwards those that a new reading of the whole space would give, bit by bit: only what was edited is asked
 again, and all rows are laid anew in place. That does for numbers and filters of shapes, masses and moments of bodies,

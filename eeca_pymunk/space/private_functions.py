@@ -42,8 +42,8 @@ def accelerations(
 
 @contextmanager
 def without(velocity: Sequence[pymunk.Body], position: Sequence[pymunk.Body]) -> Iterator[None]:
-    """Within, pymunk's steps call neither the velocity functions of bodies nor the position functions of others, which
-    all have one, but do what they do without."""
+    """Within this block pymunk's steps use its own functions in the place of these velocity functions and position
+    functions of bodies."""
     set_velocity, set_position = lib.cpBodySetVelocityUpdateFunc, lib.cpBodySetPositionUpdateFunc
     try:
         for body in velocity:
@@ -52,7 +52,7 @@ def without(velocity: Sequence[pymunk.Body], position: Sequence[pymunk.Body]) ->
             set_position(body._body, _MOVE)
         yield
     finally:
-        # Functions that were called meanwhile may have taken theirs away.
+        # Functions that were called meanwhile may have removed them.
         own, moved = lib.ext_cpBodyVelocityFunc, lib.ext_cpBodyPositionFunc
         for body in velocity:
             if body._velocity_func is not None:

@@ -36,7 +36,7 @@ from .noticed import leader
 if TYPE_CHECKING:
     from .world import World
 
-AT_REST = 1e-6
+AT_REST = 1e-6  # tolerance above; `..model.bodies.AT_REST` is a state
 _AGAIN = 16  # steps after which islands that could not fall asleep are looked at again
 _LESS = 1e-9  # of lengths, by which bodies are looked for farther away
 _SHARE, _PATIENCE = 8, 120  # islands fall asleep that are this part of who is awake, or after so many steps

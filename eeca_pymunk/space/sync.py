@@ -56,7 +56,7 @@ def rest_step(
         private_rest.rest(space, dt, asleep)
         return
     push, calling = joints.items if forget else joints.pushing(), joints.calling
-    if awake is not None:  # pymunk has put their joints away, and any change of one would wake its bodies
+    if awake is not None:  # a change of a joint would wake its bodies
         push, calling = awake(push), awake(calling)
     if not (calling or joints.own or joints.partners.outside):
         held = weaken(push)
@@ -156,7 +156,8 @@ class Sync:
         return self._timestamp() == self.stamp
 
     def rest(self, dt: float, joints: JointRows | None = None) -> None:
-        """A rest step; all bodies must have velocity 0, and may have another of round-off if there are joints."""
+        """Take a rest step; all bodies must have velocity 0, and may get velocities of round-off if there are
+        joints."""
         native = self._new or self._timestamp() != self._renewed
         self._new = False
         if native:

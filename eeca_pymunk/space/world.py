@@ -1,4 +1,4 @@
-"""World: a pymunk space as packed arrays, read once; its moving state crosses in one batch call each way and step."""
+"""World: a pymunk space as packed arrays, read once; states are read and written in one batch call each per step."""
 
 from __future__ import annotations
 
@@ -29,34 +29,34 @@ Records: TypeAlias = dict[pymunk.Shape, Record | None]
 
 
 class World(Crossing):
-    """The bodies and solid shapes of one space; ValueError or UnsupportedFeature for what cannot be stepped.
+    """The bodies and solid shapes of one space; ValueError or UnsupportedFeature if it cannot be stepped.
 
-    Masses, shapes and functions of bodies are read once. `current()` tells, in half a microsecond, whether settings and
-    contents of the space are still those, and whether shapes and bodies were edited in place (`noticed.py`); moved
-    static bodies and exchanged bodies show in what `gather` reads, which `transfer.take` tells.
+    Masses, shapes and functions of bodies are read once. `current()` returns, within half a microsecond, whether
+    settings and contents of the space have not changed, and no shape or body was edited in place (`noticed.py`). Moved
+    static bodies and exchanged bodies are found by `transfer.take` in the states that `gather` reads.
 
     Args:
-        space: any pymunk space.  ignore: what to step on without, see `check_ignored`.
+        space: any pymunk space.  ignore: features to leave out, see `check_ignored`.
         past: the world of the same space before. Bodies and shapes that have not changed since are not read again, and
-            what joints remember of earlier steps is kept.
+            results of earlier steps for joints are kept.
 
     Attributes:
-        records: what the shapes of the space say of themselves, None for sensors.
+        records: the values of the shapes of the space, None for sensors.
         bodies: in pymunk's order, N with the static ones.  shapes: by row of SHAPE.
-        owner: (k,) place in `bodies.items` of the body of every shape.
-        BODY, SHAPE, LINK, VERTEX: see `..model`.  disks, dynamic: rows of BODY below which there are lone disks, and
-            dynamic bodies; the rows from there to the last one, the ground, are kinematic.
-        STATES, WALK, EXTRA, ENDS: what crosses the edge, see `layout.py`.
+        owner: (k,) index in `bodies.items` of the body of each shape.
+        BODY, SHAPE, LINK, VERTEX: see `..model`.  disks, dynamic: numbers of the first rows of BODY that are single
+            disks, and dynamic bodies; then come kinematic bodies, and last the ground.
+        STATES, WALK, EXTRA, ENDS: the arrays exchanged with pymunk, see `layout.py`.
         gravity: length/time².  damping: pymunk's, 1 is none.
-        ignores: whether there is friction that is ignored.
-        collisions: whether the space has collision handlers.  hooked: whether it or its bodies have functions, or
-            velocities are gone after each step.  plain: whether there is nothing of that, and no joints.
-        rules: what collision handlers decided about pairs of rows of SHAPE for this step.
-        smooth: whether friction is left out, that of handlers too.
+        ignores: whether friction of this space is left out.
+        collisions: whether the space has collision handlers.  hooked: whether a step calls functions of the program, or
+            damping is 0.  plain: neither hooked nor with joints.
+        rules: decisions of collision handlers about pairs of rows of SHAPE in this step.
+        smooth: whether friction, also that of handlers, has to be left out.
         joints: the constraints of the space, None if it has none.  PARTNER: bodies of joints that have no row of BODY.
         read_at: `noticed.clock` when shapes and bodies were read.
-        patches: how often `patch` has put edits into the rows.  packed: what lays these.
-        parted: pairs of rows of SHAPE that pass through one another because joints of their bodies say so.
+        patches: number of patches so far.  packed: the arrays of the rows, and the kernel that writes them.
+        parted: pairs of rows of SHAPE that do not collide because of joints of their bodies.
     """
 
     def __init__(
@@ -93,8 +93,8 @@ class World(Crossing):
         self.read_settings(anew=True)
 
     def read_settings(self, anew: bool = False) -> None:
-        """Read the settings of the space, checked, and its joints if these are others, or if `anew`; and watch both
-        from now on."""
+        """Read and check the settings of the space, and its joints if they have changed or if `anew`; record later
+        changes."""
         self.gravity, self.damping = settings(self.space)
         self._read_joints(anew)
         self._seen = [self._edits[0]]
@@ -121,12 +121,12 @@ class World(Crossing):
 
     @cached_property
     def rehearsal(self) -> Rehearsal:
-        """What steps with collision handlers need."""
+        """Arrays and wrappers for steps with collision handlers."""
         return Rehearsal(self)
 
     @cached_property
     def places(self) -> dict[pymunk.Shape, int]:
-        """The row of SHAPE of every solid shape."""
+        """The row of SHAPE of each solid shape."""
         return {shape: k for k, shape in enumerate(self.shapes)}
 
     @cached_property
@@ -135,8 +135,8 @@ class World(Crossing):
         return nothing(self.bodies.items)
 
     def stale(self) -> set[Any] | None:
-        """Shapes and bodies that may say else than they did: edited, in the space or outside, or weighed anew since
-        shapes have come or gone; None if nobody knows."""
+        """Shapes and bodies whose records may be out of date: edited, in the space or outside, or bodies of shapes that
+        were added or removed; None if unknown."""
         found = edited_since(self.read_at)
         if found is None or self.same_things():
             return found
@@ -146,7 +146,7 @@ class World(Crossing):
         return found
 
     def patch(self) -> tuple[bool, bool] | None:
-        """See `patching.patch`; the settings of the space are read as well, and what pymunk has now is in BODY."""
+        """See `patching.patch`; also reads the settings of the space, and the present states into BODY."""
         found = patch(self)
         if found is not None:
             self.patches += 1
@@ -162,7 +162,7 @@ class World(Crossing):
         return found
 
     def settle(self) -> None:
-        """Let joints tell of the step, and take no notice of how pymunk rounds what was written to it."""
+        """Publish results of the step for joints, and accept pymunk's rounding of positions as unedited."""
         joints = self.joints
         if joints is not None:
             joints.write()
@@ -176,8 +176,8 @@ class World(Crossing):
         return rows(Body, 0) if self.joints is None else self.joints.partners.PARTNER
 
     def part(self) -> bool:
-        """Find out whose shapes pass through one another because joints of their bodies say so; whether others than
-        before do."""
+        """Find the pairs of shapes that do not collide because of joints of their bodies; returns whether they have
+        changed."""
         joints = self.joints
         if joints is None or joints.parted is not None:
             return False
@@ -195,14 +195,15 @@ class World(Crossing):
         return True
 
     def told(self) -> dict[tuple[int, int], tuple[float, float, float, float]]:
-        """What handlers and joints say of pairs of rows of SHAPE, see `Rules.of_pairs`."""
+        """The law of pairs of rows of SHAPE by handlers and joints, see `Rules.of_pairs`."""
         return self.rules.of_pairs(self.SHAPE, self.parted)
 
     def _count(self) -> tuple[int, int, int, int]:
         return private.shapes_ever(self.space), len(self.space.shapes), len(self.space.bodies), self._edits[1]
 
     def same_things(self) -> bool:
-        """Whether shapes have neither come nor gone, and as many bodies are there; they may be others, and edited."""
+        """Whether no shapes were added or removed, and the number of bodies is the same; they may be others, or
+        edited."""
         return self._contents == self._count()
 
     def edited(self) -> bool:
@@ -210,7 +211,7 @@ class World(Crossing):
         return self._edits[0] - self._edits[1] != self._known
 
     def load(self) -> None:
-        """Put what pymunk has now into BODY."""
+        """Read the present states into BODY."""
         self.gather()
         self._take(0.0, 0.0, 1.0)
 
@@ -219,14 +220,14 @@ class World(Crossing):
         return take.bind(self.STATES, self.WALK, self.EXTRA, self.BODY)
 
     def left(self, dt: float) -> float:
-        """What half a step's damping leaves of velocities; all of them where nothing is left at the end (`alter`)."""
+        """Factor of half a step's damping; 1 for damping 0, whose velocities `alter` sets to 0 at the end."""
         return self.damping ** (0.5 * dt) if self.damping > 0.0 else 1.0
 
 
 def _records(space: pymunk.Space, bodies: Bodies, known: Records, stale: Collection[Any]) -> Records:
-    """What every shape says, None for sensors; those that are known, and not `stale`, are not asked again.
+    """The records of all shapes, None for sensors; `known` ones that are not `stale` are used again.
 
-    A shape whose body was taken out of the space is left as a wall where it is: pymunk too finds it there.
+    A shape whose body was removed from the space becomes a static shape at its present place, where pymunk detects it.
     """
     records: Records = {}
     for shape in space.shapes:

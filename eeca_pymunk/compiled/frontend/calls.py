@@ -77,10 +77,10 @@ def typed_call(kernel: Kernel[Any, Any], args: tuple[Any, ...]) -> tuple[Any, Ca
 
 @functools.cache
 def type_of(one: Compilable) -> Any:
-    """numba's type of a kernel, or of what else kernels name."""
+    """numba's type of a kernel, an opener or `fetch`."""
     if not isinstance(one, Kernel | Choice):
         return type_of_other(one)
-    # numba reads the number and names of arguments off a function.
+    # numba takes the number and names of arguments from a function.
     python = one.python if isinstance(one, Kernel) else one.kernels[0].python
     parameters = list(inspect.signature(python).parameters)
     names = ", ".join(parameters)
