@@ -37,6 +37,7 @@ from ..model.parameters.joints import (
     OUTER_PART,
     OUTER_PROGRESS,
     OUTER_SMALL,
+    PIVOTED,
     PRESS_LOCKS,
     PRESS_RESIDUAL,
     PRESS_RESIDUAL_REST,
@@ -55,8 +56,10 @@ from .advance import Interval, advance, advance_aligned, align, farthest_apart
 from .bounded import make_bounded, settle_bounded, with_bounded
 from .columns import fill_free, leave_out, make_columns, push_columns, weigh
 from .condensing import solve_condensed
+from .gentle import excessive, solve_gently
 from .groups import Groups, hangs
 from .newton import solve_columns
+from .pivoting import pivot_columns
 
 
 @uncounted
@@ -190,9 +193,12 @@ def press(
         worst = solve_condensed(groups, C, K, B, P, Q, ROWS, BOTH, FORESEEN, m, fine, most)
         if worst < 0.0:
             worst = solve_columns(C, B, P, Q, ROWS, BOTH, FORESEEN, m, fine, most)
+        near = 10.0 * max(fine, min(agree, AGREE * scale))
+        if worst > max(near, PIVOTED * scale):
+            worst = pivot_columns(C, B, P, Q, ROWS, BOTH, FORESEEN, m, fine, worst)
         for i in range(m):
             L[i, 0], L[i, 1] = BOTH[i, 0], BOTH[i, 1]
-        converged = worst <= 10.0 * max(fine, min(agree, AGREE * scale))
+        converged = worst <= near
         if farthest_apart(motion.V, FORESEEN, isle.EXTENT, n) <= 1e-3 * agree:
             # The motion is that of the impulses before: others may do as little by these answers, and yet do much.
             copy(L, USED)
@@ -207,6 +213,13 @@ def press(
             advance(A, J, interval, L, B, False, UNKNOWN)
         # What gives way is as stiff as its joints pull: round-off of its ways does not fall further.
         converged = best <= AGREE * scale and some_give(J, groups)
+    if excessive(interval, L, fast + pull * h):
+        solve_gently(A, J, interval, L, B, free)
+        converged, bent = False, np.inf if free else 0.0
+        if excessive(interval, L, fast + pull * h):
+            for k in range(L.shape[0]):
+                L[k, 0] = L[k, 1] = 0.0
+            advance(A, J, interval, L, B, False, UNKNOWN)
     if bent > ARM_ERROR:
         advance_aligned(A, J, interval, L, B, free)
     energy = 0.0
