@@ -56,7 +56,7 @@ from .advance import Interval, advance, advance_aligned, align, farthest_apart
 from .bounded import make_bounded, settle_bounded, with_bounded
 from .columns import fill_free, leave_out, make_columns, push_columns, weigh
 from .condensing import solve_condensed
-from .gentle import excessive, solve_gently
+from .gentle import excessive, fastest, solve_gently
 from .groups import Groups, hangs
 from .newton import solve_columns
 from .pivoting import pivot_columns
@@ -141,6 +141,7 @@ def press(
     if J.PROGRESS.effort > J.PROGRESS.budget:
         rounds, most = OUTER_PART, min(most, PRESS_SWEEPS)
     J.PROGRESS.near = JOINTS_NEAR if m > COLUMN_CONTACTS and not elastic and not rests else 0.0
+    EFFECT = np.zeros((len(isle.IM), 3))
     FORESEEN, UNKNOWN = np.empty((len(isle.IM), 3)), np.empty((0, 3))
     converged, best, LEAST, USED, hopeless, agreed, slowly = False, np.inf, L.copy(), L.copy(), False, False, False
     stiff, bent, reached, B = False, 0.0, np.inf, make_bounded(J, groups)
@@ -194,7 +195,8 @@ def press(
         if worst < 0.0:
             worst = solve_columns(C, B, P, Q, ROWS, BOTH, FORESEEN, m, fine, most)
         near = 10.0 * max(fine, min(agree, AGREE * scale))
-        if worst > max(near, PIVOTED * scale):
+        # The answers of what is taut change with each step of it: another of several solutions would not agree.
+        if worst > max(near, PIVOTED * scale) and not stiff:
             worst = pivot_columns(C, B, P, Q, ROWS, BOTH, FORESEEN, m, fine, worst)
         for i in range(m):
             L[i, 0], L[i, 1] = BOTH[i, 0], BOTH[i, 1]
@@ -213,10 +215,11 @@ def press(
             advance(A, J, interval, L, B, False, UNKNOWN)
         # What gives way is as stiff as its joints pull: round-off of its ways does not fall further.
         converged = best <= AGREE * scale and some_give(J, groups)
-    if excessive(interval, L, fast + pull * h):
+    quick = fast + max(pull * h, h * fastest(EFFECT, isle.EXTENT, n))
+    if excessive(interval, L, quick):
         solve_gently(A, J, interval, L, B, free)
         converged, bent = False, np.inf if free else 0.0
-        if excessive(interval, L, fast + pull * h):
+        if excessive(interval, L, quick):
             for k in range(L.shape[0]):
                 L[k, 0] = L[k, 1] = 0.0
             advance(A, J, interval, L, B, False, UNKNOWN)
