@@ -133,13 +133,14 @@ def _figure(space: pymunk.Space, x: float, y: float, group: int) -> None:
         joined(torso, part(0.15 * side, -0.9, 0.2, 0.8, 1.2), 0.15 * side, -0.5, -0.8, 1.2)
 
 
-def rag_dolls() -> Program:
-    """Four figures of bodies on pivots with limits, which fall on the ground and on one another."""
+def rag_dolls(count: int = 4) -> Program:
+    """Figures of bodies on pivots with limits, which fall on the ground and in fours on one another."""
     space = pymunk.Space()
     space.gravity = (0.0, -10.0)
     ground = pymunk.Segment(space.static_body, (-20.0, 0.0), (20.0, 0.0), 0.2)
     ground.friction = 0.8
     space.add(ground)
-    for i in range(4):
-        _figure(space, 0.5 * i - 0.7, 2.5 + 2.2 * i, i + 1)
+    for i in range(count):
+        four, k = divmod(i, 4)
+        _figure(space, 0.5 * k - 0.7 + 3.0 * four, 2.5 + 2.2 * k, i + 1)
     return Program(space, 1 / 120, _nothing)

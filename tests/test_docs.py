@@ -147,6 +147,8 @@ def test_engines_that_are_missing_are_skipped_with_a_word(
     monkeypatch.setenv("EECA_ENGINES", str(tmp_path / "none"))
     problems = [one for one in engines.problems.problems() if one.name in ("slope", "pendulum")]
     monkeypatch.setattr(engines, "listed", lambda: [replace(one, duration=0.1) for one in problems])
+    scenes = [replace(one, steps=6) for one in engines.large.listed(0.02)]
+    monkeypatch.setattr(engines.large, "listed", lambda: scenes)
     assert main(["engines", "--out", str(tmp_path)]) == 0
     printed = capsys.readouterr().out
     for name in engines.OTHERS:
@@ -154,6 +156,10 @@ def test_engines_that_are_missing_are_skipped_with_a_word(
     row = re.search(r"^slope +EECA +0.01667 +(\S+) +(\S+)", printed, flags=re.MULTILINE)
     assert row is not None
     assert max(float(row[1]), float(row[2])) < 1e-12
+    # us/step, x pymunk, overlap, pivots apart, rise of the energy
+    row = re.search(r"^grid of joints +EECA +\S+ +\S+ +(\S+) +(\S+) +(\S+)", printed, flags=re.MULTILINE)
+    assert row is not None
+    assert max(float(x) for x in row.groups()) < 1e-12
 
 
 def test_lines_wrap_at_120_but_for_tables_code_and_pictures() -> None:

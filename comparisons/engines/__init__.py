@@ -1,10 +1,13 @@
-"""Other engines on five scenes: errors, energies, costs. Needs EECA_ENGINES, a folder with them (see its text).
+"""Other engines: errors, energies, costs of five scenes, and of large ones. Needs EECA_ENGINES, a folder with them.
 
 Engines are other people's and large, so that they are kept out of this package's environment:
 
-    python -m venv engines/venv && engines/venv/bin/pip install Box2D mujoco dartpy
+    python -m venv engines/venv && engines/venv/bin/pip install Box2D pyb2d3 mujoco dartpy
     cd engines && npm install planck matter-js
     EECA_ENGINES=engines python -m comparisons engines
+
+Box2D is the package of 2.3 (pybox2d), Box2D v3 that of `pyb2d3`; hundreds of bodies are compared with the latter
+(`large.py`).
 
 What is not there is skipped with a word. Each engine runs in a process of its own (`drivers/`), which gets a scene as
 JSON and gives states and the time of all steps. Settings are those the engines ship with, but for what a scene needs:
@@ -29,7 +32,7 @@ from tqdm import tqdm
 
 import eeca_pymunk as ep
 from comparisons import steps
-from comparisons.engines import problems
+from comparisons.engines import described, large, problems
 from comparisons.engines.problems import Problem
 from comparisons.output import Output, Row
 
@@ -44,7 +47,8 @@ OURS: dict[str, Callable[[pymunk.Space], steps.Step]] = {
     **steps.STEPS, "EECA": lambda space: ep.EECA(space, sync=False).step,
 }  # fmt: skip
 OTHERS = {
-    "Box2D": "box_2d.py", "MuJoCo": "mujoco_.py", "DART": "dart_.py", "planck": "planck_.js", "matter-js": "matter.js",
+    "Box2D": "box_2d.py", "Box2D v3": "box2d_3.py", "MuJoCo": "mujoco_.py", "DART": "dart_.py",
+    "planck": "planck_.js", "matter-js": "matter.js",
 }  # fmt: skip
 
 
@@ -78,7 +82,12 @@ def _once(name: str, problem: Problem, dt: float, steps: int, every: int) -> End
 
 def other(name: str, folder: Path, problem: Problem, dt: float, steps: int, every: int) -> Ended | str:
     """A run of another engine; or why there is none."""
-    job = {**problem.described(), "dt": dt, "steps": steps, "every": every, "enough": ENOUGH}
+    job = {"dt": dt, "steps": steps, "every": every, "enough": ENOUGH}
+    if name == "Box2D v3":
+        space, bodies = problem.space()
+        job |= {**described.space(space, bodies), "count": len(bodies)}
+    else:
+        job |= problem.described()
     answer = asked(name, folder, job)
     if isinstance(answer, str):
         return answer
@@ -162,5 +171,8 @@ def run(output: Output, full: bool) -> None:
     native = {(r["scene"], r["dt (s)"]): float(r["us/step"] or 0.0) for r in rows if r["engine"] == "pymunk"}
     rows = [{**r, "x pymunk": float(r["us/step"] or 0.0) / native[r["scene"], r["dt (s)"]]} for r in rows]
     output.table("Errors of places at the end, largest errors of the energy, time of a step", rows)
+    scenes = tqdm(large.listed(), desc="large scenes", unit="scene", disable=None)
+    rows = [one for scene in scenes for one in large.rows(lambda job: asked("Box2D v3", folder, job), scene)]
+    output.table("Hundreds of bodies: time of a step, and what each engine breaks", rows, "large")
     for name, why in skipped.items():
         print(f"skipped {name}: {why}")

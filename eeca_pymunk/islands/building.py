@@ -132,7 +132,7 @@ def build_islands(A: Scene) -> int:
     kept, wanted = 0, 0
     for c in range(COUNT.pushes):
         kept += 1 if A.PUSHED_BY[c].root >= 0 else 0
-    for i in range(n):
+    for i in range(n if queued > 0 else 0):
         if STATE[i].island < 0 or (A.MEMBER[i].rest == AT_REST and COUNT.carries == 0):
             continue  # what carries may have to be solved after all
         for s in range(STATE[i].first_shape, STATE[i].first_shape + STATE[i].shapes):

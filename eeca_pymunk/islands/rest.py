@@ -54,6 +54,17 @@ def slow_for_long(A: Scene, i: int) -> bool:
 
 
 @uncounted
+def motionless(A: Scene, MINE: IntArray, n: int) -> bool:
+    """Whether none of the n bodies MINE has any velocity, as when a stack is put down, nor was tested lately: static
+    forces are then looked for before motion is."""
+    for q in range(n):
+        body = A.BODY[MINE[q]]
+        if body.vx != 0.0 or body.vy != 0.0 or body.spin != 0.0 or A.RESTING[MINE[q]].calm_for < 0.0:
+            return False
+    return True
+
+
+@uncounted
 def postpone(A: Scene, MINE: IntArray, n: int) -> None:
     """The n bodies MINE are asked again much later, unless they stand in between."""
     for q in range(n):
@@ -70,11 +81,14 @@ def postponed(n: int) -> float:
 def rest_threshold(A: Scene, root: int, MINE: IntArray, n: int, among: int, t: float) -> float:
     """The speed relative to |a| dt at which the island of the n bodies MINE, on others, `among` in all, may come to a
     stand at instant t, 0 if it may not; it is asked again much later, unless it stood in between."""
-    if t > 0.0 or A.PAR.pulled == 0.0 or A.COUNT.together > 0 or A.RULE.shape[0] > 0 or A.MEMBER[root].hits > 0:
+    if t > 0.0 or A.PAR.pulled == 0.0 or A.COUNT.together > 0 or A.RULE.shape[0] > 0:
         return 0.0
-    for q in range(n):
-        if not slow_for_long(A, MINE[q]) or A.MEMBER[MINE[q]].busy > 0:
+    if not motionless(A, MINE, n):
+        if A.MEMBER[root].hits > 0:
             return 0.0
+        for q in range(n):
+            if not slow_for_long(A, MINE[q]) or A.MEMBER[MINE[q]].busy > 0:
+                return 0.0
     postpone(A, MINE, n)
     return candidate_speed(among)
 

@@ -188,7 +188,9 @@ def solve(W: Workspace, what: int, h: float, length: float, loops: bool, give: f
         keep(W)
     system = DUAL if component.rigid > (1 if what in (STEP, LINEAR_STEP) else 0) else component.system
     lasting = what == STEP and not (system != DUAL and bounded_rows(link, W.joints))
-    ready, fresh, since = False, False, 0
+    # A wide matrix is dear to factor: the parts of a step have one, while errors fall with it.
+    ready, fresh, since = lasting and component.factored > 0, False, 0
+    component.factored = 0
     boxes = boxed_rows(link, W.joints) if what in (STEP, LINEAR_STEP) else 0
     unscaled = what != STEP or hinge[0].scale[0] == 0.0  # rows have not been in this step yet
     for iteration in range(NEWTON_ITERATIONS + 1 if what == STEP else REDUNDANT_PASSES + 3 * W.joints):
@@ -203,6 +205,7 @@ def solve(W: Workspace, what: int, h: float, length: float, loops: bool, give: f
             floor = JOINT_ROUND_OFF_KEPT if lasting else NEWTON_FLOOR if stalls > 1 else JOINT_ROUND_OFF
             at_floor = iteration > since + 1 and worst > 0.5 * best and best < floor
             if iteration > 0 and (worst <= max(JOINT_TOLERANCE, progress.near) or at_floor):
+                component.factored = 1 if ready and system == CONDENSED and boxes == 0 else 0
                 settle(local, W.bodies, h)
                 return iteration
             # What began next to its solution has not far to fall.

@@ -168,6 +168,7 @@ def island_step(W: Workspace, h: float, order: int, length: float, ledger: Joint
     joint, hinge, link, local = W.J.JOINT, W.J.HINGE, W.link, W.J.LOCAL
     component, progress, part = W.J.COMPONENT[W.s], W.J.PROGRESS, W.J.PART
     clear(ledger)
+    component.factored = 0
     loops = component.loops > 0
     needs = read_joints(W, h, length, component.boxes)
     # Redundant rows begin without impulse, unless it is what holds bodies.

@@ -92,6 +92,7 @@ class Component(Record):
     rigid: int  # what a dual system is taken for: 2 everything, 1 what happens at an instant, 0 nothing
     taut: int  # 1 if its loops held by their pull in the last step (`..joints.taut`)
     boxes: int  # most rows of bounded impulses that may act, if few enough for `..joints.boxes`; else 0
+    factored: int  # 1 if the matrix holds factors of an earlier part of the present step
 
 
 # Linear systems: of bodies and rows; of bodies alone (`..joints.condensed`); of rows alone (`..joints.dual`).

@@ -189,17 +189,18 @@ def test_a_disk_spins_on_where_nothing_rubs(friction: float) -> None:
 
 
 @pytest.mark.parametrize("unit", UNITS)
-def test_a_tall_stack_that_is_put_down_at_once_stands(unit: float) -> None:
-    """No sweeps carry its weight to the floor; an equilibrium does."""
+def test_a_tall_stack_that_is_put_down_at_once_rests_from_the_first_step(unit: float) -> None:
+    """Nothing moves, so that static forces are looked for before motion is: no sweeps carry its weight to the floor."""
     count = 30 if SHORT else 100
     space, bodies, _ = stack(count, unit)
+    places = [(tuple(b.position), b.angle) for b in bodies]
     stepper = ep.EECA(space)
-    for _ in range(10):
+    for k in range(3):
         report = stepper.step(DT)
-    assert report.iterations == 0
-    assert max(abs(b.position.y - (i + 0.5) * unit) for i, b in enumerate(bodies)) < G * unit * DT * DT / 10
-    borne = sum(report.impulse[report.contacts.point[:, 1] < 0.5 * unit])
-    assert borne == pytest.approx(count * G * unit * DT, rel=1e-8)
+        assert k == 0 or report.iterations == 0
+        assert [(tuple(b.position), b.angle) for b in bodies] == places
+        borne = sum(report.impulse[report.contacts.point[:, 1] < 0.5 * unit])
+        assert borne == pytest.approx(count * G * unit * DT, rel=1e-8)
 
 
 def test_a_crowd_is_solved_a_few_times_a_step_however_often_it_is_hit() -> None:

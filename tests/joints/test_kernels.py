@@ -225,11 +225,13 @@ def test_bands_are_as_narrow_as_their_graphs() -> None:
     assert cloth.band <= 2 * 13
 
 
-def test_condensed_islands_step_as_full_ones() -> None:
+@pytest.mark.parametrize("order", [2, 4])
+def test_condensed_islands_step_as_full_ones(order: int) -> None:
+    # The five parts of a step of order 4 share the factors of a condensed system.
     ends = []
     for wide in (False, True):
         space = linkages.cloth(5)
-        stepper = JointedSpace(space)
+        stepper = JointedSpace(space, order)
         arrange(stepper, wide)
         for _ in range(20):
             stepper.step(1 / 120)
