@@ -190,8 +190,8 @@ MUTATIONS = (
              "islands/test_at_rest.py", "wakes"),
     Mutation("driver: sweeps alone", "contacts/relaxation.py", "if rounds == 0 or STATE.wait > 0.0:", "if True:",
              "contacts/test_piles.py", "stack_stands_still"),
-    Mutation("operator: tangents answer as normals do", "rows/dense.py", "C.T[w, k] if tangent else",
-             "C.N[w, k] if tangent else", "jointed/test_contacts.py", "dropped_chain"),
+    Mutation("operator: tangents answer as normals do", "rows/dense.py", "C.T[w, k] if kind[j] == 1 else",
+             "C.N[w, k] if kind[j] == 1 else", "jointed/test_contacts.py", "dropped_chain"),
 )  # fmt: skip
 
 

@@ -20,16 +20,18 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+import numpy as np
+
 from ..arrays import FloatArray
-from ..compiled import uncounted
+from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
 from ..geometry.convex import place
 from ..geometry.flight import pose, rate
 from ..geometry.gap import touching
-from ..geometry.manifold import common_face, face_tolerance
+from ..geometry.manifold import common_face, face, face_tolerance
 from ..geometry.sides import closest_on_side, key_of, known_side, near_side, note_side, remembers, side_row, smaller
 from ..model.bodies import Body
-from ..model.parameters.events import ADVANCES, APPROACH_ROUND_OFF, GRAZED, RESOLUTION
+from ..model.parameters.events import ADVANCES, APPROACH_ROUND_OFF, DEEP, GRAZED, RESOLUTION
 from ..model.scene import Scene
 from .bounds import carried_circles_meet, circles_meet
 from .roots import flat
@@ -169,6 +171,22 @@ def leaving(
     return u, nx * (BODY[i].ax - BODY[j].ax) + ny * (BODY[i].ay - BODY[j].ay)
 
 
+@kernel
+def parts(A: Scene, a: int, b: int, one: Motion, two: Motion, tolerance: float) -> bool:
+    """Whether bodies move apart at all points at which an impact of shapes a < b, which overlap, would push them: a
+    vertex beside these may close all the same."""
+    POSE, OUT = np.empty((2, 3)), np.empty((2, 5))
+    POSE[0, 0], POSE[0, 1], POSE[0, 2] = one.x, one.y, one.angle
+    POSE[1, 0], POSE[1, 1], POSE[1, 2] = two.x, two.y, two.angle
+    apart = True
+    for k in range(face(A, a, b, POSE, 0, 1, tolerance, OUT)):
+        nx, ny, x, y = OUT[k, 0], OUT[k, 1], OUT[k, 2], OUT[k, 3]
+        u = nx * (two.vx - two.spin * (y - two.y) - one.vx + one.spin * (y - one.y))
+        u += ny * (two.vy + two.spin * (x - two.x) - one.vy - one.spin * (x - one.x))
+        apart = apart and u >= 0.0
+    return apart
+
+
 @uncounted
 def begin_side(A: Scene, a: int, b: int, start: float, left: float, tolerance: float) -> None:
     """Note on which side of each other thin shapes a < b begin.
@@ -302,6 +320,8 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float) -> tuple[floa
             safe, near, met = max(safe, may), max(near, gap), met and closes
         if met and near < -tolerance:
             met = face_closes(A, a, b, nx, ny, px, py, d, one, two, still)
+        if met and d - extent < -DEEP * tolerance and parts(A, a, b, one, two, tolerance):
+            met = False
         if not met and near <= tolerance:
             back = pressed(BODY, i, j, start + s, nx, ny, px + SHAPE[a].rounding * nx, py + SHAPE[a].rounding * ny)
             if back <= min(left / RESOLUTION, graze):

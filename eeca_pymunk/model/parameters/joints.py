@@ -52,6 +52,10 @@ JOINT_APART = accuracy(1e-10, "of the component", "Joints farther apart than thi
 ELASTIC_PARTS = work(7, "number", "Parts of a step in which joints that do not hold may give way elastically.")
 HASTE = work(0.25, "of the budget", "Work of a step after which limits are located roughly.")
 COMPONENT_BUDGET = work(0.5, "of what is left", "Work that one step of a component may take.")
+LEAST_SOLUTIONS = work(40, "solutions", "Newton iterations that a step of a component may take whatever work is left.")
+LINEAR_APART = accuracy(
+    1e-4, "of the component", "How far one linear system may leave joints: what would be farther moves as one body."
+)
 NEARLY_HELD = accuracy(1e-08, "of the component", "Error of elastic joints up to which they count as held.")
 TAUT = heuristic(
     0.5,
@@ -128,3 +132,13 @@ CHORD = work(3, "steps of the components", "Steps for which the response is take
 CLOSES = round_off(
     1e-12, "of the fastest contact", "Speed with which contacts may close after an elastic impact on components."
 )
+EXCESSIVE_IMPULSE = round_off(1e4, "of the island's mass and speed", "Impulse beyond which a solution makes no sense.")
+EXCESSIVE_WORK = heuristic(
+    16.0, "of the island's mass and speed squared", "Work of moving supports beyond which a solution makes no sense."
+)
+GENTLE_SWEEPS = work(20, "sweeps", "Sweeps in the place of such a solution.")
+PIVOT_CONTACTS = work(24, "contacts", "Number up to which Lemke's pivots solve what sweeps do not.")
+PIVOTED = accuracy(1e-4, "of |a| h and the speed", "Residual of sweeps above which these are asked.")
+PIVOTS = work(6, "for each unknown", "Pivots, at most.")
+PIVOT_ROUND_OFF = round_off(1e-11, "of the largest velocity", "Entry of a tableau that is none.")
+PIVOT_WAKES = work(3, "number", "Problems in a row, each with the contacts that the solution before has closed.")
