@@ -18,7 +18,7 @@ from ..arrays import FlagArray, FloatArray
 from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
 from ..model.contacts import Problem, Row
-from ..model.parameters.impulses import DENSE_CONTACTS, LIFT_TOGETHER
+from ..model.parameters.impulses import DENSE_CONTACTS
 from ..model.parameters.intervals import CORRECTION_ROUND_OFF, CORRECTION_SHARE, OVERLAP_LEFT
 from ..rows.build import conserves, normal_rate
 from ..rows.lifting import lift
@@ -51,8 +51,7 @@ def lifting(
         return 0.0, deepest
     D = np.zeros((len(IM), 3))
     most = 10 + 1000 // m if m <= DENSE_CONTACTS else 8 + 200 // m
-    near = -LIFT_TOGETHER * deepest
-    lift(problem, GAPS, np.zeros(m), D, near, 0.1 * OVERLAP_LEFT * size, most, np.empty(m, np.int64))
+    lift(problem, GAPS, np.zeros(m), D, 0.1 * OVERLAP_LEFT * size, most)
     work = -against(ACC, IM, II, n, D)
     END, NEW = moved(POSE, VN, 0.5 * h), np.empty((n, 3))
     turn = x = y = square = 0.0

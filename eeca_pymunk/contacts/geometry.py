@@ -18,7 +18,7 @@ from ..compiled import kernel, uncounted
 from ..geometry.manifold import manifold
 from ..geometry.sides import note_side
 from ..model.islands import Contacts, Island
-from ..model.parameters.intervals import INTERVAL_WAY, MANIFOLD_ROUND_OFF, MIDPOINT_TURN
+from ..model.parameters.intervals import INTERVAL_WAY, MANIFOLD_ROUND_OFF, MIDPOINT_SAME
 from ..model.scene import Scene
 from ..pairs.rules import law
 from ..rows.build import place_row
@@ -35,15 +35,13 @@ def way_about(POSE: FloatArray, V: FloatArray, a: int, b: int, extent: float) ->
 
 @kernel
 def gather(
-    S: Scene, isle: Island, contacts: Contacts, MIDDLE: FloatArray, REACH: FloatArray, h: float, free: bool,
-    near: float,
+    S: Scene, isle: Island, contacts: Contacts, MIDDLE: FloatArray, REACH: FloatArray, h: float, free: bool
 ) -> int:  # fmt: skip
     """Rows A, B, ROWS, KEY of all contacts of an island's pairs no farther apart than the sum of their bodies' REACH.
 
     Args:
         MIDDLE: (k, 3) poses predicted for h/2.  REACH: (k,) length.
-        free: whether impulses move all k bodies.  near: half-way of a pair relative to the smaller shape, below which
-            now and the middle are the same.
+        free: whether impulses move all k bodies.
     Returns:
         How many rows, or -1 if there is no room for them.
     """
@@ -82,13 +80,10 @@ def gather(
         centre = MIDDLE
         # Normals turn as round shapes go round one another, and slowly about a large one.
         far = SHAPE[s].rounding + SHAPE[r].rounding if LINK[s].vertices == 1 and LINK[r].vertices == 1 else small
-        ahead = near * small < way and about <= 0.5 * INTERVAL_WAY * far
+        ahead = MIDPOINT_SAME * small < way and about <= 0.5 * INTERVAL_WAY * far
         if ahead:
             again = manifold(S, s, r, MIDDLE, a, b, reach + about, MANIFOLD_ROUND_OFF * small, THEN)
             ahead = again == count
-            for z in range(count):
-                if ahead and THEN[z, 0] * NOW[z, 0] + THEN[z, 1] * NOW[z, 1] < MIDPOINT_TURN:
-                    ahead = False
         if not ahead:
             x = 0.0
             y = 0.0

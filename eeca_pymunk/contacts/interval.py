@@ -18,9 +18,6 @@ from ..model.parameters.intervals import (
     INTERVAL_RESIDUAL,
     INTERVAL_RESIDUAL_MOVING,
     INTERVAL_RESIDUAL_SPEED,
-    LARGE_ISLAND,
-    MIDPOINT_SAME,
-    MIDPOINT_SAME_LARGE,
 )
 from ..model.scene import scene_of
 from ..rows.blocks import clear
@@ -128,7 +125,7 @@ def step_island(
     for i in range(k):
         REACH[i] = max(REACH[i], least)
     MIDDLE = moved(isle.POSE, V, 0.5 * h)
-    m = gather(S, isle, contacts, MIDDLE, REACH, h, k == n, MIDPOINT_SAME if n < LARGE_ISLAND else MIDPOINT_SAME_LARGE)
+    m = gather(S, isle, contacts, MIDDLE, REACH, h, k == n)
     if m < 0 or 2 * (S.COUNT.remembered + m) > len(S.KEYS):
         return -1
     FREE = moved(V, ACC, h)

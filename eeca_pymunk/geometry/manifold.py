@@ -13,7 +13,8 @@ import math
 from ..arrays import FloatArray
 from ..compiled import uncounted
 from ..model.parameters.detection import FACE_WIDTH
-from ..model.parameters.impulses import FACE_ROUND_OFF, ROCKING
+from ..model.parameters.impulses import FACE_ROUND_OFF
+from ..model.parameters.intervals import TOUCH
 from ..model.scene import Scene
 from ..pairs.rules import law
 from .convex import place, prefers_second
@@ -155,7 +156,7 @@ def face_tolerance(A: Scene, a: int, b: int) -> float:
     """The tolerance (length) of `face` in an impact."""
     tolerance = FACE_ROUND_OFF * touching(A, a, b)
     if law(A.SHAPE, A.RULE, a, b)[0] < 1.0:
-        tolerance = max(tolerance, ROCKING * min(A.SHAPE[a].extent, A.SHAPE[b].extent))
+        tolerance = max(tolerance, TOUCH * min(A.SHAPE[a].extent, A.SHAPE[b].extent))
     return tolerance
 
 

@@ -12,7 +12,7 @@ from ..islands.accounting import flag_pairs
 from ..islands.at_rest import note_motion, stays_at_rest
 from ..layout import ANEW
 from ..model.bodies import AT_REST
-from ..model.parameters.intervals import BUSY_STEPS
+from ..model.parameters.rest import REST_RETRY
 from ..model.scene import Scene
 
 
@@ -40,7 +40,7 @@ def begin(A: Scene, WALK: IntArray) -> None:
     PAR.stamp += 1.0
     COUNT.waiting, COUNT.phase = 0, 0
     n, last = BODY.shape[0] - 1, PAR.last
-    quiet = COUNT.quiet > BUSY_STEPS
+    quiet = COUNT.quiet > REST_RETRY
     COUNT.closing, fixed = 0, 1 if A.SHAPE.shape[0] > A.LIST.shape[0] else 0
     pulled, even, carries = 0.0, True, A.RULE.shape[0] == 0 and not quiet
     for i in range(n):

@@ -15,10 +15,10 @@ from ..contacts.memory import find, key_of
 from ..contacts.single import kinetic, note
 from ..model.bodies import AT_REST, AWAKE, CHANGED
 from ..model.contacts import LASTED
-from ..model.parameters.rest import REST_WOKEN
+from ..model.parameters.rest import REST_RETRY
 from ..model.scene import Scene
 from ..pairs.lists import mark_pair
-from .rest import candidate_speed, postponed, speed, spins_freely
+from .rest import candidate_speed, speed, spins_freely
 
 
 @uncounted
@@ -39,7 +39,7 @@ def stays_at_rest(A: Scene, i: int, last: float) -> bool:
         return False
     BODY[i].ax, BODY[i].ay, BODY[i].angular = 0.0, 0.0, 0.0
     # What does not stand for long is not asked again for long.
-    A.RESTING[i].calm_for = min(A.RESTING[i].calm_for + 1.0, REST_WOKEN)
+    A.RESTING[i].calm_for = min(A.RESTING[i].calm_for + 1.0, 0.0)
     BODY[i].due = max(A.RESTING[i].still_due - last, 0.0)
     return True
 
@@ -193,7 +193,7 @@ def put_to_rest(A: Scene, root: int) -> None:
     while i >= 0:
         stop(A, i)
         BODY[i].ax, BODY[i].ay, BODY[i].angular = 0.0, 0.0, 0.0
-        MEMBER[i].rest, BODY[i].due, A.RESTING[i].calm_for = 1, 0.0, postponed(MEMBER[root].among)
+        MEMBER[i].rest, BODY[i].due, A.RESTING[i].calm_for = 1, 0.0, -float(REST_RETRY)
         i = MEMBER[i].following
 
 

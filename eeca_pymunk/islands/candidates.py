@@ -17,7 +17,6 @@ from ..model.parameters.intervals import (
     LARGE_SWEEPS,
     LARGE_SWEEPS_HIT,
     NORMAL_TURN,
-    RATTLE,
     STICK,
     TOUCH,
 )
@@ -199,16 +198,13 @@ def stick_time(
     """
     if m > EXACT_CONTACTS:
         return h
-    limit, beta, slip, others, rattle = 0.0, 0.0, 0.0, 0.0, 0.0
-    for z in range(m):
-        if L[z, 0] > 0.0:
-            rattle = max(rattle, abs(ROWS[z].un))
+    limit, beta, slip, others = 0.0, 0.0, 0.0, 0.0
     for z in range(m):
         most = ROWS[z].friction * L[z, 0]
         before = abs(ROWS[z].ut)
-        # What sticks all along has no slip but round-off before, or rattles.
+        # What sticks all along has no slip but round-off before.
         change = most / ROWS[z].k_t
-        if most == 0.0 or before <= STICK * change or before < rattle <= RATTLE * change:
+        if most == 0.0 or before <= STICK * change:
             continue
         if abs(tangent_rate(P, Q, ROWS, VN, z)) > STICK * before:
             continue

@@ -22,13 +22,12 @@ from ..contacts.interval import make_contacts, step_island
 from ..model.bodies import AT_REST, AWAKE
 from ..model.parameters.intervals import IMPACT_SPEED, LARGE_ISLAND
 from ..model.parameters.rest import (
-    FREEZE_EVERY,
     MOVING_BODIES,
     MOVING_SHARE,
     PARTIAL_REST_FACTORS,
     PARTIAL_REST_FACTORS_STEP,
     PARTIAL_REST_TRIES,
-    REST_STEPS,
+    REST_RETRY,
 )
 from ..model.scene import Scene
 from ..rows.inplace import sort
@@ -88,7 +87,7 @@ def test_rest(A: Scene, MINE: IntArray, n: int, V0: FloatArray, among: int, calm
     if calming:
         for q in range(n):
             stop(A, MINE[q])
-            A.RESTING[MINE[q]].calm_for = REST_STEPS
+            A.RESTING[MINE[q]].calm_for = 1.0
         return True
     first = COUNT.pushes
     open_contacts(A, isle, contacts, contacts.VN, m, 0.0, dt, np.zeros(len(isle.WHO), np.uint8))
@@ -169,7 +168,7 @@ def rests_in_part(A: Scene, root: int) -> bool:
     members(A, root, MINE)
     sort(MINE, n)
     factors = A.COUNT.direct
-    if n >= LARGE_ISLAND and A.PAR.stamp % FREEZE_EVERY == 0.0:
+    if n >= LARGE_ISLAND and A.PAR.stamp % REST_RETRY == 0.0:
         freeze(A, root, MINE, n)
         if A.COUNT.direct > factors + PARTIAL_REST_FACTORS_STEP:
             return False

@@ -2,7 +2,7 @@
 
 An island is at rest once, over a whole step without impacts or edits, each of its bodies was slower than
 REST_SPEED |a| dt at both ends, so that its contacts bear its weight to that accuracy, and no contact slipped or was
-driven; or once it was slow for REST_STEPS and `..contacts.statics` finds the forces that hold it.
+driven; or once it was slow at the starts of two steps and `..contacts.statics` finds the forces that hold it.
 """
 
 from __future__ import annotations
@@ -17,10 +17,7 @@ from ..model.parameters.rest import (
     REST_CANDIDATE,
     REST_CANDIDATE_LARGE,
     REST_RETRY,
-    REST_RETRY_BODIES,
-    REST_RETRY_LATEST,
     REST_SPEED,
-    REST_STEPS,
 )
 from ..model.scene import Scene
 from ..pairs.rules import law
@@ -50,7 +47,7 @@ def candidate_speed(bodies: int) -> float:
 @uncounted
 def slow_for_long(A: Scene, i: int) -> bool:
     """Whether body i has hardly moved for long enough to be asked whether it stands."""
-    return bool(A.RESTING[i].calm_for >= REST_STEPS)
+    return bool(A.RESTING[i].calm_for >= 1.0)
 
 
 @uncounted
@@ -68,13 +65,7 @@ def motionless(A: Scene, MINE: IntArray, n: int) -> bool:
 def postpone(A: Scene, MINE: IntArray, n: int) -> None:
     """The n bodies MINE are asked again much later, unless they stand in between."""
     for q in range(n):
-        A.RESTING[MINE[q]].calm_for = postponed(n)
-
-
-@uncounted
-def postponed(n: int) -> float:
-    """CALM_FOR of a body of n that have been asked whether they stand, and do not."""
-    return -float(min(REST_RETRY + n // 4, REST_RETRY_LATEST + n // REST_RETRY_BODIES))
+        A.RESTING[MINE[q]].calm_for = -float(REST_RETRY)
 
 
 @uncounted

@@ -32,7 +32,7 @@ def raise_gaps(problem: JointedProblem, GAPS: FloatArray, D: FloatArray, toleran
     for i in range(problem.m):
         if problem.C.OUT[i] != 0:
             GAPS[i] = np.inf
-    lift(problem, GAPS, MU, D, np.inf, tolerance, JOINTED_CORRECTION_SWEEPS, np.empty(problem.m, np.int64))
+    lift(problem, GAPS, MU, D, tolerance, JOINTED_CORRECTION_SWEEPS)
     return MU
 
 

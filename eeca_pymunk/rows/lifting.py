@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FloatArray
 from ..compiled import Choice, merged, uncounted
 from ..model.contacts import AnyProblem, JointedProblem, Problem
 from .build import normal_rate
@@ -34,27 +34,17 @@ push_normal = Choice(push_normal_free, push_normal_jointed)
 
 
 @uncounted
-def lift(
-    problem: AnyProblem, GAPS: FloatArray, MU: FloatArray, D: FloatArray, near: float, tolerance: float, most: int,
-    NEAR: IntArray,
-) -> float:  # fmt: skip
-    """Displacements D, by at most `most` sweeps over contacts with a gap below `near`; the last one's largest change of
-    a gap.
+def lift(problem: AnyProblem, GAPS: FloatArray, MU: FloatArray, D: FloatArray, tolerance: float, most: int) -> float:
+    """Displacements D, by at most `most` sweeps; the last one's largest change of a gap.
 
     Args:
         GAPS: (m,) length.  MU: (m,) in and out, mass times length.  D: (k, 3) in and out, length and rad.
-        tolerance: length that a sweep may still move a gap.  NEAR: (m,) scratch.
+        tolerance: length that a sweep may still move a gap.
     """
-    A, B, ROWS = problem.A, problem.B, problem.ROWS
-    contacts, worst = 0, 0.0
-    for i in range(problem.m):
-        if GAPS[i] < near:
-            NEAR[contacts] = i
-            contacts += 1
+    A, B, ROWS, worst = problem.A, problem.B, problem.ROWS, 0.0
     for _ in range(most):
         worst = 0.0
-        for z in range(contacts):
-            i = NEAR[z]
+        for i in range(problem.m):
             g = GAPS[i] + normal_rate(A, B, ROWS, D, i)
             if g >= 0.0 and MU[i] == 0.0:
                 continue

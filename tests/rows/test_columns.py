@@ -78,7 +78,7 @@ def test_bodies_are_lifted_as_free_ones() -> None:
     gaps = -0.01 * np.random.default_rng(2).uniform(size=m)
     for problem in problems(block):
         D, mu = np.zeros_like(block.pose), np.zeros(m)
-        assert lift(problem, gaps, mu, D, np.inf, 1e-15, 2000, np.zeros(m, np.int64)) <= 1e-15
+        assert lift(problem, gaps, mu, D, 1e-15, 2000) <= 1e-15
         found.append(D)
         assert (mu >= 0.0).all()
     assert np.abs(found[1] - found[0]).max() <= 1e-13

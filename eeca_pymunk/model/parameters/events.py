@@ -47,7 +47,4 @@ EVENT_LOOKS = work(4, "looks", "Work of an event, beside its forecasts.")
 PAIR_LOOKS = work(4, "looks", "Work of the geometry of a pair in a solve.")
 SWEEP_LOOKS = work(0.25, "looks", "Work of a contact in a sweep.")
 DIRECT_LOOKS = work(0.25, "looks", "Work of a direct solution, times the square of its contacts.")
-INITIAL_PENETRATION = heuristic(
-    1e-06, "of the smaller shape", "Overlap above which shapes that were put into one another come apart in one step."
-)
 DEEP = round_off(1e3, "times the gap that counts as touching", "Overlap from which on points that part are no impact.")

@@ -7,29 +7,21 @@ from .record import accuracy, heuristic, round_off, work
 TOUCH = accuracy(
     1e-07,
     "of the smaller shape",
-    "Gap within which shapes touch. Smaller: round-off opens resting contacts. Larger: bodies rest apart.",
+    "Gap within which shapes touch, both ends of a lossy face included; and overlap beyond which they were put into "
+    "one another. Smaller: round-off opens resting contacts. Larger: bodies rest apart.",
 )
 ELASTIC_REST = accuracy(1e-06, "of |a| dt", "Speed below which an elastic contact rests.")
 ELASTIC_REST_ON = accuracy(0.001, "of |a| dt", "The same if it rested before.")
-SOLVES_BEFORE_HASTE = heuristic(
-    3, "solves of every body in a step", "Work after which islands are solved less precisely."
-)
 IMPACT_SPEED = accuracy(
     2.0,
     "of |a| h",
     "Approach speed from which a contact that closes in an interval is an impact; what is slower may freeze.",
 )
-BUSY_STEPS = heuristic(8, "steps", "Steps after the last impact in which an island is not tested for rest.")
 NORMAL_TURN = accuracy(0.1, "rad", "Rotation of a normal in one interval. Larger: longer intervals, coarser rolling.")
 EXACT_CONTACTS = heuristic(
     12, "contacts", "Number up to which an interval ends where a contact begins to stick or normals turn."
 )
 STICK = accuracy(1e-06, "of the friction limit", "Friction and slip below which a contact sticks.")
-RATTLE = heuristic(
-    0.001,
-    "of the friction's impulse over the mass",
-    "Slip below which a contact sticks where bearing contacts vibrate as fast.",
-)
 LARGE_SWEEPS = work(24, "sweeps", "Sweeps of a large island at the start of a step.")
 LARGE_SWEEPS_HIT = work(12, "sweeps", "The same after it was hit within the step.")
 INTERVAL_WAY = heuristic(
@@ -62,10 +54,6 @@ LARGE_ISLAND = heuristic(
 )
 MIDPOINT_SAME = round_off(
     1e-07, "of the smaller shape", "Half way below which the geometry at the middle is that of the start."
-)
-MIDPOINT_SAME_LARGE = heuristic(0.001, "of the smaller shape", "The same in a large island.")
-MIDPOINT_TURN = heuristic(
-    0.5, "cosine", "Cosine of the normals at the start and the middle below which the middle is not used."
 )
 MANIFOLD_ROUND_OFF = round_off(1e-09, "of the smaller shape", "Tolerance of a manifold.")
 INTERVAL_RESIDUAL = accuracy(1e-12, "of |a| h", "Residual of an island, and of elastic ones.")

@@ -16,21 +16,15 @@ STATICS_FACTORS = work(12, "factorisations", "Factorisations to find static forc
 STATICS_FACTORS_NEAREST = work(6, "factorisations", "Further ones to come near to the guess.")
 STATICS_START = accuracy(0.1, "of the mean guess", "Least impulse at the start of the interior-point iteration.")
 STATICS_STEP = accuracy(0.99, "of the way to the boundary", "Step of the interior-point iteration.")
-STATICS_PROGRESS = heuristic(0.8, "ratio of residual motions", "Progress of an iteration below which it stalls.")
-STATICS_STALLED = heuristic(4, "iterations", "Stalled iterations after which no static forces exist.")
-STATICS_RUNAWAY = heuristic(
-    100000.0,
-    "times the velocities",
-    "Growth of the multipliers by which one iteration shows a motion that no force holds.",
-)
 STATICS_GAP = accuracy(
     1e-08, "of the first complementarity", "Complementarity at which the forces are the nearest to the guess."
 )
-REST_STEPS = heuristic(2, "steps", "Steps that an island has to be slow before it is tested for rest.")
-REST_RETRY = heuristic(4, "steps", "Steps from one test to the next, and one more for every fourth body.")
-REST_RETRY_LATEST = heuristic(12, "steps", "The same of large islands, and one more for every REST_RETRY_BODIES.")
-REST_RETRY_BODIES = heuristic(100, "bodies", "See REST_RETRY_LATEST.")
-REST_WOKEN = heuristic(-2.0, "steps, negative", "Rest timer of an island that is woken after a long rest.")
+REST_RETRY = work(
+    8,
+    "steps",
+    "Steps from one test for rest, or an impact that was passed over, to the next test. Larger: fewer factorisations, "
+    "later rest.",
+)
 SUPPORT_FACTORS = work(4, "factorisations", "Factorisations to find how an island at rest supports what moves on it.")
 SUPPORT_ROUNDS = work(8, "rounds", "Rounds in which support forces propagate to what bears them.")
 MOVING_SHARE = heuristic(0.1, "of the bodies", "Part of an island that may move while the rest of it is at rest.")
@@ -38,4 +32,3 @@ MOVING_BODIES = heuristic(2, "bodies", "Number that may always move.")
 PARTIAL_REST_TRIES = work(2, "number", "Tests for partial rest of an island in a step.")
 PARTIAL_REST_FACTORS = work(5, "factorisations", "Factorisations after which there is no other test.")
 PARTIAL_REST_FACTORS_STEP = work(8, "factorisations", "Factorisations after which no island is tested in the step.")
-FREEZE_EVERY = work(8, "steps", "Steps from one test whether a large island freezes to the next.")
