@@ -91,8 +91,8 @@ MUTATIONS = (
              "MIDDLE = moved(isle.POSE, V, 0.0)", "contacts/test_one_body.py", "second_order"),
     Mutation("sustained: push-out for nothing", "contacts/correction.py",
              "if work + square > budget + ", "if False and budget > ", "contacts/test_piles.py", "push_out"),
-    Mutation("sustained: push-out turns a free island", "contacts/correction.py", "JUMP[i, 5] = turn",
-             "JUMP[i, 5] = -turn", "contacts/test_piles.py", "free_island"),
+    Mutation("sustained: push-out turns a free island", "contacts/correction.py", "V[i, at + 2] += turn",
+             "V[i, at + 2] -= turn", "contacts/test_piles.py", "free_island"),
     # Joints.
     Mutation("joints: sign of a lever", "joints/points.py",
              "-mx, -my, -lever_a * (rax * my - ray * mx)", "-mx, -my, lever_a * (rax * my - ray * mx)",

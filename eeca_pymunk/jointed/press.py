@@ -54,9 +54,10 @@ from ..rows.inplace import copy
 from .advance import Interval, advance, advance_aligned, align, farthest_apart
 from .bounded import make_bounded, settle_bounded, with_bounded
 from .columns import fill_free, leave_out, make_columns, weigh
-from .condensing import solve_columns, solve_condensed
+from .condensing import solve_condensed
 from .gentle import excessive, fastest, solve_gently
 from .groups import Groups, hangs
+from .newton import solve_columns
 from .pivoting import pivot_columns
 
 

@@ -102,7 +102,8 @@ MEET_SECANTS_LOADED = work(2, "iterations", "The same where contacts push.")
 MEET_INSTANT = round_off(1e-12, "of the step", "Interval that is none.")
 COLUMN_CONTACTS = work(40, "contacts", "Number up to which a direct solution over components pays.")
 COLUMN_SWEEPS = work(12, "sweeps", "Sweeps before the first direct solution.")
-COLUMN_ROUNDS = work(4, "direct solutions", "Direct solutions, at most.")
+COLUMN_SWEEPS_AFTER = work(4, "sweeps", "Sweeps after each.")
+COLUMN_ROUNDS = work(8, "direct solutions", "Direct solutions, at most.")
 COLUMN_PROXIMAL = round_off(
     10000000000.0, "over the effective mass", "Stiffness of the proximal term of redundant contacts."
 )
