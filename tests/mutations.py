@@ -91,8 +91,8 @@ MUTATIONS = (
              "MIDDLE = moved(isle.POSE, V, 0.0)", "contacts/test_one_body.py", "second_order"),
     Mutation("sustained: push-out for nothing", "contacts/correction.py",
              "if work + square > budget + ", "if False and budget > ", "contacts/test_piles.py", "push_out"),
-    Mutation("sustained: push-out turns a free island", "contacts/correction.py", "JUMP[i, 5] = turn",
-             "JUMP[i, 5] = -turn", "contacts/test_piles.py", "free_island"),
+    Mutation("sustained: push-out turns a free island", "contacts/correction.py", "V[i, at + 2] += turn",
+             "V[i, at + 2] -= turn", "contacts/test_piles.py", "free_island"),
     # Joints.
     Mutation("joints: sign of a lever", "joints/points.py",
              "-mx, -my, -lever_a * (rax * my - ray * mx)", "-mx, -my, lever_a * (rax * my - ray * mx)",
@@ -187,8 +187,8 @@ MUTATIONS = (
              "islands/test_at_rest.py", "wakes"),
     Mutation("driver: sweeps alone", "contacts/relaxation.py", "if rounds == 0 or STATE.wait > 0.0:", "if True:",
              "contacts/test_piles.py", "stack_stands_still"),
-    Mutation("operator: tangents answer as normals do", "rows/dense.py", "C.T[w, k] if tangent else",
-             "C.N[w, k] if tangent else", "jointed/test_contacts.py", "dropped_chain"),
+    Mutation("operator: tangents answer as normals do", "rows/dense.py", "C.T[w, k] if kind[j] == 1 else",
+             "C.N[w, k] if kind[j] == 1 else", "jointed/test_contacts.py", "dropped_chain"),
 )  # fmt: skip
 
 

@@ -8,12 +8,10 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
 from ..compiled.records import Rows
 from ..geometry.flight import norm
-from ..geometry.manifold import half_width
 from ..model.contacts import Row
 from ..model.parameters.events import RESOLUTION
 from ..model.parameters.intervals import (
     EXACT_CONTACTS,
-    INTERVAL_DEPTH_LEAST,
     INTERVAL_WAY,
     LARGE_ISLAND,
     LARGE_SWEEPS,
@@ -184,10 +182,7 @@ def excess_way(
         if A.LINK[a].vertices > 1 or A.LINK[b].vertices > 1:
             turn = max(abs(V[p, 2] + VN[p, 2]), abs(V[q, 2] + VN[q, 2]))
             far = max(far, 0.5 * h * turn / INTERVAL_WAY)
-        closing = -0.5 * h * (ROWS[z].un + normal_rate(P, Q, ROWS, VN, z))
-        if closing > INTERVAL_DEPTH_LEAST * small:
-            thick = half_width(A, a) + half_width(A, b)
-            far = max(far, too_deep(ROWS[z].gap, closing, small, thick))
+        far = max(far, too_deep(A, a, b, ROWS[z].gap, -0.5 * h * (ROWS[z].un + normal_rate(P, Q, ROWS, VN, z))))
     return far
 
 

@@ -46,10 +46,13 @@ def driven(A: Scene, isle: Island, ROWS: Rows[Row], KEY: IntArray, n: int, m: in
 
 
 @uncounted
-def too_deep(gap: float, closing: float, small: float, thick: float) -> float:
-    """How many times too long an interval is in which a contact closes by more than it has room for; 0 if it is not.
-    `thick` are half the widths of both shapes."""
-    deep = room_of(small, thick)
+def too_deep(A: Scene, a: int, b: int, gap: float, closing: float) -> float:
+    """How many times too long an interval is in which a contact of shapes a and b closes by more than it has room for;
+    0 if it is not."""
+    small = min(A.SHAPE[a].extent, A.SHAPE[b].extent)
+    if not closing > INTERVAL_DEPTH_LEAST * small:
+        return 0.0
+    deep = room_of(small, half_width(A, a) + half_width(A, b))
     room = max(gap, 0.0) + deep
     if closing > room + 0.5 * deep:
         return max(closing / room, 1.01 * INTERVAL_RETRY)
@@ -75,10 +78,7 @@ def sunk(
         gap = ROWS[z].gap
         if z + 1 < m and KEY[z + 1] >> 1 == pair:
             gap = min(gap, ROWS[z + 1].gap)
-        small = min(A.SHAPE[a].extent, A.SHAPE[b].extent)
         end = gap_at(A, a, END[p, 0], END[p, 1], END[p, 2], b, END[q, 0], END[q, 1], END[q, 2])[0]
-        if gap - end > INTERVAL_DEPTH_LEAST * small:
-            thick = half_width(A, a) + half_width(A, b)
-            far = max(far, too_deep(gap, gap - end, small, thick))
+        far = max(far, too_deep(A, a, b, gap, gap - end))
     # What rows do not tell grows with the square of the length, at least.
     return max(math.sqrt(far), 1.01 * INTERVAL_RETRY) if far > 0.0 else 0.0

@@ -32,8 +32,7 @@ from .candidates import (
     way_of,
 )
 from .depths import driven, sunk
-from .local import lay_out_island as lay_out_island
-from .local import open_contacts as open_contacts
+from .local import lay_out_island, open_contacts
 from .membership import lossy, members
 from .rest import rest_threshold
 

@@ -34,7 +34,8 @@ from ..rows.inplace import sort
 from .accounting import close_interval
 from .at_rest import put_to_rest, stop
 from .candidates import pairs_of
-from .intervals import dismiss, lay_out_island, open_contacts, solve
+from .intervals import dismiss, solve
+from .local import lay_out_island, open_contacts
 from .membership import lossy, members, unite
 from .rest import candidate_speed, postpone, slow_for_long, speed
 from .support import load

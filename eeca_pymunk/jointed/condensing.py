@@ -14,25 +14,21 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
-from ..compiled.records import Rows, empty, zeros
-from ..model.contacts import ROW, SOLVED, Bounded, Columns, JointedProblem, Row
+from ..compiled.records import Rows, empty
+from ..model.contacts import ROW, Bounded, Columns, JointedProblem, Row
 from ..model.parameters.joints import (
     COLUMN_CONTACTS,
-    COLUMN_ROUNDS,
-    COLUMN_SWEEPS,
     CONDENSED_BOUNDED,
     CONDENSED_CHANGES,
     CONDENSED_PROXIMAL,
 )
-from ..rows.blocks import resolve
 from ..rows.bounded import SINGLE, bounded_rate, per_impulse, push_row, room_for_rows
 from ..rows.build import normal_rate
-from ..rows.conjugate import iterate
 from ..rows.dense import back, decompose
 from ..rows.inplace import copy
-from ..rows.sweeps import push
 from .columns import leave_out, weigh
 from .groups import Groups
+from .newton import solve_columns
 
 
 @uncounted
@@ -102,17 +98,6 @@ def first_to_yield(D: Bounded, S: IntArray, k: int, Y: FloatArray, L: FloatArray
         if way < least:
             first, least = p, way
     return first
-
-
-@kernel
-def solve_columns(problem: JointedProblem, L: FloatArray, V: FloatArray, tolerance: float, most: int) -> float:
-    """Impulses L (m contacts, then the bounded rows) and velocities V by sweeps, at most `most`, and for few contacts
-    by direct solutions before; the last sweep's largest change of a contact's velocity."""
-    if problem.m > COLUMN_CONTACTS:
-        return iterate(problem, L, V, tolerance, most)[1]
-    FREE = V.copy()
-    push(problem, L, -1.0, FREE)
-    return resolve(problem, L, V, FREE, COLUMN_SWEEPS, COLUMN_ROUNDS, most, tolerance, zeros(1, SOLVED))
 
 
 @kernel

@@ -14,13 +14,11 @@ from ..compiled import uncounted
 from ..compiled.records import Rows
 from ..contacts.memory import key_of
 from ..geometry.flight import norm
-from ..geometry.manifold import half_width
 from ..islands.depths import sunk, too_deep
 from ..model.contacts import Row
 from ..model.islands import Island
 from ..model.joints import Joints
 from ..model.parameters.intervals import (
-    INTERVAL_DEPTH_LEAST,
     INTERVAL_RETRY,
     INTERVAL_WAY,
 )
@@ -96,10 +94,6 @@ def excess(
         far = max(far, strays(A, int(isle.WHO[q]), motion.END[q, 2] - isle.POSE[q, 2], x, y, t, h, KEY, m))
     for z in range(m):
         pair = KEY[z] >> 1
-        a, b = pair // shapes, pair % shapes
-        small = min(A.SHAPE[a].extent, A.SHAPE[b].extent)
         closing = -normal_rate(P, Q, ROWS, motion.WAY, z)
-        if closing > INTERVAL_DEPTH_LEAST * small:
-            thick = half_width(A, a) + half_width(A, b)
-            far = max(far, too_deep(ROWS[z].gap, closing, small, thick))
+        far = max(far, too_deep(A, pair // shapes, pair % shapes, ROWS[z].gap, closing))
     return max(far, sunk(A, isle, motion.END, P, Q, ROWS, KEY, m, True))

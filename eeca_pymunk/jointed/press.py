@@ -53,8 +53,10 @@ from ..rows.inplace import copy
 from .advance import Interval, advance, advance_aligned, align, farthest_apart
 from .bounded import make_bounded, settle_bounded, with_bounded
 from .columns import fill_free, leave_out, make_columns, weigh
-from .condensing import solve_columns, solve_condensed
+from .condensing import solve_condensed
+from .gentle import excessive, fastest, solve_gently
 from .groups import Groups, hangs
+from .newton import solve_columns
 
 
 @uncounted
@@ -125,6 +127,7 @@ def press(
     if J.PROGRESS.effort > J.PROGRESS.budget:
         rounds, most = OUTER_PART, min(most, PRESS_SWEEPS)
     J.PROGRESS.near = JOINTS_NEAR if m > COLUMN_CONTACTS and not elastic and not rests else 0.0
+    EFFECT = np.zeros((len(isle.IM), 3))
     FORESEEN, UNKNOWN = np.empty((len(isle.IM), 3)), np.empty((0, 3))
     converged, best, LEAST, USED, hopeless, agreed, slowly = False, np.inf, L.copy(), L.copy(), False, False, False
     stiff, bent, reached, B = False, 0.0, np.inf, make_bounded(J, groups)
@@ -194,6 +197,14 @@ def press(
             advance(A, J, interval, L, B, False, UNKNOWN)
         # What gives way is as stiff as its joints pull: round-off of its ways does not fall further.
         converged = best <= AGREE * scale and some_give(J, groups)
+    quick = fast + max(pull * h, h * fastest(EFFECT, isle.EXTENT, n))
+    if excessive(interval, L, quick):
+        solve_gently(A, J, interval, L, B, free)
+        converged, bent = False, np.inf if free else 0.0
+        if excessive(interval, L, quick):
+            for k in range(L.shape[0]):
+                L[k, 0] = L[k, 1] = 0.0
+            advance(A, J, interval, L, B, False, UNKNOWN)
     if bent > ARM_ERROR:
         advance_aligned(A, J, interval, L, B, free)
     energy = 0.0

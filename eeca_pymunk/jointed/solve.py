@@ -14,7 +14,8 @@ from ..contacts.memory import remember_loads
 from ..contacts.unmet import note_unmet
 from ..contacts.works import moved
 from ..islands.candidates import before_end, pairs_of
-from ..islands.intervals import AGAIN, dismiss, lay_out_island, open_contacts
+from ..islands.intervals import AGAIN, dismiss
+from ..islands.local import lay_out_island, open_contacts
 from ..islands.membership import lossy, members
 from ..model.islands import Island
 from ..model.joints import ELASTIC, Joints

@@ -33,7 +33,14 @@ from ..model.joints import (
     JointLedger,
     Workspace,
 )
-from ..model.parameters.joints import COMPONENT_BUDGET, ELASTIC_PARTS, HASTE, NEARLY_HELD
+from ..model.parameters.joints import (
+    COMPONENT_BUDGET,
+    ELASTIC_PARTS,
+    HASTE,
+    LEAST_SOLUTIONS,
+    LINEAR_APART,
+    NEARLY_HELD,
+)
 from .correct import fits, fitting_loss
 from .foresight import foretell, forget, recalls, remember
 from .ledger import add, clear, close_ledger, springs_hold
@@ -41,7 +48,7 @@ from .limits import step_with_limits
 from .lock import lock_energy, move_rigidly, stands
 from .motion import advance, move
 from .rows import start_joint
-from .solve import solve
+from .solve import effort, solve
 from .start import closing_work, farthest, find_apart, keep_closed, look, read_joints, soft_targets
 from .taut import taut
 
@@ -211,8 +218,10 @@ def island_step(W: Workspace, h: float, order: int, length: float, ledger: Joint
         if link[k].rows == 0:
             start_joint(W, k, h)
             joint[j].length_0 = hinge[k].began
-    status, stored = LINEAR, 0.0
-    progress.limit = progress.effort + max(progress.budget - progress.effort, 0.0) * COMPONENT_BUDGET
+    status, stored, before_it = LINEAR, 0.0, 0.0
+    # What no longer has a share of the work can still be solved where it is not hard.
+    least = LEAST_SOLUTIONS * effort(component.system, True, component.boxes, W.joints, component)
+    progress.limit = progress.effort + max((progress.budget - progress.effort) * COMPONENT_BUDGET, least)
     progress.hurry = progress.effort + HASTE * (progress.limit - progress.effort)
     yields = gives_way(W)
     rung = ELASTIC_RUNG if yields else -1 if order == 4 and smooth(W) else FIRST_RUNG
@@ -237,7 +246,7 @@ def island_step(W: Workspace, h: float, order: int, length: float, ledger: Joint
         clear(part)
         if rung == LAST_RUNG:
             look(W)
-            stored = springs_hold(W)
+            stored, before_it = springs_hold(W), farthest(W)
         done, before = True, h
         for p in range(parts):
             piece = h / parts if rung >= 0 else (1.0 - 4.0 * SUZUKI) * h if p == 2 else SUZUKI * h
@@ -274,14 +283,18 @@ def island_step(W: Workspace, h: float, order: int, length: float, ledger: Joint
         part.stored = springs_hold(W) - stored
     if status >= ELASTIC:
         close_ledger(local, W.bodies, part)
+        stopped = False
         owed = joint[link[0].joint].owed
         if part.closed > owed:
             gain = part.closed - owed
             taken = lock_energy(local, W.bodies, gain)
             part.closed -= taken
             if gain - taken > 1e-9 * gain + 1e-12 * owed and stands(local, W.bodies):
-                status = LINEAR
-                stop_joints(W, h)
+                status, stopped = LINEAR, True
+        if status == LINEAR and not farthest(W) <= before_it + LINEAR_APART:
+            stopped = stands(local, W.bodies)
+        if stopped:
+            stop_joints(W, h)
         # What elastic joints hold they may give back; linear rows hold nothing.
         spent = part.closed if status == ELASTIC else max(part.closed, 0.0)
         joint[link[0].joint].owed = max(owed - spent, 0.0)

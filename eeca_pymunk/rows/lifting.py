@@ -34,9 +34,7 @@ push_normal = Choice(push_normal_free, push_normal_jointed)
 
 
 @uncounted
-def lift(
-    problem: AnyProblem, GAPS: FloatArray, MU: FloatArray, D: FloatArray, tolerance: float, most: int
-) -> float:  # fmt: skip
+def lift(problem: AnyProblem, GAPS: FloatArray, MU: FloatArray, D: FloatArray, tolerance: float, most: int) -> float:
     """Displacements D, by at most `most` sweeps; the last one's largest change of a gap.
 
     Args:

@@ -8,7 +8,9 @@ from 1 mm to 50 m, steps of 1/240 to 1/10 s, with gravity or without; joints and
 * nobody leaves the container, by more than a part of his size;
 * a step of up to 1/30 s takes no longer than 20 ms of process time, or 100 native steps; a longer one as much for each
   1/30 s. Steps that do are repeated, as the machine may have been busy;
-* saved and loaded half-way the run goes on bit by bit.
+* saved and loaded half-way the run goes on bit by bit;
+* time goes on: not `STANDS` steps in a row leave all that moves where it is;
+* joints of a step that has converged hold, and none exceeds its `max_force` (`joined.py`).
 """
 
 from __future__ import annotations
@@ -24,10 +26,13 @@ import pymunk
 
 import eeca_pymunk as ep
 
+from .joined import BOUND, HOLDS, OFF, apart, join, overdone
+
 LENGTHS = (1e-3, 3e-2, 1.0, 10.0, 50.0)
 STEPS = (1 / 240, 1 / 60, 1 / 30, 1 / 10)
 LONGEST, NATIVE, SHORT = 0.02, 100, 1 / 30  # s of a step, or native steps, of steps of up to SHORT
 CLOSES = 1e-11
+STANDS = 5
 OUT = 0.5  # of a body's least size
 
 
@@ -38,11 +43,14 @@ class Broken(AssertionError):
 @dataclass
 class Found:
     """What a composition came to: longest step (s), steps that have not converged, largest loss below 0, over the scale
-    of energy."""
+    of energy; how far joints are apart, now too; steps in a row that nothing has moved in."""
 
     longest: float = 0.0
     unconverged: int = 0
     below: float = 0.0
+    apart: float = 0.0
+    stands: int = 0
+    off: float = 0.0
 
 
 class Composition:
@@ -121,24 +129,20 @@ class Composition:
         self.sizes.append(max(least, 0.1 * L))
 
     def _join(self) -> None:
-        R, L = self.random, self.length
+        R = self.random
         for a, b in zip(self.bodies, self.bodies[1:], strict=False):
             if R.random() < 0.5:
-                middle = tuple(0.5 * (p + q) for p, q in zip(a.position, b.position, strict=True))
-                joint: pymunk.Constraint = R.choice(
-                    (
-                        lambda a=a, b=b, middle=middle: pymunk.PivotJoint(a, b, middle),
-                        lambda a=a, b=b: pymunk.PinJoint(a, b),
-                        lambda a=a, b=b: pymunk.SlideJoint(a, b, (0, 0), (0, 0), 0.5 * L, 5.0 * L),
-                        lambda a=a, b=b: pymunk.DampedSpring(a, b, (0, 0), (0, 0), 2 * L, a.mass, 0.1 * a.mass),
-                    )
-                )()
-                joint.collide_bodies = R.random() < 0.5
-                self.space.add(joint)
+                self.space.add(join(R, a, b, self.length, a.mass))
                 if R.random() < 0.3:
                     motor = pymunk.SimpleMotor(a, b, R.uniform(-3, 3))
-                    motor.max_force = a.mass * L * L * R.choice((0.1, 1.0, 10.0))
+                    motor.max_force = a.mass * self.length**2 * R.choice((0.1, 1.0, 10.0))
                     self.space.add(motor)
+        for _ in range(R.choice((0, 0, 1, 2))):
+            a, b = R.sample([*self.bodies, self.box], 2)
+            if b is self.box or a is self.box or R.random() < 0.5:
+                joint = join(R, a, b, self.length, min(a.mass, b.mass))
+                joint.collide_bodies = True  # what hangs on the container stays in it
+                self.space.add(joint)
 
     def drive(self, k: int) -> None:
         """Shake and turn the container."""
@@ -156,6 +160,7 @@ class Composition:
         found, energies = Found(), [ep.measure(self.space).energy]
         saved: bytes | None = None
         half: list[list[tuple[float, ...]]] = []
+        before: list[tuple[float, ...]] = []
         for k in range(steps):
             if k == steps // 2:
                 saved = pickle.dumps((self.space, self.stepper))
@@ -171,6 +176,11 @@ class Composition:
             if saved is not None:
                 half.append(state)
             self._check(k, report, state, energies, found)
+            self._check_joints(k, report, found)
+            found.stands = found.stands + 1 if state == before and any(any(row[3:]) for row in state) else 0
+            if found.stands >= STANDS:
+                raise Broken(f"step {k}: time stands still")
+            before = state
         if saved is not None and not self.turns:
             space, stepper = pickle.loads(saved)
             again = [b for b in space.bodies if b.body_type == pymunk.Body.DYNAMIC]
@@ -200,6 +210,19 @@ class Composition:
             if least <= limit:
                 return least
         raise Broken(f"step {k} takes {1e3 * least:.0f} ms, {1e3 * limit:.0f} at most")
+
+    def _check_joints(self, k: int, report: ep.StepReport, found: Found) -> None:
+        before, found.off = found.off, 0.0
+        for joint in self.space.constraints:
+            off, over = apart(joint, self.length), overdone(joint, self.dt)
+            found.off = max(found.off, off)
+            if over > 1.0 + BOUND:
+                raise Broken(f"step {k}: {joint} pushes {over:.3g} times max_force")
+            if off > OFF:
+                raise Broken(f"step {k}: {joint} is {off:.1e} apart")
+            if report.converged and off > HOLDS and before <= HOLDS:
+                raise Broken(f"step {k}: {joint} is {off:.1e} apart in a step that has converged")
+        found.apart = max(found.apart, found.off)
 
     def _check(
         self, k: int, report: ep.StepReport, state: list[tuple[float, ...]], energies: list[float], found: Found

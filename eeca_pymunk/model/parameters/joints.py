@@ -112,7 +112,8 @@ MEET_SECANTS_LOADED = work(2, "iterations", "Secant steps to that instant if con
 MEET_INSTANT = round_off(1e-12, "of the step", "Length below which an interval before an impact is empty.")
 COLUMN_CONTACTS = work(40, "contacts", "Number up to which a direct solution over components is worth its cost.")
 COLUMN_SWEEPS = work(12, "sweeps", "Sweeps over components before the first direct solution.")
-COLUMN_ROUNDS = work(4, "direct solutions", "Direct solutions, at most.")
+COLUMN_SWEEPS_AFTER = work(4, "sweeps", "Sweeps over components after each direct solution.")
+COLUMN_ROUNDS = work(8, "direct solutions", "Direct solutions, at most.")
 COLUMN_PROXIMAL = round_off(
     10000000000.0, "over the effective mass", "Stiffness of the proximal term of redundant contacts of components."
 )
@@ -150,3 +151,17 @@ CHORD = work(3, "steps of the components", "Iterations for which one response is
 CLOSES = round_off(
     1e-12, "of the fastest contact", "Speed with which contacts may close after an elastic impact on components."
 )
+
+LEAST_SOLUTIONS = work(40, "solutions", "Newton iterations that a step of a component may take whatever work is left.")
+LINEAR_APART = accuracy(
+    1e-4, "of the component", "How far one linear system may leave joints: what would be farther moves as one body."
+)
+EXCESSIVE_IMPULSE = round_off(
+    1e4, "of the island's mass and speed", "Impulse beyond which a solution is replaced by sweeps from zero."
+)
+EXCESSIVE_WORK = heuristic(
+    16.0,
+    "of the island's mass and speed squared",
+    "Work of moving supports beyond which a solution is replaced by sweeps from zero.",
+)
+GENTLE_SWEEPS = work(20, "sweeps", "Sweeps that replace an excessive solution.")

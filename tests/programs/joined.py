@@ -1,0 +1,91 @@
+"""Joints of random compositions: all ten kinds between random bodies, and what holds of them.
+
+Joints fit at the start. Some have a `max_force`, as motors always do; some hang on the container.
+"""
+
+from __future__ import annotations
+
+import math
+from random import Random
+
+import pymunk
+
+HOLDS = 1e-8  # of the length of the scene, of joints in a step that has converged
+OFF = 1e-3  # of that length, whatever converges
+BOUND = 1e-9  # over max_force dt
+KINDS = (
+    "pivot", "pin", "slide", "groove", "spring", "rotary spring", "rotary limit", "ratchet", "gear", "motor",
+)  # fmt: skip
+
+
+def join(R: Random, a: pymunk.Body, b: pymunk.Body, length: float, mass: float) -> pymunk.Constraint:
+    """A random joint of two bodies of a scene of such a length, that fits as they are; `mass` is that of one."""
+    kind, L = R.choice(KINDS), length
+    here = pymunk.Vec2d(*((p + q) / 2 for p, q in zip(a.position, b.position, strict=True)))
+    end_a, end_b = (body.position + pymunk.Vec2d(R.uniform(-0.3, 0.3) * L, R.uniform(-0.3, 0.3) * L) for body in (a, b))
+    at_a, at_b, far = a.world_to_local(end_a), b.world_to_local(end_b), (end_b - end_a).length
+    between = b.angle - a.angle
+    torque, joint = mass * L * L, None
+    if kind == "pivot":
+        joint = pymunk.PivotJoint(a, b, R.choice((here, end_a)))
+    elif kind == "pin":
+        joint = pymunk.PinJoint(a, b, at_a, at_b)
+    elif kind == "slide":
+        joint = pymunk.SlideJoint(a, b, at_a, at_b, R.choice((0.0, 0.8 * far)), R.choice((1.1 * far, far)))
+    elif kind == "groove":
+        along = pymunk.Vec2d(0.5 * L, 0.0).rotated(R.uniform(0.0, 6.0))
+        joint = pymunk.GrooveJoint(a, b, a.world_to_local(end_b - along), a.world_to_local(end_b + along), at_b)
+    elif kind == "spring":
+        joint = pymunk.DampedSpring(
+            a, b, at_a, at_b, R.choice((0.5, 1.0)) * far, mass * R.choice((1.0, 100.0)), mass * R.choice((0.0, 0.1))
+        )
+    elif kind == "rotary spring":
+        joint = pymunk.DampedRotarySpring(
+            a, b, -between, torque * R.choice((1.0, 100.0)), torque * R.choice((0.0, 0.1))
+        )
+    elif kind == "rotary limit":
+        joint = pymunk.RotaryLimitJoint(a, b, between - R.uniform(0.0, 1.0), between + R.uniform(0.0, 1.0))
+    elif kind == "ratchet":
+        joint = pymunk.RatchetJoint(a, b, between, R.choice((-0.5, 0.5)))
+    elif kind == "gear":
+        ratio = R.choice((1.0, -1.0, 2.0))
+        joint = pymunk.GearJoint(a, b, b.angle * ratio - a.angle, ratio)
+    else:
+        joint = pymunk.SimpleMotor(a, b, R.uniform(-3.0, 3.0))
+    if kind == "motor" or R.random() < 0.15:
+        joint.max_force = mass * (L if kind in KINDS[:5] else L * L) * R.choice((0.1, 1.0, 10.0, 100.0))
+    joint.collide_bodies = R.random() < 0.5
+    return joint
+
+
+def apart(joint: pymunk.Constraint, length: float) -> float:
+    """How far a joint is from what it holds, over the length of the scene, or in radians; 0 for what may give way."""
+    if math.isfinite(joint.max_force):
+        return 0.0
+    a, b = joint.a, joint.b
+    if isinstance(joint, pymunk.GrooveJoint):
+        p, q = (a.local_to_world(end) for end in (joint.groove_a, joint.groove_b))
+        x = b.local_to_world(joint.anchor_b) - p
+        part = min(max(x.dot(q - p) / (q - p).dot(q - p), 0.0), 1.0)
+        return (x - part * (q - p)).length / length
+    if isinstance(joint, (pymunk.PivotJoint, pymunk.PinJoint, pymunk.SlideJoint)):
+        far = (b.local_to_world(joint.anchor_b) - a.local_to_world(joint.anchor_a)).length
+        if isinstance(joint, pymunk.PinJoint):
+            return abs(far - joint.distance) / length
+        if isinstance(joint, pymunk.SlideJoint):
+            return max(far - joint.max, joint.min - far, 0.0) / length
+        return far / length
+    between = b.angle - a.angle
+    if isinstance(joint, pymunk.RotaryLimitJoint):
+        return max(between - joint.max, joint.min - between, 0.0)
+    if isinstance(joint, pymunk.GearJoint):
+        return abs(b.angle * joint.ratio - a.angle - joint.phase)
+    return 0.0
+
+
+def overdone(joint: pymunk.Constraint, dt: float) -> float:
+    """The impulse of a joint over `max_force` dt; springs and what has no bound are at 0."""
+    springs = (pymunk.DampedSpring, pymunk.DampedRotarySpring)
+    if isinstance(joint, springs) or not math.isfinite(joint.max_force) or joint.max_force == 0.0:
+        return 0.0
+    return abs(joint.impulse) / (joint.max_force * dt)

@@ -1,0 +1,48 @@
+"""Compositions with joints: kinds of failures of the soak, each by a scene that had it, and the laws of `joined.py`."""
+
+from __future__ import annotations
+
+import pymunk
+import pytest
+
+import eeca_pymunk as ep
+
+from .compositions import Composition
+from .joined import apart, overdone
+
+
+@pytest.mark.parametrize("first", range(0, 40, 10))
+def test_random_compositions_with_joints_keep_the_laws(first: int) -> None:
+    played = 0
+    for seed in range(first, first + 10):
+        scene = Composition(seed, joints=True)
+        if scene.gentle:
+            played += 1
+            try:
+                scene.play(60)
+            except AssertionError as error:
+                error.add_note(f"seed {seed}")
+                raise
+    assert played >= 3
+
+
+def test_what_is_apart_and_what_is_overdone_is_seen() -> None:
+    a, b = pymunk.Body(1.0, 1.0), pymunk.Body(1.0, 1.0)
+    b.position, b.angle = (2.0, 0.0), 0.5
+    space = pymunk.Space()
+    pin, gear = pymunk.PinJoint(a, b), pymunk.GearJoint(a, b, 0.5, 1.0)
+    groove = pymunk.GrooveJoint(a, b, (0.0, 0.0), (4.0, 0.0), (0.0, 0.0))
+    limit = pymunk.RotaryLimitJoint(a, b, 0.0, 1.0)
+    for body in (a, b):
+        space.add(body, pymunk.Circle(body, 0.1))
+    space.add(pin, gear, groove, limit)
+    assert max(apart(joint, 2.0) for joint in space.constraints) <= 1e-15
+    b.position, b.angle = (2.0, 0.2), 1.25
+    assert apart(pin, 2.0) == pytest.approx((4.04**0.5 - 2.0) / 2.0)
+    assert apart(gear, 2.0) == pytest.approx(0.75)
+    assert apart(groove, 2.0) == pytest.approx(0.1)
+    assert apart(limit, 2.0) == pytest.approx(0.25)
+    pin.max_force = 1.0
+    ep.EECA(space).step(1 / 60)
+    assert overdone(pin, 1 / 60) <= 1.0 + 1e-9
+    assert overdone(pin, 1 / 6000) > 10.0

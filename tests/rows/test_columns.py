@@ -1,0 +1,84 @@
+"""One contact problem over two operators: columns of free bodies answer as their inverse masses do."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from eeca_pymunk.compiled.records import rows
+from eeca_pymunk.model.contacts import Columns, JointedProblem, Problem, Solved
+from eeca_pymunk.rows.blocks import solve_block
+from eeca_pymunk.rows.bounded import room_for_rows
+from eeca_pymunk.rows.dense import matrix
+from eeca_pymunk.rows.lifting import lift
+from eeca_pymunk.rows.sweeps import push, sweep
+
+from .block import Block
+
+
+def pyramid(seed: int, e: float, mu: float) -> Block:
+    """Disks on the floor, some on others, that fall and spin."""
+    rng = np.random.default_rng(seed)
+    place = np.array([[0.0, 0.5], [1.0, 0.5], [2.0, 0.5], [0.5, 0.5 + 0.75**0.5], [1.5, 0.5 + 0.75**0.5]])
+    velocity = np.column_stack((0.3 * rng.normal(size=(5, 2)) - [0.0, 1.0], rng.normal(size=5)))
+    block = Block.disks(place, velocity, rng.uniform(0.5, 2.0, 5), np.full(5, 0.5))
+    for i in range(3):
+        block.wall(i, (0.0, -1.0), 0.5)
+    block.solve(e, mu)
+    return block
+
+
+def problems(block: Block) -> tuple[Problem, JointedProblem]:
+    """The problem of a block over inverse masses, and over columns that say the same."""
+    m, n = len(block.A), len(block.pose) - 1
+    free = Problem(block.A, block.B, block.rows.copy(), block.im, block.ii, block.pose, n, m)
+    entries = [(i, q) for i in range(m) for q in (block.A[i], block.B[i]) if block.im[q] > 0.0]
+    at = np.searchsorted([i for i, _ in entries], np.arange(m + 1)).astype(np.int64)
+    columns = Columns(
+        at, np.array([q for _, q in entries], np.int64), np.zeros((len(entries), 3)), np.zeros((len(entries), 3)),
+        np.zeros(m, np.int64),
+    )  # fmt: skip
+    for w, (i, q) in enumerate(entries):
+        for tangent, table in enumerate((columns.N, columns.T)):
+            L, V = np.zeros((m, 2)), np.zeros_like(block.pose)
+            L[i, tangent] = 1.0
+            push(free, L, 1.0, V)
+            table[w] = V[q]
+    return free, JointedProblem(block.A, block.B, block.rows.copy(), columns, room_for_rows(0, 0), m)
+
+
+@pytest.mark.parametrize("e", [0.0, 0.6, 1.0])
+@pytest.mark.parametrize("mu", [0.0, 0.4])
+def test_impacts_are_those_of_free_bodies(e: float, mu: float) -> None:
+    for seed in range(3):
+        block, found = pyramid(seed, e, mu), []
+        for problem in problems(block):
+            m, V = problem.m, block.velocity.copy()
+            solve_block(problem, np.zeros((m, 2)), V, 0.0, False, np.zeros((m, 2)), rows(Solved, 1))
+            found.append(V)
+        assert np.abs(found[1] - found[0]).max() <= 1e-9
+
+
+def test_sweeps_and_matrices_are_those_of_free_bodies() -> None:
+    block = pyramid(5, 0.3, 0.4)
+    m, found = len(block.A), []
+    for problem in problems(block):
+        L, V = np.zeros((m, 2)), block.velocity.copy()
+        changes = [sweep(problem, L, V) for _ in range(5)]
+        at, kind, W = np.repeat(np.arange(m), 2), np.tile([0, 1], m), np.zeros((2 * m, 2 * m))
+        matrix(problem, np.zeros(m), at, kind, 2 * m, W)
+        found.append((L, V, np.array(changes), W))
+    for one, other in zip(*found, strict=True):
+        assert np.abs(one - other).max() <= 1e-7 * np.abs(one).max()
+
+
+def test_bodies_are_lifted_as_free_ones() -> None:
+    block = pyramid(1, 0.0, 0.0)
+    m, found = len(block.A), []
+    gaps = -0.01 * np.random.default_rng(2).uniform(size=m)
+    for problem in problems(block):
+        D, mu = np.zeros_like(block.pose), np.zeros(m)
+        assert lift(problem, gaps, mu, D, 1e-15, 2000) <= 1e-15
+        found.append(D)
+        assert (mu >= 0.0).all()
+    assert np.abs(found[1] - found[0]).max() <= 1e-13
