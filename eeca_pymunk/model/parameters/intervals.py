@@ -12,6 +12,9 @@ TOUCH = accuracy(
 )
 ELASTIC_REST = accuracy(1e-06, "of |a| dt", "Speed below which an elastic contact rests.")
 ELASTIC_REST_ON = accuracy(0.001, "of |a| dt", "The same if it rested before.")
+SOLVES_BEFORE_HASTE = heuristic(
+    3, "solves of every body in a step", "Work after which islands are solved less precisely."
+)
 IMPACT_SPEED = accuracy(
     2.0,
     "of |a| h",
