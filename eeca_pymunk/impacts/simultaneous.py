@@ -22,8 +22,8 @@ from ..geometry.sides import note_side
 from ..islands.accounting import end_interval
 from ..islands.membership import budget_spent, carrier, remembered
 from ..model.contacts import ROW, Row
-from ..model.parameters.impulses import BLOCK_BODIES, FACE_ROUND_OFF
-from ..model.parameters.intervals import LARGE_ISLAND, TOUCH
+from ..model.parameters.impulses import BLOCK_BODIES, FACE_ROUND_OFF, ROCKING
+from ..model.parameters.intervals import LARGE_ISLAND
 from ..model.scene import Scene
 from ..pairs.rules import barred, law
 from ..rows.build import normal_rate, place_row
@@ -199,7 +199,7 @@ def lay_out(A: Scene, n: int, m: int, PAIRS: IntArray, hit: int, rest: bool, t: 
         tolerance = FACE_ROUND_OFF * touching(A, sa, sb)
         small = min(A.SHAPE[sa].extent, A.SHAPE[sb].extent)
         if e < 1.0:
-            tolerance = max(tolerance, TOUCH * small)
+            tolerance = max(tolerance, ROCKING * small)
         if rest and PAIRS[z] == hit:
             e = 0.0
         load = remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], sa, sb, A.PAR.stamp - 1.0)[1]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .record import round_off, work
+from .record import heuristic, round_off, work
 
 APPROACH_ROUND_OFF = round_off(
     1e-13, "of the speeds", "Closing speed of touching shapes below which they do not approach."
@@ -34,4 +34,7 @@ SOLVES_PER_BODY = work(
     512,
     "solves of every body in a step",
     "Work of a step after which it ends early. Larger: longer steps where bodies are squeezed.",
+)
+INITIAL_PENETRATION = heuristic(
+    1e-06, "of the smaller shape", "Overlap above which shapes that were put into one another come apart in one step."
 )

@@ -45,4 +45,9 @@ LATE_NEIGHBOURS = work(24, "neighbours", "Number from which a body is eliminated
 FACE_ROUND_OFF = round_off(
     16.0, "times the gap's round-off", "Difference of gaps up to which both ends of parallel faces close at once."
 )
+ROCKING = heuristic(
+    1e-06,
+    "of the smaller shape",
+    "The same for lossy contacts: rocking below it ends at once instead of in a cascade of impacts.",
+)
 BLOCK_BODIES = heuristic(16, "bodies", "Bodies of a large island on which an impact acts at once. Larger: dearer hits.")
