@@ -17,7 +17,7 @@ from ..islands.intervals import AGAIN, dismiss, lay_out_island, open_contacts
 from ..islands.membership import lossy, members
 from ..model.islands import Island
 from ..model.joints import ELASTIC, Joints
-from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES, MIDPOINT_SAME
+from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES
 from ..model.parameters.joints import INTERVAL_SHARE
 from ..model.scene import Scene
 from ..model.step import CONTACTS, DONE, PUSHES_FULL
@@ -117,7 +117,7 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
     m = 0
     if p > 0:
         pull = max(pull, foresee(A, J, isle, groups, t, h, motion, REACH))
-        m = gather(A, isle, contacts, moved(isle.POSE, isle.V, 0.5 * h), REACH, h, k == n, MIDPOINT_SAME)
+        m = gather(A, isle, contacts, moved(isle.POSE, isle.V, 0.5 * h), REACH, h, k == n)
     interval = Interval(isle, groups, P, Q, ROWS, motion, make_columns(groups, P, Q, m), m, n, t, h)
     held = True
     J.PROGRESS.share = J.PROGRESS.effort + INTERVAL_SHARE * max(J.PROGRESS.budget - J.PROGRESS.effort, 0.0)

@@ -7,12 +7,7 @@ from .record import accuracy, heuristic, round_off, work
 TOUCH = accuracy(
     1e-07,
     "of the smaller shape",
-<<<<<<< HEAD
-    "Gap within which shapes touch, both ends of a lossy face included; and overlap beyond which they were put into "
-    "one another. Smaller: round-off opens resting contacts. Larger: bodies rest apart.",
-=======
     "Gap within which shapes touch. Smaller: round-off opens resting contacts. Larger: bodies rest apart.",
->>>>>>> parent of 941d121 (Faces rock, and shapes were put into one another, from the gap within which they touch)
 )
 ELASTIC_REST = accuracy(1e-06, "of |a| dt", "Speed below which an elastic contact rests.")
 ELASTIC_REST_ON = accuracy(0.001, "of |a| dt", "The same if it rested before.")
