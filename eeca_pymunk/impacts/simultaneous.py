@@ -19,7 +19,7 @@ from ..geometry.flight import pose, rate
 from ..geometry.manifold import face
 from ..geometry.sides import note_side
 from ..islands.accounting import end_interval
-from ..islands.membership import carrier, in_large_island, remembered
+from ..islands.membership import budget_spent, carrier, in_large_island, remembered
 from ..model.contacts import ROW, Row
 from ..model.parameters.impulses import BLOCK_BODIES
 from ..model.scene import Scene
@@ -95,7 +95,7 @@ def gather(A: Scene, a: int, b: int, t: float) -> tuple[int, int, IntArray]:
                 if key == PAIRS[0] or (moves and 0 <= A.PLACE[j] < q - 1):
                     continue
                 # What does not take part is hit in its turn.
-                full = moves and A.PLACE[j] < 0 and n >= most
+                full = moves and A.PLACE[j] < 0 and (n >= most or budget_spent(A, A.STATE[j].island))
                 if full or not takes_part(A, s, o, t):
                     continue
                 if moves and A.PLACE[j] < 0:

@@ -28,7 +28,7 @@ from ..pairs.rules import barred, law
 from .accounting import end_interval
 from .at_rest import wake_changed
 from .intervals import solve
-from .membership import approach, carrier, members, rests, unite
+from .membership import approach, budget_spent, carrier, members, rests, unite
 from .partial_rest import rests_in_part
 from .penetration import hold_penetrating
 from .support import support
@@ -61,7 +61,7 @@ def join_neighbours(A: Scene, i: int, t: float, FOUND: IntArray) -> int:
                 continue
             other = STATE[j].island
             begun = other >= 0 and A.MEMBER[other].open > 0
-            if begun and A.MEMBER[other].jointed > 0:
+            if begun and (A.MEMBER[other].jointed > 0 or budget_spent(A, other)):
                 continue  # it is hit when they meet
             move_to(BODY, j, t)
             g, u, _, _ = approach(A, s, o, t)
@@ -208,7 +208,8 @@ def passed_over(A: Scene, a: int, b: int, t: float) -> bool:
     STATE = A.STATE
     i, j = A.LINK[a].owner, A.LINK[b].owner
     hits, most, lossy = hits_of(A, a, b), most_hits(A, a, b), law(A.SHAPE, A.RULE, a, b)[0] < 1.0
-    if hits < most:
+    spent = budget_spent(A, STATE[i].island) or budget_spent(A, STATE[j].island)
+    if hits < most and not spent:
         return False
     h = A.PAR.dt - t
     speed = norm(A.BODY[i].vx - A.BODY[j].vx, A.BODY[i].vy - A.BODY[j].vy)

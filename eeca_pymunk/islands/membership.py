@@ -9,7 +9,7 @@ from ..contacts.memory import find, key_of
 from ..geometry.gap import gap_at
 from ..model.bodies import AT_REST
 from ..model.contacts import Force
-from ..model.parameters.intervals import ELASTIC_REST, ELASTIC_REST_ON, LARGE_ISLAND, TOUCH
+from ..model.parameters.intervals import ELASTIC_REST, ELASTIC_REST_ON, LARGE_ISLAND, SOLVES_BEFORE_HASTE, TOUCH
 from ..model.scene import Scene
 from ..pairs.rules import law
 
@@ -61,6 +61,14 @@ def in_large_island(A: Scene, a: int, b: int) -> bool:
         if root >= 0:
             size = max(size, A.MEMBER[root].bodies)
     return size >= LARGE_ISLAND
+
+
+@uncounted
+def budget_spent(A: Scene, root: int) -> bool:
+    """Whether the island is large and is not solved again in this step, as bodies have been solved often enough."""
+    if root < 0 or A.MEMBER[root].bodies < LARGE_ISLAND or A.MEMBER[root].open == 0:
+        return False
+    return bool(A.COUNT.solved > SOLVES_BEFORE_HASTE * A.BODY.shape[0])
 
 
 @uncounted

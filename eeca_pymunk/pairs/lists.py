@@ -11,8 +11,7 @@ import math
 
 from ..compiled import uncounted
 from ..geometry.gap import touching
-from ..model.parameters.impulses import FACE_ROUND_OFF
-from ..model.parameters.intervals import TOUCH
+from ..model.parameters.impulses import FACE_ROUND_OFF, ROCKING
 from ..model.scene import Scene
 from .rules import law
 
@@ -126,5 +125,5 @@ def face_tolerance(A: Scene, a: int, b: int) -> float:
     """The tolerance (length) of `face` in an impact."""
     tolerance = FACE_ROUND_OFF * touching(A, a, b)
     if law(A.SHAPE, A.RULE, a, b)[0] < 1.0:
-        tolerance = max(tolerance, TOUCH * min(A.SHAPE[a].extent, A.SHAPE[b].extent))
+        tolerance = max(tolerance, ROCKING * min(A.SHAPE[a].extent, A.SHAPE[b].extent))
     return tolerance

@@ -28,6 +28,9 @@ from ..model.contacts import ROW, Edge, Problem, Row
 from ..model.parameters.impulses import PROXIMAL_STATICS
 from ..model.parameters.rest import (
     STATICS_GAP,
+    STATICS_PROGRESS,
+    STATICS_RUNAWAY,
+    STATICS_STALLED,
     STATICS_START,
     STATICS_STEP,
 )
@@ -237,7 +240,8 @@ def equilibrium(
     columns, rows = pattern(n, start, other, place)
     factor = Factor(place, columns, rows, np.empty((n, 3, 3)), np.empty((len(rows), 3, 3)))
     problem_of_edges = Problem(P, Q, G, IM, II, problem.POSE, n, K)
-    found, free, first = False, True, 0.0
+    found, free, stalled, last, first = False, True, 0, np.inf, 0.0
+    given = fastest(START, EXTENT, n)
     for done in range(most + 1):
         copy(LEFT, START)
         send(P, Q, G, EDGE, False, K, IM, II, LEFT)
@@ -248,10 +252,16 @@ def equilibrium(
             give(problem.ROWS, EDGE, OF, K, L, m)
             if not nearest or centre <= STATICS_GAP * first:
                 return True, done
-        if done == most or not (speed < np.inf and (centre > 0.0 or free)):
+        elif not found and done > 0:
+            if speed <= STATICS_PROGRESS * last:
+                stalled = 0
+            else:
+                stalled += STATICS_STALLED if fastest(Y, EXTENT, n) > STATICS_RUNAWAY * given else 1
+        if done == most or stalled >= STATICS_STALLED or not (speed < np.inf and (centre > 0.0 or free)):
             if not found:
                 copy(START, Y)
             return found, done
+        last = speed
         if done == 0 or not free:
             for e in range(K):
                 G[e].k_n = 1.0 / (EDGE[e].a_gg + (0.0 if free else EDGE[e].s / EDGE[e].x))

@@ -53,4 +53,9 @@ LATE_NEIGHBOURS = work(24, "neighbours", "Number from which on a body is elimina
 FACE_ROUND_OFF = round_off(
     16.0, "times the gap's round-off", "Difference of gaps up to which both ends of parallel faces touch at once."
 )
+ROCKING = heuristic(
+    1e-06,
+    "of the smaller shape",
+    "Difference of gaps up to which both ends of a lossy face touch at once. Smaller: long cascades of impacts.",
+)
 BLOCK_BODIES = heuristic(16, "bodies", "Bodies of a large island on which a hit acts at once. Larger: slower hits.")

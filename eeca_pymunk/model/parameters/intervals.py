@@ -7,11 +7,13 @@ from .record import accuracy, heuristic, round_off, work
 TOUCH = accuracy(
     1e-07,
     "of the smaller shape",
-    "Gap within which shapes touch, both ends of a lossy face included; and overlap beyond which they were put into "
-    "one another. Smaller: round-off opens resting contacts. Larger: bodies rest apart.",
+    "Gap within which shapes touch. Smaller: round-off opens resting contacts. Larger: bodies rest apart.",
 )
 ELASTIC_REST = accuracy(1e-06, "of |a| dt", "Speed below which a touching elastic contact persists.")
 ELASTIC_REST_ON = accuracy(0.001, "of |a| dt", "Speed below which an elastic contact that carried a force persists.")
+SOLVES_BEFORE_HASTE = heuristic(
+    3, "solves of every body in a step", "Work after which large islands are neither hit nor joined in the step."
+)
 IMPACT_SPEED = accuracy(
     2.0,
     "of |a| h",

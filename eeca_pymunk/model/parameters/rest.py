@@ -18,6 +18,13 @@ STATICS_FACTORS = work(12, "factorisations", "Factorisations to find static forc
 STATICS_FACTORS_NEAREST = work(6, "factorisations", "Further factorisations to approach the guess.")
 STATICS_START = accuracy(0.1, "of the mean guess", "Least impulse at the start of the interior-point iteration.")
 STATICS_STEP = accuracy(0.99, "of the distance to the boundary", "Step of the interior-point iteration.")
+STATICS_PROGRESS = heuristic(0.8, "ratio of residual motions", "Progress of an iteration below which it stalls.")
+STATICS_STALLED = heuristic(4, "iterations", "Stalled iterations after which no static forces exist.")
+STATICS_RUNAWAY = heuristic(
+    100000.0,
+    "times the velocities",
+    "Growth of the multipliers by which one iteration shows a motion that no force holds.",
+)
 STATICS_GAP = accuracy(
     1e-08, "of the first complementarity", "Complementarity at which the forces are the nearest to the guess."
 )
