@@ -62,7 +62,9 @@ def start_waiting(A: Scene, J: Joints) -> int:
 def cut_short(A: Scene, J: Joints, i: int, t: float) -> int:
     """Let the step end at instant t, the event of body i: so nothing that it has no work left for is passed over.
     Intervals end there, without what they would have lifted at their own end."""
-    note_unmet(A, SOLVES, A.STATE[i].own, A.STATE[i].other, float(A.COUNT.work), most_work(A))
+    met = A.STATE[i].other >= 0  # else its interval ends: the body alone is named
+    own, other = (A.STATE[i].own, A.STATE[i].other) if met else (A.STATE[i].first_shape, -1)
+    note_unmet(A, SOLVES, own, other, float(A.COUNT.work), most_work(A))
     A.PAR.dt = t
     A.COUNT.heap = 0
     if J.TALLY.components > 0:
