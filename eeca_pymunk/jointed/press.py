@@ -29,11 +29,13 @@ from ..model.parameters.joints import (
     ARM_ERROR,
     CHORD,
     COLUMN_CONTACTS,
+    COLUMNS_AGAIN,
     JOINTS_NEAR,
     OUTER,
     OUTER_FLOOR,
     OUTER_MANY,
     OUTER_PART,
+    OUTER_PROGRESS,
     OUTER_SMALL,
     PRESS_LOCKS,
     PRESS_RESIDUAL,
@@ -143,11 +145,11 @@ def press(
         if outer > 0:
             off = farthest_apart(motion.V, FORESEEN, isle.EXTENT, n)
             reached = min(reached, off)
-            if off <= agree or (off <= OUTER_FLOOR * scale and off > best):
+            if off <= agree or (off <= OUTER_FLOOR * scale and off > OUTER_PROGRESS * best):
                 converged, agreed = True, True
                 break
-            slowly = stiff or m <= SOME_CONTACTS
-            hopeless = m > SOME_CONTACTS and outer > 1 and not elastic and off > best
+            slowly = stiff or (m <= SOME_CONTACTS and (off > OUTER_PROGRESS * best or off > COLUMNS_AGAIN * scale))
+            hopeless = m > SOME_CONTACTS and outer > 1 and not elastic and off > OUTER_PROGRESS * best
             if off < best:
                 best = off
                 copy(LEAST, L)

@@ -165,3 +165,11 @@ EXCESSIVE_WORK = heuristic(
     "Work of moving supports beyond which a solution is replaced by sweeps from zero.",
 )
 GENTLE_SWEEPS = work(20, "sweeps", "Sweeps that replace an excessive solution.")
+OUTER_PROGRESS = work(
+    0.3,
+    "ratio of differences",
+    "Progress of the iterations between contacts and components below which they are given up; they end at AGREE.",
+)
+COLUMNS_AGAIN = work(
+    0.0001, "of the speed", "Difference above which the response is computed again in each of these iterations."
+)
