@@ -147,11 +147,12 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     REST = np.zeros_like(V)
     gained = energy_of(block, V, REST, n) - energy_of(block, BEFORE, REST, n) + OUT[0].restitution + OUT[0].friction
     A.PAR.external += gained - carried(P, Q, ROWS, L, V, V, block.IM, block.II, rows)
+    lost = OUT[0].restitution + OUT[0].friction - owed
     finish(A, block, n, m, L, OUT, status, t)
     A.STATE[i].version += 1
     if A.BODY[j].inv_mass > 0.0:
         A.STATE[j].version += 1
-    n = rejoin(A, a, b, t, n, rest, OUT[0].restitution + OUT[0].friction - owed)
+    n = rejoin(A, a, b, t, n, rest, lost)
     # Islands that were brought here, and do not touch after all, begin anew too.
     for q in range(n):
         A.PLACE[A.BLOCK[q]] = q

@@ -83,8 +83,9 @@ def strike(A: Scene, a: int, b: int, t: float, rest: bool) -> int:
     L, LOSS, OUT = np.zeros((rows, 2)), np.zeros((rows, 2)), zeros(1, SOLVED)
     problem = Problem(block.A, block.B, block.ROWS, block.IM, block.II, block.POSE, n, rows)
     status = solve_block(problem, L, block.V, owed, piled, LOSS, OUT)
+    lost = OUT[0].restitution + OUT[0].friction - owed
     finish(A, block, n, m, L, OUT, status, t)
-    return rejoin(A, a, b, t, n, rest, OUT[0].restitution + OUT[0].friction - owed)
+    return rejoin(A, a, b, t, n, rest, lost)
 
 
 @kernel

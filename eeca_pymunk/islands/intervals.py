@@ -142,6 +142,7 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
             lifting(problem, middle, VN, isle.ACC, h, size, budget, contacts.JUMP)
         if abs(OUT[0].lock - 1.0) > abs(A.PAR.lock - 1.0):
             A.PAR.lock = OUT[0].lock
+    stood = OUT[0].stood > 0
     COUNT.solves += 1
     COUNT.solved += n
     spend(A, 2 * p, m, OUT[0].sweeps, OUT[0].direct)
@@ -180,6 +181,6 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
         for z in range(m):
             A.PUSHED_BY[first + z].root = head
         COUNT.pushes += m
-        if OUT[0].stood > 0:
+        if stood:
             put_to_rest(A, head)
     return DONE, 0.0
