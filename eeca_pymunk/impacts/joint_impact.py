@@ -132,7 +132,7 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
                 for c in range(3):
                     V[q, c] = PUSH[INDEX[q], c]
     FITTED = V.copy()
-    weigh(C, P, Q, ROWS, rows)
+    weigh(groups, C, P, Q, ROWS, rows)
     problem = JointedProblem(P, Q, ROWS, C, room_for_rows(0, 0), rows)
     status = solve_block(problem, L, V, owed, False, LOSS, OUT)
     fits = not conserves(ROWS, rows)

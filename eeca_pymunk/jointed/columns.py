@@ -14,7 +14,7 @@ from ..compiled.records import Rows
 from ..model.contacts import Columns, Row
 from ..model.joints import Joints
 from ..model.parameters.impulses import SINGULAR
-from ..model.parameters.joints import STRUT
+from ..model.parameters.joints import STRUT, STRUT_BETWEEN
 from .component import answer
 from .groups import Groups
 
@@ -115,15 +115,16 @@ def along(C: Columns, A: IntArray, B: IntArray, ROWS: Rows[Row], i: int, D: Floa
 
 
 @uncounted
-def weigh(C: Columns, A: IntArray, B: IntArray, ROWS: Rows[Row], m: int) -> None:
+def weigh(groups: Groups, C: Columns, A: IntArray, B: IntArray, ROWS: Rows[Row], m: int) -> None:
     """Let K, A and W of the rows be those of the columns; leave out what hardly can be moved."""
     for i in range(m):
         nn, tt = along(C, A, B, ROWS, i, C.N, False), along(C, A, B, ROWS, i, C.T, True)
         nt = 0.5 * (along(C, A, B, ROWS, i, C.N, True) + along(C, A, B, ROWS, i, C.T, False))
-        C.OUT[i] = 0 if nn * ROWS[i].k_n > STRUT else 1
+        least = STRUT if groups.GROUP[A[i]] == groups.GROUP[B[i]] else STRUT_BETWEEN
+        C.OUT[i] = 0 if nn * ROWS[i].k_n > least else 1
         if C.OUT[i] == 0:
             ROWS[i].k_n, ROWS[i].a_nn = 1.0 / nn, nn
-        if tt * ROWS[i].k_t > STRUT:
+        if tt * ROWS[i].k_t > least:
             ROWS[i].k_t, ROWS[i].a_tt, ROWS[i].a_nt = 1.0 / tt, tt, nt
         else:
             ROWS[i].friction, ROWS[i].a_nt = 0.0, 0.0

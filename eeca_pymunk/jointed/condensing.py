@@ -159,7 +159,7 @@ def solve_condensed(
             for p in range(k):
                 Y[p, j] = x[p]
                 add_column(D, S[p], x[p], K, j // 2, tangent)
-        weigh(K, A, B, ROWS, m)
+        weigh(groups, K, A, B, ROWS, m)
         for i in range(m):
             LC[i, 0], LC[i, 1] = L[i, 0], L[i, 1]
         leave_out(K, LC, m, V)

@@ -113,7 +113,7 @@ def hold(A: Scene, J: Joints, interval: Interval, end: float, RATES: FloatArray,
         if not ready(J, s, 2.0, False):
             return
         fill_group(J, groups, C, g, INDEX, False, P, Q, KEEP, m, np.empty((size, 3)))
-    weigh(C, P, Q, KEEP, m)
+    weigh(groups, C, P, Q, KEEP, m)
     for i in range(m):
         if RATES[i] < np.inf:
             RATES[i] = normal_rate(P, Q, KEEP, motion.V, i)

@@ -58,7 +58,7 @@ def solve_gently(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Boun
     if free:
         align(isle, P, Q, ROWS, m, interval.motion, True)
     fill_free(groups, C, P, Q, ROWS, isle.IM, isle.II, m)
-    weigh(C, P, Q, ROWS, m)
+    weigh(groups, C, P, Q, ROWS, m)
     V, BOTH = interval.motion.V.copy(), with_bounded(B, L, m)
     problem = JointedProblem(P, Q, ROWS, C, B, m)
     for _ in range(GENTLE_SWEEPS):

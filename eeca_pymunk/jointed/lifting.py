@@ -64,7 +64,7 @@ def correct(A: Scene, J: Joints, interval: Interval, end: float, budget: float) 
             if ready(J, s, 2.0, False):
                 fill_group(J, groups, C, g, INDEX, False, P, Q, ROWS, m, np.empty((places, 3)))
     KEEP = ROWS[:m].copy()
-    weigh(C, P, Q, KEEP, m)
+    weigh(groups, C, P, Q, KEEP, m)
     D = np.zeros_like(V)
     raise_gaps(JointedProblem(P, Q, KEEP, C, room_for_rows(0, 0), m), GAPS, D, 1e-3 * -deepest)
     far = 0.0

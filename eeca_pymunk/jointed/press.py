@@ -164,7 +164,7 @@ def press(
             if free:
                 fill_free(groups, C, P, Q, ROWS, isle.IM, isle.II, m)
             J.PROGRESS.effort += SOLUTION_WORK * C.AT[m]
-            weigh(C, P, Q, ROWS, m)
+            weigh(groups, C, P, Q, ROWS, m)
         if outer == 0:
             stiff = m <= COLUMN_CONTACTS and some_taut(J, groups)
             slowly = stiff

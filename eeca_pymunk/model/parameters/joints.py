@@ -71,9 +71,13 @@ ARM_ITERATIONS = work(6, "iterations", "Iterations of the motion in which arms o
 ARM_ERROR = round_off(1e-15, "of the component", "Error of the arms of contacts at which these iterations end.")
 BOUNDED_SWEEPS = work(30, "sweeps", "Sweeps over bounded joint rows and contacts.")
 STRUT = round_off(
-    1e-07,
+    0.001,
     "of the free mobility",
-    "Mobility of a contact under its joints that is the error of their solution: the contact then is left out.",
+    "Mobility of a contact between two bodies of one component that is the error of the component's response, which "
+    "redundant joints enlarge: the contact is left out.",
+)
+STRUT_BETWEEN = round_off(
+    1e-07, "of the free mobility", "Mobility of a contact with other bodies that is the error of the response."
 )
 CORRECTION_JOINTS = accuracy(1e-11, "of the component", "Error of joints when overlaps are corrected.")
 CONDENSED_BOUNDED = work(
