@@ -28,7 +28,7 @@ from ..pairs.rules import barred, law
 from .accounting import end_interval
 from .at_rest import wake_changed
 from .intervals import solve
-from .membership import approach, budget_spent, carrier, members, rests, unite
+from .membership import approach, budget_spent, carrier, largest_island, members, rests, unite
 from .partial_rest import rests_in_part
 from .penetration import hold_penetrating
 from .support import support
@@ -194,12 +194,7 @@ def most_hits(A: Scene, a: int, b: int) -> int:
     """How often they may be: lossy islands the oftener the smaller they are."""
     if law(A.SHAPE, A.RULE, a, b)[0] >= 1.0:
         return RESOLUTION
-    size = 1
-    for s in (a, b):
-        root = A.STATE[A.LINK[s].owner].island
-        if root >= 0:
-            size = max(size, A.MEMBER[root].bodies)
-    return max(1, RESOLUTION // size)
+    return max(1, RESOLUTION // max(1, largest_island(A, a, b)))
 
 
 @kernel

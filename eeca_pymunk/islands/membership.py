@@ -51,16 +51,22 @@ def unite(A: Scene, i: int, j: int) -> int:
 
 
 @uncounted
-def in_large_island(A: Scene, a: int, b: int) -> bool:
-    """Whether shapes a and b meet in a large island: their hit spreads from the nearest bodies by its new interval."""
-    if law(A.SHAPE, A.RULE, a, b)[0] >= 1.0:
-        return False
+def largest_island(A: Scene, a: int, b: int) -> int:
+    """Number of bodies of the larger of the islands of shapes a and b, 0 for none."""
     size = 0
     for s in (a, b):
         root = A.STATE[A.LINK[s].owner].island
         if root >= 0:
             size = max(size, A.MEMBER[root].bodies)
-    return size >= LARGE_ISLAND
+    return size
+
+
+@uncounted
+def in_large_island(A: Scene, a: int, b: int) -> bool:
+    """Whether shapes a and b meet in a large island: their hit spreads from the nearest bodies by its new interval."""
+    if law(A.SHAPE, A.RULE, a, b)[0] >= 1.0:
+        return False
+    return bool(largest_island(A, a, b) >= LARGE_ISLAND)
 
 
 @uncounted
