@@ -18,6 +18,7 @@ from .saved import Saved, sides_of
 from .space.arbiters import Touches, show_contacts, touches
 from .space.shapes import Rules
 from .space.world import World
+from .transfer import OTHER_BODIES
 
 if TYPE_CHECKING:
     import pymunk
@@ -135,26 +136,30 @@ class EECA(RunningStepper):
             self._shown = step, world, Touches(touches(self._method.events, world.shapes))
         return self._shown[2]
 
-    def adjust(self, world: World, dt: float) -> None:
+    def adjust(self, world: World, dt: float) -> bool:
         parted = False
         joints = world.joints
         if joints is not None:
             if not joints.idle():
                 with busy(self.space):  # springs have functions
                     joints.look(world.state, world.bodies.row, dt)
-            if joints.replan:
+            if joints.replan or joints.ends_moved:
                 assert isinstance(self._method, EventLoop)
-                self._method.plan()
+                if self._method.holds_others():
+                    return False
+                if joints.replan:
+                    self._method.plan()
                 joints.planned()
             parted = world.part()
         if parted or (world.collisions and world.rules is not self._ruled):
             self._ruled = world.rules
             self._method.rule(world.told())
+        return True
 
     def advance(self, world: World, dt: float, left: float) -> int:
         gx, gy = world.gravity
-        if not world.plain:
-            self.adjust(world, dt)
+        if not world.plain and not self.adjust(world, dt):
+            return OTHER_BODIES
         return self._method.step(world.STATES, world.WALK, world.EXTRA, world.ENDS, dt, gx, gy, left)
 
     def details(self, world: World, dt: float) -> Details | Callable[[], Details]:

@@ -108,9 +108,7 @@ class Rolling:
 
     def _refresh(self, dt: float) -> None:
         """Forget the copies if the space has changed."""
-        world = self.world = self.twin.current()
-        if not world.plain:
-            self.twin.adjust(world, dt)
+        world = self.world = self.twin.adjusted(dt)
         loop = self.twin.event_loop
         assert loop is not None
         rules = loop.scene.RULE.tobytes()

@@ -56,8 +56,18 @@ class RunningStepper(PackedStepper):
         """The event loop of the present world; None if the closure has none."""
 
     @abstractmethod
-    def adjust(self, world: World, dt: float) -> None:
-        """Update the event loop from joints and collision handlers before the next step."""
+    def adjust(self, world: World, dt: float) -> bool:
+        """Update the event loop from joints and collision handlers before the next step; False if the space has to be
+        read anew, since joints hold other bodies."""
+
+    def adjusted(self, dt: float) -> World:
+        """`current`, ready for a step of length dt."""
+        world = self.current()
+        if not world.plain and not self.adjust(world, dt):
+            self.refresh()
+            world = self.current()
+            self.adjust(world, dt)
+        return world
 
     def current(self) -> World:
         """The arrays of the present space, with the states of its bodies."""
@@ -176,9 +186,7 @@ class RunningStepper(PackedStepper):
 
         A step that fails raises as `step` does; the space is at the end of the step before.
         """
-        world = self.current()
-        if not world.plain:
-            self.adjust(world, dt)
+        world = self.adjusted(dt)
         rows = np.array([world.bodies.row[body] for body in kept], np.int64)
         moments = 1 + steps // every if every else 0
         buffers = RunBuffers(dt, world.gravity, world.left(dt), self.time, rows, moments, every, events)

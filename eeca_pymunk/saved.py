@@ -19,7 +19,7 @@ from .space.world import World
 if TYPE_CHECKING:
     import pymunk
 
-_FIXED = ["inv_mass", "inv_inertia", "extent", "elasticity", "friction"]  # fields of BODY that no step changes
+_FIXED = ["extent", "elasticity", "friction"]  # fields of BODY that no step changes
 _TIE = "kind", "body", "soft"  # fields of JOINT that decide the plan
 
 
@@ -46,6 +46,8 @@ class Saved:
         if scene.COUNT.disks != world.disks or not np.array_equal(
             columns(scene.BODY, *_FIXED), columns(world.BODY, *_FIXED)
         ):
+            return False
+        if not np.array_equal(self.method.mobility, columns(world.BODY, "inv_mass", "inv_inertia")):
             return False
         if not (np.array_equal(scene.SHAPE, world.SHAPE) and np.array_equal(scene.LINK, world.LINK)):
             return False

@@ -28,5 +28,6 @@ class Midstep:
         """The arrays of the solve for a world that was read anew."""
         joint = None if world.joints is None else world.joints.joint
         return EventLoop(
-            world.BODY, world.SHAPE, world.LINK, world.VERTEX, world.disks, 0, joint, world.PARTNER, together=True
+            world.BODY, world.SHAPE, world.LINK, world.VERTEX, world.disks, 0, joint, world.PARTNER, together=True,
+            still=world.still,
         )  # fmt: skip

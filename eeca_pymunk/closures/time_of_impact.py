@@ -30,5 +30,6 @@ class TimeOfImpact:
         """The arrays of the loop for a world that was read anew."""
         joint = None if world.joints is None else world.joints.joint
         return EventLoop(
-            world.BODY, world.SHAPE, world.LINK, world.VERTEX, world.disks, self.max_impacts, joint, world.PARTNER
+            world.BODY, world.SHAPE, world.LINK, world.VERTEX, world.disks, self.max_impacts, joint, world.PARTNER,
+            still=world.still,
         )  # fmt: skip

@@ -30,7 +30,7 @@ TABLES = {
         POOL:i4[1] FLAG:u1[1] HEAD:i8[1] GRID:Grid BOX:f8[2] CSR:i8[1] RULE:f8[2] HEAP_TIME:f8[1]
         HEAP_BODY:i8[1] LOG:Impulse[1] BEGAN:f8[2] PLACE:i8[1] BLOCK:i8[1] PULL:f8[2] MEMBER:Member[1] RESTING:Rest[1]
         PUSHED_BY:Pair[1] PUSHED:Pushed[1] KEYS:i8[1] FORCES:Force[1] CORE:f8[3]
-        SIDE:Side[1] CORNER:Corner[1] MISSED:Missed[1] PAR:Step COUNT:Count
+        SIDE:Side[1] CORNER:Corner[1] HELD:Held[1] MISSED:Missed[1] PAR:Step COUNT:Count
     """,
     "Joints": """
         JOINT:Joint[1] PARTNER:Body[1] COMPONENT:Component[1] MEMBER:ComponentBody[1] LINK:Coupling[1]
@@ -72,6 +72,7 @@ ENTRIES = {
     "impacts.step:step": "{Scene} {Joints} f8[3] i8[2] f8[2] f8[1] f8[1] f8 f8 f8 f8 i8",
     "impacts.run:run": "{Scene} {Joints} {RunArrays} f8[3] i8[2] f8[2] f8[1] f8[1]",
     "joints.plan:make_plan": "Body[1] Joint[1] Component[1] ComponentBody[1] Coupling[1]",
+    "joints.held:find_held": "Body[1] Joint[1] i8[1] i8[1] i8[1]",
     "joints.world:step_all": "{Joints} Body[1] f8",
     # Only tests call these, which solve single islands: some hundred times slower as plain Python.
     "contacts.interval:step_island": "{Scene} {Island} {Contacts} i8 f8 i8 f8 f8 f8 f8",

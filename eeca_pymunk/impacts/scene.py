@@ -10,10 +10,11 @@ import numpy as np
 
 from ..arrays import AnyArray, FloatArray, IntArray, side_by_side
 from ..compiled.library import check
-from ..compiled.records import R, Rows, rows
+from ..compiled.records import R, Rows, columns, put, rows
 from ..contacts.memory import forget
 from ..geometry.corners import core_room, thin_memory
 from ..islands.accounting import flag_again
+from ..joints.held import held_bodies
 from ..joints.workspace import make_joints
 from ..layout import NOW as READ
 from ..model.bodies import CHECK, Body, Member, Next, Rest
@@ -63,14 +64,23 @@ class EventLoop(Remembering):
         joint: (j,) the joints; kept, not copied. Bodies are rows of BODY, or len(BODY) + row of PARTNER (x,), which
             joints cannot move. None for a scene without joints.
         together: whether all contacts of a step act together at its middle, rather than at their instants.
+        still: (x,) 1 for rows of PARTNER that never move; None: all.
         order: of the steps of components, 4 where nothing in one dissipates, drives, or touches something; or 2.
     """
 
     def __init__(
         self, BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, disks: int, limit: int,
         joint: Rows[Joint] | None = None, PARTNER: Rows[Body] | None = None, together: bool = False, order: int = 4,
+        still: IntArray | None = None,
     ) -> None:  # fmt: skip
         n = len(BODY)
+        self.mobility: FloatArray = columns(BODY, "inv_mass", "inv_inertia").copy()
+        self.joint, self.partner = rows(Joint, 0) if joint is None else joint, BODY[:0] if PARTNER is None else PARTNER
+        self._still: IntArray = np.ones(len(self.partner), np.int64) if still is None else still
+        self._smooth: IntArray = np.ones(n, np.int64)
+        self._smooth[LINK["owner"][SHAPE["friction"] > 0.0]] = 0
+        HELD = held_bodies(BODY, self.joint, self.partner, self._still, self._smooth)
+        BODY["inv_mass"][HELD["body"]] = BODY["inv_inertia"][HELD["body"]] = 0.0
         moving = int(np.count_nonzero(LINK["owner"] < n - 1))
         STATE, MEMBER, RESTING, PULL, BEGAN, TIME, OF, PLACE, BLOCK = side_by_side(
             ((n,), Next.TYPE), ((n,), Member.TYPE), ((n,), Rest.TYPE),
@@ -92,7 +102,8 @@ class EventLoop(Remembering):
             CORNER=CORNER, RULE=np.zeros((0, RULE_COLUMNS)), HEAP_TIME=TIME, HEAP_BODY=OF,
             LOG=rows(Impulse, 4 * n + 64), BEGAN=BEGAN, PLACE=PLACE, BLOCK=BLOCK, PULL=PULL, MEMBER=MEMBER,
             RESTING=RESTING, PUSHED_BY=rows(Pair, room), PUSHED=rows(Pushed, room),
-            KEYS=np.full(4 * room, -1, np.int64), FORCES=rows(Force, 4 * room), MISSED=rows(Missed, _MISSED),
+            KEYS=np.full(4 * room, -1, np.int64), FORCES=rows(Force, 4 * room), HELD=HELD,
+            MISSED=rows(Missed, _MISSED),
         )  # fmt: skip
         scene, self.table = with_lists(scene, moving)
         self.scene = scene
@@ -103,10 +114,7 @@ class EventLoop(Remembering):
         self.scene.MEMBER["tied"] = self.scene.MEMBER["next_tied"] = -1
         self.scene.RESTING["augmentation"] = AUGMENTATION
         self.jointed = joint is not None
-        self.joints = make_joints(BODY[:0], rows(Joint, 0), BODY[:0], order)
-        if joint is not None and PARTNER is not None:
-            self.joint, self.partner = joint, PARTNER
-            self.plan()
+        self.plan()
 
     def plan(self) -> None:
         """Find the components anew: after changes of joints' kinds, bodies, anchors off centre, or of mobilities."""
@@ -116,6 +124,14 @@ class EventLoop(Remembering):
         for s in range(self.joints.TALLY.components):
             moved = np.flatnonzero(s == self.joints.OF)
             ring["tied"][moved], ring["next_tied"][moved] = moved[0], np.roll(moved, -1)
+
+    def holds_others(self) -> bool:
+        """Whether other bodies are held by straight paths than those of HELD, after changes of joints or of their
+        ends."""
+        BODY = self.scene.BODY.copy()
+        put(BODY, self.mobility, "inv_mass", "inv_inertia")
+        HELD = held_bodies(BODY, self.joint, self.partner, self._still, self._smooth)  # type: ignore[arg-type]
+        return HELD.tobytes() != self.scene.HELD.tobytes()
 
     def rebind(self, joint: Rows[Joint], PARTNER: Rows[Body]) -> None:
         """Take other arrays of joints that have the same in them."""

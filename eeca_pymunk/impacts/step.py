@@ -5,6 +5,7 @@ from __future__ import annotations
 from ..arrays import FloatArray, IntArray
 from ..compiled import Table, kernel
 from ..jointed.ledger import account_joints, start_joints
+from ..joints.held import hold
 from ..model.joints import Joints, joints_of
 from ..model.scene import Scene, scene_of
 from ..model.step import DONE, LOG_FULL, POOL_FULL, PUSHES_FULL
@@ -31,8 +32,11 @@ def start(
         start_joints(A, J, STATES, WALK)
     status = take(STATES, WALK, EXTRA, A.BODY, gx, gy, left)
     if status >= 0:
+        lost = hold(A.HELD, A.BODY)
         A.PAR.dt, A.PAR.gravity_x, A.PAR.gravity_y, A.PAR.left_over = dt, gx, gy, left
         begin(A, WALK)
+        A.PAR.before += lost
+        A.PAR.restitution += lost
     return status
 
 

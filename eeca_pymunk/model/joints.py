@@ -243,6 +243,18 @@ class JointLedger(Record):
 EXACT, HALVED, ELASTIC, LINEAR = 0, 1, 2, 3
 
 
+class Held(Record):
+    """A body that joints hold on a straight line between fixed points (`..joints.held`)."""
+
+    body: int  # row of `Body`
+    kind: int  # WHOLLY or CENTRE of `..joints.held`
+    x: float  # pose: length, length, rad
+    y: float
+    angle: float
+    mass: float  # of the body, whose rows of BODY say that nothing moves it
+    moment: float
+
+
 class Tally(Record):
     """Counters of the components of a scene."""
 

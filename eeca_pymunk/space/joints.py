@@ -58,6 +58,7 @@ class JointRows:
         parted: pairs of bodies whose shapes do not collide, by `collide_bodies`; None after a change, see `part`.
         rates: for springs with functions, the rate of length and the dt of the last step, see `put_law`.
         replan: whether kinds, anchors or bounds of joints have changed since `planned` was called.
+        ends_moved: whether joints, or static bodies outside the space that they end at, have.
     """
 
     def __init__(
@@ -108,7 +109,7 @@ class JointRows:
         self._ratchets = [j for j, given in enumerate(self._given) if given.kind == RATCHET]
         self._timestamp = private.timestamp(space)
         self.rates: dict[pymunk.Constraint, Rate] = {} if past is None else past.rates
-        self.replan = True
+        self.replan, self.ends_moved = True, False
         self._find_functions()
 
     def is_of(self, space: pymunk.Space) -> bool:
@@ -134,7 +135,7 @@ class JointRows:
         except ValueError:
             self._edits.add(edited)
             raise
-        others = False
+        others, self.ends_moved = False, True
         for j, given in found.items():
             item, before = self.items[j], self._given[j]
             given.put(self._memory, j, *(self._row_of[body] for body in self._pairs[item]))
@@ -194,7 +195,7 @@ class JointRows:
 
     def planned(self) -> None:
         """Note that there is a plan for the present joints."""
-        self.replan = False
+        self.replan = self.ends_moved = False
 
     def calls_back(self) -> bool:
         """Whether a constraint has a function that is called once a step."""
@@ -221,6 +222,7 @@ class JointRows:
         moved = self.partners.read()
         if len(moved):
             self.touch(self._n + moved)
+            self.ends_moved |= bool(self.partners.still[moved].any())
         for j in self.functions:
             item = self.items[j]
             a, b = (self._motion(body, state, place) for body in (item.a, item.b))

@@ -29,6 +29,7 @@ class Partners:
 
     Attributes:
         items: the bodies, by row.  PARTNER: (x,) their poses and, of kinematic ones, velocities.
+        still: (x,) 1 for static bodies, else 0: those never move but where the program puts them elsewhere.
         outside: rows of the bodies outside the space, which may have moved.
     """
 
@@ -42,6 +43,7 @@ class Partners:
                 if body in before:
                     self._known[i] = past._known[before[body]]
                     self.PARTNER[i] = past.PARTNER[before[body]]
+        self.still: IntArray = np.array([body.body_type == pymunk.Body.STATIC for body in self.items], np.int64)
         # Moved static bodies of the space are found where the states of all its bodies are read.
         self.outside = [i for i, body in enumerate(self.items) if body.space is not space]
         self.changed: IntArray = self._read(range(len(self.items)))

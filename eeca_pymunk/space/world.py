@@ -7,8 +7,10 @@ from collections.abc import Callable, Collection, Sequence
 from functools import cached_property
 from typing import Any, TypeAlias
 
+import numpy as np
 import pymunk
 
+from ..arrays import IntArray
 from ..compiled.records import Rows, rows
 from ..layout import BODY_ROW
 from ..model.bodies import Body
@@ -174,6 +176,11 @@ class World(Crossing):
     def PARTNER(self) -> Rows[Body]:
         """(x,) bodies of joints that have no row of BODY."""
         return rows(Body, 0) if self.joints is None else self.joints.partners.PARTNER
+
+    @property
+    def still(self) -> IntArray:
+        """(x,) 1 for the rows of PARTNER that never move."""
+        return np.zeros(0, np.int64) if self.joints is None else self.joints.partners.still
 
     def part(self) -> bool:
         """Find the pairs of shapes that do not collide because of joints of their bodies; returns whether they have

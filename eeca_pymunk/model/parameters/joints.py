@@ -70,6 +70,9 @@ TAUT = heuristic(
 ARM_ITERATIONS = work(6, "iterations", "Iterations of the motion in which arms of contacts become those of its middle.")
 ARM_ERROR = round_off(1e-15, "of the component", "Error of the arms of contacts at which these iterations end.")
 BOUNDED_SWEEPS = work(30, "sweeps", "Sweeps over bounded joint rows and contacts.")
+STRAIGHT_PATH = round_off(
+    1e-12, "of length and coordinates", "Slack of a path of joints between fixed points up to which it cannot move."
+)
 STRUT = round_off(
     0.001,
     "of the free mobility",

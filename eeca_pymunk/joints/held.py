@@ -1,0 +1,182 @@
+"""Bodies that cannot move since joints hold them on a straight line between fixed points: a bridge as long as its gap.
+
+A path of bodies and joints from point A to point B, both fixed, is at most
+
+    L = sum of the distances of a body's two anchors, of the lengths of pins and of the upper limits of slides
+
+long. If L = |AB| there is one place for each of its points, on the line at its distance along the path, and a body with
+two of them is fixed. The equations of such joints are singular: to first order they let the bodies go across, and any
+force across would need an infinite pull. So these bodies count as bodies that nothing moves, like static ones.
+
+A path from A is straight as far as its length does not exceed the distance from A by more than round-off; by the
+triangle inequality one that is bent anywhere stays longer than the distance, so that it need not be followed.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import kernel, uncounted
+from ..compiled.records import Rows, rows
+from ..model.bodies import Body
+from ..model.joints import PIN, PIVOT, SLIDE, Held, Joint
+from ..model.parameters.joints import STRAIGHT_PATH
+from .plan import turning
+
+FREE, WHOLLY, CENTRE = 0, 1, 2  # what of a body a straight path holds
+
+
+@uncounted
+def reach(joint: Joint) -> float:
+    """The largest distance of a joint's two points, or infinity."""
+    if joint.soft == 0 and joint.kind == PIVOT:
+        return 0.0
+    if joint.soft == 0 and joint.kind == PIN:
+        return joint.length
+    return joint.upper if joint.soft == 0 and joint.kind == SLIDE else math.inf
+
+
+@uncounted
+def place_points(bodies: Rows[Body], joint: Rows[Joint], X: FloatArray, HEAD: IntArray, NEXT: IntArray) -> None:
+    """Places (2 j, 2) of the points of joints, of j on its bodies a and b at 2 j and 2 j + 1; lists of those of each
+    body, of joints that may be straight."""
+    for j in range(len(joint)):
+        for end in range(2):
+            p, i = 2 * j + end, joint[j].body[end]
+            rx, ry = joint[j].anchor_a[0], joint[j].anchor_a[1]
+            if end == 1:
+                rx, ry = joint[j].anchor_b[0], joint[j].anchor_b[1]
+            c, s = math.cos(bodies[i].angle), math.sin(bodies[i].angle)
+            X[p, 0], X[p, 1] = bodies[i].x + c * rx - s * ry, bodies[i].y + s * rx + c * ry
+            if reach(joint[j]) < math.inf:
+                NEXT[p], HEAD[i] = HEAD[i], p
+
+
+@uncounted
+def straight(X: FloatArray, first: int, p: int, length: float) -> bool:
+    """Whether a path from the point `first` to p is as short as it can be."""
+    dx, dy = X[p, 0] - X[first, 0], X[p, 1] - X[first, 1]
+    size = length + max(abs(X[p, 0]), abs(X[p, 1]), abs(X[first, 0]), abs(X[first, 1]))
+    return bool(abs(length - math.sqrt(dx * dx + dy * dy)) <= STRAIGHT_PATH * size)
+
+
+@uncounted
+def fix_path(
+    joint: Rows[Joint], X: FloatArray, FROM: IntArray, p: int, first: int, spins: IntArray, held: IntArray
+) -> int:  # fmt: skip
+    """Hold the bodies of the straight path from `first` that ends in p, on a fixed body; how many there are. None if a
+    body of it has all its points on the path in one place and might turn about that."""
+    for pass_ in range(2):
+        count, q = 0, p
+        while FROM[q] != first:
+            out, q = FROM[q], FROM[FROM[q]]
+            i = joint[q // 2].body[q % 2]
+            far = abs(X[out, 0] - X[q, 0]) + abs(X[out, 1] - X[q, 1])
+            wholly = far > STRAIGHT_PATH * (abs(X[q, 0]) + abs(X[q, 1]))
+            if not wholly and spins[i] == 0:
+                return 0
+            if pass_ == 1:
+                held[i] = WHOLLY if wholly else CENTRE
+            count += 1
+    return count
+
+
+@kernel
+def find_held(bodies: Rows[Body], joint: Rows[Joint], still: IntArray, spins: IntArray, held: IntArray) -> int:
+    """Find the bodies of straight paths between fixed points.
+
+    Args:
+        bodies (n,): at their present poses, with those that joints cannot move.  joint (j,).
+        still (n,): 1 for bodies that never move.
+        spins (n,): 1 for bodies that contacts do not turn; those that joints turn are set to 0.
+        held (n,): out, FREE, WHOLLY, or CENTRE for a body that is held at its centre of mass and spins on.
+
+    Returns:
+        the number of bodies that are held.
+    """
+    points, n = 2 * len(joint), len(bodies)
+    X, LENGTH = np.empty((points, 2)), np.empty(points)
+    HEAD, NEXT = np.full(n, -1, np.int64), np.full(points, -1, np.int64)
+    FROM, SEEN, STACK = np.empty(points, np.int64), np.full(points, -1, np.int64), np.empty(points, np.int64)
+    turns, cayley = np.zeros(n, np.int64), np.zeros(n, np.int64)
+    turning(bodies, joint, len(joint), turns, cayley)
+    for i in range(n):
+        held[i] = FREE
+        spins[i] = spins[i] if turns[i] == 0 else 0
+    place_points(bodies, joint, X, HEAD, NEXT)
+    total, found = 0, 1
+    while found > 0:
+        # What is held holds others.
+        found, stamp = 0, -1
+        SEEN[:] = -1
+        for first in range(points):
+            begin, across = joint[first // 2].body[first % 2], reach(joint[first // 2])
+            if across == math.inf or (still[begin] == 0 and held[begin] == FREE):
+                continue
+            stamp += 1
+            FROM[first ^ 1], LENGTH[first ^ 1], STACK[0], room = first, across, first ^ 1, 1
+            while room > 0:
+                room -= 1
+                p = STACK[room]
+                i = joint[p // 2].body[p % 2]
+                if not straight(X, first, p, LENGTH[p]):
+                    continue
+                if still[i] > 0 or held[i] != FREE:
+                    found += fix_path(joint, X, FROM, p, first, spins, held)
+                    continue
+                q = HEAD[i]
+                while q >= 0:
+                    length = LENGTH[p] + math.sqrt((X[q, 0] - X[p, 0]) ** 2 + (X[q, 1] - X[p, 1]) ** 2)
+                    if q != p and SEEN[q ^ 1] < stamp and straight(X, first, q, length):
+                        SEEN[q ^ 1] = stamp
+                        FROM[q], FROM[q ^ 1], LENGTH[q ^ 1] = p, q, length + reach(joint[q // 2])
+                        STACK[room] = q ^ 1
+                        room += 1
+                    q = NEXT[q]
+        total += found
+    return total
+
+
+@uncounted
+def hold(HELD: Rows[Held], BODY: Rows[Body]) -> float:
+    """Put held bodies where they are held, at rest but for the spin of those that are held at their centre; the kinetic
+    energy that they lose, which joints take as they take that of any velocity that does not fit them."""
+    lost = 0.0
+    for k in range(len(HELD)):
+        held, body = HELD[k], BODY[HELD[k].body]
+        lost += 0.5 * held.mass * (body.vx * body.vx + body.vy * body.vy)
+        body.x, body.y, body.vx, body.vy, body.ax, body.ay, body.angular = held.x, held.y, 0.0, 0.0, 0.0, 0.0, 0.0
+        if held.kind == WHOLLY:
+            lost += 0.5 * held.moment * body.spin * body.spin
+            body.angle, body.spin = held.angle, 0.0
+    return lost
+
+
+def held_bodies(
+    bodies: Rows[Body], joint: Rows[Joint], partner: Rows[Body], still: IntArray, smooth: IntArray
+) -> Rows[Held]:  # fmt: skip
+    """The bodies that straight paths hold, see `find_held`.
+
+    Args:
+        bodies: (n,) those of the scene, with their mobilities.  joint: (j,).  partner: (x,) bodies that joints cannot
+            move, of which `still` (x,) never move.  smooth: (n,) 1 for bodies that contacts do not turn.
+    """
+    n = len(bodies)
+    fixed = np.concatenate((np.zeros(n, np.int64), still))
+    ends = fixed[joint["body"]].any(axis=1) & np.isin(joint["kind"], (PIN, PIVOT, SLIDE)) & (joint["soft"] == 0)
+    if np.count_nonzero(ends) < 2:
+        return rows(Held, 0)
+    kind = np.zeros(len(fixed), np.int64)
+    everyone: Any = np.concatenate((bodies, partner))
+    find_held(everyone, joint, fixed, np.concatenate((smooth, 0 * still)), kind)
+    at = np.flatnonzero(kind)
+    HELD, one = rows(Held, len(at)), bodies[at]
+    HELD["body"], HELD["kind"] = at, kind[at]
+    for name in ("x", "y", "angle"):
+        HELD[name] = one[name]
+    HELD["mass"], HELD["moment"] = 1.0 / one["inv_mass"], 1.0 / one["inv_inertia"]
+    return HELD
