@@ -130,7 +130,7 @@ class EventLoop(Remembering):
         ends."""
         BODY = self.scene.BODY.copy()
         put(BODY, self.mobility, "inv_mass", "inv_inertia")
-        HELD = held_bodies(BODY, self.joint, self.partner, self._still, self._smooth)  # type: ignore[arg-type]
+        HELD = held_bodies(BODY, self.joint, self.partner, self._still, self._smooth)
         return HELD.tobytes() != self.scene.HELD.tobytes()
 
     def rebind(self, joint: Rows[Joint], PARTNER: Rows[Body]) -> None:

@@ -40,6 +40,7 @@ from ..model.parameters.joints import (
     LEAST_SOLUTIONS,
     LINEAR_APART,
     NEARLY_HELD,
+    REPAID,
 )
 from .correct import fits, fitting_loss
 from .foresight import foretell, forget, recalls, remember
@@ -159,6 +160,23 @@ def stop_joints(W: Workspace, h: float) -> None:
 
 
 @uncounted
+def repaid(W: Workspace, part: JointLedger, owed: float) -> bool:
+    """Whether exact rows, which close at once what an earlier step left apart, give no more than that has taken, or
+    little beside what moved before, which is taken back."""
+    gain, had = part.closed - owed, 0.0
+    if not gain > 0.0 or not stands(W.J.LOCAL, W.bodies):
+        return True
+    for i in range(W.bodies):
+        for c in range(3):
+            if W.J.LOCAL[i].mobility[c] > 0.0:
+                had += 0.5 * W.J.LOCAL[i].saved_velocity[c] ** 2 / W.J.LOCAL[i].mobility[c]
+    if not gain <= REPAID * had:
+        return False
+    part.closed -= lock_energy(W.J.LOCAL, W.bodies, gain)
+    return True
+
+
+@uncounted
 def island_step(W: Workspace, h: float, order: int, length: float, ledger: JointLedger) -> int:
     """Step one component by h; its status: EXACT, HALVED, ELASTIC or LINEAR.
 
@@ -180,10 +198,12 @@ def island_step(W: Workspace, h: float, order: int, length: float, ledger: Joint
         for c in range(3):
             local[i].shift[c] = 0.0
     save(local, W.bodies)
+    own, owed = False, joint[link[0].joint].owed
     if needs % 2 == 1:
         look(W)
         stored = springs_hold(W)
         changes = find_apart(W, h)
+        own = changes >= 4
         apart = farthest(W)
         for what in (POSES, SPEEDS):
             if (what == POSES and changes % 4 < 2) or (what == SPEEDS and changes % 2 == 0):
@@ -196,7 +216,6 @@ def island_step(W: Workspace, h: float, order: int, length: float, ledger: Joint
                 taken = springs_hold(W) - stored
                 cost = taken + closing_work(local, W.bodies)
                 # What a step left apart closes at the cost of what moves.
-                own = changes >= 4
                 locked = lock_energy(local, W.bodies, cost) if own and cost > 0.0 else 0.0
                 # Rows that contradict each other stay.
                 if not farthest(W) <= apart or (own and locked < cost - 1e-9 * abs(cost)):
@@ -263,6 +282,8 @@ def island_step(W: Workspace, h: float, order: int, length: float, ledger: Joint
             if rung < 0:
                 remember(W, piece)
                 known = recalls(W, h)
+        if done and own and rung < ELASTIC_RUNG:
+            done = repaid(W, part, owed)
         if done:
             joint[link[0].joint].compliance = compliance
             status = EXACT if rung <= 0 else HALVED if rung < ELASTIC_RUNG else ELASTIC if rung < LAST_RUNG else LINEAR
@@ -284,7 +305,6 @@ def island_step(W: Workspace, h: float, order: int, length: float, ledger: Joint
     if status >= ELASTIC:
         close_ledger(local, W.bodies, part)
         stopped = False
-        owed = joint[link[0].joint].owed
         if part.closed > owed:
             gain = part.closed - owed
             taken = lock_energy(local, W.bodies, gain)

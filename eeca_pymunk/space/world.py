@@ -218,7 +218,11 @@ class World(Crossing):
         return self._edits[0] - self._edits[1] != self._known
 
     def load(self) -> None:
-        """Read the present states into BODY."""
+        """Read the present states into BODY, and mobilities, which are 0 where joints have held bodies."""
+        rows = self.WALK[BODY_ROW]
+        moving = rows >= 0
+        self.BODY["inv_mass"][rows[moving]] = self.bodies.inverse_mass[moving]
+        self.BODY["inv_inertia"][rows[moving]] = self.bodies.inverse_moment[moving]
         self.gather()
         self._take(0.0, 0.0, 1.0)
 

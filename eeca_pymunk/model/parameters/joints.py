@@ -61,6 +61,9 @@ ELASTIC_PARTS = work(7, "number", "Parts of a step of elastic joints.")
 HASTE = work(0.25, "of the budget", "Work of a step after which limits are located roughly.")
 COMPONENT_BUDGET = work(0.5, "of what is left", "Work of one step of a component, at most.")
 NEARLY_HELD = accuracy(1e-08, "of the component", "Error of elastic joints up to which the step counts as converged.")
+REPAID = accuracy(
+    1e-3, "of the kinetic energy", "Gain of closing joints that an earlier step left apart, up to which it is locked."
+)
 TAUT = heuristic(
     0.5,
     "of a body's inertia",

@@ -1,0 +1,247 @@
+"""Bodies on a straight path of joints between fixed points, which cannot move: bridges and ropes without slack."""
+
+from __future__ import annotations
+
+import copy
+import math
+import pickle
+
+import numpy as np
+import pymunk
+import pytest
+from pymunk import Vec2d
+
+import eeca_pymunk as ep
+from eeca_pymunk.impacts.scene import EventLoop
+
+from .measures import apart, energy
+from .test_taut import DT, LONG, SIDE, bridge
+
+
+def held(stepper: ep.EECA) -> int:
+    """How many bodies are held."""
+    method = stepper._method
+    assert isinstance(method, EventLoop)
+    return len(method.scene.HELD)
+
+
+def laden(load: float, planks: int, height: float = 0.06) -> tuple[pymunk.Space, list[pymunk.Body], pymunk.Body]:
+    """A box of mass `load` above the middle of a bridge without slack."""
+    space, deck = bridge(0.0, planks=planks)
+    box = pymunk.Body(load, load * SIDE**2 / 6)
+    box.position = 0.5 * planks * LONG, height + 0.5 * SIDE
+    space.add(box, pymunk.Poly.create_box(box, (SIDE, SIDE)))
+    for shape in space.shapes:
+        shape.elasticity, shape.friction = 0.3, 0.8
+    return space, deck, box
+
+
+def rope(count: int, friction: float = 0.0, joint: type = pymunk.PinJoint) -> tuple[pymunk.Space, list[pymunk.Body]]:
+    """Balls a unit apart on a straight rope between two fixed points, joined at their centres."""
+    space = pymunk.Space()
+    space.gravity = 0.0, -9.81
+    ends = [space.static_body, *(pymunk.Body(1.0, 0.02) for _ in range(count)), space.static_body]
+    for k, ball in enumerate(ends[1:-1]):
+        ball.position = k + 1.0, 0.0
+        shape = pymunk.Circle(ball, 0.2)
+        shape.friction = friction
+        space.add(ball, shape)
+    for k in range(count + 1):
+        there = (0.0, 0.0) if k < count else (count + 1.0, 0.0)
+        limits = (0.0, 1.0) if joint is pymunk.SlideJoint else ()
+        space.add(joint(ends[k], ends[k + 1], (0.0, 0.0), there, *limits))
+    return space, ends[1:-1]
+
+
+@pytest.mark.parametrize("load", [1.0, 20.0])
+@pytest.mark.parametrize("planks", [20, 60])
+def test_a_bridge_without_slack_is_a_floor(planks: int, load: float) -> None:
+    space, deck, box = laden(load, planks)
+    stepper, last = ep.EECA(space), energy(space)
+    for _ in range(240):
+        report = stepper.step(DT)
+        assert report.converged
+        assert abs(report.ledger.residual) <= 1e-12 * load
+        assert abs(report.ledger.external) <= 1e-12 * load
+        assert energy(space) <= last + 1e-12 * load
+        last = energy(space)
+    assert held(stepper) == planks
+    assert box.position.y == pytest.approx(0.04 + 0.5 * SIDE, abs=1e-9)
+    assert apart(space) < 1e-14
+    assert all(body.position.y == 0.0 and body.velocity.length == 0.0 for body in deck)
+
+
+@pytest.mark.parametrize("joint", [pymunk.PinJoint, pymunk.SlideJoint])
+def test_a_rope_without_slack_holds_what_hits_it(joint: type) -> None:
+    """A ball of 200 link masses bounces as from fixed balls; a ball on the rope spins on."""
+    space, links = rope(20, joint=joint)
+    links[3].angular_velocity = 2.0
+    heavy = pymunk.Body(200.0, 9.0)
+    heavy.position, heavy.velocity = (10.0, 3.0), (0.0, -20.0)
+    space.add(heavy, pymunk.Circle(heavy, 0.3))
+    for shape in space.shapes:
+        shape.elasticity = 1.0
+    stepper, start = ep.EECA(space), energy(space)
+    assert all(stepper.step(DT).converged for _ in range(60))
+    assert energy(space) == pytest.approx(start, rel=1e-13)
+    assert [link.position for link in links] == [(k + 1.0, 0.0) for k in range(20)]
+    assert links[3].angle == pytest.approx(2.0)
+    assert heavy.position.y > 0.2
+
+
+def test_balls_that_rub_may_turn_and_are_not_held() -> None:
+    assert held(ep.EECA(rope(5, friction=0.5)[0])) == 0
+    assert held(ep.EECA(rope(5)[0])) == 5
+
+
+@pytest.mark.parametrize(("slack", "found"), [(0.0, 12), (1e-13, 12), (1e-9, 0), (1e-3, 0)])
+def test_slack_frees_all(slack: float, found: int) -> None:
+    assert held(ep.EECA(bridge(slack)[0])) == found
+
+
+def test_straight_pieces_of_what_is_bent_move() -> None:
+    """A rope that is straight up to where it hangs down, and one with a bounded joint."""
+    space, links = rope(6)
+    space.remove(*[joint for joint in space.constraints if links[5] in (joint.a, joint.b) and joint.b is not links[5]])
+    assert held(ep.EECA(space)) == 0
+    space, _ = rope(6)
+    list(space.constraints)[3].max_force = 100.0
+    assert held(ep.EECA(space)) == 0
+
+
+def test_what_hangs_from_a_held_body_swings() -> None:
+    """A pendulum on the middle of a bridge moves as one on a fixed point, bit by bit."""
+    ends = []
+    for fixed in (False, True):
+        space, deck = bridge(0.0, planks=4)
+        bob = pymunk.Body(1.0, 0.1)
+        bob.position = 3.0, -2.0
+        end, anchor = (space.static_body, (1.0, 0.0)) if fixed else (deck[1], (0.25, 0.0))
+        space.add(bob, pymunk.PinJoint(end, bob, anchor))
+        stepper = ep.EECA(space)
+        for _ in range(100):
+            stepper.step(DT)
+        ends.append((bob.position, bob.velocity))
+    assert ends[0] == ends[1]
+
+
+def test_two_held_paths_hold_a_third() -> None:
+    """A beam between the middles of two bridges, one above the other."""
+    space, low = bridge(0.0, planks=4)
+    joints = list(space.constraints)
+    high = []
+    for plank in low:
+        body = pymunk.Body(plank.mass, plank.moment)
+        body.position = plank.position + Vec2d(0.0, 3.0)
+        high.append(body)
+        space.add(body)
+    twin = dict(zip(low, high, strict=True))
+    for joint in joints:
+        a, b = (twin.get(body, body) for body in (joint.a, joint.b))
+        up = [anchor + Vec2d(0.0, 3.0 if body is space.static_body else 0.0) for anchor, body in
+              ((joint.anchor_a, a), (joint.anchor_b, b))]  # fmt: skip
+        space.add(pymunk.PivotJoint(a, b, *up))
+    beam = pymunk.Body(1.0, 1.0)
+    beam.position = 0.75, 1.5
+    space.add(beam, pymunk.PivotJoint(low[1], beam, (0.0, 0.0), (0.0, -1.5)))
+    space.add(pymunk.PivotJoint(beam, high[1], (0.0, 1.5), (0.0, 0.0)))
+    stepper = ep.EECA(space)
+    assert held(stepper) == 9
+    stepper.step(DT)
+    assert beam.velocity == (0.0, 0.0)
+
+
+def test_a_joint_that_is_removed_lets_all_fall() -> None:
+    space, deck, _ = laden(2.0, 12)
+    stepper = ep.EECA(space)
+    for _ in range(30):
+        stepper.step(DT)
+    start = energy(space)
+    space.remove(list(space.constraints)[6])
+    for _ in range(30):
+        assert abs(stepper.step(DT).ledger.residual) < 1e-11
+    assert held(stepper) == 0
+    assert deck[6].position.y < -0.1
+    assert energy(space) <= start + 1e-11
+
+
+def test_ends_that_are_brought_nearer_or_farther_free_and_hold() -> None:
+    space, deck = bridge(0.0)
+    last = list(space.constraints)[-1]
+    stepper = ep.EECA(space)
+    stepper.step(DT)
+    assert held(stepper) == 12
+    last.anchor_b = 5.9, 0.0
+    for _ in range(20):
+        stepper.step(DT)
+    assert held(stepper) == 0
+    assert deck[5].position.y < -0.01
+    space, _ = bridge(0.0)
+    pole = pymunk.Body(body_type=pymunk.Body.STATIC)
+    space.remove(list(space.constraints)[-1])
+    pole.position = 6.0, 0.1
+    space.add(pymunk.PivotJoint(list(space.bodies)[-1], pole, (0.25, 0.0), (0.0, -0.1)))
+    stepper = ep.EECA(space)
+    stepper.step(DT)
+    assert held(stepper) == 12
+    pole.position = 5.9, 0.1
+    stepper.step(DT)
+    assert held(stepper) == 0
+
+
+def test_a_held_body_goes_back_and_what_it_loses_is_booked() -> None:
+    space, deck = bridge(0.0)
+    stepper = ep.EECA(space)
+    stepper.step(DT)
+    deck[4].velocity, deck[4].angular_velocity = (1.0, 2.0), 3.0
+    deck[7].position, deck[7].angle = (9.0, 9.0), 1.0
+    expected = 0.5 * (5.0 + 9.0 * LONG**2 / 12)
+    report = stepper.step(DT)
+    assert report.ledger.restitution == pytest.approx(expected)
+    assert report.ledger.change == pytest.approx(-expected)
+    assert deck[4].velocity == (0.0, 0.0)
+    assert deck[7].position == (7.5 * LONG, 0.0)
+    assert deck[7].angle == 0.0
+
+
+def test_copies_runs_and_rollouts_go_the_same_way() -> None:
+    space, _, box = laden(5.0, 12, height=0.4)
+    box.angle = 0.3
+    stepper = ep.EECA(space)
+    for _ in range(10):
+        stepper.step(DT)
+    other, twin = pickle.loads(pickle.dumps((space, stepper)))
+    again, third = copy.deepcopy((space, stepper))
+    state = stepper.get_state()
+    start = np.array([[*b.position, b.angle, *b.velocity, b.angular_velocity] for b in space.bodies])
+    for _ in range(50):
+        stepper.step(DT)
+        twin.step(DT)
+    third.run(50, DT)
+    ends = [[(*b.position, b.angle, *b.velocity) for b in one.bodies] for one in (space, other, again)]
+    assert ends[0] == ends[1] == ends[2]
+    stepper.set_state(state)
+    for _ in range(50):
+        stepper.step(DT)
+    assert [(*b.position, b.angle, *b.velocity) for b in space.bodies] == ends[0]
+    frames = ep.rollout(stepper, np.stack((start, start)), 50, DT, threads=2)
+    stepper.set_state(start)
+    for _ in range(50):
+        stepper.step(DT)
+    assert frames[1, -1, -1, :2].tolist() == list(box.position)
+    assert frames[0].tobytes() == frames[1].tobytes()
+
+
+def test_units_and_turns_do_not_matter() -> None:
+    """The bridge from corner to corner of large coordinates, in mm and km."""
+    for unit in (1e-3, 1.0, 1e3):
+        space = pymunk.Space()
+        far, along = 1e3 * unit, np.array((math.cos(0.7), math.sin(0.7)))
+        before, anchor = space.static_body, (far, far)
+        for k in range(30):
+            plank = pymunk.Body(1.0, unit**2)
+            plank.position, plank.angle = tuple(far + (k + 0.5) * unit * along), 0.7
+            space.add(plank, pymunk.PivotJoint(before, plank, anchor, (-0.5 * unit, 0.0)))
+            before, anchor = plank, (0.5 * unit, 0.0)
+        space.add(pymunk.PivotJoint(before, space.static_body, anchor, tuple(far + 30.0 * unit * along)))
+        assert held(ep.EECA(space)) == 30
