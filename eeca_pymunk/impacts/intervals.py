@@ -70,6 +70,8 @@ def cut_short(A: Scene, J: Joints, i: int, t: float) -> int:
     if J.TALLY.components > 0:
         J.PROGRESS.budget = J.PROGRESS.effort + STEP_WORK
     for k in range(A.BODY.shape[0] - 1):
+        # Jointed islands that met something later than was foreseen are ahead: they stay where they are.
+        A.BODY[k].since = min(A.BODY[k].since, t)
         root = A.STATE[k].island
         if root < 0 or A.MEMBER[root].rest == AT_REST:
             continue

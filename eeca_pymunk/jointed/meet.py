@@ -138,6 +138,9 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> float:
                 member = A.MEMBER[member].following
         elif end == 0 or A.BODY[j].inv_mass > 0.0:
             least = max(least, begun(A, i if end == 0 else j))
+    # Nor beyond the next event of others, which is to be met first.
+    if A.COUNT.heap > 0:
+        latest = min(latest, max(t, A.HEAP_TIME[0]))
     small = min(A.SHAPE[a].extent, A.SHAPE[b].extent)
     before, gap_before = -1.0, 0.0
     spent = J.PROGRESS.effort > J.PROGRESS.budget

@@ -63,11 +63,16 @@ def step_with_limits(
                     high = when
                 a, b = local[link[meeting].body[0]], local[link[meeting].body[1]]
                 rate = approach(hinge[meeting], link[meeting].rows, side, a.v1, b.v1)
-                if secants > 1 and when != last:
+                # Beyond the bound the tangent is taken: a secant to before a gap that opens first hardly moves.
+                if secants > 1 and when != last and distance > 0.0:
                     rate = (distance - before) / (when - last)
                 last, before = when, distance
                 step = when - distance / rate if rate < 0.0 else 0.5 * (low + high)
                 when = step if low < step < high else 0.5 * (low + high)
+                continue
+            if abs(distance) > JOINT_TOUCH * hinge[meeting].size:  # not found: land
+                link[meeting].side = side
+                meeting, when = -1, left
                 continue
             k = first_bound(W, when)
             if (

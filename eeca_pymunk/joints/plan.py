@@ -34,7 +34,7 @@ def root(parent: IntArray, i: int) -> int:
 
 @kernel
 def find_islands(bodies: Rows[Body], joint: Rows[Joint], parent: IntArray, island: IntArray, joints: int) -> int:
-    """Number the islands by their first joint; island[j] = -1 for a joint between bodies that nothing moves.
+    """Number the islands by their first joint; island[j] = -1 for a joint that can move neither of its bodies.
 
     `parent` (bodies,) and `island` (joints,) are filled in.
     """
@@ -42,7 +42,7 @@ def find_islands(bodies: Rows[Body], joint: Rows[Joint], parent: IntArray, islan
         parent[i] = i
     for j in range(joints):
         a, b = joint[j].body[0], joint[j].body[1]
-        if moved(bodies, a) and moved(bodies, b):
+        if moved(bodies, a) and moved(bodies, b) and acts(bodies, joint[j]):
             p, q = root(parent, a), root(parent, b)
             if p != q:
                 parent[max(p, q)] = min(p, q)
@@ -51,7 +51,7 @@ def find_islands(bodies: Rows[Body], joint: Rows[Joint], parent: IntArray, islan
     for j in range(joints):
         a, b = joint[j].body[0], joint[j].body[1]
         island[j] = -1
-        if moved(bodies, a) or moved(bodies, b):
+        if acts(bodies, joint[j]):
             top = root(parent, a if moved(bodies, a) else b)
             if number[top] < 0:
                 number[top] = count
@@ -64,6 +64,15 @@ def find_islands(bodies: Rows[Body], joint: Rows[Joint], parent: IntArray, islan
 def moved(bodies: Rows[Body], i: int) -> bool:
     """Whether joints can move body i."""
     return bool(bodies[i].inv_mass > 0.0 or bodies[i].inv_inertia > 0.0)
+
+
+@kernel
+def acts(bodies: Rows[Body], joint: Joint) -> bool:
+    """Whether a joint can move one of its bodies: not if it binds the angles of two that nothing turns."""
+    a, b = joint.body[0], joint.body[1]
+    if joint.kind >= GEAR:
+        return bool(bodies[a].inv_inertia > 0.0 or bodies[b].inv_inertia > 0.0)
+    return moved(bodies, a) or moved(bodies, b)
 
 
 @kernel

@@ -8,6 +8,7 @@ import numpy as np
 import pymunk
 import pytest
 
+import eeca_pymunk as ep
 from scenes.linkages import body, chain, empty
 
 from .driving import error, ledger_closes, run
@@ -112,3 +113,35 @@ def test_a_straight_taut_chain_between_walls_does_not_stop_the_step() -> None:
         stepper.step(1 / 60)
         assert error(space) < 1e-2
     assert abs(stepper.energy() - start - stepper.gain()) < 1e-10 * 40.0
+
+
+@pytest.mark.parametrize("speed", [1e-2, 1e-4, 1e-6])
+def test_a_limit_whose_gap_opens_first_is_found(speed: float) -> None:
+    """A bob on its lower limit above the hinge is thrown up a little: y = v t - g t²/2 is back at t = 2 v/g << dt."""
+    space = pymunk.Space()
+    space.gravity = 0.0, -10.0
+    bob = pymunk.Body(1.0, 1.0)
+    bob.position, bob.velocity = (0.0, 1.0), (0.0, speed)
+    space.add(bob, pymunk.SlideJoint(space.static_body, bob, (0.0, 0.0), (0.0, 0.0), 1.0, 3.0))
+    report = ep.EECA(space).step(0.1)
+    assert report.converged
+    assert bob.position.y == pytest.approx(1.0, abs=1e-12)
+    assert report.ledger.restitution == pytest.approx(0.5 * speed**2, rel=1e-6)
+
+
+@pytest.mark.parametrize("joint", [pymunk.GearJoint, pymunk.RotaryLimitJoint])
+def test_a_joint_of_angles_that_nothing_turns_does_nothing(joint: type) -> None:
+    """Between a body of infinite moment and a kinematic one that turns; others go on as without it."""
+    ends = []
+    for joined in (False, True):
+        space = pymunk.Space()
+        wheel, rigid = pymunk.Body(body_type=pymunk.Body.KINEMATIC), pymunk.Body(1.0, math.inf)
+        swing = pymunk.Body(1.0, 1.0)
+        wheel.angular_velocity, rigid.velocity, swing.position = 1.0, (1.0, 0.0), (0.0, -1.0)
+        space.add(wheel, rigid, swing, pymunk.PinJoint(rigid, swing, (0.5, 0.0), (0.2, 0.0)))
+        if joined:
+            space.add(joint(wheel, rigid, *((0.0, 1.0) if joint is pymunk.GearJoint else (-0.1, 0.1))))
+        stepper = ep.EECA(space)
+        assert all(stepper.step(1 / 60).converged for _ in range(60))
+        ends.append((rigid.position, swing.position))
+    assert ends[0] == ends[1]

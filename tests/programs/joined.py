@@ -75,6 +75,8 @@ def apart(joint: pymunk.Constraint, length: float) -> float:
         if isinstance(joint, pymunk.SlideJoint):
             return max(far - joint.max, joint.min - far, 0.0) / length
         return far / length
+    if all(body.body_type != pymunk.Body.DYNAMIC or math.isinf(body.moment) for body in (a, b)):
+        return 0.0  # nothing can turn either
     between = b.angle - a.angle
     if isinstance(joint, pymunk.RotaryLimitJoint):
         return max(between - joint.max, joint.min - between, 0.0)
