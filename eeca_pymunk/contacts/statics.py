@@ -29,7 +29,7 @@ from ..model.parameters.rest import (
     STATICS_FACTORS_NEAREST,
     STOPPING_STEPS,
 )
-from ..rows.equilibrium import bound, equilibrium
+from ..rows.equilibrium import equilibrium, point_speed
 from ..rows.inplace import copy
 
 
@@ -74,7 +74,7 @@ def comes_to_stand(
         return False, 0
     PULL, START = FREE - V, FREE - V
     for i in range(n):
-        speed = bound(V[i, 0], V[i, 1], V[i, 2], FELT[i])
+        speed = point_speed(V[i, 0], V[i, 1], V[i, 2], FELT[i])
         steps = min(STOPPING_STEPS, calm * change / speed) if speed > 0.0 else 1.0
         for c in range(3 if FELT[i] > 0.0 else 2):
             START[i, c] += V[i, c] / max(steps, 1.0)

@@ -21,7 +21,7 @@ from ..model.parameters.rest import (
 )
 from ..model.scene import Scene
 from ..pairs.rules import law
-from ..rows.equilibrium import bound
+from ..rows.equilibrium import point_speed
 
 
 @uncounted
@@ -35,7 +35,7 @@ def speed(A: Scene, i: int, s: float) -> float:
     """A bound on the speed of the points of body i in s; of its centre, where its turning moves nothing."""
     BODY = A.BODY
     vx, vy = BODY[i].vx + s * BODY[i].ax, BODY[i].vy + s * BODY[i].ay
-    return bound(vx, vy, 0.0 if spins_freely(A, i) else BODY[i].spin + s * BODY[i].angular, BODY[i].extent)
+    return point_speed(vx, vy, 0.0 if spins_freely(A, i) else BODY[i].spin + s * BODY[i].angular, BODY[i].extent)
 
 
 @uncounted
