@@ -27,7 +27,7 @@ def begin(A: Scene, WALK: IntArray) -> None:
         COUNT.unmet = 0
         # Pairs that were passed over are in nobody's forecast.
         for i in range(BODY.shape[0] - 1):
-            BODY[i].due, A.RESTING[i].still_due = min(BODY[i].due, 0.0), 0.0
+            BODY[i].due, A.RESTING[i].rest_due = min(BODY[i].due, 0.0), 0.0
         flag_pairs(A)
     PAR.restitution, PAR.frictional, PAR.external, PAR.damped = 0.0, 0.0, 0.0, 0.0
     PAR.lock, PAR.stored = 1.0, 0.0

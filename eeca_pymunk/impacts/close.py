@@ -9,8 +9,8 @@ from ..compiled import uncounted
 from ..contacts.energy import total, unsteered
 from ..contacts.single import move_to
 from ..geometry.gap import gap_at
-from ..islands.accounting import book, lift_out
-from ..islands.at_rest import keep, leave, put_to_rest, stand
+from ..islands.accounting import account_contact, apply_correction
+from ..islands.at_rest import continue_contact, put_to_rest, report_at_rest, store_rest
 from ..islands.rest import find_candidates
 from ..model.bodies import AT_REST, CANDIDATE
 from ..model.scene import Scene
@@ -28,16 +28,16 @@ def close(A: Scene, WALK: IntArray) -> None:
     for c in range(COUNT.pushes):
         root = A.PUSHED_BY[c].root
         if root >= 0 and A.MEMBER[root].rest == AT_REST:
-            stand(A, c)
+            report_at_rest(A, c)
         elif root >= 0:
-            book(A, c, end)
+            account_contact(A, c, end)
             if A.MEMBER[root].rest == CANDIDATE:
-                keep(A, c, root)
+                continue_contact(A, c, root)
     gx, gy = PAR.gravity_x, PAR.gravity_y
     for i in range(BODY.shape[0] - 1):
         move_to(BODY, i, end)
         if not even and A.STATE[i].island == i:
-            lift_out(A, i, end)
+            apply_correction(A, i, end)
             if A.MEMBER[i].rest == CANDIDATE:
                 put_to_rest(A, i)
     for i in range(BODY.shape[0] - 1):
@@ -75,4 +75,4 @@ def close(A: Scene, WALK: IntArray) -> None:
             b, BEGAN[j, 0], BEGAN[j, 1], BEGAN[j, 2],
         )[0]  # fmt: skip
     if not even:
-        leave(A)
+        store_rest(A)

@@ -9,7 +9,7 @@ from ..compiled import kernel, uncounted
 from ..compiled.records import Rows, zeros
 from ..contacts.works import carried
 from ..islands.building import comes_to_rest
-from ..islands.intervals import dismiss
+from ..islands.intervals import clear_places
 from ..islands.membership import members
 from ..jointed.columns import fill_free, fill_group, make_columns, weigh
 from ..jointed.component import answer, fit_speeds, ready
@@ -25,7 +25,7 @@ from ..rows.bounded import room_for_rows
 from ..rows.build import conserves, normal_rate
 from ..rows.sweeps import velocities
 from .resolution import finish, rejoin
-from .simultaneous import Block, gather, lay_out, owing
+from .simultaneous import Block, energy_owed, gather, lay_out
 
 
 @uncounted
@@ -83,10 +83,10 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
                 ended += 1
                 again = True
         if again:
-            dismiss(A, A.BLOCK, n)
+            clear_places(A, A.BLOCK, n)
             n, m, PAIRS = gather(A, a, b, t)
     rest = comes_to_rest(A, a, b, t)
-    owed, _ = owing(A, n)
+    owed, _ = energy_owed(A, n)
     block = lay_out(A, n, m, PAIRS, min(a, b) * k + max(a, b), rest, t)
     P, Q, ROWS, V = block.A, block.B, block.ROWS, block.V
     rows = len(ROWS)
@@ -163,5 +163,5 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
             if A.PLACE[MINE[q]] < 0:
                 A.BLOCK[n], A.PLACE[MINE[q]] = MINE[q], n
                 n += 1
-    dismiss(A, A.BLOCK, n)
+    clear_places(A, A.BLOCK, n)
     return n

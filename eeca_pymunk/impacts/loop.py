@@ -21,7 +21,7 @@ from ..model.scene import Scene
 from ..model.step import BLOCK_DUE, DONE, HITS, IMPACTS, LOG_FULL, POOL_FULL, PUSHES_FULL
 from ..pairs.grid import renew
 from ..pairs.lists import mark_pair
-from ..prediction.disks import carrier, go_on
+from ..prediction.disks import body_of, go_on
 from ..prediction.heap import pop, push, sweep_out
 from ..prediction.next_event import has_left
 from ..prediction.scheduling import forecast, look_ahead
@@ -29,7 +29,7 @@ from ..prediction.turning import follow_side
 from .intervals import cut_short, start_waiting
 from .joint_impact import collide
 from .resolution import strike
-from .simultaneous import arrive
+from .simultaneous import bring_to
 
 _ROOM = 64  # contacts more than there are, that there must be room for before an impact on joints
 
@@ -42,7 +42,7 @@ def jointed(A: Scene, i: int) -> bool:
 
 
 @merged
-def give_up(A: Scene, i: int, j: int) -> bool:
+def met_too_often(A: Scene, i: int, j: int) -> bool:
     """Whether bodies i and j have met as often as a step allows."""
     limit = A.COUNT.limit
     if A.STATE[i].events >= limit or A.STATE[j].events >= limit:
@@ -96,12 +96,12 @@ def run(A: Scene, may_rest: bool) -> int:
         if o == RENEW:
             A.PAR.now, COUNT.struck = t, i
             return BLOCK_DUE
-        j = carrier(A, o) if o >= 0 else i
+        j = body_of(A, o) if o >= 0 else i
         if o < 0 or STATE[j].version != STATE[i].known:
             COUNT.stale += 1
             one = i
             continue
-        if give_up(A, i, j):
+        if met_too_often(A, i, j):
             note_unmet(A, IMPACTS, s, o, float(max(STATE[i].events, STATE[j].events)), float(COUNT.limit))
             mark_pair(A, s, o, 1)
             one = i
@@ -125,7 +125,7 @@ def run(A: Scene, may_rest: bool) -> int:
 
 
 @uncounted
-def roomy(A: Scene) -> bool:
+def has_room(A: Scene) -> bool:
     """Whether there is room for the contacts that an impact on islands with joints may bring."""
     more = 2 * A.COUNT.pushes + _ROOM
     return bool(more <= A.PUSHED.shape[0] and 2 * (A.COUNT.remembered + more) <= A.KEYS.shape[0])
@@ -172,16 +172,16 @@ def follow(A: Scene, J: Joints, may_rest: bool) -> int:
         if met and not joints:
             rest = False
             if may_rest:
-                arrive(A, i, t)
+                bring_to(A, i, t)
                 if A.BODY[j].inv_mass > 0.0:
-                    arrive(A, j, t)
+                    bring_to(A, j, t)
                 rest = comes_to_rest(A, s, o, t)
             COUNT.waiting = strike(A, s, o, t, rest)
             joints = COUNT.waiting < 0
         if joints and J.PROGRESS.effort > J.PROGRESS.budget:
             COUNT.waiting = 0
             return cut_short(A, J, i, t)
-        if joints and not roomy(A):
+        if joints and not has_room(A):
             COUNT.waiting = 0
             COUNT.heap = push(A.HEAP_TIME, A.HEAP_BODY, COUNT.heap, t, i)
             return PUSHES_FULL

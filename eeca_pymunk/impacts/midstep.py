@@ -11,7 +11,7 @@ from ..arrays import FloatArray
 from ..compiled import kernel, uncounted
 from ..geometry.flight import norm, pose
 from ..geometry.gap import gap
-from ..islands.candidates import way_of
+from ..islands.candidates import travel_bound
 from ..islands.membership import approach, unite
 from ..model.joints import Joints
 from ..model.parameters.intervals import MIDSTEP_PASSES, TOUCH
@@ -24,9 +24,9 @@ from .intervals import start_interval
 
 
 @uncounted
-def reaches(A: Scene, USUAL: FloatArray, i: int) -> bool:
+def list_reach(A: Scene, USUAL: FloatArray, i: int) -> bool:
     """Make the lists of body i complete for what it may reach within the step. False if there is no room."""
-    way = way_of(A, i, A.PAR.dt)
+    way = travel_bound(A, i, A.PAR.dt)
     for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):
         if not cover(A, USUAL, s, way):
             return False
@@ -40,7 +40,7 @@ def join_all(A: Scene, USUAL: FloatArray) -> bool:
     BODY, LINK = A.BODY, A.LINK
     n, dt = BODY.shape[0] - 1, A.PAR.dt
     for i in range(n):
-        if not reaches(A, USUAL, i):
+        if not list_reach(A, USUAL, i):
             return False
     for s in range(A.LIST.shape[0]):
         i = LINK[s].owner
@@ -54,7 +54,7 @@ def join_all(A: Scene, USUAL: FloatArray) -> bool:
                 continue
             touch = TOUCH * min(A.SHAPE[s].extent, A.SHAPE[o].extent)
             g = approach(A, s, o, 0.0)[0]
-            if g <= way_of(A, i, dt) + way_of(A, j, dt) + touch:
+            if g <= travel_bound(A, i, dt) + travel_bound(A, j, dt) + touch:
                 unite(A, i, j if moves else i)
     for i in range(n):
         if A.MEMBER[i].tied >= 0:
@@ -63,7 +63,7 @@ def join_all(A: Scene, USUAL: FloatArray) -> bool:
 
 
 @uncounted
-def anew(A: Scene) -> None:
+def undo_intervals(A: Scene) -> None:
     """Undo the intervals that were begun: nobody is in an island, and impulses have changed no path."""
     for c in range(A.COUNT.pushes):
         mark_pair(A, A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, 0)
@@ -74,7 +74,7 @@ def anew(A: Scene) -> None:
 
 
 @uncounted
-def overrun(A: Scene, USUAL: FloatArray) -> int:
+def missed_bodies(A: Scene, USUAL: FloatArray) -> int:
     """How many bodies went farther than was thought, and into others that are no contacts of the solve; they have the
     speed now that they got. -1 if there is no room for lists."""
     BODY, RESTING = A.BODY, A.RESTING
@@ -84,10 +84,10 @@ def overrun(A: Scene, USUAL: FloatArray) -> int:
             continue
         x, y, angle = pose(BODY, i, dt)
         way = norm(x - BODY[i].x, y - BODY[i].y) + abs(angle - BODY[i].angle) * BODY[i].extent
-        if way <= way_of(A, i, dt):
+        if way <= travel_bound(A, i, dt):
             continue
         before, RESTING[i].speed = RESTING[i].speed, way / dt
-        if not reaches(A, USUAL, i):
+        if not list_reach(A, USUAL, i):
             return -1
         into = 0
         for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):
@@ -118,7 +118,7 @@ def act_together(A: Scene, J: Joints, USUAL: FloatArray) -> int:
     for i in range(n):
         A.RESTING[i].speed = norm(BODY[i].vx, BODY[i].vy) + abs(BODY[i].spin) * BODY[i].extent
     for solves in range(MIDSTEP_PASSES + 1):
-        anew(A)
+        undo_intervals(A)
         if not join_all(A, USUAL):
             return POOL_FULL
         # A solve may make another body the root of its island, which then would be solved again.
@@ -133,7 +133,7 @@ def act_together(A: Scene, J: Joints, USUAL: FloatArray) -> int:
         # Joints have taken their step: it is not taken back for bodies that were sent into others.
         if solves == MIDSTEP_PASSES or J.TALLY.components > 0:
             break
-        more = overrun(A, USUAL)
+        more = missed_bodies(A, USUAL)
         if more < 0:
             return POOL_FULL
         if more == 0:

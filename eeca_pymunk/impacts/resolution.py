@@ -14,13 +14,13 @@ from ..contacts.single import note
 from ..contacts.unmet import note_unmet, spend
 from ..contacts.works import carried
 from ..islands.building import spread
-from ..islands.intervals import dismiss
+from ..islands.intervals import clear_places
 from ..islands.membership import members, unite
 from ..model.contacts import SOLVED, Problem, Solved
 from ..model.scene import Scene
 from ..model.step import IMPACT
 from ..rows.blocks import CONVERGED, solve_block
-from .simultaneous import Block, gather, lay_out, owing
+from .simultaneous import Block, energy_owed, gather, lay_out
 
 
 @uncounted
@@ -40,7 +40,7 @@ def finish(A: Scene, block: Block, n: int, m: int, L: FloatArray, OUT: Rows[Solv
         BODY[i].vx, BODY[i].vy, BODY[i].spin = V[q, 0], V[q, 1], V[q, 2]
         A.STATE[i].version += 1
         A.STATE[i].events += 1
-    dismiss(A, A.BLOCK, n)
+    clear_places(A, A.BLOCK, n)
     for z in range(len(ROWS)):
         if L[z, 0] > 0.0 and COUNT.logged < A.LOG.shape[0]:
             note(
@@ -75,9 +75,9 @@ def strike(A: Scene, a: int, b: int, t: float, rest: bool) -> int:
     k = A.SHAPE.shape[0]
     n, m, PAIRS = gather(A, a, b, t)
     if holds_joints(A, n):
-        dismiss(A, A.BLOCK, n)
+        clear_places(A, A.BLOCK, n)
         return -1
-    owed, piled = owing(A, n)
+    owed, piled = energy_owed(A, n)
     block = lay_out(A, n, m, PAIRS, min(a, b) * k + max(a, b), rest, t)
     rows = len(block.ROWS)
     L, LOSS, OUT = np.zeros((rows, 2)), np.zeros((rows, 2)), zeros(1, SOLVED)

@@ -19,7 +19,7 @@ from ..geometry.flight import pose, rate
 from ..geometry.manifold import face
 from ..geometry.sides import note_side
 from ..islands.accounting import end_interval
-from ..islands.membership import budget_spent, carrier, in_large_island, remembered
+from ..islands.membership import budget_spent, fixed_support, in_large_island, remembered
 from ..model.contacts import ROW, Row
 from ..model.parameters.impulses import BLOCK_BODIES
 from ..model.scene import Scene
@@ -37,13 +37,13 @@ def takes_part(A: Scene, s: int, o: int, t: float) -> bool:
     if touches(A, s, o, t):
         return True
     i, j = A.LINK[s].owner, A.LINK[o].owner
-    if A.STATE[i].island < 0 or not (A.STATE[j].island == A.STATE[i].island or carrier(A, j)):
+    if A.STATE[i].island < 0 or not (A.STATE[j].island == A.STATE[i].island or fixed_support(A, j)):
         return False
     return remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], s, o, A.PAR.stamp)[0] > 0.0
 
 
 @uncounted
-def arrive(A: Scene, i: int, t: float) -> None:
+def bring_to(A: Scene, i: int, t: float) -> None:
     """Bring body i, with its island, to instant t; not one whose island has joints and is under way."""
     root = A.STATE[i].island
     if root >= 0 and A.MEMBER[root].open > 0:
@@ -54,13 +54,13 @@ def arrive(A: Scene, i: int, t: float) -> None:
 
 
 @uncounted
-def admit(A: Scene, i: int, n: int, t: float) -> int:
+def add_component(A: Scene, i: int, n: int, t: float) -> int:
     """Take body i, and all that hangs on it by joints, into A.BLOCK, where there are n bodies; how many there are."""
     j = i
     while A.PLACE[j] < 0:
         A.BLOCK[n], A.PLACE[j] = j, n
         n += 1
-        arrive(A, j, t)
+        bring_to(A, j, t)
         if A.MEMBER[j].tied < 0:
             break
         j = A.MEMBER[j].next_tied
@@ -80,7 +80,7 @@ def gather(A: Scene, a: int, b: int, t: float) -> tuple[int, int, IntArray]:
         i = A.LINK[s].owner
         if A.BODY[i].inv_mass > 0.0:
             if A.PLACE[i] < 0:
-                n = admit(A, i, n, t)
+                n = add_component(A, i, n, t)
     while q < n:
         i = BODIES[q]
         q += 1
@@ -99,7 +99,7 @@ def gather(A: Scene, a: int, b: int, t: float) -> tuple[int, int, IntArray]:
                 if full or not takes_part(A, s, o, t):
                     continue
                 if moves and A.PLACE[j] < 0:
-                    n = admit(A, j, n, t)
+                    n = add_component(A, j, n, t)
                 if m == PAIRS.shape[0]:
                     more = np.empty(2 * m, np.int64)
                     for c in range(m):
@@ -112,7 +112,7 @@ def gather(A: Scene, a: int, b: int, t: float) -> tuple[int, int, IntArray]:
 
 
 @uncounted
-def owing(A: Scene, n: int) -> tuple[float, bool]:
+def energy_owed(A: Scene, n: int) -> tuple[float, bool]:
     """What the islands of the n bodies in A.BLOCK owe, which is taken out by their block; whether there are any."""
     owed, piled = 0.0, False
     for q in range(n):
