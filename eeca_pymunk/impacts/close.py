@@ -1,4 +1,4 @@
-"""A step's end: paths come to its last instant, islands and the work of forces enter the ledger."""
+"""The end of a step: paths come to its last instant, islands and the work of forces enter the ledger."""
 
 from __future__ import annotations
 
@@ -18,7 +18,8 @@ from ..model.scene import Scene
 
 @uncounted
 def close(A: Scene, WALK: IntArray) -> None:
-    """Bring all paths to the end of the step; book islands, the work of forces, the energy; gaps at the start."""
+    """Move all bodies to the end of the step, end islands' intervals, enter the work of forces and the energy in the
+    ledger, and compute the gaps at the start of the step of logged impulses."""
     BODY, PAR, LOG, BEGAN, COUNT = A.BODY, A.PAR, A.LOG, A.BEGAN, A.COUNT
     end = PAR.dt
     even = COUNT.even > 0  # no islands
@@ -47,7 +48,7 @@ def close(A: Scene, WALK: IntArray) -> None:
             if BODY[i].inv_inertia > 0.0:
                 work += twist * (BODY[i].angle - BEGAN[i, 2]) / BODY[i].inv_inertia
             PAR.external += work
-    # What friction gives back counts against restitution, and the other way round.
+    # A negative loss by friction is deducted from that by restitution, and vice versa.
     if PAR.restitution < 0.0 and PAR.frictional > 0.0:
         PAR.frictional += PAR.restitution
         PAR.restitution = 0.0

@@ -1,8 +1,8 @@
-"""A step whose contacts act together at its middle, psi2 = 0: the bounded solve of islands on all contacts.
+"""A step whose contacts act together at its middle, psi2 = 0: one bounded solve of each island with all its contacts.
 
-No event is followed. Every pair that may close within the step is a contact of an island, and every island has one
-interval, the step. How far a body may go its own speed tells; where impulses send it farther, and into others, these
-are made contacts too, and all is solved again, a few times at most.
+No events are followed. Each pair that may close within the step is a contact of an island, and each island has one
+interval, the step. The speed of a body bounds its travel; if impulses move it farther and into others, these become
+contacts too, and all is solved again, MIDSTEP_PASSES times at most.
 """
 
 from __future__ import annotations
@@ -25,7 +25,8 @@ from .intervals import start_interval
 
 @uncounted
 def list_reach(A: Scene, USUAL: FloatArray, i: int) -> bool:
-    """Make the lists of body i complete for what it may reach within the step. False if there is no room."""
+    """Extend the near lists of body i to all that it may reach within the step; False if they need more memory. USUAL:
+    see `act_together`."""
     way = travel_bound(A, i, A.PAR.dt)
     for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):
         if not cover(A, USUAL, s, way):
@@ -35,8 +36,8 @@ def list_reach(A: Scene, USUAL: FloatArray, i: int) -> bool:
 
 @uncounted
 def join_all(A: Scene, USUAL: FloatArray) -> bool:
-    """The islands of all bodies that may touch within the step, or are tied by joints. False if there is no room for
-    lists."""
+    """Build islands of all bodies that may touch within the step, or are jointed; False if near lists need more
+    memory."""
     BODY, LINK = A.BODY, A.LINK
     n, dt = BODY.shape[0] - 1, A.PAR.dt
     for i in range(n):
@@ -64,7 +65,7 @@ def join_all(A: Scene, USUAL: FloatArray) -> bool:
 
 @uncounted
 def undo_intervals(A: Scene) -> None:
-    """Undo the intervals that were begun: nobody is in an island, and impulses have changed no path."""
+    """Undo the intervals begun so far: no body is in an island, and no impulse has changed a path."""
     for c in range(A.COUNT.pushes):
         mark_pair(A, A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, 0)
     A.COUNT.pushes = 0
@@ -75,8 +76,8 @@ def undo_intervals(A: Scene) -> None:
 
 @uncounted
 def missed_bodies(A: Scene, USUAL: FloatArray) -> int:
-    """How many bodies went farther than was thought, and into others that are no contacts of the solve; they have the
-    speed now that they got. -1 if there is no room for lists."""
+    """Number of bodies that travel farther than their bound, and into others that are no contacts of the solve; their
+    speed bounds are increased to that. -1 if near lists need more memory."""
     BODY, RESTING = A.BODY, A.RESTING
     dt, found = A.PAR.dt, 0
     for i in range(BODY.shape[0] - 1):
@@ -107,7 +108,8 @@ def missed_bodies(A: Scene, USUAL: FloatArray) -> int:
 
 @kernel
 def act_together(A: Scene, J: Joints, USUAL: FloatArray) -> int:
-    """All contacts of a step; from its start, if it has been broken off for more room. DONE, or what is full.
+    """Solve all contacts of a step, from its start also when it is called again after more memory was needed. DONE, or
+    which memory is full.
 
     Args:
         USUAL: (k,) margins of shapes that are not fast, length.
@@ -130,7 +132,7 @@ def act_together(A: Scene, J: Joints, USUAL: FloatArray) -> int:
         for q in range(roots):
             if start_interval(A, J, A.BLOCK[q], 0.0) != DONE:
                 return PUSHES_FULL
-        # Joints have taken their step: it is not taken back for bodies that were sent into others.
+        # Components have taken their step, which is not undone for bodies that moved into others.
         if solves == MIDSTEP_PASSES or J.TALLY.components > 0:
             break
         more = missed_bodies(A, USUAL)
