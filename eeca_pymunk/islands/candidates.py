@@ -71,8 +71,8 @@ def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: Int
                 force, load = 0.0, 0.0
                 if lossy and not together:
                     force, load = remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], s, o, A.PAR.stamp - 1.0)
-                # In a large island all loaded contacts remain candidates: a hit acts on a few bodies at once, and reaches
-                # the others through the interval.
+                # In a large island all loaded contacts remain candidates: a hit acts on a few bodies at once, and
+                # reaches the others through the interval.
                 if n < LARGE_ISLAND or force <= 0.0:
                     g, u, closing, mass = approach(A, s, o, t)
                     if not together:

@@ -118,13 +118,13 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
     shortest = A.PAR.dt / RESOLUTION
     if p > 0 and h > 0.0:
         m = step_island(A, isle, contacts, n, h, sweeps, least, owed, -1.0, quiet)
-        stuck = h if in_haste(A) or OUT[0].stood > 0 else stick_time(P, Q, ROWS, L, V + h * isle.ACC, VN, m, h)
+        stuck = h if in_haste(A) or OUT[0].at_rest > 0 else stick_time(P, Q, ROWS, L, V + h * isle.ACC, VN, m, h)
         if stuck < h:
             # The interval ends where slip ends, as the law of friction changes there.
             h = min(max(stuck, shortest), h)
             m = step_island(A, isle, contacts, n, h, sweeps, least, owed, -1.0, 0.0)
         far = 0.0
-        if not last and OUT[0].stood == 0:
+        if not last and OUT[0].at_rest == 0:
             far = excess_way(A, P, Q, ROWS, KEY, V, VN, m, h)
             if far <= INTERVAL_RETRY and len(A.SIDE) > 0:
                 far = too_deep_at_end(A, isle, isle.POSE + 0.5 * h * (V + VN), P, Q, ROWS, KEY, m, False)
@@ -132,7 +132,7 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
             A.COUNT.solved += n
             spend(A, 2 * p, m, OUT[0].sweeps, OUT[0].direct)
             return AGAIN, h / far
-        if m > 0 and OUT[0].stood == 0 and not before_end(A, t + h):
+        if m > 0 and OUT[0].at_rest == 0 and not before_end(A, t + h):
             # An interval that ends within the step is followed by another one, which corrects the penetration.
             raised = max(raised, 1 if driven(A, isle, ROWS, KEY, n, m) else 0)
             free = math.inf if raised > 0 else 0.0
@@ -142,7 +142,7 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
             lifting(problem, middle, VN, isle.ACC, h, size, budget, contacts.JUMP)
         if abs(OUT[0].lock - 1.0) > abs(A.PAR.lock - 1.0):
             A.PAR.lock = OUT[0].lock
-    stood = OUT[0].stood > 0
+    at_rest = OUT[0].at_rest > 0
     COUNT.solves += 1
     COUNT.solved += n
     spend(A, 2 * p, m, OUT[0].sweeps, OUT[0].direct)
@@ -181,6 +181,6 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
         for z in range(m):
             A.PUSHED_BY[first + z].root = head
         COUNT.pushes += m
-        if stood:
+        if at_rest:
             put_to_rest(A, head)
     return DONE, 0.0

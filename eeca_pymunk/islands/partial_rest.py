@@ -86,7 +86,7 @@ def test_rest(A: Scene, MINE: IntArray, n: int, V0: FloatArray, among: int, free
     contacts = make_contacts(p, len(isle.WHO))
     m = step_island(A, isle, contacts, n, dt, 0, 0.0, 0.0, 0.0, -quick)
     COUNT.direct += contacts.OUT[0].direct
-    if contacts.OUT[0].stood == 0:
+    if contacts.OUT[0].at_rest == 0:
         postpone_test(A, MINE, n)
         return False
     if freezing:
