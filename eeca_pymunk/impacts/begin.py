@@ -21,7 +21,7 @@ def begin(A: Scene, WALK: IntArray) -> None:
     """Set instants relative to the start of this step, reset its counters and ledger, and mark the bodies to be
     predicted: edited ones, and those whose predicted events are due."""
     BODY, STATE, PAR, COUNT = A.BODY, A.STATE, A.PAR, A.COUNT
-    COUNT.heap, COUNT.logged, COUNT.impacts, COUNT.blocks, COUNT.forecasts, COUNT.stale = 0, 0, 0, 0, 0, 0
+    COUNT.heap, COUNT.logged, COUNT.impacts, COUNT.blocks, COUNT.predictions, COUNT.stale = 0, 0, 0, 0, 0, 0
     COUNT.solves, COUNT.solved, COUNT.ignored, COUNT.sweeps, COUNT.direct, COUNT.work = 0, 0, 0, 0, 0, 0
     if COUNT.unmet > 0:
         A.FLAG[:] = 0

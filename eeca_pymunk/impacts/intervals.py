@@ -15,7 +15,7 @@ from ..model.joints import Joints
 from ..model.parameters.joints import STEP_WORK
 from ..model.scene import Scene
 from ..model.step import DONE, PUSHES_FULL, SOLVES
-from ..prediction.scheduling import forecast_all
+from ..prediction.scheduling import predict_all
 
 
 @uncounted
@@ -55,7 +55,7 @@ def start_waiting(A: Scene, J: Joints) -> int:
             if status == SPENT:
                 COUNT.waiting = 0
                 return cut_short(A, J, root, A.BODY[root].since)
-    forecast_all(A, COUNT.waiting, A.PAR.now, A.PAR.dt)
+    predict_all(A, COUNT.waiting, A.PAR.now, A.PAR.dt)
     COUNT.waiting = 0
     return DONE
 

@@ -24,7 +24,7 @@ from ..pairs.lists import mark_pair
 from ..prediction.disks import body_of, go_on
 from ..prediction.heap import pop, push, sweep_out
 from ..prediction.next_event import has_left
-from ..prediction.scheduling import forecast, look_ahead
+from ..prediction.scheduling import look_ahead, predict_next
 from ..prediction.turning import follow_side
 from .intervals import cut_short, start_waiting
 from .joint_impact import collide
@@ -68,7 +68,7 @@ def run(A: Scene, may_rest: bool) -> int:
     one, two, t = -1, -1, 0.0  # bodies to be predicted
     while True:
         while one >= 0:
-            forecast(A, one, t, end, False)
+            predict_next(A, one, t, end, False)
             one, two = two, -1
         if COUNT.heap == 0:
             return DONE
@@ -170,7 +170,7 @@ def follow(A: Scene, J: Joints, may_rest: bool) -> int:
         if met and (STATE[i].island >= 0 or STATE[j].island >= 0) and passed_over(A, s, o, t):
             note_unmet(A, HITS, s, o, float(hits_of(A, s, o)), float(most_hits(A, s, o)))
             mark_pair(A, s, o, 1)
-            forecast(A, i, t, end, False)
+            predict_next(A, i, t, end, False)
             continue
         joints = jointed(A, i) or jointed(A, j)
         if met and not joints:

@@ -10,7 +10,7 @@ from ..joints.held import hold
 from ..model.joints import Joints, joints_of
 from ..model.scene import Scene, scene_of
 from ..model.step import DONE, LOG_FULL, POOL_FULL, PUSHES_FULL
-from ..prediction.scheduling import forecast_due
+from ..prediction.scheduling import predict_due
 from ..transfer import EVENTS as SOME
 from ..transfer import give, take
 from .begin import begin
@@ -64,7 +64,7 @@ def act(A: Scene, J: Joints, USUAL: FloatArray) -> int:
         if COUNT.pushes + COUNT.crammed + J.TALLY.components > 0 and start_islands(A, J) != DONE:
             return PUSHES_FULL
         COUNT.phase = 1
-        forecast_due(A)
+        predict_due(A)
         COUNT.work = 0  # the start of a step does not count
     if COUNT.phase == 1:
         status = follow(A, J, COUNT.lossy > 0 or A.PAR.pulled > 0.0)

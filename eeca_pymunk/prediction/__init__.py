@@ -1,4 +1,4 @@
-"""Prediction: when shapes meet next if no impulse acts before. In names, to forecast is to predict.
+"""Prediction: when shapes meet next if no impulse acts before.
 
 In: bodies on their paths (`..model.bodies`), near lists. Out: for each body the instant and partner of its next event,
 in a heap. Open `next_event.py` first: the next event of a body, from `impact_times.py` (closed forms in `roots.py` and
