@@ -92,7 +92,7 @@ class HookedStepper(PackedSpace):
                 rehearsal = world.rehearsal
                 self._checked(world, dt, rehearsal.run(hooks, dt, world.gravity, left))
                 world.rules = rehearsal.rules(world.rules, world.places, world.SHAPE, world.smooth)
-            world.void_forecasts()
+            world.void_predictions()
             status = self._checked(world, dt, self.advance(world, dt, left))
             book = self._booked(dt)
             if world.damping == 0.0 or len(hooks.position) or (rehearsal is not None and rehearsal.after):

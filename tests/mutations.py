@@ -113,7 +113,7 @@ MUTATIONS = (
     Mutation("ledger: factor 1/2 of a bounce", "contacts/single.py",
              "PAR.restitution += 0.5 * lam", "PAR.restitution += lam",
              "oracles/test_impacts.py", "comes_to_rest_is_booked"),
-    Mutation("equilibrium: one edge of the cone", "rows/equilibrium.py", "slope = mu if side == 0 else -mu",
+    Mutation("equilibrium: one edge of the cone", "rows/cones.py", "slope = mu if side == 0 else -mu",
              "slope = mu", "rows/test_equilibrium.py", "linear_programming"),
     Mutation("equilibrium: sign of the residual", "rows/equilibrium.py", "PROXIMAL_STATICS * (V[i, c] - LEFT[i, c])",
              "PROXIMAL_STATICS * (V[i, c] + LEFT[i, c])", "rows/test_equilibrium.py", "guess"),

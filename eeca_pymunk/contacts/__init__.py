@@ -1,9 +1,9 @@
 """The contact problem: impulses of one impact of a disk, and of an island over one interval, with a ledger that closes.
 
 In: bodies (pose, velocity, mobility, acceleration), pairs of shapes that may touch, the forces of the last step, an
-interval h. Out: velocities at its end (each path is the parabola between), impulses, losses, corrections of overlaps.
-Open `interval.py` first: gather rows (`geometry.py`), set targets (`targets.py`), test for rest (`statics.py`), solve
-(`relaxation.py`), lock the energy, account for works (`works.py`), correct overlaps (`correction.py`), and remember
-forces (`memory.py`). `single.py` is the closed law of one disk's impact; `unmet.py` notes budgets and tolerances that
-were not met; `energy.py` sums the energy of a scene.
+interval h. Out: velocities at its end (each path is the parabola between), impulses, losses, penetration corrections.
+Open `interval.py` first: rows (`geometry.py`), targets (`targets.py`), test for static forces (`statics.py`), solve
+(`relaxation.py`), energy lock, works (`works.py`), penetration correction (`correction.py`), memory of forces
+(`memory.py`). `single.py` is the closed law of one disk's impact; `unmet.py` notes budgets and tolerances that were not
+met; `energy.py` sums the energy of a scene.
 """

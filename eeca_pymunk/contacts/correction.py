@@ -1,11 +1,12 @@
-"""Lifting bodies out of each other at the end of an interval, paid from the losses of the same island and interval.
+"""Penetration correction: displacements of bodies at the end of an interval, paid from the losses of the same island
+and interval.
 
 delta = M^-1 G^T mu with 0 <= mu _|_ g + A mu >= 0 for the gaps g at the end, scaled so that the potential energy it
-costs is at most the losses, and nothing goes far: no energy comes from push-out, and nobody goes through a wall by it.
-Gaps above -1e-9 of the size are left alone.
+costs is at most the losses, and no displacement exceeds CORRECTION_STEP of the size: so the correction gives no energy,
+and no body passes through a wall by it. Gaps above -OVERLAP_LEFT of the size are not corrected.
 
-Moving bodies apart changes their orbital angular momentum by sum m delta x v. Where an island is free (nothing without
-mobility in it) a common turn of its velocities about the centre of mass takes that back.
+Displacements change the orbital angular momentum by sum m delta x v. If an island is free (without bodies that impulses
+do not move), a common rotation of its velocities about the centre of mass removes that change.
 """
 
 from __future__ import annotations
@@ -30,13 +31,16 @@ def lifting(
     problem: Problem, POSE: FloatArray, VN: FloatArray, ACC: FloatArray, h: float, size: float, budget: float,
     JUMP: FloatArray,
 ) -> tuple[float, float]:  # fmt: skip
-    """JUMP (k, 6) = changes of pose and velocity at the end of the interval.
+    """Compute the corrections JUMP (k, 6) of pose and velocity at the end of an interval of length h.
 
     Args:
-        POSE: (k, 3) at the middle of the interval.  VN: (k, 3) velocities at the end.  size: length.
-        budget: energy that may be spent; below 0 nothing is lifted, with 0 what that costs nothing.
+        problem: its contacts, with gaps at the start.  POSE: (k, 3) at the middle of the interval.
+        VN: (k, 3) velocities at the end.  ACC: (k, 3) accelerations without contacts.
+        size: length of the smallest body.
+        budget: energy that the correction may cost; below 0 nothing is corrected, with 0 what costs nothing.
+
     Returns:
-        The energy spent (<= budget, negative if more was lost), and the deepest gap before (negative in overlap).
+        The energy spent (<= budget, negative if bodies sink), and the deepest gap before (negative in overlap).
     """
     A, B, ROWS, IM, II, _, n, m = problem
     for i in range(len(JUMP)):
@@ -64,7 +68,7 @@ def lifting(
     turn = x = y = square = 0.0
     touched = np.zeros(n, np.uint8)
     if len(IM) == n:
-        # Bodies that no contact touches are not of the island any more.
+        # Bodies without contacts leave the island.
         for i in range(m):
             touched[A[i]] = 1
             touched[B[i]] = 1
@@ -91,7 +95,7 @@ def lifting(
 
 @uncounted
 def least_of(EXTENT: FloatArray, n: int) -> float:
-    """The size of the smallest of n bodies."""
+    """The extent of the smallest of n bodies."""
     size = math.inf
     for i in range(n):
         size = min(size, EXTENT[i])
@@ -100,15 +104,15 @@ def least_of(EXTENT: FloatArray, n: int) -> float:
 
 @uncounted
 def budget_of(ROWS: Rows[Row], m: int, lost: float, owed: float, free: float) -> float:
-    """What `lifting` may spend: the losses of m contacts, less what is owed, and `free`. Elastic contacts have none,
-    whatever their round-off is."""
+    """Energy that `lifting` may spend: the losses `lost` of m contacts, less the energy `owed`, and `free`. Elastic
+    contacts have none; what they seem to lose is round-off."""
     budget = -1.0 if conserves(ROWS, m) else lost - owed
     return max(budget, 0.0) + free if free > 0.0 else budget
 
 
 @uncounted
 def place(END: FloatArray, D: FloatArray, n: int, NEW: FloatArray) -> None:
-    """NEW = END + D, of n bodies."""
+    """Set NEW = END + D, for n bodies."""
     for i in range(n):
         for c in range(3):
             NEW[i, c] = END[i, c] + D[i, c]
@@ -118,10 +122,10 @@ def place(END: FloatArray, D: FloatArray, n: int, NEW: FloatArray) -> None:
 def unturn(
     NEW: FloatArray, D: FloatArray, V: FloatArray, IM: FloatArray, II: FloatArray, touched: FlagArray
 ) -> tuple[float, float, float, float, float]:
-    """The common spin of the touched bodies that takes back the angular momentum sum m D x v of displacements D to NEW,
-    at velocities V. No contact and no joint feels it.
+    """The common spin of the touched bodies that removes the angular momentum sum m D x v of displacements D to NEW, at
+    velocities V. It changes no velocity along contacts and joints.
 
-    Returns it with the centre of mass (x, y), the angular momentum about it and the moment of inertia.
+    Returns the spin, the centre of mass (x, y), the angular momentum about it and the moment of inertia.
     """
     mass = x = y = vx = vy = 0.0
     for i in range(len(touched)):

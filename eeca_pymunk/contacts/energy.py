@@ -11,8 +11,8 @@ from .single import kinetic
 
 @uncounted
 def total(A: Scene) -> float:
-    """Kinetic energy of all bodies, and potential energy -m g.x in the uniform gravity; what impulses do not move has
-    none."""
+    """Kinetic energy of all bodies, and potential energy -m g.x in uniform gravity, without bodies that impulses do not
+    move."""
     BODY, gx, gy, whole = A.BODY, A.PAR.gravity_x, A.PAR.gravity_y, 0.0
     for i in range(BODY.shape[0] - 1):
         if BODY[i].inv_mass != 0.0:
@@ -22,7 +22,8 @@ def total(A: Scene) -> float:
 
 @uncounted
 def unsteered(A: Scene, WALK: IntArray) -> float:
-    """Kinetic energy of the bodies that the space's damping slows down."""
+    """Kinetic energy of the bodies that the space's damping acts on: those without a velocity function of the
+    program."""
     whole = 0.0
     for k in range(WALK.shape[1]):
         i = WALK[BODY_ROW, k]

@@ -1,10 +1,10 @@
 """Contact rows of an island from the geometry of its pairs, for an interval h from now.
 
 Normals and arms are those at the predicted middle q + (h/2) v, gaps those now: with u = G(middle) v the gap at the end
-is g + (h/2)(u- + u+) to third order in h, so that bodies follow curved surfaces to second order without a loss; and
-an island without forces keeps its angular momentum exactly, as its middle and the predicted one differ by multiples of
-the impulses. Where a pair moves far in half an interval (an impact at high speed), as seen from a body that turns and
-that impulses do not move, its rows are those now; in a free island its points go half the way with each of its bodies.
+is g + (h/2)(u- + u+) to third order in h, so that bodies follow curved surfaces to second order without a loss; and an
+island without forces keeps its angular momentum exactly, as its middle and the predicted one differ by multiples of the
+impulses. If a pair moves far in half an interval (an impact at high speed), relative to a rotating body without
+mobility, its rows are those now; in a free island its points then move half the way with each of its bodies.
 """
 
 from __future__ import annotations
@@ -27,7 +27,8 @@ from .memory import key_of
 
 @uncounted
 def way_about(POSE: FloatArray, V: FloatArray, a: int, b: int, extent: float) -> float:
-    """Speed of points of local body b, up to `extent` from its centre of mass, in the frame of body a, which turns."""
+    """Speed of points of local body b, up to `extent` from its centre of mass, in the frame of body a, which
+    rotates."""
     x = V[b, 0] - V[a, 0] + V[a, 2] * (POSE[b, 1] - POSE[a, 1])
     y = V[b, 1] - V[a, 1] - V[a, 2] * (POSE[b, 0] - POSE[a, 0])
     return math.sqrt(x * x + y * y) + abs(V[b, 2] - V[a, 2]) * extent
@@ -37,13 +38,16 @@ def way_about(POSE: FloatArray, V: FloatArray, a: int, b: int, extent: float) ->
 def gather(
     S: Scene, isle: Island, contacts: Contacts, MIDDLE: FloatArray, REACH: FloatArray, h: float, free: bool
 ) -> int:  # fmt: skip
-    """Rows A, B, ROWS, KEY of all contacts of an island's pairs no farther apart than the sum of their bodies' REACH.
+    """Write the rows A, B, ROWS, KEY of all contacts of an island's pairs whose gap is at most the sum of both bodies'
+    REACH.
 
     Args:
+        S: the scene.  h: length of the interval.
         MIDDLE: (k, 3) poses predicted for h/2.  REACH: (k,) length.
         free: whether impulses move all k bodies.
+
     Returns:
-        How many rows, or -1 if there is no room for them.
+        The number of rows, or -1 if they need more memory.
     """
     SHAPE, LINK = S.SHAPE, S.LINK
     POSE, V, EXTENT, PAIRS = isle.POSE, isle.V, isle.EXTENT, isle.PAIRS
@@ -78,7 +82,7 @@ def gather(
         elif isle.IM[b] == 0.0 and V[b, 2] != 0.0:
             about = half * way_about(POSE, V, b, a, EXTENT[a])
         centre = MIDDLE
-        # Normals turn as round shapes go round one another, and slowly about a large one.
+        # Normals rotate as circles move around each other, slowly around a large one.
         far = SHAPE[s].rounding + SHAPE[r].rounding if LINK[s].vertices == 1 and LINK[r].vertices == 1 else small
         ahead = MIDPOINT_SAME * small < way and about <= 0.5 * INTERVAL_WAY * far
         if ahead:
@@ -90,7 +94,7 @@ def gather(
             if not free:
                 centre = POSE
             else:
-                # One point for both, about their middles: so no angular momentum is made.
+                # The same point for both bodies, relative to their middles, adds no angular momentum.
                 x = 0.5 * (MIDDLE[a, 0] - POSE[a, 0] + MIDDLE[b, 0] - POSE[b, 0])
                 y = 0.5 * (MIDDLE[a, 1] - POSE[a, 1] + MIDDLE[b, 1] - POSE[b, 1])
             for z in range(count):

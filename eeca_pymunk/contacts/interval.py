@@ -28,7 +28,7 @@ from .correction import budget_of, least_of, lifting
 from .geometry import gather
 from .memory import find, remember_loads
 from .relaxation import relax
-from .statics import comes_to_stand
+from .statics import find_static_forces
 from .targets import target
 from .works import against, carried, moved
 
@@ -38,7 +38,8 @@ def recall(
     KEY: IntArray, m: int, KEYS: IntArray, FORCES: Rows[Force], stamp: float, h: float, L: FloatArray,
     EXPECTED: FloatArray,
 ) -> None:  # fmt: skip
-    """First guesses L (m, 2) of the impulses, and those of loads (m,), from forces of this step or the last."""
+    """Set the initial impulses L (m, 2), and those of loads EXPECTED (m,), from remembered forces of this step or the
+    last."""
     for i in range(m):
         L[i, 0] = 0.0
         L[i, 1] = 0.0
@@ -54,10 +55,10 @@ def recall(
 def speeds(
     V: FloatArray, ACC: FloatArray, EXTENT: FloatArray, IM: FloatArray, n: int, h: float, REACH: FloatArray
 ) -> tuple[float, float, float]:
-    """Root mean square and largest speed of points of the n bodies, and their largest acceleration |a|.
+    """Root mean square and largest speed of points of the n bodies, and their largest acceleration |a|. Sets REACH
+    (k,), a bound of how far points of bodies move in h.
 
-    An island on nothing has no frame: speeds are relative to its common motion. REACH (k,) = how far a body's points
-    may come in h, with some room.
+    Speeds in a free island are relative to its centre of mass.
     """
     x = 0.0
     y = 0.0
@@ -86,7 +87,7 @@ def speeds(
 
 @kernel
 def make_contacts(p: int, k: int) -> Contacts:
-    """Room for the contacts of p pairs of shapes of k bodies."""
+    """Empty contacts for p pairs of shapes of k bodies."""
     room = 2 * p + 1
     return Contacts(
         np.empty(room, np.int64), np.empty(room, np.int64), empty(room, ROW), np.empty(room, np.int64),
@@ -97,23 +98,25 @@ def make_contacts(p: int, k: int) -> Contacts:
 @kernel
 def step_island(
     SCENE: Table, ISLE: Table, CONTACTS: Table, n: int, h: float, most: int, least: float, owed: float, free: float,
-    calm: float,
+    rest_speed: float,
 ) -> int:  # fmt: skip
-    """Solve an island over h from now.
+    """Solve an island over an interval of length h.
 
     Args:
         SCENE: its shapes, vertices, rules, scratch of the geometry, memory of forces.  ISLE: its bodies and pairs.
-        CONTACTS: its rows, impulses, velocities, report, out.
-        n: bodies that impulses move; the others keep their velocities.
-        most: sweeps of an island that moves.
-        least: length that every body's points may come at least, 0 if their velocities tell.
-        owed: energy >= 0 to take out at least.
-        free: energy >= 0 that lifting may cost beyond the losses: work of a kinematic body that was put into others.
-            Negative: overlaps are not corrected.
-        calm: speed relative to |a| h at which it may come to a stand, see `.statics`, 0 if it may not; V is 0 once it
-            does, its energy is the caller's to book. Negative: that is all that is asked for.
+        CONTACTS: out, its rows, impulses, velocities, report.
+        n: number of bodies that impulses move; the others keep their velocities.
+        most: largest number of sweeps of a moving island.
+        least: length that each body's points may move at least; 0 to use their velocities alone.
+        owed: energy >= 0 that the island has to lose at least.
+        free: energy >= 0 that the penetration correction may cost beyond the losses, work of a kinematic body that was
+            placed into others; negative: no correction.
+        rest_speed: speed relative to |a| h below which the island is tested for static forces (`.statics`), 0 for no
+            test. If they exist, V is set to 0, and the caller has to account its energy. Negative: only the test is
+            done.
+
     Returns:
-        The number m of contacts, or -1 if there is no room for them, or in the memory; nothing is changed then.
+        The number m of contacts; -1, with nothing changed, if they or the memory of forces need more memory.
     """
     S, isle, contacts = scene_of(SCENE), island_of(ISLE), contacts_of(CONTACTS)
     A, B, ROWS, L, VN, OUT = contacts.A, contacts.B, contacts.ROWS, contacts.L, contacts.VN, contacts.OUT
@@ -140,14 +143,14 @@ def step_island(
         recall(contacts.KEY, m, S.KEYS, S.FORCES, S.PAR.stamp, h, L, EXPECTED)
         rates(A, B, ROWS, V, m)
         target(A, B, ROWS, m, ACC, EXPECTED, pull, h)
-        if calm != 0.0:
-            stands, factors = comes_to_stand(problem, L, V, FREE, isle.FELT, VN, pull * h, abs(calm))
+        if rest_speed != 0.0:
+            found, factors = find_static_forces(problem, L, V, FREE, isle.FELT, VN, pull * h, abs(rest_speed))
             OUT[0].direct = factors
-            if stands:
-                OUT[0].stood = 1
+            if found:
+                OUT[0].at_rest = 1
                 OUT[0].pushing = remember_loads(ROWS, contacts.KEY, L, m, h, S.KEYS, S.FORCES, S.COUNT, S.PAR.stamp)
                 return m
-            if calm < 0.0:
+            if rest_speed < 0.0:
                 return 0
             rates(A, B, ROWS, V, m)
             target(A, B, ROWS, m, ACC, EXPECTED, pull, h)
@@ -161,7 +164,7 @@ def step_island(
         sweeps, polishes, worst = relax(
             problem, L, VN, FREE, rounds, INTERVAL_RESIDUAL * scale, coarse, S.RESTING[isle.WHO[0]], most
         )  # fmt: skip
-        # Sums over many sweeps have their own round-off: the velocities are those of the impulses.
+        # Velocities are computed again from the impulses, without the round-off of many sweeps.
         velocities(problem, L, FREE, VN)
         OUT[0].sweeps += sweeps
         OUT[0].direct += polishes

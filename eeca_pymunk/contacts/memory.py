@@ -1,7 +1,7 @@
-"""What is remembered of contacts across steps: a hash table from keys to forces, with open addressing.
+"""The memory of contact forces across steps: a hash table from keys to forces, with open addressing.
 
-KEYS (c,) int64, -1 where free, c a power of 2; FORCES (c,): the forces. Rows of older steps than the last are
-forgotten, and cleared by `forget` when the table fills. COUNT.remembered: rows in use.
+KEYS (c,) int64, -1 where free, c a power of 2; FORCES (c,): the forces. Rows of steps before the last do not count, and
+are removed by `forget` when the table fills. COUNT.remembered: rows in use.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ def key_of(shapes: int, a: int, b: int) -> int:
 
 @uncounted
 def find(KEYS: IntArray, key: int) -> int:
-    """Row of the key, or -1 - (the free row where it would be)."""
+    """Row of a key, or -1 - (the free row where it would be)."""
     mask = len(KEYS) - 1
     # Fibonacci hashing of both halves.
     row = ((key ^ (key >> 21)) * 11400714819323 >> 7) & mask
@@ -37,7 +37,7 @@ def remember(
     KEYS: IntArray, FORCES: Rows[Force], COUNT: Count, key: int, normal: float, tangential: float, load: float,
     stamp: float,
 ) -> None:  # fmt: skip
-    """Write a contact's forces. The table must have a free row."""
+    """Write a contact's forces (mass length/time²). The table must have a free row."""
     row = find(KEYS, key)
     if row < 0:
         row = -1 - row
@@ -52,8 +52,8 @@ def remember_loads(
     ROWS: Rows[Row], KEY: IntArray, L: FloatArray, m: int, h: float, KEYS: IntArray, FORCES: Rows[Force],
     COUNT: Count, stamp: float,
 ) -> int:  # fmt: skip
-    """Write the forces of those of m contacts that push, by their impulses L (m, 2) over h, and what of them bears
-    loads rather than stops; how many push."""
+    """Write the forces of the active ones of m contacts, from their impulses L (m, 2) over h, and their loads, without
+    the part that stops an approach. Returns the number of active contacts."""
     pushing = 0
     for i in range(m):
         if L[i, 0] > 0.0:
@@ -68,7 +68,7 @@ def remember_loads(
 def forget(
     KEYS: IntArray, FORCES: Rows[Force], COUNT: Count, KEYS_2: IntArray, FORCES_2: Rows[Force], stamp: float
 ) -> None:
-    """Move rows with a stamp >= `stamp` to empty tables KEYS_2, FORCES_2 (of any size); COUNT becomes theirs."""
+    """Copy rows with a stamp >= `stamp` to empty tables KEYS_2, FORCES_2 (of any size), and count them in COUNT."""
     COUNT.remembered = 0
     KEYS_2[:] = -1
     for row in range(len(KEYS)):

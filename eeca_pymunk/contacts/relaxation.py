@@ -1,9 +1,10 @@
-"""The bounded solve of an island: sweeps while it moves; sweeps and direct solutions in turn while it is near rest.
+"""The bounded solve of an island: sweeps while it moves; sweeps and direct solves in turn while it is near rest.
 
-Sweeps alone never carry a stack's weight to its floor; a direct solution does in one go, once the sweeps have found
-which contacts carry. Disordered moving piles change these with every step: there sweeps alone are the better bargain.
-STATE of an island lasts across steps: log10 of the augmentation R, steps to wait before the next direct solution, and
-the wait that its next failure brings.
+Sweeps pass a stack's weight to its floor slowly; a direct solve does it at once, as soon as sweeps have found the
+active contacts. In disordered moving piles these change with every step, and sweeps alone cost less.
+
+The state of an island lasts across steps (`Rest.augmentation`, `wait`, `backoff`): log10 of the augmentation R, steps
+to wait before the next direct solve, and the wait after its next failure.
 """
 
 from __future__ import annotations
@@ -32,13 +33,16 @@ def relax(
     problem: Problem, L: FloatArray, V: FloatArray, FREE: FloatArray, rounds: int, fine: float, coarse: float,
     STATE: Rest, most: int,
 ) -> tuple[int, int, float]:  # fmt: skip
-    """Impulses L (m, 2) and velocities V, warm-started by what they hold.
+    """Solve a contact problem from the initial impulses L (m, 2) and velocities V (k, 3), which are replaced.
 
     Args:
-        rounds: direct solutions at most; 0 for a moving island, which gets `most` sweeps.
-        fine: change of velocity by a sweep at which all is done; coarse: at which a round or a moving island is.
+        FREE: (k, 3) velocities without impulses.
+        rounds: largest number of direct solves; 0 for a moving island, which gets up to `most` sweeps.
+        fine: change of velocity in a sweep at which the solve ends; coarse: at which a round, or a moving island, ends.
+        STATE: of the island.
+
     Returns:
-        Sweeps, direct solutions, and the last sweep's change.
+        Numbers of sweeps and direct solves, and the change of velocity in the last sweep.
     """
     if rounds == 0 or STATE.wait > 0.0:
         STATE.wait = max(STATE.wait - 1.0, 0.0)

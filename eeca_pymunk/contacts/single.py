@@ -1,4 +1,4 @@
-"""Impacts of one disk alone, by the closed law; what touches whom, and the law of a pair."""
+"""Impacts of a single disk, by the closed law; motion along paths; which shapes touch at an instant."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from ..pairs.rules import barred, law
 
 @uncounted
 def move_to(BODY: Rows[Body], i: int, t: float) -> None:
-    """Let the path of body i begin at instant t."""
+    """Let the path of body i begin at instant t, with its pose and velocity there."""
     body = BODY[i]
     s = t - body.since
     if s != 0.0:
@@ -32,7 +32,7 @@ def move_to(BODY: Rows[Body], i: int, t: float) -> None:
 
 @uncounted
 def kinetic(BODY: Rows[Body], i: int) -> float:
-    """Kinetic energy of body i; 0 for what impulses do not move."""
+    """Kinetic energy of body i; 0 for bodies that impulses do not move."""
     if BODY[i].inv_mass == 0.0:
         return 0.0
     vx, vy, spin = BODY[i].vx, BODY[i].vy, BODY[i].spin
@@ -66,7 +66,7 @@ def alone(A: Scene, i: int, other: int, t: float) -> bool:
             if o == other:
                 continue
             if o < A.COUNT.disks:
-                # Most are plainly apart.
+                # Bounding circles suffice for most.
                 h = t - BODY[o].since
                 if not even:
                     ax, ay = BODY[o].ax, BODY[o].ay
@@ -85,8 +85,8 @@ def note(
     row: Impulse, a: int, b: int, t: float, lam: float, beta: float, nx: float, ny: float, px: float, py: float,
     change: float, gap: float,
 ) -> None:  # fmt: skip
-    """Write a row of the log: an impulse between shapes a and b at instant t; `gap` at the start of the step, nan if
-    that is to be found out."""
+    """Write a row of the log: impulses lam and beta between shapes a and b at instant t. change: of the normal velocity
+    by the impulse alone.  gap: at the start of the step, nan if it is still to be computed."""
     row.first, row.second, row.when, row.normal, row.tangential = a, b, t, lam, beta
     row.nx, row.ny, row.px, row.py, row.change = nx, ny, px, py, change
     row.gap, row.duration = gap, 0.0
@@ -94,16 +94,15 @@ def note(
 
 @uncounted
 def law_of_disks(BODY: Rows[Body], i: int, j: int) -> tuple[float, float, float, float]:
-    """`law` of two lone disks of which no handler says otherwise, and which have no friction: else their surfaces count
-    too. From rows that are at hand."""
+    """`law` of two single disks from their rows of BODY, valid without friction and without decisions of handlers."""
     return BODY[i].elasticity * BODY[j].elasticity, BODY[i].friction * BODY[j].friction, 0.0, 0.0
 
 
 @merged
 def strike_disk(A: Scene, i: int, o: int, t: float) -> None:
-    """Impact of the lone disk i with shape o, another lone disk or static.
+    """Impact of the single disk i with shape o, another single disk or a static shape.
 
-    The normal goes through both centres, so that the two directions do not mix:
+    The normal passes through both centres, so that normal and tangential direction are independent:
 
         lam = (1 + e) |u_n| / (1/m_i + 1/m_j),   beta = -u_t / A_tt, at most mu lam,   A_tt = sum 1/m + r^2/I.
     """
@@ -135,7 +134,7 @@ def strike_disk(A: Scene, i: int, o: int, t: float) -> None:
         turning = free + BODY[i].inv_inertia * r_i * r_i + BODY[j].inv_inertia * r_j * r_j
         beta = min(max(-slip / turning, -mu * lam), mu * lam)
         PAR.frictional -= beta * (slip + 0.5 * beta * turning)
-        # What nothing turns drives as a surface does.
+        # The spin of a body with infinite moment does work, as a moving surface does.
         driven = surface + (r_j * BODY[j].spin if BODY[j].inv_inertia == 0.0 else 0.0)
         driven -= r_i * BODY[i].spin if BODY[i].inv_inertia == 0.0 else 0.0
         PAR.external -= beta * driven

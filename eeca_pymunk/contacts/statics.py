@@ -1,17 +1,15 @@
-"""Whether an island that hardly moves comes to a stand: an equilibrium of its contacts that takes all its motion.
+"""Whether static forces hold an island that is slow: an equilibrium of its contacts that ends all its motion.
 
-At midstep, what rests with a speed of u is sent back with -u, so that its place is kept and no energy made: tiny
-motions of a pile go on for ever, and so do those that come from solves cut short. The rigid pile rather loses them in
-bounces that are over within the step. It stands iff impulses inside their cones leave no velocity at all, after N steps
-at most, and hold it from then on,
+The midpoint rule returns a resting contact that opens with u at -u, so that its place is kept and no energy is made;
+small motions of a pile therefore never end, nor do those from truncated solves. A rigid pile would lose them in bounces
+within the step. It comes to rest if impulses inside the friction cones leave no velocity, after N steps at most, and
+others hold it from then on,
 
-    v / N + h a + M^-1 (G^T lam + T^T beta) = 0   and   h a + M^-1 (G^T lam + T^T beta) = 0,
+    v / N + h a + M^-1 (G^T lam + T^T beta) = 0   and   h a + M^-1 (G^T lam + T^T beta) = 0.
 
-from the velocities v that it has: what slides without friction, rolls, or topples does not. Only what is slower than
-REST_CANDIDATE |a| h is tested, and N of a body grows with its speed, so that it stops no more than
-REST_CANDIDATE |a| h^2 / 2 from where it would. What is faster, up to the IMPACT_SPEED |a| h below which
-contacts persist, may only freeze: the first of the two equilibria ends its motion, and the next solve shows whether it
-holds.
+Bodies below REST_CANDIDATE |a| h are tested, and N of a body grows with its speed, so that it stops no farther than
+REST_CANDIDATE |a| h^2 / 2 from where it would be. Faster bodies, up to IMPACT_SPEED |a| h below which contacts persist,
+may only be frozen: the first equilibrium ends their motion, and the next solve shows whether they stay.
 """
 
 from __future__ import annotations
@@ -29,13 +27,14 @@ from ..model.parameters.rest import (
     STATICS_FACTORS_NEAREST,
     STOPPING_STEPS,
 )
-from ..rows.equilibrium import bound, equilibrium
+from ..rows.equilibrium import equilibrium, point_speed
 from ..rows.inplace import copy
 
 
 @uncounted
-def at_rest(ROWS: Rows[Row], V: FloatArray, n: int, m: int, close: float) -> bool:
-    """Set the rows' targets as if nothing moved; whether no surface and no body but the n first moves."""
+def set_motionless(ROWS: Rows[Row], V: FloatArray, n: int, m: int, close: float) -> bool:
+    """Set the rows' targets and velocities to those without motion; returns whether no surface and none of the fixed
+    bodies, from n on, moves. close: speed up to which a gap may still have to close, length/time."""
     for i in range(n, len(V)):
         if V[i, 0] != 0.0 or V[i, 1] != 0.0 or V[i, 2] != 0.0:
             return False
@@ -51,36 +50,38 @@ def at_rest(ROWS: Rows[Row], V: FloatArray, n: int, m: int, close: float) -> boo
 
 
 @kernel
-def comes_to_stand(
+def find_static_forces(
     problem: Problem, L: FloatArray, V: FloatArray, FREE: FloatArray, FELT: FloatArray, VN: FloatArray, change: float,
-    calm: float,
+    rest_speed: float,
 ) -> tuple[bool, int]:  # fmt: skip
-    """Look for an equilibrium that ends the motion V (k, 3) of the n bodies, which are FREE without impulses.
+    """Search static forces that end the motion V (k, 3) of the n bodies of a problem, and hold them.
 
     Args:
-        ROWS, L: the m contacts and first guesses; out, if the island stands, with targets and velocities of 0 and the
-            impulses that hold it from then on, without those that stop it.
-        FELT: (k,) how far bodies extend, 0 of those whose turning no contact feels.
-        V: 0 out, if it stands, but for spins that nothing feels.  VN: (k, 3) out, velocities at the end; if it does not
-            stand, a motion that nothing holds, of any size.
-        change: |a| h, to which speeds are compared.  calm: that of the bodies at most; so may gaps of contacts that
-            bear change in h, up to REST_CANDIDATE_LARGE. Above that they are only calmed.
+        problem, L: the m contacts and initial impulses (m, 2); if forces are found, targets and velocities of its rows
+            become 0, and L the impulses that hold the bodies from then on, without those that stop them.
+        V: becomes 0, except for free spins, if forces are found.  FREE: (k, 3) velocities at the end without impulses.
+        FELT: (k,) the lengths by which spins count, see `..model.islands`.
+        VN: (k, 3) out, velocities at the end; if nothing is found, a motion against which no contact acts, of any size.
+        change: |a| h, to which speeds are relative.
+        rest_speed: largest speed relative to it, also that at which gaps of loaded contacts may close; above
+            REST_CANDIDATE_LARGE the bodies are only frozen.
+
     Returns:
-        Whether the island stands, and factors it took.
+        Whether static forces are found, and the number of factorisations.
     """
     n = problem.n
     VN[:] = 0.0
-    if not at_rest(problem.ROWS, V, n, problem.m, min(calm, REST_CANDIDATE_LARGE) * change):
+    if not set_motionless(problem.ROWS, V, n, problem.m, min(rest_speed, REST_CANDIDATE_LARGE) * change):
         return False, 0
     PULL, START = FREE - V, FREE - V
     for i in range(n):
-        speed = bound(V[i, 0], V[i, 1], V[i, 2], FELT[i])
-        steps = min(STOPPING_STEPS, calm * change / speed) if speed > 0.0 else 1.0
+        speed = point_speed(V[i, 0], V[i, 1], V[i, 2], FELT[i])
+        steps = min(STOPPING_STEPS, rest_speed * change / speed) if speed > 0.0 else 1.0
         for c in range(3 if FELT[i] > 0.0 else 2):
             START[i, c] += V[i, c] / max(steps, 1.0)
     factors, accuracy = 0, REST_SPEED * change
     for nearest in (False, True):
-        if nearest and calm > REST_CANDIDATE_LARGE:
+        if nearest and rest_speed > REST_CANDIDATE_LARGE:
             break
         LEFT = PULL if nearest else START
         found, more = equilibrium(

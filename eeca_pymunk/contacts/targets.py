@@ -1,12 +1,12 @@
-"""What a contact's normal velocity is to be at the end of the interval: targets b of 0 <= lam _|_ u_n+ - b >= 0.
+"""Targets of contacts in an interval: b of 0 <= lam _|_ u_n+ - b >= 0, the normal velocities at its end.
 
-Let u = u_n now, g the gap, a_n the acceleration of the gap without impulses, lam_w the impulse expected from the last
+Let u = u_n now, g the gap, a_n the acceleration of the gap without impulses, lam_w the impulse of the load in the last
 solve. The bounce is e max(-u, 0).
 
-* e < 1 and the bounce below (1/2) max(-a_n h, A_nn lam_w): it would return within the interval. The contact is
-  sustained: its bounce is 0 (the ledger books the rest of the bounces as restitution at once).
-* e = 1, or u < -2 |a| h: an impact. b is the bounce, from when the gap would be closed without it.
-* Else the surface is reached softly at the end of the interval: b = min(bounce, -u - 2 max(g, 0)/h).
+* e < 1 and the bounce below (1/2) max(-a_n h, A_nn lam_w): it would return within the interval. The contact persists:
+  its bounce is 0 (the rest of the bounces enters the ledger as restitution at once).
+* e = 1, or u < -2 |a| h: an impact. b is the bounce, if the gap would close without it.
+* Else the surfaces meet softly at the end of the interval: b = min(bounce, -u - 2 max(g, 0)/h).
 """
 
 from __future__ import annotations
@@ -36,11 +36,11 @@ def sustained(elasticity: float, u: float, along: float, mass: float, expected: 
 def target(
     A: IntArray, B: IntArray, ROWS: Rows[Row], m: int, ACC: FloatArray, EXPECTED: FloatArray, pull: float, h: float
 ) -> None:
-    """Set TARGET and WAKE of m rows.
+    """Set targets and activation velocities of m rows.
 
     Args:
-        ACC: (k, 3) accelerations without impulses.  pull: |a|, the largest of them.
-        EXPECTED: (m,) normal impulses lam_w that carry loads.
+        ACC: (k, 3) accelerations without impulses.  pull: |a|, the largest of them.  h: length of the interval.
+        EXPECTED: (m,) normal impulses lam_w of loads.
     """
     for i in range(m):
         a = A[i]

@@ -1,4 +1,4 @@
-"""What a step has not met: budgets that were spent, tolerances that were not reached, and of which shapes."""
+"""Budgets and tolerances that a step has not met, and for which shapes; the work of its solves."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from ..model.scene import Scene
 
 @uncounted
 def note_unmet(A: Scene, kind: int, a: int, b: int, value: float, limit: float) -> None:
-    """Note that something of `kind` (`..model.step`) of shapes a and b was `value` where `limit` holds; a and b may be
-    -1. The first ones of a step are kept, all are counted."""
+    """Note that a quantity of `kind` (`..model.step`) was `value` for shapes a and b (-1: unknown), beyond `limit`.
+    Rows of the first ones in a step are stored, all are counted."""
     k = A.COUNT.unmet
     A.COUNT.unmet = k + 1
     if k < A.MISSED.shape[0]:
@@ -27,7 +27,8 @@ def note_unmet(A: Scene, kind: int, a: int, b: int, value: float, limit: float) 
 
 @uncounted
 def spend(A: Scene, pairs: int, contacts: int, sweeps: int, direct: int) -> None:
-    """Count the work of a solve of contacts: its geometry, sweeps, and direct solutions, with dense matrices of few."""
+    """Add the work of a contact solve to that of the step: its geometry, sweeps, and direct solves, with dense matrices
+    for few contacts."""
     few = min(contacts, DENSE_CONTACTS)
     one = PAIR_LOOKS * pairs + contacts * (SWEEP_LOOKS * sweeps + DIRECT_LOOKS * few * direct)
     A.COUNT.work += EVENT_LOOKS + int(one)
@@ -35,5 +36,5 @@ def spend(A: Scene, pairs: int, contacts: int, sweeps: int, direct: int) -> None
 
 @uncounted
 def most_work(A: Scene) -> float:
-    """The work that the events of this step may come to."""
+    """Largest work of the events of this step, in looks."""
     return float(A.COUNT.budget * max(1.0, A.PAR.dt / BUDGET_TIME))

@@ -3,9 +3,9 @@ identity:
 
     change of energy = forces + carried + lifted - restitution - friction,
 
-of kinetic energy, and of potential energy as far as bodies are lifted. `restitution` and `friction` are >= 0. `lifted`
-is the energy that lifting bodies out of each other costs; it never exceeds these losses, from which it is paid, and is
-below 0 where bodies sink by it.
+of kinetic energy, and of potential energy as far as the penetration correction changes it. `restitution` and `friction`
+are >= 0. `lifted` is the energy that the correction costs; it never exceeds these losses, from which it is paid, and is
+below 0 if bodies sink by it.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ def carried(
     A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, VN: FloatArray, IM: FloatArray,
     II: FloatArray, m: int,
 ) -> float:  # fmt: skip
-    """Work of bodies that impulses do not move (kinematic ones), or do not turn (of infinite moment), at the means of
-    their velocities before and after, V and VN, and of moving surfaces."""
+    """External work of m contacts with impulses L (m, 2): of bodies that impulses do not move or do not turn, at the
+    means of their velocities V and VN (k, 3) before and after, and of moving surfaces."""
     work = 0.0
     for i in range(m):
         lam = L[i, 0]
@@ -49,7 +49,7 @@ def carried(
 
 @uncounted
 def against(ACC: FloatArray, IM: FloatArray, II: FloatArray, n: int, D: FloatArray) -> float:
-    """Work of the forces behind accelerations ACC over displacements D (k, 3) of the first n bodies."""
+    """Work of the forces that cause accelerations ACC (k, 3) over displacements D (k, 3), for the first n bodies."""
     work = 0.0
     for i in range(n):
         work += (ACC[i, 0] * D[i, 0] + ACC[i, 1] * D[i, 1]) / IM[i]

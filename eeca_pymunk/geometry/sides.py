@@ -9,7 +9,7 @@ memory of sides, the rows of SIDE. It holds
 * for contacts that forces hold (`deep` > 0) as far as they may go about one another in an interval: a normal n with
   n . m < 0 is the wrong one up to that distance (length), and the gap is negative.
 
-What is farther apart has its side from the geometry, and the forecasts of its next impact note it.
+What is farther apart has its side from the geometry, and the prediction of its next impact notes it.
 
 Segments of one body that meet, end to end or an end on the other, are one boundary. What lies in the corner between
 two, by its side of one, and is nearest to the other where they meet, is on that one's side that looks into the corner:

@@ -3,7 +3,8 @@
 In: the packed arrays of a world (`..model.scene`) at the start of a step. Out: the same at its end, and a log of
 impulses. Open `step.py` first, the stages of a step: `begin.py`, islands and intervals (`intervals.py`), the queue of
 events in `loop.py`, `close.py`. An impact acts on one disk (`..contacts.single`) or on all bodies that touch
-(`simultaneous.py`, `resolution.py`; `joint_impact.py` where joints pass it on). `midstep.py` has all contacts of a step
-act at once; `run.py` takes many steps in one call.
-`scene.py` owns the arrays, `memory.py` and `remembering.py` what a state of a run consists of.
+(`simultaneous.py`, `resolution.py`; `joint_impact.py` if joints hold any of them). `midstep.py` solves all contacts of
+a step at once; `run.py` takes many steps in one call.
+
+`scene.py` owns the arrays, `memory.py` and `remembering.py` store what a state of a run consists of.
 """

@@ -1,4 +1,4 @@
-"""A step's beginning: who is forecast anew, and the energy that there is."""
+"""The start of a step: which bodies have to be predicted again, and the energy at the start."""
 
 from __future__ import annotations
 
@@ -18,23 +18,24 @@ from ..model.scene import Scene
 
 @uncounted
 def begin(A: Scene, WALK: IntArray) -> None:
-    """Count from the start of this step; forecast the bodies that were edited, and all that is due."""
+    """Set instants relative to the start of this step, reset its counters and ledger, and mark the bodies to be
+    predicted: edited ones, and those whose predicted events are due."""
     BODY, STATE, PAR, COUNT = A.BODY, A.STATE, A.PAR, A.COUNT
-    COUNT.heap, COUNT.logged, COUNT.impacts, COUNT.blocks, COUNT.forecasts, COUNT.stale = 0, 0, 0, 0, 0, 0
+    COUNT.heap, COUNT.logged, COUNT.impacts, COUNT.blocks, COUNT.predictions, COUNT.stale = 0, 0, 0, 0, 0, 0
     COUNT.solves, COUNT.solved, COUNT.ignored, COUNT.sweeps, COUNT.direct, COUNT.work = 0, 0, 0, 0, 0, 0
     if COUNT.unmet > 0:
         A.FLAG[:] = 0
         COUNT.unmet = 0
-        # Pairs that were passed over are in nobody's forecast.
+        # Pairs that were passed over are in no prediction.
         for i in range(BODY.shape[0] - 1):
-            BODY[i].due, A.RESTING[i].still_due = min(BODY[i].due, 0.0), 0.0
+            BODY[i].due, A.RESTING[i].rest_due = min(BODY[i].due, 0.0), 0.0
         flag_pairs(A)
     PAR.restitution, PAR.frictional, PAR.external, PAR.damped = 0.0, 0.0, 0.0, 0.0
     PAR.lock, PAR.stored = 1.0, 0.0
     PAR.before = total(A)
     left = PAR.left_over
     if left != 1.0:
-        # `take` has damped velocities already, by half a step's worth.
+        # `take` has damped velocities by half a step already.
         PAR.damped = unsteered(A, WALK) * (1.0 / (left * left) - 1.0)
         PAR.before += PAR.damped
     PAR.stamp += 1.0

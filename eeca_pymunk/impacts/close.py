@@ -1,4 +1,4 @@
-"""A step's end: paths come to its last instant, islands and the work of forces enter the ledger."""
+"""The end of a step: paths come to its last instant, islands and the work of forces enter the ledger."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from ..compiled import uncounted
 from ..contacts.energy import total, unsteered
 from ..contacts.single import move_to
 from ..geometry.gap import gap_at
-from ..islands.accounting import book, lift_out
-from ..islands.at_rest import keep, leave, put_to_rest, stand
+from ..islands.accounting import account_contact, apply_correction
+from ..islands.at_rest import continue_contact, put_to_rest, report_at_rest, store_rest
 from ..islands.rest import find_candidates
 from ..model.bodies import AT_REST, CANDIDATE
 from ..model.scene import Scene
@@ -18,7 +18,8 @@ from ..model.scene import Scene
 
 @uncounted
 def close(A: Scene, WALK: IntArray) -> None:
-    """Bring all paths to the end of the step; book islands, the work of forces, the energy; gaps at the start."""
+    """Move all bodies to the end of the step, end islands' intervals, enter the work of forces and the energy in the
+    ledger, and compute the gaps at the start of the step of logged impulses."""
     BODY, PAR, LOG, BEGAN, COUNT = A.BODY, A.PAR, A.LOG, A.BEGAN, A.COUNT
     end = PAR.dt
     even = COUNT.even > 0  # no islands
@@ -28,16 +29,16 @@ def close(A: Scene, WALK: IntArray) -> None:
     for c in range(COUNT.pushes):
         root = A.PUSHED_BY[c].root
         if root >= 0 and A.MEMBER[root].rest == AT_REST:
-            stand(A, c)
+            report_at_rest(A, c)
         elif root >= 0:
-            book(A, c, end)
+            account_contact(A, c, end)
             if A.MEMBER[root].rest == CANDIDATE:
-                keep(A, c, root)
+                continue_contact(A, c, root)
     gx, gy = PAR.gravity_x, PAR.gravity_y
     for i in range(BODY.shape[0] - 1):
         move_to(BODY, i, end)
         if not even and A.STATE[i].island == i:
-            lift_out(A, i, end)
+            apply_correction(A, i, end)
             if A.MEMBER[i].rest == CANDIDATE:
                 put_to_rest(A, i)
     for i in range(BODY.shape[0] - 1):
@@ -47,7 +48,7 @@ def close(A: Scene, WALK: IntArray) -> None:
             if BODY[i].inv_inertia > 0.0:
                 work += twist * (BODY[i].angle - BEGAN[i, 2]) / BODY[i].inv_inertia
             PAR.external += work
-    # What friction gives back counts against restitution, and the other way round.
+    # A negative loss by friction is deducted from that by restitution, and vice versa.
     if PAR.restitution < 0.0 and PAR.frictional > 0.0:
         PAR.frictional += PAR.restitution
         PAR.restitution = 0.0
@@ -75,4 +76,4 @@ def close(A: Scene, WALK: IntArray) -> None:
             b, BEGAN[j, 0], BEGAN[j, 1], BEGAN[j, 2],
         )[0]  # fmt: skip
     if not even:
-        leave(A)
+        store_rest(A)

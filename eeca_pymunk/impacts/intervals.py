@@ -1,4 +1,5 @@
-"""Intervals of islands, with joints or without: begun at the start of a step and after events, cut at its end."""
+"""Intervals of islands, with joints or without: begun at the start of a step and after events, cut where the step ends
+early."""
 
 from __future__ import annotations
 
@@ -14,13 +15,14 @@ from ..model.joints import Joints
 from ..model.parameters.joints import STEP_WORK
 from ..model.scene import Scene
 from ..model.step import DONE, PUSHES_FULL, SOLVES
-from ..prediction.scheduling import forecast_all
+from ..prediction.scheduling import predict_all
 
 
 @uncounted
 def start_interval(A: Scene, J: Joints, root: int, t: float) -> int:
-    """Begin an interval of an island at instant t, at which all its bodies are: DONE, or PUSHES_FULL, which leaves
-    everything as it was; likewise SPENT, where joints take part and the step has no work left."""
+    """Begin an interval of an island at instant t, at which all its bodies are. Returns DONE, or PUSHES_FULL (more
+    memory is needed), which leaves everything as it was; with joints also SPENT, likewise, if the budget of the step is
+    spent."""
     if A.MEMBER[root].jointed == 0:
         return solve(A, root, t)
     return begin_interval(A, J, root, t, A.PAR.dt - t) if t < A.PAR.dt else DONE
@@ -28,8 +30,8 @@ def start_interval(A: Scene, J: Joints, root: int, t: float) -> int:
 
 @kernel
 def start_islands(A: Scene, J: Joints) -> int:
-    """The islands of the start of a step, and their intervals. DONE, or PUSHES_FULL, to be called again with more
-    room."""
+    """Build the islands of the start of a step and begin their intervals. DONE, or PUSHES_FULL: to be called again with
+    more memory."""
     if build_islands(A) != DONE:
         return PUSHES_FULL
     for i in range(A.BODY.shape[0] - 1 if J.TALLY.components > 0 else 0):
@@ -42,7 +44,7 @@ def start_islands(A: Scene, J: Joints) -> int:
 @kernel
 def start_waiting(A: Scene, J: Joints) -> int:
     """Begin intervals of the islands of the COUNT.waiting bodies in A.BLOCK, which are at the instant of an event, and
-    forecast these: DONE, or PUSHES_FULL, to be called again with more room."""
+    predict the events of these bodies. DONE, or PUSHES_FULL: to be called again with more memory."""
     COUNT, BLOCK = A.COUNT, A.BLOCK
     for q in range(COUNT.waiting):
         root = A.STATE[BLOCK[q]].island
@@ -53,16 +55,16 @@ def start_waiting(A: Scene, J: Joints) -> int:
             if status == SPENT:
                 COUNT.waiting = 0
                 return cut_short(A, J, root, A.BODY[root].since)
-    forecast_all(A, COUNT.waiting, A.PAR.now, A.PAR.dt)
+    predict_all(A, COUNT.waiting, A.PAR.now, A.PAR.dt)
     COUNT.waiting = 0
     return DONE
 
 
 @kernel
 def cut_short(A: Scene, J: Joints, i: int, t: float) -> int:
-    """Let the step end at instant t, the event of body i: so nothing that it has no work left for is passed over.
-    Intervals end there, without what they would have lifted at their own end."""
-    met = A.STATE[i].other >= 0  # else its interval ends: the body alone is named
+    """End the step at instant t, that of the event of body i, since its budget is spent; so no impact is ignored.
+    Intervals end there without penetration correction."""
+    met = A.STATE[i].other >= 0  # else the event is the end of an interval, without a partner
     own, other = (A.STATE[i].own, A.STATE[i].other) if met else (A.STATE[i].first_shape, -1)
     note_unmet(A, SOLVES, own, other, float(A.COUNT.work), most_work(A))
     A.PAR.dt = t

@@ -1,4 +1,4 @@
-"""An impact on islands with joints, at its instant (`..jointed.meet`): impulses that joints pass on."""
+"""An impact on islands with joints, at its instant (`..jointed.meet`): its impulses act through the joints."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from ..compiled import kernel, uncounted
 from ..compiled.records import Rows, zeros
 from ..contacts.works import carried
 from ..islands.building import comes_to_rest
-from ..islands.intervals import dismiss
+from ..islands.intervals import clear_places
 from ..islands.membership import members
 from ..jointed.columns import fill_free, fill_group, make_columns, weigh
 from ..jointed.component import answer, fit_speeds, ready
@@ -25,12 +25,12 @@ from ..rows.bounded import room_for_rows
 from ..rows.build import conserves, normal_rate
 from ..rows.sweeps import velocities
 from .resolution import finish, rejoin
-from .simultaneous import Block, gather, lay_out, owing
+from .simultaneous import Block, energy_owed, gather, lay_out
 
 
 @uncounted
 def energy_of(block: Block, V: FloatArray, W: FloatArray, n: int) -> float:
-    """Kinetic energy of the n bodies of a block at velocities V - W."""
+    """Kinetic energy of the n bodies of a block at velocities V - W, (k, 3) each."""
     total = 0.0
     for q in range(n):
         x, y, spin = V[q, 0] - W[q, 0], V[q, 1] - W[q, 1], V[q, 2] - W[q, 2]
@@ -42,7 +42,7 @@ def energy_of(block: Block, V: FloatArray, W: FloatArray, n: int) -> float:
 
 @uncounted
 def carried_along(J: Joints, s: int) -> bool:
-    """Whether component s hangs on something that moves; its bodies are in the scratch."""
+    """Whether component s is jointed to a moving partner; its bodies are in the scratch of `..joints`."""
     for i in range(J.COMPONENT[s].end_body - J.COMPONENT[s].first_body):
         if J.LOCAL[i].freedoms == 0:
             for c in range(3):
@@ -53,8 +53,8 @@ def carried_along(J: Joints, s: int) -> bool:
 
 @uncounted
 def closes(P: IntArray, Q: IntArray, ROWS: Rows[Row], BEFORE: FloatArray, V: FloatArray, rows: int) -> bool:
-    """Whether a contact closes with velocities V after an impact, BEFORE it, by more than round-off: where these do not
-    fit the joints, so that the same impact would follow at the same instant, again and again."""
+    """Whether a contact closes by more than round-off at the velocities V after an impact, BEFORE being those before
+    it: then the velocities did not satisfy the joints, and the same impact would repeat at the same instant."""
     fastest, least = 0.0, 0.0
     for i in range(rows):
         fastest = max(fastest, abs(normal_rate(P, Q, ROWS, BEFORE, i)))
@@ -64,8 +64,8 @@ def closes(P: IntArray, Q: IntArray, ROWS: Rows[Row], BEFORE: FloatArray, V: Flo
 
 @kernel
 def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
-    """The impact of shapes a and b, seen at instant t, with all that hangs on them: results as `resolution.strike`, at
-    PAR.now."""
+    """The impact of shapes a and b, predicted for instant t, with the components of their bodies; results as
+    `resolution.strike`, at PAR.now, the instant at which they meet on their paths with joints."""
     k = A.SHAPE.shape[0]
     i, j = A.LINK[a].owner, A.LINK[b].owner
     A.PAR.now = t = meet(A, J, a, b, t)
@@ -83,10 +83,10 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
                 ended += 1
                 again = True
         if again:
-            dismiss(A, A.BLOCK, n)
+            clear_places(A, A.BLOCK, n)
             n, m, PAIRS = gather(A, a, b, t)
     rest = comes_to_rest(A, a, b, t)
-    owed, _ = owing(A, n)
+    owed, _ = energy_owed(A, n)
     block = lay_out(A, n, m, PAIRS, min(a, b) * k + max(a, b), rest, t)
     P, Q, ROWS, V = block.A, block.B, block.ROWS, block.V
     rows = len(ROWS)
@@ -107,7 +107,7 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
         length = gather_component(A, J, s, block.POSE, V, np.zeros_like(V), block.IM, block.II, t, 0.0)
         size = find_places(A, J, s, INDEX)
         PUSH = np.zeros((size, 3))
-        # Velocities that joints would not let through take no part in the impact.
+        # Only the part of the velocities that joints allow takes part in the impact.
         along = carried_along(J, s)
         if along:
             fit_speeds(A, J, s, length)
@@ -140,10 +140,10 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
         velocities(problem, L, BEFORE, V)
         fits = closes(P, Q, ROWS, BEFORE, V, rows)
     if fits:
-        # What joints would not let through is lost.
+        # The other part of the velocities is lost.
         velocities(problem, L, FITTED, V)
         OUT[0].restitution += energy_of(block, BEFORE, FITTED, n)
-    # Joints do all that contacts do not account for, which is nothing unless they hang on something that moves.
+    # The rest of the change of energy is work of moving partners.
     REST = np.zeros_like(V)
     gained = energy_of(block, V, REST, n) - energy_of(block, BEFORE, REST, n) + OUT[0].restitution + OUT[0].friction
     A.PAR.external += gained - carried(P, Q, ROWS, L, V, V, block.IM, block.II, rows)
@@ -153,7 +153,7 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     if A.BODY[j].inv_mass > 0.0:
         A.STATE[j].version += 1
     n = rejoin(A, a, b, t, n, rest, lost)
-    # Islands that were brought here, and do not touch after all, begin anew too.
+    # Islands that were moved to this instant but do not touch begin new intervals too.
     for q in range(n):
         A.PLACE[A.BLOCK[q]] = q
     MINE = np.empty(A.BODY.shape[0], np.int64)
@@ -163,5 +163,5 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
             if A.PLACE[MINE[q]] < 0:
                 A.BLOCK[n], A.PLACE[MINE[q]] = MINE[q], n
                 n += 1
-    dismiss(A, A.BLOCK, n)
+    clear_places(A, A.BLOCK, n)
     return n

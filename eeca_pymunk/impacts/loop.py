@@ -1,7 +1,7 @@
-"""The event loop of a step: one queue of impacts, leaves and looks, each body on its own clock.
+"""The event loop of a step: one queue of impacts, margin circles left and searches to be continued.
 
-Nobody is moved at another's event: a body's path begins at its own last kink. What was forecast with a path that has
-kinked since is forecast anew when it comes up; until then it can only be too early.
+A body is not moved at the events of others: its path begins at its own last impulse. An event that was predicted for an
+older path version of the partner is predicted again when it is taken from the queue; it can only be too early.
 """
 
 from __future__ import annotations
@@ -21,29 +21,30 @@ from ..model.scene import Scene
 from ..model.step import BLOCK_DUE, DONE, HITS, IMPACTS, LOG_FULL, POOL_FULL, PUSHES_FULL
 from ..pairs.grid import renew
 from ..pairs.lists import mark_pair
-from ..prediction.disks import carrier, go_on
+from ..prediction.disks import body_of, go_on
 from ..prediction.heap import pop, push, sweep_out
 from ..prediction.next_event import has_left
-from ..prediction.scheduling import forecast, look_ahead
+from ..prediction.scheduling import look_ahead, predict_next
 from ..prediction.turning import follow_side
 from .intervals import cut_short, start_waiting
 from .joint_impact import collide
 from .resolution import strike
-from .simultaneous import arrive
+from .simultaneous import bring_to
 
-_ROOM = 64  # contacts more than there are, that there must be room for before an impact on joints
+_ROOM = 64  # contacts that an impact on joints may add, at least
 
 
 @uncounted
 def jointed(A: Scene, i: int) -> bool:
-    """Whether body i is in an island that is held by joints."""
+    """Whether body i is in an island with joints."""
     root = A.STATE[i].island
     return bool(root >= 0 and A.MEMBER[root].jointed > 0)
 
 
 @merged
-def give_up(A: Scene, i: int, j: int) -> bool:
-    """Whether bodies i and j have met as often as a step allows."""
+def met_too_often(A: Scene, i: int, j: int) -> bool:
+    """Whether one of bodies i and j has had as many impacts as a step allows: COUNT.limit, or RESOLUTION between bodies
+    that moving fixed ones may squeeze."""
     limit = A.COUNT.limit
     if A.STATE[i].events >= limit or A.STATE[j].events >= limit:
         return True
@@ -56,17 +57,18 @@ def give_up(A: Scene, i: int, j: int) -> bool:
 
 @uncounted
 def run(A: Scene, may_rest: bool) -> int:
-    """Follow the events until the end of the step, or the next one that is a block (BLOCK_DUE) or wants more room.
+    """Process events up to the end of the step, or up to the next one that the loop does not process itself (BLOCK_DUE)
+    or that needs more memory.
 
     Args:
-        may_rest: whether contacts may be sustained.
+        may_rest: whether contacts may persist.
     """
     BODY, STATE, COUNT, TIME, OF = A.BODY, A.STATE, A.COUNT, A.HEAP_TIME, A.HEAP_BODY
     disks, moving, end, most = COUNT.disks, A.LIST.shape[0], A.PAR.dt, most_work(A)
-    one, two, t = -1, -1, 0.0  # bodies to be forecast
+    one, two, t = -1, -1, 0.0  # bodies to be predicted
     while True:
         while one >= 0:
-            forecast(A, one, t, end, False)
+            predict_next(A, one, t, end, False)
             one, two = two, -1
         if COUNT.heap == 0:
             return DONE
@@ -96,12 +98,12 @@ def run(A: Scene, may_rest: bool) -> int:
         if o == RENEW:
             A.PAR.now, COUNT.struck = t, i
             return BLOCK_DUE
-        j = carrier(A, o) if o >= 0 else i
+        j = body_of(A, o) if o >= 0 else i
         if o < 0 or STATE[j].version != STATE[i].known:
             COUNT.stale += 1
             one = i
             continue
-        if give_up(A, i, j):
+        if met_too_often(A, i, j):
             note_unmet(A, IMPACTS, s, o, float(max(STATE[i].events, STATE[j].events)), float(COUNT.limit))
             mark_pair(A, s, o, 1)
             one = i
@@ -117,7 +119,7 @@ def run(A: Scene, may_rest: bool) -> int:
         if not single or COUNT.work > most:
             A.PAR.now, COUNT.struck = t, i
             return BLOCK_DUE
-        # The same bits, whoever of the two has foreseen it.
+        # The result is the same to the bit, whichever of the two predicted the impact.
         a, b = (o, i) if o < i else (i, o)
         strike_disk(A, a, b, t)
         COUNT.work += EVENT_LOOKS
@@ -125,15 +127,16 @@ def run(A: Scene, may_rest: bool) -> int:
 
 
 @uncounted
-def roomy(A: Scene) -> bool:
-    """Whether there is room for the contacts that an impact on islands with joints may bring."""
+def has_room(A: Scene) -> bool:
+    """Whether there is memory for the contacts that an impact on islands with joints may add."""
     more = 2 * A.COUNT.pushes + _ROOM
     return bool(more <= A.PUSHED.shape[0] and 2 * (A.COUNT.remembered + more) <= A.KEYS.shape[0])
 
 
 @uncounted
 def end_of_interval(A: Scene, J: Joints, i: int, t: float) -> int:
-    """The interval of the island of body i ends at instant t, within the step; how many bodies it has, in A.BLOCK."""
+    """End the interval of the island of body i at instant t, within the step. Writes its bodies to A.BLOCK; returns
+    their number."""
     if jointed(A, i):
         end_here(A, J, i, t)
     else:
@@ -143,7 +146,8 @@ def end_of_interval(A: Scene, J: Joints, i: int, t: float) -> int:
 
 @kernel
 def follow(A: Scene, J: Joints, may_rest: bool) -> int:
-    """The events of the step, blocks and islands included. After a status other than DONE, make room and call again."""
+    """Process all events of the step, with simultaneous impacts and islands. After a status other than DONE: provide
+    more memory, and call again."""
     COUNT, STATE = A.COUNT, A.STATE
     end = A.PAR.dt
     while True:
@@ -166,22 +170,22 @@ def follow(A: Scene, J: Joints, may_rest: bool) -> int:
         if met and (STATE[i].island >= 0 or STATE[j].island >= 0) and passed_over(A, s, o, t):
             note_unmet(A, HITS, s, o, float(hits_of(A, s, o)), float(most_hits(A, s, o)))
             mark_pair(A, s, o, 1)
-            forecast(A, i, t, end, False)
+            predict_next(A, i, t, end, False)
             continue
         joints = jointed(A, i) or jointed(A, j)
         if met and not joints:
             rest = False
             if may_rest:
-                arrive(A, i, t)
+                bring_to(A, i, t)
                 if A.BODY[j].inv_mass > 0.0:
-                    arrive(A, j, t)
+                    bring_to(A, j, t)
                 rest = comes_to_rest(A, s, o, t)
             COUNT.waiting = strike(A, s, o, t, rest)
             joints = COUNT.waiting < 0
         if joints and J.PROGRESS.effort > J.PROGRESS.budget:
             COUNT.waiting = 0
             return cut_short(A, J, i, t)
-        if joints and not roomy(A):
+        if joints and not has_room(A):
             COUNT.waiting = 0
             COUNT.heap = push(A.HEAP_TIME, A.HEAP_BODY, COUNT.heap, t, i)
             return PUSHES_FULL
@@ -190,6 +194,6 @@ def follow(A: Scene, J: Joints, may_rest: bool) -> int:
         elif joints:
             COUNT.waiting = collide(A, J, s, o, t)
         if A.BODY[i].inv_mass == 0.0:
-            # No impulse moves it; it is forecast too.
+            # A body without mobility is in no island; its event is predicted too.
             A.BLOCK[COUNT.waiting] = i
             COUNT.waiting += 1

@@ -1,6 +1,6 @@
 """What steps change in the arrays of a scene besides poses and velocities, in one piece of memory.
 
-A scene whose memory is as it was made goes from any poses and velocities the way that a new one goes.
+If this memory is that of a new scene, the scene follows the path of a new one, from any poses and velocities.
 """
 
 from __future__ import annotations
@@ -24,13 +24,14 @@ ROOM = ("LOG", "PUSHED_BY", "PUSHED", "KEYS", "FORCES")
 
 
 def gathered(*parts: tuple[Any, tuple[str, ...]]) -> tuple[list[Any], IntArray]:
-    """Named tuples with copies of some of their arrays, which lie in one piece of memory; and that, as integers."""
+    """Copies of the named arrays of each part, a named tuple, in one piece of memory. Returns the parts with the
+    copies, and that memory as integers."""
     held = [np.asarray(getattr(arrays, name)) for arrays, names in parts for name in names]
     copies = side_by_side(*((array.shape or (1,), array.dtype) for array in held))
     for copy, array in zip(copies, held, strict=True):
         copy[...] = array
     piece = _piece(copies)
-    # A record is taken out of its row.
+    # A record is a row of an array of length 1.
     fields = iter([copy if array.shape else copy[0] for copy, array in zip(copies, held, strict=True)])
     return [arrays._replace(**{name: next(fields) for name in names}) for arrays, names in parts], piece
 
@@ -55,7 +56,7 @@ _CONSTANT = ("inv_mass", "inv_inertia", "extent", "elasticity", "friction")
 
 
 def remembered(scene: Scene) -> list[AnyArray]:
-    """All that decides how the next step of a scene goes, besides shapes and what crosses the edge."""
+    """All arrays that determine the next step of a scene, apart from shapes and the states exchanged with pymunk."""
     end, pushes = int(scene.GRID.pool_end), int(scene.COUNT.pushes)
     used = np.flatnonzero(scene.KEYS >= 0)
     sizes = np.array([len(scene.POOL), end, len(scene.KEYS), len(used), len(scene.PUSHED), pushes], np.int64)
@@ -66,10 +67,10 @@ def remembered(scene: Scene) -> list[AnyArray]:
 
 
 def recalled(scene: Scene, take: Callable[[Any, tuple[int, ...]], AnyArray]) -> Scene:
-    """The scene with what `remembered` told; BODY and records in place.
+    """The scene with the arrays of `remembered`; BODY and records are overwritten in place.
 
     Args:
-        take: gives the next part with a dtype and a shape.
+        take: returns the next array, for a dtype and a shape.
     """
     room, end, slots, used, many, pushes = take(np.int64, (6,)).tolist()
     whole = {name: np.asarray(getattr(scene, name)) for name in _WHOLE}
@@ -78,7 +79,7 @@ def recalled(scene: Scene, take: Callable[[Any, tuple[int, ...]], AnyArray]) -> 
         new["BODY"][name] = scene.BODY[name]
     for name in ("BODY", "GRID", "PAR", "COUNT"):
         whole[name][...] = new.pop(name)
-    # Lengths decide when more room is made, and that when lists are.
+    # Lengths determine when tables grow, and that when lists are made.
     for name, kept, length in (
         ("POOL", end, room), ("FLAG", end, room), ("PUSHED_BY", pushes, many), ("PUSHED", pushes, many)
     ):  # fmt: skip

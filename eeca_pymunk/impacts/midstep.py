@@ -1,8 +1,8 @@
-"""A step whose contacts act together at its middle, psi2 = 0: the bounded solve of islands on all contacts.
+"""A step whose contacts act together at its middle, psi2 = 0: one bounded solve of each island with all its contacts.
 
-No event is followed. Every pair that may close within the step is a contact of an island, and every island has one
-interval, the step. How far a body may go its own speed tells; where impulses send it farther, and into others, these
-are made contacts too, and all is solved again, a few times at most.
+No events are followed. Each pair that may close within the step is a contact of an island, and each island has one
+interval, the step. The speed of a body bounds its travel; if impulses move it farther and into others, these become
+contacts too, and all is solved again, MIDSTEP_PASSES times at most.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from ..arrays import FloatArray
 from ..compiled import kernel, uncounted
 from ..geometry.flight import norm, pose
 from ..geometry.gap import gap
-from ..islands.candidates import way_of
+from ..islands.candidates import travel_bound
 from ..islands.membership import approach, unite
 from ..model.joints import Joints
 from ..model.parameters.intervals import MIDSTEP_PASSES, TOUCH
@@ -24,9 +24,10 @@ from .intervals import start_interval
 
 
 @uncounted
-def reaches(A: Scene, USUAL: FloatArray, i: int) -> bool:
-    """Make the lists of body i complete for what it may reach within the step. False if there is no room."""
-    way = way_of(A, i, A.PAR.dt)
+def list_reach(A: Scene, USUAL: FloatArray, i: int) -> bool:
+    """Extend the near lists of body i to all that it may reach within the step; False if they need more memory. USUAL:
+    see `act_together`."""
+    way = travel_bound(A, i, A.PAR.dt)
     for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):
         if not cover(A, USUAL, s, way):
             return False
@@ -35,12 +36,12 @@ def reaches(A: Scene, USUAL: FloatArray, i: int) -> bool:
 
 @uncounted
 def join_all(A: Scene, USUAL: FloatArray) -> bool:
-    """The islands of all bodies that may touch within the step, or are tied by joints. False if there is no room for
-    lists."""
+    """Build islands of all bodies that may touch within the step, or are jointed; False if near lists need more
+    memory."""
     BODY, LINK = A.BODY, A.LINK
     n, dt = BODY.shape[0] - 1, A.PAR.dt
     for i in range(n):
-        if not reaches(A, USUAL, i):
+        if not list_reach(A, USUAL, i):
             return False
     for s in range(A.LIST.shape[0]):
         i = LINK[s].owner
@@ -54,7 +55,7 @@ def join_all(A: Scene, USUAL: FloatArray) -> bool:
                 continue
             touch = TOUCH * min(A.SHAPE[s].extent, A.SHAPE[o].extent)
             g = approach(A, s, o, 0.0)[0]
-            if g <= way_of(A, i, dt) + way_of(A, j, dt) + touch:
+            if g <= travel_bound(A, i, dt) + travel_bound(A, j, dt) + touch:
                 unite(A, i, j if moves else i)
     for i in range(n):
         if A.MEMBER[i].tied >= 0:
@@ -63,8 +64,8 @@ def join_all(A: Scene, USUAL: FloatArray) -> bool:
 
 
 @uncounted
-def anew(A: Scene) -> None:
-    """Undo the intervals that were begun: nobody is in an island, and impulses have changed no path."""
+def undo_intervals(A: Scene) -> None:
+    """Undo the intervals begun so far: no body is in an island, and no impulse has changed a path."""
     for c in range(A.COUNT.pushes):
         mark_pair(A, A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, 0)
     A.COUNT.pushes = 0
@@ -74,9 +75,9 @@ def anew(A: Scene) -> None:
 
 
 @uncounted
-def overrun(A: Scene, USUAL: FloatArray) -> int:
-    """How many bodies went farther than was thought, and into others that are no contacts of the solve; they have the
-    speed now that they got. -1 if there is no room for lists."""
+def missed_bodies(A: Scene, USUAL: FloatArray) -> int:
+    """Number of bodies that travel farther than their bound, and into others that are no contacts of the solve; their
+    speed bounds are increased to that. -1 if near lists need more memory."""
     BODY, RESTING = A.BODY, A.RESTING
     dt, found = A.PAR.dt, 0
     for i in range(BODY.shape[0] - 1):
@@ -84,10 +85,10 @@ def overrun(A: Scene, USUAL: FloatArray) -> int:
             continue
         x, y, angle = pose(BODY, i, dt)
         way = norm(x - BODY[i].x, y - BODY[i].y) + abs(angle - BODY[i].angle) * BODY[i].extent
-        if way <= way_of(A, i, dt):
+        if way <= travel_bound(A, i, dt):
             continue
         before, RESTING[i].speed = RESTING[i].speed, way / dt
-        if not reaches(A, USUAL, i):
+        if not list_reach(A, USUAL, i):
             return -1
         into = 0
         for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):
@@ -107,7 +108,8 @@ def overrun(A: Scene, USUAL: FloatArray) -> int:
 
 @kernel
 def act_together(A: Scene, J: Joints, USUAL: FloatArray) -> int:
-    """All contacts of a step; from its start, if it has been broken off for more room. DONE, or what is full.
+    """Solve all contacts of a step, from its start also when it is called again after more memory was needed. DONE, or
+    which memory is full.
 
     Args:
         USUAL: (k,) margins of shapes that are not fast, length.
@@ -118,7 +120,7 @@ def act_together(A: Scene, J: Joints, USUAL: FloatArray) -> int:
     for i in range(n):
         A.RESTING[i].speed = norm(BODY[i].vx, BODY[i].vy) + abs(BODY[i].spin) * BODY[i].extent
     for solves in range(MIDSTEP_PASSES + 1):
-        anew(A)
+        undo_intervals(A)
         if not join_all(A, USUAL):
             return POOL_FULL
         # A solve may make another body the root of its island, which then would be solved again.
@@ -130,10 +132,10 @@ def act_together(A: Scene, J: Joints, USUAL: FloatArray) -> int:
         for q in range(roots):
             if start_interval(A, J, A.BLOCK[q], 0.0) != DONE:
                 return PUSHES_FULL
-        # Joints have taken their step: it is not taken back for bodies that were sent into others.
+        # Components have taken their step, which is not undone for bodies that moved into others.
         if solves == MIDSTEP_PASSES or J.TALLY.components > 0:
             break
-        more = overrun(A, USUAL)
+        more = missed_bodies(A, USUAL)
         if more < 0:
             return POOL_FULL
         if more == 0:

@@ -1,4 +1,4 @@
-"""Remembering: the arrays of a scene, which steps change, as they were made, as they are, and as a state has them."""
+"""Storing the arrays of a scene that steps change: as they were when new, as they are, and as a state has them."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ _OF_PROCESS = (
 
 
 class Remembering:
-    """What an event loop knows of earlier steps."""
+    """What an event loop stores of earlier steps."""
 
     _usual: FloatArray
     jointed: bool
@@ -47,21 +47,21 @@ class Remembering:
 
     @property
     def scene(self) -> Scene:
-        """All arrays; replace some by setting another."""
+        """All arrays; replaced by setting another scene."""
         return self._scene
 
     @scene.setter
     def scene(self, arrays: Scene) -> None:
         self._scene, self.table = arrays, table_of(arrays, self.__dict__.get("table"))
         self._bound: tuple[tuple[AnyArray | None, ...], Callable[..., int]] = UNBOUND
-        # Fields of records take ten times as long as entries of arrays, and these are asked for in every step.
+        # Fields of records take ten times as long as entries of arrays, and these are read in every step.
         self._par, self._count = numbers(arrays.PAR).reshape(-1), numbers(arrays.COUNT).reshape(-1)
         self._book: FloatArray = self._par[_BOOK]
         self._log: IntArray = arrays.LOG.view(np.int64).reshape(len(arrays.LOG), -1)
 
     @property
     def joints(self) -> Joints:
-        """All arrays of joints, of none where the scene has none; replace some by setting another."""
+        """All arrays of joints, empty if the scene has none; replaced by setting others."""
         return self._joints
 
     @joints.setter
@@ -76,12 +76,12 @@ class Remembering:
 
     @property
     def converged(self) -> bool:
-        """Whether the last step left nothing undone."""
+        """Whether the last step met all budgets and tolerances."""
         return bool(self._count.item(_UNMET) == 0)
 
     @property
     def iterations(self) -> int:
-        """Solves of islands and of blocks in the last step."""
+        """Number of solves of islands and simultaneous impacts in the last step."""
         return int(self._count.item(_SOLVES) + self._count.item(_BLOCKS))
 
     def logged(self) -> IntArray:
@@ -96,15 +96,16 @@ class Remembering:
         self.scene, self.joints = self._scene, self._joints
 
     def keep_fresh(self) -> None:
-        """Before the first step: keep what steps change, poses and velocities aside, as it is now, for `start_anew`."""
+        """Before the first step: store what steps change, apart from poses and velocities, for `start_anew`."""
         self.own = self._gather()
         self.fresh: IntArray = self.own.copy()
         self._room = {name: getattr(self.scene, name) for name in ROOM}
-        # Whether near lists depend on where bodies are: else all shapes stand in all lists.
+        # Whether near lists depend on places of bodies; else all shapes are in all lists.
         self.listed = bool(np.isfinite(self.scene.MARK["margin"]).any())
 
     def start_anew(self, at: IntArray, state: FloatArray) -> None:
-        """Be what a new loop is for bodies, rows `at` (b,) of BODY, of this state (b, 6); after `keep_fresh`."""
+        """Return to the state of a new loop, after `keep_fresh`, with the poses and velocities `state` (b, 6) of the
+        rows `at` (b,) of BODY."""
         if self.listed:
             BODY, moved = self.scene.BODY, self.scene.BODY[at]
             put(moved, state, *POSE, *VELOCITY)
@@ -113,10 +114,14 @@ class Remembering:
         self.be_new(False)
 
     def be_new(self, lists: bool, corners: bool = False) -> None:
-        """Be what a new loop is for BODY and shapes as they are; after `keep_fresh`. `lists`: whether shapes are others
-        than then, so that lists are. `corners`: whether static ones stand elsewhere."""
+        """Return to the state of a new loop, after `keep_fresh`, with the present BODY and shapes.
+
+        Args:
+            lists: whether shapes have changed since, so that near lists have.  corners: whether static shapes have
+                moved.
+        """
         self.own[:] = self.fresh
-        # Where tables have been made larger they are taken back: a step that is broken off for room begins again.
+        # The first tables again, not larger ones: memory then grows at the same steps as in a new loop.
         scene = self._scene
         for name, array in self._room.items():
             if getattr(scene, name) is not array:
@@ -133,17 +138,17 @@ class Remembering:
             self._list_anew()
 
     def remembered(self) -> list[AnyArray]:
-        """All that decides how the next step goes, besides what crosses the edge."""
+        """All arrays that determine the next step, apart from the states exchanged with pymunk."""
         return [self._usual, *remembered(self.scene)]
 
     def recall(self, take: Callable[[Any, tuple[int, ...]], AnyArray]) -> None:
-        """Remember what `remembered` told; `take` gives its next part with a dtype and a shape."""
+        """Set the arrays of `remembered`; `take` returns the next one, for a dtype and a shape."""
         self._usual = take(np.float64, self._usual.shape).copy()
         self.scene = recalled(self.scene, take)
         self.__dict__.pop("fresh", None)
 
     def _gather(self) -> IntArray:
-        """Have what steps change, poses and velocities aside, in one piece of memory: that memory, as integers."""
+        """Put what steps change, apart from poses and velocities, into one piece of memory; returns it as integers."""
         if not self.jointed:
             (self.scene,), memory = gathered((self.scene, OF_SCENE))
             return memory
@@ -152,12 +157,12 @@ class Remembering:
         return memory
 
     def _list_anew(self) -> None:
-        """Make the near lists for where BODY has the bodies now, as for a new loop."""
+        """Make near lists for the present places of bodies, as for a new loop."""
         scene = self.scene
         near = near_lists(scene, len(scene.LIST))
         pairs = [(np.asarray(getattr(scene, name)), np.asarray(getattr(near, name))) for name in NEAR]
         if all(old.shape == new.shape for old, new in pairs):
-            # The addresses that machine code has been given stay.
+            # The addresses that machine code uses remain.
             for old, new in pairs:
                 old[...] = new
             self._usual[:] = near.MARK["margin"]

@@ -1,5 +1,5 @@
-"""Impulses of a block, and what follows: islands that take part become one with the bodies of the impact, and begin
-anew."""
+"""The simultaneous impact of a block of bodies: impulses, and the islands afterwards. Islands with bodies in the block
+unite, and begin a new interval."""
 
 from __future__ import annotations
 
@@ -14,18 +14,19 @@ from ..contacts.single import note
 from ..contacts.unmet import note_unmet, spend
 from ..contacts.works import carried
 from ..islands.building import spread
-from ..islands.intervals import dismiss
+from ..islands.intervals import clear_places
 from ..islands.membership import members, unite
 from ..model.contacts import SOLVED, Problem, Solved
 from ..model.scene import Scene
 from ..model.step import IMPACT
 from ..rows.blocks import CONVERGED, solve_block
-from .simultaneous import Block, gather, lay_out, owing
+from .simultaneous import Block, energy_owed, gather, lay_out
 
 
 @uncounted
 def finish(A: Scene, block: Block, n: int, m: int, L: FloatArray, OUT: Rows[Solved], status: int, t: float) -> None:
-    """Write what the impulses L of a block of n bodies and m pairs have made of V, and book it."""
+    """Write the velocities of a block of n bodies and m pairs after its impulses L to BODY, and enter losses and
+    impulses in ledger and log. status, OUT: result and report of `..rows.blocks.solve_block`."""
     BODY, COUNT = A.BODY, A.COUNT
     V, ROWS, k = block.V, block.ROWS, A.SHAPE.shape[0]
     if status != CONVERGED:
@@ -40,7 +41,7 @@ def finish(A: Scene, block: Block, n: int, m: int, L: FloatArray, OUT: Rows[Solv
         BODY[i].vx, BODY[i].vy, BODY[i].spin = V[q, 0], V[q, 1], V[q, 2]
         A.STATE[i].version += 1
         A.STATE[i].events += 1
-    dismiss(A, A.BLOCK, n)
+    clear_places(A, A.BLOCK, n)
     for z in range(len(ROWS)):
         if L[z, 0] > 0.0 and COUNT.logged < A.LOG.shape[0]:
             note(
@@ -55,7 +56,7 @@ def finish(A: Scene, block: Block, n: int, m: int, L: FloatArray, OUT: Rows[Solv
 
 @uncounted
 def holds_joints(A: Scene, n: int) -> bool:
-    """Whether any of the n bodies in A.BLOCK is held by joints, or in an island with such."""
+    """Whether any of the n bodies in A.BLOCK is jointed, or in an island with joints."""
     for q in range(n):
         i = A.BLOCK[q]
         root = A.STATE[i].island
@@ -66,18 +67,18 @@ def holds_joints(A: Scene, n: int) -> bool:
 
 @kernel
 def strike(A: Scene, a: int, b: int, t: float, rest: bool) -> int:
-    """Impulses of the block of shapes a and b at instant t. How many bodies, in A.BLOCK, are to be forecast anew, once
-    their islands have begun new intervals; -1, with nothing done, if joints take part.
+    """The simultaneous impact of shapes a and b at instant t. Writes the bodies to predict to A.BLOCK, after their
+    islands have begun new intervals; returns their number, or -1, with nothing done, if joints take part.
 
     Args:
-        rest: whether the contact of a and b stays closed from now on.
+        rest: whether the contact of a and b persists from now on.
     """
     k = A.SHAPE.shape[0]
     n, m, PAIRS = gather(A, a, b, t)
     if holds_joints(A, n):
-        dismiss(A, A.BLOCK, n)
+        clear_places(A, A.BLOCK, n)
         return -1
-    owed, piled = owing(A, n)
+    owed, piled = energy_owed(A, n)
     block = lay_out(A, n, m, PAIRS, min(a, b) * k + max(a, b), rest, t)
     rows = len(block.ROWS)
     L, LOSS, OUT = np.zeros((rows, 2)), np.zeros((rows, 2)), zeros(1, SOLVED)
@@ -90,8 +91,9 @@ def strike(A: Scene, a: int, b: int, t: float, rest: bool) -> int:
 
 @kernel
 def rejoin(A: Scene, a: int, b: int, t: float, n: int, rest: bool, lost: float) -> int:
-    """After the impulses of a block of n bodies in A.BLOCK: its islands become one; so do the two bodies of shapes a
-    and b if they rest on each other. How many bodies are in A.BLOCK then: those of the block and of that island."""
+    """After the impact of the n bodies in A.BLOCK: unite their islands, and with them the bodies of shapes a and b if
+    their contact persists (`rest`). lost: energy lost in the impact. Returns the number of bodies in A.BLOCK: those of
+    the block and of that island."""
     STATE, BODIES = A.STATE, A.BLOCK
     root = -1
     for q in range(n):
@@ -112,7 +114,7 @@ def rejoin(A: Scene, a: int, b: int, t: float, n: int, rest: bool, lost: float) 
     root = STATE[root].island
     A.RESTING[root].lost += lost
     A.MEMBER[root].hits += 1
-    # The bodies of the block that are in no island are forecast too.
+    # Bodies of the block that are in no island are predicted too.
     free = 0
     for q in range(n):
         if STATE[BODIES[q]].island != root:

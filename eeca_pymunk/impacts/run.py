@@ -1,6 +1,6 @@
-"""Many steps in one call: each begins with what the one before has left; frames, ledgers and impacts are kept.
+"""Many steps in one call, each from the end of the one before; stores frames, ledgers and impacts.
 
-Rollouts are such runs from many states, each of which begins as the first step of a new stepper does.
+Rollouts are such runs from many states; each begins as the first step of a new stepper does.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ from ..model.run import AFTER, BETWEEN, WITHIN, RunArrays, run_arrays_of
 from ..model.scene import Scene, scene_of
 from .step import resume, start
 
-ROOM_FOR_IMPACTS = -13  # the answer of a run that wants more rows of EVENTS
-ENERGY = -5  # and of one whose energy is too large for a number
+ROOM_FOR_IMPACTS = -13  # status of a run that needs more rows of EVENTS
+ENERGY = -5  # and of one whose energy overflows
 
 
 @uncounted
 def carry_on(STATES: FloatArray, WALK: IntArray) -> None:
-    """Let the next step begin with the poses and velocities that the last one has left, and with no forces."""
+    """Let the next step begin with the poses and velocities at the end of the last one, without forces."""
     now, after = STATES[READ], STATES[LEFT]
     for i in range(WALK.shape[1]):
         if WALK[BODY_ROW, i] >= 0:
@@ -34,7 +34,7 @@ def carry_on(STATES: FloatArray, WALK: IntArray) -> None:
 
 @uncounted
 def set_back(A: Scene, F: RunArrays, STATES: FloatArray, WALK: IntArray) -> None:
-    """Begin a rollout: everything is forgotten, and bodies are put where INITIAL has them."""
+    """Begin a rollout: clear the results of earlier steps, and set bodies to INITIAL."""
     now, after = STATES[READ], STATES[LEFT]
     if A.COUNT.remembered > 0:
         for q in range(A.KEYS.shape[0]):
@@ -58,7 +58,7 @@ def set_back(A: Scene, F: RunArrays, STATES: FloatArray, WALK: IntArray) -> None
 
 @uncounted
 def before_step(A: Scene, F: RunArrays, STATES: FloatArray, WALK: IntArray) -> None:
-    """What the next step starts from."""
+    """Set the states from which the next step starts."""
     RUN, now = F.RUN, STATES[READ]
     if RUN.done > 0:
         carry_on(STATES, WALK)
@@ -74,7 +74,7 @@ def before_step(A: Scene, F: RunArrays, STATES: FloatArray, WALK: IntArray) -> N
 
 @uncounted
 def after_step(A: Scene, F: RunArrays, STATES: FloatArray) -> int:
-    """Keep what there is to be kept of a step: 0, or ENERGY or ROOM_FOR_IMPACTS with nothing done."""
+    """Store the results of a step. Returns 0, or ENERGY or ROOM_FOR_IMPACTS with nothing done."""
     RUN, PAR, COUNT, LOG, T = F.RUN, A.PAR, A.COUNT, A.LOG, F.TOTAL
     if not math.isfinite(PAR.after):
         return ENERGY
@@ -122,7 +122,7 @@ def after_step(A: Scene, F: RunArrays, STATES: FloatArray) -> int:
 
 @uncounted
 def next_rollout(F: RunArrays) -> bool:
-    """Whether there is one more to be made."""
+    """Proceed to the next rollout; False if there is none."""
     RUN = F.RUN
     if RUN.rollouts == 0:
         return False
@@ -136,14 +136,14 @@ def run(
     TABLE: Table, JOINTS: Table, ARRAYS: Table, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray,
     USUAL: FloatArray,
 ) -> int:  # fmt: skip
-    """Steps until RUN.until of them are done, of each rollout if there are any.
+    """Take steps until RUN.until of them are done, of each rollout if there are any.
 
     Args:
         TABLE, JOINTS, USUAL: see `step.step`.  ARRAYS: `table_of` a RunArrays.
 
     Returns:
-        the bits of all steps; a negative code of a step, or ENERGY, with the state at its start in STATES; or a wish
-        for room: give some, and call again.
+        the bits of all steps; a negative code of a step, or ENERGY, with the state at its start in STATES; or a code
+            for more memory: provide it, and call again.
     """
     A, J, F = scene_of(TABLE), joints_of(JOINTS), run_arrays_of(ARRAYS)
     RUN = F.RUN

@@ -1,4 +1,4 @@
-"""The buffers of a run of an event loop: what it is asked for, and its results, with room that grows on the way."""
+"""The buffers of a run of an event loop: its arguments, and its results, with memory that grows as needed."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ _IMPACTS = 256  # rows of EVENTS at first
 
 
 def _flat(table: FloatArray | None, columns: int) -> FloatArray:
-    """Its rows, none if there is none."""
+    """Rows of a table with so many columns; none for None."""
     return np.zeros((0, columns)) if table is None else np.ascontiguousarray(table, float).reshape(-1, columns)
 
 
 class RunBuffers:
-    """What a run is asked for, and what is kept of it.
+    """Arguments and results of a run.
 
     Args:
-        dt: time.  gravity: length/time².  left: what half a step's damping leaves of velocities.
+        dt: time.  gravity: length/time².  left: factor by which half a step's damping multiplies velocities.
         time: simulated time at its start.
-        kept: (b,) rows of the bodies in STATES of whom frames are kept.  frames: how many there is room for.
-        every: steps from frame to frame, 0 for none.  events: whether impacts are kept.
-        initial: (K, b, 6) where rollouts begin; none: the run goes on from where bodies are.
-        push: (K T, b, 3) forces and torques in each stretch of `every` steps, or none.
+        kept: (b,) rows in STATES of the bodies whose frames are stored.  frames: largest number of frames.
+        every: steps from frame to frame, 0 for none.  events: whether impacts are stored.
+        initial: (K, b, 6) states at which rollouts begin; None: the run continues from the present states.
+        push: (K T, b, 3) forces and torques in each stretch of `every` steps, or None.
         into: (T, b, 6) memory for the frames, else new memory.
     """
 
@@ -59,7 +59,7 @@ class RunBuffers:
 
     @property
     def arrays(self) -> RunArrays:
-        """All arrays; replace some by setting another."""
+        """All arrays; replaced by setting others."""
         return self._arrays
 
     @arrays.setter
@@ -69,16 +69,16 @@ class RunBuffers:
 
     @property
     def progress(self) -> Run:
-        """How far the run is."""
+        """The progress of the run."""
         return self._arrays.RUN
 
     @property
     def halted(self) -> bool:
-        """Whether it was broken off within a step."""
+        """Whether the run stopped within a step."""
         return bool(self._arrays.RUN.stage != BETWEEN)
 
     def more_events(self) -> None:
-        """Give twice the room for impacts."""
+        """Double the memory for impacts."""
         arrays = self._arrays
         longer = rows(Impulse, 2 * len(arrays.EVENTS))
         longer[: arrays.RUN.kept] = arrays.EVENTS[: arrays.RUN.kept]
@@ -91,5 +91,5 @@ class RunBuffers:
 
     @property
     def ledger(self) -> Ledger:
-        """Where energy has gone."""
+        """The sum of the ledgers of all steps so far."""
         return Ledger(*self._arrays.TOTAL.tolist())

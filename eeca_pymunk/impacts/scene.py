@@ -1,4 +1,4 @@
-"""The arrays of the event loop for one world, and a step on them that gets the room it wants."""
+"""The arrays of the event loop for one world, and steps on them, with memory that grows as needed."""
 
 from __future__ import annotations
 
@@ -37,20 +37,20 @@ if TYPE_CHECKING:
     import pymunk
 
 RULE_COLUMNS = 6
-_MISSED = 32  # of a step, that are told
-_CONTACTS = 256  # of islands, that there is room for at first; powers of 2
-_OF_A_BODY, _MANY = 32, 1 << 16  # for each body where contacts may last, up to so many: untouched memory is free
+_MISSED = 32  # rows of MISSED: those reported of a step
+_CONTACTS = 256  # rows of PUSHED at first, a power of 2
+_OF_A_BODY, _MANY = 32, 1 << 16  # rows for each body where contacts may persist, and all rows at most at first
 
 
 def _longer(table: Rows[R], used: int) -> Rows[R]:
-    """A table of twice as many rows, with those in use."""
+    """A table of twice as many rows, with the first `used` ones copied."""
     longer: Rows[R] = np.zeros(2 * len(table), table.dtype)  # type: ignore[assignment]
     longer[:used] = table[:used]
     return longer
 
 
 def _details(logged: IntArray, dt: float, bodies: tuple[pymunk.Body, ...], owner: IntArray) -> Details:
-    """`of_events` of what `logged` told."""
+    """`of_events` for impulses `logged` as integers."""
     return of_events(logged.reshape(-1).view(Impulse.TYPE), dt, bodies, owner)  # type: ignore[arg-type]
 
 
@@ -58,14 +58,14 @@ class EventLoop(Remembering):
     """Steps the packed bodies and shapes of a world from impact to impact.
 
     Args:
-        BODY, SHAPE, LINK, VERTEX: see `..model`; BODY has the poses of now.
-        disks: the first so many rows of BODY are lone disks.
+        BODY, SHAPE, LINK, VERTEX: see `..model`; BODY has the present poses.
+        disks: the first so many rows of BODY are single disks.
         limit: impacts that a body may have in a step.
         joint: (j,) the joints; kept, not copied. Bodies are rows of BODY, or len(BODY) + row of PARTNER (x,), which
             joints cannot move. None for a scene without joints.
-        together: whether all contacts of a step act together at its middle, rather than at their instants.
+        together: whether all contacts of a step act together at its middle, instead of at their instants.
         still: (x,) 1 for rows of PARTNER that never move; None: all.
-        order: of the steps of components, 4 where nothing in one dissipates, drives, or touches something; or 2.
+        order: of the steps of components: 4, for those without dissipation, drives and contacts; or 2.
     """
 
     def __init__(
@@ -117,7 +117,7 @@ class EventLoop(Remembering):
         self.plan()
 
     def plan(self) -> None:
-        """Find the components anew: after changes of joints' kinds, bodies, anchors off centre, or of mobilities."""
+        """Find the components again: after changes of joints' kinds, bodies, eccentric anchors, or of mobilities."""
         self.joints = make_joints(self.scene.BODY, self.joint, self.partner, self._order)
         ring = self.scene.MEMBER
         ring["tied"] = ring["next_tied"] = -1
@@ -126,7 +126,7 @@ class EventLoop(Remembering):
             ring["tied"][moved], ring["next_tied"][moved] = moved[0], np.roll(moved, -1)
 
     def holds_others(self) -> bool:
-        """Whether other bodies are held by straight paths than those of HELD, after changes of joints or of their
+        """Whether straight paths of joints hold other bodies than those of HELD, after changes of joints or of their
         ends."""
         BODY = self.scene.BODY.copy()
         put(BODY, self.mobility, "inv_mass", "inv_inertia")
@@ -134,7 +134,7 @@ class EventLoop(Remembering):
         return HELD.tobytes() != self.scene.HELD.tobytes()
 
     def rebind(self, joint: Rows[Joint], PARTNER: Rows[Body]) -> None:
-        """Take other arrays of joints that have the same in them."""
+        """Use other arrays of joints with the same values."""
         self.joint, self.partner = joint, PARTNER
         self.joints = self.joints._replace(JOINT=joint, PARTNER=PARTNER)
 
@@ -142,9 +142,9 @@ class EventLoop(Remembering):
         self, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
         left: float,
     ) -> int:  # fmt: skip
-        """See `step.step`; a negative answer is one of `transfer.py`."""
+        """Take a step, see `step.step`; a negative result is a code of `transfer.py`."""
         states, call = self._bound
-        # One by one, since this is paid in every step.
+        # Compared one by one, as this is done in every step.
         if states[0] is not STATES or states[1] is not WALK or states[2] is not EXTRA or states[3] is not ENDS:
             call = self._bind_to((STATES, WALK, EXTRA, ENDS))
         status = call(dt, gx, gy, left, -1)
@@ -155,7 +155,7 @@ class EventLoop(Remembering):
         return status
 
     def follow(self, buffers: RunBuffers, states: tuple[AnyArray, ...]) -> int:
-        """Take the steps that `buffers` asks for; all bits, a negative code of `transfer.py`, or `run.ENERGY`."""
+        """Take the steps of `buffers`; returns all bits, a negative code of `transfer.py`, or `run.ENERGY`."""
         while True:
             call = buffers.call = buffers.call or self._bind_run(buffers, states)
             status = check("run", call())
@@ -194,21 +194,21 @@ class EventLoop(Remembering):
             return
         self.scene = with_more_room(scene, float(scene.PAR.now))
         flag_again(self.table)
-        # Margin circles are drawn about other places now: everybody is forecast anew.
+        # Margin circles have other centres: all bodies are predicted again.
         n, now = len(scene.BODY) - 1, float(scene.PAR.now)
         scene.BODY["due"][:n], scene.STATE["other"][:n] = now, CHECK
         scene.HEAP_TIME[:n], scene.HEAP_BODY[:n], scene.COUNT.heap = now, np.arange(n), n
 
     def _clean(self, size: int) -> None:
-        """Forget the forces of steps before the last one, in tables of so many rows."""
+        """Copy the forces of the last step to tables of `size` rows; older ones are dropped."""
         scene = self.scene
         KEYS, TABLE = np.full(size, -1, np.int64), rows(Force, size)
         forget(scene.KEYS, scene.FORCES, scene.COUNT, KEYS, TABLE, float(scene.PAR.stamp) - 1.0)
         self.scene = scene._replace(KEYS=KEYS, FORCES=TABLE)
 
     def rule(self, rules: Mapping[tuple[int, int], tuple[float, float, float, float]]) -> None:
-        """Let pairs of shapes (a < b) have this elasticity (below 0: they pass), friction and surface velocity from now
-        on."""
+        """Set elasticity (below 0: they pass through each other), friction and surface velocity of pairs of shapes a <
+        b."""
         table = np.array([(*pair, *what) for pair, what in rules.items()], float).reshape(-1, RULE_COLUMNS)
         if not np.array_equal(table, self.scene.RULE):
             self.scene = self.scene._replace(RULE=table)
@@ -221,16 +221,16 @@ class EventLoop(Remembering):
     def details(
         self, dt: float, bodies: tuple[pymunk.Body, ...], owner: IntArray
     ) -> Callable[[], Details]:  # fmt: skip
-        """What makes the arrays of the report of the last step; `owner` (k,) is the place of every shape's body in
-        `bodies`."""
+        """A function that makes the arrays of the report of the last step; `owner` (k,): index in `bodies` of each
+        shape's body."""
         return partial(_details, self.logged(), dt, bodies, owner)
 
     @property
     def book(self) -> FloatArray:
-        """(7,) what the ledger of the last step is made of, a copy (`..energy.ledger`)."""
+        """(7,) the entries of the ledger of the last step, a copy (`..energy.ledger`)."""
         return self._book.copy()
 
     @property
     def missed(self) -> Rows[Missed]:
-        """(m,) what the last step has not met, the first of it; a copy."""
+        """(m,) the first budgets and tolerances that the last step has not met, a copy."""
         return self.scene.MISSED[: self.scene.COUNT.unmet].copy()

@@ -1,8 +1,8 @@
-"""Blocks: who takes part in an impact at one instant: all shapes that touch, islands that are hit.
+"""Blocks: the bodies and contacts of a simultaneous impact.
 
 Contacts that touch at the instant of an impact take part in it, and so on from body to body: the impulses of a rack of
-disks are simultaneous. So do contacts that carry a load in an island, and all bodies that hang on one by joints. Bodies
-that impulses do not move carry nothing on.
+disks are simultaneous. So do loaded contacts of islands, and all bodies of a component. Bodies that impulses do not
+move do not pass them on.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from ..geometry.flight import pose, rate
 from ..geometry.manifold import face
 from ..geometry.sides import note_side
 from ..islands.accounting import end_interval
-from ..islands.membership import budget_spent, carrier, in_large_island, remembered
+from ..islands.membership import budget_spent, fixed_support, in_large_island, remembered
 from ..model.contacts import ROW, Row
 from ..model.parameters.impulses import BLOCK_BODIES
 from ..model.scene import Scene
@@ -31,20 +31,20 @@ from ..rows.inplace import sort
 
 @uncounted
 def takes_part(A: Scene, s: int, o: int, t: float) -> bool:
-    """Whether shapes s and o touch at instant t, or are in contact under load."""
+    """Whether shapes s and o touch at instant t, or are a loaded contact of an island."""
     if barred(A.RULE, s, o):
         return False
     if touches(A, s, o, t):
         return True
     i, j = A.LINK[s].owner, A.LINK[o].owner
-    if A.STATE[i].island < 0 or not (A.STATE[j].island == A.STATE[i].island or carrier(A, j)):
+    if A.STATE[i].island < 0 or not (A.STATE[j].island == A.STATE[i].island or fixed_support(A, j)):
         return False
     return remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], s, o, A.PAR.stamp)[0] > 0.0
 
 
 @uncounted
-def arrive(A: Scene, i: int, t: float) -> None:
-    """Bring body i, with its island, to instant t; not one whose island has joints and is under way."""
+def bring_to(A: Scene, i: int, t: float) -> None:
+    """Move body i to instant t, and end the interval of its island there, unless that has joints."""
     root = A.STATE[i].island
     if root >= 0 and A.MEMBER[root].open > 0:
         if A.MEMBER[root].jointed > 0:
@@ -54,13 +54,14 @@ def arrive(A: Scene, i: int, t: float) -> None:
 
 
 @uncounted
-def admit(A: Scene, i: int, n: int, t: float) -> int:
-    """Take body i, and all that hangs on it by joints, into A.BLOCK, where there are n bodies; how many there are."""
+def add_component(A: Scene, i: int, n: int, t: float) -> int:
+    """Add body i, and all bodies of its component, to the n bodies in A.BLOCK, and move them to instant t; returns
+    their number."""
     j = i
     while A.PLACE[j] < 0:
         A.BLOCK[n], A.PLACE[j] = j, n
         n += 1
-        arrive(A, j, t)
+        bring_to(A, j, t)
         if A.MEMBER[j].tied < 0:
             break
         j = A.MEMBER[j].next_tied
@@ -69,8 +70,9 @@ def admit(A: Scene, i: int, n: int, t: float) -> int:
 
 @kernel
 def gather(A: Scene, a: int, b: int, t: float) -> tuple[int, int, IntArray]:
-    """The block that shapes a and b hit at instant t: its n bodies into A.BLOCK, which move to that instant, and its m
-    pairs as numbers a k + b (k shapes) in increasing order. A.PLACE gives the place of each of these bodies."""
+    """Collect the block of an impact of shapes a and b at instant t: n bodies in A.BLOCK, which move to that instant,
+    with their places in A.PLACE; and m pairs as numbers a k + b (k shapes) in increasing order. Returns n, m and the
+    pairs."""
     k, BODIES = A.SHAPE.shape[0], A.BLOCK
     PAIRS = np.empty(16, np.int64)
     PAIRS[0] = min(a, b) * k + max(a, b)
@@ -80,7 +82,7 @@ def gather(A: Scene, a: int, b: int, t: float) -> tuple[int, int, IntArray]:
         i = A.LINK[s].owner
         if A.BODY[i].inv_mass > 0.0:
             if A.PLACE[i] < 0:
-                n = admit(A, i, n, t)
+                n = add_component(A, i, n, t)
     while q < n:
         i = BODIES[q]
         q += 1
@@ -91,15 +93,15 @@ def gather(A: Scene, a: int, b: int, t: float) -> tuple[int, int, IntArray]:
                 j = A.LINK[o].owner
                 moves = A.BODY[j].inv_mass > 0.0
                 key = min(s, o) * k + max(s, o)
-                # The pairs with bodies that have been looked at before stand there already.
+                # Pairs with earlier bodies of the block are there already.
                 if key == PAIRS[0] or (moves and 0 <= A.PLACE[j] < q - 1):
                     continue
-                # What does not take part is hit in its turn.
+                # Bodies beyond the limit are hit later.
                 full = moves and A.PLACE[j] < 0 and (n >= most or budget_spent(A, A.STATE[j].island))
                 if full or not takes_part(A, s, o, t):
                     continue
                 if moves and A.PLACE[j] < 0:
-                    n = admit(A, j, n, t)
+                    n = add_component(A, j, n, t)
                 if m == PAIRS.shape[0]:
                     more = np.empty(2 * m, np.int64)
                     for c in range(m):
@@ -112,14 +114,15 @@ def gather(A: Scene, a: int, b: int, t: float) -> tuple[int, int, IntArray]:
 
 
 @uncounted
-def owing(A: Scene, n: int) -> tuple[float, bool]:
-    """What the islands of the n bodies in A.BLOCK owe, which is taken out by their block; whether there are any."""
+def energy_owed(A: Scene, n: int) -> tuple[float, bool]:
+    """Energy owed by the islands of the n bodies in A.BLOCK, which their block is to take out, and whether there are
+    any islands."""
     owed, piled = 0.0, False
     for q in range(n):
         root = A.STATE[A.BLOCK[q]].island
         if root >= 0:
             piled = True
-            # What intervals that were cut short have given is taken out here.
+            # A block takes out the energy that shortened intervals have given.
             owes = max(-A.RESTING[root].lost, 0.0)
             A.RESTING[root].lost += owes
             owed += owes
@@ -127,8 +130,8 @@ def owing(A: Scene, n: int) -> tuple[float, bool]:
 
 
 class Block(NamedTuple):
-    """What a block is made of: POSE, V (k, 3), IM, II (k,), rows of contacts (`Row`) between A and B, POINTS
-    (m, 2) where they are, and OF (m,) the pairs that they are of, as numbers a k + b."""
+    """The arrays of a block: POSE, V (k, 3), IM, II (k,); rows of contacts (`Row`) between bodies A and B, their POINTS
+    (m, 2), and their pairs OF (m,) as numbers a k + b."""
 
     POSE: FloatArray
     V: FloatArray
@@ -143,10 +146,10 @@ class Block(NamedTuple):
 
 @kernel
 def lay_out(A: Scene, n: int, m: int, PAIRS: IntArray, hit: int, rest: bool, t: float) -> Block:
-    """The block of the n bodies in A.BLOCK, sorted, and of m PAIRS, at instant t.
+    """The block of the n bodies in A.BLOCK, which are sorted, and of m PAIRS, at instant t.
 
     Args:
-        hit: the pair that meets now.  rest: whether it stays closed from now on.
+        hit: the pair that meets now.  rest: whether its contact persists from now on.
     """
     BODY, LINK, BODIES = A.BODY, A.LINK, A.BLOCK
     k = A.SHAPE.shape[0]
@@ -168,7 +171,7 @@ def lay_out(A: Scene, n: int, m: int, PAIRS: IntArray, hit: int, rest: bool, t: 
         sa, sb = PAIRS[z] // k, PAIRS[z] % k
         i, j = LINK[sa].owner, LINK[sb].owner
         p, q = A.PLACE[i], A.PLACE[j]
-        # What impulses do not move has a row of its own for each contact.
+        # A body without mobility has a local body for each of its contacts.
         for side in range(2):
             w = i if side == 0 else j
             if BODY[w].inv_mass == 0.0:
@@ -197,7 +200,7 @@ def lay_out(A: Scene, n: int, m: int, PAIRS: IntArray, hit: int, rest: bool, t: 
             place_row(P, Q, ROWS, rows, found[c, 2], found[c, 3], POSE, IMS, IIS)
             u = normal_rate(P, Q, ROWS, V, rows)
             if e < 1.0 and e * max(-u, 0.0) < 0.5 * load * A.PAR.dt / ROWS[rows].k_n:
-                # Its bounce would come back within the step.
+                # The contact persists: its bounce would end within the step.
                 ROWS[rows].elasticity = 0.0
             POINTS[rows, 0], POINTS[rows, 1], OF[rows] = found[c, 2], found[c, 3], PAIRS[z]
             rows += 1

@@ -1,4 +1,5 @@
-"""A step of bodies that meet at computed times of impact: the stages between what pymunk holds before and after."""
+"""A step of bodies that meet at computed times of impact: its stages, between the states read from pymunk and those
+written to it."""
 
 from __future__ import annotations
 
@@ -9,7 +10,7 @@ from ..joints.held import hold
 from ..model.joints import Joints, joints_of
 from ..model.scene import Scene, scene_of
 from ..model.step import DONE, LOG_FULL, POOL_FULL, PUSHES_FULL
-from ..prediction.scheduling import forecast_due
+from ..prediction.scheduling import predict_due
 from ..transfer import EVENTS as SOME
 from ..transfer import give, take
 from .begin import begin
@@ -18,7 +19,7 @@ from .intervals import start_islands
 from .loop import follow
 from .midstep import act_together
 
-# Answers of a step that wants more memory: give some, and `resume`.
+# Status of a step that needs more memory; afterwards `resume` it.
 ROOM_FOR_LISTS, ROOM_FOR_EVENTS, ROOM_FOR_CONTACTS = -10, -11, -12
 
 
@@ -27,7 +28,7 @@ def start(
     A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, dt: float, gx: float, gy: float,
     left: float,
 ) -> int:  # fmt: skip
-    """Take the states that were read, and begin a step of length dt on them; the bits so far, or a negative code."""
+    """Take the states read from pymunk, and begin a step of length dt; returns the bits so far, or a negative code."""
     if len(J.JOINT) > 0:
         start_joints(A, J, STATES, WALK)
     status = take(STATES, WALK, EXTRA, A.BODY, gx, gy, left)
@@ -44,7 +45,7 @@ def start(
 def finish(
     A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, status: int
 ) -> int:  # fmt: skip
-    """Close the step, and give the states at its end; the bits of the step, or a negative code."""
+    """Close the step, and write the states at its end; returns the bits of the step, or a negative code."""
     account_joints(A, J)
     close(A, WALK)
     if A.COUNT.logged > 0 or A.COUNT.unmet > 0:
@@ -54,8 +55,8 @@ def finish(
 
 @kernel
 def act(A: Scene, J: Joints, USUAL: FloatArray) -> int:
-    """All impulses of a step that has been started: of all contacts together at its middle, or event by event from the
-    intervals of its islands on. DONE, or what is full; then make room and call again."""
+    """All impulses of a step that has begun: of all contacts together at its middle, or event by event after the
+    intervals of islands have begun. DONE, or which memory is full: provide more, and call again."""
     COUNT = A.COUNT
     if COUNT.together > 0:
         return act_together(A, J, USUAL)
@@ -63,8 +64,8 @@ def act(A: Scene, J: Joints, USUAL: FloatArray) -> int:
         if COUNT.pushes + COUNT.crammed + J.TALLY.components > 0 and start_islands(A, J) != DONE:
             return PUSHES_FULL
         COUNT.phase = 1
-        forecast_due(A)
-        COUNT.work = 0  # what a step begins with has to be done
+        predict_due(A)
+        COUNT.work = 0  # the start of a step does not count
     if COUNT.phase == 1:
         status = follow(A, J, COUNT.lossy > 0 or A.PAR.pulled > 0.0)
         if status != DONE:
@@ -78,7 +79,8 @@ def resume(
     A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, USUAL: FloatArray,
     status: int,
 ) -> int:  # fmt: skip
-    """The rest of a step, whose bits so far are `status`: the bits of the step, a negative code, or a wish for room."""
+    """The rest of a step, whose bits so far are `status`. Returns the bits of the step, a negative code, or a code for
+    more memory."""
     met = act(A, J, USUAL)
     if met == POOL_FULL:
         return ROOM_FOR_LISTS
@@ -94,16 +96,17 @@ def step(
     TABLE: Table, JOINTS: Table, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray,
     USUAL: FloatArray, dt: float, gx: float, gy: float, left: float, bits: int,
 ) -> int:  # fmt: skip
-    """From the states that were read to those that are to be written, see `transfer.py`.
+    """Take one step, from the states read from pymunk to those to be written, see `transfer.py`.
 
     Args:
         TABLE: `table_of` a Scene.  JOINTS: `table_of` its Joints.
         USUAL: (k,) margins of shapes that are not fast, length.
-        dt: time, > 0.  gx, gy: gravity, length/time².  left: what half the step's damping leaves of velocities.
-        bits: negative for a new step; those of one that wished for room and goes on.
+        dt: time, > 0.  gx, gy: gravity, length/time².  left: factor by which half the step's damping multiplies
+            velocities.
+        bits: negative for a new step; the bits so far of one that continues after more memory was provided.
 
     Returns:
-        the bits EVENTS, FORCES, TURNS, a negative code of `transfer.py`, or a wish for room.
+        the bits EVENTS, FORCES, TURNS, a negative code of `transfer.py`, or a code for more memory.
     """
     A, J = scene_of(TABLE), joints_of(JOINTS)
     if bits < 0:

@@ -1,8 +1,9 @@
-"""The end of an island's interval: its works up to there enter the ledger. They are exact, as forces are constant and
-velocities linear.
+"""The end of an island's interval: the works of its contacts up to there enter the ledger. They are exact, as forces
+are constant and velocities linear.
 
-Forces of an interval that was cut may have given energy (a soft landing pushes before it touches): that is owed, and
-taken out by what follows. So may they have turned the island, as their arms are about the middle of the whole interval.
+If an interval is cut, its forces up to there may have given energy, since a soft landing pushes before the shapes
+touch. This energy is owed (`Rest.lost` < 0) and taken out by later solves. They may also have changed the angular
+momentum, since the arms are those of the middle of the whole interval.
 """
 
 from __future__ import annotations
@@ -21,13 +22,13 @@ from .rest import spins_freely
 
 @uncounted
 def flag_again(TABLE: Table) -> None:
-    """Flag the pairs of all intervals, in lists that were made anew. TABLE: `table_of` a Scene."""
+    """Set the flags of the pairs of all intervals in near lists that were made again. TABLE: `table_of` a Scene."""
     flag_pairs(scene_of(TABLE))
 
 
 @uncounted
 def flag_pairs(A: Scene) -> None:
-    """Flag the pairs of all intervals, whose flags are not set."""
+    """Set the flags in the near lists of the pairs that are contacts of intervals, so that they are not predicted."""
     for c in range(A.COUNT.pushes):
         if A.PUSHED_BY[c].root >= 0:
             a, b = A.PUSHED_BY[c].a, A.PUSHED_BY[c].b
@@ -35,11 +36,11 @@ def flag_pairs(A: Scene) -> None:
 
 
 @uncounted
-def book(A: Scene, c: int, t: float) -> None:
-    """Book what contact number c has done in its interval until instant t, note its impulse, and end it.
+def account_contact(A: Scene, c: int, t: float) -> None:
+    """Enter the losses of contact c of an interval up to instant t in the ledger, log its impulse, and end it.
 
-    Velocities go linearly through an interval, so that after the part f of it D_n = -f lam (u_n + f (u_n+ - u_n) / 2).
-    What a contact's friction gives back counts against its restitution, and the other way round.
+    Velocities are linear over the interval, so after its part f: D_n = -f lam (u_n + f (u_n+ - u_n) / 2), and D_t
+    likewise. If one of the two is negative it is deducted from the other.
     """
     PAR, COUNT, R = A.PAR, A.COUNT, A.PUSHED[c]
     root, a, b = A.PUSHED_BY[c].root, A.PUSHED_BY[c].a, A.PUSHED_BY[c].b
@@ -69,10 +70,10 @@ def book(A: Scene, c: int, t: float) -> None:
 
 
 @uncounted
-def gained(A: Scene, c: int, t: float) -> float:
-    """Angular momentum that contact number c makes if its interval h is cut after s: its arms are about the middle of
-    the whole, so that bodies without mobility aside it is -(1/2) s (h - s) (v_b - v_a) x f, v at the start of the
-    interval."""
+def angular_gain(A: Scene, c: int, t: float) -> float:
+    """Angular momentum that contact c adds if its interval h is cut after s, since its arms are those of the middle of
+    the whole: -(1/2) s (h - s) (v_b - v_a) x f, with the force f and v at the start of the interval. t: the instant of
+    the cut. Bodies without mobility do not count."""
     R, BODY = A.PUSHED[c], A.BODY
     i, j = A.LINK[A.PUSHED_BY[c].a].owner, A.LINK[A.PUSHED_BY[c].b].owner
     s, h = t - R.start, R.length
@@ -85,9 +86,9 @@ def gained(A: Scene, c: int, t: float) -> float:
 
 
 @uncounted
-def turn_back(A: Scene, root: int, excess: float) -> None:
-    """Take an angular momentum out of a free island, whose bodies are at one instant, by a common turn of all of it,
-    which changes no contact's velocity; spins that nobody feels stay. Its energy is lost, or owed."""
+def remove_angular_momentum(A: Scene, root: int, excess: float) -> None:
+    """Remove the angular momentum `excess` of a free island, whose bodies are at one instant, by a common rotation,
+    which changes no contact's velocity; free spins stay as they are. The change of energy counts as restitution."""
     BODY = A.BODY
     mass, x, y, vx, vy = 0.0, 0.0, 0.0, 0.0, 0.0
     i = root
@@ -124,8 +125,8 @@ def turn_back(A: Scene, root: int, excess: float) -> None:
 
 @uncounted
 def wake(A: Scene, root: int, t: float) -> int:
-    """An island that stands does so no longer from instant t on: it and all that rests on it become one, whose root is
-    returned, and end their intervals."""
+    """Wake an island at rest at instant t: it and the islands that it supports end their intervals and become one.
+    Returns its root."""
     MEMBER, one = A.MEMBER, root
     MEMBER[root].rest = CHANGED
     wake_supported(A)
@@ -139,7 +140,7 @@ def wake(A: Scene, root: int, t: float) -> int:
 
 @uncounted
 def end_interval(A: Scene, root: int, t: float) -> None:
-    """End the interval of an island at instant t, and of what rests on it."""
+    """End the interval of an island at instant t; of an island at rest also those of the islands that it supports."""
     if A.MEMBER[root].rest == AT_REST:
         wake(A, root, t)
     else:
@@ -148,7 +149,7 @@ def end_interval(A: Scene, root: int, t: float) -> None:
 
 @uncounted
 def close_interval(A: Scene, root: int, t: float) -> None:
-    """End the interval of one island at instant t: book its contacts, and bring its bodies there."""
+    """End the interval of one island at instant t: account its contacts, and move its bodies to their poses at t."""
     free, excess = A.MEMBER[root].jointed == 0, 0.0
     if free:
         repay(A, root, t)
@@ -158,21 +159,21 @@ def close_interval(A: Scene, root: int, t: float) -> None:
                 j = A.LINK[shape].owner
                 free = free and A.BODY[j].inv_mass > 0.0 and A.STATE[j].island == root
             if free:
-                excess += gained(A, c, t)
-            book(A, c, t)
+                excess += angular_gain(A, c, t)
+            account_contact(A, c, t)
     A.MEMBER[root].open = 0
     i = root
     while i >= 0:
         move_to(A.BODY, i, t)
         i = A.MEMBER[i].following
     if free and excess != 0.0:
-        turn_back(A, root, excess)
+        remove_angular_momentum(A, root, excess)
 
 
 @uncounted
-def alight(A: Scene, i: int, end: float) -> None:
-    """Bring body i of an island with joints to the end of its interval: what happens there is in the books of
-    joints."""
+def move_to_end(A: Scene, i: int, end: float) -> None:
+    """Move body i of an island with joints to the end of its interval, and apply its correction, which the ledger of
+    joints accounts (`..jointed.ledger`)."""
     move_to(A.BODY, i, end)
     body, rest = A.BODY[i], A.RESTING[i]
     body.x += rest.lift_x
@@ -183,16 +184,17 @@ def alight(A: Scene, i: int, end: float) -> None:
 
 
 @uncounted
-def lift_out(A: Scene, root: int, end: float) -> None:
-    """Lift the bodies of an island, at the end of its interval, out of each other; the losses pay what that costs
-    beyond the work of forces: the change of kinetic energy, less m a.D + I alpha dtheta for displacements D."""
+def apply_correction(A: Scene, root: int, end: float) -> None:
+    """Apply the penetration correction D, dv of an island's bodies at the end of its interval. It costs the change of
+    kinetic energy, less the work of forces m a.D + I alpha dtheta; losses of the step pay it, or external work where a
+    body without mobility was placed into the island (`Member.raised`)."""
     PAR, BODY, PULL, JUMP = A.PAR, A.BODY, A.PULL, A.RESTING
     spent = 0.0
     i = root
     if A.MEMBER[root].jointed > 0:
         while i >= 0:
             if A.MEMBER[root].open > 0:
-                alight(A, i, end)
+                move_to_end(A, i, end)
             i = A.MEMBER[i].following
         return
     while i >= 0:

@@ -1,11 +1,11 @@
-"""Islands that stand still: an unchanged solve goes on, step after step, and costs next to nothing.
+"""Islands at rest: an unchanged solve remains valid from step to step, and costs next to nothing.
 
-`rest.py` says which come to rest. Their bodies then stay where they are, without velocity (what kinetic energy is
-left enters the ledger as restitution; disks without friction go on spinning), and their contacts keep their forces. An
-island is solved again from when a body of it is hit, edited, or pulled otherwise than before; when a body that carries
-it moves; and always where collision handlers have a say.
+`rest.py` tells which islands come to rest. Their bodies keep their poses, without velocity (the remaining kinetic
+energy enters the ledger as restitution; disks without friction keep their spin), and their contacts keep their forces.
+An island is solved again when one of its bodies is hit or edited, when the accelerations on it change, when a body that
+supports it moves, and always in spaces with collision handlers.
 
-`Member.rest` is AT_REST of all its bodies; of the root CHANGED once it is to be solved again.
+`Member.rest` is AT_REST for all its bodies; for the root CHANGED once it has to be solved again.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from .rest import candidate_speed, speed, spins_freely
 
 @uncounted
 def unchanged(A: Scene, i: int) -> bool:
-    """Whether body i has no velocity, or a spin alone that nobody feels, and is where it was left."""
+    """Whether body i has no velocity, apart from a free spin, and the pose that the last step has left."""
     BODY, BEGAN = A.BODY, A.BEGAN
     same = BODY[i].x == BEGAN[i, 0] and BODY[i].y == BEGAN[i, 1] and BODY[i].angle == BEGAN[i, 2]
     return bool(same and BODY[i].vx == 0.0 and BODY[i].vy == 0.0 and (BODY[i].spin == 0.0 or spins_freely(A, i)))
@@ -31,28 +31,31 @@ def unchanged(A: Scene, i: int) -> bool:
 
 @uncounted
 def stays_at_rest(A: Scene, i: int, last: float) -> bool:
-    """Whether body i stands as it stood; it then has no path but that, and its forecast of `last` ago."""
+    """Whether nothing has changed for body i of an island at rest, at the start of a step; `last`: length of the last
+    step. Then its path remains and its predicted event comes `last` earlier; else its island is CHANGED."""
     BODY = A.BODY
     pulled = BODY[i].ax == A.PULL[i, 0] and BODY[i].ay == A.PULL[i, 1] and BODY[i].angular == A.PULL[i, 2]
     if A.MEMBER[i].busy > 0 or not pulled or not unchanged(A, i):
         A.MEMBER[A.STATE[i].island].rest = CHANGED
         return False
     BODY[i].ax, BODY[i].ay, BODY[i].angular = 0.0, 0.0, 0.0
-    # What does not stand for long is not asked again for long.
-    A.RESTING[i].calm_for = min(A.RESTING[i].calm_for + 1.0, 0.0)
-    BODY[i].due = max(A.RESTING[i].still_due - last, 0.0)
+    # A timer below 0 advances at rest too: an island that often wakes is tested less often.
+    A.RESTING[i].rest_timer = min(A.RESTING[i].rest_timer + 1.0, 0.0)
+    BODY[i].due = max(A.RESTING[i].rest_due - last, 0.0)
     return True
 
 
 @uncounted
 def note_motion(A: Scene, i: int) -> None:
-    """Say of a body that impulses do not move whether it has moved since the last step, or will in this."""
+    """Set `rest` of body i, which impulses do not move: CHANGED if it was moved since the last step or has a velocity,
+    else AWAKE."""
     A.MEMBER[i].rest = AWAKE if unchanged(A, i) else CHANGED
 
 
 @uncounted
-def touch(A: Scene, c: int, stamp: float) -> None:
-    """Let the forces of contact number c be those of the step `stamp`."""
+def renew_forces(A: Scene, c: int, stamp: float) -> None:
+    """Set the stamp of the remembered forces of contact c, if they are of the last step, to that of the step
+    `stamp`."""
     a, b = A.PUSHED_BY[c].a, A.PUSHED_BY[c].b
     key = key_of(A.SHAPE.shape[0], a, b)
     for z in range(2):
@@ -63,7 +66,7 @@ def touch(A: Scene, c: int, stamp: float) -> None:
 
 @uncounted
 def wake_supported(A: Scene) -> None:
-    """What rests on bodies of an island that is CHANGED is so too, and so on."""
+    """Set islands CHANGED that are supported by islands that are CHANGED, and so on."""
     MEMBER, more = A.MEMBER, A.COUNT.carries > 0
     while more:
         more = False
@@ -80,8 +83,8 @@ def wake_supported(A: Scene) -> None:
 
 @uncounted
 def wake_changed(A: Scene) -> None:
-    """At the start of a step: islands that something has changed are no longer still; the rows of the others stay, at
-    the front, with the impulses of this step."""
+    """At the start of a step: dissolve all islands but those at rest that nothing has changed. The contacts of these
+    stay in PUSHED, with the impulses of this step; the others are LASTED. Also advances rest timers."""
     STATE, MEMBER, BODY = A.STATE, A.MEMBER, A.BODY
     ground = BODY.shape[0] - 1
     dt = A.PAR.dt
@@ -114,11 +117,11 @@ def wake_changed(A: Scene) -> None:
         if root < 0 or MEMBER[root].rest == AT_REST:
             continue
         slow = speed(A, i, 0.0) <= candidate_speed(MEMBER[root].among) * most
-        A.RESTING[i].calm_for = A.RESTING[i].calm_for + 1.0 if slow else 0.0
+        A.RESTING[i].rest_timer = A.RESTING[i].rest_timer + 1.0 if slow else 0.0
         if MEMBER[i].rest != AWAKE:
             BODY[i].ax, BODY[i].ay, BODY[i].angular = A.PULL[i, 0], A.PULL[i, 1], A.PULL[i, 2]
             STATE[i].version += 1
-        # Its forecast left out the pairs of its interval.
+        # Its predicted event does not contain the pairs of its last interval.
         BODY[i].due = min(BODY[i].due, 0.0)
     for i in range(ground):
         root = STATE[i].island
@@ -137,10 +140,11 @@ def wake_changed(A: Scene) -> None:
 
 @uncounted
 def mark_changed(A: Scene, root: int) -> None:
-    """A still island is hit, or joined: its interval of this step is an ordinary one."""
+    """Set the bodies of an island at rest AWAKE that is hit or joined in this step; its interval is solved as any
+    other."""
     for c in range(A.COUNT.pushes):
         if A.PUSHED_BY[c].root == root:
-            touch(A, c, A.PAR.stamp)
+            renew_forces(A, c, A.PAR.stamp)
     i = root
     while i >= 0:
         A.MEMBER[i].rest = AWAKE
@@ -148,8 +152,8 @@ def mark_changed(A: Scene, root: int) -> None:
 
 
 @uncounted
-def keep(A: Scene, c: int, root: int) -> None:
-    """Contact number c, just booked, goes on: its island comes to a stand."""
+def continue_contact(A: Scene, c: int, root: int) -> None:
+    """Keep contact c, which has just been accounted, for the next step, as its island comes to rest."""
     R = A.PUSHED[c]
     A.PUSHED_BY[c].root = root
     mark_pair(A, A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, 1)
@@ -157,10 +161,10 @@ def keep(A: Scene, c: int, root: int) -> None:
 
 
 @uncounted
-def stand(A: Scene, c: int) -> None:
-    """Contact number c, of an island that stands still: its impulse is noted, and goes on."""
+def report_at_rest(A: Scene, c: int) -> None:
+    """At the end of a step: log the impulse of contact c of an island at rest, and renew its remembered forces."""
     R = A.PUSHED[c]
-    touch(A, c, A.PAR.stamp)
+    renew_forces(A, c, A.PAR.stamp)
     if A.COUNT.logged < A.LOG.shape[0] and (R.normal != 0.0 or R.tangential != 0.0):
         note(
             A.LOG[A.COUNT.logged], A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, 0.5 * A.PAR.dt, R.normal, R.tangential,
@@ -172,7 +176,7 @@ def stand(A: Scene, c: int) -> None:
 
 @uncounted
 def stop(A: Scene, i: int) -> None:
-    """Body i has no velocity any more, but for a spin that nobody feels; its energy is lost to restitution."""
+    """Set the velocity of body i to 0, apart from a free spin; its kinetic energy is lost to restitution."""
     BODY = A.BODY
     A.PAR.restitution += kinetic(BODY, i)
     BODY[i].vx, BODY[i].vy = 0.0, 0.0
@@ -185,22 +189,22 @@ def stop(A: Scene, i: int) -> None:
 
 @uncounted
 def put_to_rest(A: Scene, root: int) -> None:
-    """At either end of a step, an island that comes to a stand: its bodies stop, but for spins that nobody feels. Once
-    something wakes it, it is soon asked whether it stands again."""
+    """At the start or the end of a step: put an island to rest. Its bodies stop, apart from free spins."""
     BODY, MEMBER = A.BODY, A.MEMBER
     MEMBER[root].anew = 1
     i = root
     while i >= 0:
         stop(A, i)
         BODY[i].ax, BODY[i].ay, BODY[i].angular = 0.0, 0.0, 0.0
-        MEMBER[i].rest, BODY[i].due, A.RESTING[i].calm_for = 1, 0.0, -float(REST_RETRY)
+        MEMBER[i].rest, BODY[i].due, A.RESTING[i].rest_timer = AT_REST, 0.0, -float(REST_RETRY)
         i = MEMBER[i].following
 
 
 @uncounted
-def leave(A: Scene) -> None:
-    """What still bodies have to find again at the next step: where they are, and when they are due."""
+def store_rest(A: Scene) -> None:
+    """At the end of a step: store the poses of bodies at rest, and the instants of their next events, which the next
+    step compares."""
     for i in range(A.BODY.shape[0] - 1):
         if A.MEMBER[i].rest == AT_REST:
-            A.RESTING[i].still_due = A.BODY[i].due
+            A.RESTING[i].rest_due = A.BODY[i].due
             A.BEGAN[i, 0], A.BEGAN[i, 1], A.BEGAN[i, 2] = A.BODY[i].x, A.BODY[i].y, A.BODY[i].angle

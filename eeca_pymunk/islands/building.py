@@ -1,7 +1,7 @@
-"""What rests at the start of a step, and whether what meets within it comes to rest.
+"""Islands at the start of a step, and whether contacts persist that begin within it.
 
-Contacts that lasted to the end of the step before are looked at again; what touches an island joins it. New contacts
-come by events, and are sustained from the instant at which their bounces would all be over within the step.
+Contacts that lasted to the end of the last step are examined again; bodies that touch an island join it. New contacts
+begin by events, and persist if their bounces would all be over within the step.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from ..pairs.rules import barred, law
 from .accounting import end_interval
 from .at_rest import wake_changed
 from .intervals import solve
-from .membership import approach, budget_spent, carrier, largest_island, members, rests, unite
+from .membership import approach, budget_spent, fixed_support, largest_island, members, persists, unite
 from .partial_rest import rests_in_part
 from .penetration import hold_penetrating
 from .support import support
@@ -36,8 +36,8 @@ from .support import support
 
 @uncounted
 def join_neighbours(A: Scene, i: int, t: float, FOUND: IntArray) -> int:
-    """At instant t, let what touches body i, which is in an island, join it; where it is busy, what comes near. The
-    bodies that were in none go into FOUND; how many."""
+    """At instant t, unite body i, which is in an island, with the bodies that touch it; if `busy`, with those that come
+    near. Writes those that were in no island to FOUND; returns their number."""
     BODY, STATE, LINK = A.BODY, A.STATE, A.LINK
     dt, pulled = A.PAR.dt, A.PAR.pulled
     h = dt - t
@@ -46,7 +46,7 @@ def join_neighbours(A: Scene, i: int, t: float, FOUND: IntArray) -> int:
         for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
             o = int(A.POOL[w])
             j = LINK[o].owner
-            if carrier(A, j) or STATE[j].island == STATE[i].island or barred(A.RULE, s, o):
+            if fixed_support(A, j) or STATE[j].island == STATE[i].island or barred(A.RULE, s, o):
                 continue
             busy = A.MEMBER[i].busy > 0 or A.MEMBER[j].busy > 0
             if law(A.SHAPE, A.RULE, s, o)[0] >= 1.0 and not busy:
@@ -62,7 +62,7 @@ def join_neighbours(A: Scene, i: int, t: float, FOUND: IntArray) -> int:
             other = STATE[j].island
             begun = other >= 0 and A.MEMBER[other].open > 0
             if begun and (A.MEMBER[other].jointed > 0 or budget_spent(A, other)):
-                continue  # it is hit when they meet
+                continue  # it is hit at the time of impact
             move_to(BODY, j, t)
             g, u, _, _ = approach(A, s, o, t)
             if g > reach:
@@ -83,7 +83,8 @@ def join_neighbours(A: Scene, i: int, t: float, FOUND: IntArray) -> int:
 
 @uncounted
 def spread(A: Scene, QUEUE: IntArray, queued: int, t: float) -> int:
-    """`join_neighbours` from the bodies of QUEUE on, and from those that join; how many bodies are in QUEUE then."""
+    """Call `join_neighbours` for the bodies of QUEUE, `queued` so many, and for those that join; returns their
+    number."""
     q = 0
     while q < queued:
         queued += join_neighbours(A, QUEUE[q], t, QUEUE[queued:])
@@ -93,8 +94,8 @@ def spread(A: Scene, QUEUE: IntArray, queued: int, t: float) -> int:
 
 @kernel
 def build_islands(A: Scene) -> int:
-    """The islands of the start of a step, and the intervals of those without joints. DONE, or PUSHES_FULL, to be called
-    again with more room."""
+    """Build the islands of the start of a step, and begin the intervals of those without joints. DONE, or PUSHES_FULL:
+    to be called again with more memory."""
     STATE, COUNT, BODY = A.STATE, A.COUNT, A.BODY
     n = BODY.shape[0] - 1
     wake_changed(A)
@@ -105,12 +106,12 @@ def build_islands(A: Scene) -> int:
         if c > 0 and a == A.PUSHED_BY[c - 1].a and b == A.PUSHED_BY[c - 1].b:
             continue  # the other end of a face
         i, j = A.LINK[a].owner, A.LINK[b].owner
-        i, j = (j, j) if carrier(A, i) else (i, i if carrier(A, j) else j)
-        if carrier(A, i):
+        i, j = (j, j) if fixed_support(A, i) else (i, i if fixed_support(A, j) else j)
+        if fixed_support(A, i):
             continue
         if STATE[i].island >= 0 and STATE[i].island == STATE[j].island:
             continue  # together already
-        if rests(A, a, b, 0.0, law(A.SHAPE, A.RULE, a, b)[0] < 1.0):
+        if persists(A, a, b, 0.0, law(A.SHAPE, A.RULE, a, b)[0] < 1.0):
             unite(A, i, j)
     for i in range(n):
         if A.MEMBER[i].tied >= 0:
@@ -129,10 +130,10 @@ def build_islands(A: Scene) -> int:
         kept += 1 if A.PUSHED_BY[c].root >= 0 else 0
     for i in range(n if queued > 0 else 0):
         if STATE[i].island < 0 or (A.MEMBER[i].rest == AT_REST and COUNT.carries == 0):
-            continue  # what carries may have to be solved after all
+            continue  # islands at rest count only if they may have to be solved as supports
         for s in range(STATE[i].first_shape, STATE[i].first_shape + STATE[i].shapes):
             for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
-                # Two points for each pair; those of moving shapes stand in two lists.
+                # Two points for each pair; pairs of two moving shapes are in two lists.
                 wanted += 1 if A.POOL[w] < A.LIST.shape[0] else 2
     wanted *= 2 if COUNT.carries > 0 else 1
     if kept + wanted > A.PUSHED.shape[0] or 2 * (COUNT.remembered + wanted) > A.KEYS.shape[0]:
@@ -159,9 +160,9 @@ def build_islands(A: Scene) -> int:
 
 @uncounted
 def comes_to_rest(A: Scene, a: int, b: int, t: float) -> bool:
-    """Whether shapes a and b, which meet at instant t, stay in contact from then on: bounces of e |u| under the closing
-    acceleration a_n are over within the step iff 2 e |u| <= a_n (1 - e) (dt - t); so are those that the step does not
-    resolve."""
+    """Whether the contact of shapes a and b, which meet at instant t, persists from then on. For e < 1: all bounces of
+    e |u| under the closing acceleration a_n end within the step, 2 e |u| <= a_n (1 - e) (dt - t), or a body had
+    RESOLUTION impacts in it. For e = 1 see `membership.persists`."""
     i, j = A.LINK[a].owner, A.LINK[b].owner
     if A.BODY[i].inv_mass > 0.0:
         move_to(A.BODY, i, t)
@@ -175,12 +176,12 @@ def comes_to_rest(A: Scene, a: int, b: int, t: float) -> bool:
         return met >= RESOLUTION or (closing > 0.0 and 2.0 * e * max(-u, 0.0) <= closing * (1.0 - e) * (end - t))
     if met >= RESOLUTION and closing > 0.0 and -u * RESOLUTION < A.PAR.pulled * end:
         return True
-    return A.PAR.pulled > 0.0 and rests(A, a, b, t, False)
+    return A.PAR.pulled > 0.0 and persists(A, a, b, t, False)
 
 
 @uncounted
 def hits_of(A: Scene, a: int, b: int) -> int:
-    """How often the islands of shapes a and b were hit in this step."""
+    """Number of hits in this step on the islands of shapes a and b, the larger one."""
     hits = 0
     for s in (a, b):
         root = A.STATE[A.LINK[s].owner].island
@@ -191,7 +192,8 @@ def hits_of(A: Scene, a: int, b: int) -> int:
 
 @uncounted
 def most_hits(A: Scene, a: int, b: int) -> int:
-    """How often they may be: lossy islands the oftener the smaller they are."""
+    """Largest number of hits in a step on the islands of shapes a and b: RESOLUTION; of lossy ones that divided by the
+    number of bodies."""
     if law(A.SHAPE, A.RULE, a, b)[0] >= 1.0:
         return RESOLUTION
     return max(1, RESOLUTION // max(1, largest_island(A, a, b)))
@@ -199,7 +201,8 @@ def most_hits(A: Scene, a: int, b: int) -> int:
 
 @kernel
 def passed_over(A: Scene, a: int, b: int, t: float) -> bool:
-    """Whether a hit on an island at instant t is beyond its budget; the island then is busy for some steps."""
+    """Whether an impact of shapes a and b at instant t on an island is passed over, since the budget of the island is
+    spent and they would not get deep within the step. Bodies of a lossy one then are `busy` for REST_RETRY steps."""
     STATE = A.STATE
     i, j = A.LINK[a].owner, A.LINK[b].owner
     hits, most, lossy = hits_of(A, a, b), most_hits(A, a, b), law(A.SHAPE, A.RULE, a, b)[0] < 1.0

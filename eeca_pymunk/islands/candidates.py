@@ -1,4 +1,4 @@
-"""Which pairs of an island its interval takes over, and how long the interval is."""
+"""Contact candidates of an island's interval, and the length of the interval."""
 
 from __future__ import annotations
 
@@ -25,27 +25,26 @@ from ..pairs.lists import far_apart
 from ..pairs.rules import barred, law
 from ..rows.build import normal_rate, tangent_rate
 from .depths import too_deep
-from .membership import approach, carrier, remembered, rests
+from .membership import approach, fixed_support, persists, remembered
 
 
 @uncounted
-def way_of(A: Scene, i: int, h: float) -> float:
-    """How far points of body i may come in h, with some room, where all contacts act together."""
+def travel_bound(A: Scene, i: int, h: float) -> float:
+    """Bound of the distance that points of body i travel in a time h, with a margin; for `Midstep`."""
     pulled = 0.5 * A.PAR.pulled * h if A.BODY[i].inv_mass > 0.0 else 0.0
     return 1.1 * (A.RESTING[i].speed + pulled) * h
 
 
 @kernel
-def pairs_of(A: Scene, root: int, t: float, lossy: bool, LOCAL: IntArray, MINE: IntArray, n: int) -> IntArray:
-    """`pairs_within` an interval from instant t to the end of the step."""
-    return pairs_within(A, root, t, A.PAR.dt - t, lossy, MINE, n)
-
-
-@kernel
 def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: IntArray, n: int) -> IntArray:
-    """(p, 2) pairs of shapes of an island, whose n bodies are MINE, that its solve over h from instant t takes over:
-    what touches, and what will rest within the interval; where it is busy all that comes near. All others meet at their
-    times of impact, unless all contacts act together."""
+    """Contact candidates of an island: (p, 2) pairs of shapes that its solve over h from instant t includes.
+
+    These touch, or persist within the interval; for `busy` bodies all that come near; for `Midstep` all that may meet.
+    Other pairs meet at their times of impact.
+
+    Args:
+        lossy: whether any shape of the island has an elasticity below 1.  MINE: its n bodies.
+    """
     found = np.empty((4 * n + 8, 2), np.int64)
     p = 0
     BODY, LINK, STATE = A.BODY, A.LINK, A.STATE
@@ -57,7 +56,7 @@ def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: Int
             for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
                 o = int(A.POOL[w])
                 j = LINK[o].owner
-                if j < i if STATE[j].island == root else not carrier(A, j):
+                if j < i if STATE[j].island == root else not fixed_support(A, j):
                     continue
                 if barred(A.RULE, s, o):
                     continue
@@ -66,20 +65,20 @@ def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: Int
                 speed = own + norm(BODY[j].vx, BODY[j].vy) + abs(BODY[j].spin) * BODY[j].extent
                 reach = 1.1 * (speed * h + A.PAR.pulled * h * h) + TOUCH * small
                 if together:
-                    reach = way_of(A, i, h) + way_of(A, j, h) + TOUCH * small
+                    reach = travel_bound(A, i, h) + travel_bound(A, j, h) + TOUCH * small
                 if o < A.LIST.shape[0] and far_apart(A, s, o, t, reach):
                     continue
                 force, load = 0.0, 0.0
                 if lossy and not together:
                     force, load = remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], s, o, A.PAR.stamp - 1.0)
-                # What a large island has carried goes on being carried, as far as it may come: hits on it spread by its
-                # intervals.
+                # In a large island all loaded contacts remain candidates: a hit acts on a few bodies at once, and
+                # reaches the others through the interval.
                 if n < LARGE_ISLAND or force <= 0.0:
                     g, u, closing, mass = approach(A, s, o, t)
                     if not together:
                         if not busy:
                             reach = 1.1 * (max(-u, 0.0) * h + A.PAR.pulled * h * h) + TOUCH * small
-                        # No farther do they go in an interval; what does meets at its time of impact.
+                        # Within an interval bodies move no farther; other pairs meet at their times of impact.
                         reach = min(reach, 2.0 * INTERVAL_WAY * small)
                     if g > reach:
                         continue
@@ -87,7 +86,7 @@ def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: Int
                     if together:
                         pass
                     elif e >= 1.0 and not lossy:
-                        if not rests(A, s, o, t, False):
+                        if not persists(A, s, o, t, False):
                             continue
                     elif g > TOUCH * small and not busy:
                         if not -e * min(u, 0.0) < 0.5 * max(closing, load / mass) * h:
@@ -104,8 +103,8 @@ def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: Int
 
 @uncounted
 def in_haste(A: Scene) -> bool:
-    """Whether intervals are to last to the end of the step: where all contacts act together, and once the step has had
-    about as many as there are bodies."""
+    """Whether intervals last to the end of the step: for `Midstep`, and after about as many solves in the step as there
+    are bodies."""
     bodies = A.BODY.shape[0]
     return A.COUNT.together > 0 or A.COUNT.solves >= max(RESOLUTION - 2.0 * bodies, bodies)
 
@@ -118,16 +117,16 @@ def before_end(A: Scene, t: float) -> bool:
 
 @uncounted
 def sweeps_of_large(t: float) -> int:
-    """Sweeps of a large island, in an interval from instant t on: after a hit the forces of the interval that it has
-    cut short are a good beginning."""
+    """Sweeps of a large island in an interval from instant t on: fewer after a hit, as the forces of the interval
+    before are a good start."""
     return LARGE_SWEEPS if t == 0.0 else LARGE_SWEEPS_HIT
 
 
 @uncounted
 def interval_length(A: Scene, found: IntArray, t: float) -> float:
-    """Length of an interval that begins at instant t: to the end of the step, or until a normal may have turned by
-    NORMAL_TURN; of islands of few contacts, as every interval costs a solve. Normals turn with shapes that are not
-    round, and as round ones go round one another."""
+    """Length of an interval from instant t: to the end of the step, or until a normal of the pairs `found` (p, 2) may
+    have rotated by NORMAL_TURN. Normals rotate with polygons and segments, and as circles move around each other.
+    Islands of more than EXACT_CONTACTS contacts have one interval, as each costs a solve."""
     BODY, LINK = A.BODY, A.LINK
     h = A.PAR.dt - t
     if found.shape[0] > EXACT_CONTACTS or in_haste(A):
@@ -149,9 +148,8 @@ def interval_length(A: Scene, found: IntArray, t: float) -> float:
 
 @uncounted
 def interval_within_way(A: Scene, found: IntArray, h: float) -> float:
-    """The part of an interval h in which the bodies of pairs go no farther about one another than `INTERVAL_WAY` of the
-    smaller one, and turn by no more than that angle, with the velocities that they have: beyond it no contact is
-    where it was."""
+    """The part of an interval h in which bodies of the pairs `found` move relative to each other by at most
+    INTERVAL_WAY of the size of the smaller one, and rotate by at most that angle, at their present velocities."""
     BODY, LINK, rate = A.BODY, A.LINK, 0.0
     for c in range(found.shape[0]):
         i, j = LINK[found[c, 0]].owner, LINK[found[c, 1]].owner
@@ -168,9 +166,13 @@ def interval_within_way(A: Scene, found: IntArray, h: float) -> float:
 def excess_way(
     A: Scene, P: IntArray, Q: IntArray, ROWS: Rows[Row], KEY: IntArray, V: FloatArray, VN: FloatArray, m: int, h: float
 ) -> float:
-    """How many times as far as in `interval_within_way` the bodies of m contacts go in an interval h that was solved;
-    or how many times too long it is for the deepest contact, which is to land, with no speed left, after
-    h = 2 g / |u + u+|."""
+    """How many times too long a solved interval h of m contacts is: the largest ratio of relative motion to the limit
+    of `interval_within_way`, or of the closing of a contact to that of `depths.too_deep`.
+
+    Args:
+        P, Q, ROWS, KEY: local bodies, rows and keys of the contacts.  V, VN: (k, 3) velocities at the start and the
+            end.
+    """
     SHAPE, far, shapes = A.SHAPE, 0.0, len(A.SHAPE)
     for z in range(m):
         pair = KEY[z] >> 1
@@ -190,11 +192,15 @@ def excess_way(
 def stick_time(
     P: IntArray, Q: IntArray, ROWS: Rows[Row], L: FloatArray, FREE: FloatArray, VN: FloatArray, m: int, h: float
 ) -> float:
-    """When, within an interval h of few contacts, those that slip come to stick; h if none does.
+    """Time after which slipping contacts stick, within an interval h of few contacts; h if none does.
 
     The solve ends their slip u_t with frictions beta, which change it by F, beside a_t h by other forces. Full friction
-    changes it by F sum mu lam / sum |beta| (single ones of a body's contacts are not unique): so fast the slip is over
-    after h |u_t| / (|F| sum mu lam / sum |beta| - a_t h).
+    changes it by F sum mu lam / sum |beta| (a body's single frictions are not unique): the slip ends after h |u_t| /
+    (|F| sum mu lam / sum |beta| - a_t h).
+
+    Args:
+        P, Q, ROWS, L: the m contacts with their impulses.  FREE, VN: (k, 3) velocities at the end without and with
+            impulses.
     """
     if m > EXACT_CONTACTS:
         return h
@@ -202,7 +208,7 @@ def stick_time(
     for z in range(m):
         most = ROWS[z].friction * L[z, 0]
         before = abs(ROWS[z].ut)
-        # What sticks all along has no slip but round-off before.
+        # The slip of contacts that stick throughout is round-off.
         change = most / ROWS[z].k_t
         if most == 0.0 or before <= STICK * change:
             continue

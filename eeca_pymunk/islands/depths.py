@@ -1,4 +1,4 @@
-"""How deep contacts may come in an interval: by the rates of their rows, and by where its end has the shapes."""
+"""How far contacts may close in one interval, by their rows, which are linear, and by the poses at its end."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ from ..model.scene import Scene
 
 
 @uncounted
-def room_of(small: float, thick: float) -> float:
-    """Depth (length) by which a contact of shapes, the smaller of which is `small`, may close in one interval; `thick`
-    are half the widths of both."""
+def depth_limit(small: float, thick: float) -> float:
+    """Depth (length) by which a contact may close in one interval. small: the smaller extent of both shapes.  thick:
+    the sum of their half widths."""
     return max(min(INTERVAL_DEPTH * small, INTERVAL_DEPTH_WIDTH * thick), INTERVAL_DEPTH_LEAST * small)
 
 
 @uncounted
 def driven(A: Scene, isle: Island, ROWS: Rows[Row], KEY: IntArray, n: int, m: int) -> bool:
-    """Whether a body that impulses do not move, and that moves, touches an island some of whose m contacts are deeper
-    than one interval lets them be: it then does the work of lifting them, as their losses do not suffice."""
+    """Whether a moving body without mobility touches an island of which any of m contacts is deeper than an interval
+    allows: the work of lifting is then external, as losses do not suffice."""
     moves = False
     for q in range(n, len(isle.WHO)):
         if A.BODY[isle.WHO[q]].inv_mass == 0.0:
@@ -40,19 +40,19 @@ def driven(A: Scene, isle: Island, ROWS: Rows[Row], KEY: IntArray, n: int, m: in
     for z in range(m if moves else 0):
         a, b = (KEY[z] >> 1) // shapes, (KEY[z] >> 1) % shapes
         small = min(A.SHAPE[a].extent, A.SHAPE[b].extent)
-        if ROWS[z].gap < -room_of(small, half_width(A, a) + half_width(A, b)):
+        if ROWS[z].gap < -depth_limit(small, half_width(A, a) + half_width(A, b)):
             return True
     return False
 
 
 @uncounted
 def too_deep(A: Scene, a: int, b: int, gap: float, closing: float) -> float:
-    """How many times too long an interval is in which a contact of shapes a and b closes by more than it has room for;
-    0 if it is not."""
+    """How many times too long an interval is in which a contact of shapes a and b with this gap closes by `closing`
+    (lengths); 0 if it is not."""
     small = min(A.SHAPE[a].extent, A.SHAPE[b].extent)
     if not closing > INTERVAL_DEPTH_LEAST * small:
         return 0.0
-    deep = room_of(small, half_width(A, a) + half_width(A, b))
+    deep = depth_limit(small, half_width(A, a) + half_width(A, b))
     room = max(gap, 0.0) + deep
     if closing > room + 0.5 * deep:
         return max(closing / room, 1.01 * INTERVAL_RETRY)
@@ -60,12 +60,12 @@ def too_deep(A: Scene, a: int, b: int, gap: float, closing: float) -> float:
 
 
 @kernel
-def sunk(
+def too_deep_at_end(
     A: Scene, isle: Island, END: FloatArray, P: IntArray, Q: IntArray, ROWS: Rows[Row], KEY: IntArray, m: int,
     every: bool,
 ) -> float:  # fmt: skip
-    """How many times too long an interval is at whose END (k, 3) poses some contact is deeper than it may be: what its
-    row, which is linear, does not tell. Of `every` pair, or of thin shapes alone."""
+    """How many times too long an interval is at whose poses END (k, 3) a contact is deeper than its linear row
+    predicts; 0 if it is not. `every`: of all pairs, else of thin shapes only."""
     far, shapes, last = 0.0, A.SHAPE.shape[0], -1
     for z in range(m):
         pair = KEY[z] >> 1
@@ -80,5 +80,5 @@ def sunk(
             gap = min(gap, ROWS[z + 1].gap)
         end = gap_at(A, a, END[p, 0], END[p, 1], END[p, 2], b, END[q, 0], END[q, 1], END[q, 2])[0]
         far = max(far, too_deep(A, a, b, gap, gap - end))
-    # What rows do not tell grows with the square of the length, at least.
+    # The error of linear rows grows with the square of the length, at least.
     return max(math.sqrt(far), 1.01 * INTERVAL_RETRY) if far > 0.0 else 0.0

@@ -1,12 +1,13 @@
-"""Spans that are cut short give no energy.
+"""Intervals that are cut short give no energy.
 
-Forces of an interval are right for the whole of it: a soft landing pushes before it touches. Cut after s, its impulses
-have lost D = W - dE, W the work of what impulses do not move. Where that is negative all of them are scaled by one q,
-which keeps momenta: with w = (a - a_free) s for each body, and velocities v at the start,
+Forces of an interval are right for the whole of it: a soft landing pushes before the shapes touch. Cut after s, the
+impulses have lost D = W - dE, with the work W of bodies without mobility and moving surfaces. If that is negative, all
+of them are scaled by one q, which conserves momenta: with w = (a - a_free) s for each body, and velocities v at the
+start,
 
     dE(q) = q B + q^2 C,   B = sum m (v + a_free s / 2) . w,   C = sum m w^2 / 2,   W(q) = q W,
 
-so that D(q) = 0 for q = (W - B) / C, or 0 where that is negative.
+so that D(q) = 0 for q = (W - B) / C, or 0 if that is negative.
 """
 
 from __future__ import annotations
@@ -18,7 +19,8 @@ from ..model.scene import Scene
 
 @uncounted
 def scale_forces(A: Scene, root: int, q: float) -> None:
-    """Scale the forces of an island's interval, whose bodies are where it began, so that they lose nothing."""
+    """Scale the contact forces of an island's interval by q, whose bodies are at its start, and set their losses to
+    0."""
     BODY, PULL = A.BODY, A.PULL
     i = root
     while i >= 0:
@@ -35,7 +37,7 @@ def scale_forces(A: Scene, root: int, q: float) -> None:
 
 @uncounted
 def repay(A: Scene, root: int, t: float) -> None:
-    """Before the interval of an island ends at instant t: see above."""
+    """Before the interval of an island ends at instant t: scale its impulses, if they have given energy, as above."""
     BODY, PULL = A.BODY, A.PULL
     lost, work, size, start = 0.0, 0.0, 0.0, -1.0
     for c in range(A.COUNT.pushes):

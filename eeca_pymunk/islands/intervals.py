@@ -1,4 +1,4 @@
-"""The interval of an island: from an instant on its bodies follow parabolas, on which others may hit it."""
+"""The interval of an island: its bodies follow parabolas from an instant on, on which others may hit it."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ from .candidates import (
     pairs_within,
     stick_time,
     sweeps_of_large,
-    way_of,
+    travel_bound,
 )
-from .depths import driven, sunk
+from .depths import driven, too_deep_at_end
 from .local import lay_out_island, open_contacts
 from .membership import lossy, members
 from .rest import rest_threshold
@@ -40,8 +40,8 @@ AGAIN = -1  # status of an interval that is to be shorter
 
 
 @uncounted
-def among_of(A: Scene, isle: Island, n: int) -> int:
-    """The n bodies of an island, and those of the islands that carry them."""
+def bodies_with_supports(A: Scene, isle: Island, n: int) -> int:
+    """Number of bodies of an island, n, and of the islands at rest that support it."""
     found, last = n, -1
     for q in range(n, len(isle.WHO)):
         root = A.STATE[isle.WHO[q]].island
@@ -51,20 +51,20 @@ def among_of(A: Scene, isle: Island, n: int) -> int:
 
 
 @uncounted
-def dismiss(A: Scene, MINE: IntArray, n: int) -> None:
-    """Forget the places of n bodies."""
+def clear_places(A: Scene, MINE: IntArray, n: int) -> None:
+    """Reset A.PLACE, the local numbers, of n bodies."""
     for q in range(n):
         A.PLACE[MINE[q]] = -1
 
 
 @kernel
 def solve(A: Scene, root: int, t: float) -> int:
-    """Begin an interval of the island at instant t, at which all its bodies are. Bodies without contact leave it.
+    """Begin an interval of an island at instant t, at which all its bodies are. Bodies without contacts leave it.
 
-    The interval ends with the step; before, where its bodies would go so far about one another that no contact would be
-    where it was.
+    The interval ends with the step, or earlier if it would exceed a limit of `excess_way`; it is then solved again,
+    shorter.
 
-    DONE, or PUSHES_FULL, which leaves everything as it was.
+    Returns DONE, or PUSHES_FULL, which leaves everything as it was.
     """
     longest = A.PAR.dt - t
     for attempt in range(INTERVAL_TRIES):
@@ -77,8 +77,8 @@ def solve(A: Scene, root: int, t: float) -> int:
 
 @kernel
 def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> tuple[int, float]:
-    """`solve`, of an interval no longer than `longest`. AGAIN, with nothing done, for one that is to be shorter, and
-    how long; not if it is the `last` attempt."""
+    """One attempt of `solve`, with an interval no longer than `longest`. Returns AGAIN and the length for the next
+    attempt, with nothing changed, if the interval is too long; never in the `last` attempt."""
     BODY, STATE, MEMBER, COUNT = A.BODY, A.STATE, A.MEMBER, A.COUNT
     n = MEMBER[root].bodies
     MINE = np.empty(n, np.int64)
@@ -94,23 +94,23 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
     p = len(found)
     h = min(h, interval_length(A, found, t))
     if COUNT.pushes + 2 * p > A.PUSHED.shape[0] or 2 * (COUNT.remembered + 2 * p) > A.KEYS.shape[0]:
-        dismiss(A, MINE, n)
+        clear_places(A, MINE, n)
         return PUSHES_FULL, 0.0
     isle = lay_out_island(A, MINE, n, found, t)
-    dismiss(A, MINE, n)
+    clear_places(A, MINE, n)
     k, WHO, V, contacts = len(isle.WHO), isle.WHO, isle.V, make_contacts(p, len(isle.WHO))
     P, Q, KEY, ROWS, L = contacts.A, contacts.B, contacts.KEY, contacts.ROWS, contacts.L
     VN, JUMP, OUT = contacts.VN, contacts.JUMP, contacts.OUT
     least = 0.0
     if COUNT.together > 0:
         for q in range(k):
-            least = max(least, way_of(A, WHO[q], h))
+            least = max(least, travel_bound(A, WHO[q], h))
     sweeps = SMALL_SWEEPS if n < LARGE_ISLAND else sweeps_of_large(t)
     m = 0
-    among = among_of(A, isle, n)
+    among = bodies_with_supports(A, isle, n)
     raised = 0
     for q in range(n, k):
-        # Where its user has put a body that nothing moves into others, that does the work of lifting them.
+        # A body without mobility that the program has placed into others does the work of lifting them.
         if MEMBER[WHO[q]].put > 0 and BODY[WHO[q]].inv_mass == 0.0:
             raised = 1
     quiet = rest_threshold(A, root, MINE, n, among, t) if may_lose and raised == 0 else 0.0
@@ -118,22 +118,22 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
     shortest = A.PAR.dt / RESOLUTION
     if p > 0 and h > 0.0:
         m = step_island(A, isle, contacts, n, h, sweeps, least, owed, -1.0, quiet)
-        stuck = h if in_haste(A) or OUT[0].stood > 0 else stick_time(P, Q, ROWS, L, V + h * isle.ACC, VN, m, h)
+        stuck = h if in_haste(A) or OUT[0].at_rest > 0 else stick_time(P, Q, ROWS, L, V + h * isle.ACC, VN, m, h)
         if stuck < h:
-            # Where slip ends on the way, so does the interval: friction changes its law there.
+            # The interval ends where slip ends, as the law of friction changes there.
             h = min(max(stuck, shortest), h)
             m = step_island(A, isle, contacts, n, h, sweeps, least, owed, -1.0, 0.0)
         far = 0.0
-        if not last and OUT[0].stood == 0:
+        if not last and OUT[0].at_rest == 0:
             far = excess_way(A, P, Q, ROWS, KEY, V, VN, m, h)
             if far <= INTERVAL_RETRY and len(A.SIDE) > 0:
-                far = sunk(A, isle, isle.POSE + 0.5 * h * (V + VN), P, Q, ROWS, KEY, m, False)
+                far = too_deep_at_end(A, isle, isle.POSE + 0.5 * h * (V + VN), P, Q, ROWS, KEY, m, False)
         if far > INTERVAL_RETRY:
             A.COUNT.solved += n
             spend(A, 2 * p, m, OUT[0].sweeps, OUT[0].direct)
             return AGAIN, h / far
-        if m > 0 and OUT[0].stood == 0 and not before_end(A, t + h):
-            # An interval that ends within the step is followed by another one, which corrects what is left.
+        if m > 0 and OUT[0].at_rest == 0 and not before_end(A, t + h):
+            # An interval that ends within the step is followed by another one, which corrects the penetration.
             raised = max(raised, 1 if driven(A, isle, ROWS, KEY, n, m) else 0)
             free = math.inf if raised > 0 else 0.0
             budget = budget_of(ROWS, m, OUT[0].restitution + OUT[0].friction, owed, free)
@@ -142,7 +142,7 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
             lifting(problem, middle, VN, isle.ACC, h, size, budget, contacts.JUMP)
         if abs(OUT[0].lock - 1.0) > abs(A.PAR.lock - 1.0):
             A.PAR.lock = OUT[0].lock
-    stood = OUT[0].stood > 0
+    at_rest = OUT[0].at_rest > 0
     COUNT.solves += 1
     COUNT.solved += n
     spend(A, 2 * p, m, OUT[0].sweeps, OUT[0].direct)
@@ -181,6 +181,6 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
         for z in range(m):
             A.PUSHED_BY[first + z].root = head
         COUNT.pushes += m
-        if stood:
+        if at_rest:
             put_to_rest(A, head)
     return DONE, 0.0

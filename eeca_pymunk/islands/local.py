@@ -1,4 +1,4 @@
-"""An island as its solve takes it: its bodies one after the other, and what becomes of its contacts."""
+"""An island in local numbering for its solve: its bodies, and the contacts that the solve leaves."""
 
 from __future__ import annotations
 
@@ -18,10 +18,11 @@ from .rest import spins_freely
 
 @kernel
 def lay_out_island(A: Scene, MINE: IntArray, n: int, found: IntArray, t: float) -> Island:
-    """The island of the n bodies MINE, which are at instant t and have A.PLACE, with (p, 2) pairs of shapes `found`."""
+    """The island of the n bodies MINE, which are at instant t and have A.PLACE, with its contact candidates `found` (p,
+    2). Fixed bodies of these pairs are the local bodies n to k - 1."""
     BODY = A.BODY
     p = len(found)
-    # Bodies that impulses do not move stand after those of the island.
+    # Fixed bodies follow those of the island.
     FIXED, fixed = np.empty(p, np.int64), 0
     for c in range(p):
         j = A.LINK[found[c, 1]].owner
@@ -45,7 +46,7 @@ def lay_out_island(A: Scene, MINE: IntArray, n: int, found: IntArray, t: float) 
         )
         IMS[q], IIS[q], SIZES[q] = BODY[i].inv_mass, BODY[i].inv_inertia, BODY[i].extent
         if q >= n and IMS[q] > 0.0:
-            # It stands, and carries what moves.
+            # A body at rest that supports the island is fixed.
             V[q, 2], IMS[q], IIS[q] = 0.0, 0.0, 0.0
         FELT[q] = 0.0 if spins_freely(A, i) else SIZES[q]
         if q < n:
@@ -64,8 +65,8 @@ def lay_out_island(A: Scene, MINE: IntArray, n: int, found: IntArray, t: float) 
 def open_contacts(
     A: Scene, isle: Island, contacts: Contacts, VN: FloatArray, m: int, t: float, h: float, TOUCHED: FlagArray
 ) -> None:
-    """Write the m contacts of an interval of length h, at whose end velocities are VN, after those of other islands;
-    TOUCHED (k,): bodies that have any."""
+    """Append the m contacts of an interval of length h from instant t to PUSHED and PUSHED_BY, and flag their pairs. VN
+    (k, 3): velocities at its end. TOUCHED (k,): out, 1 for bodies that have contacts."""
     P, Q, ROWS, KEY, L = contacts.A, contacts.B, contacts.ROWS, contacts.KEY, contacts.L
     shapes, first = A.SHAPE.shape[0], A.COUNT.pushes
     for z in range(m):

@@ -1,4 +1,4 @@
-"""Islands of bodies in sustained contact: who belongs to one, and which contacts are sustained."""
+"""Membership of islands: which bodies are in one, and which contacts persist."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from ..pairs.rules import law
 
 
 @uncounted
-def carrier(A: Scene, i: int) -> bool:
-    """Whether what rests on body i takes it for fixed: impulses do not move it, or it stands still."""
+def fixed_support(A: Scene, i: int) -> bool:
+    """Whether body i is fixed for bodies that rest on it: impulses do not move it, or it is at rest."""
     return bool(A.BODY[i].inv_mass == 0.0 or (A.COUNT.carries > 0 and A.MEMBER[i].rest == AT_REST))
 
 
 @uncounted
 def unite(A: Scene, i: int, j: int) -> int:
-    """Put bodies i and j, with their islands, into one; its root."""
+    """Unite the islands of bodies i and j, or the bodies themselves; returns the root."""
     MEMBER, STATE = A.MEMBER, A.STATE
     for k in (i, j):
         if STATE[k].island < 0:
@@ -63,7 +63,7 @@ def largest_island(A: Scene, a: int, b: int) -> int:
 
 @uncounted
 def in_large_island(A: Scene, a: int, b: int) -> bool:
-    """Whether shapes a and b meet in a large island: their hit spreads from the nearest bodies by its new interval."""
+    """Whether a lossy impact of shapes a and b is on a large island: it acts at once on the nearest bodies only."""
     if law(A.SHAPE, A.RULE, a, b)[0] >= 1.0:
         return False
     return bool(largest_island(A, a, b) >= LARGE_ISLAND)
@@ -71,7 +71,8 @@ def in_large_island(A: Scene, a: int, b: int) -> bool:
 
 @uncounted
 def budget_spent(A: Scene, root: int) -> bool:
-    """Whether the island is large and is not solved again in this step, as bodies have been solved often enough."""
+    """Whether an island is large and is neither hit nor joined any more in this step, since bodies have been solved
+    often enough."""
     if root < 0 or A.MEMBER[root].bodies < LARGE_ISLAND or A.MEMBER[root].open == 0:
         return False
     return bool(A.COUNT.solved > SOLVES_BEFORE_HASTE * A.BODY.shape[0])
@@ -79,7 +80,7 @@ def budget_spent(A: Scene, root: int) -> bool:
 
 @uncounted
 def members(A: Scene, root: int, MINE: IntArray) -> int:
-    """The bodies of an island into MINE; how many they are."""
+    """Write the bodies of an island to MINE; returns their number."""
     i, n = root, 0
     while i >= 0:
         MINE[n] = i
@@ -102,7 +103,8 @@ def lossy(A: Scene, root: int) -> bool:
 
 @uncounted
 def remembered(KEYS: IntArray, FORCES: Rows[Force], shapes: int, a: int, b: int, since: float) -> tuple[float, float]:
-    """Normal force and load of a pair of shapes, of the steps from number `since` on; 0 if there is none."""
+    """Normal force and load (mass length/time²) of a pair of shapes a and b, summed over its points, as of the steps
+    from number `since` on; 0 if there is none. shapes: number of all shapes."""
     key = key_of(shapes, a, b)
     force, load = 0.0, 0.0
     for z in range(2):
@@ -115,8 +117,9 @@ def remembered(KEYS: IntArray, FORCES: Rows[Force], shapes: int, a: int, b: int,
 
 @uncounted
 def approach(A: Scene, a: int, b: int, t: float) -> tuple[float, float, float, float]:
-    """Gap of shapes a and b, whose paths begin at instant t or that move evenly; its rate; the acceleration with which
-    it closes without contacts; and the mass that it feels."""
+    """Gap of shapes a and b at instant t, its rate u (negative when closing), the acceleration with which it closes
+    without contacts, and the effective mass of the contact. Body a is at t; body b moves at constant velocity until
+    then."""
     BODY, PULL, i, j = A.BODY, A.PULL, A.LINK[a].owner, A.LINK[b].owner
     h = t - BODY[j].since
     g, nx, ny, px, py = gap_at(
@@ -141,12 +144,12 @@ def approach(A: Scene, a: int, b: int, t: float) -> tuple[float, float, float, f
 
 
 @uncounted
-def rests(A: Scene, a: int, b: int, t: float, lossy: bool) -> bool:
-    """Whether a pair whose bodies are at instant t is in sustained contact until the end of the step.
+def persists(A: Scene, a: int, b: int, t: float, lossy: bool) -> bool:
+    """Whether the contact of shapes a and b, whose bodies are at instant t, persists to the end of the step.
 
-    e < 1: iff its bounce e |u| is below half of what presses it together, P = max(a_n h, A_nn f h) with f the load it
-    carried, and it is in touch (u <= P) or carried a force and closes again. e = 1: iff it touches without speed and
-    against what does not move is pressed.
+    e < 1: its bounce e |u| is below half of P = max(a_n h, A_nn f h), with the load f that it carried; and it touches
+    with u <= P, or carried a force and closes again. e = 1, unless the contact is `lossy`: it touches with almost no
+    speed, and a contact with a body without mobility is pressed together.
     """
     e = law(A.SHAPE, A.RULE, a, b)[0]
     g, u, closing, mass = approach(A, a, b, t)

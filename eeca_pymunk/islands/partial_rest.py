@@ -1,13 +1,12 @@
-"""Which of an island's bodies come to a stand while others move: those that hardly do, as far as something holds them.
+"""Partial rest: the largest part of an island that static forces support, while its other bodies move.
 
-All of them are asked for statics (`..contacts.statics`), under the pushes of the others, which are solved first with
-these for fixed. Where there are none, the statics tell of a motion that nothing holds: what takes part in it moves, and
-the rest is asked once more.
+Slow bodies are tested for static forces (`..contacts.statics`) under the pushes of the others, which are solved first
+with the slow ones as fixed. If there are none, the test returns a motion that no contact holds; the bodies that take
+part in it join the moving ones, and the remaining bodies are tested again.
 
-The pushes of a few that rattle about would wake them again and again, and so would the errors of the solves that
-follow. So a large island is calmed first: all that is slow is asked as if the others were not there; if something holds
-it, it stops, as what rests on much loses tiny motions within a step, and the forces that were found are the next
-solve's beginning.
+A few bodies always vibrate and wake their neighbours, and so do residuals of truncated solves. Therefore large islands
+are frozen first: all slow bodies are tested without regard to the others; if static forces hold them, they stop, and
+these forces are the start of the next solve. Losses within a step would end such small motions as well.
 """
 
 from __future__ import annotations
@@ -33,17 +32,17 @@ from ..model.scene import Scene
 from ..rows.inplace import sort
 from .accounting import close_interval
 from .at_rest import put_to_rest, stop
-from .candidates import pairs_of
-from .intervals import dismiss, solve
+from .candidates import pairs_within
+from .intervals import clear_places, solve
 from .local import lay_out_island, open_contacts
 from .membership import lossy, members, unite
-from .rest import candidate_speed, postpone, slow_for_long, speed
-from .support import load
+from .rest import candidate_speed, postpone_test, slow_for_long, speed
+from .support import support_loads
 
 
 @uncounted
-def chain(A: Scene, MINE: IntArray, n: int) -> None:
-    """Make an island of n bodies."""
+def make_island(A: Scene, MINE: IntArray, n: int) -> None:
+    """Make an island of n bodies MINE; the first one is its root."""
     MEMBER, head = A.MEMBER, MINE[0]
     for q in range(n):
         A.STATE[MINE[q]].island = head
@@ -54,20 +53,26 @@ def chain(A: Scene, MINE: IntArray, n: int) -> None:
 
 
 @kernel
-def test_rest(A: Scene, MINE: IntArray, n: int, V0: FloatArray, among: int, calming: bool) -> bool:
-    """Whether the island of the n bodies MINE, `among` so many, can be put to rest from their velocities V0 (n, 3)
-    under what pushes on it; if so it is. If not, its next test is postponed. `calming`: whether static forces hold it
-    with nothing that pushes on it; then its bodies stop, and may be tested for rest at once."""
+def test_rest(A: Scene, MINE: IntArray, n: int, V0: FloatArray, among: int, freezing: bool) -> bool:
+    """Test whether static forces hold an island; if so put it to rest, else postpone its next test. Returns whether
+    they do.
+
+    Args:
+        MINE: its n bodies.  V0: (n, 3) their velocities, which the forces have to end too.
+        among: number of bodies, with those of islands that support it.
+        freezing: True to test without the contacts of other islands; bodies then stop, but remain awake, and may be
+            tested for rest at once.
+    """
     BODY, COUNT, dt, root = A.BODY, A.COUNT, A.PAR.dt, MINE[0]
     for q in range(n):
         A.PLACE[MINE[q]] = q
-    found = pairs_of(A, root, 0.0, True, A.PLACE, MINE, n)
+    found = pairs_within(A, root, 0.0, A.PAR.dt, True, MINE, n)
     LOAD = np.zeros((n, 3))
-    if not calming:
-        load(A, root, LOAD)
+    if not freezing:
+        support_loads(A, root, LOAD)
     p = len(found)
     isle = lay_out_island(A, MINE, n, found, 0.0)
-    dismiss(A, MINE, n)
+    clear_places(A, MINE, n)
     most = 0.0
     for q in range(n):
         for c in range(3):
@@ -75,19 +80,19 @@ def test_rest(A: Scene, MINE: IntArray, n: int, V0: FloatArray, among: int, calm
             isle.ACC[q, c] += LOAD[q, c] / dt
         most = max(most, math.sqrt(isle.ACC[q, 0] ** 2 + isle.ACC[q, 1] ** 2))
     if p == 0 or COUNT.pushes + 2 * p > A.PUSHED.shape[0] or not most > 0.0:
-        postpone(A, MINE, n)
+        postpone_test(A, MINE, n)
         return False
-    quick = (IMPACT_SPEED if calming else candidate_speed(among)) * A.PAR.pulled / most
+    quick = (IMPACT_SPEED if freezing else candidate_speed(among)) * A.PAR.pulled / most
     contacts = make_contacts(p, len(isle.WHO))
     m = step_island(A, isle, contacts, n, dt, 0, 0.0, 0.0, 0.0, -quick)
     COUNT.direct += contacts.OUT[0].direct
-    if contacts.OUT[0].stood == 0:
-        postpone(A, MINE, n)
+    if contacts.OUT[0].at_rest == 0:
+        postpone_test(A, MINE, n)
         return False
-    if calming:
+    if freezing:
         for q in range(n):
             stop(A, MINE[q])
-            A.RESTING[MINE[q]].calm_for = 1.0
+            A.RESTING[MINE[q]].rest_timer = 1.0
         return True
     first = COUNT.pushes
     open_contacts(A, isle, contacts, contacts.VN, m, 0.0, dt, np.zeros(len(isle.WHO), np.uint8))
@@ -107,7 +112,7 @@ def test_rest(A: Scene, MINE: IntArray, n: int, V0: FloatArray, among: int, calm
 
 @kernel
 def freeze(A: Scene, root: int, MINE: IntArray, n: int) -> None:
-    """Calm the island of the n bodies MINE, but for those few that are fast, and those that nothing holds."""
+    """Stop the bodies MINE of a large island, except for a few fast ones and those that no contact holds."""
     STAND, V0, stand = np.empty(n, np.int64), np.empty((n, 3)), 0
     for q in range(n):
         if speed(A, MINE[q], 0.0) <= IMPACT_SPEED * A.PAR.pulled * A.PAR.dt:
@@ -115,35 +120,36 @@ def freeze(A: Scene, root: int, MINE: IntArray, n: int) -> None:
             stand += 1
     if n - stand > MOVING_BODIES:
         return
-    owed, factors, calmed = A.RESTING[root].lost, A.COUNT.direct, False
-    while not calmed and stand >= (1.0 - MOVING_SHARE) * n and A.COUNT.direct <= factors + PARTIAL_REST_FACTORS:
+    owed, factors, frozen = A.RESTING[root].lost, A.COUNT.direct, False
+    while not frozen and stand >= (1.0 - MOVING_SHARE) * n and A.COUNT.direct <= factors + PARTIAL_REST_FACTORS:
         for q in range(n):
             A.STATE[MINE[q]].island = -1
-        chain(A, STAND, stand)
+        make_island(A, STAND, stand)
         for q in range(stand):
             body = A.BODY[STAND[q]]
             V0[q, 0], V0[q, 1], V0[q, 2] = body.vx, body.vy, body.spin
-        calmed = test_rest(A, STAND, stand, V0, n, True)
+        frozen = test_rest(A, STAND, stand, V0, n, True)
         held = 0
         for q in range(stand):
             if slow_for_long(A, STAND[q]):
                 STAND[held] = STAND[q]
                 held += 1
         stand = held
-    if not calmed:
-        postpone(A, MINE, n)
-    # The island as it was.
+    if not frozen:
+        postpone_test(A, MINE, n)
+    # The island as it was before.
     STAND[0] = root
     for q in range(n):
         if MINE[q] != root:
             STAND[q + 1 if MINE[q] < root else q] = MINE[q]
-    chain(A, STAND, n)
+    make_island(A, STAND, n)
     A.RESTING[root].lost = owed
 
 
 @uncounted
-def divide(A: Scene, MINE: IntArray, n: int, STAND: IntArray, MOVE: IntArray) -> int:
-    """Those of the n bodies MINE that may stand into STAND, the others into MOVE; how many the first are."""
+def split_slow(A: Scene, MINE: IntArray, n: int, STAND: IntArray, MOVE: IntArray) -> int:
+    """Split the n bodies MINE: slow ones, which may be put to rest, into STAND, the others into MOVE; returns the
+    number of the first."""
     stand, limit = 0, candidate_speed(n) * A.PAR.pulled * A.PAR.dt
     for q in range(n):
         if slow_for_long(A, MINE[q]) and speed(A, MINE[q], 0.0) <= limit:
@@ -156,8 +162,8 @@ def divide(A: Scene, MINE: IntArray, n: int, STAND: IntArray, MOVE: IntArray) ->
 
 @kernel
 def rests_in_part(A: Scene, root: int) -> bool:
-    """At the start of a step, instead of solving an island: whether those of its bodies that hardly move, or what is
-    left of them without those that nothing holds, stand, so that the others are solved alone."""
+    """At the start of a step: put the slow bodies of an island to rest, as far as static forces hold them, and solve
+    the others alone. Returns whether that was tried: the island then has been solved."""
     BODY, STATE, MEMBER = A.BODY, A.STATE, A.MEMBER
     n = MEMBER[root].bodies
     if A.COUNT.carries == 0 or A.PAR.pulled == 0.0 or MEMBER[root].open > 0 or STATE[root].island != root:
@@ -174,18 +180,18 @@ def rests_in_part(A: Scene, root: int) -> bool:
             return False
     V0, some, factors = np.empty((n, 3)), False, A.COUNT.direct
     for _ in range(PARTIAL_REST_TRIES):
-        stand = divide(A, MINE, n, STAND, MOVE)
+        stand = split_slow(A, MINE, n, STAND, MOVE)
         if stand == 0 or n - stand > max(MOVING_SHARE * n, MOVING_BODIES):
             break
         some = True
-        chain(A, STAND, stand)
+        make_island(A, STAND, stand)
         for q in range(stand):
             i = STAND[q]
             MEMBER[i].rest = AT_REST
             V0[q, 0], V0[q, 1], V0[q, 2] = BODY[i].vx, BODY[i].vy, BODY[i].spin
             BODY[i].vx, BODY[i].vy, BODY[i].spin = 0.0, 0.0, 0.0
         if stand < n:
-            chain(A, MOVE, n - stand)
+            make_island(A, MOVE, n - stand)
             solve(A, MOVE[0], 0.0)
         for q in range(stand):
             MEMBER[STAND[q]].rest = AWAKE
@@ -201,12 +207,12 @@ def rests_in_part(A: Scene, root: int) -> bool:
                 if MEMBER[STATE[i].island].open > 0:
                     close_interval(A, STATE[i].island, 0.0)
                 one = unite(A, one, i)
-        # What touches nothing has left.
+        # Bodies without contacts have left the island.
         n = members(A, one, MINE)
         sort(MINE, n)
         if A.COUNT.direct > factors + PARTIAL_REST_FACTORS:
             break
     if some:
-        postpone(A, STAND, stand)
+        postpone_test(A, STAND, stand)
         solve(A, STATE[MINE[0]].island, 0.0)
     return some

@@ -1,5 +1,5 @@
-"""Bodies that were put into others by their user: nothing brings them to rest on each other, so that no island would
-lift them apart. They are in one until they are."""
+"""Initial penetration: bodies that the program has placed into others. As nothing makes their contacts persistent, no
+island would correct the overlap; they are in one until it is corrected."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from ..model.parameters.events import INITIAL_PENETRATION
 from ..model.scene import Scene
 from ..pairs.lists import far_apart
 from ..pairs.rules import barred, law
-from .membership import approach, carrier, unite
+from .membership import approach, fixed_support, unite
 
 
 @kernel
 def hold_penetrating(A: Scene) -> None:
-    """At the start of a step, put into one island what is deep in one another and neither flies apart within the step
-    nor hits: lossy shapes of bodies that no joint holds."""
+    """At the start of a step: unite bodies with deep initial penetration that neither separate within the step nor hit
+    each other; of lossy shapes, without joints. `Member.put` remains set while the overlap does."""
     BODY, LINK, dt = A.BODY, A.LINK, A.PAR.dt
     A.COUNT.crammed = 0
     for i in range(BODY.shape[0] - 1):
@@ -27,7 +27,7 @@ def hold_penetrating(A: Scene) -> None:
             for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
                 o = int(A.POOL[w])
                 j = LINK[o].owner
-                if (BODY[j].inv_mass > 0.0 and A.MEMBER[j].tied >= 0) or (carrier(A, i) and carrier(A, j)):
+                if (BODY[j].inv_mass > 0.0 and A.MEMBER[j].tied >= 0) or (fixed_support(A, i) and fixed_support(A, j)):
                     continue
                 if barred(A.RULE, s, o) or law(A.SHAPE, A.RULE, s, o)[0] >= 1.0:
                     continue
@@ -38,5 +38,5 @@ def hold_penetrating(A: Scene) -> None:
                     continue
                 A.MEMBER[i].put, A.COUNT.crammed = 1, 1
                 if -u <= A.PAR.pulled * dt:
-                    a, b = (j, i) if carrier(A, i) else (i, j)
-                    unite(A, a, a if carrier(A, b) else b)
+                    a, b = (j, i) if fixed_support(A, i) else (i, j)
+                    unite(A, a, a if fixed_support(A, b) else b)

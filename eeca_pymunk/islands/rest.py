@@ -1,8 +1,8 @@
-"""Which islands come to a stand.
+"""Which islands are put to rest.
 
-An island is at rest once, over a whole step without impacts or edits, each of its bodies was slower than
-REST_SPEED |a| dt at both ends, so that its contacts bear its weight to that accuracy, and no contact slipped or was
-driven; or once it was slow at the starts of two steps and `..contacts.statics` finds the forces that hold it.
+An island is at rest after a whole step without impacts or edits in which each of its bodies was slower than REST_SPEED
+|a| dt at both ends, so that its contacts balance the loads to that accuracy, and no contact slipped or was driven; or
+if it was slow at the start of two steps and `..contacts.statics` finds static forces.
 """
 
 from __future__ import annotations
@@ -21,57 +21,63 @@ from ..model.parameters.rest import (
 )
 from ..model.scene import Scene
 from ..pairs.rules import law
-from ..rows.equilibrium import bound
+from ..rows.equilibrium import point_speed
 
 
 @uncounted
 def spins_freely(A: Scene, i: int) -> bool:
-    """Whether body i turns as it will, whatever touches it: a lone disk without friction, which nothing twists."""
+    """Whether contacts exert no torque on body i: a single disk without friction, on which no torque of the program
+    acts."""
     return bool(i < A.COUNT.disks and A.SHAPE[i].friction == 0.0 and A.PULL[i, 2] == 0.0)
 
 
 @uncounted
 def speed(A: Scene, i: int, s: float) -> float:
-    """A bound on the speed of the points of body i in s; of its centre, where its turning moves nothing."""
+    """Bound of the speed (length/time) of the points of body i after a time s; of its centre if contacts exert no
+    torque on it."""
     BODY = A.BODY
     vx, vy = BODY[i].vx + s * BODY[i].ax, BODY[i].vy + s * BODY[i].ay
-    return bound(vx, vy, 0.0 if spins_freely(A, i) else BODY[i].spin + s * BODY[i].angular, BODY[i].extent)
+    return point_speed(vx, vy, 0.0 if spins_freely(A, i) else BODY[i].spin + s * BODY[i].angular, BODY[i].extent)
 
 
 @uncounted
 def candidate_speed(bodies: int) -> float:
-    """Speed relative to |a| dt below which an island of so many bodies hardly moves."""
+    """Speed relative to |a| dt below which bodies of an island of so many bodies are tested for rest."""
     return REST_CANDIDATE if bodies < LARGE_ISLAND else REST_CANDIDATE_LARGE
 
 
 @uncounted
 def slow_for_long(A: Scene, i: int) -> bool:
-    """Whether body i has hardly moved for long enough to be asked whether it stands."""
-    return bool(A.RESTING[i].calm_for >= 1.0)
+    """Whether the rest timer of body i allows a test for static forces."""
+    return bool(A.RESTING[i].rest_timer >= 1.0)
 
 
 @uncounted
 def motionless(A: Scene, MINE: IntArray, n: int) -> bool:
-    """Whether none of the n bodies MINE has any velocity, as when a stack is put down, nor was tested lately: static
-    forces are then looked for before motion is."""
+    """Whether none of the n bodies MINE has any velocity, as in the first step of a stack, or has failed a test lately:
+    static forces are then searched at once."""
     for q in range(n):
         body = A.BODY[MINE[q]]
-        if body.vx != 0.0 or body.vy != 0.0 or body.spin != 0.0 or A.RESTING[MINE[q]].calm_for < 0.0:
+        if body.vx != 0.0 or body.vy != 0.0 or body.spin != 0.0 or A.RESTING[MINE[q]].rest_timer < 0.0:
             return False
     return True
 
 
 @uncounted
-def postpone(A: Scene, MINE: IntArray, n: int) -> None:
-    """The n bodies MINE are asked again much later, unless they stand in between."""
+def postpone_test(A: Scene, MINE: IntArray, n: int) -> None:
+    """Postpone the next test for static forces of the n bodies MINE by REST_RETRY steps."""
     for q in range(n):
-        A.RESTING[MINE[q]].calm_for = -float(REST_RETRY)
+        A.RESTING[MINE[q]].rest_timer = -float(REST_RETRY)
 
 
 @uncounted
 def rest_threshold(A: Scene, root: int, MINE: IntArray, n: int, among: int, t: float) -> float:
-    """The speed relative to |a| dt at which the island of the n bodies MINE, on others, `among` in all, may come to a
-    stand at instant t, 0 if it may not; it is asked again much later, unless it stood in between."""
+    """Speed relative to |a| dt below which an island may be put to rest at instant t by a test for static forces; 0 if
+    it is not tested. A test postpones the next one.
+
+    Args:
+        MINE: its n bodies.  among: number of bodies, with those of the islands that support it.
+    """
     if t > 0.0 or A.PAR.pulled == 0.0 or A.COUNT.together > 0 or A.RULE.shape[0] > 0:
         return 0.0
     if not motionless(A, MINE, n):
@@ -80,13 +86,14 @@ def rest_threshold(A: Scene, root: int, MINE: IntArray, n: int, among: int, t: f
         for q in range(n):
             if not slow_for_long(A, MINE[q]) or A.MEMBER[MINE[q]].busy > 0:
                 return 0.0
-    postpone(A, MINE, n)
+    postpone_test(A, MINE, n)
     return candidate_speed(among)
 
 
 @uncounted
-def slow(A: Scene, root: int) -> bool:
-    """Whether all bodies of an island were as good as at rest at both ends of this step, undisturbed."""
+def is_candidate(A: Scene, root: int) -> bool:
+    """Whether all bodies of an island were slower than REST_SPEED |a| dt at both ends of this step, over which it had
+    one interval without hits and without penetration correction."""
     MEMBER, dt = A.MEMBER, A.PAR.dt
     if MEMBER[root].open == 0 or MEMBER[root].jointed > 0 or MEMBER[root].hits > 0:
         return False
@@ -110,12 +117,13 @@ def slow(A: Scene, root: int) -> bool:
 
 @uncounted
 def find_candidates(A: Scene) -> None:
-    """At the end of a step, before its contacts enter the ledger: which islands come to a stand."""
+    """At the end of a step, before contacts are accounted: set islands CANDIDATE that are slow (`is_candidate`) and
+    whose contacts neither slip nor are driven by moving bodies or surfaces."""
     if A.PAR.pulled == 0.0 or A.COUNT.together > 0 or A.RULE.shape[0] > 0:
         return
     some = False
     for i in range(A.BODY.shape[0] - 1):
-        if A.STATE[i].island == i and A.MEMBER[i].rest == AWAKE and slow(A, i):
+        if A.STATE[i].island == i and A.MEMBER[i].rest == AWAKE and is_candidate(A, i):
             A.MEMBER[i].rest = CANDIDATE
             some = True
     if not some:

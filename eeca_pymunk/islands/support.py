@@ -1,13 +1,13 @@
-"""Islands that stand, and carry what moves.
+"""Islands at rest that support moving bodies.
 
-One disk that rolls on a pile moves nothing else. So what hardly moves may stand while the rest of its island goes on:
-what moves takes it for fixed, as the ground, and the statics of what stands, under the forces with which the other
-pushes on it, say whether that is so. Where these forces and those of its own contacts balance inside all cones, they
-are an answer of the contact problem of all bodies together: nothing that stands has any motion, and momentum goes
-through it to what is fixed. Otherwise all of them are solved as one island.
+One disk that rolls on a pile moves nothing else. So slow bodies may be at rest while the rest of their island moves:
+for the moving bodies they are fixed, as the ground is, and a statics problem of the bodies at rest, under the forces
+with which the others push on them, tells whether that is right. If these forces and those of their own contacts balance
+inside all friction cones, they solve the contact problem of all bodies together: the bodies at rest have no motion, and
+momentum passes through them to what is fixed. Otherwise all of them are solved as one island.
 
-In each step what moves is solved first, then the forces of what carries it are found anew from those of the last step.
-The contacts of what moves are of its own island; that of the other body is its carrier, and wakes it when it wakes.
+In each step moving islands are solved first, then the forces in islands that support them, starting from those of the
+last step. A contact between both belongs to the moving island, which wakes when its support does.
 """
 
 from __future__ import annotations
@@ -26,15 +26,15 @@ from ..pairs.rules import law
 from ..rows.build import place_row
 from ..rows.equilibrium import equilibrium
 from .accounting import wake
-from .intervals import dismiss, solve
+from .intervals import clear_places, solve
 from .membership import members
-from .rest import candidate_speed, postpone, spins_freely
+from .rest import candidate_speed, postpone_test, spins_freely
 
 
 @uncounted
-def load(A: Scene, root: int, LOAD: FloatArray) -> None:
-    """Add to LOAD (k, 3) the velocities that contacts of other islands give to the bodies of this one, which have
-    A.PLACE, over the whole step, if they go on as they are."""
+def support_loads(A: Scene, root: int, LOAD: FloatArray) -> None:
+    """Add to LOAD (k, 3) the velocities that contacts of other islands would give to the bodies of this one, which have
+    A.PLACE, in a whole step with the present forces."""
     BODY = A.BODY
     for c in range(A.COUNT.pushes):
         r = A.PUSHED_BY[c].root
@@ -54,14 +54,14 @@ def load(A: Scene, root: int, LOAD: FloatArray) -> None:
 
 
 @kernel
-def holds(A: Scene, root: int) -> bool:
-    """Whether an island that stands carries what pushes on it now; then its contacts have the forces that do. If not,
-    those of its bodies that are held all the same are asked again soon."""
+def supports_load(A: Scene, root: int) -> bool:
+    """Whether contacts of an island at rest can support the present loads; then their impulses are set to the forces
+    found. If not, the next tests for rest of its bodies are postponed."""
     BODY, dt = A.BODY, A.PAR.dt
     n = A.MEMBER[root].bodies
     MINE = np.empty(n, np.int64)
     members(A, root, MINE)
-    # What carries it in its turn, and is fixed, is the last body.
+    # One local body, the last, stands for all fixed ones that support the island.
     POSE, IMS, IIS, FELT = np.zeros((n + 1, 3)), np.zeros(n + 1), np.zeros(n + 1), np.zeros(n + 1)
     START = np.zeros((n + 1, 3))
     for q in range(n):
@@ -71,7 +71,7 @@ def holds(A: Scene, root: int) -> bool:
         POSE[q, 0], POSE[q, 1], POSE[q, 2] = BODY[i].x, BODY[i].y, BODY[i].angle
         for c in range(3):
             START[q, c] = dt * A.PULL[i, c]
-    load(A, root, START)
+    support_loads(A, root, START)
     room = 0
     for c in range(A.COUNT.pushes):
         room += 1 if A.PUSHED_BY[c].root == root else 0
@@ -91,7 +91,7 @@ def holds(A: Scene, root: int) -> bool:
         place_row(P, Q, ROWS, m, R.px, R.py, POSE, IMS, IIS)
         L[m, 0], L[m, 1], OF[m] = R.normal, R.tangential, c
         m += 1
-    dismiss(A, MINE, n)
+    clear_places(A, MINE, n)
     found, factors = equilibrium(
         Problem(P, Q, ROWS, IMS, IIS, POSE, n, m),
         L,
@@ -103,18 +103,18 @@ def holds(A: Scene, root: int) -> bool:
     )
     A.COUNT.direct += factors
     if not found:
-        postpone(A, MINE, n)
+        postpone_test(A, MINE, n)
     else:
         for z in range(m):
             R = A.PUSHED[OF[z]]
             R.normal, R.tangential, R.change = L[z, 0], L[z, 1], L[z, 0] / ROWS[z].k_n
-            keep_in_mind(A, OF[z])
+            remember_forces(A, OF[z])
     return found
 
 
 @uncounted
-def keep_in_mind(A: Scene, c: int) -> None:
-    """Let the memory have the forces of contact number c."""
+def remember_forces(A: Scene, c: int) -> None:
+    """Write the forces of contact c into the memory of forces (`..contacts.memory`)."""
     a, b = A.PUSHED_BY[c].a, A.PUSHED_BY[c].b
     key = key_of(A.SHAPE.shape[0], a, b)
     if c > 0 and A.PUSHED_BY[c - 1].a == a and A.PUSHED_BY[c - 1].b == b:
@@ -129,8 +129,8 @@ def keep_in_mind(A: Scene, c: int) -> None:
 
 @kernel
 def support(A: Scene) -> None:
-    """At the start of a step, once what moves has been solved: what carries some of it and cannot stand is solved with
-    what rests on it."""
+    """At the start of a step, after moving islands have been solved: solve the forces in islands at rest that support
+    them; those that cannot support their loads wake, and are solved with what rests on them."""
     STATE, MEMBER, BODY = A.STATE, A.MEMBER, A.BODY
     more, all_moving, asked = A.COUNT.carries > 0, True, 0
     while more:
@@ -153,8 +153,8 @@ def support(A: Scene) -> None:
             if STATE[i].island != i or MEMBER[i].rest != AT_REST:
                 continue
             more = True
-            # What carries each other in turn is one island.
-            if asked < SUPPORT_ROUNDS and holds(A, i):
+            # After SUPPORT_ROUNDS: islands that support each other are solved as one.
+            if asked < SUPPORT_ROUNDS and supports_load(A, i):
                 MEMBER[i].anew = 1
             else:
                 solve(A, wake(A, i, 0.0), 0.0)

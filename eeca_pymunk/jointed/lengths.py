@@ -14,7 +14,7 @@ from ..compiled import uncounted
 from ..compiled.records import Rows
 from ..contacts.memory import key_of
 from ..geometry.flight import norm
-from ..islands.depths import sunk, too_deep
+from ..islands.depths import too_deep, too_deep_at_end
 from ..model.contacts import Row
 from ..model.islands import Island
 from ..model.joints import Joints
@@ -96,4 +96,4 @@ def excess(
         pair = KEY[z] >> 1
         closing = -normal_rate(P, Q, ROWS, motion.WAY, z)
         far = max(far, too_deep(A, pair // shapes, pair % shapes, ROWS[z].gap, closing))
-    return max(far, sunk(A, isle, motion.END, P, Q, ROWS, KEY, m, True))
+    return max(far, too_deep_at_end(A, isle, motion.END, P, Q, ROWS, KEY, m, True))

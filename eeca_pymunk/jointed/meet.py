@@ -8,7 +8,7 @@ from ..arrays import IntArray
 from ..compiled import kernel, uncounted
 from ..geometry.flight import pose
 from ..geometry.gap import gap
-from ..islands.accounting import alight, book
+from ..islands.accounting import account_contact, move_to_end
 from ..islands.membership import in_large_island, members
 from ..model.joints import Joints
 from ..model.parameters.joints import (
@@ -86,7 +86,7 @@ def end_here(A: Scene, J: Joints, root: int, t: float) -> None:
         return
     for c in range(A.COUNT.pushes):
         if A.PUSHED_BY[c].root == root:
-            book(A, c, t)
+            account_contact(A, c, t)
     empty = t - A.BODY[root].since <= MEET_INSTANT * A.PAR.dt
     found = components_of(A, J, root)
     for c in range(len(found)):
@@ -103,7 +103,7 @@ def end_here(A: Scene, J: Joints, root: int, t: float) -> None:
             A.BODY[i].since = t
             A.BODY[i].ax, A.BODY[i].ay, A.BODY[i].angular = 0.0, 0.0, 0.0
         else:
-            alight(A, i, t)
+            move_to_end(A, i, t)
 
 
 @uncounted

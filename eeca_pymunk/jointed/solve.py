@@ -13,8 +13,8 @@ from ..contacts.interval import make_contacts, recall, speeds
 from ..contacts.memory import remember_loads
 from ..contacts.unmet import note_unmet
 from ..contacts.works import moved
-from ..islands.candidates import before_end, pairs_of
-from ..islands.intervals import AGAIN, dismiss
+from ..islands.candidates import before_end, pairs_within
+from ..islands.intervals import AGAIN, clear_places
 from ..islands.local import lay_out_island, open_contacts
 from ..islands.membership import lossy, members
 from ..model.islands import Island
@@ -96,14 +96,14 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
     for q in range(n):
         A.PLACE[MINE[q]] = q
     may_lose = lossy(A, root)
-    found = pairs_of(A, root, t, may_lose, A.PLACE, MINE, n)
+    found = pairs_within(A, root, t, A.PAR.dt - t, may_lose, MINE, n)
     p = len(found)
     if p == 0 and whole:
-        dismiss(A, MINE, n)
+        clear_places(A, MINE, n)
         far = begin_alone(A, J, root, t, h, last)
         return (AGAIN, h / far) if far > 0.0 else (DONE, h)
     if COUNT.pushes + 2 * p > A.PUSHED.shape[0] or 2 * (COUNT.remembered + 2 * p) > A.KEYS.shape[0]:
-        dismiss(A, MINE, n)
+        clear_places(A, MINE, n)
         return PUSHES_FULL, h
     isle = lay_out_island(A, MINE, n, found, t)
     k = len(isle.WHO)
@@ -142,7 +142,7 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
         for g in range(len(groups.COMPONENT)):
             if groups.COMPONENT[g] >= 0:
                 restore_joints(J, groups.COMPONENT[g])
-        dismiss(A, MINE, n)
+        clear_places(A, MINE, n)
         return AGAIN, h / far
     if not held:
         pair, shapes = KEY[0] >> 1, A.SHAPE.shape[0]
@@ -159,7 +159,7 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
                     J.STEPPED[groups.COMPONENT[g]].lifted = spent
                     break
         fit(A, J, interval, L, t + h, slow + pull * h)
-    dismiss(A, MINE, n)
+    clear_places(A, MINE, n)
     first = COUNT.pushes
     open_contacts(A, isle, contacts, motion.V, m, t, h, np.zeros(k, np.uint8))
     for z in range(m):

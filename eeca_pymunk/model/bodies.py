@@ -101,6 +101,6 @@ class Rest(Record):
     backoff: float  # of the root: steps to wait after its next failure
     lost: float  # of the root: energy lost in this step; if negative, energy that later intervals have to take out
     until: float  # of the root: instant at which the interval ends
-    calm_for: float  # rest timer: steps in a row at whose start the body was slow; negative after a failed test
+    rest_timer: float  # steps in a row at whose start the body was slow; negative after a failed test
     speed: float  # `Midstep`: bound of the speed of the body's points in the step, length/time
-    still_due: float  # `due` of a body at rest at the end of the last step
+    rest_due: float  # `due` of a body at rest at the end of the last step

@@ -175,7 +175,7 @@ class Solved(Record):
     sweeps: int
     direct: int  # direct solutions
     pushing: int  # active contacts
-    stood: int  # 1 if the island was put to rest
+    at_rest: int  # 1 if the island was put to rest
 
 
 class Force(Record):

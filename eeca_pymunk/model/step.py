@@ -32,31 +32,31 @@ class Count(Record):
 
     heap: int  # rows of the heap in use
     logged: int  # rows of LOG in use
-    impacts: int
-    blocks: int  # impacts of many contacts at one instant
-    forecasts: int
-    stale: int  # events out of date
+    impacts: int  # number of impacts in the step
+    blocks: int  # of these, simultaneous impacts of several contacts
+    predictions: int  # number of predictions in the step
+    stale: int  # number of events that were out of date when they were taken from the heap
     limit: int  # impacts that a body may have in a step
-    unmet: int  # what was not met
-    closing: int  # 1 where bodies that impulses do not move may move relative to one another, and squeeze others
-    budget: int  # work of the events of a step of no more than `BUDGET_TIME`, beyond which it is cut short
-    work: int  # of the events so far, in looks of the search for an impact
-    struck: int
-    pushes: int  # rows of PUSHED in use
-    solves: int
-    ignored: int
-    waiting: int  # bodies in BLOCK to be forecast once their islands have begun intervals
-    phase: int  # of the step that is to be resumed
-    sweeps: int  # of all solves: sweeps, direct solutions
-    direct: int
-    remembered: int  # rows of the memory of forces in use
+    unmet: int  # number of budgets and tolerances that the step has not met
+    closing: int  # 1 if bodies that impulses do not move may move relative to each other, and squeeze others
+    budget: int  # largest work of the events of a step no longer than `BUDGET_TIME`, in looks
+    work: int  # work of the events so far, in looks: evaluations of a gap in the search for an impact
+    struck: int  # body of the event at which the event loop has stopped
+    pushes: int  # rows of PUSHED in use: contacts of intervals
+    solves: int  # number of solves of islands in the step
+    ignored: int  # number of impacts that were passed over
+    waiting: int  # number of bodies in BLOCK to be predicted after their islands have begun intervals
+    phase: int  # stage of the step at which it is resumed, see `impacts.step.act`
+    sweeps: int  # number of sweeps of all solves
+    direct: int  # number of direct solves
+    remembered: int  # rows in use of the memory of forces
     lossy: int  # 1 if any shape's elasticity is below 1
-    together: int  # 1 where all contacts of a step act together, and no events are followed
-    even: int  # 1 while one acceleration holds for all that impulses move, and no body is in an island
-    quiet: int  # steps in a row in which that was so to the end
-    disks: int  # of the scene: lone disks
-    solved: int  # bodies of all solves
-    carries: int  # 1 if islands at rest may support others that move (`islands/support.py`)
+    together: int  # 1 if all contacts of a step act together (`Midstep`), without events
+    even: int  # 1 while all bodies that impulses move have the same acceleration, and none is in an island
+    quiet: int  # number of steps in a row at whose end `even` was 1
+    disks: int  # number of single disks of the scene
+    solved: int  # number of bodies of all solves
+    carries: int  # 1 if islands at rest may support moving ones (`islands/support.py`)
     crammed: int  # 1 if the program has placed bodies, which may overlap
 
 

@@ -22,7 +22,7 @@ from .next_event import has_left, leaves
 
 
 @uncounted
-def carrier(A: Scene, s: int) -> int:
+def body_of(A: Scene, s: int) -> int:
     """Row of the body of shape s: single disks have the same number as their shapes."""
     return s if s < A.COUNT.disks else int(A.LINK[s].owner)
 
@@ -59,7 +59,7 @@ def first_meeting(
             continue
         o = int(POOL[q])
         if several:
-            j = carrier(A, o)
+            j = body_of(A, o)
             if A.PLACE[j] >= 0 and j < i:
                 continue
         if ruled and barred(A.RULE, i, o):
@@ -83,7 +83,7 @@ def expect(A: Scene, i: int, best: float, other: int, now: float, end: float) ->
     before. An event that is due in this step goes on the heap."""
     out = leaves(A, i, i, now)
     if other >= 0:
-        A.STATE[i].known = A.STATE[carrier(A, other)].version
+        A.STATE[i].known = A.STATE[body_of(A, other)].version
     if out <= best and out < math.inf:
         A.LIST[i].later = other
         best, other = out, LEAVE
@@ -107,7 +107,7 @@ def go_on(A: Scene, i: int, now: float, end: float) -> bool:
     BODY = A.BODY
     best, other, later, known = math.inf, NOTHING, A.LIST[i].later, A.LIST[i].number
     ahead = AHEAD
-    if later >= 0 and A.STATE[carrier(A, later)].version == A.STATE[i].known:
+    if later >= 0 and A.STATE[body_of(A, later)].version == A.STATE[i].known:
         best, certain = meet(A, i, later, end)
         other = later if certain else CHECK
     if has_left(A, i, now):
@@ -135,7 +135,7 @@ def holds(A: Scene, i: int, end: float) -> bool:
     if due <= 0.0:
         return False
     if other >= 0:
-        if A.STATE[carrier(A, other)].version != A.STATE[i].known:
+        if A.STATE[body_of(A, other)].version != A.STATE[i].known:
             return False
         t, certain = meet(A, i, other, end)
         if not (certain and abs(t - due) <= SAME_INSTANT * end):

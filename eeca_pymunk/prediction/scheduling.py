@@ -12,9 +12,9 @@ from .next_event import predict
 
 
 @uncounted
-def forecast(A: Scene, i: int, t: float, end: float, several: bool) -> None:
+def predict_next(A: Scene, i: int, t: float, end: float, several: bool) -> None:
     """Predict the next event of body i at instant t of the loop; `several` as in `disks.first_meeting`."""
-    A.COUNT.forecasts += 1
+    A.COUNT.predictions += 1
     if i < A.COUNT.disks and A.STATE[i].island < 0:
         predict_disk(A, i, t, end, several)
         return
@@ -23,19 +23,19 @@ def forecast(A: Scene, i: int, t: float, end: float, several: bool) -> None:
 
 
 @uncounted
-def forecast_all(A: Scene, n: int, t: float, end: float) -> None:
+def predict_all(A: Scene, n: int, t: float, end: float) -> None:
     """Predict the next events of the n bodies in A.BLOCK at instant t. Each pair of them is tested once; that is
     enough, because a body is predicted with all others after its next event."""
     for q in range(n):
         A.PLACE[A.BLOCK[q]] = q
     for q in range(n):
-        forecast(A, A.BLOCK[q], t, end, True)
+        predict_next(A, A.BLOCK[q], t, end, True)
     for q in range(n):
         A.PLACE[A.BLOCK[q]] = -1
 
 
 @uncounted
-def forecast_due(A: Scene) -> None:
+def predict_due(A: Scene) -> None:
     """At the start of a step, predict the next events of all bodies whose prediction is void or due in this step."""
     n, dt, disks = 0, A.PAR.dt, A.COUNT.disks
     for i in range(A.BODY.shape[0] - 1):
@@ -44,7 +44,7 @@ def forecast_due(A: Scene) -> None:
             if not (alone and i < disks and holds(A, i, dt)):
                 A.BLOCK[n] = i
                 n += 1
-    forecast_all(A, n, 0.0, dt)
+    predict_all(A, n, 0.0, dt)
 
 
 @merged

@@ -1,16 +1,9 @@
 """When rotating shapes meet: conservative advancement (Mirtich 1996) from bounds of the motion of their vertices.
 
-Shapes are apart if they are apart along some axis. Along an axis n the least gap of some points bounds that of the
-shapes, and a point's gap g with rate g' stays above g + g' s - B s² / 2 if B bounds its second derivative. So each axis
-gives an instant before which the shapes are apart, and the search continues at the latest of these. There are three
-axes: the present normal, fixed in space, with the vertices of both shapes; and the normals of the edges of a and of b
-along which they are farthest apart, which rotate with their bodies, with the vertices of the other shape.
-
-Bounds until the horizon, with r the reach of a core about its centre of mass, w the spin, q its rate, A the relative
-acceleration of the centres, V their relative speed, and L their distance:
-
-    fixed axis        B = A + sum of r (w² + q) of both,
-    axis of body a    B = A + r_b (w_b² + q_b) + 2 w_a (V + w_b r_b) + (w_a² + q_a) (L + r_b).
+Shapes are apart if they are apart along some axis. Each axis gives an instant before which the shapes are apart
+(`axes.py`), and the search continues at the latest of these. There are three axes: the present normal, fixed in space,
+with the vertices of both shapes; and the normals of the edges of a and of b along which they are farthest apart, which
+rotate with their bodies, with the vertices of the other shape.
 
 Shapes meet if, along every axis on which the gap is closed, a point approaches.
 
@@ -20,13 +13,11 @@ Side effect: `begin_side` and `general` note the sides of thin shapes in SIDE.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
-from ..arrays import FloatArray
 from ..compiled import uncounted
 from ..compiled.records import Rows
 from ..geometry.convex import place
-from ..geometry.flight import pose, rate
+from ..geometry.flight import pose
 from ..geometry.gap import touching
 from ..geometry.manifold import common_face
 from ..geometry.sides import closest_on_side, key_of, known_side, near_side, note_side, remembers, side_row, smaller
@@ -34,123 +25,16 @@ from ..model.bodies import Body
 from ..model.parameters.events import ADVANCES, APPROACH_ROUND_OFF, GRAZED, RESOLUTION
 from ..model.scene import Scene
 from ..pairs.lists import face_tolerance
+from .axes import Closing, Motion, bends, fastest, fixed_axis, motion, turning_axis
 from .bounds import carried_circles_meet, circles_meet
-from .roots import flat
-
-
-class Motion(NamedTuple):
-    """Pose and velocity of a body at one instant."""
-
-    x: float
-    y: float
-    angle: float
-    vx: float
-    vy: float
-    spin: float
-
-
-class Closing(NamedTuple):
-    """Constants of the gaps of points along an axis."""
-
-    extent: float  # gap of the cores where the shapes touch: length
-    bend: float  # bound of the second derivative of gaps: length/time²
-    tolerance: float  # gap up to which points touch: length
-    still: float  # rate up to which points that touch do not close, but by round-off: length/time
 
 
 @uncounted
-def motion(BODY: Rows[Body], i: int, t: float) -> Motion:
-    """The motion of body i at instant t."""
-    x, y, angle = pose(BODY, i, t)
-    vx, vy, spin = rate(BODY, i, t)
-    return Motion(x, y, angle, vx, vy, spin)
-
-
-@uncounted
-def first_close(best: float, near: float, closing: bool, g: float, w: float, of: Closing) -> tuple[float, float, bool]:
-    """Include one more point with gap g and rate w in an axis: the first instant at which a point may close, the least
-    gap, and whether a point touches and approaches."""
-    near = min(near, g)
-    if g <= of.tolerance:
-        closing = closing or w < -of.still
-    # The root is needed only if the bound is negative at `best`.
-    if best == math.inf or g + (w - 0.5 * of.bend * best) * best < 0.0:
-        best = min(best, flat(g, w, -of.bend))
-    return best, near, closing
-
-
-@uncounted
-def fixed_axis(
-    P: FloatArray, p: int, Q: FloatArray, q: int, nx: float, ny: float, a: Motion, b: Motion, of: Closing
-) -> tuple[float, float, bool]:
-    """`first_close` of all vertices of a against all of b along the present normal."""
-    best, near, closing = math.inf, math.inf, False
-    for i in range(p):
-        x, y = P[i, 0], P[i, 1]
-        vx, vy = a.vx - a.spin * (y - a.y), a.vy + a.spin * (x - a.x)
-        for j in range(q):
-            g = (Q[j, 0] - x) * nx + (Q[j, 1] - y) * ny - of.extent
-            w = (b.vx - b.spin * (Q[j, 1] - b.y) - vx) * nx + (b.vy + b.spin * (Q[j, 0] - b.x) - vy) * ny
-            best, near, closing = first_close(best, near, closing, g, w, of)
-    return best, near, closing
-
-
-@uncounted
-def turning_axis(
-    P: FloatArray, edge: int, Q: FloatArray, q: int, a: Motion, b: Motion, of: Closing
-) -> tuple[float, float, bool]:
-    """`first_close` of the vertices of b against an edge of a: rates are relative to the material point of a there."""
-    best, near, closing = math.inf, math.inf, False
-    nx, ny = P[edge, 2], P[edge, 3]
-    for j in range(q):
-        x, y = Q[j, 0], Q[j, 1]
-        g = (x - P[edge, 0]) * nx + (y - P[edge, 1]) * ny - of.extent
-        w = (b.vx - b.spin * (y - b.y) - (a.vx - a.spin * (y - a.y))) * nx
-        w += (b.vy + b.spin * (x - b.x) - (a.vy + a.spin * (x - a.x))) * ny
-        best, near, closing = first_close(best, near, closing, g, w, of)
-    return best, near, closing
-
-
-@uncounted
-def reach_of(A: Scene, s: int) -> tuple[float, float, float]:
-    """A reference point of shape s relative to its body's centre of mass, and the radius of the shape about it: the
-    centre of mass itself for moving bodies, the centre of its bounding circle for static shapes."""
-    if A.LINK[s].owner == A.BODY.shape[0] - 1:
-        return A.SHAPE[s].centre_x, A.SHAPE[s].centre_y, A.SHAPE[s].bound
-    return 0.0, 0.0, A.SHAPE[s].extent
-
-
-@uncounted
-def bends(A: Scene, a: int, b: int, start: float, left: float) -> tuple[float, float, float]:
-    """The bounds B (length/time²) of the fixed axis and those of a and b, from `start` on for `left`."""
-    one, two = A.BODY[A.LINK[a].owner], A.BODY[A.LINK[b].owner]
-    m, n = motion(A.BODY, A.LINK[a].owner, start), motion(A.BODY, A.LINK[b].owner, start)
-    q_a, q_b = abs(one.angular), abs(two.angular)
-    w_a, w_b = abs(m.spin) + q_a * left, abs(n.spin) + q_b * left
-    px_a, py_a, r_a = reach_of(A, a)
-    px_b, py_b, r_b = reach_of(A, b)
-    r_a, r_b = max(r_a - A.SHAPE[a].rounding, 0.0), max(r_b - A.SHAPE[b].rounding, 0.0)
-    pull = math.sqrt((two.ax - one.ax) ** 2 + (two.ay - one.ay) ** 2)
-    V = math.sqrt((n.vx - m.vx) ** 2 + (n.vy - m.vy) ** 2) + pull * left
-    L = math.sqrt((n.x + px_b - m.x - px_a) ** 2 + (n.y + py_b - m.y - py_a) ** 2) + V * left
-    around_a, around_b = r_a * (w_a * w_a + q_a), r_b * (w_b * w_b + q_b)
-    of_a = pull + around_b + 2.0 * w_a * (V + w_b * r_b) + (w_a * w_a + q_a) * (L + r_b)
-    of_b = pull + around_a + 2.0 * w_b * (V + w_a * r_a) + (w_b * w_b + q_b) * (L + r_a)
-    return pull + around_a + around_b, of_a, of_b
-
-
-@uncounted
-def fastest(A: Scene, s: int, t: float) -> float:
-    """Bound of the speed of points of shape s at instant t, length/time."""
-    i = A.LINK[s].owner
-    vx, vy, spin = rate(A.BODY, i, t)
-    return abs(vx) + abs(vy) + abs(spin) * A.SHAPE[s].extent
-
-
-@uncounted
-def pressed(BODY: Rows[Body], i: int, j: int, t: float, nx: float, ny: float, px: float, py: float) -> float:
-    """Time after which bodies that touch at a point, and part there with u >= 0, touch again: 2 u / a_n if the
-    acceleration at the point closes with a_n > 0, else infinite."""
+def time_to_contact_again(
+    BODY: Rows[Body], i: int, j: int, t: float, nx: float, ny: float, px: float, py: float
+) -> float:
+    """Time after which bodies that touch at the point p and part there along n with u >= 0 touch again: 2 u / a_n if
+    the acceleration of the points closes the gap with a_n > 0, else infinite."""
     a, b = motion(BODY, i, t), motion(BODY, j, t)
     rx_a, ry_a, rx_b, ry_b = px - a.x, py - a.y, px - b.x, py - b.y
     q_a, q_b = BODY[i].angular, BODY[j].angular
@@ -162,10 +46,11 @@ def pressed(BODY: Rows[Body], i: int, j: int, t: float, nx: float, ny: float, px
 
 
 @uncounted
-def leaving(
+def parting_velocity(
     BODY: Rows[Body], i: int, j: int, t: float, nx: float, ny: float, px: float, py: float
 ) -> tuple[float, float]:  # fmt: skip
-    """The velocity with which bodies part along the normal n, and the acceleration that presses them together."""
+    """Velocity u (length/time) with which bodies part at the point p along the normal n from i to j, and the
+    acceleration of their centres (length/time²) that presses them together."""
     a, b = motion(BODY, i, t), motion(BODY, j, t)
     u = nx * (b.vx - b.spin * (py - b.y) - a.vx + a.spin * (py - a.y))
     u += ny * (b.vy + b.spin * (px - b.x) - a.vy - a.spin * (px - a.x))
@@ -189,7 +74,7 @@ def begin_side(A: Scene, a: int, b: int, start: float, left: float, tolerance: f
     if d > near_side(A, a, b):
         note_side(A, a, b, nx, ny, False)
     elif not known_side(A, a, b):
-        parting, pressing = leaving(A.BODY, i, j, start, nx, ny, px, py)
+        parting, pressing = parting_velocity(A.BODY, i, j, start, nx, ny, px, py)
         resting = abs(parting) * left <= tolerance
         other = (resting and pressing < 0.0) or (not resting and d <= tolerance and parting < 0.0)
         sign = -1.0 if p == 2 and q == 2 and other else 1.0
@@ -200,8 +85,12 @@ def begin_side(A: Scene, a: int, b: int, start: float, left: float, tolerance: f
 def face_closes(
     A: Scene, a: int, b: int, nx: float, ny: float, x: float, y: float, d: float, one: Motion, two: Motion, still: float
 ) -> bool:  # fmt: skip
-    """Whether any of the points closes at which an impact of shapes a < b acts: of bodies that overlap others may be
-    inside, beside their common face. (x, y) is the point of a's core, d the gap of the cores."""
+    """Whether the gap closes, faster than `still` (length/time), at a point at which an impact of shapes a < b would
+    act: shapes that overlap may approach elsewhere, inside each other.
+
+    Args:
+        nx, ny: normal from a to b.  x, y: point of a's core.  d: gap of the cores.  one, two: motions of the bodies.
+    """
     P, Q, p, q = A.CORE[0], A.CORE[1], A.LINK[a].vertices, A.LINK[b].vertices
     g = d - A.SHAPE[a].rounding - A.SHAPE[b].rounding
     away = A.SHAPE[a].rounding + 0.5 * g
@@ -222,8 +111,8 @@ def face_closes(
 
 @uncounted
 def general(A: Scene, a: int, b: int, horizon: float) -> tuple[float, bool]:
-    """`search` of any two shapes a and b, which leaves the memory of sides as it is where they are now: what is between
-    may never come."""
+    """`search` of any two shapes a and b in any order, with the remembered side set back to that of the present: the
+    predicted path may be changed by an impulse before."""
     if a > b:
         a, b = b, a
     if not remembers(A, a, b):
@@ -247,10 +136,10 @@ def follow_side(A: Scene, a: int, b: int, t: float, horizon: float) -> None:
 def search(A: Scene, a: int, b: int, horizon: float, until: float) -> tuple[float, bool]:
     """Instant at which any two shapes meet next, and whether they do, or are only known to be apart until then.
 
-    A function of the two paths from the later SINCE on, whatever the order of a and b. Shapes that touch and close
-    meet then. Shapes that touch and part do not; they are followed until the horizon, by at least a thousandth of it
-    a look, as no bound of theirs is above 0, but by no more than the time `graze` in which no point of theirs comes
-    deeper than `GRAZED`. So are those of which 1000 looks at a sixteenth of the time do not tell when they meet.
+    Depends only on the two paths, from the later of their instants `since` on. Shapes that touch and approach meet at
+    once. Shapes that touch and part do not meet, but their bounds are 0; so the search advances by at least a
+    thousandth (ADVANCES) of the time, but by no more than the time `graze` in which no point gets deeper than GRAZED.
+    The same holds after ADVANCES looks within 1/RESOLUTION of the time.
 
     Args:
         a, b: a < b.
@@ -306,7 +195,9 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float) -> tuple[floa
         if met and near < -tolerance:
             met = face_closes(A, a, b, nx, ny, px, py, d, one, two, still)
         if not met and near <= tolerance:
-            back = pressed(BODY, i, j, start + s, nx, ny, px + SHAPE[a].rounding * nx, py + SHAPE[a].rounding * ny)
+            back = time_to_contact_again(
+                BODY, i, j, start + s, nx, ny, px + SHAPE[a].rounding * nx, py + SHAPE[a].rounding * ny
+            )
             if back <= min(left / RESOLUTION, graze):
                 return start + s + back, True
             safe = max(safe, min(left / ADVANCES, graze))

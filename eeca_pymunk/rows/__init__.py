@@ -1,12 +1,12 @@
 """The solver of contact rows: impulses of all contacts of one island or impact, on arrays in local numbering.
 
 In: the rows of m contacts (`..model.contacts.Row`), the bodies' velocities, and how impulses change these: inverse
-masses (`Problem`), or columns of what bodies held by joints answer (`JointedProblem`, `columns.py`, `bounded.py`). Out:
+masses (`Problem`), or the response columns of jointed bodies (`JointedProblem`, `columns.py`, `bounded.py`). Out:
 impulses, velocities, losses. All but the innermost loops is one code for both; a `Choice` takes the loop for the type
 of the problem. Users: impacts at one instant (`blocks.py`, to round-off), islands over an interval (`..contacts`,
 `..jointed`: bounded work, warm start). Both alternate projected Gauss-Seidel sweeps (`sweeps.py`, with the closed law
 of one contact in `coulomb.py`, accelerated by `conjugate.py`) with a direct solve on the active contacts (`direct.py`:
-`dense.py` for few contacts, else `polish.py` on the sparse factor of `cholesky.py`); `equilibrium.py` finds forces that
-balance; `energy.py` takes losses, and scales impulses that would give energy; `lifting.py` moves bodies out of each
-other. Open `build.py` first.
+`dense.py` for few contacts, else `polish.py` on the sparse factor of `cholesky.py`); `equilibrium.py` finds contact
+forces that balance (on the edges of the cones, `cones.py`); `energy.py` takes losses, and scales impulses that would
+give energy; `lifting.py` moves bodies out of each other. Open `build.py` first.
 """

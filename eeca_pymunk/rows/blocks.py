@@ -2,10 +2,11 @@
 
 With b = -e u_n- where a contact approaches and -u_n- where it opens,
 
-    0 <= lam  _|_  u_n+ - b >= 0,   friction as in `sweeps.py`,
+    0 <= lam  _|_  u_n+ - b >= 0,   friction as in `coulomb.py`,
 
-so that without friction sum D = (1/2) sum lam (1 - e)(-u_n-) >= 0, and 0 for e = 1. Solved to round-off, as the energy
-of large elastic islands melts away otherwise; what is left of it is taken out by one scale of all impulses (`lock`).
+so that without friction sum D = (1/2) sum lam (1 - e)(-u_n-) >= 0, and 0 for e = 1. Solved to round-off, as a truncated
+solve dissipates energy in large elastic islands; one scale of all impulses removes the remaining error of the energy
+(`energy.lock`).
 """
 
 from __future__ import annotations
@@ -40,10 +41,10 @@ CONVERGED, TRUNCATED = 0, 1  # statuses
 
 @uncounted
 def clear(out: Solved) -> None:
-    """The report of a solve that has done nothing."""
+    """Reset the report of a solve."""
     out.restitution = out.friction = out.carried = out.lifted = out.forces = 0.0
     out.owed = out.residual = out.tolerance = out.deepest = 0.0
-    out.sweeps = out.direct = out.pushing = out.stood = 0
+    out.sweeps = out.direct = out.pushing = out.at_rest = 0
     out.lock = 1.0
 
 
@@ -52,8 +53,10 @@ def resolve(
     problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, first: int, rounds: int, last: int,
     tolerance: float, OUT: Rows[Solved],
 ) -> float:  # fmt: skip
-    """Impulses for given targets, by `first` sweeps at most, so many `rounds` of a direct solution and sweeps, and
-    `last` sweeps; returns the change of velocity that a last sweep made."""
+    """Impulses L (m, 2) and velocities V (k, 3) for given targets: up to `first` sweeps, `rounds` rounds of a direct
+    solve and sweeps, and `last` sweeps, until a sweep changes no velocity by more than `tolerance`. FREE (k, 3):
+    velocities without impulses. Returns the change of velocity in the last sweep; OUT: numbers of sweeps and direct
+    solves."""
     taken, worst = iterate(problem, L, V, tolerance, first)
     OUT[0].sweeps = taken
     OUT[0].direct = 0
@@ -86,19 +89,20 @@ def resolve(
 def solve_block(
     problem: AnyProblem, L: FloatArray, V: FloatArray, owed: float, hasty: bool, LOSS: FloatArray, OUT: Rows[Solved]
 ) -> int:
-    """Impulses of m contacts at one instant; V (k, 3) becomes the velocities after.
+    """Impulses of m contacts at one instant; V (k, 3) becomes the velocities after the impact.
 
     Args:
-        problem: u_n, u_t and the targets of its rows are set here, from V and the elasticities; POSE is for the order
-            of elimination alone.
-        L: (m, 2) first guess of the impulses in (0 for none), the impulses out.
-        owed: energy >= 0 that the block has to take out beyond its own losses' sign: its loss is at least that.
-        hasty: whether a large lossy island may be solved roughly: a hit on a pile.
+        problem: u_n, u_t and the targets of its rows are set here, from V and the elasticities; POSE is used for the
+            order of elimination only.
+        L: (m, 2) in: initial impulses (0 for none); out: the impulses.
+        owed: energy >= 0 that the block has to lose at least.
+        hasty: whether a large lossy island may be solved to a coarse tolerance: a hit on a pile.
         LOSS: (m, 2) out, D_n and D_t of each contact.
         OUT: (1,) the report, out.
+
     Returns:
-        CONVERGED (residual <= 1e-14 of the largest b - u_n, with friction 1e-10, in large lossy islands 1e-4) or
-        TRUNCATED. Energy is right in both.
+        CONVERGED (residual <= BLOCK_RESIDUAL of the largest b - u_n; with friction BLOCK_RESIDUAL_FRICTION; in large
+            lossy islands INTERVAL_RESIDUAL_SPEED) or TRUNCATED. The energy balance holds in both cases.
     """
     A, B, ROWS, m = problem.A, problem.B, problem.ROWS, problem.m
     clear(OUT[0])
@@ -119,12 +123,12 @@ def solve_block(
     tolerance = speed * (BLOCK_RESIDUAL_FRICTION if rough else BLOCK_RESIDUAL)
     exact = conserves(ROWS, m)
     if hasty and m > DENSE_CONTACTS and not exact:
-        # A hit on a pile, which loses energy anyway: it is known as well as the velocities of the intervals about it.
+        # A hit on a lossy pile is solved as accurately as the intervals before and after it.
         tolerance = INTERVAL_RESIDUAL_SPEED * speed
         taken, worst = iterate(problem, L, V, tolerance, SMALL_SWEEPS)
         OUT[0].sweeps = taken
     else:
-        # Direct solutions help where contacts stick; where many slip only sweeps converge: more of them.
+        # Direct solves help where contacts stick; where many slip only sweeps converge, so there are more of them.
         first, rounds, last = BLOCK_SWEEPS_FRICTION, BLOCK_DIRECT_FRICTION, BLOCK_LAST_SWEEPS_FRICTION
         if not rough:
             first, rounds, last = (
@@ -133,7 +137,7 @@ def solve_block(
                 BLOCK_LAST_SWEEPS,
             )
         worst = resolve(problem, L, V, FREE, first, rounds, last, tolerance, OUT)
-    # Sums over many sweeps have their own round-off: the velocities are those of the impulses.
+    # Velocities are computed again from the impulses, without the round-off of many sweeps.
     velocities(problem, L, FREE, V)
     scale, left = lock(problem, L, V, FREE, owed, exact)
     normal, tangential = works(problem, L, V, LOSS)

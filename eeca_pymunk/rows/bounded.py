@@ -1,7 +1,7 @@
-"""Rows of bounded impulses, motors and joints with a finite max_force, as unknowns beside those of contacts.
+"""Rows of bounded impulses (motors, and joints with a finite max_force), as unknowns beside those of contacts.
 
-Alone or, for a pivot's two, as a disc. Inside of its bounds the velocity along a row is at its target, at a bound it is
-of the other sign than the impulse.
+A row is bounded alone (low <= lambda <= high), or both rows of a pivot by a disc. Inside the bounds the velocity along
+the row equals its target; at a bound its difference to the target has the opposite sign of the impulse.
 """
 
 from __future__ import annotations
@@ -24,7 +24,8 @@ def on_disc(
     a: float, b: float, c: float, ux: float, uy: float, x: float, y: float, bound: float, second: bool
 ) -> float:
     """One of the impulses (x', y') with u + W (x' - x, y' - y) = 0, W = [a b; b c], or if these are not in the disc,
-    with u + W (x' - x, y' - y) = -s (x', y'), s > 0, on its rim: (W + s) p = W p0 - u in the frame of W."""
+    with u + W (x' - x, y' - y) = -s (x', y'), s > 0, on its rim: (W + s) p = W p0 - u in the frame of W. `second`: y'
+    instead of x'."""
     turn = 0.5 * math.atan2(2.0 * b, a - c)
     co, si = math.cos(turn), math.sin(turn)
     w1 = a * co * co + 2.0 * b * co * si + c * si * si
@@ -50,7 +51,7 @@ def on_disc(
 
 @kernel
 def room_for_rows(n: int, entries: int) -> Bounded:
-    """Room for n bounded rows, whose columns have so many entries."""
+    """Empty bounded rows: n rows, whose columns have so many entries together."""
     return Bounded(
         np.zeros(1, np.int64), np.zeros(n + 1, np.int64), np.zeros(entries, np.int64), np.zeros((entries, 3)),
         np.zeros((n, 2), np.int64), np.zeros((n, 6)), zeros(n, BOUNDED_ROW), np.zeros((n, 2), np.int64),
@@ -59,7 +60,7 @@ def room_for_rows(n: int, entries: int) -> Bounded:
 
 @uncounted
 def bounded_rate(B: Bounded, i: int, V: FloatArray) -> float:
-    """Velocity of the island's bodies along row i."""
+    """Velocity of the island's bodies along row i, at velocities V (k, 3)."""
     total = 0.0
     for end in range(2):
         if B.END[i, end] >= 0:
@@ -70,7 +71,7 @@ def bounded_rate(B: Bounded, i: int, V: FloatArray) -> float:
 
 @uncounted
 def per_impulse(B: Bounded, i: int, j: int) -> float:
-    """Velocity along row i per impulse of row j."""
+    """Change of the velocity along row i by a unit impulse of row j."""
     total = 0.0
     for w in range(B.AT[j], B.AT[j + 1]):
         for end in range(2):
@@ -82,7 +83,7 @@ def per_impulse(B: Bounded, i: int, j: int) -> float:
 
 @uncounted
 def push_row(B: Bounded, i: int, change: float, V: FloatArray) -> None:
-    """V += change of impulse i times its column."""
+    """Add the change of velocities by an impulse `change` of row i to V (k, 3)."""
     if change != 0.0:
         for w in range(B.AT[i], B.AT[i + 1]):
             for c in range(3):
@@ -91,7 +92,8 @@ def push_row(B: Bounded, i: int, change: float, V: FloatArray) -> None:
 
 @uncounted
 def sweep_bounded(B: Bounded, L: FloatArray, m: int, V: FloatArray) -> float:
-    """One sweep over the bounded rows, whose impulses are L[m:, 0]; the largest change of a velocity along one."""
+    """One sweep over the bounded rows, whose impulses are L[m:, 0]; updates L and V, and returns the largest change of
+    a velocity along a row."""
     worst = 0.0
     for i in range(B.USED[0]):
         part, low, high = B.ROWS[i].part, B.ROWS[i].low, B.ROWS[i].high
@@ -123,7 +125,7 @@ def sweep_bounded(B: Bounded, L: FloatArray, m: int, V: FloatArray) -> float:
 
 @uncounted
 def inside(B: Bounded, L: FloatArray, m: int, i: int) -> bool:
-    """Whether impulse i is inside of its bounds."""
+    """Whether impulse i is strictly inside its bounds."""
     x, high = L[m + i, 0], B.ROWS[i].high
     if B.ROWS[i].part == SINGLE:
         return bool(B.ROWS[i].low < x < high)

@@ -16,11 +16,11 @@ def place_row(
     A: IntArray, B: IntArray, ROWS: Rows[Row], i: int, px: float, py: float, POSE: FloatArray, IM: FloatArray,
     II: FloatArray,
 ) -> None:  # fmt: skip
-    """Complete row i, of which bodies, unit normal, gap, elasticity, friction and surface velocity are set: a contact
-    at (px, py), with target 0, awake.
+    """Complete row i, whose bodies, unit normal, gap, elasticity, friction and surface velocity are set, for a contact
+    at the point (px, py), with target 0, active.
 
     Arms that are round-off of the point's coordinates (a circle about its centre of mass) become 0, so that
-    frictionless impulses on disks turn nothing.
+    frictionless impulses exert no torque on disks.
     """
     a, b, nx, ny, friction = A[i], B[i], ROWS[i].nx, ROWS[i].ny, ROWS[i].friction
     xa = px - POSE[a, 0]
@@ -57,7 +57,7 @@ def place_row(
 
 @uncounted
 def normal_rate(A: IntArray, B: IntArray, ROWS: Rows[Row], V: FloatArray, i: int) -> float:
-    """u_n of contact i at velocities V."""
+    """u_n of contact i at velocities V (k, 3)."""
     a = A[i]
     b = B[i]
     rate: float = (
@@ -70,7 +70,7 @@ def normal_rate(A: IntArray, B: IntArray, ROWS: Rows[Row], V: FloatArray, i: int
 
 @uncounted
 def tangent_rate(A: IntArray, B: IntArray, ROWS: Rows[Row], V: FloatArray, i: int) -> float:
-    """u_t of contact i at velocities V, relative to moving surfaces."""
+    """u_t of contact i at velocities V (k, 3), surface velocities included."""
     a = A[i]
     b = B[i]
     rate: float = (
@@ -84,7 +84,7 @@ def tangent_rate(A: IntArray, B: IntArray, ROWS: Rows[Row], V: FloatArray, i: in
 
 @uncounted
 def rates(A: IntArray, B: IntArray, ROWS: Rows[Row], V: FloatArray, m: int) -> None:
-    """Set u_n and u_t before the impulses of all contacts from V."""
+    """Set u_n and u_t before the impulses of m contacts from velocities V (k, 3)."""
     for i in range(m):
         ROWS[i].un = normal_rate(A, B, ROWS, V, i)
         ROWS[i].ut = tangent_rate(A, B, ROWS, V, i)
@@ -92,9 +92,10 @@ def rates(A: IntArray, B: IntArray, ROWS: Rows[Row], V: FloatArray, m: int) -> N
 
 @uncounted
 def aim(ROWS: Rows[Row], m: int) -> float:
-    """Targets of impacts at one instant: b = -e u_n where the contact approaches, -u_n where it opens.
+    """Set the targets of m contacts of an impact: b = -e u_n where the contact approaches, -u_n where it opens.
 
-    Then no impulse can add energy: lam (u_n + b) <= 0. Returns the largest b - u_n, a velocity: <= 0 if nothing hits.
+    Then no impulse can add energy: lam (u_n + b) <= 0. Returns the largest b - u_n, a velocity: <= 0 if no contact
+    approaches.
     """
     worst = 0.0
     for i in range(m):
@@ -106,7 +107,7 @@ def aim(ROWS: Rows[Row], m: int) -> float:
 
 @uncounted
 def conserves(ROWS: Rows[Row], m: int) -> bool:
-    """Whether all contacts are elastic and without friction."""
+    """Whether all m contacts are elastic and without friction."""
     lossy = 0
     for i in range(m):
         if ROWS[i].elasticity < 1.0 or ROWS[i].friction > 0.0:
@@ -116,7 +117,7 @@ def conserves(ROWS: Rows[Row], m: int) -> bool:
 
 @uncounted
 def rubs(ROWS: Rows[Row], m: int) -> bool:
-    """Whether any contact has friction."""
+    """Whether any of m contacts has friction."""
     rough = 0
     for i in range(m):
         if ROWS[i].friction > 0.0:

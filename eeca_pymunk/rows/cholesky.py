@@ -1,7 +1,7 @@
-"""Sparse Cholesky factor of B = 1 + sum R j j^T / A_jj over held rows j, in blocks of one body.
+"""Sparse Cholesky factor of B = 1 + sum R j j^T / A_jj over active rows j, in blocks of one body.
 
-Bodies are scaled by the roots of their mobilities: j = sqrt(M^-1) times the row of G or T. So B is 1 for what impulses
-do not move, dimensionless, and insensitive to mass ratios.
+Rows are scaled by the roots of the inverse masses: j = sqrt(M^-1) times the row of G or T. So B is 1 for bodies that
+impulses do not move, dimensionless, and insensitive to mass ratios.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ from ..model.contacts import Row
 
 
 class Factor(NamedTuple):
-    """A symmetric matrix in blocks of one body, and its factor in their place.
+    """A symmetric matrix in blocks of one body, and its factor in the same memory.
 
-    place (n,): of a body in the order of elimination. rows: of the blocks below the diagonal, those of column j at
-    columns[j] : columns[j + 1]. DIAGONAL (n, 3, 3), BELOW (len(rows), 3, 3): the blocks.
+    place (n,): position of a body in the order of elimination. rows: of the blocks below the diagonal, those of column
+    j at columns[j] : columns[j + 1]. DIAGONAL (n, 3, 3), BELOW (len(rows), 3, 3): the blocks.
     """
 
     place: IntArray
@@ -36,7 +36,8 @@ def assemble(
     A: IntArray, B: IntArray, ROWS: Rows[Row], m: int, n: int, held: IntArray, stuck: IntArray, SCALE: FloatArray,
     R: float, factor: Factor,
 ) -> None:  # fmt: skip
-    """Blocks of B, of rows held (normal) and stuck (tangential)."""
+    """Write the blocks of B to `factor`, for the normal rows of contacts with held[i] = 1 and the tangential ones with
+    stuck[i] != 0. SCALE (k, 3): roots of the inverse masses.  R: dimensionless."""
     place, columns, rows, DIAGONAL, BELOW = factor.place, factor.columns, factor.rows, factor.DIAGONAL, factor.BELOW
     DIAGONAL[:] = 0.0
     BELOW[:] = 0.0
@@ -105,7 +106,7 @@ def assemble(
 
 @kernel
 def factorise(n: int, factor: Factor) -> None:
-    """Left-looking Cholesky in place: D gets lower triangles, X the blocks below them."""
+    """Left-looking Cholesky factorisation in place: DIAGONAL gets lower triangles, BELOW the blocks under them."""
     columns, rows, D, X = factor.columns, factor.rows, factor.DIAGONAL, factor.BELOW
     head = np.full(n, -1, np.int64)
     after = np.full(n, -1, np.int64)
@@ -148,7 +149,7 @@ def factorise(n: int, factor: Factor) -> None:
                 after[k] = head[r]
                 head[r] = k
             k = follower
-        # B >= 1; round-off of R may have eaten that.
+        # B >= 1 in exact arithmetic; for large R round-off may violate that.
         d00 = math.sqrt(max(D[j, 0, 0], 1e-3))
         d10 = D[j, 1, 0] / d00
         d20 = D[j, 2, 0] / d00
@@ -177,7 +178,7 @@ def factorise(n: int, factor: Factor) -> None:
 
 @uncounted
 def substitute(n: int, factor: Factor, f: FloatArray) -> None:
-    """f (n, 3), in order of elimination, becomes B^-1 f."""
+    """Replace f (n, 3), in the order of elimination, by B^-1 f."""
     columns, rows, D, X = factor.columns, factor.rows, factor.DIAGONAL, factor.BELOW
     for j in range(n):
         f[j, 0] /= D[j, 0, 0]

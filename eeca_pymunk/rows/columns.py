@@ -1,6 +1,7 @@
-"""Contacts of bodies that joints hold, by columns: what an impulse changes of the velocities of all that hang together.
+"""Contacts of jointed bodies, by response columns: the change of the velocities of all bodies of a component by an
+impulse.
 
-The same contact problem as that of free bodies, over the response of components in the place of inverse masses.
+The same contact problem as that of free bodies, with the response of components in place of inverse masses.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from .coulomb import coulomb
 
 @uncounted
 def push_columns(C: Columns, L: FloatArray, m: int, factor: float, V: FloatArray) -> None:
-    """V += factor Y L."""
+    """Add factor Y L to V (k, 3): the columns Y of m contacts times their impulses L (m, 2)."""
     for i in range(m):
         lam, beta = factor * L[i, 0], factor * L[i, 1]
         if lam == 0.0 and beta == 0.0:
@@ -29,7 +30,7 @@ def push_columns(C: Columns, L: FloatArray, m: int, factor: float, V: FloatArray
 
 @uncounted
 def push_jointed(problem: JointedProblem, L: FloatArray, factor: float, V: FloatArray) -> None:
-    """V += factor Y L, of the bounded rows too."""
+    """Add factor Y L to V (k, 3), bounded rows included."""
     push_columns(problem.C, L, problem.m, factor, V)
     for i in range(problem.D.USED[0]):
         push_row(problem.D, i, factor * L[problem.m + i, 0], V)
@@ -37,8 +38,8 @@ def push_jointed(problem: JointedProblem, L: FloatArray, factor: float, V: Float
 
 @uncounted
 def sweep_jointed(problem: JointedProblem, L: FloatArray, V: FloatArray) -> float:
-    """One sweep over the contacts as `sweeps.sweep`, and over the bounded rows, whose impulses are L[m:, 0]; the
-    largest change of a velocity."""
+    """One sweep over the contacts as `sweeps.sweep_free`, and over the bounded rows, whose impulses are L[m:, 0];
+    returns the largest change of a velocity."""
     A, B, ROWS, C, D, m = problem
     worst = 0.0
     for i in range(m):
@@ -56,11 +57,11 @@ def sweep_jointed(problem: JointedProblem, L: FloatArray, V: FloatArray) -> floa
             lam = max(lam0 - ROWS[i].k_n * short, 0.0)
         else:
             qn = short - lam0 * ann - beta0 * ROWS[i].a_nt
-            # Where friction alone could part the surfaces, a_nn < mu |a_nt|, a contact may stick though it would open
-            # without its impulses: then what has stuck goes on.
+            # Where friction alone could separate the surfaces, a_nn < mu |a_nt|, a contact may stick although it would
+            # open without its impulses: a sticking contact then remains.
             if qn < 0.0 or lam0 > 0.0:
                 ut = tangent_rate(A, B, ROWS, V, i)
-                # Most stick, and need no more than this.
+                # Most contacts stick.
                 lam = lam0 - (ROWS[i].w_nn * short + ROWS[i].w_nt * ut)
                 beta = beta0 - (ROWS[i].w_nt * short + ROWS[i].w_tt * ut)
                 sticks = abs(beta) <= ROWS[i].friction * lam and beta * ROWS[i].ut <= 0.0
@@ -85,5 +86,5 @@ def sweep_jointed(problem: JointedProblem, L: FloatArray, V: FloatArray) -> floa
 
 @uncounted
 def rows_jointed(problem: JointedProblem) -> int:
-    """How many rows of L (., 2) are unknown: those of contacts, and of joints."""
+    """Number of unknown rows of L (., 2): those of contacts and bounded rows."""
     return int(problem.m + problem.D.USED[0])

@@ -1,6 +1,6 @@
 """Nonlinear conjugate gradients on top of sweeps (Silcowitz, Niebe, Erleben 2009).
 
-A sweep's change is the gradient; the directions of Fletcher and Reeves, forgotten where the change grows.
+The change in a sweep is the gradient; directions are those of Fletcher and Reeves, restarted where the change grows.
 """
 
 from __future__ import annotations
@@ -18,12 +18,13 @@ def accelerate(
     L: FloatArray, V: FloatArray, L0: FloatArray, V0: FloatArray, PL: FloatArray, PV: FloatArray, before: float,
     last: bool,
 ) -> float:  # fmt: skip
-    """After a sweep from (L0, V0) to (L, V): go on along the direction (PL, PV), and renew it; (L0, V0) is what the
-    next sweep starts from. All are flat.
+    """After a sweep from (L0, V0) to (L, V): continue along the direction (PL, PV), and update it; (L0, V0) becomes the
+    start of the next sweep. All are flat.
 
     Args:
-        before: the square of the change of the impulses by the sweep before, which is returned for this one; not
-            positive for the first.  last: whether the next sweep is the last, which is a plain one.
+        before: sum of squares of the changes of impulses in the sweep before, which is returned for this one; not
+            positive for the first.
+        last: whether the next sweep is the last, which starts from the present (L, V).
     """
     change = 0.0
     for i in range(len(L0)):
@@ -40,7 +41,7 @@ def accelerate(
 
 @uncounted
 def renew(X: FloatArray, X0: FloatArray, P: FloatArray) -> None:
-    """The direction P from X0 to X, which is the next start."""
+    """Restart the direction P as the change from X0 to X, which becomes the next start X0."""
     for i in range(len(X0)):
         x = X[i]
         P[i] = x - X0[i]
@@ -49,8 +50,8 @@ def renew(X: FloatArray, X0: FloatArray, P: FloatArray) -> None:
 
 @uncounted
 def go_on(X: FloatArray, X0: FloatArray, P: FloatArray, ratio: float) -> None:
-    """X goes on along `ratio` times the direction P, which becomes that and the way from X0 to X; X is the next
-    start."""
+    """Move X by `ratio` times the direction P, which becomes that plus the change from X0 to X; X becomes the next
+    start X0."""
     for i in range(len(X0)):
         x, way = X[i], ratio * P[i]
         P[i] = way + (x - X0[i])
@@ -61,11 +62,9 @@ def go_on(X: FloatArray, X0: FloatArray, P: FloatArray, ratio: float) -> None:
 
 @kernel
 def iterate(problem: AnyProblem, L: FloatArray, V: FloatArray, tolerance: float, most: int) -> tuple[int, float]:
-    """Sweeps, accelerated, until one changes no contact's velocity by > tolerance. The last is plain.
-
-    Returns the sweeps taken (<= most) and the change of the last.
-    """
-    # One after the other in memory: loops over flat arrays take several numbers at once.
+    """Accelerated sweeps, until one changes no contact's velocity by more than `tolerance`, at most `most`. The last is
+    plain. Returns the number of sweeps, and the change in the last."""
+    # Loops over flat arrays are vectorised.
     FLAT, FAST = L.reshape(L.size), V.reshape(V.size)
     size = 2 * rows_of(problem)
     L0, V0, PL, PV = FLAT[:size].copy(), FAST.copy(), np.zeros(size), np.zeros(V.size)

@@ -3,8 +3,8 @@
     0 <= lam  _|_  u_n - b >= 0,   |beta| <= mu lam,   u_t = 0 or beta = -mu lam sign(u_t),
 
 its own 2 x 2 matrix ((A_nn, A_nt), (A_nt, A_tt)) included: sticking, else slipping one way or the other, else no
-friction. Newton's law with friction creates energy where the slip reverses; therefore each contact's loss
-D_n + D_t = -lam (u_n- + b)/2 - beta (u_t- + u_t+)/2 is kept from being negative (friction is cut where it would be).
+friction. Newton's law with friction creates energy where the slip reverses; therefore each contact's loss D_n + D_t =
+-lam (u_n- + b)/2 - beta (u_t- + u_t+)/2 is kept non-negative, by less friction where it would be negative.
 """
 
 from __future__ import annotations
@@ -19,9 +19,11 @@ from ..model.parameters.impulses import JAMMED, SINGULAR
 def coulomb(
     qn: float, qt: float, ann: float, ant: float, att: float, mu: float, un: float, ut: float, target: float
 ) -> tuple[float, float]:
-    """(lam, beta) of one contact whose velocities without impulse are u_n = target + qn and u_t = qt.
+    """(lam, beta) of one contact whose velocities without its impulse are u_n = target + qn and u_t = qt.
 
-    `un`, `ut` are its velocities before the step (or impact), from which the loss counts. Closed form.
+    Args:
+        ann, ant, att: its matrix.  mu: friction.
+        un, ut: its velocities before the interval or impact, from which the loss counts.
     """
     if qn >= 0.0:
         return 0.0, 0.0

@@ -1,8 +1,8 @@
-"""Direct solution on the active contacts of a small island: Newton's step of the law, in the space of contacts.
+"""Direct solve on the active contacts of a small island: Newton's step of the law, in the space of contacts.
 
-As `polish.py`, with slip in the matrix: a slipping contact pushes along n +- mu t, so that the matrix is not symmetric
-and a few steps find the answer where active contacts are the right ones. A + diag(A) / R with refinement (the proximal
-point method) bears redundant contacts.
+As `polish.py`, but with slip in the matrix: a slipping contact acts along n +- mu t, so that the matrix is not
+symmetric, and a few steps suffice if the active contacts are right. A + diag(A) / R with refinement (the proximal point
+method) allows redundant contacts.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from .sweeps import velocities
 
 @uncounted
 def decompose(W: FloatArray, N: int, order: IntArray) -> None:
-    """LU with partial pivoting of W[:N, :N] in place; order (N,) of its rows."""
+    """LU decomposition with partial pivoting of W[:N, :N] in place; order (N,): out, its rows."""
     for j in range(N):
         order[j] = j
     for j in range(N):
@@ -47,7 +47,7 @@ def decompose(W: FloatArray, N: int, order: IntArray) -> None:
 
 @uncounted
 def back(W: FloatArray, N: int, order: IntArray, r: FloatArray, x: FloatArray) -> None:
-    """x = W^-1 r from `decompose`."""
+    """Set x = W^-1 r, with W of `decompose`."""
     for i in range(N):
         s = r[order[i]]
         for k in range(i):
@@ -62,7 +62,8 @@ def back(W: FloatArray, N: int, order: IntArray, r: FloatArray, x: FloatArray) -
 
 @kernel
 def matrix_free(problem: Problem, slip: FloatArray, at: IntArray, kind: IntArray, N: int, W: FloatArray) -> None:
-    """W[i, j] = velocity along row i of a unit impulse along column j; kind 0 normal (with its slip), 1 tangential."""
+    """W[i, j] = velocity along unknown i by a unit impulse of unknown j, for N unknowns of contacts `at`, of `kind` 0
+    (normal, with its slip) or 1 (tangential). slip (m,): beta / lam of slipping contacts."""
     A, B, ROWS, IM, II, _, _, _ = problem
     J = np.empty((N, 8))  # rows: n or t with arms a, b; then the columns' direction and arms
     for i in range(N):
@@ -108,7 +109,7 @@ def matrix_free(problem: Problem, slip: FloatArray, at: IntArray, kind: IntArray
 def matrix_jointed(
     problem: JointedProblem, slip: FloatArray, at: IntArray, kind: IntArray, N: int, W: FloatArray
 ) -> None:
-    """As `matrix_free`: an impulse moves all bodies of a column; kind 2 are bounded rows."""
+    """As `matrix_free`, with response columns; unknowns of kind 2 are bounded rows."""
     A, B, ROWS, C, D, _ = problem
     bodies = 0
     for i in range(N):
@@ -152,10 +153,10 @@ def unknowns(
     ROWS: Rows[Row], L: FloatArray, m: int, held: IntArray, stuck: IntArray, slip: FloatArray, shared: bool,
     at: IntArray, kind: IntArray,
 ) -> int:  # fmt: skip
-    """List the unknowns: contact and kind (0 normal, 1 tangential); returns how many.
+    """List the unknowns: contact `at` and `kind` (0 normal, 1 tangential); returns their number.
 
-    Friction that its energy limits, beta (u_t- + u_t+) = -lam (u_n- + b): if `shared`, another contact of the same face
-    holds u_t+ = 0, and it follows lam as slip does. Impulses that do so are set.
+    Where energy limits friction, beta (u_t- + u_t+) = -lam (u_n- + b): if `shared`, another contact of the same face
+    has u_t+ = 0, and beta follows lam as in slip. Sets these impulses in L.
     """
     N = 0
     for i in range(m):
@@ -180,7 +181,8 @@ def unknowns(
 def newton(
     problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, passes: int, tolerance: float, shared: bool
 ) -> tuple[float, int]:
-    """Solve on the active contacts of L, as `polish`; the same results. `shared` as in `unknowns`."""
+    """Solve on the active contacts of L, as `polish.polish_free`, with the same arguments and results. `shared` as in
+    `unknowns`."""
     A, B, ROWS, m = problem.A, problem.B, problem.ROWS, problem.m
     held = np.empty(m, np.int64)
     stuck = np.empty(m, np.int64)

@@ -1,4 +1,4 @@
-"""One round of a direct solution on the active contacts, and how far to go along it."""
+"""One round of a direct solve on the active contacts, and which part of its step is taken."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .sweeps import keep, rows_of, sweep
 def polish_jointed(
     problem: JointedProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, R: float, passes: int, tolerance: float
 ) -> tuple[float, int]:
-    """As `polish_free`: columns leave nothing sparse."""
+    """As `polish_free`: with response columns nothing is sparse, so the dense solve is used."""
     return newton(problem, L, V, FREE, passes, tolerance, False)
 
 
@@ -29,12 +29,15 @@ def refine(
     problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, log_R: float, passes: int, tolerance: float,
     worst: float,
 ) -> tuple[float, float]:  # fmt: skip
-    """Replace L and V by a direct solution on L's active contacts, the part of the way to it that is sensible.
+    """Move L and V towards the direct solution on L's active contacts, by the part that reduces the error.
 
     Args:
-        log_R: log10 of the augmentation of `polish`.  tolerance: velocity.  worst: what the last sweep changed.
+        FREE: (k, 3) velocities without impulses.  passes: refinements of the sparse solve at most.
+        log_R: log10 of the augmentation of `polish`.  tolerance: velocity.  worst: change of velocity in the last
+            sweep.
+
     Returns:
-        log_R for the next round, and what a sweep after this one changed.
+        log_R for the next round, and the change of velocity in a sweep after this one.
     """
     m = problem.m
     rows = rows_of(problem)
@@ -45,7 +48,7 @@ def refine(
     clamped = 0
     if m <= DENSE_CONTACTS:
         for attempt in range(2):
-            # Friction that its energy limits: on its own, then together with other contacts of its face.
+            # Friction that energy limits: first each contact by itself, then with the other contact of its face.
             if reached > 1e-3 * worst:
                 keep(L0, V0, rows, L, V)
                 reached, clamped = newton(problem, L, V, FREE, REFINEMENTS, tolerance, attempt == 1)
@@ -56,7 +59,7 @@ def refine(
         keep(L0, V0, rows, L, V)
         part = 0.0
     elif clamped > 0:
-        # Slip has no energy that is least at the answer: what a sweep leaves decides there, the energy elsewhere.
+        # With slip the solution minimises no energy: the residual of a sweep decides; without, `segment`.
         if m <= DENSE_CONTACTS:
             L1 = np.empty((rows, 2))
             V1 = np.empty_like(V)

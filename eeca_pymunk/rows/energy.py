@@ -18,10 +18,10 @@ from .sweeps import velocities
 
 @uncounted
 def works(problem: AnyProblem, L: FloatArray, V: FloatArray, LOSS: FloatArray) -> tuple[float, float]:
-    """LOSS (m, 2) = D_n and D_t of each contact, energy, V being the velocities after; returns their sums.
+    """Set LOSS (m, 2) = D_n and D_t of each contact, energies, with V the velocities after; returns their sums.
 
-    Where slip reverses, friction gives back a part of what restitution takes, D_n + D_t >= 0: a negative loss counts
-    against the same contact's other one. Likewise for the sums, where the solve was cut short.
+    Where slip reverses, friction returns a part of what restitution takes, D_n + D_t >= 0: a negative loss is deducted
+    from the other one of the same contact. Likewise for the sums, if the solve was truncated.
     """
     A, B, ROWS, m = problem.A, problem.B, problem.ROWS, problem.m
     normal = 0.0
@@ -55,11 +55,11 @@ def works(problem: AnyProblem, L: FloatArray, V: FloatArray, LOSS: FloatArray) -
 def scale_of(
     problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, owed: float, exact: bool
 ) -> tuple[float, float]:
-    """One scale s for all impulses, so that the island loses `owed` at least; exactly that if `exact`.
+    """One scale s for all impulses, so that the island loses at least `owed`; exactly that if `exact`.
 
     With u* the velocities of FREE, s L loses D(s) = -s lam.(u- + u*)/2 - s^2 lam.A.lam/2 (tangents likewise). Of the
-    two roots of D(s) = owed the one nearer to 1 is taken; s = 1 if nothing has to change. Without a root s loses the
-    most that these impulses can.
+    two roots of D(s) = owed the one nearer to 1 is taken; s = 1 if no change is needed. Without a root, s gives the
+    largest loss of these impulses.
 
     Returns:
         s, and the energy still owed (0 where there is a root).
@@ -98,7 +98,7 @@ def scale_of(
 def lock(
     problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, owed: float, exact: bool
 ) -> tuple[float, float]:
-    """Scale all impulses by `scale_of`, and V with them; its results."""
+    """Energy lock: scale all impulses by `scale_of`, and update V; returns its results."""
     s, left = scale_of(problem, L, V, FREE, owed, exact)
     if s != 1.0:
         for i in range(problem.m):

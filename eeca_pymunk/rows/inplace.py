@@ -1,4 +1,4 @@
-"""Sorting and copying in place: numpy's own, compiled, would make lists and arrays of their own."""
+"""Sorting and copying in place: numpy's own functions, compiled, would allocate arrays."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from ..compiled import uncounted
 
 @uncounted
 def copy(TO: FloatArray, FROM: FloatArray) -> None:
-    """Write the table FROM (n, k) into TO, of the same shape."""
+    """Copy FROM (n, k) to TO."""
     for i in range(TO.shape[0]):
         for k in range(TO.shape[1]):
             TO[i, k] = FROM[i, k]
@@ -16,7 +16,7 @@ def copy(TO: FloatArray, FROM: FloatArray) -> None:
 
 @uncounted
 def add(TO: FloatArray, MORE: FloatArray) -> None:
-    """Add the table MORE (n, k) to TO, of the same shape."""
+    """Add MORE (n, k) to TO."""
     for i in range(TO.shape[0]):
         for k in range(TO.shape[1]):
             TO[i, k] += MORE[i, k]
@@ -24,7 +24,7 @@ def add(TO: FloatArray, MORE: FloatArray) -> None:
 
 @uncounted
 def sort(A: IntArray, n: int) -> None:
-    """Put the first n numbers in ascending order, by heapsort: at most 2 n log2 n comparisons."""
+    """Sort the first n numbers of A in ascending order, by heapsort: at most 2 n log2 n comparisons."""
     for root in range(n // 2 - 1, -1, -1):
         _sift(A, root, n)
     for end in range(n - 1, 0, -1):
@@ -34,7 +34,7 @@ def sort(A: IntArray, n: int) -> None:
 
 @uncounted
 def _sift(A: IntArray, root: int, n: int) -> None:
-    """Let the number at `root` sink until no child of it in the heap of n numbers is larger."""
+    """Sift the number at `root` down in the heap of n numbers, until no child is larger."""
     value = A[root]
     while 2 * root + 1 < n:
         child = 2 * root + 1

@@ -1,4 +1,4 @@
-"""Moving bodies out of each other along normals: displacements D = W G^T mu with 0 <= mu _|_ g + G D >= 0."""
+"""Penetration correction along normals: displacements D = W G^T mu with 0 <= mu _|_ g + G D >= 0."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from .build import normal_rate
 
 @merged
 def push_normal_free(problem: Problem, i: int, d: float, D: FloatArray) -> None:
-    """D += M^-1 G^T of a change d of mu of contact i."""
+    """Add M^-1 G^T of a change d of mu of contact i to D (k, 3)."""
     A, B, ROWS, IM, II, _, _, _ = problem
     a, b, nx, ny = A[i], B[i], ROWS[i].nx, ROWS[i].ny
     D[a, 0] -= IM[a] * d * nx
@@ -23,7 +23,7 @@ def push_normal_free(problem: Problem, i: int, d: float, D: FloatArray) -> None:
 
 @merged
 def push_normal_jointed(problem: JointedProblem, i: int, d: float, D: FloatArray) -> None:
-    """D += Y of a change d of mu of contact i."""
+    """Add the normal column of contact i times a change d of its mu to D (k, 3)."""
     C = problem.C
     for w in range(C.AT[i], C.AT[i + 1]):
         for c in range(3):
@@ -35,11 +35,11 @@ push_normal = Choice(push_normal_free, push_normal_jointed)
 
 @uncounted
 def lift(problem: AnyProblem, GAPS: FloatArray, MU: FloatArray, D: FloatArray, tolerance: float, most: int) -> float:
-    """Displacements D, by at most `most` sweeps; the last one's largest change of a gap.
+    """Solve for the displacements D, by at most `most` sweeps; returns the largest change of a gap in the last one.
 
     Args:
         GAPS: (m,) length.  MU: (m,) in and out, mass times length.  D: (k, 3) in and out, length and rad.
-        tolerance: length that a sweep may still move a gap.
+        tolerance: change of a gap in a sweep at which the solve ends: length.
     """
     A, B, ROWS, worst = problem.A, problem.B, problem.ROWS, 0.0
     for _ in range(most):

@@ -1,7 +1,7 @@
-"""Order of elimination of an island's bodies: nested dissection by their positions, and the factor's pattern.
+"""Order of elimination of an island's bodies: nested dissection by their positions, and the pattern of the factor.
 
 Separators of planar piles have about sqrt(n) bodies, so that the factor has O(n log n) blocks. A body with many
-neighbours (a floor of boxes, a drum) would make every cut a long one: it is eliminated last.
+neighbours (a floor of boxes, a drum) would be in every separator: it is eliminated last.
 """
 
 from __future__ import annotations
@@ -15,7 +15,8 @@ from ..model.parameters.impulses import DISSECTION_LEAF, LATE_NEIGHBOURS
 
 @kernel
 def neighbours(A: IntArray, B: IntArray, m: int, n: int, used: IntArray) -> tuple[IntArray, IntArray]:
-    """Start (n + 1,) and list of each body's neighbours by used contacts; repeated pairs may appear repeatedly."""
+    """Neighbours of each of n bodies by the contacts with used[i] != 0, as start (n + 1,) and list; some appear
+    repeatedly."""
     start = np.zeros(n + 1, np.int64)
     for i in range(m):
         a = A[i]
@@ -40,7 +41,7 @@ def neighbours(A: IntArray, B: IntArray, m: int, n: int, used: IntArray) -> tupl
 
 @kernel
 def dissect(POSE: FloatArray, n: int, start: IntArray, other: IntArray, place: IntArray) -> None:
-    """place[body] = when it is eliminated, (n,)."""
+    """Set place (n,), the position of each body in the order of elimination."""
     ids = np.empty(n, np.int64)
     end = n
     count = 0
@@ -117,7 +118,7 @@ def dissect(POSE: FloatArray, n: int, start: IntArray, other: IntArray, place: I
 
 @uncounted
 def ascend(values: IntArray, low: int, high: int) -> None:
-    """Sort values[low:high] (Shell's sort: short columns, and little to compile)."""
+    """Sort values[low:high] by Shell's sort, which suits short columns."""
     gap = 1
     while gap < (high - low) // 3:
         gap = 3 * gap + 1
@@ -134,7 +135,7 @@ def ascend(values: IntArray, low: int, high: int) -> None:
 
 @kernel
 def pattern(n: int, start: IntArray, other: IntArray, place: IntArray) -> tuple[IntArray, IntArray]:
-    """Column pointers (n + 1,) and rows below the diagonal, ascending, of the factor of blocks."""
+    """Column pointers (n + 1,) and rows below the diagonal, ascending, of the blocks of the factor."""
     body = np.empty(n, np.int64)
     for i in range(n):
         body[place[i]] = i

@@ -1,9 +1,10 @@
-"""Direct solution on the active contacts, as an augmented Lagrangian in the space of bodies.
+"""Direct solve on the active contacts, as an augmented Lagrangian in the space of bodies.
 
-Active normals (lam > 0) are to reach u_n = b, sticking tangents u_t = 0; slipping ones follow beta = +-mu lam. With
-the residual r = target - u, one pass solves (M + sum R j j^T / A_jj) dv = sum R j r / A_jj and adds R (r - j.dv) / A_jj
-to the impulses: the error falls about by R times the smallest eigenvalue of A scaled to diagonal 1. Redundant contacts
-make A singular but not this. Impulses are clamped to their cones at the end; `segment` then finds how far to go.
+Active normals (lam > 0) are to reach u_n = b, sticking tangents u_t = 0; slipping ones follow beta = +-mu lam. With the
+residual r = target - u, one pass solves (M + sum R j j^T / A_jj) dv = sum R j r / A_jj and adds R (r - j.dv) / A_jj to
+the impulses: the error decreases by about R times the smallest eigenvalue of A scaled to diagonal 1. Redundant contacts
+make A singular but not this matrix. Impulses are then clamped to their cones; `segment` selects the part of the step
+that is taken.
 """
 
 from __future__ import annotations
@@ -25,10 +26,12 @@ from .sweeps import velocities
 
 @uncounted
 def share(A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, m: int) -> None:
-    """Divide the friction of a face between its two points as their normal impulses: beta_k = lam_k sum beta / sum lam.
+    """Divide the friction of a face between its two points in proportion to their normal impulses: beta_k = lam_k sum
+    beta / sum lam.
 
-    Both lie on one tangent line, so that no velocity feels the division; and if the sum is inside the cone of the sum,
-    each is inside its own. A point called slipping beside one that sticks leaves the face without a solution.
+    Both are on one tangent line, so that no velocity depends on the division; and if the sum is inside the cone of the
+    sum, each is inside its own. If one point is taken as slipping while the other sticks, the active set has no
+    solution.
     """
     for i in range(m - 1):
         j = i + 1
@@ -52,9 +55,10 @@ def classify(
     A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, m: int, held: IntArray, stuck: IntArray,
     slip: FloatArray, rest: FloatArray,
 ) -> None:  # fmt: skip
-    """Which normals are held, which tangents stuck (1 at u_t = 0, 2 at u_t = rest), which slip (beta = slip lam).
+    """Classify contacts: held[i] = 1 with active normals; stuck[i] = 1 with u_t = 0, 2 with u_t = rest; else slip (beta
+    = slip lam).
 
-    Friction that its energy limits has beta (u_t- + u_t+) = -lam (u_n- + b): rest is that u_t+.
+    Where energy limits friction, beta (u_t- + u_t+) = -lam (u_n- + b): rest is that u_t+.
     """
     for i in range(m):
         lam = L[i, 0]
@@ -81,7 +85,7 @@ def classify(
 
 @uncounted
 def clamp(ROWS: Rows[Row], L: FloatArray, m: int) -> int:
-    """Put impulses back into their cones; how many were outside."""
+    """Move impulses back into their cones; returns how many were outside."""
     clamped = 0
     for i in range(m):
         most = ROWS[i].friction * L[i, 0]
@@ -101,13 +105,15 @@ def clamp(ROWS: Rows[Row], L: FloatArray, m: int) -> int:
 def polish_free(
     problem: Problem, L: FloatArray, V: FloatArray, FREE: FloatArray, R: float, passes: int, tolerance: float
 ) -> tuple[float, int]:
-    """Solve on the active contacts of L; L and V = FREE + M^-1 (G^T lam + T^T beta), also on entry, are replaced.
+    """Solve on the active contacts of L; L and V = FREE + M^-1 (G^T lam + T^T beta), which are consistent on entry, are
+    replaced.
 
     Args:
         FREE: (k, 3) velocities without impulses.  R: stiffness of the augmentation, dimensionless, 1e2 ... 1e8.
-        passes: refinements at most.  tolerance: velocity at which they end.
+        passes: largest number of refinements.  tolerance: residual velocity at which they end.
+
     Returns:
-        The residual before the impulses were clamped (velocity), and how many were clamped.
+        The residual velocity before the impulses were clamped, and how many were clamped.
     """
     A, B, ROWS, IM, II, _, n, m = problem
     held = np.empty(m, np.int64)
@@ -186,10 +192,8 @@ def polish_free(
 
 @uncounted
 def segment(problem: AnyProblem, L: FloatArray, V: FloatArray, L0: FloatArray, V0: FloatArray) -> float:
-    """Go back from (L, V) towards (L0, V0) to the least lam.(u_n - b) + beta.u_t - (1/2) lam^T A lam between them.
-
-    That is the energy that the frictionless contact problem minimises. Returns the part of the way that is kept.
-    """
+    """Go back from (L, V) towards (L0, V0) to the minimum of lam.(u_n - b) + beta.u_t - (1/2) lam^T A lam between them,
+    the energy that the frictionless contact problem minimises. Returns the part of the step that remains."""
     A, B, ROWS, m = problem.A, problem.B, problem.ROWS, problem.m
     slope = 0.0
     curvature = 0.0

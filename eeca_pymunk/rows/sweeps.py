@@ -1,5 +1,5 @@
-"""Projected Gauss-Seidel sweeps over contact rows: each contact in turn solves its law (`coulomb.py`), with the others'
-impulses frozen; over inverse masses, or over the response of jointed components (`columns.py`)."""
+"""Projected Gauss-Seidel sweeps over contact rows: each contact in turn solves its law (`coulomb.py`) with the impulses
+of the others fixed; with inverse masses, or the response of jointed components (`columns.py`)."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .inplace import copy
 
 @uncounted
 def sweep_free(problem: Problem, L: FloatArray, V: FloatArray) -> float:
-    """One sweep over the contacts; L and V are updated. Returns the largest change of a contact's velocity."""
+    """One sweep over the contacts; updates L and V, and returns the largest change of a contact's velocity."""
     A, B, ROWS, IM, II, _, _, m = problem
     worst = 0.0
     for i in range(m):
@@ -53,14 +53,14 @@ def sweep_free(problem: Problem, L: FloatArray, V: FloatArray) -> float:
             ant = ROWS[i].a_nt
             qn = short - lam0 * ann - beta0 * ant
             if qn < 0.0:
-                # Most stick, and need no more than this.
+                # Most contacts stick.
                 lam = lam0 - (ROWS[i].w_nn * short + ROWS[i].w_nt * ut)
                 beta = beta0 - (ROWS[i].w_nt * short + ROWS[i].w_tt * ut)
                 before = ROWS[i].ut
                 if abs(beta) <= mu * lam:
                     done = beta * before + lam * min(ROWS[i].un + ROWS[i].target, 0.0) <= 0.0
                 else:
-                    # Nearly all others slip as they would without friction.
+                    # Nearly all others slip in the direction of the motion without friction.
                     att = ROWS[i].a_tt
                     qt = ut - beta0 * att - lam0 * ant
                     slope = -mu if qt * ann > qn * ant else mu
@@ -100,7 +100,7 @@ def sweep_free(problem: Problem, L: FloatArray, V: FloatArray) -> float:
 
 @uncounted
 def push_free(problem: Problem, L: FloatArray, factor: float, V: FloatArray) -> None:
-    """V += factor M^-1 (G^T lam + T^T beta)."""
+    """Add factor M^-1 (G^T lam + T^T beta) to V (k, 3)."""
     A, B, ROWS, IM, II, _, _, m = problem
     for i in range(m):
         lam = factor * L[i, 0]
@@ -121,7 +121,7 @@ def push_free(problem: Problem, L: FloatArray, factor: float, V: FloatArray) -> 
 
 @uncounted
 def rows_free(problem: Problem) -> int:
-    """How many rows of L (., 2) are unknown."""
+    """Number of unknown rows of L (., 2)."""
     return problem.m
 
 
@@ -132,7 +132,7 @@ rows_of = Choice(rows_free, rows_jointed)
 
 @uncounted
 def velocities(problem: AnyProblem, L: FloatArray, FREE: FloatArray, V: FloatArray) -> None:
-    """V (k, 3) = FREE + W (G^T lam + T^T beta)."""
+    """Set V (k, 3) = FREE + W (G^T lam + T^T beta), with the response W of the problem: inverse masses, or columns."""
     copy(V, FREE)
     push(problem, L, 1.0, V)
 

@@ -186,7 +186,7 @@ class Crossing:
         """Function that accepts pymunk's rounding of positions as unedited, see `rehearsing.as_read`."""
         return as_read.bind(self.STATES, self.EXTRA)
 
-    def void_forecasts(self) -> None:
+    def void_predictions(self) -> None:
         """Void all predictions: in the next step all bodies count as placed by the program, and may overlap others."""
         np.minimum(self._due, ANEW, out=self._due)
 

@@ -198,7 +198,7 @@ class World(Crossing):
         if parted == self.parted:
             return False
         self.parted = parted
-        self.void_forecasts()
+        self.void_predictions()
         return True
 
     def told(self) -> dict[tuple[int, int], tuple[float, float, float, float]]:

@@ -25,7 +25,7 @@ def test_forecasts_that_are_kept_over_steps_say_what_new_ones_say(dt: float, pul
     impacts = 0
     for _ in range(40 if SHORT else 200):
         if anew._world is not None:
-            anew._world.void_forecasts()
+            anew._world.void_predictions()
         impacts += len(kept.step(dt).contacts)
         anew.step(dt)
         np.testing.assert_array_equal(state(kept.space), state(anew.space))

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from eeca_pymunk.geometry.gap import gap
-from eeca_pymunk.prediction.turning import bends
+from eeca_pymunk.prediction.axes import bends
 from tests.packed import Thing, World, box, disk, hull, placed
 from tests.prediction.forecasts import FLOOR, UNITS, check_by_sampling, gap_now, next_impact, static
 

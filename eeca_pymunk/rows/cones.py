@@ -1,0 +1,74 @@
+"""Friction cones as sums of their edges: an impulse inside the cone of a contact is sum x g, x >= 0, of its two edges
+g = n +- mu t, or of g = n without friction. So the statics of contacts are linear in x (`equilibrium.py`)."""
+
+from __future__ import annotations
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import uncounted
+from ..compiled.records import Rows
+from ..model.contacts import Edge, Row
+
+
+@uncounted
+def cone_edges(
+    A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, IM: FloatArray, II: FloatArray, m: int, OF: IntArray,
+    P: IntArray, Q: IntArray, G: Rows[Row], EDGE: Rows[Edge],
+) -> int:  # fmt: skip
+    """Write the edges of the cones of m contacts, and return their number K <= 2 m.
+
+    Args:
+        A, B, ROWS: bodies and rows of the contacts; those with a target below 0 have no edges.
+        L: (m, 2) normal and tangential impulses, from which `guess` and `x` of the edges follow.
+        IM, II: inverse masses and moments of the bodies.
+        OF: out, the contact of each edge.  P, Q, G: out, bodies and rows of the edges, those of a contact one after the
+            other.  EDGE: out, with a_gg = g^T M^-1 g.
+    """
+    K = 0
+    for i in range(m):
+        if ROWS[i].target < 0.0:
+            continue
+        mu = ROWS[i].friction
+        for side in range(2 if mu > 0.0 else 1):
+            slope = mu if side == 0 else -mu
+            P[K], Q[K], OF[K] = A[i], B[i], i
+            G[K].nx = ROWS[i].nx - slope * ROWS[i].ny
+            G[K].ny = ROWS[i].ny + slope * ROWS[i].nx
+            G[K].arm_na = ROWS[i].arm_na + slope * ROWS[i].arm_ta
+            G[K].arm_nb = ROWS[i].arm_nb + slope * ROWS[i].arm_tb
+            EDGE[K].guess = L[i, 0] if mu <= 0.0 else max(0.5 * (L[i, 0] + L[i, 1] / slope), 0.0)
+            EDGE[K].x = EDGE[K].guess
+            EDGE[K].a_gg = (IM[A[i]] + IM[B[i]]) * (1.0 + mu * mu)
+            EDGE[K].a_gg += II[A[i]] * G[K].arm_na ** 2 + II[B[i]] * G[K].arm_nb ** 2
+            K += 1
+    return K
+
+
+@uncounted
+def add_impulses(
+    P: IntArray, Q: IntArray, G: Rows[Row], EDGE: Rows[Edge], steps: bool, K: int, IM: FloatArray, II: FloatArray,
+    V: FloatArray,
+) -> None:  # fmt: skip
+    """Add M^-1 sum g x over all K edges to the velocities V (k, 3); with dx in place of x if `steps`."""
+    for e in range(K):
+        lam = EDGE[e].dx if steps else EDGE[e].x
+        a, b = P[e], Q[e]
+        V[a, 0] -= IM[a] * lam * G[e].nx
+        V[a, 1] -= IM[a] * lam * G[e].ny
+        V[a, 2] -= II[a] * lam * G[e].arm_na
+        V[b, 0] += IM[b] * lam * G[e].nx
+        V[b, 1] += IM[b] * lam * G[e].ny
+        V[b, 2] += II[b] * lam * G[e].arm_nb
+
+
+@uncounted
+def impulses_of(ROWS: Rows[Row], EDGE: Rows[Edge], OF: IntArray, K: int, L: FloatArray, m: int) -> None:
+    """Set the normal and tangential impulses L (m, 2) of m contacts from the x of their edges."""
+    for i in range(m):
+        L[i, 0] = L[i, 1] = 0.0
+    for e in range(K):
+        i = OF[e]
+        slope = ROWS[i].friction
+        if e > 0 and OF[e - 1] == i:
+            slope = -slope
+        L[i, 0] += EDGE[e].x
+        L[i, 1] += slope * EDGE[e].x
