@@ -5,6 +5,7 @@ from 1 mm to 50 m, steps of 1/240 to 1/10 s, with gravity or without; joints and
 
 * all is finite; the ledger closes to 1e-11 of the scale of energy, and its losses are not negative by more than that;
 * in a container that rests energy never rises without joints that drive;
+* what comes from outside is no more than what acts from there can do (`outside.py`);
 * nobody leaves the container, by more than a part of his size;
 * a step of up to 1/30 s takes no longer than 20 ms of process time, or 100 native steps; a longer one as much for each
   1/30 s. Steps that do are repeated, as the machine may have been busy;
@@ -27,6 +28,7 @@ import pymunk
 import eeca_pymunk as ep
 
 from .joined import BOUND, HOLDS, OFF, apart, join, overdone
+from .outside import Outside
 
 LENGTHS = (1e-3, 3e-2, 1.0, 10.0, 50.0)
 STEPS = (1 / 240, 1 / 60, 1 / 30, 1 / 10)
@@ -66,7 +68,7 @@ class Composition:
         self.random = R = Random(seed)
         self.kinds = ("disk", "box", "polygon", *(("thin", "rod", "plank") if thin else ()))
         self.length = L = R.choice(LENGTHS)
-        self.dt = R.choice(STEPS)
+        self.dt = self.pace = R.choice(STEPS)
         self.space = space = pymunk.Space()
         space.gravity = 0.0, R.choice((0.0, -9.81))
         self.turns = R.random() < 0.6
@@ -144,10 +146,22 @@ class Composition:
                 joint.collide_bodies = True  # what hangs on the container stays in it
                 self.space.add(joint)
 
+    def span(self, k: int) -> float:
+        """The dt of step k."""
+        return self.dt
+
+    def edit(self, k: int, found: Found) -> bool:
+        """What a program does before step k; whether it changes the scene."""
+        return False
+
+    def moves(self, state: list[tuple[float, ...]]) -> bool:
+        """Whether a body has a velocity."""
+        return any(any(row[3:]) for row in state)
+
     def drive(self, k: int) -> None:
         """Shake and turn the container."""
         if self.turns:
-            t, L = k * self.dt, self.length
+            t, L = k * self.pace, self.length
             self.box.velocity = L * math.cos(3.0 * t), L * math.sin(5.0 * t)
             self.box.angular_velocity = math.sin(t)
 
@@ -162,9 +176,14 @@ class Composition:
         half: list[list[tuple[float, ...]]] = []
         before: list[tuple[float, ...]] = []
         for k in range(steps):
+            self.dt = self.span(k)
+            if self.edit(k, found):
+                energies.append(ep.measure(self.space).energy)
+                before, saved, half = [], None, []
             if k == steps // 2:
                 saved = pickle.dumps((self.space, self.stepper))
             self.drive(k)
+            outside = Outside(self.space, self.box)
             clock = time.process_time()
             report = self.stepper.step(self.dt)
             taken = time.process_time() - clock
@@ -175,37 +194,39 @@ class Composition:
             state = self.state()
             if saved is not None:
                 half.append(state)
-            self._check(k, report, state, energies, found)
+            self._check(k, report, state, energies, found, outside)
             self._check_joints(k, report, found)
-            found.stands = found.stands + 1 if state == before and any(any(row[3:]) for row in state) else 0
+            found.stands = found.stands + 1 if state == before and self.moves(state) else 0
             if found.stands >= STANDS:
                 raise Broken(f"step {k}: time stands still")
             before = state
         if saved is not None and not self.turns:
             space, stepper = pickle.loads(saved)
             again = [b for b in space.bodies if b.body_type == pymunk.Body.DYNAMIC]
-            for k, expected in enumerate(half):
-                stepper.step(self.dt)
+            for k, expected in enumerate(half, steps - len(half)):
+                stepper.step(self.span(k))
                 now = [(*b.position, b.angle, *b.velocity, b.angular_velocity) for b in again]
                 if now != expected:
-                    raise Broken(f"a run that was saved goes another way after {k} steps")
+                    raise Broken(f"a run that was saved goes another way at step {k}")
         return found
 
     def _bounded(self, k: int) -> float:
         """The process time (s) of step k, the least of some repetitions; `Broken` if it is beyond the bound."""
         least = limit = math.inf
         for _ in range(4):
-            again = Composition(*self.drawn)
+            again, found = type(self)(*self.drawn), Found()
             for earlier in range(k):
+                again.edit(earlier, found)
                 again.drive(earlier)
-                again.stepper.step(again.dt)
+                again.stepper.step(again.span(earlier))
+            again.edit(k, found)
             again.drive(k)
             native = pickle.loads(pickle.dumps(again.space))
             clock = time.process_time()
-            again.stepper.step(again.dt)
+            again.stepper.step(self.dt)
             least = min(least, time.process_time() - clock)
             clock = time.process_time()
-            native.step(again.dt)
+            native.step(self.dt)
             limit = max(LONGEST, NATIVE * (time.process_time() - clock)) * max(1.0, self.dt / SHORT)
             if least <= limit:
                 return least
@@ -225,7 +246,13 @@ class Composition:
         found.apart = max(found.apart, found.off)
 
     def _check(
-        self, k: int, report: ep.StepReport, state: list[tuple[float, ...]], energies: list[float], found: Found
+        self,
+        k: int,
+        report: ep.StepReport,
+        state: list[tuple[float, ...]],
+        energies: list[float],
+        found: Found,
+        outside: Outside,
     ) -> None:
         if not np.isfinite(state).all():
             raise Broken(f"step {k}: not finite")
@@ -241,6 +268,10 @@ class Composition:
         found.below = min(found.below, least)
         if least < -CLOSES:
             raise Broken(f"step {k}: a loss of {least:.1e}, converged {report.converged}")
+        most = outside.most(report, self.dt)
+        taken = 0.0 if self.space.constraints else max(0.0, -ledger.external)  # joints may brake: of them, only gains
+        if max(ledger.external, taken) > most + CLOSES * scale:
+            raise Broken(f"step {k}: {ledger.external / scale:.1e} from outside, {most / scale:.1e} at most")
         if not self.turns and not self.space.constraints and now.energy - energies[-1] > CLOSES * scale:
             raise Broken(f"step {k}: energy rises by {(now.energy - energies[-1]) / scale:.1e}")
         energies.append(now.energy)

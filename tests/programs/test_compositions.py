@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import math
 import pickle
 import threading
 from itertools import pairwise
@@ -144,3 +145,38 @@ def test_time_goes_on_where_corners_close_by_round_off() -> None:
         scene.drive(k)
         report = scene.stepper.step(scene.dt)
         assert all(u.name != "solves" for u in report.unmet)
+
+
+class Generous(ep.EECA):
+    """Books a part of what friction takes, or of the energy, as external."""
+
+    def step(self, dt: float) -> ep.StepReport:
+        report = super().step(dt)
+        assert report._book is not None
+        book = report._book.copy()
+        book[0] += 1e-9 * abs(book[5])
+        book[2] += 1e-9 * abs(book[5])
+        report._book = book
+        return report
+
+
+@pytest.mark.parametrize("joints", [False, True])
+def test_work_from_nowhere_is_found(joints: bool) -> None:
+    """A ledger that closes, of a scene that nothing acts on: its energy from outside and its losses are both wrong."""
+    scene = next(
+        scene
+        for scene in (Composition(seed, joints) for seed in range(99))
+        if not scene.turns and all(math.isinf(joint.max_force) for joint in scene.space.constraints)
+    )
+    scene.stepper = Generous(scene.space)
+    with pytest.raises(AssertionError, match=r"from outside, 0\.0e"):
+        scene.play(10)
+
+
+@pytest.mark.parametrize("first", range(0, 60, 20))
+def test_joints_bring_no_more_energy_than_their_bounds_do(first: int) -> None:
+    """What joints book as external is at most `max_force` times the way, and 0 without such a joint."""
+    for seed in range(first, first + 20):
+        scene = Composition(seed, joints=True)
+        if scene.gentle:
+            scene.play(10)
