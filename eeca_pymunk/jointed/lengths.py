@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 
-from ..arrays import IntArray
+from ..arrays import FloatArray, IntArray
 from ..compiled import uncounted
 from ..compiled.records import Rows
 from ..contacts.memory import key_of
@@ -27,6 +27,8 @@ from ..pairs.lists import far_apart
 from ..pairs.rules import barred
 from ..rows.build import normal_rate
 from .advance import Motion
+
+_CUBIC = 4.0 / 27.0  # largest value of s^2 (1 - s)
 
 
 @uncounted
@@ -52,18 +54,27 @@ def may_meet(A: Scene, i: int, way: float, t: float, h: float, KEY: IntArray, m:
 
 @uncounted
 def strays(
-    A: Scene, i: int, turned: float, x: float, y: float, t: float, h: float, KEY: IntArray, m: int
+    A: Scene, i: int, wx: float, wy: float, turned: float, V: FloatArray, ACC: FloatArray, t: float, h: float,
+    KEY: IntArray, m: int,
 ) -> float:  # fmt: skip
-    """How many times too far body i goes in an interval h from instant t, in which it turns by `turned` and leaves its
-    free flight by (x, y), beside the m contacts KEY."""
+    """How many times too far body i goes in an interval h from instant t, with way w = (wx, wy, turned), velocity V at
+    the end, and accelerations ACC without joints and contacts, beside the m contacts KEY.
+
+    It turns, and leaves its free flight by w - h (v + h ACC/2) at the end; between both ends its path, a cubic by
+    places and velocities there, leaves the parabola by (4/27) h |v + V - 2 w/h|, which shows what swings there and
+    back.
+    """
     b = A.BODY[i]
     if b.extent == 0.0:
         return 0.0
-    far = norm(x, y) / (INTERVAL_WAY * b.extent)
+    x, y = wx - h * (b.vx + 0.5 * h * ACC[0]), wy - h * (b.vy + 0.5 * h * ACC[1])
+    bend = _CUBIC * norm(h * (b.vx + V[0]) - 2.0 * wx, h * (b.vy + V[1]) - 2.0 * wy)
+    turned = max(abs(turned), _CUBIC * abs(h * (b.spin + V[2]) - 2.0 * turned))
+    far = max(norm(x, y), bend) / (INTERVAL_WAY * b.extent)
     for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):
         if A.LINK[s].vertices > 1:
-            far = max(far, abs(turned) / INTERVAL_WAY)
-    way = norm(x + h * b.vx, y + h * b.vy) + A.PAR.pulled * h * h + min(abs(turned), math.pi) * b.extent
+            far = max(far, turned / INTERVAL_WAY)
+    way = norm(x + h * b.vx, y + h * b.vy) + bend + A.PAR.pulled * h * h + min(turned, math.pi) * b.extent
     return far if far > INTERVAL_RETRY and may_meet(A, i, way, t, h, KEY, m) else 0.0
 
 
@@ -73,11 +84,10 @@ def excess_alone(A: Scene, J: Joints, s: int, t: float, h: float) -> float:
     far, first = 0.0, J.COMPONENT[s].first_body
     for w in range(J.COMPONENT[s].end_body - first):
         if J.LOCAL[w].freedoms > 0:
-            i = int(J.MEMBER[first + w].body)
+            i, local = int(J.MEMBER[first + w].body), J.LOCAL[w]
             b = A.BODY[i]
-            x = J.LOCAL[w].pose[0] - b.x - h * (b.vx + 0.5 * h * A.PULL[i, 0])
-            y = J.LOCAL[w].pose[1] - b.y - h * (b.vy + 0.5 * h * A.PULL[i, 1])
-            far = max(far, strays(A, i, J.LOCAL[w].pose[2] - b.angle, x, y, t, h, A.BLOCK, 0))
+            wx, wy, turned = local.pose[0] - b.x, local.pose[1] - b.y, local.pose[2] - b.angle
+            far = max(far, strays(A, i, wx, wy, turned, local.v0, A.PULL[i], t, h, A.BLOCK, 0))
     return far
 
 
@@ -89,9 +99,8 @@ def excess(
     """How many times too long the interval h is in which n bodies move so, under m contacts."""
     far, shapes = 0.0, A.SHAPE.shape[0]
     for q in range(n):
-        x = motion.WAY[q, 0] - h * (isle.V[q, 0] + 0.5 * h * isle.ACC[q, 0])
-        y = motion.WAY[q, 1] - h * (isle.V[q, 1] + 0.5 * h * isle.ACC[q, 1])
-        far = max(far, strays(A, int(isle.WHO[q]), motion.END[q, 2] - isle.POSE[q, 2], x, y, t, h, KEY, m))
+        i, turned = int(isle.WHO[q]), motion.END[q, 2] - isle.POSE[q, 2]
+        far = max(far, strays(A, i, motion.WAY[q, 0], motion.WAY[q, 1], turned, motion.V[q], isle.ACC[q], t, h, KEY, m))
     for z in range(m):
         pair = KEY[z] >> 1
         closing = -normal_rate(P, Q, ROWS, motion.WAY, z)

@@ -19,7 +19,7 @@ from ..islands.local import lay_out_island, open_contacts
 from ..islands.membership import lossy, members
 from ..model.islands import Island
 from ..model.joints import ELASTIC, Joints
-from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES
+from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES, UNSOLVED_PART
 from ..model.parameters.joints import INTERVAL_SHARE
 from ..model.scene import Scene
 from ..model.step import CONTACTS, DONE, PUSHES_FULL
@@ -138,6 +138,8 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
             far = 2.0
     if not last:
         far = max(far, excess(A, isle, P, Q, ROWS, KEY, motion, m, n, t, h))
+    if not held:  # the motion is not that of a solution, and says little of how long it may be
+        far = min(far, UNSOLVED_PART)
     if far > INTERVAL_RETRY and not last:
         for g in range(len(groups.COMPONENT)):
             if groups.COMPONENT[g] >= 0:

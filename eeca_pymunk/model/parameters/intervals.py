@@ -55,6 +55,9 @@ INTERVAL_RETRY = heuristic(
     "Excess of a displacement, rotation or depth over its limit from which on an interval is solved again, shorter.",
 )
 SMALL_SWEEPS = work(40, "sweeps", "Sweeps of a small island that moves, and of an impact on a large one.")
+UNSOLVED_PART = work(
+    4.0, "ratio", "Factor by which an interval with joints becomes shorter, at most, where its contacts are not solved."
+)
 INTERVAL_TRIES = work(12, "number", "Attempts at an interval, each shorter, at most.")
 MIDSTEP_PASSES = work(3, "solves", "Further solves of `Midstep` for bodies that impulses move into others, at most.")
 LARGE_ISLAND = heuristic(
