@@ -12,13 +12,14 @@ from .arrays import FloatArray, IntArray
 from .closures.time_of_impact import TimeOfImpact
 from .impacts.scene import EventLoop
 from .reentry import busy
-from .report import Details, Unmet, of_missed
+from .report import Details
 from .runs import RunningStepper
 from .saved import Saved, sides_of
 from .space.arbiters import Touches, show_contacts, touches
 from .space.shapes import Rules
 from .space.world import World
 from .transfer import OTHER_BODIES
+from .unmet import Unmet, of_missed
 
 if TYPE_CHECKING:
     import pymunk

@@ -12,11 +12,12 @@ from .errors import NotFiniteError
 from .layout import LEFT
 from .packed_space import TOO_FAR, PackedSpace
 from .reentry import BUSY
-from .report import Details, StepReport, Unmet
+from .report import Details, StepReport
 from .space.hooks import Hooks
 from .space.rehearsal import Rehearsal
 from .space.world import World
 from .transfer import EVENTS, MOVED_STATIC, OTHER_BODIES
+from .unmet import Unmet
 
 
 class HookedStepper(PackedSpace):

@@ -14,7 +14,8 @@ from .errors import NotFiniteError
 from .space.checks import check_ignored
 from .space.describe import describe
 from .space.joints import JointRows
-from .space.sleeping import Sleep, put_to_sleep, rouse
+from .space.sleep_groups import put_to_sleep, rouse
+from .space.sleeping import Sleep
 from .space.sync import Sync
 from .space.world import World
 from .stepper import Stepper
