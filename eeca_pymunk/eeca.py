@@ -31,7 +31,7 @@ class Method(Protocol):
 
     def step(
         self, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
-        left: float,
+        half_damping: float,
     ) -> int:  # fmt: skip
         """From the states read to those to be written: status bits or a negative code of `transfer.py`."""
 
@@ -157,11 +157,11 @@ class EECA(RunningStepper):
             self._method.rule(world.told())
         return True
 
-    def advance(self, world: World, dt: float, left: float) -> int:
+    def advance(self, world: World, dt: float, half_damping: float) -> int:
         gx, gy = world.gravity
         if not world.plain and not self.adjust(world, dt):
             return OTHER_BODIES
-        return self._method.step(world.STATES, world.WALK, world.EXTRA, world.ENDS, dt, gx, gy, left)
+        return self._method.step(world.STATES, world.WALK, world.EXTRA, world.ENDS, dt, gx, gy, half_damping)
 
     def details(self, world: World, dt: float) -> Details | Callable[[], Details]:
         return self._method.details(dt, world.bodies.items, world.owner)

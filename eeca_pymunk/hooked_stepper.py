@@ -24,11 +24,11 @@ class HookedStepper(PackedSpace):
     """A stepper whose steps call functions of the program; arguments as of `PackedStepper`."""
 
     @abstractmethod
-    def advance(self, world: World, dt: float, left: float) -> int:
+    def advance(self, world: World, dt: float, half_damping: float) -> int:
         """Move the bodies from `world.STATES` to `world.ENDS`; the space is not touched.
 
         Args:
-            dt: time, > 0.  left: factor of half a step's damping.
+            dt: time, > 0.  half_damping: factor of half a step's damping.
 
         Returns:
             status bits or a negative code of `transfer.py`.
@@ -76,7 +76,7 @@ class HookedStepper(PackedSpace):
     def _take_hooked(self, world: World, dt: float) -> tuple[World, StepReport, Rehearsal | None]:
         """The step without post-step callbacks."""
         world = self._start_hooked(world)
-        bodies, joints, left = world.bodies, world.joints, world.left(dt)
+        bodies, joints, half_damping = world.bodies, world.joints, world.half_damping(dt)
         hooks = Hooks(self.space, bodies, joints)
         rehearsal: Rehearsal | None = None
         given, lost = False, 0.0
@@ -91,10 +91,10 @@ class HookedStepper(PackedSpace):
                 world.push(hooks.change(dt), dt)
             if world.collisions:
                 rehearsal = world.rehearsal
-                self._checked(world, dt, rehearsal.run(hooks, dt, world.gravity, left))
+                self._checked(world, dt, rehearsal.run(hooks, dt, world.gravity, half_damping))
                 world.rules = rehearsal.rules(world.rules, world.places, world.SHAPE, world.smooth)
             world.void_predictions()
-            status = self._checked(world, dt, self.advance(world, dt, left))
+            status = self._checked(world, dt, self.advance(world, dt, half_damping))
             book = self._booked(dt)
             if world.damping == 0.0 or len(hooks.position) or (rehearsal is not None and rehearsal.after):
                 given = True

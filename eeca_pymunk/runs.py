@@ -188,7 +188,7 @@ class RunningStepper(PackedStepper):
         world = self.adjusted(dt)
         rows = np.array([world.bodies.row[body] for body in kept], np.int64)
         moments = 1 + steps // every if every else 0
-        buffers = RunBuffers(dt, world.gravity, world.left(dt), self.time, rows, moments, every, events)
+        buffers = RunBuffers(dt, world.gravity, world.half_damping(dt), self.time, rows, moments, every, events)
         if every:
             buffers.frames[0] = world.STATES[NOW, rows, :6]
             buffers.progress.frame = 1

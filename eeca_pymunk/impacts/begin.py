@@ -21,8 +21,8 @@ def begin(A: Scene, WALK: IntArray) -> None:
     """Set instants relative to the start of this step, reset its counters and ledger, and mark the bodies to be
     predicted: edited ones, and those whose predicted events are due."""
     BODY, STATE, PAR, COUNT = A.BODY, A.STATE, A.PAR, A.COUNT
-    COUNT.heap, COUNT.logged, COUNT.impacts, COUNT.blocks, COUNT.predictions, COUNT.stale = 0, 0, 0, 0, 0, 0
-    COUNT.solves, COUNT.solved, COUNT.ignored, COUNT.sweeps, COUNT.direct, COUNT.work = 0, 0, 0, 0, 0, 0
+    COUNT.heap, COUNT.logged, COUNT.blocks, COUNT.predictions = 0, 0, 0, 0
+    COUNT.solves, COUNT.solved, COUNT.direct, COUNT.work = 0, 0, 0, 0
     if COUNT.unmet > 0:
         A.FLAG[:] = 0
         COUNT.unmet = 0
@@ -33,10 +33,10 @@ def begin(A: Scene, WALK: IntArray) -> None:
     PAR.restitution, PAR.frictional, PAR.external, PAR.damped = 0.0, 0.0, 0.0, 0.0
     PAR.lock, PAR.stored = 1.0, 0.0
     PAR.before = total(A)
-    left = PAR.left_over
-    if left != 1.0:
+    half_damping = PAR.half_damping
+    if half_damping != 1.0:
         # `take` has damped velocities by half a step already.
-        PAR.damped = unsteered(A, WALK) * (1.0 / (left * left) - 1.0)
+        PAR.damped = unsteered(A, WALK) * (1.0 / (half_damping * half_damping) - 1.0)
         PAR.before += PAR.damped
     PAR.stamp += 1.0
     COUNT.waiting, COUNT.phase = 0, 0

@@ -100,7 +100,6 @@ def run(A: Scene, may_rest: bool) -> int:
             return BLOCK_DUE
         j = body_of(A, o) if o >= 0 else i
         if o < 0 or STATE[j].version != STATE[i].known:
-            COUNT.stale += 1
             one = i
             continue
         if met_too_often(A, i, j):

@@ -140,18 +140,18 @@ class EventLoop(Remembering):
 
     def step(
         self, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
-        left: float,
+        half_damping: float,
     ) -> int:  # fmt: skip
         """Take a step, see `step.step`; a negative result is a code of `transfer.py`."""
         states, call = self._bound
         # Compared one by one, as this is done in every step.
         if states[0] is not STATES or states[1] is not WALK or states[2] is not EXTRA or states[3] is not ENDS:
             call = self._bind_to((STATES, WALK, EXTRA, ENDS))
-        status = call(dt, gx, gy, left, -1)
+        status = call(dt, gx, gy, half_damping, -1)
         while status <= ROOM_FOR_LISTS:
             self._grow(check("step", status))
             bits = FORCES if STATES[READ, :, 6:].any() else 0
-            status = self._bind_to((STATES, WALK, EXTRA, ENDS))(dt, gx, gy, left, bits)
+            status = self._bind_to((STATES, WALK, EXTRA, ENDS))(dt, gx, gy, half_damping, bits)
         return status
 
     def follow(self, buffers: RunBuffers, states: tuple[AnyArray, ...]) -> int:

@@ -215,7 +215,6 @@ def passed_over(A: Scene, a: int, b: int, t: float) -> bool:
     thick = half_width(A, a) + half_width(A, b)
     if (speed + A.PAR.pulled * h) * h > INTERVAL_DEPTH_WIDTH * thick:
         return False
-    A.COUNT.ignored += 1
     if lossy:
         MINE = np.empty(A.BODY.shape[0], np.int64)
         for k in (i, j):

@@ -146,7 +146,6 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
     COUNT.solves += 1
     COUNT.solved += n
     spend(A, 2 * p, m, OUT[0].sweeps, OUT[0].direct)
-    COUNT.sweeps += OUT[0].sweeps
     COUNT.direct += OUT[0].direct
     first = COUNT.pushes
     TOUCHED = np.zeros(k, np.uint8)

@@ -226,6 +226,6 @@ class World(Crossing):
     def _take(self) -> Callable[[float, float, float], int]:
         return take.bind(self.STATES, self.WALK, self.EXTRA, self.BODY)
 
-    def left(self, dt: float) -> float:
+    def half_damping(self, dt: float) -> float:
         """Factor of half a step's damping; 1 for damping 0, whose velocities `alter` sets to 0 at the end."""
         return self.damping ** (0.5 * dt) if self.damping > 0.0 else 1.0
