@@ -47,7 +47,7 @@ class Method(Protocol):
 
     @property
     def book(self) -> FloatArray | None:
-        """(7,) a copy of the book of the last step (`energy.ledger`); None if there is none."""
+        """(7,) a copy of the ledger entries of the last step (`energy.ledger`); None if there is none."""
 
     @property
     def lock(self) -> float:

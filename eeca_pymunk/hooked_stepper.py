@@ -140,8 +140,8 @@ class HookedStepper(PackedSpace):
                 self._sync.land(world, dt, status)
 
     def _booked(self, dt: float) -> FloatArray | None:
-        """The book of the step. NotFiniteError, before the space is changed, if the energy overflows though positions
-        and velocities do not."""
+        """The ledger entries of the step. NotFiniteError, before the space is changed, if the energy overflows though
+        positions and velocities do not."""
         book = self.book()
         if book is not None and not isfinite(book[AFTER]):
             self._world = None
@@ -154,7 +154,7 @@ class HookedStepper(PackedSpace):
         return status
 
     def _made(self, world: World, dt: float, status: int, book: FloatArray | None, lost: float = 0.0) -> StepReport:
-        """The report of the step with this book; `lost`: energy taken by damping 0 at the end."""
+        """The report of the step with these ledger entries; `lost`: energy taken by damping 0 at the end."""
         if lost and book is not None:
             book[DAMPED] += lost
             book[AFTER] -= lost

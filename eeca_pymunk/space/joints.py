@@ -245,5 +245,5 @@ _Said = tuple[object, object, object, bool]
 
 
 def _says(item: pymunk.Constraint) -> _Said:
-    """What of a joint `_find_functions` asks, and whether its bodies collide."""
+    """The functions of a joint, and whether its bodies collide."""
     return own_function(item), item.pre_solve, item.post_solve, bool(item.collide_bodies)
