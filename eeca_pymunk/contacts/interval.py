@@ -38,8 +38,8 @@ def recall(
     KEY: IntArray, m: int, KEYS: IntArray, FORCES: Rows[Force], stamp: float, h: float, L: FloatArray,
     EXPECTED: FloatArray,
 ) -> None:  # fmt: skip
-    """Set the initial impulses L (m, 2), and those of loads EXPECTED (m,), from remembered forces of this step or the
-    last."""
+    """Set the initial impulses L (m, 2), and those of loads EXPECTED (m,), from remembered forces of this step, whose
+    number is `stamp`, or the last."""
     for i in range(m):
         L[i, 0] = 0.0
         L[i, 1] = 0.0

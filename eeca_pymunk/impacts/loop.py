@@ -146,7 +146,7 @@ def end_of_interval(A: Scene, J: Joints, i: int, t: float) -> int:
 @kernel
 def follow(A: Scene, J: Joints, may_rest: bool) -> int:
     """Process all events of the step, with simultaneous impacts and islands. After a status other than DONE: provide
-    more memory, and call again."""
+    more memory, and call again. may_rest: whether contacts may persist."""
     COUNT, STATE = A.COUNT, A.STATE
     end = A.PAR.dt
     while True:

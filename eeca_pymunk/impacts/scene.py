@@ -207,8 +207,8 @@ class EventLoop(Remembering):
         self.scene = scene._replace(KEYS=KEYS, FORCES=TABLE)
 
     def rule(self, rules: Mapping[tuple[int, int], tuple[float, float, float, float]]) -> None:
-        """Set elasticity (below 0: they pass through each other), friction and surface velocity of pairs of shapes a <
-        b."""
+        """Set the law of pairs of shapes a < b: elasticity (below 0: they pass through each other), friction and
+        surface velocity (2)."""
         table = np.array([(*pair, *what) for pair, what in rules.items()], float).reshape(-1, RULE_COLUMNS)
         if not np.array_equal(table, self.scene.RULE):
             self.scene = self.scene._replace(RULE=table)
@@ -221,8 +221,8 @@ class EventLoop(Remembering):
     def details(
         self, dt: float, bodies: tuple[pymunk.Body, ...], owner: IntArray
     ) -> Callable[[], Details]:  # fmt: skip
-        """A function that makes the arrays of the report of the last step; `owner` (k,): index in `bodies` of each
-        shape's body."""
+        """A function that makes the arrays of the report of the last step of length dt; `owner` (k,): index in `bodies`
+        of each shape's body."""
         return partial(_details, self.logged(), dt, bodies, owner)
 
     @property

@@ -61,7 +61,7 @@ def act(A: Scene, J: Joints, USUAL: FloatArray) -> int:
     if COUNT.together > 0:
         return act_together(A, J, USUAL)
     if COUNT.phase == 0:
-        if COUNT.pushes + COUNT.crammed + J.TALLY.components > 0 and start_islands(A, J) != DONE:
+        if COUNT.pushes + COUNT.any_placed + J.TALLY.components > 0 and start_islands(A, J) != DONE:
             return PUSHES_FULL
         COUNT.phase = 1
         predict_due(A)

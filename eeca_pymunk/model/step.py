@@ -52,8 +52,8 @@ class Count(Record):
     quiet: int  # number of steps in a row at whose end `even` was 1
     disks: int  # number of single disks of the scene
     solved: int  # number of bodies of all solves
-    carries: int  # 1 if islands at rest may support moving ones (`islands/support.py`)
-    crammed: int  # 1 if the program has placed bodies, which may overlap
+    may_support: int  # 1 if islands at rest may support moving ones (`islands/support.py`)
+    any_placed: int  # 1 if the program has placed bodies, which may overlap
 
 
 class Missed(Record):
