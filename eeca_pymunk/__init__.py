@@ -20,11 +20,12 @@ from .errors import UnsupportedFeature
 from .events import Events
 from .recorder import record
 from .recording import Recording
-from .report import Contacts, RunReport, StepReport, Unmet
+from .report import Contacts, RunReport, StepReport
 from .rollouts import certify, rollout
 from .space.measure import measure
 from .stepper import Stepper
 from .sweep import SweepError, sweep
+from .unmet import Unmet
 from .warming import warmup
 
 __all__ = [

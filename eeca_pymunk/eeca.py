@@ -12,13 +12,14 @@ from .arrays import FloatArray, IntArray
 from .closures.time_of_impact import TimeOfImpact
 from .impacts.scene import EventLoop
 from .reentry import busy
-from .report import Details, Unmet, of_missed
+from .report import Details
 from .runs import RunningStepper
 from .saved import Saved, sides_of
 from .space.arbiters import Touches, show_contacts, touches
 from .space.shapes import Rules
 from .space.world import World
 from .transfer import OTHER_BODIES
+from .unmet import Unmet, of_missed
 
 if TYPE_CHECKING:
     import pymunk
@@ -30,7 +31,7 @@ class Method(Protocol):
 
     def step(
         self, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
-        left: float,
+        half_damping: float,
     ) -> int:  # fmt: skip
         """From the states read to those to be written: status bits or a negative code of `transfer.py`."""
 
@@ -46,7 +47,7 @@ class Method(Protocol):
 
     @property
     def book(self) -> FloatArray | None:
-        """(7,) a copy of the book of the last step (`energy.ledger`); None if there is none."""
+        """(7,) a copy of the ledger entries of the last step (`energy.ledger`); None if there is none."""
 
     @property
     def lock(self) -> float:
@@ -156,11 +157,11 @@ class EECA(RunningStepper):
             self._method.rule(world.told())
         return True
 
-    def advance(self, world: World, dt: float, left: float) -> int:
+    def advance(self, world: World, dt: float, half_damping: float) -> int:
         gx, gy = world.gravity
         if not world.plain and not self.adjust(world, dt):
             return OTHER_BODIES
-        return self._method.step(world.STATES, world.WALK, world.EXTRA, world.ENDS, dt, gx, gy, left)
+        return self._method.step(world.STATES, world.WALK, world.EXTRA, world.ENDS, dt, gx, gy, half_damping)
 
     def details(self, world: World, dt: float) -> Details | Callable[[], Details]:
         return self._method.details(dt, world.bodies.items, world.owner)

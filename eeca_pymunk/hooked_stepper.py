@@ -12,22 +12,23 @@ from .errors import NotFiniteError
 from .layout import LEFT
 from .packed_space import TOO_FAR, PackedSpace
 from .reentry import BUSY
-from .report import Details, StepReport, Unmet
+from .report import Details, StepReport
 from .space.hooks import Hooks
 from .space.rehearsal import Rehearsal
 from .space.world import World
 from .transfer import EVENTS, MOVED_STATIC, OTHER_BODIES
+from .unmet import Unmet
 
 
 class HookedStepper(PackedSpace):
     """A stepper whose steps call functions of the program; arguments as of `PackedStepper`."""
 
     @abstractmethod
-    def advance(self, world: World, dt: float, left: float) -> int:
+    def advance(self, world: World, dt: float, half_damping: float) -> int:
         """Move the bodies from `world.STATES` to `world.ENDS`; the space is not touched.
 
         Args:
-            dt: time, > 0.  left: factor of half a step's damping.
+            dt: time, > 0.  half_damping: factor of half a step's damping.
 
         Returns:
             status bits or a negative code of `transfer.py`.
@@ -75,7 +76,7 @@ class HookedStepper(PackedSpace):
     def _take_hooked(self, world: World, dt: float) -> tuple[World, StepReport, Rehearsal | None]:
         """The step without post-step callbacks."""
         world = self._start_hooked(world)
-        bodies, joints, left = world.bodies, world.joints, world.left(dt)
+        bodies, joints, half_damping = world.bodies, world.joints, world.half_damping(dt)
         hooks = Hooks(self.space, bodies, joints)
         rehearsal: Rehearsal | None = None
         given, lost = False, 0.0
@@ -90,10 +91,10 @@ class HookedStepper(PackedSpace):
                 world.push(hooks.change(dt), dt)
             if world.collisions:
                 rehearsal = world.rehearsal
-                self._checked(world, dt, rehearsal.run(hooks, dt, world.gravity, left))
+                self._checked(world, dt, rehearsal.run(hooks, dt, world.gravity, half_damping))
                 world.rules = rehearsal.rules(world.rules, world.places, world.SHAPE, world.smooth)
             world.void_predictions()
-            status = self._checked(world, dt, self.advance(world, dt, left))
+            status = self._checked(world, dt, self.advance(world, dt, half_damping))
             book = self._booked(dt)
             if world.damping == 0.0 or len(hooks.position) or (rehearsal is not None and rehearsal.after):
                 given = True
@@ -139,8 +140,8 @@ class HookedStepper(PackedSpace):
                 self._sync.land(world, dt, status)
 
     def _booked(self, dt: float) -> FloatArray | None:
-        """The book of the step. NotFiniteError, before the space is changed, if the energy overflows though positions
-        and velocities do not."""
+        """The ledger entries of the step. NotFiniteError, before the space is changed, if the energy overflows though
+        positions and velocities do not."""
         book = self.book()
         if book is not None and not isfinite(book[AFTER]):
             self._world = None
@@ -153,7 +154,7 @@ class HookedStepper(PackedSpace):
         return status
 
     def _made(self, world: World, dt: float, status: int, book: FloatArray | None, lost: float = 0.0) -> StepReport:
-        """The report of the step with this book; `lost`: energy taken by damping 0 at the end."""
+        """The report of the step with these ledger entries; `lost`: energy taken by damping 0 at the end."""
         if lost and book is not None:
             book[DAMPED] += lost
             book[AFTER] -= lost

@@ -14,7 +14,8 @@ from .errors import NotFiniteError
 from .space.checks import check_ignored
 from .space.describe import describe
 from .space.joints import JointRows
-from .space.sleeping import Sleep, put_to_sleep, rouse
+from .space.sleep_groups import put_to_sleep, rouse
+from .space.sleeping import Sleep
 from .space.sync import Sync
 from .space.world import World
 from .stepper import Stepper
@@ -46,7 +47,7 @@ class PackedSpace(Stepper):
         self._told: JointRows | None = None  # source of `constraint.impulse`
         self._sync: Sync
         self._sleep: Sleep | None = None  # None if bodies cannot sleep
-        self._idle_book: FloatArray | None = None  # book of a step in which all dynamic bodies sleep
+        self._idle_book: FloatArray | None = None  # ledger entries of a step in which all dynamic bodies sleep
         self.reads = 0
         self._look()
 
@@ -75,7 +76,7 @@ class PackedSpace(Stepper):
         return False
 
     def book(self) -> FloatArray | None:
-        """(7,) the book of the last step, see `energy.ledger`; None if the stepper has none."""
+        """(7,) the ledger entries of the last step, see `energy.ledger`; None if the stepper has none."""
         return None
 
     @property

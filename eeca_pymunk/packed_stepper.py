@@ -85,7 +85,7 @@ class PackedStepper(HookedStepper):
         """Whether the last step may have touched a sleeping body; if False, its report need not be made."""
         return True
 
-    def _awake(self, world: World, dt: float, left: float, status: int) -> tuple[World, int]:
+    def _awake(self, world: World, dt: float, half_damping: float, status: int) -> tuple[World, int]:
         """Repeat the step with the sleeping bodies awake that it has touched, until it touches none."""
         while self._sleep is not None and self._sleep.some and status >= 0 and status & EVENTS:
             if not self.may_touch_sleepers(self._sleep):
@@ -97,7 +97,7 @@ class PackedStepper(HookedStepper):
             self._sleep.wake(touched)
             world = self._look(anew=True)
             world.gather()
-            status = self.advance(world, dt, left)
+            status = self.advance(world, dt, half_damping)
         return world, status
 
     def _step(self, world: World, dt: float) -> StepReport:
@@ -105,14 +105,14 @@ class PackedStepper(HookedStepper):
         if not world.plain and (world.hooked or (world.joints is not None and world.joints.calls_back())):
             return self._hooked_step(world, dt)
         world.gather()
-        left = world.left(dt)
-        status = self.advance(world, dt, left)
+        half_damping = world.half_damping(dt)
+        status = self.advance(world, dt, half_damping)
         if status in (OTHER_BODIES, MOVED_STATIC):
             world = self._look(anew=True)
             world.gather()
-            status = self.advance(world, dt, left)
+            status = self.advance(world, dt, half_damping)
         if self._sleep is not None:
-            world, status = self._awake(world, dt, left, status)
+            world, status = self._awake(world, dt, half_damping, status)
         if status < 0:
             self._fail(world, dt, status)
         book = self._booked(dt)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import sys
 from dataclasses import dataclass, field, fields
 from importlib import import_module
 from pathlib import Path
@@ -19,16 +18,6 @@ from .space.outlines import Outlines
 
 # Parts of a recording that are records of arrays.
 _PARTS: dict[str, type[Any]] = {"outlines": Outlines, "ledger": LedgerTrace, "events": Events}
-
-
-def versions() -> dict[str, str]:
-    """Versions of the software on which a result depends."""
-    from importlib.metadata import version
-
-    return {
-        "python": sys.version.split()[0],
-        **{name: version(name) for name in ("eeca-pymunk", "pymunk", "numpy")},
-    }
 
 
 @dataclass

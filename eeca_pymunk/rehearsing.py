@@ -113,12 +113,12 @@ def as_read(STATES: FloatArray, EXTRA: FloatArray) -> None:
 @kernel
 def approach(
     STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, BODY: Rows[Body], ENDS: FloatArray, dt: float, gx: float,
-    gy: float, left: float,
+    gy: float, half_damping: float,
 ) -> int:  # fmt: skip
     """Write to ENDS, to the table END with angles and spins, the poses from which a step of pymunk leads to the end of
     free flight. pymunk moves bodies before it accelerates them, so that they start at
 
-        q_free - dt v,   q_free = q + dt (d v + dt a / 2),   d = `left`, the factor of half a step's damping.
+        q_free - dt v,   q_free = q + dt (d v + dt a / 2),   d = `half_damping`, the factor of half a step's damping.
 
     Bodies at rest on each other have a gap of 0 up to round-off; pymunk, in whose steps they overlap, would begin and
     end such contacts at random. Therefore each body is moved along gravity by PRESS times its height above the lowest
@@ -150,7 +150,7 @@ def approach(
             if moves:
                 ax = now[i, 6] * BODY[row].inv_mass + gx
                 ay = now[i, 7] * BODY[row].inv_mass + gy
-                twist, damped = now[i, 8] * BODY[row].inv_inertia, left
+                twist, damped = now[i, 8] * BODY[row].inv_inertia, half_damping
             if special & STEERED:
                 ax, ay, twist, damped = EXTRA[i, PUSH_X], EXTRA[i, PUSH_Y], EXTRA[i, PUSH_TWIST], 1.0
             px, py = x, y

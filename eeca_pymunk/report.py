@@ -13,7 +13,7 @@ from .arrays import FloatArray, IntArray
 from .compiled.records import Rows, columns
 from .energy.ledger import Ledger, ledger
 from .model.contacts import Impulse
-from .model.step import KINDS, Missed
+from .unmet import Unmet
 
 if TYPE_CHECKING:
     import pymunk
@@ -56,54 +56,23 @@ class Details(NamedTuple):
     friction: FloatArray | None = None
 
 
-class Unmet(NamedTuple):
-    """A budget or tolerance that a step did not meet.
-
-    Attributes:
-        name: "impacts" (number for a body in a step; further ones are ignored and may penetrate), "hits" (number on an
-            island; likewise, until the next step), "impact" (residual velocity of a simultaneous impact, length/time),
-            "solves" (bodies of all solves; the step ends early), "contacts" (of jointed bodies; no numbers), "joints"
-            (status of their solve).
-        value: reached.  limit: largest allowed; nan if there is no such number.
-        bodies: those concerned, as far as they are known.
-    """
-
-    name: str
-    value: float
-    limit: float
-    bodies: tuple[pymunk.Body, ...]
-
-
-def of_missed(MISSED: Rows[Missed], bodies: tuple[pymunk.Body, ...], owner: IntArray) -> tuple[Unmet, ...]:
-    """Budgets and tolerances that were not met, from rows (m,); `owner` (k,): index in `bodies` of each shape's
-    body."""
-    found: dict[tuple[str, tuple[int, ...]], Unmet] = {}
-    for row in MISSED:
-        shapes = [int(s) for s in (row["first"], row["second"]) if s >= 0]
-        places = tuple(sorted({int(owner[s]) for s in shapes}))
-        name = KINDS[int(row["kind"])]
-        found[name, places] = Unmet(name, float(row["value"]), float(row["limit"]), tuple(bodies[i] for i in places))
-    return tuple(found.values())
-
-
 class StepReport:
     """The report of one step with m active contacts. Read-only.
 
     Args:
         time: see the property.
         details: the arrays, or a function that makes them at the first access.
-        iterations, substeps, lock, converged: see the properties.  book: (7,) of `energy.ledger`.
+        iterations, lock, converged: see the properties.  book: (7,) of `energy.ledger`.
         unmet: budgets and tolerances that were not met, or a function that makes them.
     """
 
-    __slots__ = ("_book", "_converged", "_details", "_iterations", "_lock", "_substeps", "_time", "_unmet")
+    __slots__ = ("_book", "_converged", "_details", "_iterations", "_lock", "_time", "_unmet")
 
     def __init__(
         self,
         time: float,
         details: Details | Callable[[], Details],
         iterations: int = 0,
-        substeps: int = 1,
         lock: float = 1.0,
         converged: bool = True,
         book: FloatArray | None = None,
@@ -112,16 +81,15 @@ class StepReport:
         self._time = time
         self._details = details
         self._iterations = iterations
-        self._substeps = substeps
         self._lock = lock
         self._converged = converged
         self._book = book
         self._unmet = unmet
 
     @staticmethod
-    def without_contacts(time: float, bodies: tuple[pymunk.Body, ...] = (), substeps: int = 1) -> StepReport:
+    def without_contacts(time: float, bodies: tuple[pymunk.Body, ...] = ()) -> StepReport:
         """The report of a step without contacts, or of a stepper that does not report them."""
-        return StepReport(time, nothing(bodies), substeps=substeps)
+        return StepReport(time, nothing(bodies))
 
     def _made(self) -> Details:
         details = self._details
@@ -173,8 +141,8 @@ class StepReport:
 
     @property
     def substeps(self) -> int:
-        """Always 1; kept for steppers that split a step."""
-        return self._substeps
+        """Always 1: no stepper splits a step."""
+        return 1
 
     @property
     def lock(self) -> float:
@@ -206,7 +174,7 @@ class StepReport:
     def __reduce__(self) -> tuple[type[StepReport], tuple[object, ...]]:
         # The function that makes the arrays refers to the stepper: a copy has the arrays instead.
         return StepReport, (
-            self.time, self._made(), self.iterations, self.substeps, self.lock, self.converged, self._book,
+            self.time, self._made(), self.iterations, self.lock, self.converged, self._book,
             self.unmet,
         )  # fmt: skip
 

@@ -67,7 +67,7 @@ class _Copy:
     def _take_rollouts(self, job: Job, first: int, last: int) -> list[Events]:
         T, world = job.frames.shape[1], self.world
         buffers = RunBuffers(
-            job.dt, world.gravity, world.left(job.dt), 0.0, self.rows, (last - first) * T, job.every, job.full,
+            job.dt, world.gravity, world.half_damping(job.dt), 0.0, self.rows, (last - first) * T, job.every, job.full,
             job.states[first:last], None if job.push is None else job.push[first:last], job.frames[first:last],
         )  # fmt: skip
         buffers.arrays = buffers.arrays._replace(OWN=self.loop.own, FRESH=self.loop.fresh)

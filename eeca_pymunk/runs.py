@@ -91,8 +91,7 @@ class RunningStepper(PackedStepper):
             return False
         world = self._world
         assert world is not None  # `calls` has looked
-        outside = world.joints is not None and bool(world.joints.partners.outside)
-        return not (outside or world.eccentric)
+        return not (world.eccentric or (world.joints is not None and world.joints.partners.outside))
 
     def calls(self) -> bool:
         """Whether functions have to be called within the next step."""
@@ -189,7 +188,7 @@ class RunningStepper(PackedStepper):
         world = self.adjusted(dt)
         rows = np.array([world.bodies.row[body] for body in kept], np.int64)
         moments = 1 + steps // every if every else 0
-        buffers = RunBuffers(dt, world.gravity, world.left(dt), self.time, rows, moments, every, events)
+        buffers = RunBuffers(dt, world.gravity, world.half_damping(dt), self.time, rows, moments, every, events)
         if every:
             buffers.frames[0] = world.STATES[NOW, rows, :6]
             buffers.progress.frame = 1
@@ -224,8 +223,7 @@ class RunningStepper(PackedStepper):
         loop = self.event_loop
         assert loop is not None
         if status == ENERGY:
-            after = float(loop.scene.PAR.after)
-            return NotFiniteError(f"the energy of the space would be {after} after dt = {dt}: {TOO_FAR}")
+            return NotFiniteError(f"the energy of the space would be {loop.scene.PAR.after} after dt = {dt}: {TOO_FAR}")
         try:
             self._fail(world, dt, status)
         except Exception as error:
@@ -235,8 +233,7 @@ class RunningStepper(PackedStepper):
     def _land_run(self, world: World, buffers: RunBuffers, dt: float, status: int) -> None:
         """Write the end of the steps taken to the space."""
         RUN = buffers.progress
-        broken = status < 0 or buffers.halted
-        if broken:
+        if status < 0 or buffers.halted:
             self._world = None
             moves = world.WALK[BODY_ROW] >= 0
             world.STATES[LEFT, moves, :6] = world.STATES[NOW, moves, :6]

@@ -58,7 +58,7 @@ def finite(a: float, b: float, c: float, d: float, e: float, f: float) -> bool:
 
 @kernel
 def take(
-    STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, BODY: Rows[Body], gx: float, gy: float, left: float
+    STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, BODY: Rows[Body], gx: float, gy: float, half_damping: float
 ) -> int:
     """Write the states read from pymunk into BODY: all paths begin at the start of the step, `since` = 0.
 
@@ -67,7 +67,7 @@ def take(
 
     Args:
         STATES (2, N, 9), WALK (4, N), EXTRA (N, 5), BODY (n,): see `layout.py`.
-        gx, gy: gravity, length/time².  left: d^(dt/2), the factor of half a step's damping.
+        gx, gy: gravity, length/time².  half_damping: d^(dt/2), the factor of half a step's damping.
 
     Returns:
         FORCES if any body has a force or torque, else 0. A negative code, with BODY invalid, if the bodies are others,
@@ -98,7 +98,7 @@ def take(
         ax, ay, twist, damped = 0.0, 0.0, 0.0, 1.0
         im = BODY[row].inv_mass
         if im > 0.0:
-            ax, ay, twist, damped = fx * im + gx, fy * im + gy, torque * BODY[row].inv_inertia, left
+            ax, ay, twist, damped = fx * im + gx, fy * im + gy, torque * BODY[row].inv_inertia, half_damping
         special = WALK[SPECIAL, i]
         if special & STEERED:
             ax, ay, twist, damped = EXTRA[i, PUSH_X], EXTRA[i, PUSH_Y], EXTRA[i, PUSH_TWIST], 1.0
@@ -124,13 +124,13 @@ def give(
     BODY: Rows[Body],
     ENDS: FloatArray,
     dt: float,
-    left: float,
+    half_damping: float,
     status: int,
 ) -> int:
     """Write the ends of BODY's paths to STATES[LEFT], and to ENDS for pymunk.
 
     Args:
-        dt: time.  left: see `take`.  status: the bits of the step so far.
+        dt: time.  half_damping: see `take`.  status: the bits of the step so far.
 
     Returns:
         `status` with the bits of `lay`; OVERFLOW, with STATES written, if a number is not finite.
@@ -142,7 +142,7 @@ def give(
             continue
         s = dt - BODY[row].since
         special = WALK[SPECIAL, i]
-        damped = left if BODY[row].inv_mass > 0.0 and not special & STEERED else 1.0
+        damped = half_damping if BODY[row].inv_mass > 0.0 and not special & STEERED else 1.0
         ax, ay, twist = BODY[row].ax, BODY[row].ay, BODY[row].angular
         vx, vy, spin = BODY[row].vx, BODY[row].vy, BODY[row].spin
         x, y = BODY[row].x + s * (vx + 0.5 * s * ax), BODY[row].y + s * (vy + 0.5 * s * ay)

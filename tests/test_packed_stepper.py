@@ -19,8 +19,7 @@ from eeca_pymunk.errors import NotFiniteError
 from eeca_pymunk.model.contacts import Impulse
 from eeca_pymunk.packed_stepper import PackedStepper
 from eeca_pymunk.report import Details, of_events
-from eeca_pymunk.space import private
-from eeca_pymunk.space import world as world_of_space
+from eeca_pymunk.space import packing, private
 from eeca_pymunk.space.world import World
 from scenes.scene import add_disk
 
@@ -332,8 +331,8 @@ def test_shapes_that_stay_are_not_read_again(monkeypatch: pytest.MonkeyPatch) ->
         shape.elasticity = 1.0
     stepper = FreeFlight(space)
     asked: list[pymunk.Shape] = []
-    read = world_of_space.read
-    monkeypatch.setattr(world_of_space, "read", lambda shape, *wall: (asked.append(shape), read(shape, *wall))[1])
+    read = packing.read
+    monkeypatch.setattr(packing, "read", lambda shape, *wall: (asked.append(shape), read(shape, *wall))[1])
     added = pymunk.Circle(space.static_body, 1.0, (700.0, 700.0))
     added.elasticity = 1.0
     space.add(added)

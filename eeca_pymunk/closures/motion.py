@@ -180,19 +180,19 @@ class Disks:
 
     def step(
         self, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
-        left: float, move: Move,
+        half_damping: float, move: Move,
     ) -> int:  # fmt: skip
-        """From the states read to those to be written, see `transfer.py`; contacts do not change spins. `left`: factor
-        of half a step's damping."""
+        """From the states read to those to be written, see `transfer.py`; contacts do not change spins. `half_damping`:
+        factor of half a step's damping."""
         BODY = self.world.BODY
-        status = take(STATES, WALK, EXTRA, BODY, gx, gy, left)
+        status = take(STATES, WALK, EXTRA, BODY, gx, gy, half_damping)
         if status < 0:
             return status
         start = Start(
             dt, columns(BODY, "x", "y"), columns(BODY, "vx", "vy"), columns(BODY, "ax", "ay"), BODY["inv_mass"].copy()
         )  # fmt: skip
         if not np.isfinite(start.free_displacement).all():
-            give(STATES, WALK, EXTRA, BODY, ENDS, dt, left, status)
+            give(STATES, WALK, EXTRA, BODY, ENDS, dt, half_damping, status)
             return OVERFLOW
         self.motion = motion = move(start)
         put(BODY, columns(BODY, "x", "y") + motion.displacement, "x", "y")
@@ -202,7 +202,7 @@ class Disks:
         BODY["since"] = dt
         if motion.details is not None:
             status |= EVENTS
-        return give(STATES, WALK, EXTRA, BODY, ENDS, dt, left, status)
+        return give(STATES, WALK, EXTRA, BODY, ENDS, dt, half_damping, status)
 
     def near(
         self, start: Start, displacement: FloatArray, extra: FloatArray | float = 0.0

@@ -174,11 +174,11 @@ class SimultaneousStep:
 
     def step(
         self, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
-        left: float,
+        half_damping: float,
     ) -> int:  # fmt: skip
         """See `Disks.step`."""
         move = partial(self.closure.advance, self.disks)
-        return self.disks.step(STATES, WALK, EXTRA, ENDS, dt, gx, gy, left, move)
+        return self.disks.step(STATES, WALK, EXTRA, ENDS, dt, gx, gy, half_damping, move)
 
     def rule(self, rules: Mapping[tuple[int, int], tuple[float, float, float, float]]) -> None:
         """Set the elasticity of pairs of shapes (a < b) for the following steps; negative: the pair does not

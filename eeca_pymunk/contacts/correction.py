@@ -152,7 +152,7 @@ def unturn(
 
 @uncounted
 def turn_by(NEW: FloatArray, touched: FlagArray, turn: float, x: float, y: float, V: FloatArray, at: int) -> None:
-    """Add a common spin about (x, y) to the velocities V[:, at :] of the touched bodies, which are at NEW."""
+    """Add a common spin `turn` about (x, y) to the velocities V[:, at :] of the touched bodies, which are at NEW."""
     for i in range(len(touched)):
         if touched[i] != 0:
             V[i, at] -= turn * (NEW[i, 1] - y)

@@ -38,8 +38,8 @@ def recall(
     KEY: IntArray, m: int, KEYS: IntArray, FORCES: Rows[Force], stamp: float, h: float, L: FloatArray,
     EXPECTED: FloatArray,
 ) -> None:  # fmt: skip
-    """Set the initial impulses L (m, 2), and those of loads EXPECTED (m,), from remembered forces of this step or the
-    last."""
+    """Set the initial impulses L (m, 2), and those of loads EXPECTED (m,), from remembered forces of this step, whose
+    number is `stamp`, or the last."""
     for i in range(m):
         L[i, 0] = 0.0
         L[i, 1] = 0.0
@@ -148,7 +148,7 @@ def step_island(
             OUT[0].direct = factors
             if found:
                 OUT[0].at_rest = 1
-                OUT[0].pushing = remember_loads(ROWS, contacts.KEY, L, m, h, S.KEYS, S.FORCES, S.COUNT, S.PAR.stamp)
+                remember_loads(ROWS, contacts.KEY, L, m, h, S.KEYS, S.FORCES, S.COUNT, S.PAR.stamp)
                 return m
             if rest_speed < 0.0:
                 return 0
@@ -176,7 +176,7 @@ def step_island(
         if free >= 0.0:
             budget, size = budget_of(ROWS, m, normal + tangential, owed, free), least_of(EXTENT, n)
             OUT[0].lifted, OUT[0].deepest = lifting(problem, MIDDLE, VN, ACC, h, size, budget, contacts.JUMP)
-        OUT[0].pushing = remember_loads(ROWS, contacts.KEY, L, m, h, S.KEYS, S.FORCES, S.COUNT, S.PAR.stamp)
+        remember_loads(ROWS, contacts.KEY, L, m, h, S.KEYS, S.FORCES, S.COUNT, S.PAR.stamp)
     else:
         OUT[0].owed = owed
     OUT[0].forces = 0.5 * h * (against(ACC, IM, II, n, V) + against(ACC, IM, II, n, VN))

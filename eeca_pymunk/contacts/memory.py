@@ -51,17 +51,14 @@ def remember(
 def remember_loads(
     ROWS: Rows[Row], KEY: IntArray, L: FloatArray, m: int, h: float, KEYS: IntArray, FORCES: Rows[Force],
     COUNT: Count, stamp: float,
-) -> int:  # fmt: skip
+) -> None:  # fmt: skip
     """Write the forces of the active ones of m contacts, from their impulses L (m, 2) over h, and their loads, without
-    the part that stops an approach. Returns the number of active contacts."""
-    pushing = 0
+    the part that stops an approach."""
     for i in range(m):
         if L[i, 0] > 0.0:
             stopped = max(max(ROWS[i].target, 0.0) - ROWS[i].un, 0.0) * ROWS[i].k_n
             load = max(L[i, 0] - stopped, 0.0)
             remember(KEYS, FORCES, COUNT, KEY[i], L[i, 0] / h, L[i, 1] / h, load / h, stamp)
-            pushing += 1
-    return pushing
 
 
 @uncounted

@@ -153,4 +153,3 @@ def strike_disk(A: Scene, i: int, o: int, t: float) -> None:
     PAR.restitution += 0.5 * lam * (1.0 - e) * max(-u, 0.0)
     note(A.LOG[A.COUNT.logged], i, o, t, lam, beta, nx, ny, px, py, lam * free, math.nan)
     A.COUNT.logged += 1
-    A.COUNT.impacts += 1

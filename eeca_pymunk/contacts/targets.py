@@ -22,11 +22,11 @@ from ..model.parameters.intervals import IMPACT_SPEED
 
 @uncounted
 def sustained(elasticity: float, u: float, along: float, mass: float, expected: float, h: float) -> bool:
-    """Whether a contact with e < 1 would bounce back within h, so that no single impact can resolve it.
+    """Whether a contact with e < 1 would bounce back within h, so that its bounces cannot be resolved one by one.
 
     Args:
         u: normal velocity.  along: a_n, acceleration of the gap without impulses.
-        mass: 1 / A_nn.  expected: lam_w, the impulse over h of the loads that the contact carries.
+        mass: 1 / A_nn.  expected: lam_w, the impulse over h of the contact's load.
     """
     bounce = elasticity * max(-u, 0.0)
     return elasticity < 1.0 and bounce < 0.5 * max(-along * h, expected / mass)

@@ -27,8 +27,8 @@ def note_unmet(A: Scene, kind: int, a: int, b: int, value: float, limit: float) 
 
 @uncounted
 def spend(A: Scene, pairs: int, contacts: int, sweeps: int, direct: int) -> None:
-    """Add the work of a contact solve to that of the step: its geometry, sweeps, and direct solves, with dense matrices
-    for few contacts."""
+    """Add the work of a contact solve to that of the step: its geometry (`pairs`), sweeps, and direct solves, with
+    dense matrices for few contacts."""
     few = min(contacts, DENSE_CONTACTS)
     one = PAIR_LOOKS * pairs + contacts * (SWEEP_LOOKS * sweeps + DIRECT_LOOKS * few * direct)
     A.COUNT.work += EVENT_LOOKS + int(one)

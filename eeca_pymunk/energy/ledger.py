@@ -16,7 +16,6 @@ from ..arrays import FloatArray
 
 # Entries of a book: restitution, friction, external, damping, change of the energy in springs (part of the energy
 # after), energy before and after.
-BOOK = 7
 DAMPED, AFTER = 3, 6
 
 

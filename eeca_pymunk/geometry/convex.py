@@ -28,7 +28,8 @@ _FAR = math.inf
 
 @uncounted
 def place(A: Scene, s: int, x: float, y: float, angle: float, OUT: FloatArray) -> int:
-    """Vertices and outward normals of shape s, its body at (x, y, angle), into OUT (at least as many, 4); how many.
+    """Write vertices and outward normals of shape s, with its body at (x, y, angle), to OUT (.., 4); returns the number
+    of vertices.
 
     Exact for angle 0 and for a vertex at the centre of mass.
     """
@@ -52,8 +53,8 @@ def place(A: Scene, s: int, x: float, y: float, angle: float, OUT: FloatArray) -
 
 @uncounted
 def separation(P: FloatArray, p: int, Q: FloatArray, q: int) -> tuple[float, int, int]:
-    """How far Q (q vertices) is from P (p vertices) along the best edge normal of P, that edge, and Q's vertex that is
-    nearest along it; (-inf, 0, 0) for a point P."""
+    """Largest distance of Q (q vertices) from P (p vertices) along an edge normal of P, that edge, and the vertex of Q
+    that is nearest along it; (-inf, 0, 0) for a point P."""
     best, edge, vertex = -_FAR, 0, 0
     if p > 1:
         for j in range(p):
@@ -71,7 +72,7 @@ def separation(P: FloatArray, p: int, Q: FloatArray, q: int) -> tuple[float, int
 
 @uncounted
 def along_edge(P: FloatArray, p: int, edge: int, x: float, y: float) -> tuple[float, float]:
-    """Where on an edge the foot of (x, y) is, times the edge's length, and that length squared."""
+    """Position of the foot of (x, y) along an edge, times the edge's length, and that length squared."""
     end = edge + 1 if edge + 1 < p else 0
     ex, ey = P[end, 0] - P[edge, 0], P[end, 1] - P[edge, 1]
     return (x - P[edge, 0]) * ex + (y - P[edge, 1]) * ey, ex * ex + ey * ey
@@ -108,10 +109,8 @@ def vertex_edge(P: FloatArray, p: int, Q: FloatArray, q: int) -> tuple[float, in
 def prefers_second(
     P: FloatArray, p: int, edge_p: int, apart_p: float, Q: FloatArray, q: int, edge_q: int, apart_q: float, tie: float
 ) -> bool:
-    """Whether Q's edge is the axis of two cores: the one farther apart, of two alike (within `tie`) the longer edge.
-
-    Lengths are no round-off: parallel faces keep their axis however they shake.
-    """
+    """Whether the normal of Q's edge is the axis of two cores: the one with the larger distance, or if both are equal
+    within `tie`, that of the longer edge, so that parallel faces keep their axis under round-off."""
     if apart_q > apart_p + tie:
         return True
     if apart_p > apart_q + tie:

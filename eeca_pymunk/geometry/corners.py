@@ -1,8 +1,8 @@
-"""Which shapes are thin, and at which corners segments meet: what `sides.py` needs, from the shapes as they stand.
+"""Which shapes are thin, and at which corners segments meet: input of `sides.py`, made from the shapes once.
 
 Row 4 s + 2 e + t of CORNER is about end e of segment s, with u the direction from there along s: of the segments that
-meet there it has the one that comes next about that end, counter-clockwise from u for t = 0, clockwise for t = 1, with
-the angle from u to it. Row 4 s says whether s is thin.
+meet there it has the next one about that end, counter-clockwise from u for t = 0, clockwise for t = 1, with the angle
+from u to it. Row 4 s tells whether s is thin.
 """
 
 from __future__ import annotations
@@ -24,7 +24,8 @@ def core_room(LINK: Rows[Link]) -> FloatArray:
 
 
 def thin_memory(LINK: Rows[Link], VERTEX: FloatArray, moving: int) -> tuple[Rows[Side], Rows[Corner]]:
-    """SIDE and CORNER, without rows where no thin shapes may meet."""
+    """The tables SIDE and CORNER; without rows if no thin shapes may meet. moving: number of moving shapes, the first
+    ones."""
     if LINK["vertices"][:moving].max(initial=1) < 2:
         return rows(Side, 0), rows(Corner, 0)
     flat = thin(LINK, VERTEX)
@@ -38,7 +39,7 @@ def thin_memory(LINK: Rows[Link], VERTEX: FloatArray, moving: int) -> tuple[Rows
 
 
 def corners_of(LINK: Rows[Link], VERTEX: FloatArray, flat: BoolArray | None = None) -> Rows[Corner]:
-    """CORNER of all shapes; `flat` (k,) says which are thin, where that is known."""
+    """The table CORNER of all shapes; `flat` (k,): which ones are thin, if already known."""
     CORNER = rows(Corner, 4 * len(LINK))
     CORNER["thin"][::4] = thin(LINK, VERTEX) if flat is None else flat
     note_corners(LINK, VERTEX, CORNER)
@@ -46,7 +47,7 @@ def corners_of(LINK: Rows[Link], VERTEX: FloatArray, flat: BoolArray | None = No
 
 
 def thin(LINK: Rows[Link], VERTEX: FloatArray) -> BoolArray:
-    """(k,) which shapes are segments, or polygons hardly wider."""
+    """(k,) which shapes are thin: segments, and planks."""
     flat: BoolArray = LINK["vertices"] == 2
     some: IntArray = np.flatnonzero(LINK["vertices"] > 2)
     if len(some):
@@ -63,7 +64,7 @@ def thin(LINK: Rows[Link], VERTEX: FloatArray) -> BoolArray:
 
 
 def note_corners(LINK: Rows[Link], VERTEX: FloatArray, CORNER: Rows[Corner]) -> None:
-    """Fill in the corners of all segments; those of one body meet."""
+    """Fill in the corners of all segments, at which segments of the same body meet."""
     some: IntArray = np.flatnonzero(LINK["vertices"] == 2)
     if len(some) < 2:
         return

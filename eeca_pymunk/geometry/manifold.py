@@ -1,9 +1,10 @@
-"""Contact points of two shapes at one configuration: two where faces are opposite each other, one elsewhere.
+"""Contact points of two shapes at one configuration: two if faces are opposite each other, else one.
 
-The reference face is the edge along which the cores are farthest apart. The other core's edge that looks at it most
-is clipped to its length, along the tangent; both ends of what is left are contacts, with heights above the reference
-as gaps. Rows are (n_x, n_y, p_x, p_y, g), normals from a to b, points halfway between the surfaces, in the order of
-p . t with t = (-n_y, n_x): the key "pair and place in its rows" lasts while the shapes stay on each other.
+The reference face is the edge along which the cores are farthest apart. The edge of the other core that is most opposed
+to it is clipped to its length, along the tangent; both ends of the remaining part are contacts, with heights above the
+reference as gaps. Rows are (n_x, n_y, p_x, p_y, g), normals from a to b, points halfway between the surfaces, in the
+order of p . t with t = (-n_y, n_x): the key "pair and index of the row" remains valid while the shapes stay on each
+other.
 """
 
 from __future__ import annotations
@@ -24,7 +25,8 @@ def clip(
     P: FloatArray, p: int, edge: int, Q: FloatArray, q: int, r_p: float, r_q: float, sign: float, reach: float,
     OUT: FloatArray,
 ) -> int:  # fmt: skip
-    """Rows of OUT for the edge of P as reference face; sign is 1 if the normal from a to b is P's, else -1."""
+    """Write the contact points on an edge of P as reference face to OUT; returns their number. sign: 1 if the normal
+    from a to b is P's, else -1."""
     nx, ny = P[edge, 2], P[edge, 3]
     tx, ty = -ny, nx
     end = edge + 1 if edge + 1 < p else 0
@@ -65,7 +67,7 @@ def clip(
 
 @uncounted
 def reverse(OUT: FloatArray, count: int) -> None:
-    """The rows seen from b: normals turned round, and with them the order along the tangent."""
+    """Exchange the two shapes of `count` rows: reverse normals, and with them the order along the tangent."""
     for k in range(count):
         OUT[k, 0], OUT[k, 1] = -OUT[k, 0], -OUT[k, 1]
     if count == 2:
@@ -104,7 +106,8 @@ def ordered_manifold(
 def manifold(
     A: Scene, s: int, r: int, POSE: FloatArray, a: int, b: int, reach: float, tolerance: float, OUT: FloatArray
 ) -> int:
-    """How many (0, 1 or 2) points of shapes s and r are no farther apart than `reach` (length), into OUT (2, 5).
+    """Write the points at which shapes s and r are no farther apart than `reach` (length) to OUT (2, 5); returns their
+    number, 0, 1 or 2.
 
     Args:
         POSE: (k, 3) x, y and angle; rows a and b are those of the bodies of s and r.
@@ -121,8 +124,8 @@ def manifold(
 
 @uncounted
 def support_range(P: FloatArray, p: int, nx: float, ny: float, tolerance: float) -> tuple[float, float, float, float]:
-    """Of a core's vertices no more than `tolerance` below the highest along n: the least and greatest place along
-    t = (-n_y, n_x); then that height, and the extent of the whole core along t."""
+    """Of the vertices of a core that are at most `tolerance` below the highest along n: the least and largest position
+    along t = (-n_y, n_x); then the height of the highest, and the extent of the whole core along t."""
     top, left, right = -math.inf, math.inf, -math.inf
     for k in range(p):
         top = max(top, P[k, 0] * nx + P[k, 1] * ny)
@@ -140,8 +143,8 @@ def support_range(P: FloatArray, p: int, nx: float, ny: float, tolerance: float)
 def common_face(
     P: FloatArray, p: int, Q: FloatArray, q: int, nx: float, ny: float, slack: float
 ) -> tuple[float, float, float, bool]:  # fmt: skip
-    """Where the cores P and Q, with normal n from P to Q, have edges across it within `slack` (length): from and to
-    along t = (-n_y, n_x), the height of P along n, and whether both have one."""
+    """The common face of cores P and Q with normal n from P to Q, where both have edges normal to n within `slack`
+    (length): least and largest position along t = (-n_y, n_x), the height of P along n, and whether there is one."""
     low_p, high_p, top, size_p = support_range(P, p, nx, ny, slack)
     low_q, high_q, _, size_q = support_range(Q, q, -nx, -ny, slack)
     low, high = max(low_p, -high_q), min(high_p, -low_q)
@@ -150,10 +153,10 @@ def common_face(
 
 @uncounted
 def face(A: Scene, s: int, r: int, POSE: FloatArray, a: int, b: int, tolerance: float, OUT: FloatArray) -> int:
-    """The contact of shapes s and r that meet, into OUT as `manifold` does: 2 rows, the ends of their common face,
-    where both have an edge across the normal within `tolerance` (length), else 1. The gap is the same at both ends.
+    """Write the contact of shapes s and r that meet to OUT, as `manifold` does: 2 rows, the ends of their common face,
+    if both have an edge normal to n within `tolerance` (length), else 1. The gap is the same at both ends.
 
-    In overlap every corner that is inside acts: the tolerance grows by the depth.
+    In overlap every corner inside the other shape acts: the tolerance is increased by the depth.
     """
     swapped = s > r
     if swapped:
@@ -178,7 +181,7 @@ def face(A: Scene, s: int, r: int, POSE: FloatArray, a: int, b: int, tolerance: 
 
 @uncounted
 def half_width(A: Scene, s: int) -> float:
-    """Half the least width of shape s: as deep another may come into it and is on the side that it came from."""
+    """Half the least width of shape s: a shape that is less deep inside is on the side from which it came."""
     VERTEX, first, count, least = A.VERTEX, A.LINK[s].first, A.LINK[s].vertices, math.inf
     if count < 3:
         return A.SHAPE[s].rounding

@@ -1,20 +1,20 @@
-"""On which side of each other two thin shapes are: what their distance does not tell where they touch.
+"""On which side of each other two thin shapes are, which their distance does not tell where they touch.
 
-Thin are segments and planks, whose cores have no inside, or hardly any. Along the normals of an edge's two sides two
-segments that lie flush are equally far apart, 0, and of thin shapes that have come to cross by round-off, or by the
-error of a step, the nearer way out may be the wrong one. So pairs of them remember a normal m from a to b, in the
-memory of sides, the rows of SIDE. It holds
+Thin shapes are segments and planks, whose cores have almost no interior. Along the normals of both sides of an edge,
+two parallel segments that touch have the same distance 0; and if thin shapes cross by round-off, or by the error of a
+step, the shortest way apart may be the wrong one. So each pair of them remembers a normal m from a to b, in the rows of
+SIDE. It is valid
 
-* for cores that touch, up to the depth that an interval may always reach, and
-* for contacts that forces hold (`deep` > 0) as far as they may go about one another in an interval: a normal n with
-  n . m < 0 is the wrong one up to that distance (length), and the gap is negative.
+* for cores that touch, up to the depth that an interval always allows, and
+* for contacts that forces hold (`deep` > 0) as far as they may move relative to each other in an interval: a normal n
+  with n . m < 0 is the wrong one up to that distance (length), and the gap is negative.
 
-What is farther apart has its side from the geometry, and the prediction of its next impact notes it.
+Pairs that are farther apart have their side from the geometry, and the prediction of their next impact notes it.
 
-Segments of one body that meet, end to end or an end on the other, are one boundary. What lies in the corner between
-two, by its side of one, and is nearest to the other where they meet, is on that one's side that looks into the corner:
-there it meets that side as if it went on beyond the end, by that way. In a corner of less than 180
-degrees nothing of that is inside, so the corner stays what it is. (CORNER, see `corners.py`)
+Segments of one body that meet, end to end or an end on the other, are one boundary. A shape in the corner between two
+of them, on the inner side of one, and nearest to the other at the common end, is on that one's inner side: it meets
+that side as if the segment extended beyond its end, by that distance. In a corner of less than 180 degrees none of this
+extension is in the interior, so the corner keeps its shape. (CORNER, see `corners.py`)
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from ..model.scene import Scene, scene_of
 from ..model.shapes import Side
 from .convex import closest
 
-_PROBES = 16  # rows that a pair may stand in
+_PROBES = 16  # rows in which a pair may be
 _SCATTER = 40503
 
 
@@ -50,7 +50,8 @@ def key_of(A: Scene, a: int, b: int) -> int:
 
 @uncounted
 def side_row(A: Scene, key: int) -> int:
-    """The row of a pair in the memory, or else one for it: a free one, if there is any nearby."""
+    """Row of a pair in the memory, else a free one for it, if there is any within _PROBES rows, else one to be
+    replaced."""
     SIDE, mask = A.SIDE, len(A.SIDE) - 1
     first = ((key - 1) * _SCATTER >> 3) & mask
     for k in range(_PROBES):
@@ -81,7 +82,7 @@ def note_side(A: Scene, a: int, b: int, nx: float, ny: float, held: bool) -> Non
 
 @uncounted
 def near_side(A: Scene, a: int, b: int) -> float:
-    """Length up to which cores touch, so that the memory tells their side."""
+    """Distance of cores (length) up to which the memory determines their side."""
     return INTERVAL_DEPTH_LEAST * smaller(A, a, b)
 
 
@@ -94,17 +95,17 @@ def known_side(A: Scene, a: int, b: int) -> bool:
 
 @uncounted
 def forget_sides(A: Scene, i: int) -> None:
-    """Forget the sides of all shapes of body i, which was put where it is."""
+    """Forget the sides of all shapes of body i, which the program has placed."""
     SIDE, LINK, shapes = A.SIDE, A.LINK, len(A.SHAPE)
     for row in range(len(SIDE)):
         pair = SIDE[row].key - 1
         if pair >= 0 and (LINK[pair // shapes].owner == i or LINK[pair % shapes].owner == i):
-            SIDE[row].key = -1  # others stand behind it
+            SIDE[row].key = -1  # deleted, not free: rows after it may belong to other pairs
 
 
 @uncounted
 def keep_sides(TABLE: Table, KNOWN: Rows[Side], PLACE: IntArray) -> None:
-    """Remember what KNOWN has of pairs of k shapes whose numbers now, PLACE (k,), are not -1."""
+    """Remember the sides KNOWN of pairs of k shapes whose present numbers, PLACE (k,), are not -1."""
     A, k = scene_of(TABLE), PLACE.shape[0]
     for row in range(len(KNOWN)):
         known = KNOWN[row]
@@ -123,8 +124,7 @@ def keep_sides(TABLE: Table, KNOWN: Rows[Side], PLACE: IntArray) -> None:
 def axis(
     P: FloatArray, p: int, Q: FloatArray, q: int, sign: float, mx: float, my: float
 ) -> tuple[float, int, int]:  # fmt: skip
-    """Of the edges of P whose normals, times `sign`, look along m, the one along which Q is farthest apart: how far,
-    that edge, and Q's vertex that is nearest along it."""
+    """As `convex.separation`, for those edges of P whose normals, times `sign`, have a positive component along m."""
     best, edge, vertex = -math.inf, 0, 0
     for j in range(p):
         nx, ny = P[j, 2], P[j, 3]
@@ -157,9 +157,8 @@ def side_of(A: Scene, a: int, b: int) -> tuple[float, float]:
 def corner_of(
     A: Scene, W: FloatArray, w: int, o: int, x: float, y: float, deep: float
 ) -> tuple[int, float, float]:  # fmt: skip
-    """Of shape o, which is nearest to the segment w, placed as W, at the point (x, y): the end of w there, if o lies in
-    a corner at that end, -1 if in none, and the normal (2) of the side of w that looks into that. There W goes on by
-    `deep`."""
+    """The corner of segment w in which shape o lies, whose nearest point of w is (x, y): the end of w there, -1 if
+    there is none, and the normal (2) of the inner side of w. Extends the placed segment W by `deep` beyond that end."""
     ex, ey = W[1, 0] - W[0, 0], W[1, 1] - W[0, 1]
     length = math.sqrt(ex * ex + ey * ey)
     ux, uy = ex / length, ey / length
@@ -187,8 +186,8 @@ def corner_of(
 def closest_on_side(
     A: Scene, P: FloatArray, p: int, Q: FloatArray, q: int, a: int, b: int
 ) -> tuple[float, float, float, float, float, bool, int, float, int, float]:  # fmt: skip
-    """`closest` of the cores P and Q of shapes a < b; of thin ones that touch, or have come through one another, on the
-    side that the pair remembers, and in corners on the side that looks into it."""
+    """`closest` of the cores P and Q of shapes a < b; for thin ones that touch or cross, on the side that the pair
+    remembers, and in corners on the inner side."""
     d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q = closest(P, p, Q, q)
     if not remembers(A, a, b):
         return d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q

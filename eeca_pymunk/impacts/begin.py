@@ -21,8 +21,8 @@ def begin(A: Scene, WALK: IntArray) -> None:
     """Set instants relative to the start of this step, reset its counters and ledger, and mark the bodies to be
     predicted: edited ones, and those whose predicted events are due."""
     BODY, STATE, PAR, COUNT = A.BODY, A.STATE, A.PAR, A.COUNT
-    COUNT.heap, COUNT.logged, COUNT.impacts, COUNT.blocks, COUNT.predictions, COUNT.stale = 0, 0, 0, 0, 0, 0
-    COUNT.solves, COUNT.solved, COUNT.ignored, COUNT.sweeps, COUNT.direct, COUNT.work = 0, 0, 0, 0, 0, 0
+    COUNT.heap, COUNT.logged, COUNT.blocks, COUNT.predictions = 0, 0, 0, 0
+    COUNT.solves, COUNT.solved, COUNT.direct, COUNT.work = 0, 0, 0, 0
     if COUNT.unmet > 0:
         A.FLAG[:] = 0
         COUNT.unmet = 0
@@ -33,20 +33,20 @@ def begin(A: Scene, WALK: IntArray) -> None:
     PAR.restitution, PAR.frictional, PAR.external, PAR.damped = 0.0, 0.0, 0.0, 0.0
     PAR.lock, PAR.stored = 1.0, 0.0
     PAR.before = total(A)
-    left = PAR.left_over
-    if left != 1.0:
+    half_damping = PAR.half_damping
+    if half_damping != 1.0:
         # `take` has damped velocities by half a step already.
-        PAR.damped = unsteered(A, WALK) * (1.0 / (left * left) - 1.0)
+        PAR.damped = unsteered(A, WALK) * (1.0 / (half_damping * half_damping) - 1.0)
         PAR.before += PAR.damped
     PAR.stamp += 1.0
     COUNT.waiting, COUNT.phase = 0, 0
     n, last = BODY.shape[0] - 1, PAR.last
     quiet = COUNT.quiet > REST_RETRY
     COUNT.closing, fixed = 0, 1 if A.SHAPE.shape[0] > A.LIST.shape[0] else 0
-    pulled, even, carries = 0.0, True, A.RULE.shape[0] == 0 and not quiet
+    pulled, even, may_support = 0.0, True, A.RULE.shape[0] == 0 and not quiet
     for i in range(n):
         STATE[i].events = 0
-        carries = carries and A.MEMBER[i].tied < 0
+        may_support = may_support and A.MEMBER[i].tied < 0
         if not quiet:
             A.MEMBER[i].busy = max(A.MEMBER[i].busy - 1, 0)
         if not quiet and A.MEMBER[i].rest == AT_REST and stays_at_rest(A, i, last):
@@ -67,7 +67,7 @@ def begin(A: Scene, WALK: IntArray) -> None:
             if BODY[i].due == -math.inf:
                 forget_sides(A, i)
             if BODY[i].due <= ANEW:
-                A.MEMBER[i].put, COUNT.crammed = 1, 1
+                A.MEMBER[i].placed, COUNT.any_placed = 1, 1
         else:
             BODY[i].due = max(BODY[i].due - last, 0.0)
         alike = BODY[i].inv_mass == 0.0 or (ax == BODY[0].ax and ay == BODY[0].ay)
@@ -76,4 +76,4 @@ def begin(A: Scene, WALK: IntArray) -> None:
     if fixed < 2:
         COUNT.closing = 0
     COUNT.even = 1 if even else 0
-    COUNT.carries = 1 if carries else 0
+    COUNT.may_support = 1 if may_support else 0

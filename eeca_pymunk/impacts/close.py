@@ -56,9 +56,9 @@ def close(A: Scene, WALK: IntArray) -> None:
         PAR.restitution += PAR.frictional
         PAR.frictional = 0.0
     PAR.after = total(A) + PAR.stored
-    left = PAR.left_over
-    if left != 1.0:
-        lost = unsteered(A, WALK) * (1.0 - left * left)
+    half_damping = PAR.half_damping
+    if half_damping != 1.0:
+        lost = unsteered(A, WALK) * (1.0 - half_damping * half_damping)
         PAR.damped += lost
         PAR.after -= lost
     PAR.last = end

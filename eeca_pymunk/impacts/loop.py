@@ -100,7 +100,6 @@ def run(A: Scene, may_rest: bool) -> int:
             return BLOCK_DUE
         j = body_of(A, o) if o >= 0 else i
         if o < 0 or STATE[j].version != STATE[i].known:
-            COUNT.stale += 1
             one = i
             continue
         if met_too_often(A, i, j):
@@ -147,7 +146,7 @@ def end_of_interval(A: Scene, J: Joints, i: int, t: float) -> int:
 @kernel
 def follow(A: Scene, J: Joints, may_rest: bool) -> int:
     """Process all events of the step, with simultaneous impacts and islands. After a status other than DONE: provide
-    more memory, and call again."""
+    more memory, and call again. may_rest: whether contacts may persist."""
     COUNT, STATE = A.COUNT, A.STATE
     end = A.PAR.dt
     while True:

@@ -151,7 +151,7 @@ def run(
         while RUN.done < RUN.until:
             if RUN.stage == BETWEEN:
                 before_step(A, F, STATES, WALK)
-                RUN.bits = start(A, J, STATES, WALK, EXTRA, RUN.dt, RUN.gravity_x, RUN.gravity_y, RUN.left_over)
+                RUN.bits = start(A, J, STATES, WALK, EXTRA, RUN.dt, RUN.gravity_x, RUN.gravity_y, RUN.half_damping)
                 if RUN.bits < 0:
                     return RUN.bits
                 RUN.stage = WITHIN

@@ -26,7 +26,7 @@ class RunBuffers:
     """Arguments and results of a run.
 
     Args:
-        dt: time.  gravity: length/time².  left: factor by which half a step's damping multiplies velocities.
+        dt: time.  gravity: length/time².  half_damping: factor by which half a step's damping multiplies velocities.
         time: simulated time at its start.
         kept: (b,) rows in STATES of the bodies whose frames are stored.  frames: largest number of frames.
         every: steps from frame to frame, 0 for none.  events: whether impacts are stored.
@@ -36,13 +36,13 @@ class RunBuffers:
     """
 
     def __init__(
-        self, dt: float, gravity: tuple[float, ...], left: float, time: float = 0.0, kept: IntArray = _NOBODY,
+        self, dt: float, gravity: tuple[float, ...], half_damping: float, time: float = 0.0, kept: IntArray = _NOBODY,
         frames: int = 0, every: int = 0, events: bool = False, initial: FloatArray | None = None,
         push: FloatArray | None = None, into: FloatArray | None = None,
     ) -> None:  # fmt: skip
         b, RUN = len(kept), row(Run)
         rollouts = 0 if initial is None else len(initial)
-        RUN.dt, RUN.gravity_x, RUN.gravity_y, RUN.left_over = dt, *gravity, left
+        RUN.dt, RUN.gravity_x, RUN.gravity_y, RUN.half_damping = dt, *gravity, half_damping
         RUN.time, RUN.lock, RUN.every = time, 1.0, every
         self.arrays = RunArrays(
             RUN, np.ascontiguousarray(kept, np.int64), np.zeros((frames * b, 6)) if into is None else _flat(into, 6),

@@ -140,18 +140,18 @@ class EventLoop(Remembering):
 
     def step(
         self, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
-        left: float,
+        half_damping: float,
     ) -> int:  # fmt: skip
         """Take a step, see `step.step`; a negative result is a code of `transfer.py`."""
         states, call = self._bound
         # Compared one by one, as this is done in every step.
         if states[0] is not STATES or states[1] is not WALK or states[2] is not EXTRA or states[3] is not ENDS:
             call = self._bind_to((STATES, WALK, EXTRA, ENDS))
-        status = call(dt, gx, gy, left, -1)
+        status = call(dt, gx, gy, half_damping, -1)
         while status <= ROOM_FOR_LISTS:
             self._grow(check("step", status))
             bits = FORCES if STATES[READ, :, 6:].any() else 0
-            status = self._bind_to((STATES, WALK, EXTRA, ENDS))(dt, gx, gy, left, bits)
+            status = self._bind_to((STATES, WALK, EXTRA, ENDS))(dt, gx, gy, half_damping, bits)
         return status
 
     def follow(self, buffers: RunBuffers, states: tuple[AnyArray, ...]) -> int:
@@ -207,8 +207,8 @@ class EventLoop(Remembering):
         self.scene = scene._replace(KEYS=KEYS, FORCES=TABLE)
 
     def rule(self, rules: Mapping[tuple[int, int], tuple[float, float, float, float]]) -> None:
-        """Set elasticity (below 0: they pass through each other), friction and surface velocity of pairs of shapes a <
-        b."""
+        """Set the law of pairs of shapes a < b: elasticity (below 0: they pass through each other), friction and
+        surface velocity (2)."""
         table = np.array([(*pair, *what) for pair, what in rules.items()], float).reshape(-1, RULE_COLUMNS)
         if not np.array_equal(table, self.scene.RULE):
             self.scene = self.scene._replace(RULE=table)
@@ -221,8 +221,8 @@ class EventLoop(Remembering):
     def details(
         self, dt: float, bodies: tuple[pymunk.Body, ...], owner: IntArray
     ) -> Callable[[], Details]:  # fmt: skip
-        """A function that makes the arrays of the report of the last step; `owner` (k,): index in `bodies` of each
-        shape's body."""
+        """A function that makes the arrays of the report of the last step of length dt; `owner` (k,): index in `bodies`
+        of each shape's body."""
         return partial(_details, self.logged(), dt, bodies, owner)
 
     @property

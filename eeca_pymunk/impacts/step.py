@@ -26,15 +26,15 @@ ROOM_FOR_LISTS, ROOM_FOR_EVENTS, ROOM_FOR_CONTACTS = -10, -11, -12
 @kernel
 def start(
     A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, dt: float, gx: float, gy: float,
-    left: float,
+    half_damping: float,
 ) -> int:  # fmt: skip
     """Take the states read from pymunk, and begin a step of length dt; returns the bits so far, or a negative code."""
     if len(J.JOINT) > 0:
         start_joints(A, J, STATES, WALK)
-    status = take(STATES, WALK, EXTRA, A.BODY, gx, gy, left)
+    status = take(STATES, WALK, EXTRA, A.BODY, gx, gy, half_damping)
     if status >= 0:
         lost = hold(A.HELD, A.BODY)
-        A.PAR.dt, A.PAR.gravity_x, A.PAR.gravity_y, A.PAR.left_over = dt, gx, gy, left
+        A.PAR.dt, A.PAR.gravity_x, A.PAR.gravity_y, A.PAR.half_damping = dt, gx, gy, half_damping
         begin(A, WALK)
         A.PAR.before += lost
         A.PAR.restitution += lost
@@ -50,7 +50,7 @@ def finish(
     close(A, WALK)
     if A.COUNT.logged > 0 or A.COUNT.unmet > 0:
         status |= SOME
-    return give(STATES, WALK, EXTRA, A.BODY, ENDS, A.PAR.dt, A.PAR.left_over, status)
+    return give(STATES, WALK, EXTRA, A.BODY, ENDS, A.PAR.dt, A.PAR.half_damping, status)
 
 
 @kernel
@@ -61,7 +61,7 @@ def act(A: Scene, J: Joints, USUAL: FloatArray) -> int:
     if COUNT.together > 0:
         return act_together(A, J, USUAL)
     if COUNT.phase == 0:
-        if COUNT.pushes + COUNT.crammed + J.TALLY.components > 0 and start_islands(A, J) != DONE:
+        if COUNT.pushes + COUNT.any_placed + J.TALLY.components > 0 and start_islands(A, J) != DONE:
             return PUSHES_FULL
         COUNT.phase = 1
         predict_due(A)
@@ -94,14 +94,14 @@ def resume(
 @kernel
 def step(
     TABLE: Table, JOINTS: Table, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray,
-    USUAL: FloatArray, dt: float, gx: float, gy: float, left: float, bits: int,
+    USUAL: FloatArray, dt: float, gx: float, gy: float, half_damping: float, bits: int,
 ) -> int:  # fmt: skip
     """Take one step, from the states read from pymunk to those to be written, see `transfer.py`.
 
     Args:
         TABLE: `table_of` a Scene.  JOINTS: `table_of` its Joints.
         USUAL: (k,) margins of shapes that are not fast, length.
-        dt: time, > 0.  gx, gy: gravity, length/time².  left: factor by which half the step's damping multiplies
+        dt: time, > 0.  gx, gy: gravity, length/time².  half_damping: factor by which half the step's damping multiplies
             velocities.
         bits: negative for a new step; the bits so far of one that continues after more memory was provided.
 
@@ -110,7 +110,7 @@ def step(
     """
     A, J = scene_of(TABLE), joints_of(JOINTS)
     if bits < 0:
-        bits = start(A, J, STATES, WALK, EXTRA, dt, gx, gy, left)
+        bits = start(A, J, STATES, WALK, EXTRA, dt, gx, gy, half_damping)
         if bits < 0:
             return bits
     return resume(A, J, STATES, WALK, EXTRA, ENDS, USUAL, bits)

@@ -67,7 +67,7 @@ def renew_forces(A: Scene, c: int, stamp: float) -> None:
 @uncounted
 def wake_supported(A: Scene) -> None:
     """Set islands CHANGED that are supported by islands that are CHANGED, and so on."""
-    MEMBER, more = A.MEMBER, A.COUNT.carries > 0
+    MEMBER, more = A.MEMBER, A.COUNT.may_support > 0
     while more:
         more = False
         for c in range(A.COUNT.pushes):
@@ -191,7 +191,7 @@ def stop(A: Scene, i: int) -> None:
 def put_to_rest(A: Scene, root: int) -> None:
     """At the start or the end of a step: put an island to rest. Its bodies stop, apart from free spins."""
     BODY, MEMBER = A.BODY, A.MEMBER
-    MEMBER[root].anew = 1
+    MEMBER[root].new_forces = 1
     i = root
     while i >= 0:
         stop(A, i)

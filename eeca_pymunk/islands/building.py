@@ -116,7 +116,7 @@ def build_islands(A: Scene) -> int:
     for i in range(n):
         if A.MEMBER[i].tied >= 0:
             unite(A, i, A.MEMBER[i].tied)
-    if COUNT.crammed > 0:
+    if COUNT.any_placed > 0:
         hold_penetrating(A)
     QUEUE = np.empty(n, np.int64)
     queued = 0
@@ -129,13 +129,13 @@ def build_islands(A: Scene) -> int:
     for c in range(COUNT.pushes):
         kept += 1 if A.PUSHED_BY[c].root >= 0 else 0
     for i in range(n if queued > 0 else 0):
-        if STATE[i].island < 0 or (A.MEMBER[i].rest == AT_REST and COUNT.carries == 0):
+        if STATE[i].island < 0 or (A.MEMBER[i].rest == AT_REST and COUNT.may_support == 0):
             continue  # islands at rest count only if they may have to be solved as supports
         for s in range(STATE[i].first_shape, STATE[i].first_shape + STATE[i].shapes):
             for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
                 # Two points for each pair; pairs of two moving shapes are in two lists.
                 wanted += 1 if A.POOL[w] < A.LIST.shape[0] else 2
-    wanted *= 2 if COUNT.carries > 0 else 1
+    wanted *= 2 if COUNT.may_support > 0 else 1
     if kept + wanted > A.PUSHED.shape[0] or 2 * (COUNT.remembered + wanted) > A.KEYS.shape[0]:
         return PUSHES_FULL
     kept = 0
@@ -215,7 +215,6 @@ def passed_over(A: Scene, a: int, b: int, t: float) -> bool:
     thick = half_width(A, a) + half_width(A, b)
     if (speed + A.PAR.pulled * h) * h > INTERVAL_DEPTH_WIDTH * thick:
         return False
-    A.COUNT.ignored += 1
     if lossy:
         MINE = np.empty(A.BODY.shape[0], np.int64)
         for k in (i, j):

@@ -111,7 +111,7 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
     raised = 0
     for q in range(n, k):
         # A body without mobility that the program has placed into others does the work of lifting them.
-        if MEMBER[WHO[q]].put > 0 and BODY[WHO[q]].inv_mass == 0.0:
+        if MEMBER[WHO[q]].placed > 0 and BODY[WHO[q]].inv_mass == 0.0:
             raised = 1
     quiet = rest_threshold(A, root, MINE, n, among, t) if may_lose and raised == 0 else 0.0
     owed = max(-A.RESTING[root].lost, 0.0)
@@ -146,7 +146,6 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
     COUNT.solves += 1
     COUNT.solved += n
     spend(A, 2 * p, m, OUT[0].sweeps, OUT[0].direct)
-    COUNT.sweeps += OUT[0].sweeps
     COUNT.direct += OUT[0].direct
     first = COUNT.pushes
     TOUCHED = np.zeros(k, np.uint8)

@@ -17,7 +17,7 @@ from ..pairs.rules import law
 @uncounted
 def fixed_support(A: Scene, i: int) -> bool:
     """Whether body i is fixed for bodies that rest on it: impulses do not move it, or it is at rest."""
-    return bool(A.BODY[i].inv_mass == 0.0 or (A.COUNT.carries > 0 and A.MEMBER[i].rest == AT_REST))
+    return bool(A.BODY[i].inv_mass == 0.0 or (A.COUNT.may_support > 0 and A.MEMBER[i].rest == AT_REST))
 
 
 @uncounted

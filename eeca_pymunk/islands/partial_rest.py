@@ -166,7 +166,7 @@ def rests_in_part(A: Scene, root: int) -> bool:
     the others alone. Returns whether that was tried: the island then has been solved."""
     BODY, STATE, MEMBER = A.BODY, A.STATE, A.MEMBER
     n = MEMBER[root].bodies
-    if A.COUNT.carries == 0 or A.PAR.pulled == 0.0 or MEMBER[root].open > 0 or STATE[root].island != root:
+    if A.COUNT.may_support == 0 or A.PAR.pulled == 0.0 or MEMBER[root].open > 0 or STATE[root].island != root:
         return False
     if not lossy(A, root):
         return False

@@ -14,13 +14,13 @@ from .membership import approach, fixed_support, unite
 @kernel
 def hold_penetrating(A: Scene) -> None:
     """At the start of a step: unite bodies with deep initial penetration that neither separate within the step nor hit
-    each other; of lossy shapes, without joints. `Member.put` remains set while the overlap does."""
+    each other; of lossy shapes, without joints. `Member.placed` remains set while the overlap does."""
     BODY, LINK, dt = A.BODY, A.LINK, A.PAR.dt
-    A.COUNT.crammed = 0
+    A.COUNT.any_placed = 0
     for i in range(BODY.shape[0] - 1):
-        if A.MEMBER[i].put == 0:
+        if A.MEMBER[i].placed == 0:
             continue
-        A.MEMBER[i].put = 0
+        A.MEMBER[i].placed = 0
         if A.MEMBER[i].tied >= 0:
             continue
         for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):
@@ -36,7 +36,7 @@ def hold_penetrating(A: Scene) -> None:
                 g, u, _, _ = approach(A, s, o, 0.0)
                 if g >= -INITIAL_PENETRATION * min(A.SHAPE[s].extent, A.SHAPE[o].extent) or u * dt > -g:
                     continue
-                A.MEMBER[i].put, A.COUNT.crammed = 1, 1
+                A.MEMBER[i].placed, A.COUNT.any_placed = 1, 1
                 if -u <= A.PAR.pulled * dt:
                     a, b = (j, i) if fixed_support(A, i) else (i, j)
                     unite(A, a, a if fixed_support(A, b) else b)

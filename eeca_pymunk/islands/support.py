@@ -132,11 +132,11 @@ def support(A: Scene) -> None:
     """At the start of a step, after moving islands have been solved: solve the forces in islands at rest that support
     them; those that cannot support their loads wake, and are solved with what rests on them."""
     STATE, MEMBER, BODY = A.STATE, A.MEMBER, A.BODY
-    more, all_moving, asked = A.COUNT.carries > 0, True, 0
+    more, all_moving, asked = A.COUNT.may_support > 0, True, 0
     while more:
         for c in range(A.COUNT.pushes):
             root = A.PUSHED_BY[c].root
-            if root < 0 or not (MEMBER[root].anew == 1 if MEMBER[root].rest == AT_REST else all_moving):
+            if root < 0 or not (MEMBER[root].new_forces == 1 if MEMBER[root].rest == AT_REST else all_moving):
                 continue
             for side in range(2):
                 j = A.LINK[A.PUSHED_BY[c].b if side > 0 else A.PUSHED_BY[c].a].owner
@@ -145,7 +145,7 @@ def support(A: Scene) -> None:
                     MEMBER[other].loaded = 1
         more, all_moving = False, False
         for i in range(BODY.shape[0] - 1):
-            MEMBER[i].anew = 0
+            MEMBER[i].new_forces = 0
         for i in range(BODY.shape[0] - 1):
             if MEMBER[i].loaded == 0:
                 continue
@@ -155,7 +155,7 @@ def support(A: Scene) -> None:
             more = True
             # After SUPPORT_ROUNDS: islands that support each other are solved as one.
             if asked < SUPPORT_ROUNDS and supports_load(A, i):
-                MEMBER[i].anew = 1
+                MEMBER[i].new_forces = 1
             else:
                 solve(A, wake(A, i, 0.0), 0.0)
                 all_moving = True

@@ -78,11 +78,13 @@ class Member(Record):
     rest: int  # AWAKE, AT_REST, CHANGED or CANDIDATE
     loaded: int  # of the root of an island at rest: 1 while support of moving neighbours is unverified
     among: int  # of the root: `bodies`, and those of the islands that support them
-    put: int  # 1 if the program placed the body, which may overlap others
+    placed: int  # 1 if the program placed the body, which may overlap others
     raised: (
         int  # of the root: 1 if a body without mobility was placed into its bodies, so that lifting is external work
     )
-    anew: int  # of the root of an island at rest: 1 while the islands below have not been tested with its new forces
+    new_forces: (
+        int  # of the root of an island at rest: 1 while the islands below have not been tested with its new forces
+    )
 
 
 class Rest(Record):

@@ -174,7 +174,6 @@ class Solved(Record):
     deepest: float  # least gap at the end before the correction: length, negative in overlap
     sweeps: int
     direct: int  # direct solutions
-    pushing: int  # active contacts
     at_rest: int  # 1 if the island was put to rest
 
 

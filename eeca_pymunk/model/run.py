@@ -16,7 +16,7 @@ class Run(Record):
     dt: float  # length of each step
     gravity_x: float
     gravity_y: float
-    left_over: float  # factor by which the damping of half a step multiplies velocities
+    half_damping: float  # factor by which the damping of half a step multiplies velocities
     time: float  # at the end of the last step taken
     lock: float  # scale of the energy lock that was farthest from 1
     until: int  # number of steps after which the loop returns

@@ -12,7 +12,7 @@ class Step(Record):
     now: float  # instant at which the event loop has stopped for more memory
     gravity_x: float
     gravity_y: float
-    left_over: float  # factor by which the damping of half a step multiplies velocities
+    half_damping: float  # factor by which the damping of half a step multiplies velocities
     lock: float  # scale of the energy lock that was farthest from 1
     last: float  # length of the step before
     # The ledger of the step: energies, in the order of `..energy.ledger`.
@@ -32,10 +32,8 @@ class Count(Record):
 
     heap: int  # rows of the heap in use
     logged: int  # rows of LOG in use
-    impacts: int  # number of impacts in the step
-    blocks: int  # of these, simultaneous impacts of several contacts
+    blocks: int  # number of simultaneous impacts of several contacts
     predictions: int  # number of predictions in the step
-    stale: int  # number of events that were out of date when they were taken from the heap
     limit: int  # impacts that a body may have in a step
     unmet: int  # number of budgets and tolerances that the step has not met
     closing: int  # 1 if bodies that impulses do not move may move relative to each other, and squeeze others
@@ -44,10 +42,8 @@ class Count(Record):
     struck: int  # body of the event at which the event loop has stopped
     pushes: int  # rows of PUSHED in use: contacts of intervals
     solves: int  # number of solves of islands in the step
-    ignored: int  # number of impacts that were passed over
     waiting: int  # number of bodies in BLOCK to be predicted after their islands have begun intervals
     phase: int  # stage of the step at which it is resumed, see `impacts.step.act`
-    sweeps: int  # number of sweeps of all solves
     direct: int  # number of direct solves
     remembered: int  # rows in use of the memory of forces
     lossy: int  # 1 if any shape's elasticity is below 1
@@ -56,8 +52,8 @@ class Count(Record):
     quiet: int  # number of steps in a row at whose end `even` was 1
     disks: int  # number of single disks of the scene
     solved: int  # number of bodies of all solves
-    carries: int  # 1 if islands at rest may support moving ones (`islands/support.py`)
-    crammed: int  # 1 if the program has placed bodies, which may overlap
+    may_support: int  # 1 if islands at rest may support moving ones (`islands/support.py`)
+    any_placed: int  # 1 if the program has placed bodies, which may overlap
 
 
 class Missed(Record):

@@ -13,7 +13,7 @@ from .roots import flat
 
 
 @uncounted
-def circles_meet(A: Scene, a: int, b: int, start: float, left: float, tolerance: float) -> tuple[float, bool]:
+def circles_meet(A: Scene, a: int, b: int, start: float, duration: float, tolerance: float) -> tuple[float, bool]:
     """Time after `start` until which shapes a and b are certainly apart, and whether they never meet.
 
     Circles about the centres of mass, of radius `extent`, which do not rotate, are compared; a static shape counts with
@@ -31,7 +31,7 @@ def circles_meet(A: Scene, a: int, b: int, start: float, left: float, tolerance:
         extent = SHAPE[a].extent + SHAPE[b].rounding
         if point_core(x_a, y_a, A.CORE[1], q)[0] - extent <= tolerance:
             return 0.0, False
-        s, _ = circle_outline(x_a, y_a, ux_a, uy_a, BODY[i].ax, BODY[i].ay, extent, tolerance, A, b, left)
+        s, _ = circle_outline(x_a, y_a, ux_a, uy_a, BODY[i].ax, BODY[i].ay, extent, tolerance, A, b, duration)
         return s, s == math.inf
     x_b, y_b, _ = pose(BODY, j, start)
     ux_b, uy_b, _ = rate(BODY, j, start)
@@ -40,15 +40,15 @@ def circles_meet(A: Scene, a: int, b: int, start: float, left: float, tolerance:
     if math.sqrt(dx * dx + dy * dy) - extent <= tolerance:
         return 0.0, False
     s, _ = circle_circle(
-        dx, dy, ux_b - ux_a, uy_b - uy_a, BODY[j].ax - BODY[i].ax, BODY[j].ay - BODY[i].ay, extent, tolerance, left
+        dx, dy, ux_b - ux_a, uy_b - uy_a, BODY[j].ax - BODY[i].ax, BODY[j].ay - BODY[i].ay, extent, tolerance, duration
     )
     return s, s == math.inf
 
 
 @uncounted
-def carried_circle(A: Scene, s: int, start: float, left: float) -> tuple[float, float, float, float, float]:
+def carried_circle(A: Scene, s: int, start: float, duration: float) -> tuple[float, float, float, float, float]:
     """Centre (2) and velocity (2) at `start` of the bounding circle of shape s on its rotating body, and a bound of the
-    acceleration (length/time²) by rotation within the time `left`."""
+    acceleration (length/time²) by rotation within the time `duration`."""
     BODY, i = A.BODY, A.LINK[s].owner
     x, y, angle = pose(BODY, i, start)
     ux, uy, w = rate(BODY, i, start)
@@ -57,17 +57,17 @@ def carried_circle(A: Scene, s: int, start: float, left: float) -> tuple[float, 
         c, z = math.cos(angle), math.sin(angle)
         px, py = c * px - z * py, z * px + c * py
     twist = abs(BODY[i].angular)
-    most = abs(w) + twist * left
+    most = abs(w) + twist * duration
     return x + px, y + py, ux - w * py, uy + w * px, math.sqrt(px * px + py * py) * (most * most + twist)
 
 
 @uncounted
-def carried_circles_meet(A: Scene, a: int, b: int, start: float, left: float) -> float:
+def carried_circles_meet(A: Scene, a: int, b: int, start: float, duration: float) -> float:
     """Time after `start` until which the bounding circles of shapes a and b are certainly apart. Tighter than
-    `circles_meet` for shapes far from their centres of mass. Valid within `left`, always without angular
+    `circles_meet` for shapes far from their centres of mass. Valid within `duration`, always without angular
     acceleration."""
-    x_a, y_a, ux_a, uy_a, bend_a = carried_circle(A, a, start, left)
-    x_b, y_b, ux_b, uy_b, bend_b = carried_circle(A, b, start, left)
+    x_a, y_a, ux_a, uy_a, bend_a = carried_circle(A, a, start, duration)
+    x_b, y_b, ux_b, uy_b, bend_b = carried_circle(A, b, start, duration)
     BODY, SHAPE, i, j = A.BODY, A.SHAPE, A.LINK[a].owner, A.LINK[b].owner
     dx, dy = x_b - x_a, y_b - y_a
     d = math.sqrt(dx * dx + dy * dy)

@@ -19,7 +19,7 @@ from .roots import ball_point, flat
 
 @uncounted
 def circle_circle(
-    dx: float, dy: float, ux: float, uy: float, ax: float, ay: float, extent: float, tolerance: float, left: float
+    dx: float, dy: float, ux: float, uy: float, ax: float, ay: float, extent: float, tolerance: float, duration: float
 ) -> tuple[float, bool]:
     """Time s at which |d + u s + a s² / 2| = extent with the distance falling, and whether it is exact or a lower
     bound.
@@ -27,17 +27,17 @@ def circle_circle(
     Args:
         dx, dy: from centre to centre, length.  ux, uy: relative velocity.  ax, ay: relative acceleration.
         extent: sum of the radii.  tolerance: length, a gap that counts as closed.
-        left: time up to which is searched; lower bounds are at least that. Infinite: the result is exact.
+        duration: time up to which is searched; lower bounds are at least that. Infinite: the result is exact.
     """
     if ax == 0.0 and ay == 0.0:
         return ball_point(dx, dy, ux, uy, extent), True
-    if 0.0 < left < math.inf:
-        later = SEARCH_AHEAD * left
+    if 0.0 < duration < math.inf:
+        later = SEARCH_AHEAD * duration
         reach = extent + (abs(ux) + abs(uy) + 0.5 * (abs(ax) + abs(ay)) * later) * later
         if dx * dx + dy * dy > reach * reach:
             return later, False
     pull = math.sqrt(ax * ax + ay * ay)
-    stride = left / RESOLUTION if left < math.inf else 0.0
+    stride = duration / RESOLUTION if duration < math.inf else 0.0
     s = 0.0
     for _ in range(ADVANCES):
         x, y = dx + (ux + 0.5 * ax * s) * s, dy + (uy + 0.5 * ay * s) * s
@@ -51,15 +51,15 @@ def circle_circle(
                 return s + step, True
             step = max(step, stride)
         s += step
-        if s > left:
+        if s > duration:
             return s, False
-    return left, False
+    return duration, False
 
 
 @uncounted
 def circle_outline(
     x: float, y: float, vx: float, vy: float, ax: float, ay: float, extent: float, tolerance: float,
-    A: Scene, b: int, left: float,
+    A: Scene, b: int, duration: float,
 ) -> tuple[float, bool]:  # fmt: skip
     """Time at which a circle meets the static shape b, and whether it is exact or a lower bound.
 
@@ -70,13 +70,13 @@ def circle_outline(
 
     Args:
         x, y: centre, length.  vx, vy: velocity.  ax, ay: acceleration.  extent: radius and b's rounding together.
-        tolerance, left: as in `circle_circle`.
+        tolerance, duration: as in `circle_circle`.
     """
     VERTEX, first, count = A.VERTEX, A.LINK[b].first, A.LINK[b].vertices
     sides = count if count > 1 else 0
     straight = ax == 0.0 and ay == 0.0
     pull = math.sqrt(ax * ax + ay * ay)
-    stride = left / RESOLUTION if left < math.inf else 0.0
+    stride = duration / RESOLUTION if duration < math.inf else 0.0
     s = 0.0
     for _ in range(ADVANCES):
         px, py = x + (vx + 0.5 * ax * s) * s, y + (vy + 0.5 * ay * s) * s
@@ -125,9 +125,9 @@ def circle_outline(
                 return s + step, True
             step = max(step, stride)
         s += max(step, entry)
-        if s > left:
+        if s > duration:
             return s, False
-    return left, False
+    return duration, False
 
 
 @uncounted

@@ -58,12 +58,12 @@ def parting_velocity(
 
 
 @uncounted
-def begin_side(A: Scene, a: int, b: int, start: float, left: float, tolerance: float) -> None:
+def begin_side(A: Scene, a: int, b: int, start: float, duration: float, tolerance: float) -> None:
     """Note on which side of each other thin shapes a < b are at the beginning of a search.
 
     For segments that touch and have no remembered side: if they move by less than `tolerance` (length) in the time
-    `left`, they are on the side against which they are pressed; else, if their distance is round-off, on the side to
-    which they part. For all other shapes the side follows from the geometry.
+    `duration`, they are on the side against which they are pressed; else, if their distance is round-off, on the side
+    to which they part. For all other shapes the side follows from the geometry.
     """
     i, j, P, Q = A.LINK[a].owner, A.LINK[b].owner, A.CORE[0], A.CORE[1]
     x_a, y_a, angle_a = pose(A.BODY, i, start)
@@ -75,7 +75,7 @@ def begin_side(A: Scene, a: int, b: int, start: float, left: float, tolerance: f
         note_side(A, a, b, nx, ny, False)
     elif not known_side(A, a, b):
         parting, pressing = parting_velocity(A.BODY, i, j, start, nx, ny, px, py)
-        resting = abs(parting) * left <= tolerance
+        resting = abs(parting) * duration <= tolerance
         other = (resting and pressing < 0.0) or (not resting and d <= tolerance and parting < 0.0)
         sign = -1.0 if p == 2 and q == 2 and other else 1.0
         note_side(A, a, b, sign * nx, sign * ny, True)
@@ -149,18 +149,18 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float) -> tuple[floa
     BODY, SHAPE = A.BODY, A.SHAPE
     i, j = A.LINK[a].owner, A.LINK[b].owner
     start = max(BODY[i].since, BODY[j].since)
-    left = max(horizon - start, 0.0)
+    duration = max(horizon - start, 0.0)
     tolerance = touching(A, a, b)
-    s, never = circles_meet(A, a, b, start, left, tolerance)
-    if s > left:
+    s, never = circles_meet(A, a, b, start, duration, tolerance)
+    if s > duration:
         return start + s, never
     if s == 0.0:
-        s = carried_circles_meet(A, a, b, start, left)
-        if s > left:
+        s = carried_circles_meet(A, a, b, start, duration)
+        if s > duration:
             if BODY[i].angular == 0.0 and BODY[j].angular == 0.0:
                 return start + s, s == math.inf
             return horizon, False
-    bend, bend_a, bend_b = bends(A, a, b, start, left)
+    bend, bend_a, bend_b = bends(A, a, b, start, duration)
     extent = SHAPE[a].rounding + SHAPE[b].rounding
     still = APPROACH_ROUND_OFF * (fastest(A, a, start) + fastest(A, b, start))
     fixed, of_a, of_b = (
@@ -169,14 +169,14 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float) -> tuple[floa
     )  # fmt: skip
     P, Q = A.CORE[0], A.CORE[1]
     if remembers(A, a, b):
-        begin_side(A, a, b, start, left, tolerance)
+        begin_side(A, a, b, start, duration, tolerance)
     graze = math.sqrt(2.0 * GRAZED * smaller(A, a, b) / max(max(bend, max(bend_a, bend_b)), 1e-300))
-    graze = max(graze, left / RESOLUTION / ADVANCES)
+    graze = max(graze, duration / RESOLUTION / ADVANCES)
     looks, mark = 0, s
     while True:
         looks += 1
         A.COUNT.work += 1
-        if s > mark + left / RESOLUTION:  # progress resets the budget: fast rotation is followed for many turns
+        if s > mark + duration / RESOLUTION:  # progress resets the budget: fast rotation is followed for many turns
             looks, mark = 0, s
         one, two = motion(BODY, i, start + s), motion(BODY, j, start + s)
         p = place(A, a, one.x, one.y, one.angle, P)
@@ -198,11 +198,11 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float) -> tuple[floa
             back = time_to_contact_again(
                 BODY, i, j, start + s, nx, ny, px + SHAPE[a].rounding * nx, py + SHAPE[a].rounding * ny
             )
-            if back <= min(left / RESOLUTION, graze):
+            if back <= min(duration / RESOLUTION, graze):
                 return start + s + back, True
-            safe = max(safe, min(left / ADVANCES, graze))
+            safe = max(safe, min(duration / ADVANCES, graze))
         if met:
             return start + s + safe, True
         s += safe if looks < ADVANCES else max(safe, graze)
-        if s > left or looks > 2.0 * ADVANCES * RESOLUTION or start + s > until:
+        if s > duration or looks > 2.0 * ADVANCES * RESOLUTION or start + s > until:
             return horizon, False

@@ -9,4 +9,9 @@ of one contact in `coulomb.py`, accelerated by `conjugate.py`) with a direct sol
 `dense.py` for few contacts, else `polish.py` on the sparse factor of `cholesky.py`); `equilibrium.py` finds contact
 forces that balance (on the edges of the cones, `cones.py`); `energy.py` takes losses, and scales impulses that would
 give energy; `lifting.py` moves bodies out of each other. Open `build.py` first.
+
+Names of arguments: A, B (m,) local bodies of the rows ROWS (m,); L (m, 2) impulses, normal lam and tangential beta; V
+(k, 3) velocities, FREE those without impulses; IM, II (k,) inverse masses and moments; the first n of the k bodies
+move. The active set is held, stuck, slip, rest (`polish.classify`). G, EDGE (K,) are edges of friction cones
+(`cones.py`).
 """

@@ -44,7 +44,7 @@ def clear(out: Solved) -> None:
     """Reset the report of a solve."""
     out.restitution = out.friction = out.carried = out.lifted = out.forces = 0.0
     out.owed = out.residual = out.tolerance = out.deepest = 0.0
-    out.sweeps = out.direct = out.pushing = out.at_rest = 0
+    out.sweeps = out.direct = out.at_rest = 0
     out.lock = 1.0
 
 

@@ -5,12 +5,17 @@ features. Back: the arrays of the end of a step, written into the space.
 
 Open first `world.py`, the space as packed arrays, and `checks.py`, the unsupported features.
 
-| subject | files | |---|---| | reading | `bodies.py`, `shapes.py`, `packing.py`; joints: `joints.py`, `constraints.py`,
-`partners.py`, `spring_functions.py` | | states in and out | `crossing.py` | | edits by the program | `noticed.py`
-(shapes, bodies), `edits.py` (joints), `patching.py` (rows after edits in place) | | functions of the program |
-`hooks.py`, `rehearsal.py` (collision handlers) | | pymunk's own state after a step | `sync.py` (shapes), `arbiters.py`
-(contacts), `sleeping.py` | | other readers | `measure.py` (energy), `outlines.py` (pictures), `describe.py` (one line
-of text), `sample.py` (tests) | | private names of pymunk | `private.py` and the files `private_*.py` |
+| subject | files |
+|---|---|
+| reading bodies and shapes | `bodies.py`, `shapes.py`, `packing.py` |
+| reading joints | `joints.py`, `constraints.py`, `partners.py`, `spring_functions.py` |
+| states in and out | `crossing.py` |
+| edits by the program | `noticed.py` (shapes, bodies), `edits.py` (joints), `patching.py` (rows after edits in place) |
+| functions of the program | `hooks.py`, `rehearsal.py` (collision handlers) |
+| pymunk's own state after a step | `sync.py` (shapes), `arbiters.py` (contacts), `constraint_impulses.py` |
+| sleeping bodies | `sleeping.py`, `sleep_groups.py` |
+| other readers | `measure.py` (energy), `outlines.py` (pictures), `describe.py` (one line of text) |
+| private names of pymunk | `private.py` and the files `private_*.py` |
 
 Three files replace methods or properties of pymunk's classes, which then act as before for all other spaces:
 `noticed.py` (setters of shapes and bodies; `Body.sleep` at import), `edits.py` (`Constraint.__setattr__`, `impulse`),

@@ -37,7 +37,7 @@ from ..layout import (
 from ..model.bodies import Body
 from ..rehearsing import altered, as_read, found
 from ..transfer import FORCES, TURNS, lay, lay_rest
-from . import private
+from . import private_batch
 from .bodies import Bodies
 
 _F = batch.BodyFields
@@ -86,7 +86,7 @@ class Crossing:
         self.WALK[SPECIAL] = STEERED * bodies.steered + ECCENTRIC * bodies.center_of_gravity.any(axis=1)
         self.EXTRA[:, COG_X : COG_Y + 1] = bodies.center_of_gravity
         self.STATES[LEFT] = np.where(bodies.static[:, None], state, np.nan)
-        self.gather = private.reader(space, _STATE, floats, ids)
+        self.gather = private_batch.reader(space, _STATE, floats, ids)
         self._scatter = _Writers(self, _WHOLE, END)
         self._scatter_still, self._scatter_speed = _Writers(self, _WHOLE, STILL), _Writers(self, _SPEEDS, SPEED)
         # pymunk places a body with another centre of mass by its present angle: a second time, by the new angle.
@@ -99,7 +99,7 @@ class Crossing:
 
     def writer(self, fields: batch.BodyFields, start: int) -> Callable[[], None]:
         """Function that writes the fields from the table that begins at `start` N in ENDS."""
-        return private.writer(self.space, fields, self.ENDS[start * len(self.bodies) :], self.bodies.reached)
+        return private_batch.writer(self.space, fields, self.ENDS[start * len(self.bodies) :], self.bodies.reached)
 
     @cached_property
     def START(self) -> FloatArray:

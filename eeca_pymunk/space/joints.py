@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-import weakref
 from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from typing import Any
@@ -15,35 +13,13 @@ from ..arrays import FloatArray, IntArray
 from ..compiled.records import Rows, rows
 from ..model.joints import EDITED, MOTOR, RATCHET, ROTARY_SPRING, SPRING, Joint
 from . import private
+from .constraint_impulses import Impulses
 from .constraints import Given, read
 from .edits import Edits, show_impulses, showings, shown
 from .partners import Partners
 from .spring_functions import Motion, Rate, law, own_function, put_law
 
 _ROUND_OFF = 1e-12  # of the length of a pin
-
-
-class Impulses:
-    """Values of `constraint.impulse` by row. It outlives the stepper, and does not refer to constraints.
-
-    Attributes:
-        joint: the rows.  ours: pymunk's count of its own steps when they were written.
-    """
-
-    def __init__(self, space: pymunk.Space, joint: Rows[Joint]) -> None:
-        self._space = weakref.ref(space)
-        self.joint = joint
-        self.ours = -1
-
-    def read(self, j: int) -> float | None:
-        """The impulse: of springs signed (positive pushes), else >= 0; None if pymunk has taken a step since."""
-        space = self._space()
-        if space is not None and private.timestamp(space)() != self.ours:
-            return None
-        first, second = self.joint[j].impulse
-        if self.joint[j].kind in (SPRING, ROTARY_SPRING):
-            return float(first)
-        return math.hypot(first, second)
 
 
 class JointRows:
@@ -269,5 +245,5 @@ _Said = tuple[object, object, object, bool]
 
 
 def _says(item: pymunk.Constraint) -> _Said:
-    """What of a joint `_find_functions` asks, and whether its bodies collide."""
+    """The functions of a joint, and whether its bodies collide."""
     return own_function(item), item.pre_solve, item.post_solve, bool(item.collide_bodies)

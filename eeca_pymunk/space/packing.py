@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from functools import cached_property
 from math import isfinite
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 import pymunk
@@ -44,6 +44,9 @@ class Record(NamedTuple):
     points: bytes
 
 
+Records: TypeAlias = dict[pymunk.Shape, Record | None]
+
+
 def read(shape: pymunk.Shape, ground: pymunk.Body | None = None) -> Record:
     """The record of a shape; if `ground` is given, at its present place as a shape of `ground`.
 
@@ -63,6 +66,24 @@ def read(shape: pymunk.Shape, ground: pymunk.Body | None = None) -> Record:
     given = _GIVEN.pack(0, len(outline), *words, *numbers, 0)
     points = struct.pack(f"{2 * len(outline)}d", *(c for v in outline for c in v))
     return Record(body, outline, numbers, words, ground is not None, given, points)
+
+
+def records_of(space: pymunk.Space, bodies: Bodies, known: Records, stale: Collection[Any]) -> Records:
+    """The records of all shapes, None for sensors; `known` ones that are not `stale` are used again.
+
+    A shape whose body was removed from the space becomes a static shape at its present place, where pymunk detects it.
+    """
+    records: Records = {}
+    for shape in space.shapes:
+        before = known.get(shape) if shape not in stale else None
+        if before is not None and not before.outside and before.body in bodies.row:
+            records[shape] = before
+        elif shape.sensor:
+            records[shape] = None
+        else:
+            here = shape.body is None or shape.body in bodies.row
+            records[shape] = read(shape, None if here else space.static_body)
+    return records
 
 
 class Packed:

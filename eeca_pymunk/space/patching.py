@@ -1,9 +1,9 @@
 """Patching: after edits in place the rows of a world are updated without reading the whole space.
 
-Rows are afterwards those that a new reading of the whole space would give, bit by bit: only what was edited is asked
-again, and all rows are laid anew in place. That does for numbers and filters of shapes, masses and moments of bodies,
-and static bodies that were put elsewhere. All else (outlines, kinds and functions of bodies, sensors, joints, what is
-added and removed) makes other rows, and is left to a new reading.
+Rows are afterwards those that a new reading of the whole space would give, bit by bit: only edited objects are read
+again, and all rows are written again in place. This suffices for numbers and filters of shapes, masses and moments of
+bodies, and static bodies that were put elsewhere. All else (outlines, kinds and functions of bodies, sensors, joints,
+what is added and removed) makes other rows, and is left to a new reading.
 """
 
 from __future__ import annotations

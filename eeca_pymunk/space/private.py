@@ -8,15 +8,13 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
 import pymunk
-from pymunk import batch
 
-from ..arrays import FloatArray, IntArray
-from . import private_arbiters, private_functions, private_joints, private_sleep, private_versions
+from . import private_arbiters, private_batch, private_functions, private_joints, private_sleep, private_versions
 from .private_versions import DEFAULTS as DEFAULTS
 from .private_versions import REQUIRED, bodies
 
@@ -29,21 +27,21 @@ except ImportError as error:  # pragma: no cover - needs another pymunk
 PHASES = ("_begin", "_pre_solve", "_post_solve", "_separate")
 
 _OF_LIBRARY = (
-    "cpSpaceStep", "cpHastySpaceStep", "cpSpaceEachBody", "cpSpaceGetGravity", "cpSpaceGetDamping",
+    "cpSpaceStep", "cpHastySpaceStep", "cpSpaceGetGravity", "cpSpaceGetDamping",
     "cpSpaceSetGravity", "cpSpaceGetIterations", "cpSpaceSetIterations", "cpSpaceGetCollisionBias",
     "cpSpaceSetCollisionBias", "cpBodyGetForce", "cpBodySetForce", "cpBodyGetTorque", "cpBodySetTorque",
     "cpSpaceReindexShapesForBody", "cpBodyUpdatePosition", "cpShapeGetSensor", "cpShapeGetElasticity",
     "cpShapeGetFriction",
     "cpSpaceGetSleepTimeThreshold", "cpSpaceSetSleepTimeThreshold", "cpSpaceGetShapeIDCounter", "cpSpaceGetTimestamp",
-    "pmSpaceBodyGetIteratorFuncBatched", "pmSpaceBodySetIteratorFuncBatched",
     *private_joints.OF_LIBRARY, *private_sleep.OF_LIBRARY, *private_arbiters.OF_LIBRARY, *private_functions.OF_LIBRARY,
+    *private_batch.OF_LIBRARY,
 )  # fmt: skip
 _OF_SPACE = (
     "_space", "_bodies", "_shapes", "_constraints", "_handlers", "_get_arbiters", "_locked", "_add_later",
     "_remove_later", "_removed_shapes", "_post_step_callbacks",
 )  # fmt: skip
 _OF_BODY = ("_body", "_velocity_func", "_position_func")
-_TYPES = ("pmBatchedData *", "pmFloatArray *", "pmIntArray *", *private_arbiters.TYPES)
+_TYPES = (*private_batch.TYPES, *private_arbiters.TYPES)
 
 
 def missing() -> list[str]:
@@ -225,67 +223,6 @@ def watch(space: pymunk.Space, edits: list[int], known: list[int]) -> Callable[[
         )
 
     return unchanged
-
-
-def reader(space: pymunk.Space, fields: batch.BodyFields, floats: FloatArray, ids: IntArray) -> Callable[[], None]:
-    """`batch.get_space_bodies` into given memory, at a quarter of its cost.
-
-    The caller must ensure that `floats` and `ids`, flat and contiguous, have room for all bodies of the space at every
-    call: pymunk would replace memory that is too small by its own, and free it.
-    """
-    values, numbers = _array("pmFloatArray *", "cpFloat[]", floats), _array("pmIntArray *", "uintptr_t[]", ids)
-    data = _batched(fields, values, numbers)
-    c, each = space._space, lib.cpSpaceEachBody
-    function = ffi.addressof(lib, "pmSpaceBodyGetIteratorFuncBatched")
-
-    def read(held: object = (floats, ids)) -> None:
-        values.num = 0
-        numbers.num = 0
-        each(c, function, data)
-
-    return read
-
-
-def writer(
-    space: pymunk.Space, fields: batch.BodyFields, floats: FloatArray, bodies: Sequence[pymunk.Body] | None = None
-) -> Callable[[], None]:
-    """`batch.set_space_bodies` from given memory, flat and contiguous, with a row for every body of the space.
-
-    With `bodies`, the first ones of the space in pymunk's order, only these are written, one after the other.
-    """
-    values, numbers = _array("pmFloatArray *", "cpFloat[]", floats), ffi.new("pmIntArray *")
-    data = _batched(fields, values, numbers)
-    c, each = space._space, lib.cpSpaceEachBody
-    function = ffi.addressof(lib, "pmSpaceBodySetIteratorFuncBatched")
-
-    def write(held: object = (floats, numbers)) -> None:
-        values.num = 0
-        each(c, function, data)
-
-    if bodies is None:
-        return write
-    one, pointers = lib.pmSpaceBodySetIteratorFuncBatched, [body._body for body in bodies]
-
-    def write_some(held: object = (floats, numbers)) -> None:
-        values.num = 0
-        for pointer in pointers:
-            one(pointer, data)
-
-    return write_some
-
-
-def _array(kind: str, items: str, memory: FloatArray | IntArray) -> Any:
-    """pymunk's array over given memory; `batch.Buffer` has the same, but leaks its earlier memory."""
-    array = ffi.new(kind)
-    array.arr = ffi.from_buffer(items, memory)
-    array.num, array.max = 0, memory.size
-    return array
-
-
-def _batched(fields: batch.BodyFields, floats: Any, ints: Any) -> Any:
-    data = ffi.new("pmBatchedData *")
-    data.fields, data.floatArray, data.intArray = fields.value, floats, ints
-    return data
 
 
 def timestamp(space: pymunk.Space) -> Callable[[], int]:

@@ -32,6 +32,7 @@ from ..model.contacts import Impulse
 from ..report import Contacts
 from . import private, private_sleep
 from .noticed import leader
+from .sleep_groups import resting_groups
 
 if TYPE_CHECKING:
     from .world import World
@@ -203,69 +204,16 @@ class Sleep:
 
     def fall_asleep(self, contacts: Contacts) -> None:
         """Put groups to sleep all of whose bodies have been at rest for long enough."""
-        bodies, tired, groups = self.world.bodies, self._tired != 0, list(range(len(self.world.bodies)))
-
-        def root(i: int) -> int:
-            while groups[i] != i:
-                groups[i] = groups[groups[i]]
-                i = groups[i]
-            return i
-
-        kept: BoolArray = bodies.dynamic & ~tired
-        pairs = list(zip(contacts.body_a.tolist(), contacts.body_b.tolist(), strict=True))
-        # pymunk keeps a contact with a sleeping body for good, so that both bodies must sleep or none.
-        for one, two in (*((c.a, c.b) for c in self.space.constraints), *private.touching(self.space)):
-            if one in bodies.row and two in bodies.row:
-                pairs.append((bodies.row[one], bodies.row[two]))
-        for a, b in pairs:
-            if bodies.dynamic[a] and bodies.dynamic[b]:
-                groups[root(a)] = root(b)
-            for one, other in ((a, b), (b, a)):
-                # A body on a kinematic body, or jointed to it, stays awake.
-                kept[one] |= bodies.dynamic[one] and not (bodies.dynamic[other] or bodies.static[other])
+        bodies = self.world.bodies
         self._wait = _AGAIN
-        stay = {root(int(i)) for i in np.flatnonzero(kept)}
-        islands: dict[int, list[pymunk.Body]] = {}
-        for i in np.flatnonzero(tired).tolist():
-            if (lead := root(i)) not in stay:
-                islands.setdefault(lead, []).append(bodies.items[i])
+        islands = resting_groups(self.space, bodies, self._tired != 0, contacts)
         # Putting bodies to sleep reads the world again and loses contact forces, so small groups wait.
-        falling = sum(map(len, islands.values()))
+        falling = sum(map(len, islands))
         if falling * _SHARE < np.count_nonzero(bodies.dynamic) and self._since < _PATIENCE:
             return
         self._since = 0
-        for first, *others in islands.values():
+        for first, *others in islands:
             self._rested[[bodies.row[body] for body in (first, *others)]] = 0.0
             first.sleep()
             for body in others:
                 body.sleep_with_group(first)
-
-
-def put_to_sleep(bodies: Sequence[pymunk.Body], groups: IntArray) -> None:
-    """Put awake bodies to sleep in groups; `groups`: index of another body of the group, -1 for none."""
-    leaders: dict[int, pymunk.Body] = {}
-    for body, group in zip(bodies, groups.tolist(), strict=True):
-        if group < 0:
-            continue
-        if group in leaders:
-            body.sleep_with_group(leaders[group])
-        else:
-            body.sleep()
-            leaders[group] = body
-
-
-def rouse(space: pymunk.Space) -> None:
-    """Wake bodies that are jointed to an awake body, or touch one according to pymunk."""
-    pairs = [*((c.a, c.b) for c in space.constraints), *private.touching(space)]
-    bodies = {body for pair in pairs for body in pair}
-    again = True
-    while again:
-        again = False
-        asleep = {body for body in bodies if body.is_sleeping}
-        for first, second in pairs:
-            if (first in asleep) == (second in asleep):
-                continue
-            one, other = (first, second) if first in asleep else (second, first)
-            if other.body_type != pymunk.Body.STATIC and other.space is space:
-                one.activate()
-                again = True

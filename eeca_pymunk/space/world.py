@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Sequence
 from functools import cached_property
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 import pymunk
@@ -22,12 +22,10 @@ from .checks import rough_pair, settings
 from .crossing import Crossing
 from .joints import JointRows
 from .noticed import clock, edited_since, edits
-from .packing import Packed, Record, read
+from .packing import Packed, Records, records_of
 from .patching import patch
 from .rehearsal import Rehearsal
 from .shapes import Rules
-
-Records: TypeAlias = dict[pymunk.Shape, Record | None]
 
 
 class World(Crossing):
@@ -61,9 +59,7 @@ class World(Crossing):
         parted: pairs of rows of SHAPE that do not collide because of joints of their bodies.
     """
 
-    def __init__(
-        self, space: pymunk.Space, ignore: Sequence[str] = (), past: World | None = None
-    ) -> None:  # fmt: skip
+    def __init__(self, space: pymunk.Space, ignore: Sequence[str] = (), past: World | None = None) -> None:
         self._edits = edits(space)
         self._known = self._edits[0] - self._edits[1]
         fixed = space.sleep_time_threshold < math.inf
@@ -73,7 +69,7 @@ class World(Crossing):
         bodies = Bodies(space, fixed) if known is None else Bodies(space, fixed, known.bodies, stale or ())
         state = bodies.start
         bodies.check_finite(state)
-        self.records: Records = _records(space, bodies, {} if known is None else known.records, stale or ())
+        self.records: Records = records_of(space, bodies, {} if known is None else known.records, stale or ())
         self.smooth = "friction" in ignore
         self.ignores = self.smooth and rough_pair([s for s, r in self.records.items() if r is not None]) is not None
         self.packed = packed = Packed(bodies, state, self.records)
@@ -230,24 +226,6 @@ class World(Crossing):
     def _take(self) -> Callable[[float, float, float], int]:
         return take.bind(self.STATES, self.WALK, self.EXTRA, self.BODY)
 
-    def left(self, dt: float) -> float:
+    def half_damping(self, dt: float) -> float:
         """Factor of half a step's damping; 1 for damping 0, whose velocities `alter` sets to 0 at the end."""
         return self.damping ** (0.5 * dt) if self.damping > 0.0 else 1.0
-
-
-def _records(space: pymunk.Space, bodies: Bodies, known: Records, stale: Collection[Any]) -> Records:
-    """The records of all shapes, None for sensors; `known` ones that are not `stale` are used again.
-
-    A shape whose body was removed from the space becomes a static shape at its present place, where pymunk detects it.
-    """
-    records: Records = {}
-    for shape in space.shapes:
-        before = known.get(shape) if shape not in stale else None
-        if before is not None and not before.outside and before.body in bodies.row:
-            records[shape] = before
-        elif shape.sensor:
-            records[shape] = None
-        else:
-            here = shape.body is None or shape.body in bodies.row
-            records[shape] = read(shape, None if here else space.static_body)
-    return records

@@ -21,7 +21,7 @@ with warnings.catch_warnings(record=True) as caught:
     import eeca_pymunk as ep
     assert not sys.modules.get("numba"), "numba was imported with the package"
     assert not caught, caught[0].message
-    from eeca_pymunk.space.sample import sample
+    from tests.compiled.sample import sample
     for kind in ("disks", "boxes"):
         space = sample(kind)
         stepper = ep.EECA(space)
@@ -108,7 +108,7 @@ def test_first_calls_from_many_threads() -> None:
     code = """
 import threading
 import eeca_pymunk as ep
-from eeca_pymunk.space.sample import sample
+from tests.compiled.sample import sample
 gate, wrong, places = threading.Barrier(8), [], []
 def work():
     try:

@@ -10,7 +10,7 @@ import pymunk
 import pymunk.batch
 import pytest
 
-from eeca_pymunk.space import noticed, private, private_functions
+from eeca_pymunk.space import noticed, private, private_batch, private_functions
 from scenes.scene import add_disk
 
 
@@ -204,13 +204,13 @@ def test_reader_and_writer_are_the_batch_calls_in_memory_of_ours() -> None:
     bodies[1].angle = 0.5
     fields = pymunk.batch.BodyFields.BODY_ID | pymunk.batch.BodyFields.POSITION | pymunk.batch.BodyFields.ANGLE
     floats, ids = np.full(9, -1.0), np.full(3, -1, np.int64)
-    read = private.reader(space, fields, floats, ids)
+    read = private_batch.reader(space, fields, floats, ids)
     for _ in range(3):
         read()
         assert ids.tolist() == [bodies[0].id, bodies[1].id, -1]
         assert floats.tolist() == [-0.09, 0.0, 0.0, 0.09, 0.0, 0.5, -1.0, -1.0, -1.0]
     floats[:6] = range(1, 7)
-    write = private.writer(space, pymunk.batch.BodyFields.POSITION | pymunk.batch.BodyFields.ANGLE, floats)
+    write = private_batch.writer(space, pymunk.batch.BodyFields.POSITION | pymunk.batch.BodyFields.ANGLE, floats)
     for _ in range(3):
         write()
         assert [(*b.position, b.angle) for b in bodies] == [(1.0, 2.0, 3.0), (4.0, 5.0, 6.0)]
@@ -219,8 +219,8 @@ def test_reader_and_writer_are_the_batch_calls_in_memory_of_ours() -> None:
 
 def test_memory_of_readers_and_writers_lives_as_long_as_they() -> None:
     space, bodies = meeting()
-    read = private.reader(space, pymunk.batch.BodyFields.POSITION, np.zeros(8), np.zeros(8, np.int64))
-    write = private.writer(space, pymunk.batch.BodyFields.POSITION, np.arange(4.0))
+    read = private_batch.reader(space, pymunk.batch.BodyFields.POSITION, np.zeros(8), np.zeros(8, np.int64))
+    write = private_batch.writer(space, pymunk.batch.BodyFields.POSITION, np.arange(4.0))
     gc.collect()
     held = [np.full(8, 7.0) for _ in range(100)]
     for _ in range(100):

@@ -1,0 +1,76 @@
+"""Private names behind pymunk's batch calls, which read and write the states of all bodies in given memory."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import pymunk
+from pymunk import batch
+from pymunk._chipmunk_cffi import ffi, lib
+
+from ..arrays import FloatArray, IntArray
+
+OF_LIBRARY = ("cpSpaceEachBody", "pmSpaceBodyGetIteratorFuncBatched", "pmSpaceBodySetIteratorFuncBatched")
+TYPES = ("pmBatchedData *", "pmFloatArray *", "pmIntArray *")
+
+
+def reader(space: pymunk.Space, fields: batch.BodyFields, floats: FloatArray, ids: IntArray) -> Callable[[], None]:
+    """`batch.get_space_bodies` into given memory, at a quarter of its cost.
+
+    The caller must ensure that `floats` and `ids`, flat and contiguous, have room for all bodies of the space at every
+    call: pymunk would replace memory that is too small by its own, and free it.
+    """
+    values, numbers = _array("pmFloatArray *", "cpFloat[]", floats), _array("pmIntArray *", "uintptr_t[]", ids)
+    data = _batched(fields, values, numbers)
+    c, each = space._space, lib.cpSpaceEachBody
+    function = ffi.addressof(lib, "pmSpaceBodyGetIteratorFuncBatched")
+
+    def read(held: object = (floats, ids)) -> None:
+        values.num = 0
+        numbers.num = 0
+        each(c, function, data)
+
+    return read
+
+
+def writer(
+    space: pymunk.Space, fields: batch.BodyFields, floats: FloatArray, bodies: Sequence[pymunk.Body] | None = None
+) -> Callable[[], None]:
+    """`batch.set_space_bodies` from given memory, flat and contiguous, with a row for every body of the space.
+
+    With `bodies`, the first ones of the space in pymunk's order, only these are written, one after the other.
+    """
+    values, numbers = _array("pmFloatArray *", "cpFloat[]", floats), ffi.new("pmIntArray *")
+    data = _batched(fields, values, numbers)
+    c, each = space._space, lib.cpSpaceEachBody
+    function = ffi.addressof(lib, "pmSpaceBodySetIteratorFuncBatched")
+
+    def write(held: object = (floats, numbers)) -> None:
+        values.num = 0
+        each(c, function, data)
+
+    if bodies is None:
+        return write
+    one, pointers = lib.pmSpaceBodySetIteratorFuncBatched, [body._body for body in bodies]
+
+    def write_some(held: object = (floats, numbers)) -> None:
+        values.num = 0
+        for pointer in pointers:
+            one(pointer, data)
+
+    return write_some
+
+
+def _array(kind: str, items: str, memory: FloatArray | IntArray) -> Any:
+    """pymunk's array over given memory; `batch.Buffer` has the same, but leaks its earlier memory."""
+    array = ffi.new(kind)
+    array.arr = ffi.from_buffer(items, memory)
+    array.num, array.max = 0, memory.size
+    return array
+
+
+def _batched(fields: batch.BodyFields, floats: Any, ints: Any) -> Any:
+    data = ffi.new("pmBatchedData *")
+    data.fields, data.floatArray, data.intArray = fields.value, floats, ints
+    return data

@@ -1,0 +1,79 @@
+"""Groups of bodies that sleep together, by contacts and joints."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import pymunk
+
+from ..arrays import BoolArray, IntArray
+from ..report import Contacts
+from . import private
+from .bodies import Bodies
+
+
+def resting_groups(
+    space: pymunk.Space, bodies: Bodies, tired: BoolArray, contacts: Contacts
+) -> list[list[pymunk.Body]]:
+    """The groups of bodies that touch or are jointed, all of which have been at rest for long enough.
+
+    Args:
+        tired: (N,) whether a body has.  contacts: of the last step.
+    """
+    groups = list(range(len(bodies)))
+
+    def root(i: int) -> int:
+        while groups[i] != i:
+            groups[i] = groups[groups[i]]
+            i = groups[i]
+        return i
+
+    awake: BoolArray = bodies.dynamic & ~tired
+    pairs = list(zip(contacts.body_a.tolist(), contacts.body_b.tolist(), strict=True))
+    # pymunk keeps a contact with a sleeping body for good, so that both bodies must sleep or none.
+    for one, two in (*((c.a, c.b) for c in space.constraints), *private.touching(space)):
+        if one in bodies.row and two in bodies.row:
+            pairs.append((bodies.row[one], bodies.row[two]))
+    for a, b in pairs:
+        if bodies.dynamic[a] and bodies.dynamic[b]:
+            groups[root(a)] = root(b)
+        for one, other in ((a, b), (b, a)):
+            # A body on a kinematic body, or jointed to it, stays awake.
+            awake[one] |= bodies.dynamic[one] and not (bodies.dynamic[other] or bodies.static[other])
+    stay = {root(int(i)) for i in np.flatnonzero(awake)}
+    resting: dict[int, list[pymunk.Body]] = {}
+    for i in np.flatnonzero(tired).tolist():
+        if (lead := root(i)) not in stay:
+            resting.setdefault(lead, []).append(bodies.items[i])
+    return list(resting.values())
+
+
+def put_to_sleep(bodies: Sequence[pymunk.Body], groups: IntArray) -> None:
+    """Put awake bodies to sleep in groups; `groups`: index of another body of the group, -1 for none."""
+    leaders: dict[int, pymunk.Body] = {}
+    for body, group in zip(bodies, groups.tolist(), strict=True):
+        if group < 0:
+            continue
+        if group in leaders:
+            body.sleep_with_group(leaders[group])
+        else:
+            body.sleep()
+            leaders[group] = body
+
+
+def rouse(space: pymunk.Space) -> None:
+    """Wake bodies that are jointed to an awake body, or touch one according to pymunk."""
+    pairs = [*((c.a, c.b) for c in space.constraints), *private.touching(space)]
+    bodies = {body for pair in pairs for body in pair}
+    again = True
+    while again:
+        again = False
+        asleep = {body for body in bodies if body.is_sleeping}
+        for first, second in pairs:
+            if (first in asleep) == (second in asleep):
+                continue
+            one, other = (first, second) if first in asleep else (second, first)
+            if other.body_type != pymunk.Body.STATIC and other.space is space:
+                one.activate()
+                again = True
