@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import csv
 import importlib.util
+import math
 import os
 import re
 import runpy
@@ -33,6 +34,7 @@ from comparisons import (
     joints,
     maxwell,
     meeting,
+    meeting_joints,
     pile_precision,
     piles,
     programs,
@@ -174,6 +176,14 @@ JOINTS = ("1", "7", "12")  # rows that joints still owe
 def test_where_features_meet_laws_hold(number: str) -> None:
     _, value, most = meeting.CASES[number][1]()
     assert value <= most
+
+
+def test_ropes_without_slack_hold_their_loads_and_rows_tell_when_they_do_not(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert all(row["holds"] for row in meeting_joints.ropes(30))
+    assert not meeting_joints.law("", "", math.nan, 1.0)["holds"]
+    monkeypatch.setattr(meeting_joints, "apart", lambda space: 1e-6)
+    told = [row["holds"] for row in meeting_joints.ropes(1) if str(row["measured"]).startswith("joints apart")]
+    assert told == [False] * len(told) != []
 
 
 def test_first_use_tells_seconds_of_imports_and_steps() -> None:
