@@ -12,6 +12,7 @@ from ..contacts.correction import budget_of, least_of, lifting
 from ..contacts.interval import make_contacts, step_island
 from ..contacts.unmet import spend
 from ..contacts.works import moved
+from ..model.bodies import MOVED
 from ..model.contacts import Problem
 from ..model.islands import Island
 from ..model.parameters.events import RESOLUTION
@@ -111,7 +112,7 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
     raised = 0
     for q in range(n, k):
         # Where its user has put a body that nothing moves into others, that does the work of lifting them.
-        if MEMBER[WHO[q]].put > 0 and BODY[WHO[q]].inv_mass == 0.0:
+        if MEMBER[WHO[q]].put == MOVED and BODY[WHO[q]].inv_mass == 0.0:
             raised = 1
     quiet = rest_threshold(A, root, MINE, n, among, t) if may_lose and raised == 0 else 0.0
     owed = max(-A.RESTING[root].lost, 0.0)

@@ -18,7 +18,8 @@ def hold_penetrating(A: Scene) -> None:
     BODY, LINK, dt = A.BODY, A.LINK, A.PAR.dt
     A.COUNT.crammed = 0
     for i in range(BODY.shape[0] - 1):
-        if A.MEMBER[i].put == 0:
+        put = A.MEMBER[i].put
+        if put == 0:
             continue
         A.MEMBER[i].put = 0
         if A.MEMBER[i].tied >= 0:
@@ -36,7 +37,7 @@ def hold_penetrating(A: Scene) -> None:
                 g, u, _, _ = approach(A, s, o, 0.0)
                 if g >= -INITIAL_PENETRATION * min(A.SHAPE[s].extent, A.SHAPE[o].extent) or u * dt > -g:
                     continue
-                A.MEMBER[i].put, A.COUNT.crammed = 1, 1
+                A.MEMBER[i].put, A.COUNT.crammed = put, 1
                 if -u <= A.PAR.pulled * dt:
                     a, b = (j, i) if carrier(A, i) else (i, j)
                     unite(A, a, a if carrier(A, b) else b)
