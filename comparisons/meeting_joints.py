@@ -113,8 +113,8 @@ def rope(links: int, load: float) -> tuple[pymunk.Space, pymunk.Body]:
     box = pymunk.Body(load, load * SIDE**2 / 6.0)
     box.position = 0.5 * links, THICK + 0.5 * SIDE + 0.1
     space.add(box, pymunk.Poly.create_box(box, (SIDE, SIDE)))
-    for shape in space.shapes:
-        shape.elasticity, shape.friction = 0.3, 0.8
+    for one in space.shapes:
+        one.elasticity, one.friction = 0.3, 0.8
     return space, box
 
 
@@ -129,8 +129,8 @@ def ropes(steps: int) -> list[Row]:
             ledger = stepper.step(DT).ledger
             assert ledger is not None
             work, worst = work + abs(ledger.external), max(worst, apart(space))
-            corners = itertools.product((-0.5 * SIDE, 0.5 * SIDE), repeat=2)
-            lowest = min(box.local_to_world(corner).y for corner in corners)
+            half = 0.5 * SIDE
+            lowest = min(box.local_to_world((x, y)).y for x in (-half, half) for y in (-half, half))
             through = max(through, (THICK - lowest) / SIDE)
         name = f"rope of {links} links, load {load:g}"
         rows += [

@@ -95,9 +95,11 @@ class Saved:
 
 class Sides:
     """The remembered sides of thin shapes of a world, to be kept when the space is patched or read again: of shapes
-    that have not changed and are where the last step left them, whatever their new rows are."""
+    that have not changed and are where the last step left them, whatever their new rows are. Kinematic bodies with such
+    shapes only have not been moved: what overlaps them is not lifted for nothing."""
 
-    def __init__(self, world: World, loop: EventLoop) -> None:
+    def __init__(self, world: World, loop: EventLoop, sided: bool) -> None:
+        self._sided = sided
         self._known, self._shapes = loop.scene.SIDE.copy(), world.shapes
         self._outlines = [_outline(world, shape) for shape in world.shapes]
         self._of = [world.bodies.items[i] for i in world.owner.tolist()]
@@ -106,8 +108,6 @@ class Sides:
 
     def recall(self, world: World, loop: EventLoop) -> None:
         """Write them into the loop of the present world, which has taken no step."""
-        if len(loop.scene.SIDE) == 0:
-            return
         PLACE = np.full(len(self._shapes), -1, np.int64)
         for k, (shape, outline, body) in enumerate(zip(self._shapes, self._outlines, self._of, strict=True)):
             i, place = world.bodies.row.get(body, -1), world.places.get(shape, -1)
@@ -115,16 +115,22 @@ class Sides:
                 continue
             if _outline(world, shape) == outline and np.array_equal(world.state[i, :3], self._left[self._row[body]]):
                 PLACE[k] = place
-                if (row := world.WALK[BODY_ROW, i]) >= 0:
-                    world.STATES[LEFT, i, :3] = world.state[i, :3]
-                    world.BODY["due"][row] = ANEW
-        keep_sides(loop.table, self._known, PLACE)
+        same = set(PLACE.tolist())
+        changed = {i for place, i in enumerate(world.owner.tolist()) if place not in same}
+        for i in {int(world.owner[place]) for place in same if place >= 0}:
+            row = int(world.WALK[BODY_ROW, i])
+            if row >= 0 and (self._sided if world.bodies.dynamic[i] else i not in changed):
+                world.STATES[LEFT, i, :3] = world.state[i, :3]
+                world.BODY["due"][row] = ANEW
+        if self._sided and len(loop.scene.SIDE):
+            keep_sides(loop.table, self._known, PLACE)
 
 
 def sides_of(world: World, loop: EventLoop) -> Sides | None:
-    """The remembered sides, None if there are none."""
+    """The remembered sides, None if there are none, nor a kinematic body."""
     SIDE = loop.scene.SIDE
-    return Sides(world, loop) if len(SIDE) and (SIDE["key"] > 0).any() else None
+    sided = len(SIDE) > 0 and bool((SIDE["key"] > 0).any())
+    return Sides(world, loop, sided) if sided or not (world.bodies.dynamic | world.bodies.static).all() else None
 
 
 def _outline(world: World, shape: pymunk.Shape) -> object:

@@ -11,7 +11,7 @@ from ..geometry.sides import forget_sides
 from ..islands.accounting import flag_pairs
 from ..islands.at_rest import note_motion, stays_at_rest
 from ..layout import ANEW
-from ..model.bodies import AT_REST
+from ..model.bodies import AT_REST, MOVED, UNMOVED
 from ..model.parameters.rest import REST_RETRY
 from ..model.scene import Scene
 
@@ -66,8 +66,9 @@ def begin(A: Scene, WALK: IntArray) -> None:
             STATE[i].version += 1
             if BODY[i].due == -math.inf:
                 forget_sides(A, i)
-            if BODY[i].due <= ANEW:
-                A.MEMBER[i].placed, COUNT.any_placed = 1, 1
+                A.MEMBER[i].placed, COUNT.any_placed = MOVED, 1
+            elif BODY[i].due <= ANEW:
+                A.MEMBER[i].placed, COUNT.any_placed = max(A.MEMBER[i].placed, UNMOVED), 1
         else:
             BODY[i].due = max(BODY[i].due - last, 0.0)
         alike = BODY[i].inv_mass == 0.0 or (ax == BODY[0].ax and ay == BODY[0].ay)

@@ -12,6 +12,7 @@ from ..contacts.correction import budget_of, least_of, lifting
 from ..contacts.interval import make_contacts, step_island
 from ..contacts.unmet import spend
 from ..contacts.works import moved
+from ..model.bodies import MOVED
 from ..model.contacts import Problem
 from ..model.islands import Island
 from ..model.parameters.events import RESOLUTION
@@ -110,8 +111,8 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
     among = bodies_with_supports(A, isle, n)
     raised = 0
     for q in range(n, k):
-        # A body without mobility that the program has placed into others does the work of lifting them.
-        if MEMBER[WHO[q]].placed > 0 and BODY[WHO[q]].inv_mass == 0.0:
+        # A body without mobility that the program has moved into others does the work of lifting them.
+        if MEMBER[WHO[q]].placed == MOVED and BODY[WHO[q]].inv_mass == 0.0:
             raised = 1
     quiet = rest_threshold(A, root, MINE, n, among, t) if may_lose and raised == 0 else 0.0
     owed = max(-A.RESTING[root].lost, 0.0)

@@ -18,7 +18,8 @@ def hold_penetrating(A: Scene) -> None:
     BODY, LINK, dt = A.BODY, A.LINK, A.PAR.dt
     A.COUNT.any_placed = 0
     for i in range(BODY.shape[0] - 1):
-        if A.MEMBER[i].placed == 0:
+        placed = A.MEMBER[i].placed
+        if placed == 0:
             continue
         A.MEMBER[i].placed = 0
         if A.MEMBER[i].tied >= 0:
@@ -36,7 +37,7 @@ def hold_penetrating(A: Scene) -> None:
                 g, u, _, _ = approach(A, s, o, 0.0)
                 if g >= -INITIAL_PENETRATION * min(A.SHAPE[s].extent, A.SHAPE[o].extent) or u * dt > -g:
                     continue
-                A.MEMBER[i].placed, A.COUNT.any_placed = 1, 1
+                A.MEMBER[i].placed, A.COUNT.any_placed = placed, 1
                 if -u <= A.PAR.pulled * dt:
                     a, b = (j, i) if fixed_support(A, i) else (i, j)
                     unite(A, a, a if fixed_support(A, b) else b)

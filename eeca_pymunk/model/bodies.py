@@ -61,6 +61,9 @@ RENEW = -4  # the interval of the body's island ends
 # of the root of an island at rest: to be solved again; of a kinematic body: it moves. CANDIDATE: slow for a whole step.
 AWAKE, AT_REST, CHANGED, CANDIDATE = 0, 1, 2, 3
 
+# `Member.placed`: overlaps are looked for anew where the body is, or where the program has moved it.
+UNMOVED, MOVED = 1, 2
+
 
 class Member(Record):
     """A body's place in an island. The bodies of an island are a chain from the first one, the root, whose row also
@@ -78,7 +81,7 @@ class Member(Record):
     rest: int  # AWAKE, AT_REST, CHANGED or CANDIDATE
     loaded: int  # of the root of an island at rest: 1 while support of moving neighbours is unverified
     among: int  # of the root: `bodies`, and those of the islands that support them
-    placed: int  # 1 if the program placed the body, which may overlap others
+    placed: int  # UNMOVED or MOVED while the body may overlap others deeply; else 0
     raised: (
         int  # of the root: 1 if a body without mobility was placed into its bodies, so that lifting is external work
     )

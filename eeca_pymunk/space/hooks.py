@@ -82,12 +82,17 @@ class Hooks:
     def positions(self, state: FloatArray, end: FloatArray, dt: float) -> None:
         """Call the position functions on `state` with the velocity that leads to `end`, and write their results to
         `end`."""
+        ways = self.bodies.centers(end) - self.bodies.centers(state)
         for row in self.position:
             body = self.bodies.items[row]
             function = private.position_function(body)
             assert function is not None
-            way, turn = end[row, POSITION] - state[row, POSITION], end[row, ANGLE] - state[row, ANGLE]
-            body.velocity, body.angular_velocity = tuple(way / dt), float(turn / dt)
+            turn = end[row, ANGLE] - state[row, ANGLE]
+            body.velocity, body.angular_velocity = tuple(ways[row] / dt), float(turn / dt)
+            if (*body.position, body.angle) != tuple(state[row, :3]):
+                # A rehearsal of collisions has moved the body as pymunk does.
+                body.angle = float(state[row, ANGLE])
+                body.position = tuple(state[row, POSITION])
             with private_joints.time_step(self.space, dt):
                 function(body, dt)
             end[row, POSITION], end[row, ANGLE] = body.position, body.angle

@@ -10,7 +10,8 @@ What acts from outside has a power that the scene and the step's own report boun
   (dt spin)^2 / 12 less, and a motor that an impact turns round goes to and fro within the step;
 * another joint with a `max_force` may give way and come back later: as a motor, with the way of its points, or its
   angle, in place of the motor's angle;
-* a joint on a kinematic body that moves, and one without a `max_force` that a step has left apart, have no bound here.
+* a joint on a kinematic body that moves, one without a `max_force` that a step has left apart, and functions of the
+  program that push bodies have no bound here.
 
 With none of them the bound is 0: gravity is part of the energy, and external has to be 0 up to the round-off of the
 sums that it is taken from, for which `Composition` allows CLOSES of the scale of energy, as for the residual.
@@ -46,16 +47,16 @@ class Outside:
     """What acts from outside in the step that follows.
 
     Args:
-        box: the kinematic body of the scene.
+        box: the kinematic body of the scene.  pushed: whether functions of the program push bodies.
     """
 
-    def __init__(self, space: pymunk.Space, box: pymunk.Body) -> None:
+    def __init__(self, space: pymunk.Space, box: pymunk.Body, pushed: bool) -> None:
         self.space, self.box, self.place = space, box, box.position
         self.speed, self.spin = box.velocity.length, abs(box.angular_velocity)
         self.bounded = [(c, motion(c)) for c in space.constraints if math.isfinite(c.max_force)]
         self.belt = max((shape.surface_velocity.length for shape in space.shapes), default=0.0)
         moving = self.speed > 0.0 or self.spin > 0.0
-        self.unbounded = any(moving and box in (c.a, c.b) for c in space.constraints)
+        self.unbounded = pushed or any(moving and box in (c.a, c.b) for c in space.constraints)
 
     def most(self, report: ep.StepReport, dt: float) -> float:
         """The bound, once the step has been taken."""

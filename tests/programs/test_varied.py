@@ -1,0 +1,104 @@
+"""Kinds of failures that compositions with edits, handlers and functions found."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pymunk
+import pytest
+
+import eeca_pymunk as ep
+
+from .varied import onward, usual
+
+DT = 1 / 60
+
+
+def sunk(kind: int) -> tuple[pymunk.Space, pymunk.Body, ep.EECA]:
+    """A box 5 mm deep in a plate, after a step in which nothing pays for lifting it out."""
+    space = pymunk.Space()
+    space.gravity = 0.0, -9.81
+    plate = pymunk.Body(body_type=kind)
+    ground = pymunk.Segment(plate, (-5.0, 0.0), (5.0, 0.0), 0.0)
+    body = pymunk.Body(1.0, 0.1)
+    body.position = 0.0, 0.5
+    box = pymunk.Poly.create_box(body, (1.0, 1.0))
+    space.add(plate, ground, body, box)
+    box.friction = ground.friction = 0.5
+    stepper = ep.EECA(space)
+    for _ in range(5):
+        stepper.step(DT)
+    body.position = 0.0, 0.495
+    for _ in range(5):
+        stepper.step(DT)
+    return space, body, stepper
+
+
+def adds(space: pymunk.Space) -> None:
+    """A body far away."""
+    body = pymunk.Body(1.0, 1.0)
+    body.position = 0.0, 1e3
+    space.add(body, pymunk.Circle(body, 0.1))
+
+
+def changes(space: pymunk.Space) -> None:
+    """The elasticity of the box."""
+    for shape in space.shapes:
+        shape.elasticity = 0.3
+
+
+def listens(space: pymunk.Space) -> None:
+    """A handler that does nothing."""
+    space.on_collision(pre_solve=lambda *_: None)
+
+
+@pytest.mark.parametrize("kind", [pymunk.Body.KINEMATIC, pymunk.Body.STATIC])
+@pytest.mark.parametrize("edit", [adds, changes, listens])
+def test_a_plate_that_is_not_moved_lifts_nothing_after_other_edits(
+    kind: int, edit: Callable[[pymunk.Space], None]
+) -> None:
+    """It counted as placed by the program anew, and lifted what it overlapped: energy from nowhere, booked external."""
+    space, body, stepper = sunk(kind)
+    before, deep = body.position.y, body.kinetic_energy
+    edit(space)
+    for _ in range(3):
+        report = stepper.step(DT)
+        assert report.ledger is not None
+        assert report.ledger.external == 0.0
+    assert body.position.y == pytest.approx(before, abs=1e-12)
+    assert body.kinetic_energy <= deep + 1e-15
+
+
+def test_a_plate_that_is_moved_lifts_as_before() -> None:
+    space, body, stepper = sunk(pymunk.Body.KINEMATIC)
+    next(b for b in space.bodies if b is not body).position = 0.0, 0.01
+    assert sum(stepper.step(DT).ledger.external for _ in range(9)) > 0.01
+    assert body.position.y == pytest.approx(0.51, abs=1e-6)
+
+
+@pytest.mark.parametrize("steered", [False, True])
+@pytest.mark.parametrize("offset", [0.0, 0.3])
+def test_functions_of_positions_that_do_as_pymunk_change_nothing_beside_handlers(steered: bool, offset: float) -> None:
+    """They began where pymunk's own step had moved the bodies: gravity's part of the way, g dt^2, came twice."""
+    ends = []
+    for changed in (False, True):
+        space = pymunk.Space()
+        space.gravity = 0.0, -9.81
+        body = pymunk.Body(1.0, 1.0)
+        body.position, body.velocity, body.angular_velocity = (0.0, 5.0), (1.0, 0.0), 2.0
+        body.center_of_gravity = offset, 0.0
+        space.add(body, pymunk.Circle(body, 0.5))
+        space.on_collision(post_solve=lambda *_: None)
+        if changed:
+            body.position_func = onward
+        if changed and steered:
+            body.velocity_func = usual
+        stepper = ep.EECA(space)
+        for _ in range(20):
+            start = ep.measure(space).energy
+            report = stepper.step(DT)
+            assert report.ledger is not None
+            if not offset:
+                assert ep.measure(space).energy - start == pytest.approx(report.ledger.change, abs=1e-12)
+        ends.append((*body.position, body.angle))
+    assert ends[1] == pytest.approx(ends[0], abs=1e-12)
