@@ -133,7 +133,7 @@ MUTATIONS = (
              "PAR.external -= work", "oracles/test_ledger.py", "forces_on_bodies"),
     Mutation("ledger: sign of the work of a surface", "contacts/works.py", "work -= beta * ROWS[i].surface",
              "work += beta * ROWS[i].surface", "oracles/test_friction.py", "belt_works"),
-    Mutation("ledger: damping of speeds, not energies", "impacts/begin.py", "(1.0 / (left * left) - 1.0)",
+    Mutation("ledger: damping of speeds, not energies", "impacts/begin.py", "(1.0 / (half_damping * half_damping) - 1.0)",
              "(1.0 / left - 1.0)", "oracles/test_ledger.py", "damping"),
     Mutation("joints: what pulls gives way", "joints/response.py", "not (pulls or slight):", "not slight:",
              "jointed/test_taut.py", "derivative"),
