@@ -33,10 +33,7 @@ MEMORY = 2.0**30  # bytes
 def _versions() -> dict[str, str]:
     from importlib.metadata import version
 
-    return {
-        "python": sys.version.split()[0],
-        **{name: version(name) for name in ("eeca-pymunk", "pymunk", "numpy")},
-    }
+    return {"python": sys.version.split()[0], **{name: version(name) for name in ("eeca-pymunk", "pymunk", "numpy")}}
 
 
 def versions() -> dict[str, str]:

@@ -57,10 +57,7 @@ def gather(
     shapes = len(SHAPE)
     half = 0.5 * h
     for c in range(len(PAIRS)):
-        s = PAIRS[c, 0]
-        r = PAIRS[c, 1]
-        a = PAIRS[c, 2]
-        b = PAIRS[c, 3]
+        s, r, a, b = PAIRS[c, 0], PAIRS[c, 1], PAIRS[c, 2], PAIRS[c, 3]
         if isle.IM[a] == 0.0 and isle.IM[b] == 0.0:
             continue
         small = min(SHAPE[s].extent, SHAPE[r].extent)
@@ -89,8 +86,7 @@ def gather(
             again = manifold(S, s, r, MIDDLE, a, b, reach + about, MANIFOLD_ROUND_OFF * small, THEN)
             ahead = again == count
         if not ahead:
-            x = 0.0
-            y = 0.0
+            x, y = 0.0, 0.0
             if not free:
                 centre = POSE
             else:

@@ -41,8 +41,7 @@ def recall(
     """Set the initial impulses L (m, 2), and those of loads EXPECTED (m,), from remembered forces of this step, whose
     number is `stamp`, or the last."""
     for i in range(m):
-        L[i, 0] = 0.0
-        L[i, 1] = 0.0
+        L[i, 0] = L[i, 1] = 0.0
         EXPECTED[i] = 0.0
         row = find(KEYS, KEY[i])
         if row >= 0 and FORCES[row].stamp >= stamp - 1.0:
@@ -60,8 +59,7 @@ def speeds(
 
     Speeds in a free island are relative to its centre of mass.
     """
-    x = 0.0
-    y = 0.0
+    x, y = 0.0, 0.0
     if len(IM) == n:
         mass = 0.0
         for i in range(n):
@@ -70,9 +68,7 @@ def speeds(
             y += V[i, 1] / IM[i]
         x /= mass
         y /= mass
-    square = 0.0
-    most = 0.0
-    pull = 0.0
+    square, most, pull = 0.0, 0.0, 0.0
     for i in range(n):
         pull = max(pull, math.sqrt(ACC[i, 0] ** 2 + ACC[i, 1] ** 2))
     for i in range(len(IM)):

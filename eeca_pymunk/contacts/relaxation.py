@@ -48,15 +48,13 @@ def relax(
         STATE.wait = max(STATE.wait - 1.0, 0.0)
         sweeps, worst = iterate(problem, L, V, max(fine, coarse), most)
         return sweeps, 0, worst
-    sweeps = 0
-    worst = np.inf
+    sweeps, worst = 0, np.inf
     while sweeps < FIRST_SWEEPS and worst > fine:
         worst = sweep(problem, L, V)
         sweeps += 1
     if worst <= fine:
         return sweeps, 0, worst
-    fails = 0
-    done = 0
+    fails, done = 0, 0
     last = worst
     while done < rounds:
         passes = 6 if STATE.augmentation > 6.0 else 1

@@ -43,10 +43,7 @@ def target(
         EXPECTED: (m,) normal impulses lam_w of loads.
     """
     for i in range(m):
-        a = A[i]
-        b = B[i]
-        u = ROWS[i].un
-        e = ROWS[i].elasticity
+        a, b, u, e = A[i], B[i], ROWS[i].un, ROWS[i].elasticity
         close = -u - 2.0 * ROWS[i].gap / h  # end velocity that closes the gap
         bounce = -e * u if u < 0.0 else 0.0
         ROWS[i].wake = np.inf

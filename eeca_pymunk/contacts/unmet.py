@@ -3,13 +3,7 @@
 from __future__ import annotations
 
 from ..compiled import uncounted
-from ..model.parameters.events import (
-    BUDGET_TIME,
-    DIRECT_LOOKS,
-    EVENT_LOOKS,
-    PAIR_LOOKS,
-    SWEEP_LOOKS,
-)
+from ..model.parameters.events import BUDGET_TIME, DIRECT_LOOKS, EVENT_LOOKS, PAIR_LOOKS, SWEEP_LOOKS
 from ..model.parameters.impulses import DENSE_CONTACTS
 from ..model.scene import Scene
 

@@ -27,15 +27,13 @@ def carried(
     means of their velocities V and VN (k, 3) before and after, and of moving surfaces."""
     work = 0.0
     for i in range(m):
-        lam = L[i, 0]
-        beta = L[i, 1]
+        lam, beta = L[i, 0], L[i, 1]
         if lam == 0.0 and beta == 0.0:
             continue
         work -= beta * ROWS[i].surface
         fx = lam * ROWS[i].nx - beta * ROWS[i].ny
         fy = lam * ROWS[i].ny + beta * ROWS[i].nx
-        a = A[i]
-        b = B[i]
+        a, b = A[i], B[i]
         if IM[b] == 0.0:
             work -= 0.5 * (fx * (V[b, 0] + VN[b, 0]) + fy * (V[b, 1] + VN[b, 1]))
         if II[b] == 0.0:

@@ -16,10 +16,7 @@ from ..geometry.manifold import half_width
 from ..model.bodies import AT_REST
 from ..model.contacts import LASTED
 from ..model.parameters.events import RESOLUTION
-from ..model.parameters.intervals import (
-    INTERVAL_DEPTH_WIDTH,
-    TOUCH,
-)
+from ..model.parameters.intervals import INTERVAL_DEPTH_WIDTH, TOUCH
 from ..model.parameters.rest import REST_RETRY
 from ..model.scene import Scene
 from ..model.step import DONE, PUSHES_FULL

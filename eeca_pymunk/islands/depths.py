@@ -12,12 +12,7 @@ from ..geometry.manifold import half_width
 from ..geometry.sides import remembers
 from ..model.contacts import Row
 from ..model.islands import Island
-from ..model.parameters.intervals import (
-    INTERVAL_DEPTH,
-    INTERVAL_DEPTH_LEAST,
-    INTERVAL_DEPTH_WIDTH,
-    INTERVAL_RETRY,
-)
+from ..model.parameters.intervals import INTERVAL_DEPTH, INTERVAL_DEPTH_LEAST, INTERVAL_DEPTH_WIDTH, INTERVAL_RETRY
 from ..model.scene import Scene
 
 

@@ -126,12 +126,7 @@ def approach(A: Scene, a: int, b: int, t: float) -> tuple[float, float, float, f
         A, a, BODY[i].x, BODY[i].y, BODY[i].angle,
         b, BODY[j].x + BODY[j].vx * h, BODY[j].y + BODY[j].vy * h, BODY[j].angle + BODY[j].spin * h,
     )  # fmt: skip
-    xi, yi, xj, yj = (
-        px - BODY[i].x,
-        py - BODY[i].y,
-        px - BODY[j].x - BODY[j].vx * h,
-        py - BODY[j].y - BODY[j].vy * h,
-    )
+    xi, yi, xj, yj = (px - BODY[i].x, py - BODY[i].y, px - BODY[j].x - BODY[j].vx * h, py - BODY[j].y - BODY[j].vy * h)
     arm_i, arm_j = xi * ny - yi * nx, xj * ny - yj * nx
     u = nx * (BODY[j].vx - BODY[i].vx) + ny * (BODY[j].vy - BODY[i].vy)
     u += arm_j * BODY[j].spin - arm_i * BODY[i].spin

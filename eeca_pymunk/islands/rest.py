@@ -13,12 +13,7 @@ from ..arrays import IntArray
 from ..compiled import uncounted
 from ..model.bodies import AWAKE, CANDIDATE
 from ..model.parameters.intervals import LARGE_ISLAND
-from ..model.parameters.rest import (
-    REST_CANDIDATE,
-    REST_CANDIDATE_LARGE,
-    REST_RETRY,
-    REST_SPEED,
-)
+from ..model.parameters.rest import REST_CANDIDATE, REST_CANDIDATE_LARGE, REST_RETRY, REST_SPEED
 from ..model.scene import Scene
 from ..pairs.rules import law
 from ..rows.equilibrium import point_speed

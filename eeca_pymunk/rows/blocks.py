@@ -108,14 +108,12 @@ def solve_block(
     clear(OUT[0])
     OUT[0].owed = owed
     for i in range(m):
-        LOSS[i, 0] = 0.0
-        LOSS[i, 1] = 0.0
+        LOSS[i, 0] = LOSS[i, 1] = 0.0
     rates(A, B, ROWS, V, m)
     speed = aim(ROWS, m)
     if not speed > 0.0:
         for i in range(m):
-            L[i, 0] = 0.0
-            L[i, 1] = 0.0
+            L[i, 0] = L[i, 1] = 0.0
         return CONVERGED
     FREE = V.copy()
     push(problem, L, 1.0, V)

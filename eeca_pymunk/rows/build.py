@@ -58,8 +58,7 @@ def place_row(
 @uncounted
 def normal_rate(A: IntArray, B: IntArray, ROWS: Rows[Row], V: FloatArray, i: int) -> float:
     """u_n of contact i at velocities V (k, 3)."""
-    a = A[i]
-    b = B[i]
+    a, b = A[i], B[i]
     rate: float = (
         ROWS[i].nx * (V[b, 0] - V[a, 0])
         + ROWS[i].ny * (V[b, 1] - V[a, 1])
@@ -71,8 +70,7 @@ def normal_rate(A: IntArray, B: IntArray, ROWS: Rows[Row], V: FloatArray, i: int
 @uncounted
 def tangent_rate(A: IntArray, B: IntArray, ROWS: Rows[Row], V: FloatArray, i: int) -> float:
     """u_t of contact i at velocities V (k, 3), surface velocities included."""
-    a = A[i]
-    b = B[i]
+    a, b = A[i], B[i]
     rate: float = (
         ROWS[i].nx * (V[b, 1] - V[a, 1])
         - ROWS[i].ny * (V[b, 0] - V[a, 0])

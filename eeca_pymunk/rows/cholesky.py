@@ -47,10 +47,7 @@ def assemble(
     ja = np.empty(3)
     jb = np.empty(3)
     for i in range(m):
-        a = A[i]
-        b = B[i]
-        nx = ROWS[i].nx
-        ny = ROWS[i].ny
+        a, b, nx, ny = A[i], B[i], ROWS[i].nx, ROWS[i].ny
         for kind in range(2):
             if kind == 0:
                 if held[i] == 0:

@@ -28,8 +28,7 @@ def coulomb(
     if qn >= 0.0:
         return 0.0, 0.0
     det = ann * att - ant * ant
-    lam = 0.0
-    beta = 0.0
+    lam, beta = 0.0, 0.0
     done = False
     if det > SINGULAR * ann * att:
         lam = (qt * ant - qn * att) / det

@@ -68,8 +68,7 @@ def matrix_free(problem: Problem, slip: FloatArray, at: IntArray, kind: IntArray
     J = np.empty((N, 8))  # rows: n or t with arms a, b; then the columns' direction and arms
     for i in range(N):
         c = at[i]
-        nx = ROWS[c].nx
-        ny = ROWS[c].ny
+        nx, ny = ROWS[c].nx, ROWS[c].ny
         if kind[i] == 0:
             J[i, 0] = nx
             J[i, 1] = ny

@@ -44,8 +44,7 @@ def refine(
     L0 = np.empty((rows, 2))
     V0 = np.empty_like(V)
     keep(L, V, rows, L0, V0)
-    reached = np.inf
-    clamped = 0
+    reached, clamped = np.inf, 0
     if m <= DENSE_CONTACTS:
         for attempt in range(2):
             # Friction that energy limits: first each contact by itself, then with the other contact of its face.

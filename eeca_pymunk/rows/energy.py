@@ -24,11 +24,9 @@ def works(problem: AnyProblem, L: FloatArray, V: FloatArray, LOSS: FloatArray) -
     from the other one of the same contact. Likewise for the sums, if the solve was truncated.
     """
     A, B, ROWS, m = problem.A, problem.B, problem.ROWS, problem.m
-    normal = 0.0
-    tangential = 0.0
+    normal, tangential = 0.0, 0.0
     for i in range(m):
-        LOSS[i, 0] = 0.0
-        LOSS[i, 1] = 0.0
+        LOSS[i, 0] = LOSS[i, 1] = 0.0
         if L[i, 0] == 0.0 and L[i, 1] == 0.0:
             continue
         LOSS[i, 0] = -0.5 * L[i, 0] * (ROWS[i].un + normal_rate(A, B, ROWS, V, i))
@@ -65,11 +63,9 @@ def scale_of(
         s, and the energy still owed (0 where there is a root).
     """
     A, B, ROWS, m = problem.A, problem.B, problem.ROWS, problem.m
-    p = 0.0
-    q = 0.0
+    p, q = 0.0, 0.0
     for i in range(m):
-        lam = L[i, 0]
-        beta = L[i, 1]
+        lam, beta = L[i, 0], L[i, 1]
         if lam == 0.0 and beta == 0.0:
             continue
         n0 = normal_rate(A, B, ROWS, FREE, i)

@@ -19,8 +19,7 @@ def neighbours(A: IntArray, B: IntArray, m: int, n: int, used: IntArray) -> tupl
     repeatedly."""
     start = np.zeros(n + 1, np.int64)
     for i in range(m):
-        a = A[i]
-        b = B[i]
+        a, b = A[i], B[i]
         if used[i] != 0 and a < n and b < n:
             start[a + 1] += 1
             start[b + 1] += 1
@@ -29,8 +28,7 @@ def neighbours(A: IntArray, B: IntArray, m: int, n: int, used: IntArray) -> tupl
     other = np.empty(start[n], np.int64)
     fill = start[:n].copy()
     for i in range(m):
-        a = A[i]
-        b = B[i]
+        a, b = A[i], B[i]
         if used[i] != 0 and a < n and b < n:
             other[fill[a]] = b
             fill[a] += 1
@@ -57,8 +55,7 @@ def dissect(POSE: FloatArray, n: int, start: IntArray, other: IntArray, place: I
     stack = np.empty((128, 2), np.int64)
     stack[0, 0] = 0
     stack[0, 1] = count
-    top = 1
-    stamp = 0
+    top, stamp = 1, 0
     while top > 0:
         # The range [low, high) of ids gets the last free places: its separator first, then its right part.
         top -= 1

@@ -61,9 +61,7 @@ def classify(
     Where energy limits friction, beta (u_t- + u_t+) = -lam (u_n- + b): rest is that u_t+.
     """
     for i in range(m):
-        lam = L[i, 0]
-        beta = L[i, 1]
-        mu = ROWS[i].friction
+        lam, beta, mu = L[i, 0], L[i, 1], ROWS[i].friction
         held[i] = 1 if lam > 0.0 else 0
         stuck[i] = 0
         slip[i] = 0.0
@@ -90,8 +88,7 @@ def clamp(ROWS: Rows[Row], L: FloatArray, m: int) -> int:
     for i in range(m):
         most = ROWS[i].friction * L[i, 0]
         if L[i, 0] < 0.0:
-            L[i, 0] = 0.0
-            L[i, 1] = 0.0
+            L[i, 0] = L[i, 1] = 0.0
             clamped += 1
         elif abs(L[i, 1]) > most:
             # Round-off of beta = mu lam is not outside.
@@ -152,8 +149,7 @@ def polish_free(
                 r[i, 1] = rest[i] - tangent_rate(A, B, ROWS, V, i)
                 worst = max(worst, abs(r[i, 1]))
                 ft = R * ROWS[i].k_t * r[i, 1]
-            a = A[i]
-            b = B[i]
+            a, b = A[i], B[i]
             fx = fn * ROWS[i].nx - ft * ROWS[i].ny
             fy = fn * ROWS[i].ny + ft * ROWS[i].nx
             if a < n:
@@ -195,8 +191,7 @@ def segment(problem: AnyProblem, L: FloatArray, V: FloatArray, L0: FloatArray, V
     """Go back from (L, V) towards (L0, V0) to the minimum of lam.(u_n - b) + beta.u_t - (1/2) lam^T A lam between them,
     the energy that the frictionless contact problem minimises. Returns the part of the step that remains."""
     A, B, ROWS, m = problem.A, problem.B, problem.ROWS, problem.m
-    slope = 0.0
-    curvature = 0.0
+    slope, curvature = 0.0, 0.0
     for i in range(m):
         dn = L[i, 0] - L0[i, 0]
         dt = L[i, 1] - L0[i, 1]

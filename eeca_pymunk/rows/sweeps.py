@@ -20,16 +20,9 @@ def sweep_free(problem: Problem, L: FloatArray, V: FloatArray) -> float:
     A, B, ROWS, IM, II, _, _, m = problem
     worst = 0.0
     for i in range(m):
-        a = A[i]
-        b = B[i]
-        nx = ROWS[i].nx
-        ny = ROWS[i].ny
-        na = ROWS[i].arm_na
-        nb = ROWS[i].arm_nb
-        lam0 = L[i, 0]
-        beta0 = L[i, 1]
-        ann = ROWS[i].a_nn
-        mu = ROWS[i].friction
+        a, b, nx, ny = A[i], B[i], ROWS[i].nx, ROWS[i].ny
+        na, nb, lam0, beta0 = ROWS[i].arm_na, ROWS[i].arm_nb, L[i, 0], L[i, 1]
+        ann, mu = ROWS[i].a_nn, ROWS[i].friction
         dx = V[b, 0] - V[a, 0]
         dy = V[b, 1] - V[a, 1]
         short = nx * dx + ny * dy + (nb * V[b, 2] - na * V[a, 2]) - ROWS[i].target  # u_n - b
@@ -40,15 +33,11 @@ def sweep_free(problem: Problem, L: FloatArray, V: FloatArray) -> float:
                 short = np.inf
         if short >= 0.0 and lam0 == 0.0 and beta0 == 0.0:
             continue  # opens
-        lam = 0.0
-        beta = 0.0
-        ta = 0.0
-        tb = 0.0
+        lam, beta, ta, tb = 0.0, 0.0, 0.0, 0.0
         if mu <= 0.0:
             lam = max(lam0 - ROWS[i].k_n * short, 0.0)
         else:
-            ta = ROWS[i].arm_ta
-            tb = ROWS[i].arm_tb
+            ta, tb = ROWS[i].arm_ta, ROWS[i].arm_tb
             ut = nx * dy - ny * dx + (tb * V[b, 2] - ta * V[a, 2]) + ROWS[i].surface
             ant = ROWS[i].a_nt
             qn = short - lam0 * ann - beta0 * ant
@@ -107,8 +96,7 @@ def push_free(problem: Problem, L: FloatArray, factor: float, V: FloatArray) -> 
         beta = factor * L[i, 1]
         if lam == 0.0 and beta == 0.0:
             continue
-        a = A[i]
-        b = B[i]
+        a, b = A[i], B[i]
         fx = lam * ROWS[i].nx - beta * ROWS[i].ny
         fy = lam * ROWS[i].ny + beta * ROWS[i].nx
         V[a, 0] -= IM[a] * fx
