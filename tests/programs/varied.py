@@ -76,7 +76,8 @@ class Varied(Composition):
         if self.space.constraints:
             self.has -= {"native", "many"}  # native steps leave joints apart
         if "sleep" in self.has:
-            self.has -= {"set back"}  # idle times are pymunk's
+            # Idle times are pymunk's. Its own step has been seen not to return from a scene with sleeping bodies.
+            self.has -= {"set back", "native"}
         if "many" in self.has:
             self._fill()
         for name in ("compound", "handlers", "functions", "drag", "sleep", "belts"):
