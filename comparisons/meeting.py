@@ -11,7 +11,7 @@ from collections.abc import Callable
 import pymunk
 
 import eeca_pymunk as ep
-from comparisons import meeting_joints, runs
+from comparisons import meeting_scenes, runs
 from comparisons.hard_cases import meeting as hard_cases
 from comparisons.output import Output, Row
 
@@ -275,4 +275,5 @@ def run(output: Output, full: bool) -> None:
     ep.warmup()
     output.parameters({"dt": DT})
     output.table("Where features meet", table())
-    output.table("Where joints meet contacts", meeting_joints.table(), "joints")
+    output.table("Named scenes", meeting_scenes.named(), "named")
+    output.table("Ropes and bridges without slack", meeting_scenes.taut(), "taut")

@@ -5,7 +5,6 @@ from __future__ import annotations
 import ast
 import csv
 import importlib.util
-import math
 import os
 import re
 import runpy
@@ -34,7 +33,7 @@ from comparisons import (
     joints,
     maxwell,
     meeting,
-    meeting_joints,
+    meeting_scenes,
     pile_precision,
     piles,
     programs,
@@ -178,12 +177,11 @@ def test_where_features_meet_laws_hold(number: str) -> None:
     assert value <= most
 
 
-def test_ropes_without_slack_hold_their_loads_and_rows_tell_when_they_do_not(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert all(row["holds"] for row in meeting_joints.ropes(30))
-    assert not meeting_joints.law("", "", math.nan, 1.0)["holds"]
-    monkeypatch.setattr(meeting_joints, "apart", lambda space: 1e-6)
-    told = [row["holds"] for row in meeting_joints.ropes(1) if str(row["measured"]).startswith("joints apart")]
-    assert told == [False] * len(told) != []
+def test_ropes_and_bridges_without_slack_say_when_they_do_not_hold(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(meeting_scenes, "STEPS", 20)
+    assert all(row["holds"] for row in meeting_scenes.taut())
+    monkeypatch.setattr(meeting_scenes, "apart", lambda space: 1e-6)
+    assert not any(row["holds"] for row in meeting_scenes.taut())
 
 
 def test_first_use_tells_seconds_of_imports_and_steps() -> None:

@@ -1,6 +1,6 @@
 """Ten thousand random programs of API calls: `python -m tests.programs.soak [COUNT] [--minutes M] [--joints]`.
 
-`--compositions` plays random scenes of `compositions.py` in their place, and prints the longest step of all.
+`--compositions` plays random scenes of `varied.py` in their place, and prints the longest step of all.
 
 Goes on after a failure, and prints its seed and calls; with `--shrink`, which draws more slowly and less widely, the
 shortest program that fails in the same way, with what was drawn. `--gain 1e-5` takes a gain of energy above that part
@@ -16,8 +16,8 @@ from hypothesis import HealthCheck, given, seed, settings
 from hypothesis import strategies as st
 from tqdm import tqdm
 
-from .compositions import Composition
 from .fuzz import GAIN, Drawn, Program, Thrown
+from .varied import Varied
 
 _BATCH = 100  # programs between two looks at the clock
 
@@ -59,7 +59,7 @@ def compositions(count: int, minutes: float, start: int, joints: bool) -> int:
     with tqdm(total=count, unit="scene", desc="compositions") as bar:
         while done < count and time.perf_counter() - clock < 60.0 * minutes:
             try:
-                longest = max(longest, Composition(start + done, joints).play().longest)
+                longest = max(longest, Varied(start + done, joints).play().longest)
             except Exception as error:
                 failed += 1
                 tqdm.write(f"seed {start + done}: {type(error).__name__}: {error}")

@@ -9,7 +9,7 @@ import pytest
 
 import eeca_pymunk as ep
 
-from .varied import onward, usual
+from .varied import FEATURES, Varied, onward, usual
 
 DT = 1 / 60
 
@@ -102,3 +102,19 @@ def test_functions_of_positions_that_do_as_pymunk_change_nothing_beside_handlers
                 assert ep.measure(space).energy - start == pytest.approx(report.ledger.change, abs=1e-12)
         ends.append((*body.position, body.angle))
     assert ends[1] == pytest.approx(ends[0], abs=1e-12)
+
+
+@pytest.mark.parametrize("first", range(0, 120, 20))
+def test_random_compositions_with_all_features_keep_the_laws(first: int) -> None:
+    for seed in range(first, first + 20):
+        scene = Varied(seed)
+        if scene.gentle:
+            try:
+                scene.play(60)
+            except AssertionError as error:
+                error.add_note(f"seed {seed}: {sorted(scene.has)}")
+                raise
+
+
+def test_each_feature_is_drawn() -> None:
+    assert set().union(*(Varied(seed).has for seed in range(120))) == set(FEATURES)

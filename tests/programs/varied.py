@@ -76,7 +76,8 @@ class Varied(Composition):
         if self.space.constraints:
             self.has -= {"native", "many"}  # native steps leave joints apart
         if "sleep" in self.has:
-            self.has -= {"set back"}  # idle times are pymunk's
+            # Idle times are pymunk's. Its own step has been seen not to return from a scene with sleeping bodies.
+            self.has -= {"set back", "native"}
         if "many" in self.has:
             self._fill()
         for name in ("compound", "handlers", "functions", "drag", "sleep", "belts"):
@@ -158,6 +159,16 @@ class Varied(Composition):
         return super().gains or bool(self.has & {"belts", "drag"})
 
     @property
+    def saves(self) -> bool:
+        """They do not say which contacts a handler has rejected."""
+        return "handlers" not in self.has
+
+    @property
+    def gentle(self) -> bool:
+        """A large box that turns presses its bodies outward by many times their weight."""
+        return super().gentle and not ("many" in self.has and self.turns)
+
+    @property
     def pushed(self) -> bool:
         return "drag" in self.has
 
@@ -173,8 +184,8 @@ class Varied(Composition):
             self.drive(k)
             self.space.step(0.05 * self.dt)  # not so long that pymunk's own step lets something through
             done = True
-        if "set back" in self.has and k % 20 == 10:
-            self._set_back(C, k)
+        if "set back" in self.has and k in (0, 20, 40):
+            self._set_back(k)
             done = True
         return done
 
@@ -225,10 +236,11 @@ class Varied(Composition):
                 self.extra.append(shape)
                 return
 
-    def _set_back(self, C: Random, k: int) -> None:
-        """Go AGAIN steps on and back, twice: by `set_state`, or as a program does."""
+    def _set_back(self, k: int) -> None:
+        """Go AGAIN steps on and back, twice: to the start as a program does, which knows no sides of thin shapes that
+        overlap; later by `set_state`."""
         paths, everyone = [], [self.box, *self.bodies]
-        by_state = C.random() < 0.5
+        by_state = k > 0
         if not by_state:
             self.stepper.refresh()
         state = self.stepper.get_state() if by_state else None
