@@ -52,6 +52,7 @@ from comparisons.hard_cases import matrix
 from comparisons.hopper import crossed, deepest_overlap
 from comparisons.output import Output
 from eeca_pymunk.model import parameters
+from eeca_pymunk.recorder import versions
 from scenes import layouts, linkages, pendulum
 from scenes.bars import Bars
 
@@ -80,7 +81,7 @@ def test_comparison_writes_table_and_pictures(name: str, tmp_path: Path, capsys:
     printed = capsys.readouterr().out
     for stepper in ("EECA Midstep", "native default", "native tuned 50", "trapezoidal", "max dissipation"):
         assert stepper in printed
-    assert f"pymunk {ep.recording.versions()['pymunk']}" in printed
+    assert f"pymunk {versions()['pymunk']}" in printed
     with (tmp_path / f"{name}.csv").open() as stream:
         rows = list(csv.DictReader(stream))
     drift = {row["stepper"]: float(row["max |dE/E|"]) for row in rows}
