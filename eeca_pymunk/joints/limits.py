@@ -11,7 +11,14 @@ from __future__ import annotations
 
 from ..compiled import uncounted
 from ..model.joints import LINEAR_STEP, SPEEDS, JointLedger, Workspace
-from ..model.parameters.joints import JOINT_TOUCH, LIMIT_EVENTS, LIMIT_SECANTS, LIMIT_SECANTS_HASTE, LIMIT_SOLVES
+from ..model.parameters.joints import (
+    JOINT_TOUCH,
+    LIMIT_EVENTS,
+    LIMIT_INSTANT,
+    LIMIT_SECANTS,
+    LIMIT_SECANTS_HASTE,
+    LIMIT_SOLVES,
+)
 from .bounds import approach, first_bound, gap, hold, release, standing
 from .correct import fitting_loss
 from .ledger import book
@@ -81,9 +88,10 @@ def step_with_limits(
                 meeting, side, low, high, secants, events = k, progress.side, 0.0, when, 0, events + 1
                 when = progress.when
                 continue
-            book(W, when, ledger)
-            advance(local, W.bodies, when)
-            left -= when
+            if when > LIMIT_INSTANT * abs(h):  # else round-off of places would be velocities over so short a part
+                book(W, when, ledger)
+                advance(local, W.bodies, when)
+                left -= when
         link[meeting].side = side
         solve(W, int(SPEEDS), 2.0, length, loops, 0.0)
         ledger.limited += fitting_loss(local, W.bodies, ledger)
