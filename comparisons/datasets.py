@@ -207,7 +207,7 @@ def picture(found: dict[tuple[str, str], FloatArray], sets: dict[str, Films]) ->
                     label="EECA" if ball else None)  # fmt: skip
             if shown is not None:
                 ax.plot(films.times, shown[i, :, ball], color=colour, label=f"ball {ball + 1}, {engine}")
-        ax.set(xlabel="t (s)", ylabel="x (m)", title=f"{name} settings: the film farthest off")
+        ax.set(xlabel="t (s)", ylabel="x (m)", title=f"settings: {name}; the film farthest off")
         ax.legend(fontsize=7)
     return figure
 

@@ -81,7 +81,7 @@ def player(recording: Recording, fps: float = 20) -> str:
     """Self-contained HTML of a small player of the recording."""
     film = Film(recording, frames=min(len(recording), _PREVIEW), dpi=60)
     name = html.escape(str(recording.parameters.get("stepper", "recording")))
-    return html_player(film.images(), fps, f"{name}, {len(recording)} moments")
+    return html_player(film.images(), fps, f"{name}, {len(recording)} frames")
 
 
 class Film:
