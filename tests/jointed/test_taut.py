@@ -126,6 +126,25 @@ def test_a_ball_falls_on_a_tight_rope() -> None:
     assert abs(ball.position.x - 5.0) < 3.0
 
 
+@pytest.mark.parametrize("slack", [1e-6, 1e-4, 1e-2])
+def test_a_rope_holds_two_hundred_link_masses(slack: float) -> None:
+    """At 5 m/s: nothing passes, joints hold, and energy does not rise, converged or not."""
+    space, links = bridge(slack, planks=20)
+    ball = pymunk.Body(200.0, 9.0)
+    ball.position, ball.velocity = (5.1, 0.8), (0.0, -5.0)
+    space.add(ball, pymunk.Circle(ball, 0.3))
+    for shape in space.shapes:
+        shape.elasticity, shape.friction = 0.3, 0.8
+    stepper = ep.EECA(space)
+    start = highest = energy(space)
+    for _ in range(90):
+        stepper.step(DT)
+        highest = max(highest, energy(space))
+        assert ball.position.y > min(link.position.y for link in links)
+        assert apart(space) <= 1e-6
+    assert highest - start <= 1e-9 * start
+
+
 def scratch(stepper: ep.EECA) -> Joints:
     """The arrays of its joints."""
     method = stepper._method
