@@ -159,7 +159,8 @@ def build_islands(A: Scene) -> int:
 def comes_to_rest(A: Scene, a: int, b: int, t: float) -> bool:
     """Whether the contact of shapes a and b, which meet at instant t, persists from then on. For e < 1: all bounces of
     e |u| under the closing acceleration a_n end within the step, 2 e |u| <= a_n (1 - e) (dt - t), or a body had
-    RESOLUTION impacts in it. For e = 1 see `membership.persists`."""
+    RESOLUTION impacts in it; where nothing accelerates (pushed by a kinematic body), as many as leave e^n of a speed,
+    below 1/RESOLUTION. For e = 1 see `membership.persists`."""
     i, j = A.LINK[a].owner, A.LINK[b].owner
     if A.BODY[i].inv_mass > 0.0:
         move_to(A.BODY, i, t)
@@ -170,6 +171,8 @@ def comes_to_rest(A: Scene, a: int, b: int, t: float) -> bool:
     end = A.PAR.dt
     met = max(A.STATE[i].events, A.STATE[j].events)
     if e < 1.0:
+        if A.PAR.pulled == 0.0 and e**met * RESOLUTION <= 1.0:
+            return True
         return met >= RESOLUTION or (closing > 0.0 and 2.0 * e * max(-u, 0.0) <= closing * (1.0 - e) * (end - t))
     if met >= RESOLUTION and closing > 0.0 and -u * RESOLUTION < A.PAR.pulled * end:
         return True

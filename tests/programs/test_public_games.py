@@ -10,6 +10,7 @@ import pytest
 from pymunk import Vec2d
 
 import eeca_pymunk as ep
+from comparisons.program_scenes import push_t
 
 Make = Callable[[pymunk.Space], ep.Stepper]
 both = pytest.mark.parametrize("make", [ep.Native, ep.EECA])
@@ -268,3 +269,13 @@ def test_a_ramp_that_is_scrolled_under_a_box(make: Make) -> None:
             ramp.position = (int(ramp.position.x - 20.0), 300.0)
         stepper.step(1 / 60)
     assert box.position == pytest.approx((100.0, 285.0 if make is OURS else 585.0), abs=0.5)
+
+
+def test_a_tip_that_pushes_a_tee_does_not_bounce_on_it() -> None:
+    """gym-pusht: nothing accelerates the tee, so that no closing acceleration ends bounces; e = 0 leaves none."""
+    space, dt, before = push_t()
+    stepper, most = ep.EECA(space), 0
+    for k in range(300):
+        before(k)
+        most = max(most, len(stepper.step(dt).contacts))
+    assert 0 < most <= 8
