@@ -217,7 +217,8 @@ class Varied(Composition):
         self.sizes.pop(i)
         self.extra = [shape for shape in self.extra if shape.body is not body]
         self.away = [shape for shape in self.away if shape.body is not body]
-        self.space.remove(*body.constraints, *(shape for shape in body.shapes if shape.space is not None), body)
+        joints = [joint for joint in self.space.constraints if body in (joint.a, joint.b)]
+        self.space.remove(*joints, *(shape for shape in body.shapes if shape.space is not None), body)
 
     def _go_shape(self, C: Random) -> None:
         if self.extra:
@@ -245,6 +246,7 @@ class Varied(Composition):
             self.stepper.refresh()
         state = self.stepper.get_state() if by_state else None
         start = [(b.position, b.angle, b.velocity, b.angular_velocity) for b in everyone]
+        notches = [(c, c.angle) for c in self.space.constraints if isinstance(c, pymunk.RatchetJoint)]
         for _ in range(3):
             if state is not None:
                 self.stepper.set_state(state)
@@ -252,6 +254,8 @@ class Varied(Composition):
                 for body, (place, angle, velocity, spin) in zip(everyone, start, strict=True):
                     body.position, body.angle, body.velocity, body.angular_velocity = place, angle, velocity, spin
                     self.space.reindex_shapes_for_body(body)
+                for ratchet, notch in notches:
+                    ratchet.angle = notch
                 self.stepper.refresh()
             if len(paths) == 2:
                 break
