@@ -108,6 +108,11 @@ class Given(NamedTuple):
         (ax, ay), (bx, by) = self.anchor_a, self.anchor_b
         return self.kind, self.soft, ax != 0.0, ay != 0.0, bx != 0.0, by != 0.0
 
+    @property
+    def reach(self) -> tuple[object, ...]:
+        """What of it decides whether it can be part of a straight path (`..joints.held`)."""
+        return self.kind, self.soft, self.anchor_a, self.anchor_b, self.length, self.limits
+
     def is_fine(self) -> bool:
         """Whether `check_constraint` need not look: that costs more."""
         (force, error, bias), (lower, upper), (stiffness, damping, rest) = self.force, self.limits, self.spring

@@ -34,7 +34,7 @@ class JointRows:
         parted: pairs of bodies whose shapes do not collide, by `collide_bodies`; None after a change, see `part`.
         rates: for springs with functions, the rate of length and the dt of the last step, see `put_law`.
         replan: whether kinds, anchors or bounds of joints have changed since `planned` was called.
-        ends_moved: whether joints, or static bodies outside the space that they end at, have.
+        ends_moved: whether lengths or anchors have, or static bodies outside the space that joints end at.
     """
 
     def __init__(
@@ -111,11 +111,12 @@ class JointRows:
         except ValueError:
             self._edits.add(edited)
             raise
-        others, self.ends_moved = False, True
+        others = False
         for j, given in found.items():
             item, before = self.items[j], self._given[j]
             given.put(self._memory, j, *(self._row_of[body] for body in self._pairs[item]))
             self._given[j] = given
+            self.ends_moved |= before.reach != given.reach
             if before.plan != given.plan:
                 self.replan = others = True
             said = _says(item)

@@ -245,3 +245,20 @@ def test_units_and_turns_do_not_matter() -> None:
             before, anchor = plank, (0.5 * unit, 0.0)
         space.add(pymunk.PivotJoint(before, space.static_body, anchor, tuple(far + 30.0 * unit * along)))
         assert held(ep.EECA(space)) == 30
+
+
+def test_only_edits_of_lengths_and_anchors_look_for_straight_paths_again() -> None:
+    """A rate that a program sets in each step must not cost a search."""
+    space, deck = bridge(0.0)
+    motor = pymunk.SimpleMotor(deck[0], deck[1], 1.0)
+    space.add(motor)
+    stepper = ep.EECA(space)
+    stepper.step(DT)
+    joints = stepper._world.joints if stepper._world is not None else None
+    assert joints is not None
+    motor.rate = 2.0
+    joints.refresh()
+    assert not joints.ends_moved
+    next(iter(space.constraints)).anchor_a = 0.1, 0.0
+    joints.refresh()
+    assert joints.ends_moved
