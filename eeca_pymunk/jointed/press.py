@@ -13,12 +13,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FloatArray
 from ..compiled import kernel, uncounted
-from ..compiled.records import Rows
 from ..contacts.targets import target
 from ..islands.candidates import before_end, sweeps_of_large
-from ..model.contacts import JointedProblem, Row
+from ..model.contacts import JointedProblem
 from ..model.joints import Joints
 from ..model.parameters.intervals import LARGE_ISLAND
 from ..model.parameters.joints import (
@@ -37,7 +36,6 @@ from ..model.parameters.joints import (
     OUTER_PART,
     OUTER_PROGRESS,
     OUTER_SMALL,
-    PRESS_LOCKS,
     PRESS_RESIDUAL,
     PRESS_RESIDUAL_REST,
     PRESS_SWEEPS,
@@ -49,7 +47,7 @@ from ..model.parameters.joints import (
     SOME_CONTACTS,
 )
 from ..model.scene import Scene
-from ..rows.build import conserves, normal_rate, rates, tangent_rate
+from ..rows.build import conserves, rates
 from ..rows.columns import push_columns
 from ..rows.inplace import copy
 from .advance import Interval, advance, advance_aligned, align, farthest_apart
@@ -58,22 +56,8 @@ from .columns import fill_free, leave_out, make_columns, weigh
 from .condensing import solve_condensed
 from .gentle import excessive, fastest, solve_gently
 from .groups import Groups, hangs
+from .lock import lock, lost, work_error
 from .newton import solve_columns
-
-
-@uncounted
-def slip_of(P: IntArray, Q: IntArray, ROWS: Rows[Row], WAY: FloatArray, i: int, h: float) -> float:
-    """How far contact i slips in h while bodies go WAY: its surfaces move at a rate, bodies by ways."""
-    return tangent_rate(P, Q, ROWS, WAY, i) + (h - 1.0) * ROWS[i].surface
-
-
-@uncounted
-def lost(P: IntArray, Q: IntArray, ROWS: Rows[Row], L: FloatArray, WAY: FloatArray, m: int, h: float) -> float:
-    """What contacts lose with impulses L while bodies go WAY: their part in the energy of the island, exactly."""
-    total = 0.0
-    for i in range(m):
-        total -= (L[i, 0] * normal_rate(P, Q, ROWS, WAY, i) + L[i, 1] * slip_of(P, Q, ROWS, WAY, i, h)) / h
-    return total
 
 
 @uncounted
@@ -119,12 +103,10 @@ def press(
     most = PRESS_SWEEPS_ELASTIC if elastic else (PRESS_SWEEPS_FEW if m <= COLUMN_CONTACTS else PRESS_SWEEPS)
     rounds = OUTER_SMALL if elastic or m <= SOME_CONTACTS else OUTER
     part = before_end(A, interval.t + h)
-    if m > SOME_CONTACTS and part and not elastic:
-        rounds = OUTER_MANY
-    if m > COLUMN_CONTACTS and not elastic:
-        rounds = OUTER_PART if part else OUTER_MANY
-        if n >= LARGE_ISLAND:
-            most = sweeps_of_large(interval.t)
+    roughly = m > SOME_CONTACTS and not elastic  # given up where sweeps do not converge
+    unsolved, most_unsolved = 0, OUTER_PART if part else OUTER_MANY
+    if m > COLUMN_CONTACTS and not elastic and n >= LARGE_ISLAND:
+        most = sweeps_of_large(interval.t)
     # Where many contacts do not come to an end, joints come near enough until the last step of the components.
     if J.PROGRESS.effort > J.PROGRESS.budget:
         rounds, most = OUTER_PART, min(most, PRESS_SWEEPS)
@@ -137,7 +119,7 @@ def press(
     # Only of what nothing from without holds or touches is there an angular momentum to keep.
     free = len(isle.IM) == n and not hangs(groups, J.COMPONENT, J.MEMBER)
     for outer in range(rounds):
-        if hopeless or J.PROGRESS.effort > J.PROGRESS.share:
+        if hopeless or (roughly and unsolved >= most_unsolved) or J.PROGRESS.effort > J.PROGRESS.share:
             break
         anew = outer % CHORD == 0 or slowly
         advance(A, J, interval, L, B, anew, FORESEEN if outer > 0 else UNKNOWN)
@@ -145,9 +127,13 @@ def press(
         if outer > 0:
             off = farthest_apart(motion.V, FORESEEN, isle.EXTENT, n)
             reached = min(reached, off)
-            if off <= agree or (off <= OUTER_FLOOR * scale and off > OUTER_PROGRESS * best):
-                converged, agreed = True, True
-                break
+            stalls = off > OUTER_PROGRESS * best
+            if off <= agree or (off <= OUTER_FLOOR * scale and stalls):
+                # Velocities agree; as long as contacts gain energy by them they do not agree well enough.
+                error = work_error(interval, L, slow, pull, PRESS_WORK_ROUND_OFF)
+                if stalls or elastic or lost(P, Q, ROWS, L, motion.WAY, m, h) >= owed - error:
+                    converged, agreed = True, True
+                    break
             slowly = stiff or (m <= SOME_CONTACTS and (off > OUTER_PROGRESS * best or off > COLUMNS_AGAIN * scale))
             hopeless = m > SOME_CONTACTS and outer > 1 and not elastic and off > OUTER_PROGRESS * best
             if off < best:
@@ -185,6 +171,7 @@ def press(
         for i in range(m):
             L[i, 0], L[i, 1] = BOTH[i, 0], BOTH[i, 1]
         converged = worst <= 10.0 * max(fine, min(agree, AGREE * scale))
+        unsolved += 0 if converged else 1
         if farthest_apart(motion.V, FORESEEN, isle.EXTENT, n) <= 1e-3 * agree:
             # The motion is that of the impulses before: others may do as little by these answers, and yet do much.
             copy(L, USED)
@@ -194,11 +181,12 @@ def press(
         J.PROGRESS.near, bent = 0.0, np.inf if free else 0.0
         advance(A, J, interval, L, B, False, UNKNOWN)
     if not agreed:
-        if not farthest_apart(motion.V, FORESEEN, isle.EXTENT, n) <= best:
+        off = farthest_apart(motion.V, FORESEEN, isle.EXTENT, n)
+        if not off <= best:
             copy(L, LEAST)
             advance(A, J, interval, L, B, False, UNKNOWN)
         # What gives way is as stiff as its joints pull: round-off of its ways does not fall further.
-        converged = best <= AGREE * scale and some_give(J, groups)
+        converged = (converged and off <= agree) or (best <= AGREE * scale and some_give(J, groups))
     quick = fast + max(pull * h, h * fastest(EFFECT, isle.EXTENT, n))
     if excessive(interval, L, quick):
         solve_gently(A, J, interval, L, B, free)
@@ -209,47 +197,9 @@ def press(
             advance(A, J, interval, L, B, False, UNKNOWN)
     if bent > ARM_ERROR:
         advance_aligned(A, J, interval, L, B, free)
-    energy = 0.0
-    for q in range(n):
-        energy += (isle.V[q, 0] ** 2 + isle.V[q, 1] ** 2 + (pull * h) ** 2) / isle.IM[q]
-    pressed = 0.0
-    for i in range(m):
-        pressed += abs(L[i, 0]) + abs(L[i, 1])
     # Where joints pull hard, velocities are known as well as they came to agree, and works no better.
     known = PRESS_WORK_ROUND_OFF
     if some_give(J, groups) or some_taut(J, groups):
         known = max(known, min(2.0 * reached / (slow + pull * h), PRESS_WORK_TAUT))
-    bearable, scaled = 1e-15 * energy + known * pressed * (slow + pull * h), 1.0
-    for tries in range(PRESS_LOCKS + 1):
-        loss = lost(P, Q, ROWS, L, motion.WAY, m, h)
-        if loss >= owed - bearable and (not elastic or loss <= owed + bearable):
-            break
-        p, q2 = 0.0, 0.0
-        FREE = motion.V.copy()
-        push_columns(C, L, m, -1.0, FREE)
-        for i in range(m):
-            for tangent in range(2):
-                before = ROWS[i].ut if tangent == 1 else ROWS[i].un
-                if tangent == 1:
-                    without, after = tangent_rate(P, Q, ROWS, FREE, i), tangent_rate(P, Q, ROWS, motion.V, i)
-                else:
-                    without, after = normal_rate(P, Q, ROWS, FREE, i), normal_rate(P, Q, ROWS, motion.V, i)
-                p -= 0.5 * L[i, tangent] * (before + without)
-                q2 += 0.5 * L[i, tangent] * (after - without)
-        # D(s) = s p - s^2 q: by its slope at s = 1.
-        slope = p - 2.0 * q2
-        s = 1.0 + (owed - loss) / slope if slope < 0.0 else 0.0
-        if tries == PRESS_LOCKS or (elastic and not 0.0 < s < 2.0):
-            s = 0.0
-        elif not 0.1 < s < 2.0:
-            # The loss of s L has the sign of s p for small s: half of them, again and again.
-            s = 0.5 if owed <= 0.0 else 0.0
-        for i in range(m):
-            L[i, 0] = s * L[i, 0] if s > 0.0 else 0.0
-            L[i, 1] = s * L[i, 1] if s > 0.0 else 0.0
-        advance_aligned(A, J, interval, L, B, free)
-        scaled *= s
-        converged = converged and abs(scaled - 1.0) <= AGREE
-        if s == 0.0:
-            break
-    return converged
+    scaled = lock(A, J, interval, L, B, free, elastic, owed, work_error(interval, L, slow, pull, known))
+    return converged and abs(scaled - 1.0) <= max(agree / scale, AGREE)

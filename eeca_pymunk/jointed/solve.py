@@ -35,8 +35,9 @@ from .gathered import gather_component, keep_joints, restore_joints
 from .groups import Groups, find_groups
 from .lengths import excess
 from .lifting import correct
+from .lock import lost, slip_of
 from .motors import drives
-from .press import lost, press, slip_of
+from .press import press
 
 SPENT = -2  # status of an interval for which there is no work left
 

@@ -1,0 +1,85 @@
+"""The energy that contacts of an island with joints lose, and impulses scaled until it is what they have to lose."""
+
+from __future__ import annotations
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import kernel, uncounted
+from ..compiled.records import Rows
+from ..model.contacts import Bounded, Row
+from ..model.joints import Joints
+from ..model.parameters.joints import PRESS_LOCKS
+from ..model.scene import Scene
+from ..rows.build import normal_rate, tangent_rate
+from ..rows.columns import push_columns
+from .advance import Interval, advance_aligned
+
+
+@uncounted
+def slip_of(P: IntArray, Q: IntArray, ROWS: Rows[Row], WAY: FloatArray, i: int, h: float) -> float:
+    """How far contact i slips in h while bodies go WAY: its surfaces move at a rate, bodies by ways."""
+    return tangent_rate(P, Q, ROWS, WAY, i) + (h - 1.0) * ROWS[i].surface
+
+
+@uncounted
+def lost(P: IntArray, Q: IntArray, ROWS: Rows[Row], L: FloatArray, WAY: FloatArray, m: int, h: float) -> float:
+    """What contacts lose with impulses L while bodies go WAY: their part in the energy of the island, exactly."""
+    total = 0.0
+    for i in range(m):
+        total -= (L[i, 0] * normal_rate(P, Q, ROWS, WAY, i) + L[i, 1] * slip_of(P, Q, ROWS, WAY, i, h)) / h
+    return total
+
+
+@uncounted
+def work_error(interval: Interval, L: FloatArray, slow: float, pull: float, known: float) -> float:
+    """Round-off of the energy that contacts lose: of the energy of the island, and of their works, of whose impulses
+    times speed it is the part `known`. `slow`, `pull`: see `press`."""
+    isle, h = interval.isle, interval.h
+    energy, pressed = 0.0, 0.0
+    for q in range(interval.n):
+        energy += (isle.V[q, 0] ** 2 + isle.V[q, 1] ** 2 + (pull * h) ** 2) / isle.IM[q]
+    for i in range(interval.m):
+        pressed += abs(L[i, 0]) + abs(L[i, 1])
+    return 1e-15 * energy + known * pressed * (slow + pull * h)
+
+
+@kernel
+def lock(
+    A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, free: bool, elastic: bool, owed: float,
+    error: float,
+) -> float:  # fmt: skip
+    """Scale the impulses L of contacts until these lose `owed` at least, or if `elastic` just that, but for `error`;
+    the factor. The loss is a quadratic function of it, D(s) = s p - s^2 q."""
+    _, _, P, Q, ROWS, motion, C, m, _, _, h = interval
+    scaled = 1.0
+    for tries in range(PRESS_LOCKS + 1):
+        loss = lost(P, Q, ROWS, L, motion.WAY, m, h)
+        if loss >= owed - error and (not elastic or loss <= owed + error):
+            break
+        p, q2 = 0.0, 0.0
+        FREE = motion.V.copy()
+        push_columns(C, L, m, -1.0, FREE)
+        for i in range(m):
+            for tangent in range(2):
+                before = ROWS[i].ut if tangent == 1 else ROWS[i].un
+                if tangent == 1:
+                    without, after = tangent_rate(P, Q, ROWS, FREE, i), tangent_rate(P, Q, ROWS, motion.V, i)
+                else:
+                    without, after = normal_rate(P, Q, ROWS, FREE, i), normal_rate(P, Q, ROWS, motion.V, i)
+                p -= 0.5 * L[i, tangent] * (before + without)
+                q2 += 0.5 * L[i, tangent] * (after - without)
+        # By its slope at s = 1.
+        slope = p - 2.0 * q2
+        s = 1.0 + (owed - loss) / slope if slope < 0.0 else 0.0
+        if tries == PRESS_LOCKS or (elastic and not 0.0 < s < 2.0):
+            s = 0.0
+        elif not 0.1 < s < 2.0:
+            # The loss of s L has the sign of s p for small s: half of them, again and again.
+            s = 0.5 if owed <= 0.0 else 0.0
+        for i in range(m):
+            L[i, 0] = s * L[i, 0] if s > 0.0 else 0.0
+            L[i, 1] = s * L[i, 1] if s > 0.0 else 0.0
+        advance_aligned(A, J, interval, L, B, free)
+        scaled *= s
+        if s == 0.0:
+            break
+    return scaled
