@@ -24,10 +24,16 @@ from .motors import let_slip
 
 
 class Motion(NamedTuple):
-    """Of the bodies of an island, (k, 3) each: velocities V and poses END at the end, ways WAY (sums of h v_m); MID
-    (k, 2): their mean places, where constant forces act."""
+    """Of the bodies of an island, (k, 3) each: velocities V and poses END at the end, ways WAY (sums of h v_m), and
+    MEAN = 2 WAY/h - (velocities before), which is V unless joints act in part of the interval only (limits that are
+    met); MID (k, 2): their mean places, where constant forces act.
+
+    Contacts have their laws by MEAN: an impulse lam over the interval works lam . WAY/h, which is the mean of the
+    velocities before and MEAN, so that what contacts lose is by their laws, whatever joints do within the interval.
+    """
 
     V: FloatArray
+    MEAN: FloatArray
     WAY: FloatArray
     END: FloatArray
     MID: FloatArray
@@ -90,6 +96,10 @@ def advance(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, 
             lead_component(A, J, s, isle.V, ACC, GUESS, h)
         length = gather_component(A, J, s, isle.POSE, isle.V, ACC, isle.IM, isle.II, t, h)
         step_component(A, J, s, h, length, m == 0, motion.V, motion.WAY, motion.END, motion.MID)
+        for w in range(groups.FIRST[g], groups.FIRST[g + 1]):
+            q = groups.BODY[w]
+            for c in range(3):
+                motion.MEAN[q, c] = 2.0 * motion.WAY[q, c] / h - isle.V[q, c]
         if not fill:
             note_rows(A, J, B, s, h)
         elif is_hit(groups, P, Q, m, g):
@@ -110,6 +120,7 @@ def advance(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, 
             motion.V[q, c] = isle.V[q, c] + h * ACC[q, c]
             motion.WAY[q, c] = 0.5 * h * (isle.V[q, c] + motion.V[q, c])
             motion.END[q, c] = isle.POSE[q, c] + motion.WAY[q, c]
+            motion.MEAN[q, c] = motion.V[q, c]
         for c in range(2):
             motion.MID[q, c] = isle.POSE[q, c] + 0.5 * motion.WAY[q, c]
 

@@ -43,7 +43,7 @@ def excessive(interval: Interval, L: FloatArray, speed: float) -> bool:
         mass += 1.0 / isle.IM[q]
     for i in range(m):
         largest = max(largest, abs(L[i, 0]) + abs(L[i, 1]))
-    work = carried(interval.P, interval.Q, interval.ROWS, L, isle.V, interval.motion.V, isle.IM, isle.II, m)
+    work = carried(interval.P, interval.Q, interval.ROWS, L, isle.V, interval.motion.MEAN, isle.IM, isle.II, m)
     fits = largest <= EXCESSIVE_IMPULSE * mass * speed and abs(work) <= EXCESSIVE_WORK * mass * speed * speed
     return not fits
 
@@ -59,7 +59,7 @@ def solve_gently(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Boun
         align(isle, P, Q, ROWS, m, interval.motion, True)
     fill_free(groups, C, P, Q, ROWS, isle.IM, isle.II, m)
     weigh(groups, C, P, Q, ROWS, m)
-    V, BOTH = interval.motion.V.copy(), with_bounded(B, L, m)
+    V, BOTH = interval.motion.MEAN.copy(), with_bounded(B, L, m)
     problem = JointedProblem(P, Q, ROWS, C, B, m)
     for _ in range(GENTLE_SWEEPS):
         sweep(problem, BOTH, V)

@@ -56,15 +56,15 @@ def lock(
         if loss >= owed - error and (not elastic or loss <= owed + error):
             break
         p, q2 = 0.0, 0.0
-        FREE = motion.V.copy()
+        FREE = motion.MEAN.copy()
         push_columns(C, L, m, -1.0, FREE)
         for i in range(m):
             for tangent in range(2):
                 before = ROWS[i].ut if tangent == 1 else ROWS[i].un
                 if tangent == 1:
-                    without, after = tangent_rate(P, Q, ROWS, FREE, i), tangent_rate(P, Q, ROWS, motion.V, i)
+                    without, after = tangent_rate(P, Q, ROWS, FREE, i), tangent_rate(P, Q, ROWS, motion.MEAN, i)
                 else:
-                    without, after = normal_rate(P, Q, ROWS, FREE, i), normal_rate(P, Q, ROWS, motion.V, i)
+                    without, after = normal_rate(P, Q, ROWS, FREE, i), normal_rate(P, Q, ROWS, motion.MEAN, i)
                 p -= 0.5 * L[i, tangent] * (before + without)
                 q2 += 0.5 * L[i, tangent] * (after - without)
         # By its slope at s = 1.

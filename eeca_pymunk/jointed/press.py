@@ -125,7 +125,7 @@ def press(
         advance(A, J, interval, L, B, anew, FORESEEN if outer > 0 else UNKNOWN)
         bent = align(isle, P, Q, ROWS, m, motion, True) if free else 0.0
         if outer > 0:
-            off = farthest_apart(motion.V, FORESEEN, isle.EXTENT, n)
+            off = farthest_apart(motion.MEAN, FORESEEN, isle.EXTENT, n)
             reached = min(reached, off)
             stalls = off > OUTER_PROGRESS * best
             if off <= agree or (off <= OUTER_FLOOR * scale and stalls):
@@ -154,14 +154,14 @@ def press(
         if outer == 0:
             stiff = m <= COLUMN_CONTACTS and some_taut(J, groups)
             slowly = stiff
-            EFFECT = motion.V.copy()
+            EFFECT = motion.MEAN.copy()
             push_columns(C, L, m, -1.0, EFFECT)
             settle_bounded(B, EFFECT)
             for q in range(len(EFFECT)):
                 for c in range(3):
                     EFFECT[q, c] = (EFFECT[q, c] - isle.V[q, c]) / h
             target(P, Q, ROWS, m, EFFECT, EXPECTED, pull, h)
-        copy(FORESEEN, motion.V)
+        copy(FORESEEN, motion.MEAN)
         copy(USED, L)
         leave_out(C, L, m, FORESEEN)
         BOTH = with_bounded(B, L, m)
@@ -172,7 +172,7 @@ def press(
             L[i, 0], L[i, 1] = BOTH[i, 0], BOTH[i, 1]
         converged = worst <= 10.0 * max(fine, min(agree, AGREE * scale))
         unsolved += 0 if converged else 1
-        if farthest_apart(motion.V, FORESEEN, isle.EXTENT, n) <= 1e-3 * agree:
+        if farthest_apart(motion.MEAN, FORESEEN, isle.EXTENT, n) <= 1e-3 * agree:
             # The motion is that of the impulses before: others may do as little by these answers, and yet do much.
             copy(L, USED)
             agreed = True
@@ -181,7 +181,7 @@ def press(
         J.PROGRESS.near, bent = 0.0, np.inf if free else 0.0
         advance(A, J, interval, L, B, False, UNKNOWN)
     if not agreed:
-        off = farthest_apart(motion.V, FORESEEN, isle.EXTENT, n)
+        off = farthest_apart(motion.MEAN, FORESEEN, isle.EXTENT, n)
         if not off <= best:
             copy(L, LEAST)
             advance(A, J, interval, L, B, False, UNKNOWN)
