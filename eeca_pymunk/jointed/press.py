@@ -26,9 +26,7 @@ from ..model.parameters.joints import (
     AGREE_REST,
     AGREE_SOME,
     ARM_ERROR,
-    CHORD,
     COLUMN_CONTACTS,
-    COLUMNS_AGAIN,
     JOINTS_NEAR,
     OUTER,
     OUTER_FLOOR,
@@ -58,6 +56,7 @@ from .gentle import excessive, fastest, solve_gently
 from .groups import Groups, hangs
 from .lock import lock, lost, work_error
 from .newton import solve_columns
+from .secant import fit_columns
 
 
 @uncounted
@@ -112,16 +111,18 @@ def press(
         rounds, most = OUTER_PART, min(most, PRESS_SWEEPS)
     J.PROGRESS.near = JOINTS_NEAR if m > COLUMN_CONTACTS and not elastic and not rests else 0.0
     EFFECT = np.zeros((len(isle.IM), 3))
+    PREVIOUS = np.empty((len(isle.IM), 3))
     FORESEEN, UNKNOWN = np.empty((len(isle.IM), 3)), np.empty((0, 3))
     converged, best, LEAST, USED, hopeless, agreed, slowly = False, np.inf, L.copy(), L.copy(), False, False, False
-    stiff, bent, reached, B = False, 0.0, np.inf, make_bounded(J, groups)
+    bent, reached, B = 0.0, np.inf, make_bounded(J, groups)
+    NOW = np.empty(len(B.OF))
     K, problem = make_columns(groups, P, Q, m if len(B.OF) > 0 else 0), JointedProblem(P, Q, ROWS, C, B, m)
     # Only of what nothing from without holds or touches is there an angular momentum to keep.
     free = len(isle.IM) == n and not hangs(groups, J.COMPONENT, J.MEMBER)
     for outer in range(rounds):
         if hopeless or (roughly and unsolved >= most_unsolved) or J.PROGRESS.effort > J.PROGRESS.share:
             break
-        anew = outer % CHORD == 0 or slowly
+        anew = outer == 0 or slowly
         advance(A, J, interval, L, B, anew, FORESEEN if outer > 0 else UNKNOWN)
         bent = align(isle, P, Q, ROWS, m, motion, True) if free else 0.0
         if outer > 0:
@@ -134,7 +135,7 @@ def press(
                 if stalls or elastic or lost(P, Q, ROWS, L, motion.WAY, m, h) >= owed - error:
                     converged, agreed = True, True
                     break
-            slowly = stiff or (m <= SOME_CONTACTS and (off > OUTER_PROGRESS * best or off > COLUMNS_AGAIN * scale))
+            slowly = not off < best
             hopeless = m > SOME_CONTACTS and outer > 1 and not elastic and off > OUTER_PROGRESS * best
             if off < best:
                 best = off
@@ -146,14 +147,16 @@ def press(
                 for k in range(L.shape[0]):
                     L[k, 0], L[k, 1] = 0.5 * (L[k, 0] + LEAST[k, 0]), 0.5 * (L[k, 1] + LEAST[k, 1])
                 advance(A, J, interval, L, B, anew, UNKNOWN)
+        if not anew:
+            fit_columns(interval, B, L, USED, NOW, PREVIOUS)
+            weigh(groups, C, P, Q, ROWS, m)
         if anew:
             if free:
                 fill_free(groups, C, P, Q, ROWS, isle.IM, isle.II, m)
             J.PROGRESS.effort += SOLUTION_WORK * C.AT[m]
             weigh(groups, C, P, Q, ROWS, m)
         if outer == 0:
-            stiff = m <= COLUMN_CONTACTS and some_taut(J, groups)
-            slowly = stiff
+            slowly = False
             EFFECT = motion.MEAN.copy()
             push_columns(C, L, m, -1.0, EFFECT)
             settle_bounded(B, EFFECT)
@@ -162,7 +165,10 @@ def press(
                     EFFECT[q, c] = (EFFECT[q, c] - isle.V[q, c]) / h
             target(P, Q, ROWS, m, EFFECT, EXPECTED, pull, h)
         copy(FORESEEN, motion.MEAN)
+        copy(PREVIOUS, motion.MEAN)
         copy(USED, L)
+        for i in range(B.USED[0]):
+            NOW[i] = B.ROWS[i].now
         leave_out(C, L, m, FORESEEN)
         BOTH = with_bounded(B, L, m)
         worst = solve_condensed(problem, groups, K, BOTH, FORESEEN, fine, most)
