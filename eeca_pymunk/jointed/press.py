@@ -135,18 +135,13 @@ def press(
                 if stalls or elastic or lost(P, Q, ROWS, L, motion.WAY, m, h) >= owed - error:
                     converged, agreed = True, True
                     break
-            slowly = not off < best
+            slowly = not off < 2.0 * best
             hopeless = m > SOME_CONTACTS and outer > 1 and not elastic and off > OUTER_PROGRESS * best
             if off < best:
                 best = off
                 copy(LEAST, L)
                 if hopeless:
                     break
-            else:
-                # Too far: the components do not answer as they did.
-                for k in range(L.shape[0]):
-                    L[k, 0], L[k, 1] = 0.5 * (L[k, 0] + LEAST[k, 0]), 0.5 * (L[k, 1] + LEAST[k, 1])
-                advance(A, J, interval, L, B, anew, UNKNOWN)
         if not anew:
             fit_columns(interval, B, L, USED, NOW, PREVIOUS)
             weigh(groups, C, P, Q, ROWS, m)
