@@ -26,6 +26,7 @@ from ..model.parameters.joints import (
     AGREE_REST,
     AGREE_SOME,
     ARM_ERROR,
+    CHORD,
     COLUMN_CONTACTS,
     JOINTS_NEAR,
     OUTER,
@@ -113,7 +114,7 @@ def press(
     EFFECT = np.zeros((len(isle.IM), 3))
     PREVIOUS = np.empty((len(isle.IM), 3))
     FORESEEN, UNKNOWN = np.empty((len(isle.IM), 3)), np.empty((0, 3))
-    converged, best, LEAST, USED, hopeless, agreed, slowly = False, np.inf, L.copy(), L.copy(), False, False, False
+    converged, best, LEAST, USED, hopeless, agreed = False, np.inf, L.copy(), L.copy(), False, False
     bent, reached, B = 0.0, np.inf, make_bounded(J, groups)
     NOW = np.empty(len(B.OF))
     K, problem = make_columns(groups, P, Q, m if len(B.OF) > 0 else 0), JointedProblem(P, Q, ROWS, C, B, m)
@@ -122,7 +123,7 @@ def press(
     for outer in range(rounds):
         if hopeless or (roughly and unsolved >= most_unsolved) or J.PROGRESS.effort > J.PROGRESS.share:
             break
-        anew = outer == 0 or slowly
+        anew = outer % CHORD == 0
         advance(A, J, interval, L, B, anew, FORESEEN if outer > 0 else UNKNOWN)
         bent = align(isle, P, Q, ROWS, m, motion, True) if free else 0.0
         if outer > 0:
@@ -135,7 +136,6 @@ def press(
                 if stalls or elastic or lost(P, Q, ROWS, L, motion.WAY, m, h) >= owed - error:
                     converged, agreed = True, True
                     break
-            slowly = not off < 2.0 * best
             hopeless = m > SOME_CONTACTS and outer > 1 and not elastic and off > OUTER_PROGRESS * best
             if off < best:
                 best = off
@@ -144,14 +144,11 @@ def press(
                     break
         if not anew:
             fit_columns(interval, B, L, USED, NOW, PREVIOUS)
-            weigh(groups, C, P, Q, ROWS, m)
-        if anew:
-            if free:
-                fill_free(groups, C, P, Q, ROWS, isle.IM, isle.II, m)
-            J.PROGRESS.effort += SOLUTION_WORK * C.AT[m]
-            weigh(groups, C, P, Q, ROWS, m)
+        elif free:
+            fill_free(groups, C, P, Q, ROWS, isle.IM, isle.II, m)
+        J.PROGRESS.effort += SOLUTION_WORK * C.AT[m] if anew else 0.0
+        weigh(groups, C, P, Q, ROWS, m)
         if outer == 0:
-            slowly = False
             EFFECT = motion.MEAN.copy()
             push_columns(C, L, m, -1.0, EFFECT)
             settle_bounded(B, EFFECT)

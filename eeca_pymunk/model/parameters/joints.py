@@ -129,7 +129,7 @@ COLUMN_PROXIMAL = round_off(
     10000000000.0, "over the effective mass", "Stiffness of the proximal term of redundant contacts of components."
 )
 OUTER = work(6, "steps of the components", "Iterations between contacts and components, at most.")
-OUTER_SMALL = work(12, "steps of the components", "These iterations of elastic islands and of few contacts.")
+OUTER_SMALL = work(15, "steps of the components", "These iterations of elastic islands and of few contacts.")
 OUTER_MANY = work(2, "steps of the components", "These iterations where sweeps over many contacts do not converge.")
 OUTER_PART = work(
     1, "steps of the components", "These iterations in an interval of many contacts that ends within the step."
@@ -158,7 +158,7 @@ SOLUTION_WORK = work(1000.0, "operations", "Work of a solution for each entry of
 PRESS_WORK_TAUT = round_off(
     1e-09, "of impulses times speed", "Round-off of the work of contacts on taut joints, at most."
 )
-CHORD = work(3, "steps of the components", "Iterations for which one response is used.")
+CHORD = work(5, "steps of the components", "Iterations after which the response is computed anew.")
 CLOSES = round_off(
     1e-12, "of the fastest contact", "Speed with which contacts may close after an elastic impact on components."
 )
@@ -180,7 +180,4 @@ OUTER_PROGRESS = work(
     0.3,
     "ratio of differences",
     "Progress of the iterations between contacts and components below which they are given up; they end at AGREE.",
-)
-COLUMNS_AGAIN = work(
-    0.0001, "of the speed", "Difference above which the response is computed again in each of these iterations."
 )
