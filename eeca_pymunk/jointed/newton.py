@@ -7,11 +7,40 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import kernel
 from ..model.contacts import JointedProblem
-from ..model.parameters.joints import COLUMN_CONTACTS, COLUMN_ROUNDS, COLUMN_SWEEPS, COLUMN_SWEEPS_AFTER
+from ..model.parameters.joints import ACTIVATIONS, COLUMN_CONTACTS, COLUMN_ROUNDS, COLUMN_SWEEPS, COLUMN_SWEEPS_AFTER
+from ..rows.columns import lawful
 from ..rows.conjugate import iterate
 from ..rows.dense import newton
 from ..rows.inplace import copy
-from ..rows.sweeps import push, sweep
+from ..rows.sweeps import push, sweep, velocities
+
+
+@kernel
+def activate(problem: JointedProblem, L: FloatArray, V: FloatArray, tolerance: float) -> float:
+    """Impulses L (m, 2) and velocities V from no impulses on: the contact farthest from its law takes what that asks
+    for, which says whether it is open, sticks or slips; a direct solution on all that act follows, and the next one.
+    Ends where none is off by more than the tolerance; returns by how much the farthest one is."""
+    ROWS, C, m = problem.ROWS, problem.C, problem.m
+    FREE = V.copy()
+    push(problem, L, -1.0, FREE)
+    for i in range(m):
+        L[i, 0] = L[i, 1] = 0.0
+    velocities(problem, L, FREE, V)
+    farthest = np.inf
+    for _ in range(ACTIVATIONS * m):
+        farthest, at, normal, tangential = 0.0, -1, 0.0, 0.0
+        for i in range(m):
+            if C.OUT[i] != 0:
+                continue
+            lam, beta = lawful(problem, L, V, i)
+            off = max(abs(lam - L[i, 0]) * ROWS[i].a_nn, abs(beta - L[i, 1]) * ROWS[i].a_tt)
+            if not off <= farthest:
+                farthest, at, normal, tangential = off, i, lam, beta
+        if farthest <= tolerance:
+            break
+        L[at, 0], L[at, 1] = normal, tangential
+        newton(problem, L, V, FREE, 2, 0.1 * tolerance, False)
+    return farthest
 
 
 @kernel
@@ -46,6 +75,8 @@ def solve_columns(problem: JointedProblem, L: FloatArray, V: FloatArray, toleran
         if abs(worst - before_last) <= 0.5 * worst:
             break
         last, before_last = worst, last
+    if worst > tolerance and problem.D.USED[0] == 0:
+        worst = activate(problem, L, V, tolerance)
     if worst > tolerance:
         copy(L, L0)
         copy(V, V0)

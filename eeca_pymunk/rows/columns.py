@@ -37,51 +37,56 @@ def push_jointed(problem: JointedProblem, L: FloatArray, factor: float, V: Float
 
 
 @uncounted
+def lawful(problem: JointedProblem, L: FloatArray, V: FloatArray, i: int) -> tuple[float, float]:
+    """The impulses of contact i by its law, those of all others being given."""
+    A, B, ROWS, _, _, _ = problem
+    lam0, beta0, ann = L[i, 0], L[i, 1], ROWS[i].a_nn
+    short = normal_rate(A, B, ROWS, V, i) - ROWS[i].target
+    if ROWS[i].wake < np.inf:
+        if short + ROWS[i].target - lam0 * ann < ROWS[i].wake:
+            ROWS[i].wake = np.inf
+        else:
+            short = np.inf
+    if ROWS[i].friction <= 0.0:
+        return max(lam0 - ROWS[i].k_n * short, 0.0), 0.0
+    qn = short - lam0 * ann - beta0 * ROWS[i].a_nt
+    # Where friction alone could separate the surfaces, a_nn < mu |a_nt|, a contact may stick although it would
+    # open without its impulses: a sticking contact then remains.
+    if not (qn < 0.0 or lam0 > 0.0):
+        return 0.0, 0.0
+    ut = tangent_rate(A, B, ROWS, V, i)
+    # Most contacts stick.
+    lam = lam0 - (ROWS[i].w_nn * short + ROWS[i].w_nt * ut)
+    beta = beta0 - (ROWS[i].w_nt * short + ROWS[i].w_tt * ut)
+    if abs(beta) <= ROWS[i].friction * lam and beta * ROWS[i].ut <= 0.0:
+        return lam, beta
+    if not qn < 0.0:
+        return 0.0, 0.0
+    ant, att = ROWS[i].a_nt, ROWS[i].a_tt
+    return coulomb(
+        qn, ut - beta0 * att - lam0 * ant, ann, ant, att, ROWS[i].friction, ROWS[i].un, ROWS[i].ut, ROWS[i].target
+    )
+
+
+@uncounted
 def sweep_jointed(problem: JointedProblem, L: FloatArray, V: FloatArray) -> float:
     """One sweep over the contacts as `sweeps.sweep_free`, and over the bounded rows, whose impulses are L[m:, 0];
     returns the largest change of a velocity."""
-    A, B, ROWS, C, D, m = problem
+    ROWS, C, m = problem.ROWS, problem.C, problem.m
     worst = 0.0
     for i in range(m):
         if C.OUT[i] != 0:
             continue
-        lam0, beta0 = L[i, 0], L[i, 1]
-        lam, beta, ann = 0.0, 0.0, ROWS[i].a_nn
-        short = normal_rate(A, B, ROWS, V, i) - ROWS[i].target
-        if ROWS[i].wake < np.inf:
-            if short + ROWS[i].target - lam0 * ann < ROWS[i].wake:
-                ROWS[i].wake = np.inf
-            else:
-                short = np.inf
-        if ROWS[i].friction <= 0.0:
-            lam = max(lam0 - ROWS[i].k_n * short, 0.0)
-        else:
-            qn = short - lam0 * ann - beta0 * ROWS[i].a_nt
-            # Where friction alone could separate the surfaces, a_nn < mu |a_nt|, a contact may stick although it would
-            # open without its impulses: a sticking contact then remains.
-            if qn < 0.0 or lam0 > 0.0:
-                ut = tangent_rate(A, B, ROWS, V, i)
-                # Most contacts stick.
-                lam = lam0 - (ROWS[i].w_nn * short + ROWS[i].w_nt * ut)
-                beta = beta0 - (ROWS[i].w_nt * short + ROWS[i].w_tt * ut)
-                sticks = abs(beta) <= ROWS[i].friction * lam and beta * ROWS[i].ut <= 0.0
-                if not sticks and not qn < 0.0:
-                    lam, beta = 0.0, 0.0
-                elif not sticks:
-                    ant, att = ROWS[i].a_nt, ROWS[i].a_tt
-                    lam, beta = coulomb(
-                        qn, ut - beta0 * att - lam0 * ant, ann, ant, att, ROWS[i].friction, ROWS[i].un, ROWS[i].ut,
-                        ROWS[i].target,
-                    )  # fmt: skip
-        dn, dt = lam - lam0, beta - beta0
+        lam, beta = lawful(problem, L, V, i)
+        dn, dt = lam - L[i, 0], beta - L[i, 1]
         if dn == 0.0 and dt == 0.0:
             continue
         L[i, 0], L[i, 1] = lam, beta
         for w in range(C.AT[i], C.AT[i + 1]):
             for c in range(3):
                 V[C.BODY[w], c] += dn * C.N[w, c] + dt * C.T[w, c]
-        worst = max(worst, abs(dn) * ann, abs(dt) * ROWS[i].a_tt)
-    return max(worst, sweep_bounded(D, L, m, V))
+        worst = max(worst, abs(dn) * ROWS[i].a_nn, abs(dt) * ROWS[i].a_tt)
+    return max(worst, sweep_bounded(problem.D, L, m, V))
 
 
 @uncounted

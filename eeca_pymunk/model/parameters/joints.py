@@ -125,6 +125,7 @@ COLUMN_CONTACTS = work(40, "contacts", "Number up to which a direct solution ove
 COLUMN_SWEEPS = work(12, "sweeps", "Sweeps over components before the first direct solution.")
 COLUMN_SWEEPS_AFTER = work(4, "sweeps", "Sweeps over components after each direct solution.")
 COLUMN_ROUNDS = work(8, "direct solutions", "Direct solutions, at most.")
+ACTIVATIONS = work(3, "direct solutions", "Changes of state for each contact where sweeps do not converge.")
 COLUMN_PROXIMAL = round_off(
     10000000000.0, "over the effective mass", "Stiffness of the proximal term of redundant contacts of components."
 )
