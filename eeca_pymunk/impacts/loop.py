@@ -12,7 +12,7 @@ from ..contacts.unmet import most_work, note_unmet
 from ..geometry.sides import remembers
 from ..islands.accounting import end_interval
 from ..islands.building import comes_to_rest, hits_of, most_hits, passed_over
-from ..islands.membership import members
+from ..islands.membership import jointed, members
 from ..jointed.meet import end_here
 from ..model.bodies import LEAVE, RENEW
 from ..model.joints import Joints
@@ -32,13 +32,6 @@ from .resolution import strike
 from .simultaneous import bring_to
 
 _ROOM = 64  # contacts that an impact on joints may add, at least
-
-
-@uncounted
-def jointed(A: Scene, i: int) -> bool:
-    """Whether body i is in an island with joints."""
-    root = A.STATE[i].island
-    return bool(root >= 0 and A.MEMBER[root].jointed > 0)
 
 
 @merged

@@ -15,7 +15,7 @@ from ..geometry.flight import norm
 from ..geometry.manifold import half_width
 from ..model.bodies import AT_REST
 from ..model.contacts import LASTED
-from ..model.parameters.events import RESOLUTION
+from ..model.parameters.events import HITS_JOINTED, RESOLUTION
 from ..model.parameters.intervals import INTERVAL_DEPTH_WIDTH, TOUCH
 from ..model.parameters.rest import REST_RETRY
 from ..model.scene import Scene
@@ -25,7 +25,16 @@ from ..pairs.rules import barred, law
 from .accounting import end_interval
 from .at_rest import wake_changed
 from .intervals import solve
-from .membership import approach, budget_spent, fixed_support, largest_island, members, persists, unite
+from .membership import (
+    approach,
+    budget_spent,
+    fixed_support,
+    jointed,
+    largest_island,
+    members,
+    persists,
+    unite,
+)
 from .partial_rest import rests_in_part
 from .penetration import hold_penetrating
 from .support import support
@@ -193,10 +202,13 @@ def hits_of(A: Scene, a: int, b: int) -> int:
 @uncounted
 def most_hits(A: Scene, a: int, b: int) -> int:
     """Largest number of hits in a step on the islands of shapes a and b: RESOLUTION; of lossy ones that divided by the
-    number of bodies."""
+    number of bodies, but HITS_JOINTED at least where bodies hang together by joints: a hit moves them all at once, and
+    the work of these is bounded by itself."""
     if law(A.SHAPE, A.RULE, a, b)[0] >= 1.0:
         return RESOLUTION
-    return max(1, RESOLUTION // max(1, largest_island(A, a, b)))
+    bodies = largest_island(A, a, b)
+    hung = jointed(A, A.LINK[a].owner) or jointed(A, A.LINK[b].owner)
+    return max(HITS_JOINTED if hung else 1, RESOLUTION // max(1, bodies))
 
 
 @kernel

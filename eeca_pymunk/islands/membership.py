@@ -51,6 +51,13 @@ def unite(A: Scene, i: int, j: int) -> int:
 
 
 @uncounted
+def jointed(A: Scene, i: int) -> bool:
+    """Whether body i is in an island with joints."""
+    root = A.STATE[i].island
+    return bool(root >= 0 and A.MEMBER[root].jointed > 0)
+
+
+@uncounted
 def largest_island(A: Scene, a: int, b: int) -> int:
     """Number of bodies of the larger of the islands of shapes a and b, 0 for none."""
     size = 0
@@ -72,8 +79,8 @@ def in_large_island(A: Scene, a: int, b: int) -> bool:
 @uncounted
 def budget_spent(A: Scene, root: int) -> bool:
     """Whether an island is large and is neither hit nor joined any more in this step, since bodies have been solved
-    often enough."""
-    if root < 0 or A.MEMBER[root].bodies < LARGE_ISLAND or A.MEMBER[root].open == 0:
+    often enough. The work of islands with joints has a bound of its own."""
+    if root < 0 or A.MEMBER[root].bodies < LARGE_ISLAND or A.MEMBER[root].open == 0 or A.MEMBER[root].jointed > 0:
         return False
     return bool(A.COUNT.solved > SOLVES_BEFORE_HASTE * A.BODY.shape[0])
 
