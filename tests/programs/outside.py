@@ -5,9 +5,9 @@ What acts from outside has a power that the scene and the step's own report boun
 * a contact of a kinematic body, or of shapes with a surface velocity: its impulse times the speed of the surface at its
   point, |J| |v|, for the impulse does the work J v on the other body. Where such a body has gone into others, it lifts
   them out: at most the weight of all bodies times the deepest overlap;
-* a motor: `max_force` times the angle that it turns. That is the larger of the change of the angle and of dt times the
-  largest relative spin, before or after the step: angles of jointed bodies follow Cayley's map, which turns them by
-  (dt spin)^2 / 12 less, and a motor that an impact turns round goes to and fro within the step;
+* a motor: `max_force` times the angle that it turns. Mostly that is the larger of the change of the angle and of dt
+  times the largest relative spin, before or after the step. Impacts may turn it to and fro within the step: it never
+  turns by more than dt times the largest spins that the energy of the scene allows (`Outside.fastest`);
 * another joint with a `max_force` may give way and come back later: as a motor, with the way of its points, or its
   angle, in place of the motor's angle;
 * a joint on a kinematic body that moves, one without a `max_force` that a step has left apart, and functions of the
@@ -43,6 +43,35 @@ def motion(joint: pymunk.Constraint) -> Motion:
     return angle, a.world_to_local(there), spin, speed
 
 
+def _loose_energy(space: pymunk.Space) -> float:
+    """Energy that motion has, and springs may give: kinetic and (1/2) k x^2."""
+    energy = ep.measure(space).kinetic
+    for joint in space.constraints:
+        if isinstance(joint, pymunk.DampedSpring):
+            ends = joint.a.local_to_world(joint.anchor_a), joint.b.local_to_world(joint.anchor_b)
+            energy += 0.5 * joint.stiffness * (ends[0].get_distance(ends[1]) - joint.rest_length) ** 2
+        elif isinstance(joint, pymunk.DampedRotarySpring):
+            energy += 0.5 * joint.stiffness * (joint.a.angle - joint.b.angle - joint.rest_angle) ** 2
+    return float(energy)
+
+
+def _per_root_energy(joint: pymunk.Constraint) -> list[float]:
+    """For the two bodies of a joint: the largest rate along it per sqrt(2 T), 1/sqrt(I) of an angle, 1/sqrt(m) +
+    r/sqrt(I) of a point at r; 0 for a body that nothing moves."""
+    found = []
+    for body, anchor in ((joint.a, getattr(joint, "anchor_a", None)), (joint.b, getattr(joint, "anchor_b", None))):
+        if body.body_type != pymunk.Body.DYNAMIC:
+            found.append(0.0)
+        elif isinstance(joint, POINTS):
+            at = [anchor] if anchor is not None else [joint.groove_a, joint.groove_b]
+            arm = max((point - body.center_of_gravity).length for point in at)
+            found.append(1.0 / math.sqrt(body.mass) + arm / math.sqrt(body.moment))
+        else:
+            ratio = joint.ratio if isinstance(joint, pymunk.GearJoint) and body is joint.b else 1.0
+            found.append(abs(ratio) / math.sqrt(body.moment))
+    return found
+
+
 class Outside:
     """What acts from outside in the step that follows.
 
@@ -56,10 +85,21 @@ class Outside:
         self.bounded = [(c, motion(c)) for c in space.constraints if math.isfinite(c.max_force)]
         self.belt = max((shape.surface_velocity.length for shape in space.shapes), default=0.0)
         moving = self.speed > 0.0 or self.spin > 0.0
+        self.energy = _loose_energy(space)
         self.unbounded = pushed or any(moving and box in (c.a, c.b) for c in space.constraints)
 
-    def most(self, report: ep.StepReport, dt: float) -> float:
-        """The bound, once the step has been taken."""
+    def fastest(self, given: float, dt: float) -> float:
+        """sqrt(2 T) of the largest kinetic energy T in the step: gravity g makes it grow by at most g sqrt(M) dt, a
+        force F on a body by F dt / sqrt(m), a torque by F dt / sqrt(I); contacts add the energy `given`."""
+        bodies = [b for b in self.space.bodies if b.body_type == pymunk.Body.DYNAMIC]
+        most = math.sqrt(2.0 * (self.energy + given))
+        most += self.space.gravity.length * math.sqrt(sum(b.mass for b in bodies)) * dt
+        for joint, _ in self.bounded:
+            most += sum(joint.max_force * dt * rate for rate in _per_root_energy(joint))
+        return most
+
+    def most(self, report: ep.StepReport, dt: float, nearly: bool) -> float:
+        """The bound, once the step has been taken: for motors that turn one way if `nearly`, else for all."""
         if self.unbounded:
             return math.inf
         total = 0.0
@@ -68,14 +108,22 @@ class Outside:
             way = max((now[1] - place).length, dt * speed.length, dt * now[3].length)
             if not isinstance(joint, POINTS):
                 way = max(abs(now[0] - angle), dt * abs(spin), dt * abs(now[2]))
-            total += joint.max_force * way
-        contacts = report.contacts
+            total += joint.max_force * way if nearly else 0.0
+        total += self._carried(report)
+        if not nearly:
+            fastest = self.fastest(total, dt)
+            total += sum(c.max_force * dt * fastest * rate for c, _ in self.bounded for rate in _per_root_energy(c))
+        return SLACK * total
+
+    def _carried(self, report: ep.StepReport) -> float:
+        """The most that contacts with surfaces that move can do."""
         if not self.belt and not self.speed and not self.spin:
-            return SLACK * total
+            return 0.0
+        contacts, total = report.contacts, 0.0
         for i, (normal, friction) in enumerate(zip(report.impulse, report.friction, strict=True)):
             push, fast = math.hypot(normal, friction), self.belt
             if self.box in (contacts.bodies[contacts.body_a[i]], contacts.bodies[contacts.body_b[i]]):
                 fast += self.speed + self.spin * math.hypot(*(contacts.point[i] - self.place))
             total += push * fast
         weight = sum(b.mass for b in self.space.bodies if b is not self.box) * self.space.gravity.length
-        return SLACK * (total + weight * max(0.0, -min(contacts.gap, default=0.0)))
+        return total + weight * max(0.0, -min(contacts.gap, default=0.0))
