@@ -7,7 +7,14 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import kernel
 from ..model.contacts import JointedProblem
-from ..model.parameters.joints import ACTIVATIONS, COLUMN_CONTACTS, COLUMN_ROUNDS, COLUMN_SWEEPS, COLUMN_SWEEPS_AFTER
+from ..model.parameters.joints import (
+    ACTIVATIONS,
+    COLUMN_CONTACTS,
+    COLUMN_ROUNDS,
+    COLUMN_SWEEPS,
+    COLUMN_SWEEPS_AFTER,
+    SOME_CONTACTS,
+)
 from ..rows.columns import lawful
 from ..rows.conjugate import iterate
 from ..rows.dense import newton
@@ -75,7 +82,7 @@ def solve_columns(problem: JointedProblem, L: FloatArray, V: FloatArray, toleran
         if abs(worst - before_last) <= 0.5 * worst:
             break
         last, before_last = worst, last
-    if worst > tolerance and problem.D.USED[0] == 0:
+    if worst > tolerance and problem.m <= SOME_CONTACTS and problem.D.USED[0] == 0:
         worst = activate(problem, L, V, tolerance)
     if worst > tolerance:
         copy(L, L0)

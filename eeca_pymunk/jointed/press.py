@@ -105,8 +105,10 @@ def press(
     part = before_end(A, interval.t + h)
     roughly = m > SOME_CONTACTS and not elastic  # given up where sweeps do not converge
     unsolved, most_unsolved = 0, OUTER_PART if part else OUTER_MANY
-    if m > COLUMN_CONTACTS and not elastic and n >= LARGE_ISLAND:
-        most = sweeps_of_large(interval.t)
+    if m > COLUMN_CONTACTS and not elastic:
+        rounds = most_unsolved
+        if n >= LARGE_ISLAND:
+            most = sweeps_of_large(interval.t)
     # Where many contacts do not come to an end, joints come near enough until the last step of the components.
     if J.PROGRESS.effort > J.PROGRESS.budget:
         rounds, most = OUTER_PART, min(most, PRESS_SWEEPS)
