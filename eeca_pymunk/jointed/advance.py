@@ -101,11 +101,11 @@ def advance(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, 
             for c in range(3):
                 motion.MEAN[q, c] = 2.0 * motion.WAY[q, c] / h - isle.V[q, c]
         if not fill:
-            note_rows(A, J, B, s, h)
+            note_rows(A, J, B, s, h, motion.MEAN)
         elif is_hit(groups, P, Q, m, g):
             size = find_places(A, J, s, INDEX)
             let_slip(J, s, True)
-            first = list_rows(A, J, B, s, h)
+            first = list_rows(A, J, B, s, h, motion.MEAN)
             if ready(J, s, h, True):
                 PUSH = np.empty((size, 3))
                 fill_group(J, groups, C, g, INDEX, True, P, Q, ROWS, m, PUSH)

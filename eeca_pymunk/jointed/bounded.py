@@ -1,4 +1,4 @@
-"""Rows of bounded impulses, motors and joints with a finite max_force, as unknowns beside those of the contacts.
+"""Rows of bounded impulses, motors, joints with a finite max_force and limits, as unknowns beside those of contacts.
 
 Columns of contacts and of these rows are answered by all joints that hold exactly, the bounded impulses being given: so
 contacts and bounded rows are one problem (`..rows`). What its bounded impulses are is found anew by the components'
@@ -11,12 +11,13 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, uncounted
+from ..joints.bounds import is_limit
 from ..joints.entries import held, interval_of
 from ..model.contacts import Bounded
 from ..model.joints import GIVEN, GROOVE, Joints
 from ..model.parameters.joints import BOUNDED_SWEEPS
 from ..model.scene import Scene
-from ..rows.bounded import FIRST_OF_DISC, SECOND_OF_DISC, SINGLE, room_for_rows, sweep_bounded
+from ..rows.bounded import FIRST_OF_DISC, SECOND_OF_DISC, SINGLE, bounded_rate, room_for_rows, sweep_bounded
 from .component import answer
 from .groups import Groups
 
@@ -27,19 +28,26 @@ def make_bounded(J: Joints, groups: Groups) -> Bounded:
     n, entries = 0, 0
     for g in range(len(groups.COMPONENT)):
         if groups.COMPONENT[g] >= 0:
-            rows = J.COMPONENT[groups.COMPONENT[g]].boxes
+            s = groups.COMPONENT[g]
+            rows = J.COMPONENT[s].boxes
+            for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
+                rows += 1 if is_limit(J.LINK[k].kind) and J.JOINT[J.LINK[k].joint].soft == 0 else 0
             n += rows
             entries += rows * (groups.FIRST[g + 1] - groups.FIRST[g])
     return room_for_rows(n, entries)
 
 
 @uncounted
-def note_row(A: Scene, J: Joints, B: Bounded, s: int, i: int, h: float) -> None:
-    """Row i as it is at the end of the step h that component s has just taken."""
+def note_row(A: Scene, J: Joints, B: Bounded, s: int, i: int, h: float, V: FloatArray) -> None:
+    """Row i as it is at the end of the step h that component s has just taken, with velocities V there. A limit holds
+    the velocity that it has; one that has let go keeps its row."""
     k, r = B.OF[i, 0], B.OF[i, 1]
     hinge = J.HINGE[k - J.COMPONENT[s].first_joint]
-    B.ROWS[i].speed = -hinge.target[r]
     B.ROWS[i].now = hinge.total[r]
+    limit = is_limit(J.LINK[k].kind) and J.JOINT[J.LINK[k].joint].soft == 0
+    if limit and J.LINK[k].side == 0:
+        return
+    B.ROWS[i].speed = -hinge.target[r]
     for end in range(2):
         at = J.LINK[k].body[end]
         B.END[i, end] = A.PLACE[J.MEMBER[J.COMPONENT[s].first_body + at].body] if J.LOCAL[at].freedoms > 0 else -1
@@ -47,19 +55,21 @@ def note_row(A: Scene, J: Joints, B: Bounded, s: int, i: int, h: float) -> None:
             B.ROW[i, 3 * end + c] = hinge.rows[r, 3 * end + c]
             if B.END[i, end] < 0:
                 B.ROWS[i].speed += B.ROW[i, 3 * end + c] * J.LOCAL[at].v0[c]
+    if limit:
+        B.ROWS[i].speed = -bounded_rate(B, i, V)
     B.ROWS[i].low, B.ROWS[i].high = interval_of(J.LINK[k].kind, J.LINK[k].side, hinge.bound * h)
 
 
 @uncounted
-def note_rows(A: Scene, J: Joints, B: Bounded, s: int, h: float) -> None:
+def note_rows(A: Scene, J: Joints, B: Bounded, s: int, h: float, V: FloatArray) -> None:
     """The rows of component s that are known, after another step of it."""
     for i in range(B.USED[0]):
         if J.COMPONENT[s].first_joint <= B.OF[i, 0] < J.COMPONENT[s].end_joint:
-            note_row(A, J, B, s, i, h)
+            note_row(A, J, B, s, i, h, V)
 
 
 @uncounted
-def list_rows(A: Scene, J: Joints, B: Bounded, s: int, h: float) -> int:
+def list_rows(A: Scene, J: Joints, B: Bounded, s: int, h: float, V: FloatArray) -> int:
     """Append the rows of component s whose impulses count as given (`motors.let_slip`); the first of them."""
     first = B.USED[0]
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
@@ -70,7 +80,7 @@ def list_rows(A: Scene, J: Joints, B: Bounded, s: int, h: float) -> int:
             i = B.USED[0]
             B.OF[i, 0], B.OF[i, 1] = k, r
             B.ROWS[i].part = SINGLE if rows == 1 else FIRST_OF_DISC if r == 0 else SECOND_OF_DISC
-            note_row(A, J, B, s, i, h)
+            note_row(A, J, B, s, i, h, V)
             B.USED[0] = i + 1
     return int(first)
 

@@ -12,6 +12,7 @@ from ..model.scene import Scene
 from ..rows.build import normal_rate, tangent_rate
 from ..rows.columns import push_columns
 from .advance import Interval, advance_aligned
+from .bounded import settle_bounded
 
 
 @uncounted
@@ -58,6 +59,7 @@ def lock(
         p, q2 = 0.0, 0.0
         FREE = motion.MEAN.copy()
         push_columns(C, L, m, -1.0, FREE)
+        settle_bounded(B, FREE)
         for i in range(m):
             for tangent in range(2):
                 before = ROWS[i].ut if tangent == 1 else ROWS[i].un

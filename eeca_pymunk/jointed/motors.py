@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ..compiled import uncounted
+from ..joints.bounds import is_limit
 from ..model.joints import BOXED, GIVEN, MOTOR, ROTARY_SPRING, SPRING, Joints
 
 
@@ -27,9 +28,11 @@ def keeps_speed(J: Joints, s: int) -> bool:
 
 @uncounted
 def let_slip(J: Joints, s: int, slips: bool) -> None:
-    """Let bounded impulses count as given in answers, or no longer, where they are few enough for `..joints.boxes`."""
-    if J.COMPONENT[s].boxes == 0:
-        return
+    """Let bounded impulses count as given in answers, or no longer: those of joints with a max_force, where they are
+    few enough for `..joints.boxes`, and those of limits that hold."""
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
-        if J.LINK[k].soft != 0 and J.JOINT[J.LINK[k].joint].max_force < 1e300:
-            J.LINK[k].soft = GIVEN if slips else BOXED
+        link = J.LINK[k]
+        if link.soft != 0 and J.JOINT[link.joint].max_force < 1e300 and J.COMPONENT[s].boxes > 0:
+            link.soft = GIVEN if slips else BOXED
+        elif is_limit(link.kind) and J.JOINT[link.joint].soft == 0:
+            link.soft = GIVEN if slips and link.side != 0 else 0

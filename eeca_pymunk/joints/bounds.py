@@ -11,6 +11,12 @@ from .entries import along
 
 
 @uncounted
+def is_limit(kind: int) -> bool:
+    """Whether joints of this kind are limits alone, with one row that acts on one side only."""
+    return kind in (SLIDE, ROTARY_LIMIT, RATCHET)
+
+
+@uncounted
 def bounded(joint: Rows[Joint], link: Rows[Coupling], k: int, side: int) -> bool:
     """Whether joint k has a bound at this side."""
     kind, j = link[k].kind, link[k].joint
