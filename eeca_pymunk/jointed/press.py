@@ -15,9 +15,10 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..compiled import kernel, uncounted
+from ..compiled.records import Rows
 from ..contacts.targets import target
 from ..islands.candidates import before_end, sweeps_of_large
-from ..model.contacts import JointedProblem
+from ..model.contacts import JointedProblem, Row
 from ..model.joints import Joints
 from ..model.parameters.intervals import LARGE_ISLAND
 from ..model.parameters.joints import (
@@ -80,6 +81,24 @@ def some_give(J: Joints, groups: Groups) -> bool:
 
 
 @kernel
+def take_slips(ROWS: Rows[Row], m: int) -> FloatArray:
+    """The slips (m,) of contacts before the interval, which are 0 in the rows from now on: friction is then Coulomb's
+    alone, without the limit that each contact's own loss sets (`..rows.coulomb`)."""
+    SLIP = np.empty(m)
+    for i in range(m):
+        SLIP[i] = ROWS[i].ut
+        ROWS[i].ut = 0.0
+    return SLIP
+
+
+@uncounted
+def give_slips(ROWS: Rows[Row], m: int, SLIP: FloatArray) -> None:
+    """Put the slips back that `take_slips` has taken."""
+    for i in range(m):
+        ROWS[i].ut = SLIP[i]
+
+
+@kernel
 def press(
     A: Scene, J: Joints, interval: Interval, L: FloatArray, EXPECTED: FloatArray, slow: float, fast: float, pull: float,
     owed: float,
@@ -93,6 +112,7 @@ def press(
     isle, groups, P, Q, ROWS, motion, C, m, n, _, h = interval
     fill_free(groups, C, P, Q, ROWS, isle.IM, isle.II, m)
     rates(P, Q, ROWS, isle.V, m)
+    SLIP, limited = take_slips(ROWS, m), False
     elastic = conserves(ROWS, m)
     scale = pull * h + (fast if elastic else slow)
     rests = not elastic and slow < pull * h
@@ -135,9 +155,12 @@ def press(
             if off <= agree or (off <= OUTER_FLOOR * scale and stalls):
                 # Velocities agree; as long as contacts gain energy by them they do not agree well enough.
                 error = work_error(interval, L, slow, pull, PRESS_WORK_ROUND_OFF)
-                if stalls or elastic or lost(P, Q, ROWS, L, motion.WAY, m, h) >= owed - error:
+                pays = elastic or lost(P, Q, ROWS, L, motion.WAY, m, h) >= owed - error
+                if pays or (stalls and limited):
                     converged, agreed = True, True
                     break
+                give_slips(ROWS, m, SLIP)
+                limited = True
             hopeless = m > SOME_CONTACTS and outer > 1 and not elastic and off > OUTER_PROGRESS * best
             if off < best:
                 best = off
@@ -177,6 +200,7 @@ def press(
             copy(L, USED)
             agreed = True
             break
+    give_slips(ROWS, m, SLIP)
     if not agreed or J.PROGRESS.near > 0.0:
         J.PROGRESS.near, bent = 0.0, np.inf if free else 0.0
         advance(A, J, interval, L, B, False, UNKNOWN)
