@@ -160,7 +160,7 @@ def press(
                     converged, agreed = True, True
                     break
                 give_slips(ROWS, m, SLIP)
-                limited = True
+                limited, best = True, np.inf
             hopeless = m > SOME_CONTACTS and outer > 1 and not elastic and off > OUTER_PROGRESS * best
             if off < best:
                 best = off

@@ -130,7 +130,7 @@ COLUMN_PROXIMAL = round_off(
     10000000000.0, "over the effective mass", "Stiffness of the proximal term of redundant contacts of components."
 )
 OUTER = work(6, "steps of the components", "Iterations between contacts and components, at most.")
-OUTER_SMALL = work(15, "steps of the components", "These iterations of elastic islands and of few contacts.")
+OUTER_SMALL = work(20, "steps of the components", "These iterations of elastic islands and of few contacts.")
 OUTER_MANY = work(2, "steps of the components", "These iterations where sweeps over many contacts do not converge.")
 OUTER_PART = work(
     1, "steps of the components", "These iterations in an interval of many contacts that ends within the step."
