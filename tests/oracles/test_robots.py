@@ -81,7 +81,9 @@ def test_the_lander_comes_to_rest_upright_on_its_legs(seed: int) -> None:
 
 
 def test_the_walker_walks_as_far_as_with_finer_steps() -> None:
-    """Two solvers that share nothing agree where both are fine: .5 m in 4 s. pymunk's, at 1/50 s, goes backwards."""
+    """Two solvers that share nothing agree where both are fine: .5 m in 4 s. Which foot grips when it lands depends on
+    round-off, and moves the end of a walk by a tenth from dt to dt with both: means over dt count. pymunk's, at
+    1/50 s, goes backwards."""
 
     def far(make: type[ep.Stepper], dt: float, iterations: int = 10) -> float:
         scene = scenes.build("walker", dt=dt)
@@ -92,8 +94,9 @@ def test_the_walker_walks_as_far_as_with_finer_steps() -> None:
         assert abs(scene.bodies[0].angle) < 0.3
         return float(scene.bodies[0].position.x)
 
-    fine = far(ep.Native, 1 / 800, 200)
-    assert far(ep.EECA, 1 / 200) == pytest.approx(fine, abs=0.05)
+    rates = (250, 300, 400, 600, 800)
+    fine = np.mean([far(ep.Native, 1 / rate, 200) for rate in rates])
+    assert np.mean([far(ep.EECA, 1 / rate) for rate in rates]) == pytest.approx(fine, abs=0.05)
     native = far(ep.Native, 1 / 50)
     assert native < 0.0
     assert far(ep.EECA, 1 / 50) == pytest.approx(fine, abs=0.2 * abs(native - fine))

@@ -1,0 +1,87 @@
+"""Contacts and joints come to agree: in hardly any step is one of them left unsolved."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pymunk
+import pytest
+
+import eeca_pymunk as ep
+from comparisons import meeting_scenes, program_joints
+from eeca_pymunk.compiled.records import zeros
+from eeca_pymunk.contacts.interval import make_contacts
+from eeca_pymunk.jointed.advance import Interval, Motion
+from eeca_pymunk.jointed.groups import Groups
+from eeca_pymunk.jointed.secant import fit_columns
+from eeca_pymunk.model.contacts import Columns
+from eeca_pymunk.rows.bounded import room_for_rows
+from eeca_pymunk.rows.columns import push_columns
+
+Spaces = Callable[[], pymunk.Space]
+
+
+@pytest.mark.parametrize(
+    ("make", "dt", "share"),
+    [
+        (meeting_scenes.walker, 1 / 60, 0.99),
+        (lambda: program_joints.soft_rings().space, 1 / 60, 0.99),
+        (lambda: program_joints.car().space, 1 / 60, 0.99),
+        (lambda: program_joints.rag_dolls(5).space, 1 / 120, 0.95),
+    ],
+)
+def test_steps_converge(make: Spaces, dt: float, share: float) -> None:
+    stepper = ep.EECA(make())
+    assert np.mean([stepper.step(dt).converged for _ in range(300)]) >= share
+
+
+def test_a_rope_that_is_taut_at_rest_is_solved() -> None:
+    """Two boxes that slide, are stopped by the limit of a slide and stand: whether it pulls is for friction to say."""
+    space = pymunk.Space()
+    space.gravity = 0.0, -10.0
+    floor = pymunk.Segment(space.static_body, (-50.0, 0.0), (50.0, 0.0), 0.0)
+    floor.friction = 1.0
+    boxes = [pymunk.Body(1.0, pymunk.moment_for_box(1.0, (0.4, 0.4))) for _ in range(2)]
+    space.add(floor, pymunk.SlideJoint(*boxes, (0.0, 0.1), (0.0, -0.1), 0.0, 1.3))
+    for x, box in zip((0.0, 1.0), boxes, strict=True):
+        box.position, box.velocity = (x, 0.2), (3.0 * x, 0.0)
+        shape = pymunk.Poly.create_box(box, (0.4, 0.4))
+        shape.friction = 0.8
+        space.add(box, shape)
+    stepper = ep.EECA(space)
+    for _ in range(60):
+        report = stepper.step(1 / 30)
+        assert report.converged
+        assert report.ledger is not None
+        assert abs(report.ledger.external) <= 1e-13
+
+
+def test_columns_answer_as_the_last_motion_did() -> None:
+    """Y' d = Y d + e, Y' x = Y x for x across d: Broyden's update, of two bodies of one component and one that is
+    free."""
+    rng = np.random.default_rng(1)
+    groups = Groups(np.array([0, 0, 1]), np.array([0, 2, 3]), np.array([0, 1, 2]), np.array([0, -1]))
+    columns = Columns(
+        np.array([0, 3, 6]), np.array([0, 1, 2, 0, 1, 2]), rng.normal(size=(6, 3)), rng.normal(size=(6, 3)),
+        np.zeros(2, np.int64),
+    )  # fmt: skip
+    contacts, bodies = make_contacts(2, 3), np.zeros((3, 3))
+    mean, before = rng.normal(size=(3, 3)), rng.normal(size=(3, 3))
+    motion = Motion(bodies, mean, bodies, bodies, bodies[:, :2])
+    P, Q = np.array([0, 1]), np.array([2, 2])
+    isle = zeros(1, np.dtype(float))
+    interval = Interval(isle, groups, P, Q, contacts.ROWS, motion, columns, 2, 3, 0.0, 1.0)  # type: ignore[arg-type]
+    old, new = rng.normal(size=(2, 2)), rng.normal(size=(2, 2))
+    across = np.array([[new[0, 1] - old[0, 1], old[0, 0] - new[0, 0]], [0.0, 0.0]])
+
+    def answer(impulses: np.ndarray) -> np.ndarray:
+        velocities = np.zeros((3, 3))
+        push_columns(columns, impulses, 2, 1.0, velocities)
+        return velocities
+
+    was, was_across = answer(new - old), answer(across)
+    fit_columns(interval, room_for_rows(0, 0), new, old, np.empty(0), before)
+    np.testing.assert_allclose(answer(new - old)[:2], (mean - before)[:2], rtol=1e-12)
+    np.testing.assert_allclose(answer(new - old)[2], was[2], rtol=1e-12)  # free bodies answer by their mass
+    np.testing.assert_allclose(answer(across), was_across, rtol=1e-9, atol=1e-12)
