@@ -27,10 +27,11 @@ from ..model.parameters.impulses import (
     BLOCK_SWEEPS_AFTER,
     BLOCK_SWEEPS_FRICTION,
     DENSE_CONTACTS,
+    RATE_ROUND_OFF,
     SMALL_BLOCK,
 )
 from ..model.parameters.intervals import INTERVAL_RESIDUAL_SPEED, SMALL_SWEEPS
-from .build import aim, conserves, rates, rubs
+from .build import aim, conserves, largest_terms, rates, rubs
 from .conjugate import iterate
 from .direct import refine
 from .energy import lock, works
@@ -102,7 +103,7 @@ def solve_block(
 
     Returns:
         CONVERGED (residual <= BLOCK_RESIDUAL of the largest b - u_n; with friction BLOCK_RESIDUAL_FRICTION; in large
-            lossy islands INTERVAL_RESIDUAL_SPEED) or TRUNCATED. The energy balance holds in both cases.
+            lossy islands INTERVAL_RESIDUAL_SPEED; at least the round-off of the speeds) or TRUNCATED. The energy balance holds in both cases.
     """
     A, B, ROWS, m = problem.A, problem.B, problem.ROWS, problem.m
     clear(OUT[0])
@@ -118,11 +119,12 @@ def solve_block(
     FREE = V.copy()
     push(problem, L, 1.0, V)
     rough = rubs(ROWS, m)
-    tolerance = speed * (BLOCK_RESIDUAL_FRICTION if rough else BLOCK_RESIDUAL)
+    floor = RATE_ROUND_OFF * largest_terms(A, B, ROWS, FREE, m)
+    tolerance = max(speed * (BLOCK_RESIDUAL_FRICTION if rough else BLOCK_RESIDUAL), floor)
     exact = conserves(ROWS, m)
     if hasty and m > DENSE_CONTACTS and not exact:
         # A hit on a lossy pile is solved as accurately as the intervals before and after it.
-        tolerance = INTERVAL_RESIDUAL_SPEED * speed
+        tolerance = max(INTERVAL_RESIDUAL_SPEED * speed, floor)
         taken, worst = iterate(problem, L, V, tolerance, SMALL_SWEEPS)
         OUT[0].sweeps = taken
     else:

@@ -225,3 +225,21 @@ def test_what_separates_is_left_alone() -> None:
     block.solve(1.0, 0.0)
     assert (block.after == block.velocity).all()
     assert block.out[0].residual == 0.0
+
+
+@pytest.mark.parametrize("mu", [0.0, 0.5])
+@pytest.mark.parametrize("approach", [1e-3, 1e-9, 1e-15])
+def test_impact_in_a_fast_frame_converges(approach: float, mu: float) -> None:
+    """Galilei: u_n is the same where all move by 100 more, but has the round-off of 100. The solve cannot do better."""
+    rng = np.random.default_rng(7)
+    for _ in range(50):
+        angles, arms = rng.uniform(0, 2 * np.pi, 3), 0.5 + rng.random(3)
+        for frame in (0.0, 100.0):
+            block = Block(np.zeros((2, 3)), np.zeros((2, 3)), np.array([1.3, 0.0]), np.array([2.0, 0.0]))
+            for angle, arm in zip(angles, arms, strict=True):
+                x, y = math.cos(angle), math.sin(angle)
+                block.contacts.append((0, 1, x, y, -arm * y, arm * x))
+            block.velocity[:, :2] = frame * rng.normal(size=2)
+            block.velocity[0, :2] += approach * at((math.cos(angles[0]), math.sin(angles[0])))[0]
+            block.solve(0.5, mu)
+            assert block.status == CONVERGED

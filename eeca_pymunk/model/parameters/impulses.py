@@ -29,6 +29,9 @@ BLOCK_RESIDUAL = accuracy(1e-14, "of the approach speed", "Residual of simultane
 BLOCK_RESIDUAL_FRICTION = accuracy(
     1e-10, "of the approach speed", "Residual of simultaneous impacts with friction, which minimise no energy."
 )
+RATE_ROUND_OFF = round_off(
+    2.3e-16, "of the terms of a contact's velocity", "Residual of simultaneous impacts that always suffices."
+)
 BLOCK_SWEEPS = work(12, "sweeps", "Sweeps of a simultaneous impact before the first direct solution.")
 BLOCK_SWEEPS_FRICTION = work(
     100, "sweeps", "Sweeps before the first direct solution of a simultaneous impact with friction."
