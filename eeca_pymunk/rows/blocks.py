@@ -103,7 +103,8 @@ def solve_block(
 
     Returns:
         CONVERGED (residual <= BLOCK_RESIDUAL of the largest b - u_n; with friction BLOCK_RESIDUAL_FRICTION; in large
-            lossy islands INTERVAL_RESIDUAL_SPEED; at least the round-off of the speeds) or TRUNCATED. The energy balance holds in both cases.
+            lossy islands INTERVAL_RESIDUAL_SPEED; or the round-off of the speeds, if that is more) or TRUNCATED. The
+            energy balance holds in both cases.
     """
     A, B, ROWS, m = problem.A, problem.B, problem.ROWS, problem.m
     clear(OUT[0])
