@@ -24,6 +24,7 @@ from .layout import (
     KNOWN,
     LEFT,
     NOW,
+    NUDGED,
     PULL,
     PUSH_TWIST,
     PUSH_X,
@@ -34,6 +35,7 @@ from .layout import (
     STILL,
 )  # fmt: skip
 from .model.bodies import Body
+from .model.parameters.intervals import INTERVAL_DEPTH_LEAST
 
 # Status of `take`, `give` and a step: bits (there are impulses; forces have to be reset; angles or spins have to be
 # written), or a negative code.
@@ -63,7 +65,8 @@ def take(
     """Write the states read from pymunk into BODY: all paths begin at the start of the step, `since` = 0.
 
     `Body.due` becomes negative if the prediction of the last step is void: the velocity was edited or damped, or the
-    acceleration has changed; -inf if the pose was edited. With damping all predictions are void.
+    acceleration has changed; NUDGED if the pose was edited, by no more than the depth INTERVAL_DEPTH_LEAST, up to which
+    the sides of thin shapes are certain; -inf if by more. With damping all predictions are void.
 
     Args:
         STATES (2, N, 9), WALK (4, N), EXTRA (N, 5), BODY (n,): see `layout.py`.
@@ -107,8 +110,12 @@ def take(
             c, s = math.cos(angle), math.sin(angle)
             x += c * kx - s * ky
             y += s * kx + c * ky
-        if edited or damped != 1.0 or ax != BODY[row].ax or ay != BODY[row].ay or twist != BODY[row].angular:
-            BODY[row].due = -math.inf if moved else min(BODY[row].due, -1.0)
+        if moved:
+            size = BODY[row].extent
+            way = abs(now[i, 0] - before[i, 0]) + abs(now[i, 1] - before[i, 1]) + size * abs(angle - before[i, 2])
+            BODY[row].due = min(BODY[row].due, NUDGED) if way <= INTERVAL_DEPTH_LEAST * size else -math.inf
+        elif edited or damped != 1.0 or ax != BODY[row].ax or ay != BODY[row].ay or twist != BODY[row].angular:
+            BODY[row].due = min(BODY[row].due, -1.0)
         BODY[row].x, BODY[row].y, BODY[row].angle = x, y, angle
         BODY[row].vx, BODY[row].vy, BODY[row].spin = damped * vx, damped * vy, damped * spin
         BODY[row].ax, BODY[row].ay, BODY[row].angular = ax, ay, twist

@@ -10,7 +10,7 @@ from ..contacts.energy import total, unsteered
 from ..geometry.sides import forget_sides
 from ..islands.accounting import flag_pairs
 from ..islands.at_rest import note_motion, stays_at_rest
-from ..layout import ANEW
+from ..layout import ANEW, NUDGED
 from ..model.bodies import AT_REST, MOVED, UNMOVED
 from ..model.parameters.rest import REST_RETRY
 from ..model.scene import Scene
@@ -66,6 +66,7 @@ def begin(A: Scene, WALK: IntArray) -> None:
             STATE[i].version += 1
             if BODY[i].due == -math.inf:
                 forget_sides(A, i)
+            if BODY[i].due <= NUDGED:
                 A.MEMBER[i].placed, COUNT.any_placed = MOVED, 1
             elif BODY[i].due <= ANEW:
                 A.MEMBER[i].placed, COUNT.any_placed = max(A.MEMBER[i].placed, UNMOVED), 1

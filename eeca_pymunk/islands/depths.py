@@ -24,15 +24,16 @@ def depth_limit(small: float, thick: float) -> float:
 
 
 @uncounted
-def driven(A: Scene, isle: Island, ROWS: Rows[Row], KEY: IntArray, n: int, m: int) -> bool:
-    """Whether a moving body without mobility touches an island of which any of m contacts is deeper than an interval
+def driven(A: Scene, isle: Island, P: IntArray, Q: IntArray, ROWS: Rows[Row], KEY: IntArray, n: int, m: int) -> bool:
+    """Whether a moving body without mobility is deeper in an island of n bodies, at any of m contacts, than an interval
     allows: the work of lifting is then external, as losses do not suffice."""
-    moves = False
-    for q in range(n, len(isle.WHO)):
-        if A.BODY[isle.WHO[q]].inv_mass == 0.0:
-            moves = moves or isle.V[q, 0] != 0.0 or isle.V[q, 1] != 0.0 or isle.V[q, 2] != 0.0
     shapes = A.SHAPE.shape[0]
-    for z in range(m if moves else 0):
+    for z in range(m):
+        q = max(P[z], Q[z])  # bodies without mobility are the last ones
+        if q < n or A.BODY[isle.WHO[q]].inv_mass > 0.0:
+            continue
+        if isle.V[q, 0] == 0.0 and isle.V[q, 1] == 0.0 and isle.V[q, 2] == 0.0:
+            continue
         a, b = (KEY[z] >> 1) // shapes, (KEY[z] >> 1) % shapes
         small = min(A.SHAPE[a].extent, A.SHAPE[b].extent)
         if ROWS[z].gap < -depth_limit(small, half_width(A, a) + half_width(A, b)):

@@ -13,6 +13,7 @@ so that D(q) = 0 for q = (W - B) / C, or 0 if that is negative.
 from __future__ import annotations
 
 from ..compiled import uncounted
+from ..contacts.single import move_to
 from ..model.parameters.intervals import REPAY_ROUND_OFF
 from ..model.scene import Scene
 
@@ -56,9 +57,9 @@ def repay(A: Scene, root: int, t: float) -> None:
     s, B, C = t - start, 0.0, 0.0
     i = root
     while i >= 0:
+        # Where gaps were looked at within the interval, the body is ahead on its path.
+        move_to(BODY, i, start)
         body = BODY[i]
-        if body.since != start:
-            return
         wx, wy, turn = (body.ax - PULL[i, 0]) * s, (body.ay - PULL[i, 1]) * s, (body.angular - PULL[i, 2]) * s
         B += ((body.vx + 0.5 * PULL[i, 0] * s) * wx + (body.vy + 0.5 * PULL[i, 1] * s) * wy) / body.inv_mass
         C += 0.5 * (wx * wx + wy * wy) / body.inv_mass

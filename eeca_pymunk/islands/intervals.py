@@ -135,7 +135,7 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
             return AGAIN, h / far
         if m > 0 and OUT[0].at_rest == 0 and not before_end(A, t + h):
             # An interval that ends within the step is followed by another one, which corrects the penetration.
-            raised = max(raised, 1 if driven(A, isle, ROWS, KEY, n, m) else 0)
+            raised = max(raised, 1 if driven(A, isle, P, Q, ROWS, KEY, n, m) else 0)
             free = math.inf if raised > 0 else 0.0
             budget = budget_of(ROWS, m, OUT[0].restitution + OUT[0].friction, owed, free)
             problem = Problem(P, Q, ROWS, isle.IM, isle.II, isle.POSE, n, m)

@@ -32,7 +32,7 @@ class Body(Record):
     friction: float  # of a single disk
     # Time of the body's next event after the start of the step. Negative at the start of a step: the event has to be
     # predicted again. -1 after a new velocity or acceleration, `..layout.ANEW` if the body counts as placed by the
-    # program, -inf if it was placed and the sides of its thin shapes are to be forgotten.
+    # program, `..layout.NUDGED` if it was placed nearby, -inf if the sides of its thin shapes are to be forgotten.
     due: float
 
 

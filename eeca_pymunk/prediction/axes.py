@@ -4,9 +4,9 @@ Along an axis n the least gap of some points bounds the gap of the shapes, and a
 g + g' s - B s² / 2 if B bounds its second derivative. So each axis gives an instant before which the shapes are apart.
 
 Bounds until the horizon, with r the reach of a core about its centre of mass, w the spin, q its rate, A the relative
-acceleration of the centres, V their relative speed, and L their distance:
+acceleration of the centres, b's less a's, V their relative speed, and L their distance:
 
-    fixed axis        B = A + sum of r (w² + q) of both,
+    fixed axis n      B = max(-A . n, 0) + sum of r (w² + q) of both,
     axis of body a    B = A + r_b (w_b² + q_b) + 2 w_a (V + w_b r_b) + (w_a² + q_a) (L + r_b).
 """
 
@@ -111,8 +111,8 @@ def reach_of(A: Scene, s: int) -> tuple[float, float, float]:
 
 @uncounted
 def bends(A: Scene, a: int, b: int, start: float, duration: float) -> tuple[float, float, float]:
-    """The bounds B (length/time²) of the fixed axis, and of the axes of a and of b, from instant `start` on for a time
-    `duration`."""
+    """The part of the bound B (length/time²) of a fixed axis that rotation gives, and the bounds of the axes of a and
+    of b, from instant `start` on for a time `duration`."""
     one, two = A.BODY[A.LINK[a].owner], A.BODY[A.LINK[b].owner]
     m, n = motion(A.BODY, A.LINK[a].owner, start), motion(A.BODY, A.LINK[b].owner, start)
     q_a, q_b = abs(one.angular), abs(two.angular)
@@ -126,7 +126,15 @@ def bends(A: Scene, a: int, b: int, start: float, duration: float) -> tuple[floa
     around_a, around_b = r_a * (w_a * w_a + q_a), r_b * (w_b * w_b + q_b)
     of_a = pull + around_b + 2.0 * w_a * (V + w_b * r_b) + (w_a * w_a + q_a) * (L + r_b)
     of_b = pull + around_a + 2.0 * w_b * (V + w_a * r_a) + (w_b * w_b + q_b) * (L + r_a)
-    return pull + around_a + around_b, of_a, of_b
+    return around_a + around_b, of_a, of_b
+
+
+@uncounted
+def pulled_along(A: Scene, a: int, b: int, nx: float, ny: float) -> float:
+    """The acceleration (length/time²) with which the centres of the bodies of shapes a and b approach along the normal
+    n from a to b, 0 if they part: what slides along a wall does not approach it."""
+    one, two = A.BODY[A.LINK[a].owner], A.BODY[A.LINK[b].owner]
+    return max(nx * (one.ax - two.ax) + ny * (one.ay - two.ay), 0.0)
 
 
 @uncounted

@@ -17,7 +17,7 @@ import math
 from ..compiled import uncounted
 from ..compiled.records import Rows
 from ..geometry.convex import place
-from ..geometry.flight import pose
+from ..geometry.flight import norm, pose
 from ..geometry.gap import touching
 from ..geometry.manifold import common_face
 from ..geometry.sides import closest_on_side, key_of, known_side, near_side, note_side, remembers, side_row, smaller
@@ -25,7 +25,7 @@ from ..model.bodies import Body
 from ..model.parameters.events import ADVANCES, APPROACH_ROUND_OFF, GRAZED, RESOLUTION
 from ..model.scene import Scene
 from ..pairs.lists import face_tolerance
-from .axes import Closing, Motion, bends, fastest, fixed_axis, motion, turning_axis
+from .axes import Closing, Motion, bends, fastest, fixed_axis, motion, pulled_along, turning_axis
 from .bounds import carried_circles_meet, circles_meet
 
 
@@ -160,16 +160,14 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float) -> tuple[floa
             if BODY[i].angular == 0.0 and BODY[j].angular == 0.0:
                 return start + s, s == math.inf
             return horizon, False
-    bend, bend_a, bend_b = bends(A, a, b, start, duration)
+    around, bend_a, bend_b = bends(A, a, b, start, duration)
     extent = SHAPE[a].rounding + SHAPE[b].rounding
     still = APPROACH_ROUND_OFF * (fastest(A, a, start) + fastest(A, b, start))
-    fixed, of_a, of_b = (
-        Closing(extent, bend, tolerance, still), Closing(extent, bend_a, tolerance, still),
-        Closing(extent, bend_b, tolerance, still),
-    )  # fmt: skip
+    of_a, of_b = Closing(extent, bend_a, tolerance, still), Closing(extent, bend_b, tolerance, still)
     P, Q = A.CORE[0], A.CORE[1]
     if remembers(A, a, b):
         begin_side(A, a, b, start, duration, tolerance)
+    bend = around + norm(BODY[j].ax - BODY[i].ax, BODY[j].ay - BODY[i].ay)
     graze = math.sqrt(2.0 * GRAZED * smaller(A, a, b) / max(max(bend, max(bend_a, bend_b)), 1e-300))
     graze = max(graze, duration / RESOLUTION / ADVANCES)
     looks, mark = 0, s
@@ -184,6 +182,7 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float) -> tuple[floa
         d, nx, ny, px, py, _, edge_a, apart_a, edge_b, apart_b = closest_on_side(A, P, p, Q, q, a, b)
         if d > near_side(A, a, b):
             note_side(A, a, b, nx, ny, False)
+        fixed = Closing(extent, around + pulled_along(A, a, b, nx, ny), tolerance, still)
         safe, near, met = fixed_axis(P, p, Q, q, nx, ny, one, two, fixed)
         least = min(d - extent, 0.0) - tolerance
         if apart_a - extent >= least:

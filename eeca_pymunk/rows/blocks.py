@@ -27,12 +27,15 @@ from ..model.parameters.impulses import (
     BLOCK_SWEEPS_AFTER,
     BLOCK_SWEEPS_FRICTION,
     DENSE_CONTACTS,
+    DRIFTS,
+    RATE_ROUND_OFF,
     SMALL_BLOCK,
 )
 from ..model.parameters.intervals import INTERVAL_RESIDUAL_SPEED, SMALL_SWEEPS
-from .build import aim, conserves, rates, rubs
+from .build import aim, conserves, largest_terms, rates, rubs
 from .conjugate import iterate
 from .direct import refine
+from .drift import go_along
 from .energy import lock, works
 from .sweeps import push, sweep, velocities
 
@@ -51,12 +54,12 @@ def clear(out: Solved) -> None:
 @kernel
 def resolve(
     problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, first: int, rounds: int, last: int,
-    tolerance: float, OUT: Rows[Solved],
+    again: int, tolerance: float, OUT: Rows[Solved],
 ) -> float:  # fmt: skip
     """Impulses L (m, 2) and velocities V (k, 3) for given targets: up to `first` sweeps, `rounds` rounds of a direct
-    solve and sweeps, and `last` sweeps, until a sweep changes no velocity by more than `tolerance`. FREE (k, 3):
-    velocities without impulses. Returns the change of velocity in the last sweep; OUT: numbers of sweeps and direct
-    solves."""
+    solve and sweeps, `last` sweeps, and `again` times the end of a drift (`drift.py`), a direct solve and `last`
+    sweeps, until a sweep changes no velocity by more than `tolerance`. FREE (k, 3): velocities without impulses.
+    Returns the change of velocity in the last sweep; OUT: numbers of sweeps and direct solves."""
     taken, worst = iterate(problem, L, V, tolerance, first)
     OUT[0].sweeps = taken
     OUT[0].direct = 0
@@ -66,6 +69,9 @@ def resolve(
     stalled = 0
     log_R = AUGMENTATION
     for _ in range(rounds):
+        if again > 0:
+            worst = go_along(problem, L, V, FREE, worst)
+            OUT[0].sweeps += 1
         log_R, worst = refine(problem, L, V, FREE, log_R, 8, 0.1 * tolerance, worst)
         OUT[0].direct += 1
         for _ in range(BLOCK_SWEEPS_AFTER):
@@ -82,6 +88,14 @@ def resolve(
                 break
     taken, worst = iterate(problem, L, V, tolerance, last)
     OUT[0].sweeps += taken
+    for _ in range(again):
+        if worst <= tolerance:
+            break
+        worst = go_along(problem, L, V, FREE, worst)
+        log_R, worst = refine(problem, L, V, FREE, AUGMENTATION, 8, 0.1 * tolerance, worst)
+        taken, worst = iterate(problem, L, V, tolerance, last)
+        OUT[0].sweeps += taken + 1
+        OUT[0].direct += 1
     return worst
 
 
@@ -102,7 +116,8 @@ def solve_block(
 
     Returns:
         CONVERGED (residual <= BLOCK_RESIDUAL of the largest b - u_n; with friction BLOCK_RESIDUAL_FRICTION; in large
-            lossy islands INTERVAL_RESIDUAL_SPEED) or TRUNCATED. The energy balance holds in both cases.
+            lossy islands INTERVAL_RESIDUAL_SPEED; or the round-off of the speeds, if that is more) or TRUNCATED. The
+            energy balance holds in both cases.
     """
     A, B, ROWS, m = problem.A, problem.B, problem.ROWS, problem.m
     clear(OUT[0])
@@ -118,23 +133,25 @@ def solve_block(
     FREE = V.copy()
     push(problem, L, 1.0, V)
     rough = rubs(ROWS, m)
-    tolerance = speed * (BLOCK_RESIDUAL_FRICTION if rough else BLOCK_RESIDUAL)
+    floor = RATE_ROUND_OFF * largest_terms(A, B, ROWS, FREE, m)
+    tolerance = max(speed * (BLOCK_RESIDUAL_FRICTION if rough else BLOCK_RESIDUAL), floor)
     exact = conserves(ROWS, m)
     if hasty and m > DENSE_CONTACTS and not exact:
         # A hit on a lossy pile is solved as accurately as the intervals before and after it.
-        tolerance = INTERVAL_RESIDUAL_SPEED * speed
+        tolerance = max(INTERVAL_RESIDUAL_SPEED * speed, floor)
         taken, worst = iterate(problem, L, V, tolerance, SMALL_SWEEPS)
         OUT[0].sweeps = taken
     else:
         # Direct solves help where contacts stick; where many slip only sweeps converge, so there are more of them.
-        first, rounds, last = BLOCK_SWEEPS_FRICTION, BLOCK_DIRECT_FRICTION, BLOCK_LAST_SWEEPS_FRICTION
+        first, rounds, last, again = BLOCK_SWEEPS_FRICTION, BLOCK_DIRECT_FRICTION, BLOCK_LAST_SWEEPS_FRICTION, DRIFTS
         if not rough:
-            first, rounds, last = (
+            first, rounds, last, again = (
                 4 * BLOCK_SWEEPS if m <= SMALL_BLOCK else BLOCK_SWEEPS,
                 BLOCK_DIRECT,
                 BLOCK_LAST_SWEEPS,
+                0,
             )
-        worst = resolve(problem, L, V, FREE, first, rounds, last, tolerance, OUT)
+        worst = resolve(problem, L, V, FREE, first, rounds, last, again, tolerance, OUT)
     # Velocities are computed again from the impulses, without the round-off of many sweeps.
     velocities(problem, L, FREE, V)
     scale, left = lock(problem, L, V, FREE, owed, exact)

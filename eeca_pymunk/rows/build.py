@@ -89,6 +89,22 @@ def rates(A: IntArray, B: IntArray, ROWS: Rows[Row], V: FloatArray, m: int) -> N
 
 
 @uncounted
+def largest_terms(A: IntArray, B: IntArray, ROWS: Rows[Row], V: FloatArray, m: int) -> float:
+    """The largest sum of magnitudes of the terms of u_n, and with friction of u_t, of m contacts at velocities V (k,
+    3). Times the unit round-off it is the error of these rates, however small they are."""
+    most = 0.0
+    for i in range(m):
+        a, b, nx, ny = A[i], B[i], abs(ROWS[i].nx), abs(ROWS[i].ny)
+        x, y = abs(V[a, 0]) + abs(V[b, 0]), abs(V[a, 1]) + abs(V[b, 1])
+        one, two = abs(V[a, 2]), abs(V[b, 2])
+        most = max(most, nx * x + ny * y + abs(ROWS[i].arm_na) * one + abs(ROWS[i].arm_nb) * two)
+        if ROWS[i].friction > 0.0:
+            turned = abs(ROWS[i].arm_ta) * one + abs(ROWS[i].arm_tb) * two
+            most = max(most, nx * y + ny * x + turned + abs(ROWS[i].surface))
+    return most
+
+
+@uncounted
 def aim(ROWS: Rows[Row], m: int) -> float:
     """Set the targets of m contacts of an impact: b = -e u_n where the contact approaches, -u_n where it opens.
 

@@ -196,3 +196,19 @@ def test_sides_outlive_what_is_edited_elsewhere(edit: Callable[..., None]) -> No
             edit(space, stepper, shape, others)
         stepper.step(1 / 60)
     assert abs(body.position.y) < 1e-3
+
+
+def test_a_rod_that_a_program_nudges_stays_on_its_side() -> None:
+    """Placed anew by less than 1e-4 of its size at a time, as a position function does by round-off, it is still on the
+    side from which it came, however deep; placed at once farther below, it is on the other one, and falls."""
+    for step, stays in ((-8e-5, True), (-1e-3, False)):
+        space = pymunk.Space()
+        space.gravity = 0.0, -G
+        walls(space, space.static_body, ((-5, 0), (5, 0)))
+        body = rod(space, 0.0, 0.0, 0.0)
+        stepper = ep.EECA(space)
+        for _ in range(10):
+            stepper.step(1 / 60)
+            body.position += 0.0, step
+        stepper.step(1 / 60)
+        assert (body.velocity.y == pytest.approx(0.0, abs=1e-9)) == stays

@@ -75,3 +75,23 @@ def test_many_disks_made_at_one_place_part_in_bounded_steps() -> None:
         assert abs(book.residual) <= 1e-13
     gaps = [(a.position - b.position).length for i, a in enumerate(disks) for b in disks[:i]]
     assert min(gaps) >= 2.0 * (1.0 - 1e-6)
+
+
+@pytest.mark.parametrize("speed", [0.0, 1.0])
+def test_a_floor_that_slides_under_an_overlap_of_others_does_no_work(speed: float) -> None:
+    """Without friction a floor that moves along itself does none: what lifts one disk out of another is paid by losses,
+    as on a floor that rests."""
+    space = pymunk.Space()
+    space.gravity = 0.0, -9.81
+    floor = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    floor.velocity = speed, 0.0
+    space.add(floor, pymunk.Segment(floor, (-50.0, 0.0), (50.0, 0.0), 0.1))
+    for y in (0.6, 1.4):
+        body = pymunk.Body(1.0, 0.1)
+        body.position = 0.0, y
+        space.add(body, pymunk.Circle(body, 0.5))
+    stepper = ep.EECA(space)
+    for _ in range(60):
+        ledger = stepper.step(1 / 60).ledger
+        assert ledger is not None
+        assert abs(ledger.external) <= 1e-13

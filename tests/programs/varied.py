@@ -180,7 +180,7 @@ class Varied(Composition):
         if "edits" in self.has and C.random() < 0.15:
             C.choice((self._come, self._go, self._come_shape, self._go_shape))(C)
             done = True
-        if "native" in self.has and C.random() < 0.1:
+        if "native" in self.has and C.random() < 0.1 and not self._without_width():
             self.drive(k)
             self.space.step(0.05 * self.dt)  # not so long that pymunk's own step lets something through
             done = True
@@ -188,6 +188,12 @@ class Varied(Composition):
             self._set_back(k)
             done = True
         return done
+
+    def _without_width(self) -> bool:
+        """Whether a rod without width is among walls without width. Two such lines overlap nowhere, so pymunk's step
+        has no contact with what lies on a wall, and lets it fall through by g dt^2."""
+        rods = (s for b in self.bodies for s in b.shapes if isinstance(s, pymunk.Segment))
+        return self.rounding == 0.0 and any(rod.radius == 0.0 for rod in rods)
 
     def _doze(self, C: Random) -> bool:
         body = C.choice(self.bodies)

@@ -225,3 +225,49 @@ def test_what_separates_is_left_alone() -> None:
     block.solve(1.0, 0.0)
     assert (block.after == block.velocity).all()
     assert block.out[0].residual == 0.0
+
+
+@pytest.mark.parametrize("mu", [0.0, 0.5])
+@pytest.mark.parametrize("approach", [1e-3, 1e-9, 1e-15])
+def test_impact_in_a_fast_frame_converges(approach: float, mu: float) -> None:
+    """Galilei: u_n is the same where all move by 100 more, but has the round-off of 100. The solve cannot do better."""
+    rng = np.random.default_rng(7)
+    for _ in range(50):
+        angles, arms = rng.uniform(0, 2 * np.pi, 3), 0.5 + rng.random(3)
+        for frame in (0.0, 100.0):
+            block = Block(np.zeros((2, 3)), np.zeros((2, 3)), np.array([1.3, 0.0]), np.array([2.0, 0.0]))
+            for angle, arm in zip(angles, arms, strict=True):
+                x, y = math.cos(angle), math.sin(angle)
+                block.contacts.append((0, 1, x, y, -arm * y, arm * x))
+            block.velocity[:, :2] = frame * rng.normal(size=2)
+            block.velocity[0, :2] += approach * at((math.cos(angles[0]), math.sin(angles[0])))[0]
+            block.solve(0.5, mu)
+            assert block.status == CONVERGED
+
+
+def layers(n: int, high: int) -> Block:
+    """`high` layers of n unit boxes side by side, each on two corners of its base and against two of its sides."""
+    N = n * high
+    pose = np.array([(k % n, 0.5 + k // n, 0.0) for k in range(N)] + [(0.0, 0.0, 0.0)])
+    block = Block(pose, np.zeros((N + 1, 3)), np.append(np.ones(N), 0.0), np.append(np.full(N, 6.0), 0.0))
+    for k in range(N):
+        x, y = pose[k, :2]
+        block.contacts += [(k, k - n if k >= n else N, 0.0, -1.0, x + side, y - 0.5) for side in (-0.5, 0.5)]
+        if k % n + 1 < n:
+            block.contacts += [(k, k + 1, 1.0, 0.0, x + 0.5, y + side) for side in (-0.5, 0.5)]
+    return block
+
+
+@pytest.mark.parametrize("mu", [0.2, 0.5])
+def test_redundant_contacts_with_friction_converge(mu: float) -> None:
+    """Boxes in layers share loads in many ways: impulses may go from contact to contact and change no velocity."""
+    rng = np.random.default_rng(round(10 * mu))
+    for _ in range(20):
+        block = layers(4, 2)
+        mass = 10.0 ** rng.uniform(0.0, 2.0, 8)
+        block.im[:8] /= mass
+        block.ii[:8] /= mass
+        block.velocity[:8] = rng.normal(size=(8, 3)) * rng.choice([0.0, 1.0], size=(8, 1))
+        block.solve(0.0, mu)
+        assert block.status == CONVERGED
+        check_books(block, 1e-8)

@@ -29,6 +29,9 @@ BLOCK_RESIDUAL = accuracy(1e-14, "of the approach speed", "Residual of simultane
 BLOCK_RESIDUAL_FRICTION = accuracy(
     1e-10, "of the approach speed", "Residual of simultaneous impacts with friction, which minimise no energy."
 )
+RATE_ROUND_OFF = round_off(
+    2.3e-16, "of the terms of a contact's velocity", "Residual of simultaneous impacts that always suffices."
+)
 BLOCK_SWEEPS = work(12, "sweeps", "Sweeps of a simultaneous impact before the first direct solution.")
 BLOCK_SWEEPS_FRICTION = work(
     100, "sweeps", "Sweeps before the first direct solution of a simultaneous impact with friction."
@@ -40,6 +43,11 @@ BLOCK_LAST_SWEEPS = work(400, "sweeps", "Sweeps of a simultaneous impact whose d
 BLOCK_LAST_SWEEPS_FRICTION = work(
     200, "sweeps", "Sweeps of one with friction whose direct solutions have not converged."
 )
+DRIFT_STEADY = work(
+    0.1, "of the residual", "Change of the residual in a sweep up to which the impulses of redundant contacts drift."
+)
+DRIFTS = work(2, "number", "Ends of such drifts that are sought in a simultaneous impact with friction, at most.")
+DRIFT_SLIPS = round_off(1e-12, "of the friction limit", "Friction that is below its limit by less slips.")
 SMALL_BLOCK = work(16, "contacts", "Number up to which sweeps alone are cheaper than a first direct solution.")
 DENSE_CONTACTS = work(20, "contacts", "Number up to which the matrix of an island is dense.")
 AUGMENTATION = round_off(
