@@ -109,7 +109,7 @@ class Crossing:
     @cached_property
     def find(self) -> Callable[[], int]:
         """See `rehearsing.found`."""
-        return found.bind(self.STATES, self.WALK, self.START)
+        return found.bind(self.STATES, self.WALK, self.BODY, self.START)
 
     @cached_property
     def CHANGES(self) -> FloatArray:

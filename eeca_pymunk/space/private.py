@@ -79,6 +79,11 @@ def handlers(space: pymunk.Space) -> list[Any]:
     return list(space._handlers.values())
 
 
+def functions(space: pymunk.Space) -> list[tuple[Any, ...]]:
+    """The collision handlers of a space, each with its functions in the order of `PHASES`, None for none."""
+    return [(h, h._begin, h._pre_solve, h._post_solve, h._separate) for h in space._handlers.values()]
+
+
 def arbiters(space: pymunk.Space) -> list[pymunk.Arbiter]:
     """All arbiters that pymunk keeps: of its last step, and of `collision_persistence` steps before."""
     return [pymunk.Arbiter(one, space) for one in space._get_arbiters()]
@@ -99,6 +104,14 @@ def reindex(space: pymunk.Space, bodies: Iterable[Any]) -> None:
     """Move the shapes of bodies, given as `pointers`, to the poses of the bodies."""
     c, move = space._space, lib.cpSpaceReindexShapesForBody
     for body in bodies:
+        move(c, body)
+
+
+def reindex_anew(space: pymunk.Space, bodies: Iterable[Any]) -> None:
+    """`forget_corrections`, then `reindex`."""
+    c, move, forget = space._space, lib.cpSpaceReindexShapesForBody, lib.cpBodyUpdatePosition
+    for body in bodies:
+        forget(body, 0.0)
         move(c, body)
 
 

@@ -20,6 +20,7 @@ from . import private
 from .bodies import Bodies
 from .checks import rough_pair, settings
 from .crossing import Crossing
+from .hooks import Hooks
 from .joints import JointRows
 from .noticed import clock, edited_since, edits
 from .packing import Packed, Records, records_of
@@ -49,8 +50,8 @@ class World(Crossing):
         STATES, WALK, EXTRA, ENDS: the arrays exchanged with pymunk, see `layout.py`.
         gravity: length/time².  damping: pymunk's, 1 is none.
         ignores: whether friction of this space is left out.
-        collisions: whether the space has collision handlers.  hooked: whether a step calls functions of the program, or
-            damping is 0.  plain: neither hooked nor with joints.
+        hooks: functions of bodies and constraints.  collisions: whether the space has collision handlers.
+        hooked: whether a step calls functions of the program, or damping is 0.  plain: neither hooked nor with joints.
         rules: decisions of collision handlers about pairs of rows of SHAPE in this step.
         smooth: whether friction, also that of handlers, has to be left out.
         joints: the constraints of the space, None if it has none.  PARTNER: bodies of joints that have no row of BODY.
@@ -100,8 +101,8 @@ class World(Crossing):
         self.collisions = bool(private.handlers(self.space))
         self._forget_rules()
         bodies = self.bodies
-        functions = len(bodies.velocity_hooks) > 0 or len(bodies.position_hooks) > 0
-        self.hooked = self.collisions or functions or self.damping == 0.0
+        self.hooks = Hooks(self.space, bodies, self.joints)
+        self.hooked = self.collisions or self.hooks.some or self.damping == 0.0
         self.plain = not self.hooked and self.joints is None
         self.current = private.watch(self.space, self._edits, self._seen)
 
