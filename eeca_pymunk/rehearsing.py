@@ -119,8 +119,9 @@ def approach(
     STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, BODY: Rows[Body], ENDS: FloatArray, KEPT: FloatArray,
     dt: float, gx: float, gy: float, half_damping: float,
 ) -> int:  # fmt: skip
-    """Copy the present state to KEPT (N, 9). Write to ENDS, to the table END with angles and spins, the poses from which a step of pymunk leads to the end of
-    free flight. pymunk moves bodies before it accelerates them, so that they start at
+    """Copy the present state to KEPT (N, 9). Write to ENDS, to the table END with angles and spins, the poses from
+    which a step of pymunk leads to the end of free flight. pymunk moves bodies before it accelerates them, so that they
+    start at
 
         q_free - dt v,   q_free = q + dt (d v + dt a / 2),   d = `half_damping`, the factor of half a step's damping.
 
@@ -144,8 +145,8 @@ def approach(
     end = ENDS[END * N :]
     for i in range(N):
         x, y, angle, vx, vy, spin = now[i, 0], now[i, 1], now[i, 2], now[i, 3], now[i, 4], now[i, 5]
-        for c in range(9):
-            KEPT[i, c] = now[i, c]
+        for k in range(9):
+            KEPT[i, k] = now[i, k]
         row = WALK[BODY_ROW, i]
         if row >= 0:
             if not finite(x, y, angle, vx, vy, spin):

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 import pymunk
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FloatArray
 from ..compiled.records import Rows, rows
 from ..model.joints import EDITED, MOTOR, RATCHET, ROTARY_SPRING, SPRING, Joint
 from . import private
@@ -79,7 +79,7 @@ class JointRows:
                 given.put(self._memory, j, *of[j])
             self._given.append(given)
             self._said.append(said)
-        self.touch(n + self.partners.changed)
+        self.touch(n + i for i in self.partners.changed)
         self.row: dict[pymunk.Constraint, int] = {item: j for j, item in enumerate(self.items)}
         self._edits = Edits(self.row)
         self._ratchets = [j for j, given in enumerate(self._given) if given.kind == RATCHET]
@@ -197,9 +197,9 @@ class JointRows:
         """
         self.refresh()
         moved = self.partners.read()
-        if len(moved):
-            self.touch(self._n + moved)
-            self.ends_moved |= bool(self.partners.still[moved].any())
+        if moved:
+            self.touch(self._n + i for i in moved)
+            self.ends_moved |= any(self.partners.still[i] for i in moved)
         for j in self.functions:
             item = self.items[j]
             a, b = (self._motion(body, state, place) for body in (item.a, item.b))
@@ -219,10 +219,11 @@ class JointRows:
             self.parted = frozenset(pair for pair, said in pairs if not said[3])
         return self.parted
 
-    def touch(self, rows: IntArray) -> None:
+    def touch(self, rows: Iterable[int]) -> None:
         """Mark as edited the joints of bodies (rows) that the program has moved or pushed."""
-        for row in rows.tolist():
-            self.joint["touched"][self._at.get(row, [])] = EDITED
+        touched = self.joint["touched"]
+        for row in rows:
+            touched[self._at.get(row, [])] = EDITED
 
     def write(self) -> None:
         """Write notches of ratchets, and let `constraint.impulse` return the impulses of the step."""

@@ -172,7 +172,7 @@ class Rehearsal:
         mute = [item for item in joints.calling if item.pre_solve is None or item.a.space is None]
         with ExitStack() as held:
             if joints.partners.outside:
-                held.enter_context(joints.partners.kept())
+                held.callback(private_joints.move_on, joints.partners.motions())
             if mute:
                 held.enter_context(private_joints.silent(mute))
             if joints.own:

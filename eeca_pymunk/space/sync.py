@@ -21,7 +21,7 @@ from ..reentry import BUSY
 from . import private, private_joints, private_rest
 from .bodies import ANGULAR_VELOCITY, VELOCITY, Bodies
 from .joints import JointRows
-from .private_joints import inert, silent, strengthen, weaken, with_laws
+from .private_joints import inert, move_on, silent, strengthen, weaken, with_laws
 
 if TYPE_CHECKING:
     from .world import World
@@ -58,20 +58,21 @@ def rest_step(
     push, calling = joints.items if forget else joints.pushing(), joints.calling
     if awake is not None:  # a change of a joint would wake its bodies
         push, calling = awake(push), awake(calling)
-    if not (calling or joints.own or joints.partners.outside):
+    outside = joints.partners.motions()
+    if not (calling or joints.own):
         held = weaken(push)
         try:
             private_rest.rest(space, dt, asleep)
         finally:
             strengthen(held)
+            move_on(outside)
         return
     own, laws = joints.own, joints.laws()
     if awake is not None:
         laws = [law for item, law in zip(own, laws, strict=True) if awake([item])]
         own = awake(own)
     with ExitStack() as within:
-        if joints.partners.outside:
-            within.enter_context(joints.partners.kept())
+        within.callback(move_on, outside)
         if calling:
             within.enter_context(silent(calling))
         if own:
