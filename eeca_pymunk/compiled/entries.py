@@ -55,6 +55,7 @@ ENTRIES = {
     "pairs.grid:build": "{Scene} f8",
     "pairs.grid:relist": "{Scene}",
     "pairs.candidates:candidates": "{Scene} f8[1] f8[1] i8[2] f8[2]",
+    "geometry.corners:find_corners": "Link[1] f8[2] Corner[1] i8",
     "geometry.sides:keep_sides": "{Scene} Side[1] i8[1]",
     "transfer:take": "f8[3] i8[2] f8[2] Body[1] f8 f8 f8",
     "transfer:give": "f8[3] i8[2] f8[2] Body[1] f8[1] f8 f8 i8",
