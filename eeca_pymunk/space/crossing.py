@@ -83,14 +83,16 @@ class Crossing:
         self.ENDS: FloatArray = np.zeros(END_COLUMNS * N)
         self.WALK[KNOWN] = bodies.ids
         self.WALK[BODY_ROW] = row
-        self.WALK[SPECIAL] = STEERED * bodies.steered + ECCENTRIC * bodies.center_of_gravity.any(axis=1)
-        self.EXTRA[:, COG_X : COG_Y + 1] = bodies.center_of_gravity
+        # pymunk places a body with another centre of mass by its present angle: a second time, by the new angle.
+        self.eccentric = bool(bodies.center_of_gravity.any())
+        if self.eccentric:
+            self.WALK[SPECIAL] = ECCENTRIC * bodies.center_of_gravity.any(axis=1)
+            self.EXTRA[:, COG_X : COG_Y + 1] = bodies.center_of_gravity
+        self.WALK[SPECIAL, bodies.velocity_hooks] |= STEERED
         self.STATES[LEFT] = np.where(bodies.static[:, None], state, np.nan)
         self.gather = private_batch.reader(space, _STATE, floats, ids)
         self._scatter = _Writers(self, _WHOLE, END)
         self._scatter_still, self._scatter_speed = _Writers(self, _WHOLE, STILL), _Writers(self, _SPEEDS, SPEED)
-        # pymunk places a body with another centre of mass by its present angle: a second time, by the new angle.
-        self.eccentric = bool(bodies.center_of_gravity.any())
 
     @cached_property
     def reset_forces(self) -> Callable[[], None]:
