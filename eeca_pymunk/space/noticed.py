@@ -14,6 +14,7 @@ import weakref
 from collections import deque
 from collections.abc import Callable
 from functools import wraps
+from itertools import islice
 from typing import Any
 from weakref import WeakKeyDictionary
 
@@ -72,7 +73,7 @@ def edited_since(time: int) -> set[Any] | None:
     more than are kept."""
     if _clock - time > len(_edited):
         return None
-    found = {thing() for thing in list(_edited)[len(_edited) - (_clock - time) :]}
+    found = {thing() for thing in islice(reversed(_edited), _clock - time)}
     return found.union(thing.body for thing in found if isinstance(thing, pymunk.Shape))
 
 
