@@ -66,6 +66,7 @@ ENTRIES = {
     "rehearsing:as_read": "f8[3] f8[2]",
     "rehearsing:altered": "f8[3] i8[2] Body[1] f8[1] f8[2] f8[2] f8[1] i8",
     "drowsing:rests": "f8[3] i8[2] Body[1] f8[1] f8[1] i8[1] f8 f8 f8",
+    "drowsing:approaches": "f8[3] i8[1] f8[1] f8[1] f8[2] i8[1] f8 f8",
     "drowsing:touches": "Impulse[1] i8[1] i8[1] i8[1] i8",
     "laying:lay_rows": "GivenBody[1] GivenShape[1] f8[2] Body[1] Shape[1] Link[1] f8[2] i8[1]",
     "rehearsing:changed": "f8[3] f8[2] f8[2]",
