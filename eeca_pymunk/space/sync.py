@@ -55,9 +55,9 @@ def rest_step(
     if joints is None:
         private_rest.rest(space, dt, asleep)
         return
-    push, calling = joints.items if forget else joints.pushing(), joints.calling
+    push, calling = joints.items if forget else joints.pushing.now(), joints.calling
     if awake is not None:  # a change of a joint would wake its bodies
-        push, calling = awake(push), awake(calling)
+        push, calling = awake(push), awake(calling) if calling else calling
     outside = joints.partners.motions()
     if not (calling or joints.own):
         held = weaken(push)
@@ -175,7 +175,7 @@ class Sync:
         functions have woken it."""
         if joints is None or self._called or joints.calling or joints.own:
             return private_joints.awake
-        return joints.awake
+        return joints.pushing.awake
 
     def land(self, world: World, dt: float, status: int) -> None:
         """Write the end of the step of a world, with a rest step between poses and velocities."""
