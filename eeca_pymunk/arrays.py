@@ -36,7 +36,7 @@ def side_by_side(*wanted: tuple[tuple[int, ...], npt.DTypeLike]) -> list[Any]:
     if total >= _PAGE // 2:
         total, unit = max(-(-total // _PAGE) * _PAGE, _HUGE), _PAGE
     memory = np.zeros(total + unit, np.uint8)
-    first = -memory.ctypes.data % unit
+    first = -memory.__array_interface__["data"][0] % unit
     return [np.ndarray(shape, dtype, memory, first + at) for shape, dtype, at in places]
 
 

@@ -105,7 +105,6 @@ class Bodies:
     ) -> None:
         self.space, self.fixed = space, fixed
         self._buffer = batch.Buffer()
-        self._out = batch.Buffer()
         ground = space.static_body  # exists in the space from its first access on
         self.ids, self.start = self._read()
         ids = self.ids.tolist()
@@ -221,7 +220,8 @@ class Bodies:
                     body.velocity, body.angular_velocity = (row[3], row[4]), row[5]
                     body.force, body.torque = (row[6], row[7]), row[8]
             return
-        self._out.set_float_buf(np.ascontiguousarray(state).reshape(-1))
+        out = batch.Buffer()
+        out.set_float_buf(np.ascontiguousarray(state).reshape(-1))
         # pymunk places a body with another centre of mass by its present angle: a second time, by the new angle.
         for _ in range(2 if self.center_of_gravity.any() else 1):
-            batch.set_space_bodies(self.space, _STATE, self._out)
+            batch.set_space_bodies(self.space, _STATE, out)

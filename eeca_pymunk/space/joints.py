@@ -9,7 +9,7 @@ import numpy as np
 import pymunk
 
 from ..arrays import FloatArray
-from ..compiled.records import Rows, rows
+from ..compiled.records import Rows, records, rows
 from ..model.joints import EDITED, MOTOR, RATCHET, ROTARY_SPRING, SPRING, Joint
 from . import private
 from .constraint_impulses import Impulses
@@ -61,10 +61,8 @@ class JointRows:
         asleep = {body for body in self._far if body.space is space}
         self._sleeping = {item for item, pair in self._pairs.items() if asleep and not asleep.isdisjoint(pair)}
         if past is not None:
-            kept = [(j, i) for j, item in enumerate(self.items) if (i := known.get(item, -1)) >= 0]
-            if kept:
-                here, there = np.array(kept).T
-                self.joint[here] = past.joint[there]
+            here = [j for j, item in enumerate(self.items) if item in known]
+            records(self.joint)[here] = records(past.joint)[[known[self.items[j]] for j in here]]
         of = [(self._row_of[a], self._row_of[b]) for a, b in self._pairs.values()]
         self.joint["body"] = of
         self._at: dict[int, list[int]] = {}  # joints of each body

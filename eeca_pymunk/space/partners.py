@@ -15,7 +15,7 @@ import numpy as np
 import pymunk
 
 from ..arrays import IntArray
-from ..compiled.records import rows
+from ..compiled.records import records, rows
 from ..errors import NotFiniteError
 from ..model.bodies import Body
 from . import private_joints
@@ -33,14 +33,14 @@ class Partners:
     def __init__(self, items: Sequence[pymunk.Body], space: pymunk.Space, past: Partners | None = None) -> None:
         self.items = tuple(items)
         self.PARTNER = rows(Body, len(self.items))
-        self._rows = self.PARTNER.view(np.float64).reshape(-1, Body.TYPE.itemsize // 8)
+        self._rows = records(self.PARTNER).view(np.float64)
         self._known: list[tuple[float, ...] | None] = [None] * len(self.items)
         if past is not None:
             before = {body: i for i, body in enumerate(past.items)}
-            for i, body in enumerate(self.items):
-                if body in before:
-                    self._known[i] = past._known[before[body]]
-                    self.PARTNER[i] = past.PARTNER[before[body]]
+            there = [before.get(body, -1) for body in self.items]
+            self._known = [past._known[i] if i >= 0 else None for i in there]
+            if before:
+                self._rows[:] = past._rows[there]  # those that are new are written below
         self.still: IntArray = np.array([body.body_type == pymunk.Body.STATIC for body in self.items], np.int64)
         # Moved static bodies of the space are found where the states of all its bodies are read.
         self.outside = [i for i, body in enumerate(self.items) if body.space is not space]
