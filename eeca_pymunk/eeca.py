@@ -110,7 +110,7 @@ class EECA(RunningStepper):
             self._method: Method = saved.method
             return
         sides = None if past is None or (loop := self.event_loop) is None else sides_of(past, loop)
-        world.load()
+        world.load(again=world is past)
         self._method = self.closure.prepare(world)
         patches, self._patches = self._patches, False
         if patches and world.joints is None and isinstance(self._method, EventLoop):

@@ -51,6 +51,7 @@ TABLES = {
 
 ENTRIES = {
     "geometry.gap:gaps": "{Scene} i8[2] f8[2] f8[2] f8[2]",
+    "pairs.walls:size_walls": "f8[2] Grid",
     "pairs.walls:wall_grid": "f8[2] Grid i8[1]",
     "pairs.grid:build": "{Scene} f8",
     "pairs.grid:relist": "{Scene}",

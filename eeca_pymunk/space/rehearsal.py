@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -75,13 +76,16 @@ class Rehearsal:
         # Changes by begin and pre_solve, and changes by post_solve and separate.
         self._changes: tuple[FloatArray, FloatArray] = world.CHANGES[0], world.CHANGES[1]
         self._approach = approach.bind(world.STATES, world.WALK, world.EXTRA, world.BODY, world.ENDS, self._start)
-        self._differ = [changed.bind(world.STATES, self._known, table) for table in self._changes]
         self._heard, self._stage = [False, False], -1
         self._wrapped: list[tuple[Any, str, Any, Any]] = []
         self._functions: list[tuple[Any, ...]] = []
         self.failure: BaseException | None = None
         self.decided, self._ignores = False, True
         self._recent: float = 0.0  # number of steps for which decisions still apply
+
+    @cached_property
+    def _differ(self) -> list[Callable[[], int]]:
+        return [changed.bind(self.world.STATES, self._known, table) for table in self._changes]
 
     def forget(self) -> None:
         """Forget earlier steps."""
