@@ -129,7 +129,7 @@ def sides_of(world: World, loop: EventLoop) -> Sides | None:
     """The remembered sides, None if there are none, nor a kinematic body."""
     SIDE = loop.scene.SIDE
     sided = len(SIDE) > 0 and bool((SIDE["key"] > 0).any())
-    return Sides(world, loop, sided) if sided or not (world.bodies.dynamic | world.bodies.static).all() else None
+    return Sides(world, loop, sided) if sided or world.bodies.kinematic else None
 
 
 def _outline(record: Record | None) -> object:

@@ -160,6 +160,11 @@ class Bodies:
             self.mass[i], self.moment[i], self.inverse_mass[i], self.inverse_moment[i] = masses
 
     @cached_property
+    def kinematic(self) -> bool:
+        """Whether any body is."""
+        return not (self.dynamic | self.static).all()
+
+    @cached_property
     def shapes(self) -> dict[pymunk.Body, int]:
         """The bodies that are not static and have shapes, with the number of shapes."""
         still = self.static.tolist()

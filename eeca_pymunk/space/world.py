@@ -24,7 +24,7 @@ from .hooks import Hooks
 from .joints import JointRows
 from .noticed import clock, edited_since, edits
 from .packing import Packed, Records, records_of
-from .patching import patch
+from .patching import Patched, patch
 from .rehearsal import Rehearsal
 from .shapes import Rules
 
@@ -144,7 +144,7 @@ class World(Crossing):
             found.update((shape.body, record and record.body))
         return found
 
-    def patch(self) -> tuple[bool, bool] | None:
+    def patch(self) -> Patched | None:
         """See `patching.patch`; also reads the settings of the space, and the present states into BODY."""
         found = patch(self)
         if found is not None:
