@@ -62,11 +62,23 @@ def find_corners(LINK: Rows[Link], VERTEX: FloatArray, CORNER: Rows[Corner], mov
     if few == 0 or many < 2:
         return 0
     for s in range(LINK.shape[0]):
-        for e in range(2):
-            for j in range(LINK.shape[0]):
-                if j != s and LINK[s].vertices == LINK[j].vertices == 2 and LINK[s].owner == LINK[j].owner:
-                    note_meeting(LINK, VERTEX, CORNER, s, e, j)
+        for j in range(LINK.shape[0]):
+            if j != s and LINK[s].vertices == LINK[j].vertices == 2 and LINK[s].owner == LINK[j].owner:
+                if may_meet(VERTEX, LINK[s].first, LINK[j].first):
+                    note_meeting(LINK, VERTEX, CORNER, s, 0, j)
+                    note_meeting(LINK, VERTEX, CORNER, s, 1, j)
     return few
+
+
+@uncounted
+def may_meet(VERTEX: FloatArray, mine: int, its: int) -> bool:
+    """Whether the boxes of two segments overlap, with more room than corners have."""
+    ax, ay, bx, by = VERTEX[mine, 0], VERTEX[mine, 1], VERTEX[mine + 1, 0], VERTEX[mine + 1, 1]
+    px, py, qx, qy = VERTEX[its, 0], VERTEX[its, 1], VERTEX[its + 1, 0], VERTEX[its + 1, 1]
+    room = 2.0 * CORNER_MEET * (abs(bx - ax) + abs(by - ay) + abs(qx - px) + abs(qy - py))
+    across = max(min(ax, bx) - max(px, qx), min(px, qx) - max(ax, bx))
+    along = max(min(ay, by) - max(py, qy), min(py, qy) - max(ay, by))
+    return bool(across <= room and along <= room)
 
 
 @uncounted

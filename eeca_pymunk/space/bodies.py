@@ -18,7 +18,7 @@ from ..compiled.records import Rows, columns, from_bytes, put
 from ..errors import NotFiniteError
 from ..model.bodies import POSE
 from ..model.given import DYNAMIC, KINEMATIC, STATIC, GivenBody
-from . import private
+from . import private, private_sleep
 
 _KIND = {pymunk.Body.DYNAMIC: DYNAMIC, pymunk.Body.KINEMATIC: KINEMATIC, pymunk.Body.STATIC: STATIC}
 _FIELDS = batch.BodyFields
@@ -127,7 +127,7 @@ class Bodies:
         self.inverse_moment: FloatArray = self.GIVEN["inverse_moment"]
         self.asleep: BoolArray = np.zeros(len(self.items), bool)
         if fixed:
-            self.asleep[:] = [b.is_sleeping for b in self.items]
+            self.asleep[:] = private_sleep.sleeping(self.items)
             kind[self.asleep] = STATIC
             put(self.GIVEN, np.where(self.asleep[:, None], _FIXED, columns(self.GIVEN, *_OF_MASS)), *_OF_MASS)
             # pymunk's order changes once some have slept.

@@ -172,12 +172,10 @@ class Crossing:
     def recall(self, before: Crossing) -> None:
         """Copy STATES[LEFT] of bodies whose mass, moment and centre of gravity have not changed."""
         new, old = self.bodies, before.bodies
-        for i, body in enumerate(new.items):
-            k = old.row.get(body, -1)
-            if k < 0 or new.static[i] or new.mass[i] != old.mass[k] or new.moment[i] != old.moment[k]:
-                continue
-            if np.array_equal(new.center_of_gravity[i], old.center_of_gravity[k]):
-                self.STATES[LEFT, i] = before.STATES[LEFT, k]
+        at = np.array([old.row.get(body, -1) for body in new.items])
+        same = (at >= 0) & ~new.static & (new.mass == old.mass[at]) & (new.moment == old.moment[at])
+        same &= (new.center_of_gravity == old.center_of_gravity[at]).all(axis=1)
+        self.STATES[LEFT, same] = before.STATES[LEFT, at[same]]
 
     def turning(self, status: int) -> int:
         """Write the end of the step to ENDS with angles and spins, if they were left out; returns its status bits."""
