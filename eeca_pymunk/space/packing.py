@@ -18,6 +18,7 @@ from ..laying import lay_rows
 from ..model.bodies import Body
 from ..model.given import GivenShape
 from ..model.shapes import Link, Shape
+from . import private_shapes
 from .bodies import Bodies
 from .checks import check_shape, shape_body, shape_radius
 from .shapes import local_outline
@@ -54,10 +55,10 @@ def read(shape: pymunk.Shape, ground: pymunk.Body | None = None) -> Record:
     Raises:
         ValueError, UnsupportedFeature: see `check_shape`.
     """
-    numbers = (shape_radius(shape), shape.elasticity, shape.friction, *shape.surface_velocity)
+    numbers = (shape_radius(shape), *private_shapes.surface(shape))
     if shape.body is None or not all(map(isfinite, numbers)) or min(numbers[:3]) < 0.0:
         check_shape(shape)
-    group, categories, mask = shape.filter
+    group, categories, mask = private_shapes.filter_of(shape)
     words = group & _WORD, categories & _WORD, mask & _WORD
     body, outline = shape_body(shape), local_outline(shape)
     if ground is not None:

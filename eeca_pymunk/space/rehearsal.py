@@ -21,7 +21,7 @@ from ..layout import NOW
 from ..model.shapes import Shape
 from ..rehearsing import approach, changed
 from ..transfer import TURNS
-from . import private, private_joints
+from . import private, private_joints, private_shapes
 from .crossing import Crossing
 from .hooks import Hooks
 from .joints import JointRows
@@ -216,7 +216,7 @@ class Rehearsal:
 
     def finish(self) -> None:
         """The end of pymunk's step: move shapes to their bodies; additions, removals, callbacks."""
-        private.reindex_anew(self.space, self.bodies.moving)
+        private_shapes.reindex_anew(self.space, self.bodies.moving)
         if private.waits(self.space):
             private.finish_step(self.space)
 

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 import pymunk
 
 from ..reentry import BUSY
-from . import private, private_joints, private_rest
+from . import private, private_joints, private_rest, private_shapes
 from .bodies import ANGULAR_VELOCITY, VELOCITY, Bodies
 from .joints import JointRows
 from .private_joints import inert, move_on, silent, strengthen, weaken, with_laws
@@ -130,7 +130,7 @@ class Sync:
         """Move the shapes to the poses of their bodies."""
         self._left -= 1
         self._stale = True
-        private.reindex(self.space, self._pointers)
+        private_shapes.reindex(self.space, self._pointers)
 
     def renew(self) -> None:
         """Make arbiters by a rest step, if the last step was an EECA step that made none."""
@@ -162,7 +162,7 @@ class Sync:
         native = self._new or self._timestamp() != self._renewed
         self._new = False
         if native:
-            private.forget_corrections(self._pointers)
+            private_shapes.forget_corrections(self._pointers)
         rest_step(self.space, dt, joints, native, self._choice(joints) if self._asleep else None)
         self._renewed, self._dt, self._left = self._timestamp(), dt, _RENEW
         self.stamp = self._renewed
