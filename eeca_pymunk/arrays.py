@@ -27,19 +27,17 @@ def side_by_side(*wanted: tuple[tuple[int, ...], npt.DTypeLike]) -> list[Any]:
     Kernels read a few numbers in all arrays of a scene, and would often miss the TLB with many small pages. Large
     scenes therefore get huge pages, which operating systems only give to large allocations.
     """
-    kinds = [np.dtype(dtype) for _, dtype in wanted]
-    sizes = [math.prod(shape) * kind.itemsize for (shape, _), kind in zip(wanted, kinds, strict=True)]
-    rooms = [-(-size // _LINES) * _LINES for size in sizes]
-    total, unit = sum(rooms), _LINES
+    places: list[tuple[tuple[int, ...], npt.DTypeLike, int]] = []
+    total, unit = 0, _LINES
+    for shape, dtype in wanted:
+        places.append((shape, dtype, total))
+        size = math.prod(shape) * np.dtype(dtype).itemsize
+        total += -(-size // _LINES) * _LINES
     if total >= _PAGE // 2:
         total, unit = max(-(-total // _PAGE) * _PAGE, _HUGE), _PAGE
     memory = np.zeros(total + unit, np.uint8)
-    at = -memory.ctypes.data % unit
-    found: list[Any] = []
-    for (shape, _), kind, room in zip(wanted, kinds, rooms, strict=True):
-        found.append(np.ndarray(shape, kind, memory, at))
-        at += room
-    return found
+    first = -memory.__array_interface__["data"][0] % unit
+    return [np.ndarray(shape, dtype, memory, first + at) for shape, dtype, at in places]
 
 
 def rotated(vectors: FloatArray, angle: FloatArray) -> FloatArray:

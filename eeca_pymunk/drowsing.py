@@ -1,4 +1,4 @@
-"""Kernels of sleeping: which bodies were at rest in a step, and whether a sleeping body was touched in it."""
+"""Kernels of sleeping: which bodies were at rest in a step, whether a sleeping body was touched in it, or may be."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from .model.bodies import Body
 from .model.contacts import Impulse
 
 ROUND = 1e-14  # of coordinates, and of the largest speed
+_LESS = 1e-9  # of lengths, by which bodies are looked for farther away
 
 
 @kernel
@@ -64,3 +65,40 @@ def touches(LOG: Rows[Impulse], OWNER: IntArray, ASLEEP: IntArray, STILL: IntArr
         if (ASLEEP[a] == 1 and STILL[b] == 0) or (ASLEEP[b] == 1 and STILL[a] == 0):
             return 1
     return 0
+
+
+@kernel
+def approaches(
+    STATES: FloatArray, MOVES: IntArray, SIZE: FloatArray, INVERSE: FloatArray, BOXES: FloatArray, NEAR: IntArray,
+    dt: float, pull: float,
+) -> int:  # fmt: skip
+    """Find the bodies that may come to the box of a sleeping shape within dt: those that move freely reach no farther
+    than
+
+        SIZE + dt (|v| + dt (|g| + |f| / m)).
+
+    Some that do not reach one may be among them.
+
+    Args:
+        MOVES (m,): bodies that may.  SIZE (N,): length from the origin of a body to its farthest point.
+        INVERSE (N,): 1/mass.  BOXES (w, 4): left, bottom, right and top of sleeping shapes.
+        NEAR (m,): out.  pull: |g|.
+
+    Returns:
+        the number of entries of NEAR.
+    """
+    now, count = STATES[NOW], 0
+    for k in range(MOVES.shape[0]):
+        i = MOVES[k]
+        x, y, vx, vy, fx, fy = now[i, 0], now[i, 1], now[i, 3], now[i, 4], now[i, 6], now[i, 7]
+        force = math.sqrt(fx * fx + fy * fy) * INVERSE[i]
+        reach = SIZE[i] + dt * (math.sqrt(vx * vx + vy * vy) + dt * (pull + force))
+        reach += _LESS * (reach + abs(x) + abs(y))
+        for w in range(BOXES.shape[0]):
+            # Written so that nan is near.
+            apart = BOXES[w, 0] > x + reach or BOXES[w, 2] < x - reach
+            if not (apart or BOXES[w, 1] > y + reach or BOXES[w, 3] < y - reach):
+                NEAR[count] = i
+                count += 1
+                break
+    return count

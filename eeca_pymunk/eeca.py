@@ -11,7 +11,7 @@ from weakref import ref
 from .arrays import FloatArray, IntArray
 from .closures.time_of_impact import TimeOfImpact
 from .impacts.scene import EventLoop
-from .reentry import busy
+from .reentry import BUSY
 from .report import Details
 from .runs import RunningStepper
 from .saved import Saved, sides_of
@@ -110,7 +110,7 @@ class EECA(RunningStepper):
             self._method: Method = saved.method
             return
         sides = None if past is None or (loop := self.event_loop) is None else sides_of(past, loop)
-        world.load()
+        world.load(again=world is past)
         self._method = self.closure.prepare(world)
         patches, self._patches = self._patches, False
         if patches and world.joints is None and isinstance(self._method, EventLoop):
@@ -142,8 +142,11 @@ class EECA(RunningStepper):
         joints = world.joints
         if joints is not None:
             if not joints.idle():
-                with busy(self.space):  # springs have functions
+                BUSY.add(self.space)  # springs have functions
+                try:
                     joints.look(world.state, world.bodies.row, dt)
+                finally:
+                    BUSY.discard(self.space)
             if joints.replan or joints.ends_moved:
                 assert isinstance(self._method, EventLoop)
                 if self._method.holds_others():

@@ -16,7 +16,7 @@ from .report import Details, StepReport
 from .space.hooks import Hooks
 from .space.rehearsal import Rehearsal
 from .space.world import World
-from .transfer import EVENTS, MOVED_STATIC, OTHER_BODIES
+from .transfer import EVENTS, FORCES, MOVED_STATIC, OTHER_BODIES
 from .unmet import Unmet
 
 
@@ -77,10 +77,9 @@ class HookedStepper(PackedSpace):
         """The step without post-step callbacks."""
         world = self._start_hooked(world)
         bodies, joints, half_damping = world.bodies, world.joints, world.half_damping(dt)
-        hooks = Hooks(self.space, bodies, joints)
+        hooks = world.hooks
         rehearsal: Rehearsal | None = None
         given, lost = False, 0.0
-        book: FloatArray | None = None
         try:
             if joints is not None:
                 joints.refresh()
@@ -93,11 +92,11 @@ class HookedStepper(PackedSpace):
                 rehearsal = world.rehearsal
                 self._checked(world, dt, rehearsal.run(hooks, dt, world.gravity, half_damping))
                 world.rules = rehearsal.rules(world.rules, world.places, world.SHAPE, world.smooth)
-            world.void_predictions()
             status = self._checked(world, dt, self.advance(world, dt, half_damping))
             book = self._booked(dt)
+            forces = status & FORCES or hooks.some or joints is not None
             if world.damping == 0.0 or len(hooks.position) or (rehearsal is not None and rehearsal.after):
-                given = True
+                given = forces = True
                 bits, lost = world.alter(world.damping == 0.0)
                 self._checked(world, dt, bits)
                 if len(hooks.position):
@@ -107,7 +106,8 @@ class HookedStepper(PackedSpace):
                 status = status & EVENTS | bits
             else:
                 status = status & EVENTS | world.whole()
-            world.reset_forces()
+            if forces:
+                world.reset_forces()
             self._land_hooked(world, hooks, dt, status)
             if given:
                 # So that changes by functions after the step count as edits in the next one.

@@ -2,24 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     import pymunk
 
 BUSY: set[pymunk.Space] = set()  # spaces whose own functions are being called
-
-
-@contextmanager
-def busy(space: pymunk.Space) -> Iterator[None]:
-    """Within this block a step of the space raises RuntimeError."""
-    BUSY.add(space)
-    try:
-        yield
-    finally:
-        BUSY.discard(space)
 
 
 def refuse_within(space: pymunk.Space) -> None:

@@ -9,6 +9,7 @@ from .arrays import FloatArray, IntArray
 from .compiled import kernel
 from .compiled.records import Rows
 from .layout import (
+    ANEW,
     BODY_ROW,
     COG_X,
     COG_Y,
@@ -31,8 +32,9 @@ PRESS = 1e-7  # part of its height by which a body is moved towards its support 
 
 
 @kernel
-def found(STATES: FloatArray, WALK: IntArray, START: FloatArray) -> int:
-    """Copy the state that was read to START (N, 9).
+def found(STATES: FloatArray, WALK: IntArray, BODY: Rows[Body], START: FloatArray) -> int:
+    """Copy the state that was read to START (N, 9), and void all predictions: functions may change anything, so that
+    all bodies count as placed by the program, and may overlap others.
 
     Returns:
         0; OTHER_BODIES, MOVED_STATIC or NOT_FINITE if the bodies are others, a static one was moved, or a number is not
@@ -52,6 +54,8 @@ def found(STATES: FloatArray, WALK: IntArray, START: FloatArray) -> int:
                 return MOVED_STATIC
         for c in range(9):
             START[i, c] = now[i, c]
+    for i in range(BODY.shape[0]):
+        BODY[i].due = min(BODY[i].due, ANEW)
     return status
 
 
@@ -112,11 +116,12 @@ def as_read(STATES: FloatArray, EXTRA: FloatArray) -> None:
 
 @kernel
 def approach(
-    STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, BODY: Rows[Body], ENDS: FloatArray, dt: float, gx: float,
-    gy: float, half_damping: float,
+    STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, BODY: Rows[Body], ENDS: FloatArray, KEPT: FloatArray,
+    dt: float, gx: float, gy: float, half_damping: float,
 ) -> int:  # fmt: skip
-    """Write to ENDS, to the table END with angles and spins, the poses from which a step of pymunk leads to the end of
-    free flight. pymunk moves bodies before it accelerates them, so that they start at
+    """Copy the present state to KEPT (N, 9). Write to ENDS, to the table END with angles and spins, the poses from
+    which a step of pymunk leads to the end of free flight. pymunk moves bodies before it accelerates them, so that they
+    start at
 
         q_free - dt v,   q_free = q + dt (d v + dt a / 2),   d = `half_damping`, the factor of half a step's damping.
 
@@ -140,6 +145,8 @@ def approach(
     end = ENDS[END * N :]
     for i in range(N):
         x, y, angle, vx, vy, spin = now[i, 0], now[i, 1], now[i, 2], now[i, 3], now[i, 4], now[i, 5]
+        for k in range(9):
+            KEPT[i, k] = now[i, k]
         row = WALK[BODY_ROW, i]
         if row >= 0:
             if not finite(x, y, angle, vx, vy, spin):

@@ -151,14 +151,14 @@ class RunningStepper(PackedStepper):
             # Memory from which patches start is kept only after the first edit in place, since keeping it costs time.
             self._patches = True
             return False
-        lossy, sides = bool(loop.scene.COUNT.lossy), sides_of(world, loop)
-        found = world.patch()
-        if found is None or lossy != bool((world.SHAPE["elasticity"] < 1.0).any()):
+        sides, found = sides_of(world, loop), world.patch()
+        if found is None:
+            return False
+        if found.elasticity and bool(loop.scene.COUNT.lossy) != bool((world.SHAPE["elasticity"] < 1.0).any()):
             return False
         if not world.collisions and len(loop.scene.RULE):
             loop.rule({})
-        filters, moved = found
-        loop.be_new(filters or moved, moved)
+        loop.be_new(found.filters or found.moved, found.moved)
         if sides is not None:
             sides.recall(world, loop)
         return True

@@ -3,8 +3,6 @@ of thin shapes, across readings of the space."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from .arrays import FloatArray
@@ -14,10 +12,8 @@ from .impacts.scene import EventLoop
 from .layout import ANEW, BODY_ROW, LEFT
 from .model.joints import OF_STEPS, RATCHET, Joint
 from .model.shapes import Link
+from .space.packing import Record
 from .space.world import World
-
-if TYPE_CHECKING:
-    import pymunk
 
 _FIXED = ["extent", "elasticity", "friction"]  # fields of BODY that no step changes
 _TIE = "kind", "body", "soft"  # fields of JOINT that decide the plan
@@ -100,41 +96,43 @@ class Sides:
 
     def __init__(self, world: World, loop: EventLoop, sided: bool) -> None:
         self._sided = sided
-        self._known, self._shapes = loop.scene.SIDE.copy(), world.shapes
-        self._outlines = [_outline(world, shape) for shape in world.shapes]
-        self._of = [world.bodies.items[i] for i in world.owner.tolist()]
+        self._known, self._records = loop.scene.SIDE.copy(), dict(world.records)
+        self._shapes, self._owner, self._bodies = world.shapes, world.owner.tolist(), world.bodies.items
         self._left = world.STATES[LEFT, :, :3].copy()
-        self._row = world.bodies.row
 
     def recall(self, world: World, loop: EventLoop) -> None:
         """Write them into the loop of the present world, which has taken no step."""
-        PLACE = np.full(len(self._shapes), -1, np.int64)
-        for k, (shape, outline, body) in enumerate(zip(self._shapes, self._outlines, self._of, strict=True)):
-            i, place = world.bodies.row.get(body, -1), world.places.get(shape, -1)
-            if i < 0 or place < 0 or world.bodies.items[world.owner[place]] is not body:
+        row, places, records, owner = world.bodies.row, world.places, world.records, world.owner.tolist()
+        at = [row.get(body, -1) for body in self._bodies]
+        still = (world.state[at, :3] == self._left).all(axis=1).tolist()
+        of = [-1] * len(self._shapes)
+        for k, (shape, i) in enumerate(zip(self._shapes, self._owner, strict=True)):
+            place = places.get(shape, -1)
+            if place < 0 or owner[place] != at[i] or not still[i]:
                 continue
-            if _outline(world, shape) == outline and np.array_equal(world.state[i, :3], self._left[self._row[body]]):
-                PLACE[k] = place
-        same = set(PLACE.tolist())
-        changed = {i for place, i in enumerate(world.owner.tolist()) if place not in same}
-        for i in {int(world.owner[place]) for place in same if place >= 0}:
-            row = int(world.WALK[BODY_ROW, i])
-            if row >= 0 and (self._sided if world.bodies.dynamic[i] else i not in changed):
-                world.STATES[LEFT, i, :3] = world.state[i, :3]
-                world.BODY["due"][row] = ANEW
+            now, before = records[shape], self._records[shape]
+            if now is before or _outline(now) == _outline(before):
+                of[k] = place
+        same = set(of)
+        changed = {i for place, i in enumerate(owner) if place not in same}
+        dynamic, rows = world.bodies.dynamic.tolist(), world.WALK[BODY_ROW].tolist()
+        kept = [i for i in {owner[place] for place in same if place >= 0} if rows[i] >= 0]
+        kept = [i for i in kept if (self._sided if dynamic[i] else i not in changed)]
+        if kept:
+            world.STATES[LEFT, kept, :3] = world.state[kept, :3]
+            world.BODY["due"][[rows[i] for i in kept]] = ANEW
         if self._sided and len(loop.scene.SIDE):
-            keep_sides(loop.table, self._known, PLACE)
+            keep_sides(loop.table, self._known, np.array(of, np.int64))
 
 
 def sides_of(world: World, loop: EventLoop) -> Sides | None:
     """The remembered sides, None if there are none, nor a kinematic body."""
     SIDE = loop.scene.SIDE
     sided = len(SIDE) > 0 and bool((SIDE["key"] > 0).any())
-    return Sides(world, loop, sided) if sided or not (world.bodies.dynamic | world.bodies.static).all() else None
+    return Sides(world, loop, sided) if sided or world.bodies.kinematic else None
 
 
-def _outline(world: World, shape: pymunk.Shape) -> object:
-    record = world.records[shape]
+def _outline(record: Record | None) -> object:
     return record and (record.vertices, record.numbers[0])
 
 

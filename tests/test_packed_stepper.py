@@ -19,7 +19,7 @@ from eeca_pymunk.errors import NotFiniteError
 from eeca_pymunk.model.contacts import Impulse
 from eeca_pymunk.packed_stepper import PackedStepper
 from eeca_pymunk.report import Details, of_events
-from eeca_pymunk.space import packing, private
+from eeca_pymunk.space import packing, private, private_shapes
 from eeca_pymunk.space.world import World
 from scenes.scene import add_disk
 
@@ -291,7 +291,7 @@ def test_a_failure_leaves_the_space_as_it_was(when: str, monkeypatch: pytest.Mon
     else:
         stepper.step(DT)
         push(space)
-        monkeypatch.setattr(private, "reindex", fail)
+        monkeypatch.setattr(private_shapes, "reindex", fail)
     before, time = state(space), stepper.time
     with pytest.raises(KeyboardInterrupt):
         stepper.step(DT)

@@ -7,15 +7,17 @@ from u to it. Row 4 s tells whether s is thin.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
-from ..arrays import BoolArray, FloatArray, IntArray
+from ..arrays import FloatArray
+from ..compiled import kernel, uncounted
 from ..compiled.records import Rows, rows
 from ..model.parameters.detection import CORNER_MEET, SLENDER
 from ..model.shapes import Corner, Link, Side
 
 _SIDES, _MANY = 64, 1 << 16  # pairs of every thin shape that moves, whose sides are remembered; of all, at most
-_CHUNK = 256
 
 
 def core_room(LINK: Rows[Link]) -> FloatArray:
@@ -26,83 +28,102 @@ def core_room(LINK: Rows[Link]) -> FloatArray:
 def thin_memory(LINK: Rows[Link], VERTEX: FloatArray, moving: int) -> tuple[Rows[Side], Rows[Corner]]:
     """The tables SIDE and CORNER; without rows if no thin shapes may meet. moving: number of moving shapes, the first
     ones."""
-    if LINK["vertices"][:moving].max(initial=1) < 2:
-        return rows(Side, 0), rows(Corner, 0)
-    flat = thin(LINK, VERTEX)
-    few = int(flat[:moving].sum())
-    if few == 0 or flat.sum() < 2:
+    CORNER = rows(Corner, 4 * len(LINK))
+    few = find_corners(LINK, VERTEX, CORNER, moving)
+    if few == 0:
         return rows(Side, 0), rows(Corner, 0)
     slots = 64
     while slots < max(4 * len(LINK), min(_SIDES * few, _MANY)):
         slots *= 2
-    return rows(Side, slots), corners_of(LINK, VERTEX, flat)
+    return rows(Side, slots), CORNER
 
 
-def corners_of(LINK: Rows[Link], VERTEX: FloatArray, flat: BoolArray | None = None) -> Rows[Corner]:
-    """The table CORNER of all shapes; `flat` (k,): which ones are thin, if already known."""
+def corners_of(LINK: Rows[Link], VERTEX: FloatArray) -> Rows[Corner]:
+    """The table CORNER of all shapes."""
     CORNER = rows(Corner, 4 * len(LINK))
-    CORNER["thin"][::4] = thin(LINK, VERTEX) if flat is None else flat
-    note_corners(LINK, VERTEX, CORNER)
+    find_corners(LINK, VERTEX, CORNER, len(LINK))
     return CORNER
 
 
-def thin(LINK: Rows[Link], VERTEX: FloatArray) -> BoolArray:
-    """(k,) which shapes are thin: segments, and planks."""
-    flat: BoolArray = LINK["vertices"] == 2
-    some: IntArray = np.flatnonzero(LINK["vertices"] > 2)
-    if len(some):
-        of = np.repeat(np.arange(len(LINK)), LINK["vertices"])
-        following = np.arange(1, len(VERTEX) + 1)
-        following[LINK["first"] + LINK["vertices"] - 1] = LINK["first"]
-        from_first = VERTEX[:, :2] - VERTEX[LINK["first"][of], :2]
-        x, y = from_first.T
-        area = np.bincount(of, 0.5 * (x * y[following] - y * x[following]), len(LINK))
-        length = np.zeros(len(LINK))
-        np.maximum.at(length, of, np.hypot(x, y))
-        flat[some] = area[some] < SLENDER * (0.5 * length[some]) ** 2
-    return flat
+@kernel
+def find_corners(LINK: Rows[Link], VERTEX: FloatArray, CORNER: Rows[Corner], moving: int) -> int:
+    """Fill in CORNER (4 k,), zeros: which shapes are thin, and, if any of those can meet, the corners of all segments,
+    at which segments of the same body meet.
+
+    Returns:
+        how many of the first `moving` shapes are thin; 0 if no thin shapes may meet.
+    """
+    few, many = 0, 0
+    for s in range(LINK.shape[0]):
+        if thin(LINK[s], VERTEX):
+            CORNER[4 * s].thin = 1
+            few += 1 if s < moving else 0
+            many += 1
+    if few == 0 or many < 2:
+        return 0
+    for s in range(LINK.shape[0]):
+        for j in range(LINK.shape[0]):
+            if j != s and LINK[s].vertices == LINK[j].vertices == 2 and LINK[s].owner == LINK[j].owner:
+                if may_meet(VERTEX, LINK[s].first, LINK[j].first):
+                    note_meeting(LINK, VERTEX, CORNER, s, 0, j)
+                    note_meeting(LINK, VERTEX, CORNER, s, 1, j)
+    return few
 
 
-def note_corners(LINK: Rows[Link], VERTEX: FloatArray, CORNER: Rows[Corner]) -> None:
-    """Fill in the corners of all segments, at which segments of the same body meet."""
-    some: IntArray = np.flatnonzero(LINK["vertices"] == 2)
-    if len(some) < 2:
-        return
-    start, end = VERTEX[LINK["first"][some], :2], VERTEX[LINK["first"][some] + 1, :2]
-    owner, along = LINK["owner"][some], end - start
-    length = np.hypot(*along.T)
-    for e, points in enumerate((start, end)):
-        for first in range(0, len(some), _CHUNK):
-            c = points[first : first + _CHUNK]
-            place = np.einsum("ijk,jk->ij", c[:, None] - start, along) / length**2
-            nearest = start + np.clip(place, 0.0, 1.0)[..., None] * along
-            tolerance = CORNER_MEET * np.maximum(length, length[first : first + _CHUNK, None])
-            apart = nearest - c[:, None]
-            meet = (apart**2).sum(axis=2) <= tolerance**2
-            meet &= owner == owner[first : first + _CHUNK, None]
-            for i, j in np.argwhere(meet).tolist():
-                s = first + i
-                if s != j:
-                    _note(CORNER, some, s, e, j, (along * (1.0 - 2.0 * e))[s], along[j], place[i, j] * length[j])
+@uncounted
+def may_meet(VERTEX: FloatArray, mine: int, its: int) -> bool:
+    """Whether the boxes of two segments overlap, with more room than corners have."""
+    ax, ay, bx, by = VERTEX[mine, 0], VERTEX[mine, 1], VERTEX[mine + 1, 0], VERTEX[mine + 1, 1]
+    px, py, qx, qy = VERTEX[its, 0], VERTEX[its, 1], VERTEX[its + 1, 0], VERTEX[its + 1, 1]
+    room = 2.0 * CORNER_MEET * (abs(bx - ax) + abs(by - ay) + abs(qx - px) + abs(qy - py))
+    across = max(min(ax, bx) - max(px, qx), min(px, qx) - max(ax, bx))
+    along = max(min(ay, by) - max(py, qy), min(py, qy) - max(ay, by))
+    return bool(across <= room and along <= room)
 
 
-def _note(
-    CORNER: Rows[Corner], some: IntArray, s: int, e: int, j: int, u: FloatArray, v: FloatArray, place: float
+@uncounted
+def thin(link: Link, VERTEX: FloatArray) -> bool:
+    """Whether a shape is thin: a segment, or a plank, whose area is small against its length."""
+    if link.vertices <= 2:
+        return bool(link.vertices == 2)
+    area, length = 0.0, 0.0
+    first = VERTEX[link.first]
+    for i in range(link.vertices):
+        one, two = VERTEX[link.first + i], VERTEX[link.first + (i + 1 if i + 1 < link.vertices else 0)]
+        x, y = one[0] - first[0], one[1] - first[1]
+        area += 0.5 * (x * (two[1] - first[1]) - y * (two[0] - first[0]))
+        length = max(length, math.hypot(x, y))
+    return bool(area < SLENDER * (0.5 * length) ** 2)
+
+
+@uncounted
+def note_meeting(
+    LINK: Rows[Link], VERTEX: FloatArray, CORNER: Rows[Corner], s: int, e: int, j: int
 ) -> None:  # fmt: skip
-    """Note that segment j, along v, passes or ends at end e of segment s, so far from its own start."""
-    length = float(np.hypot(*v))
-    for sign, ends in ((1.0, place > (1.0 - CORNER_MEET) * length), (-1.0, place < CORNER_MEET * length)):
-        if ends:
+    """Note whether segment j passes or ends at end e of segment s."""
+    mine, its = LINK[s].first, LINK[j].first
+    cx, cy, px, py = VERTEX[mine + e, 0], VERTEX[mine + e, 1], VERTEX[its, 0], VERTEX[its, 1]
+    ux, uy = VERTEX[mine + 1 - e, 0] - cx, VERTEX[mine + 1 - e, 1] - cy
+    vx, vy = VERTEX[its + 1, 0] - px, VERTEX[its + 1, 1] - py
+    size, length = math.hypot(ux, uy), math.hypot(vx, vy)
+    place = ((cx - px) * vx + (cy - py) * vy) / length**2
+    within = min(max(place, 0.0), 1.0)
+    apart_x, apart_y, tolerance = px + within * vx - cx, py + within * vy - cy, CORNER_MEET * max(size, length)
+    if apart_x**2 + apart_y**2 > tolerance**2:
+        return
+    for sign in range(1, -2, -2):
+        # Nothing of j is on this side of the end.
+        if (sign > 0 and place > 1.0 - CORNER_MEET) or (sign < 0 and place < CORNER_MEET):
             continue
-        scale = sign / (length * float(np.hypot(*u)))
-        c, z = scale * float(u @ v), scale * float(u[0] * v[1] - u[1] * v[0])
+        scale = sign / (length * size)
+        c, z = scale * (ux * vx + uy * vy), scale * (ux * vy - uy * vx)
         for turn in range(2):
-            row = CORNER[4 * some[s] + 2 * e + turn]
-            sign_of = 1.0 - 2.0 * turn
-            if row.other == 0 or _before(sign_of * z, c, sign_of * row.sine, row.cosine):
-                row.other, row.cosine, row.sine = some[j] + 1, c, z
+            row, way = CORNER[4 * s + 2 * e + turn], 1.0 - 2.0 * turn
+            if row.other == 0 or before(way * z, c, way * row.sine, row.cosine):
+                row.other, row.cosine, row.sine = j + 1, c, z
 
 
-def _before(z: float, c: float, sine: float, cosine: float) -> bool:
+@uncounted
+def before(z: float, c: float, sine: float, cosine: float) -> bool:
     """Whether the angle of (c, z), from 0 to 2 pi, comes before that of (cosine, sine)."""
-    return bool(np.arctan2(z, c) % (2.0 * np.pi) < np.arctan2(sine, cosine) % (2.0 * np.pi))
+    return bool(math.atan2(z, c) % (2.0 * math.pi) < math.atan2(sine, cosine) % (2.0 * math.pi))

@@ -13,7 +13,7 @@ from ..model.parameters.detection import ALL_PAIRS, ALL_WALLS, MARGIN_HALVINGS, 
 from ..model.scene import Scene
 from ..model.shapes import Cell, Grid, List, Mark
 from .grid import build
-from .walls import wall_grid
+from .walls import size_walls, wall_grid
 
 _MARGINS = (0.1, 20.0)  # least and most, in radii
 # Fields of `Scene` that are the near lists.
@@ -111,20 +111,10 @@ def more_room(room: int) -> int:
 
 
 def _wall_cells(BOX: FloatArray, GRID: Grid) -> IntArray:
-    """The grid of static shapes: about as many cells as shapes, fewer if large shapes would fill too many cells."""
+    """The grid of static shapes, if there are many."""
     if len(BOX) <= ALL_WALLS:
         return np.zeros(1, np.int64)
-    low, high = BOX[:, :2].min(axis=0), BOX[:, 2:].max(axis=0)
-    wide, tall = np.maximum(high - low, 1e-300)
-    length = max(math.sqrt(wide * tall / len(BOX)), max(wide, tall) / (4.0 * len(BOX)))
-    GRID.left, GRID.bottom = low
-    while True:
-        GRID.wall_cell = length
-        GRID.columns, GRID.rows = max(1, math.ceil(wide / length)), max(1, math.ceil(tall / length))
-        cells = int(GRID.columns * GRID.rows)
-        entries = wall_grid(BOX, GRID, np.zeros(1, np.int64))
-        if entries <= 32 * len(BOX) or cells == 1:
-            CSR = np.zeros(cells + 1 + entries, np.int64)
-            wall_grid(BOX, GRID, CSR)
-            return CSR
-        length *= 2.0
+    entries = size_walls(BOX, GRID)
+    CSR = np.zeros(int(GRID.columns * GRID.rows) + 1 + entries, np.int64)
+    wall_grid(BOX, GRID, CSR)
+    return CSR

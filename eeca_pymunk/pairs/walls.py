@@ -77,18 +77,40 @@ def seek_walls(A: Scene, s: int) -> bool:
 
 
 @uncounted
-def wall_grid(BOX: FloatArray, GRID: Grid, CSR: IntArray) -> int:
-    """Enter static shapes with boxes (W, 4) into the cells of their grid.
-
-    CSR has columns * rows + 1 starts and then the shapes of all cells. Returns the number of entries; if CSR is too
-    short for them, it only counts.
-    """
-    columns, cells, total = GRID.columns, GRID.columns * GRID.rows, 0
+def entries_of(BOX: FloatArray, GRID: Grid) -> int:
+    """The number of cells that static shapes with boxes (W, 4) overlap, counted for each shape."""
+    total = 0
     for w in range(BOX.shape[0]):
         west, east, south, north = cells_of(GRID, BOX[w, 0], BOX[w, 1], BOX[w, 2], BOX[w, 3])
         total += (east - west + 1) * (north - south + 1)
-    if CSR.shape[0] < cells + 1 + total:
-        return total
+    return total
+
+
+@uncounted
+def size_walls(BOX: FloatArray, GRID: Grid) -> int:
+    """Choose the cells of the grid of static shapes with boxes (W, 4), W > 0: about as many as shapes, fewer if large
+    shapes would fill too many. Returns `entries_of`."""
+    count, left, bottom, right, top = BOX.shape[0], math.inf, math.inf, -math.inf, -math.inf
+    for w in range(count):
+        left, bottom = min(left, BOX[w, 0]), min(bottom, BOX[w, 1])
+        right, top = max(right, BOX[w, 2]), max(top, BOX[w, 3])
+    wide, tall = max(right - left, 1e-300), max(top - bottom, 1e-300)
+    length = max(math.sqrt(wide * tall / count), max(wide, tall) / (4.0 * count))
+    GRID.left, GRID.bottom = left, bottom
+    while True:
+        GRID.wall_cell = length
+        GRID.columns, GRID.rows = max(1, math.ceil(wide / length)), max(1, math.ceil(tall / length))
+        entries = entries_of(BOX, GRID)
+        if entries <= 32 * count or GRID.columns * GRID.rows == 1:
+            return entries
+        length *= 2.0
+
+
+@uncounted
+def wall_grid(BOX: FloatArray, GRID: Grid, CSR: IntArray) -> None:
+    """Enter static shapes with boxes (W, 4) into the cells of their grid: CSR has columns * rows + 1 starts and then
+    the shapes of all cells."""
+    columns, cells = GRID.columns, GRID.columns * GRID.rows
     CSR[: cells + 1] = 0
     for fill in range(2):
         for w in range(BOX.shape[0]):
@@ -107,4 +129,3 @@ def wall_grid(BOX: FloatArray, GRID: Grid, CSR: IntArray) -> int:
     for c in range(cells, 0, -1):
         CSR[c] = CSR[c - 1]
     CSR[0] = 0
-    return total

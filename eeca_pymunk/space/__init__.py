@@ -8,7 +8,7 @@ Open first `world.py`, the space as packed arrays, and `checks.py`, the unsuppor
 | subject | files |
 |---|---|
 | reading bodies and shapes | `bodies.py`, `shapes.py`, `packing.py` |
-| reading joints | `joints.py`, `constraints.py`, `partners.py`, `spring_functions.py` |
+| reading joints | `joints.py`, `constraints.py`, `partners.py`, `pushing.py`, `spring_functions.py` |
 | states in and out | `crossing.py` |
 | edits by the program | `noticed.py` (shapes, bodies), `edits.py` (joints), `patching.py` (rows after edits in place) |
 | functions of the program | `hooks.py`, `rehearsal.py` (collision handlers) |

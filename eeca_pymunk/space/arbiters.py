@@ -63,9 +63,10 @@ def show_contacts(space: pymunk.Space, read: Reading) -> None:
     """Let arbiters of a space have the contents that `read` returns, unless None. `read` must not refer to the
     space."""
     _readings[space] = read
-    pymunk.Body.each_arbiter = _each_arbiter  # type: ignore[method-assign]
-    pymunk.Space.debug_draw = _debug_draw  # type: ignore[method-assign]
-    batch.get_space_arbiters = _get_space_arbiters
+    if pymunk.Body.each_arbiter is not _each_arbiter:  # Python forgets what it knows of a class that is set anything
+        pymunk.Body.each_arbiter = _each_arbiter  # type: ignore[method-assign]
+        pymunk.Space.debug_draw = _debug_draw  # type: ignore[method-assign]
+        batch.get_space_arbiters = _get_space_arbiters
 
 
 def touches(EVENT: Rows[Impulse], shapes: Sequence[pymunk.Shape]) -> list[Touch]:

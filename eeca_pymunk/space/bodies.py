@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import struct
 from collections.abc import Collection, Sequence
 from functools import cached_property
@@ -17,7 +18,7 @@ from ..compiled.records import Rows, columns, from_bytes, put
 from ..errors import NotFiniteError
 from ..model.bodies import POSE
 from ..model.given import DYNAMIC, KINEMATIC, STATIC, GivenBody
-from . import private
+from . import private, private_sleep
 
 _KIND = {pymunk.Body.DYNAMIC: DYNAMIC, pymunk.Body.KINEMATIC: KINEMATIC, pymunk.Body.STATIC: STATIC}
 _FIELDS = batch.BodyFields
@@ -45,16 +46,40 @@ def moving(space: pymunk.Space) -> list[pymunk.Body]:
     return [b for b in space.bodies if b.body_type != pymunk.Body.STATIC]
 
 
-_GIVEN, _MASS = struct.Struct("4q9d2q"), 32  # bytes before mass and moment
+_GIVEN = struct.Struct("4q9d2q")
+_MASSES, _FROM, _TO = struct.Struct("4d"), 32, 64  # mass, moment and their inverses; bytes where these begin and end
+_FIXED = math.inf, math.inf, 0.0, 0.0
 
 
 def _told(body: pymunk.Body) -> bytes:
-    """The values of a body, as the bytes of a `GivenBody`."""
-    kind = _KIND[body.body_type]
+    """The values of a body, as the bytes of a `GivenBody`.
+
+    Raises:
+        ValueError: for a dynamic body whose mass or moment is not positive, or whose mass is not finite.
+    """
+    kind, masses = _KIND[body.body_type], _FIXED
+    if kind == DYNAMIC:
+        mass, moment = body.mass, body.moment
+        if not (0.0 < mass < math.inf and moment > 0.0):
+            raise ValueError(
+                f"{body} has mass {mass} and moment {moment}: a dynamic body needs a finite mass > 0 and a moment > 0; "
+                "set body.mass and body.moment, or the mass or density of its shapes"
+            )
+        masses = mass, moment, 1.0 / mass, 1.0 / moment
     # The public properties return pymunk's default when unset.
     hooks = private.velocity_function(body) is not None, private.position_function(body) is not None
-    mass, moment, centre = body.mass, body.moment, body.center_of_gravity
-    return _GIVEN.pack(kind, 0, *hooks, mass, moment, 0.0, 0.0, *centre, 0.0, 0.0, 0.0, -1, 0)
+    return _GIVEN.pack(kind, 0, *hooks, *masses, *body.center_of_gravity, 0.0, 0.0, 0.0, -1, 0)
+
+
+def _rows_of(flag: IntArray, asleep: BoolArray | None) -> IntArray:
+    """The rows of the bodies awake that have this flag."""
+    if not flag.any():
+        return _NONE
+    return np.flatnonzero(flag if asleep is None else flag * ~asleep)
+
+
+_NONE: IntArray = np.zeros(0, np.intp)
+_OF_MASS = "mass", "moment", "inverse_mass", "inverse_moment"
 
 
 class Bodies:
@@ -80,7 +105,6 @@ class Bodies:
     ) -> None:
         self.space, self.fixed = space, fixed
         self._buffer = batch.Buffer()
-        self._out = batch.Buffer()
         ground = space.static_body  # exists in the space from its first access on
         self.ids, self.start = self._read()
         ids = self.ids.tolist()
@@ -97,29 +121,25 @@ class Bodies:
         }
         self.GIVEN: Rows[GivenBody] = from_bytes(GivenBody, list(self._said.values()))
         kind: IntArray = self.GIVEN["kind"]
+        self.mass: FloatArray = self.GIVEN["mass"]
+        self.moment: FloatArray = self.GIVEN["moment"]
+        self.inverse_mass: FloatArray = self.GIVEN["inverse_mass"]
+        self.inverse_moment: FloatArray = self.GIVEN["inverse_moment"]
         self.asleep: BoolArray = np.zeros(len(self.items), bool)
-        self.GIVEN["place"] = np.arange(len(ids))
         if fixed:
-            self.asleep[:] = [b.is_sleeping for b in self.items]
+            self.asleep[:] = private_sleep.sleeping(self.items)
             kind[self.asleep] = STATIC
+            put(self.GIVEN, np.where(self.asleep[:, None], _FIXED, columns(self.GIVEN, *_OF_MASS)), *_OF_MASS)
             # pymunk's order changes once some have slept.
             place = {body: i for i, body in enumerate((*space.bodies, ground))}
             self.GIVEN["place"] = [place[body] for body in self.items]
+        else:
+            self.GIVEN["place"] = np.arange(len(ids))
         self.dynamic: BoolArray = kind == DYNAMIC
         self.static: BoolArray = kind == STATIC
-        self.mass: FloatArray = self.GIVEN["mass"]
-        self.moment: FloatArray = self.GIVEN["moment"]
-        self.mass[~self.dynamic] = np.inf
-        self.moment[~self.dynamic] = np.inf
-        self.check_masses()
         # Functions of sleeping bodies are not called, as under pymunk.
-        self.velocity_hooks: IntArray = np.flatnonzero((self.GIVEN["steered"] != 0) & ~self.asleep)
-        self.position_hooks: IntArray = np.flatnonzero((self.GIVEN["moved"] != 0) & ~self.asleep)
-        self.steered: BoolArray = np.zeros(len(self.items), bool)
-        self.steered[self.velocity_hooks] = True
-        self.inverse_mass: FloatArray = self.GIVEN["inverse_mass"]
-        self.inverse_moment: FloatArray = self.GIVEN["inverse_moment"]
-        self.inverse_mass[:], self.inverse_moment[:] = 1.0 / self.mass, 1.0 / self.moment
+        self.velocity_hooks = _rows_of(self.GIVEN["steered"], self.asleep if fixed else None)
+        self.position_hooks = _rows_of(self.GIVEN["moved"], self.asleep if fixed else None)
         self.center_of_gravity: FloatArray = columns(self.GIVEN, "centre_x", "centre_y")
 
     def placed(self, state: FloatArray) -> Rows[GivenBody]:
@@ -130,21 +150,19 @@ class Bodies:
     def changed(self, row: int) -> tuple[bool, bool]:
         """Whether values of a body have changed, and whether others than mass and moment have."""
         new, old = _told(self.items[row]), self._said[self.items[row]]
-        return new != old, new[:_MASS] != old[:_MASS] or new[_MASS + 16 :] != old[_MASS + 16 :]
+        return new != old, new[:_FROM] != old[:_FROM] or new[_TO:] != old[_TO:]
 
     def weigh(self, rows: Sequence[int]) -> None:
         """Read masses and moments of these rows again; ValueError, and nothing changed, if they are invalid."""
-        before = self.mass[rows], self.moment[rows]
-        for i in rows:
-            if self.dynamic[i]:
-                self.mass[i], self.moment[i] = self.items[i].mass, self.items[i].moment
-        try:
-            self.check_masses()
-        except ValueError:
-            self.mass[rows], self.moment[rows] = before
-            raise
-        self.inverse_mass[rows], self.inverse_moment[rows] = 1.0 / self.mass[rows], 1.0 / self.moment[rows]
-        self._said.update({self.items[i]: _told(self.items[i]) for i in rows})
+        for i, told in [(i, _told(self.items[i])) for i in rows]:
+            self._said[self.items[i]] = told
+            masses = _MASSES.unpack_from(told, _FROM)
+            self.mass[i], self.moment[i], self.inverse_mass[i], self.inverse_moment[i] = masses
+
+    @cached_property
+    def kinematic(self) -> bool:
+        """Whether any body is."""
+        return not (self.dynamic | self.static).all()
 
     @cached_property
     def shapes(self) -> dict[pymunk.Body, int]:
@@ -172,17 +190,6 @@ class Bodies:
         batch.get_space_bodies(self.space, _WITH_IDS, self._buffer)
         ids: npt.NDArray[np.uintp] = np.frombuffer(self._buffer.int_buf(), dtype=np.uintp).copy()
         return ids, np.frombuffer(self._buffer.float_buf()).reshape(-1, COLUMNS).copy()
-
-    def check_masses(self) -> None:
-        """Raise ValueError for a dynamic body whose mass or moment is not positive, or whose mass is not finite."""
-        mass_ok = (self.mass > 0) & np.isfinite(self.mass) & (self.moment > 0)
-        bad = self.dynamic & ~mass_ok
-        if bad.any():
-            i = int(np.argmax(bad))
-            raise ValueError(
-                f"{self.items[i]} has mass {self.mass[i]} and moment {self.moment[i]}: a dynamic body needs a finite "
-                "mass > 0 and a moment > 0; set body.mass and body.moment, or the mass or density of its shapes"
-            )
 
     def gather(self) -> FloatArray | None:
         """The (N, 9) state now: position, angle, velocity, angular velocity, force, torque (see COLUMN_NAMES).
@@ -218,7 +225,8 @@ class Bodies:
                     body.velocity, body.angular_velocity = (row[3], row[4]), row[5]
                     body.force, body.torque = (row[6], row[7]), row[8]
             return
-        self._out.set_float_buf(np.ascontiguousarray(state).reshape(-1))
+        out = batch.Buffer()
+        out.set_float_buf(np.ascontiguousarray(state).reshape(-1))
         # pymunk places a body with another centre of mass by its present angle: a second time, by the new angle.
         for _ in range(2 if self.center_of_gravity.any() else 1):
-            batch.set_space_bodies(self.space, _STATE, self._out)
+            batch.set_space_bodies(self.space, _STATE, out)

@@ -83,14 +83,16 @@ class Crossing:
         self.ENDS: FloatArray = np.zeros(END_COLUMNS * N)
         self.WALK[KNOWN] = bodies.ids
         self.WALK[BODY_ROW] = row
-        self.WALK[SPECIAL] = STEERED * bodies.steered + ECCENTRIC * bodies.center_of_gravity.any(axis=1)
-        self.EXTRA[:, COG_X : COG_Y + 1] = bodies.center_of_gravity
+        # pymunk places a body with another centre of mass by its present angle: a second time, by the new angle.
+        self.eccentric = bool(bodies.center_of_gravity.any())
+        if self.eccentric:
+            self.WALK[SPECIAL] = ECCENTRIC * bodies.center_of_gravity.any(axis=1)
+            self.EXTRA[:, COG_X : COG_Y + 1] = bodies.center_of_gravity
+        self.WALK[SPECIAL, bodies.velocity_hooks] |= STEERED
         self.STATES[LEFT] = np.where(bodies.static[:, None], state, np.nan)
         self.gather = private_batch.reader(space, _STATE, floats, ids)
         self._scatter = _Writers(self, _WHOLE, END)
         self._scatter_still, self._scatter_speed = _Writers(self, _WHOLE, STILL), _Writers(self, _SPEEDS, SPEED)
-        # pymunk places a body with another centre of mass by its present angle: a second time, by the new angle.
-        self.eccentric = bool(bodies.center_of_gravity.any())
 
     @cached_property
     def reset_forces(self) -> Callable[[], None]:
@@ -109,7 +111,7 @@ class Crossing:
     @cached_property
     def find(self) -> Callable[[], int]:
         """See `rehearsing.found`."""
-        return found.bind(self.STATES, self.WALK, self.START)
+        return found.bind(self.STATES, self.WALK, self.BODY, self.START)
 
     @cached_property
     def CHANGES(self) -> FloatArray:
@@ -170,12 +172,10 @@ class Crossing:
     def recall(self, before: Crossing) -> None:
         """Copy STATES[LEFT] of bodies whose mass, moment and centre of gravity have not changed."""
         new, old = self.bodies, before.bodies
-        for i, body in enumerate(new.items):
-            k = old.row.get(body, -1)
-            if k < 0 or new.static[i] or new.mass[i] != old.mass[k] or new.moment[i] != old.moment[k]:
-                continue
-            if np.array_equal(new.center_of_gravity[i], old.center_of_gravity[k]):
-                self.STATES[LEFT, i] = before.STATES[LEFT, k]
+        at = np.array([old.row.get(body, -1) for body in new.items])
+        same = (at >= 0) & ~new.static & (new.mass == old.mass[at]) & (new.moment == old.moment[at])
+        same &= (new.center_of_gravity == old.center_of_gravity[at]).all(axis=1)
+        self.STATES[LEFT, same] = before.STATES[LEFT, at[same]]
 
     def turning(self, status: int) -> int:
         """Write the end of the step to ENDS with angles and spins, if they were left out; returns its status bits."""

@@ -29,7 +29,8 @@ class Edits:
         self._row = row
         self.some: set[int] = set()
         _watching.add(self)
-        pymunk.Constraint.__setattr__ = _set  # type: ignore[method-assign, assignment]
+        if pymunk.Constraint.__setattr__ is not _set:
+            pymunk.Constraint.__setattr__ = _set  # type: ignore[method-assign, assignment]
 
     def take(self) -> set[int]:
         """Return the rows, and clear them."""
@@ -76,10 +77,14 @@ def show_impulses(items: Sequence[pymunk.Constraint], read: Reading) -> None:
     _showings += 1
     for j, item in enumerate(items):
         _readings[item] = read, j
-    pymunk.Constraint.impulse = property(_impulse, doc=_native_impulse.__doc__)  # type: ignore[method-assign, assignment]
+    if pymunk.Constraint.impulse is not _OWN:
+        pymunk.Constraint.impulse = _OWN  # type: ignore[method-assign]
 
 
 def _impulse(self: pymunk.Constraint) -> float:
     read, row = _readings.get(self, (None, 0))
     value = None if read is None else read(row)
     return float(_native_impulse.fget(self)) if value is None else value
+
+
+_OWN: Any = property(_impulse, doc=_native_impulse.__doc__)

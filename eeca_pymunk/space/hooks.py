@@ -24,31 +24,35 @@ from .joints import JointRows
 
 
 class Hooks:
-    """The functions of a space and its bodies, for one step.
+    """The functions of a space and its bodies.
 
     Args:
         joints: the constraints of the space, None if it has none.
 
     Attributes:
-        velocity, position: rows of the bodies with such a function.  steered: (N,) whether it is a velocity function.
-        collisions: whether the space has collision handlers.
+        velocity, position: rows of the bodies with such a function.  some: whether there are any.
     """
 
     def __init__(self, space: pymunk.Space, bodies: Bodies, joints: JointRows | None = None) -> None:
         self.space, self.bodies, self.joints = space, bodies, joints
         self.velocity, self.position = bodies.velocity_hooks, bodies.position_hooks
-        self.steered = bodies.steered
-        self.collisions = bool(private.handlers(space))
-        self._change: FloatArray | None = None
+        self.some = len(self.velocity) > 0 or len(self.position) > 0
         self._late: list[Callable[[], None]] = []
+
+    def alone(self) -> bool:
+        """Whether steps of pymunk call no function of a body or constraint, and need not keep bodies outside the
+        space."""
+        joints = self.joints
+        return not self.some and (joints is None or not (joints.partners.outside or joints.calling or joints.own))
 
     def before(self, dt: float) -> None:
         """Call `pre_solve` of the constraints that no rehearsal calls. pymunk calls none whose first body is outside
         the space, with a warning."""
         if self.joints is not None:
+            collisions = bool(private.handlers(self.space))
             with private.locked(self.space), private_joints.time_step(self.space, dt):
                 for item in self.joints.before:
-                    if not self.collisions or item.a.space is None:
+                    if not collisions or item.a.space is None:
                         assert item.pre_solve is not None
                         item.pre_solve(item, self.space)
 
@@ -58,7 +62,8 @@ class Hooks:
             for item in () if self.joints is None else self.joints.after:
                 assert item.post_solve is not None
                 item.post_solve(item, self.space)
-            for call in self._late:
+            late, self._late = self._late, []
+            for call in late:
                 call()
 
     def later(self, function: Callable[..., Any]) -> Callable[..., None]:
@@ -70,14 +75,11 @@ class Hooks:
         return call
 
     def change(self, dt: float) -> FloatArray:
-        """(k, 3) changes of velocity and spin by the velocity functions, called once a step; the bodies are
-        restored."""
-        if self._change is None:
-            items = [self.bodies.items[row] for row in self.velocity]
-            with private_joints.time_step(self.space, dt):
-                found = private_functions.accelerations(items, self.space.gravity, self.space.damping**dt, dt)
-            self._change = np.array(found)
-        return self._change
+        """(k, 3) changes of velocity and spin by the velocity functions; the bodies are restored."""
+        items = [self.bodies.items[row] for row in self.velocity]
+        with private_joints.time_step(self.space, dt):
+            found = private_functions.accelerations(items, self.space.gravity, self.space.damping**dt, dt)
+        return np.array(found)
 
     def positions(self, state: FloatArray, end: FloatArray, dt: float) -> None:
         """Call the position functions on `state` with the velocity that leads to `end`, and write their results to
@@ -99,7 +101,7 @@ class Hooks:
 
     def silent(self) -> AbstractContextManager[None]:
         """Within this block pymunk does not call velocity and position functions."""
-        if not (len(self.velocity) or len(self.position)):
+        if not self.some:
             return nullcontext()
         items = self.bodies.items
         return private_functions.without([items[i] for i in self.velocity], [items[i] for i in self.position])

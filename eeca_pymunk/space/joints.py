@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from functools import cached_property
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 import numpy as np
 import pymunk
 
-from ..arrays import FloatArray, IntArray
-from ..compiled.records import Rows, rows
+from ..arrays import FloatArray
+from ..compiled.records import Rows, records, rows
 from ..model.joints import EDITED, MOTOR, RATCHET, ROTARY_SPRING, SPRING, Joint
 from . import private
 from .constraint_impulses import Impulses
 from .constraints import Given, read
 from .edits import Edits, show_impulses, showings, shown
 from .partners import Partners
+from .pushing import Pushing
 from .spring_functions import Motion, Rate, law, own_function, put_law
 
 _ROUND_OFF = 1e-12  # of the length of a pin
@@ -31,6 +31,7 @@ class JointRows:
         functions: rows of springs that have a force or torque function of the program.  own: these springs.
         before, after, calling: constraints with a `pre_solve`, with a `post_solve`, with either.
         partners: bodies of joints that have no row of their own; theirs are n + row of PARTNER.
+        pushing: those that exert forces in a rest step of pymunk.
         parted: pairs of bodies whose shapes do not collide, by `collide_bodies`; None after a change, see `part`.
         rates: for springs with functions, the rate of length and the dt of the last step, see `put_law`.
         replan: whether kinds, anchors or bounds of joints have changed since `planned` was called.
@@ -57,11 +58,11 @@ class JointRows:
         self.partners: Partners = Partners(tuple(others), space, None if past is None else past.partners)
         self._row_of = {**row, **{body: n + i for i, body in enumerate(self.partners.items)}}
         self._far = {body for body in self.partners.items if body.body_type == pymunk.Body.DYNAMIC}
+        asleep = {body for body in self._far if body.space is space}
+        self._sleeping = {item for item, pair in self._pairs.items() if asleep and not asleep.isdisjoint(pair)}
         if past is not None:
-            kept = [(j, i) for j, item in enumerate(self.items) if (i := known.get(item, -1)) >= 0]
-            if kept:
-                here, there = np.array(kept).T
-                self.joint[here] = past.joint[there]
+            here = [j for j, item in enumerate(self.items) if item in known]
+            records(self.joint)[here] = records(past.joint)[[known[self.items[j]] for j in here]]
         of = [(self._row_of[a], self._row_of[b]) for a, b in self._pairs.values()]
         self.joint["body"] = of
         self._at: dict[int, list[int]] = {}  # joints of each body
@@ -79,7 +80,7 @@ class JointRows:
                 given.put(self._memory, j, *of[j])
             self._given.append(given)
             self._said.append(said)
-        self.touch(n + self.partners.changed)
+        self.touch(n + i for i in self.partners.changed)
         self.row: dict[pymunk.Constraint, int] = {item: j for j, item in enumerate(self.items)}
         self._edits = Edits(self.row)
         self._ratchets = [j for j, given in enumerate(self._given) if given.kind == RATCHET]
@@ -98,7 +99,8 @@ class JointRows:
         self.before = [item for item, said in zip(self.items, self._said, strict=True) if said[1] is not None]
         self.after = [item for item, said in zip(self.items, self._said, strict=True) if said[2] is not None]
         self.calling = list(dict.fromkeys((*self.before, *self.after)))
-        self._pushing = [item for j, item in enumerate(self.items) if self._pushes(j)]
+        always = [item for j, item in enumerate(self.items) if self._pushes(j)]
+        self.pushing = Pushing(self.items, self.joint, always, self._sleeping)
         self.parted: frozenset[tuple[pymunk.Body, pymunk.Body]] | None = None
 
     def refresh(self) -> bool:
@@ -130,28 +132,13 @@ class JointRows:
         """The linear laws of the springs with functions in the last step."""
         return [law(self.items[j], self.joint[j]) for j in self.functions]
 
-    def pushing(self) -> list[pymunk.Constraint]:
-        """The constraints that exert forces in a rest step of pymunk: springs, motors, joints that are or may be apart,
-        and those of bodies that the batch calls do not reach."""
-        if not self.joint["touched"].any():
-            return self._pushing
-        apart = np.flatnonzero(self.joint["touched"])
-        return [*self._pushing, *(self.items[j] for j in apart.tolist())]
-
     def _pushes(self, j: int) -> bool:
+        """Whether a constraint always exerts forces in a rest step: springs, motors, and those of bodies that the batch
+        calls do not reach."""
         given = self._given[j]
         if given.soft or given.kind in (SPRING, ROTARY_SPRING, MOTOR):
             return True
         return bool(self._far) and not self._far.isdisjoint(self._pairs[self.items[j]])
-
-    def awake(self, items: Sequence[pymunk.Constraint]) -> list[pymunk.Constraint]:
-        """Those of constraints that have no body that slept when these rows were made."""
-        return [item for item in items if item not in self._sleeping]
-
-    @cached_property
-    def _sleeping(self) -> set[pymunk.Constraint]:
-        asleep = {body for body in self._far if body.space is self.space}
-        return {item for item, pair in self._pairs.items() if not asleep.isdisjoint(pair)}
 
     def measured(self) -> list[int]:
         """Rows of the pins whose length is the distance of their anchors: after loading a pickle of pymunk, which lacks
@@ -197,9 +184,9 @@ class JointRows:
         """
         self.refresh()
         moved = self.partners.read()
-        if len(moved):
-            self.touch(self._n + moved)
-            self.ends_moved |= bool(self.partners.still[moved].any())
+        if moved:
+            self.touch(self._n + i for i in moved)
+            self.ends_moved |= any(self.partners.still[i] for i in moved)
         for j in self.functions:
             item = self.items[j]
             a, b = (self._motion(body, state, place) for body in (item.a, item.b))
@@ -219,10 +206,11 @@ class JointRows:
             self.parted = frozenset(pair for pair, said in pairs if not said[3])
         return self.parted
 
-    def touch(self, rows: IntArray) -> None:
+    def touch(self, rows: Iterable[int]) -> None:
         """Mark as edited the joints of bodies (rows) that the program has moved or pushed."""
-        for row in rows.tolist():
-            self.joint["touched"][self._at.get(row, [])] = EDITED
+        touched = self.joint["touched"]
+        for row in rows:
+            touched[self._at.get(row, [])] = EDITED
 
     def write(self) -> None:
         """Write notches of ratchets, and let `constraint.impulse` return the impulses of the step."""

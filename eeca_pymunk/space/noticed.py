@@ -14,6 +14,7 @@ import weakref
 from collections import deque
 from collections.abc import Callable
 from functools import wraps
+from itertools import islice
 from typing import Any
 from weakref import WeakKeyDictionary
 
@@ -30,12 +31,14 @@ _METHODS: tuple[tuple[type, tuple[str, ...]], ...] = (
     (pymunk.Segment, ("unsafe_set_radius", "unsafe_set_endpoints")),
     (pymunk.Poly, ("unsafe_set_radius", "unsafe_set_vertices")),
 )
+_OF_SURFACE = ("filter", "elasticity", "friction", "surface_velocity")
 _SLEEP = ("sleep", "sleep_with_group")
 _leaders: WeakKeyDictionary[pymunk.Body, weakref.ref[pymunk.Body]] = WeakKeyDictionary()
 _KEPT = 4096  # number of edits that are kept, the last ones
 _wrapped = False
 _clock = 0
-_edited: deque[weakref.ref[Any]] = deque(maxlen=_KEPT)  # the last edits, in any space or outside
+# The last edits, in any space or outside: what was edited, and whether that may have changed its body's mass or moment.
+_edited: deque[tuple[weakref.ref[Any], bool]] = deque(maxlen=_KEPT)
 
 
 class Counts(list[int]):
@@ -68,18 +71,20 @@ def clock() -> int:
 
 
 def edited_since(time: int) -> set[Any] | None:
-    """Shapes and bodies that were edited since `clock` was `time`, and the bodies of these shapes; None if these are
-    more than are kept."""
+    """Shapes and bodies that were edited since `clock` was `time`, and the bodies whose mass or moment that may have
+    changed; None if these are more than are kept."""
     if _clock - time > len(_edited):
         return None
-    found = {thing() for thing in list(_edited)[len(_edited) - (_clock - time) :]}
-    return found.union(thing.body for thing in found if isinstance(thing, pymunk.Shape))
+    edited = [(thing(), weighs) for thing, weighs in islice(reversed(_edited), _clock - time)]
+    found = {thing for thing, _ in edited}
+    found.update(thing.body for thing, weighs in edited if weighs and isinstance(thing, pymunk.Shape))
+    return found
 
 
 def _note(thing: Any, name: str) -> None:
     global _clock
     _clock += 1
-    _edited.append(weakref.ref(thing))
+    _edited.append((weakref.ref(thing), name not in _OF_SURFACE))
     space = thing.space
     count = None if space is None else _counts.get(space)
     if count is None:

@@ -13,10 +13,12 @@ import pymunk
 
 from ..arrays import FloatArray, IntArray, side_by_side
 from ..compiled.records import Rows, as_integers, from_bytes
+from ..compiled.records import records as rows_of
 from ..laying import lay_rows
 from ..model.bodies import Body
 from ..model.given import GivenShape
 from ..model.shapes import Link, Shape
+from . import private_shapes
 from .bodies import Bodies
 from .checks import check_shape, shape_body, shape_radius
 from .shapes import local_outline
@@ -53,10 +55,10 @@ def read(shape: pymunk.Shape, ground: pymunk.Body | None = None) -> Record:
     Raises:
         ValueError, UnsupportedFeature: see `check_shape`.
     """
-    numbers = (shape_radius(shape), shape.elasticity, shape.friction, *shape.surface_velocity)
+    numbers = (shape_radius(shape), *private_shapes.surface(shape))
     if shape.body is None or not all(map(isfinite, numbers)) or min(numbers[:3]) < 0.0:
         check_shape(shape)
-    group, categories, mask = shape.filter
+    group, categories, mask = private_shapes.filter_of(shape)
     words = group & _WORD, categories & _WORD, mask & _WORD
     body, outline = shape_body(shape), local_outline(shape)
     if ground is not None:
@@ -104,6 +106,7 @@ class Packed:
         shapes = {shape: record for shape, record in records.items() if record is not None}
         solid, known = tuple(shapes), list(shapes.values())
         k, N = len(solid), len(bodies)
+        self._told: tuple[dict[pymunk.Shape, int], IntArray, FloatArray] | None = None  # as it was before `_lay`
         self._shapes = from_bytes(GivenShape, [record.given for record in known])
         self._owner: IntArray = np.array([bodies.row[record.body] for record in known], np.int64)
         self._shapes["owner"] = self._owner
@@ -128,16 +131,22 @@ class Packed:
         self.dynamic = int(np.count_nonzero(bodies.dynamic))
 
     def lay_again(
-        self, bodies: Bodies, state: FloatArray, records: Mapping[pymunk.Shape, Record | None], moved: bool
+        self, bodies: Bodies, state: FloatArray, records: Records, edited: Mapping[pymunk.Shape, Record], moved: bool
     ) -> bool:  # fmt: skip
         """Write the rows again, in place, after changes of numbers, filters, masses, and, if `moved`, poses of static
-        bodies; False, with invalid rows, if the rows would be others."""
-        known = [record for record in records.values() if record is not None]
+        bodies; False, with invalid rows, if the rows would be others. records: all; `edited` ones have changed."""
         vertices = self.LINK["vertices"].copy() if moved else None
-        given, owner, BODY = self._views
-        given[:] = np.frombuffer(b"".join([record.given for record in known]), np.int64)
-        owner[:] = self._owner
-        self._points[:] = np.frombuffer(b"".join([record.points for record in known]))
+        given, BODY = self._views
+        if self._told is None:
+            known = {shape: record for shape, record in records.items() if record is not None}
+            place = {shape: k for k, shape in enumerate(known)}
+            told = rows_of(from_bytes(GivenShape, [record.given for record in known.values()]))
+            told[:, 0] = self._owner
+            self._told = place, told, np.frombuffer(b"".join([record.points for record in known.values()]))
+        place, told, points = self._told
+        for shape, record in edited.items():
+            told[place[shape], 1:] = np.frombuffer(record.given, np.int64)[1:]
+        given[:], self._points[:] = told, points
         if moved:
             bodies.placed(state)
             self._rows[3].fill(0.0)
@@ -146,6 +155,6 @@ class Packed:
         return vertices is None or np.array_equal(vertices, self.LINK["vertices"])
 
     @cached_property
-    def _views(self) -> tuple[IntArray, IntArray, IntArray]:
-        """What shapes say of themselves, as integers; owners there; BODY as integers."""
-        return as_integers(self._shapes), self._shapes["owner"], as_integers(self.BODY)
+    def _views(self) -> tuple[IntArray, IntArray]:
+        """What shapes say of themselves, and BODY, as integers."""
+        return rows_of(self._shapes), as_integers(self.BODY)

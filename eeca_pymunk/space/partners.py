@@ -8,20 +8,17 @@ is not moved by it.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import pymunk
 
 from ..arrays import IntArray
-from ..compiled.records import rows
+from ..compiled.records import records, rows
 from ..errors import NotFiniteError
-from ..model.bodies import POSE, VELOCITY, Body
+from ..model.bodies import Body
 from . import private_joints
-
-_MOTION = *POSE, *VELOCITY
-_NONE: IntArray = np.zeros(0, np.int64)
 
 
 class Partners:
@@ -36,23 +33,24 @@ class Partners:
     def __init__(self, items: Sequence[pymunk.Body], space: pymunk.Space, past: Partners | None = None) -> None:
         self.items = tuple(items)
         self.PARTNER = rows(Body, len(self.items))
+        self._rows = records(self.PARTNER).view(np.float64)
         self._known: list[tuple[float, ...] | None] = [None] * len(self.items)
         if past is not None:
             before = {body: i for i, body in enumerate(past.items)}
-            for i, body in enumerate(self.items):
-                if body in before:
-                    self._known[i] = past._known[before[body]]
-                    self.PARTNER[i] = past.PARTNER[before[body]]
+            there = [before.get(body, -1) for body in self.items]
+            self._known = [past._known[i] if i >= 0 else None for i in there]
+            if before:
+                self._rows[:] = past._rows[there]  # those that are new are written below
         self.still: IntArray = np.array([body.body_type == pymunk.Body.STATIC for body in self.items], np.int64)
         # Moved static bodies of the space are found where the states of all its bodies are read.
         self.outside = [i for i, body in enumerate(self.items) if body.space is not space]
-        self.changed: IntArray = self._read(range(len(self.items)))
+        self.changed = self._read(range(len(self.items)))
 
-    def read(self) -> IntArray:
+    def read(self) -> list[int]:
         """Read the bodies that may have moved; returns the rows of those that have."""
         return self._read(self.outside)
 
-    def _read(self, rows: Sequence[int]) -> IntArray:
+    def _read(self, rows: Sequence[int]) -> list[int]:
         changed = []
         for i in rows:
             body = self.items[i]
@@ -60,7 +58,7 @@ class Partners:
             if state == self._known[i]:
                 continue
             x, y, angle, vx, vy, spin = state[:6]
-            if not all(math.isfinite(v) for v in state):
+            if not (math.isfinite(sum(state)) or all(map(math.isfinite, state))):
                 raise NotFiniteError(
                     f"{body}, which a constraint holds, has position {body.position}, angle {angle}, velocity "
                     f"{body.velocity} and angular velocity {spin}: set finite values before stepping"
@@ -68,10 +66,9 @@ class Partners:
             changed.append(i)
             self._known[i] = state
             c, s, kx, ky = math.cos(angle), math.sin(angle), *state[6:]
-            place = x + c * kx - s * ky, y + s * kx + c * ky
-            for name, number in zip(_MOTION, (*place, angle, vx, vy, spin), strict=True):
-                self.PARTNER[name][i] = number
-        return np.array(changed, np.int64) if changed else _NONE
+            # The first fields of `Body` are pose and velocity.
+            self._rows[i, :6] = x + c * kx - s * ky, y + s * kx + c * ky, angle, vx, vy, spin
+        return changed
 
     def motion(self, i: int) -> tuple[float, float, float, float, float, float]:
         """Position, angle, velocity and spin of body i, as last read."""
@@ -79,9 +76,8 @@ class Partners:
         assert known is not None  # read when these rows were made
         return known[:6]  # type: ignore[return-value]
 
-    @contextmanager
-    def kept(self) -> Iterator[None]:
-        """Within this block steps of pymunk do not change bodies outside the space: pymunk's constraints change their
-        velocities though it does not move them, to nan if neither body of a constraint has mobility."""
-        with private_joints.moving_on([self.items[i] for i in self.outside]):
-            yield
+    def motions(self) -> list[Any]:
+        """The velocities of the bodies outside the space, for `private_joints.move_on` after a step of pymunk:
+        constraints change them there though pymunk does not move these bodies, to nan if neither body of a constraint
+        has mobility."""
+        return private_joints.motions([self.items[i] for i in self.outside])

@@ -8,7 +8,7 @@ what is added and removed) makes other rows, and is left to a new reading.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import pymunk
@@ -22,13 +22,20 @@ if TYPE_CHECKING:
     from .world import World
 
 
-def patch(world: World) -> tuple[bool, bool] | None:
+class Patched(NamedTuple):
+    """Whether elasticities or filters have changed, and whether static bodies were moved."""
+
+    elasticity: bool
+    filters: bool
+    moved: bool
+
+
+def patch(world: World) -> Patched | None:
     """Put all edits since the world was read into its rows, and have these be as if no step had been taken. Shapes have
     neither come nor gone.
 
     Returns:
-        whether filters have changed, and whether static bodies were moved; None where a new reading is due: then the
-        world is of no use but as what was before.
+        what was changed; None where a new reading is due: then the world is of no use but as what was before.
 
     Raises:
         ValueError, UnsupportedFeature, NotFiniteError: as a new reading would.
@@ -36,9 +43,9 @@ def patch(world: World) -> tuple[bool, bool] | None:
     now, stale = clock(), edited_since(world.read_at)
     if stale is None or world.smooth or world.joints is not None or world.space.constraints:
         return None
-    filters, bodies = False, world.bodies
+    elasticity, filters, bodies = False, False, world.bodies
     records: dict[pymunk.Shape, Record] = {}
-    for shape in [shape for shape in world.records if shape in stale]:
+    for shape in [thing for thing in stale if thing in world.records]:
         record = world.records[shape]
         if record is None or record.outside or shape.sensor:
             return None
@@ -46,6 +53,7 @@ def patch(world: World) -> tuple[bool, bool] | None:
         if (new.body, new.points, new.numbers[0]) != (record.body, record.points, record.numbers[0]):
             return None
         filters |= new.filter != record.filter
+        elasticity |= new.numbers[1] != record.numbers[1]
     weighed = []
     for i in [bodies.row[thing] for thing in stale if thing in bodies.row]:
         masses, more = bodies.changed(i)
@@ -64,11 +72,9 @@ def patch(world: World) -> tuple[bool, bool] | None:
     if weighed:
         bodies.weigh(sorted(weighed))
     world.records.update(records)
-    if not world.packed.lay_again(bodies, world.state, world.records, moved):
+    if not world.packed.lay_again(bodies, world.state, world.records, records, moved):
         return None
     world.read_at = now
-    left, static = world.STATES[LEFT], bodies.static
-    left[:] = np.nan
-    left[static] = world.STATES[NOW, static]
+    world.STATES[LEFT] = np.where(bodies.static[:, None], world.STATES[NOW], np.nan)
     world.EXTRA[:, PUSH_X : PUSH_TWIST + 1] = 0.0
-    return filters, moved
+    return Patched(elasticity, filters, moved)

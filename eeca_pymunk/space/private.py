@@ -14,7 +14,15 @@ from typing import Any
 
 import pymunk
 
-from . import private_arbiters, private_batch, private_functions, private_joints, private_sleep, private_versions
+from . import (
+    private_arbiters,
+    private_batch,
+    private_functions,
+    private_joints,
+    private_shapes,
+    private_sleep,
+    private_versions,
+)
 from .private_versions import DEFAULTS as DEFAULTS
 from .private_versions import REQUIRED, bodies
 
@@ -30,11 +38,10 @@ _OF_LIBRARY = (
     "cpSpaceStep", "cpHastySpaceStep", "cpSpaceGetGravity", "cpSpaceGetDamping",
     "cpSpaceSetGravity", "cpSpaceGetIterations", "cpSpaceSetIterations", "cpSpaceGetCollisionBias",
     "cpSpaceSetCollisionBias", "cpBodyGetForce", "cpBodySetForce", "cpBodyGetTorque", "cpBodySetTorque",
-    "cpSpaceReindexShapesForBody", "cpBodyUpdatePosition", "cpShapeGetSensor", "cpShapeGetElasticity",
-    "cpShapeGetFriction",
-    "cpSpaceGetSleepTimeThreshold", "cpSpaceSetSleepTimeThreshold", "cpSpaceGetShapeIDCounter", "cpSpaceGetTimestamp",
+    "cpShapeGetSensor", "cpSpaceGetSleepTimeThreshold",
+    "cpSpaceSetSleepTimeThreshold", "cpSpaceGetShapeIDCounter", "cpSpaceGetTimestamp",
     *private_joints.OF_LIBRARY, *private_sleep.OF_LIBRARY, *private_arbiters.OF_LIBRARY, *private_functions.OF_LIBRARY,
-    *private_batch.OF_LIBRARY,
+    *private_batch.OF_LIBRARY, *private_shapes.OF_LIBRARY,
 )  # fmt: skip
 _OF_SPACE = (
     "_space", "_bodies", "_shapes", "_constraints", "_handlers", "_get_arbiters", "_locked", "_add_later",
@@ -79,6 +86,11 @@ def handlers(space: pymunk.Space) -> list[Any]:
     return list(space._handlers.values())
 
 
+def functions(space: pymunk.Space) -> list[tuple[Any, ...]]:
+    """The collision handlers of a space, each with its functions in the order of `PHASES`, None for none."""
+    return [(h, h._begin, h._pre_solve, h._post_solve, h._separate) for h in space._handlers.values()]
+
+
 def arbiters(space: pymunk.Space) -> list[pymunk.Arbiter]:
     """All arbiters that pymunk keeps: of its last step, and of `collision_persistence` steps before."""
     return [pymunk.Arbiter(one, space) for one in space._get_arbiters()]
@@ -93,20 +105,6 @@ def odd_arbiters(space: pymunk.Space) -> list[pymunk.Arbiter]:
 def decision(arbiter: pymunk.Arbiter) -> tuple[Any, ...]:
     """The values of an arbiter that functions may change, for comparison."""
     return private_versions.decision(arbiter._arbiter, lib.cpShapeGetSensor)
-
-
-def reindex(space: pymunk.Space, bodies: Iterable[Any]) -> None:
-    """Move the shapes of bodies, given as `pointers`, to the poses of the bodies."""
-    c, move = space._space, lib.cpSpaceReindexShapesForBody
-    for body in bodies:
-        move(c, body)
-
-
-def forget_corrections(bodies: Iterable[Any]) -> None:
-    """Clear pymunk's corrections of overlaps of bodies, given as `pointers`. pymunk keeps them as velocities and
-    applies them at the next move of a body, once; a move over dt = 0 clears them."""
-    for body in bodies:
-        lib.cpBodyUpdatePosition(body, 0.0)
 
 
 def pointers(bodies: Iterable[pymunk.Body]) -> list[Any]:

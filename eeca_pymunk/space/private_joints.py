@@ -64,20 +64,21 @@ def pose_and_motion(body: pymunk.Body) -> tuple[float, ...]:
     return place.x, place.y, lib.cpBodyGetAngle(c), v.x, v.y, spin, centre.x, centre.y
 
 
-@contextmanager
-def moving_on(bodies: Iterable[pymunk.Body]) -> Iterator[None]:
-    """Velocities and spins of the bodies are restored after this block."""
+def motions(bodies: Iterable[pymunk.Body]) -> list[tuple[Any, Any, float]]:
+    """Velocities and spins of the bodies, as `move_on` takes them."""
     velocity, spin = lib.cpBodyGetVelocity, lib.cpBodyGetAngularVelocity
-    kept = [(body._body, velocity(body._body), spin(body._body)) for body in bodies]
-    try:
-        yield
-    finally:
-        for c, before, turned in kept:
-            now = velocity(c)
-            # Reading is cheaper than writing, which would wake bodies.
-            if now.x != before.x or now.y != before.y or spin(c) != turned:
-                lib.cpBodySetVelocity(c, before)
-                lib.cpBodySetAngularVelocity(c, turned)
+    return [(c := body._body, velocity(c), spin(c)) for body in bodies]
+
+
+def move_on(kept: Iterable[tuple[Any, Any, float]]) -> None:
+    """Restore velocities and spins of bodies."""
+    velocity, spin = lib.cpBodyGetVelocity, lib.cpBodyGetAngularVelocity
+    for c, before, turned in kept:
+        now = velocity(c)
+        # Reading is cheaper than writing, which would wake bodies.
+        if now.x != before.x or now.y != before.y or spin(c) != turned:
+            lib.cpBodySetVelocity(c, before)
+            lib.cpBodySetAngularVelocity(c, turned)
 
 
 def awake(constraints: Sequence[pymunk.Constraint]) -> list[pymunk.Constraint]:

@@ -13,6 +13,12 @@ OF_LIBRARY = (
 )  # fmt: skip
 
 
+def sleeping(bodies: Iterable[pymunk.Body]) -> list[bool]:
+    """Which of these bodies sleep."""
+    sleeps = lib.cpBodyIsSleeping
+    return [bool(sleeps(body._body)) for body in bodies]
+
+
 def asleep(bodies: Iterable[pymunk.Body]) -> Callable[[], bool]:
     """A function that returns whether all of these bodies sleep."""
     pointers, sleeps = [body._body for body in bodies], lib.cpBodyIsSleeping

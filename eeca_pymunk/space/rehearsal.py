@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -20,9 +21,10 @@ from ..layout import NOW
 from ..model.shapes import Shape
 from ..rehearsing import approach, changed
 from ..transfer import TURNS
-from . import private, private_joints
+from . import private, private_joints, private_shapes
 from .crossing import Crossing
 from .hooks import Hooks
+from .joints import JointRows
 from .private_versions import answer
 from .shapes import Rules
 
@@ -73,14 +75,17 @@ class Rehearsal:
         self._start, self._known = np.zeros_like(world.START), np.zeros_like(world.START)
         # Changes by begin and pre_solve, and changes by post_solve and separate.
         self._changes: tuple[FloatArray, FloatArray] = world.CHANGES[0], world.CHANGES[1]
-        self._approach = approach.bind(world.STATES, world.WALK, world.EXTRA, world.BODY, world.ENDS)
-        self._differ = [changed.bind(world.STATES, self._known, table) for table in self._changes]
+        self._approach = approach.bind(world.STATES, world.WALK, world.EXTRA, world.BODY, world.ENDS, self._start)
         self._heard, self._stage = [False, False], -1
         self._wrapped: list[tuple[Any, str, Any, Any]] = []
-        self._functions: list[tuple[Any, str, Any]] = []
+        self._functions: list[tuple[Any, ...]] = []
         self.failure: BaseException | None = None
         self.decided, self._ignores = False, True
         self._recent: float = 0.0  # number of steps for which decisions still apply
+
+    @cached_property
+    def _differ(self) -> list[Callable[[], int]]:
+        return [changed.bind(self.world.STATES, self._known, table) for table in self._changes]
 
     def forget(self) -> None:
         """Forget earlier steps."""
@@ -110,7 +115,6 @@ class Rehearsal:
             0 or a negative code of `transfer.py`, with nothing done.
         """
         world = self.world
-        np.copyto(self._start, world.STATES[NOW])
         gx, gy = gravity
         status = self._approach(dt, gx, gy, left)
         if status < 0:
@@ -124,19 +128,18 @@ class Rehearsal:
         try:
             for handler, phase, _, watched in self._wrapped:
                 setattr(handler, phase, watched)
-            joints = hooks.joints
-            if joints is None or not (joints.partners.outside or joints.calling or joints.own):
-                with hooks.silent():
-                    private.step_alone(self.space, dt)
+            if hooks.alone():
+                private.step_alone(self.space, dt)
             else:
-                with hooks.silent(), self._silent_joints(hooks):
+                with hooks.silent(), self._silent_joints(hooks.joints):
                     private.step_alone(self.space, dt)
         finally:
             for handler, phase, function, _ in self._wrapped:
                 setattr(handler, phase, function)
         if self.failure is not None:
             raise self.failure
-        np.copyto(world.STATES[NOW], self._start)
+        if self._stage >= 0:  # else nothing was read meanwhile
+            np.copyto(world.STATES[NOW], self._start)
         if self._heard[0]:
             world.STATES[NOW] += self._changes[0]
         return status
@@ -149,31 +152,31 @@ class Rehearsal:
     def _wrap(self, hooks: Hooks) -> None:
         """Make wrappers of all functions of handlers; those of the last step are used again if the functions are
         equal."""
-        now = [
-            (handler, phase, function)
-            for handler in private.handlers(self.space)
-            for phase in private.PHASES
-            if (function := getattr(handler, phase)) is not None
-        ]
+        now = private.functions(self.space)
         late = hooks.joints is not None and len(hooks.joints.after) > 0
         if now != self._functions or late:
             self._functions = now
-            stages = {phase: max(i - 1, 0) for i, phase in enumerate(private.PHASES)}
-            self._wrapped = [(h, phase, f, _Watched(self, f, phase, stages[phase])) for h, phase, f in now]
+            self._wrapped = [
+                (handler, phase, f, _Watched(self, f, phase, max(i - 1, 0)))
+                for handler, *functions in now
+                for i, (phase, f) in enumerate(zip(private.PHASES, functions, strict=True))
+                if f is not None
+            ]
         if late:
             self._wrapped = [
                 (h, phase, f, hooks.later(f) if phase == _POST_SOLVE else told) for h, phase, f, told in self._wrapped
             ]
 
     @contextmanager
-    def _silent_joints(self, hooks: Hooks) -> Iterator[None]:
+    def _silent_joints(self, joints: JointRows | None) -> Iterator[None]:
         """Within this block `pre_solve` of constraints is wrapped, and their other functions are not called."""
-        joints = hooks.joints
-        assert joints is not None
+        if joints is None:
+            yield
+            return
         mute = [item for item in joints.calling if item.pre_solve is None or item.a.space is None]
         with ExitStack() as held:
             if joints.partners.outside:
-                held.enter_context(joints.partners.kept())
+                held.callback(private_joints.move_on, joints.partners.motions())
             if mute:
                 held.enter_context(private_joints.silent(mute))
             if joints.own:
@@ -213,8 +216,7 @@ class Rehearsal:
 
     def finish(self) -> None:
         """The end of pymunk's step: move shapes to their bodies; additions, removals, callbacks."""
-        private.forget_corrections(self.bodies.moving)
-        private.reindex(self.space, self.bodies.moving)
+        private_shapes.reindex_anew(self.space, self.bodies.moving)
         if private.waits(self.space):
             private.finish_step(self.space)
 

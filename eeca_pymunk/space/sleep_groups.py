@@ -9,7 +9,7 @@ import pymunk
 
 from ..arrays import BoolArray, IntArray
 from ..report import Contacts
-from . import private
+from . import private, private_sleep
 from .bodies import Bodies
 
 
@@ -64,6 +64,8 @@ def put_to_sleep(bodies: Sequence[pymunk.Body], groups: IntArray) -> None:
 
 def rouse(space: pymunk.Space) -> None:
     """Wake bodies that are jointed to an awake body, or touch one according to pymunk."""
+    if not any(private_sleep.sleeping(space.bodies)):
+        return
     pairs = [*((c.a, c.b) for c in space.constraints), *private.touching(space)]
     bodies = {body for pair in pairs for body in pair}
     again = True

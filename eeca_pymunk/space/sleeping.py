@@ -17,7 +17,7 @@ Islands at rest (`..islands`) meet this criterion; it also holds for bodies that
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -26,7 +26,7 @@ import pymunk
 
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..compiled.records import Rows
-from ..drowsing import rests, touches
+from ..drowsing import approaches, rests, touches
 from ..layout import BODY_ROW, FOUND, KNOWN
 from ..model.contacts import Impulse
 from ..report import Contacts
@@ -39,7 +39,6 @@ if TYPE_CHECKING:
 
 AT_REST = 1e-6  # tolerance above; `..model.bodies.AT_REST` is a state
 _AGAIN = 16  # steps after which islands that could not fall asleep are looked at again
-_LESS = 1e-9  # of lengths, by which bodies are looked for farther away
 _SHARE, _PATIENCE = 8, 120  # islands fall asleep that are this part of who is awake, or after so many steps
 
 
@@ -84,6 +83,7 @@ class Sleep:
         # Bodies that something other than the solver moves: all, if functions are called; else kinematic ones.
         movers: tuple[BoolArray, BoolArray] = ~bodies.static, ~bodies.static & ~bodies.dynamic
         self._moves: list[IntArray] = [np.flatnonzero(moves) for moves in movers]
+        self._nears: dict[bool, tuple[IntArray, Callable[[float, float], int]]] = {}
 
     def changed(self) -> bool:
         """Whether other bodies may sleep now than when this was made, or pymunk has taken a step."""
@@ -110,12 +110,11 @@ class Sleep:
         """Wake the sleeping bodies that a kinematic body may meet in the step; if functions are called, which cannot be
         repeated, those that any body may meet. Returns whether there was any."""
         world, bodies, found = self.world, self.world.bodies, False
-        moves = self._moves[1 if world.plain else 0]
-        if len(moves) == 0:
+        if len(self._moves[world.plain]) == 0:
             return False
         world.gather()
         pull = math.hypot(*world.gravity)
-        for i in self._near(moves, dt):
+        for i in self._near(dt, pull):
             x, y, _, vx, vy, spin, fx, fy, _ = world.state[i].tolist()
             if self._size[i] == 0.0 or (not bodies.dynamic[i] and vx == vy == spin == 0.0):
                 continue
@@ -128,21 +127,17 @@ class Sleep:
             found |= self._wake_within(box)
         return found
 
-    def _near(self, moves: IntArray, dt: float) -> list[int]:
-        """Those of bodies (rows) that may come to the box of a shape asleep within dt; some that do not may be among
-        them."""
-        bodies, state = self.world.bodies, self.world.state[moves]
-        centre = bodies.center_of_gravity[moves]
-        force = np.hypot(state[:, 6], state[:, 7]) * bodies.inverse_mass[moves]
-        pull = math.hypot(*self.world.gravity)
-        reach = self._size[moves] + np.hypot(centre[:, 0], centre[:, 1])
-        reach += dt * (np.hypot(state[:, 3], state[:, 4]) + dt * (pull + force))
-        left, bottom, right, top = self._boxes.T[:, :, None]
-        x, y = state[:, 0], state[:, 1]
-        reach += _LESS * (reach + abs(x) + abs(y))
-        # Written so that nan is near.
-        apart = (left > x + reach) | (right < x - reach) | (bottom > y + reach) | (top < y - reach)
-        return moves[~apart.all(axis=0)].tolist()  # type: ignore[no-any-return]
+    def _near(self, dt: float, pull: float) -> list[int]:
+        """Those of the movers (rows) that may come to the box of a shape asleep within dt, see
+        `drowsing.approaches`."""
+        plain, world = self.world.plain, self.world
+        if plain not in self._nears:
+            near = np.zeros(len(self._moves[plain]), np.int64)
+            size = self._size + np.hypot(*world.bodies.center_of_gravity.T)
+            arrays = size, world.bodies.inverse_mass.copy(), self._boxes, near
+            self._nears[plain] = near, approaches.bind(world.STATES, self._moves[plain], *arrays)
+        near, call = self._nears[plain]
+        return near[: call(dt, pull)].tolist()  # type: ignore[no-any-return]
 
     @cached_property
     def _boxes(self) -> FloatArray:

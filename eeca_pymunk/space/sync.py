@@ -18,10 +18,10 @@ from typing import TYPE_CHECKING
 import pymunk
 
 from ..reentry import BUSY
-from . import private, private_joints, private_rest
+from . import private, private_joints, private_rest, private_shapes
 from .bodies import ANGULAR_VELOCITY, VELOCITY, Bodies
 from .joints import JointRows
-from .private_joints import inert, silent, strengthen, weaken, with_laws
+from .private_joints import inert, move_on, silent, strengthen, weaken, with_laws
 
 if TYPE_CHECKING:
     from .world import World
@@ -55,23 +55,24 @@ def rest_step(
     if joints is None:
         private_rest.rest(space, dt, asleep)
         return
-    push, calling = joints.items if forget else joints.pushing(), joints.calling
+    push, calling = joints.items if forget else joints.pushing.now(), joints.calling
     if awake is not None:  # a change of a joint would wake its bodies
-        push, calling = awake(push), awake(calling)
-    if not (calling or joints.own or joints.partners.outside):
+        push, calling = awake(push), awake(calling) if calling else calling
+    outside = joints.partners.motions()
+    if not (calling or joints.own):
         held = weaken(push)
         try:
             private_rest.rest(space, dt, asleep)
         finally:
             strengthen(held)
+            move_on(outside)
         return
     own, laws = joints.own, joints.laws()
     if awake is not None:
         laws = [law for item, law in zip(own, laws, strict=True) if awake([item])]
         own = awake(own)
     with ExitStack() as within:
-        if joints.partners.outside:
-            within.enter_context(joints.partners.kept())
+        within.callback(move_on, outside)
         if calling:
             within.enter_context(silent(calling))
         if own:
@@ -129,7 +130,7 @@ class Sync:
         """Move the shapes to the poses of their bodies."""
         self._left -= 1
         self._stale = True
-        private.reindex(self.space, self._pointers)
+        private_shapes.reindex(self.space, self._pointers)
 
     def renew(self) -> None:
         """Make arbiters by a rest step, if the last step was an EECA step that made none."""
@@ -161,7 +162,7 @@ class Sync:
         native = self._new or self._timestamp() != self._renewed
         self._new = False
         if native:
-            private.forget_corrections(self._pointers)
+            private_shapes.forget_corrections(self._pointers)
         rest_step(self.space, dt, joints, native, self._choice(joints) if self._asleep else None)
         self._renewed, self._dt, self._left = self._timestamp(), dt, _RENEW
         self.stamp = self._renewed
@@ -174,7 +175,7 @@ class Sync:
         functions have woken it."""
         if joints is None or self._called or joints.calling or joints.own:
             return private_joints.awake
-        return joints.awake
+        return joints.pushing.awake
 
     def land(self, world: World, dt: float, status: int) -> None:
         """Write the end of the step of a world, with a rest step between poses and velocities."""

@@ -20,10 +20,11 @@ from . import private
 from .bodies import Bodies
 from .checks import rough_pair, settings
 from .crossing import Crossing
+from .hooks import Hooks
 from .joints import JointRows
 from .noticed import clock, edited_since, edits
 from .packing import Packed, Records, records_of
-from .patching import patch
+from .patching import Patched, patch
 from .rehearsal import Rehearsal
 from .shapes import Rules
 
@@ -49,8 +50,8 @@ class World(Crossing):
         STATES, WALK, EXTRA, ENDS: the arrays exchanged with pymunk, see `layout.py`.
         gravity: length/time².  damping: pymunk's, 1 is none.
         ignores: whether friction of this space is left out.
-        collisions: whether the space has collision handlers.  hooked: whether a step calls functions of the program, or
-            damping is 0.  plain: neither hooked nor with joints.
+        hooks: functions of bodies and constraints.  collisions: whether the space has collision handlers.
+        hooked: whether a step calls functions of the program, or damping is 0.  plain: neither hooked nor with joints.
         rules: decisions of collision handlers about pairs of rows of SHAPE in this step.
         smooth: whether friction, also that of handlers, has to be left out.
         joints: the constraints of the space, None if it has none.  PARTNER: bodies of joints that have no row of BODY.
@@ -100,8 +101,8 @@ class World(Crossing):
         self.collisions = bool(private.handlers(self.space))
         self._forget_rules()
         bodies = self.bodies
-        functions = len(bodies.velocity_hooks) > 0 or len(bodies.position_hooks) > 0
-        self.hooked = self.collisions or functions or self.damping == 0.0
+        self.hooks = Hooks(self.space, bodies, self.joints)
+        self.hooked = self.collisions or self.hooks.some or self.damping == 0.0
         self.plain = not self.hooked and self.joints is None
         self.current = private.watch(self.space, self._edits, self._seen)
 
@@ -143,7 +144,7 @@ class World(Crossing):
             found.update((shape.body, record and record.body))
         return found
 
-    def patch(self) -> tuple[bool, bool] | None:
+    def patch(self) -> Patched | None:
         """See `patching.patch`; also reads the settings of the space, and the present states into BODY."""
         found = patch(self)
         if found is not None:
@@ -213,12 +214,13 @@ class World(Crossing):
         """Whether a shape or body was edited in place."""
         return self._edits[0] - self._edits[1] != self._known
 
-    def load(self) -> None:
-        """Read the present states into BODY, and mobilities, which are 0 where joints have held bodies."""
-        rows = self.WALK[BODY_ROW]
-        moving = rows >= 0
-        self.BODY["inv_mass"][rows[moving]] = self.bodies.inverse_mass[moving]
-        self.BODY["inv_inertia"][rows[moving]] = self.bodies.inverse_moment[moving]
+    def load(self, again: bool = False) -> None:
+        """Read the present states into BODY; if `again`, also mobilities, which are 0 where joints have held bodies."""
+        if again:
+            rows = self.WALK[BODY_ROW]
+            moving = rows >= 0
+            self.BODY["inv_mass"][rows[moving]] = self.bodies.inverse_mass[moving]
+            self.BODY["inv_inertia"][rows[moving]] = self.bodies.inverse_moment[moving]
         self.gather()
         self._take(0.0, 0.0, 1.0)
 

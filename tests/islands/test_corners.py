@@ -11,7 +11,7 @@ import pytest
 
 import eeca_pymunk as ep
 from eeca_pymunk.compiled.records import rows
-from eeca_pymunk.geometry.corners import note_corners, thin
+from eeca_pymunk.geometry.corners import find_corners, thin
 from eeca_pymunk.model.shapes import Corner, Link
 
 G = 9.81
@@ -120,13 +120,13 @@ def test_planks_that_are_pressed_through_a_thin_floor_come_back() -> None:
 def test_corners_are_found_where_segments_of_one_body_meet() -> None:
     """End to end, and with an end on the other; the next one about the end, either way, with the angle to it."""
     lines = [((0, 0), (2, 0)), ((2, 0), (2, 1)), ((1, 0), (1, 3)), ((0, 0), (-1, -1)), ((0, 0), (1, 1))]
-    LINK = np.zeros(len(lines), Link.TYPE)
+    LINK = rows(Link, len(lines))
     LINK["first"], LINK["vertices"] = 2 * np.arange(len(lines)), 2
     LINK["owner"][4] = 1  # of another body
     VERTEX = np.zeros((2 * len(lines), 4))
     VERTEX[:, :2] = np.array(lines, float).reshape(-1, 2)
     CORNER = rows(Corner, 4 * len(lines))
-    note_corners(LINK, VERTEX, CORNER)
+    assert find_corners(LINK, VERTEX, CORNER, len(lines)) == len(lines)
     angles = {row: math.degrees(math.atan2(z, c)) for row, (k, c, z, _) in enumerate(CORNER.tolist()) if k > 0}
     assert {row: CORNER[row].other - 1 for row in angles} == {
         0: 3, 1: 3, 2: 1, 3: 1,  # both ends of the first
@@ -147,7 +147,7 @@ def test_planks_are_thin_and_boxes_are_not() -> None:
     loop = method._method
     assert loop is not None
     scene = loop.scene  # type: ignore[attr-defined]
-    assert sorted(thin(scene.LINK, scene.VERTEX).tolist()) == [False, False, True, True]
+    assert sorted(thin(link, scene.VERTEX) for link in scene.LINK) == [False, False, True, True]
 
 
 def _remove_others(space: pymunk.Space, stepper: ep.EECA, shape: pymunk.Shape, others: list[pymunk.Body]) -> None:

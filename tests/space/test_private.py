@@ -10,7 +10,7 @@ import pymunk
 import pymunk.batch
 import pytest
 
-from eeca_pymunk.space import noticed, private, private_batch, private_functions
+from eeca_pymunk.space import noticed, private, private_batch, private_functions, private_shapes, private_sleep
 from scenes.scene import add_disk
 
 
@@ -67,6 +67,46 @@ def test_phases_are_the_functions_of_a_handler() -> None:
         body.position *= 0.01
     space.step(0.001)
     assert other == [1]
+
+
+def test_functions_of_handlers() -> None:
+    space, _ = meeting()
+    begin, separate = (lambda *_: True), (lambda *_: True)
+    assert private.functions(space) == []
+    space.on_collision(begin=begin, separate=separate)
+    assert private.functions(space) == [(*private.handlers(space), begin, None, None, separate)]
+
+
+def test_reindexing_anew_moves_shapes_and_no_bodies() -> None:
+    """What is left of pymunk's correction of an overlap is forgotten: the next step of dt = 1 moves nothing."""
+    space, bodies = meeting()
+    for body in bodies:
+        body.position, body.velocity = body.position * 0.1, (0.0, 0.0)
+    space.step(0.1)
+    bodies[0].position = at = (50.0, 0.0)
+    private_shapes.reindex_anew(space, private.pointers(bodies))
+    (shape,) = bodies[0].shapes
+    assert shape.bb.left < 50.0 < shape.bb.right
+    other = bodies[1].position
+    space.step(1.0)
+    assert (bodies[0].position, bodies[1].position) == (at, other)
+
+
+def test_what_shapes_say_of_themselves() -> None:
+    shape = pymunk.Circle(pymunk.Body(1.0, 1.0), 1.0)
+    shape.elasticity, shape.friction, shape.surface_velocity = 0.25, 0.5, (3.0, -4.0)
+    shape.filter = pymunk.ShapeFilter(7, 1 << 31, 3)
+    assert private_shapes.surface(shape) == (0.25, 0.5, 3.0, -4.0)
+    assert private_shapes.filter_of(shape) == shape.filter == (7, 1 << 31, 3)
+
+
+def test_bodies_that_sleep() -> None:
+    space, bodies = pymunk.Space(), [pymunk.Body(1.0, 1.0) for _ in range(3)]
+    space.add(*bodies)
+    space.sleep_time_threshold = 1.0
+    space.step(0.1)  # before it no body can sleep
+    bodies[1].sleep()
+    assert private_sleep.sleeping(bodies) == [False, True, False]
 
 
 def test_arbiters() -> None:

@@ -204,8 +204,9 @@ def test_poses_of_bodies_that_joints_hold() -> None:
 def test_bodies_that_move_on() -> None:
     body = pymunk.Body(2.0, 1.0)
     body.velocity, body.angular_velocity = (3.0, 4.0), 5.0
-    with private_joints.moving_on([body]):
-        body.velocity, body.angular_velocity = (0.0, 1.0), 2.0
+    kept = private_joints.motions([body])
+    body.velocity, body.angular_velocity = (0.0, 1.0), 2.0
+    private_joints.move_on(kept)
     assert (body.velocity, body.angular_velocity) == ((3.0, 4.0), 5.0)
 
 

@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 import pickle
 
+import numpy as np
 import pymunk
 import pytest
 
 import eeca_pymunk as ep
+from eeca_pymunk.drowsing import approaches
 
 DT = 1.0 / 60.0
 
@@ -310,3 +312,13 @@ def test_a_pickled_stepper_of_sleepers_goes_on() -> None:
         one.step(DT)
     heights = [sorted(body.position.y for body in one.bodies) for one in (space, copy.space)]
     assert heights[0] == pytest.approx(heights[1], abs=1e-12)
+
+
+@pytest.mark.parametrize(("start", "near"), [(-3.0, True), (-3.2, False), (math.nan, True)])
+def test_movers_that_may_come_to_a_box(start: float, near: bool) -> None:
+    """v dt + (|g| + |f| / m) dt^2 = 2 * .5 + (4 + 6 / 2) * .25 = 2.75, and a size of .25: 3 to a box at 0."""
+    STATES, NEAR = np.zeros((2, 2, 9)), np.zeros(1, np.int64)
+    STATES[0, 1, [0, 3, 7]] = start, -2.0, 6.0
+    SIZE, INVERSE, BOXES = np.array([9.0, 0.25]), np.array([1.0, 0.5]), np.array([[0.0, -1.0, 1.0, 1.0]])
+    assert approaches(STATES, np.array([1]), SIZE, INVERSE, BOXES, NEAR, 0.5, 4.0) == near
+    assert not near or NEAR[0] == 1

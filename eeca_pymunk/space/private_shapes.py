@@ -1,0 +1,50 @@
+"""Private names of pymunk's shapes, read and moved; see `private`. The public properties take two to three times as
+long."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import pymunk
+from pymunk._chipmunk_cffi import lib
+
+OF_LIBRARY = (
+    "cpShapeGetElasticity", "cpShapeGetFriction", "cpShapeGetSurfaceVelocity", "cpShapeGetFilter",
+    "cpSpaceReindexShapesForBody", "cpBodyUpdatePosition",
+)  # fmt: skip
+
+
+def surface(shape: pymunk.Shape) -> tuple[float, float, float, float]:
+    """Elasticity, friction and surface velocity of a shape."""
+    c: Any = shape._shape
+    velocity = lib.cpShapeGetSurfaceVelocity(c)
+    return lib.cpShapeGetElasticity(c), lib.cpShapeGetFriction(c), velocity.x, velocity.y
+
+
+def filter_of(shape: pymunk.Shape) -> tuple[int, int, int]:
+    """Group, categories and mask of a shape."""
+    found = lib.cpShapeGetFilter(shape._shape)
+    return found.group, found.categories, found.mask
+
+
+def reindex(space: pymunk.Space, bodies: Iterable[Any]) -> None:
+    """Move the shapes of bodies, given as `pointers`, to the poses of the bodies."""
+    c, move = space._space, lib.cpSpaceReindexShapesForBody
+    for body in bodies:
+        move(c, body)
+
+
+def reindex_anew(space: pymunk.Space, bodies: Iterable[Any]) -> None:
+    """`forget_corrections`, then `reindex`."""
+    c, move, forget = space._space, lib.cpSpaceReindexShapesForBody, lib.cpBodyUpdatePosition
+    for body in bodies:
+        forget(body, 0.0)
+        move(c, body)
+
+
+def forget_corrections(bodies: Iterable[Any]) -> None:
+    """Clear pymunk's corrections of overlaps of bodies, given as `pointers`. pymunk keeps them as velocities and
+    applies them at the next move of a body, once; a move over dt = 0 clears them."""
+    for body in bodies:
+        lib.cpBodyUpdatePosition(body, 0.0)
