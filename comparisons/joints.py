@@ -225,7 +225,7 @@ def run(output: Output, full: bool) -> None:
 
 def picture(found: list[Problem], rows: list[Row]) -> Figure:
     """Error of places, and below it of the energy, against time: a column for each scene."""
-    figure = render.figure(3.0 * len(found), 6.0)
+    figure = render.figure(3.0 * len(found), 6.3)
     axes = figure.subplots(2, len(found), sharex="col", sharey="row", squeeze=False)
     for (top, low), problem in zip(axes.T, found, strict=True):
         for name, (colour, mark) in STYLE.items():
@@ -238,5 +238,5 @@ def picture(found: list[Problem], rows: list[Row]) -> Figure:
         low.set_xlabel("time of all steps (ms)")
     axes[0, 0].set_ylabel("error of places (m)")
     axes[1, 0].set_ylabel("error of the energy (relative)")
-    axes[0, 0].legend(fontsize=8)
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncol=len(STYLE), fontsize=9)
     return figure
