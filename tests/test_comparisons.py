@@ -250,6 +250,8 @@ def test_workers_find_what_one_process_finds(tmp_path: Path, monkeypatch: pytest
     for name in taking:
         for workers in ("1", "2"):
             assert main([name, "--workers", workers, "--out", str(tmp_path / workers)]) == 0
+    assert main(["soak", "--only", "joints", "--workers", "1", "--out", str(tmp_path / "3")]) == 0
+    assert [path.name for path in (tmp_path / "3").iterdir()] == ["soak_joints.csv"]
     written = {path.name for path in (tmp_path / "1").iterdir()}
     assert written == {path.name for path in (tmp_path / "2").iterdir()}
     assert len([name for name in written if name.endswith(".csv")]) > 8
