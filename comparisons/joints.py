@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 import pymunk
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter
 from tqdm import tqdm
 
 import eeca_pymunk as ep
@@ -234,6 +235,7 @@ def picture(found: list[Problem], rows: list[Row]) -> Figure:
             for ax, column in ((top, "error (m)"), (low, "energy error")):
                 values = np.maximum([number(r, column) for r in mine], FLOOR)
                 ax.loglog(wall, values, f"{mark}-", color=colour, markersize=4, label=_LABEL.get(name, name))
+        low.xaxis.set_minor_formatter(NullFormatter())
         top.set_title(problem.name)
         low.set_xlabel("time of all steps (ms)")
     axes[0, 0].set_ylabel("error of places (m)")
