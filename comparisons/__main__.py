@@ -99,6 +99,7 @@ def chosen(options: argparse.Namespace) -> tuple[Callable[..., None], dict[str, 
     """What runs the comparison, `run(output, full)`, and what it takes besides."""
     module = import_module(f".{options.name}", __package__)
     run: Callable[..., None] = module.run
+    extra: dict[str, Any] = {}
     if options.only is not None:
         known: dict[str, Any] = getattr(module, "CHOICES", {})
         if not known:
@@ -106,14 +107,14 @@ def chosen(options: argparse.Namespace) -> tuple[Callable[..., None], dict[str, 
         names = options.only.split(",")
         if unknown := [name for name in names if name not in known]:
             raise ValueError(f"--only {unknown[0]!r}: choose from {','.join(known)}")
-        return run, {"only": names}
+        extra["only"] = names
     if options.workers is None:
-        return run, {}
+        return run, extra
     if options.workers < 1:
         raise ValueError(f"--workers {options.workers}: give a number >= 1")
     if "workers" not in inspect.signature(run).parameters:
         raise ValueError(f"{options.name} measures times or runs few cases: leave --workers out")
-    return run, {"workers": options.workers}
+    return run, extra | {"workers": options.workers}
 
 
 def _film(options: argparse.Namespace) -> None:

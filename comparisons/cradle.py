@@ -66,7 +66,7 @@ def run(output: Output, full: bool) -> None:
         {"K (N/m)": K, "variable": variable, "value": x, "a (%)": a, "b, c (%)": bc}
         for K, both in sweeps.items() for variable, points in both.items() for x, a, bc in points
     ], "errors")  # fmt: skip
-    figure = render.figure(9.0, 7.0)
+    figure = render.figure(9.0, 7.4)
     axes = figure.subplots(2, 2)
     for K, both in sweeps.items():
         for line, (variable, points) in zip(axes, both.items(), strict=True):
@@ -76,7 +76,7 @@ def run(output: Output, full: bool) -> None:
                 ax.set(
                     xlabel={"dt": "time step (s)", "xi": "damping ratio xi"}[variable], ylabel="error (%)", title=name
                 )
-    axes[0, 0].legend()
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncol=len(sweeps))
     figure.suptitle("Newton's cradle, hypothesis i: error of the velocities (paper Fig. 11)")
     output.picture(figure, "fig_11")
 

@@ -192,7 +192,7 @@ def generators() -> list[tuple[str, Films, Ways]]:
 def picture(found: dict[tuple[str, str], FloatArray], sets: dict[str, Films]) -> Figure:
     """Of two sets the film that is farthest off: places over time."""
     chosen = [("Box2D's, slow tests", "Box2D, 10 steps"), ("pymunk's", "pymunk, 1 step")]
-    figure = render.figure(9.5, 4.0)
+    figure = render.figure(9.5, 4.4)
     for ax, (name, engine) in zip(figure.subplots(1, 2), chosen, strict=True):
         films = sets[name]
         shown = found.get((name, engine))
@@ -208,7 +208,7 @@ def picture(found: dict[tuple[str, str], FloatArray], sets: dict[str, Films]) ->
             if shown is not None:
                 ax.plot(films.times, shown[i, :, ball], color=colour, label=f"ball {ball + 1}, {engine}")
         ax.set(xlabel="t (s)", ylabel="x (m)", title=f"settings: {name}; the film farthest off")
-        ax.legend(fontsize=7)
+        ax.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.13), ncol=3, frameon=False)
     return figure
 
 

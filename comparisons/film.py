@@ -35,7 +35,11 @@ View = tuple[float, float, float, float]
 
 @dataclass(frozen=True)
 class Film:
-    """How a scene is filmed: what for, for how long (s, the scene's if None), and what of it (m, all if None)."""
+    """How a scene is filmed: under which steppers, for how long (s, the scene's if None), and what of it (m).
+
+    `view` is None where all that moves is to be seen: the limits are those of all motions shown. It is given where
+    walls or bodies far outside would make the rest small.
+    """
 
     steppers: tuple[str, ...] = ("eeca", "native")
     duration: float | None = None
@@ -48,18 +52,18 @@ class Film:
 
 FILMS = {
     "carom": Film(("eeca", "native", "trapezoidal", "max_dissipation"), 1.5),
-    "pool_break": Film(duration=0.1, view=(-0.6, 0.6, -0.3, 0.9), arrow="momentum"),
+    "pool_break": Film(duration=0.06, arrow="momentum", frames=40, dpi=64),
     "hopper": Film(view=(-0.7, 0.7, -0.15, 1.1), dt=0.001),
     "pile": Film(duration=3.0, view=(-0.5, 9.5, -0.3, 11.0), frames=36, dpi=68),
     "drum": Film(duration=3.0, frames=40, dpi=66),
-    "billiard": Film(duration=1.0, view=(-0.05, 2.6, -0.05, 1.32)),
-    "cradle": Film(duration=0.3, view=(-0.25, 0.4, -0.15, 0.15), dt=0.001, frames=40),
-    "double_pendulum": Film(duration=6.0, view=(-2.1, 2.1, -0.1, 3.2)),
-    "rods": Film(duration=8.0, view=(-1.2, 1.2, -0.2, 0.6), frames=56),
-    "bridge": Film(duration=4.0, view=(-0.3, 6.0, -1.9, 1.5)),
-    "chain": Film(duration=3.0, view=(-3.1, 3.1, -0.6, 3.4)),
+    "billiard": Film(duration=1.0),
+    "cradle": Film(duration=0.3, dt=0.001, frames=40),
+    "double_pendulum": Film(duration=6.0),
+    "rods": Film(duration=8.0, frames=56),
+    "bridge": Film(duration=4.0),
+    "chain": Film(duration=3.0),
     "lander": Film(duration=7.0, view=(-6.0, 6.0, -0.5, 7.0)),
-    "walker": Film(duration=8.0, view=(-4.2, 4.2, -0.3, 2.2), frames=64),
+    "walker": Film(duration=8.0, view=(-2.0, 2.8, -0.3, 2.2), dt=1 / 200, frames=64),
 }
 
 

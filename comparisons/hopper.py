@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import pymunk
 from matplotlib.figure import Figure
+from tqdm import tqdm
 
 import eeca_pymunk as ep
 import scenes
@@ -23,6 +24,7 @@ STEPS = (2.5e-3, 1e-3, 5e-4)
 SHOWN = (0.25, 0.47, 0.65, 0.92)  # s
 SMALLEST = 1e-5  # s, the paper's smallest step for the maximum dissipation rule: with --full
 LOOKS = 100  # samples of the overlap over a run: it costs more than a step
+CLOSE = 1e-4  # s between measures, or one step if longer; disks move less than a tenth of a radius
 
 
 class Watch:
@@ -96,9 +98,10 @@ def run(output: Output, full: bool) -> None:
     jobs = [(name, make, dt) for dt in STEPS for name, make in makes.items()]
     if full:
         jobs.append(("max dissipation", makes["max dissipation"], SMALLEST))
-    for name, make, dt in jobs:
+    for name, make, dt in tqdm(jobs, desc="hopper", unit="run", disable=None):
         watch = watches[name, dt] = Watch(dt, scene.duration)
-        result = runs.run(scenes.build("hopper", dt=dt), make, observe=watch, label=f"{name}, dt={dt}")
+        every = max(1, round(CLOSE / dt))
+        result = runs.run(scenes.build("hopper", dt=dt), make, observe=watch, every=every, label=f"{name}, dt={dt}")
         rows.append({
             "stepper": name, "dt (s)": dt, **result.columns(closed=False),
             "leaked": len(watch.leaked), "overlap (r)": watch.overlap,
@@ -134,10 +137,9 @@ def _energies(watches: dict[tuple[str, float], Watch]) -> Figure:
     names = list(dict.fromkeys(name for name, _ in watches))
     figure = render.figure(12.0, 6.5)
     columns = -(-len(names) // 2)
-    axes = list(figure.subplots(2, columns, sharex=True).flat)
-    for k in range(len(names), len(axes)):
-        axes[k].set_axis_off()
-        axes[k - columns].tick_params(labelbottom=True)
+    axes = list(figure.subplots(2, columns).flat)
+    for ax in axes[len(names) :]:
+        ax.set_axis_off()
     for ax, name in zip(axes, names, strict=False):
         for dt in (dt for n, dt in watches if n == name):
             t, energy = np.array(watches[name, dt].energy).T

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 import pymunk
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter
 from tqdm import tqdm
 
 import eeca_pymunk as ep
@@ -225,7 +226,7 @@ def run(output: Output, full: bool) -> None:
 
 def picture(found: list[Problem], rows: list[Row]) -> Figure:
     """Error of places, and below it of the energy, against time: a column for each scene."""
-    figure = render.figure(3.0 * len(found), 6.0)
+    figure = render.figure(3.0 * len(found), 6.3)
     axes = figure.subplots(2, len(found), sharex="col", sharey="row", squeeze=False)
     for (top, low), problem in zip(axes.T, found, strict=True):
         for name, (colour, mark) in STYLE.items():
@@ -234,9 +235,10 @@ def picture(found: list[Problem], rows: list[Row]) -> Figure:
             for ax, column in ((top, "error (m)"), (low, "energy error")):
                 values = np.maximum([number(r, column) for r in mine], FLOOR)
                 ax.loglog(wall, values, f"{mark}-", color=colour, markersize=4, label=_LABEL.get(name, name))
+        low.xaxis.set_minor_formatter(NullFormatter())
         top.set_title(problem.name)
         low.set_xlabel("time of all steps (ms)")
     axes[0, 0].set_ylabel("error of places (m)")
     axes[1, 0].set_ylabel("error of the energy (relative)")
-    axes[0, 0].legend(fontsize=8)
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncol=len(STYLE), fontsize=9)
     return figure

@@ -12,7 +12,7 @@ from eeca_pymunk import render
 COLOURS = {"EECA": "black", "native 10": "#D55E00"}
 MARKS = {"disks": "o", "boxes": "s", "mixed": "d"}
 FALLS, ENDS, DEEPEST = "x native 10", "at the end, x native", "deepest (r)"
-TITLES = {FALLS: "step that falls / pymunk's", ENDS: "step at the end / pymunk's", DEEPEST: "deepest overlap (radii)"}
+TITLES = {FALLS: "falling step (x pymunk)", ENDS: "last steps (x pymunk)", DEEPEST: "deepest overlap (radii)"}
 
 
 def draw(rows: list[Row]) -> Figure:

@@ -72,10 +72,15 @@ def _draw(watch: dict[str, Watch], name: str) -> Figure:
     figure = render.figure(12.0, 9.5)
     for line, case in zip(figure.subplots(3, 4), SHOWN, strict=True):
         for ax, (t, space) in zip(line, watch[case].moments, strict=True):
-            rack = list(space.bodies)[1:]  # without the cue, which leaves far behind
-            half = max(*(max(abs(b.position.x), abs(b.position.y - 0.25)) for b in rack), 0.33) + 0.05
-            view = (-half, half, 0.25 - half, 0.25 + half)
-            render.snapshot(space, ax, momentum=True, title=f"case {case}, {1e3 * t:.2f} ms", view=view)
+            render.snapshot(space, ax, momentum=True, title=f"case {case}, {1e3 * t:.2f} ms", view=_view(space))
             ax.tick_params(labelsize=6)
     figure.suptitle(f"Pool break, {name}: linear momenta (paper Figs. 8, 9)")
     return figure
+
+
+def _view(space: pymunk.Space) -> tuple[float, float, float, float]:
+    """A square around the rack and where the cue starts, with room for arrows. The cue leaves it far behind."""
+    x = np.array([(0.0, -0.1), *(b.position for b in list(space.bodies)[1:])])
+    low, high = x.min(axis=0), x.max(axis=0)
+    middle, half = 0.5 * (low + high), 0.63 * float((high - low).max())
+    return middle[0] - half, middle[0] + half, middle[1] - half, middle[1] + half

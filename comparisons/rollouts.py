@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 import pymunk
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from pymunk import batch
 from tqdm import tqdm
 
@@ -279,20 +280,23 @@ def errors(full: bool) -> list[Row]:
 
 
 def picture(rows: list[Row]) -> Figure:
-    """Share of wrong films over frames per second."""
-    figure = render.figure(9.0, 4.0)
+    """Share of wrong films over frames per second: a colour for each engine, a marker for each step size."""
+    figure = render.figure(9.0, 4.2)
+    engines = list(dict.fromkeys(row["engine"] for row in rows))
+    marks = dict(zip(sorted({int(row["steps/s"] or 0) for row in rows}), "os^vD", strict=False))
     for ax, seconds in zip(figure.subplots(1, 2, sharey=True), SECONDS, strict=True):
-        for i, name in enumerate(dict.fromkeys(row["engine"] for row in rows)):
-            above = 6 if i % 2 == 0 else -12  # points, so that labels of engines of equal speed do not overlap
+        for i, name in enumerate(engines):
             own = [row for row in rows if row["engine"] == name]
             speeds, shares = [row["frames/s"] for row in own], [row[f"wrong after {seconds:g} s"] for row in own]
-            ax.semilogx(speeds, shares, "o-", label=str(name))
+            ax.semilogx(speeds, shares, color=f"C{i}")
             for row, x, y in zip(own, speeds, shares, strict=True):
-                ax.annotate(f"1/{row['steps/s']} s", (x, y), (0, above), textcoords="offset points", fontsize=7)
-        ax.set(xlabel="frames per second, one core", title=f"after {seconds:g} s", ylim=(-0.12, 1.12))
-        ax.legend(fontsize=8)
+                ax.plot(x, y, marks[int(row["steps/s"] or 0)], color=f"C{i}", alpha=0.8)
+        ax.set(xlabel="frames per second, one core", title=f"after {seconds:g} s", ylim=(-0.06, 1.06))
         if seconds == SECONDS[0]:
             ax.set_ylabel("share of films that are wrong")
+    told = [Line2D([], [], color=f"C{i}", label=str(name)) for i, name in enumerate(engines)]
+    told += [Line2D([], [], color="black", ls="", marker=m, label=f"dt = 1/{n} s") for n, m in marks.items()]
+    figure.legend(handles=told, loc="outside lower center", ncol=len(told), fontsize=8)
     figure.suptitle(f"{FILMS} films of five elastic balls: wrong once a ball is off by a quarter of its radius")
     return figure
 

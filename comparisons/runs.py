@@ -96,9 +96,11 @@ def run(
     duration: float | None = None,
     label: str = "",
     observe: Observe | None = None,
+    every: int = 1,
 ) -> Run:
-    """Step `scene` and measure it. `observe(step, time, scene, report, invariants)` is called at the start and after
-    every step, outside the clock. A run stops where its energy has blown up, as that of the penalty baselines may."""
+    """Step `scene`, and measure it after `every` so many steps: `observe(step, time, scene, report, invariants)` is
+    called then, and at the start, outside the clock. A run stops where its energy has blown up, as that of the penalty
+    baselines may."""
     dt = scene.dt if dt is None else dt
     duration = scene.duration if duration is None else duration
     count = step_count(duration, dt)
@@ -123,6 +125,8 @@ def run(
             failed = k * dt
             break
         wall += time.perf_counter() - clock
+        if k % every and k < count:
+            continue
         end = now()
         drift = max(drift, abs(end.energy / start.energy - 1.0))
         momentum = max(momentum, float(np.abs(end.linear_momentum - start.linear_momentum).max()) / scale_p)

@@ -1,9 +1,10 @@
-"""Soak: a million steps of a gas, linkages, ten minutes of the hopper; drifts, who is inside. Takes --workers."""
+"""Soak: a million steps of a gas, linkages, ten minutes of the hopper; who is inside. Takes --workers, --only."""
 
 from __future__ import annotations
 
 import sys
 import time
+from collections.abc import Sequence
 
 import numpy as np
 from tqdm import tqdm
@@ -27,18 +28,23 @@ JOINTED = {
 }  # fmt: skip
 
 
-def run(output: Output, full: bool, workers: int = 1) -> None:
-    """Print the tables; write CSV."""
+CHOICES = dict.fromkeys(("gas", "mixed", "joints", "hopper"))
+
+
+def run(output: Output, full: bool, workers: int = 1, only: Sequence[str] = ()) -> None:
+    """Print the tables, or only some; write CSV."""
     output.parameters({"steps": STEPS, "dt": DT, "radius": RADIUS})
-    kinds: dict[str, list[tuple[str, float]]] = {
-        f"Gas, 20 disks, {STEPS} steps of EECA TimeOfImpact": [("gas", STEPS)],
-        f"Mixed shapes that turn, {TURNS} steps": [(name, TURNS) for name in MIXED],
-        f"Joints, {SWINGS} steps of 1/60 s": [(name, SWINGS) for name in JOINTED],
-        f"Hopper, {MINUTES:g} minutes of EECA TimeOfImpact": [("hopper", MINUTES)],
+    kinds: dict[str, tuple[str, list[tuple[str, float]]]] = {
+        "gas": (f"Gas, 20 disks, {STEPS} steps of EECA TimeOfImpact", [("gas", STEPS)]),
+        "mixed": (f"Mixed shapes that turn, {TURNS} steps", [(name, TURNS) for name in MIXED]),
+        "joints": (f"Joints, {SWINGS} steps of 1/60 s", [(name, SWINGS) for name in JOINTED]),
+        "hopper": (f"Hopper, {MINUTES:g} minutes of EECA TimeOfImpact", [("hopper", MINUTES)]),
     }
-    found = iter(pool.over(part, [case for cases in kinds.values() for case in cases], workers))
-    for (title, cases), file in zip(kinds.items(), ("", "mixed", "joints", "hopper"), strict=True):
-        output.table(title, [row for _ in cases for row in next(found)], file)
+    chosen = only or list(CHOICES)
+    found = iter(pool.over(part, [case for name in chosen for case in kinds[name][1]], workers))
+    for name in chosen:
+        title, cases = kinds[name]
+        output.table(title, [row for _ in cases for row in next(found)], "" if name == "gas" else name)
 
 
 def part(case: tuple[str, float]) -> list[Row]:

@@ -211,8 +211,8 @@ def filmed(output: Output) -> str:
 
 
 def picture(found: dict[str, list[Point]], shown: list[Row]) -> Figure:
-    """Error against time, a panel for each scene; the ring is what the factor compares."""
-    figure = render.figure(3.0 * len(found), 3.6)
+    """Error against time, a panel for each scene."""
+    figure = render.figure(3.0 * len(found), 4.2)
     axes = figure.subplots(1, len(found), sharey=True)
     for ax, row, (name, points) in zip(axes, shown, found.items(), strict=True):
         for stepper, (color, width) in STYLE.items():
@@ -224,7 +224,7 @@ def picture(found: dict[str, list[Point]], shown: list[Row]) -> Figure:
             ax.loglog(1e3 * wall, error, "o-", color=color, linewidth=width, markersize=4, label=f"{stepper}{order}")
         told = f"in equal time {_power(float(row['x smaller error'] or 0.0))}"
         ax.set(xlabel="time of all steps (ms)", title=f"{name}\n{told}")
-        ax.legend(fontsize=7)
+        ax.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.17), frameon=False)
     axes[0].set_ylabel("error of places (m)")
     return figure
 

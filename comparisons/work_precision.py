@@ -110,7 +110,7 @@ def jobs(full: bool) -> Iterator[tuple[Problem, str, Make, float]]:
     for problem in problems():
         stiffness = problem.build(0).stiffness
         steppers = runs.steppers(stiffness)
-        steppers["PenaltyEnergyMomentum"] = partial(_penalty, stiffness)
+        steppers["energy-momentum"] = partial(_penalty, stiffness)
         for name, make in steppers.items():
             to_the_end = full or name.startswith("native") or name == EECA
             for dt in STEPS:

@@ -10,6 +10,7 @@ import re
 import runpy
 import shutil
 from dataclasses import replace
+from datetime import date
 from importlib import import_module
 from inspect import signature
 from pathlib import Path
@@ -249,6 +250,8 @@ def test_workers_find_what_one_process_finds(tmp_path: Path, monkeypatch: pytest
     for name in taking:
         for workers in ("1", "2"):
             assert main([name, "--workers", workers, "--out", str(tmp_path / workers)]) == 0
+    assert main(["soak", "--only", "joints", "--workers", "1", "--out", str(tmp_path / "3")]) == 0
+    assert [path.name for path in (tmp_path / "3").iterdir()] == ["soak_joints.csv"]
     written = {path.name for path in (tmp_path / "1").iterdir()}
     assert written == {path.name for path in (tmp_path / "2").iterdir()}
     assert len([name for name in written if name.endswith(".csv")]) > 8
@@ -366,13 +369,17 @@ def test_gallery_page_shows_every_figure_and_table(tmp_path: Path, monkeypatch: 
         assert 0 < (folder / picture).stat().st_size < 300_000
     # A page written from one part's run holds that run's numbers.
     monkeypatch.setattr(gallery, "PARTS", ("signorini",))
-    monkeypatch.setattr(gallery, "_SHOWN", {k: v for k, v in gallery._SHOWN.items() if v[0].startswith("signorini")})
+    for name in ("_SHOWN", "_TOLD"):
+        parts = {k: v for k, v in getattr(gallery, name).items() if v[0].startswith("signorini")}
+        monkeypatch.setattr(gallery, name, parts)
     template = tmp_path / "page.md"
-    template.write_text("$made $dir\n$fig_1\n$figs_4_5\n")
+    template.write_text("$made $dir\n$fig_1\n$figs_4_5\nto $closed_form, $disks disks\n")
     monkeypatch.setattr(gallery, "_PAGE", template)
     assert main(["gallery", "--out", str(tmp_path)]) == 0
     written = (tmp_path / "GALLERY.md").read_text()
     assert "| energy-momentum | 0.5 | 0.08464 | 0.5 |" in written
+    assert f"`python -m comparisons signorini --full`, {date.today().isoformat()}" in written
+    assert re.search(r"^to \de-\d\d, 665 disks$", written, re.MULTILINE)
     assert (tmp_path / "gallery" / "signorini_fig_1.png").exists()
 
 

@@ -78,6 +78,28 @@ def test_panels_share_scale_and_clock(tmp_path: Path) -> None:
         np.testing.assert_allclose(panel.trace.moving[0].get_xdata()[-1], 0.2)
 
 
+def test_four_panels_are_in_two_rows_and_a_view_holds_all_motions() -> None:
+    runs = []
+    for velocity in ((1.0, 0.0), (-2.0, 0.0), (0.0, 3.0), (0.0, -1.0)):
+        space, body = pymunk.Space(), pymunk.Body(1.0, 1.0)
+        space.add(body, pymunk.Circle(body, 0.1))
+        body.velocity = velocity
+        runs.append(ep.record(ep.EECA(space), 1.0, 0.1))
+    made = film.Film(runs, frames=2, dpi=50)
+    height, width = next(made.images()).shape[:2]
+    assert width == 400
+    assert height > width
+    corners = [panel.ax.get_window_extent() for panel in made.panels]
+    assert corners[0].y0 == pytest.approx(corners[1].y0)
+    assert corners[2].y0 == pytest.approx(corners[3].y0)
+    assert corners[2].x0 == pytest.approx(corners[0].x0)
+    assert corners[2].y1 < corners[0].y0
+    for panel in made.panels:
+        (left, right), (bottom, top) = panel.ax.get_xlim(), panel.ax.get_ylim()
+        assert left < -2.1 < 1.1 < right < 1.5
+        assert bottom < -1.1 < 3.1 < top < 3.5
+
+
 def test_mp4_holds_the_frames(recording: ep.Recording, tmp_path: Path) -> None:
     from imageio_ffmpeg import get_ffmpeg_exe
 

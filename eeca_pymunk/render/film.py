@@ -28,6 +28,7 @@ from .traces import FONT, Trace, readable, trace
 Image = npt.NDArray[np.uint8]  # (height, width, 3)
 Exact = Callable[[float], FloatArray | None]
 _MOST = 4  # panels
+_ABREAST = 3  # panels in one row; more are shown in two rows
 _PREVIEW = 60  # frames of a notebook's player
 _TRAILED = 5  # number of bodies up to which paths are drawn
 
@@ -45,7 +46,7 @@ def animate(
     dpi: float = 100,
     progress: bool = False,
 ) -> Path:
-    """Write a film of one to four recordings side by side; `.gif`, `.mp4` or `.html` by suffix.
+    """Write a film of one to three recordings side by side, or four in two rows; `.gif`, `.mp4` or `.html` by suffix.
 
     All panels have the same scale; a frame shows the moment of each recording that is nearest to its time. Below each
     panel are the energy relative to the start and the size of the momentum relative to its largest, or, if the ledger
@@ -56,7 +57,7 @@ def animate(
         fps: frames per second, > 0; delays of a GIF are multiples of 10 ms.
         exact: function of time that returns the (N, 2) exact positions, None where unknown (`Scene.exact`): drawn as
             outlines.
-        view: (left, right, bottom, top) lengths; all of the recording if None.
+        view: (left, right, bottom, top) lengths; by default all shapes at all moments of all recordings.
         frames: number of frames, evenly spaced in time; by default the largest number of moments.
         arrow: "velocity" or "momentum" of every body.
         dpi: dots per inch; a panel is 4 inches wide.
@@ -118,16 +119,18 @@ class Film:
         self.digits = min(max(2 - math.floor(math.log10(end)), 0), 9) if end > 0.0 else 0
         # Even numbers of pixels, which video codecs require.
         tall = min(max(4.0 * (view[3] - view[2]) / (view[1] - view[0]), 2.0), 8.0) + 1.9
-        pixels = [2 * round(0.5 * dpi * inches) for inches in (4.0 * len(shown), tall)]
+        rows = 1 if len(shown) <= _ABREAST else 2
+        across = -(-len(shown) // rows)
+        pixels = [2 * round(0.5 * dpi * inches) for inches in (4.0 * across, tall * rows)]
         self.figure = figure(pixels[0] / dpi, pixels[1] / dpi, dpi)
-        axes = self.figure.subplots(2, len(shown), squeeze=False, height_ratios=(tall - 1.6, 1.2))
-        traces = [trace(ax, r) for ax, r in zip(axes[1], shown, strict=True)]
+        axes = self.figure.subplots(2 * rows, across, squeeze=False, height_ratios=(tall - 1.6, 1.2) * rows)
+        traces = [trace(ax, r) for ax, r in zip(axes[1::2].flat, shown, strict=True)]
         top = max(t.top for t in traces)
         for one in traces:
             one.ax.set(xlim=(0.0, end or 1.0), ylim=(-0.05 * top, 1.1 * top))
         self.panels = [
-            _Panel(axes[0, k], r, traces[k], title, view, exact, arrow)
-            for k, (r, title) in enumerate(zip(shown, titles, strict=True))
+            _Panel(ax, r, below, title, view, exact, arrow)
+            for ax, r, below, title in zip(axes[::2].flat, shown, traces, titles, strict=True)
         ]
         self.clock = self.figure.suptitle("t = 0", fontsize=FONT + 1)
 

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 View = tuple[float, float, float, float]
 _COLORS = 128
 ARROWS = ("velocity", "momentum")
+_LEAST = 0.1  # widths of its shaft: what is drawn of an arrow without length is a dot of this size
 
 
 def figure(width: float, height: float, dpi: float = 110) -> Figure:
@@ -134,14 +135,16 @@ def frame(ax: Axes, view: View, title: str) -> None:
 
 def arrows(ax: Axes, x: FloatArray, vector: FloatArray, longest: float | None = None) -> Quiver:
     """An arrow for each (N, 2) vector at (N, 2) positions. A vector of length `longest`, by default the longest one
-    here, spans two fifths of the axes. Vectors that are not finite (the momentum of a kinematic body) have no arrow."""
+    here, spans two fifths of the axes. Vectors of no length, and those that are not finite (the momentum of a
+    kinematic body), have no arrow."""
     size = np.linalg.norm(vector, axis=1)
     shown = np.where(np.isfinite(size)[:, None], vector, 0.0)
     length = float(np.linalg.norm(shown, axis=1).max(initial=0.0)) if longest is None else longest
     scale = 2.5 * max(length, np.finfo(float).tiny)
     return ax.quiver(
-        x[:, 0], x[:, 1], shown[:, 0], shown[:, 1], color=ARROW, width=0.006, scale=scale, scale_units="width", zorder=3
-    )
+        x[:, 0], x[:, 1], shown[:, 0], shown[:, 1], color=ARROW, width=0.006, scale=scale, scale_units="width",
+        minlength=_LEAST, zorder=3,
+    )  # fmt: skip
 
 
 def _impulses(ax: Axes, report: StepReport) -> None:
