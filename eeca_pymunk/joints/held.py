@@ -166,6 +166,8 @@ def held_bodies(
             move, of which `still` (x,) never move.  smooth: (n,) 1 for bodies that contacts do not turn.
     """
     n = len(bodies)
+    if len(joint) == 0:
+        return rows(Held, 0)
     fixed = np.concatenate((np.zeros(n, np.int64), still))
     ends = fixed[joint["body"]].any(axis=1) & np.isin(joint["kind"], (PIN, PIVOT, SLIDE)) & (joint["soft"] == 0)
     if np.count_nonzero(ends) < 2:

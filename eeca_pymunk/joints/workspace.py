@@ -32,6 +32,9 @@ def workspace(J: Joints, s: int) -> Workspace:
     return Workspace(J, s, J.LINK[C.first_joint : C.end_joint], C.end_joint - C.first_joint, C.end_body - C.first_body)
 
 
+_NO_ROOM = room_for(rows(Component, 0))
+
+
 def make_joints(bodies: Rows[Body], joint: Rows[Joint], partner: Rows[Body], order: int) -> Joints:
     """The arrays of joints, with their plan.
 
@@ -41,10 +44,12 @@ def make_joints(bodies: Rows[Body], joint: Rows[Joint], partner: Rows[Body], ord
     """
     count = len(joint)
     component, member, link = rows(Component, count), rows(ComponentBody, 2 * count), rows(Coupling, count)
-    everyone: Any = np.concatenate((bodies, partner))
-    tally, of = row(Tally), np.full(len(bodies), -1, np.int64)
-    tally.components, tally.order = make_plan(everyone, joint, component, member, link), order
-    room = room_for(component[: tally.components])
+    tally, of, room = row(Tally), np.full(len(bodies), -1, np.int64), _NO_ROOM
+    tally.order = order
+    if count > 0:
+        everyone: Any = np.concatenate((bodies, partner))
+        tally.components = make_plan(everyone, joint, component, member, link)
+        room = room_for(component[: tally.components])
     for s in range(tally.components):
         mine = member[component[s].first_body : component[s].end_body]
         of[mine["body"][mine["freedoms"] > 0]] = s
