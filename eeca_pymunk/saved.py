@@ -9,8 +9,9 @@ from .arrays import FloatArray
 from .compiled.records import Rows, columns
 from .geometry.sides import keep_sides
 from .impacts.scene import EventLoop
-from .layout import ANEW, BODY_ROW, LEFT
+from .layout import ANEW, BODY_ROW, LEFT, NUDGED
 from .model.joints import OF_STEPS, RATCHET, Joint
+from .model.parameters.intervals import INTERVAL_DEPTH_LEAST
 from .model.shapes import Link
 from .space.packing import Record
 from .space.world import World
@@ -91,8 +92,8 @@ class Saved:
 
 class Sides:
     """The remembered sides of thin shapes of a world, to be kept when the space is patched or read again: of shapes
-    that have not changed and are where the last step left them, whatever their new rows are. Kinematic bodies with such
-    shapes only have not been moved: what overlaps them is not lifted for nothing."""
+    that have not changed and are near where the last step left them (see `transfer.take`), whatever their new rows are.
+    Kinematic bodies with such shapes only have not been moved: what overlaps them is not lifted for nothing."""
 
     def __init__(self, world: World, loop: EventLoop, sided: bool) -> None:
         self._sided = sided
@@ -100,15 +101,23 @@ class Sides:
         self._shapes, self._owner, self._bodies = world.shapes, world.owner.tolist(), world.bodies.items
         self._left = world.STATES[LEFT, :, :3].copy()
 
+    def _ways(self, world: World, at: list[int]) -> tuple[list[float], list[bool]]:
+        """How far points of each body, now at row `at`, were moved since the last step, and whether that is near."""
+        row = world.WALK[BODY_ROW, at]
+        size = np.where(row >= 0, world.BODY["extent"][row], 0.0)
+        moved = np.abs(world.state[at, :3] - self._left)
+        way = moved[:, 0] + moved[:, 1] + size * moved[:, 2]
+        return way.tolist(), (way <= INTERVAL_DEPTH_LEAST * size).tolist()
+
     def recall(self, world: World, loop: EventLoop) -> None:
         """Write them into the loop of the present world, which has taken no step."""
         row, places, records, owner = world.bodies.row, world.places, world.records, world.owner.tolist()
         at = [row.get(body, -1) for body in self._bodies]
-        still = (world.state[at, :3] == self._left).all(axis=1).tolist()
+        way, near = self._ways(world, at)
         of = [-1] * len(self._shapes)
         for k, (shape, i) in enumerate(zip(self._shapes, self._owner, strict=True)):
             place = places.get(shape, -1)
-            if place < 0 or owner[place] != at[i] or not still[i]:
+            if place < 0 or owner[place] != at[i] or not near[i]:
                 continue
             now, before = records[shape], self._records[shape]
             if now is before or _outline(now) == _outline(before):
@@ -120,7 +129,8 @@ class Sides:
         kept = [i for i in kept if (self._sided if dynamic[i] else i not in changed)]
         if kept:
             world.STATES[LEFT, kept, :3] = world.state[kept, :3]
-            world.BODY["due"][[rows[i] for i in kept]] = ANEW
+            nudged = {i for i, far in zip(at, way, strict=True) if far > 0.0}
+            world.BODY["due"][[rows[i] for i in kept]] = [NUDGED if i in nudged else ANEW for i in kept]
         if self._sided and len(loop.scene.SIDE):
             keep_sides(loop.table, self._known, np.array(of, np.int64))
 

@@ -198,9 +198,11 @@ def test_sides_outlive_what_is_edited_elsewhere(edit: Callable[..., None]) -> No
     assert abs(body.position.y) < 1e-3
 
 
-def test_a_rod_that_a_program_nudges_stays_on_its_side() -> None:
+@pytest.mark.parametrize("grows", [False, True])
+def test_a_rod_that_a_program_nudges_stays_on_its_side(grows: bool) -> None:
     """Placed anew by less than 1e-4 of its size at a time, as a position function does by round-off, it is still on the
-    side from which it came, however deep; placed at once farther below, it is on the other one, and falls."""
+    side from which it came, however deep; placed at once farther below, it is on the other one, and falls.
+    Whether the space `grows` between the steps, so that it is read again, does not matter."""
     for step, stays in ((-8e-5, True), (-1e-3, False)):
         space = pymunk.Space()
         space.gravity = 0.0, -G
@@ -210,5 +212,7 @@ def test_a_rod_that_a_program_nudges_stays_on_its_side() -> None:
         for _ in range(10):
             stepper.step(1 / 60)
             body.position += 0.0, step
+            if grows:
+                walls(space, space.static_body, ((50, 0), (60, 0)))
         stepper.step(1 / 60)
         assert (body.velocity.y == pytest.approx(0.0, abs=1e-9)) == stays
