@@ -202,13 +202,11 @@ def hits_of(A: Scene, a: int, b: int) -> int:
 @uncounted
 def most_hits(A: Scene, a: int, b: int) -> int:
     """Largest number of hits in a step on the islands of shapes a and b: RESOLUTION; of lossy ones that divided by the
-    number of bodies, but HITS_JOINTED at least where bodies hang together by joints: a hit moves them all at once, and
-    the work of these is bounded by itself."""
+    number of bodies, or by half of it where bodies hang together by joints, which a hit moves all at once."""
     if law(A.SHAPE, A.RULE, a, b)[0] >= 1.0:
         return RESOLUTION
-    bodies = largest_island(A, a, b)
     hung = jointed(A, A.LINK[a].owner) or jointed(A, A.LINK[b].owner)
-    return max(HITS_JOINTED if hung else 1, RESOLUTION // max(1, bodies))
+    return max(1, (HITS_JOINTED if hung else 1) * RESOLUTION // max(1, largest_island(A, a, b)))
 
 
 @kernel

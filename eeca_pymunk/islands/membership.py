@@ -9,6 +9,7 @@ from ..contacts.memory import find, key_of
 from ..geometry.gap import gap_at
 from ..model.bodies import AT_REST
 from ..model.contacts import Force
+from ..model.parameters.events import HITS_JOINTED
 from ..model.parameters.intervals import ELASTIC_REST, ELASTIC_REST_ON, LARGE_ISLAND, SOLVES_BEFORE_HASTE, TOUCH
 from ..model.scene import Scene
 from ..pairs.rules import law
@@ -79,10 +80,11 @@ def in_large_island(A: Scene, a: int, b: int) -> bool:
 @uncounted
 def budget_spent(A: Scene, root: int) -> bool:
     """Whether an island is large and is neither hit nor joined any more in this step, since bodies have been solved
-    often enough. The work of islands with joints has a bound of its own."""
-    if root < 0 or A.MEMBER[root].bodies < LARGE_ISLAND or A.MEMBER[root].open == 0 or A.MEMBER[root].jointed > 0:
+    often enough."""
+    if root < 0 or A.MEMBER[root].bodies < LARGE_ISLAND or A.MEMBER[root].open == 0:
         return False
-    return bool(A.COUNT.solved > SOLVES_BEFORE_HASTE * A.BODY.shape[0])
+    most = SOLVES_BEFORE_HASTE * (HITS_JOINTED if A.MEMBER[root].jointed > 0 else 1)
+    return bool(A.COUNT.solved > most * A.BODY.shape[0])
 
 
 @uncounted

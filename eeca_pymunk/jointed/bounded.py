@@ -23,14 +23,14 @@ from .groups import Groups
 
 
 @kernel
-def make_bounded(J: Joints, groups: Groups) -> Bounded:
-    """Room for the bounded rows of all components of an island."""
+def make_bounded(J: Joints, groups: Groups, limits: bool) -> Bounded:
+    """Room for the bounded rows of all components of an island, with or without those of limits."""
     n, entries = 0, 0
     for g in range(len(groups.COMPONENT)):
         if groups.COMPONENT[g] >= 0:
             s = groups.COMPONENT[g]
             rows = J.COMPONENT[s].boxes
-            for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
+            for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint if limits else 0):
                 rows += 1 if is_limit(J.LINK[k].kind) and J.JOINT[J.LINK[k].joint].soft == 0 else 0
             n += rows
             entries += rows * (groups.FIRST[g + 1] - groups.FIRST[g])

@@ -27,12 +27,12 @@ def keeps_speed(J: Joints, s: int) -> bool:
 
 
 @uncounted
-def let_slip(J: Joints, s: int, slips: bool) -> None:
+def let_slip(J: Joints, s: int, slips: bool, limits: bool) -> None:
     """Let bounded impulses count as given in answers, or no longer: those of joints with a max_force, where they are
-    few enough for `..joints.boxes`, and those of limits that hold."""
+    few enough for `..joints.boxes`, and, if `limits`, those of limits that hold."""
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
         link = J.LINK[k]
         if link.soft != 0 and J.JOINT[link.joint].max_force < 1e300 and J.COMPONENT[s].boxes > 0:
             link.soft = GIVEN if slips else BOXED
-        elif is_limit(link.kind) and J.JOINT[link.joint].soft == 0:
+        elif limits and is_limit(link.kind) and J.JOINT[link.joint].soft == 0:
             link.soft = GIVEN if slips and link.side != 0 else 0

@@ -137,7 +137,7 @@ def press(
     PREVIOUS = np.empty((len(isle.IM), 3))
     FORESEEN, UNKNOWN = np.empty((len(isle.IM), 3)), np.empty((0, 3))
     converged, best, LEAST, USED, hopeless, agreed = False, np.inf, L.copy(), L.copy(), False, False
-    bent, reached, B = 0.0, np.inf, make_bounded(J, groups)
+    bent, reached, B = 0.0, np.inf, make_bounded(J, groups, m <= SOME_CONTACTS)
     NOW = np.empty(len(B.OF))
     K, problem = make_columns(groups, P, Q, m if len(B.OF) > 0 else 0), JointedProblem(P, Q, ROWS, C, B, m)
     # Only of what nothing from without holds or touches is there an angular momentum to keep.

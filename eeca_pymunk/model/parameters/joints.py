@@ -107,14 +107,14 @@ FIT_RESIDUAL = accuracy(
 FIT_ENERGY = round_off(1e-12, "of the energy", "Change of energy by this projection that is round-off.")
 JOINTED_CORRECTION_SWEEPS = work(40, "sweeps", "Sweeps of the penetration correction of jointed bodies.")
 STEP_WORK = work(
-    80000000.0, "operations", "Work of a step with joints besides STEP_WORK_BODY; 6e9 operations take about a second."
+    50000000.0, "operations", "Work of a step with joints besides STEP_WORK_BODY; 6e9 operations take about a second."
 )
 INTERVAL_SHARE = work(
     0.25,
     "of what is left of the budget",
     "Work of an interval after which it is solved again, shorter, if it has not converged.",
 )
-STEP_WORK_BODY = work(1000000.0, "operations", "Work of a step with joints for each body of the scene.")
+STEP_WORK_BODY = work(250000.0, "operations", "Work of a step with joints for each body of the scene.")
 MEET = round_off(1e-13, "of the smaller shape", "Gap at the located instant of an impact on a component.")
 MEET_LOADED = accuracy(1e-06, "of the smaller shape", "Gap at that instant if contacts push on the component.")
 MEET_MANY = accuracy(0.0001, "of the smaller shape", "Gap at that instant if many contacts push on it.")
