@@ -107,7 +107,7 @@ FIT_RESIDUAL = accuracy(
 FIT_ENERGY = round_off(1e-12, "of the energy", "Change of energy by this projection that is round-off.")
 JOINTED_CORRECTION_SWEEPS = work(40, "sweeps", "Sweeps of the penetration correction of jointed bodies.")
 STEP_WORK = work(
-    50000000.0, "operations", "Work of a step with joints besides STEP_WORK_BODY; 6e9 operations take about a second."
+    50000000.0, "operations", "Work of a step with joints besides STEP_WORK_BODY; 5e9 operations take about a second."
 )
 INTERVAL_SHARE = work(
     0.25,
