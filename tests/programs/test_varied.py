@@ -112,3 +112,22 @@ def test_random_compositions_with_all_features_keep_the_laws(first: int) -> None
 
 def test_each_feature_is_drawn() -> None:
     assert set().union(*(Varied(seed).has for seed in range(120))) == set(FEATURES)
+
+
+def test_position_functions_do_not_add_what_pymunk_corrects() -> None:
+    """A disk that falls on a plate with a handler: pymunk's step, which calls it, ends deep in the plate."""
+    space = pymunk.Space()
+    space.gravity = 0.0, -10.0
+    plate = pymunk.Segment(space.static_body, (-5.0, 0.0), (5.0, 0.0), 0.1)
+    body = pymunk.Body(1.0, 1.0)
+    body.position, body.velocity, body.position_func = (0.0, 1.0), (0.5, -8.0), onward
+    disk = pymunk.Circle(body, 0.5)
+    disk.elasticity = plate.elasticity = 0.5
+    space.add(plate, body, disk)
+    space.on_collision(pre_solve=lambda *_: None)
+    stepper = ep.EECA(space)
+    for _ in range(30):
+        before = ep.measure(space).energy
+        ledger = stepper.step(1 / 30).ledger
+        assert ledger is not None
+        assert ep.measure(space).energy - before == pytest.approx(ledger.change, abs=1e-12)
