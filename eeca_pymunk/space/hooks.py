@@ -90,8 +90,8 @@ class Hooks:
             function = private.position_function(body)
             assert function is not None
             turn = end[row, ANGLE] - state[row, ANGLE]
-            # A rehearsal of collisions leaves speeds that correct overlaps, which the function would add: no time to move
-            # takes them away.
+            # A rehearsal of collisions leaves speeds that correct overlaps, which the function would add. A step of no
+            # length takes them away.
             pymunk.Body.update_position(body, 0.0)
             body.velocity, body.angular_velocity = tuple(ways[row] / dt), float(turn / dt)
             if (*body.position, body.angle) != tuple(state[row, :3]):
