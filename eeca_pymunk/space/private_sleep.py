@@ -10,6 +10,7 @@ from pymunk._chipmunk_cffi import lib
 
 OF_LIBRARY = (
     "cpBodyIsSleeping", "cpBodyGetPosition", "cpBodyGetAngle", "cpBodyGetVelocity", "cpBodyGetAngularVelocity",
+    "cpBodySetVelocity", "cpBodySetAngularVelocity",
 )  # fmt: skip
 
 
@@ -31,6 +32,19 @@ def asleep(bodies: Iterable[pymunk.Body]) -> Callable[[], bool]:
         return True
 
     return all_sleep
+
+
+def stopped(bodies: Iterable[pymunk.Body]) -> Callable[[], None]:
+    """A function that takes the velocity of those of these bodies that sleep no more."""
+    pointers, sleeps, still = [body._body for body in bodies], lib.cpBodyIsSleeping, (0.0, 0.0)
+
+    def stop() -> None:
+        for pointer in pointers:
+            if not sleeps(pointer):
+                lib.cpBodySetVelocity(pointer, still)
+                lib.cpBodySetAngularVelocity(pointer, 0.0)
+
+    return stop
 
 
 def unmoved(bodies: Iterable[pymunk.Body]) -> Callable[[], bool]:

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 import pymunk
 
 from ..reentry import BUSY
-from . import private, private_joints, private_rest, private_shapes
+from . import private, private_joints, private_rest, private_shapes, private_sleep
 from .bodies import ANGULAR_VELOCITY, VELOCITY, Bodies
 from .joints import JointRows
 from .private_joints import inert, move_on, silent, strengthen, weaken, with_laws
@@ -93,6 +93,8 @@ class Sync:
         """`past`: that of the world of this space before; pymunk itself puts what has come since into its index."""
         self.space, bodies = world.space, world.bodies
         self._asleep = bool(bodies.asleep.any())
+        sleepers = [bodies.items[i] for i in bodies.asleep.nonzero()[0]]
+        self._sleep, self._stop = private_sleep.asleep(sleepers), private_sleep.stopped(sleepers)
         self._called = len(bodies.velocity_hooks) + len(bodies.position_hooks) > 0
         self._shapes = sum(bodies.shapes.values())
         self._pointers = bodies.moving
@@ -163,7 +165,10 @@ class Sync:
         self._new = False
         if native:
             private_shapes.forget_corrections(self._pointers)
+        slept = self._asleep and self._sleep()
         rest_step(self.space, dt, joints, native, self._choice(joints) if self._asleep else None)
+        if slept and not self._sleep():
+            self._stop()  # what pymunk wakes gets a velocity by gravity
         self._renewed, self._dt, self._left = self._timestamp(), dt, _RENEW
         self.stamp = self._renewed
         self._stale = False
