@@ -11,6 +11,7 @@ If arbiters are read after a step that has reindexed, a rest step is taken first
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from typing import TYPE_CHECKING
@@ -93,6 +94,7 @@ class Sync:
         """`past`: that of the world of this space before; pymunk itself puts what has come since into its index."""
         self.space, bodies = world.space, world.bodies
         self._asleep = bool(bodies.asleep.any())
+        self._pulls = self.space.sleep_time_threshold < math.inf
         sleepers = [bodies.items[i] for i in bodies.asleep.nonzero()[0]]
         self._sleep, self._stop = private_sleep.asleep(sleepers), private_sleep.stopped(sleepers)
         self._called = len(bodies.velocity_hooks) + len(bodies.position_hooks) > 0
@@ -184,8 +186,8 @@ class Sync:
 
     def land(self, world: World, dt: float, status: int) -> None:
         """Write the end of the step of a world, with a rest step between poses and velocities."""
-        if world.joints is not None or self._asleep:
-            status = world.turning(status)  # joints change spins by round-off, gravity by more
+        if world.joints is not None or self._pulls:
+            status = world.turning(status)  # joints change spins by round-off; gravity, where bodies sleep, by more
         world.scatter_still(status)
         self.rest(dt, world.joints)
         world.scatter_speed(status)

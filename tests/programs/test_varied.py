@@ -133,7 +133,7 @@ def test_position_functions_do_not_add_what_pymunk_corrects() -> None:
         assert ep.measure(space).energy - before == pytest.approx(ledger.change, abs=1e-12)
 
 
-@pytest.mark.parametrize("seed", [72, 81003])
+@pytest.mark.parametrize("seed", [72, 81003, 95039])
 def test_whom_the_step_after_a_step_wakes_gets_no_velocity_from_it(seed: int) -> None:
     """pymunk wakes what its own detection sees touch, and gravity moves that: bodies that a program put to sleep in
     flight."""
