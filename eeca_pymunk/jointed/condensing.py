@@ -131,6 +131,8 @@ def solve_condensed(
     for _ in range(CONDENSED_CHANGES * n):
         k = 0
         for i in range(n):
+            if not R[i, i] > 0.0:
+                continue  # joints hold what it acts between: its impulse stays
             if side[i] == 0:
                 S[k] = i
                 k += 1
@@ -182,7 +184,7 @@ def solve_condensed(
         farthest, by = -1, 10.0 * tolerance
         for i in range(n):
             off = violation(D, i, side[i], L[m + i, 0], R[i, i], V)
-            if off > by:
+            if off > by and R[i, i] > 0.0:
                 farthest, by = i, off
         if farthest < 0:
             if worst > 10.0 * tolerance:

@@ -138,3 +138,8 @@ def test_whom_the_step_after_a_step_wakes_gets_no_velocity_from_it(seed: int) ->
     """pymunk wakes what its own detection sees touch, and gravity moves that: bodies that a program put to sleep in
     flight."""
     Varied(seed).play(60)
+
+
+def test_a_motor_that_joints_hold_fast_has_no_answer() -> None:
+    """A ratchet, a limit and a motor between the same bodies: the motor's row of the contact problem is zero."""
+    Varied(97127, True).play(66)
