@@ -25,7 +25,7 @@ def start_interval(A: Scene, J: Joints, root: int, t: float) -> int:
     spent."""
     if A.MEMBER[root].jointed == 0:
         return solve(A, root, t)
-    return begin_interval(A, J, root, t, A.PAR.dt - t) if t < A.PAR.dt else DONE
+    return begin_interval(A, J, root, t, A.PAR.dt - t) if A.PAR.dt - t > A.PAR.instant else DONE
 
 
 @kernel

@@ -8,6 +8,7 @@ from ..compiled import Table, kernel
 from ..jointed.ledger import account_joints, start_joints
 from ..joints.held import hold
 from ..model.joints import Joints, joints_of
+from ..model.parameters.joints import MEET_INSTANT
 from ..model.scene import Scene, scene_of
 from ..model.step import DONE, LOG_FULL, POOL_FULL, PUSHES_FULL
 from ..prediction.scheduling import predict_due
@@ -35,6 +36,7 @@ def start(
     if status >= 0:
         lost = hold(A.HELD, A.BODY)
         A.PAR.dt, A.PAR.gravity_x, A.PAR.gravity_y, A.PAR.half_damping = dt, gx, gy, half_damping
+        A.PAR.instant = MEET_INSTANT * dt
         begin(A, WALK)
         A.PAR.before += lost
         A.PAR.restitution += lost

@@ -13,7 +13,6 @@ from ..islands.membership import in_large_island, members
 from ..model.joints import Joints
 from ..model.parameters.joints import (
     MEET,
-    MEET_INSTANT,
     MEET_LOADED,
     MEET_MANY,
     MEET_SECANTS,
@@ -74,7 +73,7 @@ def shorten(A: Scene, J: Joints, root: int, t: float) -> int:
     found = components_of(A, J, root)
     for c in range(len(found)):
         restore_joints(J, found[c])
-    if t - began > MEET_INSTANT * A.PAR.dt:
+    if t - began > A.PAR.instant:
         open_span(A, J, root, began, t - began, True)
     return some
 
@@ -87,7 +86,7 @@ def end_here(A: Scene, J: Joints, root: int, t: float) -> None:
     for c in range(A.COUNT.pushes):
         if A.PUSHED_BY[c].root == root:
             account_contact(A, c, t)
-    empty = t - A.BODY[root].since <= MEET_INSTANT * A.PAR.dt
+    empty = t - A.BODY[root].since <= A.PAR.instant
     found = components_of(A, J, root)
     for c in range(len(found)):
         A.RESTING[root].lost -= J.STEPPED[found[c]].lifted

@@ -8,7 +8,8 @@ from ..compiled.records import Record
 class Step(Record):
     """Settings, instants and energies of a step."""
 
-    dt: float  # length of the step
+    dt: float  # length of the step, as far as it is not cut short
+    instant: float  # length up to which intervals of islands with joints are empty
     now: float  # instant at which the event loop has stopped for more memory
     gravity_x: float
     gravity_y: float
