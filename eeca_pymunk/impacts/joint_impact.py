@@ -63,12 +63,35 @@ def closes(P: IntArray, Q: IntArray, ROWS: Rows[Row], BEFORE: FloatArray, V: Flo
 
 
 @kernel
+def go_on(A: Scene, i: int, j: int) -> int:
+    """Write bodies i and j, which have not met yet, to A.BLOCK, each with its island if that has joints, whose interval
+    has ended; how many they are."""
+    n, MINE = 0, np.empty(A.BODY.shape[0], np.int64)
+    for q in range(2):
+        body = i if q == 0 else j
+        root = A.STATE[body].island if A.BODY[body].inv_mass > 0.0 else -1
+        if root >= 0 and A.MEMBER[root].jointed > 0:
+            if q == 0 or root != A.STATE[i].island:
+                more = members(A, root, MINE)
+                for k in range(more):
+                    A.BLOCK[n + k] = MINE[k]
+                n += more
+        elif A.BODY[body].inv_mass > 0.0:
+            A.BLOCK[n] = body
+            n += 1
+    return n
+
+
+@kernel
 def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     """The impact of shapes a and b, predicted for instant t, with the components of their bodies; results as
     `resolution.strike`, at PAR.now, the instant at which they meet on their paths with joints."""
     k = A.SHAPE.shape[0]
     i, j = A.LINK[a].owner, A.LINK[b].owner
-    A.PAR.now = t = meet(A, J, a, b, t)
+    t, apart = meet(A, J, a, b, t)
+    A.PAR.now = t
+    if apart:
+        return go_on(A, i, j)
     n, m, PAIRS = gather(A, a, b, t)
     again, ended = True, 0
     ENDED = np.empty(A.BODY.shape[0], np.int64)

@@ -62,8 +62,8 @@ def account_contact(A: Scene, c: int, t: float) -> None:
     A.RESTING[root].lost += both
     if f > 0.0 and COUNT.logged < A.LOG.shape[0]:
         note(
-            A.LOG[COUNT.logged], a, b, R.start + 0.5 * f * R.length, f * R.normal, f * R.tangential, R.nx,
-            R.ny, R.px, R.py, f * R.change, R.gap,
+            A.LOG[COUNT.logged], a, b, R.start + 0.5 * f * R.length, f * R.normal + R.held, f * R.tangential,
+            R.nx, R.ny, R.px, R.py, f * R.change, R.gap,
         )  # fmt: skip
         A.LOG[COUNT.logged].duration = f * R.length
         COUNT.logged += 1

@@ -157,7 +157,7 @@ def continue_contact(A: Scene, c: int, root: int) -> None:
     R = A.PUSHED[c]
     A.PUSHED_BY[c].root = root
     mark_pair(A, A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, 1)
-    R.un_before, R.un_after, R.ut_before, R.ut_after, R.work = 0.0, 0.0, 0.0, 0.0, 0.0
+    R.un_before, R.un_after, R.ut_before, R.ut_after, R.work, R.held = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
 
 
 @uncounted

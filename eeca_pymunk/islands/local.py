@@ -86,6 +86,7 @@ def open_contacts(
         pushed.work = carried(
             P[z : z + 1], Q[z : z + 1], ROWS[z : z + 1], L[z : z + 1], isle.V, VN, isle.IM, isle.II, 1
         )  # fmt: skip
+        pushed.held = 0.0
         pushed.nx, pushed.ny = ROWS[z].nx, ROWS[z].ny
         # The point from its arms: r = arm_t n - arm_n t.
         x, y = isle.POSE[P[z], 0] + 0.5 * h * isle.V[P[z], 0], isle.POSE[P[z], 1] + 0.5 * h * isle.V[P[z], 1]

@@ -25,13 +25,16 @@ from .motors import keeps_speed
 
 
 @kernel
-def fit(A: Scene, J: Joints, interval: Interval, L: FloatArray, end: float, scale: float) -> None:
+def fit(A: Scene, J: Joints, interval: Interval, L: FloatArray, end: float, scale: float) -> FloatArray:
     """Make the velocities at the end of a lossy interval fit the joints of the components that contacts push.
 
     Bodies that land leave velocities which violate joints, and those would ring for ever: a midpoint rule turns their
     sign in every step. What this costs enters the ledger. Of a few contacts, those that push do not close by it: see
     `hold`, which would change the speeds of motors.
     `scale` is a speed of the island. C is overwritten.
+
+    Returns:
+        (m,) normal impulses of contacts that keep these from closing, which the ledger has.
     """
     isle, groups, m, motion = interval.isle, interval.groups, interval.m, interval.motion
     NOTHING = np.zeros_like(isle.V)
@@ -58,14 +61,15 @@ def fit(A: Scene, J: Joints, interval: Interval, L: FloatArray, end: float, scal
                 for c in range(3):
                     motion.V[A.PLACE[body], c] = J.LOCAL[w].v0[c]
     if first < 0 or driven or m > COLUMN_CONTACTS:
-        return
+        return np.zeros(m)
     RATES, fastest = np.full(m, np.inf), 0.0
     for i in range(m):
         if L[i, 0] > 0.0 and interval.C.OUT[i] == 0:
             RATES[i] = normal_rate(interval.P, interval.Q, interval.ROWS, motion.V, i)
             fastest = max(fastest, -RATES[i])
     if fastest > FIT_CLOSING * scale:
-        hold(A, J, interval, end, RATES, FIT_RESIDUAL * fastest, first)
+        return hold(A, J, interval, end, RATES, FIT_RESIDUAL * fastest, first)
+    return np.zeros(m)
 
 
 @uncounted
@@ -95,10 +99,10 @@ def energy_of(isle: Island, V: FloatArray) -> float:
 
 
 @kernel
-def hold(A: Scene, J: Joints, interval: Interval, end: float, RATES: FloatArray, fine: float, book: int) -> None:
-    """Normal impulses 0 <= mu _|_ u + G S G^T mu >= 0 on contacts whose rates u (m,) are RATES, infinite for those that
-    are not asked: velocities that fit the joints go on to do so, and contacts do not close. Energy only falls, by
-    -mu.(u + G S G^T mu / 2), also where sweeps are cut short; it is lost by component `book`."""
+def hold(A: Scene, J: Joints, interval: Interval, end: float, RATES: FloatArray, fine: float, book: int) -> FloatArray:
+    """Normal impulses mu (m,), 0 <= mu _|_ u + G S G^T mu >= 0, on contacts whose rates u (m,) are RATES, infinite for
+    those that are not asked: velocities that fit the joints go on to do so, and contacts do not close. Energy only
+    falls, by -mu.(u + G S G^T mu / 2), also where sweeps are cut short; it is lost by component `book`."""
     isle, groups, P, Q, _, motion, C, m, _, _, h = interval
     KEEP, NOTHING = interval.ROWS[:m].copy(), np.zeros_like(isle.V)
     bring_arms(P, Q, KEEP, motion.END, m)
@@ -111,7 +115,7 @@ def hold(A: Scene, J: Joints, interval: Interval, end: float, RATES: FloatArray,
         gather_component(A, J, s, motion.END, motion.V, NOTHING, isle.IM, isle.II, end, h)
         size = find_places(A, J, s, INDEX)
         if not ready(J, s, 2.0, False):
-            return
+            return np.zeros(m)
         fill_group(J, groups, C, g, INDEX, False, P, Q, KEEP, m, np.empty((size, 3)))
     weigh(groups, C, P, Q, KEEP, m)
     for i in range(m):
@@ -131,3 +135,4 @@ def hold(A: Scene, J: Joints, interval: Interval, end: float, RATES: FloatArray,
         J.STEPPED[book].supports += gained + loss
     else:
         J.STEPPED[book].projected -= gained
+    return MU

@@ -13,6 +13,7 @@ from ..islands.membership import in_large_island, members
 from ..model.joints import Joints
 from ..model.parameters.joints import (
     MEET,
+    MEET_HALVINGS,
     MEET_LOADED,
     MEET_MANY,
     MEET_SECANTS,
@@ -21,6 +22,7 @@ from ..model.parameters.joints import (
 )
 from ..model.scene import Scene
 from ..pairs.lists import mark_pair
+from ..prediction.impact_times import meet as find_meeting
 from .gathered import restore_joints
 from .ledger import account_component
 from .solve import open_span
@@ -119,8 +121,14 @@ def begun(A: Scene, i: int) -> float:
 
 
 @kernel
-def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> float:
-    """Bring the islands of shapes a and b, which are seen to meet at instant t, to the instant at which they do."""
+def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
+    """Bring the islands of shapes a and b, which are seen to meet at instant t, to the instant at which they do; that
+    instant, and whether they are apart there.
+
+    The end of a coarse interval is not a continuous function of its length: stiff springs swing more than once in it.
+    If the shapes are on the far side of each other, or on the way there, as their paths meet before the end, the
+    instant is before that. If no interval is found that ends where they touch, both end at one at which they are apart.
+    """
     i, j = A.LINK[a].owner, A.LINK[b].owner
     roots = (A.STATE[i].island, A.STATE[j].island if A.BODY[j].inv_mass > 0.0 else -1)
     # Nobody goes back in time, to where what overlaps would have met, or on to where an interval would be too long.
@@ -141,7 +149,8 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> float:
     if A.COUNT.heap > 0:
         latest = min(latest, max(t, A.HEAP_TIME[0]))
     small = min(A.SHAPE[a].extent, A.SHAPE[b].extent)
-    before, gap_before = -1.0, 0.0
+    before, gap_before, g, close = -1.0, 0.0, 0.0, 0.0
+    apart, crossed, crosses = least, False, False
     spent = J.PROGRESS.effort > J.PROGRESS.budget
     most = 1 if spent or in_large_island(A, a, b) else MEET_SECANTS_LOADED
     for tries in range(MEET_SECANTS):
@@ -150,6 +159,9 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> float:
             loaded += shorten(A, J, roots[1], t)
         g, nx, ny, px, py = gap(A, a, b, t)
         close = MEET if loaded == 0 else MEET_LOADED if loaded <= SOME_CONTACTS else MEET_MANY
+        crosses, through = False, t
+        if g > close * small:
+            through, crosses = first_meeting(A, a, b, t)
         if ((loaded > 0 or spent) and tries + 1 >= most) or abs(g) <= close * small:
             break
         slope = 0.0
@@ -160,6 +172,17 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> float:
             xj, yj, _ = pose(A.BODY, j, t)
             vi = path_rate(A, i, t, nx, ny, px - xi, py - yi)
             slope = path_rate(A, j, t, nx, ny, px - xj, py - yj) - vi
+        if not slope < 0.0 and g < -close * small and gap(A, a, b, least)[0] >= -close * small:
+            # Beyond the middle of a thin shape the way out is on its far side.
+            through, crosses = first_meeting(A, a, b, t)[0], True
+        if crosses:
+            if tries + 1 == MEET_SECANTS:
+                break
+            crossed, before = True, -1.0
+            t = through if apart < through < t else 0.5 * (apart + t)
+            continue
+        if g > 0.0:
+            apart = t
         # The islands end where they were brought last.
         if not slope < 0.0 or tries + 1 == MEET_SECANTS:
             break
@@ -168,10 +191,26 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> float:
         if then == t:
             break
         t = then
+    for _ in range(MEET_HALVINGS):
+        if not crosses:
+            break
+        crossed, t = True, 0.5 * (apart + t)
+        shorten(A, J, roots[0], t)
+        if roots[1] != roots[0]:
+            shorten(A, J, roots[1], t)
+        g = gap(A, a, b, t)[0]
+        crosses = g < -close * small or (g > close * small and first_meeting(A, a, b, t)[1])
     end_here(A, J, roots[0], t)
     if roots[1] != roots[0]:
         end_here(A, J, roots[1], t)
-    return t
+    return t, crossed and g > close * small
+
+
+@uncounted
+def first_meeting(A: Scene, a: int, b: int, t: float) -> tuple[float, bool]:
+    """Instant before t at which the paths of shapes a and b, which are apart at t, meet, and whether there is one."""
+    through, certain = find_meeting(A, a, b, t)
+    return through, bool(certain and through < t)
 
 
 @uncounted

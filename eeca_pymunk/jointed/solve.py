@@ -152,7 +152,7 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
         note_unmet(A, CONTACTS, pair // shapes, pair % shapes, math.nan, math.nan)
     account_turning(A, J, isle, groups, motion, n)
     # Bodies are lifted at the end of the interval, not on the way: the way would be as steep as the interval is short.
-    WHERE = motion.END.copy()
+    WHERE, HELD = motion.END.copy(), np.zeros(m)
     if may_lose and m > 0:
         if not before_end(A, t + h):
             budget = lost(P, Q, ROWS, L, motion.WAY, m, h) + A.RESTING[root].lost
@@ -161,7 +161,7 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
                 if groups.COMPONENT[g] >= 0:
                     J.STEPPED[groups.COMPONENT[g]].lifted = spent
                     break
-        fit(A, J, interval, L, t + h, slow + pull * h)
+        HELD = fit(A, J, interval, L, t + h, slow + pull * h)
     clear_places(A, MINE, n)
     first = COUNT.pushes
     open_contacts(A, isle, contacts, motion.V, m, t, h, np.zeros(k, np.uint8))
@@ -169,6 +169,7 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
         R = A.PUSHED[first + z]
         R.un_before = R.un_after = normal_rate(P, Q, ROWS, motion.WAY, z) / h
         R.ut_before = R.ut_after = slip_of(P, Q, ROWS, motion.WAY, z, h) / h
+        R.held = HELD[z]
         A.PUSHED_BY[first + z].root = root
     COUNT.pushes += m
     for q in range(n):

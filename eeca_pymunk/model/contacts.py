@@ -46,6 +46,7 @@ class Pushed(Record):
     ut_before: float  # tangential velocity likewise
     ut_after: float
     work: float  # energy that kinematic bodies and moving surfaces give over the interval
+    held: float  # normal impulse at the end of the interval, where velocities that fit joints would close it; booked
     start: float  # instant at which the interval begins
     length: float  # of the interval: time
     nx: float  # unit normal from a to b

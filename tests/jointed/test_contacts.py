@@ -216,3 +216,40 @@ def test_free_bodies_that_overlap_beside_joints_do_not_go_back_in_time() -> None
     ledger = ep.EECA(space).step(1 / 50).ledger
     assert ledger is not None
     assert abs(ledger.residual) <= 1e-12 * abs(ledger.change)
+
+
+@pytest.mark.parametrize("turns", [False, True])
+@pytest.mark.parametrize("dt", [1 / 60, 1 / 30, 1 / 10])
+def test_reported_impulses_are_the_change_of_momentum(turns: bool, dt: float) -> None:
+    """Impulses that keep contacts from closing where velocities are made to fit the joints were not reported."""
+    space = pymunk.Space()
+    space.gravity = 0.0, -2.0
+    box = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    corners = [(-4.0, -4.0), (4.0, -4.0), (4.0, 4.0), (-4.0, 4.0)]
+    walls = [pymunk.Segment(box, p, q, 0.1) for p, q in zip(corners, corners[1:] + corners[:1], strict=True)]
+    space.add(box, *walls)
+    for wall in walls:
+        wall.friction = 0.5
+    bodies = []
+    for i, mass in enumerate((0.2, 5.0, 1.0)):
+        body = pymunk.Body(mass, 0.3 * mass)
+        body.position, body.velocity, body.angular_velocity = (1.2 * i - 1.2, 0.3 * i), (3.0, -4.0 + i), 3.0 * i - 2.0
+        shape: pymunk.Shape = pymunk.Circle(body, 0.5) if i == 1 else pymunk.Poly.create_box(body, (1.0, 0.6))
+        shape.friction = 0.5
+        space.add(body, shape)
+        bodies.append(body)
+    space.add(*(pymunk.PivotJoint(a, b, (x, 0.2)) for a, b, x in zip(bodies, bodies[1:], (-0.6, 0.6), strict=False)))
+    stepper, largest = ep.EECA(space), 0.0
+    for k in range(int(6.0 / dt)):
+        box.angular_velocity = 0.8 * math.sin(k * dt) if turns else 0.0
+        before = sum((b.mass * b.velocity for b in bodies), pymunk.Vec2d.zero())
+        report = stepper.step(dt)
+        after = sum((b.mass * b.velocity for b in bodies), pymunk.Vec2d.zero())
+        n = report.contacts.normal
+        push = report.impulse[:, None] * n + report.friction[:, None] * np.stack((-n[:, 1], n[:, 0]), axis=1)
+        here = np.array([b is box for b in report.contacts.bodies])
+        sign = 1.0 * here[report.contacts.body_a] - 1.0 * here[report.contacts.body_b]
+        change = np.array(after - before) - 6.2 * dt * np.array(space.gravity)
+        largest = max(largest, float(np.abs(change).max()))
+        assert sign @ push == pytest.approx(change, abs=1e-11 * 6.2 * 10.0)
+    assert largest > 1.0

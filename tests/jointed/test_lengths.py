@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from itertools import pairwise
+from random import Random
 
 import pymunk
 import pytest
@@ -75,3 +77,28 @@ def test_spans_with_joints_end_early_rather_than_joints_give_way() -> None:
         stepper.step(1 / 15)
         ends = joint.a.local_to_world(joint.anchor_a), joint.b.local_to_world(joint.anchor_b)
         assert (ends[0] - ends[1]).length <= 1e-9
+
+
+@pytest.mark.parametrize("seed", [83, 232, 263, 393, 425, 466, 484, 541, 1075, 1326, 2588, 2707])
+def test_what_a_stiff_spring_swings_in_a_step_stays_inside(seed: int) -> None:
+    """The end of an interval in which a spring swings more than once jumps with its length: on the way to the instant
+    at which a body was to meet a wall it was brought to the far side."""
+    R, space = Random(seed), pymunk.Space()
+    for p, q in pairwise([(-5.0, -5.0), (5.0, -5.0), (5.0, 5.0), (-5.0, 5.0), (-5.0, -5.0)]):
+        wall = pymunk.Segment(space.static_body, p, q, 0.0)
+        wall.elasticity = 0.5
+        space.add(wall)
+    heavy, light = pymunk.Body(2000.0, math.inf), pymunk.Body(1.0, 0.1)
+    heavy.position = R.uniform(1, 4), R.uniform(-4, 4)
+    light.position = R.uniform(-4, -2), R.uniform(-4, 4)
+    light.velocity, light.angle = (R.uniform(-90, 90), R.uniform(-90, 90)), R.uniform(0, 3)
+    space.add(heavy, light, pymunk.Circle(heavy, 0.3), pymunk.Poly.create_box(light, (0.8, 0.5)))
+    stiffness, far = 10 ** R.uniform(3, 6), (heavy.position - light.position).length
+    length, damping = R.choice((0.5, 1.0)) * far, R.choice((0, stiffness * 1e-3))
+    space.add(pymunk.DampedSpring(heavy, light, (0, 0), (-0.1, -0.3), length, stiffness, damping))
+    if R.random() < 0.5:
+        light.moment = math.inf
+    stepper, dt = ep.EECA(space), R.choice((1 / 60, 1 / 30, 1 / 10))
+    for _ in range(4):
+        stepper.step(dt)
+        assert max(abs(x) for body in (heavy, light) for x in body.position) < 5.0

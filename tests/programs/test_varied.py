@@ -105,6 +105,38 @@ def test_functions_of_positions_that_do_as_pymunk_change_nothing_beside_handlers
     assert ends[1] == pytest.approx(ends[0], abs=1e-12)
 
 
+@pytest.mark.parametrize("native", [False, True])
+@pytest.mark.parametrize("moment", [1.0, float("inf")])
+def test_functions_of_positions_add_no_correction_of_overlaps_to_the_way(native: bool, moment: float) -> None:
+    """Pymunk's step, by the program or before the handlers of a step, ends with velocities that correct the overlaps of
+    free flight; `update_position` added them to the way of a step, which had no overlaps. Jointed bodies came apart."""
+    ends = []
+    for changed in (False, True):
+        space = pymunk.Space()
+        bodies = [pymunk.Body(1.0, moment) for _ in range(2)]
+        for y, body in zip((0.4, 1.2), bodies, strict=True):
+            body.position, body.velocity = (0.1 * y, y), (0.0, -30.0)
+            space.add(body, pymunk.Poly.create_box(body, (0.6, 0.3)))
+        space.add(pymunk.PivotJoint(bodies[0], bodies[1], (0.1, 0.8)))
+        space.add(pymunk.Segment(space.static_body, (-9.0, 0.0), (9.0, 0.0), 0.1))
+        if not native:
+            space.on_collision(post_solve=lambda *_: None)
+        for body in bodies if changed else ():
+            body.position_func = onward
+        stepper = ep.EECA(space)
+        for _ in range(5):
+            if native:
+                start = [(b.position, b.angle, b.velocity, b.angular_velocity) for b in bodies]
+                space.step(DT)
+                for body, state in zip(bodies, start, strict=True):
+                    body.position, body.angle, body.velocity, body.angular_velocity = state
+                    space.reindex_shapes_for_body(body)
+            stepper.step(DT)
+        ends.append([(*b.position, b.angle) for b in bodies])
+    for one, other in zip(*ends, strict=True):
+        assert one == pytest.approx(other, abs=1e-12)
+
+
 @pytest.mark.parametrize("first", range(0, 120, 20))
 def test_random_compositions_with_all_features_keep_the_laws(first: int) -> None:
     assert play(Varied, range(first, first + 20)) > 0

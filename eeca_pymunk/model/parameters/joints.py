@@ -119,6 +119,7 @@ MEET = round_off(1e-13, "of the smaller shape", "Gap at the located instant of a
 MEET_LOADED = accuracy(1e-06, "of the smaller shape", "Gap at that instant if contacts push on the component.")
 MEET_MANY = accuracy(0.0001, "of the smaller shape", "Gap at that instant if many contacts push on it.")
 MEET_SECANTS = work(5, "iterations", "Secant steps to the instant of an impact on a component, at most.")
+MEET_HALVINGS = work(40, "iterations", "Halvings of the time to an instant before shapes pass each other, at most.")
 MEET_SECANTS_LOADED = work(2, "iterations", "Secant steps to that instant if contacts push on the component.")
 MEET_INSTANT = round_off(1e-12, "of the step", "Length below which an interval before an impact is empty.")
 COLUMN_CONTACTS = work(40, "contacts", "Number up to which a direct solution over components is worth its cost.")
