@@ -47,7 +47,8 @@ EDITS = {
 }
 
 _NUMBER = re.compile(
-    r'^@(?:kernel|uncounted|merged)\n(?:.*\n)*?    """(?:.|\n)*?"""\n(?:.*\n)*?.*?\b(\d*[1-9]\d*\.\d+|\d+\.\d*[1-9])\b',
+    r"^@(?:kernel|nonallocating|inlined)\n(?:.*\n)*?    "
+    r'"""(?:.|\n)*?"""\n(?:.*\n)*?.*?\b(\d*[1-9]\d*\.\d+|\d+\.\d*[1-9])\b',
     re.MULTILINE,
 )
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 
 from .arrays import FloatArray, IntArray
-from .compiled import kernel, uncounted
+from .compiled import kernel, nonallocating
 from .compiled.records import Rows
 from .model.bodies import Body
 from .model.given import DYNAMIC, STATIC, GivenBody, GivenShape
 from .model.shapes import Link, Shape
 
 
-@uncounted
+@nonallocating
 def place_points(BODIES: Rows[GivenBody], SHAPES: Rows[GivenShape], POINT: FloatArray) -> None:
     """Convert the vertices of static shapes to world coordinates, and those of others to coordinates about the centre
     of mass; remove a vertex that repeats the one before: a segment of length 0 is a disk."""
@@ -33,7 +33,7 @@ def place_points(BODIES: Rows[GivenBody], SHAPES: Rows[GivenShape], POINT: Float
         one.first, one.vertices = first, to - first
 
 
-@uncounted
+@nonallocating
 def give_rows(BODIES: Rows[GivenBody], SHAPES: Rows[GivenShape], POINT: FloatArray, ORDER: IntArray) -> int:
     """Number the bodies that are not static: single disks, other dynamic bodies, kinematic ones, each group by `place`.
     ORDER (n,) is scratch.
@@ -61,7 +61,7 @@ def give_rows(BODIES: Rows[GivenBody], SHAPES: Rows[GivenShape], POINT: FloatArr
     return disks
 
 
-@uncounted
+@nonallocating
 def order_shapes(BODIES: Rows[GivenBody], SHAPES: Rows[GivenShape], ground: int, ORDER: IntArray) -> None:
     """Write the shapes into ORDER, sorted by the rows of their bodies (stable; those of the ground last). The rest of
     ORDER is scratch."""
@@ -80,7 +80,7 @@ def order_shapes(BODIES: Rows[GivenBody], SHAPES: Rows[GivenShape], ground: int,
         ORDER[next_one] += 1
 
 
-@uncounted
+@nonallocating
 def lay_shape(POINT: FloatArray, given: GivenShape, SHAPE: Shape, LINK: Link, VERTEX: FloatArray) -> None:
     """Write one shape's vertices, with the outward normals of the edges that begin there, and its sizes."""
     n, first = given.vertices, given.first

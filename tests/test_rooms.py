@@ -158,7 +158,7 @@ def numbered(tree: ast.Module) -> set[str]:
     for kernel in ast.walk(tree):
         if not isinstance(kernel, ast.FunctionDef) or not kernel.decorator_list:
             continue
-        if not {"kernel", "uncounted", "merged"} & {ast.unparse(one) for one in kernel.decorator_list}:
+        if not {"kernel", "nonallocating", "inlined"} & {ast.unparse(one) for one in kernel.decorator_list}:
             continue
         for node in ast.walk(kernel):
             if isinstance(node, ast.Subscript):

@@ -160,7 +160,7 @@ def _copies(side: list[Call], found: dict[Call, Part]) -> set[Call]:
             if (
                 callee not in own
                 and callee not in copied
-                and (callee[0].merged or len(found[callee].bitcode) <= _SMALL)
+                and (callee[0].inlined or len(found[callee].bitcode) <= _SMALL)
             ):
                 copied.add(callee)
                 waiting.append(callee)

@@ -1,7 +1,7 @@
 """Kernels: functions of arrays and numbers that run as machine code.
 
-In: Python functions with one of three decorators (`kernels.py`): `kernel`; `uncounted`, for kernels that create no
-arrays, which is faster; `merged`, for small ones that are inlined. Out: the same functions, run as machine code of a
+In: Python functions with one of three decorators (`kernels.py`): `kernel`; `nonallocating`, for kernels that create no
+arrays, which is faster; `inlined`, for small ones that are inlined. Out: the same functions, run as machine code of a
 library built ahead of time, as code compiled just in time, or as plain Python.
 
 Open first `backend.py`, which chooses among the three. `entries.py` declares the kernels that Python calls,
@@ -11,7 +11,7 @@ JIT import them, other processes only read the version number there.
 """
 
 from .backend import start
-from .kernels import Choice, Kernel, kernel, merged, prepare, uncounted
+from .kernels import Choice, Kernel, inlined, kernel, nonallocating, prepare
 from .prefetch import fetch
 from .tables import Opener, Table, table_of
 
@@ -21,13 +21,13 @@ __all__ = [
     "Opener",
     "Table",
     "fetch",
+    "inlined",
     "kernel",
-    "merged",
+    "nonallocating",
     "plain",
     "prepare",
     "start",
     "table_of",
-    "uncounted",
 ]
 
 

@@ -45,10 +45,10 @@ class Kernel(Compilable, Generic[P, R]):
         run: the code that a call executes; calling `run` directly saves half a microsecond.
     """
 
-    def __init__(self, python: Callable[P, R], counted: bool = True, merged: bool = False) -> None:
+    def __init__(self, python: Callable[P, R], counted: bool = True, inlined: bool = False) -> None:
         functools.update_wrapper(self, python)
         self.python = python
-        self.counted, self.merged = counted, merged
+        self.counted, self.inlined = counted, inlined
         self.name = f"{python.__module__.partition('.')[2]}:{python.__name__}"
         self.run: Callable[P, R] = self._first
         _kernels.append(self)
@@ -96,15 +96,15 @@ def kernel(python: Callable[P, R]) -> Kernel[P, R]:
     return Kernel(python)
 
 
-def uncounted(python: Callable[P, R]) -> Kernel[P, R]:
+def nonallocating(python: Callable[P, R]) -> Kernel[P, R]:
     """A kernel that creates no arrays except views of its arguments. It is compiled without reference counting of
     arrays (numba's `_nrt=False`), which costs two locked instructions for each argument at every call."""
     return Kernel(python, counted=False)
 
 
-def merged(python: Callable[P, R]) -> Kernel[P, R]:
-    """An uncounted kernel whose machine code is inlined into its callers."""
-    return Kernel(python, counted=False, merged=True)
+def inlined(python: Callable[P, R]) -> Kernel[P, R]:
+    """A nonallocating kernel whose machine code is inlined into its callers."""
+    return Kernel(python, counted=False, inlined=True)
 
 
 def kernels() -> dict[str, Kernel[Any, Any]]:

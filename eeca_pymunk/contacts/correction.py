@@ -16,7 +16,7 @@ import math
 import numpy as np
 
 from ..arrays import FlagArray, FloatArray
-from ..compiled import kernel, uncounted
+from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import Problem, Row
 from ..model.parameters.impulses import DENSE_CONTACTS
@@ -93,7 +93,7 @@ def lifting(
     return part * (work + part * square), deepest
 
 
-@uncounted
+@nonallocating
 def least_of(EXTENT: FloatArray, n: int) -> float:
     """The extent of the smallest of n bodies."""
     size = math.inf
@@ -102,7 +102,7 @@ def least_of(EXTENT: FloatArray, n: int) -> float:
     return size
 
 
-@uncounted
+@nonallocating
 def budget_of(ROWS: Rows[Row], m: int, lost: float, owed: float, free: float) -> float:
     """Energy that `lifting` may spend: the losses `lost` of m contacts, less the energy `owed`, and `free`. Elastic
     contacts have none; what they seem to lose is round-off."""
@@ -110,7 +110,7 @@ def budget_of(ROWS: Rows[Row], m: int, lost: float, owed: float, free: float) ->
     return max(budget, 0.0) + free if free > 0.0 else budget
 
 
-@uncounted
+@nonallocating
 def place(END: FloatArray, D: FloatArray, n: int, NEW: FloatArray) -> None:
     """Set NEW = END + D, for n bodies."""
     for i in range(n):
@@ -118,7 +118,7 @@ def place(END: FloatArray, D: FloatArray, n: int, NEW: FloatArray) -> None:
             NEW[i, c] = END[i, c] + D[i, c]
 
 
-@uncounted
+@nonallocating
 def unturn(
     NEW: FloatArray, D: FloatArray, V: FloatArray, IM: FloatArray, II: FloatArray, touched: FlagArray
 ) -> tuple[float, float, float, float, float]:
@@ -150,7 +150,7 @@ def unturn(
     return -gained / inertia, x, y, spin, inertia
 
 
-@uncounted
+@nonallocating
 def turn_by(NEW: FloatArray, touched: FlagArray, turn: float, x: float, y: float, V: FloatArray, at: int) -> None:
     """Add a common spin `turn` about (x, y) to the velocities V[:, at :] of the touched bodies, which are at NEW."""
     for i in range(len(touched)):

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from ..arrays import IntArray
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..layout import BODY_ROW, SPECIAL, STEERED
 from ..model.scene import Scene
 from .single import kinetic
 
 
-@uncounted
+@nonallocating
 def total(A: Scene) -> float:
     """Kinetic energy of all bodies, and potential energy -m g.x in uniform gravity, without bodies that impulses do not
     move."""
@@ -20,7 +20,7 @@ def total(A: Scene) -> float:
     return whole
 
 
-@uncounted
+@nonallocating
 def unsteered(A: Scene, WALK: IntArray) -> float:
     """Kinetic energy of the bodies that the space's damping acts on: those without a velocity function of the
     program."""

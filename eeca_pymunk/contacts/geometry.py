@@ -14,7 +14,7 @@ import math
 import numpy as np
 
 from ..arrays import FloatArray
-from ..compiled import kernel, uncounted
+from ..compiled import kernel, nonallocating
 from ..geometry.manifold import manifold
 from ..geometry.sides import note_side
 from ..model.islands import Contacts, Island
@@ -25,7 +25,7 @@ from ..rows.build import place_row
 from .memory import key_of
 
 
-@uncounted
+@nonallocating
 def way_about(POSE: FloatArray, V: FloatArray, a: int, b: int, extent: float) -> float:
     """Speed of points of local body b, up to `extent` from its centre of mass, in the frame of body a, which
     rotates."""

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import Table, kernel, uncounted
+from ..compiled import Table, kernel, nonallocating
 from ..compiled.records import Rows, empty, zeros
 from ..model.contacts import ROW, SOLVED, Force, Problem
 from ..model.islands import Contacts, contacts_of, island_of
@@ -33,7 +33,7 @@ from .targets import target
 from .works import against, carried, moved
 
 
-@uncounted
+@nonallocating
 def recall(
     KEY: IntArray, m: int, KEYS: IntArray, FORCES: Rows[Force], stamp: float, h: float, L: FloatArray,
     EXPECTED: FloatArray,
@@ -50,7 +50,7 @@ def recall(
             EXPECTED[i] = h * FORCES[row].load
 
 
-@uncounted
+@nonallocating
 def speeds(
     V: FloatArray, ACC: FloatArray, EXTENT: FloatArray, IM: FloatArray, n: int, h: float, REACH: FloatArray
 ) -> tuple[float, float, float]:

@@ -7,19 +7,19 @@ are removed by `forget` when the table fills. COUNT.remembered: rows in use.
 from __future__ import annotations
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import Force, Row
 from ..model.step import Count
 
 
-@uncounted
+@nonallocating
 def key_of(shapes: int, a: int, b: int) -> int:
     """Key of the first contact of shapes a and b, in either order, out of `shapes`; that of the second is 1 more."""
     return (min(a, b) * shapes + max(a, b)) << 1
 
 
-@uncounted
+@nonallocating
 def find(KEYS: IntArray, key: int) -> int:
     """Row of a key, or -1 - (the free row where it would be)."""
     mask = len(KEYS) - 1
@@ -32,7 +32,7 @@ def find(KEYS: IntArray, key: int) -> int:
     return row
 
 
-@uncounted
+@nonallocating
 def remember(
     KEYS: IntArray, FORCES: Rows[Force], COUNT: Count, key: int, normal: float, tangential: float, load: float,
     stamp: float,
@@ -47,7 +47,7 @@ def remember(
     force.normal, force.tangential, force.load, force.stamp = normal, tangential, load, stamp
 
 
-@uncounted
+@nonallocating
 def remember_loads(
     ROWS: Rows[Row], KEY: IntArray, L: FloatArray, m: int, h: float, KEYS: IntArray, FORCES: Rows[Force],
     COUNT: Count, stamp: float,
@@ -61,7 +61,7 @@ def remember_loads(
             remember(KEYS, FORCES, COUNT, KEY[i], L[i, 0] / h, L[i, 1] / h, load / h, stamp)
 
 
-@uncounted
+@nonallocating
 def forget(
     KEYS: IntArray, FORCES: Rows[Force], COUNT: Count, KEYS_2: IntArray, FORCES_2: Rows[Force], stamp: float
 ) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from ..compiled import merged, uncounted
+from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
 from ..geometry.flight import pose
 from ..geometry.gap import gap, gap_at, touching
@@ -15,7 +15,7 @@ from ..pairs.lists import far_apart
 from ..pairs.rules import barred, law
 
 
-@uncounted
+@nonallocating
 def move_to(BODY: Rows[Body], i: int, t: float) -> None:
     """Let the path of body i begin at instant t, with its pose and velocity there."""
     body = BODY[i]
@@ -30,7 +30,7 @@ def move_to(BODY: Rows[Body], i: int, t: float) -> None:
         body.since = t
 
 
-@uncounted
+@nonallocating
 def kinetic(BODY: Rows[Body], i: int) -> float:
     """Kinetic energy of body i; 0 for bodies that impulses do not move."""
     if BODY[i].inv_mass == 0.0:
@@ -41,7 +41,7 @@ def kinetic(BODY: Rows[Body], i: int) -> float:
     )
 
 
-@uncounted
+@nonallocating
 def touches(A: Scene, a: int, b: int, t: float) -> bool:
     """Whether shapes a and b touch at instant t, up to round-off."""
     tolerance = touching(A, a, b)
@@ -53,7 +53,7 @@ def touches(A: Scene, a: int, b: int, t: float) -> bool:
     return gap(A, a, b, t)[0] <= tolerance
 
 
-@merged
+@inlined
 def alone(A: Scene, i: int, other: int, t: float) -> bool:
     """Whether no shape but `other` touches the shapes of body i at instant t."""
     BODY, POOL = A.BODY, A.POOL
@@ -80,7 +80,7 @@ def alone(A: Scene, i: int, other: int, t: float) -> bool:
     return True
 
 
-@uncounted
+@nonallocating
 def note(
     row: Impulse, a: int, b: int, t: float, lam: float, beta: float, nx: float, ny: float, px: float, py: float,
     change: float, gap: float,
@@ -92,13 +92,13 @@ def note(
     row.gap, row.duration = gap, 0.0
 
 
-@uncounted
+@nonallocating
 def law_of_disks(BODY: Rows[Body], i: int, j: int) -> tuple[float, float, float, float]:
     """`law` of two single disks from their rows of BODY, valid without friction and without decisions of handlers."""
     return BODY[i].elasticity * BODY[j].elasticity, BODY[i].friction * BODY[j].friction, 0.0, 0.0
 
 
-@merged
+@inlined
 def strike_disk(A: Scene, i: int, o: int, t: float) -> None:
     """Impact of the single disk i with shape o, another single disk or a static shape.
 

@@ -17,7 +17,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray
-from ..compiled import kernel, uncounted
+from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import Problem, Row
 from ..model.parameters.rest import (
@@ -31,7 +31,7 @@ from ..rows.equilibrium import equilibrium, point_speed
 from ..rows.inplace import copy
 
 
-@uncounted
+@nonallocating
 def set_motionless(ROWS: Rows[Row], V: FloatArray, n: int, m: int, close: float) -> bool:
     """Set the rows' targets and velocities to those without motion; returns whether no surface and none of the fixed
     bodies, from n on, moves. close: speed up to which a gap may still have to close, length/time."""

@@ -14,13 +14,13 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import Row
 from ..model.parameters.intervals import IMPACT_SPEED
 
 
-@uncounted
+@nonallocating
 def sustained(elasticity: float, u: float, along: float, mass: float, expected: float, h: float) -> bool:
     """Whether a contact with e < 1 would bounce back within h, so that its bounces cannot be resolved one by one.
 
@@ -32,7 +32,7 @@ def sustained(elasticity: float, u: float, along: float, mass: float, expected: 
     return elasticity < 1.0 and bounce < 0.5 * max(-along * h, expected / mass)
 
 
-@uncounted
+@nonallocating
 def target(
     A: IntArray, B: IntArray, ROWS: Rows[Row], m: int, ACC: FloatArray, EXPECTED: FloatArray, pull: float, h: float
 ) -> None:

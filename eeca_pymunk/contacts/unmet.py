@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..model.parameters.events import BUDGET_TIME, DIRECT_LOOKS, EVENT_LOOKS, PAIR_LOOKS, SWEEP_LOOKS
 from ..model.parameters.impulses import DENSE_CONTACTS
 from ..model.scene import Scene
 
 
-@uncounted
+@nonallocating
 def note_unmet(A: Scene, kind: int, a: int, b: int, value: float, limit: float) -> None:
     """Note that a quantity of `kind` (`..model.step`) was `value` for shapes a and b (-1: unknown), beyond `limit`.
     Rows of the first ones in a step are stored, all are counted."""
@@ -19,7 +19,7 @@ def note_unmet(A: Scene, kind: int, a: int, b: int, value: float, limit: float) 
         row.kind, row.first, row.second, row.value, row.limit = kind, a, b, value, limit
 
 
-@uncounted
+@nonallocating
 def spend(A: Scene, pairs: int, contacts: int, sweeps: int, direct: int) -> None:
     """Add the work of a contact solve to that of the step: its geometry (`pairs`), sweeps, and direct solves, with
     dense matrices for few contacts."""
@@ -28,7 +28,7 @@ def spend(A: Scene, pairs: int, contacts: int, sweeps: int, direct: int) -> None
     A.COUNT.work += EVENT_LOOKS + int(one)
 
 
-@uncounted
+@nonallocating
 def most_work(A: Scene) -> float:
     """Largest work of the events of this step, in looks."""
     return float(A.COUNT.budget * max(1.0, A.PAR.dt / BUDGET_TIME))

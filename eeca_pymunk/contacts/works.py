@@ -13,12 +13,12 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel, uncounted
+from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import Row
 
 
-@uncounted
+@nonallocating
 def carried(
     A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, VN: FloatArray, IM: FloatArray,
     II: FloatArray, m: int,
@@ -45,7 +45,7 @@ def carried(
     return work
 
 
-@uncounted
+@nonallocating
 def against(ACC: FloatArray, IM: FloatArray, II: FloatArray, n: int, D: FloatArray) -> float:
     """Work of the forces that cause accelerations ACC (k, 3) over displacements D (k, 3), for the first n bodies."""
     work = 0.0

@@ -19,14 +19,14 @@ from __future__ import annotations
 import math
 
 from ..arrays import FloatArray
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..model.parameters.detection import AXIS_TIE, DIRECTION_ROUND_OFF, EDGE_TIE
 from ..model.scene import Scene
 
 _FAR = math.inf
 
 
-@uncounted
+@nonallocating
 def place(A: Scene, s: int, x: float, y: float, angle: float, OUT: FloatArray) -> int:
     """Write vertices and outward normals of shape s, with its body at (x, y, angle), to OUT (.., 4); returns the number
     of vertices.
@@ -51,7 +51,7 @@ def place(A: Scene, s: int, x: float, y: float, angle: float, OUT: FloatArray) -
     return count
 
 
-@uncounted
+@nonallocating
 def separation(P: FloatArray, p: int, Q: FloatArray, q: int) -> tuple[float, int, int]:
     """Largest distance of Q (q vertices) from P (p vertices) along an edge normal of P, that edge, and the vertex of Q
     that is nearest along it; (-inf, 0, 0) for a point P."""
@@ -70,7 +70,7 @@ def separation(P: FloatArray, p: int, Q: FloatArray, q: int) -> tuple[float, int
     return best, edge, vertex
 
 
-@uncounted
+@nonallocating
 def along_edge(P: FloatArray, p: int, edge: int, x: float, y: float) -> tuple[float, float]:
     """Position of the foot of (x, y) along an edge, times the edge's length, and that length squared."""
     end = edge + 1 if edge + 1 < p else 0
@@ -78,7 +78,7 @@ def along_edge(P: FloatArray, p: int, edge: int, x: float, y: float) -> tuple[fl
     return (x - P[edge, 0]) * ex + (y - P[edge, 1]) * ey, ex * ex + ey * ey
 
 
-@uncounted
+@nonallocating
 def vertex_edge(P: FloatArray, p: int, Q: FloatArray, q: int) -> tuple[float, int, int, float, float, bool]:
     """The vertex of P closest to the outline of Q, q > 1: squared distance, vertex, edge, the point of the edge, and
     whether that is inside the edge."""
@@ -105,7 +105,7 @@ def vertex_edge(P: FloatArray, p: int, Q: FloatArray, q: int) -> tuple[float, in
     return best, vertex, edge, fx, fy, inside
 
 
-@uncounted
+@nonallocating
 def prefers_second(
     P: FloatArray, p: int, edge_p: int, apart_p: float, Q: FloatArray, q: int, edge_q: int, apart_q: float, tie: float
 ) -> bool:
@@ -120,7 +120,7 @@ def prefers_second(
     return length_q > length_p * EDGE_TIE
 
 
-@uncounted
+@nonallocating
 def point_core(x: float, y: float, Q: FloatArray, q: int) -> tuple[float, float, float, bool, int, float]:
     """A point and a core: distance, unit normal toward the core, whether that is an edge's, the edge along which the
     core is farthest apart, and how far (-inf without edges)."""
@@ -148,7 +148,7 @@ def point_core(x: float, y: float, Q: FloatArray, q: int) -> tuple[float, float,
     return apart, -Q[edge, 2], -Q[edge, 3], True, edge, apart
 
 
-@uncounted
+@nonallocating
 def closest(
     P: FloatArray, p: int, Q: FloatArray, q: int
 ) -> tuple[float, float, float, float, float, bool, int, float, int, float]:

@@ -12,7 +12,7 @@ import math
 import numpy as np
 
 from ..arrays import FloatArray
-from ..compiled import kernel, uncounted
+from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows, rows
 from ..model.parameters.detection import CORNER_MEET, SLENDER
 from ..model.shapes import Corner, Link, Side
@@ -70,7 +70,7 @@ def find_corners(LINK: Rows[Link], VERTEX: FloatArray, CORNER: Rows[Corner], mov
     return few
 
 
-@uncounted
+@nonallocating
 def may_meet(VERTEX: FloatArray, mine: int, its: int) -> bool:
     """Whether the boxes of two segments overlap, with more room than corners have."""
     ax, ay, bx, by = VERTEX[mine, 0], VERTEX[mine, 1], VERTEX[mine + 1, 0], VERTEX[mine + 1, 1]
@@ -81,7 +81,7 @@ def may_meet(VERTEX: FloatArray, mine: int, its: int) -> bool:
     return bool(across <= room and along <= room)
 
 
-@uncounted
+@nonallocating
 def thin(link: Link, VERTEX: FloatArray) -> bool:
     """Whether a shape is thin: a segment, or a plank, whose area is small against its length."""
     if link.vertices <= 2:
@@ -96,7 +96,7 @@ def thin(link: Link, VERTEX: FloatArray) -> bool:
     return bool(area < SLENDER * (0.5 * length) ** 2)
 
 
-@uncounted
+@nonallocating
 def note_meeting(
     LINK: Rows[Link], VERTEX: FloatArray, CORNER: Rows[Corner], s: int, e: int, j: int
 ) -> None:  # fmt: skip
@@ -123,7 +123,7 @@ def note_meeting(
                 row.other, row.cosine, row.sine = j + 1, c, z
 
 
-@uncounted
+@nonallocating
 def before(z: float, c: float, sine: float, cosine: float) -> bool:
     """Whether the angle of (c, z), from 0 to 2 pi, comes before that of (cosine, sine)."""
     return bool(math.atan2(z, c) % (2.0 * math.pi) < math.atan2(sine, cosine) % (2.0 * math.pi))

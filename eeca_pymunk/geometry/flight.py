@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import math
 
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..model.bodies import Body
 
 
-@uncounted
+@nonallocating
 def norm(x: float, y: float) -> float:
     """Length of a vector; math.hypot, which cannot overflow, takes ten times as long."""
     return math.sqrt(x * x + y * y)
 
 
-@uncounted
+@nonallocating
 def pose(BODY: Rows[Body], i: int, t: float) -> tuple[float, float, float]:
     """Position (length) and angle (rad) of body i at instant t; at t = SINCE the stored ones exactly."""
     s = t - BODY[i].since
@@ -27,7 +27,7 @@ def pose(BODY: Rows[Body], i: int, t: float) -> tuple[float, float, float]:
     )
 
 
-@uncounted
+@nonallocating
 def rate(BODY: Rows[Body], i: int, t: float) -> tuple[float, float, float]:
     """Velocity (length/time) and spin (rad/time) of body i at instant t; at t = SINCE the stored ones exactly."""
     s = t - BODY[i].since

@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import Table, uncounted
+from ..compiled import Table, nonallocating
 from ..model.parameters.detection import CORNER_ROUND_OFF, GAP_ROUND_OFF
 from ..model.scene import Scene, scene_of
 from .convex import place, point_core
@@ -21,7 +21,7 @@ from .flight import pose
 from .sides import closest_on_side
 
 
-@uncounted
+@nonallocating
 def centre(A: Scene, s: int, x: float, y: float, angle: float) -> tuple[float, float]:
     """World position of the one vertex of disk s; that of the body, to the last digit, if it is the centre of mass."""
     px, py = A.VERTEX[A.LINK[s].first, 0], A.VERTEX[A.LINK[s].first, 1]
@@ -33,7 +33,7 @@ def centre(A: Scene, s: int, x: float, y: float, angle: float) -> tuple[float, f
     return x + (c * px - z * py), y + (z * px + c * py)
 
 
-@uncounted
+@nonallocating
 def ordered_gap(
     A: Scene, a: int, x_a: float, y_a: float, angle_a: float, b: int, x_b: float, y_b: float, angle_b: float
 ) -> tuple[float, float, float, float, float]:  # fmt: skip
@@ -61,7 +61,7 @@ def ordered_gap(
     return g, nx, ny, x + away * nx, y + away * ny
 
 
-@uncounted
+@nonallocating
 def gap_at(
     A: Scene, a: int, x_a: float, y_a: float, angle_a: float, b: int, x_b: float, y_b: float, angle_b: float
 ) -> tuple[float, float, float, float, float]:  # fmt: skip
@@ -74,7 +74,7 @@ def gap_at(
     return g, sign * nx, sign * ny, px, py
 
 
-@uncounted
+@nonallocating
 def gap(A: Scene, a: int, b: int, t: float) -> tuple[float, float, float, float, float]:
     """`gap_at` of shapes a and b at instant t of their bodies' paths."""
     x_a, y_a, angle_a = pose(A.BODY, A.LINK[a].owner, t)
@@ -82,7 +82,7 @@ def gap(A: Scene, a: int, b: int, t: float) -> tuple[float, float, float, float,
     return gap_at(A, a, x_a, y_a, angle_a, b, x_b, y_b, angle_b)
 
 
-@uncounted
+@nonallocating
 def gaps(table: Table, PAIRS: IntArray, POSE_A: FloatArray, POSE_B: FloatArray, OUT: FloatArray) -> None:
     """`gap_at` of PAIRS (m, 2) of shapes with their bodies at POSE_A and POSE_B (m, 3): rows (g, n_x, n_y, p_x, p_y) of
     OUT."""
@@ -94,7 +94,7 @@ def gaps(table: Table, PAIRS: IntArray, POSE_A: FloatArray, POSE_B: FloatArray, 
         )  # fmt: skip
 
 
-@uncounted
+@nonallocating
 def touching(A: Scene, a: int, b: int) -> float:
     """Length up to which a gap of shapes a and b is round-off of positions and sizes: they touch exactly.
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 
 from ..arrays import FloatArray
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..model.parameters.detection import FACE_WIDTH
 from ..model.scene import Scene
 from .convex import place, prefers_second
@@ -20,7 +20,7 @@ from .gap import ordered_gap
 from .sides import closest_on_side
 
 
-@uncounted
+@nonallocating
 def clip(
     P: FloatArray, p: int, edge: int, Q: FloatArray, q: int, r_p: float, r_q: float, sign: float, reach: float,
     OUT: FloatArray,
@@ -65,7 +65,7 @@ def clip(
     return count
 
 
-@uncounted
+@nonallocating
 def reverse(OUT: FloatArray, count: int) -> None:
     """Exchange the two shapes of `count` rows: reverse normals, and with them the order along the tangent."""
     for k in range(count):
@@ -75,7 +75,7 @@ def reverse(OUT: FloatArray, count: int) -> None:
             OUT[0, c], OUT[1, c] = OUT[1, c], OUT[0, c]
 
 
-@uncounted
+@nonallocating
 def ordered_manifold(
     A: Scene, s: int, r: int, POSE: FloatArray, a: int, b: int, reach: float, tolerance: float, OUT: FloatArray
 ) -> int:
@@ -102,7 +102,7 @@ def ordered_manifold(
     return clip(P, p, edge_p, Q, q, r_s, r_r, 1.0, reach, OUT)
 
 
-@uncounted
+@nonallocating
 def manifold(
     A: Scene, s: int, r: int, POSE: FloatArray, a: int, b: int, reach: float, tolerance: float, OUT: FloatArray
 ) -> int:
@@ -122,7 +122,7 @@ def manifold(
     return count
 
 
-@uncounted
+@nonallocating
 def support_range(P: FloatArray, p: int, nx: float, ny: float, tolerance: float) -> tuple[float, float, float, float]:
     """Of the vertices of a core that are at most `tolerance` below the highest along n: the least and largest position
     along t = (-n_y, n_x); then the height of the highest, and the extent of the whole core along t."""
@@ -139,7 +139,7 @@ def support_range(P: FloatArray, p: int, nx: float, ny: float, tolerance: float)
     return low, high, top, right - left
 
 
-@uncounted
+@nonallocating
 def common_face(
     P: FloatArray, p: int, Q: FloatArray, q: int, nx: float, ny: float, slack: float
 ) -> tuple[float, float, float, bool]:  # fmt: skip
@@ -151,7 +151,7 @@ def common_face(
     return low, high, top, high - low > FACE_WIDTH * max(size_p, size_q)
 
 
-@uncounted
+@nonallocating
 def face(A: Scene, s: int, r: int, POSE: FloatArray, a: int, b: int, tolerance: float, OUT: FloatArray) -> int:
     """Write the contact of shapes s and r that meet to OUT, as `manifold` does: 2 rows, the ends of their common face,
     if both have an edge normal to n within `tolerance` (length), else 1. The gap is the same at both ends.
@@ -179,7 +179,7 @@ def face(A: Scene, s: int, r: int, POSE: FloatArray, a: int, b: int, tolerance: 
     return count
 
 
-@uncounted
+@nonallocating
 def half_width(A: Scene, s: int) -> float:
     """Half the least width of shape s: a shape that is less deep inside is on the side from which it came."""
     VERTEX, first, count, least = A.VERTEX, A.LINK[s].first, A.LINK[s].vertices, math.inf

@@ -22,7 +22,7 @@ from __future__ import annotations
 import math
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import Table, uncounted
+from ..compiled import Table, nonallocating
 from ..compiled.records import Rows
 from ..model.parameters.detection import STRAIGHT
 from ..model.parameters.intervals import INTERVAL_DEPTH_LEAST, INTERVAL_WAY
@@ -34,7 +34,7 @@ _PROBES = 16  # rows in which a pair may be
 _SCATTER = 40503
 
 
-@uncounted
+@nonallocating
 def remembers(A: Scene, a: int, b: int) -> bool:
     """Whether shapes a and b are thin, in a scene that remembers sides."""
     if len(A.SIDE) == 0 or A.LINK[a].vertices < 2 or A.LINK[b].vertices < 2:
@@ -42,13 +42,13 @@ def remembers(A: Scene, a: int, b: int) -> bool:
     return bool(A.CORNER[4 * a].thin > 0 and A.CORNER[4 * b].thin > 0)
 
 
-@uncounted
+@nonallocating
 def key_of(A: Scene, a: int, b: int) -> int:
     """The number of the pair a < b in the memory."""
     return 1 + a * len(A.SHAPE) + b
 
 
-@uncounted
+@nonallocating
 def side_row(A: Scene, key: int) -> int:
     """Row of a pair in the memory, else a free one for it, if there is any within _PROBES rows, else one to be
     replaced."""
@@ -61,13 +61,13 @@ def side_row(A: Scene, key: int) -> int:
     return first
 
 
-@uncounted
+@nonallocating
 def smaller(A: Scene, a: int, b: int) -> float:
     """The smaller extent of two shapes, length."""
     return min(A.SHAPE[a].extent, A.SHAPE[b].extent)
 
 
-@uncounted
+@nonallocating
 def note_side(A: Scene, a: int, b: int, nx: float, ny: float, held: bool) -> None:
     """Remember the normal n from shape a to shape b; `held` if forces hold them in contact."""
     if not remembers(A, a, b):
@@ -80,20 +80,20 @@ def note_side(A: Scene, a: int, b: int, nx: float, ny: float, held: bool) -> Non
     side.deep = INTERVAL_WAY * smaller(A, a, b) if held else 0.0
 
 
-@uncounted
+@nonallocating
 def near_side(A: Scene, a: int, b: int) -> float:
     """Distance of cores (length) up to which the memory determines their side."""
     return INTERVAL_DEPTH_LEAST * smaller(A, a, b)
 
 
-@uncounted
+@nonallocating
 def known_side(A: Scene, a: int, b: int) -> bool:
     """Whether the pair a < b of thin shapes has a remembered normal."""
     key = key_of(A, a, b)
     return bool(A.SIDE[side_row(A, key)].key == key)
 
 
-@uncounted
+@nonallocating
 def forget_sides(A: Scene, i: int) -> None:
     """Forget the sides of all shapes of body i, which the program has placed."""
     SIDE, LINK, shapes = A.SIDE, A.LINK, len(A.SHAPE)
@@ -103,7 +103,7 @@ def forget_sides(A: Scene, i: int) -> None:
             SIDE[row].key = -1  # deleted, not free: rows after it may belong to other pairs
 
 
-@uncounted
+@nonallocating
 def keep_sides(TABLE: Table, KNOWN: Rows[Side], PLACE: IntArray) -> None:
     """Remember the sides KNOWN of pairs of k shapes whose present numbers, PLACE (k,), are not -1."""
     A, k = scene_of(TABLE), PLACE.shape[0]
@@ -120,7 +120,7 @@ def keep_sides(TABLE: Table, KNOWN: Rows[Side], PLACE: IntArray) -> None:
         side.key, side.nx, side.ny, side.deep = key, sign * known.nx, sign * known.ny, known.deep
 
 
-@uncounted
+@nonallocating
 def axis(
     P: FloatArray, p: int, Q: FloatArray, q: int, sign: float, mx: float, my: float
 ) -> tuple[float, int, int]:  # fmt: skip
@@ -140,7 +140,7 @@ def axis(
     return best, edge, vertex
 
 
-@uncounted
+@nonallocating
 def side_of(A: Scene, a: int, b: int) -> tuple[float, float]:
     """The remembered normal from shape a to shape b, (0, 0) if there is none."""
     sign = 1.0
@@ -153,7 +153,7 @@ def side_of(A: Scene, a: int, b: int) -> tuple[float, float]:
     return sign * side.nx, sign * side.ny
 
 
-@uncounted
+@nonallocating
 def corner_of(
     A: Scene, W: FloatArray, w: int, o: int, x: float, y: float, deep: float
 ) -> tuple[int, float, float]:  # fmt: skip
@@ -182,7 +182,7 @@ def corner_of(
     return -1, 0.0, 0.0
 
 
-@uncounted
+@nonallocating
 def closest_on_side(
     A: Scene, P: FloatArray, p: int, Q: FloatArray, q: int, a: int, b: int
 ) -> tuple[float, float, float, float, float, bool, int, float, int, float]:  # fmt: skip

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from ..arrays import IntArray
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..contacts.energy import total, unsteered
 from ..geometry.sides import forget_sides
 from ..islands.accounting import flag_pairs
@@ -16,7 +16,7 @@ from ..model.parameters.rest import REST_RETRY
 from ..model.scene import Scene
 
 
-@uncounted
+@nonallocating
 def begin(A: Scene, WALK: IntArray) -> None:
     """Set instants relative to the start of this step, reset its counters and ledger, and mark the bodies to be
     predicted: edited ones, and those whose predicted events are due."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from ..arrays import IntArray
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..contacts.energy import total, unsteered
 from ..contacts.single import move_to
 from ..geometry.gap import gap_at
@@ -16,7 +16,7 @@ from ..model.bodies import AT_REST, CANDIDATE
 from ..model.scene import Scene
 
 
-@uncounted
+@nonallocating
 def close(A: Scene, WALK: IntArray) -> None:
     """Move all bodies to the end of the step, end islands' intervals, enter the work of forces and the energy in the
     ledger, and compute the gaps at the start of the step of logged impulses."""

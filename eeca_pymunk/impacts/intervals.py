@@ -3,7 +3,7 @@ early."""
 
 from __future__ import annotations
 
-from ..compiled import kernel, uncounted
+from ..compiled import kernel, nonallocating
 from ..contacts.unmet import most_work, note_unmet
 from ..islands.accounting import close_interval
 from ..islands.building import build_islands
@@ -18,7 +18,7 @@ from ..model.step import DONE, PUSHES_FULL, SOLVES
 from ..prediction.scheduling import predict_all
 
 
-@uncounted
+@nonallocating
 def start_interval(A: Scene, J: Joints, root: int, t: float) -> int:
     """Begin an interval of an island at instant t, at which all its bodies are. Returns DONE, or PUSHES_FULL (more
     memory is needed), which leaves everything as it was; with joints also SPENT, likewise, if the budget of the step is

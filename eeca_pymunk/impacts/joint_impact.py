@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel, uncounted
+from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows, zeros
 from ..contacts.works import carried
 from ..islands.building import comes_to_rest
@@ -28,7 +28,7 @@ from .resolution import finish, rejoin
 from .simultaneous import Block, energy_owed, gather, lay_out
 
 
-@uncounted
+@nonallocating
 def energy_of(block: Block, V: FloatArray, W: FloatArray, n: int) -> float:
     """Kinetic energy of the n bodies of a block at velocities V - W, (k, 3) each."""
     total = 0.0
@@ -40,7 +40,7 @@ def energy_of(block: Block, V: FloatArray, W: FloatArray, n: int) -> float:
     return total
 
 
-@uncounted
+@nonallocating
 def carried_along(J: Joints, s: int) -> bool:
     """Whether component s is jointed to a moving partner; its bodies are in the scratch of `..joints`."""
     for i in range(J.COMPONENT[s].end_body - J.COMPONENT[s].first_body):
@@ -51,7 +51,7 @@ def carried_along(J: Joints, s: int) -> bool:
     return False
 
 
-@uncounted
+@nonallocating
 def closes(P: IntArray, Q: IntArray, ROWS: Rows[Row], BEFORE: FloatArray, V: FloatArray, rows: int) -> bool:
     """Whether a contact closes by more than round-off at the velocities V after an impact, BEFORE being those before
     it: then the velocities did not satisfy the joints, and the same impact would repeat at the same instant."""

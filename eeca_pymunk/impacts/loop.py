@@ -6,7 +6,7 @@ older path version of the partner is predicted again when it is taken from the q
 
 from __future__ import annotations
 
-from ..compiled import kernel, merged, uncounted
+from ..compiled import inlined, kernel, nonallocating
 from ..contacts.single import alone, strike_disk
 from ..contacts.unmet import most_work, note_unmet
 from ..geometry.sides import remembers
@@ -34,7 +34,7 @@ from .simultaneous import bring_to
 _ROOM = 64  # contacts that an impact on joints may add, at least
 
 
-@merged
+@inlined
 def met_too_often(A: Scene, i: int, j: int) -> bool:
     """Whether one of bodies i and j has had as many impacts as a step allows: COUNT.limit, or RESOLUTION between bodies
     that moving fixed ones may squeeze."""
@@ -48,7 +48,7 @@ def met_too_often(A: Scene, i: int, j: int) -> bool:
     return carried and max(A.STATE[i].events, A.STATE[j].events) >= RESOLUTION
 
 
-@uncounted
+@nonallocating
 def run(A: Scene, may_rest: bool) -> int:
     """Process events up to the end of the step, or up to the next one that the loop does not process itself (BLOCK_DUE)
     or that needs more memory.
@@ -118,14 +118,14 @@ def run(A: Scene, may_rest: bool) -> int:
         one, two = a, b if o < disks else -1
 
 
-@uncounted
+@nonallocating
 def has_room(A: Scene) -> bool:
     """Whether there is memory for the contacts that an impact on islands with joints may add."""
     more = 2 * A.COUNT.pushes + _ROOM
     return bool(more <= A.PUSHED.shape[0] and 2 * (A.COUNT.remembered + more) <= A.KEYS.shape[0])
 
 
-@uncounted
+@nonallocating
 def end_of_interval(A: Scene, J: Joints, i: int, t: float) -> int:
     """End the interval of the island of body i at instant t, within the step. Writes its bodies to A.BLOCK; returns
     their number."""

@@ -8,7 +8,7 @@ contacts too, and all is solved again, MIDSTEP_PASSES times at most.
 from __future__ import annotations
 
 from ..arrays import FloatArray
-from ..compiled import kernel, uncounted
+from ..compiled import kernel, nonallocating
 from ..geometry.flight import norm, pose
 from ..geometry.gap import gap
 from ..islands.candidates import travel_bound
@@ -23,7 +23,7 @@ from ..pairs.rules import barred
 from .intervals import start_interval
 
 
-@uncounted
+@nonallocating
 def list_reach(A: Scene, USUAL: FloatArray, i: int) -> bool:
     """Extend the near lists of body i to all that it may reach within the step; False if they need more memory. USUAL:
     see `act_together`."""
@@ -34,7 +34,7 @@ def list_reach(A: Scene, USUAL: FloatArray, i: int) -> bool:
     return True
 
 
-@uncounted
+@nonallocating
 def join_all(A: Scene, USUAL: FloatArray) -> bool:
     """Build islands of all bodies that may touch within the step, or are jointed; False if near lists need more
     memory."""
@@ -63,7 +63,7 @@ def join_all(A: Scene, USUAL: FloatArray) -> bool:
     return True
 
 
-@uncounted
+@nonallocating
 def undo_intervals(A: Scene) -> None:
     """Undo the intervals begun so far: no body is in an island, and no impulse has changed a path."""
     for c in range(A.COUNT.pushes):
@@ -74,7 +74,7 @@ def undo_intervals(A: Scene) -> None:
         A.BODY[i].ax, A.BODY[i].ay, A.BODY[i].angular = A.PULL[i, 0], A.PULL[i, 1], A.PULL[i, 2]
 
 
-@uncounted
+@nonallocating
 def missed_bodies(A: Scene, USUAL: FloatArray) -> int:
     """Number of bodies that travel farther than their bound, and into others that are no contacts of the solve; their
     speed bounds are increased to that. -1 if near lists need more memory."""

@@ -8,7 +8,7 @@ import math
 import numpy as np
 
 from ..arrays import FloatArray
-from ..compiled import kernel, uncounted
+from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows, zeros
 from ..contacts.single import note
 from ..contacts.unmet import note_unmet, spend
@@ -23,7 +23,7 @@ from ..rows.blocks import CONVERGED, solve_block
 from .simultaneous import Block, energy_owed, gather, lay_out
 
 
-@uncounted
+@nonallocating
 def finish(A: Scene, block: Block, n: int, m: int, L: FloatArray, OUT: Rows[Solved], status: int, t: float) -> None:
     """Write the velocities of a block of n bodies and m pairs after its impulses L to BODY, and enter losses and
     impulses in ledger and log. status, OUT: result and report of `..rows.blocks.solve_block`."""
@@ -53,7 +53,7 @@ def finish(A: Scene, block: Block, n: int, m: int, L: FloatArray, OUT: Rows[Solv
     COUNT.blocks += 1 if m > 1 else 0
 
 
-@uncounted
+@nonallocating
 def holds_joints(A: Scene, n: int) -> bool:
     """Whether any of the n bodies in A.BLOCK is jointed, or in an island with joints."""
     for q in range(n):

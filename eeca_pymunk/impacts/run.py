@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import Table, kernel, uncounted
+from ..compiled import Table, kernel, nonallocating
 from ..layout import BODY_ROW, LEFT
 from ..layout import NOW as READ
 from ..model.joints import joints_of
@@ -20,7 +20,7 @@ ROOM_FOR_IMPACTS = -13  # status of a run that needs more rows of EVENTS
 ENERGY = -5  # and of one whose energy overflows
 
 
-@uncounted
+@nonallocating
 def carry_on(STATES: FloatArray, WALK: IntArray) -> None:
     """Let the next step begin with the poses and velocities at the end of the last one, without forces."""
     now, after = STATES[READ], STATES[LEFT]
@@ -32,7 +32,7 @@ def carry_on(STATES: FloatArray, WALK: IntArray) -> None:
                 now[i, c] = 0.0
 
 
-@uncounted
+@nonallocating
 def set_back(A: Scene, F: RunArrays, STATES: FloatArray, WALK: IntArray) -> None:
     """Begin a rollout: clear the results of earlier steps, and set bodies to INITIAL."""
     now, after = STATES[READ], STATES[LEFT]
@@ -56,7 +56,7 @@ def set_back(A: Scene, F: RunArrays, STATES: FloatArray, WALK: IntArray) -> None
     F.COUNTS[F.RUN.rollout, 0] = 0
 
 
-@uncounted
+@nonallocating
 def before_step(A: Scene, F: RunArrays, STATES: FloatArray, WALK: IntArray) -> None:
     """Set the states from which the next step starts."""
     RUN, now = F.RUN, STATES[READ]
@@ -72,7 +72,7 @@ def before_step(A: Scene, F: RunArrays, STATES: FloatArray, WALK: IntArray) -> N
                 now[F.KEPT[q], 6 + c] = F.PUSH[RUN.frame * b + q, c]
 
 
-@uncounted
+@nonallocating
 def after_step(A: Scene, F: RunArrays, STATES: FloatArray) -> int:
     """Store the results of a step. Returns 0, or ENERGY or ROOM_FOR_IMPACTS with nothing done."""
     RUN, PAR, COUNT, LOG, T = F.RUN, A.PAR, A.COUNT, A.LOG, F.TOTAL
@@ -120,7 +120,7 @@ def after_step(A: Scene, F: RunArrays, STATES: FloatArray) -> int:
     return 0
 
 
-@uncounted
+@nonallocating
 def next_rollout(F: RunArrays) -> bool:
     """Proceed to the next rollout; False if there is none."""
     RUN = F.RUN

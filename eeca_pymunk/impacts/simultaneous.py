@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel, uncounted
+from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows, empty
 from ..contacts.single import move_to, touches
 from ..geometry.flight import pose, rate
@@ -29,7 +29,7 @@ from ..rows.build import normal_rate, place_row
 from ..rows.inplace import sort
 
 
-@uncounted
+@nonallocating
 def takes_part(A: Scene, s: int, o: int, t: float) -> bool:
     """Whether shapes s and o touch at instant t, or are a loaded contact of an island."""
     if barred(A.RULE, s, o):
@@ -42,7 +42,7 @@ def takes_part(A: Scene, s: int, o: int, t: float) -> bool:
     return remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], s, o, A.PAR.stamp)[0] > 0.0
 
 
-@uncounted
+@nonallocating
 def bring_to(A: Scene, i: int, t: float) -> None:
     """Move body i to instant t, and end the interval of its island there, unless that has joints."""
     root = A.STATE[i].island
@@ -53,7 +53,7 @@ def bring_to(A: Scene, i: int, t: float) -> None:
     move_to(A.BODY, i, t)
 
 
-@uncounted
+@nonallocating
 def add_component(A: Scene, i: int, n: int, t: float) -> int:
     """Add body i, and all bodies of its component, to the n bodies in A.BLOCK, and move them to instant t; returns
     their number."""
@@ -113,7 +113,7 @@ def gather(A: Scene, a: int, b: int, t: float) -> tuple[int, int, IntArray]:
     return n, m, PAIRS[:m]
 
 
-@uncounted
+@nonallocating
 def energy_owed(A: Scene, n: int) -> tuple[float, bool]:
     """Energy owed by the islands of the n bodies in A.BLOCK, which their block is to take out, and whether there are
     any islands."""

@@ -8,7 +8,7 @@ momentum, since the arms are those of the middle of the whole interval.
 
 from __future__ import annotations
 
-from ..compiled import Table, uncounted
+from ..compiled import Table, nonallocating
 from ..contacts.single import move_to, note
 from ..model.bodies import AT_REST, CHANGED
 from ..model.contacts import ENDED, LASTED
@@ -20,13 +20,13 @@ from .membership import unite
 from .rest import spins_freely
 
 
-@uncounted
+@nonallocating
 def flag_again(TABLE: Table) -> None:
     """Set the flags of the pairs of all intervals in near lists that were made again. TABLE: `table_of` a Scene."""
     flag_pairs(scene_of(TABLE))
 
 
-@uncounted
+@nonallocating
 def flag_pairs(A: Scene) -> None:
     """Set the flags in the near lists of the pairs that are contacts of intervals, so that they are not predicted."""
     for c in range(A.COUNT.pushes):
@@ -35,7 +35,7 @@ def flag_pairs(A: Scene) -> None:
             mark_pair(A, a, b, 1)
 
 
-@uncounted
+@nonallocating
 def account_contact(A: Scene, c: int, t: float) -> None:
     """Enter the losses of contact c of an interval up to instant t in the ledger, log its impulse, and end it.
 
@@ -69,7 +69,7 @@ def account_contact(A: Scene, c: int, t: float) -> None:
         COUNT.logged += 1
 
 
-@uncounted
+@nonallocating
 def angular_gain(A: Scene, c: int, t: float) -> float:
     """Angular momentum that contact c adds if its interval h is cut after s, since its arms are those of the middle of
     the whole: -(1/2) s (h - s) (v_b - v_a) x f, with the force f and v at the start of the interval. t: the instant of
@@ -85,7 +85,7 @@ def angular_gain(A: Scene, c: int, t: float) -> float:
     return -0.5 * s * max(h - s, 0.0) * (vx * fy - vy * fx)
 
 
-@uncounted
+@nonallocating
 def remove_angular_momentum(A: Scene, root: int, excess: float) -> None:
     """Remove the angular momentum `excess` of a free island, whose bodies are at one instant, by a common rotation,
     which changes no contact's velocity; free spins stay as they are. The change of energy counts as restitution."""
@@ -123,7 +123,7 @@ def remove_angular_momentum(A: Scene, root: int, excess: float) -> None:
     A.RESTING[root].lost += lost
 
 
-@uncounted
+@nonallocating
 def wake(A: Scene, root: int, t: float) -> int:
     """Wake an island at rest at instant t: it and the islands that it supports end their intervals and become one.
     Returns its root."""
@@ -138,7 +138,7 @@ def wake(A: Scene, root: int, t: float) -> int:
     return one
 
 
-@uncounted
+@nonallocating
 def end_interval(A: Scene, root: int, t: float) -> None:
     """End the interval of an island at instant t; of an island at rest also those of the islands that it supports."""
     if A.MEMBER[root].rest == AT_REST:
@@ -147,7 +147,7 @@ def end_interval(A: Scene, root: int, t: float) -> None:
         close_interval(A, root, t)
 
 
-@uncounted
+@nonallocating
 def close_interval(A: Scene, root: int, t: float) -> None:
     """End the interval of one island at instant t: account its contacts, and move its bodies to their poses at t."""
     free, excess = A.MEMBER[root].jointed == 0, 0.0
@@ -170,7 +170,7 @@ def close_interval(A: Scene, root: int, t: float) -> None:
         remove_angular_momentum(A, root, excess)
 
 
-@uncounted
+@nonallocating
 def move_to_end(A: Scene, i: int, end: float) -> None:
     """Move body i of an island with joints to the end of its interval, and apply its correction, which the ledger of
     joints accounts (`..jointed.ledger`)."""
@@ -183,7 +183,7 @@ def move_to_end(A: Scene, i: int, end: float) -> None:
     rest.lift_x, rest.lift_y, rest.lift_angle = 0.0, 0.0, 0.0
 
 
-@uncounted
+@nonallocating
 def apply_correction(A: Scene, root: int, end: float) -> None:
     """Apply the penetration correction D, dv of an island's bodies at the end of its interval. It costs the change of
     kinetic energy, less the work of forces m a.D + I alpha dtheta; losses of the step pay it, or external work where a

@@ -10,7 +10,7 @@ supports it moves, and always in spaces with collision handlers.
 
 from __future__ import annotations
 
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..contacts.memory import find, key_of
 from ..contacts.single import kinetic, note
 from ..model.bodies import AT_REST, AWAKE, CHANGED
@@ -21,7 +21,7 @@ from ..pairs.lists import mark_pair
 from .rest import candidate_speed, speed, spins_freely
 
 
-@uncounted
+@nonallocating
 def unchanged(A: Scene, i: int) -> bool:
     """Whether body i has no velocity, apart from a free spin, and the pose that the last step has left."""
     BODY, BEGAN = A.BODY, A.BEGAN
@@ -29,7 +29,7 @@ def unchanged(A: Scene, i: int) -> bool:
     return bool(same and BODY[i].vx == 0.0 and BODY[i].vy == 0.0 and (BODY[i].spin == 0.0 or spins_freely(A, i)))
 
 
-@uncounted
+@nonallocating
 def stays_at_rest(A: Scene, i: int, last: float) -> bool:
     """Whether nothing has changed for body i of an island at rest, at the start of a step; `last`: length of the last
     step. Then its path remains and its predicted event comes `last` earlier; else its island is CHANGED."""
@@ -45,14 +45,14 @@ def stays_at_rest(A: Scene, i: int, last: float) -> bool:
     return True
 
 
-@uncounted
+@nonallocating
 def note_motion(A: Scene, i: int) -> None:
     """Set `rest` of body i, which impulses do not move: CHANGED if it was moved since the last step or has a velocity,
     else AWAKE."""
     A.MEMBER[i].rest = AWAKE if unchanged(A, i) else CHANGED
 
 
-@uncounted
+@nonallocating
 def renew_forces(A: Scene, c: int, stamp: float) -> None:
     """Set the stamp of the remembered forces of contact c, if they are of the last step, to that of the step
     `stamp`."""
@@ -64,7 +64,7 @@ def renew_forces(A: Scene, c: int, stamp: float) -> None:
             A.FORCES[row].stamp = stamp
 
 
-@uncounted
+@nonallocating
 def wake_supported(A: Scene) -> None:
     """Set islands CHANGED that are supported by islands that are CHANGED, and so on."""
     MEMBER, more = A.MEMBER, A.COUNT.may_support > 0
@@ -81,7 +81,7 @@ def wake_supported(A: Scene) -> None:
                     MEMBER[root].rest, more = CHANGED, True
 
 
-@uncounted
+@nonallocating
 def wake_changed(A: Scene) -> None:
     """At the start of a step: dissolve all islands but those at rest that nothing has changed. The contacts of these
     stay in PUSHED, with the impulses of this step; the others are LASTED. Also advances rest timers."""
@@ -138,7 +138,7 @@ def wake_changed(A: Scene) -> None:
             MEMBER[i].rest = AWAKE
 
 
-@uncounted
+@nonallocating
 def mark_changed(A: Scene, root: int) -> None:
     """Set the bodies of an island at rest AWAKE that is hit or joined in this step; its interval is solved as any
     other."""
@@ -151,7 +151,7 @@ def mark_changed(A: Scene, root: int) -> None:
         i = A.MEMBER[i].following
 
 
-@uncounted
+@nonallocating
 def continue_contact(A: Scene, c: int, root: int) -> None:
     """Keep contact c, which has just been accounted, for the next step, as its island comes to rest."""
     R = A.PUSHED[c]
@@ -160,7 +160,7 @@ def continue_contact(A: Scene, c: int, root: int) -> None:
     R.un_before, R.un_after, R.ut_before, R.ut_after, R.work, R.held = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
 
 
-@uncounted
+@nonallocating
 def report_at_rest(A: Scene, c: int) -> None:
     """At the end of a step: log the impulse of contact c of an island at rest, and renew its remembered forces."""
     R = A.PUSHED[c]
@@ -174,7 +174,7 @@ def report_at_rest(A: Scene, c: int) -> None:
         A.COUNT.logged += 1
 
 
-@uncounted
+@nonallocating
 def stop(A: Scene, i: int) -> None:
     """Set the velocity of body i to 0, apart from a free spin; its kinetic energy is lost to restitution."""
     BODY = A.BODY
@@ -187,7 +187,7 @@ def stop(A: Scene, i: int) -> None:
     A.STATE[i].version += 1
 
 
-@uncounted
+@nonallocating
 def put_to_rest(A: Scene, root: int) -> None:
     """At the start or the end of a step: put an island to rest. Its bodies stop, apart from free spins."""
     BODY, MEMBER = A.BODY, A.MEMBER
@@ -200,7 +200,7 @@ def put_to_rest(A: Scene, root: int) -> None:
         i = MEMBER[i].following
 
 
-@uncounted
+@nonallocating
 def store_rest(A: Scene) -> None:
     """At the end of a step: store the poses of bodies at rest, and the instants of their next events, which the next
     step compares."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import IntArray
-from ..compiled import kernel, uncounted
+from ..compiled import kernel, nonallocating
 from ..contacts.single import move_to
 from ..geometry.flight import norm
 from ..geometry.manifold import half_width
@@ -40,7 +40,7 @@ from .penetration import hold_penetrating
 from .support import support
 
 
-@uncounted
+@nonallocating
 def join_neighbours(A: Scene, i: int, t: float, FOUND: IntArray) -> int:
     """At instant t, unite body i, which is in an island, with the bodies that touch it; if `busy`, with those that come
     near. Writes those that were in no island to FOUND; returns their number."""
@@ -87,7 +87,7 @@ def join_neighbours(A: Scene, i: int, t: float, FOUND: IntArray) -> int:
     return joined
 
 
-@uncounted
+@nonallocating
 def spread(A: Scene, QUEUE: IntArray, queued: int, t: float) -> int:
     """Call `join_neighbours` for the bodies of QUEUE, `queued` so many, and for those that join; returns their
     number."""
@@ -164,7 +164,7 @@ def build_islands(A: Scene) -> int:
     return DONE
 
 
-@uncounted
+@nonallocating
 def comes_to_rest(A: Scene, a: int, b: int, t: float) -> bool:
     """Whether the contact of shapes a and b, which meet at instant t, persists from then on. For e < 1: all bounces of
     e |u| under the closing acceleration a_n end within the step, 2 e |u| <= a_n (1 - e) (dt - t), or a body had
@@ -188,7 +188,7 @@ def comes_to_rest(A: Scene, a: int, b: int, t: float) -> bool:
     return A.PAR.pulled > 0.0 and persists(A, a, b, t, False)
 
 
-@uncounted
+@nonallocating
 def hits_of(A: Scene, a: int, b: int) -> int:
     """Number of hits in this step on the islands of shapes a and b, the larger one."""
     hits = 0
@@ -199,7 +199,7 @@ def hits_of(A: Scene, a: int, b: int) -> int:
     return hits
 
 
-@uncounted
+@nonallocating
 def most_hits(A: Scene, a: int, b: int) -> int:
     """Largest number of hits in a step on the islands of shapes a and b: RESOLUTION; of lossy ones that divided by the
     number of bodies, or by half of it where bodies hang together by joints, which a hit moves all at once."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel, uncounted
+from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..geometry.flight import norm
 from ..model.contacts import Row
@@ -28,7 +28,7 @@ from .depths import too_deep
 from .membership import approach, fixed_support, persists, remembered
 
 
-@uncounted
+@nonallocating
 def travel_bound(A: Scene, i: int, h: float) -> float:
     """Bound of the distance that points of body i travel in a time h, with a margin; for `Midstep`."""
     pulled = 0.5 * A.PAR.pulled * h if A.BODY[i].inv_mass > 0.0 else 0.0
@@ -101,7 +101,7 @@ def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: Int
     return found[:p]
 
 
-@uncounted
+@nonallocating
 def in_haste(A: Scene) -> bool:
     """Whether intervals last to the end of the step: for `Midstep`, and after about as many solves in the step as there
     are bodies."""
@@ -109,20 +109,20 @@ def in_haste(A: Scene) -> bool:
     return A.COUNT.together > 0 or A.COUNT.solves >= max(RESOLUTION - 2.0 * bodies, bodies)
 
 
-@uncounted
+@nonallocating
 def before_end(A: Scene, t: float) -> bool:
     """Whether instant t is before the end of the step, by more than round-off."""
     return bool(t < A.PAR.dt * (1.0 - 1e-12))
 
 
-@uncounted
+@nonallocating
 def sweeps_of_large(t: float) -> int:
     """Sweeps of a large island in an interval from instant t on: fewer after a hit, as the forces of the interval
     before are a good start."""
     return LARGE_SWEEPS if t == 0.0 else LARGE_SWEEPS_HIT
 
 
-@uncounted
+@nonallocating
 def interval_length(A: Scene, found: IntArray, t: float) -> float:
     """Length of an interval from instant t: to the end of the step, or until a normal of the pairs `found` (p, 2) may
     have rotated by NORMAL_TURN. Normals rotate with polygons and segments, and as circles move around each other.
@@ -146,7 +146,7 @@ def interval_length(A: Scene, found: IntArray, t: float) -> float:
     return min(max(NORMAL_TURN / rate, A.PAR.dt / RESOLUTION), h)
 
 
-@uncounted
+@nonallocating
 def interval_within_way(A: Scene, found: IntArray, h: float) -> float:
     """The part of an interval h in which bodies of the pairs `found` move relative to each other by at most
     INTERVAL_WAY of the size of the smaller one, and rotate by at most that angle, at their present velocities."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel, uncounted
+from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..geometry.gap import gap_at
 from ..geometry.manifold import half_width
@@ -16,14 +16,14 @@ from ..model.parameters.intervals import INTERVAL_DEPTH, INTERVAL_DEPTH_LEAST, I
 from ..model.scene import Scene
 
 
-@uncounted
+@nonallocating
 def depth_limit(small: float, thick: float) -> float:
     """Depth (length) by which a contact may close in one interval. small: the smaller extent of both shapes.  thick:
     the sum of their half widths."""
     return max(min(INTERVAL_DEPTH * small, INTERVAL_DEPTH_WIDTH * thick), INTERVAL_DEPTH_LEAST * small)
 
 
-@uncounted
+@nonallocating
 def driven(A: Scene, isle: Island, P: IntArray, Q: IntArray, ROWS: Rows[Row], KEY: IntArray, n: int, m: int) -> bool:
     """Whether a moving body without mobility is deeper in an island of n bodies, at any of m contacts, than an interval
     allows: the work of lifting is then external, as losses do not suffice."""
@@ -41,7 +41,7 @@ def driven(A: Scene, isle: Island, P: IntArray, Q: IntArray, ROWS: Rows[Row], KE
     return False
 
 
-@uncounted
+@nonallocating
 def too_deep(A: Scene, a: int, b: int, gap: float, closing: float) -> float:
     """How many times too long an interval is in which a contact of shapes a and b with this gap closes by `closing`
     (lengths); 0 if it is not."""

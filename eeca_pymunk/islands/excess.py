@@ -12,13 +12,13 @@ so that D(q) = 0 for q = (W - B) / C, or 0 if that is negative.
 
 from __future__ import annotations
 
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..contacts.single import move_to
 from ..model.parameters.intervals import REPAY_ROUND_OFF
 from ..model.scene import Scene
 
 
-@uncounted
+@nonallocating
 def scale_forces(A: Scene, root: int, q: float) -> None:
     """Scale the contact forces of an island's interval by q, whose bodies are at its start, and set their losses to
     0."""
@@ -36,7 +36,7 @@ def scale_forces(A: Scene, root: int, q: float) -> None:
             R.un_before, R.un_after, R.ut_before, R.ut_after = 0.0, 0.0, 0.0, 0.0
 
 
-@uncounted
+@nonallocating
 def repay(A: Scene, root: int, t: float) -> None:
     """Before the interval of an island ends at instant t: scale its impulses, if they have given energy, as above."""
     BODY, PULL = A.BODY, A.PULL

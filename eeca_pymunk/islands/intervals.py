@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from ..arrays import IntArray
-from ..compiled import kernel, uncounted
+from ..compiled import kernel, nonallocating
 from ..contacts.correction import budget_of, least_of, lifting
 from ..contacts.interval import make_contacts, step_island
 from ..contacts.unmet import spend
@@ -40,7 +40,7 @@ from .rest import rest_threshold
 AGAIN = -1  # status of an interval that is to be shorter
 
 
-@uncounted
+@nonallocating
 def bodies_with_supports(A: Scene, isle: Island, n: int) -> int:
     """Number of bodies of an island, n, and of the islands at rest that support it."""
     found, last = n, -1
@@ -51,7 +51,7 @@ def bodies_with_supports(A: Scene, isle: Island, n: int) -> int:
     return found
 
 
-@uncounted
+@nonallocating
 def clear_places(A: Scene, MINE: IntArray, n: int) -> None:
     """Reset A.PLACE, the local numbers, of n bodies."""
     for q in range(n):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..arrays import IntArray
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..contacts.memory import find, key_of
 from ..geometry.gap import gap_at
@@ -15,13 +15,13 @@ from ..model.scene import Scene
 from ..pairs.rules import law
 
 
-@uncounted
+@nonallocating
 def fixed_support(A: Scene, i: int) -> bool:
     """Whether body i is fixed for bodies that rest on it: impulses do not move it, or it is at rest."""
     return bool(A.BODY[i].inv_mass == 0.0 or (A.COUNT.may_support > 0 and A.MEMBER[i].rest == AT_REST))
 
 
-@uncounted
+@nonallocating
 def unite(A: Scene, i: int, j: int) -> int:
     """Unite the islands of bodies i and j, or the bodies themselves; returns the root."""
     MEMBER, STATE = A.MEMBER, A.STATE
@@ -51,14 +51,14 @@ def unite(A: Scene, i: int, j: int) -> int:
     return a
 
 
-@uncounted
+@nonallocating
 def jointed(A: Scene, i: int) -> bool:
     """Whether body i is in an island with joints."""
     root = A.STATE[i].island
     return bool(root >= 0 and A.MEMBER[root].jointed > 0)
 
 
-@uncounted
+@nonallocating
 def largest_island(A: Scene, a: int, b: int) -> int:
     """Number of bodies of the larger of the islands of shapes a and b, 0 for none."""
     size = 0
@@ -69,7 +69,7 @@ def largest_island(A: Scene, a: int, b: int) -> int:
     return size
 
 
-@uncounted
+@nonallocating
 def in_large_island(A: Scene, a: int, b: int) -> bool:
     """Whether a lossy impact of shapes a and b is on a large island: it acts at once on the nearest bodies only."""
     if law(A.SHAPE, A.RULE, a, b)[0] >= 1.0:
@@ -77,7 +77,7 @@ def in_large_island(A: Scene, a: int, b: int) -> bool:
     return bool(largest_island(A, a, b) >= LARGE_ISLAND)
 
 
-@uncounted
+@nonallocating
 def budget_spent(A: Scene, root: int) -> bool:
     """Whether an island is large and is neither hit nor joined any more in this step, since bodies have been solved
     often enough."""
@@ -87,7 +87,7 @@ def budget_spent(A: Scene, root: int) -> bool:
     return bool(A.COUNT.solved > most * A.BODY.shape[0])
 
 
-@uncounted
+@nonallocating
 def members(A: Scene, root: int, MINE: IntArray) -> int:
     """Write the bodies of an island to MINE; returns their number."""
     i, n = root, 0
@@ -98,7 +98,7 @@ def members(A: Scene, root: int, MINE: IntArray) -> int:
     return n
 
 
-@uncounted
+@nonallocating
 def lossy(A: Scene, root: int) -> bool:
     """Whether any shape of an island has an elasticity below 1."""
     i = root
@@ -110,7 +110,7 @@ def lossy(A: Scene, root: int) -> bool:
     return False
 
 
-@uncounted
+@nonallocating
 def remembered(KEYS: IntArray, FORCES: Rows[Force], shapes: int, a: int, b: int, since: float) -> tuple[float, float]:
     """Normal force and load (mass length/time²) of a pair of shapes a and b, summed over its points, as of the steps
     from number `since` on; 0 if there is none. shapes: number of all shapes."""
@@ -124,7 +124,7 @@ def remembered(KEYS: IntArray, FORCES: Rows[Force], shapes: int, a: int, b: int,
     return force, load
 
 
-@uncounted
+@nonallocating
 def approach(A: Scene, a: int, b: int, t: float) -> tuple[float, float, float, float]:
     """Gap of shapes a and b at instant t, its rate u (negative when closing), the acceleration with which it closes
     without contacts, and the effective mass of the contact. Body a is at t; body b moves at constant velocity until
@@ -147,7 +147,7 @@ def approach(A: Scene, a: int, b: int, t: float) -> tuple[float, float, float, f
     return g, u, closing, mass
 
 
-@uncounted
+@nonallocating
 def persists(A: Scene, a: int, b: int, t: float, lossy: bool) -> bool:
     """Whether the contact of shapes a and b, whose bodies are at instant t, persists to the end of the step.
 

@@ -16,7 +16,7 @@ import math
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel, uncounted
+from ..compiled import kernel, nonallocating
 from ..contacts.interval import make_contacts, step_island
 from ..model.bodies import AT_REST, AWAKE
 from ..model.parameters.intervals import IMPACT_SPEED, LARGE_ISLAND
@@ -40,7 +40,7 @@ from .rest import candidate_speed, postpone_test, slow_for_long, speed
 from .support import support_loads
 
 
-@uncounted
+@nonallocating
 def make_island(A: Scene, MINE: IntArray, n: int) -> None:
     """Make an island of n bodies MINE; the first one is its root."""
     MEMBER, head = A.MEMBER, MINE[0]
@@ -146,7 +146,7 @@ def freeze(A: Scene, root: int, MINE: IntArray, n: int) -> None:
     A.RESTING[root].lost = owed
 
 
-@uncounted
+@nonallocating
 def split_slow(A: Scene, MINE: IntArray, n: int, STAND: IntArray, MOVE: IntArray) -> int:
     """Split the n bodies MINE: slow ones, which may be put to rest, into STAND, the others into MOVE; returns the
     number of the first."""

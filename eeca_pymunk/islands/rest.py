@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 from ..arrays import IntArray
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..model.bodies import AWAKE, CANDIDATE
 from ..model.parameters.intervals import LARGE_ISLAND
 from ..model.parameters.rest import REST_CANDIDATE, REST_CANDIDATE_LARGE, REST_RETRY, REST_SPEED
@@ -19,14 +19,14 @@ from ..pairs.rules import law
 from ..rows.equilibrium import point_speed
 
 
-@uncounted
+@nonallocating
 def spins_freely(A: Scene, i: int) -> bool:
     """Whether contacts exert no torque on body i: a single disk without friction, on which no torque of the program
     acts."""
     return bool(i < A.COUNT.disks and A.SHAPE[i].friction == 0.0 and A.PULL[i, 2] == 0.0)
 
 
-@uncounted
+@nonallocating
 def speed(A: Scene, i: int, s: float) -> float:
     """Bound of the speed (length/time) of the points of body i after a time s; of its centre if contacts exert no
     torque on it."""
@@ -35,19 +35,19 @@ def speed(A: Scene, i: int, s: float) -> float:
     return point_speed(vx, vy, 0.0 if spins_freely(A, i) else BODY[i].spin + s * BODY[i].angular, BODY[i].extent)
 
 
-@uncounted
+@nonallocating
 def candidate_speed(bodies: int) -> float:
     """Speed relative to |a| dt below which bodies of an island of so many bodies are tested for rest."""
     return REST_CANDIDATE if bodies < LARGE_ISLAND else REST_CANDIDATE_LARGE
 
 
-@uncounted
+@nonallocating
 def slow_for_long(A: Scene, i: int) -> bool:
     """Whether the rest timer of body i allows a test for static forces."""
     return bool(A.RESTING[i].rest_timer >= 1.0)
 
 
-@uncounted
+@nonallocating
 def motionless(A: Scene, MINE: IntArray, n: int) -> bool:
     """Whether none of the n bodies MINE has any velocity, as in the first step of a stack, or has failed a test lately:
     static forces are then searched at once."""
@@ -58,14 +58,14 @@ def motionless(A: Scene, MINE: IntArray, n: int) -> bool:
     return True
 
 
-@uncounted
+@nonallocating
 def postpone_test(A: Scene, MINE: IntArray, n: int) -> None:
     """Postpone the next test for static forces of the n bodies MINE by REST_RETRY steps."""
     for q in range(n):
         A.RESTING[MINE[q]].rest_timer = -float(REST_RETRY)
 
 
-@uncounted
+@nonallocating
 def rest_threshold(A: Scene, root: int, MINE: IntArray, n: int, among: int, t: float) -> float:
     """Speed relative to |a| dt below which an island may be put to rest at instant t by a test for static forces; 0 if
     it is not tested. A test postpones the next one.
@@ -85,7 +85,7 @@ def rest_threshold(A: Scene, root: int, MINE: IntArray, n: int, among: int, t: f
     return candidate_speed(among)
 
 
-@uncounted
+@nonallocating
 def is_candidate(A: Scene, root: int) -> bool:
     """Whether all bodies of an island were slower than REST_SPEED |a| dt at both ends of this step, over which it had
     one interval without hits and without penetration correction."""
@@ -110,7 +110,7 @@ def is_candidate(A: Scene, root: int) -> bool:
     return True
 
 
-@uncounted
+@nonallocating
 def find_candidates(A: Scene) -> None:
     """At the end of a step, before contacts are accounted: set islands CANDIDATE that are slow (`is_candidate`) and
     whose contacts neither slip nor are driven by moving bodies or surfaces."""

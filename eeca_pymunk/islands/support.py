@@ -15,7 +15,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray
-from ..compiled import kernel, uncounted
+from ..compiled import kernel, nonallocating
 from ..compiled.records import empty
 from ..contacts.memory import find, key_of, remember
 from ..model.bodies import AT_REST
@@ -31,7 +31,7 @@ from .membership import members
 from .rest import candidate_speed, postpone_test, spins_freely
 
 
-@uncounted
+@nonallocating
 def support_loads(A: Scene, root: int, LOAD: FloatArray) -> None:
     """Add to LOAD (k, 3) the velocities that contacts of other islands would give to the bodies of this one, which have
     A.PLACE, in a whole step with the present forces."""
@@ -112,7 +112,7 @@ def supports_load(A: Scene, root: int) -> bool:
     return found
 
 
-@uncounted
+@nonallocating
 def remember_forces(A: Scene, c: int) -> None:
     """Write the forces of contact c into the memory of forces (`..contacts.memory`)."""
     a, b = A.PUSHED_BY[c].a, A.PUSHED_BY[c].b

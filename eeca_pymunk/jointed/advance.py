@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel, uncounted
+from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import Bounded, Columns, Row
 from ..model.islands import Island
@@ -56,7 +56,7 @@ class Interval(NamedTuple):
     h: float
 
 
-@uncounted
+@nonallocating
 def is_hit(groups: Groups, P: IntArray, Q: IntArray, m: int, g: int) -> bool:
     """Whether any contact is on group g."""
     hits = 0
@@ -125,7 +125,7 @@ def advance(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, 
             motion.MID[q, c] = isle.POSE[q, c] + 0.5 * motion.WAY[q, c]
 
 
-@uncounted
+@nonallocating
 def align(
     isle: Island, P: IntArray, Q: IntArray, ROWS: Rows[Row], m: int, motion: Motion, change: bool
 ) -> float:  # fmt: skip
@@ -157,7 +157,7 @@ def align(
     return worst
 
 
-@uncounted
+@nonallocating
 def farthest_apart(V: FloatArray, W: FloatArray, EXTENT: FloatArray, n: int) -> float:
     """Largest difference of two sets of velocities, of points of the bodies."""
     worst = 0.0

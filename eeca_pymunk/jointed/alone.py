@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..islands.candidates import before_end
 from ..joints.ledger import clear_interval
 from ..model.joints import ELASTIC, Joints
@@ -16,7 +16,7 @@ from .gathered import gather_alone, keep_joints, restore_joints
 from .lengths import excess_alone
 
 
-@uncounted
+@nonallocating
 def is_component(A: Scene, J: Joints, root: int) -> bool:
     """Whether an island is one component."""
     s = J.OF[root]
@@ -31,7 +31,7 @@ def is_component(A: Scene, J: Joints, root: int) -> bool:
     return bool(count == A.MEMBER[root].bodies)
 
 
-@uncounted
+@nonallocating
 def meets_nobody(A: Scene, root: int) -> bool:
     """Whether no shape of an island has another one near that it may meet."""
     i = root
@@ -44,7 +44,7 @@ def meets_nobody(A: Scene, root: int) -> bool:
     return True
 
 
-@uncounted
+@nonallocating
 def begin_alone(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) -> float:
     """Begin an interval of length h, without contacts, of an island that `is_component` at instant t, at which all its
     bodies are; 0, or how many times too long it is, with nothing done; not if it is the `last` attempt."""
@@ -66,7 +66,7 @@ def begin_alone(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
     return 0.0
 
 
-@uncounted
+@nonallocating
 def lay_path(A: Scene, J: Joints, s: int, body: int, i: int, h: float) -> None:
     """Let a body go to where the scratch of its component has it at i: see `..jointed.solve`."""
     BODY, LOCAL = A.BODY, J.LOCAL

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel, uncounted
+from ..compiled import kernel, nonallocating
 from ..joints.bounds import is_limit
 from ..joints.entries import held, interval_of
 from ..model.contacts import Bounded
@@ -37,7 +37,7 @@ def make_bounded(J: Joints, groups: Groups, limits: bool) -> Bounded:
     return room_for_rows(n, entries)
 
 
-@uncounted
+@nonallocating
 def note_row(A: Scene, J: Joints, B: Bounded, s: int, i: int, h: float, V: FloatArray) -> None:
     """Row i as it is at the end of the step h that component s has just taken, with velocities V there. A limit holds
     the velocity that it has; one that has let go keeps its row."""
@@ -60,7 +60,7 @@ def note_row(A: Scene, J: Joints, B: Bounded, s: int, i: int, h: float, V: Float
     B.ROWS[i].low, B.ROWS[i].high = interval_of(J.LINK[k].kind, J.LINK[k].side, hinge.bound * h)
 
 
-@uncounted
+@nonallocating
 def note_rows(A: Scene, J: Joints, B: Bounded, s: int, h: float, V: FloatArray) -> None:
     """The rows of component s that are known, after another step of it."""
     for i in range(B.USED[0]):
@@ -68,7 +68,7 @@ def note_rows(A: Scene, J: Joints, B: Bounded, s: int, h: float, V: FloatArray) 
             note_row(A, J, B, s, i, h, V)
 
 
-@uncounted
+@nonallocating
 def list_rows(A: Scene, J: Joints, B: Bounded, s: int, h: float, V: FloatArray) -> int:
     """Append the rows of component s whose impulses count as given (`motors.let_slip`); the first of them."""
     first = B.USED[0]
@@ -85,7 +85,7 @@ def list_rows(A: Scene, J: Joints, B: Bounded, s: int, h: float, V: FloatArray) 
     return int(first)
 
 
-@uncounted
+@nonallocating
 def fill_rows(
     J: Joints, groups: Groups, B: Bounded, g: int, first: int, INDEX: IntArray, PUSH: FloatArray
 ) -> None:  # fmt: skip

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel, uncounted
+from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import Columns, Row
 from ..model.joints import Joints
@@ -41,7 +41,7 @@ def make_columns(groups: Groups, A: IntArray, B: IntArray, m: int) -> Columns:
     return Columns(AT, BODY, np.zeros((AT[m], 3)), np.zeros((AT[m], 3)), np.zeros(m, np.int64))
 
 
-@uncounted
+@nonallocating
 def fill_free(
     groups: Groups, C: Columns, A: IntArray, B: IntArray, ROWS: Rows[Row], IM: FloatArray, II: FloatArray, m: int
 ) -> None:
@@ -60,7 +60,7 @@ def fill_free(
             C.N[w, 2], C.T[w, 2] = sign * II[q] * arm_n, sign * II[q] * arm_t
 
 
-@uncounted
+@nonallocating
 def fill_group(
     J: Joints, groups: Groups, C: Columns, g: int, INDEX: IntArray, about_step: bool, A: IntArray, B: IntArray,
     ROWS: Rows[Row], m: int, PUSH: FloatArray,
@@ -99,7 +99,7 @@ def fill_group(
                             C.T[w, c] = PUSH[INDEX[C.BODY[w]], c]
 
 
-@uncounted
+@nonallocating
 def along(C: Columns, A: IntArray, B: IntArray, ROWS: Rows[Row], i: int, D: FloatArray, tangent: bool) -> float:
     """Rate of contact i along n (or t) of its own column D."""
     x, y = (-ROWS[i].ny, ROWS[i].nx) if tangent else (ROWS[i].nx, ROWS[i].ny)
@@ -114,7 +114,7 @@ def along(C: Columns, A: IntArray, B: IntArray, ROWS: Rows[Row], i: int, D: Floa
     return total
 
 
-@uncounted
+@nonallocating
 def weigh(groups: Groups, C: Columns, A: IntArray, B: IntArray, ROWS: Rows[Row], m: int) -> None:
     """Let K, A and W of the rows be those of the columns; leave out what hardly can be moved."""
     for i in range(m):
@@ -136,7 +136,7 @@ def weigh(groups: Groups, C: Columns, A: IntArray, B: IntArray, ROWS: Rows[Row],
             ROWS[i].w_tt = nn / det if regular else 0.0
 
 
-@uncounted
+@nonallocating
 def leave_out(C: Columns, L: FloatArray, m: int, V: FloatArray) -> None:
     """Let contacts that are left out have no impulse, and V follow."""
     for i in range(m):

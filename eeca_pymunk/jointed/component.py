@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from ..arrays import FloatArray
-from ..compiled import merged, uncounted
+from ..compiled import inlined, nonallocating
 from ..joints.bounds import bounded, gap
 from ..joints.entries import held as stands
 from ..joints.ledger import springs_hold
@@ -20,7 +20,7 @@ from ..model.scene import Scene
 from .gathered import gather_component
 
 
-@uncounted
+@nonallocating
 def step_in_scratch(J: Joints, s: int, h: float, length: float, whole: bool) -> int:
     """Step component s by h from what is in its scratch, where its end stands then; its status.
 
@@ -33,7 +33,7 @@ def step_in_scratch(J: Joints, s: int, h: float, length: float, whole: bool) -> 
     return int(status)
 
 
-@uncounted
+@nonallocating
 def step_component(
     A: Scene, J: Joints, s: int, h: float, length: float, whole: bool, VN: FloatArray, WAY: FloatArray,
     END: FloatArray, MID: FloatArray,
@@ -54,14 +54,14 @@ def step_component(
     return status
 
 
-@merged
+@inlined
 def size_joints(W: Workspace, length: float) -> None:
     """Units of the joints' functions in a component of size `length`."""
     for k in range(W.joints):
         W.J.HINGE[k].size = 1.0 if W.link[k].kind >= GEAR else length
 
 
-@uncounted
+@nonallocating
 def fit_speeds(A: Scene, J: Joints, s: int, length: float) -> None:
     """Make the velocities that `gather_component` has put into the scratch fit the joints, closed limits included, as
     an impact at which nothing bounces. What this costs is the caller's to book."""
@@ -70,14 +70,14 @@ def fit_speeds(A: Scene, J: Joints, s: int, length: float) -> None:
     solve(W, int(SPEEDS), 2.0, length, W.J.COMPONENT[W.s].loops > 0, 0.0)
 
 
-@uncounted
+@nonallocating
 def springs_of(W: Workspace) -> float:
     """The energy that the springs of a component hold at the poses in the scratch."""
     look(W)
     return springs_hold(W)
 
 
-@uncounted
+@nonallocating
 def close_joints(
     A: Scene, J: Joints, s: int, OLD: FloatArray, NEW: FloatArray, V: FloatArray, IM: FloatArray, II: FloatArray,
     t: float, h: float,
@@ -114,7 +114,7 @@ def close_joints(
     return held
 
 
-@uncounted
+@nonallocating
 def ready(J: Joints, s: int, h: float, about_step: bool) -> bool:
     """Whether component s can answer impulses: about the step that `step_component` has just taken (its scratch is back
     at the start then), or at the poses that `gather_component` has put there."""
@@ -122,7 +122,7 @@ def ready(J: Joints, s: int, h: float, about_step: bool) -> bool:
     return bool(J.TALLY.answers >= 0)
 
 
-@uncounted
+@nonallocating
 def answer(J: Joints, s: int, about_step: bool, PUSH: FloatArray) -> None:
     """PUSH (bodies of the component, 3): impulses in, changes of velocity out."""
     W = workspace(J, s)

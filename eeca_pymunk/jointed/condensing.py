@@ -13,7 +13,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel, uncounted
+from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows, empty
 from ..model.contacts import ROW, Bounded, Columns, JointedProblem, Row
 from ..model.parameters.joints import (
@@ -31,7 +31,7 @@ from .groups import Groups
 from .newton import solve_columns
 
 
-@uncounted
+@nonallocating
 def copy_weights(ROWS: Rows[Row], m: int, KEPT: Rows[Row]) -> None:
     """Copy to KEPT (m,) those fields that `weigh` changes."""
     for i in range(m):
@@ -40,7 +40,7 @@ def copy_weights(ROWS: Rows[Row], m: int, KEPT: Rows[Row]) -> None:
         K.friction, K.w_nn, K.w_nt, K.w_tt = R.friction, R.w_nn, R.w_nt, R.w_tt
 
 
-@uncounted
+@nonallocating
 def along_row(D: Bounded, i: int, C: Columns, contact: int, tangent: bool) -> float:
     """Velocity along bounded row i per normal, or tangential, impulse of a contact."""
     total = 0.0
@@ -52,7 +52,7 @@ def along_row(D: Bounded, i: int, C: Columns, contact: int, tangent: bool) -> fl
     return total
 
 
-@uncounted
+@nonallocating
 def add_column(D: Bounded, i: int, factor: float, C: Columns, contact: int, tangent: bool) -> None:
     """Add the column of bounded row i, times a factor, to a column of a contact."""
     if factor == 0.0:
@@ -67,7 +67,7 @@ def add_column(D: Bounded, i: int, factor: float, C: Columns, contact: int, tang
                         C.N[w, c] += factor * D.N[e, c]
 
 
-@uncounted
+@nonallocating
 def violation(D: Bounded, i: int, side: int, x: float, per: float, V: FloatArray) -> float:
     """By how much row i violates its bound, or at a bound its law: a velocity."""
     if side == 0:
@@ -75,7 +75,7 @@ def violation(D: Bounded, i: int, side: int, x: float, per: float, V: FloatArray
     return side * (D.ROWS[i].speed + bounded_rate(D, i, V))
 
 
-@uncounted
+@nonallocating
 def follow(S: IntArray, k: int, Y: FloatArray, L: FloatArray, LC: FloatArray, m: int) -> None:
     """Take LC (m, 2) for the impulses of the contacts in L; those of the k rows S answer by Y (k, 2 m)."""
     for i in range(m):
@@ -86,7 +86,7 @@ def follow(S: IntArray, k: int, Y: FloatArray, L: FloatArray, LC: FloatArray, m:
             L[i, c] = LC[i, c]
 
 
-@uncounted
+@nonallocating
 def first_to_yield(D: Bounded, S: IntArray, k: int, Y: FloatArray, L: FloatArray, m: int, j: int) -> int:
     """Which of the k rows S comes to its bound first while impulse j of the contacts grows; -1 for none."""
     first, least = -1, np.inf

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel, uncounted
+from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..joints.correct import fitting_loss
 from ..model.contacts import JointedProblem, Row
@@ -72,7 +72,7 @@ def fit(A: Scene, J: Joints, interval: Interval, L: FloatArray, end: float, scal
     return np.zeros(m)
 
 
-@uncounted
+@nonallocating
 def bring_arms(P: IntArray, Q: IntArray, ROWS: Rows[Row], END: FloatArray, m: int) -> None:
     """Let the arms of m contacts be about one point of both bodies at END: these have moved apart since."""
     for i in range(m):
@@ -86,7 +86,7 @@ def bring_arms(P: IntArray, Q: IntArray, ROWS: Rows[Row], END: FloatArray, m: in
         ROWS[i].arm_nb += across
 
 
-@uncounted
+@nonallocating
 def energy_of(isle: Island, V: FloatArray) -> float:
     """Kinetic energy of what moves."""
     total = 0.0

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..geometry.flight import pose, rate
 from ..joints.ledger import clear_interval
 from ..joints.motion import size_up
@@ -11,7 +11,7 @@ from ..model.joints import RATCHET, Joints
 from ..model.scene import Scene
 
 
-@uncounted
+@nonallocating
 def keep_joints(J: Joints, s: int) -> None:
     """Remember the joints of component s as they are."""
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
@@ -19,7 +19,7 @@ def keep_joints(J: Joints, s: int) -> None:
         J.KEPT[j] = J.JOINT[j]
 
 
-@uncounted
+@nonallocating
 def restore_joints(J: Joints, s: int) -> None:
     """What `keep_joints` remembers; nothing is done."""
     clear_interval(J.STEPPED[s])
@@ -28,7 +28,7 @@ def restore_joints(J: Joints, s: int) -> None:
         J.JOINT[j] = J.KEPT[j]
 
 
-@uncounted
+@nonallocating
 def rewind_joints(J: Joints, s: int) -> None:
     """What `keep_joints` remembers, but for impulses, with which the next solution begins."""
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
@@ -39,7 +39,7 @@ def rewind_joints(J: Joints, s: int) -> None:
         J.JOINT[j].owed, J.JOINT[j].compliance = J.KEPT[j].owed, J.KEPT[j].compliance
 
 
-@uncounted
+@nonallocating
 def seat(A: Scene, J: Joints, m: int, i: int, t: float) -> None:
     """The body of row m of MEMBER to i of the scratch: what does not move by joints where it is at instant t, others
     all but what they do."""
@@ -63,14 +63,14 @@ def seat(A: Scene, J: Joints, m: int, i: int, t: float) -> None:
         LOCAL[i].mobility[c] = 0.0
 
 
-@uncounted
+@nonallocating
 def measured(J: Joints, s: int, h: float) -> float:
     """Complete the bodies in the scratch of component s; its size."""
     count = J.COMPONENT[s].end_body - J.COMPONENT[s].first_body
     return float(size_up(J.JOINT, J.LINK, J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint, J.LOCAL, count, h))
 
 
-@uncounted
+@nonallocating
 def gather_component(
     A: Scene, J: Joints, s: int, POSE_OF: FloatArray, V: FloatArray, ACC: FloatArray, IM: FloatArray, II: FloatArray,
     t: float, h: float,
@@ -91,7 +91,7 @@ def gather_component(
     return measured(J, s, h)
 
 
-@uncounted
+@nonallocating
 def gather_alone(A: Scene, J: Joints, s: int, t: float, h: float) -> float:
     """`gather_component` of one that is an island of its own, whose bodies are at instant t."""
     LOCAL, BODY = J.LOCAL, A.BODY
@@ -109,7 +109,7 @@ def gather_alone(A: Scene, J: Joints, s: int, t: float, h: float) -> float:
     return measured(J, s, h)
 
 
-@uncounted
+@nonallocating
 def lead_component(A: Scene, J: Joints, s: int, V: FloatArray, ACC: FloatArray, GUESS: FloatArray, h: float) -> None:
     """Let the next step of component s begin with velocities GUESS (k, 3) at its end, from V under ACC at its start."""
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
@@ -121,7 +121,7 @@ def lead_component(A: Scene, J: Joints, s: int, V: FloatArray, ACC: FloatArray, 
                     J.JOINT[J.LINK[k].joint].led[end, c] = (GUESS[q, c] - V[q, c]) / h - ACC[q, c]
 
 
-@uncounted
+@nonallocating
 def find_places(A: Scene, J: Joints, s: int, INDEX: IntArray) -> int:
     """INDEX (k,) of the moved bodies of component s: their places in its scratch; how many bodies that has."""
     b0, size = J.COMPONENT[s].first_body, J.COMPONENT[s].end_body - J.COMPONENT[s].first_body

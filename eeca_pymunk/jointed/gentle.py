@@ -12,7 +12,7 @@ import math
 import numpy as np
 
 from ..arrays import FloatArray
-from ..compiled import kernel, uncounted
+from ..compiled import kernel, nonallocating
 from ..contacts.works import carried
 from ..model.contacts import Bounded, JointedProblem
 from ..model.joints import Joints
@@ -24,7 +24,7 @@ from .bounded import with_bounded
 from .columns import fill_free, weigh
 
 
-@uncounted
+@nonallocating
 def fastest(V: FloatArray, EXTENT: FloatArray, n: int) -> float:
     """Largest speed, or acceleration, of points of the first n bodies."""
     most = 0.0
@@ -33,7 +33,7 @@ def fastest(V: FloatArray, EXTENT: FloatArray, n: int) -> float:
     return most
 
 
-@uncounted
+@nonallocating
 def excessive(interval: Interval, L: FloatArray, speed: float) -> bool:
     """Whether impulses L are beyond all that bodies of such a speed need: larger by EXCESSIVE_IMPULSE than their
     momenta, or with a work of what carries them beyond EXCESSIVE_WORK of their energy; not finite ones are, too."""

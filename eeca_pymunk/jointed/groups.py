@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel, uncounted
+from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..model.joints import Component, ComponentBody
 
@@ -51,7 +51,7 @@ def find_groups(WHO: IntArray, IM: FloatArray, OF: IntArray) -> Groups:
     return Groups(GROUP, FIRST[: groups + 1], BODY, COMPONENT[:groups])
 
 
-@uncounted
+@nonallocating
 def hangs(groups: Groups, COMPONENTS: Rows[Component], MEMBER: Rows[ComponentBody]) -> bool:
     """Whether a component of the island hangs on something that joints cannot move."""
     some = False

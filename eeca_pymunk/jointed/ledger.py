@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..contacts.unmet import note_unmet
 from ..joints.ledger import clear_interval
 from ..layout import BODY_ROW, LEFT
@@ -14,7 +14,7 @@ from ..model.scene import Scene
 from ..model.step import JOINTS as UNMET_JOINTS
 
 
-@uncounted
+@nonallocating
 def mark_edited(A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray) -> None:
     """Mark the joints of bodies that were edited since the last step: their velocities may not fit."""
     now, before = STATES[READ], STATES[LEFT]
@@ -34,7 +34,7 @@ def mark_edited(A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray) -> None
     A.PLACE[:] = -1
 
 
-@uncounted
+@nonallocating
 def start_joints(A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray) -> None:
     """Begin a step of a scene with joints, before its states are taken."""
     mark_edited(A, J, STATES, WALK)
@@ -44,7 +44,7 @@ def start_joints(A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray) -> Non
         clear_interval(J.STEPPED[s])
 
 
-@uncounted
+@nonallocating
 def account_component(A: Scene, J: Joints, s: int) -> None:
     """Book what the joints of component s have done in their interval."""
     PAR, B = A.PAR, J.STEPPED[s]
@@ -57,7 +57,7 @@ def account_component(A: Scene, J: Joints, s: int) -> None:
     clear_interval(B)
 
 
-@uncounted
+@nonallocating
 def account_joints(A: Scene, J: Joints) -> None:
     """Book what all joints have done until the end of the step."""
     for s in range(J.TALLY.components):

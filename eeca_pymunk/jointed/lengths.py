@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..contacts.memory import key_of
 from ..geometry.flight import norm
@@ -31,7 +31,7 @@ from .advance import Motion
 _CUBIC = 4.0 / 27.0  # largest value of s^2 (1 - s)
 
 
-@uncounted
+@nonallocating
 def may_meet(A: Scene, i: int, way: float, t: float, h: float, KEY: IntArray, m: int) -> bool:
     """Whether body i, whose points go no farther than `way` in an interval h from instant t, may leave its margin
     circles, or meet what is not among the m contacts KEY."""
@@ -52,7 +52,7 @@ def may_meet(A: Scene, i: int, way: float, t: float, h: float, KEY: IntArray, m:
     return False
 
 
-@uncounted
+@nonallocating
 def strays(
     A: Scene, i: int, wx: float, wy: float, turned: float, V: FloatArray, ACC: FloatArray, t: float, h: float,
     KEY: IntArray, m: int,
@@ -78,7 +78,7 @@ def strays(
     return far if far > INTERVAL_RETRY and may_meet(A, i, way, t, h, KEY, m) else 0.0
 
 
-@uncounted
+@nonallocating
 def excess_alone(A: Scene, J: Joints, s: int, t: float, h: float) -> float:
     """How many times too long an interval h of component s alone is, whose end is in the scratch."""
     far, first = 0.0, J.COMPONENT[s].first_body
@@ -91,7 +91,7 @@ def excess_alone(A: Scene, J: Joints, s: int, t: float, h: float) -> float:
     return far
 
 
-@uncounted
+@nonallocating
 def excess(
     A: Scene, isle: Island, P: IntArray, Q: IntArray, ROWS: Rows[Row], KEY: IntArray, motion: Motion, m: int, n: int,
     t: float, h: float,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel, uncounted
+from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import Bounded, Row
 from ..model.joints import Joints
@@ -15,13 +15,13 @@ from .advance import Interval, advance_aligned
 from .bounded import settle_bounded
 
 
-@uncounted
+@nonallocating
 def slip_of(P: IntArray, Q: IntArray, ROWS: Rows[Row], WAY: FloatArray, i: int, h: float) -> float:
     """How far contact i slips in h while bodies go WAY: its surfaces move at a rate, bodies by ways."""
     return tangent_rate(P, Q, ROWS, WAY, i) + (h - 1.0) * ROWS[i].surface
 
 
-@uncounted
+@nonallocating
 def lost(P: IntArray, Q: IntArray, ROWS: Rows[Row], L: FloatArray, WAY: FloatArray, m: int, h: float) -> float:
     """What contacts lose with impulses L while bodies go WAY: their part in the energy of the island, exactly."""
     total = 0.0
@@ -30,7 +30,7 @@ def lost(P: IntArray, Q: IntArray, ROWS: Rows[Row], L: FloatArray, WAY: FloatArr
     return total
 
 
-@uncounted
+@nonallocating
 def work_error(interval: Interval, L: FloatArray, slow: float, pull: float, known: float) -> float:
     """Round-off of the energy that contacts lose: of the energy of the island, and of their works, of whose impulses
     times speed it is the part `known`. `slow`, `pull`: see `press`."""

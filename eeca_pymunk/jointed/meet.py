@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import IntArray
-from ..compiled import kernel, uncounted
+from ..compiled import kernel, nonallocating
 from ..geometry.flight import pose
 from ..geometry.gap import gap
 from ..islands.accounting import account_contact, move_to_end
@@ -48,7 +48,7 @@ def components_of(A: Scene, J: Joints, root: int) -> IntArray:
     return found[:count]
 
 
-@uncounted
+@nonallocating
 def take_back(A: Scene, root: int) -> None:
     """Forget the contacts of the interval that an island has begun."""
     c = 0
@@ -107,7 +107,7 @@ def end_here(A: Scene, J: Joints, root: int, t: float) -> None:
             move_to_end(A, i, t)
 
 
-@uncounted
+@nonallocating
 def begun(A: Scene, i: int) -> float:
     """The latest instant at which intervals of islands without joints have begun that shapes of body i may touch."""
     latest = 0.0
@@ -206,14 +206,14 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
     return t, crossed and g > close * small
 
 
-@uncounted
+@nonallocating
 def first_meeting(A: Scene, a: int, b: int, t: float) -> tuple[float, bool]:
     """Instant before t at which the paths of shapes a and b, which are apart at t, meet, and whether there is one."""
     through, certain = find_meeting(A, a, b, t)
     return through, bool(certain and through < t)
 
 
-@uncounted
+@nonallocating
 def path_rate(A: Scene, i: int, t: float, nx: float, ny: float, x: float, y: float) -> float:
     """Velocity along n of the point at (x, y) from body i on its path."""
     BODY, s = A.BODY, t - A.BODY[i].since

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..joints.bounds import is_limit
 from ..model.joints import BOXED, GIVEN, MOTOR, ROTARY_SPRING, SPRING, Joints
 
 
-@uncounted
+@nonallocating
 def drives(J: Joints, s: int) -> bool:
     """Whether the joints of component s move its bodies by themselves: springs, motors, joints with a max_force."""
     some = False
@@ -17,7 +17,7 @@ def drives(J: Joints, s: int) -> bool:
     return some
 
 
-@uncounted
+@nonallocating
 def keeps_speed(J: Joints, s: int) -> bool:
     """Whether joints of component s have rows of speeds at the end of an interval: motors, joints with a max_force."""
     some = False
@@ -26,7 +26,7 @@ def keeps_speed(J: Joints, s: int) -> bool:
     return some
 
 
-@uncounted
+@nonallocating
 def let_slip(J: Joints, s: int, slips: bool, limits: bool) -> None:
     """Let bounded impulses count as given in answers, or no longer: those of joints with a max_force, where they are
     few enough for `..joints.boxes`, and, if `limits`, those of limits that hold."""

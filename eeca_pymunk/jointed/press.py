@@ -14,7 +14,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray
-from ..compiled import kernel, uncounted
+from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..contacts.targets import target
 from ..islands.candidates import before_end, sweeps_of_large
@@ -61,7 +61,7 @@ from .newton import solve_columns
 from .secant import fit_columns
 
 
-@uncounted
+@nonallocating
 def some_taut(J: Joints, groups: Groups) -> bool:
     """Whether a component hardly gives way across, for the pull of its joints."""
     some = False
@@ -70,7 +70,7 @@ def some_taut(J: Joints, groups: Groups) -> bool:
     return some
 
 
-@uncounted
+@nonallocating
 def some_give(J: Joints, groups: Groups) -> bool:
     """Whether joints of a component have given way elastically in its last step."""
     some = False
@@ -91,7 +91,7 @@ def take_slips(ROWS: Rows[Row], m: int) -> FloatArray:
     return SLIP
 
 
-@uncounted
+@nonallocating
 def give_slips(ROWS: Rows[Row], m: int, SLIP: FloatArray) -> None:
     """Put the slips back that `take_slips` has taken."""
     for i in range(m):

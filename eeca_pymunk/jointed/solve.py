@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from ..arrays import FloatArray
-from ..compiled import kernel, uncounted
+from ..compiled import kernel, nonallocating
 from ..contacts.geometry import gather
 from ..contacts.interval import make_contacts, recall, speeds
 from ..contacts.memory import remember_loads
@@ -42,7 +42,7 @@ from .press import press
 SPENT = -2  # status of an interval for which there is no work left
 
 
-@uncounted
+@nonallocating
 def foresee(
     A: Scene, J: Joints, isle: Island, groups: Groups, t: float, h: float, motion: Motion, REACH: FloatArray
 ) -> float:
@@ -188,7 +188,7 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
     return DONE, h
 
 
-@uncounted
+@nonallocating
 def account_turning(A: Scene, J: Joints, isle: Island, groups: Groups, motion: Motion, n: int) -> None:
     """Torques work along chi = h w_m, which is not quite the angle that a jointed body turns by."""
     for g in range(len(groups.COMPONENT)):

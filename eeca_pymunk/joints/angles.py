@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from ..arrays import FloatArray
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..model.joints import FULL_BEND, GEAR, NO_BEND, RATCHET, ROTARY_SPRING, BodyStep, Joint, JointStep
 from .motion import turn
 from .springs import mean_force
 
 
-@uncounted
+@nonallocating
 def shared_turn(a: BodyStep, b: BodyStep) -> float:
     """(turned_b - turned_a) / (chi_b - chi_a): the one factor with which torques are opposite and energy is kept."""
     chi_a, chi_b = a.way[2], b.way[2]
@@ -20,7 +20,7 @@ def shared_turn(a: BodyStep, b: BodyStep) -> float:
     return float((1.0 - y * y / 3.0 + y**4 / 5.0 - y**6 / 7.0 + y**8 / 9.0) / product)
 
 
-@uncounted
+@nonallocating
 def angle_rows(
     kind: int, side: int, soft: bool, h: float, joint: Joint, hinge: JointStep, a: BodyStep, b: BodyStep,
     stiff: FloatArray,

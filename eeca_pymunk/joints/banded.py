@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import uncounted
+from ..compiled import nonallocating
 
 
-@uncounted
+@nonallocating
 def factor_banded(matrix: FloatArray, size: int, band: int, pivots: IntArray) -> bool:
     """LU factors in place of `matrix`; False if a pivot vanishes.
 
@@ -44,7 +44,7 @@ def factor_banded(matrix: FloatArray, size: int, band: int, pivots: IntArray) ->
     return True
 
 
-@uncounted
+@nonallocating
 def back_banded(matrix: FloatArray, size: int, band: int, pivots: IntArray, right: FloatArray) -> None:
     """Solve with the factors of `factor_banded`, in place of `right`."""
     width = 3 * band + 1

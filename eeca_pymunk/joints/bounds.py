@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 from ..arrays import FloatArray
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..model.joints import GROOVE, RATCHET, ROTARY_LIMIT, SLIDE, Coupling, Joint, JointStep, Workspace
 from ..model.parameters.joints import JOINT_TOUCH
 from .entries import along
 
 
-@uncounted
+@nonallocating
 def is_limit(kind: int) -> bool:
     """Whether joints of this kind are limits alone, with one row that acts on one side only."""
     return kind in (SLIDE, ROTARY_LIMIT, RATCHET)
 
 
-@uncounted
+@nonallocating
 def bounded(joint: Rows[Joint], link: Rows[Coupling], k: int, side: int) -> bool:
     """Whether joint k has a bound at this side."""
     kind, j = link[k].kind, link[k].joint
@@ -29,7 +29,7 @@ def bounded(joint: Rows[Joint], link: Rows[Coupling], k: int, side: int) -> bool
     return False
 
 
-@uncounted
+@nonallocating
 def gap(joint: Rows[Joint], hinge: Rows[JointStep], link: Rows[Coupling], k: int, side: int) -> float:
     """How far joint k is from its bound at this side at the end of the present iterate, negative beyond it."""
     j = link[k].joint
@@ -39,7 +39,7 @@ def gap(joint: Rows[Joint], hinge: Rows[JointStep], link: Rows[Coupling], k: int
     return float(side * (bound - hinge[k].measure))
 
 
-@uncounted
+@nonallocating
 def hold(joint: Rows[Joint], hinge: Rows[JointStep], link: Rows[Coupling], k: int) -> None:
     """Hold joint k, which stands on a limit, where it is for the rest of the step, however little is left of that.
 
@@ -52,13 +52,13 @@ def hold(joint: Rows[Joint], hinge: Rows[JointStep], link: Rows[Coupling], k: in
     hinge[k].target[link[k].rows - 1] = off
 
 
-@uncounted
+@nonallocating
 def approach(joint: JointStep, rows: int, side: int, v_a: FloatArray, v_b: FloatArray) -> float:
     """Rate of the gap by the last of a joint's discrete rows, with the velocities v_a and v_b of its bodies."""
     return -side * along(joint, rows - 1, v_a, v_b)
 
 
-@uncounted
+@nonallocating
 def standing(link: Rows[Coupling], joints: int) -> bool:
     """Whether a joint stands on a limit."""
     count = 0
@@ -67,7 +67,7 @@ def standing(link: Rows[Coupling], joints: int) -> bool:
     return count > 0
 
 
-@uncounted
+@nonallocating
 def release(W: Workspace) -> bool:
     """Let go of the held limit that pulls most, if one does."""
     link = W.link
@@ -84,7 +84,7 @@ def release(W: Workspace) -> bool:
     return True
 
 
-@uncounted
+@nonallocating
 def first_bound(W: Workspace, h: float) -> int:
     """The free limit that a step h passes first, by the mean rate of its gap; or -1.
 

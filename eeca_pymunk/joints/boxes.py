@@ -15,7 +15,7 @@ from __future__ import annotations
 import math
 
 from ..arrays import FloatArray
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..model.joints import BOXED, GROOVE, BodyStep, Coupling, JointStep, Workspace
 from ..model.parameters.joints import BOX_REDUNDANT, BOX_RESIDUAL, BOX_ROUNDS, BOX_SWEEPS
@@ -26,7 +26,7 @@ from .entries import held, interval_of
 ROOM = 8  # arrays of one number per row, beside the columns (and a right side) and two matrices
 
 
-@uncounted
+@nonallocating
 def rows_of(link: Rows[Coupling], k: int) -> int:
     """The rows of joint k that act, if it is boxed; 0 if not."""
     if link[k].soft != BOXED or not held(link, k, 0):
@@ -34,7 +34,7 @@ def rows_of(link: Rows[Coupling], k: int) -> int:
     return 1 if link[k].kind == GROOVE and link[k].side == 0 else int(link[k].rows)
 
 
-@uncounted
+@nonallocating
 def boxed_rows(link: Rows[Coupling], joints: int) -> int:
     """How many rows are boxed."""
     count = 0
@@ -43,7 +43,7 @@ def boxed_rows(link: Rows[Coupling], joints: int) -> int:
     return count
 
 
-@uncounted
+@nonallocating
 def push(
     link: Rows[Coupling], hinge: Rows[JointStep], local: Rows[BodyStep], k: int, r: int, size: int, right: FloatArray
 ) -> None:
@@ -56,7 +56,7 @@ def push(
             right[local[i].column + c] += hinge[k].rows[r, 3 * end + c] * local[i].root[c]
 
 
-@uncounted
+@nonallocating
 def rate(
     link: Rows[Coupling], hinge: Rows[JointStep], local: Rows[BodyStep], k: int, r: int, change: FloatArray, at: int
 ) -> float:
@@ -69,7 +69,7 @@ def rate(
     return total
 
 
-@uncounted
+@nonallocating
 def measure_boxes(W: Workspace, n: int, h: float, fresh: bool) -> None:
     """W, if columns are `fresh`; u after the solution in `right`; impulses and their bounds. All behind the columns."""
     hinge, link, component, more = W.J.HINGE, W.link, W.J.COMPONENT[W.s], W.J.MORE
@@ -92,7 +92,7 @@ def measure_boxes(W: Workspace, n: int, h: float, fresh: bool) -> None:
             row += 1
 
 
-@uncounted
+@nonallocating
 def change_box(more: FloatArray, w: int, u: int, n: int, i: int, to: float) -> float:
     """Let impulse i be `to`, velocities follow; how much it has changed."""
     change = to - more[u + n + i]
@@ -103,7 +103,7 @@ def change_box(more: FloatArray, w: int, u: int, n: int, i: int, to: float) -> f
     return float(abs(change))
 
 
-@uncounted
+@nonallocating
 def sweep_boxes(more: FloatArray, w: int, u: int, n: int) -> float:
     """One sweep over all rows; the largest change of an impulse, over the largest impulse."""
     worst, largest = 0.0, 1e-300
@@ -127,7 +127,7 @@ def sweep_boxes(more: FloatArray, w: int, u: int, n: int) -> float:
     return float(worst / largest)
 
 
-@uncounted
+@nonallocating
 def free_of_bounds(more: FloatArray, u: int, n: int, i: int) -> bool:
     """Whether impulse i is inside of its bounds."""
     x, high = more[u + n + i], more[u + 3 * n + i]
@@ -137,7 +137,7 @@ def free_of_bounds(more: FloatArray, u: int, n: int, i: int) -> bool:
     return bool(x * x + y * y < high * high * (1.0 - 1e-14))
 
 
-@uncounted
+@nonallocating
 def direct_boxes(more: FloatArray, w: int, u: int, n: int) -> None:
     """Bring u to 0 on all rows inside of their bounds, these left out of account; then clamp."""
     lu, step = w + n * n, u + 5 * n
@@ -173,7 +173,7 @@ def direct_boxes(more: FloatArray, w: int, u: int, n: int) -> None:
             change_box(more, w, u, n, i, min(max(to, more[u + 2 * n + i]), more[u + 3 * n + i]))
 
 
-@uncounted
+@nonallocating
 def solve_boxes(more: FloatArray, w: int, u: int, n: int) -> None:
     """Impulses within their bounds, by sweeps and direct solutions."""
     for turn in range(BOX_ROUNDS):
@@ -186,7 +186,7 @@ def solve_boxes(more: FloatArray, w: int, u: int, n: int) -> None:
             direct_boxes(more, w, u, n)
 
 
-@uncounted
+@nonallocating
 def apply_boxes(W: Workspace, n: int) -> None:
     """Add to the solution in `right` what the change of the bounded impulses does."""
     hinge, link, component, more = W.J.HINGE, W.link, W.J.COMPONENT[W.s], W.J.MORE
@@ -208,7 +208,7 @@ def apply_boxes(W: Workspace, n: int) -> None:
             row += 1
 
 
-@uncounted
+@nonallocating
 def bound_impulses(W: Workspace, n: int, h: float, fresh: bool) -> None:
     """Complete the solution in `right`, which is that without a change of the n boxed impulses."""
     component = W.J.COMPONENT[W.s]
@@ -218,7 +218,7 @@ def bound_impulses(W: Workspace, n: int, h: float, fresh: bool) -> None:
     apply_boxes(W, n)
 
 
-@uncounted
+@nonallocating
 def leave_box(
     link: Rows[Coupling], hinge: Rows[JointStep], k: int, build: bool, whole: bool, band: int, matrix: FloatArray,
     right: FloatArray,

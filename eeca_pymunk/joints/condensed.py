@@ -10,20 +10,20 @@ iterate.
 from __future__ import annotations
 
 from ..arrays import FloatArray
-from ..compiled import merged, uncounted
+from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
 from ..model.joints import BodyStep, Coupling, JointStep, Workspace
 from ..model.parameters.joints import CONDENSED_BAND
 
 
-@uncounted
+@nonallocating
 def subtract(row: FloatArray, other: FloatArray, amount: float) -> None:
     """row -= amount other, as far as the shorter of both reaches."""
     for j in range(min(len(row), len(other))):
         row[j] -= amount * other[j]
 
 
-@uncounted
+@nonallocating
 def dot(row: FloatArray, other: FloatArray) -> float:
     """The product of two arrays of one length, in four sums that do not wait for each other."""
     n = len(row)
@@ -38,7 +38,7 @@ def dot(row: FloatArray, other: FloatArray) -> float:
     return float((a + b) + (c + d))
 
 
-@merged
+@inlined
 def factor(matrix: FloatArray, size: int, band: int) -> bool:
     """LU factors without pivots in place of `matrix`, A[i, j] at i (2 band + 1) + j - i + band, reciprocals on the
     diagonal; False if a pivot vanishes."""
@@ -65,7 +65,7 @@ def factor(matrix: FloatArray, size: int, band: int) -> bool:
     return True
 
 
-@merged
+@inlined
 def substitute(matrix: FloatArray, size: int, band: int, right: FloatArray, at: int) -> None:
     """Solve with the factors, in place of right[at : at + size]."""
     width = 2 * band + 1
@@ -92,7 +92,7 @@ def substitute(matrix: FloatArray, size: int, band: int, right: FloatArray, at: 
         right[at + i] = total * matrix[begin]
 
 
-@merged
+@inlined
 def freeze(
     hinge: Rows[JointStep], link: Rows[Coupling], local: Rows[BodyStep], k: int, r: int, slopes: bool
 ) -> None:  # fmt: skip
@@ -106,7 +106,7 @@ def freeze(
             hinge[k].frozen_slopes[r, at] = scale * G[r, at]
 
 
-@merged
+@inlined
 def spread(
     hinge: Rows[JointStep], link: Rows[Coupling], local: Rows[BodyStep], k: int, r: int, amount: float,
     right: FloatArray, at: int,
@@ -118,7 +118,7 @@ def spread(
             right[at + local[i].column + c] += amount * hinge[k].frozen_rows[r, 3 * end + c]
 
 
-@merged
+@inlined
 def reach_of(
     hinge: Rows[JointStep], link: Rows[Coupling], local: Rows[BodyStep], k: int, r: int, right: FloatArray, at: int
 ) -> float:  # fmt: skip
@@ -131,7 +131,7 @@ def reach_of(
     return total
 
 
-@uncounted
+@nonallocating
 def back_condensed(
     W: Workspace, passes: int, size: int, band: int, matrix: FloatArray, right: FloatArray, room: int
 ) -> None:

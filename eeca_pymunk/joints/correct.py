@@ -5,7 +5,7 @@ Kinetic energy only falls, and momentum stays, for the change is M^-1 G^T times 
 
 from __future__ import annotations
 
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..model.joints import BodyStep, Coupling, JointLedger, JointStep, Workspace
 from ..model.parameters.joints import JOINT_SPEED_LEFT, JOINT_SPEED_ROUND_OFF, JOINT_TOUCH
@@ -13,7 +13,7 @@ from .bounds import approach, bounded, gap
 from .entries import held
 
 
-@uncounted
+@nonallocating
 def kinetic(local: Rows[BodyStep], bodies: int, kept: bool) -> float:
     """Kinetic energy of what joints can move, of the velocities at the start, or of those that were `kept`."""
     total = 0.0
@@ -25,7 +25,7 @@ def kinetic(local: Rows[BodyStep], bodies: int, kept: bool) -> float:
     return total
 
 
-@uncounted
+@nonallocating
 def fitting_loss(local: Rows[BodyStep], bodies: int, ledger: JointLedger) -> float:
     """The loss in the change of velocities, from `v_kept` to `v0`, that made them fit their joints.
 
@@ -45,7 +45,7 @@ def fitting_loss(local: Rows[BodyStep], bodies: int, ledger: JointLedger) -> flo
     return lost if moves else -gained
 
 
-@uncounted
+@nonallocating
 def keep(W: Workspace) -> None:
     """Before velocities are corrected: remember them, and count passes and tries anew."""
     W.J.PROGRESS.passes = W.J.PROGRESS.tries = 0
@@ -56,7 +56,7 @@ def keep(W: Workspace) -> None:
         W.J.HINGE[k].pushed[0] = W.J.HINGE[k].pushed[1] = 0.0
 
 
-@uncounted
+@nonallocating
 def goes_on(W: Workspace) -> bool:
     """After a pass of correcting velocities: whether another is due. Limits that pull are let go, closing ones held.
 
@@ -89,7 +89,7 @@ def goes_on(W: Workspace) -> bool:
     return True
 
 
-@uncounted
+@nonallocating
 def noise(hinge: Rows[JointStep], link: Rows[Coupling], k: int, r: int, local: Rows[BodyStep]) -> float:
     """The impulse that changes the rate of row r of joint k by what is round-off of the velocities before: a limit that
     pulls no more than that is in nobody's way, and to let it go would only have it met again."""
@@ -100,7 +100,7 @@ def noise(hinge: Rows[JointStep], link: Rows[Coupling], k: int, r: int, local: R
     return float(JOINT_SPEED_ROUND_OFF * total * hinge[k].scale[r] ** 2)
 
 
-@uncounted
+@nonallocating
 def touch(W: Workspace) -> bool:
     """Hold all free limits whose gap is closed and was closing with the kept velocities; whether there were any.
 
@@ -122,7 +122,7 @@ def touch(W: Workspace) -> bool:
     return found
 
 
-@uncounted
+@nonallocating
 def fits(W: Workspace) -> bool:
     """Whether velocities fit all rows that hold, but for what steps leave: they hold places exactly, and velocities to
     second or fourth order. To project that too would take energy whenever somebody else begins to step.

@@ -8,7 +8,7 @@ a body and itself. For pivots that is all there is; for other joints without spr
 from __future__ import annotations
 
 from ..arrays import FloatArray
-from ..compiled import merged
+from ..compiled import inlined
 from ..compiled.records import Rows
 from ..model.joints import JointStep, Workspace
 from ..model.parameters.joints import LEAST_INERTIA
@@ -17,7 +17,7 @@ from .condensed import factor, substitute
 STRIDE = 6  # of scratch per row
 
 
-@merged
+@inlined
 def freeze(
     hinge: Rows[JointStep], k: int, end: int, r: int, slopes: bool, x: float, y: float, z: float
 ) -> None:  # fmt: skip
@@ -34,7 +34,7 @@ def freeze(
     joint.frozen_slopes[r, at + 2] = w * G[r, at + 2]
 
 
-@merged
+@inlined
 def factor_dual(W: Workspace, slopes: bool, add: float) -> bool:
     """LU factors of S + `add` in `matrix`; False if there are none that can be trusted.
 
@@ -85,7 +85,7 @@ def factor_dual(W: Workspace, slopes: bool, add: float) -> bool:
     return factor(matrix, size, band)
 
 
-@merged
+@inlined
 def refresh(W: Workspace, slopes: bool) -> None:
     """Let the rows that `back_dual` takes be those of now, though the factors are of an earlier iterate: they say how
     impulses change velocities, and in long steps these rows turn."""
@@ -100,7 +100,7 @@ def refresh(W: Workspace, slopes: bool) -> None:
                 freeze(W.J.HINGE, k, end, r, slopes, x, y, z)
 
 
-@merged
+@inlined
 def back_dual(W: Workspace, right: FloatArray) -> None:
     """Solve with the factors of `factor_dual` in place of `right`, bodies and rows; `more` is scratch for the rows."""
     hinge, link, local, more = W.J.HINGE, W.link, W.J.LOCAL, W.J.MORE

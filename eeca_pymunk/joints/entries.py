@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray
-from ..compiled import merged
+from ..compiled import inlined
 from ..compiled.records import Rows
 from ..model.joints import DUAL, FULL_BEND, GROOVE, RATCHET, ROTARY_LIMIT, SLIDE, WHOLE, BodyStep, Coupling, JointStep
 
 
-@merged
+@inlined
 def held(link: Rows[Coupling], k: int, r: int) -> bool:
     """Whether row r of joint k acts: rows of limits do where the joint stands on one."""
     kind = link[k].kind
@@ -19,7 +19,7 @@ def held(link: Rows[Coupling], k: int, r: int) -> bool:
     return kind not in (SLIDE, ROTARY_LIMIT, RATCHET) or link[k].side != 0
 
 
-@merged
+@inlined
 def interval_of(kind: int, side: int, bound: float) -> tuple[float, float]:
     """Least and largest impulse of a joint of bounded force, by its largest amount: limits only push inwards."""
     if kind in (SLIDE, ROTARY_LIMIT, RATCHET):
@@ -27,7 +27,7 @@ def interval_of(kind: int, side: int, bound: float) -> tuple[float, float]:
     return -bound, bound
 
 
-@merged
+@inlined
 def along(joint: JointStep, r: int, v_a: FloatArray, v_b: FloatArray) -> float:
     """Row r of a joint times the velocities v_a and v_b of its bodies, or their ways."""
     total = 0.0
@@ -36,7 +36,7 @@ def along(joint: JointStep, r: int, v_a: FloatArray, v_b: FloatArray) -> float:
     return total
 
 
-@merged
+@inlined
 def put_rows(
     link: Rows[Coupling], hinge: Rows[JointStep], local: Rows[BodyStep], k: int, r: int, slopes: bool, weight: float,
     band: int, matrix: FloatArray,
@@ -53,7 +53,7 @@ def put_rows(
             matrix[(row + d) * width + band - d] -= hinge[k].rows[r, 3 * end + c] * root
 
 
-@merged
+@inlined
 def put_condensed(
     link: Rows[Coupling], hinge: Rows[JointStep], local: Rows[BodyStep], k: int, r: int, band: int, matrix: FloatArray
 ) -> None:
@@ -71,7 +71,7 @@ def put_condensed(
                     matrix[first + d] += factor * hinge[k].frozen_slopes[r, 3 * other + d]
 
 
-@merged
+@inlined
 def put_stiffness(
     link: Rows[Coupling], local: Rows[BodyStep], k: int, stiff: FloatArray, bend: int, h: float, system: int,
     band: int, matrix: FloatArray,
@@ -97,7 +97,7 @@ def put_stiffness(
                     matrix[first + d] -= stiff[3 * end + c, 3 * other + d] * factor * local[m].root[d]
 
 
-@merged
+@inlined
 def put_free(
     link: Rows[Coupling], hinge: Rows[JointStep], k: int, r: int, system: int, build: bool, band: int,
     matrix: FloatArray, right: FloatArray,
@@ -110,7 +110,7 @@ def put_free(
         matrix[row * (3 * band + 1) + band] = 1.0
 
 
-@merged
+@inlined
 def scale_rows(link: Rows[Coupling], hinge: Rows[JointStep], local: Rows[BodyStep], k: int) -> None:
     """Scales of the rows of joint k."""
     for r in range(link[k].rows):

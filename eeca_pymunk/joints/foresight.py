@@ -16,7 +16,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray
-from ..compiled import merged, uncounted
+from ..compiled import inlined, nonallocating
 from ..model.joints import Workspace
 
 PARTS, DEPTH = 5, 6
@@ -29,14 +29,14 @@ WEIGHTS: FloatArray = np.array([
 ])  # fmt: skip
 
 
-@uncounted
+@nonallocating
 def forget(W: Workspace) -> None:
     """Begin anew."""
     for k in range(W.joints):
         W.J.JOINT[W.link[k].joint].known_parts = 0
 
 
-@uncounted
+@nonallocating
 def recalls(W: Workspace, h: float) -> bool:
     """Whether the parts of a step h of these joints can be foretold; where they know not the same, they begin anew."""
     joint, link = W.J.JOINT, W.link
@@ -50,13 +50,13 @@ def recalls(W: Workspace, h: float) -> bool:
     return bool(same and count >= DEPTH)
 
 
-@merged
+@inlined
 def weigh(part: int, last: int, place: int) -> float:
     """The weight of what stands at a place, where the newest stands at `last`."""
     return float(WEIGHTS[part, last - place if place <= last else last - place + DEPTH])
 
 
-@merged
+@inlined
 def extrapolate(
     past: FloatArray, c: int, w0: float, w1: float, w2: float, w3: float, w4: float, w5: float
 ) -> float:  # fmt: skip
@@ -65,7 +65,7 @@ def extrapolate(
     return float(old + (w3 * past[c, 3] + w4 * past[c, 4] + w5 * past[c, 5]))
 
 
-@uncounted
+@nonallocating
 def foretell(W: Workspace, part: int, piece: float, loops: bool) -> None:
     """`lead` and, unless rows are redundant, `lam` of this part of length `piece`."""
     joint, link = W.J.JOINT, W.link
@@ -81,7 +81,7 @@ def foretell(W: Workspace, part: int, piece: float, loops: bool) -> None:
             W.J.HINGE[k].lam[r] = piece * extrapolate(joint[j].past_push, r, w0, w1, w2, w3, w4, w5)
 
 
-@uncounted
+@nonallocating
 def remember(W: Workspace, piece: float) -> None:
     """Store `lead` and `lam` of the part of length `piece` that was taken."""
     joint, link = W.J.JOINT, W.link

@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel, uncounted
+from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows, rows
 from ..model.bodies import Body
 from ..model.joints import PIN, PIVOT, SLIDE, Held, Joint
@@ -30,7 +30,7 @@ from .plan import turning
 FREE, WHOLLY, CENTRE = 0, 1, 2  # what of a body a straight path holds
 
 
-@uncounted
+@nonallocating
 def reach(joint: Joint) -> float:
     """The largest distance of a joint's two points, or infinity."""
     if joint.soft == 0 and joint.kind == PIVOT:
@@ -40,7 +40,7 @@ def reach(joint: Joint) -> float:
     return joint.upper if joint.soft == 0 and joint.kind == SLIDE else math.inf
 
 
-@uncounted
+@nonallocating
 def place_points(bodies: Rows[Body], joint: Rows[Joint], X: FloatArray, HEAD: IntArray, NEXT: IntArray) -> None:
     """Places (2 j, 2) of the points of joints, of j on its bodies a and b at 2 j and 2 j + 1; lists of those of each
     body, of joints that may be straight."""
@@ -56,7 +56,7 @@ def place_points(bodies: Rows[Body], joint: Rows[Joint], X: FloatArray, HEAD: In
                 NEXT[p], HEAD[i] = HEAD[i], p
 
 
-@uncounted
+@nonallocating
 def straight(X: FloatArray, first: int, p: int, length: float) -> bool:
     """Whether a path from the point `first` to p is as short as it can be."""
     dx, dy = X[p, 0] - X[first, 0], X[p, 1] - X[first, 1]
@@ -64,7 +64,7 @@ def straight(X: FloatArray, first: int, p: int, length: float) -> bool:
     return bool(abs(length - math.sqrt(dx * dx + dy * dy)) <= STRAIGHT_PATH * size)
 
 
-@uncounted
+@nonallocating
 def fix_path(
     joint: Rows[Joint], X: FloatArray, FROM: IntArray, p: int, first: int, spins: IntArray, held: IntArray
 ) -> int:  # fmt: skip
@@ -141,7 +141,7 @@ def find_held(bodies: Rows[Body], joint: Rows[Joint], still: IntArray, spins: In
     return total
 
 
-@uncounted
+@nonallocating
 def hold(HELD: Rows[Held], BODY: Rows[Body]) -> float:
     """Put held bodies where they are held, at rest but for the spin of those that are held at their centre; the kinetic
     energy that they lose, which joints take as they take that of any velocity that does not fit them."""

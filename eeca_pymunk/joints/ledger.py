@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from ..compiled import merged, uncounted
+from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
 from ..model.joints import MOTOR, ROTARY_SPRING, SPRING, BodyStep, JointLedger, Workspace
 from .entries import held
 from .springs import held_energy
 
 
-@merged
+@inlined
 def clear(ledger: JointLedger) -> None:
     """No energies of a step."""
     ledger.stored = ledger.damped = ledger.limited = ledger.clamped = ledger.projected = 0.0
     ledger.motors = ledger.supports = ledger.closed = 0.0
 
 
-@merged
+@inlined
 def clear_interval(ledger: JointLedger) -> None:
     """No energies at all."""
     clear(ledger)
@@ -24,7 +24,7 @@ def clear_interval(ledger: JointLedger) -> None:
     ledger.status = 0
 
 
-@merged
+@inlined
 def add(ledger: JointLedger, part: JointLedger) -> None:
     """Add the energies of a part of a step."""
     ledger.stored += part.stored
@@ -37,7 +37,7 @@ def add(ledger: JointLedger, part: JointLedger) -> None:
     ledger.closed += part.closed
 
 
-@uncounted
+@nonallocating
 def book(W: Workspace, h: float, ledger: JointLedger) -> None:
     """Add the works of a solved part of the step to `ledger`, and its impulses to `total`.
 
@@ -80,7 +80,7 @@ def book(W: Workspace, h: float, ledger: JointLedger) -> None:
             ledger.closed += total
 
 
-@uncounted
+@nonallocating
 def springs_hold(W: Workspace) -> float:
     """The energy that springs hold at the start."""
     joint = W.J.JOINT
@@ -94,7 +94,7 @@ def springs_hold(W: Workspace) -> float:
     return total
 
 
-@uncounted
+@nonallocating
 def close_ledger(local: Rows[BodyStep], bodies: int, ledger: JointLedger) -> None:
     """Let the ledger of a step from the saved state to the present close, whose joints did not hold: works of supports
     are `closed` too. Rows that contradict each other push without bound there, and their works cancel but for

@@ -9,7 +9,7 @@ land: they are held from where they are, g reaches its bound at the end of the p
 
 from __future__ import annotations
 
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..model.joints import LINEAR_STEP, SPEEDS, JointLedger, Workspace
 from ..model.parameters.joints import (
     JOINT_TOUCH,
@@ -26,7 +26,7 @@ from .motion import advance
 from .solve import solve
 
 
-@uncounted
+@nonallocating
 def step_with_limits(
     W: Workspace, what: int, h: float, length: float, loops: bool, give: float, whole: bool, ledger: JointLedger
 ) -> bool:

@@ -10,13 +10,13 @@ from __future__ import annotations
 
 import math
 
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..model.joints import BodyStep
 from ..model.parameters.joints import LOCK_ITERATIONS
 
 
-@uncounted
+@nonallocating
 def lock_energy(local: Rows[BodyStep], bodies: int, gain: float) -> float:
     """Take energy `gain` > 0 from the velocities v0; how much of it could be. Nothing where supports move: these
     work."""
@@ -53,7 +53,7 @@ def lock_energy(local: Rows[BodyStep], bodies: int, gain: float) -> float:
     return (1.0 - s * s) * apart
 
 
-@uncounted
+@nonallocating
 def stands(local: Rows[BodyStep], bodies: int) -> bool:
     """Whether nothing that the component hangs on moves."""
     still = True
@@ -63,7 +63,7 @@ def stands(local: Rows[BodyStep], bodies: int) -> bool:
     return still
 
 
-@uncounted
+@nonallocating
 def against(
     local: Rows[BodyStep], bodies: int, x: float, y: float, vx: float, vy: float, spin: float, s: float
 ) -> float:  # fmt: skip
@@ -85,7 +85,7 @@ def against(
     return total
 
 
-@uncounted
+@nonallocating
 def move_rigidly(local: Rows[BodyStep], bodies: int, h: float) -> None:
     """The end of a step h from the saved state to which no joint has an objection, and at which there is no more energy
     than at the start: all move as one rigid body under their accelerations, or stand still where they hang on

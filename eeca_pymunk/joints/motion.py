@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compiled import merged, uncounted
+from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
 from ..model.joints import BodyStep, Coupling, Joint
 
 
-@uncounted
+@nonallocating
 def size_up(
     joint: Rows[Joint], link: Rows[Coupling], first: int, last: int, local: Rows[BodyStep], bodies: int, h: float
 ) -> float:  # fmt: skip
@@ -30,7 +30,7 @@ def size_up(
     return length if length > 0.0 else 1.0
 
 
-@merged
+@inlined
 def move(local: Rows[BodyStep], bodies: int, h: float) -> None:
     """Fill in `way` and what follows from it, of the present velocities at the end, but for the angle itself
     (`turn`)."""
@@ -52,7 +52,7 @@ def move(local: Rows[BodyStep], bodies: int, h: float) -> None:
             local[i].lever = np.tan(t) / t if abs(t) > 1e-3 else 1.0 + t * t / 3.0 + 2.0 * t**4 / 15.0
 
 
-@uncounted
+@nonallocating
 def turn(body: BodyStep) -> None:
     """Fill in the angle that a body turns by, over chi too, after `move`: for joints of angles."""
     chi = body.way[2]
@@ -72,7 +72,7 @@ def turn(body: BodyStep) -> None:
         body.bend = 0.0
 
 
-@merged
+@inlined
 def settle(local: Rows[BodyStep], bodies: int, h: float) -> None:
     """Velocities at the end from the balance of momentum, to round-off, and the way that they make."""
     for i in range(bodies):
@@ -82,7 +82,7 @@ def settle(local: Rows[BodyStep], bodies: int, h: float) -> None:
     move(local, bodies, h)
 
 
-@merged
+@inlined
 def advance(local: Rows[BodyStep], bodies: int, h: float) -> None:
     """Make the end of a part h of the step the start of the next."""
     per = 1.0 / h

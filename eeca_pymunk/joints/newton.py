@@ -15,7 +15,7 @@ a *dual* one the rows alone (`dual`).
 
 from __future__ import annotations
 
-from ..compiled import merged
+from ..compiled import inlined
 from ..model.joints import BOUNDED, BOXED, CONDENSED, DUAL, LINEAR_STEP, NO_BEND, POSES, SPEEDS, STEP, WHOLE, Workspace
 from ..model.parameters.joints import STIFFEST
 from .boxes import leave_box
@@ -25,7 +25,7 @@ from .rows import joint_rows
 from .soft import put_soft
 
 
-@merged
+@inlined
 def assemble(W: Workspace, what: int, h: float, give: float, first: bool, system: int, build: bool) -> float:
     """Residuals of the rows for `what` (see `..model.joints`), scaled, in RIGHT, and the joints' rows in HINGE.
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray
-from ..compiled import merged, uncounted
+from ..compiled import inlined, nonallocating
 from ..model.joints import FULL_BEND, OWN_TURN, PIVOT, SLIDE, SPRING, BodyStep, Joint, JointStep
 from .springs import mean_force
 
 
-@merged
+@inlined
 def point_rows(
     kind: int, side: int, soft: bool, h: float, joint: Joint, hinge: JointStep, a: BodyStep, b: BodyStep, bends: bool,
     stiff: FloatArray,
@@ -100,7 +100,7 @@ def point_rows(
     return bend
 
 
-@uncounted
+@nonallocating
 def groove_rows(
     side: int, joint: Joint, hinge: JointStep, a: BodyStep, b: BodyStep, stiff: FloatArray,
 ) -> int:  # fmt: skip

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..model.joints import BOUNDED, BOXED, CONDENSED, DUAL, FULL_BEND, NO_BEND, STEP, Coupling, Workspace
 from ..model.parameters.joints import CONDENSED_PASSES, REDUNDANT_EPSILON, RESPONSE_PASSES, TAUT
@@ -21,7 +21,7 @@ from .rows import joint_rows, start_joint
 from .solve import back, begin, decompose
 
 
-@uncounted
+@nonallocating
 def bend(W: Workspace, k: int, h: float) -> None:
     """Let joint k have the impulse of the whole step, so that its rows take their force along as they turn; none if it
     presses, and all that presses on one of its bodies would take more than TAUT of that body's `inertia`.
@@ -48,7 +48,7 @@ def bend(W: Workspace, k: int, h: float) -> None:
             local[at].inertia[c % 3] -= times * abs(h * W.J.STIFF[c, c]) * local[at].mobility[c % 3]
 
 
-@uncounted
+@nonallocating
 def prepare(W: Workspace, what: int, h: float) -> int:
     """Factors of the matrix that `respond` needs, in `matrix` and `pivots`; their system, -1 if there are none.
 
@@ -63,7 +63,7 @@ def prepare(W: Workspace, what: int, h: float) -> int:
     return int(system)
 
 
-@uncounted
+@nonallocating
 def unbox(link: Rows[Coupling], joints: int) -> bool:
     """Let rows that are boxed be in the matrix: those inside of their bounds hold. Whether there are any."""
     some = False
@@ -74,7 +74,7 @@ def unbox(link: Rows[Coupling], joints: int) -> bool:
     return some
 
 
-@uncounted
+@nonallocating
 def factors(W: Workspace, what: int, h: float) -> int:
     """See `prepare`."""
     link, local, component = W.link, W.J.LOCAL, W.J.COMPONENT[W.s]
@@ -112,7 +112,7 @@ def factors(W: Workspace, what: int, h: float) -> int:
             system = component.system
 
 
-@uncounted
+@nonallocating
 def respond(W: Workspace, what: int, system: int, push: FloatArray, gives: bool) -> None:
     """push (bodies, 3): impulses in (mass length/time, mass length²/time), changes of velocity out. `more`: scratch.
 

@@ -19,13 +19,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compiled import merged, uncounted
+from ..compiled import inlined, nonallocating
 from ..model.joints import GEAR, GROOVE, PIVOT, ROTARY_SPRING, SPRING, Workspace
 from .angles import angle_rows
 from .points import groove_rows, point_rows
 
 
-@merged
+@inlined
 def joint_rows(W: Workspace, k: int, h: float, bends: bool) -> int:
     """Joint k at the present iterate: `value` to `slopes`, and STIFF if the derivative of its force is needed
     (`bends`), as far as the result says: NO_BEND, OWN_TURN, FULL_BEND."""
@@ -49,7 +49,7 @@ def joint_rows(W: Workspace, k: int, h: float, bends: bool) -> int:
     return bend
 
 
-@merged
+@inlined
 def start_joint(W: Workspace, k: int, h: float) -> None:
     """What stays the same over the iterations: arms, distance and normal at the start, a spring's damping."""
     joint, hinge, link, local = W.J.JOINT, W.J.HINGE, W.link, W.J.LOCAL
@@ -84,7 +84,7 @@ def start_joint(W: Workspace, k: int, h: float) -> None:
         hinge[k].drag = drag(joint[j].damping, mobility, h)
 
 
-@uncounted
+@nonallocating
 def drag(damping: float, mobility: float, h: float) -> float:
     """The damping for which the midpoint rule slows a free pair by exp(-damping mobility h), as native does.
 
@@ -94,7 +94,7 @@ def drag(damping: float, mobility: float, h: float) -> float:
     return np.tanh(damping * rate) / rate if rate > 0.0 else damping
 
 
-@uncounted
+@nonallocating
 def row_count(kind: int) -> int:
     """Number of impulses of a joint of this kind that are unknowns."""
     if kind in (SPRING, ROTARY_SPRING):

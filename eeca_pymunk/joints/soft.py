@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..model.joints import CONDENSED, GROOVE, Workspace
 from ..model.parameters.joints import STIFFEST
 from .condensed import freeze
 from .entries import interval_of, put_condensed, put_free, put_rows
 
 
-@uncounted
+@nonallocating
 def put_soft(W: Workspace, k: int, slopes: bool, h: float, system: int, build: bool, band: int) -> float:
     """Rows of velocity of joint k with bounded impulses; the residual as a length."""
     hinge, link, local, matrix, right = W.J.HINGE, W.link, W.J.LOCAL, W.J.MATRIX, W.J.RIGHT

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray
-from ..compiled import merged, uncounted
+from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
 from ..model.joints import (
     BOUNDED,
@@ -49,7 +49,7 @@ from .newton import assemble
 from .rows import start_joint
 
 
-@merged
+@inlined
 def begin(W: Workspace, what: int, h: float) -> None:
     """What stays the same over the iterations, and the first iterate: motion with the accelerations that joints gave
     before (`lead`), or no motion where joints act."""
@@ -64,7 +64,7 @@ def begin(W: Workspace, what: int, h: float) -> None:
     move(local, W.bodies, h)
 
 
-@merged
+@inlined
 def balance(W: Workspace, h: float, length: float) -> float:
     """Residuals of the balance of momentum, scaled, into `right`; the worst as a way, over length or as an angle."""
     local = W.J.LOCAL
@@ -78,7 +78,7 @@ def balance(W: Workspace, h: float, length: float) -> float:
     return worst
 
 
-@merged
+@inlined
 def apply(W: Workspace, what: int) -> None:
     """Add the solution of a scaled system to what was solved for, and to impulses."""
     local = W.J.LOCAL
@@ -94,7 +94,7 @@ def apply(W: Workspace, what: int) -> None:
             impulse[r] += W.J.RIGHT[W.link[k].first_row + r] * W.J.HINGE[k].scale[r]
 
 
-@merged
+@inlined
 def decompose(W: Workspace, what: int, system: int, epsilon: float, give: float) -> bool:
     """Factors in the place of what `assemble` has built, with `epsilon` on the rows' block; False if there are none.
     `more` is scratch, as in `back`."""
@@ -111,7 +111,7 @@ def decompose(W: Workspace, what: int, system: int, epsilon: float, give: float)
     return factor_banded(matrix, size, band, W.J.PIVOTS)
 
 
-@merged
+@inlined
 def back(W: Workspace, what: int, system: int, passes: int, right: FloatArray) -> None:
     """Solve with the factors of `decompose` in place of `right`: changes of velocities, and of impulses. `more` is
     scratch, see `plan.Room`."""
@@ -124,7 +124,7 @@ def back(W: Workspace, what: int, system: int, passes: int, right: FloatArray) -
         back_banded(W.J.MATRIX, size, band, W.J.PIVOTS, right)
 
 
-@uncounted
+@nonallocating
 def bounded_rows(link: Rows[Coupling], joints: int) -> bool:
     """Whether any joint has bounded rows in the matrix."""
     count = 0
@@ -133,7 +133,7 @@ def bounded_rows(link: Rows[Coupling], joints: int) -> bool:
     return count > 0
 
 
-@uncounted
+@nonallocating
 def answer_boxes(W: Workspace, what: int, system: int, passes: int, boxes: int) -> None:
     """Columns of `boxes`, with the factors of `decompose`: what a unit impulse along each boxed row does."""
     component, right, more = W.J.COMPONENT[W.s], W.J.RIGHT, W.J.MORE
@@ -153,7 +153,7 @@ def answer_boxes(W: Workspace, what: int, system: int, passes: int, boxes: int) 
         right[i] = more[at + i]
 
 
-@uncounted
+@nonallocating
 def effort(system: int, fresh: bool, boxes: int, joints: int, component: Component) -> float:
     """About how many operations an iteration takes: rows, factors, solutions."""
     size, band = (component.dual_size, component.dual_band) if system == DUAL else (component.unknowns, component.band)
@@ -163,7 +163,7 @@ def effort(system: int, fresh: bool, boxes: int, joints: int, component: Compone
     return float(ROW_WORK * joints + (factors if fresh else 0.0) + 6.0 * turns * size * (band + 4))
 
 
-@uncounted
+@nonallocating
 def solve(W: Workspace, what: int, h: float, length: float, loops: bool, give: float) -> int:
     """Solve for `what` (see `..model.joints`) from the present `lam`; the number of iterations, -1 if that fails.
 

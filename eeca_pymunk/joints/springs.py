@@ -7,10 +7,10 @@ Psi the integral of the cap; the step's work is then exactly what the potential 
 
 from __future__ import annotations
 
-from ..compiled import uncounted
+from ..compiled import nonallocating
 
 
-@uncounted
+@nonallocating
 def cap_integral(f: float, bound: float) -> float:
     """The integral from 0 to f of a force capped at +-bound."""
     if abs(f) <= bound:
@@ -18,7 +18,7 @@ def cap_integral(f: float, bound: float) -> float:
     return bound * (abs(f) - 0.5 * bound)
 
 
-@uncounted
+@nonallocating
 def mean_force(push: float, slope: float, bound: float, began: float, ended: float) -> float:
     """The mean over [began, ended] of push + slope x, capped; both ends are counted from rest."""
     f0, f1 = push + slope * began, push + slope * ended
@@ -29,7 +29,7 @@ def mean_force(push: float, slope: float, bound: float, began: float, ended: flo
     return (cap_integral(f1, bound) - cap_integral(f0, bound)) / (f1 - f0)
 
 
-@uncounted
+@nonallocating
 def held_energy(push: float, slope: float, bound: float, at: float) -> float:
     """The potential of that law at a length or angle counted from rest, of a spring whose force falls with it."""
     if slope == 0.0:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..model.joints import (
     APART,
@@ -34,7 +34,7 @@ from .rows import joint_rows
 from .solve import begin
 
 
-@uncounted
+@nonallocating
 def read_joints(W: Workspace, h: float, length: float, boxes: int) -> int:
     """Fill in what the joints bring from before. Rows of bounded impulses are boxed if they are `boxes` at most.
 
@@ -72,7 +72,7 @@ def read_joints(W: Workspace, h: float, length: float, boxes: int) -> int:
     return touched + soft
 
 
-@uncounted
+@nonallocating
 def look(W: Workspace) -> None:
     """Compute rows and values of all joints at the present poses, of soft ones too."""
     link = W.link
@@ -84,14 +84,14 @@ def look(W: Workspace) -> None:
         link[k].soft = soft
 
 
-@uncounted
+@nonallocating
 def share(joint: Rows[Joint], j: int, error: float, h: float) -> float:
     """The share of an error that native takes back in a step h: 1 - error_bias^h, not faster than max_bias."""
     part = 1.0 - joint[j].error_bias ** h
     return float(min(part, joint[j].max_bias * h / error)) if error > 0.0 else part
 
 
-@uncounted
+@nonallocating
 def soft_targets(W: Workspace, h: float) -> None:
     """Speeds at which soft joints close, and which soft limits act: those beyond their bound or about to pass it.
 
@@ -125,7 +125,7 @@ def soft_targets(W: Workspace, h: float) -> None:
             hinge[k].target[r] = -hinge[k].value[r] * share(joint, j, error, h) / h
 
 
-@uncounted
+@nonallocating
 def find_apart(W: Workspace, h: float) -> int:
     """After the user's changes: targets of joints that are apart, one step's share nearer, and limits that are passed.
 
@@ -169,7 +169,7 @@ def find_apart(W: Workspace, h: float) -> int:
     return fresh + apart + (own if fresh == 0 else 0)
 
 
-@uncounted
+@nonallocating
 def farthest(W: Workspace) -> float:
     """The largest error of a held row, over the size of the island. Rows must be those of the present poses."""
     link = W.link
@@ -181,7 +181,7 @@ def farthest(W: Workspace) -> float:
     return worst
 
 
-@uncounted
+@nonallocating
 def closing_work(local: Rows[BodyStep], bodies: int) -> float:
     """The work of closing, from the saved to the present poses, against the bodies' accelerations."""
     work = 0.0
@@ -192,7 +192,7 @@ def closing_work(local: Rows[BodyStep], bodies: int) -> float:
     return work
 
 
-@uncounted
+@nonallocating
 def keep_closed(W: Workspace) -> None:
     """Note how far closing has shifted bodies, and let joints hold what it reached."""
     hinge, link, local = W.J.HINGE, W.link, W.J.LOCAL

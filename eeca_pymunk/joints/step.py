@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..model.joints import (
     APART,
@@ -57,7 +57,7 @@ SUZUKI = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))
 FIRST_RUNG, ELASTIC_RUNG, LAST_RUNG = 0, 4, 10  # rung -1 is order 4
 
 
-@uncounted
+@nonallocating
 def save(local: Rows[BodyStep], bodies: int) -> None:
     """Keep the start of the step."""
     for i in range(bodies):
@@ -67,7 +67,7 @@ def save(local: Rows[BodyStep], bodies: int) -> None:
         local[i].mean[0] = local[i].mean[1] = 0.0
 
 
-@uncounted
+@nonallocating
 def back(local: Rows[BodyStep], bodies: int) -> None:
     """Back to the poses and velocities at the start of the step."""
     for i in range(bodies):
@@ -78,7 +78,7 @@ def back(local: Rows[BodyStep], bodies: int) -> None:
         local[i].cos, local[i].sin = np.cos(local[i].pose[2]), np.sin(local[i].pose[2])
 
 
-@uncounted
+@nonallocating
 def restore(W: Workspace) -> None:
     """Back to the start of the step, without impulses."""
     hinge, link = W.J.HINGE, W.link
@@ -92,7 +92,7 @@ def restore(W: Workspace) -> None:
         link[k].side = W.J.JOINT[link[k].joint].side
 
 
-@uncounted
+@nonallocating
 def smooth(W: Workspace) -> bool:
     """Whether order 4 may be had: no damping, no motor, no finite max_force, nobody on a limit."""
     link = W.link
@@ -103,7 +103,7 @@ def smooth(W: Workspace) -> bool:
     return True
 
 
-@uncounted
+@nonallocating
 def gives_way(W: Workspace) -> bool:
     """Whether a joint of the island gives way elastically since an earlier step."""
     some = False
@@ -112,7 +112,7 @@ def gives_way(W: Workspace) -> bool:
     return some
 
 
-@uncounted
+@nonallocating
 def write_joints(W: Workspace, h: float, loose: int) -> None:
     """Leave impulses, limits and notches in the joints' own rows."""
     joint, hinge, link, local = W.J.JOINT, W.J.HINGE, W.link, W.J.LOCAL
@@ -136,7 +136,7 @@ def write_joints(W: Workspace, h: float, loose: int) -> None:
                 joint[j].side = 0
 
 
-@uncounted
+@nonallocating
 def stop_joints(W: Workspace, h: float) -> None:
     """The step of an island that nothing else can do: see `move_rigidly`; what that loses enters the ledger in
     `part`."""
@@ -159,7 +159,7 @@ def stop_joints(W: Workspace, h: float) -> None:
             W.J.HINGE[k].lam[r] = W.J.HINGE[k].total[r] = 0.0
 
 
-@uncounted
+@nonallocating
 def repaid(W: Workspace, part: JointLedger, owed: float) -> bool:
     """Whether exact rows, which close at once what an earlier step left apart, give no more than that has taken, or
     little beside what moved before, which is taken back."""
@@ -176,7 +176,7 @@ def repaid(W: Workspace, part: JointLedger, owed: float) -> bool:
     return True
 
 
-@uncounted
+@nonallocating
 def island_step(W: Workspace, h: float, order: int, length: float, ledger: JointLedger) -> int:
     """Step one component by h; its status: EXACT, HALVED, ELASTIC or LINEAR.
 

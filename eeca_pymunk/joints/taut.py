@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import math
 
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..model.joints import PIN, PIVOT, SLIDE, Workspace
 from ..model.parameters.joints import TAUT
 from .rows import start_joint
 
 
-@uncounted
+@nonallocating
 def taut(W: Workspace, h: float) -> bool:
     """Whether the impulses of some joint between points pull so that (h/2) dF/dx > TAUT of a body's inertia."""
     hinge, link = W.J.HINGE, W.link

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ..compiled import merged
+from ..compiled import inlined
 from ..compiled.records import Rows, row, rows
 from ..model.bodies import Body
 from ..model.joints import (
@@ -25,7 +25,7 @@ from ..model.joints import (
 from .plan import make_plan, room_for
 
 
-@merged
+@inlined
 def workspace(J: Joints, s: int) -> Workspace:
     """The memory of component s."""
     C = J.COMPONENT[s]

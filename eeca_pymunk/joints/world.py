@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..compiled import Table, table_of, uncounted
+from ..compiled import Table, nonallocating, table_of
 from ..compiled.records import Rows
 from ..model.bodies import Body
 from ..model.joints import Joint, JointLedger, Joints, joints_of
@@ -15,7 +15,7 @@ from .step import island_step
 from .workspace import make_joints, workspace
 
 
-@uncounted
+@nonallocating
 def gather_island(bodies: Rows[Body], J: Joints, s: int, h: float) -> float:
     """Copy the bodies of component s into its scratch; its size, the length that errors are measured by."""
     C, local = J.COMPONENT[s], J.LOCAL
@@ -30,7 +30,7 @@ def gather_island(bodies: Rows[Body], J: Joints, s: int, h: float) -> float:
     return size_up(J.JOINT, J.LINK, C.first_joint, C.end_joint, local, C.end_body - C.first_body, h)
 
 
-@uncounted
+@nonallocating
 def step_all(JOINTS: Table, bodies: Rows[Body], h: float) -> int:
     """Step all components of a plan by h, in place of the poses and velocities of `bodies`; the worst status.
 

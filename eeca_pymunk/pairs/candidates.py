@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import Table, uncounted
+from ..compiled import Table, nonallocating
 from ..geometry.flight import norm
 from ..geometry.gap import gap, touching
 from ..model.parameters.detection import FARTHEST_CELL, MARGIN_OF_FAST
@@ -19,7 +19,7 @@ from .grid import renew
 from .lists import centre
 
 
-@uncounted
+@nonallocating
 def cover(A: Scene, USUAL: FloatArray, s: int, reach: float) -> bool:
     """Make the list of shape s complete for a displacement of length `reach` from the start of the step. False if the
     pool is full: then `grid.build` has to be called.
@@ -38,7 +38,7 @@ def cover(A: Scene, USUAL: FloatArray, s: int, reach: float) -> bool:
     return renew(A, s, 0.0, 0.0) >= 0
 
 
-@uncounted
+@nonallocating
 def candidates(table: Table, USUAL: FloatArray, REACH: FloatArray, PAIRS: IntArray, OUT: FloatArray) -> int:
     """The pairs of shapes whose gap at the start of the step is at most the sum of their bodies' reaches.
 

@@ -9,25 +9,25 @@ from __future__ import annotations
 
 import math
 
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..model.parameters.detection import CELL_LIMIT
 from ..model.scene import Scene
 from ..model.shapes import LEVELS
 
 
-@uncounted
+@nonallocating
 def bucket(level: int, column: int, row: int, mask: int) -> int:
     """Bucket of a cell in the hash table."""
     return ((column * 73856093) ^ (row * 19349663) ^ (level * 83492791)) & mask
 
 
-@uncounted
+@nonallocating
 def cell_at(x: float, length: float) -> int:
     """Column or row of a cell of the grid of moving shapes."""
     return math.floor(min(max(x / length, -CELL_LIMIT), CELL_LIMIT))
 
 
-@uncounted
+@nonallocating
 def level_of(radius: float, cell: float) -> int:
     """The lowest level whose cells are at least twice as long as the radius."""
     level, length = 0, cell
@@ -37,14 +37,14 @@ def level_of(radius: float, cell: float) -> int:
     return level
 
 
-@uncounted
+@nonallocating
 def draw(A: Scene, s: int, x: float, y: float) -> None:
     """Set the centre of the margin circle of shape s to (x, y)."""
     mark = A.MARK[s]
     mark.x, mark.y, mark.reach = x, y, A.SHAPE[s].bound + mark.margin
 
 
-@uncounted
+@nonallocating
 def link(A: Scene, s: int) -> None:
     """Enter shape s into the grid at its margin circle."""
     MARK, HEAD = A.MARK, A.HEAD
@@ -60,7 +60,7 @@ def link(A: Scene, s: int) -> None:
     A.GRID.level[level] += 1
 
 
-@uncounted
+@nonallocating
 def unlink(A: Scene, s: int) -> None:
     """Remove shape s from the grid."""
     MARK, cell = A.MARK, A.CELL[s]
@@ -74,7 +74,7 @@ def unlink(A: Scene, s: int) -> None:
     A.GRID.level[cell.level] -= 1
 
 
-@uncounted
+@nonallocating
 def near(A: Scene, o: int, x: float, y: float, radius: float) -> bool:
     """Whether the circle of radius `MARK.reach` of shape o overlaps the circle (x, y, radius)."""
     dx, dy = A.MARK[o].x - x, A.MARK[o].y - y

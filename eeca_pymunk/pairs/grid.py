@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from ..compiled import Table, fetch, uncounted
+from ..compiled import Table, fetch, nonallocating
 from ..model.scene import Scene, scene_of
 from ..model.shapes import BATCH, LEVELS
 from .cells import bucket, cell_at, draw, link, near, unlink
@@ -18,13 +18,13 @@ from .walls import box_wall, seek_walls
 _FIRST_CAPACITY = 8
 
 
-@uncounted
+@nonallocating
 def join(A: Scene, s: int, o: int) -> bool:
     """Enter two moving shapes that may meet into each other's lists. False if the pool is full."""
     return not may_meet(A, s, o) or (append(A, s, o) and append(A, o, s))
 
 
-@uncounted
+@nonallocating
 def join_chosen(A: Scene, s: int, n: int) -> bool:
     """`join` s with those of the first n shapes in GRID.chosen that are not in its list. False if the pool is full."""
     chosen = A.GRID.chosen
@@ -38,7 +38,7 @@ def join_chosen(A: Scene, s: int, n: int) -> bool:
     return room
 
 
-@uncounted
+@nonallocating
 def walk(A: Scene, s: int, n: int) -> bool:
     """`join` s with the shapes near its margin circle in n buckets, whose first shapes are in GRID.walked. False if the
     pool is full. All chains advance together, so that their cache misses overlap."""
@@ -62,7 +62,7 @@ def walk(A: Scene, s: int, n: int) -> bool:
     return join_chosen(A, s, found)
 
 
-@uncounted
+@nonallocating
 def seek_moving(A: Scene, s: int) -> bool:
     """Enter neighbours of s, which is not in the grid, among the shapes that are; those in its list are skipped. False
     if the pool is full."""
@@ -101,7 +101,7 @@ def seek_moving(A: Scene, s: int) -> bool:
     return True
 
 
-@uncounted
+@nonallocating
 def part(A: Scene, s: int) -> int:
     """Keep in the list of s the moving shapes that are near its margin circle, with their flags, and remove s from the
     lists of the others; returns how many are kept. Static shapes are dropped, since `seek_walls` finds them again,
@@ -123,7 +123,7 @@ def part(A: Scene, s: int) -> int:
     return kept
 
 
-@uncounted
+@nonallocating
 def renew(A: Scene, s: int, t: float, ahead: float) -> int:
     """Move the margin circle of s to its position at instant t, and renew its list.
 
@@ -149,7 +149,7 @@ def renew(A: Scene, s: int, t: float, ahead: float) -> int:
     return kept if found else -1
 
 
-@uncounted
+@nonallocating
 def make_lists(A: Scene, t: float) -> bool:
     """Make all lists at instant t. False if the pool is full."""
     GRID, moving = A.GRID, A.GRID.moving
@@ -179,13 +179,13 @@ def make_lists(A: Scene, t: float) -> bool:
     return True
 
 
-@uncounted
+@nonallocating
 def build(table: Table, t: float) -> bool:
     """Build all lists at instant t. False if the pool is full: call again with a larger one."""
     return make_lists(scene_of(table), t)
 
 
-@uncounted
+@nonallocating
 def relist(table: Table) -> bool:
     """Make all lists at instant 0 for shapes that are others than before, static ones elsewhere, too. False if the pool
     is full, or if static shapes have a grid, which this does not make."""

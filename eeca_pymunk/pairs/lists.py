@@ -9,14 +9,14 @@ from __future__ import annotations
 
 import math
 
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..geometry.gap import touching
 from ..model.parameters.impulses import FACE_ROUND_OFF, ROCKING
 from ..model.scene import Scene
 from .rules import law
 
 
-@uncounted
+@nonallocating
 def centre(A: Scene, s: int, t: float) -> tuple[float, float]:
     """Centre of the bounding circle of shape s at instant t."""
     BODY, i = A.BODY, A.LINK[s].owner
@@ -32,7 +32,7 @@ def centre(A: Scene, s: int, t: float) -> tuple[float, float]:
     return x, y
 
 
-@uncounted
+@nonallocating
 def far_apart(A: Scene, a: int, b: int, t: float, reach: float) -> bool:
     """Whether the bounding circles of shapes a and b are at a distance above `reach`, length, at instant t."""
     ax, ay = centre(A, a, t)
@@ -41,7 +41,7 @@ def far_apart(A: Scene, a: int, b: int, t: float, reach: float) -> bool:
     return bool((bx - ax) * (bx - ax) + (by - ay) * (by - ay) > apart * apart)
 
 
-@uncounted
+@nonallocating
 def course(A: Scene, s: int, t: float) -> tuple[float, float]:
     """Direction of the velocity of the centre of mass of shape s's body at instant t; 0 if it has none."""
     BODY, i = A.BODY, A.LINK[s].owner
@@ -51,7 +51,7 @@ def course(A: Scene, s: int, t: float) -> tuple[float, float]:
     return (ux / u, uy / u) if u > 0.0 else (0.0, 0.0)
 
 
-@uncounted
+@nonallocating
 def may_meet(A: Scene, a: int, b: int) -> bool:
     """Whether two shapes may collide: they belong to two bodies, impulses move one of these, and pymunk's filters allow
     it."""
@@ -69,7 +69,7 @@ def may_meet(A: Scene, a: int, b: int) -> bool:
     return bool((LINK[a].categories & LINK[b].mask) != 0 and (LINK[b].categories & LINK[a].mask) != 0)
 
 
-@uncounted
+@nonallocating
 def append(A: Scene, a: int, b: int) -> bool:
     """Append b to the list of a, which moves to the end of the pool when it is full. False if the pool is full too."""
     POOL, FLAG, own = A.POOL, A.FLAG, A.LIST[a]
@@ -90,7 +90,7 @@ def append(A: Scene, a: int, b: int) -> bool:
     return True
 
 
-@uncounted
+@nonallocating
 def place_in(A: Scene, s: int, o: int) -> int:
     """Index in POOL of o in the list of s, -1 if it is not there."""
     POOL, own = A.POOL, A.LIST[s]
@@ -100,7 +100,7 @@ def place_in(A: Scene, s: int, o: int) -> int:
     return -1
 
 
-@uncounted
+@nonallocating
 def remove(A: Scene, a: int, b: int) -> None:
     """Remove b from the list of a; the last entry takes its place."""
     q = place_in(A, a, b)
@@ -110,7 +110,7 @@ def remove(A: Scene, a: int, b: int) -> None:
         A.LIST[a].number -= 1
 
 
-@uncounted
+@nonallocating
 def mark_pair(A: Scene, a: int, b: int, value: int) -> None:
     """Set the flags of a pair in the lists that contain it: 1 while an island's solve has the pair, which then makes no
     events (set by `..islands`, read by `..prediction`)."""
@@ -120,7 +120,7 @@ def mark_pair(A: Scene, a: int, b: int, value: int) -> None:
             A.FLAG[q] = value
 
 
-@uncounted
+@nonallocating
 def face_tolerance(A: Scene, a: int, b: int) -> float:
     """The tolerance (length) of `face` in an impact."""
     tolerance = FACE_ROUND_OFF * touching(A, a, b)

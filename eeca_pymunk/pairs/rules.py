@@ -5,12 +5,12 @@ handlers or joints have set for this step in RULE (see `..model.scene`), whose r
 from __future__ import annotations
 
 from ..arrays import FloatArray
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..model.shapes import Shape
 
 
-@uncounted
+@nonallocating
 def row_of(RULE: FloatArray, a: int, b: int) -> int:
     """The row of shapes a and b in either order, -1 if there is none; by bisection."""
     low, high = 0, RULE.shape[0]
@@ -28,14 +28,14 @@ def row_of(RULE: FloatArray, a: int, b: int) -> int:
     return -1
 
 
-@uncounted
+@nonallocating
 def barred(RULE: FloatArray, a: int, b: int) -> bool:
     """Whether shapes a and b do not collide in this step, because of a handler or a joint."""
     r = row_of(RULE, a, b)
     return bool(r >= 0 and RULE[r, 2] < 0.0)
 
 
-@uncounted
+@nonallocating
 def law(SHAPE: Rows[Shape], RULE: FloatArray, a: int, b: int) -> tuple[float, float, float, float]:
     """Elasticity, friction, and surface velocity (x, y) of b relative to a."""
     r = row_of(RULE, a, b)

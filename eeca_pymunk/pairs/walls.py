@@ -5,20 +5,20 @@ from __future__ import annotations
 import math
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..model.scene import Scene
 from ..model.shapes import Grid
 from .lists import append, may_meet, place_in
 
 
-@uncounted
+@nonallocating
 def cell_of(distance: float, length: float, count: int) -> int:
     """Column or row of a distance from the grid's corner; the outermost ones reach to infinity."""
     place = distance / length
     return 0 if not place > 0.0 else (count - 1 if place >= count else int(place))
 
 
-@uncounted
+@nonallocating
 def cells_of(GRID: Grid, left: float, bottom: float, right: float, top: float) -> tuple[int, int, int, int]:
     """The first and last column, and the first and last row, of the cells that a box overlaps."""
     length = GRID.wall_cell
@@ -28,7 +28,7 @@ def cells_of(GRID: Grid, left: float, bottom: float, right: float, top: float) -
     )  # fmt: skip
 
 
-@uncounted
+@nonallocating
 def box_wall(A: Scene, w: int) -> None:
     """Write left, bottom, right and top of static shape number w to BOX."""
     s = A.GRID.moving + w
@@ -40,7 +40,7 @@ def box_wall(A: Scene, w: int) -> None:
     A.BOX[w, 0], A.BOX[w, 1], A.BOX[w, 2], A.BOX[w, 3] = left - size, bottom - size, right + size, top + size
 
 
-@uncounted
+@nonallocating
 def try_wall(A: Scene, s: int, w: int) -> bool:
     """Enter static shape number w into the list of s if it may meet its margin circle. False if the pool is full."""
     BOX, mark, o = A.BOX, A.MARK[s], A.GRID.moving + w
@@ -50,7 +50,7 @@ def try_wall(A: Scene, s: int, w: int) -> bool:
     return not new or append(A, s, o)
 
 
-@uncounted
+@nonallocating
 def seek_walls(A: Scene, s: int) -> bool:
     """Enter the static neighbours of s that are not in its list. False if the pool is full."""
     GRID, BOX, CSR = A.GRID, A.BOX, A.CSR
@@ -76,7 +76,7 @@ def seek_walls(A: Scene, s: int) -> bool:
     return True
 
 
-@uncounted
+@nonallocating
 def entries_of(BOX: FloatArray, GRID: Grid) -> int:
     """The number of cells that static shapes with boxes (W, 4) overlap, counted for each shape."""
     total = 0
@@ -86,7 +86,7 @@ def entries_of(BOX: FloatArray, GRID: Grid) -> int:
     return total
 
 
-@uncounted
+@nonallocating
 def size_walls(BOX: FloatArray, GRID: Grid) -> int:
     """Choose the cells of the grid of static shapes with boxes (W, 4), W > 0: about as many as shapes, fewer if large
     shapes would fill too many. Returns `entries_of`."""
@@ -106,7 +106,7 @@ def size_walls(BOX: FloatArray, GRID: Grid) -> int:
         length *= 2.0
 
 
-@uncounted
+@nonallocating
 def wall_grid(BOX: FloatArray, GRID: Grid, CSR: IntArray) -> None:
     """Enter static shapes with boxes (W, 4) into the cells of their grid: CSR has columns * rows + 1 starts and then
     the shapes of all cells."""

@@ -16,7 +16,7 @@ import math
 from typing import NamedTuple
 
 from ..arrays import FloatArray
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..geometry.flight import pose, rate
 from ..model.bodies import Body
@@ -44,7 +44,7 @@ class Closing(NamedTuple):
     round_off: float  # rate of approach up to which points that touch do not close: length/time
 
 
-@uncounted
+@nonallocating
 def motion(BODY: Rows[Body], i: int, t: float) -> Motion:
     """The motion of body i at instant t."""
     x, y, angle = pose(BODY, i, t)
@@ -52,7 +52,7 @@ def motion(BODY: Rows[Body], i: int, t: float) -> Motion:
     return Motion(x, y, angle, vx, vy, spin)
 
 
-@uncounted
+@nonallocating
 def first_close(best: float, near: float, closing: bool, g: float, w: float, of: Closing) -> tuple[float, float, bool]:
     """Include one more point of an axis, with gap g (length) and rate w (length/time), in the results so far, and
     return them: the time `best` before which no point can close, the least gap `near` (length), and whether a point
@@ -66,7 +66,7 @@ def first_close(best: float, near: float, closing: bool, g: float, w: float, of:
     return best, near, closing
 
 
-@uncounted
+@nonallocating
 def fixed_axis(
     P: FloatArray, p: int, Q: FloatArray, q: int, nx: float, ny: float, a: Motion, b: Motion, of: Closing
 ) -> tuple[float, float, bool]:
@@ -83,7 +83,7 @@ def fixed_axis(
     return best, near, closing
 
 
-@uncounted
+@nonallocating
 def turning_axis(
     P: FloatArray, edge: int, Q: FloatArray, q: int, a: Motion, b: Motion, of: Closing
 ) -> tuple[float, float, bool]:
@@ -100,7 +100,7 @@ def turning_axis(
     return best, near, closing
 
 
-@uncounted
+@nonallocating
 def reach_of(A: Scene, s: int) -> tuple[float, float, float]:
     """A reference point of shape s relative to its body's centre of mass, and the radius of the shape about it: the
     centre of mass itself for moving bodies, the centre of its bounding circle for static shapes."""
@@ -109,7 +109,7 @@ def reach_of(A: Scene, s: int) -> tuple[float, float, float]:
     return 0.0, 0.0, A.SHAPE[s].extent
 
 
-@uncounted
+@nonallocating
 def bends(A: Scene, a: int, b: int, start: float, duration: float) -> tuple[float, float, float]:
     """The part of the bound B (length/time²) of a fixed axis that rotation gives, and the bounds of the axes of a and
     of b, from instant `start` on for a time `duration`."""
@@ -129,7 +129,7 @@ def bends(A: Scene, a: int, b: int, start: float, duration: float) -> tuple[floa
     return around_a + around_b, of_a, of_b
 
 
-@uncounted
+@nonallocating
 def pulled_along(A: Scene, a: int, b: int, nx: float, ny: float) -> float:
     """The acceleration (length/time²) with which the centres of the bodies of shapes a and b approach along the normal
     n from a to b, 0 if they part: what slides along a wall does not approach it."""
@@ -137,7 +137,7 @@ def pulled_along(A: Scene, a: int, b: int, nx: float, ny: float) -> float:
     return max(nx * (one.ax - two.ax) + ny * (one.ay - two.ay), 0.0)
 
 
-@uncounted
+@nonallocating
 def fastest(A: Scene, s: int, t: float) -> float:
     """Bound of the speed of points of shape s at instant t, length/time."""
     i = A.LINK[s].owner

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..geometry.convex import place, point_core
 from ..geometry.flight import pose, rate
 from ..model.scene import Scene
@@ -12,7 +12,7 @@ from .circles import circle_circle, circle_outline
 from .roots import flat
 
 
-@uncounted
+@nonallocating
 def circles_meet(A: Scene, a: int, b: int, start: float, duration: float, tolerance: float) -> tuple[float, bool]:
     """Time after `start` until which shapes a and b are certainly apart, and whether they never meet.
 
@@ -45,7 +45,7 @@ def circles_meet(A: Scene, a: int, b: int, start: float, duration: float, tolera
     return s, s == math.inf
 
 
-@uncounted
+@nonallocating
 def carried_circle(A: Scene, s: int, start: float, duration: float) -> tuple[float, float, float, float, float]:
     """Centre (2) and velocity (2) at `start` of the bounding circle of shape s on its rotating body, and a bound of the
     acceleration (length/time²) by rotation within the time `duration`."""
@@ -61,7 +61,7 @@ def carried_circle(A: Scene, s: int, start: float, duration: float) -> tuple[flo
     return x + px, y + py, ux - w * py, uy + w * px, math.sqrt(px * px + py * py) * (most * most + twist)
 
 
-@uncounted
+@nonallocating
 def carried_circles_meet(A: Scene, a: int, b: int, start: float, duration: float) -> float:
     """Time after `start` until which the bounding circles of shapes a and b are certainly apart. Tighter than
     `circles_meet` for shapes far from their centres of mass. Valid within `duration`, always without angular

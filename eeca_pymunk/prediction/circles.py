@@ -11,13 +11,13 @@ from __future__ import annotations
 import math
 
 from ..arrays import FloatArray
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..model.parameters.events import ADVANCES, RESOLUTION, SEARCH_AHEAD
 from ..model.scene import Scene
 from .roots import ball_point, flat
 
 
-@uncounted
+@nonallocating
 def circle_circle(
     dx: float, dy: float, ux: float, uy: float, ax: float, ay: float, extent: float, tolerance: float, duration: float
 ) -> tuple[float, bool]:
@@ -56,7 +56,7 @@ def circle_circle(
     return duration, False
 
 
-@uncounted
+@nonallocating
 def circle_outline(
     x: float, y: float, vx: float, vy: float, ax: float, ay: float, extent: float, tolerance: float,
     A: Scene, b: int, duration: float,
@@ -130,7 +130,7 @@ def circle_outline(
     return duration, False
 
 
-@uncounted
+@nonallocating
 def beside_edge(VERTEX: FloatArray, first: int, count: int, edge: int, x: float, y: float) -> tuple[int, bool]:
     """The end of an outline's edge (row of VERTEX) that is nearer in direction to a point, and whether the foot of the
     point lies on the edge."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..geometry.flight import norm
 from ..model.bodies import CHECK, LEAVE, NOTHING
 from ..model.parameters.events import AHEAD, FARTHEST_MARGIN, SAME_INSTANT
@@ -21,13 +21,13 @@ from .impact_times import meet, misses, one_pull
 from .next_event import has_left, leaves
 
 
-@uncounted
+@nonallocating
 def body_of(A: Scene, s: int) -> int:
     """Row of the body of shape s: single disks have the same number as their shapes."""
     return s if s < A.COUNT.disks else int(A.LINK[s].owner)
 
 
-@uncounted
+@nonallocating
 def first_chosen(A: Scene, i: int, chosen: int, best: float, other: int) -> tuple[float, int]:
     """As `first_meeting`, among the first `chosen` disks in GRID.chosen, all of equal acceleration."""
     for k in range(chosen):
@@ -38,7 +38,7 @@ def first_chosen(A: Scene, i: int, chosen: int, best: float, other: int) -> tupl
     return best, other
 
 
-@uncounted
+@nonallocating
 def first_meeting(
     A: Scene, i: int, known: int, best: float, other: int, end: float, several: bool
 ) -> tuple[float, int]:  # fmt: skip
@@ -77,7 +77,7 @@ def first_meeting(
     return first_chosen(A, i, chosen, best, other)
 
 
-@uncounted
+@nonallocating
 def expect(A: Scene, i: int, best: float, other: int, now: float, end: float) -> None:
     """Set the next event of single disk i: meeting shape `other` at instant `best`, or leaving its margin circle
     before. An event that is due in this step goes on the heap."""
@@ -93,14 +93,14 @@ def expect(A: Scene, i: int, best: float, other: int, now: float, end: float) ->
         A.COUNT.heap = push(A.HEAP_TIME, A.HEAP_BODY, A.COUNT.heap, best, i)
 
 
-@uncounted
+@nonallocating
 def predict_disk(A: Scene, i: int, now: float, end: float, several: bool) -> None:
     """As `next_event.predict`, for a single disk."""
     best, other = first_meeting(A, i, 0, math.inf, NOTHING, end, several)
     expect(A, i, best, other, now, end)
 
 
-@uncounted
+@nonallocating
 def go_on(A: Scene, i: int, now: float, end: float) -> bool:
     """Single disk i leaves its margin circle with an unchanged path: renew its list and predict its next event, for
     which only the new entries are tested. False if the pool is full."""
@@ -126,7 +126,7 @@ def go_on(A: Scene, i: int, now: float, end: float) -> bool:
     return True
 
 
-@uncounted
+@nonallocating
 def holds(A: Scene, i: int, end: float) -> bool:
     """Whether the prediction of an earlier step for single disk i is still valid, because neither path has changed; if
     so, it goes on the heap. The instant is computed again from the paths as this step describes them, so that no bit

@@ -4,12 +4,12 @@ changes: one is valid while its time equals `Body.due`."""
 from __future__ import annotations
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..model.bodies import Body
 
 
-@uncounted
+@nonallocating
 def push(TIME: FloatArray, OF: IntArray, n: int, time: float, body: int) -> int:
     """Add an event to a heap of n; the new number."""
     k = n
@@ -23,7 +23,7 @@ def push(TIME: FloatArray, OF: IntArray, n: int, time: float, body: int) -> int:
     return n + 1
 
 
-@uncounted
+@nonallocating
 def pop(TIME: FloatArray, OF: IntArray, n: int) -> int:
     """Remove the first event of a heap of n; the new number."""
     n -= 1
@@ -46,7 +46,7 @@ def pop(TIME: FloatArray, OF: IntArray, n: int) -> int:
     return n
 
 
-@uncounted
+@nonallocating
 def sweep_out(TIME: FloatArray, OF: IntArray, n: int, BODY: Rows[Body]) -> int:
     """Remove invalid entries, and all but one of equal ones; the new number."""
     size, first = n, n

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 
-from ..compiled import merged, uncounted
+from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
 from ..geometry.flight import pose, rate
 from ..model.bodies import Body
@@ -21,7 +21,7 @@ from .roots import ball_point
 from .turning import general
 
 
-@uncounted
+@nonallocating
 def passes(dx: float, dy: float, ux: float, uy: float, extent: float, duration: float) -> bool:
     """Whether disks at a distance d with relative velocity u certainly part, miss each other, or are too far away to
     meet within the time `duration`. True for most, and needs no root: the first one of |d + u s| = extent is at
@@ -31,7 +31,7 @@ def passes(dx: float, dy: float, ux: float, uy: float, extent: float, duration: 
     return bool((closing <= 0.0) | (cross * cross > MISS_DISTANCE * squared * (ux * ux + uy * uy)) | far)
 
 
-@merged
+@inlined
 def between(BODY: Rows[Body], i: int, j: int, t: float, ax: float, ay: float) -> tuple[float, float, float, float]:
     """The vector (2) from body i to body j at instant t, and their relative velocity (2), for equal accelerations a.
     One of the two paths begins at t; computing its terms, which are 0, costs less than a branch."""
@@ -41,7 +41,7 @@ def between(BODY: Rows[Body], i: int, j: int, t: float, ax: float, ay: float) ->
     return dx, dy, (BODY[j].vx + h * ax) - (BODY[i].vx + g * ax), (BODY[j].vy + h * ay) - (BODY[i].vy + g * ay)
 
 
-@merged
+@inlined
 def misses(BODY: Rows[Body], i: int, j: int, ax: float, ay: float, latest: float) -> bool:
     """Whether single disks i and j with equal accelerations a certainly part, miss each other, or are too far away to
     meet until `latest`. Never true if `one_pull` is finite. Without branches."""
@@ -50,7 +50,7 @@ def misses(BODY: Rows[Body], i: int, j: int, ax: float, ay: float, latest: float
     return passes(dx, dy, ux, uy, BODY[i].extent + BODY[j].extent, latest - start)
 
 
-@uncounted
+@nonallocating
 def one_pull(BODY: Rows[Body], i: int, j: int, latest: float) -> float:
     """Instant at which single disks i and j with equal accelerations, which cancel, meet; closed form. Disks that touch
     and approach by no more than the round-off of their speeds count as parting. Infinite if the instant is certainly
@@ -67,7 +67,7 @@ def one_pull(BODY: Rows[Body], i: int, j: int, latest: float) -> float:
     return start + ball_point(dx, dy, ux, uy, extent)
 
 
-@uncounted
+@nonallocating
 def disk_disk(BODY: Rows[Body], i: int, j: int, horizon: float) -> tuple[float, bool]:
     """Single disks i and j: a closed form if their accelerations are equal."""
     ax_i, ay_i, ax_j, ay_j = BODY[i].ax, BODY[i].ay, BODY[j].ax, BODY[j].ay
@@ -86,7 +86,7 @@ def disk_disk(BODY: Rows[Body], i: int, j: int, horizon: float) -> tuple[float, 
     return start + t, certain or t == math.inf
 
 
-@uncounted
+@nonallocating
 def disk_wall(A: Scene, i: int, b: int, horizon: float) -> tuple[float, bool]:
     """Single disk i and a static shape b: a closed form, except for round ends under acceleration."""
     body = A.BODY[i]
@@ -99,7 +99,7 @@ def disk_wall(A: Scene, i: int, b: int, horizon: float) -> tuple[float, bool]:
     return since + t, certain or t == math.inf
 
 
-@uncounted
+@nonallocating
 def meet(A: Scene, a: int, b: int, horizon: float) -> tuple[float, bool]:
     """(t, certain) of shapes a and b, see the module.
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 
-from ..compiled import merged, uncounted
+from ..compiled import inlined, nonallocating
 from ..geometry.flight import norm
 from ..model.bodies import CHECK, LEAVE, NOTHING, RENEW
 from ..model.parameters.events import INSIDE
@@ -20,7 +20,7 @@ from .heap import push
 from .impact_times import meet
 
 
-@uncounted
+@nonallocating
 def leaves(A: Scene, i: int, s: int, now: float) -> float:
     """Instant before which the centre of shape s of body i stays inside its margin circle; exact for straight paths."""
     BODY, SHAPE, MARK = A.BODY, A.SHAPE, A.MARK
@@ -55,14 +55,14 @@ def leaves(A: Scene, i: int, s: int, now: float) -> float:
     return float(now + 2.0 * room / (u + math.sqrt(u * u + 2.0 * g * room)))
 
 
-@uncounted
+@nonallocating
 def has_left(A: Scene, s: int, now: float) -> bool:
     """Whether shape s has used more than 1 - INSIDE of its margin."""
     x, y = centre(A, s, now)
     return bool(norm(x - A.MARK[s].x, y - A.MARK[s].y) > (1.0 - INSIDE) * A.MARK[s].margin)
 
 
-@uncounted
+@nonallocating
 def horizon_of(A: Scene, i: int, end: float) -> float:
     """How far ahead the path of body i is of use: to the end of the step, or well beyond that of the interval of its
     island, after which it has another one. Bounds of paths that bend sharply in a short interval are wide of it."""
@@ -73,7 +73,7 @@ def horizon_of(A: Scene, i: int, end: float) -> float:
     return min(end, until + max(until - A.BODY[i].since, 0.0))
 
 
-@merged
+@inlined
 def predict(A: Scene, i: int, now: float, end: float, until: float) -> None:
     """Predict the next event of body i from its present path, at an instant `now` of the loop; one that is due in this
     step goes on the heap. Ties go to the lower shape numbers, so that the result does not depend on the order of lists.

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
-from ..compiled import uncounted
+from ..compiled import nonallocating
 
 
-@uncounted
+@nonallocating
 def flat(g: float, w: float, alpha: float) -> float:
     """First root of g + w s + alpha s² / 2 = 0 in s >= 0 with the gap falling; 0 in overlap that deepens.
 
@@ -35,7 +35,7 @@ def flat(g: float, w: float, alpha: float) -> float:
     return math.inf
 
 
-@uncounted
+@nonallocating
 def ball_point(dx: float, dy: float, ux: float, uy: float, extent: float) -> float:
     """First root of |d + u s| = extent in s >= 0 with the distance falling; 0 for circles that overlap and approach.
 

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 
-from ..compiled import fetch, merged, uncounted
+from ..compiled import fetch, inlined, nonallocating
 from ..model.bodies import AT_REST
 from ..model.scene import Scene
 from .disks import holds, predict_disk
 from .next_event import predict
 
 
-@uncounted
+@nonallocating
 def predict_next(A: Scene, i: int, t: float, end: float, several: bool) -> None:
     """Predict the next event of body i at instant t of the loop; `several` as in `disks.first_meeting`."""
     A.COUNT.predictions += 1
@@ -22,7 +22,7 @@ def predict_next(A: Scene, i: int, t: float, end: float, several: bool) -> None:
     predict(A, i, t, end, until)
 
 
-@uncounted
+@nonallocating
 def predict_all(A: Scene, n: int, t: float, end: float) -> None:
     """Predict the next events of the n bodies in A.BLOCK at instant t. Each pair of them is tested once; that is
     enough, because a body is predicted with all others after its next event."""
@@ -34,7 +34,7 @@ def predict_all(A: Scene, n: int, t: float, end: float) -> None:
         A.PLACE[A.BLOCK[q]] = -1
 
 
-@uncounted
+@nonallocating
 def predict_due(A: Scene) -> None:
     """At the start of a step, predict the next events of all bodies whose prediction is void or due in this step."""
     n, dt, disks = 0, A.PAR.dt, A.COUNT.disks
@@ -47,7 +47,7 @@ def predict_due(A: Scene) -> None:
     predict_all(A, n, 0.0, dt)
 
 
-@merged
+@inlined
 def fetch_body(A: Scene, i: int) -> None:
     """Prefetch the rows of body i for an event."""
     fetch(A.BODY, i, 0)
@@ -55,7 +55,7 @@ def fetch_body(A: Scene, i: int) -> None:
     fetch(A.STATE, i, 0)
 
 
-@merged
+@inlined
 def look_ahead(A: Scene, now: int) -> None:
     """Prefetch the rows for the events after that of body `now`: for later events the indices, because they locate the
     other rows."""

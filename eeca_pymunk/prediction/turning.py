@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..geometry.convex import place
 from ..geometry.flight import norm, pose
@@ -29,7 +29,7 @@ from .axes import Closing, Motion, bends, fastest, fixed_axis, motion, pulled_al
 from .bounds import carried_circles_meet, circles_meet
 
 
-@uncounted
+@nonallocating
 def time_to_contact_again(
     BODY: Rows[Body], i: int, j: int, t: float, nx: float, ny: float, px: float, py: float
 ) -> float:
@@ -45,7 +45,7 @@ def time_to_contact_again(
     return 2.0 * max(u, 0.0) / closing if closing > 0.0 else math.inf
 
 
-@uncounted
+@nonallocating
 def parting_velocity(
     BODY: Rows[Body], i: int, j: int, t: float, nx: float, ny: float, px: float, py: float
 ) -> tuple[float, float]:  # fmt: skip
@@ -57,7 +57,7 @@ def parting_velocity(
     return u, nx * (BODY[i].ax - BODY[j].ax) + ny * (BODY[i].ay - BODY[j].ay)
 
 
-@uncounted
+@nonallocating
 def begin_side(A: Scene, a: int, b: int, start: float, duration: float, tolerance: float) -> None:
     """Note on which side of each other thin shapes a < b are at the beginning of a search.
 
@@ -81,7 +81,7 @@ def begin_side(A: Scene, a: int, b: int, start: float, duration: float, toleranc
         note_side(A, a, b, sign * nx, sign * ny, True)
 
 
-@uncounted
+@nonallocating
 def face_closes(
     A: Scene, a: int, b: int, nx: float, ny: float, x: float, y: float, d: float, one: Motion, two: Motion, still: float
 ) -> bool:  # fmt: skip
@@ -109,7 +109,7 @@ def face_closes(
     return False
 
 
-@uncounted
+@nonallocating
 def general(A: Scene, a: int, b: int, horizon: float) -> tuple[float, bool]:
     """`search` of any two shapes a and b in any order, with the remembered side set back to that of the present: the
     predicted path may be changed by an impulse before."""
@@ -126,13 +126,13 @@ def general(A: Scene, a: int, b: int, horizon: float) -> tuple[float, bool]:
     return t, certain
 
 
-@uncounted
+@nonallocating
 def follow_side(A: Scene, a: int, b: int, t: float, horizon: float) -> None:
     """Note on which side of each other the thin shapes a and b are at instant t, at which they meet."""
     search(A, min(a, b), max(a, b), horizon, t)
 
 
-@uncounted
+@nonallocating
 def search(A: Scene, a: int, b: int, horizon: float, until: float) -> tuple[float, bool]:
     """Instant at which any two shapes meet next, and whether they do, or are only known to be apart until then.
 

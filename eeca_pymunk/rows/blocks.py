@@ -12,7 +12,7 @@ solve dissipates energy in large elastic islands; one scale of all impulses remo
 from __future__ import annotations
 
 from ..arrays import FloatArray
-from ..compiled import kernel, uncounted
+from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import AnyProblem, Solved
 from ..model.parameters.impulses import (
@@ -42,7 +42,7 @@ from .sweeps import push, sweep, velocities
 CONVERGED, TRUNCATED = 0, 1  # statuses
 
 
-@uncounted
+@nonallocating
 def clear(out: Solved) -> None:
     """Reset the report of a solve."""
     out.restitution = out.friction = out.carried = out.lifted = out.forces = 0.0

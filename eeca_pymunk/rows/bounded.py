@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from ..arrays import FloatArray
-from ..compiled import kernel, uncounted
+from ..compiled import kernel, nonallocating
 from ..compiled.records import zeros
 from ..model.contacts import BOUNDED_ROW, Bounded
 from ..model.parameters.joints import BOX_SECULAR
@@ -19,7 +19,7 @@ from ..model.parameters.joints import BOX_SECULAR
 SINGLE, FIRST_OF_DISC, SECOND_OF_DISC = 0.0, 1.0, 2.0
 
 
-@uncounted
+@nonallocating
 def on_disc(
     a: float, b: float, c: float, ux: float, uy: float, x: float, y: float, bound: float, second: bool
 ) -> float:
@@ -58,7 +58,7 @@ def room_for_rows(n: int, entries: int) -> Bounded:
     )  # fmt: skip
 
 
-@uncounted
+@nonallocating
 def bounded_rate(B: Bounded, i: int, V: FloatArray) -> float:
     """Velocity of the island's bodies along row i, at velocities V (k, 3)."""
     total = 0.0
@@ -69,7 +69,7 @@ def bounded_rate(B: Bounded, i: int, V: FloatArray) -> float:
     return total
 
 
-@uncounted
+@nonallocating
 def per_impulse(B: Bounded, i: int, j: int) -> float:
     """Change of the velocity along row i by a unit impulse of row j."""
     total = 0.0
@@ -81,7 +81,7 @@ def per_impulse(B: Bounded, i: int, j: int) -> float:
     return total
 
 
-@uncounted
+@nonallocating
 def push_row(B: Bounded, i: int, change: float, V: FloatArray) -> None:
     """Add the change of velocities by an impulse `change` of row i to V (k, 3)."""
     if change != 0.0:
@@ -90,7 +90,7 @@ def push_row(B: Bounded, i: int, change: float, V: FloatArray) -> None:
                 V[B.BODY[w], c] += change * B.N[w, c]
 
 
-@uncounted
+@nonallocating
 def sweep_bounded(B: Bounded, L: FloatArray, m: int, V: FloatArray) -> float:
     """One sweep over the bounded rows, whose impulses are L[m:, 0]; updates L and V, and returns the largest change of
     a velocity along a row."""
@@ -123,7 +123,7 @@ def sweep_bounded(B: Bounded, L: FloatArray, m: int, V: FloatArray) -> float:
     return worst
 
 
-@uncounted
+@nonallocating
 def inside(B: Bounded, L: FloatArray, m: int, i: int) -> bool:
     """Whether impulse i is strictly inside its bounds."""
     x, high = L[m + i, 0], B.ROWS[i].high

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import Row
 from ..model.parameters.impulses import SINGULAR
 
 
-@uncounted
+@nonallocating
 def place_row(
     A: IntArray, B: IntArray, ROWS: Rows[Row], i: int, px: float, py: float, POSE: FloatArray, IM: FloatArray,
     II: FloatArray,
@@ -55,7 +55,7 @@ def place_row(
     ROWS[i].wake = np.inf
 
 
-@uncounted
+@nonallocating
 def normal_rate(A: IntArray, B: IntArray, ROWS: Rows[Row], V: FloatArray, i: int) -> float:
     """u_n of contact i at velocities V (k, 3)."""
     a, b = A[i], B[i]
@@ -67,7 +67,7 @@ def normal_rate(A: IntArray, B: IntArray, ROWS: Rows[Row], V: FloatArray, i: int
     return rate
 
 
-@uncounted
+@nonallocating
 def tangent_rate(A: IntArray, B: IntArray, ROWS: Rows[Row], V: FloatArray, i: int) -> float:
     """u_t of contact i at velocities V (k, 3), surface velocities included."""
     a, b = A[i], B[i]
@@ -80,7 +80,7 @@ def tangent_rate(A: IntArray, B: IntArray, ROWS: Rows[Row], V: FloatArray, i: in
     return rate
 
 
-@uncounted
+@nonallocating
 def rates(A: IntArray, B: IntArray, ROWS: Rows[Row], V: FloatArray, m: int) -> None:
     """Set u_n and u_t before the impulses of m contacts from velocities V (k, 3)."""
     for i in range(m):
@@ -88,7 +88,7 @@ def rates(A: IntArray, B: IntArray, ROWS: Rows[Row], V: FloatArray, m: int) -> N
         ROWS[i].ut = tangent_rate(A, B, ROWS, V, i)
 
 
-@uncounted
+@nonallocating
 def largest_terms(A: IntArray, B: IntArray, ROWS: Rows[Row], V: FloatArray, m: int) -> float:
     """The largest sum of magnitudes of the terms of u_n, and with friction of u_t, of m contacts at velocities V (k,
     3). Times the unit round-off it is the error of these rates, however small they are."""
@@ -104,7 +104,7 @@ def largest_terms(A: IntArray, B: IntArray, ROWS: Rows[Row], V: FloatArray, m: i
     return most
 
 
-@uncounted
+@nonallocating
 def aim(ROWS: Rows[Row], m: int) -> float:
     """Set the targets of m contacts of an impact: b = -e u_n where the contact approaches, -u_n where it opens.
 
@@ -119,7 +119,7 @@ def aim(ROWS: Rows[Row], m: int) -> float:
     return worst
 
 
-@uncounted
+@nonallocating
 def conserves(ROWS: Rows[Row], m: int) -> bool:
     """Whether all m contacts are elastic and without friction."""
     lossy = 0
@@ -129,7 +129,7 @@ def conserves(ROWS: Rows[Row], m: int) -> bool:
     return lossy == 0
 
 
-@uncounted
+@nonallocating
 def rubs(ROWS: Rows[Row], m: int) -> bool:
     """Whether any of m contacts has friction."""
     rough = 0

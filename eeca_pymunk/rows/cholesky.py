@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel, uncounted
+from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import Row
 
@@ -173,7 +173,7 @@ def factorise(n: int, factor: Factor) -> None:
             head[r] = j
 
 
-@uncounted
+@nonallocating
 def substitute(n: int, factor: Factor, f: FloatArray) -> None:
     """Replace f (n, 3), in the order of elimination, by B^-1 f."""
     columns, rows, D, X = factor.columns, factor.rows, factor.DIAGONAL, factor.BELOW

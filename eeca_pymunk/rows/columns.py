@@ -9,14 +9,14 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..model.contacts import Columns, JointedProblem
 from .bounded import push_row, sweep_bounded
 from .build import normal_rate, tangent_rate
 from .coulomb import coulomb
 
 
-@uncounted
+@nonallocating
 def push_columns(C: Columns, L: FloatArray, m: int, factor: float, V: FloatArray) -> None:
     """Add factor Y L to V (k, 3): the columns Y of m contacts times their impulses L (m, 2)."""
     for i in range(m):
@@ -28,7 +28,7 @@ def push_columns(C: Columns, L: FloatArray, m: int, factor: float, V: FloatArray
                 V[C.BODY[w], c] += lam * C.N[w, c] + beta * C.T[w, c]
 
 
-@uncounted
+@nonallocating
 def push_jointed(problem: JointedProblem, L: FloatArray, factor: float, V: FloatArray) -> None:
     """Add factor Y L to V (k, 3), bounded rows included."""
     push_columns(problem.C, L, problem.m, factor, V)
@@ -36,7 +36,7 @@ def push_jointed(problem: JointedProblem, L: FloatArray, factor: float, V: Float
         push_row(problem.D, i, factor * L[problem.m + i, 0], V)
 
 
-@uncounted
+@nonallocating
 def lawful(problem: JointedProblem, L: FloatArray, V: FloatArray, i: int) -> tuple[float, float]:
     """The impulses of contact i by its law, those of all others being given."""
     A, B, ROWS, _, _, _ = problem
@@ -68,7 +68,7 @@ def lawful(problem: JointedProblem, L: FloatArray, V: FloatArray, i: int) -> tup
     )
 
 
-@uncounted
+@nonallocating
 def sweep_jointed(problem: JointedProblem, L: FloatArray, V: FloatArray) -> float:
     """One sweep over the contacts as `sweeps.sweep_free`, and over the bounded rows, whose impulses are L[m:, 0];
     returns the largest change of a velocity."""
@@ -89,7 +89,7 @@ def sweep_jointed(problem: JointedProblem, L: FloatArray, V: FloatArray) -> floa
     return max(worst, sweep_bounded(problem.D, L, m, V))
 
 
-@uncounted
+@nonallocating
 def rows_jointed(problem: JointedProblem) -> int:
     """Number of unknown rows of L (., 2): those of contacts and bounded rows."""
     return int(problem.m + problem.D.USED[0])

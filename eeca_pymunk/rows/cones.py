@@ -4,12 +4,12 @@ g = n +- mu t, or of g = n without friction. So the statics of contacts are line
 from __future__ import annotations
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import Edge, Row
 
 
-@uncounted
+@nonallocating
 def cone_edges(
     A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, IM: FloatArray, II: FloatArray, m: int, OF: IntArray,
     P: IntArray, Q: IntArray, G: Rows[Row], EDGE: Rows[Edge],
@@ -43,7 +43,7 @@ def cone_edges(
     return K
 
 
-@uncounted
+@nonallocating
 def add_impulses(
     P: IntArray, Q: IntArray, G: Rows[Row], EDGE: Rows[Edge], steps: bool, K: int, IM: FloatArray, II: FloatArray,
     V: FloatArray,
@@ -60,7 +60,7 @@ def add_impulses(
         V[b, 2] += II[b] * lam * G[e].arm_nb
 
 
-@uncounted
+@nonallocating
 def impulses_of(ROWS: Rows[Row], EDGE: Rows[Edge], OF: IntArray, K: int, L: FloatArray, m: int) -> None:
     """Set the normal and tangential impulses L (m, 2) of m contacts from the x of their edges."""
     for i in range(m):

@@ -8,12 +8,12 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray
-from ..compiled import kernel, uncounted
+from ..compiled import kernel, nonallocating
 from ..model.contacts import AnyProblem
 from .sweeps import rows_of, sweep
 
 
-@uncounted
+@nonallocating
 def accelerate(
     L: FloatArray, V: FloatArray, L0: FloatArray, V0: FloatArray, PL: FloatArray, PV: FloatArray, before: float,
     last: bool,
@@ -39,7 +39,7 @@ def accelerate(
     return change
 
 
-@uncounted
+@nonallocating
 def renew(X: FloatArray, X0: FloatArray, P: FloatArray) -> None:
     """Restart the direction P as the change from X0 to X, which becomes the next start X0."""
     for i in range(len(X0)):
@@ -48,7 +48,7 @@ def renew(X: FloatArray, X0: FloatArray, P: FloatArray) -> None:
         X0[i] = x
 
 
-@uncounted
+@nonallocating
 def go_on(X: FloatArray, X0: FloatArray, P: FloatArray, ratio: float) -> None:
     """Move X by `ratio` times the direction P, which becomes that plus the change from X0 to X; X becomes the next
     start X0."""

@@ -11,11 +11,11 @@ from __future__ import annotations
 
 import math
 
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..model.parameters.impulses import JAMMED, SINGULAR
 
 
-@uncounted
+@nonallocating
 def coulomb(
     qn: float, qt: float, ann: float, ant: float, att: float, mu: float, un: float, ut: float, target: float
 ) -> tuple[float, float]:

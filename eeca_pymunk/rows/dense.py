@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import Choice, kernel, uncounted
+from ..compiled import Choice, kernel, nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import AnyProblem, JointedProblem, Problem, Row
 from ..model.parameters.impulses import PROXIMAL_DENSE
@@ -21,7 +21,7 @@ from .polish import clamp, classify
 from .sweeps import velocities
 
 
-@uncounted
+@nonallocating
 def decompose(W: FloatArray, N: int, order: IntArray) -> None:
     """LU decomposition with partial pivoting of W[:N, :N] in place; order (N,): out, its rows."""
     for j in range(N):
@@ -45,7 +45,7 @@ def decompose(W: FloatArray, N: int, order: IntArray) -> None:
                     W[i, k] -= factor * W[j, k]
 
 
-@uncounted
+@nonallocating
 def back(W: FloatArray, N: int, order: IntArray, r: FloatArray, x: FloatArray) -> None:
     """Set x = W^-1 r, with W of `decompose`."""
     for i in range(N):
@@ -147,7 +147,7 @@ def matrix_jointed(
 matrix = Choice(matrix_free, matrix_jointed)
 
 
-@uncounted
+@nonallocating
 def unknowns(
     ROWS: Rows[Row], L: FloatArray, m: int, held: IntArray, stuck: IntArray, slip: FloatArray, shared: bool,
     at: IntArray, kind: IntArray,

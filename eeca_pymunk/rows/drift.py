@@ -12,13 +12,13 @@ import math
 import numpy as np
 
 from ..arrays import FloatArray
-from ..compiled import kernel, uncounted
+from ..compiled import kernel, nonallocating
 from ..model.contacts import AnyProblem
 from ..model.parameters.impulses import DRIFT_SLIPS, DRIFT_STEADY
 from .sweeps import keep, sweep, velocities
 
 
-@uncounted
+@nonallocating
 def sweeps_left(problem: AnyProblem, L: FloatArray, L0: FloatArray) -> float:
     """How many times D = L - L0 can be added to L (m, 2) until a contact opens, or one that sticks begins to slip;
     infinite if none does."""

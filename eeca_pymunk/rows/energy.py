@@ -10,13 +10,13 @@ from __future__ import annotations
 import math
 
 from ..arrays import FloatArray
-from ..compiled import uncounted
+from ..compiled import nonallocating
 from ..model.contacts import AnyProblem
 from .build import normal_rate, tangent_rate
 from .sweeps import velocities
 
 
-@uncounted
+@nonallocating
 def works(problem: AnyProblem, L: FloatArray, V: FloatArray, LOSS: FloatArray) -> tuple[float, float]:
     """Set LOSS (m, 2) = D_n and D_t of each contact, energies, with V the velocities after; returns their sums.
 
@@ -49,7 +49,7 @@ def works(problem: AnyProblem, L: FloatArray, V: FloatArray, LOSS: FloatArray) -
     return normal, tangential
 
 
-@uncounted
+@nonallocating
 def scale_of(
     problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, owed: float, exact: bool
 ) -> tuple[float, float]:
@@ -90,7 +90,7 @@ def scale_of(
     return s, left
 
 
-@uncounted
+@nonallocating
 def lock(
     problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, owed: float, exact: bool
 ) -> tuple[float, float]:

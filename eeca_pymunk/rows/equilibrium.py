@@ -21,7 +21,7 @@ import math
 import numpy as np
 
 from ..arrays import FloatArray
-from ..compiled import kernel, uncounted
+from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows, zeros
 from ..model.contacts import EDGE as EDGE_KIND
 from ..model.contacts import ROW, Edge, Problem
@@ -41,13 +41,13 @@ from .inplace import copy
 from .ordering import dissect, neighbours, pattern
 
 
-@uncounted
+@nonallocating
 def point_speed(vx: float, vy: float, spin: float, extent: float) -> float:
     """Bound of the speed (length/time) of the points of a body, which are within `extent` of its centre of mass."""
     return abs(vx) + abs(vy) + extent * abs(spin)
 
 
-@uncounted
+@nonallocating
 def fastest(V: FloatArray, EXTENT: FloatArray, n: int) -> float:
     """Bound of the speed of all points of n bodies with velocities V (k, 3); inf if one is not finite."""
     found = 0.0
@@ -59,7 +59,7 @@ def fastest(V: FloatArray, EXTENT: FloatArray, n: int) -> float:
     return found
 
 
-@uncounted
+@nonallocating
 def moves_into_cones(EDGE: Rows[Edge], K: int) -> bool:
     """Set x to x + dx, the balancing impulses nearest to the guess, and return whether all are inside the cones. If
     not, move them inside, and set multipliers s from which the iteration starts."""
@@ -79,7 +79,7 @@ def moves_into_cones(EDGE: Rows[Edge], K: int) -> bool:
     return False
 
 
-@uncounted
+@nonallocating
 def newton_step(
     edges: Problem, EDGE: Rows[Edge], SCALE: FloatArray, factor: Factor, LEFT: FloatArray, Y: FloatArray, f: FloatArray,
     V: FloatArray, DY: FloatArray, centre: float, second: bool,
@@ -119,7 +119,7 @@ def newton_step(
             EDGE[e].ds = -(EDGE[e].ds + EDGE[e].s * EDGE[e].dx) / EDGE[e].x
 
 
-@uncounted
+@nonallocating
 def step_length(EDGE: Rows[Edge], K: int, dual: bool) -> float:
     """Largest part of the Newton step, at most 1, that keeps all x, or all s (`dual`), positive: STATICS_STEP of the
     way to the first 0."""
@@ -131,7 +131,7 @@ def step_length(EDGE: Rows[Edge], K: int, dual: bool) -> float:
     return most
 
 
-@uncounted
+@nonallocating
 def mean_product(EDGE: Rows[Edge], K: int, primal: float, dual: float) -> float:
     """Mean of x s after the parts `primal` of dx and `dual` of ds."""
     total = 0.0
@@ -140,7 +140,7 @@ def mean_product(EDGE: Rows[Edge], K: int, primal: float, dual: float) -> float:
     return total / K
 
 
-@uncounted
+@nonallocating
 def take_step(EDGE: Rows[Edge], K: int, Y: FloatArray, DY: FloatArray, primal: float, dual: float) -> None:
     """Add the part `primal` of dx, and the part `dual` of ds and DY."""
     for e in range(K):

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import uncounted
+from ..compiled import nonallocating
 
 
-@uncounted
+@nonallocating
 def copy(TO: FloatArray, FROM: FloatArray) -> None:
     """Copy FROM (n, k) to TO."""
     for i in range(TO.shape[0]):
@@ -14,7 +14,7 @@ def copy(TO: FloatArray, FROM: FloatArray) -> None:
             TO[i, k] = FROM[i, k]
 
 
-@uncounted
+@nonallocating
 def add(TO: FloatArray, MORE: FloatArray) -> None:
     """Add MORE (n, k) to TO."""
     for i in range(TO.shape[0]):
@@ -22,7 +22,7 @@ def add(TO: FloatArray, MORE: FloatArray) -> None:
             TO[i, k] += MORE[i, k]
 
 
-@uncounted
+@nonallocating
 def sort(A: IntArray, n: int) -> None:
     """Sort the first n numbers of A in ascending order, by heapsort: at most 2 n log2 n comparisons."""
     for root in range(n // 2 - 1, -1, -1):
@@ -32,7 +32,7 @@ def sort(A: IntArray, n: int) -> None:
         _sift(A, 0, end)
 
 
-@uncounted
+@nonallocating
 def _sift(A: IntArray, root: int, n: int) -> None:
     """Sift the number at `root` down in the heap of n numbers, until no child is larger."""
     value = A[root]

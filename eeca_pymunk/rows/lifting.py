@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from ..arrays import FloatArray
-from ..compiled import Choice, merged, uncounted
+from ..compiled import Choice, inlined, nonallocating
 from ..model.contacts import AnyProblem, JointedProblem, Problem
 from .build import normal_rate
 
 
-@merged
+@inlined
 def push_normal_free(problem: Problem, i: int, d: float, D: FloatArray) -> None:
     """Add M^-1 G^T of a change d of mu of contact i to D (k, 3)."""
     A, B, ROWS, IM, II, _, _, _ = problem
@@ -21,7 +21,7 @@ def push_normal_free(problem: Problem, i: int, d: float, D: FloatArray) -> None:
     D[b, 2] += II[b] * (d * ROWS[i].arm_nb)
 
 
-@merged
+@inlined
 def push_normal_jointed(problem: JointedProblem, i: int, d: float, D: FloatArray) -> None:
     """Add the normal column of contact i times a change d of its mu to D (k, 3)."""
     C = problem.C
@@ -33,7 +33,7 @@ def push_normal_jointed(problem: JointedProblem, i: int, d: float, D: FloatArray
 push_normal = Choice(push_normal_free, push_normal_jointed)
 
 
-@uncounted
+@nonallocating
 def lift(problem: AnyProblem, GAPS: FloatArray, MU: FloatArray, D: FloatArray, tolerance: float, most: int) -> float:
     """Solve for the displacements D, by at most `most` sweeps; returns the largest change of a gap in the last one.
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel, uncounted
+from ..compiled import kernel, nonallocating
 from ..model.parameters.impulses import DISSECTION_LEAF, LATE_NEIGHBOURS
 
 
@@ -113,7 +113,7 @@ def dissect(POSE: FloatArray, n: int, start: IntArray, other: IntArray, place: I
             top += 1
 
 
-@uncounted
+@nonallocating
 def ascend(values: IntArray, low: int, high: int) -> None:
     """Sort values[low:high] by Shell's sort, which suits short columns."""
     gap = 1

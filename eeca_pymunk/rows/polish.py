@@ -14,7 +14,7 @@ import math
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel, uncounted
+from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import AnyProblem, Problem, Row
 from ..model.parameters.impulses import FACE_LINE
@@ -24,7 +24,7 @@ from .ordering import dissect, neighbours, pattern
 from .sweeps import velocities
 
 
-@uncounted
+@nonallocating
 def share(A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, m: int) -> None:
     """Divide the friction of a face between its two points in proportion to their normal impulses: beta_k = lam_k sum
     beta / sum lam.
@@ -50,7 +50,7 @@ def share(A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, m: int) -> N
             L[j, 1] = beta * (L[j, 0] / lam)
 
 
-@uncounted
+@nonallocating
 def classify(
     A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, m: int, held: IntArray, stuck: IntArray,
     slip: FloatArray, rest: FloatArray,
@@ -81,7 +81,7 @@ def classify(
             slip[i] = mu if beta > 0.0 else -mu
 
 
-@uncounted
+@nonallocating
 def clamp(ROWS: Rows[Row], L: FloatArray, m: int) -> int:
     """Move impulses back into their cones; returns how many were outside."""
     clamped = 0
@@ -186,7 +186,7 @@ def polish_free(
     return worst, clamped
 
 
-@uncounted
+@nonallocating
 def segment(problem: AnyProblem, L: FloatArray, V: FloatArray, L0: FloatArray, V0: FloatArray) -> float:
     """Go back from (L, V) towards (L0, V0) to the minimum of lam.(u_n - b) + beta.u_t - (1/2) lam^T A lam between them,
     the energy that the frictionless contact problem minimises. Returns the part of the step that remains."""

@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray
-from ..compiled import Choice, uncounted
+from ..compiled import Choice, nonallocating
 from ..model.contacts import AnyProblem, Problem
 from ..model.parameters.impulses import JAMMED
 from .columns import push_jointed, rows_jointed, sweep_jointed
@@ -14,7 +14,7 @@ from .coulomb import coulomb
 from .inplace import copy
 
 
-@uncounted
+@nonallocating
 def sweep_free(problem: Problem, L: FloatArray, V: FloatArray) -> float:
     """One sweep over the contacts; updates L and V, and returns the largest change of a contact's velocity."""
     A, B, ROWS, IM, II, _, _, m = problem
@@ -87,7 +87,7 @@ def sweep_free(problem: Problem, L: FloatArray, V: FloatArray) -> float:
     return worst
 
 
-@uncounted
+@nonallocating
 def push_free(problem: Problem, L: FloatArray, factor: float, V: FloatArray) -> None:
     """Add factor M^-1 (G^T lam + T^T beta) to V (k, 3)."""
     A, B, ROWS, IM, II, _, _, m = problem
@@ -107,7 +107,7 @@ def push_free(problem: Problem, L: FloatArray, factor: float, V: FloatArray) -> 
         V[b, 2] += II[b] * (lam * ROWS[i].arm_nb + beta * ROWS[i].arm_tb)
 
 
-@uncounted
+@nonallocating
 def rows_free(problem: Problem) -> int:
     """Number of unknown rows of L (., 2)."""
     return problem.m
@@ -118,14 +118,14 @@ push = Choice(push_free, push_jointed)
 rows_of = Choice(rows_free, rows_jointed)
 
 
-@uncounted
+@nonallocating
 def velocities(problem: AnyProblem, L: FloatArray, FREE: FloatArray, V: FloatArray) -> None:
     """Set V (k, 3) = FREE + W (G^T lam + T^T beta), with the response W of the problem: inverse masses, or columns."""
     copy(V, FREE)
     push(problem, L, 1.0, V)
 
 
-@uncounted
+@nonallocating
 def keep(L: FloatArray, V: FloatArray, m: int, L0: FloatArray, V0: FloatArray) -> None:
     """Copy m impulses and all velocities to (L0, V0)."""
     for i in range(m):

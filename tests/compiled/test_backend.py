@@ -128,7 +128,7 @@ print(wrong, len(places), all(p == places[0] for p in places))
 
 
 def test_kernels_that_are_no_entries_run_as_plain_python() -> None:
-    @kernels.uncounted
+    @kernels.nonallocating
     def half(x: float) -> float:
         return 0.5 / x
 

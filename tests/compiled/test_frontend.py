@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from eeca_pymunk.arrays import FloatArray, IntArray
-from eeca_pymunk.compiled import fetch, kernel, merged, uncounted
+from eeca_pymunk.compiled import fetch, inlined, kernel, nonallocating
 
 if importlib.util.find_spec("numba") is None:
     pytest.skip("numba is not installed: there is no compiler", allow_module_level=True)
@@ -18,12 +18,12 @@ from eeca_pymunk.compiled.frontend import calls, store
 from .in_process import call_of, compiled, reached
 
 
-@merged
+@inlined
 def half(x: float) -> float:
     return 0.5 * x
 
 
-@uncounted
+@nonallocating
 def spread(several: bool, i: int) -> float:
     return half(i) if several else 1.0 * i
 
@@ -126,7 +126,7 @@ def test_what_needs_a_runtime_of_lists_is_refused() -> None:
 FACTOR = 2.0
 
 
-@uncounted
+@nonallocating
 def scaled(x: float) -> float:
     return FACTOR * half(x)
 
@@ -142,7 +142,7 @@ def test_parts_are_kept_by_all_that_they_depend_on(monkeypatch: pytest.MonkeyPat
     other = key()
     monkeypatch.setitem(globals(), "FACTOR", 3)  # an integer, which makes other code
     third = key()
-    monkeypatch.setattr(half, "merged", False)  # half's own key, not that of its callers
+    monkeypatch.setattr(half, "inlined", False)  # half's own key, not that of its callers
     assert key() == third
     monkeypatch.setitem(globals(), "FACTOR", [1.0])
     with pytest.raises(TypeError, match="scaled names FACTOR, a list: kernels name numbers"):

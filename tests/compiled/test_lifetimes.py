@@ -10,7 +10,7 @@ import pytest
 import eeca_pymunk
 
 PACKAGE = Path(eeca_pymunk.__file__).parent
-KERNELS = {"kernel", "uncounted", "merged"}
+KERNELS = {"kernel", "nonallocating", "inlined"}
 
 
 def dangling(source: str) -> list[str]:

@@ -143,7 +143,7 @@ def _compiled(call: Call) -> Part:
     dispatcher = _dispatcher(kernel)
     dispatcher.compile(args if returned is None else returned(*args))
     found = dispatcher.overloads[args]
-    module = _module(found, symbol(call), kernel.merged)
+    module = _module(found, symbol(call), kernel.inlined)
     made = [by_symbol[f.name] for f in module.functions if f.is_declaration and f.name in by_symbol]
     return Part(bytes(module.as_bitcode()), made, found.signature.return_type, time.perf_counter() - start)
 
@@ -154,7 +154,7 @@ def _dispatcher(kernel: Kernel[Any, Any]) -> Any:
     return njit(**options)(kernel.python)
 
 
-def _module(found: Any, name: str, merged: bool) -> Any:
+def _module(found: Any, name: str, inlined: bool) -> Any:
     """The code of a compiled kernel and of numba's functions that it calls, with `name` as its public symbol."""
     libraries, waiting = {}, [found.library]
     while waiting:
@@ -168,7 +168,7 @@ def _module(found: Any, name: str, merged: bool) -> Any:
             whole.link_in(one._final_module, preserve=True)
     own = whole.get_function(found.fndesc.llvm_func_name)
     own.name = name
-    if merged:
+    if inlined:
         # Not by numba's option, which functions of numba compiled meanwhile would inherit.
         own.add_function_attribute("alwaysinline")
     _hide(whole, name)

@@ -72,7 +72,7 @@ def source_key(kernel: Kernel[Any, Any]) -> str:
         if name in python.__globals__
     ]
     code = _said_of(python.__code__, python.__doc__)
-    return digest(kernel.name, kernel.counted, kernel.merged, code, python.__annotations__, named)
+    return digest(kernel.name, kernel.counted, kernel.inlined, code, python.__annotations__, named)
 
 
 def _said(value: Any, where: str) -> object:
