@@ -18,7 +18,7 @@ import numpy as np
 import pymunk
 
 from ..arrays import FloatArray
-from . import private, private_functions, private_joints, private_shapes
+from . import private, private_functions, private_joints
 from .bodies import ANGLE, POSITION, Bodies
 from .joints import JointRows
 
@@ -85,10 +85,8 @@ class Hooks:
         """Call the position functions on `state` with the velocity that leads to `end`, and write their results to
         `end`."""
         ways = self.bodies.centers(end) - self.bodies.centers(state)
-        items = [self.bodies.items[row] for row in self.position]
-        # They are of overlaps that this step has not had, and `update_position` would add them to its way.
-        private_shapes.forget_corrections(private.pointers(items))
-        for row, body in zip(self.position, items, strict=True):
+        for row in self.position:
+            body = self.bodies.items[row]
             function = private.position_function(body)
             assert function is not None
             turn = end[row, ANGLE] - state[row, ANGLE]
