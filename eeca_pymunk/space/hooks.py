@@ -18,7 +18,7 @@ import numpy as np
 import pymunk
 
 from ..arrays import FloatArray
-from . import private, private_functions, private_joints
+from . import private, private_functions, private_joints, private_shapes
 from .bodies import ANGLE, POSITION, Bodies
 from .joints import JointRows
 
