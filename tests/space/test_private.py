@@ -71,10 +71,16 @@ def test_phases_are_the_functions_of_a_handler() -> None:
 
 def test_functions_of_handlers() -> None:
     space, _ = meeting()
-    begin, separate = (lambda *_: True), (lambda *_: True)
+    calls: list[str] = []
     assert private.functions(space) == []
-    space.on_collision(begin=begin, separate=separate)
-    assert private.functions(space) == [(*private.handlers(space), begin, None, None, separate)]
+    space.on_collision(begin=lambda *_: calls.append("begin"), separate=lambda *_: calls.append("separate"))
+    ((handler, begin, pre_solve, post_solve, separate),) = private.functions(space)
+    assert [handler] == list(private.handlers(space))
+    assert pre_solve is None
+    assert post_solve is None
+    begin(None, space, None)
+    separate(None, space, None)
+    assert calls == ["begin", "separate"]
 
 
 def test_reindexing_anew_moves_shapes_and_no_bodies() -> None:
