@@ -62,8 +62,8 @@ def find_corners(LINK: Rows[Link], VERTEX: FloatArray, CORNER: Rows[Corner], mov
     if few == 0 or many < 2:
         return 0
     for s in range(LINK.shape[0]):
-        for j in range(LINK.shape[0]):
-            if j != s and LINK[s].vertices == LINK[j].vertices == 2 and LINK[s].owner == LINK[j].owner:
+        for j in range(LINK.shape[0] if LINK[s].vertices == 2 else 0):
+            if j != s and LINK[j].vertices == 2 and LINK[s].owner == LINK[j].owner:
                 if may_meet(VERTEX, LINK[s].first, LINK[j].first):
                     note_meeting(LINK, VERTEX, CORNER, s, 0, j)
                     note_meeting(LINK, VERTEX, CORNER, s, 1, j)

@@ -10,7 +10,7 @@ from ..compiled.records import Rows, zeros
 from ..contacts.works import carried
 from ..islands.building import comes_to_rest
 from ..islands.intervals import clear_places
-from ..islands.membership import members
+from ..islands.membership import jointed, members
 from ..jointed.columns import fill_free, fill_group, make_columns, weigh
 from ..jointed.component import answer, fit_speeds, ready
 from ..jointed.gathered import find_places, gather_component
@@ -62,23 +62,20 @@ def closes(P: IntArray, Q: IntArray, ROWS: Rows[Row], BEFORE: FloatArray, V: Flo
     return bool(least < -CLOSES * fastest)
 
 
-@kernel
-def go_on(A: Scene, i: int, j: int) -> int:
+@nonallocating
+def list_apart(A: Scene, i: int, j: int) -> int:
     """Write bodies i and j, which have not met yet, to A.BLOCK, each with its island if that has joints, whose interval
     has ended; how many they are."""
-    n, MINE = 0, np.empty(A.BODY.shape[0], np.int64)
-    for q in range(2):
-        body = i if q == 0 else j
-        root = A.STATE[body].island if A.BODY[body].inv_mass > 0.0 else -1
-        if root >= 0 and A.MEMBER[root].jointed > 0:
-            if q == 0 or root != A.STATE[i].island:
-                more = members(A, root, MINE)
-                for k in range(more):
-                    A.BLOCK[n + k] = MINE[k]
-                n += more
-        elif A.BODY[body].inv_mass > 0.0:
+    n = 0
+    for body in (i, j):
+        root = A.STATE[body].island
+        if A.BODY[body].inv_mass == 0.0:
+            continue
+        if not jointed(A, body):
             A.BLOCK[n] = body
             n += 1
+        elif body == i or root != A.STATE[i].island:
+            n += int(members(A, root, A.BLOCK[n:]))
     return n
 
 
@@ -91,7 +88,7 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     t, apart = meet(A, J, a, b, t)
     A.PAR.now = t
     if apart:
-        return go_on(A, i, j)
+        return list_apart(A, i, j)
     n, m, PAIRS = gather(A, a, b, t)
     again, ended = True, 0
     ENDED = np.empty(A.BODY.shape[0], np.int64)

@@ -15,7 +15,7 @@ from ..geometry.flight import norm
 from ..geometry.manifold import half_width
 from ..model.bodies import AT_REST
 from ..model.contacts import LASTED
-from ..model.parameters.events import HITS_JOINTED, RESOLUTION
+from ..model.parameters.events import RESOLUTION, WORK_JOINTED
 from ..model.parameters.intervals import INTERVAL_DEPTH_WIDTH, TOUCH
 from ..model.parameters.rest import REST_RETRY
 from ..model.scene import Scene
@@ -206,7 +206,7 @@ def most_hits(A: Scene, a: int, b: int) -> int:
     if law(A.SHAPE, A.RULE, a, b)[0] >= 1.0:
         return RESOLUTION
     hung = jointed(A, A.LINK[a].owner) or jointed(A, A.LINK[b].owner)
-    return max(1, (HITS_JOINTED if hung else 1) * RESOLUTION // max(1, largest_island(A, a, b)))
+    return max(1, (WORK_JOINTED if hung else 1) * RESOLUTION // max(1, largest_island(A, a, b)))
 
 
 @kernel

@@ -9,7 +9,7 @@ from ..contacts.memory import find, key_of
 from ..geometry.gap import gap_at
 from ..model.bodies import AT_REST
 from ..model.contacts import Force
-from ..model.parameters.events import HITS_JOINTED
+from ..model.parameters.events import WORK_JOINTED
 from ..model.parameters.intervals import ELASTIC_REST, ELASTIC_REST_ON, LARGE_ISLAND, SOLVES_BEFORE_HASTE, TOUCH
 from ..model.scene import Scene
 from ..pairs.rules import law
@@ -83,7 +83,7 @@ def budget_spent(A: Scene, root: int) -> bool:
     often enough."""
     if root < 0 or A.MEMBER[root].bodies < LARGE_ISLAND or A.MEMBER[root].open == 0:
         return False
-    most = SOLVES_BEFORE_HASTE * (HITS_JOINTED if A.MEMBER[root].jointed > 0 else 1)
+    most = SOLVES_BEFORE_HASTE * (WORK_JOINTED if A.MEMBER[root].jointed > 0 else 1)
     return bool(A.COUNT.solved > most * A.BODY.shape[0])
 
 

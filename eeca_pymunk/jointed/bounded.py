@@ -11,8 +11,7 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
-from ..joints.bounds import is_limit
-from ..joints.entries import held, interval_of
+from ..joints.entries import held, interval_of, is_limit
 from ..model.contacts import Bounded
 from ..model.joints import GIVEN, GROOVE, Joints
 from ..model.parameters.joints import BOUNDED_SWEEPS

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..compiled import nonallocating
-from ..joints.bounds import is_limit
+from ..joints.entries import is_limit
 from ..model.joints import BOXED, GIVEN, MOTOR, ROTARY_SPRING, SPRING, Joints
 
 

@@ -11,12 +11,6 @@ from .entries import along
 
 
 @nonallocating
-def is_limit(kind: int) -> bool:
-    """Whether joints of this kind are limits alone, with one row that acts on one side only."""
-    return kind in (SLIDE, ROTARY_LIMIT, RATCHET)
-
-
-@nonallocating
 def bounded(joint: Rows[Joint], link: Rows[Coupling], k: int, side: int) -> bool:
     """Whether joint k has a bound at this side."""
     kind, j = link[k].kind, link[k].joint

@@ -11,18 +11,24 @@ from ..model.joints import DUAL, FULL_BEND, GROOVE, RATCHET, ROTARY_LIMIT, SLIDE
 
 
 @inlined
+def is_limit(kind: int) -> bool:
+    """Whether joints of this kind are limits alone, with one row that acts on one side only."""
+    return kind in (SLIDE, ROTARY_LIMIT, RATCHET)
+
+
+@inlined
 def held(link: Rows[Coupling], k: int, r: int) -> bool:
     """Whether row r of joint k acts: rows of limits do where the joint stands on one."""
     kind = link[k].kind
     if kind == GROOVE:
         return r == 0 or link[k].side != 0
-    return kind not in (SLIDE, ROTARY_LIMIT, RATCHET) or link[k].side != 0
+    return not is_limit(kind) or link[k].side != 0
 
 
 @inlined
 def interval_of(kind: int, side: int, bound: float) -> tuple[float, float]:
     """Least and largest impulse of a joint of bounded force, by its largest amount: limits only push inwards."""
-    if kind in (SLIDE, ROTARY_LIMIT, RATCHET):
+    if is_limit(kind):
         return (0.0, bound) if side < 0 else (-bound, 0.0)
     return -bound, bound
 

@@ -18,10 +18,7 @@ from ..model.joints import (
     MOTOR,
     PIN,
     POSES,
-    RATCHET,
-    ROTARY_LIMIT,
     ROTARY_SPRING,
-    SLIDE,
     SPRING,
     BodyStep,
     Joint,
@@ -29,7 +26,7 @@ from ..model.joints import (
 )
 from ..model.parameters.joints import JOINT_APART
 from .bounds import approach, bounded, gap
-from .entries import held
+from .entries import held, is_limit
 from .rows import joint_rows
 from .solve import begin
 
@@ -112,7 +109,7 @@ def soft_targets(W: Workspace, h: float) -> None:
                 link[k].side = side
                 speed = room / h if room > 0.0 else share(joint, j, -room, h) * room / h
                 hinge[k].target[rows - 1] = side * speed
-        if kind in (SLIDE, ROTARY_LIMIT, RATCHET):
+        if is_limit(kind):
             continue
         if kind == GROOVE:
             rows = 1

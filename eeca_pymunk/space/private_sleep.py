@@ -34,7 +34,7 @@ def asleep(bodies: Iterable[pymunk.Body]) -> Callable[[], bool]:
     return all_sleep
 
 
-def stopped(bodies: Iterable[pymunk.Body]) -> Callable[[], None]:
+def stop_woken(bodies: Iterable[pymunk.Body]) -> Callable[[], None]:
     """A function that takes the velocity of those of these bodies that sleep no more."""
     pointers, sleeps, still = [body._body for body in bodies], lib.cpBodyIsSleeping, (0.0, 0.0)
 

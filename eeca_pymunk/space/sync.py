@@ -96,7 +96,7 @@ class Sync:
         self._asleep = bool(bodies.asleep.any())
         self._pulls = self.space.sleep_time_threshold < math.inf
         sleepers = [bodies.items[i] for i in bodies.asleep.nonzero()[0]]
-        self._sleep, self._stop = private_sleep.asleep(sleepers), private_sleep.stopped(sleepers)
+        self._sleep, self._stop = private_sleep.asleep(sleepers), private_sleep.stop_woken(sleepers)
         self._called = len(bodies.velocity_hooks) + len(bodies.position_hooks) > 0
         self._shapes = sum(bodies.shapes.values())
         self._pointers = bodies.moving

@@ -30,7 +30,7 @@ RESOLUTION = work(
     "Intervals, looks at shapes that touch, hits times the bodies of an island, impacts of a body before it rests, or "
     "is squeezed; a bounce slower than |a| dt over it is none. Larger: dearer steps of what rattles.",
 )
-HITS_JOINTED = work(2, "times those of other islands", "Hits on islands with joints, and solves of their bodies.")
+WORK_JOINTED = work(2, "times those of other islands", "Hits on islands with joints, and solves of their bodies.")
 FARTHEST_MARGIN = work(
     0.7, "of the margin", "Distance of the centre of a single disk's new margin circle ahead of it, at most."
 )
