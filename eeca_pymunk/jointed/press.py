@@ -52,8 +52,7 @@ from ..rows.columns import push_columns
 from ..rows.inplace import copy
 from .advance import Interval, advance, advance_aligned, align, farthest_apart
 from .bounded import make_bounded, settle_bounded, with_bounded
-from .columns import fill_free, leave_out, make_columns, weigh
-from .condensing import solve_condensed
+from .columns import fill_free, leave_out, weigh
 from .gentle import excessive, fastest, solve_gently
 from .groups import Groups, hangs
 from .lock import lock, lost, work_error
@@ -139,7 +138,7 @@ def press(
     converged, best, LEAST, USED, hopeless, agreed = False, np.inf, L.copy(), L.copy(), False, False
     bent, reached, B = 0.0, np.inf, make_bounded(J, groups, m <= SOME_CONTACTS)
     NOW = np.empty(len(B.OF))
-    K, problem = make_columns(groups, P, Q, m if len(B.OF) > 0 else 0), JointedProblem(P, Q, ROWS, C, B, m)
+    problem = JointedProblem(P, Q, ROWS, C, B, m)
     # Only of what nothing from without holds or touches is there an angular momentum to keep.
     free = len(isle.IM) == n and not hangs(groups, J.COMPONENT, J.MEMBER)
     for outer in range(rounds):
@@ -188,9 +187,7 @@ def press(
             NOW[i] = B.ROWS[i].now
         leave_out(C, L, m, FORESEEN)
         BOTH = with_bounded(B, L, m)
-        worst = solve_condensed(problem, groups, K, BOTH, FORESEEN, fine, most)
-        if worst < 0.0:
-            worst = solve_columns(problem, BOTH, FORESEEN, fine, most)
+        worst = solve_columns(problem, BOTH, FORESEEN, fine, most)
         for i in range(m):
             L[i, 0], L[i, 1] = BOTH[i, 0], BOTH[i, 1]
         converged = worst <= 10.0 * max(fine, min(agree, AGREE * scale))
