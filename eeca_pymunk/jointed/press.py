@@ -44,7 +44,6 @@ from ..model.parameters.joints import (
     PRESS_WORK_ROUND_OFF,
     PRESS_WORK_TAUT,
     SOLUTION_WORK,
-    SOME_CONTACTS,
 )
 from ..model.scene import Scene
 from ..rows.build import conserves, rates
@@ -116,13 +115,13 @@ def press(
     scale = pull * h + (fast if elastic else slow)
     rests = not elastic and slow < pull * h
     agree = (
-        AGREE_ELASTIC if elastic else (AGREE_REST if rests else AGREE if m <= SOME_CONTACTS else AGREE_SOME)
+        AGREE_ELASTIC if elastic else (AGREE_REST if rests else AGREE if m <= COLUMN_CONTACTS else AGREE_SOME)
     ) * scale
     fine = (1e-15 if elastic else (PRESS_RESIDUAL_REST if rests else PRESS_RESIDUAL)) * scale
     most = PRESS_SWEEPS_ELASTIC if elastic else (PRESS_SWEEPS_FEW if m <= COLUMN_CONTACTS else PRESS_SWEEPS)
-    rounds = OUTER_SMALL if elastic or m <= SOME_CONTACTS else OUTER
+    rounds = OUTER_SMALL if elastic or m <= COLUMN_CONTACTS else OUTER
     part = before_end(A, interval.t + h)
-    roughly = m > SOME_CONTACTS and not elastic  # given up where sweeps do not converge
+    roughly = m > COLUMN_CONTACTS and not elastic  # given up where sweeps do not converge
     unsolved, most_unsolved = 0, OUTER_PART if part else OUTER_MANY
     if m > COLUMN_CONTACTS and not elastic:
         rounds = most_unsolved
@@ -136,7 +135,7 @@ def press(
     PREVIOUS = np.empty((len(isle.IM), 3))
     FORESEEN, UNKNOWN = np.empty((len(isle.IM), 3)), np.empty((0, 3))
     converged, best, LEAST, USED, hopeless, agreed = False, np.inf, L.copy(), L.copy(), False, False
-    bent, reached, B = 0.0, np.inf, make_bounded(J, groups, m <= SOME_CONTACTS)
+    bent, reached, B = 0.0, np.inf, make_bounded(J, groups, m <= COLUMN_CONTACTS)
     NOW = np.empty(len(B.OF))
     problem = JointedProblem(P, Q, ROWS, C, B, m)
     # Only of what nothing from without holds or touches is there an angular momentum to keep.
@@ -160,7 +159,7 @@ def press(
                     break
                 give_slips(ROWS, m, SLIP)
                 limited, best = True, np.inf
-            hopeless = m > SOME_CONTACTS and outer > 1 and not elastic and off > OUTER_PROGRESS * best
+            hopeless = m > COLUMN_CONTACTS and outer > 1 and not elastic and off > OUTER_PROGRESS * best
             if off < best:
                 best = off
                 copy(LEAST, L)
