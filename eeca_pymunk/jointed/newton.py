@@ -7,10 +7,10 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import kernel
 from ..model.contacts import JointedProblem
+from ..model.parameters.impulses import PATH_CHANGES, PATH_CHANGES_ANEW
 from ..model.parameters.joints import (
     COLUMN_CONTACTS,
     COLUMN_ROUNDS,
-    COLUMN_SWEEPS,
     COLUMN_SWEEPS_AFTER,
 )
 from ..rows.conjugate import iterate
@@ -20,7 +20,9 @@ from ..rows.sweeps import push, sweep, velocities
 
 
 @kernel
-def solve_columns(problem: JointedProblem, L: FloatArray, V: FloatArray, tolerance: float, most: int) -> float:
+def solve_columns(
+    problem: JointedProblem, L: FloatArray, V: FloatArray, tolerance: float, sweeps: int, most: int
+) -> float:
     """Impulses L (m contacts, then the bounded rows) and velocities V by sweeps, at most `most`, and for few contacts
     by direct solutions between them.
 
@@ -29,18 +31,18 @@ def solve_columns(problem: JointedProblem, L: FloatArray, V: FloatArray, toleran
     """
     if problem.m > COLUMN_CONTACTS:
         return iterate(problem, L, V, tolerance, most)[1]
-    worst = iterate(problem, L, V, tolerance, COLUMN_SWEEPS)[1]
+    worst = iterate(problem, L, V, tolerance, sweeps)[1]
     best, L0, V0, before = worst, L.copy(), V.copy(), np.inf
     for _ in range(COLUMN_ROUNDS):
         if worst <= tolerance:
             return worst
         FREE = V.copy()
         push(problem, L, -1.0, FREE)
-        if not follow_path(problem, L, V, FREE):
+        if not follow_path(problem, L, V, FREE, PATH_CHANGES * len(L)):
             for i in range(len(L)):
                 L[i, 0] = L[i, 1] = 0.0
             velocities(problem, L, FREE, V)
-            if not follow_path(problem, L, V, FREE):
+            if not follow_path(problem, L, V, FREE, PATH_CHANGES_ANEW * len(L)):
                 break
         worst, done = np.inf, 0
         while done < COLUMN_SWEEPS_AFTER and worst > tolerance:

@@ -17,7 +17,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..model.contacts import JointedProblem
-from ..model.parameters.impulses import PATH_CHANGES, PATH_REFINEMENTS
+from ..model.parameters.impulses import PATH_REFINEMENTS
 from .bounded import SINGLE, bounded_rate
 from .build import normal_rate, tangent_rate
 from .dense import matrix_jointed
@@ -257,9 +257,9 @@ def refine(problem: JointedProblem, path: Path, V: FloatArray, X: FloatArray) ->
 
 
 @kernel
-def follow_path(problem: JointedProblem, L: FloatArray, V: FloatArray, FREE: FloatArray) -> bool:
+def follow_path(problem: JointedProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, most: int) -> bool:
     """Impulses L (m + n, 2) and velocities V (k, 3) at the end of the path from these; False, with nothing changed, if
-    it has none within PATH_CHANGES changes of state.
+    it has none within `most` changes of state.
 
     Args:
         FREE: (k, 3) velocities without any impulses of the problem.
@@ -269,7 +269,7 @@ def follow_path(problem: JointedProblem, L: FloatArray, V: FloatArray, FREE: Flo
     T, count, size = path.T, len(path.STATE), len(path.T)
     X = np.empty(size)
     theta, way, changed, number = 1.0, -1.0, -1, 0
-    for _ in range(PATH_CHANGES * count):
+    for _ in range(most):
         nearest = np.inf
         if changed >= 0:
             way = 1.0 if margin(path, m, changed, number, 1) > 0.0 else -1.0
