@@ -34,7 +34,7 @@ class Path(NamedTuple):
     STATE, SIGN (m + n,): states; sign of the friction that slips, or of the bound; else 0.  MU (m,), LOW, HIGH (n,).
     T (size, size + 2): of each unknown the impulse, or the velocity less its target, that its state leaves free, by
     those of all that it fixes, which are 0; then its value at theta = 0, and per theta. Where a contact slips, beta
-    stands for beta - s mu lam.
+    stands for beta - s mu lam.  R (size + 2,): room for a row.
     """
 
     STATE: IntArray
@@ -43,22 +43,26 @@ class Path(NamedTuple):
     LOW: FloatArray
     HIGH: FloatArray
     T: FloatArray
+    R: FloatArray
 
 
 @nonallocating
-def pivot(T: FloatArray, k: int) -> None:
+def pivot(path: Path, k: int) -> None:
     """Exchange what unknown k leaves free for what it fixes."""
+    T, R = path.T, path.R
     size, width = T.shape
     by = -1.0 / T[k, k]
     T[k, k] = -1.0
     for j in range(width):
-        T[k, j] *= by
+        # A copy of the row cannot overlap the others, which are then vectorised.
+        R[j] = T[k, j] * by
+        T[k, j] = R[j]
     for i in range(size):
         factor = T[i, k]
         if i != k and factor != 0.0:
             T[i, k] = 0.0
             for j in range(width):
-                T[i, j] += factor * T[k, j]
+                T[i, j] += factor * R[j]
 
 
 @nonallocating
@@ -74,14 +78,14 @@ def let_slip(path: Path, c: int, sign: float) -> None:
     path.STATE[c], path.SIGN[c] = SLIP, sign
     for i in range(len(T)):
         T[i, n] += slope_of(path, c) * T[i, n + 1]
-    pivot(T, n)
+    pivot(path, n)
 
 
 @nonallocating
 def hold(path: Path, c: int) -> None:
     """Let contact c, which slips, stick."""
     T, n = path.T, 2 * c
-    pivot(T, n + 1)
+    pivot(path, n + 1)
     for j in range(T.shape[1]):
         T[n + 1, j] += slope_of(path, c) * T[n, j]
     path.STATE[c], path.SIGN[c] = STICK, 0.0
@@ -100,13 +104,13 @@ def change(path: Path, m: int, c: int, which: int, theta: float) -> int:
         path.STATE[c], path.SIGN[c] = SLIP, 1.0 if which == 0 else -1.0
         for j in range(size + 2):
             T[k + 1, j] -= slope_of(path, c) * T[k, j]
-        pivot(T, k + 1)
+        pivot(path, k + 1)
         return 1
     if state == SLIP and which == 1:
         hold(path, c)
         return 0 if sign > 0.0 else 1
     if state == SLIP:
-        pivot(T, k)
+        pivot(path, k)
         for i in range(size):
             T[i, k] -= slope_of(path, c) * T[i, k + 1]
         path.STATE[c], path.SIGN[c] = OPEN, 0.0
@@ -114,9 +118,9 @@ def change(path: Path, m: int, c: int, which: int, theta: float) -> int:
     if state == INSIDE:
         path.STATE[c], path.SIGN[c] = BOUND, -1.0 if which == 0 else 1.0
         T[k, size] -= path.LOW[c - m] if which == 0 else path.HIGH[c - m]
-        pivot(T, k)
+        pivot(path, k)
         return 0
-    pivot(T, k)
+    pivot(path, k)
     T[k, size] += path.HIGH[c - m] if sign > 0.0 else path.LOW[c - m]
     path.STATE[c], path.SIGN[c] = INSIDE, 0.0
     return 1 if sign > 0.0 else 0
@@ -152,8 +156,9 @@ def begin(problem: JointedProblem, L: FloatArray, V: FloatArray) -> Path:
     n = D.USED[0]
     size = 2 * m + n
     path = Path(
-        np.zeros(m + n, np.int64), np.zeros(m + n), np.zeros(m), np.zeros(n), np.zeros(n), np.zeros((size, size + 2))
-    )
+        np.zeros(m + n, np.int64), np.zeros(m + n), np.zeros(m), np.zeros(n), np.zeros(n), np.zeros((size, size + 2)),
+        np.empty(size + 2),
+    )  # fmt: skip
     T, X, W = path.T, np.zeros(size), np.empty((size, size))
     AT, KIND = np.empty(size, np.int64), np.empty(size, np.int64)
     for k in range(size):
@@ -216,7 +221,7 @@ def take_states(path: Path, m: int, X: FloatArray) -> None:
         k = 2 * c if c < m else m + c
         if STATE[c] == BOUND and path.LOW[c - m] < X[k] < path.HIGH[c - m]:
             bound = path.HIGH[c - m] if path.SIGN[c] > 0.0 else path.LOW[c - m]
-            pivot(T, k)
+            pivot(path, k)
             T[k, size] += bound if abs(bound) < np.inf else 0.0
             STATE[c], path.SIGN[c] = INSIDE, 0.0
         elif STATE[c] == OPEN and X[k] > 0.0:
