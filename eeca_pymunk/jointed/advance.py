@@ -13,7 +13,7 @@ from ..compiled.records import Rows
 from ..model.contacts import Bounded, Columns, Row
 from ..model.islands import Island
 from ..model.joints import Joints
-from ..model.parameters.joints import ARM_ERROR, ARM_ITERATIONS, SOME_CONTACTS
+from ..model.parameters.joints import ARM_ERROR, ARM_ITERATIONS, COLUMN_CONTACTS
 from ..model.scene import Scene
 from .bounded import fill_rows, list_rows, note_rows
 from .columns import fill_group
@@ -104,7 +104,7 @@ def advance(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, 
             note_rows(A, J, B, s, h, motion.MEAN)
         elif is_hit(groups, P, Q, m, g):
             size = find_places(A, J, s, INDEX)
-            let_slip(J, s, True, m <= SOME_CONTACTS)
+            let_slip(J, s, True, m <= COLUMN_CONTACTS)
             first = list_rows(A, J, B, s, h, motion.MEAN)
             if ready(J, s, h, True):
                 PUSH = np.empty((size, 3))

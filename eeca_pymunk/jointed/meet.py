@@ -12,13 +12,13 @@ from ..islands.accounting import account_contact, move_to_end
 from ..islands.membership import in_large_island, members
 from ..model.joints import Joints
 from ..model.parameters.joints import (
+    COLUMN_CONTACTS,
     MEET,
     MEET_HALVINGS,
     MEET_LOADED,
     MEET_MANY,
     MEET_SECANTS,
     MEET_SECANTS_LOADED,
-    SOME_CONTACTS,
 )
 from ..model.scene import Scene
 from ..pairs.lists import mark_pair
@@ -158,7 +158,7 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
         if roots[1] != roots[0]:
             loaded += shorten(A, J, roots[1], t)
         g, nx, ny, px, py = gap(A, a, b, t)
-        close = MEET if loaded == 0 else MEET_LOADED if loaded <= SOME_CONTACTS else MEET_MANY
+        close = MEET if loaded == 0 else MEET_LOADED if loaded <= COLUMN_CONTACTS else MEET_MANY
         crosses, through = False, t
         if g > close * small:
             through, crosses = first_meeting(A, a, b, t)

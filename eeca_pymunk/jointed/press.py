@@ -25,7 +25,6 @@ from ..model.parameters.joints import (
     AGREE,
     AGREE_ELASTIC,
     AGREE_REST,
-    AGREE_SOME,
     ARM_ERROR,
     CHORD,
     COLUMN_CONTACTS,
@@ -36,7 +35,6 @@ from ..model.parameters.joints import (
     OUTER_MANY,
     OUTER_PART,
     OUTER_PROGRESS,
-    OUTER_SMALL,
     PRESS_RESIDUAL,
     PRESS_RESIDUAL_REST,
     PRESS_SWEEPS,
@@ -55,8 +53,8 @@ from .bounded import make_bounded, settle_bounded, with_bounded
 from .columns import fill_free, leave_out, weigh
 from .gentle import excessive, fastest, solve_gently
 from .groups import Groups, hangs
+from .laws import solve_columns
 from .lock import lock, lost, work_error
-from .newton import solve_columns
 from .secant import fit_columns
 
 
@@ -115,34 +113,29 @@ def press(
     elastic = conserves(ROWS, m)
     scale = pull * h + (fast if elastic else slow)
     rests = not elastic and slow < pull * h
-    agree = (
-        AGREE_ELASTIC if elastic else (AGREE_REST if rests else AGREE if m <= COLUMN_CONTACTS else AGREE_SOME)
-    ) * scale
+    agree = (AGREE_ELASTIC if elastic else (AGREE_REST if rests else AGREE)) * scale
     fine = (1e-15 if elastic else (PRESS_RESIDUAL_REST if rests else PRESS_RESIDUAL)) * scale
     most = PRESS_SWEEPS_ELASTIC if elastic else (PRESS_SWEEPS_FEW if m <= COLUMN_CONTACTS else PRESS_SWEEPS)
-    rounds = OUTER_SMALL if elastic or m <= COLUMN_CONTACTS else OUTER
-    part = before_end(A, interval.t + h)
-    roughly = m > COLUMN_CONTACTS and not elastic  # given up where sweeps do not converge
-    unsolved, most_unsolved = 0, OUTER_PART if part else OUTER_MANY
-    if m > COLUMN_CONTACTS and not elastic:
-        rounds = most_unsolved
+    exactly, rounds = elastic or m <= COLUMN_CONTACTS, OUTER
+    if not exactly:
+        rounds = OUTER_PART if before_end(A, interval.t + h) else OUTER_MANY
         if n >= LARGE_ISLAND:
             most = sweeps_of_large(interval.t)
     # Where many contacts do not come to an end, joints come near enough until the last step of the components.
     if J.PROGRESS.effort > J.PROGRESS.budget:
         rounds, most = OUTER_PART, min(most, PRESS_SWEEPS)
-    J.PROGRESS.near = JOINTS_NEAR if m > COLUMN_CONTACTS and not elastic and not rests else 0.0
+    J.PROGRESS.near = 0.0 if exactly or rests else JOINTS_NEAR
     EFFECT = np.zeros((len(isle.IM), 3))
     PREVIOUS = np.empty((len(isle.IM), 3))
     FORESEEN, UNKNOWN = np.empty((len(isle.IM), 3)), np.empty((0, 3))
-    converged, best, LEAST, USED, hopeless, agreed = False, np.inf, L.copy(), L.copy(), False, False
+    converged, best, LEAST, USED, agreed = False, np.inf, L.copy(), L.copy(), False
     bent, reached, B = 0.0, np.inf, make_bounded(J, groups, m <= COLUMN_CONTACTS)
     NOW = np.empty(len(B.OF))
     problem = JointedProblem(P, Q, ROWS, C, B, m)
     # Only of what nothing from without holds or touches is there an angular momentum to keep.
     free = len(isle.IM) == n and not hangs(groups, J.COMPONENT, J.MEMBER)
     for outer in range(rounds):
-        if hopeless or (roughly and unsolved >= most_unsolved) or J.PROGRESS.effort > J.PROGRESS.share:
+        if J.PROGRESS.effort > J.PROGRESS.share:
             break
         anew = outer % CHORD == 0
         advance(A, J, interval, L, B, anew, FORESEEN if outer > 0 else UNKNOWN)
@@ -160,12 +153,9 @@ def press(
                     break
                 give_slips(ROWS, m, SLIP)
                 limited, best = True, np.inf
-            hopeless = m > COLUMN_CONTACTS and outer > 1 and not elastic and off > OUTER_PROGRESS * best
             if off < best:
                 best = off
                 copy(LEAST, L)
-                if hopeless:
-                    break
         if not anew:
             fit_columns(interval, B, L, USED, NOW, PREVIOUS)
         elif free:
@@ -191,7 +181,6 @@ def press(
         for i in range(m):
             L[i, 0], L[i, 1] = BOTH[i, 0], BOTH[i, 1]
         converged = worst <= 10.0 * max(fine, min(agree, AGREE * scale))
-        unsolved += 0 if converged else 1
         if farthest_apart(motion.MEAN, FORESEEN, isle.EXTENT, n) <= 1e-3 * agree:
             # The motion is that of the impulses before: others may do as little by these answers, and yet do much.
             copy(L, USED)

@@ -5,7 +5,8 @@ s mu lam, s u_t <= 0); a bounded row has its target velocity, or its impulse is 
 solve it exactly for other free velocities, q + theta p with theta = 1, where p takes their residuals away. From there
 theta goes to 0 along the solution, which is linear until a state changes; then on, with growing or falling theta, as
 the new state allows (Lemke 1965; of contacts Stewart and Trinkle 1996). A change is one pivot, also where contacts jam
-with redundant impulses, which sweeps carry round for ever.
+with redundant impulses, which sweeps carry round for ever. A path that begins without impulses ends if no target is
+positive and no surface conveys (Anitescu and Potra 1997); others may run to infinity.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..model.contacts import JointedProblem
-from ..model.parameters.impulses import PATH_REFINEMENTS
+from ..model.parameters.impulses import PATH_CHANGES, PATH_CHANGES_ANEW, PATH_REFINEMENTS
 from .bounded import SINGLE, bounded_rate
 from .build import normal_rate, tangent_rate
 from .dense import matrix_jointed
@@ -262,19 +263,20 @@ def refine(problem: JointedProblem, path: Path, V: FloatArray, X: FloatArray) ->
 
 
 @kernel
-def follow_path(problem: JointedProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, most: int) -> bool:
+def follow_path(problem: JointedProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, anew: bool) -> bool:
     """Impulses L (m + n, 2) and velocities V (k, 3) at the end of the path from these; False, with nothing changed, if
-    it has none within `most` changes of state.
+    its end is not reached.
 
     Args:
-        FREE: (k, 3) velocities without any impulses of the problem.
+        FREE: (k, 3) velocities without any impulses of the problem.  anew: whether it begins without impulses, and may
+            be longer.
     """
     m = problem.m
     path = begin(problem, L, V)
     T, count, size = path.T, len(path.STATE), len(path.T)
     X = np.empty(size)
     theta, way, changed, number = 1.0, -1.0, -1, 0
-    for _ in range(most):
+    for _ in range((PATH_CHANGES_ANEW if anew else PATH_CHANGES) * count):
         nearest = np.inf
         if changed >= 0:
             way = 1.0 if margin(path, m, changed, number, 1) > 0.0 else -1.0

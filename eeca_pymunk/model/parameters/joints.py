@@ -87,13 +87,6 @@ STRUT_BETWEEN = round_off(
     1e-07, "of the free mobility", "Mobility of a contact with other bodies that is the error of the response."
 )
 CORRECTION_JOINTS = accuracy(1e-11, "of the component", "Error of joints when overlaps are corrected.")
-CONDENSED_BOUNDED = work(
-    16, "bounded rows", "Number up to which bounded rows are condensed into the columns of the contacts."
-)
-CONDENSED_CHANGES = work(4, "for each bounded row", "Changes of the active set of condensed rows, at most.")
-CONDENSED_PROXIMAL = round_off(
-    10000000000.0, "over the effective mass", "Stiffness of the proximal term of redundant bounded rows."
-)
 FIT_CLOSING = round_off(
     1e-09,
     "of the island's speed",
@@ -122,17 +115,15 @@ MEET_SECANTS = work(5, "iterations", "Secant steps to the instant of an impact o
 MEET_HALVINGS = work(40, "iterations", "Halvings of the time to an instant before shapes pass each other, at most.")
 MEET_SECANTS_LOADED = work(2, "iterations", "Secant steps to that instant if contacts push on the component.")
 MEET_INSTANT = round_off(1e-12, "of the step", "Length below which an interval before an impact is empty.")
-COLUMN_CONTACTS = work(40, "contacts", "Number up to which a direct solution over components is worth its cost.")
-COLUMN_SWEEPS = work(12, "sweeps", "Sweeps over components before the first direct solution.")
-COLUMN_SWEEPS_AFTER = work(4, "sweeps", "Sweeps over components after each direct solution.")
-COLUMN_ROUNDS = work(8, "direct solutions", "Direct solutions, at most.")
-ACTIVATIONS = work(3, "direct solutions", "Changes of state for each contact where sweeps do not converge.")
+COLUMN_CONTACTS = work(40, "contacts", "Number up to which islands with joints are solved exactly; with more, roughly.")
+COLUMN_SWEEPS = work(12, "sweeps", "Sweeps over components before the first path to the solution.")
+COLUMN_SWEEPS_AFTER = work(4, "sweeps", "Sweeps over components after each path, at most.")
+COLUMN_PATHS = work(8, "paths", "Paths to the solution, at most.")
 COLUMN_PROXIMAL = round_off(
     10000000000.0, "over the effective mass", "Stiffness of the proximal term of redundant contacts of components."
 )
-OUTER = work(6, "steps of the components", "Iterations between contacts and components, at most.")
-OUTER_SMALL = work(20, "steps of the components", "These iterations of elastic islands and of few contacts.")
-OUTER_MANY = work(2, "steps of the components", "These iterations where sweeps over many contacts do not converge.")
+OUTER = work(20, "steps of the components", "Iterations between contacts and components, at most.")
+OUTER_MANY = work(2, "steps of the components", "These iterations with more than COLUMN_CONTACTS contacts.")
 OUTER_PART = work(
     1, "steps of the components", "These iterations in an interval of many contacts that ends within the step."
 )
@@ -143,14 +134,12 @@ AGREE = accuracy(
 )
 AGREE_REST = accuracy(1e-11, "of |a| h and the speed", "This difference near rest.")
 AGREE_ELASTIC = accuracy(1e-13, "of |a| h and the speed", "This difference in elastic islands.")
-AGREE_SOME = accuracy(1e-05, "of |a| h and the speed", "This difference with more than SOME_CONTACTS moving contacts.")
 PRESS_SWEEPS = work(40, "sweeps", "Sweeps over contacts of components.")
 PRESS_SWEEPS_FEW = work(30, "sweeps", "Sweeps over few contacts of components.")
 PRESS_SWEEPS_ELASTIC = work(400, "sweeps", "Sweeps over elastic contacts of components.")
 PRESS_RESIDUAL = accuracy(1e-09, "of |a| h and the speed", "Residual of sweeps over contacts of components.")
 PRESS_RESIDUAL_REST = accuracy(1e-12, "of |a| h and the speed", "Residual of these sweeps near rest.")
 PRESS_LOCKS = work(10, "number", "Attempts of the energy lock of components, at most.")
-SOME_CONTACTS = work(12, "contacts", "Number from which on the interval before an impact is solved roughly.")
 JOINTS_NEAR = accuracy(1e-09, "of the component", "Error of joints while many contacts have not converged.")
 OUTER_FLOOR = round_off(
     1e-08, "of the speed", "Difference of the velocities that is round-off of stiff components if it does not fall."

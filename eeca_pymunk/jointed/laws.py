@@ -1,4 +1,4 @@
-"""Contact laws of few contacts to round-off: sweeps find which act, a direct solution on these does the rest."""
+"""Contact laws of an island with joints: sweeps, and to round-off for as many contacts as `rows.path` pays for."""
 
 from __future__ import annotations
 
@@ -7,12 +7,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import kernel
 from ..model.contacts import JointedProblem
-from ..model.parameters.impulses import PATH_CHANGES, PATH_CHANGES_ANEW
-from ..model.parameters.joints import (
-    COLUMN_CONTACTS,
-    COLUMN_ROUNDS,
-    COLUMN_SWEEPS_AFTER,
-)
+from ..model.parameters.joints import COLUMN_CONTACTS, COLUMN_PATHS, COLUMN_SWEEPS_AFTER
 from ..rows.conjugate import iterate
 from ..rows.inplace import copy
 from ..rows.path import follow_path
@@ -22,28 +17,32 @@ from ..rows.sweeps import push, sweep, velocities
 @kernel
 def solve_columns(
     problem: JointedProblem, L: FloatArray, V: FloatArray, tolerance: float, sweeps: int, most: int
-) -> float:
-    """Impulses L (m contacts, then the bounded rows) and velocities V by sweeps, at most `most`, and for few contacts
-    by direct solutions between them.
+) -> float:  # fmt: skip
+    """Impulses L (m contacts, then the bounded rows) and velocities V.
 
-    Where direct solutions stop to help, or come back to where they were, sweeps go on from the best of them.
-    Returns the last sweep's largest change of a contact's velocity.
+    Args:
+        tolerance: change of a contact's velocity in a sweep at which its law is kept.  sweeps: before a path.
+        most: sweeps where there are too many contacts for a path, or it has no end.
+
+    Returns:
+        the largest change of a contact's velocity in the last sweep.
     """
     if problem.m > COLUMN_CONTACTS:
         return iterate(problem, L, V, tolerance, most)[1]
     worst = iterate(problem, L, V, tolerance, sweeps)[1]
     best, L0, V0, before = worst, L.copy(), V.copy(), np.inf
-    for _ in range(COLUMN_ROUNDS):
+    for _ in range(COLUMN_PATHS):
         if worst <= tolerance:
             return worst
         FREE = V.copy()
         push(problem, L, -1.0, FREE)
-        if not follow_path(problem, L, V, FREE, PATH_CHANGES * len(L)):
+        if not follow_path(problem, L, V, FREE, False):
             for i in range(len(L)):
                 L[i, 0] = L[i, 1] = 0.0
             velocities(problem, L, FREE, V)
-            if not follow_path(problem, L, V, FREE, PATH_CHANGES_ANEW * len(L)):
+            if not follow_path(problem, L, V, FREE, True):
                 break
+        # Discs of bounded impulses and friction that energy limits are not on the path: sweeps, in turn with it.
         worst, done = np.inf, 0
         while done < COLUMN_SWEEPS_AFTER and worst > tolerance:
             worst = sweep(problem, L, V)
