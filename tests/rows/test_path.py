@@ -1,0 +1,183 @@
+"""Coulomb's law and bounded impulses at the end of a path, by the laws themselves."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+
+from eeca_pymunk.compiled.records import zeros
+from eeca_pymunk.model.contacts import BOUNDED_ROW, ROW, Bounded, Columns, JointedProblem
+from eeca_pymunk.rows.bounded import room_for_rows
+from eeca_pymunk.rows.build import normal_rate, place_row, tangent_rate
+from eeca_pymunk.rows.path import follow_path
+from eeca_pymunk.rows.sweeps import push, sweep, velocities
+
+Array = np.ndarray
+
+
+def problem_of(
+    pairs: list[tuple[int, int]], points: Array, normals: Array, places: Array, mu: float, rows: int = 0
+) -> JointedProblem:
+    """Bodies of unit mass and moment .1 at `places` (k, 2), the last of which does not move, that answer alone; the
+    first `rows` of them turn against a motor of bounded torque."""
+    m, k = len(pairs), len(places)
+    A, B = (np.array([p[side] for p in pairs]) for side in range(2))
+    pose = np.column_stack((places, np.zeros(k)))
+    inverse, moments = np.ones(k), np.full(k, 10.0)
+    inverse[-1] = moments[-1] = 0.0
+    contacts = zeros(m, ROW)
+    columns = Columns(
+        2 * np.arange(m + 1), np.empty(2 * m, np.int64), np.empty((2 * m, 3)), np.empty((2 * m, 3)),
+        np.zeros(m, np.int64),
+    )  # fmt: skip
+    for i in range(m):
+        contacts[i].nx, contacts[i].ny, contacts[i].friction = normals[i, 0], normals[i, 1], mu
+        place_row(A, B, contacts, i, points[i, 0], points[i, 1], pose, inverse, moments)
+        row = contacts[i]
+        for side, (body, sign) in enumerate(((A[i], -1.0), (B[i], 1.0))):
+            arms = (row.arm_na, row.arm_ta) if side == 0 else (row.arm_nb, row.arm_tb)
+            masses = np.array([inverse[body], inverse[body], moments[body]])
+            columns.BODY[2 * i + side] = body
+            columns.N[2 * i + side] = sign * masses * (row.nx, row.ny, arms[0])
+            columns.T[2 * i + side] = sign * masses * (-row.ny, row.nx, arms[1])
+    bounded = room_for_rows(rows, rows)
+    if rows:
+        bounded = Bounded(
+            np.array([rows]), np.arange(rows + 1), np.arange(rows), np.tile((0.0, 0.0, 10.0), (rows, 1)),
+            np.column_stack((np.full(rows, -1), np.arange(rows))), np.tile((0.0, 0.0, 0.0, 0.0, 0.0, 1.0), (rows, 1)),
+            zeros(rows, BOUNDED_ROW), np.zeros((rows, 2), np.int64),
+        )  # fmt: skip
+        for i in range(rows):
+            bounded.ROWS[i].speed, bounded.ROWS[i].low, bounded.ROWS[i].high = 2.0 * (-1.0) ** i, -0.05, 0.08
+    return JointedProblem(A, B, contacts, columns, bounded, m)
+
+
+def drawn(seed: int, m: int = 6, k: int = 4, rows: int = 0) -> tuple[JointedProblem, Array]:
+    """A random problem of m contacts among k bodies, and free velocities (k, 3)."""
+    rng = np.random.default_rng(seed)
+    pairs = [(int(a), int(b)) for a, b in (sorted(rng.choice(k, 2, replace=False)) for _ in range(m))]
+    angles = rng.uniform(0.0, 2.0 * np.pi, m)
+    places = rng.normal(size=(k, 2))
+    points = np.array([places[a] + 0.3 * rng.normal(size=2) for a, _ in pairs])
+    free = rng.normal(size=(k, 3))
+    free[-1] = 0.0
+    normals = np.column_stack((np.cos(angles), np.sin(angles)))
+    return problem_of(pairs, points, normals, places, rng.choice((0.0, 0.3, 0.9)), rows), free
+
+
+def off(problem: JointedProblem, L: Array, V: Array) -> float:
+    """By how much the laws are broken: a velocity."""
+    A, B, ROWS, _, D, m = problem
+    worst = 0.0
+    for i in range(m):
+        (lam, beta), row, mu = L[i], ROWS[i], ROWS[i].friction
+        un, ut = normal_rate(A, B, ROWS, V, i) - row.target, tangent_rate(A, B, ROWS, V, i)
+        worst = max(worst, -un, -lam * row.a_nn, (abs(beta) - mu * lam) * row.a_nn)
+        worst = max(worst, abs(un) if lam > 0.0 else 0.0)
+        if abs(beta) < mu * lam * (1.0 - 1e-12):
+            worst = max(worst, abs(ut))
+        elif mu > 0.0 and lam > 0.0:
+            worst = max(worst, np.sign(beta) * ut)
+    for i in range(D.USED[0]):
+        x, row = L[m + i, 0], D.ROWS[i]
+        u = row.speed + V[D.END[i, 1], 2]
+        worst = max(worst, row.low - x, x - row.high)
+        worst = max(worst, u if x >= row.high else -u if x <= row.low else abs(u))
+    return float(worst)
+
+
+@pytest.mark.parametrize("rows", [0, 3])
+def test_paths_without_impulses_end_at_the_law(rows: int) -> None:
+    """Anitescu and Potra's problems: no target is positive, nothing conveys."""
+    states = set()
+    for seed in range(30):
+        problem, free = drawn(seed, rows=rows)
+        L, V = np.zeros((problem.m + rows, 2)), free.copy()
+        assert follow_path(problem, L, V, free, True)
+        assert off(problem, L, V) <= 1e-12
+        again = free.copy()
+        push(problem, L, 1.0, again)
+        np.testing.assert_allclose(again, V, atol=1e-13)
+        states |= {(lam > 0.0, abs(beta) >= problem.ROWS[0].friction * lam) for lam, beta in L[: problem.m].tolist()}
+    assert len(states) == 3  # open, sticking, slipping
+
+
+def test_paths_from_a_solution_nearby_end_at_the_law_or_nowhere() -> None:
+    ended = 0
+    for seed in range(30):
+        problem, free = drawn(seed)
+        L = np.zeros((problem.m, 2))
+        assert follow_path(problem, L, free.copy(), free, True)
+        free[:-1] += 0.1 * np.random.default_rng(seed).normal(size=free[:-1].shape)
+        V, before = np.empty_like(free), L.copy()
+        velocities(problem, L, free, V)
+        if follow_path(problem, L, V, free, False):
+            ended += 1
+            assert off(problem, L, V) <= 1e-12
+        else:
+            np.testing.assert_array_equal(L, before)
+    assert ended >= 27
+
+
+def test_jammed_contacts_that_sweeps_carry_round() -> None:
+    """A disk in a notch of faces at 60 degrees, mu = 2: it sticks at both, and may be wedged as hard as one likes. Its
+    faces ask for velocities that differ by 1e-9, so that one of them has to let go: sweeps need a million rounds."""
+    slope = np.array([[np.sin(1.0), np.cos(1.0)], [-np.sin(1.0), np.cos(1.0)]])
+    problem = problem_of([(1, 0), (1, 0)], -0.5 * slope, slope, np.zeros((2, 2)), 2.0)
+    problem.ROWS[0].target = -1e-9
+    free = np.zeros((2, 3))
+    free[0, 1] = -1.0
+    L, V = np.zeros((2, 2)), free.copy()
+    for _ in range(300):
+        changed = sweep(problem, L, V)
+    assert changed > 1e-11
+    assert follow_path(problem, L, V, free, False) or follow_path(problem, np.zeros((2, 2)), free.copy(), free, True)
+    assert off(problem, L, V) <= 1e-12
+
+
+def test_bounded_rows_as_all_cases_tried() -> None:
+    """Two motors on bodies that one contact joins: the only one of 9 states of the motors that is lawful."""
+    for seed in range(10):
+        problem, free = drawn(seed, m=1, k=3, rows=2)
+        problem.ROWS[0].friction = 0.0
+        L, V = np.zeros((3, 2)), free.copy()
+        assert follow_path(problem, L, V, free, True)
+        found = []
+        for states in itertools.product((-1, 0, 1), repeat=2):
+            for held in (False, True):
+                W, q, x = matrix(problem, free)
+                fixed = {0: 0.0} if not held else {}
+                bounds = {-1: -0.05, 1: 0.08}
+                fixed |= {1 + i: bounds[s] for i, s in enumerate(states) if s != 0}
+                free_ones = [i for i in range(3) if i not in fixed]
+                for i, value in fixed.items():
+                    x[i] = value
+                if free_ones:
+                    part = np.ix_(free_ones, free_ones)
+                    x[free_ones] = np.linalg.solve(W[part], -(q + W @ x)[free_ones])
+                trial = np.zeros((3, 2))
+                trial[:, 0] = x
+                speeds = free.copy()
+                push(problem, trial, 1.0, speeds)
+                if off(problem, trial, speeds) <= 1e-11:
+                    found.append(trial)
+        assert found
+        assert min(np.abs(trial - L).max() for trial in found) <= 1e-10
+
+
+def matrix(problem: JointedProblem, free: Array) -> tuple[Array, Array, Array]:
+    """Velocities per impulse (3, 3) of a normal and two motors, free ones (3,), and room for impulses (3,)."""
+
+    def rates(V: Array) -> Array:
+        contact = normal_rate(problem.A, problem.B, problem.ROWS, V, 0) - problem.ROWS[0].target
+        return np.array([contact, *(problem.D.ROWS[i].speed + V[i, 2] for i in range(2))])
+
+    q, columns = rates(free), []
+    for j in range(3):
+        L, V = np.zeros((3, 2)), free.copy()
+        L[j, 0] = 1.0
+        push(problem, L, 1.0, V)
+        columns.append(rates(V) - q)
+    return np.column_stack(columns), q, np.zeros(3)
