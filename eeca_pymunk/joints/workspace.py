@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from ..arrays import side_by_side
 from ..compiled import inlined
-from ..compiled.records import Rows, row, rows
+from ..compiled.records import Rows, rows
 from ..model.bodies import Body
 from ..model.joints import (
     BodyStep,
@@ -43,19 +44,28 @@ def make_joints(bodies: Rows[Body], joint: Rows[Joint], partner: Rows[Body], ord
         order: 4 where nothing in a component dissipates, drives, or touches something; or 2.
     """
     count = len(joint)
-    component, member, link = rows(Component, count), rows(ComponentBody, 2 * count), rows(Coupling, count)
-    tally, of, room = row(Tally), np.full(len(bodies), -1, np.int64), _NO_ROOM
-    tally.order = order
+    component, member, link = rows(Component, 0), rows(ComponentBody, 0), rows(Coupling, 0)
+    room, components = _NO_ROOM, 0
     if count > 0:
+        component, member, link = side_by_side(
+            ((count,), Component.TYPE), ((2 * count,), ComponentBody.TYPE), ((count,), Coupling.TYPE)
+        )
         everyone: Any = np.concatenate((bodies, partner))
-        tally.components = make_plan(everyone, joint, component, member, link)
-        room = room_for(component[: tally.components])
-    for s in range(tally.components):
+        components = make_plan(everyone, joint, component, member, link)
+        room = room_for(component[:components])
+    hinge, local, matrix, right, more, stiff, progress, part, pivots, of, kept, stepped, tally = side_by_side(
+        ((room.joints,), JointStep.TYPE), ((room.bodies,), BodyStep.TYPE), ((room.matrix,), np.float64),
+        ((room.right,), np.float64), ((room.scratch,), np.float64), ((6, 6), np.float64), ((1,), Progress.TYPE),
+        ((1,), JointLedger.TYPE), ((room.rows,), np.int64), ((len(bodies),), np.int64), ((count,), Joint.TYPE),
+        ((max(components, 1),), JointLedger.TYPE), ((1,), Tally.TYPE),
+    )  # fmt: skip
+    of[:] = -1
+    for s in range(components):
         mine = member[component[s].first_body : component[s].end_body]
         of[mine["body"][mine["freedoms"] > 0]] = s
-    return Joints(
-        joint, partner, component, member, link, rows(JointStep, room.joints), rows(BodyStep, room.bodies),
-        np.zeros(room.matrix), np.zeros(room.right), np.zeros(room.scratch), np.zeros((6, 6)), row(Progress),
-        row(JointLedger), np.zeros(room.rows, np.int64), of, rows(Joint, count),
-        rows(JointLedger, max(tally.components, 1)), tally,
+    joints = Joints(
+        joint, partner, component, member, link, hinge, local, matrix, right, more, stiff, progress[0], part[0],
+        pivots, of, kept, stepped, tally[0],
     )  # fmt: skip
+    joints.TALLY.order, joints.TALLY.components = order, components
+    return joints

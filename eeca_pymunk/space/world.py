@@ -12,6 +12,7 @@ import pymunk
 
 from ..arrays import IntArray
 from ..compiled.records import Rows, rows
+from ..impacts.scene_memory import SceneMemory
 from ..layout import BODY_ROW
 from ..model.bodies import Body
 from ..report import Details, nothing
@@ -57,6 +58,7 @@ class World(Crossing):
         joints: the constraints of the space, None if it has none.  PARTNER: bodies of joints that have no row of BODY.
         read_at: `noticed.clock` when shapes and bodies were read.
         patches: number of patches so far.  packed: the arrays of the rows, and the kernel that writes them.
+        memory: of the event loop of this world.
         parted: pairs of rows of SHAPE that do not collide because of joints of their bodies.
     """
 
@@ -71,6 +73,7 @@ class World(Crossing):
         state = bodies.start
         bodies.check_finite(state)
         self.records: Records = records_of(space, bodies, {} if known is None else known.records, stale or ())
+        self.memory: SceneMemory = SceneMemory() if past is None else past.memory
         self.smooth = "friction" in ignore
         self.ignores = self.smooth and rough_pair([s for s, r in self.records.items() if r is not None]) is not None
         self.packed = packed = Packed(bodies, state, self.records)
