@@ -188,8 +188,8 @@ def build(table: Table, t: float) -> bool:
 
 @nonallocating
 def begin_lists(table: Table, few: bool) -> bool:
-    """Write the boxes of static shapes. If there are so `few` shapes that each is in all lists, make these; False if the
-    pool is full."""
+    """Write the boxes of static shapes. If there are so `few` shapes that each is in all lists, make them; False if
+    the pool is full."""
     A = scene_of(table)
     for w in range(A.BOX.shape[0]):
         box_wall(A, w)
