@@ -51,11 +51,10 @@ TABLES = {
 
 ENTRIES = {
     "geometry.gap:gaps": "{Scene} i8[2] f8[2] f8[2] f8[2]",
-    "pairs.walls:size_walls": "f8[2] Grid",
-    "pairs.walls:wall_grid": "f8[2] Grid i8[1]",
     "pairs.grid:build": "{Scene} f8",
     "pairs.grid:relist": "{Scene}",
-    "pairs.grid:begin_lists": "{Scene} bool",
+    "pairs.margins:begin_lists": "{Scene} bool",
+    "pairs.margins:fill_lists": "{Scene} f8[1] i8 bool",
     "pairs.candidates:candidates": "{Scene} f8[1] f8[1] i8[2] f8[2]",
     "geometry.corners:find_corners": "Link[1] f8[2] Corner[1]",
     "geometry.sides:keep_sides": "{Scene} Side[1] i8[1]",

@@ -16,7 +16,6 @@ from .lists import append, centre, course, may_meet, place_in, remove
 from .walls import box_wall, seek_walls
 
 _FIRST_CAPACITY = 8
-FAR_CELL = 2e300  # length of the cells of no grid
 
 
 @nonallocating
@@ -184,21 +183,6 @@ def make_lists(A: Scene, t: float) -> bool:
 def build(table: Table, t: float) -> bool:
     """Build all lists at instant t. False if the pool is full: call again with a larger one."""
     return make_lists(scene_of(table), t)
-
-
-@nonallocating
-def begin_lists(table: Table, few: bool) -> bool:
-    """Write the boxes of static shapes. If there are so `few` shapes that each is in all lists, make them; False if
-    the pool is full."""
-    A = scene_of(table)
-    for w in range(A.BOX.shape[0]):
-        box_wall(A, w)
-    if not few:
-        return True
-    for s in range(A.GRID.moving):
-        A.MARK[s].margin = math.inf
-    A.GRID.cell = FAR_CELL
-    return make_lists(A, 0.0)
 
 
 @nonallocating
