@@ -73,10 +73,11 @@ ENTRIES = {
     "rehearsing:changed": "f8[3] f8[2] f8[2]",
     "impacts.laying:measure_scene": "Shape[1] Link[1] f8[2] i8[1] i8",
     "impacts.laying:lay_scene": "{Scene}",
+    "impacts.laying:tie_components": "Member[1] i8[1]",
     "islands.accounting:flag_again": "{Scene}",
     "impacts.step:step": "{Scene} {Joints} f8[3] i8[2] f8[2] f8[1] f8[1] f8 f8 f8 f8 i8",
     "impacts.run:run": "{Scene} {Joints} {RunArrays} f8[3] i8[2] f8[2] f8[1] f8[1]",
-    "joints.plan:make_plan": "Body[1] Joint[1] Component[1] ComponentBody[1] Coupling[1]",
+    "joints.plan:make_plan": "Body[1] Joint[1] Component[1] ComponentBody[1] Coupling[1] i8[1]",
     "joints.held:find_held": "Body[1] Joint[1] i8[1] i8[1] i8[1]",
     "joints.world:step_all": "{Joints} Body[1] f8",
     # Only tests call these, which solve single islands: some hundred times slower as plain Python.

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from ..arrays import FloatArray, IntArray
 from ..compiled import Table, kernel, nonallocating
 from ..compiled.records import Rows
 from ..geometry.corners import find_corners, moving_thin
+from ..model.bodies import Member
 from ..model.parameters.impulses import AUGMENTATION
 from ..model.scene import scene_of
 from ..model.shapes import Link, Shape
@@ -46,3 +49,18 @@ def lay_scene(table: Table) -> None:
         first += A.STATE[i].shapes
     if A.CORNER.shape[0] > 0:
         find_corners(A.LINK, A.VERTEX, A.CORNER)
+
+
+@kernel
+def tie_components(MEMBER: Rows[Member], OF: IntArray) -> None:
+    """Make a ring of the bodies (n,) of each component: OF (n,) are their components, -1 for none."""
+    first, last = np.full(OF.shape[0], -1, np.int64), np.full(OF.shape[0], -1, np.int64)
+    for i in range(OF.shape[0]):
+        s = OF[i]
+        MEMBER[i].tied, MEMBER[i].next_tied = -1, -1
+        if s >= 0:
+            first[s] = i if first[s] < 0 else first[s]
+            MEMBER[i].tied, MEMBER[i].next_tied = first[s], first[s]
+            if last[s] >= 0:
+                MEMBER[last[s]].next_tied = i
+            last[s] = i

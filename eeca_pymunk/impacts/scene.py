@@ -25,16 +25,15 @@ from ..model.step import Missed
 from ..pairs.setup import with_more_room
 from ..report import Details, of_events
 from ..transfer import FORCES
+from .laying import tie_components
 from .remembering import Remembering
 from .run import ROOM_FOR_IMPACTS, run
 from .run_buffers import RunBuffers
-from .scene_memory import RULE_COLUMNS, SceneMemory
+from .scene_memory import ORDER, RULE_COLUMNS, SceneMemory
 from .step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, step
 
 if TYPE_CHECKING:
     import pymunk
-
-_ORDER = 4  # of the steps of components without dissipation, drives and contacts
 
 
 def _longer(table: Rows[R], used: int) -> Rows[R]:
@@ -79,7 +78,10 @@ class EventLoop(Remembering):
         COUNT = scene.COUNT
         COUNT.limit, COUNT.disks, COUNT.together = limit, disks, together
         COUNT.budget = STEP_LOOKS + STEP_LOOKS_BODY * n * max(n, MANY_BODIES) // MANY_BODIES
-        self.plan()
+        if self.jointed:
+            self.plan()
+        else:
+            self._joints, self.ties = memory.unjointed(n)
 
     def _hold(self, BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link]) -> Rows[Held]:
         """The bodies that straight paths of joints hold, which lose their mobilities."""
@@ -100,14 +102,8 @@ class EventLoop(Remembering):
 
     def plan(self) -> None:
         """Find the components again: after changes of joints' kinds, bodies, eccentric anchors, or of mobilities."""
-        self.joints = make_joints(self.scene.BODY, self.joint, self.partner, _ORDER)
-        if not self.jointed:
-            return
-        ring = self.scene.MEMBER
-        ring["tied"] = ring["next_tied"] = -1
-        for s in range(self.joints.TALLY.components):
-            moved = np.flatnonzero(s == self.joints.OF)
-            ring["tied"][moved], ring["next_tied"][moved] = moved[0], np.roll(moved, -1)
+        self.joints = make_joints(self.scene.BODY, self.joint, self.partner, ORDER)
+        tie_components(self.scene.MEMBER, self.joints.OF)
 
     def holds_others(self) -> bool:
         """Whether straight paths of joints hold other bodies than those of HELD, after changes of joints or of their

@@ -8,11 +8,12 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray, Memory
 from ..compiled import Table, table_of
-from ..compiled.records import Rows
+from ..compiled.records import Rows, rows
 from ..geometry.corners import side_rows
+from ..joints.workspace import make_joints
 from ..model.bodies import Body, Member, Next, Rest
 from ..model.contacts import Force, Impulse, Pair, Pushed
-from ..model.joints import Held
+from ..model.joints import Held, Joint, Joints
 from ..model.scene import Scene
 from ..model.shapes import Corner, Link, Shape, Side
 from ..model.step import Count, Missed, Step
@@ -20,6 +21,7 @@ from ..pairs.setup import NEAR, NO_GRID, filled, near_sizes
 from .laying import MEASURES, lay_scene, measure_scene
 
 RULE_COLUMNS = 6
+ORDER = 4  # of the steps of components without dissipation, drives and contacts
 _MISSED = 32  # rows of MISSED: those reported of a step
 _CONTACTS = 256  # rows of PUSHED at first, a power of 2
 _OF_A_BODY, _MANY = 32, 1 << 16  # rows for each body where contacts may persist, and all rows at most at first
@@ -33,6 +35,7 @@ class SceneMemory:
         self._memory = Memory()
         self._sizes: IntArray = np.zeros(MEASURES, np.int64)
         self._rows: dict[str, Any] = {}
+        self._unjointed: tuple[Joints, Table] | None = None
 
     def scene(
         self, BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, HELD: Rows[Held]
@@ -69,9 +72,16 @@ class SceneMemory:
         lay_scene(table)
         return filled(scene, table)
 
+    def unjointed(self, n: int) -> tuple[Joints, Table]:
+        """The arrays of no joints, for n bodies or more, and their table."""
+        if self._unjointed is None or len(self._unjointed[0].OF) < n:
+            joints = make_joints(rows(Body, 2 * n), rows(Joint, 0), rows(Body, 0), ORDER)
+            self._unjointed = joints, table_of(joints)
+        return self._unjointed
+
     def _again(self, name: str, count: int, dtype: Any) -> Any:
         """So many rows, of any content."""
-        rows = self._rows.get(name)
-        if rows is None or not count <= len(rows) <= 8 * count:
-            rows = self._rows[name] = np.zeros(count, dtype)
-        return rows[:count]
+        kept = self._rows.get(name)
+        if kept is None or not count <= len(kept) <= 8 * count:
+            kept = self._rows[name] = np.zeros(count, dtype)
+        return kept[:count]

@@ -102,9 +102,11 @@ def turning(bodies: Rows[Body], joint: Rows[Joint], joints: int, turns: IntArray
 @kernel
 def make_plan(
     bodies: Rows[Body], joint: Rows[Joint], component: Rows[Component], member: Rows[ComponentBody],
-    link: Rows[Coupling],
+    link: Rows[Coupling], OF: IntArray,
 ) -> int:  # fmt: skip
-    """Fill in `component` (joints,), `member` (2 joints,), `link` (joints,); how many components there are."""
+    """Fill in `component` (joints,), `member` (2 joints,), `link` (joints,), and OF (n,), the component of each body
+    that joints may move, -1 for none; how many components there are."""
+    OF[:] = -1
     joints = len(joint)
     parent, island = np.empty(len(bodies), np.int64), np.empty(joints, np.int64)
     count = find_islands(bodies, joint, parent, island, joints)
@@ -142,6 +144,7 @@ def make_plan(
                     member[used].freedoms = freedoms if moved(bodies, body) else 0
                     if moved(bodies, body):
                         free += 1
+                        OF[body] = s
                     used += 1
                 link[k].body[end] = place[body] - component[s].first_body
         component[s].end_body = used

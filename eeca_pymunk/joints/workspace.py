@@ -45,24 +45,20 @@ def make_joints(bodies: Rows[Body], joint: Rows[Joint], partner: Rows[Body], ord
     """
     count = len(joint)
     component, member, link = rows(Component, 0), rows(ComponentBody, 0), rows(Coupling, 0)
-    room, components = _NO_ROOM, 0
+    of, room, components = np.full(len(bodies), -1, np.int64), _NO_ROOM, 0
     if count > 0:
         component, member, link = side_by_side(
             ((count,), Component.TYPE), ((2 * count,), ComponentBody.TYPE), ((count,), Coupling.TYPE)
         )
         everyone: Any = np.concatenate((bodies, partner))
-        components = make_plan(everyone, joint, component, member, link)
+        components = make_plan(everyone, joint, component, member, link, of)
         room = room_for(component[:components])
-    hinge, local, matrix, right, more, stiff, progress, part, pivots, of, kept, stepped, tally = side_by_side(
+    hinge, local, matrix, right, more, stiff, progress, part, pivots, kept, stepped, tally = side_by_side(
         ((room.joints,), JointStep.TYPE), ((room.bodies,), BodyStep.TYPE), ((room.matrix,), np.float64),
         ((room.right,), np.float64), ((room.scratch,), np.float64), ((6, 6), np.float64), ((1,), Progress.TYPE),
-        ((1,), JointLedger.TYPE), ((room.rows,), np.int64), ((len(bodies),), np.int64), ((count,), Joint.TYPE),
+        ((1,), JointLedger.TYPE), ((room.rows,), np.int64), ((count,), Joint.TYPE),
         ((max(components, 1),), JointLedger.TYPE), ((1,), Tally.TYPE),
     )  # fmt: skip
-    of[:] = -1
-    for s in range(components):
-        mine = member[component[s].first_body : component[s].end_body]
-        of[mine["body"][mine["freedoms"] > 0]] = s
     joints = Joints(
         joint, partner, component, member, link, hinge, local, matrix, right, more, stiff, progress[0], part[0],
         pivots, of, kept, stepped, tally[0],

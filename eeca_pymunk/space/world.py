@@ -132,6 +132,23 @@ class World(Crossing):
         return {shape: k for k, shape in enumerate(self.shapes)}
 
     @cached_property
+    def shape_counts(self) -> IntArray:
+        """(N,) the number of shapes of each body, 0 for static ones."""
+        bodies = self.bodies
+        owner = [bodies.row.get(shape.body, -1) for shape, record in self.records.items() if record is None]  # type: ignore[arg-type]
+        count = np.bincount(self.owner, minlength=len(bodies))
+        for i in owner:
+            count[i] += i >= 0
+        count[bodies.static] = 0
+        return count
+
+    @cached_property
+    def movers(self) -> list[Any]:
+        """Pointers to the Chipmunk bodies that are not static and have shapes."""
+        items = self.bodies.items
+        return private.pointers([items[i] for i in np.flatnonzero(self.shape_counts).tolist()])
+
+    @cached_property
     def empty(self) -> Details:
         """The arrays of a report without contacts."""
         return nothing(self.bodies.items)
