@@ -169,7 +169,9 @@ def held_bodies(
     if len(joint) == 0:
         return rows(Held, 0)
     fixed = np.concatenate((np.zeros(n, np.int64), still))
-    ends = fixed[joint["body"]].any(axis=1) & np.isin(joint["kind"], (PIN, PIVOT, SLIDE)) & (joint["soft"] == 0)
+    kinds = joint["kind"]
+    ends = ((kinds == PIN) | (kinds == PIVOT) | (kinds == SLIDE)) & (joint["soft"] == 0)
+    ends &= fixed[joint["body"]].any(axis=1)
     if np.count_nonzero(ends) < 2:
         return rows(Held, 0)
     kind = np.zeros(len(fixed), np.int64)

@@ -93,6 +93,7 @@ class Bodies:
 
     Attributes:
         fixed: whether any may sleep.  items: the pymunk bodies, by row.  ids: (N,) pymunk's numbers of them.
+        fresh: number of bodies whose values were read anew.
         start: (N, 9) their state when they were read.
         mass, moment: (N,) mass and M L²; infinite for static and kinematic bodies.
         inverse_mass: (N,) 1/mass, 0 for static and kinematic bodies.
@@ -114,7 +115,9 @@ class Bodies:
             for row in [old[body] for body in stale if body in old]:
                 del known[int(before.ids[row])]
         ids: list[int] = self.ids.tolist()
-        if missing := [i for i in ids if i not in known]:
+        missing = [i for i in ids if i not in known]
+        self.fresh = len(missing)
+        if missing:
             old = {} if before is None else before.row
             new = {b.id: b for b in (*space.bodies, ground) if b not in old or b in stale}
             known.update((i, (new[i], _told(new[i]))) for i in missing)

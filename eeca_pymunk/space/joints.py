@@ -11,7 +11,7 @@ import pymunk
 
 from ..arrays import FloatArray
 from ..compiled.records import Rows, records, rows
-from ..model.joints import EDITED, MOTOR, ROTARY_SPRING, SPRING, Joint
+from ..model.joints import EDITED, Joint
 from . import private
 from .constraint_impulses import Impulses
 from .constraints import read
@@ -22,7 +22,6 @@ from .pushing import Pushing
 from .spring_functions import Motion, Rate, law, put_law
 
 _ROUND_OFF = 1e-12  # of the length of a pin
-_PUSHING = SPRING, ROTARY_SPRING, MOTOR
 
 
 class JointRows:
@@ -30,7 +29,7 @@ class JointRows:
 
     Attributes:
         items: the constraints, in the order of the rows.  joint: (j,).
-        row: the row of each constraint.
+        row: the row of each constraint.  fresh: number of constraints that `past` has not.
         functions: rows of springs that have a force or torque function of the program.  own: these springs.
         before, after, calling: constraints with a `pre_solve`, with a `post_solve`, with either.
         partners: bodies of joints that have no row of their own; theirs are n + row of PARTNER.
@@ -52,6 +51,7 @@ class JointRows:
             past.refresh()
         self._list: Listing = Listing(space, None if past is None else past._list)
         listed = self._list
+        self.fresh = len(listed.fresh)
         self.items, self.row = listed.items, listed.row
         self.joint: Rows[Joint] = rows(Joint, len(self.items))
         self._memory = self.joint.view(np.uint8).data
@@ -73,19 +73,16 @@ class JointRows:
         self._find_functions()
 
     def _find_functions(self) -> None:
-        """Take what depends on kinds and functions: also which constraints always exert forces in a rest step, springs,
-        motors, soft ones, and those of bodies that the batch calls do not reach."""
+        """Take what depends on kinds and functions. Constraints of bodies that batch calls do not reach always exert
+        forces in a rest step, too."""
         listed = self._list
         self.functions, self.own = listed.functions, listed.own
         self.before, self.after, self.calling = listed.before, listed.after, listed.calling
         far = {body: body.body_type == pymunk.Body.DYNAMIC for body in self.partners.items}
         asleep = {body: dynamic and body.space is self.space for body, dynamic in far.items()}
-        pushes = (self.joint["soft"] != 0) | np.isin(self.joint["kind"], _PUSHING)
-        pushes[listed.with_body(far)] = True
-        sleeping = {self.items[j] for j in listed.with_body(asleep).tolist()}
-        self.pushing = Pushing(
-            self.items, self.joint, [self.items[j] for j in np.flatnonzero(pushes).tolist()], sleeping
-        )
+        always = sorted({*listed.pushing, *listed.with_body(far)})
+        sleeping = {self.items[j] for j in listed.with_body(asleep)}
+        self.pushing = Pushing(self.items, self.joint, [self.items[j] for j in always], sleeping)
         self.parted: frozenset[tuple[pymunk.Body, pymunk.Body]] | None = None
 
     def is_of(self, space: pymunk.Space) -> bool:

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pymunk
 
-from ..arrays import IntArray
-from ..model.joints import RATCHET
+from ..model.joints import MOTOR, RATCHET, ROTARY_SPRING, SPRING
 from .constraints import Given, read
 from .spring_functions import own_function
 
+_PUSHING = SPRING, ROTARY_SPRING, MOTOR
 Said = tuple[object, object, object, bool]
 
 
@@ -27,7 +27,7 @@ class Listing:
         fresh: rows of the constraints that were not in the list before.
         functions: rows of springs that have a force or torque function of the program.  own: these springs.
         before, after, calling: constraints with a `pre_solve`, with a `post_solve`, with either.
-        ratchets: rows of these.
+        ratchets: rows of these.  pushing: rows of those that always exert forces in a rest step of pymunk.
     """
 
     def __init__(self, space: pymunk.Space, past: Listing | None) -> None:
@@ -54,15 +54,16 @@ class Listing:
     def find_functions(self) -> None:
         """Find what depends on kinds and functions."""
         self.ratchets = [j for j, given in enumerate(self.given) if given.kind == RATCHET]
+        self.pushing = [j for j, given in enumerate(self.given) if given.soft or given.kind in _PUSHING]
         self.functions = [j for j, said in enumerate(self.said) if said[0]]
         self.own = [self.items[j] for j in self.functions]
         self.before = [item for item, said in zip(self.items, self.said, strict=True) if said[1] is not None]
         self.after = [item for item, said in zip(self.items, self.said, strict=True) if said[2] is not None]
         self.calling = list(dict.fromkeys((*self.before, *self.after)))
 
-    def with_body(self, these: dict[pymunk.Body, bool]) -> IntArray:
+    def with_body(self, these: dict[pymunk.Body, bool]) -> list[int]:
         """The rows of the constraints with one of the bodies that are so marked."""
         if not any(these.values()):
-            return np.zeros(0, np.intp)
+            return []
         marked = np.array([these.get(body, False) for body in self.bodies])
-        return np.flatnonzero(marked[self.ends].any(axis=1))
+        return np.flatnonzero(marked[self.ends].any(axis=1)).tolist()

@@ -70,22 +70,38 @@ def read(shape: pymunk.Shape, ground: pymunk.Body | None = None) -> Record:
     return Record(body, outline, numbers, words, ground is not None, given, points)
 
 
-def records_of(space: pymunk.Space, bodies: Bodies, known: Records, stale: Collection[Any]) -> Records:
-    """The records of all shapes, None for sensors; `known` ones that are not `stale` are used again.
+def records_of(
+    space: pymunk.Space, bodies: Bodies, known: Records, stale: Collection[Any]
+) -> tuple[Records, int]:  # fmt: skip
+    """The records of all shapes, None for sensors, and how many shapes were read: `known` records of those that are not
+    `stale` are used again.
 
     A shape whose body was removed from the space becomes a static shape at its present place, where pymunk detects it.
     """
     records: Records = {}
+    read_anew = 0
     for shape in space.shapes:
         before = known.get(shape) if shape not in stale else None
         if before is not None and not before.outside and before.body in bodies.row:
             records[shape] = before
-        elif shape.sensor:
+            continue
+        read_anew += 1
+        if shape.sensor:
             records[shape] = None
         else:
             here = shape.body is None or shape.body in bodies.row
             records[shape] = read(shape, None if here else space.static_body)
-    return records
+    return records, read_anew
+
+
+def shape_counts(bodies: Bodies, owner: IntArray, records: Records) -> IntArray:
+    """(N,) the number of shapes of each body, 0 for static ones; `owner` (k,): rows of the bodies of the solid ones."""
+    count: IntArray = np.bincount(owner, minlength=len(bodies))
+    for shape in [shape for shape, record in records.items() if record is None]:
+        if shape.body is not None and shape.body in bodies.row:
+            count[bodies.row[shape.body]] += 1
+    count[bodies.static] = 0
+    return count
 
 
 class Packed:

@@ -74,7 +74,7 @@ def patch(world: World) -> Patched | None:
     world.records.update(records)
     if not world.packed.lay_again(bodies, world.state, world.records, records, moved):
         return None
-    world.read_at = now
+    world.read_at, world.objects_read = now, world.objects_read + len(records) + len(weighed)
     world.STATES[LEFT] = np.where(bodies.static[:, None], world.STATES[NOW], np.nan)
     world.EXTRA[:, PUSH_X : PUSH_TWIST + 1] = 0.0
     return Patched(elasticity, filters, moved)
