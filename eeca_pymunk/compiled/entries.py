@@ -54,7 +54,7 @@ ENTRIES = {
     "pairs.grid:build": "{Scene} f8",
     "pairs.grid:relist": "{Scene}",
     "pairs.margins:begin_lists": "{Scene} bool",
-    "pairs.margins:fill_lists": "{Scene} f8[1] i8 bool",
+    "pairs.margins:fill_lists": "{Scene} f8[1] f8 i8 bool",
     "pairs.candidates:candidates": "{Scene} f8[1] f8[1] i8[2] f8[2]",
     "geometry.corners:find_corners": "Link[1] f8[2] Corner[1]",
     "geometry.sides:keep_sides": "{Scene} Side[1] i8[1]",

@@ -11,7 +11,7 @@ import math
 
 from ..arrays import FloatArray
 from ..compiled import Table, nonallocating
-from ..model.parameters.detection import ALL_PAIRS, ALL_WALLS, MARGIN_HALVINGS, MOST_NEIGHBOURS, NEIGHBOURS
+from ..model.parameters.detection import ALL_PAIRS, ALL_WALLS, MARGIN_HALVINGS, MOST_NEIGHBOURS
 from ..model.scene import Scene, scene_of
 from .grid import make_lists
 from .walls import box_wall, size_walls, wall_grid
@@ -39,11 +39,12 @@ def begin_lists(table: Table, few: bool) -> int:
 
 
 @nonallocating
-def fill_lists(table: Table, BOUND: FloatArray, halved: int, listed: bool) -> int:
+def fill_lists(table: Table, BOUND: FloatArray, neighbours: float, halved: int, listed: bool) -> int:
     """Choose margins, and make all lists.
 
     Args:
         BOUND: (m,) bounding radii of the shapes that move, in ascending order.
+        neighbours: mean length of lists for which margins are chosen.
         halved: how often margins have been halved.  listed: whether there are lists for the present ones.
 
     Returns:
@@ -54,7 +55,7 @@ def fill_lists(table: Table, BOUND: FloatArray, halved: int, listed: bool) -> in
     if halved == 0 and not listed:
         if A.GRID.columns > 0:
             wall_grid(A.BOX, A.GRID, A.CSR)
-        choose_margins(A, middle(BOUND))
+        choose_margins(A, middle(BOUND), neighbours)
     while True:
         set_cell(A)
         if not listed and not make_lists(A, 0.0):
@@ -99,8 +100,8 @@ def set_cell(A: Scene) -> None:
 
 
 @nonallocating
-def choose_margins(A: Scene, median: float) -> None:
-    """Set the margins of the shapes that move, whose bounding radii have this median."""
+def choose_margins(A: Scene, median: float, neighbours: float) -> None:
+    """Set the margins of the shapes that move, whose bounding radii have this median, for so many neighbours."""
     left, bottom, right, top, largest = math.inf, math.inf, -math.inf, -math.inf, 0.0
     for s in range(A.GRID.moving):
         body, bound = A.BODY[A.LINK[s].owner], A.SHAPE[s].bound
@@ -111,7 +112,7 @@ def choose_margins(A: Scene, median: float) -> None:
     for s in range(A.GRID.moving):
         packing += (A.SHAPE[s].bound / wide) * (A.SHAPE[s].bound / tall)
     phi = max(math.pi * packing, 1e-6)
-    factor = min(max(math.sqrt(0.25 * NEIGHBOURS / phi) - 1.0, LEAST), MOST)
+    factor = min(max(math.sqrt(0.25 * neighbours / phi) - 1.0, LEAST), MOST)
     factor = MOST if A.GRID.moving <= ALL_PAIRS else factor
     # Points have a margin too; if all shapes are points, any length will do.
     size = median if median > 0.0 else largest if largest > 0.0 else 1.0

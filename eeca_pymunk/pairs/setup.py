@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from ..arrays import IntArray, side_by_side
 from ..compiled import Table, table_of
-from ..model.parameters.detection import ALL_PAIRS, ALL_WALLS
+from ..model.parameters.detection import ALL_PAIRS, ALL_WALLS, NEIGHBOURS
 from ..model.scene import Scene
 from ..model.shapes import Cell, Grid, List, Mark
 from .grid import build
@@ -48,10 +48,10 @@ def filled(scene: Scene, table: Table) -> tuple[Scene, Table]:
     if found > 0:
         scene, table = _and_table(scene._replace(CSR=np.zeros(found, np.int64)), table)
     bounds = np.sort(scene.SHAPE["bound"][: len(scene.LIST)])
-    halved = fill_lists(table, bounds, 0, False)
+    halved = fill_lists(table, bounds, NEIGHBOURS, 0, False)
     while halved != DONE:
         scene, table = _and_table(with_more_room(scene, 0.0), table)
-        halved = fill_lists(table, bounds, halved, True)
+        halved = fill_lists(table, bounds, NEIGHBOURS, halved, True)
     return scene, table
 
 
