@@ -78,6 +78,8 @@ ENTRIES = {
     "impacts.step:step": "{Scene} {Joints} f8[3] i8[2] f8[2] f8[1] f8[1] f8 f8 f8 f8 i8",
     "impacts.run:run": "{Scene} {Joints} {RunArrays} f8[3] i8[2] f8[2] f8[1] f8[1]",
     "joints.plan:make_plan": "Body[1] Joint[1] Component[1] ComponentBody[1] Coupling[1] i8[1]",
+    "joints.plan:measure_plan": "Component[1] i8[1] i8",
+    "joints.held:may_hold": "Joint[1] i8[1] i8",
     "joints.held:find_held": "Body[1] Joint[1] i8[1] i8[1] i8[1]",
     "joints.world:step_all": "{Joints} Body[1] f8",
     # Only tests call these, which solve single islands: some hundred times slower as plain Python.

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from ..arrays import side_by_side
@@ -23,7 +21,7 @@ from ..model.joints import (
     Tally,
     Workspace,
 )
-from .plan import make_plan, room_for
+from .plan import Room, make_plan, room_for, together
 
 
 @inlined
@@ -33,7 +31,7 @@ def workspace(J: Joints, s: int) -> Workspace:
     return Workspace(J, s, J.LINK[C.first_joint : C.end_joint], C.end_joint - C.first_joint, C.end_body - C.first_body)
 
 
-_NO_ROOM = room_for(rows(Component, 0))
+_NO_ROOM = Room(1, 1, 1, 1, 2, 1)
 
 
 def make_joints(bodies: Rows[Body], joint: Rows[Joint], partner: Rows[Body], order: int) -> Joints:
@@ -50,9 +48,8 @@ def make_joints(bodies: Rows[Body], joint: Rows[Joint], partner: Rows[Body], ord
         component, member, link = side_by_side(
             ((count,), Component.TYPE), ((2 * count,), ComponentBody.TYPE), ((count,), Coupling.TYPE)
         )
-        everyone: Any = np.concatenate((bodies, partner))
-        components = make_plan(everyone, joint, component, member, link, of)
-        room = room_for(component[:components])
+        components = make_plan(together(bodies, partner), joint, component, member, link, of)
+        room = room_for(component, components)
     hinge, local, matrix, right, more, stiff, progress, part, pivots, kept, stepped, tally = side_by_side(
         ((room.joints,), JointStep.TYPE), ((room.bodies,), BodyStep.TYPE), ((room.matrix,), np.float64),
         ((room.right,), np.float64), ((room.scratch,), np.float64), ((6, 6), np.float64), ((1,), Progress.TYPE),
