@@ -55,6 +55,7 @@ class Run:
         self.calls = 0
         self._path = hashlib.sha256()
         self._steppers: dict[int, ep.EECA] = {}
+        self._first = 0  # objects that were read when steppers were made
         self._native = pymunk.Space.step
         self._within: list[float] = []
         if self.inspected:
@@ -71,6 +72,7 @@ class Run:
             stepper = self._steppers.get(id(space))
             if stepper is None:
                 stepper = self._steppers[id(space)] = ep.EECA(space)
+                self._first += stepper.objects_read
             stepper.step(dt)
         self.steps.append(time.thread_time() - begun)
         if len(self.steps) == 1:
@@ -115,10 +117,12 @@ class Run:
 
     def told(self) -> dict[str, Any]:
         """What the run was."""
-        later = self.steps[1:]
+        later, steppers = self.steps[1:], self._steppers.values()
         return {
             "steps": later, "calls": self.calls, "path": self._path.hexdigest()[:8],
-            "reads": sum(stepper.reads - 1 for stepper in self._steppers.values()),
+            "reads": sum(stepper.reads - 1 for stepper in steppers),
+            "patches": sum(stepper.patches for stepper in steppers),
+            "objects": sum(stepper.objects_read for stepper in steppers) - self._first,
             "parts": {part: taken / max(len(later), 1) for part, taken in self.parts.items()},
         }  # fmt: skip
 

@@ -75,14 +75,17 @@ def told(name: str, native: list[dict[str, Any]], eeca: list[dict[str, Any]], pa
     theirs, ours = least(native), least(eeca)
     one, inspected = eeca[0], parts[0]
     row: dict[str, Any] = {"program": name, "says": next((r["says"] for r in eeca if r["says"] != "runs"), "runs")}
-    row |= dict.fromkeys(("steps", "native us", "us", "to native", "native worst ms", "worst ms", "re-reads", "calls"))
-    row |= dict.fromkeys(("path", "around us", *(f"{part} us" for part in PARTS)))
+    row |= dict.fromkeys(
+        ("steps", "native us", "us", "to native", "native worst ms", "worst ms", "re-reads", "patches")
+    )
+    row |= dict.fromkeys(("objects read", "calls", "path", "around us", *(f"{part} us" for part in PARTS)))
     if len(theirs) and len(ours):
         row |= {
             "steps": len(ours), "native us": 1e6 * theirs.mean(), "us": 1e6 * ours.mean(),
             "to native": ours.mean() / theirs.mean(),
             "native worst ms": 1e3 * theirs.max(), "worst ms": 1e3 * ours.max(),
-            "re-reads": one["reads"], "calls": inspected.get("calls"),
+            "re-reads": one["reads"], "patches": one["patches"], "objects read": one["objects"],
+            "calls": inspected.get("calls"),
             "path": one["path"] if {r["path"] for r in (*eeca, *parts)} == {one["path"]} else "differs",
         }  # fmt: skip
     if inspected["steps"]:

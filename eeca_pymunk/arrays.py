@@ -19,25 +19,47 @@ AnyArray: TypeAlias = npt.NDArray[Any]
 _LINES = 128  # bytes: alignment of what a processor fetches at once
 _PAGE = 1 << 21  # bytes of a huge page
 _HUGE = 1 << 22  # bytes of an allocation from which numpy asks for huge pages
+_SPARE = 4  # memory that is so many times larger than needed is given up, unless it is a few pages
+
+
+class Memory:
+    """One piece of memory for arrays that replace one another: as long as it is large enough, the next ones are in the
+    place of the last."""
+
+    def __init__(self) -> None:
+        self._room: npt.NDArray[np.uint8] = np.zeros(0, np.uint8)
+        self._first = 0  # byte at which it is aligned
+
+    def side_by_side(self, *wanted: tuple[tuple[int, ...], npt.DTypeLike]) -> list[Any]:
+        """Arrays of zeros of these shapes and dtypes, each aligned to a cache line; the last ones are lost.
+
+        Kernels read a few numbers in all arrays of a scene, and would often miss the TLB with many small pages. Large
+        scenes therefore get huge pages, which operating systems only give to large allocations.
+        """
+        places: list[tuple[tuple[int, ...], np.dtype[Any], int]] = []
+        total = 0
+        for shape, kind in wanted:
+            dtype = np.dtype(kind)
+            places.append((shape, dtype, total))
+            total += -(-math.prod(shape) * dtype.itemsize // _LINES) * _LINES
+        if self._first + total <= len(self._room) <= _SPARE * (total + _PAGE):
+            self._room[self._first : self._first + total] = 0
+        else:
+            self._allot(total)
+        return [np.ndarray(shape, dtype, self._room, self._first + at) for shape, dtype, at in places]
+
+    def _allot(self, total: int) -> None:
+        """New memory, zeros, with room for so many bytes, and more if it replaces other."""
+        total += total // 2 if len(self._room) else 0
+        huge = total >= _PAGE // 2
+        size, unit = (max(-(-total // _PAGE) * _PAGE, _HUGE), _PAGE) if huge else (total, _LINES)
+        self._room = np.zeros(size + unit, np.uint8)
+        self._first = -self._room.ctypes.data % unit
 
 
 def side_by_side(*wanted: tuple[tuple[int, ...], npt.DTypeLike]) -> list[Any]:
-    """Arrays of zeros of these shapes and dtypes in one piece of memory, each aligned to a cache line.
-
-    Kernels read a few numbers in all arrays of a scene, and would often miss the TLB with many small pages. Large
-    scenes therefore get huge pages, which operating systems only give to large allocations.
-    """
-    places: list[tuple[tuple[int, ...], npt.DTypeLike, int]] = []
-    total, unit = 0, _LINES
-    for shape, dtype in wanted:
-        places.append((shape, dtype, total))
-        size = math.prod(shape) * np.dtype(dtype).itemsize
-        total += -(-size // _LINES) * _LINES
-    if total >= _PAGE // 2:
-        total, unit = max(-(-total // _PAGE) * _PAGE, _HUGE), _PAGE
-    memory = np.zeros(total + unit, np.uint8)
-    first = -memory.__array_interface__["data"][0] % unit
-    return [np.ndarray(shape, dtype, memory, first + at) for shape, dtype, at in places]
+    """Arrays of zeros in one piece of memory of their own, see `Memory`."""
+    return Memory().side_by_side(*wanted)
 
 
 def rotated(vectors: FloatArray, angle: FloatArray) -> FloatArray:

@@ -112,8 +112,7 @@ class EECA(RunningStepper):
         sides = None if past is None or (loop := self.event_loop) is None else sides_of(past, loop)
         world.load(again=world is past)
         self._method = self.closure.prepare(world)
-        patches, self._patches = self._patches, False
-        if patches and world.joints is None and isinstance(self._method, EventLoop):
+        if self._patches and world.joints is None and isinstance(self._method, EventLoop):
             self._method.keep_fresh()
         if sides is not None and isinstance(self._method, EventLoop):
             sides.recall(world, self._method)

@@ -56,7 +56,7 @@ class HookedStepper(PackedSpace):
             BUSY.discard(self.space)
         if rehearsal is not None:
             self._sync.note()
-            rehearsal.finish()
+            rehearsal.finish(world.movers)
         elif self.sync or (world.joints is not None and world.joints.calling):
             self._sync.call_back()
         return report

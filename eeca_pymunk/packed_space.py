@@ -36,6 +36,10 @@ class PackedSpace(Stepper):
     Attributes:
         reads: number of readings of the whole space: one at the start, and one after each change that rows cannot be
             patched for.
+        patches: number of changes that were put into the rows of the last reading: of numbers of shapes and bodies, or
+            in which constraints came or went.
+        objects_read: number of bodies, shapes and constraints whose values these have read from pymunk; all others
+            were known.
     """
 
     def __init__(self, space: pymunk.Space, *, sync: bool = True, ignore: Sequence[str] = ()) -> None:
@@ -48,7 +52,7 @@ class PackedSpace(Stepper):
         self._sync: Sync
         self._sleep: Sleep | None = None  # None if bodies cannot sleep
         self._idle_book: FloatArray | None = None  # ledger entries of a step in which all dynamic bodies sleep
-        self.reads = 0
+        self.reads = self.patches = self.objects_read = 0
         self._look()
 
     def __getstate__(self) -> dict[str, object]:
@@ -102,12 +106,12 @@ class PackedSpace(Stepper):
                 self._sleep = Sleep(world, None)
             if world.joints is not joints:
                 self.prepare(world, world)
-            self._world = world
-            return world
+                self.patches += 1
+            return self._looked_at(world)
         if world is not None and same and self._sleep is None and self.space.sleep_time_threshold == math.inf:
             if self.patch(world):
-                self._world = world
-                return world
+                self.patches += 1
+                return self._looked_at(world)
         past = world
         if self._sleep is not None:
             self._sleep.part()
@@ -122,6 +126,11 @@ class PackedSpace(Stepper):
         self.prepare(world, past)
         if self._sleep is not None and (book := self.book()) is not None:
             self._idle_book = np.zeros_like(book)
+        return self._looked_at(world)
+
+    def _looked_at(self, world: World) -> World:
+        """Take a world that is current."""
+        self.objects_read, world.objects_read = self.objects_read + world.objects_read, 0
         self._world = world
         return world
 

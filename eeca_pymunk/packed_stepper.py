@@ -78,7 +78,7 @@ class PackedStepper(HookedStepper):
             if now.some and self.may_touch_sleepers(now):
                 now.wake(now.touched(report.contacts))  # by changes that functions have made
             if now.rest(dt) and now.world.current():
-                now.fall_asleep(report.contacts)
+                now.fall_asleep(report.contacts, dt)
         return report
 
     def may_touch_sleepers(self, sleep: Sleep) -> bool:

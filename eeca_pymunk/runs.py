@@ -45,7 +45,7 @@ class RunningStepper(PackedStepper):
     """
 
     rolling: Rolling | None = None
-    _patches = False  # whether the space is read again because of an edit in place
+    _patches = False  # whether shapes or bodies were ever edited in place
 
     def __getstate__(self) -> dict[str, object]:
         return {**super().__getstate__(), "rolling": None}
@@ -158,7 +158,7 @@ class RunningStepper(PackedStepper):
             return False
         if not world.collisions and len(loop.scene.RULE):
             loop.rule({})
-        loop.be_new(found.filters or found.moved, found.moved)
+        loop.be_new(found.reach or found.moved, found.moved)
         if sides is not None:
             sides.recall(world, loop)
         return True

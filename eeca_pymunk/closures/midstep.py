@@ -29,5 +29,5 @@ class Midstep:
         joint = None if world.joints is None else world.joints.joint
         return EventLoop(
             world.BODY, world.SHAPE, world.LINK, world.VERTEX, world.disks, 0, joint, world.PARTNER, together=True,
-            still=world.still,
+            still=world.still, memory=world.memory,
         )  # fmt: skip

@@ -31,5 +31,5 @@ class TimeOfImpact:
         joint = None if world.joints is None else world.joints.joint
         return EventLoop(
             world.BODY, world.SHAPE, world.LINK, world.VERTEX, world.disks, self.max_impacts, joint, world.PARTNER,
-            still=world.still,
+            still=world.still, memory=world.memory,
         )  # fmt: skip

@@ -22,6 +22,7 @@ else:
     _Row = np.void
 
 _ffi = _cffi_backend.FFI()
+_ADDRESS = _ffi.typeof("uintptr_t")
 KINDS: dict[str, np.dtype[Any]] = {}  # dtypes of all records by name
 _CODES: dict[Any, Any] = {float: np.float64, int: np.int64, FloatArray: np.float64, IntArray: np.int64}
 
@@ -142,7 +143,7 @@ def records(of: Rows[Any]) -> IntArray:
 def address_of(array: Any) -> int:
     """Memory address of an array, or of a record in one."""
     # numpy's `__array_interface__` describes all fields of records, in forty times the time.
-    return int(_ffi.cast("uintptr_t", _ffi.from_buffer(array)))
+    return int(_ffi.cast(_ADDRESS, _ffi.from_buffer(array)))
 
 
 def numbers(of: Record) -> AnyArray:

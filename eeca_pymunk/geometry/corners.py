@@ -13,9 +13,9 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
-from ..compiled.records import Rows, rows
+from ..compiled.records import Rows
 from ..model.parameters.detection import CORNER_MEET, SLENDER
-from ..model.shapes import Corner, Link, Side
+from ..model.shapes import Corner, Link
 
 _SIDES, _MANY = 64, 1 << 16  # pairs of every thin shape that moves, whose sides are remembered; of all, at most
 
@@ -25,49 +25,40 @@ def core_room(LINK: Rows[Link]) -> FloatArray:
     return np.zeros((2, max(2, int(LINK["vertices"].max(initial=2))), 4))
 
 
-def thin_memory(LINK: Rows[Link], VERTEX: FloatArray, moving: int) -> tuple[Rows[Side], Rows[Corner]]:
-    """The tables SIDE and CORNER; without rows if no thin shapes may meet. moving: number of moving shapes, the first
-    ones."""
-    CORNER = rows(Corner, 4 * len(LINK))
-    few = find_corners(LINK, VERTEX, CORNER, moving)
-    if few == 0:
-        return rows(Side, 0), rows(Corner, 0)
-    slots = 64
-    while slots < max(4 * len(LINK), min(_SIDES * few, _MANY)):
-        slots *= 2
-    return rows(Side, slots), CORNER
+def side_rows(few: int, shapes: int) -> int:
+    """Rows of SIDE, a power of 2, for so many moving thin shapes among so many shapes; 0 if no thin shapes may meet."""
+    rows = 64 if few else 0
+    while few and rows < max(4 * shapes, min(_SIDES * few, _MANY)):
+        rows *= 2
+    return rows
 
 
-def corners_of(LINK: Rows[Link], VERTEX: FloatArray) -> Rows[Corner]:
-    """The table CORNER of all shapes."""
-    CORNER = rows(Corner, 4 * len(LINK))
-    find_corners(LINK, VERTEX, CORNER, len(LINK))
-    return CORNER
-
-
-@kernel
-def find_corners(LINK: Rows[Link], VERTEX: FloatArray, CORNER: Rows[Corner], moving: int) -> int:
-    """Fill in CORNER (4 k,), zeros: which shapes are thin, and, if any of those can meet, the corners of all segments,
-    at which segments of the same body meet.
-
-    Returns:
-        how many of the first `moving` shapes are thin; 0 if no thin shapes may meet.
-    """
+@nonallocating
+def moving_thin(LINK: Rows[Link], VERTEX: FloatArray, moving: int) -> int:
+    """How many of the first `moving` shapes, those that move, are thin; 0 if no thin shapes may meet."""
     few, many = 0, 0
     for s in range(LINK.shape[0]):
         if thin(LINK[s], VERTEX):
-            CORNER[4 * s].thin = 1
             few += 1 if s < moving else 0
             many += 1
-    if few == 0 or many < 2:
-        return 0
+    return few if many > 1 else 0
+
+
+@kernel
+def find_corners(LINK: Rows[Link], VERTEX: FloatArray, CORNER: Rows[Corner]) -> None:
+    """Fill in CORNER (4 k,): which shapes are thin, and the corners of all segments, at which segments of the same body
+    meet."""
+    for s in range(LINK.shape[0]):
+        for r in range(4):
+            row = CORNER[4 * s + r]
+            row.other, row.cosine, row.sine, row.thin = 0, 0.0, 0.0, 0
+        CORNER[4 * s].thin = 1 if thin(LINK[s], VERTEX) else 0
     for s in range(LINK.shape[0]):
         for j in range(LINK.shape[0] if LINK[s].vertices == 2 else 0):
             if j != s and LINK[j].vertices == 2 and LINK[s].owner == LINK[j].owner:
                 if may_meet(VERTEX, LINK[s].first, LINK[j].first):
                     note_meeting(LINK, VERTEX, CORNER, s, 0, j)
                     note_meeting(LINK, VERTEX, CORNER, s, 1, j)
-    return few
 
 
 @nonallocating

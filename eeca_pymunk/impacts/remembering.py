@@ -10,7 +10,7 @@ import numpy as np
 from ..arrays import AnyArray, FloatArray, IntArray
 from ..compiled import table_of
 from ..compiled.records import Rows, numbers, put
-from ..geometry.corners import corners_of
+from ..geometry.corners import find_corners
 from ..model.bodies import POSE, VELOCITY, Body
 from ..model.joints import OF_JOINTS, Joint, Joints
 from ..model.scene import Scene
@@ -129,7 +129,7 @@ class Remembering:
                 break
         self._scene.KEYS.fill(-1)
         if corners and len(scene.CORNER):
-            scene.CORNER[:] = corners_of(scene.LINK, scene.VERTEX)
+            find_corners(scene.LINK, scene.VERTEX, scene.CORNER)
         if self.listed:
             self._list_anew()
         elif lists and relist(self.table):

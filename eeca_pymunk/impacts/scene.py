@@ -8,38 +8,32 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..arrays import AnyArray, FloatArray, IntArray, side_by_side
+from ..arrays import AnyArray, FloatArray, IntArray
 from ..compiled.library import check
 from ..compiled.records import R, Rows, columns, put, rows
 from ..contacts.memory import forget
-from ..geometry.corners import core_room, thin_memory
 from ..islands.accounting import flag_again
 from ..joints.held import held_bodies
 from ..joints.workspace import make_joints
 from ..layout import NOW as READ
-from ..model.bodies import CHECK, Body, Member, Next, Rest
-from ..model.contacts import Force, Impulse, Pair, Pushed
-from ..model.joints import Joint
+from ..model.bodies import CHECK, Body
+from ..model.contacts import Force, Impulse
+from ..model.joints import Held, Joint
 from ..model.parameters.events import MANY_BODIES, STEP_LOOKS, STEP_LOOKS_BODY
-from ..model.parameters.impulses import AUGMENTATION
-from ..model.scene import scene_with
 from ..model.shapes import Link, Shape
 from ..model.step import Missed
-from ..pairs.setup import with_lists, with_more_room
+from ..pairs.setup import with_more_room
 from ..report import Details, of_events
 from ..transfer import FORCES
+from .laying import tie_components
 from .remembering import Remembering
 from .run import ROOM_FOR_IMPACTS, run
 from .run_buffers import RunBuffers
+from .scene_memory import ORDER, RULE_COLUMNS, SceneMemory
 from .step import ROOM_FOR_CONTACTS, ROOM_FOR_EVENTS, ROOM_FOR_LISTS, step
 
 if TYPE_CHECKING:
     import pymunk
-
-RULE_COLUMNS = 6
-_MISSED = 32  # rows of MISSED: those reported of a step
-_CONTACTS = 256  # rows of PUSHED at first, a power of 2
-_OF_A_BODY, _MANY = 32, 1 << 16  # rows for each body where contacts may persist, and all rows at most at first
 
 
 def _longer(table: Rows[R], used: int) -> Rows[R]:
@@ -65,71 +59,57 @@ class EventLoop(Remembering):
             joints cannot move. None for a scene without joints.
         together: whether all contacts of a step act together at its middle, instead of at their instants.
         still: (x,) 1 for rows of PARTNER that never move; None: all.
-        order: of the steps of components: 4, for those without dissipation, drives and contacts; or 2.
+        memory: of the scene before, which is lost; None: new.
     """
 
     def __init__(
         self, BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, disks: int, limit: int,
-        joint: Rows[Joint] | None = None, PARTNER: Rows[Body] | None = None, together: bool = False, order: int = 4,
-        still: IntArray | None = None,
+        joint: Rows[Joint] | None = None, PARTNER: Rows[Body] | None = None, together: bool = False,
+        still: IntArray | None = None, memory: SceneMemory | None = None,
     ) -> None:  # fmt: skip
-        n = len(BODY)
-        self.mobility: FloatArray = columns(BODY, "inv_mass", "inv_inertia").copy()
+        n, memory = len(BODY), memory or SceneMemory()
+        self.jointed, self.together = joint is not None, together
         self.joint, self.partner = rows(Joint, 0) if joint is None else joint, BODY[:0] if PARTNER is None else PARTNER
         self._still: IntArray = np.ones(len(self.partner), np.int64) if still is None else still
-        self._smooth: IntArray = np.ones(n, np.int64)
+        HELD = self._hold(BODY, SHAPE, LINK)
+        scene, self.table = memory.scene(BODY, SHAPE, LINK, VERTEX, HELD)
+        self.scene = scene
+        self._usual: FloatArray = scene.MARK["margin"].copy()
+        COUNT = scene.COUNT
+        COUNT.limit, COUNT.disks, COUNT.together = limit, disks, together
+        COUNT.budget = STEP_LOOKS + STEP_LOOKS_BODY * n * max(n, MANY_BODIES) // MANY_BODIES
+        if self.jointed:
+            self.plan()
+        else:
+            self._joints, self.ties = memory.unjointed(n)
+
+    def _hold(self, BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link]) -> Rows[Held]:
+        """The bodies that straight paths of joints hold, which lose their mobilities."""
+        if not self.jointed:
+            return rows(Held, 0)
+        self._mobility: FloatArray = columns(BODY, "inv_mass", "inv_inertia")
+        self._smooth: IntArray = np.ones(len(BODY), np.int64)
         self._smooth[LINK["owner"][SHAPE["friction"] > 0.0]] = 0
         HELD = held_bodies(BODY, self.joint, self.partner, self._still, self._smooth)
-        BODY["inv_mass"][HELD["body"]] = BODY["inv_inertia"][HELD["body"]] = 0.0
-        moving = int(np.count_nonzero(LINK["owner"] < n - 1))
-        STATE, MEMBER, RESTING, PULL, BEGAN, TIME, OF, PLACE, BLOCK = side_by_side(
-            ((n,), Next.TYPE), ((n,), Member.TYPE), ((n,), Rest.TYPE),
-            ((n, 3), np.float64), ((n, 3), np.float64), ((8 * n + 64,), np.float64), ((8 * n + 64,), np.int64),
-            ((n,), np.int64), ((n,), np.int64),
-        )  # fmt: skip
-        PLACE[:] = -1
-        STATE["shapes"] = np.bincount(LINK["owner"][:moving], minlength=n)
-        STATE["first_shape"] = np.cumsum(STATE["shapes"]) - STATE["shapes"]
-        STATE["island"] = -1
-        lossy = bool((SHAPE["elasticity"] < 1.0).any())
-        self.together, self._order = together, order
-        room = _CONTACTS
-        while lossy and room < min(_OF_A_BODY * n, _MANY):
-            room *= 2
-        SIDE, CORNER = thin_memory(LINK, VERTEX, moving)
-        scene = scene_with(
-            BODY=BODY, STATE=STATE, SHAPE=SHAPE, LINK=LINK, VERTEX=VERTEX, CORE=core_room(LINK), SIDE=SIDE,
-            CORNER=CORNER, RULE=np.zeros((0, RULE_COLUMNS)), HEAP_TIME=TIME, HEAP_BODY=OF,
-            LOG=rows(Impulse, 4 * n + 64), BEGAN=BEGAN, PLACE=PLACE, BLOCK=BLOCK, PULL=PULL, MEMBER=MEMBER,
-            RESTING=RESTING, PUSHED_BY=rows(Pair, room), PUSHED=rows(Pushed, room),
-            KEYS=np.full(4 * room, -1, np.int64), FORCES=rows(Force, 4 * room), HELD=HELD,
-            MISSED=rows(Missed, _MISSED),
-        )  # fmt: skip
-        scene, self.table = with_lists(scene, moving)
-        self.scene = scene
-        self._usual: FloatArray = self.scene.MARK["margin"].copy()
-        self.scene.COUNT.limit, self.scene.COUNT.disks = limit, disks
-        self.scene.COUNT.lossy, self.scene.COUNT.together = lossy, together
-        self.scene.COUNT.budget = STEP_LOOKS + STEP_LOOKS_BODY * n * max(n, MANY_BODIES) // MANY_BODIES
-        self.scene.MEMBER["tied"] = self.scene.MEMBER["next_tied"] = -1
-        self.scene.RESTING["augmentation"] = AUGMENTATION
-        self.jointed = joint is not None
-        self.plan()
+        if len(HELD):
+            BODY["inv_mass"][HELD["body"]] = BODY["inv_inertia"][HELD["body"]] = 0.0
+        return HELD
+
+    @property
+    def mobility(self) -> FloatArray:
+        """(n, 2) 1/mass and 1/moment of bodies, also of those that joints hold."""
+        return self._mobility if self.jointed else columns(self.scene.BODY, "inv_mass", "inv_inertia")
 
     def plan(self) -> None:
         """Find the components again: after changes of joints' kinds, bodies, eccentric anchors, or of mobilities."""
-        self.joints = make_joints(self.scene.BODY, self.joint, self.partner, self._order)
-        ring = self.scene.MEMBER
-        ring["tied"] = ring["next_tied"] = -1
-        for s in range(self.joints.TALLY.components):
-            moved = np.flatnonzero(s == self.joints.OF)
-            ring["tied"][moved], ring["next_tied"][moved] = moved[0], np.roll(moved, -1)
+        self.joints = make_joints(self.scene.BODY, self.joint, self.partner, ORDER)
+        tie_components(self.scene.MEMBER, self.joints.OF)
 
     def holds_others(self) -> bool:
         """Whether straight paths of joints hold other bodies than those of HELD, after changes of joints or of their
         ends."""
         BODY = self.scene.BODY.copy()
-        put(BODY, self.mobility, "inv_mass", "inv_inertia")
+        put(BODY, self._mobility, "inv_mass", "inv_inertia")
         HELD = held_bodies(BODY, self.joint, self.partner, self._still, self._smooth)
         return HELD.tobytes() != self.scene.HELD.tobytes()
 

@@ -15,7 +15,6 @@ triangle inequality one that is bent anywhere stays longer than the distance, so
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
@@ -25,7 +24,7 @@ from ..compiled.records import Rows, rows
 from ..model.bodies import Body
 from ..model.joints import PIN, PIVOT, SLIDE, Held, Joint
 from ..model.parameters.joints import STRAIGHT_PATH
-from .plan import turning
+from .plan import together, turning
 
 FREE, WHOLLY, CENTRE = 0, 1, 2  # what of a body a straight path holds
 
@@ -156,6 +155,18 @@ def hold(HELD: Rows[Held], BODY: Rows[Body]) -> float:
     return lost
 
 
+@kernel
+def may_hold(joint: Rows[Joint], still: IntArray, n: int) -> bool:
+    """Whether two joints that may be straight end at bodies n + i with still[i] > 0."""
+    ends = 0
+    for j in range(len(joint)):
+        a, b = joint[j].body[0], joint[j].body[1]
+        fixed = (a >= n and still[a - n] > 0) or (b >= n and still[b - n] > 0)
+        if fixed and joint[j].soft == 0 and (joint[j].kind == PIN or joint[j].kind == PIVOT or joint[j].kind == SLIDE):
+            ends += 1
+    return ends >= 2
+
+
 def held_bodies(
     bodies: Rows[Body], joint: Rows[Joint], partner: Rows[Body], still: IntArray, smooth: IntArray
 ) -> Rows[Held]:  # fmt: skip
@@ -166,15 +177,13 @@ def held_bodies(
             move, of which `still` (x,) never move.  smooth: (n,) 1 for bodies that contacts do not turn.
     """
     n = len(bodies)
-    if len(joint) == 0:
+    if not may_hold(joint, still, n):
         return rows(Held, 0)
     fixed = np.concatenate((np.zeros(n, np.int64), still))
-    ends = fixed[joint["body"]].any(axis=1) & np.isin(joint["kind"], (PIN, PIVOT, SLIDE)) & (joint["soft"] == 0)
-    if np.count_nonzero(ends) < 2:
-        return rows(Held, 0)
     kind = np.zeros(len(fixed), np.int64)
-    everyone: Any = np.concatenate((bodies, partner))
-    find_held(everyone, joint, fixed, np.concatenate((smooth, 0 * still)), kind)
+    find_held(together(bodies, partner), joint, fixed, np.concatenate((smooth, 0 * still)), kind)
+    if not kind.any():
+        return rows(Held, 0)
     at = np.flatnonzero(kind)
     HELD, one = rows(Held, len(at)), bodies[at]
     HELD["body"], HELD["kind"] = at, kind[at]

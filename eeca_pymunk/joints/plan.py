@@ -13,7 +13,7 @@ import numpy as np
 
 from ..arrays import IntArray
 from ..compiled import kernel
-from ..compiled.records import Rows
+from ..compiled.records import Rows, as_integers
 from ..model.bodies import Body
 from ..model.joints import GEAR, GROOVE, MOTOR, Component, ComponentBody, Coupling, Joint
 from ..model.parameters.joints import BOXES_DIRECT, CONDENSE_BAND
@@ -102,9 +102,11 @@ def turning(bodies: Rows[Body], joint: Rows[Joint], joints: int, turns: IntArray
 @kernel
 def make_plan(
     bodies: Rows[Body], joint: Rows[Joint], component: Rows[Component], member: Rows[ComponentBody],
-    link: Rows[Coupling],
+    link: Rows[Coupling], OF: IntArray,
 ) -> int:  # fmt: skip
-    """Fill in `component` (joints,), `member` (2 joints,), `link` (joints,); how many components there are."""
+    """Fill in `component` (joints,), `member` (2 joints,), `link` (joints,), and OF (n,), the component of each body
+    that joints may move, -1 for none; how many components there are."""
+    OF[:] = -1
     joints = len(joint)
     parent, island = np.empty(len(bodies), np.int64), np.empty(joints, np.int64)
     count = find_islands(bodies, joint, parent, island, joints)
@@ -142,6 +144,7 @@ def make_plan(
                     member[used].freedoms = freedoms if moved(bodies, body) else 0
                     if moved(bodies, body):
                         free += 1
+                        OF[body] = s
                     used += 1
                 link[k].body[end] = place[body] - component[s].first_body
         component[s].end_body = used
@@ -211,17 +214,32 @@ class Room(NamedTuple):
     scratch: int
 
 
-def room_for(component: Rows[Component]) -> Room:
-    """Room for the largest components."""
-    whole = component["unknowns"] * (3 * component["band"] + 1)
-    n = component["boxes"]
-    boxes = (n > 0) * (n + 1) * (component["unknowns"] + component["impulses"] + 2 * n + BOX_ROOM)
-    dual = component["dual_size"] * (2 * component["dual_band"] + 1)
-    return Room(
-        int((component["end_body"] - component["first_body"]).max(initial=1)),
-        int((component["end_joint"] - component["first_joint"]).max(initial=1)),
-        int(np.maximum(component["unknowns"], component["dual_size"]).max(initial=1)),
-        int(np.where(component["rigid"] > 0, np.maximum(whole, dual), whole).max(initial=1)),
-        int(2 * (component["unknowns"] + component["impulses"]).max(initial=1)),
-        int((STRIDE * component["dual_size"] + boxes).max(initial=1)),
-    )
+def together(bodies: Rows[Body], partner: Rows[Body]) -> Rows[Body]:
+    """(n + x,) a copy of the rows of bodies (n,) and of partners (x,)."""
+    # As integers, since numpy copies records field by field.
+    copied = np.concatenate((as_integers(bodies), as_integers(partner)))
+    return copied.view(Body.TYPE)  # type: ignore[return-value]
+
+
+@kernel
+def measure_plan(component: Rows[Component], ROOM: IntArray, count: int) -> None:
+    """Write a `Room` for the largest of `count` components to ROOM (6,)."""
+    ROOM[:] = 1
+    for s in range(count):
+        C = component[s]
+        whole, dual = C.unknowns * (3 * C.band + 1), C.dual_size * (2 * C.dual_band + 1)
+        boxes = (C.boxes + 1) * (C.unknowns + C.impulses + 2 * C.boxes + BOX_ROOM) if C.boxes > 0 else 0
+        ROOM[0] = max(ROOM[0], C.end_body - C.first_body)
+        ROOM[1] = max(ROOM[1], C.end_joint - C.first_joint)
+        ROOM[2] = max(ROOM[2], C.unknowns, C.dual_size)
+        ROOM[3] = max(ROOM[3], whole, dual if C.rigid > 0 else 0)
+        ROOM[4] = max(ROOM[4], 2 * (C.unknowns + C.impulses))
+        ROOM[5] = max(ROOM[5], STRIDE * C.dual_size + boxes)
+    ROOM[4] = max(ROOM[4], 2)
+
+
+def room_for(component: Rows[Component], count: int) -> Room:
+    """Room for the largest of the first `count` components."""
+    ROOM = np.ones(6, np.int64)
+    measure_plan(component, ROOM, count)
+    return Room(*ROOM.tolist())

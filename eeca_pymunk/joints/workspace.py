@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
+from ..arrays import side_by_side
 from ..compiled import inlined
-from ..compiled.records import Rows, row, rows
+from ..compiled.records import Rows, rows
 from ..model.bodies import Body
 from ..model.joints import (
     BodyStep,
@@ -22,7 +21,7 @@ from ..model.joints import (
     Tally,
     Workspace,
 )
-from .plan import make_plan, room_for
+from .plan import Room, make_plan, room_for, together
 
 
 @inlined
@@ -32,7 +31,7 @@ def workspace(J: Joints, s: int) -> Workspace:
     return Workspace(J, s, J.LINK[C.first_joint : C.end_joint], C.end_joint - C.first_joint, C.end_body - C.first_body)
 
 
-_NO_ROOM = room_for(rows(Component, 0))
+_NO_ROOM = Room(1, 1, 1, 1, 2, 1)
 
 
 def make_joints(bodies: Rows[Body], joint: Rows[Joint], partner: Rows[Body], order: int) -> Joints:
@@ -43,19 +42,23 @@ def make_joints(bodies: Rows[Body], joint: Rows[Joint], partner: Rows[Body], ord
         order: 4 where nothing in a component dissipates, drives, or touches something; or 2.
     """
     count = len(joint)
-    component, member, link = rows(Component, count), rows(ComponentBody, 2 * count), rows(Coupling, count)
-    tally, of, room = row(Tally), np.full(len(bodies), -1, np.int64), _NO_ROOM
-    tally.order = order
+    component, member, link = rows(Component, 0), rows(ComponentBody, 0), rows(Coupling, 0)
+    of, room, components = np.full(len(bodies), -1, np.int64), _NO_ROOM, 0
     if count > 0:
-        everyone: Any = np.concatenate((bodies, partner))
-        tally.components = make_plan(everyone, joint, component, member, link)
-        room = room_for(component[: tally.components])
-    for s in range(tally.components):
-        mine = member[component[s].first_body : component[s].end_body]
-        of[mine["body"][mine["freedoms"] > 0]] = s
-    return Joints(
-        joint, partner, component, member, link, rows(JointStep, room.joints), rows(BodyStep, room.bodies),
-        np.zeros(room.matrix), np.zeros(room.right), np.zeros(room.scratch), np.zeros((6, 6)), row(Progress),
-        row(JointLedger), np.zeros(room.rows, np.int64), of, rows(Joint, count),
-        rows(JointLedger, max(tally.components, 1)), tally,
+        component, member, link = side_by_side(
+            ((count,), Component.TYPE), ((2 * count,), ComponentBody.TYPE), ((count,), Coupling.TYPE)
+        )
+        components = make_plan(together(bodies, partner), joint, component, member, link, of)
+        room = room_for(component, components)
+    hinge, local, matrix, right, more, stiff, progress, part, pivots, kept, stepped, tally = side_by_side(
+        ((room.joints,), JointStep.TYPE), ((room.bodies,), BodyStep.TYPE), ((room.matrix,), np.float64),
+        ((room.right,), np.float64), ((room.scratch,), np.float64), ((6, 6), np.float64), ((1,), Progress.TYPE),
+        ((1,), JointLedger.TYPE), ((room.rows,), np.int64), ((count,), Joint.TYPE),
+        ((max(components, 1),), JointLedger.TYPE), ((1,), Tally.TYPE),
     )  # fmt: skip
+    joints = Joints(
+        joint, partner, component, member, link, hinge, local, matrix, right, more, stiff, progress[0], part[0],
+        pivots, of, kept, stepped, tally[0],
+    )  # fmt: skip
+    joints.TALLY.order, joints.TALLY.components = order, components
+    return joints

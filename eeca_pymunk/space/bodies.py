@@ -93,6 +93,7 @@ class Bodies:
 
     Attributes:
         fixed: whether any may sleep.  items: the pymunk bodies, by row.  ids: (N,) pymunk's numbers of them.
+        fresh: number of bodies whose values were read anew.
         start: (N, 9) their state when they were read.
         mass, moment: (N,) mass and M L²; infinite for static and kinematic bodies.
         inverse_mass: (N,) 1/mass, 0 for static and kinematic bodies.
@@ -107,19 +108,24 @@ class Bodies:
         self._buffer = batch.Buffer()
         ground = space.static_body  # exists in the space from its first access on
         self.ids, self.start = self._read()
-        ids = self.ids.tolist()
-        known = {} if before is None else before._known
-        if before is None or any(i not in known for i in ids):
+        known: dict[int, tuple[pymunk.Body, bytes]] = {}
+        if before is not None:
+            known = dict(zip(before.ids.tolist(), zip(before.items, before._told, strict=True), strict=True))
+            old = before.row if stale else {}
+            for row in [old[body] for body in stale if body in old]:
+                del known[int(before.ids[row])]
+        ids: list[int] = self.ids.tolist()
+        missing = [i for i in ids if i not in known]
+        self.fresh = len(missing)
+        if missing:
             old = {} if before is None else before.row
-            known = {**known, **{b.id: b for b in (*space.bodies, ground) if b not in old}}
-        self.items: tuple[pymunk.Body, ...] = tuple([known[i] for i in ids])
-        self._known: dict[int, pymunk.Body] = dict(zip(ids, self.items, strict=True))
-        self.row: dict[pymunk.Body, int] = {body: i for i, body in enumerate(self.items)}
-        said = {} if before is None else before._said
-        self._said: dict[pymunk.Body, bytes] = {
-            b: told if b not in stale and (told := said.get(b)) else _told(b) for b in self.items
-        }
-        self.GIVEN: Rows[GivenBody] = from_bytes(GivenBody, list(self._said.values()))
+            new = {b.id: b for b in (*space.bodies, ground) if b not in old or b in stale}
+            known.update((i, (new[i], _told(new[i]))) for i in missing)
+        found = [known[i] for i in ids]
+        self.items: tuple[pymunk.Body, ...] = tuple([body for body, _ in found])
+        self.row: dict[pymunk.Body, int] = dict(zip(self.items, range(len(ids)), strict=True))
+        self._told: list[bytes] = [told for _, told in found]
+        self.GIVEN: Rows[GivenBody] = from_bytes(GivenBody, self._told)
         kind: IntArray = self.GIVEN["kind"]
         self.mass: FloatArray = self.GIVEN["mass"]
         self.moment: FloatArray = self.GIVEN["moment"]
@@ -149,13 +155,13 @@ class Bodies:
 
     def changed(self, row: int) -> tuple[bool, bool]:
         """Whether values of a body have changed, and whether others than mass and moment have."""
-        new, old = _told(self.items[row]), self._said[self.items[row]]
+        new, old = _told(self.items[row]), self._told[row]
         return new != old, new[:_FROM] != old[:_FROM] or new[_TO:] != old[_TO:]
 
     def weigh(self, rows: Sequence[int]) -> None:
         """Read masses and moments of these rows again; ValueError, and nothing changed, if they are invalid."""
         for i, told in [(i, _told(self.items[i])) for i in rows]:
-            self._said[self.items[i]] = told
+            self._told[i] = told
             masses = _MASSES.unpack_from(told, _FROM)
             self.mass[i], self.moment[i], self.inverse_mass[i], self.inverse_moment[i] = masses
 
@@ -163,17 +169,6 @@ class Bodies:
     def kinematic(self) -> bool:
         """Whether any body is."""
         return not (self.dynamic | self.static).all()
-
-    @cached_property
-    def shapes(self) -> dict[pymunk.Body, int]:
-        """The bodies that are not static and have shapes, with the number of shapes."""
-        still = self.static.tolist()
-        return {b: n for b, s in zip(self.items, still, strict=True) if not s and (n := len(b.shapes))}
-
-    @cached_property
-    def moving(self) -> list[Any]:
-        """Pointers to the Chipmunk bodies of `shapes`."""
-        return private.pointers(self.shapes)
 
     def __len__(self) -> int:
         return len(self.items)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -10,14 +11,15 @@ import pymunk
 
 from ..arrays import FloatArray
 from ..compiled.records import Rows, records, rows
-from ..model.joints import EDITED, MOTOR, RATCHET, ROTARY_SPRING, SPRING, Joint
+from ..model.joints import EDITED, Joint
 from . import private
 from .constraint_impulses import Impulses
-from .constraints import Given, read
+from .constraints import read
 from .edits import Edits, show_impulses, showings, shown
+from .listing import Listing, says
 from .partners import Partners
 from .pushing import Pushing
-from .spring_functions import Motion, Rate, law, own_function, put_law
+from .spring_functions import Motion, Rate, law, put_law
 
 _ROUND_OFF = 1e-12  # of the length of a pin
 
@@ -27,7 +29,7 @@ class JointRows:
 
     Attributes:
         items: the constraints, in the order of the rows.  joint: (j,).
-        row: the row of each constraint.
+        row: the row of each constraint.  fresh: number of constraints that `past` has not.
         functions: rows of springs that have a force or torque function of the program.  own: these springs.
         before, after, calling: constraints with a `pre_solve`, with a `post_solve`, with either.
         partners: bodies of joints that have no row of their own; theirs are n + row of PARTNER.
@@ -45,63 +47,56 @@ class JointRows:
         self.space, self._n = space, n
         self._impulses: Impulses | None = None
         self._showings = -1
-        self.items = list(space.constraints)
-        self.joint: Rows[Joint] = rows(Joint, len(self.items))
-        self._memory = self.joint.view(np.uint8).data
         if past is not None:
             past.refresh()
-        known = {} if past is None else past.row
-        self._pairs: dict[pymunk.Constraint, tuple[pymunk.Body, pymunk.Body]] = {} if past is None else past._pairs
-        self._pairs = {item: self._pairs.get(item) or (item.a, item.b) for item in self.items}
-        bodies = dict.fromkeys([body for pair in self._pairs.values() for body in pair])
-        others = [body for body in bodies if body not in row]
+        self._list: Listing = Listing(space, None if past is None else past._list)
+        listed = self._list
+        self.fresh = len(listed.fresh)
+        self.items, self.row = listed.items, listed.row
+        self.joint: Rows[Joint] = rows(Joint, len(self.items))
+        self._memory = self.joint.view(np.uint8).data
+        others = [body for body in listed.bodies if body not in row]
         self.partners: Partners = Partners(tuple(others), space, None if past is None else past.partners)
-        self._row_of = {**row, **{body: n + i for i, body in enumerate(self.partners.items)}}
-        self._far = {body for body in self.partners.items if body.body_type == pymunk.Body.DYNAMIC}
-        asleep = {body for body in self._far if body.space is space}
-        self._sleeping = {item for item, pair in self._pairs.items() if asleep and not asleep.isdisjoint(pair)}
+        self._row_of = {**row, **{body: n + i for i, body in enumerate(others)}}
         if past is not None:
-            here = [j for j, item in enumerate(self.items) if item in known]
-            records(self.joint)[here] = records(past.joint)[[known[self.items[j]] for j in here]]
-        of = [(self._row_of[a], self._row_of[b]) for a, b in self._pairs.values()]
-        self.joint["body"] = of
-        self._at: dict[int, list[int]] = {}  # joints of each body
-        for j, pair in enumerate(of):
-            for at in pair:
-                self._at.setdefault(at, []).append(j)
-        old = {} if past is None else dict(zip(past.items, zip(past._given, past._said, strict=True), strict=True))
-        self._given: list[Given] = []
-        self._said: list[_Said] = []
-        for j, item in enumerate(self.items):
-            if item in old:
-                given, said = old[item]
-            else:
-                given, said = read(item), _says(item)
-                given.put(self._memory, j, *of[j])
-            self._given.append(given)
-            self._said.append(said)
-        self.touch(n + i for i in self.partners.changed)
-        self.row: dict[pymunk.Constraint, int] = {item: j for j, item in enumerate(self.items)}
+            here = [j for j, item in enumerate(self.items) if item in past.row]
+            records(self.joint)[here] = records(past.joint)[[past.row[self.items[j]] for j in here]]
+        self.joint["body"] = np.array([self._row_of[body] for body in listed.bodies], np.int64)[listed.ends]
+        for j in listed.fresh:
+            listed.given[j].put(self._memory, j, *self.joint["body"][j].tolist())
+        if self.partners.changed:
+            self.touch(n + i for i in self.partners.changed)
         self._edits = Edits(self.row)
-        self._ratchets = [j for j, given in enumerate(self._given) if given.kind == RATCHET]
         self._timestamp = private.timestamp(space)
         self.rates: dict[pymunk.Constraint, Rate] = {} if past is None else past.rates
         self.replan, self.ends_moved = True, False
         self._find_functions()
 
+    def _find_functions(self) -> None:
+        """Take what depends on kinds and functions. Constraints of bodies that batch calls do not reach always exert
+        forces in a rest step, too."""
+        listed = self._list
+        self.functions, self.own = listed.functions, listed.own
+        self.before, self.after, self.calling = listed.before, listed.after, listed.calling
+        far = {body: body.body_type == pymunk.Body.DYNAMIC for body in self.partners.items}
+        asleep = {body: dynamic and body.space is self.space for body, dynamic in far.items()}
+        always = sorted({*listed.pushing, *listed.with_body(far)})
+        sleeping = {self.items[j] for j in listed.with_body(asleep)}
+        self.pushing = Pushing(self.items, self.joint, [self.items[j] for j in always], sleeping)
+        self.parted: frozenset[tuple[pymunk.Body, pymunk.Body]] | None = None
+
     def is_of(self, space: pymunk.Space) -> bool:
         """Whether the space has these constraints now."""
         return self.items == list(space.constraints)
 
-    def _find_functions(self) -> None:
-        self.functions = [j for j, said in enumerate(self._said) if said[0]]
-        self.own = [self.items[j] for j in self.functions]
-        self.before = [item for item, said in zip(self.items, self._said, strict=True) if said[1] is not None]
-        self.after = [item for item, said in zip(self.items, self._said, strict=True) if said[2] is not None]
-        self.calling = list(dict.fromkeys((*self.before, *self.after)))
-        always = [item for j, item in enumerate(self.items) if self._pushes(j)]
-        self.pushing = Pushing(self.items, self.joint, always, self._sleeping)
-        self.parted: frozenset[tuple[pymunk.Body, pymunk.Body]] | None = None
+    @cached_property
+    def _at(self) -> dict[int, list[int]]:
+        """The joints of each body (row)."""
+        at: dict[int, list[int]] = {}
+        for j, pair in enumerate(self.joint["body"].tolist()):
+            for row in pair:
+                at.setdefault(row, []).append(j)
+        return at
 
     def refresh(self) -> bool:
         """Read edited constraints again; returns whether a new plan of components is needed."""
@@ -113,32 +108,25 @@ class JointRows:
         except ValueError:
             self._edits.add(edited)
             raise
-        others = False
+        listed, others = self._list, False
         for j, given in found.items():
-            item, before = self.items[j], self._given[j]
-            given.put(self._memory, j, *(self._row_of[body] for body in self._pairs[item]))
-            self._given[j] = given
+            item, before = self.items[j], listed.given[j]
+            given.put(self._memory, j, *(self._row_of[body] for body in listed.pairs[item]))
+            listed.given[j] = given
             self.ends_moved |= before.reach != given.reach
             if before.plan != given.plan:
                 self.replan = others = True
-            said = _says(item)
-            others |= said != self._said[j]
-            self._said[j] = said
+            said = says(item)
+            others |= said != listed.said[j]
+            listed.said[j] = said
         if others:
+            listed.find_functions()
             self._find_functions()
         return self.replan
 
     def laws(self) -> list[Callable[[Any, float], float]]:
         """The linear laws of the springs with functions in the last step."""
         return [law(self.items[j], self.joint[j]) for j in self.functions]
-
-    def _pushes(self, j: int) -> bool:
-        """Whether a constraint always exerts forces in a rest step: springs, motors, and those of bodies that the batch
-        calls do not reach."""
-        given = self._given[j]
-        if given.soft or given.kind in (SPRING, ROTARY_SPRING, MOTOR):
-            return True
-        return bool(self._far) and not self._far.isdisjoint(self._pairs[self.items[j]])
 
     def measured(self) -> list[int]:
         """Rows of the pins whose length is the distance of their anchors: after loading a pickle of pymunk, which lacks
@@ -202,7 +190,7 @@ class JointRows:
     def part(self) -> frozenset[tuple[pymunk.Body, pymunk.Body]]:
         """`parted`, found again if necessary."""
         if self.parted is None:
-            pairs = zip(self._pairs.values(), self._said, strict=True)
+            pairs = zip(self._list.pairs.values(), self._list.said, strict=True)
             self.parted = frozenset(pair for pair, said in pairs if not said[3])
         return self.parted
 
@@ -219,7 +207,7 @@ class JointRows:
             self._impulses = told = Impulses(self.space, self.joint)
             self._showings, self._reading = -1, told.read
         told.ours = self._timestamp()
-        for j in self._ratchets:
+        for j in self._list.ratchets:
             item = self.items[j]
             if item.angle != self.joint[j].notch:
                 item.angle = float(self.joint[j].notch)
@@ -228,11 +216,3 @@ class JointRows:
             if shown(self.items[0]) is not self._reading:
                 show_impulses(self.items, self._reading)
             self._showings = showings()
-
-
-_Said = tuple[object, object, object, bool]
-
-
-def _says(item: pymunk.Constraint) -> _Said:
-    """The functions of a joint, and whether its bodies collide."""
-    return own_function(item), item.pre_solve, item.post_solve, bool(item.collide_bodies)

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import struct
+from array import array
 from collections.abc import Collection, Mapping
 from functools import cached_property
+from itertools import chain
 from math import isfinite
 from typing import Any, NamedTuple, TypeAlias
 
@@ -66,26 +68,38 @@ def read(shape: pymunk.Shape, ground: pymunk.Body | None = None) -> Record:
         outline = [tuple(taken(place((v[0], v[1])))) for v in outline]
         body = ground
     given = _GIVEN.pack(0, len(outline), *words, *numbers, 0)
-    points = struct.pack(f"{2 * len(outline)}d", *(c for v in outline for c in v))
+    points = array("d", chain.from_iterable(outline)).tobytes()
     return Record(body, outline, numbers, words, ground is not None, given, points)
 
 
-def records_of(space: pymunk.Space, bodies: Bodies, known: Records, stale: Collection[Any]) -> Records:
-    """The records of all shapes, None for sensors; `known` ones that are not `stale` are used again.
+def records_of(
+    space: pymunk.Space, bodies: Bodies, known: Records, stale: Collection[Any]
+) -> tuple[Records, int]:  # fmt: skip
+    """The records of all shapes, None for sensors, and how many shapes were read: `known` records of those that are not
+    `stale` are used again.
 
     A shape whose body was removed from the space becomes a static shape at its present place, where pymunk detects it.
     """
-    records: Records = {}
-    for shape in space.shapes:
-        before = known.get(shape) if shape not in stale else None
-        if before is not None and not before.outside and before.body in bodies.row:
-            records[shape] = before
-        elif shape.sensor:
-            records[shape] = None
-        else:
-            here = shape.body is None or shape.body in bodies.row
-            records[shape] = read(shape, None if here else space.static_body)
-    return records
+    shapes, row = space.shapes, bodies.row
+    records: Records = dict(zip(shapes, map(known.get, shapes), strict=True))
+    unknown = records.keys() - known.keys()
+    unknown.update(s for s, r in records.items() if r is not None and (r.outside or r.body not in row))
+    unknown.update(thing for thing in stale if thing in records)
+    for shape in shapes if unknown else ():
+        if shape in unknown:
+            here = shape.body is None or shape.body in row
+            records[shape] = None if shape.sensor else read(shape, None if here else space.static_body)
+    return records, len(unknown)
+
+
+def shape_counts(bodies: Bodies, owner: IntArray, records: Records) -> IntArray:
+    """(N,) the number of shapes of each body, 0 for static ones; `owner` (k,): rows of the bodies of the solid ones."""
+    count: IntArray = np.bincount(owner, minlength=len(bodies))
+    for shape in [shape for shape, record in records.items() if record is None]:
+        if shape.body is not None and shape.body in bodies.row:
+            count[bodies.row[shape.body]] += 1
+    count[bodies.static] = 0
+    return count
 
 
 class Packed:
@@ -103,8 +117,8 @@ class Packed:
     """
 
     def __init__(self, bodies: Bodies, state: FloatArray, records: Mapping[pymunk.Shape, Record | None]) -> None:
-        shapes = {shape: record for shape, record in records.items() if record is not None}
-        solid, known = tuple(shapes), list(shapes.values())
+        solid = [shape for shape, record in records.items() if record is not None]
+        known = [record for record in records.values() if record is not None]
         k, N = len(solid), len(bodies)
         self._told: tuple[dict[pymunk.Shape, int], IntArray, FloatArray] | None = None  # as it was before `_lay`
         self._shapes = from_bytes(GivenShape, [record.given for record in known])

@@ -2,7 +2,7 @@
 
 Rows are afterwards those that a new reading of the whole space would give, bit by bit: only edited objects are read
 again, and all rows are written again in place. This suffices for numbers and filters of shapes, masses and moments of
-bodies, and static bodies that were put elsewhere. All else (outlines, kinds and functions of bodies, sensors, joints,
+bodies, and static bodies that were put elsewhere. All else (vertices, kinds and functions of bodies, sensors, joints,
 what is added and removed) makes other rows, and is left to a new reading.
 """
 
@@ -23,10 +23,10 @@ if TYPE_CHECKING:
 
 
 class Patched(NamedTuple):
-    """Whether elasticities or filters have changed, and whether static bodies were moved."""
+    """Whether elasticities have changed, or filters or radii, and whether static bodies were moved."""
 
     elasticity: bool
-    filters: bool
+    reach: bool
     moved: bool
 
 
@@ -43,16 +43,16 @@ def patch(world: World) -> Patched | None:
     now, stale = clock(), edited_since(world.read_at)
     if stale is None or world.smooth or world.joints is not None or world.space.constraints:
         return None
-    elasticity, filters, bodies = False, False, world.bodies
+    elasticity, reach, bodies = False, False, world.bodies
     records: dict[pymunk.Shape, Record] = {}
     for shape in [thing for thing in stale if thing in world.records]:
         record = world.records[shape]
         if record is None or record.outside or shape.sensor:
             return None
         records[shape] = new = read(shape)
-        if (new.body, new.points, new.numbers[0]) != (record.body, record.points, record.numbers[0]):
+        if (new.body, new.points) != (record.body, record.points):
             return None
-        filters |= new.filter != record.filter
+        reach |= (new.filter, new.numbers[0]) != (record.filter, record.numbers[0])
         elasticity |= new.numbers[1] != record.numbers[1]
     weighed = []
     for i in [bodies.row[thing] for thing in stale if thing in bodies.row]:
@@ -74,7 +74,7 @@ def patch(world: World) -> Patched | None:
     world.records.update(records)
     if not world.packed.lay_again(bodies, world.state, world.records, records, moved):
         return None
-    world.read_at = now
+    world.read_at, world.objects_read = now, world.objects_read + len(records) + len(weighed)
     world.STATES[LEFT] = np.where(bodies.static[:, None], world.STATES[NOW], np.nan)
     world.EXTRA[:, PUSH_X : PUSH_TWIST + 1] = 0.0
-    return Patched(elasticity, filters, moved)
+    return Patched(elasticity, reach, moved)

@@ -11,7 +11,8 @@ from pymunk._chipmunk_cffi import lib
 
 OF_LIBRARY = (
     "cpShapeGetElasticity", "cpShapeGetFriction", "cpShapeGetSurfaceVelocity", "cpShapeGetFilter",
-    "cpSpaceReindexShapesForBody", "cpBodyUpdatePosition",
+    "cpSpaceReindexShapesForBody", "cpBodyUpdatePosition", "cpCircleShapeGetOffset", "cpSegmentShapeGetA",
+    "cpSegmentShapeGetB", "cpPolyShapeGetCount", "cpPolyShapeGetVert",
 )  # fmt: skip
 
 
@@ -26,6 +27,21 @@ def filter_of(shape: pymunk.Shape) -> tuple[int, int, int]:
     """Group, categories and mask of a shape."""
     found = lib.cpShapeGetFilter(shape._shape)
     return found.group, found.categories, found.mask
+
+
+def outline(shape: pymunk.Shape) -> list[tuple[float, ...]] | None:
+    """The vertices of a shape in body coordinates: of a circle its centre, of a segment two; None for other kinds."""
+    c: Any = shape._shape
+    if isinstance(shape, pymunk.Poly):
+        vertex = lib.cpPolyShapeGetVert
+        found = [vertex(c, i) for i in range(lib.cpPolyShapeGetCount(c))]
+    elif isinstance(shape, pymunk.Circle):
+        found = [lib.cpCircleShapeGetOffset(c)]
+    elif isinstance(shape, pymunk.Segment):
+        found = [lib.cpSegmentShapeGetA(c), lib.cpSegmentShapeGetB(c)]
+    else:
+        return None
+    return [(v.x, v.y) for v in found]
 
 
 def reindex(space: pymunk.Space, bodies: Iterable[Any]) -> None:

@@ -7,7 +7,7 @@ velocities) apply to the EECA step, which replaces the rehearsal.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from functools import cached_property
 from typing import Any
@@ -214,9 +214,9 @@ class Rehearsal:
         self._ignores = bool(rules.ignored)
         return rules
 
-    def finish(self) -> None:
-        """The end of pymunk's step: move shapes to their bodies; additions, removals, callbacks."""
-        private_shapes.reindex_anew(self.space, self.bodies.moving)
+    def finish(self, movers: Iterable[Any]) -> None:
+        """The end of pymunk's step: move shapes to their bodies, `movers`; additions, removals, callbacks."""
+        private_shapes.reindex_anew(self.space, movers)
         if private.waits(self.space):
             private.finish_step(self.space)
 

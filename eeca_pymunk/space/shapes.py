@@ -11,6 +11,7 @@ import pymunk
 from ..compiled.records import Rows
 from ..errors import UnsupportedFeature
 from ..model.shapes import Shape
+from . import private_shapes
 from .private_versions import processed
 
 _STRAIGHT = 1e-12  # of its coordinates: distance of a vertex from the line of its neighbours that is round-off
@@ -93,24 +94,21 @@ def _surface(arbiter: pymunk.Arbiter, own: tuple[float, float], ordered: bool) -
 def local_outline(shape: pymunk.Shape) -> list[tuple[float, ...]]:
     """Vertices in body coordinates, counter-clockwise: one of a circle (its centre), two of a segment, more of a
     polygon."""
-    if isinstance(shape, pymunk.Circle):
-        return [tuple(shape.offset)]
-    if isinstance(shape, pymunk.Segment):
-        return [tuple(shape.a), tuple(shape.b)]
-    if isinstance(shape, pymunk.Poly):
-        return corners([tuple(v) for v in shape.get_vertices()])
-    raise UnsupportedFeature(f"{shape}: only circles, segments and polygons are known")
+    outline = private_shapes.outline(shape)
+    if outline is None:
+        raise UnsupportedFeature(f"{shape}: only circles, segments and polygons are known")
+    return outline if len(outline) < 3 else corners(outline)
 
 
 def corners(outline: list[tuple[float, ...]]) -> list[tuple[float, ...]]:
     """A convex outline without vertices that are collinear with their neighbours, up to round-off: for two collinear
     edges round-off would decide to which of them a point belongs."""
-    limit = _STRAIGHT * max(abs(c) for v in outline for c in v)
+    limit = _STRAIGHT * max([abs(c) for v in outline for c in v])
     kept: list[tuple[float, ...]] = []
-    for i, (x, y) in enumerate(outline):
-        ax, ay = kept[-1] if kept else outline[-1]
-        bx, by = outline[(i + 1) % len(outline)]
+    (ax, ay), ahead = outline[-1], (*outline[1:], outline[0])
+    for (x, y), (bx, by) in zip(outline, ahead, strict=True):
         along = math.hypot(bx - ax, by - ay)
         if abs((bx - ax) * (y - ay) - (by - ay) * (x - ax)) > limit * along:
             kept.append((x, y))
+            ax, ay = x, y
     return kept if len(kept) > 2 else outline

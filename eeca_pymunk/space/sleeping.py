@@ -109,23 +109,40 @@ class Sleep:
     def meet(self, dt: float) -> bool:
         """Wake the sleeping bodies that a kinematic body may meet in the step; if functions are called, which cannot be
         repeated, those that any body may meet. Returns whether there was any."""
-        world, bodies, found = self.world, self.world.bodies, False
+        world, found = self.world, False
         if len(self._moves[world.plain]) == 0:
             return False
         world.gather()
-        pull = math.hypot(*world.gravity)
-        for i in self._near(dt, pull):
-            x, y, _, vx, vy, spin, fx, fy, _ = world.state[i].tolist()
-            if self._size[i] == 0.0 or (not bodies.dynamic[i] and vx == vy == spin == 0.0):
-                continue
-            force = math.hypot(fx, fy) * bodies.inverse_mass[i]
-            reach = self._size[i] + float(np.hypot(*bodies.center_of_gravity[i]))
-            reach += dt * (math.hypot(vx, vy) + dt * (pull + force))
-            if not math.isfinite(x + y + reach):
-                continue  # the step will say so
-            box = pymunk.BB(x - reach, y - reach, x + reach, y + reach)
-            found |= self._wake_within(box)
+        for i in self._near(dt, math.hypot(*world.gravity)):
+            if (box := self._reached(i, dt)) is not None:
+                found |= self._wake_within(box)
         return found
+
+    def _reached(self, i: int, dt: float) -> pymunk.BB | None:
+        """A box that has all shapes of a body within dt; None if it does not move."""
+        world, bodies = self.world, self.world.bodies
+        x, y, _, vx, vy, spin, fx, fy, _ = world.state[i].tolist()
+        if self._size[i] == 0.0 or (not bodies.dynamic[i] and vx == vy == spin == 0.0):
+            return None
+        pull = math.hypot(*world.gravity) + math.hypot(fx, fy) * bodies.inverse_mass[i]
+        reach = self._size[i] + float(np.hypot(*bodies.center_of_gravity[i]))
+        reach += dt * (math.hypot(vx, vy) + dt * pull)
+        # A step says so if this is not finite.
+        return pymunk.BB(x - reach, y - reach, x + reach, y + reach) if math.isfinite(x + y + reach) else None
+
+    def _left_alone(self, groups: list[list[pymunk.Body]], dt: float) -> list[list[pymunk.Body]]:
+        """Those of groups that would not be woken at once if they slept, see `meet`."""
+        row, moves = self.world.bodies.row, self._moves[self.world.plain].tolist()
+        if moves:
+            self.world.gather()
+        while True:
+            still = {row[body] for group in groups for body in group}
+            boxes = [box for i in moves if i not in still and (box := self._reached(i, dt)) is not None]
+            met = {shape.body for box in boxes for shape in self.space.bb_query(box, pymunk.ShapeFilter())}
+            alone = [group for group in groups if met.isdisjoint(group)]
+            if len(alone) == len(groups):
+                return groups
+            groups = alone
 
     def _near(self, dt: float, pull: float) -> list[int]:
         """Those of the movers (rows) that may come to the box of a shape asleep within dt, see
@@ -197,11 +214,12 @@ class Sleep:
         self._since += 1
         return self._wait == 0 and tired == 1
 
-    def fall_asleep(self, contacts: Contacts) -> None:
-        """Put groups to sleep all of whose bodies have been at rest for long enough."""
+    def fall_asleep(self, contacts: Contacts, dt: float) -> None:
+        """Put groups to sleep all of whose bodies have been at rest for long enough, unless something would wake them
+        in a step of length dt."""
         bodies = self.world.bodies
         self._wait = _AGAIN
-        islands = resting_groups(self.space, bodies, self._tired != 0, contacts)
+        islands = self._left_alone(resting_groups(self.space, bodies, self._tired != 0, contacts), dt)
         # Putting bodies to sleep reads the world again and loses contact forces, so small groups wait.
         falling = sum(map(len, islands))
         if falling * _SHARE < np.count_nonzero(bodies.dynamic) and self._since < _PATIENCE:

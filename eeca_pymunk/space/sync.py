@@ -98,8 +98,8 @@ class Sync:
         sleepers = [bodies.items[i] for i in bodies.asleep.nonzero()[0]]
         self._sleep, self._stop = private_sleep.asleep(sleepers), private_sleep.stop_woken(sleepers)
         self._called = len(bodies.velocity_hooks) + len(bodies.position_hooks) > 0
-        self._shapes = sum(bodies.shapes.values())
-        self._pointers = bodies.moving
+        self._shapes = int(world.shape_counts.sum())
+        self._world = world
         self._timestamp: Callable[[], int] = private.timestamp(self.space)
         self._renewed, self._dt, self._left = -1, 0.0, 0
         self._touched = self._stale = self._asked = False
@@ -134,7 +134,7 @@ class Sync:
         """Move the shapes to the poses of their bodies."""
         self._left -= 1
         self._stale = True
-        private_shapes.reindex(self.space, self._pointers)
+        private_shapes.reindex(self.space, self._world.movers)
 
     def renew(self) -> None:
         """Make arbiters by a rest step, if the last step was an EECA step that made none."""
@@ -166,7 +166,7 @@ class Sync:
         native = self._new or self._timestamp() != self._renewed
         self._new = False
         if native:
-            private_shapes.forget_corrections(self._pointers)
+            private_shapes.forget_corrections(self._world.movers)
         slept = self._asleep and self._sleep()
         rest_step(self.space, dt, joints, native, self._choice(joints) if self._asleep else None)
         if slept and not self._sleep():

@@ -12,6 +12,7 @@ import pymunk
 
 from ..arrays import IntArray
 from ..compiled.records import Rows, rows
+from ..impacts.scene_memory import SceneMemory
 from ..layout import BODY_ROW
 from ..model.bodies import Body
 from ..report import Details, nothing
@@ -23,7 +24,7 @@ from .crossing import Crossing
 from .hooks import Hooks
 from .joints import JointRows
 from .noticed import clock, edited_since, edits
-from .packing import Packed, Records, records_of
+from .packing import Packed, Records, records_of, shape_counts
 from .patching import Patched, patch
 from .rehearsal import Rehearsal
 from .shapes import Rules
@@ -57,6 +58,8 @@ class World(Crossing):
         joints: the constraints of the space, None if it has none.  PARTNER: bodies of joints that have no row of BODY.
         read_at: `noticed.clock` when shapes and bodies were read.
         patches: number of patches so far.  packed: the arrays of the rows, and the kernel that writes them.
+        objects_read: number of bodies, shapes and constraints read from pymunk for this world; others were known.
+        memory: of the event loop of this world.
         parted: pairs of rows of SHAPE that do not collide because of joints of their bodies.
     """
 
@@ -70,7 +73,10 @@ class World(Crossing):
         bodies = Bodies(space, fixed) if known is None else Bodies(space, fixed, known.bodies, stale or ())
         state = bodies.start
         bodies.check_finite(state)
-        self.records: Records = records_of(space, bodies, {} if known is None else known.records, stale or ())
+        self.records: Records
+        self.records, count = records_of(space, bodies, {} if known is None else known.records, stale or ())
+        self.objects_read = bodies.fresh + count
+        self.memory: SceneMemory = SceneMemory() if past is None else past.memory
         self.smooth = "friction" in ignore
         self.ignores = self.smooth and rough_pair([s for s, r in self.records.items() if r is not None]) is not None
         self.packed = packed = Packed(bodies, state, self.records)
@@ -117,6 +123,7 @@ class World(Crossing):
         elif anew or past is None or not past.is_of(self.space):
             rows = {b: r for b, r in zip(self.bodies.items, self.WALK[BODY_ROW].tolist(), strict=True) if r >= 0}
             self.joints = JointRows(self.space, rows, len(self.BODY), past)
+            self.objects_read += self.joints.fresh
 
     @cached_property
     def rehearsal(self) -> Rehearsal:
@@ -127,6 +134,16 @@ class World(Crossing):
     def places(self) -> dict[pymunk.Shape, int]:
         """The row of SHAPE of each solid shape."""
         return {shape: k for k, shape in enumerate(self.shapes)}
+
+    @cached_property
+    def shape_counts(self) -> IntArray:
+        """(N,) the number of shapes of each body, 0 for static ones."""
+        return shape_counts(self.bodies, self.owner, self.records)
+
+    @cached_property
+    def movers(self) -> list[Any]:
+        """Pointers to the Chipmunk bodies that are not static and have shapes."""
+        return private.pointers([self.bodies.items[i] for i in np.flatnonzero(self.shape_counts).tolist()])
 
     @cached_property
     def empty(self) -> Details:

@@ -91,7 +91,7 @@ EDITS: dict[str, Edit] = {
     ),
     "ball": ball,
 }
-PATCHED = ("friction", "elasticity", "surface", "filter", "mass", "moment", "static")
+PATCHED = ("friction", "elasticity", "surface", "filter", "mass", "moment", "static", "radius")
 
 
 def played(

@@ -1,0 +1,66 @@
+"""Kernels of a new scene: how much memory it needs, and what its arrays have before the first step."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
+from ..compiled import Table, kernel, nonallocating
+from ..compiled.records import Rows
+from ..geometry.corners import find_corners, moving_thin
+from ..model.bodies import Member
+from ..model.parameters.impulses import AUGMENTATION
+from ..model.scene import scene_of
+from ..model.shapes import Link, Shape
+
+MEASURES = 4
+
+
+@nonallocating
+def measure_scene(SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, SIZES: IntArray, ground: int) -> None:
+    """Write to SIZES (MEASURES,): how many shapes move, those of bodies before the row `ground`; the most vertices of a
+    shape, at least 2; how many thin shapes move, 0 if no thin shapes may meet; 1 if any elasticity is below 1."""
+    SIZES[0], SIZES[1], SIZES[3] = 0, 2, 0
+    for s in range(LINK.shape[0]):
+        SIZES[0] += 1 if LINK[s].owner < ground else 0
+        SIZES[1] = max(SIZES[1], LINK[s].vertices)
+        if SHAPE[s].elasticity < 1.0:
+            SIZES[3] = 1
+    SIZES[2] = moving_thin(LINK, VERTEX, SIZES[0])
+
+
+@kernel
+def lay_scene(table: Table) -> None:
+    """Write what the arrays of bodies and CORNER have in a new scene, and the number of moving shapes; all are 0."""
+    A = scene_of(table)
+    ground = A.BODY.shape[0] - 1
+    for i in range(A.BODY.shape[0]):
+        A.PLACE[i] = -1
+        A.STATE[i].island = -1
+        A.MEMBER[i].tied, A.MEMBER[i].next_tied = -1, -1
+        A.RESTING[i].augmentation = AUGMENTATION
+    for s in range(A.LINK.shape[0]):
+        if A.LINK[s].owner < ground:
+            A.STATE[A.LINK[s].owner].shapes += 1
+            A.GRID.moving += 1
+    first = 0
+    for i in range(A.BODY.shape[0]):
+        A.STATE[i].first_shape = first
+        first += A.STATE[i].shapes
+    if A.CORNER.shape[0] > 0:
+        find_corners(A.LINK, A.VERTEX, A.CORNER)
+
+
+@kernel
+def tie_components(MEMBER: Rows[Member], OF: IntArray) -> None:
+    """Make a ring of the bodies (n,) of each component: OF (n,) are their components, -1 for none."""
+    first, last = np.full(OF.shape[0], -1, np.int64), np.full(OF.shape[0], -1, np.int64)
+    for i in range(OF.shape[0]):
+        s = OF[i]
+        MEMBER[i].tied, MEMBER[i].next_tied = -1, -1
+        if s >= 0:
+            first[s] = i if first[s] < 0 else first[s]
+            MEMBER[i].tied, MEMBER[i].next_tied = first[s], first[s]
+            if last[s] >= 0:
+                MEMBER[last[s]].next_tied = i
+            last[s] = i

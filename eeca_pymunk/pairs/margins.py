@@ -1,0 +1,120 @@
+"""The first lists of a scene: margins, and the cell lengths of both grids.
+
+(2 + 2 m / r)² phi is the number of neighbours at the packing phi of shapes of radius r with margins m, if they are
+spread evenly; margins are halved where they are not. Small shapes among large ones do not get more than twice their own
+share, large ones no more than the median's.
+"""
+
+from __future__ import annotations
+
+import math
+
+from ..arrays import FloatArray
+from ..compiled import Table, nonallocating
+from ..model.parameters.detection import ALL_PAIRS, ALL_WALLS, MARGIN_HALVINGS, MOST_NEIGHBOURS
+from ..model.scene import Scene, scene_of
+from .grid import make_lists
+from .walls import box_wall, size_walls, wall_grid
+
+LEAST, MOST = 0.1, 20.0  # margins, in radii
+DONE = -1
+
+
+@nonallocating
+def begin_lists(table: Table, few: bool) -> int:
+    """Write the boxes of static shapes. If shapes are so `few` that each is in all lists, make these: DONE, or 0 if
+    the pool is full. Else the length of CSR, 0 if static shapes have no grid."""
+    A = scene_of(table)
+    for w in range(A.BOX.shape[0]):
+        box_wall(A, w)
+    if few:
+        for s in range(A.GRID.moving):
+            A.MARK[s].margin = math.inf
+        set_cell(A)
+        return DONE if make_lists(A, 0.0) else 0
+    if A.BOX.shape[0] <= ALL_WALLS:
+        return 0
+    entries = size_walls(A.BOX, A.GRID)
+    return int(A.GRID.columns * A.GRID.rows) + 1 + entries
+
+
+@nonallocating
+def fill_lists(table: Table, BOUND: FloatArray, neighbours: float, halved: int, listed: bool) -> int:
+    """Choose margins, and make all lists.
+
+    Args:
+        BOUND: (m,) bounding radii of the shapes that move, in ascending order.
+        neighbours: mean length of lists for which margins are chosen.
+        halved: how often margins have been halved.  listed: whether there are lists for the present ones.
+
+    Returns:
+        DONE; or, if the pool is full, how often margins have been halved: make the lists in a larger one, and call
+        again.
+    """
+    A = scene_of(table)
+    if halved == 0 and not listed:
+        if A.GRID.columns > 0:
+            wall_grid(A.BOX, A.GRID, A.CSR)
+        choose_margins(A, middle(BOUND), neighbours)
+    while True:
+        set_cell(A)
+        if not listed and not make_lists(A, 0.0):
+            return halved
+        listed, entries = False, 0
+        for s in range(A.GRID.moving):
+            entries += A.LIST[s].number
+        # Margins are a function of bounding radii that does not fall.
+        small, large = margin_at(A, BOUND, (A.GRID.moving - 1) // 2), margin_at(A, BOUND, A.GRID.moving // 2)
+        if entries <= MOST_NEIGHBOURS * A.GRID.moving or 0.5 * (small + large) <= LEAST * middle(BOUND):
+            return DONE
+        for s in range(A.GRID.moving):
+            A.MARK[s].margin *= 0.5
+        halved += 1
+        if halved == MARGIN_HALVINGS:
+            return DONE
+
+
+@nonallocating
+def middle(BOUND: FloatArray) -> float:
+    """The median of numbers in ascending order, 0 if there are none."""
+    m = BOUND.shape[0]
+    return 0.5 * float(BOUND[(m - 1) // 2] + BOUND[m // 2]) if m > 0 else 0.0
+
+
+@nonallocating
+def margin_at(A: Scene, BOUND: FloatArray, place: int) -> float:
+    """The margin of a shape with the bounding radius at this place of BOUND."""
+    for s in range(A.GRID.moving):
+        if A.SHAPE[s].bound == BOUND[place]:
+            return float(A.MARK[s].margin)
+    return math.inf
+
+
+@nonallocating
+def set_cell(A: Scene) -> None:
+    """Set the length of the cells of the smallest margin circles."""
+    least = 1e300
+    for s in range(A.GRID.moving):
+        least = min(least, A.SHAPE[s].bound + A.MARK[s].margin)
+    A.GRID.cell = 2.0 * least
+
+
+@nonallocating
+def choose_margins(A: Scene, median: float, neighbours: float) -> None:
+    """Set the margins of the shapes that move, whose bounding radii have this median, for so many neighbours."""
+    left, bottom, right, top, largest = math.inf, math.inf, -math.inf, -math.inf, 0.0
+    for s in range(A.GRID.moving):
+        body, bound = A.BODY[A.LINK[s].owner], A.SHAPE[s].bound
+        left, bottom = min(left, body.x - bound), min(bottom, body.y - bound)
+        right, top = max(right, body.x + bound), max(top, body.y + bound)
+        largest = max(largest, bound)
+    wide, tall, packing = max(right - left, 1e-300), max(top - bottom, 1e-300), 0.0
+    for s in range(A.GRID.moving):
+        packing += (A.SHAPE[s].bound / wide) * (A.SHAPE[s].bound / tall)
+    phi = max(math.pi * packing, 1e-6)
+    factor = min(max(math.sqrt(0.25 * neighbours / phi) - 1.0, LEAST), MOST)
+    factor = MOST if A.GRID.moving <= ALL_PAIRS else factor
+    # Points have a margin too; if all shapes are points, any length will do.
+    size = median if median > 0.0 else largest if largest > 0.0 else 1.0
+    for s in range(A.GRID.moving):
+        A.MARK[s].margin = factor * max(min(2.0 * A.SHAPE[s].bound, median), 1e-3 * size)

@@ -1,0 +1,69 @@
+"""Listing: the constraints of a space as read, whatever the rows of their bodies are."""
+
+from __future__ import annotations
+
+import numpy as np
+import pymunk
+
+from ..model.joints import MOTOR, RATCHET, ROTARY_SPRING, SPRING
+from .constraints import Given, read
+from .spring_functions import own_function
+
+_PUSHING = SPRING, ROTARY_SPRING, MOTOR
+Said = tuple[object, object, object, bool]
+
+
+def says(item: pymunk.Constraint) -> Said:
+    """The functions of a joint, and whether its bodies collide."""
+    return own_function(item), item.pre_solve, item.post_solve, bool(item.collide_bodies)
+
+
+class Listing:
+    """The constraints of a space; of those of an earlier list what has been read is used again.
+
+    Attributes:
+        items: the constraints, in the order of the rows.  row: the row of each.
+        pairs: the bodies of each.  bodies: all of these.  ends: (j, 2) places in `bodies`.
+        fresh: rows of the constraints that were not in the list before.
+        functions: rows of springs that have a force or torque function of the program.  own: these springs.
+        before, after, calling: constraints with a `pre_solve`, with a `post_solve`, with either.
+        ratchets: rows of these.  pushing: rows of those that always exert forces in a rest step of pymunk.
+    """
+
+    def __init__(self, space: pymunk.Space, past: Listing | None) -> None:
+        self.items: list[pymunk.Constraint] = list(space.constraints)
+        if past is not None and past.items == self.items:
+            self.__dict__.update(vars(past))
+            self.fresh: list[int] = []
+            return
+        known = {} if past is None else {item: (past.given[j], past.said[j]) for item, j in past.row.items()}
+        pairs = {} if past is None else past.pairs
+        self.pairs: dict[pymunk.Constraint, tuple[pymunk.Body, pymunk.Body]] = {
+            item: pairs.get(item) or (item.a, item.b) for item in self.items
+        }
+        places: dict[pymunk.Body, int] = {}
+        ends = [places.setdefault(body, len(places)) for pair in self.pairs.values() for body in pair]
+        self.bodies, self.ends = list(places), np.array(ends, np.int64).reshape(-1, 2)
+        self.row: dict[pymunk.Constraint, int] = {item: j for j, item in enumerate(self.items)}
+        self.fresh = [j for j, item in enumerate(self.items) if item not in known]
+        found = [known.get(item) or (read(item), says(item)) for item in self.items]
+        self.given: list[Given] = [given for given, _ in found]
+        self.said: list[Said] = [said for _, said in found]
+        self.find_functions()
+
+    def find_functions(self) -> None:
+        """Find what depends on kinds and functions."""
+        self.ratchets = [j for j, given in enumerate(self.given) if given.kind == RATCHET]
+        self.pushing = [j for j, given in enumerate(self.given) if given.soft or given.kind in _PUSHING]
+        self.functions = [j for j, said in enumerate(self.said) if said[0]]
+        self.own = [self.items[j] for j in self.functions]
+        self.before = [item for item, said in zip(self.items, self.said, strict=True) if said[1] is not None]
+        self.after = [item for item, said in zip(self.items, self.said, strict=True) if said[2] is not None]
+        self.calling = list(dict.fromkeys((*self.before, *self.after)))
+
+    def with_body(self, these: dict[pymunk.Body, bool]) -> list[int]:
+        """The rows of the constraints with one of the bodies that are so marked."""
+        if not any(these.values()):
+            return []
+        marked = np.array([these.get(body, False) for body in self.bodies])
+        return np.flatnonzero(marked[self.ends].any(axis=1)).tolist()
