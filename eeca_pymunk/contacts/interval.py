@@ -54,7 +54,7 @@ def recall(
 def speeds(
     V: FloatArray, ACC: FloatArray, EXTENT: FloatArray, IM: FloatArray, n: int, h: float, REACH: FloatArray
 ) -> tuple[float, float, float]:
-    """Root mean square and largest speed of points of the n bodies, and their largest acceleration |a|. Sets REACH
+    """Root mean square and largest speed of points of the n bodies, and their largest acceleration. Sets REACH
     (k,), a bound of how far points of bodies move in h.
 
     Speeds in a free island are relative to its centre of mass.
@@ -70,7 +70,7 @@ def speeds(
         y /= mass
     square, most, pull = 0.0, 0.0, 0.0
     for i in range(n):
-        pull = max(pull, math.sqrt(ACC[i, 0] ** 2 + ACC[i, 1] ** 2))
+        pull = max(pull, math.sqrt(ACC[i, 0] ** 2 + ACC[i, 1] ** 2) + abs(ACC[i, 2]) * EXTENT[i])
     for i in range(len(IM)):
         speed = math.sqrt((V[i, 0] - x) ** 2 + (V[i, 1] - y) ** 2) + abs(V[i, 2]) * EXTENT[i]
         REACH[i] = 1.1 * speed * h
