@@ -7,7 +7,8 @@ import math
 from ..compiled import nonallocating
 from ..islands.candidates import before_end
 from ..joints.ledger import clear_interval
-from ..model.joints import ELASTIC, Joints
+from ..model.joint_steps import ELASTIC
+from ..model.joints import Joints
 from ..model.parameters.intervals import INTERVAL_RETRY
 from ..model.scene import Scene
 from ..pairs.rules import barred

@@ -14,7 +14,8 @@ from ..joints.solve import solve
 from ..joints.start import look
 from ..joints.step import island_step
 from ..joints.workspace import workspace
-from ..model.joints import GEAR, POSES, SPEEDS, STEP, Joints, Workspace
+from ..model.joint_steps import POSES, SPEEDS, STEP
+from ..model.joints import GEAR, Joints, Workspace
 from ..model.parameters.joints import CORRECTION_JOINTS
 from ..model.scene import Scene
 from .gathered import gather_component

@@ -18,7 +18,8 @@ from ..islands.intervals import AGAIN, clear_places
 from ..islands.local import lay_out_island, open_contacts
 from ..islands.membership import lossy, members
 from ..model.islands import Island
-from ..model.joints import ELASTIC, Joints
+from ..model.joint_steps import ELASTIC
+from ..model.joints import Joints
 from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES, UNSOLVED_PART
 from ..model.parameters.joints import INTERVAL_SHARE
 from ..model.scene import Scene

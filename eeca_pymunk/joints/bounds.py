@@ -5,7 +5,8 @@ from __future__ import annotations
 from ..arrays import FloatArray
 from ..compiled import nonallocating
 from ..compiled.records import Rows
-from ..model.joints import GROOVE, RATCHET, ROTARY_LIMIT, SLIDE, Coupling, Joint, JointStep, Workspace
+from ..model.joint_steps import JointStep
+from ..model.joints import GROOVE, RATCHET, ROTARY_LIMIT, SLIDE, Coupling, Joint, Workspace
 from ..model.parameters.joints import JOINT_TOUCH
 from .entries import along
 

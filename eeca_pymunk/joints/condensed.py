@@ -12,7 +12,8 @@ from __future__ import annotations
 from ..arrays import FloatArray
 from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
-from ..model.joints import BodyStep, Coupling, JointStep, Workspace
+from ..model.joint_steps import BodyStep, JointStep
+from ..model.joints import Coupling, Workspace
 from ..model.parameters.joints import CONDENSED_BAND
 
 

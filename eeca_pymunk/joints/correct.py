@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from ..compiled import nonallocating
 from ..compiled.records import Rows
-from ..model.joints import BodyStep, Coupling, JointLedger, JointStep, Workspace
+from ..model.joint_steps import BodyStep, JointLedger, JointStep
+from ..model.joints import Coupling, Workspace
 from ..model.parameters.joints import JOINT_SPEED_LEFT, JOINT_SPEED_ROUND_OFF, JOINT_TOUCH
 from .bounds import approach, bounded, gap
 from .entries import held

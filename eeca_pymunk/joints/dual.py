@@ -10,7 +10,8 @@ from __future__ import annotations
 from ..arrays import FloatArray
 from ..compiled import inlined
 from ..compiled.records import Rows
-from ..model.joints import JointStep, Workspace
+from ..model.joint_steps import JointStep
+from ..model.joints import Workspace
 from ..model.parameters.joints import LEAST_INERTIA
 from .condensed import factor, substitute
 

@@ -10,7 +10,8 @@ land: they are held from where they are, g reaches its bound at the end of the p
 from __future__ import annotations
 
 from ..compiled import nonallocating
-from ..model.joints import LINEAR_STEP, SPEEDS, JointLedger, Workspace
+from ..model.joint_steps import LINEAR_STEP, SPEEDS, JointLedger
+from ..model.joints import Workspace
 from ..model.parameters.joints import (
     JOINT_TOUCH,
     LIMIT_EVENTS,

@@ -12,7 +12,7 @@ import math
 
 from ..compiled import nonallocating
 from ..compiled.records import Rows
-from ..model.joints import BodyStep
+from ..model.joint_steps import BodyStep
 from ..model.parameters.joints import LOCK_ITERATIONS
 
 

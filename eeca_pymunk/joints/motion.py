@@ -6,7 +6,8 @@ import numpy as np
 
 from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
-from ..model.joints import BodyStep, Coupling, Joint
+from ..model.joint_steps import BodyStep
+from ..model.joints import Coupling, Joint
 
 
 @nonallocating

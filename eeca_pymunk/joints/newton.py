@@ -16,7 +16,8 @@ a *dual* one the rows alone (`dual`).
 from __future__ import annotations
 
 from ..compiled import inlined
-from ..model.joints import BOUNDED, BOXED, CONDENSED, DUAL, LINEAR_STEP, NO_BEND, POSES, SPEEDS, STEP, WHOLE, Workspace
+from ..model.joint_steps import LINEAR_STEP, NO_BEND, POSES, SPEEDS, STEP
+from ..model.joints import BOUNDED, BOXED, CONDENSED, DUAL, WHOLE, Workspace
 from ..model.parameters.joints import STIFFEST
 from .boxes import leave_box
 from .condensed import freeze

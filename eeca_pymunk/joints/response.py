@@ -13,7 +13,8 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import nonallocating
 from ..compiled.records import Rows
-from ..model.joints import BOUNDED, BOXED, CONDENSED, DUAL, FULL_BEND, NO_BEND, STEP, Coupling, Workspace
+from ..model.joint_steps import FULL_BEND, NO_BEND, STEP
+from ..model.joints import BOUNDED, BOXED, CONDENSED, DUAL, Coupling, Workspace
 from ..model.parameters.joints import CONDENSED_PASSES, REDUNDANT_EPSILON, RESPONSE_PASSES, TAUT
 from .motion import move
 from .newton import assemble

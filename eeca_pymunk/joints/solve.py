@@ -11,19 +11,8 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
-from ..model.joints import (
-    BOUNDED,
-    CONDENSED,
-    DUAL,
-    LINEAR_STEP,
-    POSES,
-    SPEEDS,
-    STEP,
-    WHOLE,
-    Component,
-    Coupling,
-    Workspace,
-)
+from ..model.joint_steps import LINEAR_STEP, POSES, SPEEDS, STEP
+from ..model.joints import BOUNDED, CONDENSED, DUAL, WHOLE, Component, Coupling, Workspace
 from ..model.parameters.joints import (
     CLOSING_EPSILON,
     CLOSINGS,

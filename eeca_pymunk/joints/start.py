@@ -6,6 +6,7 @@ import numpy as np
 
 from ..compiled import nonallocating
 from ..compiled.records import Rows
+from ..model.joint_steps import POSES, BodyStep
 from ..model.joints import (
     APART,
     BOUNDED,
@@ -17,10 +18,8 @@ from ..model.joints import (
     LEFT_APART,
     MOTOR,
     PIN,
-    POSES,
     ROTARY_SPRING,
     SPRING,
-    BodyStep,
     Joint,
     Workspace,
 )

@@ -14,25 +14,8 @@ import numpy as np
 
 from ..compiled import nonallocating
 from ..compiled.records import Rows
-from ..model.joints import (
-    APART,
-    ELASTIC,
-    EXACT,
-    GIVES_WAY,
-    HALVED,
-    LEFT_APART,
-    LINEAR,
-    LINEAR_STEP,
-    POSES,
-    RATCHET,
-    ROTARY_SPRING,
-    SPEEDS,
-    SPRING,
-    STEP,
-    BodyStep,
-    JointLedger,
-    Workspace,
-)
+from ..model.joint_steps import ELASTIC, EXACT, HALVED, LINEAR, LINEAR_STEP, POSES, SPEEDS, STEP, BodyStep, JointLedger
+from ..model.joints import APART, GIVES_WAY, LEFT_APART, RATCHET, ROTARY_SPRING, SPRING, Workspace
 from ..model.parameters.joints import (
     COMPONENT_BUDGET,
     ELASTIC_PARTS,

@@ -9,19 +9,8 @@ import numpy as np
 from ..compiled import inlined
 from ..compiled.records import Rows, row, rows
 from ..model.bodies import Body
-from ..model.joints import (
-    BodyStep,
-    Component,
-    ComponentBody,
-    Coupling,
-    Joint,
-    JointLedger,
-    Joints,
-    JointStep,
-    Progress,
-    Tally,
-    Workspace,
-)
+from ..model.joint_steps import BodyStep, JointLedger, JointStep, Progress
+from ..model.joints import Component, ComponentBody, Coupling, Joint, Joints, Tally, Workspace
 from .plan import make_plan, room_for
 
 

@@ -9,7 +9,8 @@ import numpy as np
 from ..compiled import Table, nonallocating, table_of
 from ..compiled.records import Rows
 from ..model.bodies import Body
-from ..model.joints import Joint, JointLedger, Joints, joints_of
+from ..model.joint_steps import JointLedger
+from ..model.joints import Joint, Joints, joints_of
 from .motion import size_up
 from .step import island_step
 from .workspace import make_joints, workspace

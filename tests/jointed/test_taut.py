@@ -18,7 +18,8 @@ from eeca_pymunk.joints.taut import taut
 from eeca_pymunk.joints.workspace import make_joints
 from eeca_pymunk.model.bodies import Body
 from eeca_pymunk.model.contacts import Row
-from eeca_pymunk.model.joints import PIN, PIVOT, BodyStep, Joint, Joints, Workspace
+from eeca_pymunk.model.joint_steps import BodyStep
+from eeca_pymunk.model.joints import PIN, PIVOT, Joint, Joints, Workspace
 
 from .measures import apart, energy
 

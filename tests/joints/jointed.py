@@ -9,7 +9,7 @@ from eeca_pymunk.arrays import FloatArray, IntArray
 from eeca_pymunk.compiled.records import Rows, numbers, row, rows
 from eeca_pymunk.joints.world import Islands
 from eeca_pymunk.model.bodies import ACCELERATION, POSE, VELOCITY, Body
-from eeca_pymunk.model.joints import JointLedger
+from eeca_pymunk.model.joint_steps import JointLedger
 from eeca_pymunk.space.joints import JointRows
 
 

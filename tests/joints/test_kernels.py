@@ -14,7 +14,8 @@ from eeca_pymunk.joints.ordering import order_unknowns
 from eeca_pymunk.joints.rows import joint_rows, start_joint
 from eeca_pymunk.joints.workspace import workspace
 from eeca_pymunk.joints.world import gather_island
-from eeca_pymunk.model.joints import CONDENSED, NO_BEND, OWN_TURN, JointStep
+from eeca_pymunk.model.joint_steps import NO_BEND, OWN_TURN, JointStep
+from eeca_pymunk.model.joints import CONDENSED
 from scenes import linkages
 from scenes.linkages import body, empty
 

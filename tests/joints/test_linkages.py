@@ -8,7 +8,7 @@ import numpy as np
 import pymunk
 import pytest
 
-from eeca_pymunk.model.joints import EXACT, LINEAR
+from eeca_pymunk.model.joint_steps import EXACT, LINEAR
 from scenes import linkages
 
 from .driving import drift, error, momenta, run, slopes
