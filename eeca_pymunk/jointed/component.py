@@ -7,12 +7,12 @@ import math
 from ..arrays import FloatArray
 from ..compiled import inlined, nonallocating
 from ..joints.bounds import bounded, gap
+from ..joints.correct import correct
 from ..joints.entries import held as stands
 from ..joints.ledger import springs_hold
 from ..joints.response import prepare, respond
-from ..joints.solve import solve
 from ..joints.start import look
-from ..joints.step import island_step
+from ..joints.step import take_step
 from ..joints.workspace import workspace
 from ..model.joint_steps import POSES, SPEEDS, STEP
 from ..model.joints import GEAR, Joints, Workspace
@@ -28,7 +28,7 @@ def step_in_scratch(J: Joints, s: int, h: float, length: float, whole: bool) -> 
     `whole`: whether order 4 may be had: nothing else acts in the interval.
     """
     order = J.TALLY.order if whole else 2
-    status = island_step(workspace(J, s), h, order, length, J.STEPPED[s])
+    status = take_step(workspace(J, s), h, order, length, J.STEPPED[s])
     J.TALLY.repeats += 1
     J.STEPPED[s].status = status
     return int(status)
@@ -68,7 +68,7 @@ def fit_speeds(A: Scene, J: Joints, s: int, length: float) -> None:
     an impact at which nothing bounces. What this costs is the caller's to book."""
     W = workspace(J, s)
     size_joints(W, length)
-    solve(W, int(SPEEDS), 2.0, length, W.J.COMPONENT[W.s].loops > 0, 0.0)
+    correct(W, SPEEDS)
 
 
 @nonallocating
@@ -94,7 +94,7 @@ def close_joints(
         for r in range(W.link[k].rows):
             W.J.HINGE[k].target[r] = W.J.HINGE[k].value[r]
     gather_component(A, J, s, NEW, V, V, IM, II, t, h)
-    solve(W, int(POSES), 2.0, length, W.J.COMPONENT[W.s].loops > 0, 0.0)
+    correct(W, POSES)
     for i in range(W.bodies):
         if J.LOCAL[i].freedoms > 0:
             q = A.PLACE[J.MEMBER[b0 + i].body]

@@ -80,13 +80,10 @@ def release(W: Workspace) -> bool:
 
 
 @nonallocating
-def first_bound(W: Workspace, h: float) -> int:
-    """The free limit that a step h passes first, by the mean rate of its gap; or -1.
-
-    progress.side is its side, progress.when the estimate of the instant.
-    """
-    hinge, link, progress = W.J.HINGE, W.link, W.J.PROGRESS
-    which = -1
+def first_bound(W: Workspace, h: float) -> tuple[int, int, float]:
+    """The free limit that a step h passes first, by the mean rate of its gap, or -1; its side; about the instant."""
+    hinge, link = W.J.HINGE, W.link
+    which, at_side, instant = -1, 0, h
     for k in range(W.joints):
         if link[k].side != 0 or link[k].soft != 0:
             continue
@@ -102,6 +99,6 @@ def first_bound(W: Workspace, h: float) -> int:
             )
             start = max(end - 0.5 * h * rate, 0.0)
             when = h * start / (start - end)
-            if which < 0 or when < progress.when:
-                which, progress.side, progress.when = k, side, when
-    return which
+            if which < 0 or when < instant:
+                which, at_side, instant = k, side, when
+    return which, at_side, instant

@@ -1,4 +1,4 @@
-"""How the bodies of an island move over a step, and where they are at its end."""
+"""How the bodies of a component move over a step, where they are at its end, and back to its start."""
 
 from __future__ import annotations
 
@@ -103,3 +103,24 @@ def advance(local: Rows[BodyStep], bodies: int, h: float) -> None:
             # As of that angle, to the round-off of the parts of a step.
             x, y, turn_x, turn_y = local[i].cos, local[i].sin, local[i].turn_cos, local[i].turn_sin
             local[i].cos, local[i].sin = x * turn_x - y * turn_y, y * turn_x + x * turn_y
+
+
+@nonallocating
+def save(local: Rows[BodyStep], bodies: int) -> None:
+    """Keep the start of the step."""
+    for i in range(bodies):
+        for c in range(3):
+            local[i].saved_pose[c], local[i].saved_velocity[c] = local[i].pose[c], local[i].v0[c]
+            local[i].travel[c] = local[i].shift[c]
+        local[i].mean[0] = local[i].mean[1] = 0.0
+
+
+@nonallocating
+def go_back(local: Rows[BodyStep], bodies: int) -> None:
+    """Back to the poses and velocities at the start of the step."""
+    for i in range(bodies):
+        for c in range(3):
+            local[i].pose[c], local[i].v0[c] = local[i].saved_pose[c], local[i].saved_velocity[c]
+            local[i].travel[c] = local[i].shift[c]
+        local[i].mean[0] = local[i].mean[1] = 0.0
+        local[i].cos, local[i].sin = np.cos(local[i].pose[2]), np.sin(local[i].pose[2])

@@ -17,9 +17,8 @@ from ..model.joint_steps import FULL_BEND, NO_BEND, STEP
 from ..model.joints import BOUNDED, BOXED, CONDENSED, DUAL, Coupling, Workspace
 from ..model.parameters.joints import CONDENSED_PASSES, REDUNDANT_EPSILON, RESPONSE_PASSES, TAUT
 from .motion import move
-from .newton import assemble
+from .newton import assemble, back, begin, decompose
 from .rows import joint_rows, start_joint
-from .solve import back, begin, decompose
 
 
 @nonallocating
@@ -53,7 +52,7 @@ def bend(W: Workspace, k: int, h: float) -> None:
 def prepare(W: Workspace, what: int, h: float) -> int:
     """Factors of the matrix that `respond` needs, in `matrix` and `pivots`; their system, -1 if there are none.
 
-    `what` is STEP, after `island_step` (whose start becomes that of `local` again), or SPEEDS, at the present poses.
+    `what` is STEP, after `take_step` (whose start becomes that of `local` again), or SPEEDS, at the present poses.
     """
     link = W.link
     boxed = unbox(link, W.joints)
@@ -127,7 +126,7 @@ def respond(W: Workspace, what: int, system: int, push: FloatArray, gives: bool)
     for i in range(W.bodies):
         for c in range(local[i].freedoms):
             right[local[i].column + c] = push[i, c] * local[i].root[c]
-    back(W, what, system, 1 if gives else CONDENSED_PASSES, right)
+    back(W, system, 1 if gives else CONDENSED_PASSES, right)
     # (A + epsilon) x = b leaves b - A x = epsilon x in the rows, and each correction d leaves epsilon d.
     for turn in range(0 if system == CONDENSED or component.loops == 0 or gives else RESPONSE_PASSES):
         rest = right[size : 2 * size] if turn > 0 else right[:size]
@@ -140,7 +139,7 @@ def respond(W: Workspace, what: int, system: int, push: FloatArray, gives: bool)
         for k in range(W.joints):
             for r in range(W.link[k].rows):
                 rest[W.link[k].first_row + r] *= REDUNDANT_EPSILON
-        back(W, what, system, CONDENSED_PASSES, rest)
+        back(W, system, CONDENSED_PASSES, rest)
         for i in range(size):
             right[i] += rest[i]
     for i in range(W.bodies):

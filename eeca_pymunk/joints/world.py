@@ -12,7 +12,7 @@ from ..model.bodies import Body
 from ..model.joint_steps import JointLedger
 from ..model.joints import Joint, Joints, joints_of
 from .motion import size_up
-from .step import island_step
+from .step import take_step
 from .workspace import make_joints, workspace
 
 
@@ -42,7 +42,7 @@ def step_all(JOINTS: Table, bodies: Rows[Body], h: float) -> int:
     for s in range(J.TALLY.components):
         length = gather_island(bodies, J, s, h)
         W = workspace(J, s)
-        worst = max(worst, island_step(W, h, J.TALLY.order, length, J.STEPPED[s]))
+        worst = max(worst, take_step(W, h, J.TALLY.order, length, J.STEPPED[s]))
         for i in range(W.bodies):
             b, L = bodies[J.MEMBER[W.J.COMPONENT[W.s].first_body + i].body], J.LOCAL[i]
             if b.inv_mass > 0.0 or b.inv_inertia > 0.0:

@@ -87,17 +87,12 @@ STEP, POSES, SPEEDS, LINEAR_STEP = 0, 1, 2, 3
 class Progress(Record):
     """How far the solutions of a component are, and what they may take."""
 
-    when: float  # instant in the step of a limit that is passed first
-    error: float  # of the present iterate, over the size of the component
     near: float  # error of a step that is near enough, 0 for round-off
     effort: float  # operations that solutions have taken since the step of the scene began; how many they may
     budget: float
     share: float  # of `effort`, at which an interval gives up
     limit: float  # of `effort`, at which the step of a component gives up what its ladder has before linear rows
     hurry: float  # likewise, from which on limits land instead of being met at their instants
-    side: int  # of the limit that is passed first
-    passes: int  # of correcting velocities, and tries of these with other limits
-    tries: int
 
 
 class JointLedger(Record):
