@@ -33,8 +33,8 @@ from ..rows.inplace import sort
 from .accounting import close_interval
 from .at_rest import put_to_rest, stop
 from .candidates import pairs_within
-from .intervals import clear_places, solve
-from .local import lay_out_island, open_contacts
+from .intervals import solve
+from .local import clear_places, lay_out_island, open_contacts, set_places
 from .membership import lossy, members, unite
 from .rest import candidate_speed, postpone_test, slow_for_long, speed
 from .support import support_loads
@@ -64,8 +64,7 @@ def test_rest(A: Scene, MINE: IntArray, n: int, V0: FloatArray, among: int, free
             tested for rest at once.
     """
     BODY, COUNT, dt, root = A.BODY, A.COUNT, A.PAR.dt, MINE[0]
-    for q in range(n):
-        A.PLACE[MINE[q]] = q
+    set_places(A, MINE, n)
     found = pairs_within(A, root, 0.0, A.PAR.dt, True, MINE, n)
     LOAD = np.zeros((n, 3))
     if not freezing:

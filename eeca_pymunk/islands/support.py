@@ -26,7 +26,8 @@ from ..pairs.rules import law
 from ..rows.build import place_row
 from ..rows.equilibrium import equilibrium
 from .accounting import wake
-from .intervals import clear_places, solve
+from .intervals import solve
+from .local import clear_places
 from .membership import members
 from .rest import candidate_speed, postpone_test, spins_freely
 

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import math
-
 from ..compiled import nonallocating
-from ..islands.candidates import before_end
+from ..islands.local import open_until
 from ..joints.ledger import clear_interval
 from ..model.joint_steps import ELASTIC
 from ..model.joints import Joints
@@ -62,8 +60,7 @@ def begin_alone(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
         if J.LOCAL[i].freedoms > 0:
             lay_path(A, J, s, J.MEMBER[first + i].body, i, h)
     A.COUNT.solves += 1
-    A.MEMBER[root].open = 1
-    A.RESTING[root].until = t + h if before_end(A, t + h) else math.inf
+    open_until(A, root, t + h)
     return 0.0
 
 

@@ -15,7 +15,6 @@ from ..compiled.records import Rows
 from ..model.contacts import AnyProblem, JointedProblem, Problem, Row
 from ..model.parameters.impulses import PROXIMAL_DENSE
 from ..model.parameters.joints import COLUMN_PROXIMAL
-from .bounded import bounded_rate
 from .build import normal_rate, tangent_rate
 from .polish import clamp, classify
 from .sweeps import velocities
@@ -108,39 +107,28 @@ def matrix_free(problem: Problem, slip: FloatArray, at: IntArray, kind: IntArray
 def matrix_jointed(
     problem: JointedProblem, slip: FloatArray, at: IntArray, kind: IntArray, N: int, W: FloatArray
 ) -> None:
-    """As `matrix_free`, with response columns; unknowns of kind 2 are bounded rows."""
-    A, B, ROWS, C, D, _ = problem
+    """As `matrix_free`, with response columns."""
+    A, B, ROWS, C, _, _ = problem
     bodies = 0
     for i in range(N):
-        if kind[i] == 2:
-            bodies = max(bodies, D.END[at[i], 0] + 1, D.END[at[i], 1] + 1)
-        else:
-            bodies = max(bodies, A[at[i]] + 1, B[at[i]] + 1)
+        bodies = max(bodies, A[at[i]] + 1, B[at[i]] + 1)
     for w in range(len(C.BODY)):
         bodies = max(bodies, C.BODY[w] + 1)
-    for w in range(D.AT[D.USED[0]]):
-        bodies = max(bodies, D.BODY[w] + 1)
     V = np.zeros((bodies, 3))
     for j in range(N):
         c = at[j]
-        BODY, first, last = (D.BODY, D.AT[c], D.AT[c + 1]) if kind[j] == 2 else (C.BODY, C.AT[c], C.AT[c + 1])
-        for w in range(first, last):
+        for w in range(C.AT[c], C.AT[c + 1]):
             for k in range(3):
-                if kind[j] == 2:
-                    V[BODY[w], k] = D.N[w, k]
-                else:
-                    V[BODY[w], k] = C.T[w, k] if kind[j] == 1 else C.N[w, k] + slip[c] * C.T[w, k]
+                V[C.BODY[w], k] = C.T[w, k] if kind[j] == 1 else C.N[w, k] + slip[c] * C.T[w, k]
         for i in range(N):
             z = at[i]
-            if kind[i] == 2:
-                W[i, j] = bounded_rate(D, z, V)
-            elif kind[i] == 0:
+            if kind[i] == 0:
                 W[i, j] = normal_rate(A, B, ROWS, V, z)
             else:
                 W[i, j] = tangent_rate(A, B, ROWS, V, z) - ROWS[z].surface
-        for w in range(first, last):
+        for w in range(C.AT[c], C.AT[c + 1]):
             for k in range(3):
-                V[BODY[w], k] = 0.0
+                V[C.BODY[w], k] = 0.0
         W[j, j] += abs(W[j, j]) / COLUMN_PROXIMAL
 
 
