@@ -130,7 +130,7 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
         # Only the part of the velocities that joints allow takes part in the impact.
         along = carried_along(J, s)
         if along:
-            fit_speeds(A, J, s, length)
+            fit_speeds(J, s, length)
             for q in range(n):
                 if groups.GROUP[q] == g:
                     for c in range(3):

@@ -93,13 +93,13 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
             least = max(least, travel_bound(A, WHO[q], h))
     sweeps = SMALL_SWEEPS if n < LARGE_ISLAND else sweeps_of_large(t)
     m = 0
-    among = bodies_with_supports(A, isle, n)
+    with_supports = bodies_with_supports(A, isle, n)
     raised = 0
     for q in range(n, k):
         # A body without mobility that the program has moved into others does the work of lifting them.
         if MEMBER[WHO[q]].placed == MOVED and BODY[WHO[q]].inv_mass == 0.0:
             raised = 1
-    quiet = rest_threshold(A, root, MINE, n, among, t) if may_lose and raised == 0 else 0.0
+    quiet = rest_threshold(A, root, MINE, n, with_supports, t) if may_lose and raised == 0 else 0.0
     owed = max(-A.RESTING[root].lost, 0.0)
     shortest = A.PAR.dt / RESOLUTION
     if p > 0 and h > 0.0:
@@ -159,7 +159,7 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
         STATE[i].island, MEMBER[i].following = head, -1
     if head >= 0:
         MEMBER[head].last, MEMBER[head].bodies, MEMBER[head].hits = tail, size, hits
-        MEMBER[head].among, MEMBER[head].raised = among, raised
+        MEMBER[head].with_supports, MEMBER[head].raised = with_supports, raised
         A.RESTING[head].lost = lost
         open_until(A, head, t + h)
         for z in range(m):

@@ -22,37 +22,33 @@ from .gathered import gather_component
 
 
 @nonallocating
-def step_in_scratch(J: Joints, s: int, h: float, length: float, whole: bool) -> int:
-    """Step component s by h from what is in its scratch, where its end stands then; its status.
+def step_in_scratch(J: Joints, s: int, h: float, length: float, whole: bool) -> None:
+    """Step component s by h from what is in its scratch, where its end stands then; its status is in STEPPED.
 
     `whole`: whether order 4 may be had: nothing else acts in the interval.
     """
-    order = J.TALLY.order if whole else 2
-    status = take_step(workspace(J, s), h, order, length, J.STEPPED[s])
+    J.STEPPED[s].status = take_step(workspace(J, s), h, J.TALLY.order if whole else 2, length, J.STEPPED[s])
     J.TALLY.repeats += 1
-    J.STEPPED[s].status = status
-    return int(status)
 
 
 @nonallocating
 def step_component(
-    A: Scene, J: Joints, s: int, h: float, length: float, whole: bool, VN: FloatArray, WAY: FloatArray,
-    END: FloatArray, MID: FloatArray,
-) -> int:  # fmt: skip
-    """`step_in_scratch` from what `gather_component` has put there; its status.
+    A: Scene, J: Joints, s: int, h: float, length: float, whole: bool, V: FloatArray, WAY: FloatArray, END: FloatArray,
+    MID: FloatArray,
+) -> None:  # fmt: skip
+    """`step_in_scratch` from what `gather_component` has put there.
 
-    VN, WAY, END: (k, 3) of the island, out: velocities at the end, ways (sums of h v_m), poses at the end.
+    V, WAY, END: (k, 3) of the island, out: velocities at the end, ways (sums of h v_m), poses at the end.
     MID: (k, 2), out: where constant forces have acted, means of the places over time.
     """
-    status = step_in_scratch(J, s, h, length, whole)
+    step_in_scratch(J, s, h, length, whole)
     b0 = J.COMPONENT[s].first_body
     for i in range(J.COMPONENT[s].end_body - b0):
         if J.LOCAL[i].freedoms > 0:
-            q = A.PLACE[J.MEMBER[b0 + i].body]
+            q = A.PLACE[J.JOINED[b0 + i].body]
             for c in range(3):
-                VN[q, c], END[q, c], WAY[q, c] = J.LOCAL[i].v0[c], J.LOCAL[i].pose[c], J.LOCAL[i].travel[c]
+                V[q, c], END[q, c], WAY[q, c] = J.LOCAL[i].v0[c], J.LOCAL[i].pose[c], J.LOCAL[i].travel[c]
             MID[q, 0], MID[q, 1] = J.LOCAL[i].mean[0] / h, J.LOCAL[i].mean[1] / h
-    return status
 
 
 @inlined
@@ -63,7 +59,7 @@ def size_joints(W: Workspace, length: float) -> None:
 
 
 @nonallocating
-def fit_speeds(A: Scene, J: Joints, s: int, length: float) -> None:
+def fit_speeds(J: Joints, s: int, length: float) -> None:
     """Make the velocities that `gather_component` has put into the scratch fit the joints, closed limits included, as
     an impact at which nothing bounces. What this costs is the caller's to book."""
     W = workspace(J, s)
@@ -97,7 +93,7 @@ def close_joints(
     correct(W, POSES)
     for i in range(W.bodies):
         if J.LOCAL[i].freedoms > 0:
-            q = A.PLACE[J.MEMBER[b0 + i].body]
+            q = A.PLACE[J.JOINED[b0 + i].body]
             for c in range(3):
                 NEW[q, c] = J.LOCAL[i].pose[c]
     held = springs_of(W) - held

@@ -76,7 +76,7 @@ def some_give(J: Joints, groups: Groups) -> bool:
     some = False
     for g in range(len(groups.COMPONENT)):
         s = groups.COMPONENT[g]
-        some = some or (s >= 0 and J.JOINT[J.LINK[J.COMPONENT[s].first_joint].joint].compliance > 0.0)
+        some = some or (s >= 0 and J.JOINT[J.COUPLING[J.COMPONENT[s].first_joint].joint].compliance > 0.0)
     return some
 
 
@@ -141,7 +141,7 @@ def press(
     NOW = np.empty(len(B.OF))
     K, problem = make_columns(groups, P, Q, m if len(B.OF) > 0 else 0), JointedProblem(P, Q, ROWS, C, B, m)
     # Only of what nothing from without holds or touches is there an angular momentum to keep.
-    free = len(isle.IM) == n and not hangs(groups, J.COMPONENT, J.MEMBER)
+    free = len(isle.IM) == n and not hangs(groups, J.COMPONENT, J.JOINED)
     for outer in range(rounds):
         if hopeless or (roughly and unsolved >= most_unsolved) or J.PROGRESS.effort > J.PROGRESS.share:
             break

@@ -65,7 +65,7 @@ def find_apart(W: Workspace, h: float) -> tuple[bool, bool, bool]:
 
 @nonallocating
 def farthest(W: Workspace) -> float:
-    """The largest error of a held row, over the size of the island. Rows must be those of the present poses."""
+    """The largest error of a held row, over the size of the component. Rows must be those of the present poses."""
     link = W.link
     worst = 0.0
     for k in range(W.joints):

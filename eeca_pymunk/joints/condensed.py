@@ -1,4 +1,4 @@
-"""Systems of wide islands in the bodies' unknowns alone, the joints' rows as stiff springs that are then corrected.
+"""Systems of wide components in the bodies' unknowns alone, the joints' rows as stiff springs that are then corrected.
 
 [A  -J^T; G  give] [x; mu] = [b; c] becomes (A + R J^T G) dx = b + R J^T (c - G x), dmu = R (c - G x - G dx), and again
 with what is left of c: the balance of the bodies holds after the first pass, each further one takes the rows' error by

@@ -1,4 +1,4 @@
-"""Systems of islands in the joints' rows alone, the bodies' unknowns eliminated: S lam = c - G A^-1 b, S = G A^-1 J^T.
+"""Systems of components in the rows alone, the bodies' unknowns eliminated: S lam = c - G A^-1 b, S = G A^-1 J^T.
 
 A, the bodies' part of Newton's matrix, is taken to be diagonal: the masses, and of the bending of rows what is between
 a body and itself. For pivots that is all there is; for other joints without springs what is left out is of the order

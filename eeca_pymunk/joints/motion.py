@@ -14,8 +14,8 @@ from ..model.joints import Coupling, Joint
 def size_up(
     joint: Rows[Joint], link: Rows[Coupling], first: int, last: int, local: Rows[BodyStep], bodies: int, h: float
 ) -> float:  # fmt: skip
-    """Complete the bodies whose pose, velocity and mobility are in the scratch of an island; its size, the length that
-    errors are measured by, from them and from the joints of rows first ... last of `link`."""
+    """Complete the bodies whose pose, velocity and mobility are in the scratch of a component; its size, the length
+    that errors are measured by, from them and from the joints of rows first ... last of `link`."""
     length = 0.0
     for i in range(bodies):
         for c in range(3):

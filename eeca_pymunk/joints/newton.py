@@ -1,4 +1,4 @@
-"""The linear systems of Newton's method for the implicit step of an island.
+"""The linear systems of Newton's method for the implicit step of a component.
 
 Unknowns: velocities v1 of the bodies and impulses lam of the rows, the way being x = h (v0 + v1)/2:
 
@@ -52,7 +52,7 @@ def assemble(W: Workspace, what: int, h: float, give: float, first: bool, system
     """Residuals of the rows for `what` (see `..model.joints`), scaled, in RIGHT, and the joints' rows in HINGE.
 
     Where it is to `build`, the matrix of the `system` too, or of a dual one what it is made of.
-    Returns how far rows are from their targets, over the size of the island; for SPEEDS, the worst G v.
+    Returns how far rows are from their targets, over the size of the component; for SPEEDS, the worst G v.
     """
     hinge, link, local, matrix, right = W.J.HINGE, W.link, W.J.LOCAL, W.J.MATRIX, W.J.RIGHT
     worst, per = 0.0, 2.0 / h

@@ -1,4 +1,4 @@
-"""How an island of joints answers impulses on its bodies: the change of velocities per impulse.
+"""How a component of joints answers impulses on its bodies: the change of velocities per impulse.
 
 About a solved step, d v1 = S p for impulses p spread over the step, S the inverse of Newton's matrix with springs and
 bounded joints. Rows turn as bodies move, and the force of joints with them: without that what is taut would give way

@@ -18,7 +18,9 @@ from .plan import make_plan, room_for
 def workspace(J: Joints, s: int) -> Workspace:
     """The memory of component s."""
     C = J.COMPONENT[s]
-    return Workspace(J, s, J.LINK[C.first_joint : C.end_joint], C.end_joint - C.first_joint, C.end_body - C.first_body)
+    return Workspace(
+        J, s, J.COUPLING[C.first_joint : C.end_joint], C.end_joint - C.first_joint, C.end_body - C.first_body
+    )
 
 
 _NO_ROOM = room_for(rows(Component, 0))

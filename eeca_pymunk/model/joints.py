@@ -77,7 +77,7 @@ OF_STEPS = (
 
 
 class Component(Record):
-    """A component: its slices of `ComponentBody` and `Coupling`, its linear systems."""
+    """A component: its slices of JOINED and COUPLING, its linear systems."""
 
     first_body: int
     end_body: int
@@ -153,18 +153,19 @@ class Tally(Record):
 class Joints(NamedTuple):
     """The arrays of the joints of a scene.
 
-    JOINT (j,): bodies are rows of BODY (n rows) or n + row of PARTNER (x,), which joints cannot move. COMPONENT,
-    MEMBER, LINK: the plan. Scratch for the largest component: HINGE, LOCAL, of its joints and bodies; MATRIX, banded;
-    RIGHT, right sides; PIVOTS; MORE, of linear systems and bounded rows; STIFF (6, 6), derivative of a joint's force by
-    the ways of its bodies; PROGRESS; PART, the ledger of a part of the step. OF (n,): the component of a body, -1 for
-    none. KEPT (j,): the joints at the start of an interval. STEPPED (components,): their ledgers in their intervals.
+    JOINT (j,): bodies are rows of BODY (n rows) or n + row of PARTNER (x,), which joints cannot move. The plan:
+    COMPONENT (components,), with the bodies of each in JOINED and its joints in COUPLING. Scratch for the largest
+    component: HINGE, LOCAL, of its joints and bodies; MATRIX, banded; RIGHT, right sides; PIVOTS; MORE, of linear
+    systems and bounded rows; STIFF (6, 6), derivative of a joint's force by the ways of its bodies; PROGRESS; PART, the
+    ledger of a part of the step. OF (n,): the component of a body, -1 for none. KEPT (j,): the joints at the start of
+    an interval. STEPPED (components,): their ledgers in their intervals.
     """
 
     JOINT: Rows[Joint]
     PARTNER: Rows[Body]
     COMPONENT: Rows[Component]
-    MEMBER: Rows[ComponentBody]
-    LINK: Rows[Coupling]
+    JOINED: Rows[ComponentBody]
+    COUPLING: Rows[Coupling]
     HINGE: Rows[JointStep]
     LOCAL: Rows[BodyStep]
     MATRIX: FloatArray
