@@ -6,12 +6,12 @@ import math
 
 from ..arrays import FloatArray
 from ..compiled import inlined, nonallocating
-from ..joints.bounds import bounded, gap
+from ..joints.bounds import gap, has_bound
 from ..joints.correct import correct
-from ..joints.entries import held as stands
+from ..joints.entries import held
 from ..joints.ledger import springs_hold
 from ..joints.response import prepare, respond
-from ..joints.start import look
+from ..joints.start import compute_rows
 from ..joints.step import take_step
 from ..joints.workspace import workspace
 from ..model.joint_steps import POSES, SPEEDS, STEP
@@ -70,7 +70,7 @@ def fit_speeds(J: Joints, s: int, length: float) -> None:
 @nonallocating
 def springs_of(W: Workspace) -> float:
     """The energy that the springs of a component hold at the poses in the scratch."""
-    look(W)
+    compute_rows(W)
     return springs_hold(W)
 
 
@@ -84,7 +84,7 @@ def close_joints(
     W, b0 = workspace(J, s), J.COMPONENT[s].first_body
     length = gather_component(A, J, s, OLD, V, V, IM, II, t, h)
     size_joints(W, length)
-    held = springs_of(W)
+    stored = springs_of(W)
     for k in range(W.joints):
         # What is apart stays as far apart.
         for r in range(W.link[k].rows):
@@ -96,19 +96,19 @@ def close_joints(
             q = A.PLACE[J.JOINED[b0 + i].body]
             for c in range(3):
                 NEW[q, c] = J.LOCAL[i].pose[c]
-    held = springs_of(W) - held
+    stored = springs_of(W) - stored
     for k in range(W.joints):
         link, small = W.link[k], CORRECTION_JOINTS * W.J.HINGE[k].size
         if link.soft != 0:
             continue
         for r in range(link.rows):
-            if stands(W.link, k, r) and abs(W.J.HINGE[k].value[r] - W.J.HINGE[k].target[r]) > small:
+            if held(W.link, k, r) and abs(W.J.HINGE[k].value[r] - W.J.HINGE[k].target[r]) > small:
                 return math.inf
         for side in (-1, 1):
-            passed = bounded(W.J.JOINT, W.link, k, side) and link.side != side
+            passed = has_bound(W.J.JOINT, W.link, k, side) and link.side != side
             if passed and gap(W.J.JOINT, W.J.HINGE, W.link, k, side) < -small:
                 return math.inf
-    return held
+    return stored
 
 
 @nonallocating

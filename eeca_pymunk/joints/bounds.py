@@ -12,7 +12,7 @@ from .entries import along
 
 
 @nonallocating
-def bounded(joint: Rows[Joint], link: Rows[Coupling], k: int, side: int) -> bool:
+def has_bound(joint: Rows[Joint], link: Rows[Coupling], k: int, side: int) -> bool:
     """Whether joint k has a bound at this side."""
     kind, j = link[k].kind, link[k].joint
     if kind == RATCHET:
@@ -35,7 +35,7 @@ def gap(joint: Rows[Joint], hinge: Rows[JointStep], link: Rows[Coupling], k: int
 
 
 @nonallocating
-def hold(joint: Rows[Joint], hinge: Rows[JointStep], link: Rows[Coupling], k: int) -> None:
+def hold_limit(joint: Rows[Joint], hinge: Rows[JointStep], link: Rows[Coupling], k: int) -> None:
     """Hold joint k, which stands on a limit, where it is for the rest of the step, however little is left of that.
 
     To close a gap of round-off in a part as short would take any force. Rows must be those of the present poses.
@@ -88,7 +88,7 @@ def first_bound(W: Workspace, h: float) -> tuple[int, int, float]:
         if link[k].side != 0 or link[k].soft != 0:
             continue
         for side in (-1, 1):
-            if not bounded(W.J.JOINT, link, k, side):
+            if not has_bound(W.J.JOINT, link, k, side):
                 continue
             end = gap(W.J.JOINT, hinge, link, k, side)
             if end >= -JOINT_TOUCH * hinge[k].size:

@@ -9,14 +9,14 @@ from ..compiled.records import Rows
 from ..model.joint_steps import POSES, SPEEDS, BodyStep, JointLedger
 from ..model.joints import APART, EDITED, GIVES_WAY, LEFT_APART, Workspace
 from ..model.parameters.joints import JOINT_APART
-from .bounds import bounded, gap
-from .correct import correct, fits, fitting_loss
+from .bounds import gap, has_bound
+from .correct import correct, fitting_loss, speeds_fit
 from .entries import held
 from .ledger import springs_hold
 from .lock import lock_energy
 from .motion import go_back, save
 from .rows import joint_rows
-from .start import look, share
+from .start import closing_share, compute_rows
 
 
 @nonallocating
@@ -39,7 +39,7 @@ def find_apart(W: Workspace, h: float) -> tuple[bool, bool, bool]:
         if link[k].soft != 0 or rows == 0:
             continue
         for side in (-1, 1):
-            if bounded(joint, link, k, side):
+            if has_bound(joint, link, k, side):
                 room = gap(joint, hinge, link, k, side)
                 if room < -JOINT_APART * hinge[k].size:
                     link[k].side = side
@@ -55,7 +55,7 @@ def find_apart(W: Workspace, h: float) -> tuple[bool, bool, bool]:
             joint[j].touched = GIVES_WAY
         elif error > JOINT_APART * hinge[k].size:
             apart = True
-            left = 1.0 - share(joint, j, error, h)
+            left = 1.0 - closing_share(joint, j, error, h)
             for r in range(rows):
                 hinge[k].target[r] = hinge[k].value[r] * left
             joint[j].touched = 0 if not left > 0.0 else LEFT_APART if was == LEFT_APART else APART
@@ -105,13 +105,13 @@ def close_joints(W: Workspace, h: float, ledger: JointLedger) -> bool:
     """Close joints that are apart by one step's share, and make velocities fit them if the user has changed something;
     whether only steps have left joints apart. The costs enter the ledger of the step."""
     local = W.J.LOCAL
-    look(W)
+    compute_rows(W)
     stored = springs_hold(W)
     edited, apart, own = find_apart(W, h)
     if apart:
         before = farthest(W)
         correct(W, POSES)
-        look(W)
+        compute_rows(W)
         taken = springs_hold(W) - stored
         cost = taken + closing_work(local, W.bodies)
         # What a step left apart closes at the cost of what moves.
@@ -119,13 +119,13 @@ def close_joints(W: Workspace, h: float, ledger: JointLedger) -> bool:
         # Rows that contradict each other stay.
         if not farthest(W) <= before or (own and locked < cost - 1e-9 * abs(cost)):
             go_back(local, W.bodies)
-            look(W)
+            compute_rows(W)
             taken, cost, locked = 0.0, 0.0, 0.0
         keep_closed(W)
         ledger.closed += cost - locked
         ledger.stored += taken
         save(local, W.bodies)
-    if edited and not fits(W):
+    if edited and not speeds_fit(W):
         correct(W, SPEEDS)
         ledger.projected += fitting_loss(local, W.bodies, ledger)
         save(local, W.bodies)

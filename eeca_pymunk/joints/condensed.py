@@ -122,7 +122,7 @@ def spread(
 @inlined
 def reach_of(
     hinge: Rows[JointStep], link: Rows[Coupling], local: Rows[BodyStep], k: int, r: int, right: FloatArray, at: int
-) -> float:  # fmt: skip
+) -> float:
     """The scaled row G of row r of joint k times right[at :]."""
     total = 0.0
     for end in range(2):

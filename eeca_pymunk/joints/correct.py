@@ -19,9 +19,9 @@ from ..model.parameters.joints import (
     REDUNDANT_EPSILON,
     REDUNDANT_PASSES,
 )
-from .bounds import approach, bounded, gap
+from .bounds import approach, gap, has_bound
 from .entries import held
-from .newton import apply, back, begin, effort, factorise, linearise
+from .newton import apply, back, effort, factorise, first_iterate, linearise
 
 
 @nonallocating
@@ -33,9 +33,9 @@ def correct(W: Workspace, what: int) -> None:
     long as a limit pulls, all begins again without it. There are at most joints + 1 tries.
     """
     component, passes, tries = W.J.COMPONENT[W.s], 0, 0
-    begin(W, what, 2.0)
+    first_iterate(W, what, 2.0)
     if what == SPEEDS:
-        keep(W)
+        keep_speeds(W)
     component.factored = 0
     system = DUAL if component.rigid > 0 else component.system
     # Rows that contradict each other must not move bodies far.
@@ -52,13 +52,13 @@ def correct(W: Workspace, what: int) -> None:
         apply(W, what)
         if what == SPEEDS:
             passes += 1
-            met = passes == 1 and tries == 0 and touch(W)
+            met = passes == 1 and tries == 0 and hold_closing(W)
             if met or passes == 3 or not error > 0.0:
                 if not met and (tries > W.joints or not let_go(W)):
                     return
                 passes, tries = 0, tries + 1
-                take_back(W)
-        begin(W, what, 2.0)
+                restore_speeds(W)
+        first_iterate(W, what, 2.0)
 
 
 @nonallocating
@@ -94,16 +94,16 @@ def fitting_loss(local: Rows[BodyStep], bodies: int, ledger: JointLedger) -> flo
 
 
 @nonallocating
-def keep(W: Workspace) -> None:
+def keep_speeds(W: Workspace) -> None:
     """Remember the velocities before they are corrected."""
     for i in range(W.bodies):
         for c in range(3):
             W.J.LOCAL[i].v_kept[c] = W.J.LOCAL[i].v0[c]
-    take_back(W)
+    restore_speeds(W)
 
 
 @nonallocating
-def take_back(W: Workspace) -> None:
+def restore_speeds(W: Workspace) -> None:
     """The velocities before a correction, without impulses."""
     for i in range(W.bodies):
         for c in range(3):
@@ -140,7 +140,7 @@ def noise(hinge: Rows[JointStep], link: Rows[Coupling], k: int, r: int, local: R
 
 
 @nonallocating
-def touch(W: Workspace) -> bool:
+def hold_closing(W: Workspace) -> bool:
     """Hold all free limits whose gap is closed and was closing with the kept velocities; whether there were any.
 
     Rows are those of the present poses.
@@ -151,7 +151,7 @@ def touch(W: Workspace) -> bool:
         if link[k].side == 0 and link[k].soft == 0:
             for side in (-1, 1):
                 closed = (
-                    bounded(W.J.JOINT, link, k, side)
+                    has_bound(W.J.JOINT, link, k, side)
                     and gap(W.J.JOINT, hinge, link, k, side) <= JOINT_TOUCH * hinge[k].size
                 )
                 a, b = W.J.LOCAL[link[k].body[0]], W.J.LOCAL[link[k].body[1]]
@@ -162,7 +162,7 @@ def touch(W: Workspace) -> bool:
 
 
 @nonallocating
-def fits(W: Workspace) -> bool:
+def speeds_fit(W: Workspace) -> bool:
     """Whether velocities fit all rows that hold, but for what steps leave: they hold places exactly, and velocities to
     second or fourth order. To project that too would take energy whenever somebody else begins to step.
 

@@ -15,7 +15,7 @@ from ..model.parameters.joints import COMPONENT_BUDGET, ELASTIC_PARTS, HASTE, LE
 from .foresight import foretell, forget, recalls, remember
 from .ledger import clear
 from .limits import step_with_limits
-from .lock import lock_energy, stands
+from .lock import lock_energy, supports_rest
 from .motion import go_back
 from .newton import effort
 from .solve import drop_impulses
@@ -92,7 +92,7 @@ def repaid(W: Workspace) -> bool:
     little beside what moved before, which is taken back."""
     part = W.J.PART
     gain, had = part.closed - W.J.JOINT[W.link[0].joint].owed, 0.0
-    if not gain > 0.0 or not stands(W.J.LOCAL, W.bodies):
+    if not gain > 0.0 or not supports_rest(W.J.LOCAL, W.bodies):
         return True
     for i in range(W.bodies):
         for c in range(3):

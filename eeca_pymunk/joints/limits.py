@@ -20,7 +20,7 @@ from ..model.parameters.joints import (
     LIMIT_SECANTS_HASTE,
     LIMIT_SOLVES,
 )
-from .bounds import approach, first_bound, gap, hold, release, standing
+from .bounds import approach, first_bound, gap, hold_limit, release, standing
 from .correct import correct, fitting_loss
 from .ledger import book
 from .motion import advance
@@ -98,7 +98,7 @@ def step_with_limits(
         drop_impulses(W)
         for k in range(W.joints):
             if link[k].side != 0 and link[k].soft == 0:
-                hold(W.J.JOINT, hinge, link, k)
+                hold_limit(W.J.JOINT, hinge, link, k)
         if left <= 1e-13 * h:
             return True
         meeting, when = -1, left

@@ -33,7 +33,7 @@ from .soft import put_soft
 
 
 @inlined
-def begin(W: Workspace, what: int, h: float) -> None:
+def first_iterate(W: Workspace, what: int, h: float) -> None:
     """What stays the same over the iterations, and the first iterate: motion with the accelerations that joints gave
     before (`lead`), or no motion where joints act."""
     local = W.J.LOCAL

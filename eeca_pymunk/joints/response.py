@@ -17,7 +17,7 @@ from ..model.joint_steps import FULL_BEND, NO_BEND, STEP
 from ..model.joints import BOUNDED, BOXED, CONDENSED, DUAL, Coupling, Workspace
 from ..model.parameters.joints import CONDENSED_PASSES, REDUNDANT_EPSILON, RESPONSE_PASSES, TAUT
 from .motion import move
-from .newton import assemble, back, begin, decompose
+from .newton import assemble, back, decompose, first_iterate
 from .rows import joint_rows, start_joint
 
 
@@ -94,7 +94,7 @@ def factors(W: Workspace, what: int, h: float) -> int:
             if link[k].rows > 0 and link[k].soft == 0:
                 bend(W, k, h)
     else:
-        begin(W, what, h)
+        first_iterate(W, what, h)
     system = DUAL if component.rigid > (1 if what == STEP else 0) else component.system
     give = W.J.JOINT[link[0].joint].compliance / h**2 if what == STEP else 0.0
     epsilon = REDUNDANT_EPSILON if component.loops > 0 and give == 0.0 else 0.0
@@ -102,7 +102,7 @@ def factors(W: Workspace, what: int, h: float) -> int:
         for i in range(component.unknowns + component.impulses):
             W.J.RIGHT[i] = 0.0
         assemble(W, what, h, give, True, system, True)
-        if decompose(W, what, system, epsilon, give):  # fmt: skip
+        if decompose(W, what, system, epsilon, give):
             return int(system)
         if epsilon == 0.0:
             epsilon = REDUNDANT_EPSILON

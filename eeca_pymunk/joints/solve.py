@@ -22,7 +22,7 @@ from ..model.parameters.joints import (
 from .boxes import bound_impulses, boxed_rows, push, rows_of
 from .dual import STRIDE, refresh
 from .motion import move, settle
-from .newton import apply, back, begin, effort, factorise, linearise
+from .newton import apply, back, effort, factorise, first_iterate, linearise
 
 
 @nonallocating
@@ -62,7 +62,7 @@ def answer_boxes(W: Workspace, system: int, passes: int, boxes: int) -> None:
 
 
 @nonallocating
-def change(W: Workspace, what: int, system: int, passes: int, boxes: int, h: float, fresh: bool) -> None:
+def iterate(W: Workspace, what: int, system: int, passes: int, boxes: int, h: float, fresh: bool) -> None:
     """Solve the system for the right side, and change velocities and impulses by that: `boxes` of these within their
     bounds, by columns that are found anew if factors are `fresh`."""
     if boxes > 0 and fresh:
@@ -87,7 +87,7 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
         loops: whether rows may be redundant.  give: compliance over h², see `newton`.
     """
     hinge, local, component, progress = W.J.HINGE, W.J.LOCAL, W.J.COMPONENT[W.s], W.J.PROGRESS
-    begin(W, STEP, h)
+    first_iterate(W, STEP, h)
     best, last, stalls = 1e300, 1e300, 0
     system = DUAL if component.rigid > 1 else component.system
     lasting = system == DUAL or not bounded_rows(W.link, W.joints)
@@ -122,7 +122,7 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
                 best, stalls = worst, 0
                 if loops:
                     drop_impulses(W)
-                    begin(W, STEP, h)
+                    first_iterate(W, STEP, h)
                     best = 1e300
         fresh = not ready
         if fresh:
@@ -136,7 +136,7 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
             refresh(W, True)
         passes = 1 if give > 0.0 or not fresh else CONDENSED_PASSES - 1 if lasting else CONDENSED_PASSES
         progress.effort += effort(system, fresh, boxes, W.joints, component)
-        change(W, STEP, system, passes, boxes, h, fresh)
+        iterate(W, STEP, system, passes, boxes, h, fresh)
         ready = lasting
     return False
 
@@ -145,7 +145,7 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
 def solve_linearly(W: Workspace, h: float, length: float) -> bool:
     """One linear system: rows of the start hold for the mean velocity of the step h; False if it has no solution."""
     hinge, link, local, component = W.J.HINGE, W.link, W.J.LOCAL, W.J.COMPONENT[W.s]
-    begin(W, LINEAR_STEP, h)
+    first_iterate(W, LINEAR_STEP, h)
     component.factored = 0
     system = DUAL if component.rigid > 1 else component.system
     linearise(W, LINEAR_STEP, h, length, 0.0, True, system, True)
@@ -154,7 +154,7 @@ def solve_linearly(W: Workspace, h: float, length: float) -> bool:
         return False
     boxes = boxed_rows(link, W.joints)
     W.J.PROGRESS.effort += effort(system, True, boxes, W.joints, component)
-    change(W, LINEAR_STEP, system, CONDENSED_PASSES, boxes, h, True)
+    iterate(W, LINEAR_STEP, system, CONDENSED_PASSES, boxes, h, True)
     for i in range(W.bodies):
         for c in range(3):
             if not abs(local[i].v1[c]) < 1e100:

@@ -20,9 +20,9 @@ from ..model.joints import (
     Joint,
     Workspace,
 )
-from .bounds import approach, bounded, gap
+from .bounds import approach, gap, has_bound
 from .entries import is_limit
-from .newton import begin
+from .newton import first_iterate
 from .rows import joint_rows, start_joint
 
 
@@ -74,10 +74,10 @@ def write_start(W: Workspace, h: float) -> None:
 
 
 @nonallocating
-def look(W: Workspace) -> None:
+def compute_rows(W: Workspace) -> None:
     """Compute rows and values of all joints at the present poses, of soft ones too."""
     link = W.link
-    begin(W, POSES, 2.0)
+    first_iterate(W, POSES, 2.0)
     for k in range(W.joints):
         soft = link[k].soft
         link[k].soft = 0
@@ -86,7 +86,7 @@ def look(W: Workspace) -> None:
 
 
 @nonallocating
-def share(joint: Rows[Joint], j: int, error: float, h: float) -> float:
+def closing_share(joint: Rows[Joint], j: int, error: float, h: float) -> float:
     """The share of an error that native takes back in a step h: 1 - error_bias^h, not faster than max_bias."""
     part = 1.0 - joint[j].error_bias ** h
     return float(min(part, joint[j].max_bias * h / error)) if error > 0.0 else part
@@ -105,13 +105,13 @@ def soft_targets(W: Workspace, h: float) -> None:
             continue
         link[k].side = 0
         for side in (-1, 1):
-            if not bounded(joint, link, k, side) or link[k].side != 0:
+            if not has_bound(joint, link, k, side) or link[k].side != 0:
                 continue
             room = gap(joint, hinge, link, k, side)
             a, b = W.J.LOCAL[link[k].body[0]], W.J.LOCAL[link[k].body[1]]
             if room <= 0.0 or room + h * approach(hinge[k], rows, side, a.v0, b.v0) < 0.0:
                 link[k].side = side
-                speed = room / h if room > 0.0 else share(joint, j, -room, h) * room / h
+                speed = room / h if room > 0.0 else closing_share(joint, j, -room, h) * room / h
                 hinge[k].target[rows - 1] = side * speed
         if is_limit(kind):
             continue
@@ -123,4 +123,4 @@ def soft_targets(W: Workspace, h: float) -> None:
         if rows == 2:
             error = np.sqrt(error * error + hinge[k].value[1] ** 2)
         for r in range(rows):
-            hinge[k].target[r] = -hinge[k].value[r] * share(joint, j, error, h) / h
+            hinge[k].target[r] = -hinge[k].value[r] * closing_share(joint, j, error, h) / h

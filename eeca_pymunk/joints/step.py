@@ -18,7 +18,7 @@ from .ladder import climb, limit_work
 from .ledger import add, clear
 from .motion import save
 from .solve import drop_impulses
-from .start import look, read_joints, soft_targets, write_start
+from .start import compute_rows, read_joints, soft_targets, write_start
 from .taut import taut
 from .unheld import step_linearly, take_gain
 
@@ -68,7 +68,7 @@ def take_step(W: Workspace, h: float, order: int, length: float, ledger: JointLe
     save(local, W.bodies)
     own = touched and close_joints(W, h, ledger)
     if soft:
-        look(W)
+        compute_rows(W)
         soft_targets(W, h)
     write_start(W, h)
     limit_work(W)

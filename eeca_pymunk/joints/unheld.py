@@ -11,10 +11,10 @@ from .foresight import forget
 from .ladder import restore
 from .ledger import clear, close_ledger, springs_hold
 from .limits import step_with_limits
-from .lock import lock_energy, move_rigidly, stands
+from .lock import lock_energy, move_rigidly, supports_rest
 from .motion import advance, go_back, move
 from .solve import drop_impulses
-from .start import look
+from .start import compute_rows
 
 
 @nonallocating
@@ -22,7 +22,7 @@ def step_linearly(W: Workspace, h: float, length: float) -> float:
     """Take the step h by one linear system, or in free flight if that has no solution; how far joints were apart at its
     start, over the size of the component. PART has what springs have stored."""
     local, part = W.J.LOCAL, W.J.PART
-    look(W)
+    compute_rows(W)
     stored, apart = springs_hold(W), farthest(W)
     drop_impulses(W)
     if step_with_limits(W, True, h, length, True, 0.0, False, part):
@@ -35,7 +35,7 @@ def step_linearly(W: Workspace, h: float, length: float) -> float:
                 local[i].v1[c] = local[i].v0[c] + h * local[i].acceleration[c]
         move(local, W.bodies, h)
         advance(local, W.bodies, h)
-    look(W)
+    compute_rows(W)
     clear(part)
     part.stored = springs_hold(W) - stored
     return apart
@@ -47,10 +47,10 @@ def stop_joints(W: Workspace, h: float) -> None:
     PART."""
     local, part = W.J.LOCAL, W.J.PART
     go_back(local, W.bodies)
-    look(W)
+    compute_rows(W)
     stored = springs_hold(W)
     move_rigidly(local, W.bodies, h)
-    look(W)
+    compute_rows(W)
     clear(part)
     part.stored = springs_hold(W) - stored
     close_ledger(local, W.bodies, part)
@@ -74,10 +74,10 @@ def take_gain(W: Workspace, h: float, status: int, before: float) -> int:
         gain = part.closed - first.owed
         taken = lock_energy(local, W.bodies, gain)
         part.closed -= taken
-        if gain - taken > 1e-9 * gain + 1e-12 * first.owed and stands(local, W.bodies):
+        if gain - taken > 1e-9 * gain + 1e-12 * first.owed and supports_rest(local, W.bodies):
             status, stopped = LINEAR, True
     if status == LINEAR and not farthest(W) <= before + LINEAR_APART:
-        stopped = stands(local, W.bodies)
+        stopped = supports_rest(local, W.bodies)
     if stopped:
         stop_joints(W, h)
     spent = part.closed if status == ELASTIC else max(part.closed, 0.0)

@@ -6,7 +6,7 @@ from ..compiled import Table, nonallocating
 from ..compiled.records import Rows
 from ..model.bodies import Body
 from ..model.joints import Joints, joints_of
-from .motion import size_up
+from .motion import read_body, seat, size_up
 from .step import take_step
 from .workspace import workspace
 
@@ -14,16 +14,13 @@ from .workspace import workspace
 @nonallocating
 def gather(bodies: Rows[Body], J: Joints, s: int, h: float) -> float:
     """Copy the bodies of component s into its scratch; its size, the length that errors are measured by."""
-    C, local = J.COMPONENT[s], J.LOCAL
+    C = J.COMPONENT[s]
     for i in range(C.end_body - C.first_body):
-        member, L = J.JOINED[C.first_body + i], local[i]
-        b = bodies[member.body]
-        L.pose[0], L.pose[1], L.pose[2] = b.x, b.y, b.angle
-        L.v0[0], L.v0[1], L.v0[2] = b.vx, b.vy, b.spin
-        L.acceleration[0], L.acceleration[1], L.acceleration[2] = b.ax, b.ay, b.angular
-        L.mobility[0], L.mobility[1], L.mobility[2] = b.inv_mass, b.inv_mass, b.inv_inertia
-        L.cayley, L.column, L.freedoms, L.first = member.cayley, member.column, member.freedoms, member.first
-    return size_up(J.JOINT, J.COUPLING, C.first_joint, C.end_joint, local, C.end_body - C.first_body, h)
+        body, local = bodies[J.JOINED[C.first_body + i].body], J.LOCAL[i]
+        seat(local, J.JOINED[C.first_body + i])
+        read_body(local, body)
+        local.acceleration[0], local.acceleration[1], local.acceleration[2] = body.ax, body.ay, body.angular
+    return size_up(J, s, h)
 
 
 @nonallocating
