@@ -76,8 +76,8 @@ ENTRIES = {
     "impacts.run:run": "{Scene} {Joints} {RunArrays} f8[3] i8[2] f8[2] f8[1] f8[1]",
     "joints.plan:make_plan": "Body[1] Joint[1] Component[1] ComponentBody[1] Coupling[1]",
     "joints.held:find_held": "Body[1] Joint[1] i8[1] i8[1] i8[1]",
+    # Only tests call these, which solve single islands and components: some hundred times slower as plain Python.
     "joints.world:step_all": "{Joints} Body[1] f8",
-    # Only tests call these, which solve single islands: some hundred times slower as plain Python.
     "contacts.interval:step_island": "{Scene} {Island} {Contacts} i8 f8 i8 f8 f8 f8 f8",
     "contacts.memory:forget": "i8[1] Force[1] Count i8[1] Force[1] f8",
 }
