@@ -107,7 +107,7 @@ MUTATIONS = (
              "joints/test_kinds.py", "stiff_damper"),
     Mutation("joints: a rope that pushes", "joints/bounds.py", "if pull > worst:", "if -pull > worst:",
              "joints/test_limits.py", "bead"),
-    Mutation("joints: parts of order 4", "joints/step.py", "(1.0 - 4.0 * SUZUKI) * h", "(1.0 - 3.0 * SUZUKI) * h",
+    Mutation("joints: parts of order 4", "joints/ladder.py", "(1.0 - 4.0 * SUZUKI) * h", "(1.0 - 3.0 * SUZUKI) * h",
              "joints/test_linkages.py", "published_place"),
     # Ledger and lock.
     Mutation("ledger: factor 1/2 of a bounce", "contacts/single.py",

@@ -15,7 +15,7 @@ import eeca_pymunk as ep
 import scenes
 from comparisons import engines, film, films, tour
 from comparisons.__main__ import NAMES, chosen, command_line, main
-from eeca_pymunk.model import bodies, joints, parameters
+from eeca_pymunk.model import bodies, joint_steps, joints, parameters
 
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -201,7 +201,7 @@ def test_files_and_functions_that_pages_name_exist(page: str) -> None:
 
 def test_parameters_and_states_that_the_method_names_exist() -> None:
     known = {name for found in parameters.table().values() for name in found}
-    known |= {name for module in (bodies, joints) for name in vars(module) if name.isupper()}
+    known |= {name for module in (bodies, joints, joint_steps) for name in vars(module) if name.isupper()}
     named = set(re.findall(r"\b[A-Z][A-Z_]{3,}\b", text(ROOT / "docs" / "method.md")))
     assert named - known == {"EECA"}
 

@@ -33,9 +33,9 @@ TABLES = {
         SIDE:Side[1] CORNER:Corner[1] HELD:Held[1] MISSED:Missed[1] PAR:Step COUNT:Count
     """,
     "Joints": """
-        JOINT:Joint[1] PARTNER:Body[1] COMPONENT:Component[1] MEMBER:ComponentBody[1] LINK:Coupling[1]
-        HINGE:JointStep[1] LOCAL:BodyStep[1] MATRIX:f8[1] RIGHT:f8[1] MORE:f8[1] STIFF:f8[2] PROGRESS:Progress
-        PART:JointLedger PIVOTS:i8[1] OF:i8[1] KEPT:Joint[1] STEPPED:JointLedger[1] TALLY:Tally
+        JOINT:Joint[1] PARTNER:Body[1] COMPONENT:Component[1] JOINED:ComponentBody[1]
+        COUPLING:Coupling[1] HINGE:JointStep[1] LOCAL:BodyStep[1] MATRIX:f8[1] RIGHT:f8[1] MORE:f8[1] STIFF:f8[2]
+        PROGRESS:Progress PART:JointLedger PIVOTS:i8[1] OF:i8[1] KEPT:Joint[1] STEPPED:JointLedger[1] TALLY:Tally
     """,
     "Island": """
         WHO:i8[1] POSE:f8[2] V:f8[2] ACC:f8[2] IM:f8[1] II:f8[1] EXTENT:f8[1] FELT:f8[1] PAIRS:i8[2]
@@ -81,8 +81,8 @@ ENTRIES = {
     "joints.plan:measure_plan": "Component[1] i8[1] i8",
     "joints.held:may_hold": "Joint[1] i8[1] i8",
     "joints.held:find_held": "Body[1] Joint[1] i8[1] i8[1] i8[1]",
+    # Only tests call these, which solve single islands and components: some hundred times slower as plain Python.
     "joints.world:step_all": "{Joints} Body[1] f8",
-    # Only tests call these, which solve single islands: some hundred times slower as plain Python.
     "contacts.interval:step_island": "{Scene} {Island} {Contacts} i8 f8 i8 f8 f8 f8 f8",
     "contacts.memory:forget": "i8[1] Force[1] Count i8[1] Force[1] f8",
 }

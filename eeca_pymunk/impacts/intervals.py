@@ -9,12 +9,12 @@ from ..islands.accounting import close_interval
 from ..islands.building import build_islands
 from ..islands.intervals import solve
 from ..jointed.meet import end_here, shorten
-from ..jointed.solve import SPENT, begin_interval
+from ..jointed.solve import begin_interval
 from ..model.bodies import AT_REST
 from ..model.joints import Joints
 from ..model.parameters.joints import STEP_WORK
 from ..model.scene import Scene
-from ..model.step import DONE, PUSHES_FULL, SOLVES
+from ..model.step import DONE, PUSHES_FULL, SOLVES, SPENT
 from ..prediction.scheduling import predict_all
 
 

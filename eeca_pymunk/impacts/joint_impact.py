@@ -9,7 +9,7 @@ from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows, zeros
 from ..contacts.works import carried
 from ..islands.building import comes_to_rest
-from ..islands.intervals import clear_places
+from ..islands.local import clear_places, set_places
 from ..islands.membership import jointed, members
 from ..jointed.columns import fill_free, fill_group, make_columns, weigh
 from ..jointed.component import answer, fit_speeds, ready
@@ -130,7 +130,7 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
         # Only the part of the velocities that joints allow takes part in the impact.
         along = carried_along(J, s)
         if along:
-            fit_speeds(A, J, s, length)
+            fit_speeds(J, s, length)
             for q in range(n):
                 if groups.GROUP[q] == g:
                     for c in range(3):
@@ -174,8 +174,7 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
         A.STATE[j].version += 1
     n = rejoin(A, a, b, t, n, rest, lost)
     # Islands that were moved to this instant but do not touch begin new intervals too.
-    for q in range(n):
-        A.PLACE[A.BLOCK[q]] = q
+    set_places(A, A.BLOCK, n)
     MINE = np.empty(A.BODY.shape[0], np.int64)
     for c in range(ended):
         more = members(A, A.STATE[ENDED[c]].island, MINE)

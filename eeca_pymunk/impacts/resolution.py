@@ -14,7 +14,7 @@ from ..contacts.single import note
 from ..contacts.unmet import note_unmet, spend
 from ..contacts.works import carried
 from ..islands.building import spread
-from ..islands.intervals import clear_places
+from ..islands.local import clear_places
 from ..islands.membership import members, unite
 from ..model.contacts import SOLVED, Problem, Solved
 from ..model.scene import Scene

@@ -6,7 +6,6 @@ import math
 
 import numpy as np
 
-from ..arrays import IntArray
 from ..compiled import kernel, nonallocating
 from ..contacts.correction import budget_of, least_of, lifting
 from ..contacts.interval import make_contacts, step_island
@@ -18,8 +17,7 @@ from ..model.islands import Island
 from ..model.parameters.events import RESOLUTION
 from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES, LARGE_ISLAND, SMALL_SWEEPS
 from ..model.scene import Scene
-from ..model.step import DONE, PUSHES_FULL
-from ..rows.inplace import sort
+from ..model.step import AGAIN, DONE, PUSHES_FULL
 from .at_rest import put_to_rest
 from .candidates import (
     before_end,
@@ -33,11 +31,9 @@ from .candidates import (
     travel_bound,
 )
 from .depths import driven, too_deep_at_end
-from .local import lay_out_island, open_contacts
-from .membership import lossy, members
+from .local import clear_places, lay_out_island, needs_memory, number_bodies, open_contacts, open_until
+from .membership import lossy
 from .rest import rest_threshold
-
-AGAIN = -1  # status of an interval that is to be shorter
 
 
 @nonallocating
@@ -49,13 +45,6 @@ def bodies_with_supports(A: Scene, isle: Island, n: int) -> int:
         if A.BODY[isle.WHO[q]].inv_mass > 0.0 and root >= 0 and root != last:
             found, last = found + A.MEMBER[root].bodies, root
     return found
-
-
-@nonallocating
-def clear_places(A: Scene, MINE: IntArray, n: int) -> None:
-    """Reset A.PLACE, the local numbers, of n bodies."""
-    for q in range(n):
-        A.PLACE[MINE[q]] = -1
 
 
 @kernel
@@ -81,12 +70,8 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
     """One attempt of `solve`, with an interval no longer than `longest`. Returns AGAIN and the length for the next
     attempt, with nothing changed, if the interval is too long; never in the `last` attempt."""
     BODY, STATE, MEMBER, COUNT = A.BODY, A.STATE, A.MEMBER, A.COUNT
-    n = MEMBER[root].bodies
-    MINE = np.empty(n, np.int64)
-    members(A, root, MINE)
-    sort(MINE, n)
-    for q in range(n):
-        A.PLACE[MINE[q]] = q
+    MINE = number_bodies(A, root)
+    n = len(MINE)
     may_lose = lossy(A, root)
     found = pairs_within(A, root, t, longest, may_lose, MINE, n)
     h = interval_within_way(A, found, longest) if A.COUNT.together == 0 else longest
@@ -94,7 +79,7 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
         found = pairs_within(A, root, t, h, may_lose, MINE, n)
     p = len(found)
     h = min(h, interval_length(A, found, t))
-    if COUNT.pushes + 2 * p > A.PUSHED.shape[0] or 2 * (COUNT.remembered + 2 * p) > A.KEYS.shape[0]:
+    if needs_memory(A, p):
         clear_places(A, MINE, n)
         return PUSHES_FULL, 0.0
     isle = lay_out_island(A, MINE, n, found, t)
@@ -108,13 +93,13 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
             least = max(least, travel_bound(A, WHO[q], h))
     sweeps = SMALL_SWEEPS if n < LARGE_ISLAND else sweeps_of_large(t)
     m = 0
-    among = bodies_with_supports(A, isle, n)
+    with_supports = bodies_with_supports(A, isle, n)
     raised = 0
     for q in range(n, k):
         # A body without mobility that the program has moved into others does the work of lifting them.
         if MEMBER[WHO[q]].placed == MOVED and BODY[WHO[q]].inv_mass == 0.0:
             raised = 1
-    quiet = rest_threshold(A, root, MINE, n, among, t) if may_lose and raised == 0 else 0.0
+    quiet = rest_threshold(A, root, MINE, n, with_supports, t) if may_lose and raised == 0 else 0.0
     owed = max(-A.RESTING[root].lost, 0.0)
     shortest = A.PAR.dt / RESOLUTION
     if p > 0 and h > 0.0:
@@ -174,10 +159,9 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
         STATE[i].island, MEMBER[i].following = head, -1
     if head >= 0:
         MEMBER[head].last, MEMBER[head].bodies, MEMBER[head].hits = tail, size, hits
-        MEMBER[head].among, MEMBER[head].raised = among, raised
+        MEMBER[head].with_supports, MEMBER[head].raised = with_supports, raised
         A.RESTING[head].lost = lost
-        MEMBER[head].open = 1
-        A.RESTING[head].until = t + h if before_end(A, t + h) else math.inf
+        open_until(A, head, t + h)
         for z in range(m):
             A.PUSHED_BY[first + z].root = head
         COUNT.pushes += m

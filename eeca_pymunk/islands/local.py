@@ -1,4 +1,4 @@
-"""An island in local numbering for its solve: its bodies, and the contacts that the solve leaves."""
+"""An island in local numbering for its solve: its bodies, the contacts that the solve leaves, its interval."""
 
 from __future__ import annotations
 
@@ -7,13 +7,53 @@ import math
 import numpy as np
 
 from ..arrays import FlagArray, FloatArray, IntArray
-from ..compiled import kernel
+from ..compiled import kernel, nonallocating
 from ..contacts.works import carried
 from ..model.islands import Contacts, Island
 from ..model.scene import Scene
 from ..pairs.lists import mark_pair
 from ..rows.build import normal_rate, tangent_rate
+from ..rows.inplace import sort
+from .candidates import before_end
+from .membership import members
 from .rest import spins_freely
+
+
+@kernel
+def number_bodies(A: Scene, root: int) -> IntArray:
+    """The bodies of an island, in the order of their rows, with their places in A.PLACE until `clear_places`."""
+    MINE = np.empty(A.MEMBER[root].bodies, np.int64)
+    n = members(A, root, MINE)
+    sort(MINE, n)
+    set_places(A, MINE, n)
+    return MINE
+
+
+@nonallocating
+def set_places(A: Scene, MINE: IntArray, n: int) -> None:
+    """Set A.PLACE, the local numbers, of n bodies."""
+    for q in range(n):
+        A.PLACE[MINE[q]] = q
+
+
+@nonallocating
+def clear_places(A: Scene, MINE: IntArray, n: int) -> None:
+    """Reset A.PLACE of n bodies."""
+    for q in range(n):
+        A.PLACE[MINE[q]] = -1
+
+
+@nonallocating
+def needs_memory(A: Scene, p: int) -> bool:
+    """Whether the contacts of p more pairs of shapes need more memory (PUSHES_FULL)."""
+    return bool(A.COUNT.pushes + 2 * p > A.PUSHED.shape[0] or 2 * (A.COUNT.remembered + 2 * p) > A.KEYS.shape[0])
+
+
+@nonallocating
+def open_until(A: Scene, root: int, end: float) -> None:
+    """An interval of an island has begun, which ends at instant `end`."""
+    A.MEMBER[root].open = 1
+    A.RESTING[root].until = end if before_end(A, end) else math.inf
 
 
 @kernel

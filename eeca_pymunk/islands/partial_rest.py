@@ -33,8 +33,8 @@ from ..rows.inplace import sort
 from .accounting import close_interval
 from .at_rest import put_to_rest, stop
 from .candidates import pairs_within
-from .intervals import clear_places, solve
-from .local import lay_out_island, open_contacts
+from .intervals import solve
+from .local import clear_places, lay_out_island, open_contacts, set_places
 from .membership import lossy, members, unite
 from .rest import candidate_speed, postpone_test, slow_for_long, speed
 from .support import support_loads
@@ -53,19 +53,18 @@ def make_island(A: Scene, MINE: IntArray, n: int) -> None:
 
 
 @kernel
-def test_rest(A: Scene, MINE: IntArray, n: int, V0: FloatArray, among: int, freezing: bool) -> bool:
+def test_rest(A: Scene, MINE: IntArray, n: int, V0: FloatArray, with_supports: int, freezing: bool) -> bool:
     """Test whether static forces hold an island; if so put it to rest, else postpone its next test. Returns whether
     they do.
 
     Args:
         MINE: its n bodies.  V0: (n, 3) their velocities, which the forces have to end too.
-        among: number of bodies, with those of islands that support it.
+        with_supports: number of bodies, with those of islands that support it.
         freezing: True to test without the contacts of other islands; bodies then stop, but remain awake, and may be
             tested for rest at once.
     """
     BODY, COUNT, dt, root = A.BODY, A.COUNT, A.PAR.dt, MINE[0]
-    for q in range(n):
-        A.PLACE[MINE[q]] = q
+    set_places(A, MINE, n)
     found = pairs_within(A, root, 0.0, A.PAR.dt, True, MINE, n)
     LOAD = np.zeros((n, 3))
     if not freezing:
@@ -82,7 +81,7 @@ def test_rest(A: Scene, MINE: IntArray, n: int, V0: FloatArray, among: int, free
     if p == 0 or COUNT.pushes + 2 * p > A.PUSHED.shape[0] or not most > 0.0:
         postpone_test(A, MINE, n)
         return False
-    quick = (IMPACT_SPEED if freezing else candidate_speed(among)) * A.PAR.pulled / most
+    quick = (IMPACT_SPEED if freezing else candidate_speed(with_supports)) * A.PAR.pulled / most
     contacts = make_contacts(p, len(isle.WHO))
     m = step_island(A, isle, contacts, n, dt, 0, 0.0, 0.0, 0.0, -quick)
     COUNT.direct += contacts.OUT[0].direct
@@ -99,7 +98,7 @@ def test_rest(A: Scene, MINE: IntArray, n: int, V0: FloatArray, among: int, free
     for z in range(m):
         A.PUSHED_BY[first + z].root = root
     COUNT.pushes += m
-    A.MEMBER[root].open, A.RESTING[root].until, A.MEMBER[root].among = 1, math.inf, among
+    A.MEMBER[root].open, A.RESTING[root].until, A.MEMBER[root].with_supports = 1, math.inf, with_supports
     for q in range(n):
         A.MEMBER[MINE[q]].busy = 0
         body, rest = BODY[MINE[q]], A.RESTING[MINE[q]]

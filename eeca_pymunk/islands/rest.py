@@ -66,12 +66,12 @@ def postpone_test(A: Scene, MINE: IntArray, n: int) -> None:
 
 
 @nonallocating
-def rest_threshold(A: Scene, root: int, MINE: IntArray, n: int, among: int, t: float) -> float:
+def rest_threshold(A: Scene, root: int, MINE: IntArray, n: int, with_supports: int, t: float) -> float:
     """Speed relative to |a| dt below which an island may be put to rest at instant t by a test for static forces; 0 if
     it is not tested. A test postpones the next one.
 
     Args:
-        MINE: its n bodies.  among: number of bodies, with those of the islands that support it.
+        MINE: its n bodies.  with_supports: number of bodies, with those of the islands that support it.
     """
     if t > 0.0 or A.PAR.pulled == 0.0 or A.COUNT.together > 0 or A.RULE.shape[0] > 0:
         return 0.0
@@ -82,7 +82,7 @@ def rest_threshold(A: Scene, root: int, MINE: IntArray, n: int, among: int, t: f
             if not slow_for_long(A, MINE[q]) or A.MEMBER[MINE[q]].busy > 0:
                 return 0.0
     postpone_test(A, MINE, n)
-    return candidate_speed(among)
+    return candidate_speed(with_supports)
 
 
 @nonallocating

@@ -26,7 +26,8 @@ from ..pairs.rules import law
 from ..rows.build import place_row
 from ..rows.equilibrium import equilibrium
 from .accounting import wake
-from .intervals import clear_places, solve
+from .intervals import solve
+from .local import clear_places
 from .membership import members
 from .rest import candidate_speed, postpone_test, spins_freely
 
@@ -77,7 +78,7 @@ def supports_load(A: Scene, root: int) -> bool:
         room += 1 if A.PUSHED_BY[c].root == root else 0
     P, Q, OF = np.empty(room, np.int64), np.empty(room, np.int64), np.empty(room, np.int64)
     ROWS, L = empty(room, ROW), np.empty((room, 2))
-    open_to, m = 0.5 * candidate_speed(A.MEMBER[root].among) * A.PAR.pulled * dt * dt, 0
+    open_to, m = 0.5 * candidate_speed(A.MEMBER[root].with_supports) * A.PAR.pulled * dt * dt, 0
     for c in range(A.COUNT.pushes):
         R = A.PUSHED[c]
         if A.PUSHED_BY[c].root != root or not (R.normal > 0.0 or R.gap <= open_to):

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import math
-
 from ..compiled import nonallocating
-from ..islands.candidates import before_end
+from ..islands.local import open_until
 from ..joints.ledger import clear_interval
-from ..model.joints import ELASTIC, Joints
+from ..model.joint_steps import ELASTIC
+from ..model.joints import Joints
 from ..model.parameters.intervals import INTERVAL_RETRY
 from ..model.scene import Scene
 from ..pairs.rules import barred
@@ -24,8 +23,8 @@ def is_component(A: Scene, J: Joints, root: int) -> bool:
         return False
     count = 0
     for i in range(J.COMPONENT[s].first_body, J.COMPONENT[s].end_body):
-        if J.MEMBER[i].freedoms > 0:
-            if A.STATE[J.MEMBER[i].body].island != root:
+        if J.JOINED[i].freedoms > 0:
+            if A.STATE[J.JOINED[i].body].island != root:
                 return False
             count += 1
     return bool(count == A.MEMBER[root].bodies)
@@ -59,10 +58,9 @@ def begin_alone(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
     first = J.COMPONENT[s].first_body
     for i in range(J.COMPONENT[s].end_body - first):
         if J.LOCAL[i].freedoms > 0:
-            lay_path(A, J, s, J.MEMBER[first + i].body, i, h)
+            lay_path(A, J, s, J.JOINED[first + i].body, i, h)
     A.COUNT.solves += 1
-    A.MEMBER[root].open = 1
-    A.RESTING[root].until = t + h if before_end(A, t + h) else math.inf
+    open_until(A, root, t + h)
     return 0.0
 
 

@@ -30,7 +30,7 @@ def make_bounded(J: Joints, groups: Groups, limits: bool) -> Bounded:
             s = groups.COMPONENT[g]
             rows = J.COMPONENT[s].boxes
             for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint if limits else 0):
-                rows += 1 if is_limit(J.LINK[k].kind) and J.JOINT[J.LINK[k].joint].soft == 0 else 0
+                rows += 1 if is_limit(J.COUPLING[k].kind) and J.JOINT[J.COUPLING[k].joint].soft == 0 else 0
             n += rows
             entries += rows * (groups.FIRST[g + 1] - groups.FIRST[g])
     return room_for_rows(n, entries)
@@ -43,20 +43,20 @@ def note_row(A: Scene, J: Joints, B: Bounded, s: int, i: int, h: float, V: Float
     k, r = B.OF[i, 0], B.OF[i, 1]
     hinge = J.HINGE[k - J.COMPONENT[s].first_joint]
     B.ROWS[i].now = hinge.total[r]
-    limit = is_limit(J.LINK[k].kind) and J.JOINT[J.LINK[k].joint].soft == 0
-    if limit and J.LINK[k].side == 0:
+    limit = is_limit(J.COUPLING[k].kind) and J.JOINT[J.COUPLING[k].joint].soft == 0
+    if limit and J.COUPLING[k].side == 0:
         return
     B.ROWS[i].speed = -hinge.target[r]
     for end in range(2):
-        at = J.LINK[k].body[end]
-        B.END[i, end] = A.PLACE[J.MEMBER[J.COMPONENT[s].first_body + at].body] if J.LOCAL[at].freedoms > 0 else -1
+        at = J.COUPLING[k].body[end]
+        B.END[i, end] = A.PLACE[J.JOINED[J.COMPONENT[s].first_body + at].body] if J.LOCAL[at].freedoms > 0 else -1
         for c in range(3):
             B.ROW[i, 3 * end + c] = hinge.rows[r, 3 * end + c]
             if B.END[i, end] < 0:
                 B.ROWS[i].speed += B.ROW[i, 3 * end + c] * J.LOCAL[at].v0[c]
     if limit:
         B.ROWS[i].speed = -bounded_rate(B, i, V)
-    B.ROWS[i].low, B.ROWS[i].high = interval_of(J.LINK[k].kind, J.LINK[k].side, hinge.bound * h)
+    B.ROWS[i].low, B.ROWS[i].high = interval_of(J.COUPLING[k].kind, J.COUPLING[k].side, hinge.bound * h)
 
 
 @nonallocating
@@ -72,9 +72,9 @@ def list_rows(A: Scene, J: Joints, B: Bounded, s: int, h: float, V: FloatArray) 
     """Append the rows of component s whose impulses count as given (`motors.let_slip`); the first of them."""
     first = B.USED[0]
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
-        if J.LINK[k].soft != GIVEN or not held(J.LINK, k, 0):
+        if J.COUPLING[k].soft != GIVEN or not held(J.COUPLING, k, 0):
             continue
-        rows = 1 if J.LINK[k].kind == GROOVE and J.LINK[k].side == 0 else J.LINK[k].rows
+        rows = 1 if J.COUPLING[k].kind == GROOVE and J.COUPLING[k].side == 0 else J.COUPLING[k].rows
         for r in range(rows):
             i = B.USED[0]
             B.OF[i, 0], B.OF[i, 1] = k, r

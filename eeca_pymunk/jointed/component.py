@@ -6,52 +6,49 @@ import math
 
 from ..arrays import FloatArray
 from ..compiled import inlined, nonallocating
-from ..joints.bounds import bounded, gap
-from ..joints.entries import held as stands
+from ..joints.bounds import gap, has_bound
+from ..joints.correct import correct
+from ..joints.entries import held
 from ..joints.ledger import springs_hold
 from ..joints.response import prepare, respond
-from ..joints.solve import solve
-from ..joints.start import look
-from ..joints.step import island_step
+from ..joints.start import compute_rows
+from ..joints.step import take_step
 from ..joints.workspace import workspace
-from ..model.joints import GEAR, POSES, SPEEDS, STEP, Joints, Workspace
+from ..model.joint_steps import POSES, SPEEDS, STEP
+from ..model.joints import GEAR, Joints, Workspace
 from ..model.parameters.joints import CORRECTION_JOINTS
 from ..model.scene import Scene
 from .gathered import gather_component
 
 
 @nonallocating
-def step_in_scratch(J: Joints, s: int, h: float, length: float, whole: bool) -> int:
-    """Step component s by h from what is in its scratch, where its end stands then; its status.
+def step_in_scratch(J: Joints, s: int, h: float, length: float, whole: bool) -> None:
+    """Step component s by h from what is in its scratch, where its end stands then; its status is in STEPPED.
 
     `whole`: whether order 4 may be had: nothing else acts in the interval.
     """
-    order = J.TALLY.order if whole else 2
-    status = island_step(workspace(J, s), h, order, length, J.STEPPED[s])
+    J.STEPPED[s].status = take_step(workspace(J, s), h, J.TALLY.order if whole else 2, length, J.STEPPED[s])
     J.TALLY.repeats += 1
-    J.STEPPED[s].status = status
-    return int(status)
 
 
 @nonallocating
 def step_component(
-    A: Scene, J: Joints, s: int, h: float, length: float, whole: bool, VN: FloatArray, WAY: FloatArray,
-    END: FloatArray, MID: FloatArray,
-) -> int:  # fmt: skip
-    """`step_in_scratch` from what `gather_component` has put there; its status.
+    A: Scene, J: Joints, s: int, h: float, length: float, whole: bool, V: FloatArray, WAY: FloatArray, END: FloatArray,
+    MID: FloatArray,
+) -> None:  # fmt: skip
+    """`step_in_scratch` from what `gather_component` has put there.
 
-    VN, WAY, END: (k, 3) of the island, out: velocities at the end, ways (sums of h v_m), poses at the end.
+    V, WAY, END: (k, 3) of the island, out: velocities at the end, ways (sums of h v_m), poses at the end.
     MID: (k, 2), out: where constant forces have acted, means of the places over time.
     """
-    status = step_in_scratch(J, s, h, length, whole)
+    step_in_scratch(J, s, h, length, whole)
     b0 = J.COMPONENT[s].first_body
     for i in range(J.COMPONENT[s].end_body - b0):
         if J.LOCAL[i].freedoms > 0:
-            q = A.PLACE[J.MEMBER[b0 + i].body]
+            q = A.PLACE[J.JOINED[b0 + i].body]
             for c in range(3):
-                VN[q, c], END[q, c], WAY[q, c] = J.LOCAL[i].v0[c], J.LOCAL[i].pose[c], J.LOCAL[i].travel[c]
+                V[q, c], END[q, c], WAY[q, c] = J.LOCAL[i].v0[c], J.LOCAL[i].pose[c], J.LOCAL[i].travel[c]
             MID[q, 0], MID[q, 1] = J.LOCAL[i].mean[0] / h, J.LOCAL[i].mean[1] / h
-    return status
 
 
 @inlined
@@ -62,18 +59,18 @@ def size_joints(W: Workspace, length: float) -> None:
 
 
 @nonallocating
-def fit_speeds(A: Scene, J: Joints, s: int, length: float) -> None:
+def fit_speeds(J: Joints, s: int, length: float) -> None:
     """Make the velocities that `gather_component` has put into the scratch fit the joints, closed limits included, as
     an impact at which nothing bounces. What this costs is the caller's to book."""
     W = workspace(J, s)
     size_joints(W, length)
-    solve(W, int(SPEEDS), 2.0, length, W.J.COMPONENT[W.s].loops > 0, 0.0)
+    correct(W, SPEEDS)
 
 
 @nonallocating
 def springs_of(W: Workspace) -> float:
     """The energy that the springs of a component hold at the poses in the scratch."""
-    look(W)
+    compute_rows(W)
     return springs_hold(W)
 
 
@@ -87,31 +84,31 @@ def close_joints(
     W, b0 = workspace(J, s), J.COMPONENT[s].first_body
     length = gather_component(A, J, s, OLD, V, V, IM, II, t, h)
     size_joints(W, length)
-    held = springs_of(W)
+    stored = springs_of(W)
     for k in range(W.joints):
         # What is apart stays as far apart.
         for r in range(W.link[k].rows):
             W.J.HINGE[k].target[r] = W.J.HINGE[k].value[r]
     gather_component(A, J, s, NEW, V, V, IM, II, t, h)
-    solve(W, int(POSES), 2.0, length, W.J.COMPONENT[W.s].loops > 0, 0.0)
+    correct(W, POSES)
     for i in range(W.bodies):
         if J.LOCAL[i].freedoms > 0:
-            q = A.PLACE[J.MEMBER[b0 + i].body]
+            q = A.PLACE[J.JOINED[b0 + i].body]
             for c in range(3):
                 NEW[q, c] = J.LOCAL[i].pose[c]
-    held = springs_of(W) - held
+    stored = springs_of(W) - stored
     for k in range(W.joints):
         link, small = W.link[k], CORRECTION_JOINTS * W.J.HINGE[k].size
         if link.soft != 0:
             continue
         for r in range(link.rows):
-            if stands(W.link, k, r) and abs(W.J.HINGE[k].value[r] - W.J.HINGE[k].target[r]) > small:
+            if held(W.link, k, r) and abs(W.J.HINGE[k].value[r] - W.J.HINGE[k].target[r]) > small:
                 return math.inf
         for side in (-1, 1):
-            passed = bounded(W.J.JOINT, W.link, k, side) and link.side != side
+            passed = has_bound(W.J.JOINT, W.link, k, side) and link.side != side
             if passed and gap(W.J.JOINT, W.J.HINGE, W.link, k, side) < -small:
                 return math.inf
-    return held
+    return stored
 
 
 @nonallocating

@@ -51,12 +51,12 @@ def fit(A: Scene, J: Joints, interval: Interval, L: FloatArray, end: float, scal
             continue
         first = s if first < 0 else first
         length = gather_component(A, J, s, motion.END, motion.V, NOTHING, isle.IM, isle.II, end, interval.h)
-        fit_speeds(A, J, s, length)
+        fit_speeds(J, s, length)
         J.STEPPED[s].projected += fitting_loss(
             J.LOCAL, J.COMPONENT[s].end_body - J.COMPONENT[s].first_body, J.STEPPED[s]
         )
         for w in range(J.COMPONENT[s].end_body - J.COMPONENT[s].first_body):
-            body = J.MEMBER[J.COMPONENT[s].first_body + w].body
+            body = J.JOINED[J.COMPONENT[s].first_body + w].body
             if body < A.PLACE.shape[0] and A.PLACE[body] >= 0:
                 for c in range(3):
                     motion.V[A.PLACE[body], c] = J.LOCAL[w].v0[c]

@@ -52,11 +52,11 @@ def find_groups(WHO: IntArray, IM: FloatArray, OF: IntArray) -> Groups:
 
 
 @nonallocating
-def hangs(groups: Groups, COMPONENTS: Rows[Component], MEMBER: Rows[ComponentBody]) -> bool:
+def hangs(groups: Groups, COMPONENT: Rows[Component], JOINED: Rows[ComponentBody]) -> bool:
     """Whether a component of the island hangs on something that joints cannot move."""
     some = False
     for g in range(len(groups.COMPONENT)):
         s = groups.COMPONENT[g]
-        for i in range(COMPONENTS[s].first_body if s >= 0 else 0, COMPONENTS[s].end_body if s >= 0 else 0):
-            some = some or MEMBER[i].freedoms == 0
+        for i in range(COMPONENT[s].first_body if s >= 0 else 0, COMPONENT[s].end_body if s >= 0 else 0):
+            some = some or JOINED[i].freedoms == 0
     return some

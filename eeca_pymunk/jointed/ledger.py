@@ -8,7 +8,8 @@ from ..contacts.unmet import note_unmet
 from ..joints.ledger import clear_interval
 from ..layout import BODY_ROW, LEFT
 from ..layout import NOW as READ
-from ..model.joints import ELASTIC, Joints
+from ..model.joint_steps import ELASTIC
+from ..model.joints import Joints
 from ..model.parameters.joints import STEP_WORK, STEP_WORK_BODY
 from ..model.scene import Scene
 from ..model.step import JOINTS as UNMET_JOINTS

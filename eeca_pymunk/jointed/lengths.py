@@ -84,7 +84,7 @@ def excess_alone(A: Scene, J: Joints, s: int, t: float, h: float) -> float:
     far, first = 0.0, J.COMPONENT[s].first_body
     for w in range(J.COMPONENT[s].end_body - first):
         if J.LOCAL[w].freedoms > 0:
-            i, local = int(J.MEMBER[first + w].body), J.LOCAL[w]
+            i, local = int(J.JOINED[first + w].body), J.LOCAL[w]
             b = A.BODY[i]
             wx, wy, turned = local.pose[0] - b.x, local.pose[1] - b.y, local.pose[2] - b.angle
             far = max(far, strays(A, i, wx, wy, turned, local.v0, A.PULL[i], t, h, A.BLOCK, 0))

@@ -76,7 +76,7 @@ def correct(A: Scene, J: Joints, interval: Interval, end: float, budget: float) 
         part = 0.5 * budget / cost
     HELD = np.zeros(len(groups.COMPONENT))
     # Of what something holds no body is turned.
-    ALL = np.ones(n if len(isle.IM) == n and not hangs(groups, J.COMPONENT, J.MEMBER) else 0, np.uint8)
+    ALL = np.ones(n if len(isle.IM) == n and not hangs(groups, J.COMPONENT, J.JOINED) else 0, np.uint8)
     for _ in range(4):
         spent = 0.0
         NEW = END.copy()

@@ -12,8 +12,8 @@ def drives(J: Joints, s: int) -> bool:
     """Whether the joints of component s move its bodies by themselves: springs, motors, joints with a max_force."""
     some = False
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
-        kind = J.LINK[k].kind
-        some = some or kind in (SPRING, ROTARY_SPRING, MOTOR) or J.JOINT[J.LINK[k].joint].soft != 0
+        kind = J.COUPLING[k].kind
+        some = some or kind in (SPRING, ROTARY_SPRING, MOTOR) or J.JOINT[J.COUPLING[k].joint].soft != 0
     return some
 
 
@@ -22,7 +22,7 @@ def keeps_speed(J: Joints, s: int) -> bool:
     """Whether joints of component s have rows of speeds at the end of an interval: motors, joints with a max_force."""
     some = False
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
-        some = some or J.LINK[k].soft != 0
+        some = some or J.COUPLING[k].soft != 0
     return some
 
 
@@ -31,7 +31,7 @@ def let_slip(J: Joints, s: int, slips: bool, limits: bool) -> None:
     """Let bounded impulses count as given in answers, or no longer: those of joints with a max_force, where they are
     few enough for `..joints.boxes`, and, if `limits`, those of limits that hold."""
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
-        link = J.LINK[k]
+        link = J.COUPLING[k]
         if link.soft != 0 and J.JOINT[link.joint].max_force < 1e300 and J.COMPONENT[s].boxes > 0:
             link.soft = GIVEN if slips else BOXED
         elif limits and is_limit(link.kind) and J.JOINT[link.joint].soft == 0:

@@ -73,7 +73,7 @@ def some_give(J: Joints, groups: Groups) -> bool:
     some = False
     for g in range(len(groups.COMPONENT)):
         s = groups.COMPONENT[g]
-        some = some or (s >= 0 and J.JOINT[J.LINK[J.COMPONENT[s].first_joint].joint].compliance > 0.0)
+        some = some or (s >= 0 and J.JOINT[J.COUPLING[J.COMPONENT[s].first_joint].joint].compliance > 0.0)
     return some
 
 
@@ -133,7 +133,7 @@ def press(
     NOW = np.empty(len(B.OF))
     problem = JointedProblem(P, Q, ROWS, C, B, m)
     # Only of what nothing from without holds or touches is there an angular momentum to keep.
-    free = len(isle.IM) == n and not hangs(groups, J.COMPONENT, J.MEMBER)
+    free = len(isle.IM) == n and not hangs(groups, J.COMPONENT, J.JOINED)
     for outer in range(rounds):
         if J.PROGRESS.effort > J.PROGRESS.share:
             break

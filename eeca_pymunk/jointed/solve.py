@@ -14,18 +14,17 @@ from ..contacts.memory import remember_loads
 from ..contacts.unmet import note_unmet
 from ..contacts.works import moved
 from ..islands.candidates import before_end, pairs_within
-from ..islands.intervals import AGAIN, clear_places
-from ..islands.local import lay_out_island, open_contacts
-from ..islands.membership import lossy, members
+from ..islands.local import clear_places, lay_out_island, needs_memory, number_bodies, open_contacts, open_until
+from ..islands.membership import lossy
 from ..model.islands import Island
-from ..model.joints import ELASTIC, Joints
+from ..model.joint_steps import ELASTIC
+from ..model.joints import Joints
 from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES, UNSOLVED_PART
 from ..model.parameters.joints import INTERVAL_SHARE
 from ..model.scene import Scene
-from ..model.step import CONTACTS, DONE, PUSHES_FULL
+from ..model.step import AGAIN, CONTACTS, DONE, PUSHES_FULL, SPENT
 from ..rows.bounded import room_for_rows
 from ..rows.build import normal_rate
-from ..rows.inplace import sort
 from .advance import Interval, Motion, advance
 from .alone import begin_alone, is_component, meets_nobody
 from .columns import make_columns
@@ -38,8 +37,6 @@ from .lifting import correct
 from .lock import lost, slip_of
 from .motors import drives
 from .press import press
-
-SPENT = -2  # status of an interval for which there is no work left
 
 
 @nonallocating
@@ -89,13 +86,9 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
     if whole and meets_nobody(A, root):
         far = begin_alone(A, J, root, t, h, last)
         return (AGAIN, h / far) if far > 0.0 else (DONE, h)
-    BODY, STATE, MEMBER, COUNT = A.BODY, A.STATE, A.MEMBER, A.COUNT
-    n = MEMBER[root].bodies
-    MINE = np.empty(n, np.int64)
-    members(A, root, MINE)
-    sort(MINE, n)
-    for q in range(n):
-        A.PLACE[MINE[q]] = q
+    BODY, STATE, COUNT = A.BODY, A.STATE, A.COUNT
+    MINE = number_bodies(A, root)
+    n = len(MINE)
     may_lose = lossy(A, root)
     found = pairs_within(A, root, t, A.PAR.dt - t, may_lose, MINE, n)
     p = len(found)
@@ -103,7 +96,7 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
         clear_places(A, MINE, n)
         far = begin_alone(A, J, root, t, h, last)
         return (AGAIN, h / far) if far > 0.0 else (DONE, h)
-    if COUNT.pushes + 2 * p > A.PUSHED.shape[0] or 2 * (COUNT.remembered + 2 * p) > A.KEYS.shape[0]:
+    if needs_memory(A, p):
         clear_places(A, MINE, n)
         return PUSHES_FULL, h
     isle = lay_out_island(A, MINE, n, found, t)
@@ -183,8 +176,7 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
         rest.lift_x, rest.lift_y = motion.END[q, 0] - WHERE[q, 0], motion.END[q, 1] - WHERE[q, 1]
         rest.lift_angle = motion.END[q, 2] - WHERE[q, 2]
         rest.lift_vx, rest.lift_vy, rest.lift_spin = motion.V[q, 0], motion.V[q, 1], motion.V[q, 2]
-    MEMBER[root].open = 1
-    A.RESTING[root].until = t + h if before_end(A, t + h) else math.inf
+    open_until(A, root, t + h)
     return DONE, h
 
 

@@ -1,8 +1,12 @@
-"""Joints: the energy-momentum step of islands of jointed bodies without contacts.
+"""Joints: the energy-momentum step of components, bodies that hang together by joints, without contacts.
 
-In: BODY rows (poses, velocities, accelerations, mobilities), JOINT rows, a step. Out: poses and velocities at
-its end, impulses, the ledger of each island, a status. Open `rows.py` first (the equations of all ten joints), then
-`newton` and `solve` (the implicit step; `banded`, `condensed` and `dual` solve its linear systems), `limits` (bounds
-met at their instant), `step` (one island, its ladder, order 4; `foresight` says what it begins with), `plan` (islands,
-order of unknowns), `world` (all islands in one call). `start` and `correct` mend what users break.
+In: BODY rows (poses, velocities, accelerations, mobilities), JOINT rows, a step. Out: poses and velocities at its end,
+impulses, the ledger of each component, a status.
+
+Open `rows.py` first (the equations of all ten joints; `points.py`, `angles.py`, `springs.py` have their rows), then
+`step.py`, the step of a component: `start.py` reads its joints, `closing.py` and `correct.py` mend what users break,
+`ladder.py` takes the step, `unheld.py` what does not converge. `limits.py` meets bounds at their instant and calls
+`solve.py`, Newton's iteration; `newton.py` has its linear systems, of `entries.py`, `soft.py` and `boxes.py` (bounded
+impulses), which `banded.py`, `condensed.py` and `dual.py` solve. `plan.py` finds components and the order of their
+unknowns (`ordering.py`), `response.py` how they answer impulses, `held.py` bodies that cannot move at all.
 """

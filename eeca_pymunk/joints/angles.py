@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from ..arrays import FloatArray
 from ..compiled import nonallocating
-from ..model.joints import FULL_BEND, GEAR, NO_BEND, RATCHET, ROTARY_SPRING, BodyStep, Joint, JointStep
+from ..model.joint_steps import FULL_BEND, NO_BEND, BodyStep, JointStep
+from ..model.joints import GEAR, RATCHET, ROTARY_SPRING, Joint
 from .motion import turn
 from .springs import mean_force
 

@@ -5,13 +5,14 @@ from __future__ import annotations
 from ..arrays import FloatArray
 from ..compiled import nonallocating
 from ..compiled.records import Rows
-from ..model.joints import GROOVE, RATCHET, ROTARY_LIMIT, SLIDE, Coupling, Joint, JointStep, Workspace
+from ..model.joint_steps import JointStep
+from ..model.joints import GROOVE, RATCHET, ROTARY_LIMIT, SLIDE, Coupling, Joint, Workspace
 from ..model.parameters.joints import JOINT_TOUCH
 from .entries import along
 
 
 @nonallocating
-def bounded(joint: Rows[Joint], link: Rows[Coupling], k: int, side: int) -> bool:
+def has_bound(joint: Rows[Joint], link: Rows[Coupling], k: int, side: int) -> bool:
     """Whether joint k has a bound at this side."""
     kind, j = link[k].kind, link[k].joint
     if kind == RATCHET:
@@ -34,7 +35,7 @@ def gap(joint: Rows[Joint], hinge: Rows[JointStep], link: Rows[Coupling], k: int
 
 
 @nonallocating
-def hold(joint: Rows[Joint], hinge: Rows[JointStep], link: Rows[Coupling], k: int) -> None:
+def hold_limit(joint: Rows[Joint], hinge: Rows[JointStep], link: Rows[Coupling], k: int) -> None:
     """Hold joint k, which stands on a limit, where it is for the rest of the step, however little is left of that.
 
     To close a gap of round-off in a part as short would take any force. Rows must be those of the present poses.
@@ -79,18 +80,15 @@ def release(W: Workspace) -> bool:
 
 
 @nonallocating
-def first_bound(W: Workspace, h: float) -> int:
-    """The free limit that a step h passes first, by the mean rate of its gap; or -1.
-
-    progress.side is its side, progress.when the estimate of the instant.
-    """
-    hinge, link, progress = W.J.HINGE, W.link, W.J.PROGRESS
-    which = -1
+def first_bound(W: Workspace, h: float) -> tuple[int, int, float]:
+    """The free limit that a step h passes first, by the mean rate of its gap, or -1; its side; about the instant."""
+    hinge, link = W.J.HINGE, W.link
+    which, at_side, instant = -1, 0, h
     for k in range(W.joints):
         if link[k].side != 0 or link[k].soft != 0:
             continue
         for side in (-1, 1):
-            if not bounded(W.J.JOINT, link, k, side):
+            if not has_bound(W.J.JOINT, link, k, side):
                 continue
             end = gap(W.J.JOINT, hinge, link, k, side)
             if end >= -JOINT_TOUCH * hinge[k].size:
@@ -101,6 +99,6 @@ def first_bound(W: Workspace, h: float) -> int:
             )
             start = max(end - 0.5 * h * rate, 0.0)
             when = h * start / (start - end)
-            if which < 0 or when < progress.when:
-                which, progress.side, progress.when = k, side, when
-    return which
+            if which < 0 or when < instant:
+                which, at_side, instant = k, side, when
+    return which, at_side, instant

@@ -17,7 +17,8 @@ import math
 from ..arrays import FloatArray
 from ..compiled import nonallocating
 from ..compiled.records import Rows
-from ..model.joints import BOXED, GROOVE, BodyStep, Coupling, JointStep, Workspace
+from ..model.joint_steps import BodyStep, JointStep
+from ..model.joints import BOXED, GROOVE, Coupling, Workspace
 from ..model.parameters.joints import BOX_REDUNDANT, BOX_RESIDUAL, BOX_ROUNDS, BOX_SWEEPS
 from ..rows.bounded import FIRST_OF_DISC, SECOND_OF_DISC, SINGLE, on_disc
 from .dual import STRIDE

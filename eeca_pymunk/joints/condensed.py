@@ -1,4 +1,4 @@
-"""Systems of wide islands in the bodies' unknowns alone, the joints' rows as stiff springs that are then corrected.
+"""Systems of wide components in the bodies' unknowns alone, the joints' rows as stiff springs that are then corrected.
 
 [A  -J^T; G  give] [x; mu] = [b; c] becomes (A + R J^T G) dx = b + R J^T (c - G x), dmu = R (c - G x - G dx), and again
 with what is left of c: the balance of the bodies holds after the first pass, each further one takes the rows' error by
@@ -12,7 +12,8 @@ from __future__ import annotations
 from ..arrays import FloatArray
 from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
-from ..model.joints import BodyStep, Coupling, JointStep, Workspace
+from ..model.joint_steps import BodyStep, JointStep
+from ..model.joints import Coupling, Workspace
 from ..model.parameters.joints import CONDENSED_BAND
 
 
@@ -121,7 +122,7 @@ def spread(
 @inlined
 def reach_of(
     hinge: Rows[JointStep], link: Rows[Coupling], local: Rows[BodyStep], k: int, r: int, right: FloatArray, at: int
-) -> float:  # fmt: skip
+) -> float:
     """The scaled row G of row r of joint k times right[at :]."""
     total = 0.0
     for end in range(2):

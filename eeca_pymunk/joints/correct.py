@@ -1,4 +1,4 @@
-"""Velocities made to fit the joints, as an impact does at which nothing bounces; `solve` makes the passes.
+"""Poses and velocities made to fit the joints; velocities as by an impact at which nothing bounces.
 
 Kinetic energy only falls, and momentum stays, for the change is M^-1 G^T times impulses that bring G v to 0.
 """
@@ -7,10 +7,58 @@ from __future__ import annotations
 
 from ..compiled import nonallocating
 from ..compiled.records import Rows
-from ..model.joints import BodyStep, Coupling, JointLedger, JointStep, Workspace
-from ..model.parameters.joints import JOINT_SPEED_LEFT, JOINT_SPEED_ROUND_OFF, JOINT_TOUCH
-from .bounds import approach, bounded, gap
+from ..model.joint_steps import POSES, SPEEDS, BodyStep, JointLedger, JointStep
+from ..model.joints import DUAL, Coupling, Workspace
+from ..model.parameters.joints import (
+    CLOSING_EPSILON,
+    CLOSINGS,
+    CONDENSED_PASSES,
+    JOINT_SPEED_LEFT,
+    JOINT_SPEED_ROUND_OFF,
+    JOINT_TOUCH,
+    REDUNDANT_EPSILON,
+    REDUNDANT_PASSES,
+)
+from .bounds import approach, gap, has_bound
 from .entries import held
+from .newton import apply, back, effort, factorise, first_iterate, linearise
+
+
+@nonallocating
+def correct(W: Workspace, what: int) -> None:
+    """Make POSES or SPEEDS fit the joints, by the least change in the measure of the masses.
+
+    POSES: until g is on its targets, at most CLOSINGS times. SPEEDS: those before stay at `v_kept`. The first pass
+    shows which free limits are closed and closing; these are held. Three passes take back what epsilon left; then, as
+    long as a limit pulls, all begins again without it. There are at most joints + 1 tries.
+    """
+    component, passes, tries = W.J.COMPONENT[W.s], 0, 0
+    first_iterate(W, what, 2.0)
+    if what == SPEEDS:
+        keep_speeds(W)
+    component.factored = 0
+    system = DUAL if component.rigid > 0 else component.system
+    # Rows that contradict each other must not move bodies far.
+    epsilon = CLOSING_EPSILON if what == POSES else REDUNDANT_EPSILON
+    for turn in range(REDUNDANT_PASSES + 3 * W.joints):
+        error = linearise(W, what, 2.0, 1.0, 0.0, turn == 0, system, True)
+        if what == POSES and (error <= 1e-14 or turn == CLOSINGS):
+            return
+        system = factorise(W, what, 2.0, 1.0, 0.0, system, epsilon)
+        if system < 0:
+            return
+        W.J.PROGRESS.effort += effort(system, True, 0, W.joints, component)
+        back(W, system, CONDENSED_PASSES, W.J.RIGHT)
+        apply(W, what)
+        if what == SPEEDS:
+            passes += 1
+            met = passes == 1 and tries == 0 and hold_closing(W)
+            if met or passes == 3 or not error > 0.0:
+                if not met and (tries > W.joints or not let_go(W)):
+                    return
+                passes, tries = 0, tries + 1
+                restore_speeds(W)
+        first_iterate(W, what, 2.0)
 
 
 @nonallocating
@@ -46,47 +94,38 @@ def fitting_loss(local: Rows[BodyStep], bodies: int, ledger: JointLedger) -> flo
 
 
 @nonallocating
-def keep(W: Workspace) -> None:
-    """Before velocities are corrected: remember them, and count passes and tries anew."""
-    W.J.PROGRESS.passes = W.J.PROGRESS.tries = 0
+def keep_speeds(W: Workspace) -> None:
+    """Remember the velocities before they are corrected."""
     for i in range(W.bodies):
         for c in range(3):
             W.J.LOCAL[i].v_kept[c] = W.J.LOCAL[i].v0[c]
+    restore_speeds(W)
+
+
+@nonallocating
+def restore_speeds(W: Workspace) -> None:
+    """The velocities before a correction, without impulses."""
+    for i in range(W.bodies):
+        for c in range(3):
+            W.J.LOCAL[i].v0[c] = W.J.LOCAL[i].v_kept[c]
     for k in range(W.joints):
         W.J.HINGE[k].pushed[0] = W.J.HINGE[k].pushed[1] = 0.0
 
 
 @nonallocating
-def goes_on(W: Workspace) -> bool:
-    """After a pass of correcting velocities: whether another is due. Limits that pull are let go, closing ones held.
-
-    The first pass shows which free limits are closed and closing; three passes take back what epsilon left; then, as
-    long as a limit pulls, all begins again without it. There are at most joints + 1 tries.
-    """
-    hinge, link, local, progress = W.J.HINGE, W.link, W.J.LOCAL, W.J.PROGRESS
-    progress.passes += 1
-    changed = progress.passes == 1 and progress.tries == 0 and touch(W)
-    if not changed:
-        if progress.passes < 3 and progress.error > 0.0:
-            return True
-        pulling, pull = -1, 0.0
-        for k in range(W.joints):
-            last = link[k].rows - 1
-            if last < 0 or link[k].side == 0 or link[k].soft != 0:
-                continue
-            if hinge[k].pushed[last] * link[k].side > max(pull, noise(hinge, link, k, last, local)):
-                pulling, pull = k, hinge[k].pushed[last] * link[k].side
-        if pulling < 0 or progress.tries > W.joints:
-            return False
-        link[pulling].side = 0
-    progress.passes = 0
-    progress.tries += 1
-    for i in range(W.bodies):
-        for c in range(3):
-            local[i].v0[c] = local[i].v_kept[c]
+def let_go(W: Workspace) -> bool:
+    """Let go of the limit that pulls most; False if none does."""
+    hinge, link = W.J.HINGE, W.link
+    pulling, pull = -1, 0.0
     for k in range(W.joints):
-        hinge[k].pushed[0] = hinge[k].pushed[1] = 0.0
-    return True
+        last = link[k].rows - 1
+        if last < 0 or link[k].side == 0 or link[k].soft != 0:
+            continue
+        if hinge[k].pushed[last] * link[k].side > max(pull, noise(hinge, link, k, last, W.J.LOCAL)):
+            pulling, pull = k, hinge[k].pushed[last] * link[k].side
+    if pulling >= 0:
+        link[pulling].side = 0
+    return pulling >= 0
 
 
 @nonallocating
@@ -101,7 +140,7 @@ def noise(hinge: Rows[JointStep], link: Rows[Coupling], k: int, r: int, local: R
 
 
 @nonallocating
-def touch(W: Workspace) -> bool:
+def hold_closing(W: Workspace) -> bool:
     """Hold all free limits whose gap is closed and was closing with the kept velocities; whether there were any.
 
     Rows are those of the present poses.
@@ -112,7 +151,7 @@ def touch(W: Workspace) -> bool:
         if link[k].side == 0 and link[k].soft == 0:
             for side in (-1, 1):
                 closed = (
-                    bounded(W.J.JOINT, link, k, side)
+                    has_bound(W.J.JOINT, link, k, side)
                     and gap(W.J.JOINT, hinge, link, k, side) <= JOINT_TOUCH * hinge[k].size
                 )
                 a, b = W.J.LOCAL[link[k].body[0]], W.J.LOCAL[link[k].body[1]]
@@ -123,7 +162,7 @@ def touch(W: Workspace) -> bool:
 
 
 @nonallocating
-def fits(W: Workspace) -> bool:
+def speeds_fit(W: Workspace) -> bool:
     """Whether velocities fit all rows that hold, but for what steps leave: they hold places exactly, and velocities to
     second or fourth order. To project that too would take energy whenever somebody else begins to step.
 

@@ -1,4 +1,4 @@
-"""Systems of islands in the joints' rows alone, the bodies' unknowns eliminated: S lam = c - G A^-1 b, S = G A^-1 J^T.
+"""Systems of components in the rows alone, the bodies' unknowns eliminated: S lam = c - G A^-1 b, S = G A^-1 J^T.
 
 A, the bodies' part of Newton's matrix, is taken to be diagonal: the masses, and of the bending of rows what is between
 a body and itself. For pivots that is all there is; for other joints without springs what is left out is of the order
@@ -10,7 +10,8 @@ from __future__ import annotations
 from ..arrays import FloatArray
 from ..compiled import inlined
 from ..compiled.records import Rows
-from ..model.joints import JointStep, Workspace
+from ..model.joint_steps import JointStep
+from ..model.joints import Workspace
 from ..model.parameters.joints import LEAST_INERTIA
 from .condensed import factor, substitute
 

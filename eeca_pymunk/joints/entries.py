@@ -7,7 +7,8 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import inlined
 from ..compiled.records import Rows
-from ..model.joints import DUAL, FULL_BEND, GROOVE, RATCHET, ROTARY_LIMIT, SLIDE, WHOLE, BodyStep, Coupling, JointStep
+from ..model.joint_steps import FULL_BEND, BodyStep, JointStep
+from ..model.joints import DUAL, GROOVE, RATCHET, ROTARY_LIMIT, SLIDE, WHOLE, Coupling
 
 
 @inlined

@@ -66,7 +66,7 @@ def straight(X: FloatArray, first: int, p: int, length: float) -> bool:
 @nonallocating
 def fix_path(
     joint: Rows[Joint], X: FloatArray, FROM: IntArray, p: int, first: int, spins: IntArray, held: IntArray
-) -> int:  # fmt: skip
+) -> int:
     """Hold the bodies of the straight path from `first` that ends in p, on a fixed body; how many there are. None if a
     body of it has all its points on the path in one place and might turn about that."""
     for pass_ in range(2):
@@ -169,7 +169,7 @@ def may_hold(joint: Rows[Joint], still: IntArray, n: int) -> bool:
 
 def held_bodies(
     bodies: Rows[Body], joint: Rows[Joint], partner: Rows[Body], still: IntArray, smooth: IntArray
-) -> Rows[Held]:  # fmt: skip
+) -> Rows[Held]:
     """The bodies that straight paths hold, see `find_held`.
 
     Args:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
-from ..model.joints import MOTOR, ROTARY_SPRING, SPRING, BodyStep, JointLedger, Workspace
+from ..model.joint_steps import BodyStep, JointLedger
+from ..model.joints import MOTOR, ROTARY_SPRING, SPRING, Workspace
 from .entries import held
 from .springs import held_energy
 

@@ -10,7 +10,8 @@ land: they are held from where they are, g reaches its bound at the end of the p
 from __future__ import annotations
 
 from ..compiled import nonallocating
-from ..model.joints import LINEAR_STEP, SPEEDS, JointLedger, Workspace
+from ..model.joint_steps import SPEEDS, JointLedger
+from ..model.joints import Workspace
 from ..model.parameters.joints import (
     JOINT_TOUCH,
     LIMIT_EVENTS,
@@ -19,20 +20,20 @@ from ..model.parameters.joints import (
     LIMIT_SECANTS_HASTE,
     LIMIT_SOLVES,
 )
-from .bounds import approach, first_bound, gap, hold, release, standing
-from .correct import fitting_loss
+from .bounds import approach, first_bound, gap, hold_limit, release, standing
+from .correct import correct, fitting_loss
 from .ledger import book
 from .motion import advance
-from .solve import solve
+from .solve import drop_impulses, solve, solve_linearly
 
 
 @nonallocating
 def step_with_limits(
-    W: Workspace, what: int, h: float, length: float, loops: bool, give: float, whole: bool, ledger: JointLedger
+    W: Workspace, linear: bool, h: float, length: float, loops: bool, give: float, whole: bool, ledger: JointLedger
 ) -> bool:
     """Take the step h in parts between instants at which limits are met; False if Newton fails.
 
-    A `whole` step does not meet any: False if it would. `what` is STEP or LINEAR_STEP.
+    A `whole` step does not meet any: False if it would. Nor does a `linear` one, which passes them.
     """
     hinge, link, local, progress = W.J.HINGE, W.link, W.J.LOCAL, W.J.PROGRESS
     left, when, low, high = h, h, 0.0, h
@@ -41,24 +42,24 @@ def step_with_limits(
     while True:
         redundant = loops or standing(link, W.joints)
         if when > 1e-13 * abs(h) or h < 0.0:
-            if solve(W, what, when, length, redundant, give) < 0:  # fmt: skip
+            if not (solve_linearly(W, when, length) if linear else solve(W, when, length, redundant, give)):
                 return False
             solves += 1
             if meeting < 0:  # a step to the end
-                if solves < (LIMIT_SOLVES if what == LINEAR_STEP else 2 * W.joints + 100) and release(W):
+                if solves < (LIMIT_SOLVES if linear else 2 * W.joints + 100) and release(W):
                     continue
-                k = first_bound(W, when)
-                if k < 0 or solves > 4 * W.joints + 200 or what == LINEAR_STEP:
+                k, other, instant = first_bound(W, when)
+                if k < 0 or solves > 4 * W.joints + 200 or linear:
                     book(W, when, ledger)
                     advance(local, W.bodies, when)
                     return True
                 if whole:
                     return False
-                side, events = progress.side, events + 1
+                side, events = other, events + 1
                 if events > LIMIT_EVENTS or progress.effort > progress.hurry:  # land
                     link[k].side = side
                     continue
-                meeting, when, low, high, secants = k, progress.when, 0.0, left, 0
+                meeting, when, low, high, secants = k, instant, 0.0, left, 0
                 continue
             distance = gap(W.J.JOINT, hinge, link, meeting, side)
             secants += 1
@@ -81,24 +82,23 @@ def step_with_limits(
                 link[meeting].side = side
                 meeting, when = -1, left
                 continue
-            k = first_bound(W, when)
-            if (
-                k >= 0 and k != meeting and events < LIMIT_EVENTS and progress.effort <= progress.hurry
-            ):  # another one is passed before
-                meeting, side, low, high, secants, events = k, progress.side, 0.0, when, 0, events + 1
-                when = progress.when
+            k, other, instant = first_bound(W, when)
+            if k >= 0 and k != meeting and events < LIMIT_EVENTS and progress.effort <= progress.hurry:
+                # Another one is passed before.
+                meeting, side, low, high, secants, events = k, other, 0.0, when, 0, events + 1
+                when = instant
                 continue
             if when > LIMIT_INSTANT * abs(h):  # else round-off of places would be velocities over so short a part
                 book(W, when, ledger)
                 advance(local, W.bodies, when)
                 left -= when
         link[meeting].side = side
-        solve(W, int(SPEEDS), 2.0, length, loops, 0.0)
+        correct(W, SPEEDS)
         ledger.limited += fitting_loss(local, W.bodies, ledger)
+        drop_impulses(W)
         for k in range(W.joints):
-            hinge[k].lam[0] = hinge[k].lam[1] = 0.0
             if link[k].side != 0 and link[k].soft == 0:
-                hold(W.J.JOINT, hinge, link, k)
+                hold_limit(W.J.JOINT, hinge, link, k)
         if left <= 1e-13 * h:
             return True
         meeting, when = -1, left

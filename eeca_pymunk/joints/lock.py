@@ -12,7 +12,7 @@ import math
 
 from ..compiled import nonallocating
 from ..compiled.records import Rows
-from ..model.joints import BodyStep
+from ..model.joint_steps import BodyStep
 from ..model.parameters.joints import LOCK_ITERATIONS
 
 
@@ -54,7 +54,7 @@ def lock_energy(local: Rows[BodyStep], bodies: int, gain: float) -> float:
 
 
 @nonallocating
-def stands(local: Rows[BodyStep], bodies: int) -> bool:
+def supports_rest(local: Rows[BodyStep], bodies: int) -> bool:
     """Whether nothing that the component hangs on moves."""
     still = True
     for i in range(bodies):
@@ -66,7 +66,7 @@ def stands(local: Rows[BodyStep], bodies: int) -> bool:
 @nonallocating
 def against(
     local: Rows[BodyStep], bodies: int, x: float, y: float, vx: float, vy: float, spin: float, s: float
-) -> float:  # fmt: skip
+) -> float:
     """Kinetic energy of the motion against that of a rigid body with velocity (vx, vy) at (x, y); s >= 0: let there be
     s times as much of this motion."""
     total = 0.0

@@ -1,4 +1,4 @@
-"""How the bodies of an island move over a step, and where they are at its end."""
+"""How the bodies of a component move over a step, where they are at its end, and back to its start."""
 
 from __future__ import annotations
 
@@ -6,27 +6,42 @@ import numpy as np
 
 from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
-from ..model.joints import BodyStep, Coupling, Joint
+from ..model.bodies import Body
+from ..model.joint_steps import BodyStep
+from ..model.joints import ComponentBody, Joints
+
+
+@inlined
+def seat(local: BodyStep, joined: ComponentBody) -> None:
+    """The unknowns of a body by the plan, into its scratch."""
+    local.column, local.freedoms = joined.column, joined.freedoms
+    local.first, local.cayley = joined.first, joined.cayley
+
+
+@inlined
+def read_body(local: BodyStep, body: Body) -> None:
+    """Pose, velocity and mobility of a body, into its scratch."""
+    local.pose[0], local.pose[1], local.pose[2] = body.x, body.y, body.angle
+    local.v0[0], local.v0[1], local.v0[2] = body.vx, body.vy, body.spin
+    local.mobility[0], local.mobility[1], local.mobility[2] = body.inv_mass, body.inv_mass, body.inv_inertia
 
 
 @nonallocating
-def size_up(
-    joint: Rows[Joint], link: Rows[Coupling], first: int, last: int, local: Rows[BodyStep], bodies: int, h: float
-) -> float:  # fmt: skip
-    """Complete the bodies whose pose, velocity and mobility are in the scratch of an island; its size, the length that
-    errors are measured by, from them and from the joints of rows first ... last of `link`."""
-    length = 0.0
-    for i in range(bodies):
+def size_up(J: Joints, s: int, h: float) -> float:
+    """Complete the bodies in the scratch of component s, whose pose, velocity and mobility are there; its size, the
+    length that errors are measured by."""
+    C, local, length = J.COMPONENT[s], J.LOCAL, 0.0
+    for i in range(C.end_body - C.first_body):
         for c in range(3):
             root = np.sqrt(local[i].mobility[c])
             local[i].root[c], local[i].unroot[c] = root, 1.0 / root if root > 0.0 else 0.0
         local[i].cos, local[i].sin = np.cos(local[i].pose[2]), np.sin(local[i].pose[2])
         for c in range(2):
             length = max(length, abs(local[i].pose[c]), abs(h * local[i].v0[c]))
-    for k in range(first, last):
-        j = link[k].joint
+    for k in range(C.first_joint, C.end_joint):
+        joint = J.JOINT[J.COUPLING[k].joint]
         for c in range(2):
-            length = max(length, abs(joint[j].anchor_a[c]), abs(joint[j].anchor_b[c]))
+            length = max(length, abs(joint.anchor_a[c]), abs(joint.anchor_b[c]))
     return length if length > 0.0 else 1.0
 
 
@@ -102,3 +117,24 @@ def advance(local: Rows[BodyStep], bodies: int, h: float) -> None:
             # As of that angle, to the round-off of the parts of a step.
             x, y, turn_x, turn_y = local[i].cos, local[i].sin, local[i].turn_cos, local[i].turn_sin
             local[i].cos, local[i].sin = x * turn_x - y * turn_y, y * turn_x + x * turn_y
+
+
+@nonallocating
+def save(local: Rows[BodyStep], bodies: int) -> None:
+    """Keep the start of the step."""
+    for i in range(bodies):
+        for c in range(3):
+            local[i].saved_pose[c], local[i].saved_velocity[c] = local[i].pose[c], local[i].v0[c]
+            local[i].travel[c] = local[i].shift[c]
+        local[i].mean[0] = local[i].mean[1] = 0.0
+
+
+@nonallocating
+def go_back(local: Rows[BodyStep], bodies: int) -> None:
+    """Back to the poses and velocities at the start of the step."""
+    for i in range(bodies):
+        for c in range(3):
+            local[i].pose[c], local[i].v0[c] = local[i].saved_pose[c], local[i].saved_velocity[c]
+            local[i].travel[c] = local[i].shift[c]
+        local[i].mean[0] = local[i].mean[1] = 0.0
+        local[i].cos, local[i].sin = np.cos(local[i].pose[2]), np.sin(local[i].pose[2])

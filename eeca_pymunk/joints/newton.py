@@ -1,4 +1,4 @@
-"""The linear systems of Newton's method for the implicit step of an island.
+"""The linear systems of Newton's method for the implicit step of a component.
 
 Unknowns: velocities v1 of the bodies and impulses lam of the rows, the way being x = h (v0 + v1)/2:
 
@@ -15,14 +15,36 @@ a *dual* one the rows alone (`dual`).
 
 from __future__ import annotations
 
-from ..compiled import inlined
-from ..model.joints import BOUNDED, BOXED, CONDENSED, DUAL, LINEAR_STEP, NO_BEND, POSES, SPEEDS, STEP, WHOLE, Workspace
-from ..model.parameters.joints import STIFFEST
+import numpy as np
+
+from ..arrays import FloatArray
+from ..compiled import inlined, nonallocating
+from ..model.joint_steps import LINEAR_STEP, NO_BEND, POSES, SPEEDS, STEP
+from ..model.joints import BOUNDED, BOXED, CONDENSED, DUAL, WHOLE, Component, Workspace
+from ..model.parameters.joints import FACTOR_BAND, ROW_WORK, STIFFEST
+from .banded import back_banded, factor_banded
 from .boxes import leave_box
-from .condensed import freeze
+from .condensed import back_condensed, factor, freeze
+from .dual import back_dual, factor_dual
 from .entries import along, held, put_condensed, put_free, put_rows, put_stiffness, scale_rows
-from .rows import joint_rows
+from .motion import move
+from .rows import joint_rows, start_joint
 from .soft import put_soft
+
+
+@inlined
+def first_iterate(W: Workspace, what: int, h: float) -> None:
+    """What stays the same over the iterations, and the first iterate: motion with the accelerations that joints gave
+    before (`lead`), or no motion where joints act."""
+    local = W.J.LOCAL
+    for k in range(W.joints):
+        start_joint(W, k, h)
+    for i in range(W.bodies):
+        for c in range(3):
+            local[i].v1[c] = local[i].v0[c] + h * (local[i].acceleration[c] + local[i].lead[c])
+            if what in (POSES, SPEEDS) or (what == LINEAR_STEP and c < local[i].freedoms):
+                local[i].v1[c] = -local[i].v0[c]
+    move(local, W.bodies, h)
 
 
 @inlined
@@ -30,7 +52,7 @@ def assemble(W: Workspace, what: int, h: float, give: float, first: bool, system
     """Residuals of the rows for `what` (see `..model.joints`), scaled, in RIGHT, and the joints' rows in HINGE.
 
     Where it is to `build`, the matrix of the `system` too, or of a dual one what it is made of.
-    Returns how far rows are from their targets, over the size of the island; for SPEEDS, the worst G v.
+    Returns how far rows are from their targets, over the size of the component; for SPEEDS, the worst G v.
     """
     hinge, link, local, matrix, right = W.J.HINGE, W.link, W.J.LOCAL, W.J.MATRIX, W.J.RIGHT
     worst, per = 0.0, 2.0 / h
@@ -94,3 +116,96 @@ def assemble(W: Workspace, what: int, h: float, give: float, first: bool, system
                 matrix[(link[k].first_row + r) * width + band] += give
         worst = max(worst, farthest / hinge[k].size)
     return worst
+
+
+@inlined
+def balance(W: Workspace, h: float, length: float) -> float:
+    """Residuals of the balance of momentum, scaled, into `right`; the worst as a way, over length or as an angle."""
+    local = W.J.LOCAL
+    worst, over = 0.0, 1.0 / length
+    for i in range(W.bodies):
+        for c in range(local[i].freedoms):
+            mobility = local[i].mobility[c]
+            off = local[i].v1[c] - local[i].v0[c] - h * local[i].acceleration[c] - mobility * local[i].impulse[c]
+            W.J.RIGHT[local[i].column + c] = -off * local[i].unroot[c]
+            worst = max(worst, abs(off * h) * (over if c < 2 else 1.0))
+    return worst
+
+
+@inlined
+def linearise(
+    W: Workspace, what: int, h: float, length: float, give: float, first: bool, system: int, build: bool
+) -> float:
+    """`assemble` anew, of steps with the balance of momentum; the largest error."""
+    for i in range(W.J.COMPONENT[W.s].unknowns + W.J.COMPONENT[W.s].impulses):
+        W.J.RIGHT[i] = 0.0
+    worst = assemble(W, what, h, give, first, system, build)
+    return worst if what in (POSES, SPEEDS) else max(worst, balance(W, h, length))
+
+
+@inlined
+def decompose(W: Workspace, what: int, system: int, epsilon: float, give: float) -> bool:
+    """Factors in the place of what `assemble` has built, with `epsilon` on the rows' block; False if there are none."""
+    matrix = W.J.MATRIX
+    size, band = W.J.COMPONENT[W.s].unknowns, W.J.COMPONENT[W.s].band
+    if system == CONDENSED:
+        return factor(matrix, size, band)
+    if system == DUAL:
+        return factor_dual(W, what == STEP, epsilon + give)
+    if epsilon > 0.0:
+        for k in range(W.joints):
+            for r in range(W.link[k].rows):
+                matrix[(W.link[k].first_row + r) * (3 * band + 1) + band] += epsilon
+    return factor_banded(matrix, size, band, W.J.PIVOTS)
+
+
+@inlined
+def factorise(W: Workspace, what: int, h: float, length: float, give: float, system: int, epsilon: float) -> int:
+    """Factors of what `linearise` has built; where a dual system has none, of the component's other system, which is
+    built for that. The system that has factors, -1 for none."""
+    if decompose(W, what, system, epsilon, give):
+        return system
+    if system == DUAL:
+        system = W.J.COMPONENT[W.s].system
+        linearise(W, what, h, length, give, False, system, True)
+        if decompose(W, what, system, epsilon, give):
+            return system
+    return -1
+
+
+@inlined
+def back(W: Workspace, system: int, passes: int, right: FloatArray) -> None:
+    """Solve with the factors of `decompose` in place of `right`: changes of velocities, and of impulses."""
+    size, band = W.J.COMPONENT[W.s].unknowns, W.J.COMPONENT[W.s].band
+    if system == CONDENSED:
+        back_condensed(W, passes, size, band, W.J.MATRIX, right, len(right) - size)
+    elif system == DUAL:
+        back_dual(W, right)
+    else:
+        back_banded(W.J.MATRIX, size, band, W.J.PIVOTS, right)
+
+
+@inlined
+def apply(W: Workspace, what: int) -> None:
+    """Add the solution of a scaled system to what was solved for, and to impulses."""
+    local = W.J.LOCAL
+    for i in range(W.bodies):
+        for c in range(local[i].freedoms):
+            changed = local[i].pose if what == POSES else local[i].v0 if what == SPEEDS else local[i].v1
+            changed[c] += W.J.RIGHT[local[i].column + c] * local[i].root[c]
+        if what == POSES:
+            local[i].cos, local[i].sin = np.cos(local[i].pose[2]), np.sin(local[i].pose[2])
+    for k in range(W.joints):
+        for r in range(W.link[k].rows):
+            impulse = W.J.HINGE[k].pushed if what in (POSES, SPEEDS) else W.J.HINGE[k].lam
+            impulse[r] += W.J.RIGHT[W.link[k].first_row + r] * W.J.HINGE[k].scale[r]
+
+
+@nonallocating
+def effort(system: int, fresh: bool, boxes: int, joints: int, component: Component) -> float:
+    """About how many operations an iteration takes: rows, factors, solutions."""
+    size, band = (component.dual_size, component.dual_band) if system == DUAL else (component.unknowns, component.band)
+    turns = 1 + boxes if fresh else 1
+    # Wide bands take several numbers at once.
+    factors = (4.0 if system == WHOLE else 0.5 if band >= FACTOR_BAND else 2.0) * size * band * band
+    return float(ROW_WORK * joints + (factors if fresh else 0.0) + 6.0 * turns * size * (band + 4))

@@ -1,4 +1,4 @@
-"""The order of an island's unknowns in its banded matrix: reverse Cuthill-McKee of the graph of bodies and joints."""
+"""The order of a component's unknowns in its banded matrix: reverse Cuthill-McKee of the graph of bodies and joints."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def order_nodes(start: IntArray, near: IntArray, nodes: int, order: IntArray) ->
 def order_unknowns(
     component: Rows[Component], member: Rows[ComponentBody], link: Rows[Coupling], s: int, condensed: bool
 ) -> None:
-    """Give the bodies and joints of island s their unknowns; fill in its size and band.
+    """Give the bodies and joints of component s their unknowns; fill in its size and band.
 
     In a condensed system the bodies come first, and joints are the edges between them.
     """
@@ -117,7 +117,7 @@ def order_unknowns(
 
 @kernel
 def order_rows(component: Rows[Component], member: Rows[ComponentBody], link: Rows[Coupling], s: int) -> None:
-    """Give the joints of island s their unknowns in a system of rows alone, in which joints of one body are coupled;
+    """Give the joints of component s their unknowns in a system of rows alone, in which joints of one body are coupled;
     fill in its size and band, and the lists of the joints on each body."""
     b0, b1, j0, j1 = component[s].first_body, component[s].end_body, component[s].first_joint, component[s].end_joint
     joints = j1 - j0

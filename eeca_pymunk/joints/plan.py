@@ -1,8 +1,8 @@
-"""Who hangs together by joints, and in which order the unknowns of each island stand in its banded matrix.
+"""Who hangs together by joints, and in which order the unknowns of each component stand in its banded matrix.
 
 A plan stays valid while the set of bodies and joints, their kinds, anchors and bodies, and what moves, stay the same.
-Bodies that joints cannot move bind nothing: they are partners of several islands. Nodes of an island's graph are its
-moved bodies (two or three unknowns) and its joints with impulses; they are ordered by reverse Cuthill-McKee.
+Bodies that joints cannot move bind nothing: they are partners of several components. Nodes of a component's graph
+are its moved bodies (two or three unknowns) and its joints with impulses; their order is reverse Cuthill-McKee.
 """
 
 from __future__ import annotations
@@ -166,7 +166,7 @@ def make_plan(
 
 @kernel
 def discs(joint: Rows[Joint], link: Rows[Coupling], component: Rows[Component], s: int) -> bool:
-    """Whether a joint with two bounded impulses is in island s: condensed systems do not have those."""
+    """Whether a joint with two bounded impulses is in component s: condensed systems do not have those."""
     for k in range(component[s].first_joint, component[s].end_joint):
         if joint[link[k].joint].soft != 0 and link[k].rows == 2:
             return True
@@ -175,7 +175,7 @@ def discs(joint: Rows[Joint], link: Rows[Coupling], component: Rows[Component], 
 
 @kernel
 def hard(joint: Rows[Joint], link: Rows[Coupling], component: Rows[Component], s: int) -> bool:
-    """Whether all joints of island s hold exactly, those with limits included."""
+    """Whether all joints of component s hold exactly, those with limits included."""
     for k in range(component[s].first_joint, component[s].end_joint):
         j = link[k].joint
         if link[k].rows == 0 or joint[j].kind == MOTOR or joint[j].soft != 0:
@@ -185,7 +185,7 @@ def hard(joint: Rows[Joint], link: Rows[Coupling], component: Rows[Component], s
 
 @kernel
 def cycles(link: Rows[Coupling], member: Rows[ComponentBody], component: Rows[Component], s: int) -> int:
-    """Joints with impulses that close a cycle of the island's graph, all bodies that nothing moves being one local."""
+    """Joints with impulses that close a cycle of the component's graph; bodies that nothing moves are one node."""
     b0, n = component[s].first_body, component[s].end_body - component[s].first_body
     parent = np.arange(n + 1)
     count = 0
@@ -203,8 +203,8 @@ def cycles(link: Rows[Coupling], member: Rows[ComponentBody], component: Rows[Co
 
 
 class Room(NamedTuple):
-    """The most of anything that an island of a plan needs: bodies, joints, rows of a matrix, its entries, entries of a
-    right side, and of scratch."""
+    """The most that a component needs: bodies, joints, rows of a matrix, its entries, entries of a right side, and of
+    scratch."""
 
     bodies: int
     joints: int

@@ -6,7 +6,8 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..compiled import inlined, nonallocating
-from ..model.joints import FULL_BEND, OWN_TURN, PIVOT, SLIDE, SPRING, BodyStep, Joint, JointStep
+from ..model.joint_steps import FULL_BEND, OWN_TURN, BodyStep, JointStep
+from ..model.joints import PIVOT, SLIDE, SPRING, Joint
 from .springs import mean_force
 
 

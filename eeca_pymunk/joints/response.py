@@ -1,4 +1,4 @@
-"""How an island of joints answers impulses on its bodies: the change of velocities per impulse.
+"""How a component of joints answers impulses on its bodies: the change of velocities per impulse.
 
 About a solved step, d v1 = S p for impulses p spread over the step, S the inverse of Newton's matrix with springs and
 bounded joints. Rows turn as bodies move, and the force of joints with them: without that what is taut would give way
@@ -13,12 +13,12 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import nonallocating
 from ..compiled.records import Rows
-from ..model.joints import BOUNDED, BOXED, CONDENSED, DUAL, FULL_BEND, NO_BEND, STEP, Coupling, Workspace
+from ..model.joint_steps import FULL_BEND, NO_BEND, STEP
+from ..model.joints import BOUNDED, BOXED, CONDENSED, DUAL, Coupling, Workspace
 from ..model.parameters.joints import CONDENSED_PASSES, REDUNDANT_EPSILON, RESPONSE_PASSES, TAUT
 from .motion import move
-from .newton import assemble
+from .newton import assemble, back, decompose, first_iterate
 from .rows import joint_rows, start_joint
-from .solve import back, begin, decompose
 
 
 @nonallocating
@@ -52,7 +52,7 @@ def bend(W: Workspace, k: int, h: float) -> None:
 def prepare(W: Workspace, what: int, h: float) -> int:
     """Factors of the matrix that `respond` needs, in `matrix` and `pivots`; their system, -1 if there are none.
 
-    `what` is STEP, after `island_step` (whose start becomes that of `local` again), or SPEEDS, at the present poses.
+    `what` is STEP, after `take_step` (whose start becomes that of `local` again), or SPEEDS, at the present poses.
     """
     link = W.link
     boxed = unbox(link, W.joints)
@@ -94,7 +94,7 @@ def factors(W: Workspace, what: int, h: float) -> int:
             if link[k].rows > 0 and link[k].soft == 0:
                 bend(W, k, h)
     else:
-        begin(W, what, h)
+        first_iterate(W, what, h)
     system = DUAL if component.rigid > (1 if what == STEP else 0) else component.system
     give = W.J.JOINT[link[0].joint].compliance / h**2 if what == STEP else 0.0
     epsilon = REDUNDANT_EPSILON if component.loops > 0 and give == 0.0 else 0.0
@@ -102,7 +102,7 @@ def factors(W: Workspace, what: int, h: float) -> int:
         for i in range(component.unknowns + component.impulses):
             W.J.RIGHT[i] = 0.0
         assemble(W, what, h, give, True, system, True)
-        if decompose(W, what, system, epsilon, give):  # fmt: skip
+        if decompose(W, what, system, epsilon, give):
             return int(system)
         if epsilon == 0.0:
             epsilon = REDUNDANT_EPSILON
@@ -126,7 +126,7 @@ def respond(W: Workspace, what: int, system: int, push: FloatArray, gives: bool)
     for i in range(W.bodies):
         for c in range(local[i].freedoms):
             right[local[i].column + c] = push[i, c] * local[i].root[c]
-    back(W, what, system, 1 if gives else CONDENSED_PASSES, right)
+    back(W, system, 1 if gives else CONDENSED_PASSES, right)
     # (A + epsilon) x = b leaves b - A x = epsilon x in the rows, and each correction d leaves epsilon d.
     for turn in range(0 if system == CONDENSED or component.loops == 0 or gives else RESPONSE_PASSES):
         rest = right[size : 2 * size] if turn > 0 else right[:size]
@@ -139,7 +139,7 @@ def respond(W: Workspace, what: int, system: int, push: FloatArray, gives: bool)
         for k in range(W.joints):
             for r in range(W.link[k].rows):
                 rest[W.link[k].first_row + r] *= REDUNDANT_EPSILON
-        back(W, what, system, CONDENSED_PASSES, rest)
+        back(W, system, CONDENSED_PASSES, rest)
         for i in range(size):
             right[i] += rest[i]
     for i in range(W.bodies):

@@ -1,4 +1,4 @@
-"""Islands whose joints pull so hard that bodies hardly give way across: a bridge that is as long as its gap, a string.
+"""Components whose joints pull so hard that bodies hardly give way across: a string, a bridge as long as its gap.
 
 To first order such joints let bodies go across; only their pull, which turns as the bodies move, holds them. A solution
 has to begin with that pull.

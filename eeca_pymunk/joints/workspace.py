@@ -8,19 +8,8 @@ from ..arrays import side_by_side
 from ..compiled import inlined
 from ..compiled.records import Rows, rows
 from ..model.bodies import Body
-from ..model.joints import (
-    BodyStep,
-    Component,
-    ComponentBody,
-    Coupling,
-    Joint,
-    JointLedger,
-    Joints,
-    JointStep,
-    Progress,
-    Tally,
-    Workspace,
-)
+from ..model.joint_steps import BodyStep, JointLedger, JointStep, Progress
+from ..model.joints import Component, ComponentBody, Coupling, Joint, Joints, Tally, Workspace
 from .plan import Room, make_plan, room_for, together
 
 
@@ -28,7 +17,9 @@ from .plan import Room, make_plan, room_for, together
 def workspace(J: Joints, s: int) -> Workspace:
     """The memory of component s."""
     C = J.COMPONENT[s]
-    return Workspace(J, s, J.LINK[C.first_joint : C.end_joint], C.end_joint - C.first_joint, C.end_body - C.first_body)
+    return Workspace(
+        J, s, J.COUPLING[C.first_joint : C.end_joint], C.end_joint - C.first_joint, C.end_body - C.first_body
+    )
 
 
 _NO_ROOM = Room(1, 1, 1, 1, 2, 1)

@@ -80,7 +80,7 @@ class Member(Record):
     jointed: int  # of the root: 1 if joints hold bodies of its island
     rest: int  # AWAKE, AT_REST, CHANGED or CANDIDATE
     loaded: int  # of the root of an island at rest: 1 while support of moving neighbours is unverified
-    among: int  # of the root: `bodies`, and those of the islands that support them
+    with_supports: int  # of the root: `bodies`, and those of the islands that support them
     placed: int  # UNMOVED or MOVED while the body may overlap others deeply; else 0
     raised: (
         int  # of the root: 1 if a body without mobility was placed into its bodies, so that lifting is external work

@@ -1,4 +1,4 @@
-"""Records of joints: the joints of a scene, the plan of their components, the memory of a component's step.
+"""Records of joints: the joints of a scene, the plan of their components.
 
 A component is a set of bodies that hang together by joints. Bodies that joints cannot move bind nothing: they take part
 in several components.
@@ -12,6 +12,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import Opener
 from ..compiled.records import Record, Rows
 from .bodies import Body
+from .joint_steps import BodyStep, JointLedger, JointStep, Progress
 
 
 class Joint(Record):
@@ -76,7 +77,7 @@ OF_STEPS = (
 
 
 class Component(Record):
-    """A component: its slices of `ComponentBody` and `Coupling`, its linear systems."""
+    """A component: its slices of JOINED and COUPLING, its linear systems."""
 
     first_body: int
     end_body: int
@@ -127,122 +128,6 @@ class Coupling(Record):
 BOUNDED, GIVEN, BOXED = 1, 2, 3
 
 
-class BodyStep(Record):
-    """Scratch of a body over a step h of its component. Velocities and ways are along x, along y, about the centre.
-
-    The body takes the way h v_m = h (v0 + v1)/2 and turns by 2 atan(chi/2), chi = h w_m (Cayley), for then
-    r1 - r0 = chi z x r_m with r_m = (r0 + r1)/2 exactly, and energy and angular momentum are conserved both. A body
-    that no joint holds off its centre of mass, and one that cannot be turned, turns by chi; its levers are
-    tan(chi/2)/(chi/2) r_m.
-    """
-
-    pose: Annotated[FloatArray, 3]  # x, y, angle of the centre of mass at the start
-    v0: Annotated[FloatArray, 3]  # velocity at the start
-    v1: Annotated[FloatArray, 3]  # at the end; the unknowns
-    acceleration: Annotated[FloatArray, 3]  # without joints
-    mobility: Annotated[FloatArray, 3]  # 1/mass, 1/mass, 1/moment; 0 where joints cannot move
-    root: Annotated[FloatArray, 3]  # square roots of the mobilities
-    unroot: Annotated[FloatArray, 3]  # reciprocals of these, 0 where they are
-    cos: float  # of the angle at the start
-    sin: float
-    way: Annotated[FloatArray, 3]  # h v_m; the last is chi
-    turn_cos: float  # of the angle turned
-    turn_sin: float
-    slope: float  # derivative of the angle turned by chi
-    lever: float  # levers over r_m
-    turned: float  # angle turned
-    per: float  # turned/chi, its derivative by chi
-    bend: float
-    impulse: Annotated[FloatArray, 3]  # of the joints
-    lead: Annotated[FloatArray, 3]  # acceleration by joints that Newton's method begins with
-    inertia: Annotated[FloatArray, 3]  # diagonal of the bodies' part of a dual system, scaled; factored, the reciprocal
-    v_kept: Annotated[FloatArray, 3]  # velocities to come back to
-    saved_pose: Annotated[FloatArray, 3]  # at the start of the whole step
-    saved_velocity: Annotated[FloatArray, 3]
-    shift: Annotated[FloatArray, 3]  # how far closing of joints moved it at the start
-    travel: Annotated[FloatArray, 3]  # `shift` and the sum of `way` over all parts of the step
-    mean: Annotated[FloatArray, 2]  # integral of x, y over the parts' time: a constant force acts at that over h
-    cayley: int  # as in `ComponentBody`
-    column: int
-    freedoms: int
-    first: int
-
-
-class JointStep(Record):
-    """Scratch of a joint over a step of its component. Rows have six entries: three for body a, three for body b, along
-    x, along y, about the centre of mass."""
-
-    arm_a: Annotated[FloatArray, 2]  # arms at the start; of joints of angles the angle at the start, and nothing
-    arm_b: Annotated[FloatArray, 2]
-    apart: Annotated[FloatArray, 2]  # d = anchor b - anchor a at the start; of a groove: anchor b - centre a
-    normal: Annotated[FloatArray, 2]  # of a groove, at the start
-    drag: float  # damping that makes the midpoint rule as exact as exp(-c K h)
-    began: float  # of springs: length, or angle_a - angle_b, at the start
-    ended: float  # and at the end
-    lam: Annotated[FloatArray, 2]  # impulse along the rows, of springs their own
-    target: Annotated[FloatArray, 2]  # what the functions g shall be at the end; of soft joints: the speed
-    scale: Annotated[FloatArray, 2]  # 1/sqrt of the diagonal of G M^-1 G^T
-    bound: float  # max_force of a soft joint
-    size: float  # unit of g: length of the component, or 1 for angles
-    measure: float  # what limits bound, at the end: length, angle, place along a groove
-    total: Annotated[FloatArray, 2]  # impulse over all parts of the step
-    pushed: Annotated[FloatArray, 2]  # impulse of a correction
-    value: Annotated[FloatArray, 2]  # g at the end of the present iterate
-    force: Annotated[FloatArray, 6]  # J^T lam
-    rows: Annotated[FloatArray, 2, 6]  # J
-    slopes: Annotated[FloatArray, 2, 6]  # G = dg/d(h v_m)
-    weight: Annotated[FloatArray, 2]  # of the rows in a condensed system; 0 if they do not act, -1 if lam is known
-    missing: Annotated[FloatArray, 2]  # what a condensed system still lacks of its rows
-    frozen_rows: Annotated[FloatArray, 2, 6]  # scaled J of the factors of a linear system
-    frozen_slopes: Annotated[FloatArray, 2, 6]  # scaled G of these
-
-
-NO_BEND, OWN_TURN, FULL_BEND = 0, 1, 2  # what of STIFF is there: nothing, [2, 2] and [5, 5], all
-
-# What is solved for: the implicit step; poses or velocities that fit the joints; the step with rows of the start.
-STEP, POSES, SPEEDS, LINEAR_STEP = 0, 1, 2, 3
-
-
-class Progress(Record):
-    """How far the solutions of a component are, and what they may take."""
-
-    when: float  # instant in the step of a limit that is passed first
-    error: float  # of the present iterate, over the size of the component
-    near: float  # error of a step that is near enough, 0 for round-off
-    effort: float  # operations that solutions have taken since the step of the scene began; how many they may
-    budget: float
-    share: float  # of `effort`, at which an interval gives up
-    limit: float  # of `effort`, at which the step of a component gives up what its ladder has before linear rows
-    hurry: float  # likewise, from which on limits land instead of being met at their instants
-    side: int  # of the limit that is passed first
-    passes: int  # of correcting velocities, and tries of these with other limits
-    tries: int
-
-
-class JointLedger(Record):
-    """Energies of a step of a component. K is kinetic energy, W the work of the bodies' constant accelerations:
-
-    K1 - K0 - W + stored = motors + supports + closed - damped - limited - clamped - projected.
-    """
-
-    stored: float  # change of what springs hold
-    damped: float  # loss >= 0 in damped springs
-    limited: float  # loss >= 0 at limits
-    clamped: float  # loss >= 0 in joints that slip at their max_force
-    projected: float  # loss >= 0 of velocities that violated joints
-    motors: float  # work of motors, and of joints with a finite max_force where it is positive
-    supports: float  # work of bodies that move without being moved
-    closed: float  # work of closing joints that were apart at the start, of elastic stand-ins, of linear steps
-    turned_work: float  # with contacts: work of torques beyond that along the angle
-    lifted: float  # energy that separating overlapping bodies costs, paid from the losses of contacts
-    status: int  # of the step
-
-
-# Status of a component's step: joints hold to round-off; the step was taken in parts; joints gave way elastically in
-# some part; rows of the start held at mid-velocity in some part: energy conserved, joints to O(h^2).
-EXACT, HALVED, ELASTIC, LINEAR = 0, 1, 2, 3
-
-
 class Held(Record):
     """A body that joints hold on a straight line between fixed points (`..joints.held`)."""
 
@@ -268,18 +153,19 @@ class Tally(Record):
 class Joints(NamedTuple):
     """The arrays of the joints of a scene.
 
-    JOINT (j,): bodies are rows of BODY (n rows) or n + row of PARTNER (x,), which joints cannot move. COMPONENT,
-    MEMBER, LINK: the plan. Scratch for the largest component: HINGE, LOCAL, of its joints and bodies; MATRIX, banded;
-    RIGHT, right sides; PIVOTS; MORE, of linear systems and bounded rows; STIFF (6, 6), derivative of a joint's force by
-    the ways of its bodies; PROGRESS; PART, the ledger of a part of the step. OF (n,): the component of a body, -1 for
-    none. KEPT (j,): the joints at the start of an interval. STEPPED (components,): their ledgers in their intervals.
+    JOINT (j,): bodies are rows of BODY (n rows) or n + row of PARTNER (x,), which joints cannot move. The plan:
+    COMPONENT (components,), with the bodies of each in JOINED and its joints in COUPLING. Scratch for the largest
+    component: HINGE, LOCAL, of its joints and bodies; MATRIX, banded; RIGHT, right sides; PIVOTS; MORE, of linear
+    systems and bounded rows; STIFF (6, 6), derivative of a joint's force by the ways of its bodies; PROGRESS; PART, the
+    ledger of a part of the step. OF (n,): the component of a body, -1 for none. KEPT (j,): the joints at the start of
+    an interval. STEPPED (components,): their ledgers in their intervals.
     """
 
     JOINT: Rows[Joint]
     PARTNER: Rows[Body]
     COMPONENT: Rows[Component]
-    MEMBER: Rows[ComponentBody]
-    LINK: Rows[Coupling]
+    JOINED: Rows[ComponentBody]
+    COUPLING: Rows[Coupling]
     HINGE: Rows[JointStep]
     LOCAL: Rows[BodyStep]
     MATRIX: FloatArray

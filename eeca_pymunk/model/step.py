@@ -81,3 +81,5 @@ IMPACTS, HITS, IMPACT, SOLVES, CONTACTS, JOINTS = 0, 1, 2, 3, 4, 5
 # Status of the event loop. All but DONE are resumable: lists, log or contacts need more memory, or an event is due that
 # the loop itself does not process.
 DONE, POOL_FULL, LOG_FULL, BLOCK_DUE, PUSHES_FULL = 0, 1, 2, 3, 4
+# Of an interval, with nothing done: it is to be shorter; there is no work left for it in this step.
+AGAIN, SPENT = -1, -2

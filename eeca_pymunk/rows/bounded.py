@@ -121,13 +121,3 @@ def sweep_bounded(B: Bounded, L: FloatArray, m: int, V: FloatArray) -> float:
         push_row(B, i, L[m + i, 0] - x, V)
         worst = max(worst, abs(L[m + i, 0] - x) * a)
     return worst
-
-
-@nonallocating
-def inside(B: Bounded, L: FloatArray, m: int, i: int) -> bool:
-    """Whether impulse i is strictly inside its bounds."""
-    x, high = L[m + i, 0], B.ROWS[i].high
-    if B.ROWS[i].part == SINGLE:
-        return bool(B.ROWS[i].low < x < high)
-    y = L[m + i + 1, 0] if B.ROWS[i].part == FIRST_OF_DISC else L[m + i - 1, 0]
-    return bool(x * x + y * y < high * high * (1.0 - 1e-14))

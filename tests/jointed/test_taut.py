@@ -18,7 +18,8 @@ from eeca_pymunk.joints.taut import taut
 from eeca_pymunk.joints.workspace import make_joints
 from eeca_pymunk.model.bodies import Body
 from eeca_pymunk.model.contacts import Row
-from eeca_pymunk.model.joints import PIN, PIVOT, BodyStep, Joint, Joints, Workspace
+from eeca_pymunk.model.joint_steps import BodyStep
+from eeca_pymunk.model.joints import PIN, PIVOT, Joint, Joints, Workspace
 
 from .measures import apart, energy
 
@@ -171,7 +172,7 @@ def test_what_planks_answer_is_the_derivative_of_a_step(slack: float) -> None:
     seen /= 2.0 * change * DT
     J = scratch(run(0.0)[2])
     assert ready(J, 0, DT, True)
-    places = [int(np.flatnonzero(J.MEMBER["body"] == row)[0]) for row in range(12)]
+    places = [int(np.flatnonzero(J.JOINED["body"] == row)[0]) for row in range(12)]
     PUSH = np.zeros((13, 3))
     PUSH[places[4], 1] = 1.0
     answer(J, 0, True, PUSH)
@@ -185,7 +186,7 @@ def test_what_planks_answer_is_the_derivative_of_a_step(slack: float) -> None:
 def test_taut_is_what_pulls_hard(kind: int, turned: float) -> None:
     """Two rods end to end: a pull on their joint is stiff beside their moments if (h/2) h f r > I/2."""
     J = make_joints(rows(Body, 3), rows(Joint, 1), rows(Body, 0), 2)._replace(LOCAL=rows(BodyStep, 2))
-    joint, link, local = J.JOINT[0], J.LINK[:1], J.LOCAL
+    joint, link, local = J.JOINT[0], J.COUPLING[:1], J.LOCAL
     link[0].kind, link[0].body[:] = kind, (0, 1)
     apart = 0.0 if kind == PIVOT else 0.25
     joint.anchor_a[:], joint.anchor_b[:] = (0.5, 0.0), (-0.5, 0.0)

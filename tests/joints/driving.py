@@ -25,7 +25,7 @@ def drift(space: pymunk.Space, dt: float, steps: int, order: int = 2) -> tuple[f
     stepper.step(dt)
     start, worst, apart = stepper.energy() - stepper.gain() + stepper.ledger.closed, 0.0, 0.0
     for k in range(steps):
-        stepper.islands.step(stepper.bodies, dt)
+        stepper.components.step(stepper.bodies, dt)
         stepper.book()
         worst = max(worst, abs(stepper.energy() - stepper.gain() + stepper.ledger.closed - start))
         if k % 50 == 0:

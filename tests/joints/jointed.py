@@ -1,24 +1,59 @@
-"""A space of jointed bodies without shapes, stepped through gather, `Islands.step` and scatter."""
+"""A space of jointed bodies without shapes, stepped through gather, `Components.step` and scatter."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 import pymunk
 
 from eeca_pymunk.arrays import FloatArray, IntArray
+from eeca_pymunk.compiled import table_of
 from eeca_pymunk.compiled.records import Rows, numbers, row, rows
-from eeca_pymunk.joints.world import Islands
+from eeca_pymunk.joints.workspace import make_joints
+from eeca_pymunk.joints.world import step_all
 from eeca_pymunk.model.bodies import ACCELERATION, POSE, VELOCITY, Body
-from eeca_pymunk.model.joints import JointLedger
+from eeca_pymunk.model.joint_steps import JointLedger
+from eeca_pymunk.model.joints import Joint, Joints
 from eeca_pymunk.space.joints import JointRows
+
+
+@dataclass
+class Components:
+    """A plan of the components of some joints, with the memory that stepping them needs.
+
+    Attributes:
+        joint: (j,) the joints.  order: 2, or 4 where a component allows it.
+    """
+
+    joint: Rows[Joint]
+    order: int = 2
+
+    def plan(self, bodies: Rows[Body]) -> None:
+        """Find the components of `bodies` (n,), and make room."""
+        self.use(make_joints(bodies, self.joint, bodies[:0], self.order))
+        self.arrays.PROGRESS.budget = np.inf
+
+    def use(self, arrays: Joints) -> None:
+        """Take these arrays."""
+        self.arrays, self._table = arrays, table_of(arrays)
+
+    @property
+    def ledger(self) -> Rows[JointLedger]:
+        """Energies of the last step, of each component."""
+        return self.arrays.STEPPED[: self.arrays.TALLY.components]
+
+    def step(self, bodies: Rows[Body], h: float) -> int:
+        """Step all components of `bodies` (n,) by h; the worst status."""
+        return step_all(self._table, bodies, h)
 
 
 class JointedSpace:
     """Steps the bodies and constraints of a space that has no contacts.
 
     Attributes:
-        order: 2 or 4 (where an island allows it).  status: the worst of the last step.
-        ledger: energies summed over all steps and islands.
+        order: 2 or 4 (where a component allows it).  status: the worst of the last step.
+        ledger: energies summed over all steps and components.
     """
 
     def __init__(self, space: pymunk.Space, order: int = 2) -> None:
@@ -31,7 +66,7 @@ class JointedSpace:
         self._plan()
 
     def _plan(self) -> None:
-        """Number bodies and joints, and find the islands."""
+        """Number bodies and joints, and find the components."""
         space = self.space
         items = dict.fromkeys(space.bodies)
         for c in space.constraints:
@@ -46,8 +81,8 @@ class JointedSpace:
         self.bodies: Rows[Body] = rows(Body, len(self._items))
         self._written: FloatArray = np.full((len(self._items), 6), np.nan)
         self._mobility()
-        self.islands = Islands(self.rows.joint, self.order)
-        self.islands.plan(self.bodies)
+        self.components = Components(self.rows.joint, self.order)
+        self.components.plan(self.bodies)
         bound = self.rows.joint["body"].ravel()
         self._free = self._moving.copy()
         self._free[bound] &= ~self._dynamic[bound]
@@ -87,9 +122,9 @@ class JointedSpace:
         self._gather()
         self.rows.look(self._state, self._place, dt)
         if self.rows.replan:
-            self.islands.plan(self.bodies)
+            self.components.plan(self.bodies)
             self.rows.planned()
-        self.status = self.islands.step(self.bodies, dt)
+        self.status = self.components.step(self.bodies, dt)
         self.book()
         free = self._free
         for x, v, a in zip(POSE, VELOCITY, ACCELERATION, strict=True):
@@ -104,7 +139,7 @@ class JointedSpace:
 
     def book(self) -> None:
         """Add the ledgers of the last step."""
-        for one in self.islands.ledger:
+        for one in self.components.ledger:
             numbers(self.ledger)[:] += numbers(one)
 
     def losses(self) -> tuple[float, ...]:

@@ -7,7 +7,7 @@ import pytest
 
 from eeca_pymunk.arrays import FloatArray
 from eeca_pymunk.joints.foresight import DEPTH, PARTS, WEIGHTS
-from eeca_pymunk.joints.step import SUZUKI
+from eeca_pymunk.joints.ladder import SUZUKI
 from scenes import linkages
 
 from .driving import error

@@ -13,8 +13,9 @@ from eeca_pymunk.joints.motion import move
 from eeca_pymunk.joints.ordering import order_unknowns
 from eeca_pymunk.joints.rows import joint_rows, start_joint
 from eeca_pymunk.joints.workspace import workspace
-from eeca_pymunk.joints.world import gather_island
-from eeca_pymunk.model.joints import CONDENSED, NO_BEND, OWN_TURN, JointStep
+from eeca_pymunk.joints.world import gather
+from eeca_pymunk.model.joint_steps import NO_BEND, OWN_TURN, JointStep
+from eeca_pymunk.model.joints import CONDENSED
 from scenes import linkages
 from scenes.linkages import body, empty
 
@@ -79,7 +80,7 @@ def every_joint() -> pymunk.Space:
 
 
 class Iterate:
-    """The island of `every_joint`, at an iterate of its step."""
+    """The component of `every_joint`, at an iterate of its step."""
 
     def __init__(self, h: float, soft: bool = False, static: bool = False) -> None:
         space = every_joint()
@@ -87,16 +88,16 @@ class Iterate:
             next(iter(space.bodies)).body_type = pymunk.Body.KINEMATIC
         self.h, stepper = h, JointedSpace(space)
         stepper._gather()
-        J = stepper.islands.arrays
-        gather_island(stepper.bodies, J, 0, h)
+        J = stepper.components.arrays
+        gather(stepper.bodies, J, 0, h)
         self.work = workspace.python(J, 0)
         self.joint, self.hinge, self.local, self.stiff = J.JOINT, J.HINGE, J.LOCAL, J.STIFF
         rng = np.random.default_rng(5)
         self.hinge["lam"] = rng.normal(size=(10, 2))
         self.joint["push"][[4, 5]] = 0.5
         for k in range(10):
-            J.LINK[k].side = -1 if k in (1, 7) else 1 if k in (3, 6) else 0
-            J.LINK[k].soft = int(soft or k == 9)
+            J.COUPLING[k].side = -1 if k in (1, 7) else 1 if k in (3, 6) else 0
+            J.COUPLING[k].soft = int(soft or k == 9)
         change = rng.normal(size=(2, 3))
         self.local["v1"] = self.local["v0"] + change
         if static:
@@ -187,7 +188,7 @@ def test_forces_between_points_keep_angular_momentum() -> None:
         np.testing.assert_allclose(force[:2], -force[3:5], atol=1e-15)
 
 
-def test_islands_are_the_components_of_the_graph() -> None:
+def test_components_are_those_of_the_graph() -> None:
     rng = np.random.default_rng(1)
     space = empty()
     bodies = [body(space, 1.0, 1.0, (float(i), 0.0)) for i in range(60)]
@@ -202,20 +203,20 @@ def test_islands_are_the_components_of_the_graph() -> None:
             if c.b is not space.static_body:
                 label[c.a] = label[c.b] = min(label[c.a], label[c.b])
     bound = {c.a for c in space.constraints} | {c.b for c in space.constraints} - {space.static_body}
-    J = stepper.islands.arrays
+    J = stepper.components.arrays
     assert J.TALLY.components == len({label[b] for b in bound if b is not space.static_body})
     seen: list[int] = []
     for C in J.COMPONENT[: J.TALLY.components]:
-        own = [stepper._items[J.MEMBER[i].body] for i in range(C.first_body, C.end_body)]
+        own = [stepper._items[J.JOINED[i].body] for i in range(C.first_body, C.end_body)]
         assert len({label[b] for b in own if b is not space.static_body}) == 1
-        seen += J.LINK["joint"][C.first_joint : C.end_joint].tolist()
+        seen += J.COUPLING["joint"][C.first_joint : C.end_joint].tolist()
     assert sorted(seen) == list(range(45))
 
 
 def test_bands_are_as_narrow_as_their_graphs() -> None:
     spans = {}
     for name, make in (("chain", lambda: linkages.chain(30)), ("cloth", lambda: linkages.cloth(12))):
-        world = JointedSpace(make()).islands
+        world = JointedSpace(make()).components
         spans[name] = world.arrays.COMPONENT[0]
     chain, cloth = spans["chain"], spans["cloth"]
     assert (chain.unknowns, chain.band, chain.rigid) == (150, 4, 2)
@@ -226,7 +227,7 @@ def test_bands_are_as_narrow_as_their_graphs() -> None:
 
 
 @pytest.mark.parametrize("order", [2, 4])
-def test_condensed_islands_step_as_full_ones(order: int) -> None:
+def test_condensed_components_step_as_full_ones(order: int) -> None:
     # The five parts of a step of order 4 share the factors of a condensed system.
     ends = []
     for wide in (False, True):
@@ -241,11 +242,11 @@ def test_condensed_islands_step_as_full_ones(order: int) -> None:
 
 
 def arrange(stepper: JointedSpace, condensed: bool) -> None:
-    """Have the stepper's only island in the bodies' unknowns alone, or not."""
-    J = stepper.islands.arrays
-    order_unknowns(J.COMPONENT, J.MEMBER, J.LINK, 0, condensed)
+    """Have the stepper's only component in the bodies' unknowns alone, or not."""
+    J = stepper.components.arrays
+    order_unknowns(J.COMPONENT, J.JOINED, J.COUPLING, 0, condensed)
     C = J.COMPONENT[0]
-    stepper.islands.use(
+    stepper.components.use(
         J._replace(
             RIGHT=np.zeros(2 * C.unknowns + C.impulses), MATRIX=np.zeros(C.unknowns * (3 * C.band + 1)),
             MORE=np.zeros(C.unknowns), PIVOTS=np.zeros(C.unknowns, np.int64),
@@ -272,8 +273,8 @@ def test_all_systems_step_an_island_alike() -> None:
     for rigid in (0, 2):
         space = linked()
         stepper = JointedSpace(space)
-        assert stepper.islands.arrays.COMPONENT[0].rigid == 2
-        stepper.islands.arrays.COMPONENT[0].rigid = rigid
+        assert stepper.components.arrays.COMPONENT[0].rigid == 2
+        stepper.components.arrays.COMPONENT[0].rigid = rigid
         for _ in range(60):
             stepper.step(1 / 60)
             assert stepper.status <= 1

@@ -8,7 +8,7 @@ import numpy as np
 import pymunk
 import pytest
 
-from eeca_pymunk.model.joints import EXACT, LINEAR
+from eeca_pymunk.model.joint_steps import EXACT, LINEAR
 from scenes import linkages
 
 from .driving import drift, error, momenta, run, slopes
@@ -159,7 +159,7 @@ def test_forty_four_bars_after_ten_seconds() -> None:
     stepper.step(0.01)
     start, worst = stepper.energy(), 0.0
     for _ in range(999):
-        stepper.islands.step(stepper.bodies, 0.01)
+        stepper.components.step(stepper.bodies, 0.01)
         worst = max(worst, abs(stepper.energy() - start))
     stepper._scatter()
     end = next(iter(space.bodies)).local_to_world((0.5, 0.0))
@@ -176,7 +176,7 @@ def test_squeezer_of_andrews() -> None:
         stepper._gather()
         start = stepper.energy()
         for _ in range(round(0.03 / dt)):
-            stepper.islands.step(stepper.bodies, dt)
+            stepper.components.step(stepper.bodies, dt)
             stepper.book()
         stepper._scatter()
         k1, k2, k3, _, k5, _, k7 = space.bodies

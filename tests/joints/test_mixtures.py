@@ -8,7 +8,7 @@ import pytest
 
 from eeca_pymunk.compiled.records import columns
 from eeca_pymunk.model.bodies import POSE, VELOCITY
-from eeca_pymunk.model.joints import EXACT, LINEAR
+from eeca_pymunk.model.joint_steps import EXACT, LINEAR
 from scenes.linkages import body, empty
 
 from .jointed import JointedSpace

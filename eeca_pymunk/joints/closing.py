@@ -1,0 +1,132 @@
+"""The start of a step after changes of the user: joints closed, velocities made to fit them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..compiled import nonallocating
+from ..compiled.records import Rows
+from ..model.joint_steps import POSES, SPEEDS, BodyStep, JointLedger
+from ..model.joints import APART, EDITED, GIVES_WAY, LEFT_APART, Workspace
+from ..model.parameters.joints import JOINT_APART
+from .bounds import gap, has_bound
+from .correct import correct, fitting_loss, speeds_fit
+from .entries import held
+from .ledger import springs_hold
+from .lock import lock_energy
+from .motion import go_back, save
+from .rows import joint_rows
+from .start import closing_share, compute_rows
+
+
+@nonallocating
+def find_apart(W: Workspace, h: float) -> tuple[bool, bool, bool]:
+    """After the user's changes: targets of joints that are apart, one step's share nearer, and limits that are passed.
+
+    Rows must be those of the present poses. Joints that will still be apart are APART, and hold the rest of their error
+    over the step, so that it does no work; or LEFT_APART if a step has left them so. Those that give way elastically
+    stay as they are. Returns whether the user has touched any since the last step, whether any is to be closed, and
+    whether only steps have left them apart.
+    """
+    joint, hinge, link = W.J.JOINT, W.J.HINGE, W.link
+    edited, apart, own = False, False, True
+    for k in range(W.joints):
+        j, rows = link[k].joint, link[k].rows
+        if joint[j].touched == EDITED:
+            edited = True
+        was = joint[j].touched
+        joint[j].touched = 0
+        if link[k].soft != 0 or rows == 0:
+            continue
+        for side in (-1, 1):
+            if has_bound(joint, link, k, side):
+                room = gap(joint, hinge, link, k, side)
+                if room < -JOINT_APART * hinge[k].size:
+                    link[k].side = side
+                elif link[k].side == side and room > JOINT_APART * hinge[k].size:
+                    link[k].side = 0
+        joint_rows(W, k, 2.0, False)
+        error = 0.0
+        for r in range(rows):
+            if held(link, k, r):
+                error += hinge[k].value[r] ** 2
+        error = np.sqrt(error)
+        if error > JOINT_APART * hinge[k].size and was == GIVES_WAY:
+            joint[j].touched = GIVES_WAY
+        elif error > JOINT_APART * hinge[k].size:
+            apart = True
+            left = 1.0 - closing_share(joint, j, error, h)
+            for r in range(rows):
+                hinge[k].target[r] = hinge[k].value[r] * left
+            joint[j].touched = 0 if not left > 0.0 else LEFT_APART if was == LEFT_APART else APART
+            own = own and was == LEFT_APART
+    return edited, apart, own and not edited
+
+
+@nonallocating
+def farthest(W: Workspace) -> float:
+    """The largest error of a held row, over the size of the component. Rows must be those of the present poses."""
+    link = W.link
+    worst = 0.0
+    for k in range(W.joints):
+        for r in range(link[k].rows):
+            if link[k].soft == 0 and held(link, k, r):
+                worst = max(worst, abs(W.J.HINGE[k].value[r]) / W.J.HINGE[k].size)
+    return worst
+
+
+@nonallocating
+def closing_work(local: Rows[BodyStep], bodies: int) -> float:
+    """The work of closing, from the saved to the present poses, against the bodies' accelerations."""
+    work = 0.0
+    for i in range(bodies):
+        for c in range(3):
+            if local[i].mobility[c] > 0.0:
+                work -= local[i].acceleration[c] * (local[i].pose[c] - local[i].saved_pose[c]) / local[i].mobility[c]
+    return work
+
+
+@nonallocating
+def keep_closed(W: Workspace) -> None:
+    """Note how far closing has shifted bodies, and let joints hold what it reached."""
+    hinge, link, local = W.J.HINGE, W.link, W.J.LOCAL
+    for i in range(W.bodies):
+        for c in range(3):
+            if local[i].mobility[c] > 0.0:
+                local[i].shift[c] = local[i].pose[c] - local[i].saved_pose[c]
+    for k in range(W.joints):
+        for r in range(link[k].rows):
+            if hinge[k].target[r] != 0.0 and link[k].soft == 0 and held(link, k, r):
+                hinge[k].target[r] = hinge[k].value[r]
+
+
+@nonallocating
+def close_joints(W: Workspace, h: float, ledger: JointLedger) -> bool:
+    """Close joints that are apart by one step's share, and make velocities fit them if the user has changed something;
+    whether only steps have left joints apart. The costs enter the ledger of the step."""
+    local = W.J.LOCAL
+    compute_rows(W)
+    stored = springs_hold(W)
+    edited, apart, own = find_apart(W, h)
+    if apart:
+        before = farthest(W)
+        correct(W, POSES)
+        compute_rows(W)
+        taken = springs_hold(W) - stored
+        cost = taken + closing_work(local, W.bodies)
+        # What a step left apart closes at the cost of what moves.
+        locked = lock_energy(local, W.bodies, cost) if own and cost > 0.0 else 0.0
+        # Rows that contradict each other stay.
+        if not farthest(W) <= before or (own and locked < cost - 1e-9 * abs(cost)):
+            go_back(local, W.bodies)
+            compute_rows(W)
+            taken, cost, locked = 0.0, 0.0, 0.0
+        keep_closed(W)
+        ledger.closed += cost - locked
+        ledger.stored += taken
+        save(local, W.bodies)
+    if edited and not speeds_fit(W):
+        correct(W, SPEEDS)
+        ledger.projected += fitting_loss(local, W.bodies, ledger)
+        save(local, W.bodies)
+    return own

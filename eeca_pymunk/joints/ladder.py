@@ -1,0 +1,148 @@
+"""The ladder of a step: Newton's method in other parts, or with joints that give way, where it does not converge.
+
+Order 2 (midpoint with discrete gradients), or 4 by Suzuki's composition (s, s, 1 - 4s, s, s) h, s = 1/(4 - 4^(1/3)),
+where nothing in the component dissipates, drives or meets a limit. The ladder: the step whole, in 2, 4, 7 parts; whole
+and in 7 with joints that give way elastically, by 1e-9, 1e-8, 1e-7, 1e-6, 1e-4. The work of all rungs together is
+bounded. What gives way does so in later steps with the same compliance, until it is closed.
+"""
+
+from __future__ import annotations
+
+from ..compiled import nonallocating
+from ..model.joint_steps import ELASTIC, EXACT, HALVED, LINEAR
+from ..model.joints import GIVES_WAY, ROTARY_SPRING, SPRING, Workspace
+from ..model.parameters.joints import COMPONENT_BUDGET, ELASTIC_PARTS, HASTE, LEAST_SOLUTIONS, REPAID
+from .foresight import foretell, forget, recalls, remember
+from .ledger import clear
+from .limits import step_with_limits
+from .lock import lock_energy, supports_rest
+from .motion import go_back
+from .newton import effort
+from .solve import drop_impulses
+
+SUZUKI = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))
+ORDER_4, WHOLE_STEP, ELASTIC_RUNG, RUNGS = -1, 0, 4, 10
+
+
+@nonallocating
+def smooth(W: Workspace) -> bool:
+    """Whether order 4 may be had: no damping, no motor, no finite max_force, nothing on a limit."""
+    link = W.link
+    for k in range(W.joints):
+        spring = link[k].kind in (SPRING, ROTARY_SPRING)
+        if link[k].soft != 0 or link[k].side != 0 or (spring and W.J.JOINT[link[k].joint].damping != 0.0):
+            return False
+    return True
+
+
+@nonallocating
+def gives_way(W: Workspace) -> bool:
+    """Whether a joint of the component gives way elastically since an earlier step."""
+    some = False
+    for k in range(W.joints):
+        some = some or W.J.JOINT[W.link[k].joint].touched == GIVES_WAY
+    return some
+
+
+@nonallocating
+def limit_work(W: Workspace) -> None:
+    """The share of the work of a step of the scene that this one may take."""
+    component, progress = W.J.COMPONENT[W.s], W.J.PROGRESS
+    # What no longer has a share of the work can still be solved where it is not hard.
+    least = LEAST_SOLUTIONS * effort(component.system, True, component.boxes, W.joints, component)
+    progress.limit = progress.effort + max((progress.budget - progress.effort) * COMPONENT_BUDGET, least)
+    progress.hurry = progress.effort + HASTE * (progress.limit - progress.effort)
+
+
+@nonallocating
+def compliance_on(rung: int, h: float, yields: bool, before: float) -> float:
+    """The compliance (time²) of joints on a rung; of joints that give way already, not less than `before`."""
+    if rung < ELASTIC_RUNG:
+        return 0.0
+    steps = max(rung - ELASTIC_RUNG - 1, 0)
+    relative = 1e-4 if rung + 1 == RUNGS else 1e-9 * 10.0**steps
+    compliance = relative * (h / ELASTIC_PARTS) ** 2
+    return max(compliance if relative > 1e-9 else 0.0, before) if yields else compliance
+
+
+@nonallocating
+def take_parts(W: Workspace, h: float, length: float, rung: int, parts: int, give: float, cold: bool) -> bool:
+    """Take the step in the parts of a rung; False if one of them fails. `cold`: rows are redundant and begin without
+    impulse."""
+    before = h
+    for p in range(parts):
+        piece = h / parts if rung >= 0 else (1.0 - 4.0 * SUZUKI) * h if p == 2 else SUZUKI * h
+        warm = 0.0 if cold else piece / before
+        for k in range(W.joints):
+            W.J.HINGE[k].lam[0] *= warm
+            W.J.HINGE[k].lam[1] *= warm
+        before = piece
+        if rung == ORDER_4 and recalls(W, h):
+            foretell(W, p, piece, cold)
+        if not step_with_limits(W, False, piece, length, cold, give, rung == ORDER_4, W.J.PART):
+            return False
+        if rung == ORDER_4:
+            remember(W, piece)
+    return True
+
+
+@nonallocating
+def repaid(W: Workspace) -> bool:
+    """Whether exact rows, which close at once what an earlier step left apart, give no more than that has taken, or
+    little beside what moved before, which is taken back."""
+    part = W.J.PART
+    gain, had = part.closed - W.J.JOINT[W.link[0].joint].owed, 0.0
+    if not gain > 0.0 or not supports_rest(W.J.LOCAL, W.bodies):
+        return True
+    for i in range(W.bodies):
+        for c in range(3):
+            if W.J.LOCAL[i].mobility[c] > 0.0:
+                had += 0.5 * W.J.LOCAL[i].saved_velocity[c] ** 2 / W.J.LOCAL[i].mobility[c]
+    if not gain <= REPAID * had:
+        return False
+    part.closed -= lock_energy(W.J.LOCAL, W.bodies, gain)
+    return True
+
+
+@nonallocating
+def restore(W: Workspace) -> None:
+    """Back to the start of the step, without impulses."""
+    go_back(W.J.LOCAL, W.bodies)
+    drop_impulses(W)
+    for i in range(W.bodies):
+        for c in range(3):
+            W.J.LOCAL[i].lead[c] = 0.0
+    for k in range(W.joints):
+        joint = W.J.JOINT[W.link[k].joint]
+        W.J.HINGE[k].total[0] = W.J.HINGE[k].total[1] = joint.work = 0.0
+        W.link[k].side = joint.side
+
+
+@nonallocating
+def climb(W: Workspace, h: float, order: int, length: float, touched: bool, own: bool) -> int:
+    """Take the step h by the first rung of the ladder on which it succeeds: EXACT, HALVED or ELASTIC; LINEAR if none
+    does, with everything as at the start. PART has the energies.
+
+    Args:
+        touched: whether the user has changed joints.  own: whether only steps have left them apart, see `repaid`.
+    """
+    first, progress = W.J.JOINT[W.link[0].joint], W.J.PROGRESS
+    loops = W.J.COMPONENT[W.s].loops > 0
+    cold, yields = loops and W.J.COMPONENT[W.s].taut == 0, gives_way(W)
+    rung = ELASTIC_RUNG if yields else ORDER_4 if order == 4 and smooth(W) else WHOLE_STEP
+    if rung != ORDER_4 or touched:
+        forget(W)
+    while rung < RUNGS and not progress.effort > progress.limit:
+        parts = 5 if rung == ORDER_4 else 1 if rung == ELASTIC_RUNG else 1 << rung if rung < 3 else ELASTIC_PARTS
+        compliance = compliance_on(rung, h, yields, first.compliance)
+        clear(W.J.PART)
+        done = take_parts(W, h, length, rung, parts, compliance / (h / parts) ** 2, cold)
+        if done and (not own or rung >= ELASTIC_RUNG or repaid(W)):
+            first.compliance = compliance
+            return EXACT if rung <= WHOLE_STEP else HALVED if rung < ELASTIC_RUNG else ELASTIC
+        # What has begun with what was foretold, or with impulses of redundant rows, is taken again without.
+        again = cold != loops or (rung == ORDER_4 and recalls(W, h))
+        restore(W)
+        forget(W)
+        rung, cold = rung if again else rung + 1, loops
+    return LINEAR

@@ -1,0 +1,85 @@
+"""Steps whose joints did not hold: linear rows, bodies that move as one, and the energy that these gain taken back."""
+
+from __future__ import annotations
+
+from ..compiled import nonallocating
+from ..model.joint_steps import ELASTIC, LINEAR
+from ..model.joints import Workspace
+from ..model.parameters.joints import LINEAR_APART
+from .closing import farthest
+from .foresight import forget
+from .ladder import restore
+from .ledger import clear, close_ledger, springs_hold
+from .limits import step_with_limits
+from .lock import lock_energy, move_rigidly, supports_rest
+from .motion import advance, go_back, move
+from .solve import drop_impulses
+from .start import compute_rows
+
+
+@nonallocating
+def step_linearly(W: Workspace, h: float, length: float) -> float:
+    """Take the step h by one linear system, or in free flight if that has no solution; how far joints were apart at its
+    start, over the size of the component. PART has what springs have stored."""
+    local, part = W.J.LOCAL, W.J.PART
+    compute_rows(W)
+    stored, apart = springs_hold(W), farthest(W)
+    drop_impulses(W)
+    if step_with_limits(W, True, h, length, True, 0.0, False, part):
+        W.J.JOINT[W.link[0].joint].compliance = 0.0
+    else:
+        restore(W)
+        forget(W)
+        for i in range(W.bodies):
+            for c in range(3):
+                local[i].v1[c] = local[i].v0[c] + h * local[i].acceleration[c]
+        move(local, W.bodies, h)
+        advance(local, W.bodies, h)
+    compute_rows(W)
+    clear(part)
+    part.stored = springs_hold(W) - stored
+    return apart
+
+
+@nonallocating
+def stop_joints(W: Workspace, h: float) -> None:
+    """The step of a component that nothing else can do: see `move_rigidly`; what that loses enters the ledger in
+    PART."""
+    local, part = W.J.LOCAL, W.J.PART
+    go_back(local, W.bodies)
+    compute_rows(W)
+    stored = springs_hold(W)
+    move_rigidly(local, W.bodies, h)
+    compute_rows(W)
+    clear(part)
+    part.stored = springs_hold(W) - stored
+    close_ledger(local, W.bodies, part)
+    part.projected, part.closed = max(-part.closed, 0.0), max(part.closed, 0.0)
+    for i in range(W.bodies):
+        for c in range(3):
+            local[i].lead[c] = 0.0
+    drop_impulses(W)
+    for k in range(W.joints):
+        W.J.HINGE[k].total[0] = W.J.HINGE[k].total[1] = W.J.JOINT[W.link[k].joint].work = 0.0
+
+
+@nonallocating
+def take_gain(W: Workspace, h: float, status: int, before: float) -> int:
+    """Close the ledger of a step that was ELASTIC or LINEAR, and take what it has gained beyond what is `owed` from
+    what moves; the status. Where that is not enough, or linear rows have moved joints apart, which were `before`, all
+    bodies move as one. What elastic joints hold they may give back; linear rows hold nothing."""
+    local, part, first, stopped = W.J.LOCAL, W.J.PART, W.J.JOINT[W.link[0].joint], False
+    close_ledger(local, W.bodies, part)
+    if part.closed > first.owed:
+        gain = part.closed - first.owed
+        taken = lock_energy(local, W.bodies, gain)
+        part.closed -= taken
+        if gain - taken > 1e-9 * gain + 1e-12 * first.owed and supports_rest(local, W.bodies):
+            status, stopped = LINEAR, True
+    if status == LINEAR and not farthest(W) <= before + LINEAR_APART:
+        stopped = supports_rest(local, W.bodies)
+    if stopped:
+        stop_joints(W, h)
+    spent = part.closed if status == ELASTIC else max(part.closed, 0.0)
+    first.owed = max(first.owed - spent, 0.0)
+    return status
