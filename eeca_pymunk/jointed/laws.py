@@ -9,6 +9,7 @@ from ..compiled import kernel
 from ..model.contacts import JointedProblem
 from ..model.parameters.joints import COLUMN_CONTACTS, COLUMN_PATHS, COLUMN_SWEEPS_AFTER
 from ..rows.conjugate import iterate
+from ..rows.dense import newton
 from ..rows.inplace import copy
 from ..rows.path import follow_path
 from ..rows.sweeps import push, sweep, velocities
@@ -16,13 +17,15 @@ from ..rows.sweeps import push, sweep, velocities
 
 @kernel
 def solve_columns(
-    problem: JointedProblem, L: FloatArray, V: FloatArray, tolerance: float, sweeps: int, most: int
+    problem: JointedProblem, L: FloatArray, V: FloatArray, tolerance: float, sweeps: int, most: int,
+    limited: bool,
 ) -> float:  # fmt: skip
     """Impulses L (m contacts, then the bounded rows) and velocities V.
 
     Args:
         tolerance: change of a contact's velocity in a sweep at which its law is kept.  sweeps: before a path.
-        most: sweeps where there are too many contacts for a path, or it has no end.
+        most: sweeps where there are too many contacts for a path, or it has no end.  limited: whether energy limits
+            friction, which a path does not know: direct solutions on the active contacts then.
 
     Returns:
         the largest change of a contact's velocity in the last sweep.
@@ -31,18 +34,20 @@ def solve_columns(
         return iterate(problem, L, V, tolerance, most)[1]
     worst = iterate(problem, L, V, tolerance, sweeps)[1]
     best, L0, V0, before = worst, L.copy(), V.copy(), np.inf
-    for _ in range(COLUMN_PATHS):
+    for turn in range(COLUMN_PATHS):
         if worst <= tolerance:
             return worst
         FREE = V.copy()
         push(problem, L, -1.0, FREE)
-        if not follow_path(problem, L, V, FREE, False):
+        if limited:
+            newton(problem, L, V, FREE, 2, 0.1 * tolerance, turn % 2 == 1)
+        elif not follow_path(problem, L, V, FREE, False):
             for i in range(len(L)):
                 L[i, 0] = L[i, 1] = 0.0
             velocities(problem, L, FREE, V)
             if not follow_path(problem, L, V, FREE, True):
                 break
-        # Discs of bounded impulses and friction that energy limits are not on the path: sweeps, in turn with it.
+        # Discs of bounded impulses are not on the path: sweeps, in turn with it.
         worst, done = np.inf, 0
         while done < COLUMN_SWEEPS_AFTER and worst > tolerance:
             worst = sweep(problem, L, V)
@@ -51,7 +56,7 @@ def solve_columns(
             best = worst
             copy(L0, L)
             copy(V0, V)
-        if not worst <= 0.5 * before:
+        if not worst <= (100.0 * best if limited else 0.5 * before):
             break
         before = worst
     if worst > tolerance:
