@@ -9,7 +9,6 @@ from ..compiled import kernel
 from ..model.contacts import JointedProblem
 from ..model.parameters.joints import COLUMN_CONTACTS, COLUMN_PATHS, COLUMN_SWEEPS_AFTER
 from ..rows.conjugate import iterate
-from ..rows.dense import newton
 from ..rows.inplace import copy
 from ..rows.path import follow_path
 from ..rows.sweeps import push, sweep, velocities
@@ -18,14 +17,12 @@ from ..rows.sweeps import push, sweep, velocities
 @kernel
 def solve_columns(
     problem: JointedProblem, L: FloatArray, V: FloatArray, tolerance: float, sweeps: int, most: int,
-    limited: bool,
 ) -> float:  # fmt: skip
     """Impulses L (m contacts, then the bounded rows) and velocities V.
 
     Args:
         tolerance: change of a contact's velocity in a sweep at which its law is kept.  sweeps: before a path.
-        most: sweeps where there are too many contacts for a path, or it has no end.  limited: whether energy limits
-            friction, which a path does not know: direct solutions on the active contacts then.
+        most: sweeps where there are too many contacts for a path, or it has no end.
 
     Returns:
         the largest change of a contact's velocity in the last sweep.
@@ -34,14 +31,12 @@ def solve_columns(
         return iterate(problem, L, V, tolerance, most)[1]
     worst = iterate(problem, L, V, tolerance, sweeps)[1]
     best, L0, V0, before = worst, L.copy(), V.copy(), np.inf
-    for turn in range(COLUMN_PATHS):
+    for _ in range(COLUMN_PATHS):
         if worst <= tolerance:
             return worst
         FREE = V.copy()
         push(problem, L, -1.0, FREE)
-        if limited:
-            newton(problem, L, V, FREE, 2, 0.1 * tolerance, turn % 2 == 1)
-        elif not follow_path(problem, L, V, FREE, False):
+        if not follow_path(problem, L, V, FREE, False):
             for i in range(len(L)):
                 L[i, 0] = L[i, 1] = 0.0
             velocities(problem, L, FREE, V)
@@ -56,7 +51,7 @@ def solve_columns(
             best = worst
             copy(L0, L)
             copy(V0, V)
-        if not worst <= (100.0 * best if limited else 0.5 * before):
+        if abs(worst - before) <= 0.1 * worst:
             break
         before = worst
     if worst > tolerance:

@@ -13,7 +13,7 @@ from ..compiled import nonallocating
 from ..model.contacts import Columns, JointedProblem
 from .bounded import push_row, sweep_bounded
 from .build import normal_rate, tangent_rate
-from .coulomb import coulomb
+from .coulomb import coulomb, limited_slip
 
 
 @nonallocating
@@ -61,7 +61,11 @@ def lawful(problem: JointedProblem, L: FloatArray, V: FloatArray, i: int) -> tup
     if abs(beta) <= ROWS[i].friction * lam and beta * ROWS[i].ut <= 0.0:
         return lam, beta
     if not qn < 0.0:
-        return 0.0, 0.0
+        # Nor does one open that slips back as slowly as energy lets it.
+        off = ut - limited_slip(ROWS[i], lam0, beta0)
+        lam = lam0 - (ROWS[i].w_nn * short + ROWS[i].w_nt * off)
+        beta = beta0 - (ROWS[i].w_nt * short + ROWS[i].w_tt * off)
+        return (lam, beta) if beta * ROWS[i].ut > 0.0 and abs(beta) <= ROWS[i].friction * lam else (0.0, 0.0)
     ant, att = ROWS[i].a_nt, ROWS[i].a_tt
     return coulomb(
         qn, ut - beta0 * att - lam0 * ant, ann, ant, att, ROWS[i].friction, ROWS[i].un, ROWS[i].ut, ROWS[i].target

@@ -12,6 +12,8 @@ from __future__ import annotations
 import math
 
 from ..compiled import nonallocating
+from ..compiled.records import Rows
+from ..model.contacts import Row
 from ..model.parameters.impulses import JAMMED, SINGULAR
 
 
@@ -67,3 +69,11 @@ def coulomb(
                 lam = -qn / (ann + sign * mu * ant)
                 beta = sign * mu * lam
     return lam, beta
+
+
+@nonallocating
+def limited_slip(row: Rows[Row], lam: float, beta: float) -> float:
+    """Tangential velocity with which a contact with these impulses loses no energy, where those of a stick would give
+    some: beta (u_t- + u_t+) = -lam (u_n- + b); 0 where it may stick."""
+    loss = lam * min(row.un + row.target, 0.0)
+    return float(-row.ut - loss / beta) if beta * row.ut > -loss else 0.0

@@ -19,6 +19,7 @@ from ..model.contacts import JointedProblem
 from ..model.parameters.impulses import PATH_CHANGES, PATH_CHANGES_ANEW, PATH_REFINEMENTS
 from .bounded import SINGLE, bounded_rate
 from .build import normal_rate, tangent_rate
+from .coulomb import limited_slip
 from .dense import matrix_jointed
 from .pivots import (
     BOUND,
@@ -48,8 +49,8 @@ def begin(problem: JointedProblem, L: FloatArray, V: FloatArray, anew: bool) -> 
     n = D.USED[0]
     size = 2 * m + n
     path = Path(
-        np.zeros(m + n, np.int64), np.zeros(m + n), np.zeros(m), np.zeros(n), np.zeros(n), np.zeros((size, size + 2)),
-        np.empty(size + 2),
+        np.zeros(m + n, np.int64), np.zeros(m + n), np.zeros(m), np.zeros(n), np.zeros(n), np.zeros(m),
+        np.zeros((size, size + 2)),         np.empty(size + 2),
     )  # fmt: skip
     T, X, W = path.T, np.zeros(size), np.empty((size, size))
     AT, KIND = np.empty(size, np.int64), np.empty(size, np.int64)
@@ -61,7 +62,11 @@ def begin(problem: JointedProblem, L: FloatArray, V: FloatArray, anew: bool) -> 
         if C.OUT[i] == 0 and not ROWS[i].wake < np.inf:
             path.STATE[i] = OPEN
             T[2 * i, size] = normal_rate(A, B, ROWS, V, i) - ROWS[i].target
-            T[2 * i + 1, size] = tangent_rate(A, B, ROWS, V, i)
+            slides = tangent_rate(A, B, ROWS, V, i)
+            path.REST[i] = limited_slip(ROWS[i], L[i, 0], L[i, 1])
+            T[2 * i + 1, size] = slides - path.REST[i]
+            if L[i, 0] > 0.0 and L[i, 1] == 0.0 and slides * ROWS[i].ut < 0.0:
+                path.MU[i] = 0.0  # a slip that has reversed by less than its size: no friction without giving energy
             X[2 * i], X[2 * i + 1] = L[i, 0], L[i, 1]
     for i in range(n):
         row, k = D.ROWS[i], 2 * m + i
@@ -171,7 +176,11 @@ def refine(problem: JointedProblem, path: Path, V: FloatArray, X: FloatArray) ->
             if c >= m:
                 off = D.ROWS[c - m].speed + bounded_rate(D, c - m, V)
             else:
-                off = tangent_rate(A, B, ROWS, V, c) if z == 1 else normal_rate(A, B, ROWS, V, c) - ROWS[c].target
+                off = (
+                    tangent_rate(A, B, ROWS, V, c) - path.REST[c]
+                    if z == 1
+                    else normal_rate(A, B, ROWS, V, c) - ROWS[c].target
+                )
             for i in range(len(X)):
                 X[i] -= path.T[i, k + z] * off
 

@@ -18,6 +18,7 @@ class Path(NamedTuple):
     (tangential), row i the unknown 2 m + i; size = 2 m + n.
 
     STATE, SIGN (m + n,): states; sign of the friction that slips, or of the bound; else 0.  MU (m,), LOW, HIGH (n,).
+    REST (m,): tangential velocity of contacts that stick, not 0 where energy limits friction (`polish.classify`).
     T (size, size + 2): of each unknown the impulse, or the velocity less its target, that its state leaves free, by
     those of all that it fixes, which are 0; then its value at theta = 0, and per theta. Where a contact slips, beta
     stands for beta - s mu lam.  R (size + 2,): room for a row.
@@ -28,6 +29,7 @@ class Path(NamedTuple):
     MU: FloatArray
     LOW: FloatArray
     HIGH: FloatArray
+    REST: FloatArray
     T: FloatArray
     R: FloatArray
 
