@@ -8,6 +8,7 @@ from ..arrays import FloatArray
 from ..compiled import kernel
 from ..model.contacts import JointedProblem
 from ..model.parameters.joints import COLUMN_CONTACTS, COLUMN_PATHS, COLUMN_SWEEPS_AFTER
+from ..rows.columns import breach
 from ..rows.conjugate import iterate
 from ..rows.inplace import copy
 from ..rows.path import follow_path
@@ -29,7 +30,7 @@ def solve_columns(
     """
     if problem.m > COLUMN_CONTACTS:
         return iterate(problem, L, V, tolerance, most)[1]
-    worst = iterate(problem, L, V, tolerance, sweeps)[1]
+    worst = iterate(problem, L, V, tolerance, sweeps)[1] if sweeps > 0 else breach(problem, L, V)
     best, L0, V0, before = worst, L.copy(), V.copy(), np.inf
     for _ in range(COLUMN_PATHS):
         if worst <= tolerance:
@@ -43,7 +44,7 @@ def solve_columns(
             if not follow_path(problem, L, V, FREE, True):
                 break
         # Discs of bounded impulses are not on the path: sweeps, in turn with it.
-        worst, done = np.inf, 0
+        worst, done = breach(problem, L, V), 0
         while done < COLUMN_SWEEPS_AFTER and worst > tolerance:
             worst = sweep(problem, L, V)
             done += 1

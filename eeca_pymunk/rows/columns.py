@@ -11,7 +11,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import nonallocating
 from ..model.contacts import Columns, JointedProblem
-from .bounded import push_row, sweep_bounded
+from .bounded import SINGLE, bounded_rate, per_impulse, push_row, sweep_bounded
 from .build import normal_rate, tangent_rate
 from .coulomb import coulomb, limited_slip
 
@@ -70,6 +70,37 @@ def lawful(problem: JointedProblem, L: FloatArray, V: FloatArray, i: int) -> tup
     return coulomb(
         qn, ut - beta0 * att - lam0 * ant, ann, ant, att, ROWS[i].friction, ROWS[i].un, ROWS[i].ut, ROWS[i].target
     )
+
+
+@nonallocating
+def breach(problem: JointedProblem, L: FloatArray, V: FloatArray) -> float:
+    """The largest velocity by which impulses L and velocities V break the laws of contacts and bounded rows; inf if
+    there are discs. Where an impulse of friction could open its contact, a_nn < mu |a_nt|, a contact by itself has
+    several solutions, among which a sweep may change."""
+    A, B, ROWS, C, D, m = problem
+    worst = 0.0
+    for i in range(m):
+        if C.OUT[i] != 0 or ROWS[i].wake < np.inf:
+            continue
+        lam, beta, mu = L[i, 0], L[i, 1], ROWS[i].friction
+        un = normal_rate(A, B, ROWS, V, i) - ROWS[i].target
+        worst = max(worst, abs(un) if lam > 0.0 else -un)
+        if lam > 0.0 and mu > 0.0:
+            ut = tangent_rate(A, B, ROWS, V, i)
+            off = ut - limited_slip(ROWS[i], lam, beta)
+            if abs(beta) < (1.0 - 1e-12) * mu * lam:
+                reversed_slip = beta == 0.0 and ut * ROWS[i].ut < 0.0
+                worst = max(worst, 0.0 if reversed_slip else abs(off))
+            else:
+                worst = max(worst, off if beta > 0.0 else -off)
+    for i in range(D.USED[0]):
+        row, x = D.ROWS[i], L[m + i, 0]
+        if row.part != SINGLE:
+            return np.inf
+        if per_impulse(D, i, i) > 0.0:
+            u = row.speed + bounded_rate(D, i, V)
+            worst = max(worst, abs(u) if row.low < x < row.high else u if x >= row.high else -u)
+    return worst
 
 
 @nonallocating
