@@ -72,7 +72,7 @@ def lock(
         # By its slope at s = 1.
         slope = p - 2.0 * q2
         s = 1.0 + (owed - loss) / slope if slope < 0.0 else 0.0
-        if tries == PRESS_LOCKS or (elastic and not 0.0 < s < 2.0):
+        if tries == PRESS_LOCKS or J.PROGRESS.effort > J.PROGRESS.share or (elastic and not 0.0 < s < 2.0):
             s = 0.0
         elif not 0.1 < s < 2.0:
             # The loss of s L has the sign of s p for small s: half of them, again and again.
