@@ -13,6 +13,7 @@ from ..geometry.sides import remembers
 from ..islands.accounting import end_interval
 from ..islands.building import comes_to_rest, hits_of, most_hits, passed_over
 from ..islands.membership import jointed, members
+from ..jointed.ledger import is_spent
 from ..jointed.meet import end_here
 from ..model.bodies import LEAVE, RENEW
 from ..model.joints import Joints
@@ -174,7 +175,7 @@ def follow(A: Scene, J: Joints, may_rest: bool) -> int:
                 rest = comes_to_rest(A, s, o, t)
             COUNT.waiting = strike(A, s, o, t, rest)
             joints = COUNT.waiting < 0
-        if joints and J.PROGRESS.effort > J.PROGRESS.budget:
+        if joints and is_spent(A, J, t):
             COUNT.waiting = 0
             return cut_short(A, J, i, t)
         if joints and not has_room(A):

@@ -10,7 +10,7 @@ from ..layout import BODY_ROW, LEFT
 from ..layout import NOW as READ
 from ..model.joint_steps import ELASTIC
 from ..model.joints import Joints
-from ..model.parameters.joints import STEP_WORK, STEP_WORK_BODY
+from ..model.parameters.joints import STEP_BEGUN, STEP_EXCESS, STEP_WORK, STEP_WORK_BODY
 from ..model.scene import Scene
 from ..model.step import JOINTS as UNMET_JOINTS
 
@@ -43,6 +43,14 @@ def start_joints(A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray) -> Non
     J.PROGRESS.effort, J.PROGRESS.budget = 0.0, STEP_WORK + STEP_WORK_BODY * A.BODY.shape[0]
     for s in range(len(J.STEPPED)):
         clear_interval(J.STEPPED[s])
+
+
+@nonallocating
+def is_spent(A: Scene, J: Joints, t: float) -> bool:
+    """Whether a step has no work left for joints at instant t. It has more of it while it has hardly begun, so that a
+    scene whose first intervals take all of it moves on."""
+    over = J.PROGRESS.effort > J.PROGRESS.budget
+    return bool(over and (t > STEP_BEGUN * A.PAR.dt or J.PROGRESS.effort > STEP_EXCESS * J.PROGRESS.budget))
 
 
 @nonallocating

@@ -32,6 +32,7 @@ from .component import step_component
 from .fitting import fit
 from .gathered import gather_component, keep_joints, restore_joints
 from .groups import Groups, find_groups
+from .ledger import is_spent
 from .lengths import excess
 from .lifting import correct
 from .lock import lost, slip_of
@@ -70,7 +71,7 @@ def begin_interval(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
     """
     for attempt in range(INTERVAL_TRIES):
         last = attempt + 1 == INTERVAL_TRIES or A.COUNT.together > 0
-        if t > 0.0 and J.PROGRESS.effort > J.PROGRESS.budget:
+        if t > 0.0 and is_spent(A, J, t):
             return SPENT
         status, h = open_span(A, J, root, t, h, last)
         if status != AGAIN:
