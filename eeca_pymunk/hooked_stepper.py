@@ -91,7 +91,8 @@ class HookedStepper(PackedSpace):
             if world.collisions:
                 rehearsal = world.rehearsal
                 self._checked(world, dt, rehearsal.run(hooks, dt, world.gravity, half_damping))
-                world.rules = rehearsal.rules(world.rules, world.places, world.SHAPE, world.smooth)
+                scene = world.places, world.SHAPE, world.smooth
+                world.rules = rehearsal.rules(world.rules, *scene, self.decisions)
             status = self._checked(world, dt, self.advance(world, dt, half_damping))
             book = self._booked(dt)
             forces = status & FORCES or hooks.some or joints is not None

@@ -12,6 +12,7 @@ import numpy as np
 from .arrays import FloatArray, IntArray
 from .errors import NotFiniteError
 from .space.checks import check_ignored
+from .space.decisions import Decisions
 from .space.describe import describe
 from .space.joints import JointRows
 from .space.sleep_groups import put_to_sleep, rouse
@@ -36,6 +37,7 @@ class PackedSpace(Stepper):
     Attributes:
         reads: number of readings of the whole space: one at the start, and one after each change that rows cannot be
             patched for.
+        decisions: of collision handlers in earlier steps.
     """
 
     def __init__(self, space: pymunk.Space, *, sync: bool = True, ignore: Sequence[str] = ()) -> None:
@@ -48,7 +50,7 @@ class PackedSpace(Stepper):
         self._sync: Sync
         self._sleep: Sleep | None = None  # None if bodies cannot sleep
         self._idle_book: FloatArray | None = None  # ledger entries of a step in which all dynamic bodies sleep
-        self.reads = 0
+        self.reads, self.decisions = 0, Decisions()
         self._look()
 
     def __getstate__(self) -> dict[str, object]:
@@ -56,6 +58,7 @@ class PackedSpace(Stepper):
         state = self.__dict__.copy()
         state.pop("_sync", None)
         state["_world"] = state["_sleep"] = state["_told"] = None
+        state["decisions"] = Decisions()
         return state
 
     def __copy__(self: Own) -> Own:
@@ -66,6 +69,7 @@ class PackedSpace(Stepper):
 
     def refresh(self) -> None:
         self._world = None
+        self.decisions.forget(self.space)
 
     def prepare(self, world: World, past: World | None) -> None:
         """Make the stepper's own arrays for a world that was just read; `past` is the world before, if known."""

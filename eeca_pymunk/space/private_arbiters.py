@@ -30,6 +30,11 @@ def second_is(arbiter: Any, shape: pymunk.Shape) -> bool:
     return int(ffi.cast("uintptr_t", arbiter.b)) == shape_key(shape)
 
 
+def stamp(arbiter: pymunk.Arbiter) -> int:
+    """The number of pymunk's step in which the shapes of an arbiter last touched."""
+    return int(arbiter._arbiter.stamp)
+
+
 def asleep(arbiter: Any) -> bool:
     """Whether a body of an arbiter sleeps."""
     return bool(lib.cpBodyIsSleeping(arbiter.body_a) or lib.cpBodyIsSleeping(arbiter.body_b))

@@ -107,11 +107,6 @@ class Composition:
         return self.turns or bool(self.space.constraints)
 
     @property
-    def saves(self) -> bool:
-        """Whether pymunk's pickles have all of the scene."""
-        return True
-
-    @property
     def pushed(self) -> bool:
         """Whether functions of the program push bodies."""
         return False
@@ -209,7 +204,7 @@ class Composition:
             clock = time.process_time()
             report = self.stepper.step(self.dt)
             taken = time.process_time() - clock
-            if taken > LONGEST and not self.space.constraints:
+            if taken > self._longest() and not self.space.constraints:
                 taken = self._bounded(k)
             found.longest = max(found.longest, taken)
             found.unconverged += not report.converged
@@ -222,7 +217,7 @@ class Composition:
             if found.stands >= STANDS:
                 raise Broken(f"step {k}: time stands still")
             before = state
-        if saved is not None and not self.turns and self.saves:
+        if saved is not None and not self.turns:
             space, stepper = pickle.loads(saved)
             again = [b for b in space.bodies if b.body_type == pymunk.Body.DYNAMIC]
             for k, expected in enumerate(half, steps - len(half)):
@@ -231,6 +226,10 @@ class Composition:
                 if now != expected:
                     raise Broken(f"a run that was saved goes another way at step {k}")
         return found
+
+    def _longest(self) -> float:
+        """Process time (s) that a step may take in any case."""
+        return LONGEST * max(1.0, self.dt / SHORT)
 
     def _bounded(self, k: int) -> float:
         """The process time (s) of step k, the least of some repetitions; `Broken` if it is beyond the bound."""
@@ -250,7 +249,7 @@ class Composition:
             least = min(least, time.process_time() - clock)
             clock = time.process_time()
             native.step(self.dt)
-            limit = max(LONGEST, NATIVE * (time.process_time() - clock)) * max(1.0, self.dt / SHORT)
+            limit = max(1.0, NATIVE * (time.process_time() - clock) / LONGEST) * self._longest()
             if least <= limit:
                 return least
         raise Broken(f"step {k} takes {1e3 * least:.0f} ms, {1e3 * limit:.0f} at most")
