@@ -94,6 +94,10 @@ class Rehearsal:
         for table in self._changes:
             table[:] = 0.0
 
+    def go_on(self, earlier: Rehearsal) -> None:
+        """Take over what functions have said in a rehearsal of another world of the space."""
+        self._heard, self.decided = earlier._heard, earlier.decided
+
     def listen(self, stage: int) -> None:
         """Before a function is called: read the bodies, if pymunk has reached another stage."""
         if self._stage != stage:

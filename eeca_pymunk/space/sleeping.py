@@ -87,7 +87,11 @@ class Sleep:
 
     def changed(self) -> bool:
         """Whether other bodies may sleep now than when this was made, or pymunk has taken a step."""
-        return self._timestamp() != self._left or not self._asleep()
+        return self._timestamp() != self._left or self.woken()
+
+    def woken(self) -> bool:
+        """Whether one of the bodies wakes that slept when this was made."""
+        return not self._asleep()
 
     def nothing_moves(self) -> bool:
         """Whether all dynamic bodies sleep, and all others have their old poses and velocity 0."""

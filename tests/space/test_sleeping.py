@@ -281,6 +281,29 @@ def test_handlers_see_a_sleeper_hit_awake() -> None:
     assert bodies[0].velocity.x < -1.0
 
 
+@pytest.mark.parametrize("first", [0, 1, 2])
+def test_on_a_kinematic_body_a_rehearsal_wakes_what_the_program_has_put_to_sleep(first: int) -> None:
+    """As pymunk's own step does; it has the bodies in another order then."""
+    space = pymunk.Space()
+    space.gravity, space.sleep_time_threshold = (0.0, -10.0), 5.0
+    plate = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    space.add(plate, pymunk.Segment(plate, (-20.0, 0.0), (20.0, 0.0), 0.1))
+    boxes = [box(space, 3.0 * k, 0.6) for k in range(3)]
+    space.on_collision(post_solve=lambda arbiter, space, data: None)
+    flying = ball(space, (-5.0, 5.0), (1.0, 0.0))
+    stepper = ep.EECA(space)
+    for k in range(3):
+        boxes[(first + k) % 3].sleep()
+    stepper.step(DT)
+    assert not any(body.is_sleeping for body in boxes)
+    assert flying.position == pytest.approx((-5.0 + DT, 5.0 - 5.0 * DT * DT), abs=1e-14)
+    for _ in range(5):
+        stepper.step(DT)
+    for k, body in enumerate(boxes):
+        assert body.position == pytest.approx((3.0 * k, 0.6), abs=1e-9)
+        assert body.velocity.length < 1e-9
+
+
 def test_islands_sleep_one_by_one() -> None:
     space, bodies = stack(2)
     late = box(space, 6.0, 2.0)
