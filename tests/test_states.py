@@ -236,3 +236,19 @@ def test_states_have_what_handlers_have_decided_before(phase: str, saved: bool) 
         stepper.set_state(state)
     stepper.step(1 / 60)
     assert [b.position.x for b in space.bodies] == [5.0, 0.0]
+
+
+@pytest.mark.parametrize("phase", ["begin", "pre_solve"])
+def test_copies_go_on_through_what_handlers_have_rejected(phase: str) -> None:
+    """pymunk's pickles have the contacts, but not that they were rejected."""
+    space, body, stepper = passing(phase)
+    body.position, body.velocity = (-0.9, 0.0), (6.0, 0.0)
+    for _ in range(5):
+        stepper.step(1 / 60)
+    assert body.position.x == pytest.approx(-0.4)
+    copied, other = pickle.loads(pickle.dumps((space, stepper)))
+    for _ in range(10):
+        stepper.step(1 / 60)
+        other.step(1 / 60)
+    assert [b.position for b in copied.bodies] == [b.position for b in space.bodies]
+    assert body.position.x == pytest.approx(0.6)

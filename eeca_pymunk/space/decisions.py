@@ -81,8 +81,15 @@ class Decisions:
         return np.array(sorted(rows), float).reshape(-1, DECISION_COLUMNS)
 
     def recall(self, space: pymunk.Space, rows: FloatArray) -> None:
-        """Return to a result of `state`."""
+        """Return to a result of `state`. Rejections of shapes that touched, and touch, are written to their arbiters:
+        pymunk does not ask `begin` again, and its pickles do not have them."""
         self.forget(space)
-        shapes = list(space.shapes)
+        shapes, never = list(space.shapes), set()
         for a, b, e, mu, x, y, age in rows.tolist():
-            self.told[shapes[int(a)], shapes[int(b)]] = (e, mu, x, y), self.since - int(age)
+            pair = shapes[int(a)], shapes[int(b)]
+            self.told[pair] = (e, mu, x, y), self.since - int(age)
+            if e < 0.0 and age == 0.0:
+                never.add(frozenset(pair))
+        for arbiter in private.arbiters(space) if never else ():
+            if frozenset(arbiter.shapes) in never:
+                private_arbiters.reject(arbiter)
