@@ -15,14 +15,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import IntArray
 from ..compiled import inlined, kernel, nonallocating
+from ..compiled.records import Rows, empty
 from ..contacts.single import move_to
 from ..joints.plan import root as set_of
+from ..model.islands import GIVEN, Given
 from ..model.parameters.intervals import REPAY_ROUND_OFF
 from ..model.scene import Scene
-
-_LOST, _SIZE, _WORK, _B, _C = 0, 1, 2, 3, 4  # columns of SUMS (n, 5), in the row of one body of each connected set
 
 
 @inlined
@@ -60,13 +60,13 @@ def body_in(A: Scene, root: int, c: int) -> tuple[int, int]:
 
 
 @nonallocating
-def connect(A: Scene, root: int, SET: IntArray, SUMS: FloatArray) -> None:
+def connect(A: Scene, root: int, SET: IntArray, SUMS: Rows[Given]) -> None:
     """Make the sets of bodies of an island that impulses connect (`SET`, a forest), with sums of 0."""
     i = root
     while i >= 0:
         SET[i] = i
-        for k in range(5):
-            SUMS[i, k] = 0.0
+        one = SUMS[i]
+        one.lost = one.size = one.work = one.linear = one.square = 0.0
         i = A.MEMBER[i].following
     for c in range(A.COUNT.pushes):
         if A.PUSHED_BY[c].root == root and (A.PUSHED[c].normal != 0.0 or A.PUSHED[c].tangential != 0.0):
@@ -75,15 +75,21 @@ def connect(A: Scene, root: int, SET: IntArray, SUMS: FloatArray) -> None:
 
 
 @nonallocating
-def scale_forces(A: Scene, root: int, SET: IntArray, SUMS: FloatArray) -> None:
+def share(one: Given) -> float:
+    """The factor q of the impulses of a connected set that have given energy."""
+    return min(max((one.work - one.linear) / one.square, 0.0), 1.0)
+
+
+@nonallocating
+def scale_forces(A: Scene, root: int, SET: IntArray, SUMS: Rows[Given]) -> None:
     """Scale the impulses of the sets of an island that have given energy, whose bodies are at the start of its
     interval, and set their losses to 0."""
     BODY, PULL = A.BODY, A.PULL
     i = root
     while i >= 0:
-        k = set_of(SET, i)
-        if SUMS[k, _C] > 0.0:
-            q = min(max((SUMS[k, _WORK] - SUMS[k, _B]) / SUMS[k, _C], 0.0), 1.0)
+        one = SUMS[set_of(SET, i)]
+        if one.square > 0.0:
+            q = share(one)
             BODY[i].ax = PULL[i, 0] + q * (BODY[i].ax - PULL[i, 0])
             BODY[i].ay = PULL[i, 1] + q * (BODY[i].ay - PULL[i, 1])
             BODY[i].angular = PULL[i, 2] + q * (BODY[i].angular - PULL[i, 2])
@@ -91,9 +97,9 @@ def scale_forces(A: Scene, root: int, SET: IntArray, SUMS: FloatArray) -> None:
     for c in range(A.COUNT.pushes):
         if A.PUSHED_BY[c].root != root:
             continue
-        k = set_of(SET, body_in(A, root, c)[0])
-        if SUMS[k, _C] > 0.0:
-            R, q = A.PUSHED[c], min(max((SUMS[k, _WORK] - SUMS[k, _B]) / SUMS[k, _C], 0.0), 1.0)
+        one = SUMS[set_of(SET, body_in(A, root, c)[0])]
+        if one.square > 0.0:
+            R, q = A.PUSHED[c], share(one)
             R.normal, R.tangential, R.work, R.change = q * R.normal, q * R.tangential, q * R.work, q * R.change
             R.un_before, R.un_after, R.ut_before, R.ut_after = 0.0, 0.0, 0.0, 0.0
 
@@ -105,29 +111,29 @@ def repay(A: Scene, root: int, t: float) -> None:
     if not gives(A, root, t):
         return
     BODY, PULL, start = A.BODY, A.PULL, t
-    SET, SUMS = np.empty(len(BODY), np.int64), np.empty((len(BODY), 5))
+    SET, SUMS = np.empty(len(BODY), np.int64), empty(len(BODY), GIVEN)
     connect(A, root, SET, SUMS)
     for c in range(A.COUNT.pushes):
         if A.PUSHED_BY[c].root == root:
-            R, k = A.PUSHED[c], set_of(SET, body_in(A, root, c)[0])
+            R, one = A.PUSHED[c], SUMS[set_of(SET, body_in(A, root, c)[0])]
             start = R.start
             normal, tangential = losses(A, c, t)
-            SUMS[k, _LOST] += normal + tangential
-            SUMS[k, _SIZE] += abs(normal) + abs(tangential)
-            SUMS[k, _WORK] += (t - R.start) / R.length * R.work
+            one.lost += normal + tangential
+            one.size += abs(normal) + abs(tangential)
+            one.work += (t - R.start) / R.length * R.work
     s, i = t - start, root
     while i >= 0:
-        k = set_of(SET, i)
-        if SUMS[k, _LOST] < -REPAY_ROUND_OFF * SUMS[k, _SIZE]:
+        one = SUMS[set_of(SET, i)]
+        if one.lost < -REPAY_ROUND_OFF * one.size:
             # Where gaps were looked at within the interval, the body is ahead on its path.
             move_to(BODY, i, start)
             body = BODY[i]
             wx, wy, turn = (body.ax - PULL[i, 0]) * s, (body.ay - PULL[i, 1]) * s, (body.angular - PULL[i, 2]) * s
             along = (body.vx + 0.5 * PULL[i, 0] * s) * wx + (body.vy + 0.5 * PULL[i, 1] * s) * wy
-            SUMS[k, _B] += along / body.inv_mass
-            SUMS[k, _C] += 0.5 * (wx * wx + wy * wy) / body.inv_mass
+            one.linear += along / body.inv_mass
+            one.square += 0.5 * (wx * wx + wy * wy) / body.inv_mass
             if body.inv_inertia > 0.0:
-                SUMS[k, _B] += (body.spin + 0.5 * PULL[i, 2] * s) * turn / body.inv_inertia
-                SUMS[k, _C] += 0.5 * turn * turn / body.inv_inertia
+                one.linear += (body.spin + 0.5 * PULL[i, 2] * s) * turn / body.inv_inertia
+                one.square += 0.5 * turn * turn / body.inv_inertia
         i = A.MEMBER[i].following
     scale_forces(A, root, SET, SUMS)
