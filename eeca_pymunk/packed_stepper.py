@@ -86,7 +86,8 @@ class PackedStepper(HookedStepper):
         return True
 
     def _awake(self, world: World, dt: float, half_damping: float, status: int) -> tuple[World, int]:
-        """Repeat the step with the sleeping bodies awake that it has touched, until it touches none."""
+        """Repeat the step with the sleeping bodies awake that it has touched, until it touches none, or until functions
+        are to be called."""
         while self._sleep is not None and self._sleep.some and status >= 0 and status & EVENTS:
             if not self.may_touch_sleepers(self._sleep):
                 break
@@ -96,13 +97,21 @@ class PackedStepper(HookedStepper):
                 break
             self._sleep.wake(touched)
             world = self._look(anew=True)
+            if self._calls(world):
+                if self._sleep is not None and self._sleep.some and self._sleep.meet(dt):
+                    world = self._look(anew=True)
+                break
             world.gather()
             status = self.advance(world, dt, half_damping)
         return world, status
 
+    def _calls(self, world: World) -> bool:
+        """Whether a step of a world calls functions of the program."""
+        return not world.plain and (world.hooked or (world.joints is not None and world.joints.calls_back()))
+
     def _step(self, world: World, dt: float) -> StepReport:
         """A step of the awake bodies."""
-        if not world.plain and (world.hooked or (world.joints is not None and world.joints.calls_back())):
+        if self._calls(world):
             return self._hooked_step(world, dt)
         world.gather()
         half_damping = world.half_damping(dt)
@@ -113,6 +122,8 @@ class PackedStepper(HookedStepper):
             status = self.advance(world, dt, half_damping)
         if self._sleep is not None:
             world, status = self._awake(world, dt, half_damping, status)
+            if self._calls(world):
+                return self._hooked_step(world, dt)
         if status < 0:
             self._fail(world, dt, status)
         book = self._booked(dt)

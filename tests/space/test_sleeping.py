@@ -304,6 +304,24 @@ def test_on_a_kinematic_body_a_rehearsal_wakes_what_the_program_has_put_to_sleep
         assert body.velocity.length < 1e-9
 
 
+def test_who_is_woken_by_a_hit_falls_in_that_step_by_its_own_function() -> None:
+    """The sleeper alone has a function of velocities; the step that wakes it is taken again, and calls it."""
+    space = pymunk.Space()
+    space.gravity, space.sleep_time_threshold = (0.0, -10.0), 1.0
+    sleeper = ball(space, (0.0, 0.0), (0.0, 0.0))
+    sleeper.velocity_func = lambda body, gravity, damping, dt: pymunk.Body.update_velocity(body, gravity, damping, dt)
+    flying = ball(space, (0.5, 0.0), (-12.0, 0.0))
+    stepper = ep.EECA(space)
+    sleeper.sleep()
+    before = ep.measure(space).energy
+    report = stepper.step(DT)
+    assert not sleeper.is_sleeping
+    assert sleeper.velocity == pytest.approx((-12.0, -10.0 * DT), abs=1e-12)
+    assert flying.velocity == pytest.approx((0.0, -10.0 * DT), abs=1e-12)
+    assert report.ledger is not None
+    assert ep.measure(space).energy == pytest.approx(before, abs=1e-12)
+
+
 def test_islands_sleep_one_by_one() -> None:
     space, bodies = stack(2)
     late = box(space, 6.0, 2.0)
