@@ -8,7 +8,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Protocol
 from weakref import ref
 
-from .arrays import FloatArray, IntArray
+from .arrays import AnyArray, FloatArray, IntArray
 from .closures.time_of_impact import TimeOfImpact
 from .impacts.scene import EventLoop
 from .reentry import BUSY
@@ -165,6 +165,10 @@ class EECA(RunningStepper):
         if not world.plain and not self.adjust(world, dt):
             return OTHER_BODIES
         return self._method.step(world.STATES, world.WALK, world.EXTRA, world.ENDS, dt, gx, gy, half_damping)
+
+    def rewound(self, world: World) -> list[AnyArray]:
+        loop = self.event_loop
+        return [*super().rewound(world), *(() if loop is None else (loop.scene.SIDE,))]
 
     def details(self, world: World, dt: float) -> Details | Callable[[], Details]:
         return self._method.details(dt, world.bodies.items, world.owner)

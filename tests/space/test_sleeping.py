@@ -322,6 +322,29 @@ def test_who_is_woken_by_a_hit_falls_in_that_step_by_its_own_function() -> None:
     assert ep.measure(space).energy == pytest.approx(before, abs=1e-12)
 
 
+def test_a_step_that_wakes_sleepers_knows_the_sides_of_thin_shapes() -> None:
+    """A rod without width slides on a floor, 1.6e-4 of its length below it; a ball hits a sleeper far away. The step
+    that was taken back had moved the rod, so that it counted as placed by the program: it fell through the floor."""
+    space = pymunk.Space()
+    space.gravity, space.sleep_time_threshold = (0.0, -10.0), 5.0
+    ground(space).unsafe_set_radius(0.0)
+    rod = pymunk.Body(1.0, 0.1)
+    rod.velocity = 1.0, 0.0
+    space.add(rod, pymunk.Segment(rod, (-0.5, 0.0), (0.5, 0.0), 0.0))
+    sleeper, flying = ball(space, (5.0, 9.0), (0.0, 0.0)), ball(space, (7.0, 9.0), (-1.0, 0.0))
+    stepper = ep.EECA(space)
+    sleeper.sleep()
+    for _ in range(4):
+        rod.position -= (0.0, 4e-5)
+        stepper.step(DT)
+    flying.position, flying.velocity = (5.5, 9.0), (-12.0, 0.0)
+    stepper.step(DT)
+    assert not sleeper.is_sleeping
+    for _ in range(20):
+        stepper.step(DT)
+    assert abs(rod.position.y) <= 1.6e-4
+
+
 def test_islands_sleep_one_by_one() -> None:
     space, bodies = stack(2)
     late = box(space, 6.0, 2.0)
