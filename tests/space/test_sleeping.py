@@ -345,6 +345,22 @@ def test_a_step_that_wakes_sleepers_knows_the_sides_of_thin_shapes() -> None:
     assert abs(rod.position.y) <= 1.6e-4
 
 
+def test_whom_pymunk_wakes_where_all_sleep_gets_no_velocity_from_it() -> None:
+    """A box that the program puts to sleep 1 mm deep in a kinematic plate, by itself."""
+    space = pymunk.Space()
+    space.gravity, space.sleep_time_threshold = (0.0, -10.0), 5.0
+    plate = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    space.add(plate, pymunk.Segment(plate, (-20.0, 0.0), (20.0, 0.0), 0.1))
+    body = box(space, 0.0, 0.599)
+    stepper = ep.EECA(space)
+    body.sleep()
+    report = stepper.step(DT)
+    assert body.velocity == (0.0, 0.0)
+    assert body.position == (0.0, 0.599)
+    assert report.ledger is not None
+    assert report.ledger.change == 0.0
+
+
 def test_islands_sleep_one_by_one() -> None:
     space, bodies = stack(2)
     late = box(space, 6.0, 2.0)
