@@ -7,7 +7,7 @@ from 1 mm to 50 m, steps of 1/240 to 1/10 s, with gravity or without; joints and
 * in a container that rests energy never rises without joints that drive;
 * what comes from outside is no more than what acts from there can do (`outside.py`);
 * nobody leaves the container, by more than a part of his size;
-* a step of up to 1/30 s takes no longer than 20 ms of process time, or 100 native steps; a longer one as much for each
+* a step of up to 1/30 s takes no longer than 20 ms of processor time, or 100 native steps; a longer one as much for each
   1/30 s. Steps that do are repeated, as the machine may have been busy;
 * saved and loaded half-way the run goes on bit by bit;
 * time goes on: not `STANDS` steps in a row leave all that moves where it is;
@@ -201,9 +201,9 @@ class Composition:
                 saved = pickle.dumps((self.space, self.stepper))
             self.drive(k)
             outside = Outside(self.space, self.box, self.pushed)
-            clock = time.process_time()
+            clock = time.thread_time()
             report = self.stepper.step(self.dt)
-            taken = time.process_time() - clock
+            taken = time.thread_time() - clock
             if taken > self._longest() and not self.space.constraints:
                 taken = self._bounded(k)
             found.longest = max(found.longest, taken)
@@ -228,11 +228,11 @@ class Composition:
         return found
 
     def _longest(self) -> float:
-        """Process time (s) that a step may take in any case."""
+        """Processor time (s) that a step may take in any case."""
         return LONGEST * max(1.0, self.dt / SHORT)
 
     def _bounded(self, k: int) -> float:
-        """The process time (s) of step k, the least of some repetitions; `Broken` if it is beyond the bound."""
+        """The processor time (s) of step k, the least of some repetitions; `Broken` if it is beyond the bound."""
         least = limit = math.inf
         for _ in range(4):
             again, found = type(self)(*self.drawn), Found()
@@ -244,12 +244,12 @@ class Composition:
                     again.stepper.step(again.dt)
             again.drive(k)
             native = pickle.loads(pickle.dumps(again.space))
-            clock = time.process_time()
+            clock = time.thread_time()
             again.stepper.step(self.dt)
-            least = min(least, time.process_time() - clock)
-            clock = time.process_time()
+            least = min(least, time.thread_time() - clock)
+            clock = time.thread_time()
             native.step(self.dt)
-            limit = max(1.0, NATIVE * (time.process_time() - clock) / LONGEST) * self._longest()
+            limit = max(1.0, NATIVE * (time.thread_time() - clock) / LONGEST) * self._longest()
             if least <= limit:
                 return least
         raise Broken(f"step {k} takes {1e3 * least:.0f} ms, {1e3 * limit:.0f} at most")
