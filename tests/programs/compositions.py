@@ -7,8 +7,8 @@ from 1 mm to 50 m, steps of 1/240 to 1/10 s, with gravity or without; joints and
 * in a container that rests energy never rises without joints that drive;
 * what comes from outside is no more than what acts from there can do (`outside.py`);
 * nobody leaves the container, by more than a part of his size;
-* a step of up to 1/30 s takes no longer than 20 ms of processor time, or 100 native steps; a longer one as much for each
-  1/30 s. Steps that do are repeated, as the machine may have been busy;
+* a step of up to 1/30 s takes no longer than 20 ms of processor time, or 100 native steps; a longer one as much for
+  each 1/30 s. Steps that do are repeated, as the machine may have been busy;
 * saved and loaded half-way the run goes on bit by bit;
 * time goes on: not `STANDS` steps in a row leave all that moves where it is;
 * joints of a step that has converged hold, and none exceeds its `max_force` (`joined.py`).
