@@ -8,7 +8,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Protocol
 from weakref import ref
 
-from .arrays import FloatArray, IntArray
+from .arrays import AnyArray, FloatArray, IntArray
 from .closures.time_of_impact import TimeOfImpact
 from .impacts.scene import EventLoop
 from .reentry import BUSY
@@ -94,7 +94,7 @@ class EECA(RunningStepper):
         state["_shown"] = -1.0, None, None
         world = self._world
         if world is not None and isinstance(self._method, EventLoop):
-            state["_saved"] = Saved(world, self._method)
+            state["_saved"] = Saved(world, self._method, self.decisions)
         return state
 
     def refresh(self) -> None:
@@ -106,7 +106,7 @@ class EECA(RunningStepper):
         show_contacts(self.space, lambda: None if (me := myself()) is None else me._touches())
         self._sync.late = self._sleep is None  # groups of sleeping bodies are found from arbiters
         saved, self._saved, self._ruled = self._saved, None, None
-        if saved is not None and saved.resume(world):
+        if saved is not None and saved.resume(world, self.decisions):
             self._method: Method = saved.method
             return
         sides = None if past is None or (loop := self.event_loop) is None else sides_of(past, loop)
@@ -164,6 +164,10 @@ class EECA(RunningStepper):
         if not world.plain and not self.adjust(world, dt):
             return OTHER_BODIES
         return self._method.step(world.STATES, world.WALK, world.EXTRA, world.ENDS, dt, gx, gy, half_damping)
+
+    def rewound(self, world: World) -> list[AnyArray]:
+        loop = self.event_loop
+        return [*super().rewound(world), *(() if loop is None else (loop.scene.SIDE,))]
 
     def details(self, world: World, dt: float) -> Details | Callable[[], Details]:
         return self._method.details(dt, world.bodies.items, world.owner)

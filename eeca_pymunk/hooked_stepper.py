@@ -91,7 +91,11 @@ class HookedStepper(PackedSpace):
             if world.collisions:
                 rehearsal = world.rehearsal
                 self._checked(world, dt, rehearsal.run(hooks, dt, world.gravity, half_damping))
-                world.rules = rehearsal.rules(world.rules, world.places, world.SHAPE, world.smooth)
+                if self._sleep is not None and self._sleep.woken():
+                    world = self._awoken(world)
+                    bodies, joints, hooks, rehearsal = world.bodies, world.joints, world.hooks, world.rehearsal
+                scene = world.places, world.SHAPE, world.smooth
+                world.rules = rehearsal.rules(world.rules, *scene, self.decisions)
             status = self._checked(world, dt, self.advance(world, dt, half_damping))
             book = self._booked(dt)
             forces = status & FORCES or hooks.some or joints is not None
@@ -119,6 +123,22 @@ class HookedStepper(PackedSpace):
         report = self._made(world, dt, status, book, lost)
         self._tell_joints(world)
         return world, report, rehearsal
+
+    def _awoken(self, world: World) -> World:
+        """The world anew, where pymunk's step has woken bodies in a rehearsal, as it does on kinematic bodies; with
+        what functions have done up to there."""
+        for body, slept in zip(world.bodies.items, world.bodies.asleep.tolist(), strict=True):
+            if slept and not body.is_sleeping:
+                body.velocity, body.angular_velocity = (0.0, 0.0), 0.0
+        world.bodies.scatter(world.state)
+        now = self._look(anew=True)
+        now.gather()
+        now.find()
+        rows = [world.bodies.row[body] for body in now.bodies.items]
+        now.START[:], now.EXTRA[:], now.CHANGES[:] = world.START[rows], world.EXTRA[rows], world.CHANGES[:, rows]
+        now.rehearsal.go_on(world.rehearsal)
+        now.hooks.late = world.hooks.late
+        return now
 
     def _land_hooked(self, world: World, hooks: Hooks, dt: float, status: int) -> None:
         """Write the end of a step to the space, and call `post_solve` of constraints."""

@@ -12,6 +12,7 @@ import numpy as np
 from .arrays import FloatArray, IntArray
 from .errors import NotFiniteError
 from .space.checks import check_ignored
+from .space.decisions import Decisions
 from .space.describe import describe
 from .space.joints import JointRows
 from .space.sleep_groups import put_to_sleep, rouse
@@ -36,10 +37,8 @@ class PackedSpace(Stepper):
     Attributes:
         reads: number of readings of the whole space: one at the start, and one after each change that rows cannot be
             patched for.
-        patches: number of changes that were put into the rows of the last reading: of numbers of shapes and bodies, or
-            in which constraints came or went.
-        objects_read: number of bodies, shapes and constraints whose values these have read from pymunk; all others
-            were known.
+        self.reads = self.patches = self.objects_read = 0
+        self.decisions = Decisions()
     """
 
     def __init__(self, space: pymunk.Space, *, sync: bool = True, ignore: Sequence[str] = ()) -> None:
@@ -52,7 +51,11 @@ class PackedSpace(Stepper):
         self._sync: Sync
         self._sleep: Sleep | None = None  # None if bodies cannot sleep
         self._idle_book: FloatArray | None = None  # ledger entries of a step in which all dynamic bodies sleep
+<<<<<<< HEAD
         self.reads = self.patches = self.objects_read = 0
+=======
+        self.reads, self.decisions = 0, Decisions()
+>>>>>>> c4baaa6e5daebdd1421f08ac8e52cd6144cfd7cf
         self._look()
 
     def __getstate__(self) -> dict[str, object]:
@@ -60,6 +63,7 @@ class PackedSpace(Stepper):
         state = self.__dict__.copy()
         state.pop("_sync", None)
         state["_world"] = state["_sleep"] = state["_told"] = None
+        state["decisions"] = Decisions()
         return state
 
     def __copy__(self: Own) -> Own:
@@ -70,6 +74,7 @@ class PackedSpace(Stepper):
 
     def refresh(self) -> None:
         self._world = None
+        self.decisions.forget(self.space)
 
     def prepare(self, world: World, past: World | None) -> None:
         """Make the stepper's own arrays for a world that was just read; `past` is the world before, if known."""

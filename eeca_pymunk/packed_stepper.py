@@ -18,7 +18,9 @@ from __future__ import annotations
 
 from typing import TypeVar
 
+from .arrays import AnyArray
 from .hooked_stepper import HookedStepper
+from .layout import LEFT
 from .reentry import BUSY, refuse_within
 from .report import Details, StepReport
 from .space.sleeping import Sleep
@@ -85,8 +87,21 @@ class PackedStepper(HookedStepper):
         """Whether the last step may have touched a sleeping body; if False, its report need not be made."""
         return True
 
-    def _awake(self, world: World, dt: float, half_damping: float, status: int) -> tuple[World, int]:
-        """Repeat the step with the sleeping bodies awake that it has touched, until it touches none."""
+    def rewound(self, world: World) -> list[AnyArray]:
+        """Arrays that a step writes, and that one which takes its place needs as they were."""
+        return [world.STATES[LEFT]]
+
+    def _attempt(self, world: World, dt: float, half_damping: float) -> tuple[int, list[AnyArray]]:
+        """The status of `advance`; and what `rewound` had before, if the step may have to be repeated."""
+        sleepers = self._sleep is not None and self._sleep.some
+        before = [array.copy() for array in self.rewound(world)] if sleepers else []
+        return self.advance(world, dt, half_damping), before
+
+    def _awake(
+        self, world: World, dt: float, half_damping: float, status: int, before: list[AnyArray]
+    ) -> tuple[World, int]:
+        """Repeat the step with the sleeping bodies awake that it has touched, until it touches none, or until functions
+        are to be called. before: what `rewound` had before the step."""
         while self._sleep is not None and self._sleep.some and status >= 0 and status & EVENTS:
             if not self.may_touch_sleepers(self._sleep):
                 break
@@ -95,24 +110,36 @@ class PackedStepper(HookedStepper):
             if not touched:
                 break
             self._sleep.wake(touched)
+            for array, was in zip(self.rewound(world), before, strict=True):
+                array[:] = was
             world = self._look(anew=True)
+            if self._calls(world):
+                if self._sleep is not None and self._sleep.some and self._sleep.meet(dt):
+                    world = self._look(anew=True)
+                break
             world.gather()
-            status = self.advance(world, dt, half_damping)
+            status, before = self._attempt(world, dt, half_damping)
         return world, status
+
+    def _calls(self, world: World) -> bool:
+        """Whether a step of a world calls functions of the program."""
+        return not world.plain and (world.hooked or (world.joints is not None and world.joints.calls_back()))
 
     def _step(self, world: World, dt: float) -> StepReport:
         """A step of the awake bodies."""
-        if not world.plain and (world.hooked or (world.joints is not None and world.joints.calls_back())):
+        if self._calls(world):
             return self._hooked_step(world, dt)
         world.gather()
         half_damping = world.half_damping(dt)
-        status = self.advance(world, dt, half_damping)
+        status, before = self._attempt(world, dt, half_damping)
         if status in (OTHER_BODIES, MOVED_STATIC):
             world = self._look(anew=True)
             world.gather()
-            status = self.advance(world, dt, half_damping)
+            status, before = self._attempt(world, dt, half_damping)
         if self._sleep is not None:
-            world, status = self._awake(world, dt, half_damping, status)
+            world, status = self._awake(world, dt, half_damping, status, before)
+            if self._calls(world):
+                return self._hooked_step(world, dt)
         if status < 0:
             self._fail(world, dt, status)
         book = self._booked(dt)

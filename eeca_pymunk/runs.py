@@ -138,6 +138,7 @@ class RunningStepper(PackedStepper):
                 loop.keep_fresh()
         else:
             rows = world.WALK[BODY_ROW]
+            self.decisions.forget(self.space)
             loop.start_anew(rows[rows >= 0], state[rows >= 0, :6])
             world.STATES[LEFT, rows >= 0] = np.nan
 

@@ -13,6 +13,7 @@ from .layout import ANEW, BODY_ROW, LEFT, NUDGED
 from .model.joints import OF_STEPS, RATCHET, Joint
 from .model.parameters.intervals import INTERVAL_DEPTH_LEAST
 from .model.shapes import Link
+from .space.decisions import Decisions
 from .space.packing import Record
 from .space.world import World
 
@@ -26,7 +27,8 @@ class Saved:
     It has copies of shapes, bodies and joints, and is used only for a space in which all of them are equal.
     """
 
-    def __init__(self, world: World, method: EventLoop) -> None:
+    def __init__(self, world: World, method: EventLoop, decisions: Decisions) -> None:
+        self._decided = decisions.state(world.space, world.places, world.SHAPE, world.smooth)
         self.method, self.items, self.shapes, self.parted = method, world.bodies.items, world.shapes, world.parted
         self._left, self._extra = world.STATES[LEFT], world.EXTRA
         joints = world.joints
@@ -35,8 +37,9 @@ class Saved:
         # After edits of joints that no step has used yet, the copy reads all joints again.
         self._fresh = joints is None or not (joints.replan or joints.edited)
 
-    def resume(self, world: World) -> bool:
-        """Continue with a world that was just read; False, and nothing changed, if it is not equal."""
+    def resume(self, world: World, decisions: Decisions) -> bool:
+        """Continue with a world that was just read, and decisions of its handlers; False, and nothing changed, if it is
+        not equal."""
         scene = self.method.scene
         if not self._fresh or world.bodies.items != self.items or world.shapes != self.shapes:
             return False
@@ -66,6 +69,7 @@ class Saved:
         self.method.scene = scene._replace(BODY=world.BODY)
         moves = ~world.bodies.static
         world.STATES[LEFT, moves], world.EXTRA[:] = self._left[moves], self._extra
+        decisions.recall(world.space, self._decided)
         return True
 
     def _same_joints(self, world: World) -> bool:

@@ -18,6 +18,7 @@ from .impacts.scene import EventLoop
 from .layout import LEFT, STATE_COLUMNS
 from .model.joints import OF_STEPS, RATCHET
 from .space.bodies import moving
+from .space.decisions import DECISION_COLUMNS
 from .space.world import World
 
 if TYPE_CHECKING:
@@ -33,6 +34,8 @@ def get_state(stepper: RunningStepper) -> IntArray:
     world, loop = stepper.current(), stepper.event_loop
     at = _rows(world)
     parts: list[AnyArray] = [world.state[at], np.array([stepper.time]), *stepper.resting(_everyone(stepper.space))]
+    decided = stepper.decisions.state(stepper.space, world.places, world.SHAPE, world.smooth)
+    parts += [np.array([len(decided)]), decided]
     if loop is not None and not world.bodies.asleep.any():
         parts += [world.STATES[LEFT, at], world.EXTRA[at], *loop.remembered()]
         if world.joints is not None:
@@ -95,10 +98,12 @@ def _recall(stepper: RunningStepper, state: IntArray) -> None:
     world.bodies.scatter(whole, unchanged=True)
     stepper.time = float(parts.take(np.float64, (1,))[0])
     rested, groups, timers = parts.take(np.float64, (N,)), parts.take(np.int64, (N,)), parts.take(np.int64, (2,))
+    decided = parts.take(np.float64, (int(parts.take(np.int64, (1,))[0]), DECISION_COLUMNS))
     if parts.left:
         _remember(stepper, world, parts, at)
     else:
         stepper.refresh()
+    stepper.decisions.recall(space, decided)
     stepper.rest_again(everyone, rested, groups, timers)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import subprocess
 import sys
 from pathlib import Path
@@ -168,3 +169,86 @@ def test_sleepers_sleep_again() -> None:
     np.testing.assert_array_equal(poses(space)[asleep], before[asleep])
     stepper.set_state(before)
     assert not any(b.is_sleeping for b in space.bodies)
+
+
+def through(arbiter: pymunk.Arbiter, space: pymunk.Space, data: object) -> bool:
+    """Let shapes pass through each other, in pymunk 6 and 7."""
+    arbiter.process_collision = False
+    return False
+
+
+def passing(phase: str) -> tuple[pymunk.Space, pymunk.Body, ep.EECA]:
+    """A disk far from another one at rest, at which it flies ten diameters in a step; they may not collide."""
+    space = pymunk.Space()
+    for x in (-5.0, 0.0):
+        body = pymunk.Body(1.0, 1.0)
+        body.position = x, 0.0
+        disk = pymunk.Circle(body, 0.5)
+        disk.elasticity = 1.0
+        space.add(body, disk)
+    space.on_collision(**{phase: through})
+    stepper = ep.EECA(space)
+    return space, next(iter(space.bodies)), stepper
+
+
+def fly(body: pymunk.Body, stepper: ep.EECA, anew: bool) -> float:
+    """Send the disk at the other one from where it began, and take a step; where it comes to."""
+    body.position, body.velocity = (-5.0, 0.0), (600.0, 0.0)
+    body.space.reindex_shapes_for_body(body)
+    if anew:
+        stepper.refresh()
+    stepper.step(1 / 60)
+    return float(body.position.x)
+
+
+@pytest.mark.parametrize("phase", ["begin", "pre_solve"])
+def test_set_back_by_hand_what_handlers_have_decided_since_is_forgotten(phase: str) -> None:
+    """Within a step pymunk does not see them touch, so they collide; unless a handler has decided just before."""
+    space, body, stepper = passing(phase)
+    first = fly(body, stepper, True)
+    assert first == pytest.approx(-1.0)
+    for again in (False, True):
+        body.position, body.velocity = (-0.8, 0.0), (0.0, 0.0)
+        for other in space.bodies:
+            other.velocity = 0.0, 0.0
+            if other is not body:
+                other.position = 0.0, 0.0
+        stepper.step(1 / 60)  # they touch
+        end = fly(body, stepper, again)
+        assert end == (first if again else 5.0)
+
+
+@pytest.mark.parametrize("saved", [False, True])
+@pytest.mark.parametrize("phase", ["begin", "pre_solve"])
+def test_states_have_what_handlers_have_decided_before(phase: str, saved: bool) -> None:
+    space, body, stepper = passing(phase)
+    body.position, body.velocity = (-0.8, 0.0), (0.0, 0.0)
+    stepper.step(1 / 60)
+    body.position, body.velocity = (-5.0, 0.0), (600.0, 0.0)
+    space.reindex_shapes_for_body(body)
+    state, copied = stepper.get_state(), pickle.dumps((space, stepper))
+    for _ in range(space.collision_persistence + 1):
+        stepper.step(1 / 60)
+        body.position = 50.0, 0.0
+    if saved:
+        space, stepper = pickle.loads(copied)
+    else:
+        stepper.set_state(state)
+    stepper.step(1 / 60)
+    assert [b.position.x for b in space.bodies] == [5.0, 0.0]
+
+
+@pytest.mark.parametrize("phase", ["begin", "pre_solve"])
+def test_copies_go_on_through_what_handlers_have_rejected(phase: str) -> None:
+    """pymunk's pickles have the contacts, but not that they were rejected."""
+    space, body, stepper = passing(phase)
+    body.position, body.velocity = (-0.9, 0.0), (6.0, 0.0)
+    for _ in range(5):
+        stepper.step(1 / 60)
+    assert body.position.x == pytest.approx(-0.4)
+    copied, other = pickle.loads(pickle.dumps((space, stepper)))
+    for _ in range(10):
+        stepper.step(1 / 60)
+        other.step(1 / 60)
+    assert [b.position for b in copied.bodies] == [b.position for b in space.bodies]
+    assert body.position.x == pytest.approx(0.6)

@@ -15,7 +15,7 @@ from ..model.contacts import ENDED, LASTED
 from ..model.scene import Scene, scene_of
 from ..pairs.lists import mark_pair
 from .at_rest import mark_changed, wake_supported
-from .excess import repay
+from .excess import losses, repay
 from .membership import unite
 from .rest import spins_freely
 
@@ -37,11 +37,8 @@ def flag_pairs(A: Scene) -> None:
 
 @nonallocating
 def account_contact(A: Scene, c: int, t: float) -> None:
-    """Enter the losses of contact c of an interval up to instant t in the ledger, log its impulse, and end it.
-
-    Velocities are linear over the interval, so after its part f: D_n = -f lam (u_n + f (u_n+ - u_n) / 2), and D_t
-    likewise. If one of the two is negative it is deducted from the other.
-    """
+    """Enter the losses of contact c of an interval up to instant t in the ledger, log its impulse, and end it. If one
+    of the two losses is negative it is deducted from the other."""
     PAR, COUNT, R = A.PAR, A.COUNT, A.PUSHED[c]
     root, a, b = A.PUSHED_BY[c].root, A.PUSHED_BY[c].a, A.PUSHED_BY[c].b
     A.PUSHED_BY[c].root = LASTED if t == PAR.dt else ENDED
@@ -49,8 +46,7 @@ def account_contact(A: Scene, c: int, t: float) -> None:
     f = (t - R.start) / R.length
     if f == 0.0 or (R.normal == 0.0 and R.tangential == 0.0):
         return
-    normal = -f * R.normal * (R.un_before + 0.5 * f * (R.un_after - R.un_before))
-    tangential = -f * R.tangential * (R.ut_before + 0.5 * f * (R.ut_after - R.ut_before))
+    normal, tangential = losses(A, c, t)
     both = normal + tangential
     if normal < 0.0:
         normal, tangential = min(both, 0.0), max(both, 0.0)

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from ..arrays import FloatArray, IntArray
 from ..compiled import Opener
-from ..compiled.records import Rows
+from ..compiled.records import Record, Rows, kind_of
 from .contacts import Row, Solved
 
 
@@ -50,4 +50,16 @@ class Contacts(NamedTuple):
     OUT: Rows[Solved]
 
 
+class Given(Record):
+    """What the impulses on bodies that they connect have done up to the end of an interval, in the row of one of them;
+    B and C as in `..islands.excess`, with units of energy."""
+
+    lost: float  # energies: losses, and the sum of their sizes
+    size: float
+    work: float  # of bodies that impulses do not move, and of moving surfaces
+    linear: float  # B
+    square: float  # C; 0 if they have given no energy
+
+
+GIVEN = kind_of(Given)
 island_of, contacts_of = Opener(Island), Opener(Contacts)

@@ -37,8 +37,9 @@ def sweeps_left(problem: AnyProblem, L: FloatArray, L0: FloatArray) -> float:
 
 @kernel
 def go_along(problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, worst: float) -> float:
-    """A sweep, and all that follow in the same way, if its residual is about that of the last one, `worst`. Returns the
-    change of velocity in the last sweep."""
+    """A sweep, and all that follow in the same way, if its residual is about that of the last one, `worst`, and they do
+    not make it larger: then impulses did not only go from contact to contact. Returns the change of velocity in the
+    last sweep."""
     L0, V0 = np.empty_like(L), np.empty_like(V)
     keep(L, V, len(L), L0, V0)
     now = sweep(problem, L, V)
@@ -47,8 +48,14 @@ def go_along(problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray
     left = sweeps_left(problem, L, L0)
     if not 1.0 < left < math.inf:
         return now
+    LAST, VLAST = np.empty_like(L), np.empty_like(V)
+    keep(L, V, len(L), LAST, VLAST)
     for i in range(problem.m):
         L[i, 0] = max(L[i, 0] + left * (L[i, 0] - L0[i, 0]), 0.0)
         L[i, 1] += left * (L[i, 1] - L0[i, 1])
     velocities(problem, L, FREE, V)
-    return sweep(problem, L, V)
+    after = sweep(problem, L, V)
+    if after > now:
+        keep(LAST, VLAST, len(L), L, V)
+        return now
+    return after

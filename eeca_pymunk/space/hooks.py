@@ -31,13 +31,14 @@ class Hooks:
 
     Attributes:
         velocity, position: rows of the bodies with such a function.  some: whether there are any.
+        late: calls that wait for `after`.
     """
 
     def __init__(self, space: pymunk.Space, bodies: Bodies, joints: JointRows | None = None) -> None:
         self.space, self.bodies, self.joints = space, bodies, joints
         self.velocity, self.position = bodies.velocity_hooks, bodies.position_hooks
         self.some = len(self.velocity) > 0 or len(self.position) > 0
-        self._late: list[Callable[[], None]] = []
+        self.late: list[Callable[[], None]] = []
 
     def alone(self) -> bool:
         """Whether steps of pymunk call no function of a body or constraint, and need not keep bodies outside the
@@ -62,7 +63,7 @@ class Hooks:
             for item in () if self.joints is None else self.joints.after:
                 assert item.post_solve is not None
                 item.post_solve(item, self.space)
-            late, self._late = self._late, []
+            late, self.late = self.late, []
             for call in late:
                 call()
 
@@ -70,7 +71,7 @@ class Hooks:
         """A function that records its arguments, with which `after` calls `function`."""
 
         def call(*arguments: Any) -> None:
-            self._late.append(lambda: function(*arguments))
+            self.late.append(lambda: function(*arguments))
 
         return call
 

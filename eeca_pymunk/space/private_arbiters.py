@@ -9,6 +9,7 @@ import pymunk
 from pymunk import batch
 from pymunk._chipmunk_cffi import ffi, lib
 
+from .private_versions import reject as reject_raw
 from .private_versions import take_place
 
 OF_LIBRARY = ("pmSpaceArbiterIteratorFuncBatched", "cpBodyIsSleeping", "cpArbiterTotalImpulse")
@@ -28,6 +29,16 @@ def arbiter_key(arbiter: Any) -> frozenset[int]:
 def second_is(arbiter: Any, shape: pymunk.Shape) -> bool:
     """Whether a shape is the second one of an arbiter."""
     return int(ffi.cast("uintptr_t", arbiter.b)) == shape_key(shape)
+
+
+def stamp(arbiter: pymunk.Arbiter) -> int:
+    """The number of pymunk's step in which the shapes of an arbiter last touched."""
+    return int(arbiter._arbiter.stamp)
+
+
+def reject(arbiter: pymunk.Arbiter) -> None:
+    """Have the collision of an arbiter whose shapes touch not take place."""
+    reject_raw(arbiter._arbiter)
 
 
 def asleep(arbiter: Any) -> bool:

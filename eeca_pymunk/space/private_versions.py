@@ -49,6 +49,13 @@ def take_place(held: Any) -> None:
         held.processCollision = 1
 
 
+def reject(held: Any) -> None:
+    """Have the collision of an arbiter of Chipmunk's, whose shapes touch, not take place. pymunk 6 asks `pre_solve`
+    again in each step, and its pickles say what `begin` has rejected."""
+    if not ANSWERS and held.state != _CACHED:
+        held.processCollision = 0
+
+
 def decision(held: Any, sensor: Callable[[Any], bool]) -> tuple[Any, ...]:
     """What functions may decide of a collision, whose arbiter Chipmunk has: whether it takes place, whether shapes are
     sensors, restitution, friction, surface velocity."""

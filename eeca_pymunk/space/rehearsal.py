@@ -23,6 +23,7 @@ from ..rehearsing import approach, changed
 from ..transfer import TURNS
 from . import private, private_joints, private_shapes
 from .crossing import Crossing
+from .decisions import Decisions
 from .hooks import Hooks
 from .joints import JointRows
 from .private_versions import answer
@@ -92,6 +93,10 @@ class Rehearsal:
         self._heard, self._recent, self._ignores = [False, False], 0, True
         for table in self._changes:
             table[:] = 0.0
+
+    def go_on(self, earlier: Rehearsal) -> None:
+        """Take over what functions have said in a rehearsal of another world of the space."""
+        self._heard, self.decided = earlier._heard, earlier.decided
 
     def listen(self, stage: int) -> None:
         """Before a function is called: read the bodies, if pymunk has reached another stage."""
@@ -199,18 +204,20 @@ class Rehearsal:
             for item, before, after in functions:
                 private_joints.replace_functions(item, before, after)
 
-    def rules(self, known: Rules, places: Mapping[pymunk.Shape, int], SHAPE: Rows[Shape], smooth: bool) -> Rules:
-        """What the arbiters of the step say of pairs of shapes, which have these rows of SHAPE.
+    def rules(
+        self, known: Rules, places: Mapping[pymunk.Shape, int], SHAPE: Rows[Shape], smooth: bool, earlier: Decisions
+    ) -> Rules:
+        """What the arbiters of the step and earlier decisions say of pairs of shapes, which have these rows of SHAPE.
 
         Values of arbiters differ from those of shapes only if a function has changed them. pymunk keeps such decisions
         as long as it keeps arbiters, and ignored collisions as long as the shapes touch.
         """
         if self.decided:
             self._recent = self.space.collision_persistence + 1
-        if self._recent <= 0 and not self._ignores:
+        if self._recent <= 0 and not self._ignores and not earlier.told:
             return Rules() if known.some else known
         self._recent -= 1
-        rules = Rules.said(private.odd_arbiters(self.space), places, SHAPE, smooth)
+        rules = earlier.rules(self.space, places, SHAPE, smooth)
         self._ignores = bool(rules.ignored)
         return rules
 

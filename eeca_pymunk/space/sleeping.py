@@ -30,7 +30,7 @@ from ..drowsing import approaches, rests, touches
 from ..layout import BODY_ROW, FOUND, KNOWN
 from ..model.contacts import Impulse
 from ..report import Contacts
-from . import private, private_sleep
+from . import private, private_shapes, private_sleep
 from .noticed import leader
 from .sleep_groups import resting_groups
 
@@ -87,7 +87,11 @@ class Sleep:
 
     def changed(self) -> bool:
         """Whether other bodies may sleep now than when this was made, or pymunk has taken a step."""
-        return self._timestamp() != self._left or not self._asleep()
+        return self._timestamp() != self._left or self.woken()
+
+    def woken(self) -> bool:
+        """Whether one of the bodies wakes that slept when this was made."""
+        return not self._asleep()
 
     def nothing_moves(self) -> bool:
         """Whether all dynamic bodies sleep, and all others have their old poses and velocity 0."""
@@ -95,10 +99,14 @@ class Sleep:
 
     def step(self, dt: float) -> None:
         """Take a step in which nothing moves: pymunk's own until it has forgotten all earlier contacts; then none,
-        since a step of this dt would change nothing."""
+        since a step of this dt would change nothing. It wakes what touches a kinematic body, and pushes it out of that,
+        which is undone."""
         if self._steps > 0 or dt != self._dt:
             self._steps, self._dt = self._steps - 1, dt
             private.step_alone(self.space, dt)
+            if self.woken():
+                private_sleep.stop_woken(self._sleepers)()
+                private_shapes.forget_corrections(private.pointers(self._sleepers))
             self._left = self._timestamp()
 
     def wake(self, bodies: Iterable[pymunk.Body] | None = None) -> None:

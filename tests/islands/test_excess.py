@@ -48,3 +48,26 @@ def test_an_interval_cut_short_gives_no_energy_wherever_its_path_was_looked_at(a
     assert scene.PAR.restitution + scene.PAR.frictional >= 0.0
     assert body.vy == pytest.approx(SPEED - G * t, abs=1e-14)
     assert body.y == pytest.approx(SPEED * t - 0.5 * G * t * t, abs=1e-14)
+
+
+def test_bodies_that_no_force_connects_with_it_keep_their_forces() -> None:
+    """Body 1 of the same island rests on the floor: with the part of its force that the flight of body 0 leaves it
+    would be 0.45 m deep."""
+    one, t = landing(), 0.3
+    body, pushed, by, link, member = rows(Body, 3), rows(Pushed, 2), rows(Pair, 2), rows(Link, 3), rows(Member, 3)
+    body[0], pushed[0], by[0], link[0] = one.BODY[0], one.PUSHED[0], one.PUSHED_BY[0], one.LINK[0]
+    body[1].inv_mass = 1.0
+    R = pushed[1]
+    R.normal, R.length, R.ny = G * one.PAR.dt, one.PAR.dt, 1.0
+    by[0].b, by[0].a, by[1].b, by[1].a = 0, 2, 1, 2
+    link[1].owner, link[2].owner = 1, 2
+    member[0].following, member[0].bodies, member[0].open, member[1].following = 1, 2, 1, -1
+    scene = scene_with(
+        BODY=body, PUSHED=pushed, PUSHED_BY=by, LINK=link, MEMBER=member, STATE=rows(Next, 3), RESTING=rows(Rest, 3),
+        PULL=np.array([[0.0, -G, 0.0], [0.0, -G, 0.0], [0.0, 0.0, 0.0]]), LOG=rows(Impulse, 4),
+    )  # fmt: skip
+    scene.COUNT.pushes, scene.PAR.dt = 2, one.PAR.dt
+    close_interval(scene, 0, t)
+    assert (scene.BODY[1].y, scene.BODY[1].vy) == (0.0, 0.0)
+    assert scene.BODY[0].y == pytest.approx(SPEED * t - 0.5 * G * t * t, abs=1e-14)
+    assert scene.PAR.restitution + scene.PAR.frictional >= 0.0

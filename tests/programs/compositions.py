@@ -7,8 +7,8 @@ from 1 mm to 50 m, steps of 1/240 to 1/10 s, with gravity or without; joints and
 * in a container that rests energy never rises without joints that drive;
 * what comes from outside is no more than what acts from there can do (`outside.py`);
 * nobody leaves the container, by more than a part of his size;
-* a step of up to 1/30 s takes no longer than 20 ms of process time, or 100 native steps; a longer one as much for each
-  1/30 s. Steps that do are repeated, as the machine may have been busy;
+* a step of up to 1/30 s takes no longer than 20 ms of processor time, or 100 native steps; a longer one as much for
+  each 1/30 s. Steps that do are repeated, as the machine may have been busy;
 * saved and loaded half-way the run goes on bit by bit;
 * time goes on: not `STANDS` steps in a row leave all that moves where it is;
 * joints of a step that has converged hold, and none exceeds its `max_force` (`joined.py`).
@@ -107,11 +107,6 @@ class Composition:
         return self.turns or bool(self.space.constraints)
 
     @property
-    def saves(self) -> bool:
-        """Whether pymunk's pickles have all of the scene."""
-        return True
-
-    @property
     def pushed(self) -> bool:
         """Whether functions of the program push bodies."""
         return False
@@ -206,10 +201,10 @@ class Composition:
                 saved = pickle.dumps((self.space, self.stepper))
             self.drive(k)
             outside = Outside(self.space, self.box, self.pushed)
-            clock = time.process_time()
+            clock = time.thread_time()
             report = self.stepper.step(self.dt)
-            taken = time.process_time() - clock
-            if taken > LONGEST and not self.space.constraints:
+            taken = time.thread_time() - clock
+            if taken > self._longest() and not self.space.constraints:
                 taken = self._bounded(k)
             found.longest = max(found.longest, taken)
             found.unconverged += not report.converged
@@ -222,7 +217,7 @@ class Composition:
             if found.stands >= STANDS:
                 raise Broken(f"step {k}: time stands still")
             before = state
-        if saved is not None and not self.turns and self.saves:
+        if saved is not None and not self.turns:
             space, stepper = pickle.loads(saved)
             again = [b for b in space.bodies if b.body_type == pymunk.Body.DYNAMIC]
             for k, expected in enumerate(half, steps - len(half)):
@@ -232,8 +227,12 @@ class Composition:
                     raise Broken(f"a run that was saved goes another way at step {k}")
         return found
 
+    def _longest(self) -> float:
+        """Processor time (s) that a step may take in any case."""
+        return LONGEST * max(1.0, self.dt / SHORT)
+
     def _bounded(self, k: int) -> float:
-        """The process time (s) of step k, the least of some repetitions; `Broken` if it is beyond the bound."""
+        """The processor time (s) of step k, the least of some repetitions; `Broken` if it is beyond the bound."""
         least = limit = math.inf
         for _ in range(4):
             again, found = type(self)(*self.drawn), Found()
@@ -245,12 +244,12 @@ class Composition:
                     again.stepper.step(again.dt)
             again.drive(k)
             native = pickle.loads(pickle.dumps(again.space))
-            clock = time.process_time()
+            clock = time.thread_time()
             again.stepper.step(self.dt)
-            least = min(least, time.process_time() - clock)
-            clock = time.process_time()
+            least = min(least, time.thread_time() - clock)
+            clock = time.thread_time()
             native.step(self.dt)
-            limit = max(LONGEST, NATIVE * (time.process_time() - clock)) * max(1.0, self.dt / SHORT)
+            limit = max(1.0, NATIVE * (time.thread_time() - clock) / LONGEST) * self._longest()
             if least <= limit:
                 return least
         raise Broken(f"step {k} takes {1e3 * least:.0f} ms, {1e3 * limit:.0f} at most")

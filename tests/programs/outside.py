@@ -21,6 +21,7 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import pymunk
 
 import eeca_pymunk as ep
@@ -119,11 +120,10 @@ class Outside:
         """The most that contacts with surfaces that move can do."""
         if not self.belt and not self.speed and not self.spin:
             return 0.0
-        contacts, total = report.contacts, 0.0
-        for i, (normal, friction) in enumerate(zip(report.impulse, report.friction, strict=True)):
-            push, fast = math.hypot(normal, friction), self.belt
-            if self.box in (contacts.bodies[contacts.body_a[i]], contacts.bodies[contacts.body_b[i]]):
-                fast += self.speed + self.spin * math.hypot(*(contacts.point[i] - self.place))
-            total += push * fast
+        contacts = report.contacts
+        box = contacts.bodies.index(self.box)
+        carried = (contacts.body_a == box) | (contacts.body_b == box)
+        fast = self.belt + carried * (self.speed + self.spin * np.hypot(*(contacts.point - self.place).T))
+        total = float(np.hypot(report.impulse, report.friction) @ fast)
         weight = sum(b.mass for b in self.space.bodies if b is not self.box) * self.space.gravity.length
         return total + weight * max(0.0, -min(contacts.gap, default=0.0))

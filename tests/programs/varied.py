@@ -159,11 +159,6 @@ class Varied(Composition):
         return super().gains or bool(self.has & {"belts", "drag"})
 
     @property
-    def saves(self) -> bool:
-        """They do not say which contacts a handler has rejected."""
-        return "handlers" not in self.has
-
-    @property
     def gentle(self) -> bool:
         """A large box that turns presses its bodies outward by many times their weight."""
         return super().gentle and not ("many" in self.has and self.turns)

@@ -271,3 +271,22 @@ def test_redundant_contacts_with_friction_converge(mu: float) -> None:
         block.solve(0.0, mu)
         assert block.status == CONVERGED
         check_books(block, 1e-8)
+
+
+@pytest.mark.parametrize("seed", [37, 131])
+def test_impulses_of_what_is_jammed_do_not_grow(seed: int) -> None:
+    """Contacts that friction holds against each other have no solution: sweeps go on steadily, and change velocities.
+    Taken at once, they gave impulses of 200 and 100 000 times the momentum, and books that were open by 3e-9."""
+    R = np.random.default_rng(seed)
+    pose, velocity = np.zeros((3, 3)), np.zeros((3, 3))
+    velocity[:2], mass = R.normal(size=(2, 3)), 10.0 ** R.uniform(-2.0, 2.0, 2)
+    pose[1, 0] = 1.0
+    block = Block(pose, velocity, np.append(1 / mass, 0.0), np.append(1 / (0.3 * mass), 0.0))
+    for a, b in ((0, 1), (0, 2), (1, 2), (0, 1)):
+        angle, point = R.uniform(0.0, 2.0 * math.pi), R.uniform(-0.5, 1.5, 2)
+        block.contacts.append((a, b, math.cos(angle), math.sin(angle), *point))
+    block.solve(0.3, 1.0)
+    assert np.abs(block.impulses).max() < 10.0 * mass.sum() * np.abs(velocity).max()
+    lost = block.energy(velocity) - block.energy(block.after)
+    assert lost >= 0.0
+    assert block.loss.sum() == pytest.approx(lost, abs=1e-14 * block.energy(velocity))

@@ -281,6 +281,86 @@ def test_handlers_see_a_sleeper_hit_awake() -> None:
     assert bodies[0].velocity.x < -1.0
 
 
+@pytest.mark.parametrize("first", [0, 1, 2])
+def test_on_a_kinematic_body_a_rehearsal_wakes_what_the_program_has_put_to_sleep(first: int) -> None:
+    """As pymunk's own step does; it has the bodies in another order then."""
+    space = pymunk.Space()
+    space.gravity, space.sleep_time_threshold = (0.0, -10.0), 5.0
+    plate = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    space.add(plate, pymunk.Segment(plate, (-20.0, 0.0), (20.0, 0.0), 0.1))
+    boxes = [box(space, 3.0 * k, 0.6) for k in range(3)]
+    space.on_collision(post_solve=lambda arbiter, space, data: None)
+    flying = ball(space, (-5.0, 5.0), (1.0, 0.0))
+    stepper = ep.EECA(space)
+    for k in range(3):
+        boxes[(first + k) % 3].sleep()
+    stepper.step(DT)
+    assert not any(body.is_sleeping for body in boxes)
+    assert flying.position == pytest.approx((-5.0 + DT, 5.0 - 5.0 * DT * DT), abs=1e-14)
+    for _ in range(5):
+        stepper.step(DT)
+    for k, body in enumerate(boxes):
+        assert body.position == pytest.approx((3.0 * k, 0.6), abs=1e-9)
+        assert body.velocity.length < 1e-9
+
+
+def test_who_is_woken_by_a_hit_falls_in_that_step_by_its_own_function() -> None:
+    """The sleeper alone has a function of velocities; the step that wakes it is taken again, and calls it."""
+    space = pymunk.Space()
+    space.gravity, space.sleep_time_threshold = (0.0, -10.0), 1.0
+    sleeper = ball(space, (0.0, 0.0), (0.0, 0.0))
+    sleeper.velocity_func = lambda body, gravity, damping, dt: pymunk.Body.update_velocity(body, gravity, damping, dt)
+    flying = ball(space, (0.5, 0.0), (-12.0, 0.0))
+    stepper = ep.EECA(space)
+    sleeper.sleep()
+    before = ep.measure(space).energy
+    report = stepper.step(DT)
+    assert not sleeper.is_sleeping
+    assert sleeper.velocity == pytest.approx((-12.0, -10.0 * DT), abs=1e-12)
+    assert flying.velocity == pytest.approx((0.0, -10.0 * DT), abs=1e-12)
+    assert report.ledger is not None
+    assert ep.measure(space).energy == pytest.approx(before, abs=1e-12)
+
+
+def test_a_step_that_wakes_sleepers_knows_the_sides_of_thin_shapes() -> None:
+    """A rod without width slides on a floor, 1.6e-4 of its length below it; a ball hits a sleeper far away. The step
+    that was taken back had moved the rod, so that it counted as placed by the program: it fell through the floor."""
+    space = pymunk.Space()
+    space.gravity, space.sleep_time_threshold = (0.0, -10.0), 5.0
+    ground(space).unsafe_set_radius(0.0)
+    rod = pymunk.Body(1.0, 0.1)
+    rod.velocity = 1.0, 0.0
+    space.add(rod, pymunk.Segment(rod, (-0.5, 0.0), (0.5, 0.0), 0.0))
+    sleeper, flying = ball(space, (5.0, 9.0), (0.0, 0.0)), ball(space, (7.0, 9.0), (-1.0, 0.0))
+    stepper = ep.EECA(space)
+    sleeper.sleep()
+    for _ in range(4):
+        rod.position -= (0.0, 4e-5)
+        stepper.step(DT)
+    flying.position, flying.velocity = (5.5, 9.0), (-12.0, 0.0)
+    stepper.step(DT)
+    assert not sleeper.is_sleeping
+    for _ in range(20):
+        stepper.step(DT)
+    assert abs(rod.position.y) <= 1.6e-4
+
+
+def test_whom_pymunk_wakes_where_all_sleep_gets_no_velocity_from_it() -> None:
+    """A box that the program puts to sleep 1 mm deep in a kinematic plate, by itself."""
+    space = pymunk.Space()
+    space.gravity, space.sleep_time_threshold = (0.0, -10.0), 5.0
+    plate = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    space.add(plate, pymunk.Segment(plate, (-20.0, 0.0), (20.0, 0.0), 0.1))
+    body = box(space, 0.0, 0.599)
+    stepper = ep.EECA(space)
+    body.sleep()
+    report = stepper.step(DT)
+    assert body.velocity == (0.0, 0.0)
+    assert body.position == (0.0, 0.599)
+    assert report.ledger is not None
+    assert report.ledger.change == 0.0
+
+
 def test_islands_sleep_one_by_one() -> None:
     space, bodies = stack(2)
     late = box(space, 6.0, 2.0)

@@ -1,0 +1,95 @@
+"""Decisions of collision handlers that outlast their step.
+
+pymunk keeps the arbiter of shapes that have parted for `collision_persistence` steps, and with it what handlers have
+decided; until then it holds for the pair. Where a program has gone back to an earlier state, arbiters of steps that
+were taken back say nothing, and what held then is remembered here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import pymunk
+
+from ..arrays import FloatArray
+from ..compiled.records import Rows
+from ..model.shapes import Shape
+from . import private, private_arbiters
+from .shapes import Law, Pair, Rules
+
+DECISION_COLUMNS = 7  # both shapes, as in `space.shapes`; -1 for no collision, or elasticity, ...; age in steps
+
+_NONE = -1.0, 0.0, 0.0, 0.0  # the law of shapes that do not collide
+
+
+class Decisions:
+    """What handlers of a space have decided of pairs of shapes, as far as pymunk's arbiters do not say it.
+
+    Attributes:
+        since: number of pymunk's step up to which arbiters say nothing.
+        told: law of b relative to a, by shapes (a, b), and the number of the step in which they last touched.
+    """
+
+    def __init__(self) -> None:
+        self.since = -1
+        self.told: dict[tuple[pymunk.Shape, pymunk.Shape], tuple[Law, int]] = {}
+
+    def forget(self, space: pymunk.Space) -> None:
+        """Forget earlier steps."""
+        self.since, self.told = private.timestamp(space)(), {}
+
+    def rules(self, space: pymunk.Space, places: Mapping[pymunk.Shape, int], SHAPE: Rows[Shape], smooth: bool) -> Rules:
+        """What holds of pairs of shapes, which have these rows of SHAPE, after pymunk's step has called the handlers;
+        nothing of friction if `smooth`."""
+        now, oldest = private.timestamp(space)(), self.since
+        odd = [arbiter for arbiter in private.odd_arbiters(space) if private_arbiters.stamp(arbiter) > oldest]
+        rules = Rules.said(odd, places, SHAPE, smooth)
+        if not self.told:
+            return rules
+        anew = {frozenset(a.shapes) for a in private.arbiters(space) if private_arbiters.stamp(a) > oldest}
+        self.told = {
+            pair: (law, step)
+            for pair, (law, step) in self.told.items()
+            if now - step < space.collision_persistence and frozenset(pair) not in anew
+        }
+        earlier: dict[Pair, Law] = {}
+        for (one, two), (law, _) in self.told.items():
+            a, b = places.get(one, -1), places.get(two, -1)
+            if min(a, b) >= 0:
+                earlier[min(a, b), max(a, b)] = law if a < b else (*law[:2], -law[2], -law[3])
+        never = {pair for pair, law in earlier.items() if law[0] < 0.0}
+        changed = {pair: law for pair, law in earlier.items() if pair not in never}
+        return Rules(rules.ignored | never, {**rules.changed, **changed})
+
+    def state(
+        self, space: pymunk.Space, places: Mapping[pymunk.Shape, int], SHAPE: Rows[Shape], smooth: bool
+    ) -> FloatArray:
+        """(n, DECISION_COLUMNS) all that holds."""
+        now, shapes = private.timestamp(space)(), list(space.shapes)
+        known: dict[tuple[pymunk.Shape, pymunk.Shape], tuple[Law, int]] = dict(self.told)
+        for arbiter in private.odd_arbiters(space):
+            step = private_arbiters.stamp(arbiter)
+            if step <= self.since:
+                continue
+            found = Rules.said([arbiter], places, SHAPE, smooth)
+            for a, b in (*found.ignored, *found.changed):
+                one, two = sorted(arbiter.shapes, key=places.__getitem__)
+                known[one, two] = found.changed.get((a, b), _NONE), step
+        at = {shape: k for k, shape in enumerate(shapes)}
+        rows = [(at[a], at[b], *law, now - step) for (a, b), (law, step) in known.items() if a in at and b in at]
+        return np.array(sorted(rows), float).reshape(-1, DECISION_COLUMNS)
+
+    def recall(self, space: pymunk.Space, rows: FloatArray) -> None:
+        """Return to a result of `state`. Rejections of shapes that touched, and touch, are written to their arbiters:
+        pymunk does not ask `begin` again, and its pickles do not have them."""
+        self.forget(space)
+        shapes, never = list(space.shapes), set()
+        for a, b, e, mu, x, y, age in rows.tolist():
+            pair = shapes[int(a)], shapes[int(b)]
+            self.told[pair] = (e, mu, x, y), self.since - int(age)
+            if e < 0.0 and age == 0.0:
+                never.add(frozenset(pair))
+        for arbiter in private.arbiters(space) if never else ():
+            if frozenset(arbiter.shapes) in never:
+                private_arbiters.reject(arbiter)
