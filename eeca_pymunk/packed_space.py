@@ -37,8 +37,11 @@ class PackedSpace(Stepper):
     Attributes:
         reads: number of readings of the whole space: one at the start, and one after each change that rows cannot be
             patched for.
-        self.reads = self.patches = self.objects_read = 0
-        self.decisions = Decisions()
+        patches: number of changes that were put into the rows of the last reading: of numbers of shapes and bodies, or
+            in which constraints came or went.
+        objects_read: number of bodies, shapes and constraints whose values these have read from pymunk; all others
+            were known.
+        decisions: of collision handlers in earlier steps.
     """
 
     def __init__(self, space: pymunk.Space, *, sync: bool = True, ignore: Sequence[str] = ()) -> None:
@@ -51,11 +54,8 @@ class PackedSpace(Stepper):
         self._sync: Sync
         self._sleep: Sleep | None = None  # None if bodies cannot sleep
         self._idle_book: FloatArray | None = None  # ledger entries of a step in which all dynamic bodies sleep
-<<<<<<< HEAD
         self.reads = self.patches = self.objects_read = 0
-=======
-        self.reads, self.decisions = 0, Decisions()
->>>>>>> c4baaa6e5daebdd1421f08ac8e52cd6144cfd7cf
+        self.decisions = Decisions()
         self._look()
 
     def __getstate__(self) -> dict[str, object]:
