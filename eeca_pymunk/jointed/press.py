@@ -177,7 +177,7 @@ def press(
             NOW[i] = B.ROWS[i].now
         leave_out(C, L, m, FORESEEN)
         BOTH = with_bounded(B, L, m)
-        worst = solve_columns(problem, BOTH, FORESEEN, fine, COLUMN_SWEEPS if outer == 0 else 0, most)
+        worst = solve_columns(problem, BOTH, FORESEEN, fine, COLUMN_SWEEPS if anew else 0, most)
         for i in range(m):
             L[i, 0], L[i, 1] = BOTH[i, 0], BOTH[i, 1]
         converged = worst <= 10.0 * max(fine, min(agree, AGREE * scale))

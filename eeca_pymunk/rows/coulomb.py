@@ -12,7 +12,6 @@ from __future__ import annotations
 import math
 
 from ..compiled import nonallocating
-from ..compiled.records import Rows
 from ..model.contacts import Row
 from ..model.parameters.impulses import JAMMED, SINGULAR
 
@@ -72,7 +71,7 @@ def coulomb(
 
 
 @nonallocating
-def limited_slip(row: Rows[Row], lam: float, beta: float) -> float:
+def limited_slip(row: Row, lam: float, beta: float) -> float:
     """Tangential velocity with which a contact with these impulses loses no energy, where those of a stick would give
     some: beta (u_t- + u_t+) = -lam (u_n- + b); 0 where it may stick."""
     loss = lam * min(row.un + row.target, 0.0)
