@@ -22,11 +22,11 @@ def solve_columns(
     """Impulses L (m contacts, then the bounded rows) and velocities V.
 
     Args:
-        tolerance: change of a contact's velocity in a sweep at which its law is kept.  sweeps: before a path.
+        tolerance: velocity by which laws may be broken, or contacts change in a sweep.  sweeps: before a path.
         most: sweeps where there are too many contacts for a path, or it has no end.
 
     Returns:
-        the largest change of a contact's velocity in the last sweep.
+        the largest velocity by which a law is broken, or of a change in the last sweep if that came last.
     """
     if problem.m > COLUMN_CONTACTS:
         return iterate(problem, L, V, tolerance, most)[1]

@@ -37,6 +37,7 @@ from .pivots import (
     pivot,
     sign_of,
     slope_of,
+    unknown_of,
 )  # fmt: skip
 from .sweeps import velocities
 
@@ -50,13 +51,13 @@ def begin(problem: JointedProblem, L: FloatArray, V: FloatArray, anew: bool) -> 
     size = 2 * m + n
     path = Path(
         np.zeros(m + n, np.int64), np.zeros(m + n), np.zeros(m), np.zeros(n), np.zeros(n), np.zeros(m),
-        np.zeros((size, size + 2)),         np.empty(size + 2),
+        np.zeros((size, size + 2)), np.empty(size + 2),
     )  # fmt: skip
-    T, X, W = path.T, np.zeros(size), np.empty((size, size))
+    T, X = path.T, np.zeros(size)
     AT, KIND = np.empty(size, np.int64), np.empty(size, np.int64)
     for k in range(size):
         AT[k], KIND[k] = (k // 2, k % 2) if k < 2 * m else (k - 2 * m, 2)
-    matrix_jointed(problem, np.zeros(m), AT, KIND, size, W)
+    matrix_jointed(problem, np.zeros(m), AT, KIND, size, T)
     for i in range(m):
         path.MU[i] = max(ROWS[i].friction, 0.0)
         if C.OUT[i] == 0 and not ROWS[i].wake < np.inf:
@@ -71,14 +72,11 @@ def begin(problem: JointedProblem, L: FloatArray, V: FloatArray, anew: bool) -> 
     for i in range(n):
         row, k = D.ROWS[i], 2 * m + i
         path.LOW[i], path.HIGH[i] = row.low, row.high
-        if row.part == SINGLE and W[k, k] > 0.0:
+        if row.part == SINGLE and T[k, k] > 0.0:
             upper = L[m + i, 0] >= row.high or row.low == -np.inf
             path.STATE[m + i], path.SIGN[m + i] = BOUND, 1.0 if upper else -1.0
             T[k, size] = row.speed + bounded_rate(D, i, V)
             X[k] = L[m + i, 0]
-    for k in range(size):
-        for r in range(size):
-            T[r, k] = W[r, k]
     if not anew:
         take_residuals(path, m, X)
     take_bounds(path, m, X)
@@ -95,7 +93,7 @@ def take_residuals(path: Path, m: int, X: FloatArray) -> None:
     their states are not lawful."""
     T, size = path.T, len(path.T)
     for c in range(len(path.STATE)):
-        k, state = 2 * c if c < m else m + c, path.STATE[c]
+        k, state = unknown_of(m, c), path.STATE[c]
         u, x = T[k, size], X[k]
         if state == BOUND:
             inside = path.LOW[c - m] < x < path.HIGH[c - m]
@@ -116,7 +114,7 @@ def lift(path: Path, m: int) -> None:
     for k in range(size):
         most = max(most, abs(T[k, size]))
     for c in range(len(path.STATE)):
-        k = 2 * c if c < m else m + c
+        k = unknown_of(m, c)
         if path.STATE[c] == OPEN or path.STATE[c] == BOUND:
             amount = (1.0 + (0.618034 * c) % 1.0) * most
             T[k, size + 1] = -path.SIGN[c] * amount if path.STATE[c] == BOUND else amount
@@ -139,7 +137,7 @@ def take_states(path: Path, m: int, X: FloatArray) -> None:
     """The states of impulses X (size,), from those of no impulses of contacts, with rows at bounds."""
     T, STATE, size = path.T, path.STATE, len(path.T)
     for c in range(len(STATE)):
-        k = 2 * c if c < m else m + c
+        k = unknown_of(m, c)
         if STATE[c] == BOUND and path.LOW[c - m] < X[k] < path.HIGH[c - m]:
             bound = bound_of(path, m, c)
             pivot(path, k)
@@ -156,9 +154,9 @@ def take_states(path: Path, m: int, X: FloatArray) -> None:
 def give(path: Path, m: int, X: FloatArray, L: FloatArray) -> None:
     """Set the impulses L of the present states, by the unknowns X (size,) that these leave free."""
     for c in range(len(path.STATE)):
-        k, state = 2 * c if c < m else m + c, path.STATE[c]
+        k, state = unknown_of(m, c), path.STATE[c]
         if state == BOUND:
-            L[c, 0] = path.HIGH[c - m] if path.SIGN[c] > 0.0 else path.LOW[c - m]
+            L[c, 0] = bound_of(path, m, c)
         elif state != OUT:
             L[c, 0] = X[k] if state != OPEN else 0.0
             if c < m:
@@ -171,7 +169,7 @@ def refine(problem: JointedProblem, path: Path, V: FloatArray, X: FloatArray) ->
     term and round-off of pivots leave them."""
     A, B, ROWS, _, D, m = problem
     for c in range(len(path.STATE)):
-        k, state = 2 * c if c < m else m + c, path.STATE[c]
+        k, state = unknown_of(m, c), path.STATE[c]
         for z in range(2 if state == STICK else 1 if state in (SLIP, INSIDE) else 0):
             if c >= m:
                 off = D.ROWS[c - m].speed + bounded_rate(D, c - m, V)

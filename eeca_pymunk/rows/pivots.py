@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import nonallocating
+from ..compiled import inlined, nonallocating
 
 # States: of what takes no part, of contacts, of bounded rows inside of their bounds and at one.
 OUT, OPEN, STICK, SLIP, INSIDE, BOUND = 0, 1, 2, 3, 4, 5
@@ -32,6 +32,12 @@ class Path(NamedTuple):
     REST: FloatArray
     T: FloatArray
     R: FloatArray
+
+
+@inlined
+def unknown_of(m: int, c: int) -> int:
+    """The normal unknown of contact c < m, or the unknown of the row c - m."""
+    return 2 * c if c < m else m + c
 
 
 @nonallocating
@@ -83,7 +89,7 @@ def hold(path: Path, c: int) -> None:
 def change(path: Path, m: int, c: int, which: int, theta: float) -> int:
     """Let c make its change of state number `which` (`margin`) at theta; returns the number of the change back."""
     T, state, sign = path.T, path.STATE[c], path.SIGN[c]
-    k, size = 2 * c if c < m else m + c, len(path.T)
+    k, size = unknown_of(m, c), len(path.T)
     if state == OPEN:
         slides = T[k + 1, size] + theta * T[k + 1, size + 1]
         let_slip(path, c, 0.0 if path.MU[c] <= 0.0 else -1.0 if slides > 0.0 else 1.0)
@@ -105,11 +111,12 @@ def change(path: Path, m: int, c: int, which: int, theta: float) -> int:
         return 0
     if state == INSIDE:
         path.STATE[c], path.SIGN[c] = BOUND, -1.0 if which == 0 else 1.0
-        T[k, size] -= path.LOW[c - m] if which == 0 else path.HIGH[c - m]
+        T[k, size] -= bound_of(path, m, c)
         pivot(path, k)
         return 0
+    bound = bound_of(path, m, c)
     pivot(path, k)
-    T[k, size] += path.HIGH[c - m] if sign > 0.0 else path.LOW[c - m]
+    T[k, size] += bound
     path.STATE[c], path.SIGN[c] = INSIDE, 0.0
     return 1 if sign > 0.0 else 0
 
@@ -123,7 +130,7 @@ def margin(path: Path, m: int, c: int, which: int, z: int) -> float:
     upper bound; at a bound 0: -sign u.
     """
     T, state, sign, column = path.T, path.STATE[c], path.SIGN[c], len(path.T) + z
-    k = 2 * c if c < m else m + c
+    k = unknown_of(m, c)
     if state == STICK:
         return float(path.MU[c] * T[k, column] + (T[k + 1, column] if which == 1 else -T[k + 1, column]))
     if state == INSIDE:
