@@ -7,7 +7,7 @@ from ..compiled import kernel, nonallocating
 from ..contacts.unmet import most_work, note_unmet
 from ..islands.accounting import close_interval
 from ..islands.building import build_islands
-from ..islands.intervals import solve
+from ..islands.intervals import lift_here, solve
 from ..jointed.meet import end_here, shorten
 from ..jointed.solve import begin_interval
 from ..model.bodies import AT_REST
@@ -62,8 +62,7 @@ def start_waiting(A: Scene, J: Joints) -> int:
 
 @kernel
 def cut_short(A: Scene, J: Joints, i: int, t: float) -> int:
-    """End the step at instant t, that of the event of body i, since its budget is spent; so no impact is ignored.
-    Intervals end there without penetration correction."""
+    """End the step at instant t, that of the event of body i, since its budget is spent; so no impact is ignored."""
     met = A.STATE[i].other >= 0  # else the event is the end of an interval, without a partner
     own, other = (A.STATE[i].own, A.STATE[i].other) if met else (A.STATE[i].first_shape, -1)
     note_unmet(A, SOLVES, own, other, float(A.COUNT.work), most_work(A))
@@ -82,9 +81,8 @@ def cut_short(A: Scene, J: Joints, i: int, t: float) -> int:
                 shorten(A, J, k, t)
                 end_here(A, J, k, t)
             continue
-        if root == k and A.MEMBER[k].open > 0:
-            close_interval(A, k, t)
-        rest = A.RESTING[k]
-        rest.lift_x, rest.lift_y, rest.lift_angle = 0.0, 0.0, 0.0
-        rest.lift_vx, rest.lift_vy, rest.lift_spin = 0.0, 0.0, 0.0
+        if root == k:
+            if A.MEMBER[k].open > 0:
+                close_interval(A, k, t)
+            lift_here(A, k, t)
     return DONE

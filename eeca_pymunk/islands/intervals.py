@@ -6,8 +6,10 @@ import math
 
 import numpy as np
 
+from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..contacts.correction import budget_of, least_of, lifting
+from ..contacts.geometry import gather
 from ..contacts.interval import make_contacts, step_island
 from ..contacts.unmet import spend
 from ..contacts.works import moved
@@ -18,6 +20,7 @@ from ..model.parameters.events import RESOLUTION
 from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES, LARGE_ISLAND, SMALL_SWEEPS
 from ..model.scene import Scene
 from ..model.step import AGAIN, DONE, PUSHES_FULL
+from ..rows.build import rates
 from .at_rest import put_to_rest
 from .candidates import (
     before_end,
@@ -138,12 +141,10 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
     open_contacts(A, isle, contacts, VN, m, t, h, TOUCHED)
     lost, hits = A.RESTING[root].lost, MEMBER[root].hits
     head, tail, size = -1, -1, 0
+    set_lifts(A, MINE, n, JUMP)
     for q in range(n):
         i = MINE[q]
         STATE[i].version += 1
-        rest = A.RESTING[i]
-        rest.lift_x, rest.lift_y, rest.lift_angle = JUMP[q, 0], JUMP[q, 1], JUMP[q, 2]
-        rest.lift_vx, rest.lift_vy, rest.lift_spin = JUMP[q, 3], JUMP[q, 4], JUMP[q, 5]
         if TOUCHED[q] == 0:
             STATE[i].island = -1
             BODY[i].ax, BODY[i].ay, BODY[i].angular = A.PULL[i, 0], A.PULL[i, 1], A.PULL[i, 2]
@@ -168,3 +169,34 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
         if at_rest:
             put_to_rest(A, head)
     return DONE, 0.0
+
+
+@kernel
+def lift_here(A: Scene, root: int, t: float) -> None:
+    """Set the penetration correction of an island whose interval has been cut at instant t, at which its bodies are;
+    `apply_correction` applies it. Its losses of the step pay."""
+    MINE = number_bodies(A, root)
+    n = len(MINE)
+    found = pairs_within(A, root, t, 0.0, True, MINE, n)
+    p = len(found)
+    isle = lay_out_island(A, MINE, n, found, t)
+    clear_places(A, MINE, n)
+    k, contacts = len(isle.WHO), make_contacts(p, len(isle.WHO))
+    P, Q, ROWS, JUMP = contacts.A, contacts.B, contacts.ROWS, contacts.JUMP
+    m = gather(A, isle, contacts, isle.POSE, np.zeros(k), 0.0, k == n)
+    if m > 0:
+        A.MEMBER[root].raised = 1 if driven(A, isle, P, Q, ROWS, contacts.KEY, n, m) else 0
+        budget = budget_of(ROWS, m, A.RESTING[root].lost, 0.0, math.inf if A.MEMBER[root].raised > 0 else 0.0)
+        problem = Problem(P, Q, ROWS, isle.IM, isle.II, isle.POSE, n, m)
+        rates(P, Q, ROWS, isle.V, m)
+        lifting(problem, isle.POSE, isle.V, isle.ACC, 0.0, least_of(isle.EXTENT, n), budget, JUMP)
+    set_lifts(A, MINE, n, JUMP)
+
+
+@nonallocating
+def set_lifts(A: Scene, MINE: IntArray, n: int, JUMP: FloatArray) -> None:
+    """Store the penetration corrections JUMP (k, 6) of n bodies."""
+    for q in range(n):
+        rest = A.RESTING[MINE[q]]
+        rest.lift_x, rest.lift_y, rest.lift_angle = JUMP[q, 0], JUMP[q, 1], JUMP[q, 2]
+        rest.lift_vx, rest.lift_vy, rest.lift_spin = JUMP[q, 3], JUMP[q, 4], JUMP[q, 5]

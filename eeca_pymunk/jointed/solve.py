@@ -14,6 +14,7 @@ from ..contacts.memory import remember_loads
 from ..contacts.unmet import note_unmet
 from ..contacts.works import moved
 from ..islands.candidates import before_end, pairs_within
+from ..islands.depths import driven
 from ..islands.local import clear_places, lay_out_island, needs_memory, number_bodies, open_contacts, open_until
 from ..islands.membership import lossy
 from ..model.islands import Island
@@ -149,11 +150,15 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
     WHERE, HELD = motion.END.copy(), np.zeros(m)
     if may_lose and m > 0:
         if not before_end(A, t + h):
+            raised = driven(A, isle, P, Q, ROWS, KEY, n, m)
             budget = lost(P, Q, ROWS, L, motion.WAY, m, h) + A.RESTING[root].lost
-            spent = correct(A, J, interval, t + h, budget)
+            spent = correct(A, J, interval, t + h, math.inf if raised else budget)
             for g in range(len(groups.COMPONENT)):
                 if groups.COMPONENT[g] >= 0:
-                    J.STEPPED[groups.COMPONENT[g]].lifted = spent
+                    if raised:
+                        J.STEPPED[groups.COMPONENT[g]].supports += spent
+                    else:
+                        J.STEPPED[groups.COMPONENT[g]].lifted = spent
                     break
         HELD = fit(A, J, interval, L, t + h, slow + pull * h)
     clear_places(A, MINE, n)
