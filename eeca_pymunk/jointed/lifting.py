@@ -95,7 +95,7 @@ def correct(A: Scene, J: Joints, interval: Interval, end: float, budget: float) 
         spent -= against(isle.ACC, isle.IM, isle.II, n, NEW - END)
         turn, x, y, spin, inertia = unturn(NEW, NEW - END, V, isle.IM, isle.II, ALL)
         spent += turn * spin + 0.5 * inertia * turn * turn
-        if spent <= budget:
+        if spent <= budget and math.isfinite(spent):
             turn_by(NEW, ALL, turn, x, y, V, 0)
             for g in range(len(groups.COMPONENT)):
                 s = groups.COMPONENT[g]

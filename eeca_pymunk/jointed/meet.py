@@ -164,6 +164,8 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
             through, crosses = first_meeting(A, a, b, t)
         if ((loaded > 0 or spent) and tries + 1 >= most) or abs(g) <= close * small:
             break
+        if g < -close * small and gap(A, a, b, least)[0] < -close * small and not crosses:
+            break  # what overlaps from the start of the path meets where it is seen to close
         slope = 0.0
         if before >= 0.0 and t != before:
             slope = (g - gap_before) / (t - before)
