@@ -157,23 +157,22 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
         loaded = shorten(A, J, roots[0], t)
         if roots[1] != roots[0]:
             loaded += shorten(A, J, roots[1], t)
-        g, nx, ny, px, py = gap(A, a, b, t)
+        g = gap(A, a, b, t)[0]
         close = MEET if loaded == 0 else MEET_LOADED if loaded <= COLUMN_CONTACTS else MEET_MANY
         crosses, through = False, t
         if g > close * small:
             through, crosses = first_meeting(A, a, b, t)
         if ((loaded > 0 or spent) and tries + 1 >= most) or abs(g) <= close * small:
             break
-        if g < -close * small and gap(A, a, b, least)[0] < -close * small and not crosses:
-            break  # what overlaps from the start of the path meets where it is seen to close
+        if g < -close * small:
+            start, rate = gap_and_rate(A, a, b, least)
+            if start < -close * small and rate >= 0.0:
+                break  # what overlaps from the start of the path, and does not close there, closes here
         slope = 0.0
         if before >= 0.0 and t != before:
             slope = (g - gap_before) / (t - before)
         else:
-            xi, yi, _ = pose(A.BODY, i, t)
-            xj, yj, _ = pose(A.BODY, j, t)
-            vi = path_rate(A, i, t, nx, ny, px - xi, py - yi)
-            slope = path_rate(A, j, t, nx, ny, px - xj, py - yj) - vi
+            slope = gap_and_rate(A, a, b, t)[1]
         if not slope < 0.0 and g < -close * small and gap(A, a, b, least)[0] >= -close * small:
             # Beyond the middle of a thin shape the way out is on its far side.
             through, crosses = first_meeting(A, a, b, t)[0], True
@@ -213,6 +212,17 @@ def first_meeting(A: Scene, a: int, b: int, t: float) -> tuple[float, bool]:
     """Instant before t at which the paths of shapes a and b, which are apart at t, meet, and whether there is one."""
     through, certain = find_meeting(A, a, b, t)
     return through, bool(certain and through < t)
+
+
+@nonallocating
+def gap_and_rate(A: Scene, a: int, b: int, t: float) -> tuple[float, float]:
+    """Gap of shapes a and b on the paths of their bodies at instant t, and its rate, negative as they close."""
+    i, j = A.LINK[a].owner, A.LINK[b].owner
+    g, nx, ny, px, py = gap(A, a, b, t)
+    xi, yi, _ = pose(A.BODY, i, t)
+    xj, yj, _ = pose(A.BODY, j, t)
+    rate = path_rate(A, j, t, nx, ny, px - xj, py - yj) - path_rate(A, i, t, nx, ny, px - xi, py - yi)
+    return g, rate
 
 
 @nonallocating
