@@ -164,10 +164,6 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
             through, crosses = first_meeting(A, a, b, t)
         if ((loaded > 0 or spent) and tries + 1 >= most) or abs(g) <= close * small:
             break
-        if g < -close * small:
-            start, rate = gap_and_rate(A, a, b, least)
-            if start < -close * small and rate >= 0.0:
-                break  # what overlaps from the start of the path, and does not close there, closes here
         slope = 0.0
         if before >= 0.0 and t != before:
             slope = (g - gap_before) / (t - before)
@@ -189,6 +185,10 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
             break
         before, gap_before = t, g
         then = max(min(t - g / slope, latest), least)
+        if then == least:
+            start, rate = gap_and_rate(A, a, b, least)
+            if start < -close * small and rate >= 0.0:
+                then = 0.5 * (least + t)  # what overlaps at the start, and does not close there, closes later
         if then == t:
             break
         t = then
