@@ -8,7 +8,7 @@ from ..contacts.unmet import most_work, note_unmet
 from ..islands.accounting import close_interval
 from ..islands.building import build_islands
 from ..islands.intervals import lift_here, solve
-from ..jointed.meet import end_here, shorten
+from ..jointed.meet import end_here, left_apart, shorten, stand_still
 from ..jointed.solve import begin_interval
 from ..model.bodies import AT_REST
 from ..model.joints import Joints
@@ -79,6 +79,8 @@ def cut_short(A: Scene, J: Joints, i: int, t: float) -> int:
         if A.MEMBER[root].jointed > 0:
             if root == k:
                 shorten(A, J, k, t)
+                if left_apart(A, J, k):
+                    stand_still(A, J, k, t)
                 end_here(A, J, k, t)
             continue
         if root == k:

@@ -10,6 +10,7 @@ from ..geometry.flight import pose
 from ..geometry.gap import gap
 from ..islands.accounting import account_contact, move_to_end
 from ..islands.membership import in_large_island, members
+from ..model.joint_steps import LINEAR
 from ..model.joints import Joints
 from ..model.parameters.joints import (
     COLUMN_CONTACTS,
@@ -107,6 +108,28 @@ def end_here(A: Scene, J: Joints, root: int, t: float) -> None:
             move_to_end(A, i, t)
 
 
+@kernel
+def left_apart(A: Scene, J: Joints, root: int) -> bool:
+    """Whether joints do not hold at the end of the interval of an island."""
+    if root < 0 or A.MEMBER[root].jointed == 0 or A.MEMBER[root].open == 0:
+        return False
+    found = components_of(A, J, root)
+    for c in range(len(found)):
+        if J.STEPPED[found[c]].status >= LINEAR:
+            return True
+    return False
+
+
+@kernel
+def stand_still(A: Scene, J: Joints, root: int, t: float) -> None:
+    """Take the interval of an island back, whose joints did not hold: until instant t it keeps poses and velocities."""
+    shorten(A, J, root, A.BODY[root].since)
+    i = root
+    while i >= 0:
+        A.BODY[i].since = t
+        i = A.MEMBER[i].following
+
+
 @nonallocating
 def begun(A: Scene, i: int) -> float:
     """The latest instant at which intervals of islands without joints have begun that shapes of body i may touch."""
@@ -126,8 +149,8 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
     instant, and whether they are apart there.
 
     The end of a coarse interval is not a continuous function of its length: stiff springs swing more than once in it.
-    If the shapes are on the far side of each other, or on the way there, as their paths meet before the end, the
-    instant is before that. If no interval is found that ends where they touch, both end at one at which they are apart.
+    If the shapes are on the far side of each other, or on the way there, as their paths meet before the end, or joints do
+    not hold, the instant is before that. If no interval is found that ends where they touch, both end at one at which they are apart.
     """
     i, j = A.LINK[a].owner, A.LINK[b].owner
     roots = (A.STATE[i].island, A.STATE[j].island if A.BODY[j].inv_mass > 0.0 else -1)
@@ -193,7 +216,7 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
             break
         t = then
     for _ in range(MEET_HALVINGS):
-        if not crosses:
+        if not (crosses or left_apart(A, J, roots[0]) or left_apart(A, J, roots[1])):
             break
         crossed, t = True, 0.5 * (apart + t)
         shorten(A, J, roots[0], t)
