@@ -19,6 +19,7 @@ from ..model.parameters.joints import (
     LIMIT_SECANTS,
     LIMIT_SECANTS_HASTE,
     LIMIT_SOLVES,
+    LIMIT_WAY,
 )
 from .bounds import approach, first_bound, gap, hold_limit, release, standing
 from .correct import correct, fitting_loss
@@ -88,7 +89,11 @@ def step_with_limits(
                 meeting, side, low, high, secants, events = k, other, 0.0, when, 0, events + 1
                 when = instant
                 continue
-            if when > LIMIT_INSTANT * abs(h):  # else round-off of places would be velocities over so short a part
+            a, b = local[link[meeting].body[0]], local[link[meeting].body[1]]
+            rate = approach(hinge[meeting], link[meeting].rows, side, a.v0, b.v0)
+            rate += approach(hinge[meeting], link[meeting].rows, side, a.v1, b.v1)
+            near = abs(0.5 * when * rate) <= LIMIT_WAY * hinge[meeting].size
+            if when > LIMIT_INSTANT * abs(h) and not near:  # else round-off of places would be velocities
                 book(W, when, ledger)
                 advance(local, W.bodies, when)
                 left -= when

@@ -28,6 +28,7 @@ LEAST_INERTIA = work(
 )
 LIMIT_EVENTS = work(12, "number", "Limits that are reached in one step of a component, at most.")
 LIMIT_INSTANT = round_off(1e-9, "of the step", "Part of a step before a limit is reached, up to which it is empty.")
+LIMIT_WAY = round_off(1e-9, "of the component", "Way of a limit to its bound up to which the part before it is empty.")
 LIMIT_SECANTS = work(30, "iterations", "Secant steps to the instant at which a limit is reached, at most.")
 LIMIT_SECANTS_HASTE = work(2, "iterations", "Secant steps to that instant after the work HASTE.")
 LIMIT_SOLVES = work(8, "number", "Linear solves that release limits which pull, at most.")
