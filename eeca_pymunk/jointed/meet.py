@@ -172,6 +172,9 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
     if A.COUNT.heap > 0:
         latest = min(latest, max(t, A.HEAP_TIME[0]))
     small = min(A.SHAPE[a].extent, A.SHAPE[b].extent)
+    # What overlaps at the start, and does not close there, meets where it is as deep again.
+    start, rate = gap_and_rate(A, a, b, least)
+    level = min(start, 0.0) if rate >= 0.0 else 0.0
     before, gap_before, g, close = -1.0, 0.0, 0.0, 0.0
     apart, crossed, crosses = least, False, False
     spent = J.PROGRESS.effort > J.PROGRESS.budget
@@ -180,7 +183,7 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
         loaded = shorten(A, J, roots[0], t)
         if roots[1] != roots[0]:
             loaded += shorten(A, J, roots[1], t)
-        g = gap(A, a, b, t)[0]
+        g = gap(A, a, b, t)[0] - level
         close = MEET if loaded == 0 else MEET_LOADED if loaded <= COLUMN_CONTACTS else MEET_MANY
         crosses, through = False, t
         if g > close * small:
@@ -192,7 +195,7 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
             slope = (g - gap_before) / (t - before)
         else:
             slope = gap_and_rate(A, a, b, t)[1]
-        if not slope < 0.0 and g < -close * small and gap(A, a, b, least)[0] >= -close * small:
+        if not slope < 0.0 and g < -close * small and start >= -close * small:
             # Beyond the middle of a thin shape the way out is on its far side.
             through, crosses = first_meeting(A, a, b, t)[0], True
         if crosses:
@@ -208,10 +211,8 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
             break
         before, gap_before = t, g
         then = max(min(t - g / slope, latest), least)
-        if then == least:
-            start, rate = gap_and_rate(A, a, b, least)
-            if start < -close * small and rate >= 0.0:
-                then = 0.5 * (least + t)  # what overlaps at the start, and does not close there, closes later
+        if then == least and level < 0.0:
+            then = 0.5 * (least + t)
         if then == t:
             break
         t = then
@@ -222,7 +223,7 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
         shorten(A, J, roots[0], t)
         if roots[1] != roots[0]:
             shorten(A, J, roots[1], t)
-        g = gap(A, a, b, t)[0]
+        g = gap(A, a, b, t)[0] - level
         crosses = g < -close * small or (g > close * small and first_meeting(A, a, b, t)[1])
     end_here(A, J, roots[0], t)
     if roots[1] != roots[0]:
