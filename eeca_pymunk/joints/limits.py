@@ -90,9 +90,9 @@ def step_with_limits(
                 when = instant
                 continue
             a, b = local[link[meeting].body[0]], local[link[meeting].body[1]]
-            rate = abs(approach(hinge[meeting], link[meeting].rows, side, a.v0, b.v0))
-            rate += abs(approach(hinge[meeting], link[meeting].rows, side, a.v1, b.v1))
-            near = 0.5 * when * rate <= LIMIT_WAY * hinge[meeting].size
+            rate = approach(hinge[meeting], link[meeting].rows, side, a.v0, b.v0)
+            faster = min(rate, approach(hinge[meeting], link[meeting].rows, side, a.v1, b.v1))
+            near = rate < 0.0 and -when * faster <= LIMIT_WAY * hinge[meeting].size
             if when > LIMIT_INSTANT * abs(h) and not near:  # else round-off of places would be velocities
                 book(W, when, ledger)
                 advance(local, W.bodies, when)
