@@ -8,7 +8,7 @@ from ..contacts.unmet import most_work, note_unmet
 from ..islands.accounting import close_interval
 from ..islands.building import build_islands
 from ..islands.intervals import lift_here, solve
-from ..jointed.meet import end_here, left_apart, shorten, stand_still
+from ..jointed.ends import end_here, left_apart, shorten, stand_still
 from ..jointed.solve import begin_interval
 from ..model.bodies import AT_REST
 from ..model.joints import Joints

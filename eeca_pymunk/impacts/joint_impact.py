@@ -13,9 +13,10 @@ from ..islands.local import clear_places, set_places
 from ..islands.membership import jointed, members
 from ..jointed.columns import fill_free, fill_group, make_columns, weigh
 from ..jointed.component import answer, fit_speeds, ready
+from ..jointed.ends import end_here, shorten
 from ..jointed.gathered import find_places, gather_component
 from ..jointed.groups import find_groups
-from ..jointed.meet import end_here, meet, shorten
+from ..jointed.meet import meet
 from ..model.contacts import SOLVED, JointedProblem, Row
 from ..model.joints import Joints
 from ..model.parameters.joints import CLOSES, SOLUTION_WORK

@@ -13,8 +13,8 @@ from ..geometry.sides import remembers
 from ..islands.accounting import end_interval
 from ..islands.building import comes_to_rest, hits_of, most_hits, passed_over
 from ..islands.membership import jointed, members
+from ..jointed.ends import end_here
 from ..jointed.ledger import is_spent
-from ..jointed.meet import end_here
 from ..model.bodies import LEAVE, RENEW
 from ..model.joints import Joints
 from ..model.parameters.events import AHEAD, EVENT_LOOKS, RESOLUTION

@@ -169,8 +169,8 @@ def comes_to_rest(A: Scene, a: int, b: int, t: float) -> bool:
     """Whether the contact of shapes a and b, which meet at instant t, persists from then on. For e < 1: all bounces of
     e |u| under the closing acceleration a_n end within the step, 2 e |u| <= a_n (1 - e) (dt - t), or a body had
     RESOLUTION impacts in it; where nothing accelerates (pushed by a kinematic body), as many as leave e^n of a speed,
-    below 1/RESOLUTION. For e = 1 see `membership.persists`; what joints press together also persists if its impacts come
-    so fast that they would exceed the limit of the step."""
+    below 1/RESOLUTION. For e = 1 see `membership.persists`; what joints press together also persists where its impacts
+    come so fast that they would exceed the limit of the step."""
     i, j = A.LINK[a].owner, A.LINK[b].owner
     if A.BODY[i].inv_mass > 0.0:
         move_to(A.BODY, i, t)

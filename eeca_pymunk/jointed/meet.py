@@ -1,16 +1,11 @@
-"""Islands with joints brought to the instant at which they meet others, on their own paths; their books there."""
+"""Islands with joints brought to the instant at which they meet others, on their own paths."""
 
 from __future__ import annotations
 
-import numpy as np
-
-from ..arrays import IntArray
 from ..compiled import kernel, nonallocating
 from ..geometry.flight import pose
 from ..geometry.gap import gap
-from ..islands.accounting import account_contact, move_to_end
-from ..islands.membership import in_large_island, members
-from ..model.joint_steps import LINEAR
+from ..islands.membership import in_large_island
 from ..model.joints import Joints
 from ..model.parameters.joints import (
     COLUMN_CONTACTS,
@@ -22,112 +17,8 @@ from ..model.parameters.joints import (
     MEET_SECANTS_LOADED,
 )
 from ..model.scene import Scene
-from ..pairs.lists import mark_pair
 from ..prediction.impact_times import meet as find_meeting
-from .gathered import restore_joints
-from .ledger import account_component
-from .solve import open_span
-
-
-@kernel
-def components_of(A: Scene, J: Joints, root: int) -> IntArray:
-    """The components in an island."""
-    MINE = np.empty(A.MEMBER[root].bodies, np.int64)
-    n = members(A, root, MINE)
-    found = np.empty(n, np.int64)
-    count = 0
-    for q in range(n):
-        s = J.OF[MINE[q]]
-        if s < 0:
-            continue
-        known = False
-        for c in range(count):
-            known = known or found[c] == s
-        if not known:
-            found[count] = s
-            count += 1
-    return found[:count]
-
-
-@nonallocating
-def take_back(A: Scene, root: int) -> None:
-    """Forget the contacts of the interval that an island has begun."""
-    c = 0
-    while c < A.COUNT.pushes:
-        if A.PUSHED_BY[c].root == root:
-            mark_pair(A, A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, 0)
-            last = A.COUNT.pushes - 1
-            A.PUSHED[c], A.PUSHED_BY[c] = A.PUSHED[last], A.PUSHED_BY[last]
-            A.COUNT.pushes = last
-        else:
-            c += 1
-
-
-@kernel
-def shorten(A: Scene, J: Joints, root: int, t: float) -> int:
-    """Let the interval of an island end at instant t, not in the ledger yet; how many contacts it had. Nothing if it is
-    over."""
-    if root < 0 or A.MEMBER[root].jointed == 0 or A.MEMBER[root].open == 0:
-        return 0
-    before = A.COUNT.pushes
-    take_back(A, root)
-    began = A.BODY[root].since
-    some = int(before - A.COUNT.pushes)
-    found = components_of(A, J, root)
-    for c in range(len(found)):
-        restore_joints(J, found[c])
-    if t - began > A.PAR.instant:
-        open_span(A, J, root, began, t - began, True)
-    return some
-
-
-@kernel
-def end_here(A: Scene, J: Joints, root: int, t: float) -> None:
-    """End the interval of an island at instant t, its own end: book it, and bring its bodies there."""
-    if root < 0 or A.MEMBER[root].jointed == 0 or A.MEMBER[root].open == 0:
-        return
-    for c in range(A.COUNT.pushes):
-        if A.PUSHED_BY[c].root == root:
-            account_contact(A, c, t)
-    empty = t - A.BODY[root].since <= A.PAR.instant
-    found = components_of(A, J, root)
-    for c in range(len(found)):
-        A.RESTING[root].lost -= J.STEPPED[found[c]].lifted
-        account_component(A, J, found[c])
-    A.MEMBER[root].open = 0
-    MINE = np.empty(A.MEMBER[root].bodies, np.int64)
-    n = members(A, root, MINE)
-    for q in range(n):
-        i = MINE[q]
-        A.STATE[i].version += 1
-        if empty:
-            # The path is that of an interval that is not to be.
-            A.BODY[i].since = t
-            A.BODY[i].ax, A.BODY[i].ay, A.BODY[i].angular = 0.0, 0.0, 0.0
-        else:
-            move_to_end(A, i, t)
-
-
-@kernel
-def left_apart(A: Scene, J: Joints, root: int) -> bool:
-    """Whether joints do not hold at the end of the interval of an island."""
-    if root < 0 or A.MEMBER[root].jointed == 0 or A.MEMBER[root].open == 0:
-        return False
-    found = components_of(A, J, root)
-    for c in range(len(found)):
-        if J.STEPPED[found[c]].status >= LINEAR:
-            return True
-    return False
-
-
-@kernel
-def stand_still(A: Scene, J: Joints, root: int, t: float) -> None:
-    """Take the interval of an island back, whose joints did not hold: until instant t it keeps poses and velocities."""
-    shorten(A, J, root, A.BODY[root].since)
-    i = root
-    while i >= 0:
-        A.BODY[i].since = t
-        i = A.MEMBER[i].following
+from .ends import end_here, left_apart, shorten
 
 
 @nonallocating
@@ -149,8 +40,9 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
     instant, and whether they are apart there.
 
     The end of a coarse interval is not a continuous function of its length: stiff springs swing more than once in it.
-    If the shapes are on the far side of each other, or on the way there, as their paths meet before the end, or joints do
-    not hold, the instant is before that. If no interval is found that ends where they touch, both end at one at which they are apart.
+    If the shapes are on the far side of each other, or on the way there, as their paths meet before the end, or joints
+    do not hold, the instant is before that. If no interval is found that ends where they touch, both end at one at
+    which they are apart.
     """
     i, j = A.LINK[a].owner, A.LINK[b].owner
     roots = (A.STATE[i].island, A.STATE[j].island if A.BODY[j].inv_mass > 0.0 else -1)
@@ -190,11 +82,8 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
             through, crosses = first_meeting(A, a, b, t)
         if ((loaded > 0 or spent) and tries + 1 >= most) or abs(g) <= close * small:
             break
-        slope = 0.0
-        if before >= 0.0 and t != before:
-            slope = (g - gap_before) / (t - before)
-        else:
-            slope = gap_and_rate(A, a, b, t)[1]
+        secant = before >= 0.0 and t != before
+        slope = (g - gap_before) / (t - before) if secant else gap_and_rate(A, a, b, t)[1]
         if not slope < 0.0 and g < -close * small and start >= -close * small:
             # Beyond the middle of a thin shape the way out is on its far side.
             through, crosses = first_meeting(A, a, b, t)[0], True
