@@ -30,6 +30,7 @@ from eeca_pymunk.model.parameters import table
 
 ROOT = Path(__file__).parents[1]
 DT, STEPS, REST, COUNT = 1 / 60, 300, 20, 60  # s; steps of a pile, at its end, bodies
+LONGEST = 300  # s that a variant may take for each seed; the package takes a tenth of it
 SMOOTH = 1e-3  # radii in REST steps, that a body at rest may move
 NEVER, ALWAYS = "1 << 40", "1e300"  # of counts; of lengths and speeds
 # What takes each rule away: a value that it never, or always, reaches.
@@ -110,10 +111,13 @@ def variant(name: str, seeds: int) -> dict[str, float]:
         subprocess.run(
             [sys.executable, "-m", "eeca_pymunk.build"], cwd=folder, env=environment, check=True, capture_output=True
         )
-        done = subprocess.run(
-            [sys.executable, "-m", "comparisons.ablation", str(seeds)], cwd=folder, env=environment,
-            capture_output=True, text=True, timeout=1800,
-        )  # fmt: skip
+        try:
+            done = subprocess.run(
+                [sys.executable, "-m", "comparisons.ablation", str(seeds)], cwd=folder, env=environment,
+                capture_output=True, text=True, timeout=LONGEST * seeds,
+            )  # fmt: skip
+        except subprocess.TimeoutExpired:
+            return {"which": f"not done after {LONGEST * seeds} s"}  # type: ignore[dict-item]
         if done.returncode:
             return {"which": done.stderr.strip().splitlines()[-1][:100]}  # type: ignore[dict-item]
         return dict(json.loads(done.stdout.splitlines()[-1]))
