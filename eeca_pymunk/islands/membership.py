@@ -153,7 +153,7 @@ def persists(A: Scene, a: int, b: int, t: float, lossy: bool) -> bool:
 
     e < 1: its bounce e |u| is below half of P = max(a_n h, A_nn f h), with the load f that it carried; and it touches
     with u <= P, or carried a force and closes again. e = 1, unless the contact is `lossy`: it touches with almost no
-    speed, and a contact with a body without mobility is pressed together.
+    speed, and a contact with a body without mobility is pressed together, perhaps by joints.
     """
     e = law(A.SHAPE, A.RULE, a, b)[0]
     g, u, closing, mass = approach(A, a, b, t)
@@ -162,8 +162,10 @@ def persists(A: Scene, a: int, b: int, t: float, lossy: bool) -> bool:
     force, load = remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], a, b, A.PAR.stamp - 1.0)
     if e >= 1.0 and not lossy:
         limit = (ELASTIC_REST_ON if force > 0.0 else ELASTIC_REST) * A.PAR.pulled * A.PAR.dt
-        fixed = A.BODY[A.LINK[b].owner].inv_mass == 0.0 or A.BODY[A.LINK[a].owner].inv_mass == 0.0
-        return g <= TOUCH * small and abs(u) <= limit and (not fixed or closing > 0.0 or force > 0.0)
+        i, j = A.LINK[a].owner, A.LINK[b].owner
+        fixed = A.BODY[j].inv_mass == 0.0 or A.BODY[i].inv_mass == 0.0
+        pressed = not fixed or closing > 0.0 or force > 0.0 or A.MEMBER[i].tied >= 0 or A.MEMBER[j].tied >= 0
+        return g <= TOUCH * small and abs(u) <= limit and pressed
     press = max(closing, load / mass) * h
     if not -e * min(u, 0.0) < 0.5 * press:
         return False
