@@ -78,7 +78,7 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
         g = gap(A, a, b, t)[0] - level
         close = MEET if loaded == 0 else MEET_LOADED if loaded <= COLUMN_CONTACTS else MEET_MANY
         crosses, through = False, t
-        if g > close * small:
+        if g + level > close * small:
             through, crosses = first_meeting(A, a, b, t)
         if ((loaded > 0 or spent) and tries + 1 >= most) or abs(g) <= close * small:
             break
@@ -113,7 +113,7 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
         if roots[1] != roots[0]:
             shorten(A, J, roots[1], t)
         g = gap(A, a, b, t)[0] - level
-        crosses = g < -close * small or (g > close * small and first_meeting(A, a, b, t)[1])
+        crosses = g < -close * small or (g + level > close * small and first_meeting(A, a, b, t)[1])
     end_here(A, J, roots[0], t)
     if roots[1] != roots[0]:
         end_here(A, J, roots[1], t)
