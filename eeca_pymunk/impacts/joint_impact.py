@@ -19,6 +19,7 @@ from ..jointed.groups import find_groups
 from ..jointed.meet import meet
 from ..model.contacts import SOLVED, JointedProblem, Row
 from ..model.joints import Joints
+from ..model.parameters.events import EVENT_LOOKS
 from ..model.parameters.joints import CLOSES, SOLUTION_WORK
 from ..model.scene import Scene
 from ..rows.blocks import solve_block
@@ -88,6 +89,7 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     i, j = A.LINK[a].owner, A.LINK[b].owner
     t, apart = meet(A, J, a, b, t)
     A.PAR.now = t
+    A.COUNT.work += EVENT_LOOKS
     if apart:
         return list_apart(A, i, j)
     n, m, PAIRS = gather(A, a, b, t)

@@ -114,6 +114,14 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
             shorten(A, J, roots[1], t)
         g = gap(A, a, b, t)[0] - level
         crosses = g < -close * small or (g + level > close * small and first_meeting(A, a, b, t)[1])
+    if rate >= 0.0 and t - least <= A.PAR.instant:
+        # Nothing closes at the start before joints act: at a limit that turns velocities into the other shape, say.
+        # The more impacts the bodies have had, the longer they may, so that the step ends.
+        met = min(max(A.STATE[i].events, A.STATE[j].events), 40)
+        t = min(least + 2.0 ** (met + 1) * A.PAR.instant, latest)
+        shorten(A, J, roots[0], t)
+        if roots[1] != roots[0]:
+            shorten(A, J, roots[1], t)
     end_here(A, J, roots[0], t)
     if roots[1] != roots[0]:
         end_here(A, J, roots[1], t)
