@@ -52,7 +52,7 @@ class Film:
 
 FILMS = {
     "carom": Film(("eeca", "native", "trapezoidal", "max_dissipation"), 1.5),
-    "pool_break": Film(duration=0.06, arrow="momentum", frames=40, dpi=64),
+    "pool_break": Film(duration=0.06, arrow="momentum", view=(-0.46, 0.46, -0.95, 0.78), frames=40, dpi=64),
     "hopper": Film(view=(-0.7, 0.7, -0.15, 1.1), dt=0.001),
     "pile": Film(duration=3.0, view=(-0.5, 9.5, -0.3, 11.0), frames=36, dpi=68),
     "drum": Film(duration=3.0, frames=40, dpi=66),

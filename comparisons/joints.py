@@ -226,7 +226,7 @@ def run(output: Output, full: bool) -> None:
 
 def picture(found: list[Problem], rows: list[Row]) -> Figure:
     """Error of places, and below it of the energy, against time: a column for each scene."""
-    figure = render.figure(3.0 * len(found), 6.3)
+    figure = render.figure(2.2 * len(found), 5.4)
     axes = figure.subplots(2, len(found), sharex="col", sharey="row", squeeze=False)
     for (top, low), problem in zip(axes.T, found, strict=True):
         for name, (colour, mark) in STYLE.items():

@@ -82,5 +82,5 @@ def _view(space: pymunk.Space) -> tuple[float, float, float, float]:
     """A square around the rack and where the cue starts, with room for arrows. The cue leaves it far behind."""
     x = np.array([(0.0, -0.1), *(b.position for b in list(space.bodies)[1:])])
     low, high = x.min(axis=0), x.max(axis=0)
-    middle, half = 0.5 * (low + high), 0.63 * float((high - low).max())
+    middle, half = 0.5 * (low + high), 0.72 * float((high - low).max())
     return middle[0] - half, middle[0] + half, middle[1] - half, middle[1] + half

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from tqdm import tqdm
 
 import eeca_pymunk as ep
-from comparisons import piles, runs, steps
+from comparisons import piles, steps
 from comparisons.output import Output, Row
 from comparisons.tour_problems import Problem, problems
 from eeca_pymunk import render
@@ -211,21 +211,22 @@ def filmed(output: Output) -> str:
 
 
 def picture(found: dict[str, list[Point]], shown: list[Row]) -> Figure:
-    """Error against time, a panel for each scene."""
-    figure = render.figure(3.0 * len(found), 4.2)
-    axes = figure.subplots(1, len(found), sharey=True)
-    for ax, row, (name, points) in zip(axes, shown, found.items(), strict=True):
+    """Error against time, a panel for each scene, and the legend in the last one."""
+    figure = render.figure(9.0, 6.2)
+    axes = figure.subplots(2, len(found) // 2 + 1, sharey=True)
+    for ax, row, (name, points) in zip(axes.flat, shown, found.items(), strict=False):
         for stepper, (color, width) in STYLE.items():
             mine = [p for p in points if p.stepper == stepper]
-            error = np.array([max(p.error, FLOOR) for p in mine])
-            wall = np.array([p.wall for p in mine])
-            seen = error > 1e-9  # the rest is round-off
-            order = f", slope {runs.slope(wall[seen], error[seen]):.1f}" if seen.sum() > 2 else ""
-            ax.loglog(1e3 * wall, error, "o-", color=color, linewidth=width, markersize=4, label=f"{stepper}{order}")
+            error = [max(p.error, FLOOR) for p in mine]
+            wall = [1e3 * p.wall for p in mine]
+            ax.loglog(wall, error, "o-", color=color, linewidth=width, markersize=4, label=stepper)
         told = f"in equal time {_power(float(row['x smaller error'] or 0.0))}"
         ax.set(xlabel="time of all steps (ms)", title=f"{name}\n{told}")
-        ax.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.17), frameon=False)
-    axes[0].set_ylabel("error of places (m)")
+    for ax in axes[:, 0]:
+        ax.set_ylabel("error of places (m)")
+    for ax in axes.flat[len(found) :]:
+        ax.axis("off")
+    axes.flat[-1].legend(*axes.flat[0].get_legend_handles_labels(), loc="center", frameon=False)
     return figure
 
 

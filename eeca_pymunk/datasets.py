@@ -25,11 +25,13 @@ class Rollouts:
     """The results of K rollouts of b bodies, T frames each.
 
     Attributes:
-        states: (K, b, 6) position, angle, velocity, spin at the start.  frames: (K, T, b, 6) the same afterwards.
+        states: (K, b, 6) position, angle, velocity, spin at the start.
+        frames: (K, T, b, 6) the same afterwards.
         ledger: (K, T, 6) energies since the start of each, in the order of the fields of `Ledger`.
         unmet: (K,) number of steps that did not meet all budgets and tolerances.
         events: the impacts of all rollouts, one after the other, each in the order of time; numbers of bodies are those
-            in `frames`.  first: (K + 1,) the impacts of rollout k are [first[k], first[k + 1]).
+            in `frames`.
+        first: (K + 1,) the impacts of rollout k are [first[k], first[k + 1]).
         error: (K,) length, an estimate of the largest position error in any frame (`certify`); NaN before.
         parameters: arguments of `rollout`, versions, and what the user adds (seeds, units, licence).
     """

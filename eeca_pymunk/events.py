@@ -24,8 +24,10 @@ class Events:
     Attributes:
         time: (m,) since the start of the recording.
         bodies: (m, 2) indices of a and b among the recorded bodies, -1 for a static one.
-        point: (m, 2) length, halfway between the two surfaces.  normal: (m, 2) unit, from a to b.
-        impulse: (m,) on b along the normal, >= 0.  friction: (m,) on b along t = (-n_y, n_x): mass length/time.
+        point: (m, 2) length, halfway between the two surfaces.
+        normal: (m, 2) unit, from a to b.
+        impulse: (m,) on b along the normal, >= 0.
+        friction: (m,) on b along t = (-n_y, n_x): mass length/time.
     """
 
     time: FloatArray = field(default_factory=lambda: np.zeros(0))

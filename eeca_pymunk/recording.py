@@ -28,11 +28,18 @@ class Recording:
     player.
 
     Attributes:
-        time: (T,).  position: (T, N, 2) length.  angle: (T, N) rad.  velocity: (T, N, 2) length/time.
-        energy: (T,) kinetic plus gravity.  kinetic: (T,) its first part.  momentum: (T, 2).
+        time: (T,) from the start.
+        position: (T, N, 2) length.
+        angle: (T, N) rad.
+        velocity: (T, N, 2) length/time.
+        energy: (T,) kinetic plus gravity.
+        kinetic: (T,) its first part.
+        momentum: (T, 2).
         ledger: ledgers summed since the start, arrays (T,); NaN for steppers that have none.
-        mass: (N,) infinite for kinematic bodies.  outlines: the shapes at the start.
-        spin: (T, N) rad/time.  events: the impacts, each at its instant.
+        mass: (N,) infinite for kinematic bodies.
+        outlines: the shapes at the start.
+        spin: (T, N) rad/time.
+        events: the impacts, each at its instant.
         parameters: stepper, dt, duration, every, and versions.
     """
 

@@ -62,7 +62,8 @@ class StepReport:
     Args:
         time: see the property.
         details: the arrays, or a function that makes them at the first access.
-        iterations, lock, converged: see the properties.  book: (7,) of `energy.ledger`.
+        iterations, lock, converged: see the properties.
+        book: (7,) of `energy.ledger`.
         unmet: budgets and tolerances that were not met, or a function that makes them.
     """
 
@@ -189,7 +190,8 @@ class RunReport:
         ledger: sum of the ledgers of all steps; None if the stepper has none.
         impacts: number of impacts, without persistent contacts.
         unmet: number of steps that did not meet all budgets and tolerances, see `StepReport.converged`.
-        iterations: of the solver.  lock: scale of the energy lock that was farthest from 1.
+        iterations: of the solver.
+        lock: scale of the energy lock that was farthest from 1.
     """
 
     time: float
@@ -217,7 +219,10 @@ def of_events(EVENT: Rows[Impulse], dt: float, bodies: tuple[pymunk.Body, ...], 
     psi1 is infinite (rigid limit), and Delta g is Eq. 20 with the impulse's own Delta p.
 
     Args:
-        EVENT: (m,).  dt: time.  bodies: of the space.  owner: (k,) index in `bodies` of each shape's body.
+        EVENT: (m,).
+        dt: time.
+        bodies: of the space.
+        owner: (k,) index in `bodies` of each shape's body.
     """
     first, second = EVENT["first"].astype(np.intp), EVENT["second"].astype(np.intp)
     order = np.lexsort((second, first, EVENT["when"]))

@@ -55,7 +55,8 @@ def rollout(
         every: store one of so many steps: T = steps // every frames. Remaining steps are not taken.
         controls: (K, T, b, 3) forces at the centres of mass and torques, constant over the steps up to each frame.
         threads: as many as there are processors if None. The result does not depend on the number.
-        progress: show a progress bar.  full: also return ledgers, impacts, and which steps did not converge.
+        progress: show a progress bar.
+        full: also return ledgers, impacts, and which steps did not converge.
 
     Returns:
         (K, T, b, 6) frames; a `Rollouts` if `full`.

@@ -58,7 +58,9 @@ class Stepper(ABC):
         space once, at the end (`python -m comparisons rollouts` prints the time saved).
 
         Args:
-            steps: >= 0.  dt: time, >= 0.  progress: show a progress bar.
+            steps: number, >= 0.
+            dt: time, >= 0.
+            progress: show a progress bar.
 
         If a step raises, or at an interrupt, the space is at the end of the step before.
         """

@@ -20,7 +20,8 @@ class Unmet(NamedTuple):
             island; likewise, until the next step), "impact" (residual velocity of a simultaneous impact, length/time),
             "solves" (bodies of all solves; the step ends early), "contacts" (of jointed bodies; no numbers), "joints"
             (status of their solve).
-        value: reached.  limit: largest allowed; nan if there is no such number.
+        value: reached.
+        limit: largest allowed; nan if there is no such number.
         bodies: those concerned, as far as they are known.
     """
 

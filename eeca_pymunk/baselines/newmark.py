@@ -22,9 +22,11 @@ class Newmark(PenaltyStepper):
     Elasticity is taken as 1.
 
     Args:
-        space: a pymunk space.  stiffness: K > 0, mass/time².
-        beta: 0 < beta <= 1/2.  gamma: 0 <= gamma <= 1.
-        sync: see `PackedStepper`.
+        space: a pymunk space.
+        stiffness: K > 0, mass/time².
+        beta: 0 < beta <= 1/2.
+        gamma: 0 <= gamma <= 1.
+        sync: as of `EECA`.
     """
 
     tolerance = 1e-8

@@ -53,7 +53,8 @@ def animate(
     has losses or external work, a stack of energies and losses (`traces.py`).
 
     Args:
-        recordings: one to four.  titles: of the panels; stepper and dt if None.
+        recordings: one to four.
+        titles: of the panels; stepper and dt if None.
         fps: frames per second, > 0; delays of a GIF are multiples of 10 ms.
         exact: function of time that returns the (N, 2) exact positions, None where unknown (`Scene.exact`): drawn as
             outlines.

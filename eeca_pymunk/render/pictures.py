@@ -53,7 +53,8 @@ def snapshot(
     """Draw the shapes of a space now, or of a recording at its moment nearest to `time`; disks to scale.
 
     Args:
-        ax: where to draw; a new figure if None.  path: save the figure there, format by suffix.
+        ax: where to draw; a new figure if None.
+        path: save the figure there, format by suffix.
         velocity, momentum: an arrow for each moving body; momenta as in the paper's Figs. 8 and 9.
         report: of the step that led here: its contacts are drawn, each impulse as a pair of arrows along the normal.
         view: (left, right, bottom, top) lengths; all shapes if None.

@@ -15,7 +15,7 @@ import pymunk
 import eeca_pymunk as ep
 from comparisons.play import Clocked, Done, Hands, played
 
-KEYS = ("f", *16 * ("",))  # newtons_cradle: lift some balls; no other example listens to it
+KEYS = ("f", *16 * ("",))  # newtons_cradle: lift some balls; flipper: hit with the left one
 
 
 def main(file: str, name: str, frames: int) -> None:

@@ -14,7 +14,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "migrating.md").read_text(encoding="utf-8")
 EDITS = dict(re.findall(r"`pymunk\.examples\.(\w+)`.*?```diff\n(.*?)```", PAGE, flags=re.DOTALL))
-FRAMES = {"basic_test": 5000, "bouncing_balls": 240, "newtons_cradle": 240}
+FRAMES = {"basic_test": 5000, "bouncing_balls": 240, "newtons_cradle": 240, "flipper": 240}
 
 
 def edited(source: str, diff: str) -> str:
@@ -33,7 +33,7 @@ def edited(source: str, diff: str) -> str:
     return "import eeca_pymunk as ep\n" + "\n".join(lines)
 
 
-def test_the_page_has_three_examples() -> None:
+def test_the_page_has_these_examples() -> None:
     assert EDITS.keys() == FRAMES.keys()
 
 

@@ -11,7 +11,9 @@ def markdown() -> str:
     for section, parameters in zip(SECTIONS, table().values(), strict=True):
         lines += [f"### {section.__name__.rpartition('.')[2].capitalize()}", "", (section.__doc__ or "").strip(), ""]
         lines += ["| parameter | value | kind | scale | what it decides |", "|---|---|---|---|---|"]
-        lines += [f"| `{n}` | {p.value:g} | {p.kind} | {p.scale} | {p.effect} |" for n, p in parameters.items()]
+        for name, p in parameters.items():
+            texts = (t.replace("|", "\\|") for t in (p.kind, p.scale, p.effect))  # |a| is no border of a cell
+            lines += [f"| `{name}` | {p.value:g} | {' | '.join(texts)} |"]
         lines += [""]
     return "\n".join(lines)
 
