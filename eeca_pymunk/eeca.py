@@ -104,7 +104,7 @@ class EECA(RunningStepper):
     def prepare(self, world: World, past: World | None) -> None:
         myself = ref(self)
         show_contacts(self.space, lambda: None if (me := myself()) is None else me._touches())
-        self._sync.late = self._sleep is None  # groups of sleeping bodies are found from arbiters
+        self._sync.renews = self._sleep is None  # groups of sleeping bodies are found from arbiters
         saved, self._saved, self._ruled = self._saved, None, None
         if saved is not None and saved.resume(world, self.decisions):
             self._method: Method = saved.method

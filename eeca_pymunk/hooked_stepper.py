@@ -13,7 +13,6 @@ from .layout import LEFT
 from .packed_space import TOO_FAR, PackedSpace
 from .reentry import BUSY
 from .report import Details, StepReport
-from .space.hooks import Hooks
 from .space.rehearsal import Rehearsal
 from .space.world import World
 from .transfer import EVENTS, FORCES, MOVED_STATIC, OTHER_BODIES
@@ -55,8 +54,7 @@ class HookedStepper(PackedSpace):
         finally:
             BUSY.discard(self.space)
         if rehearsal is not None:
-            self._sync.note()
-            rehearsal.finish(world.movers)
+            self._sync.finish_rehearsal()
         elif self.sync or (world.joints is not None and world.joints.calling):
             self._sync.call_back()
         return report
@@ -112,7 +110,7 @@ class HookedStepper(PackedSpace):
                 status = status & EVENTS | world.whole()
             if forces:
                 world.reset_forces()
-            self._land_hooked(world, hooks, dt, status)
+            self._land_hooked(world, dt, status)
             if given:
                 # So that changes by functions after the step count as edits in the next one.
                 world.give_again()
@@ -121,7 +119,7 @@ class HookedStepper(PackedSpace):
             raise
         self.time += dt
         report = self._made(world, dt, status, book, lost)
-        self._tell_joints(world)
+        world.show_joints()
         return world, report, rehearsal
 
     def _awoken(self, world: World) -> World:
@@ -140,24 +138,27 @@ class HookedStepper(PackedSpace):
         now.hooks.late = world.hooks.late
         return now
 
-    def _land_hooked(self, world: World, hooks: Hooks, dt: float, status: int) -> None:
+    def _land_hooked(self, world: World, dt: float, status: int) -> None:
         """Write the end of a step to the space, and call `post_solve` of constraints."""
-        rehearses = world.collisions
         if world.joints is not None and world.joints.calling:
             world.scatter(status)
             world.joints.write()
-            hooks.after(dt)
-            if self.sync and not rehearses:
-                with hooks.silent():
-                    self._sync.settle(world.bodies, world.joints, dt, bool(status & EVENTS))
-        elif not self.sync or rehearses:
+            world.hooks.after(dt)
+            if self.sync and not world.collisions:
+                self._sync.follow(world, dt, status)
+        elif world.collisions:
             world.scatter(status)
-        elif self._sync.reindexes(dt, bool(status & EVENTS), world.joints):
-            world.scatter(status)
-            self._sync.reindex()
         else:
-            with hooks.silent():
-                self._sync.land(world, dt, status)
+            self.land(world, dt, status)
+
+    def land(self, world: World, dt: float, status: int) -> None:
+        """Write the end of a step to the space."""
+        if self.sync:
+            self._sync.land(world, dt, status)
+        else:
+            world.scatter(status)
+            if self._sync.stamp < 0:
+                self._sync.note()
 
     def _booked(self, dt: float) -> FloatArray | None:
         """The ledger entries of the step. NotFiniteError, before the space is changed, if the energy overflows though

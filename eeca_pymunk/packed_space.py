@@ -14,7 +14,6 @@ from .errors import NotFiniteError
 from .space.checks import check_ignored
 from .space.decisions import Decisions
 from .space.describe import describe
-from .space.joints import JointRows
 from .space.sleep_groups import put_to_sleep, rouse
 from .space.sleeping import Sleep
 from .space.sync import Sync
@@ -50,7 +49,6 @@ class PackedSpace(Stepper):
         self.ignore = check_ignored(ignore)
         self._warned = False
         self._world: World | None = None
-        self._told: JointRows | None = None  # source of `constraint.impulse`
         self._sync: Sync
         self._sleep: Sleep | None = None  # None if bodies cannot sleep
         self._idle_book: FloatArray | None = None  # ledger entries of a step in which all dynamic bodies sleep
@@ -62,7 +60,7 @@ class PackedSpace(Stepper):
         # The original is not changed. The copy reads its space again.
         state = self.__dict__.copy()
         state.pop("_sync", None)
-        state["_world"] = state["_sleep"] = state["_told"] = None
+        state["_world"] = state["_sleep"] = None
         state["decisions"] = Decisions()
         return state
 
@@ -163,11 +161,6 @@ class PackedSpace(Stepper):
         """Restore the states of the bodies."""
         self._world = None
         world.bodies.scatter(state)
-
-    def _tell_joints(self, world: World) -> None:
-        """Publish impulses of joints, and other results of the step for constraints."""
-        self._told = world.joints
-        world.settle()
 
     def _fail(self, world: World, dt: float, status: int) -> None:
         """Raise the exception of a negative status."""

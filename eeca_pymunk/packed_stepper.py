@@ -153,19 +153,7 @@ class PackedStepper(HookedStepper):
         self.time += dt
         report = self._made(world, dt, status, book)
         if not world.plain:
-            self._tell_joints(world)
+            world.show_joints()
         if self.sync:
             self._sync.call_back()
         return report
-
-    def land(self, world: World, dt: float, status: int) -> None:
-        """Write the end of a step to the space."""
-        if not self.sync:
-            world.scatter(status)
-            if self._sync.stamp < 0:
-                self._sync.note()
-        elif self._sync.reindexes(dt, bool(status & EVENTS), world.joints):
-            world.scatter(status)
-            self._sync.reindex()
-        else:
-            self._sync.land(world, dt, status)

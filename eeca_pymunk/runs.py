@@ -247,4 +247,4 @@ class RunningStepper(PackedStepper):
             world.reset_forces()
         self.land(world, dt, bits)
         if not world.plain:
-            self._tell_joints(world)
+            world.show_joints()

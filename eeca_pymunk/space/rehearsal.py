@@ -7,7 +7,7 @@ velocities) apply to the EECA step, which replaces the rehearsal.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from functools import cached_property
 from typing import Any
@@ -21,7 +21,7 @@ from ..layout import NOW
 from ..model.shapes import Shape
 from ..rehearsing import approach, changed
 from ..transfer import TURNS
-from . import private, private_joints, private_shapes
+from . import private, private_joints
 from .crossing import Crossing
 from .decisions import Decisions
 from .hooks import Hooks
@@ -220,12 +220,6 @@ class Rehearsal:
         rules = earlier.rules(self.space, places, SHAPE, smooth)
         self._ignores = bool(rules.ignored)
         return rules
-
-    def finish(self, movers: Iterable[Any]) -> None:
-        """The end of pymunk's step: move shapes to their bodies, `movers`; additions, removals, callbacks."""
-        private_shapes.reindex_anew(self.space, movers)
-        if private.waits(self.space):
-            private.finish_step(self.space)
 
 
 def _nothing(*arguments: Any) -> None:

@@ -14,13 +14,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
+from functools import partial
 from typing import TYPE_CHECKING
 
 import pymunk
 
 from ..reentry import BUSY
+from ..transfer import EVENTS
 from . import private, private_joints, private_rest, private_shapes, private_sleep
-from .bodies import ANGULAR_VELOCITY, VELOCITY, Bodies
+from .bodies import ANGULAR_VELOCITY, VELOCITY
 from .joints import JointRows
 from .private_joints import inert, move_on, silent, strengthen, weaken, with_laws
 
@@ -38,7 +40,7 @@ Choice = Callable[[Sequence[pymunk.Constraint]], list[pymunk.Constraint]]
 
 
 def rest_step(
-    space: pymunk.Space, dt: float, joints: JointRows | None = None, forget: bool = True, awake: Choice | None = None
+    space: pymunk.Space, dt: float, joints: JointRows | None = None, stored: bool = True, awake: Choice | None = None
 ) -> None:
     """Update pymunk's shapes by its own step, with all velocities 0, which moves nothing.
 
@@ -48,7 +50,7 @@ def rest_step(
 
     Args:
         joints: the constraints of the space, which call no functions meanwhile, and push with nothing where they would.
-        forget: whether pymunk remembers impulses of joints, which would push too.
+        stored: whether pymunk may have impulses of joints from earlier steps, which would push too.
         awake: where bodies sleep, which of constraints have no such body. A change of gravity would wake them: it
             stays, and leaves velocities, which are of no use.
     """
@@ -56,7 +58,7 @@ def rest_step(
     if joints is None:
         private_rest.rest(space, dt, asleep)
         return
-    push, calling = joints.items if forget else joints.pushing.now(), joints.calling
+    push, calling = joints.items if stored else joints.pushing.now(), joints.calling
     if awake is not None:  # a change of a joint would wake its bodies
         push, calling = awake(push), awake(calling) if calling else calling
     outside = joints.partners.motions()
@@ -87,7 +89,9 @@ class Sync:
     """Updates pymunk's shapes after each step, in one of the two ways.
 
     Attributes:
-        late: whether readers of arbiters call `renew`.
+        renews: whether readers of arbiters call `renew`.
+        waits: function that returns whether post-step callbacks, additions or removals wait for the end of a step.
+        stamp: pymunk's count of steps after the last EECA step, -1 before the first.
     """
 
     def __init__(self, world: World, past: Sync | None = None) -> None:
@@ -101,6 +105,7 @@ class Sync:
         self._shapes = int(world.shape_counts.sum())
         self._world = world
         self._timestamp: Callable[[], int] = private.timestamp(self.space)
+        self.waits = partial(private.waits, self.space)
         self._renewed, self._dt, self._left = -1, 0.0, 0
         self._touched = self._stale = self._asked = False
         if past is not None and not (self._asleep or past._asleep):
@@ -108,8 +113,8 @@ class Sync:
             self._touched, self._stale, self._asked = past._touched, past._stale, past._asked
         self._joints = world.joints
         self._new = True  # bodies and joints may have come from elsewhere, with what pymunk has left in them
-        self.late = False
-        self.stamp = -1  # pymunk's count of steps after our last one, -1 before the first
+        self.renews = False
+        self.stamp = -1
 
     def reindexes(self, dt: float, contacts: bool, joints: JointRows | None) -> bool:
         """Whether reindexing is enough for this step. Conditions:
@@ -123,7 +128,7 @@ class Sync:
         if asked or self._left == 0 or dt != self._dt or self._shapes > SOME:
             return False
         if contacts or self._touched:
-            if not self.late:
+            if not self.renews:
                 return False
         elif self._shapes > FEW and joints is None:
             return False
@@ -143,10 +148,6 @@ class Sync:
             with private_rest.stopped(self.space):
                 self.rest(self._dt, self._joints)
 
-    def waits(self) -> bool:
-        """Whether post-step callbacks wait for the end of a step."""
-        return private.waits(self.space)
-
     def call_back(self) -> None:
         """Do waiting additions and removals, and call post-step callbacks."""
         if self.waits():
@@ -156,25 +157,36 @@ class Sync:
         """Record that the steps pymunk has taken until now were part of EECA steps."""
         self.stamp = self._timestamp()
 
+    def finish_rehearsal(self) -> None:
+        """After a rehearsal, the end of pymunk's step: move shapes to their bodies, then `call_back`."""
+        self.stamp = self._timestamp()
+        private_shapes.reindex_anew(self.space, self._world.movers)
+        self.call_back()
+
     def is_ours(self) -> bool:
         """Whether pymunk has taken no step of its own since the last EECA step."""
         return self._timestamp() == self.stamp
 
     def rest(self, dt: float, joints: JointRows | None = None) -> None:
-        """Take a rest step; all bodies must have velocity 0, and may get velocities of round-off if there are
-        joints."""
+        """Take a rest step, without functions of bodies; all bodies must have velocity 0, and may get velocities of
+        round-off if there are joints."""
         native = self._new or self._timestamp() != self._renewed
         self._new = False
         if native:
             private_shapes.forget_corrections(self._world.movers)
         slept = self._asleep and self._sleep()
-        rest_step(self.space, dt, joints, native, self._choice(joints) if self._asleep else None)
+        how = self.space, dt, joints, native, self._choice(joints) if self._asleep else None
+        if self._called:
+            with self._world.hooks.silent():
+                rest_step(*how)
+        else:
+            rest_step(*how)
         if slept and not self._sleep():
             self._stop()  # what pymunk wakes gets a velocity by gravity
         self._renewed, self._dt, self._left = self._timestamp(), dt, _RENEW
         self.stamp = self._renewed
         self._stale = False
-        if not self.late and self._shapes <= FEW:
+        if not self.renews and self._shapes <= FEW:
             self._touched = bool(private.raw_arbiters(self.space))
 
     def _choice(self, joints: JointRows | None) -> Choice:
@@ -185,23 +197,29 @@ class Sync:
         return joints.pushing.awake
 
     def land(self, world: World, dt: float, status: int) -> None:
-        """Write the end of the step of a world, with a rest step between poses and velocities."""
+        """Write the end of the step of a world to the space, and update pymunk's shapes: by reindexing, or by a rest
+        step between poses and velocities."""
+        if self.reindexes(dt, bool(status & EVENTS), world.joints):
+            world.scatter(status)
+            self.reindex()
+            return
         if world.joints is not None or self._pulls:
             status = world.turning(status)  # joints change spins by round-off; gravity, where bodies sleep, by more
         world.scatter_still(status)
         self.rest(dt, world.joints)
         world.scatter_speed(status)
 
-    def settle(self, bodies: Bodies, joints: JointRows, dt: float, contacts: bool) -> None:
+    def follow(self, world: World, dt: float, status: int) -> None:
         """Update pymunk's shapes to the end of a step that is written already, and may have been changed by
         functions."""
-        if self.reindexes(dt, contacts, joints):
+        if self.reindexes(dt, bool(status & EVENTS), world.joints):
             self.reindex()
             return
+        bodies = world.bodies
         end = bodies.gather()
         assert end is not None  # additions and removals by functions still wait
         still = end.copy()
         still[:, VELOCITY], still[:, ANGULAR_VELOCITY] = 0.0, 0.0
         bodies.scatter(still, unchanged=True)
-        self.rest(dt, joints)
+        self.rest(dt, world.joints)
         bodies.scatter(end, unchanged=True)

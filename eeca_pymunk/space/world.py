@@ -177,8 +177,9 @@ class World(Crossing):
             self._take(0.0, 0.0, 1.0)
         return found
 
-    def settle(self) -> None:
-        """Publish results of the step for joints, and accept pymunk's rounding of positions as unedited."""
+    def show_joints(self) -> None:
+        """Show impulses and notches of the step to the program, and accept pymunk's rounding of positions as
+        unedited."""
         joints = self.joints
         if joints is not None:
             joints.write()
