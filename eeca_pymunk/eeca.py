@@ -110,7 +110,7 @@ class EECA(RunningStepper):
             self._method: Method = saved.method
             return
         sides = None if past is None or (loop := self.event_loop) is None else sides_of(past, loop)
-        world.load(again=world is past)
+        world.load(mobilities=world is past)
         self._method = self.closure.prepare(world)
         if self._patches and world.joints is None and isinstance(self._method, EventLoop):
             self._method.keep_fresh()
@@ -118,8 +118,8 @@ class EECA(RunningStepper):
             sides.recall(world, self._method)
         if world.joints is not None:
             world.joints.planned()
-            world.part()
-            self._method.rule(world.told())
+            world.find_parted()
+            self._method.rule(world.laws())
 
     @property
     def event_loop(self) -> EventLoop | None:
@@ -153,10 +153,10 @@ class EECA(RunningStepper):
                 if joints.replan:
                     self._method.plan()
                 joints.planned()
-            parted = world.part()
+            parted = world.find_parted()
         if parted or (world.collisions and world.rules is not self._ruled):
             self._ruled = world.rules
-            self._method.rule(world.told())
+            self._method.rule(world.laws())
         return True
 
     def advance(self, world: World, dt: float, half_damping: float) -> int:

@@ -62,11 +62,11 @@ class HookedStepper(PackedSpace):
     def _start_hooked(self, world: World) -> World:
         """Read the state of all bodies; returns their world, which may be new."""
         world.gather()
-        status = world.find()
+        status = world.check_start()
         if status in (OTHER_BODIES, MOVED_STATIC):
             world = self._look(anew=True)
             world.gather()
-            status = world.find()
+            status = world.check_start()
         if status < 0:
             world.bodies.check_finite(world.state)
         return world
@@ -85,15 +85,14 @@ class HookedStepper(PackedSpace):
                     hooks.before(dt)
                     world.gather()
             if len(hooks.velocity):
-                world.push(hooks.change(dt), dt)
+                world.push(hooks.velocity_changes(dt), dt)
             if world.collisions:
                 rehearsal = world.rehearsal
                 self._checked(world, dt, rehearsal.run(hooks, dt, world.gravity, half_damping))
                 if self._sleep is not None and self._sleep.woken():
                     world = self._awoken(world)
                     bodies, joints, hooks, rehearsal = world.bodies, world.joints, world.hooks, world.rehearsal
-                scene = world.places, world.SHAPE, world.smooth
-                world.rules = rehearsal.rules(world.rules, *scene, self.decisions)
+                world.rules = rehearsal.rules(self.decisions)
             status = self._checked(world, dt, self.advance(world, dt, half_damping))
             book = self._booked(dt)
             forces = status & FORCES or hooks.some or joints is not None
@@ -131,7 +130,7 @@ class HookedStepper(PackedSpace):
         world.bodies.scatter(world.state)
         now = self._look(anew=True)
         now.gather()
-        now.find()
+        now.check_start()
         rows = [world.bodies.row[body] for body in now.bodies.items]
         now.START[:], now.EXTRA[:], now.CHANGES[:] = world.START[rows], world.EXTRA[rows], world.CHANGES[:, rows]
         now.rehearsal.go_on(world.rehearsal)

@@ -14,7 +14,7 @@ from .errors import NotFiniteError
 from .space.checks import check_ignored
 from .space.decisions import Decisions
 from .space.describe import describe
-from .space.sleep_groups import put_to_sleep, rouse
+from .space.sleep_groups import put_to_sleep, wake_neighbours
 from .space.sleeping import Sleep
 from .space.sync import Sync
 from .space.world import World
@@ -117,10 +117,10 @@ class PackedSpace(Stepper):
                 return self._looked_at(world)
         past = world
         if self._sleep is not None:
-            self._sleep.part()
-            rouse(self.space)
+            self._sleep.wake_changed()
+            wake_neighbours(self.space)
         world = World(self.space, self.ignore, past)
-        if world.ignores and not self._warned:
+        if world.lacks_friction and not self._warned:
             self._warned = True
             warnings.warn(f"{type(self).__name__} steps on without the friction of this space", stacklevel=4)
         self.reads += 1
@@ -141,17 +141,19 @@ class PackedSpace(Stepper):
         """Wake all bodies."""
         if self._sleep is not None:
             self._sleep.wake()
-            rouse(self.space)
+            wake_neighbours(self.space)
 
-    def resting(self, bodies: Sequence[pymunk.Body]) -> tuple[FloatArray, IntArray, IntArray]:
+    def sleep_state(self, bodies: Sequence[pymunk.Body]) -> tuple[FloatArray, IntArray, IntArray]:
         """For how long bodies have been at rest (N,); index of another body of their sleeping group (N,), -1 for awake
-        bodies; the two timers of `space/sleeping.py`."""
+        bodies; (2,) the timers of `space/sleeping.py`."""
         if self._sleep is None:
             return np.zeros(len(bodies)), np.full(len(bodies), -1), np.zeros(2, np.int64)
-        return self._sleep.told(bodies)
+        return self._sleep.state(bodies)
 
-    def rest_again(self, bodies: Sequence[pymunk.Body], rested: FloatArray, groups: IntArray, timers: IntArray) -> None:
-        """Restore what `resting` returned, for bodies that are all awake."""
+    def recall_sleep(
+        self, bodies: Sequence[pymunk.Body], rested: FloatArray, groups: IntArray, timers: IntArray
+    ) -> None:
+        """Restore what `sleep_state` returned, for bodies that are all awake."""
         if self._sleep is not None:
             put_to_sleep(bodies, groups)
             self._look(anew=bool((groups >= 0).any()))

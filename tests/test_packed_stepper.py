@@ -287,7 +287,7 @@ def test_a_failure_leaves_the_space_as_it_was(when: str, monkeypatch: pytest.Mon
         list(space.bodies)[1].position_func = fail
         stepper.refresh()
     elif when == "rest step":
-        monkeypatch.setattr(private, "step_alone", fail)
+        monkeypatch.setattr(private, "step_without_end", fail)
     else:
         stepper.step(DT)
         push(space)

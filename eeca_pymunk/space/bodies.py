@@ -51,7 +51,7 @@ _MASSES, _FROM, _TO = struct.Struct("4d"), 32, 64  # mass, moment and their inve
 _FIXED = math.inf, math.inf, 0.0, 0.0
 
 
-def _told(body: pymunk.Body) -> bytes:
+def _values(body: pymunk.Body) -> bytes:
     """The values of a body, as the bytes of a `GivenBody`.
 
     Raises:
@@ -88,29 +88,29 @@ class Bodies:
     Masses, moments and kinds are read once; `gather` returns None if the space no longer has these bodies.
 
     Args:
-        space: a pymunk space.  fixed: whether bodies may sleep; sleeping ones then count as static.
+        space: a pymunk space.  sleeps: whether bodies may sleep; sleeping ones then count as static.
         before: the bodies before some were added or removed; their values are reused except for the `stale`.
 
     Attributes:
-        fixed: whether any may sleep.  items: the pymunk bodies, by row.  ids: (N,) pymunk's numbers of them.
+        items: the pymunk bodies, by row.  ids: (N,) pymunk's numbers of them.
         fresh: number of bodies whose values were read anew.
         start: (N, 9) their state when they were read.
         mass, moment: (N,) mass and M L²; infinite for static and kinematic bodies.
         inverse_mass: (N,) 1/mass, 0 for static and kinematic bodies.
-        dynamic: (N,) bool.  static: (N,) bool.  asleep: (N,) bool, none unless `fixed`.
+        dynamic: (N,) bool.  static: (N,) bool.  asleep: (N,) bool, none unless `sleeps`.
         center_of_gravity: (N, 2) length, in body coordinates.
     """
 
     def __init__(
-        self, space: pymunk.Space, fixed: bool = False, before: Bodies | None = None, stale: Collection[Any] = ()
+        self, space: pymunk.Space, sleeps: bool = False, before: Bodies | None = None, stale: Collection[Any] = ()
     ) -> None:
-        self.space, self.fixed = space, fixed
+        self.space = space
         self._buffer = batch.Buffer()
         ground = space.static_body  # exists in the space from its first access on
         self.ids, self.start = self._read()
         known: dict[int, tuple[pymunk.Body, bytes]] = {}
         if before is not None:
-            known = dict(zip(before.ids.tolist(), zip(before.items, before._told, strict=True), strict=True))
+            known = dict(zip(before.ids.tolist(), zip(before.items, before._values, strict=True), strict=True))
             old = before.row if stale else {}
             for row in [old[body] for body in stale if body in old]:
                 del known[int(before.ids[row])]
@@ -120,19 +120,19 @@ class Bodies:
         if missing:
             old = {} if before is None else before.row
             new = {b.id: b for b in (*space.bodies, ground) if b not in old or b in stale}
-            known.update((i, (new[i], _told(new[i]))) for i in missing)
+            known.update((i, (new[i], _values(new[i]))) for i in missing)
         found = [known[i] for i in ids]
         self.items: tuple[pymunk.Body, ...] = tuple([body for body, _ in found])
         self.row: dict[pymunk.Body, int] = dict(zip(self.items, range(len(ids)), strict=True))
-        self._told: list[bytes] = [told for _, told in found]
-        self.GIVEN: Rows[GivenBody] = from_bytes(GivenBody, self._told)
+        self._values: list[bytes] = [values for _, values in found]
+        self.GIVEN: Rows[GivenBody] = from_bytes(GivenBody, self._values)
         kind: IntArray = self.GIVEN["kind"]
         self.mass: FloatArray = self.GIVEN["mass"]
         self.moment: FloatArray = self.GIVEN["moment"]
         self.inverse_mass: FloatArray = self.GIVEN["inverse_mass"]
         self.inverse_moment: FloatArray = self.GIVEN["inverse_moment"]
         self.asleep: BoolArray = np.zeros(len(self.items), bool)
-        if fixed:
+        if sleeps:
             self.asleep[:] = private_sleep.sleeping(self.items)
             kind[self.asleep] = STATIC
             put(self.GIVEN, np.where(self.asleep[:, None], _FIXED, columns(self.GIVEN, *_OF_MASS)), *_OF_MASS)
@@ -144,8 +144,8 @@ class Bodies:
         self.dynamic: BoolArray = kind == DYNAMIC
         self.static: BoolArray = kind == STATIC
         # Functions of sleeping bodies are not called, as under pymunk.
-        self.velocity_hooks = _rows_of(self.GIVEN["steered"], self.asleep if fixed else None)
-        self.position_hooks = _rows_of(self.GIVEN["moved"], self.asleep if fixed else None)
+        self.velocity_hooks = _rows_of(self.GIVEN["steered"], self.asleep if sleeps else None)
+        self.position_hooks = _rows_of(self.GIVEN["moved"], self.asleep if sleeps else None)
         self.center_of_gravity: FloatArray = columns(self.GIVEN, "centre_x", "centre_y")
 
     def placed(self, state: FloatArray) -> Rows[GivenBody]:
@@ -155,14 +155,14 @@ class Bodies:
 
     def changed(self, row: int) -> tuple[bool, bool]:
         """Whether values of a body have changed, and whether others than mass and moment have."""
-        new, old = _told(self.items[row]), self._told[row]
+        new, old = _values(self.items[row]), self._values[row]
         return new != old, new[:_FROM] != old[:_FROM] or new[_TO:] != old[_TO:]
 
-    def weigh(self, rows: Sequence[int]) -> None:
+    def read_masses(self, rows: Sequence[int]) -> None:
         """Read masses and moments of these rows again; ValueError, and nothing changed, if they are invalid."""
-        for i, told in [(i, _told(self.items[i])) for i in rows]:
-            self._told[i] = told
-            masses = _MASSES.unpack_from(told, _FROM)
+        for i, values in [(i, _values(self.items[i])) for i in rows]:
+            self._values[i] = values
+            masses = _MASSES.unpack_from(values, _FROM)
             self.mass[i], self.moment[i], self.inverse_mass[i], self.inverse_moment[i] = masses
 
     @cached_property

@@ -35,7 +35,7 @@ from ..layout import (
     STILL,
 )  # fmt: skip
 from ..model.bodies import Body
-from ..rehearsing import altered, as_read, found
+from ..rehearsing import altered, as_read, check_start
 from ..transfer import FORCES, TURNS, lay, lay_rest
 from . import private_batch
 from .bodies import Bodies
@@ -105,13 +105,13 @@ class Crossing:
 
     @cached_property
     def START(self) -> FloatArray:
-        """(N, 9) the state at the start of a step that calls functions, copied by `find`."""
+        """(N, 9) the state at the start of a step that calls functions, copied by `check_start`."""
         return np.zeros((len(self.bodies), STATE_COLUMNS))
 
     @cached_property
-    def find(self) -> Callable[[], int]:
-        """See `rehearsing.found`."""
-        return found.bind(self.STATES, self.WALK, self.BODY, self.START)
+    def check_start(self) -> Callable[[], int]:
+        """See `rehearsing.check_start`."""
+        return check_start.bind(self.STATES, self.WALK, self.BODY, self.START)
 
     @cached_property
     def CHANGES(self) -> FloatArray:
@@ -135,10 +135,12 @@ class Crossing:
 
     def is_current(self) -> bool:
         """Whether `gather` has read these bodies, and no static one was moved."""
-        if not np.array_equal(self.WALK[FOUND], self.WALK[KNOWN]):
-            return False
+        return np.array_equal(self.WALK[FOUND], self.WALK[KNOWN]) and not self.moved_static()
+
+    def moved_static(self) -> bool:
+        """Whether a static one of these bodies was moved, as `gather` has read them."""
         still = self.bodies.static
-        return np.array_equal(self.STATES[NOW, still, :3], self.STATES[LEFT, still, :3])
+        return not np.array_equal(self.STATES[NOW, still, :3], self.STATES[LEFT, still, :3])
 
     @property
     def state(self) -> FloatArray:
@@ -188,12 +190,8 @@ class Crossing:
 
     def void_predictions(self) -> None:
         """Void all predictions: in the next step all bodies count as placed by the program, and may overlap others."""
-        np.minimum(self._due, ANEW, out=self._due)
-
-    @cached_property
-    def _due(self) -> FloatArray:
-        due: FloatArray = self.BODY["due"]
-        return due
+        due = self.BODY["due"]
+        np.minimum(due, ANEW, out=due)
 
     def scatter(self, status: int) -> None:
         """Write poses and velocities at the end of the step to the space, angles and spins if the bit TURNS is set."""

@@ -1,22 +1,23 @@
 """Decisions of collision handlers that outlast their step.
 
 pymunk keeps the arbiter of shapes that have parted for `collision_persistence` steps, and with it what handlers have
-decided; until then it holds for the pair. Where a program has gone back to an earlier state, arbiters of steps that
-were taken back say nothing, and what held then is remembered here.
+decided; until then it holds for the pair. After a return to an earlier state (`set_state`), arbiters of later steps do
+not count, and the decisions that held then are kept here.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pymunk
 
 from ..arrays import FloatArray
-from ..compiled.records import Rows
-from ..model.shapes import Shape
 from . import private, private_arbiters
 from .shapes import Law, Pair, Rules
+
+if TYPE_CHECKING:
+    from .world import World
 
 DECISION_COLUMNS = 7  # both shapes, as in `space.shapes`; -1 for no collision, or elasticity, ...; age in steps
 
@@ -24,37 +25,37 @@ _NONE = -1.0, 0.0, 0.0, 0.0  # the law of shapes that do not collide
 
 
 class Decisions:
-    """What handlers of a space have decided of pairs of shapes, as far as pymunk's arbiters do not say it.
+    """What handlers of a space have decided about pairs of shapes, beside what pymunk's arbiters have.
 
     Attributes:
-        since: number of pymunk's step up to which arbiters say nothing.
-        told: law of b relative to a, by shapes (a, b), and the number of the step in which they last touched.
+        since: number of pymunk's step up to which arbiters do not count.
+        laws: law of b relative to a, by shapes (a, b), and the number of the step in which they last touched.
     """
 
     def __init__(self) -> None:
         self.since = -1
-        self.told: dict[tuple[pymunk.Shape, pymunk.Shape], tuple[Law, int]] = {}
+        self.laws: dict[tuple[pymunk.Shape, pymunk.Shape], tuple[Law, int]] = {}
 
     def forget(self, space: pymunk.Space) -> None:
         """Forget earlier steps."""
-        self.since, self.told = private.timestamp(space)(), {}
+        self.since, self.laws = private.timestamp(space)(), {}
 
-    def rules(self, space: pymunk.Space, places: Mapping[pymunk.Shape, int], SHAPE: Rows[Shape], smooth: bool) -> Rules:
-        """What holds of pairs of shapes, which have these rows of SHAPE, after pymunk's step has called the handlers;
-        nothing of friction if `smooth`."""
+    def rules(self, world: World) -> Rules:
+        """What holds of pairs of shapes, after pymunk's step has called the handlers."""
+        space, places = world.space, world.places
         now, oldest = private.timestamp(space)(), self.since
         odd = [arbiter for arbiter in private.odd_arbiters(space) if private_arbiters.stamp(arbiter) > oldest]
-        rules = Rules.said(odd, places, SHAPE, smooth)
-        if not self.told:
+        rules = Rules.of_arbiters(odd, world)
+        if not self.laws:
             return rules
         anew = {frozenset(a.shapes) for a in private.arbiters(space) if private_arbiters.stamp(a) > oldest}
-        self.told = {
+        self.laws = {
             pair: (law, step)
-            for pair, (law, step) in self.told.items()
+            for pair, (law, step) in self.laws.items()
             if now - step < space.collision_persistence and frozenset(pair) not in anew
         }
         earlier: dict[Pair, Law] = {}
-        for (one, two), (law, _) in self.told.items():
+        for (one, two), (law, _) in self.laws.items():
             a, b = places.get(one, -1), places.get(two, -1)
             if min(a, b) >= 0:
                 earlier[min(a, b), max(a, b)] = law if a < b else (*law[:2], -law[2], -law[3])
@@ -62,19 +63,18 @@ class Decisions:
         changed = {pair: law for pair, law in earlier.items() if pair not in never}
         return Rules(rules.ignored | never, {**rules.changed, **changed})
 
-    def state(
-        self, space: pymunk.Space, places: Mapping[pymunk.Shape, int], SHAPE: Rows[Shape], smooth: bool
-    ) -> FloatArray:
+    def state(self, world: World) -> FloatArray:
         """(n, DECISION_COLUMNS) all that holds."""
+        space = world.space
         now, shapes = private.timestamp(space)(), list(space.shapes)
-        known: dict[tuple[pymunk.Shape, pymunk.Shape], tuple[Law, int]] = dict(self.told)
+        known: dict[tuple[pymunk.Shape, pymunk.Shape], tuple[Law, int]] = dict(self.laws)
         for arbiter in private.odd_arbiters(space):
             step = private_arbiters.stamp(arbiter)
             if step <= self.since:
                 continue
-            found = Rules.said([arbiter], places, SHAPE, smooth)
+            found = Rules.of_arbiters([arbiter], world)
             for a, b in (*found.ignored, *found.changed):
-                one, two = sorted(arbiter.shapes, key=places.__getitem__)
+                one, two = sorted(arbiter.shapes, key=world.places.__getitem__)
                 known[one, two] = found.changed.get((a, b), _NONE), step
         at = {shape: k for k, shape in enumerate(shapes)}
         rows = [(at[a], at[b], *law, now - step) for (a, b), (law, step) in known.items() if a in at and b in at]
@@ -87,7 +87,7 @@ class Decisions:
         shapes, never = list(space.shapes), set()
         for a, b, e, mu, x, y, age in rows.tolist():
             pair = shapes[int(a)], shapes[int(b)]
-            self.told[pair] = (e, mu, x, y), self.since - int(age)
+            self.laws[pair] = (e, mu, x, y), self.since - int(age)
             if e < 0.0 and age == 0.0:
                 never.add(frozenset(pair))
         for arbiter in private.arbiters(space) if never else ():

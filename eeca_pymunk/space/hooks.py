@@ -40,7 +40,7 @@ class Hooks:
         self.some = len(self.velocity) > 0 or len(self.position) > 0
         self.late: list[Callable[[], None]] = []
 
-    def alone(self) -> bool:
+    def none_within_steps(self) -> bool:
         """Whether steps of pymunk call no function of a body or constraint, and need not keep bodies outside the
         space."""
         joints = self.joints
@@ -75,11 +75,11 @@ class Hooks:
 
         return call
 
-    def change(self, dt: float) -> FloatArray:
+    def velocity_changes(self, dt: float) -> FloatArray:
         """(k, 3) changes of velocity and spin by the velocity functions; the bodies are restored."""
         items = [self.bodies.items[row] for row in self.velocity]
         with private_joints.time_step(self.space, dt):
-            found = private_functions.accelerations(items, self.space.gravity, self.space.damping**dt, dt)
+            found = private_functions.velocity_changes(items, self.space.gravity, self.space.damping**dt, dt)
         return np.array(found)
 
     def positions(self, state: FloatArray, end: FloatArray, dt: float) -> None:

@@ -23,7 +23,6 @@ from . import (
     private_sleep,
     private_versions,
 )
-from .private_versions import DEFAULTS as DEFAULTS
 from .private_versions import REQUIRED, bodies
 
 try:
@@ -142,7 +141,7 @@ def locked(space: pymunk.Space) -> Iterator[None]:
         space._locked = False
 
 
-def step_alone(space: pymunk.Space, dt: float) -> None:
+def step_without_end(space: pymunk.Space, dt: float) -> None:
     """pymunk's step without its end: additions, removals and callbacks wait for `finish_step`.
 
     No body falls asleep in it. Sleeping bodies that are touched wake; with an infinite threshold they would not, and

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import pymunk
 
@@ -13,6 +14,9 @@ from ..errors import UnsupportedFeature
 from ..model.shapes import Shape
 from . import private_shapes
 from .private_versions import processed
+
+if TYPE_CHECKING:
+    from .world import World
 
 _STRAIGHT = 1e-12  # of its coordinates: distance of a vertex from the line of its neighbours that is round-off
 _SAME = 1e-9  # relative difference of a surface velocity and pymunk's tangential part of it that is round-off
@@ -36,46 +40,39 @@ class Rules:
         return bool(self.ignored or self.changed)
 
     @classmethod
-    def said(
-        cls, arbiters: Iterable[pymunk.Arbiter], places: Mapping[pymunk.Shape, int], SHAPE: Rows[Shape], smooth: bool
-    ) -> Rules:
-        """What these arbiters say of pairs of shapes, which have these rows of SHAPE; nothing of friction if
-        `smooth`."""
+    def of_arbiters(cls, arbiters: Iterable[pymunk.Arbiter], world: World) -> Rules:
+        """Those that arbiters have."""
         ignored, changed = set(), {}
         for arbiter in arbiters:
-            a, b = (places.get(shape, -1) for shape in arbiter.shapes)
+            a, b = (world.places.get(shape, -1) for shape in arbiter.shapes)
             if min(a, b) < 0:
                 continue
             pair = (min(a, b), max(a, b))
             if not processed(arbiter):
                 ignored.add(pair)
                 continue
-            own = _law(SHAPE, *pair)
-            mu = 0.0 if smooth else arbiter.friction
-            told = (arbiter.restitution, mu, *_surface(arbiter, own[2:], a < b))
-            if told != own:
-                changed[pair] = told
+            own = _law(world.SHAPE, *pair)
+            mu = 0.0 if world.frictionless else arbiter.friction
+            law = (arbiter.restitution, mu, *_surface(arbiter, own[2:], a < b))
+            if law != own:
+                changed[pair] = law
         return cls(frozenset(ignored), changed)
 
     def of_pairs(self, SHAPE: Rows[Shape], parted: Iterable[Pair] = ()) -> dict[Pair, Law]:
         """The law by pair of rows of SHAPE, sorted: elasticity (-1: no collision), friction, surface velocity of b
         relative to a. `parted` pairs do not collide, for any handlers."""
-        told: dict[Pair, Law] = {}
         never = self.ignored.union(parted)
-        for pair in sorted(never.union(self.changed)):
-            told[pair] = (-1.0, 0.0, *_law(SHAPE, *pair)[2:]) if pair in never else self.changed[pair]
-        return told
+        return {
+            pair: (-1.0, 0.0, *_law(SHAPE, *pair)[2:]) if pair in never else self.changed[pair]
+            for pair in sorted(never.union(self.changed))
+        }
 
 
 def _law(SHAPE: Rows[Shape], a: int, b: int) -> Law:
     """The law of two shapes: pymunk's products, and b's surface velocity relative to a's."""
     e, mu = (float(SHAPE[k][a] * SHAPE[k][b]) for k in ("elasticity", "friction"))
-    return (
-        e,
-        mu,
-        float(SHAPE["surface_x"][b] - SHAPE["surface_x"][a]),
-        float(SHAPE["surface_y"][b] - SHAPE["surface_y"][a]),
-    )
+    x, y = (float(SHAPE[k][b] - SHAPE[k][a]) for k in ("surface_x", "surface_y"))
+    return e, mu, x, y
 
 
 def _surface(arbiter: pymunk.Arbiter, own: tuple[float, float], ordered: bool) -> tuple[float, float]:

@@ -62,7 +62,7 @@ def put_to_sleep(bodies: Sequence[pymunk.Body], groups: IntArray) -> None:
             leaders[group] = body
 
 
-def rouse(space: pymunk.Space) -> None:
+def wake_neighbours(space: pymunk.Space) -> None:
     """Wake bodies that are jointed to an awake body, or touch one according to pymunk."""
     if not any(private_sleep.sleeping(space.bodies)):
         return

@@ -31,7 +31,7 @@ from ..layout import BODY_ROW, FOUND, KNOWN
 from ..model.contacts import Impulse
 from ..report import Contacts
 from . import private, private_shapes, private_sleep
-from .noticed import leader
+from .edits import leader
 from .sleep_groups import resting_groups
 
 if TYPE_CHECKING:
@@ -65,7 +65,7 @@ class Sleep:
             else []
         )
         self._timestamp = private.timestamp(self.space)
-        self._left = self._timestamp()
+        self._stamp = self._timestamp()
         self._wait, self._since = 0, _PATIENCE
         self._rested: FloatArray = np.zeros(len(bodies))  # seconds
         if past is not None:
@@ -87,7 +87,7 @@ class Sleep:
 
     def changed(self) -> bool:
         """Whether other bodies may sleep now than when this was made, or pymunk has taken a step."""
-        return self._timestamp() != self._left or self.woken()
+        return self._timestamp() != self._stamp or self.woken()
 
     def woken(self) -> bool:
         """Whether one of the bodies wakes that slept when this was made."""
@@ -103,11 +103,11 @@ class Sleep:
         which is undone."""
         if self._steps > 0 or dt != self._dt:
             self._steps, self._dt = self._steps - 1, dt
-            private.step_alone(self.space, dt)
+            private.step_without_end(self.space, dt)
             if self.woken():
                 private_sleep.stop_woken(self._sleepers)()
                 private_shapes.forget_corrections(private.pointers(self._sleepers))
-            self._left = self._timestamp()
+            self._stamp = self._timestamp()
 
     def wake(self, bodies: Iterable[pymunk.Body] | None = None) -> None:
         """Wake these bodies and their groups; all bodies if None."""
@@ -135,7 +135,7 @@ class Sleep:
         pull = math.hypot(*world.gravity) + math.hypot(fx, fy) * bodies.inverse_mass[i]
         reach = self._size[i] + float(np.hypot(*bodies.center_of_gravity[i]))
         reach += dt * (math.hypot(vx, vy) + dt * pull)
-        # A step says so if this is not finite.
+        # Not finite: the step raises.
         return pymunk.BB(x - reach, y - reach, x + reach, y + reach) if math.isfinite(x + y + reach) else None
 
     def _left_alone(self, groups: list[list[pymunk.Body]], dt: float) -> list[list[pymunk.Body]]:
@@ -170,7 +170,7 @@ class Sleep:
         boxes = [(b.left, b.bottom, b.right, b.top) for body in self._sleepers for b in (s.bb for s in body.shapes)]
         return np.array(boxes, float).reshape(-1, 4)
 
-    def told(self, bodies: Sequence[pymunk.Body]) -> tuple[FloatArray, IntArray, IntArray]:
+    def state(self, bodies: Sequence[pymunk.Body]) -> tuple[FloatArray, IntArray, IntArray]:
         """Times at rest (N,), index of another body of the sleeping group (N,), -1 for awake bodies, timers (2,)."""
         place = {body: i for i, body in enumerate(bodies)}
         groups = [place.get(leader(body), i) if body.is_sleeping else -1 for i, body in enumerate(bodies)]
@@ -182,7 +182,7 @@ class Sleep:
         self._rested[:] = [rested[body] for body in self.world.bodies.items]
         self._wait, self._since = timers.tolist()
 
-    def part(self) -> None:
+    def wake_changed(self) -> None:
         """Wake bodies near removed shapes; wake all if static bodies were moved or shapes edited."""
         if not self.some:
             return
@@ -191,8 +191,8 @@ class Sleep:
                 room = 1e-3 * (shape.bb.right - shape.bb.left + shape.bb.top - shape.bb.bottom)
                 low, high = (shape.bb.left - room, shape.bb.bottom - room), (shape.bb.right + room, shape.bb.top + room)
                 self._wake_within(pymunk.BB(*low, *high))
-        moved = np.array_equal(self.world.WALK[FOUND], self.world.WALK[KNOWN]) and not self.world.is_current()
-        if moved or self.world.edited():
+        same_bodies = np.array_equal(self.world.WALK[FOUND], self.world.WALK[KNOWN])
+        if (same_bodies and self.world.moved_static()) or self.world.edited():
             self.wake()
 
     def _wake_within(self, box: pymunk.BB) -> bool:
@@ -214,7 +214,7 @@ class Sleep:
 
     def rest(self, dt: float) -> bool:
         """Update the times at rest after a step; returns whether any body may fall asleep."""
-        self._left = self._timestamp()
+        self._stamp = self._timestamp()
         # Sums of dt fall short of the threshold by round-off.
         need = self.space.sleep_time_threshold * (1.0 - 1e-9)
         tired = self._rests(AT_REST * math.hypot(*self.world.gravity) * dt, dt, need)

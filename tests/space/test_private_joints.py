@@ -179,8 +179,8 @@ def test_while_locked_nothing_comes_or_goes() -> None:
 def test_a_function_that_is_pymunks_again_is_forgotten(name: str) -> None:
     body = pymunk.Body(1.0, math.inf)
     read = private.velocity_function if name == "velocity_func" else private.position_function
-    setattr(body, f"_{name}", private.DEFAULTS[name])  # as pymunk before 7.3 leaves it
-    private_versions.forget_function(body, name, private.DEFAULTS[name])
+    setattr(body, f"_{name}", private_versions.DEFAULTS[name])  # as pymunk before 7.3 leaves it
+    private_versions.forget_function(body, name, private_versions.DEFAULTS[name])
     assert read(body) is None
 
     def own(*_: object) -> None: ...
