@@ -31,7 +31,7 @@ from .program_scenes import PROGRAMS
 # What each part of a step is, by the methods in which it is spent; a part has not what parts within it have.
 PARTS: dict[str, tuple[tuple[type, str], ...]] = {
     "kernel": ((EventLoop, "step"),),
-    "re-reads": ((PackedSpace, "_look"),),
+    "re-reads": ((PackedSpace, "_update_world"),),
     "sync": ((Sync, "land"), (Sync, "reindex"), (Sync, "settle"), (Sync, "call_back")),
     "handlers": (
         (Rehearsal, "run"), (Rehearsal, "rules"), (Rehearsal, "finish"), (Hooks, "change"), (Hooks, "before"),

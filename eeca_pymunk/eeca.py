@@ -16,7 +16,7 @@ from .report import Details
 from .runs import RunningStepper
 from .saved import Saved, sides_of
 from .space.arbiters import Touches, show_contacts, touches
-from .space.shapes import Rules
+from .space.decisions import Rules
 from .space.world import World
 from .transfer import OTHER_BODIES
 from .unmet import Unmet, of_missed
@@ -143,7 +143,7 @@ class EECA(RunningStepper):
             if not joints.idle():
                 BUSY.add(self.space)  # springs have functions
                 try:
-                    joints.look(world.state, world.bodies.row, dt)
+                    joints.update(world.state, world.bodies.row, dt)
                 finally:
                     BUSY.discard(self.space)
             if joints.replan or joints.ends_moved:

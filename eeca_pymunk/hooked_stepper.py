@@ -64,7 +64,7 @@ class HookedStepper(PackedSpace):
         world.gather()
         status = world.check_start()
         if status in (OTHER_BODIES, MOVED_STATIC):
-            world = self._look(anew=True)
+            world = self._update_world(anew=True)
             world.gather()
             status = world.check_start()
         if status < 0:
@@ -85,7 +85,7 @@ class HookedStepper(PackedSpace):
                     hooks.before(dt)
                     world.gather()
             if len(hooks.velocity):
-                world.push(hooks.velocity_changes(dt), dt)
+                world.set_accelerations(hooks.velocity_changes(dt), dt)
             if world.collisions:
                 rehearsal = world.rehearsal
                 self._checked(world, dt, rehearsal.run(hooks, dt, world.gravity, half_damping))
@@ -98,26 +98,26 @@ class HookedStepper(PackedSpace):
             forces = status & FORCES or hooks.some or joints is not None
             if world.damping == 0.0 or len(hooks.position) or (rehearsal is not None and rehearsal.after):
                 given = forces = True
-                bits, lost = world.alter(world.damping == 0.0)
+                bits, lost = world.alter_end(world.damping == 0.0)
                 self._checked(world, dt, bits)
                 if len(hooks.position):
                     hooks.positions(world.state, world.STATES[LEFT], dt)
                     bodies.check_finite(world.ended(), TOO_FAR)
-                    bits = world.whole()
+                    bits = world.write_whole()
                 status = status & EVENTS | bits
             else:
-                status = status & EVENTS | world.whole()
+                status = status & EVENTS | world.write_whole()
             if forces:
                 world.reset_forces()
             self._land_hooked(world, dt, status)
             if given:
                 # So that changes by functions after the step count as edits in the next one.
-                world.give_again()
+                world.keep_unaltered()
         except BaseException:
             self._undo(world, world.START)
             raise
         self.time += dt
-        report = self._made(world, dt, status, book, lost)
+        report = self._make_report(world, dt, status, book, lost)
         world.show_joints()
         return world, report, rehearsal
 
@@ -128,7 +128,7 @@ class HookedStepper(PackedSpace):
             if slept and not body.is_sleeping:
                 body.velocity, body.angular_velocity = (0.0, 0.0), 0.0
         world.bodies.scatter(world.state)
-        now = self._look(anew=True)
+        now = self._update_world(anew=True)
         now.gather()
         now.check_start()
         rows = [world.bodies.row[body] for body in now.bodies.items]
@@ -144,7 +144,7 @@ class HookedStepper(PackedSpace):
             world.joints.write()
             world.hooks.after(dt)
             if self.sync and not world.collisions:
-                self._sync.follow(world, dt, status)
+                self._sync.follow(dt, status)
         elif world.collisions:
             world.scatter(status)
         else:
@@ -153,7 +153,7 @@ class HookedStepper(PackedSpace):
     def land(self, world: World, dt: float, status: int) -> None:
         """Write the end of a step to the space."""
         if self.sync:
-            self._sync.land(world, dt, status)
+            self._sync.land(dt, status)
         else:
             world.scatter(status)
             if self._sync.stamp < 0:
@@ -173,7 +173,9 @@ class HookedStepper(PackedSpace):
             self._fail(world, dt, status)
         return status
 
-    def _made(self, world: World, dt: float, status: int, book: FloatArray | None, lost: float = 0.0) -> StepReport:
+    def _make_report(
+        self, world: World, dt: float, status: int, book: FloatArray | None, lost: float = 0.0
+    ) -> StepReport:
         """The report of the step with these ledger entries; `lost`: energy taken by damping 0 at the end."""
         if lost and book is not None:
             book[DAMPED] += lost

@@ -54,7 +54,7 @@ class PackedSpace(Stepper):
         self._idle_book: FloatArray | None = None  # ledger entries of a step in which all dynamic bodies sleep
         self.reads = self.patches = self.objects_read = 0
         self.decisions = Decisions()
-        self._look()
+        self._update_world()
 
     def __getstate__(self) -> dict[str, object]:
         # The original is not changed. The copy reads its space again.
@@ -90,10 +90,10 @@ class PackedSpace(Stepper):
     def model(self) -> str:
         world = self._world
         if world is None or not world.current():
-            world = self._look()
+            world = self._update_world()
         return describe(world)
 
-    def _look(self, anew: bool = False) -> World:
+    def _update_world(self, anew: bool = False) -> World:
         """The present space as a checked World: the last one if only settings changed, that one patched, or a new
         reading (always if `anew`)."""
         world = self._world
@@ -110,11 +110,11 @@ class PackedSpace(Stepper):
             if world.joints is not joints:
                 self.prepare(world, world)
                 self.patches += 1
-            return self._looked_at(world)
+            return self._adopt(world)
         if world is not None and same and self._sleep is None and self.space.sleep_time_threshold == math.inf:
             if self.patch(world):
                 self.patches += 1
-                return self._looked_at(world)
+                return self._adopt(world)
         past = world
         if self._sleep is not None:
             self._sleep.wake_changed()
@@ -129,9 +129,9 @@ class PackedSpace(Stepper):
         self.prepare(world, past)
         if self._sleep is not None and (book := self.book()) is not None:
             self._idle_book = np.zeros_like(book)
-        return self._looked_at(world)
+        return self._adopt(world)
 
-    def _looked_at(self, world: World) -> World:
+    def _adopt(self, world: World) -> World:
         """Take a world that is current."""
         self.objects_read, world.objects_read = self.objects_read + world.objects_read, 0
         self._world = world
@@ -156,7 +156,7 @@ class PackedSpace(Stepper):
         """Restore what `sleep_state` returned, for bodies that are all awake."""
         if self._sleep is not None:
             put_to_sleep(bodies, groups)
-            self._look(anew=bool((groups >= 0).any()))
+            self._update_world(anew=bool((groups >= 0).any()))
             self._sleep.recall(dict(zip(bodies, rested.tolist(), strict=True)), timers)
 
     def _undo(self, world: World, state: FloatArray) -> None:

@@ -73,10 +73,10 @@ class RunningStepper(PackedStepper):
         """The arrays of the present space, with the states of its bodies."""
         world = self._world
         if world is None or not world.current():
-            world = self._look()
+            world = self._update_world()
         world.gather()
         if not world.is_current():
-            world = self._look(anew=True)
+            world = self._update_world(anew=True)
             world.gather()
         return world
 
@@ -97,7 +97,7 @@ class RunningStepper(PackedStepper):
         """Whether functions have to be called within the next step."""
         world = self._world
         if world is None or not world.current():
-            world = self._look()
+            world = self._update_world()
         joints = world.joints
         functions = joints is not None and (joints.calls_back() or bool(joints.functions))
         return world.hooked or functions or (self.sync and self._sync.waits())

@@ -45,14 +45,12 @@ class PenaltyStepper(PackedStepper):
         return self._disks.step(world.STATES, world.WALK, world.EXTRA, world.ENDS, dt, gx, gy, left, self._move)
 
     def details(self, world: World, dt: float) -> Details:
-        motion = self._disks.motion
-        assert motion is not None
-        assert motion.details is not None
-        return motion.details
+        assert self._disks.motion.details is not None
+        return self._disks.motion.details
 
     def outcome(self) -> tuple[float, bool, int]:
         motion = self._disks.motion
-        return (1.0, True, 0) if motion is None else (1.0, motion.converged, motion.iterations)
+        return motion.lock, motion.converged, motion.iterations
 
     def _move(self, start: Start) -> Motion:
         velocity = start.free_velocity
@@ -150,7 +148,7 @@ class PenaltyEnergyMomentum(PenaltyStepper):
     """
 
     def load(self, springs: Springs) -> tuple[FloatArray, int, bool]:
-        dt, K, m_inv = springs.dt, self.stiffness, springs.inverse_mass[:, None]
+        dt, K = springs.dt, self.stiffness
         g_n = springs.before.gap
         lam = np.zeros(len(g_n))
         for iteration in range(1, self.max_iterations + 1):
@@ -166,7 +164,7 @@ class PenaltyEnergyMomentum(PenaltyStepper):
             q_on = q[loaded] - 2.0 * force[loaded] / (dt * stiff)
             new = springs.solve(A, loaded, q_on, 2.0 / (dt * dt * stiff), lam[loaded])
             change, lam = np.max(np.abs(new - lam)), new
-            velocity = springs.start_velocity + dt * springs.acceleration + A.impulse(lam) * m_inv
+            velocity = springs.start_velocity + dt * springs.acceleration + A.change(lam)
             springs.move(0.5 * dt * (springs.start_velocity + velocity), velocity)
             if change <= self.tolerance * np.max(lam):
                 return lam, iteration, True

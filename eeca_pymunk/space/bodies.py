@@ -16,6 +16,7 @@ from pymunk import batch
 from ..arrays import BoolArray, FloatArray, IntArray, rotated
 from ..compiled.records import Rows, columns, from_bytes, put
 from ..errors import NotFiniteError
+from ..layout import STATE_COLUMNS
 from ..model.bodies import POSE
 from ..model.given import DYNAMIC, KINEMATIC, STATIC, GivenBody
 from . import private, private_sleep
@@ -23,11 +24,10 @@ from . import private, private_sleep
 _KIND = {pymunk.Body.DYNAMIC: DYNAMIC, pymunk.Body.KINEMATIC: KINEMATIC, pymunk.Body.STATIC: STATIC}
 _FIELDS = batch.BodyFields
 _STATE = _FIELDS.POSITION | _FIELDS.ANGLE | _FIELDS.VELOCITY | _FIELDS.ANGULAR_VELOCITY | _FIELDS.FORCE | _FIELDS.TORQUE
-_WITH_IDS = _FIELDS.BODY_ID | _STATE
+STATE_FIELDS = _FIELDS.BODY_ID | _STATE
 # Columns of one row of the state, in the order pymunk.batch writes them.
 POSITION, ANGLE, VELOCITY = slice(0, 2), 2, slice(3, 5)
 ANGULAR_VELOCITY, FORCE, TORQUE = 5, slice(6, 8), 8
-COLUMNS = 9
 COLUMN_NAMES = (
     "position.x",
     "position.y",
@@ -71,21 +71,13 @@ def _values(body: pymunk.Body) -> bytes:
     return _GIVEN.pack(kind, 0, *hooks, *masses, *body.center_of_gravity, 0.0, 0.0, 0.0, -1, 0)
 
 
-def _rows_of(flag: IntArray, asleep: BoolArray | None) -> IntArray:
-    """The rows of the bodies awake that have this flag."""
-    if not flag.any():
-        return _NONE
-    return np.flatnonzero(flag if asleep is None else flag * ~asleep)
-
-
-_NONE: IntArray = np.zeros(0, np.intp)
 _OF_MASS = "mass", "moment", "inverse_mass", "inverse_moment"
 
 
 class Bodies:
     """The bodies of one space, one row each, in the order of `pymunk.batch`.
 
-    Masses, moments and kinds are read once; `gather` returns None if the space no longer has these bodies.
+    Masses, moments and kinds are read once.
 
     Args:
         space: a pymunk space.  sleeps: whether bodies may sleep; sleeping ones then count as static.
@@ -144,8 +136,8 @@ class Bodies:
         self.dynamic: BoolArray = kind == DYNAMIC
         self.static: BoolArray = kind == STATIC
         # Functions of sleeping bodies are not called, as under pymunk.
-        self.velocity_hooks = _rows_of(self.GIVEN["steered"], self.asleep if sleeps else None)
-        self.position_hooks = _rows_of(self.GIVEN["moved"], self.asleep if sleeps else None)
+        self.velocity_hooks: IntArray = np.flatnonzero(self.GIVEN["steered"] * ~self.asleep)
+        self.position_hooks: IntArray = np.flatnonzero(self.GIVEN["moved"] * ~self.asleep)
         self.center_of_gravity: FloatArray = columns(self.GIVEN, "centre_x", "centre_y")
 
     def placed(self, state: FloatArray) -> Rows[GivenBody]:
@@ -182,9 +174,9 @@ class Bodies:
     def _read(self) -> tuple[npt.NDArray[np.uintp], FloatArray]:
         """(N,) ids and (N, 9) state now."""
         self._buffer.clear()
-        batch.get_space_bodies(self.space, _WITH_IDS, self._buffer)
+        batch.get_space_bodies(self.space, STATE_FIELDS, self._buffer)
         ids: npt.NDArray[np.uintp] = np.frombuffer(self._buffer.int_buf(), dtype=np.uintp).copy()
-        return ids, np.frombuffer(self._buffer.float_buf()).reshape(-1, COLUMNS).copy()
+        return ids, np.frombuffer(self._buffer.float_buf()).reshape(-1, STATE_COLUMNS).copy()
 
     def gather(self) -> FloatArray | None:
         """The (N, 9) state now: position, angle, velocity, angular velocity, force, torque (see COLUMN_NAMES).

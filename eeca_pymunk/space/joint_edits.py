@@ -40,7 +40,7 @@ class Edits:
         """Remove a row: the last setting was not an edit by the program."""
         self.some.discard(int(row))
 
-    def hear(self, constraint: pymunk.Constraint) -> None:
+    def record(self, constraint: pymunk.Constraint) -> None:
         """Record that an attribute of a constraint was set."""
         row = self._row.get(constraint)
         if row is not None:
@@ -50,4 +50,4 @@ class Edits:
 def _set(self: pymunk.Constraint, name: str, value: Any) -> None:
     _native_setattr(self, name, value)
     for edits in _watching:
-        edits.hear(self)
+        edits.record(self)

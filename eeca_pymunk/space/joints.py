@@ -152,10 +152,10 @@ class JointRows(Listing):
         return len(self._edits.some) > 0
 
     def idle(self) -> bool:
-        """Whether `look` has nothing to do."""
+        """Whether `update` has nothing to do."""
         return not (self._edits.some or self.functions or self.partners.outside)
 
-    def look(self, state: FloatArray, place: Mapping[pymunk.Body, int], dt: float) -> None:
+    def update(self, state: FloatArray, place: Mapping[pymunk.Body, int], dt: float) -> None:
         """Update what the step needs: edited constraints, poses of partners, laws of springs with functions.
 
         Args:

@@ -23,7 +23,7 @@ from ..model.shapes import Link, Shape
 from . import private_shapes
 from .bodies import Bodies
 from .checks import check_shape, shape_body
-from .shapes import local_outline
+from .outlines import local_outline
 
 _WORD = (1 << 64) - 1  # the lowest 64 bits of a filter's numbers, which equality and `&` need
 _GIVEN = struct.Struct("2q3Q5dq")

@@ -77,7 +77,7 @@ class Partners:
         return known[:6]  # type: ignore[return-value]
 
     def motions(self) -> list[Any]:
-        """The velocities of the bodies outside the space, for `private_joints.move_on` after a step of pymunk:
+        """The velocities of the bodies outside the space, for `private_joints.restore_motions` after a step of pymunk:
         constraints change them there though pymunk does not move these bodies, to nan if neither body of a constraint
         has mobility."""
         return private_joints.motions([self.items[i] for i in self.outside])

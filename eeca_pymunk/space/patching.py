@@ -31,11 +31,11 @@ class Patched(NamedTuple):
 
 
 def patch(world: World) -> Patched | None:
-    """Put all edits since the world was read into its rows, and have these be as if no step had been taken. Shapes have
-    neither come nor gone.
+    """Write all edits since the world was read into its rows, as if no step had been taken. No shapes were added or
+    removed.
 
     Returns:
-        what was changed; None where a new reading is due: then the world is of no use but as what was before.
+        what was changed; None if a new reading is due: the rows are then invalid.
 
     Raises:
         ValueError, UnsupportedFeature, NotFiniteError: as a new reading would.

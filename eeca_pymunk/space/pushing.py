@@ -26,8 +26,8 @@ class Pushing:
         self._items, self._joint, self._always, self._asleep = items, joint, always, asleep
         self._touched = b""
         self._now: list[pymunk.Constraint] = []
-        self._asked: Sequence[pymunk.Constraint] = ()
-        self._answer: list[pymunk.Constraint] = []
+        self._last: Sequence[pymunk.Constraint] = ()
+        self._awake: list[pymunk.Constraint] = []
 
     def now(self) -> list[pymunk.Constraint]:
         """The constraints that push: those that always do, and joints that are or may be apart."""
@@ -40,6 +40,6 @@ class Pushing:
 
     def awake(self, items: Sequence[pymunk.Constraint]) -> list[pymunk.Constraint]:
         """Those of constraints that have no sleeping body; `items` must stay as it is."""
-        if items is not self._asked:
-            self._asked, self._answer = items, [item for item in items if item not in self._asleep]
-        return self._answer
+        if items is not self._last:
+            self._last, self._awake = items, [item for item in items if item not in self._asleep]
+        return self._awake

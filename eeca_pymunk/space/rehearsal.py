@@ -19,11 +19,10 @@ from ..layout import NOW
 from ..rehearsing import approach, changed
 from ..transfer import TURNS
 from . import private, private_joints
-from .decisions import Decisions
+from .decisions import Decisions, Rules
 from .hooks import Hooks
 from .joints import JointRows
 from .private_versions import answer
-from .shapes import Rules
 
 if TYPE_CHECKING:
     from .world import World
@@ -179,7 +178,7 @@ class Rehearsal:
         mute = [item for item in joints.calling if item.pre_solve is None or item.a.space is None]
         with ExitStack() as held:
             if joints.partners.outside:
-                held.callback(private_joints.move_on, joints.partners.motions())
+                held.callback(private_joints.restore_motions, joints.partners.motions())
             if mute:
                 held.enter_context(private_joints.silent(mute))
             if joints.own:

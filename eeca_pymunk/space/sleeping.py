@@ -38,8 +38,9 @@ if TYPE_CHECKING:
     from .world import World
 
 AT_REST = 1e-6  # tolerance above; `..model.bodies.AT_REST` is a state
-_AGAIN = 16  # steps after which islands that could not fall asleep are looked at again
-_SHARE, _PATIENCE = 8, 120  # islands fall asleep that are this part of who is awake, or after so many steps
+_AGAIN = 16  # steps from one search for groups that may fall asleep to the next
+# Groups fall asleep at once if they are at least 1/_SHARE of the bodies awake, others after _PATIENCE steps.
+_SHARE, _PATIENCE = 8, 120
 
 
 class Sleep:
@@ -75,10 +76,10 @@ class Sleep:
                 if body in before and not past.world.bodies.asleep[before[body]]:
                     self._rested[i] = past._rested[before[body]]
         self._steps, self._dt = self.space.collision_persistence + 2, 0.0
-        self._tired: IntArray = np.zeros(len(bodies), np.int64)
+        self._ready: IntArray = np.zeros(len(bodies), np.int64)
         row = world.WALK[BODY_ROW]
         self._size: FloatArray = np.where(row >= 0, world.BODY["extent"][row], 0.0)
-        self._rests = rests.bind(world.STATES, world.WALK, world.BODY, self._size, self._rested, self._tired)
+        self._rests = rests.bind(world.STATES, world.WALK, world.BODY, self._size, self._rested, self._ready)
         self._still = bodies.asleep.astype(np.int64), bodies.static.astype(np.int64)
         # Bodies that something other than the solver moves: all, if functions are called; else kinematic ones.
         movers: tuple[BoolArray, BoolArray] = ~bodies.static, ~bodies.static & ~bodies.dynamic
@@ -114,7 +115,7 @@ class Sleep:
         for body in self._sleepers if bodies is None else bodies:
             body.activate()
 
-    def meet(self, dt: float) -> bool:
+    def wake_ahead(self, dt: float) -> bool:
         """Wake the sleeping bodies that a kinematic body may meet in the step; if functions are called, which cannot be
         repeated, those that any body may meet. Returns whether there was any."""
         world, found = self.world, False
@@ -139,7 +140,7 @@ class Sleep:
         return pymunk.BB(x - reach, y - reach, x + reach, y + reach) if math.isfinite(x + y + reach) else None
 
     def _left_alone(self, groups: list[list[pymunk.Body]], dt: float) -> list[list[pymunk.Body]]:
-        """Those of groups that would not be woken at once if they slept, see `meet`."""
+        """Those of groups that would not be woken at once if they slept, see `wake_ahead`."""
         row, moves = self.world.bodies.row, self._moves[self.world.plain].tolist()
         if moves:
             self.world.gather()
@@ -217,17 +218,17 @@ class Sleep:
         self._stamp = self._timestamp()
         # Sums of dt fall short of the threshold by round-off.
         need = self.space.sleep_time_threshold * (1.0 - 1e-9)
-        tired = self._rests(AT_REST * math.hypot(*self.world.gravity) * dt, dt, need)
+        ready = self._rests(AT_REST * math.hypot(*self.world.gravity) * dt, dt, need)
         self._wait = max(self._wait - 1, 0)
         self._since += 1
-        return self._wait == 0 and tired == 1
+        return self._wait == 0 and ready == 1
 
     def fall_asleep(self, contacts: Contacts, dt: float) -> None:
         """Put groups to sleep all of whose bodies have been at rest for long enough, unless something would wake them
         in a step of length dt."""
         bodies = self.world.bodies
         self._wait = _AGAIN
-        islands = self._left_alone(resting_groups(self.space, bodies, self._tired != 0, contacts), dt)
+        islands = self._left_alone(resting_groups(self.space, bodies, self._ready != 0, contacts), dt)
         # Putting bodies to sleep reads the world again and loses contact forces, so small groups wait.
         falling = sum(map(len, islands))
         if falling * _SHARE < np.count_nonzero(bodies.dynamic) and self._since < _PATIENCE:

@@ -24,7 +24,7 @@ from ..transfer import EVENTS
 from . import private, private_joints, private_rest, private_shapes, private_sleep
 from .bodies import ANGULAR_VELOCITY, VELOCITY
 from .joints import JointRows
-from .private_joints import inert, move_on, silent, strengthen, weaken, with_laws
+from .private_joints import restore_motions, silent, strengthen, weaken, with_laws
 
 if TYPE_CHECKING:
     from .world import World
@@ -49,10 +49,10 @@ def rest_step(
     ones may end with velocities of round-off.
 
     Args:
-        joints: the constraints of the space, which call no functions meanwhile, and push with nothing where they would.
+        joints: the constraints of the space, which call no functions meanwhile, and exert no forces.
         stored: whether pymunk may have impulses of joints from earlier steps, which would push too.
-        awake: where bodies sleep, which of constraints have no such body. A change of gravity would wake them: it
-            stays, and leaves velocities, which are of no use.
+        awake: where bodies sleep, function for which of constraints have no such body. A change of gravity would wake
+            them: gravity stays, and changes velocities, which are overwritten.
     """
     asleep = awake is not None
     if joints is None:
@@ -68,20 +68,19 @@ def rest_step(
             private_rest.rest(space, dt, asleep)
         finally:
             strengthen(held)
-            move_on(outside)
+            restore_motions(outside)
         return
     own, laws = joints.own, joints.laws()
     if awake is not None:
         laws = [law for item, law in zip(own, laws, strict=True) if awake([item])]
         own = awake(own)
     with ExitStack() as within:
-        within.callback(move_on, outside)
+        within.callback(restore_motions, outside)
         if calling:
             within.enter_context(silent(calling))
         if own:
             within.enter_context(with_laws(own, laws))
-        if push:
-            within.enter_context(inert(push))
+        within.callback(strengthen, weaken(push))
         private_rest.rest(space, dt, asleep)
 
 
@@ -95,28 +94,26 @@ class Sync:
     """
 
     def __init__(self, world: World, past: Sync | None = None) -> None:
-        """`past`: that of the world of this space before; pymunk itself puts what has come since into its index."""
+        """`past`: that of the world of this space before; pymunk itself indexes shapes that were added since."""
         self.space, bodies = world.space, world.bodies
         self._asleep = bool(bodies.asleep.any())
         self._pulls = self.space.sleep_time_threshold < math.inf
         sleepers = [bodies.items[i] for i in bodies.asleep.nonzero()[0]]
         self._sleep, self._stop = private_sleep.asleep(sleepers), private_sleep.stop_woken(sleepers)
-        self._called = len(bodies.velocity_hooks) + len(bodies.position_hooks) > 0
         self._shapes = int(world.shape_counts.sum())
         self._world = world
         self._timestamp: Callable[[], int] = private.timestamp(self.space)
         self.waits = partial(private.waits, self.space)
-        self._renewed, self._dt, self._left = -1, 0.0, 0
-        self._touched = self._stale = self._asked = False
+        self._rested, self._dt, self._reindexings = -1, 0.0, 0
+        self._touched = self._stale = self._were_read = False
         if past is not None and not (self._asleep or past._asleep):
-            self._renewed, self._dt, self._left = past._renewed, past._dt, past._left
-            self._touched, self._stale, self._asked = past._touched, past._stale, past._asked
-        self._joints = world.joints
-        self._new = True  # bodies and joints may have come from elsewhere, with what pymunk has left in them
+            self._rested, self._dt, self._reindexings = past._rested, past._dt, past._reindexings
+            self._touched, self._stale, self._were_read = past._touched, past._stale, past._were_read
+        self._new = True  # bodies and joints may be new, with corrections and impulses of other steps of pymunk
         self.renews = False
         self.stamp = -1
 
-    def reindexes(self, dt: float, contacts: bool, joints: JointRows | None) -> bool:
+    def reindexes(self, dt: float, status: int) -> bool:
         """Whether reindexing is enough for this step. Conditions:
 
         * pymunk has taken no step since the last rest step, which had this dt and was no more than `_RENEW` steps ago;
@@ -124,29 +121,28 @@ class Sync:
         * nothing touched in this step and the last one, or readers of arbiters call `renew`;
         * the number of shapes is at most SOME; with neither contacts nor joints at most FEW.
         """
-        asked, self._asked = self._asked, False
-        if asked or self._left == 0 or dt != self._dt or self._shapes > SOME:
+        were_read, self._were_read = self._were_read, False
+        if were_read or self._reindexings == 0 or dt != self._dt or self._shapes > SOME:
             return False
-        if contacts or self._touched:
+        if status & EVENTS or self._touched:
             if not self.renews:
                 return False
-        elif self._shapes > FEW and joints is None:
+        elif self._shapes > FEW and self._world.joints is None:
             return False
-        self._joints = joints
-        return self._timestamp() == self._renewed
+        return self._timestamp() == self._rested
 
     def reindex(self) -> None:
         """Move the shapes to the poses of their bodies."""
-        self._left -= 1
+        self._reindexings -= 1
         self._stale = True
         private_shapes.reindex(self.space, self._world.movers)
 
     def renew(self) -> None:
         """Make arbiters by a rest step, if the last step was an EECA step that made none."""
-        self._asked = True
-        if self._stale and self.space not in BUSY and self._timestamp() == self._renewed:
+        self._were_read = True
+        if self._stale and self.space not in BUSY and self._timestamp() == self._rested:
             with private_rest.stopped(self.space):
-                self.rest(self._dt, self._joints)
+                self.rest(self._dt)
 
     def call_back(self) -> None:
         """Do waiting additions and removals, and call post-step callbacks."""
@@ -167,59 +163,61 @@ class Sync:
         """Whether pymunk has taken no step of its own since the last EECA step."""
         return self._timestamp() == self.stamp
 
-    def rest(self, dt: float, joints: JointRows | None = None) -> None:
+    def rest(self, dt: float) -> None:
         """Take a rest step, without functions of bodies; all bodies must have velocity 0, and may get velocities of
         round-off if there are joints."""
-        native = self._new or self._timestamp() != self._renewed
+        world, stored = self._world, self._new or self._timestamp() != self._rested
         self._new = False
-        if native:
-            private_shapes.forget_corrections(self._world.movers)
+        if stored:
+            private_shapes.forget_corrections(world.movers)
         slept = self._asleep and self._sleep()
-        how = self.space, dt, joints, native, self._choice(joints) if self._asleep else None
-        if self._called:
-            with self._world.hooks.silent():
+        how = self.space, dt, world.joints, stored, self._choice() if self._asleep else None
+        if world.hooks.some:
+            with world.hooks.silent():
                 rest_step(*how)
         else:
             rest_step(*how)
         if slept and not self._sleep():
             self._stop()  # what pymunk wakes gets a velocity by gravity
-        self._renewed, self._dt, self._left = self._timestamp(), dt, _RENEW
-        self.stamp = self._renewed
+        self._rested, self._dt, self._reindexings = self._timestamp(), dt, _RENEW
+        self.stamp = self._rested
         self._stale = False
         if not self.renews and self._shapes <= FEW:
             self._touched = bool(private.raw_arbiters(self.space))
 
-    def _choice(self, joints: JointRows | None) -> Choice:
-        """Which of constraints have no body that sleeps: who sleeps at the start of a step does so at its end, unless
-        functions have woken it."""
-        if joints is None or self._called or joints.calling or joints.own:
+    def _choice(self) -> Choice:
+        """Function for which of constraints have no body that sleeps: bodies that sleep at the start of a step do so at
+        its end, unless functions have woken them."""
+        joints = self._world.joints
+        if joints is None or self._world.hooks.some or joints.calling or joints.own:
             return private_joints.awake
         return joints.pushing.awake
 
-    def land(self, world: World, dt: float, status: int) -> None:
-        """Write the end of the step of a world to the space, and update pymunk's shapes: by reindexing, or by a rest
-        step between poses and velocities."""
-        if self.reindexes(dt, bool(status & EVENTS), world.joints):
+    def land(self, dt: float, status: int) -> None:
+        """Write the end of the step to the space, and update pymunk's shapes: by reindexing, or by a rest step between
+        poses and velocities."""
+        world = self._world
+        if self.reindexes(dt, status):
             world.scatter(status)
             self.reindex()
             return
         if world.joints is not None or self._pulls:
-            status = world.turning(status)  # joints change spins by round-off; gravity, where bodies sleep, by more
+            status = world.with_turns(status)  # joints change spins by round-off; gravity, where bodies sleep, by more
         world.scatter_still(status)
-        self.rest(dt, world.joints)
+        self.rest(dt)
         world.scatter_speed(status)
 
-    def follow(self, world: World, dt: float, status: int) -> None:
+    def follow(self, dt: float, status: int) -> None:
         """Update pymunk's shapes to the end of a step that is written already, and may have been changed by
         functions."""
-        if self.reindexes(dt, bool(status & EVENTS), world.joints):
+        if self.reindexes(dt, status):
             self.reindex()
             return
-        bodies = world.bodies
+        bodies = self._world.bodies
         end = bodies.gather()
         assert end is not None  # additions and removals by functions still wait
         still = end.copy()
         still[:, VELOCITY], still[:, ANGULAR_VELOCITY] = 0.0, 0.0
         bodies.scatter(still, unchanged=True)
-        self.rest(dt, world.joints)
+        self.rest(dt)
         bodies.scatter(end, unchanged=True)

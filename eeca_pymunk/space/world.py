@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pymunk
 
-from ..arrays import IntArray
+from ..arrays import BoolArray, IntArray
 from ..compiled.records import Rows, rows
 from ..impacts.scene_memory import SceneMemory
 from ..layout import BODY_ROW
@@ -21,13 +21,13 @@ from . import private
 from .bodies import Bodies
 from .checks import has_friction, settings
 from .crossing import Crossing
+from .decisions import Rules
 from .edits import clock, counts, edited_since
 from .hooks import Hooks
 from .joints import JointRows
 from .packing import Packed, Records, records_of, shape_counts
 from .patching import Patched, patch
 from .rehearsal import Rehearsal
-from .shapes import Rules
 
 
 class World(Crossing):
@@ -133,6 +133,12 @@ class World(Crossing):
     def places(self) -> dict[pymunk.Shape, int]:
         """The row of SHAPE of each solid shape."""
         return {shape: k for k, shape in enumerate(self.shapes)}
+
+    @property
+    def centred(self) -> BoolArray:
+        """(k,) whether a moving shape is a disk about the centre of mass of its body."""
+        centred: BoolArray = (self.LINK["vertices"] == 1) & ~self.VERTEX[self.LINK["first"], :2].any(axis=1)
+        return centred
 
     @cached_property
     def shape_counts(self) -> IntArray:
@@ -246,5 +252,5 @@ class World(Crossing):
         return take.bind(self.STATES, self.WALK, self.EXTRA, self.BODY)
 
     def half_damping(self, dt: float) -> float:
-        """Factor of half a step's damping; 1 for damping 0, whose velocities `alter` sets to 0 at the end."""
+        """Factor of half a step's damping; 1 for damping 0, whose velocities `alter_end` sets to 0 at the end."""
         return self.damping ** (0.5 * dt) if self.damping > 0.0 else 1.0
