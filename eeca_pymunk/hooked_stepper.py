@@ -13,7 +13,6 @@ from .layout import LEFT
 from .packed_space import TOO_FAR, PackedSpace
 from .reentry import BUSY
 from .report import Details, StepReport
-from .space.rehearsal import Rehearsal
 from .space.world import World
 from .transfer import EVENTS, FORCES, MOVED_STATIC, OTHER_BODIES
 from .unmet import Unmet
@@ -50,10 +49,10 @@ class HookedStepper(PackedSpace):
         """A step of a space in which functions of bodies or constraints, or collision handlers, are called."""
         BUSY.add(self.space)
         try:
-            world, report, rehearsal = self._take_hooked(world, dt)
+            world, report = self._take_hooked(world, dt)
         finally:
             BUSY.discard(self.space)
-        if rehearsal is not None:
+        if world.collisions:
             self._sync.finish_rehearsal()
         elif self.sync or (world.joints is not None and world.joints.calling):
             self._sync.call_back()
@@ -71,46 +70,40 @@ class HookedStepper(PackedSpace):
             world.bodies.check_finite(world.state)
         return world
 
-    def _take_hooked(self, world: World, dt: float) -> tuple[World, StepReport, Rehearsal | None]:
-        """The step without post-step callbacks."""
+    def _take_hooked(self, world: World, dt: float) -> tuple[World, StepReport]:
+        """The step without post-step callbacks, and its world."""
         world = self._start_hooked(world)
-        bodies, joints, half_damping = world.bodies, world.joints, world.half_damping(dt)
-        hooks = world.hooks
-        rehearsal: Rehearsal | None = None
-        given, lost = False, 0.0
+        half_damping, lost = world.half_damping(dt), 0.0
         try:
-            if joints is not None:
-                joints.refresh()
-                if joints.before:
-                    hooks.before(dt)
+            if world.joints is not None:
+                world.joints.refresh()
+                if world.joints.before:
+                    world.hooks.before(dt)
                     world.gather()
-            if len(hooks.velocity):
-                world.set_accelerations(hooks.velocity_changes(dt), dt)
+            if len(world.hooks.velocity):
+                world.set_accelerations(world.hooks.velocity_changes(dt), dt)
             if world.collisions:
-                rehearsal = world.rehearsal
-                self._checked(world, dt, rehearsal.run(hooks, dt, world.gravity, half_damping))
+                self._checked(world, dt, world.rehearsal.run(dt, half_damping))
                 if self._sleep is not None and self._sleep.woken():
                     world = self._awoken(world)
-                    bodies, joints, hooks, rehearsal = world.bodies, world.joints, world.hooks, world.rehearsal
-                world.rules = rehearsal.rules(self.decisions)
-            status = self._checked(world, dt, self.advance(world, dt, half_damping))
+                world.rules = world.rehearsal.rules(self.decisions)
+            status, hooks = self._checked(world, dt, self.advance(world, dt, half_damping)), world.hooks
             book = self._booked(dt)
-            forces = status & FORCES or hooks.some or joints is not None
-            if world.damping == 0.0 or len(hooks.position) or (rehearsal is not None and rehearsal.after):
-                given = forces = True
+            alters = world.damping == 0.0 or len(hooks.position) > 0 or (world.collisions and world.rehearsal.after)
+            if alters:
                 bits, lost = world.alter_end(world.damping == 0.0)
                 self._checked(world, dt, bits)
                 if len(hooks.position):
                     hooks.positions(world.state, world.STATES[LEFT], dt)
-                    bodies.check_finite(world.ended(), TOO_FAR)
+                    world.bodies.check_finite(world.ended(), TOO_FAR)
                     bits = world.write_whole()
-                status = status & EVENTS | bits
             else:
-                status = status & EVENTS | world.write_whole()
-            if forces:
+                bits = world.write_whole()
+            forces, status = status & FORCES, status & EVENTS | bits
+            if alters or forces or hooks.some or world.joints is not None:
                 world.reset_forces()
             self._land_hooked(world, dt, status)
-            if given:
+            if alters:
                 # So that changes by functions after the step count as edits in the next one.
                 world.keep_unaltered()
         except BaseException:
@@ -119,7 +112,7 @@ class HookedStepper(PackedSpace):
         self.time += dt
         report = self._make_report(world, dt, status, book, lost)
         world.show_joints()
-        return world, report, rehearsal
+        return world, report
 
     def _awoken(self, world: World) -> World:
         """The world anew, where pymunk's step has woken bodies in a rehearsal, as it does on kinematic bodies; with

@@ -75,11 +75,11 @@ class PackedSpace(Stepper):
         self.decisions.forget(self.space)
 
     def prepare(self, world: World, past: World | None) -> None:
-        """Make the stepper's own arrays for a world that was just read; `past` is the world before, if known."""
+        """Make the stepper's own arrays for a world that was just read; `past` is the world before, if any."""
 
     def patch(self, world: World) -> bool:
-        """Put what the program has edited of shapes and bodies, of which none has come or gone, into the rows of a
-        world, and what is kept about it; False where only a new reading will do."""
+        """Write edits of shapes and bodies into the rows of a world, and into the stepper's own arrays; none were added
+        or removed. False if a new reading is needed."""
         return False
 
     def book(self) -> FloatArray | None:
@@ -101,18 +101,10 @@ class PackedSpace(Stepper):
         if self._sleep is not None and self.space.sleep_time_threshold == math.inf:
             self._sleep.wake()
             self._sleep, anew = None, True
-        same = world is not None and world.same_things()
-        if world is not None and same and not anew and not world.edited():
-            joints = world.joints
-            world.read_settings()
-            if self._sleep is None and self.space.sleep_time_threshold < math.inf:
-                self._sleep = Sleep(world, None)
-            if world.joints is not joints:
-                self.prepare(world, world)
-                self.patches += 1
-            return self._adopt(world)
-        if world is not None and same and self._sleep is None and self.space.sleep_time_threshold == math.inf:
-            if self.patch(world):
+        if world is not None and world.same_things():
+            if not (anew or world.edited()):
+                return self._update_settings(world)
+            if self._sleep is None and self.space.sleep_time_threshold == math.inf and self.patch(world):
                 self.patches += 1
                 return self._adopt(world)
         past = world
@@ -131,8 +123,19 @@ class PackedSpace(Stepper):
             self._idle_book = np.zeros_like(book)
         return self._adopt(world)
 
+    def _update_settings(self, world: World) -> World:
+        """The world of the last step, after changes of settings and joints only."""
+        joints = world.joints
+        world.read_settings()
+        if self._sleep is None and self.space.sleep_time_threshold < math.inf:
+            self._sleep = Sleep(world, None)
+        if world.joints is not joints:
+            self.prepare(world, world)
+            self.patches += 1
+        return self._adopt(world)
+
     def _adopt(self, world: World) -> World:
-        """Take a world that is current."""
+        """Use a world that is current."""
         self.objects_read, world.objects_read = self.objects_read + world.objects_read, 0
         self._world = world
         return world

@@ -77,7 +77,7 @@ _OF_MASS = "mass", "moment", "inverse_mass", "inverse_moment"
 class Bodies:
     """The bodies of one space, one row each, in the order of `pymunk.batch`.
 
-    Masses, moments and kinds are read once.
+    Masses, moments and kinds are read once; ValueError for a dynamic body without a positive mass and moment.
 
     Args:
         space: a pymunk space.  sleeps: whether bodies may sleep; sleeping ones then count as static.

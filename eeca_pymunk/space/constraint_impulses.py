@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import math
 import weakref
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Sequence
+from typing import Any, ClassVar
 from weakref import WeakKeyDictionary
 
 import pymunk
@@ -18,61 +18,54 @@ from ..compiled.records import Rows
 from ..model.joints import ROTARY_SPRING, SPRING, Joint
 from . import private
 
-Reading = Callable[[int], "float | None"]
-_readings: WeakKeyDictionary[pymunk.Constraint, tuple[Reading | None, int]] = WeakKeyDictionary()
-_showings = 0
-_native_impulse: Any = pymunk.Constraint.impulse
-
 
 class Impulses:
-    """Values of `constraint.impulse` by row. It outlives the stepper, and does not refer to constraints.
+    """Values of `constraint.impulse` by row of `joint` (j,). They exist as long as one of the constraints, and do not
+    refer to constraints or their space.
 
     Attributes:
-        joint: the rows.  ours: pymunk's count of its own steps when they were written.
+        shows: number of calls, for any constraints, by which `show` has changed what they return.
     """
 
+    shows: ClassVar[int] = 0
+
     def __init__(self, space: pymunk.Space, joint: Rows[Joint]) -> None:
-        self._space = weakref.ref(space)
-        self.joint = joint
-        self.ours = -1
+        self._space, self._joint = weakref.ref(space), joint
+        self._stamp = self._checked = -1
+
+    def show(self, items: Sequence[pymunk.Constraint], stamp: int) -> None:
+        """Let `impulse` of these constraints return their impulses in the rows of `joint`, until pymunk's count of its
+        own steps is no longer `stamp`."""
+        self._stamp = stamp
+        if self._checked != Impulses.shows:
+            if _shown.get(items[0], _NATIVE)[0] is not self:
+                Impulses.shows += 1
+                for j, item in enumerate(items):
+                    _shown[item] = self, j
+                if pymunk.Constraint.impulse is not _OWN:
+                    pymunk.Constraint.impulse = _OWN  # type: ignore[method-assign]
+            self._checked = Impulses.shows
 
     def read(self, j: int) -> float | None:
-        """The impulse: of springs signed (positive pushes), else >= 0; None if pymunk has taken a step since."""
+        """The impulse of row j, mass length/time (of rotary joints, times length): of springs signed (positive pushes),
+        else >= 0; None if pymunk has taken a step since."""
         space = self._space()
-        if space is not None and private.timestamp(space)() != self.ours:
+        if space is not None and private.timestamp(space)() != self._stamp:
             return None
-        first, second = self.joint[j].impulse
-        if self.joint[j].kind in (SPRING, ROTARY_SPRING):
+        first, second = self._joint[j].impulse
+        if self._joint[j].kind in (SPRING, ROTARY_SPRING):
             return float(first)
         return math.hypot(first, second)
 
 
-def showings() -> int:
-    """Number of calls of `show_impulses`."""
-    return _showings
-
-
-def shown(item: pymunk.Constraint) -> Reading | None:
-    """The function that `show_impulses` has set for a constraint, None if its `impulse` is pymunk's."""
-    return _readings.get(item, (None, 0))[0]
-
-
-def show_impulses(items: Sequence[pymunk.Constraint], read: Reading) -> None:
-    """Let `impulse` of these constraints return `read(row)`, unless that is None.
-
-    `read` exists as long as any of them: it must not refer to them or to their space.
-    """
-    global _showings
-    _showings += 1
-    for j, item in enumerate(items):
-        _readings[item] = read, j
-    if pymunk.Constraint.impulse is not _OWN:
-        pymunk.Constraint.impulse = _OWN  # type: ignore[method-assign]
+_shown: WeakKeyDictionary[pymunk.Constraint, tuple[Impulses | None, int]] = WeakKeyDictionary()
+_NATIVE = None, 0
+_native_impulse: Any = pymunk.Constraint.impulse
 
 
 def _impulse(self: pymunk.Constraint) -> float:
-    read, row = _readings.get(self, (None, 0))
-    value = None if read is None else read(row)
+    impulses, row = _shown.get(self, _NATIVE)
+    value = None if impulses is None else impulses.read(row)
     return float(_native_impulse.fget(self)) if value is None else value
 
 

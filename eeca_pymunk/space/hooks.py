@@ -83,11 +83,11 @@ class Hooks:
         return np.array(found)
 
     def positions(self, state: FloatArray, end: FloatArray, dt: float) -> None:
-        """Call the position functions on `state` with the velocity that leads to `end`, and write their results to
-        `end`."""
+        """Call the position functions on `state` (N, 9) with the velocity that leads to `end` (N, 9) within dt, and
+        write their results to `end`."""
         ways = self.bodies.centers(end) - self.bodies.centers(state)
         items = [self.bodies.items[row] for row in self.position]
-        # A rehearsal leaves them, of overlaps that this step has not had; `update_position` would add them to its way.
+        # A rehearsal leaves corrections of overlaps that this step did not have; `update_position` would apply them.
         private_shapes.forget_corrections(private.pointers(items))
         for row, body in zip(self.position, items, strict=True):
             function = private.position_function(body)

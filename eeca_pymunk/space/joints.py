@@ -13,7 +13,7 @@ from ..arrays import FloatArray
 from ..compiled.records import Rows, records, rows
 from ..model.joints import EDITED, Joint
 from . import private
-from .constraint_impulses import Impulses, show_impulses, showings, shown
+from .constraint_impulses import Impulses
 from .constraints import read
 from .joint_edits import Edits
 from .listing import Listing, calls_of
@@ -40,14 +40,17 @@ class JointRows(Listing):
     def __init__(
         self, space: pymunk.Space, row: Mapping[pymunk.Body, int], n: int, past: JointRows | None = None
     ) -> None:
-        """Read the constraints of `space`; `row`: rows of its bodies, out of n. Rows that `past` has are reused."""
+        """Read the constraints of `space`; `row`: rows of its bodies, out of n. Rows that `past` has are reused.
+
+        Raises:
+            ValueError, UnsupportedFeature: see `check_constraint`.  NotFiniteError: see `Partners`.
+        """
         self.space, self._n = space, n
-        self._impulses: Impulses | None = None
-        self._showings = -1
         if past is not None:
             past.refresh()
         super().__init__(space, past)
         self.joint: Rows[Joint] = rows(Joint, len(self.items))
+        self._impulses = Impulses(space, self.joint)
         self._memory = self.joint.view(np.uint8).data
         others = [body for body in self.bodies if body not in row]
         self.partners: Partners = Partners(tuple(others), space, None if past is None else past.partners)
@@ -160,6 +163,9 @@ class JointRows(Listing):
 
         Args:
             state: (N, 9) at the start of the step.  place: rows of bodies in it.  dt: time.
+
+        Raises:
+            ValueError, UnsupportedFeature, NotFiniteError: as a new reading, or for a function of a spring.
         """
         self.refresh()
         moved = self.partners.read()
@@ -193,17 +199,9 @@ class JointRows(Listing):
 
     def write(self) -> None:
         """Write notches of ratchets, and let `constraint.impulse` return the impulses of the step."""
-        impulses = self._impulses
-        if impulses is None or impulses.joint is not self.joint:
-            self._impulses = impulses = Impulses(self.space, self.joint)
-            self._showings, self._reading = -1, impulses.read
-        impulses.ours = self._timestamp()
         for j in self.ratchets:
             item = self.items[j]
             if item.angle != self.joint[j].notch:
                 item.angle = float(self.joint[j].notch)
                 self._edits.forget(j)
-        if self._showings != showings():
-            if shown(self.items[0]) is not self._reading:
-                show_impulses(self.items, self._reading)
-            self._showings = showings()
+        self._impulses.show(self.items, self._timestamp())

@@ -77,7 +77,7 @@ def place(local: FloatArray, owner: IntArray, position: FloatArray, angle: Float
 
 def local_outline(shape: pymunk.Shape) -> list[tuple[float, ...]]:
     """Vertices in body coordinates, counter-clockwise: one of a circle (its centre), two of a segment, more of a
-    polygon."""
+    polygon. UnsupportedFeature for other shapes."""
     outline = private_shapes.outline(shape)
     if outline is None:
         raise UnsupportedFeature(f"{shape}: only circles, segments and polygons are known")

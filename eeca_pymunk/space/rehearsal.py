@@ -20,7 +20,6 @@ from ..rehearsing import approach, changed
 from ..transfer import TURNS
 from . import private, private_joints
 from .decisions import Decisions, Rules
-from .hooks import Hooks
 from .joints import JointRows
 from .private_versions import answer
 
@@ -65,12 +64,12 @@ class Rehearsal:
     """The arrays and wrappers for rehearsals of a world, kept from step to step.
 
     Attributes:
-        failure: the exception of a function in the last rehearsal.  decided: whether a function has changed a
-        collision.
+        failure: the exception of a function in the last rehearsal.
+        decided: whether a function has changed a collision in it.
     """
 
     def __init__(self, world: World) -> None:
-        self.world, self.space, self.bodies = world, world.space, world.bodies
+        self.world, self.space = world, world.space
         self._start, self._known = np.zeros_like(world.START), np.zeros_like(world.START)
         self._approach = approach.bind(world.STATES, world.WALK, world.EXTRA, world.BODY, world.ENDS, self._start)
         # Whether there are changes by begin and pre_solve, and changes by post_solve and separate; the last stage.
@@ -108,16 +107,16 @@ class Rehearsal:
         if self._differ[late]():
             self._changed[late] = True
 
-    def run(self, hooks: Hooks, dt: float, gravity: tuple[float, ...], left: float) -> int:
+    def run(self, dt: float, half_damping: float) -> int:
         """Take pymunk's step; STATES then has the start of the EECA step, with the changes by begin and pre_solve. An
         exception of a function is raised when pymunk has finished.
 
         Returns:
             0 or a negative code of `transfer.py`, with nothing done.
         """
-        world = self.world
-        gx, gy = gravity
-        status = self._approach(dt, gx, gy, left)
+        world, hooks = self.world, self.world.hooks
+        gx, gy = world.gravity
+        status = self._approach(dt, gx, gy, half_damping)
         if status < 0:
             return status
         self.failure, self.decided, self._stage = None, False, -1
@@ -125,7 +124,7 @@ class Rehearsal:
             world.CHANGES.fill(0.0)
             self._changed = [False, False]
         world.scatter(TURNS)
-        self._wrap(hooks)
+        self._wrap()
         try:
             for handler, phase, _, watched in self._wrapped:
                 setattr(handler, phase, watched)
@@ -150,10 +149,10 @@ class Rehearsal:
         """Whether post_solve and separate have changed anything."""
         return self._changed[1]
 
-    def _wrap(self, hooks: Hooks) -> None:
+    def _wrap(self) -> None:
         """Make wrappers of all functions of handlers; those of the last step are used again if the functions are
         equal."""
-        now = private.functions(self.space)
+        hooks, now = self.world.hooks, private.functions(self.space)
         late = hooks.joints is not None and len(hooks.joints.after) > 0
         if now != self._functions or late:
             self._functions = now

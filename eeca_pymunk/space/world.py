@@ -67,7 +67,7 @@ class World(Crossing):
         self._known = self._edits.in_place
         sleeps = space.sleep_time_threshold < math.inf
         stale = None if past is None else past.stale()
-        known = None if past is None or stale is None else past
+        known = None if stale is None else past
         self.read_at = clock()
         bodies = Bodies(space, sleeps, None if known is None else known.bodies, stale or ())
         state = bodies.start
@@ -105,8 +105,7 @@ class World(Crossing):
         self._known = self._edits.in_place
         self.collisions = bool(private.handlers(self.space))
         self._forget_rules()
-        bodies = self.bodies
-        self.hooks = Hooks(self.space, bodies, self.joints)
+        self.hooks = Hooks(self.space, self.bodies, self.joints)
         self.hooked = self.collisions or self.hooks.some or self.damping == 0.0
         self.plain = not self.hooked and self.joints is None
         self.current = private.watch(self.space, self._edits, self._seen)
