@@ -38,11 +38,12 @@ class PenaltyStepper(PackedStepper):
         world.load()
         self._disks = Disks(world, type(self).__name__)
 
-    def advance(self, world: World, dt: float, left: float) -> int:
+    def advance(self, world: World, dt: float, half_damping: float) -> int:
         gx, gy = world.gravity
         if world.collisions:
             self._disks.rules = world.rules.of_pairs(world.SHAPE)
-        return self._disks.step(world.STATES, world.WALK, world.EXTRA, world.ENDS, dt, gx, gy, left, self._move)
+        arrays = world.STATES, world.WALK, world.EXTRA, world.ENDS
+        return self._disks.step(*arrays, dt, gx, gy, half_damping, self._move)
 
     def details(self, world: World, dt: float) -> Details:
         assert self._disks.motion.details is not None
@@ -58,10 +59,9 @@ class PenaltyStepper(PackedStepper):
         pairs, before, _ = self._disks.near(start, displacement)
         if len(pairs) == 0:
             return Motion(velocity, displacement)
-        rows, row_a, row_b = restrict(pairs.row_a, pairs.row_b, len(velocity))
-        springs = Springs(start, pairs, before, rows, row_a, row_b)
+        springs = Springs(start, pairs, before)
         impulse, iterations, converged = self.load(springs)
-        velocity[rows], displacement[rows] = springs.velocity, springs.displacement
+        velocity[springs.rows], displacement[springs.rows] = springs.velocity, springs.displacement
         on = np.flatnonzero(impulse > 0)
         at = springs.after.take(on)
         contacts = pairs.take(on).contacts(at, before.gap[on], np.full(len(on), start.dt / 2))
@@ -79,21 +79,16 @@ class Springs:
     """The m near pairs of a step on the R bodies they touch, and the trial motion of these bodies.
 
     Attributes:
+        rows: (R,) of the bodies.  row_a, row_b: (m,) places of the bodies of each pair in `rows`.
         before, after: geometry (m,) of the pairs at the start, and at the end of the trial motion.
         displacement, velocity: (R, 2) of the trial motion, and at its end.
     """
 
-    def __init__(
-        self,
-        start: Start,
-        pairs: Pairs,
-        before: Geometry,
-        rows: IntArray,
-        row_a: IntArray,
-        row_b: IntArray,
-    ) -> None:
+    def __init__(self, start: Start, pairs: Pairs, before: Geometry) -> None:
         self.dt, self.pairs, self.before = start.dt, pairs, before
-        self.row_a, self.row_b, self.inverse_mass = row_a, row_b, start.inverse_mass[rows]
+        self.rows, self.row_a, self.row_b = restrict(pairs.row_a, pairs.row_b, len(start.position))
+        rows = self.rows
+        self.inverse_mass = start.inverse_mass[rows]
         self.start_position, self.start_velocity = start.position[rows], start.velocity[rows]
         self.acceleration = start.acceleration[rows]
         self.move(start.free_displacement[rows], self.start_velocity + start.dt * self.acceleration)

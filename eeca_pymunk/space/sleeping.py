@@ -79,6 +79,7 @@ class Sleep:
         self._ready: IntArray = np.zeros(len(bodies), np.int64)
         row = world.WALK[BODY_ROW]
         self._size: FloatArray = np.where(row >= 0, world.BODY["extent"][row], 0.0)
+        self._far: FloatArray = self._size + np.hypot(*bodies.center_of_gravity.T)  # from the body's origin
         self._rests = rests.bind(world.STATES, world.WALK, world.BODY, self._size, self._rested, self._ready)
         self._still = bodies.asleep.astype(np.int64), bodies.static.astype(np.int64)
         # Bodies that something other than the solver moves: all, if functions are called; else kinematic ones.
@@ -91,7 +92,7 @@ class Sleep:
         return self._timestamp() != self._stamp or self.woken()
 
     def woken(self) -> bool:
-        """Whether one of the bodies wakes that slept when this was made."""
+        """Whether a body is awake that slept when this was made."""
         return not self._asleep()
 
     def nothing_moves(self) -> bool:
@@ -100,8 +101,8 @@ class Sleep:
 
     def step(self, dt: float) -> None:
         """Take a step in which nothing moves: pymunk's own until it has forgotten all earlier contacts; then none,
-        since a step of this dt would change nothing. It wakes what touches a kinematic body, and pushes it out of that,
-        which is undone."""
+        since a step of this dt would change nothing. pymunk wakes bodies that touch a kinematic body, and pushes them
+        out of it; the motion is undone."""
         if self._steps > 0 or dt != self._dt:
             self._steps, self._dt = self._steps - 1, dt
             private.step_without_end(self.space, dt)
@@ -134,8 +135,7 @@ class Sleep:
         if self._size[i] == 0.0 or (not bodies.dynamic[i] and vx == vy == spin == 0.0):
             return None
         pull = math.hypot(*world.gravity) + math.hypot(fx, fy) * bodies.inverse_mass[i]
-        reach = self._size[i] + float(np.hypot(*bodies.center_of_gravity[i]))
-        reach += dt * (math.hypot(vx, vy) + dt * pull)
+        reach = float(self._far[i]) + dt * (math.hypot(vx, vy) + dt * pull)
         # Not finite: the step raises.
         return pymunk.BB(x - reach, y - reach, x + reach, y + reach) if math.isfinite(x + y + reach) else None
 
@@ -159,8 +159,7 @@ class Sleep:
         plain, world = self.world.plain, self.world
         if plain not in self._nears:
             near = np.zeros(len(self._moves[plain]), np.int64)
-            size = self._size + np.hypot(*world.bodies.center_of_gravity.T)
-            arrays = size, world.bodies.inverse_mass.copy(), self._boxes, near
+            arrays = self._far, world.bodies.inverse_mass.copy(), self._boxes, near
             self._nears[plain] = near, approaches.bind(world.STATES, self._moves[plain], *arrays)
         near, call = self._nears[plain]
         return near[: call(dt, pull)].tolist()  # type: ignore[no-any-return]
