@@ -32,9 +32,9 @@ from .program_scenes import PROGRAMS
 PARTS: dict[str, tuple[tuple[type, str], ...]] = {
     "kernel": ((EventLoop, "step"),),
     "re-reads": ((PackedSpace, "_update_world"),),
-    "sync": ((Sync, "land"), (Sync, "reindex"), (Sync, "settle"), (Sync, "call_back")),
+    "sync": ((Sync, "land"), (Sync, "reindex"), (Sync, "follow"), (Sync, "call_back")),
     "handlers": (
-        (Rehearsal, "run"), (Rehearsal, "rules"), (Rehearsal, "finish"), (Hooks, "change"), (Hooks, "before"),
+        (Rehearsal, "run"), (Rehearsal, "rules"), (Sync, "finish_rehearsal"), (Hooks, "velocity_changes"), (Hooks, "before"),
         (Hooks, "after"), (Hooks, "positions"),
     ),
 }  # fmt: skip

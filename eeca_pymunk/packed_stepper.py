@@ -61,9 +61,9 @@ class PackedStepper(HookedStepper):
         world = self._world
         if world is None or not world.current():
             world = self._update_world()
-        return self._step(world, dt) if self._sleep is None else self._drowsy_step(self._sleep, world, dt)
+        return self._step(world, dt) if self._sleep is None else self._sleeping_step(self._sleep, world, dt)
 
-    def _drowsy_step(self, sleep: Sleep, world: World, dt: float) -> StepReport:
+    def _sleeping_step(self, sleep: Sleep, world: World, dt: float) -> StepReport:
         """A step of a space in which bodies may sleep."""
         changed = sleep.changed()
         if not changed and sleep.nothing_moves():

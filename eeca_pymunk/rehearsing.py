@@ -32,7 +32,7 @@ PRESS = 1e-7  # part of its height by which a body is moved towards its support 
 
 
 @kernel
-def check_start(STATES: FloatArray, WALK: IntArray, BODY: Rows[Body], START: FloatArray) -> int:
+def copy_start(STATES: FloatArray, WALK: IntArray, BODY: Rows[Body], START: FloatArray) -> int:
     """Copy the state that was read to START (N, 9), and void all predictions: functions may change anything, so that
     all bodies count as placed by the program, and may overlap others.
 

@@ -198,7 +198,7 @@ class RunningStepper(PackedStepper):
             status = self._take_steps(world, buffers, steps, progress)
         finally:
             # After an interrupt too.
-            failure = self._failure(world, buffers, dt, status) if status < 0 else None
+            failure = self._failure(world, dt, status) if status < 0 else None
             self._land_run(world, buffers, dt, status)
             if failure is not None:
                 raise failure
@@ -219,7 +219,7 @@ class RunningStepper(PackedStepper):
                 bar.update(int(RUN.done) - before)
         return status
 
-    def _failure(self, world: World, buffers: RunBuffers, dt: float, status: int) -> Exception:
+    def _failure(self, world: World, dt: float, status: int) -> Exception:
         """The error of a step that failed."""
         loop = self.event_loop
         assert loop is not None

@@ -35,7 +35,7 @@ from ..layout import (
     STILL,
 )  # fmt: skip
 from ..model.bodies import Body
-from ..rehearsing import alter_end, as_read, check_start
+from ..rehearsing import alter_end, as_read, copy_start
 from ..transfer import FORCES, TURNS, lay, lay_rest
 from . import private_batch
 from .bodies import STATE_FIELDS, Bodies
@@ -109,8 +109,8 @@ class Crossing:
 
     @cached_property
     def check_start(self) -> Callable[[], int]:
-        """See `rehearsing.check_start`."""
-        return check_start.bind(self.STATES, self.WALK, self.BODY, self.START)
+        """See `rehearsing.copy_start`."""
+        return copy_start.bind(self.STATES, self.WALK, self.BODY, self.START)
 
     @cached_property
     def CHANGES(self) -> FloatArray:
