@@ -34,8 +34,8 @@ PARTS: dict[str, tuple[tuple[type, str], ...]] = {
     "re-reads": ((PackedSpace, "_update_world"),),
     "sync": ((Sync, "land"), (Sync, "reindex"), (Sync, "follow"), (Sync, "call_back")),
     "handlers": (
-        (Rehearsal, "run"), (Rehearsal, "rules"), (Sync, "finish_rehearsal"), (Hooks, "velocity_changes"), (Hooks, "before"),
-        (Hooks, "after"), (Hooks, "positions"),
+        (Rehearsal, "run"), (Rehearsal, "rules"), (Sync, "finish_rehearsal"), (Hooks, "velocity_changes"),
+        (Hooks, "before"), (Hooks, "after"), (Hooks, "positions"),
     ),
 }  # fmt: skip
 
