@@ -8,7 +8,7 @@ Open first `world.py`, the space as packed arrays, and `checks.py`, the unsuppor
 | subject | files |
 |---|---|
 | reading bodies and shapes | `bodies.py`, `outlines.py` (also for pictures), `packing.py` |
-| reading joints | `joints.py`, `constraints.py`, `partners.py`, `pushing.py`, `spring_functions.py` |
+| reading joints | `joints.py`, `constraints.py`, `listing.py`, `partners.py`, `spring_functions.py` |
 | states in and out | `crossing.py` |
 | edits by the program | `edits.py` (shapes, bodies), `joint_edits.py`, `patching.py` (rows after edits in place) |
 | functions of the program | `hooks.py`, `rehearsal.py`, `decisions.py` (collision handlers) |

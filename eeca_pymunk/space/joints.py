@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
 from typing import Any
 
@@ -18,7 +18,6 @@ from .constraints import read
 from .joint_edits import Edits
 from .listing import Listing, calls_of
 from .partners import Partners
-from .pushing import Pushing
 from .spring_functions import Motion, Rate, law, put_law
 
 _ROUND_OFF = 1e-12  # of the length of a pin
@@ -30,7 +29,6 @@ class JointRows(Listing):
     Attributes, beside those of `Listing`:
         joint: (j,).
         partners: bodies of joints that have no row of their own; theirs are n + row of PARTNER.
-        pushing: those that exert forces in a rest step of pymunk.
         parted: pairs of bodies whose shapes do not collide, by `collide_bodies`; None after a change (`find_parted`).
         rates: for springs with functions, the rate of length and the dt of the last step, see `put_law`.
         replan: whether kinds, anchors or bounds of joints have changed since `planned` was called.
@@ -70,13 +68,14 @@ class JointRows(Listing):
         self._find_pushing()
 
     def _find_pushing(self) -> None:
-        """Find `pushing`, and forget `parted`. Constraints of bodies that batch calls do not reach always exert forces
-        in a rest step, too."""
+        """Find what always pushes, and what has a sleeping body; forget `parted`. Constraints of bodies that batch
+        calls do not reach always exert forces in a rest step, too."""
         far = {body: body.body_type == pymunk.Body.DYNAMIC for body in self.partners.items}
         asleep = {body: dynamic and body.space is self.space for body, dynamic in far.items()}
         always = sorted({*self.forcing, *self.with_body(far)})
-        sleeping = {self.items[j] for j in self.with_body(asleep)}
-        self.pushing = Pushing(self.items, self.joint, [self.items[j] for j in always], sleeping)
+        self._always, self._asleep = [self.items[j] for j in always], {self.items[j] for j in self.with_body(asleep)}
+        self._touched, self._pushing = b"", list[pymunk.Constraint]()
+        self._last_awake: tuple[Sequence[pymunk.Constraint], list[pymunk.Constraint]] = (), []
         self.parted: frozenset[tuple[pymunk.Body, pymunk.Body]] | None = None
 
     def is_of(self, space: pymunk.Space) -> bool:
@@ -117,6 +116,22 @@ class JointRows(Listing):
             self.find_functions()
             self._find_pushing()
         return self.replan
+
+    def pushing(self) -> list[pymunk.Constraint]:
+        """The constraints that exert forces in a rest step of pymunk (`sync.py`): those that always do, and joints that
+        are or may be apart. The list is another one only if they are others."""
+        touched = self.joint["touched"].tobytes()
+        if touched != self._touched:
+            apart = np.flatnonzero(self.joint["touched"]).tolist()
+            self._touched = touched
+            self._pushing = list(dict.fromkeys((*self._always, *(self.items[j] for j in apart))))
+        return self._pushing
+
+    def awake(self, items: Sequence[pymunk.Constraint]) -> list[pymunk.Constraint]:
+        """Those of constraints that have no sleeping body; `items` must stay as it is."""
+        if items is not self._last_awake[0]:
+            self._last_awake = items, [item for item in items if item not in self._asleep]
+        return self._last_awake[1]
 
     def laws(self) -> list[Callable[[Any, float], float]]:
         """The linear laws of the springs with functions in the last step."""

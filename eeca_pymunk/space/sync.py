@@ -58,7 +58,7 @@ def rest_step(
     if joints is None:
         private_rest.rest(space, dt, asleep)
         return
-    push, calling = joints.items if stored else joints.pushing.now(), joints.calling
+    push, calling = joints.items if stored else joints.pushing(), joints.calling
     if awake is not None:  # a change of a joint would wake its bodies
         push, calling = awake(push), awake(calling) if calling else calling
     outside = joints.partners.motions()
@@ -191,7 +191,7 @@ class Sync:
         joints = self._world.joints
         if joints is None or self._world.hooks.some or joints.calling or joints.own:
             return private_joints.awake
-        return joints.pushing.awake
+        return joints.awake
 
     def land(self, dt: float, status: int) -> None:
         """Write the end of the step to the space, and update pymunk's shapes: by reindexing, or by a rest step between
