@@ -31,11 +31,11 @@ from .program_scenes import PROGRAMS
 # What each part of a step is, by the methods in which it is spent; a part has not what parts within it have.
 PARTS: dict[str, tuple[tuple[type, str], ...]] = {
     "kernel": ((EventLoop, "step"),),
-    "re-reads": ((PackedSpace, "_look"),),
-    "sync": ((Sync, "land"), (Sync, "reindex"), (Sync, "settle"), (Sync, "call_back")),
+    "re-reads": ((PackedSpace, "_update_world"),),
+    "sync": ((Sync, "land"), (Sync, "reindex"), (Sync, "follow"), (Sync, "call_back")),
     "handlers": (
-        (Rehearsal, "run"), (Rehearsal, "rules"), (Rehearsal, "finish"), (Hooks, "change"), (Hooks, "before"),
-        (Hooks, "after"), (Hooks, "positions"),
+        (Rehearsal, "run"), (Rehearsal, "rules"), (Sync, "finish_rehearsal"), (Hooks, "velocity_changes"),
+        (Hooks, "before"), (Hooks, "after"), (Hooks, "positions"),
     ),
 }  # fmt: skip
 

@@ -17,7 +17,7 @@ _LESS = 1e-9  # of lengths, by which bodies are looked for farther away
 
 @kernel
 def rests(
-    STATES: FloatArray, WALK: IntArray, BODY: Rows[Body], SIZE: FloatArray, RESTED: FloatArray, TIRED: IntArray,
+    STATES: FloatArray, WALK: IntArray, BODY: Rows[Body], SIZE: FloatArray, RESTED: FloatArray, READY: IntArray,
     slow: float, dt: float, need: float,
 ) -> int:  # fmt: skip
     """Add up for how long bodies have been at rest: at both ends of the step
@@ -25,7 +25,7 @@ def rests(
         |v|, |spin| SIZE <= slow + round-off     and     |x - x0| <= slow dt + round-off,
 
     without forces; `slow` and its reason are in `space/sleeping.py`. SIZE (N,): length, 0 for bodies without shapes.
-    RESTED (N,): time. TIRED (N,): 1 for bodies that have been at rest for the time `need`, and may sleep.
+    RESTED (N,): time. READY (N,): 1 for bodies that have been at rest for the time `need`, and may sleep.
 
     Returns:
         1 if any body may sleep, else 0.
@@ -51,8 +51,8 @@ def rests(
                 still = still and abs(spin) * (size if size > 0.0 else 1.0) <= limit
             still = still and before[i, 6] == 0.0 and before[i, 7] == 0.0 and before[i, 8] == 0.0
         RESTED[i] = RESTED[i] + dt if still else 0.0
-        TIRED[i] = 1 if still and RESTED[i] >= need else 0
-        some = max(some, TIRED[i])
+        READY[i] = 1 if still and RESTED[i] >= need else 0
+        some = max(some, READY[i])
     return some
 
 

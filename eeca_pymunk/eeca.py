@@ -16,7 +16,7 @@ from .report import Details
 from .runs import RunningStepper
 from .saved import Saved, sides_of
 from .space.arbiters import Touches, show_contacts, touches
-from .space.shapes import Rules
+from .space.decisions import Rules
 from .space.world import World
 from .transfer import OTHER_BODIES
 from .unmet import Unmet, of_missed
@@ -106,13 +106,13 @@ class EECA(RunningStepper):
     def prepare(self, world: World, past: World | None) -> None:
         myself = ref(self)
         show_contacts(self.space, lambda: None if (me := myself()) is None else me._touches())
-        self._sync.late = self._sleep is None  # groups of sleeping bodies are found from arbiters
+        self._sync.renews = self._sleep is None  # groups of sleeping bodies are found from arbiters
         saved, self._saved, self._ruled = self._saved, None, None
         if saved is not None and saved.resume(world, self.decisions):
             self._method: Method = saved.method
             return
         sides = None if past is None or (loop := self.event_loop) is None else sides_of(past, loop)
-        world.load(again=world is past)
+        world.load(mobilities=world is past)
         self._method = self.closure.prepare(world)
         if self._patches and world.joints is None and isinstance(self._method, EventLoop):
             self._method.keep_fresh()
@@ -120,8 +120,8 @@ class EECA(RunningStepper):
             sides.recall(world, self._method)
         if world.joints is not None:
             world.joints.planned()
-            world.part()
-            self._method.rule(world.told())
+            world.find_parted()
+            self._method.rule(world.laws())
 
     @property
     def event_loop(self) -> EventLoop | None:
@@ -145,7 +145,7 @@ class EECA(RunningStepper):
             if not joints.idle():
                 BUSY.add(self.space)  # springs have functions
                 try:
-                    joints.look(world.state, world.bodies.row, dt)
+                    joints.update(world.state, world.bodies.row, dt)
                 finally:
                     BUSY.discard(self.space)
             if joints.replan or joints.ends_moved:
@@ -155,10 +155,10 @@ class EECA(RunningStepper):
                 if joints.replan:
                     self._method.plan()
                 joints.planned()
-            parted = world.part()
+            parted = world.find_parted()
         if parted or (world.collisions and world.rules is not self._ruled):
             self._ruled = world.rules
-            self._method.rule(world.told())
+            self._method.rule(world.laws())
         return True
 
     def advance(self, world: World, dt: float, half_damping: float) -> int:

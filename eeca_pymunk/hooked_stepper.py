@@ -13,8 +13,6 @@ from .layout import LEFT
 from .packed_space import TOO_FAR, PackedSpace
 from .reentry import BUSY
 from .report import Details, StepReport
-from .space.hooks import Hooks
-from .space.rehearsal import Rehearsal
 from .space.world import World
 from .transfer import EVENTS, FORCES, MOVED_STATIC, OTHER_BODIES
 from .unmet import Unmet
@@ -51,12 +49,11 @@ class HookedStepper(PackedSpace):
         """A step of a space in which functions of bodies or constraints, or collision handlers, are called."""
         BUSY.add(self.space)
         try:
-            world, report, rehearsal = self._take_hooked(world, dt)
+            world, report = self._take_hooked(world, dt)
         finally:
             BUSY.discard(self.space)
-        if rehearsal is not None:
-            self._sync.note()
-            rehearsal.finish(world.movers)
+        if world.collisions:
+            self._sync.finish_rehearsal()
         elif self.sync or (world.joints is not None and world.joints.calling):
             self._sync.call_back()
         return report
@@ -64,65 +61,58 @@ class HookedStepper(PackedSpace):
     def _start_hooked(self, world: World) -> World:
         """Read the state of all bodies; returns their world, which may be new."""
         world.gather()
-        status = world.find()
+        status = world.check_start()
         if status in (OTHER_BODIES, MOVED_STATIC):
-            world = self._look(anew=True)
+            world = self._update_world(anew=True)
             world.gather()
-            status = world.find()
+            status = world.check_start()
         if status < 0:
             world.bodies.check_finite(world.state)
         return world
 
-    def _take_hooked(self, world: World, dt: float) -> tuple[World, StepReport, Rehearsal | None]:
-        """The step without post-step callbacks."""
+    def _take_hooked(self, world: World, dt: float) -> tuple[World, StepReport]:
+        """The step without post-step callbacks, and its world."""
         world = self._start_hooked(world)
-        bodies, joints, half_damping = world.bodies, world.joints, world.half_damping(dt)
-        hooks = world.hooks
-        rehearsal: Rehearsal | None = None
-        given, lost = False, 0.0
+        half_damping, lost = world.half_damping(dt), 0.0
         try:
-            if joints is not None:
-                joints.refresh()
-                if joints.before:
-                    hooks.before(dt)
+            if world.joints is not None:
+                world.joints.refresh()
+                if world.joints.before:
+                    world.hooks.before(dt)
                     world.gather()
-            if len(hooks.velocity):
-                world.push(hooks.change(dt), dt)
+            if len(world.hooks.velocity):
+                world.set_accelerations(world.hooks.velocity_changes(dt), dt)
             if world.collisions:
-                rehearsal = world.rehearsal
-                self._checked(world, dt, rehearsal.run(hooks, dt, world.gravity, half_damping))
+                self._checked(world, dt, world.rehearsal.run(dt, half_damping))
                 if self._sleep is not None and self._sleep.woken():
                     world = self._awoken(world)
-                    bodies, joints, hooks, rehearsal = world.bodies, world.joints, world.hooks, world.rehearsal
-                scene = world.places, world.SHAPE, world.smooth
-                world.rules = rehearsal.rules(world.rules, *scene, self.decisions)
-            status = self._checked(world, dt, self.advance(world, dt, half_damping))
+                world.rules = world.rehearsal.rules(self.decisions)
+            status, hooks = self._checked(world, dt, self.advance(world, dt, half_damping)), world.hooks
             book = self._booked(dt)
-            forces = status & FORCES or hooks.some or joints is not None
-            if world.damping == 0.0 or len(hooks.position) or (rehearsal is not None and rehearsal.after):
-                given = forces = True
-                bits, lost = world.alter(world.damping == 0.0)
+            alters = world.damping == 0.0 or len(hooks.position) > 0 or (world.collisions and world.rehearsal.after)
+            if alters:
+                bits, lost = world.alter_end(world.damping == 0.0)
                 self._checked(world, dt, bits)
                 if len(hooks.position):
                     hooks.positions(world.state, world.STATES[LEFT], dt)
-                    bodies.check_finite(world.ended(), TOO_FAR)
-                    bits = world.whole()
-                status = status & EVENTS | bits
+                    world.bodies.check_finite(world.ended(), TOO_FAR)
+                    bits = world.write_whole()
             else:
-                status = status & EVENTS | world.whole()
-            if forces:
+                bits = world.write_whole()
+            forces, status = status & FORCES, status & EVENTS | bits
+            if alters or forces or hooks.some or world.joints is not None:
                 world.reset_forces()
-            self._land_hooked(world, hooks, dt, status)
-            if given:
+            self._land_hooked(world, dt, status)
+            if alters:
                 # So that changes by functions after the step count as edits in the next one.
-                world.give_again()
+                world.keep_unaltered()
         except BaseException:
             self._undo(world, world.START)
             raise
         self.time += dt
-        report = self._made(world, dt, status, book, lost)
-        self._tell_joints(world)
-        return world, report, rehearsal
+        report = self._make_report(world, dt, status, book, lost)
+        world.show_joints()
+        return world, report
 
     def _awoken(self, world: World) -> World:
         """The world anew, where pymunk's step has woken bodies in a rehearsal, as it does on kinematic bodies; with
@@ -131,33 +121,36 @@ class HookedStepper(PackedSpace):
             if slept and not body.is_sleeping:
                 body.velocity, body.angular_velocity = (0.0, 0.0), 0.0
         world.bodies.scatter(world.state)
-        now = self._look(anew=True)
+        now = self._update_world(anew=True)
         now.gather()
-        now.find()
+        now.check_start()
         rows = [world.bodies.row[body] for body in now.bodies.items]
         now.START[:], now.EXTRA[:], now.CHANGES[:] = world.START[rows], world.EXTRA[rows], world.CHANGES[:, rows]
         now.rehearsal.go_on(world.rehearsal)
         now.hooks.late = world.hooks.late
         return now
 
-    def _land_hooked(self, world: World, hooks: Hooks, dt: float, status: int) -> None:
+    def _land_hooked(self, world: World, dt: float, status: int) -> None:
         """Write the end of a step to the space, and call `post_solve` of constraints."""
-        rehearses = world.collisions
         if world.joints is not None and world.joints.calling:
             world.scatter(status)
             world.joints.write()
-            hooks.after(dt)
-            if self.sync and not rehearses:
-                with hooks.silent():
-                    self._sync.settle(world.bodies, world.joints, dt, bool(status & EVENTS))
-        elif not self.sync or rehearses:
+            world.hooks.after(dt)
+            if self.sync and not world.collisions:
+                self._sync.follow(dt, status)
+        elif world.collisions:
             world.scatter(status)
-        elif self._sync.reindexes(dt, bool(status & EVENTS), world.joints):
-            world.scatter(status)
-            self._sync.reindex()
         else:
-            with hooks.silent():
-                self._sync.land(world, dt, status)
+            self.land(world, dt, status)
+
+    def land(self, world: World, dt: float, status: int) -> None:
+        """Write the end of a step to the space."""
+        if self.sync:
+            self._sync.land(dt, status)
+        else:
+            world.scatter(status)
+            if self._sync.stamp < 0:
+                self._sync.note()
 
     def _booked(self, dt: float) -> FloatArray | None:
         """The ledger entries of the step. NotFiniteError, before the space is changed, if the energy overflows though
@@ -173,7 +166,9 @@ class HookedStepper(PackedSpace):
             self._fail(world, dt, status)
         return status
 
-    def _made(self, world: World, dt: float, status: int, book: FloatArray | None, lost: float = 0.0) -> StepReport:
+    def _make_report(
+        self, world: World, dt: float, status: int, book: FloatArray | None, lost: float = 0.0
+    ) -> StepReport:
         """The report of the step with these ledger entries; `lost`: energy taken by damping 0 at the end."""
         if lost and book is not None:
             book[DAMPED] += lost

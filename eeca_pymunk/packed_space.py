@@ -14,8 +14,7 @@ from .errors import NotFiniteError
 from .space.checks import check_ignored
 from .space.decisions import Decisions
 from .space.describe import describe
-from .space.joints import JointRows
-from .space.sleep_groups import put_to_sleep, rouse
+from .space.sleep_groups import put_to_sleep, wake_neighbours
 from .space.sleeping import Sleep
 from .space.sync import Sync
 from .space.world import World
@@ -50,19 +49,18 @@ class PackedSpace(Stepper):
         self.ignore = check_ignored(ignore)
         self._warned = False
         self._world: World | None = None
-        self._told: JointRows | None = None  # source of `constraint.impulse`
         self._sync: Sync
         self._sleep: Sleep | None = None  # None if bodies cannot sleep
         self._idle_book: FloatArray | None = None  # ledger entries of a step in which all dynamic bodies sleep
         self.reads = self.patches = self.objects_read = 0
         self.decisions = Decisions()
-        self._look()
+        self._update_world()
 
     def __getstate__(self) -> dict[str, object]:
         # The original is not changed. The copy reads its space again.
         state = self.__dict__.copy()
         state.pop("_sync", None)
-        state["_world"] = state["_sleep"] = state["_told"] = None
+        state["_world"] = state["_sleep"] = None
         state["decisions"] = Decisions()
         return state
 
@@ -77,11 +75,11 @@ class PackedSpace(Stepper):
         self.decisions.forget(self.space)
 
     def prepare(self, world: World, past: World | None) -> None:
-        """Make the stepper's own arrays for a world that was just read; `past` is the world before, if known."""
+        """Make the stepper's own arrays for a world that was just read; `past` is the world before, if any."""
 
     def patch(self, world: World) -> bool:
-        """Put what the program has edited of shapes and bodies, of which none has come or gone, into the rows of a
-        world, and what is kept about it; False where only a new reading will do."""
+        """Write edits of shapes and bodies into the rows of a world, and into the stepper's own arrays; none were added
+        or removed. False if a new reading is needed."""
         return False
 
     def book(self) -> FloatArray | None:
@@ -92,10 +90,10 @@ class PackedSpace(Stepper):
     def model(self) -> str:
         world = self._world
         if world is None or not world.current():
-            world = self._look()
+            world = self._update_world()
         return describe(world)
 
-    def _look(self, anew: bool = False) -> World:
+    def _update_world(self, anew: bool = False) -> World:
         """The present space as a checked World: the last one if only settings changed, that one patched, or a new
         reading (always if `anew`)."""
         world = self._world
@@ -103,26 +101,18 @@ class PackedSpace(Stepper):
         if self._sleep is not None and self.space.sleep_time_threshold == math.inf:
             self._sleep.wake()
             self._sleep, anew = None, True
-        same = world is not None and world.same_things()
-        if world is not None and same and not anew and not world.edited():
-            joints = world.joints
-            world.read_settings()
-            if self._sleep is None and self.space.sleep_time_threshold < math.inf:
-                self._sleep = Sleep(world, None)
-            if world.joints is not joints:
-                self.prepare(world, world)
+        if world is not None and world.same_things():
+            if not (anew or world.edited()):
+                return self._update_settings(world)
+            if self._sleep is None and self.space.sleep_time_threshold == math.inf and self.patch(world):
                 self.patches += 1
-            return self._looked_at(world)
-        if world is not None and same and self._sleep is None and self.space.sleep_time_threshold == math.inf:
-            if self.patch(world):
-                self.patches += 1
-                return self._looked_at(world)
+                return self._adopt(world)
         past = world
         if self._sleep is not None:
-            self._sleep.part()
-            rouse(self.space)
+            self._sleep.wake_changed()
+            wake_neighbours(self.space)
         world = World(self.space, self.ignore, past)
-        if world.ignores and not self._warned:
+        if world.lacks_friction and not self._warned:
             self._warned = True
             warnings.warn(f"{type(self).__name__} steps on without the friction of this space", stacklevel=4)
         self.reads += 1
@@ -131,10 +121,21 @@ class PackedSpace(Stepper):
         self.prepare(world, past)
         if self._sleep is not None and (book := self.book()) is not None:
             self._idle_book = np.zeros_like(book)
-        return self._looked_at(world)
+        return self._adopt(world)
 
-    def _looked_at(self, world: World) -> World:
-        """Take a world that is current."""
+    def _update_settings(self, world: World) -> World:
+        """The world of the last step, after changes of settings and joints only."""
+        joints = world.joints
+        world.read_settings()
+        if self._sleep is None and self.space.sleep_time_threshold < math.inf:
+            self._sleep = Sleep(world, None)
+        if world.joints is not joints:
+            self.prepare(world, world)
+            self.patches += 1
+        return self._adopt(world)
+
+    def _adopt(self, world: World) -> World:
+        """Use a world that is current."""
         self.objects_read, world.objects_read = self.objects_read + world.objects_read, 0
         self._world = world
         return world
@@ -143,31 +144,28 @@ class PackedSpace(Stepper):
         """Wake all bodies."""
         if self._sleep is not None:
             self._sleep.wake()
-            rouse(self.space)
+            wake_neighbours(self.space)
 
-    def resting(self, bodies: Sequence[pymunk.Body]) -> tuple[FloatArray, IntArray, IntArray]:
+    def sleep_state(self, bodies: Sequence[pymunk.Body]) -> tuple[FloatArray, IntArray, IntArray]:
         """For how long bodies have been at rest (N,); index of another body of their sleeping group (N,), -1 for awake
-        bodies; the two timers of `space/sleeping.py`."""
+        bodies; (2,) the timers of `space/sleeping.py`."""
         if self._sleep is None:
             return np.zeros(len(bodies)), np.full(len(bodies), -1), np.zeros(2, np.int64)
-        return self._sleep.told(bodies)
+        return self._sleep.state(bodies)
 
-    def rest_again(self, bodies: Sequence[pymunk.Body], rested: FloatArray, groups: IntArray, timers: IntArray) -> None:
-        """Restore what `resting` returned, for bodies that are all awake."""
+    def recall_sleep(
+        self, bodies: Sequence[pymunk.Body], rested: FloatArray, groups: IntArray, timers: IntArray
+    ) -> None:
+        """Restore what `sleep_state` returned, for bodies that are all awake."""
         if self._sleep is not None:
             put_to_sleep(bodies, groups)
-            self._look(anew=bool((groups >= 0).any()))
+            self._update_world(anew=bool((groups >= 0).any()))
             self._sleep.recall(dict(zip(bodies, rested.tolist(), strict=True)), timers)
 
     def _undo(self, world: World, state: FloatArray) -> None:
         """Restore the states of the bodies."""
         self._world = None
         world.bodies.scatter(state)
-
-    def _tell_joints(self, world: World) -> None:
-        """Publish impulses of joints, and other results of the step for constraints."""
-        self._told = world.joints
-        world.settle()
 
     def _fail(self, world: World, dt: float, status: int) -> None:
         """Raise the exception of a negative status."""

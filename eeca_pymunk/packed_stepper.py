@@ -2,13 +2,13 @@
 
 | stage | method |
 |---|---|
-| have settings, shapes or bodies changed? | `World.current`, else `PackedSpace._look` |
+| have settings, shapes or bodies changed? | `World.current`, else `PackedSpace._update_world` |
 | read all states | `World.gather` |
 | move the arrays | `advance`, of subclasses |
 | repeat the step with sleeping bodies that were touched | `_awake` |
 | take the ledger's numbers | `_booked` |
 | write the states, and update pymunk's shapes | `land` |
-| make the report | `_made` |
+| make the report | `_make_report` |
 | call post-step callbacks | `Sync.call_back` |
 
 Steps that call functions of the program have their own method, `HookedStepper._hooked_step`.
@@ -60,10 +60,10 @@ class PackedStepper(HookedStepper):
             return StepReport.without_contacts(self.time)
         world = self._world
         if world is None or not world.current():
-            world = self._look()
-        return self._step(world, dt) if self._sleep is None else self._drowsy_step(self._sleep, world, dt)
+            world = self._update_world()
+        return self._step(world, dt) if self._sleep is None else self._sleeping_step(self._sleep, world, dt)
 
-    def _drowsy_step(self, sleep: Sleep, world: World, dt: float) -> StepReport:
+    def _sleeping_step(self, sleep: Sleep, world: World, dt: float) -> StepReport:
         """A step of a space in which bodies may sleep."""
         changed = sleep.changed()
         if not changed and sleep.nothing_moves():
@@ -72,8 +72,8 @@ class PackedStepper(HookedStepper):
             if self.sync:
                 self._sync.call_back()
             return StepReport(self.time, world.empty, book=self._idle_book)
-        if changed or (sleep.some and sleep.meet(dt)):
-            world = self._look(anew=True)
+        if changed or (sleep.some and sleep.wake_ahead(dt)):
+            world = self._update_world(anew=True)
         report = self._step(world, dt)
         now = self._sleep
         if now is not None and now.world is self._world:
@@ -112,10 +112,10 @@ class PackedStepper(HookedStepper):
             self._sleep.wake(touched)
             for array, was in zip(self.rewound(world), before, strict=True):
                 array[:] = was
-            world = self._look(anew=True)
+            world = self._update_world(anew=True)
             if self._calls(world):
-                if self._sleep is not None and self._sleep.some and self._sleep.meet(dt):
-                    world = self._look(anew=True)
+                if self._sleep is not None and self._sleep.some and self._sleep.wake_ahead(dt):
+                    world = self._update_world(anew=True)
                 break
             world.gather()
             status, before = self._attempt(world, dt, half_damping)
@@ -133,7 +133,7 @@ class PackedStepper(HookedStepper):
         half_damping = world.half_damping(dt)
         status, before = self._attempt(world, dt, half_damping)
         if status in (OTHER_BODIES, MOVED_STATIC):
-            world = self._look(anew=True)
+            world = self._update_world(anew=True)
             world.gather()
             status, before = self._attempt(world, dt, half_damping)
         if self._sleep is not None:
@@ -151,21 +151,9 @@ class PackedStepper(HookedStepper):
             self._undo(world, world.state)
             raise
         self.time += dt
-        report = self._made(world, dt, status, book)
+        report = self._make_report(world, dt, status, book)
         if not world.plain:
-            self._tell_joints(world)
+            world.show_joints()
         if self.sync:
             self._sync.call_back()
         return report
-
-    def land(self, world: World, dt: float, status: int) -> None:
-        """Write the end of a step to the space."""
-        if not self.sync:
-            world.scatter(status)
-            if self._sync.stamp < 0:
-                self._sync.note()
-        elif self._sync.reindexes(dt, bool(status & EVENTS), world.joints):
-            world.scatter(status)
-            self._sync.reindex()
-        else:
-            self._sync.land(world, dt, status)

@@ -32,7 +32,7 @@ PRESS = 1e-7  # part of its height by which a body is moved towards its support 
 
 
 @kernel
-def found(STATES: FloatArray, WALK: IntArray, BODY: Rows[Body], START: FloatArray) -> int:
+def copy_start(STATES: FloatArray, WALK: IntArray, BODY: Rows[Body], START: FloatArray) -> int:
     """Copy the state that was read to START (N, 9), and void all predictions: functions may change anything, so that
     all bodies count as placed by the program, and may overlap others.
 
@@ -60,12 +60,12 @@ def found(STATES: FloatArray, WALK: IntArray, BODY: Rows[Body], START: FloatArra
 
 
 @kernel
-def altered(
-    STATES: FloatArray, WALK: IntArray, BODY: Rows[Body], ENDS: FloatArray, AFTER: FloatArray, GIVEN: FloatArray,
+def alter_end(
+    STATES: FloatArray, WALK: IntArray, BODY: Rows[Body], ENDS: FloatArray, AFTER: FloatArray, UNALTERED: FloatArray,
     LOST: FloatArray, stops: int,
 ) -> int:  # fmt: skip
-    """At the end of a step: set all velocities to 0 if `stops` (damping 0); copy the result to GIVEN (N, 9); add AFTER
-    (N, 9), the changes by functions, and clear it; write all to ENDS.
+    """At the end of a step: set all velocities to 0 if `stops` (damping 0); copy the result to UNALTERED (N, 9); add
+    AFTER (N, 9), the changes by functions, and clear it; write all to ENDS.
 
     Within the step bodies keep their velocities, as under pymunk, which moves bodies before it damps them. LOST[0]: the
     energy lost by damping 0. Forces are reset.
@@ -78,12 +78,12 @@ def altered(
     for i in range(WALK.shape[1]):
         row = WALK[BODY_ROW, i]
         for c in range(9):
-            GIVEN[i, c] = left[i, c]
+            UNALTERED[i, c] = left[i, c]
         if row < 0:
             for c in range(9):
                 left[i, c] = now[i, c]
             if stops:
-                GIVEN[i, 3], GIVEN[i, 4], GIVEN[i, 5] = now[i, 3], now[i, 4], now[i, 5]
+                UNALTERED[i, 3], UNALTERED[i, 4], UNALTERED[i, 5] = now[i, 3], now[i, 4], now[i, 5]
         else:
             left[i, 6], left[i, 7], left[i, 8] = 0.0, 0.0, 0.0
             if stops and BODY[row].inv_mass > 0.0 and not WALK[SPECIAL, i] & STEERED:
@@ -91,7 +91,7 @@ def altered(
                 if BODY[row].inv_inertia > 0.0:
                     turning += left[i, 5] * left[i, 5] / BODY[row].inv_inertia
                 for c in range(3, 6):
-                    left[i, c], GIVEN[i, c] = 0.0, 0.0
+                    left[i, c], UNALTERED[i, c] = 0.0, 0.0
         for c in range(9):
             left[i, c] += AFTER[i, c]
             AFTER[i, c] = 0.0

@@ -73,10 +73,10 @@ class RunningStepper(PackedStepper):
         """The arrays of the present space, with the states of its bodies."""
         world = self._world
         if world is None or not world.current():
-            world = self._look()
+            world = self._update_world()
         world.gather()
         if not world.is_current():
-            world = self._look(anew=True)
+            world = self._update_world(anew=True)
             world.gather()
         return world
 
@@ -97,7 +97,7 @@ class RunningStepper(PackedStepper):
         """Whether functions have to be called within the next step."""
         world = self._world
         if world is None or not world.current():
-            world = self._look()
+            world = self._update_world()
         joints = world.joints
         functions = joints is not None and (joints.calls_back() or bool(joints.functions))
         return world.hooked or functions or (self.sync and self._sync.waits())
@@ -198,7 +198,7 @@ class RunningStepper(PackedStepper):
             status = self._take_steps(world, buffers, steps, progress)
         finally:
             # After an interrupt too.
-            failure = self._failure(world, buffers, dt, status) if status < 0 else None
+            failure = self._failure(world, dt, status) if status < 0 else None
             self._land_run(world, buffers, dt, status)
             if failure is not None:
                 raise failure
@@ -219,7 +219,7 @@ class RunningStepper(PackedStepper):
                 bar.update(int(RUN.done) - before)
         return status
 
-    def _failure(self, world: World, buffers: RunBuffers, dt: float, status: int) -> Exception:
+    def _failure(self, world: World, dt: float, status: int) -> Exception:
         """The error of a step that failed."""
         loop = self.event_loop
         assert loop is not None
@@ -247,4 +247,4 @@ class RunningStepper(PackedStepper):
             world.reset_forces()
         self.land(world, dt, bits)
         if not world.plain:
-            self._tell_joints(world)
+            world.show_joints()

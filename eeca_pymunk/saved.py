@@ -28,7 +28,7 @@ class Saved:
     """
 
     def __init__(self, world: World, method: EventLoop, decisions: Decisions) -> None:
-        self._decided = decisions.state(world.space, world.places, world.SHAPE, world.smooth)
+        self._decided = decisions.state(world)
         self.method, self.items, self.shapes, self.parted = method, world.bodies.items, world.shapes, world.parted
         self._left, self._extra = world.STATES[LEFT], world.EXTRA
         joints = world.joints
@@ -64,7 +64,7 @@ class Saved:
             self.method.rebind(joints.joint, world.PARTNER)
             joints.planned()
             world.parted = self.parted
-            world.part()
+            world.find_parted()
         world.BODY[:], world.VERTEX[:] = scene.BODY, scene.VERTEX
         self.method.scene = scene._replace(BODY=world.BODY)
         moves = ~world.bodies.static

@@ -33,8 +33,8 @@ def get_state(stepper: RunningStepper) -> IntArray:
     """See `RunningStepper.get_state`."""
     world, loop = stepper.current(), stepper.event_loop
     at = _rows(world)
-    parts: list[AnyArray] = [world.state[at], np.array([stepper.time]), *stepper.resting(_everyone(stepper.space))]
-    decided = stepper.decisions.state(stepper.space, world.places, world.SHAPE, world.smooth)
+    parts: list[AnyArray] = [world.state[at], np.array([stepper.time]), *stepper.sleep_state(_everyone(stepper.space))]
+    decided = stepper.decisions.state(world)
     parts += [np.array([len(decided)]), decided]
     if loop is not None and not world.bodies.asleep.any():
         parts += [world.STATES[LEFT, at], world.EXTRA[at], *loop.remembered()]
@@ -104,7 +104,7 @@ def _recall(stepper: RunningStepper, state: IntArray) -> None:
     else:
         stepper.refresh()
     stepper.decisions.recall(space, decided)
-    stepper.rest_again(everyone, rested, groups, timers)
+    stepper.recall_sleep(everyone, rested, groups, timers)
 
 
 def _remember(stepper: RunningStepper, world: World, parts: _Parts, at: IntArray) -> None:

@@ -193,7 +193,7 @@ def test_fault_while_writing_leaves_the_space_as_it_was(make: Make, monkeypatch:
         raise KeyboardInterrupt
 
     with monkeypatch.context() as patch:
-        patch.setattr(private, "step_alone", fail)
+        patch.setattr(private, "step_without_end", fail)
         with pytest.raises(KeyboardInterrupt):
             stepper.step(0.01)
     assert state(space) == before

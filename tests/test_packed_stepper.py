@@ -139,7 +139,7 @@ def test_a_step_without_functions_calls_none_and_asks_no_property(monkeypatch: p
     monkeypatch.undo()
     assert report.time == 2 * DT
     assert len(report.contacts) == 0
-    assert report.contacts.bodies == stepper._look().bodies.items
+    assert report.contacts.bodies == stepper._update_world().bodies.items
 
 
 def test_functions_set_after_the_stepper_was_made_are_called() -> None:
@@ -198,7 +198,7 @@ def test_what_handlers_decide_about_pairs_is_told_for_one_step() -> None:
     third = list(space.shapes)[2]
     third.collision_type = 3
     stepper = FreeFlight(space)
-    world = stepper._look()
+    world = stepper._update_world()
     assert not world.rules.ignored | set(world.rules.changed)
 
     def ignore(arbiter: pymunk.Arbiter, space: pymunk.Space, data: object) -> None:
@@ -287,7 +287,7 @@ def test_a_failure_leaves_the_space_as_it_was(when: str, monkeypatch: pytest.Mon
         list(space.bodies)[1].position_func = fail
         stepper.refresh()
     elif when == "rest step":
-        monkeypatch.setattr(private, "step_alone", fail)
+        monkeypatch.setattr(private, "step_without_end", fail)
     else:
         stepper.step(DT)
         push(space)
@@ -369,7 +369,7 @@ def test_errors_come_before_anything_moves() -> None:
 def test_the_report_of_events_is_made_when_asked() -> None:
     space = swarm()
     stepper = FreeFlight(space)
-    world = stepper._look()
+    world = stepper._update_world()
     first, second = 0, len(world.shapes) - 1
     late = [first, second, 0.75 * DT, 2.0, 0.0, 1.0, 5.0, 6.0, 0.5, 3.0, 0.0, 0.25]
     soon = [second - 1, second, 0.25 * DT, 1.0, 1.0, 0.0, 7.0, 8.0, -0.5, 4.0, -0.1, 0.0]

@@ -165,7 +165,7 @@ def test_angles_are_written_only_where_some_body_turns() -> None:
     # A spin that the step itself gives is written too.
     world.gather()
     world.STATES[at.LEFT, 0, 5] = 3.0
-    assert world.whole() & transfer.TURNS
+    assert world.write_whole() & transfer.TURNS
     world.scatter(transfer.TURNS)
     assert body.angular_velocity == 3.0
 

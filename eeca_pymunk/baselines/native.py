@@ -24,8 +24,7 @@ class Native(Stepper):
         # Bodies checks masses, and shape_body the owners, on which pymunk would fail with an assertion or an abort.
         if self._bodies is None or (state := self._bodies.gather()) is None:
             self._bodies = Bodies(self.space)
-            state = self._bodies.gather()
-            assert state is not None  # read from these very bodies
+            state = self._bodies.start
             for shape in self.space.shapes:
                 shape_body(shape)
         self._bodies.check_finite(state)

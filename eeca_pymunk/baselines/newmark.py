@@ -51,10 +51,9 @@ class Newmark(PenaltyStepper):
 
     def load(self, springs: Springs) -> tuple[FloatArray, int, bool]:
         dt, K, beta, gamma = springs.dt, self.stiffness, self.beta, self.gamma
-        m_inv = springs.inverse_mass[:, None]
         before = springs.operator(springs.before.normal)
         f_n = K * np.maximum(-springs.before.gap, 0.0)
-        a_n = springs.acceleration + before.impulse(f_n) * m_inv
+        a_n = springs.acceleration + before.change(f_n)
         free = dt * springs.start_velocity + dt * dt * ((0.5 - beta) * a_n + beta * springs.acceleration)
         f = np.zeros_like(f_n)
         springs.move(free, springs.start_velocity)
@@ -65,7 +64,7 @@ class Newmark(PenaltyStepper):
             q = springs.after.gap / (beta * dt * dt) - A @ f
             new = springs.solve(A, on, q[on], 1.0 / (K * beta * dt * dt), f[on])
             change, f = np.max(np.abs(new - f)), new
-            a_np1 = springs.acceleration + A.impulse(f) * m_inv
+            a_np1 = springs.acceleration + A.change(f)
             velocity = springs.start_velocity + dt * ((1.0 - gamma) * a_n + gamma * a_np1)
             springs.move(free + beta * dt * dt * (a_np1 - springs.acceleration), velocity)
             if change <= self.tolerance * np.max(f):

@@ -38,21 +38,20 @@ class PenaltyStepper(PackedStepper):
         world.load()
         self._disks = Disks(world, type(self).__name__)
 
-    def advance(self, world: World, dt: float, left: float) -> int:
+    def advance(self, world: World, dt: float, half_damping: float) -> int:
         gx, gy = world.gravity
         if world.collisions:
             self._disks.rules = world.rules.of_pairs(world.SHAPE)
-        return self._disks.step(world.STATES, world.WALK, world.EXTRA, world.ENDS, dt, gx, gy, left, self._move)
+        arrays = world.STATES, world.WALK, world.EXTRA, world.ENDS
+        return self._disks.step(*arrays, dt, gx, gy, half_damping, self._move)
 
     def details(self, world: World, dt: float) -> Details:
-        motion = self._disks.motion
-        assert motion is not None
-        assert motion.details is not None
-        return motion.details
+        assert self._disks.motion.details is not None
+        return self._disks.motion.details
 
     def outcome(self) -> tuple[float, bool, int]:
         motion = self._disks.motion
-        return (1.0, True, 0) if motion is None else (1.0, motion.converged, motion.iterations)
+        return motion.lock, motion.converged, motion.iterations
 
     def _move(self, start: Start) -> Motion:
         velocity = start.free_velocity
@@ -60,10 +59,9 @@ class PenaltyStepper(PackedStepper):
         pairs, before, _ = self._disks.near(start, displacement)
         if len(pairs) == 0:
             return Motion(velocity, displacement)
-        rows, row_a, row_b = restrict(pairs.row_a, pairs.row_b, len(velocity))
-        springs = Springs(start, pairs, before, rows, row_a, row_b)
+        springs = Springs(start, pairs, before)
         impulse, iterations, converged = self.load(springs)
-        velocity[rows], displacement[rows] = springs.velocity, springs.displacement
+        velocity[springs.rows], displacement[springs.rows] = springs.velocity, springs.displacement
         on = np.flatnonzero(impulse > 0)
         at = springs.after.take(on)
         contacts = pairs.take(on).contacts(at, before.gap[on], np.full(len(on), start.dt / 2))
@@ -81,21 +79,16 @@ class Springs:
     """The m near pairs of a step on the R bodies they touch, and the trial motion of these bodies.
 
     Attributes:
+        rows: (R,) of the bodies.  row_a, row_b: (m,) places of the bodies of each pair in `rows`.
         before, after: geometry (m,) of the pairs at the start, and at the end of the trial motion.
         displacement, velocity: (R, 2) of the trial motion, and at its end.
     """
 
-    def __init__(
-        self,
-        start: Start,
-        pairs: Pairs,
-        before: Geometry,
-        rows: IntArray,
-        row_a: IntArray,
-        row_b: IntArray,
-    ) -> None:
+    def __init__(self, start: Start, pairs: Pairs, before: Geometry) -> None:
         self.dt, self.pairs, self.before = start.dt, pairs, before
-        self.row_a, self.row_b, self.inverse_mass = row_a, row_b, start.inverse_mass[rows]
+        self.rows, self.row_a, self.row_b = restrict(pairs.row_a, pairs.row_b, len(start.position))
+        rows = self.rows
+        self.inverse_mass = start.inverse_mass[rows]
         self.start_position, self.start_velocity = start.position[rows], start.velocity[rows]
         self.acceleration = start.acceleration[rows]
         self.move(start.free_displacement[rows], self.start_velocity + start.dt * self.acceleration)
@@ -150,7 +143,7 @@ class PenaltyEnergyMomentum(PenaltyStepper):
     """
 
     def load(self, springs: Springs) -> tuple[FloatArray, int, bool]:
-        dt, K, m_inv = springs.dt, self.stiffness, springs.inverse_mass[:, None]
+        dt, K = springs.dt, self.stiffness
         g_n = springs.before.gap
         lam = np.zeros(len(g_n))
         for iteration in range(1, self.max_iterations + 1):
@@ -166,7 +159,7 @@ class PenaltyEnergyMomentum(PenaltyStepper):
             q_on = q[loaded] - 2.0 * force[loaded] / (dt * stiff)
             new = springs.solve(A, loaded, q_on, 2.0 / (dt * dt * stiff), lam[loaded])
             change, lam = np.max(np.abs(new - lam)), new
-            velocity = springs.start_velocity + dt * springs.acceleration + A.impulse(lam) * m_inv
+            velocity = springs.start_velocity + dt * springs.acceleration + A.change(lam)
             springs.move(0.5 * dt * (springs.start_velocity + velocity), velocity)
             if change <= self.tolerance * np.max(lam):
                 return lam, iteration, True

@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ..impacts.scene import EventLoop
+from .time_of_impact import event_loop
 
 if TYPE_CHECKING:
+    from ..impacts.scene import EventLoop
     from ..space.world import World
 
 
@@ -25,9 +26,5 @@ class Midstep:
     """
 
     def prepare(self, world: World) -> EventLoop:
-        """The arrays of the solve for a world that was read anew."""
-        joint = None if world.joints is None else world.joints.joint
-        return EventLoop(
-            world.BODY, world.SHAPE, world.LINK, world.VERTEX, world.disks, 0, joint, world.PARTNER, together=True,
-            still=world.still, memory=world.memory,
-        )  # fmt: skip
+        """The event loop of a world that was just read, which has no events."""
+        return event_loop(world, 0, together=True)

@@ -153,7 +153,7 @@ class Disks:
         check_disks(world, moving, mover)
         self.world = world
         self.rules: Mapping[tuple[int, int], tuple[float, float, float, float]] = {}
-        self.motion: Motion | None = None
+        self.motion = Motion(np.zeros((0, 2)), np.zeros((0, 2)))  # of the last step
         scene = scene_with(
             BODY=world.BODY, SHAPE=world.SHAPE, LINK=world.LINK, VERTEX=world.VERTEX, CORE=core_room(world.LINK)
         )

@@ -24,8 +24,7 @@ def check_disks(world: World, moving: int, mover: str) -> None:
         )
     owner = world.LINK["owner"][:moving]
     if moving > world.disks:
-        centred = (world.LINK["vertices"][:moving] == 1) & ~world.VERTEX[world.LINK["first"][:moving], :2].any(axis=1)
-        other = np.flatnonzero(~(centred & (world.BODY["inv_mass"][owner] > 0.0)))
+        other = np.flatnonzero(~(world.centred[:moving] & (world.BODY["inv_mass"][owner] > 0.0)))
         i = int(other[0]) if len(other) else world.disks
         raise UnsupportedFeature(
             f"{world.shapes[i]} of {world.bodies.items[world.owner[i]]} moves and is not a disk about the centre of "

@@ -187,10 +187,8 @@ class SimultaneousStep:
 
     def details(self, dt: float, bodies: tuple[pymunk.Body, ...], owner: IntArray) -> Details:
         """The arrays of the report of the last step, which had contacts."""
-        motion = self.disks.motion
-        assert motion is not None
-        assert motion.details is not None
-        return motion.details
+        assert self.disks.motion.details is not None
+        return self.disks.motion.details
 
     @property
     def book(self) -> None:
@@ -200,17 +198,17 @@ class SimultaneousStep:
     @property
     def lock(self) -> float:
         """Scale of the energy lock of the last step that was farthest from 1."""
-        return self.disks.motion.lock if self.disks.motion else 1.0
+        return self.disks.motion.lock
 
     @property
     def converged(self) -> bool:
         """Whether the last step met the tolerance."""
-        return self.disks.motion.converged if self.disks.motion else True
+        return self.disks.motion.converged
 
     @property
     def iterations(self) -> int:
         """Of the closure in the last step."""
-        return self.disks.motion.iterations if self.disks.motion else 0
+        return self.disks.motion.iterations
 
 
 def _length(vectors: FloatArray) -> FloatArray:

@@ -27,9 +27,14 @@ class TimeOfImpact:
     max_impacts: int = 100_000
 
     def prepare(self, world: World) -> EventLoop:
-        """The arrays of the loop for a world that was read anew."""
-        joint = None if world.joints is None else world.joints.joint
-        return EventLoop(
-            world.BODY, world.SHAPE, world.LINK, world.VERTEX, world.disks, self.max_impacts, joint, world.PARTNER,
-            still=world.still, memory=world.memory,
-        )  # fmt: skip
+        """The event loop of a world that was just read."""
+        return event_loop(world, self.max_impacts)
+
+
+def event_loop(world: World, limit: int, together: bool = False) -> EventLoop:
+    """The event loop of a world, see `EventLoop`."""
+    joint = None if world.joints is None else world.joints.joint
+    return EventLoop(
+        world.BODY, world.SHAPE, world.LINK, world.VERTEX, world.disks, limit, joint, world.PARTNER, together,
+        world.still, world.memory,
+    )  # fmt: skip

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.collections import EllipseCollection, LineCollection, PolyCollection
+from matplotlib.collections import Collection, EllipseCollection, LineCollection, PolyCollection
 
 from eeca_pymunk.arrays import FloatArray, IntArray
 from eeca_pymunk.space.outlines import Outlines, place
@@ -19,11 +19,10 @@ _ARC = 7  # points of the rounding of a corner
 class Drawing:
     """Collections of disks, lines and polygons; `move` puts them where the bodies are.
 
-    Those of static shapes are final at once; `artists` lists the others.
+    Those of static shapes are final at once; `artists` lists the others. `ghost`: outlines only.
     """
 
     def __init__(self, ax: Axes, outlines: Outlines, *, ghost: bool = False) -> None:
-        self.outlines = outlines
         self._moving: list[_Part] = []
         first = np.cumsum(outlines.count) - outlines.count
         vertices = [outlines.vertex[i : i + k] for i, k in zip(first, outlines.count, strict=True)]
@@ -33,11 +32,14 @@ class Drawing:
             for sensor in (True, False):
                 here = ((outlines.row < 0) == still) & (outlines.sensor == sensor)
                 color = SENSOR if sensor else STATIC if still else MOVING
-                for kind, which in ((_Disks, disk), (_Lines, line), (_Polygons, ~disk & ~line)):
+                for which in (disk, line, ~disk & ~line):
                     chosen = np.flatnonzero(here & which)
                     if len(chosen) == 0:
                         continue
-                    part = kind(ax, outlines, chosen, [vertices[i] for i in chosen], color, ghost)
+                    local = [vertices[i] for i in chosen]
+                    artist, local = _artist(ax, outlines.radius[chosen], local, color, ghost)
+                    ax.add_collection(artist, autolim=False)
+                    part = _Part(artist, local, outlines.row[chosen])
                     if still:
                         part.draw(part.local)
                     else:
@@ -50,63 +52,40 @@ class Drawing:
     def move(self, position: FloatArray, angle: FloatArray) -> None:
         """Draw the bodies at (N, 2) positions and (N,) angles; NaN leaves a body out."""
         for part in self._moving:
-            part.move(position, angle)
+            part.draw(place(part.local, part.owner, position, angle))
 
 
 class _Part:
     """One collection: points `local` of bodies `owner`, and how they become what is drawn."""
 
-    artist: EllipseCollection | LineCollection | PolyCollection
-
-    def __init__(self, local: list[FloatArray], row: IntArray) -> None:
-        self.local = np.concatenate(local)
+    def __init__(self, artist: Collection, local: list[FloatArray], row: IntArray) -> None:
+        self.artist, self.local = artist, np.concatenate(local)
         lengths = [len(v) for v in local]
         self.owner = np.repeat(row, lengths)
         self.ends = np.cumsum(lengths)[:-1]
 
-    def move(self, position: FloatArray, angle: FloatArray) -> None:
-        self.draw(place(self.local, self.owner, position, angle))
-
     def draw(self, world: FloatArray) -> None:
-        self.artist.set_verts(np.split(world, self.ends))  # type: ignore[union-attr]
+        if isinstance(self.artist, EllipseCollection):
+            self.artist.set_offsets(world)
+        else:
+            self.artist.set_verts(np.split(world, self.ends))  # type: ignore[attr-defined]
 
 
-class _Disks(_Part):
-    def __init__(
-        self, ax: Axes, outlines: Outlines, chosen: IntArray, local: list[FloatArray], color: str, ghost: bool
-    ) -> None:
-        super().__init__(local, outlines.row[chosen])
-        width = 2.0 * outlines.radius[chosen]
-        self.artist = EllipseCollection(
-            width, width, np.zeros(len(chosen)), units="xy", offsets=np.zeros((len(chosen), 2)),
-            offset_transform=ax.transData, facecolors="none" if ghost else color,
-            edgecolors=GHOST if ghost else "none", linewidths=1.5 if ghost else 0.0, zorder=4 if ghost else 2,
-        )  # fmt: skip
-        ax.add_collection(self.artist, autolim=False)
-
-    def draw(self, world: FloatArray) -> None:
-        self.artist.set_offsets(world)
-
-
-class _Lines(_Part):
-    def __init__(
-        self, ax: Axes, outlines: Outlines, chosen: IntArray, local: list[FloatArray], color: str, ghost: bool
-    ) -> None:
-        super().__init__(local, outlines.row[chosen])
-        self.artist = LineCollection([], colors=GHOST if ghost else color, linewidths=1.5)
-        ax.add_collection(self.artist, autolim=False)
-
-
-class _Polygons(_Part):
-    def __init__(
-        self, ax: Axes, outlines: Outlines, chosen: IntArray, local: list[FloatArray], color: str, ghost: bool
-    ) -> None:
-        rounded = [_rounded(v, float(r)) for v, r in zip(local, outlines.radius[chosen], strict=True)]
-        super().__init__(rounded, outlines.row[chosen])
-        self.artist = PolyCollection(
-            [], facecolors="none" if ghost else color, edgecolors=GHOST if ghost else "white", linewidths=0.5
-        )
-        ax.add_collection(self.artist, autolim=False)
+def _artist(
+    ax: Axes, radius: FloatArray, local: list[FloatArray], color: str, ghost: bool
+) -> tuple[Collection, list[FloatArray]]:  # fmt: skip
+    """The collection of shapes of one kind, and the points of each: disks, segments without width, or polygons."""
+    face, edge = "none" if ghost else color, GHOST if ghost else "none"
+    if len(local[0]) == 1:
+        return EllipseCollection(
+            2.0 * radius, 2.0 * radius, np.zeros(len(radius)), units="xy", offsets=np.zeros((len(radius), 2)),
+            offset_transform=ax.transData, facecolors=face, edgecolors=edge, linewidths=1.5 if ghost else 0.0,
+            zorder=4 if ghost else 2,
+        ), local  # fmt: skip
+    if len(local[0]) == 2 and radius[0] == 0.0:
+        return LineCollection([], colors=GHOST if ghost else color, linewidths=1.5), local
+    rounded = [_rounded(v, float(r)) for v, r in zip(local, radius, strict=True)]
+    return PolyCollection([], facecolors=face, edgecolors=GHOST if ghost else "white", linewidths=0.5), rounded
 
 
 def _rounded(vertices: FloatArray, radius: float) -> FloatArray:

@@ -7,17 +7,18 @@ Open first `world.py`, the space as packed arrays, and `checks.py`, the unsuppor
 
 | subject | files |
 |---|---|
-| reading bodies and shapes | `bodies.py`, `shapes.py`, `packing.py` |
-| reading joints | `joints.py`, `constraints.py`, `partners.py`, `pushing.py`, `spring_functions.py` |
+| reading bodies and shapes | `bodies.py`, `outlines.py` (also for pictures), `packing.py` |
+| reading joints | `joints.py`, `constraints.py`, `listing.py`, `partners.py`, `spring_functions.py` |
 | states in and out | `crossing.py` |
-| edits by the program | `noticed.py` (shapes, bodies), `edits.py` (joints), `patching.py` (rows after edits in place) |
-| functions of the program | `hooks.py`, `rehearsal.py` (collision handlers) |
+| edits by the program | `edits.py` (shapes, bodies), `joint_edits.py`, `patching.py` (rows after edits in place) |
+| functions of the program | `hooks.py`, `rehearsal.py`, `decisions.py` (collision handlers) |
 | pymunk's own state after a step | `sync.py` (shapes), `arbiters.py` (contacts), `constraint_impulses.py` |
 | sleeping bodies | `sleeping.py`, `sleep_groups.py` |
-| other readers | `measure.py` (energy), `outlines.py` (pictures), `describe.py` (one line of text) |
+| other readers | `measure.py` (energy), `describe.py` (one line of text) |
 | private names of pymunk | `private.py` and the files `private_*.py` |
 
-Three files replace methods or properties of pymunk's classes, which then act as before for all other spaces:
-`noticed.py` (setters of shapes and bodies; `Body.sleep` at import), `edits.py` (`Constraint.__setattr__`, `impulse`),
-`arbiters.py` (`each_arbiter`, `batch.get_space_arbiters`, `debug_draw`). They are not restored.
+Four files replace methods or properties of pymunk's classes, which then act as before for all other spaces:
+`edits.py` (setters of shapes and bodies; `Body.sleep` at import), `joint_edits.py` (`Constraint.__setattr__`),
+`constraint_impulses.py` (`Constraint.impulse`), `arbiters.py` (`each_arbiter`, `batch.get_space_arbiters`,
+`debug_draw`). They are not restored.
 """

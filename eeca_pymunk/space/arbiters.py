@@ -63,7 +63,7 @@ def show_contacts(space: pymunk.Space, read: Reading) -> None:
     """Let arbiters of a space have the contents that `read` returns, unless None. `read` must not refer to the
     space."""
     _readings[space] = read
-    if pymunk.Body.each_arbiter is not _each_arbiter:  # Python forgets what it knows of a class that is set anything
+    if pymunk.Body.each_arbiter is not _each_arbiter:  # setting any attribute of a class clears Python's caches of it
         pymunk.Body.each_arbiter = _each_arbiter  # type: ignore[method-assign]
         pymunk.Space.debug_draw = _debug_draw  # type: ignore[method-assign]
         batch.get_space_arbiters = _get_space_arbiters
@@ -92,7 +92,7 @@ def _of(space: pymunk.Space | None) -> Touches | None:
 
 
 @contextmanager
-def _told(arbiters: Sequence[Any], found: dict[frozenset[int], Touch]) -> Iterator[list[Any]]:
+def _with_impulses(arbiters: Sequence[Any], found: dict[frozenset[int], Touch]) -> Iterator[list[Any]]:
     """Within this block pymunk's arbiters have the impulses of these pairs; yields arbiters for the other pairs."""
     kept, missing = [], dict(found)
     try:
@@ -123,7 +123,7 @@ def _each_arbiter(self: pymunk.Body, func: Callable[..., None], *args: Any, **kw
         return
     arbiters: list[Any] = []
     _native_each(self, lambda arbiter: arbiters.append(private_arbiters.raw(arbiter)))
-    with _told(arbiters, found.of(self)) as more:
+    with _with_impulses(arbiters, found.of(self)) as more:
         _native_each(self, func, *args, **kwargs)
         for arbiter in more:
             private_arbiters.turn_to(arbiter, self)
@@ -135,7 +135,7 @@ def _get_space_arbiters(space: pymunk.Space, fields: batch.ArbiterFields, buffer
     if found is None:
         _native_batch(space, fields, buffers)
         return
-    with _told(private.raw_arbiters(space), found.all) as more:
+    with _with_impulses(private.raw_arbiters(space), found.all) as more:
         _native_batch(space, fields, buffers)
         private_arbiters.batch_arbiters(more, fields, buffers)
 

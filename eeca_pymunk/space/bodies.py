@@ -16,6 +16,7 @@ from pymunk import batch
 from ..arrays import BoolArray, FloatArray, IntArray, rotated
 from ..compiled.records import Rows, columns, from_bytes, put
 from ..errors import NotFiniteError
+from ..layout import STATE_COLUMNS
 from ..model.bodies import POSE
 from ..model.given import DYNAMIC, KINEMATIC, STATIC, GivenBody
 from . import private, private_sleep
@@ -23,11 +24,10 @@ from . import private, private_sleep
 _KIND = {pymunk.Body.DYNAMIC: DYNAMIC, pymunk.Body.KINEMATIC: KINEMATIC, pymunk.Body.STATIC: STATIC}
 _FIELDS = batch.BodyFields
 _STATE = _FIELDS.POSITION | _FIELDS.ANGLE | _FIELDS.VELOCITY | _FIELDS.ANGULAR_VELOCITY | _FIELDS.FORCE | _FIELDS.TORQUE
-_WITH_IDS = _FIELDS.BODY_ID | _STATE
+STATE_FIELDS = _FIELDS.BODY_ID | _STATE
 # Columns of one row of the state, in the order pymunk.batch writes them.
 POSITION, ANGLE, VELOCITY = slice(0, 2), 2, slice(3, 5)
 ANGULAR_VELOCITY, FORCE, TORQUE = 5, slice(6, 8), 8
-COLUMNS = 9
 COLUMN_NAMES = (
     "position.x",
     "position.y",
@@ -51,7 +51,7 @@ _MASSES, _FROM, _TO = struct.Struct("4d"), 32, 64  # mass, moment and their inve
 _FIXED = math.inf, math.inf, 0.0, 0.0
 
 
-def _told(body: pymunk.Body) -> bytes:
+def _values(body: pymunk.Body) -> bytes:
     """The values of a body, as the bytes of a `GivenBody`.
 
     Raises:
@@ -71,46 +71,38 @@ def _told(body: pymunk.Body) -> bytes:
     return _GIVEN.pack(kind, 0, *hooks, *masses, *body.center_of_gravity, 0.0, 0.0, 0.0, -1, 0)
 
 
-def _rows_of(flag: IntArray, asleep: BoolArray | None) -> IntArray:
-    """The rows of the bodies awake that have this flag."""
-    if not flag.any():
-        return _NONE
-    return np.flatnonzero(flag if asleep is None else flag * ~asleep)
-
-
-_NONE: IntArray = np.zeros(0, np.intp)
 _OF_MASS = "mass", "moment", "inverse_mass", "inverse_moment"
 
 
 class Bodies:
     """The bodies of one space, one row each, in the order of `pymunk.batch`.
 
-    Masses, moments and kinds are read once; `gather` returns None if the space no longer has these bodies.
+    Masses, moments and kinds are read once; ValueError for a dynamic body without a positive mass and moment.
 
     Args:
-        space: a pymunk space.  fixed: whether bodies may sleep; sleeping ones then count as static.
+        space: a pymunk space.  sleeps: whether bodies may sleep; sleeping ones then count as static.
         before: the bodies before some were added or removed; their values are reused except for the `stale`.
 
     Attributes:
-        fixed: whether any may sleep.  items: the pymunk bodies, by row.  ids: (N,) pymunk's numbers of them.
+        items: the pymunk bodies, by row.  ids: (N,) pymunk's numbers of them.
         fresh: number of bodies whose values were read anew.
         start: (N, 9) their state when they were read.
         mass, moment: (N,) mass and M L²; infinite for static and kinematic bodies.
         inverse_mass: (N,) 1/mass, 0 for static and kinematic bodies.
-        dynamic: (N,) bool.  static: (N,) bool.  asleep: (N,) bool, none unless `fixed`.
+        dynamic: (N,) bool.  static: (N,) bool.  asleep: (N,) bool, none unless `sleeps`.
         center_of_gravity: (N, 2) length, in body coordinates.
     """
 
     def __init__(
-        self, space: pymunk.Space, fixed: bool = False, before: Bodies | None = None, stale: Collection[Any] = ()
+        self, space: pymunk.Space, sleeps: bool = False, before: Bodies | None = None, stale: Collection[Any] = ()
     ) -> None:
-        self.space, self.fixed = space, fixed
+        self.space = space
         self._buffer = batch.Buffer()
         ground = space.static_body  # exists in the space from its first access on
         self.ids, self.start = self._read()
         known: dict[int, tuple[pymunk.Body, bytes]] = {}
         if before is not None:
-            known = dict(zip(before.ids.tolist(), zip(before.items, before._told, strict=True), strict=True))
+            known = dict(zip(before.ids.tolist(), zip(before.items, before._values, strict=True), strict=True))
             old = before.row if stale else {}
             for row in [old[body] for body in stale if body in old]:
                 del known[int(before.ids[row])]
@@ -120,19 +112,19 @@ class Bodies:
         if missing:
             old = {} if before is None else before.row
             new = {b.id: b for b in (*space.bodies, ground) if b not in old or b in stale}
-            known.update((i, (new[i], _told(new[i]))) for i in missing)
+            known.update((i, (new[i], _values(new[i]))) for i in missing)
         found = [known[i] for i in ids]
         self.items: tuple[pymunk.Body, ...] = tuple([body for body, _ in found])
         self.row: dict[pymunk.Body, int] = dict(zip(self.items, range(len(ids)), strict=True))
-        self._told: list[bytes] = [told for _, told in found]
-        self.GIVEN: Rows[GivenBody] = from_bytes(GivenBody, self._told)
+        self._values: list[bytes] = [values for _, values in found]
+        self.GIVEN: Rows[GivenBody] = from_bytes(GivenBody, self._values)
         kind: IntArray = self.GIVEN["kind"]
         self.mass: FloatArray = self.GIVEN["mass"]
         self.moment: FloatArray = self.GIVEN["moment"]
         self.inverse_mass: FloatArray = self.GIVEN["inverse_mass"]
         self.inverse_moment: FloatArray = self.GIVEN["inverse_moment"]
         self.asleep: BoolArray = np.zeros(len(self.items), bool)
-        if fixed:
+        if sleeps:
             self.asleep[:] = private_sleep.sleeping(self.items)
             kind[self.asleep] = STATIC
             put(self.GIVEN, np.where(self.asleep[:, None], _FIXED, columns(self.GIVEN, *_OF_MASS)), *_OF_MASS)
@@ -144,8 +136,8 @@ class Bodies:
         self.dynamic: BoolArray = kind == DYNAMIC
         self.static: BoolArray = kind == STATIC
         # Functions of sleeping bodies are not called, as under pymunk.
-        self.velocity_hooks = _rows_of(self.GIVEN["steered"], self.asleep if fixed else None)
-        self.position_hooks = _rows_of(self.GIVEN["moved"], self.asleep if fixed else None)
+        self.velocity_hooks: IntArray = np.flatnonzero(self.GIVEN["steered"] * ~self.asleep)
+        self.position_hooks: IntArray = np.flatnonzero(self.GIVEN["moved"] * ~self.asleep)
         self.center_of_gravity: FloatArray = columns(self.GIVEN, "centre_x", "centre_y")
 
     def placed(self, state: FloatArray) -> Rows[GivenBody]:
@@ -155,14 +147,14 @@ class Bodies:
 
     def changed(self, row: int) -> tuple[bool, bool]:
         """Whether values of a body have changed, and whether others than mass and moment have."""
-        new, old = _told(self.items[row]), self._told[row]
+        new, old = _values(self.items[row]), self._values[row]
         return new != old, new[:_FROM] != old[:_FROM] or new[_TO:] != old[_TO:]
 
-    def weigh(self, rows: Sequence[int]) -> None:
+    def read_masses(self, rows: Sequence[int]) -> None:
         """Read masses and moments of these rows again; ValueError, and nothing changed, if they are invalid."""
-        for i, told in [(i, _told(self.items[i])) for i in rows]:
-            self._told[i] = told
-            masses = _MASSES.unpack_from(told, _FROM)
+        for i, values in [(i, _values(self.items[i])) for i in rows]:
+            self._values[i] = values
+            masses = _MASSES.unpack_from(values, _FROM)
             self.mass[i], self.moment[i], self.inverse_mass[i], self.inverse_moment[i] = masses
 
     @cached_property
@@ -182,9 +174,9 @@ class Bodies:
     def _read(self) -> tuple[npt.NDArray[np.uintp], FloatArray]:
         """(N,) ids and (N, 9) state now."""
         self._buffer.clear()
-        batch.get_space_bodies(self.space, _WITH_IDS, self._buffer)
+        batch.get_space_bodies(self.space, STATE_FIELDS, self._buffer)
         ids: npt.NDArray[np.uintp] = np.frombuffer(self._buffer.int_buf(), dtype=np.uintp).copy()
-        return ids, np.frombuffer(self._buffer.float_buf()).reshape(-1, COLUMNS).copy()
+        return ids, np.frombuffer(self._buffer.float_buf()).reshape(-1, STATE_COLUMNS).copy()
 
     def gather(self) -> FloatArray | None:
         """The (N, 9) state now: position, angle, velocity, angular velocity, force, torque (see COLUMN_NAMES).

@@ -19,11 +19,6 @@ def shape_body(shape: pymunk.Shape) -> pymunk.Body:
     return shape.body
 
 
-def shape_radius(shape: Any) -> float:
-    """The radius of a shape; all kinds of pymunk shapes have one."""
-    return float(shape.radius)
-
-
 def settings(space: pymunk.Space) -> tuple[tuple[float, float], float]:
     """Gravity and damping of a space; ValueError for values that cannot be stepped."""
     (x, y), damping = space.gravity, space.damping
@@ -43,7 +38,7 @@ def check_ignored(ignore: Sequence[str]) -> tuple[str, ...]:
     return names
 
 
-def check_shape(shape: pymunk.Shape) -> None:
+def check_shape(shape: Any) -> None:
     """ValueError for invalid values of a shape, or a shape without a body; UnsupportedFeature for unknown kinds."""
     shape_body(shape)
     surface = shape.surface_velocity
@@ -55,15 +50,11 @@ def check_shape(shape: pymunk.Shape) -> None:
         raise UnsupportedFeature(f"{shape} is neither a Circle, a Segment nor a Poly; replace it by one of them")
     if not 0.0 <= shape.elasticity < math.inf:
         raise ValueError(f"{shape} has elasticity {shape.elasticity}: set a finite value >= 0")
-    if not math.isfinite(shape_radius(shape)):
-        raise ValueError(f"{shape} has radius {shape_radius(shape)}: set a finite radius")
+    if not math.isfinite(shape.radius):
+        raise ValueError(f"{shape} has radius {shape.radius}: set a finite radius")
 
 
-def rough_pair(shapes: Sequence[pymunk.Shape]) -> pymunk.Shape | None:
-    """A moving shape with friction, if there is another body with friction (pymunk multiplies the two); else None."""
-    rough = [s for s in shapes if s.friction > 0]
-    for shape in rough:
-        body = shape_body(shape)
-        if body.body_type == pymunk.Body.DYNAMIC and any(other.body is not body for other in rough):
-            return shape
-    return None
+def has_friction(shapes: Sequence[pymunk.Shape]) -> bool:
+    """Whether shapes of two bodies, one of them dynamic, have friction: pymunk multiplies the two."""
+    rough = {shape_body(shape) for shape in shapes if shape.friction > 0}
+    return len(rough) > 1 and any(body.body_type == pymunk.Body.DYNAMIC for body in rough)

@@ -1,9 +1,16 @@
-"""Values that `constraint.impulse` returns after steps; `edits.py` lets the property read them."""
+"""`constraint.impulse` returns the impulses of EECA steps.
+
+pymunk's property has no setter. It is replaced when impulses are shown for the first time; for other constraints it
+acts as before, after one access to a dictionary of weak references.
+"""
 
 from __future__ import annotations
 
 import math
 import weakref
+from collections.abc import Sequence
+from typing import Any, ClassVar
+from weakref import WeakKeyDictionary
 
 import pymunk
 
@@ -13,23 +20,53 @@ from . import private
 
 
 class Impulses:
-    """Values of `constraint.impulse` by row. It outlives the stepper, and does not refer to constraints.
+    """Values of `constraint.impulse` by row of `joint` (j,). They exist as long as one of the constraints, and do not
+    refer to constraints or their space.
 
     Attributes:
-        joint: the rows.  ours: pymunk's count of its own steps when they were written.
+        shows: number of calls, for any constraints, by which `show` has changed what they return.
     """
 
+    shows: ClassVar[int] = 0
+
     def __init__(self, space: pymunk.Space, joint: Rows[Joint]) -> None:
-        self._space = weakref.ref(space)
-        self.joint = joint
-        self.ours = -1
+        self._space, self._joint = weakref.ref(space), joint
+        self._stamp = self._checked = -1
+
+    def show(self, items: Sequence[pymunk.Constraint], stamp: int) -> None:
+        """Let `impulse` of these constraints return their impulses in the rows of `joint`, until pymunk's count of its
+        own steps is no longer `stamp`."""
+        self._stamp = stamp
+        if self._checked != Impulses.shows:
+            if _shown.get(items[0], _NATIVE)[0] is not self:
+                Impulses.shows += 1
+                for j, item in enumerate(items):
+                    _shown[item] = self, j
+                if pymunk.Constraint.impulse is not _OWN:
+                    pymunk.Constraint.impulse = _OWN  # type: ignore[method-assign]
+            self._checked = Impulses.shows
 
     def read(self, j: int) -> float | None:
-        """The impulse: of springs signed (positive pushes), else >= 0; None if pymunk has taken a step since."""
+        """The impulse of row j, mass length/time (of rotary joints, times length): of springs signed (positive pushes),
+        else >= 0; None if pymunk has taken a step since."""
         space = self._space()
-        if space is not None and private.timestamp(space)() != self.ours:
+        if space is not None and private.timestamp(space)() != self._stamp:
             return None
-        first, second = self.joint[j].impulse
-        if self.joint[j].kind in (SPRING, ROTARY_SPRING):
+        first, second = self._joint[j].impulse
+        if self._joint[j].kind in (SPRING, ROTARY_SPRING):
             return float(first)
         return math.hypot(first, second)
+
+
+_shown: WeakKeyDictionary[pymunk.Constraint, tuple[Impulses | None, int]] = WeakKeyDictionary()
+_NATIVE = None, 0
+_native_impulse: Any = pymunk.Constraint.impulse
+
+
+def _impulse(self: pymunk.Constraint) -> float:
+    impulses, row = _shown.get(self, _NATIVE)
+    value = None if impulses is None else impulses.read(row)
+    return float(_native_impulse.fget(self)) if value is None else value
+
+
+_OWN: Any = property(_impulse, doc=_native_impulse.__doc__)

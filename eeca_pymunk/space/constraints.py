@@ -83,7 +83,7 @@ def name(c: Any) -> str:
 
 
 class Given(NamedTuple):
-    """What a constraint says of itself: fields of `Joint`, 0 where its kind has none."""
+    """The values of a constraint: fields of `Joint`, 0 where its kind has none."""
 
     kind: int
     force: tuple[float, float, float]  # max_force, error_bias, max_bias
@@ -104,17 +104,17 @@ class Given(NamedTuple):
 
     @property
     def plan(self) -> tuple[object, ...]:
-        """What of it the plan of its component depends on."""
+        """The values on which the plan of its component depends."""
         (ax, ay), (bx, by) = self.anchor_a, self.anchor_b
         return self.kind, self.soft, ax != 0.0, ay != 0.0, bx != 0.0, by != 0.0
 
     @property
     def reach(self) -> tuple[object, ...]:
-        """What of it decides whether it can be part of a straight path (`..joints.held`)."""
+        """The values that decide whether it can be part of a straight path (`..joints.held`)."""
         return self.kind, self.soft, self.anchor_a, self.anchor_b, self.length, self.limits
 
     def is_fine(self) -> bool:
-        """Whether `check_constraint` need not look: that costs more."""
+        """Whether no value can be wrong; if not, `check_constraint`, which costs more, finds out."""
         (force, error, bias), (lower, upper), (stiffness, damping, rest) = self.force, self.limits, self.spring
         total = sum(self.anchor_a) + sum(self.anchor_b) + self.length + sum(self.groove) + stiffness + damping + rest
         total += sum(self.gear) + self.rate + sum(self.ratchet)
@@ -136,7 +136,7 @@ _ROW = struct.Struct("4q23d2q")  # fields of `Joint` from the first to `touched`
 
 
 def read(c: Any) -> Given:
-    """What a constraint says of itself.
+    """The values of a constraint.
 
     Raises:
         ValueError, UnsupportedFeature: see `check_constraint`.

@@ -35,13 +35,12 @@ from ..layout import (
     STILL,
 )  # fmt: skip
 from ..model.bodies import Body
-from ..rehearsing import altered, as_read, found
+from ..rehearsing import alter_end, as_read, copy_start
 from ..transfer import FORCES, TURNS, lay, lay_rest
 from . import private_batch
-from .bodies import Bodies
+from .bodies import STATE_FIELDS, Bodies
 
 _F = batch.BodyFields
-_STATE = _F.BODY_ID | _F.POSITION | _F.ANGLE | _F.VELOCITY | _F.ANGULAR_VELOCITY | _F.FORCE | _F.TORQUE
 _FORCES = _F.FORCE | _F.TORQUE
 # Fields by the bit TURNS of a step's status: without or with angles and spins.
 _WHOLE = {0: _F.POSITION | _F.VELOCITY, TURNS: _F.POSITION | _F.ANGLE | _F.VELOCITY | _F.ANGULAR_VELOCITY}
@@ -67,7 +66,8 @@ class Crossing:
         bodies: in pymunk's order, N with the static ones.
         BODY: (n,).  STATES, WALK, EXTRA, ENDS: the arrays exchanged with pymunk, see `layout.py`.
         gather: reads the state of all bodies into STATES[NOW].
-        eccentric: whether the centre of mass of any body is not its origin.
+        eccentric: whether the centre of mass of any body is not its origin. pymunk places such a body by its present
+            angle: its pose is written a second time, by the new angle.
     """
 
     def __init__(self, space: pymunk.Space, bodies: Bodies, BODY: Rows[Body], row: IntArray, state: FloatArray) -> None:
@@ -83,14 +83,13 @@ class Crossing:
         self.ENDS: FloatArray = np.zeros(END_COLUMNS * N)
         self.WALK[KNOWN] = bodies.ids
         self.WALK[BODY_ROW] = row
-        # pymunk places a body with another centre of mass by its present angle: a second time, by the new angle.
         self.eccentric = bool(bodies.center_of_gravity.any())
         if self.eccentric:
             self.WALK[SPECIAL] = ECCENTRIC * bodies.center_of_gravity.any(axis=1)
             self.EXTRA[:, COG_X : COG_Y + 1] = bodies.center_of_gravity
         self.WALK[SPECIAL, bodies.velocity_hooks] |= STEERED
         self.STATES[LEFT] = np.where(bodies.static[:, None], state, np.nan)
-        self.gather = private_batch.reader(space, _STATE, floats, ids)
+        self.gather = private_batch.reader(space, STATE_FIELDS, floats, ids)
         self._scatter = _Writers(self, _WHOLE, END)
         self._scatter_still, self._scatter_speed = _Writers(self, _WHOLE, STILL), _Writers(self, _SPEEDS, SPEED)
 
@@ -105,13 +104,13 @@ class Crossing:
 
     @cached_property
     def START(self) -> FloatArray:
-        """(N, 9) the state at the start of a step that calls functions, copied by `find`."""
+        """(N, 9) the state at the start of a step that calls functions, copied by `check_start`."""
         return np.zeros((len(self.bodies), STATE_COLUMNS))
 
     @cached_property
-    def find(self) -> Callable[[], int]:
-        """See `rehearsing.found`."""
-        return found.bind(self.STATES, self.WALK, self.BODY, self.START)
+    def check_start(self) -> Callable[[], int]:
+        """See `rehearsing.copy_start`."""
+        return copy_start.bind(self.STATES, self.WALK, self.BODY, self.START)
 
     @cached_property
     def CHANGES(self) -> FloatArray:
@@ -121,24 +120,26 @@ class Crossing:
     @cached_property
     def _altered(self) -> tuple[FloatArray, FloatArray, Callable[[int], int]]:
         given, lost, after = np.zeros_like(self.START), np.zeros(1), self.CHANGES[1]
-        return given, lost, altered.bind(self.STATES, self.WALK, self.BODY, self.ENDS, after, given, lost)
+        return given, lost, alter_end.bind(self.STATES, self.WALK, self.BODY, self.ENDS, after, given, lost)
 
-    def alter(self, stops: bool) -> tuple[int, float]:
-        """See `rehearsing.altered`; returns its status, and the energy that is lost."""
+    def alter_end(self, stops: bool) -> tuple[int, float]:
+        """See `rehearsing.alter_end`; returns its status, and the energy that is lost."""
         _, lost, call = self._altered
         return call(int(stops)), float(lost[0])
 
-    def give_again(self) -> None:
-        """Take the end of the step before `alter` as STATES[LEFT]: bodies that functions have changed since then count
-        as edited in the next step."""
+    def keep_unaltered(self) -> None:
+        """Take the end of the step before `alter_end` as STATES[LEFT]: bodies that functions have changed since then
+        count as edited in the next step."""
         self.STATES[LEFT] = self._altered[0]
 
     def is_current(self) -> bool:
         """Whether `gather` has read these bodies, and no static one was moved."""
-        if not np.array_equal(self.WALK[FOUND], self.WALK[KNOWN]):
-            return False
+        return np.array_equal(self.WALK[FOUND], self.WALK[KNOWN]) and not self.moved_static()
+
+    def moved_static(self) -> bool:
+        """Whether a static one of these bodies was moved, as `gather` has read them."""
         still = self.bodies.static
-        return np.array_equal(self.STATES[NOW, still, :3], self.STATES[LEFT, still, :3])
+        return not np.array_equal(self.STATES[NOW, still, :3], self.STATES[LEFT, still, :3])
 
     @property
     def state(self) -> FloatArray:
@@ -146,11 +147,11 @@ class Crossing:
         now: FloatArray = self.STATES[NOW]
         return now
 
-    def push(self, change: FloatArray, dt: float) -> None:
+    def set_accelerations(self, change: FloatArray, dt: float) -> None:
         """Set accelerations of the bodies with velocity functions: velocities change by (k, 3) within dt."""
         self.EXTRA[self.bodies.velocity_hooks, PUSH_X : PUSH_TWIST + 1] = change / dt
 
-    def whole(self) -> int:
+    def write_whole(self) -> int:
         """Write the end of the step to ENDS, with forces and angles in any case; returns its status bits."""
         return self._lay(FORCES | TURNS)
 
@@ -177,7 +178,7 @@ class Crossing:
         same &= (new.center_of_gravity == old.center_of_gravity[at]).all(axis=1)
         self.STATES[LEFT, same] = before.STATES[LEFT, at[same]]
 
-    def turning(self, status: int) -> int:
+    def with_turns(self, status: int) -> int:
         """Write the end of the step to ENDS with angles and spins, if they were left out; returns its status bits."""
         return status if status & TURNS else self._lay(status | TURNS)
 
@@ -188,12 +189,8 @@ class Crossing:
 
     def void_predictions(self) -> None:
         """Void all predictions: in the next step all bodies count as placed by the program, and may overlap others."""
-        np.minimum(self._due, ANEW, out=self._due)
-
-    @cached_property
-    def _due(self) -> FloatArray:
-        due: FloatArray = self.BODY["due"]
-        return due
+        due = self.BODY["due"]
+        np.minimum(due, ANEW, out=due)
 
     def scatter(self, status: int) -> None:
         """Write poses and velocities at the end of the step to the space, angles and spins if the bit TURNS is set."""

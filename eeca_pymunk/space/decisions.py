@@ -1,13 +1,16 @@
-"""Decisions of collision handlers that outlast their step.
+"""Decisions of collision handlers about pairs of shapes: for one step (`Rules`), and beyond it (`Decisions`).
 
 pymunk keeps the arbiter of shapes that have parted for `collision_persistence` steps, and with it what handlers have
-decided; until then it holds for the pair. Where a program has gone back to an earlier state, arbiters of steps that
-were taken back say nothing, and what held then is remembered here.
+decided; until then it holds for the pair. After a return to an earlier state (`set_state`), arbiters of later steps do
+not count, and the decisions that held then are kept here.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pymunk
@@ -16,45 +19,115 @@ from ..arrays import FloatArray
 from ..compiled.records import Rows
 from ..model.shapes import Shape
 from . import private, private_arbiters
-from .shapes import Law, Pair, Rules
+from .private_versions import processed
+
+if TYPE_CHECKING:
+    from .world import World
 
 DECISION_COLUMNS = 7  # both shapes, as in `space.shapes`; -1 for no collision, or elasticity, ...; age in steps
 
 _NONE = -1.0, 0.0, 0.0, 0.0  # the law of shapes that do not collide
+_SAME = 1e-9  # relative difference of a surface velocity and pymunk's tangential part of it that is round-off
+Pair = tuple[int, int]
+Law = tuple[float, float, float, float]  # elasticity, friction, surface velocity (x, y) of b relative to a
+
+
+@dataclass(frozen=True)
+class Rules:
+    """Decisions of collision handlers about pairs of shapes, for one step; pairs as (smaller, larger) index.
+
+    `ignored`: pairs that do not collide.  `changed`: the law of pairs for which it is not that of their shapes.
+    """
+
+    ignored: frozenset[Pair] = frozenset()
+    changed: Mapping[Pair, Law] = field(default_factory=dict)
+
+    @property
+    def some(self) -> bool:
+        """Whether there are any."""
+        return bool(self.ignored or self.changed)
+
+    @classmethod
+    def of_arbiters(cls, arbiters: Iterable[pymunk.Arbiter], world: World) -> Rules:
+        """Those that arbiters have."""
+        ignored, changed = set(), {}
+        for arbiter in arbiters:
+            a, b = (world.places.get(shape, -1) for shape in arbiter.shapes)
+            if min(a, b) < 0:
+                continue
+            pair = (min(a, b), max(a, b))
+            if not processed(arbiter):
+                ignored.add(pair)
+                continue
+            own = _law(world.SHAPE, *pair)
+            mu = 0.0 if world.frictionless else arbiter.friction
+            law = (arbiter.restitution, mu, *_surface(arbiter, own[2:], a < b))
+            if law != own:
+                changed[pair] = law
+        return cls(frozenset(ignored), changed)
+
+    def of_pairs(self, SHAPE: Rows[Shape], parted: Iterable[Pair] = ()) -> dict[Pair, Law]:
+        """The law by pair of rows of SHAPE, sorted: elasticity (-1: no collision), friction, surface velocity of b
+        relative to a. `parted` pairs do not collide, for any handlers."""
+        never = self.ignored.union(parted)
+        return {
+            pair: (-1.0, 0.0, *_law(SHAPE, *pair)[2:]) if pair in never else self.changed[pair]
+            for pair in sorted(never.union(self.changed))
+        }
+
+
+def _law(SHAPE: Rows[Shape], a: int, b: int) -> Law:
+    """The law of two shapes: pymunk's products, and b's surface velocity relative to a's."""
+    e, mu = (float(SHAPE[k][a] * SHAPE[k][b]) for k in ("elasticity", "friction"))
+    x, y = (float(SHAPE[k][b] - SHAPE[k][a]) for k in ("surface_x", "surface_y"))
+    return e, mu, x, y
+
+
+def _surface(arbiter: pymunk.Arbiter, own: tuple[float, float], ordered: bool) -> tuple[float, float]:
+    """The surface velocity of an arbiter, `own` if no function has set another one: pymunk stores the tangential part.
+    `ordered`: whether its first shape has the smaller index."""
+    found = arbiter.surface_velocity
+    x, y = found if ordered else -found
+    if (x, y) == own:
+        return own
+    n = arbiter.normal
+    away = own[0] * n.x + own[1] * n.y
+    off = math.hypot(own[0] - away * n.x - x, own[1] - away * n.y - y)
+    return own if off <= _SAME * (math.hypot(*own) + math.hypot(x, y)) else (x, y)
 
 
 class Decisions:
-    """What handlers of a space have decided of pairs of shapes, as far as pymunk's arbiters do not say it.
+    """What handlers of a space have decided about pairs of shapes, beside what pymunk's arbiters have.
 
     Attributes:
-        since: number of pymunk's step up to which arbiters say nothing.
-        told: law of b relative to a, by shapes (a, b), and the number of the step in which they last touched.
+        since: number of pymunk's step up to which arbiters do not count.
+        laws: law of b relative to a, by shapes (a, b), and the number of the step in which they last touched.
     """
 
     def __init__(self) -> None:
         self.since = -1
-        self.told: dict[tuple[pymunk.Shape, pymunk.Shape], tuple[Law, int]] = {}
+        self.laws: dict[tuple[pymunk.Shape, pymunk.Shape], tuple[Law, int]] = {}
 
     def forget(self, space: pymunk.Space) -> None:
         """Forget earlier steps."""
-        self.since, self.told = private.timestamp(space)(), {}
+        self.since, self.laws = private.timestamp(space)(), {}
 
-    def rules(self, space: pymunk.Space, places: Mapping[pymunk.Shape, int], SHAPE: Rows[Shape], smooth: bool) -> Rules:
-        """What holds of pairs of shapes, which have these rows of SHAPE, after pymunk's step has called the handlers;
-        nothing of friction if `smooth`."""
+    def rules(self, world: World) -> Rules:
+        """What holds of pairs of shapes, after pymunk's step has called the handlers."""
+        space, places = world.space, world.places
         now, oldest = private.timestamp(space)(), self.since
         odd = [arbiter for arbiter in private.odd_arbiters(space) if private_arbiters.stamp(arbiter) > oldest]
-        rules = Rules.said(odd, places, SHAPE, smooth)
-        if not self.told:
+        rules = Rules.of_arbiters(odd, world)
+        if not self.laws:
             return rules
-        anew = {frozenset(a.shapes) for a in private.arbiters(space) if private_arbiters.stamp(a) > oldest}
-        self.told = {
+        newer = {frozenset(a.shapes) for a in private.arbiters(space) if private_arbiters.stamp(a) > oldest}
+        self.laws = {
             pair: (law, step)
-            for pair, (law, step) in self.told.items()
-            if now - step < space.collision_persistence and frozenset(pair) not in anew
+            for pair, (law, step) in self.laws.items()
+            if now - step < space.collision_persistence and frozenset(pair) not in newer
         }
         earlier: dict[Pair, Law] = {}
-        for (one, two), (law, _) in self.told.items():
+        for (one, two), (law, _) in self.laws.items():
             a, b = places.get(one, -1), places.get(two, -1)
             if min(a, b) >= 0:
                 earlier[min(a, b), max(a, b)] = law if a < b else (*law[:2], -law[2], -law[3])
@@ -62,19 +135,18 @@ class Decisions:
         changed = {pair: law for pair, law in earlier.items() if pair not in never}
         return Rules(rules.ignored | never, {**rules.changed, **changed})
 
-    def state(
-        self, space: pymunk.Space, places: Mapping[pymunk.Shape, int], SHAPE: Rows[Shape], smooth: bool
-    ) -> FloatArray:
+    def state(self, world: World) -> FloatArray:
         """(n, DECISION_COLUMNS) all that holds."""
+        space = world.space
         now, shapes = private.timestamp(space)(), list(space.shapes)
-        known: dict[tuple[pymunk.Shape, pymunk.Shape], tuple[Law, int]] = dict(self.told)
+        known: dict[tuple[pymunk.Shape, pymunk.Shape], tuple[Law, int]] = dict(self.laws)
         for arbiter in private.odd_arbiters(space):
             step = private_arbiters.stamp(arbiter)
             if step <= self.since:
                 continue
-            found = Rules.said([arbiter], places, SHAPE, smooth)
+            found = Rules.of_arbiters([arbiter], world)
             for a, b in (*found.ignored, *found.changed):
-                one, two = sorted(arbiter.shapes, key=places.__getitem__)
+                one, two = sorted(arbiter.shapes, key=world.places.__getitem__)
                 known[one, two] = found.changed.get((a, b), _NONE), step
         at = {shape: k for k, shape in enumerate(shapes)}
         rows = [(at[a], at[b], *law, now - step) for (a, b), (law, step) in known.items() if a in at and b in at]
@@ -82,12 +154,12 @@ class Decisions:
 
     def recall(self, space: pymunk.Space, rows: FloatArray) -> None:
         """Return to a result of `state`. Rejections of shapes that touched, and touch, are written to their arbiters:
-        pymunk does not ask `begin` again, and its pickles do not have them."""
+        pymunk does not call `begin` again, and its pickles do not have them."""
         self.forget(space)
         shapes, never = list(space.shapes), set()
         for a, b, e, mu, x, y, age in rows.tolist():
             pair = shapes[int(a)], shapes[int(b)]
-            self.told[pair] = (e, mu, x, y), self.since - int(age)
+            self.laws[pair] = (e, mu, x, y), self.since - int(age)
             if e < 0.0 and age == 0.0:
                 never.add(frozenset(pair))
         for arbiter in private.arbiters(space) if never else ():

@@ -16,8 +16,7 @@ def describe(world: World) -> str:
     state, bodies = world.state, world.bodies
     owner = world.LINK["owner"]
     moving = owner < len(world.BODY) - 1
-    centred = (world.LINK["vertices"] == 1) & ~world.VERTEX[world.LINK["first"], :2].any(axis=1)
-    disks = int(np.count_nonzero(centred & (owner < world.dynamic)))
+    disks = int(np.count_nonzero(world.centred & (owner < world.dynamic)))
     others = int(np.count_nonzero(moving)) - disks
     pulled = any(world.gravity) or state[:, FORCE].any() or (others > 0 and state[:, TORQUE].any())
     turns = state[:, ANGULAR_VELOCITY].any() or state[:, TORQUE].any()
@@ -41,7 +40,7 @@ def describe(world: World) -> str:
         parts.append(f"{asleep} of {asleep + int(np.count_nonzero(bodies.dynamic))} bodies asleep")
     if world.damping != 1.0:
         parts.append("damping")
-    if len(bodies.velocity_hooks) or len(bodies.position_hooks):
+    if world.hooks.some:
         parts.append("functions of bodies")
     if world.joints is not None and world.joints.calls_back():
         parts.append("functions of constraints")

@@ -1,90 +1,145 @@
-"""Edits of constraints are recorded when they are made, and `constraint.impulse` returns impulses of EECA steps.
+"""In-place edits of shapes and bodies are recorded when they are made, by wrapped setters of pymunk's classes.
 
-pymunk offers neither: setters write into Chipmunk at once, and `impulse` has no setter. But all attributes of
-constraints are set through Python. So `pymunk.Constraint.__setattr__` and the property `impulse` are replaced when the
-first constraint is watched; for other constraints they act as before, after one access to a dictionary of weak
-references.
+pymunk's setters write into Chipmunk at once without notification, and reading all shapes again takes longer than most
+steps. So the setters of properties that a `World` reads once are wrapped when the first space is watched. Each acts as
+before, and then adds one to the count of the space of its shape or body, if that is watched and the value has changed.
+Getters, and properties that a `World` does not read (positions, velocities, forces, colours), are not changed.
+`Body.sleep` and `sleep_with_group` are wrapped when this module is imported: their calls are counted, and groups of
+sleeping bodies are recorded, because Chipmunk does not show them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+import weakref
+from collections import deque
+from collections.abc import Callable
+from functools import wraps
+from itertools import islice
 from typing import Any
-from weakref import WeakKeyDictionary, WeakSet
+from weakref import WeakKeyDictionary
 
 import pymunk
 
-_watching: WeakSet[Edits] = WeakSet()
-Reading = Callable[[int], "float | None"]
-_readings: WeakKeyDictionary[pymunk.Constraint, tuple[Reading | None, int]] = WeakKeyDictionary()
-_showings = 0
-_native_impulse: Any = pymunk.Constraint.impulse
-_native_setattr = pymunk.Constraint.__setattr__
+from . import private_versions
+
+_PROPERTIES: tuple[tuple[type, tuple[str, ...]], ...] = (
+    (pymunk.Shape, ("mass", "density", "sensor", "filter", "elasticity", "friction", "surface_velocity", "body")),
+    (pymunk.Body, ("mass", "moment", "center_of_gravity", "body_type", "velocity_func", "position_func")),
+)
+_METHODS: tuple[tuple[type, tuple[str, ...]], ...] = (
+    (pymunk.Circle, ("unsafe_set_radius", "unsafe_set_offset")),
+    (pymunk.Segment, ("unsafe_set_radius", "unsafe_set_endpoints")),
+    (pymunk.Poly, ("unsafe_set_radius", "unsafe_set_vertices")),
+)
+_OF_SURFACE = ("filter", "elasticity", "friction", "surface_velocity")
+_SLEEP = ("sleep", "sleep_with_group")
+_leaders: WeakKeyDictionary[pymunk.Body, weakref.ref[pymunk.Body]] = WeakKeyDictionary()
+_KEPT = 4096  # number of edits that are kept, the last ones
+_wrapped = False
+_clock = 0
+# The last edits, in any space or outside: what was edited, and whether that may have changed its body's mass or moment.
+_edited: deque[tuple[weakref.ref[Any], bool]] = deque(maxlen=_KEPT)
 
 
-class Edits:
-    """`some`: rows of the constraints of which an attribute was set since the last `take`."""
+class Counts(list[int]):
+    """Number of edits of shapes and bodies of a space and of bodies put to sleep; number of the latter alone."""
 
-    def __init__(self, row: dict[pymunk.Constraint, int]) -> None:
-        self._row = row
-        self.some: set[int] = set()
-        _watching.add(self)
-        if pymunk.Constraint.__setattr__ is not _set:
-            pymunk.Constraint.__setattr__ = _set  # type: ignore[method-assign, assignment]
+    def __init__(self) -> None:
+        super().__init__((0, 0))
 
-    def take(self) -> set[int]:
-        """Return the rows, and clear them."""
-        edited, self.some = self.some, set()
-        return edited
-
-    def add(self, rows: Iterable[int]) -> None:
-        """Record these rows as edited."""
-        self.some.update(rows)
-
-    def forget(self, row: int) -> None:
-        """Remove a row: the last setting was not an edit by the program."""
-        self.some.discard(int(row))
-
-    def hear(self, constraint: pymunk.Constraint) -> None:
-        """Record that an attribute of a constraint was set."""
-        row = self._row.get(constraint)
-        if row is not None:
-            self.some.add(row)
+    @property
+    def in_place(self) -> int:
+        """Number of edits of shapes and bodies."""
+        return self[0] - self[1]
 
 
-def _set(self: pymunk.Constraint, name: str, value: Any) -> None:
-    _native_setattr(self, name, value)
-    for edits in _watching:
-        edits.hear(self)
+_counts: WeakKeyDictionary[pymunk.Space, Counts] = WeakKeyDictionary()
 
 
-def showings() -> int:
-    """Number of calls of `show_impulses`."""
-    return _showings
+def counts(space: pymunk.Space) -> Counts:
+    """The counts of a space, from its first call on."""
+    global _wrapped
+    if not _wrapped:
+        _wrapped = True
+        for owner, names in _PROPERTIES:
+            for name in names:
+                setattr(owner, name, _property(name, vars(owner)[name]))
+        for owner, names in _METHODS:
+            for name in names:
+                setattr(owner, name, _method(vars(owner)[name]))
+    return _counts.setdefault(space, Counts())
 
 
-def shown(item: pymunk.Constraint) -> Reading | None:
-    """The function that `show_impulses` has set for a constraint, None if its `impulse` is pymunk's."""
-    return _readings.get(item, (None, 0))[0]
+def clock() -> int:
+    """Number of edits of shapes and bodies so far, in any space or outside."""
+    return _clock
 
 
-def show_impulses(items: Sequence[pymunk.Constraint], read: Reading) -> None:
-    """Let `impulse` of these constraints return `read(row)`, unless that is None.
-
-    `read` exists as long as any of them: it must not refer to them or to their space.
-    """
-    global _showings
-    _showings += 1
-    for j, item in enumerate(items):
-        _readings[item] = read, j
-    if pymunk.Constraint.impulse is not _OWN:
-        pymunk.Constraint.impulse = _OWN  # type: ignore[method-assign]
+def edited_since(time: int) -> set[Any] | None:
+    """Shapes and bodies that were edited since `clock` was `time`, and the bodies whose mass or moment that may have
+    changed; None if these are more than are kept."""
+    if _clock - time > len(_edited):
+        return None
+    edited = [(thing(), weighs) for thing, weighs in islice(reversed(_edited), _clock - time)]
+    found = {thing for thing, _ in edited}
+    found.update(thing.body for thing, weighs in edited if weighs and isinstance(thing, pymunk.Shape))
+    return found
 
 
-def _impulse(self: pymunk.Constraint) -> float:
-    read, row = _readings.get(self, (None, 0))
-    value = None if read is None else read(row)
-    return float(_native_impulse.fget(self)) if value is None else value
+def _note(thing: Any, name: str) -> None:
+    global _clock
+    _clock += 1
+    _edited.append((weakref.ref(thing), name not in _OF_SURFACE))
+    space = thing.space
+    count = None if space is None else _counts.get(space)
+    if count is None:
+        return
+    count[0] += 1
+    count[1] += name in _SLEEP
 
 
-_OWN: Any = property(_impulse, doc=_native_impulse.__doc__)
+def leader(body: pymunk.Body) -> pymunk.Body:
+    """A sleeping body that wakes whenever this sleeping body does: itself, or one of its group."""
+    lead = _leaders.get(body)
+    found = None if lead is None else lead()
+    return found if found is not None and found.space is body.space and found.is_sleeping else body
+
+
+def _sleep(native: Callable[..., None]) -> Callable[..., None]:
+    @wraps(native)
+    def sleep_and_note(self: pymunk.Body, *group: pymunk.Body) -> None:
+        lead = leader(group[0]) if group else self
+        native(self, *group)
+        _leaders[self] = weakref.ref(lead)
+        _note(self, native.__name__)
+
+    return sleep_and_note
+
+
+def _property(name: str, native: Any) -> property:
+    read, write = native.fget, native.fset
+
+    def set_and_note(self: Any, value: Any) -> None:
+        before = None if read is None else read(self)
+        write(self, value)
+        if name in private_versions.DEFAULTS:
+            private_versions.forget_function(self, name, value)
+        if read is None or read(self) != before:
+            _note(self, name)
+
+    return property(read, set_and_note, native.fdel, native.__doc__)
+
+
+def _method(native: Callable[..., Any]) -> Callable[..., Any]:
+    @wraps(native)
+    def call_and_note(self: Any, *args: Any, **kwargs: Any) -> Any:
+        try:
+            return native(self, *args, **kwargs)
+        finally:
+            _note(self, native.__name__)
+
+    return call_and_note
+
+
+for _name in _SLEEP:
+    setattr(pymunk.Body, _name, _sleep(vars(pymunk.Body)[_name]))

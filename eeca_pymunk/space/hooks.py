@@ -40,7 +40,7 @@ class Hooks:
         self.some = len(self.velocity) > 0 or len(self.position) > 0
         self.late: list[Callable[[], None]] = []
 
-    def alone(self) -> bool:
+    def none_within_steps(self) -> bool:
         """Whether steps of pymunk call no function of a body or constraint, and need not keep bodies outside the
         space."""
         joints = self.joints
@@ -75,19 +75,19 @@ class Hooks:
 
         return call
 
-    def change(self, dt: float) -> FloatArray:
+    def velocity_changes(self, dt: float) -> FloatArray:
         """(k, 3) changes of velocity and spin by the velocity functions; the bodies are restored."""
         items = [self.bodies.items[row] for row in self.velocity]
         with private_joints.time_step(self.space, dt):
-            found = private_functions.accelerations(items, self.space.gravity, self.space.damping**dt, dt)
+            found = private_functions.velocity_changes(items, self.space.gravity, self.space.damping**dt, dt)
         return np.array(found)
 
     def positions(self, state: FloatArray, end: FloatArray, dt: float) -> None:
-        """Call the position functions on `state` with the velocity that leads to `end`, and write their results to
-        `end`."""
+        """Call the position functions on `state` (N, 9) with the velocity that leads to `end` (N, 9) within dt, and
+        write their results to `end`."""
         ways = self.bodies.centers(end) - self.bodies.centers(state)
         items = [self.bodies.items[row] for row in self.position]
-        # A rehearsal leaves them, of overlaps that this step has not had; `update_position` would add them to its way.
+        # A rehearsal leaves corrections of overlaps that this step did not have; `update_position` would apply them.
         private_shapes.forget_corrections(private.pointers(items))
         for row, body in zip(self.position, items, strict=True):
             function = private.position_function(body)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
 from typing import Any
 
@@ -15,26 +15,21 @@ from ..model.joints import EDITED, Joint
 from . import private
 from .constraint_impulses import Impulses
 from .constraints import read
-from .edits import Edits, show_impulses, showings, shown
-from .listing import Listing, says
+from .joint_edits import Edits
+from .listing import Listing, calls_of
 from .partners import Partners
-from .pushing import Pushing
 from .spring_functions import Motion, Rate, law, put_law
 
 _ROUND_OFF = 1e-12  # of the length of a pin
 
 
-class JointRows:
+class JointRows(Listing):
     """The constraints of a space as rows of JOINT, updated after edits by the program.
 
-    Attributes:
-        items: the constraints, in the order of the rows.  joint: (j,).
-        row: the row of each constraint.  fresh: number of constraints that `past` has not.
-        functions: rows of springs that have a force or torque function of the program.  own: these springs.
-        before, after, calling: constraints with a `pre_solve`, with a `post_solve`, with either.
+    Attributes, beside those of `Listing`:
+        joint: (j,).
         partners: bodies of joints that have no row of their own; theirs are n + row of PARTNER.
-        pushing: those that exert forces in a rest step of pymunk.
-        parted: pairs of bodies whose shapes do not collide, by `collide_bodies`; None after a change, see `part`.
+        parted: pairs of bodies whose shapes do not collide, by `collide_bodies`; None after a change (`find_parted`).
         rates: for springs with functions, the rate of length and the dt of the last step, see `put_law`.
         replan: whether kinds, anchors or bounds of joints have changed since `planned` was called.
         ends_moved: whether lengths or anchors have, or static bodies outside the space that joints end at.
@@ -43,46 +38,44 @@ class JointRows:
     def __init__(
         self, space: pymunk.Space, row: Mapping[pymunk.Body, int], n: int, past: JointRows | None = None
     ) -> None:
-        """Read the constraints of `space`; `row`: rows of its bodies, out of n. Rows that `past` has are reused."""
+        """Read the constraints of `space`; `row`: rows of its bodies, out of n. Rows that `past` has are reused.
+
+        Raises:
+            ValueError, UnsupportedFeature: see `check_constraint`.  NotFiniteError: see `Partners`.
+        """
         self.space, self._n = space, n
-        self._impulses: Impulses | None = None
-        self._showings = -1
         if past is not None:
             past.refresh()
-        self._list: Listing = Listing(space, None if past is None else past._list)
-        listed = self._list
-        self.fresh = len(listed.fresh)
-        self.items, self.row = listed.items, listed.row
+        super().__init__(space, past)
         self.joint: Rows[Joint] = rows(Joint, len(self.items))
+        self._impulses = Impulses(space, self.joint)
         self._memory = self.joint.view(np.uint8).data
-        others = [body for body in listed.bodies if body not in row]
+        others = [body for body in self.bodies if body not in row]
         self.partners: Partners = Partners(tuple(others), space, None if past is None else past.partners)
         self._row_of = {**row, **{body: n + i for i, body in enumerate(others)}}
         if past is not None:
             here = [j for j, item in enumerate(self.items) if item in past.row]
             records(self.joint)[here] = records(past.joint)[[past.row[self.items[j]] for j in here]]
-        self.joint["body"] = np.array([self._row_of[body] for body in listed.bodies], np.int64)[listed.ends]
-        for j in listed.fresh:
-            listed.given[j].put(self._memory, j, *self.joint["body"][j].tolist())
+        self.joint["body"] = np.array([self._row_of[body] for body in self.bodies], np.int64)[self.ends]
+        for j in self.fresh:
+            self.given[j].put(self._memory, j, *self.joint["body"][j].tolist())
         if self.partners.changed:
             self.touch(n + i for i in self.partners.changed)
         self._edits = Edits(self.row)
         self._timestamp = private.timestamp(space)
         self.rates: dict[pymunk.Constraint, Rate] = {} if past is None else past.rates
         self.replan, self.ends_moved = True, False
-        self._find_functions()
+        self._find_pushing()
 
-    def _find_functions(self) -> None:
-        """Take what depends on kinds and functions. Constraints of bodies that batch calls do not reach always exert
-        forces in a rest step, too."""
-        listed = self._list
-        self.functions, self.own = listed.functions, listed.own
-        self.before, self.after, self.calling = listed.before, listed.after, listed.calling
+    def _find_pushing(self) -> None:
+        """Find what always pushes, and what has a sleeping body; forget `parted`. Constraints of bodies that batch
+        calls do not reach always exert forces in a rest step, too."""
         far = {body: body.body_type == pymunk.Body.DYNAMIC for body in self.partners.items}
         asleep = {body: dynamic and body.space is self.space for body, dynamic in far.items()}
-        always = sorted({*listed.pushing, *listed.with_body(far)})
-        sleeping = {self.items[j] for j in listed.with_body(asleep)}
-        self.pushing = Pushing(self.items, self.joint, [self.items[j] for j in always], sleeping)
+        always = sorted({*self.forcing, *self.with_body(far)})
+        self._always, self._asleep = [self.items[j] for j in always], {self.items[j] for j in self.with_body(asleep)}
+        self._touched, self._pushing = b"", list[pymunk.Constraint]()
+        self._last_awake: tuple[Sequence[pymunk.Constraint], list[pymunk.Constraint]] = (), []
         self.parted: frozenset[tuple[pymunk.Body, pymunk.Body]] | None = None
 
     def is_of(self, space: pymunk.Space) -> bool:
@@ -108,21 +101,37 @@ class JointRows:
         except ValueError:
             self._edits.add(edited)
             raise
-        listed, others = self._list, False
+        others = False
         for j, given in found.items():
-            item, before = self.items[j], listed.given[j]
-            given.put(self._memory, j, *(self._row_of[body] for body in listed.pairs[item]))
-            listed.given[j] = given
+            item, before = self.items[j], self.given[j]
+            given.put(self._memory, j, *(self._row_of[body] for body in self.pairs[item]))
+            self.given[j] = given
             self.ends_moved |= before.reach != given.reach
             if before.plan != given.plan:
                 self.replan = others = True
-            said = says(item)
-            others |= said != listed.said[j]
-            listed.said[j] = said
+            calls = calls_of(item)
+            others |= calls != self.calls[j]
+            self.calls[j] = calls
         if others:
-            listed.find_functions()
-            self._find_functions()
+            self.find_functions()
+            self._find_pushing()
         return self.replan
+
+    def pushing(self) -> list[pymunk.Constraint]:
+        """The constraints that exert forces in a rest step of pymunk (`sync.py`): those that always do, and joints that
+        are or may be apart. The list is another one only if they are others."""
+        touched = self.joint["touched"].tobytes()
+        if touched != self._touched:
+            apart = np.flatnonzero(self.joint["touched"]).tolist()
+            self._touched = touched
+            self._pushing = list(dict.fromkeys((*self._always, *(self.items[j] for j in apart))))
+        return self._pushing
+
+    def awake(self, items: Sequence[pymunk.Constraint]) -> list[pymunk.Constraint]:
+        """Those of constraints that have no sleeping body; `items` must stay as it is."""
+        if items is not self._last_awake[0]:
+            self._last_awake = items, [item for item in items if item not in self._asleep]
+        return self._last_awake[1]
 
     def laws(self) -> list[Callable[[Any, float], float]]:
         """The linear laws of the springs with functions in the last step."""
@@ -161,14 +170,17 @@ class JointRows:
         return len(self._edits.some) > 0
 
     def idle(self) -> bool:
-        """Whether `look` has nothing to do."""
+        """Whether `update` has nothing to do."""
         return not (self._edits.some or self.functions or self.partners.outside)
 
-    def look(self, state: FloatArray, place: Mapping[pymunk.Body, int], dt: float) -> None:
+    def update(self, state: FloatArray, place: Mapping[pymunk.Body, int], dt: float) -> None:
         """Update what the step needs: edited constraints, poses of partners, laws of springs with functions.
 
         Args:
             state: (N, 9) at the start of the step.  place: rows of bodies in it.  dt: time.
+
+        Raises:
+            ValueError, UnsupportedFeature, NotFiniteError: as a new reading, or for a function of a spring.
         """
         self.refresh()
         moved = self.partners.read()
@@ -187,11 +199,11 @@ class JointRows:
         x, y, angle, vx, vy, spin = state[place[body], :6].tolist()
         return x, y, angle, vx, vy, spin
 
-    def part(self) -> frozenset[tuple[pymunk.Body, pymunk.Body]]:
+    def find_parted(self) -> frozenset[tuple[pymunk.Body, pymunk.Body]]:
         """`parted`, found again if necessary."""
         if self.parted is None:
-            pairs = zip(self._list.pairs.values(), self._list.said, strict=True)
-            self.parted = frozenset(pair for pair, said in pairs if not said[3])
+            pairs = zip(self.pairs.values(), self.calls, strict=True)
+            self.parted = frozenset(pair for pair, calls in pairs if not calls.collide)
         return self.parted
 
     def touch(self, rows: Iterable[int]) -> None:
@@ -202,17 +214,9 @@ class JointRows:
 
     def write(self) -> None:
         """Write notches of ratchets, and let `constraint.impulse` return the impulses of the step."""
-        told = self._impulses
-        if told is None or told.joint is not self.joint:
-            self._impulses = told = Impulses(self.space, self.joint)
-            self._showings, self._reading = -1, told.read
-        told.ours = self._timestamp()
-        for j in self._list.ratchets:
+        for j in self.ratchets:
             item = self.items[j]
             if item.angle != self.joint[j].notch:
                 item.angle = float(self.joint[j].notch)
                 self._edits.forget(j)
-        if self._showings != showings():
-            if shown(self.items[0]) is not self._reading:
-                show_impulses(self.items, self._reading)
-            self._showings = showings()
+        self._impulses.show(self.items, self._timestamp())

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 import pymunk
 
@@ -10,12 +12,24 @@ from .constraints import Given, read
 from .spring_functions import own_function
 
 _PUSHING = SPRING, ROTARY_SPRING, MOTOR
-Said = tuple[object, object, object, bool]
+_LISTED = (
+    "pairs", "bodies", "ends", "row", "given", "calls", "ratchets", "forcing", "functions", "own", "before",
+    "after", "calling",
+)  # fmt: skip
 
 
-def says(item: pymunk.Constraint) -> Said:
-    """The functions of a joint, and whether its bodies collide."""
-    return own_function(item), item.pre_solve, item.post_solve, bool(item.collide_bodies)
+class Calls(NamedTuple):
+    """The functions of a constraint, None for none, and whether its bodies collide."""
+
+    own: object
+    before: object
+    after: object
+    collide: bool
+
+
+def calls_of(item: pymunk.Constraint) -> Calls:
+    """The functions of a constraint now."""
+    return Calls(own_function(item), item.pre_solve, item.post_solve, bool(item.collide_bodies))
 
 
 class Listing:
@@ -24,19 +38,20 @@ class Listing:
     Attributes:
         items: the constraints, in the order of the rows.  row: the row of each.
         pairs: the bodies of each.  bodies: all of these.  ends: (j, 2) places in `bodies`.
+        given, calls: the values and the functions of each.
         fresh: rows of the constraints that were not in the list before.
         functions: rows of springs that have a force or torque function of the program.  own: these springs.
         before, after, calling: constraints with a `pre_solve`, with a `post_solve`, with either.
-        ratchets: rows of these.  pushing: rows of those that always exert forces in a rest step of pymunk.
+        ratchets: rows of these.  forcing: rows of those that always exert forces in a rest step of pymunk.
     """
 
     def __init__(self, space: pymunk.Space, past: Listing | None) -> None:
         self.items: list[pymunk.Constraint] = list(space.constraints)
         if past is not None and past.items == self.items:
-            self.__dict__.update(vars(past))
+            self.__dict__.update((name, vars(past)[name]) for name in _LISTED)
             self.fresh: list[int] = []
             return
-        known = {} if past is None else {item: (past.given[j], past.said[j]) for item, j in past.row.items()}
+        known = {} if past is None else {item: (past.given[j], past.calls[j]) for item, j in past.row.items()}
         pairs = {} if past is None else past.pairs
         self.pairs: dict[pymunk.Constraint, tuple[pymunk.Body, pymunk.Body]] = {
             item: pairs.get(item) or (item.a, item.b) for item in self.items
@@ -46,19 +61,19 @@ class Listing:
         self.bodies, self.ends = list(places), np.array(ends, np.int64).reshape(-1, 2)
         self.row: dict[pymunk.Constraint, int] = {item: j for j, item in enumerate(self.items)}
         self.fresh = [j for j, item in enumerate(self.items) if item not in known]
-        found = [known.get(item) or (read(item), says(item)) for item in self.items]
+        found = [known.get(item) or (read(item), calls_of(item)) for item in self.items]
         self.given: list[Given] = [given for given, _ in found]
-        self.said: list[Said] = [said for _, said in found]
+        self.calls: list[Calls] = [calls for _, calls in found]
         self.find_functions()
 
     def find_functions(self) -> None:
         """Find what depends on kinds and functions."""
         self.ratchets = [j for j, given in enumerate(self.given) if given.kind == RATCHET]
-        self.pushing = [j for j, given in enumerate(self.given) if given.soft or given.kind in _PUSHING]
-        self.functions = [j for j, said in enumerate(self.said) if said[0]]
+        self.forcing = [j for j, given in enumerate(self.given) if given.soft or given.kind in _PUSHING]
+        self.functions = [j for j, calls in enumerate(self.calls) if calls.own]
         self.own = [self.items[j] for j in self.functions]
-        self.before = [item for item, said in zip(self.items, self.said, strict=True) if said[1] is not None]
-        self.after = [item for item, said in zip(self.items, self.said, strict=True) if said[2] is not None]
+        self.before = [item for item, calls in zip(self.items, self.calls, strict=True) if calls.before is not None]
+        self.after = [item for item, calls in zip(self.items, self.calls, strict=True) if calls.after is not None]
         self.calling = list(dict.fromkeys((*self.before, *self.after)))
 
     def with_body(self, these: dict[pymunk.Body, bool]) -> list[int]:

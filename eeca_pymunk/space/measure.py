@@ -12,9 +12,7 @@ from .bodies import ANGULAR_VELOCITY, VELOCITY, Bodies
 def measure(space: pymunk.Space) -> Invariants:
     """Energy and momenta of the space now."""
     bodies = Bodies(space)
-    state = bodies.gather()
-    assert state is not None  # read from these very bodies
-    return invariants(bodies, state, space.gravity)
+    return invariants(bodies, bodies.start, space.gravity)
 
 
 def invariants(bodies: Bodies, state: FloatArray, gravity: tuple[float, float]) -> Invariants:

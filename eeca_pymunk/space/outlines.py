@@ -1,7 +1,9 @@
-"""Outlines: the shapes of a space as plain arrays, for drawing them at the poses of a recording."""
+"""Outlines of shapes in body coordinates, as steps take them; and those of a space as plain arrays, for drawing them at
+the poses of a recording."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -9,7 +11,10 @@ import numpy as np
 import pymunk
 
 from ..arrays import BoolArray, FloatArray, IntArray, rotated
-from .shapes import local_outline
+from ..errors import UnsupportedFeature
+from . import private_shapes
+
+_STRAIGHT = 1e-12  # of its coordinates: distance of a vertex from the line of its neighbours that is round-off
 
 
 @dataclass
@@ -68,3 +73,26 @@ def place(local: FloatArray, owner: IntArray, position: FloatArray, angle: Float
     row = owner[moved]
     world[moved] = position[row] + rotated(local[moved], angle[row])
     return world
+
+
+def local_outline(shape: pymunk.Shape) -> list[tuple[float, ...]]:
+    """Vertices in body coordinates, counter-clockwise: one of a circle (its centre), two of a segment, more of a
+    polygon. UnsupportedFeature for other shapes."""
+    outline = private_shapes.outline(shape)
+    if outline is None:
+        raise UnsupportedFeature(f"{shape}: only circles, segments and polygons are known")
+    return outline if len(outline) < 3 else corners(outline)
+
+
+def corners(outline: list[tuple[float, ...]]) -> list[tuple[float, ...]]:
+    """A convex outline without vertices that are collinear with their neighbours, up to round-off: for two collinear
+    edges round-off would decide to which of them a point belongs."""
+    limit = _STRAIGHT * max([abs(c) for v in outline for c in v])
+    kept: list[tuple[float, ...]] = []
+    (ax, ay), ahead = outline[-1], (*outline[1:], outline[0])
+    for (x, y), (bx, by) in zip(outline, ahead, strict=True):
+        along = math.hypot(bx - ax, by - ay)
+        if abs((bx - ax) * (y - ay) - (by - ay) * (x - ax)) > limit * along:
+            kept.append((x, y))
+            ax, ay = x, y
+    return kept if len(kept) > 2 else outline

@@ -22,8 +22,8 @@ from ..model.given import GivenShape
 from ..model.shapes import Link, Shape
 from . import private_shapes
 from .bodies import Bodies
-from .checks import check_shape, shape_body, shape_radius
-from .shapes import local_outline
+from .checks import check_shape, shape_body
+from .outlines import local_outline
 
 _WORD = (1 << 64) - 1  # the lowest 64 bits of a filter's numbers, which equality and `&` need
 _GIVEN = struct.Struct("2q3Q5dq")
@@ -57,7 +57,7 @@ def read(shape: pymunk.Shape, ground: pymunk.Body | None = None) -> Record:
     Raises:
         ValueError, UnsupportedFeature: see `check_shape`.
     """
-    numbers = (shape_radius(shape), *private_shapes.surface(shape))
+    numbers = private_shapes.numbers(shape)
     if shape.body is None or not all(map(isfinite, numbers)) or min(numbers[:3]) < 0.0:
         check_shape(shape)
     group, categories, mask = private_shapes.filter_of(shape)
@@ -120,7 +120,8 @@ class Packed:
         solid = [shape for shape, record in records.items() if record is not None]
         known = [record for record in records.values() if record is not None]
         k, N = len(solid), len(bodies)
-        self._told: tuple[dict[pymunk.Shape, int], IntArray, FloatArray] | None = None  # as it was before `_lay`
+        # Places of shapes, and what `_lay` overwrites, as they were before.
+        self._unlaid: tuple[dict[pymunk.Shape, int], IntArray, FloatArray] | None = None
         self._shapes = from_bytes(GivenShape, [record.given for record in known])
         self._owner: IntArray = np.array([bodies.row[record.body] for record in known], np.int64)
         self._shapes["owner"] = self._owner
@@ -151,16 +152,16 @@ class Packed:
         bodies; False, with invalid rows, if the rows would be others. records: all; `edited` ones have changed."""
         vertices = self.LINK["vertices"].copy() if moved else None
         given, BODY = self._views
-        if self._told is None:
+        if self._unlaid is None:
             known = {shape: record for shape, record in records.items() if record is not None}
             place = {shape: k for k, shape in enumerate(known)}
-            told = rows_of(from_bytes(GivenShape, [record.given for record in known.values()]))
-            told[:, 0] = self._owner
-            self._told = place, told, np.frombuffer(b"".join([record.points for record in known.values()]))
-        place, told, points = self._told
+            before = rows_of(from_bytes(GivenShape, [record.given for record in known.values()]))
+            before[:, 0] = self._owner
+            self._unlaid = place, before, np.frombuffer(b"".join([record.points for record in known.values()]))
+        place, before, points = self._unlaid
         for shape, record in edited.items():
-            told[place[shape], 1:] = np.frombuffer(record.given, np.int64)[1:]
-        given[:], self._points[:] = told, points
+            before[place[shape], 1:] = np.frombuffer(record.given, np.int64)[1:]
+        given[:], self._points[:] = before, points
         if moved:
             bodies.placed(state)
             self._rows[3].fill(0.0)
@@ -170,5 +171,5 @@ class Packed:
 
     @cached_property
     def _views(self) -> tuple[IntArray, IntArray]:
-        """What shapes say of themselves, and BODY, as integers."""
+        """The values of shapes, and BODY, as integers."""
         return rows_of(self._shapes), as_integers(self.BODY)

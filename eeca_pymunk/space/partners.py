@@ -22,7 +22,7 @@ from . import private_joints
 
 
 class Partners:
-    """The rows of some bodies.
+    """The rows of some bodies; NotFiniteError if a pose or velocity is not finite.
 
     Attributes:
         items: the bodies, by row.  PARTNER: (x,) their poses and, of kinematic ones, velocities.
@@ -71,13 +71,13 @@ class Partners:
         return changed
 
     def motion(self, i: int) -> tuple[float, float, float, float, float, float]:
-        """Position, angle, velocity and spin of body i, as last read."""
+        """Position of the origin, angle, velocity and spin of body i, as last read."""
         known = self._known[i]
         assert known is not None  # read when these rows were made
         return known[:6]  # type: ignore[return-value]
 
     def motions(self) -> list[Any]:
-        """The velocities of the bodies outside the space, for `private_joints.move_on` after a step of pymunk:
+        """The velocities of the bodies outside the space, for `private_joints.restore_motions` after a step of pymunk:
         constraints change them there though pymunk does not move these bodies, to nan if neither body of a constraint
         has mobility."""
         return private_joints.motions([self.items[i] for i in self.outside])

@@ -15,7 +15,7 @@ import pymunk
 
 from ..layout import LEFT, NOW, PUSH_TWIST, PUSH_X
 from ..transfer import MOVED_STATIC, OTHER_BODIES
-from .noticed import clock, edited_since
+from .edits import clock, edited_since
 from .packing import Record, read
 
 if TYPE_CHECKING:
@@ -31,17 +31,17 @@ class Patched(NamedTuple):
 
 
 def patch(world: World) -> Patched | None:
-    """Put all edits since the world was read into its rows, and have these be as if no step had been taken. Shapes have
-    neither come nor gone.
+    """Write all edits since the world was read into its rows, as if no step had been taken. No shapes were added or
+    removed.
 
     Returns:
-        what was changed; None where a new reading is due: then the world is of no use but as what was before.
+        what was changed; None if a new reading is due: the rows are then invalid.
 
     Raises:
         ValueError, UnsupportedFeature, NotFiniteError: as a new reading would.
     """
     now, stale = clock(), edited_since(world.read_at)
-    if stale is None or world.smooth or world.joints is not None or world.space.constraints:
+    if stale is None or world.frictionless or world.joints is not None or world.space.constraints:
         return None
     elasticity, reach, bodies = False, False, world.bodies
     records: dict[pymunk.Shape, Record] = {}
@@ -62,15 +62,14 @@ def patch(world: World) -> Patched | None:
         if masses:
             weighed.append(i)
     world.gather()
-    status, moved = world.find(), False
-    if status == MOVED_STATIC:
-        moved = bool((world.state[:, :3] != world.STATES[LEFT, :, :3])[bodies.static].any())
+    status = world.check_start()
+    moved = status == MOVED_STATIC
     if status == OTHER_BODIES or not (stale or moved):
         return None
     if status != 0:
         bodies.check_finite(world.state)
     if weighed:
-        bodies.weigh(sorted(weighed))
+        bodies.read_masses(sorted(weighed))
     world.records.update(records)
     if not world.packed.lay_again(bodies, world.state, world.records, records, moved):
         return None

@@ -23,7 +23,6 @@ from . import (
     private_sleep,
     private_versions,
 )
-from .private_versions import DEFAULTS as DEFAULTS
 from .private_versions import REQUIRED, bodies
 
 try:
@@ -82,7 +81,7 @@ def check() -> None:
 
 
 def handlers(space: pymunk.Space) -> list[Any]:
-    """The collision handlers of a space; pymunk offers no public way to ask for them."""
+    """The collision handlers of a space; pymunk has no public access to them."""
     return list(space._handlers.values())
 
 
@@ -142,7 +141,7 @@ def locked(space: pymunk.Space) -> Iterator[None]:
         space._locked = False
 
 
-def step_alone(space: pymunk.Space, dt: float) -> None:
+def step_without_end(space: pymunk.Space, dt: float) -> None:
     """pymunk's step without its end: additions, removals and callbacks wait for `finish_step`.
 
     No body falls asleep in it. Sleeping bodies that are touched wake; with an infinite threshold they would not, and
@@ -182,7 +181,7 @@ def finish_step(space: pymunk.Space) -> None:
 
 
 def watch(space: pymunk.Space, edits: list[int], known: list[int]) -> Callable[[], bool]:
-    """A function that tells whether the space's settings, and what is in it, are still as they are now.
+    """A function that returns whether the settings and contents of the space are still as they are now.
 
     Args:
         edits: its first number grows when something of the space is edited in place.  known: what that was, as its

@@ -97,14 +97,7 @@ def make_arbiter(
     arbiter.state = lib.CP_ARBITER_STATE_FIRST_COLLISION
     take_place(arbiter)
     set_impulse(arbiter, impulse)
-    return _Holder(arbiter, contacts).arbiter
-
-
-class _Holder:
-    """Keeps the contacts of an arbiter as long as the arbiter exists."""
-
-    def __init__(self, arbiter: Any, contacts: Any) -> None:
-        self.arbiter = ffi.gc(arbiter, lambda _: contacts)
+    return ffi.gc(arbiter, lambda _: contacts)  # keeps the contacts as long as the arbiter exists
 
 
 def turn_to(arbiter: Any, body: pymunk.Body) -> None:

@@ -17,7 +17,7 @@ OF_LIBRARY = (
 _ACCELERATE, _MOVE = ffi.addressof(lib, "cpBodyUpdateVelocity"), ffi.addressof(lib, "cpBodyUpdatePosition")
 
 
-def accelerations(
+def velocity_changes(
     bodies: Sequence[pymunk.Body], gravity: pymunk.Vec2d, damping: float, dt: float
 ) -> list[tuple[float, float, float]]:
     """Changes of velocity and spin by the velocity functions of bodies; the bodies are restored.

@@ -41,7 +41,7 @@ def replace_functions(
 
     The public setters would also change Chipmunk, and count as edits.
     """
-    constraint.__dict__["_pre_solve_func"], constraint.__dict__["_post_solve_func"] = before, after
+    constraint.__dict__[BEFORE], constraint.__dict__[AFTER] = before, after
 
 
 def law_of(spring: Any) -> Callable[[Any, float], float] | None:
@@ -65,12 +65,12 @@ def pose_and_motion(body: pymunk.Body) -> tuple[float, ...]:
 
 
 def motions(bodies: Iterable[pymunk.Body]) -> list[tuple[Any, Any, float]]:
-    """Velocities and spins of the bodies, as `move_on` takes them."""
+    """Velocities and spins of the bodies, as `restore_motions` takes them."""
     velocity, spin = lib.cpBodyGetVelocity, lib.cpBodyGetAngularVelocity
     return [(c := body._body, velocity(c), spin(c)) for body in bodies]
 
 
-def move_on(kept: Iterable[tuple[Any, Any, float]]) -> None:
+def restore_motions(kept: Iterable[tuple[Any, Any, float]]) -> None:
     """Restore velocities and spins of bodies."""
     velocity, spin = lib.cpBodyGetVelocity, lib.cpBodyGetAngularVelocity
     for c, before, turned in kept:
@@ -101,16 +101,6 @@ def strengthen(held: Iterable[tuple[Any, float]]) -> None:
     """Restore the force bounds before `weaken`."""
     for c, most in held:
         lib.cpConstraintSetMaxForce(c, most)
-
-
-@contextmanager
-def inert(constraints: Iterable[Any]) -> Iterator[None]:
-    """Within this block these constraints exert no force in pymunk's steps."""
-    held = weaken(constraints)
-    try:
-        yield
-    finally:
-        strengthen(held)
 
 
 @contextmanager

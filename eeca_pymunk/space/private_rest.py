@@ -13,8 +13,8 @@ from . import private
 
 
 def rest(space: pymunk.Space, dt: float, pulls: bool) -> None:
-    """`step_alone` with one iteration, without correction of overlaps and, unless `pulls`, without gravity. The public
-    properties take five times as long."""
+    """`step_without_end` with one iteration, without correction of overlaps and, unless `pulls`, without gravity. The
+    public properties take five times as long."""
     c, none = space._space, (0.0, 0.0)
     gravity, iterations, bias = lib.cpSpaceGetGravity(c), lib.cpSpaceGetIterations(c), lib.cpSpaceGetCollisionBias(c)
     try:
@@ -22,7 +22,7 @@ def rest(space: pymunk.Space, dt: float, pulls: bool) -> None:
             lib.cpSpaceSetGravity(c, none)
         lib.cpSpaceSetIterations(c, 1)
         lib.cpSpaceSetCollisionBias(c, 1.0)
-        private.step_alone(space, dt)
+        private.step_without_end(space, dt)
     finally:
         if not pulls:
             lib.cpSpaceSetGravity(c, gravity)

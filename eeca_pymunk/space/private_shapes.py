@@ -16,11 +16,11 @@ OF_LIBRARY = (
 )  # fmt: skip
 
 
-def surface(shape: pymunk.Shape) -> tuple[float, float, float, float]:
-    """Elasticity, friction and surface velocity of a shape."""
-    c: Any = shape._shape
+def numbers(shape: Any) -> tuple[float, float, float, float, float]:
+    """Radius, elasticity, friction and surface velocity of a shape."""
+    c = shape._shape
     velocity = lib.cpShapeGetSurfaceVelocity(c)
-    return lib.cpShapeGetElasticity(c), lib.cpShapeGetFriction(c), velocity.x, velocity.y
+    return float(shape.radius), lib.cpShapeGetElasticity(c), lib.cpShapeGetFriction(c), velocity.x, velocity.y
 
 
 def filter_of(shape: pymunk.Shape) -> tuple[int, int, int]:

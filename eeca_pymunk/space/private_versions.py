@@ -1,4 +1,4 @@
-"""What differs between pymunk 6.9, 6.11, 7.0 and 7.3: this file alone knows which one is installed.
+"""What differs between pymunk 6.9, 6.11, 7.0 and 7.3: no other file depends on which one is installed.
 
 | | pymunk 6 | pymunk 7 |
 |---|---|---|
@@ -50,8 +50,8 @@ def take_place(held: Any) -> None:
 
 
 def reject(held: Any) -> None:
-    """Have the collision of an arbiter of Chipmunk's, whose shapes touch, not take place. pymunk 6 asks `pre_solve`
-    again in each step, and its pickles say what `begin` has rejected."""
+    """Have the collision of an arbiter of Chipmunk's, whose shapes touch, not take place. pymunk 6 calls `pre_solve`
+    again in each step, and its pickles contain what `begin` has rejected."""
     if not ANSWERS and held.state != _CACHED:
         held.processCollision = 0
 
@@ -66,7 +66,7 @@ def decision(held: Any, sensor: Callable[[Any], bool]) -> tuple[Any, ...]:
 def is_odd(
     held: Any, sensor: Callable[[Any], bool], elasticity: Callable[[Any], float], friction: Callable[[Any], float]
 ) -> bool:  # fmt: skip
-    """Whether an arbiter of Chipmunk's may say anything else than its shapes, whose numbers the functions give."""
+    """Whether values of an arbiter of Chipmunk's may differ from those of its shapes, which the functions return."""
     a, b, surface = held.a, held.b, held.surface_vr
     if ANSWERS or not held.processCollision or sensor(a) or sensor(b):
         return True

@@ -7,27 +7,24 @@ velocities) apply to the EECA step, which replaces the rehearsal.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pymunk
 
-from ..arrays import FloatArray
-from ..compiled.records import Rows
 from ..layout import NOW
-from ..model.shapes import Shape
 from ..rehearsing import approach, changed
 from ..transfer import TURNS
-from . import private, private_joints, private_shapes
-from .crossing import Crossing
-from .decisions import Decisions
-from .hooks import Hooks
+from . import private, private_joints
+from .decisions import Decisions, Rules
 from .joints import JointRows
 from .private_versions import answer
-from .shapes import Rules
+
+if TYPE_CHECKING:
+    from .world import World
 
 _BEGIN, _PRE_SOLVE, _POST_SOLVE, _ = private.PHASES
 
@@ -35,21 +32,21 @@ _BEGIN, _PRE_SOLVE, _POST_SOLVE, _ = private.PHASES
 class _Watched:
     """Wrapper of a function of a handler or constraint that records changes to bodies, decisions, and exceptions.
 
-    `phase`: of a handler, "" of a constraint. `group`: number of pymunk's stage in which the function is called;
-    between two calls of one group pymunk changes no body.
+    `phase`: of a handler, "" of a constraint. `stage`: number of pymunk's stage in which the function is called, 0 for
+    begin and pre_solve; between two calls of one stage pymunk changes no body.
     """
 
-    __slots__ = ("_decides", "_group", "_phase", "_rehearsal", "function")
+    __slots__ = ("_decides", "_phase", "_rehearsal", "_stage", "function")
 
-    def __init__(self, rehearsal: Rehearsal, function: Callable[..., Any], phase: str, group: int) -> None:
-        self._rehearsal, self.function, self._phase, self._group = rehearsal, function, phase, group
+    def __init__(self, rehearsal: Rehearsal, function: Callable[..., Any], phase: str, stage: int) -> None:
+        self._rehearsal, self.function, self._phase, self._stage = rehearsal, function, phase, stage
         self._decides = phase in (_BEGIN, _PRE_SOLVE)
 
     def __call__(self, *arguments: Any) -> bool | None:
         rehearsal = self._rehearsal
         if rehearsal.failure is not None:
             return True
-        rehearsal.listen(self._group)
+        rehearsal.before_call(self._stage)
         before = private.decision(arguments[0]) if self._decides else None
         answered: bool | None = True
         try:
@@ -59,7 +56,7 @@ class _Watched:
             rehearsal.failure = error
         if self._decides and (answered is False or private.decision(arguments[0]) != before):
             rehearsal.decided = True
-        rehearsal.hear(self._group)
+        rehearsal.after_call(self._stage)
         return answered
 
 
@@ -67,17 +64,16 @@ class Rehearsal:
     """The arrays and wrappers for rehearsals of a world, kept from step to step.
 
     Attributes:
-        failure: the exception of a function in the last rehearsal.  decided: whether a function has changed a
-        collision.
+        failure: the exception of a function in the last rehearsal.
+        decided: whether a function has changed a collision in it.
     """
 
-    def __init__(self, world: Crossing) -> None:
-        self.world, self.space, self.bodies = world, world.space, world.bodies
+    def __init__(self, world: World) -> None:
+        self.world, self.space = world, world.space
         self._start, self._known = np.zeros_like(world.START), np.zeros_like(world.START)
-        # Changes by begin and pre_solve, and changes by post_solve and separate.
-        self._changes: tuple[FloatArray, FloatArray] = world.CHANGES[0], world.CHANGES[1]
         self._approach = approach.bind(world.STATES, world.WALK, world.EXTRA, world.BODY, world.ENDS, self._start)
-        self._heard, self._stage = [False, False], -1
+        # Whether there are changes by begin and pre_solve, and changes by post_solve and separate; the last stage.
+        self._changed, self._stage = [False, False], -1
         self._wrapped: list[tuple[Any, str, Any, Any]] = []
         self._functions: list[tuple[Any, ...]] = []
         self.failure: BaseException | None = None
@@ -86,58 +82,57 @@ class Rehearsal:
 
     @cached_property
     def _differ(self) -> list[Callable[[], int]]:
-        return [changed.bind(self.world.STATES, self._known, table) for table in self._changes]
+        return [changed.bind(self.world.STATES, self._known, table) for table in self.world.CHANGES]
 
     def forget(self) -> None:
         """Forget earlier steps."""
-        self._heard, self._recent, self._ignores = [False, False], 0, True
-        for table in self._changes:
-            table[:] = 0.0
+        self._changed, self._recent, self._ignores = [False, False], 0, True
+        self.world.CHANGES.fill(0.0)
 
     def go_on(self, earlier: Rehearsal) -> None:
-        """Take over what functions have said in a rehearsal of another world of the space."""
-        self._heard, self.decided = earlier._heard, earlier.decided
+        """Take over what functions have done in a rehearsal of another world of the space."""
+        self._changed, self.decided = earlier._changed, earlier.decided
 
-    def listen(self, stage: int) -> None:
+    def before_call(self, stage: int) -> None:
         """Before a function is called: read the bodies, if pymunk has reached another stage."""
         if self._stage != stage:
             self.world.gather()
             np.copyto(self._known, self.world.STATES[NOW])
             self._stage = stage
 
-    def hear(self, stage: int) -> None:
+    def after_call(self, stage: int) -> None:
         """After a function was called: record its changes."""
-        group = 0 if stage == 0 else 1
+        late = stage > 0
         self.world.gather()
-        if self._differ[group]():
-            self._heard[group] = True
+        if self._differ[late]():
+            self._changed[late] = True
 
-    def run(self, hooks: Hooks, dt: float, gravity: tuple[float, ...], left: float) -> int:
+    def run(self, dt: float, half_damping: float) -> int:
         """Take pymunk's step; STATES then has the start of the EECA step, with the changes by begin and pre_solve. An
         exception of a function is raised when pymunk has finished.
 
         Returns:
             0 or a negative code of `transfer.py`, with nothing done.
         """
-        world = self.world
-        gx, gy = gravity
-        status = self._approach(dt, gx, gy, left)
+        world, hooks = self.world, self.world.hooks
+        gx, gy = world.gravity
+        status = self._approach(dt, gx, gy, half_damping)
         if status < 0:
             return status
         self.failure, self.decided, self._stage = None, False, -1
-        for group, table in enumerate(self._changes):
-            if self._heard[group]:
-                table[:], self._heard[group] = 0.0, False
+        if True in self._changed:
+            world.CHANGES.fill(0.0)
+            self._changed = [False, False]
         world.scatter(TURNS)
-        self._wrap(hooks)
+        self._wrap()
         try:
             for handler, phase, _, watched in self._wrapped:
                 setattr(handler, phase, watched)
-            if hooks.alone():
-                private.step_alone(self.space, dt)
+            if hooks.none_within_steps():
+                private.step_without_end(self.space, dt)
             else:
                 with hooks.silent(), self._silent_joints(hooks.joints):
-                    private.step_alone(self.space, dt)
+                    private.step_without_end(self.space, dt)
         finally:
             for handler, phase, function, _ in self._wrapped:
                 setattr(handler, phase, function)
@@ -145,19 +140,19 @@ class Rehearsal:
             raise self.failure
         if self._stage >= 0:  # else nothing was read meanwhile
             np.copyto(world.STATES[NOW], self._start)
-        if self._heard[0]:
-            world.STATES[NOW] += self._changes[0]
+        if self._changed[0]:
+            world.STATES[NOW] += world.CHANGES[0]
         return status
 
     @property
     def after(self) -> bool:
         """Whether post_solve and separate have changed anything."""
-        return self._heard[1]
+        return self._changed[1]
 
-    def _wrap(self, hooks: Hooks) -> None:
+    def _wrap(self) -> None:
         """Make wrappers of all functions of handlers; those of the last step are used again if the functions are
         equal."""
-        now = private.functions(self.space)
+        hooks, now = self.world.hooks, private.functions(self.space)
         late = hooks.joints is not None and len(hooks.joints.after) > 0
         if now != self._functions or late:
             self._functions = now
@@ -169,7 +164,8 @@ class Rehearsal:
             ]
         if late:
             self._wrapped = [
-                (h, phase, f, hooks.later(f) if phase == _POST_SOLVE else told) for h, phase, f, told in self._wrapped
+                (handler, phase, f, hooks.later(f) if phase == _POST_SOLVE else watched)
+                for handler, phase, f, watched in self._wrapped
             ]
 
     @contextmanager
@@ -181,7 +177,7 @@ class Rehearsal:
         mute = [item for item in joints.calling if item.pre_solve is None or item.a.space is None]
         with ExitStack() as held:
             if joints.partners.outside:
-                held.callback(private_joints.move_on, joints.partners.motions())
+                held.callback(private_joints.restore_motions, joints.partners.motions())
             if mute:
                 held.enter_context(private_joints.silent(mute))
             if joints.own:
@@ -197,36 +193,24 @@ class Rehearsal:
         try:
             for item, before, after in functions:
                 assert before is not None
-                nothing = None if after is None else _nothing
-                private_joints.replace_functions(item, _Watched(self, before, "", 0), nothing)
+                silent = None if after is None else lambda *_: None
+                private_joints.replace_functions(item, _Watched(self, before, "", 0), silent)
             yield
         finally:
             for item, before, after in functions:
                 private_joints.replace_functions(item, before, after)
 
-    def rules(
-        self, known: Rules, places: Mapping[pymunk.Shape, int], SHAPE: Rows[Shape], smooth: bool, earlier: Decisions
-    ) -> Rules:
-        """What the arbiters of the step and earlier decisions say of pairs of shapes, which have these rows of SHAPE.
+    def rules(self, earlier: Decisions) -> Rules:
+        """The decisions about pairs of shapes by functions of this step, and by earlier ones.
 
         Values of arbiters differ from those of shapes only if a function has changed them. pymunk keeps such decisions
         as long as it keeps arbiters, and ignored collisions as long as the shapes touch.
         """
         if self.decided:
             self._recent = self.space.collision_persistence + 1
-        if self._recent <= 0 and not self._ignores and not earlier.told:
-            return Rules() if known.some else known
+        if self._recent <= 0 and not self._ignores and not earlier.laws:
+            return Rules() if self.world.rules.some else self.world.rules
         self._recent -= 1
-        rules = earlier.rules(self.space, places, SHAPE, smooth)
+        rules = earlier.rules(self.world)
         self._ignores = bool(rules.ignored)
         return rules
-
-    def finish(self, movers: Iterable[Any]) -> None:
-        """The end of pymunk's step: move shapes to their bodies, `movers`; additions, removals, callbacks."""
-        private_shapes.reindex_anew(self.space, movers)
-        if private.waits(self.space):
-            private.finish_step(self.space)
-
-
-def _nothing(*arguments: Any) -> None:
-    pass

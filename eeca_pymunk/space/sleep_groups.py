@@ -14,12 +14,12 @@ from .bodies import Bodies
 
 
 def resting_groups(
-    space: pymunk.Space, bodies: Bodies, tired: BoolArray, contacts: Contacts
+    space: pymunk.Space, bodies: Bodies, ready: BoolArray, contacts: Contacts
 ) -> list[list[pymunk.Body]]:
     """The groups of bodies that touch or are jointed, all of which have been at rest for long enough.
 
     Args:
-        tired: (N,) whether a body has.  contacts: of the last step.
+        ready: (N,) whether a body has.  contacts: of the last step.
     """
     groups = list(range(len(bodies)))
 
@@ -29,7 +29,7 @@ def resting_groups(
             i = groups[i]
         return i
 
-    awake: BoolArray = bodies.dynamic & ~tired
+    awake: BoolArray = bodies.dynamic & ~ready
     pairs = list(zip(contacts.body_a.tolist(), contacts.body_b.tolist(), strict=True))
     # pymunk keeps a contact with a sleeping body for good, so that both bodies must sleep or none.
     for one, two in (*((c.a, c.b) for c in space.constraints), *private.touching(space)):
@@ -43,7 +43,7 @@ def resting_groups(
             awake[one] |= bodies.dynamic[one] and not (bodies.dynamic[other] or bodies.static[other])
     stay = {root(int(i)) for i in np.flatnonzero(awake)}
     resting: dict[int, list[pymunk.Body]] = {}
-    for i in np.flatnonzero(tired).tolist():
+    for i in np.flatnonzero(ready).tolist():
         if (lead := root(i)) not in stay:
             resting.setdefault(lead, []).append(bodies.items[i])
     return list(resting.values())
@@ -62,7 +62,7 @@ def put_to_sleep(bodies: Sequence[pymunk.Body], groups: IntArray) -> None:
             leaders[group] = body
 
 
-def rouse(space: pymunk.Space) -> None:
+def wake_neighbours(space: pymunk.Space) -> None:
     """Wake bodies that are jointed to an awake body, or touch one according to pymunk."""
     if not any(private_sleep.sleeping(space.bodies)):
         return

@@ -31,15 +31,16 @@ from ..layout import BODY_ROW, FOUND, KNOWN
 from ..model.contacts import Impulse
 from ..report import Contacts
 from . import private, private_shapes, private_sleep
-from .noticed import leader
+from .edits import leader
 from .sleep_groups import resting_groups
 
 if TYPE_CHECKING:
     from .world import World
 
 AT_REST = 1e-6  # tolerance above; `..model.bodies.AT_REST` is a state
-_AGAIN = 16  # steps after which islands that could not fall asleep are looked at again
-_SHARE, _PATIENCE = 8, 120  # islands fall asleep that are this part of who is awake, or after so many steps
+_AGAIN = 16  # steps from one search for groups that may fall asleep to the next
+# Groups fall asleep at once if they are at least 1/_SHARE of the bodies awake, others after _PATIENCE steps.
+_SHARE, _PATIENCE = 8, 120
 
 
 class Sleep:
@@ -65,7 +66,7 @@ class Sleep:
             else []
         )
         self._timestamp = private.timestamp(self.space)
-        self._left = self._timestamp()
+        self._stamp = self._timestamp()
         self._wait, self._since = 0, _PATIENCE
         self._rested: FloatArray = np.zeros(len(bodies))  # seconds
         if past is not None:
@@ -75,10 +76,11 @@ class Sleep:
                 if body in before and not past.world.bodies.asleep[before[body]]:
                     self._rested[i] = past._rested[before[body]]
         self._steps, self._dt = self.space.collision_persistence + 2, 0.0
-        self._tired: IntArray = np.zeros(len(bodies), np.int64)
+        self._ready: IntArray = np.zeros(len(bodies), np.int64)
         row = world.WALK[BODY_ROW]
         self._size: FloatArray = np.where(row >= 0, world.BODY["extent"][row], 0.0)
-        self._rests = rests.bind(world.STATES, world.WALK, world.BODY, self._size, self._rested, self._tired)
+        self._far: FloatArray = self._size + np.hypot(*bodies.center_of_gravity.T)  # from the body's origin
+        self._rests = rests.bind(world.STATES, world.WALK, world.BODY, self._size, self._rested, self._ready)
         self._still = bodies.asleep.astype(np.int64), bodies.static.astype(np.int64)
         # Bodies that something other than the solver moves: all, if functions are called; else kinematic ones.
         movers: tuple[BoolArray, BoolArray] = ~bodies.static, ~bodies.static & ~bodies.dynamic
@@ -87,10 +89,10 @@ class Sleep:
 
     def changed(self) -> bool:
         """Whether other bodies may sleep now than when this was made, or pymunk has taken a step."""
-        return self._timestamp() != self._left or self.woken()
+        return self._timestamp() != self._stamp or self.woken()
 
     def woken(self) -> bool:
-        """Whether one of the bodies wakes that slept when this was made."""
+        """Whether a body is awake that slept when this was made."""
         return not self._asleep()
 
     def nothing_moves(self) -> bool:
@@ -99,22 +101,22 @@ class Sleep:
 
     def step(self, dt: float) -> None:
         """Take a step in which nothing moves: pymunk's own until it has forgotten all earlier contacts; then none,
-        since a step of this dt would change nothing. It wakes what touches a kinematic body, and pushes it out of that,
-        which is undone."""
+        since a step of this dt would change nothing. pymunk wakes bodies that touch a kinematic body, and pushes them
+        out of it; the motion is undone."""
         if self._steps > 0 or dt != self._dt:
             self._steps, self._dt = self._steps - 1, dt
-            private.step_alone(self.space, dt)
+            private.step_without_end(self.space, dt)
             if self.woken():
                 private_sleep.stop_woken(self._sleepers)()
                 private_shapes.forget_corrections(private.pointers(self._sleepers))
-            self._left = self._timestamp()
+            self._stamp = self._timestamp()
 
     def wake(self, bodies: Iterable[pymunk.Body] | None = None) -> None:
         """Wake these bodies and their groups; all bodies if None."""
         for body in self._sleepers if bodies is None else bodies:
             body.activate()
 
-    def meet(self, dt: float) -> bool:
+    def wake_ahead(self, dt: float) -> bool:
         """Wake the sleeping bodies that a kinematic body may meet in the step; if functions are called, which cannot be
         repeated, those that any body may meet. Returns whether there was any."""
         world, found = self.world, False
@@ -133,13 +135,12 @@ class Sleep:
         if self._size[i] == 0.0 or (not bodies.dynamic[i] and vx == vy == spin == 0.0):
             return None
         pull = math.hypot(*world.gravity) + math.hypot(fx, fy) * bodies.inverse_mass[i]
-        reach = self._size[i] + float(np.hypot(*bodies.center_of_gravity[i]))
-        reach += dt * (math.hypot(vx, vy) + dt * pull)
-        # A step says so if this is not finite.
+        reach = float(self._far[i]) + dt * (math.hypot(vx, vy) + dt * pull)
+        # Not finite: the step raises.
         return pymunk.BB(x - reach, y - reach, x + reach, y + reach) if math.isfinite(x + y + reach) else None
 
     def _left_alone(self, groups: list[list[pymunk.Body]], dt: float) -> list[list[pymunk.Body]]:
-        """Those of groups that would not be woken at once if they slept, see `meet`."""
+        """Those of groups that would not be woken at once if they slept, see `wake_ahead`."""
         row, moves = self.world.bodies.row, self._moves[self.world.plain].tolist()
         if moves:
             self.world.gather()
@@ -158,8 +159,7 @@ class Sleep:
         plain, world = self.world.plain, self.world
         if plain not in self._nears:
             near = np.zeros(len(self._moves[plain]), np.int64)
-            size = self._size + np.hypot(*world.bodies.center_of_gravity.T)
-            arrays = size, world.bodies.inverse_mass.copy(), self._boxes, near
+            arrays = self._far, world.bodies.inverse_mass.copy(), self._boxes, near
             self._nears[plain] = near, approaches.bind(world.STATES, self._moves[plain], *arrays)
         near, call = self._nears[plain]
         return near[: call(dt, pull)].tolist()  # type: ignore[no-any-return]
@@ -170,7 +170,7 @@ class Sleep:
         boxes = [(b.left, b.bottom, b.right, b.top) for body in self._sleepers for b in (s.bb for s in body.shapes)]
         return np.array(boxes, float).reshape(-1, 4)
 
-    def told(self, bodies: Sequence[pymunk.Body]) -> tuple[FloatArray, IntArray, IntArray]:
+    def state(self, bodies: Sequence[pymunk.Body]) -> tuple[FloatArray, IntArray, IntArray]:
         """Times at rest (N,), index of another body of the sleeping group (N,), -1 for awake bodies, timers (2,)."""
         place = {body: i for i, body in enumerate(bodies)}
         groups = [place.get(leader(body), i) if body.is_sleeping else -1 for i, body in enumerate(bodies)]
@@ -182,7 +182,7 @@ class Sleep:
         self._rested[:] = [rested[body] for body in self.world.bodies.items]
         self._wait, self._since = timers.tolist()
 
-    def part(self) -> None:
+    def wake_changed(self) -> None:
         """Wake bodies near removed shapes; wake all if static bodies were moved or shapes edited."""
         if not self.some:
             return
@@ -191,8 +191,8 @@ class Sleep:
                 room = 1e-3 * (shape.bb.right - shape.bb.left + shape.bb.top - shape.bb.bottom)
                 low, high = (shape.bb.left - room, shape.bb.bottom - room), (shape.bb.right + room, shape.bb.top + room)
                 self._wake_within(pymunk.BB(*low, *high))
-        moved = np.array_equal(self.world.WALK[FOUND], self.world.WALK[KNOWN]) and not self.world.is_current()
-        if moved or self.world.edited():
+        same_bodies = np.array_equal(self.world.WALK[FOUND], self.world.WALK[KNOWN])
+        if (same_bodies and self.world.moved_static()) or self.world.edited():
             self.wake()
 
     def _wake_within(self, box: pymunk.BB) -> bool:
@@ -214,20 +214,20 @@ class Sleep:
 
     def rest(self, dt: float) -> bool:
         """Update the times at rest after a step; returns whether any body may fall asleep."""
-        self._left = self._timestamp()
+        self._stamp = self._timestamp()
         # Sums of dt fall short of the threshold by round-off.
         need = self.space.sleep_time_threshold * (1.0 - 1e-9)
-        tired = self._rests(AT_REST * math.hypot(*self.world.gravity) * dt, dt, need)
+        ready = self._rests(AT_REST * math.hypot(*self.world.gravity) * dt, dt, need)
         self._wait = max(self._wait - 1, 0)
         self._since += 1
-        return self._wait == 0 and tired == 1
+        return self._wait == 0 and ready == 1
 
     def fall_asleep(self, contacts: Contacts, dt: float) -> None:
         """Put groups to sleep all of whose bodies have been at rest for long enough, unless something would wake them
         in a step of length dt."""
         bodies = self.world.bodies
         self._wait = _AGAIN
-        islands = self._left_alone(resting_groups(self.space, bodies, self._tired != 0, contacts), dt)
+        islands = self._left_alone(resting_groups(self.space, bodies, self._ready != 0, contacts), dt)
         # Putting bodies to sleep reads the world again and loses contact forces, so small groups wait.
         falling = sum(map(len, islands))
         if falling * _SHARE < np.count_nonzero(bodies.dynamic) and self._since < _PATIENCE:

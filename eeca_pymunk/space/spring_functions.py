@@ -45,7 +45,8 @@ def own_function(item: Any) -> Callable[[Any, float], float] | None:
 def put_law(item: Any, a: Motion, b: Motion, dt: float, row: Joint, past: Rate | None) -> Rate:
     """Write the law of a spring with a function into its row of JOINT; a, b: motions of its bodies.
 
-    `past`: the result of the last step, r and h'. Returns those of this step.
+    `past`: the result of the last step, r and h'. Returns those of this step. NotFiniteError if the function does not
+    return finite numbers.
     """
     function = own_function(item)
     assert function is not None

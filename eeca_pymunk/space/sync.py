@@ -14,15 +14,17 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
+from functools import partial
 from typing import TYPE_CHECKING
 
 import pymunk
 
 from ..reentry import BUSY
+from ..transfer import EVENTS
 from . import private, private_joints, private_rest, private_shapes, private_sleep
-from .bodies import ANGULAR_VELOCITY, VELOCITY, Bodies
+from .bodies import ANGULAR_VELOCITY, VELOCITY
 from .joints import JointRows
-from .private_joints import inert, move_on, silent, strengthen, weaken, with_laws
+from .private_joints import restore_motions, silent, strengthen, weaken, with_laws
 
 if TYPE_CHECKING:
     from .world import World
@@ -38,7 +40,7 @@ Choice = Callable[[Sequence[pymunk.Constraint]], list[pymunk.Constraint]]
 
 
 def rest_step(
-    space: pymunk.Space, dt: float, joints: JointRows | None = None, forget: bool = True, awake: Choice | None = None
+    space: pymunk.Space, dt: float, joints: JointRows | None = None, stored: bool = True, awake: Choice | None = None
 ) -> None:
     """Update pymunk's shapes by its own step, with all velocities 0, which moves nothing.
 
@@ -47,16 +49,16 @@ def rest_step(
     ones may end with velocities of round-off.
 
     Args:
-        joints: the constraints of the space, which call no functions meanwhile, and push with nothing where they would.
-        forget: whether pymunk remembers impulses of joints, which would push too.
-        awake: where bodies sleep, which of constraints have no such body. A change of gravity would wake them: it
-            stays, and leaves velocities, which are of no use.
+        joints: the constraints of the space, which call no functions meanwhile, and exert no forces.
+        stored: whether pymunk may have impulses of joints from earlier steps, which would push too.
+        awake: where bodies sleep, function for which of constraints have no such body. A change of gravity would wake
+            them: gravity stays, and changes velocities, which are overwritten.
     """
     asleep = awake is not None
     if joints is None:
         private_rest.rest(space, dt, asleep)
         return
-    push, calling = joints.items if forget else joints.pushing.now(), joints.calling
+    push, calling = joints.items if stored else joints.pushing(), joints.calling
     if awake is not None:  # a change of a joint would wake its bodies
         push, calling = awake(push), awake(calling) if calling else calling
     outside = joints.partners.motions()
@@ -66,20 +68,19 @@ def rest_step(
             private_rest.rest(space, dt, asleep)
         finally:
             strengthen(held)
-            move_on(outside)
+            restore_motions(outside)
         return
     own, laws = joints.own, joints.laws()
     if awake is not None:
         laws = [law for item, law in zip(own, laws, strict=True) if awake([item])]
         own = awake(own)
     with ExitStack() as within:
-        within.callback(move_on, outside)
+        within.callback(restore_motions, outside)
         if calling:
             within.enter_context(silent(calling))
         if own:
             within.enter_context(with_laws(own, laws))
-        if push:
-            within.enter_context(inert(push))
+        within.callback(strengthen, weaken(push))
         private_rest.rest(space, dt, asleep)
 
 
@@ -87,31 +88,32 @@ class Sync:
     """Updates pymunk's shapes after each step, in one of the two ways.
 
     Attributes:
-        late: whether readers of arbiters call `renew`.
+        renews: whether readers of arbiters call `renew`.
+        waits: function that returns whether post-step callbacks, additions or removals wait for the end of a step.
+        stamp: pymunk's count of steps after the last EECA step, -1 before the first.
     """
 
     def __init__(self, world: World, past: Sync | None = None) -> None:
-        """`past`: that of the world of this space before; pymunk itself puts what has come since into its index."""
+        """`past`: that of the world of this space before; pymunk itself indexes shapes that were added since."""
         self.space, bodies = world.space, world.bodies
         self._asleep = bool(bodies.asleep.any())
         self._pulls = self.space.sleep_time_threshold < math.inf
         sleepers = [bodies.items[i] for i in bodies.asleep.nonzero()[0]]
         self._sleep, self._stop = private_sleep.asleep(sleepers), private_sleep.stop_woken(sleepers)
-        self._called = len(bodies.velocity_hooks) + len(bodies.position_hooks) > 0
         self._shapes = int(world.shape_counts.sum())
         self._world = world
         self._timestamp: Callable[[], int] = private.timestamp(self.space)
-        self._renewed, self._dt, self._left = -1, 0.0, 0
-        self._touched = self._stale = self._asked = False
+        self.waits = partial(private.waits, self.space)
+        self._rested, self._dt, self._reindexings = -1, 0.0, 0
+        self._touched = self._stale = self._were_read = False
         if past is not None and not (self._asleep or past._asleep):
-            self._renewed, self._dt, self._left = past._renewed, past._dt, past._left
-            self._touched, self._stale, self._asked = past._touched, past._stale, past._asked
-        self._joints = world.joints
-        self._new = True  # bodies and joints may have come from elsewhere, with what pymunk has left in them
-        self.late = False
-        self.stamp = -1  # pymunk's count of steps after our last one, -1 before the first
+            self._rested, self._dt, self._reindexings = past._rested, past._dt, past._reindexings
+            self._touched, self._stale, self._were_read = past._touched, past._stale, past._were_read
+        self._new = True  # bodies and joints may be new, with corrections and impulses of other steps of pymunk
+        self.renews = False
+        self.stamp = -1
 
-    def reindexes(self, dt: float, contacts: bool, joints: JointRows | None) -> bool:
+    def reindexes(self, dt: float, status: int) -> bool:
         """Whether reindexing is enough for this step. Conditions:
 
         * pymunk has taken no step since the last rest step, which had this dt and was no more than `_RENEW` steps ago;
@@ -119,33 +121,28 @@ class Sync:
         * nothing touched in this step and the last one, or readers of arbiters call `renew`;
         * the number of shapes is at most SOME; with neither contacts nor joints at most FEW.
         """
-        asked, self._asked = self._asked, False
-        if asked or self._left == 0 or dt != self._dt or self._shapes > SOME:
+        were_read, self._were_read = self._were_read, False
+        if were_read or self._reindexings == 0 or dt != self._dt or self._shapes > SOME:
             return False
-        if contacts or self._touched:
-            if not self.late:
+        if status & EVENTS or self._touched:
+            if not self.renews:
                 return False
-        elif self._shapes > FEW and joints is None:
+        elif self._shapes > FEW and self._world.joints is None:
             return False
-        self._joints = joints
-        return self._timestamp() == self._renewed
+        return self._timestamp() == self._rested
 
     def reindex(self) -> None:
         """Move the shapes to the poses of their bodies."""
-        self._left -= 1
+        self._reindexings -= 1
         self._stale = True
         private_shapes.reindex(self.space, self._world.movers)
 
     def renew(self) -> None:
         """Make arbiters by a rest step, if the last step was an EECA step that made none."""
-        self._asked = True
-        if self._stale and self.space not in BUSY and self._timestamp() == self._renewed:
+        self._were_read = True
+        if self._stale and self.space not in BUSY and self._timestamp() == self._rested:
             with private_rest.stopped(self.space):
-                self.rest(self._dt, self._joints)
-
-    def waits(self) -> bool:
-        """Whether post-step callbacks wait for the end of a step."""
-        return private.waits(self.space)
+                self.rest(self._dt)
 
     def call_back(self) -> None:
         """Do waiting additions and removals, and call post-step callbacks."""
@@ -156,52 +153,71 @@ class Sync:
         """Record that the steps pymunk has taken until now were part of EECA steps."""
         self.stamp = self._timestamp()
 
+    def finish_rehearsal(self) -> None:
+        """After a rehearsal, the end of pymunk's step: move shapes to their bodies, then `call_back`."""
+        self.stamp = self._timestamp()
+        private_shapes.reindex_anew(self.space, self._world.movers)
+        self.call_back()
+
     def is_ours(self) -> bool:
         """Whether pymunk has taken no step of its own since the last EECA step."""
         return self._timestamp() == self.stamp
 
-    def rest(self, dt: float, joints: JointRows | None = None) -> None:
-        """Take a rest step; all bodies must have velocity 0, and may get velocities of round-off if there are
-        joints."""
-        native = self._new or self._timestamp() != self._renewed
+    def rest(self, dt: float) -> None:
+        """Take a rest step, without functions of bodies; all bodies must have velocity 0, and may get velocities of
+        round-off if there are joints."""
+        world, stored = self._world, self._new or self._timestamp() != self._rested
         self._new = False
-        if native:
-            private_shapes.forget_corrections(self._world.movers)
+        if stored:
+            private_shapes.forget_corrections(world.movers)
         slept = self._asleep and self._sleep()
-        rest_step(self.space, dt, joints, native, self._choice(joints) if self._asleep else None)
+        how = self.space, dt, world.joints, stored, self._choice() if self._asleep else None
+        if world.hooks.some:
+            with world.hooks.silent():
+                rest_step(*how)
+        else:
+            rest_step(*how)
         if slept and not self._sleep():
             self._stop()  # what pymunk wakes gets a velocity by gravity
-        self._renewed, self._dt, self._left = self._timestamp(), dt, _RENEW
-        self.stamp = self._renewed
+        self._rested, self._dt, self._reindexings = self._timestamp(), dt, _RENEW
+        self.stamp = self._rested
         self._stale = False
-        if not self.late and self._shapes <= FEW:
+        if not self.renews and self._shapes <= FEW:
             self._touched = bool(private.raw_arbiters(self.space))
 
-    def _choice(self, joints: JointRows | None) -> Choice:
-        """Which of constraints have no body that sleeps: who sleeps at the start of a step does so at its end, unless
-        functions have woken it."""
-        if joints is None or self._called or joints.calling or joints.own:
+    def _choice(self) -> Choice:
+        """Function for which of constraints have no body that sleeps: bodies that sleep at the start of a step do so at
+        its end, unless functions have woken them."""
+        joints = self._world.joints
+        if joints is None or self._world.hooks.some or joints.calling or joints.own:
             return private_joints.awake
-        return joints.pushing.awake
+        return joints.awake
 
-    def land(self, world: World, dt: float, status: int) -> None:
-        """Write the end of the step of a world, with a rest step between poses and velocities."""
-        if world.joints is not None or self._pulls:
-            status = world.turning(status)  # joints change spins by round-off; gravity, where bodies sleep, by more
-        world.scatter_still(status)
-        self.rest(dt, world.joints)
-        world.scatter_speed(status)
-
-    def settle(self, bodies: Bodies, joints: JointRows, dt: float, contacts: bool) -> None:
-        """Update pymunk's shapes to the end of a step that is written already, and may have been changed by
-        functions."""
-        if self.reindexes(dt, contacts, joints):
+    def land(self, dt: float, status: int) -> None:
+        """Write the end of the step to the space, and update pymunk's shapes: by reindexing, or by a rest step between
+        poses and velocities."""
+        world = self._world
+        if self.reindexes(dt, status):
+            world.scatter(status)
             self.reindex()
             return
+        if world.joints is not None or self._pulls:
+            status = world.with_turns(status)  # joints change spins by round-off; gravity, where bodies sleep, by more
+        world.scatter_still(status)
+        self.rest(dt)
+        world.scatter_speed(status)
+
+    def follow(self, dt: float, status: int) -> None:
+        """Update pymunk's shapes to the end of a step that is written already, and may have been changed by
+        functions."""
+        if self.reindexes(dt, status):
+            self.reindex()
+            return
+        bodies = self._world.bodies
         end = bodies.gather()
         assert end is not None  # additions and removals by functions still wait
         still = end.copy()
         still[:, VELOCITY], still[:, ANGULAR_VELOCITY] = 0.0, 0.0
         bodies.scatter(still, unchanged=True)
-        self.rest(dt, joints)
+        self.rest(dt)
         bodies.scatter(end, unchanged=True)

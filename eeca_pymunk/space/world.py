@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pymunk
 
-from ..arrays import IntArray
+from ..arrays import BoolArray, IntArray
 from ..compiled.records import Rows, rows
 from ..impacts.scene_memory import SceneMemory
 from ..layout import BODY_ROW
@@ -19,22 +19,22 @@ from ..report import Details, nothing
 from ..transfer import take
 from . import private
 from .bodies import Bodies
-from .checks import rough_pair, settings
+from .checks import has_friction, settings
 from .crossing import Crossing
+from .decisions import Rules
+from .edits import clock, counts, edited_since
 from .hooks import Hooks
 from .joints import JointRows
-from .noticed import clock, edited_since, edits
 from .packing import Packed, Records, records_of, shape_counts
 from .patching import Patched, patch
 from .rehearsal import Rehearsal
-from .shapes import Rules
 
 
 class World(Crossing):
     """The bodies and solid shapes of one space; ValueError or UnsupportedFeature if it cannot be stepped.
 
     Masses, shapes and functions of bodies are read once. `current()` returns, within half a microsecond, whether
-    settings and contents of the space have not changed, and no shape or body was edited in place (`noticed.py`). Moved
+    settings and contents of the space have not changed, and no shape or body was edited in place (`edits.py`). Moved
     static bodies and exchanged bodies are found by `transfer.take` in the states that `gather` reads.
 
     Args:
@@ -50,13 +50,12 @@ class World(Crossing):
             disks, and dynamic bodies; then come kinematic bodies, and last the ground.
         STATES, WALK, EXTRA, ENDS: the arrays exchanged with pymunk, see `layout.py`.
         gravity: length/time².  damping: pymunk's, 1 is none.
-        ignores: whether friction of this space is left out.
         hooks: functions of bodies and constraints.  collisions: whether the space has collision handlers.
         hooked: whether a step calls functions of the program, or damping is 0.  plain: neither hooked nor with joints.
         rules: decisions of collision handlers about pairs of rows of SHAPE in this step.
-        smooth: whether friction, also that of handlers, has to be left out.
+        frictionless: whether friction, also that of handlers, is left out.  lacks_friction: and there is some.
         joints: the constraints of the space, None if it has none.  PARTNER: bodies of joints that have no row of BODY.
-        read_at: `noticed.clock` when shapes and bodies were read.
+        read_at: `edits.clock` when shapes and bodies were read.
         patches: number of patches so far.  packed: the arrays of the rows, and the kernel that writes them.
         objects_read: number of bodies, shapes and constraints read from pymunk for this world; others were known.
         memory: of the event loop of this world.
@@ -64,26 +63,26 @@ class World(Crossing):
     """
 
     def __init__(self, space: pymunk.Space, ignore: Sequence[str] = (), past: World | None = None) -> None:
-        self._edits = edits(space)
-        self._known = self._edits[0] - self._edits[1]
-        fixed = space.sleep_time_threshold < math.inf
+        self._edits = counts(space)
+        self._known = self._edits.in_place
+        sleeps = space.sleep_time_threshold < math.inf
         stale = None if past is None else past.stale()
-        known = None if past is None or stale is None else past
+        known = None if stale is None else past
         self.read_at = clock()
-        bodies = Bodies(space, fixed) if known is None else Bodies(space, fixed, known.bodies, stale or ())
+        bodies = Bodies(space, sleeps, None if known is None else known.bodies, stale or ())
         state = bodies.start
         bodies.check_finite(state)
         self.records: Records
         self.records, count = records_of(space, bodies, {} if known is None else known.records, stale or ())
         self.objects_read = bodies.fresh + count
         self.memory: SceneMemory = SceneMemory() if past is None else past.memory
-        self.smooth = "friction" in ignore
-        self.ignores = self.smooth and rough_pair([s for s, r in self.records.items() if r is not None]) is not None
+        self.frictionless = "friction" in ignore
+        self.lacks_friction = self.frictionless and has_friction([s for s, r in self.records.items() if r is not None])
         self.packed = packed = Packed(bodies, state, self.records)
         super().__init__(space, bodies, packed.BODY, packed.row, state)
         self.shapes, self.owner = packed.shapes, packed.owner
         self.SHAPE, self.LINK, self.VERTEX = packed.SHAPE, packed.LINK, packed.VERTEX
-        if self.smooth:
+        if self.frictionless:
             self.SHAPE["friction"] = 0.0
             self.BODY["friction"] = 0.0
         self.disks, self.dynamic = packed.disks, packed.dynamic
@@ -103,11 +102,10 @@ class World(Crossing):
         self.gravity, self.damping = settings(self.space)
         self._read_joints(anew)
         self._seen = [self._edits[0]]
-        self._known = self._edits[0] - self._edits[1]
+        self._known = self._edits.in_place
         self.collisions = bool(private.handlers(self.space))
         self._forget_rules()
-        bodies = self.bodies
-        self.hooks = Hooks(self.space, bodies, self.joints)
+        self.hooks = Hooks(self.space, self.bodies, self.joints)
         self.hooked = self.collisions or self.hooks.some or self.damping == 0.0
         self.plain = not self.hooked and self.joints is None
         self.current = private.watch(self.space, self._edits, self._seen)
@@ -123,7 +121,7 @@ class World(Crossing):
         elif anew or past is None or not past.is_of(self.space):
             rows = {b: r for b, r in zip(self.bodies.items, self.WALK[BODY_ROW].tolist(), strict=True) if r >= 0}
             self.joints = JointRows(self.space, rows, len(self.BODY), past)
-            self.objects_read += self.joints.fresh
+            self.objects_read += len(self.joints.fresh)
 
     @cached_property
     def rehearsal(self) -> Rehearsal:
@@ -134,6 +132,12 @@ class World(Crossing):
     def places(self) -> dict[pymunk.Shape, int]:
         """The row of SHAPE of each solid shape."""
         return {shape: k for k, shape in enumerate(self.shapes)}
+
+    @property
+    def centred(self) -> BoolArray:
+        """(k,) whether a moving shape is a disk about the centre of mass of its body."""
+        centred: BoolArray = (self.LINK["vertices"] == 1) & ~self.VERTEX[self.LINK["first"], :2].any(axis=1)
+        return centred
 
     @cached_property
     def shape_counts(self) -> IntArray:
@@ -170,15 +174,16 @@ class World(Crossing):
                 self.rehearsal.forget()
             self._seen[0] = self._edits[0]
             if self.current():
-                self._known = self._edits[0] - self._edits[1]
+                self._known = self._edits.in_place
                 self._forget_rules()
             else:
                 self.read_settings()
             self._take(0.0, 0.0, 1.0)
         return found
 
-    def settle(self) -> None:
-        """Publish results of the step for joints, and accept pymunk's rounding of positions as unedited."""
+    def show_joints(self) -> None:
+        """Show impulses and notches of the step to the program, and accept pymunk's rounding of positions as
+        unedited."""
         joints = self.joints
         if joints is not None:
             joints.write()
@@ -196,14 +201,14 @@ class World(Crossing):
         """(x,) 1 for the rows of PARTNER that never move."""
         return np.zeros(0, np.int64) if self.joints is None else self.joints.partners.still
 
-    def part(self) -> bool:
+    def find_parted(self) -> bool:
         """Find the pairs of shapes that do not collide because of joints of their bodies; returns whether they have
         changed."""
         joints = self.joints
         if joints is None or joints.parted is not None:
             return False
         parted: set[tuple[int, int]] = set()
-        if pairs := joints.part():
+        if pairs := joints.find_parted():
             of: dict[pymunk.Body, list[int]] = {}
             for k, i in enumerate(self.owner.tolist()):
                 of.setdefault(self.bodies.items[i], []).append(k)
@@ -215,8 +220,8 @@ class World(Crossing):
         self.void_predictions()
         return True
 
-    def told(self) -> dict[tuple[int, int], tuple[float, float, float, float]]:
-        """The law of pairs of rows of SHAPE by handlers and joints, see `Rules.of_pairs`."""
+    def laws(self) -> dict[tuple[int, int], tuple[float, float, float, float]]:
+        """The laws of pairs of rows of SHAPE by handlers and joints, see `Rules.of_pairs`."""
         return self.rules.of_pairs(self.SHAPE, self.parted)
 
     def _count(self) -> tuple[int, int, int, int]:
@@ -229,11 +234,11 @@ class World(Crossing):
 
     def edited(self) -> bool:
         """Whether a shape or body was edited in place."""
-        return self._edits[0] - self._edits[1] != self._known
+        return self._edits.in_place != self._known
 
-    def load(self, again: bool = False) -> None:
-        """Read the present states into BODY; if `again`, also mobilities, which are 0 where joints have held bodies."""
-        if again:
+    def load(self, mobilities: bool = False) -> None:
+        """Read the present states into BODY, and `mobilities`, which are 0 where joints have held bodies."""
+        if mobilities:
             rows = self.WALK[BODY_ROW]
             moving = rows >= 0
             self.BODY["inv_mass"][rows[moving]] = self.bodies.inverse_mass[moving]
@@ -246,5 +251,5 @@ class World(Crossing):
         return take.bind(self.STATES, self.WALK, self.EXTRA, self.BODY)
 
     def half_damping(self, dt: float) -> float:
-        """Factor of half a step's damping; 1 for damping 0, whose velocities `alter` sets to 0 at the end."""
+        """Factor of half a step's damping; 1 for damping 0, whose velocities `alter_end` sets to 0 at the end."""
         return self.damping ** (0.5 * dt) if self.damping > 0.0 else 1.0

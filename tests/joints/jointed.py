@@ -120,7 +120,7 @@ class JointedSpace:
             if c.pre_solve is not None:
                 c.pre_solve(c, self.space)
         self._gather()
-        self.rows.look(self._state, self._place, dt)
+        self.rows.update(self._state, self._place, dt)
         if self.rows.replan:
             self.components.plan(self.bodies)
             self.rows.planned()

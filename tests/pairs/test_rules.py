@@ -8,7 +8,7 @@ import pytest
 from eeca_pymunk.compiled.records import put, rows
 from eeca_pymunk.model.shapes import Shape
 from eeca_pymunk.pairs.rules import barred, law
-from eeca_pymunk.space.shapes import Rules
+from eeca_pymunk.space.decisions import Rules
 
 
 @pytest.mark.parametrize("count", [0, 1, 2, 7, 40])

@@ -10,7 +10,7 @@ import pymunk
 import pytest
 
 import eeca_pymunk as ep
-from eeca_pymunk.space import noticed
+from eeca_pymunk.space import edits
 
 from ..steppers import state
 
@@ -118,8 +118,8 @@ def test_setters_do_what_pymunks_do(name: str) -> None:
 
 def test_only_edits_are_counted_and_only_in_their_space() -> None:
     space, other = scene(), scene()
-    count, others = noticed.edits(space), noticed.edits(other)
-    assert noticed.edits(space) is count
+    count, others = edits.counts(space), edits.counts(other)
+    assert edits.counts(space) is count
     floor, _, _, ball, disk = parts(space)
     before = count[0]
     floor.friction = floor.friction

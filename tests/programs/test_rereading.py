@@ -25,11 +25,11 @@ class Forgetful(ep.EECA):
     def patch(self, world: World) -> bool:
         return False
 
-    def _look(self, anew: bool = False) -> World:
+    def _update_world(self, anew: bool = False) -> World:
         world = self._world
         if world is not None:
             world.read_at, world.memory = LONG_AGO, SceneMemory()
-        return super()._look(anew)
+        return super()._update_world(anew)
 
 
 def wall(space: pymunk.Space, random: Random) -> None:

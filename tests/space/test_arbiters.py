@@ -47,10 +47,12 @@ def seen(body: pymunk.Body) -> list[Seen]:
 
 
 @pytest.mark.parametrize("sync", [True, False])
-@pytest.mark.parametrize("handler", [False, True])
-def test_impulses_change_momenta(handler: bool, sync: bool) -> None:
+@pytest.mark.parametrize("called", ["nothing", "handler", "function"])
+def test_impulses_change_momenta(called: str, sync: bool) -> None:
     """Of each body and step: the sum over its arbiters is the change of momentum without gravity's."""
-    space, bodies = scene(handler=handler)
+    space, bodies = scene(handler=called == "handler")
+    if called == "function":
+        bodies[0].velocity_func = lambda *arguments: pymunk.Body.update_velocity(*arguments)
     stepper = ep.EECA(space, sync=sync)
     bounces = 0
     for _ in range(30):

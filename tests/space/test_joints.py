@@ -387,10 +387,10 @@ def test_only_joints_of_partners_that_move_are_touched() -> None:
         assert isinstance(world.joints, JointRows)
         world.gather()
         if not world.is_current():
-            world = stepper._look(anew=True)
+            world = stepper._update_world(anew=True)
             world.gather()
         assert world.joints is not None
-        world.joints.look(world.state, world.bodies.row, DT)
+        world.joints.update(world.state, world.bodies.row, DT)
         return [int(mark) for mark in world.joints.joint["touched"]]
 
     assert touched() == [0, 0, 0]

@@ -10,7 +10,7 @@ import pymunk
 import pymunk.batch
 import pytest
 
-from eeca_pymunk.space import noticed, private, private_batch, private_functions, private_shapes, private_sleep
+from eeca_pymunk.space import edits, private, private_batch, private_functions, private_shapes, private_sleep
 from scenes.scene import add_disk
 
 
@@ -102,7 +102,7 @@ def test_what_shapes_say_of_themselves() -> None:
     shape = pymunk.Circle(pymunk.Body(1.0, 1.0), 1.0)
     shape.elasticity, shape.friction, shape.surface_velocity = 0.25, 0.5, (3.0, -4.0)
     shape.filter = pymunk.ShapeFilter(7, 1 << 31, 3)
-    assert private_shapes.surface(shape) == (0.25, 0.5, 3.0, -4.0)
+    assert private_shapes.numbers(shape) == (1.0, 0.25, 0.5, 3.0, -4.0)
     assert private_shapes.filter_of(shape) == shape.filter == (7, 1 << 31, 3)
 
 
@@ -125,7 +125,7 @@ def test_arbiters() -> None:
 
 @pytest.mark.parametrize("kind", ["velocity", "position"])
 def test_functions_of_bodies(kind: str) -> None:
-    noticed.edits(pymunk.Space())  # pymunk before 7.3 needs it
+    edits.counts(pymunk.Space())  # pymunk before 7.3 needs it
     body = pymunk.Body(1.0, 1.0)
     read = getattr(private, f"{kind}_function")
     assert read(body) is None
@@ -156,7 +156,7 @@ def test_functions_of_bodies_are_left_out(kind: str) -> None:
     assert calls == ["own"]
 
 
-def test_accelerations_of_velocity_functions() -> None:
+def test_changes_by_velocity_functions() -> None:
     _, (body, other) = meeting()
     body.angular_velocity, start = 2.0, body.velocity
 
@@ -169,17 +169,17 @@ def test_accelerations_of_velocity_functions() -> None:
         raise KeyError
 
     body.velocity_func = other.velocity_func = fall
-    found = private_functions.accelerations([body, other], (0.0, -8.0), 0.5, 0.25)
+    found = private_functions.velocity_changes([body, other], (0.0, -8.0), 0.5, 0.25)
     assert found == [(0.0, -2.0, -1.0), (0.0, -2.0, 0.0)]
     assert (body.velocity, body.angular_velocity) == (start, 2.0)
     body.velocity_func = fail
     with pytest.raises(KeyError):
-        private_functions.accelerations([body], (0.0, 0.0), 1.0, 0.25)
+        private_functions.velocity_changes([body], (0.0, 0.0), 1.0, 0.25)
     assert body.velocity == start
 
 
 @pytest.mark.parametrize("threaded", [False, True])
-def test_step_alone_and_finish_step_are_a_step(threaded: bool) -> None:
+def test_step_without_end_and_finish_step_are_a_step(threaded: bool) -> None:
     found = []
     for whole in (True, False):
         space = pymunk.Space(threaded=threaded)
@@ -195,7 +195,7 @@ def test_step_alone_and_finish_step_are_a_step(threaded: bool) -> None:
         if whole:
             space.step(0.001)
         else:
-            private.step_alone(space, 0.001)
+            private.step_without_end(space, 0.001)
             assert len(space.bodies) == 2
             assert len(space.shapes) == 2
             assert late == []

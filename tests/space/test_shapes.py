@@ -9,7 +9,7 @@ import pymunk
 import pytest
 
 import eeca_pymunk as ep
-from eeca_pymunk.space.shapes import corners, local_outline
+from eeca_pymunk.space.outlines import corners, local_outline
 from scenes.scene import add_disk
 
 # A square as drawing programs give it: with points along its sides, off these by round-off.

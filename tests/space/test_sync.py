@@ -192,3 +192,20 @@ def test_a_step_at_rest_leaves_settings_and_what_is_stopped_moves_on() -> None:
     assert (box.velocity, box.angular_velocity, box.force, box.torque) == ((1.0, -2.0), 3.0, (4.0, 5.0), 6.0)
     assert (box.position, space.current_time_step) == ((0.0, 0.5), DT)
     assert (space.gravity, space.iterations, space.collision_bias) == settings
+
+
+def test_reading_arbiters_calls_no_function_of_a_body() -> None:
+    """Arbiters are made when they are read, by a step of pymunk."""
+    space, dts = crowd(1), []
+    (body,) = space.bodies
+
+    def function(body: pymunk.Body, gravity: tuple[float, float], damping: float, dt: float) -> None:
+        dts.append(dt)
+        pymunk.Body.update_velocity(body, gravity, damping, dt)
+
+    body.velocity_func = function  # type: ignore[assignment]
+    stepper = ep.EECA(space)
+    for _ in range(3):
+        stepper.step(DT)
+    body.each_arbiter(lambda arbiter: None)
+    assert dts == 3 * [DT]

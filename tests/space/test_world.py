@@ -228,7 +228,7 @@ def test_friction_is_read_or_ignored() -> None:
             shape.friction = 0.5
     assert World(space).SHAPE["friction"].tolist() == [0.5, 0.5]
     ignoring = World(space, ("friction",))
-    assert ignoring.ignores
+    assert ignoring.lacks_friction
     assert not ignoring.SHAPE["friction"].any()
 
 

@@ -1,0 +1,53 @@
+"""Edits of constraints are recorded when they are made.
+
+pymunk does not: its setters write into Chipmunk at once. But all attributes of constraints are set through Python. So
+`pymunk.Constraint.__setattr__` is replaced when the first constraint is watched; for other constraints it acts as
+before.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+from weakref import WeakSet
+
+import pymunk
+
+_watching: WeakSet[Edits] = WeakSet()
+_native_setattr = pymunk.Constraint.__setattr__
+
+
+class Edits:
+    """`some`: rows of the constraints of which an attribute was set since the last `take`."""
+
+    def __init__(self, row: dict[pymunk.Constraint, int]) -> None:
+        self._row = row
+        self.some: set[int] = set()
+        _watching.add(self)
+        if pymunk.Constraint.__setattr__ is not _set:
+            pymunk.Constraint.__setattr__ = _set  # type: ignore[method-assign, assignment]
+
+    def take(self) -> set[int]:
+        """Return the rows, and clear them."""
+        edited, self.some = self.some, set()
+        return edited
+
+    def add(self, rows: Iterable[int]) -> None:
+        """Record these rows as edited."""
+        self.some.update(rows)
+
+    def forget(self, row: int) -> None:
+        """Remove a row: the last setting was not an edit by the program."""
+        self.some.discard(int(row))
+
+    def record(self, constraint: pymunk.Constraint) -> None:
+        """Record that an attribute of a constraint was set."""
+        row = self._row.get(constraint)
+        if row is not None:
+            self.some.add(row)
+
+
+def _set(self: pymunk.Constraint, name: str, value: Any) -> None:
+    _native_setattr(self, name, value)
+    for edits in _watching:
+        edits.record(self)
