@@ -180,3 +180,15 @@ def test_a_motor_that_joints_hold_fast_has_no_answer() -> None:
 def test_a_step_that_is_cut_at_its_start_has_no_intervals_with_joints() -> None:
     """Cut at 1e-19 of the step: errors of joints of round-off would be speeds over such an interval."""
     Varied(98155, True).play(40)
+
+
+@pytest.mark.parametrize("seed", [97195, 97210, 60274, 60408, 61366])
+def test_jointed_shapes_that_overlap_neither_repeat_impacts_nor_gain_energy(seed: int) -> None:
+    """Impacts that go back to the start of a path, intervals as short as round-off, joints that do not hold there."""
+    Varied(seed, True).play()
+
+
+@pytest.mark.parametrize("seed", [112574, 112928])
+def test_steps_that_are_cut_press_nothing_through_walls(seed: int) -> None:
+    """Without the penetration correction at the cut, boxes leave the container."""
+    Varied(seed, False).play()
