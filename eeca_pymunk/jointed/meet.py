@@ -117,7 +117,7 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
     if rate >= 0.0 and t - least <= A.PAR.instant:
         # Nothing closes at the start before joints act: at a limit that turns velocities into the other shape, say.
         # The more impacts the bodies have had, the longer they may, so that the step ends.
-        met = min(max(A.STATE[i].events, A.STATE[j].events), 40)
+        met = min(max(A.STATE[i].events, A.STATE[j].events), 20)
         t = min(least + 2.0 ** (met + 1) * A.PAR.instant, latest)
         shorten(A, J, roots[0], t)
         if roots[1] != roots[0]:
