@@ -10,6 +10,7 @@ from ..model.joints import Joints
 from ..model.parameters.joints import (
     COLUMN_CONTACTS,
     MEET,
+    MEET_DOUBLINGS,
     MEET_HALVINGS,
     MEET_LOADED,
     MEET_MANY,
@@ -32,6 +33,15 @@ def begun(A: Scene, i: int) -> float:
             if root >= 0 and A.MEMBER[root].open > 0 and A.MEMBER[root].jointed == 0:
                 latest = max(latest, A.BODY[j].since)
     return latest
+
+
+@kernel
+def shorten_both(A: Scene, J: Joints, one: int, other: int, t: float) -> int:
+    """`shorten` of two islands, or of one if they are the same; how many contacts they had."""
+    loaded = int(shorten(A, J, one, t))
+    if other != one:
+        loaded += shorten(A, J, other, t)
+    return loaded
 
 
 @kernel
@@ -72,9 +82,7 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
     spent = J.PROGRESS.effort > J.PROGRESS.budget
     most = 1 if spent or in_large_island(A, a, b) else MEET_SECANTS_LOADED
     for tries in range(MEET_SECANTS):
-        loaded = shorten(A, J, roots[0], t)
-        if roots[1] != roots[0]:
-            loaded += shorten(A, J, roots[1], t)
+        loaded = shorten_both(A, J, roots[0], roots[1], t)
         g = gap(A, a, b, t)[0] - level
         close = MEET if loaded == 0 else MEET_LOADED if loaded <= COLUMN_CONTACTS else MEET_MANY
         crosses, through = False, t
@@ -109,19 +117,15 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
         if not (crosses or left_apart(A, J, roots[0]) or left_apart(A, J, roots[1])):
             break
         crossed, t = True, 0.5 * (apart + t)
-        shorten(A, J, roots[0], t)
-        if roots[1] != roots[0]:
-            shorten(A, J, roots[1], t)
+        shorten_both(A, J, roots[0], roots[1], t)
         g = gap(A, a, b, t)[0] - level
         crosses = g < -close * small or (g + level > close * small and first_meeting(A, a, b, t)[1])
     if rate >= 0.0 and t - least <= A.PAR.instant:
         # Nothing closes at the start before joints act: at a limit that turns velocities into the other shape, say.
         # The more impacts the bodies have had, the longer they may, so that the step ends.
-        met = min(max(A.STATE[i].events, A.STATE[j].events), 20)
+        met = min(max(A.STATE[i].events, A.STATE[j].events), MEET_DOUBLINGS)
         t = min(least + 2.0 ** (met + 1) * A.PAR.instant, latest)
-        shorten(A, J, roots[0], t)
-        if roots[1] != roots[0]:
-            shorten(A, J, roots[1], t)
+        shorten_both(A, J, roots[0], roots[1], t)
     end_here(A, J, roots[0], t)
     if roots[1] != roots[0]:
         end_here(A, J, roots[1], t)

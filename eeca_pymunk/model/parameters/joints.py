@@ -114,6 +114,7 @@ STEP_WORK_BODY = work(250000.0, "operations", "Work of a step with joints for ea
 MEET = round_off(1e-13, "of the smaller shape", "Gap at the located instant of an impact on a component.")
 MEET_LOADED = accuracy(1e-06, "of the smaller shape", "Gap at that instant if contacts push on the component.")
 MEET_MANY = accuracy(0.0001, "of the smaller shape", "Gap at that instant if many contacts push on it.")
+MEET_DOUBLINGS = work(20, "number", "Impacts up to which an interval in which joints only begin to act doubles.")
 MEET_SECANTS = work(5, "iterations", "Secant steps to the instant of an impact on a component, at most.")
 MEET_HALVINGS = work(40, "iterations", "Halvings of the time to an instant before shapes pass each other, at most.")
 MEET_SECANTS_LOADED = work(2, "iterations", "Secant steps to that instant if contacts push on the component.")
