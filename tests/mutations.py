@@ -60,6 +60,12 @@ MUTATIONS = (
     Mutation("loop: margins are left too late", "prediction/next_event.py", "(root - b) / squared",
              "(root + b) / squared",
              "prediction/test_heap.py", "nobody_leaves"),
+    Mutation("loop: an orbit is left as if it were straight", "prediction/next_event.py", "    if arm > 0.0:",
+             "    if arm < 0.0:", "impacts/test_loop.py", "orbits"),
+    Mutation("loop: an orbit's arm does not count", "prediction/next_event.py", "passage(m - arm - norm(",
+             "passage(m - norm(", "prediction/test_heap.py", "nobody_leaves"),
+    Mutation("loop: only impacts see that the budget is spent", "impacts/loop.py",
+             "if o == RENEW or COUNT.work > most:", "if o == RENEW:", "test_unmet.py", "meets_nothing"),
     # Impact law.
     Mutation("impact: e squared", "contacts/single.py", "lam = (1.0 + e) *", "lam = (1.0 + e * e) *",
              "closures/test_time_of_impact.py", "inelastic_bounce"),

@@ -51,6 +51,27 @@ def test_impacts_beyond_the_limit_are_told_with_their_bodies() -> None:
     assert report.unmet == (unmet,), "it was of its own step"
 
 
+def test_what_meets_nothing_spends_work_too() -> None:
+    """A body that crosses a row of others, and each of their near lists: what it leaves is an event as impacts are."""
+    space = pymunk.Space()
+    for k in range(20):
+        body = pymunk.Body(1.0, 1.0)
+        body.position = 2.0 * k, 0.0
+        space.add(body, pymunk.Circle(body, 0.1))
+    body = pymunk.Body(1.0, 1.0)
+    body.position, body.velocity, body.angular_velocity = (-5.0, 1.3), (50.0, 0.0), 1000.0
+    space.add(body, pymunk.Poly(body, [(0.9, -0.1), (1.0, -0.1), (1.0, 0.1), (0.9, 0.1)]))
+    stepper = ep.EECA(space)
+    stepper._method.scene.COUNT.budget = 2  # type: ignore[attr-defined]
+    reports = [stepper.step(BUDGET_TIME) for _ in range(24)]
+    cut = [unmet for report in reports for unmet in report.unmet]
+    assert not any(report.contacts for report in reports)
+    assert cut
+    assert body.position.x < 35.0 - 1e-6
+    assert {unmet.name for unmet in cut} == {"solves"}
+    assert all(unmet.value < 12 for unmet in cut)
+
+
 def test_a_step_without_work_left_ends_before_its_time() -> None:
     """Boxes that tumble, with hardly any solves: what the step has come to is consistent, energy right."""
     space = pymunk.Space()

@@ -77,6 +77,9 @@ def run(A: Scene, may_rest: bool) -> int:
         COUNT.heap = pop(TIME, OF, COUNT.heap)
         look_ahead(A, i)
         s, o = STATE[i].own, STATE[i].other
+        if o == RENEW or COUNT.work > most:
+            A.PAR.now, COUNT.struck = t, i
+            return BLOCK_DUE
         if o == LEAVE:
             if i < disks and STATE[i].island < 0:
                 room = go_on(A, i, t, end)
@@ -89,9 +92,6 @@ def run(A: Scene, may_rest: bool) -> int:
                 COUNT.heap = push(TIME, OF, COUNT.heap, t, i)
                 return POOL_FULL
             continue
-        if o == RENEW:
-            A.PAR.now, COUNT.struck = t, i
-            return BLOCK_DUE
         j = body_of(A, o) if o >= 0 else i
         if o < 0 or STATE[j].version != STATE[i].known:
             one = i
@@ -109,7 +109,7 @@ def run(A: Scene, may_rest: bool) -> int:
             if single and body >= 0:
                 single = alone(A, body, other, t)
             body, other = (j, i) if o < disks else (-1, -1)
-        if not single or COUNT.work > most:
+        if not single:
             A.PAR.now, COUNT.struck = t, i
             return BLOCK_DUE
         # The result is the same to the bit, whichever of the two predicted the impact.

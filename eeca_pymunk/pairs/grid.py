@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 
 from ..compiled import Table, fetch, nonallocating
+from ..geometry.flight import norm, pose
 from ..model.scene import Scene, scene_of
 from ..model.shapes import BATCH, LEVELS
 from .cells import bucket, cell_at, draw, link, near, unlink
@@ -125,10 +126,11 @@ def part(A: Scene, s: int) -> int:
 
 @nonallocating
 def renew(A: Scene, s: int, t: float, ahead: float) -> int:
-    """Move the margin circle of s to its position at instant t, and renew its list.
+    """Move the margin circle of s to its position at instant t, and renew its list. If the shape's turn within a step
+    is longer than its margin, the circle is that of its orbit about the body's centre, with as much room again.
 
     Args:
-        ahead: distance of the circle's centre ahead of the shape along its velocity, in margins; below 1.
+        ahead: distance of the circle's centre ahead of the shape along its velocity, over the room; below 1.
 
     Returns:
         the number of old entries that are kept; they come first. -1 if the pool is full: then `build` has to be called.
@@ -137,7 +139,14 @@ def renew(A: Scene, s: int, t: float, ahead: float) -> int:
     if margin == math.inf:
         return int(A.LIST[s].number)
     unlink(A, s)
-    x, y = centre(A, s, t)
+    i = A.LINK[s].owner
+    arm = norm(A.SHAPE[s].centre_x, A.SHAPE[s].centre_y)
+    if abs(A.BODY[i].spin) * arm * A.PAR.dt > margin:
+        x, y, _ = pose(A.BODY, i, t)
+        A.MARK[s].margin = max(margin, 2.0 * arm)
+        margin = A.MARK[s].margin - arm
+    else:
+        x, y = centre(A, s, t)
     if ahead > 0.0:
         ux, uy = course(A, s, t)
         x, y = x + ahead * margin * ux, y + ahead * margin * uy

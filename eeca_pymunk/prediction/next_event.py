@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 from ..compiled import inlined, nonallocating
-from ..geometry.flight import norm
+from ..geometry.flight import norm, pose
 from ..model.bodies import CHECK, LEAVE, NOTHING, RENEW
 from ..model.parameters.events import INSIDE
 from ..model.scene import Scene
@@ -43,16 +43,26 @@ def leaves(A: Scene, i: int, s: int, now: float) -> float:
             return math.inf
         root = math.sqrt(b * b + squared * c)
         return float(now + ((root - b) / squared if b <= 0.0 else c / (root + b)))
-    # The length of the path bounds the distance: u s + g s^2 / 2, with u, g bounds of speed and acceleration.
+    # The length of the path bounds the distance; so do the body's path and the arm, of a shape on an orbit.
     x, y = centre(A, s, now)
+    u, g = norm(BODY[i].vx + ax * h, BODY[i].vy + ay * h), norm(ax, ay)
     room = m - norm(x - MARK[s].x, y - MARK[s].y)
+    turned = abs(BODY[i].spin + BODY[i].angular * h)
+    inside = passage(room, u + turned * arm, g + abs(BODY[i].angular) * arm)
+    if arm > 0.0:
+        x, y, _ = pose(BODY, i, now)
+        inside = max(inside, passage(m - arm - norm(x - MARK[s].x, y - MARK[s].y), u, g))
+    return now + inside
+
+
+@inlined
+def passage(room: float, u: float, g: float) -> float:
+    """Least time in which a point of speed u and acceleration g covers a way `room`: u t + g t^2 / 2 = room."""
     if room <= 0.0:
-        return now
-    u = norm(BODY[i].vx + ax * h, BODY[i].vy + ay * h) + abs(BODY[i].spin + BODY[i].angular * h) * arm
-    g = norm(ax, ay) + abs(BODY[i].angular) * arm
+        return 0.0
     if u + g == 0.0:
         return math.inf
-    return float(now + 2.0 * room / (u + math.sqrt(u * u + 2.0 * g * room)))
+    return 2.0 * room / (u + math.sqrt(u * u + 2.0 * g * room))
 
 
 @nonallocating

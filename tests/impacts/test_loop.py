@@ -300,3 +300,28 @@ def test_walls_that_turn_are_looked_for_where_they_are() -> None:
             x, y = centre(scene, s, scene.BODY["since"][scene.LINK["owner"][s]])
             away = math.hypot(x - scene.MARK["x"][s], y - scene.MARK["y"][s])
             assert away <= scene.MARK["margin"][s] * (1 + 1e-9)
+
+
+def test_what_orbits_its_body_fast_stays_in_one_circle() -> None:
+    """A disk at 10 radii from the centre of its body, beside a crowd whose margins are 1.4 radii: ten radians a step."""
+    space = pymunk.Space()
+    for k in range(400):
+        add_disk(space, (0.25 * (k % 20), 0.25 * (k // 20)), 0.1)
+    body = pymunk.Body(1.0, 1.0)
+    body.position, body.velocity, body.angular_velocity = (7.0, 2.0), (-1.0, 0.0), 1000.0
+    shape = pymunk.Circle(body, 0.1, (1.0, 0.0))
+    shape.elasticity = 1.0
+    space.add(body, shape)
+    stepper = ep.EECA(space)
+    method = stepper._method
+    assert isinstance(method, EventLoop)
+    energy, hit, predictions = ep.measure(space).energy, 0, 0
+    stepper.step(0.01)
+    for _ in range(119):
+        report = stepper.step(0.01)
+        predictions += 0 if hit else method.scene.COUNT.predictions
+        hit += len(report.contacts)
+    # The orbit of radius 1.1 comes to the crowd's disk of x = 4.75 after about 1.05 s, in about ten margins.
+    assert hit > 0
+    assert predictions < 200
+    assert ep.measure(space).energy == pytest.approx(energy, rel=1e-12)

@@ -8,7 +8,7 @@ from 1 mm to 50 m, steps of 1/240 to 1/10 s, with gravity or without; joints and
 * what comes from outside is no more than what acts from there can do (`outside.py`);
 * nobody leaves the container, by more than a part of his size;
 * a step of up to 1/30 s takes no longer than 20 ms of processor time, or 100 native steps; a longer one as much for
-  each 1/30 s. Steps that do are repeated, as the machine may have been busy;
+  each 1/30 s. Steps that do are repeated, as the machine may have been busy; and events spend their budget only;
 * saved and loaded half-way the run goes on bit by bit;
 * time goes on: not `STANDS` steps in a row leave all that moves where it is;
 * joints of a step that has converged hold, and none exceeds its `max_force` (`joined.py`).
@@ -35,6 +35,7 @@ STEPS = (1 / 240, 1 / 60, 1 / 30, 1 / 10)
 LONGEST, NATIVE, SHORT = 0.02, 100, 1 / 30  # s of a step, or native steps, of steps of up to SHORT
 CLOSES = 1e-11
 CHANGES = 1e-12  # by which the change of a ledger may differ from that of the space's own energy, over the scale
+OVERSPENT = 1.5  # work of a step whose budget is spent, over the budget: the last event may go beyond
 STANDS = 5
 OUT = 0.5  # of a body's least size
 
@@ -278,6 +279,9 @@ class Composition:
     ) -> None:
         if not np.isfinite(state).all():
             raise Broken(f"step {k}: not finite")
+        for unmet in report.unmet:
+            if unmet.name == "solves" and unmet.value > OVERSPENT * unmet.limit:
+                raise Broken(f"step {k}: work of {unmet.value:.0f} looks, {unmet.limit:.0f} at most")
         now = ep.measure(self.space)
         ledger = report.ledger
         assert ledger is not None

@@ -192,3 +192,9 @@ def test_jointed_shapes_that_overlap_neither_repeat_impacts_nor_gain_energy(seed
 def test_steps_that_are_cut_press_nothing_through_walls(seed: int) -> None:
     """Without the penetration correction at the cut, boxes leave the container."""
     Varied(seed, False).play()
+
+
+@pytest.mark.parametrize(("seed", "steps"), [(62645, 20), (111663, 20), (110366, 83)])
+def test_what_spins_fast_about_another_point_spends_no_more_than_the_budget(seed: int, steps: int) -> None:
+    """Shapes far from their bodies' centres, up to 290 rad in a step: searches for impacts count whatever comes next."""
+    Varied(seed).play(steps)
