@@ -303,7 +303,7 @@ def test_walls_that_turn_are_looked_for_where_they_are() -> None:
 
 
 def test_what_orbits_its_body_fast_stays_in_one_circle() -> None:
-    """A disk at 10 radii from the centre of its body, beside a crowd whose margins are 1.4 radii: ten radians a step."""
+    """A disk at 10 radii from the centre of its body, beside a crowd with margins of 1.4 radii: ten radians a step."""
     space = pymunk.Space()
     for k in range(400):
         add_disk(space, (0.25 * (k % 20), 0.25 * (k // 20)), 0.1)

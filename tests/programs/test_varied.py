@@ -196,5 +196,5 @@ def test_steps_that_are_cut_press_nothing_through_walls(seed: int) -> None:
 
 @pytest.mark.parametrize(("seed", "steps"), [(62645, 20), (111663, 20), (110366, 83)])
 def test_what_spins_fast_about_another_point_spends_no_more_than_the_budget(seed: int, steps: int) -> None:
-    """Shapes far from their bodies' centres, up to 290 rad in a step: searches for impacts count whatever comes next."""
+    """Shapes far from their bodies' centres, up to 290 rad a step: searches for impacts count whatever comes next."""
     Varied(seed).play(steps)
