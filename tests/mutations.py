@@ -66,6 +66,8 @@ MUTATIONS = (
              "passage(m - norm(", "prediction/test_heap.py", "nobody_leaves"),
     Mutation("loop: only impacts see that the budget is spent", "impacts/loop.py",
              "if o == RENEW or COUNT.work > most:", "if o == RENEW:", "test_unmet.py", "meets_nothing"),
+    Mutation("islands: only external accelerations press elastic contacts", "islands/membership.py",
+             "pressed = max(closing, present) > 0.0", "pressed = closing > 0.0", "islands/test_support.py", "belt"),
     # Impact law.
     Mutation("impact: e squared", "contacts/single.py", "lam = (1.0 + e) *", "lam = (1.0 + e * e) *",
              "closures/test_time_of_impact.py", "inelastic_bounce"),

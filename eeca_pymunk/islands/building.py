@@ -70,7 +70,7 @@ def join_neighbours(A: Scene, i: int, t: float, FOUND: IntArray) -> int:
             if begun and (A.MEMBER[other].jointed > 0 or budget_spent(A, other)):
                 continue  # it is hit at the time of impact
             move_to(BODY, j, t)
-            g, u, _, _ = approach(A, s, o, t)
+            g, u, _, _, _ = approach(A, s, o, t)
             if g > reach:
                 continue
             if g <= TOUCH * small and (u > pulled * dt or (-u > pulled * dt and not busy)):
@@ -177,7 +177,7 @@ def comes_to_rest(A: Scene, a: int, b: int, t: float) -> bool:
     if A.BODY[j].inv_mass > 0.0:
         move_to(A.BODY, j, t)
     e = law(A.SHAPE, A.RULE, a, b)[0]
-    _, u, closing, _ = approach(A, a, b, t)
+    _, u, closing, _, _ = approach(A, a, b, t)
     end = A.PAR.dt
     met = max(A.STATE[i].events, A.STATE[j].events)
     if e < 1.0:

@@ -74,7 +74,7 @@ def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: Int
                 # In a large island all loaded contacts remain candidates: a hit acts on a few bodies at once, and
                 # reaches the others through the interval.
                 if n < LARGE_ISLAND or force <= 0.0:
-                    g, u, closing, mass = approach(A, s, o, t)
+                    g, u, closing, _, mass = approach(A, s, o, t)
                     if not together:
                         if not busy:
                             reach = 1.1 * (max(-u, 0.0) * h + A.PAR.pulled * h * h) + TOUCH * small

@@ -125,10 +125,10 @@ def remembered(KEYS: IntArray, FORCES: Rows[Force], shapes: int, a: int, b: int,
 
 
 @nonallocating
-def approach(A: Scene, a: int, b: int, t: float) -> tuple[float, float, float, float]:
-    """Gap of shapes a and b at instant t, its rate u (negative when closing), the acceleration with which it closes
-    without contacts, and the effective mass of the contact. Body a is at t; body b moves at constant velocity until
-    then."""
+def approach(A: Scene, a: int, b: int, t: float) -> tuple[float, float, float, float, float]:
+    """Gap of shapes a and b at instant t, its rate u (negative when closing), the accelerations with which it closes
+    without contacts and at present, and the effective mass of the contact. Body a is at t; body b moves at constant
+    velocity until then."""
     BODY, PULL, i, j = A.BODY, A.PULL, A.LINK[a].owner, A.LINK[b].owner
     h = t - BODY[j].since
     g, nx, ny, px, py = gap_at(
@@ -141,10 +141,12 @@ def approach(A: Scene, a: int, b: int, t: float) -> tuple[float, float, float, f
     u += arm_j * BODY[j].spin - arm_i * BODY[i].spin
     closing = nx * (PULL[i, 0] - PULL[j, 0]) + ny * (PULL[i, 1] - PULL[j, 1])
     closing += arm_i * PULL[i, 2] - arm_j * PULL[j, 2]
+    present = nx * (BODY[i].ax - BODY[j].ax) + ny * (BODY[i].ay - BODY[j].ay)
+    present += arm_i * BODY[i].angular - arm_j * BODY[j].angular
     mass = 1.0 / (
         BODY[i].inv_mass + BODY[j].inv_mass + BODY[i].inv_inertia * arm_i * arm_i + BODY[j].inv_inertia * arm_j * arm_j
     )
-    return g, u, closing, mass
+    return g, u, closing, present, mass
 
 
 @nonallocating
@@ -153,10 +155,10 @@ def persists(A: Scene, a: int, b: int, t: float, lossy: bool) -> bool:
 
     e < 1: its bounce e |u| is below half of P = max(a_n h, A_nn f h), with the load f that it carried; and it touches
     with u <= P, or carried a force and closes again. e = 1, unless the contact is `lossy`: it touches with almost no
-    speed, and a contact with a body without mobility is pressed together, perhaps by joints.
+    speed, and a contact with a body without mobility is pressed together, perhaps by joints or other contacts.
     """
     e = law(A.SHAPE, A.RULE, a, b)[0]
-    g, u, closing, mass = approach(A, a, b, t)
+    g, u, closing, present, mass = approach(A, a, b, t)
     h = A.PAR.dt - t
     small = min(A.SHAPE[a].extent, A.SHAPE[b].extent)
     force, load = remembered(A.KEYS, A.FORCES, A.SHAPE.shape[0], a, b, A.PAR.stamp - 1.0)
@@ -164,8 +166,8 @@ def persists(A: Scene, a: int, b: int, t: float, lossy: bool) -> bool:
         limit = (ELASTIC_REST_ON if force > 0.0 else ELASTIC_REST) * A.PAR.pulled * A.PAR.dt
         i, j = A.LINK[a].owner, A.LINK[b].owner
         fixed = A.BODY[j].inv_mass == 0.0 or A.BODY[i].inv_mass == 0.0
-        pressed = not fixed or closing > 0.0 or force > 0.0 or A.MEMBER[i].tied >= 0 or A.MEMBER[j].tied >= 0
-        return g <= TOUCH * small and abs(u) <= limit and pressed
+        pressed = max(closing, present) > 0.0 or force > 0.0 or A.MEMBER[i].tied >= 0 or A.MEMBER[j].tied >= 0
+        return g <= TOUCH * small and abs(u) <= limit and (pressed or not fixed)
     press = max(closing, load / mass) * h
     if not -e * min(u, 0.0) < 0.5 * press:
         return False

@@ -34,7 +34,7 @@ def hold_penetrating(A: Scene) -> None:
                     continue
                 if o < A.LIST.shape[0] and far_apart(A, s, o, 0.0, 0.0):
                     continue
-                g, u, _, _ = approach(A, s, o, 0.0)
+                g, u, _, _, _ = approach(A, s, o, 0.0)
                 if g >= -INITIAL_PENETRATION * min(A.SHAPE[s].extent, A.SHAPE[o].extent) or u * dt > -g:
                     continue
                 A.MEMBER[i].placed, A.COUNT.any_placed = placed, 1

@@ -86,3 +86,26 @@ def test_what_stands_lets_go_when_it_is_hit() -> None:
         stepper.step(DT)
     assert board.angle > 1e-2
     assert disk.velocity.y > 0.0 or disk.position.y > 0.91
+
+
+def test_an_elastic_box_on_a_belt_leans_on_an_elastic_wall() -> None:
+    """Only the belt's friction presses it against the wall, no external force: it stays. The belt does mu m g |v| dt
+    of work, which friction takes."""
+    space = pymunk.Space()
+    space.gravity = 0.0, -9.81
+    belt = pymunk.Segment(space.static_body, (-5.0, 0.0), (5.0, 0.0), 0.0)
+    belt.surface_velocity, belt.friction = (-0.02, 0.0), 0.5
+    wall = pymunk.Segment(space.static_body, (-1.0, 0.0), (-1.0, 5.0), 0.0)
+    body = pymunk.Body(1.0, 0.1)
+    body.position = -0.5, 0.5
+    box = pymunk.Poly.create_box(body, (1.0, 1.0))
+    box.friction = 1.0
+    belt.elasticity = wall.elasticity = box.elasticity = 1.0
+    space.add(belt, wall, body, box)
+    stepper = ep.EECA(space)
+    for _ in range(20):
+        report = stepper.step(1 / 60)
+        assert report.converged
+        assert report.ledger is not None
+        assert report.ledger.external == pytest.approx(0.5 * 9.81 * 0.02 / 60, rel=1e-9)
+    assert body.position == pytest.approx((-0.5, 0.5), abs=1e-12)

@@ -4,7 +4,7 @@ What acts from outside has a power that the scene and the step's own report boun
 
 * a contact of a kinematic body, or of shapes with a surface velocity: its impulse times the speed of the surface at its
   point, |J| |v|, for the impulse does the work J v on the other body. Where such a body has gone into others, it lifts
-  them out: at most the weight of all bodies times the deepest overlap;
+  them out: at most the weight of all bodies times the deepest overlap, of the contacts or with that body before;
 * a motor: `max_force` times the angle that it turns. Mostly that is the larger of the change of the angle and of dt
   times the largest relative spin, before or after the step. Impacts may turn it to and fro within the step: it never
   turns by more than dt times the largest spins that the energy of the scene allows (`Outside.fastest`);
@@ -20,6 +20,7 @@ sums that it is taken from, for which `Composition` allows CLOSES of the scale o
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 
 import numpy as np
 import pymunk
@@ -73,6 +74,17 @@ def _per_root_energy(joint: pymunk.Constraint) -> list[float]:
     return found
 
 
+def _deepest(space: pymunk.Space, box: pymunk.Body) -> float:
+    """Deepest overlap of the shapes of a body with others."""
+    depth = 0.0
+    for one in box.shapes:
+        for other in space.shapes:
+            if other.body is not box and one.cache_bb().intersects(other.cache_bb()):
+                with suppress(AssertionError):  # of pymunk, for shapes that do not collide
+                    depth = max(depth, *(-point.distance for point in one.shapes_collide(other).points), 0.0)
+    return depth
+
+
 class Outside:
     """What acts from outside in the step that follows.
 
@@ -86,6 +98,7 @@ class Outside:
         self.bounded = [(c, motion(c)) for c in space.constraints if math.isfinite(c.max_force)]
         self.belt = max((shape.surface_velocity.length for shape in space.shapes), default=0.0)
         moving = self.speed > 0.0 or self.spin > 0.0
+        self.depth = _deepest(space, box) if moving else 0.0
         self.energy = _loose_energy(space)
         self.unbounded = pushed or any(moving and box in (c.a, c.b) for c in space.constraints)
 
@@ -126,4 +139,4 @@ class Outside:
         fast = self.belt + carried * (self.speed + self.spin * np.hypot(*(contacts.point - self.place).T))
         total = float(np.hypot(report.impulse, report.friction) @ fast)
         weight = sum(b.mass for b in self.space.bodies if b is not self.box) * self.space.gravity.length
-        return total + weight * max(0.0, -min(contacts.gap, default=0.0))
+        return total + weight * max(self.depth, -min(contacts.gap, default=0.0))
