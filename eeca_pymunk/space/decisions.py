@@ -153,14 +153,14 @@ class Decisions:
         return np.array(sorted(rows), float).reshape(-1, DECISION_COLUMNS)
 
     def recall(self, space: pymunk.Space, rows: FloatArray) -> None:
-        """Return to a result of `state`. Rejections of shapes that touched, and touch, are written to their arbiters:
-        pymunk does not call `begin` again, and its pickles do not have them."""
+        """Return to a result of `state`. Rejections are written to the arbiters that there are: for shapes that touch,
+        and for those of a pickle, pymunk does not call `begin` again."""
         self.forget(space)
         shapes, never = list(space.shapes), set()
         for a, b, e, mu, x, y, age in rows.tolist():
             pair = shapes[int(a)], shapes[int(b)]
             self.laws[pair] = (e, mu, x, y), self.since - int(age)
-            if e < 0.0 and age == 0.0:
+            if e < 0.0:
                 never.add(frozenset(pair))
         for arbiter in private.arbiters(space) if never else ():
             if frozenset(arbiter.shapes) in never:

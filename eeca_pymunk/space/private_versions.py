@@ -50,9 +50,9 @@ def take_place(held: Any) -> None:
 
 
 def reject(held: Any) -> None:
-    """Have the collision of an arbiter of Chipmunk's, whose shapes touch, not take place. pymunk 6 calls `pre_solve`
-    again in each step, and its pickles contain what `begin` has rejected."""
-    if not ANSWERS and held.state != _CACHED:
+    """Have the collision of an arbiter of Chipmunk's not take place, unless pymunk calls `begin` when the shapes touch.
+    pymunk 6 calls `pre_solve` again in each step, and its pickles contain what `begin` has rejected."""
+    if not ANSWERS:
         held.processCollision = 0
 
 

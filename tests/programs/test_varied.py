@@ -198,3 +198,8 @@ def test_steps_that_are_cut_press_nothing_through_walls(seed: int) -> None:
 def test_what_spins_fast_about_another_point_spends_no_more_than_the_budget(seed: int, steps: int) -> None:
     """Shapes far from their bodies' centres, up to 290 rad a step: searches for impacts count whatever comes next."""
     Varied(seed).play(steps)
+
+
+def test_what_begin_has_rejected_is_part_of_a_pickle_for_shapes_that_have_just_parted() -> None:
+    """A copy of a space does not call `begin` of shapes whose arbiters it has, though they touch anew."""
+    Varied(63096).play()
