@@ -106,8 +106,8 @@ def scale_forces(A: Scene, root: int, SET: IntArray, SUMS: Rows[Given]) -> None:
 
 @kernel
 def repay(A: Scene, root: int, t: float) -> None:
-    """Before the interval of an island ends at instant t: scale its impulses, where they have given energy, as
-    above."""
+    """Before the interval of an island ends at instant t: scale the impulses that have given energy up to t, as in the
+    docstring of the module."""
     if not gives(A, root, t):
         return
     BODY, PULL, start = A.BODY, A.PULL, t
@@ -125,7 +125,7 @@ def repay(A: Scene, root: int, t: float) -> None:
     while i >= 0:
         one = SUMS[set_of(SET, i)]
         if one.lost < -REPAY_ROUND_OFF * one.size:
-            # Where gaps were looked at within the interval, the body is ahead on its path.
+            # Tests whether contacts persist may have moved the body along its path, to an instant within the interval.
             move_to(BODY, i, start)
             body = BODY[i]
             wx, wy, turn = (body.ax - PULL[i, 0]) * s, (body.ay - PULL[i, 1]) * s, (body.angular - PULL[i, 2]) * s

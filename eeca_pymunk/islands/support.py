@@ -2,7 +2,7 @@
 
 One disk that rolls on a pile moves nothing else. So slow bodies may be at rest while the rest of their island moves:
 for the moving bodies they are fixed, as the ground is, and a statics problem of the bodies at rest, under the forces
-with which the others push on them, tells whether that is right. If these forces and those of their own contacts balance
+with which the others push on them, shows whether that is right. If these forces and those of their own contacts balance
 inside all friction cones, they solve the contact problem of all bodies together: the bodies at rest have no motion, and
 momentum passes through them to what is fixed. Otherwise all of them are solved as one island.
 
@@ -34,8 +34,8 @@ from .rest import candidate_speed, postpone_test, spins_freely
 
 @nonallocating
 def support_loads(A: Scene, root: int, LOAD: FloatArray) -> None:
-    """Add to LOAD (k, 3) the velocities that contacts of other islands would give to the bodies of this one, which have
-    A.PLACE, in a whole step with the present forces."""
+    """Add to LOAD (., 3), a row for each body of the island in the order of A.PLACE, the changes of velocity that
+    contacts of other islands would cause in a whole step with their present forces."""
     BODY = A.BODY
     for c in range(A.COUNT.pushes):
         r = A.PUSHED_BY[c].root

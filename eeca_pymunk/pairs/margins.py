@@ -1,9 +1,9 @@
 """The first lists of a scene: margins, and the cell lengths of both grids.
 
 Shapes of radius r with margins m, spread evenly, have (2 + 2 m / r)² phi neighbours each, where the packing phi is the
-part of the area that they cover. Margins are chosen for a number of neighbours by this equation, and all are halved if
-the lists become longer, as those of shapes that are not spread evenly do. A margin is in proportion to twice the
-bounding radius, or to the median of these radii if that is less.
+part of the area that bounding circles cover. Margins are chosen for a number of neighbours by this equation, and all
+are halved if the lists become longer, as those of shapes that are not spread evenly do. A margin is in proportion to
+twice the bounding radius, or to the median of these radii if that is less.
 """
 
 from __future__ import annotations
