@@ -119,6 +119,7 @@ def wake_changed(A: Scene) -> None:
         slow = speed(A, i, 0.0) <= candidate_speed(MEMBER[root].with_supports) * most
         A.RESTING[i].rest_timer = A.RESTING[i].rest_timer + 1.0 if slow else 0.0
         if MEMBER[i].rest != AWAKE:
+            # On its path at rest a body has no acceleration (`put_to_rest`).
             BODY[i].ax, BODY[i].ay, BODY[i].angular = A.PULL[i, 0], A.PULL[i, 1], A.PULL[i, 2]
             STATE[i].version += 1
         # Its predicted event does not contain the pairs of its last interval.

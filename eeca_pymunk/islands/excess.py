@@ -27,8 +27,8 @@ from ..model.scene import Scene
 
 @inlined
 def losses(A: Scene, c: int, t: float) -> tuple[float, float]:
-    """What contact c of an interval has lost by normal impulse and friction up to instant t: velocities are linear, so
-    after its part f D_n = -f lam (u_n + f (u_n+ - u_n) / 2), and D_t likewise."""
+    """Losses (energy) of contact c of an interval by normal impulse and by friction up to instant t. As velocities are
+    linear, D_n = -f lam (u_n + f (u_n+ - u_n) / 2) with the part f of the interval that is over, and D_t likewise."""
     R = A.PUSHED[c]
     f = (t - R.start) / R.length
     normal = -f * R.normal * (R.un_before + 0.5 * f * (R.un_after - R.un_before))

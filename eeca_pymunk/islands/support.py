@@ -81,6 +81,8 @@ def supports_load(A: Scene, root: int) -> bool:
     open_to, m = 0.5 * candidate_speed(A.MEMBER[root].with_supports) * A.PAR.pulled * dt * dt, 0
     for c in range(A.COUNT.pushes):
         R = A.PUSHED[c]
+        # Contacts without an impulse take part if their gap is no larger than the way in which a body may stop when it
+        # is put to rest.
         if A.PUSHED_BY[c].root != root or not (R.normal > 0.0 or R.gap <= open_to):
             continue
         a, b = A.PUSHED_BY[c].a, A.PUSHED_BY[c].b
@@ -135,6 +137,8 @@ def support(A: Scene) -> None:
     STATE, MEMBER, BODY = A.STATE, A.MEMBER, A.BODY
     more, all_moving, asked = A.COUNT.may_support > 0, True, 0
     while more:
+        # Mark the islands at rest on which others press with forces that have not been tested: moving islands, in the
+        # first round and after one was solved, and islands at rest with new forces.
         for c in range(A.COUNT.pushes):
             root = A.PUSHED_BY[c].root
             if root < 0 or not (MEMBER[root].new_forces == 1 if MEMBER[root].rest == AT_REST else all_moving):
