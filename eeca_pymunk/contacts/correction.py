@@ -1,5 +1,5 @@
-"""Penetration correction: displacements of bodies at the end of an interval, paid from the losses of the same island
-and interval.
+"""Penetration correction: displacements of bodies at the end of an interval, whose cost in energy is deducted from the
+losses of the same island and interval.
 
 delta = M^-1 G^T mu with 0 <= mu _|_ g + A mu >= 0 for the gaps g at the end, scaled so that the potential energy it
 costs is at most the losses, and no displacement exceeds CORRECTION_STEP of the size: so the correction gives no energy,
@@ -36,7 +36,7 @@ def lifting(
     Args:
         problem: its contacts, with gaps at the start.  POSE: (k, 3) at the middle of the interval.
         VN: (k, 3) velocities at the end.  ACC: (k, 3) accelerations without contacts.
-        size: length of the smallest body.
+        size: extent of the smallest body, length.
         budget: energy that the correction may cost; below 0 nothing is corrected, with 0 what costs nothing.
 
     Returns:

@@ -3,8 +3,12 @@
 Normals and arms are those at the predicted middle q + (h/2) v, gaps those now: with u = G(middle) v the gap at the end
 is g + (h/2)(u- + u+) to third order in h, so that bodies follow curved surfaces to second order without a loss; and an
 island without forces keeps its angular momentum exactly, as its middle and the predicted one differ by multiples of the
-impulses. If a pair moves far in half an interval (an impact at high speed), relative to a rotating body without
-mobility, its rows are those now; in a free island its points then move half the way with each of its bodies.
+impulses.
+
+A pair has the geometry now instead if it moves too far in half an interval (an impact at high speed), hardly moves, or
+has another number of contact points at the middle. How far it moves is measured in the frame of a rotating body without
+mobility if it has one. Arms are then those now too; but in a free island they are still those at the middle, and the
+points of the pair are displaced by the mean of the displacements of its two bodies.
 """
 
 from __future__ import annotations

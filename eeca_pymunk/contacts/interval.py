@@ -112,7 +112,8 @@ def step_island(
             done.
 
     Returns:
-        The number m of contacts; -1, with nothing changed, if they or the memory of forces need more memory.
+        The number m of contacts; 0 if only the test is done and finds no static forces; -1, with no result, if the
+            contacts or the memory of forces need more memory.
     """
     S, isle, contacts = scene_of(SCENE), island_of(ISLE), contacts_of(CONTACTS)
     A, B, ROWS, L, VN, OUT = contacts.A, contacts.B, contacts.ROWS, contacts.L, contacts.VN, contacts.OUT

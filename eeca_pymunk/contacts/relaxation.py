@@ -68,6 +68,7 @@ def relax(
             sweeps += 1
         if worst <= max(fine, coarse):
             break
+        # A direct solve has failed if it and the sweeps after it leave more than a fifth of the residual.
         if worst > 0.2 * last:
             fails += 1
         last = worst

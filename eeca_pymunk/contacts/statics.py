@@ -33,8 +33,9 @@ from ..rows.inplace import copy
 
 @nonallocating
 def set_motionless(ROWS: Rows[Row], V: FloatArray, n: int, m: int, close: float) -> bool:
-    """Set the rows' targets and velocities to those without motion; returns whether no surface and none of the fixed
-    bodies, from n on, moves. close: speed up to which a gap may still have to close, length/time."""
+    """Set targets and velocities of the rows to those without motion, 0. Returns False, with nothing changed, if a
+    surface or one of the fixed bodies, from n on, moves. close: length/time; a contact whose gap would have to close
+    faster keeps its target, which is below 0, and so exerts no static force."""
     for i in range(n, len(V)):
         if V[i, 0] != 0.0 or V[i, 1] != 0.0 or V[i, 2] != 0.0:
             return False

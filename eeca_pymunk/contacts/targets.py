@@ -1,7 +1,7 @@
 """Targets of contacts in an interval: b of 0 <= lam _|_ u_n+ - b >= 0, the normal velocities at its end.
 
-Let u = u_n now, g the gap, a_n the acceleration of the gap without impulses, lam_w the impulse of the load in the last
-solve. The bounce is e max(-u, 0).
+Let u = u_n now, g the gap, a_n the acceleration of the gap without impulses, lam_w the impulse over h of the load that
+the contact carried in the last solve. The bounce is e max(-u, 0) for e < 1, -u for e = 1.
 
 * e < 1 and the bounce below (1/2) max(-a_n h, A_nn lam_w): it would return within the interval. The contact persists:
   its bounce is 0 (the rest of the bounces enters the ledger as restitution at once).

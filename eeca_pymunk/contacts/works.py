@@ -4,8 +4,8 @@ identity:
     change of energy = forces + carried + lifted - restitution - friction,
 
 of kinetic energy, and of potential energy as far as the penetration correction changes it. `restitution` and `friction`
-are >= 0. `lifted` is the energy that the correction costs; it never exceeds these losses, from which it is paid, and is
-below 0 if bodies sink by it.
+are >= 0. `lifted` is the energy that the correction costs, below 0 if bodies sink by it. It exceeds these losses only
+by the energy `free` of `correction.budget_of`.
 """
 
 from __future__ import annotations

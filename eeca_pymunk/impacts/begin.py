@@ -18,8 +18,9 @@ from ..model.scene import Scene
 
 @nonallocating
 def begin(A: Scene, WALK: IntArray) -> None:
-    """Set instants relative to the start of this step, reset its counters and ledger, and mark the bodies to be
-    predicted: edited ones, and those whose predicted events are due."""
+    """Reset counters and ledger for a new step, and count `Body.due` from its start; compute the energy there, and the
+    flags of the step (`even`, `closing`, `may_support`). Edited bodies begin a new path version, and the islands at
+    rest for which something has changed are set CHANGED."""
     BODY, STATE, PAR, COUNT = A.BODY, A.STATE, A.PAR, A.COUNT
     COUNT.heap, COUNT.logged, COUNT.blocks, COUNT.predictions = 0, 0, 0, 0
     COUNT.solves, COUNT.solved, COUNT.direct, COUNT.work = 0, 0, 0, 0
@@ -41,7 +42,9 @@ def begin(A: Scene, WALK: IntArray) -> None:
     PAR.stamp += 1.0
     COUNT.waiting, COUNT.phase = 0, 0
     n, last = BODY.shape[0] - 1, PAR.last
+    # After so many steps without islands no body is at rest, and every `busy` has become 0: both are left out below.
     quiet = COUNT.quiet > REST_RETRY
+    # Two bodies without mobility are needed to squeeze others; all static shapes together count as one.
     COUNT.closing, fixed = 0, 1 if A.SHAPE.shape[0] > A.LIST.shape[0] else 0
     pulled, even, may_support = 0.0, True, A.RULE.shape[0] == 0 and not quiet
     for i in range(n):

@@ -20,9 +20,9 @@ from ..prediction.scheduling import predict_all
 
 @nonallocating
 def start_interval(A: Scene, J: Joints, root: int, t: float) -> int:
-    """Begin an interval of an island at instant t, at which all its bodies are. Returns DONE, or PUSHES_FULL (more
-    memory is needed), which leaves everything as it was; with joints also SPENT, likewise, if the budget of the step is
-    spent."""
+    """Begin an interval of an island at instant t, at which all its bodies are; with joints none that would be shorter
+    than PAR.instant. Returns DONE; or, with everything as it was, PUSHES_FULL (more memory is needed), or SPENT (the
+    budget of the step for joints is spent)."""
     if A.MEMBER[root].jointed == 0:
         return solve(A, root, t)
     return begin_interval(A, J, root, t, A.PAR.dt - t) if A.PAR.dt - t > A.PAR.instant else DONE
@@ -69,9 +69,11 @@ def cut_short(A: Scene, J: Joints, i: int, t: float) -> int:
     A.PAR.dt = t
     A.COUNT.heap = 0
     if J.TALLY.components > 0:
+        # The shortened intervals are solved again below, beyond the budget that is spent.
         J.PROGRESS.budget = J.PROGRESS.effort + STEP_WORK
     for k in range(A.BODY.shape[0] - 1):
-        # Jointed islands that met something later than was foreseen are ahead: they stay where they are.
+        # An island with joints may already be at a later instant than t, as its impacts may come later than predicted
+        # (`..jointed.meet`): the poses there become those at t.
         A.BODY[k].since = min(A.BODY[k].since, t)
         root = A.STATE[k].island
         if root < 0 or A.MEMBER[root].rest == AT_REST:

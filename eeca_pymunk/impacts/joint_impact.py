@@ -158,12 +158,14 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     weigh(groups, C, P, Q, ROWS, rows)
     problem = JointedProblem(P, Q, ROWS, C, room_for_rows(0, 0), rows)
     status = solve_block(problem, L, V, owed, False, LOSS, OUT)
+    # `fits`: whether the velocities satisfy the joints afterwards. If all contacts are elastic and without friction,
+    # the part that joints do not allow is kept, unless a contact closes by it.
     fits = not conserves(ROWS, rows)
     if not fits:
         velocities(problem, L, BEFORE, V)
         fits = closes(P, Q, ROWS, BEFORE, V, rows)
     if fits:
-        # The other part of the velocities is lost.
+        # The part of the velocities that joints do not allow is lost.
         velocities(problem, L, FITTED, V)
         OUT[0].restitution += energy_of(block, BEFORE, FITTED, n)
     # The rest of the change of energy is work of moving partners.

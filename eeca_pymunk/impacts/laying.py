@@ -31,7 +31,8 @@ def measure_scene(SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, SIZE
 
 @kernel
 def lay_scene(table: Table) -> None:
-    """Write what the arrays of bodies and CORNER have in a new scene, and the number of moving shapes; all are 0."""
+    """Write to the arrays of a new scene, which contain zeros, what is not 0 in it: of bodies, of CORNER, and the
+    number of moving shapes."""
     A = scene_of(table)
     ground = A.BODY.shape[0] - 1
     for i in range(A.BODY.shape[0]):

@@ -37,8 +37,8 @@ _ROOM = 64  # contacts that an impact on joints may add, at least
 
 @inlined
 def met_too_often(A: Scene, i: int, j: int) -> bool:
-    """Whether one of bodies i and j has had as many impacts as a step allows: COUNT.limit, or RESOLUTION between bodies
-    that moving fixed ones may squeeze."""
+    """Whether one of bodies i and j has had as many impacts as a step allows: COUNT.limit; or RESOLUTION if one of the
+    two is a body without mobility that is not the ground, and such bodies may squeeze others (`Count.closing`)."""
     limit = A.COUNT.limit
     if A.STATE[i].events >= limit or A.STATE[j].events >= limit:
         return True

@@ -79,7 +79,7 @@ def recalled(scene: Scene, take: Callable[[Any, tuple[int, ...]], AnyArray]) -> 
         new["BODY"][name] = scene.BODY[name]
     for name in ("BODY", "GRID", "PAR", "COUNT"):
         whole[name][...] = new.pop(name)
-    # Lengths determine when tables grow, and that when lists are made.
+    # The lengths are part of the state: they determine when tables grow, and all lists are made again when POOL grows.
     for name, kept, length in (
         ("POOL", end, room), ("FLAG", end, room), ("PUSHED_BY", pushes, many), ("PUSHED", pushes, many)
     ):  # fmt: skip

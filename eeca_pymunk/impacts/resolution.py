@@ -25,8 +25,8 @@ from .simultaneous import Block, energy_owed, gather, lay_out
 
 @nonallocating
 def finish(A: Scene, block: Block, n: int, m: int, L: FloatArray, OUT: Rows[Solved], status: int, t: float) -> None:
-    """Write the velocities of a block of n bodies and m pairs after its impulses L to BODY, and enter losses and
-    impulses in ledger and log. status, OUT: result and report of `..rows.blocks.solve_block`."""
+    """Write the velocities of a block of n bodies and m pairs after the impulses L (c, 2) of its c contacts to BODY,
+    and enter losses and impulses in ledger and log. status, OUT: result and report of `..rows.blocks.solve_block`."""
     BODY, COUNT = A.BODY, A.COUNT
     V, ROWS, k = block.V, block.ROWS, A.SHAPE.shape[0]
     if status != CONVERGED:

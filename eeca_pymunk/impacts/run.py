@@ -41,6 +41,7 @@ def set_back(A: Scene, F: RunArrays, STATES: FloatArray, WALK: IntArray) -> None
             A.KEYS[q] = -1
     for q in range(F.OWN.shape[0]):
         F.OWN[q] = F.FRESH[q]
+    # With the end of the last step unknown (NaN), `take` regards all bodies as edited.
     for i in range(WALK.shape[1]):
         if WALK[BODY_ROW, i] >= 0:
             for c in range(6):

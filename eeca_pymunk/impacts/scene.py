@@ -87,6 +87,7 @@ class EventLoop(Remembering):
         """The bodies that straight paths of joints hold, which lose their mobilities."""
         if not self.jointed:
             return rows(Held, 0)
+        # `_smooth` is 1 for the bodies that have no shape with friction.
         self._mobility: FloatArray = columns(BODY, "inv_mass", "inv_inertia")
         self._smooth: IntArray = np.ones(len(BODY), np.int64)
         self._smooth[LINK["owner"][SHAPE["friction"] > 0.0]] = 0
@@ -148,6 +149,7 @@ class EventLoop(Remembering):
                 return status
 
     def _bind_run(self, buffers: RunBuffers, states: tuple[AnyArray, ...]) -> Callable[..., int]:
+        """The loop over steps as machine code, bound to these arrays and to those of the scene."""
         return run.bind(self.table, self.ties, buffers.table, *states, self._usual)
 
     def _bind_to(self, states: tuple[AnyArray, ...]) -> Callable[..., int]:
@@ -157,6 +159,7 @@ class EventLoop(Remembering):
         return call
 
     def _grow(self, wish: int) -> None:
+        """Provide the memory that a step needs, `wish` being its status; the step can then be resumed."""
         scene = self.scene
         if wish == ROOM_FOR_EVENTS:
             self.scene = scene._replace(LOG=_longer(scene.LOG, int(scene.COUNT.logged)))

@@ -73,7 +73,7 @@ class SceneMemory:
         return filled(scene, table)
 
     def unjointed(self, n: int) -> tuple[Joints, Table]:
-        """The arrays of no joints, for n bodies or more, and their table."""
+        """The arrays `Joints` of a scene without joints, of n bodies or more, and their table."""
         if self._unjointed is None or len(self._unjointed[0].OF) < n:
             joints = make_joints(rows(Body, 2 * n), rows(Joint, 0), rows(Body, 0), ORDER)
             self._unjointed = joints, table_of(joints)

@@ -130,8 +130,12 @@ def energy_owed(A: Scene, n: int) -> tuple[float, bool]:
 
 
 class Block(NamedTuple):
-    """The arrays of a block: POSE, V (k, 3), IM, II (k,); rows of contacts (`Row`) between bodies A and B, their POINTS
-    (m, 2), and their pairs OF (m,) as numbers a k + b."""
+    """The arrays of a block of n bodies and m pairs of shapes, which have c <= 2 m contacts.
+
+    POSE, V (n + m, 3), IM, II (n + m,): first the n bodies, then one for each pair with a body without mobility. ROWS
+    (c,): rows of contacts between the local bodies A and B (c,). POINTS (c, 2): their points, length. OF (c,): their
+    pairs of shapes as numbers a k + b, of k shapes.
+    """
 
     POSE: FloatArray
     V: FloatArray
@@ -146,7 +150,7 @@ class Block(NamedTuple):
 
 @kernel
 def lay_out(A: Scene, n: int, m: int, PAIRS: IntArray, hit: int, rest: bool, t: float) -> Block:
-    """The block of the n bodies in A.BLOCK, which are sorted, and of m PAIRS, at instant t.
+    """The block of the n bodies in A.BLOCK, which are sorted by row here, and of m PAIRS, at instant t.
 
     Args:
         hit: the pair that meets now.  rest: whether its contact persists from now on.

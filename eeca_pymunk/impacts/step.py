@@ -38,6 +38,7 @@ def start(
         A.PAR.dt, A.PAR.gravity_x, A.PAR.gravity_y, A.PAR.half_damping = dt, gx, gy, half_damping
         A.PAR.instant = MEET_INSTANT * dt
         begin(A, WALK)
+        # The kinetic energy that `hold` has taken from held bodies is a loss of this step.
         A.PAR.before += lost
         A.PAR.restitution += lost
     return status
@@ -58,7 +59,11 @@ def finish(
 @kernel
 def act(A: Scene, J: Joints, USUAL: FloatArray) -> int:
     """All impulses of a step that has begun: of all contacts together at its middle, or event by event after the
-    intervals of islands have begun. DONE, or which memory is full: provide more, and call again."""
+    intervals of islands have begun. DONE, or which memory is full: provide more, and call again.
+
+    COUNT.phase: 0 until the first intervals of islands have begun and all events are predicted, 1 in the event loop, 2
+    after it.
+    """
     COUNT = A.COUNT
     if COUNT.together > 0:
         return act_together(A, J, USUAL)

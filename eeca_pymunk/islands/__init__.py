@@ -8,8 +8,9 @@ bodies in local numbering); `accounting.py` ends it, `excess.py` takes back ener
 
 States of rest, `Member.rest` of the root of an island, and the transitions between them:
 
-    AWAKE      solved in every step. Entered from the others after an impact, an edit, a motion of the support, or a
-               change of forces (`at_rest.py`); each sets CHANGED, and the start of the next step wakes the island.
+    AWAKE      solved in every step. Entered from AT_REST at the instant of an impact (`accounting.py`), and at the
+               start of a step after an edit, a motion of the support, or a change of forces (`at_rest.py`); in between
+               the island is CHANGED.
     CANDIDATE  at the end of a step without impacts in which all its bodies were slower than REST_SPEED (`rest.py`).
     AT_REST    for a candidate whose contacts neither slip nor are driven (`accounting.py`); for an island, or the part
                of it, for which `..contacts.statics` finds static forces (`intervals.py`, `partial_rest.py`). Left also

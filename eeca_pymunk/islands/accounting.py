@@ -181,9 +181,10 @@ def move_to_end(A: Scene, i: int, end: float) -> None:
 
 @nonallocating
 def apply_correction(A: Scene, root: int, end: float) -> None:
-    """Apply the penetration correction D, dv of an island's bodies at the end of its interval. It costs the change of
-    kinetic energy, less the work of forces m a.D + I alpha dtheta; losses of the step pay it, or external work where a
-    body without mobility was placed into the island (`Member.raised`)."""
+    """Apply the penetration correction of an island's bodies, displacements D, dtheta and changes of velocity, at the
+    end of its interval. It costs the change of kinetic energy, less the work of forces m a.D + I alpha dtheta. The cost
+    is deducted from the losses of the step, or is external work where a body without mobility was placed into the
+    island (`Member.raised`)."""
     PAR, BODY, PULL, JUMP = A.PAR, A.BODY, A.PULL, A.RESTING
     spent = 0.0
     i = root

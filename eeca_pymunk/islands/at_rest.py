@@ -1,6 +1,6 @@
-"""Islands at rest: an unchanged solve remains valid from step to step, and costs next to nothing.
+"""Islands at rest: their last solve remains valid from step to step, and they are not solved again.
 
-`rest.py` tells which islands come to rest. Their bodies keep their poses, without velocity (the remaining kinetic
+`rest.py` determines which islands come to rest. Their bodies keep their poses, without velocity (the remaining kinetic
 energy enters the ledger as restitution; disks without friction keep their spin), and their contacts keep their forces.
 An island is solved again when one of its bodies is hit or edited, when the accelerations on it change, when a body that
 supports it moves, and always in spaces with collision handlers.
@@ -119,6 +119,7 @@ def wake_changed(A: Scene) -> None:
         slow = speed(A, i, 0.0) <= candidate_speed(MEMBER[root].with_supports) * most
         A.RESTING[i].rest_timer = A.RESTING[i].rest_timer + 1.0 if slow else 0.0
         if MEMBER[i].rest != AWAKE:
+            # On its path at rest a body has no acceleration (`put_to_rest`).
             BODY[i].ax, BODY[i].ay, BODY[i].angular = A.PULL[i, 0], A.PULL[i, 1], A.PULL[i, 2]
             STATE[i].version += 1
         # Its predicted event does not contain the pairs of its last interval.
@@ -140,8 +141,8 @@ def wake_changed(A: Scene) -> None:
 
 @nonallocating
 def mark_changed(A: Scene, root: int) -> None:
-    """Set the bodies of an island at rest AWAKE that is hit or joined in this step; its interval is solved as any
-    other."""
+    """Set the bodies of an island at rest, which is hit or joined in this step, AWAKE, and keep the forces of its
+    contacts as those of this step; its interval then ends as any other."""
     for c in range(A.COUNT.pushes):
         if A.PUSHED_BY[c].root == root:
             renew_forces(A, c, A.PAR.stamp)

@@ -73,6 +73,7 @@ def join_neighbours(A: Scene, i: int, t: float, FOUND: IntArray) -> int:
             g, u, _, _, _ = approach(A, s, o, t)
             if g > reach:
                 continue
+            # Shapes that touch and part do not join; those that touch and approach fast hit each other.
             if g <= TOUCH * small and (u > pulled * dt or (-u > pulled * dt and not busy)):
                 continue
             if begun:
@@ -82,6 +83,7 @@ def join_neighbours(A: Scene, i: int, t: float, FOUND: IntArray) -> int:
                 joined += 1
             unite(A, i, j)
             if busy:
+                # The body beside a busy one is busy for a step less: so this does not spread without end.
                 A.MEMBER[i].busy = max(A.MEMBER[i].busy, A.MEMBER[j].busy - 1)
                 A.MEMBER[j].busy = max(A.MEMBER[j].busy, A.MEMBER[i].busy - 1)
     return joined
@@ -166,11 +168,13 @@ def build_islands(A: Scene) -> int:
 
 @nonallocating
 def comes_to_rest(A: Scene, a: int, b: int, t: float) -> bool:
-    """Whether the contact of shapes a and b, which meet at instant t, persists from then on. For e < 1: all bounces of
-    e |u| under the closing acceleration a_n end within the step, 2 e |u| <= a_n (1 - e) (dt - t), or a body had
-    RESOLUTION impacts in it; where nothing accelerates (pushed by a kinematic body), as many as leave e^n of a speed,
-    below 1/RESOLUTION. For e = 1 see `membership.persists`; what joints press together also persists where its impacts
-    come so fast that they would exceed the limit of the step."""
+    """Whether the contact of shapes a and b, which meet at instant t, persists from then on.
+
+    e < 1: all bounces of e |u| under the closing acceleration a_n end within the step, 2 e |u| <= a_n (1 - e) (dt - t);
+    or a body had n >= RESOLUTION impacts in the step, or e^n <= 1/RESOLUTION if no force or gravity acts on any body.
+    e = 1: as `membership.persists`, if |a| > 0; or a body had n >= RESOLUTION impacts, and either a_n > 0 and |u| <
+    |a| dt / RESOLUTION, or a body is in an island with joints and n would exceed COUNT.limit at the end of the step.
+    """
     i, j = A.LINK[a].owner, A.LINK[b].owner
     if A.BODY[i].inv_mass > 0.0:
         move_to(A.BODY, i, t)

@@ -103,8 +103,8 @@ def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: Int
 
 @nonallocating
 def in_haste(A: Scene) -> bool:
-    """Whether intervals last to the end of the step: for `Midstep`, and after about as many solves in the step as there
-    are bodies."""
+    """Whether intervals last to the end of the step: for `Midstep`, and after as many solves in the step as there are
+    bodies, N; in small scenes after RESOLUTION - 2 N if that is more."""
     bodies = A.BODY.shape[0]
     return A.COUNT.together > 0 or A.COUNT.solves >= max(RESOLUTION - 2.0 * bodies, bodies)
 
@@ -194,9 +194,11 @@ def stick_time(
 ) -> float:
     """Time after which slipping contacts stick, within an interval h of few contacts; h if none does.
 
-    The solve ends their slip u_t with frictions beta, which change it by F, beside a_t h by other forces. Full friction
-    changes it by F sum mu lam / sum |beta| (a body's single frictions are not unique): the slip ends after h |u_t| /
-    (|F| sum mu lam / sum |beta| - a_t h).
+    Let contacts slip with u_t at the start, and by the solve no longer at the end. Their frictions beta, which are
+    below the limits mu lam, change u_t by F in h; other forces increase |u_t| by a_t h, so that |F| = |u_t| + a_t h.
+    Until the slip ends, however, friction is at its limit, and changes u_t by F sum mu lam / sum |beta| in h; sums over
+    these contacts are taken, as the frictions of single contacts of a body are not unique. So the slip ends after h
+    |u_t| / (|F| sum mu lam / sum |beta| - a_t h), with u_t and a_t of the contact that slips fastest.
 
     Args:
         P, Q, ROWS, L: the m contacts with their impulses.  FREE, VN: (k, 3) velocities at the end without and with

@@ -27,8 +27,8 @@ from ..model.scene import Scene
 
 @inlined
 def losses(A: Scene, c: int, t: float) -> tuple[float, float]:
-    """What contact c of an interval has lost by normal impulse and friction up to instant t: velocities are linear, so
-    after its part f D_n = -f lam (u_n + f (u_n+ - u_n) / 2), and D_t likewise."""
+    """Losses (energy) of contact c of an interval by normal impulse and by friction up to instant t. As velocities are
+    linear, D_n = -f lam (u_n + f (u_n+ - u_n) / 2) with the part f of the interval that is over, and D_t likewise."""
     R = A.PUSHED[c]
     f = (t - R.start) / R.length
     normal = -f * R.normal * (R.un_before + 0.5 * f * (R.un_after - R.un_before))
@@ -106,8 +106,8 @@ def scale_forces(A: Scene, root: int, SET: IntArray, SUMS: Rows[Given]) -> None:
 
 @kernel
 def repay(A: Scene, root: int, t: float) -> None:
-    """Before the interval of an island ends at instant t: scale its impulses, where they have given energy, as
-    above."""
+    """Before the interval of an island ends at instant t: scale the impulses that have given energy up to t, as in the
+    docstring of the module."""
     if not gives(A, root, t):
         return
     BODY, PULL, start = A.BODY, A.PULL, t
@@ -125,7 +125,7 @@ def repay(A: Scene, root: int, t: float) -> None:
     while i >= 0:
         one = SUMS[set_of(SET, i)]
         if one.lost < -REPAY_ROUND_OFF * one.size:
-            # Where gaps were looked at within the interval, the body is ahead on its path.
+            # Tests whether contacts persist may have moved the body along its path, to an instant within the interval.
             move_to(BODY, i, start)
             body = BODY[i]
             wx, wy, turn = (body.ax - PULL[i, 0]) * s, (body.ay - PULL[i, 1]) * s, (body.angular - PULL[i, 2]) * s

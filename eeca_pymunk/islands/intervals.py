@@ -70,8 +70,9 @@ def solve(A: Scene, root: int, t: float) -> int:
 
 @kernel
 def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> tuple[int, float]:
-    """One attempt of `solve`, with an interval no longer than `longest`. Returns AGAIN and the length for the next
-    attempt, with nothing changed, if the interval is too long; never in the `last` attempt."""
+    """One attempt of `solve`, with an interval no longer than `longest`. Returns a status, DONE, PUSHES_FULL or AGAIN,
+    and a length: with AGAIN, if the interval is too long, that for the next attempt; no path is changed then. AGAIN is
+    never the result of the `last` attempt."""
     BODY, STATE, MEMBER, COUNT = A.BODY, A.STATE, A.MEMBER, A.COUNT
     MINE = number_bodies(A, root)
     n = len(MINE)
@@ -174,7 +175,8 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
 @kernel
 def lift_here(A: Scene, root: int, t: float) -> None:
     """Set the penetration correction of an island whose interval has been cut at instant t, at which its bodies are;
-    `apply_correction` applies it. Its losses of the step pay."""
+    `accounting.apply_correction` applies it. It may cost as much energy as the island has lost in the step, and without
+    a bound where a moving body without mobility is deep in the island (`depths.driven`)."""
     MINE = number_bodies(A, root)
     n = len(MINE)
     found = pairs_within(A, root, t, 0.0, True, MINE, n)

@@ -51,7 +51,8 @@ def needs_memory(A: Scene, p: int) -> bool:
 
 @nonallocating
 def open_until(A: Scene, root: int, end: float) -> None:
-    """An interval of an island has begun, which ends at instant `end`."""
+    """Note that an interval of an island has begun, which ends at instant `end`; `until` is infinite if the step ends
+    there too, since no event is needed then."""
     A.MEMBER[root].open = 1
     A.RESTING[root].until = end if before_end(A, end) else math.inf
 

@@ -126,9 +126,10 @@ def remembered(KEYS: IntArray, FORCES: Rows[Force], shapes: int, a: int, b: int,
 
 @nonallocating
 def approach(A: Scene, a: int, b: int, t: float) -> tuple[float, float, float, float, float]:
-    """Gap of shapes a and b at instant t, its rate u (negative when closing), the accelerations with which it closes
-    without contacts and at present, and the effective mass of the contact. Body a is at t; body b moves at constant
-    velocity until then."""
+    """Gap (length) of shapes a and b at instant t, its rate u (length/time, negative when closing), the accelerations
+    (length/time²) with which it closes without contacts and on the present paths, and the effective mass of the
+    contact. The path of a's body begins at t; that of b's body may begin earlier, and is extrapolated to t without its
+    acceleration."""
     BODY, PULL, i, j = A.BODY, A.PULL, A.LINK[a].owner, A.LINK[b].owner
     h = t - BODY[j].since
     g, nx, ny, px, py = gap_at(

@@ -1,12 +1,13 @@
 """Partial rest: the largest part of an island that static forces support, while its other bodies move.
 
-Slow bodies are tested for static forces (`..contacts.statics`) under the pushes of the others, which are solved first
-with the slow ones as fixed. If there are none, the test returns a motion that no contact holds; the bodies that take
-part in it join the moving ones, and the remaining bodies are tested again.
+Slow bodies are tested for static forces (`..contacts.statics`) under the contact forces of the others, which are solved
+first with the slow ones as fixed. If there are none, the island is solved as a whole, and the next test of these bodies
+is postponed.
 
-A few bodies always vibrate and wake their neighbours, and so do residuals of truncated solves. Therefore large islands
-are frozen first: all slow bodies are tested without regard to the others; if static forces hold them, they stop, and
-these forces are the start of the next solve. Losses within a step would end such small motions as well.
+In large islands a few bodies always vibrate, and residuals of truncated solves move the others; both wake what is at
+rest beside them. Therefore large islands are frozen first: all slow bodies are tested without regard to the others; if
+static forces hold them, they stop, and these forces are the start of the next solve. Losses within a step would end
+such small motions as well.
 """
 
 from __future__ import annotations
@@ -111,7 +112,8 @@ def test_rest(A: Scene, MINE: IntArray, n: int, V0: FloatArray, with_supports: i
 
 @kernel
 def freeze(A: Scene, root: int, MINE: IntArray, n: int) -> None:
-    """Stop the bodies MINE of a large island, except for a few fast ones and those that no contact holds."""
+    """Stop the n bodies MINE of a large island, except for at most MOVING_BODIES fast ones, if static forces hold all
+    that are to stop. The island and its root remain, and bodies that stop are awake."""
     STAND, V0, stand = np.empty(n, np.int64), np.empty((n, 3)), 0
     for q in range(n):
         if speed(A, MINE[q], 0.0) <= IMPACT_SPEED * A.PAR.pulled * A.PAR.dt:
@@ -128,6 +130,7 @@ def freeze(A: Scene, root: int, MINE: IntArray, n: int) -> None:
             body = A.BODY[STAND[q]]
             V0[q, 0], V0[q, 1], V0[q, 2] = body.vx, body.vy, body.spin
         frozen = test_rest(A, STAND, stand, V0, n, True)
+        # Those whose test is not postponed. A test that fails postpones those of all its bodies, which ends the loop.
         held = 0
         for q in range(stand):
             if slow_for_long(A, STAND[q]):
@@ -136,7 +139,7 @@ def freeze(A: Scene, root: int, MINE: IntArray, n: int) -> None:
         stand = held
     if not frozen:
         postpone_test(A, MINE, n)
-    # The island as it was before.
+    # Make the island as it was before: its root, then its other bodies in the order of MINE.
     STAND[0] = root
     for q in range(n):
         if MINE[q] != root:
@@ -206,7 +209,8 @@ def rests_in_part(A: Scene, root: int) -> bool:
                 if MEMBER[STATE[i].island].open > 0:
                     close_interval(A, STATE[i].island, 0.0)
                 one = unite(A, one, i)
-        # Bodies without contacts have left the island.
+        # Bodies without contacts have left the island. The test of all slow ones has just been postponed, so that none
+        # is left for another try.
         n = members(A, one, MINE)
         sort(MINE, n)
         if A.COUNT.direct > factors + PARTIAL_REST_FACTORS:

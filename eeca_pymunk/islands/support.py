@@ -2,7 +2,7 @@
 
 One disk that rolls on a pile moves nothing else. So slow bodies may be at rest while the rest of their island moves:
 for the moving bodies they are fixed, as the ground is, and a statics problem of the bodies at rest, under the forces
-with which the others push on them, tells whether that is right. If these forces and those of their own contacts balance
+with which the others push on them, shows whether that is right. If these forces and those of their own contacts balance
 inside all friction cones, they solve the contact problem of all bodies together: the bodies at rest have no motion, and
 momentum passes through them to what is fixed. Otherwise all of them are solved as one island.
 
@@ -34,8 +34,8 @@ from .rest import candidate_speed, postpone_test, spins_freely
 
 @nonallocating
 def support_loads(A: Scene, root: int, LOAD: FloatArray) -> None:
-    """Add to LOAD (k, 3) the velocities that contacts of other islands would give to the bodies of this one, which have
-    A.PLACE, in a whole step with the present forces."""
+    """Add to LOAD (., 3), a row for each body of the island in the order of A.PLACE, the changes of velocity that
+    contacts of other islands would cause in a whole step with their present forces."""
     BODY = A.BODY
     for c in range(A.COUNT.pushes):
         r = A.PUSHED_BY[c].root
@@ -81,6 +81,8 @@ def supports_load(A: Scene, root: int) -> bool:
     open_to, m = 0.5 * candidate_speed(A.MEMBER[root].with_supports) * A.PAR.pulled * dt * dt, 0
     for c in range(A.COUNT.pushes):
         R = A.PUSHED[c]
+        # Contacts without an impulse take part if their gap is no larger than the way in which a body may stop when it
+        # is put to rest.
         if A.PUSHED_BY[c].root != root or not (R.normal > 0.0 or R.gap <= open_to):
             continue
         a, b = A.PUSHED_BY[c].a, A.PUSHED_BY[c].b
@@ -135,6 +137,8 @@ def support(A: Scene) -> None:
     STATE, MEMBER, BODY = A.STATE, A.MEMBER, A.BODY
     more, all_moving, asked = A.COUNT.may_support > 0, True, 0
     while more:
+        # Mark the islands at rest on which others press with forces that have not been tested: moving islands, in the
+        # first round and after one was solved, and islands at rest with new forces.
         for c in range(A.COUNT.pushes):
             root = A.PUSHED_BY[c].root
             if root < 0 or not (MEMBER[root].new_forces == 1 if MEMBER[root].rest == AT_REST else all_moving):

@@ -126,11 +126,15 @@ def part(A: Scene, s: int) -> int:
 
 @nonallocating
 def renew(A: Scene, s: int, t: float, ahead: float) -> int:
-    """Move the margin circle of s to its position at instant t, and renew its list. If the shape's turn within a step
-    is longer than its margin, the circle is that of its orbit about the body's centre, with as much room again.
+    """Move the margin circle of s to its position at instant t, and renew its list.
+
+    If the body's spin moves the shape by more than its margin in a step, the circle is about the body's centre of mass,
+    with a margin of at least twice the arm: one arm contains the orbit of the shape, the other is left for the motion
+    of the body.
 
     Args:
-        ahead: distance of the circle's centre ahead of the shape along its velocity, over the room; below 1.
+        ahead: distance of the circle's centre ahead of the shape, or body, along its velocity, as a part of the margin
+            (of the margin less the arm, if the circle is about the body's centre); below 1.
 
     Returns:
         the number of old entries that are kept; they come first. -1 if the pool is full: then `build` has to be called.
@@ -196,8 +200,8 @@ def build(table: Table, t: float) -> bool:
 
 @nonallocating
 def relist(table: Table) -> bool:
-    """Make all lists at instant 0 for shapes that are others than before, static ones elsewhere, too. False if the pool
-    is full, or if static shapes have a grid, which this does not make."""
+    """Make all lists at instant 0 after shapes have changed or static shapes have moved. False if the pool is full, or
+    if static shapes have a grid, which is not made again here."""
     A = scene_of(table)
     if A.GRID.columns != 0:
         return False

@@ -122,7 +122,8 @@ def mark_pair(A: Scene, a: int, b: int, value: int) -> None:
 
 @nonallocating
 def face_tolerance(A: Scene, a: int, b: int) -> float:
-    """The tolerance (length) of `face` in an impact."""
+    """The `tolerance` (length) of `..geometry.manifold.face` in an impact of shapes a and b: the difference of gaps up
+    to which both ends of a common face touch at once."""
     tolerance = FACE_ROUND_OFF * touching(A, a, b)
     if law(A.SHAPE, A.RULE, a, b)[0] < 1.0:
         tolerance = max(tolerance, ROCKING * min(A.SHAPE[a].extent, A.SHAPE[b].extent))

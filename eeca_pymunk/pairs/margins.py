@@ -1,8 +1,9 @@
 """The first lists of a scene: margins, and the cell lengths of both grids.
 
-(2 + 2 m / r)² phi is the number of neighbours at the packing phi of shapes of radius r with margins m, if they are
-spread evenly; margins are halved where they are not. Small shapes among large ones do not get more than twice their own
-share, large ones no more than the median's.
+Shapes of radius r with margins m, spread evenly, have (2 + 2 m / r)² phi neighbours each, where the packing phi is the
+part of the area that bounding circles cover. Margins are chosen for a number of neighbours by this equation, and all
+are halved if the lists become longer, as those of shapes that are not spread evenly do. A margin is in proportion to
+twice the bounding radius, or to the median of these radii if that is less.
 """
 
 from __future__ import annotations
@@ -22,8 +23,11 @@ DONE = -1
 
 @nonallocating
 def begin_lists(table: Table, few: bool) -> int:
-    """Write the boxes of static shapes. If shapes are so `few` that each is in all lists, make these: DONE, or 0 if
-    the pool is full. Else the length of CSR, 0 if static shapes have no grid."""
+    """Write the boxes of static shapes; if shapes are so `few` that each is in all lists, make these lists too.
+
+    Returns:
+        if `few`: DONE, or 0 if the pool is full; else the length that CSR must have, 0 if static shapes need no grid.
+    """
     A = scene_of(table)
     for w in range(A.BOX.shape[0]):
         box_wall(A, w)
@@ -63,7 +67,7 @@ def fill_lists(table: Table, BOUND: FloatArray, neighbours: float, halved: int, 
         listed, entries = False, 0
         for s in range(A.GRID.moving):
             entries += A.LIST[s].number
-        # Margins are a function of bounding radii that does not fall.
+        # Margins do not fall with the bounding radius, so the shapes of median radius have the median margin.
         small, large = margin_at(A, BOUND, (A.GRID.moving - 1) // 2), margin_at(A, BOUND, A.GRID.moving // 2)
         if entries <= MOST_NEIGHBOURS * A.GRID.moving or 0.5 * (small + large) <= LEAST * middle(BOUND):
             return DONE
@@ -92,7 +96,7 @@ def margin_at(A: Scene, BOUND: FloatArray, place: int) -> float:
 
 @nonallocating
 def set_cell(A: Scene) -> None:
-    """Set the length of the cells of the smallest margin circles."""
+    """Set the length of the cells of level 0: twice the radius of the smallest margin circle and its shape together."""
     least = 1e300
     for s in range(A.GRID.moving):
         least = min(least, A.SHAPE[s].bound + A.MARK[s].margin)

@@ -15,14 +15,14 @@ from ..model.shapes import Cell, Grid, List, Mark
 from .grid import build
 from .margins import DONE, begin_lists, fill_lists
 
+Size: TypeAlias = tuple[tuple[int, ...], npt.DTypeLike]  # dimensions and dtype of an array
 # Fields of `Scene` that are the near lists.
-Size: TypeAlias = tuple[tuple[int, ...], npt.DTypeLike]
 NEAR = ("MARK", "CELL", "LIST", "POOL", "FLAG", "HEAD", "GRID", "BOX", "CSR")
 NO_GRID: IntArray = np.zeros(1, np.int64)  # CSR of few static shapes
 
 
 def near_sizes(moving: int, walls: int) -> tuple[Size, ...]:
-    """Shapes and dtypes of NEAR, without CSR, for so many moving and so many static shapes."""
+    """Dimensions and dtypes of the arrays NEAR, without CSR, in a scene with so many moving and static shapes."""
     room, heads = 32 * moving + 1024, 1 << max(1, (2 * moving + 1).bit_length())
     return (
         ((moving,), Mark.TYPE), ((moving,), Cell.TYPE), ((moving,), List.TYPE), ((room,), np.int32),
@@ -40,7 +40,7 @@ def near_lists(scene: Scene, moving: int) -> Scene:
 
 
 def filled(scene: Scene, table: Table) -> tuple[Scene, Table]:
-    """The scene with its lists, whose arrays are new, and the table of that scene."""
+    """The scene with its first lists, for which its arrays NEAR must be those of a new scene, and its table."""
     few = len(scene.LIST) <= ALL_PAIRS and len(scene.BOX) <= ALL_WALLS
     found = begin_lists(table, few)
     if few:
@@ -56,6 +56,7 @@ def filled(scene: Scene, table: Table) -> tuple[Scene, Table]:
 
 
 def _and_table(scene: Scene, before: Table) -> tuple[Scene, Table]:
+    """A scene with its table; `before`: that of the scene that it replaces."""
     return scene, table_of(scene, before)
 
 

@@ -17,7 +17,7 @@ def circles_meet(A: Scene, a: int, b: int, start: float, duration: float, tolera
     """Time after `start` until which shapes a and b are certainly apart, and whether they never meet.
 
     Circles about the centres of mass, of radius `extent`, which do not rotate, are compared; a static shape counts with
-    its outline. 0 if they overlap.
+    its outline. 0 if they overlap. `tolerance` and `duration` as in `circles.circle_circle`.
     """
     BODY, SHAPE, LINK = A.BODY, A.SHAPE, A.LINK
     ground = BODY.shape[0] - 1
@@ -64,8 +64,8 @@ def carried_circle(A: Scene, s: int, start: float, duration: float) -> tuple[flo
 @nonallocating
 def carried_circles_meet(A: Scene, a: int, b: int, start: float, duration: float) -> float:
     """Time after `start` until which the bounding circles of shapes a and b are certainly apart. Tighter than
-    `circles_meet` for shapes far from their centres of mass. Valid within `duration`, always without angular
-    acceleration."""
+    `circles_meet` for shapes far from their centres of mass. A result above `duration` is valid only if neither body
+    has angular acceleration; else the shapes are apart up to `duration`."""
     x_a, y_a, ux_a, uy_a, bend_a = carried_circle(A, a, start, duration)
     x_b, y_b, ux_b, uy_b, bend_b = carried_circle(A, b, start, duration)
     BODY, SHAPE, i, j = A.BODY, A.SHAPE, A.LINK[a].owner, A.LINK[b].owner

@@ -51,6 +51,7 @@ def first_meeting(
     BODY, POOL, FLAG, CHOSEN = A.BODY, A.POOL, A.FLAG, A.GRID.chosen
     disks, chosen = A.COUNT.disks, 0
     even = A.COUNT.even > 0
+    # Only contacts of islands, and pairs whose impact was left out in this step, have a flag.
     flagged = not even or A.COUNT.unmet > 0
     ax, ay = BODY[i].ax, BODY[i].ay
     start, ruled = A.LIST[i].start, A.RULE.shape[0] > 0
@@ -120,6 +121,7 @@ def go_on(A: Scene, i: int, now: float, end: float) -> bool:
         if known < 0:
             return False
     if later != NOTHING and other < 0:
+        # The kept impact is void, or only a lower bound: the old entries are tested too.
         known = 0
     best, other = first_meeting(A, i, known, best, other, end, False)
     expect(A, i, best, other, now, end)

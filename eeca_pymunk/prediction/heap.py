@@ -1,5 +1,8 @@
 """The heap of events: the earliest on top, ties by the number of the body. Entries are not removed when a prediction
-changes: one is valid while its time equals `Body.due`."""
+changes: one is valid while its time equals `Body.due`.
+
+TIME and OF are the instants and the bodies of its n entries. Each function returns the number of entries afterwards.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,7 @@ from ..model.bodies import Body
 
 @nonallocating
 def push(TIME: FloatArray, OF: IntArray, n: int, time: float, body: int) -> int:
-    """Add an event to a heap of n; the new number."""
+    """Add an event of a body at an instant `time` to a heap of n."""
     k = n
     while k > 0:
         up = (k - 1) >> 1
@@ -25,7 +28,7 @@ def push(TIME: FloatArray, OF: IntArray, n: int, time: float, body: int) -> int:
 
 @nonallocating
 def pop(TIME: FloatArray, OF: IntArray, n: int) -> int:
-    """Remove the first event of a heap of n; the new number."""
+    """Remove the first event of a heap of n."""
     n -= 1
     # The hole sinks to a leaf without unpredictable branches; the last entry, which fills it, usually belongs near a
     # leaf.
@@ -48,7 +51,7 @@ def pop(TIME: FloatArray, OF: IntArray, n: int) -> int:
 
 @nonallocating
 def sweep_out(TIME: FloatArray, OF: IntArray, n: int, BODY: Rows[Body]) -> int:
-    """Remove invalid entries, and all but one of equal ones; the new number."""
+    """Remove invalid entries from a heap of n, and all but one of equal ones."""
     size, first = n, n
     while n > 0:
         time, body = TIME[0], OF[0]
@@ -57,7 +60,7 @@ def sweep_out(TIME: FloatArray, OF: IntArray, n: int, BODY: Rows[Body]) -> int:
         if time == BODY[body].due and not alike:
             first -= 1
             TIME[first], OF[first] = time, body
-    # The latest is first now: reversed, the order of time is a heap.
+    # The valid entries, with the latest first, are the last ones of the arrays; in the order of time they are a heap.
     kept = size - first
     for k in range(kept // 2):
         a, b = first + k, size - 1 - k

@@ -23,9 +23,9 @@ from .turning import general
 
 @nonallocating
 def passes(dx: float, dy: float, ux: float, uy: float, extent: float, duration: float) -> bool:
-    """Whether disks at a distance d with relative velocity u certainly part, miss each other, or are too far away to
-    meet within the time `duration`. True for most, and needs no root: the first one of |d + u s| = extent is at
-    s >= c / (2 |d.u|), c = |d|² - extent²."""
+    """Whether disks with the vector d from centre to centre, relative velocity u and sum of radii `extent` certainly
+    part, miss each other, or are too far away to meet within the time `duration`. True for most pairs, and found
+    without a root, as the first one of |d + u s| = extent is at s >= c / (2 |d.u|), c = |d|² - extent²."""
     closing, cross, squared = -(dx * ux + dy * uy), dx * uy - dy * ux, extent * extent
     far = dx * dx + dy * dy - PATH_REACH * squared > 2.0 * PATH_REACH * closing * duration
     return bool((closing <= 0.0) | (cross * cross > MISS_DISTANCE * squared * (ux * ux + uy * uy)) | far)

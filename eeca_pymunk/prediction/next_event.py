@@ -22,7 +22,8 @@ from .impact_times import meet
 
 @nonallocating
 def leaves(A: Scene, i: int, s: int, now: float) -> float:
-    """Instant before which the centre of shape s of body i stays inside its margin circle; exact for straight paths."""
+    """Instant up to which the centre of the bounding circle of shape s, of body i, stays inside its margin circle:
+    exact for a straight path of a shape about the centre of mass, else a lower bound. `now` itself if it is outside."""
     BODY, SHAPE, MARK = A.BODY, A.SHAPE, A.MARK
     m = MARK[s].margin
     if m == math.inf:
@@ -43,7 +44,8 @@ def leaves(A: Scene, i: int, s: int, now: float) -> float:
             return math.inf
         root = math.sqrt(b * b + squared * c)
         return float(now + ((root - b) / squared if b <= 0.0 else c / (root + b)))
-    # The length of the path bounds the distance; so do the body's path and the arm, of a shape on an orbit.
+    # Two lower bounds, of which the later one counts: the centre of the circle moves no farther than its path is long,
+    # and is never farther from the body's centre of mass than its arm, however fast it goes around that.
     x, y = centre(A, s, now)
     u, g = norm(BODY[i].vx + ax * h, BODY[i].vy + ay * h), norm(ax, ay)
     room = m - norm(x - MARK[s].x, y - MARK[s].y)
@@ -74,8 +76,9 @@ def has_left(A: Scene, s: int, now: float) -> bool:
 
 @nonallocating
 def horizon_of(A: Scene, i: int, end: float) -> float:
-    """How far ahead the path of body i is of use: to the end of the step, or well beyond that of the interval of its
-    island, after which it has another one. Bounds of paths that bend sharply in a short interval are wide of it."""
+    """Instant up to which impacts on the present path of body i are searched: the end of the step; for a body of an
+    island whose interval ends within the step, as long after the end of the interval as the path began before it. The
+    body has another path then, and the bounds of a path that bends sharply are too wide over a longer time."""
     root = A.STATE[i].island
     if root < 0 or A.RESTING[root].until == math.inf:
         return end
@@ -91,6 +94,7 @@ def predict(A: Scene, i: int, now: float, end: float, until: float) -> None:
     Args:
         A: PLACE (n,) >= 0 marks bodies that are predicted together; a pair of two such bodies is tested for the one
             with the lower number only.
+        end: instant at which the step ends.
         until: instant at which the interval of the body's island ends, infinite unless the body is its root.
     """
     BODY, STATE, LINK, LIST = A.BODY, A.STATE, A.LINK, A.LIST
@@ -122,6 +126,7 @@ def predict(A: Scene, i: int, now: float, end: float, until: float) -> None:
     if other >= 0:
         STATE[i].known = STATE[LINK[other].owner].version
     if i < A.COUNT.disks:
+        # No impact is kept for `disks.go_on`, which therefore tests the whole list.
         LIST[i].later = CHECK
     if best < end:
         A.COUNT.heap = push(A.HEAP_TIME, A.HEAP_BODY, A.COUNT.heap, best, i)

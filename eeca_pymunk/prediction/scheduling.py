@@ -24,8 +24,9 @@ def predict_next(A: Scene, i: int, t: float, end: float, several: bool) -> None:
 
 @nonallocating
 def predict_all(A: Scene, n: int, t: float, end: float) -> None:
-    """Predict the next events of the n bodies in A.BLOCK at instant t. Each pair of them is tested once; that is
-    enough, because a body is predicted with all others after its next event."""
+    """Predict the next events of the n bodies in A.BLOCK at instant t. A pair of two of them is tested only for the
+    body with the lower number. That is enough: no impact of the pair comes before the next event of this body, after
+    which it is predicted again, with all shapes of its lists."""
     for q in range(n):
         A.PLACE[A.BLOCK[q]] = q
     for q in range(n):
@@ -36,7 +37,8 @@ def predict_all(A: Scene, n: int, t: float, end: float) -> None:
 
 @nonallocating
 def predict_due(A: Scene) -> None:
-    """At the start of a step, predict the next events of all bodies whose prediction is void or due in this step."""
+    """At the start of a step, predict the next events of all bodies whose prediction is void or due in this step, and
+    of all bodies in islands that are not at rest."""
     n, dt, disks = 0, A.PAR.dt, A.COUNT.disks
     for i in range(A.BODY.shape[0] - 1):
         alone = A.STATE[i].island < 0
@@ -49,7 +51,7 @@ def predict_due(A: Scene) -> None:
 
 @inlined
 def fetch_body(A: Scene, i: int) -> None:
-    """Prefetch the rows of body i for an event."""
+    """Prefetch the rows of body i for an event; the row of BODY fills two cache lines, of eight numbers each."""
     fetch(A.BODY, i, 0)
     fetch(A.BODY, i, 8)
     fetch(A.STATE, i, 0)
@@ -57,8 +59,8 @@ def fetch_body(A: Scene, i: int) -> None:
 
 @inlined
 def look_ahead(A: Scene, now: int) -> None:
-    """Prefetch the rows for the events after that of body `now`: for later events the indices, because they locate the
-    other rows."""
+    """Prefetch rows while the event of body `now` is processed: the near list of its partner; of the first event in the
+    heap the near list, and the rows of the partner; of the next two only the rows that say where these are."""
     LIST, disks = A.LIST, A.COUNT.disks
     n = min(A.COUNT.heap, 3)
     for k in range(1, n):

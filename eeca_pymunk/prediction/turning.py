@@ -7,7 +7,10 @@ rotate with their bodies, with the vertices of the other shape.
 
 Shapes meet if, along every axis on which the gap is closed, a point approaches.
 
-Side effect: `begin_side` and `general` note the sides of thin shapes in SIDE.
+A look is one evaluation of the gap in a search.
+
+Side effect: `begin_side`, `search` and `follow_side` note the sides of thin shapes in SIDE; of these notes `general`
+leaves only that of `begin_side`.
 """
 
 from __future__ import annotations
@@ -111,8 +114,8 @@ def face_closes(
 
 @nonallocating
 def general(A: Scene, a: int, b: int, horizon: float) -> tuple[float, bool]:
-    """`search` of any two shapes a and b in any order, with the remembered side set back to that of the present: the
-    predicted path may be changed by an impulse before."""
+    """`search` for shapes a and b in either order. Afterwards the remembered side is again that at the start of the
+    search, since an impulse may change the paths before they get to where the search has followed them."""
     if a > b:
         a, b = b, a
     if not remembers(A, a, b):
@@ -134,17 +137,17 @@ def follow_side(A: Scene, a: int, b: int, t: float, horizon: float) -> None:
 
 @nonallocating
 def search(A: Scene, a: int, b: int, horizon: float, until: float) -> tuple[float, bool]:
-    """Instant at which any two shapes meet next, and whether they do, or are only known to be apart until then.
+    """(t, certain) of any two shapes, as defined in `impact_times.py`.
 
-    Depends only on the two paths, from the later of their instants `since` on. Shapes that touch and approach meet at
-    once. Shapes that touch and part do not meet, but their bounds are 0; so the search advances by at least a
-    thousandth (ADVANCES) of the time, but by no more than the time `graze` in which no point gets deeper than GRAZED.
-    The same holds after ADVANCES looks within 1/RESOLUTION of the time.
+    Depends only on the two paths, from the later of their instants `since` on; "the time" is that from there to the
+    horizon. Shapes that touch and approach meet at once. Shapes that touch and part do not meet, but their bounds are
+    0: there the search advances by the time over ADVANCES, or by the time `graze` in which no point gets deeper than
+    GRAZED if that is less. After ADVANCES looks within the time over RESOLUTION it advances by at least `graze`.
 
     Args:
         a, b: a < b.
         horizon: finite instant; lower bounds are no earlier.
-        until: instant at which the search ends.
+        until: instant from which on the search is not continued, for `follow_side`; else infinite.
     """
     BODY, SHAPE = A.BODY, A.SHAPE
     i, j = A.LINK[a].owner, A.LINK[b].owner
