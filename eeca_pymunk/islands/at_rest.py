@@ -3,7 +3,8 @@
 `rest.py` determines which islands come to rest. Their bodies keep their poses, without velocity (the remaining kinetic
 energy enters the ledger as restitution; disks without friction keep their spin), and their contacts keep their forces.
 An island is solved again when one of its bodies is hit or edited, when the accelerations on it change, when a body that
-supports it moves, and always in spaces with collision handlers.
+supports it moves, and while pairs have laws of their own: in steps in which collision handlers decide, and in spaces in
+which jointed bodies do not collide.
 
 `Member.rest` is AT_REST for all its bodies; for the root CHANGED once it has to be solved again.
 """

@@ -24,9 +24,7 @@ from ..model.parameters.intervals import IMPACT_SPEED, LARGE_ISLAND
 from ..model.parameters.rest import (
     MOVING_BODIES,
     MOVING_SHARE,
-    PARTIAL_REST_FACTORS,
     PARTIAL_REST_FACTORS_STEP,
-    PARTIAL_REST_TRIES,
     REST_RETRY,
 )
 from ..model.scene import Scene
@@ -121,8 +119,8 @@ def freeze(A: Scene, root: int, MINE: IntArray, n: int) -> None:
             stand += 1
     if n - stand > MOVING_BODIES:
         return
-    owed, factors, frozen = A.RESTING[root].lost, A.COUNT.direct, False
-    while not frozen and stand >= (1.0 - MOVING_SHARE) * n and A.COUNT.direct <= factors + PARTIAL_REST_FACTORS:
+    owed, frozen = A.RESTING[root].lost, False
+    if stand >= (1.0 - MOVING_SHARE) * n:
         for q in range(n):
             A.STATE[MINE[q]].island = -1
         make_island(A, STAND, stand)
@@ -130,13 +128,6 @@ def freeze(A: Scene, root: int, MINE: IntArray, n: int) -> None:
             body = A.BODY[STAND[q]]
             V0[q, 0], V0[q, 1], V0[q, 2] = body.vx, body.vy, body.spin
         frozen = test_rest(A, STAND, stand, V0, n, True)
-        # Those whose test is not postponed. A test that fails postpones those of all its bodies, which ends the loop.
-        held = 0
-        for q in range(stand):
-            if slow_for_long(A, STAND[q]):
-                STAND[held] = STAND[q]
-                held += 1
-        stand = held
     if not frozen:
         postpone_test(A, MINE, n)
     # Make the island as it was before: its root, then its other bodies in the order of MINE.
@@ -180,42 +171,32 @@ def rests_in_part(A: Scene, root: int) -> bool:
         freeze(A, root, MINE, n)
         if A.COUNT.direct > factors + PARTIAL_REST_FACTORS_STEP:
             return False
-    V0, some, factors = np.empty((n, 3)), False, A.COUNT.direct
-    for _ in range(PARTIAL_REST_TRIES):
-        stand = split_slow(A, MINE, n, STAND, MOVE)
-        if stand == 0 or n - stand > max(MOVING_SHARE * n, MOVING_BODIES):
-            break
-        some = True
-        make_island(A, STAND, stand)
-        for q in range(stand):
-            i = STAND[q]
-            MEMBER[i].rest = AT_REST
-            V0[q, 0], V0[q, 1], V0[q, 2] = BODY[i].vx, BODY[i].vy, BODY[i].spin
-            BODY[i].vx, BODY[i].vy, BODY[i].spin = 0.0, 0.0, 0.0
-        if stand < n:
-            make_island(A, MOVE, n - stand)
-            solve(A, MOVE[0], 0.0)
-        for q in range(stand):
-            MEMBER[STAND[q]].rest = AWAKE
-        if test_rest(A, STAND, stand, V0, n, False):
-            return True
-        for q in range(stand):
-            body = BODY[STAND[q]]
-            body.vx, body.vy, body.spin = V0[q, 0], V0[q, 1], V0[q, 2]
-        one = STAND[0]
-        for q in range(n - stand):
-            i = MOVE[q]
-            if STATE[i].island >= 0:
-                if MEMBER[STATE[i].island].open > 0:
-                    close_interval(A, STATE[i].island, 0.0)
-                one = unite(A, one, i)
-        # Bodies without contacts have left the island. The test of all slow ones has just been postponed, so that none
-        # is left for another try.
-        n = members(A, one, MINE)
-        sort(MINE, n)
-        if A.COUNT.direct > factors + PARTIAL_REST_FACTORS:
-            break
-    if some:
-        postpone_test(A, STAND, stand)
-        solve(A, STATE[MINE[0]].island, 0.0)
-    return some
+    V0 = np.empty((n, 3))
+    stand = split_slow(A, MINE, n, STAND, MOVE)
+    if stand == 0 or n - stand > max(MOVING_SHARE * n, MOVING_BODIES):
+        return False
+    make_island(A, STAND, stand)
+    for q in range(stand):
+        i = STAND[q]
+        MEMBER[i].rest = AT_REST
+        V0[q, 0], V0[q, 1], V0[q, 2] = BODY[i].vx, BODY[i].vy, BODY[i].spin
+        BODY[i].vx, BODY[i].vy, BODY[i].spin = 0.0, 0.0, 0.0
+    if stand < n:
+        make_island(A, MOVE, n - stand)
+        solve(A, MOVE[0], 0.0)
+    for q in range(stand):
+        MEMBER[STAND[q]].rest = AWAKE
+    if test_rest(A, STAND, stand, V0, n, False):
+        return True
+    for q in range(stand):
+        body = BODY[STAND[q]]
+        body.vx, body.vy, body.spin = V0[q, 0], V0[q, 1], V0[q, 2]
+    one = STAND[0]
+    for q in range(n - stand):
+        i = MOVE[q]
+        if STATE[i].island >= 0:
+            if MEMBER[STATE[i].island].open > 0:
+                close_interval(A, STATE[i].island, 0.0)
+            one = unite(A, one, i)
+    solve(A, STATE[one].island, 0.0)
+    return True

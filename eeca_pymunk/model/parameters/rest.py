@@ -40,10 +40,6 @@ SUPPORT_FACTORS = work(
 SUPPORT_ROUNDS = work(8, "rounds", "Rounds in which support forces propagate to the islands below.")
 MOVING_SHARE = heuristic(0.1, "of the bodies", "Part of an island that may move while the rest of it is at rest.")
 MOVING_BODIES = heuristic(2, "bodies", "Bodies of an island that may always move while the rest of it is at rest.")
-PARTIAL_REST_TRIES = work(2, "number", "Tests for partial rest of an island in a step.")
-PARTIAL_REST_FACTORS = work(
-    5, "factorisations", "Factorisations in an island after which it is not tested again in the step."
-)
 PARTIAL_REST_FACTORS_STEP = work(
     8, "factorisations", "Factorisations of a freeze after which its island is not tested for partial rest in the step."
 )
