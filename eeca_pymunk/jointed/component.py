@@ -28,7 +28,6 @@ def step_in_scratch(J: Joints, s: int, h: float, length: float, whole: bool) -> 
     `whole`: whether order 4 may be had: nothing else acts in the interval.
     """
     J.STEPPED[s].status = take_step(workspace(J, s), h, J.TALLY.order if whole else 2, length, J.STEPPED[s])
-    J.TALLY.repeats += 1
 
 
 @nonallocating
@@ -124,4 +123,4 @@ def answer(J: Joints, s: int, about_step: bool, PUSH: FloatArray) -> None:
     """PUSH (bodies of the component, 3): impulses in, changes of velocity out."""
     W = workspace(J, s)
     gives = about_step and W.J.JOINT[W.link[0].joint].compliance > 0.0
-    respond(W, STEP if about_step else SPEEDS, J.TALLY.answers, PUSH, gives)
+    respond(W, J.TALLY.answers, PUSH, gives)

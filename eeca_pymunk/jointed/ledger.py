@@ -39,7 +39,7 @@ def mark_edited(A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray) -> None
 def start_joints(A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray) -> None:
     """Begin a step of a scene with joints, before its states are taken."""
     mark_edited(A, J, STATES, WALK)
-    J.TALLY.worst = J.TALLY.repeats = 0
+    J.TALLY.worst = 0
     J.PROGRESS.effort, J.PROGRESS.budget = 0.0, STEP_WORK + STEP_WORK_BODY * A.BODY.shape[0]
     for s in range(len(J.STEPPED)):
         clear_interval(J.STEPPED[s])

@@ -145,7 +145,7 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
     if not held:
         pair, shapes = KEY[0] >> 1, A.SHAPE.shape[0]
         note_unmet(A, CONTACTS, pair // shapes, pair % shapes, math.nan, math.nan)
-    account_turning(A, J, isle, groups, motion, n)
+    account_turning(J, isle, groups, motion, n)
     # Bodies are lifted at the end of the interval, not on the way: the way would be as steep as the interval is short.
     WHERE, HELD = motion.END.copy(), np.zeros(m)
     if may_lose and m > 0:
@@ -187,7 +187,7 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
 
 
 @nonallocating
-def account_turning(A: Scene, J: Joints, isle: Island, groups: Groups, motion: Motion, n: int) -> None:
+def account_turning(J: Joints, isle: Island, groups: Groups, motion: Motion, n: int) -> None:
     """Torques work along chi = h w_m, which is not quite the angle that a jointed body turns by."""
     for g in range(len(groups.COMPONENT)):
         if groups.COMPONENT[g] >= 0:

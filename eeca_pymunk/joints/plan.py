@@ -128,13 +128,9 @@ def make_plan(
     used = 0
     for s in range(count):
         component[s].first_body = used
-        binding, free = 0, 0
         for k in range(component[s].first_joint, component[s].end_joint):
             j = link[k].joint
             link[k].kind, link[k].rows = joint[j].kind, row_count(joint[j].kind)
-            kind = joint[j].kind
-            if row_count(kind) > 0:
-                binding += 1
             for end in range(2):
                 body = joint[j].body[end]
                 if place[body] < component[s].first_body:
@@ -143,7 +139,6 @@ def make_plan(
                     freedoms = 3 if turns[body] == 1 else 2
                     member[used].freedoms = freedoms if moved(bodies, body) else 0
                     if moved(bodies, body):
-                        free += 1
                         OF[body] = s
                     used += 1
                 link[k].body[end] = place[body] - component[s].first_body

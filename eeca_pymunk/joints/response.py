@@ -113,7 +113,7 @@ def factors(W: Workspace, what: int, h: float) -> int:
 
 
 @nonallocating
-def respond(W: Workspace, what: int, system: int, push: FloatArray, gives: bool) -> None:
+def respond(W: Workspace, system: int, push: FloatArray, gives: bool) -> None:
     """push (bodies, 3): impulses in (mass length/time, mass length²/time), changes of velocity out. `more`: scratch.
 
     Args:

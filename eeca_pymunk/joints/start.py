@@ -23,7 +23,7 @@ from ..model.joints import (
 from .bounds import approach, gap, has_bound
 from .entries import is_limit
 from .newton import first_iterate
-from .rows import joint_rows, start_joint
+from .rows import joint_rows
 
 
 @nonallocating
@@ -60,17 +60,6 @@ def read_joints(W: Workspace, h: float, length: float) -> tuple[bool, bool]:
         if link[k].soft != 0:
             link[k].soft = BOXED
     return touched, soft
-
-
-@nonallocating
-def write_start(W: Workspace, h: float) -> None:
-    """Leave limits and lengths at the start of the step in the joints' own rows."""
-    for k in range(W.joints):
-        joint = W.J.JOINT[W.link[k].joint]
-        joint.side = W.link[k].side
-        if W.link[k].rows == 0:
-            start_joint(W, k, h)
-            joint.length_0 = W.J.HINGE[k].began
 
 
 @nonallocating

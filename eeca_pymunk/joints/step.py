@@ -18,7 +18,7 @@ from .ladder import climb, limit_work
 from .ledger import add, clear
 from .motion import save
 from .solve import drop_impulses
-from .start import compute_rows, read_joints, soft_targets, write_start
+from .start import compute_rows, read_joints, soft_targets
 from .taut import taut
 from .unheld import step_linearly, take_gain
 
@@ -31,7 +31,6 @@ def write_joints(W: Workspace, h: float, loose: int) -> None:
         j = link[k].joint
         joint[j].impulse[0], joint[j].impulse[1] = hinge[k].total[0], hinge[k].total[1]
         joint[j].last_step = h
-        joint[j].length_1 = hinge[k].ended
         joint[j].side = link[k].side
         for end in range(2):
             for c in range(3):
@@ -70,7 +69,8 @@ def take_step(W: Workspace, h: float, order: int, length: float, ledger: JointLe
     if soft:
         compute_rows(W)
         soft_targets(W, h)
-    write_start(W, h)
+    for k in range(W.joints):
+        W.J.JOINT[W.link[k].joint].side = W.link[k].side  # where the ladder begins anew
     limit_work(W)
     status = climb(W, h, order, length, touched, own)
     before = step_linearly(W, h, length) if status == LINEAR else 0.0

@@ -49,8 +49,6 @@ class Joint(Record):
     touched: int  # 0, EDITED, APART, LEFT_APART or GIVES_WAY
     impulse: Annotated[FloatArray, 2]  # of the last step along the rows; of a spring along d, of a rotary one on b
     last_step: float  # its dt; 0 if none
-    length_0: float  # of springs: length, or angle_a - angle_b, at the ends of the last step
-    length_1: float
     work: float  # energy that the joint gave to its bodies in the last step
     led: Annotated[FloatArray, 2, 3]  # accelerations that joints gave to bodies a and b last
     known_parts: int  # parts of steps of order 4 that are known (`..joints.foresight`); the length of their steps
@@ -71,8 +69,8 @@ EDITED, APART, LEFT_APART, GIVES_WAY = 1, 2, 3, 4
 
 # Fields that steps change.
 OF_STEPS = (
-    "side", "impulse", "last_step", "length_0", "length_1", "work", "led", "known_parts", "known_step", "past_led",
-    "past_push", "owed", "compliance",
+    "side", "impulse", "last_step", "work", "led", "known_parts", "known_step", "past_led", "past_push",
+    "owed", "compliance",
 )  # fmt: skip
 
 
@@ -146,7 +144,6 @@ class Tally(Record):
     components: int
     order: int  # 2 or 4
     worst: int  # status of the step
-    repeats: int  # steps of components
     answers: int  # linear system with which the component that is ready answers impulses, -1 for none
 
 
