@@ -15,7 +15,7 @@ from ..contacts.unmet import spend
 from ..contacts.works import moved
 from ..model.bodies import MOVED
 from ..model.contacts import Problem
-from ..model.islands import Island
+from ..model.islands import Contacts, Island
 from ..model.parameters.events import RESOLUTION
 from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES, LARGE_ISLAND, SMALL_SWEEPS
 from ..model.scene import Scene
@@ -34,7 +34,7 @@ from .candidates import (
     travel_bound,
 )
 from .depths import driven, too_deep_at_end
-from .local import clear_places, lay_out_island, needs_memory, number_bodies, open_contacts, open_until
+from .local import clear_places, lay_out_island, needs_memory, number_bodies, open_contacts, open_until, own_contacts
 from .membership import lossy
 from .rest import rest_threshold
 
@@ -124,12 +124,8 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
             return AGAIN, h / far
         if m > 0 and OUT[0].at_rest == 0 and not before_end(A, t + h):
             # An interval that ends within the step is followed by another one, which corrects the penetration.
-            raised = max(raised, 1 if driven(A, isle, P, Q, ROWS, KEY, n, m) else 0)
-            free = math.inf if raised > 0 else 0.0
-            budget = budget_of(ROWS, m, OUT[0].restitution + OUT[0].friction, owed, free)
-            problem = Problem(P, Q, ROWS, isle.IM, isle.II, isle.POSE, n, m)
-            middle, size = moved(isle.POSE, V, 0.5 * h), least_of(isle.EXTENT, n)
-            lifting(problem, middle, VN, isle.ACC, h, size, budget, contacts.JUMP)
+            middle, lost = moved(isle.POSE, V, 0.5 * h), OUT[0].restitution + OUT[0].friction
+            raised = find_lifts(A, isle, contacts, n, m, middle, VN, h, lost, owed, raised)
         if abs(OUT[0].lock - 1.0) > abs(A.PAR.lock - 1.0):
             A.PAR.lock = OUT[0].lock
     at_rest = OUT[0].at_rest > 0
@@ -137,7 +133,6 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
     COUNT.solved += n
     spend(A, 2 * p, m, OUT[0].sweeps, OUT[0].direct)
     COUNT.direct += OUT[0].direct
-    first = COUNT.pushes
     TOUCHED = np.zeros(k, np.uint8)
     open_contacts(A, isle, contacts, VN, m, t, h, TOUCHED)
     lost, hits = A.RESTING[root].lost, MEMBER[root].hits
@@ -164,9 +159,7 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
         MEMBER[head].with_supports, MEMBER[head].raised = with_supports, raised
         A.RESTING[head].lost = lost
         open_until(A, head, t + h)
-        for z in range(m):
-            A.PUSHED_BY[first + z].root = head
-        COUNT.pushes += m
+        own_contacts(A, head, m)
         if at_rest:
             put_to_rest(A, head)
     return DONE, 0.0
@@ -180,19 +173,30 @@ def lift_here(A: Scene, root: int, t: float) -> None:
     MINE = number_bodies(A, root)
     n = len(MINE)
     found = pairs_within(A, root, t, 0.0, True, MINE, n)
-    p = len(found)
     isle = lay_out_island(A, MINE, n, found, t)
     clear_places(A, MINE, n)
-    k, contacts = len(isle.WHO), make_contacts(p, len(isle.WHO))
-    P, Q, ROWS, JUMP = contacts.A, contacts.B, contacts.ROWS, contacts.JUMP
+    k, contacts = len(isle.WHO), make_contacts(len(found), len(isle.WHO))
     m = gather(A, isle, contacts, isle.POSE, np.zeros(k), 0.0, k == n)
     if m > 0:
-        A.MEMBER[root].raised = 1 if driven(A, isle, P, Q, ROWS, contacts.KEY, n, m) else 0
-        budget = budget_of(ROWS, m, A.RESTING[root].lost, 0.0, math.inf if A.MEMBER[root].raised > 0 else 0.0)
-        problem = Problem(P, Q, ROWS, isle.IM, isle.II, isle.POSE, n, m)
-        rates(P, Q, ROWS, isle.V, m)
-        lifting(problem, isle.POSE, isle.V, isle.ACC, 0.0, least_of(isle.EXTENT, n), budget, JUMP)
-    set_lifts(A, MINE, n, JUMP)
+        rates(contacts.A, contacts.B, contacts.ROWS, isle.V, m)
+        lost = A.RESTING[root].lost
+        A.MEMBER[root].raised = find_lifts(A, isle, contacts, n, m, isle.POSE, isle.V, 0.0, lost, 0.0, 0)
+    set_lifts(A, MINE, n, contacts.JUMP)
+
+
+@kernel
+def find_lifts(
+    A: Scene, isle: Island, contacts: Contacts, n: int, m: int, POSE: FloatArray, VN: FloatArray, h: float, lost: float,
+    owed: float, raised: int,
+) -> int:  # fmt: skip
+    """Find the penetration corrections JUMP at the end of an interval h, with poses POSE in its middle and velocities
+    VN at its end. They may cost the energy `lost` less `owed`, or any if bodies are `raised`, or driven; 1 if so."""
+    P, Q, ROWS = contacts.A, contacts.B, contacts.ROWS
+    raised = max(raised, 1 if driven(A, isle, P, Q, ROWS, contacts.KEY, n, m) else 0)
+    budget = budget_of(ROWS, m, lost, owed, math.inf if raised > 0 else 0.0)
+    problem = Problem(P, Q, ROWS, isle.IM, isle.II, isle.POSE, n, m)
+    lifting(problem, POSE, VN, isle.ACC, h, least_of(isle.EXTENT, n), budget, contacts.JUMP)
+    return raised
 
 
 @nonallocating

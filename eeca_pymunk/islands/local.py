@@ -135,3 +135,11 @@ def open_contacts(
         pushed.py = y + ROWS[z].arm_ta * ROWS[z].ny - ROWS[z].arm_na * ROWS[z].nx
         pushed.change = L[z, 0] / ROWS[z].k_n
         pushed.gap = ROWS[z].gap if t == 0.0 else math.nan
+
+
+@nonallocating
+def own_contacts(A: Scene, root: int, m: int) -> None:
+    """Let the m contacts that `open_contacts` has appended be those of an island."""
+    for z in range(m):
+        A.PUSHED_BY[A.COUNT.pushes + z].root = root
+    A.COUNT.pushes += m

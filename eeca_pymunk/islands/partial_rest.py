@@ -32,8 +32,8 @@ from ..rows.inplace import sort
 from .accounting import close_interval
 from .at_rest import put_to_rest, stop
 from .candidates import pairs_within
-from .intervals import solve
-from .local import clear_places, lay_out_island, open_contacts, set_places
+from .intervals import set_lifts, solve
+from .local import clear_places, lay_out_island, open_contacts, own_contacts, set_places
 from .membership import lossy, members, unite
 from .rest import candidate_speed, postpone_test, slow_for_long, speed
 from .support import support_loads
@@ -92,18 +92,14 @@ def test_rest(A: Scene, MINE: IntArray, n: int, V0: FloatArray, with_supports: i
             stop(A, MINE[q])
             A.RESTING[MINE[q]].rest_timer = 1.0
         return True
-    first = COUNT.pushes
     open_contacts(A, isle, contacts, contacts.VN, m, 0.0, dt, np.zeros(len(isle.WHO), np.uint8))
-    for z in range(m):
-        A.PUSHED_BY[first + z].root = root
-    COUNT.pushes += m
+    own_contacts(A, root, m)
     A.MEMBER[root].open, A.RESTING[root].until, A.MEMBER[root].with_supports = 1, math.inf, with_supports
     for q in range(n):
         A.MEMBER[MINE[q]].busy = 0
-        body, rest = BODY[MINE[q]], A.RESTING[MINE[q]]
+        body = BODY[MINE[q]]
         body.vx, body.vy, body.spin = V0[q, 0], V0[q, 1], V0[q, 2]
-        rest.lift_x, rest.lift_y, rest.lift_angle = 0.0, 0.0, 0.0
-        rest.lift_vx, rest.lift_vy, rest.lift_spin = 0.0, 0.0, 0.0
+    set_lifts(A, MINE, n, np.zeros((n, 6)))
     put_to_rest(A, root)
     return True
 
