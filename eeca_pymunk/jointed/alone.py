@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ..arrays import FloatArray
 from ..compiled import nonallocating
 from ..islands.local import open_until
 from ..joints.ledger import clear_interval
@@ -58,23 +59,30 @@ def begin_alone(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
     first = J.COMPONENT[s].first_body
     for i in range(J.COMPONENT[s].end_body - first):
         if J.LOCAL[i].freedoms > 0:
-            lay_path(A, J, s, J.JOINED[first + i].body, i, h)
+            body, local = J.JOINED[first + i].body, J.LOCAL[i]
+            account_turning(A, J, s, body, local.pose[2], local.travel[2])
+            lay_path(A, body, h, local.pose, local.pose, local.v0)
     A.COUNT.solves += 1
     open_until(A, root, t + h)
     return 0.0
 
 
 @nonallocating
-def lay_path(A: Scene, J: Joints, s: int, body: int, i: int, h: float) -> None:
-    """Let a body go to where the scratch of its component has it at i: see `..jointed.solve`."""
-    BODY, LOCAL = A.BODY, J.LOCAL
-    if BODY[body].inv_inertia > 0.0 and A.PULL[body, 2] != 0.0:
-        turned = LOCAL[i].pose[2] - BODY[body].angle
-        J.STEPPED[s].turned_work += A.PULL[body, 2] * (LOCAL[i].travel[2] - turned) / BODY[body].inv_inertia
+def account_turning(A: Scene, J: Joints, s: int, body: int, angle: float, way: float) -> None:
+    """Torques work along the way chi = h w_m, which is not quite what a body of component s turns by, to `angle`."""
+    b = A.BODY[body]
+    if b.inv_inertia > 0.0 and A.PULL[body, 2] != 0.0:
+        J.STEPPED[s].turned_work += A.PULL[body, 2] * (way - (angle - b.angle)) / b.inv_inertia
+
+
+@nonallocating
+def lay_path(A: Scene, body: int, h: float, POSE: FloatArray, END: FloatArray, V: FloatArray) -> None:
+    """Let a body go on a parabola from where it is to POSE (3,), after h; there it is lifted to END, with velocity
+    V."""
     A.STATE[body].version += 1
-    b, rest = BODY[body], A.RESTING[body]
-    b.ax = 2.0 * (LOCAL[i].pose[0] - b.x - h * b.vx) / (h * h)
-    b.ay = 2.0 * (LOCAL[i].pose[1] - b.y - h * b.vy) / (h * h)
-    b.angular = 2.0 * (LOCAL[i].pose[2] - b.angle - h * b.spin) / (h * h)
-    rest.lift_x, rest.lift_y, rest.lift_angle = 0.0, 0.0, 0.0
-    rest.lift_vx, rest.lift_vy, rest.lift_spin = LOCAL[i].v0[0], LOCAL[i].v0[1], LOCAL[i].v0[2]
+    b, rest = A.BODY[body], A.RESTING[body]
+    b.ax = 2.0 * (POSE[0] - b.x - h * b.vx) / (h * h)
+    b.ay = 2.0 * (POSE[1] - b.y - h * b.vy) / (h * h)
+    b.angular = 2.0 * (POSE[2] - b.angle - h * b.spin) / (h * h)
+    rest.lift_x, rest.lift_y, rest.lift_angle = END[0] - POSE[0], END[1] - POSE[1], END[2] - POSE[2]
+    rest.lift_vx, rest.lift_vy, rest.lift_spin = V[0], V[1], V[2]

@@ -27,7 +27,7 @@ from ..model.step import AGAIN, CONTACTS, DONE, PUSHES_FULL, SPENT
 from ..rows.bounded import room_for_rows
 from ..rows.build import normal_rate
 from .advance import Interval, Motion, advance
-from .alone import begin_alone, is_component, meets_nobody
+from .alone import account_turning, begin_alone, is_component, lay_path, meets_nobody
 from .columns import make_columns
 from .component import step_component
 from .fitting import fit
@@ -88,7 +88,7 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
     if whole and meets_nobody(A, root):
         far = begin_alone(A, J, root, t, h, last)
         return (AGAIN, h / far) if far > 0.0 else (DONE, h)
-    BODY, STATE, COUNT = A.BODY, A.STATE, A.COUNT
+    COUNT = A.COUNT
     MINE = number_bodies(A, root)
     n = len(MINE)
     may_lose = lossy(A, root)
@@ -145,7 +145,13 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
     if not held:
         pair, shapes = KEY[0] >> 1, A.SHAPE.shape[0]
         note_unmet(A, CONTACTS, pair // shapes, pair % shapes, math.nan, math.nan)
-    account_turning(J, isle, groups, motion, n)
+    for g in range(len(groups.COMPONENT)):
+        if groups.COMPONENT[g] >= 0:
+            J.STEPPED[groups.COMPONENT[g]].turned_work = J.STEPPED[groups.COMPONENT[g]].lifted = 0.0
+    for q in range(n):
+        s = groups.COMPONENT[groups.GROUP[q]]
+        if s >= 0:
+            account_turning(A, J, s, MINE[q], motion.END[q, 2], motion.WAY[q, 2])
     # Bodies are lifted at the end of the interval, not on the way: the way would be as steep as the interval is short.
     WHERE, HELD = motion.END.copy(), np.zeros(m)
     if may_lose and m > 0:
@@ -172,29 +178,6 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
         A.PUSHED_BY[first + z].root = root
     COUNT.pushes += m
     for q in range(n):
-        i = MINE[q]
-        STATE[i].version += 1
-        # A parabola from start to end; velocities at the end are others.
-        body, rest = BODY[i], A.RESTING[i]
-        body.ax = 2.0 * (WHERE[q, 0] - isle.POSE[q, 0] - h * isle.V[q, 0]) / (h * h)
-        body.ay = 2.0 * (WHERE[q, 1] - isle.POSE[q, 1] - h * isle.V[q, 1]) / (h * h)
-        body.angular = 2.0 * (WHERE[q, 2] - isle.POSE[q, 2] - h * isle.V[q, 2]) / (h * h)
-        rest.lift_x, rest.lift_y = motion.END[q, 0] - WHERE[q, 0], motion.END[q, 1] - WHERE[q, 1]
-        rest.lift_angle = motion.END[q, 2] - WHERE[q, 2]
-        rest.lift_vx, rest.lift_vy, rest.lift_spin = motion.V[q, 0], motion.V[q, 1], motion.V[q, 2]
+        lay_path(A, MINE[q], h, WHERE[q], motion.END[q], motion.V[q])
     open_until(A, root, t + h)
     return DONE, h
-
-
-@nonallocating
-def account_turning(J: Joints, isle: Island, groups: Groups, motion: Motion, n: int) -> None:
-    """Torques work along chi = h w_m, which is not quite the angle that a jointed body turns by."""
-    for g in range(len(groups.COMPONENT)):
-        if groups.COMPONENT[g] >= 0:
-            J.STEPPED[groups.COMPONENT[g]].turned_work = 0.0
-            J.STEPPED[groups.COMPONENT[g]].lifted = 0.0
-    for q in range(n):
-        s = groups.COMPONENT[groups.GROUP[q]]
-        if s >= 0 and isle.II[q] > 0.0 and isle.ACC[q, 2] != 0.0:
-            turned = motion.END[q, 2] - isle.POSE[q, 2]
-            J.STEPPED[s].turned_work += isle.ACC[q, 2] * (motion.WAY[q, 2] - turned) / isle.II[q]
