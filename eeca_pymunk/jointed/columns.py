@@ -13,8 +13,8 @@ from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import Columns, Row
 from ..model.joints import Joints
-from ..model.parameters.impulses import SINGULAR
 from ..model.parameters.joints import STRUT, STRUT_BETWEEN
+from ..rows.build import invert
 from .component import answer
 from .groups import Groups
 
@@ -129,11 +129,7 @@ def weigh(groups: Groups, C: Columns, A: IntArray, B: IntArray, ROWS: Rows[Row],
         else:
             ROWS[i].friction, ROWS[i].a_nt = 0.0, 0.0
         if ROWS[i].friction > 0.0:
-            det = nn * tt - nt * nt
-            regular = det > SINGULAR * nn * tt
-            ROWS[i].w_nn = tt / det if regular else np.nan
-            ROWS[i].w_nt = -nt / det if regular else 0.0
-            ROWS[i].w_tt = nn / det if regular else 0.0
+            invert(ROWS[i], nn, nt, tt)
 
 
 @nonallocating

@@ -46,13 +46,19 @@ def place_row(
     ROWS[i].k_n = 1.0 / nn
     ROWS[i].k_t = 1.0 / tt
     if friction > 0.0:
-        det = nn * tt - nt * nt
-        regular = det > SINGULAR * nn * tt
-        ROWS[i].w_nn = tt / det if regular else np.nan
-        ROWS[i].w_nt = -nt / det if regular else 0.0
-        ROWS[i].w_tt = nn / det if regular else 0.0
+        invert(ROWS[i], nn, nt, tt)
     ROWS[i].target = 0.0
     ROWS[i].wake = np.inf
+
+
+@nonallocating
+def invert(row: Row, nn: float, nt: float, tt: float) -> None:
+    """The inverse of the matrix of a contact, where that is regular."""
+    det = nn * tt - nt * nt
+    regular = det > SINGULAR * nn * tt
+    row.w_nn = tt / det if regular else np.nan
+    row.w_nt = -nt / det if regular else 0.0
+    row.w_tt = nn / det if regular else 0.0
 
 
 @nonallocating

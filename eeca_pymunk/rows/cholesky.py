@@ -15,6 +15,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import Row
+from .ordering import dissect, neighbours, pattern
 
 
 class Factor(NamedTuple):
@@ -29,6 +30,26 @@ class Factor(NamedTuple):
     rows: IntArray
     DIAGONAL: FloatArray
     BELOW: FloatArray
+
+
+@kernel
+def make_factor(A: IntArray, B: IntArray, m: int, n: int, used: IntArray, POSE: FloatArray) -> Factor:
+    """Room for the factor of n bodies at POSE (k, 3) with the contacts with used[i] != 0, and its order."""
+    start, other = neighbours(A, B, m, n, used)
+    place = np.empty(n, np.int64)
+    dissect(POSE, n, start, other, place)
+    columns, rows = pattern(n, start, other, place)
+    return Factor(place, columns, rows, np.empty((n, 3, 3)), np.empty((len(rows), 3, 3)))
+
+
+@kernel
+def roots_of(IM: FloatArray, II: FloatArray) -> FloatArray:
+    """The scale (k, 3) of rows: roots of the inverse masses and moments."""
+    SCALE = np.empty((len(IM), 3))
+    for i in range(len(IM)):
+        SCALE[i, 0] = SCALE[i, 1] = math.sqrt(IM[i])
+        SCALE[i, 2] = math.sqrt(II[i])
+    return SCALE
 
 
 @kernel

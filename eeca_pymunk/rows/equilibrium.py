@@ -16,8 +16,6 @@ suffice; active-set methods, whose set has to be right to the last contact, may 
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from ..arrays import FloatArray
@@ -35,10 +33,9 @@ from ..model.parameters.rest import (
     STATICS_STEP,
 )
 from .build import normal_rate
-from .cholesky import Factor, assemble, factorise, substitute
+from .cholesky import Factor, assemble, factorise, make_factor, roots_of, substitute
 from .cones import add_impulses, cone_edges, impulses_of
 from .inplace import copy
-from .ordering import dissect, neighbours, pattern
 
 
 @nonallocating
@@ -177,16 +174,8 @@ def equilibrium(
     LEFT, Y, DY, V, f = np.empty((k, 3)), np.zeros((k, 3)), np.zeros((k, 3)), np.empty((k, 3)), np.empty((n, 3))
     if K == 0:
         return fastest(START, EXTENT, n) <= tolerance, 0  # without contacts START is that motion
-    SCALE = np.empty((k, 3))
-    for i in range(k):
-        SCALE[i, 0] = SCALE[i, 1] = math.sqrt(IM[i])
-        SCALE[i, 2] = math.sqrt(II[i])
     held, stuck = np.ones(K, np.int64), np.zeros(K, np.int64)
-    start, other = neighbours(P, Q, K, n, held)
-    place = np.empty(n, np.int64)
-    dissect(problem.POSE, n, start, other, place)
-    columns, rows = pattern(n, start, other, place)
-    factor = Factor(place, columns, rows, np.empty((n, 3, 3)), np.empty((len(rows), 3, 3)))
+    SCALE, factor = roots_of(IM, II), make_factor(P, Q, K, n, held, problem.POSE)
     problem_of_edges = Problem(P, Q, G, IM, II, problem.POSE, n, K)
     found, free, stalled, last, first = False, True, 0, np.inf, 0.0
     given = fastest(START, EXTENT, n)

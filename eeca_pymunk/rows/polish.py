@@ -9,8 +9,6 @@ that is taken.
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
@@ -19,8 +17,7 @@ from ..compiled.records import Rows
 from ..model.contacts import AnyProblem, Problem, Row
 from ..model.parameters.impulses import FACE_LINE
 from .build import normal_rate, tangent_rate
-from .cholesky import Factor, assemble, factorise, substitute
-from .ordering import dissect, neighbours, pattern
+from .cholesky import assemble, factorise, make_factor, roots_of, substitute
 from .sweeps import velocities
 
 
@@ -119,15 +116,8 @@ def polish_free(
     rest = np.empty(m)
     share(A, B, ROWS, L, m)
     classify(A, B, ROWS, L, V, m, held, stuck, slip, rest)
-    SCALE = np.empty((len(IM), 3))
-    for i in range(len(IM)):
-        SCALE[i, 0] = SCALE[i, 1] = math.sqrt(IM[i])
-        SCALE[i, 2] = math.sqrt(II[i])
-    start, other = neighbours(A, B, m, n, held)
-    place = np.empty(n, np.int64)
-    dissect(problem.POSE, n, start, other, place)
-    columns, rows = pattern(n, start, other, place)
-    factor = Factor(place, columns, rows, np.empty((n, 3, 3)), np.empty((len(rows), 3, 3)))
+    SCALE, factor = roots_of(IM, II), make_factor(A, B, m, n, held, problem.POSE)
+    place = factor.place
     assemble(A, B, ROWS, m, n, held, stuck, SCALE, R, factor)
     factorise(n, factor)
     f = np.empty((n, 3))

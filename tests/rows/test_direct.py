@@ -7,10 +7,9 @@ import pytest
 
 from eeca_pymunk.model.contacts import Problem
 from eeca_pymunk.rows.build import normal_rate, rates, tangent_rate
-from eeca_pymunk.rows.cholesky import Factor, assemble, factorise, substitute
+from eeca_pymunk.rows.cholesky import assemble, factorise, make_factor, substitute
 from eeca_pymunk.rows.coulomb import coulomb
 from eeca_pymunk.rows.dense import newton
-from eeca_pymunk.rows.ordering import dissect, neighbours, pattern
 from eeca_pymunk.rows.polish import polish_free, share
 from eeca_pymunk.rows.sweeps import sweep, velocities
 
@@ -68,12 +67,9 @@ def test_sparse_factor_is_that_of_the_dense_matrix(count: int) -> None:
     m, k = len(block.contacts), n + 1
     held, stuck = np.ones(m, np.int64), (np.arange(m) % 2).astype(np.int64)
     scale = np.sqrt(np.stack((block.im, block.im, block.ii), axis=1))
-    start, other = neighbours(block.A, block.B, m, n, held)
-    place = np.empty(n, np.int64)
-    dissect(block.pose, n, start, other, place)
+    factor, R = make_factor(block.A, block.B, m, n, held, block.pose), 100.0
+    place = factor.place
     assert sorted(place) == list(range(n))
-    columns, rows = pattern(n, start, other, place)
-    factor, R = Factor(place, columns, rows, np.empty((n, 3, 3)), np.empty((len(rows), 3, 3))), 100.0
     assemble(block.A, block.B, block.rows, m, n, held, stuck, scale, R, factor)
     dense = np.eye(3 * n)
     for i in range(m):
