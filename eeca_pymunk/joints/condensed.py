@@ -94,17 +94,30 @@ def substitute(matrix: FloatArray, size: int, band: int, right: FloatArray, at: 
 
 
 @inlined
-def freeze(
+def freeze_end(
+    hinge: Rows[JointStep], k: int, end: int, r: int, slopes: bool, x: float, y: float, z: float
+) -> None:  # fmt: skip
+    """Freeze row r of joint k at one end, J and G (`slopes`, else J): scaled by its scale and the body's roots."""
+    scale = hinge[k].scale[r] if hinge[k].weight[r] != 0.0 else 0.0
+    u, v, w, at = scale * x, scale * y, scale * z, 3 * end
+    joint = hinge[k]
+    joint.frozen_rows[r, at] = u * joint.rows[r, at]
+    joint.frozen_rows[r, at + 1] = v * joint.rows[r, at + 1]
+    joint.frozen_rows[r, at + 2] = w * joint.rows[r, at + 2]
+    G = joint.slopes if slopes else joint.rows
+    joint.frozen_slopes[r, at] = u * G[r, at]
+    joint.frozen_slopes[r, at + 1] = v * G[r, at + 1]
+    joint.frozen_slopes[r, at + 2] = w * G[r, at + 2]
+
+
+@inlined
+def freeze_row(
     hinge: Rows[JointStep], link: Rows[Coupling], local: Rows[BodyStep], k: int, r: int, slopes: bool
 ) -> None:  # fmt: skip
-    """Store the scaled rows J and G (`slopes`, else J) of row r of joint k."""
-    G = hinge[k].slopes if slopes else hinge[k].rows
+    """Freeze row r of joint k at both ends."""
     for end in range(2):
-        i = link[k].body[end]
-        for c in range(local[i].freedoms):
-            at, scale = 3 * end + c, hinge[k].scale[r] * local[i].root[c]
-            hinge[k].frozen_rows[r, at] = scale * hinge[k].rows[r, at]
-            hinge[k].frozen_slopes[r, at] = scale * G[r, at]
+        root = local[link[k].body[end]].root
+        freeze_end(hinge, k, end, r, slopes, root[0], root[1], root[2])
 
 
 @inlined

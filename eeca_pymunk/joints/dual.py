@@ -9,30 +9,11 @@ from __future__ import annotations
 
 from ..arrays import FloatArray
 from ..compiled import inlined
-from ..compiled.records import Rows
-from ..model.joint_steps import JointStep
 from ..model.joints import Workspace
 from ..model.parameters.joints import LEAST_INERTIA
-from .condensed import factor, substitute
+from .condensed import factor, freeze_end, substitute
 
 STRIDE = 6  # of scratch per row
-
-
-@inlined
-def freeze(
-    hinge: Rows[JointStep], k: int, end: int, r: int, slopes: bool, x: float, y: float, z: float
-) -> None:  # fmt: skip
-    """Freeze row r of joint k at one end, J and G (`slopes`, else J): scaled by its scale and the body's roots."""
-    scale = hinge[k].scale[r] if hinge[k].weight[r] != 0.0 else 0.0
-    u, v, w, at = scale * x, scale * y, scale * z, 3 * end
-    joint = hinge[k]
-    joint.frozen_rows[r, at] = u * joint.rows[r, at]
-    joint.frozen_rows[r, at + 1] = v * joint.rows[r, at + 1]
-    joint.frozen_rows[r, at + 2] = w * joint.rows[r, at + 2]
-    G = joint.slopes if slopes else joint.rows
-    joint.frozen_slopes[r, at] = u * G[r, at]
-    joint.frozen_slopes[r, at + 1] = v * G[r, at + 1]
-    joint.frozen_slopes[r, at + 2] = w * G[r, at + 2]
 
 
 @inlined
@@ -68,7 +49,7 @@ def factor_dual(W: Workspace, slopes: bool, add: float) -> bool:
         while one >= 0:
             k, end = one >> 1, one & 1
             for r in range(link[k].rows):
-                freeze(hinge, k, end, r, slopes, x, y, z)
+                freeze_end(hinge, k, end, r, slopes, x, y, z)
                 p, J, G = STRIDE * count, hinge[k].frozen_rows, hinge[k].frozen_slopes
                 more[p], more[p + 1], more[p + 2] = J[r, 3 * end], J[r, 3 * end + 1], J[r, 3 * end + 2]
                 more[p + 3], more[p + 4] = G[r, 3 * end] * a, G[r, 3 * end + 1] * b
@@ -98,7 +79,7 @@ def refresh(W: Workspace, slopes: bool) -> None:
                 continue
             x, y, z = local[i].root[0], local[i].root[1], local[i].root[2] if local[i].freedoms > 2 else 0.0
             for r in range(W.link[k].rows):
-                freeze(W.J.HINGE, k, end, r, slopes, x, y, z)
+                freeze_end(W.J.HINGE, k, end, r, slopes, x, y, z)
 
 
 @inlined

@@ -24,7 +24,7 @@ from ..model.joints import BOUNDED, BOXED, CONDENSED, DUAL, WHOLE, Component, Wo
 from ..model.parameters.joints import FACTOR_BAND, ROW_WORK, STIFFEST
 from .banded import back_banded, factor_banded
 from .boxes import leave_box
-from .condensed import back_condensed, factor, freeze
+from .condensed import back_condensed, factor, freeze_row
 from .dual import back_dual, factor_dual
 from .entries import along, held, put_condensed, put_free, put_rows, put_stiffness, scale_rows
 from .motion import move
@@ -109,7 +109,7 @@ def assemble(W: Workspace, what: int, h: float, give: float, first: bool, system
             farthest = max(farthest, abs(error))
             hinge[k].weight[r] = 1.0 / give if give > 0.0 else STIFFEST
             if build and system == CONDENSED:
-                freeze(hinge, link, local, k, r, slopes)
+                freeze_row(hinge, link, local, k, r, slopes)
                 put_condensed(link, hinge, local, k, r, band, matrix)
             elif build and system == WHOLE:
                 put_rows(link, hinge, local, k, r, slopes, 1.0, band, matrix)

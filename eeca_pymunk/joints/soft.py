@@ -7,7 +7,7 @@ import numpy as np
 from ..compiled import nonallocating
 from ..model.joints import CONDENSED, GROOVE, Workspace
 from ..model.parameters.joints import STIFFEST
-from .condensed import freeze
+from .condensed import freeze_row
 from .entries import interval_of, put_condensed, put_free, put_rows
 
 
@@ -37,7 +37,7 @@ def put_soft(W: Workspace, k: int, slopes: bool, h: float, system: int, build: b
             right[row + r] = -off * scale * 2.0 / h
             hinge[k].weight[r] = STIFFEST
             if build and system == CONDENSED:
-                freeze(hinge, link, local, k, r, slopes)
+                freeze_row(hinge, link, local, k, r, slopes)
                 put_condensed(link, hinge, local, k, r, band, matrix)
             elif build:
                 put_rows(link, hinge, local, k, r, slopes, 1.0, band, matrix)
@@ -49,7 +49,7 @@ def put_soft(W: Workspace, k: int, slopes: bool, h: float, system: int, build: b
         right[row + r] = -off / scale
         hinge[k].weight[r] = -1.0
         if build and system == CONDENSED:
-            freeze(hinge, link, local, k, r, slopes)
+            freeze_row(hinge, link, local, k, r, slopes)
         if not build or system == CONDENSED:
             continue
         put_rows(link, hinge, local, k, r, slopes, 0.0, band, matrix)
