@@ -18,7 +18,7 @@ from .space.packing import Record
 from .space.world import World
 
 _FIXED = ["extent", "elasticity", "friction"]  # fields of BODY that no step changes
-_TIE = "kind", "body", "soft"  # fields of JOINT that decide the plan
+_TIE = "kind", "body", "bounded"  # fields of JOINT that decide the plan
 
 
 class Saved:

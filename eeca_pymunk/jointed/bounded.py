@@ -30,7 +30,7 @@ def make_bounded(J: Joints, groups: Groups, limits: bool) -> Bounded:
             s = groups.COMPONENT[g]
             rows = J.COMPONENT[s].boxes
             for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint if limits else 0):
-                rows += 1 if is_limit(J.COUPLING[k].kind) and J.JOINT[J.COUPLING[k].joint].soft == 0 else 0
+                rows += 1 if is_limit(J.COUPLING[k].kind) and J.JOINT[J.COUPLING[k].joint].bounded == 0 else 0
             n += rows
             entries += rows * (groups.FIRST[g + 1] - groups.FIRST[g])
     return room_for_rows(n, entries)
@@ -43,7 +43,7 @@ def note_row(A: Scene, J: Joints, B: Bounded, s: int, i: int, h: float, V: Float
     k, r = B.OF[i, 0], B.OF[i, 1]
     hinge = J.HINGE[k - J.COMPONENT[s].first_joint]
     B.ROWS[i].now = hinge.total[r]
-    limit = is_limit(J.COUPLING[k].kind) and J.JOINT[J.COUPLING[k].joint].soft == 0
+    limit = is_limit(J.COUPLING[k].kind) and J.JOINT[J.COUPLING[k].joint].bounded == 0
     if limit and J.COUPLING[k].side == 0:
         return
     B.ROWS[i].speed = -hinge.target[r]
@@ -72,7 +72,7 @@ def list_rows(A: Scene, J: Joints, B: Bounded, s: int, h: float, V: FloatArray) 
     """Append the rows of component s whose impulses count as given (`motors.let_slip`); the first of them."""
     first = B.USED[0]
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
-        if J.COUPLING[k].soft != GIVEN or not held(J.COUPLING, k, 0):
+        if J.COUPLING[k].bounded != GIVEN or not held(J.COUPLING, k, 0):
             continue
         rows = 1 if J.COUPLING[k].kind == GROOVE and J.COUPLING[k].side == 0 else J.COUPLING[k].rows
         for r in range(rows):

@@ -98,7 +98,7 @@ def close_joints(
     stored = springs_of(W) - stored
     for k in range(W.joints):
         link, small = W.link[k], CORRECTION_JOINTS * W.J.HINGE[k].size
-        if link.soft != 0:
+        if link.bounded != 0:
             continue
         for r in range(link.rows):
             if held(W.link, k, r) and abs(W.J.HINGE[k].value[r] - W.J.HINGE[k].target[r]) > small:

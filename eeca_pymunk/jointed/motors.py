@@ -13,7 +13,7 @@ def drives(J: Joints, s: int) -> bool:
     some = False
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
         kind = J.COUPLING[k].kind
-        some = some or kind in (SPRING, ROTARY_SPRING, MOTOR) or J.JOINT[J.COUPLING[k].joint].soft != 0
+        some = some or kind in (SPRING, ROTARY_SPRING, MOTOR) or J.JOINT[J.COUPLING[k].joint].bounded != 0
     return some
 
 
@@ -22,7 +22,7 @@ def keeps_speed(J: Joints, s: int) -> bool:
     """Whether joints of component s have rows of speeds at the end of an interval: motors, joints with a max_force."""
     some = False
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
-        some = some or J.COUPLING[k].soft != 0
+        some = some or J.COUPLING[k].bounded != 0
     return some
 
 
@@ -32,7 +32,7 @@ def let_slip(J: Joints, s: int, slips: bool, limits: bool) -> None:
     few enough for `..joints.boxes`, and, if `limits`, those of limits that hold."""
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
         link = J.COUPLING[k]
-        if link.soft != 0 and J.JOINT[link.joint].max_force < 1e300 and J.COMPONENT[s].boxes > 0:
-            link.soft = GIVEN if slips else BOXED
-        elif limits and is_limit(link.kind) and J.JOINT[link.joint].soft == 0:
-            link.soft = GIVEN if slips and link.side != 0 else 0
+        if link.bounded != 0 and J.JOINT[link.joint].max_force < 1e300 and J.COMPONENT[s].boxes > 0:
+            link.bounded = GIVEN if slips else BOXED
+        elif limits and is_limit(link.kind) and J.JOINT[link.joint].bounded == 0:
+            link.bounded = GIVEN if slips and link.side != 0 else 0

@@ -23,7 +23,7 @@ def shared_turn(a: BodyStep, b: BodyStep) -> float:
 
 @nonallocating
 def angle_rows(
-    kind: int, side: int, soft: bool, h: float, joint: Joint, hinge: JointStep, a: BodyStep, b: BodyStep,
+    kind: int, side: int, bounded: bool, h: float, joint: Joint, hinge: JointStep, a: BodyStep, b: BodyStep,
     stiff: FloatArray,
 ) -> int:  # fmt: skip
     """`joint_rows` of gears, rotary limits, ratchets, motors and rotary springs."""
@@ -39,7 +39,7 @@ def angle_rows(
     angle_a, angle_b = hinge.arm_a[0] + a.turned, hinge.arm_b[0] + b.turned
     hinge.measure = angle_b - angle_a
     share = 1.0 / joint.ratio if kind == GEAR else 1.0
-    if soft:
+    if bounded:
         hinge.rows[0, 2], hinge.rows[0, 5] = -share, 1.0
         hinge.slopes[0, 2], hinge.slopes[0, 5] = -share, 1.0
         hinge.force[2], hinge.force[5] = -share * lam, lam

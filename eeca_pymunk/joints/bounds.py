@@ -68,7 +68,7 @@ def release(W: Workspace) -> bool:
     link = W.link
     worst, which = 0.0, -1
     for k in range(W.joints):
-        if link[k].side != 0 and link[k].soft == 0:
+        if link[k].side != 0 and link[k].bounded == 0:
             pull = W.J.HINGE[k].lam[link[k].rows - 1] * link[k].side
             if pull > worst:
                 worst, which = pull, k
@@ -85,7 +85,7 @@ def first_bound(W: Workspace, h: float) -> tuple[int, int, float]:
     hinge, link = W.J.HINGE, W.link
     which, at_side, instant = -1, 0, h
     for k in range(W.joints):
-        if link[k].side != 0 or link[k].soft != 0:
+        if link[k].side != 0 or link[k].bounded != 0:
             continue
         for side in (-1, 1):
             if not has_bound(W.J.JOINT, link, k, side):

@@ -30,7 +30,7 @@ ROOM = 8  # arrays of one number per row, beside the columns (and a right side) 
 @nonallocating
 def rows_of(link: Rows[Coupling], k: int) -> int:
     """The rows of joint k that act, if it is boxed; 0 if not."""
-    if link[k].soft != BOXED or not held(link, k, 0):
+    if link[k].bounded != BOXED or not held(link, k, 0):
         return 0
     return 1 if link[k].kind == GROOVE and link[k].side == 0 else int(link[k].rows)
 

@@ -36,7 +36,7 @@ def find_apart(W: Workspace, h: float) -> tuple[bool, bool, bool]:
             edited = True
         was = joint[j].touched
         joint[j].touched = 0
-        if link[k].soft != 0 or rows == 0:
+        if link[k].bounded != 0 or rows == 0:
             continue
         for side in (-1, 1):
             if has_bound(joint, link, k, side):
@@ -70,7 +70,7 @@ def farthest(W: Workspace) -> float:
     worst = 0.0
     for k in range(W.joints):
         for r in range(link[k].rows):
-            if link[k].soft == 0 and held(link, k, r):
+            if link[k].bounded == 0 and held(link, k, r):
                 worst = max(worst, abs(W.J.HINGE[k].value[r]) / W.J.HINGE[k].size)
     return worst
 
@@ -96,7 +96,7 @@ def keep_closed(W: Workspace) -> None:
                 local[i].shift[c] = local[i].pose[c] - local[i].saved_pose[c]
     for k in range(W.joints):
         for r in range(link[k].rows):
-            if hinge[k].target[r] != 0.0 and link[k].soft == 0 and held(link, k, r):
+            if hinge[k].target[r] != 0.0 and link[k].bounded == 0 and held(link, k, r):
                 hinge[k].target[r] = hinge[k].value[r]
 
 

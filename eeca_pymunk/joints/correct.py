@@ -119,7 +119,7 @@ def let_go(W: Workspace) -> bool:
     pulling, pull = -1, 0.0
     for k in range(W.joints):
         last = link[k].rows - 1
-        if last < 0 or link[k].side == 0 or link[k].soft != 0:
+        if last < 0 or link[k].side == 0 or link[k].bounded != 0:
             continue
         if hinge[k].pushed[last] * link[k].side > max(pull, noise(hinge, link, k, last, W.J.LOCAL)):
             pulling, pull = k, hinge[k].pushed[last] * link[k].side
@@ -148,7 +148,7 @@ def hold_closing(W: Workspace) -> bool:
     hinge, link = W.J.HINGE, W.link
     found = False
     for k in range(W.joints):
-        if link[k].side == 0 and link[k].soft == 0:
+        if link[k].side == 0 and link[k].bounded == 0:
             for side in (-1, 1):
                 closed = (
                     has_bound(W.J.JOINT, link, k, side)
@@ -172,7 +172,7 @@ def speeds_fit(W: Workspace) -> bool:
     well = True
     for k in range(W.joints):
         for r in range(link[k].rows):
-            if link[k].soft != 0 or not held(link, k, r):
+            if link[k].bounded != 0 or not held(link, k, r):
                 continue
             rate, total = 0.0, 0.0
             for c in range(3):

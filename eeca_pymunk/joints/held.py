@@ -32,11 +32,11 @@ FREE, WHOLLY, CENTRE = 0, 1, 2  # what of a body a straight path holds
 @nonallocating
 def reach(joint: Joint) -> float:
     """The largest distance of a joint's two points, or infinity."""
-    if joint.soft == 0 and joint.kind == PIVOT:
+    if joint.bounded == 0 and joint.kind == PIVOT:
         return 0.0
-    if joint.soft == 0 and joint.kind == PIN:
+    if joint.bounded == 0 and joint.kind == PIN:
         return joint.length
-    return joint.upper if joint.soft == 0 and joint.kind == SLIDE else math.inf
+    return joint.upper if joint.bounded == 0 and joint.kind == SLIDE else math.inf
 
 
 @nonallocating
@@ -162,7 +162,7 @@ def may_hold(joint: Rows[Joint], still: IntArray, n: int) -> bool:
     for j in range(len(joint)):
         a, b = joint[j].body[0], joint[j].body[1]
         fixed = (a >= n and still[a - n] > 0) or (b >= n and still[b - n] > 0)
-        if fixed and joint[j].soft == 0 and (joint[j].kind == PIN or joint[j].kind == PIVOT or joint[j].kind == SLIDE):
+        if fixed and joint[j].bounded == 0 and joint[j].kind in (PIN, PIVOT, SLIDE):
             ends += 1
     return ends >= 2
 

@@ -30,7 +30,7 @@ def smooth(W: Workspace) -> bool:
     link = W.link
     for k in range(W.joints):
         spring = link[k].kind in (SPRING, ROTARY_SPRING)
-        if link[k].soft != 0 or link[k].side != 0 or (spring and W.J.JOINT[link[k].joint].damping != 0.0):
+        if link[k].bounded != 0 or link[k].side != 0 or (spring and W.J.JOINT[link[k].joint].damping != 0.0):
             return False
     return True
 

@@ -70,7 +70,7 @@ def book(W: Workspace, h: float, ledger: JointLedger) -> None:
             ledger.stored -= hinge[k].measure * stretch
             ledger.damped += lost
             ledger.closed += total - hinge[k].measure * stretch + lost
-        elif kind == MOTOR or link[k].soft != 0:
+        elif kind == MOTOR or link[k].bounded != 0:
             if kind == MOTOR or total > 0.0:
                 ledger.motors += total
             else:

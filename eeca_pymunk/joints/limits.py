@@ -102,7 +102,7 @@ def step_with_limits(
         ledger.limited += fitting_loss(local, W.bodies, ledger)
         drop_impulses(W)
         for k in range(W.joints):
-            if link[k].side != 0 and link[k].soft == 0:
+            if link[k].side != 0 and link[k].bounded == 0:
                 hold_limit(W.J.JOINT, hinge, link, k)
         if left <= 1e-13 * h:
             return True

@@ -5,8 +5,8 @@ Unknowns: velocities v1 of the bodies and impulses lam of the rows, the way bein
     M (v1 - v0) = h M a + F(x) + J(x)^T lam,      g(x) = target.
 
 Systems are scaled by sqrt(M) and by the diagonal of G M^-1 G^T. `give` > 0 makes rows elastic:
-g - target + (give h / 2 scale^2) lam = 0. Soft rows follow Alart and Curnier: with p = lam - u/A, A = 1/scale^2, either
-|p| <= bound and u = 0, or lam = bound p/|p|.
+g - target + (give h / 2 scale^2) lam = 0. Bounded rows follow Alart and Curnier: with p = lam - u/A, A = 1/scale^2,
+either |p| <= bound and u = 0, or lam = bound p/|p|.
 
 The same systems with `still` bodies (h v_m = 0) correct poses, M dq = G^T mu, g(q + dq) = target, and velocities,
 M dv = G^T lam, G (v + dv) = 0. The whole system has bodies and rows; a *condensed* one the bodies alone (`condensed`),
@@ -23,13 +23,13 @@ from ..model.joint_steps import LINEAR_STEP, NO_BEND, POSES, SPEEDS, STEP
 from ..model.joints import BOUNDED, BOXED, CONDENSED, DUAL, WHOLE, Component, Workspace
 from ..model.parameters.joints import FACTOR_BAND, ROW_WORK, STIFFEST
 from .banded import back_banded, factor_banded
+from .bounded import put_bounded
 from .boxes import leave_box
 from .condensed import back_condensed, factor, freeze_row
 from .dual import back_dual, factor_dual
 from .entries import along, held, put_condensed, put_free, put_rows, put_stiffness, scale_rows
 from .motion import move
 from .rows import joint_rows, start_joint
-from .soft import put_soft
 
 
 @inlined
@@ -81,19 +81,19 @@ def assemble(W: Workspace, what: int, h: float, give: float, first: bool, system
                 local[b].impulse[c] += hinge[k].force[c + 3]
             if build and bend != NO_BEND:
                 put_stiffness(link, local, k, W.J.STIFF, bend, h, system, band, matrix)
-        soft = link[k].soft != 0
-        if link[k].soft == BOUNDED and not still and held(link, k, 0):
-            off = put_soft(W, k, slopes, h, system, build, band)
+        bounded = link[k].bounded != 0
+        if link[k].bounded == BOUNDED and not still and held(link, k, 0):
+            off = put_bounded(W, k, slopes, h, system, build, band)
             worst = max(worst, off / hinge[k].size)
             continue
-        if link[k].soft == BOXED and not still and held(link, k, 0):
-            off = put_soft(W, k, slopes, h, system, False, band)
+        if link[k].bounded == BOXED and not still and held(link, k, 0):
+            off = put_bounded(W, k, slopes, h, system, False, band)
             worst = max(worst, off / hinge[k].size)
             leave_box(link, hinge, k, build, system == WHOLE, band, matrix, right)
             continue
         farthest = 0.0
         for r in range(link[k].rows):
-            if soft or not held(link, k, r):
+            if bounded or not held(link, k, r):
                 put_free(link, hinge, k, r, system, build, band, matrix, right)
                 continue
             scale = hinge[k].scale[r]

@@ -153,7 +153,7 @@ def make_plan(
         component[s].rigid = 0 if not pays else 2 if hard(joint, link, component, s) else 1
         bounded = 0
         for k in range(component[s].first_joint, component[s].end_joint):
-            if joint[link[k].joint].kind == MOTOR or joint[link[k].joint].soft != 0:
+            if joint[link[k].joint].kind == MOTOR or joint[link[k].joint].bounded != 0:
                 bounded += link[k].rows
         component[s].boxes = bounded if bounded <= BOXES_DIRECT else 0
     return count
@@ -163,7 +163,7 @@ def make_plan(
 def discs(joint: Rows[Joint], link: Rows[Coupling], component: Rows[Component], s: int) -> bool:
     """Whether a joint with two bounded impulses is in component s: condensed systems do not have those."""
     for k in range(component[s].first_joint, component[s].end_joint):
-        if joint[link[k].joint].soft != 0 and link[k].rows == 2:
+        if joint[link[k].joint].bounded != 0 and link[k].rows == 2:
             return True
     return False
 
@@ -173,7 +173,7 @@ def hard(joint: Rows[Joint], link: Rows[Coupling], component: Rows[Component], s
     """Whether all joints of component s hold exactly, those with limits included."""
     for k in range(component[s].first_joint, component[s].end_joint):
         j = link[k].joint
-        if link[k].rows == 0 or joint[j].kind == MOTOR or joint[j].soft != 0:
+        if link[k].rows == 0 or joint[j].kind == MOTOR or joint[j].bounded != 0:
             return False
     return True
 

@@ -13,8 +13,8 @@ from .springs import mean_force
 
 @inlined
 def point_rows(
-    kind: int, side: int, soft: bool, h: float, joint: Joint, hinge: JointStep, a: BodyStep, b: BodyStep, bends: bool,
-    stiff: FloatArray,
+    kind: int, side: int, bounded: bool, h: float, joint: Joint, hinge: JointStep, a: BodyStep, b: BodyStep,
+    bends: bool, stiff: FloatArray,
 ) -> int:  # fmt: skip
     """`joint_rows` of pins, slides, pivots and springs; `measure` of a spring is its mean force without damping."""
     ca, sa, slope_a, lever_a = a.turn_cos, a.turn_sin, a.slope, a.lever
@@ -65,7 +65,7 @@ def point_rows(
             if kind == SLIDE:
                 hinge.measure = np.sqrt(dx1 * dx1 + dy1 * dy1)
                 length = joint.upper if side > 0 else length if side < 0 else hinge.measure
-            if soft or length == 0.0:
+            if bounded or length == 0.0:
                 length = np.sqrt(dx * dx + dy * dy)
             over = 1.0 / length if length > 0.0 else 0.0
             nx, ny, mx, my = dx1 * over, dy1 * over, dx * over, dy * over

@@ -58,8 +58,8 @@ def prepare(W: Workspace, what: int, h: float) -> int:
     boxed = unbox(link, W.joints)
     system = factors(W, what, h)
     for k in range(W.joints if boxed else 0):
-        if link[k].soft == BOUNDED:
-            link[k].soft = BOXED
+        if link[k].bounded == BOUNDED:
+            link[k].bounded = BOXED
     return int(system)
 
 
@@ -68,8 +68,8 @@ def unbox(link: Rows[Coupling], joints: int) -> bool:
     """Let rows that are boxed be in the matrix: those inside of their bounds hold. Whether there are any."""
     some = False
     for k in range(joints):
-        if link[k].soft == BOXED:
-            link[k].soft = BOUNDED
+        if link[k].bounded == BOXED:
+            link[k].bounded = BOUNDED
             some = True
     return some
 
@@ -91,7 +91,7 @@ def factors(W: Workspace, what: int, h: float) -> int:
             for c in range(3):
                 local[i].inertia[c] = 1.0
         for k in range(W.joints):
-            if link[k].rows > 0 and link[k].soft == 0:
+            if link[k].rows > 0 and link[k].bounded == 0:
                 bend(W, k, h)
     else:
         first_iterate(W, what, h)

@@ -11,8 +11,8 @@ With x = h v_m the way of a body, r its arm, d = anchor b - anchor a, subscript 
     spring         F = h p d_m / l_m on b,  p = push - k (l_m - rest) - c (l1 - l0)/h,  l_m = (l0 + l1)/2
     rotary spring  T = h p s on b,          p = push + k (phi_m - rest) + c (phi1 - phi0)/h,  phi = angle_a - angle_b
 
-Each satisfies g1 - g0 = J x, and a spring's work is exactly what it stores and damps. Soft joints and motors have rows
-of velocity: (J v1 - speed) h/2, of angles with J = (-1, 1) or (-1/ratio, 1).
+Each satisfies g1 - g0 = J x, and a spring's work is exactly what it stores and damps. Bounded joints and motors have
+rows of velocity: (J v1 - speed) h/2, of angles with J = (-1, 1) or (-1/ratio, 1).
 """
 
 from __future__ import annotations
@@ -31,14 +31,14 @@ def joint_rows(W: Workspace, k: int, h: float, bends: bool) -> int:
     (`bends`), as far as the result says: NO_BEND, OWN_TURN, FULL_BEND."""
     joint, hinge, link, local, stiff = W.J.JOINT, W.J.HINGE, W.link, W.J.LOCAL, W.J.STIFF
     kind, a, b, side = link[k].kind, link[k].body[0], link[k].body[1], link[k].side
-    soft, j = link[k].soft != 0, link[k].joint
+    bounded, j = link[k].bounded != 0, link[k].joint
     if kind >= GEAR:
-        return angle_rows(kind, side, soft, h, joint[j], hinge[k], local[a], local[b], stiff)
+        return angle_rows(kind, side, bounded, h, joint[j], hinge[k], local[a], local[b], stiff)
     if kind == GROOVE:
         bend = groove_rows(side, joint[j], hinge[k], local[a], local[b], stiff)
     else:
-        bend = point_rows(kind, side, soft, h, joint[j], hinge[k], local[a], local[b], bends, stiff)
-    if soft:
+        bend = point_rows(kind, side, bounded, h, joint[j], hinge[k], local[a], local[b], bends, stiff)
+    if bounded:
         for r in range(link[k].rows):
             speed = -hinge[k].target[r]
             for c in range(3):

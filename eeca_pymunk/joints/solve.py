@@ -37,7 +37,7 @@ def bounded_rows(link: Rows[Coupling], joints: int) -> bool:
     """Whether any joint has bounded rows in the matrix."""
     count = 0
     for k in range(joints):
-        count += 1 if link[k].soft == BOUNDED else 0
+        count += 1 if link[k].bounded == BOUNDED else 0
     return count > 0
 
 

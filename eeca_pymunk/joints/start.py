@@ -30,16 +30,16 @@ from .rows import joint_rows
 def read_joints(W: Workspace, h: float, length: float) -> tuple[bool, bool]:
     """Fill in what the joints bring from before. Rows of bounded impulses are boxed if they are few (`boxes`).
 
-    Returns whether a joint was touched, and whether a soft joint needs its target.
+    Returns whether a joint was touched, and whether a bounded joint needs its target.
     """
     joint, hinge, link = W.J.JOINT, W.J.HINGE, W.link
-    touched, soft, rows = False, False, 0
+    touched, bounded, rows = False, False, 0
     for k in range(W.joints):
         j, kind = link[k].joint, link[k].kind
         link[k].side = joint[j].side
-        is_soft = joint[j].soft != 0 and kind not in (SPRING, ROTARY_SPRING)
-        link[k].soft = BOUNDED if kind == MOTOR or is_soft else 0
-        rows += link[k].rows if link[k].soft != 0 else 0
+        is_bounded = joint[j].bounded != 0 and kind not in (SPRING, ROTARY_SPRING)
+        link[k].bounded = BOUNDED if kind == MOTOR or is_bounded else 0
+        rows += link[k].rows if link[k].bounded != 0 else 0
         warm = 0.0 if joint[j].last_step == 0.0 else h / joint[j].last_step
         hinge[k].lam[0], hinge[k].lam[1] = joint[j].impulse[0] * warm, joint[j].impulse[1] * warm
         hinge[k].total[0] = hinge[k].total[1] = 0.0
@@ -54,24 +54,24 @@ def read_joints(W: Workspace, h: float, length: float) -> tuple[bool, bool]:
                 W.J.LOCAL[link[k].body[end]].lead[c] = 0.0 if edited else joint[j].led[end, c]
         if kind == MOTOR:
             hinge[k].target[0] = -joint[j].rate
-        soft = soft or (is_soft and kind != MOTOR)
+        bounded = bounded or (is_bounded and kind != MOTOR)
         touched = touched or joint[j].touched != 0
     for k in range(W.joints if rows <= W.J.COMPONENT[W.s].boxes else 0):
-        if link[k].soft != 0:
-            link[k].soft = BOXED
-    return touched, soft
+        if link[k].bounded != 0:
+            link[k].bounded = BOXED
+    return touched, bounded
 
 
 @nonallocating
 def compute_rows(W: Workspace) -> None:
-    """Compute rows and values of all joints at the present poses, of soft ones too."""
+    """Compute rows and values of all joints at the present poses, of bounded ones too."""
     link = W.link
     first_iterate(W, POSES, 2.0)
     for k in range(W.joints):
-        soft = link[k].soft
-        link[k].soft = 0
+        bounded = link[k].bounded
+        link[k].bounded = 0
         joint_rows(W, k, 2.0, False)
-        link[k].soft = soft
+        link[k].bounded = bounded
 
 
 @nonallocating
@@ -82,15 +82,15 @@ def closing_share(joint: Rows[Joint], j: int, error: float, h: float) -> float:
 
 
 @nonallocating
-def soft_targets(W: Workspace, h: float) -> None:
-    """Speeds at which soft joints close, and which soft limits act: those beyond their bound or about to pass it.
+def bounded_targets(W: Workspace, h: float) -> None:
+    """Speeds at which bounded joints close, and which bounded limits act: those beyond their bound or about to pass it.
 
     Rows must be those of the present poses.
     """
     joint, hinge, link = W.J.JOINT, W.J.HINGE, W.link
     for k in range(W.joints):
         kind, j, rows = link[k].kind, link[k].joint, link[k].rows
-        if link[k].soft == 0 or kind == MOTOR:
+        if link[k].bounded == 0 or kind == MOTOR:
             continue
         link[k].side = 0
         for side in (-1, 1):

@@ -18,7 +18,7 @@ from .ladder import climb, limit_work
 from .ledger import add, clear
 from .motion import save
 from .solve import drop_impulses
-from .start import compute_rows, read_joints, soft_targets
+from .start import bounded_targets, compute_rows, read_joints
 from .taut import taut
 from .unheld import step_linearly, take_gain
 
@@ -56,7 +56,7 @@ def take_step(W: Workspace, h: float, order: int, length: float, ledger: JointLe
     local, component = W.J.LOCAL, W.J.COMPONENT[W.s]
     clear(ledger)
     component.factored = 0
-    touched, soft = read_joints(W, h, length)
+    touched, bounded = read_joints(W, h, length)
     # Redundant rows begin without impulse, unless it is what holds bodies.
     component.taut = 1 if component.loops > 0 and taut(W, h) else 0
     if component.loops > 0 and component.taut == 0:
@@ -66,9 +66,9 @@ def take_step(W: Workspace, h: float, order: int, length: float, ledger: JointLe
             local[i].shift[c] = 0.0
     save(local, W.bodies)
     own = touched and close_joints(W, h, ledger)
-    if soft:
+    if bounded:
         compute_rows(W)
-        soft_targets(W, h)
+        bounded_targets(W, h)
     for k in range(W.joints):
         W.J.JOINT[W.link[k].joint].side = W.link[k].side  # where the ladder begins anew
     limit_work(W)

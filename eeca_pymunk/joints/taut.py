@@ -20,7 +20,7 @@ def taut(W: Workspace, h: float) -> bool:
     hinge, link = W.J.HINGE, W.link
     for k in range(W.joints):
         kind = link[k].kind
-        if link[k].soft != 0 or (kind != PIVOT and kind != PIN and kind != SLIDE):
+        if link[k].bounded != 0 or (kind != PIVOT and kind != PIN and kind != SLIDE):
             continue
         start_joint(W, k, h)
         rax, ray, rbx, rby = hinge[k].arm_a[0], hinge[k].arm_a[1], hinge[k].arm_b[0], hinge[k].arm_b[1]

@@ -61,9 +61,9 @@ class JointStep(Record):
     began: float  # of springs: length, or angle_a - angle_b, at the start
     ended: float  # and at the end
     lam: Annotated[FloatArray, 2]  # impulse along the rows, of springs their own
-    target: Annotated[FloatArray, 2]  # what the functions g shall be at the end; of soft joints: the speed
+    target: Annotated[FloatArray, 2]  # what the functions g shall be at the end; of bounded joints: the speed
     scale: Annotated[FloatArray, 2]  # 1/sqrt of the diagonal of G M^-1 G^T
-    bound: float  # max_force of a soft joint
+    bound: float  # max_force of a bounded joint
     size: float  # unit of g: length of the component, or 1 for angles
     measure: float  # what limits bound, at the end: length, angle, place along a groove
     total: Annotated[FloatArray, 2]  # impulse over all parts of the step

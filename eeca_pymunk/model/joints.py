@@ -24,7 +24,7 @@ class Joint(Record):
 
     kind: int  # PIN ... ROTARY_SPRING
     body: Annotated[IntArray, 2]  # rows of its bodies a and b
-    soft: int  # 1 if max_force is finite: rows of velocity at the end of the step, |lam| <= max_force h
+    bounded: int  # 1 if max_force is finite: rows of velocity at the end of the step, |lam| <= max_force h
     anchor_a: Annotated[FloatArray, 2]  # in the frame of body a, from its centre of mass: length
     anchor_b: Annotated[FloatArray, 2]
     max_force: float  # force or torque; infinite for a joint that holds exactly
@@ -114,7 +114,7 @@ class Coupling(Record):
     kind: int  # as `Joint.kind`
     body: Annotated[IntArray, 2]  # bodies a and b by their numbers in the component
     side: int  # as `Joint.side`, in the present step
-    soft: int  # 0 for rows that hold exactly; BOUNDED, GIVEN or BOXED
+    bounded: int  # 0 for rows that hold exactly; BOUNDED, GIVEN or BOXED
     rows: int  # number of rows, and first unknown of their impulses
     first_row: int
     joint: int  # row of `Joint`

@@ -98,7 +98,7 @@ class Given(NamedTuple):
     ratchet: tuple[float, float, float] = (0.0, 0.0, 0.0)  # tooth, tooth_phase, notch
 
     @property
-    def soft(self) -> bool:
+    def bounded(self) -> bool:
         """Whether its force is bounded."""
         return math.isfinite(self.force[0])
 
@@ -106,12 +106,12 @@ class Given(NamedTuple):
     def plan(self) -> tuple[object, ...]:
         """The values on which the plan of its component depends."""
         (ax, ay), (bx, by) = self.anchor_a, self.anchor_b
-        return self.kind, self.soft, ax != 0.0, ay != 0.0, bx != 0.0, by != 0.0
+        return self.kind, self.bounded, ax != 0.0, ay != 0.0, bx != 0.0, by != 0.0
 
     @property
     def reach(self) -> tuple[object, ...]:
         """The values that decide whether it can be part of a straight path (`..joints.held`)."""
-        return self.kind, self.soft, self.anchor_a, self.anchor_b, self.length, self.limits
+        return self.kind, self.bounded, self.anchor_a, self.anchor_b, self.length, self.limits
 
     def is_fine(self) -> bool:
         """Whether no value can be wrong; if not, `check_constraint`, which costs more, finds out."""
@@ -127,7 +127,7 @@ class Given(NamedTuple):
     def put(self, memory: memoryview, j: int, a: int, b: int) -> None:
         """Write it to row j of JOINT, whose memory is given, for bodies in the rows a and b."""
         _ROW.pack_into(
-            memory, j * Joint.TYPE.itemsize, self.kind, a, b, self.soft, *self.anchor_a, *self.anchor_b, *self.force,
+            memory, j * Joint.TYPE.itemsize, self.kind, a, b, self.bounded, *self.anchor_a, *self.anchor_b, *self.force,
             self.length, *self.limits, *self.groove, *self.spring, 0.0, *self.gear, self.rate, *self.ratchet, 0, EDITED,
         )  # fmt: skip
 

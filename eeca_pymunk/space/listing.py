@@ -69,7 +69,7 @@ class Listing:
     def find_functions(self) -> None:
         """Find what depends on kinds and functions."""
         self.ratchets = [j for j, given in enumerate(self.given) if given.kind == RATCHET]
-        self.forcing = [j for j, given in enumerate(self.given) if given.soft or given.kind in _PUSHING]
+        self.forcing = [j for j, given in enumerate(self.given) if given.bounded or given.kind in _PUSHING]
         self.functions = [j for j, calls in enumerate(self.calls) if calls.own]
         self.own = [self.items[j] for j in self.functions]
         self.before = [item for item, calls in zip(self.items, self.calls, strict=True) if calls.before is not None]

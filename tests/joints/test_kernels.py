@@ -82,7 +82,7 @@ def every_joint() -> pymunk.Space:
 class Iterate:
     """The component of `every_joint`, at an iterate of its step."""
 
-    def __init__(self, h: float, soft: bool = False, static: bool = False) -> None:
+    def __init__(self, h: float, bounded: bool = False, static: bool = False) -> None:
         space = every_joint()
         if static:
             next(iter(space.bodies)).body_type = pymunk.Body.KINEMATIC
@@ -97,7 +97,7 @@ class Iterate:
         self.joint["push"][[4, 5]] = 0.5
         for k in range(10):
             J.COUPLING[k].side = -1 if k in (1, 7) else 1 if k in (3, 6) else 0
-            J.COUPLING[k].soft = int(soft or k == 9)
+            J.COUPLING[k].bounded = int(bounded or k == 9)
         change = rng.normal(size=(2, 3))
         self.local["v1"] = self.local["v0"] + change
         if static:

@@ -12,7 +12,7 @@ from .entries import interval_of, put_condensed, put_free, put_rows
 
 
 @nonallocating
-def put_soft(W: Workspace, k: int, slopes: bool, h: float, system: int, build: bool, band: int) -> float:
+def put_bounded(W: Workspace, k: int, slopes: bool, h: float, system: int, build: bool, band: int) -> float:
     """Rows of velocity of joint k with bounded impulses; the residual as a length."""
     hinge, link, local, matrix, right = W.J.HINGE, W.link, W.J.LOCAL, W.J.MATRIX, W.J.RIGHT
     row, rows, bound = link[k].first_row, link[k].rows, hinge[k].bound * abs(h)
