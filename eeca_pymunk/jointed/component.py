@@ -9,9 +9,8 @@ from ..compiled import inlined, nonallocating
 from ..joints.bounds import gap, has_bound
 from ..joints.correct import correct
 from ..joints.entries import held
-from ..joints.ledger import springs_hold
 from ..joints.response import prepare, respond
-from ..joints.start import compute_rows
+from ..joints.start import springs_of
 from ..joints.step import take_step
 from ..joints.workspace import workspace
 from ..model.joint_steps import POSES, SPEEDS, STEP
@@ -64,13 +63,6 @@ def fit_speeds(J: Joints, s: int, length: float) -> None:
     W = workspace(J, s)
     size_joints(W, length)
     correct(W, SPEEDS)
-
-
-@nonallocating
-def springs_of(W: Workspace) -> float:
-    """The energy that the springs of a component hold at the poses in the scratch."""
-    compute_rows(W)
-    return springs_hold(W)
 
 
 @nonallocating

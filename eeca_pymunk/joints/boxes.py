@@ -71,13 +71,11 @@ def rate(
 
 
 @nonallocating
-def measure_boxes(W: Workspace, n: int, h: float, fresh: bool) -> None:
+def measure_boxes(W: Workspace, w: int, u: int, n: int, h: float, fresh: bool) -> None:
     """W, if columns are `fresh`; u after the solution in `right`; impulses and their bounds. All behind the columns."""
     hinge, link, component, more = W.J.HINGE, W.link, W.J.COMPONENT[W.s], W.J.MORE
     size = component.unknowns + component.impulses
     cols = STRIDE * component.dual_size
-    w = cols + (n + 1) * size
-    u = w + 2 * n * n
     row = 0
     for k in range(W.joints):
         rows = rows_of(link, k)
@@ -188,12 +186,11 @@ def solve_boxes(more: FloatArray, w: int, u: int, n: int) -> None:
 
 
 @nonallocating
-def apply_boxes(W: Workspace, n: int) -> None:
+def apply_boxes(W: Workspace, u: int, n: int) -> None:
     """Add to the solution in `right` what the change of the bounded impulses does."""
     hinge, link, component, more = W.J.HINGE, W.link, W.J.COMPONENT[W.s], W.J.MORE
     size = component.unknowns + component.impulses
     cols = STRIDE * component.dual_size
-    u = cols + (n + 1) * size + 2 * n * n
     row = 0
     for k in range(W.joints):
         for r in range(rows_of(link, k)):
@@ -213,10 +210,11 @@ def apply_boxes(W: Workspace, n: int) -> None:
 def bound_impulses(W: Workspace, n: int, h: float, fresh: bool) -> None:
     """Complete the solution in `right`, which is that without a change of the n boxed impulses."""
     component = W.J.COMPONENT[W.s]
-    measure_boxes(W, n, h, fresh)
     w = STRIDE * component.dual_size + (n + 1) * (component.unknowns + component.impulses)
-    solve_boxes(W.J.MORE, w, w + 2 * n * n, n)
-    apply_boxes(W, n)
+    u = w + 2 * n * n
+    measure_boxes(W, w, u, n, h, fresh)
+    solve_boxes(W.J.MORE, w, u, n)
+    apply_boxes(W, u, n)
 
 
 @nonallocating

@@ -12,11 +12,10 @@ from ..model.parameters.joints import JOINT_APART
 from .bounds import gap, has_bound
 from .correct import correct, fitting_loss, speeds_fit
 from .entries import held
-from .ledger import springs_hold
 from .lock import lock_energy
 from .motion import go_back, save
 from .rows import joint_rows
-from .start import closing_share, compute_rows
+from .start import closing_share, compute_rows, springs_of
 
 
 @nonallocating
@@ -105,14 +104,12 @@ def close_joints(W: Workspace, h: float, ledger: JointLedger) -> bool:
     """Close joints that are apart by one step's share, and make velocities fit them if the user has changed something;
     whether only steps have left joints apart. The costs enter the ledger of the step."""
     local = W.J.LOCAL
-    compute_rows(W)
-    stored = springs_hold(W)
+    stored = springs_of(W)
     edited, apart, own = find_apart(W, h)
     if apart:
         before = farthest(W)
         correct(W, POSES)
-        compute_rows(W)
-        taken = springs_hold(W) - stored
+        taken = springs_of(W) - stored
         cost = taken + closing_work(local, W.bodies)
         # What a step left apart closes at the cost of what moves.
         locked = lock_energy(local, W.bodies, cost) if own and cost > 0.0 else 0.0

@@ -105,17 +105,23 @@ def repaid(W: Workspace) -> bool:
 
 
 @nonallocating
-def restore(W: Workspace) -> None:
-    """Back to the start of the step, without impulses."""
-    go_back(W.J.LOCAL, W.bodies)
+def undo_impulses(W: Workspace) -> None:
+    """No impulses of the step, nor accelerations or work by them."""
     drop_impulses(W)
     for i in range(W.bodies):
         for c in range(3):
             W.J.LOCAL[i].lead[c] = 0.0
     for k in range(W.joints):
-        joint = W.J.JOINT[W.link[k].joint]
-        W.J.HINGE[k].total[0] = W.J.HINGE[k].total[1] = joint.work = 0.0
-        W.link[k].side = joint.side
+        W.J.HINGE[k].total[0] = W.J.HINGE[k].total[1] = W.J.JOINT[W.link[k].joint].work = 0.0
+
+
+@nonallocating
+def restore(W: Workspace) -> None:
+    """Back to the start of the step, without impulses."""
+    go_back(W.J.LOCAL, W.bodies)
+    undo_impulses(W)
+    for k in range(W.joints):
+        W.link[k].side = W.J.JOINT[W.link[k].joint].side
 
 
 @nonallocating

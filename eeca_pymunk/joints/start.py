@@ -22,6 +22,7 @@ from ..model.joints import (
 )
 from .bounds import approach, gap, has_bound
 from .entries import is_limit
+from .ledger import springs_hold
 from .newton import first_iterate
 from .rows import joint_rows
 
@@ -72,6 +73,13 @@ def compute_rows(W: Workspace) -> None:
         link[k].bounded = 0
         joint_rows(W, k, 2.0, False)
         link[k].bounded = bounded
+
+
+@nonallocating
+def springs_of(W: Workspace) -> float:
+    """The energy that springs hold at the present poses, after `compute_rows`."""
+    compute_rows(W)
+    return springs_hold(W)
 
 
 @nonallocating

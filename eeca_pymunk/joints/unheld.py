@@ -8,13 +8,13 @@ from ..model.joints import Workspace
 from ..model.parameters.joints import LINEAR_APART
 from .closing import farthest
 from .foresight import forget
-from .ladder import restore
-from .ledger import clear, close_ledger, springs_hold
+from .ladder import restore, undo_impulses
+from .ledger import clear, close_ledger
 from .limits import step_with_limits
 from .lock import lock_energy, move_rigidly, supports_rest
 from .motion import advance, go_back, move
 from .solve import drop_impulses
-from .start import compute_rows
+from .start import springs_of
 
 
 @nonallocating
@@ -22,8 +22,7 @@ def step_linearly(W: Workspace, h: float, length: float) -> float:
     """Take the step h by one linear system, or in free flight if that has no solution; how far joints were apart at its
     start, over the size of the component. PART has what springs have stored."""
     local, part = W.J.LOCAL, W.J.PART
-    compute_rows(W)
-    stored, apart = springs_hold(W), farthest(W)
+    stored, apart = springs_of(W), farthest(W)
     drop_impulses(W)
     if step_with_limits(W, True, h, length, True, 0.0, False, part):
         W.J.JOINT[W.link[0].joint].compliance = 0.0
@@ -35,9 +34,8 @@ def step_linearly(W: Workspace, h: float, length: float) -> float:
                 local[i].v1[c] = local[i].v0[c] + h * local[i].acceleration[c]
         move(local, W.bodies, h)
         advance(local, W.bodies, h)
-    compute_rows(W)
     clear(part)
-    part.stored = springs_hold(W) - stored
+    part.stored = springs_of(W) - stored
     return apart
 
 
@@ -47,20 +45,13 @@ def stop_joints(W: Workspace, h: float) -> None:
     PART."""
     local, part = W.J.LOCAL, W.J.PART
     go_back(local, W.bodies)
-    compute_rows(W)
-    stored = springs_hold(W)
+    stored = springs_of(W)
     move_rigidly(local, W.bodies, h)
-    compute_rows(W)
     clear(part)
-    part.stored = springs_hold(W) - stored
+    part.stored = springs_of(W) - stored
     close_ledger(local, W.bodies, part)
     part.projected, part.closed = max(-part.closed, 0.0), max(part.closed, 0.0)
-    for i in range(W.bodies):
-        for c in range(3):
-            local[i].lead[c] = 0.0
-    drop_impulses(W)
-    for k in range(W.joints):
-        W.J.HINGE[k].total[0] = W.J.HINGE[k].total[1] = W.J.JOINT[W.link[k].joint].work = 0.0
+    undo_impulses(W)
 
 
 @nonallocating
