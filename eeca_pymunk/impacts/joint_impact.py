@@ -13,7 +13,7 @@ from ..islands.local import clear_places, set_places
 from ..islands.membership import jointed, members
 from ..jointed.columns import fill_free, fill_group, make_columns, weigh
 from ..jointed.component import answer, fit_speeds, ready
-from ..jointed.ends import end_here, shorten
+from ..jointed.ends import end_here, shorten, under_way
 from ..jointed.gathered import find_places, gather_component
 from ..jointed.groups import find_groups
 from ..jointed.meet import meet
@@ -99,7 +99,7 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
         again = False
         for q in range(n):
             root = A.STATE[A.BLOCK[q]].island
-            if root >= 0 and A.MEMBER[root].open > 0 and A.MEMBER[root].jointed > 0:
+            if under_way(A, root):
                 shorten(A, J, root, t)
                 end_here(A, J, root, t)
                 ENDED[ended] = root
@@ -120,7 +120,7 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     groups = find_groups(WHO, block.IM, J.OF)
     C = make_columns(groups, P, Q, rows)
     J.PROGRESS.effort += SOLUTION_WORK * C.AT[rows]
-    fill_free(groups, C, P, Q, ROWS, block.IM, block.II, rows)
+    fill_free(groups, C, Q, ROWS, block.IM, block.II, rows)
     BEFORE = V.copy()
     INDEX = np.full(len(block.IM), -1, np.int64)
     for g in range(len(groups.COMPONENT)):

@@ -42,17 +42,15 @@ def make_columns(groups: Groups, A: IntArray, B: IntArray, m: int) -> Columns:
 
 
 @nonallocating
-def fill_free(
-    groups: Groups, C: Columns, A: IntArray, B: IntArray, ROWS: Rows[Row], IM: FloatArray, II: FloatArray, m: int
-) -> None:
+def fill_free(groups: Groups, C: Columns, B: IntArray, ROWS: Rows[Row], IM: FloatArray, II: FloatArray, m: int) -> None:
     """The columns' entries on bodies that no joint holds."""
     for i in range(m):
         for w in range(C.AT[i], C.AT[i + 1]):
             q = C.BODY[w]
             if groups.COMPONENT[groups.GROUP[q]] >= 0:
                 continue
-            sign = 1.0 if q == B[i] else -1.0
             on_b = q == B[i]
+            sign = 1.0 if on_b else -1.0
             arm_n = ROWS[i].arm_nb if on_b else ROWS[i].arm_na
             arm_t = ROWS[i].arm_tb if on_b else ROWS[i].arm_ta
             C.N[w, 0], C.N[w, 1] = sign * IM[q] * ROWS[i].nx, sign * IM[q] * ROWS[i].ny

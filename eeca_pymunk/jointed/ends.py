@@ -38,6 +38,12 @@ def components_of(A: Scene, J: Joints, root: int) -> IntArray:
 
 
 @nonallocating
+def under_way(A: Scene, root: int) -> bool:
+    """Whether an interval of an island with joints has begun; root -1 for no island."""
+    return bool(root >= 0 and A.MEMBER[root].open > 0 and A.MEMBER[root].jointed > 0)
+
+
+@nonallocating
 def take_back(A: Scene, root: int) -> None:
     """Forget the contacts of the interval that an island has begun."""
     c = 0
@@ -55,7 +61,7 @@ def take_back(A: Scene, root: int) -> None:
 def shorten(A: Scene, J: Joints, root: int, t: float) -> int:
     """Let the interval of an island end at instant t, not in the ledger yet; how many contacts it had. Nothing if it is
     over."""
-    if root < 0 or A.MEMBER[root].jointed == 0 or A.MEMBER[root].open == 0:
+    if not under_way(A, root):
         return 0
     before = A.COUNT.pushes
     take_back(A, root)
@@ -72,7 +78,7 @@ def shorten(A: Scene, J: Joints, root: int, t: float) -> int:
 @kernel
 def end_here(A: Scene, J: Joints, root: int, t: float) -> None:
     """End the interval of an island at instant t, its own end: book it, and bring its bodies there."""
-    if root < 0 or A.MEMBER[root].jointed == 0 or A.MEMBER[root].open == 0:
+    if not under_way(A, root):
         return
     for c in range(A.COUNT.pushes):
         if A.PUSHED_BY[c].root == root:
@@ -99,7 +105,7 @@ def end_here(A: Scene, J: Joints, root: int, t: float) -> None:
 @kernel
 def left_apart(A: Scene, J: Joints, root: int) -> bool:
     """Whether joints do not hold at the end of the interval of an island."""
-    if root < 0 or A.MEMBER[root].jointed == 0 or A.MEMBER[root].open == 0:
+    if not under_way(A, root):
         return False
     found = components_of(A, J, root)
     apart = False

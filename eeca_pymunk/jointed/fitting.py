@@ -106,7 +106,7 @@ def hold(A: Scene, J: Joints, interval: Interval, end: float, RATES: FloatArray,
     isle, groups, P, Q, _, motion, C, m, _, _, h = interval
     KEEP, NOTHING = interval.ROWS[:m].copy(), np.zeros_like(isle.V)
     bring_arms(P, Q, KEEP, motion.END, m)
-    fill_free(groups, C, P, Q, KEEP, isle.IM, isle.II, m)
+    fill_free(groups, C, Q, KEEP, isle.IM, isle.II, m)
     INDEX = np.full(len(isle.IM), -1, np.int64)
     for g in range(len(groups.COMPONENT)):
         s = groups.COMPONENT[g]

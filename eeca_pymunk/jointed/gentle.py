@@ -57,7 +57,7 @@ def solve_gently(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Boun
     advance(A, J, interval, L, B, True, np.empty((0, 3)))
     if free:
         align(isle, P, Q, ROWS, m, interval.motion, True)
-    fill_free(groups, C, P, Q, ROWS, isle.IM, isle.II, m)
+    fill_free(groups, C, Q, ROWS, isle.IM, isle.II, m)
     weigh(groups, C, P, Q, ROWS, m)
     V, BOTH = interval.motion.MEAN.copy(), with_bounded(B, L, m)
     problem = JointedProblem(P, Q, ROWS, C, B, m)

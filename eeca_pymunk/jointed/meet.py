@@ -19,7 +19,7 @@ from ..model.parameters.joints import (
 )
 from ..model.scene import Scene
 from ..prediction.impact_times import meet as find_meeting
-from .ends import end_here, left_apart, shorten
+from .ends import end_here, left_apart, shorten, under_way
 
 
 @nonallocating
@@ -62,7 +62,7 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
         least = max(least, A.BODY[j].since)
     for end in range(2):
         root = roots[end]
-        if root >= 0 and A.MEMBER[root].open > 0 and A.MEMBER[root].jointed > 0:
+        if under_way(A, root):
             least, latest = max(least, A.BODY[root].since), min(latest, A.RESTING[root].until)
             member = root
             while member >= 0:

@@ -107,7 +107,7 @@ def press(
         interval: out, the columns of the contacts in their last solution.
     """
     isle, groups, P, Q, ROWS, motion, C, m, n, _, h = interval
-    fill_free(groups, C, P, Q, ROWS, isle.IM, isle.II, m)
+    fill_free(groups, C, Q, ROWS, isle.IM, isle.II, m)
     rates(P, Q, ROWS, isle.V, m)
     SLIP, limited = take_slips(ROWS, m), False
     elastic = conserves(ROWS, m)
@@ -159,7 +159,7 @@ def press(
         if not anew:
             fit_columns(interval, B, L, USED, NOW, PREVIOUS)
         elif free:
-            fill_free(groups, C, P, Q, ROWS, isle.IM, isle.II, m)
+            fill_free(groups, C, Q, ROWS, isle.IM, isle.II, m)
         J.PROGRESS.effort += SOLUTION_WORK * C.AT[m] if anew else 0.0
         weigh(groups, C, P, Q, ROWS, m)
         if outer == 0:
