@@ -64,6 +64,8 @@ MUTATIONS = (
              "    if arm < 0.0:", "impacts/test_loop.py", "orbits"),
     Mutation("loop: an orbit's arm does not count", "prediction/next_event.py", "passage(m - arm - norm(",
              "passage(m - norm(", "prediction/test_heap.py", "nobody_leaves"),
+    Mutation("loop: walls of a slow container have orbits", "pairs/grid.py", "if turn > 2.0 * math.pi and turn",
+             "if turn", "impacts/test_loop.py", "turns_slowly"),
     Mutation("loop: only impacts see that the budget is spent", "impacts/loop.py",
              "if o == RENEW or COUNT.work > most:", "if o == RENEW:", "test_unmet.py", "meets_nothing"),
     Mutation("islands: only external accelerations press elastic contacts", "islands/membership.py",

@@ -128,9 +128,9 @@ def part(A: Scene, s: int) -> int:
 def renew(A: Scene, s: int, t: float, ahead: float) -> int:
     """Move the margin circle of s to its position at instant t, and renew its list.
 
-    If the body's spin moves the shape by more than its margin in a step, the circle is about the body's centre of mass,
-    with a margin of at least twice the arm: one arm contains the orbit of the shape, the other is left for the motion
-    of the body.
+    If the shape goes round the body's centre of mass within a step, by more than its margin, the circle is about that
+    centre, with a margin of at least twice the arm: one arm contains the orbit of the shape, the other is left for the
+    motion of the body. For slower ones, such as the walls of a container, the list would be too long.
 
     Args:
         ahead: distance of the circle's centre ahead of the shape, or body, along its velocity, as a part of the margin
@@ -145,7 +145,8 @@ def renew(A: Scene, s: int, t: float, ahead: float) -> int:
     unlink(A, s)
     i = A.LINK[s].owner
     arm = norm(A.SHAPE[s].centre_x, A.SHAPE[s].centre_y)
-    if abs(A.BODY[i].spin) * arm * A.PAR.dt > margin:
+    turn = abs(A.BODY[i].spin) * A.PAR.dt
+    if turn > 2.0 * math.pi and turn * arm > margin:
         x, y, _ = pose(A.BODY, i, t)
         A.MARK[s].margin = max(margin, 2.0 * arm)
         margin = A.MARK[s].margin - arm

@@ -12,7 +12,7 @@ import math
 from ..compiled import inlined, nonallocating
 from ..geometry.flight import norm, pose
 from ..model.bodies import CHECK, LEAVE, NOTHING, RENEW
-from ..model.parameters.events import INSIDE
+from ..model.parameters.events import INSIDE, SHAPES_LOOK
 from ..model.scene import Scene
 from ..pairs.lists import centre
 from ..pairs.rules import barred
@@ -98,7 +98,7 @@ def predict(A: Scene, i: int, now: float, end: float, until: float) -> None:
         until: instant at which the interval of the body's island ends, infinite unless the body is its root.
     """
     BODY, STATE, LINK, LIST = A.BODY, A.STATE, A.LINK, A.LIST
-    best, own, other = math.inf, -1, NOTHING
+    best, own, other, entries = math.inf, -1, NOTHING, 0
     horizon = horizon_of(A, i, end)
     first = STATE[i].first_shape
     for s in range(first, first + STATE[i].shapes):
@@ -106,7 +106,7 @@ def predict(A: Scene, i: int, now: float, end: float, until: float) -> None:
         if t < best:
             best, own, other = t, s, LEAVE
         start = LIST[s].start
-        A.COUNT.work += 1 + LIST[s].number // 4
+        entries += LIST[s].number
         for q in range(start, start + LIST[s].number):
             if A.FLAG[q] != 0:
                 continue
@@ -118,6 +118,7 @@ def predict(A: Scene, i: int, now: float, end: float, until: float) -> None:
             t, certain = meet(A, s, o, min(horizon, horizon_of(A, LINK[o].owner, end)))
             if t < best or (t == best and other >= 0 and (s < own or (s == own and o < other))):
                 best, own, other = t, s, (o if certain else CHECK)
+    A.COUNT.work += 1 + entries // 4 + (STATE[i].shapes - 1) // SHAPES_LOOK
     if until < best:
         best, own, other = until, -1, RENEW
     best = max(best, now)

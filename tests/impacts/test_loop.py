@@ -325,3 +325,24 @@ def test_what_orbits_its_body_fast_stays_in_one_circle() -> None:
     assert hit > 0
     assert predictions < 200
     assert ep.measure(space).energy == pytest.approx(energy, rel=1e-12)
+
+
+def test_walls_of_a_container_that_turns_slowly_keep_margins_of_their_own_size() -> None:
+    """Only what goes round its body's centre within a step has a circle about that; else the list of each of many walls
+    would hold all that is inside."""
+    space = pymunk.Space()
+    drum = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    drum.angular_velocity = 6.0
+    space.add(drum)
+    ends = [(5.0 * math.cos(a), 5.0 * math.sin(a)) for a in np.linspace(0.0, math.tau, 101)]
+    space.add(*(pymunk.Segment(drum, a, b, 0.05) for a, b in pairwise(ends)))
+    for k in range(36):
+        add_disk(space, (k % 6 - 2.5, k // 6 - 2.5), 0.3, velocity=(1.0, 0.0))
+    stepper = ep.EECA(space)
+    method = stepper._method
+    assert isinstance(method, EventLoop)
+    margins = method.scene.MARK["margin"].copy()
+    for _ in range(30):
+        stepper.step(1 / 60)
+    assert method.scene.GRID.leaves > 100
+    assert (method.scene.MARK["margin"] == margins).all()
