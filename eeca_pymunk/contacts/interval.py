@@ -11,13 +11,13 @@ from ..compiled import Table, kernel, nonallocating
 from ..compiled.records import Rows, empty, zeros
 from ..model.contacts import ROW, SOLVED, Force, Problem
 from ..model.islands import Contacts, contacts_of, island_of
-from ..model.parameters.impulses import DENSE_CONTACTS
 from ..model.parameters.intervals import (
     DIRECT,
     DIRECT_MOVING,
     INTERVAL_RESIDUAL,
     INTERVAL_RESIDUAL_MOVING,
     INTERVAL_RESIDUAL_SPEED,
+    LARGE_ISLAND,
 )
 from ..model.scene import scene_of
 from ..rows.blocks import clear
@@ -155,7 +155,7 @@ def step_island(
         scale = pull * h if pull > 0.0 else 1e-3 * fast
         elastic = conserves(ROWS, m)
         # A truncated solve dissipates energy in large elastic islands.
-        few = m <= DENSE_CONTACTS
+        few = n < LARGE_ISLAND
         rounds = DIRECT if elastic or slow < pull * h else (DIRECT_MOVING if few else 0)
         coarse = 0.0 if elastic or few else INTERVAL_RESIDUAL_MOVING * scale + INTERVAL_RESIDUAL_SPEED * slow
         sweeps, polishes, worst = relax(

@@ -23,8 +23,7 @@ from ..model.parameters.intervals import (
 from ..model.scene import Scene
 from ..pairs.lists import far_apart
 from ..pairs.rules import barred, law
-from ..rows.build import normal_rate, tangent_rate
-from .depths import too_deep
+from ..rows.build import tangent_rate
 from .membership import approach, fixed_support, persists, remembered
 
 
@@ -162,16 +161,15 @@ def interval_within_way(A: Scene, found: IntArray, h: float) -> float:
     return h if rate * h <= 1.0 else 1.0 / rate
 
 
-@kernel
+@nonallocating
 def excess_way(
-    A: Scene, P: IntArray, Q: IntArray, ROWS: Rows[Row], KEY: IntArray, V: FloatArray, VN: FloatArray, m: int, h: float
+    A: Scene, P: IntArray, Q: IntArray, KEY: IntArray, V: FloatArray, VN: FloatArray, m: int, h: float
 ) -> float:
     """How many times too long a solved interval h of m contacts is: the largest ratio of relative motion to the limit
-    of `interval_within_way`, or of the closing of a contact to that of `depths.too_deep`.
+    of `interval_within_way`.
 
     Args:
-        P, Q, ROWS, KEY: local bodies, rows and keys of the contacts.  V, VN: (k, 3) velocities at the start and the
-            end.
+        P, Q, KEY: local bodies and keys of the contacts.  V, VN: (k, 3) velocities at the start and the end.
     """
     SHAPE, far, shapes = A.SHAPE, 0.0, len(A.SHAPE)
     for z in range(m):
@@ -184,7 +182,6 @@ def excess_way(
         if A.LINK[a].vertices > 1 or A.LINK[b].vertices > 1:
             turn = max(abs(V[p, 2] + VN[p, 2]), abs(V[q, 2] + VN[q, 2]))
             far = max(far, 0.5 * h * turn / INTERVAL_WAY)
-        far = max(far, too_deep(A, a, b, ROWS[z].gap, -0.5 * h * (ROWS[z].un + normal_rate(P, Q, ROWS, VN, z))))
     return far
 
 

@@ -14,6 +14,7 @@ from ..model.contacts import Row
 from ..model.islands import Island
 from ..model.parameters.intervals import INTERVAL_DEPTH, INTERVAL_DEPTH_LEAST, INTERVAL_DEPTH_WIDTH, INTERVAL_RETRY
 from ..model.scene import Scene
+from ..rows.build import normal_rate
 
 
 @nonallocating
@@ -42,39 +43,97 @@ def driven(A: Scene, isle: Island, P: IntArray, Q: IntArray, ROWS: Rows[Row], KE
 
 
 @nonallocating
+def room_of(A: Scene, a: int, b: int, gap: float) -> tuple[float, float]:
+    """How far (lengths) a contact of shapes a and b with this gap may close in an interval; and how far beyond it
+    does no harm."""
+    small = min(A.SHAPE[a].extent, A.SHAPE[b].extent)
+    deep = depth_limit(small, half_width(A, a) + half_width(A, b))
+    return max(gap, 0.0) + deep, 0.5 * deep
+
+
+@nonallocating
 def too_deep(A: Scene, a: int, b: int, gap: float, closing: float) -> float:
     """How many times too long an interval is in which a contact of shapes a and b with this gap closes by `closing`
     (lengths); 0 if it is not."""
-    small = min(A.SHAPE[a].extent, A.SHAPE[b].extent)
-    if not closing > INTERVAL_DEPTH_LEAST * small:
+    if not closing > INTERVAL_DEPTH_LEAST * min(A.SHAPE[a].extent, A.SHAPE[b].extent):
         return 0.0
-    deep = depth_limit(small, half_width(A, a) + half_width(A, b))
-    room = max(gap, 0.0) + deep
-    if closing > room + 0.5 * deep:
-        return max(closing / room, 1.01 * INTERVAL_RETRY)
-    return 0.0
+    room, harmless = room_of(A, a, b, gap)
+    return max(closing / room, 1.01 * INTERVAL_RETRY) if closing > room + harmless else 0.0
 
 
 @kernel
 def too_deep_at_end(
-    A: Scene, isle: Island, END: FloatArray, P: IntArray, Q: IntArray, ROWS: Rows[Row], KEY: IntArray, m: int,
+    A: Scene, isle: Island, END: FloatArray, P: IntArray, Q: IntArray, ROWS: Rows[Row], KEY: IntArray, m: int, h: float,
     every: bool,
 ) -> float:  # fmt: skip
-    """How many times too long an interval is at whose poses END (k, 3) a contact is deeper than its linear row
+    """How many times too long an interval h is at whose poses END (k, 3) a contact is deeper than its linear row
     predicts; 0 if it is not. `every`: of all pairs, else of thin shapes only."""
     far, shapes, last = 0.0, A.SHAPE.shape[0], -1
     for z in range(m):
         pair = KEY[z] >> 1
-        a, b, p, q = pair // shapes, pair % shapes, P[z], Q[z]
-        if pair == last or not (every or remembers(A, a, b)):
-            continue
+        if pair != last and (every or remembers(A, pair // shapes, pair % shapes)):
+            far = max(far, deep_at_end(A, isle, END, P, Q, ROWS, KEY, m, h, z))
         last = pair
-        if isle.WHO[p] != A.LINK[a].owner:
-            p, q = q, p
-        gap = ROWS[z].gap
-        if z + 1 < m and KEY[z + 1] >> 1 == pair:
-            gap = min(gap, ROWS[z + 1].gap)
-        end = gap_at(A, a, END[p, 0], END[p, 1], END[p, 2], b, END[q, 0], END[q, 1], END[q, 2])[0]
-        far = max(far, too_deep(A, a, b, gap, gap - end))
-    # The error of linear rows grows with the square of the length, at least.
-    return max(math.sqrt(far), 1.01 * INTERVAL_RETRY) if far > 0.0 else 0.0
+    return far
+
+
+@kernel
+def closes_too_far(
+    A: Scene, isle: Island, END: FloatArray, P: IntArray, Q: IntArray, ROWS: Rows[Row], KEY: IntArray, VN: FloatArray,
+    m: int, h: float,
+) -> float:  # fmt: skip
+    """How many times too long an interval h is whose m contacts close too far by their rows, which are linear, and by
+    the poses END (k, 3) at its end; 0 if it is not.
+
+    Rows have the normals of the middle. Where these rotate, velocities along them at the start and the end do not tell
+    the way between: bodies that a turning wall carries along do not close. The poses tell it, unless the way may have
+    led to the other side of a shape.
+
+    Args:
+        VN: (k, 3) velocities at the end.
+    """
+    far, shapes, last, known = 0.0, A.SHAPE.shape[0], -1, 0.0
+    for z in range(m):
+        pair = KEY[z] >> 1
+        a, b = pair // shapes, pair % shapes
+        closing = -0.5 * h * (ROWS[z].un + normal_rate(P, Q, ROWS, VN, z))
+        deep = too_deep(A, a, b, ROWS[z].gap, closing)
+        if deep == 0.0:
+            continue
+        if remembers(A, a, b) or closing - max(ROWS[z].gap, 0.0) < half_width(A, a) + half_width(A, b):
+            if pair != last:
+                known = deep_at_end(A, isle, END, P, Q, ROWS, KEY, m, h, z)
+            last, deep = pair, min(deep, known)
+        far = max(far, deep)
+    return far
+
+
+@kernel
+def deep_at_end(
+    A: Scene, isle: Island, END: FloatArray, P: IntArray, Q: IntArray, ROWS: Rows[Row], KEY: IntArray, m: int, h: float,
+    z: int,
+) -> float:  # fmt: skip
+    """How many times too long an interval h is in which the pair of contact z closes as far as at poses END (k, 3); 0
+    if it is not.
+
+    The pair closes by u s + c s^2 in a time s, with its velocity u at the start, and c from the way u h + c h^2 to END:
+    by its room r after s = 2 r / (u + sqrt(u^2 + 4 c r)), and the interval is h/s times too long.
+    """
+    pair, p, q = KEY[z] >> 1, P[z], Q[z]
+    a, b = pair // A.SHAPE.shape[0], pair % A.SHAPE.shape[0]
+    if isle.WHO[p] != A.LINK[a].owner:
+        p, q = q, p
+    gap = ROWS[z].gap
+    for other in (z - 1, z + 1):
+        if 0 <= other < m and KEY[other] >> 1 == pair:
+            gap = min(gap, ROWS[other].gap)
+    closing = gap - gap_at(A, a, END[p, 0], END[p, 1], END[p, 2], b, END[q, 0], END[q, 1], END[q, 2])[0]
+    if too_deep(A, a, b, gap, closing) == 0.0:
+        return 0.0
+    S, V, room = isle.POSE, isle.V, room_of(A, a, b, gap)[0]
+    _, nx, ny, x, y = gap_at(A, a, S[p, 0], S[p, 1], S[p, 2], b, S[q, 0], S[q, 1], S[q, 2])
+    ux = V[q, 0] - V[q, 2] * (y - S[q, 1]) - V[p, 0] + V[p, 2] * (y - S[p, 1])
+    uy = V[q, 1] + V[q, 2] * (x - S[q, 0]) - V[p, 1] - V[p, 2] * (x - S[p, 0])
+    way = max(-h * (nx * ux + ny * uy), 0.0)
+    root = math.sqrt(max(way * way + 4.0 * (closing - way) * room, 0.0))
+    return max((way + root) / (2.0 * room), 1.01 * INTERVAL_RETRY)

@@ -33,7 +33,7 @@ from .candidates import (
     sweeps_of_large,
     travel_bound,
 )
-from .depths import driven, too_deep_at_end
+from .depths import closes_too_far, driven, too_deep_at_end
 from .local import clear_places, lay_out_island, needs_memory, number_bodies, open_contacts, open_until, own_contacts
 from .membership import lossy
 from .rest import rest_threshold
@@ -54,8 +54,8 @@ def bodies_with_supports(A: Scene, isle: Island, n: int) -> int:
 def solve(A: Scene, root: int, t: float) -> int:
     """Begin an interval of an island at instant t, at which all its bodies are. Bodies without contacts leave it.
 
-    The interval ends with the step, or earlier if it would exceed a limit of `excess_way`; it is then solved again,
-    shorter.
+    The interval ends with the step, or earlier if it would exceed a limit of `excess_way` or `depths.closes_too_far`;
+    it is then solved again, shorter.
 
     Returns DONE, or PUSHES_FULL, which leaves everything as it was.
     """
@@ -115,9 +115,10 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
             m = step_island(A, isle, contacts, n, h, sweeps, least, owed, -1.0, 0.0)
         far = 0.0
         if not last and OUT[0].at_rest == 0:
-            far = excess_way(A, P, Q, ROWS, KEY, V, VN, m, h)
+            END = isle.POSE + 0.5 * h * (V + VN)
+            far = max(excess_way(A, P, Q, KEY, V, VN, m, h), closes_too_far(A, isle, END, P, Q, ROWS, KEY, VN, m, h))
             if far <= INTERVAL_RETRY and len(A.SIDE) > 0:
-                far = too_deep_at_end(A, isle, isle.POSE + 0.5 * h * (V + VN), P, Q, ROWS, KEY, m, False)
+                far = too_deep_at_end(A, isle, END, P, Q, ROWS, KEY, m, h, False)
         if far > INTERVAL_RETRY:
             A.COUNT.solved += n
             spend(A, 2 * p, m, OUT[0].sweeps, OUT[0].direct)

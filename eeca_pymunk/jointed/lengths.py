@@ -105,4 +105,4 @@ def excess(
         pair = KEY[z] >> 1
         closing = -normal_rate(P, Q, ROWS, motion.WAY, z)
         far = max(far, too_deep(A, pair // shapes, pair % shapes, ROWS[z].gap, closing))
-    return max(far, too_deep_at_end(A, isle, motion.END, P, Q, ROWS, KEY, m, True))
+    return max(far, too_deep_at_end(A, isle, motion.END, P, Q, ROWS, KEY, m, h, True))

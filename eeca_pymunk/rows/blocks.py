@@ -31,7 +31,7 @@ from ..model.parameters.impulses import (
     RATE_ROUND_OFF,
     SMALL_BLOCK,
 )
-from ..model.parameters.intervals import INTERVAL_RESIDUAL_SPEED, SMALL_SWEEPS
+from ..model.parameters.intervals import DIRECT_MOVING, INTERVAL_RESIDUAL_SPEED, SMALL_SWEEPS
 from .build import aim, conserves, largest_terms, rates, rubs
 from .conjugate import iterate
 from .direct import refine
@@ -86,8 +86,9 @@ def resolve(
             stalled += 1
             if stalled >= 8:
                 break
-    taken, worst = iterate(problem, L, V, tolerance, last)
-    OUT[0].sweeps += taken
+    if last > 0:
+        taken, worst = iterate(problem, L, V, tolerance, last)
+        OUT[0].sweeps += taken
     for _ in range(again):
         if worst <= tolerance:
             break
@@ -136,22 +137,17 @@ def solve_block(
     floor = RATE_ROUND_OFF * largest_terms(A, B, ROWS, FREE, m)
     tolerance = max(speed * (BLOCK_RESIDUAL_FRICTION if rough else BLOCK_RESIDUAL), floor)
     exact = conserves(ROWS, m)
+    # Direct solves help where contacts stick; where many slip only sweeps converge, so there are more of them.
+    first, rounds, last, again = BLOCK_SWEEPS_FRICTION, BLOCK_DIRECT_FRICTION, BLOCK_LAST_SWEEPS_FRICTION, DRIFTS
     if hasty and m > DENSE_CONTACTS and not exact:
         # A hit on a lossy pile is solved as accurately as the intervals before and after it.
         tolerance = max(INTERVAL_RESIDUAL_SPEED * speed, floor)
-        taken, worst = iterate(problem, L, V, tolerance, SMALL_SWEEPS)
-        OUT[0].sweeps = taken
-    else:
-        # Direct solves help where contacts stick; where many slip only sweeps converge, so there are more of them.
-        first, rounds, last, again = BLOCK_SWEEPS_FRICTION, BLOCK_DIRECT_FRICTION, BLOCK_LAST_SWEEPS_FRICTION, DRIFTS
-        if not rough:
-            first, rounds, last, again = (
-                4 * BLOCK_SWEEPS if m <= SMALL_BLOCK else BLOCK_SWEEPS,
-                BLOCK_DIRECT,
-                BLOCK_LAST_SWEEPS,
-                0,
-            )
-        worst = resolve(problem, L, V, FREE, first, rounds, last, again, tolerance, OUT)
+        first, rounds, last, again = SMALL_SWEEPS, DIRECT_MOVING, 0, 0
+    elif not rough:
+        first, rounds, last, again = BLOCK_SWEEPS, BLOCK_DIRECT, BLOCK_LAST_SWEEPS, 0
+        if m <= SMALL_BLOCK:
+            first = 4 * BLOCK_SWEEPS
+    worst = resolve(problem, L, V, FREE, first, rounds, last, again, tolerance, OUT)
     # Velocities are computed again from the impulses, without the round-off of many sweeps.
     velocities(problem, L, FREE, V)
     scale, left = lock(problem, L, V, FREE, owed, exact)

@@ -21,7 +21,7 @@ import pymunk
 
 from ..reentry import BUSY
 from ..transfer import EVENTS
-from . import private, private_joints, private_rest, private_shapes, private_sleep
+from . import private, private_arbiters, private_joints, private_rest, private_shapes, private_sleep
 from .bodies import ANGULAR_VELOCITY, VELOCITY
 from .joints import JointRows
 from .private_joints import restore_motions, silent, strengthen, weaken, with_laws
@@ -44,9 +44,9 @@ def rest_step(
 ) -> None:
     """Update pymunk's shapes by its own step, with all velocities 0, which moves nothing.
 
-    It uses the real dt, so that `space.current_time_step` is right and a native step may follow: with velocities 0
-    pymunk stores no impulse that it would scale by the ratio of the two steps. All bodies must have velocity 0; jointed
-    ones may end with velocities of round-off.
+    It uses the real dt, so that `space.current_time_step` is right and a native step may follow: with velocities 0, and
+    contacts without impulses of a step of pymunk's own, pymunk stores no impulse that it would scale by the ratio of
+    the two steps. All bodies must have velocity 0; jointed ones may end with velocities of round-off.
 
     Args:
         joints: the constraints of the space, which call no functions meanwhile, and exert no forces.
@@ -170,6 +170,8 @@ class Sync:
         self._new = False
         if stored:
             private_shapes.forget_corrections(world.movers)
+            for arbiter in private.raw_arbiters(self.space):
+                private_arbiters.set_impulse(arbiter, None)
         slept = self._asleep and self._sleep()
         how = self.space, dt, world.joints, stored, self._choice() if self._asleep else None
         if world.hooks.some:

@@ -190,9 +190,10 @@ def test_jointed_shapes_that_overlap_neither_repeat_impacts_nor_gain_energy(seed
     assert Varied(seed, True).play().unconverged <= most
 
 
-@pytest.mark.parametrize("seed", [112574, 112928])
+@pytest.mark.parametrize("seed", [63294, 112574, 112928])
 def test_steps_that_are_cut_press_nothing_through_walls(seed: int) -> None:
-    """Without the penetration correction at the cut, boxes leave the container."""
+    """Without the penetration correction at the cut, boxes leave the container; as they do where light bodies between
+    heavy ones get sweeps only, whose errors the lock turns into speed."""
     Varied(seed, False).play()
 
 

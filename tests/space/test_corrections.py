@@ -53,3 +53,29 @@ def test_a_native_step_after_one_with_handlers_starts_from_where_it_ended() -> N
     space.step(1e-9)
     for body, place, velocity in zip(bodies, before, velocities, strict=True):
         assert body.position == pytest.approx(place + velocity * 1e-9, abs=1e-12)
+
+
+def test_native_after_ours_pushes_with_no_impulse_of_an_earlier_native_step() -> None:
+    """pymunk begins a step with the impulses of its last one, times the ratio of their dt: 0.1 s after 1e-5 s would
+    make impulses of 10 000 weights, which a native step pushes with."""
+    space = pymunk.Space()
+    space.gravity = 0.0, -9.81
+    floor = pymunk.Segment(space.static_body, (-5.0, 0.0), (5.0, 0.0), 0.1)
+    space.add(floor)
+    bodies = []
+    for k, mass in enumerate((1e-3, 1.0, 1e-3, 10.0)):
+        body = pymunk.Body(mass, mass / 6.0)
+        body.position = 0.0, 0.6 + k
+        space.add(body, pymunk.Poly.create_box(body, (1.0, 1.0)))
+        bodies.append(body)
+    stepper = ep.EECA(space)
+    short, long = 1e-5, 0.1
+    for _ in range(3):
+        for _ in range(3):
+            space.step(short)
+        for _ in range(3):
+            stepper.step(long)
+        before = [body.velocity for body in bodies]
+        space.step(short)
+        kicks = [(body.velocity - old).length for body, old in zip(bodies, before, strict=True)]
+        assert max(kicks) <= 9.81 * short * (1.0 + 1e-9)

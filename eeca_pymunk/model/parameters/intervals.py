@@ -75,7 +75,9 @@ INTERVAL_RESIDUAL_SPEED = accuracy(
     0.0001, "of its speed", "The same, relative to its speed; and of impacts on it, relative to the approach speed."
 )
 DIRECT = work(20, "direct solutions", "Direct solutions of an island near rest, or elastic, at most.")
-DIRECT_MOVING = work(6, "direct solutions", "Direct solutions of a moving island of few contacts, at most.")
+DIRECT_MOVING = work(
+    6, "direct solutions", "Direct solutions of a moving island of few contacts, or of a hit on a pile, at most."
+)
 FIRST_SWEEPS = work(10, "sweeps", "Sweeps of an island before its first direct solution.")
 SWEEPS_AFTER = work(4, "sweeps", "Sweeps of an island after each direct solution.")
 BACKOFF_CONTACTS = work(
