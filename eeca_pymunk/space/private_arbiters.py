@@ -47,14 +47,14 @@ def asleep(arbiter: Any) -> bool:
 
 
 def set_impulse(arbiter: Any, impulse: tuple[float, float] | None) -> list[tuple[float, float]]:
-    """Set the impulse of an arbiter on its second shape, divided among its points; None for 0. Returns the old
-    values."""
+    """Set the impulse of an arbiter on its second shape, divided among its points, if it has any; None for 0. Returns
+    the old values."""
     old = [(arbiter.contacts[k].jnAcc, arbiter.contacts[k].jtAcc) for k in range(arbiter.count)]
     x, y = (0.0, 0.0) if impulse is None else impulse
     nx, ny = arbiter.n.x, arbiter.n.y
-    normal, tangential = (x * nx + y * ny) / arbiter.count, (y * nx - x * ny) / arbiter.count
     for k in range(arbiter.count):
-        arbiter.contacts[k].jnAcc, arbiter.contacts[k].jtAcc = normal, tangential
+        arbiter.contacts[k].jnAcc = (x * nx + y * ny) / arbiter.count
+        arbiter.contacts[k].jtAcc = (y * nx - x * ny) / arbiter.count
     return old
 
 
