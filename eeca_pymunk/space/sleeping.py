@@ -210,7 +210,8 @@ class Sleep:
         asleep, moves = self.world.bodies.asleep, ~self.world.bodies.static
         a, b = contacts.body_a, contacts.body_b
         hit = np.concatenate((a[asleep[a] & moves[b]], b[asleep[b] & moves[a]]))
-        return [self.world.bodies.items[i] for i in np.unique(hit)]
+        # numpy's `unique` imports a module at its first call, in some 10 ms.
+        return [self.world.bodies.items[i] for i in sorted(set(hit.tolist()))]
 
     def rest(self, dt: float) -> bool:
         """Update the times at rest after a step; returns whether any body may fall asleep."""
