@@ -144,7 +144,7 @@ class RunningStepper(PackedStepper):
 
     def may_touch_sleepers(self, sleep: Sleep) -> bool:
         loop = self.event_loop
-        return loop is None or sleep.is_touched(loop.scene.LOG, int(loop.scene.COUNT.logged))
+        return loop is None or sleep.is_touched(loop.scene.LOG, loop.impulses)
 
     def patch(self, world: World) -> bool:
         loop = self.event_loop

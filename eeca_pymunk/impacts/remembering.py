@@ -84,6 +84,11 @@ class Remembering:
         """Number of solves of islands and simultaneous impacts in the last step."""
         return int(self._count.item(_SOLVES) + self._count.item(_BLOCKS))
 
+    @property
+    def impulses(self) -> int:
+        """Number of impulses of the last step."""
+        return int(self._count.item(_LOGGED))
+
     def logged(self) -> IntArray:
         """(m, fields) the impulses of the last step as integers, a copy: that of records takes ten times as long."""
         return self._log[: self._count.item(_LOGGED)].copy()
