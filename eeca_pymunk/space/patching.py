@@ -10,10 +10,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-import numpy as np
 import pymunk
 
-from ..layout import LEFT, NOW, PUSH_TWIST, PUSH_X
 from ..transfer import MOVED_STATIC, OTHER_BODIES
 from .edits import clock, edited_since
 from .packing import Record, read
@@ -23,7 +21,8 @@ if TYPE_CHECKING:
 
 
 class Patched(NamedTuple):
-    """Whether elasticities have changed, or filters or radii, and whether static bodies were moved."""
+    """Whether a shape has become elastic (e = 1) or is so no more, whether filters or radii have changed, and whether
+    static bodies were moved."""
 
     elasticity: bool
     reach: bool
@@ -53,7 +52,7 @@ def patch(world: World) -> Patched | None:
         if (new.body, new.points) != (record.body, record.points):
             return None
         reach |= (new.filter, new.numbers[0]) != (record.filter, record.numbers[0])
-        elasticity |= new.numbers[1] != record.numbers[1]
+        elasticity |= (new.numbers[1] < 1.0) != (record.numbers[1] < 1.0)
     weighed = []
     for i in [bodies.row[thing] for thing in stale if thing in bodies.row]:
         masses, more = bodies.changed(i)
@@ -74,6 +73,5 @@ def patch(world: World) -> Patched | None:
     if not world.packed.lay_again(bodies, world.state, world.records, records, moved):
         return None
     world.read_at, world.objects_read = now, world.objects_read + len(records) + len(weighed)
-    world.STATES[LEFT] = np.where(bodies.static[:, None], world.STATES[NOW], np.nan)
-    world.EXTRA[:, PUSH_X : PUSH_TWIST + 1] = 0.0
+    world.place_anew()
     return Patched(elasticity, reach, moved)
