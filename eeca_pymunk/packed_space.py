@@ -11,6 +11,7 @@ import numpy as np
 
 from .arrays import FloatArray, IntArray
 from .errors import NotFiniteError
+from .report import Outcome
 from .space.checks import check_ignored
 from .space.decisions import Decisions
 from .space.describe import describe
@@ -82,9 +83,9 @@ class PackedSpace(Stepper):
         or removed. False if a new reading is needed."""
         return False
 
-    def book(self) -> FloatArray | None:
-        """(7,) the ledger entries of the last step, see `energy.ledger`; None if the stepper has none."""
-        return None
+    def outcome(self) -> Outcome:
+        """Of the last step, or of none."""
+        return None, 1.0, True, 0
 
     @property
     def model(self) -> str:
@@ -119,7 +120,7 @@ class PackedSpace(Stepper):
         self._sync = Sync(world, None if past is None else self._sync)
         self._sleep = Sleep(world, self._sleep) if self.space.sleep_time_threshold < math.inf else None
         self.prepare(world, past)
-        if self._sleep is not None and (book := self.book()) is not None:
+        if self._sleep is not None and (book := self.outcome()[0]) is not None:
             self._idle_book = np.zeros_like(book)
         return self._adopt(world)
 

@@ -19,8 +19,8 @@ TYPES = ("pmBatchedData *", "pmFloatArray *", "pmIntArray *")
 def reader(space: pymunk.Space, fields: batch.BodyFields, floats: FloatArray, ids: IntArray) -> Callable[[], None]:
     """`batch.get_space_bodies` into given memory, at a quarter of its cost.
 
-    The caller must ensure that `floats` and `ids`, flat and contiguous, have room for one body more than the space at every
-    call: pymunk would replace memory that is too small by its own, and free it.
+    The caller must ensure that `floats` and `ids`, flat and contiguous, have room for one body more than the space has
+    at every call: pymunk would replace memory that is too small by its own, and free it.
     """
     values, numbers = _array("pmFloatArray *", "cpFloat[]", floats), _array("pmIntArray *", "uintptr_t[]", ids)
     data = _batched(fields, values, numbers)
