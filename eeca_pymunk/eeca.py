@@ -129,12 +129,14 @@ class EECA(RunningStepper):
         parted = False
         joints = world.joints
         if joints is not None:
-            if not joints.idle():
-                BUSY.add(self.space)  # springs have functions
+            if joints.functions or joints.edited:
+                BUSY.add(self.space)
                 try:
                     joints.update(world.state, world.bodies.row, dt)
                 finally:
                     BUSY.discard(self.space)
+            elif not joints.idle():
+                joints.update(world.state, world.bodies.row, dt)
             if joints.replan or joints.ends_moved:
                 assert isinstance(self._method, EventLoop)
                 if self._method.holds_others():
