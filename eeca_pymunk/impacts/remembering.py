@@ -155,7 +155,7 @@ class Remembering:
     def _list_anew(self) -> None:
         """Make near lists for the present places of bodies, as for a new loop."""
         scene = self.scene
-        near = near_lists(scene, len(scene.LIST))
+        near = near_lists(scene, len(scene.LIST), self.table)
         pairs = [(np.asarray(getattr(scene, name)), np.asarray(getattr(near, name))) for name in NEAR]
         if all(old.shape == new.shape for old, new in pairs):
             # The addresses that machine code uses remain.
