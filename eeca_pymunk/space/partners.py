@@ -21,7 +21,6 @@ from ..errors import NotFiniteError
 from ..model.bodies import Body
 from . import private_joints
 
-
 _MOTION = struct.Struct("6d")  # the first fields of `Body`: pose and velocity
 
 
