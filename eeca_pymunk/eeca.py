@@ -12,7 +12,7 @@ from .arrays import AnyArray, FloatArray, IntArray
 from .closures.time_of_impact import TimeOfImpact
 from .impacts.scene import EventLoop
 from .reentry import BUSY
-from .report import Details
+from .report import Details, Outcome
 from .runs import RunningStepper
 from .saved import Saved, sides_of
 from .space.arbiters import Touches, show_contacts, touches
@@ -45,21 +45,8 @@ class Method(Protocol):
         """The arrays of the report of the last step, or a function that makes them; `owner` (k,): index in `bodies` of
         the body of each shape."""
 
-    @property
-    def book(self) -> FloatArray | None:
-        """(7,) a copy of the ledger entries of the last step (`energy.ledger`); None if there is none."""
-
-    @property
-    def lock(self) -> float:
-        """Scale of the energy lock of the last step that was farthest from 1."""
-
-    @property
-    def converged(self) -> bool:
-        """Whether the last step met all budgets and tolerances."""
-
-    @property
-    def iterations(self) -> int:
-        """Number of iterations of the solver in the last step, 0 if they are not counted."""
+    def outcome(self) -> Outcome:
+        """Of the last step, or of none."""
 
 
 class Closure(Protocol):
@@ -142,12 +129,14 @@ class EECA(RunningStepper):
         parted = False
         joints = world.joints
         if joints is not None:
-            if not joints.idle():
-                BUSY.add(self.space)  # springs have functions
+            if joints.functions or joints.edited:
+                BUSY.add(self.space)
                 try:
                     joints.update(world.state, world.bodies.row, dt)
                 finally:
                     BUSY.discard(self.space)
+            elif not joints.idle():
+                joints.update(world.state, world.bodies.row, dt)
             if joints.replan or joints.ends_moved:
                 assert isinstance(self._method, EventLoop)
                 if self._method.holds_others():
@@ -174,13 +163,10 @@ class EECA(RunningStepper):
     def details(self, world: World, dt: float) -> Details | Callable[[], Details]:
         return self._method.details(dt, world.bodies.items, world.owner)
 
-    def book(self) -> FloatArray | None:
-        return self._method.book
-
     def unmet(self, world: World) -> tuple[Unmet, ...] | Callable[[], tuple[Unmet, ...]]:
         if not isinstance(self._method, EventLoop):
             return ()
         return partial(of_missed, self._method.missed, world.bodies.items, world.owner)
 
-    def outcome(self) -> tuple[float, bool, int]:
-        return self._method.lock, self._method.converged, self._method.iterations
+    def outcome(self) -> Outcome:
+        return self._method.outcome()

@@ -6,13 +6,12 @@ from abc import abstractmethod
 from collections.abc import Callable
 from math import isfinite
 
-from .arrays import FloatArray
 from .energy.ledger import AFTER, DAMPED
 from .errors import NotFiniteError
 from .layout import LEFT
 from .packed_space import TOO_FAR, PackedSpace
 from .reentry import BUSY
-from .report import Details, StepReport
+from .report import Details, Outcome, StepReport
 from .space.world import World
 from .transfer import EVENTS, FORCES, MOVED_STATIC, OTHER_BODIES
 from .unmet import Unmet
@@ -35,11 +34,6 @@ class HookedStepper(PackedSpace):
     @abstractmethod
     def details(self, world: World, dt: float) -> Details | Callable[[], Details]:
         """The arrays of the report of the last step, whose status has EVENTS, or a function that makes them."""
-
-    def outcome(self) -> tuple[float, bool, int]:
-        """Scale of the energy lock of the last step that was farthest from 1, whether all tolerances were met, and the
-        iterations of the solver."""
-        return 1.0, True, 0
 
     def unmet(self, world: World) -> tuple[Unmet, ...] | Callable[[], tuple[Unmet, ...]]:
         """Budgets and tolerances that the last step did not meet, or a function that makes them."""
@@ -83,16 +77,20 @@ class HookedStepper(PackedSpace):
             if len(world.hooks.velocity):
                 world.set_accelerations(world.hooks.velocity_changes(dt), dt)
             if world.collisions:
-                self._checked(world, dt, world.rehearsal.run(dt, half_damping))
+                if (status := world.rehearsal.run(dt, half_damping)) < 0:
+                    self._fail(world, dt, status)
                 if self._sleep is not None and self._sleep.woken():
                     world = self._awoken(world)
                 world.rules = world.rehearsal.rules(self.decisions)
-            status, hooks = self._checked(world, dt, self.advance(world, dt, half_damping)), world.hooks
-            book = self._booked(dt)
+            status, hooks = self.advance(world, dt, half_damping), world.hooks
+            if status < 0:
+                self._fail(world, dt, status)
+            outcome = self._outcome(dt)
             alters = world.damping == 0.0 or len(hooks.position) > 0 or (world.collisions and world.rehearsal.after)
             if alters:
                 bits, lost = world.alter_end(world.damping == 0.0)
-                self._checked(world, dt, bits)
+                if bits < 0:
+                    self._fail(world, dt, bits)
                 if len(hooks.position):
                     hooks.positions(world.state, world.STATES[LEFT], dt)
                     world.bodies.check_finite(world.ended(), TOO_FAR)
@@ -110,7 +108,7 @@ class HookedStepper(PackedSpace):
             self._undo(world, world.START)
             raise
         self.time += dt
-        report = self._make_report(world, dt, status, book, lost)
+        report = self._make_report(world, dt, status, outcome, lost)
         world.show_joints()
         return world, report
 
@@ -152,30 +150,24 @@ class HookedStepper(PackedSpace):
             if self._sync.stamp < 0:
                 self._sync.note()
 
-    def _booked(self, dt: float) -> FloatArray | None:
-        """The ledger entries of the step. NotFiniteError, before the space is changed, if the energy overflows though
+    def _outcome(self, dt: float) -> Outcome:
+        """The outcome of the step. NotFiniteError, before the space is changed, if the energy overflows though
         positions and velocities do not."""
-        book = self.book()
+        outcome = self.outcome()
+        book = outcome[0]
         if book is not None and not isfinite(book[AFTER]):
             self._world = None
             raise NotFiniteError(f"the energy of the space would be {book[AFTER]} after dt = {dt}: {TOO_FAR}")
-        return book
+        return outcome
 
-    def _checked(self, world: World, dt: float, status: int) -> int:
-        if status < 0:
-            self._fail(world, dt, status)
-        return status
-
-    def _make_report(
-        self, world: World, dt: float, status: int, book: FloatArray | None, lost: float = 0.0
-    ) -> StepReport:
-        """The report of the step with these ledger entries; `lost`: energy taken by damping 0 at the end."""
+    def _make_report(self, world: World, dt: float, status: int, outcome: Outcome, lost: float = 0.0) -> StepReport:
+        """The report of the step with this outcome; `lost`: energy taken by damping 0 at the end."""
+        book, lock, converged, iterations = outcome
         if lost and book is not None:
             book[DAMPED] += lost
             book[AFTER] -= lost
-        lock, converged, iterations = self.outcome()
         unmet = () if converged else self.unmet(world)
         if not status & EVENTS:
             return StepReport(self.time, world.empty, converged=converged, book=book, unmet=unmet)
         details = self.details(world, dt)
-        return StepReport(self.time, details, iterations, lock=lock, converged=converged, book=book, unmet=unmet)
+        return StepReport(self.time, details, iterations, lock, converged, book, unmet)

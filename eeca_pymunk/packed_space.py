@@ -11,6 +11,7 @@ import numpy as np
 
 from .arrays import FloatArray, IntArray
 from .errors import NotFiniteError
+from .report import Outcome
 from .space.checks import check_ignored
 from .space.decisions import Decisions
 from .space.describe import describe
@@ -82,16 +83,18 @@ class PackedSpace(Stepper):
         or removed. False if a new reading is needed."""
         return False
 
-    def book(self) -> FloatArray | None:
-        """(7,) the ledger entries of the last step, see `energy.ledger`; None if the stepper has none."""
-        return None
+    def outcome(self) -> Outcome:
+        """Of the last step, or of none."""
+        return None, 1.0, True, 0
 
     @property
     def model(self) -> str:
+        return describe(self._present())
+
+    def _present(self) -> World:
+        """The present space as a checked World; the states of its bodies may be older."""
         world = self._world
-        if world is None or not world.current():
-            world = self._update_world()
-        return describe(world)
+        return world if world is not None and world.current() else self._update_world()
 
     def _update_world(self, anew: bool = False) -> World:
         """The present space as a checked World: the last one if only settings changed, that one patched, or a new
@@ -104,7 +107,7 @@ class PackedSpace(Stepper):
         if world is not None and world.same_things():
             if not (anew or world.edited()):
                 return self._update_settings(world)
-            if self._sleep is None and self.space.sleep_time_threshold == math.inf and self.patch(world):
+            if self._patchable(world) and self.patch(world):
                 self.patches += 1
                 return self._adopt(world)
         past = world
@@ -119,9 +122,16 @@ class PackedSpace(Stepper):
         self._sync = Sync(world, None if past is None else self._sync)
         self._sleep = Sleep(world, self._sleep) if self.space.sleep_time_threshold < math.inf else None
         self.prepare(world, past)
-        if self._sleep is not None and (book := self.book()) is not None:
+        if self._sleep is not None and (book := self.outcome()[0]) is not None:
             self._idle_book = np.zeros_like(book)
         return self._adopt(world)
+
+    def _patchable(self, world: World) -> bool:
+        """Whether changes may be patched: nobody sleeps, whom they might wake, and where bodies may sleep pymunk has
+        taken no step, after which they are read again in any case."""
+        if self._sleep is None:
+            return self.space.sleep_time_threshold == math.inf and (world.joints is None or world.edited())
+        return world.edited() and not (self._sleep.some or self._sleep.changed())
 
     def _update_settings(self, world: World) -> World:
         """The world of the last step, after changes of settings and joints only."""

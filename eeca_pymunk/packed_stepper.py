@@ -6,7 +6,7 @@
 | read all states | `World.gather` |
 | move the arrays | `advance`, of subclasses |
 | repeat the step with sleeping bodies that were touched | `_awake` |
-| take the ledger's numbers | `_booked` |
+| take the ledger's numbers | `_outcome` |
 | write the states, and update pymunk's shapes | `land` |
 | make the report | `_make_report` |
 | call post-step callbacks | `Sync.call_back` |
@@ -91,11 +91,10 @@ class PackedStepper(HookedStepper):
         """Arrays that a step writes, and that one which takes its place needs as they were."""
         return [world.STATES[LEFT]]
 
-    def _attempt(self, world: World, dt: float, half_damping: float) -> tuple[int, list[AnyArray]]:
-        """The status of `advance`; and what `rewound` had before, if the step may have to be repeated."""
+    def _kept(self, world: World) -> list[AnyArray]:
+        """A copy of `rewound`, if the step may have to be repeated."""
         sleepers = self._sleep is not None and self._sleep.some
-        before = [array.copy() for array in self.rewound(world)] if sleepers else []
-        return self.advance(world, dt, half_damping), before
+        return [array.copy() for array in self.rewound(world)] if sleepers else []
 
     def _awake(
         self, world: World, dt: float, half_damping: float, status: int, before: list[AnyArray]
@@ -118,7 +117,7 @@ class PackedStepper(HookedStepper):
                     world = self._update_world(anew=True)
                 break
             world.gather()
-            status, before = self._attempt(world, dt, half_damping)
+            before, status = self._kept(world), self.advance(world, dt, half_damping)
         return world, status
 
     def _calls(self, world: World) -> bool:
@@ -127,22 +126,23 @@ class PackedStepper(HookedStepper):
 
     def _step(self, world: World, dt: float) -> StepReport:
         """A step of the awake bodies."""
-        if self._calls(world):
+        if not world.plain and self._calls(world):
             return self._hooked_step(world, dt)
         world.gather()
         half_damping = world.half_damping(dt)
-        status, before = self._attempt(world, dt, half_damping)
+        before = [] if self._sleep is None else self._kept(world)
+        status = self.advance(world, dt, half_damping)
         if status in (OTHER_BODIES, MOVED_STATIC):
             world = self._update_world(anew=True)
             world.gather()
-            status, before = self._attempt(world, dt, half_damping)
+            before, status = self._kept(world), self.advance(world, dt, half_damping)
         if self._sleep is not None:
             world, status = self._awake(world, dt, half_damping, status, before)
             if self._calls(world):
                 return self._hooked_step(world, dt)
         if status < 0:
             self._fail(world, dt, status)
-        book = self._booked(dt)
+        outcome = self._outcome(dt)
         try:
             if status & FORCES:
                 world.reset_forces()
@@ -151,7 +151,7 @@ class PackedStepper(HookedStepper):
             self._undo(world, world.state)
             raise
         self.time += dt
-        report = self._make_report(world, dt, status, book)
+        report = self._make_report(world, dt, status, outcome)
         if not world.plain:
             world.show_joints()
         if self.sync:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -54,6 +54,11 @@ class Details(NamedTuple):
     psi2: FloatArray
     gap_increment: FloatArray
     friction: FloatArray | None = None
+
+
+# How a step was solved: (7,) its ledger entries, a copy (`energy.ledger`; None if the stepper has none), the scale of
+# the energy lock that was farthest from 1, whether all budgets and tolerances were met, and iterations of the solver.
+Outcome: TypeAlias = tuple[FloatArray | None, float, bool, int]
 
 
 class StepReport:

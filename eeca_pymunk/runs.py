@@ -71,9 +71,7 @@ class RunningStepper(PackedStepper):
 
     def current(self) -> World:
         """The arrays of the present space, with the states of its bodies."""
-        world = self._world
-        if world is None or not world.current():
-            world = self._update_world()
+        world = self._present()
         world.gather()
         if not world.is_current():
             world = self._update_world(anew=True)
@@ -95,9 +93,7 @@ class RunningStepper(PackedStepper):
 
     def calls(self) -> bool:
         """Whether functions have to be called within the next step."""
-        world = self._world
-        if world is None or not world.current():
-            world = self._update_world()
+        world = self._present()
         joints = world.joints
         functions = joints is not None and (joints.calls_back() or bool(joints.functions))
         return world.hooked or functions or (self.sync and self._sync.waits())
@@ -144,15 +140,18 @@ class RunningStepper(PackedStepper):
 
     def may_touch_sleepers(self, sleep: Sleep) -> bool:
         loop = self.event_loop
-        return loop is None or sleep.is_touched(loop.scene.LOG, int(loop.scene.COUNT.logged))
+        return loop is None or sleep.is_touched(loop.scene.LOG, loop.impulses)
 
     def patch(self, world: World) -> bool:
-        loop = self.event_loop
+        loop, surfaces = self.event_loop, self._sleep is not None
+        if world.joints is not None:
+            if found := world.patch(surfaces):
+                self.prepare(world, world)
+            return found is not None
         if loop is None or not hasattr(loop, "fresh"):
-            # Memory from which patches start is kept only after the first edit in place, since keeping it costs time.
-            self._patches = True
+            self._patches = True  # memory from which patches start, which costs time, is kept from now on
             return False
-        sides, found = sides_of(world, loop), world.patch()
+        sides, found = sides_of(world, loop), world.patch(surfaces)
         if found is None:
             return False
         if found.elasticity and bool(loop.scene.COUNT.lossy) != bool((world.SHAPE["elasticity"] < 1.0).any()):
@@ -184,8 +183,7 @@ class RunningStepper(PackedStepper):
             kept: bodies that are not static.  every: steps from frame to frame, 0 for none; the start is the first one.
             events: whether impacts are stored.  progress: whether to show a progress bar.
 
-        A step that fails raises as `step` does; the space is at the end of the step before.
-        """
+        A step that fails raises as `step` does; the space is at the end of the step before."""
         world = self.adjusted(dt)
         rows = np.array([world.bodies.row[body] for body in kept], np.int64)
         moments = 1 + steps // every if every else 0

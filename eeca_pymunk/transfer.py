@@ -124,6 +124,16 @@ def take(
 
 
 @kernel
+def place_anew(STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray) -> None:
+    """Let all bodies count as placed by the program where they were read, as before the first step: STATES[LEFT] is
+    what was read of bodies without a row, and unknown, nan, of others; functions have given no accelerations."""
+    for i in range(WALK.shape[1]):
+        for c in range(9):
+            STATES[LEFT, i, c] = STATES[NOW, i, c] if WALK[BODY_ROW, i] < 0 else math.nan
+        EXTRA[i, PUSH_X], EXTRA[i, PUSH_Y], EXTRA[i, PUSH_TWIST] = 0.0, 0.0, 0.0
+
+
+@kernel
 def give(
     STATES: FloatArray,
     WALK: IntArray,

@@ -14,7 +14,7 @@ from ..energy.complementarity import solve
 from ..energy.delassus import Delassus
 from ..energy.graph import restrict
 from ..packed_stepper import PackedStepper
-from ..report import Details
+from ..report import Details, Outcome
 
 if TYPE_CHECKING:
     import pymunk
@@ -49,9 +49,9 @@ class PenaltyStepper(PackedStepper):
         assert self._disks.motion.details is not None
         return self._disks.motion.details
 
-    def outcome(self) -> tuple[float, bool, int]:
+    def outcome(self) -> Outcome:
         motion = self._disks.motion
-        return motion.lock, motion.converged, motion.iterations
+        return None, motion.lock, motion.converged, motion.iterations
 
     def _move(self, start: Start) -> Motion:
         velocity = start.free_velocity

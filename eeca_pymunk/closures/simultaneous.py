@@ -13,7 +13,7 @@ import numpy as np
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..energy.delassus import Delassus
 from ..energy.graph import restrict
-from ..report import Details
+from ..report import Details, Outcome
 from .motion import Disks, Geometry, Motion, Pairs, Start
 
 if TYPE_CHECKING:
@@ -190,25 +190,10 @@ class SimultaneousStep:
         assert self.disks.motion.details is not None
         return self.disks.motion.details
 
-    @property
-    def book(self) -> None:
-        """No ledger is kept."""
-        return None
-
-    @property
-    def lock(self) -> float:
-        """Scale of the energy lock of the last step that was farthest from 1."""
-        return self.disks.motion.lock
-
-    @property
-    def converged(self) -> bool:
-        """Whether the last step met the tolerance."""
-        return self.disks.motion.converged
-
-    @property
-    def iterations(self) -> int:
-        """Of the closure in the last step."""
-        return self.disks.motion.iterations
+    def outcome(self) -> Outcome:
+        """Of the last step; no ledger is kept."""
+        motion = self.disks.motion
+        return None, motion.lock, motion.converged, motion.iterations
 
 
 def _length(vectors: FloatArray) -> FloatArray:

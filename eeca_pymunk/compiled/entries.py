@@ -60,6 +60,7 @@ ENTRIES = {
     "geometry.sides:keep_sides": "{Scene} Side[1] i8[1]",
     "transfer:take": "f8[3] i8[2] f8[2] Body[1] f8 f8 f8",
     "transfer:give": "f8[3] i8[2] f8[2] Body[1] f8[1] f8 f8 i8",
+    "transfer:place_anew": "f8[3] i8[2] f8[2]",
     "transfer:lay": "f8[3] i8[2] f8[1] i8",
     "transfer:lay_rest": "f8[3] f8[1] i8",
     "rehearsing:approach": "f8[3] i8[2] f8[2] Body[1] f8[1] f8[2] f8 f8 f8 f8",

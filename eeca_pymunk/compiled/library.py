@@ -19,14 +19,14 @@ from pathlib import Path
 from typing import Any
 
 import _cffi_backend
-import numpy as np
 
+from ..arrays import address_of
 from .entries import ENTRIES, is_array, split
-from .records import address_of
 from .sources import sources_hash
 
 NO_MEMORY, NO_SHAPE = -(1 << 63), -(1 << 63) + 1  # returned if an array cannot be created; if shapes do not fit
 _ffi = _cffi_backend.FFI()
+_WORDS = _ffi.typeof("int64_t[]")
 
 
 class Status(enum.Enum):
@@ -74,7 +74,7 @@ class Entry:
     def point_to(self, address: int) -> None:
         """Call the C function at this address."""
         numbers = ["double" if kind == "f8" else "int64_t" for kind in self.kinds if not is_array(kind)]
-        self.function: Callable[..., int] = _ffi.cast(f"int64_t(*)({', '.join(['uintptr_t', *numbers])})", address)
+        self.function: Callable[..., int] = _ffi.cast(f"int64_t(*)({', '.join(['int64_t *', *numbers])})", address)
 
     def __call__(self, *args: Any) -> int:
         if len(args) != len(self.kinds):
@@ -106,9 +106,9 @@ class Entry:
                 )
             words.append(address_of(array))
             words += array.shape
-        given = np.array(words, np.int64)
-        call = functools.partial(self.function, address_of(given))
-        call.kept = arrays, given  # type: ignore[attr-defined] # as long as their addresses are used
+        # A pointer is passed in half the time of a number.
+        call = functools.partial(self.function, _ffi.new(_WORDS, words))
+        call.kept = arrays  # type: ignore[attr-defined] # as long as their addresses are used
         return call
 
 

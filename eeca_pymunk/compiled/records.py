@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from operator import itemgetter
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Generic, TypeVar, get_origin, get_type_hints, overload
 
-import _cffi_backend
 import numpy as np
 
 from ..arrays import AnyArray, FloatArray, IntArray
@@ -21,8 +20,6 @@ if TYPE_CHECKING:
 else:
     _Row = np.void
 
-_ffi = _cffi_backend.FFI()
-_ADDRESS = _ffi.typeof("uintptr_t")
 KINDS: dict[str, np.dtype[Any]] = {}  # dtypes of all records by name
 _CODES: dict[Any, Any] = {float: np.float64, int: np.int64, FloatArray: np.float64, IntArray: np.int64}
 
@@ -138,12 +135,6 @@ def as_integers(of: Rows[Any]) -> IntArray:
 def records(of: Rows[Any]) -> IntArray:
     """(rows, fields) records as integers: a view."""
     return of.view(np.int64).reshape(len(of), of.dtype.itemsize // 8)
-
-
-def address_of(array: Any) -> int:
-    """Memory address of an array, or of a record in one."""
-    # numpy's `__array_interface__` describes all fields of records, in forty times the time.
-    return int(_ffi.cast(_ADDRESS, _ffi.from_buffer(array)))
 
 
 def numbers(of: Record) -> AnyArray:

@@ -11,10 +11,10 @@ from typing import Any, Generic, TypeAlias, TypeVar
 
 import numpy as np
 
+from ..arrays import address_of
 from .backend import start
 from .entries import TABLES, table_fields
 from .kernels import Compilable
-from .records import address_of
 
 T = TypeVar("T")
 Table: TypeAlias = Any  # of `table_of`
@@ -27,7 +27,7 @@ class Pointers:
     __slots__ = ("address", "arrays", "words")
 
     def __init__(self, arrays: Any, words: Any) -> None:
-        self.arrays, self.words, self.address = arrays, words, words.ctypes.data
+        self.arrays, self.words, self.address = arrays, words, address_of(words)
 
 
 def _said(dtype: np.dtype[Any], dimensions: int) -> str:

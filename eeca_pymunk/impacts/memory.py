@@ -10,8 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import AnyArray, IntArray, side_by_side
-from ..compiled.records import address_of
+from ..arrays import AnyArray, IntArray, address_of, side_by_side
 from ..model.scene import Scene
 
 # Fields of `Scene`. The tables of forces are emptied where a run begins (`run.set_back`).

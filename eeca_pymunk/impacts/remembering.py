@@ -17,6 +17,7 @@ from ..model.scene import Scene
 from ..model.step import Count, Step
 from ..pairs.grid import relist
 from ..pairs.setup import NEAR, near_lists
+from ..report import Outcome
 from .memory import OF_SCENE, ROOM, gathered, recalled, remembered
 
 _STEP, _COUNT = Step.TYPE.names or (), Count.TYPE.names or ()
@@ -69,20 +70,15 @@ class Remembering:
         self._joints, self.ties = arrays, table_of(arrays)
         self._bound = UNBOUND
 
-    @property
-    def lock(self) -> float:
-        """Scale of the energy lock of the last step that was farthest from 1."""
-        return float(self._par.item(_LOCK))
+    def outcome(self) -> Outcome:
+        """Of the last step; iterations are solves of islands and simultaneous impacts."""
+        count = self._count.item
+        return self._book.copy(), self._par.item(_LOCK), count(_UNMET) == 0, count(_SOLVES) + count(_BLOCKS)
 
     @property
-    def converged(self) -> bool:
-        """Whether the last step met all budgets and tolerances."""
-        return bool(self._count.item(_UNMET) == 0)
-
-    @property
-    def iterations(self) -> int:
-        """Number of solves of islands and simultaneous impacts in the last step."""
-        return int(self._count.item(_SOLVES) + self._count.item(_BLOCKS))
+    def impulses(self) -> int:
+        """Number of impulses of the last step."""
+        return int(self._count.item(_LOGGED))
 
     def logged(self) -> IntArray:
         """(m, fields) the impulses of the last step as integers, a copy: that of records takes ten times as long."""
@@ -159,7 +155,7 @@ class Remembering:
     def _list_anew(self) -> None:
         """Make near lists for the present places of bodies, as for a new loop."""
         scene = self.scene
-        near = near_lists(scene, len(scene.LIST))
+        near = near_lists(scene, len(scene.LIST), self.table)
         pairs = [(np.asarray(getattr(scene, name)), np.asarray(getattr(near, name))) for name in NEAR]
         if all(old.shape == new.shape for old, new in pairs):
             # The addresses that machine code uses remain.

@@ -209,11 +209,6 @@ class EventLoop(Remembering):
         return partial(_details, self.logged(), dt, bodies, owner)
 
     @property
-    def book(self) -> FloatArray:
-        """(7,) the entries of the ledger of the last step, a copy (`..energy.ledger`)."""
-        return self._book.copy()
-
-    @property
     def missed(self) -> Rows[Missed]:
         """(m,) the first budgets and tolerances that the last step has not met, a copy."""
         return self.scene.MISSED[: self.scene.COUNT.unmet].copy()

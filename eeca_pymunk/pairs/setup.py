@@ -30,13 +30,14 @@ def near_sizes(moving: int, walls: int) -> tuple[Size, ...]:
     )  # fmt: skip
 
 
-def near_lists(scene: Scene, moving: int) -> Scene:
-    """The scene with lists of the shapes [0, moving), for the present poses in BODY."""
+def near_lists(scene: Scene, moving: int, like: Table | None = None) -> Scene:
+    """The scene with lists of the shapes [0, moving), for the present poses in BODY; `like`: its table, if there is
+    one."""
     arrays = side_by_side(*near_sizes(moving, len(scene.SHAPE) - moving))
     arrays[NEAR.index("GRID")] = GRID = arrays[NEAR.index("GRID")][0]
     GRID.moving = moving
     scene = scene._replace(**dict(zip(NEAR, (*arrays, NO_GRID), strict=True)))
-    return filled(scene, table_of(scene))[0]
+    return filled(scene, table_of(scene, like))[0]
 
 
 def filled(scene: Scene, table: Table) -> tuple[Scene, Table]:
@@ -44,13 +45,13 @@ def filled(scene: Scene, table: Table) -> tuple[Scene, Table]:
     few = len(scene.LIST) <= ALL_PAIRS and len(scene.BOX) <= ALL_WALLS
     found = begin_lists(table, few)
     if few:
-        return (scene, table) if found == DONE else _and_table(with_more_room(scene, 0.0), table)
+        return (scene, table) if found == DONE else _and_table(with_more_room(scene, 0.0, table), table)
     if found > 0:
         scene, table = _and_table(scene._replace(CSR=np.zeros(found, np.int64)), table)
     bounds = np.sort(scene.SHAPE["bound"][: len(scene.LIST)])
     halved = fill_lists(table, bounds, NEIGHBOURS, 0, False)
     while halved != DONE:
-        scene, table = _and_table(with_more_room(scene, 0.0), table)
+        scene, table = _and_table(with_more_room(scene, 0.0, table), table)
         halved = fill_lists(table, bounds, NEIGHBOURS, halved, True)
     return scene, table
 
@@ -60,15 +61,16 @@ def _and_table(scene: Scene, before: Table) -> tuple[Scene, Table]:
     return scene, table_of(scene, before)
 
 
-def rebuilt(scene: Scene, t: float) -> Scene:
-    """The scene with its lists built at instant t, with a larger pool if necessary."""
-    return scene if build(table_of(scene), t) else with_more_room(scene, t)
+def rebuilt(scene: Scene, t: float, like: Table | None = None) -> Scene:
+    """The scene with its lists built at instant t, with a larger pool if necessary; `like`: a table of the scene, as it
+    was, if there is one."""
+    return scene if build(table_of(scene, like), t) else with_more_room(scene, t, like)
 
 
-def with_more_room(scene: Scene, t: float) -> Scene:
+def with_more_room(scene: Scene, t: float, like: Table | None = None) -> Scene:
     """The scene with its lists built at instant t, with a pool at least twice as long (recursion with `rebuilt`)."""
     room = more_room(len(scene.POOL))
-    return rebuilt(scene._replace(POOL=np.zeros(room, np.int32), FLAG=np.zeros(room, np.uint8)), t)
+    return rebuilt(scene._replace(POOL=np.zeros(room, np.int32), FLAG=np.zeros(room, np.uint8)), t, like)
 
 
 def more_room(room: int) -> int:

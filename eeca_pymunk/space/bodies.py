@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import struct
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
 from functools import cached_property
 from typing import Any
 
@@ -19,7 +19,7 @@ from ..errors import NotFiniteError
 from ..layout import STATE_COLUMNS
 from ..model.bodies import POSE
 from ..model.given import DYNAMIC, KINEMATIC, STATIC, GivenBody
-from . import private, private_sleep
+from . import private, private_batch, private_sleep
 
 _KIND = {pymunk.Body.DYNAMIC: DYNAMIC, pymunk.Body.KINEMATIC: KINEMATIC, pymunk.Body.STATIC: STATIC}
 _FIELDS = batch.BodyFields
@@ -164,6 +164,11 @@ class Bodies:
 
     def __len__(self) -> int:
         return len(self.items)
+
+    @cached_property
+    def in_order(self) -> Callable[[], bool]:
+        """Function that returns whether the space still has these bodies, and the same ones of them sleep."""
+        return private_batch.ordered(self.space, self.ids)
 
     @property
     def reached(self) -> tuple[pymunk.Body, ...] | None:

@@ -36,7 +36,7 @@ from ..layout import (
 )  # fmt: skip
 from ..model.bodies import Body
 from ..rehearsing import alter_end, as_read, copy_start
-from ..transfer import FORCES, TURNS, lay, lay_rest
+from ..transfer import FORCES, TURNS, lay, lay_rest, place_anew
 from . import private_batch
 from .bodies import STATE_FIELDS, Bodies
 
@@ -140,6 +140,11 @@ class Crossing:
         """Whether a static one of these bodies was moved, as `gather` has read them."""
         still = self.bodies.static
         return not np.array_equal(self.STATES[NOW, still, :3], self.STATES[LEFT, still, :3])
+
+    @cached_property
+    def place_anew(self) -> Callable[[], None]:
+        """See `transfer.place_anew`."""
+        return place_anew.bind(self.STATES, self.WALK, self.EXTRA)
 
     @property
     def state(self) -> FloatArray:

@@ -183,9 +183,8 @@ class JointRows(Listing):
             ValueError, UnsupportedFeature, NotFiniteError: as a new reading, or for a function of a spring.
         """
         self.refresh()
-        moved = self.partners.read()
-        if moved:
-            self.touch(self._n + i for i in moved)
+        if self.partners.outside and (moved := self.partners.read()):
+            self.touch([self._n + i for i in moved])
             self.ends_moved |= any(self.partners.still[i] for i in moved)
         for j in self.functions:
             item = self.items[j]
@@ -210,7 +209,8 @@ class JointRows(Listing):
         """Mark as edited the joints of bodies (rows) that the program has moved or pushed."""
         touched = self.joint["touched"]
         for row in rows:
-            touched[self._at.get(row, [])] = EDITED
+            for j in self._at.get(row, ()):
+                touched[j] = EDITED
 
     def write(self) -> None:
         """Write notches of ratchets, and let `constraint.impulse` return the impulses of the step."""

@@ -8,6 +8,7 @@ is not moved by it.
 from __future__ import annotations
 
 import math
+import struct
 from collections.abc import Sequence
 from typing import Any
 
@@ -19,6 +20,8 @@ from ..compiled.records import records, rows
 from ..errors import NotFiniteError
 from ..model.bodies import Body
 from . import private_joints
+
+_MOTION = struct.Struct("6d")  # the first fields of `Body`: pose and velocity
 
 
 class Partners:
@@ -33,14 +36,14 @@ class Partners:
     def __init__(self, items: Sequence[pymunk.Body], space: pymunk.Space, past: Partners | None = None) -> None:
         self.items = tuple(items)
         self.PARTNER = rows(Body, len(self.items))
-        self._rows = records(self.PARTNER).view(np.float64)
+        self._memory = self.PARTNER.view(np.uint8).data
         self._known: list[tuple[float, ...] | None] = [None] * len(self.items)
         if past is not None:
             before = {body: i for i, body in enumerate(past.items)}
             there = [before.get(body, -1) for body in self.items]
             self._known = [past._known[i] if i >= 0 else None for i in there]
             if before:
-                self._rows[:] = past._rows[there]  # those that are new are written below
+                records(self.PARTNER)[:] = records(past.PARTNER)[there]  # those that are new are written below
         self.still: IntArray = np.array([body.body_type == pymunk.Body.STATIC for body in self.items], np.int64)
         # Moved static bodies of the space are found where the states of all its bodies are read.
         self.outside = [i for i, body in enumerate(self.items) if body.space is not space]
@@ -66,8 +69,8 @@ class Partners:
             changed.append(i)
             self._known[i] = state
             c, s, kx, ky = math.cos(angle), math.sin(angle), *state[6:]
-            # The first fields of `Body` are pose and velocity.
-            self._rows[i, :6] = x + c * kx - s * ky, y + s * kx + c * ky, angle, vx, vy, spin
+            place = i * Body.TYPE.itemsize
+            _MOTION.pack_into(self._memory, place, x + c * kx - s * ky, y + s * kx + c * ky, angle, vx, vy, spin)
         return changed
 
     def motion(self, i: int) -> tuple[float, float, float, float, float, float]:

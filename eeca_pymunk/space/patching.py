@@ -2,18 +2,17 @@
 
 Rows are afterwards those that a new reading of the whole space would give, bit by bit: only edited objects are read
 again, and all rows are written again in place. This suffices for numbers and filters of shapes, masses and moments of
-bodies, and static bodies that were put elsewhere. All else (vertices, kinds and functions of bodies, sensors, joints,
-what is added and removed) makes other rows, and is left to a new reading.
+bodies, and static bodies that were put elsewhere; where there are joints, or bodies may sleep, for numbers and filters
+of shapes apart from radii. All else (vertices, kinds and functions of bodies, sensors, what is added and removed) makes
+other rows, and is left to a new reading.
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-import numpy as np
 import pymunk
 
-from ..layout import LEFT, NOW, PUSH_TWIST, PUSH_X
 from ..transfer import MOVED_STATIC, OTHER_BODIES
 from .edits import clock, edited_since
 from .packing import Record, read
@@ -23,16 +22,20 @@ if TYPE_CHECKING:
 
 
 class Patched(NamedTuple):
-    """Whether elasticities have changed, or filters or radii, and whether static bodies were moved."""
+    """Whether a shape has become elastic (e = 1) or is so no more, whether filters or radii have changed, and whether
+    static bodies were moved."""
 
     elasticity: bool
     reach: bool
     moved: bool
 
 
-def patch(world: World) -> Patched | None:
-    """Write all edits since the world was read into its rows, as if no step had been taken. No shapes were added or
-    removed.
+def patch(world: World, surfaces: bool) -> Patched | None:
+    """Write all edits since the world was read into its rows, as if no step had been taken; joints keep what bodies of
+    earlier steps have left. No shapes were added or removed.
+
+    Args:
+        surfaces: whether only edits may be patched that leave sizes, masses and places as they were.
 
     Returns:
         what was changed; None if a new reading is due: the rows are then invalid.
@@ -41,7 +44,8 @@ def patch(world: World) -> Patched | None:
         ValueError, UnsupportedFeature, NotFiniteError: as a new reading would.
     """
     now, stale = clock(), edited_since(world.read_at)
-    if stale is None or world.frictionless or world.joints is not None or world.space.constraints:
+    joints = world.joints
+    if stale is None or world.frictionless or list(world.space.constraints) != ([] if joints is None else joints.items):
         return None
     elasticity, reach, bodies = False, False, world.bodies
     records: dict[pymunk.Shape, Record] = {}
@@ -52,8 +56,11 @@ def patch(world: World) -> Patched | None:
         records[shape] = new = read(shape)
         if (new.body, new.points) != (record.body, record.points):
             return None
-        reach |= (new.filter, new.numbers[0]) != (record.filter, record.numbers[0])
-        elasticity |= new.numbers[1] != record.numbers[1]
+        resized = new.numbers[0] != record.numbers[0]
+        if resized and surfaces:
+            return None
+        reach |= resized or new.filter != record.filter
+        elasticity |= (new.numbers[1] < 1.0) != (record.numbers[1] < 1.0)
     weighed = []
     for i in [bodies.row[thing] for thing in stale if thing in bodies.row]:
         masses, more = bodies.changed(i)
@@ -64,7 +71,7 @@ def patch(world: World) -> Patched | None:
     world.gather()
     status = world.check_start()
     moved = status == MOVED_STATIC
-    if status == OTHER_BODIES or not (stale or moved):
+    if status == OTHER_BODIES or not (stale or moved) or (surfaces and (weighed or moved)):
         return None
     if status != 0:
         bodies.check_finite(world.state)
@@ -74,6 +81,8 @@ def patch(world: World) -> Patched | None:
     if not world.packed.lay_again(bodies, world.state, world.records, records, moved):
         return None
     world.read_at, world.objects_read = now, world.objects_read + len(records) + len(weighed)
-    world.STATES[LEFT] = np.where(bodies.static[:, None], world.STATES[NOW], np.nan)
-    world.EXTRA[:, PUSH_X : PUSH_TWIST + 1] = 0.0
+    if joints is None:
+        world.place_anew()
+    else:
+        joints.refresh()
     return Patched(elasticity, reach, moved)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
+import numpy as np
 import pymunk
 from pymunk import batch
 from pymunk._chipmunk_cffi import ffi, lib
@@ -18,8 +19,8 @@ TYPES = ("pmBatchedData *", "pmFloatArray *", "pmIntArray *")
 def reader(space: pymunk.Space, fields: batch.BodyFields, floats: FloatArray, ids: IntArray) -> Callable[[], None]:
     """`batch.get_space_bodies` into given memory, at a quarter of its cost.
 
-    The caller must ensure that `floats` and `ids`, flat and contiguous, have room for all bodies of the space at every
-    call: pymunk would replace memory that is too small by its own, and free it.
+    The caller must ensure that `floats` and `ids`, flat and contiguous, have room for one body more than the space has
+    at every call: pymunk would replace memory that is too small by its own, and free it.
     """
     values, numbers = _array("pmFloatArray *", "cpFloat[]", floats), _array("pmIntArray *", "uintptr_t[]", ids)
     data = _batched(fields, values, numbers)
@@ -32,6 +33,21 @@ def reader(space: pymunk.Space, fields: batch.BodyFields, floats: FloatArray, id
         each(c, function, data)
 
     return read
+
+
+def ordered(space: pymunk.Space, ids: IntArray) -> Callable[[], bool]:
+    """A function that returns whether the bodies of the space have these ids, in this order. Bodies that fall asleep
+    or wake get other places in it: one call finds this for all of them."""
+    bodies, count, kept = space._bodies, len(space._bodies), np.zeros(len(ids) + 1, np.int64)
+    read, found, known = reader(space, batch.BodyFields.BODY_ID, np.zeros(1), kept), kept[:-1], ids.tobytes()
+
+    def unchanged() -> bool:
+        if len(bodies) != count:  # more have no room
+            return False
+        read()
+        return found.tobytes() == known
+
+    return unchanged
 
 
 def writer(

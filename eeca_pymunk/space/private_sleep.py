@@ -20,20 +20,6 @@ def sleeping(bodies: Iterable[pymunk.Body]) -> list[bool]:
     return [bool(sleeps(body._body)) for body in bodies]
 
 
-def asleep(bodies: Iterable[pymunk.Body]) -> Callable[[], bool]:
-    """A function that returns whether all of these bodies sleep."""
-    pointers, sleeps = [body._body for body in bodies], lib.cpBodyIsSleeping
-
-    def all_sleep() -> bool:
-        # all() of a generator takes twice as long for a single body, the usual case.
-        for pointer in pointers:  # noqa: SIM110
-            if not sleeps(pointer):
-                return False
-        return True
-
-    return all_sleep
-
-
 def stop_woken(bodies: Iterable[pymunk.Body]) -> Callable[[], None]:
     """A function that takes the velocity of those of these bodies that sleep no more."""
     pointers, sleeps, still = [body._body for body in bodies], lib.cpBodyIsSleeping, (0.0, 0.0)

@@ -58,12 +58,8 @@ class Sleep:
         self._sleepers = [body for body, asleep in zip(bodies.items, bodies.asleep, strict=True) if asleep]
         self.some = bool(self._sleepers)
         self.everyone = self.some and not bodies.dynamic.any()
-        leaders = dict.fromkeys(leader(body) for body in self._sleepers)
-        self._asleep = private_sleep.asleep(leaders)
         self._unmoved = private_sleep.unmoved(
-            [self.space.static_body, *(b for b in bodies.items if b not in leaders and not b.is_sleeping)]
-            if self.everyone
-            else []
+            [self.space.static_body, *(b for b in bodies.items if not b.is_sleeping)] if self.everyone else []
         )
         self._timestamp = private.timestamp(self.space)
         self._stamp = self._timestamp()
@@ -82,6 +78,7 @@ class Sleep:
         self._far: FloatArray = self._size + np.hypot(*bodies.center_of_gravity.T)  # from the body's origin
         self._rests = rests.bind(world.STATES, world.WALK, world.BODY, self._size, self._rested, self._ready)
         self._still = bodies.asleep.astype(np.int64), bodies.static.astype(np.int64)
+        self._touches: tuple[Rows[Impulse] | None, Callable[[int], int]] = None, int  # bound to this log
         # Bodies that something other than the solver moves: all, if functions are called; else kinematic ones.
         movers: tuple[BoolArray, BoolArray] = ~bodies.static, ~bodies.static & ~bodies.dynamic
         self._moves: list[IntArray] = [np.flatnonzero(moves) for moves in movers]
@@ -93,7 +90,7 @@ class Sleep:
 
     def woken(self) -> bool:
         """Whether a body is awake that slept when this was made."""
-        return not self._asleep()
+        return self.some and not self.world.bodies.in_order()
 
     def nothing_moves(self) -> bool:
         """Whether all dynamic bodies sleep, and all others have their old poses and velocity 0."""
@@ -203,14 +200,19 @@ class Sleep:
 
     def is_touched(self, LOG: Rows[Impulse], count: int) -> bool:
         """Whether a moving body has touched a sleeping one in the first `count` impulses of LOG."""
-        return bool(touches(LOG, self.world.owner, *self._still, count))
+        log, call = self._touches
+        if log is not LOG:
+            call = touches.bind(LOG, self.world.owner, *self._still)
+            self._touches = LOG, call
+        return bool(call(count))
 
     def touched(self, contacts: Contacts) -> list[pymunk.Body]:
         """The sleeping bodies that a moving body has touched."""
         asleep, moves = self.world.bodies.asleep, ~self.world.bodies.static
         a, b = contacts.body_a, contacts.body_b
         hit = np.concatenate((a[asleep[a] & moves[b]], b[asleep[b] & moves[a]]))
-        return [self.world.bodies.items[i] for i in np.unique(hit)]
+        # numpy's `unique` imports a module at its first call, in some 10 ms.
+        return [self.world.bodies.items[i] for i in sorted(set(hit.tolist()))]
 
     def rest(self, dt: float) -> bool:
         """Update the times at rest after a step; returns whether any body may fall asleep."""

@@ -165,9 +165,9 @@ class World(Crossing):
             found.update((shape.body, record and record.body))
         return found
 
-    def patch(self) -> Patched | None:
+    def patch(self, surfaces: bool) -> Patched | None:
         """See `patching.patch`; also reads the settings of the space, and the present states into BODY."""
-        found = patch(self)
+        found = patch(self, surfaces or self.joints is not None)
         if found is not None:
             self.patches += 1
             if "rehearsal" in self.__dict__:

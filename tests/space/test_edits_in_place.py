@@ -124,3 +124,53 @@ def test_with_joints_up_to_the_tolerance_of_their_solver(seed: int) -> None:
         stepper.step(DT)
         refreshed.step(DT)
         assert np.allclose(one.state(), other.state(), rtol=1e-6, atol=1e-4), k
+
+
+class Surfaces(Program):
+    """A space whose bodies are jointed, or may sleep, or both; only its shapes are edited, or it turns a motor."""
+
+    def __init__(self, seed: int, joints: bool, sleeps: bool) -> None:
+        super().__init__(seed, joints)
+        dynamic = [body for body in self.bodies if body.body_type == pymunk.Body.DYNAMIC]
+        for one, other in zip(dynamic[::2], dynamic[1::2], strict=False):
+            if joints:
+                self.space.add(pymunk.PinJoint(one, other))
+        self.motor = pymunk.SimpleMotor(dynamic[0], dynamic[1], 1.0)
+        if joints:
+            self.motor.max_force = 1e4
+            self.space.add(self.motor)
+        if sleeps:
+            self.space.sleep_time_threshold = 0.3
+
+    def change(self) -> None:
+        shape = self.random.choice(self.shapes[self.random.choice(self.bodies)])
+        edit, value = self.random.randrange(5), self.random.random()
+        if edit == 0:
+            shape.friction = value
+        elif edit == 1:
+            shape.elasticity = self.random.choice((0.0, 0.5, 1.0))
+        elif edit == 2:
+            shape.filter = pymunk.ShapeFilter(self.random.randint(0, 2))
+        elif edit == 3:
+            shape.surface_velocity = 10.0 * value, 0.0
+        elif isinstance(shape, pymunk.Circle):
+            shape.unsafe_set_radius(5.0 + 10.0 * value)
+        if value < 0.2:
+            self.motor.rate = value
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize(("joints", "sleeps"), [(False, True), (True, False), (True, True)])
+def test_patches_are_what_a_new_reading_gives_bit_by_bit(seed: int, joints: bool, sleeps: bool) -> None:
+    one, other = Surfaces(seed, joints, sleeps), Surfaces(seed, joints, sleeps)
+    stepper, reading = ep.EECA(one.space), ep.EECA(other.space)
+    reading.patch = lambda world: False  # type: ignore[method-assign]
+    for k in range(60):
+        if k % 3 == 2:
+            one.change()
+            other.change()
+        stepper.step(DT)
+        reading.step(DT)
+        assert one.state() == other.state(), k
+    assert stepper.patches > 3
+    assert stepper.reads < reading.reads

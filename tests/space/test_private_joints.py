@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+import numpy as np
 import pymunk
 import pytest
 
-from eeca_pymunk.space import private, private_joints, private_sleep, private_versions
+from eeca_pymunk.space import private, private_batch, private_joints, private_sleep, private_versions
 
 DT = 0.01
 
@@ -125,19 +126,29 @@ def resting() -> tuple[pymunk.Space, list[pymunk.Body]]:
     return space, bodies
 
 
-def test_asleep() -> None:
+def test_ordered_finds_who_falls_asleep_or_wakes_comes_or_goes() -> None:
     space, bodies = resting()
     space.sleep_time_threshold = 100.0
-    every = private_sleep.asleep(bodies)
-    assert private_sleep.asleep([])()
-    assert not every()
-    bodies[0].sleep()
-    assert not every()
-    assert private_sleep.asleep(bodies[:1])()
-    bodies[1].sleep()
-    assert every()
-    bodies[0].activate()
-    assert not every()
+
+    def ordered() -> Callable[[], bool]:
+        found = pymunk.batch.Buffer()
+        pymunk.batch.get_space_bodies(space, pymunk.batch.BodyFields.BODY_ID, found)
+        return private_batch.ordered(space, np.frombuffer(found.int_buf(), np.int64).copy())
+
+    def bring() -> None:
+        space.add(pymunk.Body(1.0, 1.0))
+
+    def exchange() -> None:
+        space.remove(list(space.bodies)[-1])
+        bring()
+
+    for change in (bodies[0].sleep, bodies[0].activate, bodies[1].sleep, bodies[0].sleep, bodies[1].activate, bring,
+                   exchange):  # fmt: skip
+        unchanged = ordered()
+        assert unchanged()
+        change()
+        assert not unchanged()
+        assert not unchanged()
 
 
 @pytest.mark.parametrize("change", [("position", (0.0, 1e-9)), ("angle", 1e-9), ("velocity", (0.0, 1e-300))])
