@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from .report import Outcome
 from .space.checks import check_ignored
 from .space.decisions import Decisions
 from .space.describe import describe
-from .space.sleep_groups import put_to_sleep, wake_neighbours
+from .space.sleep_groups import put_to_sleep, sleeping_groups, wake_neighbours
 from .space.sleeping import Sleep
 from .space.sync import Sync
 from .space.world import World
@@ -29,6 +29,8 @@ TOO_FAR = "the step would overflow; take a smaller dt, or stop this run"
 
 
 Own = TypeVar("Own", bound="PackedSpace")
+# Bodies, and what `PackedSpace.sleep_state` returns of them.
+Slept: TypeAlias = tuple[list["pymunk.Body"], FloatArray, IntArray, IntArray]
 
 
 class PackedSpace(Stepper):
@@ -52,6 +54,7 @@ class PackedSpace(Stepper):
         self._world: World | None = None
         self._sync: Sync
         self._sleep: Sleep | None = None  # None if bodies cannot sleep
+        self._slept: Slept | None = None  # in a copy, until its first step
         self._idle_book: FloatArray | None = None  # ledger entries of a step in which all dynamic bodies sleep
         self.reads = self.patches = self.objects_read = 0
         self.decisions = Decisions()
@@ -63,12 +66,28 @@ class PackedSpace(Stepper):
         state.pop("_sync", None)
         state["_world"] = state["_sleep"] = None
         state["decisions"] = Decisions()
+        if self.space.sleep_time_threshold < math.inf:
+            bodies = list(self.space.bodies)
+            state["_slept"] = bodies, *self.sleep_state(bodies)
         return state
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self._lie_down()
+
+    def _lie_down(self) -> None:
+        """In a copy, put to sleep what sleeps in the original: all bodies of pymunk's copies are awake. If the space
+        refers to its stepper, its bodies are not in it before both are complete: then at the first step."""
+        if self._slept is not None:
+            bodies, _, groups, _ = self._slept
+            if all(body.space is self.space for body in bodies):
+                put_to_sleep(bodies, groups)
+                groups.fill(-1)
 
     def __copy__(self: Own) -> Own:
         """Another stepper of the same space, without results of earlier steps: two cannot share their arrays."""
         other = type(self).__new__(type(self))
-        other.__dict__.update({**self.__getstate__(), "_saved": None})
+        other.__dict__.update({**self.__getstate__(), "_saved": None, "_slept": None})
         return other
 
     def refresh(self) -> None:
@@ -101,6 +120,7 @@ class PackedSpace(Stepper):
         reading (always if `anew`)."""
         world = self._world
         self._world = None
+        self._lie_down()
         if self._sleep is not None and self.space.sleep_time_threshold == math.inf:
             self._sleep.wake()
             self._sleep, anew = None, True
@@ -121,6 +141,9 @@ class PackedSpace(Stepper):
         self.reads += 1
         self._sync = Sync(world, None if past is None else self._sync)
         self._sleep = Sleep(world, self._sleep) if self.space.sleep_time_threshold < math.inf else None
+        slept, self._slept = self._slept, None
+        if self._sleep is not None and slept is not None:
+            self._sleep.recall(dict(zip(slept[0], slept[1].tolist(), strict=True)), slept[3])
         self.prepare(world, past)
         if self._sleep is not None and (book := self.outcome()[0]) is not None:
             self._idle_book = np.zeros_like(book)
@@ -160,8 +183,8 @@ class PackedSpace(Stepper):
         """For how long bodies have been at rest (N,); index of another body of their sleeping group (N,), -1 for awake
         bodies; (2,) the timers of `space/sleeping.py`."""
         if self._sleep is None:
-            return np.zeros(len(bodies)), np.full(len(bodies), -1), np.zeros(2, np.int64)
-        return self._sleep.state(bodies)
+            return np.zeros(len(bodies)), sleeping_groups(bodies), np.zeros(2, np.int64)
+        return self._sleep.rested(bodies), sleeping_groups(bodies), self._sleep.timers
 
     def recall_sleep(
         self, bodies: Sequence[pymunk.Body], rested: FloatArray, groups: IntArray, timers: IntArray

@@ -30,7 +30,7 @@ class Saved:
     def __init__(self, world: World, method: EventLoop, decisions: Decisions) -> None:
         self._decided = decisions.state(world)
         self.method, self.items, self.shapes, self.parted = method, world.bodies.items, world.shapes, world.parted
-        self._left, self._extra = world.STATES[LEFT], world.EXTRA
+        self._left, self._extra, self._rows = world.STATES[LEFT], world.EXTRA, world.WALK[BODY_ROW]
         joints = world.joints
         self._joints = [] if joints is None else joints.items
         self._rates = {} if joints is None else joints.rates
@@ -41,7 +41,11 @@ class Saved:
         """Continue with a world that was just read, and decisions of its handlers; False, and nothing changed, if it is
         not equal."""
         scene = self.method.scene
-        if not self._fresh or world.bodies.items != self.items or world.shapes != self.shapes:
+        row = world.bodies.row
+        if not self._fresh or row.keys() != set(self.items) or world.shapes != self.shapes:
+            return False
+        at = np.array([row[body] for body in self.items], np.int64)  # pymunk may have another order of bodies
+        if not np.array_equal(world.WALK[BODY_ROW, at], self._rows):
             return False
         if scene.COUNT.disks != world.disks or not np.array_equal(
             columns(scene.BODY, *_FIXED), columns(world.BODY, *_FIXED)
@@ -67,8 +71,8 @@ class Saved:
             world.find_parted()
         world.BODY[:], world.VERTEX[:] = scene.BODY, scene.VERTEX
         self.method.scene = scene._replace(BODY=world.BODY)
-        moves = ~world.bodies.static
-        world.STATES[LEFT, moves], world.EXTRA[:] = self._left[moves], self._extra
+        moves = ~world.bodies.static[at]
+        world.STATES[LEFT, at[moves]], world.EXTRA[at] = self._left[moves], self._extra
         decisions.recall(world.space, self._decided)
         return True
 

@@ -252,3 +252,25 @@ def test_copies_go_on_through_what_handlers_have_rejected(phase: str) -> None:
         other.step(1 / 60)
     assert [b.position for b in copied.bodies] == [b.position for b in space.bodies]
     assert body.position.x == pytest.approx(0.6)
+
+
+def test_copies_go_on_after_bodies_have_gone() -> None:
+    """pymunk fills the place of a body that goes with the last one; its copies have the order in which bodies came."""
+    space = pymunk.Space()
+    space.gravity = 0.0, -10.0
+    space.add(pymunk.Segment(space.static_body, (-20.0, 0.0), (20.0, 0.0), 0.1))
+    boxes = []
+    for k in range(6):
+        body = pymunk.Body(1.0 + k, 1.0)
+        body.position, body.angular_velocity = (0.3 * k, 1.0 + 1.2 * k), 1.0
+        boxes.append(pymunk.Poly.create_box(body, (1.0, 1.0)))
+        boxes[-1].friction = 0.5
+        space.add(body, boxes[-1])
+    stepper = ep.EECA(space)
+    run(stepper, 1 / 60)
+    space.remove(boxes[1], boxes[1].body)
+    run(stepper, 1 / 60)
+    copied, other = pickle.loads(pickle.dumps((space, stepper)))
+    for _ in range(3):
+        assert np.array_equal(run(stepper, 1 / 60), run(other, 1 / 60))
+    assert np.array_equal(poses(copied), poses(space))

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import math
 
-from ..compiled import nonallocating
+from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
 from ..geometry.convex import place
 from ..geometry.flight import norm, pose
@@ -60,13 +60,25 @@ def parting_velocity(
     return u, nx * (BODY[i].ax - BODY[j].ax) + ny * (BODY[i].ay - BODY[j].ay)
 
 
+@inlined
+def in_one_island(A: Scene, i: int, j: int) -> bool:
+    """Whether forces may hold bodies i and j in contact: both are in one island, or one is and impulses do not move the
+    other."""
+    one, two = A.STATE[i].island, A.STATE[j].island
+    if one >= 0:
+        return bool(one == two or A.BODY[j].inv_mass == 0.0)
+    return bool(two >= 0 and A.BODY[i].inv_mass == 0.0)
+
+
 @nonallocating
 def begin_side(A: Scene, a: int, b: int, start: float, duration: float, tolerance: float) -> None:
     """Note on which side of each other thin shapes a < b are at the beginning of a search.
 
     For segments that touch and have no remembered side: if they move by less than `tolerance` (length) in the time
     `duration`, they are on the side against which they are pressed; else, if their distance is round-off, on the side
-    to which they part. For all other shapes the side follows from the geometry.
+    to which they part. For all other shapes the side follows from the geometry. What touches without overlap and
+    without forces that hold it, after an impact, parts: its side is known while it is as near, but not at the distance
+    at which contacts are held, as the bodies may turn by any angle before they come near again.
     """
     i, j, P, Q = A.LINK[a].owner, A.LINK[b].owner, A.CORE[0], A.CORE[1]
     x_a, y_a, angle_a = pose(A.BODY, i, start)
@@ -82,6 +94,8 @@ def begin_side(A: Scene, a: int, b: int, start: float, duration: float, toleranc
         other = (resting and pressing < 0.0) or (not resting and d <= tolerance and parting < 0.0)
         sign = -1.0 if p == 2 and q == 2 and other else 1.0
         note_side(A, a, b, sign * nx, sign * ny, True)
+    elif d >= -near_side(A, a, b) and not in_one_island(A, i, j):
+        A.SIDE[side_row(A, key_of(A, a, b))].deep = 0.0
 
 
 @nonallocating

@@ -128,11 +128,13 @@ class Bodies:
             self.asleep[:] = private_sleep.sleeping(self.items)
             kind[self.asleep] = STATIC
             put(self.GIVEN, np.where(self.asleep[:, None], _FIXED, columns(self.GIVEN, *_OF_MASS)), *_OF_MASS)
-            # pymunk's order changes once some have slept.
-            place = {body: i for i, body in enumerate((*space.bodies, ground))}
-            self.GIVEN["place"] = [place[body] for body in self.items]
-        else:
+        everyone = (*space.bodies, ground)
+        if self.items == everyone:
             self.GIVEN["place"] = np.arange(len(ids))
+        else:
+            # pymunk's order has changed, as some have slept or were removed: that of a copy of the space differs.
+            place = {body: i for i, body in enumerate(everyone)}
+            self.GIVEN["place"] = [place[body] for body in self.items]
         self.dynamic: BoolArray = kind == DYNAMIC
         self.static: BoolArray = kind == STATIC
         # Functions of sleeping bodies are not called, as under pymunk.

@@ -11,6 +11,7 @@ from ..arrays import BoolArray, IntArray
 from ..report import Contacts
 from . import private, private_sleep
 from .bodies import Bodies
+from .edits import leader
 
 
 def resting_groups(
@@ -47,6 +48,14 @@ def resting_groups(
         if (lead := root(i)) not in stay:
             resting.setdefault(lead, []).append(bodies.items[i])
     return list(resting.values())
+
+
+def sleeping_groups(bodies: Sequence[pymunk.Body]) -> IntArray:
+    """(N,) for each body the index of another one of its sleeping group, or its own; -1 if it is awake."""
+    place = {body: i for i, body in enumerate(bodies)}
+    asleep = private_sleep.sleeping(bodies)
+    groups = [place.get(leader(body), i) if asleep[i] else -1 for body, i in place.items()]
+    return np.array(groups, np.int64)
 
 
 def put_to_sleep(bodies: Sequence[pymunk.Body], groups: IntArray) -> None:

@@ -167,16 +167,19 @@ class Sleep:
         boxes = [(b.left, b.bottom, b.right, b.top) for body in self._sleepers for b in (s.bb for s in body.shapes)]
         return np.array(boxes, float).reshape(-1, 4)
 
-    def state(self, bodies: Sequence[pymunk.Body]) -> tuple[FloatArray, IntArray, IntArray]:
-        """Times at rest (N,), index of another body of the sleeping group (N,), -1 for awake bodies, timers (2,)."""
-        place = {body: i for i, body in enumerate(bodies)}
-        groups = [place.get(leader(body), i) if body.is_sleeping else -1 for i, body in enumerate(bodies)]
-        rested = self._rested[[self.world.bodies.row[body] for body in bodies]]
-        return rested, np.array(groups, np.int64), np.array([self._wait, self._since], np.int64)
+    def rested(self, bodies: Sequence[pymunk.Body]) -> FloatArray:
+        """(N,) the times for which bodies have been at rest, 0 for those that are new."""
+        row, rested = self.world.bodies.row, self._rested.tolist()
+        return np.array([rested[row[body]] if body in row else 0.0 for body in bodies], float)
+
+    @property
+    def timers(self) -> IntArray:
+        """(2,) steps up to the next search for groups that may fall asleep, and since the last one that did."""
+        return np.array([self._wait, self._since], np.int64)
 
     def recall(self, rested: Mapping[pymunk.Body, float], timers: IntArray) -> None:
         """Set times at rest, and timers."""
-        self._rested[:] = [rested[body] for body in self.world.bodies.items]
+        self._rested[:] = [rested.get(body, 0.0) for body in self.world.bodies.items]
         self._wait, self._since = timers.tolist()
 
     def wake_changed(self) -> None:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import copy
 import math
 import pickle
+from collections.abc import Callable
+from contextlib import nullcontext
 
 import numpy as np
 import pymunk
@@ -387,11 +390,52 @@ def test_a_step_of_sleepers_asks_pymunk_for_nothing() -> None:
 
 def test_a_pickled_stepper_of_sleepers_goes_on() -> None:
     space, _, stepper = asleep()
-    copy = pickle.loads(pickle.dumps(stepper))
-    for one in (stepper, copy):
+    other = pickle.loads(pickle.dumps(stepper))
+    for one in (stepper, other):
         one.step(DT)
-    heights = [sorted(body.position.y for body in one.bodies) for one in (space, copy.space)]
+    heights = [sorted(body.position.y for body in one.bodies) for one in (space, other.space)]
     assert heights[0] == pytest.approx(heights[1], abs=1e-12)
+
+
+WAYS: list[Callable[[ep.EECA], ep.EECA]] = [
+    copy.deepcopy,
+    lambda stepper: pickle.loads(pickle.dumps(stepper)),
+    lambda stepper: pickle.loads(pickle.dumps((stepper.space, stepper)))[1],
+]
+
+
+@pytest.mark.parametrize("within", [False, True])
+@pytest.mark.parametrize("through", WAYS)
+def test_the_copy_of_a_stepper_sleeps_and_wakes_as_its_original(
+    through: Callable[[ep.EECA], ep.EECA], within: bool
+) -> None:
+    """All bodies of pymunk's copies are awake: one that sleeps in mid-air would fall. `within`: in `with stepper`."""
+    space, bodies = stack()
+    bodies.append(box(space, 4.0, 3.0))
+    bodies.append(box(space, -6.0, 0.6))
+    stepper = ep.EECA(space)
+    bodies[3].sleep()
+    for _ in range(15):
+        stepper.step(DT)
+    bodies.append(ball(space, (-4.0, 0.9), (6.0, 1.0)))
+    with stepper if within else nullcontext():
+        for _ in range(9):
+            stepper.step(DT)
+        assert [body.is_sleeping for body in bodies] == [True, True, True, True, True, False]
+        other = through(stepper)
+    slept, paths = [], []
+    for one in (stepper, other):
+        ours = list(one.space.bodies)
+        places = []
+        for _ in range(90):
+            one.step(DT)
+            places.append([(b.is_sleeping, *b.position, b.angle, *b.velocity, b.angular_velocity) for b in ours])
+        slept.append([[row[0] for row in rows] for rows in places])
+        paths.append(places)
+    assert slept[0] == slept[1]
+    assert paths[0] == paths[1]
+    assert slept[0][0] == [True] * 5 + [False]
+    assert slept[0][40] == [False] * 3 + [True, True, False]
 
 
 @pytest.mark.parametrize(("start", "near"), [(-3.0, True), (-3.2, False), (math.nan, True)])
