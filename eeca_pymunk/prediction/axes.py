@@ -41,6 +41,7 @@ class Closing(NamedTuple):
     extent: float  # gap of the cores where the shapes touch: length
     bend: float  # bound of the second derivative of gaps: length/time²
     tolerance: float  # gap up to which points touch: length
+    depth: float  # to which points that do not approach may get between two looks: length
     round_off: float  # rate of approach up to which points that touch do not close: length/time
 
 
@@ -56,13 +57,16 @@ def motion(BODY: Rows[Body], i: int, t: float) -> Motion:
 def first_close(best: float, near: float, closing: bool, g: float, w: float, of: Closing) -> tuple[float, float, bool]:
     """Include one more point of an axis, with gap g (length) and rate w (length/time), in the results so far, and
     return them: the time `best` before which no point can close, the least gap `near` (length), and whether a point
-    touches and approaches (`closing`)."""
+    touches and approaches (`closing`). A point that does not approach may get as deep as `depth`."""
     near = min(near, g)
-    if g <= of.tolerance:
-        closing = closing or w < -of.round_off
+    approaches = w < -of.round_off
+    closing = closing or (g <= of.tolerance and approaches)
     # The root is needed only if the bound is negative at `best`.
     if best == math.inf or g + (w - 0.5 * of.bend * best) * best < 0.0:
-        best = min(best, flat(g, w, -of.bend))
+        root = flat(g, w, -of.bend)
+        if not approaches:
+            root = max(root, math.sqrt(2.0 * of.depth / max(of.bend, 1e-300)))
+        best = min(best, root)
     return best, near, closing
 
 

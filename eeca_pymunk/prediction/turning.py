@@ -20,12 +20,13 @@ import math
 from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
 from ..geometry.convex import place
-from ..geometry.flight import norm, pose
+from ..geometry.flight import pose
 from ..geometry.gap import touching
 from ..geometry.manifold import common_face
 from ..geometry.sides import closest_on_side, key_of, known_side, near_side, note_side, remembers, side_row, smaller
 from ..model.bodies import Body
-from ..model.parameters.events import ADVANCES, APPROACH_ROUND_OFF, GRAZED, RESOLUTION
+from ..model.parameters.events import ADVANCES, APPROACH_ROUND_OFF, RESOLUTION
+from ..model.parameters.intervals import TOUCH
 from ..model.scene import Scene
 from ..pairs.lists import face_tolerance
 from .axes import Closing, Motion, bends, fastest, fixed_axis, motion, pulled_along, turning_axis
@@ -154,9 +155,10 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float) -> tuple[floa
     """(t, certain) of any two shapes, as defined in `impact_times.py`.
 
     Depends only on the two paths, from the later of their instants `since` on; "the time" is that from there to the
-    horizon. Shapes that touch and approach meet at once. Shapes that touch and part do not meet, but their bounds are
-    0: there the search advances by the time over ADVANCES, or by the time `graze` in which no point gets deeper than
-    GRAZED if that is less. After ADVANCES looks within the time over RESOLUTION it advances by at least `graze`.
+    horizon. Shapes that touch and approach meet at once. Shapes that touch and part do not meet: the search goes on
+    where they may be as deep as TOUCH (`axes.first_close`), or ends where they touch again if that is before. After
+    ADVANCES looks within the time over RESOLUTION each advances by at least their ratio. Where shapes overlap, but do
+    not close, there are ADVANCES looks in the time.
 
     Args:
         a, b: a < b.
@@ -180,18 +182,16 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float) -> tuple[floa
     around, bend_a, bend_b = bends(A, a, b, start, duration)
     extent = SHAPE[a].rounding + SHAPE[b].rounding
     still = APPROACH_ROUND_OFF * (fastest(A, a, start) + fastest(A, b, start))
-    of_a, of_b = Closing(extent, bend_a, tolerance, still), Closing(extent, bend_b, tolerance, still)
+    depth = TOUCH * smaller(A, a, b)
+    of_a, of_b = Closing(extent, bend_a, tolerance, depth, still), Closing(extent, bend_b, tolerance, depth, still)
     P, Q = A.CORE[0], A.CORE[1]
     if remembers(A, a, b):
         begin_side(A, a, b, start, duration, tolerance)
-    bend = around + norm(BODY[j].ax - BODY[i].ax, BODY[j].ay - BODY[i].ay)
-    graze = math.sqrt(2.0 * GRAZED * smaller(A, a, b) / max(max(bend, max(bend_a, bend_b)), 1e-300))
-    graze = max(graze, duration / RESOLUTION / ADVANCES)
-    looks, mark = 0, s
+    looks, mark, interval = 0, s, duration / RESOLUTION
     while True:
         looks += 1
         A.COUNT.work += 1
-        if s > mark + duration / RESOLUTION:  # progress resets the budget: fast rotation is followed for many turns
+        if s > mark + interval:  # progress resets the budget: fast rotation is followed for many turns
             looks, mark = 0, s
         one, two = motion(BODY, i, start + s), motion(BODY, j, start + s)
         p = place(A, a, one.x, one.y, one.angle, P)
@@ -199,7 +199,7 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float) -> tuple[floa
         d, nx, ny, px, py, _, edge_a, apart_a, edge_b, apart_b = closest_on_side(A, P, p, Q, q, a, b)
         if d > near_side(A, a, b):
             note_side(A, a, b, nx, ny, False)
-        fixed = Closing(extent, around + pulled_along(A, a, b, nx, ny), tolerance, still)
+        fixed = Closing(extent, around + pulled_along(A, a, b, nx, ny), tolerance, depth, still)
         safe, near, met = fixed_axis(P, p, Q, q, nx, ny, one, two, fixed)
         least = min(d - extent, 0.0) - tolerance
         if apart_a - extent >= least:
@@ -208,17 +208,16 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float) -> tuple[floa
         if apart_b - extent >= least:
             may, gap, closes = turning_axis(Q, edge_b, P, p, two, one, of_b)
             safe, near, met = max(safe, may), max(near, gap), met and closes
-        if met and near < -tolerance:
-            met = face_closes(A, a, b, nx, ny, px, py, d, one, two, still)
+        if met and near < -tolerance and not face_closes(A, a, b, nx, ny, px, py, d, one, two, still):
+            met, safe = False, max(safe, duration / ADVANCES)
         if not met and near <= tolerance:
             back = time_to_contact_again(
                 BODY, i, j, start + s, nx, ny, px + SHAPE[a].rounding * nx, py + SHAPE[a].rounding * ny
             )
-            if back <= min(duration / RESOLUTION, graze):
+            if back <= min(safe, interval):
                 return start + s + back, True
-            safe = max(safe, min(duration / ADVANCES, graze))
         if met:
             return start + s + safe, True
-        s += safe if looks < ADVANCES else max(safe, graze)
+        s += safe if looks < ADVANCES else max(safe, interval / ADVANCES)
         if s > duration or looks > 2.0 * ADVANCES * RESOLUTION or start + s > until:
             return horizon, False

@@ -22,7 +22,7 @@ SEARCH_AHEAD = work(1.5, "times the time that is left", "Circles that cannot mee
 ADVANCES = work(
     1000,
     "number",
-    "Evaluations of a gap in one search for an impact, at most; its inverse is the least advance of touching shapes.",
+    "Evaluations of a gap in a part of a step in one search for an impact, at most.",
 )
 RESOLUTION = work(
     64,
@@ -33,11 +33,6 @@ RESOLUTION = work(
 WORK_JOINTED = work(2, "times those of other islands", "Hits on islands with joints, and solves of their bodies.")
 FARTHEST_MARGIN = work(
     0.7, "of the margin", "Distance of the centre of a single disk's new margin circle ahead of it, at most."
-)
-GRAZED = heuristic(
-    0.0001,
-    "of the smaller shape",
-    "Depth that shapes which touch and part may come to between two looks. Larger: fewer looks at what turns fast.",
 )
 SAME_INSTANT = round_off(1e-09, "of the step", "Two computations of an instant that differ by less agree.")
 AHEAD = work(0.4, "of the margin", "Distance of the centre of a new margin circle ahead of its shape.")
