@@ -31,7 +31,6 @@ from ..layout import BODY_ROW, FOUND, KNOWN
 from ..model.contacts import Impulse
 from ..report import Contacts
 from . import private, private_shapes, private_sleep
-from .edits import leader
 from .sleep_groups import resting_groups
 
 if TYPE_CHECKING:
