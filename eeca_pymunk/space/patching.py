@@ -82,7 +82,7 @@ def patch(world: World, surfaces: bool) -> Patched | None:
         return None
     world.read_at, world.objects_read = now, world.objects_read + len(records) + len(weighed)
     if joints is None:
-        world.place_anew()
+        world.start_afresh()
     else:
         joints.refresh()
     return Patched(elasticity, reach, moved)
