@@ -150,7 +150,7 @@ class Packed:
     ) -> bool:  # fmt: skip
         """Write the rows again, in place, after changes of numbers, filters, masses, and, if `moved`, poses of static
         bodies; False, with invalid rows, if the rows would be others. records: all; `edited` ones have changed."""
-        vertices = self.LINK["vertices"].copy() if moved else None
+        vertices = self.LINK["vertices"].tobytes()
         given, BODY = self._views
         if self._unlaid is None:
             known = {shape: record for shape, record in records.items() if record is not None}
@@ -167,7 +167,7 @@ class Packed:
             self._rows[3].fill(0.0)
         BODY.fill(0)
         self._lay()
-        return vertices is None or np.array_equal(vertices, self.LINK["vertices"])
+        return self.LINK["vertices"].tobytes() == vertices
 
     @cached_property
     def _views(self) -> tuple[IntArray, IntArray]:

@@ -98,8 +98,8 @@ class Sync:
         self.space, bodies = world.space, world.bodies
         self._asleep = bool(bodies.asleep.any())
         self._pulls = self.space.sleep_time_threshold < math.inf
-        sleepers = [bodies.items[i] for i in bodies.asleep.nonzero()[0]]
-        self._in_order, self._stop = bodies.in_order, private_sleep.stop_woken(sleepers)
+        sleepers = [bodies.items[i] for i in bodies.asleep.nonzero()[0]] if self._asleep else []
+        self._stop = private_sleep.stop_woken(sleepers)
         self._shapes = int(world.shape_counts.sum())
         self._world = world
         self._timestamp: Callable[[], int] = private.timestamp(self.space)
@@ -170,14 +170,14 @@ class Sync:
         self._new = False
         if stored:
             private_shapes.forget_corrections(world.movers)
-        slept = self._asleep and self._in_order()
+        slept = self._asleep and world.bodies.in_order()
         how = self.space, dt, world.joints, stored, self._choice() if self._asleep else None
         if world.hooks.some:
             with world.hooks.silent():
                 rest_step(*how)
         else:
             rest_step(*how)
-        if slept and not self._in_order():
+        if slept and not world.bodies.in_order():
             self._stop()  # what pymunk wakes gets a velocity by gravity
         self._rested, self._dt, self._reindexings = self._timestamp(), dt, _RENEW
         self.stamp = self._rested
