@@ -157,8 +157,11 @@ class World(Crossing):
     def stale(self) -> set[Any] | None:
         """Shapes and bodies whose records may be out of date: edited, in the space or outside, or bodies of shapes that
         were added or removed; None if unknown."""
-        found = edited_since(self.read_at)
-        if found is None or self.same_things():
+        edited = edited_since(self.read_at)
+        if edited is None:
+            return None
+        found, _ = edited
+        if self.same_things():
             return found
         for shape in self.records.keys() ^ set(self.space.shapes):
             record = self.records.get(shape)
