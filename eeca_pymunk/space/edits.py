@@ -77,8 +77,7 @@ def clock() -> int:
 
 def edited_since(time: int) -> tuple[set[Any], set[Any]] | None:
     """Shapes and bodies that were edited since `clock` was `time`, and the bodies whose mass or moment that may have
-    changed; and those of them of which more than `_OF_SURFACE` may have changed. None if these are more than are
-    kept."""
+    changed; and those of which more than `_OF_SURFACE` may have changed. None if these are more than are kept."""
     if _clock - time > len(_edited):
         return None
     edited = [(thing(), weighs) for thing, weighs in islice(reversed(_edited), _clock - time)]

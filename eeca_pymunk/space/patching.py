@@ -44,19 +44,16 @@ def patch(world: World, surfaces: bool) -> Patched | None:
         ValueError, UnsupportedFeature, NotFiniteError: as a new reading would.
     """
     now, edited, joints = clock(), edited_since(world.read_at), world.joints
-    if (
-        edited is None
-        or world.frictionless
-        or list(world.space.constraints) != ([] if joints is None else joints.items)
-    ):
+    constraints = [] if joints is None else joints.items
+    if edited is None or world.frictionless or list(world.space.constraints) != constraints:
         return None
-    (stale, more), elasticity, reach, bodies = edited, False, False, world.bodies
+    (stale, reshaped), elasticity, reach, bodies = edited, False, False, world.bodies
     records: dict[pymunk.Shape, Record] = {}
     for shape in [thing for thing in stale if thing in world.records]:
         record = world.records[shape]
         if record is None or record.outside or shape.sensor:
             return None
-        records[shape] = new = read(shape) if shape in more else read_surface(shape, record)
+        records[shape] = new = read(shape) if shape in reshaped else read_surface(shape, record)
         if (new.body, new.points) != (record.body, record.points):
             return None
         resized = new.numbers[0] != record.numbers[0]

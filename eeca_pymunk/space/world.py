@@ -157,11 +157,8 @@ class World(Crossing):
     def stale(self) -> set[Any] | None:
         """Shapes and bodies whose records may be out of date: edited, in the space or outside, or bodies of shapes that
         were added or removed; None if unknown."""
-        edited = edited_since(self.read_at)
-        if edited is None:
-            return None
-        found, _ = edited
-        if self.same_things():
+        found, _ = edited_since(self.read_at) or (None, None)
+        if found is None or self.same_things():
             return found
         for shape in self.records.keys() ^ set(self.space.shapes):
             record = self.records.get(shape)
