@@ -138,8 +138,8 @@ class Bodies:
         self.dynamic: BoolArray = kind == DYNAMIC
         self.static: BoolArray = kind == STATIC
         # Functions of sleeping bodies are not called, as under pymunk.
-        self.velocity_hooks: IntArray = np.flatnonzero(self.GIVEN["steered"] * ~self.asleep)
-        self.position_hooks: IntArray = np.flatnonzero(self.GIVEN["moved"] * ~self.asleep)
+        self.velocity_hooks: IntArray = (self.GIVEN["steered"] * ~self.asleep).nonzero()[0]
+        self.position_hooks: IntArray = (self.GIVEN["moved"] * ~self.asleep).nonzero()[0]
         self.center_of_gravity: FloatArray = columns(self.GIVEN, "centre_x", "centre_y")
 
     def placed(self, state: FloatArray) -> Rows[GivenBody]:

@@ -142,7 +142,7 @@ class Crossing:
         return not np.array_equal(self.STATES[NOW, still, :3], self.STATES[LEFT, still, :3])
 
     @cached_property
-    def place_anew(self) -> Callable[[], None]:
+    def start_afresh(self) -> Callable[[], None]:
         """See `transfer.place_anew`."""
         return place_anew.bind(self.STATES, self.WALK, self.EXTRA)
 

@@ -75,15 +75,15 @@ def clock() -> int:
     return _clock
 
 
-def edited_since(time: int) -> set[Any] | None:
+def edited_since(time: int) -> tuple[set[Any], set[Any]] | None:
     """Shapes and bodies that were edited since `clock` was `time`, and the bodies whose mass or moment that may have
-    changed; None if these are more than are kept."""
+    changed; and those of which more than `_OF_SURFACE` may have changed. None if these are more than are kept."""
     if _clock - time > len(_edited):
         return None
     edited = [(thing(), weighs) for thing, weighs in islice(reversed(_edited), _clock - time)]
-    found = {thing for thing, _ in edited}
-    found.update(thing.body for thing, weighs in edited if weighs and isinstance(thing, pymunk.Shape))
-    return found
+    more = {thing for thing, weighs in edited if weighs}
+    more.update([thing.body for thing in more if isinstance(thing, pymunk.Shape)])
+    return more.union([thing for thing, _ in edited]), more
 
 
 def _note(thing: Any, name: str) -> None:

@@ -57,11 +57,7 @@ def read(shape: pymunk.Shape, ground: pymunk.Body | None = None) -> Record:
     Raises:
         ValueError, UnsupportedFeature: see `check_shape`.
     """
-    numbers = private_shapes.numbers(shape)
-    if shape.body is None or not all(map(isfinite, numbers)) or min(numbers[:3]) < 0.0:
-        check_shape(shape)
-    group, categories, mask = private_shapes.filter_of(shape)
-    words = group & _WORD, categories & _WORD, mask & _WORD
+    numbers, words = _surface(shape)
     body, outline = shape_body(shape), local_outline(shape)
     if ground is not None:
         place, taken = body.local_to_world, ground.world_to_local
@@ -70,6 +66,22 @@ def read(shape: pymunk.Shape, ground: pymunk.Body | None = None) -> Record:
     given = _GIVEN.pack(0, len(outline), *words, *numbers, 0)
     points = array("d", chain.from_iterable(outline)).tobytes()
     return Record(body, outline, numbers, words, ground is not None, given, points)
+
+
+def read_surface(shape: pymunk.Shape, record: Record) -> Record:
+    """The record of a shape whose body and vertices are still those of `record`."""
+    numbers, words = _surface(shape)
+    given = _GIVEN.pack(0, len(record.vertices), *words, *numbers, 0)
+    return Record(record.body, record.vertices, numbers, words, record.outside, given, record.points)
+
+
+def _surface(shape: pymunk.Shape) -> tuple[tuple[float, ...], tuple[int, int, int]]:
+    """`numbers` and `filter` of the record of a shape."""
+    numbers = private_shapes.numbers(shape)
+    if shape.body is None or not all(map(isfinite, numbers)) or min(numbers[:3]) < 0.0:
+        check_shape(shape)
+    group, categories, mask = private_shapes.filter_of(shape)
+    return numbers, (group & _WORD, categories & _WORD, mask & _WORD)
 
 
 def records_of(
@@ -150,7 +162,7 @@ class Packed:
     ) -> bool:  # fmt: skip
         """Write the rows again, in place, after changes of numbers, filters, masses, and, if `moved`, poses of static
         bodies; False, with invalid rows, if the rows would be others. records: all; `edited` ones have changed."""
-        vertices = self.LINK["vertices"].copy() if moved else None
+        vertices = self.LINK["vertices"].tobytes()
         given, BODY = self._views
         if self._unlaid is None:
             known = {shape: record for shape, record in records.items() if record is not None}
@@ -167,7 +179,7 @@ class Packed:
             self._rows[3].fill(0.0)
         BODY.fill(0)
         self._lay()
-        return vertices is None or np.array_equal(vertices, self.LINK["vertices"])
+        return self.LINK["vertices"].tobytes() == vertices
 
     @cached_property
     def _views(self) -> tuple[IntArray, IntArray]:

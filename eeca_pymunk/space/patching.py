@@ -15,7 +15,7 @@ import pymunk
 
 from ..transfer import MOVED_STATIC, OTHER_BODIES
 from .edits import clock, edited_since
-from .packing import Record, read
+from .packing import Record, read, read_surface
 
 if TYPE_CHECKING:
     from .world import World
@@ -43,17 +43,17 @@ def patch(world: World, surfaces: bool) -> Patched | None:
     Raises:
         ValueError, UnsupportedFeature, NotFiniteError: as a new reading would.
     """
-    now, stale = clock(), edited_since(world.read_at)
-    joints = world.joints
-    if stale is None or world.frictionless or list(world.space.constraints) != ([] if joints is None else joints.items):
+    now, edited, joints = clock(), edited_since(world.read_at), world.joints
+    constraints = [] if joints is None else joints.items
+    if edited is None or world.frictionless or list(world.space.constraints) != constraints:
         return None
-    elasticity, reach, bodies = False, False, world.bodies
+    (stale, reshaped), elasticity, reach, bodies = edited, False, False, world.bodies
     records: dict[pymunk.Shape, Record] = {}
     for shape in [thing for thing in stale if thing in world.records]:
         record = world.records[shape]
         if record is None or record.outside or shape.sensor:
             return None
-        records[shape] = new = read(shape)
+        records[shape] = new = read(shape) if shape in reshaped else read_surface(shape, record)
         if (new.body, new.points) != (record.body, record.points):
             return None
         resized = new.numbers[0] != record.numbers[0]
@@ -82,7 +82,7 @@ def patch(world: World, surfaces: bool) -> Patched | None:
         return None
     world.read_at, world.objects_read = now, world.objects_read + len(records) + len(weighed)
     if joints is None:
-        world.place_anew()
+        world.start_afresh()
     else:
         joints.refresh()
     return Patched(elasticity, reach, moved)

@@ -10,7 +10,7 @@ import pymunk
 from pymunk import batch
 from pymunk._chipmunk_cffi import ffi, lib
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import AnyArray, FloatArray, IntArray
 
 OF_LIBRARY = ("cpSpaceEachBody", "pmSpaceBodyGetIteratorFuncBatched", "pmSpaceBodySetIteratorFuncBatched")
 TYPES = ("pmBatchedData *", "pmFloatArray *", "pmIntArray *")
@@ -35,7 +35,7 @@ def reader(space: pymunk.Space, fields: batch.BodyFields, floats: FloatArray, id
     return read
 
 
-def ordered(space: pymunk.Space, ids: IntArray) -> Callable[[], bool]:
+def ordered(space: pymunk.Space, ids: AnyArray) -> Callable[[], bool]:
     """A function that returns whether the bodies of the space have these ids, in this order. Bodies that fall asleep
     or wake get other places in it: one call finds this for all of them."""
     bodies, count, kept = space._bodies, len(space._bodies), np.zeros(len(ids) + 1, np.int64)

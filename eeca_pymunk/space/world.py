@@ -157,7 +157,7 @@ class World(Crossing):
     def stale(self) -> set[Any] | None:
         """Shapes and bodies whose records may be out of date: edited, in the space or outside, or bodies of shapes that
         were added or removed; None if unknown."""
-        found = edited_since(self.read_at)
+        found, _ = edited_since(self.read_at) or (None, None)
         if found is None or self.same_things():
             return found
         for shape in self.records.keys() ^ set(self.space.shapes):
