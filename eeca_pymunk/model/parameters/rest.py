@@ -38,8 +38,9 @@ SUPPORT_FACTORS = work(
     4, "factorisations", "Factorisations to find the forces by which an island at rest supports moving bodies."
 )
 SUPPORT_ROUNDS = work(8, "rounds", "Rounds in which support forces propagate to the islands below.")
-MOVING_SHARE = heuristic(0.1, "of the bodies", "Part of an island that may move while the rest of it is at rest.")
-MOVING_BODIES = heuristic(2, "bodies", "Bodies of an island that may always move while the rest of it is at rest.")
+MOVING_SHARE = heuristic(
+    0.1, "of the bodies", "Part of an island, or one body, that may move while the rest of it is at rest."
+)
 PARTIAL_REST_FACTORS_STEP = work(
     8, "factorisations", "Factorisations of a freeze after which its island is not tested for partial rest in the step."
 )
