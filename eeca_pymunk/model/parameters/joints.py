@@ -28,7 +28,6 @@ LEAST_INERTIA = work(
     "same; below it the larger one is solved.",
 )
 LIMIT_EVENTS = work(12, "number", "Limits that are reached in one step of a component, at most.")
-LIMIT_INSTANT = round_off(1e-9, "of the step", "Part of a step before a limit is reached, up to which it is empty.")
 LIMIT_WAY = round_off(1e-9, "of the component", "Way of a limit to its bound up to which the part before it is empty.")
 LIMIT_SECANTS = work(30, "iterations", "Secant steps to the instant at which a limit is reached, at most.")
 LIMIT_SECANTS_HASTE = work(2, "iterations", "Secant steps to that instant after the work HASTE.")
@@ -119,7 +118,9 @@ MEET_DOUBLINGS = work(20, "number", "Impacts up to which an interval in which jo
 MEET_SECANTS = work(5, "iterations", "Secant steps to the instant of an impact on a component, at most.")
 MEET_HALVINGS = work(40, "iterations", "Halvings of the time to an instant before shapes pass each other, at most.")
 MEET_SECANTS_LOADED = work(2, "iterations", "Secant steps to that instant if contacts push on the component.")
-MEET_INSTANT = round_off(1e-9, "of the step", "Length below which an interval before an impact is empty.")
+MEET_INSTANT = round_off(
+    1e-9, "of the step", "Length below which an interval before an impact, or a part before a limit, is empty."
+)
 COLUMN_CONTACTS = work(40, "contacts", "Number up to which islands with joints are solved exactly; with more, roughly.")
 COLUMN_SWEEPS = work(12, "sweeps", "Sweeps over components before the first path to the solution.")
 COLUMN_SWEEPS_AFTER = work(4, "sweeps", "Sweeps over components after each path, at most.")
