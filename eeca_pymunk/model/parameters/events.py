@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .record import round_off, work
+from .record import heuristic, round_off, work
 
 APPROACH_ROUND_OFF = round_off(
     1e-13, "of the speeds", "Closing speed of touching shapes below which they do not approach."
@@ -50,3 +50,8 @@ SHAPES_LOOK = work(16, "shapes", "Further shapes of a body whose prediction cost
 PAIR_LOOKS = work(4, "looks", "Work of the geometry of a pair in a solve.")
 SWEEP_LOOKS = work(0.25, "looks", "Work of a contact in a sweep.")
 DIRECT_LOOKS = work(0.25, "looks", "Work of a direct solution, times the square of its contacts.")
+INITIAL_PENETRATION = heuristic(
+    1e-06,
+    "of the smaller shape",
+    "Overlap above which shapes that the program placed into each other are separated. Smaller: large piles move on.",
+)
