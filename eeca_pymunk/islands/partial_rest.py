@@ -5,9 +5,8 @@ first with the slow ones as fixed. If there are none, the island is solved as a 
 is postponed.
 
 In large islands a few bodies always vibrate, and residuals of truncated solves move the others; both wake what is at
-rest beside them. Therefore large islands are frozen first: all slow bodies are tested without regard to the others; if
-static forces hold them, they stop, and these forces are the start of the next solve. Losses within a step would end
-such small motions as well.
+rest beside them. Therefore a large island whose bodies are all slow is frozen first: if static forces hold it, they
+stop, and these forces are the start of the next solve. Losses within a step would end such small motions as well.
 """
 
 from __future__ import annotations
@@ -21,12 +20,7 @@ from ..compiled import kernel, nonallocating
 from ..contacts.interval import make_contacts, step_island
 from ..model.bodies import AT_REST, AWAKE
 from ..model.parameters.intervals import IMPACT_SPEED, LARGE_ISLAND
-from ..model.parameters.rest import (
-    MOVING_BODIES,
-    MOVING_SHARE,
-    PARTIAL_REST_FACTORS_STEP,
-    REST_RETRY,
-)
+from ..model.parameters.rest import MOVING_SHARE, PARTIAL_REST_FACTORS_STEP, REST_RETRY
 from ..model.scene import Scene
 from ..rows.inplace import sort
 from .accounting import close_interval
@@ -62,7 +56,7 @@ def test_rest(A: Scene, MINE: IntArray, n: int, V0: FloatArray, with_supports: i
         freezing: True to test without the contacts of other islands; bodies then stop, but remain awake, and may be
             tested for rest at once.
     """
-    BODY, COUNT, dt, root = A.BODY, A.COUNT, A.PAR.dt, MINE[0]
+    BODY, COUNT, dt, root = A.BODY, A.COUNT, A.PAR.dt, A.STATE[MINE[0]].island
     set_places(A, MINE, n)
     found = pairs_within(A, root, 0.0, A.PAR.dt, True, MINE, n)
     LOAD = np.zeros((n, 3))
@@ -105,34 +99,15 @@ def test_rest(A: Scene, MINE: IntArray, n: int, V0: FloatArray, with_supports: i
 
 
 @kernel
-def freeze(A: Scene, root: int, MINE: IntArray, n: int) -> None:
-    """Stop the n bodies MINE of a large island, except for at most MOVING_BODIES fast ones, if static forces hold all
-    that are to stop. The island and its root remain, and bodies that stop are awake."""
-    STAND, V0, stand = np.empty(n, np.int64), np.empty((n, 3)), 0
+def freeze(A: Scene, MINE: IntArray, n: int) -> None:
+    """Stop the n bodies MINE of a large island if all are slow and static forces hold them. They remain awake."""
+    V0 = np.empty((n, 3))
     for q in range(n):
-        if speed(A, MINE[q], 0.0) <= IMPACT_SPEED * A.PAR.pulled * A.PAR.dt:
-            STAND[stand] = MINE[q]
-            stand += 1
-    if n - stand > MOVING_BODIES:
-        return
-    owed, frozen = A.RESTING[root].lost, False
-    if stand >= (1.0 - MOVING_SHARE) * n:
-        for q in range(n):
-            A.STATE[MINE[q]].island = -1
-        make_island(A, STAND, stand)
-        for q in range(stand):
-            body = A.BODY[STAND[q]]
-            V0[q, 0], V0[q, 1], V0[q, 2] = body.vx, body.vy, body.spin
-        frozen = test_rest(A, STAND, stand, V0, n, True)
-    if not frozen:
-        postpone_test(A, MINE, n)
-    # Make the island as it was before: its root, then its other bodies in the order of MINE.
-    STAND[0] = root
-    for q in range(n):
-        if MINE[q] != root:
-            STAND[q + 1 if MINE[q] < root else q] = MINE[q]
-    make_island(A, STAND, n)
-    A.RESTING[root].lost = owed
+        if speed(A, MINE[q], 0.0) > IMPACT_SPEED * A.PAR.pulled * A.PAR.dt:
+            return
+        body = A.BODY[MINE[q]]
+        V0[q, 0], V0[q, 1], V0[q, 2] = body.vx, body.vy, body.spin
+    test_rest(A, MINE, n, V0, n, True)
 
 
 @nonallocating
@@ -164,12 +139,12 @@ def rests_in_part(A: Scene, root: int) -> bool:
     sort(MINE, n)
     factors = A.COUNT.direct
     if n >= LARGE_ISLAND and A.PAR.stamp % REST_RETRY == 0.0:
-        freeze(A, root, MINE, n)
+        freeze(A, MINE, n)
         if A.COUNT.direct > factors + PARTIAL_REST_FACTORS_STEP:
             return False
     V0 = np.empty((n, 3))
     stand = split_slow(A, MINE, n, STAND, MOVE)
-    if stand == 0 or n - stand > max(MOVING_SHARE * n, MOVING_BODIES):
+    if stand == 0 or n - stand > max(MOVING_SHARE * n, 1.0):
         return False
     make_island(A, STAND, stand)
     for q in range(stand):

@@ -13,10 +13,9 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
-from ..contacts.works import carried
 from ..model.contacts import Bounded, JointedProblem
 from ..model.joints import Joints
-from ..model.parameters.joints import EXCESSIVE_IMPULSE, EXCESSIVE_WORK, GENTLE_SWEEPS
+from ..model.parameters.joints import EXCESSIVE_IMPULSE, GENTLE_SWEEPS
 from ..model.scene import Scene
 from ..rows.sweeps import sweep
 from .advance import Interval, advance, align
@@ -36,16 +35,13 @@ def fastest(V: FloatArray, EXTENT: FloatArray, n: int) -> float:
 @nonallocating
 def excessive(interval: Interval, L: FloatArray, speed: float) -> bool:
     """Whether impulses L are beyond all that bodies of such a speed need: larger by EXCESSIVE_IMPULSE than their
-    momenta, or with a work of what carries them beyond EXCESSIVE_WORK of their energy; not finite ones are, too."""
-    isle, m = interval.isle, interval.m
+    momenta; not finite ones are, too."""
     mass, largest = 0.0, 0.0
     for q in range(interval.n):
-        mass += 1.0 / isle.IM[q]
-    for i in range(m):
+        mass += 1.0 / interval.isle.IM[q]
+    for i in range(interval.m):
         largest = max(largest, abs(L[i, 0]) + abs(L[i, 1]))
-    work = carried(interval.P, interval.Q, interval.ROWS, L, isle.V, interval.motion.MEAN, isle.IM, isle.II, m)
-    fits = largest <= EXCESSIVE_IMPULSE * mass * speed and abs(work) <= EXCESSIVE_WORK * mass * speed * speed
-    return not fits
+    return not largest <= EXCESSIVE_IMPULSE * mass * speed
 
 
 @kernel

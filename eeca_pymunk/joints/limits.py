@@ -15,11 +15,11 @@ from ..model.joints import Workspace
 from ..model.parameters.joints import (
     JOINT_TOUCH,
     LIMIT_EVENTS,
-    LIMIT_INSTANT,
     LIMIT_SECANTS,
     LIMIT_SECANTS_HASTE,
     LIMIT_SOLVES,
     LIMIT_WAY,
+    MEET_INSTANT,
 )
 from .bounds import approach, first_bound, gap, hold_limit, release, standing
 from .correct import correct, fitting_loss
@@ -93,7 +93,7 @@ def step_with_limits(
             rate = approach(hinge[meeting], link[meeting].rows, side, a.v0, b.v0)
             faster = min(rate, approach(hinge[meeting], link[meeting].rows, side, a.v1, b.v1))
             near = rate < 0.0 and -when * faster <= LIMIT_WAY * hinge[meeting].size
-            if when > LIMIT_INSTANT * abs(h) and not near:  # else round-off of places would be velocities
+            if when > MEET_INSTANT * abs(h) and not near:  # else round-off of places would be velocities
                 book(W, when, ledger)
                 advance(local, W.bodies, when)
                 left -= when

@@ -26,9 +26,6 @@ from ..model.contacts import ROW, Edge, Problem
 from ..model.parameters.impulses import PROXIMAL_STATICS
 from ..model.parameters.rest import (
     STATICS_GAP,
-    STATICS_PROGRESS,
-    STATICS_RUNAWAY,
-    STATICS_STALLED,
     STATICS_START,
     STATICS_STEP,
 )
@@ -177,8 +174,7 @@ def equilibrium(
     held, stuck = np.ones(K, np.int64), np.zeros(K, np.int64)
     SCALE, factor = roots_of(IM, II), make_factor(P, Q, K, n, held, problem.POSE)
     problem_of_edges = Problem(P, Q, G, IM, II, problem.POSE, n, K)
-    found, free, stalled, last, first = False, True, 0, np.inf, 0.0
-    given = fastest(START, EXTENT, n)
+    found, free, first = False, True, 0.0
     for done in range(most + 1):
         copy(LEFT, START)
         add_impulses(P, Q, G, EDGE, False, K, IM, II, LEFT)
@@ -189,16 +185,10 @@ def equilibrium(
             impulses_of(problem.ROWS, EDGE, OF, K, L, m)
             if not nearest or centre <= STATICS_GAP * first:
                 return True, done
-        elif not found and done > 0:
-            if speed <= STATICS_PROGRESS * last:
-                stalled = 0
-            else:
-                stalled += STATICS_STALLED if fastest(Y, EXTENT, n) > STATICS_RUNAWAY * given else 1
-        if done == most or stalled >= STATICS_STALLED or not (speed < np.inf and (centre > 0.0 or free)):
+        if done == most or not (speed < np.inf and (centre > 0.0 or free)):
             if not found:
                 copy(START, Y)
             return found, done
-        last = speed
         if done == 0 or not free:
             for e in range(K):
                 G[e].k_n = 1.0 / (EDGE[e].a_gg + (0.0 if free else EDGE[e].s / EDGE[e].x))

@@ -21,8 +21,7 @@ import pymunk
 
 from ..reentry import BUSY
 from ..transfer import EVENTS
-from . import private, private_arbiters, private_joints, private_rest, private_shapes, private_sleep
-from .bodies import ANGULAR_VELOCITY, VELOCITY
+from . import private, private_arbiters, private_rest, private_shapes, private_sleep
 from .joints import JointRows
 from .private_joints import restore_motions, silent, strengthen, weaken, with_laws
 

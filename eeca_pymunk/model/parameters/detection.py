@@ -28,7 +28,11 @@ FACE_WIDTH = accuracy(
     "of the larger shape",
     "Width of a common face below which it is one point. Smaller: two contacts at one place, singular.",
 )
-SLENDER = heuristic(0.5, "area over (length / 2)^2", "Polygons below it are thin and remember sides as segments do.")
+SLENDER = heuristic(
+    0.5,
+    "area over (length / 2)^2",
+    "Polygons below it are thin and remember sides as segments do: planks in a container that turns stay inside.",
+)
 CORNER_MEET = round_off(1e-9, "of the segments' size", "Distance within which ends of segments form a corner.")
 STRAIGHT = round_off(1e-6, "sine", "Angle between segments that meet below which they form one straight wall.")
 MARGIN_OF_FAST = work(

@@ -18,13 +18,6 @@ STATICS_FACTORS = work(12, "factorisations", "Factorisations to find static forc
 STATICS_FACTORS_NEAREST = work(6, "factorisations", "Further factorisations to approach the guess.")
 STATICS_START = accuracy(0.1, "of the mean guess", "Least impulse at the start of the interior-point iteration.")
 STATICS_STEP = accuracy(0.99, "of the distance to the boundary", "Step of the interior-point iteration.")
-STATICS_PROGRESS = heuristic(0.8, "ratio of residual motions", "Progress of an iteration below which it stalls.")
-STATICS_STALLED = heuristic(4, "iterations", "Stalled iterations after which no static forces exist.")
-STATICS_RUNAWAY = heuristic(
-    100000.0,
-    "times the velocities",
-    "Growth of the multipliers by which one iteration shows a motion that no force holds.",
-)
 STATICS_GAP = accuracy(
     1e-08, "of the first complementarity", "Complementarity at which the forces are the nearest to the guess."
 )
@@ -38,8 +31,11 @@ SUPPORT_FACTORS = work(
     4, "factorisations", "Factorisations to find the forces by which an island at rest supports moving bodies."
 )
 SUPPORT_ROUNDS = work(8, "rounds", "Rounds in which support forces propagate to the islands below.")
-MOVING_SHARE = heuristic(0.1, "of the bodies", "Part of an island that may move while the rest of it is at rest.")
-MOVING_BODIES = heuristic(2, "bodies", "Bodies of an island that may always move while the rest of it is at rest.")
+MOVING_SHARE = heuristic(
+    0.1,
+    "of the bodies",
+    "Part of an island, or one body, that may move while the rest of it is at rest, as a disk on a plank.",
+)
 PARTIAL_REST_FACTORS_STEP = work(
     8, "factorisations", "Factorisations of a freeze after which its island is not tested for partial rest in the step."
 )
