@@ -183,8 +183,7 @@ def move_to_end(A: Scene, i: int, end: float) -> None:
 def apply_correction(A: Scene, root: int, end: float) -> None:
     """Apply the penetration correction of an island's bodies, displacements D, dtheta and changes of velocity, at the
     end of its interval. It costs the change of kinetic energy, less the work of forces m a.D + I alpha dtheta. The cost
-    is deducted from the losses of the step, or is external work where a body without mobility was placed into the
-    island (`Member.raised`)."""
+    is deducted from the losses of the step, and is external work beyond `Rest.payable`."""
     PAR, BODY, PULL, JUMP = A.PAR, A.BODY, A.PULL, A.RESTING
     spent = 0.0
     i = root
@@ -210,10 +209,9 @@ def apply_correction(A: Scene, root: int, end: float) -> None:
         BODY[i].vy += JUMP[i].lift_vy
         BODY[i].spin += JUMP[i].lift_spin
         i = A.MEMBER[i].following
-    if A.MEMBER[root].raised > 0:
-        PAR.external += spent
-        return
-    PAR.restitution -= spent
+    paid = min(spent, JUMP[root].payable)
+    PAR.external += spent - paid
+    PAR.restitution -= paid
     if PAR.restitution < 0.0 and PAR.frictional > 0.0:
         PAR.frictional += PAR.restitution
         PAR.restitution = 0.0

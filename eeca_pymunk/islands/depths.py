@@ -27,7 +27,7 @@ def depth_limit(small: float, thick: float) -> float:
 @nonallocating
 def driven(A: Scene, isle: Island, P: IntArray, Q: IntArray, ROWS: Rows[Row], KEY: IntArray, n: int, m: int) -> bool:
     """Whether a moving body without mobility is deeper in an island of n bodies, at any of m contacts, than an interval
-    allows: the work of lifting is then external, as losses do not suffice."""
+    allows: the work of lifting beyond what losses pay is then external."""
     shapes = A.SHAPE.shape[0]
     for z in range(m):
         q = max(P[z], Q[z])  # bodies without mobility are the last ones

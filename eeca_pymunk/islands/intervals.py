@@ -98,12 +98,12 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
     sweeps = SMALL_SWEEPS if n < LARGE_ISLAND else sweeps_of_large(t)
     m = 0
     with_supports = bodies_with_supports(A, isle, n)
-    raised = 0
+    payable = math.inf
     for q in range(n, k):
         # A body without mobility that the program has moved into others does the work of lifting them.
         if MEMBER[WHO[q]].placed == MOVED and BODY[WHO[q]].inv_mass == 0.0:
-            raised = 1
-    quiet = rest_threshold(A, root, MINE, n, with_supports, t) if may_lose and raised == 0 else 0.0
+            payable = 0.0
+    quiet = rest_threshold(A, root, MINE, n, with_supports, t) if may_lose and payable > 0.0 else 0.0
     owed = max(-A.RESTING[root].lost, 0.0)
     shortest = A.PAR.dt / RESOLUTION
     if p > 0 and h > 0.0:
@@ -126,7 +126,7 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
         if m > 0 and OUT[0].at_rest == 0 and not before_end(A, t + h):
             # An interval that ends within the step is followed by another one, which corrects the penetration.
             middle, lost = moved(isle.POSE, V, 0.5 * h), OUT[0].restitution + OUT[0].friction
-            raised = find_lifts(A, isle, contacts, n, m, middle, VN, h, lost, owed, raised)
+            payable = find_lifts(A, isle, contacts, n, m, middle, VN, h, lost, A.RESTING[root].lost, payable)
         if abs(OUT[0].lock - 1.0) > abs(A.PAR.lock - 1.0):
             A.PAR.lock = OUT[0].lock
     at_rest = OUT[0].at_rest > 0
@@ -157,8 +157,8 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
         STATE[i].island, MEMBER[i].following = head, -1
     if head >= 0:
         MEMBER[head].last, MEMBER[head].bodies, MEMBER[head].hits = tail, size, hits
-        MEMBER[head].with_supports, MEMBER[head].raised = with_supports, raised
-        A.RESTING[head].lost = lost
+        MEMBER[head].with_supports = with_supports
+        A.RESTING[head].payable, A.RESTING[head].lost = payable, lost
         open_until(A, head, t + h)
         own_contacts(A, head, m)
         if at_rest:
@@ -169,8 +169,8 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
 @kernel
 def lift_here(A: Scene, root: int, t: float) -> None:
     """Set the penetration correction of an island whose interval has been cut at instant t, at which its bodies are;
-    `accounting.apply_correction` applies it. It may cost as much energy as the island has lost in the step, and without
-    a bound where a moving body without mobility is deep in the island (`depths.driven`)."""
+    `accounting.apply_correction` applies it. It may cost as much energy as the island has lost in the step; where a
+    moving body without mobility is deep in the island (`depths.driven`) that does the work beyond."""
     MINE = number_bodies(A, root)
     n = len(MINE)
     found = pairs_within(A, root, t, 0.0, True, MINE, n)
@@ -181,23 +181,29 @@ def lift_here(A: Scene, root: int, t: float) -> None:
     if m > 0:
         rates(contacts.A, contacts.B, contacts.ROWS, isle.V, m)
         lost = A.RESTING[root].lost
-        A.MEMBER[root].raised = find_lifts(A, isle, contacts, n, m, isle.POSE, isle.V, 0.0, lost, 0.0, 0)
+        payable = find_lifts(A, isle, contacts, n, m, isle.POSE, isle.V, 0.0, lost, 0.0, math.inf)
+        A.RESTING[root].payable = payable
     set_lifts(A, MINE, n, contacts.JUMP)
 
 
 @kernel
 def find_lifts(
     A: Scene, isle: Island, contacts: Contacts, n: int, m: int, POSE: FloatArray, VN: FloatArray, h: float, lost: float,
-    owed: float, raised: int,
-) -> int:  # fmt: skip
+    before: float, payable: float,
+) -> float:  # fmt: skip
     """Find the penetration corrections JUMP at the end of an interval h, with poses POSE in its middle and velocities
-    VN at its end. They may cost the energy `lost` less `owed`, or any if bodies are `raised`, or driven; 1 if so."""
+    VN at its end. They may cost the energy `lost` in it, less what was owed `before`; any if a body without mobility
+    does the work beyond what losses pay, as it has been placed into others (payable = 0), or drives into them: then all
+    losses of the step pay, as bodies have also gone deeper by their own motion. Returns what losses pay."""
     P, Q, ROWS = contacts.A, contacts.B, contacts.ROWS
-    raised = max(raised, 1 if driven(A, isle, P, Q, ROWS, contacts.KEY, n, m) else 0)
-    budget = budget_of(ROWS, m, lost, owed, math.inf if raised > 0 else 0.0)
+    budget = budget_of(ROWS, m, lost, max(-before, 0.0), 0.0)
+    if driven(A, isle, P, Q, ROWS, contacts.KEY, n, m):
+        payable = min(payable, max(budget_of(ROWS, m, lost, -before, 0.0), 0.0))
+    if payable < math.inf:
+        budget = math.inf
     problem = Problem(P, Q, ROWS, isle.IM, isle.II, isle.POSE, n, m)
     lifting(problem, POSE, VN, isle.ACC, h, least_of(isle.EXTENT, n), budget, contacts.JUMP)
-    return raised
+    return payable
 
 
 @nonallocating

@@ -161,10 +161,9 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
             spent = correct(A, J, interval, t + h, math.inf if raised else budget)
             for g in range(len(groups.COMPONENT)):
                 if groups.COMPONENT[g] >= 0:
-                    if raised:
-                        J.STEPPED[groups.COMPONENT[g]].supports += spent
-                    else:
-                        J.STEPPED[groups.COMPONENT[g]].lifted = spent
+                    paid = min(spent, max(budget, 0.0)) if raised else spent
+                    J.STEPPED[groups.COMPONENT[g]].lifted = paid
+                    J.STEPPED[groups.COMPONENT[g]].supports += spent - paid
                     break
         HELD = fit(A, J, interval, L, t + h, slow + pull * h)
     clear_places(A, MINE, n)

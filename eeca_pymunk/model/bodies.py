@@ -82,9 +82,6 @@ class Member(Record):
     loaded: int  # of the root of an island at rest: 1 while support of moving neighbours is unverified
     with_supports: int  # of the root: `bodies`, and those of the islands that support them
     placed: int  # UNMOVED or MOVED while the body may overlap others deeply; else 0
-    raised: (
-        int  # of the root: 1 if a body without mobility was placed into its bodies, so that lifting is external work
-    )
     new_forces: (
         int  # of the root of an island at rest: 1 while the islands below have not been tested with its new forces
     )
@@ -104,6 +101,7 @@ class Rest(Record):
     augmentation: float  # of the root: log10 of R in direct solves, see `contacts/relaxation.py`
     wait: float  # of the root: steps until the next direct solve
     backoff: float  # of the root: steps to wait after its next failure
+    payable: float  # of the root: energy up to which losses pay for the correction; what is beyond is external work
     lost: float  # of the root: energy lost in this step; if negative, energy that later intervals have to take out
     until: float  # of the root: instant at which the interval ends
     rest_timer: float  # steps in a row at whose start the body was slow; negative after a failed test
