@@ -21,7 +21,8 @@ import pymunk
 
 from ..reentry import BUSY
 from ..transfer import EVENTS
-from . import private, private_arbiters, private_rest, private_shapes, private_sleep
+from . import private, private_arbiters, private_joints, private_rest, private_shapes, private_sleep
+from .bodies import ANGULAR_VELOCITY, VELOCITY
 from .joints import JointRows
 from .private_joints import restore_motions, silent, strengthen, weaken, with_laws
 
@@ -172,3 +173,53 @@ class Sync:
             for arbiter in private.raw_arbiters(self.space):
                 private_arbiters.set_impulse(arbiter, None)
         slept = self._asleep and world.bodies.in_order()
+        how = self.space, dt, world.joints, stored, self._choice() if self._asleep else None
+        if world.hooks.some:
+            with world.hooks.silent():
+                rest_step(*how)
+        else:
+            rest_step(*how)
+        if slept and not world.bodies.in_order():
+            self._stop()  # what pymunk wakes gets a velocity by gravity
+        self._rested, self._dt, self._reindexings = self._timestamp(), dt, _RENEW
+        self.stamp = self._rested
+        self._stale = False
+        if not self.renews and self._shapes <= FEW:
+            self._touched = bool(private.raw_arbiters(self.space))
+
+    def _choice(self) -> Choice:
+        """Function for which of constraints have no body that sleeps: bodies that sleep at the start of a step do so at
+        its end, unless functions have woken them."""
+        joints = self._world.joints
+        if joints is None or self._world.hooks.some or joints.calling or joints.own:
+            return private_joints.awake
+        return joints.awake
+
+    def land(self, dt: float, status: int) -> None:
+        """Write the end of the step to the space, and update pymunk's shapes: by reindexing, or by a rest step between
+        poses and velocities."""
+        world = self._world
+        if self.reindexes(dt, status):
+            world.scatter(status)
+            self.reindex()
+            return
+        if world.joints is not None or self._pulls:
+            status = world.with_turns(status)  # joints change spins by round-off; gravity, where bodies sleep, by more
+        world.scatter_still(status)
+        self.rest(dt)
+        world.scatter_speed(status)
+
+    def follow(self, dt: float, status: int) -> None:
+        """Update pymunk's shapes to the end of a step that is written already, and may have been changed by
+        functions."""
+        if self.reindexes(dt, status):
+            self.reindex()
+            return
+        bodies = self._world.bodies
+        end = bodies.gather()
+        assert end is not None  # additions and removals by functions still wait
+        still = end.copy()
+        still[:, VELOCITY], still[:, ANGULAR_VELOCITY] = 0.0, 0.0
+        bodies.scatter(still, unchanged=True)
+        self.rest(dt)
+        bodies.scatter(end, unchanged=True)
