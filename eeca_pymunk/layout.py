@@ -15,8 +15,8 @@ FOUND, KNOWN = 0, 1  # pymunk's ids of the bodies: as read now, as read when the
 BODY_ROW = 2  # row of BODY, -1 for static bodies
 SPECIAL = 3  # flags: 0 for most bodies, or the bits below; EXTRA has their values
 STEERED, ECCENTRIC = 1, 2  # a velocity function has set the acceleration; the centre of mass is not the origin
-# `Body.due` at the start of a step: the body counts as placed by the program, but the sides of its shapes are kept; for
-# NUDGED since it was moved by no more than the depth up to which these are certain
+# `Body.due` at the start of a step: the body counts as placed by the program, but the sides of its shapes are kept;
+# less than NUDGED by the way that it was moved, over its extent: sides of shapes that are not as wide are forgotten
 ANEW, NUDGED = -2.0, -3.0
 # EXTRA
 COG_X, COG_Y = 0, 1  # centre of mass in the body's coordinates: length

@@ -35,7 +35,6 @@ from .layout import (
     STILL,
 )  # fmt: skip
 from .model.bodies import Body
-from .model.parameters.intervals import INTERVAL_DEPTH_LEAST
 
 # Status of `take`, `give` and a step: bits (there are impulses; forces have to be reset; angles or spins have to be
 # written), or a negative code.
@@ -65,8 +64,8 @@ def take(
     """Write the states read from pymunk into BODY: all paths begin at the start of the step, `since` = 0.
 
     `Body.due` becomes negative if the prediction of the last step is void: the velocity was edited or damped, or the
-    acceleration has changed; NUDGED if the pose was edited, by no more than the depth INTERVAL_DEPTH_LEAST, up to which
-    the sides of thin shapes are certain; -inf if by more. With damping all predictions are void.
+    acceleration has changed; if the pose was edited, NUDGED less the way of its points, in parts of the body's extent,
+    and -inf if that is not known. With damping all predictions are void.
 
     Args:
         STATES (2, N, 9), WALK (4, N), EXTRA (N, 5), BODY (n,): see `layout.py`.
@@ -111,9 +110,9 @@ def take(
             x += c * kx - s * ky
             y += s * kx + c * ky
         if moved:
-            size = BODY[row].extent
-            way = abs(now[i, 0] - before[i, 0]) + abs(now[i, 1] - before[i, 1]) + size * abs(angle - before[i, 2])
-            BODY[row].due = min(BODY[row].due, NUDGED) if way <= INTERVAL_DEPTH_LEAST * size else -math.inf
+            way = (abs(now[i, 0] - before[i, 0]) + abs(now[i, 1] - before[i, 1])) / max(BODY[row].extent, 1e-300)
+            way += abs(angle - before[i, 2])
+            BODY[row].due = min(BODY[row].due, NUDGED - way) if way >= 0.0 else -math.inf
         elif edited or damped != 1.0 or ax != BODY[row].ax or ay != BODY[row].ay or twist != BODY[row].angular:
             BODY[row].due = min(BODY[row].due, -1.0)
         BODY[row].x, BODY[row].y, BODY[row].angle = x, y, angle

@@ -177,18 +177,3 @@ def face(A: Scene, s: int, r: int, POSE: FloatArray, a: int, b: int, tolerance: 
     if swapped:
         reverse(OUT, count)
     return count
-
-
-@nonallocating
-def half_width(A: Scene, s: int) -> float:
-    """Half the least width of shape s: a shape that is less deep inside is on the side from which it came."""
-    VERTEX, first, count, least = A.VERTEX, A.LINK[s].first, A.LINK[s].vertices, math.inf
-    if count < 3:
-        return A.SHAPE[s].rounding
-    for j in range(first, first + count):
-        most = 0.0
-        for k in range(first, first + count):
-            x, y = VERTEX[j, 0] - VERTEX[k, 0], VERTEX[j, 1] - VERTEX[k, 1]
-            most = max(most, x * VERTEX[j, 2] + y * VERTEX[j, 3])
-        least = min(least, most)
-    return A.SHAPE[s].rounding + 0.5 * least

@@ -94,12 +94,32 @@ def known_side(A: Scene, a: int, b: int) -> bool:
 
 
 @nonallocating
-def forget_sides(A: Scene, i: int) -> None:
-    """Forget the sides of all shapes of body i, which the program has placed."""
+def half_width(A: Scene, s: int) -> float:
+    """Half the least width of shape s: a shape that is less deep inside is on the side from which it came."""
+    VERTEX, first, count, least = A.VERTEX, A.LINK[s].first, A.LINK[s].vertices, math.inf
+    if count < 3:
+        return A.SHAPE[s].rounding
+    for j in range(first, first + count):
+        most = 0.0
+        for k in range(first, first + count):
+            x, y = VERTEX[j, 0] - VERTEX[k, 0], VERTEX[j, 1] - VERTEX[k, 1]
+            most = max(most, x * VERTEX[j, 2] + y * VERTEX[j, 3])
+        least = min(least, most)
+    return A.SHAPE[s].rounding + 0.5 * least
+
+
+@nonallocating
+def forget_sides(A: Scene, i: int, way: float) -> None:
+    """Forget the sides of those shapes of body i, which the program has placed, that may be on others since: it was
+    moved, or turned at its extent, by `way` (length), farther than from the middle of both shapes to their surfaces."""
     SIDE, LINK, shapes = A.SIDE, A.LINK, len(A.SHAPE)
     for row in range(len(SIDE)):
         pair = SIDE[row].key - 1
-        if pair >= 0 and (LINK[pair // shapes].owner == i or LINK[pair % shapes].owner == i):
+        if pair < 0 or (LINK[pair // shapes].owner != i and LINK[pair % shapes].owner != i):
+            continue
+        if way > max(
+            half_width(A, pair // shapes) + half_width(A, pair % shapes), INTERVAL_DEPTH_LEAST * A.BODY[i].extent
+        ):
             SIDE[row].key = -1  # deleted, not free: rows after it may belong to other pairs
 
 

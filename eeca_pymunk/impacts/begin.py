@@ -67,8 +67,8 @@ def begin(A: Scene, WALK: IntArray) -> None:
         A.BEGAN[i, 0], A.BEGAN[i, 1], A.BEGAN[i, 2] = BODY[i].x, BODY[i].y, BODY[i].angle
         if BODY[i].due < 0.0:
             STATE[i].version += 1
-            if BODY[i].due == -math.inf:
-                forget_sides(A, i)
+            if BODY[i].due < NUDGED:
+                forget_sides(A, i, (NUDGED - BODY[i].due) * BODY[i].extent)
             if BODY[i].due <= NUDGED:
                 A.MEMBER[i].placed, COUNT.any_placed = MOVED, 1
             elif BODY[i].due <= ANEW:

@@ -12,7 +12,7 @@ from ..arrays import IntArray
 from ..compiled import kernel, nonallocating
 from ..contacts.single import move_to
 from ..geometry.flight import norm
-from ..geometry.manifold import half_width
+from ..geometry.sides import half_width
 from ..model.bodies import AT_REST
 from ..model.contacts import LASTED
 from ..model.parameters.events import RESOLUTION, WORK_JOINTED

@@ -8,8 +8,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..geometry.gap import gap_at
-from ..geometry.manifold import half_width
-from ..geometry.sides import remembers
+from ..geometry.sides import half_width, remembers
 from ..model.contacts import Row
 from ..model.islands import Island
 from ..model.parameters.intervals import INTERVAL_DEPTH, INTERVAL_DEPTH_LEAST, INTERVAL_DEPTH_WIDTH, INTERVAL_RETRY

@@ -32,7 +32,7 @@ class Body(Record):
     friction: float  # of a single disk
     # Time of the body's next event after the start of the step. Negative at the start of a step: the event has to be
     # predicted again. -1 after a new velocity or acceleration, `..layout.ANEW` if the body counts as placed by the
-    # program, `..layout.NUDGED` if it was placed nearby, -inf if the sides of its thin shapes are to be forgotten.
+    # program, `..layout.NUDGED` less the way, over its extent, if it was placed elsewhere.
     due: float
 
 

@@ -41,3 +41,25 @@ def test_what_turns_around_the_end_of_a_thin_shape_goes_the_same_way_in_long_ste
     reference = spin_on(400)
     assert reference[-1] == 2
     assert spin_on(steps) == pytest.approx(reference, rel=1e-9)
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1.0])
+def test_what_a_program_moves_by_less_than_its_width_stays_on_its_side(unit: float) -> None:
+    """A plank on a wall without width, put deeper twice by .9 of half its width: its middle is beyond the wall then,
+    but as it has not been farther from where it was than half its width at any time, it comes from above."""
+    space = pymunk.Space()
+    space.gravity = 0.0, -9.81 * unit
+    space.add(pymunk.Segment(space.static_body, (-5.0 * unit, 0.0), (5.0 * unit, 0.0), 0.0))
+    half, body = 0.02 * unit, pymunk.Body(1.0, unit * unit / 3.0)
+    body.position = 0.0, half
+    space.add(body, pymunk.Poly.create_box(body, (2.0 * unit, 2.0 * half)))
+    stepper = ep.EECA(space)
+    for _ in range(10):
+        stepper.step(1 / 60)
+    for _ in range(2):
+        body.position = body.position.x, body.position.y - 0.9 * half
+        space.reindex_shapes_for_body(body)
+        stepper.step(1 / 60)
+    for _ in range(30):
+        stepper.step(1 / 60)
+    assert body.position.y == pytest.approx(-0.8 * half, rel=1e-9)

@@ -70,7 +70,7 @@ def rolls(body: pymunk.Body) -> bool:
 
 @pytest.mark.skipif(SHORT, reason="takes minutes in plain Python")
 @pytest.mark.parametrize(
-    ("kind", "count", "elasticity"), [("disks", 300, 0.0), ("mixed", 300, 0.0), ("boxes", 900, 0.0)]
+    ("kind", "count", "elasticity"), [("disks", 300, 0.0), ("mixed", 300, 0.0), ("boxes", 1000, 0.0)]
 )
 def test_a_large_pile_comes_to_rest(kind: str, count: int, elasticity: float) -> None:
     """A few that rattle about do not keep it awake."""
