@@ -46,11 +46,16 @@ def start_joints(A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray) -> Non
 
 
 @nonallocating
-def is_spent(A: Scene, J: Joints, t: float) -> bool:
-    """Whether a step has no work left for joints at instant t. It has more of it while it has hardly begun, so that a
+def budget_at(A: Scene, J: Joints, t: float) -> float:
+    """Work that a step may have taken for joints up to instant t. That is more while it has hardly begun, so that a
     scene whose first intervals take all of it moves on."""
-    over = J.PROGRESS.effort > J.PROGRESS.budget
-    return bool(over and (t > STEP_BEGUN * A.PAR.dt or J.PROGRESS.effort > STEP_EXCESS * J.PROGRESS.budget))
+    return float(J.PROGRESS.budget * (STEP_EXCESS if t <= STEP_BEGUN * A.PAR.dt else 1.0))
+
+
+@nonallocating
+def is_spent(A: Scene, J: Joints, t: float) -> bool:
+    """Whether a step has no work left for joints at instant t."""
+    return bool(J.PROGRESS.effort > budget_at(A, J, t))
 
 
 @nonallocating

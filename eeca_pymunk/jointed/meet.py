@@ -56,6 +56,9 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
     """
     i, j = A.LINK[a].owner, A.LINK[b].owner
     roots = (A.STATE[i].island, A.STATE[j].island if A.BODY[j].inv_mass > 0.0 else -1)
+    if not (under_way(A, roots[0]) or under_way(A, roots[1])):
+        # They have been brought to t, and have no paths beyond it: only others that they touch have joints.
+        return t, False
     # Nobody goes back in time, to where what overlaps would have met, or on to where an interval would be too long.
     least, latest = A.BODY[i].since, A.PAR.dt
     if A.BODY[j].inv_mass > 0.0:
