@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
@@ -196,4 +198,6 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
                 A.BLOCK[n], A.PLACE[MINE[q]] = MINE[q], n
                 n += 1
     clear_places(A, A.BLOCK, n)
+    for q in range(n):
+        A.RESTING[A.BLOCK[q]].longest = math.inf  # they move otherwise now
     return n

@@ -59,12 +59,13 @@ def solve_columns(
     if worst > tolerance:
         copy(L, L0)
         copy(V, V0)
+        before = breach(problem, L, V)
         worst = iterate(problem, L, V, tolerance, most)[1]
-        if not worst <= best:
-            # Sweeps need not converge where friction could open contacts.
+        if not breach(problem, L, V) <= 2.0 * before:
+            # Sweeps diverge where friction could open contacts.
             copy(L, L0)
             copy(V, V0)
-            worst = best
+            worst = before
     return worst
 
 

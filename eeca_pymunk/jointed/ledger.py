@@ -60,11 +60,16 @@ def is_spent(A: Scene, J: Joints, t: float) -> bool:
 
 @nonallocating
 def account_component(A: Scene, J: Joints, s: int) -> None:
-    """Book what the joints of component s have done in their interval."""
+    """Book what the joints of component s have done in their interval.
+
+    A joint that holds works by its impulse over the time h in which a limit stops its bodies, times the round-off of
+    its place, over h: the shorter, the more. The limit loses as much less; only the sum is a loss.
+    """
     PAR, B = A.PAR, J.STEPPED[s]
-    PAR.external += B.motors + B.supports + B.closed + B.turned_work
+    passed = min(max(B.closed, 0.0), max(B.limited, 0.0))
+    PAR.external += B.motors + B.supports + (B.closed - passed) + B.turned_work
     PAR.damped += B.damped
-    PAR.restitution += B.limited + B.projected - B.lifted
+    PAR.restitution += (B.limited - passed) + B.projected - B.lifted
     PAR.frictional += B.clamped
     PAR.stored += B.stored
     J.TALLY.worst = max(J.TALLY.worst, B.status)

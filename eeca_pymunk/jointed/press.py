@@ -215,8 +215,4 @@ def press(
     if some_give(J, groups) or some_taut(J, groups):
         known = max(known, min(2.0 * reached / (slow + pull * h), PRESS_WORK_TAUT))
     scaled = lock(A, J, interval, L, B, free, elastic, owed, work_error(interval, L, slow, pull, known))
-    if scaled == 0.0 and not elastic:
-        # Without impulses bodies would fall through what they rest on.
-        solve_gently(A, J, interval, L, B, free)
-        lock(A, J, interval, L, B, free, elastic, owed, work_error(interval, L, slow, pull, known))
     return converged and abs(scaled - 1.0) <= max(agree / scale, AGREE)

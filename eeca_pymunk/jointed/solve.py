@@ -66,8 +66,10 @@ def foresee(
 @kernel
 def begin_interval(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
     """Begin an interval of an island with joints at instant t, at which all its bodies are: of length h, or shorter
-    where joints do not hold, the work does not suffice, or bodies go too far (`lengths`). What was too long is not tried
-    again at once: after an interval that was shortened the next one is at most INTERVAL_RETRY times as long, and so on.
+    where joints do not hold, the work does not suffice, or bodies go too far (`lengths`).
+
+    What was too long is not tried again at once: without an impact in between, an interval after one that was shortened
+    is at most INTERVAL_RETRY times as long, and so on.
 
     DONE, or PUSHES_FULL, which leaves everything as it was; likewise SPENT, within a step that has no work left.
     """
