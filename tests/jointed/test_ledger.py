@@ -112,7 +112,7 @@ def test_ledger_closes_in_random_heaps(unit: float, closure: ep.Closure | None) 
 
 @pytest.mark.parametrize(("closed", "work", "loss"), [(3.0, 0.0, 2.0), (7.0, 2.0, 0.0), (-1.0, -1.0, 5.0)])
 def test_what_a_limit_stops_brings_no_work_from_outside(closed: float, work: float, loss: float) -> None:
-    """The round-off of what holds, in the instant in which a limit stops its bodies, comes from what the limit takes."""
+    """The round-off of what holds, as a limit stops its bodies in an instant, comes from what the limit takes."""
     joints = SimpleNamespace(STEPPED=zeros(1, kind_of(JointLedger)), TALLY=SimpleNamespace(worst=0))
     scene = SimpleNamespace(PAR=zeros(1, kind_of(Step))[0])
     joints.STEPPED[0].closed, joints.STEPPED[0].limited = closed, 5.0
