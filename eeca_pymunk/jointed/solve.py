@@ -21,7 +21,7 @@ from ..model.islands import Island
 from ..model.joint_steps import ELASTIC
 from ..model.joints import Joints
 from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES, UNSOLVED_PART
-from ..model.parameters.joints import INTERVAL_SHARE
+from ..model.parameters.joints import COLUMN_CONTACTS, INTERVAL_SHARE
 from ..model.scene import Scene
 from ..model.step import AGAIN, CONTACTS, DONE, PUSHES_FULL, SPENT
 from ..rows.bounded import room_for_rows
@@ -133,7 +133,9 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
         recall(KEY, m, A.KEYS, A.FORCES, A.PAR.stamp, h, L, EXPECTED)
         owed = max(-A.RESTING[root].lost, 0.0)
         held = press(A, J, interval, L, EXPECTED, slow, fast, pull, owed)
-        remember_loads(ROWS, KEY, L, m, h, A.KEYS, A.FORCES, COUNT, A.PAR.stamp)
+        if held or m > COLUMN_CONTACTS:
+            # Of few contacts impulses that are no solution are no loads to begin with either.
+            remember_loads(ROWS, KEY, L, m, h, A.KEYS, A.FORCES, COUNT, A.PAR.stamp)
     if m == 0:
         advance(A, J, interval, L, room_for_rows(0, 0), False, np.empty((0, 3)))
     COUNT.solves += 1
