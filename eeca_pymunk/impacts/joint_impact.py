@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
@@ -20,11 +22,13 @@ from ..jointed.meet import meet
 from ..model.contacts import SOLVED, JointedProblem, Row
 from ..model.joints import Joints
 from ..model.parameters.events import EVENT_LOOKS
+from ..model.parameters.impulses import WEDGED
 from ..model.parameters.joints import CLOSES, SOLUTION_WORK
 from ..model.scene import Scene
 from ..rows.blocks import solve_block
 from ..rows.bounded import room_for_rows
-from ..rows.build import conserves, normal_rate
+from ..rows.build import aim, conserves, normal_rate, rubs
+from ..rows.coulomb import slip_freely
 from ..rows.sweeps import velocities
 from .resolution import finish, rejoin
 from .simultaneous import Block, energy_owed, gather, lay_out
@@ -158,6 +162,12 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     weigh(groups, C, P, Q, ROWS, rows)
     problem = JointedProblem(P, Q, ROWS, C, room_for_rows(0, 0), rows)
     status = solve_block(problem, L, V, owed, False, LOSS, OUT)
+    if OUT[0].residual > WEDGED * aim(ROWS, rows) and rubs(ROWS, rows):
+        slip_freely(ROWS, rows)
+        for z in range(rows):
+            L[z, 0] = L[z, 1] = 0.0
+        velocities(problem, L, FITTED, V)
+        status = solve_block(problem, L, V, owed, False, LOSS, OUT)
     # `fits`: whether the velocities satisfy the joints afterwards. If all contacts are elastic and without friction,
     # the part that joints do not allow is kept, unless a contact closes by it.
     fits = not conserves(ROWS, rows)
@@ -188,4 +198,6 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
                 A.BLOCK[n], A.PLACE[MINE[q]] = MINE[q], n
                 n += 1
     clear_places(A, A.BLOCK, n)
+    for q in range(n):
+        A.RESTING[A.BLOCK[q]].longest = math.inf  # they move otherwise now
     return n

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
@@ -39,7 +41,7 @@ def lay_scene(table: Table) -> None:
         A.PLACE[i] = -1
         A.STATE[i].island = -1
         A.MEMBER[i].tied, A.MEMBER[i].next_tied = -1, -1
-        A.RESTING[i].augmentation = AUGMENTATION
+        A.RESTING[i].augmentation, A.RESTING[i].longest = AUGMENTATION, math.inf
     for s in range(A.LINK.shape[0]):
         if A.LINK[s].owner < ground:
             A.STATE[A.LINK[s].owner].shapes += 1

@@ -48,6 +48,7 @@ def unite(A: Scene, i: int, j: int) -> int:
     MEMBER[a].hits = max(MEMBER[a].hits, MEMBER[b].hits)
     MEMBER[a].jointed = max(MEMBER[a].jointed, MEMBER[b].jointed)
     A.RESTING[a].lost += A.RESTING[b].lost
+    A.RESTING[a].longest = min(A.RESTING[a].longest, A.RESTING[b].longest)
     return a
 
 

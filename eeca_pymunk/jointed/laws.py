@@ -7,9 +7,10 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import kernel
 from ..model.contacts import JointedProblem
-from ..model.parameters.joints import COLUMN_CONTACTS, COLUMN_PATHS, COLUMN_SWEEPS_AFTER
+from ..model.parameters.joints import COLUMN_CONTACTS, COLUMN_PATHS, COLUMN_SWEEPS, COLUMN_SWEEPS_AFTER
 from ..rows.columns import breach
 from ..rows.conjugate import iterate
+from ..rows.coulomb import slip_freely
 from ..rows.inplace import copy
 from ..rows.path import follow_path
 from ..rows.sweeps import push, sweep, velocities
@@ -58,5 +59,24 @@ def solve_columns(
     if worst > tolerance:
         copy(L, L0)
         copy(V, V0)
+        before = breach(problem, L, V)
         worst = iterate(problem, L, V, tolerance, most)[1]
+        if not breach(problem, L, V) <= 2.0 * before:
+            # Sweeps diverge where friction could open contacts.
+            copy(L, L0)
+            copy(V, V0)
+            worst = before
     return worst
+
+
+@kernel
+def solve_wedged(
+    problem: JointedProblem, L: FloatArray, V: FloatArray, tolerance: float, most: int,
+) -> float:  # fmt: skip
+    """`solve_columns` without friction, from no impulses of contacts."""
+    slip_freely(problem.ROWS, problem.m)
+    push(problem, L, -1.0, V)
+    for i in range(problem.m):
+        L[i, 0] = L[i, 1] = 0.0
+    push(problem, L, 1.0, V)
+    return solve_columns(problem, L, V, tolerance, COLUMN_SWEEPS, most)

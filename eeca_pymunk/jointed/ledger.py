@@ -46,20 +46,30 @@ def start_joints(A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray) -> Non
 
 
 @nonallocating
-def is_spent(A: Scene, J: Joints, t: float) -> bool:
-    """Whether a step has no work left for joints at instant t. It has more of it while it has hardly begun, so that a
+def budget_at(A: Scene, J: Joints, t: float) -> float:
+    """Work that a step may have taken for joints up to instant t. That is more while it has hardly begun, so that a
     scene whose first intervals take all of it moves on."""
-    over = J.PROGRESS.effort > J.PROGRESS.budget
-    return bool(over and (t > STEP_BEGUN * A.PAR.dt or J.PROGRESS.effort > STEP_EXCESS * J.PROGRESS.budget))
+    return float(J.PROGRESS.budget * (STEP_EXCESS if t <= STEP_BEGUN * A.PAR.dt else 1.0))
+
+
+@nonallocating
+def is_spent(A: Scene, J: Joints, t: float) -> bool:
+    """Whether a step has no work left for joints at instant t."""
+    return bool(J.PROGRESS.effort > budget_at(A, J, t))
 
 
 @nonallocating
 def account_component(A: Scene, J: Joints, s: int) -> None:
-    """Book what the joints of component s have done in their interval."""
+    """Book what the joints of component s have done in their interval.
+
+    A joint that holds works by its impulse over the time h in which a limit stops its bodies, times the round-off of
+    its place, over h: the shorter, the more. The limit loses as much less; only the sum is a loss.
+    """
     PAR, B = A.PAR, J.STEPPED[s]
-    PAR.external += B.motors + B.supports + B.closed + B.turned_work
+    passed = min(max(B.closed, 0.0), max(B.limited, 0.0))
+    PAR.external += B.motors + B.supports + (B.closed - passed) + B.turned_work
     PAR.damped += B.damped
-    PAR.restitution += B.limited + B.projected - B.lifted
+    PAR.restitution += (B.limited - passed) + B.projected - B.lifted
     PAR.frictional += B.clamped
     PAR.stored += B.stored
     J.TALLY.worst = max(J.TALLY.worst, B.status)

@@ -56,6 +56,9 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
     """
     i, j = A.LINK[a].owner, A.LINK[b].owner
     roots = (A.STATE[i].island, A.STATE[j].island if A.BODY[j].inv_mass > 0.0 else -1)
+    if not (under_way(A, roots[0]) or under_way(A, roots[1])):
+        # They have been brought to t, and have no paths beyond it: only others that they touch have joints.
+        return t, False
     # Nobody goes back in time, to where what overlaps would have met, or on to where an interval would be too long.
     least, latest = A.BODY[i].since, A.PAR.dt
     if A.BODY[j].inv_mass > 0.0:
@@ -77,7 +80,7 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
     # What overlaps at the start, and does not close there, meets where it is as deep again.
     start, rate = gap_and_rate(A, a, b, least)
     level = min(start, 0.0) if rate >= 0.0 else 0.0
-    before, gap_before, g, close = -1.0, 0.0, 0.0, 0.0
+    before, gap_before, g, close, loaded = -1.0, 0.0, 0.0, 0.0, 0
     apart, crossed, crosses = least, False, False
     spent = J.PROGRESS.effort > J.PROGRESS.budget
     most = 1 if spent or in_large_island(A, a, b) else MEET_SECANTS_LOADED
@@ -113,6 +116,8 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
         if then == t:
             break
         t = then
+    if loaded == 0 and rate >= 0.0 and start >= -close * small and g < -MEET_MANY * small:
+        crosses = True  # what has just met, and joints bring together again, meets before secants come to
     for _ in range(MEET_HALVINGS):
         if not (crosses or left_apart(A, J, roots[0]) or left_apart(A, J, roots[1])):
             break

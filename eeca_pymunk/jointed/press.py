@@ -20,6 +20,7 @@ from ..contacts.targets import target
 from ..islands.candidates import before_end, sweeps_of_large
 from ..model.contacts import JointedProblem, Row
 from ..model.joints import Joints
+from ..model.parameters.impulses import WEDGED
 from ..model.parameters.intervals import LARGE_ISLAND
 from ..model.parameters.joints import (
     AGREE,
@@ -45,7 +46,7 @@ from ..model.parameters.joints import (
     SOLUTION_WORK,
 )
 from ..model.scene import Scene
-from ..rows.build import conserves, rates
+from ..rows.build import conserves, rates, rubs
 from ..rows.columns import push_columns
 from ..rows.inplace import copy
 from .advance import Interval, advance, advance_aligned, align, farthest_apart
@@ -53,7 +54,7 @@ from .bounded import make_bounded, settle_bounded, with_bounded
 from .columns import fill_free, leave_out, weigh
 from .gentle import excessive, fastest, solve_gently
 from .groups import Groups, hangs
-from .laws import solve_columns
+from .laws import solve_columns, solve_wedged
 from .lock import lock, lost, work_error
 from .secant import fit_columns
 
@@ -178,6 +179,8 @@ def press(
         leave_out(C, L, m, FORESEEN)
         BOTH = with_bounded(B, L, m)
         worst = solve_columns(problem, BOTH, FORESEEN, fine, COLUMN_SWEEPS if anew else 0, most)
+        if worst > WEDGED * scale and m <= COLUMN_CONTACTS and rubs(ROWS, m):
+            worst = solve_wedged(problem, BOTH, FORESEEN, fine, most)
         for i in range(m):
             L[i, 0], L[i, 1] = BOTH[i, 0], BOTH[i, 1]
         converged = worst <= 10.0 * max(fine, min(agree, AGREE * scale))

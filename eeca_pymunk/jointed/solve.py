@@ -21,7 +21,7 @@ from ..model.islands import Island
 from ..model.joint_steps import ELASTIC
 from ..model.joints import Joints
 from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES, UNSOLVED_PART
-from ..model.parameters.joints import INTERVAL_SHARE
+from ..model.parameters.joints import COLUMN_CONTACTS, INTERVAL_SHARE
 from ..model.scene import Scene
 from ..model.step import AGAIN, CONTACTS, DONE, PUSHES_FULL, SPENT
 from ..rows.bounded import room_for_rows
@@ -33,7 +33,7 @@ from .component import step_component
 from .fitting import fit
 from .gathered import gather_component, keep_joints, restore_joints
 from .groups import Groups, find_groups
-from .ledger import is_spent
+from .ledger import budget_at, is_spent
 from .lengths import excess
 from .lifting import correct
 from .lock import lost, slip_of
@@ -68,14 +68,24 @@ def begin_interval(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
     """Begin an interval of an island with joints at instant t, at which all its bodies are: of length h, or shorter
     where joints do not hold, the work does not suffice, or bodies go too far (`lengths`).
 
+    What was too long is not tried again at once: without an impact in between, an interval after one that was shortened
+    is at most INTERVAL_RETRY times as long, and so on.
+
     DONE, or PUSHES_FULL, which leaves everything as it was; likewise SPENT, within a step that has no work left.
     """
+    rest, whole = A.RESTING[root], h
+    # One as short as PAR.instant would be empty (`ends.end_here`).
+    least = min(h, 2.0 * A.PAR.instant)
+    h = min(h, rest.longest)
     for attempt in range(INTERVAL_TRIES):
-        last = attempt + 1 == INTERVAL_TRIES or A.COUNT.together > 0
+        h = max(h, least)
+        last = attempt + 1 == INTERVAL_TRIES or A.COUNT.together > 0 or h <= least
         if t > 0.0 and is_spent(A, J, t):
             return SPENT
         status, h = open_span(A, J, root, t, h, last)
         if status != AGAIN:
+            if status == DONE:
+                rest.longest = max(INTERVAL_RETRY * h, 0.0 if h < whole else rest.longest)
             return status
     return DONE
 
@@ -118,12 +128,14 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
         m = gather(A, isle, contacts, moved(isle.POSE, isle.V, 0.5 * h), REACH, h, k == n)
     interval = Interval(isle, groups, P, Q, ROWS, motion, make_columns(groups, P, Q, m), m, n, t, h)
     held = True
-    J.PROGRESS.share = J.PROGRESS.effort + INTERVAL_SHARE * max(J.PROGRESS.budget - J.PROGRESS.effort, 0.0)
+    J.PROGRESS.share = J.PROGRESS.effort + INTERVAL_SHARE * max(budget_at(A, J, t) - J.PROGRESS.effort, 0.0)
     if m > 0:
         recall(KEY, m, A.KEYS, A.FORCES, A.PAR.stamp, h, L, EXPECTED)
         owed = max(-A.RESTING[root].lost, 0.0)
         held = press(A, J, interval, L, EXPECTED, slow, fast, pull, owed)
-        remember_loads(ROWS, KEY, L, m, h, A.KEYS, A.FORCES, COUNT, A.PAR.stamp)
+        if held or m > COLUMN_CONTACTS:
+            # Of few contacts impulses that are no solution are no loads to begin with either.
+            remember_loads(ROWS, KEY, L, m, h, A.KEYS, A.FORCES, COUNT, A.PAR.stamp)
     if m == 0:
         advance(A, J, interval, L, room_for_rows(0, 0), False, np.empty((0, 3)))
     COUNT.solves += 1

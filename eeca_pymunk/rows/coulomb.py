@@ -3,8 +3,9 @@
     0 <= lam  _|_  u_n - b >= 0,   |beta| <= mu lam,   u_t = 0 or beta = -mu lam sign(u_t),
 
 its own 2 x 2 matrix ((A_nn, A_nt), (A_nt, A_tt)) included: sticking, else slipping one way or the other, else no
-friction. Newton's law with friction creates energy where the slip reverses; therefore each contact's loss D_n + D_t =
--lam (u_n- + b)/2 - beta (u_t- + u_t+)/2 is kept non-negative, by less friction where it would be negative.
+friction; so it is where several contacts together have no solution (`slip_freely`). Newton's law with friction creates
+energy where the slip reverses; therefore each contact's loss D_n + D_t = -lam (u_n- + b)/2 - beta (u_t- + u_t+)/2 is
+kept non-negative, by less friction where it would be negative.
 """
 
 from __future__ import annotations
@@ -12,8 +13,18 @@ from __future__ import annotations
 import math
 
 from ..compiled import nonallocating
+from ..compiled.records import Rows
 from ..model.contacts import Row
 from ..model.parameters.impulses import JAMMED, SINGULAR
+
+
+@nonallocating
+def slip_freely(ROWS: Rows[Row], m: int) -> None:
+    """Let m contacts have no friction: wedged between surfaces that move, or conveyed into a corner, they would need
+    impulses without bound. What is left of the law, 0 <= lam _|_ u_n - b >= 0, has a solution if any velocities
+    satisfy it."""
+    for i in range(m):
+        ROWS[i].friction = 0.0
 
 
 @nonallocating

@@ -110,3 +110,30 @@ def test_cradle_on_rods() -> None:
     assert far == pytest.approx(3.0 * math.sin(math.radians(30.0)), rel=1e-3)
     assert abs(energy(space) - start) < 1e-12 * abs(start)
     assert apart(space) < 1e-12
+
+
+@pytest.mark.parametrize("elasticity", [0.0, 0.5])
+@pytest.mark.parametrize("ways", [(-2.0, -2.0), (-2.0, 2.0), (2.0, -2.0), (2.0, 2.0)])
+def test_what_is_conveyed_into_a_corner_keeps_out_of_it(elasticity: float, ways: tuple[float, float]) -> None:
+    """Each wall presses a disk into the other one, by as much as that one by friction 1 presses it into this: no finite
+    impulses satisfy Coulomb's law."""
+    space = pymunk.Space()
+    floor = pymunk.Segment(space.static_body, (-5.0, 0.0), (5.0, 0.0), 0.0)
+    wall = pymunk.Segment(space.static_body, (0.0, -5.0), (0.0, 5.0), 0.0)
+    floor.surface_velocity, wall.surface_velocity = (ways[0], 0.0), (0.0, ways[1])
+    disk, other = pymunk.Body(1.0, 0.1), pymunk.Body(0.1, 0.01)
+    disk.position, other.position = (1.0, 1.0), (2.0, 2.0)
+    disk.velocity = other.velocity = -3.0, -3.0
+    shape = pymunk.Circle(disk, 0.5)
+    for each in (floor, wall, shape):
+        each.friction = 1.0
+    floor.elasticity = wall.elasticity = elasticity
+    shape.elasticity = 1.0
+    space.add(floor, wall, disk, other, shape, pymunk.Circle(other, 0.2), pymunk.PinJoint(disk, other))
+    most = energy(space)
+    stepper = ep.EECA(space)
+    for _ in range(30):
+        report = stepper.step(1 / 30)
+        assert report.converged
+        assert abs(report.ledger.external) <= 1.1 * most
+        assert min(disk.position) >= 0.5 - 1e-6

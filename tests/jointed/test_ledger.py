@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import math
 from random import Random
+from types import SimpleNamespace
 
 import pymunk
 import pytest
 
 import eeca_pymunk as ep
+from eeca_pymunk.compiled.records import kind_of, zeros
+from eeca_pymunk.jointed.ledger import account_component
+from eeca_pymunk.model.joint_steps import JointLedger
+from eeca_pymunk.model.step import Step
 
 from .measures import kinetic, moving
 
@@ -103,3 +108,14 @@ def test_ledger_closes_in_random_heaps(unit: float, closure: ep.Closure | None) 
             # Nobody is thrown out: forces, motors and movers of these scenes do not make such speeds.
             assert max(b.velocity.length for b in space.bodies) <= 1e4 * unit, (seed, step)
     assert closure is not None or unmet > 5
+
+
+@pytest.mark.parametrize(("closed", "work", "loss"), [(3.0, 0.0, 2.0), (7.0, 2.0, 0.0), (-1.0, -1.0, 5.0)])
+def test_what_a_limit_stops_brings_no_work_from_outside(closed: float, work: float, loss: float) -> None:
+    """The round-off of what holds, as a limit stops its bodies in an instant, comes from what the limit takes."""
+    joints = SimpleNamespace(STEPPED=zeros(1, kind_of(JointLedger)), TALLY=SimpleNamespace(worst=0))
+    scene = SimpleNamespace(PAR=zeros(1, kind_of(Step))[0])
+    joints.STEPPED[0].closed, joints.STEPPED[0].limited = closed, 5.0
+    account_component(scene, joints, 0)
+    assert (scene.PAR.external, scene.PAR.restitution) == (work, loss)
+    assert (joints.STEPPED[0].closed, joints.STEPPED[0].limited) == (0.0, 0.0)

@@ -197,6 +197,24 @@ def test_steps_that_are_cut_press_nothing_through_walls(seed: int) -> None:
     Varied(seed, False).play()
 
 
+@pytest.mark.parametrize(("seed", "steps"), [(300191, 24), (300558, 87), (64209, 23), (300298, 31)])
+def test_work_is_not_spent_on_intervals_that_were_too_long(seed: int, steps: int) -> None:
+    """Joints, springs and contacts that need a hundred intervals in a step: attempts at intervals to its end took all
+    its work, steps were cut one after another, and joints or walls gave way."""
+    Varied(seed, True).play(steps)
+
+
+@pytest.mark.parametrize(("seed", "steps"), [(300010, 3), (300017, 51), (300005, 82), (300053, 63)])
+def test_ledgers_close_where_intervals_with_joints_are_short(seed: int, steps: int) -> None:
+    """Intervals as short as what counts as empty, and impacts of bodies without joints on what has some."""
+    Varied(seed, True).play(steps)
+
+
+@pytest.mark.parametrize(("seed", "steps"), [(301090, 95), (300039, 75)])
+def test_jointed_bodies_are_not_wedged_into_walls_that_convey_them(seed: int, steps: int) -> None:
+    Varied(seed, True).play(steps)
+
+
 @pytest.mark.parametrize(("seed", "steps"), [(62645, 20), (111663, 20), (110366, 83)])
 def test_what_spins_fast_about_another_point_spends_no_more_than_the_budget(seed: int, steps: int) -> None:
     """Shapes far from their bodies' centres, up to 290 rad a step: searches for impacts count whatever comes next."""

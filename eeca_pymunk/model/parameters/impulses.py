@@ -10,6 +10,11 @@ SINGULAR = round_off(
     "Determinant of a contact's 2 x 2 matrix below which normal and tangential impulse are not solved together.",
 )
 JAMMED = round_off(1e-09, "of A_nn", "Mobility along the impulse of a slipping contact below which it jams.")
+WEDGED = heuristic(
+    0.01,
+    "of the speed",
+    "Velocity that a solve leaves from which on contacts of jointed bodies count as wedged: without friction.",
+)
 PROXIMAL_DENSE = round_off(
     100000000.0,
     "over the effective mass",
