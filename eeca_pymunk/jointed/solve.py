@@ -110,7 +110,9 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
             keep_joints(J, groups.COMPONENT[g])
     contacts, EXPECTED = make_contacts(p, k), np.zeros(2 * p + 1)
     P, Q, KEY, ROWS, L = contacts.A, contacts.B, contacts.KEY, contacts.ROWS, contacts.L
-    motion = Motion(isle.V.copy(), isle.V.copy(), np.zeros((k, 3)), isle.POSE.copy(), np.zeros((k, 2)))
+    motion = Motion(
+        isle.V.copy(), isle.V.copy(), np.zeros((k, 3)), isle.POSE.copy(), np.zeros((k, 2)), np.full((k, 3), math.nan)
+    )
     REACH = np.empty(k)
     slow, fast, pull = speeds(isle.V, isle.ACC, isle.EXTENT, isle.IM, n, h, REACH)
     m = 0

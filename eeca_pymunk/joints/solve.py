@@ -101,8 +101,7 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
         worst = linearise(W, STEP, h, length, give, unscaled and iteration == 0, system, built)
         floor = JOINT_ROUND_OFF_KEPT if lasting else NEWTON_FLOOR if stalls > 1 else JOINT_ROUND_OFF
         at_floor = iteration > since + 1 and worst > 0.5 * best and best < floor
-        near = JOINT_TOLERANCE if iteration == 0 else max(JOINT_TOLERANCE, progress.near)
-        if worst <= near or at_floor:
+        if iteration > 0 and (worst <= max(JOINT_TOLERANCE, progress.near) or at_floor):
             component.factored = 1 if ready and system == CONDENSED and boxes == 0 else 0
             settle(local, W.bodies, h)
             return True
