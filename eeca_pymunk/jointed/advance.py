@@ -26,8 +26,8 @@ from .motors import let_slip
 class Motion(NamedTuple):
     """Of the bodies of an island, (k, 3) each: velocities V and poses END at the end, ways WAY (sums of h v_m), and
     MEAN = 2 WAY/h - (velocities before), which is V unless joints act in part of the interval only (limits that are
-    met); MID (k, 2): their mean places, where constant forces act. PUSHED (k, 3): accelerations without joints that this
-    motion is the answer to, to round-off; NaN if there is none.
+    met); MID (k, 2): their mean places, where constant forces act; PUSHED (k, 3): the accelerations without joints that
+    this motion is the answer to, to round-off, NaN if there is none.
 
     Contacts have their laws by MEAN: an impulse lam over the interval works lam . WAY/h, which is the mean of the
     velocities before and MEAN, so that what contacts lose is by their laws, whatever joints do within the interval.
