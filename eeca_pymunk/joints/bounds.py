@@ -55,6 +55,15 @@ def approach(joint: JointStep, rows: int, side: int, v_a: FloatArray, v_b: Float
 
 
 @nonallocating
+def standing(link: Rows[Coupling], joints: int) -> bool:
+    """Whether a joint stands on a limit."""
+    count = 0
+    for k in range(joints):
+        count += abs(link[k].side)
+    return count > 0
+
+
+@nonallocating
 def look(W: Workspace, k: int, h: float) -> None:
     """Bring the rows of joint k to the present iterate if it is a limit on which it does not stand (`idle`)."""
     if idle(W.link, k):

@@ -21,23 +21,11 @@ from ..model.parameters.joints import (
     LIMIT_SOLVES,
     LIMIT_WAY,
 )
-from .bounds import approach, first_bound, gap, hold_limit, look, release
+from .bounds import approach, first_bound, gap, hold_limit, look, release, standing
 from .correct import correct, fitting_loss
 from .ledger import book
 from .motion import advance
 from .solve import drop_impulses, solve, solve_linearly
-
-
-@nonallocating
-def go_on(W: Workspace, solved: float, when: float) -> None:
-    """Let the next solution of this part, of length `when`, begin with the forces of the one before, of `solved`."""
-    for i in range(W.bodies):
-        local = W.J.LOCAL[i]
-        for c in range(3):
-            local.lead[c] = (local.v1[c] - local.v0[c]) / solved - local.acceleration[c]
-    for k in range(W.joints):
-        W.J.HINGE[k].lam[0] *= when / solved
-        W.J.HINGE[k].lam[1] *= when / solved
 
 
 @nonallocating
@@ -51,14 +39,13 @@ def step_with_limits(
     hinge, link, local, progress = W.J.HINGE, W.link, W.J.LOCAL, W.J.PROGRESS
     left, when, low, high = h, h, 0.0, h
     events, solves, secants, meeting, side = 0, 0, 0, -1, 0
-    last, before, solved = 0.0, 0.0, 0.0
+    last, before = 0.0, 0.0
     while True:
+        redundant = loops or standing(link, W.joints)
         if when > 1e-13 * abs(h) or h < 0.0:
-            if solved > 0.0:
-                go_on(W, solved, when)
-            if not (solve_linearly(W, when, length) if linear else solve(W, when, length, loops, give)):
+            if not (solve_linearly(W, when, length) if linear else solve(W, when, length, redundant, give)):
                 return False
-            solves, solved = solves + 1, when
+            solves += 1
             if meeting < 0:  # a step to the end
                 if solves < (LIMIT_SOLVES if linear else 2 * W.joints + 100) and release(W):
                     continue
@@ -120,4 +107,4 @@ def step_with_limits(
                 hold_limit(W.J.JOINT, hinge, link, k)
         if left <= 1e-13 * h:
             return True
-        meeting, when, solved = -1, left, 0.0
+        meeting, when = -1, left

@@ -170,12 +170,10 @@ def discs(joint: Rows[Joint], link: Rows[Coupling], component: Rows[Component], 
 
 @kernel
 def hard(joint: Rows[Joint], link: Rows[Coupling], component: Rows[Component], s: int) -> bool:
-    """Whether all joints of component s hold exactly, those with limits included, or are boxed: not springs."""
+    """Whether all joints of component s hold exactly, those with limits included."""
     for k in range(component[s].first_joint, component[s].end_joint):
-        if link[k].rows == 0:
-            return False
-        exact = joint[link[k].joint].kind != MOTOR and joint[link[k].joint].bounded == 0
-        if not exact and not boxed(joint, link, component, s, k):
+        j = link[k].joint
+        if link[k].rows == 0 or joint[j].kind == MOTOR or joint[j].bounded != 0:
             return False
     return True
 
