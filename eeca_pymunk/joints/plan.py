@@ -179,27 +179,18 @@ def hard(joint: Rows[Joint], link: Rows[Coupling], component: Rows[Component], s
 
 
 @kernel
-def boxed(joint: Rows[Joint], link: Rows[Coupling], component: Rows[Component], s: int, k: int) -> bool:
-    """Whether the rows of joint k are in no matrix: their impulses are those of `boxes`, or given."""
-    return bool(joint[link[k].joint].bounded != 0 and component[s].boxes > 0)
-
-
-@kernel
 def cycles(
     bodies: Rows[Body], joint: Rows[Joint], link: Rows[Coupling], member: Rows[ComponentBody],
     component: Rows[Component], s: int,
 ) -> int:  # fmt: skip
     """Joints that close a cycle of the graph of joints between points, or of that of joints of angles; bodies that
-    nothing moves, or nothing turns, are one node.
-
-    Without cycles rows are independent, limits included: those of points by what they do to places, which those of
-    angles do nothing to, and these by angles. Boxed rows are in no matrix.
-    """
+    nothing moves, or nothing turns, are one node. Without cycles rows are independent, limits included: those of points
+    by what they do to places, those of angles by what they do to angles alone. Boxed rows are in no matrix."""
     b0, n = component[s].first_body, component[s].end_body - component[s].first_body
     parent, ends = np.arange(2 * (n + 1)), np.empty(2, np.int64)
     count = 0
     for k in range(component[s].first_joint, component[s].end_joint):
-        if link[k].rows == 0 or boxed(joint, link, component, s, k):
+        if link[k].rows == 0 or (joint[link[k].joint].bounded != 0 and component[s].boxes > 0):
             continue
         for end in range(2):
             body = bodies[member[b0 + link[k].body[end]].body]
