@@ -26,7 +26,8 @@ from .motors import let_slip
 class Motion(NamedTuple):
     """Of the bodies of an island, (k, 3) each: velocities V and poses END at the end, ways WAY (sums of h v_m), and
     MEAN = 2 WAY/h - (velocities before), which is V unless joints act in part of the interval only (limits that are
-    met); MID (k, 2): their mean places, where constant forces act.
+    met); MID (k, 2): their mean places, where constant forces act; PUSHED (k, 3): the accelerations without joints that
+    this motion is the answer to, to round-off, NaN if there is none.
 
     Contacts have their laws by MEAN: an impulse lam over the interval works lam . WAY/h, which is the mean of the
     velocities before and MEAN, so that what contacts lose is by their laws, whatever joints do within the interval.
@@ -37,6 +38,7 @@ class Motion(NamedTuple):
     WAY: FloatArray
     END: FloatArray
     MID: FloatArray
+    PUSHED: FloatArray
 
 
 class Interval(NamedTuple):
@@ -66,10 +68,22 @@ def is_hit(groups: Groups, P: IntArray, Q: IntArray, m: int, g: int) -> bool:
     return hits > 0
 
 
+@nonallocating
+def stays(J: Joints, groups: Groups, g: int, PUSHED: FloatArray, ACC: FloatArray) -> bool:
+    """Whether the component of group g has moved under the accelerations ACC before, and would move so again: where
+    rows are redundant, its impulses are the smaller the nearer a solution begins."""
+    same = J.COMPONENT[groups.COMPONENT[g]].loops == 0
+    for w in range(groups.FIRST[g], groups.FIRST[g + 1]):
+        for c in range(3):
+            same = same and PUSHED[groups.BODY[w], c] == ACC[groups.BODY[w], c]
+    return same
+
+
 @kernel
 def advance(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, fill: bool, GUESS: FloatArray) -> None:
     """Step all bodies of an island by h under the impulses L of its contacts, from where its joints were; `fill` the
-    columns C and B about that step, bounded impulses being given; else B has what these are, and C stays.
+    columns C and B about that step, bounded impulses being given; else B has what these are, and C stays, as does the
+    motion of a component on which nothing has changed.
     GUESS (k, 3): velocities at the end that are foreseen, to begin with; (0, 3) for none."""
     isle, groups, P, Q, ROWS, motion, C, m, _, t, h = interval
     k = len(isle.IM)
@@ -89,7 +103,7 @@ def advance(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, 
         B.USED[0] = 0
     for g in range(len(groups.COMPONENT)):
         s = groups.COMPONENT[g]
-        if s < 0:
+        if s < 0 or (not fill and stays(J, groups, g, motion.PUSHED, ACC)):
             continue
         rewind_joints(J, s)
         if len(GUESS) > 0:
@@ -100,6 +114,7 @@ def advance(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, 
             q = groups.BODY[w]
             for c in range(3):
                 motion.MEAN[q, c] = 2.0 * motion.WAY[q, c] / h - isle.V[q, c]
+                motion.PUSHED[q, c] = ACC[q, c] if J.PROGRESS.near == 0.0 else math.nan
         if not fill:
             note_rows(A, J, B, s, h, motion.MEAN)
         elif is_hit(groups, P, Q, m, g):

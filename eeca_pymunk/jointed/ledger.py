@@ -9,7 +9,7 @@ from ..joints.ledger import clear_interval
 from ..layout import BODY_ROW, LEFT
 from ..layout import NOW as READ
 from ..model.joint_steps import ELASTIC
-from ..model.joints import Joints
+from ..model.joints import EDITED, Joints
 from ..model.parameters.joints import STEP_BEGUN, STEP_EXCESS, STEP_WORK, STEP_WORK_BODY
 from ..model.scene import Scene
 from ..model.step import JOINTS as UNMET_JOINTS
@@ -31,7 +31,10 @@ def mark_edited(A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray) -> None
     for j in range(J.JOINT.shape[0]):
         a, b = J.JOINT[j].body[0], J.JOINT[j].body[1]
         if (a < n and A.PLACE[a] > 0) or (b < n and A.PLACE[b] > 0):
-            J.JOINT[j].touched = 1
+            J.JOINT[j].touched = EDITED
+        # Bodies that were put elsewhere start as those that are new: they go the same ways again, bit by bit.
+        for c in range(6 if J.JOINT[j].touched == EDITED else 0):
+            J.JOINT[j].led[c // 3, c % 3] = 0.0
     A.PLACE[:] = -1
 
 

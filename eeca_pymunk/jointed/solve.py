@@ -21,7 +21,7 @@ from ..model.islands import Island
 from ..model.joint_steps import ELASTIC
 from ..model.joints import Joints
 from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES, UNSOLVED_PART
-from ..model.parameters.joints import COLUMN_CONTACTS, INTERVAL_SHARE
+from ..model.parameters.joints import COLUMN_CONTACTS, FORESEEN, INTERVAL_SHARE
 from ..model.scene import Scene
 from ..model.step import AGAIN, CONTACTS, DONE, PUSHES_FULL, SPENT
 from ..rows.bounded import room_for_rows
@@ -46,7 +46,7 @@ def foresee(
     A: Scene, J: Joints, isle: Island, groups: Groups, t: float, h: float, motion: Motion, REACH: FloatArray
 ) -> float:
     """Add to REACH (k,) how far springs and motors move points of bodies in h; the largest such acceleration."""
-    most = 0.0
+    most, J.PROGRESS.near = 0.0, FORESEEN
     for g in range(len(groups.COMPONENT)):
         s = groups.COMPONENT[g]
         if s < 0 or not drives(J, s):
@@ -60,6 +60,7 @@ def foresee(
             way = math.sqrt(x * x + y * y) + abs(motion.WAY[q, 2] - h * isle.V[q, 2]) * isle.EXTENT[q]
             REACH[q] += 1.1 * way
             most = max(most, 2.0 * way / (h * h))
+    J.PROGRESS.near = 0.0
     return most
 
 
@@ -119,7 +120,9 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
             keep_joints(J, groups.COMPONENT[g])
     contacts, EXPECTED = make_contacts(p, k), np.zeros(2 * p + 1)
     P, Q, KEY, ROWS, L = contacts.A, contacts.B, contacts.KEY, contacts.ROWS, contacts.L
-    motion = Motion(isle.V.copy(), isle.V.copy(), np.zeros((k, 3)), isle.POSE.copy(), np.zeros((k, 2)))
+    motion = Motion(
+        isle.V.copy(), isle.V.copy(), np.zeros((k, 3)), isle.POSE.copy(), np.zeros((k, 2)), np.full((k, 3), math.nan)
+    )
     REACH = np.empty(k)
     slow, fast, pull = speeds(isle.V, isle.ACC, isle.EXTENT, isle.IM, n, h, REACH)
     m = 0

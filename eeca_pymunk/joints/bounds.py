@@ -8,7 +8,8 @@ from ..compiled.records import Rows
 from ..model.joint_steps import JointStep
 from ..model.joints import GROOVE, RATCHET, ROTARY_LIMIT, SLIDE, Coupling, Joint, Workspace
 from ..model.parameters.joints import JOINT_TOUCH
-from .entries import along
+from .entries import along, idle
+from .rows import joint_rows
 
 
 @nonallocating
@@ -63,6 +64,21 @@ def standing(link: Rows[Coupling], joints: int) -> bool:
 
 
 @nonallocating
+def look(W: Workspace, k: int, h: float) -> None:
+    """Bring the rows of joint k to the present iterate if it is a limit on which it does not stand (`idle`)."""
+    if idle(W.link, k):
+        joint_rows(W, k, h, False)
+
+
+@nonallocating
+def is_far(W: Workspace, k: int) -> bool:
+    """Whether limits of angles are farther than bodies turn in the present iterate, by no more than chi each."""
+    j, a, b = W.J.JOINT[W.link[k].joint], W.J.LOCAL[W.link[k].body[0]], W.J.LOCAL[W.link[k].body[1]]
+    angle, reach = b.pose[2] - a.pose[2], abs(a.way[2]) + abs(b.way[2])
+    return bool(W.link[k].kind == ROTARY_LIMIT and j.lower < angle - reach and angle + reach < j.upper)
+
+
+@nonallocating
 def release(W: Workspace) -> bool:
     """Let go of the held limit that pulls most, if one does."""
     link = W.link
@@ -85,8 +101,9 @@ def first_bound(W: Workspace, h: float) -> tuple[int, int, float]:
     hinge, link = W.J.HINGE, W.link
     which, at_side, instant = -1, 0, h
     for k in range(W.joints):
-        if link[k].side != 0 or link[k].bounded != 0:
+        if link[k].side != 0 or link[k].bounded != 0 or is_far(W, k):
             continue
+        look(W, k, h)
         for side in (-1, 1):
             if not has_bound(W.J.JOINT, link, k, side):
                 continue

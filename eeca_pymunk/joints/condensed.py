@@ -98,7 +98,7 @@ def freeze_end(
     hinge: Rows[JointStep], k: int, end: int, r: int, slopes: bool, x: float, y: float, z: float
 ) -> None:  # fmt: skip
     """Freeze row r of joint k at one end, J and G (`slopes`, else J): scaled by its scale and the body's roots."""
-    scale = hinge[k].scale[r] if hinge[k].weight[r] != 0.0 else 0.0
+    scale = hinge[k].scale[r]
     u, v, w, at = scale * x, scale * y, scale * z, 3 * end
     joint = hinge[k]
     joint.frozen_rows[r, at] = u * joint.rows[r, at]

@@ -28,11 +28,12 @@ from .newton import apply, back, effort, factorise, first_iterate, linearise
 def correct(W: Workspace, what: int) -> None:
     """Make POSES or SPEEDS fit the joints, by the least change in the measure of the masses.
 
-    POSES: until g is on its targets, at most CLOSINGS times. SPEEDS: those before stay at `v_kept`. The first pass
-    shows which free limits are closed and closing; these are held. Three passes take back what epsilon left; then, as
-    long as a limit pulls, all begins again without it. There are at most joints + 1 tries.
+    POSES: until g is on its targets, at most CLOSINGS times. SPEEDS: those before stay at `v_kept`. Free limits that
+    are closed and closing are held. Two passes with the same factors take back what epsilon left, three if rows are
+    redundant; then, as long as a limit pulls, all begins again without it. There are at most joints + 1 tries.
     """
     component, passes, tries = W.J.COMPONENT[W.s], 0, 0
+    enough = 2 if component.loops == 0 else 3
     first_iterate(W, what, 2.0)
     if what == SPEEDS:
         keep_speeds(W)
@@ -41,20 +42,23 @@ def correct(W: Workspace, what: int) -> None:
     # Rows that contradict each other must not move bodies far.
     epsilon = CLOSING_EPSILON if what == POSES else REDUNDANT_EPSILON
     for turn in range(REDUNDANT_PASSES + 3 * W.joints):
-        error = linearise(W, what, 2.0, 1.0, 0.0, turn == 0, system, True)
+        fresh = passes == 0
+        error = linearise(W, what, 2.0, 1.0, 0.0, turn == 0, system, fresh)
         if what == POSES and (error <= 1e-14 or turn == CLOSINGS):
             return
-        system = factorise(W, what, 2.0, 1.0, 0.0, system, epsilon)
+        if what == SPEEDS and turn == 0 and hold_closing(W):
+            error = linearise(W, what, 2.0, 1.0, 0.0, False, system, True)
+        if fresh:
+            system = factorise(W, what, 2.0, 1.0, 0.0, system, epsilon)
         if system < 0:
             return
-        W.J.PROGRESS.effort += effort(system, True, 0, W.joints, component)
+        W.J.PROGRESS.effort += effort(system, fresh, 0, W.joints, component)
         back(W, system, CONDENSED_PASSES, W.J.RIGHT)
         apply(W, what)
         if what == SPEEDS:
             passes += 1
-            met = passes == 1 and tries == 0 and hold_closing(W)
-            if met or passes == 3 or not error > 0.0:
-                if not met and (tries > W.joints or not let_go(W)):
+            if passes == enough or not error > 0.0:
+                if tries > W.joints or not let_go(W):
                     return
                 passes, tries = 0, tries + 1
                 restore_speeds(W)

@@ -49,6 +49,8 @@ def factor_dual(W: Workspace, slopes: bool, add: float) -> bool:
         while one >= 0:
             k, end = one >> 1, one & 1
             for r in range(link[k].rows):
+                if hinge[k].weight[r] == 0.0:
+                    continue
                 freeze_end(hinge, k, end, r, slopes, x, y, z)
                 p, J, G = STRIDE * count, hinge[k].frozen_rows, hinge[k].frozen_slopes
                 more[p], more[p + 1], more[p + 2] = J[r, 3 * end], J[r, 3 * end + 1], J[r, 3 * end + 2]
@@ -79,7 +81,8 @@ def refresh(W: Workspace, slopes: bool) -> None:
                 continue
             x, y, z = local[i].root[0], local[i].root[1], local[i].root[2] if local[i].freedoms > 2 else 0.0
             for r in range(W.link[k].rows):
-                freeze_end(W.J.HINGE, k, end, r, slopes, x, y, z)
+                if W.J.HINGE[k].weight[r] != 0.0:
+                    freeze_end(W.J.HINGE, k, end, r, slopes, x, y, z)
 
 
 @inlined
@@ -100,6 +103,8 @@ def back_dual(W: Workspace, right: FloatArray) -> None:
                 continue
             x, y, w = right[first], right[first + 1], right[first + 2] if freedoms > 2 else 0.0
             for r in range(rows):
+                if hinge[k].weight[r] == 0.0:
+                    continue
                 at, G = 3 * end, hinge[k].frozen_slopes
                 more[link[k].first_dual + r] -= G[r, at] * x + G[r, at + 1] * y + G[r, at + 2] * w
     substitute(W.J.MATRIX, W.J.COMPONENT[W.s].dual_size, W.J.COMPONENT[W.s].dual_band, more, 0)
@@ -114,6 +119,8 @@ def back_dual(W: Workspace, right: FloatArray) -> None:
                 continue
             x = y = w = 0.0
             for r in range(rows):
+                if hinge[k].weight[r] == 0.0:
+                    continue
                 at, push, J = 3 * end, more[link[k].first_dual + r], hinge[k].frozen_rows
                 x += push * J[r, at]
                 y += push * J[r, at + 1]

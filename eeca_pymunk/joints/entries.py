@@ -27,6 +27,13 @@ def held(link: Rows[Coupling], k: int, r: int) -> bool:
 
 
 @inlined
+def idle(link: Rows[Coupling], k: int) -> bool:
+    """Whether joint k is a limit on which it does not stand: steps go without it, and look at it when they are solved
+    (`bounds.first_bound`)."""
+    return is_limit(link[k].kind) and link[k].side == 0 and link[k].bounded == 0
+
+
+@inlined
 def interval_of(kind: int, side: int, bound: float) -> tuple[float, float]:
     """Least and largest impulse of a joint of bounded force, by its largest amount: limits only push inwards."""
     if is_limit(kind):
@@ -115,6 +122,16 @@ def put_free(
     right[row] = -hinge[k].lam[r] / hinge[k].scale[r]
     if build and system == WHOLE:
         matrix[row * (3 * band + 1) + band] = 1.0
+
+
+@inlined
+def put_idle(
+    link: Rows[Coupling], hinge: Rows[JointStep], k: int, system: int, build: bool, band: int, matrix: FloatArray
+) -> None:  # fmt: skip
+    """The row of a limit on which joint k does not stand: without impulse, as before."""
+    hinge[k].weight[0] = hinge[k].lam[0] = 0.0
+    if build and system == WHOLE:
+        matrix[link[k].first_row * (3 * band + 1) + band] = 1.0
 
 
 @inlined

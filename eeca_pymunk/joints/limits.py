@@ -21,7 +21,7 @@ from ..model.parameters.joints import (
     LIMIT_WAY,
     MEET_INSTANT,
 )
-from .bounds import approach, first_bound, gap, hold_limit, release, standing
+from .bounds import approach, first_bound, gap, hold_limit, look, release, standing
 from .correct import correct, fitting_loss
 from .ledger import book
 from .motion import advance
@@ -62,6 +62,7 @@ def step_with_limits(
                     continue
                 meeting, when, low, high, secants = k, instant, 0.0, left, 0
                 continue
+            look(W, meeting, when)
             distance = gap(W.J.JOINT, hinge, link, meeting, side)
             secants += 1
             most = LIMIT_SECANTS if progress.effort <= progress.hurry else LIMIT_SECANTS_HASTE

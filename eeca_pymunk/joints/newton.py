@@ -27,7 +27,7 @@ from .bounded import put_bounded
 from .boxes import leave_box
 from .condensed import back_condensed, factor, freeze_row
 from .dual import back_dual, factor_dual
-from .entries import along, held, put_condensed, put_free, put_rows, put_stiffness, scale_rows
+from .entries import along, held, idle, put_condensed, put_free, put_idle, put_rows, put_stiffness, scale_rows
 from .motion import move
 from .rows import joint_rows, start_joint
 
@@ -71,9 +71,12 @@ def assemble(W: Workspace, what: int, h: float, give: float, first: bool, system
             for c in range(local[i].freedoms):
                 matrix[(local[i].column + c) * width + band] = 1.0
     for k in range(W.joints):
+        if not still and idle(link, k):
+            put_idle(link, hinge, k, system, build, band, matrix)
+            continue
         bend = joint_rows(W, k, h, build and not still)
         a, b = link[k].body[0], link[k].body[1]
-        if first:
+        if first or hinge[k].scale[0] == 0.0:
             scale_rows(link, hinge, local, k)
         if not still and (link[k].rows == 0 or held(link, k, 0)):
             for c in range(3):

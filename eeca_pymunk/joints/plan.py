@@ -143,19 +143,19 @@ def make_plan(
                     used += 1
                 link[k].body[end] = place[body] - component[s].first_body
         component[s].end_body = used
-        component[s].loops = cycles(link, member, component, s)
         for way in range(2):
             if way == 0 or (component[s].band > CONDENSE_BAND and not discs(joint, link, component, s)):
                 order_unknowns(component, member, link, s, way > 0)
         order_rows(component, member, link, s)
         cost = component[s].unknowns * component[s].band ** 2
         pays = 0 < component[s].dual_size * component[s].dual_band ** 2 <= cost
-        component[s].rigid = 0 if not pays else 2 if hard(joint, link, component, s) else 1
         bounded = 0
         for k in range(component[s].first_joint, component[s].end_joint):
             if joint[link[k].joint].kind == MOTOR or joint[link[k].joint].bounded != 0:
                 bounded += link[k].rows
         component[s].boxes = bounded if bounded <= BOXES_DIRECT else 0
+        component[s].rigid = 0 if not pays else 2 if hard(joint, link, component, s) else 1
+        component[s].loops = cycles(bodies, joint, link, member, component, s)
     return count
 
 
@@ -179,17 +179,26 @@ def hard(joint: Rows[Joint], link: Rows[Coupling], component: Rows[Component], s
 
 
 @kernel
-def cycles(link: Rows[Coupling], member: Rows[ComponentBody], component: Rows[Component], s: int) -> int:
-    """Joints with impulses that close a cycle of the component's graph; bodies that nothing moves are one node."""
+def cycles(
+    bodies: Rows[Body], joint: Rows[Joint], link: Rows[Coupling], member: Rows[ComponentBody],
+    component: Rows[Component], s: int,
+) -> int:  # fmt: skip
+    """Joints that close a cycle of the graph of joints between points, or of that of joints of angles; bodies that
+    nothing moves, or nothing turns, are one node. Without cycles rows are independent, limits included: those of points
+    by what they do to places, those of angles by what they do to angles alone. Boxed rows are in no matrix."""
     b0, n = component[s].first_body, component[s].end_body - component[s].first_body
-    parent = np.arange(n + 1)
+    parent, ends = np.arange(2 * (n + 1)), np.empty(2, np.int64)
     count = 0
     for k in range(component[s].first_joint, component[s].end_joint):
-        if link[k].rows == 0:
+        if link[k].rows == 0 or (joint[link[k].joint].bounded != 0 and component[s].boxes > 0):
             continue
-        a = link[k].body[0] if member[b0 + link[k].body[0]].freedoms > 0 else n
-        b = link[k].body[1] if member[b0 + link[k].body[1]].freedoms > 0 else n
-        p, q = root(parent, a), root(parent, b)
+        for end in range(2):
+            body = bodies[member[b0 + link[k].body[end]].body]
+            if link[k].kind >= GEAR:
+                ends[end] = n + 1 + (link[k].body[end] if body.inv_inertia > 0.0 else n)
+            else:
+                ends[end] = link[k].body[end] if body.inv_mass > 0.0 else n
+        p, q = root(parent, ends[0]), root(parent, ends[1])
         if p == q:
             count += 1
         else:

@@ -10,7 +10,6 @@ from ..model.joint_steps import POSES
 from ..model.joints import (
     BOUNDED,
     BOXED,
-    EDITED,
     GEAR,
     GROOVE,
     MOTOR,
@@ -48,11 +47,9 @@ def read_joints(W: Workspace, h: float, length: float) -> tuple[bool, bool]:
         hinge[k].bound = joint[j].max_force
         hinge[k].size = 1.0 if kind >= GEAR else length
         joint[j].work = 0.0
-        # Bodies that were put elsewhere start as those that are new: they go the same ways again, bit by bit.
-        edited = joint[j].touched == EDITED
         for end in range(2):
             for c in range(3):
-                W.J.LOCAL[link[k].body[end]].lead[c] = 0.0 if edited else joint[j].led[end, c]
+                W.J.LOCAL[link[k].body[end]].lead[c] = joint[j].led[end, c]
         if kind == MOTOR:
             hinge[k].target[0] = -joint[j].rate
         bounded = bounded or (is_bounded and kind != MOTOR)

@@ -83,7 +83,7 @@ class Component(Record):
     end_joint: int
     unknowns: int  # size and half-width of its matrix
     band: int
-    loops: int  # number of independent cycles of its graph
+    loops: int  # joints whose rows may depend on those of others (`..joints.plan.cycles`)
     system: int  # WHOLE or CONDENSED
     impulses: int  # number of unknowns beside the matrix
     dual_size: int  # of its matrix in the rows alone: size and half-width

@@ -23,17 +23,18 @@ Spaces = Callable[[], pymunk.Space]
 
 
 @pytest.mark.parametrize(
-    ("make", "dt", "share"),
+    ("make", "rates", "share"),
     [
-        (meeting_scenes.walker, 1 / 60, 0.99),
-        (lambda: program_joints.soft_rings().space, 1 / 60, 0.99),
-        (lambda: program_joints.car().space, 1 / 60, 0.99),
-        (lambda: program_joints.rag_dolls(5).space, 1 / 120, 0.95),
+        (meeting_scenes.walker, (60,), 0.99),
+        (lambda: program_joints.soft_rings().space, (60,), 0.99),
+        (lambda: program_joints.car().space, (60,), 0.99),
+        (lambda: program_joints.rag_dolls(5).space, (100, 120, 140), 0.95),
     ],
 )
-def test_steps_converge(make: Spaces, dt: float, share: float) -> None:
-    stepper = ep.EECA(make())
-    assert np.mean([stepper.step(dt).converged for _ in range(300)]) >= share
+def test_steps_converge(make: Spaces, rates: tuple[int, ...], share: float) -> None:
+    """How often a pile of figures comes to a state that does not converge is chance in one run: in several."""
+    steppers = [(ep.EECA(make()), 1 / rate) for rate in rates]
+    assert np.mean([stepper.step(dt).converged for stepper, dt in steppers for _ in range(300)]) >= share
 
 
 def test_a_rope_that_is_taut_at_rest_is_solved() -> None:
@@ -68,7 +69,7 @@ def test_columns_answer_as_the_last_motion_did() -> None:
     )  # fmt: skip
     contacts, bodies = make_contacts(2, 3), np.zeros((3, 3))
     mean, before = rng.normal(size=(3, 3)), rng.normal(size=(3, 3))
-    motion = Motion(bodies, mean, bodies, bodies, bodies[:, :2])
+    motion = Motion(bodies, mean, bodies, bodies, bodies[:, :2], bodies)
     P, Q = np.array([0, 1]), np.array([2, 2])
     isle = zeros(1, np.dtype(float))
     interval = Interval(isle, groups, P, Q, contacts.ROWS, motion, columns, 2, 3, 0.0, 1.0)  # type: ignore[arg-type]
