@@ -95,17 +95,17 @@ def test_impulse_of_a_hanging_weight_is_m_g_dt(make: Callable[..., pymunk.Constr
     for _ in range(3):
         stepper.step(DT)
     assert joint.impulse == pytest.approx(3.0 * 10.0 * DT, rel=1e-9)
-    # A step of native tells its own, which is none of a rope at its very length.
+    # A step of native tells its own; of a rope at its very length all or none, as round-off has it.
+    rope, told = isinstance(joint, pymunk.SlideJoint), pytest.approx(3.0 * 10.0 * 0.5 * DT, rel=1e-6)
     space.step(0.5 * DT)
-    rope = isinstance(joint, pymunk.SlideJoint)
-    assert joint.impulse == pytest.approx(0.0 if rope else 3.0 * 10.0 * 0.5 * DT, rel=1e-6)
+    assert joint.impulse == told or (rope and joint.impulse == 0.0)
     stepper.step(DT)
     assert joint.impulse == pytest.approx(3.0 * 10.0 * DT, rel=1e-6)
     del stepper
     gc.collect()
     assert joint.impulse == pytest.approx(3.0 * 10.0 * DT, rel=1e-6)
     space.step(0.5 * DT)
-    assert joint.impulse == pytest.approx(0.0 if rope else 3.0 * 10.0 * 0.5 * DT, rel=1e-6)
+    assert joint.impulse == told or (rope and joint.impulse == 0.0)
 
 
 def test_who_asks_for_impulses_keeps_neither_space_nor_joint() -> None:
