@@ -183,7 +183,8 @@ class RunningStepper(PackedStepper):
             kept: bodies that are not static.  every: steps from frame to frame, 0 for none; the start is the first one.
             events: whether impacts are stored.  progress: whether to show a progress bar.
 
-        A step that fails raises as `step` does; the space is at the end of the step before."""
+        A step that fails raises as `step` does; the space is at the end of the step before.
+        """
         world = self.adjusted(dt)
         rows = np.array([world.bodies.row[body] for body in kept], np.int64)
         moments = 1 + steps // every if every else 0

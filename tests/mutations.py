@@ -164,7 +164,7 @@ MUTATIONS = (
     Mutation("ledger: what a limit costs that moves", "joints/correct.py", "lost += 0.5 *", "lost += 1.0 *",
              "jointed/test_supports.py", "stopped"),
     Mutation("intervals: the closing of linear rows is real", "islands/depths.py",
-             "last, deep = pair, min(deep, known)", "last = pair", "islands/test_turning_walls.py", "poses"),
+             "last, deep = pair, min(deep, known)", "last = pair", "islands/test_depths.py", "poses"),
     Mutation("crammed: what flies together is left in one another", "islands/penetration.py",
              "if -u <= A.PAR.pulled * dt:", "if -u < 0.0:", "islands/test_penetration.py", "fly_on"),
     Mutation("sorting: the larger child is not looked for", "rows/inplace.py", "A[child + 1] > A[child]",

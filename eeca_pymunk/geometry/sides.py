@@ -117,9 +117,8 @@ def forget_sides(A: Scene, i: int, way: float) -> None:
         pair = SIDE[row].key - 1
         if pair < 0 or (LINK[pair // shapes].owner != i and LINK[pair % shapes].owner != i):
             continue
-        if way > max(
-            half_width(A, pair // shapes) + half_width(A, pair % shapes), INTERVAL_DEPTH_LEAST * A.BODY[i].extent
-        ):
+        thick = half_width(A, pair // shapes) + half_width(A, pair % shapes)
+        if way > max(thick, INTERVAL_DEPTH_LEAST * A.BODY[i].extent):
             SIDE[row].key = -1  # deleted, not free: rows after it may belong to other pairs
 
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..geometry.gap import gap_at
-from ..geometry.sides import half_width, remembers
+from ..geometry.sides import half_width, remembers, smaller
 from ..model.contacts import Row
 from ..model.islands import Island
 from ..model.parameters.intervals import INTERVAL_DEPTH, INTERVAL_DEPTH_LEAST, INTERVAL_DEPTH_WIDTH, INTERVAL_RETRY
@@ -17,9 +19,9 @@ from ..rows.build import normal_rate
 
 
 @nonallocating
-def depth_limit(small: float, thick: float) -> float:
-    """Depth (length) by which a contact may close in one interval. small: the smaller extent of both shapes.  thick:
-    the sum of their half widths."""
+def depth_limit(A: Scene, a: int, b: int) -> float:
+    """Depth (length) by which a contact of shapes a and b may close in one interval."""
+    small, thick = smaller(A, a, b), half_width(A, a) + half_width(A, b)
     return max(min(INTERVAL_DEPTH * small, INTERVAL_DEPTH_WIDTH * thick), INTERVAL_DEPTH_LEAST * small)
 
 
@@ -35,29 +37,20 @@ def driven(A: Scene, isle: Island, P: IntArray, Q: IntArray, ROWS: Rows[Row], KE
         if isle.V[q, 0] == 0.0 and isle.V[q, 1] == 0.0 and isle.V[q, 2] == 0.0:
             continue
         a, b = (KEY[z] >> 1) // shapes, (KEY[z] >> 1) % shapes
-        small = min(A.SHAPE[a].extent, A.SHAPE[b].extent)
-        if ROWS[z].gap < -depth_limit(small, half_width(A, a) + half_width(A, b)):
+        if ROWS[z].gap < -depth_limit(A, a, b):
             return True
     return False
-
-
-@nonallocating
-def room_of(A: Scene, a: int, b: int, gap: float) -> tuple[float, float]:
-    """How far (lengths) a contact of shapes a and b with this gap may close in an interval; and how far beyond it
-    does no harm."""
-    small = min(A.SHAPE[a].extent, A.SHAPE[b].extent)
-    deep = depth_limit(small, half_width(A, a) + half_width(A, b))
-    return max(gap, 0.0) + deep, 0.5 * deep
 
 
 @nonallocating
 def too_deep(A: Scene, a: int, b: int, gap: float, closing: float) -> float:
     """How many times too long an interval is in which a contact of shapes a and b with this gap closes by `closing`
     (lengths); 0 if it is not."""
-    if not closing > INTERVAL_DEPTH_LEAST * min(A.SHAPE[a].extent, A.SHAPE[b].extent):
+    if not closing > INTERVAL_DEPTH_LEAST * smaller(A, a, b):
         return 0.0
-    room, harmless = room_of(A, a, b, gap)
-    return max(closing / room, 1.01 * INTERVAL_RETRY) if closing > room + harmless else 0.0
+    deep = depth_limit(A, a, b)
+    room = max(gap, 0.0) + deep
+    return max(closing / room, 1.01 * INTERVAL_RETRY) if closing > room + 0.5 * deep else 0.0
 
 
 @kernel
@@ -78,11 +71,10 @@ def too_deep_at_end(
 
 @kernel
 def closes_too_far(
-    A: Scene, isle: Island, END: FloatArray, P: IntArray, Q: IntArray, ROWS: Rows[Row], KEY: IntArray, VN: FloatArray,
-    m: int, h: float,
-) -> float:  # fmt: skip
+    A: Scene, isle: Island, P: IntArray, Q: IntArray, ROWS: Rows[Row], KEY: IntArray, VN: FloatArray, m: int, h: float
+) -> float:
     """How many times too long an interval h is whose m contacts close too far by their rows, which are linear, and by
-    the poses END (k, 3) at its end; 0 if it is not.
+    the poses at its end; 0 if it is not.
 
     Rows have the normals of the middle. Where these rotate, velocities along them at the start and the end do not tell
     the way between: bodies that a turning wall carries along do not close. The poses tell it, unless the way may have
@@ -91,7 +83,7 @@ def closes_too_far(
     Args:
         VN: (k, 3) velocities at the end.
     """
-    far, shapes, last, known = 0.0, A.SHAPE.shape[0], -1, 0.0
+    far, shapes, last, known, END = 0.0, A.SHAPE.shape[0], -1, 0.0, np.empty((0, 3))
     for z in range(m):
         pair = KEY[z] >> 1
         a, b = pair // shapes, pair % shapes
@@ -100,6 +92,8 @@ def closes_too_far(
         if deep == 0.0:
             continue
         if remembers(A, a, b) or closing - max(ROWS[z].gap, 0.0) < half_width(A, a) + half_width(A, b):
+            if len(END) == 0:  # few intervals come here
+                END = isle.POSE + 0.5 * h * (isle.V + VN)
             if pair != last:
                 known = deep_at_end(A, isle, END, P, Q, ROWS, KEY, m, h, z)
             last, deep = pair, min(deep, known)
@@ -129,7 +123,7 @@ def deep_at_end(
     closing = gap - gap_at(A, a, END[p, 0], END[p, 1], END[p, 2], b, END[q, 0], END[q, 1], END[q, 2])[0]
     if too_deep(A, a, b, gap, closing) == 0.0:
         return 0.0
-    S, V, room = isle.POSE, isle.V, room_of(A, a, b, gap)[0]
+    S, V, room = isle.POSE, isle.V, max(gap, 0.0) + depth_limit(A, a, b)
     _, nx, ny, x, y = gap_at(A, a, S[p, 0], S[p, 1], S[p, 2], b, S[q, 0], S[q, 1], S[q, 2])
     ux = V[q, 0] - V[q, 2] * (y - S[q, 1]) - V[p, 0] + V[p, 2] * (y - S[p, 1])
     uy = V[q, 1] + V[q, 2] * (x - S[q, 0]) - V[p, 1] - V[p, 2] * (x - S[p, 0])

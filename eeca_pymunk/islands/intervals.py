@@ -115,9 +115,9 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
             m = step_island(A, isle, contacts, n, h, sweeps, least, owed, -1.0, 0.0)
         far = 0.0
         if not last and OUT[0].at_rest == 0:
-            END = isle.POSE + 0.5 * h * (V + VN)
-            far = max(excess_way(A, P, Q, KEY, V, VN, m, h), closes_too_far(A, isle, END, P, Q, ROWS, KEY, VN, m, h))
+            far = max(excess_way(A, P, Q, KEY, V, VN, m, h), closes_too_far(A, isle, P, Q, ROWS, KEY, VN, m, h))
             if far <= INTERVAL_RETRY and len(A.SIDE) > 0:
+                END = isle.POSE + 0.5 * h * (V + VN)
                 far = too_deep_at_end(A, isle, END, P, Q, ROWS, KEY, m, h, False)
         if far > INTERVAL_RETRY:
             A.COUNT.solved += n

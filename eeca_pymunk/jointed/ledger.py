@@ -31,9 +31,9 @@ def mark_edited(A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray) -> None
     for j in range(J.JOINT.shape[0]):
         a, b = J.JOINT[j].body[0], J.JOINT[j].body[1]
         if (a < n and A.PLACE[a] > 0) or (b < n and A.PLACE[b] > 0):
+            # Bodies that were put elsewhere start as those that are new: they go the same ways again, bit by bit.
             J.JOINT[j].touched = EDITED
             J.JOINT[j].impulse[0] = J.JOINT[j].impulse[1] = 0.0
-        # Bodies that were put elsewhere start as those that are new: they go the same ways again, bit by bit.
         for c in range(6 if J.JOINT[j].touched == EDITED else 0):
             J.JOINT[j].led[c // 3, c % 3] = 0.0
     A.PLACE[:] = -1

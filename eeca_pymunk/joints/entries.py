@@ -30,7 +30,7 @@ def held(link: Rows[Coupling], k: int, r: int) -> bool:
 def idle(link: Rows[Coupling], k: int) -> bool:
     """Whether joint k is a limit on which it does not stand: steps go without it, and look at it when they are solved
     (`bounds.first_bound`)."""
-    return is_limit(link[k].kind) and link[k].side == 0 and link[k].bounded == 0
+    return not held(link, k, 0) and link[k].bounded == 0
 
 
 @inlined

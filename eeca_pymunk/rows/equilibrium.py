@@ -24,11 +24,7 @@ from ..compiled.records import Rows, zeros
 from ..model.contacts import EDGE as EDGE_KIND
 from ..model.contacts import ROW, Edge, Problem
 from ..model.parameters.impulses import PROXIMAL_STATICS
-from ..model.parameters.rest import (
-    STATICS_GAP,
-    STATICS_START,
-    STATICS_STEP,
-)
+from ..model.parameters.rest import STATICS_GAP, STATICS_START, STATICS_STEP
 from .build import normal_rate
 from .cholesky import Factor, assemble, factorise, make_factor, roots_of, substitute
 from .cones import add_impulses, cone_edges, impulses_of

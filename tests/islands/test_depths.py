@@ -1,0 +1,67 @@
+"""How long intervals are whose contacts close: bodies on a turning wall, and ways of second order."""
+
+from __future__ import annotations
+
+import numpy as np
+import pymunk
+import pytest
+
+import eeca_pymunk as ep
+from eeca_pymunk.compiled.records import zeros
+from eeca_pymunk.islands.depths import deep_at_end, depth_limit
+from eeca_pymunk.model.contacts import ROW
+from eeca_pymunk.model.islands import Island
+
+SPIN, G, DT, LIMIT = 1.0, 9.81, 0.1, 1e-4  # rad/s, lengths/s², s, depth in parts of a rod that an interval may reach
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e2])
+def test_an_interval_is_as_long_as_the_poses_at_its_end_allow(unit: float) -> None:
+    """Rods without width slide on a wall without width. Along the normal of the middle of an interval h one of speed s
+    seems to close at s SPIN h / 2 at its start, where its way is along the wall. By the rows alone there would be 17
+    intervals in the third step in the place of 9."""
+    space = pymunk.Space()
+    space.gravity = 0.0, -G * unit
+    axis = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    axis.angular_velocity = SPIN
+    space.add(axis, pymunk.Segment(axis, (-5.0 * unit, 0.0), (5.0 * unit, 0.0), 0.0))
+    rods = []
+    for x in (-2.0, 0.5, 2.0):
+        rod = pymunk.Body(1.0, unit * unit / 3.0)
+        rod.position = x * unit, 0.0
+        rod.velocity, rod.angular_velocity = axis.velocity_at_world_point(rod.position), SPIN
+        space.add(rod, pymunk.Segment(rod, (-0.5 * unit, 0.0), (0.5 * unit, 0.0), 0.0))
+        rods.append(rod)
+    stepper = ep.EECA(space)
+    for _ in range(3):
+        report = stepper.step(DT)
+        assert report.converged
+        assert min(axis.world_to_local(rod.position).y for rod in rods) >= -1.5 * LIMIT * unit
+        assert len(report.contacts) <= 24  # of two points in each interval
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
+@pytest.mark.parametrize("approach", [0.0, 0.5, 1.0])
+def test_the_next_interval_is_as_long_as_a_way_of_second_order_takes(approach: float, unit: float) -> None:
+    """A disk closes by u h + c h^2 = 10 d in an interval h, with a part `approach` of that by its velocity u at the
+    start, and a room of d: after s, u s + c s^2 = d."""
+    space, h, radius = pymunk.Space(), 0.5, 2.0 * unit
+    disk = pymunk.Body(1.0, 1.0)
+    disk.position = 0.0, radius
+    wall = pymunk.Segment(space.static_body, (-9.0 * unit, 0.0), (9.0 * unit, 0.0), 0.0)
+    space.add(disk, pymunk.Circle(disk, radius), wall)
+    stepper = ep.EECA(space)
+    stepper.step(1e-6)
+    loop = stepper.event_loop
+    assert loop is not None
+    room = depth_limit(loop.scene, 0, 1)
+    isle = Island(
+        WHO=np.array([0, 1]), IM=np.zeros(2), II=np.zeros(2), POSE=np.array([[0.0, radius, 0.0], [0.0, 0.0, 0.0]]),
+        V=np.array([[0.0, -approach * 10.0 * room / h, 0.0], [0.0, 0.0, 0.0]]), ACC=np.zeros((2, 3)),
+        EXTENT=np.zeros(2), FELT=np.zeros(2), PAIRS=np.zeros((1, 4), np.int64),
+    )  # fmt: skip
+    end = isle.POSE - [[0.0, 10.0 * room, 0.0], [0.0, 0.0, 0.0]]
+    rows = zeros(1, ROW)
+    far = deep_at_end(loop.scene, isle, end, np.array([0]), np.array([1]), rows, np.array([2]), 1, h, 0)
+    s, u = h / far, approach * 10.0 * room / h
+    assert u * s + (10.0 * room - u * h) * (s / h) ** 2 == pytest.approx(room, rel=1e-9)
