@@ -159,7 +159,6 @@ class Disks:
         )
         scene.COUNT.disks = world.disks
         self.scene = near_lists(scene, moving)
-        self._usual: FloatArray = self.scene.MARK["margin"].copy()
         self._found, self._out = np.zeros((4 * moving + 16, 2), np.int64), np.zeros((4 * moving + 16, 6))
 
     def __getstate__(self) -> dict[str, object]:
@@ -228,7 +227,7 @@ class Disks:
 
     def _candidates(self, reach: FloatArray) -> tuple[IntArray, FloatArray]:
         while True:
-            count = candidates(self.table, self._usual, reach, self._found, self._out)
+            count = candidates(self.table, reach, self._found, self._out)
             if count < 0:
                 self.scene = with_more_room(self.scene, 0.0)
             elif count > len(self._found):

@@ -7,7 +7,6 @@ contacts too, and all is solved again, MIDSTEP_PASSES times at most.
 
 from __future__ import annotations
 
-from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..geometry.flight import norm, pose
 from ..geometry.gap import gap
@@ -24,24 +23,22 @@ from .intervals import start_interval
 
 
 @nonallocating
-def list_reach(A: Scene, USUAL: FloatArray, i: int) -> bool:
-    """Extend the near lists of body i to all that it may reach within the step; False if they need more memory. USUAL:
-    see `act_together`."""
-    way = travel_bound(A, i, A.PAR.dt)
+def list_reach(A: Scene, i: int) -> bool:
+    """Extend the near lists of body i to all that it may reach within the step; False if they need more memory."""
+    way, room = travel_bound(A, i, A.PAR.dt), True
     for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):
-        if not cover(A, USUAL, s, way):
-            return False
-    return True
+        room = room and cover(A, s, way)
+    return room
 
 
 @nonallocating
-def join_all(A: Scene, USUAL: FloatArray) -> bool:
+def join_all(A: Scene) -> bool:
     """Build islands of all bodies that may touch within the step, or are jointed; False if near lists need more
     memory."""
     BODY, LINK = A.BODY, A.LINK
     n, dt = BODY.shape[0] - 1, A.PAR.dt
     for i in range(n):
-        if not list_reach(A, USUAL, i):
+        if not list_reach(A, i):
             return False
     for s in range(A.LIST.shape[0]):
         i = LINK[s].owner
@@ -75,7 +72,7 @@ def undo_intervals(A: Scene) -> None:
 
 
 @nonallocating
-def missed_bodies(A: Scene, USUAL: FloatArray) -> int:
+def missed_bodies(A: Scene) -> int:
     """Number of bodies that travel farther than their bound, and into others that are no contacts of the solve; their
     speed bounds are increased to that. -1 if near lists need more memory."""
     BODY, RESTING = A.BODY, A.RESTING
@@ -88,7 +85,7 @@ def missed_bodies(A: Scene, USUAL: FloatArray) -> int:
         if way <= travel_bound(A, i, dt):
             continue
         before, RESTING[i].speed = RESTING[i].speed, way / dt
-        if not list_reach(A, USUAL, i):
+        if not list_reach(A, i):
             return -1
         into = 0
         for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):
@@ -107,13 +104,9 @@ def missed_bodies(A: Scene, USUAL: FloatArray) -> int:
 
 
 @kernel
-def act_together(A: Scene, J: Joints, USUAL: FloatArray) -> int:
+def act_together(A: Scene, J: Joints) -> int:
     """Solve all contacts of a step, from its start also when it is called again after more memory was needed. DONE, or
-    which memory is full.
-
-    Args:
-        USUAL: (k,) margins of shapes that are not fast, length.
-    """
+    which memory is full."""
     BODY = A.BODY
     n = BODY.shape[0] - 1
     A.RESTING[n].speed = 0.0
@@ -121,7 +114,7 @@ def act_together(A: Scene, J: Joints, USUAL: FloatArray) -> int:
         A.RESTING[i].speed = norm(BODY[i].vx, BODY[i].vy) + abs(BODY[i].spin) * BODY[i].extent
     for solves in range(MIDSTEP_PASSES + 1):
         undo_intervals(A)
-        if not join_all(A, USUAL):
+        if not join_all(A):
             return POOL_FULL
         # A solve may make another body the root of its island, which then would be solved again.
         roots = 0
@@ -135,7 +128,7 @@ def act_together(A: Scene, J: Joints, USUAL: FloatArray) -> int:
         # Components have taken their step, which is not undone for bodies that moved into others.
         if solves == MIDSTEP_PASSES or J.TALLY.components > 0:
             break
-        more = missed_bodies(A, USUAL)
+        more = missed_bodies(A)
         if more < 0:
             return POOL_FULL
         if more == 0:

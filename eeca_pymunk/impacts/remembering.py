@@ -41,7 +41,6 @@ _OF_PROCESS = (
 class Remembering:
     """What an event loop stores of earlier steps."""
 
-    _usual: FloatArray
     jointed: bool
     joint: Rows[Joint]
     partner: Rows[Body]
@@ -135,11 +134,10 @@ class Remembering:
 
     def remembered(self) -> list[AnyArray]:
         """All arrays that determine the next step, apart from the states exchanged with pymunk."""
-        return [self._usual, *remembered(self.scene)]
+        return remembered(self.scene)
 
     def recall(self, take: Callable[[Any, tuple[int, ...]], AnyArray]) -> None:
         """Set the arrays of `remembered`; `take` returns the next one, for a dtype and a shape."""
-        self._usual = take(np.float64, self._usual.shape).copy()
         self.scene = recalled(self.scene, take)
         self.__dict__.pop("fresh", None)
 
@@ -161,8 +159,7 @@ class Remembering:
             # The addresses that machine code uses remain.
             for old, new in pairs:
                 old[...] = new
-            self._usual[:] = near.MARK["margin"]
             self.fresh[:] = self.own
             return
-        self.scene, self._usual = near, near.MARK["margin"].copy()
+        self.scene = near
         self.keep_fresh()

@@ -135,12 +135,11 @@ def next_rollout(F: RunArrays) -> bool:
 @kernel
 def run(
     TABLE: Table, JOINTS: Table, ARRAYS: Table, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray,
-    USUAL: FloatArray,
 ) -> int:  # fmt: skip
     """Take steps until RUN.until of them are done, of each rollout if there are any.
 
     Args:
-        TABLE, JOINTS, USUAL: see `step.step`.  ARRAYS: `table_of` a RunArrays.
+        TABLE, JOINTS: see `step.step`.  ARRAYS: `table_of` a RunArrays.
 
     Returns:
         the bits of all steps; a negative code of a step, or ENERGY, with the state at its start in STATES; or a code
@@ -157,7 +156,7 @@ def run(
                     return RUN.bits
                 RUN.stage = WITHIN
             if RUN.stage == WITHIN:
-                status = resume(A, J, STATES, WALK, EXTRA, ENDS, USUAL, RUN.bits)
+                status = resume(A, J, STATES, WALK, EXTRA, ENDS, RUN.bits)
                 if status < 0:
                     return status
                 RUN.bits, RUN.stage = status, AFTER

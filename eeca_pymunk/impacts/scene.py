@@ -25,7 +25,7 @@ from ..model.step import Missed
 from ..pairs.setup import with_more_room
 from ..report import Details, of_events
 from ..transfer import FORCES
-from .laying import tie_components
+from .new_scene import tie_components
 from .remembering import Remembering
 from .run import ROOM_FOR_IMPACTS, run
 from .run_buffers import RunBuffers
@@ -74,7 +74,6 @@ class EventLoop(Remembering):
         HELD = self._hold(BODY, SHAPE, LINK)
         scene, self.table = memory.scene(BODY, SHAPE, LINK, VERTEX, HELD)
         self.scene = scene
-        self._usual: FloatArray = scene.MARK["margin"].copy()
         COUNT = scene.COUNT
         COUNT.limit, COUNT.disks, COUNT.together = limit, disks, together
         COUNT.budget = STEP_LOOKS + STEP_LOOKS_BODY * n * max(n, MANY_BODIES) // MANY_BODIES
@@ -150,11 +149,11 @@ class EventLoop(Remembering):
 
     def _bind_run(self, buffers: RunBuffers, states: tuple[AnyArray, ...]) -> Callable[..., int]:
         """The loop over steps as machine code, bound to these arrays and to those of the scene."""
-        return run.bind(self.table, self.ties, buffers.table, *states, self._usual)
+        return run.bind(self.table, self.ties, buffers.table, *states)
 
     def _bind_to(self, states: tuple[AnyArray, ...]) -> Callable[..., int]:
         """The step as machine code, bound to these arrays and to those of the scene."""
-        call = step.bind(self.table, self.ties, *states, self._usual)
+        call = step.bind(self.table, self.ties, *states)
         self._bound = states, call
         return call
 

@@ -18,7 +18,7 @@ from ..model.scene import Scene
 from ..model.shapes import Corner, Link, Shape, Side
 from ..model.step import Count, Missed, Step
 from ..pairs.setup import NEAR, NO_GRID, filled, near_sizes
-from .laying import MEASURES, lay_scene, measure_scene
+from .new_scene import MEASURES, lay_scene, measure_scene
 
 RULE_COLUMNS = 6
 ORDER = 4  # of the steps of components without dissipation, drives and contacts

@@ -57,7 +57,7 @@ def finish(
 
 
 @kernel
-def act(A: Scene, J: Joints, USUAL: FloatArray) -> int:
+def act(A: Scene, J: Joints) -> int:
     """All impulses of a step that has begun: of all contacts together at its middle, or event by event after the
     intervals of islands have begun. DONE, or which memory is full: provide more, and call again.
 
@@ -66,7 +66,7 @@ def act(A: Scene, J: Joints, USUAL: FloatArray) -> int:
     """
     COUNT = A.COUNT
     if COUNT.together > 0:
-        return act_together(A, J, USUAL)
+        return act_together(A, J)
     if COUNT.phase == 0:
         if COUNT.pushes + COUNT.any_placed + J.TALLY.components > 0 and start_islands(A, J) != DONE:
             return PUSHES_FULL
@@ -83,12 +83,11 @@ def act(A: Scene, J: Joints, USUAL: FloatArray) -> int:
 
 @kernel
 def resume(
-    A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, USUAL: FloatArray,
-    status: int,
+    A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, status: int
 ) -> int:  # fmt: skip
     """The rest of a step, whose bits so far are `status`. Returns the bits of the step, a negative code, or a code for
     more memory."""
-    met = act(A, J, USUAL)
+    met = act(A, J)
     if met == POOL_FULL:
         return ROOM_FOR_LISTS
     if met == PUSHES_FULL:
@@ -100,14 +99,13 @@ def resume(
 
 @kernel
 def step(
-    TABLE: Table, JOINTS: Table, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray,
-    USUAL: FloatArray, dt: float, gx: float, gy: float, half_damping: float, bits: int,
+    TABLE: Table, JOINTS: Table, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float,
+    gx: float, gy: float, half_damping: float, bits: int,
 ) -> int:  # fmt: skip
     """Take one step, from the states read from pymunk to those to be written, see `transfer.py`.
 
     Args:
         TABLE: `table_of` a Scene.  JOINTS: `table_of` its Joints.
-        USUAL: (k,) margins of shapes that are not fast, length.
         dt: time, > 0.  gx, gy: gravity, length/time².  half_damping: factor by which half the step's damping multiplies
             velocities.
         bits: negative for a new step; the bits so far of one that continues after more memory was provided.
@@ -120,4 +118,4 @@ def step(
         bits = start(A, J, STATES, WALK, EXTRA, dt, gx, gy, half_damping)
         if bits < 0:
             return bits
-    return resume(A, J, STATES, WALK, EXTRA, ENDS, USUAL, bits)
+    return resume(A, J, STATES, WALK, EXTRA, ENDS, bits)

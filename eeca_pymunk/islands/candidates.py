@@ -24,7 +24,7 @@ from ..model.scene import Scene
 from ..pairs.lists import far_apart
 from ..pairs.rules import barred, law
 from ..rows.build import tangent_rate
-from .membership import approach, fixed_support, persists, remembered
+from .membership import approach, fixed_support, hardly_bounces, persists, remembered
 
 
 @nonallocating
@@ -87,9 +87,8 @@ def pairs_within(A: Scene, root: int, t: float, h: float, lossy: bool, MINE: Int
                     elif e >= 1.0 and not lossy:
                         if not persists(A, s, o, t, False):
                             continue
-                    elif g > TOUCH * small and not busy:
-                        if not -e * min(u, 0.0) < 0.5 * max(closing, load / mass) * h:
-                            continue
+                    elif g > TOUCH * small and not busy and not hardly_bounces(e, u, max(closing, load / mass) * h):
+                        continue
                 if p == found.shape[0]:
                     more = np.empty((2 * p, 2), np.int64)
                     for c in range(p):

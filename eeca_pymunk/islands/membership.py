@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..arrays import IntArray
-from ..compiled import nonallocating
+from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
 from ..contacts.memory import find, key_of
 from ..geometry.gap import gap_at
@@ -151,6 +151,13 @@ def approach(A: Scene, a: int, b: int, t: float) -> tuple[float, float, float, f
     return g, u, closing, present, mass
 
 
+@inlined
+def hardly_bounces(e: float, u: float, press: float) -> bool:
+    """Whether a contact with elasticity e and gap rate u would bounce by less than half of what presses it together
+    (velocities)."""
+    return -e * min(u, 0.0) < 0.5 * press
+
+
 @nonallocating
 def persists(A: Scene, a: int, b: int, t: float, lossy: bool) -> bool:
     """Whether the contact of shapes a and b, whose bodies are at instant t, persists to the end of the step.
@@ -171,7 +178,7 @@ def persists(A: Scene, a: int, b: int, t: float, lossy: bool) -> bool:
         pressed = max(closing, present) > 0.0 or force > 0.0 or A.MEMBER[i].tied >= 0 or A.MEMBER[j].tied >= 0
         return g <= TOUCH * small and abs(u) <= limit and (pressed or not fixed)
     press = max(closing, load / mass) * h
-    if not -e * min(u, 0.0) < 0.5 * press:
+    if not hardly_bounces(e, u, press):
         return False
     if g <= TOUCH * small:
         return u <= press

@@ -55,8 +55,8 @@ class Mark(Record):
     reach: float  # `bound` and `margin` together when the shape was entered into the grid
     following: float  # next and previous shape in the bucket, -1 for none
     previous: float
-    spare_0: float  # fill the cache line
-    spare_1: float
+    usual: float  # `margin` of the shape while it is slow
+    spare: float  # fills the cache line
 
 
 class Cell(Record):

@@ -20,13 +20,9 @@ from .lists import centre
 
 
 @nonallocating
-def cover(A: Scene, USUAL: FloatArray, s: int, reach: float) -> bool:
+def cover(A: Scene, s: int, reach: float) -> bool:
     """Make the list of shape s complete for a displacement of length `reach` from the start of the step. False if the
-    pool is full: then `grid.build` has to be called.
-
-    Args:
-        USUAL: (k,) margins of shapes that are not fast, length; shapes that were fast get them again.
-    """
+    pool is full: then `grid.build` has to be called."""
     mark = A.MARK[s]
     if mark.margin == math.inf:
         return True
@@ -34,12 +30,11 @@ def cover(A: Scene, USUAL: FloatArray, s: int, reach: float) -> bool:
     x, y = centre(A, s, 0.0)
     if norm(x - mark.x, y - mark.y) + reach <= mark.margin:
         return True
-    mark.margin = max(USUAL[s], MARGIN_OF_FAST * reach)
-    return renew(A, s, 0.0, 0.0) >= 0
+    return renew(A, s, 0.0, 0.0, MARGIN_OF_FAST * reach) >= 0
 
 
 @nonallocating
-def candidates(table: Table, USUAL: FloatArray, REACH: FloatArray, PAIRS: IntArray, OUT: FloatArray) -> int:
+def candidates(table: Table, REACH: FloatArray, PAIRS: IntArray, OUT: FloatArray) -> int:
     """The pairs of shapes whose gap at the start of the step is at most the sum of their bodies' reaches.
 
     Args:
@@ -53,7 +48,7 @@ def candidates(table: Table, USUAL: FloatArray, REACH: FloatArray, PAIRS: IntArr
     LINK, LIST = A.LINK, A.LIST
     moving = LIST.shape[0]
     for s in range(moving):
-        if not cover(A, USUAL, s, REACH[LINK[s].owner]):
+        if not cover(A, s, REACH[LINK[s].owner]):
             return -1
     found = 0
     for s in range(moving):

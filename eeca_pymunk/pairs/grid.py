@@ -125,7 +125,7 @@ def part(A: Scene, s: int) -> int:
 
 
 @nonallocating
-def renew(A: Scene, s: int, t: float, ahead: float) -> int:
+def renew(A: Scene, s: int, t: float, ahead: float, least: float) -> int:
     """Move the margin circle of s to its position at instant t, and renew its list.
 
     If the shape goes round the body's centre of mass within a step, by more than its margin, the circle is about that
@@ -135,11 +135,13 @@ def renew(A: Scene, s: int, t: float, ahead: float) -> int:
     Args:
         ahead: distance of the circle's centre ahead of the shape, or body, along its velocity, as a part of the margin
             (of the margin less the arm, if the circle is about the body's centre); below 1.
+        least: the margin at least, length; that of the shape while it is slow if this is larger.
 
     Returns:
         the number of old entries that are kept; they come first. -1 if the pool is full: then `build` has to be called.
     """
-    margin = A.MARK[s].margin
+    mark = A.MARK[s]
+    margin = mark.margin = max(mark.usual, least)
     if margin == math.inf:
         return int(A.LIST[s].number)
     unlink(A, s)
@@ -148,8 +150,8 @@ def renew(A: Scene, s: int, t: float, ahead: float) -> int:
     turn = abs(A.BODY[i].spin) * A.PAR.dt
     if turn > 2.0 * math.pi and turn * arm > margin:
         x, y, _ = pose(A.BODY, i, t)
-        A.MARK[s].margin = max(margin, 2.0 * arm)
-        margin = A.MARK[s].margin - arm
+        mark.margin = max(margin, 2.0 * arm)
+        margin = mark.margin - arm
     else:
         x, y = centre(A, s, t)
     if ahead > 0.0:

@@ -33,7 +33,7 @@ def begin_lists(table: Table, few: bool) -> int:
         box_wall(A, w)
     if few:
         for s in range(A.GRID.moving):
-            A.MARK[s].margin = math.inf
+            A.MARK[s].margin = A.MARK[s].usual = math.inf
         set_cell(A)
         return DONE if make_lists(A, 0.0) else 0
     if A.BOX.shape[0] <= ALL_WALLS:
@@ -73,6 +73,7 @@ def fill_lists(table: Table, BOUND: FloatArray, neighbours: float, halved: int, 
             return DONE
         for s in range(A.GRID.moving):
             A.MARK[s].margin *= 0.5
+            A.MARK[s].usual = A.MARK[s].margin
         halved += 1
         if halved == MARGIN_HALVINGS:
             return DONE
@@ -121,4 +122,4 @@ def choose_margins(A: Scene, median: float, neighbours: float) -> None:
     # Points have a margin too; if all shapes are points, any length will do.
     size = median if median > 0.0 else largest if largest > 0.0 else 1.0
     for s in range(A.GRID.moving):
-        A.MARK[s].margin = factor * max(min(2.0 * A.SHAPE[s].bound, median), 1e-3 * size)
+        A.MARK[s].margin = A.MARK[s].usual = factor * max(min(2.0 * A.SHAPE[s].bound, median), 1e-3 * size)
