@@ -11,8 +11,15 @@ jointed bodies with `path.py` (`pivots.py`); `equilibrium.py` finds contact forc
 cones, `cones.py`); `energy.py` takes losses, and scales impulses that would
 give energy; `lifting.py` moves bodies out of each other. Open `build.py` first.
 
-Names of arguments: A, B (m,) local bodies of the rows ROWS (m,); L (m, 2) impulses, normal lam and tangential beta; V
-(k, 3) velocities, FREE those without impulses; IM, II (k,) inverse masses and moments; the first n of the k bodies
-move. The active set is held, stuck, slip, rest (`polish.classify`). G, EDGE (K,) are edges of friction cones
-(`cones.py`).
+Symbols: u_n, u_t are the normal and tangential velocity of a contact, u- before its impulses and u+ after; e its
+elasticity, mu its friction, b its target; lam, beta its impulses along n and t; j, G, T rows of velocities along n and
+t (`..model.contacts.Row` defines all of these). A = (G, T) M^-1 (G, T)^T, with M the masses, is the change of all
+velocities by unit impulses, A_nn one of its diagonal entries; W is M^-1 or the response of jointed bodies. D_n, D_t are
+losses, energies (`energy.py`).
+
+Names of arguments: A, B (m,) local bodies of the rows ROWS (m,); L (m, 2) impulses lam and beta; V (k, 3) velocities,
+FREE those without impulses; IM, II (k,) inverse masses and moments; the first n of the k bodies move. `worst` is the
+largest change of a contact's velocity in the last sweep, by which solves end. R is the stiffness of the augmentation of
+a direct solve, dimensionless. The active set is held, stuck, slip, rest (`polish.classify`). G, EDGE (K,) are edges of
+friction cones (`cones.py`).
 """

@@ -54,12 +54,13 @@ def clear(out: Solved) -> None:
 @kernel
 def resolve(
     problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, first: int, rounds: int, last: int,
-    again: int, tolerance: float, OUT: Rows[Solved],
+    drifts: int, tolerance: float, OUT: Rows[Solved],
 ) -> float:  # fmt: skip
     """Impulses L (m, 2) and velocities V (k, 3) for given targets: up to `first` sweeps, `rounds` rounds of a direct
-    solve and sweeps, `last` sweeps, and `again` times the end of a drift (`drift.py`), a direct solve and `last`
-    sweeps, until a sweep changes no velocity by more than `tolerance`. FREE (k, 3): velocities without impulses.
-    Returns the change of velocity in the last sweep; OUT: numbers of sweeps and direct solves."""
+    solve and sweeps, `last` sweeps, and `drifts` times the end of a drift (`drift.py`), a direct solve and `last`
+    sweeps, until a sweep changes no velocity by more than `tolerance`. With `drifts` a round begins with the end of a
+    drift too. Rounds also end after 8 of them that do not halve the least change so far. FREE (k, 3): velocities
+    without impulses. Returns the change of velocity in the last sweep; OUT: numbers of sweeps and direct solves."""
     taken, worst = iterate(problem, L, V, tolerance, first)
     OUT[0].sweeps = taken
     OUT[0].direct = 0
@@ -69,7 +70,7 @@ def resolve(
     stalled = 0
     log_R = AUGMENTATION
     for _ in range(rounds):
-        if again > 0:
+        if drifts > 0:
             worst = go_along(problem, L, V, FREE, worst)
             OUT[0].sweeps += 1
         log_R, worst = refine(problem, L, V, FREE, log_R, 8, 0.1 * tolerance, worst)
@@ -89,7 +90,7 @@ def resolve(
     if last > 0:
         taken, worst = iterate(problem, L, V, tolerance, last)
         OUT[0].sweeps += taken
-    for _ in range(again):
+    for _ in range(drifts):
         if worst <= tolerance:
             break
         worst = go_along(problem, L, V, FREE, worst)
@@ -138,16 +139,16 @@ def solve_block(
     tolerance = max(speed * (BLOCK_RESIDUAL_FRICTION if rough else BLOCK_RESIDUAL), floor)
     exact = conserves(ROWS, m)
     # Direct solves help where contacts stick; where many slip only sweeps converge, so there are more of them.
-    first, rounds, last, again = BLOCK_SWEEPS_FRICTION, BLOCK_DIRECT_FRICTION, BLOCK_LAST_SWEEPS_FRICTION, DRIFTS
+    first, rounds, last, drifts = BLOCK_SWEEPS_FRICTION, BLOCK_DIRECT_FRICTION, BLOCK_LAST_SWEEPS_FRICTION, DRIFTS
     if hasty and m > DENSE_CONTACTS and not exact:
         # A hit on a lossy pile is solved as accurately as the intervals before and after it.
         tolerance = max(INTERVAL_RESIDUAL_SPEED * speed, floor)
-        first, rounds, last, again = SMALL_SWEEPS, DIRECT_MOVING, 0, 0
+        first, rounds, last, drifts = SMALL_SWEEPS, DIRECT_MOVING, 0, 0
     elif not rough:
-        first, rounds, last, again = BLOCK_SWEEPS, BLOCK_DIRECT, BLOCK_LAST_SWEEPS, 0
+        first, rounds, last, drifts = BLOCK_SWEEPS, BLOCK_DIRECT, BLOCK_LAST_SWEEPS, 0
         if m <= SMALL_BLOCK:
             first = 4 * BLOCK_SWEEPS
-    worst = resolve(problem, L, V, FREE, first, rounds, last, again, tolerance, OUT)
+    worst = resolve(problem, L, V, FREE, first, rounds, last, drifts, tolerance, OUT)
     # Velocities are computed again from the impulses, without the round-off of many sweeps.
     velocities(problem, L, FREE, V)
     scale, left = lock(problem, L, V, FREE, owed, exact)

@@ -1,7 +1,8 @@
 """Rows of bounded impulses (motors, and joints with a finite max_force), as unknowns beside those of contacts.
 
-A row is bounded alone (low <= lambda <= high), or both rows of a pivot by a disc. Inside the bounds the velocity along
-the row equals its target; at a bound its difference to the target has the opposite sign of the impulse.
+A row is bounded alone (low <= lambda <= high), or both rows of a pivot by a disc, x^2 + y^2 <= high^2. Inside the
+bounds the velocity along the row equals its target; at a bound its difference to the target has the opposite sign of
+the impulse.
 """
 
 from __future__ import annotations
@@ -23,9 +24,10 @@ SINGLE, FIRST_OF_DISC, SECOND_OF_DISC = 0.0, 1.0, 2.0
 def on_disc(
     a: float, b: float, c: float, ux: float, uy: float, x: float, y: float, bound: float, second: bool
 ) -> float:
-    """One of the impulses (x', y') with u + W (x' - x, y' - y) = 0, W = [a b; b c], or if these are not in the disc,
-    with u + W (x' - x, y' - y) = -s (x', y'), s > 0, on its rim: (W + s) p = W p0 - u in the frame of W. `second`: y'
-    instead of x'."""
+    """One of the impulses p = (x', y'), y' if `second`, with u + W (p - p0) = 0, where u = (ux, uy) is the velocity at
+    the impulses p0 = (x, y), and W = [a b; b c] its change by unit impulses. If they are outside the disc |p| <=
+    `bound`, those on its rim with u + W (p - p0) = -s p, s > 0: (W + s) p = W p0 - u, by Newton's method for s in the
+    frame of W's axes."""
     turn = 0.5 * math.atan2(2.0 * b, a - c)
     co, si = math.cos(turn), math.sin(turn)
     w1 = a * co * co + 2.0 * b * co * si + c * si * si
@@ -106,11 +108,8 @@ def sweep_bounded(B: Bounded, L: FloatArray, m: int, V: FloatArray) -> float:
         if part == SINGLE:
             L[m + i, 0] = min(max(x - u / a, low), high)
         else:
-            b, c, y = (
-                0.5 * (per_impulse(B, i, i + 1) + per_impulse(B, i + 1, i)),
-                per_impulse(B, i + 1, i + 1),
-                L[m + i + 1, 0],
-            )
+            b = 0.5 * (per_impulse(B, i, i + 1) + per_impulse(B, i + 1, i))
+            c, y = per_impulse(B, i + 1, i + 1), L[m + i + 1, 0]
             if not c > 0.0:
                 continue
             other = B.ROWS[i + 1].speed + bounded_rate(B, i + 1, V)

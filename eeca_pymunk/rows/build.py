@@ -53,7 +53,8 @@ def place_row(
 
 @nonallocating
 def invert(row: Row, nn: float, nt: float, tt: float) -> None:
-    """The inverse of the matrix of a contact, where that is regular."""
+    """Set the inverse w_nn, w_nt, w_tt of the matrix of a contact, a_nn, a_nt, a_tt = nn, nt, tt; where that is
+    singular w_nn is nan."""
     det = nn * tt - nt * nt
     regular = det > SINGULAR * nn * tt
     row.w_nn = tt / det if regular else np.nan

@@ -1,5 +1,5 @@
-"""Contacts of jointed bodies, by response columns: the change of the velocities of all bodies of a component by an
-impulse.
+"""Contacts of jointed bodies, by response columns: the changes of the velocities of all bodies of a component by a
+unit impulse along n, and along t, of a contact. Y is the matrix of all columns.
 
 The same contact problem as that of free bodies, with the response of components in place of inverse masses.
 """
@@ -38,7 +38,7 @@ def push_jointed(problem: JointedProblem, L: FloatArray, factor: float, V: Float
 
 @nonallocating
 def lawful(problem: JointedProblem, L: FloatArray, V: FloatArray, i: int) -> tuple[float, float]:
-    """The impulses of contact i by its law, those of all others being given."""
+    """The impulses (lam, beta) of contact i by its law, those of all others being given."""
     A, B, ROWS, _, _, _ = problem
     lam0, beta0, ann = L[i, 0], L[i, 1], ROWS[i].a_nn
     short = normal_rate(A, B, ROWS, V, i) - ROWS[i].target
@@ -61,7 +61,7 @@ def lawful(problem: JointedProblem, L: FloatArray, V: FloatArray, i: int) -> tup
     if abs(beta) <= ROWS[i].friction * lam and beta * ROWS[i].ut <= 0.0:
         return lam, beta
     if not qn < 0.0:
-        # Nor does one open that slips back as slowly as energy lets it.
+        # Such a contact stays closed as well if energy limits its friction, and its slip to `limited_slip`.
         off = ut - limited_slip(ROWS[i], lam0, beta0)
         lam = lam0 - (ROWS[i].w_nn * short + ROWS[i].w_nt * off)
         beta = beta0 - (ROWS[i].w_nt * short + ROWS[i].w_tt * off)
@@ -75,8 +75,8 @@ def lawful(problem: JointedProblem, L: FloatArray, V: FloatArray, i: int) -> tup
 @nonallocating
 def breach(problem: JointedProblem, L: FloatArray, V: FloatArray) -> float:
     """The largest velocity by which impulses L and velocities V break the laws of contacts and bounded rows; inf if
-    there are discs. Where an impulse of friction could open its contact, a_nn < mu |a_nt|, a contact by itself has
-    several solutions, among which a sweep may change."""
+    there are discs. The change of velocity in a sweep is no such measure: where an impulse of friction could open its
+    contact, a_nn < mu |a_nt|, a contact by itself has several solutions, among which a sweep may change."""
     A, B, ROWS, C, D, m = problem
     worst = 0.0
     for i in range(m):

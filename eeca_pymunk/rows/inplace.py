@@ -24,24 +24,17 @@ def add(TO: FloatArray, MORE: FloatArray) -> None:
 
 @nonallocating
 def sort(A: IntArray, n: int) -> None:
-    """Sort the first n numbers of A in ascending order, by heapsort: at most 2 n log2 n comparisons."""
-    for root in range(n // 2 - 1, -1, -1):
-        _sift(A, root, n)
-    for end in range(n - 1, 0, -1):
-        A[0], A[end] = A[end], A[0]
-        _sift(A, 0, end)
-
-
-@nonallocating
-def _sift(A: IntArray, root: int, n: int) -> None:
-    """Sift the number at `root` down in the heap of n numbers, until no child is larger."""
-    value = A[root]
-    while 2 * root + 1 < n:
-        child = 2 * root + 1
-        if child + 1 < n and A[child + 1] > A[child]:
-            child += 1
-        if A[child] <= value:
-            break
-        A[root] = A[child]
-        root = child
-    A[root] = value
+    """Sort the first n numbers of A in ascending order, by Shell's sort with Knuth's gaps: at most about n^1.5
+    comparisons."""
+    gap = 1
+    while gap < n // 3:
+        gap = 3 * gap + 1
+    while gap > 0:
+        for i in range(gap, n):
+            value = A[i]
+            j = i
+            while j >= gap and A[j - gap] > value:
+                A[j] = A[j - gap]
+                j -= gap
+            A[j] = value
+        gap //= 3

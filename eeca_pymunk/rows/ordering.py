@@ -9,14 +9,15 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import kernel, nonallocating
+from ..compiled import kernel
 from ..model.parameters.impulses import DISSECTION_LEAF, LATE_NEIGHBOURS
+from .inplace import sort
 
 
 @kernel
 def neighbours(A: IntArray, B: IntArray, m: int, n: int, used: IntArray) -> tuple[IntArray, IntArray]:
-    """Neighbours of each of n bodies by the contacts with used[i] != 0, as start (n + 1,) and list; some appear
-    repeatedly."""
+    """Neighbours of n bodies by the contacts with used[i] != 0: `start` (n + 1,) and `other`; those of body i are
+    other[start[i] : start[i + 1]], some repeatedly."""
     start = np.zeros(n + 1, np.int64)
     for i in range(m):
         a, b = A[i], B[i]
@@ -39,7 +40,9 @@ def neighbours(A: IntArray, B: IntArray, m: int, n: int, used: IntArray) -> tupl
 
 @kernel
 def dissect(POSE: FloatArray, n: int, start: IntArray, other: IntArray, place: IntArray) -> None:
-    """Set place (n,), the position of each body in the order of elimination."""
+    """Set place (n,), the position of each body in the order of elimination, from the poses POSE (k, 3) of the bodies
+    and their neighbours (`neighbours`). A set of bodies is divided at the mean of the longer side of its box; those
+    left of it with a neighbour on the right are the separator, which is eliminated after both parts."""
     ids = np.empty(n, np.int64)
     end = n
     count = 0
@@ -113,26 +116,10 @@ def dissect(POSE: FloatArray, n: int, start: IntArray, other: IntArray, place: I
             top += 1
 
 
-@nonallocating
-def ascend(values: IntArray, low: int, high: int) -> None:
-    """Sort values[low:high] by Shell's sort, which suits short columns."""
-    gap = 1
-    while gap < (high - low) // 3:
-        gap = 3 * gap + 1
-    while gap > 0:
-        for i in range(low + gap, high):
-            value = values[i]
-            j = i
-            while j >= low + gap and values[j - gap] > value:
-                values[j] = values[j - gap]
-                j -= gap
-            values[j] = value
-        gap //= 3
-
-
 @kernel
 def pattern(n: int, start: IntArray, other: IntArray, place: IntArray) -> tuple[IntArray, IntArray]:
-    """Column pointers (n + 1,) and rows below the diagonal, ascending, of the blocks of the factor."""
+    """`columns` (n + 1,) and `rows` of the blocks of the factor, as in `cholesky.Factor`; the rows of a column ascend:
+    those of its own neighbours, and of all columns whose first row it is (its children in the elimination tree)."""
     body = np.empty(n, np.int64)
     for i in range(n):
         body[place[i]] = i
@@ -168,7 +155,7 @@ def pattern(n: int, start: IntArray, other: IntArray, place: IntArray) -> tuple[
                     rows[last] = r
                     last += 1
             child = after[child]
-        ascend(rows, first, last)
+        sort(rows[first:last], last - first)
         columns[j + 1] = last
         if last > first:
             after[j] = head[rows[first]]

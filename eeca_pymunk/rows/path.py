@@ -31,12 +31,12 @@ from .pivots import (
     Path,
     bound_of,
     change,
-    hold,
-    let_slip,
     margin,
     pivot,
     sign_of,
+    slip,
     slope_of,
+    stick,
     unknown_of,
 )  # fmt: skip
 from .sweeps import velocities
@@ -44,8 +44,9 @@ from .sweeps import velocities
 
 @kernel
 def begin(problem: JointedProblem, L: FloatArray, V: FloatArray, anew: bool) -> Path:
-    """The path's start at impulses L (m + n, 2) with velocities V (k, 3), or `anew` without impulses of contacts, rows
-    at a bound. Contacts that sleep, discs, and rows that joints hold take no part: their impulses stay."""
+    """The path's start at impulses L (m + n, 2) of m contacts and n bounded rows with velocities V (k, 3); or, if
+    `anew`, without impulses of contacts, and with rows at a bound. Contacts that are inactive (`Row.wake`) or left out
+    (`Columns.OUT`), discs, and rows that joints hold take no part: their impulses stay."""
     A, B, ROWS, C, D, m = problem
     n = D.USED[0]
     size = 2 * m + n
@@ -78,17 +79,17 @@ def begin(problem: JointedProblem, L: FloatArray, V: FloatArray, anew: bool) -> 
             T[k, size] = row.speed + bounded_rate(D, i, V)
             X[k] = L[m + i, 0]
     if not anew:
-        take_residuals(path, m, X)
-    take_bounds(path, m, X)
+        set_direction_of_residuals(path, m, X)
+    remove_impulses(path, m, X)
     if anew:
-        lift(path, m)
+        set_opening_direction(path, m)
     else:
-        take_states(path, m, X)
+        restore_states(path, m, X)
     return path
 
 
 @nonallocating
-def take_residuals(path: Path, m: int, X: FloatArray) -> None:
+def set_direction_of_residuals(path: Path, m: int, X: FloatArray) -> None:
     """Set the velocities per theta, T[:, size + 1], that take from those at impulses X (size,), T[:, size], by which
     their states are not lawful."""
     T, size = path.T, len(path.T)
@@ -106,7 +107,7 @@ def take_residuals(path: Path, m: int, X: FloatArray) -> None:
 
 
 @nonallocating
-def lift(path: Path, m: int) -> None:
+def set_opening_direction(path: Path, m: int) -> None:
     """Set the velocities per theta that open all contacts and keep rows at a bound, by different amounts: so they come
     to their changes one by one."""
     T, size = path.T, len(path.T)
@@ -121,7 +122,7 @@ def lift(path: Path, m: int) -> None:
 
 
 @nonallocating
-def take_bounds(path: Path, m: int, X: FloatArray) -> None:
+def remove_impulses(path: Path, m: int, X: FloatArray) -> None:
     """From velocities T[:, size] at impulses X (size,) to those without impulses of contacts, with rows at bounds."""
     T, size = path.T, len(path.T)
     for k in range(size):
@@ -133,7 +134,7 @@ def take_bounds(path: Path, m: int, X: FloatArray) -> None:
 
 
 @nonallocating
-def take_states(path: Path, m: int, X: FloatArray) -> None:
+def restore_states(path: Path, m: int, X: FloatArray) -> None:
     """The states of impulses X (size,), from those of no impulses of contacts, with rows at bounds."""
     T, STATE, size = path.T, path.STATE, len(path.T)
     for c in range(len(STATE)):
@@ -145,13 +146,13 @@ def take_states(path: Path, m: int, X: FloatArray) -> None:
             STATE[c], path.SIGN[c] = INSIDE, 0.0
         elif STATE[c] == OPEN and X[k] > 0.0:
             sign = sign_of(path, c, X[k], X[k + 1])
-            let_slip(path, c, sign)
+            slip(path, c, sign)
             if sign == 0.0 and path.MU[c] > 0.0:
-                hold(path, c)
+                stick(path, c)
 
 
 @nonallocating
-def give(path: Path, m: int, X: FloatArray, L: FloatArray) -> None:
+def set_impulses(path: Path, m: int, X: FloatArray, L: FloatArray) -> None:
     """Set the impulses L of the present states, by the unknowns X (size,) that these leave free."""
     for c in range(len(path.STATE)):
         k, state = unknown_of(m, c), path.STATE[c]
@@ -164,7 +165,7 @@ def give(path: Path, m: int, X: FloatArray, L: FloatArray) -> None:
 
 
 @nonallocating
-def refine(problem: JointedProblem, path: Path, V: FloatArray, X: FloatArray) -> None:
+def correct(problem: JointedProblem, path: Path, V: FloatArray, X: FloatArray) -> None:
     """Correct the unknowns X (size,) by the velocities V that the present states fix and that are not 0: the proximal
     term and round-off of pivots leave them."""
     A, B, ROWS, _, D, m = problem
@@ -173,12 +174,10 @@ def refine(problem: JointedProblem, path: Path, V: FloatArray, X: FloatArray) ->
         for z in range(2 if state == STICK else 1 if state in (SLIP, INSIDE) else 0):
             if c >= m:
                 off = D.ROWS[c - m].speed + bounded_rate(D, c - m, V)
+            elif z == 1:
+                off = tangent_rate(A, B, ROWS, V, c) - path.REST[c]
             else:
-                off = (
-                    tangent_rate(A, B, ROWS, V, c) - path.REST[c]
-                    if z == 1
-                    else normal_rate(A, B, ROWS, V, c) - ROWS[c].target
-                )
+                off = normal_rate(A, B, ROWS, V, c) - ROWS[c].target
             for i in range(len(X)):
                 X[i] -= path.T[i, k + z] * off
 
@@ -212,11 +211,11 @@ def follow_path(problem: JointedProblem, L: FloatArray, V: FloatArray, FREE: Flo
         if way < 0.0 and theta <= nearest:
             for k in range(size):
                 X[k] = T[k, size]
-            give(path, m, X, L)
+            set_impulses(path, m, X, L)
             velocities(problem, L, FREE, V)
             for _ in range(PATH_REFINEMENTS):
-                refine(problem, path, V, X)
-                give(path, m, X, L)
+                correct(problem, path, V, X)
+                set_impulses(path, m, X, L)
                 velocities(problem, L, FREE, V)
             return True
         if changed < 0:

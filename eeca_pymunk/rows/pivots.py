@@ -1,4 +1,7 @@
-"""States of contacts and bounded rows on a path of solved problems (`path.py`), and their changes: a pivot each."""
+"""States of contacts and bounded rows on a path of solved problems (`path.py`), and their changes: a pivot each.
+
+In the functions c numbers a contact, c < m, or the row c - m; s is its sign, `which` one of the two changes of its
+state (`margin`)."""
 
 from __future__ import annotations
 
@@ -17,11 +20,11 @@ class Path(NamedTuple):
     """A place on the path, of m contacts and n bounded rows: contact i has the unknowns 2 i (normal) and 2 i + 1
     (tangential), row i the unknown 2 m + i; size = 2 m + n.
 
-    STATE, SIGN (m + n,): states; sign of the friction that slips, or of the bound; else 0.  MU (m,), LOW, HIGH (n,).
-    REST (m,): tangential velocity of contacts that stick, not 0 where energy limits friction (`polish.classify`).
-    T (size, size + 2): of each unknown the impulse, or the velocity less its target, that its state leaves free, by
-    those of all that it fixes, which are 0; then its value at theta = 0, and per theta. Where a contact slips, beta
-    stands for beta - s mu lam.  R (size + 2,): room for a row.
+    STATE, SIGN (m + n,): states; sign of the friction that slips, or of the bound; else 0.  MU (m,): friction, as long
+    as the path lasts.  LOW, HIGH (n,): bounds.  REST (m,): tangential velocity of contacts that stick, not 0 where
+    energy limits friction (`polish.classify`). T (size, size + 2): of each unknown the impulse, or the velocity less
+    its target, that its state leaves free, by those of all that it fixes, which are 0; then its value at theta = 0, and
+    per theta. Where a contact slips, beta stands for beta - s mu lam.  R (size + 2,): room for a row.
     """
 
     STATE: IntArray
@@ -66,7 +69,7 @@ def slope_of(path: Path, c: int) -> float:
 
 
 @nonallocating
-def let_slip(path: Path, c: int, sign: float) -> None:
+def slip(path: Path, c: int, sign: float) -> None:
     """Let contact c, which is open, slip with friction of that sign."""
     T, n = path.T, 2 * c
     path.STATE[c], path.SIGN[c] = SLIP, sign
@@ -76,7 +79,7 @@ def let_slip(path: Path, c: int, sign: float) -> None:
 
 
 @nonallocating
-def hold(path: Path, c: int) -> None:
+def stick(path: Path, c: int) -> None:
     """Let contact c, which slips, stick."""
     T, n = path.T, 2 * c
     pivot(path, n + 1)
@@ -92,7 +95,7 @@ def change(path: Path, m: int, c: int, which: int, theta: float) -> int:
     k, size = unknown_of(m, c), len(path.T)
     if state == OPEN:
         slides = T[k + 1, size] + theta * T[k + 1, size + 1]
-        let_slip(path, c, 0.0 if path.MU[c] <= 0.0 else -1.0 if slides > 0.0 else 1.0)
+        slip(path, c, 0.0 if path.MU[c] <= 0.0 else -1.0 if slides > 0.0 else 1.0)
         return 0
     if state == STICK:
         path.STATE[c], path.SIGN[c] = SLIP, 1.0 if which == 0 else -1.0
@@ -101,7 +104,7 @@ def change(path: Path, m: int, c: int, which: int, theta: float) -> int:
         pivot(path, k + 1)
         return 1
     if state == SLIP and which == 1:
-        hold(path, c)
+        stick(path, c)
         return 0 if sign > 0.0 else 1
     if state == SLIP:
         pivot(path, k)

@@ -52,8 +52,8 @@ def classify(
     A: IntArray, B: IntArray, ROWS: Rows[Row], L: FloatArray, V: FloatArray, m: int, held: IntArray, stuck: IntArray,
     slip: FloatArray, rest: FloatArray,
 ) -> None:  # fmt: skip
-    """Classify contacts: held[i] = 1 with active normals; stuck[i] = 1 with u_t = 0, 2 with u_t = rest; else slip (beta
-    = slip lam).
+    """Classify contacts by their impulses, into (m,): held[i] = 1 where lam > 0; of these stuck[i] = 1 where u_t is to
+    be 0, 2 where it is to be rest[i], length/time; else 0, and beta = slip[i] lam.
 
     Where energy limits friction, beta (u_t- + u_t+) = -lam (u_n- + b): rest is that u_t+.
     """
