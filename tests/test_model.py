@@ -56,11 +56,11 @@ def test_no_list_and_no_forecast_is_made_where_nothing_is_near() -> None:
     stepper.step(1e-4)
     method = stepper._method
     assert isinstance(method, EventLoop)
-    lists = method.scene.GRID.leaves
+    lists = method.scene.GRID.renewals
     for _ in range(3):
         stepper.step(1e-4)
         assert method.scene.COUNT.predictions == 0
-    assert method.scene.GRID.leaves == lists
+    assert method.scene.GRID.renewals == lists
 
 
 def test_model_is_one_line_for_every_stepper() -> None:

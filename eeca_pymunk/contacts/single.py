@@ -7,7 +7,7 @@ import math
 from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
 from ..geometry.flight import pose
-from ..geometry.gap import gap, gap_at, touching
+from ..geometry.gap import gap, gap_at, gap_round_off
 from ..model.bodies import Body
 from ..model.contacts import Impulse
 from ..model.scene import Scene
@@ -44,7 +44,7 @@ def kinetic(BODY: Rows[Body], i: int) -> float:
 @nonallocating
 def touches(A: Scene, a: int, b: int, t: float) -> bool:
     """Whether shapes a and b touch at instant t, up to round-off."""
-    tolerance = touching(A, a, b)
+    tolerance = gap_round_off(A, a, b)
     if b < A.LIST.shape[0]:
         if far_apart(A, a, b, t, tolerance):
             return False

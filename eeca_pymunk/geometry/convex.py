@@ -23,8 +23,6 @@ from ..compiled import nonallocating
 from ..model.parameters.detection import AXIS_TIE, DIRECTION_ROUND_OFF, EDGE_TIE
 from ..model.scene import Scene
 
-_FAR = math.inf
-
 
 @nonallocating
 def place(A: Scene, s: int, x: float, y: float, angle: float, OUT: FloatArray) -> int:
@@ -52,15 +50,18 @@ def place(A: Scene, s: int, x: float, y: float, angle: float, OUT: FloatArray) -
 
 
 @nonallocating
-def separation(P: FloatArray, p: int, Q: FloatArray, q: int) -> tuple[float, int, int]:
+def separation(P: FloatArray, p: int, Q: FloatArray, q: int, mx: float, my: float) -> tuple[float, int, int]:
     """Largest distance of Q (q vertices) from P (p vertices) along an edge normal of P, that edge, and the vertex of Q
-    that is nearest along it; (-inf, 0, 0) for a point P."""
-    best, edge, vertex = -_FAR, 0, 0
+    that is nearest along it; (-inf, 0, 0) for a point P. Unless m = 0, only edges whose normals have a positive
+    component along m count."""
+    best, edge, vertex = -math.inf, 0, 0
     if p > 1:
         for j in range(p):
             nx, ny = P[j, 2], P[j, 3]
+            if (mx != 0.0 or my != 0.0) and nx * mx + ny * my <= 0.0:
+                continue
             px, py = P[j, 0], P[j, 1]
-            least, lowest = _FAR, 0
+            least, lowest = math.inf, 0
             for i in range(q):
                 height = (Q[i, 0] - px) * nx + (Q[i, 1] - py) * ny
                 if height < least:
@@ -82,7 +83,7 @@ def along_edge(P: FloatArray, p: int, edge: int, x: float, y: float) -> tuple[fl
 def vertex_edge(P: FloatArray, p: int, Q: FloatArray, q: int) -> tuple[float, int, int, float, float, bool]:
     """The vertex of P closest to the outline of Q, q > 1: squared distance, vertex, edge, the point of the edge, and
     whether that is inside the edge."""
-    best, vertex, edge, fx, fy, inside = _FAR, 0, 0, 0.0, 0.0, False
+    best, vertex, edge, fx, fy, inside = math.inf, 0, 0, 0.0, 0.0, False
     for j in range(q):
         end = j + 1 if j + 1 < q else 0
         bx, by = Q[j, 0], Q[j, 1]
@@ -128,9 +129,9 @@ def point_core(x: float, y: float, Q: FloatArray, q: int) -> tuple[float, float,
         dx, dy = Q[0, 0] - x, Q[0, 1] - y
         d = math.sqrt(dx * dx + dy * dy)
         if d == 0.0:
-            return 0.0, 1.0, 0.0, False, 0, -_FAR
-        return d, dx / d, dy / d, False, 0, -_FAR
-    apart, edge = -_FAR, 0
+            return 0.0, 1.0, 0.0, False, 0, -math.inf
+        return d, dx / d, dy / d, False, 0, -math.inf
+    apart, edge = -math.inf, 0
     for j in range(q):
         height = (x - Q[j, 0]) * Q[j, 2] + (y - Q[j, 1]) * Q[j, 3]
         if height > apart:
@@ -160,12 +161,12 @@ def closest(
     """
     if p == 1:
         d, nx, ny, flat, edge, apart = point_core(P[0, 0], P[0, 1], Q, q)
-        return d, nx, ny, P[0, 0], P[0, 1], flat, 0, -_FAR, edge, apart
+        return d, nx, ny, P[0, 0], P[0, 1], flat, 0, -math.inf, edge, apart
     if q == 1:
         d, nx, ny, flat, edge, apart = point_core(Q[0, 0], Q[0, 1], P, p)
-        return d, -nx, -ny, Q[0, 0] + d * nx, Q[0, 1] + d * ny, flat, edge, apart, 0, -_FAR
-    apart_p, edge_p, vertex_q = separation(P, p, Q, q)
-    apart_q, edge_q, vertex_p = separation(Q, q, P, p)
+        return d, -nx, -ny, Q[0, 0] + d * nx, Q[0, 1] + d * ny, flat, edge, apart, 0, -math.inf
+    apart_p, edge_p, vertex_q = separation(P, p, Q, q, 0.0, 0.0)
+    apart_q, edge_q, vertex_p = separation(Q, q, P, p, 0.0, 0.0)
     size = abs(P[0, 0]) + abs(P[0, 1]) + abs(Q[0, 0]) + abs(Q[0, 1])
     size += abs(P[1, 0] - P[0, 0]) + abs(P[1, 1] - P[0, 1]) + abs(Q[1, 0] - Q[0, 0]) + abs(Q[1, 1] - Q[0, 1])
     near = DIRECTION_ROUND_OFF * size

@@ -17,7 +17,7 @@ from ..compiled.records import Rows
 from ..model.parameters.detection import CORNER_MEET, SLENDER
 from ..model.shapes import Corner, Link
 
-_SIDES, _MANY = 64, 1 << 16  # pairs of every thin shape that moves, whose sides are remembered; of all, at most
+_SIDES, _MANY = 64, 1 << 16  # pairs whose sides are remembered: of each thin shape that moves; of all, at most
 
 
 def core_room(LINK: Rows[Link]) -> FloatArray:

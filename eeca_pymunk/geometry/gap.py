@@ -95,12 +95,12 @@ def gaps(table: Table, PAIRS: IntArray, POSE_A: FloatArray, POSE_B: FloatArray, 
 
 
 @nonallocating
-def touching(A: Scene, a: int, b: int) -> float:
+def gap_round_off(A: Scene, a: int, b: int) -> float:
     """Length up to which a gap of shapes a and b is round-off of positions and sizes: they touch exactly.
 
-    1e-12 (max(|x|, |y|) + sizes), where the sizes are the roundings for two lone disks and for a lone disk and a
-    static shape; else four times the roundings and the larger extent of the two. Of a static shape, whose place is
-    that of its vertices, the bounding circle is the extent; positions are those of the bodies that move.
+    GAP_ROUND_OFF (max(|x|, |y|) + sizes), where the sizes are the roundings for two single disks and for a single disk
+    and a static shape; else CORNER_ROUND_OFF times the roundings and the larger extent of the two. Of a static shape,
+    whose place is that of its vertices, the bounding circle is the extent; positions are those of the bodies that move.
     """
     BODY, SHAPE, LINK, disks = A.BODY, A.SHAPE, A.LINK, A.COUNT.disks
     ground = BODY.shape[0] - 1

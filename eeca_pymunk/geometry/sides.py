@@ -28,7 +28,7 @@ from ..model.parameters.detection import STRAIGHT
 from ..model.parameters.intervals import INTERVAL_DEPTH_LEAST, INTERVAL_WAY
 from ..model.scene import Scene, scene_of
 from ..model.shapes import Side
-from .convex import closest
+from .convex import closest, separation
 
 _PROBES = 16  # rows in which a pair may be
 _SCATTER = 40503
@@ -43,7 +43,7 @@ def remembers(A: Scene, a: int, b: int) -> bool:
 
 
 @nonallocating
-def key_of(A: Scene, a: int, b: int) -> int:
+def pair_number(A: Scene, a: int, b: int) -> int:
     """The number of the pair a < b in the memory."""
     return 1 + a * len(A.SHAPE) + b
 
@@ -74,7 +74,7 @@ def note_side(A: Scene, a: int, b: int, nx: float, ny: float, held: bool) -> Non
         return
     if a > b:
         a, b, nx, ny = b, a, -nx, -ny
-    key = key_of(A, a, b)
+    key = pair_number(A, a, b)
     side = A.SIDE[side_row(A, key)]
     side.key, side.nx, side.ny = key, nx, ny
     side.deep = INTERVAL_WAY * smaller(A, a, b) if held else 0.0
@@ -89,7 +89,7 @@ def near_side(A: Scene, a: int, b: int) -> float:
 @nonallocating
 def known_side(A: Scene, a: int, b: int) -> bool:
     """Whether the pair a < b of thin shapes has a remembered normal."""
-    key = key_of(A, a, b)
+    key = pair_number(A, a, b)
     return bool(A.SIDE[side_row(A, key)].key == key)
 
 
@@ -134,29 +134,9 @@ def keep_sides(TABLE: Table, KNOWN: Rows[Side], PLACE: IntArray) -> None:
         a, b, sign = PLACE[pair // k], PLACE[pair % k], 1.0
         if a > b:
             a, b, sign = b, a, -1.0
-        key = key_of(A, a, b)
+        key = pair_number(A, a, b)
         side = A.SIDE[side_row(A, key)]
         side.key, side.nx, side.ny, side.deep = key, sign * known.nx, sign * known.ny, known.deep
-
-
-@nonallocating
-def axis(
-    P: FloatArray, p: int, Q: FloatArray, q: int, sign: float, mx: float, my: float
-) -> tuple[float, int, int]:  # fmt: skip
-    """As `convex.separation`, for those edges of P whose normals, times `sign`, have a positive component along m."""
-    best, edge, vertex = -math.inf, 0, 0
-    for j in range(p):
-        nx, ny = P[j, 2], P[j, 3]
-        if sign * (nx * mx + ny * my) <= 0.0:
-            continue
-        least, lowest = math.inf, 0
-        for i in range(q):
-            height = (Q[i, 0] - P[j, 0]) * nx + (Q[i, 1] - P[j, 1]) * ny
-            if height < least:
-                least, lowest = height, i
-        if least > best:
-            best, edge, vertex = least, j, lowest
-    return best, edge, vertex
 
 
 @nonallocating
@@ -165,7 +145,7 @@ def side_of(A: Scene, a: int, b: int) -> tuple[float, float]:
     sign = 1.0
     if a > b:
         a, b, sign = b, a, -1.0
-    key = key_of(A, a, b)
+    key = pair_number(A, a, b)
     side = A.SIDE[side_row(A, key)]
     if side.key != key:
         return 0.0, 0.0
@@ -221,7 +201,7 @@ def closest_on_side(
         d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q = closest(P, p, Q, q)
         reach = deep
     else:
-        key = key_of(A, a, b)
+        key = pair_number(A, a, b)
         side = A.SIDE[side_row(A, key)]
         mx, my, reach = side.nx, side.ny, max(near_side(A, a, b), side.deep)
         if side.key != key:
@@ -229,8 +209,8 @@ def closest_on_side(
     along = nx * mx + ny * my
     if d > reach or along >= 0.0:
         return d, nx, ny, x, y, flat, edge_p, apart_p, edge_q, apart_q
-    apart_p, edge_p, vertex_q = axis(P, p, Q, q, 1.0, mx, my)
-    apart_q, edge_q, vertex_p = axis(Q, q, P, p, -1.0, mx, my)
+    apart_p, edge_p, vertex_q = separation(P, p, Q, q, mx, my)
+    apart_q, edge_q, vertex_p = separation(Q, q, P, p, -mx, -my)
     if apart_q > apart_p:
         nx, ny, x, y = -Q[edge_q, 2], -Q[edge_q, 3], P[vertex_p, 0], P[vertex_p, 1]
         return apart_q, nx, ny, x, y, True, edge_p, apart_p, edge_q, apart_q

@@ -82,9 +82,8 @@ class Member(Record):
     loaded: int  # of the root of an island at rest: 1 while support of moving neighbours is unverified
     with_supports: int  # of the root: `bodies`, and those of the islands that support them
     placed: int  # UNMOVED or MOVED while the body may overlap others deeply; else 0
-    new_forces: (
-        int  # of the root of an island at rest: 1 while the islands below have not been tested with its new forces
-    )
+    # Of the root of an island at rest: 1 while the islands below have not been tested with its new forces.
+    new_forces: int
 
 
 class Rest(Record):

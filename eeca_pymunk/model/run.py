@@ -34,11 +34,8 @@ class Run(Record):
     rollouts: int  # number of the first rollout that is not to be computed
 
 
-BETWEEN, WITHIN, AFTER = (
-    0,
-    1,
-    2,
-)  # two steps; a step that asked for more memory; a step whose results are not stored yet
+# `Run.stage`: between two steps; within a step that asked for more memory; after one whose results are not stored yet.
+BETWEEN, WITHIN, AFTER = 0, 1, 2
 
 
 class RunArrays(NamedTuple):

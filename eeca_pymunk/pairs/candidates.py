@@ -12,7 +12,7 @@ import math
 from ..arrays import FloatArray, IntArray
 from ..compiled import Table, nonallocating
 from ..geometry.flight import norm
-from ..geometry.gap import gap, touching
+from ..geometry.gap import gap, gap_round_off
 from ..model.parameters.detection import FARTHEST_CELL, MARGIN_OF_FAST
 from ..model.scene import Scene, scene_of
 from .grid import renew
@@ -62,6 +62,6 @@ def candidates(table: Table, REACH: FloatArray, PAIRS: IntArray, OUT: FloatArray
             if found < PAIRS.shape[0]:
                 PAIRS[found, 0], PAIRS[found, 1] = s, o
                 OUT[found, 0], OUT[found, 1], OUT[found, 2], OUT[found, 3], OUT[found, 4] = g, nx, ny, px, py
-                OUT[found, 5] = touching(A, s, o)
+                OUT[found, 5] = gap_round_off(A, s, o)
             found += 1
     return found

@@ -158,7 +158,7 @@ def renew(A: Scene, s: int, t: float, ahead: float, least: float) -> int:
         ux, uy = course(A, s, t)
         x, y = x + ahead * margin * ux, y + ahead * margin * uy
     draw(A, s, x, y)
-    A.GRID.leaves += 1
+    A.GRID.renewals += 1
     kept = part(A, s)
     found = seek_moving(A, s) and seek_walls(A, s)
     link(A, s)

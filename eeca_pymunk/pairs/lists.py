@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 from ..compiled import nonallocating
-from ..geometry.gap import touching
+from ..geometry.gap import gap_round_off
 from ..model.parameters.impulses import FACE_ROUND_OFF, ROCKING
 from ..model.scene import Scene
 from .rules import law
@@ -124,7 +124,7 @@ def mark_pair(A: Scene, a: int, b: int, value: int) -> None:
 def face_tolerance(A: Scene, a: int, b: int) -> float:
     """The `tolerance` (length) of `..geometry.manifold.face` in an impact of shapes a and b: the difference of gaps up
     to which both ends of a common face touch at once."""
-    tolerance = FACE_ROUND_OFF * touching(A, a, b)
+    tolerance = FACE_ROUND_OFF * gap_round_off(A, a, b)
     if law(A.SHAPE, A.RULE, a, b)[0] < 1.0:
         tolerance = max(tolerance, ROCKING * min(A.SHAPE[a].extent, A.SHAPE[b].extent))
     return tolerance

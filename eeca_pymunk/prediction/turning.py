@@ -21,9 +21,18 @@ from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
 from ..geometry.convex import place
 from ..geometry.flight import pose
-from ..geometry.gap import touching
+from ..geometry.gap import gap_round_off
 from ..geometry.manifold import common_face
-from ..geometry.sides import closest_on_side, key_of, known_side, near_side, note_side, remembers, side_row, smaller
+from ..geometry.sides import (
+    closest_on_side,
+    known_side,
+    near_side,
+    note_side,
+    pair_number,
+    remembers,
+    side_row,
+    smaller,
+)
 from ..model.bodies import Body
 from ..model.parameters.events import ADVANCES, APPROACH_ROUND_OFF, RESOLUTION
 from ..model.parameters.intervals import TOUCH
@@ -96,7 +105,7 @@ def begin_side(A: Scene, a: int, b: int, start: float, duration: float, toleranc
         sign = -1.0 if p == 2 and q == 2 and other else 1.0
         note_side(A, a, b, sign * nx, sign * ny, True)
     elif d >= -near_side(A, a, b) and not in_one_island(A, i, j):
-        A.SIDE[side_row(A, key_of(A, a, b))].deep = 0.0
+        A.SIDE[side_row(A, pair_number(A, a, b))].deep = 0.0
 
 
 @nonallocating
@@ -136,8 +145,8 @@ def general(A: Scene, a: int, b: int, horizon: float) -> tuple[float, bool]:
     if not remembers(A, a, b):
         return search(A, a, b, horizon, math.inf)
     start = max(A.BODY[A.LINK[a].owner].since, A.BODY[A.LINK[b].owner].since)
-    begin_side(A, a, b, start, max(horizon - start, 0.0), touching(A, a, b))
-    side = A.SIDE[side_row(A, key_of(A, a, b))]
+    begin_side(A, a, b, start, max(horizon - start, 0.0), gap_round_off(A, a, b))
+    side = A.SIDE[side_row(A, pair_number(A, a, b))]
     key, nx, ny, deep = side.key, side.nx, side.ny, side.deep
     t, certain = search(A, a, b, horizon, math.inf)
     side.key, side.nx, side.ny, side.deep = key, nx, ny, deep
@@ -169,7 +178,7 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float) -> tuple[floa
     i, j = A.LINK[a].owner, A.LINK[b].owner
     start = max(BODY[i].since, BODY[j].since)
     duration = max(horizon - start, 0.0)
-    tolerance = touching(A, a, b)
+    tolerance = gap_round_off(A, a, b)
     s, never = circles_meet(A, a, b, start, duration, tolerance)
     if s > duration:
         return start + s, never

@@ -351,5 +351,5 @@ def test_walls_of_a_container_that_turns_slowly_keep_margins_of_their_own_size()
     margins = method.scene.MARK["margin"].copy()
     for _ in range(30):
         stepper.step(1 / 60)
-    assert method.scene.GRID.leaves > 100
+    assert method.scene.GRID.renewals > 100
     assert (method.scene.MARK["margin"] == margins).all()

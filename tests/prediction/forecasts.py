@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from eeca_pymunk.geometry.gap import gap, touching
+from eeca_pymunk.geometry.gap import gap, gap_round_off
 from eeca_pymunk.prediction.impact_times import meet
 from tests.packed import Thing, World
 
@@ -34,7 +34,7 @@ def check_by_sampling(world: World, a: int, b: int, horizon: float, looks: int =
     i, j = world.link[a].owner, world.link[b].owner
     start = max(world.body["since"][i], world.body["since"][j])
     t, certain = next_impact(world, a, b, horizon)
-    tolerance = touching(world.scene, a, b)
+    tolerance = gap_round_off(world.scene, a, b)
     end = min(t, horizon)
     for instant in np.linspace(start, end, looks, endpoint=False):
         assert gap(world.scene, a, b, instant)[0] > -4.0 * tolerance

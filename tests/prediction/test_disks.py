@@ -50,5 +50,5 @@ def test_how_often_lists_are_renewed_makes_no_difference(
         for stepper in steppers:
             stepper.step(2e-2)
         np.testing.assert_array_equal(state(steppers[0].space), state(steppers[1].space))
-    leaves = [int(stepper._method.scene.GRID.leaves) for stepper in steppers]
+    leaves = [int(stepper._method.scene.GRID.renewals) for stepper in steppers]
     assert leaves[0] > 1.5 * leaves[1] > 0
