@@ -1,9 +1,9 @@
-"""HookedStepper: the methods that a step of packed arrays needs, and the step that calls functions of the program."""
+"""HookedStepper: what a step does with its method, and the step that calls functions of the program."""
 
 from __future__ import annotations
 
-from abc import abstractmethod
 from collections.abc import Callable
+from functools import partial
 from math import isfinite
 
 from .energy.ledger import AFTER, DAMPED
@@ -14,13 +14,40 @@ from .reentry import BUSY
 from .report import Details, Outcome, StepReport
 from .space.world import World
 from .transfer import EVENTS, FORCES, MOVED_STATIC, OTHER_BODIES
-from .unmet import Unmet
+from .unmet import Unmet, of_missed
 
 
 class HookedStepper(PackedSpace):
     """A stepper whose steps call functions of the program; arguments as of `PackedStepper`."""
 
-    @abstractmethod
+    def adjust(self, world: World, dt: float) -> bool:
+        """Update the method from joints and collision handlers before the next step; False if the space has to be read
+        anew, since joints hold other bodies."""
+        parted = False
+        joints = world.joints
+        if joints is not None:
+            if joints.functions or joints.edited:
+                BUSY.add(self.space)
+                try:
+                    joints.update(world.state, world.bodies.row, dt)
+                finally:
+                    BUSY.discard(self.space)
+            elif not joints.idle():
+                joints.update(world.state, world.bodies.row, dt)
+            if joints.replan or joints.ends_moved:
+                loop = self.event_loop
+                assert loop is not None  # other methods refuse joints
+                if loop.holds_others():
+                    return False
+                if joints.replan:
+                    loop.plan()
+                joints.planned()
+            parted = world.find_parted()
+        if parted or (world.collisions and world.rules is not self._ruled):
+            self._ruled = world.rules
+            self._method.rule(world.laws())
+        return True
+
     def advance(self, world: World, dt: float, half_damping: float) -> int:
         """Move the bodies from `world.STATES` to `world.ENDS`; the space is not touched.
 
@@ -30,14 +57,19 @@ class HookedStepper(PackedSpace):
         Returns:
             status bits or a negative code of `transfer.py`.
         """
+        gx, gy = world.gravity
+        if not world.plain and not self.adjust(world, dt):
+            return OTHER_BODIES
+        return self._method.step(world.STATES, world.WALK, world.EXTRA, world.ENDS, dt, gx, gy, half_damping)
 
-    @abstractmethod
     def details(self, world: World, dt: float) -> Details | Callable[[], Details]:
         """The arrays of the report of the last step, whose status has EVENTS, or a function that makes them."""
+        return self._method.details(dt, world.bodies.items, world.owner)
 
     def unmet(self, world: World) -> tuple[Unmet, ...] | Callable[[], tuple[Unmet, ...]]:
         """Budgets and tolerances that the last step did not meet, or a function that makes them."""
-        return ()
+        loop = self.event_loop
+        return () if loop is None else partial(of_missed, loop.missed, world.bodies.items, world.owner)
 
     def _hooked_step(self, world: World, dt: float) -> StepReport:
         """A step of a space in which functions of bodies or constraints, or collision handlers, are called."""
@@ -78,19 +110,19 @@ class HookedStepper(PackedSpace):
                 world.set_accelerations(world.hooks.velocity_changes(dt), dt)
             if world.collisions:
                 if (status := world.rehearsal.run(dt, half_damping)) < 0:
-                    self._fail(world, dt, status)
+                    self._raise_failure(world, dt, status)
                 if self._sleep is not None and self._sleep.woken():
-                    world = self._awoken(world)
+                    world = self._reread_awoken(world)
                 world.rules = world.rehearsal.rules(self.decisions)
             status, hooks = self.advance(world, dt, half_damping), world.hooks
             if status < 0:
-                self._fail(world, dt, status)
+                self._raise_failure(world, dt, status)
             outcome = self._outcome(dt)
             alters = world.damping == 0.0 or len(hooks.position) > 0 or (world.collisions and world.rehearsal.after)
             if alters:
                 bits, lost = world.alter_end(world.damping == 0.0)
                 if bits < 0:
-                    self._fail(world, dt, bits)
+                    self._raise_failure(world, dt, bits)
                 if len(hooks.position):
                     hooks.positions(world.state, world.STATES[LEFT], dt)
                     world.bodies.check_finite(world.ended(), TOO_FAR)
@@ -100,7 +132,7 @@ class HookedStepper(PackedSpace):
             forces, status = status & FORCES, status & EVENTS | bits
             if alters or forces or hooks.some or world.joints is not None:
                 world.reset_forces()
-            self._land_hooked(world, dt, status)
+            self._write_hooked_end(world, dt, status)
             if alters:
                 # So that changes by functions after the step count as edits in the next one.
                 world.keep_unaltered()
@@ -112,7 +144,7 @@ class HookedStepper(PackedSpace):
         world.show_joints()
         return world, report
 
-    def _awoken(self, world: World) -> World:
+    def _reread_awoken(self, world: World) -> World:
         """The world anew, where pymunk's step has woken bodies in a rehearsal, as it does on kinematic bodies; with
         what functions have done up to there."""
         for body, slept in zip(world.bodies.items, world.bodies.asleep.tolist(), strict=True):
@@ -128,7 +160,7 @@ class HookedStepper(PackedSpace):
         now.hooks.late = world.hooks.late
         return now
 
-    def _land_hooked(self, world: World, dt: float, status: int) -> None:
+    def _write_hooked_end(self, world: World, dt: float, status: int) -> None:
         """Write the end of a step to the space, and call `post_solve` of constraints."""
         if world.joints is not None and world.joints.calling:
             world.scatter(status)
@@ -139,9 +171,9 @@ class HookedStepper(PackedSpace):
         elif world.collisions:
             world.scatter(status)
         else:
-            self.land(world, dt, status)
+            self.write_end(world, dt, status)
 
-    def land(self, world: World, dt: float, status: int) -> None:
+    def write_end(self, world: World, dt: float, status: int) -> None:
         """Write the end of a step to the space."""
         if self.sync:
             self._sync.land(dt, status)

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
+from abc import abstractmethod
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, TypeVar
 
 import numpy as np
 
 from .arrays import FloatArray, IntArray
 from .errors import NotFiniteError
-from .report import Outcome
+from .impacts.scene import EventLoop
+from .report import Details, Outcome
 from .space.checks import check_ignored
-from .space.decisions import Decisions
+from .space.decisions import Decisions, Rules
 from .space.describe import describe
 from .space.sleep_groups import put_to_sleep, sleeping_groups, wake_neighbours
 from .space.sleeping import Sleep
@@ -26,6 +28,30 @@ if TYPE_CHECKING:
     import pymunk
 
 TOO_FAR = "the step would overflow; take a smaller dt, or stop this run"
+
+
+class Method(Protocol):
+    """Steps the arrays of one world. Results of earlier steps that it keeps, such as contact forces, last as long as
+    the world."""
+
+    def step(
+        self, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
+        half_damping: float,
+    ) -> int:  # fmt: skip
+        """From the states read to those to be written: status bits or a negative code of `transfer.py`."""
+
+    def rule(self, rules: Mapping[tuple[int, int], tuple[float, float, float, float]]) -> None:
+        """Values of collision handlers for pairs of shapes (a < b) in the next step: elasticity (negative: no
+        collision), friction, and surface velocity of b relative to a."""
+
+    def details(
+        self, dt: float, bodies: tuple[pymunk.Body, ...], owner: IntArray
+    ) -> Details | Callable[[], Details]:  # fmt: skip
+        """The arrays of the report of the last step, or a function that makes them; `owner` (k,): index in `bodies` of
+        the body of each shape."""
+
+    def outcome(self) -> Outcome:
+        """Of the last step, or of none."""
 
 
 Own = TypeVar("Own", bound="PackedSpace")
@@ -55,6 +81,8 @@ class PackedSpace(Stepper):
         self._sync: Sync
         self._sleep: Sleep | None = None  # None if bodies cannot sleep
         self._slept: Slept | None = None  # in a copy, until its first step
+        self._method: Method
+        self._ruled: Rules | None = None  # the rules that the method has
         self._idle_book: FloatArray | None = None  # ledger entries of a step in which all dynamic bodies sleep
         self.reads = self.patches = self.objects_read = 0
         self.decisions = Decisions()
@@ -63,7 +91,8 @@ class PackedSpace(Stepper):
     def __getstate__(self) -> dict[str, object]:
         # The original is not changed. The copy reads its space again.
         state = self.__dict__.copy()
-        state.pop("_sync", None)
+        for made in ("_sync", "_method"):
+            state.pop(made, None)
         state["_world"] = state["_sleep"] = None
         state["decisions"] = Decisions()
         if self.space.sleep_time_threshold < math.inf:
@@ -73,9 +102,9 @@ class PackedSpace(Stepper):
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
-        self._lie_down()
+        self._put_copy_to_sleep()
 
-    def _lie_down(self) -> None:
+    def _put_copy_to_sleep(self) -> None:
         """In a copy, put to sleep what sleeps in the original: all bodies of pymunk's copies are awake. If the space
         refers to its stepper, its bodies are not in it before both are complete: then at the first step."""
         if self._slept is not None:
@@ -94,8 +123,18 @@ class PackedSpace(Stepper):
         self._world = None
         self.decisions.forget(self.space)
 
+    @abstractmethod
     def prepare(self, world: World, past: World | None) -> None:
-        """Make the stepper's own arrays for a world that was just read; `past` is the world before, if any."""
+        """Make the method (`_use`) for a world that was just read; `past` is the world before, if any."""
+
+    def _use(self, method: Method) -> None:
+        """Step the present world by this method, which has no rules yet."""
+        self._method, self._ruled = method, None
+
+    @property
+    def event_loop(self) -> EventLoop | None:
+        """The event loop of the present world; None if its method is none."""
+        return self._method if isinstance(self._method, EventLoop) else None
 
     def patch(self, world: World) -> bool:
         """Write edits of shapes and bodies into the rows of a world, and into the stepper's own arrays; none were added
@@ -104,7 +143,7 @@ class PackedSpace(Stepper):
 
     def outcome(self) -> Outcome:
         """Of the last step, or of none."""
-        return None, 1.0, True, 0
+        return self._method.outcome()
 
     @property
     def model(self) -> str:
@@ -120,7 +159,7 @@ class PackedSpace(Stepper):
         reading (always if `anew`)."""
         world = self._world
         self._world = None
-        self._lie_down()
+        self._put_copy_to_sleep()
         if self._sleep is not None and self.space.sleep_time_threshold == math.inf:
             self._sleep.wake()
             self._sleep, anew = None, True
@@ -200,7 +239,7 @@ class PackedSpace(Stepper):
         self._world = None
         world.bodies.scatter(state)
 
-    def _fail(self, world: World, dt: float, status: int) -> None:
+    def _raise_failure(self, world: World, dt: float, status: int) -> None:
         """Raise the exception of a negative status."""
         self._world = None
         if status == NOT_FINITE:

@@ -4,10 +4,10 @@
 |---|---|
 | have settings, shapes or bodies changed? | `World.current`, else `PackedSpace._update_world` |
 | read all states | `World.gather` |
-| move the arrays | `advance`, of subclasses |
-| repeat the step with sleeping bodies that were touched | `_awake` |
+| move the arrays | `advance`, by the `Method` of the world |
+| repeat the step with sleeping bodies that were touched | `_repeat_awake` |
 | take the ledger's numbers | `_outcome` |
-| write the states, and update pymunk's shapes | `land` |
+| write the states, and update pymunk's shapes | `write_end` |
 | make the report | `_make_report` |
 | call post-step callbacks | `Sync.call_back` |
 
@@ -32,7 +32,7 @@ Own = TypeVar("Own", bound="PackedStepper")
 
 
 class PackedStepper(HookedStepper):
-    """A stepper whose physics is one compiled call on the arrays of a `World`; subclasses implement `advance`.
+    """A stepper whose physics is a `Method` on the arrays of a `World`; subclasses make it in `prepare`.
 
     Args:
         space: any pymunk space.
@@ -85,18 +85,20 @@ class PackedStepper(HookedStepper):
 
     def may_touch_sleepers(self, sleep: Sleep) -> bool:
         """Whether the last step may have touched a sleeping body; if False, its report need not be made."""
-        return True
+        loop = self.event_loop
+        return loop is None or sleep.is_touched(loop.scene.LOG, loop.impulses)
 
     def rewound(self, world: World) -> list[AnyArray]:
         """Arrays that a step writes, and that one which takes its place needs as they were."""
-        return [world.STATES[LEFT]]
+        loop = self.event_loop
+        return [world.STATES[LEFT], *(() if loop is None else (loop.scene.SIDE,))]
 
-    def _kept(self, world: World) -> list[AnyArray]:
+    def _rewound_copy(self, world: World) -> list[AnyArray]:
         """A copy of `rewound`, if the step may have to be repeated."""
         sleepers = self._sleep is not None and self._sleep.some
         return [array.copy() for array in self.rewound(world)] if sleepers else []
 
-    def _awake(
+    def _repeat_awake(
         self, world: World, dt: float, half_damping: float, status: int, before: list[AnyArray]
     ) -> tuple[World, int]:
         """Repeat the step with the sleeping bodies awake that it has touched, until it touches none, or until functions
@@ -117,7 +119,7 @@ class PackedStepper(HookedStepper):
                     world = self._update_world(anew=True)
                 break
             world.gather()
-            before, status = self._kept(world), self.advance(world, dt, half_damping)
+            before, status = self._rewound_copy(world), self.advance(world, dt, half_damping)
         return world, status
 
     def _calls(self, world: World) -> bool:
@@ -130,23 +132,23 @@ class PackedStepper(HookedStepper):
             return self._hooked_step(world, dt)
         world.gather()
         half_damping = world.half_damping(dt)
-        before = [] if self._sleep is None else self._kept(world)
+        before = [] if self._sleep is None else self._rewound_copy(world)
         status = self.advance(world, dt, half_damping)
         if status in (OTHER_BODIES, MOVED_STATIC):
             world = self._update_world(anew=True)
             world.gather()
-            before, status = self._kept(world), self.advance(world, dt, half_damping)
+            before, status = self._rewound_copy(world), self.advance(world, dt, half_damping)
         if self._sleep is not None:
-            world, status = self._awake(world, dt, half_damping, status, before)
+            world, status = self._repeat_awake(world, dt, half_damping, status, before)
             if self._calls(world):
                 return self._hooked_step(world, dt)
         if status < 0:
-            self._fail(world, dt, status)
+            self._raise_failure(world, dt, status)
         outcome = self._outcome(dt)
         try:
             if status & FORCES:
                 world.reset_forces()
-            self.land(world, dt, status)
+            self.write_end(world, dt, status)
         except BaseException:
             self._undo(world, world.state)
             raise

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from abc import abstractmethod
 from collections.abc import Sequence
 from time import perf_counter
 from typing import TYPE_CHECKING
@@ -15,14 +14,12 @@ from .arrays import FloatArray, IntArray
 from .errors import NotFiniteError
 from .impacts.run import ENERGY
 from .impacts.run_buffers import RunBuffers
-from .impacts.scene import EventLoop
 from .layout import BODY_ROW, LEFT, NOW
 from .packed_space import TOO_FAR
 from .packed_stepper import PackedStepper
 from .reentry import refuse_within
 from .report import RunReport
 from .saved import sides_of
-from .space.sleeping import Sleep
 from .space.world import World
 from .states import get_state, set_state
 from .stepper import check_dt, check_steps
@@ -49,16 +46,6 @@ class RunningStepper(PackedStepper):
 
     def __getstate__(self) -> dict[str, object]:
         return {**super().__getstate__(), "rolling": None}
-
-    @property
-    @abstractmethod
-    def event_loop(self) -> EventLoop | None:
-        """The event loop of the present world; None if the closure has none."""
-
-    @abstractmethod
-    def adjust(self, world: World, dt: float) -> bool:
-        """Update the event loop from joints and collision handlers before the next step; False if the space has to be
-        read anew, since joints hold other bodies."""
 
     def adjusted(self, dt: float) -> World:
         """`current`, ready for a step of length dt."""
@@ -138,10 +125,6 @@ class RunningStepper(PackedStepper):
             loop.start_anew(rows[rows >= 0], state[rows >= 0, :6])
             world.STATES[LEFT, rows >= 0] = np.nan
 
-    def may_touch_sleepers(self, sleep: Sleep) -> bool:
-        loop = self.event_loop
-        return loop is None or sleep.is_touched(loop.scene.LOG, loop.impulses)
-
     def patch(self, world: World) -> bool:
         loop, surfaces = self.event_loop, self._sleep is not None
         if world.joints is not None:
@@ -198,7 +181,7 @@ class RunningStepper(PackedStepper):
         finally:
             # After an interrupt too.
             failure = self._failure(world, dt, status) if status < 0 else None
-            self._land_run(world, buffers, dt, status)
+            self._write_run_end(world, buffers, dt, status)
             if failure is not None:
                 raise failure
         return buffers
@@ -225,12 +208,12 @@ class RunningStepper(PackedStepper):
         if status == ENERGY:
             return NotFiniteError(f"the energy of the space would be {loop.scene.PAR.after} after dt = {dt}: {TOO_FAR}")
         try:
-            self._fail(world, dt, status)
+            self._raise_failure(world, dt, status)
         except Exception as error:
             return error
         raise AssertionError(status)
 
-    def _land_run(self, world: World, buffers: RunBuffers, dt: float, status: int) -> None:
+    def _write_run_end(self, world: World, buffers: RunBuffers, dt: float, status: int) -> None:
         """Write the end of the steps taken to the space."""
         RUN = buffers.progress
         if status < 0 or buffers.halted:
@@ -244,6 +227,6 @@ class RunningStepper(PackedStepper):
         self.time = float(RUN.time)
         if bits & FORCES:
             world.reset_forces()
-        self.land(world, dt, bits)
+        self.write_end(world, dt, bits)
         if not world.plain:
             world.show_joints()

@@ -14,11 +14,12 @@ import pytest
 
 import eeca_pymunk as ep
 from eeca_pymunk import transfer
+from eeca_pymunk.arrays import FloatArray, IntArray
 from eeca_pymunk.compiled.records import Rows
 from eeca_pymunk.errors import NotFiniteError
 from eeca_pymunk.model.contacts import Impulse
 from eeca_pymunk.packed_stepper import PackedStepper
-from eeca_pymunk.report import Details, of_events
+from eeca_pymunk.report import Details, Outcome, of_events
 from eeca_pymunk.space import packing, private, private_shapes
 from eeca_pymunk.space.world import World
 from scenes.scene import add_disk
@@ -34,13 +35,32 @@ class FreeFlight(PackedStepper):
 
     told: Rows[Impulse] | None = None
 
-    def advance(self, world: World, dt: float, left: float) -> int:
-        status = flown(world, dt, left)
-        return status if self.told is None or status < 0 else status | transfer.EVENTS
+    def prepare(self, world: World, past: World | None) -> None:
+        self._use(Flight(self, world))
 
-    def details(self, world: World, dt: float) -> Callable[[], Details]:
-        assert self.told is not None
-        return partial(of_events, self.told, dt, world.bodies.items, world.owner)
+
+class Flight:
+    """The method of `FreeFlight`."""
+
+    def __init__(self, stepper: FreeFlight, world: World) -> None:
+        self.stepper, self.world = stepper, world
+
+    def step(
+        self, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
+        half_damping: float,
+    ) -> int:  # fmt: skip
+        status = flown(self.world, dt, half_damping)
+        return status if self.stepper.told is None or status < 0 else status | transfer.EVENTS
+
+    def rule(self, rules: object) -> None:
+        """Nothing meets."""
+
+    def details(self, dt: float, bodies: tuple[pymunk.Body, ...], owner: IntArray) -> Callable[[], Details]:
+        assert self.stepper.told is not None
+        return partial(of_events, self.stepper.told, dt, bodies, owner)
+
+    def outcome(self) -> Outcome:
+        return None, 1.0, True, 0
 
 
 def swarm() -> pymunk.Space:

@@ -14,7 +14,7 @@ from ..energy.complementarity import solve
 from ..energy.delassus import Delassus
 from ..energy.graph import restrict
 from ..packed_stepper import PackedStepper
-from ..report import Details, Outcome
+from ..report import Details
 
 if TYPE_CHECKING:
     import pymunk
@@ -36,27 +36,12 @@ class PenaltyStepper(PackedStepper):
 
     def prepare(self, world: World, past: World | None) -> None:
         world.load()
-        self._disks = Disks(world, type(self).__name__)
+        self._use(Disks(world, type(self).__name__, self._move))
 
-    def advance(self, world: World, dt: float, half_damping: float) -> int:
-        gx, gy = world.gravity
-        if world.collisions:
-            self._disks.rules = world.rules.of_pairs(world.SHAPE)
-        arrays = world.STATES, world.WALK, world.EXTRA, world.ENDS
-        return self._disks.step(*arrays, dt, gx, gy, half_damping, self._move)
-
-    def details(self, world: World, dt: float) -> Details:
-        assert self._disks.motion.details is not None
-        return self._disks.motion.details
-
-    def outcome(self) -> Outcome:
-        motion = self._disks.motion
-        return None, motion.lock, motion.converged, motion.iterations
-
-    def _move(self, start: Start) -> Motion:
+    def _move(self, disks: Disks, start: Start) -> Motion:
         velocity = start.free_velocity
         displacement = start.free_displacement
-        pairs, before, _ = self._disks.near(start, displacement)
+        pairs, before, _ = disks.near(start, displacement)
         if len(pairs) == 0:
             return Motion(velocity, displacement)
         springs = Springs(start, pairs, before)

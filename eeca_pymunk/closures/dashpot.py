@@ -4,17 +4,23 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..energy import balance
 from ..energy.complementarity import solve
 from .locked import locked_motion, restitution
-from .simultaneous import Problem, Simultaneous, Solution
+from .motion import Disks
+from .simultaneous import ActiveContacts, Solution, advance
+
+if TYPE_CHECKING:
+    from ..space.world import World
 
 
 @dataclass(frozen=True)
-class Dashpot(Simultaneous):
+class Dashpot:
     """The paper's closure: psi1 + psi2 = 4 xi / Omega (Eqs. 28-30), an enhanced penalty of spring and dashpot.
 
     A fixed-point iteration over complementarity problems: impulses give psi2, Delta g and the normals at the instants
@@ -37,7 +43,12 @@ class Dashpot(Simultaneous):
         if not (self.damping_ratio >= 0 and math.isfinite(self.damping_ratio)):
             raise ValueError(f"damping_ratio = {self.damping_ratio}: give a finite number >= 0")
 
-    def solve(self, problem: Problem) -> Solution:
+    def prepare(self, world: World) -> Disks:
+        """The disks of a world of single disks and static shapes, which was just read."""
+        return Disks(world, type(self).__name__, partial(advance, self.solve))
+
+    def solve(self, problem: ActiveContacts) -> Solution:
+        """The impulses of the fixed point, scaled by the energy lock, and the motion of the bodies."""
         dt, K = problem.dt, self.stiffness
         S = balance.dashpot_sum(self.damping_ratio, balance.reduced_frequency(K, problem.larger_mass, dt))
         psi2, increment, lam = np.zeros_like(S), np.zeros_like(S), problem.guess

@@ -12,12 +12,12 @@ from ..energy.complementarity import solve
 from ..energy.delassus import Delassus
 from ..energy.graph import islands
 from .motion import Geometry
-from .simultaneous import Problem, Solution
+from .simultaneous import ActiveContacts, Solution
 
 TOLERANCE = 1e-6  # of the rigid limit's complementarity problem, relative to the largest approach speed
 
 
-def restitution(A: Delassus, problem: Problem) -> FloatArray:
+def restitution(A: Delassus, problem: ActiveContacts) -> FloatArray:
     """(m,) e u_n + u*, the constant term q of the rigid limit; u* = u_n + dt a_n, with external forces only."""
     u_n = A.relative(problem.velocity)
     u_free = u_n + problem.dt * A.relative(problem.acceleration)
@@ -27,7 +27,7 @@ def restitution(A: Delassus, problem: Problem) -> FloatArray:
 def locked_motion(
     A: Delassus,
     geometry: Geometry,
-    problem: Problem,
+    problem: ActiveContacts,
     lam: FloatArray,
     weights: balance.Weights,
     iterations: int,

@@ -1,14 +1,14 @@
 """Steps of single disks on numpy arrays: their start, the near pairs, and the motion of the bodies.
 
-Shared by the simultaneous closures and the penalty steppers. All arrays of bodies have the rows of BODY; the last row
-is the ground, the body of all static shapes.
+Shared by `Dashpot` and the penalty steppers. `Disks` is the method (`..eeca.Method`) that steps a world. All arrays of
+bodies have the rows of BODY; the last row is the ground, the body of all static shapes.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -21,11 +21,13 @@ from ..model.parameters.detection import GAP_ROUND_OFF
 from ..model.scene import Scene, scene_with
 from ..pairs.candidates import candidates
 from ..pairs.setup import near_lists, with_more_room
-from ..report import Contacts, Details
+from ..report import Contacts, Details, Outcome
 from ..transfer import EVENTS, OVERFLOW, give, take
 from .refusals import check_disks
 
 if TYPE_CHECKING:
+    import pymunk
+
     from ..space.world import World
 
 
@@ -67,9 +69,6 @@ class Motion:
     lock: float = 1.0
     converged: bool = True
     iterations: int = 0
-
-
-Move: TypeAlias = Callable[[Start], Motion]
 
 
 class Geometry(NamedTuple):
@@ -146,12 +145,13 @@ class Disks:
 
     Args:
         world: just read, with the present poses in BODY.  mover: name of the closure or stepper, for messages.
+        move: the motion over a step, from the disks and their start.
     """
 
-    def __init__(self, world: World, mover: str) -> None:
+    def __init__(self, world: World, mover: str, move: Callable[[Disks, Start], Motion]) -> None:
         moving = int(np.count_nonzero(world.LINK["owner"] < len(world.BODY) - 1))
         check_disks(world, moving, mover)
-        self.world = world
+        self.world, self.move = world, move
         self.rules: Mapping[tuple[int, int], tuple[float, float, float, float]] = {}
         self.motion = Motion(np.zeros((0, 2)), np.zeros((0, 2)))  # of the last step
         scene = scene_with(
@@ -179,7 +179,7 @@ class Disks:
 
     def step(
         self, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
-        half_damping: float, move: Move,
+        half_damping: float,
     ) -> int:  # fmt: skip
         """From the states read to those to be written, see `transfer.py`; contacts do not change spins. `half_damping`:
         factor of half a step's damping."""
@@ -193,7 +193,7 @@ class Disks:
         if not np.isfinite(start.free_displacement).all():
             give(STATES, WALK, EXTRA, BODY, ENDS, dt, half_damping, status)
             return OVERFLOW
-        self.motion = motion = move(start)
+        self.motion = motion = self.move(self, start)
         put(BODY, columns(BODY, "x", "y") + motion.displacement, "x", "y")
         put(BODY, motion.velocity, "vx", "vy")
         BODY["angle"] += dt * (BODY["spin"] + 0.5 * dt * BODY["angular"])
@@ -203,6 +203,19 @@ class Disks:
             status |= EVENTS
         return give(STATES, WALK, EXTRA, BODY, ENDS, dt, half_damping, status)
 
+    def rule(self, rules: Mapping[tuple[int, int], tuple[float, float, float, float]]) -> None:
+        """Set the elasticity of pairs of shapes (a < b) for the following steps, negative if they do not collide."""
+        self.rules = rules
+
+    def details(self, dt: float, bodies: tuple[pymunk.Body, ...], owner: IntArray) -> Details:
+        """The arrays of the report of the last step, which had contacts."""
+        assert self.motion.details is not None
+        return self.motion.details
+
+    def outcome(self) -> Outcome:
+        """Of the last step; no ledger is kept."""
+        return None, self.motion.lock, self.motion.converged, self.motion.iterations
+
     def near(
         self, start: Start, displacement: FloatArray, extra: FloatArray | float = 0.0
     ) -> tuple[Pairs, Geometry, FloatArray]:
@@ -210,7 +223,7 @@ class Disks:
         gaps are round-off.
 
         A body's reach is the length of its free flight and `extra` (n,), times 2 for bodies that impulses accelerate.
-        Those that impulses move farther are searched again (`Simultaneous.advance`).
+        Those that impulses move farther are searched again (`simultaneous.advance`).
         """
         # Sagitta of the parabola, a dt² / 8.
         bow = (0.125 * start.dt**2) * np.hypot(*start.acceleration.T)

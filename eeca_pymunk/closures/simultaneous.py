@@ -1,31 +1,28 @@
-"""Simultaneous closures: one impulse per contact and step, all active contacts solved at once."""
+"""A step of disks with one impulse per contact, all active contacts solved at once.
+
+A contact is active in a step when it starts closed (gap <= 0) or when the free flight would close it. Contacts that the
+impulses themselves would close join them, in at most `_PASSES` further solves.
+"""
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..energy.delassus import Delassus
 from ..energy.graph import restrict
-from ..report import Details, Outcome
+from ..report import Details
 from .motion import Disks, Geometry, Motion, Pairs, Start
 
-if TYPE_CHECKING:
-    import pymunk
-
-    from ..space.world import World
-
+_PASSES = 3
 _STRUCK = 10.0  # ratio of displacements from which on pairs are searched again, which costs as much as a solve
 
 
 @dataclass(frozen=True)
-class Problem:
+class ActiveContacts:
     """Active contacts of a step, on the R bodies they touch.
 
     Attributes:
@@ -90,110 +87,66 @@ class Solution:
     converged: bool
 
 
-class Simultaneous(ABC):
-    """A closure that gives every active contact one impulse, at the instant given by psi2.
-
-    A contact is active in a step when it starts closed (gap <= 0) or when the free flight would close it. Contacts
-    that the impulses themselves would close join them, in at most `passes` further solves.
-    """
-
-    passes = 3
-
-    @abstractmethod
-    def solve(self, problem: Problem) -> Solution:
-        """The motion of the bodies of `problem`, energy and momentum exact."""
-
-    def prepare(self, world: World) -> SimultaneousStep:
-        """The step of a world of single disks and static shapes."""
-        return SimultaneousStep(self, Disks(world, type(self).__name__))
-
-    def advance(self, disks: Disks, start: Start) -> Motion:
-        """The motion of all disks over a step."""
-        velocity = start.free_velocity
-        displacement = start.free_displacement
-        pairs, before, tolerance = disks.near(start, displacement)
-        active = (before.gap <= tolerance) | closing(pairs, before, tolerance, start, displacement)
-        if not active.any():
-            return Motion(velocity, displacement)
-        guess = np.zeros(len(pairs))
-        for left in range(self.passes, -1, -1):
-            which = np.flatnonzero(active)
-            chosen = pairs.take(which)
-            problem, rows = self._problem(start, chosen, before.take(which), guess[which])
-            solution = self.solve(problem)
-            if left == 0:
-                break
-            trial = displacement.copy()
-            trial[rows] = solution.displacement
-            if left == self.passes and (struck := _length(trial) > _STRUCK * _length(displacement)).any():
-                # Bodies that were slow before may reach pairs that were not near.
-                known = pairs.key[active]
-                pairs, before, tolerance = disks.near(start, displacement, struck * _length(trial - displacement))
-                active = np.isin(pairs.key, known)
-                guess, which = np.zeros(len(pairs)), np.flatnonzero(active)
-            # Elsewhere the displacement is the free one, which closes nothing else.
-            changed = np.zeros(len(velocity), bool)
-            changed[rows] = True
-            may = np.flatnonzero((changed[pairs.row_a] | changed[pairs.row_b]) & ~active)
-            joining = may[closing(pairs.take(may), before.take(may), tolerance[may], start, trial)]
-            if len(joining) == 0:
-                break
-            active[joining] = True
-            guess[which] = solution.impulse
-        velocity[rows], displacement[rows] = solution.velocity, solution.displacement
-        at = solution.geometry
-        contacts = chosen.contacts(at, before.gap[which], solution.time)
-        details = Details(contacts, solution.impulse, solution.psi1, solution.psi2, solution.gap_increment)
-        return Motion(velocity, displacement, details, solution.lock, solution.converged, solution.iterations)
-
-    def _problem(self, start: Start, chosen: Pairs, before: Geometry, guess: FloatArray) -> tuple[Problem, IntArray]:
-        """The problem of the `chosen` contacts on the bodies they touch, and the rows of these bodies."""
-        rows, row_a, row_b = restrict(chosen.row_a, chosen.row_b, len(start.position))
-        facing = before.normal
-
-        def geometry_at(time: FloatArray | float) -> Geometry:
-            at = chosen.between(start.at(chosen.row_a, time), start.at(chosen.row_b, time))
-            # A centre that has crossed a wall by then is still pushed back to the side it came from.
-            behind = at.normal[:, 0] * facing[:, 0] + at.normal[:, 1] * facing[:, 1] < 0
-            if behind.any():
-                at.normal[behind] = facing[behind]
-            return at
-
-        problem = Problem(
-            start.dt, start.velocity[rows], start.acceleration[rows], start.inverse_mass[rows], row_a, row_b,
-            before.gap, chosen.elasticity, guess, geometry_at,
-        )  # fmt: skip
-        return problem, rows
+def advance(solve: Callable[[ActiveContacts], Solution], disks: Disks, start: Start) -> Motion:
+    """The motion of all disks over a step, with the impulses of `solve`, which conserve energy and momentum."""
+    velocity = start.free_velocity
+    displacement = start.free_displacement
+    pairs, before, tolerance = disks.near(start, displacement)
+    active = (before.gap <= tolerance) | closing(pairs, before, tolerance, start, displacement)
+    if not active.any():
+        return Motion(velocity, displacement)
+    guess = np.zeros(len(pairs))
+    for left in range(_PASSES, -1, -1):
+        which = np.flatnonzero(active)
+        chosen = pairs.take(which)
+        problem, rows = active_contacts(start, chosen, before.take(which), guess[which])
+        solution = solve(problem)
+        if left == 0:
+            break
+        trial = displacement.copy()
+        trial[rows] = solution.displacement
+        if left == _PASSES and (struck := _length(trial) > _STRUCK * _length(displacement)).any():
+            # Bodies that were slow before may reach pairs that were not near.
+            known = pairs.key[active]
+            pairs, before, tolerance = disks.near(start, displacement, struck * _length(trial - displacement))
+            active = np.isin(pairs.key, known)
+            guess, which = np.zeros(len(pairs)), np.flatnonzero(active)
+        # Elsewhere the displacement is the free one, which closes nothing else.
+        changed = np.zeros(len(velocity), bool)
+        changed[rows] = True
+        may = np.flatnonzero((changed[pairs.row_a] | changed[pairs.row_b]) & ~active)
+        joining = may[closing(pairs.take(may), before.take(may), tolerance[may], start, trial)]
+        if len(joining) == 0:
+            break
+        active[joining] = True
+        guess[which] = solution.impulse
+    velocity[rows], displacement[rows] = solution.velocity, solution.displacement
+    at = solution.geometry
+    contacts = chosen.contacts(at, before.gap[which], solution.time)
+    details = Details(contacts, solution.impulse, solution.psi1, solution.psi2, solution.gap_increment)
+    return Motion(velocity, displacement, details, solution.lock, solution.converged, solution.iterations)
 
 
-class SimultaneousStep:
-    """A simultaneous closure on the disks of one world."""
+def active_contacts(
+    start: Start, chosen: Pairs, before: Geometry, guess: FloatArray
+) -> tuple[ActiveContacts, IntArray]:  # fmt: skip
+    """The problem of the `chosen` contacts on the bodies they touch, and the rows of these bodies."""
+    rows, row_a, row_b = restrict(chosen.row_a, chosen.row_b, len(start.position))
+    facing = before.normal
 
-    def __init__(self, closure: Simultaneous, disks: Disks) -> None:
-        self.closure, self.disks = closure, disks
+    def geometry_at(time: FloatArray | float) -> Geometry:
+        at = chosen.between(start.at(chosen.row_a, time), start.at(chosen.row_b, time))
+        # A centre that has crossed a wall by then is still pushed back to the side it came from.
+        behind = at.normal[:, 0] * facing[:, 0] + at.normal[:, 1] * facing[:, 1] < 0
+        if behind.any():
+            at.normal[behind] = facing[behind]
+        return at
 
-    def step(
-        self, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,
-        half_damping: float,
-    ) -> int:  # fmt: skip
-        """See `Disks.step`."""
-        move = partial(self.closure.advance, self.disks)
-        return self.disks.step(STATES, WALK, EXTRA, ENDS, dt, gx, gy, half_damping, move)
-
-    def rule(self, rules: Mapping[tuple[int, int], tuple[float, float, float, float]]) -> None:
-        """Set the elasticity of pairs of shapes (a < b) for the following steps; negative: the pair does not
-        collide."""
-        self.disks.rules = rules
-
-    def details(self, dt: float, bodies: tuple[pymunk.Body, ...], owner: IntArray) -> Details:
-        """The arrays of the report of the last step, which had contacts."""
-        assert self.disks.motion.details is not None
-        return self.disks.motion.details
-
-    def outcome(self) -> Outcome:
-        """Of the last step; no ledger is kept."""
-        motion = self.disks.motion
-        return None, motion.lock, motion.converged, motion.iterations
+    problem = ActiveContacts(
+        start.dt, start.velocity[rows], start.acceleration[rows], start.inverse_mass[rows], row_a, row_b,
+        before.gap, chosen.elasticity, guess, geometry_at,
+    )  # fmt: skip
+    return problem, rows
 
 
 def _length(vectors: FloatArray) -> FloatArray:

@@ -15,15 +15,11 @@ from .graph import islands
 
 @dataclass(frozen=True)
 class Impulses:
-    """Solution of a complementarity problem.
-
-    `lam` (m,); iterations taken; whether the tolerance was met; whether the residual is round-off.
-    """
+    """Solution of a complementarity problem: impulses (m,), iterations taken, whether the tolerance was met."""
 
     lam: FloatArray
     iterations: int
     converged: bool
-    exact: bool
 
 
 _PIVOTED = 100  # contacts up to which pivoting is faster than projected gradients, in the hopper
@@ -54,13 +50,13 @@ def solve(
     """
     approaching = q < 0
     if not approaching.any():
-        return Impulses(np.zeros(A.size), 0, True, True)
+        return Impulses(np.zeros(A.size), 0, True)
     compliance = np.broadcast_to(compliance, A.size)
     # Exact for a contact that shares no moving body with another.
     lam = np.where(approaching, -q, 0.0) / (A.diagonal() + compliance)
     coupled = np.flatnonzero(A.shares_body())
     if len(coupled) == 0:
-        return Impulses(lam, 1, True, True)
+        return Impulses(lam, 1, True)
     part = A.take(coupled)
     if len(coupled) > _PIVOTED:
         # An island in which nothing approaches needs no impulse.
@@ -80,7 +76,7 @@ def solve(
         else:
             result = project(matrix.dot, D, q_part, first, limit, max_iterations)
     lam[coupled] = result.lam
-    return Impulses(lam, result.iterations, result.converged, result.exact)
+    return Impulses(lam, result.iterations, result.converged)
 
 
 def pivot(A: FloatArray, q: FloatArray) -> Impulses | None:
@@ -110,7 +106,7 @@ def pivot(A: FloatArray, q: FloatArray) -> Impulses | None:
             # A nearly singular matrix passes the signs and fails here.
             if np.abs(np.where(closed, A @ lam + q, 0.0)).max() > limit:
                 return None
-            return Impulses(np.maximum(lam, 0.0), iteration, True, True)
+            return Impulses(np.maximum(lam, 0.0), iteration, True)
         closed ^= wrong
     return None
 
@@ -134,7 +130,7 @@ def project(
         step = D * (new - y)
         # The residual is that of y; `new` is at least as good.
         if np.abs(step).max() <= limit:
-            return Impulses(new, iteration, True, False)
+            return Impulses(new, iteration, True)
         change = new - lam
         if np.dot(step, change) < 0.0:
             t, y = 1.0, new
@@ -143,4 +139,4 @@ def project(
             y = new + ((t - 1.0) / t_next) * change
             t = t_next
         lam = new
-    return Impulses(lam, max_iterations, False, False)
+    return Impulses(lam, max_iterations, False)

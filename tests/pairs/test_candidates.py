@@ -8,8 +8,7 @@ import pytest
 
 import eeca_pymunk as ep
 import scenes
-from eeca_pymunk.closures.motion import Disks, Start
-from eeca_pymunk.closures.simultaneous import SimultaneousStep
+from eeca_pymunk.closures.motion import Disks, Motion, Start
 from eeca_pymunk.compiled.records import columns, put
 from eeca_pymunk.space.world import World
 from scenes.scene import add_disk, add_walls
@@ -37,7 +36,7 @@ def test_every_pair_that_can_meet_is_listed(count: int, unit: float) -> None:
     add_walls(space, [((unit, -unit), (unit, 2 * unit))])
     world = World(space)
     world.load()
-    disks = Disks(world, "test")
+    disks = Disks(world, "test", lambda _, start: Motion(start.free_velocity, start.free_displacement))
     meetings = 0
     for _ in range(60):
         put(world.BODY[:count], x, "x", "y")
@@ -67,10 +66,10 @@ def test_lists_last_for_some_steps(wind: float) -> None:
         add_disk(space, (i % 10, i // 10), 0.1, velocity=(wind, 0.0))
     stepper = ep.EECA(space, ep.Dashpot(1e6, 1.0))
     method = stepper._method
-    assert isinstance(method, SimultaneousStep)
+    assert isinstance(method, Disks)
     for _ in range(50):
         stepper.step(DT)
-    assert method.disks.scene.GRID.leaves <= 100 * 50 * wind * 0.1
+    assert method.scene.GRID.renewals <= 100 * 50 * wind * 0.1
 
 
 @pytest.mark.parametrize("closure", [ep.Midstep(), ep.Dashpot(1e6, 1.0)], ids=["midstep", "dashpot"])
@@ -87,11 +86,11 @@ def test_a_pool_that_is_too_small_grows() -> None:
     scene = scenes.build("gas", count=100, packing=0.3, seed=2)
     stepper, energy = ep.EECA(scene.space, ep.Dashpot(1e6, 200.0)), ep.measure(scene.space).energy
     method = stepper._method
-    assert isinstance(method, SimultaneousStep)
-    near = method.disks.scene
+    assert isinstance(method, Disks)
+    near = method.scene
     room = int(near.GRID.pool_end)
-    method.disks.scene = near._replace(POOL=near.POOL[:room].copy(), FLAG=near.FLAG[:room].copy())
+    method.scene = near._replace(POOL=near.POOL[:room].copy(), FLAG=near.FLAG[:room].copy())
     for _ in range(100):
         stepper.step(2e-3)
-    assert len(method.disks.scene.POOL) > room
+    assert len(method.scene.POOL) > room
     assert ep.measure(scene.space).energy == pytest.approx(energy, rel=1e-12)
