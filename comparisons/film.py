@@ -15,7 +15,7 @@ from eeca_pymunk import render
 from eeca_pymunk.errors import NotFiniteError
 from eeca_pymunk.files import check_writable
 from eeca_pymunk.recorder import step_count
-from eeca_pymunk.render.encode import check_encoder
+from eeca_pymunk.render.encode import encoder
 from scenes import Scene
 
 # By the names of the command line: the title, and the name in `runs.steppers`.
@@ -76,7 +76,7 @@ def options(steppers: str | None, suffix: str | None, name: str) -> tuple[list[s
         if stepper not in STEPPERS:
             raise ValueError(f"unknown stepper {stepper!r}: choose from {', '.join(STEPPERS)}")
     if suffix is not None:
-        check_encoder(f".{suffix}")
+        encoder(f".{suffix}")
         if len(chosen) > 4:
             raise ValueError(f"{len(chosen)} steppers: a film shows one to four")
     return chosen, suffix

@@ -2,22 +2,16 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
-from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from .arrays import AnyArray, FloatArray, IntArray
+from .arrays import FloatArray, IntArray
 from .energy.ledger import Ledger
 from .events import Events
-from .files import whole_file
-
-_HASH = "sha256"
-_HDF5 = (".h5", ".hdf5")
+from .files import arrays_of, load_arrays, save_arrays, take_part
 
 
 @dataclass
@@ -66,66 +60,14 @@ class Rollouts:
         The file contains the arrays by the names of the attributes (`events.time`, ...), the parameters as JSON, and a
         SHA-256 hash of everything.
         """
-        arrays, parameters = self._arrays(), json.dumps(self.parameters, sort_keys=True)
-        digest = _digest(arrays, parameters)
-        with whole_file(path) as partial:
-            if Path(path).suffix in _HDF5:
-                with _h5py().File(partial, "w") as file:
-                    for name, array in arrays.items():
-                        file.create_dataset(name.replace(".", "/"), data=array, compression="gzip", shuffle=True)
-                    file.attrs["parameters"], file.attrs[_HASH] = parameters, digest
-            else:
-                with partial.open("wb") as stream:
-                    named = {"parameters": np.array(parameters), _HASH: np.array(digest)}
-                    np.savez_compressed(stream, **named, **arrays)  # type: ignore[arg-type]
+        save_arrays(path, arrays_of(self) | arrays_of(self.events, "events."), self.parameters)
 
     @staticmethod
     def load(path: str | Path) -> Rollouts:
         """Read a file of `save`; ValueError if it is another file, or its content has changed."""
         try:
-            found, parameters, digest = _read(Path(path))
-            if _digest(found, parameters) != digest:
-                raise ValueError("its hash does not fit its content")
-            events = {name.partition(".")[2]: found.pop(name) for name in list(found) if name.startswith("events.")}
-            return Rollouts(**found, events=Events(**events), parameters=json.loads(parameters))
+            found, parameters = load_arrays(path)
+            events = Events(**take_part(found, "events."))
+            return Rollouts(**found, events=events, parameters=parameters)
         except (KeyError, TypeError, AttributeError, ValueError) as error:
             raise ValueError(f"{path} does not hold the rollouts that Rollouts.save wrote ({error})") from error
-
-    def _arrays(self) -> dict[str, AnyArray]:
-        own = {f.name: getattr(self, f.name) for f in fields(self) if f.name not in ("events", "parameters")}
-        return own | {f"events.{f.name}": getattr(self.events, f.name) for f in fields(Events)}
-
-
-def _digest(arrays: Mapping[str, AnyArray], parameters: str) -> str:
-    """Hash of names, dtypes, shapes and contents."""
-    found = hashlib.sha256(parameters.encode())
-    for name in sorted(arrays):
-        array = arrays[name]
-        found.update(f"{name} {array.dtype.str} {array.shape}".encode())
-        found.update(np.ascontiguousarray(array).tobytes())
-    return found.hexdigest()
-
-
-def _read(path: Path) -> tuple[dict[str, Any], str, str]:
-    """Arrays, parameters and hash."""
-    if path.suffix in _HDF5:
-        found: dict[str, Any] = {}
-
-        def keep(name: str, item: Any) -> None:
-            if hasattr(item, "shape"):
-                found[name.replace("/", ".")] = item[()]
-
-        with _h5py().File(path, "r") as file:
-            file.visititems(keep)
-            return found, str(file.attrs["parameters"]), str(file.attrs[_HASH])
-    with np.load(path) as data:
-        found = {name: data[name] for name in data.files}
-    return found, str(found.pop("parameters")), str(found.pop(_HASH))
-
-
-def _h5py() -> Any:
-    try:
-        import h5py
-    except ImportError as error:
-        raise ImportError("HDF5 files need h5py: pip install h5py; or give a name that ends in .npz") from error
-    return h5py

@@ -1,10 +1,21 @@
-"""Files that are whole or absent."""
+"""Files that are whole or absent; named arrays in files."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import hashlib
+import json
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import fields
 from pathlib import Path
+from typing import Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+_Array: TypeAlias = npt.NDArray[Any]
+_HASH = "sha256"
+_HDF5 = (".h5", ".hdf5")
 
 
 @contextmanager
@@ -29,3 +40,73 @@ def check_writable(path: str | Path) -> Path:
     probe.touch()
     probe.unlink()
     return path
+
+
+def save_arrays(path: str | Path, arrays: Mapping[str, _Array], parameters: Mapping[str, Any]) -> None:
+    """Write named arrays, parameters as JSON, and a SHA-256 hash of everything, whole or not at all: HDF5 for .h5 and
+    .hdf5, which needs h5py, with a group for each part before a dot of a name; else NumPy's format."""
+    text = json.dumps(parameters, sort_keys=True)
+    digest = _digest(arrays, text)
+    with whole_file(path) as partial:
+        if Path(path).suffix in _HDF5:
+            with _h5py().File(partial, "w") as file:
+                for name, array in arrays.items():
+                    file.create_dataset(name.replace(".", "/"), data=array, compression="gzip", shuffle=True)
+                file.attrs["parameters"], file.attrs[_HASH] = text, digest
+        else:
+            with partial.open("wb") as stream:
+                named = {"parameters": np.array(text), _HASH: np.array(digest)}
+                np.savez_compressed(stream, **named, **arrays)  # type: ignore[arg-type]
+
+
+def load_arrays(path: str | Path) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Arrays and parameters of a file of `save_arrays`; ValueError if its content has changed. Files of older versions
+    have no hash."""
+    path = Path(path)
+    found: dict[str, Any] = {}
+    if path.suffix in _HDF5:
+
+        def keep(name: str, item: Any) -> None:
+            if hasattr(item, "shape"):
+                found[name.replace("/", ".")] = item[()]
+
+        with _h5py().File(path, "r") as file:
+            file.visititems(keep)
+            text, digest = str(file.attrs["parameters"]), str(file.attrs[_HASH])
+    else:
+        with np.load(path) as data:
+            found = {name: data[name] for name in data.files}
+        text = str(found.pop("parameters"))
+        digest = str(found.pop(_HASH, ""))
+    if digest and _digest(found, text) != digest:
+        raise ValueError("its hash does not fit its content")
+    return found, json.loads(text)
+
+
+def arrays_of(record: Any, prefix: str = "") -> dict[str, _Array]:
+    """The fields of a dataclass whose values are arrays, by their names with a prefix."""
+    held = {f"{prefix}{f.name}": getattr(record, f.name) for f in fields(record)}
+    return {name: value for name, value in held.items() if isinstance(value, np.ndarray)}
+
+
+def take_part(arrays: dict[str, Any], prefix: str) -> dict[str, Any]:
+    """Remove the arrays whose names begin with a prefix; returns them by the rest of their names."""
+    return {name.removeprefix(prefix): arrays.pop(name) for name in list(arrays) if name.startswith(prefix)}
+
+
+def _digest(arrays: Mapping[str, _Array], text: str) -> str:
+    """Hash of a text, and of names, dtypes, shapes and contents."""
+    found = hashlib.sha256(text.encode())
+    for name in sorted(arrays):
+        array = arrays[name]
+        found.update(f"{name} {array.dtype.str} {array.shape}".encode())
+        found.update(np.ascontiguousarray(array).tobytes())
+    return found.hexdigest()
+
+
+def _h5py() -> Any:
+    try:
+        import h5py
+    except ImportError as error:
+        raise ImportError("HDF5 files need h5py: pip install h5py; or give a name that ends in .npz") from error
+    return h5py

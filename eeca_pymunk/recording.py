@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import json
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -13,7 +12,7 @@ import numpy as np
 from .arrays import FloatArray
 from .energy.ledger_trace import LedgerTrace
 from .events import Events
-from .files import whole_file
+from .files import arrays_of, load_arrays, save_arrays, take_part
 from .space.outlines import Outlines
 
 # Parts of a recording that are records of arrays.
@@ -70,27 +69,18 @@ class Recording:
         return len(self.time)
 
     def save(self, path: str | Path) -> None:
-        """Write to `path` as npz, whole or not at all."""
-        arrays = {f.name: getattr(self, f.name) for f in fields(self) if f.name not in ("parameters", *_PARTS)}
+        """Write to `path`, whole or not at all: NumPy's format for .npz; HDF5 for .h5 and .hdf5, which needs h5py."""
+        arrays = arrays_of(self)
         for part in _PARTS:
-            held = getattr(self, part)
-            arrays |= {f"{part}.{f.name}": getattr(held, f.name) for f in fields(held)}
-        with whole_file(path) as partial, partial.open("wb") as file:
-            np.savez_compressed(file, parameters=np.array(json.dumps(self.parameters)), **arrays)
+            arrays |= arrays_of(getattr(self, part), f"{part}.")
+        save_arrays(path, arrays, self.parameters)
 
     @staticmethod
     def load(path: str | Path) -> Recording:
-        """Read a file of `save`; ValueError if it is another file."""
+        """Read a file of `save`; ValueError if it is another file, or its content has changed."""
         try:
-            with np.load(path) as data:
-                found = {name: data[name] for name in data.files}
-            parameters = json.loads(str(found.pop("parameters")))
-            parts = {
-                part: kind(
-                    **{n.removeprefix(f"{part}."): found.pop(n) for n in list(found) if n.startswith(f"{part}.")}
-                )
-                for part, kind in _PARTS.items()
-            }
+            found, parameters = load_arrays(path)
+            parts = {part: kind(**take_part(found, f"{part}.")) for part, kind in _PARTS.items()}
             return Recording(**found, **parts, parameters=parameters)
         except (KeyError, TypeError, AttributeError, ValueError) as error:
             raise ValueError(f"{path} is not a recording that Recording.save wrote ({error})") from error

@@ -19,14 +19,22 @@ from .layout import (
     KNOWN,
     LEFT,
     NOW,
-    PUSH_TWIST,
-    PUSH_X,
-    PUSH_Y,
     SPECIAL,
     STEERED,
 )  # fmt: skip
 from .model.bodies import Body
-from .transfer import FORCES, MOVED_STATIC, NOT_FINITE, OTHER_BODIES, OVERFLOW, TURNS, finite, lay
+from .transfer import (
+    FORCES,
+    MOVED_STATIC,
+    NOT_FINITE,
+    OTHER_BODIES,
+    OVERFLOW,
+    TURNS,
+    acceleration,
+    finite,
+    lay,
+    to_centre,
+)  # fmt: skip
 
 PRESS = 1e-7  # part of its height by which a body is moved towards its support in a rehearsal
 
@@ -125,6 +133,8 @@ def approach(
 
         q_free - dt v,   q_free = q + dt (d v + dt a / 2),   d = `half_damping`, the factor of half a step's damping.
 
+    a is that of forces and gravity, v the velocity.
+
     Bodies at rest on each other have a gap of 0 up to round-off; pymunk, in whose steps they overlap, would begin and
     end such contacts at random. Therefore each body is moved along gravity by PRESS times its height above the lowest
     one.
@@ -151,21 +161,12 @@ def approach(
         if row >= 0:
             if not finite(x, y, angle, vx, vy, spin):
                 return NOT_FINITE
-            special = WALK[SPECIAL, i]
-            ax, ay, twist, damped = 0.0, 0.0, 0.0, 1.0
-            moves = BODY[row].inv_mass > 0.0
-            if moves:
-                ax = now[i, 6] * BODY[row].inv_mass + gx
-                ay = now[i, 7] * BODY[row].inv_mass + gy
-                twist, damped = now[i, 8] * BODY[row].inv_inertia, half_damping
-            if special & STEERED:
-                ax, ay, twist, damped = EXTRA[i, PUSH_X], EXTRA[i, PUSH_Y], EXTRA[i, PUSH_TWIST], 1.0
+            special, moves = WALK[SPECIAL, i], BODY[row].inv_mass > 0.0
+            ax, ay, twist, damped = acceleration(now, i, BODY[row], special, EXTRA, gx, gy, half_damping)
             px, py = x, y
             if special & ECCENTRIC:
-                kx, ky = EXTRA[i, COG_X], EXTRA[i, COG_Y]
-                c, s = math.cos(angle), math.sin(angle)
-                px += c * kx - s * ky
-                py += s * kx + c * ky
+                dx, dy = to_centre(EXTRA, i, angle)
+                px, py = px + dx, py + dy
             px += dt * (damped * vx + 0.5 * dt * ax)
             py += dt * (damped * vy + 0.5 * dt * ay)
             turned = angle + dt * (damped * spin + 0.5 * dt * twist)
@@ -174,10 +175,8 @@ def approach(
             way = PRESS * (deepest - (x * down_x + y * down_y)) if moves and pull > 0.0 else 0.0
             x, y, angle = px - dt * vx + way * down_x, py - dt * vy + way * down_y, turned - dt * spin
             if special & ECCENTRIC:
-                kx, ky = EXTRA[i, COG_X], EXTRA[i, COG_Y]
-                c, s = math.cos(angle), math.sin(angle)
-                x -= c * kx - s * ky
-                y -= s * kx + c * ky
+                dx, dy = to_centre(EXTRA, i, angle)
+                x, y = x - dx, y - dy
         end[6 * i], end[6 * i + 1], end[6 * i + 2] = x, y, angle
         end[6 * i + 3], end[6 * i + 4], end[6 * i + 5] = vx, vy, spin
     return 0

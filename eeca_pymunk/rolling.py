@@ -42,7 +42,7 @@ class Job:
     full: bool
 
 
-class _Copy:
+class Copy:
     """The arrays of a scene that has taken no step, for one thread; `rows` (b,): rows of its bodies in STATES."""
 
     def __init__(self, world: World, loop: EventLoop, rows: IntArray) -> None:
@@ -94,7 +94,7 @@ class Rolling:
 
     def __init__(self, twin: RunningStepper) -> None:
         self.twin = twin
-        self._made: list[_Copy] = []
+        self._made: list[Copy] = []
         self._of: tuple[object, ...] = ()
 
     @staticmethod
@@ -117,13 +117,13 @@ class Rolling:
         if now != self._of:
             self._made, self._of = [], now
 
-    def copies(self, count: int) -> list[_Copy]:
+    def copies(self, count: int) -> list[Copy]:
         """The first `count` copies, made if necessary."""
         loop, world = self.twin.event_loop, self.world
         assert loop is not None
         if len(self._made) < count:
             rows: IntArray = np.array([world.bodies.row[body] for body in moving(self.twin.space)], np.intp)
-            self._made += [_Copy(world, loop, rows) for _ in range(count - len(self._made))]
+            self._made += [Copy(world, loop, rows) for _ in range(count - len(self._made))]
         return self._made[:count]
 
 

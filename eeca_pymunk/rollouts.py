@@ -19,7 +19,7 @@ from .errors import UnsupportedFeature
 from .events import Events
 from .recorder import versions
 from .reentry import refuse_within
-from .rolling import Job, Rolling, roll_slowly
+from .rolling import Copy, Job, Rolling, roll_slowly
 from .runs import RunningStepper
 from .space.bodies import moving
 from .stepper import check_dt, check_steps
@@ -137,33 +137,25 @@ def _processors() -> int:
 
 def _on_threads(stepper: RunningStepper, job: Job, threads: int, done: Callable[[int], object]) -> list[Events]:
     """All rollouts on threads; returns the impacts of each."""
-    rolling = Rolling.of(stepper, job.dt)
     K = len(job.states)
     count = max(threads, min(threads * _PIECES, K * job.steps // _STEPS))
     size = max(1, -(-K // count))
     pieces = [(k, min(k + size, K)) for k in range(0, K, size)]
-    if threads == 1:
-        found = []
-        for piece in pieces:
-            found += rolling.copies(1)[0].roll(job, *piece)
-            done(piece[1] - piece[0])
-        return found
-    free: SimpleQueue[int] = SimpleQueue()
-    copies = rolling.copies(threads)
-    for i in range(threads):
-        free.put(i)
+    free: SimpleQueue[Copy] = SimpleQueue()
+    for one in Rolling.of(stepper, job.dt).copies(threads):
+        free.put(one)
 
     def roll(piece: tuple[int, int]) -> list[Events]:
-        i = free.get()
+        one = free.get()
         try:
-            return copies[i].roll(job, *piece)
+            return one.roll(job, *piece)
         finally:
-            free.put(i)
+            free.put(one)
 
     found = []
     with ThreadPoolExecutor(threads) as pool:
         try:
-            for piece, events in zip(pieces, pool.map(roll, pieces), strict=True):
+            for piece, events in zip(pieces, (map if threads == 1 else pool.map)(roll, pieces), strict=True):
                 found += events
                 done(piece[1] - piece[0])
         except BaseException:

@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 
 from .arrays import FloatArray, IntArray
-from .compiled import kernel
+from .compiled import kernel, nonallocating
 from .compiled.records import Rows
 from .layout import (
     BODY_ROW,
@@ -57,6 +57,29 @@ def finite(a: float, b: float, c: float, d: float, e: float, f: float) -> bool:
     )
 
 
+@nonallocating
+def to_centre(EXTRA: FloatArray, i: int, angle: float) -> tuple[float, float]:
+    """R(angle) k (length): from the position of body i, whose centre of mass is not its origin, to its centre of
+    mass."""
+    kx, ky = EXTRA[i, COG_X], EXTRA[i, COG_Y]
+    c, s = math.cos(angle), math.sin(angle)
+    return c * kx - s * ky, s * kx + c * ky
+
+
+@nonallocating
+def acceleration(
+    now: FloatArray, i: int, body: Body, special: int, EXTRA: FloatArray, gx: float, gy: float, half_damping: float
+) -> tuple[float, float, float, float]:
+    """Acceleration (2) and angular acceleration of body i without contacts, by its force and torque in `now` (N, 9) and
+    gravity, or those that its velocity function has set; and the factor of half a step's damping on its velocities."""
+    if special & STEERED:
+        return EXTRA[i, PUSH_X], EXTRA[i, PUSH_Y], EXTRA[i, PUSH_TWIST], 1.0
+    im = body.inv_mass
+    if im > 0.0:
+        return now[i, 6] * im + gx, now[i, 7] * im + gy, now[i, 8] * body.inv_inertia, half_damping
+    return 0.0, 0.0, 0.0, 1.0
+
+
 @kernel
 def take(
     STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, BODY: Rows[Body], gx: float, gy: float, half_damping: float
@@ -97,18 +120,11 @@ def take(
             if moved:
                 return MOVED_STATIC
             continue
-        ax, ay, twist, damped = 0.0, 0.0, 0.0, 1.0
-        im = BODY[row].inv_mass
-        if im > 0.0:
-            ax, ay, twist, damped = fx * im + gx, fy * im + gy, torque * BODY[row].inv_inertia, half_damping
         special = WALK[SPECIAL, i]
-        if special & STEERED:
-            ax, ay, twist, damped = EXTRA[i, PUSH_X], EXTRA[i, PUSH_Y], EXTRA[i, PUSH_TWIST], 1.0
+        ax, ay, twist, damped = acceleration(now, i, BODY[row], special, EXTRA, gx, gy, half_damping)
         if special & ECCENTRIC:
-            kx, ky = EXTRA[i, COG_X], EXTRA[i, COG_Y]
-            c, s = math.cos(angle), math.sin(angle)
-            x += c * kx - s * ky
-            y += s * kx + c * ky
+            dx, dy = to_centre(EXTRA, i, angle)
+            x, y = x + dx, y + dy
         if moved:
             way = (abs(now[i, 0] - before[i, 0]) + abs(now[i, 1] - before[i, 1])) / max(BODY[row].extent, 1e-300)
             way += abs(angle - before[i, 2])
@@ -134,15 +150,9 @@ def place_anew(STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray) -> None:
 
 @kernel
 def give(
-    STATES: FloatArray,
-    WALK: IntArray,
-    EXTRA: FloatArray,
-    BODY: Rows[Body],
-    ENDS: FloatArray,
-    dt: float,
-    half_damping: float,
-    status: int,
-) -> int:
+    STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, BODY: Rows[Body], ENDS: FloatArray, dt: float,
+    half_damping: float, status: int,
+) -> int:  # fmt: skip
     """Write the ends of BODY's paths to STATES[LEFT], and to ENDS for pymunk.
 
     Args:
@@ -165,10 +175,8 @@ def give(
         angle = BODY[row].angle + s * (spin + 0.5 * s * twist)
         vx, vy, spin = damped * (vx + s * ax), damped * (vy + s * ay), damped * (spin + s * twist)
         if special & ECCENTRIC:
-            kx, ky = EXTRA[i, COG_X], EXTRA[i, COG_Y]
-            cosine, sine = math.cos(angle), math.sin(angle)
-            x -= cosine * kx - sine * ky
-            y -= sine * kx + cosine * ky
+            dx, dy = to_centre(EXTRA, i, angle)
+            x, y = x - dx, y - dy
         if not finite(x, y, angle, vx, vy, spin):
             status = OVERFLOW
         after[i, 0], after[i, 1], after[i, 2] = x, y, angle

@@ -21,16 +21,13 @@ Frames = Iterable[npt.NDArray[np.uint8]]
 _SHADES = 9  # of each colour towards white, for smooth edges; few colours make small files
 
 
-def check_encoder(suffix: str) -> None:
-    """ValueError for a suffix other than .gif, .mp4 and .html, and for .mp4 without ffmpeg."""
+def encoder(suffix: str) -> Callable[[Frames, Path, float], None]:
+    """The function that writes frames to a file, so many in a second; ValueError for a suffix other than .gif, .mp4 and
+    .html, and for .mp4 without ffmpeg."""
     if suffix not in _ENCODERS:
         raise ValueError(f"cannot write films to {suffix!r} files: choose one of {', '.join(_ENCODERS)}")
     if suffix == ".mp4" and find_spec("imageio_ffmpeg") is None:
         raise ValueError("MP4 needs ffmpeg: pip install 'eeca-pymunk[video]', or choose .gif or .html")
-
-
-def encoder(suffix: str) -> Callable[[Frames, Path, float], None]:
-    """The function that writes frames to a file."""
     return _ENCODERS[suffix]
 
 

@@ -21,7 +21,7 @@ from eeca_pymunk.files import check_writable, whole_file
 from eeca_pymunk.recording import Recording
 
 from .drawing import MOVING, Drawing, bounds
-from .encode import check_encoder, encoder, html_player
+from .encode import encoder, html_player
 from .pictures import ARROWS, View, arrows, figure, frame
 from .traces import FONT, Trace, readable, trace
 
@@ -68,14 +68,14 @@ def animate(
     without ffmpeg (`pip install eeca-pymunk[video]`). The file is whole or absent.
     """
     path = Path(path)
-    check_encoder(path.suffix)
+    encode = encoder(path.suffix)
     if not fps > 0:
         raise ValueError(f"fps = {fps}: give a number > 0")
     film = Film(recordings, titles=titles, exact=exact, view=view, frames=frames, arrow=arrow, dpi=dpi)
     check_writable(path)
     shots = tqdm(film.images(), desc=path.name, unit="frame", total=len(film), disable=not progress)
     with whole_file(path) as partial:
-        encoder(path.suffix)(shots, partial, fps)
+        encode(shots, partial, fps)
     return path
 
 
