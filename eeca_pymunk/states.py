@@ -82,6 +82,7 @@ def _place(stepper: RunningStepper, state: FloatArray) -> None:
 def _recall(stepper: RunningStepper, state: IntArray) -> None:
     """Return to a result of `get_state`."""
     space, parts = stepper.space, _Parts(state)
+    stepper.current()  # a copy of a stepper has no event loop before
     if parts.fingerprint != _fingerprint(space, stepper.event_loop):
         raise ValueError(
             "this state is of another space, or of another stepper: give one of a space with the same bodies, shapes "

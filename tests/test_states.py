@@ -274,3 +274,15 @@ def test_copies_go_on_after_bodies_have_gone() -> None:
     for _ in range(3):
         assert np.array_equal(run(stepper, 1 / 60), run(other, 1 / 60))
     assert np.array_equal(poses(copied), poses(space))
+
+
+@pytest.mark.parametrize("name", ["lossy gas", "motor and spring"])
+def test_a_copy_that_has_taken_no_step_goes_to_a_state(name: str) -> None:
+    space, dt = CASES[name][0]()
+    stepper = ep.EECA(space)
+    stepper.step(dt)
+    state = stepper.get_state()
+    _, other = pickle.loads(pickle.dumps((space, stepper)))
+    wanted = run(stepper, dt)
+    other.set_state(state)
+    np.testing.assert_array_equal(run(other, dt), wanted)
