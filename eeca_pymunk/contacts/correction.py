@@ -43,9 +43,7 @@ def lifting(
         The energy spent (<= budget, negative if bodies sink), and the deepest gap before (negative in overlap).
     """
     A, B, ROWS, IM, II, _, n, m = problem
-    for i in range(len(JUMP)):
-        for c in range(6):
-            JUMP[i, c] = 0.0
+    JUMP[:] = 0.0
     GAPS = np.empty(m)
     deepest = 0.0
     for i in range(m):

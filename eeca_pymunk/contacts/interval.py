@@ -23,6 +23,7 @@ from ..model.scene import scene_of
 from ..rows.blocks import clear
 from ..rows.build import conserves, rates
 from ..rows.energy import lock, works
+from ..rows.inplace import copy
 from ..rows.sweeps import velocities
 from .correction import budget_of, least_of, lifting
 from .geometry import gather
@@ -30,7 +31,7 @@ from .memory import find, remember_loads
 from .relaxation import relax
 from .statics import find_static_forces
 from .targets import target
-from .works import against, carried, moved
+from .works import moved
 
 
 @nonallocating
@@ -129,11 +130,8 @@ def step_island(
     if m < 0 or 2 * (S.COUNT.remembered + m) > len(S.KEYS):
         return -1
     FREE = moved(V, ACC, h)
-    for i in range(k):
-        for c in range(3):
-            VN[i, c] = FREE[i, c]
-            contacts.JUMP[i, c] = 0.0
-            contacts.JUMP[i, 3 + c] = 0.0
+    copy(VN, FREE)
+    contacts.JUMP[:] = 0.0
     if m > 0:
         problem = Problem(A, B, ROWS, IM, II, isle.POSE, n, m)
         EXPECTED = np.empty(m)
@@ -169,12 +167,10 @@ def step_island(
         OUT[0].lock, OUT[0].owed = lock(problem, L, VN, FREE, owed, elastic)
         normal, tangential = works(problem, L, VN, contacts.LOSS)
         OUT[0].restitution, OUT[0].friction = normal, tangential
-        OUT[0].carried = carried(A, B, ROWS, L, V, VN, IM, II, m)
         if free >= 0.0:
             budget, size = budget_of(ROWS, m, normal + tangential, owed, free), least_of(EXTENT, n)
             OUT[0].lifted, OUT[0].deepest = lifting(problem, MIDDLE, VN, ACC, h, size, budget, contacts.JUMP)
         remember_loads(ROWS, contacts.KEY, L, m, h, S.KEYS, S.FORCES, S.COUNT, S.PAR.stamp)
     else:
         OUT[0].owed = owed
-    OUT[0].forces = 0.5 * h * (against(ACC, IM, II, n, V) + against(ACC, IM, II, n, VN))
     return m

@@ -1,11 +1,11 @@
-"""The works of an island over an interval: impulses times means of velocities before and after, which close by
-identity:
+"""Works over an interval, and motions. The works of an island close by identity, as impulses times means of velocities
+before and after:
 
     change of energy = forces + carried + lifted - restitution - friction,
 
-of kinetic energy, and of potential energy as far as the penetration correction changes it. `restitution` and `friction`
-are >= 0. `lifted` is the energy that the correction costs, below 0 if bodies sink by it. It exceeds these losses only
-by the energy `free` of `correction.budget_of`.
+of kinetic energy, and of potential energy as far as the penetration correction changes it. `forces` are those that
+cause its accelerations. `restitution` and `friction` are >= 0. `lifted` is the energy that the correction costs, below
+0 if bodies sink by it. It exceeds these losses only by the energy `free` of `correction.budget_of`.
 """
 
 from __future__ import annotations

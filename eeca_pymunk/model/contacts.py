@@ -165,9 +165,7 @@ class Solved(Record):
 
     restitution: float  # energies: losses >= 0 by restitution and by friction
     friction: float
-    carried: float  # external work: of bodies that impulses do not move, and of moving surfaces
     lifted: float  # energy that the penetration correction costs
-    forces: float  # work of forces
     lock: float  # scale of the energy lock
     owed: float  # energy that later intervals have to take out
     residual: float  # of the contact problem: length/time

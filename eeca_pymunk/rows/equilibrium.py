@@ -83,9 +83,7 @@ def newton_step(
         f, V: (n, 3) and (k, 3), scratch.
     """
     P, Q, G, K, n, place = edges.A, edges.B, edges.ROWS, edges.m, edges.n, factor.place
-    for i in range(len(V)):
-        for c in range(3):
-            V[i, c] = 0.0
+    V[:] = 0.0
     for e in range(K):
         x, s = EDGE[e].x, EDGE[e].s
         if s == 0.0:

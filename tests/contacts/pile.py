@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from types import SimpleNamespace
 
 import numpy as np
 
 from eeca_pymunk.compiled import table_of
-from eeca_pymunk.compiled.records import columns, row, rows
+from eeca_pymunk.compiled.records import columns, rows
 from eeca_pymunk.contacts.interval import make_contacts, step_island
 from eeca_pymunk.contacts.memory import forget
+from eeca_pymunk.contacts.works import carried
 from eeca_pymunk.impacts.scene import EventLoop
 from eeca_pymunk.model.bodies import POSE, VELOCITY
-from eeca_pymunk.model.contacts import Force, Solved
+from eeca_pymunk.model.contacts import Force
 from eeca_pymunk.model.islands import Island
 
 from ..packed import Thing, World
+
+WORKS = ("restitution", "friction", "carried", "lifted", "forces")
 
 
 @dataclass
@@ -32,7 +36,7 @@ class Pile:
     gravity: tuple[float, float] = (0.0, 0.0)
     elasticity: float = 0.0
     friction: float = 0.0
-    ledger: Solved = field(default_factory=lambda: row(Solved))
+    ledger: SimpleNamespace = field(default_factory=lambda: SimpleNamespace(**dict.fromkeys(WORKS, 0.0)))
 
     def __post_init__(self) -> None:
         world = self.world
@@ -103,8 +107,10 @@ class Pile:
                 break
             self.room(2 * self.size)
         vn, self.jump, self.out = self.contacts.VN, self.contacts.JUMP, self.contacts.OUT[0]
-        for name in ("restitution", "friction", "carried", "lifted", "forces"):
-            setattr(self.ledger, name, getattr(self.ledger, name) + getattr(self.out, name))
+        losses = {name: float(getattr(self.out, name)) for name in ("restitution", "friction", "lifted")}
+        works = losses | {"carried": self.carried(vn), "forces": self.forces(h, vn)}
+        for name, work in works.items():
+            setattr(self.ledger, name, getattr(self.ledger, name) + work)
         way = 0.5 * h * (self.v + vn)
         self.pose = self.pose + way + self.jump[:, :3]
         self.v = vn + self.jump[:, 3:]
@@ -113,9 +119,19 @@ class Pile:
             self.kinetic()
             + lifted
             - before
-            - (self.out.forces + self.out.carried + self.out.lifted - self.out.restitution - self.out.friction)
+            - (works["forces"] + works["carried"] + works["lifted"] - works["restitution"] - works["friction"])
         )
         self.losses = np.array((self.out.restitution, self.out.friction))
+
+    def carried(self, vn: np.ndarray) -> float:
+        """External work of the contacts, with velocities `vn` after the step."""
+        c = self.contacts
+        return float(carried(c.A, c.B, c.ROWS, c.L, self.v, vn, self.im, self.ii, self.m))
+
+    def forces(self, h: float, vn: np.ndarray) -> float:
+        """Work of the acceleration over the step."""
+        mean = 0.5 * (self.v + vn)[: self.n, :2]
+        return h * float(((self.acc[: self.n, :2] * mean).sum(axis=1) / self.im[: self.n]).sum())
 
     def kinetic(self) -> float:
         n = self.n
