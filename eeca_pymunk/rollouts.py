@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import pickle
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -14,6 +13,7 @@ import numpy.typing as npt
 from tqdm import tqdm
 
 from .arrays import FloatArray
+from .compiled.targets import processors
 from .datasets import Rollouts
 from .errors import UnsupportedFeature
 from .events import Events
@@ -89,7 +89,7 @@ def rollout(
         if array is not None and not np.isfinite(array).all():
             at = tuple(np.argwhere(~np.isfinite(array))[0].tolist())
             raise ValueError(f"{name}[{at}] is {array[at]}: give finite numbers")
-    count = _processors() if threads is None else check_steps(threads)
+    count = processors() if threads is None else check_steps(threads)
     if count == 0:
         raise ValueError(f"threads = {threads}: give a whole number > 0, or None")
     job = Job(
@@ -126,13 +126,6 @@ def certify(
     apart = np.linalg.norm(again[..., :2] - rollouts.frames[..., :2], axis=-1)
     rollouts.error = 2.0 * apart.max(axis=(1, 2), initial=0.0)
     return rollouts.error
-
-
-def _processors() -> int:
-    """Processors that this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
 
 
 def _on_threads(stepper: RunningStepper, job: Job, threads: int, done: Callable[[int], object]) -> list[Events]:

@@ -45,17 +45,15 @@ class Saved:
         if not self._fresh or row.keys() != set(self.items) or world.shapes != self.shapes:
             return False
         at = np.array([row[body] for body in self.items], np.int64)  # pymunk may have another order of bodies
-        if not np.array_equal(world.WALK[BODY_ROW, at], self._rows):
-            return False
-        if scene.COUNT.disks != world.disks or not np.array_equal(
-            columns(scene.BODY, *_FIXED), columns(world.BODY, *_FIXED)
-        ):
-            return False
-        if not np.array_equal(self.method.mobility, columns(world.BODY, "inv_mass", "inv_inertia")):
-            return False
-        if not (np.array_equal(scene.SHAPE, world.SHAPE) and np.array_equal(scene.LINK, world.LINK)):
-            return False
-        if not np.array_equal(_in_order(scene.VERTEX, scene.LINK), _in_order(world.VERTEX, world.LINK)):
+        same = (
+            (world.WALK[BODY_ROW, at], self._rows),
+            (columns(world.BODY, *_FIXED), columns(scene.BODY, *_FIXED)),
+            (columns(world.BODY, "inv_mass", "inv_inertia"), self.method.mobility),
+            (world.SHAPE, scene.SHAPE),
+            (world.LINK, scene.LINK),
+            (_in_order(world.VERTEX, world.LINK), _in_order(scene.VERTEX, scene.LINK)),
+        )
+        if scene.COUNT.disks != world.disks or not all(np.array_equal(now, before) for now, before in same):
             return False
         if not self._same_joints(world):
             return False

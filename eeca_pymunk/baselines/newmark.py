@@ -67,6 +67,6 @@ class Newmark(PenaltyStepper):
             a_np1 = springs.acceleration + A.change(f)
             velocity = springs.start_velocity + dt * ((1.0 - gamma) * a_n + gamma * a_np1)
             springs.move(free + beta * dt * dt * (a_np1 - springs.acceleration), velocity)
-            if change <= self.tolerance * np.max(f):
-                return dt * ((1.0 - gamma) * f_n + gamma * f), iteration, True
-        return dt * ((1.0 - gamma) * f_n + gamma * f), self.max_iterations, False
+            if converged := bool(change <= self.tolerance * np.max(f)):
+                break
+        return dt * ((1.0 - gamma) * f_n + gamma * f), iteration, converged

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import importlib
 import multiprocessing
-import os
 from collections.abc import Callable, Iterable
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from typing import Any
@@ -15,6 +14,7 @@ from ..compiled.frontend.calls import Call
 from ..compiled.frontend.module import Group, object_of
 from ..compiled.frontend.parts import Part, adapt, part_of
 from ..compiled.kernels import kernels
+from ..compiled.targets import processors
 
 _FEW = 8  # missing parts up to which other processes would take longer to start than to compile
 
@@ -127,5 +127,4 @@ def gather(first: Iterable[Call], workers: Workers, told: Callable[[int, int], N
 
 def default_workers() -> int:
     """One process for each core, eight at most."""
-    there = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    return min(8, there)
+    return min(8, processors())

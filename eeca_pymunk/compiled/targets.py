@@ -77,6 +77,11 @@ def has_compiler() -> bool:
     return name in ("win32-x86_64", "darwin-aarch64")
 
 
+def processors() -> int:
+    """Processors that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
 def linker(name: str, portable: bool = False) -> list[str]:
     """The command that links a library for this platform, [] if there is none.
 

@@ -9,7 +9,7 @@ import llvmlite.binding as llvm
 
 from eeca_pymunk.compiled.frontend.calls import Call
 from eeca_pymunk.compiled.frontend.jit import loaded
-from eeca_pymunk.compiled.frontend.module import linked_call, machine_of, optimise
+from eeca_pymunk.compiled.frontend.module import Group, linked, machine_of, optimise
 from eeca_pymunk.compiled.frontend.parts import Part, part_of
 from eeca_pymunk.compiled.frontend.types import declared_type
 from eeca_pymunk.compiled.kernels import Kernel
@@ -38,7 +38,8 @@ def compiled(kernel: Kernel[..., Any], kinds: str) -> Entry:
     """A kernel that returns an integer or nothing."""
     call = call_of(kernel, kinds)
     found = reached(call)
-    module = linked_call(kernel.name, call, found[call].returned, [part.bitcode for part in found.values()])
+    group = Group([(kernel.name, found[call].returned)], [part.bitcode for part in found.values()])
+    module = linked(group, {kernel.name: call})
     machine = machine_of(llvm.get_process_triple(), llvm.get_host_cpu_name(), here=True)
     optimise(module, machine)
     engine = loaded(bytes(machine.emit_object(module)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -113,35 +114,27 @@ class Group:
     foreign: frozenset[str] = frozenset()
 
 
-def linked(group: Group) -> Any:
-    """One module of the C functions of the entries, the parts and the runtime, optimised for no platform yet.
+def linked(group: Group, calls: Mapping[str, Call] | None = None) -> Any:
+    """One module of the C functions of the entries, the parts and the runtime, optimised for no platform yet. `calls`:
+    of entries that `entries.py` does not list.
 
     Raises:
         RuntimeError: the parts call a function that is missing.
     """
-    return _together([(name, entry_call(name), returned) for name, returned in group.entries], group)
-
-
-def linked_call(name: str, call: Call, returned: Any, bitcodes: list[bytes]) -> Any:
-    """As `linked`, of any kernel as the only entry."""
-    return _together([(name, call, returned)], Group([], bitcodes))
-
-
-def _together(entries: list[tuple[str, Call, Any]], group: Group) -> Any:
     initialise()
     parts.adapt()
     module = ir.Module("eeca_kernels")
     context = cpu_target.target_context
     module.triple, module.data_layout = llvm.get_process_triple(), context.codegen()._data_layout
-    for name, call, returned in entries:
-        _entry(module, name, call, returned)
+    for name, returned in group.entries:
+        _entry(module, name, (calls or {}).get(name) or entry_call(name), returned)
     whole = llvm.parse_assembly(cgutils.normalize_ir_text(str(module)))
     runtime = Path(__file__).with_name("runtime.ll").read_text(encoding="utf-8")
     header = f'target triple = "{module.triple}"\ntarget datalayout = "{module.data_layout}"\n'
     whole.link_in(llvm.parse_assembly(header + runtime))
     for one in group.parts:
         whole.link_in(llvm.parse_bitcode(one))
-    seen = {symbol(name) for name, _, _ in entries}
+    seen = {symbol(name) for name, _ in group.entries}
     for one in (*whole.functions, *whole.global_variables):
         if not one.is_declaration and one.name not in seen:
             if one.name in group.public:
