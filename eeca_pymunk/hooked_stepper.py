@@ -10,7 +10,7 @@ from .energy.ledger import AFTER, DAMPED
 from .errors import NotFiniteError
 from .layout import LEFT
 from .packed_space import TOO_FAR, PackedSpace
-from .reentry import BUSY
+from .reentry import functions_called
 from .report import Details, Outcome, StepReport
 from .space.world import World
 from .transfer import EVENTS, FORCES, MOVED_STATIC, OTHER_BODIES
@@ -26,14 +26,9 @@ class HookedStepper(PackedSpace):
         parted = False
         joints = world.joints
         if joints is not None:
-            if joints.functions or joints.edited:
-                BUSY.add(self.space)
-                try:
+            if joints.edited or not joints.idle():
+                with functions_called(self.space):
                     joints.update(world.state, world.bodies.row, dt)
-                finally:
-                    BUSY.discard(self.space)
-            elif not joints.idle():
-                joints.update(world.state, world.bodies.row, dt)
             if joints.replan or joints.ends_moved:
                 loop = self.event_loop
                 assert loop is not None  # other methods refuse joints
@@ -73,11 +68,8 @@ class HookedStepper(PackedSpace):
 
     def _hooked_step(self, world: World, dt: float) -> StepReport:
         """A step of a space in which functions of bodies or constraints, or collision handlers, are called."""
-        BUSY.add(self.space)
-        try:
+        with functions_called(self.space):
             world, report = self._take_hooked(world, dt)
-        finally:
-            BUSY.discard(self.space)
         if world.collisions:
             self._sync.finish_rehearsal()
         elif self.sync or (world.joints is not None and world.joints.calling):

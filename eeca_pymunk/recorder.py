@@ -106,10 +106,12 @@ def _filmed(
     position, angle, velocity, spin = frames[:, :, :2], frames[:, :, 2], frames[:, :, 3:5], frames[:, :, 5]
     d = np.argsort(rows)  # as `measure` adds
     d = d[dynamic[d]]
-    of = traces(mass[d], moment[d], position[:, d], velocity[:, d], spin[:, d], space.gravity)
+    kinetic, potential, momentum, _ = traces(
+        mass[d], moment[d], position[:, d], velocity[:, d], spin[:, d], space.gravity
+    )  # fmt: skip
     return Recording(
-        np.zeros(len(frames)), position.copy(), angle.copy(), velocity.copy(), of.energy, of.linear_momentum, mass,
-        outlines, kinetic=of.kinetic, ledger=LedgerTrace(*buffers.arrays.SUMS.T.copy()), spin=spin.copy(),
+        np.zeros(len(frames)), position.copy(), angle.copy(), velocity.copy(), kinetic + potential, momentum, mass,
+        outlines, kinetic=kinetic, ledger=LedgerTrace(*buffers.arrays.SUMS.T.copy()), spin=spin.copy(),
         events=Events.of(buffers.events, owner).in_order(), parameters={"steps_unmet": int(buffers.progress.unmet)},
     )  # fmt: skip
 

@@ -2,12 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     import pymunk
 
 BUSY: set[pymunk.Space] = set()  # spaces whose own functions are being called
+
+
+@contextmanager
+def functions_called(space: pymunk.Space) -> Iterator[None]:
+    """A part of a step in which functions of this space are called; such parts may be within each other."""
+    outermost = space not in BUSY
+    BUSY.add(space)
+    try:
+        yield
+    finally:
+        if outermost:
+            BUSY.discard(space)
 
 
 def refuse_within(space: pymunk.Space) -> None:

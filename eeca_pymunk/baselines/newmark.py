@@ -57,7 +57,9 @@ class Newmark(PenaltyStepper):
         free = dt * springs.start_velocity + dt * dt * ((0.5 - beta) * a_n + beta * springs.acceleration)
         f = np.zeros_like(f_n)
         springs.move(free, springs.start_velocity)
-        for iteration in range(1, self.max_iterations + 1):
+        iteration, converged = 0, False
+        while not converged and iteration < self.max_iterations:
+            iteration += 1
             # f = -K g_np1 where closed, with g_np1 linear in f about the trial: a problem with compliance.
             A = springs.operator(springs.after.normal)
             on = np.flatnonzero((springs.after.gap < 0) | (f > 0))
@@ -67,6 +69,5 @@ class Newmark(PenaltyStepper):
             a_np1 = springs.acceleration + A.change(f)
             velocity = springs.start_velocity + dt * ((1.0 - gamma) * a_n + gamma * a_np1)
             springs.move(free + beta * dt * dt * (a_np1 - springs.acceleration), velocity)
-            if converged := bool(change <= self.tolerance * np.max(f)):
-                break
+            converged = bool(change <= self.tolerance * np.max(f))
         return dt * ((1.0 - gamma) * f_n + gamma * f), iteration, converged

@@ -131,7 +131,9 @@ class PenaltyEnergyMomentum(PenaltyStepper):
         dt, K = springs.dt, self.stiffness
         g_n = springs.before.gap
         lam = np.zeros(len(g_n))
-        for iteration in range(1, self.max_iterations + 1):
+        iteration, converged = 0, False
+        while not converged and iteration < self.max_iterations:
+            iteration += 1
             A = springs.operator(springs.discrete_normal())
             force, slope = discrete_force(g_n, springs.after.gap, K)
             # Newton: the force is linear in g_np1 about the trial, lam = dt (force - slope (g_np1 - g_np1 of the
@@ -146,9 +148,8 @@ class PenaltyEnergyMomentum(PenaltyStepper):
             change, lam = np.max(np.abs(new - lam)), new
             velocity = springs.start_velocity + dt * springs.acceleration + A.change(lam)
             springs.move(0.5 * dt * (springs.start_velocity + velocity), velocity)
-            if change <= self.tolerance * np.max(lam):
-                return lam, iteration, True
-        return lam, self.max_iterations, False
+            converged = bool(change <= self.tolerance * np.max(lam))
+        return lam, iteration, converged
 
 
 def discrete_force(g_n: FloatArray, g_np1: FloatArray, K: float) -> tuple[FloatArray, FloatArray]:

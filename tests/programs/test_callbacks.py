@@ -294,6 +294,18 @@ def test_a_step_within_a_step_is_refused_and_nothing_changed(function: str, with
     assert stepper.step(DT).time == DT
 
 
+def test_no_step_within_a_step_after_the_function_of_a_spring() -> None:
+    space = pymunk.Space()
+    a, b = pymunk.Body(1.0, 1.0), pymunk.Body(1.0, 1.0)
+    spring = pymunk.DampedSpring(a, b, (0.0, 0.0), (1.0, 0.0), 1.0, 10.0, 0.0)
+    spring.force_func = lambda spring, distance: 1.0 - distance
+    space.add(a, b, spring)
+    stepper = ep.EECA(space)
+    a.position_func = lambda body, dt: stepper.step(dt) and None
+    with pytest.raises(RuntimeError, match="from within its own step"):
+        stepper.step(DT)
+
+
 def test_another_space_may_be_stepped_within_a_step() -> None:
     (space, _), (other, _) = resting(), resting()
     second = ep.EECA(other)
