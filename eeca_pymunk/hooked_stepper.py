@@ -18,7 +18,8 @@ from .unmet import Unmet, of_missed
 
 
 class HookedStepper(PackedSpace):
-    """A stepper whose steps call functions of the program; arguments as of `PackedStepper`."""
+    """A stepper that moves its arrays by a method, in steps that may call functions of the program; arguments as of
+    `PackedStepper`."""
 
     def adjust(self, world: World, dt: float) -> bool:
         """Update the method from joints and collision handlers before the next step; False if the space has to be read

@@ -31,8 +31,8 @@ TOO_FAR = "the step would overflow; take a smaller dt, or stop this run"
 
 
 class Method(Protocol):
-    """Steps the arrays of one world. Results of earlier steps that it keeps, such as contact forces, last as long as
-    the world."""
+    """Steps the arrays of one world: an `EventLoop`, or `closures.motion.Disks`. Results of earlier steps that it
+    keeps, such as contact forces, last as long as the world."""
 
     def step(
         self, STATES: FloatArray, WALK: IntArray, EXTRA: FloatArray, ENDS: FloatArray, dt: float, gx: float, gy: float,

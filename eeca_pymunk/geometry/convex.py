@@ -54,11 +54,11 @@ def separation(P: FloatArray, p: int, Q: FloatArray, q: int, mx: float, my: floa
     """Largest distance of Q (q vertices) from P (p vertices) along an edge normal of P, that edge, and the vertex of Q
     that is nearest along it; (-inf, 0, 0) for a point P. Unless m = 0, only edges whose normals have a positive
     component along m count."""
-    best, edge, vertex = -math.inf, 0, 0
+    best, edge, vertex, some = -math.inf, 0, 0, mx != 0.0 or my != 0.0
     if p > 1:
         for j in range(p):
             nx, ny = P[j, 2], P[j, 3]
-            if (mx != 0.0 or my != 0.0) and nx * mx + ny * my <= 0.0:
+            if some and nx * mx + ny * my <= 0.0:
                 continue
             px, py = P[j, 0], P[j, 1]
             least, lowest = math.inf, 0
