@@ -19,7 +19,7 @@ from __future__ import annotations
 import math
 
 from ..arrays import FloatArray
-from ..compiled import nonallocating
+from ..compiled import inlined, nonallocating
 from ..model.parameters.detection import AXIS_TIE, DIRECTION_ROUND_OFF, EDGE_TIE
 from ..model.scene import Scene
 
@@ -49,11 +49,11 @@ def place(A: Scene, s: int, x: float, y: float, angle: float, OUT: FloatArray) -
     return count
 
 
-@nonallocating
+@inlined
 def separation(P: FloatArray, p: int, Q: FloatArray, q: int, mx: float, my: float) -> tuple[float, int, int]:
     """Largest distance of Q (q vertices) from P (p vertices) along an edge normal of P, that edge, and the vertex of Q
     that is nearest along it; (-inf, 0, 0) for a point P. Unless m = 0, only edges whose normals have a positive
-    component along m count."""
+    component along m count; m = 0 as a constant costs nothing, since the kernel is inlined."""
     best, edge, vertex, some = -math.inf, 0, 0, mx != 0.0 or my != 0.0
     if p > 1:
         for j in range(p):

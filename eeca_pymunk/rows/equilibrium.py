@@ -38,7 +38,7 @@ def point_speed(vx: float, vy: float, spin: float, extent: float) -> float:
 
 
 @nonallocating
-def fastest(V: FloatArray, EXTENT: FloatArray, n: int) -> float:
+def fastest_point(V: FloatArray, EXTENT: FloatArray, n: int) -> float:
     """Bound of the speed of all points of n bodies with velocities V (k, 3); inf if one is not finite."""
     found = 0.0
     for i in range(n):
@@ -164,7 +164,7 @@ def equilibrium(
     K = cone_edges(problem.A, problem.B, problem.ROWS, L, IM, II, m, OF, P, Q, G, EDGE)
     LEFT, Y, DY, V, f = np.empty((k, 3)), np.zeros((k, 3)), np.zeros((k, 3)), np.empty((k, 3)), np.empty((n, 3))
     if K == 0:
-        return fastest(START, EXTENT, n) <= tolerance, 0  # without contacts START is that motion
+        return fastest_point(START, EXTENT, n) <= tolerance, 0  # without contacts START is that motion
     held, stuck = np.ones(K, np.int64), np.zeros(K, np.int64)
     SCALE, factor = roots_of(IM, II), make_factor(P, Q, K, n, held, problem.POSE)
     problem_of_edges = Problem(P, Q, G, IM, II, problem.POSE, n, K)
@@ -172,7 +172,7 @@ def equilibrium(
     for done in range(most + 1):
         copy(LEFT, START)
         add_impulses(P, Q, G, EDGE, False, K, IM, II, LEFT)
-        speed = fastest(LEFT, EXTENT, n)
+        speed = fastest_point(LEFT, EXTENT, n)
         centre = mean_product(EDGE, K, 0.0, 0.0)
         if speed <= tolerance:
             found = True
