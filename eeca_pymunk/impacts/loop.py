@@ -86,7 +86,7 @@ def run(A: Scene, may_rest: bool) -> int:
             else:
                 one, room = i, True
                 if has_left(A, s, t):
-                    room = renew(A, s, t, AHEAD, 0.0) >= 0
+                    room = renew(A, s, t, AHEAD) >= 0
             if not room:
                 A.PAR.now = t
                 COUNT.heap = push(TIME, OF, COUNT.heap, t, i)

@@ -30,7 +30,8 @@ def cover(A: Scene, s: int, reach: float) -> bool:
     x, y = centre(A, s, 0.0)
     if norm(x - mark.x, y - mark.y) + reach <= mark.margin:
         return True
-    return renew(A, s, 0.0, 0.0, MARGIN_OF_FAST * reach) >= 0
+    mark.margin = max(mark.usual, MARGIN_OF_FAST * reach)
+    return renew(A, s, 0.0, 0.0) >= 0
 
 
 @nonallocating

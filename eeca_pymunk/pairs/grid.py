@@ -125,23 +125,23 @@ def part(A: Scene, s: int) -> int:
 
 
 @nonallocating
-def renew(A: Scene, s: int, t: float, ahead: float, least: float) -> int:
+def renew(A: Scene, s: int, t: float, ahead: float) -> int:
     """Move the margin circle of s to its position at instant t, and renew its list.
 
     If the shape goes round the body's centre of mass within a step, by more than its margin, the circle is about that
     centre, with a margin of at least twice the arm: one arm contains the orbit of the shape, the other is left for the
-    motion of the body. For slower ones, such as the walls of a container, the list would be too long.
+    motion of the body. For slower ones, such as the walls of a container, the list would be too long. The margin stays,
+    as bodies that spin fast go on to.
 
     Args:
         ahead: distance of the circle's centre ahead of the shape, or body, along its velocity, as a part of the margin
             (of the margin less the arm, if the circle is about the body's centre); below 1.
-        least: the margin at least, length; that of the shape while it is slow if this is larger.
 
     Returns:
         the number of old entries that are kept; they come first. -1 if the pool is full: then `build` has to be called.
     """
     mark = A.MARK[s]
-    margin = mark.margin = max(mark.usual, least)
+    margin = mark.margin
     if margin == math.inf:
         return int(A.LIST[s].number)
     unlink(A, s)

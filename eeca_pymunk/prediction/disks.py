@@ -117,7 +117,7 @@ def go_on(A: Scene, i: int, now: float, end: float) -> bool:
             # Its path changes at its next impact, so the new circle is centred near that place.
             way = norm(BODY[i].vx + BODY[i].ax * h, BODY[i].vy + BODY[i].ay * h) * (best - now)
             ahead = min(way / A.MARK[i].margin, FARTHEST_MARGIN)
-        known = renew(A, i, now, ahead, 0.0)
+        known = renew(A, i, now, ahead)
         if known < 0:
             return False
     if later != NOTHING and other < 0:

@@ -325,13 +325,6 @@ def test_what_orbits_its_body_fast_stays_in_one_circle() -> None:
     assert hit > 0
     assert predictions < 200
     assert ep.measure(space).energy == pytest.approx(energy, rel=1e-12)
-    # Its margin, 2 radii of the orbit and 20 of the disk, returns to that of a slow shape with its next circle.
-    marks = method.scene.MARK
-    assert (marks["margin"] > marks["usual"]).sum() == 1
-    body.angular_velocity, body.velocity = 0.0, (100.0, 100.0)
-    for _ in range(10):
-        stepper.step(0.01)
-    assert (marks["margin"] == marks["usual"]).all()
 
 
 def test_walls_of_a_container_that_turns_slowly_keep_margins_of_their_own_size() -> None:

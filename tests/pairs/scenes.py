@@ -35,7 +35,7 @@ class Crowd:
 
     def renew(self, s: int, t: float = 0.0) -> None:
         """Draw the margin circle of s anew, with more room if that takes it."""
-        if grid.renew(self.near, s, t, 0.0, 0.0) < 0:
+        if grid.renew(self.near, s, t, 0.0) < 0:
             self.near = setup.with_more_room(self.near, t)
 
     def listed(self) -> list[list[int]]:
