@@ -10,7 +10,7 @@ import numpy as np
 
 from ..arrays import AnyArray, FloatArray, IntArray
 from ..compiled.library import check
-from ..compiled.records import R, Rows, columns, put, rows
+from ..compiled.records import R, Rows, columns, from_bytes, put, rows
 from ..contacts.memory import forget
 from ..islands.accounting import flag_again
 from ..joints.held import held_bodies
@@ -43,9 +43,9 @@ def _longer(table: Rows[R], used: int) -> Rows[R]:
     return longer
 
 
-def _details(logged: IntArray, dt: float, bodies: tuple[pymunk.Body, ...], owner: IntArray) -> Details:
-    """`of_events` for impulses `logged` as integers."""
-    return of_events(logged.reshape(-1).view(Impulse.TYPE), dt, bodies, owner)  # type: ignore[arg-type]
+def _details(logged: bytes, dt: float, bodies: tuple[pymunk.Body, ...], owner: IntArray) -> Details:
+    """`of_events` for the bytes of impulses."""
+    return of_events(from_bytes(Impulse, [logged]), dt, bodies, owner)
 
 
 class EventLoop(Remembering):
@@ -198,7 +198,7 @@ class EventLoop(Remembering):
     @property
     def events(self) -> Rows[Impulse]:
         """(m,) impulses of the last step, a copy."""
-        return self.logged().reshape(-1).view(Impulse.TYPE)  # type: ignore[return-value]
+        return from_bytes(Impulse, [self.logged()])
 
     def details(
         self, dt: float, bodies: tuple[pymunk.Body, ...], owner: IntArray
