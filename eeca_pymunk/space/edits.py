@@ -25,6 +25,7 @@ from . import private_versions
 
 _PROPERTIES: tuple[tuple[type, tuple[str, ...]], ...] = (
     (pymunk.Shape, ("mass", "density", "sensor", "filter", "elasticity", "friction", "surface_velocity", "body")),
+    (pymunk.Shape, ("collision_type",)),
     (pymunk.Body, ("mass", "moment", "center_of_gravity", "body_type", "velocity_func", "position_func")),
     (pymunk.Space, ("gravity", "damping", "sleep_time_threshold")),
 )
@@ -38,7 +39,7 @@ _SLEEP = ("sleep", "sleep_with_group")
 _leaders: WeakKeyDictionary[pymunk.Body, weakref.ref[pymunk.Body]] = WeakKeyDictionary()
 _KEPT = 4096  # number of edits that are kept, the last ones
 _wrapped = False
-_clock = 0
+_clock = _typings = 0
 # The last edits, in any space or outside: what was edited, and whether that may have changed its body's mass or moment.
 _edited: deque[tuple[weakref.ref[Any], bool]] = deque(maxlen=_KEPT)
 
@@ -78,6 +79,11 @@ def clock() -> int:
     return _clock
 
 
+def typings() -> int:
+    """Number of changes of collision types so far, in any space or outside. They are no edits: rows lack them."""
+    return _typings
+
+
 def edited_since(time: int) -> tuple[set[Any], set[Any]] | None:
     """Shapes and bodies that were edited since `clock` was `time`, and the bodies whose mass or moment that may have
     changed; and those of which more than `_OF_SURFACE` may have changed. None if these are more than are kept."""
@@ -90,7 +96,10 @@ def edited_since(time: int) -> tuple[set[Any], set[Any]] | None:
 
 
 def _note(thing: Any, name: str) -> None:
-    global _clock
+    global _clock, _typings
+    if name == "collision_type":
+        _typings += 1
+        return
     if isinstance(thing, pymunk.Space):
         if thing in _counts:
             _counts[thing][2] += 1

@@ -121,8 +121,7 @@ class Sync:
         * nothing touched in this step and the last one, or readers of arbiters call `renew`;
         * the number of shapes is at most SOME; with neither contacts nor joints at most FEW.
         """
-        were_read, self._were_read = self._were_read, False
-        if were_read or self._reindexings == 0 or dt != self._dt or self._shapes > SOME:
+        if self.were_read() or self._reindexings == 0 or dt != self._dt or self._shapes > SOME:
             return False
         if status & EVENTS or self._touched:
             if not self.renews:
@@ -131,16 +130,28 @@ class Sync:
             return False
         return self._timestamp() == self._rested
 
+    def were_read(self) -> bool:
+        """Whether arbiters were read since the last call."""
+        were_read, self._were_read = self._were_read, False
+        return were_read
+
     def reindex(self) -> None:
         """Move the shapes to the poses of their bodies."""
         self._reindexings -= 1
         self._stale = True
         private_shapes.reindex(self.space, self._world.movers)
 
-    def renew(self) -> None:
-        """Make arbiters by a rest step, if the last step was an EECA step that made none."""
-        self._were_read = True
-        if self._stale and self.space not in BUSY and self._timestamp() == self._rested:
+    def renew(self, drawn: bool = False) -> None:
+        """Make arbiters by a rest step, or by the rehearsal that was left out, if the last step was an EECA step that
+        made none. `drawn`: only for a picture, which costs more than either."""
+        world = self._world
+        self._were_read |= not drawn
+        if not self._stale or self.space in BUSY or not self.is_ours():
+            return
+        if world.collisions:
+            world.rehearsal.make_up()
+            self.stamp, self._stale = self._timestamp(), False
+        else:
             with private_rest.stopped(self.space):
                 self.rest(self._dt)
 
@@ -153,10 +164,14 @@ class Sync:
         """Record that the steps pymunk has taken until now were part of EECA steps."""
         self.stamp = self._timestamp()
 
-    def finish_rehearsal(self) -> None:
-        """After a rehearsal, the end of pymunk's step: move shapes to their bodies, then `call_back`."""
-        self.stamp = self._timestamp()
-        private_shapes.reindex_anew(self.space, self._world.movers)
+    def finish_rehearsal(self, dt: float, left_out: bool) -> None:
+        """After a rehearsal, or if it was left out, the end of pymunk's step: move shapes to their bodies, then
+        `call_back`."""
+        self.stamp, self._dt, self._stale = self._timestamp(), dt, left_out
+        if left_out:
+            private_shapes.reindex(self.space, self._world.movers)
+        else:
+            private_shapes.reindex_anew(self.space, self._world.movers)
         self.call_back()
 
     def is_ours(self) -> bool:
