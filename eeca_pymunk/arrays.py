@@ -33,11 +33,16 @@ def address_of(array: Any) -> int:
 
 class Memory:
     """One piece of memory for arrays that replace one another: as long as it is large enough, the next ones are in the
-    place of the last."""
+    place of the last.
+
+    Attributes:
+        addresses: of the last ones.
+    """
 
     def __init__(self) -> None:
         self._room: npt.NDArray[np.uint8] = np.zeros(0, np.uint8)
         self._first = 0  # byte at which it is aligned
+        self.addresses: list[int] = []
 
     def side_by_side(self, *wanted: tuple[tuple[int, ...], npt.DTypeLike]) -> list[Any]:
         """Arrays of zeros of these shapes and dtypes, each aligned to a cache line; the last ones are lost.
@@ -48,13 +53,15 @@ class Memory:
         places: list[tuple[tuple[int, ...], np.dtype[Any], int]] = []
         total = 0
         for shape, kind in wanted:
-            dtype = np.dtype(kind)
+            dtype = kind if isinstance(kind, np.dtype) else np.dtype(kind)
             places.append((shape, dtype, total))
             total += -(-math.prod(shape) * dtype.itemsize // _LINES) * _LINES
         if self._first + total <= len(self._room) <= _SPARE * (total + _PAGE):
             self._room[self._first : self._first + total] = 0
         else:
             self._allot(total)
+        begin = address_of(self._room) + self._first
+        self.addresses = [begin + at for _, _, at in places]
         return [np.ndarray(shape, dtype, self._room, self._first + at) for shape, dtype, at in places]
 
     def _allot(self, total: int) -> None:

@@ -7,6 +7,7 @@ arrays as attributes: in compiled code this is a cast and costs nothing. In plai
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, Generic, TypeAlias, TypeVar
 
 import numpy as np
@@ -18,6 +19,7 @@ from .kernels import Compilable
 
 T = TypeVar("T")
 Table: TypeAlias = Any  # of `table_of`
+_NOWHERE: Mapping[str, int] = {}
 WORDS = 4  # numbers of an array: address, size, and its shape, one or two lengths (of three, the last two)
 
 
@@ -34,18 +36,21 @@ def _said(dtype: np.dtype[Any], dimensions: int) -> str:
     return f"{dtype.type.__name__}[{dimensions}]"
 
 
-def table_of(arrays: Any, like: Table | None = None) -> Table:
+def table_of(arrays: Any, like: Table | None = None, at: Mapping[str, int] = _NOWHERE) -> Table:
     """The table of a named tuple of arrays. If one of them is replaced, a new table is needed; the arrays must exist as
     long as the table is used.
 
     Args:
         like: another table of the same kind, None for none: of the very arrays that both have, words are copied.
+        at: addresses of arrays, by field, if known.
 
     Raises:
         TypeError: an array is not C-contiguous, or not of the dtype and dimensions that `entries.TABLES` declares.
     """
     if not start().entries:
         return arrays
+    if isinstance(like, Pointers) and like.arrays is arrays:
+        return like
     name = type(arrays).__name__
     fields = table_fields(name) if name in TABLES else [(field, None, 0) for field in arrays._fields]
     if isinstance(like, Pointers) and type(like.arrays) is type(arrays):
@@ -57,12 +62,15 @@ def table_of(arrays: Any, like: Table | None = None) -> Table:
         return Pointers(arrays, words)
     numbers: list[int] = []
     for (field, dtype, dimensions), array in zip(fields, arrays, strict=True):
-        numbers += _words(name, field, dtype, dimensions, array)
+        numbers += _words(name, field, dtype, dimensions, array, at.get(field))
     return Pointers(arrays, np.array(numbers, np.int64))
 
 
-def _words(name: str, field: str, dtype: np.dtype[Any] | None, dimensions: int, a: Any) -> tuple[int, ...]:
-    """The numbers of one array, which has to be of this dtype, if given, and of as many dimensions."""
+def _words(
+    name: str, field: str, dtype: np.dtype[Any] | None, dimensions: int, a: Any, at: int | None = None
+) -> tuple[int, ...]:  # fmt: skip
+    """The numbers of one array, at this address if it is known, which has to be of this dtype, if given, and of as many
+    dimensions."""
     if dtype is not None and (a.dtype != dtype or a.ndim != dimensions):
         raise TypeError(
             f"{name}.{field} is {_said(a.dtype, a.ndim)}; entries.TABLES declares {_said(dtype, dimensions)}"
@@ -71,7 +79,7 @@ def _words(name: str, field: str, dtype: np.dtype[Any] | None, dimensions: int, 
         raise TypeError(f"{name}.{field} of shape {a.shape} has strides {a.strides}: it must be C-contiguous")
     shape = a.shape
     lengths = shape * 2 if len(shape) == 1 else shape[-2:] if shape else (0, 0)
-    return address_of(a), a.size, *lengths
+    return address_of(a) if at is None else at, a.size, *lengths
 
 
 class Opener(Compilable, Generic[T]):

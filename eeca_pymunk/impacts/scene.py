@@ -36,6 +36,9 @@ if TYPE_CHECKING:
     import pymunk
 
 
+_NO_JOINTS, _NO_HELD = rows(Joint, 0), rows(Held, 0)
+
+
 def _longer(table: Rows[R], used: int) -> Rows[R]:
     """A table of twice as many rows, with the first `used` ones copied."""
     longer: Rows[R] = np.zeros(2 * len(table), table.dtype)  # type: ignore[assignment]
@@ -69,7 +72,7 @@ class EventLoop(Remembering):
     ) -> None:  # fmt: skip
         n, memory = len(BODY), memory or SceneMemory()
         self.jointed, self.together = joint is not None, together
-        self.joint, self.partner = rows(Joint, 0) if joint is None else joint, BODY[:0] if PARTNER is None else PARTNER
+        self.joint, self.partner = _NO_JOINTS if joint is None else joint, BODY[:0] if PARTNER is None else PARTNER
         self._still: IntArray = np.ones(len(self.partner), np.int64) if still is None else still
         HELD = self._hold(BODY, SHAPE, LINK)
         scene, self.table = memory.scene(BODY, SHAPE, LINK, VERTEX, HELD)
@@ -85,7 +88,7 @@ class EventLoop(Remembering):
     def _hold(self, BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link]) -> Rows[Held]:
         """The bodies that straight paths of joints hold, which lose their mobilities."""
         if not self.jointed:
-            return rows(Held, 0)
+            return _NO_HELD
         # `_smooth` is 1 for the bodies that have no shape with friction.
         self._mobility: FloatArray = columns(BODY, "inv_mass", "inv_inertia")
         self._smooth: IntArray = np.ones(len(BODY), np.int64)

@@ -68,7 +68,7 @@ class SceneMemory:
             **arrays,
         )  # fmt: skip
         scene.COUNT.lossy = lossy
-        table = table_of(scene)
+        table = table_of(scene, at=dict(zip(own, self._memory.addresses, strict=True)))
         lay_scene(table)
         return filled(scene, table)
 

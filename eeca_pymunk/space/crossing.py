@@ -87,8 +87,10 @@ class Crossing:
         if self.eccentric:
             self.WALK[SPECIAL] = ECCENTRIC * bodies.center_of_gravity.any(axis=1)
             self.EXTRA[:, COG_X : COG_Y + 1] = bodies.center_of_gravity
-        self.WALK[SPECIAL, bodies.velocity_hooks] |= STEERED
-        self.STATES[LEFT] = np.where(bodies.static[:, None], state, np.nan)
+        if len(bodies.velocity_hooks):
+            self.WALK[SPECIAL, bodies.velocity_hooks] |= STEERED
+        self.STATES[LEFT] = state
+        self.STATES[LEFT, ~bodies.static] = np.nan
         self.gather = private_batch.reader(space, STATE_FIELDS, floats, ids)
         self._scatter = _Writers(self, _WHOLE, END)
         self._scatter_still, self._scatter_speed = _Writers(self, _WHOLE, STILL), _Writers(self, _SPEEDS, SPEED)

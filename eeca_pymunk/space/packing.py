@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import struct
 from array import array
+from collections import Counter
 from collections.abc import Collection, Mapping
 from functools import cached_property
 from itertools import chain
@@ -104,14 +105,10 @@ def records_of(
     return records, len(unknown)
 
 
-def shape_counts(bodies: Bodies, owner: IntArray, records: Records) -> IntArray:
-    """(N,) the number of shapes of each body, 0 for static ones; `owner` (k,): rows of the bodies of the solid ones."""
-    count: IntArray = np.bincount(owner, minlength=len(bodies))
-    for shape in [shape for shape, record in records.items() if record is None]:
-        if shape.body is not None and shape.body in bodies.row:
-            count[bodies.row[shape.body]] += 1
-    count[bodies.static] = 0
-    return count
+def shape_counts(bodies: Bodies, records: Records) -> list[int]:
+    """The number of shapes of each body, 0 for static ones."""
+    count = Counter(shape.body if record is None else record.body for shape, record in records.items())
+    return [0 if static else count[body] for body, static in zip(bodies.items, bodies.static.tolist(), strict=True)]
 
 
 class Packed:

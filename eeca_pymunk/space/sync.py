@@ -96,11 +96,11 @@ class Sync:
     def __init__(self, world: World, past: Sync | None = None) -> None:
         """`past`: that of the world of this space before; pymunk itself indexes shapes that were added since."""
         self.space, bodies = world.space, world.bodies
-        self._asleep = bool(bodies.asleep.any())
+        self._asleep = bodies.reached is not None
         self._pulls = self.space.sleep_time_threshold < math.inf
         sleepers = [bodies.items[i] for i in bodies.asleep.nonzero()[0]] if self._asleep else []
         self._stop = private_sleep.stop_woken(sleepers)
-        self._shapes = int(world.shape_counts.sum())
+        self._shapes = sum(world.shape_counts)
         self._world = world
         self._timestamp: Callable[[], int] = private.timestamp(self.space)
         self.waits = partial(private.waits, self.space)

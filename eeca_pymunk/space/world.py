@@ -140,14 +140,16 @@ class World(Crossing):
         return centred
 
     @cached_property
-    def shape_counts(self) -> IntArray:
-        """(N,) the number of shapes of each body, 0 for static ones."""
-        return shape_counts(self.bodies, self.owner, self.records)
+    def shape_counts(self) -> list[int]:
+        """The number of shapes of each body, 0 for static ones."""
+        return shape_counts(self.bodies, self.records)
 
     @cached_property
     def movers(self) -> list[Any]:
         """Pointers to the Chipmunk bodies that are not static and have shapes."""
-        return private.pointers([self.bodies.items[i] for i in np.flatnonzero(self.shape_counts).tolist()])
+        return private.pointers(
+            [body for body, count in zip(self.bodies.items, self.shape_counts, strict=True) if count]
+        )
 
     @cached_property
     def empty(self) -> Details:
