@@ -12,14 +12,14 @@ from typing import Any, Generic, TypeAlias, TypeVar
 
 import numpy as np
 
-from ..arrays import address_of
+from ..arrays import address_of, lengths
 from .backend import start
 from .entries import TABLES, table_fields
 from .kernels import Compilable
 
 T = TypeVar("T")
 Table: TypeAlias = Any  # of `table_of`
-_NOWHERE: Mapping[str, int] = {}
+_UNKNOWN: Mapping[str, tuple[int, ...]] = {}
 WORDS = 4  # numbers of an array: address, size, and its shape, one or two lengths (of three, the last two)
 
 
@@ -36,13 +36,13 @@ def _said(dtype: np.dtype[Any], dimensions: int) -> str:
     return f"{dtype.type.__name__}[{dimensions}]"
 
 
-def table_of(arrays: Any, like: Table | None = None, at: Mapping[str, int] = _NOWHERE) -> Table:
+def table_of(arrays: Any, like: Table | None = None, words: Mapping[str, tuple[int, ...]] = _UNKNOWN) -> Table:
     """The table of a named tuple of arrays. If one of them is replaced, a new table is needed; the arrays must exist as
     long as the table is used.
 
     Args:
         like: another table of the same kind, None for none: of the very arrays that both have, words are copied.
-        at: addresses of arrays, by field, if known.
+        words: of arrays, by field, if known: then the caller answers for their dtypes.
 
     Raises:
         TypeError: an array is not C-contiguous, or not of the dtype and dimensions that `entries.TABLES` declares.
@@ -54,32 +54,27 @@ def table_of(arrays: Any, like: Table | None = None, at: Mapping[str, int] = _NO
     name = type(arrays).__name__
     fields = table_fields(name) if name in TABLES else [(field, None, 0) for field in arrays._fields]
     if isinstance(like, Pointers) and type(like.arrays) is type(arrays):
-        words = like.words.copy()
+        copied = like.words.copy()
         for place, (array, known) in enumerate(zip(arrays, like.arrays, strict=True)):
             if array is not known:
                 field, dtype, dimensions = fields[place]
-                words[WORDS * place : WORDS * (place + 1)] = _words(name, field, dtype, dimensions, array)
-        return Pointers(arrays, words)
+                copied[WORDS * place : WORDS * (place + 1)] = _words(name, field, dtype, dimensions, array)
+        return Pointers(arrays, copied)
     numbers: list[int] = []
     for (field, dtype, dimensions), array in zip(fields, arrays, strict=True):
-        numbers += _words(name, field, dtype, dimensions, array, at.get(field))
+        numbers += words.get(field) or _words(name, field, dtype, dimensions, array)
     return Pointers(arrays, np.array(numbers, np.int64))
 
 
-def _words(
-    name: str, field: str, dtype: np.dtype[Any] | None, dimensions: int, a: Any, at: int | None = None
-) -> tuple[int, ...]:  # fmt: skip
-    """The numbers of one array, at this address if it is known, which has to be of this dtype, if given, and of as many
-    dimensions."""
+def _words(name: str, field: str, dtype: np.dtype[Any] | None, dimensions: int, a: Any) -> tuple[int, ...]:
+    """The numbers of one array, which has to be of this dtype, if given, and of as many dimensions."""
     if dtype is not None and (a.dtype != dtype or a.ndim != dimensions):
         raise TypeError(
             f"{name}.{field} is {_said(a.dtype, a.ndim)}; entries.TABLES declares {_said(dtype, dimensions)}"
         )
     if not a.flags.c_contiguous:
         raise TypeError(f"{name}.{field} of shape {a.shape} has strides {a.strides}: it must be C-contiguous")
-    shape = a.shape
-    lengths = shape * 2 if len(shape) == 1 else shape[-2:] if shape else (0, 0)
-    return address_of(a) if at is None else at, a.size, *lengths
+    return address_of(a), a.size, *lengths(a.shape)
 
 
 class Opener(Compilable, Generic[T]):

@@ -68,7 +68,7 @@ class SceneMemory:
             **arrays,
         )  # fmt: skip
         scene.COUNT.lossy = lossy
-        table = table_of(scene, at=dict(zip(own, self._memory.addresses, strict=True)))
+        table = table_of(scene, words=dict(zip(own, self._memory.words, strict=True)))
         lay_scene(table)
         return filled(scene, table)
 

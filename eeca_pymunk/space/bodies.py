@@ -138,8 +138,11 @@ class Bodies:
         self.dynamic: BoolArray = kind == DYNAMIC
         self.static: BoolArray = kind == STATIC
         # Functions of sleeping bodies are not called, as under pymunk.
-        self.velocity_hooks: IntArray = (self.GIVEN["steered"] * ~self.asleep).nonzero()[0]
-        self.position_hooks: IntArray = (self.GIVEN["moved"] * ~self.asleep).nonzero()[0]
+        steered, moved = self.GIVEN["steered"], self.GIVEN["moved"]
+        if sleeps:
+            steered, moved = steered * ~self.asleep, moved * ~self.asleep
+        self.velocity_hooks: IntArray = steered.nonzero()[0]
+        self.position_hooks: IntArray = moved.nonzero()[0]
         self.center_of_gravity: FloatArray = columns(self.GIVEN, "centre_x", "centre_y")
 
     def placed(self, state: FloatArray) -> Rows[GivenBody]:
@@ -177,7 +180,8 @@ class Bodies:
     def reached(self) -> tuple[pymunk.Body, ...] | None:
         """The bodies that can be written without waking any, None for all. Sleeping bodies are last in pymunk's
         order."""
-        return self.items[: int(np.argmax(self.asleep))] if self.asleep.any() else None
+        asleep = self.asleep.tolist()
+        return self.items[: asleep.index(True)] if True in asleep else None
 
     def _read(self) -> tuple[npt.NDArray[np.uintp], FloatArray]:
         """(N,) ids and (N, 9) state now."""
@@ -196,7 +200,7 @@ class Bodies:
 
     def check_finite(self, state: FloatArray, remedy: str = "set a finite value before stepping") -> None:
         """Raise NotFiniteError naming the body and the value if anything in the state is NaN or infinite."""
-        if not (math.isfinite(state.sum()) or np.isfinite(state).all()):
+        if np.count_nonzero(np.isfinite(state)) < state.size:  # `all` takes five times as long for few bodies
             i, j = np.argwhere(~np.isfinite(state))[0]
             raise NotFiniteError(f"{COLUMN_NAMES[j]} of {self.items[i]} is {state[i, j]}: {remedy}")
 

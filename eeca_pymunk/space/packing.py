@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import struct
 from array import array
-from collections import Counter
 from collections.abc import Collection, Mapping
 from functools import cached_property
 from itertools import chain
@@ -105,10 +104,13 @@ def records_of(
     return records, len(unknown)
 
 
-def shape_counts(bodies: Bodies, records: Records) -> list[int]:
-    """The number of shapes of each body, 0 for static ones."""
-    count = Counter(shape.body if record is None else record.body for shape, record in records.items())
-    return [0 if static else count[body] for body, static in zip(bodies.items, bodies.static.tolist(), strict=True)]
+def shape_counts(bodies: Bodies, records: Records) -> dict[Any, int]:
+    """The number of shapes of each body that is not static."""
+    count = dict.fromkeys((body for body, static in zip(bodies.items, bodies.static, strict=True) if not static), 0)
+    for shape, record in records.items():
+        if (body := shape.body if record is None else record.body) in count:
+            count[body] += 1
+    return count
 
 
 class Packed:
@@ -147,7 +149,7 @@ class Packed:
         self.SHAPE: Rows[Shape] = self._rows[1]
         self.LINK: Rows[Link] = self._rows[2]
         order: IntArray = self._rows[4][:k]
-        self._used = int(self.LINK[k - 1].first + self.LINK[k - 1].vertices) if k else 0
+        self._used: int = self.LINK["first"].item(k - 1) + self.LINK["vertices"].item(k - 1) if k else 0
         self.VERTEX: FloatArray = self._rows[3][: self._used]
         self.shapes = tuple([solid[i] for i in order.tolist()])
         self.owner: IntArray = self._owner[order]

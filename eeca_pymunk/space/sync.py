@@ -6,7 +6,8 @@ nothing else; it costs less for a few bodies, above all if they touch or are joi
 handles, which a rest step clears, so there is one every `_RENEW` steps. Post-step callbacks follow either way, when
 bodies have their velocities.
 
-If arbiters are read after a step that has reindexed, a rest step is taken first (`Sync.renew`).
+If arbiters are read after a step that has reindexed, a rest step is taken first (`Sync.renew`); after one whose
+rehearsal was left out, the rehearsal.
 """
 
 from __future__ import annotations
@@ -100,7 +101,7 @@ class Sync:
         self._pulls = self.space.sleep_time_threshold < math.inf
         sleepers = [bodies.items[i] for i in bodies.asleep.nonzero()[0]] if self._asleep else []
         self._stop = private_sleep.stop_woken(sleepers)
-        self._shapes = sum(world.shape_counts)
+        self._shapes = sum(world.shape_counts.values())
         self._world = world
         self._timestamp: Callable[[], int] = private.timestamp(self.space)
         self.waits = partial(private.waits, self.space)
@@ -117,7 +118,7 @@ class Sync:
         """Whether reindexing is enough for this step. Conditions:
 
         * pymunk has taken no step since the last rest step, which had this dt and was no more than `_RENEW` steps ago;
-        * arbiters were not read after the last step;
+        * arbiters were not read after the last step, other than for a picture;
         * nothing touched in this step and the last one, or readers of arbiters call `renew`;
         * the number of shapes is at most SOME; with neither contacts nor joints at most FEW.
         """
