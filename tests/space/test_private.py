@@ -292,3 +292,13 @@ def test_waits() -> None:
     assert private.waits(space)
     space.step(0.001)
     assert not private.waits(space)
+
+
+def test_reader_of_some_bodies_reads_bodies_in_no_space() -> None:
+    bodies = [pymunk.Body(1.0, 1.0), pymunk.Body(body_type=pymunk.Body.KINEMATIC)]
+    floats = np.full(9, -1.0)
+    read = private_batch.reader_of(bodies, pymunk.batch.BodyFields.POSITION | pymunk.batch.BodyFields.ANGLE, floats)
+    for k in range(3):
+        bodies[1].position, bodies[1].angle = (float(k), 2.0), 3.0
+        read()
+        assert floats.tolist() == [0.0, 0.0, 0.0, float(k), 2.0, 3.0, -1.0, -1.0, -1.0]
