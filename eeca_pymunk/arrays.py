@@ -70,6 +70,11 @@ class Memory:
         self.words = [(begin + at, size, *lengths(shape)) for shape, _, at, size in places]
         return [np.ndarray(shape, dtype, self._room, self._first + at) for shape, dtype, at, _ in places]
 
+    def first(self, count: int) -> IntArray:
+        """The memory of the first arrays, fewer than all, as integers."""
+        size = self.words[count][0] - self.words[0][0]
+        return self._room[self._first : self._first + size].view(np.int64)
+
     def _allot(self, total: int) -> None:
         """New memory, zeros, with room for so many bytes, and more if it replaces other."""
         total += total // 2 if len(self._room) else 0

@@ -36,6 +36,7 @@ _OF_PROCESS = (
     "_par",
     "_count",
     "_log",
+    "_laid",
 )  # attributes that no copy has
 
 
@@ -145,6 +146,10 @@ class Remembering:
 
     def _gather(self) -> IntArray:
         """Put what steps change, apart from poses and velocities, into one piece of memory; returns it as integers."""
+        laid, own = self.__dict__.get("_laid", (None, None))
+        if own is not None and laid is self._scene and not self.jointed:
+            kept: IntArray = own
+            return kept
         if not self.jointed:
             (self.scene,), memory = gathered((self.scene, OF_SCENE))
             return memory

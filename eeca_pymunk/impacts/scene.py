@@ -76,7 +76,7 @@ class EventLoop(Remembering):
         self._still: IntArray = np.ones(len(self.partner), np.int64) if still is None else still
         HELD = self._hold(BODY, SHAPE, LINK)
         scene, self.table = memory.scene(BODY, SHAPE, LINK, VERTEX, HELD)
-        self.scene = scene
+        self.scene, self._laid = scene, (scene, memory.own)
         COUNT = scene.COUNT
         COUNT.limit, COUNT.disks, COUNT.together = limit, disks, together
         COUNT.budget = STEP_LOOKS + STEP_LOOKS_BODY * n * max(n, MANY_BODIES) // MANY_BODIES
