@@ -144,9 +144,10 @@ class Sync:
 
     def renew(self, drawn: bool = False) -> None:
         """Make arbiters by a rest step, or by the rehearsal that was left out, if the last step was an EECA step that
-        made none. `drawn`: only for a picture, which costs more than either."""
+        made none. `drawn`: only for a picture, which costs more than either; where bodies may sleep the next step
+        makes them."""
         world = self._world
-        self._were_read |= not drawn
+        self._were_read |= not (drawn and self.renews)
         if not self._stale or self.space in BUSY or not self.is_ours():
             return
         if world.collisions:
