@@ -31,13 +31,23 @@ def address_of(array: Any) -> int:
     return int(_ffi.cast(_ADDRESS, _ffi.from_buffer(array)))
 
 
+def lengths(shape: tuple[int, ...]) -> tuple[int, ...]:
+    """Two lengths of an array: its only one twice, or the last two; 0 of a record."""
+    return shape * 2 if len(shape) == 1 else shape[-2:] if shape else (0, 0)
+
+
 class Memory:
     """One piece of memory for arrays that replace one another: as long as it is large enough, the next ones are in the
-    place of the last."""
+    place of the last.
+
+    Attributes:
+        words: address, size, and lengths of the last ones, see `compiled.tables.WORDS`.
+    """
 
     def __init__(self) -> None:
         self._room: npt.NDArray[np.uint8] = np.zeros(0, np.uint8)
         self._first = 0  # byte at which it is aligned
+        self.words: list[tuple[int, ...]] = []
 
     def side_by_side(self, *wanted: tuple[tuple[int, ...], npt.DTypeLike]) -> list[Any]:
         """Arrays of zeros of these shapes and dtypes, each aligned to a cache line; the last ones are lost.
@@ -45,17 +55,25 @@ class Memory:
         Kernels read a few numbers in all arrays of a scene, and would often miss the TLB with many small pages. Large
         scenes therefore get huge pages, which operating systems only give to large allocations.
         """
-        places: list[tuple[tuple[int, ...], np.dtype[Any], int]] = []
+        places: list[tuple[tuple[int, ...], np.dtype[Any], int, int]] = []
         total = 0
         for shape, kind in wanted:
-            dtype = np.dtype(kind)
-            places.append((shape, dtype, total))
-            total += -(-math.prod(shape) * dtype.itemsize // _LINES) * _LINES
+            dtype = kind if isinstance(kind, np.dtype) else np.dtype(kind)
+            size = math.prod(shape)
+            places.append((shape, dtype, total, size))
+            total += -(-size * dtype.itemsize // _LINES) * _LINES
         if self._first + total <= len(self._room) <= _SPARE * (total + _PAGE):
             self._room[self._first : self._first + total] = 0
         else:
             self._allot(total)
-        return [np.ndarray(shape, dtype, self._room, self._first + at) for shape, dtype, at in places]
+        begin = address_of(self._room) + self._first
+        self.words = [(begin + at, size, *lengths(shape)) for shape, _, at, size in places]
+        return [np.ndarray(shape, dtype, self._room, self._first + at) for shape, dtype, at, _ in places]
+
+    def first(self, count: int) -> IntArray:
+        """The memory of the first arrays, fewer than all, as integers."""
+        size = self.words[count][0] - self.words[0][0]
+        return self._room[self._first : self._first + size].view(np.int64)
 
     def _allot(self, total: int) -> None:
         """New memory, zeros, with room for so many bytes, and more if it replaces other."""

@@ -57,7 +57,7 @@ class EECA(RunningStepper):
 
     def prepare(self, world: World, past: World | None) -> None:
         myself = ref(self)
-        show_contacts(self.space, lambda: None if (me := myself()) is None else me._touches())
+        show_contacts(self.space, lambda drawn: None if (me := myself()) is None else me._touches(drawn))
         self._sync.renews = self._sleep is None  # groups of sleeping bodies are found from arbiters
         saved, self._saved = self._saved, None
         if saved is not None and saved.resume(world, self.decisions):
@@ -76,10 +76,10 @@ class EECA(RunningStepper):
             world.find_parted()
             self._method.rule(world.laws())
 
-    def _touches(self) -> Touches | None:
+    def _touches(self, drawn: bool) -> Touches | None:
         """Pairs that touched in the last step, for pymunk's arbiters; None if pymunk has taken a step since."""
         world, loop = self._world, self.event_loop
-        self._sync.renew()
+        self._sync.renew(drawn)
         if world is None or loop is None or not self._sync.is_ours():
             return None
         step = loop.scene.PAR.stamp

@@ -72,7 +72,7 @@ class HookedStepper(PackedSpace):
         with functions_called(self.space):
             world, report = self._take_hooked(world, dt)
         if world.collisions:
-            self._sync.finish_rehearsal()
+            self._sync.finish_rehearsal(dt, world.rehearsal.left_out)
         elif self.sync or (world.joints is not None and world.joints.calling):
             self._sync.call_back()
         return report
@@ -102,7 +102,8 @@ class HookedStepper(PackedSpace):
             if len(world.hooks.velocity):
                 world.set_accelerations(world.hooks.velocity_changes(dt), dt)
             if world.collisions:
-                if (status := world.rehearsal.run(dt, half_damping)) < 0:
+                sync = None if self._sleep is not None or self.decisions.laws else self._sync
+                if (status := world.rehearsal.run(dt, half_damping, sync)) < 0:
                     self._raise_failure(world, dt, status)
                 if self._sleep is not None and self._sleep.woken():
                     world = self._reread_awoken(world)

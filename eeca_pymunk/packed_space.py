@@ -83,7 +83,7 @@ class PackedSpace(Stepper):
         self._slept: Slept | None = None  # in a copy, until its first step
         self._method: Method
         self._ruled: Rules | None = None  # the rules that the method has
-        self._idle_book: FloatArray | None = None  # ledger entries of a step in which all dynamic bodies sleep
+        self._idle_book: list[float] | None = None  # ledger entries of a step in which all dynamic bodies sleep
         self.reads = self.patches = self.objects_read = 0
         self.decisions = Decisions()
         self._update_world()
@@ -185,7 +185,7 @@ class PackedSpace(Stepper):
             self._sleep.recall(dict(zip(slept[0], slept[1].tolist(), strict=True)), slept[3])
         self.prepare(world, past)
         if self._sleep is not None and (book := self.outcome()[0]) is not None:
-            self._idle_book = np.zeros_like(book)
+            self._idle_book = [0.0] * len(book)
         return self._adopt(world)
 
     def _patchable(self, world: World) -> bool:

@@ -56,9 +56,9 @@ class Details(NamedTuple):
     friction: FloatArray | None = None
 
 
-# How a step was solved: (7,) its ledger entries, a copy (`energy.ledger`; None if the stepper has none), the scale of
-# the energy lock that was farthest from 1, whether all budgets and tolerances were met, and iterations of the solver.
-Outcome: TypeAlias = tuple[FloatArray | None, float, bool, int]
+# How a step was solved: its seven ledger entries (`energy.ledger`; None if the stepper has none), the scale of the
+# energy lock that was farthest from 1, whether all budgets and tolerances were met, and iterations of the solver.
+Outcome: TypeAlias = tuple[list[float] | None, float, bool, int]
 
 
 class StepReport:
@@ -68,7 +68,7 @@ class StepReport:
         time: see the property.
         details: the arrays, or a function that makes them at the first access.
         iterations, lock, converged: see the properties.
-        book: (7,) of `energy.ledger`.
+        book: of `energy.ledger`.
         unmet: budgets and tolerances that were not met, or a function that makes them.
     """
 
@@ -81,7 +81,7 @@ class StepReport:
         iterations: int = 0,
         lock: float = 1.0,
         converged: bool = True,
-        book: FloatArray | None = None,
+        book: list[float] | None = None,
         unmet: tuple[Unmet, ...] | Callable[[], tuple[Unmet, ...]] = (),
     ) -> None:
         self._time = time

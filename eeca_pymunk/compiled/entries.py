@@ -64,6 +64,7 @@ ENTRIES = {
     "transfer:lay": "f8[3] i8[2] f8[1] i8",
     "transfer:lay_rest": "f8[3] f8[1] i8",
     "rehearsing:approach": "f8[3] i8[2] f8[2] Body[1] f8[1] f8[2] f8 f8 f8 f8",
+    "rehearsing:nears": "f8[3] f8[1] f8[2] i8[2] f8 f8",
     "rehearsing:copy_start": "f8[3] i8[2] Body[1] f8[2]",
     "rehearsing:as_read": "f8[3] f8[2]",
     "rehearsing:alter_end": "f8[3] i8[2] Body[1] f8[1] f8[2] f8[2] f8[1] i8",

@@ -7,17 +7,19 @@ arrays as attributes: in compiled code this is a cast and costs nothing. In plai
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, Generic, TypeAlias, TypeVar
 
 import numpy as np
 
-from ..arrays import address_of
+from ..arrays import address_of, lengths
 from .backend import start
 from .entries import TABLES, table_fields
 from .kernels import Compilable
 
 T = TypeVar("T")
 Table: TypeAlias = Any  # of `table_of`
+_UNKNOWN: Mapping[str, tuple[int, ...]] = {}
 WORDS = 4  # numbers of an array: address, size, and its shape, one or two lengths (of three, the last two)
 
 
@@ -34,30 +36,33 @@ def _said(dtype: np.dtype[Any], dimensions: int) -> str:
     return f"{dtype.type.__name__}[{dimensions}]"
 
 
-def table_of(arrays: Any, like: Table | None = None) -> Table:
+def table_of(arrays: Any, like: Table | None = None, words: Mapping[str, tuple[int, ...]] = _UNKNOWN) -> Table:
     """The table of a named tuple of arrays. If one of them is replaced, a new table is needed; the arrays must exist as
     long as the table is used.
 
     Args:
         like: another table of the same kind, None for none: of the very arrays that both have, words are copied.
+        words: of arrays, by field, if known: then the caller answers for their dtypes.
 
     Raises:
         TypeError: an array is not C-contiguous, or not of the dtype and dimensions that `entries.TABLES` declares.
     """
     if not start().entries:
         return arrays
+    if isinstance(like, Pointers) and like.arrays is arrays:
+        return like
     name = type(arrays).__name__
     fields = table_fields(name) if name in TABLES else [(field, None, 0) for field in arrays._fields]
     if isinstance(like, Pointers) and type(like.arrays) is type(arrays):
-        words = like.words.copy()
+        copied = like.words.copy()
         for place, (array, known) in enumerate(zip(arrays, like.arrays, strict=True)):
             if array is not known:
                 field, dtype, dimensions = fields[place]
-                words[WORDS * place : WORDS * (place + 1)] = _words(name, field, dtype, dimensions, array)
-        return Pointers(arrays, words)
+                copied[WORDS * place : WORDS * (place + 1)] = _words(name, field, dtype, dimensions, array)
+        return Pointers(arrays, copied)
     numbers: list[int] = []
     for (field, dtype, dimensions), array in zip(fields, arrays, strict=True):
-        numbers += _words(name, field, dtype, dimensions, array)
+        numbers += words.get(field) or _words(name, field, dtype, dimensions, array)
     return Pointers(arrays, np.array(numbers, np.int64))
 
 
@@ -69,9 +74,7 @@ def _words(name: str, field: str, dtype: np.dtype[Any] | None, dimensions: int, 
         )
     if not a.flags.c_contiguous:
         raise TypeError(f"{name}.{field} of shape {a.shape} has strides {a.strides}: it must be C-contiguous")
-    shape = a.shape
-    lengths = shape * 2 if len(shape) == 1 else shape[-2:] if shape else (0, 0)
-    return address_of(a), a.size, *lengths
+    return address_of(a), a.size, *lengths(a.shape)
 
 
 class Opener(Compilable, Generic[T]):

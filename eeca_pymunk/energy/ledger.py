@@ -4,15 +4,13 @@
 
 The change is that of kinetic energy, of potential energy in the uniform gravity, and of the energy stored in springs.
 Losses are impulses times means of velocities before and after, or forces times displacements, so that the sum closes by
-identity: the residual is round-off of the energies and works that are summed. A *book* is the array (7,) from which a
-ledger is made.
+identity: the residual is round-off of the energies and works that are summed. A *book* is the list of seven numbers
+from which a ledger is made.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-
-from ..arrays import FloatArray
 
 # Entries of a book: restitution, friction, external, damping, change of the energy in springs (part of the energy
 # after), energy before and after.
@@ -38,9 +36,9 @@ class Ledger:
     residual: float
 
 
-def ledger(book: FloatArray) -> Ledger:
-    """The ledger of a step from its (7,) book."""
-    restitution, friction, external, damping, _, before, after = (float(x) for x in book)
+def ledger(book: list[float]) -> Ledger:
+    """The ledger of a step from its book."""
+    restitution, friction, external, damping, _, before, after = book
     change = after - before
     residual = change - (external - restitution - friction - damping)
     return Ledger(change, external, restitution, friction, damping, residual)

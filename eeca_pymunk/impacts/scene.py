@@ -10,7 +10,7 @@ import numpy as np
 
 from ..arrays import AnyArray, FloatArray, IntArray
 from ..compiled.library import check
-from ..compiled.records import R, Rows, columns, put, rows
+from ..compiled.records import R, Rows, columns, from_bytes, put, rows
 from ..contacts.memory import forget
 from ..islands.accounting import flag_again
 from ..joints.held import held_bodies
@@ -36,6 +36,9 @@ if TYPE_CHECKING:
     import pymunk
 
 
+_NO_JOINTS, _NO_HELD = rows(Joint, 0), rows(Held, 0)
+
+
 def _longer(table: Rows[R], used: int) -> Rows[R]:
     """A table of twice as many rows, with the first `used` ones copied."""
     longer: Rows[R] = np.zeros(2 * len(table), table.dtype)  # type: ignore[assignment]
@@ -43,9 +46,9 @@ def _longer(table: Rows[R], used: int) -> Rows[R]:
     return longer
 
 
-def _details(logged: IntArray, dt: float, bodies: tuple[pymunk.Body, ...], owner: IntArray) -> Details:
-    """`of_events` for impulses `logged` as integers."""
-    return of_events(logged.reshape(-1).view(Impulse.TYPE), dt, bodies, owner)  # type: ignore[arg-type]
+def _details(logged: bytes, dt: float, bodies: tuple[pymunk.Body, ...], owner: IntArray) -> Details:
+    """`of_events` for the bytes of impulses."""
+    return of_events(from_bytes(Impulse, [logged]), dt, bodies, owner)
 
 
 class EventLoop(Remembering):
@@ -69,11 +72,11 @@ class EventLoop(Remembering):
     ) -> None:  # fmt: skip
         n, memory = len(BODY), memory or SceneMemory()
         self.jointed, self.together = joint is not None, together
-        self.joint, self.partner = rows(Joint, 0) if joint is None else joint, BODY[:0] if PARTNER is None else PARTNER
+        self.joint, self.partner = _NO_JOINTS if joint is None else joint, BODY[:0] if PARTNER is None else PARTNER
         self._still: IntArray = np.ones(len(self.partner), np.int64) if still is None else still
         HELD = self._hold(BODY, SHAPE, LINK)
         scene, self.table = memory.scene(BODY, SHAPE, LINK, VERTEX, HELD)
-        self.scene = scene
+        self.scene, self._laid = scene, (scene, memory.own)
         COUNT = scene.COUNT
         COUNT.limit, COUNT.disks, COUNT.together = limit, disks, together
         COUNT.budget = STEP_LOOKS + STEP_LOOKS_BODY * n * max(n, MANY_BODIES) // MANY_BODIES
@@ -85,7 +88,7 @@ class EventLoop(Remembering):
     def _hold(self, BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link]) -> Rows[Held]:
         """The bodies that straight paths of joints hold, which lose their mobilities."""
         if not self.jointed:
-            return rows(Held, 0)
+            return _NO_HELD
         # `_smooth` is 1 for the bodies that have no shape with friction.
         self._mobility: FloatArray = columns(BODY, "inv_mass", "inv_inertia")
         self._smooth: IntArray = np.ones(len(BODY), np.int64)
@@ -198,7 +201,7 @@ class EventLoop(Remembering):
     @property
     def events(self) -> Rows[Impulse]:
         """(m,) impulses of the last step, a copy."""
-        return self.logged().reshape(-1).view(Impulse.TYPE)  # type: ignore[return-value]
+        return from_bytes(Impulse, [self.logged()])
 
     def details(
         self, dt: float, bodies: tuple[pymunk.Body, ...], owner: IntArray

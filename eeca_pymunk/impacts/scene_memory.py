@@ -18,6 +18,7 @@ from ..model.scene import Scene
 from ..model.shapes import Corner, Link, Shape, Side
 from ..model.step import Count, Missed, Step
 from ..pairs.setup import NEAR, NO_GRID, filled, near_sizes
+from .memory import OF_SCENE
 from .new_scene import MEASURES, lay_scene, measure_scene
 
 RULE_COLUMNS = 6
@@ -29,7 +30,13 @@ _NO_RULE: FloatArray = np.zeros((0, RULE_COLUMNS))
 
 
 class SceneMemory:
-    """Memory for the scenes of one stepper: each replaces the one before, whose arrays it overwrites."""
+    """Memory for the scenes of one stepper: each replaces the one before, whose arrays it overwrites.
+
+    Attributes:
+        own: the memory of the arrays of the last scene that `OF_SCENE` names, as integers; None if some are elsewhere.
+    """
+
+    own: IntArray | None = None
 
     def __init__(self) -> None:
         self._memory = Memory()
@@ -47,14 +54,16 @@ class SceneMemory:
         room = _CONTACTS
         while lossy and room < min(_OF_A_BODY * n, _MANY):
             room *= 2
+        near: dict[str, Any] = dict(zip(NEAR, near_sizes(moving, k - moving), strict=False))
+        walls = near.pop("BOX")
+        # First those that `memory.OF_SCENE` names.
         own: dict[str, Any] = {
             "STATE": ((n,), Next.TYPE), "MEMBER": ((n,), Member.TYPE), "RESTING": ((n,), Rest.TYPE),
+            "PLACE": ((n,), np.int64), **near, "CORE": ((2, corners, 4), np.float64),
+            "SIDE": ((side_rows(thin, k),), Side.TYPE), "PAR": ((1,), Step.TYPE), "COUNT": ((1,), Count.TYPE),
             "PULL": ((n, 3), np.float64), "BEGAN": ((n, 3), np.float64), "HEAP_TIME": ((8 * n + 64,), np.float64),
-            "HEAP_BODY": ((8 * n + 64,), np.int64), "PLACE": ((n,), np.int64), "BLOCK": ((n,), np.int64),
-            **dict(zip(NEAR, near_sizes(moving, k - moving), strict=False)),
-            "CORE": ((2, corners, 4), np.float64), "SIDE": ((side_rows(thin, k),), Side.TYPE),
+            "HEAP_BODY": ((8 * n + 64,), np.int64), "BLOCK": ((n,), np.int64), "BOX": walls,
             "CORNER": ((4 * k if thin else 0,), Corner.TYPE), "MISSED": ((_MISSED,), Missed.TYPE),
-            "PAR": ((1,), Step.TYPE), "COUNT": ((1,), Count.TYPE),
         }  # fmt: skip
         arrays = dict(zip(own, self._memory.side_by_side(*own.values()), strict=True))
         for name in ("GRID", "PAR", "COUNT"):
@@ -68,9 +77,11 @@ class SceneMemory:
             **arrays,
         )  # fmt: skip
         scene.COUNT.lossy = lossy
-        table = table_of(scene)
+        table = table_of(scene, words=dict(zip(own, self._memory.words, strict=True)))
         lay_scene(table)
-        return filled(scene, table)
+        laid = filled(scene, table)
+        self.own = self._memory.first(len(OF_SCENE)) if laid[0] is scene else None
+        return laid
 
     def unjointed(self, n: int) -> tuple[Joints, Table]:
         """The arrays `Joints` of a scene without joints, of n bodies or more, and their table."""

@@ -52,7 +52,7 @@ class Touches:
         return self._of.get(body, {})
 
 
-Reading = Callable[[], "Touches | None"]
+Reading = Callable[[bool], "Touches | None"]
 _readings: WeakKeyDictionary[pymunk.Space, Reading] = WeakKeyDictionary()
 _native_each: Any = pymunk.Body.each_arbiter
 _native_batch: Any = batch.get_space_arbiters
@@ -60,8 +60,8 @@ _native_draw: Any = pymunk.Space.debug_draw
 
 
 def show_contacts(space: pymunk.Space, read: Reading) -> None:
-    """Let arbiters of a space have the contents that `read` returns, unless None. `read` must not refer to the
-    space."""
+    """Let arbiters of a space have the contents that `read` returns, unless None; its argument is whether they are only
+    drawn. `read` must not refer to the space."""
     _readings[space] = read
     if pymunk.Body.each_arbiter is not _each_arbiter:  # setting any attribute of a class clears Python's caches of it
         pymunk.Body.each_arbiter = _each_arbiter  # type: ignore[method-assign]
@@ -86,9 +86,9 @@ def touches(EVENT: Rows[Impulse], shapes: Sequence[pymunk.Shape]) -> list[Touch]
     return result
 
 
-def _of(space: pymunk.Space | None) -> Touches | None:
+def _of(space: pymunk.Space | None, drawn: bool = False) -> Touches | None:
     read = None if space is None else _readings.get(space)
-    return None if read is None else read()
+    return None if read is None else read(drawn)
 
 
 @contextmanager
@@ -142,7 +142,7 @@ def _get_space_arbiters(space: pymunk.Space, fields: batch.ArbiterFields, buffer
 
 def _debug_draw(self: pymunk.Space, options: pymunk.SpaceDebugDrawOptions) -> None:
     if options.flags & pymunk.SpaceDebugDrawOptions.DRAW_COLLISION_POINTS:
-        _of(self)  # makes arbiters
+        _of(self, drawn=True)  # makes arbiters
     _native_draw(self, options)
 
 

@@ -83,12 +83,14 @@ class Crossing:
         self.ENDS: FloatArray = np.zeros(END_COLUMNS * N)
         self.WALK[KNOWN] = bodies.ids
         self.WALK[BODY_ROW] = row
-        self.eccentric = bool(bodies.center_of_gravity.any())
+        self.eccentric = np.count_nonzero(bodies.center_of_gravity) > 0
         if self.eccentric:
             self.WALK[SPECIAL] = ECCENTRIC * bodies.center_of_gravity.any(axis=1)
             self.EXTRA[:, COG_X : COG_Y + 1] = bodies.center_of_gravity
-        self.WALK[SPECIAL, bodies.velocity_hooks] |= STEERED
-        self.STATES[LEFT] = np.where(bodies.static[:, None], state, np.nan)
+        if len(bodies.velocity_hooks):
+            self.WALK[SPECIAL, bodies.velocity_hooks] |= STEERED
+        self.STATES[LEFT].fill(np.nan)
+        np.copyto(self.STATES[LEFT], state, where=bodies.static[:, None])
         self.gather = private_batch.reader(space, STATE_FIELDS, floats, ids)
         self._scatter = _Writers(self, _WHOLE, END)
         self._scatter_still, self._scatter_speed = _Writers(self, _WHOLE, STILL), _Writers(self, _SPEEDS, SPEED)

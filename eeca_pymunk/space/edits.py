@@ -2,7 +2,8 @@
 
 pymunk's setters write into Chipmunk at once without notification, and reading all shapes again takes longer than most
 steps. So the setters of properties that a `World` reads once are wrapped when the first space is watched. Each acts as
-before, and then adds one to the count of the space of its shape or body, if that is watched and the value has changed.
+before, and then adds one to the count of its space, or that of its shape or body, if that is watched and the value has
+changed.
 Getters, and properties that a `World` does not read (positions, velocities, forces, colours), are not changed.
 `Body.sleep` and `sleep_with_group` are wrapped when this module is imported: their calls are counted, and groups of
 sleeping bodies are recorded, because Chipmunk does not show them.
@@ -24,7 +25,9 @@ from . import private_versions
 
 _PROPERTIES: tuple[tuple[type, tuple[str, ...]], ...] = (
     (pymunk.Shape, ("mass", "density", "sensor", "filter", "elasticity", "friction", "surface_velocity", "body")),
+    (pymunk.Shape, ("collision_type",)),
     (pymunk.Body, ("mass", "moment", "center_of_gravity", "body_type", "velocity_func", "position_func")),
+    (pymunk.Space, ("gravity", "damping", "sleep_time_threshold")),
 )
 _METHODS: tuple[tuple[type, tuple[str, ...]], ...] = (
     (pymunk.Circle, ("unsafe_set_radius", "unsafe_set_offset")),
@@ -36,16 +39,17 @@ _SLEEP = ("sleep", "sleep_with_group")
 _leaders: WeakKeyDictionary[pymunk.Body, weakref.ref[pymunk.Body]] = WeakKeyDictionary()
 _KEPT = 4096  # number of edits that are kept, the last ones
 _wrapped = False
-_clock = 0
+_clock = _typings = 0
 # The last edits, in any space or outside: what was edited, and whether that may have changed its body's mass or moment.
 _edited: deque[tuple[weakref.ref[Any], bool]] = deque(maxlen=_KEPT)
 
 
 class Counts(list[int]):
-    """Number of edits of shapes and bodies of a space and of bodies put to sleep; number of the latter alone."""
+    """Number of edits of shapes and bodies of a space and of bodies put to sleep; number of the latter alone; number of
+    changes of its settings."""
 
     def __init__(self) -> None:
-        super().__init__((0, 0))
+        super().__init__((0, 0, 0))
 
     @property
     def in_place(self) -> int:
@@ -75,6 +79,11 @@ def clock() -> int:
     return _clock
 
 
+def typings() -> int:
+    """Number of changes of collision types so far, in any space or outside. They are no edits: rows lack them."""
+    return _typings
+
+
 def edited_since(time: int) -> tuple[set[Any], set[Any]] | None:
     """Shapes and bodies that were edited since `clock` was `time`, and the bodies whose mass or moment that may have
     changed; and those of which more than `_OF_SURFACE` may have changed. None if these are more than are kept."""
@@ -87,7 +96,14 @@ def edited_since(time: int) -> tuple[set[Any], set[Any]] | None:
 
 
 def _note(thing: Any, name: str) -> None:
-    global _clock
+    global _clock, _typings
+    if name == "collision_type":
+        _typings += 1
+        return
+    if isinstance(thing, pymunk.Space):
+        if thing in _counts:
+            _counts[thing][2] += 1
+        return
     _clock += 1
     _edited.append((weakref.ref(thing), name not in _OF_SURFACE))
     space = thing.space

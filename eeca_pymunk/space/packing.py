@@ -104,13 +104,12 @@ def records_of(
     return records, len(unknown)
 
 
-def shape_counts(bodies: Bodies, owner: IntArray, records: Records) -> IntArray:
-    """(N,) the number of shapes of each body, 0 for static ones; `owner` (k,): rows of the bodies of the solid ones."""
-    count: IntArray = np.bincount(owner, minlength=len(bodies))
-    for shape in [shape for shape, record in records.items() if record is None]:
-        if shape.body is not None and shape.body in bodies.row:
-            count[bodies.row[shape.body]] += 1
-    count[bodies.static] = 0
+def shape_counts(bodies: Bodies, records: Records) -> dict[Any, int]:
+    """The number of shapes of each body that is not static."""
+    count = dict.fromkeys((body for body, static in zip(bodies.items, bodies.static, strict=True) if not static), 0)
+    for shape, record in records.items():
+        if (body := shape.body if record is None else record.body) in count:
+            count[body] += 1
     return count
 
 
@@ -150,7 +149,7 @@ class Packed:
         self.SHAPE: Rows[Shape] = self._rows[1]
         self.LINK: Rows[Link] = self._rows[2]
         order: IntArray = self._rows[4][:k]
-        self._used = int(self.LINK[k - 1].first + self.LINK[k - 1].vertices) if k else 0
+        self._used: int = self.LINK["first"].item(k - 1) + self.LINK["vertices"].item(k - 1) if k else 0
         self.VERTEX: FloatArray = self._rows[3][: self._used]
         self.shapes = tuple([solid[i] for i in order.tolist()])
         self.owner: IntArray = self._owner[order]

@@ -14,13 +14,17 @@ from typing import Any
 
 import numpy as np
 import pymunk
+from pymunk import batch
 
 from ..arrays import IntArray
 from ..compiled.records import records, rows
 from ..errors import NotFiniteError
 from ..model.bodies import Body
-from . import private_joints
+from . import private_batch, private_joints
+from .edits import clock
 
+_FIELDS = batch.BodyFields.POSITION | batch.BodyFields.ANGLE | batch.BodyFields.VELOCITY
+_FIELDS |= batch.BodyFields.ANGULAR_VELOCITY
 _MOTION = struct.Struct("6d")  # the first fields of `Body`: pose and velocity
 
 
@@ -48,10 +52,20 @@ class Partners:
         # Moved static bodies of the space are found where the states of all its bodies are read.
         self.outside = [i for i, body in enumerate(self.items) if body.space is not space]
         self.changed = self._read(range(len(self.items)))
+        # Motions of the bodies outside, with room for one more, and those of the last step with `edits.clock`.
+        self._motions = np.zeros(6 * (len(self.outside) + 1))
+        self._gather = private_batch.reader_of([self.items[i] for i in self.outside], _FIELDS, self._motions)
+        self._last: tuple[bytes, int] = b"", -1
 
     def read(self) -> list[int]:
         """Read the bodies that may have moved; returns the rows of those that have."""
-        return self._read(self.outside)
+        self._gather()
+        now = self._motions.tobytes(), clock()
+        if now == self._last:
+            return []
+        moved = self._read(self.outside)
+        self._last = now
+        return moved
 
     def _read(self, rows: Sequence[int]) -> list[int]:
         changed = []

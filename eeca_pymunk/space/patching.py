@@ -61,13 +61,13 @@ def patch(world: World, surfaces: bool) -> Patched | None:
             return None
         reach |= resized or new.filter != record.filter
         elasticity |= (new.numbers[1] < 1.0) != (record.numbers[1] < 1.0)
-    weighed = []
+    weighed: dict[int, bytes] = {}
     for i in [bodies.row[thing] for thing in stale if thing in bodies.row]:
         masses, more = bodies.changed(i)
         if more:
             return None
-        if masses:
-            weighed.append(i)
+        if masses is not None:
+            weighed[i] = masses
     world.gather()
     status = world.check_start()
     moved = status == MOVED_STATIC
@@ -75,8 +75,7 @@ def patch(world: World, surfaces: bool) -> Patched | None:
         return None
     if status != 0:
         bodies.check_finite(world.state)
-    if weighed:
-        bodies.read_masses(sorted(weighed))
+    bodies.set_masses(weighed)
     world.records.update(records)
     if not world.packed.lay_again(bodies, world.state, world.records, records, moved):
         return None

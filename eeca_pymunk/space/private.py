@@ -10,6 +10,7 @@ import math
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from typing import Any
 
 import pymunk
@@ -34,8 +35,8 @@ except ImportError as error:  # pragma: no cover - needs another pymunk
 PHASES = ("_begin", "_pre_solve", "_post_solve", "_separate")
 
 _OF_LIBRARY = (
-    "cpSpaceStep", "cpHastySpaceStep", "cpSpaceGetGravity", "cpSpaceGetDamping",
-    "cpSpaceSetGravity", "cpSpaceGetIterations", "cpSpaceSetIterations", "cpSpaceGetCollisionBias",
+    "cpSpaceStep", "cpHastySpaceStep", "cpSpaceGetGravity", "cpSpaceSetGravity",
+    "cpSpaceGetIterations", "cpSpaceSetIterations", "cpSpaceGetCollisionBias",
     "cpSpaceSetCollisionBias", "cpBodyGetForce", "cpBodySetForce", "cpBodyGetTorque", "cpBodySetTorque",
     "cpShapeGetSensor", "cpSpaceGetSleepTimeThreshold",
     "cpSpaceSetSleepTimeThreshold", "cpSpaceGetShapeIDCounter", "cpSpaceGetTimestamp",
@@ -184,8 +185,7 @@ def watch(space: pymunk.Space, edits: list[int], known: list[int]) -> Callable[[
     """A function that returns whether the settings and contents of the space are still as they are now.
 
     Args:
-        edits: its first number grows when something of the space is edited in place.  known: what that was, as its
-            first number, which may be set later.
+        edits: `edits.counts` of the space.  known: what the first one of them was, which may be set later.
 
     Every addition of a shape changes pymunk's count of all shapes ever added, every removal the number of shapes. A
     body that was exchanged for another one changes the ids that the batch call reads. Constraints are compared one by
@@ -196,24 +196,15 @@ def watch(space: pymunk.Space, edits: list[int], known: list[int]) -> Callable[[
     body_count, shape_count, constraint_count = len(bodies), len(shapes), len(constraints)
     handler_count = len(handlers)
     counter, added = lib.cpSpaceGetShapeIDCounter, lib.cpSpaceGetShapeIDCounter(c)
-    gravity_of, gravity = lib.cpSpaceGetGravity, lib.cpSpaceGetGravity(c)
-    gx, gy = gravity.x, gravity.y
-    damping_of, damping = lib.cpSpaceGetDamping, lib.cpSpaceGetDamping(c)
-    threshold_of, threshold = lib.cpSpaceGetSleepTimeThreshold, lib.cpSpaceGetSleepTimeThreshold(c)
-
-    joints = list(constraints)
+    joints, settings = list(constraints), edits[2]
 
     def unchanged() -> bool:
-        g = gravity_of(c)
         return (
-            g.x == gx
-            and g.y == gy
+            edits[0] == known[0]
+            and edits[2] == settings
             and counter(c) == added
-            and edits[0] == known[0]
             and len(shapes) == shape_count
             and len(bodies) == body_count
-            and damping_of(c) == damping
-            and threshold_of(c) == threshold
             and len(constraints) == constraint_count
             and len(handlers) == handler_count
             and (constraint_count == 0 or list(constraints) == joints)
@@ -224,8 +215,7 @@ def watch(space: pymunk.Space, edits: list[int], known: list[int]) -> Callable[[
 
 def timestamp(space: pymunk.Space) -> Callable[[], int]:
     """A function that returns the number of steps that pymunk itself has taken in this space."""
-    c, read = space._space, lib.cpSpaceGetTimestamp
-    return lambda: int(read(c))
+    return partial(lib.cpSpaceGetTimestamp, space._space)
 
 
 def shapes_ever(space: pymunk.Space) -> int:

@@ -12,7 +12,9 @@ from pymunk._chipmunk_cffi import ffi, lib
 from .private_versions import reject as reject_raw
 from .private_versions import take_place
 
-OF_LIBRARY = ("pmSpaceArbiterIteratorFuncBatched", "cpBodyIsSleeping", "cpArbiterTotalImpulse")
+OF_LIBRARY = (
+    "pmSpaceArbiterIteratorFuncBatched", "cpBodyIsSleeping", "cpArbiterTotalImpulse", "cpShapeGetCollisionType",
+)  # fmt: skip
 TYPES = ("cpArbiter *", "cpContact[1]")
 
 
@@ -24,6 +26,11 @@ def shape_key(shape: pymunk.Shape) -> int:
 def arbiter_key(arbiter: Any) -> frozenset[int]:
     """The addresses of both shapes of an arbiter."""
     return frozenset((int(ffi.cast("uintptr_t", arbiter.a)), int(ffi.cast("uintptr_t", arbiter.b))))
+
+
+def kinds(arbiter: Any) -> tuple[int, int]:
+    """The collision types of both shapes of an arbiter."""
+    return lib.cpShapeGetCollisionType(arbiter.a), lib.cpShapeGetCollisionType(arbiter.b)
 
 
 def second_is(arbiter: Any, shape: pymunk.Shape) -> bool:

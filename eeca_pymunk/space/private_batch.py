@@ -35,6 +35,20 @@ def reader(space: pymunk.Space, fields: batch.BodyFields, floats: FloatArray, id
     return read
 
 
+def reader_of(bodies: Sequence[pymunk.Body], fields: batch.BodyFields, floats: FloatArray) -> Callable[[], None]:
+    """The same for some bodies, which may be in no space, one after the other."""
+    values, numbers = _array("pmFloatArray *", "cpFloat[]", floats), ffi.new("pmIntArray *")
+    data = _batched(fields, values, numbers)
+    one, pointers = lib.pmSpaceBodyGetIteratorFuncBatched, [body._body for body in bodies]
+
+    def read(held: object = (floats, numbers)) -> None:
+        values.num = 0
+        for pointer in pointers:
+            one(pointer, data)
+
+    return read
+
+
 def ordered(space: pymunk.Space, ids: AnyArray) -> Callable[[], bool]:
     """A function that returns whether the bodies of the space have these ids, in this order. Bodies that fall asleep
     or wake get other places in it: one call finds this for all of them."""

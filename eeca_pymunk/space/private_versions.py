@@ -113,6 +113,12 @@ def add_handler(space: pymunk.Space) -> Any:
     return next(iter(space._handlers.values()))
 
 
+def handled(space: pymunk.Space) -> list[tuple[int | None, int | None]]:
+    """The pairs of collision types for which a space has handlers, None for all types. Keys of pymunk 7 are pairs,
+    those of pymunk 6 also None for all, or one type."""
+    return [key if isinstance(key, tuple) else (key, None) for key in space._handlers]
+
+
 def forget_function(body: pymunk.Body, name: str, function: Callable[..., None]) -> None:
     """What pymunk before 7.3 leaves undone when its default is set again: the body's own function is none any more."""
     if function is DEFAULTS[name]:

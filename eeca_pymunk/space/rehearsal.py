@@ -18,52 +18,27 @@ import pymunk
 from ..layout import NOW
 from ..rehearsing import approach, changed
 from ..transfer import TURNS
-from . import private, private_joints
+from . import private, private_joints, private_shapes
 from .decisions import Decisions, Rules
+from .edits import typings
+from .hearing import Hearing
 from .joints import JointRows
-from .private_versions import answer
+from .watched import Watched
 
 if TYPE_CHECKING:
+    from .sync import Sync
     from .world import World
 
-_BEGIN, _PRE_SOLVE, _POST_SOLVE, _ = private.PHASES
-
-
-class _Watched:
-    """Wrapper of a function of a handler or constraint that records changes to bodies, decisions, and exceptions.
-
-    `phase`: of a handler, "" of a constraint. `stage`: number of pymunk's stage in which the function is called, 0 for
-    begin and pre_solve; between two calls of one stage pymunk changes no body.
-    """
-
-    __slots__ = ("_decides", "_phase", "_rehearsal", "_stage", "function")
-
-    def __init__(self, rehearsal: Rehearsal, function: Callable[..., Any], phase: str, stage: int) -> None:
-        self._rehearsal, self.function, self._phase, self._stage = rehearsal, function, phase, stage
-        self._decides = phase in (_BEGIN, _PRE_SOLVE)
-
-    def __call__(self, *arguments: Any) -> bool | None:
-        rehearsal = self._rehearsal
-        if rehearsal.failure is not None:
-            return True
-        rehearsal.before_call(self._stage)
-        before = private.decision(arguments[0]) if self._decides else None
-        answered: bool | None = True
-        try:
-            answered = answer(self.function(*arguments), self.function, self._phase)
-        except BaseException as error:
-            # pymunk's C code would discard it.
-            rehearsal.failure = error
-        if self._decides and (answered is False or private.decision(arguments[0]) != before):
-            rehearsal.decided = True
-        rehearsal.after_call(self._stage)
-        return answered
+_LATER = 4  # steps for which pymunk may remember pairs that were near
+_RENEW = 32  # steps in a row that are left out at most: as reindexing (`sync.py`), that leaves unused handles
+_POST_SOLVE = private.PHASES[2]
 
 
 class Rehearsal:
     """The arrays and wrappers for rehearsals of a world, kept from step to step.
 
     Attributes:
+        left_out: whether pymunk's step was left out in the last rehearsal.
         failure: the exception of a function in the last rehearsal.
         decided: whether a function has changed a collision in it.
     """
@@ -72,12 +47,17 @@ class Rehearsal:
         self.world, self.space = world, world.space
         self._start, self._known = np.zeros_like(world.START), np.zeros_like(world.START)
         self._approach = approach.bind(world.STATES, world.WALK, world.EXTRA, world.BODY, world.ENDS, self._start)
+        self._lengths = 0.0, 0.0, 0.0, 1.0  # dt, gravity, factor of half a step's damping
         # Whether there are changes by begin and pre_solve, and changes by post_solve and separate; the last stage.
         self._changed, self._stage = [False, False], -1
         self._wrapped: list[tuple[Any, str, Any, Any]] = []
         self._functions: list[tuple[Any, ...]] = []
         self.failure: BaseException | None = None
         self.decided, self._ignores = False, True
+        self.left_out, self._without = False, 0
+        # Whether the last step called nothing for certain; number of steps for which that is not asked again.
+        self._unheard, self._later = False, 0
+        self._hearing: Hearing | None = None
         self._recent: float = 0.0  # number of steps for which decisions still apply
 
     @cached_property
@@ -85,7 +65,8 @@ class Rehearsal:
         return [changed.bind(self.world.STATES, self._known, table) for table in self.world.CHANGES]
 
     def forget(self) -> None:
-        """Forget earlier steps."""
+        """Forget earlier steps, and what handlers may hear."""
+        self._hearing, self._unheard, self._later = None, False, 0
         self._changed, self._recent, self._ignores = [False, False], 0, True
         self.world.CHANGES.fill(0.0)
 
@@ -107,32 +88,45 @@ class Rehearsal:
         if self._differ[late]():
             self._changed[late] = True
 
-    def run(self, dt: float, half_damping: float) -> int:
+    def run(self, dt: float, half_damping: float, sync: Sync | None = None) -> int:
         """Take pymunk's step; STATES then has the start of the EECA step, with the changes by begin and pre_solve. An
         exception of a function is raised when pymunk has finished.
+
+        Args:
+            sync: if given, a step that would call no handler may be left out. That needs that pymunk has taken no step
+                of its own since the last EECA step; if arbiters were read since then, they will probably be read again.
 
         Returns:
             0 or a negative code of `transfer.py`, with nothing done.
         """
-        world, hooks = self.world, self.world.hooks
-        gx, gy = world.gravity
-        status = self._approach(dt, gx, gy, half_damping)
+        world = self.world
+        self._lengths = dt, *world.gravity, half_damping
+        status = self._approach(*self._lengths)
         if status < 0:
             return status
         self.failure, self.decided, self._stage = None, False, -1
         if True in self._changed:
             world.CHANGES.fill(0.0)
             self._changed = [False, False]
+        if self._later > 0:
+            self._later -= 1
+        else:
+            self._unheard = sync is not None and sync.is_ours() and self._is_unheard(dt)
+            self._later = 0 if self._unheard else _LATER
+        self.left_out = self._unheard and sync is not None and not sync.were_read() and self._without < _RENEW
+        if self.left_out:
+            self._without += 1
+            return status
+        self._without = 0
         world.scatter(TURNS)
+        if self._unheard:
+            self._step(dt)
+            return status
         self._wrap()
         try:
             for handler, phase, _, watched in self._wrapped:
                 setattr(handler, phase, watched)
-            if hooks.none_within_steps():
-                private.step_without_end(self.space, dt)
-            else:
-                with hooks.silent(), self._silent_joints(hooks.joints):
-                    private.step_without_end(self.space, dt)
+            self._step(dt)
         finally:
             for handler, phase, function, _ in self._wrapped:
                 setattr(handler, phase, function)
@@ -143,6 +137,38 @@ class Rehearsal:
         if self._changed[0]:
             world.STATES[NOW] += world.CHANGES[0]
         return status
+
+    def _step(self, dt: float) -> None:
+        hooks = self.world.hooks
+        if hooks.none_within_steps():
+            private.step_without_end(self.space, dt)
+        else:
+            with hooks.silent(), self._silent_joints(hooks.joints):
+                private.step_without_end(self.space, dt)
+
+    def _is_unheard(self, dt: float) -> bool:
+        """Whether pymunk's step would call nothing."""
+        joints = self.world.joints
+        if self._recent > 0 or self._ignores or (joints is not None and joints.calling):
+            return False
+        if self._hearing is None or self._hearing.typings != typings():
+            self._hearing, self._unheard = Hearing(self.world), False
+        return not self._hearing.near(dt) and (self._unheard or not self._hearing.remembered())
+
+    def make_up(self) -> None:
+        """Take the step of pymunk that was left out, for its arbiters, unless the space has other bodies now."""
+        world = self.world
+        present = world.bodies.gather()
+        if present is None:
+            return
+        np.copyto(world.STATES[NOW], self._start)
+        self._approach(*self._lengths)
+        world.scatter(TURNS)
+        try:
+            self._step(self._lengths[0])
+        finally:
+            world.bodies.scatter(present, unchanged=True)
+            private_shapes.reindex_anew(self.space, world.movers)
 
     @property
     def after(self) -> bool:
@@ -157,7 +183,7 @@ class Rehearsal:
         if now != self._functions or late:
             self._functions = now
             self._wrapped = [
-                (handler, phase, f, _Watched(self, f, phase, max(i - 1, 0)))
+                (handler, phase, f, Watched(self, f, phase, max(i - 1, 0)))
                 for handler, *functions in now
                 for i, (phase, f) in enumerate(zip(private.PHASES, functions, strict=True))
                 if f is not None
@@ -194,7 +220,7 @@ class Rehearsal:
             for item, before, after in functions:
                 assert before is not None
                 silent = None if after is None else lambda *_: None
-                private_joints.replace_functions(item, _Watched(self, before, "", 0), silent)
+                private_joints.replace_functions(item, Watched(self, before, "", 0), silent)
             yield
         finally:
             for item, before, after in functions:

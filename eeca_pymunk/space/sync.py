@@ -6,7 +6,8 @@ nothing else; it costs less for a few bodies, above all if they touch or are joi
 handles, which a rest step clears, so there is one every `_RENEW` steps. Post-step callbacks follow either way, when
 bodies have their velocities.
 
-If arbiters are read after a step that has reindexed, a rest step is taken first (`Sync.renew`).
+If arbiters are read after a step that has reindexed, a rest step is taken first (`Sync.renew`); after one whose
+rehearsal was left out, the rehearsal.
 """
 
 from __future__ import annotations
@@ -96,11 +97,11 @@ class Sync:
     def __init__(self, world: World, past: Sync | None = None) -> None:
         """`past`: that of the world of this space before; pymunk itself indexes shapes that were added since."""
         self.space, bodies = world.space, world.bodies
-        self._asleep = bool(bodies.asleep.any())
+        self._asleep = bodies.reached is not None
         self._pulls = self.space.sleep_time_threshold < math.inf
         sleepers = [bodies.items[i] for i in bodies.asleep.nonzero()[0]] if self._asleep else []
         self._stop = private_sleep.stop_woken(sleepers)
-        self._shapes = int(world.shape_counts.sum())
+        self._shapes = sum(world.shape_counts.values())
         self._world = world
         self._timestamp: Callable[[], int] = private.timestamp(self.space)
         self.waits = partial(private.waits, self.space)
@@ -117,12 +118,11 @@ class Sync:
         """Whether reindexing is enough for this step. Conditions:
 
         * pymunk has taken no step since the last rest step, which had this dt and was no more than `_RENEW` steps ago;
-        * arbiters were not read after the last step;
+        * arbiters were not read after the last step, other than for a picture;
         * nothing touched in this step and the last one, or readers of arbiters call `renew`;
         * the number of shapes is at most SOME; with neither contacts nor joints at most FEW.
         """
-        were_read, self._were_read = self._were_read, False
-        if were_read or self._reindexings == 0 or dt != self._dt or self._shapes > SOME:
+        if self.were_read() or self._reindexings == 0 or dt != self._dt or self._shapes > SOME:
             return False
         if status & EVENTS or self._touched:
             if not self.renews:
@@ -131,16 +131,29 @@ class Sync:
             return False
         return self._timestamp() == self._rested
 
+    def were_read(self) -> bool:
+        """Whether arbiters were read since the last call."""
+        were_read, self._were_read = self._were_read, False
+        return were_read
+
     def reindex(self) -> None:
         """Move the shapes to the poses of their bodies."""
         self._reindexings -= 1
         self._stale = True
         private_shapes.reindex(self.space, self._world.movers)
 
-    def renew(self) -> None:
-        """Make arbiters by a rest step, if the last step was an EECA step that made none."""
-        self._were_read = True
-        if self._stale and self.space not in BUSY and self._timestamp() == self._rested:
+    def renew(self, drawn: bool = False) -> None:
+        """Make arbiters by a rest step, or by the rehearsal that was left out, if the last step was an EECA step that
+        made none. `drawn`: only for a picture, which costs more than either; where bodies may sleep the next step
+        makes them."""
+        world = self._world
+        self._were_read |= not (drawn and self.renews)
+        if not self._stale or self.space in BUSY or not self.is_ours():
+            return
+        if world.collisions:
+            world.rehearsal.make_up()
+            self.stamp, self._stale = self._timestamp(), False
+        else:
             with private_rest.stopped(self.space):
                 self.rest(self._dt)
 
@@ -153,10 +166,14 @@ class Sync:
         """Record that the steps pymunk has taken until now were part of EECA steps."""
         self.stamp = self._timestamp()
 
-    def finish_rehearsal(self) -> None:
-        """After a rehearsal, the end of pymunk's step: move shapes to their bodies, then `call_back`."""
-        self.stamp = self._timestamp()
-        private_shapes.reindex_anew(self.space, self._world.movers)
+    def finish_rehearsal(self, dt: float, left_out: bool) -> None:
+        """After a rehearsal, or if it was left out, the end of pymunk's step: move shapes to their bodies, then
+        `call_back`."""
+        self.stamp, self._dt, self._stale = self._timestamp(), dt, left_out
+        if left_out:
+            private_shapes.reindex(self.space, self._world.movers)
+        else:
+            private_shapes.reindex_anew(self.space, self._world.movers)
         self.call_back()
 
     def is_ours(self) -> bool:

@@ -140,14 +140,14 @@ class World(Crossing):
         return centred
 
     @cached_property
-    def shape_counts(self) -> IntArray:
-        """(N,) the number of shapes of each body, 0 for static ones."""
-        return shape_counts(self.bodies, self.owner, self.records)
+    def shape_counts(self) -> dict[Any, int]:
+        """The number of shapes of each body that is not static."""
+        return shape_counts(self.bodies, self.records)
 
     @cached_property
     def movers(self) -> list[Any]:
         """Pointers to the Chipmunk bodies that are not static and have shapes."""
-        return private.pointers([self.bodies.items[i] for i in np.flatnonzero(self.shape_counts).tolist()])
+        return private.pointers(body for body, count in self.shape_counts.items() if count)
 
     @cached_property
     def empty(self) -> Details:
@@ -252,4 +252,4 @@ class World(Crossing):
 
     def half_damping(self, dt: float) -> float:
         """Factor of half a step's damping; 1 for damping 0, whose velocities `alter_end` sets to 0 at the end."""
-        return self.damping ** (0.5 * dt) if self.damping > 0.0 else 1.0
+        return 1.0 if self.damping in (0.0, 1.0) else self.damping ** (0.5 * dt)

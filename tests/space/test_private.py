@@ -212,12 +212,12 @@ def test_step_without_end_and_finish_step_are_a_step(threaded: bool) -> None:
 def test_watch_and_count_of_shapes() -> None:
     space, bodies = meeting()
     assert private.shapes_ever(space) == 2
-    edits = [0]
+    count = edits.counts(space)
 
     def bump() -> None:
-        edits[0] += 1
+        count[0] += 1
 
-    current = private.watch(space, edits, [0])
+    current = private.watch(space, count, [0])
     space.step(0.001)
     bodies[0].velocity = (9.0, 9.0)
     space.iterations = 3
@@ -235,12 +235,12 @@ def test_watch_and_count_of_shapes() -> None:
         lambda: space.add(pymunk.Circle(bodies[0], 1.0)),
         bump,
     ):
-        known = edits.copy()
-        current = private.watch(space, edits, known)
+        known = count.copy()
+        current = private.watch(space, count, known)
         assert current()
         change()
         assert not current()
-        known[0] = edits[0]
+        known[0] = count[0]
         assert current() == (change is bump)
     assert private.shapes_ever(space) == 3
 
@@ -292,3 +292,13 @@ def test_waits() -> None:
     assert private.waits(space)
     space.step(0.001)
     assert not private.waits(space)
+
+
+def test_reader_of_some_bodies_reads_bodies_in_no_space() -> None:
+    bodies = [pymunk.Body(1.0, 1.0), pymunk.Body(body_type=pymunk.Body.KINEMATIC)]
+    floats = np.full(9, -1.0)
+    read = private_batch.reader_of(bodies, pymunk.batch.BodyFields.POSITION | pymunk.batch.BodyFields.ANGLE, floats)
+    for k in range(3):
+        bodies[1].position, bodies[1].angle = (float(k), 2.0), 3.0
+        read()
+        assert floats.tolist() == [0.0, 0.0, 0.0, float(k), 2.0, 3.0, -1.0, -1.0, -1.0]

@@ -209,3 +209,33 @@ def test_reading_arbiters_calls_no_function_of_a_body() -> None:
         stepper.step(DT)
     body.each_arbiter(lambda arbiter: None)
     assert dts == 3 * [DT]
+
+
+class Picture(pymunk.SpaceDebugDrawOptions):
+    """Draws nothing."""
+
+    def draw_circle(self, *_: object) -> None:
+        pass
+
+    draw_segment = draw_fat_segment = draw_polygon = draw_dot = draw_circle
+
+
+def test_pictures_cost_the_next_step_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """After a picture the next step reindexes as without it; where bodies may sleep it reads nothing anew."""
+    space = crowd(4)
+    stepper = ep.EECA(space)
+    stepper.step(DT)
+    ways = counted(stepper, monkeypatch)
+    for _ in range(5):
+        stepper.step(DT)
+        space.debug_draw(Picture())
+    assert ways == ["reindex", "rest"] * 5  # the picture's own
+    space = crowd(4)
+    floor = pymunk.Segment(space.static_body, (-99, -1), (99, -1), 0.1)
+    space.add(floor)
+    space.sleep_time_threshold = 0.2
+    stepper = ep.EECA(space)
+    for _ in range(40):
+        stepper.step(DT)
+        space.debug_draw(Picture())
+    assert stepper.reads <= 3

@@ -1,0 +1,155 @@
+"""Steps of pymunk that would call no handler are left out: calls, paths and arbiters are those of steps with them."""
+
+from __future__ import annotations
+
+import math
+import random
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pymunk
+import pytest
+
+import eeca_pymunk as ep
+from eeca_pymunk.layout import END
+from eeca_pymunk.rehearsing import nears
+from eeca_pymunk.space.rehearsal import Rehearsal
+
+DT = 1 / 60
+PHASES = "begin", "pre_solve", "post_solve", "separate"
+
+
+def room(seed: int) -> pymunk.Space:
+    """Disks and boxes of five types that bounce in a wide box, with a sensor and a kinematic bar."""
+    space, chance = pymunk.Space(), random.Random(seed)
+    space.gravity = (0.0, -200.0 * chance.random())
+    for a, b in (((0, 0), (400, 0)), ((400, 0), (400, 300)), ((400, 300), (0, 300)), ((0, 300), (0, 0))):
+        wall = pymunk.Segment(space.static_body, a, b, 2.0)
+        wall.elasticity, wall.collision_type = 1.0, 7
+        space.add(wall)
+    watched = pymunk.Poly(space.static_body, [(180, 150), (220, 150), (200, 190)])
+    watched.sensor, watched.collision_type = True, 8
+    bar = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    bar.position, bar.angular_velocity = (100.0, 100.0), 1.0
+    beam = pymunk.Segment(bar, (-30, 0), (30, 0), 1.0)
+    beam.collision_type = 9
+    space.add(watched, bar, beam)
+    for k in range(6):
+        body = pymunk.Body(1.0, 50.0)
+        body.position = 40.0 + 60.0 * k, 60.0 + 150.0 * chance.random()
+        body.velocity, body.angular_velocity = (300.0 * chance.uniform(-1, 1), 300.0 * chance.uniform(-1, 1)), 2.0
+        shape: pymunk.Shape = pymunk.Circle(body, 6.0, (1.0, 0.0)) if k % 2 else pymunk.Poly.create_box(body, (12, 8))
+        shape.elasticity, shape.friction, shape.collision_type = 0.9, 0.3, k
+        space.add(body, shape)
+    return space
+
+
+PAIRS: dict[str, tuple[int | None, int | None]] = {
+    "two bodies": (1, 2), "a wall": (3, 7), "a sensor": (2, 8), "a kinematic body": (4, 9), "one type": (5, None),
+}  # fmt: skip
+
+
+def played(
+    seed: int, types: tuple[int | None, int | None], each: Callable[[pymunk.Space, list[Any]], None]
+) -> tuple[list[Any], int]:
+    """What handlers and `each` have told, with the path; and how many steps were left out."""
+    space, left_out = room(seed), 0
+    told: list[Any] = []
+    step = [0]
+
+    def telling(phase: str) -> Callable[..., None]:
+        def tell(arbiter: pymunk.Arbiter, space: pymunk.Space, data: Any) -> None:
+            told.append((step[0], phase, *(shape.collision_type for shape in arbiter.shapes)))
+
+        return tell
+
+    space.on_collision(*types, **{phase: telling(phase) for phase in PHASES})
+    stepper = ep.EECA(space)
+    for step[0] in range(300):
+        if step[0] == 150:
+            for shape in space.shapes:
+                shape.collision_type = (shape.collision_type + 1) % 10
+        stepper.step(DT)
+        world = stepper._world
+        left_out += world is not None and world.rehearsal.left_out
+        told.append([(*body.position, *body.velocity, body.angle) for body in space.bodies])
+        each(space, told)
+    return told, left_out
+
+
+def nothing(space: pymunk.Space, told: list[Any]) -> None:
+    pass
+
+
+def touching(space: pymunk.Space, told: list[Any]) -> None:
+    """Tells who touches, now and then."""
+    if len(told) % 7 == 0:
+        for body in space.bodies:
+            body.each_arbiter(lambda arbiter: told.append([shape.collision_type for shape in arbiter.shapes]))
+
+
+@pytest.mark.skipif(not hasattr(pymunk.Space, "on_collision"), reason="handlers of pymunk 6 are made otherwise")
+@pytest.mark.parametrize("each", [nothing, touching], ids=["unread", "read"])
+@pytest.mark.parametrize("name", PAIRS)
+def test_calls_paths_and_arbiters_are_those_of_all_steps(
+    name: str, each: Callable[[pymunk.Space, list[Any]], None], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Compared are the calls in their order, the paths bit by bit, and the pairs that arbiters tell."""
+    for seed in range(4):
+        with_all, without = [], []
+        found, left_out = played(seed, PAIRS[name], each)
+        without.append(found)
+        with monkeypatch.context() as patched:
+            patched.setattr(Rehearsal, "_is_unheard", lambda self, dt: False)
+            found, none = played(seed, PAIRS[name], each)
+            with_all.append(found)
+        assert none == 0
+        assert without == with_all
+        assert left_out > 50 or name == "one type"
+
+
+def test_a_step_of_pymunk_in_between_is_heard() -> None:
+    """What a step of pymunk's own has begun, the next one separates."""
+    space, told = pymunk.Space(), []
+    for x in (-0.4, 0.4):
+        body = pymunk.Body(1.0, 1.0)
+        body.position = x, 0.0
+        shape = pymunk.Circle(body, 0.5)
+        shape.collision_type = 1
+        space.add(body, shape)
+    functions = {phase: lambda *_, phase=phase: told.append(phase) or True for phase in ("begin", "separate")}
+    if hasattr(space, "on_collision"):
+        space.on_collision(1, 1, **functions)
+    else:
+        handler = space.add_collision_handler(1, 1)
+        handler.begin, handler.separate = functions["begin"], functions["separate"]
+    bodies, stepper = list(space.bodies), ep.EECA(space)
+    bodies[1].position = 9.0, 0.0
+    for _ in range(10):
+        stepper.step(DT)
+    assert told == []
+    bodies[1].position = 0.4, 0.0
+    space.step(DT)
+    bodies[1].position = 9.0, 0.0
+    stepper.step(DT)
+    assert told == ["begin", "separate"]
+
+
+def test_pairs_are_near_within_twice_their_way() -> None:
+    """A disk of radius 1 on its way to a wall at x = 5, and to another disk."""
+    states, ends = np.zeros((2, 2, 9)), np.zeros(12 * 2)
+    heard = np.array([[-1, 5.0, 0.0, 0.0, 10.0, 0.5, 0.5], [0, 0, 0, 0, 0, 0, 1.0], [1, 0, 0, 0, 0, 0, 1.0]])
+    end = ends[END * 2 :]
+    for x, y, speed, pairs, near in (
+        (0.0, 0.0, 1.0, [[0, 1]], False),
+        (0.0, 0.0, 1.2, [[0, 1]], True),  # 1.2 + 2 * 1.2 > 5 - 1.5
+        (0.0, 30.0, 1.2, [[0, 1]], False),
+        (3.5, 0.0, 0.0, [[0, 1]], True),
+        (0.0, 0.0, 1.2, [], False),
+        (0.0, 0.0, 0.0, [[1, 2]], False),
+        (2.0, 1.0, 0.0, [[2, 1]], True),
+    ):
+        states[0, 0, :2], states[0, 0, 3], states[0, 1, :2] = (x, y), speed, (math.sqrt(4.5), math.sqrt(4.5))
+        end[:3], end[6:9] = (x, y, 0.0), (math.sqrt(4.5), math.sqrt(4.5), 0.0)
+        assert nears(states, ends, heard.copy(), np.array(pairs, np.int64).reshape(-1, 2), 1.0, 2.0) == near
