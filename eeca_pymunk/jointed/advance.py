@@ -123,7 +123,7 @@ def advance(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, 
             first = list_rows(A, J, B, s, h, motion.MEAN)
             if ready(J, s, h, True):
                 PUSH = np.empty((size, 3))
-                fill_group(J, groups, C, g, INDEX, True, P, Q, ROWS, m, PUSH)
+                fill_group(J, groups, C, g, INDEX, True, P, Q, ROWS, m, PUSH, 2)
                 fill_rows(J, groups, B, g, first, INDEX, PUSH)
             else:
                 B.USED[0] = first

@@ -116,7 +116,7 @@ def hold(A: Scene, J: Joints, interval: Interval, end: float, RATES: FloatArray,
         size = find_places(A, J, s, INDEX)
         if not ready(J, s, 2.0, False):
             return np.zeros(m)
-        fill_group(J, groups, C, g, INDEX, False, P, Q, KEEP, m, np.empty((size, 3)))
+        fill_group(J, groups, C, g, INDEX, False, P, Q, KEEP, m, np.empty((size, 3)), 1)
     weigh(groups, C, P, Q, KEEP, m)
     for i in range(m):
         if RATES[i] < np.inf:
