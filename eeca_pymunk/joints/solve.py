@@ -85,8 +85,8 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
     fresh ones.
 
     Args:
-        loops: whether rows may be redundant: `epsilon` is the error then. Those of limits that hold seldom are, and
-        count as such once errors do not fall.  give: compliance over h², see `newton`.
+        loops: whether rows may be redundant: `epsilon` is the error then. Those of limits that hold seldom are: it is
+        the square of the error, until that does not fall.  give: compliance over h², see `newton`.
     """
     hinge, local, component, progress = W.J.HINGE, W.J.LOCAL, W.J.COMPONENT[W.s], W.J.PROGRESS
     first_iterate(W, STEP, h)
@@ -132,8 +132,9 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
         if fresh:
             if not built:
                 linearise(W, STEP, h, length, give, False, system, True)
-            least = REDUNDANT_EPSILON if limits else 0.0
-            epsilon = max(REDUNDANT_EPSILON, min(1e-2, worst)) if redundant else least
+            epsilon = 0.0
+            if redundant or limits:
+                epsilon = max(REDUNDANT_EPSILON, min(1e-2, worst if redundant else worst * worst))
             system = factorise(W, STEP, h, length, give, system, epsilon)
             if system < 0:
                 return False
