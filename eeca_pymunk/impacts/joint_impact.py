@@ -144,7 +144,7 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
                         V[q, c] = J.LOCAL[INDEX[q]].v0[c]
         if not ready(J, s, 2.0, False):
             continue
-        fill_group(J, groups, C, g, INDEX, False, P, Q, ROWS, rows, PUSH)
+        fill_group(J, groups, C, g, INDEX, False, P, Q, ROWS, rows, PUSH, 2)
         if along:
             continue
         PUSH[:] = 0.0

@@ -58,14 +58,13 @@ class Interval(NamedTuple):
     h: float
 
 
-@nonallocating
-def is_hit(groups: Groups, P: IntArray, Q: IntArray, m: int, g: int) -> bool:
-    """Whether any contact is on group g."""
-    hits = 0
+@kernel
+def find_hit(groups: Groups, P: IntArray, Q: IntArray, m: int) -> IntArray:
+    """Whether (1 or 0) any contact is on a group, of all groups; one more, for GROUP -1."""
+    HIT = np.zeros(len(groups.COMPONENT) + 1, np.int64)
     for i in range(m):
-        if groups.GROUP[P[i]] == g or groups.GROUP[Q[i]] == g:
-            hits += 1
-    return hits > 0
+        HIT[groups.GROUP[P[i]] + 1] = HIT[groups.GROUP[Q[i]] + 1] = 1
+    return HIT[1:]
 
 
 @nonallocating
@@ -98,7 +97,7 @@ def advance(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, 
             ACC[q, 0] += sign * isle.IM[q] * fx
             ACC[q, 1] += sign * isle.IM[q] * fy
             ACC[q, 2] += sign * isle.II[q] * (L[i, 0] * arm_n + L[i, 1] * arm_t) / h
-    INDEX = np.full(k, -1, np.int64)
+    INDEX, HIT = np.full(k, -1, np.int64), find_hit(groups, P, Q, m if fill else 0)
     if fill:
         B.USED[0] = 0
     for g in range(len(groups.COMPONENT)):
@@ -117,13 +116,13 @@ def advance(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, 
                 motion.PUSHED[q, c] = ACC[q, c] if J.PROGRESS.near == 0.0 else math.nan
         if not fill:
             note_rows(A, J, B, s, h, motion.MEAN)
-        elif is_hit(groups, P, Q, m, g):
+        elif HIT[g] > 0:
             size = find_places(A, J, s, INDEX)
             let_slip(J, s, True, m <= COLUMN_CONTACTS)
             first = list_rows(A, J, B, s, h, motion.MEAN)
             if ready(J, s, h, True):
                 PUSH = np.empty((size, 3))
-                fill_group(J, groups, C, g, INDEX, True, P, Q, ROWS, m, PUSH)
+                fill_group(J, groups, C, g, INDEX, True, P, Q, ROWS, m, PUSH, 2)
                 fill_rows(J, groups, B, g, first, INDEX, PUSH)
             else:
                 B.USED[0] = first

@@ -61,12 +61,13 @@ def fill_free(groups: Groups, C: Columns, B: IntArray, ROWS: Rows[Row], IM: Floa
 @nonallocating
 def fill_group(
     J: Joints, groups: Groups, C: Columns, g: int, INDEX: IntArray, about_step: bool, A: IntArray, B: IntArray,
-    ROWS: Rows[Row], m: int, PUSH: FloatArray,
+    ROWS: Rows[Row], m: int, PUSH: FloatArray, ways: int,
 ) -> None:  # fmt: skip
     """The columns' entries on the bodies of group g, whose component is `ready`.
 
     Args:
         INDEX: (k,) places of bodies in the scratch of their component.  PUSH: (bodies of the component, 3) scratch.
+        ways: 2, or 1 for those of normal impulses alone.
     """
     s = groups.COMPONENT[g]
     for i in range(m):
@@ -74,7 +75,7 @@ def fill_group(
         on_a, on_b = groups.GROUP[a] == g, groups.GROUP[b] == g
         if not on_a and not on_b:
             continue
-        for tangent in range(2):
+        for tangent in range(ways):
             for w in range(len(PUSH)):
                 for c in range(3):
                     PUSH[w, c] = 0.0

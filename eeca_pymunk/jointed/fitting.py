@@ -16,7 +16,7 @@ from ..model.scene import Scene
 from ..rows.bounded import room_for_rows
 from ..rows.build import normal_rate
 from ..rows.inplace import add
-from .advance import Interval, is_hit
+from .advance import Interval, find_hit
 from .columns import fill_free, fill_group, weigh
 from .component import fit_speeds, ready
 from .gathered import find_places, gather_component
@@ -107,16 +107,16 @@ def hold(A: Scene, J: Joints, interval: Interval, end: float, RATES: FloatArray,
     KEEP, NOTHING = interval.ROWS[:m].copy(), np.zeros_like(isle.V)
     bring_arms(P, Q, KEEP, motion.END, m)
     fill_free(groups, C, Q, KEEP, isle.IM, isle.II, m)
-    INDEX = np.full(len(isle.IM), -1, np.int64)
+    INDEX, HIT = np.full(len(isle.IM), -1, np.int64), find_hit(groups, P, Q, m)
     for g in range(len(groups.COMPONENT)):
         s = groups.COMPONENT[g]
-        if s < 0 or not is_hit(groups, P, Q, m, g):
+        if s < 0 or HIT[g] == 0:
             continue
         gather_component(A, J, s, motion.END, motion.V, NOTHING, isle.IM, isle.II, end, h)
         size = find_places(A, J, s, INDEX)
         if not ready(J, s, 2.0, False):
             return np.zeros(m)
-        fill_group(J, groups, C, g, INDEX, False, P, Q, KEEP, m, np.empty((size, 3)))
+        fill_group(J, groups, C, g, INDEX, False, P, Q, KEEP, m, np.empty((size, 3)), 1)
     weigh(groups, C, P, Q, KEEP, m)
     for i in range(m):
         if RATES[i] < np.inf:

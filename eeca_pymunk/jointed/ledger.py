@@ -34,8 +34,8 @@ def mark_edited(A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray) -> None
             # Bodies that were put elsewhere start as those that are new: they go the same ways again, bit by bit.
             J.JOINT[j].touched = EDITED
             J.JOINT[j].impulse[0] = J.JOINT[j].impulse[1] = 0.0
-        for c in range(6 if J.JOINT[j].touched == EDITED else 0):
-            J.JOINT[j].led[c // 3, c % 3] = 0.0
+            for c in range(6):
+                J.JOINT[j].led[c // 3, c % 3] = 0.0
     A.PLACE[:] = -1
 
 

@@ -62,7 +62,7 @@ def correct(A: Scene, J: Joints, interval: Interval, end: float, budget: float) 
             gather_component(A, J, s, END, V, NOTHING, isle.IM, isle.II, end, h)
             places = find_places(A, J, s, INDEX)
             if ready(J, s, 2.0, False):
-                fill_group(J, groups, C, g, INDEX, False, P, Q, ROWS, m, np.empty((places, 3)))
+                fill_group(J, groups, C, g, INDEX, False, P, Q, ROWS, m, np.empty((places, 3)), 1)
     KEEP = ROWS[:m].copy()
     weigh(groups, C, P, Q, KEEP, m)
     D = np.zeros_like(V)

@@ -129,7 +129,7 @@ def press(
     EFFECT = np.zeros((len(isle.IM), 3))
     PREVIOUS = np.empty((len(isle.IM), 3))
     FORESEEN, UNKNOWN = np.empty((len(isle.IM), 3)), np.empty((0, 3))
-    converged, best, LEAST, USED, agreed = False, np.inf, L.copy(), L.copy(), False
+    converged, best, worst, LEAST, USED, agreed = False, np.inf, 0.0, L.copy(), L.copy(), False
     bent, reached, B = 0.0, np.inf, make_bounded(J, groups, m <= COLUMN_CONTACTS)
     NOW = np.empty(len(B.OF))
     problem = JointedProblem(P, Q, ROWS, C, B, m)
@@ -154,6 +154,10 @@ def press(
                     break
                 give_slips(ROWS, m, SLIP)
                 limited, best = True, np.inf
+            if not exactly and off <= worst:
+                # Laws are not solved as well as that: other impulses may break them less, and agree less.
+                agreed = True
+                break
             if off < best:
                 best = off
                 copy(LEAST, L)

@@ -62,7 +62,8 @@ def correct(W: Workspace, what: int) -> None:
                     return
                 passes, tries = 0, tries + 1
                 restore_speeds(W)
-        first_iterate(W, what, 2.0)
+        if what == POSES or passes == 0:
+            first_iterate(W, what, 2.0)
 
 
 @nonallocating

@@ -74,7 +74,9 @@ def assemble(W: Workspace, what: int, h: float, give: float, first: bool, system
         if not still and idle(link, k):
             put_idle(link, hinge, k, system, build, band, matrix)
             continue
-        bend = joint_rows(W, k, h, build and not still)
+        bend = NO_BEND
+        if build or what != SPEEDS:  # else nothing has moved since rows were built
+            bend = joint_rows(W, k, h, build and not still)
         a, b = link[k].body[0], link[k].body[1]
         if first or hinge[k].scale[0] == 0.0:
             scale_rows(link, hinge, local, k)
