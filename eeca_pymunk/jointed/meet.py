@@ -116,8 +116,8 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
         if then == t:
             break
         t = then
-    if loaded == 0 and rate >= 0.0 and start >= -close * small and g < -MEET_MANY * small:
-        crosses = True  # what has just met, and joints bring together again, meets before secants come to
+    if loaded == 0 and rate >= 0.0 and g < -MEET_MANY * small:
+        crosses = True  # what joints bring together again meets before secants come to
     for _ in range(MEET_HALVINGS):
         if not (crosses or left_apart(A, J, roots[0]) or left_apart(A, J, roots[1])):
             break
