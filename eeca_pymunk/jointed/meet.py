@@ -24,13 +24,14 @@ from .ends import end_here, left_apart, shorten, under_way
 
 @nonallocating
 def begun(A: Scene, i: int) -> float:
-    """The latest instant at which intervals of islands without joints have begun that shapes of body i may touch."""
+    """The latest instant at which intervals of islands without joints have begun, or ended by this event, that shapes of
+    body i may touch."""
     latest = 0.0
     for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):
         for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
             j = A.LINK[A.POOL[w]].owner
             root = A.STATE[j].island
-            if root >= 0 and A.MEMBER[root].open > 0 and A.MEMBER[root].jointed == 0:
+            if root >= 0 and A.MEMBER[root].jointed == 0:
                 latest = max(latest, A.BODY[j].since)
     return latest
 
