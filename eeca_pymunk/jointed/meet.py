@@ -24,7 +24,7 @@ from .ends import end_here, left_apart, shorten, under_way
 
 @nonallocating
 def begun(A: Scene, i: int) -> float:
-    """The latest instant at which intervals of islands without joints have begun, or ended by this event, that shapes of
+    """The latest instant at which intervals of islands without joints have begun, or just ended, that shapes of
     body i may touch."""
     latest = 0.0
     for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):

@@ -204,7 +204,9 @@ def test_work_is_not_spent_on_intervals_that_were_too_long(seed: int, steps: int
     Varied(seed, True).play(steps)
 
 
-@pytest.mark.parametrize(("seed", "steps"), [(300010, 3), (300017, 51), (300005, 82), (300053, 63), (600227, 104), (600175, 66)])
+@pytest.mark.parametrize(
+    ("seed", "steps"), [(300010, 3), (300017, 51), (300005, 82), (300053, 63), (600227, 104), (600175, 66)]
+)
 def test_ledgers_close_where_intervals_with_joints_are_short(seed: int, steps: int) -> None:
     """Intervals as short as what counts as empty, impacts of bodies without joints on what has some, and islands that
     were brought to an impact which they then had no part in."""
