@@ -51,10 +51,15 @@ def clip(
         low = u_0 if u_0 >= width else u_1
         if 0.0 < u_1 <= u_0 < width:  # across: its end that is nearer
             h_0 = h_1 = min(h_0, h_1)
-    for k in range(points):
+    for k in range(points + 1):
         # In the order of the tangent of the normal from a to b.
         u = low if (k == 0) == (sign > 0.0) or points == 1 else high
         h = h_0 if u == u_0 else (h_1 if u == u_1 else h_0 + slope * (u - u_0))
+        if k == points:
+            if count > 0:
+                break
+            # What is on the edge is beyond reach: the end that is as near as the cores are is beside it.
+            u, h = (u_0, h_0) if h_0 < h_1 else (u_1, h_1)
         g = h - r_p - r_q
         if g <= reach:
             away = r_p + 0.5 * g

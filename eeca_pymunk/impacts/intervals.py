@@ -8,7 +8,7 @@ from ..contacts.unmet import most_work, note_unmet
 from ..islands.accounting import close_interval
 from ..islands.building import build_islands
 from ..islands.intervals import lift_here, solve
-from ..jointed.ends import end_here, left_apart, shorten, stand_still
+from ..jointed.ends import end_here, left_apart, shorten, stand_still, take_back
 from ..jointed.solve import begin_interval
 from ..model.bodies import AT_REST
 from ..model.joints import Joints
@@ -64,7 +64,9 @@ def start_waiting(A: Scene, J: Joints) -> int:
 def cut_short(A: Scene, J: Joints, i: int, t: float) -> int:
     """End the step at instant t, that of the event of body i, since its budget is spent; so no impact is ignored."""
     met = A.STATE[i].other >= 0  # else the event is the end of an interval, without a partner
-    own, other = (A.STATE[i].own, A.STATE[i].other) if met else (A.STATE[i].first_shape, -1)
+    own, other = (A.STATE[i].own, A.STATE[i].other) if met else (-1, -1)
+    if not met and A.STATE[i].shapes > 0:
+        own = A.STATE[i].first_shape
     note_unmet(A, SOLVES, own, other, float(A.COUNT.work), most_work(A))
     A.PAR.dt = t
     A.COUNT.heap = 0
@@ -72,12 +74,15 @@ def cut_short(A: Scene, J: Joints, i: int, t: float) -> int:
         # The shortened intervals are solved again below, beyond the budget that is spent.
         J.PROGRESS.budget = J.PROGRESS.effort + STEP_WORK
     for k in range(A.BODY.shape[0] - 1):
-        # An island with joints may already be at a later instant than t, as its impacts may come later than predicted
+        # An island may already be at a later instant than t, as impacts of joints come later than predicted, or earlier
         # (`..jointed.meet`): the poses there become those at t.
+        later = A.BODY[k].since > t
         A.BODY[k].since = min(A.BODY[k].since, t)
         root = A.STATE[k].island
         if root < 0 or A.MEMBER[root].rest == AT_REST:
             continue
+        if A.MEMBER[root].open == 0:
+            A.BODY[k].since = t  # its path ended before; until the cut it stays there
         if A.MEMBER[root].jointed > 0:
             if root == k:
                 shorten(A, J, k, t)
@@ -86,6 +91,8 @@ def cut_short(A: Scene, J: Joints, i: int, t: float) -> int:
                 end_here(A, J, k, t)
             continue
         if root == k:
+            if later:
+                take_back(A, k)  # its interval was to begin after the cut
             if A.MEMBER[k].open > 0:
                 close_interval(A, k, t)
             lift_here(A, k, t)

@@ -19,6 +19,7 @@ from ..jointed.ends import end_here, shorten, under_way
 from ..jointed.gathered import find_places, gather_component
 from ..jointed.groups import find_groups
 from ..jointed.meet import meet
+from ..model.bodies import AT_REST
 from ..model.contacts import SOLVED, JointedProblem, Row
 from ..model.joints import Joints
 from ..model.parameters.events import EVENT_LOOKS
@@ -85,6 +86,24 @@ def list_apart(A: Scene, i: int, j: int) -> int:
     return n
 
 
+@nonallocating
+def list_ended(A: Scene, n: int) -> int:
+    """Add to the n bodies in A.BLOCK those of all other islands whose intervals have ended, as these were brought to
+    the instant of an impact: they begin new ones, though they may not touch. How many bodies there are then."""
+    set_places(A, A.BLOCK, n)
+    for root in range(A.BODY.shape[0] - 1):
+        if A.STATE[root].island != root or A.MEMBER[root].open > 0 or A.MEMBER[root].rest == AT_REST:
+            continue
+        i = root
+        while i >= 0:
+            if A.PLACE[i] < 0:
+                A.BLOCK[n], A.PLACE[i] = i, n
+                n += 1
+            i = A.MEMBER[i].following
+    clear_places(A, A.BLOCK, n)
+    return n
+
+
 @kernel
 def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     """The impact of shapes a and b, predicted for instant t, with the components of their bodies; results as
@@ -95,10 +114,9 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     A.PAR.now = t
     A.COUNT.work += EVENT_LOOKS
     if apart:
-        return list_apart(A, i, j)
+        return list_ended(A, list_apart(A, i, j))
     n, m, PAIRS = gather(A, a, b, t)
-    again, ended = True, 0
-    ENDED = np.empty(A.BODY.shape[0], np.int64)
+    again = True
     while again:
         again = False
         for q in range(n):
@@ -106,8 +124,6 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
             if under_way(A, root):
                 shorten(A, J, root, t)
                 end_here(A, J, root, t)
-                ENDED[ended] = root
-                ended += 1
                 again = True
         if again:
             clear_places(A, A.BLOCK, n)
@@ -163,11 +179,14 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     problem = JointedProblem(P, Q, ROWS, C, room_for_rows(0, 0), rows)
     status = solve_block(problem, L, V, owed, False, LOSS, OUT)
     if OUT[0].residual > WEDGED * aim(ROWS, rows) and rubs(ROWS, rows):
+        sweeps, direct = OUT[0].sweeps, OUT[0].direct
         slip_freely(ROWS, rows)
         for z in range(rows):
             L[z, 0] = L[z, 1] = 0.0
         velocities(problem, L, FITTED, V)
         status = solve_block(problem, L, V, owed, False, LOSS, OUT)
+        OUT[0].sweeps += sweeps
+        OUT[0].direct += direct
     # `fits`: whether the velocities satisfy the joints afterwards. If all contacts are elastic and without friction,
     # the part that joints do not allow is kept, unless a contact closes by it.
     fits = not conserves(ROWS, rows)
@@ -188,16 +207,7 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     if A.BODY[j].inv_mass > 0.0:
         A.STATE[j].version += 1
     n = rejoin(A, a, b, t, n, rest, lost)
-    # Islands that were moved to this instant but do not touch begin new intervals too.
-    set_places(A, A.BLOCK, n)
-    MINE = np.empty(A.BODY.shape[0], np.int64)
-    for c in range(ended):
-        more = members(A, A.STATE[ENDED[c]].island, MINE)
-        for q in range(more):
-            if A.PLACE[MINE[q]] < 0:
-                A.BLOCK[n], A.PLACE[MINE[q]] = MINE[q], n
-                n += 1
-    clear_places(A, A.BLOCK, n)
+    n = list_ended(A, n)
     for q in range(n):
         A.RESTING[A.BLOCK[q]].longest = math.inf  # they move otherwise now
     return n

@@ -81,7 +81,7 @@ def closes_too_far(
     led to the other side of a shape.
 
     Args:
-        VN: (k, 3) velocities at the end.
+        VN: (k, 3) velocities at the end, or of a way W the velocities 2 W/h - v, v being those at the start.
     """
     far, shapes, last, known, END = 0.0, A.SHAPE.shape[0], -1, 0.0, np.empty((0, 3))
     for z in range(m):

@@ -10,11 +10,11 @@ from __future__ import annotations
 import math
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import nonallocating
+from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..contacts.memory import key_of
 from ..geometry.flight import norm
-from ..islands.depths import too_deep, too_deep_at_end
+from ..islands.depths import closes_too_far, too_deep_at_end
 from ..model.contacts import Row
 from ..model.islands import Island
 from ..model.joints import Joints
@@ -25,7 +25,6 @@ from ..model.parameters.intervals import (
 from ..model.scene import Scene
 from ..pairs.lists import far_apart
 from ..pairs.rules import barred
-from ..rows.build import normal_rate
 from .advance import Motion
 
 _CUBIC = 4.0 / 27.0  # largest value of s^2 (1 - s)
@@ -91,18 +90,15 @@ def excess_alone(A: Scene, J: Joints, s: int, t: float, h: float) -> float:
     return far
 
 
-@nonallocating
+@kernel
 def excess(
     A: Scene, isle: Island, P: IntArray, Q: IntArray, ROWS: Rows[Row], KEY: IntArray, motion: Motion, m: int, n: int,
     t: float, h: float,
 ) -> float:  # fmt: skip
     """How many times too long the interval h is in which n bodies move so, under m contacts."""
-    far, shapes = 0.0, A.SHAPE.shape[0]
+    far = 0.0
     for q in range(n):
         i, turned = int(isle.WHO[q]), motion.END[q, 2] - isle.POSE[q, 2]
         far = max(far, strays(A, i, motion.WAY[q, 0], motion.WAY[q, 1], turned, motion.V[q], isle.ACC[q], t, h, KEY, m))
-    for z in range(m):
-        pair = KEY[z] >> 1
-        closing = -normal_rate(P, Q, ROWS, motion.WAY, z)
-        far = max(far, too_deep(A, pair // shapes, pair % shapes, ROWS[z].gap, closing))
+    far = max(far, closes_too_far(A, isle, P, Q, ROWS, KEY, motion.MEAN, m, h))
     return max(far, too_deep_at_end(A, isle, motion.END, P, Q, ROWS, KEY, m, h, True))

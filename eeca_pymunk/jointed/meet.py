@@ -24,13 +24,14 @@ from .ends import end_here, left_apart, shorten, under_way
 
 @nonallocating
 def begun(A: Scene, i: int) -> float:
-    """The latest instant at which intervals of islands without joints have begun that shapes of body i may touch."""
+    """The latest instant at which intervals of islands without joints have begun, or just ended, that shapes of
+    body i may touch."""
     latest = 0.0
     for s in range(A.STATE[i].first_shape, A.STATE[i].first_shape + A.STATE[i].shapes):
         for w in range(A.LIST[s].start, A.LIST[s].start + A.LIST[s].number):
             j = A.LINK[A.POOL[w]].owner
             root = A.STATE[j].island
-            if root >= 0 and A.MEMBER[root].open > 0 and A.MEMBER[root].jointed == 0:
+            if root >= 0 and A.MEMBER[root].jointed == 0:
                 latest = max(latest, A.BODY[j].since)
     return latest
 
@@ -116,8 +117,8 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
         if then == t:
             break
         t = then
-    if loaded == 0 and rate >= 0.0 and start >= -close * small and g < -MEET_MANY * small:
-        crosses = True  # what has just met, and joints bring together again, meets before secants come to
+    if loaded == 0 and rate >= 0.0 and g < -MEET_MANY * small:
+        crosses = True  # what joints bring together again meets before secants come to
     for _ in range(MEET_HALVINGS):
         if not (crosses or left_apart(A, J, roots[0]) or left_apart(A, J, roots[1])):
             break

@@ -20,6 +20,7 @@ from ..islands.membership import lossy
 from ..model.islands import Island
 from ..model.joint_steps import ELASTIC
 from ..model.joints import Joints
+from ..model.parameters.events import RESOLUTION
 from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES, UNSOLVED_PART
 from ..model.parameters.joints import COLUMN_CONTACTS, FORESEEN, INTERVAL_SHARE
 from ..model.scene import Scene
@@ -150,7 +151,8 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
     if not last:
         far = max(far, excess(A, isle, P, Q, ROWS, KEY, motion, m, n, t, h))
     if not held:  # the motion is not that of a solution, and says little of how long it may be
-        far = min(far, UNSOLVED_PART)
+        hard = m <= COLUMN_CONTACTS and h > A.PAR.dt / RESOLUTION
+        far = UNSOLVED_PART if hard else min(far, UNSOLVED_PART)
     if far > INTERVAL_RETRY and not last:
         for g in range(len(groups.COMPONENT)):
             if groups.COMPONENT[g] >= 0:

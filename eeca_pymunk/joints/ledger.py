@@ -98,8 +98,8 @@ def springs_hold(W: Workspace) -> float:
 @nonallocating
 def close_ledger(local: Rows[BodyStep], bodies: int, ledger: JointLedger) -> None:
     """Let the ledger of a step from the saved state to the present close, whose joints did not hold: works of supports
-    are `closed` too. Rows that contradict each other push without bound there, and their works cancel but for
-    round-off."""
+    are `closed` too, and those of limits. Rows that contradict each other push without bound there, and their works
+    cancel but for round-off: only the sum is known, a loss if it is negative."""
     gained = 0.0
     for i in range(bodies):
         for c in range(3):
@@ -109,6 +109,5 @@ def close_ledger(local: Rows[BodyStep], bodies: int, ledger: JointLedger) -> Non
                 gained += (0.5 * (after * after - before * before) - local[i].acceleration[c] * way) / local[
                     i
                 ].mobility[c]
-    lost = ledger.damped + ledger.limited + ledger.clamped + ledger.projected
-    ledger.supports = 0.0
-    ledger.closed = gained + ledger.stored + lost - ledger.motors
+    change = gained + ledger.stored + ledger.damped + ledger.clamped + ledger.projected - ledger.motors
+    ledger.supports, ledger.closed, ledger.limited = 0.0, max(change, 0.0), max(-change, 0.0)

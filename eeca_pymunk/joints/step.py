@@ -14,8 +14,9 @@ from ..model.joint_steps import ELASTIC, HALVED, LINEAR, JointLedger
 from ..model.joints import APART, GIVES_WAY, LEFT_APART, RATCHET, Workspace
 from ..model.parameters.joints import NEARLY_HELD
 from .closing import close_joints, farthest
+from .correct import kinetic
 from .ladder import climb, limit_work
-from .ledger import add, clear
+from .ledger import add, clear, close_ledger
 from .motion import save
 from .solve import drop_impulses
 from .start import bounded_targets, compute_rows, read_joints
@@ -76,8 +77,11 @@ def take_step(W: Workspace, h: float, order: int, length: float, ledger: JointLe
     before = step_linearly(W, h, length) if status == LINEAR else 0.0
     if status >= ELASTIC:
         status = take_gain(W, h, status, before)
-    elif not touched:
-        W.J.JOINT[W.link[0].joint].owed = 0.0
+    else:
+        if abs(W.J.PART.closed) > kinetic(local, W.bodies, False):  # works that cancel but for round-off
+            close_ledger(local, W.bodies, W.J.PART)
+        if not touched:
+            W.J.JOINT[W.link[0].joint].owed = 0.0
     add(ledger, W.J.PART)
     write_joints(W, h, GIVES_WAY if status == ELASTIC else LEFT_APART if status == LINEAR else 0)
     return HALVED if status == ELASTIC and farthest(W) <= NEARLY_HELD else status

@@ -87,6 +87,21 @@ def test_a_beam_longer_than_its_support_stands_on_the_support_s_corners() -> Non
         np.testing.assert_allclose(found[:, 4], 0.0, atol=1e-15)
 
 
+@pytest.mark.parametrize("unit", UNITS)
+@pytest.mark.parametrize("off", [-3e-6, 0.0, 3e-6])
+@pytest.mark.parametrize("tilt", [-1e-5, 0.0, 1e-5])
+def test_an_end_that_is_hardly_beside_a_face_touches_it(tilt: float, off: float, unit: float) -> None:
+    """A rod and a box beside each other, all but across the face: the rod's end is below the corner by less than what
+    tells corners from faces. Contacts of such pairs were lost, and they hit each other again and again."""
+    rod = Thing([([(0.0, 0.0), (0.5 * unit, 0.0)], 0.05 * unit)], (0.6 * unit, -0.5 * unit + off * unit, tilt))
+    world = World([Thing(box(1.0 * unit, unit, 0.05 * unit)), rod])
+    nearest = gap(world.scene, 0, 1, 0.0)[0]
+    for a, b in ((0, 1), (1, 0)):
+        found = rows(world, a, b, 0.1 * unit, 1e-9 * unit)
+        assert len(found) == 1
+        assert found[0, 4] == pytest.approx(nearest, abs=1e-9 * unit)
+
+
 @pytest.mark.parametrize("rounding", [0.0, 0.05])
 def test_exchange_and_reflection_of_random_shapes(rounding: float) -> None:
     rng = np.random.default_rng(5)

@@ -173,8 +173,12 @@ class Composition:
         return False
 
     def moves(self, state: list[tuple[float, ...]]) -> bool:
-        """Whether a body has a velocity."""
-        return any(any(row[3:]) for row in state)
+        """Whether a body has a velocity that takes it elsewhere in a step."""
+        return any(self.leaves(row) for row in state)
+
+    def leaves(self, row: tuple[float, ...]) -> bool:
+        """Whether a body's velocity changes its pose in a step, by more than is rounded away."""
+        return any(place + self.dt * speed != place for place, speed in zip(row[:3], row[3:], strict=True))
 
     def drive(self, k: int) -> None:
         """Shake and turn the container."""

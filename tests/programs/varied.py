@@ -154,7 +154,7 @@ class Varied(Composition):
         return one if gentle else self.pace
 
     def moves(self, state: list[tuple[float, ...]]) -> bool:
-        return any(any(row[3:]) for row, body in zip(state, self.bodies, strict=True) if not body.is_sleeping)
+        return any(self.leaves(row) for row, body in zip(state, self.bodies, strict=True) if not body.is_sleeping)
 
     @property
     def gains(self) -> bool:
