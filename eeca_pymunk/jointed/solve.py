@@ -131,8 +131,8 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
         pull = max(pull, foresee(A, J, isle, groups, t, h, motion, REACH))
         m = gather(A, isle, contacts, moved(isle.POSE, isle.V, 0.5 * h), REACH, h, k == n)
     interval = Interval(isle, groups, P, Q, ROWS, motion, make_columns(groups, P, Q, m), m, n, t, h)
-    held = True
-    J.PROGRESS.share = J.PROGRESS.effort + INTERVAL_SHARE * max(budget_at(A, J, t) - J.PROGRESS.effort, 0.0)
+    held, before = True, J.PROGRESS.effort
+    J.PROGRESS.share = before + INTERVAL_SHARE * max(budget_at(A, J, t) - before, 0.0)
     if m > 0:
         recall(KEY, m, A.KEYS, A.FORCES, A.PAR.stamp, h, L, EXPECTED)
         owed = max(-A.RESTING[root].lost, 0.0)
@@ -151,7 +151,9 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
     if not last:
         far = max(far, excess(A, isle, P, Q, ROWS, KEY, motion, m, n, t, h))
     if not held:  # the motion is not that of a solution, and says little of how long it may be
-        hard = m <= COLUMN_CONTACTS and h > A.PAR.dt / RESOLUTION
+        # Contacts that are not solved in a long interval may be in a short one, if the step has work for many of these.
+        payable = RESOLUTION * (J.PROGRESS.effort - before) <= budget_at(A, J, t)
+        hard = m <= COLUMN_CONTACTS and h > A.PAR.dt / RESOLUTION and payable
         far = UNSOLVED_PART if hard else min(far, UNSOLVED_PART)
     if far > INTERVAL_RETRY and not last:
         for g in range(len(groups.COMPONENT)):

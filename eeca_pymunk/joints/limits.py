@@ -21,7 +21,7 @@ from ..model.parameters.joints import (
     LIMIT_WAY,
     MEET_INSTANT,
 )
-from .bounds import approach, first_bound, gap, hold_limit, look, release
+from .bounds import approach, first_bound, gap, hold_limit, look, release, standing
 from .correct import correct, fitting_loss
 from .ledger import book
 from .motion import advance
@@ -41,8 +41,9 @@ def step_with_limits(
     events, solves, secants, meeting, side = 0, 0, 0, -1, 0
     last, before = 0.0, 0.0
     while True:
+        redundant = loops or standing(link, W.joints)
         if when > 1e-13 * abs(h) or h < 0.0:
-            if not (solve_linearly(W, when, length) if linear else solve(W, when, length, loops, give)):
+            if not (solve_linearly(W, when, length) if linear else solve(W, when, length, redundant, give)):
                 return False
             solves += 1
             if meeting < 0:  # a step to the end

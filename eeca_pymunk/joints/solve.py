@@ -19,7 +19,6 @@ from ..model.parameters.joints import (
     NEWTON_PROGRESS,
     REDUNDANT_EPSILON,
 )
-from .bounds import standing
 from .boxes import bound_impulses, boxed_rows, push, rows_of
 from .dual import STRIDE, refresh
 from .motion import move, settle
@@ -85,8 +84,7 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
     fresh ones.
 
     Args:
-        loops: whether rows may be redundant: `epsilon` is the error then. Those of limits that hold seldom are: it is
-        the square of the error, until that does not fall.  give: compliance over h², see `newton`.
+        loops: whether rows may be redundant.  give: compliance over h², see `newton`.
     """
     hinge, local, component, progress = W.J.HINGE, W.J.LOCAL, W.J.COMPONENT[W.s], W.J.PROGRESS
     first_iterate(W, STEP, h)
@@ -97,8 +95,6 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
     ready, fresh, since = lasting and component.factored > 0, False, 0
     component.factored = 0
     boxes = boxed_rows(W.link, W.joints)
-    limits = standing(W.link, W.joints)
-    redundant = loops or (limits and not lasting)
     unscaled = hinge[0].scale[0] == 0.0  # rows have not been in this step yet
     for iteration in range(NEWTON_ITERATIONS + 1):
         built = not ready
@@ -123,8 +119,8 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
             if fresh:
                 # Hardly any step that is not nearly singular, or long, comes here: full Newton from now on.
                 lasting, system, since = False, component.system, iteration
-                best, stalls, redundant = worst, 0, loops or limits
-                if redundant:
+                best, stalls = worst, 0
+                if loops:
                     drop_impulses(W)
                     first_iterate(W, STEP, h)
                     best = 1e300
@@ -132,9 +128,7 @@ def solve(W: Workspace, h: float, length: float, loops: bool, give: float) -> bo
         if fresh:
             if not built:
                 linearise(W, STEP, h, length, give, False, system, True)
-            epsilon = 0.0
-            if redundant or limits:
-                epsilon = max(REDUNDANT_EPSILON, min(1e-2, worst if redundant else worst * worst))
+            epsilon = max(REDUNDANT_EPSILON, min(1e-2, worst)) if loops else 0.0
             system = factorise(W, STEP, h, length, give, system, epsilon)
             if system < 0:
                 return False

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pymunk
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, IntArray
 from ..compiled.records import Rows, records, rows
 from ..model.joints import EDITED, Joint
 from . import private
@@ -198,12 +198,17 @@ class JointRows(Listing):
         x, y, angle, vx, vy, spin = state[place[body], :6].tolist()
         return x, y, angle, vx, vy, spin
 
-    def find_parted(self) -> frozenset[tuple[pymunk.Body, pymunk.Body]]:
-        """`parted`, found again if necessary."""
-        if self.parted is None:
-            pairs = zip(self.pairs.values(), self.calls, strict=True)
-            self.parted = frozenset(pair for pair, calls in pairs if not calls.collide)
-        return self.parted
+    def find_parted(self, owner: IntArray, bodies: Sequence[pymunk.Body]) -> set[tuple[int, int]]:
+        """Find `parted`; returns the pairs of their shapes, whose bodies are owner (k,), indices in `bodies`."""
+        pairs = zip(self.pairs.values(), self.calls, strict=True)
+        self.parted = frozenset(pair for pair, calls in pairs if not calls.collide)
+        found: set[tuple[int, int]] = set()
+        of: dict[pymunk.Body, list[int]] = {}
+        for k, i in enumerate(owner.tolist() if self.parted else ()):
+            of.setdefault(bodies[i], []).append(k)
+        for a, b in self.parted:
+            found.update((min(i, j), max(i, j)) for i in of.get(a, ()) for j in of.get(b, ()))
+        return found
 
     def touch(self, rows: Iterable[int]) -> None:
         """Mark as edited the joints of bodies (rows) that the program has moved or pushed."""

@@ -207,13 +207,7 @@ class World(Crossing):
         joints = self.joints
         if joints is None or joints.parted is not None:
             return False
-        parted: set[tuple[int, int]] = set()
-        if pairs := joints.find_parted():
-            of: dict[pymunk.Body, list[int]] = {}
-            for k, i in enumerate(self.owner.tolist()):
-                of.setdefault(self.bodies.items[i], []).append(k)
-            for a, b in pairs:
-                parted.update((min(i, j), max(i, j)) for i in of.get(a, ()) for j in of.get(b, ()))
+        parted = joints.find_parted(self.owner, self.bodies.items)
         if parted == self.parted:
             return False
         self.parted = parted

@@ -86,9 +86,11 @@ def lift(space: pymunk.Space) -> pymunk.Body:
 
 
 def slacken(rope: bool, weight: pymunk.Body) -> None:
-    """Let a rope be shorter than its length by more than round-off, of which pymunk makes all of the weight or none."""
+    """Let a rope be shorter than its length by more than round-off, of which pymunk makes all of the weight or none,
+    and its weight have no velocity that makes it longer."""
     if rope:
         weight.position += (0.0, 1e-12)
+        weight.velocity = (0.0, 0.0)
 
 
 @pytest.mark.parametrize("make", HOLDING.values(), ids=HOLDING)
