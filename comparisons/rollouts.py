@@ -106,10 +106,10 @@ def poses(space: pymunk.Space) -> FloatArray:
 def timed(call: Callable[[], object]) -> float:
     """Seconds of a call, the mean over as many as take a while."""
     call()
-    begun, calls = time.perf_counter(), 0
-    while (took := time.perf_counter() - begun) < ENOUGH:
+    begun, calls, took = time.perf_counter(), 0, 0.0
+    while calls == 0 or took < ENOUGH:
         call()
-        calls += 1
+        calls, took = calls + 1, time.perf_counter() - begun
     return took / calls
 
 
