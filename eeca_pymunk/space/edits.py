@@ -3,8 +3,7 @@
 pymunk's setters write into Chipmunk at once without notification, and reading all shapes again takes longer than most
 steps. So the setters of properties that a `World` reads once are wrapped when the first space is watched. Each acts as
 before, and then adds one to the count of its space, or that of its shape or body, if that is watched and the value has
-changed.
-Getters, and properties that a `World` does not read (positions, velocities, forces, colours), are not changed.
+changed. Getters, and properties that a `World` does not read (positions, velocities, forces, colours), are not changed.
 `Body.sleep` and `sleep_with_group` are wrapped when this module is imported: their calls are counted, and groups of
 sleeping bodies are recorded, because Chipmunk does not show them.
 """
