@@ -39,14 +39,7 @@ def reader_of(bodies: Sequence[pymunk.Body], fields: batch.BodyFields, floats: F
     """The same for some bodies, which may be in no space, one after the other."""
     values, numbers = _array("pmFloatArray *", "cpFloat[]", floats), ffi.new("pmIntArray *")
     data = _batched(fields, values, numbers)
-    one, pointers = lib.pmSpaceBodyGetIteratorFuncBatched, [body._body for body in bodies]
-
-    def read(held: object = (floats, numbers)) -> None:
-        values.num = 0
-        for pointer in pointers:
-            one(pointer, data)
-
-    return read
+    return _one_by_one(lib.pmSpaceBodyGetIteratorFuncBatched, bodies, data, values, (floats, numbers))
 
 
 def ordered(space: pymunk.Space, ids: AnyArray) -> Callable[[], bool]:
@@ -82,14 +75,22 @@ def writer(
 
     if bodies is None:
         return write
-    one, pointers = lib.pmSpaceBodySetIteratorFuncBatched, [body._body for body in bodies]
+    return _one_by_one(lib.pmSpaceBodySetIteratorFuncBatched, bodies, data, values, (floats, numbers))
 
-    def write_some(held: object = (floats, numbers)) -> None:
+
+def _one_by_one(
+    one: Any, bodies: Sequence[pymunk.Body], data: Any, values: Any, arrays: tuple[object, ...]
+) -> Callable[[], None]:
+    """A function that calls `one`, of pymunk's library, for each of the bodies, with `values` from their start; it
+    holds the arrays."""
+    pointers = [body._body for body in bodies]
+
+    def call(held: object = arrays) -> None:
         values.num = 0
         for pointer in pointers:
             one(pointer, data)
 
-    return write_some
+    return call
 
 
 def _array(kind: str, items: str, memory: FloatArray | IntArray) -> Any:
