@@ -1,7 +1,8 @@
 """The bounded solve of an island: sweeps while it moves; sweeps and direct solves in turn while it is near rest.
 
 Sweeps pass a stack's weight to its floor slowly; a direct solve does it at once, as soon as sweeps have found the
-active contacts. In disordered moving piles these change with every step, and sweeps alone cost less.
+active contacts. In disordered moving piles these change with every step, and sweeps alone cost less. Where both come to
+no end, as with light bodies wedged between heavy ones, few contacts are solved along paths (`..rows.laws`).
 
 The state of an island lasts across steps (`Rest.augmentation`, `wait`, `backoff`): log10 of the augmentation R, steps
 to wait before the next direct solve, and the wait after its next failure.
@@ -23,8 +24,10 @@ from ..model.parameters.intervals import (
     LONGEST_BACKOFF,
     SWEEPS_AFTER,
 )
+from ..model.parameters.joints import COLUMN_CONTACTS
 from ..rows.conjugate import iterate
 from ..rows.direct import refine
+from ..rows.laws import solve_few
 from ..rows.sweeps import sweep
 
 
@@ -54,7 +57,7 @@ def relax(
         sweeps += 1
     if worst <= fine:
         return sweeps, 0, worst
-    fails, done = 0, 0
+    fails, done, few = 0, 0, problem.m <= COLUMN_CONTACTS
     last = worst
     while done < rounds:
         passes = 6 if STATE.augmentation > 6.0 else 1
@@ -72,8 +75,11 @@ def relax(
         if worst > 0.2 * last:
             fails += 1
         last = worst
-        if fails >= (FAILED_DIRECT_AGAIN if STATE.backoff > 0.0 else FAILED_DIRECT):
+        if fails >= (FAILED_DIRECT_AGAIN if few or STATE.backoff > 0.0 else FAILED_DIRECT):
             break
+    if worst > max(fine, coarse) and few:
+        worst = solve_few(problem, L, V, max(fine, coarse))
+        done += FAILED_DIRECT
     if worst > max(fine, coarse) and problem.m > BACKOFF_CONTACTS:
         STATE.backoff = min(2.0 * STATE.backoff + 2.0, LONGEST_BACKOFF)
         STATE.wait = STATE.backoff

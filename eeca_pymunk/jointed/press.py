@@ -15,10 +15,9 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
-from ..compiled.records import Rows
 from ..contacts.targets import target
 from ..islands.candidates import before_end, sweeps_of_large
-from ..model.contacts import JointedProblem, Row
+from ..model.contacts import JointedProblem
 from ..model.joints import Joints
 from ..model.parameters.impulses import WEDGED
 from ..model.parameters.intervals import LARGE_ISLAND
@@ -49,12 +48,12 @@ from ..model.scene import Scene
 from ..rows.build import conserves, rates, rubs
 from ..rows.columns import push_columns
 from ..rows.inplace import copy
+from ..rows.laws import give_slips, solve_columns, solve_wedged, take_slips
 from .advance import Interval, advance, advance_aligned, align, farthest_apart
 from .bounded import make_bounded, settle_bounded, with_bounded
 from .columns import fill_free, leave_out, weigh
 from .gentle import excessive, fastest, solve_gently
 from .groups import Groups, hangs
-from .laws import solve_columns, solve_wedged
 from .lock import lock, lost, work_error
 from .secant import fit_columns
 
@@ -76,24 +75,6 @@ def some_give(J: Joints, groups: Groups) -> bool:
         s = groups.COMPONENT[g]
         some = some or (s >= 0 and J.JOINT[J.COUPLING[J.COMPONENT[s].first_joint].joint].compliance > 0.0)
     return some
-
-
-@kernel
-def take_slips(ROWS: Rows[Row], m: int) -> FloatArray:
-    """The slips (m,) of contacts before the interval, which are 0 in the rows from now on: friction is then Coulomb's
-    alone, without the limit that each contact's own loss sets (`..rows.coulomb`)."""
-    SLIP = np.empty(m)
-    for i in range(m):
-        SLIP[i] = ROWS[i].ut
-        ROWS[i].ut = 0.0
-    return SLIP
-
-
-@nonallocating
-def give_slips(ROWS: Rows[Row], m: int, SLIP: FloatArray) -> None:
-    """Put the slips back that `take_slips` has taken."""
-    for i in range(m):
-        ROWS[i].ut = SLIP[i]
 
 
 @kernel

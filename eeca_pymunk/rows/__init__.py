@@ -6,10 +6,10 @@ impulses, velocities, losses. All but the innermost loops is one code for both; 
 of the problem. Users: impacts at one instant (`blocks.py`, to round-off), islands over an interval (`..contacts`,
 `..jointed`: bounded work, warm start). Both alternate projected Gauss-Seidel sweeps (`sweeps.py`, with the closed law
 of one contact in `coulomb.py`, accelerated by `conjugate.py`) with a direct solve on the active contacts (`direct.py`:
-`dense.py` for few contacts, else `polish.py` on the sparse factor of `cholesky.py`), or up to some dozen contacts of
-jointed bodies with `path.py` (`pivots.py`); `equilibrium.py` finds contact forces that balance (on the edges of the
-cones, `cones.py`); `energy.py` takes losses, and scales impulses that would
-give energy; `lifting.py` moves bodies out of each other. Open `build.py` first.
+`dense.py` for few contacts, else `polish.py` on the sparse factor of `cholesky.py`), or up to some dozen contacts with
+paths to the solution (`laws.py`, `path.py`, `pivots.py`); `equilibrium.py` finds contact forces that balance (on the
+edges of the cones, `cones.py`); `energy.py` takes losses, and scales impulses that would give energy; `lifting.py`
+moves bodies out of each other. Open `build.py` first.
 
 Symbols: u_n, u_t are the normal and tangential velocity of a contact, u- before its impulses and u+ after; e its
 elasticity, mu its friction, b its target; lam, beta its impulses along n and t; j, G, T rows of velocities along n and

@@ -9,11 +9,33 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray
-from ..compiled import nonallocating
-from ..model.contacts import Columns, JointedProblem
-from .bounded import SINGLE, bounded_rate, per_impulse, push_row, sweep_bounded
+from ..compiled import kernel, nonallocating
+from ..model.contacts import Columns, JointedProblem, Problem
+from .bounded import SINGLE, bounded_rate, per_impulse, push_row, room_for_rows, sweep_bounded
 from .build import normal_rate, tangent_rate
 from .coulomb import coulomb, limited_slip
+
+
+@kernel
+def as_columns(problem: Problem) -> JointedProblem:
+    """The contact problem of free bodies by columns, each on the two bodies of its contact."""
+    A, B, ROWS, IM, II, _, _, m = problem
+    AT, BODY, N, T = np.empty(m + 1, np.int64), np.empty(2 * m, np.int64), np.empty((2 * m, 3)), np.empty((2 * m, 3))
+    for i in range(m):
+        AT[i] = 2 * i
+        for side in range(2):
+            w, q, sign = 2 * i + side, B[i] if side == 1 else A[i], 2.0 * side - 1.0
+            BODY[w], nx, ny = q, ROWS[i].nx, ROWS[i].ny
+            N[w, 0], N[w, 1], T[w, 0], T[w, 1] = (
+                sign * IM[q] * nx,
+                sign * IM[q] * ny,
+                -sign * IM[q] * ny,
+                sign * IM[q] * nx,
+            )
+            N[w, 2] = sign * II[q] * (ROWS[i].arm_nb if side == 1 else ROWS[i].arm_na)
+            T[w, 2] = sign * II[q] * (ROWS[i].arm_tb if side == 1 else ROWS[i].arm_ta)
+    AT[m] = 2 * m
+    return JointedProblem(A, B, ROWS, Columns(AT, BODY, N, T, np.zeros(m, np.int64)), room_for_rows(0, 0), m)
 
 
 @nonallocating

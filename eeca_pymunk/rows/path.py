@@ -209,8 +209,12 @@ def follow_path(problem: JointedProblem, L: FloatArray, V: FloatArray, FREE: Flo
                     if left < nearest:
                         nearest, changed, number = left, c, which
         if way < 0.0 and theta <= nearest:
+            finite = True
             for k in range(size):
                 X[k] = T[k, size]
+                finite = finite and abs(X[k]) < np.inf
+            if not finite:
+                return False  # a pivot was 0
             set_impulses(path, m, X, L)
             velocities(problem, L, FREE, V)
             for _ in range(PATH_REFINEMENTS):

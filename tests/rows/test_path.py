@@ -181,3 +181,13 @@ def matrix(problem: JointedProblem, free: Array) -> tuple[Array, Array, Array]:
         push(problem, L, 1.0, V)
         columns.append(rates(V) - q)
     return np.column_stack(columns), q, np.zeros(3)
+
+
+def test_paths_through_contacts_that_nothing_moves_end_nowhere() -> None:
+    """A contact without mobility, whose surfaces close: its pivot is 0."""
+    problem, free = drawn(0)
+    problem.C.N[:], problem.C.T[:] = 0.0, 0.0
+    L = np.zeros((problem.m, 2))
+    with np.errstate(all="ignore"):
+        assert not follow_path(problem, L, free.copy(), free, True)
+    assert not L.any()

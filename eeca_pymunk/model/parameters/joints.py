@@ -124,7 +124,9 @@ MEET_SECANTS_LOADED = work(2, "iterations", "Secant steps to that instant if con
 MEET_INSTANT = round_off(
     1e-9, "of the step", "Length below which an interval before an impact, or a part before a limit, is empty."
 )
-COLUMN_CONTACTS = work(40, "contacts", "Number up to which islands with joints are solved exactly; with more, roughly.")
+COLUMN_CONTACTS = work(
+    40, "contacts", "Number up to which islands are solved along paths, with joints always: exactly; others roughly."
+)
 COLUMN_SWEEPS = work(12, "sweeps", "Sweeps over components before the first path to the solution.")
 COLUMN_SWEEPS_AFTER = work(4, "sweeps", "Sweeps over components after each path, at most.")
 COLUMN_PATHS = work(8, "paths", "Paths to the solution, at most.")

@@ -1,19 +1,24 @@
-"""Contact laws of an island with joints: sweeps, and to round-off for as many contacts as `rows.path` pays for."""
+"""The laws of few contacts to round-off: sweeps, and paths to the solution (`path.py`) in turn.
+
+First friction that energy limits (`coulomb.py`) is tried, by which each contact by itself loses energy: where slips
+reverse, several contacts may have no such solution. Coulomb's law alone has one more often.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 
 from ..arrays import FloatArray
-from ..compiled import kernel
-from ..model.contacts import JointedProblem
+from ..compiled import kernel, nonallocating
+from ..compiled.records import Rows
+from ..model.contacts import JointedProblem, Problem, Row
 from ..model.parameters.joints import COLUMN_CONTACTS, COLUMN_PATHS, COLUMN_SWEEPS, COLUMN_SWEEPS_AFTER
-from ..rows.columns import breach
-from ..rows.conjugate import iterate
-from ..rows.coulomb import slip_freely
-from ..rows.inplace import copy
-from ..rows.path import follow_path
-from ..rows.sweeps import push, sweep, velocities
+from .columns import as_columns, breach
+from .conjugate import iterate
+from .coulomb import slip_freely
+from .inplace import copy
+from .path import follow_path
+from .sweeps import push, sweep, velocities
 
 
 @kernel
@@ -80,3 +85,34 @@ def solve_wedged(
         L[i, 0] = L[i, 1] = 0.0
     push(problem, L, 1.0, V)
     return solve_columns(problem, L, V, tolerance, COLUMN_SWEEPS, most)
+
+
+@kernel
+def take_slips(ROWS: Rows[Row], m: int) -> FloatArray:
+    """The slips (m,) of contacts before the interval, which are 0 in the rows from now on: friction is then Coulomb's
+    alone, without the limit that each contact's own loss sets (`coulomb.py`)."""
+    SLIP = np.empty(m)
+    for i in range(m):
+        SLIP[i] = ROWS[i].ut
+        ROWS[i].ut = 0.0
+    return SLIP
+
+
+@nonallocating
+def give_slips(ROWS: Rows[Row], m: int, SLIP: FloatArray) -> None:
+    """Put the slips back that `take_slips` has taken."""
+    for i in range(m):
+        ROWS[i].ut = SLIP[i]
+
+
+@kernel
+def solve_few(problem: Problem, L: FloatArray, V: FloatArray, tolerance: float) -> float:
+    """`solve_columns` of contacts of free bodies, whose sweeps and direct solutions have come to no end; if there is no
+    solution with friction that energy limits, with Coulomb's law alone: the energy lock takes what that may give."""
+    columns = as_columns(problem)
+    worst = solve_columns(columns, L, V, tolerance, 0, COLUMN_SWEEPS_AFTER)
+    if worst > tolerance:
+        SLIP = take_slips(problem.ROWS, problem.m)
+        worst = solve_columns(columns, L, V, tolerance, 0, COLUMN_SWEEPS_AFTER)
+        give_slips(problem.ROWS, problem.m, SLIP)
+    return worst
