@@ -13,7 +13,13 @@ from ..geometry.gap import gap_at
 from ..geometry.sides import half_width, remembers, smaller
 from ..model.contacts import Row
 from ..model.islands import Island
-from ..model.parameters.intervals import INTERVAL_DEPTH, INTERVAL_DEPTH_LEAST, INTERVAL_DEPTH_WIDTH, INTERVAL_RETRY
+from ..model.parameters.intervals import (
+    INTERVAL_DEPTH,
+    INTERVAL_DEPTH_LEAST,
+    INTERVAL_DEPTH_WIDTH,
+    INTERVAL_RETRY,
+    INTERVAL_WAY,
+)
 from ..model.scene import Scene
 from ..rows.build import normal_rate
 
@@ -40,6 +46,15 @@ def driven(A: Scene, isle: Island, P: IntArray, Q: IntArray, ROWS: Rows[Row], KE
         if ROWS[z].gap < -depth_limit(A, a, b):
             return True
     return False
+
+
+@nonallocating
+def known_depth(A: Scene, a: int, b: int) -> float:
+    """Depth (length) up to which the gap of shapes a and b tells on which side of each other they are: to the middle of
+    both, or, in contact, as far as the memory of thin ones reaches."""
+    if remembers(A, a, b):
+        return INTERVAL_WAY * smaller(A, a, b)
+    return half_width(A, a) + half_width(A, b)
 
 
 @nonallocating
@@ -91,7 +106,7 @@ def closes_too_far(
         deep = too_deep(A, a, b, ROWS[z].gap, closing)
         if deep == 0.0:
             continue
-        if remembers(A, a, b) or closing - max(ROWS[z].gap, 0.0) < half_width(A, a) + half_width(A, b):
+        if closing - max(ROWS[z].gap, 0.0) < known_depth(A, a, b):
             if len(END) == 0:  # few intervals come here
                 END = isle.POSE + 0.5 * h * (isle.V + VN)
             if pair != last:

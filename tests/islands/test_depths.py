@@ -8,9 +8,11 @@ import pytest
 
 import eeca_pymunk as ep
 from eeca_pymunk.compiled.records import zeros
-from eeca_pymunk.islands.depths import deep_at_end, depth_limit
+from eeca_pymunk.geometry.sides import note_side
+from eeca_pymunk.islands.depths import closes_too_far, deep_at_end, depth_limit
 from eeca_pymunk.model.contacts import ROW
 from eeca_pymunk.model.islands import Island
+from eeca_pymunk.model.parameters.intervals import INTERVAL_RETRY
 
 SPIN, G, DT, LIMIT = 1.0, 9.81, 0.1, 1e-4  # rad/s, lengths/s², s, depth in parts of a rod that an interval may reach
 
@@ -65,3 +67,27 @@ def test_the_next_interval_is_as_long_as_a_way_of_second_order_takes(approach: f
     far = deep_at_end(loop.scene, isle, end, np.array([0]), np.array([1]), rows, np.array([2]), 1, h, 0)
     s, u = h / far, approach * 10.0 * room / h
     assert u * s + (10.0 * room - u * h) * (s / h) ** 2 == pytest.approx(room, rel=1e-9)
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
+@pytest.mark.parametrize("way", [0.01, 0.3, 1.0, 100.0])
+def test_an_interval_in_which_a_rod_goes_through_a_wall_is_too_long(way: float, unit: float) -> None:
+    """However far: beyond the wall the gap at the end is that of its other side."""
+    space, h = pymunk.Space(), 0.5
+    rod = pymunk.Body(1.0, 1.0)
+    rod.position = 0.0, 0.0
+    wall = pymunk.Segment(space.static_body, (-9.0 * unit, 0.0), (9.0 * unit, 0.0), 0.0)
+    space.add(rod, pymunk.Segment(rod, (-unit, 0.0), (unit, 0.0), 0.0), wall)
+    stepper = ep.EECA(space)
+    stepper.step(1e-6)
+    loop = stepper.event_loop
+    assert loop is not None
+    note_side(loop.scene, 0, 1, 0.0, -1.0, True)
+    isle = Island(
+        WHO=np.array([0, 1]), IM=np.zeros(2), II=np.zeros(2), POSE=np.zeros((2, 3)), V=np.zeros((2, 3)),
+        ACC=np.zeros((2, 3)), EXTENT=np.zeros(2), FELT=np.zeros(2), PAIRS=np.zeros((1, 4), np.int64),
+    )  # fmt: skip
+    rows, after = zeros(1, ROW), np.array([[0.0, -2.0 * way * unit / h, 0.0], [0.0, 0.0, 0.0]])
+    rows[0].ny = -1.0
+    far = closes_too_far(loop.scene, isle, np.array([0]), np.array([1]), rows, np.array([2]), after, 1, h)
+    assert far > INTERVAL_RETRY
