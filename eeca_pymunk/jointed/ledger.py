@@ -44,7 +44,6 @@ def start_joints(A: Scene, J: Joints, STATES: FloatArray, WALK: IntArray) -> Non
     """Begin a step of a scene with joints, before its states are taken."""
     mark_edited(A, J, STATES, WALK)
     J.TALLY.worst = 0
-    J.PROGRESS.jammed = 0.0
     J.PROGRESS.effort, J.PROGRESS.budget = 0.0, STEP_WORK + STEP_WORK_BODY * A.BODY.shape[0]
     for s in range(len(J.STEPPED)):
         clear_interval(J.STEPPED[s])

@@ -71,8 +71,7 @@ def begin_interval(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
     where joints do not hold, the work does not suffice, or bodies go too far (`lengths`).
 
     What was too long is not tried again at once: without an impact in between, an interval after one that was shortened
-    is at most INTERVAL_RETRY times as long, and so on. Contacts that are not solved in one of dt / RESOLUTION are not
-    in others either: the step then goes on with intervals as long as they can be.
+    is at most INTERVAL_RETRY times as long, and so on.
 
     DONE, or PUSHES_FULL, which leaves everything as it was; likewise SPENT, within a step that has no work left.
     """
@@ -89,8 +88,6 @@ def begin_interval(A: Scene, J: Joints, root: int, t: float, h: float) -> int:
         if status != AGAIN:
             if status == DONE:
                 rest.longest = max(INTERVAL_RETRY * h, 0.0 if h < whole else rest.longest)
-                if J.PROGRESS.jammed > 0.0:
-                    rest.longest = math.inf
             return status
     return DONE
 
@@ -156,9 +153,7 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
     if not held:  # the motion is not that of a solution, and says little of how long it may be
         # Contacts that are not solved in a long interval may be in a short one, if the step has work for many of these.
         payable = RESOLUTION * (J.PROGRESS.effort - before) <= budget_at(A, J, t)
-        if m <= COLUMN_CONTACTS and h <= A.PAR.dt / RESOLUTION:
-            J.PROGRESS.jammed = 1.0
-        hard = m <= COLUMN_CONTACTS and payable and J.PROGRESS.jammed == 0.0
+        hard = m <= COLUMN_CONTACTS and payable and h > A.PAR.dt / RESOLUTION
         far = UNSOLVED_PART if hard else min(far, UNSOLVED_PART)
     if far > INTERVAL_RETRY and not last:
         for g in range(len(groups.COMPONENT)):

@@ -91,7 +91,6 @@ class Progress(Record):
     effort: float  # operations that solutions have taken since the step of the scene began; how many they may
     budget: float
     share: float  # of `effort`, at which an interval gives up
-    jammed: float  # 1 once contacts of a shortest interval were not solved in this step; others are not shortened then
     limit: float  # of `effort`, at which the step of a component gives up what its ladder has before linear rows
     hurry: float  # likewise, from which on limits land instead of being met at their instants
 

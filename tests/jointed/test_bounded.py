@@ -190,3 +190,43 @@ def test_another_stepper_on_a_moving_space_changes_no_energy() -> None:
             stepper.step(1 / 60)
             assert energy(space) == pytest.approx(start, abs=1e-12 * 5 * 9.81 * 5)
     assert apart(space) < 1e-13
+
+
+def yard(unit: float, boxes: int = 6) -> tuple[pymunk.Space, pymunk.Body, pymunk.Body]:
+    """Boxes on a floor seen from above, whose friction bounded joints emulate: two lie in each other, four in a row in
+    front of a tank, which follows a kinematic body; the space, the tank and that body."""
+    space = pymunk.Space()
+    places = [(-4.0, 3.0), (-3.4, 3.3), *((2.0 + 1.1 * i, 0.1 * i) for i in range(boxes - 2))]
+    control = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    space.add(control)
+
+    def add(x: float, y: float, size: float, mass: float, holder: pymunk.Body, force: float) -> pymunk.Body:
+        body = pymunk.Body(mass, mass * (size * unit) ** 2 / 6.0)
+        body.position = x * unit, y * unit
+        box = pymunk.Poly.create_box(body, (size * unit, size * unit))
+        box.friction = 0.7
+        pivot, gear = pymunk.PivotJoint(holder, body, (0.0, 0.0), (0.0, 0.0)), pymunk.GearJoint(holder, body, 0.0, 1.0)
+        pivot.max_bias = gear.max_bias = 0.0
+        pivot.max_force, gear.max_force = force * unit, 0.25 * force * unit * unit
+        space.add(body, box, pivot, gear)
+        return body
+
+    for x, y in places:
+        add(x, y, 1.0, 1.0, space.static_body, 50.0)
+    return space, add(0.0, 0.0, 1.5, 10.0, control, 500.0), control
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
+def test_boxes_that_lie_in_each_other_and_that_a_tank_pushes_are_solved(unit: float) -> None:
+    """What lies without any load or velocity is solved as it is: by one solve a step, not by shorter and shorter
+    intervals."""
+    space, tank, control = yard(unit)
+    stepper = ep.EECA(space)
+    lying = [b for b in moving(space) if b.position.x < -unit]
+    for _ in range(120):
+        control.velocity = 1.5 * unit, 0.0
+        report = stepper.step(1 / 60)
+        assert report.converged, report.unmet
+        assert report.iterations <= 18
+        assert all(b.velocity == (0.0, 0.0) and b.angular_velocity == 0.0 for b in lying)
+    assert tank.position.x > 1.0 * unit
