@@ -47,6 +47,11 @@ MUTATIONS = (
              "return g / (math.sqrt(D) - w)", "prediction/test_impact_times.py", "flat_root"),
     Mutation("times: sign in the root of two disks", "prediction/roots.py", "(reach + cross)) - b)",
              "(reach + cross)) + b)", "prediction/test_impact_times.py", "grazing"),
+    Mutation("limits: what leaves its bound meets it again at once", "joints/bounds.py",
+             "return -0.5 * (before + root) / bend if bend < 0.0 else h", "return 0.0",
+             "joints/test_limits.py", "comes_back"),
+    Mutation("limits: round-off lets go", "joints/limits.py", "if when <= MEET_INSTANT * abs(h):", "if False:",
+             "joints/test_limits.py", "without_a_search"),
     # Loop.
     Mutation("loop: what has kinked is not forecast anew", "impacts/loop.py",
              "if o < 0 or STATE[j].version != STATE[i].known:", "if o < 0:",

@@ -35,6 +35,7 @@ def start(
     status = take(STATES, WALK, EXTRA, A.BODY, gx, gy, half_damping)
     if status >= 0:
         lost = hold(A.HELD, A.BODY)
+        A.PAR.planned = dt
         A.PAR.dt, A.PAR.gravity_x, A.PAR.gravity_y, A.PAR.half_damping = dt, gx, gy, half_damping
         A.PAR.instant = MEET_INSTANT * dt
         begin(A, WALK)

@@ -13,7 +13,8 @@ from ..model.scene import Scene
 
 @nonallocating
 def keep_joints(J: Joints, s: int) -> None:
-    """Remember the joints of component s as they are."""
+    """Remember the joints of component s as they are, at a new start."""
+    J.COMPONENT[s].met = -1
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
         j = J.COUPLING[k].joint
         J.KEPT[j] = J.JOINT[j]
@@ -93,7 +94,10 @@ def gather_alone(A: Scene, J: Joints, s: int, t: float, h: float) -> float:
 
 @nonallocating
 def lead_component(A: Scene, J: Joints, s: int, V: FloatArray, ACC: FloatArray, GUESS: FloatArray, h: float) -> None:
-    """Let the next step of component s begin with velocities GUESS (k, 3) at its end, from V under ACC at its start."""
+    """Let the next step of component s begin with velocities GUESS (k, 3) at its end, from V under ACC at its start;
+    with what joints did before if it has met a limit, which changed them."""
+    if J.COMPONENT[s].met >= 0:
+        return
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
         for end in range(2):
             member = J.COMPONENT[s].first_body + J.COUPLING[k].body[end]

@@ -105,7 +105,7 @@ def meet(A: Scene, J: Joints, a: int, b: int, t: float) -> tuple[float, bool]:
             crossed, before = True, -1.0
             t = through if apart < through < t else 0.5 * (apart + t)
             continue
-        if g > 0.0:
+        if g > 0.0 and not (left_apart(A, J, roots[0]) or left_apart(A, J, roots[1])):
             apart = t
         # The islands end where they were brought last.
         if not slope < 0.0 or tries + 1 == MEET_SECANTS:

@@ -104,7 +104,8 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
     MINE = number_bodies(A, root)
     n = len(MINE)
     may_lose = lossy(A, root)
-    found = pairs_within(A, root, t, A.PAR.dt - t, may_lose, MINE, n)
+    # As in a whole step where it is cut short: nobody looks for impacts of pairs that would be left out.
+    found = pairs_within(A, root, t, A.PAR.planned - t, may_lose, MINE, n)
     p = len(found)
     if p == 0 and whole:
         clear_places(A, MINE, n)

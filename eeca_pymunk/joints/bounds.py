@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
+
 from ..arrays import FloatArray
-from ..compiled import nonallocating
+from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
 from ..model.joint_steps import JointStep
 from ..model.joints import GROOVE, RATCHET, ROTARY_LIMIT, SLIDE, Coupling, Joint, Workspace
@@ -95,9 +97,20 @@ def release(W: Workspace) -> bool:
     return True
 
 
+@inlined
+def instant_of(start: float, before: float, after: float, h: float) -> float:
+    """When a gap that is `start` >= 0 at first, and below 0 after h, is 0, if its rate changes evenly from `before` to
+    `after`: the root of start + before t + (after - before) t^2/(2h)."""
+    bend = 0.5 * (after - before) / h
+    root = math.sqrt(max(before * before - 4.0 * bend * start, 0.0))
+    if before > 0.0:
+        return -0.5 * (before + root) / bend if bend < 0.0 else h
+    return 2.0 * start / (root - before) if root - before > 0.0 else 0.0
+
+
 @nonallocating
 def first_bound(W: Workspace, h: float) -> tuple[int, int, float]:
-    """The free limit that a step h passes first, by the mean rate of its gap, or -1; its side; about the instant."""
+    """The free limit that a step h passes first, by the rates of its gap, or -1; its side; about the instant."""
     hinge, link = W.J.HINGE, W.link
     which, at_side, instant = -1, 0, h
     for k in range(W.joints):
@@ -111,11 +124,9 @@ def first_bound(W: Workspace, h: float) -> tuple[int, int, float]:
             if end >= -JOINT_TOUCH * hinge[k].size:
                 continue
             a, b = W.J.LOCAL[link[k].body[0]], W.J.LOCAL[link[k].body[1]]
-            rate = approach(hinge[k], link[k].rows, side, a.v0, b.v0) + approach(
-                hinge[k], link[k].rows, side, a.v1, b.v1
-            )
-            start = max(end - 0.5 * h * rate, 0.0)
-            when = h * start / (start - end)
+            before = approach(hinge[k], link[k].rows, side, a.v0, b.v0)
+            after = approach(hinge[k], link[k].rows, side, a.v1, b.v1)
+            when = min(instant_of(max(end - 0.5 * h * (before + after), 0.0), before, after, h), h)
             if which < 0 or when < instant:
                 which, at_side, instant = k, side, when
     return which, at_side, instant

@@ -5,6 +5,9 @@ When a step would end beyond a bound, it is taken anew to the instant at which t
 of the implicit step); there velocities into the bound vanish, and what that costs in kinetic energy enters the ledger.
 A held row that would pull is let go from the start of the part. The number of parts of a step is bounded; past it, rows
 land: they are held from where they are, g reaches its bound at the end of the part, and their work enters the ledger.
+
+The solutions of one interval differ by little: each looks first for the limit that the one before has met, at its
+instant.
 """
 
 from __future__ import annotations
@@ -29,6 +32,19 @@ from .solve import drop_impulses, solve, solve_linearly
 
 
 @nonallocating
+def begin_as_before(W: Workspace, before: float, h: float) -> None:
+    """Let the solve of a part h begin with the mean accelerations and forces of that of a part `before`, from the same
+    start."""
+    local, hinge, longer = W.J.LOCAL, W.J.HINGE, h / before
+    for i in range(W.bodies):
+        for c in range(3):
+            local[i].lead[c] = (local[i].v1[c] - local[i].v0[c]) / before - local[i].acceleration[c]
+    for k in range(W.joints):
+        hinge[k].lam[0] *= longer
+        hinge[k].lam[1] *= longer
+
+
+@nonallocating
 def step_with_limits(
     W: Workspace, linear: bool, h: float, length: float, loops: bool, give: float, whole: bool, ledger: JointLedger
 ) -> bool:
@@ -36,16 +52,24 @@ def step_with_limits(
 
     A `whole` step does not meet any: False if it would. Nor does a `linear` one, which passes them.
     """
-    hinge, link, local, progress = W.J.HINGE, W.link, W.J.LOCAL, W.J.PROGRESS
+    hinge, link, local, progress, component = W.J.HINGE, W.link, W.J.LOCAL, W.J.PROGRESS, W.J.COMPONENT[W.s]
     left, when, low, high = h, h, 0.0, h
+    solved = 0.0  # length of the last solve from the present start
     events, solves, secants, meeting, side = 0, 0, 0, -1, 0
+    foreseen = component.met >= 0 and component.met_within == h and not (linear or whole)
+    if foreseen:
+        foreseen = link[component.met].side == 0
+    if foreseen:
+        meeting, side, when, events = component.met, component.met_side, component.met_at, 1
     last, before = 0.0, 0.0
     while True:
         redundant = loops or standing(link, W.joints)
         if when > 1e-13 * abs(h) or h < 0.0:
+            if solved != 0.0 and not linear:
+                begin_as_before(W, solved, when)
             if not (solve_linearly(W, when, length) if linear else solve(W, when, length, redundant, give)):
                 return False
-            solves += 1
+            solves, solved = solves + 1, when
             if meeting < 0:  # a step to the end
                 if solves < (LIMIT_SOLVES if linear else 2 * W.joints + 100) and release(W):
                     continue
@@ -65,6 +89,12 @@ def step_with_limits(
             look(W, meeting, when)
             distance = gap(W.J.JOINT, hinge, link, meeting, side)
             secants += 1
+            if foreseen:  # perhaps it is not met now
+                a, b = local[link[meeting].body[0]], local[link[meeting].body[1]]
+                rate = approach(hinge[meeting], link[meeting].rows, side, a.v1, b.v1)
+                if not (rate < 0.0 and 0.0 < when - distance / rate < left):
+                    meeting, when, secants, events, foreseen = -1, left, 0, 0, False
+                    continue
             most = LIMIT_SECANTS if progress.effort <= progress.hurry else LIMIT_SECANTS_HASTE
             if abs(distance) > 0.1 * JOINT_TOUCH * hinge[meeting].size and secants < most:
                 if distance > 0.0:
@@ -97,9 +127,14 @@ def step_with_limits(
             if when > MEET_INSTANT * abs(h) and not near:  # else round-off of places would be velocities
                 book(W, when, ledger)
                 advance(local, W.bodies, when)
+                if left == h:
+                    component.met, component.met_side, component.met_at, component.met_within = meeting, side, when, h
                 left -= when
+        solved, foreseen = 0.0, False
         link[meeting].side = side
         correct(W, SPEEDS)
+        if when <= MEET_INSTANT * abs(h):
+            link[meeting].side = side  # the velocity that lets go is round-off: forces press it to its bound at once
         ledger.limited += fitting_loss(local, W.bodies, ledger)
         drop_impulses(W)
         for k in range(W.joints):

@@ -92,6 +92,10 @@ class Component(Record):
     taut: int  # 1 if its loops held by their pull in the last step (`..joints.taut`)
     boxes: int  # most rows of bounded impulses that may act, if few enough for `..joints.boxes`; else 0
     factored: int  # 1 if the matrix holds factors of an earlier part of the present step
+    met: int  # joint (`Coupling`) whose limit a step from the present start has met first, -1 for none or not known
+    met_side: int  # the side of that limit
+    met_at: float  # instant at which it did, from the start of that step, and the length of the step
+    met_within: float
 
 
 # Linear systems: of bodies and rows; of bodies alone (`..joints.condensed`); of rows alone (`..joints.dual`).

@@ -9,6 +9,7 @@ class Step(Record):
     """Settings, instants and energies of a step."""
 
     dt: float  # length of the step, as far as it is not cut short
+    planned: float  # its length before
     instant: float  # length up to which intervals of islands with joints are empty
     now: float  # instant at which the event loop has stopped for more memory
     gravity_x: float

@@ -76,6 +76,30 @@ def test_a_taut_rope_does_not_hold_what_is_thrown_inwards() -> None:
     assert stepper.ledger.projected == 0.0
 
 
+@pytest.mark.parametrize("up", [0.001, 0.01, 0.2, 0.45])
+def test_what_leaves_its_limit_and_comes_back_within_a_step_stops_there(up: float) -> None:
+    # Thrown up from the end of its rope, which is taut again after 2 v/g: m v^2/2 is lost, and the weight hangs.
+    space = empty()
+    weight = body(space, 2.0, 0.5, (0.0, -1.0))
+    space.add(pymunk.SlideJoint(space.static_body, weight, (0, 0), (0, 0), 0.0, 1.0))
+    weight.velocity = (0.0, up)
+    stepper = run(space, 0.1, 1)
+    assert weight.position.y == pytest.approx(-1.0, abs=1e-14)
+    assert weight.velocity.length < 1e-12
+    assert stepper.ledger.limited == pytest.approx(up**2, abs=2.0 * 9.81 * 1e-12)  # as well as the bound is met
+
+
+def test_what_hangs_at_its_limit_is_held_without_a_search() -> None:
+    efforts = []
+    for up in (0.0, 1e-13):
+        space = empty()
+        weight = body(space, 2.0, 0.5, (0.0, -1.0))
+        space.add(pymunk.SlideJoint(space.static_body, weight, (0, 0), (0, 0), 0.0, 1.0))
+        weight.velocity = (0.0, up)
+        efforts.append(run(space, 0.1, 1).components.arrays.PROGRESS.effort)
+    assert efforts[1] <= 2.0 * efforts[0]  # a velocity of round-off is no reason to let go and to meet it again
+
+
 def test_door_stops_at_its_limit_and_rests_there() -> None:
     space = empty()
     door = body(space, 2.0, 0.5, (0.8, 0.0))
