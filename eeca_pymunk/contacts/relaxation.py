@@ -21,6 +21,7 @@ from ..model.parameters.intervals import (
     FAILED_DIRECT,
     FAILED_DIRECT_AGAIN,
     FIRST_SWEEPS,
+    LARGE_ISLAND,
     LONGEST_BACKOFF,
     SWEEPS_AFTER,
 )
@@ -57,7 +58,7 @@ def relax(
         sweeps += 1
     if worst <= fine:
         return sweeps, 0, worst
-    fails, done, few = 0, 0, problem.m <= COLUMN_CONTACTS
+    fails, done, few = 0, 0, problem.m <= COLUMN_CONTACTS and problem.n < LARGE_ISLAND
     last = worst
     while done < rounds:
         passes = 6 if STATE.augmentation > 6.0 else 1
@@ -77,7 +78,7 @@ def relax(
         last = worst
         if fails >= (FAILED_DIRECT_AGAIN if few or STATE.backoff > 0.0 else FAILED_DIRECT):
             break
-    if worst > max(fine, coarse) and few:
+    if few and worst > max(fine, coarse):
         worst = solve_few(problem, L, V, max(fine, coarse))
         done += FAILED_DIRECT
     if worst > max(fine, coarse) and problem.m > BACKOFF_CONTACTS:
