@@ -25,7 +25,6 @@ from ..rows.build import conserves, rates
 from ..rows.energy import lock, works
 from ..rows.inplace import copy
 from ..rows.sweeps import velocities
-from .correction import budget_of, least_of, lifting
 from .geometry import gather
 from .memory import find, remember_loads
 from .relaxation import relax
@@ -94,7 +93,7 @@ def make_contacts(p: int, k: int) -> Contacts:
 
 @kernel
 def step_island(
-    SCENE: Table, ISLE: Table, CONTACTS: Table, n: int, h: float, most: int, least: float, owed: float, free: float,
+    SCENE: Table, ISLE: Table, CONTACTS: Table, n: int, h: float, most: int, least: float, owed: float,
     rest_speed: float,
 ) -> int:  # fmt: skip
     """Solve an island over an interval of length h.
@@ -106,8 +105,6 @@ def step_island(
         most: largest number of sweeps of a moving island.
         least: length that each body's points may move at least; 0 to use their velocities alone.
         owed: energy >= 0 that the island has to lose at least.
-        free: energy >= 0 that the penetration correction may cost beyond the losses, work of a kinematic body that was
-            placed into others; negative: no correction.
         rest_speed: speed relative to |a| h below which the island is tested for static forces (`.statics`), 0 for no
             test. If they exist, V is set to 0, and the caller has to account its energy. Negative: only the test is
             done.
@@ -125,8 +122,7 @@ def step_island(
     slow, fast, pull = speeds(V, ACC, EXTENT, IM, n, h, REACH)
     for i in range(k):
         REACH[i] = max(REACH[i], least)
-    MIDDLE = moved(isle.POSE, V, 0.5 * h)
-    m = gather(S, isle, contacts, MIDDLE, REACH, h, k == n)
+    m = gather(S, isle, contacts, moved(isle.POSE, V, 0.5 * h), REACH, h, k == n)
     if m < 0 or 2 * (S.COUNT.remembered + m) > len(S.KEYS):
         return -1
     FREE = moved(V, ACC, h)
@@ -165,11 +161,7 @@ def step_island(
         OUT[0].direct += polishes
         OUT[0].residual = worst
         OUT[0].lock, OUT[0].owed = lock(problem, L, VN, FREE, owed, elastic)
-        normal, tangential = works(problem, L, VN, contacts.LOSS)
-        OUT[0].restitution, OUT[0].friction = normal, tangential
-        if free >= 0.0:
-            budget, size = budget_of(ROWS, m, normal + tangential, owed, free), least_of(EXTENT, n)
-            OUT[0].lifted, OUT[0].deepest = lifting(problem, MIDDLE, VN, ACC, h, size, budget, contacts.JUMP)
+        OUT[0].restitution, OUT[0].friction = works(problem, L, VN, contacts.LOSS)
         remember_loads(ROWS, contacts.KEY, L, m, h, S.KEYS, S.FORCES, S.COUNT, S.PAR.stamp)
     else:
         OUT[0].owed = owed

@@ -5,7 +5,7 @@ before and after:
 
 of kinetic energy, and of potential energy as far as the penetration correction changes it. `forces` are those that
 cause its accelerations. `restitution` and `friction` are >= 0. `lifted` is the energy that the correction costs, below
-0 if bodies sink by it. It exceeds these losses only by the energy `free` of `correction.budget_of`.
+0 if bodies sink by it, and at most these losses.
 """
 
 from __future__ import annotations

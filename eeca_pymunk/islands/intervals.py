@@ -107,12 +107,12 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
     owed = max(-A.RESTING[root].lost, 0.0)
     shortest = A.PAR.dt / RESOLUTION
     if p > 0 and h > 0.0:
-        m = step_island(A, isle, contacts, n, h, sweeps, least, owed, -1.0, quiet)
+        m = step_island(A, isle, contacts, n, h, sweeps, least, owed, quiet)
         stuck = h if in_haste(A) or OUT[0].at_rest > 0 else stick_time(P, Q, ROWS, L, V + h * isle.ACC, VN, m, h)
         if stuck < h:
             # The interval ends where slip ends, as the law of friction changes there.
             h = min(max(stuck, shortest), h)
-            m = step_island(A, isle, contacts, n, h, sweeps, least, owed, -1.0, 0.0)
+            m = step_island(A, isle, contacts, n, h, sweeps, least, owed, 0.0)
         far = 0.0
         if not last and OUT[0].at_rest == 0:
             far = max(excess_way(A, P, Q, KEY, V, VN, m, h), closes_too_far(A, isle, P, Q, ROWS, KEY, VN, m, h))
@@ -196,9 +196,9 @@ def find_lifts(
     does the work beyond what losses pay, as it has been placed into others (payable = 0), or drives into them: then all
     losses of the step pay, as bodies have also gone deeper by their own motion. Returns what losses pay."""
     P, Q, ROWS = contacts.A, contacts.B, contacts.ROWS
-    budget = budget_of(ROWS, m, lost, max(-before, 0.0), 0.0)
+    budget = budget_of(ROWS, m, lost, max(-before, 0.0))
     if driven(A, isle, P, Q, ROWS, contacts.KEY, n, m):
-        payable = min(payable, max(budget_of(ROWS, m, lost, -before, 0.0), 0.0))
+        payable = min(payable, max(budget_of(ROWS, m, lost, -before), 0.0))
     if payable < math.inf:
         budget = math.inf
     problem = Problem(P, Q, ROWS, isle.IM, isle.II, isle.POSE, n, m)

@@ -76,7 +76,7 @@ def test_rest(A: Scene, MINE: IntArray, n: int, V0: FloatArray, with_supports: i
         return False
     quick = (IMPACT_SPEED if freezing else candidate_speed(with_supports)) * A.PAR.pulled / most
     contacts = make_contacts(p, len(isle.WHO))
-    m = step_island(A, isle, contacts, n, dt, 0, 0.0, 0.0, 0.0, -quick)
+    m = step_island(A, isle, contacts, n, dt, 0, 0.0, 0.0, -quick)
     COUNT.direct += contacts.OUT[0].direct
     if contacts.OUT[0].at_rest == 0:
         postpone_test(A, MINE, n)
