@@ -14,6 +14,7 @@ from ..islands.at_rest import continue_contact, put_to_rest, report_at_rest, sto
 from ..islands.rest import find_candidates
 from ..model.bodies import AT_REST, CANDIDATE
 from ..model.scene import Scene
+from ..rows.energy import offset_gain
 
 
 @nonallocating
@@ -48,13 +49,7 @@ def close(A: Scene, WALK: IntArray) -> None:
             if BODY[i].inv_inertia > 0.0:
                 work += twist * (BODY[i].angle - BEGAN[i, 2]) / BODY[i].inv_inertia
             PAR.external += work
-    # A negative loss by friction is deducted from that by restitution, and vice versa.
-    if PAR.restitution < 0.0 and PAR.frictional > 0.0:
-        PAR.frictional += PAR.restitution
-        PAR.restitution = 0.0
-    if PAR.frictional < 0.0 and PAR.restitution > 0.0:
-        PAR.restitution += PAR.frictional
-        PAR.frictional = 0.0
+    PAR.restitution, PAR.frictional = offset_gain(PAR.restitution, PAR.frictional)
     PAR.after = total(A) + PAR.stored
     half_damping = PAR.half_damping
     if half_damping != 1.0:

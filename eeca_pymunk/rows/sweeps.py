@@ -128,9 +128,5 @@ def velocities(problem: AnyProblem, L: FloatArray, FREE: FloatArray, V: FloatArr
 @nonallocating
 def keep(L: FloatArray, V: FloatArray, m: int, L0: FloatArray, V0: FloatArray) -> None:
     """Copy m impulses and all velocities to (L0, V0)."""
-    for i in range(m):
-        L0[i, 0] = L[i, 0]
-        L0[i, 1] = L[i, 1]
-    for i in range(len(V)):
-        for c in range(3):
-            V0[i, c] = V[i, c]
+    copy(L0[:m], L[:m])
+    copy(V0, V)
