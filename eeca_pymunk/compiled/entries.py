@@ -76,7 +76,7 @@ ENTRIES = {
     "impacts.new_scene:measure_scene": "Shape[1] Link[1] f8[2] i8[1] i8",
     "impacts.new_scene:lay_scene": "{Scene}",
     "impacts.new_scene:tie_components": "Member[1] i8[1]",
-    "islands.accounting:flag_again": "{Scene}",
+    "islands.accounting:flag_pairs": "{Scene}",
     "impacts.step:step": "{Scene} {Joints} f8[3] i8[2] f8[2] f8[1] f8 f8 f8 f8 i8",
     "impacts.run:run": "{Scene} {Joints} {RunArrays} f8[3] i8[2] f8[2] f8[1]",
     "joints.plan:make_plan": "Body[1] Joint[1] Component[1] ComponentBody[1] Coupling[1] i8[1]",

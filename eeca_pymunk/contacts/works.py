@@ -56,6 +56,17 @@ def against(ACC: FloatArray, IM: FloatArray, II: FloatArray, n: int, D: FloatArr
     return work
 
 
+@nonallocating
+def kinetic_energy(V: FloatArray, IM: FloatArray, II: FloatArray, n: int) -> float:
+    """Kinetic energy of the first n bodies, which impulses move, at velocities V (k, 3)."""
+    total = 0.0
+    for q in range(n):
+        total += 0.5 * (V[q, 0] ** 2 + V[q, 1] ** 2) / IM[q]
+        if II[q] > 0.0:
+            total += 0.5 * V[q, 2] ** 2 / II[q]
+    return total
+
+
 @kernel
 def moved(X: FloatArray, V: FloatArray, s: float) -> FloatArray:
     """X + s V, all (k, 3)."""

@@ -9,7 +9,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows, zeros
-from ..contacts.works import carried
+from ..contacts.works import carried, kinetic_energy
 from ..islands.building import comes_to_rest
 from ..islands.local import clear_places, set_places
 from ..islands.membership import jointed, members
@@ -32,19 +32,7 @@ from ..rows.build import aim, conserves, normal_rate, rubs
 from ..rows.coulomb import slip_freely
 from ..rows.sweeps import velocities
 from .resolution import finish, rejoin
-from .simultaneous import Block, energy_owed, gather, lay_out
-
-
-@nonallocating
-def energy_of(block: Block, V: FloatArray, W: FloatArray, n: int) -> float:
-    """Kinetic energy of the n bodies of a block at velocities V - W, (k, 3) each."""
-    total = 0.0
-    for q in range(n):
-        x, y, spin = V[q, 0] - W[q, 0], V[q, 1] - W[q, 1], V[q, 2] - W[q, 2]
-        total += 0.5 * (x * x + y * y) / block.IM[q]
-        if block.II[q] > 0.0:
-            total += 0.5 * spin * spin / block.II[q]
-    return total
+from .simultaneous import energy_owed, gather, lay_out
 
 
 @nonallocating
@@ -196,10 +184,10 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     if fits:
         # The part of the velocities that joints do not allow is lost.
         velocities(problem, L, FITTED, V)
-        OUT[0].restitution += energy_of(block, BEFORE, FITTED, n)
+        OUT[0].restitution += kinetic_energy(BEFORE - FITTED, block.IM, block.II, n)
     # The rest of the change of energy is work of moving partners.
-    REST = np.zeros_like(V)
-    gained = energy_of(block, V, REST, n) - energy_of(block, BEFORE, REST, n) + OUT[0].restitution + OUT[0].friction
+    gained = kinetic_energy(V, block.IM, block.II, n) - kinetic_energy(BEFORE, block.IM, block.II, n)
+    gained += OUT[0].restitution + OUT[0].friction
     A.PAR.external += gained - carried(P, Q, ROWS, L, V, V, block.IM, block.II, rows)
     lost = OUT[0].restitution + OUT[0].friction - owed
     finish(A, block, n, m, L, OUT, status, t)

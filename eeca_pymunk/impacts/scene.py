@@ -12,7 +12,7 @@ from ..arrays import AnyArray, FloatArray, IntArray
 from ..compiled.library import check
 from ..compiled.records import R, Rows, columns, from_bytes, put, rows
 from ..contacts.memory import forget
-from ..islands.accounting import flag_again
+from ..islands.accounting import flag_pairs
 from ..joints.held import held_bodies
 from ..joints.workspace import make_joints
 from ..layout import NOW as READ
@@ -178,7 +178,7 @@ class EventLoop(Remembering):
             )
             return
         self.scene = with_more_room(scene, float(scene.PAR.now))
-        flag_again(self.table)
+        flag_pairs(self.table)
         # Margin circles have other centres: all bodies are predicted again.
         n, now = len(scene.BODY) - 1, float(scene.PAR.now)
         scene.BODY["due"][:n], scene.STATE["other"][:n] = now, CHECK

@@ -22,14 +22,10 @@ from .rest import spins_freely
 
 
 @nonallocating
-def flag_again(TABLE: Table) -> None:
-    """Set the flags of the pairs of all intervals in near lists that were made again. TABLE: `table_of` a Scene."""
-    flag_pairs(scene_of(TABLE))
-
-
-@nonallocating
-def flag_pairs(A: Scene) -> None:
-    """Set the flags in the near lists of the pairs that are contacts of intervals, so that they are not predicted."""
+def flag_pairs(TABLE: Table) -> None:
+    """Set the flags in the near lists of the pairs that are contacts of intervals, so that they are not predicted.
+    TABLE: `table_of` a Scene."""
+    A = scene_of(TABLE)
     for c in range(A.COUNT.pushes):
         if A.PUSHED_BY[c].root >= 0:
             a, b = A.PUSHED_BY[c].a, A.PUSHED_BY[c].b

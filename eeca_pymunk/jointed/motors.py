@@ -10,20 +10,19 @@ from ..model.joints import BOXED, GIVEN, MOTOR, ROTARY_SPRING, SPRING, Joints
 @nonallocating
 def drives(J: Joints, s: int) -> bool:
     """Whether the joints of component s move its bodies by themselves: springs, motors, joints with a max_force."""
-    some = False
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
-        kind = J.COUPLING[k].kind
-        some = some or kind in (SPRING, ROTARY_SPRING, MOTOR) or J.JOINT[J.COUPLING[k].joint].bounded != 0
-    return some
+        if J.COUPLING[k].kind in (SPRING, ROTARY_SPRING, MOTOR) or J.JOINT[J.COUPLING[k].joint].bounded != 0:
+            return True
+    return False
 
 
 @nonallocating
 def keeps_speed(J: Joints, s: int) -> bool:
     """Whether joints of component s have rows of speeds at the end of an interval: motors, joints with a max_force."""
-    some = False
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
-        some = some or J.COUPLING[k].bounded != 0
-    return some
+        if J.COUPLING[k].bounded != 0:
+            return True
+    return False
 
 
 @nonallocating

@@ -38,10 +38,10 @@ def smooth(W: Workspace) -> bool:
 @nonallocating
 def gives_way(W: Workspace) -> bool:
     """Whether a joint of the component gives way elastically since an earlier step."""
-    some = False
     for k in range(W.joints):
-        some = some or W.J.JOINT[W.link[k].joint].touched == GIVES_WAY
-    return some
+        if W.J.JOINT[W.link[k].joint].touched == GIVES_WAY:
+            return True
+    return False
 
 
 @nonallocating

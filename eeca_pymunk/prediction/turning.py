@@ -43,6 +43,13 @@ from .bounds import carried_circles_meet, circles_meet
 
 
 @nonallocating
+def opening(a: Motion, b: Motion, nx: float, ny: float, px: float, py: float) -> float:
+    """Velocity (length/time) of b less that of a at the point p along n."""
+    u = nx * (b.vx - b.spin * (py - b.y) - a.vx + a.spin * (py - a.y))
+    return u + ny * (b.vy + b.spin * (px - b.x) - a.vy - a.spin * (px - a.x))
+
+
+@nonallocating
 def time_to_contact_again(
     BODY: Rows[Body], i: int, j: int, t: float, nx: float, ny: float, px: float, py: float
 ) -> float:
@@ -51,7 +58,7 @@ def time_to_contact_again(
     a, b = motion(BODY, i, t), motion(BODY, j, t)
     rx_a, ry_a, rx_b, ry_b = px - a.x, py - a.y, px - b.x, py - b.y
     q_a, q_b = BODY[i].angular, BODY[j].angular
-    u = nx * (b.vx - b.spin * ry_b - a.vx + a.spin * ry_a) + ny * (b.vy + b.spin * rx_b - a.vy - a.spin * rx_a)
+    u = opening(a, b, nx, ny, px, py)
     ax = BODY[j].ax - q_b * ry_b - b.spin * b.spin * rx_b - (BODY[i].ax - q_a * ry_a - a.spin * a.spin * rx_a)
     ay = BODY[j].ay + q_b * rx_b - b.spin * b.spin * ry_b - (BODY[i].ay + q_a * rx_a - a.spin * a.spin * ry_a)
     closing = -(nx * ax + ny * ay)
@@ -64,9 +71,7 @@ def parting_velocity(
 ) -> tuple[float, float]:  # fmt: skip
     """Velocity u (length/time) with which bodies part at the point p along the normal n from i to j, and the
     acceleration of their centres (length/time²) that presses them together."""
-    a, b = motion(BODY, i, t), motion(BODY, j, t)
-    u = nx * (b.vx - b.spin * (py - b.y) - a.vx + a.spin * (py - a.y))
-    u += ny * (b.vy + b.spin * (px - b.x) - a.vy - a.spin * (px - a.x))
+    u = opening(motion(BODY, i, t), motion(BODY, j, t), nx, ny, px, py)
     return u, nx * (BODY[i].ax - BODY[j].ax) + ny * (BODY[i].ay - BODY[j].ay)
 
 
@@ -129,9 +134,7 @@ def face_closes(
         if wide:
             along = low if k == 0 else high
             px, py = (top + away) * nx - along * ny, (top + away) * ny + along * nx
-        u = nx * (two.vx - two.spin * (py - two.y) - one.vx + one.spin * (py - one.y))
-        u += ny * (two.vy + two.spin * (px - two.x) - one.vy - one.spin * (px - one.x))
-        if u < -still:
+        if opening(one, two, nx, ny, px, py) < -still:
             return True
     return False
 

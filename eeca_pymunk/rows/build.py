@@ -129,18 +129,16 @@ def aim(ROWS: Rows[Row], m: int) -> float:
 @nonallocating
 def conserves(ROWS: Rows[Row], m: int) -> bool:
     """Whether all m contacts are elastic and without friction."""
-    lossy = 0
     for i in range(m):
         if ROWS[i].elasticity < 1.0 or ROWS[i].friction > 0.0:
-            lossy += 1
-    return lossy == 0
+            return False
+    return True
 
 
 @nonallocating
 def rubs(ROWS: Rows[Row], m: int) -> bool:
     """Whether any of m contacts has friction."""
-    rough = 0
     for i in range(m):
         if ROWS[i].friction > 0.0:
-            rough += 1
-    return rough > 0
+            return True
+    return False

@@ -9,11 +9,19 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray
-from ..compiled import nonallocating
+from ..compiled import inlined, nonallocating
 from ..model.contacts import Columns, JointedProblem
 from .bounded import SINGLE, bounded_rate, per_impulse, push_row, sweep_bounded
 from .build import normal_rate, tangent_rate
 from .coulomb import coulomb, limited_slip
+
+
+@inlined
+def push_column(C: Columns, i: int, lam: float, beta: float, V: FloatArray) -> None:
+    """Add the columns of contact i times changes of its impulses to V (k, 3)."""
+    for w in range(C.AT[i], C.AT[i + 1]):
+        for c in range(3):
+            V[C.BODY[w], c] += lam * C.N[w, c] + beta * C.T[w, c]
 
 
 @nonallocating
@@ -21,11 +29,8 @@ def push_columns(C: Columns, L: FloatArray, m: int, factor: float, V: FloatArray
     """Add factor Y L to V (k, 3): the columns Y of m contacts times their impulses L (m, 2)."""
     for i in range(m):
         lam, beta = factor * L[i, 0], factor * L[i, 1]
-        if lam == 0.0 and beta == 0.0:
-            continue
-        for w in range(C.AT[i], C.AT[i + 1]):
-            for c in range(3):
-                V[C.BODY[w], c] += lam * C.N[w, c] + beta * C.T[w, c]
+        if lam != 0.0 or beta != 0.0:
+            push_column(C, i, lam, beta, V)
 
 
 @nonallocating
@@ -117,9 +122,7 @@ def sweep_jointed(problem: JointedProblem, L: FloatArray, V: FloatArray) -> floa
         if dn == 0.0 and dt == 0.0:
             continue
         L[i, 0], L[i, 1] = lam, beta
-        for w in range(C.AT[i], C.AT[i + 1]):
-            for c in range(3):
-                V[C.BODY[w], c] += dn * C.N[w, c] + dt * C.T[w, c]
+        push_column(C, i, dn, dt, V)
         worst = max(worst, abs(dn) * ROWS[i].a_nn, abs(dt) * ROWS[i].a_tt)
     return max(worst, sweep_bounded(problem.D, L, m, V))
 

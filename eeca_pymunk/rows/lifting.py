@@ -6,6 +6,7 @@ from ..arrays import FloatArray
 from ..compiled import Choice, inlined, nonallocating
 from ..model.contacts import AnyProblem, JointedProblem, Problem
 from .build import normal_rate
+from .columns import push_column
 
 
 @inlined
@@ -24,10 +25,7 @@ def push_normal_free(problem: Problem, i: int, d: float, D: FloatArray) -> None:
 @inlined
 def push_normal_jointed(problem: JointedProblem, i: int, d: float, D: FloatArray) -> None:
     """Add the normal column of contact i times a change d of its mu to D (k, 3)."""
-    C = problem.C
-    for w in range(C.AT[i], C.AT[i + 1]):
-        for c in range(3):
-            D[C.BODY[w], c] += d * C.N[w, c]
+    push_column(problem.C, i, d, 0.0, D)
 
 
 push_normal = Choice(push_normal_free, push_normal_jointed)
