@@ -22,7 +22,7 @@ FLOORS = (
     "energy",
     "transfer unmet",
     "report",
-    "rehearsing drowsing laying",
+    "rehearsing sleepers world_rows",
     "geometry",
     "rows",
     "pairs",

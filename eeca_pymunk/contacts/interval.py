@@ -10,7 +10,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import Table, kernel, nonallocating
 from ..compiled.records import Rows, empty, zeros
 from ..model.contacts import ROW, SOLVED, Force, Problem
-from ..model.islands import Contacts, contacts_of, island_of
+from ..model.islands import IslandContacts, contacts_of, island_of
 from ..model.parameters.intervals import (
     DIRECT,
     DIRECT_MOVING,
@@ -20,7 +20,7 @@ from ..model.parameters.intervals import (
     LARGE_ISLAND,
 )
 from ..model.scene import scene_of
-from ..rows.blocks import clear
+from ..rows.blocks import clear_report
 from ..rows.build import conserves, rates
 from ..rows.energy import lock, works
 from ..rows.inplace import copy
@@ -82,10 +82,10 @@ def speeds(
 
 
 @kernel
-def make_contacts(p: int, k: int) -> Contacts:
+def make_contacts(p: int, k: int) -> IslandContacts:
     """Empty contacts for p pairs of shapes of k bodies."""
     room = 2 * p + 1
-    return Contacts(
+    return IslandContacts(
         np.empty(room, np.int64), np.empty(room, np.int64), empty(room, ROW), np.empty(room, np.int64),
         np.zeros((room, 2)), np.zeros((room, 2)), np.zeros((k, 3)), np.zeros((k, 6)), zeros(1, SOLVED),
     )  # fmt: skip
@@ -116,7 +116,7 @@ def step_island(
     S, isle, contacts = scene_of(SCENE), island_of(ISLE), contacts_of(CONTACTS)
     A, B, ROWS, L, VN, OUT = contacts.A, contacts.B, contacts.ROWS, contacts.L, contacts.VN, contacts.OUT
     V, ACC, IM, II, EXTENT = isle.V, isle.ACC, isle.IM, isle.II, isle.EXTENT
-    clear(OUT[0])
+    clear_report(OUT[0])
     k = len(IM)
     REACH = np.empty(k)
     slow, fast, pull = speeds(V, ACC, EXTENT, IM, n, h, REACH)

@@ -32,7 +32,7 @@ from ..rows.build import aim, conserves, normal_rate, rubs
 from ..rows.coulomb import slip_freely
 from ..rows.sweeps import velocities
 from .resolution import finish, rejoin
-from .simultaneous import energy_owed, gather, lay_out
+from .simultaneous import energy_owed, gather, make_block
 
 
 @nonallocating
@@ -118,7 +118,7 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
             n, m, PAIRS = gather(A, a, b, t)
     rest = comes_to_rest(A, a, b, t)
     owed, _ = energy_owed(A, n)
-    block = lay_out(A, n, m, PAIRS, min(a, b) * k + max(a, b), rest, t)
+    block = make_block(A, n, m, PAIRS, min(a, b) * k + max(a, b), rest, t)
     P, Q, ROWS, V = block.A, block.B, block.ROWS, block.V
     rows = len(ROWS)
     L, LOSS, OUT = np.zeros((rows, 2)), np.zeros((rows, 2)), zeros(1, SOLVED)

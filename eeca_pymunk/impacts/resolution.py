@@ -20,7 +20,7 @@ from ..model.contacts import SOLVED, Problem, Solved
 from ..model.scene import Scene
 from ..model.step import IMPACT
 from ..rows.blocks import CONVERGED, solve_block
-from .simultaneous import Block, energy_owed, gather, lay_out
+from .simultaneous import Block, energy_owed, gather, make_block
 
 
 @nonallocating
@@ -78,7 +78,7 @@ def strike(A: Scene, a: int, b: int, t: float, rest: bool) -> int:
         clear_places(A, A.BLOCK, n)
         return -1
     owed, piled = energy_owed(A, n)
-    block = lay_out(A, n, m, PAIRS, min(a, b) * k + max(a, b), rest, t)
+    block = make_block(A, n, m, PAIRS, min(a, b) * k + max(a, b), rest, t)
     rows = len(block.ROWS)
     L, LOSS, OUT = np.zeros((rows, 2)), np.zeros((rows, 2)), zeros(1, SOLVED)
     problem = Problem(block.A, block.B, block.ROWS, block.IM, block.II, block.POSE, n, rows)

@@ -149,7 +149,7 @@ class Block(NamedTuple):
 
 
 @kernel
-def lay_out(A: Scene, n: int, m: int, PAIRS: IntArray, hit: int, rest: bool, t: float) -> Block:
+def make_block(A: Scene, n: int, m: int, PAIRS: IntArray, hit: int, rest: bool, t: float) -> Block:
     """The block of the n bodies in A.BLOCK, which are sorted by row here, and of m PAIRS, at instant t.
 
     Args:

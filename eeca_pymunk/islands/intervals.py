@@ -15,7 +15,7 @@ from ..contacts.unmet import spend
 from ..contacts.works import moved
 from ..model.bodies import MOVED
 from ..model.contacts import Problem
-from ..model.islands import Contacts, Island
+from ..model.islands import Island, IslandContacts
 from ..model.parameters.events import RESOLUTION
 from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES, LARGE_ISLAND, SMALL_SWEEPS
 from ..model.scene import Scene
@@ -34,7 +34,7 @@ from .candidates import (
     travel_bound,
 )
 from .depths import closes_too_far, driven, too_deep_at_end
-from .local import clear_places, lay_out_island, needs_memory, number_bodies, open_contacts, open_until, own_contacts
+from .local import clear_places, local_island, needs_memory, number_bodies, open_contacts, open_until, own_contacts
 from .membership import lossy
 from .rest import rest_threshold
 
@@ -86,7 +86,7 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
     if needs_memory(A, p):
         clear_places(A, MINE, n)
         return PUSHES_FULL, 0.0
-    isle = lay_out_island(A, MINE, n, found, t)
+    isle = local_island(A, MINE, n, found, t)
     clear_places(A, MINE, n)
     k, WHO, V, contacts = len(isle.WHO), isle.WHO, isle.V, make_contacts(p, len(isle.WHO))
     P, Q, KEY, ROWS, L = contacts.A, contacts.B, contacts.KEY, contacts.ROWS, contacts.L
@@ -174,7 +174,7 @@ def lift_here(A: Scene, root: int, t: float) -> None:
     MINE = number_bodies(A, root)
     n = len(MINE)
     found = pairs_within(A, root, t, 0.0, True, MINE, n)
-    isle = lay_out_island(A, MINE, n, found, t)
+    isle = local_island(A, MINE, n, found, t)
     clear_places(A, MINE, n)
     k, contacts = len(isle.WHO), make_contacts(len(found), len(isle.WHO))
     m = gather(A, isle, contacts, isle.POSE, np.zeros(k), 0.0, k == n)
@@ -188,8 +188,8 @@ def lift_here(A: Scene, root: int, t: float) -> None:
 
 @kernel
 def find_lifts(
-    A: Scene, isle: Island, contacts: Contacts, n: int, m: int, POSE: FloatArray, VN: FloatArray, h: float, lost: float,
-    before: float, payable: float,
+    A: Scene, isle: Island, contacts: IslandContacts, n: int, m: int, POSE: FloatArray, VN: FloatArray, h: float,
+    lost: float, before: float, payable: float,
 ) -> float:  # fmt: skip
     """Find the penetration corrections JUMP at the end of an interval h, with poses POSE in its middle and velocities
     VN at its end. They may cost the energy `lost` in it, less what was owed `before`; any if a body without mobility

@@ -27,7 +27,7 @@ from .accounting import close_interval
 from .at_rest import put_to_rest, stop
 from .candidates import pairs_within
 from .intervals import set_lifts, solve
-from .local import clear_places, lay_out_island, open_contacts, own_contacts, set_places
+from .local import clear_places, local_island, open_contacts, own_contacts, set_places
 from .membership import lossy, members, unite
 from .rest import candidate_speed, postpone_test, slow_for_long, speed
 from .support import support_loads
@@ -63,7 +63,7 @@ def test_rest(A: Scene, MINE: IntArray, n: int, V0: FloatArray, with_supports: i
     if not freezing:
         support_loads(A, root, LOAD)
     p = len(found)
-    isle = lay_out_island(A, MINE, n, found, 0.0)
+    isle = local_island(A, MINE, n, found, 0.0)
     clear_places(A, MINE, n)
     most = 0.0
     for q in range(n):

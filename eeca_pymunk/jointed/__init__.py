@@ -7,6 +7,6 @@ Open first `solve.py`, the interval of an island, with `lengths.py`, how long it
 `advance.py`, the motion under their impulses, `alone.py`, of what meets nobody, and `bounded.py`, bounded impulses of
 joints (`motors.py`); `meet.py` ends intervals where islands meet, `ledger.py` accounts for joints.
 `component.py` steps what hangs together by joints (`gathered.py`) and finds how it answers impulses; `groups.py`,
-`columns.py` has these answers, `laws.py` the contacts' laws with them (`..rows.path`); `lifting.py` lifts overlaps.
+`columns.py` has these answers, `laws.py` the contacts' laws with them (`..rows.homotopy`); `lifting.py` lifts overlaps.
 `..model.joints` names the arrays. A scene without joints calls nothing of this room.
 """

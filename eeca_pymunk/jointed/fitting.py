@@ -30,7 +30,7 @@ def fit(A: Scene, J: Joints, interval: Interval, L: FloatArray, end: float, scal
 
     Bodies that land leave velocities which violate joints, and those would ring for ever: a midpoint rule turns their
     sign in every step. What this costs enters the ledger. Of a few contacts, those that push do not close by it: see
-    `hold`, which would change the speeds of motors.
+    `stop_closing`, which would change the speeds of motors.
     `scale` is a speed of the island. C is overwritten.
 
     Returns:
@@ -68,7 +68,7 @@ def fit(A: Scene, J: Joints, interval: Interval, L: FloatArray, end: float, scal
             RATES[i] = normal_rate(interval.P, interval.Q, interval.ROWS, motion.V, i)
             fastest = max(fastest, -RATES[i])
     if fastest > FIT_CLOSING * scale:
-        return hold(A, J, interval, end, RATES, FIT_RESIDUAL * fastest, first)
+        return stop_closing(A, J, interval, end, RATES, FIT_RESIDUAL * fastest, first)
     return np.zeros(m)
 
 
@@ -87,7 +87,9 @@ def bring_arms(P: IntArray, Q: IntArray, ROWS: Rows[Row], END: FloatArray, m: in
 
 
 @kernel
-def hold(A: Scene, J: Joints, interval: Interval, end: float, RATES: FloatArray, fine: float, book: int) -> FloatArray:
+def stop_closing(
+    A: Scene, J: Joints, interval: Interval, end: float, RATES: FloatArray, fine: float, book: int
+) -> FloatArray:
     """Normal impulses mu (m,), 0 <= mu _|_ u + G S G^T mu >= 0, on contacts whose rates u (m,) are RATES, infinite for
     those that are not asked: velocities that fit the joints go on to do so, and contacts do not close. Energy only
     falls, by -mu.(u + G S G^T mu / 2), also where sweeps are cut short; it is lost by component `book`."""

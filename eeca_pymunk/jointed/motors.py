@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..compiled import nonallocating
 from ..joints.entries import is_limit
-from ..model.joints import BOXED, GIVEN, MOTOR, ROTARY_SPRING, SPRING, Joints
+from ..model.joints import BOXED, MOTOR, PRESCRIBED, ROTARY_SPRING, SPRING, Joints
 
 
 @nonallocating
@@ -32,6 +32,6 @@ def let_slip(J: Joints, s: int, slips: bool, limits: bool) -> None:
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
         link = J.COUPLING[k]
         if link.bounded != 0 and J.JOINT[link.joint].max_force < 1e300 and J.COMPONENT[s].boxes > 0:
-            link.bounded = GIVEN if slips else BOXED
+            link.bounded = PRESCRIBED if slips else BOXED
         elif limits and is_limit(link.kind) and J.JOINT[link.joint].bounded == 0:
-            link.bounded = GIVEN if slips and link.side != 0 else 0
+            link.bounded = PRESCRIBED if slips and link.side != 0 else 0

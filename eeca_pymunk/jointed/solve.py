@@ -15,7 +15,7 @@ from ..contacts.unmet import note_unmet
 from ..contacts.works import moved
 from ..islands.candidates import before_end, pairs_within
 from ..islands.depths import driven
-from ..islands.local import clear_places, lay_out_island, needs_memory, number_bodies, open_contacts, open_until
+from ..islands.local import clear_places, local_island, needs_memory, number_bodies, open_contacts, open_until
 from ..islands.membership import lossy
 from ..model.islands import Island
 from ..model.joint_steps import ELASTIC
@@ -28,7 +28,7 @@ from ..model.step import AGAIN, CONTACTS, DONE, PUSHES_FULL, SPENT
 from ..rows.bounded import room_for_rows
 from ..rows.build import normal_rate
 from .advance import Interval, Motion, advance
-from .alone import account_turning, begin_alone, is_component, lay_path, meets_nobody
+from .alone import account_turning, begin_alone, is_component, meets_nobody, set_path
 from .columns import make_columns
 from .component import step_component
 from .fitting import fit
@@ -116,7 +116,7 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
     if needs_memory(A, p):
         clear_places(A, MINE, n)
         return PUSHES_FULL, h
-    isle = lay_out_island(A, MINE, n, found, t)
+    isle = local_island(A, MINE, n, found, t)
     k = len(isle.WHO)
     groups = find_groups(isle.WHO, isle.IM, J.OF)
     for s in groups.JOINTED:
@@ -196,6 +196,6 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
         A.PUSHED_BY[first + z].root = root
     COUNT.pushes += m
     for q in range(n):
-        lay_path(A, MINE[q], h, WHERE[q], motion.END[q], motion.V[q])
+        set_path(A, MINE[q], h, WHERE[q], motion.END[q], motion.V[q])
     open_until(A, root, t + h)
     return DONE, h

@@ -31,7 +31,7 @@ class Island(NamedTuple):
     PAIRS: IntArray
 
 
-class Contacts(NamedTuple):
+class IslandContacts(NamedTuple):
     """The contacts of an island over an interval.
 
     ROWS: rows between local bodies A and B. KEY int64: identifies the pair of shapes and which of its two points it is
@@ -50,7 +50,7 @@ class Contacts(NamedTuple):
     OUT: Rows[Solved]
 
 
-class Given(Record):
+class ConnectedWork(Record):
     """What the impulses on bodies that they connect have done up to the end of an interval, in the row of one of them;
     B and C as in `..islands.excess`, with units of energy."""
 
@@ -61,5 +61,5 @@ class Given(Record):
     square: float  # C; 0 if they have given no energy
 
 
-GIVEN = kind_of(Given)
-island_of, contacts_of = Opener(Island), Opener(Contacts)
+CONNECTED_WORK = kind_of(ConnectedWork)
+island_of, contacts_of = Opener(Island), Opener(IslandContacts)

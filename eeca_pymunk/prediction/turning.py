@@ -38,7 +38,7 @@ from ..model.parameters.events import ADVANCES, APPROACH_ROUND_OFF, RESOLUTION
 from ..model.parameters.intervals import TOUCH
 from ..model.scene import Scene
 from ..pairs.lists import face_tolerance
-from .axes import Closing, Motion, bends, fastest, fixed_axis, motion, pulled_along, turning_axis
+from .axes import Closing, Motion, bends, fixed_axis, motion, pulled_along, speed_bound, turning_axis
 from .bounds import carried_circles_meet, circles_meet
 
 
@@ -193,7 +193,7 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float) -> tuple[floa
             return horizon, False
     around, bend_a, bend_b = bends(A, a, b, start, duration)
     extent = SHAPE[a].rounding + SHAPE[b].rounding
-    still = APPROACH_ROUND_OFF * (fastest(A, a, start) + fastest(A, b, start))
+    still = APPROACH_ROUND_OFF * (speed_bound(A, a, start) + speed_bound(A, b, start))
     depth = TOUCH * smaller(A, a, b)
     of_a, of_b = Closing(extent, bend_a, tolerance, depth, still), Closing(extent, bend_b, tolerance, depth, still)
     P, Q = A.CORE[0], A.CORE[1]

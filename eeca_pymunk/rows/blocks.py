@@ -43,7 +43,7 @@ CONVERGED, TRUNCATED = 0, 1  # statuses
 
 
 @nonallocating
-def clear(out: Solved) -> None:
+def clear_report(out: Solved) -> None:
     """Reset the report of a solve."""
     out.restitution = out.friction = out.owed = out.residual = out.tolerance = 0.0
     out.sweeps = out.direct = out.at_rest = 0
@@ -121,7 +121,7 @@ def solve_block(
             energy balance holds in both cases.
     """
     A, B, ROWS, m = problem.A, problem.B, problem.ROWS, problem.m
-    clear(OUT[0])
+    clear_report(OUT[0])
     OUT[0].owed = owed
     for i in range(m):
         LOSS[i, 0] = LOSS[i, 1] = 0.0
