@@ -154,15 +154,6 @@ def mark_changed(A: Scene, root: int) -> None:
 
 
 @nonallocating
-def continue_contact(A: Scene, c: int, root: int) -> None:
-    """Keep contact c, which has just been accounted, for the next step, as its island comes to rest."""
-    R = A.PUSHED[c]
-    A.PUSHED_BY[c].root = root
-    mark_pair(A, A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, 1)
-    R.un_before, R.un_after, R.ut_before, R.ut_after, R.work, R.held = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-
-
-@nonallocating
 def report_at_rest(A: Scene, c: int) -> None:
     """At the end of a step: log the impulse of contact c of an island at rest, and renew its remembered forces."""
     R = A.PUSHED[c]
@@ -191,7 +182,7 @@ def stop(A: Scene, i: int) -> None:
 
 @nonallocating
 def put_to_rest(A: Scene, root: int) -> None:
-    """At the start or the end of a step: put an island to rest. Its bodies stop, apart from free spins."""
+    """At the start of a step: put an island to rest. Its bodies stop, apart from free spins."""
     BODY, MEMBER = A.BODY, A.MEMBER
     MEMBER[root].new_forces = 1
     i = root

@@ -103,7 +103,7 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
         # A body without mobility that the program has moved into others does the work of lifting them.
         if MEMBER[WHO[q]].placed == MOVED and BODY[WHO[q]].inv_mass == 0.0:
             payable = 0.0
-    quiet = rest_threshold(A, root, MINE, n, with_supports, t) if may_lose and payable > 0.0 else 0.0
+    quiet = rest_threshold(A, root, MINE, n, with_supports, may_lose, t) if payable > 0.0 else 0.0
     owed = max(-A.RESTING[root].lost, 0.0)
     shortest = A.PAR.dt / RESOLUTION
     if p > 0 and h > 0.0:
