@@ -91,8 +91,8 @@ MUTATIONS = (
     Mutation("friction: may give energy", "rows/coulomb.py", "if T * (s * T + p) + c > 0.0:", "if False:",
              "rows/test_blocks.py", "coulomb"),
     # Sustained contacts.
-    Mutation("sustained: bounces never end", "contacts/targets.py", "bounce < 0.5 * max(", "bounce < 0.0 * max(",
-             "contacts/test_one_body.py", "bounces_end"),
+    Mutation("sustained: bounces never end", "contacts/targets.py", "-e * min(u, 0.0) < 0.5 * press",
+             "-e * min(u, 0.0) < 0.0 * press", "contacts/test_one_body.py", "bounces_end"),
     Mutation("sustained: soft landing by half a gap", "contacts/targets.py", "close = -u - 2.0 * ROWS[i].gap / h",
              "close = -u - ROWS[i].gap / h", "contacts/test_one_body.py", "comes_down_slowly"),
     Mutation("sustained: half of the pull", "contacts/interval.py", "FREE = moved(V, ACC, h)",

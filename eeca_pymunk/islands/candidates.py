@@ -7,6 +7,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
+from ..contacts.targets import hardly_bounces
 from ..geometry.flight import norm
 from ..model.contacts import Row
 from ..model.parameters.events import RESOLUTION
@@ -24,7 +25,7 @@ from ..model.scene import Scene
 from ..pairs.lists import far_apart
 from ..pairs.rules import barred, law
 from ..rows.build import tangent_rate
-from .membership import approach, fixed_support, hardly_bounces, persists, remembered
+from .membership import approach, fixed_support, persists, remembered
 
 
 @nonallocating
