@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import nonallocating
+from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import Row
 from ..model.parameters.impulses import SINGULAR
@@ -85,6 +85,23 @@ def tangent_rate(A: IntArray, B: IntArray, ROWS: Rows[Row], V: FloatArray, i: in
         + ROWS[i].surface
     )
     return rate
+
+
+@inlined
+def push_contact(
+    A: IntArray, B: IntArray, ROWS: Rows[Row], IM: FloatArray, II: FloatArray, i: int, lam: float, beta: float,
+    V: FloatArray,
+) -> None:  # fmt: skip
+    """Add M^-1 (G^T lam + T^T beta) of contact i to V (k, 3)."""
+    a, b = A[i], B[i]
+    fx = lam * ROWS[i].nx - beta * ROWS[i].ny
+    fy = lam * ROWS[i].ny + beta * ROWS[i].nx
+    V[a, 0] -= IM[a] * fx
+    V[a, 1] -= IM[a] * fy
+    V[a, 2] -= II[a] * (lam * ROWS[i].arm_na + beta * ROWS[i].arm_ta)
+    V[b, 0] += IM[b] * fx
+    V[b, 1] += IM[b] * fy
+    V[b, 2] += II[b] * (lam * ROWS[i].arm_nb + beta * ROWS[i].arm_tb)
 
 
 @nonallocating

@@ -9,6 +9,7 @@ from ..arrays import FloatArray
 from ..compiled import Choice, nonallocating
 from ..model.contacts import AnyProblem, Problem
 from ..model.parameters.impulses import JAMMED
+from .build import push_contact
 from .columns import push_jointed, rows_jointed, sweep_jointed
 from .coulomb import coulomb
 from .inplace import copy
@@ -94,17 +95,8 @@ def push_free(problem: Problem, L: FloatArray, factor: float, V: FloatArray) -> 
     for i in range(m):
         lam = factor * L[i, 0]
         beta = factor * L[i, 1]
-        if lam == 0.0 and beta == 0.0:
-            continue
-        a, b = A[i], B[i]
-        fx = lam * ROWS[i].nx - beta * ROWS[i].ny
-        fy = lam * ROWS[i].ny + beta * ROWS[i].nx
-        V[a, 0] -= IM[a] * fx
-        V[a, 1] -= IM[a] * fy
-        V[a, 2] -= II[a] * (lam * ROWS[i].arm_na + beta * ROWS[i].arm_ta)
-        V[b, 0] += IM[b] * fx
-        V[b, 1] += IM[b] * fy
-        V[b, 2] += II[b] * (lam * ROWS[i].arm_nb + beta * ROWS[i].arm_tb)
+        if lam != 0.0 or beta != 0.0:
+            push_contact(A, B, ROWS, IM, II, i, lam, beta, V)
 
 
 @nonallocating
