@@ -114,7 +114,7 @@ def step_island(
             contacts or the memory of forces need more memory.
     """
     S, isle, contacts = scene_of(SCENE), island_of(ISLE), contacts_of(CONTACTS)
-    A, B, ROWS, L, VN, OUT = contacts.A, contacts.B, contacts.ROWS, contacts.L, contacts.VN, contacts.OUT
+    A, B, ROWS, VN, OUT = contacts.A, contacts.B, contacts.ROWS, contacts.VN, contacts.OUT
     V, ACC, IM, II, EXTENT = isle.V, isle.ACC, isle.IM, isle.II, isle.EXTENT
     clear_report(OUT[0])
     k = len(IM)
@@ -130,7 +130,7 @@ def step_island(
     contacts.JUMP[:] = 0.0
     if m > 0:
         problem = Problem(A, B, ROWS, IM, II, isle.POSE, n, m)
-        EXPECTED = np.empty(m)
+        L, EXPECTED = contacts.L[:m], np.empty(m)
         recall(contacts.KEY, m, S.KEYS, S.FORCES, S.PAR.stamp, h, L, EXPECTED)
         rates(A, B, ROWS, V, m)
         target(A, B, ROWS, m, ACC, EXPECTED, pull, h)

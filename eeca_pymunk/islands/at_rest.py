@@ -48,8 +48,7 @@ def stays_at_rest(A: Scene, i: int, last: float) -> bool:
 
 @nonallocating
 def note_motion(A: Scene, i: int) -> None:
-    """Set `rest` of body i, which impulses do not move: CHANGED if it was moved since the last step or has a velocity,
-    else AWAKE."""
+    """Set `rest` of body i, which impulses do not move: CHANGED if it was moved or has a velocity, else AWAKE."""
     A.MEMBER[i].rest = AWAKE if unchanged(A, i) else CHANGED
 
 
@@ -195,8 +194,7 @@ def put_to_rest(A: Scene, root: int) -> None:
 
 @nonallocating
 def store_rest(A: Scene) -> None:
-    """At the end of a step: store the poses of bodies at rest, and the instants of their next events, which the next
-    step compares."""
+    """At the end of a step: store the poses and next events of bodies at rest, which the next step compares."""
     for i in range(A.BODY.shape[0] - 1):
         if A.MEMBER[i].rest == AT_REST:
             A.RESTING[i].rest_due = A.BODY[i].due

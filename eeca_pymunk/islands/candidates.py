@@ -116,8 +116,7 @@ def before_end(A: Scene, t: float) -> bool:
 
 @nonallocating
 def sweeps_of_large(t: float) -> int:
-    """Sweeps of a large island in an interval from instant t on: fewer after a hit, as the forces of the interval
-    before are a good start."""
+    """Sweeps of a large island in an interval from instant t: fewer after a hit, which begins with good forces."""
     return LARGE_SWEEPS if t == 0.0 else LARGE_SWEEPS_HIT
 
 

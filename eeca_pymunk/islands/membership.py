@@ -81,8 +81,7 @@ def in_large_island(A: Scene, a: int, b: int) -> bool:
 
 @nonallocating
 def budget_spent(A: Scene, root: int) -> bool:
-    """Whether an island is large and is neither hit nor joined any more in this step, since bodies have been solved
-    often enough."""
+    """Whether a large island is neither hit nor joined any more in this step, as bodies have been solved enough."""
     if root < 0 or A.MEMBER[root].bodies < LARGE_ISLAND or A.MEMBER[root].open == 0:
         return False
     most = SOLVES_BEFORE_HASTE * (WORK_JOINTED if A.MEMBER[root].jointed > 0 else 1)

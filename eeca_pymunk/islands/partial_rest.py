@@ -29,7 +29,7 @@ from .candidates import pairs_within
 from .intervals import set_lifts, solve
 from .local import clear_places, local_island, open_contacts, own_contacts, set_places
 from .membership import lossy, members, unite
-from .rest import candidate_speed, postpone_test, slow_for_long, speed
+from .rest import candidate_speed, postpone_test, speed
 from .support import support_loads
 
 
@@ -116,7 +116,7 @@ def split_slow(A: Scene, MINE: IntArray, n: int, STAND: IntArray, MOVE: IntArray
     number of the first."""
     stand, limit = 0, candidate_speed(n) * A.PAR.pulled * A.PAR.dt
     for q in range(n):
-        if slow_for_long(A, MINE[q]) and speed(A, MINE[q], 0.0) <= limit:
+        if A.RESTING[MINE[q]].rest_timer >= 1.0 and speed(A, MINE[q], 0.0) <= limit:
             STAND[stand] = MINE[q]
             stand += 1
         else:

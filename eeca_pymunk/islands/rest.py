@@ -16,15 +16,13 @@ from ..rows.equilibrium import point_speed
 
 @nonallocating
 def spins_freely(A: Scene, i: int) -> bool:
-    """Whether contacts exert no torque on body i: a single disk without friction, on which no torque of the program
-    acts."""
+    """Whether contacts exert no torque on body i: a single disk without friction, and without a torque."""
     return bool(i < A.COUNT.disks and A.SHAPE[i].friction == 0.0 and A.PULL[i, 2] == 0.0)
 
 
 @nonallocating
 def speed(A: Scene, i: int, s: float) -> float:
-    """Bound of the speed (length/time) of the points of body i after a time s; of its centre if contacts exert no
-    torque on it."""
+    """Bound of the speed (length/time) of points of body i after a time s; of its centre if it spins freely."""
     BODY = A.BODY
     vx, vy = BODY[i].vx + s * BODY[i].ax, BODY[i].vy + s * BODY[i].ay
     return point_speed(vx, vy, 0.0 if spins_freely(A, i) else BODY[i].spin + s * BODY[i].angular, BODY[i].extent)
@@ -34,12 +32,6 @@ def speed(A: Scene, i: int, s: float) -> float:
 def candidate_speed(bodies: int) -> float:
     """Speed relative to |a| dt below which bodies of an island of so many bodies are tested for rest."""
     return REST_CANDIDATE if bodies < LARGE_ISLAND else REST_CANDIDATE_LARGE
-
-
-@nonallocating
-def slow_for_long(A: Scene, i: int) -> bool:
-    """Whether the rest timer of body i allows a test for static forces."""
-    return bool(A.RESTING[i].rest_timer >= 1.0)
 
 
 @nonallocating
@@ -77,7 +69,7 @@ def rest_threshold(
         if A.MEMBER[root].hits > 0:
             return 0.0
         for q in range(n):
-            if not slow_for_long(A, MINE[q]) or A.MEMBER[MINE[q]].busy > 0:
+            if A.RESTING[MINE[q]].rest_timer < 1.0 or A.MEMBER[MINE[q]].busy > 0:
                 return 0.0
             if not lossy and speed(A, MINE[q], 0.0) > REST_SPEED * A.PAR.pulled * A.PAR.dt:
                 return 0.0

@@ -125,9 +125,3 @@ def sweep_jointed(problem: JointedProblem, L: FloatArray, V: FloatArray) -> floa
         push_column(C, i, dn, dt, V)
         worst = max(worst, abs(dn) * ROWS[i].a_nn, abs(dt) * ROWS[i].a_tt)
     return max(worst, sweep_bounded(problem.D, L, m, V))
-
-
-@nonallocating
-def rows_jointed(problem: JointedProblem) -> int:
-    """Number of unknown rows of L (., 2): those of contacts and bounded rows."""
-    return int(problem.m + problem.D.USED[0])

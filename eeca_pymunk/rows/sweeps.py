@@ -10,7 +10,7 @@ from ..compiled import Choice, nonallocating
 from ..model.contacts import AnyProblem, Problem
 from ..model.parameters.impulses import JAMMED
 from .build import push_contact
-from .columns import push_jointed, rows_jointed, sweep_jointed
+from .columns import push_jointed, sweep_jointed
 from .coulomb import coulomb
 from .inplace import copy
 
@@ -99,15 +99,8 @@ def push_free(problem: Problem, L: FloatArray, factor: float, V: FloatArray) -> 
             push_contact(A, B, ROWS, IM, II, i, lam, beta, V)
 
 
-@nonallocating
-def rows_free(problem: Problem) -> int:
-    """Number of unknown rows of L (., 2)."""
-    return problem.m
-
-
 sweep = Choice(sweep_free, sweep_jointed)
 push = Choice(push_free, push_jointed)
-rows_of = Choice(rows_free, rows_jointed)
 
 
 @nonallocating
@@ -118,7 +111,7 @@ def velocities(problem: AnyProblem, L: FloatArray, FREE: FloatArray, V: FloatArr
 
 
 @nonallocating
-def keep(L: FloatArray, V: FloatArray, m: int, L0: FloatArray, V0: FloatArray) -> None:
-    """Copy m impulses and all velocities to (L0, V0)."""
-    copy(L0[:m], L[:m])
-    copy(V0, V)
+def restore(L: FloatArray, V: FloatArray, L0: FloatArray, V0: FloatArray) -> None:
+    """Set impulses L and velocities V to L0 and V0."""
+    copy(L, L0)
+    copy(V, V0)
