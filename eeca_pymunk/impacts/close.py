@@ -6,7 +6,6 @@ import math
 
 from ..arrays import IntArray
 from ..compiled import nonallocating
-from ..contacts.energy import total, unsteered
 from ..contacts.single import move_to
 from ..geometry.gap import gap_at
 from ..islands.accounting import account_contact, apply_correction
@@ -14,6 +13,7 @@ from ..islands.at_rest import report_at_rest, store_rest
 from ..model.bodies import AT_REST
 from ..model.scene import Scene
 from ..rows.energy import offset_gain
+from .begin import total, unsteered
 
 
 @nonallocating

@@ -15,7 +15,7 @@ from ..contacts.unmet import note_unmet, spend
 from ..contacts.works import carried
 from ..islands.building import spread
 from ..islands.local import clear_places
-from ..islands.membership import members, unite
+from ..islands.membership import jointed, members, unite
 from ..model.contacts import SOLVED, Problem, Solved
 from ..model.scene import Scene
 from ..model.step import IMPACT
@@ -57,9 +57,7 @@ def finish(A: Scene, block: Block, n: int, m: int, L: FloatArray, OUT: Rows[Solv
 def holds_joints(A: Scene, n: int) -> bool:
     """Whether any of the n bodies in A.BLOCK is jointed, or in an island with joints."""
     for q in range(n):
-        i = A.BLOCK[q]
-        root = A.STATE[i].island
-        if A.MEMBER[i].tied >= 0 or (root >= 0 and A.MEMBER[root].jointed > 0):
+        if A.MEMBER[A.BLOCK[q]].tied >= 0 or jointed(A, A.BLOCK[q]):
             return True
     return False
 

@@ -9,8 +9,8 @@ Shapes meet if, along every axis on which the gap is closed, a point approaches.
 
 A look is one evaluation of the gap in a search.
 
-Side effect: `begin_side`, `search` and `follow_side` note the sides of thin shapes in SIDE; of these notes `general`
-leaves only that of `begin_side`.
+Side effect: `begin_side` and `search` note the sides of thin shapes in SIDE; of these notes `general` leaves
+only that of `begin_side`.
 """
 
 from __future__ import annotations
@@ -157,12 +157,6 @@ def general(A: Scene, a: int, b: int, horizon: float) -> tuple[float, bool]:
 
 
 @nonallocating
-def follow_side(A: Scene, a: int, b: int, t: float, horizon: float) -> None:
-    """Note on which side of each other the thin shapes a and b are at instant t, at which they meet."""
-    search(A, min(a, b), max(a, b), horizon, t)
-
-
-@nonallocating
 def search(A: Scene, a: int, b: int, horizon: float, until: float) -> tuple[float, bool]:
     """(t, certain) of any two shapes, as defined in `impact_times.py`.
 
@@ -175,7 +169,7 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float) -> tuple[floa
     Args:
         a, b: a < b.
         horizon: finite instant; lower bounds are no earlier.
-        until: instant from which on the search is not continued, for `follow_side`; else infinite.
+        until: instant from which on the search is not continued, to note the sides there; else infinite.
     """
     BODY, SHAPE = A.BODY, A.SHAPE
     i, j = A.LINK[a].owner, A.LINK[b].owner
