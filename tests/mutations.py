@@ -131,7 +131,7 @@ MUTATIONS = (
              "START[i, c] += V[i, c] / max(steps, 1.0)", "START[i, c] += 0.0", "islands/test_freeze.py", "slides"),
     Mutation("still: spins that nobody feels count", "islands/rest.py", "i < A.COUNT.disks and", "i < 0 and",
              "islands/test_at_rest.py", "spins_on"),
-    Mutation("ledger: factor 1/2 of friction", "rows/energy.py", "LOSS[i, 1] = -0.5 * L[i, 1]", "LOSS[i, 1] = -L[i, 1]",
+    Mutation("ledger: factor 1/2 of friction", "rows/energy.py", "tangential = -0.5 * L[i, 1]", "tangential = -L[i, 1]",
              "rows/test_blocks.py", "coulomb"),
     Mutation("ledger: the part of a span that was cut", "islands/excess.py",
              "tangential = -f * R.tangential * (R.ut_before + 0.5 * f *",

@@ -87,7 +87,7 @@ def make_contacts(p: int, k: int) -> IslandContacts:
     room = 2 * p + 1
     return IslandContacts(
         np.empty(room, np.int64), np.empty(room, np.int64), empty(room, ROW), np.empty(room, np.int64),
-        np.zeros((room, 2)), np.zeros((room, 2)), np.zeros((k, 3)), np.zeros((k, 6)), zeros(1, SOLVED),
+        np.zeros((room, 2)), np.zeros((k, 3)), np.zeros((k, 6)), zeros(1, SOLVED),
     )  # fmt: skip
 
 
@@ -161,7 +161,7 @@ def step_island(
         OUT[0].direct += polishes
         OUT[0].residual = worst
         OUT[0].lock, OUT[0].owed = lock(problem, L, VN, FREE, owed, elastic)
-        OUT[0].restitution, OUT[0].friction = works(problem, L, VN, contacts.LOSS)
+        OUT[0].restitution, OUT[0].friction = works(problem, L, VN)
         remember_loads(ROWS, contacts.KEY, L, m, h, S.KEYS, S.FORCES, S.COUNT, S.PAR.stamp)
     else:
         OUT[0].owed = owed

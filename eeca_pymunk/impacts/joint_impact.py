@@ -121,7 +121,7 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     block = make_block(A, n, m, PAIRS, min(a, b) * k + max(a, b), rest, t)
     P, Q, ROWS, V = block.A, block.B, block.ROWS, block.V
     rows = len(ROWS)
-    L, LOSS, OUT = np.zeros((rows, 2)), np.zeros((rows, 2)), zeros(1, SOLVED)
+    L, OUT = np.zeros((rows, 2)), zeros(1, SOLVED)
     WHO = np.full(len(block.IM), -1, np.int64)
     for q in range(n):
         WHO[q] = A.BLOCK[q]
@@ -165,14 +165,14 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     FITTED = V.copy()
     weigh(groups, C, P, Q, ROWS, rows)
     problem = JointedProblem(P, Q, ROWS, C, room_for_rows(0, 0), rows)
-    status = solve_block(problem, L, V, owed, False, LOSS, OUT)
+    status = solve_block(problem, L, V, owed, False, OUT)
     if OUT[0].residual > WEDGED * aim(ROWS, rows) and rubs(ROWS, rows):
         sweeps, direct = OUT[0].sweeps, OUT[0].direct
         slip_freely(ROWS, rows)
         for z in range(rows):
             L[z, 0] = L[z, 1] = 0.0
         velocities(problem, L, FITTED, V)
-        status = solve_block(problem, L, V, owed, False, LOSS, OUT)
+        status = solve_block(problem, L, V, owed, False, OUT)
         OUT[0].sweeps += sweeps
         OUT[0].direct += direct
     # `fits`: whether the velocities satisfy the joints afterwards. If all contacts are elastic and without friction,

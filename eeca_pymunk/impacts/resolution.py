@@ -78,9 +78,9 @@ def strike(A: Scene, a: int, b: int, t: float, rest: bool) -> int:
     owed, piled = energy_owed(A, n)
     block = make_block(A, n, m, PAIRS, min(a, b) * k + max(a, b), rest, t)
     rows = len(block.ROWS)
-    L, LOSS, OUT = np.zeros((rows, 2)), np.zeros((rows, 2)), zeros(1, SOLVED)
+    L, OUT = np.zeros((rows, 2)), zeros(1, SOLVED)
     problem = Problem(block.A, block.B, block.ROWS, block.IM, block.II, block.POSE, n, rows)
-    status = solve_block(problem, L, block.V, owed, piled, LOSS, OUT)
+    status = solve_block(problem, L, block.V, owed, piled, OUT)
     lost = OUT[0].restitution + OUT[0].friction - owed
     finish(A, block, n, m, L, OUT, status, t)
     return rejoin(A, a, b, t, n, rest, lost)

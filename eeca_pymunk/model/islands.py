@@ -35,8 +35,8 @@ class IslandContacts(NamedTuple):
     """The contacts of an island over an interval.
 
     ROWS: rows between local bodies A and B. KEY int64: identifies the pair of shapes and which of its two points it is
-    (`..contacts.memory.key_of`), across steps. L, LOSS (., 2): impulses, and losses (D_n, D_t). VN (k, 3): velocities
-    at the end. JUMP (k, 6): correction of pose and velocity at the end. OUT (1,): the report.
+    (`..contacts.memory.key_of`), across steps. L (., 2): impulses. VN (k, 3): velocities at the end. JUMP (k, 6):
+    correction of pose and velocity at the end. OUT (1,): the report.
     """
 
     A: IntArray
@@ -44,7 +44,6 @@ class IslandContacts(NamedTuple):
     ROWS: Rows[Row]
     KEY: IntArray
     L: FloatArray
-    LOSS: FloatArray
     VN: FloatArray
     JUMP: FloatArray
     OUT: Rows[Solved]

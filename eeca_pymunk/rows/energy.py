@@ -25,24 +25,27 @@ def offset_gain(normal: float, tangential: float) -> tuple[float, float]:
     return (both, 0.0) if tangential < 0.0 else (normal, tangential)
 
 
-@nonallocating
-def works(problem: AnyProblem, L: FloatArray, V: FloatArray, LOSS: FloatArray) -> tuple[float, float]:
-    """Set LOSS (m, 2) = D_n and D_t of each contact, energies, with V the velocities after; returns their sums.
+@inlined
+def losses_of(problem: AnyProblem, L: FloatArray, V: FloatArray, i: int) -> tuple[float, float]:
+    """D_n and D_t of contact i, energies, with V the velocities after.
 
-    Where slip reverses, friction returns a part of what restitution takes, D_n + D_t >= 0: a gain is
-    deducted from the loss (`offset_gain`), also from that of all contacts if the solve was truncated.
+    Where slip reverses, friction returns a part of what restitution takes, D_n + D_t >= 0: see `offset_gain`.
     """
-    A, B, ROWS, m = problem.A, problem.B, problem.ROWS, problem.m
+    A, B, ROWS = problem.A, problem.B, problem.ROWS
+    normal = -0.5 * L[i, 0] * (ROWS[i].un + normal_rate(A, B, ROWS, V, i))
+    tangential = -0.5 * L[i, 1] * (ROWS[i].ut + tangent_rate(A, B, ROWS, V, i))
+    return offset_gain(normal, tangential)
+
+
+@nonallocating
+def works(problem: AnyProblem, L: FloatArray, V: FloatArray) -> tuple[float, float]:
+    """Sums of D_n and D_t; `offset_gain` of these too, as the solve may be truncated."""
     normal, tangential = 0.0, 0.0
-    for i in range(m):
-        LOSS[i, 0] = LOSS[i, 1] = 0.0
-        if L[i, 0] == 0.0 and L[i, 1] == 0.0:
-            continue
-        LOSS[i, 0] = -0.5 * L[i, 0] * (ROWS[i].un + normal_rate(A, B, ROWS, V, i))
-        LOSS[i, 1] = -0.5 * L[i, 1] * (ROWS[i].ut + tangent_rate(A, B, ROWS, V, i))
-        LOSS[i, 0], LOSS[i, 1] = offset_gain(LOSS[i, 0], LOSS[i, 1])
-        normal += LOSS[i, 0]
-        tangential += LOSS[i, 1]
+    for i in range(problem.m):
+        if L[i, 0] != 0.0 or L[i, 1] != 0.0:
+            one, two = losses_of(problem, L, V, i)
+            normal += one
+            tangential += two
     return offset_gain(normal, tangential)
 
 
