@@ -14,6 +14,7 @@ import eeca_pymunk as ep
 from comparisons import meeting_scenes, runs
 from comparisons.hard_cases import meeting as hard_cases
 from comparisons.output import Output, Row
+from scenes.scene import add_disk
 
 DT = 1 / 60
 G = 9.81
@@ -230,11 +231,7 @@ def mixed() -> tuple[str, float, float]:
     """How far disks that overlap are from where our step says, after one of native's."""
     space = pymunk.Space()
     for x in (-0.1, 0.1):
-        body = pymunk.Body(1, 1)
-        body.position = x, 0
-        shape = pymunk.Circle(body, 0.5)
-        shape.elasticity = 1.0
-        space.add(body, shape)
+        add_disk(space, (x, 0.0), 0.5)
     stepper = ep.EECA(space)
     space.step(DT)
     before = [b.position for b in space.bodies]

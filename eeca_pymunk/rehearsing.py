@@ -32,8 +32,8 @@ from .transfer import (
     TURNS,
     acceleration,
     finite,
-    lay,
     to_centre,
+    write_ends,
 )  # fmt: skip
 
 HEARD_COLUMNS = 7
@@ -80,7 +80,7 @@ def alter_end(
     energy lost by damping 0. Forces are reset.
 
     Returns:
-        the bits of `lay`, or OVERFLOW if a number is not finite.
+        the bits of `write_ends`, or OVERFLOW if a number is not finite.
     """
     now, left = STATES[NOW], STATES[LEFT]
     status, straight, turning = FORCES | TURNS, 0.0, 0.0
@@ -109,7 +109,7 @@ def alter_end(
     LOST[0] = 0.5 * (straight + turning)
     if status == OVERFLOW:
         return OVERFLOW
-    return lay(STATES, WALK, ENDS, status)
+    return write_ends(STATES, WALK, ENDS, status)
 
 
 @kernel

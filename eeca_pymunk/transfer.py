@@ -159,7 +159,7 @@ def give(
         dt: time.  half_damping: see `take`.  status: the bits of the step so far.
 
     Returns:
-        `status` with the bits of `lay`; OVERFLOW, with STATES written, if a number is not finite.
+        `status` with the bits of `write_ends`; OVERFLOW, with STATES written, if a number is not finite.
     """
     after = STATES[LEFT]
     for i in range(WALK.shape[1]):
@@ -183,11 +183,11 @@ def give(
         after[i, 3], after[i, 4], after[i, 5] = vx, vy, spin
     if status == OVERFLOW:
         return OVERFLOW
-    return lay(STATES, WALK, ENDS, status)
+    return write_ends(STATES, WALK, ENDS, status)
 
 
 @kernel
-def lay(STATES: FloatArray, WALK: IntArray, ENDS: FloatArray, status: int) -> int:
+def write_ends(STATES: FloatArray, WALK: IntArray, ENDS: FloatArray, status: int) -> int:
     """Write STATES[LEFT] to ENDS, to the tables END and PULL.
 
     Returns:
@@ -220,7 +220,7 @@ def lay(STATES: FloatArray, WALK: IntArray, ENDS: FloatArray, status: int) -> in
 
 
 @kernel
-def lay_rest(STATES: FloatArray, ENDS: FloatArray, status: int) -> None:
+def write_still_ends(STATES: FloatArray, ENDS: FloatArray, status: int) -> None:
     """Write the end of the step to the tables STILL (poses, with velocity 0) and SPEED (velocities), for a rest step.
     They have the columns of END."""
     N = STATES.shape[1]

@@ -13,6 +13,7 @@ import pytest
 
 import eeca_pymunk as ep
 from eeca_pymunk.compiled.kernels import prepare
+from scenes.scene import add_disk
 from tests.bitwise import CASES, CLOSURES
 
 SLOW = not prepare().entries  # kernels as plain Python
@@ -181,11 +182,7 @@ def passing(phase: str) -> tuple[pymunk.Space, pymunk.Body, ep.EECA]:
     """A disk far from another one at rest, at which it flies ten diameters in a step; they may not collide."""
     space = pymunk.Space()
     for x in (-5.0, 0.0):
-        body = pymunk.Body(1.0, 1.0)
-        body.position = x, 0.0
-        disk = pymunk.Circle(body, 0.5)
-        disk.elasticity = 1.0
-        space.add(body, disk)
+        add_disk(space, (x, 0.0), 0.5)
     space.on_collision(**{phase: through})
     stepper = ep.EECA(space)
     return space, next(iter(space.bodies)), stepper

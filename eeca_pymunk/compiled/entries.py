@@ -20,8 +20,8 @@ import numpy as np
 from .records import KINDS
 
 SOURCES = (
-    "arrays.py", "layout.py", "transfer.py", "rehearsing.py", "drowsing.py", "laying.py", "compiled", "model", "build",
-    "energy", "geometry", "rows", "pairs", "prediction", "contacts", "joints", "islands", "jointed", "impacts",
+    "arrays.py", "layout.py", "transfer.py", "rehearsing.py", "sleepers.py", "world_rows.py", "compiled", "model",
+    "build", "energy", "geometry", "rows", "pairs", "prediction", "contacts", "joints", "islands", "jointed", "impacts",
 )  # fmt: skip
 
 TABLES = {
@@ -40,8 +40,8 @@ TABLES = {
     "Island": """
         WHO:i8[1] POSE:f8[2] V:f8[2] ACC:f8[2] IM:f8[1] II:f8[1] EXTENT:f8[1] FELT:f8[1] PAIRS:i8[2]
     """,
-    "Contacts": """
-        A:i8[1] B:i8[1] ROWS:Row[1] KEY:i8[1] L:f8[2] LOSS:f8[2] VN:f8[2] JUMP:f8[2] OUT:Solved[1]
+    "IslandContacts": """
+        A:i8[1] B:i8[1] ROWS:Row[1] KEY:i8[1] L:f8[2] VN:f8[2] JUMP:f8[2] OUT:Solved[1]
     """,
     "RunArrays": """
         RUN:Run KEPT:i8[1] FRAMES:f8[2] SUMS:f8[2] EVENTS:Impulse[1] TOTAL:f8[1] INITIAL:f8[2] PUSH:f8[2]
@@ -61,22 +61,22 @@ ENTRIES = {
     "transfer:take": "f8[3] i8[2] f8[2] Body[1] f8 f8 f8",
     "transfer:give": "f8[3] i8[2] f8[2] Body[1] f8[1] f8 f8 i8",
     "transfer:place_anew": "f8[3] i8[2] f8[2]",
-    "transfer:lay": "f8[3] i8[2] f8[1] i8",
-    "transfer:lay_rest": "f8[3] f8[1] i8",
+    "transfer:write_ends": "f8[3] i8[2] f8[1] i8",
+    "transfer:write_still_ends": "f8[3] f8[1] i8",
     "rehearsing:approach": "f8[3] i8[2] f8[2] Body[1] f8[1] f8[2] f8 f8 f8 f8",
     "rehearsing:nears": "f8[3] f8[1] f8[2] i8[2] f8 f8",
     "rehearsing:copy_start": "f8[3] i8[2] Body[1] f8[2]",
     "rehearsing:as_read": "f8[3] f8[2]",
     "rehearsing:alter_end": "f8[3] i8[2] Body[1] f8[1] f8[2] f8[2] f8[1] i8",
-    "drowsing:rests": "f8[3] i8[2] Body[1] f8[1] f8[1] i8[1] f8 f8 f8",
-    "drowsing:approaches": "f8[3] i8[1] f8[1] f8[1] f8[2] i8[1] f8 f8",
-    "drowsing:touches": "Impulse[1] i8[1] i8[1] i8[1] i8",
-    "laying:lay_rows": "GivenBody[1] GivenShape[1] f8[2] Body[1] Shape[1] Link[1] f8[2] i8[1]",
+    "sleepers:rests": "f8[3] i8[2] Body[1] f8[1] f8[1] i8[1] f8 f8 f8",
+    "sleepers:approaches": "f8[3] i8[1] f8[1] f8[1] f8[2] i8[1] f8 f8",
+    "sleepers:touches": "Impulse[1] i8[1] i8[1] i8[1] i8",
+    "world_rows:write_rows": "BodyValues[1] ShapeValues[1] f8[2] Body[1] Shape[1] Link[1] f8[2] i8[1]",
     "rehearsing:changed": "f8[3] f8[2] f8[2]",
     "impacts.new_scene:measure_scene": "Shape[1] Link[1] f8[2] i8[1] i8",
-    "impacts.new_scene:lay_scene": "{Scene}",
+    "impacts.new_scene:begin_scene": "{Scene}",
     "impacts.new_scene:tie_components": "Member[1] i8[1]",
-    "islands.accounting:flag_again": "{Scene}",
+    "islands.accounting:flag_pairs": "{Scene}",
     "impacts.step:step": "{Scene} {Joints} f8[3] i8[2] f8[2] f8[1] f8 f8 f8 f8 i8",
     "impacts.run:run": "{Scene} {Joints} {RunArrays} f8[3] i8[2] f8[2] f8[1]",
     "joints.plan:make_plan": "Body[1] Joint[1] Component[1] ComponentBody[1] Coupling[1] i8[1]",
@@ -85,7 +85,7 @@ ENTRIES = {
     "joints.held:find_held": "Body[1] Joint[1] i8[1] i8[1] i8[1]",
     # Only tests call these, which solve single islands and components: some hundred times slower as plain Python.
     "joints.world:step_all": "{Joints} Body[1] f8",
-    "contacts.interval:step_island": "{Scene} {Island} {Contacts} i8 f8 i8 f8 f8 f8 f8",
+    "contacts.interval:step_island": "{Scene} {Island} {IslandContacts} i8 f8 i8 f8 f8 f8",
     "contacts.memory:forget": "i8[1] Force[1] Count i8[1] Force[1] f8",
 }
 

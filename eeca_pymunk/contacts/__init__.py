@@ -5,7 +5,7 @@ interval h. Out: velocities at its end (each path is the parabola between), impu
 Open `interval.py` first: rows (`geometry.py`), targets (`targets.py`), test for static forces (`statics.py`), solve
 (`relaxation.py`), energy lock, works (`works.py`), penetration correction (`correction.py`), memory of forces
 (`memory.py`). `single.py` is the closed law of one disk's impact; `unmet.py` notes budgets and tolerances that were not
-met; `energy.py` sums the energy of a scene.
+met.
 
 Names of arguments are those of `..rows`, with S for the scene; A is the scene where there are no local bodies. V and VN
 (k, 3) are velocities at the start and the end of an interval of length h, ACC accelerations without contacts, EXTENT

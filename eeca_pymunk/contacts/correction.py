@@ -30,7 +30,7 @@ from .works import against, moved
 def lifting(
     problem: Problem, POSE: FloatArray, VN: FloatArray, ACC: FloatArray, h: float, size: float, budget: float,
     JUMP: FloatArray,
-) -> tuple[float, float]:  # fmt: skip
+) -> None:  # fmt: skip
     """Compute the corrections JUMP (k, 6) of pose and velocity at the end of an interval of length h.
 
     Args:
@@ -38,9 +38,6 @@ def lifting(
         VN: (k, 3) velocities at the end.  ACC: (k, 3) accelerations without contacts.
         size: extent of the smallest body, length.
         budget: energy that the correction may cost; below 0 nothing is corrected, with 0 what costs nothing.
-
-    Returns:
-        The energy spent (<= budget, negative if bodies sink), and the deepest gap before (negative in overlap).
     """
     A, B, ROWS, IM, II, _, n, m = problem
     JUMP[:] = 0.0
@@ -50,7 +47,7 @@ def lifting(
         GAPS[i] = ROWS[i].gap + 0.5 * h * (ROWS[i].un + normal_rate(A, B, ROWS, VN, i))
         deepest = min(deepest, GAPS[i])
     if deepest >= -OVERLAP_LEFT * size or not budget >= 0.0:
-        return 0.0, deepest
+        return
     D = np.zeros((len(IM), 3))
     most = 10 + 1000 // m if m <= DENSE_CONTACTS else 8 + 200 // m
     lift(problem, GAPS, np.zeros(m), D, 0.1 * OVERLAP_LEFT * size, most)
@@ -74,7 +71,6 @@ def lifting(
         turn, x, y, spin, inertia = unturn(NEW, D, VN, IM, II, touched)
         work += turn * spin
         square = 0.5 * inertia * turn * turn
-    part = 1.0
     if work + square > budget + CORRECTION_ROUND_OFF * against(np.abs(ACC), IM, II, n, np.abs(D)):
         part = CORRECTION_SHARE * budget / (max(work, 0.0) + square)
         for i in range(n):
@@ -88,7 +84,6 @@ def lifting(
             JUMP[i, c] = D[i, c]
     if turn != 0.0:
         turn_by(NEW, touched, turn, x, y, JUMP, 3)
-    return part * (work + part * square), deepest
 
 
 @nonallocating
@@ -101,11 +96,10 @@ def least_of(EXTENT: FloatArray, n: int) -> float:
 
 
 @nonallocating
-def budget_of(ROWS: Rows[Row], m: int, lost: float, owed: float, free: float) -> float:
-    """Energy that `lifting` may spend: the losses `lost` of m contacts, less the energy `owed`, and `free`. Elastic
-    contacts have none; what they seem to lose is round-off."""
-    budget = -1.0 if conserves(ROWS, m) else lost - owed
-    return max(budget, 0.0) + free if free > 0.0 else budget
+def budget_of(ROWS: Rows[Row], m: int, lost: float, owed: float) -> float:
+    """Energy that `lifting` may spend: the losses `lost` of m contacts, less the energy `owed`. Elastic contacts have
+    none; what they seem to lose is round-off."""
+    return -1.0 if conserves(ROWS, m) else lost - owed
 
 
 @nonallocating

@@ -21,7 +21,7 @@ from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..geometry.manifold import manifold
 from ..geometry.sides import note_side
-from ..model.islands import Contacts, Island
+from ..model.islands import Island, IslandContacts
 from ..model.parameters.intervals import INTERVAL_WAY, MANIFOLD_ROUND_OFF, MIDPOINT_SAME
 from ..model.scene import Scene
 from ..pairs.rules import law
@@ -40,7 +40,7 @@ def way_about(POSE: FloatArray, V: FloatArray, a: int, b: int, extent: float) ->
 
 @kernel
 def gather(
-    S: Scene, isle: Island, contacts: Contacts, MIDDLE: FloatArray, REACH: FloatArray, h: float, free: bool
+    S: Scene, isle: Island, contacts: IslandContacts, MIDDLE: FloatArray, REACH: FloatArray, h: float, free: bool
 ) -> int:  # fmt: skip
     """Write the rows A, B, ROWS, KEY of all contacts of an island's pairs whose gap is at most the sum of both bodies'
     REACH.

@@ -10,7 +10,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import Table, kernel, nonallocating
 from ..compiled.records import Rows, empty, zeros
 from ..model.contacts import ROW, SOLVED, Force, Problem
-from ..model.islands import Contacts, contacts_of, island_of
+from ..model.islands import IslandContacts, contacts_of, island_of
 from ..model.parameters.intervals import (
     DIRECT,
     DIRECT_MOVING,
@@ -20,12 +20,11 @@ from ..model.parameters.intervals import (
     LARGE_ISLAND,
 )
 from ..model.scene import scene_of
-from ..rows.blocks import clear
+from ..rows.blocks import clear_report
 from ..rows.build import conserves, rates
 from ..rows.energy import lock, works
 from ..rows.inplace import copy
 from ..rows.sweeps import velocities
-from .correction import budget_of, least_of, lifting
 from .geometry import gather
 from .memory import find, remember_loads
 from .relaxation import relax
@@ -83,18 +82,18 @@ def speeds(
 
 
 @kernel
-def make_contacts(p: int, k: int) -> Contacts:
+def make_contacts(p: int, k: int) -> IslandContacts:
     """Empty contacts for p pairs of shapes of k bodies."""
     room = 2 * p + 1
-    return Contacts(
+    return IslandContacts(
         np.empty(room, np.int64), np.empty(room, np.int64), empty(room, ROW), np.empty(room, np.int64),
-        np.zeros((room, 2)), np.zeros((room, 2)), np.zeros((k, 3)), np.zeros((k, 6)), zeros(1, SOLVED),
+        np.zeros((room, 2)), np.zeros((k, 3)), np.zeros((k, 6)), zeros(1, SOLVED),
     )  # fmt: skip
 
 
 @kernel
 def step_island(
-    SCENE: Table, ISLE: Table, CONTACTS: Table, n: int, h: float, most: int, least: float, owed: float, free: float,
+    SCENE: Table, ISLE: Table, CONTACTS: Table, n: int, h: float, most: int, least: float, owed: float,
     rest_speed: float,
 ) -> int:  # fmt: skip
     """Solve an island over an interval of length h.
@@ -106,8 +105,6 @@ def step_island(
         most: largest number of sweeps of a moving island.
         least: length that each body's points may move at least; 0 to use their velocities alone.
         owed: energy >= 0 that the island has to lose at least.
-        free: energy >= 0 that the penetration correction may cost beyond the losses, work of a kinematic body that was
-            placed into others; negative: no correction.
         rest_speed: speed relative to |a| h below which the island is tested for static forces (`.statics`), 0 for no
             test. If they exist, V is set to 0, and the caller has to account its energy. Negative: only the test is
             done.
@@ -117,16 +114,15 @@ def step_island(
             contacts or the memory of forces need more memory.
     """
     S, isle, contacts = scene_of(SCENE), island_of(ISLE), contacts_of(CONTACTS)
-    A, B, ROWS, L, VN, OUT = contacts.A, contacts.B, contacts.ROWS, contacts.L, contacts.VN, contacts.OUT
+    A, B, ROWS, VN, OUT = contacts.A, contacts.B, contacts.ROWS, contacts.VN, contacts.OUT
     V, ACC, IM, II, EXTENT = isle.V, isle.ACC, isle.IM, isle.II, isle.EXTENT
-    clear(OUT[0])
+    clear_report(OUT[0])
     k = len(IM)
     REACH = np.empty(k)
     slow, fast, pull = speeds(V, ACC, EXTENT, IM, n, h, REACH)
     for i in range(k):
         REACH[i] = max(REACH[i], least)
-    MIDDLE = moved(isle.POSE, V, 0.5 * h)
-    m = gather(S, isle, contacts, MIDDLE, REACH, h, k == n)
+    m = gather(S, isle, contacts, moved(isle.POSE, V, 0.5 * h), REACH, h, k == n)
     if m < 0 or 2 * (S.COUNT.remembered + m) > len(S.KEYS):
         return -1
     FREE = moved(V, ACC, h)
@@ -134,7 +130,7 @@ def step_island(
     contacts.JUMP[:] = 0.0
     if m > 0:
         problem = Problem(A, B, ROWS, IM, II, isle.POSE, n, m)
-        EXPECTED = np.empty(m)
+        L, EXPECTED = contacts.L[:m], np.empty(m)
         recall(contacts.KEY, m, S.KEYS, S.FORCES, S.PAR.stamp, h, L, EXPECTED)
         rates(A, B, ROWS, V, m)
         target(A, B, ROWS, m, ACC, EXPECTED, pull, h)
@@ -165,11 +161,7 @@ def step_island(
         OUT[0].direct += polishes
         OUT[0].residual = worst
         OUT[0].lock, OUT[0].owed = lock(problem, L, VN, FREE, owed, elastic)
-        normal, tangential = works(problem, L, VN, contacts.LOSS)
-        OUT[0].restitution, OUT[0].friction = normal, tangential
-        if free >= 0.0:
-            budget, size = budget_of(ROWS, m, normal + tangential, owed, free), least_of(EXTENT, n)
-            OUT[0].lifted, OUT[0].deepest = lifting(problem, MIDDLE, VN, ACC, h, size, budget, contacts.JUMP)
+        OUT[0].restitution, OUT[0].friction = works(problem, L, VN)
         remember_loads(ROWS, contacts.KEY, L, m, h, S.KEYS, S.FORCES, S.COUNT, S.PAR.stamp)
     else:
         OUT[0].owed = owed

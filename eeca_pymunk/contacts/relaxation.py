@@ -2,7 +2,7 @@
 
 Sweeps pass a stack's weight to its floor slowly; a direct solve does it at once, as soon as sweeps have found the
 active contacts. In disordered moving piles these change with every step, and sweeps alone cost less. Where both come to
-no end, as with light bodies wedged between heavy ones, few contacts are solved along paths (`..rows.laws`).
+no end, as with light bodies wedged between heavy ones, few contacts are solved by homotopies (`..rows.laws`).
 
 The state of an island lasts across steps (`Rest.augmentation`, `wait`, `backoff`): log10 of the augmentation R, steps
 to wait before the next direct solve, and the wait after its next failure.

@@ -14,22 +14,17 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import nonallocating
+from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import Row
 from ..model.parameters.intervals import IMPACT_SPEED
 
 
-@nonallocating
-def sustained(elasticity: float, u: float, along: float, mass: float, expected: float, h: float) -> bool:
-    """Whether a contact with e < 1 would bounce back within h, so that its bounces cannot be resolved one by one.
-
-    Args:
-        u: normal velocity.  along: a_n, acceleration of the gap without impulses.
-        mass: 1 / A_nn.  expected: lam_w, the impulse over h of the contact's load.
-    """
-    bounce = elasticity * max(-u, 0.0)
-    return elasticity < 1.0 and bounce < 0.5 * max(-along * h, expected / mass)
+@inlined
+def hardly_bounces(e: float, u: float, press: float) -> bool:
+    """Whether a contact with elasticity e and gap rate u would bounce by less than half of what presses it together
+    (velocities), so that its bounces cannot be resolved one by one."""
+    return -e * min(u, 0.0) < 0.5 * press
 
 
 @nonallocating
@@ -51,7 +46,7 @@ def target(
             bounce = -u
         else:
             along = ROWS[i].nx * (ACC[b, 0] - ACC[a, 0]) + ROWS[i].ny * (ACC[b, 1] - ACC[a, 1])
-            if sustained(e, u, along, ROWS[i].k_n, EXPECTED[i], h):
+            if hardly_bounces(e, u, max(-along * h, EXPECTED[i] / ROWS[i].k_n)):
                 bounce = 0.0
         if u < -IMPACT_SPEED * pull * h or (e >= 1.0 and ROWS[i].gap > 0.0):
             ROWS[i].target = bounce

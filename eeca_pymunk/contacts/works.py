@@ -5,7 +5,7 @@ before and after:
 
 of kinetic energy, and of potential energy as far as the penetration correction changes it. `forces` are those that
 cause its accelerations. `restitution` and `friction` are >= 0. `lifted` is the energy that the correction costs, below
-0 if bodies sink by it. It exceeds these losses only by the energy `free` of `correction.budget_of`.
+0 if bodies sink by it, and at most these losses.
 """
 
 from __future__ import annotations
@@ -54,6 +54,17 @@ def against(ACC: FloatArray, IM: FloatArray, II: FloatArray, n: int, D: FloatArr
         if II[i] > 0.0:
             work += ACC[i, 2] * D[i, 2] / II[i]
     return work
+
+
+@nonallocating
+def kinetic_energy(V: FloatArray, IM: FloatArray, II: FloatArray, n: int) -> float:
+    """Kinetic energy of the first n bodies, which impulses move, at velocities V (k, 3)."""
+    total = 0.0
+    for q in range(n):
+        total += 0.5 * (V[q, 0] ** 2 + V[q, 1] ** 2) / IM[q]
+        if II[q] > 0.0:
+            total += 0.5 * V[q, 2] ** 2 / II[q]
+    return total
 
 
 @kernel

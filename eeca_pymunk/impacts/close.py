@@ -6,14 +6,14 @@ import math
 
 from ..arrays import IntArray
 from ..compiled import nonallocating
-from ..contacts.energy import total, unsteered
 from ..contacts.single import move_to
 from ..geometry.gap import gap_at
 from ..islands.accounting import account_contact, apply_correction
-from ..islands.at_rest import continue_contact, put_to_rest, report_at_rest, store_rest
-from ..islands.rest import find_candidates
-from ..model.bodies import AT_REST, CANDIDATE
+from ..islands.at_rest import report_at_rest, store_rest
+from ..model.bodies import AT_REST
 from ..model.scene import Scene
+from ..rows.energy import offset_gain
+from .begin import total, unsteered
 
 
 @nonallocating
@@ -24,23 +24,17 @@ def close(A: Scene, WALK: IntArray) -> None:
     end = PAR.dt
     even = COUNT.even > 0  # no islands
     COUNT.quiet = COUNT.quiet + 1 if even else 0
-    if not even:
-        find_candidates(A)
     for c in range(COUNT.pushes):
         root = A.PUSHED_BY[c].root
         if root >= 0 and A.MEMBER[root].rest == AT_REST:
             report_at_rest(A, c)
         elif root >= 0:
             account_contact(A, c, end)
-            if A.MEMBER[root].rest == CANDIDATE:
-                continue_contact(A, c, root)
     gx, gy = PAR.gravity_x, PAR.gravity_y
     for i in range(BODY.shape[0] - 1):
         move_to(BODY, i, end)
         if not even and A.STATE[i].island == i:
             apply_correction(A, i, end)
-            if A.MEMBER[i].rest == CANDIDATE:
-                put_to_rest(A, i)
     for i in range(BODY.shape[0] - 1):
         fx, fy, twist = A.PULL[i, 0] - gx, A.PULL[i, 1] - gy, A.PULL[i, 2]
         if BODY[i].inv_mass > 0.0 and (fx != 0.0 or fy != 0.0 or twist != 0.0):
@@ -48,13 +42,7 @@ def close(A: Scene, WALK: IntArray) -> None:
             if BODY[i].inv_inertia > 0.0:
                 work += twist * (BODY[i].angle - BEGAN[i, 2]) / BODY[i].inv_inertia
             PAR.external += work
-    # A negative loss by friction is deducted from that by restitution, and vice versa.
-    if PAR.restitution < 0.0 and PAR.frictional > 0.0:
-        PAR.frictional += PAR.restitution
-        PAR.restitution = 0.0
-    if PAR.frictional < 0.0 and PAR.restitution > 0.0:
-        PAR.restitution += PAR.frictional
-        PAR.frictional = 0.0
+    PAR.restitution, PAR.frictional = offset_gain(PAR.restitution, PAR.frictional)
     PAR.after = total(A) + PAR.stored
     half_damping = PAR.half_damping
     if half_damping != 1.0:

@@ -9,7 +9,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows, zeros
-from ..contacts.works import carried
+from ..contacts.works import carried, kinetic_energy
 from ..islands.building import comes_to_rest
 from ..islands.local import clear_places, set_places
 from ..islands.membership import jointed, members
@@ -32,19 +32,7 @@ from ..rows.build import aim, conserves, normal_rate, rubs
 from ..rows.coulomb import slip_freely
 from ..rows.sweeps import velocities
 from .resolution import finish, rejoin
-from .simultaneous import Block, energy_owed, gather, lay_out
-
-
-@nonallocating
-def energy_of(block: Block, V: FloatArray, W: FloatArray, n: int) -> float:
-    """Kinetic energy of the n bodies of a block at velocities V - W, (k, 3) each."""
-    total = 0.0
-    for q in range(n):
-        x, y, spin = V[q, 0] - W[q, 0], V[q, 1] - W[q, 1], V[q, 2] - W[q, 2]
-        total += 0.5 * (x * x + y * y) / block.IM[q]
-        if block.II[q] > 0.0:
-            total += 0.5 * spin * spin / block.II[q]
-    return total
+from .simultaneous import energy_owed, gather, make_block
 
 
 @nonallocating
@@ -130,10 +118,10 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
             n, m, PAIRS = gather(A, a, b, t)
     rest = comes_to_rest(A, a, b, t)
     owed, _ = energy_owed(A, n)
-    block = lay_out(A, n, m, PAIRS, min(a, b) * k + max(a, b), rest, t)
+    block = make_block(A, n, m, PAIRS, min(a, b) * k + max(a, b), rest, t)
     P, Q, ROWS, V = block.A, block.B, block.ROWS, block.V
     rows = len(ROWS)
-    L, LOSS, OUT = np.zeros((rows, 2)), np.zeros((rows, 2)), zeros(1, SOLVED)
+    L, OUT = np.zeros((rows, 2)), zeros(1, SOLVED)
     WHO = np.full(len(block.IM), -1, np.int64)
     for q in range(n):
         WHO[q] = A.BLOCK[q]
@@ -177,14 +165,14 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     FITTED = V.copy()
     weigh(groups, C, P, Q, ROWS, rows)
     problem = JointedProblem(P, Q, ROWS, C, room_for_rows(0, 0), rows)
-    status = solve_block(problem, L, V, owed, False, LOSS, OUT)
+    status = solve_block(problem, L, V, owed, False, OUT)
     if OUT[0].residual > WEDGED * aim(ROWS, rows) and rubs(ROWS, rows):
         sweeps, direct = OUT[0].sweeps, OUT[0].direct
         slip_freely(ROWS, rows)
         for z in range(rows):
             L[z, 0] = L[z, 1] = 0.0
         velocities(problem, L, FITTED, V)
-        status = solve_block(problem, L, V, owed, False, LOSS, OUT)
+        status = solve_block(problem, L, V, owed, False, OUT)
         OUT[0].sweeps += sweeps
         OUT[0].direct += direct
     # `fits`: whether the velocities satisfy the joints afterwards. If all contacts are elastic and without friction,
@@ -196,10 +184,10 @@ def collide(A: Scene, J: Joints, a: int, b: int, t: float) -> int:
     if fits:
         # The part of the velocities that joints do not allow is lost.
         velocities(problem, L, FITTED, V)
-        OUT[0].restitution += energy_of(block, BEFORE, FITTED, n)
+        OUT[0].restitution += kinetic_energy(BEFORE - FITTED, block.IM, block.II, n)
     # The rest of the change of energy is work of moving partners.
-    REST = np.zeros_like(V)
-    gained = energy_of(block, V, REST, n) - energy_of(block, BEFORE, REST, n) + OUT[0].restitution + OUT[0].friction
+    gained = kinetic_energy(V, block.IM, block.II, n) - kinetic_energy(BEFORE, block.IM, block.II, n)
+    gained += OUT[0].restitution + OUT[0].friction
     A.PAR.external += gained - carried(P, Q, ROWS, L, V, V, block.IM, block.II, rows)
     lost = OUT[0].restitution + OUT[0].friction - owed
     finish(A, block, n, m, L, OUT, status, t)

@@ -26,7 +26,7 @@ from ..prediction.disks import body_of, go_on
 from ..prediction.heap import pop, push, sweep_out
 from ..prediction.next_event import has_left
 from ..prediction.scheduling import look_ahead, predict_next
-from ..prediction.turning import follow_side
+from ..prediction.turning import search
 from .intervals import cut_short, start_waiting
 from .joint_impact import collide
 from .resolution import strike
@@ -159,7 +159,7 @@ def follow(A: Scene, J: Joints, may_rest: bool) -> int:
         j = i if o == RENEW else A.LINK[o].owner
         met = o != RENEW
         if met and remembers(A, s, o):
-            follow_side(A, s, o, t, end)
+            search(A, min(s, o), max(s, o), end, t)  # notes on which side of each other they are at t
         if met and (STATE[i].island >= 0 or STATE[j].island >= 0) and passed_over(A, s, o, t):
             note_unmet(A, HITS, s, o, float(hits_of(A, s, o)), float(most_hits(A, s, o)))
             mark_pair(A, s, o, 1)

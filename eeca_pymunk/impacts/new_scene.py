@@ -32,7 +32,7 @@ def measure_scene(SHAPE: Rows[Shape], LINK: Rows[Link], VERTEX: FloatArray, SIZE
 
 
 @kernel
-def lay_scene(table: Table) -> None:
+def begin_scene(table: Table) -> None:
     """Write to the arrays of a new scene, which contain zeros, what is not 0 in it: of bodies, of CORNER, and the
     number of moving shapes."""
     A = scene_of(table)

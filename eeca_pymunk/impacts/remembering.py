@@ -36,7 +36,7 @@ _OF_PROCESS = (
     "_par",
     "_count",
     "_log",
-    "_laid",
+    "_in_memory",
 )  # attributes that no copy has
 
 
@@ -146,7 +146,7 @@ class Remembering:
 
     def _gather(self) -> IntArray:
         """Put what steps change, apart from poses and velocities, into one piece of memory; returns it as integers."""
-        laid, own = self.__dict__.get("_laid", (None, None))
+        laid, own = self.__dict__.get("_in_memory", (None, None))
         if own is not None and laid is self._scene and not self.jointed:
             kept: IntArray = own
             return kept

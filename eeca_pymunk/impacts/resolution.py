@@ -15,12 +15,12 @@ from ..contacts.unmet import note_unmet, spend
 from ..contacts.works import carried
 from ..islands.building import spread
 from ..islands.local import clear_places
-from ..islands.membership import members, unite
+from ..islands.membership import jointed, members, unite
 from ..model.contacts import SOLVED, Problem, Solved
 from ..model.scene import Scene
 from ..model.step import IMPACT
 from ..rows.blocks import CONVERGED, solve_block
-from .simultaneous import Block, energy_owed, gather, lay_out
+from .simultaneous import Block, energy_owed, gather, make_block
 
 
 @nonallocating
@@ -57,9 +57,7 @@ def finish(A: Scene, block: Block, n: int, m: int, L: FloatArray, OUT: Rows[Solv
 def holds_joints(A: Scene, n: int) -> bool:
     """Whether any of the n bodies in A.BLOCK is jointed, or in an island with joints."""
     for q in range(n):
-        i = A.BLOCK[q]
-        root = A.STATE[i].island
-        if A.MEMBER[i].tied >= 0 or (root >= 0 and A.MEMBER[root].jointed > 0):
+        if A.MEMBER[A.BLOCK[q]].tied >= 0 or jointed(A, A.BLOCK[q]):
             return True
     return False
 
@@ -78,11 +76,11 @@ def strike(A: Scene, a: int, b: int, t: float, rest: bool) -> int:
         clear_places(A, A.BLOCK, n)
         return -1
     owed, piled = energy_owed(A, n)
-    block = lay_out(A, n, m, PAIRS, min(a, b) * k + max(a, b), rest, t)
+    block = make_block(A, n, m, PAIRS, min(a, b) * k + max(a, b), rest, t)
     rows = len(block.ROWS)
-    L, LOSS, OUT = np.zeros((rows, 2)), np.zeros((rows, 2)), zeros(1, SOLVED)
+    L, OUT = np.zeros((rows, 2)), zeros(1, SOLVED)
     problem = Problem(block.A, block.B, block.ROWS, block.IM, block.II, block.POSE, n, rows)
-    status = solve_block(problem, L, block.V, owed, piled, LOSS, OUT)
+    status = solve_block(problem, L, block.V, owed, piled, OUT)
     lost = OUT[0].restitution + OUT[0].friction - owed
     finish(A, block, n, m, L, OUT, status, t)
     return rejoin(A, a, b, t, n, rest, lost)

@@ -12,7 +12,7 @@ from ..arrays import AnyArray, FloatArray, IntArray
 from ..compiled.library import check
 from ..compiled.records import R, Rows, columns, from_bytes, put, rows
 from ..contacts.memory import forget
-from ..islands.accounting import flag_again
+from ..islands.accounting import flag_pairs
 from ..joints.held import held_bodies
 from ..joints.workspace import make_joints
 from ..layout import NOW as READ
@@ -76,7 +76,7 @@ class EventLoop(Remembering):
         self._still: IntArray = np.ones(len(self.partner), np.int64) if still is None else still
         HELD = self._hold(BODY, SHAPE, LINK)
         scene, self.table = memory.scene(BODY, SHAPE, LINK, VERTEX, HELD)
-        self.scene, self._laid = scene, (scene, memory.own)
+        self.scene, self._in_memory = scene, (scene, memory.own)
         COUNT = scene.COUNT
         COUNT.limit, COUNT.disks, COUNT.together = limit, disks, together
         COUNT.budget = STEP_LOOKS + STEP_LOOKS_BODY * n * max(n, MANY_BODIES) // MANY_BODIES
@@ -86,7 +86,7 @@ class EventLoop(Remembering):
             self._joints, self.ties = memory.unjointed(n)
 
     def _hold(self, BODY: Rows[Body], SHAPE: Rows[Shape], LINK: Rows[Link]) -> Rows[Held]:
-        """The bodies that straight paths of joints hold, which lose their mobilities."""
+        """The bodies that straight chains of joints hold, which lose their mobilities."""
         if not self.jointed:
             return _NO_HELD
         # `_smooth` is 1 for the bodies that have no shape with friction.
@@ -109,7 +109,7 @@ class EventLoop(Remembering):
         tie_components(self.scene.MEMBER, self.joints.OF)
 
     def holds_others(self) -> bool:
-        """Whether straight paths of joints hold other bodies than those of HELD, after changes of joints or of their
+        """Whether straight chains of joints hold other bodies than those of HELD, after changes of joints or of their
         ends."""
         BODY = self.scene.BODY.copy()
         put(BODY, self._mobility, "inv_mass", "inv_inertia")
@@ -178,7 +178,7 @@ class EventLoop(Remembering):
             )
             return
         self.scene = with_more_room(scene, float(scene.PAR.now))
-        flag_again(self.table)
+        flag_pairs(self.table)
         # Margin circles have other centres: all bodies are predicted again.
         n, now = len(scene.BODY) - 1, float(scene.PAR.now)
         scene.BODY["due"][:n], scene.STATE["other"][:n] = now, CHECK

@@ -19,7 +19,7 @@ from ..model.shapes import Corner, Link, Shape, Side
 from ..model.step import Count, Missed, Step
 from ..pairs.setup import NEAR, NO_GRID, filled, near_sizes
 from .memory import OF_SCENE
-from .new_scene import MEASURES, lay_scene, measure_scene
+from .new_scene import MEASURES, begin_scene, measure_scene
 
 RULE_COLUMNS = 6
 ORDER = 4  # of the steps of components without dissipation, drives and contacts
@@ -78,7 +78,7 @@ class SceneMemory:
         )  # fmt: skip
         scene.COUNT.lossy = lossy
         table = table_of(scene, words=dict(zip(own, self._memory.words, strict=True)))
-        lay_scene(table)
+        begin_scene(table)
         laid = filled(scene, table)
         self.own = self._memory.first(len(OF_SCENE)) if laid[0] is scene else None
         return laid

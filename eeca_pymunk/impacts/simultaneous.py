@@ -15,6 +15,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows, empty
 from ..contacts.single import move_to, touches
+from ..contacts.targets import hardly_bounces
 from ..geometry.flight import pose, rate
 from ..geometry.manifold import face
 from ..geometry.sides import note_side
@@ -149,7 +150,7 @@ class Block(NamedTuple):
 
 
 @kernel
-def lay_out(A: Scene, n: int, m: int, PAIRS: IntArray, hit: int, rest: bool, t: float) -> Block:
+def make_block(A: Scene, n: int, m: int, PAIRS: IntArray, hit: int, rest: bool, t: float) -> Block:
     """The block of the n bodies in A.BLOCK, which are sorted by row here, and of m PAIRS, at instant t.
 
     Args:
@@ -203,7 +204,7 @@ def lay_out(A: Scene, n: int, m: int, PAIRS: IntArray, hit: int, rest: bool, t: 
             row.surface = nx * sy - ny * sx
             place_row(P, Q, ROWS, rows, found[c, 2], found[c, 3], POSE, IMS, IIS)
             u = normal_rate(P, Q, ROWS, V, rows)
-            if e < 1.0 and e * max(-u, 0.0) < 0.5 * load * A.PAR.dt / ROWS[rows].k_n:
+            if e < 1.0 and hardly_bounces(e, u, load * A.PAR.dt / ROWS[rows].k_n):
                 # The contact persists: its bounce would end within the step.
                 ROWS[rows].elasticity = 0.0
             POINTS[rows, 0], POINTS[rows, 1], OF[rows] = found[c, 2], found[c, 3], PAIRS[z]

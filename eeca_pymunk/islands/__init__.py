@@ -11,10 +11,9 @@ States of rest, `Member.rest` of the root of an island, and the transitions betw
     AWAKE      solved in every step. Entered from AT_REST at the instant of an impact (`accounting.py`), and at the
                start of a step after an edit, a motion of the support, or a change of forces (`at_rest.py`); in between
                the island is CHANGED.
-    CANDIDATE  at the end of a step without impacts in which all its bodies were slower than REST_SPEED (`rest.py`).
-    AT_REST    for a candidate whose contacts neither slip nor are driven (`accounting.py`); for an island, or the part
-               of it, for which `..contacts.statics` finds static forces (`intervals.py`, `partial_rest.py`). Left also
-               where contacts of the island cannot support the bodies that move on it (`support.py`).
+    AT_REST    an island, or the part of it, for which `..contacts.statics` finds static forces (`rest.py`,
+               `intervals.py`, `partial_rest.py`). Left also where contacts of the island cannot support the bodies that
+               move on it (`support.py`).
 
 `space/sleeping.py` turns islands at rest into pymunk's sleepers after `space.sleep_time_threshold`.
 

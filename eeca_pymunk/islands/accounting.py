@@ -14,6 +14,7 @@ from ..model.bodies import AT_REST, CHANGED
 from ..model.contacts import ENDED, LASTED
 from ..model.scene import Scene, scene_of
 from ..pairs.lists import mark_pair
+from ..rows.energy import offset_gain
 from .at_rest import mark_changed, wake_supported
 from .excess import losses, repay
 from .membership import unite
@@ -21,14 +22,10 @@ from .rest import spins_freely
 
 
 @nonallocating
-def flag_again(TABLE: Table) -> None:
-    """Set the flags of the pairs of all intervals in near lists that were made again. TABLE: `table_of` a Scene."""
-    flag_pairs(scene_of(TABLE))
-
-
-@nonallocating
-def flag_pairs(A: Scene) -> None:
-    """Set the flags in the near lists of the pairs that are contacts of intervals, so that they are not predicted."""
+def flag_pairs(TABLE: Table) -> None:
+    """Set the flags in the near lists of the pairs that are contacts of intervals, so that they are not predicted.
+    TABLE: `table_of` a Scene."""
+    A = scene_of(TABLE)
     for c in range(A.COUNT.pushes):
         if A.PUSHED_BY[c].root >= 0:
             a, b = A.PUSHED_BY[c].a, A.PUSHED_BY[c].b
@@ -37,8 +34,7 @@ def flag_pairs(A: Scene) -> None:
 
 @nonallocating
 def account_contact(A: Scene, c: int, t: float) -> None:
-    """Enter the losses of contact c of an interval up to instant t in the ledger, log its impulse, and end it. If one
-    of the two losses is negative it is deducted from the other."""
+    """Enter the losses of contact c of an interval up to instant t in the ledger, log its impulse, and end it."""
     PAR, COUNT, R = A.PAR, A.COUNT, A.PUSHED[c]
     root, a, b = A.PUSHED_BY[c].root, A.PUSHED_BY[c].a, A.PUSHED_BY[c].b
     A.PUSHED_BY[c].root = LASTED if t == PAR.dt else ENDED
@@ -47,15 +43,11 @@ def account_contact(A: Scene, c: int, t: float) -> None:
     if f == 0.0 or (R.normal == 0.0 and R.tangential == 0.0):
         return
     normal, tangential = losses(A, c, t)
-    both = normal + tangential
-    if normal < 0.0:
-        normal, tangential = min(both, 0.0), max(both, 0.0)
-    elif tangential < 0.0:
-        normal, tangential = both, 0.0
+    A.RESTING[root].lost += normal + tangential
+    normal, tangential = offset_gain(normal, tangential)
     PAR.restitution += normal
     PAR.frictional += tangential
     PAR.external += f * R.work
-    A.RESTING[root].lost += both
     if f > 0.0 and COUNT.logged < A.LOG.shape[0]:
         note(
             A.LOG[COUNT.logged], a, b, R.start + 0.5 * f * R.length, f * R.normal + R.held, f * R.tangential,
@@ -212,6 +204,3 @@ def apply_correction(A: Scene, root: int, end: float) -> None:
     paid = min(spent, JUMP[root].payable)
     PAR.external += spent - paid
     PAR.restitution -= paid
-    if PAR.restitution < 0.0 and PAR.frictional > 0.0:
-        PAR.frictional += PAR.restitution
-        PAR.restitution = 0.0

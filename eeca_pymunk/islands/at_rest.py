@@ -48,8 +48,7 @@ def stays_at_rest(A: Scene, i: int, last: float) -> bool:
 
 @nonallocating
 def note_motion(A: Scene, i: int) -> None:
-    """Set `rest` of body i, which impulses do not move: CHANGED if it was moved since the last step or has a velocity,
-    else AWAKE."""
+    """Set `rest` of body i, which impulses do not move: CHANGED if it was moved or has a velocity, else AWAKE."""
     A.MEMBER[i].rest = AWAKE if unchanged(A, i) else CHANGED
 
 
@@ -154,15 +153,6 @@ def mark_changed(A: Scene, root: int) -> None:
 
 
 @nonallocating
-def continue_contact(A: Scene, c: int, root: int) -> None:
-    """Keep contact c, which has just been accounted, for the next step, as its island comes to rest."""
-    R = A.PUSHED[c]
-    A.PUSHED_BY[c].root = root
-    mark_pair(A, A.PUSHED_BY[c].a, A.PUSHED_BY[c].b, 1)
-    R.un_before, R.un_after, R.ut_before, R.ut_after, R.work, R.held = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-
-
-@nonallocating
 def report_at_rest(A: Scene, c: int) -> None:
     """At the end of a step: log the impulse of contact c of an island at rest, and renew its remembered forces."""
     R = A.PUSHED[c]
@@ -191,7 +181,7 @@ def stop(A: Scene, i: int) -> None:
 
 @nonallocating
 def put_to_rest(A: Scene, root: int) -> None:
-    """At the start or the end of a step: put an island to rest. Its bodies stop, apart from free spins."""
+    """At the start of a step: put an island to rest. Its bodies stop, apart from free spins."""
     BODY, MEMBER = A.BODY, A.MEMBER
     MEMBER[root].new_forces = 1
     i = root
@@ -204,8 +194,7 @@ def put_to_rest(A: Scene, root: int) -> None:
 
 @nonallocating
 def store_rest(A: Scene) -> None:
-    """At the end of a step: store the poses of bodies at rest, and the instants of their next events, which the next
-    step compares."""
+    """At the end of a step: store the poses and next events of bodies at rest, which the next step compares."""
     for i in range(A.BODY.shape[0] - 1):
         if A.MEMBER[i].rest == AT_REST:
             A.RESTING[i].rest_due = A.BODY[i].due

@@ -7,6 +7,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
+from ..contacts.targets import hardly_bounces
 from ..geometry.flight import norm
 from ..model.contacts import Row
 from ..model.parameters.events import RESOLUTION
@@ -24,7 +25,7 @@ from ..model.scene import Scene
 from ..pairs.lists import far_apart
 from ..pairs.rules import barred, law
 from ..rows.build import tangent_rate
-from .membership import approach, fixed_support, hardly_bounces, persists, remembered
+from .membership import approach, fixed_support, persists, remembered
 
 
 @nonallocating
@@ -115,8 +116,7 @@ def before_end(A: Scene, t: float) -> bool:
 
 @nonallocating
 def sweeps_of_large(t: float) -> int:
-    """Sweeps of a large island in an interval from instant t on: fewer after a hit, as the forces of the interval
-    before are a good start."""
+    """Sweeps of a large island in an interval from instant t: fewer after a hit, which begins with good forces."""
     return LARGE_SWEEPS if t == 0.0 else LARGE_SWEEPS_HIT
 
 

@@ -20,7 +20,7 @@ from ..compiled import inlined, kernel, nonallocating
 from ..compiled.records import Rows, empty
 from ..contacts.single import move_to
 from ..joints.plan import root as set_of
-from ..model.islands import GIVEN, Given
+from ..model.islands import CONNECTED_WORK, ConnectedWork
 from ..model.parameters.intervals import REPAY_ROUND_OFF
 from ..model.scene import Scene
 
@@ -60,7 +60,7 @@ def body_in(A: Scene, root: int, c: int) -> tuple[int, int]:
 
 
 @nonallocating
-def connect(A: Scene, root: int, SET: IntArray, SUMS: Rows[Given]) -> None:
+def connect(A: Scene, root: int, SET: IntArray, SUMS: Rows[ConnectedWork]) -> None:
     """Make the sets of bodies of an island that impulses connect (`SET`, a forest), with sums of 0."""
     i = root
     while i >= 0:
@@ -75,13 +75,13 @@ def connect(A: Scene, root: int, SET: IntArray, SUMS: Rows[Given]) -> None:
 
 
 @nonallocating
-def share(one: Given) -> float:
+def share(one: ConnectedWork) -> float:
     """The factor q of the impulses of a connected set that have given energy."""
     return min(max((one.work - one.linear) / one.square, 0.0), 1.0)
 
 
 @nonallocating
-def scale_forces(A: Scene, root: int, SET: IntArray, SUMS: Rows[Given]) -> None:
+def scale_forces(A: Scene, root: int, SET: IntArray, SUMS: Rows[ConnectedWork]) -> None:
     """Scale the impulses of the sets of an island that have given energy, whose bodies are at the start of its
     interval, and set their losses to 0."""
     BODY, PULL = A.BODY, A.PULL
@@ -111,7 +111,7 @@ def repay(A: Scene, root: int, t: float) -> None:
     if not gives(A, root, t):
         return
     BODY, PULL, start = A.BODY, A.PULL, t
-    SET, SUMS = np.empty(len(BODY), np.int64), empty(len(BODY), GIVEN)
+    SET, SUMS = np.empty(len(BODY), np.int64), empty(len(BODY), CONNECTED_WORK)
     connect(A, root, SET, SUMS)
     for c in range(A.COUNT.pushes):
         if A.PUSHED_BY[c].root == root:

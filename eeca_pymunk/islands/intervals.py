@@ -15,7 +15,7 @@ from ..contacts.unmet import spend
 from ..contacts.works import moved
 from ..model.bodies import MOVED
 from ..model.contacts import Problem
-from ..model.islands import Contacts, Island
+from ..model.islands import Island, IslandContacts
 from ..model.parameters.events import RESOLUTION
 from ..model.parameters.intervals import INTERVAL_RETRY, INTERVAL_TRIES, LARGE_ISLAND, SMALL_SWEEPS
 from ..model.scene import Scene
@@ -34,7 +34,7 @@ from .candidates import (
     travel_bound,
 )
 from .depths import closes_too_far, driven, too_deep_at_end
-from .local import clear_places, lay_out_island, needs_memory, number_bodies, open_contacts, open_until, own_contacts
+from .local import clear_places, local_island, needs_memory, number_bodies, open_contacts, open_until, own_contacts
 from .membership import lossy
 from .rest import rest_threshold
 
@@ -86,7 +86,7 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
     if needs_memory(A, p):
         clear_places(A, MINE, n)
         return PUSHES_FULL, 0.0
-    isle = lay_out_island(A, MINE, n, found, t)
+    isle = local_island(A, MINE, n, found, t)
     clear_places(A, MINE, n)
     k, WHO, V, contacts = len(isle.WHO), isle.WHO, isle.V, make_contacts(p, len(isle.WHO))
     P, Q, KEY, ROWS, L = contacts.A, contacts.B, contacts.KEY, contacts.ROWS, contacts.L
@@ -103,16 +103,16 @@ def open_interval(A: Scene, root: int, t: float, longest: float, last: bool) -> 
         # A body without mobility that the program has moved into others does the work of lifting them.
         if MEMBER[WHO[q]].placed == MOVED and BODY[WHO[q]].inv_mass == 0.0:
             payable = 0.0
-    quiet = rest_threshold(A, root, MINE, n, with_supports, t) if may_lose and payable > 0.0 else 0.0
+    quiet = rest_threshold(A, root, MINE, n, with_supports, may_lose, t) if payable > 0.0 else 0.0
     owed = max(-A.RESTING[root].lost, 0.0)
     shortest = A.PAR.dt / RESOLUTION
     if p > 0 and h > 0.0:
-        m = step_island(A, isle, contacts, n, h, sweeps, least, owed, -1.0, quiet)
+        m = step_island(A, isle, contacts, n, h, sweeps, least, owed, quiet)
         stuck = h if in_haste(A) or OUT[0].at_rest > 0 else stick_time(P, Q, ROWS, L, V + h * isle.ACC, VN, m, h)
         if stuck < h:
             # The interval ends where slip ends, as the law of friction changes there.
             h = min(max(stuck, shortest), h)
-            m = step_island(A, isle, contacts, n, h, sweeps, least, owed, -1.0, 0.0)
+            m = step_island(A, isle, contacts, n, h, sweeps, least, owed, 0.0)
         far = 0.0
         if not last and OUT[0].at_rest == 0:
             far = max(excess_way(A, P, Q, KEY, V, VN, m, h), closes_too_far(A, isle, P, Q, ROWS, KEY, VN, m, h))
@@ -174,7 +174,7 @@ def lift_here(A: Scene, root: int, t: float) -> None:
     MINE = number_bodies(A, root)
     n = len(MINE)
     found = pairs_within(A, root, t, 0.0, True, MINE, n)
-    isle = lay_out_island(A, MINE, n, found, t)
+    isle = local_island(A, MINE, n, found, t)
     clear_places(A, MINE, n)
     k, contacts = len(isle.WHO), make_contacts(len(found), len(isle.WHO))
     m = gather(A, isle, contacts, isle.POSE, np.zeros(k), 0.0, k == n)
@@ -188,17 +188,17 @@ def lift_here(A: Scene, root: int, t: float) -> None:
 
 @kernel
 def find_lifts(
-    A: Scene, isle: Island, contacts: Contacts, n: int, m: int, POSE: FloatArray, VN: FloatArray, h: float, lost: float,
-    before: float, payable: float,
+    A: Scene, isle: Island, contacts: IslandContacts, n: int, m: int, POSE: FloatArray, VN: FloatArray, h: float,
+    lost: float, before: float, payable: float,
 ) -> float:  # fmt: skip
     """Find the penetration corrections JUMP at the end of an interval h, with poses POSE in its middle and velocities
     VN at its end. They may cost the energy `lost` in it, less what was owed `before`; any if a body without mobility
     does the work beyond what losses pay, as it has been placed into others (payable = 0), or drives into them: then all
     losses of the step pay, as bodies have also gone deeper by their own motion. Returns what losses pay."""
     P, Q, ROWS = contacts.A, contacts.B, contacts.ROWS
-    budget = budget_of(ROWS, m, lost, max(-before, 0.0), 0.0)
+    budget = budget_of(ROWS, m, lost, max(-before, 0.0))
     if driven(A, isle, P, Q, ROWS, contacts.KEY, n, m):
-        payable = min(payable, max(budget_of(ROWS, m, lost, -before, 0.0), 0.0))
+        payable = min(payable, max(budget_of(ROWS, m, lost, -before), 0.0))
     if payable < math.inf:
         budget = math.inf
     problem = Problem(P, Q, ROWS, isle.IM, isle.II, isle.POSE, n, m)

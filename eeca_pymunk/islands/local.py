@@ -9,7 +9,7 @@ import numpy as np
 from ..arrays import FlagArray, FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..contacts.works import carried
-from ..model.islands import Contacts, Island
+from ..model.islands import Island, IslandContacts
 from ..model.scene import Scene
 from ..pairs.lists import mark_pair
 from ..rows.build import normal_rate, tangent_rate
@@ -58,7 +58,7 @@ def open_until(A: Scene, root: int, end: float) -> None:
 
 
 @kernel
-def lay_out_island(A: Scene, MINE: IntArray, n: int, found: IntArray, t: float) -> Island:
+def local_island(A: Scene, MINE: IntArray, n: int, found: IntArray, t: float) -> Island:
     """The island of the n bodies MINE, which are at instant t and have A.PLACE, with its contact candidates `found` (p,
     2). Fixed bodies of these pairs are the local bodies n to k - 1."""
     BODY = A.BODY
@@ -104,7 +104,7 @@ def lay_out_island(A: Scene, MINE: IntArray, n: int, found: IntArray, t: float) 
 
 @kernel
 def open_contacts(
-    A: Scene, isle: Island, contacts: Contacts, VN: FloatArray, m: int, t: float, h: float, TOUCHED: FlagArray
+    A: Scene, isle: Island, contacts: IslandContacts, VN: FloatArray, m: int, t: float, h: float, TOUCHED: FlagArray
 ) -> None:
     """Append the m contacts of an interval of length h from instant t to PUSHED and PUSHED_BY, and flag their pairs. VN
     (k, 3): velocities at its end. TOUCHED (k,): out, 1 for bodies that have contacts."""

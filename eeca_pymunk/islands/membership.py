@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from ..arrays import IntArray
-from ..compiled import inlined, nonallocating
+from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..contacts.memory import find, key_of
+from ..contacts.targets import hardly_bounces
 from ..geometry.gap import gap_at
 from ..model.bodies import AT_REST
 from ..model.contacts import Force
@@ -80,8 +81,7 @@ def in_large_island(A: Scene, a: int, b: int) -> bool:
 
 @nonallocating
 def budget_spent(A: Scene, root: int) -> bool:
-    """Whether an island is large and is neither hit nor joined any more in this step, since bodies have been solved
-    often enough."""
+    """Whether a large island is neither hit nor joined any more in this step, as bodies have been solved enough."""
     if root < 0 or A.MEMBER[root].bodies < LARGE_ISLAND or A.MEMBER[root].open == 0:
         return False
     most = SOLVES_BEFORE_HASTE * (WORK_JOINTED if A.MEMBER[root].jointed > 0 else 1)
@@ -149,13 +149,6 @@ def approach(A: Scene, a: int, b: int, t: float) -> tuple[float, float, float, f
         BODY[i].inv_mass + BODY[j].inv_mass + BODY[i].inv_inertia * arm_i * arm_i + BODY[j].inv_inertia * arm_j * arm_j
     )
     return g, u, closing, present, mass
-
-
-@inlined
-def hardly_bounces(e: float, u: float, press: float) -> bool:
-    """Whether a contact with elasticity e and gap rate u would bounce by less than half of what presses it together
-    (velocities)."""
-    return -e * min(u, 0.0) < 0.5 * press
 
 
 @nonallocating

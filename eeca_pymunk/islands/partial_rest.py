@@ -27,9 +27,9 @@ from .accounting import close_interval
 from .at_rest import put_to_rest, stop
 from .candidates import pairs_within
 from .intervals import set_lifts, solve
-from .local import clear_places, lay_out_island, open_contacts, own_contacts, set_places
+from .local import clear_places, local_island, open_contacts, own_contacts, set_places
 from .membership import lossy, members, unite
-from .rest import candidate_speed, postpone_test, slow_for_long, speed
+from .rest import candidate_speed, postpone_test, speed
 from .support import support_loads
 
 
@@ -63,7 +63,7 @@ def test_rest(A: Scene, MINE: IntArray, n: int, V0: FloatArray, with_supports: i
     if not freezing:
         support_loads(A, root, LOAD)
     p = len(found)
-    isle = lay_out_island(A, MINE, n, found, 0.0)
+    isle = local_island(A, MINE, n, found, 0.0)
     clear_places(A, MINE, n)
     most = 0.0
     for q in range(n):
@@ -76,7 +76,7 @@ def test_rest(A: Scene, MINE: IntArray, n: int, V0: FloatArray, with_supports: i
         return False
     quick = (IMPACT_SPEED if freezing else candidate_speed(with_supports)) * A.PAR.pulled / most
     contacts = make_contacts(p, len(isle.WHO))
-    m = step_island(A, isle, contacts, n, dt, 0, 0.0, 0.0, 0.0, -quick)
+    m = step_island(A, isle, contacts, n, dt, 0, 0.0, 0.0, -quick)
     COUNT.direct += contacts.OUT[0].direct
     if contacts.OUT[0].at_rest == 0:
         postpone_test(A, MINE, n)
@@ -116,7 +116,7 @@ def split_slow(A: Scene, MINE: IntArray, n: int, STAND: IntArray, MOVE: IntArray
     number of the first."""
     stand, limit = 0, candidate_speed(n) * A.PAR.pulled * A.PAR.dt
     for q in range(n):
-        if slow_for_long(A, MINE[q]) and speed(A, MINE[q], 0.0) <= limit:
+        if A.RESTING[MINE[q]].rest_timer >= 1.0 and speed(A, MINE[q], 0.0) <= limit:
             STAND[stand] = MINE[q]
             stand += 1
         else:

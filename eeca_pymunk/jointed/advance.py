@@ -15,6 +15,7 @@ from ..model.islands import Island
 from ..model.joints import Joints
 from ..model.parameters.joints import ARM_ERROR, ARM_ITERATIONS, COLUMN_CONTACTS
 from ..model.scene import Scene
+from ..rows.build import push_contact
 from .bounded import fill_rows, list_rows, note_rows
 from .columns import fill_group
 from .component import ready, step_component
@@ -88,15 +89,7 @@ def advance(A: Scene, J: Joints, interval: Interval, L: FloatArray, B: Bounded, 
     k = len(isle.IM)
     ACC = isle.ACC.copy()
     for i in range(m):
-        fx = (L[i, 0] * ROWS[i].nx - L[i, 1] * ROWS[i].ny) / h
-        fy = (L[i, 0] * ROWS[i].ny + L[i, 1] * ROWS[i].nx) / h
-        for side in range(2):
-            q, sign = (P[i], -1.0) if side == 0 else (Q[i], 1.0)
-            arm_n = ROWS[i].arm_na if side == 0 else ROWS[i].arm_nb
-            arm_t = ROWS[i].arm_ta if side == 0 else ROWS[i].arm_tb
-            ACC[q, 0] += sign * isle.IM[q] * fx
-            ACC[q, 1] += sign * isle.IM[q] * fy
-            ACC[q, 2] += sign * isle.II[q] * (L[i, 0] * arm_n + L[i, 1] * arm_t) / h
+        push_contact(P, Q, ROWS, isle.IM, isle.II, i, L[i, 0] / h, L[i, 1] / h, ACC)
     INDEX, HIT = np.full(k, -1, np.int64), find_hit(groups, P, Q, m if fill else 0)
     if fill:
         B.USED[0] = 0

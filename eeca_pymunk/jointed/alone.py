@@ -61,7 +61,7 @@ def begin_alone(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) 
         if J.LOCAL[i].freedoms > 0:
             body, local = J.JOINED[first + i].body, J.LOCAL[i]
             account_turning(A, J, s, body, local.pose[2], local.travel[2])
-            lay_path(A, body, h, local.pose, local.pose, local.v0)
+            set_path(A, body, h, local.pose, local.pose, local.v0)
     A.COUNT.solves += 1
     open_until(A, root, t + h)
     return 0.0
@@ -76,7 +76,7 @@ def account_turning(A: Scene, J: Joints, s: int, body: int, angle: float, way: f
 
 
 @nonallocating
-def lay_path(A: Scene, body: int, h: float, POSE: FloatArray, END: FloatArray, V: FloatArray) -> None:
+def set_path(A: Scene, body: int, h: float, POSE: FloatArray, END: FloatArray, V: FloatArray) -> None:
     """Let a body go on a parabola from where it is to POSE (3,), after h; there it is lifted to END, with velocity
     V."""
     A.STATE[body].version += 1

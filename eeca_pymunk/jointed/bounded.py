@@ -13,7 +13,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..joints.entries import held, interval_of, is_limit
 from ..model.contacts import Bounded
-from ..model.joints import GIVEN, GROOVE, Joints
+from ..model.joints import GROOVE, PRESCRIBED, Joints
 from ..model.parameters.joints import BOUNDED_SWEEPS
 from ..model.scene import Scene
 from ..rows.bounded import FIRST_OF_DISC, SECOND_OF_DISC, SINGLE, bounded_rate, room_for_rows, sweep_bounded
@@ -72,7 +72,7 @@ def list_rows(A: Scene, J: Joints, B: Bounded, s: int, h: float, V: FloatArray) 
     """Append the rows of component s whose impulses count as given (`motors.let_slip`); the first of them."""
     first = B.USED[0]
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
-        if J.COUPLING[k].bounded != GIVEN or not held(J.COUPLING, k, 0):
+        if J.COUPLING[k].bounded != PRESCRIBED or not held(J.COUPLING, k, 0):
             continue
         rows = 1 if J.COUPLING[k].kind == GROOVE and J.COUPLING[k].side == 0 else J.COUPLING[k].rows
         for r in range(rows):

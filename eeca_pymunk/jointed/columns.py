@@ -15,6 +15,7 @@ from ..model.contacts import Columns, Row
 from ..model.joints import Joints
 from ..model.parameters.joints import STRUT, STRUT_BETWEEN
 from ..rows.build import invert
+from ..rows.columns import push_column
 from .component import answer
 from .groups import Groups
 
@@ -136,7 +137,5 @@ def leave_out(C: Columns, L: FloatArray, m: int, V: FloatArray) -> None:
     """Let contacts that are left out have no impulse, and V follow."""
     for i in range(m):
         if C.OUT[i] != 0:
-            for w in range(C.AT[i], C.AT[i + 1]):
-                for c in range(3):
-                    V[C.BODY[w], c] -= L[i, 0] * C.N[w, c] + L[i, 1] * C.T[w, c]
+            push_column(C, i, -L[i, 0], -L[i, 1], V)
             L[i, 0] = L[i, 1] = 0.0

@@ -67,9 +67,8 @@ def shorten(A: Scene, J: Joints, root: int, t: float) -> int:
     take_back(A, root)
     began = A.BODY[root].since
     some = int(before - A.COUNT.pushes)
-    found = components_of(A, J, root)
-    for c in range(len(found)):
-        restore_joints(J, found[c])
+    for s in components_of(A, J, root):
+        restore_joints(J, s)
     if t - began > A.PAR.instant:
         open_span(A, J, root, began, t - began, True)
     return some
@@ -84,10 +83,9 @@ def end_here(A: Scene, J: Joints, root: int, t: float) -> None:
         if A.PUSHED_BY[c].root == root:
             account_contact(A, c, t)
     empty = t - A.BODY[root].since <= A.PAR.instant
-    found = components_of(A, J, root)
-    for c in range(len(found)):
-        A.RESTING[root].lost -= J.STEPPED[found[c]].lifted
-        account_component(A, J, found[c])
+    for s in components_of(A, J, root):
+        A.RESTING[root].lost -= J.STEPPED[s].lifted
+        account_component(A, J, s)
     A.MEMBER[root].open = 0
     MINE = np.empty(A.MEMBER[root].bodies, np.int64)
     n = members(A, root, MINE)
@@ -107,11 +105,10 @@ def left_apart(A: Scene, J: Joints, root: int) -> bool:
     """Whether joints do not hold at the end of the interval of an island."""
     if not under_way(A, root):
         return False
-    found = components_of(A, J, root)
-    apart = False
-    for c in range(len(found)):
-        apart = apart or J.STEPPED[found[c]].status >= LINEAR
-    return apart
+    for s in components_of(A, J, root):
+        if J.STEPPED[s].status >= LINEAR:
+            return True
+    return False
 
 
 @kernel

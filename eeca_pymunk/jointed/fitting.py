@@ -7,9 +7,9 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
+from ..contacts.works import kinetic_energy
 from ..joints.correct import fitting_loss
 from ..model.contacts import JointedProblem, Row
-from ..model.islands import Island
 from ..model.joints import Joints
 from ..model.parameters.joints import COLUMN_CONTACTS, FIT_CLOSING, FIT_ENERGY, FIT_RESIDUAL
 from ..model.scene import Scene
@@ -30,7 +30,7 @@ def fit(A: Scene, J: Joints, interval: Interval, L: FloatArray, end: float, scal
 
     Bodies that land leave velocities which violate joints, and those would ring for ever: a midpoint rule turns their
     sign in every step. What this costs enters the ledger. Of a few contacts, those that push do not close by it: see
-    `hold`, which would change the speeds of motors.
+    `stop_closing`, which would change the speeds of motors.
     `scale` is a speed of the island. C is overwritten.
 
     Returns:
@@ -68,7 +68,7 @@ def fit(A: Scene, J: Joints, interval: Interval, L: FloatArray, end: float, scal
             RATES[i] = normal_rate(interval.P, interval.Q, interval.ROWS, motion.V, i)
             fastest = max(fastest, -RATES[i])
     if fastest > FIT_CLOSING * scale:
-        return hold(A, J, interval, end, RATES, FIT_RESIDUAL * fastest, first)
+        return stop_closing(A, J, interval, end, RATES, FIT_RESIDUAL * fastest, first)
     return np.zeros(m)
 
 
@@ -86,24 +86,14 @@ def bring_arms(P: IntArray, Q: IntArray, ROWS: Rows[Row], END: FloatArray, m: in
         ROWS[i].arm_nb += across
 
 
-@nonallocating
-def energy_of(isle: Island, V: FloatArray) -> float:
-    """Kinetic energy of what moves."""
-    total = 0.0
-    for q in range(len(V)):
-        for c in range(3):
-            mobility = isle.IM[q] if c < 2 else isle.II[q]
-            if mobility > 0.0:
-                total += 0.5 * V[q, c] ** 2 / mobility
-    return total
-
-
 @kernel
-def hold(A: Scene, J: Joints, interval: Interval, end: float, RATES: FloatArray, fine: float, book: int) -> FloatArray:
+def stop_closing(
+    A: Scene, J: Joints, interval: Interval, end: float, RATES: FloatArray, fine: float, book: int
+) -> FloatArray:
     """Normal impulses mu (m,), 0 <= mu _|_ u + G S G^T mu >= 0, on contacts whose rates u (m,) are RATES, infinite for
     those that are not asked: velocities that fit the joints go on to do so, and contacts do not close. Energy only
     falls, by -mu.(u + G S G^T mu / 2), also where sweeps are cut short; it is lost by component `book`."""
-    isle, groups, P, Q, _, motion, C, m, _, _, h = interval
+    isle, groups, P, Q, _, motion, C, m, n, _, h = interval
     KEEP, NOTHING = interval.ROWS[:m].copy(), np.zeros_like(isle.V)
     bring_arms(P, Q, KEEP, motion.END, m)
     fill_free(groups, C, Q, KEEP, isle.IM, isle.II, m)
@@ -121,14 +111,14 @@ def hold(A: Scene, J: Joints, interval: Interval, end: float, RATES: FloatArray,
     for i in range(m):
         if RATES[i] < np.inf:
             RATES[i] = normal_rate(P, Q, KEEP, motion.V, i)
-    D, before = np.zeros_like(motion.V), energy_of(isle, motion.V)
+    D, before = np.zeros_like(motion.V), kinetic_energy(motion.V, isle.IM, isle.II, n)
     MU = raise_gaps(JointedProblem(P, Q, KEEP, C, room_for_rows(0, 0), m), RATES, D, fine)
     loss = 0.0
     for i in range(m):
         if MU[i] > 0.0:
             loss -= MU[i] * (RATES[i] + 0.5 * normal_rate(P, Q, KEEP, D, i))
     add(motion.V, D)
-    gained = energy_of(isle, motion.V) - before
+    gained = kinetic_energy(motion.V, isle.IM, isle.II, n) - before
     if abs(gained + loss) > FIT_ENERGY * before:
         # Supports move.
         J.STEPPED[book].projected += loss

@@ -7,8 +7,6 @@ descents of (1/2) lam.A lam + lam.(u - b), so that what is left of them is betwe
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from ..arrays import FloatArray
@@ -21,15 +19,6 @@ from ..rows.sweeps import sweep
 from .advance import Interval, advance, align
 from .bounded import with_bounded
 from .columns import fill_free, weigh
-
-
-@nonallocating
-def fastest(V: FloatArray, EXTENT: FloatArray, n: int) -> float:
-    """Largest speed, or acceleration, of points of the first n bodies."""
-    most = 0.0
-    for q in range(n):
-        most = max(most, math.sqrt(V[q, 0] ** 2 + V[q, 1] ** 2) + abs(V[q, 2]) * EXTENT[q])
-    return most
 
 
 @nonallocating

@@ -14,12 +14,14 @@ from ..model.joints import Component, ComponentBody
 
 class Groups(NamedTuple):
     """GROUP (k,): the group of a body, -1 for what impulses do not move; BODY (n,): bodies by group, those of group g
-    at FIRST[g] : FIRST[g + 1]; COMPONENT (groups,): that of a group, -1 for a free body."""
+    at FIRST[g] : FIRST[g + 1]; COMPONENT (groups,): that of a group, -1 for a free body; JOINTED: those
+    of components."""
 
     GROUP: IntArray
     FIRST: IntArray
     BODY: IntArray
     COMPONENT: IntArray
+    JOINTED: IntArray
 
 
 @kernel
@@ -28,12 +30,14 @@ def find_groups(WHO: IntArray, IM: FloatArray, OF: IntArray) -> Groups:
     k = len(WHO)
     GROUP, NEXT = np.full(k, -1, np.int64), np.full(k, -1, np.int64)
     FIRST, COMPONENT, BODY = np.zeros(k + 1, np.int64), np.empty(k, np.int64), np.empty(k, np.int64)
-    groups = 0
+    JOINTED, groups, jointed = np.empty(k, np.int64), 0, 0
     for q in range(k):
         if IM[q] == 0.0 or GROUP[q] >= 0:
             continue
         GROUP[q], COMPONENT[groups] = groups, OF[WHO[q]]
         if OF[WHO[q]] >= 0:
+            JOINTED[jointed] = OF[WHO[q]]
+            jointed += 1
             for p in range(q + 1, k):
                 if IM[p] > 0.0 and OF[WHO[p]] == OF[WHO[q]]:
                     GROUP[p] = groups
@@ -48,15 +52,14 @@ def find_groups(WHO: IntArray, IM: FloatArray, OF: IntArray) -> Groups:
         if GROUP[q] >= 0:
             BODY[NEXT[GROUP[q]]] = q
             NEXT[GROUP[q]] += 1
-    return Groups(GROUP, FIRST[: groups + 1], BODY, COMPONENT[:groups])
+    return Groups(GROUP, FIRST[: groups + 1], BODY, COMPONENT[:groups], JOINTED[:jointed])
 
 
 @nonallocating
 def hangs(groups: Groups, COMPONENT: Rows[Component], JOINED: Rows[ComponentBody]) -> bool:
     """Whether a component of the island hangs on something that joints cannot move."""
-    some = False
-    for g in range(len(groups.COMPONENT)):
-        s = groups.COMPONENT[g]
-        for i in range(COMPONENT[s].first_body if s >= 0 else 0, COMPONENT[s].end_body if s >= 0 else 0):
-            some = some or JOINED[i].freedoms == 0
-    return some
+    for s in groups.JOINTED:
+        for i in range(COMPONENT[s].first_body, COMPONENT[s].end_body):
+            if JOINED[i].freedoms == 0:
+                return True
+    return False

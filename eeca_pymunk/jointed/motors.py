@@ -4,26 +4,25 @@ from __future__ import annotations
 
 from ..compiled import nonallocating
 from ..joints.entries import is_limit
-from ..model.joints import BOXED, GIVEN, MOTOR, ROTARY_SPRING, SPRING, Joints
+from ..model.joints import BOXED, MOTOR, PRESCRIBED, ROTARY_SPRING, SPRING, Joints
 
 
 @nonallocating
 def drives(J: Joints, s: int) -> bool:
     """Whether the joints of component s move its bodies by themselves: springs, motors, joints with a max_force."""
-    some = False
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
-        kind = J.COUPLING[k].kind
-        some = some or kind in (SPRING, ROTARY_SPRING, MOTOR) or J.JOINT[J.COUPLING[k].joint].bounded != 0
-    return some
+        if J.COUPLING[k].kind in (SPRING, ROTARY_SPRING, MOTOR) or J.JOINT[J.COUPLING[k].joint].bounded != 0:
+            return True
+    return False
 
 
 @nonallocating
 def keeps_speed(J: Joints, s: int) -> bool:
     """Whether joints of component s have rows of speeds at the end of an interval: motors, joints with a max_force."""
-    some = False
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
-        some = some or J.COUPLING[k].bounded != 0
-    return some
+        if J.COUPLING[k].bounded != 0:
+            return True
+    return False
 
 
 @nonallocating
@@ -33,6 +32,6 @@ def let_slip(J: Joints, s: int, slips: bool, limits: bool) -> None:
     for k in range(J.COMPONENT[s].first_joint, J.COMPONENT[s].end_joint):
         link = J.COUPLING[k]
         if link.bounded != 0 and J.JOINT[link.joint].max_force < 1e300 and J.COMPONENT[s].boxes > 0:
-            link.bounded = GIVEN if slips else BOXED
+            link.bounded = PRESCRIBED if slips else BOXED
         elif limits and is_limit(link.kind) and J.JOINT[link.joint].bounded == 0:
-            link.bounded = GIVEN if slips and link.side != 0 else 0
+            link.bounded = PRESCRIBED if slips and link.side != 0 else 0

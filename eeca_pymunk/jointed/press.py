@@ -52,7 +52,7 @@ from ..rows.laws import give_slips, solve_columns, solve_wedged, take_slips
 from .advance import Interval, advance, advance_aligned, align, farthest_apart
 from .bounded import make_bounded, settle_bounded, with_bounded
 from .columns import fill_free, leave_out, weigh
-from .gentle import excessive, fastest, solve_gently
+from .gentle import excessive, solve_gently
 from .groups import Groups, hangs
 from .lock import lock, lost, work_error
 from .secant import fit_columns
@@ -61,20 +61,19 @@ from .secant import fit_columns
 @nonallocating
 def some_taut(J: Joints, groups: Groups) -> bool:
     """Whether a component hardly gives way across, for the pull of its joints."""
-    some = False
-    for g in range(len(groups.COMPONENT)):
-        some = some or (groups.COMPONENT[g] >= 0 and J.COMPONENT[groups.COMPONENT[g]].taut > 0)
-    return some
+    for s in groups.JOINTED:
+        if J.COMPONENT[s].taut > 0:
+            return True
+    return False
 
 
 @nonallocating
 def some_give(J: Joints, groups: Groups) -> bool:
     """Whether joints of a component have given way elastically in its last step."""
-    some = False
-    for g in range(len(groups.COMPONENT)):
-        s = groups.COMPONENT[g]
-        some = some or (s >= 0 and J.JOINT[J.COUPLING[J.COMPONENT[s].first_joint].joint].compliance > 0.0)
-    return some
+    for s in groups.JOINTED:
+        if J.JOINT[J.COUPLING[J.COMPONENT[s].first_joint].joint].compliance > 0.0:
+            return True
+    return False
 
 
 @kernel
@@ -185,7 +184,7 @@ def press(
             advance(A, J, interval, L, B, False, UNKNOWN)
         # What gives way is as stiff as its joints pull: round-off of its ways does not fall further.
         converged = (converged and off <= agree) or (best <= AGREE * scale and some_give(J, groups))
-    quick = fast + max(pull * h, h * fastest(EFFECT, isle.EXTENT, n))
+    quick = fast + max(pull * h, h * farthest_apart(EFFECT, np.zeros_like(EFFECT), isle.EXTENT, n))
     if excessive(interval, L, quick):
         solve_gently(A, J, interval, L, B, free)
         converged, bent = False, np.inf if free else 0.0

@@ -15,7 +15,7 @@ from ..contacts.unmet import note_unmet
 from ..contacts.works import moved
 from ..islands.candidates import before_end, pairs_within
 from ..islands.depths import driven
-from ..islands.local import clear_places, lay_out_island, needs_memory, number_bodies, open_contacts, open_until
+from ..islands.local import clear_places, local_island, needs_memory, number_bodies, open_contacts, open_until
 from ..islands.membership import lossy
 from ..model.islands import Island
 from ..model.joint_steps import ELASTIC
@@ -28,7 +28,7 @@ from ..model.step import AGAIN, CONTACTS, DONE, PUSHES_FULL, SPENT
 from ..rows.bounded import room_for_rows
 from ..rows.build import normal_rate
 from .advance import Interval, Motion, advance
-from .alone import account_turning, begin_alone, is_component, lay_path, meets_nobody
+from .alone import account_turning, begin_alone, is_component, meets_nobody, set_path
 from .columns import make_columns
 from .component import step_component
 from .fitting import fit
@@ -114,12 +114,11 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
     if needs_memory(A, p):
         clear_places(A, MINE, n)
         return PUSHES_FULL, h
-    isle = lay_out_island(A, MINE, n, found, t)
+    isle = local_island(A, MINE, n, found, t)
     k = len(isle.WHO)
     groups = find_groups(isle.WHO, isle.IM, J.OF)
-    for g in range(len(groups.COMPONENT)):
-        if groups.COMPONENT[g] >= 0:
-            keep_joints(J, groups.COMPONENT[g])
+    for s in groups.JOINTED:
+        keep_joints(J, s)
     contacts, EXPECTED = make_contacts(p, k), np.zeros(2 * p + 1)
     P, Q, KEY, ROWS, L = contacts.A, contacts.B, contacts.KEY, contacts.ROWS, contacts.L
     motion = Motion(
@@ -146,8 +145,8 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
     COUNT.solves += 1
     COUNT.solved += n
     far = 2.0 if not held and J.PROGRESS.effort > J.PROGRESS.share else 0.0
-    for g in range(len(groups.COMPONENT)):
-        if groups.COMPONENT[g] >= 0 and J.STEPPED[groups.COMPONENT[g]].status >= ELASTIC:
+    for s in groups.JOINTED:
+        if J.STEPPED[s].status >= ELASTIC:
             far = 2.0
     if not last:
         far = max(far, excess(A, isle, P, Q, ROWS, KEY, motion, m, n, t, h))
@@ -157,17 +156,15 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
         hard = m <= COLUMN_CONTACTS and payable and h > A.PAR.dt / RESOLUTION
         far = UNSOLVED_PART if hard else min(far, UNSOLVED_PART)
     if far > INTERVAL_RETRY and not last:
-        for g in range(len(groups.COMPONENT)):
-            if groups.COMPONENT[g] >= 0:
-                restore_joints(J, groups.COMPONENT[g])
+        for s in groups.JOINTED:
+            restore_joints(J, s)
         clear_places(A, MINE, n)
         return AGAIN, h / far
     if not held:
         pair, shapes = KEY[0] >> 1, A.SHAPE.shape[0]
         note_unmet(A, CONTACTS, pair // shapes, pair % shapes, math.nan, math.nan)
-    for g in range(len(groups.COMPONENT)):
-        if groups.COMPONENT[g] >= 0:
-            J.STEPPED[groups.COMPONENT[g]].turned_work = J.STEPPED[groups.COMPONENT[g]].lifted = 0.0
+    for s in groups.JOINTED:
+        J.STEPPED[s].turned_work = J.STEPPED[s].lifted = 0.0
     for q in range(n):
         s = groups.COMPONENT[groups.GROUP[q]]
         if s >= 0:
@@ -179,12 +176,10 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
             raised = driven(A, isle, P, Q, ROWS, KEY, n, m)
             budget = lost(P, Q, ROWS, L, motion.WAY, m, h) + A.RESTING[root].lost
             spent = correct(A, J, interval, t + h, math.inf if raised else budget)
-            for g in range(len(groups.COMPONENT)):
-                if groups.COMPONENT[g] >= 0:
-                    paid = min(spent, max(budget, 0.0)) if raised else spent
-                    J.STEPPED[groups.COMPONENT[g]].lifted = paid
-                    J.STEPPED[groups.COMPONENT[g]].supports += spent - paid
-                    break
+            if len(groups.JOINTED) > 0:
+                paid, one = min(spent, max(budget, 0.0)) if raised else spent, J.STEPPED[groups.JOINTED[0]]
+                one.lifted = paid
+                one.supports += spent - paid
         HELD = fit(A, J, interval, L, t + h, slow + pull * h)
     clear_places(A, MINE, n)
     first = COUNT.pushes
@@ -197,6 +192,6 @@ def open_span(A: Scene, J: Joints, root: int, t: float, h: float, last: bool) ->
         A.PUSHED_BY[first + z].root = root
     COUNT.pushes += m
     for q in range(n):
-        lay_path(A, MINE[q], h, WHERE[q], motion.END[q], motion.V[q])
+        set_path(A, MINE[q], h, WHERE[q], motion.END[q], motion.V[q])
     open_until(A, root, t + h)
     return DONE, h

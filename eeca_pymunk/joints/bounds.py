@@ -59,10 +59,10 @@ def approach(joint: JointStep, rows: int, side: int, v_a: FloatArray, v_b: Float
 @nonallocating
 def standing(link: Rows[Coupling], joints: int) -> bool:
     """Whether a joint stands on a limit."""
-    count = 0
     for k in range(joints):
-        count += abs(link[k].side)
-    return count > 0
+        if link[k].side != 0:
+            return True
+    return False
 
 
 @nonallocating

@@ -21,10 +21,11 @@ from ..model.joint_steps import BodyStep, JointStep
 from ..model.joints import BOXED, GROOVE, Coupling, Workspace
 from ..model.parameters.joints import BOX_REDUNDANT, BOX_RESIDUAL, BOX_ROUNDS, BOX_SWEEPS
 from ..rows.bounded import FIRST_OF_DISC, SECOND_OF_DISC, SINGLE, on_disc
+from .condensed import factor, substitute
 from .dual import STRIDE
-from .entries import held, interval_of
+from .entries import held, interval_of, put_free
 
-ROOM = 8  # arrays of one number per row, beside the columns (and a right side) and two matrices
+ROOM = 8  # arrays of one number per row, beside the columns (and a right side) and a matrix with its factors
 
 
 @nonallocating
@@ -117,8 +118,7 @@ def sweep_boxes(more: FloatArray, w: int, u: int, n: int) -> float:
             c, y = more[w + (i + 1) * n + i + 1], more[u + n + i + 1]
             ux, uy = more[u + i], more[u + i + 1]
             if a > 0.0 and c > 0.0:
-                to = on_disc(a, b, c, ux, uy, x, y, high, False)
-                other = on_disc(a, b, c, ux, uy, x, y, high, True)
+                to, other = on_disc(a, b, c, ux, uy, x, y, high)
             else:
                 to, other = min(max(x, -high), high), 0.0
             worst = max(worst, change_box(more, w, u, n, i, to), change_box(more, w, u, n, i + 1, other))
@@ -139,7 +139,7 @@ def free_of_bounds(more: FloatArray, u: int, n: int, i: int) -> bool:
 @nonallocating
 def direct_boxes(more: FloatArray, w: int, u: int, n: int) -> None:
     """Bring u to 0 on all rows inside of their bounds, these left out of account; then clamp."""
-    lu, step = w + n * n, u + 5 * n
+    lu, step, width = w + n * n, u + 5 * n, 2 * n - 1
     for i in range(n):
         inside = free_of_bounds(more, u, n, i)
         more[step + i] = -more[u + i] if inside else 0.0
@@ -147,25 +147,13 @@ def direct_boxes(more: FloatArray, w: int, u: int, n: int) -> None:
     for i in range(n):
         for j in range(n):
             both = more[step + n + i] > 0.0 and more[step + n + j] > 0.0
-            more[lu + i * n + j] = more[w + i * n + j] if both else 0.0
-        pivot = more[lu + i * n + i]
-        more[lu + i * n + i] = pivot * (1.0 + BOX_REDUNDANT) if pivot > 0.0 else 1.0
-    for k in range(n):
-        pivot = more[lu + k * n + k]
-        if pivot == 0.0:
-            continue
-        for i in range(k + 1, n):
-            factor = more[lu + i * n + k] / pivot
-            if factor != 0.0:
-                for j in range(k + 1, n):
-                    more[lu + i * n + j] -= factor * more[lu + k * n + j]
-                more[step + i] -= factor * more[step + k]
-    for k in range(n - 1, -1, -1):
-        total = more[step + k]
-        for j in range(k + 1, n):
-            total -= more[lu + k * n + j] * more[step + j]
-        pivot = more[lu + k * n + k]
-        more[step + k] = total / pivot if pivot != 0.0 else 0.0
+            more[lu + i * width + n - 1 + j - i] = more[w + i * n + j] if both else 0.0
+        pivot = more[lu + i * width + n - 1]
+        more[lu + i * width + n - 1] = pivot * (1.0 + BOX_REDUNDANT) if pivot > 0.0 else 1.0
+    matrix = more[lu : lu + n * width]
+    if not factor(matrix, n, n - 1):
+        return
+    substitute(matrix, n, n - 1, more, step)
     for i in range(n):
         to = more[u + n + i] + more[step + i]
         if math.isfinite(to):
@@ -211,7 +199,7 @@ def bound_impulses(W: Workspace, n: int, h: float, fresh: bool) -> None:
     """Complete the solution in `right`, which is that without a change of the n boxed impulses."""
     component = W.J.COMPONENT[W.s]
     w = STRIDE * component.dual_size + (n + 1) * (component.unknowns + component.impulses)
-    u = w + 2 * n * n
+    u = w + 3 * n * n
     measure_boxes(W, w, u, n, h, fresh)
     solve_boxes(W.J.MORE, w, u, n)
     apply_boxes(W, u, n)
@@ -219,13 +207,11 @@ def bound_impulses(W: Workspace, n: int, h: float, fresh: bool) -> None:
 
 @nonallocating
 def leave_box(
-    link: Rows[Coupling], hinge: Rows[JointStep], k: int, build: bool, whole: bool, band: int, matrix: FloatArray,
+    link: Rows[Coupling], hinge: Rows[JointStep], k: int, system: int, build: bool, band: int, matrix: FloatArray,
     right: FloatArray,
 ) -> None:  # fmt: skip
     """Let the rows of joint k be known in the linear system, whose solution is to be without a change of them."""
     for r in range(link[k].rows):
-        row = link[k].first_row + r
-        hinge[k].weight[r] = 0.0
-        right[row] = 0.0 if r < rows_of(link, k) else -hinge[k].lam[r] / hinge[k].scale[r]
-        if build and whole:
-            matrix[row * (3 * band + 1) + band] = 1.0
+        put_free(link, hinge, k, r, system, build, band, matrix, right)
+        if r < rows_of(link, k):
+            right[link[k].first_row + r] = 0.0

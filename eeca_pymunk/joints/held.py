@@ -1,14 +1,14 @@
 """Bodies that cannot move since joints hold them on a straight line between fixed points: a bridge as long as its gap.
 
-A path of bodies and joints from point A to point B, both fixed, is at most
+A chain of bodies and joints from point A to point B, both fixed, is at most
 
     L = sum of the distances of a body's two anchors, of the lengths of pins and of the upper limits of slides
 
-long. If L = |AB| there is one place for each of its points, on the line at its distance along the path, and a body with
-two of them is fixed. The equations of such joints are singular: to first order they let the bodies go across, and any
-force across would need an infinite pull. So these bodies count as bodies that nothing moves, like static ones.
+long. If L = |AB| there is one place for each of its points, on the line at its distance along the chain, and a body
+with two of them is fixed. The equations of such joints are singular: to first order they let the bodies go across, and
+any force across would need an infinite pull. So these bodies count as bodies that nothing moves, like static ones.
 
-A path from A is straight as far as its length does not exceed the distance from A by more than round-off; by the
+A chain from A is straight as far as its length does not exceed the distance from A by more than round-off; by the
 triangle inequality one that is bent anywhere stays longer than the distance, so that it need not be followed.
 """
 
@@ -23,10 +23,10 @@ from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows, rows
 from ..model.bodies import Body
 from ..model.joints import PIN, PIVOT, SLIDE, Held, Joint
-from ..model.parameters.joints import STRAIGHT_PATH
+from ..model.parameters.joints import STRAIGHT_CHAIN
 from .plan import together, turning
 
-FREE, WHOLLY, CENTRE = 0, 1, 2  # what of a body a straight path holds
+FREE, WHOLLY, CENTRE = 0, 1, 2  # what of a body a straight chain holds
 
 
 @nonallocating
@@ -57,25 +57,25 @@ def place_points(bodies: Rows[Body], joint: Rows[Joint], X: FloatArray, HEAD: In
 
 @nonallocating
 def straight(X: FloatArray, first: int, p: int, length: float) -> bool:
-    """Whether a path from the point `first` to p is as short as it can be."""
+    """Whether a chain from the point `first` to p is as short as it can be."""
     dx, dy = X[p, 0] - X[first, 0], X[p, 1] - X[first, 1]
     size = length + max(abs(X[p, 0]), abs(X[p, 1]), abs(X[first, 0]), abs(X[first, 1]))
-    return bool(abs(length - math.sqrt(dx * dx + dy * dy)) <= STRAIGHT_PATH * size)
+    return bool(abs(length - math.sqrt(dx * dx + dy * dy)) <= STRAIGHT_CHAIN * size)
 
 
 @nonallocating
-def fix_path(
+def fix_chain(
     joint: Rows[Joint], X: FloatArray, FROM: IntArray, p: int, first: int, spins: IntArray, held: IntArray
 ) -> int:
-    """Hold the bodies of the straight path from `first` that ends in p, on a fixed body; how many there are. None if a
-    body of it has all its points on the path in one place and might turn about that."""
+    """Hold the bodies of the straight chain from `first` that ends in p, on a fixed body; how many there are. None if a
+    body of it has all its points on the chain in one place and might turn about that."""
     for pass_ in range(2):
         count, q = 0, p
         while FROM[q] != first:
             out, q = FROM[q], FROM[FROM[q]]
             i = joint[q // 2].body[q % 2]
             far = abs(X[out, 0] - X[q, 0]) + abs(X[out, 1] - X[q, 1])
-            wholly = far > STRAIGHT_PATH * (abs(X[q, 0]) + abs(X[q, 1]))
+            wholly = far > STRAIGHT_CHAIN * (abs(X[q, 0]) + abs(X[q, 1]))
             if not wholly and spins[i] == 0:
                 return 0
             if pass_ == 1:
@@ -86,7 +86,7 @@ def fix_path(
 
 @kernel
 def find_held(bodies: Rows[Body], joint: Rows[Joint], still: IntArray, spins: IntArray, held: IntArray) -> int:
-    """Find the bodies of straight paths between fixed points.
+    """Find the bodies of straight chains between fixed points.
 
     Args:
         bodies (n,): at their present poses, with those that joints cannot move.  joint (j,).
@@ -125,7 +125,7 @@ def find_held(bodies: Rows[Body], joint: Rows[Joint], still: IntArray, spins: In
                 if not straight(X, first, p, LENGTH[p]):
                     continue
                 if still[i] > 0 or held[i] != FREE:
-                    found += fix_path(joint, X, FROM, p, first, spins, held)
+                    found += fix_chain(joint, X, FROM, p, first, spins, held)
                     continue
                 q = HEAD[i]
                 while q >= 0:
@@ -141,7 +141,7 @@ def find_held(bodies: Rows[Body], joint: Rows[Joint], still: IntArray, spins: In
 
 
 @nonallocating
-def hold(HELD: Rows[Held], BODY: Rows[Body]) -> float:
+def put_held(HELD: Rows[Held], BODY: Rows[Body]) -> float:
     """Put held bodies where they are held, at rest but for the spin of those that are held at their centre; the kinetic
     energy that they lose, which joints take as they take that of any velocity that does not fit them."""
     lost = 0.0
@@ -170,7 +170,7 @@ def may_hold(joint: Rows[Joint], still: IntArray, n: int) -> bool:
 def held_bodies(
     bodies: Rows[Body], joint: Rows[Joint], partner: Rows[Body], still: IntArray, smooth: IntArray
 ) -> Rows[Held]:
-    """The bodies that straight paths hold, see `find_held`.
+    """The bodies that straight chains hold, see `find_held`.
 
     Args:
         bodies: (n,) those of the scene, with their mobilities.  joint: (j,).  partner: (x,) bodies that joints cannot

@@ -13,7 +13,7 @@ from ..model.joint_steps import ELASTIC, EXACT, HALVED, LINEAR
 from ..model.joints import GIVES_WAY, ROTARY_SPRING, SPRING, Workspace
 from ..model.parameters.joints import COMPONENT_BUDGET, ELASTIC_PARTS, HASTE, LEAST_SOLUTIONS, REPAID
 from .foresight import foretell, forget, recalls, remember
-from .ledger import clear
+from .ledger import clear_ledger
 from .limits import step_with_limits
 from .lock import lock_energy, supports_rest
 from .motion import go_back
@@ -38,10 +38,10 @@ def smooth(W: Workspace) -> bool:
 @nonallocating
 def gives_way(W: Workspace) -> bool:
     """Whether a joint of the component gives way elastically since an earlier step."""
-    some = False
     for k in range(W.joints):
-        some = some or W.J.JOINT[W.link[k].joint].touched == GIVES_WAY
-    return some
+        if W.J.JOINT[W.link[k].joint].touched == GIVES_WAY:
+            return True
+    return False
 
 
 @nonallocating
@@ -143,7 +143,7 @@ def climb(W: Workspace, h: float, order: int, length: float, touched: bool, own:
     while rung < RUNGS and not progress.effort > progress.limit:
         parts = 5 if rung == ORDER_4 else 1 if rung == ELASTIC_RUNG else 1 << rung if rung < 3 else ELASTIC_PARTS
         compliance = compliance_on(rung, h, yields, first.compliance)
-        clear(W.J.PART)
+        clear_ledger(W.J.PART)
         done = take_parts(W, h, length, rung, parts, compliance / (h / parts) ** 2, cold)
         if done and (not own or rung >= ELASTIC_RUNG or repaid(W)):
             first.compliance = compliance

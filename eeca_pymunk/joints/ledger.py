@@ -11,7 +11,7 @@ from .springs import held_energy
 
 
 @inlined
-def clear(ledger: JointLedger) -> None:
+def clear_ledger(ledger: JointLedger) -> None:
     """No energies of a step."""
     ledger.stored = ledger.damped = ledger.limited = ledger.clamped = ledger.projected = 0.0
     ledger.motors = ledger.supports = ledger.closed = 0.0
@@ -20,7 +20,7 @@ def clear(ledger: JointLedger) -> None:
 @inlined
 def clear_interval(ledger: JointLedger) -> None:
     """No energies at all."""
-    clear(ledger)
+    clear_ledger(ledger)
     ledger.turned_work = ledger.lifted = 0.0
     ledger.status = 0
 

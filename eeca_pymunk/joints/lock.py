@@ -17,24 +17,30 @@ from ..model.parameters.joints import LOCK_ITERATIONS
 
 
 @nonallocating
-def lock_energy(local: Rows[BodyStep], bodies: int, gain: float) -> float:
-    """Take energy `gain` > 0 from the velocities v0; how much of it could be. Nothing where supports move: these
-    work."""
-    mass = x = y = vx = vy = 0.0
+def centre_of(local: Rows[BodyStep], bodies: int) -> tuple[bool, float, float, float, float, float, float]:
+    """Whether the component hangs on something; centre of mass, velocity and acceleration (2 each) of what moves."""
+    mass = x = y = vx = vy = ax = ay = 0.0
     hangs = False
     for i in range(bodies):
-        if local[i].freedoms == 0:
-            hangs = True
-            for c in range(3):
-                if local[i].v0[c] != 0.0:
-                    return 0.0
-        elif local[i].mobility[0] > 0.0:
+        hangs = hangs or local[i].freedoms == 0
+        if local[i].freedoms > 0 and local[i].mobility[0] > 0.0:
             m = 1.0 / local[i].mobility[0]
             mass += m
             x, y = x + m * local[i].pose[0], y + m * local[i].pose[1]
             vx, vy = vx + m * local[i].v0[0], vy + m * local[i].v0[1]
+            ax, ay = ax + m * local[i].acceleration[0], ay + m * local[i].acceleration[1]
     if mass > 0.0:
-        x, y, vx, vy = x / mass, y / mass, vx / mass, vy / mass
+        x, y, vx, vy, ax, ay = x / mass, y / mass, vx / mass, vy / mass, ax / mass, ay / mass
+    return hangs, x, y, vx, vy, ax, ay
+
+
+@nonallocating
+def lock_energy(local: Rows[BodyStep], bodies: int, gain: float) -> float:
+    """Take energy `gain` > 0 from the velocities v0; how much of it could be. Nothing where supports move: these
+    work."""
+    if not supports_rest(local, bodies):
+        return 0.0
+    hangs, x, y, vx, vy, _, _ = centre_of(local, bodies)
     turning, inertia = 0.0, 0.0
     for i in range(bodies):
         if local[i].freedoms > 0 and local[i].mobility[0] > 0.0:
@@ -56,11 +62,11 @@ def lock_energy(local: Rows[BodyStep], bodies: int, gain: float) -> float:
 @nonallocating
 def supports_rest(local: Rows[BodyStep], bodies: int) -> bool:
     """Whether nothing that the component hangs on moves."""
-    still = True
     for i in range(bodies):
         for c in range(3):
-            still = still and (local[i].freedoms > 0 or local[i].v0[c] == 0.0)
-    return still
+            if local[i].freedoms == 0 and local[i].v0[c] != 0.0:
+                return False
+    return True
 
 
 @nonallocating
@@ -87,37 +93,26 @@ def against(
 
 @nonallocating
 def move_rigidly(local: Rows[BodyStep], bodies: int, h: float) -> None:
-    """The end of a step h from the saved state to which no joint has an objection, and at which there is no more energy
+    """The end of a step h, from its start, to which no joint has an objection, and at which there is no more energy
     than at the start: all move as one rigid body under their accelerations, or stand still where they hang on
     something.
 
     r1 - r0 = chi z x r_m: with torques about r_m the work of the accelerations is exact.
     """
-    mass = x = y = vx = vy = ax = ay = 0.0
-    hangs = False
-    for i in range(bodies):
-        hangs = hangs or local[i].freedoms == 0
-        if local[i].freedoms > 0 and local[i].mobility[0] > 0.0:
-            m = 1.0 / local[i].mobility[0]
-            mass += m
-            x, y = x + m * local[i].saved_pose[0], y + m * local[i].saved_pose[1]
-            vx, vy = vx + m * local[i].saved_velocity[0], vy + m * local[i].saved_velocity[1]
-            ax, ay = ax + m * local[i].acceleration[0], ay + m * local[i].acceleration[1]
-    if mass > 0.0:
-        x, y, vx, vy, ax, ay = x / mass, y / mass, vx / mass, vy / mass, ax / mass, ay / mass
+    hangs, x, y, vx, vy, ax, ay = centre_of(local, bodies)
     chi, spin, after = 0.0, 0.0, 0.0
     for _ in range(0 if hangs else LOCK_ITERATIONS):
         turning = inertia = torque = 0.0
         for i in range(bodies):
             if local[i].freedoms > 0 and local[i].mobility[0] > 0.0:
-                m, dx, dy = 1.0 / local[i].mobility[0], local[i].saved_pose[0] - x, local[i].saved_pose[1] - y
-                turning += m * (dx * (local[i].saved_velocity[1] - vy) - dy * (local[i].saved_velocity[0] - vx))
+                m, dx, dy = 1.0 / local[i].mobility[0], local[i].pose[0] - x, local[i].pose[1] - y
+                turning += m * (dx * (local[i].v0[1] - vy) - dy * (local[i].v0[0] - vx))
                 inertia += m * (dx * dx + dy * dy)
                 over = 1.0 / (1.0 + 0.25 * chi * chi)
                 mx, my = over * (dx - 0.5 * chi * dy), over * (dy + 0.5 * chi * dx)
                 torque += m * (mx * (local[i].acceleration[1] - ay) - my * (local[i].acceleration[0] - ax))
             if local[i].freedoms > 2 and local[i].mobility[2] > 0.0:
-                turning += local[i].saved_velocity[2] / local[i].mobility[2]
+                turning += local[i].v0[2] / local[i].mobility[2]
                 inertia += 1.0 / local[i].mobility[2]
                 torque += local[i].acceleration[2] / local[i].mobility[2]
         spin = turning / inertia if inertia > 0.0 else 0.0
@@ -126,9 +121,6 @@ def move_rigidly(local: Rows[BodyStep], bodies: int, h: float) -> None:
     over = 1.0 / (1.0 + 0.25 * chi * chi)
     turned = 2.0 * math.atan(0.5 * chi)
     for i in range(bodies):
-        for c in range(3):
-            local[i].pose[c], local[i].v0[c] = local[i].saved_pose[c], local[i].saved_velocity[c]
-            local[i].travel[c] = local[i].shift[c]
         local[i].mean[0], local[i].mean[1] = h * local[i].pose[0], h * local[i].pose[1]
         if local[i].freedoms == 0:
             continue
@@ -136,16 +128,16 @@ def move_rigidly(local: Rows[BodyStep], bodies: int, h: float) -> None:
             for c in range(local[i].freedoms):
                 local[i].v0[c] = 0.0
         else:
-            dx, dy = local[i].saved_pose[0] - x, local[i].saved_pose[1] - y
+            dx, dy = local[i].pose[0] - x, local[i].pose[1] - y
             mx, my = over * (dx - 0.5 * chi * dy), over * (dy + 0.5 * chi * dx)
             wx, wy = h * (vx + 0.5 * h * ax) - chi * my, h * (vy + 0.5 * h * ay) + chi * mx
-            local[i].pose[0], local[i].pose[1] = local[i].saved_pose[0] + wx, local[i].saved_pose[1] + wy
+            local[i].pose[0], local[i].pose[1] = local[i].pose[0] + wx, local[i].pose[1] + wy
             local[i].mean[0], local[i].mean[1] = local[i].mean[0] + 0.5 * h * wx, local[i].mean[1] + 0.5 * h * wy
             local[i].travel[0], local[i].travel[1] = local[i].travel[0] + wx, local[i].travel[1] + wy
             rx, ry = 2.0 * mx - dx, 2.0 * my - dy
             local[i].v0[0], local[i].v0[1] = vx + h * ax - after * ry, vy + h * ay + after * rx
             if local[i].freedoms > 2:
-                local[i].pose[2], local[i].v0[2] = local[i].saved_pose[2] + turned, after
+                local[i].pose[2], local[i].v0[2] = local[i].pose[2] + turned, after
                 local[i].travel[2] += chi
         if local[i].freedoms < 3:
             way = h * (local[i].saved_velocity[2] + 0.5 * h * local[i].acceleration[2])

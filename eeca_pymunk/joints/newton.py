@@ -94,7 +94,7 @@ def assemble(W: Workspace, what: int, h: float, give: float, first: bool, system
         if link[k].bounded == BOXED and not still and held(link, k, 0):
             off = put_bounded(W, k, slopes, h, system, False, band)
             worst = max(worst, off / hinge[k].size)
-            leave_box(link, hinge, k, build, system == WHOLE, band, matrix, right)
+            leave_box(link, hinge, k, system, build, band, matrix, right)
             continue
         farthest = 0.0
         for r in range(link[k].rows):

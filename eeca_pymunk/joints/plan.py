@@ -232,7 +232,7 @@ def measure_plan(component: Rows[Component], ROOM: IntArray, count: int) -> None
     for s in range(count):
         C = component[s]
         whole, dual = C.unknowns * (3 * C.band + 1), C.dual_size * (2 * C.dual_band + 1)
-        boxes = (C.boxes + 1) * (C.unknowns + C.impulses + 2 * C.boxes + BOX_ROOM) if C.boxes > 0 else 0
+        boxes = (C.boxes + 1) * (C.unknowns + C.impulses + 3 * C.boxes + BOX_ROOM) if C.boxes > 0 else 0
         ROOM[0] = max(ROOM[0], C.end_body - C.first_body)
         ROOM[1] = max(ROOM[1], C.end_joint - C.first_joint)
         ROOM[2] = max(ROOM[2], C.unknowns, C.dual_size)

@@ -35,10 +35,10 @@ def drop_impulses(W: Workspace) -> None:
 @nonallocating
 def bounded_rows(link: Rows[Coupling], joints: int) -> bool:
     """Whether any joint has bounded rows in the matrix."""
-    count = 0
     for k in range(joints):
-        count += 1 if link[k].bounded == BOUNDED else 0
-    return count > 0
+        if link[k].bounded == BOUNDED:
+            return True
+    return False
 
 
 @nonallocating

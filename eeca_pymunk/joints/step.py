@@ -16,7 +16,7 @@ from ..model.parameters.joints import NEARLY_HELD
 from .closing import close_joints, farthest
 from .correct import kinetic
 from .ladder import climb, limit_work
-from .ledger import add, clear, close_ledger
+from .ledger import add, clear_ledger, close_ledger
 from .motion import save
 from .solve import drop_impulses
 from .start import bounded_targets, compute_rows, read_joints
@@ -55,7 +55,7 @@ def take_step(W: Workspace, h: float, order: int, length: float, ledger: JointLe
     at the end. `ledger` is that of the step; `length` is the size of the component.
     """
     local, component = W.J.LOCAL, W.J.COMPONENT[W.s]
-    clear(ledger)
+    clear_ledger(ledger)
     component.factored = 0
     touched, bounded = read_joints(W, h, length)
     # Redundant rows begin without impulse, unless it is what holds bodies.

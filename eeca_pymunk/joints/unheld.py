@@ -9,7 +9,7 @@ from ..model.parameters.joints import LINEAR_APART
 from .closing import farthest
 from .foresight import forget
 from .ladder import restore, undo_impulses
-from .ledger import clear, close_ledger
+from .ledger import clear_ledger, close_ledger
 from .limits import step_with_limits
 from .lock import lock_energy, move_rigidly, supports_rest
 from .motion import advance, go_back, move
@@ -34,7 +34,7 @@ def step_linearly(W: Workspace, h: float, length: float) -> float:
                 local[i].v1[c] = local[i].v0[c] + h * local[i].acceleration[c]
         move(local, W.bodies, h)
         advance(local, W.bodies, h)
-    clear(part)
+    clear_ledger(part)
     part.stored = springs_of(W) - stored
     return apart
 
@@ -47,7 +47,7 @@ def stop_joints(W: Workspace, h: float) -> None:
     go_back(local, W.bodies)
     stored = springs_of(W)
     move_rigidly(local, W.bodies, h)
-    clear(part)
+    clear_ledger(part)
     part.stored = springs_of(W) - stored
     close_ledger(local, W.bodies, part)
     part.projected, part.closed = max(-part.closed, 0.0), max(part.closed, 0.0)

@@ -58,8 +58,8 @@ RENEW = -4  # the interval of the body's island ends
 
 
 # `Member.rest`; `..islands` has the transitions. AWAKE: solved in every step. AT_REST: held by static forces. CHANGED,
-# of the root of an island at rest: to be solved again; of a kinematic body: it moves. CANDIDATE: slow for a whole step.
-AWAKE, AT_REST, CHANGED, CANDIDATE = 0, 1, 2, 3
+# of the root of an island at rest: to be solved again; of a kinematic body: it moves.
+AWAKE, AT_REST, CHANGED = 0, 1, 2
 
 # `Member.placed`: overlaps are looked for anew where the body is, or where the program has moved it.
 UNMOVED, MOVED = 1, 2
@@ -78,7 +78,7 @@ class Member(Record):
     tied: int  # first body of its component, -1 if no joint holds the body
     next_tied: int  # next body of the component, in a ring
     jointed: int  # of the root: 1 if joints hold bodies of its island
-    rest: int  # AWAKE, AT_REST, CHANGED or CANDIDATE
+    rest: int  # AWAKE, AT_REST or CHANGED
     loaded: int  # of the root of an island at rest: 1 while support of moving neighbours is unverified
     with_supports: int  # of the root: `bodies`, and those of the islands that support them
     placed: int  # UNMOVED or MOVED while the body may overlap others deeply; else 0

@@ -165,12 +165,10 @@ class Solved(Record):
 
     restitution: float  # energies: losses >= 0 by restitution and by friction
     friction: float
-    lifted: float  # energy that the penetration correction costs
     lock: float  # scale of the energy lock
     owed: float  # energy that later intervals have to take out
     residual: float  # of the contact problem: length/time
     tolerance: float  # of the residual
-    deepest: float  # least gap at the end before the correction: length, negative in overlap
     sweeps: int
     direct: int  # direct solutions
     at_rest: int  # 1 if the island was put to rest

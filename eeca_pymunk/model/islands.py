@@ -31,12 +31,12 @@ class Island(NamedTuple):
     PAIRS: IntArray
 
 
-class Contacts(NamedTuple):
+class IslandContacts(NamedTuple):
     """The contacts of an island over an interval.
 
     ROWS: rows between local bodies A and B. KEY int64: identifies the pair of shapes and which of its two points it is
-    (`..contacts.memory.key_of`), across steps. L, LOSS (., 2): impulses, and losses (D_n, D_t). VN (k, 3): velocities
-    at the end. JUMP (k, 6): correction of pose and velocity at the end. OUT (1,): the report.
+    (`..contacts.memory.key_of`), across steps. L (., 2): impulses. VN (k, 3): velocities at the end. JUMP (k, 6):
+    correction of pose and velocity at the end. OUT (1,): the report.
     """
 
     A: IntArray
@@ -44,13 +44,12 @@ class Contacts(NamedTuple):
     ROWS: Rows[Row]
     KEY: IntArray
     L: FloatArray
-    LOSS: FloatArray
     VN: FloatArray
     JUMP: FloatArray
     OUT: Rows[Solved]
 
 
-class Given(Record):
+class ConnectedWork(Record):
     """What the impulses on bodies that they connect have done up to the end of an interval, in the row of one of them;
     B and C as in `..islands.excess`, with units of energy."""
 
@@ -61,5 +60,5 @@ class Given(Record):
     square: float  # C; 0 if they have given no energy
 
 
-GIVEN = kind_of(Given)
-island_of, contacts_of = Opener(Island), Opener(Contacts)
+CONNECTED_WORK = kind_of(ConnectedWork)
+island_of, contacts_of = Opener(Island), Opener(IslandContacts)

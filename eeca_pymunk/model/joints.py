@@ -118,7 +118,7 @@ class Coupling(Record):
     kind: int  # as `Joint.kind`
     body: Annotated[IntArray, 2]  # bodies a and b by their numbers in the component
     side: int  # as `Joint.side`, in the present step
-    bounded: int  # 0 for rows that hold exactly; BOUNDED, GIVEN or BOXED
+    bounded: int  # 0 for rows that hold exactly; BOUNDED, PRESCRIBED or BOXED
     rows: int  # number of rows, and first unknown of their impulses
     first_row: int
     joint: int  # row of `Joint`
@@ -127,7 +127,7 @@ class Coupling(Record):
 
 
 # Impulses within bounds; these given, for an answer to other impulses; these found by `..joints.boxes`.
-BOUNDED, GIVEN, BOXED = 1, 2, 3
+BOUNDED, PRESCRIBED, BOXED = 1, 2, 3
 
 
 class Held(Record):

@@ -142,7 +142,7 @@ def pulled_along(A: Scene, a: int, b: int, nx: float, ny: float) -> float:
 
 
 @nonallocating
-def fastest(A: Scene, s: int, t: float) -> float:
+def speed_bound(A: Scene, s: int, t: float) -> float:
     """Bound of the speed of points of shape s at instant t, length/time."""
     i = A.LINK[s].owner
     vx, vy, spin = rate(A.BODY, i, t)

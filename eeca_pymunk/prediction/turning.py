@@ -9,8 +9,8 @@ Shapes meet if, along every axis on which the gap is closed, a point approaches.
 
 A look is one evaluation of the gap in a search.
 
-Side effect: `begin_side`, `search` and `follow_side` note the sides of thin shapes in SIDE; of these notes `general`
-leaves only that of `begin_side`.
+Side effect: `begin_side` and `search` note the sides of thin shapes in SIDE; of these notes `general` leaves
+only that of `begin_side`.
 """
 
 from __future__ import annotations
@@ -38,8 +38,15 @@ from ..model.parameters.events import ADVANCES, APPROACH_ROUND_OFF, RESOLUTION
 from ..model.parameters.intervals import TOUCH
 from ..model.scene import Scene
 from ..pairs.lists import face_tolerance
-from .axes import Closing, Motion, bends, fastest, fixed_axis, motion, pulled_along, turning_axis
+from .axes import Closing, Motion, bends, fixed_axis, motion, pulled_along, speed_bound, turning_axis
 from .bounds import carried_circles_meet, circles_meet
+
+
+@nonallocating
+def opening(a: Motion, b: Motion, nx: float, ny: float, px: float, py: float) -> float:
+    """Velocity (length/time) of b less that of a at the point p along n."""
+    u = nx * (b.vx - b.spin * (py - b.y) - a.vx + a.spin * (py - a.y))
+    return u + ny * (b.vy + b.spin * (px - b.x) - a.vy - a.spin * (px - a.x))
 
 
 @nonallocating
@@ -51,7 +58,7 @@ def time_to_contact_again(
     a, b = motion(BODY, i, t), motion(BODY, j, t)
     rx_a, ry_a, rx_b, ry_b = px - a.x, py - a.y, px - b.x, py - b.y
     q_a, q_b = BODY[i].angular, BODY[j].angular
-    u = nx * (b.vx - b.spin * ry_b - a.vx + a.spin * ry_a) + ny * (b.vy + b.spin * rx_b - a.vy - a.spin * rx_a)
+    u = opening(a, b, nx, ny, px, py)
     ax = BODY[j].ax - q_b * ry_b - b.spin * b.spin * rx_b - (BODY[i].ax - q_a * ry_a - a.spin * a.spin * rx_a)
     ay = BODY[j].ay + q_b * rx_b - b.spin * b.spin * ry_b - (BODY[i].ay + q_a * rx_a - a.spin * a.spin * ry_a)
     closing = -(nx * ax + ny * ay)
@@ -64,9 +71,7 @@ def parting_velocity(
 ) -> tuple[float, float]:  # fmt: skip
     """Velocity u (length/time) with which bodies part at the point p along the normal n from i to j, and the
     acceleration of their centres (length/time²) that presses them together."""
-    a, b = motion(BODY, i, t), motion(BODY, j, t)
-    u = nx * (b.vx - b.spin * (py - b.y) - a.vx + a.spin * (py - a.y))
-    u += ny * (b.vy + b.spin * (px - b.x) - a.vy - a.spin * (px - a.x))
+    u = opening(motion(BODY, i, t), motion(BODY, j, t), nx, ny, px, py)
     return u, nx * (BODY[i].ax - BODY[j].ax) + ny * (BODY[i].ay - BODY[j].ay)
 
 
@@ -129,9 +134,7 @@ def face_closes(
         if wide:
             along = low if k == 0 else high
             px, py = (top + away) * nx - along * ny, (top + away) * ny + along * nx
-        u = nx * (two.vx - two.spin * (py - two.y) - one.vx + one.spin * (py - one.y))
-        u += ny * (two.vy + two.spin * (px - two.x) - one.vy - one.spin * (px - one.x))
-        if u < -still:
+        if opening(one, two, nx, ny, px, py) < -still:
             return True
     return False
 
@@ -154,12 +157,6 @@ def general(A: Scene, a: int, b: int, horizon: float) -> tuple[float, bool]:
 
 
 @nonallocating
-def follow_side(A: Scene, a: int, b: int, t: float, horizon: float) -> None:
-    """Note on which side of each other the thin shapes a and b are at instant t, at which they meet."""
-    search(A, min(a, b), max(a, b), horizon, t)
-
-
-@nonallocating
 def search(A: Scene, a: int, b: int, horizon: float, until: float) -> tuple[float, bool]:
     """(t, certain) of any two shapes, as defined in `impact_times.py`.
 
@@ -172,7 +169,7 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float) -> tuple[floa
     Args:
         a, b: a < b.
         horizon: finite instant; lower bounds are no earlier.
-        until: instant from which on the search is not continued, for `follow_side`; else infinite.
+        until: instant from which on the search is not continued, to note the sides there; else infinite.
     """
     BODY, SHAPE = A.BODY, A.SHAPE
     i, j = A.LINK[a].owner, A.LINK[b].owner
@@ -190,7 +187,7 @@ def search(A: Scene, a: int, b: int, horizon: float, until: float) -> tuple[floa
             return horizon, False
     around, bend_a, bend_b = bends(A, a, b, start, duration)
     extent = SHAPE[a].rounding + SHAPE[b].rounding
-    still = APPROACH_ROUND_OFF * (fastest(A, a, start) + fastest(A, b, start))
+    still = APPROACH_ROUND_OFF * (speed_bound(A, a, start) + speed_bound(A, b, start))
     depth = TOUCH * smaller(A, a, b)
     of_a, of_b = Closing(extent, bend_a, tolerance, depth, still), Closing(extent, bend_b, tolerance, depth, still)
     P, Q = A.CORE[0], A.CORE[1]

@@ -43,10 +43,9 @@ CONVERGED, TRUNCATED = 0, 1  # statuses
 
 
 @nonallocating
-def clear(out: Solved) -> None:
+def clear_report(out: Solved) -> None:
     """Reset the report of a solve."""
-    out.restitution = out.friction = out.lifted = 0.0
-    out.owed = out.residual = out.tolerance = out.deepest = 0.0
+    out.restitution = out.friction = out.owed = out.residual = out.tolerance = 0.0
     out.sweeps = out.direct = out.at_rest = 0
     out.lock = 1.0
 
@@ -103,8 +102,8 @@ def resolve(
 
 @kernel
 def solve_block(
-    problem: AnyProblem, L: FloatArray, V: FloatArray, owed: float, hasty: bool, LOSS: FloatArray, OUT: Rows[Solved]
-) -> int:
+    problem: AnyProblem, L: FloatArray, V: FloatArray, owed: float, hasty: bool, OUT: Rows[Solved]
+) -> int:  # fmt: skip
     """Impulses of m contacts at one instant; V (k, 3) becomes the velocities after the impact.
 
     Args:
@@ -113,7 +112,6 @@ def solve_block(
         L: (m, 2) in: initial impulses (0 for none); out: the impulses.
         owed: energy >= 0 that the block has to lose at least.
         hasty: whether a large lossy island may be solved to a coarse tolerance: a hit on a pile.
-        LOSS: (m, 2) out, D_n and D_t of each contact.
         OUT: (1,) the report, out.
 
     Returns:
@@ -122,10 +120,8 @@ def solve_block(
             energy balance holds in both cases.
     """
     A, B, ROWS, m = problem.A, problem.B, problem.ROWS, problem.m
-    clear(OUT[0])
+    clear_report(OUT[0])
     OUT[0].owed = owed
-    for i in range(m):
-        LOSS[i, 0] = LOSS[i, 1] = 0.0
     rates(A, B, ROWS, V, m)
     speed = aim(ROWS, m)
     if not speed > 0.0:
@@ -152,9 +148,7 @@ def solve_block(
     # Velocities are computed again from the impulses, without the round-off of many sweeps.
     velocities(problem, L, FREE, V)
     scale, left = lock(problem, L, V, FREE, owed, exact)
-    normal, tangential = works(problem, L, V, LOSS)
-    OUT[0].restitution = normal
-    OUT[0].friction = tangential
+    OUT[0].restitution, OUT[0].friction = works(problem, L, V)
     OUT[0].lock = scale
     OUT[0].owed = left
     OUT[0].residual, OUT[0].tolerance = worst, tolerance

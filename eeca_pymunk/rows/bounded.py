@@ -22,9 +22,9 @@ SINGLE, FIRST_OF_DISC, SECOND_OF_DISC = 0.0, 1.0, 2.0
 
 @nonallocating
 def on_disc(
-    a: float, b: float, c: float, ux: float, uy: float, x: float, y: float, bound: float, second: bool
-) -> float:
-    """One of the impulses p = (x', y'), y' if `second`, with u + W (p - p0) = 0, where u = (ux, uy) is the velocity at
+    a: float, b: float, c: float, ux: float, uy: float, x: float, y: float, bound: float
+) -> tuple[float, float]:  # fmt: skip
+    """The impulses p = (x', y') with u + W (p - p0) = 0, where u = (ux, uy) is the velocity at
     the impulses p0 = (x, y), and W = [a b; b c] its change by unit impulses. If they are outside the disc |p| <=
     `bound`, those on its rim with u + W (p - p0) = -s p, s > 0: (W + s) p = W p0 - u, by Newton's method for s in the
     frame of W's axes."""
@@ -48,7 +48,7 @@ def on_disc(
         length = math.sqrt(p1 * p1 + p2 * p2)
         if length > bound:
             p1, p2 = p1 * bound / length, p2 * bound / length
-    return float(p1 * si + p2 * co if second else p1 * co - p2 * si)
+    return p1 * co - p2 * si, p1 * si + p2 * co
 
 
 @kernel
@@ -113,8 +113,7 @@ def sweep_bounded(B: Bounded, L: FloatArray, m: int, V: FloatArray) -> float:
             if not c > 0.0:
                 continue
             other = B.ROWS[i + 1].speed + bounded_rate(B, i + 1, V)
-            L[m + i, 0] = on_disc(a, b, c, u, other, x, y, high, False)
-            L[m + i + 1, 0] = on_disc(a, b, c, u, other, x, y, high, True)
+            L[m + i, 0], L[m + i + 1, 0] = on_disc(a, b, c, u, other, x, y, high)
             push_row(B, i + 1, L[m + i + 1, 0] - y, V)
             worst = max(worst, abs(L[m + i + 1, 0] - y) * c)
         push_row(B, i, L[m + i, 0] - x, V)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..compiled import nonallocating
+from ..compiled import inlined, nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import Row
 from ..model.parameters.impulses import SINGULAR
@@ -87,6 +87,23 @@ def tangent_rate(A: IntArray, B: IntArray, ROWS: Rows[Row], V: FloatArray, i: in
     return rate
 
 
+@inlined
+def push_contact(
+    A: IntArray, B: IntArray, ROWS: Rows[Row], IM: FloatArray, II: FloatArray, i: int, lam: float, beta: float,
+    V: FloatArray,
+) -> None:  # fmt: skip
+    """Add M^-1 (G^T lam + T^T beta) of contact i to V (k, 3)."""
+    a, b = A[i], B[i]
+    fx = lam * ROWS[i].nx - beta * ROWS[i].ny
+    fy = lam * ROWS[i].ny + beta * ROWS[i].nx
+    V[a, 0] -= IM[a] * fx
+    V[a, 1] -= IM[a] * fy
+    V[a, 2] -= II[a] * (lam * ROWS[i].arm_na + beta * ROWS[i].arm_ta)
+    V[b, 0] += IM[b] * fx
+    V[b, 1] += IM[b] * fy
+    V[b, 2] += II[b] * (lam * ROWS[i].arm_nb + beta * ROWS[i].arm_tb)
+
+
 @nonallocating
 def rates(A: IntArray, B: IntArray, ROWS: Rows[Row], V: FloatArray, m: int) -> None:
     """Set u_n and u_t before the impulses of m contacts from velocities V (k, 3)."""
@@ -129,18 +146,16 @@ def aim(ROWS: Rows[Row], m: int) -> float:
 @nonallocating
 def conserves(ROWS: Rows[Row], m: int) -> bool:
     """Whether all m contacts are elastic and without friction."""
-    lossy = 0
     for i in range(m):
         if ROWS[i].elasticity < 1.0 or ROWS[i].friction > 0.0:
-            lossy += 1
-    return lossy == 0
+            return False
+    return True
 
 
 @nonallocating
 def rubs(ROWS: Rows[Row], m: int) -> bool:
     """Whether any of m contacts has friction."""
-    rough = 0
     for i in range(m):
         if ROWS[i].friction > 0.0:
-            rough += 1
-    return rough > 0
+            return True
+    return False

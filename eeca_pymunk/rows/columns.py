@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray
-from ..compiled import kernel, nonallocating
+from ..compiled import inlined, kernel, nonallocating
 from ..model.contacts import Columns, JointedProblem, Problem
 from .bounded import SINGLE, bounded_rate, per_impulse, push_row, room_for_rows, sweep_bounded
 from .build import normal_rate, tangent_rate
@@ -38,16 +38,21 @@ def as_columns(problem: Problem) -> JointedProblem:
     return JointedProblem(A, B, ROWS, Columns(AT, BODY, N, T, np.zeros(m, np.int64)), room_for_rows(0, 0), m)
 
 
+@inlined
+def push_column(C: Columns, i: int, lam: float, beta: float, V: FloatArray) -> None:
+    """Add the columns of contact i times changes of its impulses to V (k, 3)."""
+    for w in range(C.AT[i], C.AT[i + 1]):
+        for c in range(3):
+            V[C.BODY[w], c] += lam * C.N[w, c] + beta * C.T[w, c]
+
+
 @nonallocating
 def push_columns(C: Columns, L: FloatArray, m: int, factor: float, V: FloatArray) -> None:
     """Add factor Y L to V (k, 3): the columns Y of m contacts times their impulses L (m, 2)."""
     for i in range(m):
         lam, beta = factor * L[i, 0], factor * L[i, 1]
-        if lam == 0.0 and beta == 0.0:
-            continue
-        for w in range(C.AT[i], C.AT[i + 1]):
-            for c in range(3):
-                V[C.BODY[w], c] += lam * C.N[w, c] + beta * C.T[w, c]
+        if lam != 0.0 or beta != 0.0:
+            push_column(C, i, lam, beta, V)
 
 
 @nonallocating
@@ -139,14 +144,6 @@ def sweep_jointed(problem: JointedProblem, L: FloatArray, V: FloatArray) -> floa
         if dn == 0.0 and dt == 0.0:
             continue
         L[i, 0], L[i, 1] = lam, beta
-        for w in range(C.AT[i], C.AT[i + 1]):
-            for c in range(3):
-                V[C.BODY[w], c] += dn * C.N[w, c] + dt * C.T[w, c]
+        push_column(C, i, dn, dt, V)
         worst = max(worst, abs(dn) * ROWS[i].a_nn, abs(dt) * ROWS[i].a_tt)
     return max(worst, sweep_bounded(problem.D, L, m, V))
-
-
-@nonallocating
-def rows_jointed(problem: JointedProblem) -> int:
-    """Number of unknown rows of L (., 2): those of contacts and bounded rows."""
-    return int(problem.m + problem.D.USED[0])

@@ -7,6 +7,7 @@ from ..arrays import FloatArray, IntArray
 from ..compiled import nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import Edge, Row
+from .build import push_contact
 
 
 @nonallocating
@@ -50,14 +51,7 @@ def add_impulses(
 ) -> None:  # fmt: skip
     """Add M^-1 sum g x over all K edges to the velocities V (k, 3); with dx in place of x if `steps`."""
     for e in range(K):
-        lam = EDGE[e].dx if steps else EDGE[e].x
-        a, b = P[e], Q[e]
-        V[a, 0] -= IM[a] * lam * G[e].nx
-        V[a, 1] -= IM[a] * lam * G[e].ny
-        V[a, 2] -= II[a] * lam * G[e].arm_na
-        V[b, 0] += IM[b] * lam * G[e].nx
-        V[b, 1] += IM[b] * lam * G[e].ny
-        V[b, 2] += II[b] * lam * G[e].arm_nb
+        push_contact(P, Q, G, IM, II, e, EDGE[e].dx if steps else EDGE[e].x, 0.0, V)
 
 
 @nonallocating

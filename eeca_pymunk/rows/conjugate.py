@@ -10,7 +10,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..model.contacts import AnyProblem
-from .sweeps import rows_of, sweep
+from .sweeps import sweep
 
 
 @nonallocating
@@ -66,8 +66,7 @@ def iterate(problem: AnyProblem, L: FloatArray, V: FloatArray, tolerance: float,
     plain. Returns the number of sweeps, and the change in the last."""
     # Loops over flat arrays are vectorised.
     FLAT, FAST = L.reshape(L.size), V.reshape(V.size)
-    size = 2 * rows_of(problem)
-    L0, V0, PL, PV = FLAT[:size].copy(), FAST.copy(), np.zeros(size), np.zeros(V.size)
+    L0, V0, PL, PV = FLAT.copy(), FAST.copy(), np.zeros(L.size), np.zeros(V.size)
     change, done, worst = -1.0, 0, np.inf
     while done < most:
         worst = sweep(problem, L, V)

@@ -10,7 +10,7 @@ from ..model.contacts import AnyProblem, JointedProblem
 from ..model.parameters.impulses import AUGMENTATION, DENSE_CONTACTS, REFINEMENTS
 from .dense import newton
 from .polish import polish_free, segment
-from .sweeps import keep, rows_of, sweep
+from .sweeps import restore, sweep
 
 
 @kernel
@@ -40,33 +40,28 @@ def refine(
         log_R for the next round, and the change of velocity in a sweep after this one.
     """
     m = problem.m
-    rows = rows_of(problem)
-    L0 = np.empty((rows, 2))
-    V0 = np.empty_like(V)
-    keep(L, V, rows, L0, V0)
+    L0, V0 = L.copy(), V.copy()
     reached, clamped = np.inf, 0
     if m <= DENSE_CONTACTS:
         for attempt in range(2):
             # Friction that energy limits: first each contact by itself, then with the other contact of its face.
             if reached > 1e-3 * worst:
-                keep(L0, V0, rows, L, V)
+                restore(L, V, L0, V0)
                 reached, clamped = newton(problem, L, V, FREE, REFINEMENTS, tolerance, attempt == 1)
     else:
         reached, clamped = polish(problem, L, V, FREE, 10.0**log_R, passes, tolerance)
     part = 1.0
     if not reached <= 1e3 * worst + tolerance:
-        keep(L0, V0, rows, L, V)
+        restore(L, V, L0, V0)
         part = 0.0
     elif clamped > 0:
         # With slip the solution minimises no energy: the residual of a sweep decides; without, `segment`.
         if m <= DENSE_CONTACTS:
-            L1 = np.empty((rows, 2))
-            V1 = np.empty_like(V)
-            keep(L, V, rows, L1, V1)
+            L1, V1 = L.copy(), V.copy()
             after = sweep(problem, L, V)
             if after < worst:
                 return log_R, after
-            keep(L1, V1, rows, L, V)
+            restore(L, V, L1, V1)
         part = segment(problem, L, V, L0, V0)
     if part > 0.9:
         log_R = min(log_R + 2.0, AUGMENTATION)

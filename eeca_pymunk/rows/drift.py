@@ -9,13 +9,11 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..model.contacts import AnyProblem
 from ..model.parameters.impulses import DRIFT_SLIPS, DRIFT_STEADY
-from .sweeps import keep, sweep, velocities
+from .sweeps import restore, sweep, velocities
 
 
 @nonallocating
@@ -40,22 +38,20 @@ def go_along(problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray
     """A sweep, and all that follow in the same way, if its residual is about that of the last one, `worst`, and they do
     not make it larger: then impulses did not only go from contact to contact. Returns the change of velocity in the
     last sweep."""
-    L0, V0 = np.empty_like(L), np.empty_like(V)
-    keep(L, V, len(L), L0, V0)
+    L0 = L.copy()
     now = sweep(problem, L, V)
     if abs(now - worst) > DRIFT_STEADY * worst:
         return now
     left = sweeps_left(problem, L, L0)
     if not 1.0 < left < math.inf:
         return now
-    LAST, VLAST = np.empty_like(L), np.empty_like(V)
-    keep(L, V, len(L), LAST, VLAST)
+    LAST, VLAST = L.copy(), V.copy()
     for i in range(problem.m):
         L[i, 0] = max(L[i, 0] + left * (L[i, 0] - L0[i, 0]), 0.0)
         L[i, 1] += left * (L[i, 1] - L0[i, 1])
     velocities(problem, L, FREE, V)
     after = sweep(problem, L, V)
     if after > now:
-        keep(LAST, VLAST, len(L), L, V)
+        restore(L, V, LAST, VLAST)
         return now
     return after

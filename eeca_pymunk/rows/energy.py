@@ -10,50 +10,51 @@ from __future__ import annotations
 import math
 
 from ..arrays import FloatArray
-from ..compiled import nonallocating
+from ..compiled import inlined, nonallocating
 from ..model.contacts import AnyProblem
 from .build import normal_rate, tangent_rate
 from .sweeps import velocities
 
 
-@nonallocating
-def works(problem: AnyProblem, L: FloatArray, V: FloatArray, LOSS: FloatArray) -> tuple[float, float]:
-    """Set LOSS (m, 2) = D_n and D_t of each contact, energies, with V the velocities after; returns their sums.
-
-    Where slip reverses, friction returns a part of what restitution takes, D_n + D_t >= 0: a negative loss is deducted
-    from the other one of the same contact. Likewise for the sums, if the solve was truncated.
-    """
-    A, B, ROWS, m = problem.A, problem.B, problem.ROWS, problem.m
-    normal, tangential = 0.0, 0.0
-    for i in range(m):
-        LOSS[i, 0] = LOSS[i, 1] = 0.0
-        if L[i, 0] == 0.0 and L[i, 1] == 0.0:
-            continue
-        LOSS[i, 0] = -0.5 * L[i, 0] * (ROWS[i].un + normal_rate(A, B, ROWS, V, i))
-        LOSS[i, 1] = -0.5 * L[i, 1] * (ROWS[i].ut + tangent_rate(A, B, ROWS, V, i))
-        both = LOSS[i, 0] + LOSS[i, 1]
-        if LOSS[i, 0] < 0.0:
-            LOSS[i, 0] = min(both, 0.0)
-            LOSS[i, 1] = max(both, 0.0)
-        elif LOSS[i, 1] < 0.0:
-            LOSS[i, 0] = both
-            LOSS[i, 1] = 0.0
-        normal += LOSS[i, 0]
-        tangential += LOSS[i, 1]
+@inlined
+def offset_gain(normal: float, tangential: float) -> tuple[float, float]:
+    """Losses by a normal impulse and by friction, energies: a gain, a negative loss, is deducted from the other one."""
+    both = normal + tangential
     if normal < 0.0:
-        tangential += normal
-        normal = 0.0
-    elif tangential < 0.0:
-        normal += tangential
-        tangential = 0.0
-    return normal, tangential
+        return min(both, 0.0), max(both, 0.0)
+    return (both, 0.0) if tangential < 0.0 else (normal, tangential)
+
+
+@inlined
+def losses_of(problem: AnyProblem, L: FloatArray, V: FloatArray, i: int) -> tuple[float, float]:
+    """D_n and D_t of contact i, energies, with V the velocities after.
+
+    Where slip reverses, friction returns a part of what restitution takes, D_n + D_t >= 0: see `offset_gain`.
+    """
+    A, B, ROWS = problem.A, problem.B, problem.ROWS
+    normal = -0.5 * L[i, 0] * (ROWS[i].un + normal_rate(A, B, ROWS, V, i))
+    tangential = -0.5 * L[i, 1] * (ROWS[i].ut + tangent_rate(A, B, ROWS, V, i))
+    return offset_gain(normal, tangential)
 
 
 @nonallocating
-def scale_of(
+def works(problem: AnyProblem, L: FloatArray, V: FloatArray) -> tuple[float, float]:
+    """Sums of D_n and D_t; `offset_gain` of these too, as the solve may be truncated."""
+    normal, tangential = 0.0, 0.0
+    for i in range(problem.m):
+        if L[i, 0] != 0.0 or L[i, 1] != 0.0:
+            one, two = losses_of(problem, L, V, i)
+            normal += one
+            tangential += two
+    return offset_gain(normal, tangential)
+
+
+@nonallocating
+def lock(
     problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, owed: float, exact: bool
 ) -> tuple[float, float]:
-    """One scale s for all impulses, so that the island loses at least `owed`; exactly that if `exact`.
+    """Energy lock: one scale s for all impulses, so that the island loses at least `owed`; exactly that if `exact`.
+    Updates L and V.
 
     With u* the velocities of FREE, s L loses D(s) = -s lam.(u- + u*)/2 - s^2 lam.A.lam/2 (tangents likewise). Of the
     two roots of D(s) = owed the one nearer to 1 is taken; s = 1 if no change is needed. Without a root, s gives the
@@ -87,15 +88,6 @@ def scale_of(
         other = owed / large if large > 0.0 else 0.0
         if abs(other - 1.0) < abs(s - 1.0):
             s = other
-    return s, left
-
-
-@nonallocating
-def lock(
-    problem: AnyProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, owed: float, exact: bool
-) -> tuple[float, float]:
-    """Energy lock: scale all impulses by `scale_of`, and update V; returns its results."""
-    s, left = scale_of(problem, L, V, FREE, owed, exact)
     if s != 1.0:
         for i in range(problem.m):
             L[i, 0] *= s

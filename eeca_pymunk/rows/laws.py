@@ -1,4 +1,4 @@
-"""The laws of few contacts to round-off: sweeps, and paths to the solution (`path.py`) in turn.
+"""The laws of few contacts to round-off: sweeps, and homotopies (`homotopy.py`) in turn.
 
 First friction that energy limits (`coulomb.py`) is tried, by which each contact by itself loses energy: where slips
 reverse, several contacts may have no such solution. Coulomb's law alone has one more often.
@@ -12,12 +12,12 @@ from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..compiled.records import Rows
 from ..model.contacts import JointedProblem, Problem, Row
-from ..model.parameters.joints import COLUMN_CONTACTS, COLUMN_PATHS, COLUMN_SWEEPS, COLUMN_SWEEPS_AFTER
+from ..model.parameters.joints import COLUMN_CONTACTS, COLUMN_HOMOTOPIES, COLUMN_SWEEPS, COLUMN_SWEEPS_AFTER
 from .columns import as_columns, breach
 from .conjugate import iterate
 from .coulomb import slip_freely
+from .homotopy import follow_homotopy
 from .inplace import copy
-from .path import follow_path
 from .sweeps import push, sweep, velocities
 
 
@@ -28,8 +28,8 @@ def solve_columns(
     """Impulses L (m contacts, then the bounded rows) and velocities V.
 
     Args:
-        tolerance: velocity by which laws may be broken, or contacts change in a sweep.  sweeps: before a path.
-        most: sweeps where there are too many contacts for a path, or it has no end.
+        tolerance: velocity by which laws may be broken, or contacts change in a sweep.  sweeps: before a homotopy.
+        most: sweeps where there are too many contacts for a homotopy, or it has no end.
 
     Returns:
         the largest velocity by which a law is broken, or of a change in the last sweep if that came last.
@@ -38,18 +38,18 @@ def solve_columns(
         return iterate(problem, L, V, tolerance, most)[1]
     worst = iterate(problem, L, V, tolerance, sweeps)[1] if sweeps > 0 else breach(problem, L, V)
     best, L0, V0, before = worst, L.copy(), V.copy(), np.inf
-    for _ in range(COLUMN_PATHS):
+    for _ in range(COLUMN_HOMOTOPIES):
         if worst <= tolerance:
             return worst
         FREE = V.copy()
         push(problem, L, -1.0, FREE)
-        if not follow_path(problem, L, V, FREE, False):
+        if not follow_homotopy(problem, L, V, FREE, False):
             for i in range(len(L)):
                 L[i, 0] = L[i, 1] = 0.0
             velocities(problem, L, FREE, V)
-            if not follow_path(problem, L, V, FREE, True):
+            if not follow_homotopy(problem, L, V, FREE, True):
                 break
-        # Discs of bounded impulses are not on the path: sweeps, in turn with it.
+        # Discs of bounded impulses are not in the homotopy: sweeps, in turn with it.
         worst, done = breach(problem, L, V), 0
         while done < COLUMN_SWEEPS_AFTER and worst > tolerance:
             worst = sweep(problem, L, V)

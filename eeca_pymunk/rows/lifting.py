@@ -5,29 +5,20 @@ from __future__ import annotations
 from ..arrays import FloatArray
 from ..compiled import Choice, inlined, nonallocating
 from ..model.contacts import AnyProblem, JointedProblem, Problem
-from .build import normal_rate
+from .build import normal_rate, push_contact
+from .columns import push_column
 
 
 @inlined
 def push_normal_free(problem: Problem, i: int, d: float, D: FloatArray) -> None:
     """Add M^-1 G^T of a change d of mu of contact i to D (k, 3)."""
-    A, B, ROWS, IM, II, _, _, _ = problem
-    a, b, nx, ny = A[i], B[i], ROWS[i].nx, ROWS[i].ny
-    D[a, 0] -= IM[a] * d * nx
-    D[a, 1] -= IM[a] * d * ny
-    D[a, 2] -= II[a] * (d * ROWS[i].arm_na)
-    D[b, 0] += IM[b] * d * nx
-    D[b, 1] += IM[b] * d * ny
-    D[b, 2] += II[b] * (d * ROWS[i].arm_nb)
+    push_contact(problem.A, problem.B, problem.ROWS, problem.IM, problem.II, i, d, 0.0, D)
 
 
 @inlined
 def push_normal_jointed(problem: JointedProblem, i: int, d: float, D: FloatArray) -> None:
     """Add the normal column of contact i times a change d of its mu to D (k, 3)."""
-    C = problem.C
-    for w in range(C.AT[i], C.AT[i + 1]):
-        for c in range(3):
-            D[C.BODY[w], c] += d * C.N[w, c]
+    push_column(problem.C, i, d, 0.0, D)
 
 
 push_normal = Choice(push_normal_free, push_normal_jointed)

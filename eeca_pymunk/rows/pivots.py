@@ -1,4 +1,4 @@
-"""States of contacts and bounded rows on a path of solved problems (`path.py`), and their changes: a pivot each.
+"""States of contacts and bounded rows on a homotopy of solved problems (`homotopy.py`); each change is a pivot.
 
 In the functions c numbers a contact, c < m, or the row c - m; s is its sign, `which` one of the two changes of its
 state (`margin`)."""
@@ -16,12 +16,12 @@ from ..compiled import inlined, nonallocating
 OUT, OPEN, STICK, SLIP, INSIDE, BOUND = 0, 1, 2, 3, 4, 5
 
 
-class Path(NamedTuple):
-    """A place on the path, of m contacts and n bounded rows: contact i has the unknowns 2 i (normal) and 2 i + 1
+class Tableau(NamedTuple):
+    """A place on the homotopy, of m contacts and n bounded rows: contact i has the unknowns 2 i (normal) and 2 i + 1
     (tangential), row i the unknown 2 m + i; size = 2 m + n.
 
     STATE, SIGN (m + n,): states; sign of the friction that slips, or of the bound; else 0.  MU (m,): friction, as long
-    as the path lasts.  LOW, HIGH (n,): bounds.  REST (m,): tangential velocity of contacts that stick, not 0 where
+    as the homotopy lasts.  LOW, HIGH (n,): bounds.  REST (m,): tangential velocity of contacts that stick, not 0 where
     energy limits friction (`polish.classify`). T (size, size + 2): of each unknown the impulse, or the velocity less
     its target, that its state leaves free, by those of all that it fixes, which are 0; then its value at theta = 0, and
     per theta. Where a contact slips, beta stands for beta - s mu lam.  R (size + 2,): room for a row.
@@ -44,9 +44,9 @@ def unknown_of(m: int, c: int) -> int:
 
 
 @nonallocating
-def pivot(path: Path, k: int) -> None:
+def pivot(tableau: Tableau, k: int) -> None:
     """Exchange what unknown k leaves free for what it fixes."""
-    T, R = path.T, path.R
+    T, R = tableau.T, tableau.R
     size, width = T.shape
     by = -1.0 / T[k, k]
     T[k, k] = -1.0
@@ -63,81 +63,81 @@ def pivot(path: Path, k: int) -> None:
 
 
 @nonallocating
-def slope_of(path: Path, c: int) -> float:
+def slope_of(tableau: Tableau, c: int) -> float:
     """beta / lam of a contact that slips."""
-    return float(path.SIGN[c] * path.MU[c])
+    return float(tableau.SIGN[c] * tableau.MU[c])
 
 
 @nonallocating
-def slip(path: Path, c: int, sign: float) -> None:
+def slip(tableau: Tableau, c: int, sign: float) -> None:
     """Let contact c, which is open, slip with friction of that sign."""
-    T, n = path.T, 2 * c
-    path.STATE[c], path.SIGN[c] = SLIP, sign
+    T, n = tableau.T, 2 * c
+    tableau.STATE[c], tableau.SIGN[c] = SLIP, sign
     for i in range(len(T)):
-        T[i, n] += slope_of(path, c) * T[i, n + 1]
-    pivot(path, n)
+        T[i, n] += slope_of(tableau, c) * T[i, n + 1]
+    pivot(tableau, n)
 
 
 @nonallocating
-def stick(path: Path, c: int) -> None:
+def stick(tableau: Tableau, c: int) -> None:
     """Let contact c, which slips, stick."""
-    T, n = path.T, 2 * c
-    pivot(path, n + 1)
+    T, n = tableau.T, 2 * c
+    pivot(tableau, n + 1)
     for j in range(T.shape[1]):
-        T[n + 1, j] += slope_of(path, c) * T[n, j]
-    path.STATE[c], path.SIGN[c] = STICK, 0.0
+        T[n + 1, j] += slope_of(tableau, c) * T[n, j]
+    tableau.STATE[c], tableau.SIGN[c] = STICK, 0.0
 
 
 @nonallocating
-def change(path: Path, m: int, c: int, which: int, theta: float) -> int:
+def change(tableau: Tableau, m: int, c: int, which: int, theta: float) -> int:
     """Let c make its change of state number `which` (`margin`) at theta; returns the number of the change back."""
-    T, state, sign = path.T, path.STATE[c], path.SIGN[c]
-    k, size = unknown_of(m, c), len(path.T)
+    T, state, sign = tableau.T, tableau.STATE[c], tableau.SIGN[c]
+    k, size = unknown_of(m, c), len(tableau.T)
     if state == OPEN:
         slides = T[k + 1, size] + theta * T[k + 1, size + 1]
-        slip(path, c, 0.0 if path.MU[c] <= 0.0 else -1.0 if slides > 0.0 else 1.0)
+        slip(tableau, c, 0.0 if tableau.MU[c] <= 0.0 else -1.0 if slides > 0.0 else 1.0)
         return 0
     if state == STICK:
-        path.STATE[c], path.SIGN[c] = SLIP, 1.0 if which == 0 else -1.0
+        tableau.STATE[c], tableau.SIGN[c] = SLIP, 1.0 if which == 0 else -1.0
         for j in range(size + 2):
-            T[k + 1, j] -= slope_of(path, c) * T[k, j]
-        pivot(path, k + 1)
+            T[k + 1, j] -= slope_of(tableau, c) * T[k, j]
+        pivot(tableau, k + 1)
         return 1
     if state == SLIP and which == 1:
-        stick(path, c)
+        stick(tableau, c)
         return 0 if sign > 0.0 else 1
     if state == SLIP:
-        pivot(path, k)
+        pivot(tableau, k)
         for i in range(size):
-            T[i, k] -= slope_of(path, c) * T[i, k + 1]
-        path.STATE[c], path.SIGN[c] = OPEN, 0.0
+            T[i, k] -= slope_of(tableau, c) * T[i, k + 1]
+        tableau.STATE[c], tableau.SIGN[c] = OPEN, 0.0
         return 0
     if state == INSIDE:
-        path.STATE[c], path.SIGN[c] = BOUND, -1.0 if which == 0 else 1.0
-        T[k, size] -= bound_of(path, m, c)
-        pivot(path, k)
+        tableau.STATE[c], tableau.SIGN[c] = BOUND, -1.0 if which == 0 else 1.0
+        T[k, size] -= bound_of(tableau, m, c)
+        pivot(tableau, k)
         return 0
-    bound = bound_of(path, m, c)
-    pivot(path, k)
+    bound = bound_of(tableau, m, c)
+    pivot(tableau, k)
     T[k, size] += bound
-    path.STATE[c], path.SIGN[c] = INSIDE, 0.0
+    tableau.STATE[c], tableau.SIGN[c] = INSIDE, 0.0
     return 1 if sign > 0.0 else 0
 
 
 @nonallocating
-def margin(path: Path, m: int, c: int, which: int, z: int) -> float:
+def margin(tableau: Tableau, m: int, c: int, which: int, z: int) -> float:
     """What keeps c from its change of state number `which`, which it makes at 0, at theta = 0 (z = 0) or per theta (1);
     inf if there is no such change.
 
     open 0: u_n; slip 0: lam, 1: -sign u_t; stick 0, 1: mu lam -+ beta; inside 0, 1: its distance from the lower and
     upper bound; at a bound 0: -sign u.
     """
-    T, state, sign, column = path.T, path.STATE[c], path.SIGN[c], len(path.T) + z
+    T, state, sign, column = tableau.T, tableau.STATE[c], tableau.SIGN[c], len(tableau.T) + z
     k = unknown_of(m, c)
     if state == STICK:
-        return float(path.MU[c] * T[k, column] + (T[k + 1, column] if which == 1 else -T[k + 1, column]))
+        return float(tableau.MU[c] * T[k, column] + (T[k + 1, column] if which == 1 else -T[k + 1, column]))
     if state == INSIDE:
-        bound = 0.0 if z == 1 else path.LOW[c - m] if which == 0 else path.HIGH[c - m]
+        bound = 0.0 if z == 1 else tableau.LOW[c - m] if which == 0 else tableau.HIGH[c - m]
         return float(T[k, column] - bound if which == 0 else bound - T[k, column])
     if state == SLIP and which == 1 and sign != 0.0:
         return float(-sign * T[k + 1, column])
@@ -147,15 +147,15 @@ def margin(path: Path, m: int, c: int, which: int, z: int) -> float:
 
 
 @nonallocating
-def bound_of(path: Path, m: int, c: int) -> float:
+def bound_of(tableau: Tableau, m: int, c: int) -> float:
     """The bound of row c on the side of its sign, 0 if it is infinite."""
-    bound = path.HIGH[c - m] if path.SIGN[c] > 0.0 else path.LOW[c - m]
+    bound = tableau.HIGH[c - m] if tableau.SIGN[c] > 0.0 else tableau.LOW[c - m]
     return float(bound) if abs(bound) < np.inf else 0.0
 
 
 @nonallocating
-def sign_of(path: Path, c: int, lam: float, beta: float) -> float:
+def sign_of(tableau: Tableau, c: int, lam: float, beta: float) -> float:
     """Sign of the friction of a contact with these impulses, 0 if it sticks or has none."""
-    if path.MU[c] <= 0.0 or abs(beta) < (1.0 - 1e-9) * path.MU[c] * lam:
+    if tableau.MU[c] <= 0.0 or abs(beta) < (1.0 - 1e-9) * tableau.MU[c] * lam:
         return 0.0
     return 1.0 if beta > 0.0 else -1.0

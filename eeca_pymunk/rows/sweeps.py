@@ -9,7 +9,8 @@ from ..arrays import FloatArray
 from ..compiled import Choice, nonallocating
 from ..model.contacts import AnyProblem, Problem
 from ..model.parameters.impulses import JAMMED
-from .columns import push_jointed, rows_jointed, sweep_jointed
+from .build import push_contact
+from .columns import push_jointed, sweep_jointed
 from .coulomb import coulomb
 from .inplace import copy
 
@@ -94,28 +95,12 @@ def push_free(problem: Problem, L: FloatArray, factor: float, V: FloatArray) -> 
     for i in range(m):
         lam = factor * L[i, 0]
         beta = factor * L[i, 1]
-        if lam == 0.0 and beta == 0.0:
-            continue
-        a, b = A[i], B[i]
-        fx = lam * ROWS[i].nx - beta * ROWS[i].ny
-        fy = lam * ROWS[i].ny + beta * ROWS[i].nx
-        V[a, 0] -= IM[a] * fx
-        V[a, 1] -= IM[a] * fy
-        V[a, 2] -= II[a] * (lam * ROWS[i].arm_na + beta * ROWS[i].arm_ta)
-        V[b, 0] += IM[b] * fx
-        V[b, 1] += IM[b] * fy
-        V[b, 2] += II[b] * (lam * ROWS[i].arm_nb + beta * ROWS[i].arm_tb)
-
-
-@nonallocating
-def rows_free(problem: Problem) -> int:
-    """Number of unknown rows of L (., 2)."""
-    return problem.m
+        if lam != 0.0 or beta != 0.0:
+            push_contact(A, B, ROWS, IM, II, i, lam, beta, V)
 
 
 sweep = Choice(sweep_free, sweep_jointed)
 push = Choice(push_free, push_jointed)
-rows_of = Choice(rows_free, rows_jointed)
 
 
 @nonallocating
@@ -126,11 +111,7 @@ def velocities(problem: AnyProblem, L: FloatArray, FREE: FloatArray, V: FloatArr
 
 
 @nonallocating
-def keep(L: FloatArray, V: FloatArray, m: int, L0: FloatArray, V0: FloatArray) -> None:
-    """Copy m impulses and all velocities to (L0, V0)."""
-    for i in range(m):
-        L0[i, 0] = L[i, 0]
-        L0[i, 1] = L[i, 1]
-    for i in range(len(V)):
-        for c in range(3):
-            V0[i, c] = V[i, c]
+def restore(L: FloatArray, V: FloatArray, L0: FloatArray, V0: FloatArray) -> None:
+    """Set impulses L and velocities V to L0 and V0."""
+    copy(L, L0)
+    copy(V, V0)

@@ -18,7 +18,7 @@ from ..compiled.records import Rows, columns, from_bytes, put
 from ..errors import NotFiniteError
 from ..layout import STATE_COLUMNS
 from ..model.bodies import POSE
-from ..model.given import DYNAMIC, KINEMATIC, STATIC, GivenBody
+from ..model.values import DYNAMIC, KINEMATIC, STATIC, BodyValues
 from . import private, private_batch, private_sleep
 
 _KIND = {pymunk.Body.DYNAMIC: DYNAMIC, pymunk.Body.KINEMATIC: KINEMATIC, pymunk.Body.STATIC: STATIC}
@@ -46,13 +46,13 @@ def moving(space: pymunk.Space) -> list[pymunk.Body]:
     return [b for b in space.bodies if b.body_type != pymunk.Body.STATIC]
 
 
-_GIVEN = struct.Struct("4q9d2q")
+_VALUES = struct.Struct("4q9d2q")
 _MASSES, _FROM, _TO = struct.Struct("4d"), 32, 64  # mass, moment and their inverses; bytes where these begin and end
 _FIXED = math.inf, math.inf, 0.0, 0.0
 
 
 def _values(body: pymunk.Body) -> bytes:
-    """The values of a body, as the bytes of a `GivenBody`.
+    """The values of a body, as the bytes of a `BodyValues`.
 
     Raises:
         ValueError: for a dynamic body whose mass or moment is not positive, or whose mass is not finite.
@@ -68,7 +68,7 @@ def _values(body: pymunk.Body) -> bytes:
         masses = mass, moment, 1.0 / mass, 1.0 / moment
     # The public properties return pymunk's default when unset.
     hooks = private.velocity_function(body) is not None, private.position_function(body) is not None
-    return _GIVEN.pack(kind, 0, *hooks, *masses, *body.center_of_gravity, 0.0, 0.0, 0.0, -1, 0)
+    return _VALUES.pack(kind, 0, *hooks, *masses, *body.center_of_gravity, 0.0, 0.0, 0.0, -1, 0)
 
 
 _OF_MASS = "mass", "moment", "inverse_mass", "inverse_moment"
@@ -117,38 +117,38 @@ class Bodies:
         self.items: tuple[pymunk.Body, ...] = tuple([body for body, _ in found])
         self.row: dict[pymunk.Body, int] = dict(zip(self.items, range(len(ids)), strict=True))
         self._values: list[bytes] = [values for _, values in found]
-        self.GIVEN: Rows[GivenBody] = from_bytes(GivenBody, self._values)
-        kind: IntArray = self.GIVEN["kind"]
-        self.mass: FloatArray = self.GIVEN["mass"]
-        self.moment: FloatArray = self.GIVEN["moment"]
-        self.inverse_mass: FloatArray = self.GIVEN["inverse_mass"]
-        self.inverse_moment: FloatArray = self.GIVEN["inverse_moment"]
+        self.VALUES: Rows[BodyValues] = from_bytes(BodyValues, self._values)
+        kind: IntArray = self.VALUES["kind"]
+        self.mass: FloatArray = self.VALUES["mass"]
+        self.moment: FloatArray = self.VALUES["moment"]
+        self.inverse_mass: FloatArray = self.VALUES["inverse_mass"]
+        self.inverse_moment: FloatArray = self.VALUES["inverse_moment"]
         self.asleep: BoolArray = np.zeros(len(self.items), bool)
         if sleeps:
             self.asleep[:] = private_sleep.sleeping(self.items)
             kind[self.asleep] = STATIC
-            put(self.GIVEN, np.where(self.asleep[:, None], _FIXED, columns(self.GIVEN, *_OF_MASS)), *_OF_MASS)
+            put(self.VALUES, np.where(self.asleep[:, None], _FIXED, columns(self.VALUES, *_OF_MASS)), *_OF_MASS)
         everyone = (*space.bodies, ground)
         if self.items == everyone:
-            self.GIVEN["place"] = np.arange(len(ids))
+            self.VALUES["place"] = np.arange(len(ids))
         else:
             # pymunk's order has changed, as some have slept or were removed: that of a copy of the space differs.
             place = {body: i for i, body in enumerate(everyone)}
-            self.GIVEN["place"] = [place[body] for body in self.items]
+            self.VALUES["place"] = [place[body] for body in self.items]
         self.dynamic: BoolArray = kind == DYNAMIC
         self.static: BoolArray = kind == STATIC
         # Functions of sleeping bodies are not called, as under pymunk.
-        steered, moved = self.GIVEN["steered"], self.GIVEN["moved"]
+        steered, moved = self.VALUES["steered"], self.VALUES["moved"]
         if sleeps:
             steered, moved = steered * ~self.asleep, moved * ~self.asleep
         self.velocity_hooks: IntArray = steered.nonzero()[0]
         self.position_hooks: IntArray = moved.nonzero()[0]
-        self.center_of_gravity: FloatArray = columns(self.GIVEN, "centre_x", "centre_y")
+        self.center_of_gravity: FloatArray = columns(self.VALUES, "centre_x", "centre_y")
 
-    def placed(self, state: FloatArray) -> Rows[GivenBody]:
+    def placed(self, state: FloatArray) -> Rows[BodyValues]:
         """The values of the bodies, with their poses in the (N, 9) state."""
-        put(self.GIVEN, state, *POSE)
-        return self.GIVEN
+        put(self.VALUES, state, *POSE)
+        return self.VALUES
 
     def changed(self, row: int) -> tuple[bytes | None, bool]:
         """The values of a body if they have changed, and whether others than mass and moment have; ValueError if they

@@ -82,7 +82,7 @@ def name(c: Any) -> str:
     return f"{c} between {c.a} and {c.b}"
 
 
-class Given(NamedTuple):
+class ConstraintValues(NamedTuple):
     """The values of a constraint: fields of `Joint`, 0 where its kind has none."""
 
     kind: int
@@ -110,7 +110,7 @@ class Given(NamedTuple):
 
     @property
     def reach(self) -> tuple[object, ...]:
-        """The values that decide whether it can be part of a straight path (`..joints.held`)."""
+        """The values that decide whether it can be part of a straight chain (`..joints.held`)."""
         return self.kind, self.bounded, self.anchor_a, self.anchor_b, self.length, self.limits
 
     def is_fine(self) -> bool:
@@ -135,7 +135,7 @@ class Given(NamedTuple):
 _ROW = struct.Struct("4q23d2q")  # fields of `Joint` from the first to `touched`
 
 
-def read(c: Any) -> Given:
+def read(c: Any) -> ConstraintValues:
     """The values of a constraint.
 
     Raises:
@@ -149,19 +149,19 @@ def read(c: Any) -> Given:
     return found
 
 
-def _read(c: Any, force: tuple[float, float, float]) -> Given:
+def _read(c: Any, force: tuple[float, float, float]) -> ConstraintValues:
     if isinstance(c, pymunk.SimpleMotor):
-        return Given(MOTOR, force, rate=c.rate)
+        return ConstraintValues(MOTOR, force, rate=c.rate)
     if isinstance(c, pymunk.DampedRotarySpring):
-        return Given(ROTARY_SPRING, force, spring=(c.stiffness, c.damping, c.rest_angle))
+        return ConstraintValues(ROTARY_SPRING, force, spring=(c.stiffness, c.damping, c.rest_angle))
     if isinstance(c, pymunk.RotaryLimitJoint):
         if c.min == c.max:
-            return Given(GEAR, force, gear=(1.0, c.min))
-        return Given(ROTARY_LIMIT, force, limits=(c.min, c.max))
+            return ConstraintValues(GEAR, force, gear=(1.0, c.min))
+        return ConstraintValues(ROTARY_LIMIT, force, limits=(c.min, c.max))
     if isinstance(c, pymunk.RatchetJoint):
-        return Given(RATCHET, force, ratchet=(c.ratchet, c.phase, _notch(c)))
+        return ConstraintValues(RATCHET, force, ratchet=(c.ratchet, c.phase, _notch(c)))
     if isinstance(c, pymunk.GearJoint):
-        return Given(GEAR, force, gear=(c.ratio, c.phase))
+        return ConstraintValues(GEAR, force, gear=(c.ratio, c.phase))
     b = _anchor(c.anchor_b, c.b)
     if isinstance(c, pymunk.GrooveJoint):
         return _groove(c, force, b)
@@ -169,10 +169,12 @@ def _read(c: Any, force: tuple[float, float, float]) -> Given:
     if isinstance(c, pymunk.PinJoint):
         return _pin(c.distance, force, a, b)
     if isinstance(c, pymunk.SlideJoint):
-        return _pin(c.max, force, a, b) if c.min == c.max else Given(SLIDE, force, a, b, limits=(c.min, c.max))
+        return (
+            _pin(c.max, force, a, b) if c.min == c.max else ConstraintValues(SLIDE, force, a, b, limits=(c.min, c.max))
+        )
     if isinstance(c, pymunk.PivotJoint):
-        return Given(PIVOT, force, a, b)
-    return Given(SPRING, force, a, b, spring=(c.stiffness, c.damping, c.rest_length))
+        return ConstraintValues(PIVOT, force, a, b)
+    return ConstraintValues(SPRING, force, a, b, spring=(c.stiffness, c.damping, c.rest_length))
 
 
 def _anchor(anchor: tuple[float, float], body: pymunk.Body) -> tuple[float, float]:
@@ -183,22 +185,22 @@ def _anchor(anchor: tuple[float, float], body: pymunk.Body) -> tuple[float, floa
 
 def _pin(
     length: float, force: tuple[float, float, float], a: tuple[float, float], b: tuple[float, float]
-) -> Given:  # fmt: skip
+) -> ConstraintValues:  # fmt: skip
     """A pin, or a pivot if its length is 0, for which a pin has no direction."""
     scale = max(map(abs, (*a, *b)))
     kind = PIVOT if length <= _SMALL * max(scale, 1e-300) or length == 0.0 else PIN
-    return Given(kind, force, a, b, length)
+    return ConstraintValues(kind, force, a, b, length)
 
 
-def _groove(c: pymunk.GrooveJoint, force: tuple[float, float, float], b: tuple[float, float]) -> Given:
+def _groove(c: pymunk.GrooveJoint, force: tuple[float, float, float], b: tuple[float, float]) -> ConstraintValues:
     """A groove, or a pivot if its ends are equal, for which a groove has no direction."""
     first, last = c.groove_a - c.a.center_of_gravity, c.groove_b - c.a.center_of_gravity
     if c.groove_a == c.groove_b:
-        return Given(PIVOT, force, (first.x, first.y), b)
+        return ConstraintValues(PIVOT, force, (first.x, first.y), b)
     along = (last - first).normalized()
     normal = along.perpendicular()
     ends, offset = (along.dot(first), along.dot(last)), normal.dot(first)
-    return Given(GROOVE, force, (0.0, 0.0), b, limits=ends, groove=(*normal, offset))
+    return ConstraintValues(GROOVE, force, (0.0, 0.0), b, limits=ends, groove=(*normal, offset))
 
 
 def _notch(c: pymunk.RatchetJoint) -> float:

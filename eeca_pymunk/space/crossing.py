@@ -36,7 +36,7 @@ from ..layout import (
 )  # fmt: skip
 from ..model.bodies import Body
 from ..rehearsing import alter_end, as_read, copy_start
-from ..transfer import FORCES, TURNS, lay, lay_rest, place_anew
+from ..transfer import FORCES, TURNS, place_anew, write_ends, write_still_ends
 from . import private_batch
 from .bodies import STATE_FIELDS, Bodies
 
@@ -160,15 +160,15 @@ class Crossing:
 
     def write_whole(self) -> int:
         """Write the end of the step to ENDS, with forces and angles in any case; returns its status bits."""
-        return self._lay(FORCES | TURNS)
+        return self._write_ends(FORCES | TURNS)
 
     @cached_property
-    def _lay(self) -> Callable[[int], int]:
-        return lay.bind(self.STATES, self.WALK, self.ENDS)
+    def _write_ends(self) -> Callable[[int], int]:
+        return write_ends.bind(self.STATES, self.WALK, self.ENDS)
 
     @cached_property
-    def _lay_rest(self) -> Callable[[int], None]:
-        return lay_rest.bind(self.STATES, self.ENDS)
+    def _write_still_ends(self) -> Callable[[int], None]:
+        return write_still_ends.bind(self.STATES, self.ENDS)
 
     def ended(self) -> FloatArray:
         """(N, 9) the end of the step; forces are reset as pymunk does."""
@@ -187,7 +187,7 @@ class Crossing:
 
     def with_turns(self, status: int) -> int:
         """Write the end of the step to ENDS with angles and spins, if they were left out; returns its status bits."""
-        return status if status & TURNS else self._lay(status | TURNS)
+        return status if status & TURNS else self._write_ends(status | TURNS)
 
     @cached_property
     def left_as_read(self) -> Callable[[], None]:
@@ -207,7 +207,7 @@ class Crossing:
 
     def scatter_still(self, status: int) -> None:
         """Write the poses, and velocity 0; `scatter_speed` must follow."""
-        self._lay_rest(status)
+        self._write_still_ends(status)
         self._scatter_still[status & TURNS]()
         if self.eccentric:
             self._scatter_still[status & TURNS]()

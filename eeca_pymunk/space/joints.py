@@ -58,7 +58,7 @@ class JointRows(Listing):
             records(self.joint)[here] = records(past.joint)[[past.row[self.items[j]] for j in here]]
         self.joint["body"] = np.array([self._row_of[body] for body in self.bodies], np.int64)[self.ends]
         for j in self.fresh:
-            self.given[j].put(self._memory, j, *self.joint["body"][j].tolist())
+            self.values[j].put(self._memory, j, *self.joint["body"][j].tolist())
         if self.partners.changed:
             self.touch(n + i for i in self.partners.changed)
         self._edits = Edits(self.row)
@@ -102,12 +102,12 @@ class JointRows(Listing):
             self._edits.add(edited)
             raise
         others = False
-        for j, given in found.items():
-            item, before = self.items[j], self.given[j]
-            given.put(self._memory, j, *(self._row_of[body] for body in self.pairs[item]))
-            self.given[j] = given
-            self.ends_moved |= before.reach != given.reach
-            if before.plan != given.plan:
+        for j, values in found.items():
+            item, before = self.items[j], self.values[j]
+            values.put(self._memory, j, *(self._row_of[body] for body in self.pairs[item]))
+            self.values[j] = values
+            self.ends_moved |= before.reach != values.reach
+            if before.plan != values.plan:
                 self.replan = others = True
             calls = calls_of(item)
             others |= calls != self.calls[j]

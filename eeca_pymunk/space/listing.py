@@ -8,12 +8,12 @@ import numpy as np
 import pymunk
 
 from ..model.joints import MOTOR, RATCHET, ROTARY_SPRING, SPRING
-from .constraints import Given, read
+from .constraints import ConstraintValues, read
 from .spring_functions import own_function
 
 _PUSHING = SPRING, ROTARY_SPRING, MOTOR
 _LISTED = (
-    "pairs", "bodies", "ends", "row", "given", "calls", "ratchets", "forcing", "functions", "own", "before",
+    "pairs", "bodies", "ends", "row", "values", "calls", "ratchets", "forcing", "functions", "own", "before",
     "after", "calling",
 )  # fmt: skip
 
@@ -38,7 +38,7 @@ class Listing:
     Attributes:
         items: the constraints, in the order of the rows.  row: the row of each.
         pairs: the bodies of each.  bodies: all of these.  ends: (j, 2) places in `bodies`.
-        given, calls: the values and the functions of each.
+        values, calls: the values and the functions of each.
         fresh: rows of the constraints that were not in the list before.
         functions: rows of springs that have a force or torque function of the program.  own: these springs.
         before, after, calling: constraints with a `pre_solve`, with a `post_solve`, with either.
@@ -51,7 +51,7 @@ class Listing:
             self.__dict__.update((name, vars(past)[name]) for name in _LISTED)
             self.fresh: list[int] = []
             return
-        known = {} if past is None else {item: (past.given[j], past.calls[j]) for item, j in past.row.items()}
+        known = {} if past is None else {item: (past.values[j], past.calls[j]) for item, j in past.row.items()}
         pairs = {} if past is None else past.pairs
         self.pairs: dict[pymunk.Constraint, tuple[pymunk.Body, pymunk.Body]] = {
             item: pairs.get(item) or (item.a, item.b) for item in self.items
@@ -62,14 +62,14 @@ class Listing:
         self.row: dict[pymunk.Constraint, int] = {item: j for j, item in enumerate(self.items)}
         self.fresh = [j for j, item in enumerate(self.items) if item not in known]
         found = [known.get(item) or (read(item), calls_of(item)) for item in self.items]
-        self.given: list[Given] = [given for given, _ in found]
+        self.values: list[ConstraintValues] = [values for values, _ in found]
         self.calls: list[Calls] = [calls for _, calls in found]
         self.find_functions()
 
     def find_functions(self) -> None:
         """Find what depends on kinds and functions."""
-        self.ratchets = [j for j, given in enumerate(self.given) if given.kind == RATCHET]
-        self.forcing = [j for j, given in enumerate(self.given) if given.bounded or given.kind in _PUSHING]
+        self.ratchets = [j for j, values in enumerate(self.values) if values.kind == RATCHET]
+        self.forcing = [j for j, values in enumerate(self.values) if values.bounded or values.kind in _PUSHING]
         self.functions = [j for j, calls in enumerate(self.calls) if calls.own]
         self.own = [self.items[j] for j in self.functions]
         self.before = [item for item, calls in zip(self.items, self.calls, strict=True) if calls.before is not None]

@@ -16,17 +16,17 @@ import pymunk
 from ..arrays import FloatArray, IntArray, side_by_side
 from ..compiled.records import Rows, as_integers, from_bytes
 from ..compiled.records import records as rows_of
-from ..laying import lay_rows
 from ..model.bodies import Body
-from ..model.given import GivenShape
 from ..model.shapes import Link, Shape
+from ..model.values import ShapeValues
+from ..world_rows import write_rows
 from . import private_shapes
 from .bodies import Bodies
 from .checks import check_shape, shape_body
 from .outlines import local_outline
 
 _WORD = (1 << 64) - 1  # the lowest 64 bits of a filter's numbers, which equality and `&` need
-_GIVEN = struct.Struct("2q3Q5dq")
+_VALUES = struct.Struct("2q3Q5dq")
 
 
 class Record(NamedTuple):
@@ -36,7 +36,7 @@ class Record(NamedTuple):
         body: its body, or the static body of the space if its own is not in the space (`outside`).
         vertices: in coordinates of `body`, counter-clockwise.
         numbers: rounding, elasticity, friction, surface velocity (2).  filter: group, categories, mask.
-        given, points: the bytes of its `GivenShape`, and of its vertices.
+        packed, points: the bytes of its `ShapeValues`, and of its vertices.
     """
 
     body: pymunk.Body
@@ -44,7 +44,7 @@ class Record(NamedTuple):
     numbers: tuple[float, ...]
     filter: tuple[int, int, int]
     outside: bool
-    given: bytes
+    packed: bytes
     points: bytes
 
 
@@ -63,16 +63,16 @@ def read(shape: pymunk.Shape, ground: pymunk.Body | None = None) -> Record:
         place, taken = body.local_to_world, ground.world_to_local
         outline = [tuple(taken(place((v[0], v[1])))) for v in outline]
         body = ground
-    given = _GIVEN.pack(0, len(outline), *words, *numbers, 0)
+    packed = _VALUES.pack(0, len(outline), *words, *numbers, 0)
     points = array("d", chain.from_iterable(outline)).tobytes()
-    return Record(body, outline, numbers, words, ground is not None, given, points)
+    return Record(body, outline, numbers, words, ground is not None, packed, points)
 
 
 def read_surface(shape: pymunk.Shape, record: Record) -> Record:
     """The record of a shape whose body and vertices are still those of `record`."""
     numbers, words = _surface(shape)
-    given = _GIVEN.pack(0, len(record.vertices), *words, *numbers, 0)
-    return Record(record.body, record.vertices, numbers, words, record.outside, given, record.points)
+    packed = _VALUES.pack(0, len(record.vertices), *words, *numbers, 0)
+    return Record(record.body, record.vertices, numbers, words, record.outside, packed, record.points)
 
 
 def _surface(shape: pymunk.Shape) -> tuple[tuple[float, ...], tuple[int, int, int]]:
@@ -131,9 +131,9 @@ class Packed:
         solid = [shape for shape, record in records.items() if record is not None]
         known = [record for record in records.values() if record is not None]
         k, N = len(solid), len(bodies)
-        # Places of shapes, and what `_lay` overwrites, as they were before.
-        self._unlaid: tuple[dict[pymunk.Shape, int], IntArray, FloatArray] | None = None
-        self._shapes = from_bytes(GivenShape, [record.given for record in known])
+        # Places of shapes, and what `_write` overwrites, as they were before.
+        self._unwritten: tuple[dict[pymunk.Shape, int], IntArray, FloatArray] | None = None
+        self._shapes = from_bytes(ShapeValues, [record.packed for record in known])
         self._owner: IntArray = np.array([bodies.row[record.body] for record in known], np.int64)
         self._shapes["owner"] = self._owner
         self._points: FloatArray = np.frombuffer(bytearray().join([record.points for record in known]))
@@ -143,8 +143,8 @@ class Packed:
             ((moving + 1,), Body.TYPE), ((k,), Shape.TYPE), ((k,), Link.TYPE), ((len(POINT), 4), np.float64),
             ((k + N + 2,), np.int64),
         )  # fmt: skip
-        self._lay = lay_rows.bind(bodies.placed(state), self._shapes, POINT, *self._rows)
-        self.disks = self._lay()
+        self._write = write_rows.bind(bodies.placed(state), self._shapes, POINT, *self._rows)
+        self.disks = self._write()
         self.BODY: Rows[Body] = self._rows[0]
         self.SHAPE: Rows[Shape] = self._rows[1]
         self.LINK: Rows[Link] = self._rows[2]
@@ -153,31 +153,31 @@ class Packed:
         self.VERTEX: FloatArray = self._rows[3][: self._used]
         self.shapes = tuple([solid[i] for i in order.tolist()])
         self.owner: IntArray = self._owner[order]
-        self.row: IntArray = bodies.GIVEN["row"].copy()
+        self.row: IntArray = bodies.VALUES["row"].copy()
         self.dynamic = int(np.count_nonzero(bodies.dynamic))
 
-    def lay_again(
+    def write_again(
         self, bodies: Bodies, state: FloatArray, records: Records, edited: Mapping[pymunk.Shape, Record], moved: bool
     ) -> bool:  # fmt: skip
         """Write the rows again, in place, after changes of numbers, filters, masses, and, if `moved`, poses of static
         bodies; False, with invalid rows, if the rows would be others. records: all; `edited` ones have changed."""
         vertices = self.LINK["vertices"].tobytes()
         given, BODY = self._views
-        if self._unlaid is None:
+        if self._unwritten is None:
             known = {shape: record for shape, record in records.items() if record is not None}
             place = {shape: k for k, shape in enumerate(known)}
-            before = rows_of(from_bytes(GivenShape, [record.given for record in known.values()]))
+            before = rows_of(from_bytes(ShapeValues, [record.packed for record in known.values()]))
             before[:, 0] = self._owner
-            self._unlaid = place, before, np.frombuffer(b"".join([record.points for record in known.values()]))
-        place, before, points = self._unlaid
+            self._unwritten = place, before, np.frombuffer(b"".join([record.points for record in known.values()]))
+        place, before, points = self._unwritten
         for shape, record in edited.items():
-            before[place[shape], 1:] = np.frombuffer(record.given, np.int64)[1:]
+            before[place[shape], 1:] = np.frombuffer(record.packed, np.int64)[1:]
         given[:], self._points[:] = before, points
         if moved:
             bodies.placed(state)
             self._rows[3].fill(0.0)
         BODY.fill(0)
-        self._lay()
+        self._write()
         return self.LINK["vertices"].tobytes() == vertices
 
     @cached_property

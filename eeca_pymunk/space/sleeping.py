@@ -26,10 +26,10 @@ import pymunk
 
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..compiled.records import Rows
-from ..drowsing import approaches, rests, touches
 from ..layout import BODY_ROW, FOUND, KNOWN
 from ..model.contacts import Impulse
 from ..report import Contacts
+from ..sleepers import approaches, rests, touches
 from . import private, private_shapes, private_sleep
 from .sleep_groups import resting_groups
 
@@ -151,7 +151,7 @@ class Sleep:
 
     def _near(self, dt: float, pull: float) -> list[int]:
         """Those of the movers (rows) that may come to the box of a shape asleep within dt, see
-        `drowsing.approaches`."""
+        `sleepers.approaches`."""
         plain, world = self.world.plain, self.world
         if plain not in self._nears:
             near = np.zeros(len(self._moves[plain]), np.int64)

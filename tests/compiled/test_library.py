@@ -12,7 +12,7 @@ import pytest
 
 from eeca_pymunk.compiled import library, sources
 from eeca_pymunk.compiled.library import Status, load
-from eeca_pymunk.transfer import lay
+from eeca_pymunk.transfer import write_ends
 
 compiler = pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler to make libraries with")
 loaded = pytest.mark.skipif(sources.library_path() is None, reason="no library of these sources")
@@ -94,23 +94,23 @@ def test_libraries_of_read_only_packages_are_kept_in_the_cache_folder(
     ],
 )
 def test_entries_refuse_arrays_that_they_would_misread(change: dict[int, np.ndarray], told: str) -> None:
-    entry = load(sources.library_path())[1][lay.name]
+    entry = load(sources.library_path())[1][write_ends.name]
     arguments = [np.zeros((2, 3, 9)), np.zeros((4, 3), np.int64), np.zeros(54), 0]
     assert entry(*arguments) == 0
     for place, value in change.items():
         arguments[place] = value
     with pytest.raises(TypeError, match=told):
         entry(*arguments)
-    with pytest.raises(TypeError, match="transfer:lay takes 4 arguments, not 3"):
+    with pytest.raises(TypeError, match="transfer:write_ends takes 4 arguments, not 3"):
         entry(*arguments[:3])
 
 
 @loaded
 def test_statuses_of_kernels_become_exceptions() -> None:
-    entry = library.Entry(lay.name, 0)
+    entry = library.Entry(write_ends.name, 0)
     for status, error in ((library.NO_MEMORY, MemoryError), (library.NO_SHAPE, ValueError)):
         entry.function = lambda *_, status=status: status  # type: ignore[misc]
-        with pytest.raises(error, match="transfer:lay"):
+        with pytest.raises(error, match="transfer:write_ends"):
             entry(np.zeros((2, 3, 9)), np.zeros((4, 3), np.int64), np.zeros(54), 0)
 
 

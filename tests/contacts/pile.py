@@ -9,12 +9,13 @@ import numpy as np
 
 from eeca_pymunk.compiled import table_of
 from eeca_pymunk.compiled.records import columns, rows
+from eeca_pymunk.contacts.correction import budget_of, least_of, lifting
 from eeca_pymunk.contacts.interval import make_contacts, step_island
 from eeca_pymunk.contacts.memory import forget
-from eeca_pymunk.contacts.works import carried
+from eeca_pymunk.contacts.works import carried, moved
 from eeca_pymunk.impacts.scene import EventLoop
 from eeca_pymunk.model.bodies import POSE, VELOCITY
-from eeca_pymunk.model.contacts import Force
+from eeca_pymunk.model.contacts import Force, Problem
 from eeca_pymunk.model.islands import Island
 
 from ..packed import Thing, World
@@ -101,27 +102,31 @@ class Pile:
         )
         while True:
             self.m = step_island(
-                table_of(self.scene), table_of(isle), table_of(self.contacts), self.n, h, 40, 0.0, 0.0, 0.0, 0.0
+                table_of(self.scene), table_of(isle), table_of(self.contacts), self.n, h, 40, 0.0, 0.0, 0.0
             )
             if self.m >= 0:
                 break
             self.room(2 * self.size)
         vn, self.jump, self.out = self.contacts.VN, self.contacts.JUMP, self.contacts.OUT[0]
-        losses = {name: float(getattr(self.out, name)) for name in ("restitution", "friction", "lifted")}
-        works = losses | {"carried": self.carried(vn), "forces": self.forces(h, vn)}
-        for name, work in works.items():
-            setattr(self.ledger, name, getattr(self.ledger, name) + work)
-        way = 0.5 * h * (self.v + vn)
-        self.pose = self.pose + way + self.jump[:, :3]
-        self.v = vn + self.jump[:, 3:]
-        lifted = -((self.acc * self.jump[:, :3])[: self.n, :2] / self.im[: self.n, None]).sum()
-        self.closes = (
-            self.kinetic()
-            + lifted
-            - before
-            - (works["forces"] + works["carried"] + works["lifted"] - works["restitution"] - works["friction"])
-        )
         self.losses = np.array((self.out.restitution, self.out.friction))
+        self.gap = self.contacts.ROWS["gap"][: self.m].min(initial=0.0)
+        self.lift(h)
+        forces, carried = self.forces(h, vn), self.carried(vn)
+        self.pose, self.v = self.pose + 0.5 * h * (self.v + vn), vn
+        self.closes = self.kinetic() - before - (forces + carried - self.losses.sum())
+        still = self.energy()
+        self.pose, self.v = self.pose + self.jump[:, :3], self.v + self.jump[:, 3:]
+        works = (*self.losses, carried, self.energy() - still, forces)
+        for name, work in zip(WORKS, works, strict=True):
+            setattr(self.ledger, name, getattr(self.ledger, name) + float(work))
+
+    def lift(self, h: float) -> None:
+        """Penetration correction, paid from the losses of the step."""
+        c, V, n, m = self.contacts, self.v, self.n, self.m
+        if m > 0:
+            problem, middle = Problem(c.A, c.B, c.ROWS, self.im, self.ii, self.pose, n, m), moved(self.pose, V, 0.5 * h)
+            budget = budget_of(c.ROWS, m, float(self.losses.sum()), 0.0)
+            lifting(problem, middle, c.VN, self.acc, h, least_of(self.extent, n), budget, c.JUMP)
 
     def carried(self, vn: np.ndarray) -> float:
         """External work of the contacts, with velocities `vn` after the step."""
@@ -154,7 +159,7 @@ class Pile:
             self.step(h)
             self.worst_closure = max(self.worst_closure, abs(self.closes))
             self.least_loss = min(self.least_loss, self.losses.min())
-            self.deepest = min(self.deepest, self.out.deepest)
+            self.deepest = min(self.deepest, self.gap)
             after = self.energy()
             self.rise = max(self.rise, after - energy - (self.ledger.carried - carried))
             energy = after

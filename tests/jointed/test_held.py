@@ -1,4 +1,4 @@
-"""Bodies on a straight path of joints between fixed points, which cannot move: bridges and ropes without slack."""
+"""Bodies on a straight chain of joints between fixed points, which cannot move: bridges and ropes without slack."""
 
 from __future__ import annotations
 
@@ -125,7 +125,7 @@ def test_what_hangs_from_a_held_body_swings() -> None:
     assert ends[0] == ends[1]
 
 
-def test_two_held_paths_hold_a_third() -> None:
+def test_two_held_chains_hold_a_third() -> None:
     """A beam between the middles of two bridges, one above the other."""
     space, low = bridge(0.0, planks=4)
     joints = list(space.constraints)
@@ -247,7 +247,7 @@ def test_units_and_turns_do_not_matter() -> None:
         assert held(ep.EECA(space)) == 30
 
 
-def test_only_edits_of_lengths_and_anchors_look_for_straight_paths_again() -> None:
+def test_only_edits_of_lengths_and_anchors_look_for_straight_chains_again() -> None:
     """A rate that a program sets in each step must not cost a search."""
     space, deck = bridge(0.0)
     motor = pymunk.SimpleMotor(deck[0], deck[1], 1.0)

@@ -11,6 +11,7 @@ from eeca_pymunk.compiled.records import rows
 from eeca_pymunk.model.contacts import Problem, Row, Solved
 from eeca_pymunk.rows.blocks import solve_block
 from eeca_pymunk.rows.build import place_row
+from eeca_pymunk.rows.energy import losses_of
 
 Floats = npt.NDArray[np.float64]
 
@@ -50,7 +51,7 @@ class Block:
         """Set `status`, `after`, `impulses`, `loss`, `out`."""
         m, n = len(self.contacts), len(self.pose) - 1
         self.A, self.B = np.zeros(m, np.int64), np.zeros(m, np.int64)
-        self.rows, self.impulses, self.loss = rows(Row, m), np.zeros((m, 2)), np.zeros((m, 2))
+        self.rows, self.impulses = rows(Row, m), np.zeros((m, 2))
         for i, (a, b, nx, ny, px, py) in enumerate(self.contacts):
             self.A[i], self.B[i] = a, b
             row = self.rows[i]
@@ -58,7 +59,8 @@ class Block:
             place_row(self.A, self.B, self.rows, i, px, py, self.pose, self.im, self.ii)
         self.after, self.out = self.velocity.copy(), rows(Solved, 1)
         problem = Problem(self.A, self.B, self.rows, self.im, self.ii, self.pose, n, m)
-        self.status = solve_block(problem, self.impulses, self.after, owed, False, self.loss, self.out)  # fmt: skip
+        self.status = solve_block(problem, self.impulses, self.after, owed, False, self.out)
+        self.loss = np.array([losses_of(problem, self.impulses, self.after, i) for i in range(m)]).reshape(m, 2)
 
     def energy(self, v: Floats) -> float:
         n = len(self.pose) - 1

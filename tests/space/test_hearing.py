@@ -15,6 +15,7 @@ import eeca_pymunk as ep
 from eeca_pymunk.layout import END
 from eeca_pymunk.rehearsing import nears
 from eeca_pymunk.space.rehearsal import Rehearsal
+from scenes.scene import add_disk
 
 DT = 1 / 60
 PHASES = "begin", "pre_solve", "post_solve", "separate"
@@ -113,11 +114,9 @@ def test_a_step_of_pymunk_in_between_is_heard() -> None:
     """What a step of pymunk's own has begun, the next one separates."""
     space, told = pymunk.Space(), []
     for x in (-0.4, 0.4):
-        body = pymunk.Body(1.0, 1.0)
-        body.position = x, 0.0
-        shape = pymunk.Circle(body, 0.5)
+        add_disk(space, (x, 0.0), 0.5)
+    for shape in space.shapes:
         shape.collision_type = 1
-        space.add(body, shape)
     functions = {phase: lambda *_, phase=phase: told.append(phase) or True for phase in ("begin", "separate")}
     if hasattr(space, "on_collision"):
         space.on_collision(1, 1, **functions)

@@ -13,7 +13,7 @@ import pymunk
 import pytest
 
 import eeca_pymunk as ep
-from eeca_pymunk.drowsing import approaches
+from eeca_pymunk.sleepers import approaches
 
 DT = 1.0 / 60.0
 

@@ -72,6 +72,8 @@ ROCKING = heuristic(
     "Difference of gaps up to which both ends of a lossy face touch at once. Smaller: long cascades of impacts.",
 )
 BLOCK_BODIES = heuristic(16, "bodies", "Bodies of a large island on which a hit acts at once. Larger: slower hits.")
-PATH_CHANGES = work(1, "changes of state for each contact", "Length of a path to the solution of a contact problem.")
-PATH_CHANGES_ANEW = work(4, "changes of state for each contact", "This length of a path that begins without impulses.")
-PATH_REFINEMENTS = work(2, "number", "Refinements of the solution at the end of a path.")
+HOMOTOPY_CHANGES = work(
+    1, "changes of state for each contact", "Length of a homotopy to the solution of a contact problem."
+)
+HOMOTOPY_CHANGES_ANEW = work(4, "changes of state for each contact", "This length of one that begins without impulses.")
+HOMOTOPY_REFINEMENTS = work(2, "number", "Refinements of the solution at the end of a homotopy.")

@@ -75,8 +75,8 @@ TAUT = heuristic(
 ARM_ITERATIONS = work(6, "iterations", "Iterations of the motion in which arms of contacts become those of its middle.")
 ARM_ERROR = round_off(1e-15, "of the component", "Error of the arms of contacts at which these iterations end.")
 BOUNDED_SWEEPS = work(30, "sweeps", "Sweeps over bounded joint rows and contacts.")
-STRAIGHT_PATH = round_off(
-    1e-12, "of length and coordinates", "Slack of a path of joints between fixed points up to which it cannot move."
+STRAIGHT_CHAIN = round_off(
+    1e-12, "of length and coordinates", "Slack of a chain of joints between fixed points up to which it cannot move."
 )
 STRUT = round_off(
     0.001,
@@ -125,11 +125,11 @@ MEET_INSTANT = round_off(
     1e-9, "of the step", "Length below which an interval before an impact, or a part before a limit, is empty."
 )
 COLUMN_CONTACTS = work(
-    40, "contacts", "Number up to which islands are solved along paths, with joints always: exactly; others roughly."
+    40, "contacts", "Number up to which islands are solved by homotopies, with joints always: exactly; others roughly."
 )
-COLUMN_SWEEPS = work(12, "sweeps", "Sweeps over components before the first path to the solution.")
-COLUMN_SWEEPS_AFTER = work(4, "sweeps", "Sweeps over components after each path, at most.")
-COLUMN_PATHS = work(8, "paths", "Paths to the solution, at most.")
+COLUMN_SWEEPS = work(12, "sweeps", "Sweeps over components before the first homotopy.")
+COLUMN_SWEEPS_AFTER = work(4, "sweeps", "Sweeps over components after each homotopy, at most.")
+COLUMN_HOMOTOPIES = work(8, "homotopies", "Homotopies to the solution, at most.")
 COLUMN_PROXIMAL = round_off(
     10000000000.0, "over the effective mass", "Stiffness of the proximal term of redundant contacts of components."
 )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from .record import accuracy, heuristic, work
 
-REST_SPEED = accuracy(1e-09, "of |a| dt", "Speed below which a body is a candidate for rest.")
+REST_SPEED = accuracy(1e-09, "of |a| dt", "Speed that static forces may leave.")
 REST_CANDIDATE = heuristic(
     0.001,
     "of |a| dt",

@@ -8,12 +8,12 @@ from .arrays import FloatArray, IntArray
 from .compiled import kernel, nonallocating
 from .compiled.records import Rows
 from .model.bodies import Body
-from .model.given import DYNAMIC, STATIC, GivenBody, GivenShape
 from .model.shapes import Link, Shape
+from .model.values import DYNAMIC, STATIC, BodyValues, ShapeValues
 
 
 @nonallocating
-def place_points(BODIES: Rows[GivenBody], SHAPES: Rows[GivenShape], POINT: FloatArray) -> None:
+def place_points(BODIES: Rows[BodyValues], SHAPES: Rows[ShapeValues], POINT: FloatArray) -> None:
     """Convert the vertices of static shapes to world coordinates, and those of others to coordinates about the centre
     of mass; remove a vertex that repeats the one before: a segment of length 0 is a disk."""
     at, to = 0, 0
@@ -34,7 +34,7 @@ def place_points(BODIES: Rows[GivenBody], SHAPES: Rows[GivenShape], POINT: Float
 
 
 @nonallocating
-def give_rows(BODIES: Rows[GivenBody], SHAPES: Rows[GivenShape], POINT: FloatArray, ORDER: IntArray) -> int:
+def give_rows(BODIES: Rows[BodyValues], SHAPES: Rows[ShapeValues], POINT: FloatArray, ORDER: IntArray) -> int:
     """Number the bodies that are not static: single disks, other dynamic bodies, kinematic ones, each group by `place`.
     ORDER (n,) is scratch.
 
@@ -62,7 +62,7 @@ def give_rows(BODIES: Rows[GivenBody], SHAPES: Rows[GivenShape], POINT: FloatArr
 
 
 @nonallocating
-def order_shapes(BODIES: Rows[GivenBody], SHAPES: Rows[GivenShape], ground: int, ORDER: IntArray) -> None:
+def order_shapes(BODIES: Rows[BodyValues], SHAPES: Rows[ShapeValues], ground: int, ORDER: IntArray) -> None:
     """Write the shapes into ORDER, sorted by the rows of their bodies (stable; those of the ground last). The rest of
     ORDER is scratch."""
     k = SHAPES.shape[0]
@@ -81,9 +81,9 @@ def order_shapes(BODIES: Rows[GivenBody], SHAPES: Rows[GivenShape], ground: int,
 
 
 @nonallocating
-def lay_shape(POINT: FloatArray, given: GivenShape, SHAPE: Shape, LINK: Link, VERTEX: FloatArray) -> None:
+def write_shape(POINT: FloatArray, values: ShapeValues, SHAPE: Shape, LINK: Link, VERTEX: FloatArray) -> None:
     """Write one shape's vertices, with the outward normals of the edges that begin there, and its sizes."""
-    n, first = given.vertices, given.first
+    n, first = values.vertices, values.first
     low_x, low_y, high_x, high_y = math.inf, math.inf, -math.inf, -math.inf
     for j in range(n):
         x, y, k = POINT[first + j, 0], POINT[first + j, 1], first + j + 1 if j + 1 < n else first
@@ -99,12 +99,12 @@ def lay_shape(POINT: FloatArray, given: GivenShape, SHAPE: Shape, LINK: Link, VE
     for j in range(first, first + n):
         far = max(far, math.hypot(POINT[j, 0], POINT[j, 1]))
         away = max(away, math.hypot(POINT[j, 0] - SHAPE.centre_x, POINT[j, 1] - SHAPE.centre_y))
-    SHAPE.extent, SHAPE.bound = given.rounding + far, given.rounding + away
+    SHAPE.extent, SHAPE.bound = values.rounding + far, values.rounding + away
 
 
 @kernel
-def lay_rows(
-    BODIES: Rows[GivenBody], SHAPES: Rows[GivenShape], POINT: FloatArray, BODY: Rows[Body], SHAPE: Rows[Shape],
+def write_rows(
+    BODIES: Rows[BodyValues], SHAPES: Rows[ShapeValues], POINT: FloatArray, BODY: Rows[Body], SHAPE: Rows[Shape],
     LINK: Rows[Link], VERTEX: FloatArray, ORDER: IntArray,
 ) -> int:  # fmt: skip
     """Write the rows of bodies and of their shapes, without poses and velocities.
@@ -128,14 +128,14 @@ def lay_rows(
     order_shapes(BODIES, SHAPES, ground, ORDER)
     at = 0
     for k in range(SHAPES.shape[0]):
-        given, row = SHAPES[ORDER[k]], BODIES[SHAPES[ORDER[k]].owner].row
+        values, row = SHAPES[ORDER[k]], BODIES[SHAPES[ORDER[k]].owner].row
         link, shape = LINK[k], SHAPE[k]
-        link.owner, link.first, link.vertices = ground if row < 0 else row, at, given.vertices
-        link.group, link.categories, link.mask = given.group, given.categories, given.mask
-        shape.rounding, shape.elasticity, shape.friction = given.rounding, given.elasticity, given.friction
-        shape.surface_x, shape.surface_y = given.surface_x, given.surface_y
-        lay_shape(POINT, given, shape, link, VERTEX)
-        at += given.vertices
+        link.owner, link.first, link.vertices = ground if row < 0 else row, at, values.vertices
+        link.group, link.categories, link.mask = values.group, values.categories, values.mask
+        shape.rounding, shape.elasticity, shape.friction = values.rounding, values.elasticity, values.friction
+        shape.surface_x, shape.surface_y = values.surface_x, values.surface_y
+        write_shape(POINT, values, shape, link, VERTEX)
+        at += values.vertices
         body = BODY[link.owner]
         body.extent = max(body.extent, shape.extent)
         if k < disks:

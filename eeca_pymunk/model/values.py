@@ -7,7 +7,7 @@ from ..compiled.records import Record
 STATIC, DYNAMIC, KINEMATIC = 0, 1, 2
 
 
-class GivenBody(Record):
+class BodyValues(Record):
     """A body as pymunk has it, in pymunk's order."""
 
     kind: int  # STATIC (also of a sleeping body), DYNAMIC or KINEMATIC
@@ -24,10 +24,10 @@ class GivenBody(Record):
     y: float
     angle: float
     row: int  # of BODY, -1 of static bodies
-    shapes: int  # scratch of `..laying`: 1 for one disk about the centre of mass, 2 or more otherwise
+    shapes: int  # scratch of `..world_rows`: 1 for one disk about the centre of mass, 2 or more otherwise
 
 
-class GivenShape(Record):
+class ShapeValues(Record):
     """A solid shape as pymunk has it, in pymunk's order. Its vertices are consecutive rows, counter-clockwise, in the
     coordinates of its body."""
 

@@ -1,4 +1,4 @@
-"""Coulomb's law and bounded impulses at the end of a path, by the laws themselves."""
+"""Coulomb's law and bounded impulses at the end of a homotopy, by the laws themselves."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from eeca_pymunk.compiled.records import zeros
 from eeca_pymunk.model.contacts import BOUNDED_ROW, ROW, Bounded, Columns, JointedProblem
 from eeca_pymunk.rows.bounded import room_for_rows
 from eeca_pymunk.rows.build import normal_rate, place_row, tangent_rate
-from eeca_pymunk.rows.path import follow_path
+from eeca_pymunk.rows.homotopy import follow_homotopy
 from eeca_pymunk.rows.sweeps import push, sweep, velocities
 
 Array = np.ndarray
@@ -89,13 +89,13 @@ def off(problem: JointedProblem, L: Array, V: Array) -> float:
 
 
 @pytest.mark.parametrize("rows", [0, 3])
-def test_paths_without_impulses_end_at_the_law(rows: int) -> None:
+def test_homotopies_without_impulses_end_at_the_law(rows: int) -> None:
     """Anitescu and Potra's problems: no target is positive, nothing conveys."""
     states = set()
     for seed in range(30):
         problem, free = drawn(seed, rows=rows)
         L, V = np.zeros((problem.m + rows, 2)), free.copy()
-        assert follow_path(problem, L, V, free, True)
+        assert follow_homotopy(problem, L, V, free, True)
         assert off(problem, L, V) <= 1e-12
         again = free.copy()
         push(problem, L, 1.0, again)
@@ -104,16 +104,16 @@ def test_paths_without_impulses_end_at_the_law(rows: int) -> None:
     assert len(states) == 3  # open, sticking, slipping
 
 
-def test_paths_from_a_solution_nearby_end_at_the_law_or_nowhere() -> None:
+def test_homotopies_from_a_solution_nearby_end_at_the_law_or_nowhere() -> None:
     ended = 0
     for seed in range(30):
         problem, free = drawn(seed)
         L = np.zeros((problem.m, 2))
-        assert follow_path(problem, L, free.copy(), free, True)
+        assert follow_homotopy(problem, L, free.copy(), free, True)
         free[:-1] += 0.1 * np.random.default_rng(seed).normal(size=free[:-1].shape)
         V, before = np.empty_like(free), L.copy()
         velocities(problem, L, free, V)
-        if follow_path(problem, L, V, free, False):
+        if follow_homotopy(problem, L, V, free, False):
             ended += 1
             assert off(problem, L, V) <= 1e-12
         else:
@@ -133,7 +133,9 @@ def test_jammed_contacts_that_sweeps_carry_round() -> None:
     for _ in range(300):
         changed = sweep(problem, L, V)
     assert changed > 1e-11
-    assert follow_path(problem, L, V, free, False) or follow_path(problem, np.zeros((2, 2)), free.copy(), free, True)
+    assert follow_homotopy(problem, L, V, free, False) or follow_homotopy(
+        problem, np.zeros((2, 2)), free.copy(), free, True
+    )
     assert off(problem, L, V) <= 1e-12
 
 
@@ -143,7 +145,7 @@ def test_bounded_rows_as_all_cases_tried() -> None:
         problem, free = drawn(seed, m=1, k=3, rows=2)
         problem.ROWS[0].friction = 0.0
         L, V = np.zeros((3, 2)), free.copy()
-        assert follow_path(problem, L, V, free, True)
+        assert follow_homotopy(problem, L, V, free, True)
         found = []
         for states in itertools.product((-1, 0, 1), repeat=2):
             for held in (False, True):
@@ -189,5 +191,5 @@ def test_paths_through_contacts_that_nothing_moves_end_nowhere() -> None:
     problem.C.N[:], problem.C.T[:] = 0.0, 0.0
     L = np.zeros((problem.m, 2))
     with np.errstate(all="ignore"):
-        assert not follow_path(problem, L, free.copy(), free, True)
+        assert not follow_homotopy(problem, L, free.copy(), free, True)
     assert not L.any()

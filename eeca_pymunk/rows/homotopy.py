@@ -1,11 +1,11 @@
-"""Coulomb's law and bounded impulses along a path of solved problems, from any impulses to the solution.
+"""Coulomb's law and bounded impulses along a homotopy of solved problems, from any impulses to the solution.
 
 In the plane both are piecewise linear: contacts are open (lam = 0, u_n >= b), stick (u = (b, 0)) or slip (beta =
 s mu lam, s u_t <= 0); a bounded row has its target velocity, or its impulse is at a bound. Impulses that sweeps leave
 solve it exactly for other free velocities, q + theta p with theta = 1, where p takes their residuals away. From there
 theta goes to 0 along the solution, which is linear until a state changes; then on, with growing or falling theta, as
 the new state allows (Lemke 1965; of contacts Stewart and Trinkle 1996). A change is one pivot, also where contacts jam
-with redundant impulses, which sweeps carry round for ever. A path that begins without impulses ends if no target is
+with redundant impulses, which sweeps carry round for ever. A homotopy that begins without impulses ends if no target is
 positive and no surface conveys (Anitescu and Potra 1997); others may run to infinity.
 """
 
@@ -16,7 +16,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..compiled import kernel, nonallocating
 from ..model.contacts import JointedProblem
-from ..model.parameters.impulses import PATH_CHANGES, PATH_CHANGES_ANEW, PATH_REFINEMENTS
+from ..model.parameters.impulses import HOMOTOPY_CHANGES, HOMOTOPY_CHANGES_ANEW, HOMOTOPY_REFINEMENTS
 from .bounded import SINGLE, bounded_rate
 from .build import normal_rate, tangent_rate
 from .coulomb import limited_slip
@@ -28,7 +28,7 @@ from .pivots import (
     OUT,
     SLIP,
     STICK,
-    Path,
+    Tableau,
     bound_of,
     change,
     margin,
@@ -43,169 +43,169 @@ from .sweeps import velocities
 
 
 @kernel
-def begin(problem: JointedProblem, L: FloatArray, V: FloatArray, anew: bool) -> Path:
-    """The path's start at impulses L (m + n, 2) of m contacts and n bounded rows with velocities V (k, 3); or, if
+def begin(problem: JointedProblem, L: FloatArray, V: FloatArray, anew: bool) -> Tableau:
+    """The homotopy's start at impulses L (m + n, 2) of m contacts and n bounded rows with velocities V (k, 3); or, if
     `anew`, without impulses of contacts, and with rows at a bound. Contacts that are inactive (`Row.wake`) or left out
     (`Columns.OUT`), discs, and rows that joints hold take no part: their impulses stay."""
     A, B, ROWS, C, D, m = problem
     n = D.USED[0]
     size = 2 * m + n
-    path = Path(
+    tableau = Tableau(
         np.zeros(m + n, np.int64), np.zeros(m + n), np.zeros(m), np.zeros(n), np.zeros(n), np.zeros(m),
         np.zeros((size, size + 2)), np.empty(size + 2),
     )  # fmt: skip
-    T, X = path.T, np.zeros(size)
+    T, X = tableau.T, np.zeros(size)
     AT, KIND = np.empty(size, np.int64), np.empty(size, np.int64)
     for k in range(size):
         AT[k], KIND[k] = (k // 2, k % 2) if k < 2 * m else (k - 2 * m, 2)
     matrix_jointed(problem, np.zeros(m), AT, KIND, size, T)
     for i in range(m):
-        path.MU[i] = max(ROWS[i].friction, 0.0)
+        tableau.MU[i] = max(ROWS[i].friction, 0.0)
         if C.OUT[i] == 0 and not ROWS[i].wake < np.inf:
-            path.STATE[i] = OPEN
+            tableau.STATE[i] = OPEN
             T[2 * i, size] = normal_rate(A, B, ROWS, V, i) - ROWS[i].target
             slides = tangent_rate(A, B, ROWS, V, i)
-            path.REST[i] = limited_slip(ROWS[i], L[i, 0], L[i, 1])
-            T[2 * i + 1, size] = slides - path.REST[i]
+            tableau.REST[i] = limited_slip(ROWS[i], L[i, 0], L[i, 1])
+            T[2 * i + 1, size] = slides - tableau.REST[i]
             if L[i, 0] > 0.0 and L[i, 1] == 0.0 and slides * ROWS[i].ut < 0.0:
-                path.MU[i] = 0.0  # a slip that has reversed by less than its size: no friction without giving energy
+                tableau.MU[i] = 0.0  # a slip that has reversed by less than its size: no friction without giving energy
             X[2 * i], X[2 * i + 1] = L[i, 0], L[i, 1]
     for i in range(n):
         row, k = D.ROWS[i], 2 * m + i
-        path.LOW[i], path.HIGH[i] = row.low, row.high
+        tableau.LOW[i], tableau.HIGH[i] = row.low, row.high
         if row.part == SINGLE and T[k, k] > 0.0:
             upper = L[m + i, 0] >= row.high or row.low == -np.inf
-            path.STATE[m + i], path.SIGN[m + i] = BOUND, 1.0 if upper else -1.0
+            tableau.STATE[m + i], tableau.SIGN[m + i] = BOUND, 1.0 if upper else -1.0
             T[k, size] = row.speed + bounded_rate(D, i, V)
             X[k] = L[m + i, 0]
     if not anew:
-        set_direction_of_residuals(path, m, X)
-    remove_impulses(path, m, X)
+        set_direction_of_residuals(tableau, m, X)
+    remove_impulses(tableau, m, X)
     if anew:
-        set_opening_direction(path, m)
+        set_opening_direction(tableau, m)
     else:
-        restore_states(path, m, X)
-    return path
+        restore_states(tableau, m, X)
+    return tableau
 
 
 @nonallocating
-def set_direction_of_residuals(path: Path, m: int, X: FloatArray) -> None:
+def set_direction_of_residuals(tableau: Tableau, m: int, X: FloatArray) -> None:
     """Set the velocities per theta, T[:, size + 1], that take from those at impulses X (size,), T[:, size], by which
     their states are not lawful."""
-    T, size = path.T, len(path.T)
-    for c in range(len(path.STATE)):
-        k, state = unknown_of(m, c), path.STATE[c]
+    T, size = tableau.T, len(tableau.T)
+    for c in range(len(tableau.STATE)):
+        k, state = unknown_of(m, c), tableau.STATE[c]
         u, x = T[k, size], X[k]
         if state == BOUND:
-            inside = path.LOW[c - m] < x < path.HIGH[c - m]
-            T[k, size + 1] = -u if inside or path.SIGN[c] * u > 0.0 else 0.0
+            inside = tableau.LOW[c - m] < x < tableau.HIGH[c - m]
+            T[k, size + 1] = -u if inside or tableau.SIGN[c] * u > 0.0 else 0.0
         elif state == OPEN:
             T[k, size + 1] = -u if x > 0.0 else max(-u, 0.0)
-            s = sign_of(path, c, x, X[k + 1])
-            if x > 0.0 and path.MU[c] > 0.0 and (s == 0.0 or s * T[k + 1, size] > 0.0):
+            s = sign_of(tableau, c, x, X[k + 1])
+            if x > 0.0 and tableau.MU[c] > 0.0 and (s == 0.0 or s * T[k + 1, size] > 0.0):
                 T[k + 1, size + 1] = -T[k + 1, size]
 
 
 @nonallocating
-def set_opening_direction(path: Path, m: int) -> None:
+def set_opening_direction(tableau: Tableau, m: int) -> None:
     """Set the velocities per theta that open all contacts and keep rows at a bound, by different amounts: so they come
     to their changes one by one."""
-    T, size = path.T, len(path.T)
+    T, size = tableau.T, len(tableau.T)
     most = 0.0
     for k in range(size):
         most = max(most, abs(T[k, size]))
-    for c in range(len(path.STATE)):
+    for c in range(len(tableau.STATE)):
         k = unknown_of(m, c)
-        if path.STATE[c] == OPEN or path.STATE[c] == BOUND:
+        if tableau.STATE[c] == OPEN or tableau.STATE[c] == BOUND:
             amount = (1.0 + (0.618034 * c) % 1.0) * most
-            T[k, size + 1] = -path.SIGN[c] * amount if path.STATE[c] == BOUND else amount
+            T[k, size + 1] = -tableau.SIGN[c] * amount if tableau.STATE[c] == BOUND else amount
 
 
 @nonallocating
-def remove_impulses(path: Path, m: int, X: FloatArray) -> None:
+def remove_impulses(tableau: Tableau, m: int, X: FloatArray) -> None:
     """From velocities T[:, size] at impulses X (size,) to those without impulses of contacts, with rows at bounds."""
-    T, size = path.T, len(path.T)
+    T, size = tableau.T, len(tableau.T)
     for k in range(size):
-        at_bound = k >= 2 * m and path.STATE[k - m] == BOUND
-        change = (bound_of(path, m, k - m) if at_bound else 0.0) - X[k]
+        at_bound = k >= 2 * m and tableau.STATE[k - m] == BOUND
+        change = (bound_of(tableau, m, k - m) if at_bound else 0.0) - X[k]
         if change != 0.0:
             for r in range(size):
                 T[r, size] += T[r, k] * change
 
 
 @nonallocating
-def restore_states(path: Path, m: int, X: FloatArray) -> None:
+def restore_states(tableau: Tableau, m: int, X: FloatArray) -> None:
     """The states of impulses X (size,), from those of no impulses of contacts, with rows at bounds."""
-    T, STATE, size = path.T, path.STATE, len(path.T)
+    T, STATE, size = tableau.T, tableau.STATE, len(tableau.T)
     for c in range(len(STATE)):
         k = unknown_of(m, c)
-        if STATE[c] == BOUND and path.LOW[c - m] < X[k] < path.HIGH[c - m]:
-            bound = bound_of(path, m, c)
-            pivot(path, k)
+        if STATE[c] == BOUND and tableau.LOW[c - m] < X[k] < tableau.HIGH[c - m]:
+            bound = bound_of(tableau, m, c)
+            pivot(tableau, k)
             T[k, size] += bound
-            STATE[c], path.SIGN[c] = INSIDE, 0.0
+            STATE[c], tableau.SIGN[c] = INSIDE, 0.0
         elif STATE[c] == OPEN and X[k] > 0.0:
-            sign = sign_of(path, c, X[k], X[k + 1])
-            slip(path, c, sign)
-            if sign == 0.0 and path.MU[c] > 0.0:
-                stick(path, c)
+            sign = sign_of(tableau, c, X[k], X[k + 1])
+            slip(tableau, c, sign)
+            if sign == 0.0 and tableau.MU[c] > 0.0:
+                stick(tableau, c)
 
 
 @nonallocating
-def set_impulses(path: Path, m: int, X: FloatArray, L: FloatArray) -> None:
+def set_impulses(tableau: Tableau, m: int, X: FloatArray, L: FloatArray) -> None:
     """Set the impulses L of the present states, by the unknowns X (size,) that these leave free."""
-    for c in range(len(path.STATE)):
-        k, state = unknown_of(m, c), path.STATE[c]
+    for c in range(len(tableau.STATE)):
+        k, state = unknown_of(m, c), tableau.STATE[c]
         if state == BOUND:
-            L[c, 0] = bound_of(path, m, c)
+            L[c, 0] = bound_of(tableau, m, c)
         elif state != OUT:
             L[c, 0] = X[k] if state != OPEN else 0.0
             if c < m:
-                L[c, 1] = X[k + 1] if state == STICK else slope_of(path, c) * L[c, 0]
+                L[c, 1] = X[k + 1] if state == STICK else slope_of(tableau, c) * L[c, 0]
 
 
 @nonallocating
-def correct(problem: JointedProblem, path: Path, V: FloatArray, X: FloatArray) -> None:
+def correct(problem: JointedProblem, tableau: Tableau, V: FloatArray, X: FloatArray) -> None:
     """Correct the unknowns X (size,) by the velocities V that the present states fix and that are not 0: the proximal
     term and round-off of pivots leave them."""
     A, B, ROWS, _, D, m = problem
-    for c in range(len(path.STATE)):
-        k, state = unknown_of(m, c), path.STATE[c]
+    for c in range(len(tableau.STATE)):
+        k, state = unknown_of(m, c), tableau.STATE[c]
         for z in range(2 if state == STICK else 1 if state in (SLIP, INSIDE) else 0):
             if c >= m:
                 off = D.ROWS[c - m].speed + bounded_rate(D, c - m, V)
             elif z == 1:
-                off = tangent_rate(A, B, ROWS, V, c) - path.REST[c]
+                off = tangent_rate(A, B, ROWS, V, c) - tableau.REST[c]
             else:
                 off = normal_rate(A, B, ROWS, V, c) - ROWS[c].target
             for i in range(len(X)):
-                X[i] -= path.T[i, k + z] * off
+                X[i] -= tableau.T[i, k + z] * off
 
 
 @kernel
-def follow_path(problem: JointedProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, anew: bool) -> bool:
-    """Impulses L (m + n, 2) and velocities V (k, 3) at the end of the path from these; False, with nothing changed, if
-    its end is not reached.
+def follow_homotopy(problem: JointedProblem, L: FloatArray, V: FloatArray, FREE: FloatArray, anew: bool) -> bool:
+    """Impulses L (m + n, 2) and velocities V (k, 3) at the end of the homotopy from these; False, with nothing changed,
+    if its end is not reached.
 
     Args:
         FREE: (k, 3) velocities without any impulses of the problem.  anew: whether it begins without impulses, and may
             be longer.
     """
     m = problem.m
-    path = begin(problem, L, V, anew)
-    T, count, size = path.T, len(path.STATE), len(path.T)
+    tableau = begin(problem, L, V, anew)
+    T, count, size = tableau.T, len(tableau.STATE), len(tableau.T)
     X = np.empty(size)
     theta, way, changed, number = 1.0, -1.0, -1, 0
-    for _ in range((PATH_CHANGES_ANEW if anew else PATH_CHANGES) * count):
+    for _ in range((HOMOTOPY_CHANGES_ANEW if anew else HOMOTOPY_CHANGES) * count):
         nearest = np.inf
         if changed >= 0:
-            way = 1.0 if margin(path, m, changed, number, 1) > 0.0 else -1.0
+            way = 1.0 if margin(tableau, m, changed, number, 1) > 0.0 else -1.0
         changed = -1
         for c in range(count):
             for which in range(2):
-                rate = way * margin(path, m, c, which, 1)
+                rate = way * margin(tableau, m, c, which, 1)
                 if rate < 0.0:
-                    left = max(margin(path, m, c, which, 0) + theta * way * rate, 0.0) / -rate
+                    left = max(margin(tableau, m, c, which, 0) + theta * way * rate, 0.0) / -rate
                     if left < nearest:
                         nearest, changed, number = left, c, which
         if way < 0.0 and theta <= nearest:
@@ -215,15 +215,15 @@ def follow_path(problem: JointedProblem, L: FloatArray, V: FloatArray, FREE: Flo
                 finite = finite and abs(X[k]) < np.inf
             if not finite:
                 return False  # a pivot was 0
-            set_impulses(path, m, X, L)
+            set_impulses(tableau, m, X, L)
             velocities(problem, L, FREE, V)
-            for _ in range(PATH_REFINEMENTS):
-                correct(problem, path, V, X)
-                set_impulses(path, m, X, L)
+            for _ in range(HOMOTOPY_REFINEMENTS):
+                correct(problem, tableau, V, X)
+                set_impulses(tableau, m, X, L)
                 velocities(problem, L, FREE, V)
             return True
         if changed < 0:
             return False
         theta += way * nearest
-        number = change(path, m, changed, number, theta)
+        number = change(tableau, m, changed, number, theta)
     return False
