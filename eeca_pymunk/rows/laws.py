@@ -1,7 +1,7 @@
 """The laws of few contacts to round-off: sweeps, and homotopies (`homotopy.py`) in turn.
 
-First friction that energy limits (`coulomb.py`) is tried, by which each contact by itself loses energy: where slips
-reverse, several contacts may have no such solution. Coulomb's law alone has one more often.
+Friction is that of Coulomb's law alone: friction that energy limits (`coulomb.py`), by which each contact by itself
+loses energy, has no solution for several contacts more often, where slips reverse.
 """
 
 from __future__ import annotations
@@ -107,12 +107,9 @@ def give_slips(ROWS: Rows[Row], m: int, SLIP: FloatArray) -> None:
 
 @kernel
 def solve_few(problem: Problem, L: FloatArray, V: FloatArray, tolerance: float) -> float:
-    """`solve_columns` of contacts of free bodies, whose sweeps and direct solutions have come to no end; if there is no
-    solution with friction that energy limits, with Coulomb's law alone: the energy lock takes what that may give."""
-    columns = as_columns(problem)
-    worst = solve_columns(columns, L, V, tolerance, 0, COLUMN_SWEEPS_AFTER)
-    if worst > tolerance:
-        SLIP = take_slips(problem.ROWS, problem.m)
-        worst = solve_columns(columns, L, V, tolerance, 0, COLUMN_SWEEPS_AFTER)
-        give_slips(problem.ROWS, problem.m, SLIP)
+    """`solve_columns` of contacts of free bodies, whose sweeps and direct solutions have come to no end, with Coulomb's
+    law alone: friction that energy limits has no solution more often, and the energy lock takes what this may give."""
+    SLIP = take_slips(problem.ROWS, problem.m)
+    worst = solve_columns(as_columns(problem), L, V, tolerance, 0, COLUMN_SWEEPS_AFTER)
+    give_slips(problem.ROWS, problem.m, SLIP)
     return worst
