@@ -10,7 +10,7 @@ from .energy.ledger import AFTER, DAMPED
 from .errors import NotFiniteError
 from .layout import LEFT
 from .packed_space import TOO_FAR, PackedSpace
-from .reentry import functions_called
+from .reentry import FunctionsCalled
 from .report import Details, Outcome, StepReport
 from .space.world import World
 from .transfer import EVENTS, FORCES, MOVED_STATIC, OTHER_BODIES
@@ -28,7 +28,7 @@ class HookedStepper(PackedSpace):
         joints = world.joints
         if joints is not None:
             if joints.edited or not joints.idle():
-                with functions_called(self.space):
+                with FunctionsCalled(self.space):
                     joints.update(world.state, world.bodies.row, dt)
             if joints.replan or joints.ends_moved:
                 loop = self.event_loop
@@ -69,7 +69,7 @@ class HookedStepper(PackedSpace):
 
     def _hooked_step(self, world: World, dt: float) -> StepReport:
         """A step of a space in which functions of bodies or constraints, or collision handlers, are called."""
-        with functions_called(self.space):
+        with FunctionsCalled(self.space):
             world, report = self._take_hooked(world, dt)
         if world.collisions:
             self._sync.finish_rehearsal(dt, world.rehearsal.left_out)
