@@ -1,4 +1,4 @@
-"""Impulses of a solution that makes no sense, found anew so that they gain nothing however far they are from solved.
+"""Impulses where there is no solution, or one that makes no sense: they gain nothing however far they are from solved.
 
 Rows that contradict one another (what is jammed between walls), or answers that are no longer those of the components,
 let impulses grow without bound; the work of what they lean on is then without bound too. Sweeps from no impulses are

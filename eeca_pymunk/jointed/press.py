@@ -185,7 +185,8 @@ def press(
         # What gives way is as stiff as its joints pull: round-off of its ways does not fall further.
         converged = (converged and off <= agree) or (best <= AGREE * scale and some_give(J, groups))
     quick = fast + max(pull * h, h * farthest_apart(EFFECT, np.zeros_like(EFFECT), isle.EXTENT, n))
-    if excessive(interval, L, quick):
+    # Impulses that are no solution may take any work from walls.
+    if excessive(interval, L, quick) or (not converged and m <= COLUMN_CONTACTS):
         solve_gently(A, J, interval, L, B, free)
         converged, bent = False, np.inf if free else 0.0
         if excessive(interval, L, quick):

@@ -197,6 +197,13 @@ def test_steps_that_are_cut_press_nothing_through_walls(seed: int) -> None:
     Varied(seed, False).play()
 
 
+@pytest.mark.parametrize(("seed", "steps"), [(700035, 120), (610181, 115)])
+def test_contacts_that_are_not_solved_take_no_work_from_walls(seed: int, steps: int) -> None:
+    """Joints and walls that contradict each other: impulses that were no solution moved bodies through walls, and a
+    ledger did not close."""
+    Varied(seed, True).play(steps)
+
+
 @pytest.mark.parametrize(("seed", "steps"), [(300191, 24), (300558, 97), (64209, 23), (300298, 31)])
 def test_work_is_not_spent_on_intervals_that_were_too_long(seed: int, steps: int) -> None:
     """Joints, springs and contacts that need a hundred intervals in a step: attempts at intervals to its end took all
